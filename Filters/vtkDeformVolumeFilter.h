@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkDeformVolumeFilter
+ * @brief   deform a volume with a tetrahedral mesh or a displacement field
+ *
+ * vtkDeformVolumeFilter takes a volume at rest and something that deforms it, and gives the
+ * deformed volume as ordinary vtkImageData: at full resolution, without holes, with every point
+ * array in its own type. The voxels of the volume are the vertices of an implicit sampling mesh of
+ * five tetrahedra per cell. Each vertex is linked once into the deformation (static mapping); at
+ * each update all vertices are moved (deformation mapping) and all tetrahedra of the sampling mesh
+ * are rasterised into the output (resampling), both on an OpenCL device.
+ *
+ * @par Port 0, the volume:
+ * vtkImageData at rest, of at least two voxels on each axis. Any extent, origin, spacing and
+ * direction matrix. All numeric point arrays go through, each in its own type, with any number of
+ * components: interpolated linearly (integers rounded to nearest), or, where the array is named
+ * with AddCategoricalArray(), taken from the nearest vertex, so that label ids of 64 bits survive.
+ * Attributes keep their role, field data passes. Points that vtkGhostType marks as hidden or
+ * duplicate are no source. A cell array "ActiveTetrahedra" (unsigned char, one component; bit i
+ * stands for tetrahedron i of the cell) switches tetrahedra of the sampling mesh off; hidden cells
+ * are off too. Other cell arrays are not resampled, and a warning names them.
+ *
+ * @par Port 1, the deformation, one of:
+ * - vtkUnstructuredGrid, or a composite dataset of such (they are joined): tetrahedra; other
+ *   linear three-dimensional cells are split into tetrahedra. Without port 2 its points are the
+ *   rest positions, and the vectors chosen by SetInputArrayToProcess(0, 1, 0, POINTS, name), three
+ *   components in world units, are added DisplacementScale times. By default these are the active
+ *   vectors. With port 2 its points are the deformed positions, in world coordinates.
+ * - vtkImageData with a three-component point array chosen in the same way: a displacement field,
+ *   forward, in world units, at the volume's resolution or any other, trilinear between its
+ *   points.
+ *
+ * @par Port 2, optional, the rest configuration:
+ * vtkUnstructuredGrid (or a composite dataset of such) with the cells and the number of points of
+ * port 1.
+ *
+ * @par Output:
+ * vtkImageData with the volume's origin and direction matrix, and by default its spacing; only the
+ * extent differs (see OutputBoundsMode). An undeformed volume therefore comes out bit for bit
+ * equal. A point array "vtkValidPointMask" (char) is 1 where the deformed volume covers a voxel
+ * and 0 elsewhere, where the other arrays hold BackgroundValue. Each covered voxel is written by
+ * exactly one tetrahedron; positions are rounded to 1/256 of an output voxel. Where tetrahedra
+ * overlap, upright ones win over inverted ones and then the lowest cell; the result is the same
+ * from run to run.
+ *
+ * @par Errors:
+ * All failures are one vtkErrorMacro that says what is wrong and what to do; the output is then
+ * empty, and the filter works again once its input is mended.
+ *
+ * The method is that of Rodriguez, Leon, Martin and Otaduy, "A parallel resampling method for
+ * interactive deformation of volumetric models".
+ *
+ * @sa vtkLatticeTetrahedraSource vtkTetGenMesher
+ */
+#ifndef vtkDeformVolumeFilter_h
+#define vtkDeformVolumeFilter_h
+
+#include "vtkDeformVolumeModule.h" // for export macro
+#include "vtkImageAlgorithm.h"
+
+#include <memory> // for std::unique_ptr
+#include <string> // for std::string
+
+class vtkStringArray;
+
+class VTKDEFORMVOLUME_EXPORT vtkDeformVolumeFilter : public vtkImageAlgorithm
+{
+public:
+  static vtkDeformVolumeFilter* New();
+  vtkTypeMacro(vtkDeformVolumeFilter, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Connect the deformation (port 1): a tetrahedral mesh or a displacement field.
+   */
+  void SetDeformationConnection(vtkAlgorithmOutput* output);
+  void SetDeformationData(vtkDataObject* data);
+  ///@}
+
+  ///@{
+  /**
+   * Connect the rest configuration of the deformation mesh (port 2, optional).
+   */
+  void SetRestConnection(vtkAlgorithmOutput* output);
+  void SetRestData(vtkDataObject* data);
+  ///@}
+
+  ///@{
+  /**
+   * Factor on the displacements of port 1, as in vtkWarpVector. Not used with port 2. Default 1.
+   */
+  vtkSetMacro(DisplacementScale, double);
+  vtkGetMacro(DisplacementScale, double);
+  ///@}
+
+  enum OutputBoundsModes
+  {
+    DEFORMED_BOUNDS = 0,
+    VOLUME_BOUNDS = 1,
+    CUSTOM_BOUNDS = 2
+  };
+
+  ///@{
+  /**
+   * What decides the output's whole extent: the bounds of the deformed volume (for a deformation
+   * that varies in time the union over its time steps), those of the volume at rest, or
+   * CustomBounds. Default: DEFORMED_BOUNDS.
+   */
+  vtkSetClampMacro(OutputBoundsMode, int, DEFORMED_BOUNDS, CUSTOM_BOUNDS);
+  vtkGetMacro(OutputBoundsMode, int);
+  void SetOutputBoundsModeToDeformedBounds() { this->SetOutputBoundsMode(DEFORMED_BOUNDS); }
+  void SetOutputBoundsModeToVolumeBounds() { this->SetOutputBoundsMode(VOLUME_BOUNDS); }
+  void SetOutputBoundsModeToCustomBounds() { this->SetOutputBoundsMode(CUSTOM_BOUNDS); }
+  ///@}
+
+  ///@{
+  /**
+   * The box in world coordinates (x min, x max, y min, y max, z min, z max) that the output must
+   * contain in the mode CUSTOM_BOUNDS. Default: -1, 1, -1, 1, -1, 1.
+   */
+  vtkSetVector6Macro(CustomBounds, double);
+  vtkGetVector6Macro(CustomBounds, double);
+  ///@}
+
+  ///@{
+  /**
+   * A border of so many output voxels on each side of the output, so that isosurfaces close.
+   * Default 0, at least 0.
+   */
+  vtkSetClampMacro(Padding, int, 0, 1000);
+  vtkGetMacro(Padding, int);
+  ///@}
+
+  enum OutputSpacingModes
+  {
+    VOLUME_SPACING = 0,
+    CUSTOM_SPACING = 1
+  };
+
+  ///@{
+  /**
+   * Whether the output has the volume's spacing or CustomSpacing. With another spacing the
+   * output's index 0 stays at the volume's origin. Default: VOLUME_SPACING.
+   */
+  vtkSetClampMacro(OutputSpacingMode, int, VOLUME_SPACING, CUSTOM_SPACING);
+  vtkGetMacro(OutputSpacingMode, int);
+  void SetOutputSpacingModeToVolumeSpacing() { this->SetOutputSpacingMode(VOLUME_SPACING); }
+  void SetOutputSpacingModeToCustomSpacing() { this->SetOutputSpacingMode(CUSTOM_SPACING); }
+  ///@}
+
+  ///@{
+  /**
+   * Spacing of the output in the mode CUSTOM_SPACING, in world units, greater than 0.
+   * Default: 1, 1, 1.
+   */
+  vtkSetVector3Macro(CustomSpacing, double);
+  vtkGetVector3Macro(CustomSpacing, double);
+  ///@}
+
+  ///@{
+  /**
+   * What the voxels get that the deformed volume does not cover, in every component of every
+   * array, clamped to the range of the array's type. Default 0.
+   */
+  vtkSetMacro(BackgroundValue, double);
+  vtkGetMacro(BackgroundValue, double);
+  ///@}
+
+  enum OutsideModes
+  {
+    DISCARD = 0,
+    EXTRAPOLATE = 1
+  };
+
+  ///@{
+  /**
+   * What happens to voxels of the volume outside the deformation mesh or field: they are discarded,
+   * or they follow the nearest tetrahedron, whose affine map is extended (it is the tetrahedron
+   * of the nearest voxel inside the mesh; with a field, the displacement of the nearest point of
+   * the field). Default: DISCARD.
+   */
+  vtkSetClampMacro(OutsideMode, int, DISCARD, EXTRAPOLATE);
+  vtkGetMacro(OutsideMode, int);
+  void SetOutsideModeToDiscard() { this->SetOutsideMode(DISCARD); }
+  void SetOutsideModeToExtrapolate() { this->SetOutsideMode(EXTRAPOLATE); }
+  ///@}
+
+  ///@{
+  /**
+   * Names of point arrays that hold labels: they are taken from the nearest vertex and never mixed.
+   */
+  void AddCategoricalArray(const char* name);
+  void RemoveCategoricalArray(const char* name);
+  void ClearCategoricalArrays();
+  int GetNumberOfCategoricalArrays();
+  const char* GetCategoricalArray(int index);
+  ///@}
+
+  enum Resamplers
+  {
+    EXACT = 0,
+    PUBLISHED = 1
+  };
+
+  ///@{
+  /**
+   * The resampling kernel. EXACT: every covered voxel is written by exactly one tetrahedron.
+   * PUBLISHED: the kernel as published, the yardstick of the benchmarks; it has a float tolerance,
+   * and which tetrahedron writes a voxel is left to chance. Default: EXACT.
+   */
+  vtkSetClampMacro(Resampler, int, EXACT, PUBLISHED);
+  vtkGetMacro(Resampler, int);
+  void SetResamplerToExact() { this->SetResampler(EXACT); }
+  void SetResamplerToPublished() { this->SetResampler(PUBLISHED); }
+  ///@}
+
+  ///@{
+  /**
+   * The OpenCL device: "" is the best there is, or what the environment variable
+   * DEFORMVOLUME_DEVICE asks for in the same words; "cpu" and "gpu" are the best of that kind;
+   * anything else is a part of a device's name, without regard to case. A request that cannot be
+   * met is an error at the next update. Default: "".
+   */
+  vtkSetMacro(Device, std::string);
+  vtkGetMacro(Device, std::string);
+  ///@}
+
+  /**
+   * Names of the OpenCL devices of this machine, the best first; empty where there is none.
+   */
+  static vtkStringArray* GetDeviceNames();
+
+  ///@{
+  /**
+   * Bytes of device memory that may be used; 0 is what the device has available. An update that
+   * needs more is an error before anything is allocated. Default 0.
+   */
+  vtkSetClampMacro(MemoryLimit, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
+  vtkGetMacro(MemoryLimit, vtkTypeInt64);
+  ///@}
+
+  ///@{
+  /**
+   * Work-items in a work-group of the resampling kernel, 0: chosen for the device. The result does
+   * not depend on it. Default 0.
+   */
+  vtkSetClampMacro(WorkGroupSize, int, 0, 1024);
+  vtkGetMacro(WorkGroupSize, int);
+  ///@}
+
+  ///@{
+  /**
+   * What the last execution did. Times are in seconds: PreprocessingTime for the static mapping (0
+   * when the one of an earlier execution served), TransferTime for copies to and from the device,
+   * MappingTime and ResamplingTime for the kernels.
+   */
+  vtkGetMacro(PreprocessingTime, double);
+  vtkGetMacro(TransferTime, double);
+  vtkGetMacro(MappingTime, double);
+  vtkGetMacro(ResamplingTime, double);
+  ///@}
+
+  /**
+   * Active tetrahedra of the sampling mesh that the deformation turned inside out at the last
+   * execution.
+   */
+  vtkGetMacro(NumberOfInvertedTetrahedra, vtkIdType);
+
+  /**
+   * Tetrahedra without volume of the deformation mesh at rest: they are skipped.
+   */
+  vtkGetMacro(NumberOfFlatTetrahedra, vtkIdType);
+
+  /**
+   * Voxels of the output that the deformed volume covers.
+   */
+  vtkGetMacro(NumberOfCoveredVoxels, vtkIdType);
+
+  ///@{
+  /**
+   * How often this filter has built a static mapping, and sent a volume to the device: a moved mesh
+   * costs neither.
+   */
+  vtkGetMacro(NumberOfMappingBuilds, vtkIdType);
+  vtkGetMacro(NumberOfVolumeUploads, vtkIdType);
+  ///@}
+
+  /**
+   * Name of the device of the last execution; "" before the first.
+   */
+  vtkGetMacro(DeviceInUse, std::string);
+
+  /**
+   * Bytes that this filter holds on the device.
+   */
+  vtkTypeInt64 GetDeviceMemory();
+
+  /**
+   * Free what this filter holds on the device; the next update sends it again.
+   */
+  void ReleaseDeviceMemory();
+
+protected:
+  vtkDeformVolumeFilter();
+  ~vtkDeformVolumeFilter() override;
+
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** input,
+    vtkInformationVector* output, int requestFromOutputPort, vtkMTimeType* mtime) override;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+
+private:
+  vtkDeformVolumeFilter(const vtkDeformVolumeFilter&) = delete;
+  void operator=(const vtkDeformVolumeFilter&) = delete;
+
+  double DisplacementScale = 1.0;
+  int OutputBoundsMode = DEFORMED_BOUNDS;
+  double CustomBounds[6] = { -1.0, 1.0, -1.0, 1.0, -1.0, 1.0 };
+  int Padding = 0;
+  int OutputSpacingMode = VOLUME_SPACING;
+  double CustomSpacing[3] = { 1.0, 1.0, 1.0 };
+  double BackgroundValue = 0.0;
+  int OutsideMode = DISCARD;
+  int Resampler = EXACT;
+  std::string Device;
+  vtkTypeInt64 MemoryLimit = 0;
+  int WorkGroupSize = 0;
+
+  double PreprocessingTime = 0.0;
+  double TransferTime = 0.0;
+  double MappingTime = 0.0;
+  double ResamplingTime = 0.0;
+  vtkIdType NumberOfInvertedTetrahedra = 0;
+  vtkIdType NumberOfFlatTetrahedra = 0;
+  vtkIdType NumberOfCoveredVoxels = 0;
+  vtkIdType NumberOfMappingBuilds = 0;
+  vtkIdType NumberOfVolumeUploads = 0;
+  std::string DeviceInUse;
+
+  class vtkInternals;
+  std::unique_ptr<vtkInternals> Internals;
+};
+
+#endif

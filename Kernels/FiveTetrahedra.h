@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The 5T split of a cell of the sampling mesh: the one table that the C++ code and the OpenCL
+// kernels share (this file is valid in both languages and is put in front of every kernel).
+//
+// Vertex v of the cell at (x, y, z) lies at x + (v & 1), y + (v >> 2 & 1), z + (v >> 1 & 1), so v
+// is one less than the number used in the literature. The split is mirrored from cell to cell: on
+// every axis on which the cell's structured index is odd, that offset counts downwards from the
+// upper side. Neighbouring cells then agree on the diagonals of the faces they share.
+//
+// Four corner tetrahedra, then the central one. In a cell of even parity (x + y + z even)
+// det(b - a, c - a, d - a) of the undeformed tetrahedra is +1 +1 +1 +1 -2 times the volume of the
+// voxel; in a cell of odd parity every sign is reversed.
+//
+// Source: Rodriguez, Leon, Martin, Otaduy, "A parallel resampling method for interactive
+// deformation of volumetric models", section on the implicit sampling mesh.
+#ifndef DeformVolumeFiveTetrahedra_h
+#define DeformVolumeFiveTetrahedra_h
+
+#define DEFORMVOLUME_FIVE_TETRAHEDRA                                                               \
+  {                                                                                                \
+    { 0, 2, 3, 6 }, { 6, 7, 3, 5 }, { 3, 1, 0, 5 }, { 0, 4, 6, 5 },                                \
+    {                                                                                              \
+      6, 3, 5, 0                                                                                   \
+    }                                                                                              \
+  }
+
+// The corner tetrahedron that lies behind the face of the central tetrahedron opposite its
+// k-th vertex.
+#define DEFORMVOLUME_CORNER_BEHIND_FACE                                                            \
+  {                                                                                                \
+    2, 3, 0, 1                                                                                     \
+  }
+
+#endif

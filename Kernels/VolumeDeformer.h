@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeVolumeDeformer_h
+#define DeformVolumeVolumeDeformer_h
+
+#include "ElementType.h"
+#include "Error.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// An extent in structured indices, both ends included: x min, x max, y min, y max, z min, z max.
+using Extent = std::array<int, 6>;
+
+/// Points of an extent along an axis, and altogether; 0 where it is empty.
+inline std::int64_t GetSize(const Extent& extent, int axis)
+{
+  const std::int64_t size = static_cast<std::int64_t>(extent[2 * axis + 1]) - extent[2 * axis] + 1;
+  return size > 0 ? size : 0;
+}
+inline std::int64_t GetNumberOfPoints(const Extent& extent)
+{
+  return GetSize(extent, 0) * GetSize(extent, 1) * GetSize(extent, 2);
+}
+inline std::int64_t GetNumberOfCells(const Extent& extent)
+{
+  std::int64_t cells = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    cells *= GetSize(extent, axis) > 1 ? GetSize(extent, axis) - 1 : 0;
+  }
+  return cells;
+}
+
+/// The implicit sampling mesh. Its vertices are the voxels of the volume at rest.
+struct Lattice
+{
+  /// Structured indices of the voxels. Their parity decides the 5T split.
+  Extent VertexExtent{ { 0, -1, 0, -1, 0, -1 } };
+  /// Voxel (i, j, k) at rest has the continuous output index Scale * (i, j, k), axis by axis:
+  /// the ratio of the volume's spacing to the output's; 1 where both share one spacing.
+  std::array<double, 3> Scale{ { 1.0, 1.0, 1.0 } };
+};
+
+/// One array over the voxels of the volume: tuples of Components elements, x varying fastest.
+struct VolumeArray
+{
+  const void* Data = nullptr;
+  ElementType Type = ElementType::UInt8;
+  int Components = 1;
+  /// True: take the value of the nearest vertex. False: interpolate linearly, and round to the
+  /// nearest integer where the type is an integer type.
+  bool Categorical = false;
+  /// What voxels get that the deformed volume does not cover, clamped to the type's range.
+  double Background = 0.0;
+};
+
+/// The static link of one voxel into the deformation mesh; 16 bytes.
+struct VertexLink
+{
+  /// Index of the tetrahedron of the deformation mesh, or -1 for a voxel outside it.
+  std::int32_t Tetrahedron = -1;
+  /// Barycentric weights of the first three nodes; that of the fourth is what misses to 1.
+  float Weights[3] = { 0.0F, 0.0F, 0.0F };
+};
+
+/// The nodes of a tetrahedron of the deformation mesh.
+using Tetrahedron = std::array<std::int32_t, 4>;
+
+/// A displacement field on a regular grid, trilinear between its points.
+struct DisplacementField
+{
+  std::array<int, 3> Dimensions{ { 0, 0, 0 } };
+  /// Three floats a point: displacements in output voxels, x varying fastest.
+  const float* Vectors = nullptr;
+  /// Row-major 3 x 4 matrix that takes a structured index of the volume to a continuous index of
+  /// the field, 0 being the field's first point.
+  std::array<double, 12> IndexToField{ { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 } };
+  /// True: voxels outside the field take the displacement of its nearest point on the border.
+  /// False: they are discarded.
+  bool Extrapolate = false;
+};
+
+enum class Resampling
+{
+  /// The exact fill rule: every covered voxel is written by exactly one tetrahedron.
+  Exact,
+  /// The published kernel, kept as the yardstick of benchmarks: float tolerance, racing writes.
+  Published
+};
+
+struct DeformRequest
+{
+  Resampling Method = Resampling::Exact;
+  /// Structured indices of the output voxels.
+  Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
+  /// For each array of the volume, room for Components elements a voxel of OutputExtent.
+  std::vector<void*> Outputs;
+  /// Room for one byte a voxel: 1 where the deformed volume covers it, else 0.
+  signed char* Coverage = nullptr;
+  /// Called between launches with the fraction done, 0 to 1; returning false aborts the work.
+  std::function<bool(double)> Progress;
+};
+
+struct DeformReport
+{
+  std::int64_t NumberOfCoveredVoxels = 0;
+  /// Active tetrahedra of the sampling mesh that the deformation turns inside out.
+  std::int64_t NumberOfInvertedTetrahedra = 0;
+  /// Cells with a tetrahedron that is stretched over more than 4,000 output voxels; such tetrahedra
+  /// are skipped.
+  std::int64_t NumberOfOverstretchedCells = 0;
+  /// True where tetrahedra overlap, so that a winner had to be chosen: upright before inverted,
+  /// then the lowest cell and tetrahedron.
+  bool Overlapping = false;
+  /// Seconds.
+  double MappingTime = 0.0;
+  double ResamplingTime = 0.0;
+  double TransferTime = 0.0;
+};
+
+/// Deforms a volume on an OpenCL device: keeps the volume, its sampling mesh and the static
+/// mapping there, and maps and resamples whenever it is asked to.
+///
+/// Order of calls: SetDevice, SetLattice, SetArrays, then either SetMesh and SetNodeDisplacements
+/// or SetDisplacementField, then Deform, as often as wanted. SetBlanked and SetActiveTetrahedra
+/// are optional. SetLattice forgets everything that was set after it. All pointers are read
+/// during the call only. Every failure is an Error; the object can be used again afterwards.
+class VolumeDeformer
+{
+public:
+  VolumeDeformer();
+  ~VolumeDeformer();
+  VolumeDeformer(const VolumeDeformer&) = delete;
+  VolumeDeformer& operator=(const VolumeDeformer&) = delete;
+
+  /// Chooses the device (see ResolveDevice) and returns its name. A change of device forgets
+  /// all that was set.
+  std::string SetDevice(const std::string& request);
+
+  /// Bytes that may be used on the device; 0: what the device (and for a processor, the
+  /// system) has available.
+  void SetMemoryLimit(std::uint64_t bytes);
+
+  /// Work-items in a work-group along the rows of the volume; 0: chosen by device. Results do
+  /// not depend on it.
+  void SetWorkGroupSize(std::size_t size);
+
+  /// Checks that a lattice, arrays and an output of these sizes fit into the memory of the device,
+  /// before anything is allocated; throws an Error that names the bytes needed and available.
+  /// outputExtent is that of the output; only types and components of the arrays are read.
+  void CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
+    const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
+    bool field) const;
+
+  void SetLattice(const Lattice& lattice);
+  void SetArrays(const std::vector<VolumeArray>& arrays);
+
+  /// One byte a voxel: nonzero where the voxel is no source (blanked or a ghost). Null: all are.
+  void SetBlanked(const unsigned char* blanked);
+
+  /// One byte a cell, bit i = tetrahedron i is active. Null: all are.
+  void SetActiveTetrahedra(const unsigned char* active);
+
+  /// A tetrahedral deformation mesh, with a link for each voxel.
+  void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const VertexLink* links);
+  /// Displacements of the nodes, three floats each, in output voxels.
+  void SetNodeDisplacements(const float* displacements);
+
+  void SetDisplacementField(const DisplacementField& field);
+
+  DeformReport Deform(const DeformRequest& request);
+
+  /// Bytes allocated on the device.
+  std::uint64_t GetDeviceMemory() const;
+
+  /// Frees all that is held on the device.
+  void ReleaseMemory();
+
+private:
+  class Internals;
+  std::unique_ptr<Internals> Impl;
+};
+
+} // namespace deformvolume
+
+#endif
