@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Builds the module and wraps it for Python.
+
+vtk_module_scan(
+  MODULE_FILES "${CMAKE_CURRENT_SOURCE_DIR}/vtk.module"
+  REQUEST_MODULES DeformVolume::Filters
+  PROVIDES_MODULES deformvolume_modules
+  ENABLE_TESTS OFF)
+
+# vtk_module_build adds the module's directory by its path relative to CMAKE_SOURCE_DIR, which would
+# be empty for a module at the root; so that variable points one level up, in this scope only.
+function (deformvolume_build_module)
+  cmake_path(GET CMAKE_SOURCE_DIR PARENT_PATH CMAKE_SOURCE_DIR)
+  vtk_module_build(
+    MODULES ${deformvolume_modules}
+    PACKAGE DeformVolume
+    VERSION "${PROJECT_VERSION}"
+    SOVERSION "${PROJECT_VERSION_MAJOR}"
+    LIBRARY_NAME_SUFFIX ""
+    INSTALL_EXPORT DeformVolume
+    CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/DeformVolume"
+    HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/deformvolume"
+    LIBRARY_DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+    TEST_DIRECTORY_NAME NONE)
+endfunction ()
+deformvolume_build_module()
+
+if (DEFORMVOLUME_WRAP_PYTHON)
+  vtk_module_wrap_python(
+    MODULES ${deformvolume_modules}
+    TARGET DeformVolume::PythonModule
+    PYTHON_PACKAGE deformvolume
+    MODULE_DESTINATION "${DEFORMVOLUME_PYTHON_DIRECTORY}"
+    LIBRARY_DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+    CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/DeformVolume"
+    INSTALL_EXPORT ""
+    INSTALL_HEADERS OFF
+    BUILD_STATIC OFF)
+  configure_file(
+    "${CMAKE_CURRENT_SOURCE_DIR}/Python/__init__.py"
+    "${CMAKE_BINARY_DIR}/${DEFORMVOLUME_PYTHON_DIRECTORY}/deformvolume/__init__.py"
+    COPYONLY)
+  install(
+    FILES "${CMAKE_CURRENT_SOURCE_DIR}/Python/__init__.py"
+    DESTINATION "${DEFORMVOLUME_PYTHON_DIRECTORY}/deformvolume")
+endif ()

@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# deformvolume_set_compile_options(<target>...): how all code of this project is compiled.
+
+function (deformvolume_set_compile_options)
+  foreach (target IN LISTS ARGN)
+    # Without contraction, host arithmetic gives the same bits on processors with and without fused
+    # multiply-add.
+    target_compile_options("${target}" PRIVATE
+      $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wall;-Wextra;-ffp-contract=off>)
+  endforeach ()
+endfunction ()
+
+if (DEFORMVOLUME_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif ()

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Everything that is found outside this project, once, here.
+
+# Components are named throughout: without them, VTK and ParaView ask for the development files of
+# all their modules, Qt included.
+set(deformvolume_vtk_components
+  CommonCore
+  CommonDataModel
+  CommonExecutionModel
+  CommonMath
+  CommonSystem
+  FiltersCore
+  FiltersGeneral
+  FiltersGeometry
+  ImagingCore
+  IOGeometry
+  IOLegacy
+  vtksys)
+if (DEFORMVOLUME_WRAP_PYTHON)
+  # Another python3 that comes first on PATH would not know the modules of the system's VTK.
+  if (NOT Python3_EXECUTABLE AND EXISTS "/usr/bin/python3")
+    set(Python3_EXECUTABLE "/usr/bin/python3" CACHE FILEPATH "The Python that VTK is wrapped for")
+  endif ()
+  find_package(Python3 REQUIRED COMPONENTS Interpreter Development.Module)
+  list(APPEND deformvolume_vtk_components Python WrappingPythonCore WrappingTools)
+endif ()
+if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
+  list(APPEND deformvolume_vtk_components
+    FiltersSources
+    ImagingGeneral
+    ImagingMath
+    ImagingSources
+    InteractionStyle
+    IOImage
+    IOXML
+    RenderingContextOpenGL2
+    RenderingCore
+    RenderingFreeType
+    RenderingOpenGL2
+    RenderingVolume
+    RenderingVolumeOpenGL2)
+endif ()
+if (BUILD_TESTING)
+  list(APPEND deformvolume_vtk_components IOExodus TestingCore TestingRendering)
+endif ()
+
+if (DEFORMVOLUME_USE_PARAVIEW)
+  find_package(ParaView 5.11 REQUIRED COMPONENTS RemotingCore RemotingServerManager)
+endif ()
+find_package(VTK 9.1 REQUIRED COMPONENTS ${deformvolume_vtk_components})
+
+find_package(glm REQUIRED)
+
+# The system's OpenCL loader is asked for before those that GPU toolkits put elsewhere: theirs may
+# be older and know fewer vendors.
+find_library(OpenCL_LIBRARY OpenCL
+  PATHS "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}" /usr/lib64 /usr/lib
+  NO_DEFAULT_PATH)
+find_path(OpenCL_INCLUDE_DIR CL/cl.h PATHS /usr/include NO_DEFAULT_PATH)
+find_package(OpenCL 1.2 REQUIRED)
+find_path(OpenCL_CXX_INCLUDE_DIR CL/opencl.hpp HINTS "${OpenCL_INCLUDE_DIR}")
+mark_as_advanced(OpenCL_CXX_INCLUDE_DIR)
+if (NOT OpenCL_CXX_INCLUDE_DIR)
+  message(FATAL_ERROR
+    "CL/opencl.hpp is missing. Install the C++ bindings of OpenCL (on Debian and Ubuntu the package "
+    "opencl-clhpp-headers), or set OpenCL_CXX_INCLUDE_DIR to the folder that holds CL/opencl.hpp.")
+endif ()
