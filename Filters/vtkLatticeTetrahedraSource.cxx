@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLatticeTetrahedraSource.h"
+
+#include "AbortCheck.h"
+#include "FiveTetrahedra.h"
+
+#include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMatrix3x3.h"
+#include "vtkObjectFactory.h"
+#include "vtkPoints.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <glm/glm.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <string>
+
+vtkStandardNewMacro(vtkLatticeTetrahedraSource);
+
+namespace
+{
+
+// Corner and edge vectors from node to node, in world coordinates.
+struct Lattice
+{
+  glm::dvec3 Corner;
+  glm::dmat3 Steps;
+};
+
+glm::dvec3 NodeSteps(const int nodes[3])
+{
+  return glm::dvec3(nodes[0] - 1, nodes[1] - 1, nodes[2] - 1);
+}
+
+// Empty on success, otherwise what is wrong.
+std::string FrameOfBounds(
+  const double bounds[6], double margin, const int nodes[3], Lattice& lattice)
+{
+  const glm::dvec3 low(bounds[0] - margin, bounds[2] - margin, bounds[4] - margin);
+  const glm::dvec3 high(bounds[1] + margin, bounds[3] + margin, bounds[5] + margin);
+  const glm::dvec3 size = high - low;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (!std::isfinite(low[axis]) || !std::isfinite(high[axis]) || !std::isfinite(size[axis]))
+    {
+      return "Bounds are not finite. Set Bounds to a finite box or connect a volume.";
+    }
+    if (bounds[2 * axis + 1] <= bounds[2 * axis])
+    {
+      return "Bounds are empty: the maximum has to be greater than the minimum on every axis.";
+    }
+  }
+  const glm::dvec3 step = size / NodeSteps(nodes);
+  lattice.Corner = low;
+  lattice.Steps = glm::dmat3(0.0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    lattice.Steps[axis][axis] = step[axis];
+  }
+  return std::string();
+}
+
+std::string FrameOfVolume(
+  vtkImageData* volume, const int extent[6], double margin, const int nodes[3], Lattice& lattice)
+{
+  const double* spacing = volume->GetSpacing();
+  const double* origin = volume->GetOrigin();
+  vtkMatrix3x3* direction = volume->GetDirectionMatrix();
+  const glm::dvec3 steps = NodeSteps(nodes);
+  lattice.Corner = glm::dvec3(origin[0], origin[1], origin[2]);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int first = extent[2 * axis];
+    const int last = extent[2 * axis + 1];
+    if (last <= first)
+    {
+      return "The volume has " + std::to_string(std::max(last - first + 1, 0)) +
+        " voxels on axis " + std::to_string(axis) +
+        ". A lattice needs at least two on every axis; set Bounds and disconnect the volume to "
+        "mesh a box of your own.";
+    }
+    const glm::dvec3 unit(direction->GetElement(0, axis), direction->GetElement(1, axis),
+      direction->GetElement(2, axis));
+    const glm::dvec3 voxel = unit * spacing[axis];
+    const double length = glm::length(voxel);
+    if (!(length > 0.0) || !std::isfinite(length))
+    {
+      return "The volume's spacing or direction matrix is not valid on axis " +
+        std::to_string(axis) + ".";
+    }
+    const double border = margin / length;
+    lattice.Corner += voxel * (first - border);
+    lattice.Steps[axis] = voxel * ((last - first + 2.0 * border) / steps[axis]);
+  }
+  return std::string();
+}
+
+// The memory that the output takes is asked for in one piece and given back: the arrays themselves
+// would report a failure in words that do not say what to do.
+bool CanAllocate(double bytes)
+{
+  if (bytes > static_cast<double>(std::numeric_limits<std::ptrdiff_t>::max()))
+  {
+    return false;
+  }
+  void* memory = ::operator new(static_cast<std::size_t>(bytes), std::nothrow);
+  ::operator delete(memory);
+  return memory != nullptr;
+}
+
+} // namespace
+
+vtkLatticeTetrahedraSource::vtkLatticeTetrahedraSource()
+{
+  this->SetNumberOfInputPorts(1);
+}
+
+int vtkLatticeTetrahedraSource::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+int vtkLatticeTetrahedraSource::ComputePipelineMTime(vtkInformation* request,
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector, int requestFromOutputPort,
+  vtkMTimeType* mtime)
+{
+  // An aborted output is not up to date, but the executive takes it for that. This is the only
+  // moment at which a change of the modification time is seen.
+  if (this->Aborted)
+  {
+    this->Aborted = false;
+    this->Modified();
+  }
+  return this->Superclass::ComputePipelineMTime(
+    request, inputVector, outputVector, requestFromOutputPort, mtime);
+}
+
+int vtkLatticeTetrahedraSource::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector);
+  output->Initialize();
+
+  const int* nodes = this->NumberOfNodes;
+  if (*std::min_element(nodes, nodes + 3) < 2)
+  {
+    vtkErrorMacro("NumberOfNodes is " << nodes[0] << ", " << nodes[1] << ", " << nodes[2]
+                                      << ". A lattice needs at least 2 nodes on every axis.");
+    return 0;
+  }
+  const double nodeCount = 1.0 * nodes[0] * nodes[1] * nodes[2];
+  const double tetrahedronCount = 5.0 * (nodes[0] - 1.0) * (nodes[1] - 1.0) * (nodes[2] - 1.0);
+  const double bytes =
+    nodeCount * 3 * sizeof(double) + tetrahedronCount * (5 * sizeof(vtkIdType) + 1);
+  if (nodeCount > VTK_INT_MAX || 4 * tetrahedronCount > static_cast<double>(VTK_ID_MAX) ||
+    !CanAllocate(bytes))
+  {
+    vtkErrorMacro("A lattice of " << nodes[0] << " x " << nodes[1] << " x " << nodes[2]
+                                  << " nodes takes " << bytes / (1024.0 * 1024.0 * 1024.0)
+                                  << " GiB, which is more than can be stored. Reduce "
+                                     "NumberOfNodes.");
+    return 0;
+  }
+
+  Lattice lattice;
+  std::string problem;
+  if (vtkImageData* volume = vtkImageData::GetData(inputVector[0]))
+  {
+    // The whole extent, so that a piece of the volume gets the same lattice as all of it.
+    vtkInformation* info = inputVector[0]->GetInformationObject(0);
+    int extent[6];
+    volume->GetExtent(extent);
+    if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+    {
+      info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+    }
+    problem = FrameOfVolume(volume, extent, this->Margin, nodes, lattice);
+  }
+  else
+  {
+    problem = FrameOfBounds(this->Bounds, this->Margin, nodes, lattice);
+  }
+  const double volumeOfStep = problem.empty() ? glm::determinant(lattice.Steps) : 1.0;
+  if (problem.empty() && (volumeOfStep == 0.0 || !std::isfinite(volumeOfStep)))
+  {
+    problem = "The lattice has no volume: its axes lie in one plane, or it is too small or too "
+              "large for double precision.";
+  }
+  if (!problem.empty())
+  {
+    vtkErrorMacro(<< problem);
+    return 0;
+  }
+
+  const vtkIdType rowLength = nodes[0];
+  const vtkIdType slabLength = rowLength * nodes[1];
+  vtkNew<vtkDoubleArray> coordinates;
+  coordinates->SetNumberOfComponents(3);
+  coordinates->SetNumberOfTuples(slabLength * nodes[2]);
+  double* coordinate = coordinates->GetPointer(0);
+
+  const vtkIdType numberOfTetrahedra = static_cast<vtkIdType>(tetrahedronCount);
+  vtkNew<vtkIdTypeArray> offsets;
+  offsets->SetNumberOfValues(numberOfTetrahedra + 1);
+  for (vtkIdType i = 0; i <= numberOfTetrahedra; ++i)
+  {
+    offsets->SetValue(i, 4 * i);
+  }
+  vtkNew<vtkIdTypeArray> connectivity;
+  connectivity->SetNumberOfValues(4 * numberOfTetrahedra);
+  vtkIdType* vertex = connectivity->GetPointer(0);
+
+  static const int table[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+  const bool mirrored = volumeOfStep < 0.0;
+  for (int z = 0; z < nodes[2]; ++z)
+  {
+    this->UpdateProgress(static_cast<double>(z) / nodes[2]);
+    if (deformvolume::IsAborted(this))
+    {
+      this->Aborted = true;
+      return 1;
+    }
+    for (int y = 0; y < nodes[1]; ++y)
+    {
+      for (int x = 0; x < nodes[0]; ++x)
+      {
+        const glm::dvec3 node = lattice.Corner + lattice.Steps * glm::dvec3(x, y, z);
+        *coordinate++ = node.x;
+        *coordinate++ = node.y;
+        *coordinate++ = node.z;
+      }
+    }
+    if (z + 1 == nodes[2])
+    {
+      break;
+    }
+    for (int y = 0; y + 1 < nodes[1]; ++y)
+    {
+      for (int x = 0; x + 1 < nodes[0]; ++x)
+      {
+        vtkIdType corners[8];
+        for (int v = 0; v < 8; ++v)
+        {
+          // Mirrored on the axes on which the index is odd.
+          corners[v] = x + ((v ^ x) & 1) + rowLength * (y + (((v >> 2) ^ y) & 1)) +
+            slabLength * (z + (((v >> 1) ^ z) & 1));
+        }
+        // Corner tetrahedra are upright in cells of even parity, the central one in the others.
+        const bool cornersUpright = (((x + y + z) & 1) == 0) != mirrored;
+        for (int t = 0; t < 5; ++t)
+        {
+          const bool upright = (t < 4) == cornersUpright;
+          *vertex++ = corners[table[t][0]];
+          *vertex++ = corners[table[t][1]];
+          *vertex++ = corners[table[t][upright ? 2 : 3]];
+          *vertex++ = corners[table[t][upright ? 3 : 2]];
+        }
+      }
+    }
+  }
+
+  vtkNew<vtkPoints> points;
+  points->SetData(coordinates);
+  vtkNew<vtkCellArray> cells;
+  cells->SetData(offsets, connectivity);
+  output->SetPoints(points);
+  output->SetCells(VTK_TETRA, cells);
+  return 1;
+}
+
+void vtkLatticeTetrahedraSource::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "NumberOfNodes: " << this->NumberOfNodes[0] << " " << this->NumberOfNodes[1]
+     << " " << this->NumberOfNodes[2] << "\n";
+  os << indent << "Bounds:";
+  for (double bound : this->Bounds)
+  {
+    os << " " << bound;
+  }
+  os << "\n" << indent << "Margin: " << this->Margin << "\n";
+}
