@@ -149,6 +149,10 @@ public:
   /// system) has available.
   void SetMemoryLimit(std::uint64_t bytes);
 
+  /// Bytes of one allocation on the device at most; 0: what the device allows. Volumes and outputs
+  /// over it are worked on in chunks; results do not depend on it.
+  void SetAllocationLimit(std::uint64_t bytes);
+
   /// Work-items in a work-group along the rows of the volume; 0: chosen by device. Results do
   /// not depend on it.
   void SetWorkGroupSize(std::size_t size);
@@ -160,7 +164,9 @@ public:
     const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
     bool field) const;
 
-  void SetLattice(const Lattice& lattice);
+  /// bytesPerVoxel: a voxel's bytes in the widest array that will be set; it decides how a volume
+  /// over the allocation limit is split.
+  void SetLattice(const Lattice& lattice, std::size_t bytesPerVoxel = 16);
   void SetArrays(const std::vector<VolumeArray>& arrays);
 
   /// One byte a voxel: nonzero where the voxel is no source (blanked or a ghost). Null: all are.

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The fill rule: which tetrahedron of the sampling mesh writes a voxel.
+//
+// Coverage is closed: a voxel is covered when its centre lies in an active tetrahedron or on its
+// surface. Where the centre lies on a face, an edge or a vertex that several tetrahedra share,
+// exactly one of them writes it:
+// - inside the mesh the one that holds the centre after a shift by (e, e^2, e^3) for an
+//   infinitesimal e > 0 (the top-left rule of triangle rasterisation in three dimensions);
+// - on the border of the mesh, where that one may be missing, the first one in the order of cells
+//   and tetrahedra.
+// Which of the two holds depends only on the simplex whose interior the centre lies in, so that
+// all tetrahedra round it decide alike.
+//
+// All arithmetic is exact: positions are integers in 1/256 voxel, and for a tetrahedron of e
+// voxels the edge functions are at most 2 (256 e)^3, which fits 64 bits up to 6,500 voxels.
+
+#pragma OPENCL FP_CONTRACT OFF
+
+#define MAXIMUM_STRETCH (4000 * 256)
+
+__constant uchar Tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+__constant uchar CornerBehindFace[4] = DEFORMVOLUME_CORNER_BEHIND_FACE;
+
+typedef struct
+{
+  long x, y, z;
+} Vector;
+
+static Vector Subtract(Vector a, Vector b)
+{
+  const Vector r = { a.x - b.x, a.y - b.y, a.z - b.z };
+  return r;
+}
+
+static Vector Cross(Vector a, Vector b)
+{
+  const Vector r = { a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x };
+  return r;
+}
+
+static long Dot(Vector a, Vector b)
+{
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+// Six times the signed volume.
+static long Determinant(Vector a, Vector b, Vector c, Vector d)
+{
+  return Dot(Subtract(b, a), Cross(Subtract(c, a), Subtract(d, a)));
+}
+
+// A tetrahedron ready to be evaluated: the edge function of the face opposite vertex k is
+// Normals[k] . (sample - Origin), plus Volume for k = 0. It is positive inside, and the four add up
+// to Volume, so that they are the barycentric weights times Volume.
+typedef struct
+{
+  Vector Origin;
+  Vector Normals[4];
+  long Volume;
+} EdgeFunctions;
+
+static EdgeFunctions MakeEdgeFunctions(Vector a, Vector b, Vector c, Vector d)
+{
+  EdgeFunctions f;
+  const Vector u = Subtract(b, a);
+  const Vector v = Subtract(c, a);
+  const Vector w = Subtract(d, a);
+  f.Origin = a;
+  f.Normals[1] = Cross(v, w);
+  f.Normals[2] = Cross(w, u);
+  f.Normals[3] = Cross(u, v);
+  f.Volume = Dot(u, f.Normals[1]);
+  if (f.Volume < 0)
+  {
+    f.Volume = -f.Volume;
+    for (int k = 1; k < 4; ++k)
+    {
+      f.Normals[k].x = -f.Normals[k].x;
+      f.Normals[k].y = -f.Normals[k].y;
+      f.Normals[k].z = -f.Normals[k].z;
+    }
+  }
+  f.Normals[0].x = -(f.Normals[1].x + f.Normals[2].x + f.Normals[3].x);
+  f.Normals[0].y = -(f.Normals[1].y + f.Normals[2].y + f.Normals[3].y);
+  f.Normals[0].z = -(f.Normals[1].z + f.Normals[2].z + f.Normals[3].z);
+  return f;
+}
+
+static void Evaluate(const EdgeFunctions* f, Vector sample, long* weights)
+{
+  const Vector r = Subtract(sample, f->Origin);
+  weights[1] = Dot(f->Normals[1], r);
+  weights[2] = Dot(f->Normals[2], r);
+  weights[3] = Dot(f->Normals[3], r);
+  weights[0] = f->Volume - weights[1] - weights[2] - weights[3];
+}
+
+// Whether a shift by (e, e^2, e^3) moves a sample on the face towards the inside.
+static int ShiftsInside(Vector normal)
+{
+  return normal.x > 0 ||
+    (normal.x == 0 && (normal.y > 0 || (normal.y == 0 && normal.z > 0)));
+}
+
+// The sampling mesh round a launch's cells.
+typedef struct
+{
+  __global const int* Positions;
+  __global const uchar* State;
+  __global const uchar* Active;
+} SamplingMesh;
+
+static size_t VertexInSlab(int x, int y, int z, const KernelParameters* p)
+{
+  return ((size_t)(z - p->SlabFirst) * p->Size[1] + y) * p->Size[0] + x;
+}
+
+static size_t VertexInChunk(int x, int y, int z, const KernelParameters* p)
+{
+  return ((size_t)(z - p->ChunkFirst) * p->Size[1] + y) * p->Size[0] + x;
+}
+
+static int ActiveTetrahedra(SamplingMesh mesh, int x, int y, int z, const KernelParameters* p)
+{
+  return p->HasActive
+    ? mesh.Active[((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x] & 31
+    : 31;
+}
+
+// Parity bits of a cell in the order of the bits of a vertex number: x, z, y.
+static int Mirror(int x, int y, int z, const KernelParameters* p)
+{
+  return ((p->First[0] + x) & 1) | ((p->First[2] + z) & 1) << 1 | ((p->First[1] + y) & 1) << 2;
+}
+
+// The eight vertices of a cell; returns the mask of those that have a position.
+static int LoadCell(
+  SamplingMesh mesh, int x, int y, int z, const KernelParameters* p, Vector* vertices)
+{
+  const int mirror = Mirror(x, y, z, p);
+  int present = 0;
+  for (int v = 0; v < 8; ++v)
+  {
+    const int o = v ^ mirror;
+    const int3 q =
+      vload3(VertexInSlab(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p), mesh.Positions);
+    vertices[v].x = q.x;
+    vertices[v].y = q.y;
+    vertices[v].z = q.z;
+    present |= (q.x != INT_MIN) << v;
+  }
+  return present;
+}
+
+static int VerticesOf(int tetrahedron)
+{
+  return 1 << Tetrahedra[tetrahedron][0] | 1 << Tetrahedra[tetrahedron][1] |
+    1 << Tetrahedra[tetrahedron][2] | 1 << Tetrahedra[tetrahedron][3];
+}
+
+// Whether this tetrahedron of the cell is the first one that is there of all that share the simplex
+// with these vertices (a mask over the cell's vertices).
+static int IsFirstOwner(
+  SamplingMesh mesh, int x, int y, int z, int tetrahedron, int simplex, const KernelParameters* p)
+{
+  // The simplex in the lattice: does it reach the low and the high side of the cell on each axis?
+  const int mirror = Mirror(x, y, z, p);
+  int low = 0;
+  int high = 0;
+  for (int v = 0; v < 8; ++v)
+  {
+    if (simplex >> v & 1)
+    {
+      high |= v ^ mirror;
+      low |= ~(v ^ mirror) & 7;
+    }
+  }
+  for (int dz = -1; dz <= 1; ++dz)
+  {
+    for (int dy = -1; dy <= 1; ++dy)
+    {
+      for (int dx = -1; dx <= 1; ++dx)
+      {
+        // A neighbour on the low side shares the simplex only if that does not reach the high side.
+        const int needsLow = (dx < 0) | (dz < 0) << 1 | (dy < 0) << 2;
+        const int needsHigh = (dx > 0) | (dz > 0) << 1 | (dy > 0) << 2;
+        const int nx = x + dx;
+        const int ny = y + dy;
+        const int nz = z + dz;
+        if ((high & needsLow) || (low & needsHigh) || nx < 0 || ny < 0 || nz < 0 ||
+          nx >= p->Size[0] - 1 || ny >= p->Size[1] - 1 || nz >= p->Size[2] - 1)
+        {
+          continue;
+        }
+        const int active = ActiveTetrahedra(mesh, nx, ny, nz, p);
+        // The simplex in the numbers of the neighbour's vertices: on an axis that leads to the
+        // neighbour sides are exchanged, and so is the mirroring, hence numbers do not change.
+        Vector vertices[8];
+        int present = -1;
+        for (int t = 0; t < 5; ++t)
+        {
+          if (dx == 0 && dy == 0 && dz == 0 && t == tetrahedron)
+          {
+            return 1;
+          }
+          const int needed = VerticesOf(t);
+          if (!(active >> t & 1) || (simplex & needed) != simplex)
+          {
+            continue;
+          }
+          if (present < 0)
+          {
+            present = LoadCell(mesh, nx, ny, nz, p, vertices);
+          }
+          if ((present & needed) == needed &&
+            Determinant(vertices[Tetrahedra[t][0]], vertices[Tetrahedra[t][1]],
+              vertices[Tetrahedra[t][2]], vertices[Tetrahedra[t][3]]) != 0)
+          {
+            return 0;
+          }
+        }
+      }
+    }
+  }
+  return 1; // not reached: the loops come past the tetrahedron itself
+}
+
+// Whether a tetrahedron of a cell writes the sample with these weights. interior: mask of the
+// cell's vertices that are interior.
+static int IsOwner(SamplingMesh mesh, int x, int y, int z, int tetrahedron, const long* weights,
+  const EdgeFunctions* f, int interior, const KernelParameters* p)
+{
+  int simplex = 0;
+  int inside = 1;
+  for (int k = 0; k < 4; ++k)
+  {
+    if (weights[k] < 0)
+    {
+      return 0;
+    }
+    if (weights[k] > 0)
+    {
+      simplex |= 1 << Tetrahedra[tetrahedron][k];
+    }
+    else
+    {
+      inside &= ShiftsInside(f->Normals[k]);
+    }
+  }
+  if ((weights[0] && weights[1] && weights[2] && weights[3]) || (simplex & interior))
+  {
+    return inside;
+  }
+  return IsFirstOwner(mesh, x, y, z, tetrahedron, simplex, p);
+}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Device.h"
+
+#include "OpenCLContext.h"
+
+namespace deformvolume
+{
+
+std::vector<std::string> GetDeviceNames()
+{
+  std::vector<std::string> names;
+  for (const OpenCLDevice& device : FindDevices())
+  {
+    names.push_back(device.Name);
+  }
+  return names;
+}
+
+std::string ResolveDevice(const std::string& request)
+{
+  return FindDevice(request).Name;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "KernelCache.h"
+
+#include "Error.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <sys/statvfs.h>
+#include <unistd.h>
+#include <vector>
+
+namespace deformvolume
+{
+namespace
+{
+
+std::once_flag Prepared;
+std::string Problem;
+
+std::string GetEnvironment(const char* name)
+{
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+/// Where PoCL keeps its cache if nobody interferes; "" where it has no idea either.
+std::string GetDefaultDirectory()
+{
+  const std::string own = GetEnvironment("POCL_CACHE_DIR");
+  if (!own.empty())
+  {
+    return own;
+  }
+  const std::string cache = GetEnvironment("XDG_CACHE_HOME");
+  if (!cache.empty())
+  {
+    return cache + "/pocl/kcache";
+  }
+  const std::string home = GetEnvironment("HOME");
+  return home.empty() ? "" : home + "/.cache/pocl/kcache";
+}
+
+bool IsUsable(const std::string& directory)
+{
+  if (directory.empty())
+  {
+    return false;
+  }
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  struct statvfs info;
+  return access(directory.c_str(), R_OK | W_OK | X_OK) == 0 &&
+    statvfs(directory.c_str(), &info) == 0 && !(info.f_flag & (ST_NOEXEC | ST_RDONLY));
+}
+
+std::string MakeTemporaryDirectory(const std::string& parent)
+{
+  std::string name = parent + "/deformvolume-kernels-XXXXXX";
+  std::vector<char> buffer(name.begin(), name.end());
+  buffer.push_back('\0');
+  if (!mkdtemp(buffer.data()))
+  {
+    return "";
+  }
+  return buffer.data();
+}
+
+/// The private directory goes with the process.
+std::string TemporaryDirectory;
+void RemoveTemporaryDirectory()
+{
+  std::error_code error;
+  std::filesystem::remove_all(TemporaryDirectory, error);
+}
+
+void Prepare()
+{
+  const std::string directory = GetDefaultDirectory();
+  if (IsUsable(directory))
+  {
+    return;
+  }
+  const std::string parent = GetEnvironment("TMPDIR").empty() ? "/tmp" : GetEnvironment("TMPDIR");
+  TemporaryDirectory = MakeTemporaryDirectory(parent);
+  if (TemporaryDirectory.empty() || !IsUsable(TemporaryDirectory))
+  {
+    Problem = "The kernels cannot be compiled: neither the kernel cache \"" + directory +
+      "\" nor \"" + parent +
+      "\" is a directory that can be written to and executed from. Set POCL_CACHE_DIR to one.";
+    return;
+  }
+  setenv("POCL_CACHE_DIR", TemporaryDirectory.c_str(), 1);
+  std::atexit(RemoveTemporaryDirectory);
+}
+
+bool IsOnPath(const std::string& program)
+{
+  const std::string path = GetEnvironment("PATH");
+  for (std::size_t begin = 0; begin <= path.size();)
+  {
+    const std::size_t end = std::min(path.find(':', begin), path.size());
+    const std::string directory = path.substr(begin, end - begin);
+    if (access(((directory.empty() ? "." : directory) + "/" + program).c_str(), X_OK) == 0)
+    {
+      return true;
+    }
+    begin = end + 1;
+  }
+  return false;
+}
+
+} // namespace
+
+void PrepareKernelCache()
+{
+  std::call_once(Prepared, Prepare);
+}
+
+void CheckKernelCompiler()
+{
+  PrepareKernelCache();
+  if (!Problem.empty())
+  {
+    throw Error(Problem);
+  }
+  if (!IsOnPath("ld"))
+  {
+    throw Error("The kernels cannot be compiled: PoCL needs the linker \"ld\" on the PATH. Install "
+                "the package binutils, or mend PATH.");
+  }
+}
+
+} // namespace deformvolume

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the launches of the kernels work on. Shared by the C++ code and the kernels: four-byte
+// numbers only, so that both sides lay it out alike.
+//
+// "Local" indices count from 0 at the lattice's first voxel. Vertex data of the volume lie in
+// chunks of whole planes of constant z, positions in slabs of such planes.
+#ifndef DeformVolumeKernelParameters_h
+#define DeformVolumeKernelParameters_h
+
+#ifndef __OPENCL_VERSION__
+namespace deformvolume
+{
+#endif
+
+typedef struct
+{
+  int Size[3];     // voxels of the lattice on each axis
+  int First[3];    // structured index of the first voxel; its parity decides the 5T split
+  int ChunkFirst;  // local z of the first vertex plane, and of the first cell layer, in the chunk
+  int SlabFirst;   // local z of the first vertex plane in the positions
+  int PlanesBegin; // local z of the first vertex plane to work on
+  int PlanesEnd;   // and one past the last
+  int LayersBegin; // local z of the first layer of cells to work on
+  int LayersEnd;   // and one past the last
+  int OutputFirst[3]; // structured index of the first output voxel in the output buffers
+  int OutputSize[3];  // output voxels in the buffers on each axis
+  int Pass;           // one of the passes below
+  int HasActive;      // whether a mask of active tetrahedra is there; without one all are active
+} KernelParameters;
+
+// The undeformed position of the voxels with one index on an axis, in 1/256 output voxel: a whole
+// number and what misses to it.
+typedef struct
+{
+  int Whole;
+  float Fraction;
+} RestPosition;
+
+// A displacement field. IndexToField: row-major 3 x 4, from the structured index of a voxel to a
+// continuous index of the field.
+typedef struct
+{
+  float IndexToField[12];
+  int Dimensions[3];
+  int Extrapolate; // whether voxels outside the field follow its border
+} FieldParameters;
+
+// Passes of the exact resampling kernel.
+#define DEFORMVOLUME_PASS_DIRECT 0 // write, and count the writes
+#define DEFORMVOLUME_PASS_MARK 1   // find the winner of each voxel
+#define DEFORMVOLUME_PASS_WINNER 2 // write where this tetrahedron is the winner
+
+// Counters of a row of cells.
+#define DEFORMVOLUME_COUNT_WRITES 0
+#define DEFORMVOLUME_COUNT_INVERTED 1
+#define DEFORMVOLUME_COUNT_OVERSTRETCHED 2
+#define DEFORMVOLUME_COUNTERS 3
+
+// State of a vertex of the sampling mesh.
+#define DEFORMVOLUME_VERTEX_SOURCE 1   // it has a deformed position and may be interpolated
+#define DEFORMVOLUME_VERTEX_INTERIOR 2 // all tetrahedra that it could belong to are there
+
+#ifndef __OPENCL_VERSION__
+} // namespace deformvolume
+#endif
+
+#endif

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeKernelProgram_h
+#define DeformVolumeKernelProgram_h
+
+#include "OpenCLContext.h"
+#include "VolumeDeformer.h"
+
+namespace deformvolume
+{
+
+/// The deformation mapping (DeformationMapping.cl).
+cl::Program GetMappingProgram(OpenCLContext& context);
+
+/// The exact resampling (Resampling.cl) for arrays of these types. wideKeys: cells are too many for
+/// the 31 bits of a narrow winner's key. Throws Error where the device lacks what the arrays need.
+cl::Program GetResamplingProgram(
+  OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool wideKeys);
+
+/// The published resampling (PublishedResampling.cl) for arrays of these types.
+cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays);
+
+} // namespace deformvolume
+
+#endif

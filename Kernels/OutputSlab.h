@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeOutputSlab_h
+#define DeformVolumeOutputSlab_h
+
+#include "KernelParameters.h"
+#include "OpenCLContext.h"
+#include "VolumeDeformer.h"
+
+namespace deformvolume
+{
+
+/// Bytes of a winner's key: four hold a cell of up to 2^31 and a bit for inverted tetrahedra.
+std::size_t GetWinnerSize(const Lattice& lattice);
+
+/// What the device holds of the output: a range of planes of all arrays, their coverage, the
+/// winners where tetrahedra overlap, and the counters of the rows of cells.
+class OutputSlab
+{
+public:
+  struct Counts
+  {
+    std::uint64_t Writes = 0;
+    std::uint64_t Inverted = 0;
+    std::uint64_t Overstretched = 0;
+  };
+
+  /// Splits an output into slabs that the device can allocate. Throws Error where not even one
+  /// plane fits.
+  static std::vector<Extent> Split(const Extent& output, const std::vector<VolumeArray>& arrays,
+    const Lattice& lattice, std::uint64_t allocationLimit);
+
+  /// Makes room for a slab, or uses what is there, and fills it with the background. Events of
+  /// launches are added to a list.
+  void Prepare(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
+    const std::vector<VolumeArray>& arrays, const Lattice& lattice, std::vector<cl::Event>& events);
+
+  void PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events);
+
+  std::uint64_t CountCovered(
+    OpenCLContext& context, const std::vector<VolumeArray>& arrays, std::vector<cl::Event>& events);
+  Counts ReadCounts();
+
+  /// Puts the output extent into the parameters of a launch.
+  void SetParameters(KernelParameters& parameters) const;
+
+  const cl::Buffer& GetArray(std::size_t index) const { return this->Arrays[index]; }
+  const cl::Buffer& GetCoverage() const { return this->Coverage; }
+  const cl::Buffer& GetWinners() const { return this->Winners() ? this->Winners : this->Coverage; }
+  const cl::Buffer& GetCounters() const { return this->Counters; }
+
+  /// Copies the slab to its place in the request's memory.
+  void Read(const DeformRequest& request);
+
+  std::uint64_t GetMemory() const;
+
+private:
+  cl::CommandQueue Queue;
+  Extent SlabExtent{ { 0, -1, 0, -1, 0, -1 } };
+  std::vector<cl::Buffer> Arrays;
+  std::vector<std::size_t> TupleSizes;
+  cl::Buffer Coverage;
+  cl::Buffer Winners;
+  cl::Buffer Counters;
+  std::size_t WinnerSize = 4;
+  std::size_t NumberOfRows = 0;
+};
+
+} // namespace deformvolume
+
+#endif

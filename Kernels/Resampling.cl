@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Resampling: rasterises the five tetrahedra of each cell of the sampling mesh into the output, by
+// the fill rule of CellCoverage.cl, for all arrays of the volume in one pass over the geometry.
+//
+// Data: positions 12 bytes a vertex (DeformationMapping.cl), state 1 byte a vertex, active
+// tetrahedra 1 byte a cell (optional), coverage 1 byte an output voxel, winners 4 or 8 bytes an
+// output voxel (only where tetrahedra overlap), and the arrays themselves in their own types.
+//
+// A work-item takes every global-size(0)-th cell of one row of cells: on a processor one item a
+// row, so that memory is read in order; on a graphics processor one item a cell, neighbours side
+// by side. Almost all cells are convex enough that a sample needs the central tetrahedron's edge
+// functions and at most those of the corner behind a face; the others try each tetrahedron.
+//
+// What the host puts in front of this text:
+//   REAL                 type of the interpolation: double where the device has it, else float
+//   KEY, ATOMIC_MIN      type and minimum of the winner's key
+//   ARRAY_PARAMETERS     kernel parameters: source and target of each array
+//   ARRAY_ARGUMENTS      the same as arguments
+//   STORE_ARRAYS         statements that store all arrays at a sample
+
+// One sample of one tetrahedron.
+typedef struct
+{
+  size_t Target;    // output voxel in the buffers
+  size_t Sources[4]; // voxels of the chunk at the tetrahedron's vertices
+  REAL Weights[4];  // barycentric weights
+  int Only;         // the vertex at which the sample lies exactly, or -1
+  int Nearest;      // the vertex with the largest weight; of equal ones the lowest voxel
+} Sample;
+
+// Vertices without weight are not read into the sum: a NaN stays within its tetrahedra. A sample at
+// a vertex takes its value as it is, bit for bit.
+#define STORE_LINEAR(SOURCE, TARGET, COMPONENTS, CONVERT)                                          \
+  for (int c = 0; c < COMPONENTS; ++c)                                                             \
+  {                                                                                                \
+    if (s->Only >= 0)                                                                              \
+    {                                                                                              \
+      TARGET[s->Target * COMPONENTS + c] = SOURCE[s->Sources[s->Only] * COMPONENTS + c];           \
+    }                                                                                              \
+    else                                                                                           \
+    {                                                                                              \
+      REAL sum = 0;                                                                                \
+      for (int k = 0; k < 4; ++k)                                                                  \
+      {                                                                                            \
+        sum += s->Weights[k] > 0                                                                   \
+          ? s->Weights[k] * (REAL)SOURCE[s->Sources[k] * COMPONENTS + c]                           \
+          : (REAL)0;                                                                               \
+      }                                                                                            \
+      TARGET[s->Target * COMPONENTS + c] = CONVERT(sum);                                           \
+    }                                                                                              \
+  }
+
+// Integers of 64 bits do not fit into REAL: what is interpolated is the difference to the first
+// vertex, which is exact wherever the values are near to each other.
+#define STORE_LINEAR_64(SOURCE, TARGET, COMPONENTS, TYPE, CONVERT)                                 \
+  for (int c = 0; c < COMPONENTS; ++c)                                                             \
+  {                                                                                                \
+    const TYPE first = SOURCE[s->Sources[s->Only >= 0 ? s->Only : 0] * COMPONENTS + c];            \
+    TYPE value = first;                                                                            \
+    if (s->Only < 0)                                                                               \
+    {                                                                                              \
+      REAL sum = (REAL)first;                                                                      \
+      REAL difference = 0;                                                                         \
+      int near = 1;                                                                                \
+      for (int k = 1; k < 4; ++k)                                                                  \
+      {                                                                                            \
+        const TYPE other = SOURCE[s->Sources[k] * COMPONENTS + c];                                 \
+        near &= abs_diff(other, first) < (1UL << 62);                                              \
+        difference += s->Weights[k] * (REAL)(long)((ulong)other - (ulong)first);                   \
+        sum += s->Weights[k] * ((REAL)other - (REAL)first);                                        \
+      }                                                                                            \
+      value = near ? (TYPE)((ulong)first + (ulong)convert_long_rte(difference)) : CONVERT(sum);    \
+    }                                                                                              \
+    TARGET[s->Target * COMPONENTS + c] = value;                                                    \
+  }
+
+#define STORE_NEAREST(SOURCE, TARGET, COMPONENTS)                                                  \
+  for (int c = 0; c < COMPONENTS; ++c)                                                             \
+  {                                                                                                \
+    TARGET[s->Target * COMPONENTS + c] = SOURCE[s->Sources[s->Nearest] * COMPONENTS + c];          \
+  }
+
+static void StoreArrays(const Sample* s ARRAY_PARAMETERS)
+{
+  STORE_ARRAYS
+}
+
+typedef struct
+{
+  __global char* Coverage;
+  __global KEY* Winners;
+  uint Writes; // of this work-item
+} Output;
+
+// Of overlapping tetrahedra upright ones win, then the lowest cell. Within a cell the order of
+// writing decides, the lowest tetrahedron last.
+static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
+{
+  const KEY cell = ((KEY)z * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x;
+  return cell | (KEY)(inverted != 0) << (sizeof(KEY) * 8 - 1);
+}
+
+static void Write(int x, int y, int z, int t, const long* weights, long volume, int inverted,
+  Vector voxel, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  Sample s;
+  s.Target = ((size_t)(voxel.z - p->OutputFirst[2]) * p->OutputSize[1] +
+               (voxel.y - p->OutputFirst[1])) *
+      p->OutputSize[0] +
+    (voxel.x - p->OutputFirst[0]);
+  const KEY key = MakeKey(x, y, z, inverted, p);
+  if (p->Pass == DEFORMVOLUME_PASS_MARK)
+  {
+    ATOMIC_MIN(output->Winners + s.Target, key);
+    return;
+  }
+  if (p->Pass == DEFORMVOLUME_PASS_WINNER && output->Winners[s.Target] != key)
+  {
+    return;
+  }
+  const int mirror = Mirror(x, y, z, p);
+  const REAL scale = (REAL)1 / (REAL)volume;
+  s.Only = -1;
+  s.Nearest = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const int o = Tetrahedra[t][k] ^ mirror;
+    s.Sources[k] = VertexInChunk(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+    s.Weights[k] = (REAL)weights[k] * scale;
+    s.Only = weights[k] == volume ? k : s.Only;
+    const long lead = weights[k] - weights[s.Nearest];
+    s.Nearest =
+      lead > 0 || (lead == 0 && s.Sources[k] < s.Sources[s.Nearest]) ? k : s.Nearest;
+  }
+  output->Coverage[s.Target] = 1;
+  output->Writes++;
+  StoreArrays(&s ARRAY_ARGUMENTS);
+}
+
+// The output voxels that may lie within some bounds in 1/256 voxel; closed where the bounds count.
+typedef struct
+{
+  Vector Low, High;
+} Candidates;
+
+static Candidates FindCandidates(Vector low, Vector high, int open, const KernelParameters* p)
+{
+  Candidates c;
+  c.Low.x = max((low.x + 255) >> 8, (long)p->OutputFirst[0]);
+  c.Low.y = max((low.y + 255) >> 8, (long)p->OutputFirst[1]);
+  c.Low.z = max((low.z + 255) >> 8, (long)p->OutputFirst[2]);
+  c.High.x = min((high.x - open) >> 8, (long)p->OutputFirst[0] + p->OutputSize[0] - 1);
+  c.High.y = min((high.y - open) >> 8, (long)p->OutputFirst[1] + p->OutputSize[1] - 1);
+  c.High.z = min((high.z - open) >> 8, (long)p->OutputFirst[2] + p->OutputSize[2] - 1);
+  return c;
+}
+
+static int IsEmpty(Candidates c)
+{
+  return c.Low.x > c.High.x || c.Low.y > c.High.y || c.Low.z > c.High.z;
+}
+
+#define FOR_EACH_CANDIDATE(voxel, c)                                                               \
+  for (voxel.z = c.Low.z; voxel.z <= c.High.z; ++voxel.z)                                          \
+    for (voxel.y = c.Low.y; voxel.y <= c.High.y; ++voxel.y)                                        \
+      for (voxel.x = c.Low.x; voxel.x <= c.High.x; ++voxel.x)
+
+static Vector Minimum(Vector a, Vector b)
+{
+  const Vector r = { min(a.x, b.x), min(a.y, b.y), min(a.z, b.z) };
+  return r;
+}
+
+static Vector Maximum(Vector a, Vector b)
+{
+  const Vector r = { max(a.x, b.x), max(a.y, b.y), max(a.z, b.z) };
+  return r;
+}
+
+static Vector SamplePosition(Vector voxel)
+{
+  const Vector r = { voxel.x * 256, voxel.y * 256, voxel.z * 256 };
+  return r;
+}
+
+// A cell whose tetrahedra are all there and upright: a sample behind no face of the central
+// tetrahedron is in it, and a corner tetrahedron holds only samples behind its face.
+static void ResampleUprightCell(SamplingMesh mesh, int x, int y, int z, const Vector* q,
+  int interior, Candidates c, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const EdgeFunctions central = MakeEdgeFunctions(
+    q[Tetrahedra[4][0]], q[Tetrahedra[4][1]], q[Tetrahedra[4][2]], q[Tetrahedra[4][3]]);
+  Vector voxel;
+  FOR_EACH_CANDIDATE(voxel, c)
+  {
+    const Vector sample = SamplePosition(voxel);
+    long behind[4];
+    Evaluate(&central, sample, behind);
+    if (IsOwner(mesh, x, y, z, 4, behind, &central, interior, p))
+    {
+      Write(x, y, z, 4, behind, central.Volume, 0, voxel, output, p ARRAY_ARGUMENTS);
+      continue;
+    }
+    for (int k = 0; k < 4; ++k)
+    {
+      if (behind[k] > 0)
+      {
+        continue;
+      }
+      const int t = CornerBehindFace[k];
+      const EdgeFunctions corner = MakeEdgeFunctions(
+        q[Tetrahedra[t][0]], q[Tetrahedra[t][1]], q[Tetrahedra[t][2]], q[Tetrahedra[t][3]]);
+      long weights[4];
+      Evaluate(&corner, sample, weights);
+      if (IsOwner(mesh, x, y, z, t, weights, &corner, interior, p))
+      {
+        Write(x, y, z, t, weights, corner.Volume, 0, voxel, output, p ARRAY_ARGUMENTS);
+        break;
+      }
+    }
+  }
+}
+
+// Any cell: each tetrahedron on its own. The lowest one last, because the last one to write wins.
+static void ResampleTetrahedra(SamplingMesh mesh, int x, int y, int z, const Vector* q,
+  const long* determinants, int tetrahedra, int inverted, int interior, Output* output,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  for (int t = 4; t >= 0; --t)
+  {
+    if (!(tetrahedra >> t & 1) || determinants[t] == 0)
+    {
+      continue;
+    }
+    const Vector a = q[Tetrahedra[t][0]];
+    const Vector b = q[Tetrahedra[t][1]];
+    const Vector c = q[Tetrahedra[t][2]];
+    const Vector d = q[Tetrahedra[t][3]];
+    const Candidates candidates = FindCandidates(Minimum(Minimum(a, b), Minimum(c, d)),
+      Maximum(Maximum(a, b), Maximum(c, d)), 0, p);
+    if (IsEmpty(candidates))
+    {
+      continue;
+    }
+    const EdgeFunctions f = MakeEdgeFunctions(a, b, c, d);
+    Vector voxel;
+    FOR_EACH_CANDIDATE(voxel, candidates)
+    {
+      long weights[4];
+      Evaluate(&f, SamplePosition(voxel), weights);
+      if (IsOwner(mesh, x, y, z, t, weights, &f, interior, p))
+      {
+        Write(x, y, z, t, weights, f.Volume, inverted >> t & 1, voxel, output, p ARRAY_ARGUMENTS);
+      }
+    }
+  }
+}
+
+__kernel void Resample(__global const int* positions, __global const uchar* state,
+  __global const uchar* active, __global char* coverage, __global KEY* winners,
+  __global uint* counters, const KernelParameters p ARRAY_PARAMETERS)
+{
+  const SamplingMesh mesh = { positions, state, active };
+  Output output = { coverage, winners, 0 };
+  uint invertedCount = 0;
+  uint overstretched = 0;
+  const int y = get_global_id(1);
+  const int z = p.LayersBegin + (int)get_global_id(2);
+  for (int x = get_global_id(0); x < p.Size[0] - 1; x += get_global_size(0))
+  {
+    Vector q[8];
+    const int present = LoadCell(mesh, x, y, z, &p, q);
+    int tetrahedra = ActiveTetrahedra(mesh, x, y, z, &p);
+    if (present == 0 || tetrahedra == 0)
+    {
+      continue;
+    }
+    int interior = 0;
+    const int mirror = Mirror(x, y, z, &p);
+    for (int v = 0; v < 8; ++v)
+    {
+      const int o = v ^ mirror;
+      const size_t i = VertexInChunk(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), &p);
+      interior |= (state[i] & DEFORMVOLUME_VERTEX_INTERIOR) ? 1 << v : 0;
+    }
+    // Orientations, against the one that the parity of the cell asks for.
+    const int odd = (mirror ^ mirror >> 1 ^ mirror >> 2) & 1;
+    long determinants[5];
+    int inverted = 0;
+    int regular = tetrahedra == 31 && present == 255;
+    for (int t = 0; t < 5; ++t)
+    {
+      determinants[t] = 0;
+      const int needed = VerticesOf(t);
+      if (!(tetrahedra >> t & 1) || (present & needed) != needed)
+      {
+        regular = 0;
+        continue;
+      }
+      const Vector a = q[Tetrahedra[t][0]];
+      const Vector b = q[Tetrahedra[t][1]];
+      const Vector c = q[Tetrahedra[t][2]];
+      const Vector d = q[Tetrahedra[t][3]];
+      const Vector extent = Subtract(
+        Maximum(Maximum(a, b), Maximum(c, d)), Minimum(Minimum(a, b), Minimum(c, d)));
+      if (max(extent.x, max(extent.y, extent.z)) > MAXIMUM_STRETCH)
+      {
+        ++overstretched;
+        tetrahedra &= ~(1 << t);
+        regular = 0;
+        continue;
+      }
+      determinants[t] = Determinant(a, b, c, d);
+      const int upright = odd != (t == 4) ? determinants[t] < 0 : determinants[t] > 0;
+      regular &= upright;
+      inverted |= (!upright && determinants[t] != 0) << t;
+    }
+    invertedCount += popcount(inverted);
+    if (regular)
+    {
+      Vector low = q[0];
+      Vector high = q[0];
+      for (int v = 1; v < 8; ++v)
+      {
+        low = Minimum(low, q[v]);
+        high = Maximum(high, q[v]);
+      }
+      // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
+      const Candidates c = FindCandidates(low, high, interior == 255, &p);
+      if (!IsEmpty(c))
+      {
+        ResampleUprightCell(mesh, x, y, z, q, interior, c, &output, &p ARRAY_ARGUMENTS);
+      }
+    }
+    else
+    {
+      ResampleTetrahedra(mesh, x, y, z, q, determinants, tetrahedra, inverted, interior, &output,
+        &p ARRAY_ARGUMENTS);
+    }
+  }
+  if (p.Pass == DEFORMVOLUME_PASS_DIRECT)
+  {
+    __global uint* row = counters + ((size_t)z * (p.Size[1] - 1) + y) * DEFORMVOLUME_COUNTERS;
+    if (output.Writes)
+    {
+      atomic_add(row + DEFORMVOLUME_COUNT_WRITES, output.Writes);
+    }
+    if (invertedCount)
+    {
+      atomic_add(row + DEFORMVOLUME_COUNT_INVERTED, invertedCount);
+    }
+    if (overstretched)
+    {
+      atomic_add(row + DEFORMVOLUME_COUNT_OVERSTRETCHED, overstretched);
+    }
+  }
+}
+
+#define VOXELS_PER_ITEM 4096
+
+// Counts the covered voxels: a partial sum a work-item.
+__kernel void CountCovered(
+  __global const char* coverage, const ulong numberOfVoxels, __global uint* sums)
+{
+  const size_t item = get_global_id(0);
+  const size_t begin = item * VOXELS_PER_ITEM;
+  const size_t end = min(begin + VOXELS_PER_ITEM, (size_t)numberOfVoxels);
+  uint sum = 0;
+  for (size_t i = begin; i < end; ++i)
+  {
+    sum += coverage[i];
+  }
+  sums[item] = sum;
+}
