@@ -9,10 +9,19 @@ set(classes
 
 # Helpers of the classes: neither wrapped nor installed.
 set(helpers
+  CellSplit
+  Deformation
   DeformationMesh
   DeformedBounds
-  IndexTransform
-  StaticMapping)
+  DeviceSession
+  ImageGeometry
+  InputUpdate
+  LinkExtrapolation
+  MappingCache
+  OutputExtent
+  StaticMapping
+  VectorArray
+  VolumeArrays)
 
 foreach (list IN ITEMS classes helpers)
   list(TRANSFORM ${list} PREPEND "Filters/")

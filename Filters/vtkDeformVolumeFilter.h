@@ -57,6 +57,7 @@
 
 #include "vtkDeformVolumeModule.h" // for export macro
 #include "vtkImageAlgorithm.h"
+#include "vtkWrappingHints.h" // for VTK_NEWINSTANCE
 
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
@@ -227,9 +228,10 @@ public:
   ///@}
 
   /**
-   * Names of the OpenCL devices of this machine, the best first; empty where there is none.
+   * Names of the OpenCL devices of this machine, the best first; empty where there is none. The
+   * array is a new one and belongs to the caller (Python sees to that by itself).
    */
-  static vtkStringArray* GetDeviceNames();
+  static VTK_NEWINSTANCE vtkStringArray* GetDeviceNames();
 
   ///@{
   /**

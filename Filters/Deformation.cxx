@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Deformation.h"
+
+#include "VectorArray.h"
+
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkPointData.h"
+#include "vtkSMPTools.h"
+
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+const char* const MESH = "deformation mesh on input port 1";
+const char* const REST = "rest configuration on input port 2";
+const char* const FIELD = "displacement field on input port 1";
+
+// Positions in 1/256 voxel have to fit into the integers of the kernels.
+constexpr double FARTHEST = 1 << 21;
+
+// Products of matrices and their inverses miss the simple numbers that are meant, and then the
+// last row of voxels is outside a field of the same extent. The grain is far below a voxel.
+double DropRoundingError(double value)
+{
+  constexpr double grain = 4294967296.0;
+  return std::round(value * grain) / grain;
+}
+
+} // namespace
+
+void Deformation::Read(const DeformationSource& source)
+{
+  if (const auto image = vtkImageData::SafeDownCast(source.Shape))
+  {
+    if (source.Rest)
+    {
+      throw Error("Input port 2 has a rest configuration, but port 1 has a displacement field, "
+                  "which needs none. Disconnect port 2.");
+    }
+    this->ReadField(image, source);
+  }
+  else
+  {
+    this->ReadMesh(source);
+  }
+}
+
+DisplacementField Deformation::GetField(bool extrapolate) const
+{
+  DisplacementField field;
+  field.Dimensions = this->FieldDimensions;
+  field.Vectors = this->Vectors.data();
+  field.IndexToField = this->IndexToField;
+  field.Extrapolate = extrapolate;
+  return field;
+}
+
+void Deformation::ReadMesh(const DeformationSource& source)
+{
+  const MeshParts shape = GetMeshParts(source.Shape, MESH);
+  const MeshParts rest = source.Rest ? GetMeshParts(source.Rest, REST) : shape;
+  if (GetNumberOfNodes(shape) != GetNumberOfNodes(rest))
+  {
+    throw Error("The deformation mesh on input port 1 has " +
+      std::to_string(GetNumberOfNodes(shape)) +
+      " points and the rest configuration on port 2 has " + std::to_string(GetNumberOfNodes(rest)) +
+      ". Connect two configurations of one mesh.");
+  }
+  this->ReadTetrahedra(shape, rest);
+  this->ReadRestPoints(rest, source);
+
+  Stamp stamp = GetGridsStamp(shape);
+  if (source.Rest)
+  {
+    const Stamp restStamp = GetGridsStamp(rest);
+    stamp.emplace_back(nullptr, 0);
+    stamp.insert(stamp.end(), restStamp.begin(), restStamp.end());
+  }
+  if (this->VectorsAreCurrent(stamp, source, false))
+  {
+    return;
+  }
+  std::vector<glm::dvec3> vectors;
+  if (source.Rest)
+  {
+    vectors = ReadPoints(shape, MESH);
+    const std::vector<glm::dvec3> start = ReadPoints(rest, REST);
+    vtkSMPTools::For(0, static_cast<vtkIdType>(vectors.size()),
+      [&](vtkIdType begin, vtkIdType end)
+      {
+        for (vtkIdType i = begin; i < end; ++i)
+        {
+          vectors[i] -= start[i];
+        }
+      });
+  }
+  else
+  {
+    vectors = ReadPointVectors(shape, source.Selector, source.Wanted, MESH);
+  }
+  this->SetVectors(std::move(vectors), source.Rest ? 1.0 : source.DisplacementScale, source);
+  this->Field = false;
+  this->VectorsStamp = stamp;
+}
+
+void Deformation::ReadTetrahedra(const MeshParts& shape, const MeshParts& rest)
+{
+  Stamp stamp = GetCellsStamp(rest);
+  const Stamp shapeStamp = GetCellsStamp(shape);
+  const bool shared = stamp == shapeStamp;
+  stamp.insert(stamp.end(), shapeStamp.begin(), shapeStamp.end());
+  if (stamp == this->CellsStamp)
+  {
+    return;
+  }
+  MeshCells cells = ReadCells(rest);
+  if (cells.Tetrahedra.empty())
+  {
+    throw Error("The deformation mesh has no tetrahedra" +
+      (cells.Ignored.empty() ? std::string() : ", but " + cells.Ignored) +
+      ". Connect a mesh of linear three-dimensional cells, for example from "
+      "vtkLatticeTetrahedraSource, vtkTetGenMesher or vtkDelaunay3D.");
+  }
+  if (!shared && ReadCells(shape).Tetrahedra != cells.Tetrahedra)
+  {
+    throw Error("The cells of the deformation mesh on input port 1 are not those of the rest "
+                "configuration on port 2. Connect two configurations of one mesh.");
+  }
+  if (cells.Tetrahedra != this->Tetrahedra)
+  {
+    this->Tetrahedra = std::move(cells.Tetrahedra);
+    ++this->RestVersion;
+  }
+  this->IgnoredCells = cells.Ignored;
+  this->CellsStamp = stamp;
+}
+
+void Deformation::ReadRestPoints(const MeshParts& rest, const DeformationSource& source)
+{
+  const Stamp stamp = GetGridsStamp(rest);
+  if (stamp == this->RestStamp && source.Volume == this->RestVolume)
+  {
+    return;
+  }
+  std::vector<glm::dvec3> points = ReadPoints(rest, source.Rest ? REST : MESH);
+  const glm::dmat4 transform = source.Volume.GetWorldToIndex();
+  vtkSMPTools::For(0, static_cast<vtkIdType>(points.size()),
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        points[i] = glm::dvec3(transform * glm::dvec4(points[i], 1.0));
+      }
+    });
+  if (points != this->RestPoints)
+  {
+    this->RestPoints = std::move(points);
+    ++this->RestVersion;
+  }
+  this->RestStamp = stamp;
+  this->RestVolume = source.Volume;
+}
+
+void Deformation::ReadField(vtkImageData* image, const DeformationSource& source)
+{
+  Stamp stamp{ { image, image->GetMTime() }, { nullptr, image->GetPointData()->GetMTime() } };
+  if (this->VectorsAreCurrent(stamp, source, true))
+  {
+    return;
+  }
+  if (image->GetNumberOfPoints() == 0)
+  {
+    throw Error("The displacement field on input port 1 is empty. Connect a vtkImageData with a "
+                "point array of three components.");
+  }
+  const ImageGeometry geometry = GetGeometry(image);
+  CheckTransform(geometry, "the displacement field on input port 1");
+  vtkDataArray* array = FindVectors(image, source.Selector, source.Wanted, FIELD);
+  std::vector<glm::dvec3> vectors(static_cast<std::size_t>(image->GetNumberOfPoints()));
+  ReadVectors(array, vectors.data(), "vector of the displacement field on input port 1 at point");
+  this->SetVectors(std::move(vectors), source.DisplacementScale, source);
+
+  image->GetDimensions(this->FieldDimensions.data());
+  const glm::dmat4 toField = geometry.GetWorldToIndex() * source.Volume.GetIndexToWorld();
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 4; ++column)
+    {
+      const double first = column == 3 ? geometry.PointExtent[2 * row] : 0.0;
+      this->IndexToField[4 * row + column] = DropRoundingError(toField[column][row] - first);
+    }
+  }
+  this->Field = true;
+  this->VectorsStamp = stamp;
+}
+
+bool Deformation::VectorsAreCurrent(
+  const Stamp& stamp, const DeformationSource& source, bool field) const
+{
+  const DeformationSource& last = this->VectorsSource;
+  return this->Field == field && stamp == this->VectorsStamp && source.Choice == last.Choice &&
+    source.DisplacementScale == last.DisplacementScale && source.Volume == last.Volume &&
+    source.Scale == last.Scale;
+}
+
+void Deformation::SetVectors(
+  std::vector<glm::dvec3>&& vectors, double factor, const DeformationSource& source)
+{
+  // Whatever fails from here on, the vectors are not those of any source.
+  this->VectorsStamp.clear();
+  glm::dmat3 transform(source.Volume.GetWorldToIndex());
+  for (int column = 0; column < 3; ++column)
+  {
+    transform[column] *= source.Scale * factor;
+  }
+  this->Vectors.resize(3 * vectors.size());
+  std::atomic<bool> tooFar{ false };
+  vtkSMPTools::For(0, static_cast<vtkIdType>(vectors.size()),
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        const glm::dvec3 vector = transform * vectors[i];
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          // The negation catches NaN as well.
+          if (!(std::abs(vector[axis]) < FARTHEST))
+          {
+            tooFar = true;
+            return;
+          }
+          this->Vectors[3 * i + axis] = static_cast<float>(vector[axis]);
+        }
+      }
+    });
+  ++this->VectorsVersion;
+  if (tooFar)
+  {
+    throw Error("The deformation moves the volume by more than 2,097,152 output voxels. Check "
+                "DisplacementScale, the output spacing, and that displacements and volume are in "
+                "the same world units.");
+  }
+  this->VectorsSource = source;
+  // Only compared, never called or read through again.
+  this->VectorsSource.Shape = nullptr;
+  this->VectorsSource.Rest = nullptr;
+  this->VectorsSource.Selector = nullptr;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DeformationMesh.h"
+
+#include "CellSplit.h"
+#include "VectorArray.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCellType.h"
+#include "vtkCellTypes.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <limits>
+#include <map>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+// A polyhedron brings its own faces. Its points may be listed in any order, so positions are
+// looked up by id.
+void SplitPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell, std::int32_t firstNode,
+  std::vector<Tetrahedron>& tetrahedra)
+{
+  vtkNew<vtkIdList> stream;
+  grid->GetFaceStream(cell, stream);
+  std::vector<std::int32_t> nodes;
+  CellFaces faces;
+  std::map<vtkIdType, int> positions;
+  vtkIdType next = 0;
+  const vtkIdType numberOfFaces = stream->GetNumberOfIds() > 0 ? stream->GetId(next++) : 0;
+  for (vtkIdType i = 0; i < numberOfFaces; ++i)
+  {
+    std::vector<int> face;
+    for (vtkIdType left = stream->GetId(next++); left > 0; --left)
+    {
+      const vtkIdType point = stream->GetId(next++);
+      const auto inserted = positions.emplace(point, static_cast<int>(nodes.size()));
+      if (inserted.second)
+      {
+        nodes.push_back(firstNode + static_cast<std::int32_t>(point));
+      }
+      face.push_back(inserted.first->second);
+    }
+    faces.push_back(face);
+  }
+  if (!nodes.empty())
+  {
+    SplitCell(nodes, faces, tetrahedra);
+  }
+}
+
+void CheckCellPoints(
+  const vtkIdType* points, vtkIdType count, vtkIdType numberOfPoints, vtkIdType cell)
+{
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    if (points[i] < 0 || points[i] >= numberOfPoints)
+    {
+      throw Error("Cell " + std::to_string(cell) + " of the deformation mesh uses point " +
+        std::to_string(points[i]) + ", and there are only " + std::to_string(numberOfPoints) +
+        " points. Mend the cells of the mesh.");
+    }
+  }
+}
+
+void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode,
+  std::vector<Tetrahedron>& tetrahedra, std::map<int, vtkIdType>& ignored)
+{
+  const auto ghosts = vtkUnsignedCharArray::SafeDownCast(
+    grid->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  constexpr unsigned char skipped =
+    vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+  const vtkIdType numberOfCells = grid->GetNumberOfCells();
+  const vtkIdType numberOfPoints = grid->GetNumberOfPoints();
+  std::vector<std::int32_t> nodes;
+  for (vtkIdType cell = 0; cell < numberOfCells; ++cell)
+  {
+    if (ghosts && cell < ghosts->GetNumberOfTuples() && (ghosts->GetValue(cell) & skipped))
+    {
+      continue;
+    }
+    int type = grid->GetCellType(cell);
+    vtkIdType count = 0;
+    const vtkIdType* points = nullptr;
+    grid->GetCells()->GetCellAtId(cell, count, points);
+    CheckCellPoints(points, count, numberOfPoints, cell);
+    if (type == VTK_TETRA && count == 4)
+    {
+      tetrahedra.emplace_back();
+      for (int i = 0; i < 4; ++i)
+      {
+        tetrahedra.back()[i] = firstNode + static_cast<std::int32_t>(points[i]);
+      }
+      continue;
+    }
+    if (type == VTK_POLYHEDRON)
+    {
+      SplitPolyhedron(grid, cell, firstNode, tetrahedra);
+      continue;
+    }
+    nodes.resize(static_cast<std::size_t>(count));
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      nodes[i] = firstNode + static_cast<std::int32_t>(points[i]);
+    }
+    if (type == VTK_VOXEL && count == 8)
+    {
+      std::swap(nodes[2], nodes[3]);
+      std::swap(nodes[6], nodes[7]);
+      type = VTK_HEXAHEDRON;
+    }
+    if (const CellFaces* faces = GetCellFaces(type))
+    {
+      SplitCell(nodes, *faces, tetrahedra);
+    }
+    else
+    {
+      ++ignored[type];
+    }
+  }
+}
+
+} // namespace
+
+MeshParts GetMeshParts(vtkDataObject* object, const std::string& name)
+{
+  MeshParts parts;
+  if (const auto grid = vtkUnstructuredGrid::SafeDownCast(object))
+  {
+    parts.push_back(grid);
+  }
+  else if (const auto composite = vtkCompositeDataSet::SafeDownCast(object))
+  {
+    const auto leaves = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+    for (leaves->InitTraversal(); !leaves->IsDoneWithTraversal(); leaves->GoToNextItem())
+    {
+      if (const auto leaf = vtkUnstructuredGrid::SafeDownCast(leaves->GetCurrentDataObject()))
+      {
+        parts.push_back(leaf);
+      }
+    }
+    if (parts.empty())
+    {
+      throw Error("The composite dataset that is " + name +
+        " holds no vtkUnstructuredGrid. Connect one with tetrahedra.");
+    }
+  }
+  if (parts.empty())
+  {
+    throw Error("There is no " + name + ". Connect a vtkUnstructuredGrid with tetrahedra.");
+  }
+  if (GetNumberOfNodes(parts) == 0)
+  {
+    throw Error("The " + name + " has no points. Connect a vtkUnstructuredGrid with tetrahedra.");
+  }
+  if (GetNumberOfNodes(parts) > std::numeric_limits<std::int32_t>::max())
+  {
+    throw Error("The " + name + " has more than 2,147,483,647 points. Connect a coarser one.");
+  }
+  return parts;
+}
+
+std::size_t GetNumberOfNodes(const MeshParts& parts)
+{
+  std::size_t nodes = 0;
+  for (vtkUnstructuredGrid* grid : parts)
+  {
+    nodes += static_cast<std::size_t>(grid->GetNumberOfPoints());
+  }
+  return nodes;
+}
+
+MeshCells ReadCells(const MeshParts& parts)
+{
+  MeshCells cells;
+  std::map<int, vtkIdType> ignored;
+  std::size_t numberOfCells = 0;
+  for (vtkUnstructuredGrid* grid : parts)
+  {
+    numberOfCells += static_cast<std::size_t>(grid->GetNumberOfCells());
+  }
+  cells.Tetrahedra.reserve(numberOfCells);
+  std::int32_t firstNode = 0;
+  for (vtkUnstructuredGrid* grid : parts)
+  {
+    if (grid->GetNumberOfCells() > 0)
+    {
+      ReadPart(grid, firstNode, cells.Tetrahedra, ignored);
+    }
+    firstNode += static_cast<std::int32_t>(grid->GetNumberOfPoints());
+  }
+  for (const auto& entry : ignored)
+  {
+    const char* className = vtkCellTypes::GetClassNameFromTypeId(entry.first);
+    cells.Ignored += (cells.Ignored.empty() ? "" : ", ") + std::to_string(entry.second) + " " +
+      (className ? className : "unknown");
+  }
+  return cells;
+}
+
+std::vector<glm::dvec3> ReadPoints(const MeshParts& parts, const std::string& name)
+{
+  std::vector<glm::dvec3> points(GetNumberOfNodes(parts));
+  glm::dvec3* next = points.data();
+  for (vtkUnstructuredGrid* grid : parts)
+  {
+    if (grid->GetNumberOfPoints() > 0)
+    {
+      ReadVectors(grid->GetPoints()->GetData(), next, "point of the " + name + " with the number");
+      next += grid->GetNumberOfPoints();
+    }
+  }
+  return points;
+}
+
+vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
+  const std::string& wanted, const std::string& name)
+{
+  vtkDataArray* array = selector(dataSet);
+  if (!array)
+  {
+    throw Error("The " + name + " has no " + wanted +
+      ". Choose the displacements with SetInputArrayToProcess(0, 1, 0, "
+      "vtkDataObject::FIELD_ASSOCIATION_POINTS, name), or connect a rest configuration to port 2 "
+      "where the mesh is deformed already.");
+  }
+  if (array->GetNumberOfComponents() != 3)
+  {
+    throw Error("The displacements of the " + name + ", " + wanted + ", have " +
+      std::to_string(array->GetNumberOfComponents()) +
+      " components. Choose an array with three components.");
+  }
+  if (array->GetNumberOfTuples() != dataSet->GetNumberOfPoints())
+  {
+    throw Error("The displacements of the " + name + ", " + wanted + ", have " +
+      std::to_string(array->GetNumberOfTuples()) + " tuples for " +
+      std::to_string(dataSet->GetNumberOfPoints()) +
+      " points. Choose an array with one tuple for each point.");
+  }
+  return array;
+}
+
+std::vector<glm::dvec3> ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
+  const std::string& wanted, const std::string& name)
+{
+  std::vector<glm::dvec3> vectors(GetNumberOfNodes(parts));
+  glm::dvec3* next = vectors.data();
+  for (vtkUnstructuredGrid* grid : parts)
+  {
+    if (grid->GetNumberOfPoints() > 0)
+    {
+      ReadVectors(FindVectors(grid, selector, wanted, name), next,
+        "displacement of the " + name + " at point");
+      next += grid->GetNumberOfPoints();
+    }
+  }
+  return vectors;
+}
+
+Stamp GetCellsStamp(const MeshParts& parts)
+{
+  Stamp stamp;
+  const auto add = [&](vtkObject* object)
+  { stamp.emplace_back(object, object ? object->GetMTime() : 0); };
+  for (vtkUnstructuredGrid* grid : parts)
+  {
+    vtkCellArray* cells = grid->GetCells();
+    add(cells);
+    add(cells ? cells->GetConnectivityArray() : nullptr);
+    add(cells ? cells->GetOffsetsArray() : nullptr);
+    add(grid->GetCellTypesArray());
+    add(grid->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+    // The node numbers of a part follow from the sizes of the parts before it.
+    stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(grid->GetNumberOfPoints()));
+  }
+  return stamp;
+}
+
+Stamp GetGridsStamp(const MeshParts& parts)
+{
+  Stamp stamp;
+  for (vtkUnstructuredGrid* grid : parts)
+  {
+    stamp.emplace_back(grid, grid->GetMTime());
+    vtkPoints* points = grid->GetPoints();
+    stamp.emplace_back(points, points ? points->GetMTime() : 0);
+    stamp.emplace_back(nullptr, grid->GetPointData()->GetMTime());
+  }
+  return stamp;
+}
+
+} // namespace deformvolume

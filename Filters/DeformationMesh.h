@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeDeformationMesh_h
+#define DeformVolumeDeformationMesh_h
+
+#include "VolumeDeformer.h" // for Tetrahedron
+
+#include "vtkType.h"
+
+#include <glm/vec3.hpp>
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+class vtkDataArray;
+class vtkDataObject;
+class vtkDataSet;
+class vtkUnstructuredGrid;
+
+namespace deformvolume
+{
+
+/// The grids that make up a mesh: one, or the leaves of a composite dataset. Nodes are counted
+/// through all of them, in order.
+using MeshParts = std::vector<vtkUnstructuredGrid*>;
+
+/// Tells two states of VTK objects apart: addresses and modification times.
+using Stamp = std::vector<std::pair<const void*, vtkMTimeType>>;
+
+/// The grids in a data object, which the Errors thrown call by `name`: there must be one, and it
+/// must have points.
+MeshParts GetMeshParts(vtkDataObject* object, const std::string& name);
+
+std::size_t GetNumberOfNodes(const MeshParts& parts);
+
+struct MeshCells
+{
+  std::vector<Tetrahedron> Tetrahedra;
+  /// Cells that are no linear three-dimensional cells, in words for a warning; "" without such.
+  std::string Ignored;
+};
+
+/// The tetrahedra of a mesh, and those that its other linear three-dimensional cells are split
+/// into. Cells that vtkGhostType marks as hidden or duplicate are left out.
+MeshCells ReadCells(const MeshParts& parts);
+
+/// The points, in world coordinates.
+std::vector<glm::dvec3> ReadPoints(const MeshParts& parts, const std::string& name);
+
+/// Finds the vectors of a dataset, or null.
+using ArraySelector = std::function<vtkDataArray*(vtkDataSet*)>;
+
+/// The array that a selector finds, checked to be one of three components, with as many tuples as
+/// the dataset has points. `wanted` says in words what is looked for.
+vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
+  const std::string& wanted, const std::string& name);
+
+/// Vectors of all points.
+std::vector<glm::dvec3> ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
+  const std::string& wanted, const std::string& name);
+
+/// What ReadCells depends on.
+Stamp GetCellsStamp(const MeshParts& parts);
+
+/// What everything else depends on.
+Stamp GetGridsStamp(const MeshParts& parts);
+
+} // namespace deformvolume
+
+#endif

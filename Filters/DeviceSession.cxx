@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DeviceSession.h"
+
+#include "vtkImageData.h"
+
+#include <algorithm>
+
+namespace deformvolume
+{
+
+// Marks what the device has as unknown unless a transfer ends well.
+class DeviceSession::Transfer
+{
+public:
+  explicit Transfer(DeviceSession* session)
+    : Session(session)
+  {
+    session->Known = false;
+  }
+  void End() { this->Session->Known = true; }
+
+private:
+  DeviceSession* Session;
+};
+
+std::string DeviceSession::SetDevice(
+  const std::string& request, std::uint64_t memoryLimit, std::size_t workGroupSize)
+{
+  this->Deformer.SetMemoryLimit(memoryLimit);
+  this->Deformer.SetWorkGroupSize(workGroupSize);
+  const std::string device = this->Deformer.SetDevice(request);
+  if (device != this->Device)
+  {
+    this->Known = false;
+    this->Device = device;
+  }
+  return device;
+}
+
+void DeviceSession::CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
+  const Extent& outputExtent, const Deformation& deformation) const
+{
+  const bool field = deformation.IsField();
+  std::size_t numberOfNodes = deformation.GetRestPoints().size();
+  if (field)
+  {
+    numberOfNodes = 1;
+    for (int size : deformation.GetField(false).Dimensions)
+    {
+      numberOfNodes *= static_cast<std::size_t>(size);
+    }
+  }
+  this->Deformer.CheckMemory(lattice, arrays, outputExtent, numberOfNodes,
+    field ? 0 : deformation.GetTetrahedra().size(), field);
+}
+
+void DeviceSession::SetVolume(const Lattice& lattice, vtkImageData* volume,
+  const std::vector<SourceArray>& arrays, double background)
+{
+  if (!this->Known)
+  {
+    this->Forget();
+  }
+  Transfer transfer(this);
+  std::size_t widest = 0;
+  for (const VolumeArray& array : Describe(arrays, background))
+  {
+    widest =
+      std::max(widest, GetElementSize(array.Type) * static_cast<std::size_t>(array.Components));
+  }
+  if (this->SentLattice.VertexExtent != lattice.VertexExtent ||
+    this->SentLattice.Scale != lattice.Scale || this->SentWidth < widest)
+  {
+    this->Forget();
+    this->Deformer.SetLattice(lattice, widest);
+    this->SentLattice = lattice;
+    this->SentWidth = widest;
+  }
+
+  const Stamp stamp = GetStamp(arrays, background);
+  if (this->SentArrays != stamp)
+  {
+    std::vector<VolumeArray> sent = Describe(arrays, background);
+    std::vector<vtkSmartPointer<vtkDataArray>> copies(arrays.size());
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+    {
+      sent[i].Data = GetValues(arrays[i].Array, copies[i]);
+    }
+    this->Deformer.SetArrays(sent);
+    this->SentArrays = stamp;
+    ++this->NumberOfVolumeUploads;
+  }
+
+  const Stamp masksStamp = GetMasksStamp(volume);
+  if (!this->MasksAreSet || this->SentMasks != masksStamp)
+  {
+    const VolumeMasks masks = ReadMasks(volume);
+    this->Deformer.SetBlanked(masks.Blanked.empty() ? nullptr : masks.Blanked.data());
+    this->Deformer.SetActiveTetrahedra(masks.Active.empty() ? nullptr : masks.Active.data());
+    this->SentMasks = masksStamp;
+    this->MasksAreSet = true;
+  }
+  transfer.End();
+}
+
+void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache& mapping,
+  const ImageGeometry& volume, bool extrapolate, const std::function<bool(double)>& progress)
+{
+  const std::uint64_t vectors = deformation.GetVectorsVersion();
+  if (deformation.IsField())
+  {
+    if (!this->HasField || this->SentVectors != vectors || this->SentExtrapolate != extrapolate)
+    {
+      Transfer transfer(this);
+      this->Deformer.SetDisplacementField(deformation.GetField(extrapolate));
+      transfer.End();
+    }
+    this->HasField = true;
+    this->HasMesh = false;
+  }
+  else
+  {
+    const bool meshIsSent = this->HasMesh && this->SentMapping == mapping.GetVersion() &&
+      mapping.IsCurrent(deformation, volume, extrapolate);
+    if (!meshIsSent)
+    {
+      mapping.Update(deformation, volume, extrapolate, progress);
+      Transfer transfer(this);
+      const std::vector<Tetrahedron>& tetrahedra = deformation.GetTetrahedra();
+      this->Deformer.SetMesh(tetrahedra.data(), tetrahedra.size(),
+        deformation.GetRestPoints().size(), mapping.GetLinks().data());
+      transfer.End();
+      this->SentMapping = mapping.GetVersion();
+    }
+    if (!extrapolate)
+    {
+      // Only the bounds of an extrapolated deformation need them again.
+      mapping.ReleaseLinks();
+    }
+    if (!meshIsSent || this->SentVectors != vectors)
+    {
+      Transfer transfer(this);
+      this->Deformer.SetNodeDisplacements(deformation.GetNodeDisplacements());
+      transfer.End();
+    }
+    this->HasMesh = true;
+    this->HasField = false;
+  }
+  this->SentVectors = vectors;
+  this->SentExtrapolate = extrapolate;
+}
+
+DeformReport DeviceSession::Deform(const DeformRequest& request)
+{
+  try
+  {
+    return this->Deformer.Deform(request);
+  }
+  catch (const Aborted&)
+  {
+    throw;
+  }
+  catch (...)
+  {
+    this->Known = false;
+    throw;
+  }
+}
+
+void DeviceSession::ReleaseMemory()
+{
+  this->Deformer.ReleaseMemory();
+  this->Known = false;
+}
+
+void DeviceSession::Forget()
+{
+  this->SentLattice = Lattice();
+  this->SentWidth = 0;
+  this->SentArrays.clear();
+  this->SentMasks.clear();
+  this->MasksAreSet = false;
+  this->HasMesh = false;
+  this->HasField = false;
+}
+
+} // namespace deformvolume

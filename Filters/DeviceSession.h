@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeDeviceSession_h
+#define DeformVolumeDeviceSession_h
+
+#include "Deformation.h"
+#include "MappingCache.h"
+#include "VolumeArrays.h"
+#include "VolumeDeformer.h"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+class vtkImageData;
+
+namespace deformvolume
+{
+
+/// A VolumeDeformer that remembers what it was sent and is sent only what changed.
+class DeviceSession
+{
+public:
+  /// Chooses the device and returns its name.
+  std::string SetDevice(
+    const std::string& request, std::uint64_t memoryLimit, std::size_t workGroupSize);
+
+  /// See VolumeDeformer.
+  void CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
+    const Extent& outputExtent, const Deformation& deformation) const;
+
+  void SetVolume(const Lattice& lattice, vtkImageData* volume,
+    const std::vector<SourceArray>& arrays, double background);
+
+  /// Brings the mapping up to date, too, where it has to be sent.
+  void SetDeformation(const Deformation& deformation, MappingCache& mapping,
+    const ImageGeometry& volume, bool extrapolate, const std::function<bool(double)>& progress);
+
+  DeformReport Deform(const DeformRequest& request);
+
+  std::uint64_t GetDeviceMemory() const { return this->Deformer.GetDeviceMemory(); }
+  void ReleaseMemory();
+
+  std::int64_t GetNumberOfVolumeUploads() const { return this->NumberOfVolumeUploads; }
+
+private:
+  class Transfer;
+
+  void Forget();
+
+  VolumeDeformer Deformer;
+  std::string Device;
+
+  // What the device has. A call that throws leaves it unknown, and then everything is sent again.
+  bool Known = false;
+  Lattice SentLattice;
+  // Bytes of a voxel in the widest array that the lattice was prepared for.
+  std::size_t SentWidth = 0;
+  Stamp SentArrays;
+  Stamp SentMasks;
+  bool MasksAreSet = false;
+  bool HasMesh = false;
+  bool HasField = false;
+  std::uint64_t SentMapping = 0;
+  std::uint64_t SentVectors = 0;
+  bool SentExtrapolate = false;
+
+  std::int64_t NumberOfVolumeUploads = 0;
+};
+
+} // namespace deformvolume
+
+#endif

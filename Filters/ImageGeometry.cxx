@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ImageGeometry.h"
+
+#include "vtkDataObject.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationIntegerVectorKey.h"
+#include "vtkMatrix3x3.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+// VTK stores matrices row by row, GLM column by column.
+glm::dmat3 MakeDirection(const double* rows)
+{
+  return glm::transpose(glm::make_mat3(rows));
+}
+
+} // namespace
+
+glm::dmat4 ImageGeometry::GetIndexToWorld() const
+{
+  glm::dmat4 transform(1.0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    transform[axis] = glm::dvec4(this->Direction[axis] * this->Spacing[axis], 0.0);
+  }
+  transform[3] = glm::dvec4(this->Origin, 1.0);
+  return transform;
+}
+
+glm::dmat4 ImageGeometry::GetWorldToIndex() const
+{
+  glm::dmat3 inverse = glm::inverse(this->Direction);
+  for (int column = 0; column < 3; ++column)
+  {
+    inverse[column] /= this->Spacing;
+  }
+  glm::dmat4 transform(inverse);
+  transform[3] = glm::dvec4(-(inverse * this->Origin), 1.0);
+  return transform;
+}
+
+bool ImageGeometry::operator==(const ImageGeometry& other) const
+{
+  return this->PointExtent == other.PointExtent && this->Origin == other.Origin &&
+    this->Spacing == other.Spacing && this->Direction == other.Direction;
+}
+
+ImageGeometry GetGeometry(vtkImageData* image)
+{
+  ImageGeometry geometry;
+  std::copy_n(image->GetExtent(), 6, geometry.PointExtent.begin());
+  geometry.Origin = glm::make_vec3(image->GetOrigin());
+  geometry.Spacing = glm::make_vec3(image->GetSpacing());
+  geometry.Direction = MakeDirection(image->GetDirectionMatrix()->GetData());
+  return geometry;
+}
+
+ImageGeometry GetGeometry(vtkInformation* info)
+{
+  ImageGeometry geometry;
+  if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+  {
+    info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), geometry.PointExtent.data());
+  }
+  if (info->Has(vtkDataObject::ORIGIN()))
+  {
+    geometry.Origin = glm::make_vec3(info->Get(vtkDataObject::ORIGIN()));
+  }
+  if (info->Has(vtkDataObject::SPACING()))
+  {
+    geometry.Spacing = glm::make_vec3(info->Get(vtkDataObject::SPACING()));
+  }
+  if (info->Has(vtkDataObject::DIRECTION()))
+  {
+    geometry.Direction = MakeDirection(info->Get(vtkDataObject::DIRECTION()));
+  }
+  return geometry;
+}
+
+void CheckTransform(const ImageGeometry& geometry, const std::string& what)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (!std::isfinite(geometry.Origin[axis]))
+    {
+      throw Error("The origin of " + what + " is not finite. Set a finite one.");
+    }
+    if (!std::isfinite(geometry.Spacing[axis]) || geometry.Spacing[axis] == 0.0)
+    {
+      throw Error("The spacing of " + what + " on axis " + "xyz"[axis] + " is " +
+        std::to_string(geometry.Spacing[axis]) + ". Set one that is not 0.");
+    }
+  }
+  const double determinant = glm::determinant(geometry.Direction);
+  if (!std::isfinite(determinant) || std::abs(determinant) < 1e-12)
+  {
+    throw Error("The direction matrix of " + what +
+      " has no inverse. Set one of three independent directions.");
+  }
+}
+
+void CheckVolume(const ImageGeometry& volume)
+{
+  if (GetNumberOfPoints(volume.PointExtent) == 0)
+  {
+    throw Error("The volume on input port 0 is empty. Connect a vtkImageData with voxels.");
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (GetSize(volume.PointExtent, axis) < 2)
+    {
+      throw Error(std::string("The volume on input port 0 has one voxel only on axis ") +
+        "xyz"[axis] + ". Give a volume of at least two voxels on each axis.");
+    }
+  }
+  CheckTransform(volume, "the volume on input port 0");
+}
+
+} // namespace deformvolume

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeOutputExtent_h
+#define DeformVolumeOutputExtent_h
+
+#include "DeformedBounds.h" // for IndexBounds
+#include "ImageGeometry.h"
+
+namespace deformvolume
+{
+
+/// The output voxels inside bounds, whose ends are rounded to 1/256 voxel as the kernels round
+/// positions. Throws an Error where there are none or more than an extent can count.
+Extent GetExtentInside(const IndexBounds& bounds);
+
+/// The fewest output voxels whose box contains bounds, after the same rounding.
+Extent GetExtentAround(const IndexBounds& bounds);
+
+/// The box of a volume's voxels, in continuous output indices.
+IndexBounds GetVolumeBounds(const ImageGeometry& volume, const glm::dvec3& scale);
+
+/// The box of the corners of a box in world coordinates (x min, x max, y min, ...), in continuous
+/// indices of an image. Throws an Error where the box is not one.
+IndexBounds GetWorldBoxBounds(const double* box, const ImageGeometry& image);
+
+/// An extent with a border of so many voxels.
+Extent GetPadded(const Extent& extent, int padding);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VectorArray.h"
+
+#include "Error.h"
+
+#include "vtkArrayDispatch.h"
+#include "vtkDataArray.h"
+#include "vtkDataArrayRange.h"
+#include "vtkSMPTools.h"
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+constexpr vtkIdType NONE = std::numeric_limits<vtkIdType>::max();
+
+struct VectorReader
+{
+  template <typename ArrayT>
+  void operator()(ArrayT* array, glm::dvec3* vectors)
+  {
+    const auto tuples = vtk::DataArrayTupleRange<3>(array);
+    std::atomic<vtkIdType> bad{ NONE };
+    vtkSMPTools::For(0, tuples.size(),
+      [&](vtkIdType begin, vtkIdType end)
+      {
+        for (vtkIdType i = begin; i < end; ++i)
+        {
+          const auto tuple = tuples[i];
+          const glm::dvec3 vector(static_cast<double>(tuple[0]), static_cast<double>(tuple[1]),
+            static_cast<double>(tuple[2]));
+          if (!std::isfinite(vector.x) || !std::isfinite(vector.y) || !std::isfinite(vector.z))
+          {
+            vtkIdType first = bad;
+            while (i < first && !bad.compare_exchange_weak(first, i))
+            {
+            }
+            return;
+          }
+          vectors[i] = vector;
+        }
+      });
+    this->FirstBad = bad;
+  }
+
+  vtkIdType FirstBad = NONE;
+};
+
+} // namespace
+
+void ReadVectors(vtkDataArray* array, glm::dvec3* vectors, const std::string& what)
+{
+  using Dispatcher = vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>;
+  VectorReader reader;
+  if (!Dispatcher::Execute(array, reader, vectors))
+  {
+    reader(array, vectors);
+  }
+  if (reader.FirstBad != NONE)
+  {
+    throw Error("The " + what + " " + std::to_string(reader.FirstBad) +
+      " is not finite. Remove NaN and infinity from it.");
+  }
+}
+
+} // namespace deformvolume

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VolumeArrays.h"
+
+#include "vtkAOSDataArrayTemplate.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkLookupTable.h"
+#include "vtkPointData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <cstring>
+#include <type_traits>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+const char* const MASK = "vtkValidPointMask";
+const char* const ACTIVE = "ActiveTetrahedra";
+
+// The element type of the same size and kind: VTK has several names for most of them.
+template <typename T>
+constexpr bool FindElementType(ElementType& type)
+{
+#define DEFORMVOLUME_MATCH(name, ctype, cl)                                                        \
+  if (sizeof(T) == sizeof(ctype) && std::is_signed<T>::value == std::is_signed<ctype>::value &&    \
+    std::is_floating_point<T>::value == std::is_floating_point<ctype>::value)                      \
+  {                                                                                                \
+    type = ElementType::name;                                                                      \
+    return true;                                                                                   \
+  }
+  DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_MATCH)
+#undef DEFORMVOLUME_MATCH
+  return false;
+}
+
+bool FindElementType(int vtkType, ElementType& type)
+{
+  switch (vtkType)
+  {
+    vtkTemplateMacro(return FindElementType<VTK_TT>(type));
+    default:
+      return false;
+  }
+}
+
+// The values of an array in VTK's common layout, else null.
+void* FindValues(vtkDataArray* array)
+{
+  switch (array->GetDataType())
+  {
+    vtkTemplateMacro({
+      const auto common = vtkAOSDataArrayTemplate<VTK_TT>::FastDownCast(array);
+      return common ? common->GetPointer(0) : nullptr;
+    });
+    default:
+      return nullptr;
+  }
+}
+
+std::string GetLabel(vtkAbstractArray* array, int index)
+{
+  return array->GetName() ? std::string("\"") + array->GetName() + "\""
+                          : "number " + std::to_string(index);
+}
+
+bool HasName(vtkAbstractArray* array, const char* name)
+{
+  return array->GetName() && std::strcmp(array->GetName(), name) == 0;
+}
+
+// A mask of the volume, or null; throws where the array is there but cannot be one.
+vtkUnsignedCharArray* FindMask(
+  vtkDataSetAttributes* attributes, const char* name, vtkIdType size, const std::string& what)
+{
+  vtkAbstractArray* array = attributes->GetAbstractArray(name);
+  const auto mask = vtkUnsignedCharArray::SafeDownCast(array);
+  if (array && (!mask || mask->GetNumberOfComponents() != 1 || mask->GetNumberOfTuples() != size))
+  {
+    throw Error("The " + what + " array \"" + name + "\" of the volume is " +
+      array->GetDataTypeAsString() + ", " + std::to_string(array->GetNumberOfTuples()) +
+      " tuples of " + std::to_string(array->GetNumberOfComponents()) +
+      " components. Give it type unsigned char, one component and " + std::to_string(size) +
+      " tuples, one for each " + what + ".");
+  }
+  return mask;
+}
+
+} // namespace
+
+std::vector<SourceArray> SelectArrays(
+  vtkImageData* volume, const std::set<std::string>& categorical, std::vector<std::string>& leftOut)
+{
+  vtkPointData* pointData = volume->GetPointData();
+  std::vector<SourceArray> arrays;
+  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* abstract = pointData->GetAbstractArray(i);
+    if (HasName(abstract, MASK) || HasName(abstract, vtkDataSetAttributes::GhostArrayName()))
+    {
+      continue;
+    }
+    vtkDataArray* array = vtkDataArray::SafeDownCast(abstract);
+    ElementType type;
+    if (!array || !FindElementType(array->GetDataType(), type))
+    {
+      leftOut.push_back(GetLabel(abstract, i));
+      continue;
+    }
+    if (array->GetNumberOfTuples() != volume->GetNumberOfPoints())
+    {
+      throw Error("The point array " + GetLabel(array, i) + " of the volume has " +
+        std::to_string(array->GetNumberOfTuples()) + " tuples for " +
+        std::to_string(volume->GetNumberOfPoints()) +
+        " voxels. Remove the array, or give it one tuple for each voxel.");
+    }
+    if (array->GetNumberOfComponents() < 1)
+    {
+      continue;
+    }
+    arrays.push_back({ array, i, array->GetName() && categorical.count(array->GetName()) > 0 });
+  }
+  if (arrays.empty())
+  {
+    throw Error("The volume on input port 0 has no numeric point array, so there is nothing to "
+                "deform. Connect a vtkImageData with point scalars.");
+  }
+  return arrays;
+}
+
+std::vector<VolumeArray> Describe(const std::vector<SourceArray>& arrays, double background)
+{
+  std::vector<VolumeArray> described;
+  for (const SourceArray& source : arrays)
+  {
+    VolumeArray array;
+    FindElementType(source.Array->GetDataType(), array.Type);
+    array.Components = source.Array->GetNumberOfComponents();
+    array.Categorical = source.Categorical;
+    array.Background = background;
+    described.push_back(array);
+  }
+  return described;
+}
+
+Stamp GetStamp(const std::vector<SourceArray>& arrays, double background)
+{
+  Stamp stamp;
+  for (const SourceArray& source : arrays)
+  {
+    stamp.emplace_back(source.Array, source.Array->GetMTime());
+    stamp.emplace_back(nullptr, source.Categorical ? 1 : 0);
+    // Values may be exchanged under an array that stays, as SetArray() does.
+    stamp.emplace_back(
+      FindValues(source.Array), static_cast<vtkMTimeType>(source.Array->GetNumberOfValues()));
+  }
+  vtkMTimeType bits = 0;
+  static_assert(sizeof(bits) >= sizeof(background), "a double does not fit into a time stamp");
+  std::memcpy(&bits, &background, sizeof(background));
+  stamp.emplace_back(nullptr, bits);
+  return stamp;
+}
+
+const void* GetValues(vtkDataArray* array, vtkSmartPointer<vtkDataArray>& copy)
+{
+  if (const void* values = FindValues(array))
+  {
+    return values;
+  }
+  copy.TakeReference(vtkDataArray::CreateDataArray(array->GetDataType()));
+  copy->DeepCopy(array);
+  return FindValues(copy);
+}
+
+vtkSmartPointer<vtkDataArray> MakeLike(vtkDataArray* array, vtkIdType numberOfTuples)
+{
+  const auto made =
+    vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
+  made->SetName(array->GetName());
+  made->SetNumberOfComponents(array->GetNumberOfComponents());
+  made->CopyComponentNames(array);
+  made->SetLookupTable(array->GetLookupTable());
+  if (array->HasInformation())
+  {
+    made->CopyInformation(array->GetInformation(), 1);
+  }
+  made->SetNumberOfTuples(numberOfTuples);
+  return made;
+}
+
+void* GetWritableValues(vtkDataArray* array)
+{
+  return FindValues(array);
+}
+
+void CopyRoles(
+  vtkDataSetAttributes* from, vtkDataSetAttributes* to, const std::vector<SourceArray>& sources)
+{
+  int roles[vtkDataSetAttributes::NUM_ATTRIBUTES];
+  from->GetAttributeIndices(roles);
+  for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role)
+  {
+    for (std::size_t i = 0; i < sources.size(); ++i)
+    {
+      if (roles[role] == sources[i].Index)
+      {
+        to->SetActiveAttribute(static_cast<int>(i), role);
+      }
+    }
+  }
+}
+
+VolumeMasks ReadMasks(vtkImageData* volume)
+{
+  const char* ghostName = vtkDataSetAttributes::GhostArrayName();
+  const vtkIdType numberOfPoints = volume->GetNumberOfPoints();
+  const vtkIdType numberOfCells = volume->GetNumberOfCells();
+  VolumeMasks masks;
+
+  if (const auto ghosts = FindMask(volume->GetPointData(), ghostName, numberOfPoints, "point"))
+  {
+    constexpr unsigned char blanked =
+      vtkDataSetAttributes::DUPLICATEPOINT | vtkDataSetAttributes::HIDDENPOINT;
+    const unsigned char* values = ghosts->GetPointer(0);
+    bool any = false;
+    for (vtkIdType i = 0; i < numberOfPoints && !any; ++i)
+    {
+      any = (values[i] & blanked) != 0;
+    }
+    if (any)
+    {
+      masks.Blanked.resize(static_cast<std::size_t>(numberOfPoints));
+      for (vtkIdType i = 0; i < numberOfPoints; ++i)
+      {
+        masks.Blanked[i] = values[i] & blanked;
+      }
+    }
+  }
+
+  if (const auto active = FindMask(volume->GetCellData(), ACTIVE, numberOfCells, "cell"))
+  {
+    masks.Active.assign(active->GetPointer(0), active->GetPointer(0) + numberOfCells);
+  }
+  if (const auto ghosts = FindMask(volume->GetCellData(), ghostName, numberOfCells, "cell"))
+  {
+    for (vtkIdType i = 0; i < numberOfCells; ++i)
+    {
+      if (ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENCELL)
+      {
+        if (masks.Active.empty())
+        {
+          masks.Active.assign(static_cast<std::size_t>(numberOfCells), 0x1F);
+        }
+        masks.Active[i] = 0;
+      }
+    }
+  }
+  return masks;
+}
+
+Stamp GetMasksStamp(vtkImageData* volume)
+{
+  const char* ghostName = vtkDataSetAttributes::GhostArrayName();
+  Stamp stamp;
+  for (vtkAbstractArray* array : { volume->GetPointData()->GetAbstractArray(ghostName),
+         volume->GetCellData()->GetAbstractArray(ghostName),
+         volume->GetCellData()->GetAbstractArray(ACTIVE) })
+  {
+    stamp.emplace_back(array, array ? array->GetMTime() : 0);
+  }
+  return stamp;
+}
+
+std::vector<std::string> GetUnusedCellArrays(vtkImageData* volume)
+{
+  vtkCellData* cellData = volume->GetCellData();
+  std::vector<std::string> names;
+  for (int i = 0; i < cellData->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = cellData->GetAbstractArray(i);
+    if (!HasName(array, ACTIVE) && !HasName(array, vtkDataSetAttributes::GhostArrayName()))
+    {
+      names.push_back(GetLabel(array, i));
+    }
+  }
+  return names;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,713 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDeformVolumeFilter.h"
+
+#include "AbortCheck.h"
+#include "Deformation.h"
+#include "DeformedBounds.h"
+#include "Device.h"
+#include "DeviceSession.h"
+#include "ImageGeometry.h"
+#include "InputUpdate.h"
+#include "MappingCache.h"
+#include "OutputExtent.h"
+#include "VolumeArrays.h"
+
+#include "vtkCharArray.h"
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
+#include "vtkTimeStamp.h"
+
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
+#include <thread>
+
+using deformvolume::DeformationSource;
+using deformvolume::Error;
+using deformvolume::Extent;
+using deformvolume::ImageGeometry;
+using deformvolume::IndexBounds;
+
+vtkStandardNewMacro(vtkDeformVolumeFilter);
+
+//------------------------------------------------------------------------------
+class vtkDeformVolumeFilter::vtkInternals
+{
+public:
+  explicit vtkInternals(vtkDeformVolumeFilter* self)
+    : Self(self)
+  {
+  }
+
+  /// The output's spacing and whole extent, as far as settings and volume decide them.
+  ImageGeometry GetOutputGeometry(const ImageGeometry& volume) const;
+
+  DeformationSource MakeSource(
+    const ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest) const;
+
+  /// The bounds of the deformed volume, united over the time steps of the deformation.
+  IndexBounds GetDeformedBounds(const ImageGeometry& volume, vtkInformation* output);
+
+  /// Warns where what is ignored changed since the last call.
+  void WarnOfIgnored(vtkImageData* volume, const std::vector<std::string>& leftOut);
+
+  /// A progress callback for the part of the execution between two fractions.
+  std::function<bool(double)> GetProgress(double from, double to) const;
+
+  std::set<std::string> CategoricalArrays;
+  deformvolume::Deformation Deformation;
+  deformvolume::MappingCache Mapping;
+  deformvolume::DeviceSession Device;
+
+  // An error is told once: what comes after a failed information pass is silent.
+  bool InformationFailed = false;
+  // An aborted execution leaves the filter out of date, and the next pass has to see that.
+  bool Aborted = false;
+  vtkTimeStamp AbortTime;
+
+private:
+  IndexBounds ReadBounds(const ImageGeometry& volume, vtkInformation* output, const double* time);
+
+  vtkDeformVolumeFilter* Self;
+
+  // What the cached bounds were computed for.
+  struct BoundsKey
+  {
+    deformvolume::Stamp Inputs;
+    ImageGeometry Volume;
+    glm::dvec3 Scale{ 0.0 };
+    double DisplacementScale = 0.0;
+    std::string Choice;
+    int OutsideMode = -1;
+    bool operator==(const BoundsKey& other) const
+    {
+      return this->Inputs == other.Inputs && this->Volume == other.Volume &&
+        this->Scale == other.Scale && this->DisplacementScale == other.DisplacementScale &&
+        this->Choice == other.Choice && this->OutsideMode == other.OutsideMode;
+    }
+  };
+  BoundsKey Key;
+  IndexBounds Bounds;
+
+  std::string WarnedOf;
+};
+
+//------------------------------------------------------------------------------
+ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetOutputGeometry(
+  const ImageGeometry& volume) const
+{
+  ImageGeometry output = volume;
+  output.PointExtent = ImageGeometry().PointExtent;
+  if (this->Self->OutputSpacingMode == CUSTOM_SPACING)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double spacing = this->Self->CustomSpacing[axis];
+      if (!std::isfinite(spacing) || spacing <= 0.0)
+      {
+        throw Error(std::string("CustomSpacing is ") + std::to_string(spacing) + " on axis " +
+          "xyz"[axis] + ". Set a spacing greater than 0.");
+      }
+      // A volume with negative spacing keeps its sense.
+      output.Spacing[axis] = std::copysign(spacing, volume.Spacing[axis]);
+    }
+  }
+  return output;
+}
+
+//------------------------------------------------------------------------------
+DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
+  const ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest) const
+{
+  DeformationSource source;
+  source.Shape = shape;
+  source.Rest = rest;
+  source.Selector = [this](vtkDataSet* dataSet)
+  {
+    int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+    vtkDataArray* array = this->Self->GetInputArrayToProcess(0, dataSet, association);
+    return association == vtkDataObject::FIELD_ASSOCIATION_POINTS ? array : nullptr;
+  };
+  vtkInformation* choice = this->Self->GetInputArrayInformation(0);
+  if (choice->Has(vtkDataObject::FIELD_NAME()))
+  {
+    source.Wanted = std::string("point array \"") + choice->Get(vtkDataObject::FIELD_NAME()) + "\"";
+  }
+  else
+  {
+    const char* attribute = vtkDataSetAttributes::GetAttributeTypeAsString(
+      choice->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE()));
+    source.Wanted = std::string("active point ") + (attribute ? attribute : "vectors");
+  }
+  source.Choice =
+    source.Wanted + " " + std::to_string(choice->Get(vtkDataObject::FIELD_ASSOCIATION()));
+  source.DisplacementScale = this->Self->DisplacementScale;
+  source.Volume = volume;
+  source.Scale = volume.Spacing / this->GetOutputGeometry(volume).Spacing;
+  return source;
+}
+
+//------------------------------------------------------------------------------
+IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(
+  const ImageGeometry& volume, vtkInformation* output, const double* time)
+{
+  vtkDataObject* shape = deformvolume::UpdateInput(this->Self, 1, output, time);
+  vtkDataObject* rest = deformvolume::UpdateInput(this->Self, 2, output, time);
+  const DeformationSource source = this->MakeSource(volume, shape, rest);
+  this->Deformation.Read(source);
+
+  const deformvolume::Lattice lattice{ volume.PointExtent,
+    { { source.Scale.x, source.Scale.y, source.Scale.z } } };
+  const bool extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
+  if (this->Deformation.IsField())
+  {
+    const IndexBounds bounds =
+      deformvolume::ComputeDeformedBounds(lattice, this->Deformation.GetField(extrapolate));
+    if (bounds.IsEmpty())
+    {
+      throw Error("The displacement field on input port 1 holds no voxel of the volume. Check "
+                  "that both are in the same world coordinates and overlap.");
+    }
+    return bounds;
+  }
+  if (extrapolate)
+  {
+    this->Mapping.Update(this->Deformation, volume, true, {});
+    return deformvolume::ComputeDeformedBounds(lattice, this->Mapping.GetLinks(),
+      this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
+  }
+  const IndexBounds bounds =
+    deformvolume::ComputeDeformedBounds(lattice, this->Deformation.GetRestPoints(),
+      this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
+  if (bounds.IsEmpty())
+  {
+    // Tells what is wrong.
+    this->Mapping.Update(this->Deformation, volume, false, {});
+    throw Error("The deformed volume has no bounds. Check the deformation mesh.");
+  }
+  return bounds;
+}
+
+//------------------------------------------------------------------------------
+IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
+  const ImageGeometry& volume, vtkInformation* output)
+{
+  BoundsKey key;
+  std::set<double> times;
+  for (int port = 1; port < 3; ++port)
+  {
+    if (this->Self->GetNumberOfInputConnections(port) > 0)
+    {
+      const std::vector<double> inputTimes =
+        deformvolume::GetTimes(this->Self->GetInputInformation(port, 0));
+      times.insert(inputTimes.begin(), inputTimes.end());
+    }
+    key.Inputs.push_back(deformvolume::GetInputStamp(this->Self, port));
+  }
+  key.Volume = volume;
+  const DeformationSource source = this->MakeSource(volume, nullptr, nullptr);
+  key.Scale = source.Scale;
+  key.DisplacementScale = source.DisplacementScale;
+  key.Choice = source.Choice;
+  key.OutsideMode = this->Self->OutsideMode;
+  if (key == this->Key)
+  {
+    return this->Bounds;
+  }
+
+  IndexBounds bounds;
+  if (times.empty())
+  {
+    bounds = this->ReadBounds(volume, output, nullptr);
+  }
+  // The first step comes last: it is what an input then holds where no time is asked for.
+  for (auto time = times.rbegin(); time != times.rend(); ++time)
+  {
+    const double step = *time;
+    bounds.Add(this->ReadBounds(volume, output, &step));
+  }
+  this->Key = key;
+  this->Bounds = bounds;
+  return bounds;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
+  vtkImageData* volume, const std::vector<std::string>& leftOut)
+{
+  const auto list = [](const std::vector<std::string>& names)
+  {
+    std::string text;
+    for (const std::string& name : names)
+    {
+      text += (text.empty() ? "" : ", ") + name;
+    }
+    return text;
+  };
+  std::string warning;
+  const std::string cellArrays = list(deformvolume::GetUnusedCellArrays(volume));
+  if (!cellArrays.empty())
+  {
+    warning += "Cell arrays of the volume are not resampled: " + cellArrays +
+      ". Convert them to point arrays where they are wanted. ";
+  }
+  if (!leftOut.empty())
+  {
+    warning +=
+      "Point arrays of the volume that hold no numbers are left out: " + list(leftOut) + ". ";
+  }
+  const std::string& cells = this->Deformation.GetIgnoredCells();
+  if (!this->Deformation.IsField() && !cells.empty())
+  {
+    warning += "Cells of the deformation mesh that are not linear and three-dimensional are "
+               "ignored: " +
+      cells + ". ";
+  }
+  if (warning != this->WarnedOf && !warning.empty())
+  {
+    vtkWarningWithObjectMacro(this->Self, << warning);
+  }
+  this->WarnedOf = warning;
+}
+
+//------------------------------------------------------------------------------
+std::function<bool(double)> vtkDeformVolumeFilter::vtkInternals::GetProgress(
+  double from, double to) const
+{
+  // Observers expect to be called where they live.
+  const std::thread::id thread = std::this_thread::get_id();
+  return [this, from, to, thread](double done)
+  {
+    if (std::this_thread::get_id() == thread)
+    {
+      this->Self->UpdateProgress(from + (to - from) * done);
+      return !deformvolume::IsAborted(this->Self);
+    }
+    return this->Self->GetAbortExecute() == 0;
+  };
+}
+
+//------------------------------------------------------------------------------
+vtkDeformVolumeFilter::vtkDeformVolumeFilter()
+  : Internals(new vtkInternals(this))
+{
+  this->SetNumberOfInputPorts(3);
+  this->SetInputArrayToProcess(
+    0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::VECTORS);
+}
+
+//------------------------------------------------------------------------------
+vtkDeformVolumeFilter::~vtkDeformVolumeFilter() = default;
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::SetDeformationConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(1, output);
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::SetDeformationData(vtkDataObject* data)
+{
+  this->SetInputDataInternal(1, data);
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::SetRestConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(2, output);
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::SetRestData(vtkDataObject* data)
+{
+  this->SetInputDataInternal(2, data);
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::AddCategoricalArray(const char* name)
+{
+  if (name && this->Internals->CategoricalArrays.insert(name).second)
+  {
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::RemoveCategoricalArray(const char* name)
+{
+  if (name && this->Internals->CategoricalArrays.erase(name) > 0)
+  {
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::ClearCategoricalArrays()
+{
+  if (!this->Internals->CategoricalArrays.empty())
+  {
+    this->Internals->CategoricalArrays.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformVolumeFilter::GetNumberOfCategoricalArrays()
+{
+  return static_cast<int>(this->Internals->CategoricalArrays.size());
+}
+
+//------------------------------------------------------------------------------
+const char* vtkDeformVolumeFilter::GetCategoricalArray(int index)
+{
+  if (index < 0 || index >= this->GetNumberOfCategoricalArrays())
+  {
+    return nullptr;
+  }
+  return std::next(this->Internals->CategoricalArrays.begin(), index)->c_str();
+}
+
+//------------------------------------------------------------------------------
+vtkStringArray* vtkDeformVolumeFilter::GetDeviceNames()
+{
+  vtkStringArray* names = vtkStringArray::New();
+  for (const std::string& name : deformvolume::GetDeviceNames())
+  {
+    names->InsertNextValue(name);
+  }
+  return names;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeInt64 vtkDeformVolumeFilter::GetDeviceMemory()
+{
+  return static_cast<vtkTypeInt64>(this->Internals->Device.GetDeviceMemory());
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::ReleaseDeviceMemory()
+{
+  this->Internals->Device.ReleaseMemory();
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformVolumeFilter::FillInputPortInformation(int port, vtkInformation* info)
+{
+  // All ports are optional for the executive: its message about a missing input would not say what
+  // to connect.
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  if (port == 0)
+  {
+    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+    return 1;
+  }
+  // Composite datasets come first, or the executive would iterate over their leaves.
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
+  if (port == 1)
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformVolumeFilter::ComputePipelineMTime(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
+{
+  if (this->Internals->Aborted)
+  {
+    this->Internals->Aborted = false;
+    this->Internals->AbortTime.Modified();
+  }
+  *mtime = std::max(this->GetMTime(), this->Internals->AbortTime.GetMTime());
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+{
+  std::string message;
+  try
+  {
+    return this->Superclass::ProcessRequest(request, input, output);
+  }
+  catch (const deformvolume::Aborted&)
+  {
+    this->Internals->Aborted = true;
+  }
+  catch (const std::bad_alloc&)
+  {
+    message = "The memory of this machine does not suffice for the deformed volume. Use a smaller "
+              "volume, a coarser output spacing or narrower output bounds.";
+  }
+  catch (const std::exception& error)
+  {
+    message = error.what();
+  }
+
+  vtkInformation* outInfo = output->GetInformationObject(0);
+  if (vtkDataObject* data = vtkDataObject::GetData(outInfo))
+  {
+    data->Initialize();
+  }
+  if (message.empty())
+  {
+    return 1;
+  }
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
+  {
+    // Nothing is offered, so that a pass that goes on in spite of the failure finds nothing.
+    const int empty[6] = { 0, -1, 0, -1, 0, -1 };
+    outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
+    outInfo->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), empty, 6);
+    this->Internals->InformationFailed = true;
+  }
+  vtkErrorMacro(<< message);
+  return 0;
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformVolumeFilter::RequestInformation(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  vtkInformation* outInfo = output->GetInformationObject(0);
+  if (this->Internals->InformationFailed)
+  {
+    // The executive then asks for the whole extent anew.
+    outInfo->Remove(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT_INITIALIZED());
+    this->Internals->InformationFailed = false;
+  }
+  if (this->GetNumberOfInputConnections(0) == 0)
+  {
+    throw Error("There is no volume. Connect a vtkImageData to input port 0.");
+  }
+  if (this->GetNumberOfInputConnections(1) == 0)
+  {
+    throw Error("There is no deformation. Connect a vtkUnstructuredGrid with tetrahedra or a "
+                "vtkImageData with displacements to input port 1.");
+  }
+  vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
+  if (!volumeInfo->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+  {
+    throw Error("The volume on input port 0 announces no whole extent. Connect a vtkImageData; "
+                "from a composite dataset, extract one block.");
+  }
+  const ImageGeometry volume = deformvolume::GetGeometry(volumeInfo);
+  deformvolume::CheckVolume(volume);
+  const ImageGeometry outputGeometry = this->Internals->GetOutputGeometry(volume);
+  deformvolume::MergeTimes(this, outInfo);
+
+  Extent whole;
+  switch (this->OutputBoundsMode)
+  {
+    case VOLUME_BOUNDS:
+      whole = deformvolume::GetExtentAround(
+        deformvolume::GetVolumeBounds(volume, volume.Spacing / outputGeometry.Spacing));
+      break;
+    case CUSTOM_BOUNDS:
+      whole = deformvolume::GetExtentAround(
+        deformvolume::GetWorldBoxBounds(this->CustomBounds, outputGeometry));
+      break;
+    default:
+      whole = deformvolume::GetExtentInside(this->Internals->GetDeformedBounds(volume, outInfo));
+  }
+  whole = deformvolume::GetPadded(whole, this->Padding);
+
+  const glm::dmat3 rows = glm::transpose(outputGeometry.Direction);
+  outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data(), 6);
+  outInfo->Set(vtkDataObject::ORIGIN(), glm::value_ptr(outputGeometry.Origin), 3);
+  outInfo->Set(vtkDataObject::SPACING(), glm::value_ptr(outputGeometry.Spacing), 3);
+  outInfo->Set(vtkDataObject::DIRECTION(), glm::value_ptr(rows), 9);
+  outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
+    volumeInfo, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  if (scalars && scalars->Has(vtkDataObject::FIELD_ARRAY_TYPE()))
+  {
+    const int components = scalars->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
+      ? scalars->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
+      : 1;
+    vtkDataObject::SetPointDataActiveScalarInfo(
+      outInfo, scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()), components);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformVolumeFilter::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
+{
+  if (this->Internals->InformationFailed)
+  {
+    return 0;
+  }
+  // Any voxel may move anywhere.
+  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
+  {
+    if (input[port]->GetNumberOfInformationObjects() > 0)
+    {
+      deformvolume::RequestWhole(input[port]->GetInformationObject(0));
+    }
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformVolumeFilter::RequestData(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  vtkInformation* outInfo = output->GetInformationObject(0);
+  vtkImageData* image = vtkImageData::GetData(outInfo);
+  if (this->Internals->InformationFailed || !image)
+  {
+    if (vtkDataObject* data = vtkDataObject::GetData(outInfo))
+    {
+      data->Initialize();
+    }
+    return 0;
+  }
+  vtkImageData* volume = vtkImageData::GetData(input[0]);
+  if (!volume)
+  {
+    throw Error("There is no volume. Connect a vtkImageData to input port 0.");
+  }
+  const ImageGeometry geometry = deformvolume::GetGeometry(volume);
+  deformvolume::CheckVolume(geometry);
+  const DeformationSource source = this->Internals->MakeSource(
+    geometry, vtkDataObject::GetData(input[1]), vtkDataObject::GetData(input[2]));
+  deformvolume::Deformation& deformation = this->Internals->Deformation;
+  deformation.Read(source);
+
+  std::vector<std::string> leftOut;
+  const std::vector<deformvolume::SourceArray> arrays =
+    deformvolume::SelectArrays(volume, this->Internals->CategoricalArrays, leftOut);
+  this->Internals->WarnOfIgnored(volume, leftOut);
+
+  deformvolume::DeformRequest request;
+  outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), request.OutputExtent.data());
+  if (deformvolume::GetNumberOfPoints(request.OutputExtent) == 0)
+  {
+    image->Initialize();
+    return 1;
+  }
+  const deformvolume::Lattice lattice{ geometry.PointExtent,
+    { { source.Scale.x, source.Scale.y, source.Scale.z } } };
+  const bool extrapolate = this->OutsideMode == EXTRAPOLATE;
+  deformvolume::DeviceSession& device = this->Internals->Device;
+  this->DeviceInUse = device.SetDevice(this->Device, static_cast<std::uint64_t>(this->MemoryLimit),
+    static_cast<std::size_t>(this->WorkGroupSize));
+  device.CheckMemory(lattice, deformvolume::Describe(arrays, this->BackgroundValue),
+    request.OutputExtent, deformation);
+
+  device.SetVolume(lattice, volume, arrays, this->BackgroundValue);
+  device.SetDeformation(deformation, this->Internals->Mapping, geometry, extrapolate,
+    this->Internals->GetProgress(0.0, 0.3));
+  request.Progress = this->Internals->GetProgress(0.3, 1.0);
+  if (!request.Progress(0.0))
+  {
+    throw deformvolume::Aborted();
+  }
+
+  const ImageGeometry outputGeometry = this->Internals->GetOutputGeometry(geometry);
+  const glm::dmat3 rows = glm::transpose(outputGeometry.Direction);
+  image->Initialize();
+  image->SetExtent(request.OutputExtent.data());
+  image->SetOrigin(glm::value_ptr(outputGeometry.Origin));
+  image->SetSpacing(glm::value_ptr(outputGeometry.Spacing));
+  image->SetDirectionMatrix(glm::value_ptr(rows));
+  image->GetFieldData()->ShallowCopy(volume->GetFieldData());
+  const vtkIdType numberOfPoints = image->GetNumberOfPoints();
+  for (const deformvolume::SourceArray& array : arrays)
+  {
+    const auto made = deformvolume::MakeLike(array.Array, numberOfPoints);
+    request.Outputs.push_back(deformvolume::GetWritableValues(made));
+    image->GetPointData()->AddArray(made);
+  }
+  deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
+  vtkNew<vtkCharArray> mask;
+  mask->SetName("vtkValidPointMask");
+  mask->SetNumberOfTuples(numberOfPoints);
+  image->GetPointData()->AddArray(mask);
+  request.Coverage = reinterpret_cast<signed char*>(mask->GetPointer(0));
+  request.Method = this->Resampler == PUBLISHED ? deformvolume::Resampling::Published
+                                                : deformvolume::Resampling::Exact;
+
+  const deformvolume::DeformReport report = device.Deform(request);
+  this->PreprocessingTime = this->Internals->Mapping.TakeTime();
+  this->TransferTime = report.TransferTime;
+  this->MappingTime = report.MappingTime;
+  this->ResamplingTime = report.ResamplingTime;
+  this->NumberOfInvertedTetrahedra = report.NumberOfInvertedTetrahedra;
+  this->NumberOfFlatTetrahedra =
+    deformation.IsField() ? 0 : this->Internals->Mapping.GetNumberOfFlatTetrahedra();
+  this->NumberOfCoveredVoxels = report.NumberOfCoveredVoxels;
+  this->NumberOfMappingBuilds = this->Internals->Mapping.GetNumberOfBuilds();
+  this->NumberOfVolumeUploads = device.GetNumberOfVolumeUploads();
+  if (report.NumberOfOverstretchedCells > 0)
+  {
+    vtkWarningMacro(<< report.NumberOfOverstretchedCells
+                    << " cells of the volume have a tetrahedron that is stretched over more than "
+                       "4,000 output voxels; these tetrahedra are skipped. Check the deformation, "
+                       "or set a greater output spacing.");
+  }
+  if (outInfo->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
+  {
+    image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(),
+      outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()));
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "DisplacementScale: " << this->DisplacementScale << "\n";
+  os << indent << "OutputBoundsMode: " << this->OutputBoundsMode << "\n";
+  os << indent << "CustomBounds:";
+  for (double bound : this->CustomBounds)
+  {
+    os << " " << bound;
+  }
+  os << "\n";
+  os << indent << "Padding: " << this->Padding << "\n";
+  os << indent << "OutputSpacingMode: " << this->OutputSpacingMode << "\n";
+  os << indent << "CustomSpacing: " << this->CustomSpacing[0] << " " << this->CustomSpacing[1]
+     << " " << this->CustomSpacing[2] << "\n";
+  os << indent << "BackgroundValue: " << this->BackgroundValue << "\n";
+  os << indent << "OutsideMode: " << this->OutsideMode << "\n";
+  os << indent << "CategoricalArrays:";
+  for (const std::string& name : this->Internals->CategoricalArrays)
+  {
+    os << " \"" << name << "\"";
+  }
+  os << "\n";
+  os << indent << "Resampler: " << this->Resampler << "\n";
+  os << indent << "Device: \"" << this->Device << "\"\n";
+  os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
+  os << indent << "WorkGroupSize: " << this->WorkGroupSize << "\n";
+  os << indent << "PreprocessingTime: " << this->PreprocessingTime << "\n";
+  os << indent << "TransferTime: " << this->TransferTime << "\n";
+  os << indent << "MappingTime: " << this->MappingTime << "\n";
+  os << indent << "ResamplingTime: " << this->ResamplingTime << "\n";
+  os << indent << "NumberOfInvertedTetrahedra: " << this->NumberOfInvertedTetrahedra << "\n";
+  os << indent << "NumberOfFlatTetrahedra: " << this->NumberOfFlatTetrahedra << "\n";
+  os << indent << "NumberOfCoveredVoxels: " << this->NumberOfCoveredVoxels << "\n";
+  os << indent << "NumberOfMappingBuilds: " << this->NumberOfMappingBuilds << "\n";
+  os << indent << "NumberOfVolumeUploads: " << this->NumberOfVolumeUploads << "\n";
+  os << indent << "DeviceInUse: \"" << this->DeviceInUse << "\"\n";
+}
