@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A volume with a displacement of each of its voxels, given to a VolumeDeformer and to the host
+// reference alike, and the comparison of what the two make of it.
+//
+// Displacements are whole numbers of 1/256 output voxel and scales are powers of two or small
+// multiples of them, so that positions are exact in float and rounding them changes nothing: both
+// sides then see the same tetrahedra, and coverage and winner must agree voxel by voxel.
+#ifndef DeformerCase_h
+#define DeformerCase_h
+
+#include "Reference.h"
+#include "VolumeDeformer.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+/// How the displacements reach the deformer.
+enum class Route
+{
+  /// A displacement field whose points are the voxels.
+  Field,
+  /// A mesh with a node for each voxel.
+  Mesh
+};
+
+struct DeformerCase
+{
+  deformvolume::Lattice Lattice;
+  /// In 1/256 output voxel, one a voxel.
+  std::vector<reference::Position> Displacements;
+  /// Empty: none are unlinked, none blanked, all active.
+  std::vector<bool> Unlinked;
+  std::vector<unsigned char> Blanked;
+  std::vector<unsigned char> Active;
+  deformvolume::Extent Output;
+
+  std::int64_t GetNumberOfVoxels() const
+  {
+    return deformvolume::GetNumberOfPoints(this->Lattice.VertexExtent);
+  }
+};
+
+/// The structured index of each voxel goes to a continuous output index, which is rounded to 1/256.
+/// The output becomes the bounds of the result and margin voxels more.
+DeformerCase MakeCase(const deformvolume::Extent& extent, const std::array<double, 3>& scale,
+  const std::function<glm::dvec3(const glm::dvec3&)>& deformation, int margin = 1);
+
+reference::Result ResampleByReference(const DeformerCase& deformerCase);
+
+/// Sets the lattice, the arrays, the masks and the deformation.
+void Load(deformvolume::VolumeDeformer& deformer, const DeformerCase& deformerCase,
+  const std::vector<deformvolume::VolumeArray>& arrays, Route route);
+
+struct Deformed
+{
+  /// One for each array of the volume, and padded by guard bytes that must survive.
+  std::vector<std::vector<unsigned char>> Outputs;
+  std::vector<signed char> Coverage;
+  deformvolume::DeformReport Report;
+
+  template <typename T>
+  const T* GetOutput(int array) const
+  {
+    return reinterpret_cast<const T*>(this->Outputs[array].data());
+  }
+};
+
+/// Runs a loaded deformer and checks that it writes inside its arrays and all of them.
+Deformed RunDeformer(deformvolume::VolumeDeformer& deformer, const DeformerCase& deformerCase,
+  const std::vector<deformvolume::VolumeArray>& arrays,
+  deformvolume::Resampling method = deformvolume::Resampling::Exact);
+
+/// Load and RunDeformer on a new deformer.
+Deformed LoadAndRun(const DeformerCase& deformerCase,
+  const std::vector<deformvolume::VolumeArray>& arrays, Route route = Route::Field);
+
+/// Coverage, counts and all values against the reference.
+void ExpectEqualsReference(const DeformerCase& deformerCase, const reference::Result& reference,
+  const std::vector<deformvolume::VolumeArray>& arrays, const Deformed& deformed);
+
+/// No hole and no voxel that more than one tetrahedron writes.
+void ExpectEmbedding(const reference::Result& reference);
+
+/// Bits of every kind: extremes, and for floating-point types infinities, NaN and -0.
+template <typename T>
+std::vector<T> MakeRandomBits(std::size_t size, unsigned int seed);
+
+/// Values of the whole range of an integer type, or of -1000 to 1000.
+template <typename T>
+std::vector<T> MakeRandomValues(std::size_t size, unsigned int seed);
+
+template <typename T>
+deformvolume::ElementType GetElementType();
+#define DECLARE(name, type, cl)                                                                    \
+  template <>                                                                                      \
+  inline deformvolume::ElementType GetElementType<type>()                                          \
+  {                                                                                                \
+    return deformvolume::ElementType::name;                                                        \
+  }
+DEFORMVOLUME_ELEMENT_TYPES(DECLARE)
+#undef DECLARE
+
+template <typename T>
+deformvolume::VolumeArray MakeArray(
+  const std::vector<T>& values, int components = 1, bool categorical = false, double background = 0)
+{
+  deformvolume::VolumeArray array;
+  array.Data = values.data();
+  array.Type = GetElementType<T>();
+  array.Components = components;
+  array.Categorical = categorical;
+  array.Background = background;
+  return array;
+}
+
+/// A map with entries of -0.5 to 0.5 on top of a random rotation, neither flat nor mirrored.
+glm::dmat3 MakeRandomMatrix(std::mt19937& random, double distortion = 0.3);
+
+/// Displacements of up to amplitude voxels on each axis, independent from voxel to voxel.
+std::function<glm::dvec3(const glm::dvec3&)> MakeJitter(unsigned int seed, double amplitude);
+
+#endif

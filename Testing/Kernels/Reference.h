@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The resampling of a deformed sampling mesh, done once more on the host: every tetrahedron against
+// every voxel of its closed box, in exact integers, values in extended precision. It shares nothing
+// with the kernels, the table of tetrahedra included, so that an error on either side shows.
+#ifndef Reference_h
+#define Reference_h
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace reference
+{
+
+/// x min, x max, y min, y max, z min, z max.
+using Box = std::array<int, 6>;
+
+inline std::int64_t GetSize(const Box& box, int axis)
+{
+  return static_cast<std::int64_t>(box[2 * axis + 1]) - box[2 * axis] + 1;
+}
+inline std::int64_t GetNumberOfVoxels(const Box& box)
+{
+  return GetSize(box, 0) * GetSize(box, 1) * GetSize(box, 2);
+}
+
+/// Output indices in units of 1/256 voxel.
+using Position = std::array<std::int64_t, 3>;
+
+struct SamplingMesh
+{
+  Box Voxels;
+  /// One position a voxel, x varying fastest.
+  std::vector<Position> Positions;
+  /// Whether a voxel is linked and not blanked; empty: all are.
+  std::vector<bool> Present;
+  /// Bit t of a cell: its tetrahedron t is active; empty: all are.
+  std::vector<unsigned char> Active;
+};
+
+/// A tetrahedron whose closed region contains an output voxel.
+struct Containing
+{
+  std::int64_t Cell = 0;
+  int Tetrahedron = 0;
+  bool Inverted = false;
+  /// Whether it contains the voxel also when that is moved by (e, e^2, e^3), e -> 0.
+  bool Generic = false;
+  /// Voxels of the volume, and their barycentric weights as Numerators / Denominator.
+  std::array<std::int64_t, 4> Vertices{};
+  std::array<std::int64_t, 4> Numerators{};
+  std::int64_t Denominator = 1;
+
+  /// Upright before inverted, then the lowest cell and tetrahedron.
+  bool operator<(const Containing& other) const;
+
+  template <typename T>
+  long double Interpolate(const T* values, int components, int component) const
+  {
+    long double sum = 0.0L;
+    for (int k = 0; k < 4; ++k)
+    {
+      if (this->Numerators[k] > 0)
+      {
+        const T value = values[this->Vertices[k] * components + component];
+        sum += static_cast<long double>(this->Numerators[k]) * static_cast<long double>(value);
+      }
+    }
+    return sum / static_cast<long double>(this->Denominator);
+  }
+
+  /// Sum of weight times magnitude: the scale of rounding errors.
+  template <typename T>
+  long double Magnitude(const T* values, int components, int component) const
+  {
+    long double sum = 0.0L;
+    for (int k = 0; k < 4; ++k)
+    {
+      if (this->Numerators[k] > 0)
+      {
+        const T value = values[this->Vertices[k] * components + component];
+        sum += static_cast<long double>(this->Numerators[k]) *
+          std::fabs(static_cast<long double>(value));
+      }
+    }
+    return sum / static_cast<long double>(this->Denominator);
+  }
+
+  /// The vertex of the largest weight, the lowest one among equals.
+  std::int64_t GetNearestVertex() const;
+  /// The only vertex of positive weight, or -1.
+  std::int64_t GetSingleVertex() const;
+};
+
+struct Result
+{
+  /// For each output voxel all tetrahedra whose closed region contains it, the best first.
+  std::vector<std::vector<Containing>> Voxels;
+  std::int64_t NumberOfCoveredVoxels = 0;
+  std::int64_t NumberOfInvertedTetrahedra = 0;
+  std::int64_t NumberOfFlatTetrahedra = 0;
+  /// Voxels that more than one tetrahedron contains generically.
+  std::int64_t NumberOfOverlappedVoxels = 0;
+};
+
+Result Resample(const SamplingMesh& mesh, const Box& output);
+
+} // namespace reference
+
+#endif

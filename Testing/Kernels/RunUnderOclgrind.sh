@@ -1,0 +1,26 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Usage: RunUnderOclgrind.sh LIBRARY LOG PROGRAM [ARGUMENT]...
+#
+# Runs a program on Oclgrind's device. Fails where the program fails, and where Oclgrind, which
+# never fails itself, has reported anything.
+set -u
+
+library=$1
+log=$2
+shift 2
+rm -f "$log"
+
+# The device is named, so that the program fails rather than run elsewhere.
+OCL_ICD_VENDORS="$library" DEFORMVOLUME_DEVICE=oclgrind OCLGRIND_LOG="$log" \
+  OCLGRIND_DATA_RACES=1 OCLGRIND_UNINITIALIZED=1 "$@" || exit 1
+
+if [ ! -e "$log" ]; then
+  echo "Oclgrind left no log"
+  exit 1
+fi
+if [ -s "$log" ]; then
+  echo "Oclgrind reports:"
+  head -100 "$log"
+  exit 1
+fi

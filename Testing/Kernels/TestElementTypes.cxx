@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What happens to values: every element type, several arrays at once, labels, backgrounds.
+#include "DeformerCase.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+using namespace deformvolume;
+
+namespace
+{
+
+const Extent Volume{ { -3, 8, 2, 10, -9, -1 } };
+
+glm::dvec3 Stay(const glm::dvec3& index)
+{
+  return index;
+}
+
+/// Random bits of a type come out at the voxels that a shift by whole voxels takes them to.
+template <typename T>
+void CheckShift(const glm::dvec3& shift, int components, bool categorical)
+{
+  const DeformerCase moved = MakeCase(
+    Volume, { { 1, 1, 1 } }, [&shift](const glm::dvec3& index) { return index + shift; }, 0);
+  const auto input = MakeRandomBits<T>(GetNumberOfPoints(Volume) * components, 11);
+  const Deformed deformed = LoadAndRun(moved, { MakeArray(input, components, categorical) });
+  ASSERT_EQ(deformed.Outputs[0].size(), input.size() * sizeof(T));
+  EXPECT_EQ(std::memcmp(deformed.Outputs[0].data(), input.data(), input.size() * sizeof(T)), 0);
+  EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, GetNumberOfPoints(Volume));
+  EXPECT_EQ(deformed.Report.NumberOfInvertedTetrahedra, 0);
+  EXPECT_FALSE(deformed.Report.Overlapping);
+  for (const signed char mark : deformed.Coverage)
+  {
+    ASSERT_EQ(mark, 1);
+  }
+}
+
+/// Random values under a deformation against the reference.
+template <typename T>
+void CheckAgainstReference(bool categorical)
+{
+  const DeformerCase jittered =
+    MakeCase({ { -2, 5, 0, 6, 3, 9 } }, { { 1, 1, 1 } }, MakeJitter(5, 0.15));
+  const reference::Result reference = ResampleByReference(jittered);
+  ExpectEmbedding(reference);
+  const auto values = MakeRandomValues<T>(jittered.GetNumberOfVoxels() * 2, 3);
+  const std::vector<VolumeArray> arrays{ MakeArray(values, 2, categorical, 7.0) };
+  ExpectEqualsReference(jittered, reference, arrays, LoadAndRun(jittered, arrays));
+}
+
+} // namespace
+
+TEST(ElementTypes, UndeformedVolumeComesOutBitForBit){
+#define CHECK(name, type, cl)                                                                      \
+  {                                                                                                \
+    SCOPED_TRACE(#name);                                                                           \
+    CheckShift<type>(glm::dvec3(0.0), 1, false);                                                   \
+  }
+  DEFORMVOLUME_ELEMENT_TYPES(CHECK)
+#undef CHECK
+}
+
+TEST(ElementTypes, ShiftByWholeVoxelsIsBitExact){
+#define CHECK(name, type, cl)                                                                      \
+  {                                                                                                \
+    SCOPED_TRACE(#name);                                                                           \
+    CheckShift<type>(glm::dvec3(4.0, -7.0, 1.0), 3, false);                                        \
+    CheckShift<type>(glm::dvec3(-1.0, 2.0, 30.0), 1, true);                                        \
+  }
+  DEFORMVOLUME_ELEMENT_TYPES(CHECK)
+#undef CHECK
+}
+
+TEST(ElementTypes, InterpolatedValuesEqualReference){
+#define CHECK(name, type, cl)                                                                      \
+  {                                                                                                \
+    SCOPED_TRACE(#name);                                                                           \
+    CheckAgainstReference<type>(false);                                                            \
+  }
+  DEFORMVOLUME_ELEMENT_TYPES(CHECK)
+#undef CHECK
+}
+
+TEST(ElementTypes, CategoricalValuesEqualReference){
+#define CHECK(name, type, cl)                                                                      \
+  {                                                                                                \
+    SCOPED_TRACE(#name);                                                                           \
+    CheckAgainstReference<type>(true);                                                             \
+  }
+  DEFORMVOLUME_ELEMENT_TYPES(CHECK)
+#undef CHECK
+}
+
+TEST(ElementTypes, AllTypesInOnePass)
+{
+  const DeformerCase jittered =
+    MakeCase({ { 1, 7, 0, 5, 0, 6 } }, { { 1, 1, 1 } }, MakeJitter(9, 0.15));
+  const reference::Result reference = ResampleByReference(jittered);
+  ExpectEmbedding(reference);
+  const std::size_t size = jittered.GetNumberOfVoxels();
+  std::vector<VolumeArray> arrays;
+#define VALUES(name, type, cl) const auto values##name = MakeRandomValues<type>(size * 3, 17);
+  DEFORMVOLUME_ELEMENT_TYPES(VALUES)
+#undef VALUES
+#define ARRAYS(name, type, cl)                                                                     \
+  arrays.push_back(MakeArray(values##name, 3, false, -5.0));                                       \
+  arrays.push_back(MakeArray(values##name, 1, true, 5.0));
+  DEFORMVOLUME_ELEMENT_TYPES(ARRAYS)
+#undef ARRAYS
+  ExpectEqualsReference(jittered, reference, arrays, LoadAndRun(jittered, arrays));
+}
+
+TEST(ElementTypes, LabelsOf64BitsSurvive)
+{
+  // Neighbours differ in the last bit, which a double cannot tell above 2^53.
+  const DeformerCase jittered =
+    MakeCase({ { 0, 8, 0, 8, 0, 8 } }, { { 1, 1, 1 } }, MakeJitter(21, 0.2));
+  const std::size_t size = jittered.GetNumberOfVoxels();
+  std::vector<std::uint64_t> unsignedLabels(size);
+  std::vector<std::int64_t> signedLabels(size);
+  for (std::size_t voxel = 0; voxel < size; ++voxel)
+  {
+    unsignedLabels[voxel] = std::numeric_limits<std::uint64_t>::max() - voxel;
+    signedLabels[voxel] = -(std::int64_t(1) << 53) - static_cast<std::int64_t>(2 * voxel + 1);
+  }
+  const std::vector<VolumeArray> arrays{ MakeArray(unsignedLabels, 1, true),
+    MakeArray(signedLabels, 1, true) };
+  const reference::Result reference = ResampleByReference(jittered);
+  ExpectEqualsReference(jittered, reference, arrays, LoadAndRun(jittered, arrays));
+}
+
+TEST(ElementTypes, NearLargeIntegersOf64BitsAreRoundedToNearest)
+{
+  // Values that a double cannot hold, a few units apart: the mean must lie between them.
+  const DeformerCase shifted = MakeCase({ { 0, 6, 0, 6, 0, 6 } }, { { 1, 1, 1 } },
+    [](const glm::dvec3& index) { return index + glm::dvec3(0.25, 0.5, 0.125); });
+  std::vector<std::int64_t> values(shifted.GetNumberOfVoxels());
+  const std::int64_t base = std::numeric_limits<std::int64_t>::max() - 1000;
+  for (std::size_t voxel = 0; voxel < values.size(); ++voxel)
+  {
+    values[voxel] = base + static_cast<std::int64_t>(voxel % 7) * 16;
+  }
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const Deformed deformed = LoadAndRun(shifted, arrays);
+  const reference::Result reference = ResampleByReference(shifted);
+  for (std::size_t voxel = 0; voxel < reference.Voxels.size(); ++voxel)
+  {
+    if (!reference.Voxels[voxel].empty())
+    {
+      // Exact integers: numerators of some 2^26 times offsets of at most 96.
+      const auto& containing = reference.Voxels[voxel].front();
+      std::int64_t sum = 0;
+      for (int k = 0; k < 4; ++k)
+      {
+        sum += containing.Numerators[k] * (values[containing.Vertices[k]] - base);
+      }
+      const std::int64_t value = deformed.GetOutput<std::int64_t>(0)[voxel] - base;
+      EXPECT_LE(std::abs(2 * (value * containing.Denominator - sum)), containing.Denominator);
+    }
+  }
+}
+
+TEST(ElementTypes, IntegersAreRoundedToNearestEvenAndStayInRange)
+{
+  const DeformerCase half = MakeCase(
+    { { 0, 4, 0, 2, 0, 2 } }, { { 1, 1, 1 } },
+    [](const glm::dvec3& index) { return index + glm::dvec3(0.5, 0.0, 0.0); }, 0);
+  std::vector<std::uint8_t> values(half.GetNumberOfVoxels());
+  const std::array<std::uint8_t, 5> row{ { 0, 1, 2, 255, 255 } };
+  for (std::size_t voxel = 0; voxel < values.size(); ++voxel)
+  {
+    values[voxel] = row[voxel % 5];
+  }
+  const Deformed deformed = LoadAndRun(half, { MakeArray(values, 1, false, 9.0) });
+  // Samples in the middle of two voxels: 0.5 -> 0, 1.5 -> 2, 128.5 -> 128, 255.
+  const std::array<std::uint8_t, 6> expected{ { 9, 0, 2, 128, 255, 9 } };
+  for (std::int64_t voxel = 0; voxel < GetNumberOfPoints(half.Output); ++voxel)
+  {
+    EXPECT_EQ(+deformed.GetOutput<std::uint8_t>(0)[voxel], +expected[voxel % 6]) << voxel;
+  }
+}
+
+TEST(ElementTypes, BackgroundIsClampedToTheType)
+{
+  DeformerCase still = MakeCase({ { 0, 2, 0, 2, 0, 2 } }, { { 1, 1, 1 } }, Stay, 2);
+  const std::size_t size = still.GetNumberOfVoxels();
+#define VALUES(name, type, cl) const auto values##name = MakeRandomValues<type>(size, 1);
+  DEFORMVOLUME_ELEMENT_TYPES(VALUES)
+#undef VALUES
+  for (const double background : { 1e30, -1e30, 1.5, -0.75 })
+  {
+    SCOPED_TRACE(background);
+    std::vector<VolumeArray> arrays;
+#define ARRAYS(name, type, cl) arrays.push_back(MakeArray(values##name, 1, false, background));
+    DEFORMVOLUME_ELEMENT_TYPES(ARRAYS)
+#undef ARRAYS
+    ExpectEqualsReference(still, ResampleByReference(still), arrays, LoadAndRun(still, arrays));
+  }
+}
+
+TEST(ElementTypes, NotANumberStaysWithinItsTetrahedra)
+{
+  const DeformerCase jittered = MakeCase({ { 0, 7, 0, 7, 0, 7 } }, { { 2, 2, 2 } },
+    [](const glm::dvec3& index)
+    { return 2.0 * index + glm::dvec3(0.25 * index.y, 0.5, 0.125 * index.x); });
+  auto values = MakeRandomValues<float>(jittered.GetNumberOfVoxels(), 3);
+  auto doubles = MakeRandomValues<double>(jittered.GetNumberOfVoxels(), 4);
+  values[8 * 8 * 3 + 8 * 4 + 3] = std::numeric_limits<float>::quiet_NaN();
+  doubles[8 * 8 * 5 + 8 * 2 + 3] = std::numeric_limits<double>::infinity();
+  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(doubles) };
+  const reference::Result reference = ResampleByReference(jittered);
+  const Deformed deformed = LoadAndRun(jittered, arrays);
+  ExpectEqualsReference(jittered, reference, arrays, deformed);
+  int spoilt = 0;
+  for (std::size_t voxel = 0; voxel < reference.Voxels.size(); ++voxel)
+  {
+    spoilt += std::isnan(deformed.GetOutput<float>(0)[voxel]) ? 1 : 0;
+  }
+  EXPECT_GT(spoilt, 0);
+  EXPECT_LE(spoilt, 64);
+}

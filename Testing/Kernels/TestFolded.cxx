@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Deformations that turn tetrahedra inside out or lay the volume over itself.
+#include "DeformerCase.h"
+
+#include <gtest/gtest.h>
+
+using namespace deformvolume;
+
+namespace
+{
+
+const std::array<double, 3> NoScale{ { 1, 1, 1 } };
+const Extent Volume{ { -2, 9, 0, 8, 1, 10 } };
+
+void Check(const DeformerCase& folded, const reference::Result& reference)
+{
+  const std::size_t size = folded.GetNumberOfVoxels();
+  const auto values = MakeRandomValues<std::int32_t>(size, 2);
+  const auto labels = MakeRandomValues<std::uint16_t>(size * 2, 3);
+  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(labels, 2, true, 12.0) };
+  ExpectEqualsReference(folded, reference, arrays, LoadAndRun(folded, arrays));
+}
+
+void Check(const DeformerCase& folded)
+{
+  Check(folded, ResampleByReference(folded));
+}
+
+} // namespace
+
+TEST(Folded, InvertedTetrahedraAreCountedAndRasterised)
+{
+  for (const double amplitude : { 0.4, 0.8, 1.5 })
+  {
+    SCOPED_TRACE(amplitude);
+    const DeformerCase jittered = MakeCase(Volume, NoScale, MakeJitter(31, amplitude));
+    const reference::Result reference = ResampleByReference(jittered);
+    EXPECT_GT(reference.NumberOfInvertedTetrahedra, 0);
+    EXPECT_GT(reference.NumberOfOverlappedVoxels, 0);
+    Check(jittered, reference);
+  }
+}
+
+TEST(Folded, MirroredVolumeHasNoOverlap)
+{
+  const DeformerCase mirrored = MakeCase(Volume, NoScale,
+    [](const glm::dvec3& index)
+    { return glm::dvec3(-1.25 * index.x, index.y + 0.125 * index.x, index.z); });
+  const reference::Result reference = ResampleByReference(mirrored);
+  EXPECT_EQ(reference.NumberOfInvertedTetrahedra, 5 * GetNumberOfCells(Volume));
+  EXPECT_EQ(reference.NumberOfOverlappedVoxels, 0);
+  Check(mirrored, reference);
+}
+
+TEST(Folded, FoldedLikeAPage)
+{
+  // Both orientations meet in a crease on the plane x = 4, from either side, on samples and beside.
+  for (const double sign : { 1.0, -1.0 })
+  {
+    for (const double crease : { 4.0, 3.5, 4.25 })
+    {
+      SCOPED_TRACE(sign * crease);
+      Check(MakeCase(Volume, NoScale,
+        [=](const glm::dvec3& index)
+        { return glm::dvec3(sign * std::abs(index.x - crease), index.y, index.z); }));
+      Check(MakeCase(Volume, NoScale,
+        [=](const glm::dvec3& index)
+        {
+          return glm::dvec3(
+            index.x, index.y + 0.25 * index.z, sign * 1.5 * std::abs(index.z - crease));
+        }));
+    }
+  }
+}
+
+TEST(Folded, FlattenedVolume)
+{
+  // A slab of cells has no thickness: its tetrahedra are flat and cover nothing of their own.
+  Check(MakeCase(Volume, NoScale,
+    [](const glm::dvec3& index)
+    { return glm::dvec3(index.x, index.y - (index.y > 4.0 ? 1.0 : 0.0), index.z); }));
+  Check(MakeCase(Volume, NoScale,
+    [](const glm::dvec3& index) { return glm::dvec3(index.x, 0.25 * index.x, index.z); }));
+}
+
+TEST(Folded, UprightOverlap)
+{
+  // Spun round by more than a full turn: upright everywhere, and yet on top of itself.
+  const Extent ring{ { 0, 23, 0, 4, 0, 3 } };
+  const DeformerCase wound = MakeCase(ring, NoScale,
+    [](const glm::dvec3& index)
+    {
+      const double angle = 0.31 * index.x;
+      const double radius = 4.0 + 1.5 * (4.0 - index.y);
+      return glm::dvec3(radius * std::sin(angle), -radius * std::cos(angle), 1.5 * index.z);
+    });
+  const reference::Result reference = ResampleByReference(wound);
+  EXPECT_EQ(reference.NumberOfInvertedTetrahedra, 0);
+  EXPECT_GT(reference.NumberOfOverlappedVoxels, 0);
+  Check(wound, reference);
+}
+
+TEST(Folded, OverlapWithMasks)
+{
+  std::mt19937 random(5);
+  DeformerCase jittered = MakeCase(Volume, NoScale, MakeJitter(32, 1.0));
+  for (std::int64_t cell = 0; cell < GetNumberOfCells(Volume); ++cell)
+  {
+    jittered.Active.push_back(static_cast<unsigned char>(random() % 64));
+  }
+  for (std::int64_t voxel = 0; voxel < GetNumberOfPoints(Volume); ++voxel)
+  {
+    jittered.Blanked.push_back(random() % 12 == 0 ? 1 : 0);
+  }
+  Check(jittered);
+}
+
+TEST(Folded, SameFromRunToRunAndForEveryWorkGroupSize)
+{
+  const DeformerCase jittered = MakeCase(Volume, NoScale, MakeJitter(33, 1.5));
+  const std::size_t size = jittered.GetNumberOfVoxels();
+  const auto values = MakeRandomValues<float>(size, 2);
+  const auto labels = MakeRandomValues<std::int64_t>(size, 3);
+  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(labels, 1, true) };
+  VolumeDeformer deformer;
+  Load(deformer, jittered, arrays, Route::Field);
+  const Deformed first = RunDeformer(deformer, jittered, arrays);
+  ExpectEqualsReference(jittered, ResampleByReference(jittered), arrays, first);
+  const std::array<std::size_t, 7> sizes{ { 0, 1, 2, 3, 8, 64, 128 } };
+  for (int run = 0; run < 20; ++run)
+  {
+    SCOPED_TRACE(run);
+    deformer.SetWorkGroupSize(sizes[run % sizes.size()]);
+    const Deformed again = RunDeformer(deformer, jittered, arrays);
+    EXPECT_EQ(again.Outputs, first.Outputs);
+    EXPECT_EQ(again.Coverage, first.Coverage);
+    EXPECT_EQ(again.Report.NumberOfInvertedTetrahedra, first.Report.NumberOfInvertedTetrahedra);
+    EXPECT_TRUE(again.Report.Overlapping);
+  }
+}
+
+TEST(Folded, OverstretchedTetrahedraAreSkippedAndCounted)
+{
+  const Extent small{ { 0, 3, 0, 3, 0, 3 } };
+  DeformerCase torn = MakeCase(small, NoScale, [](const glm::dvec3& index) { return index; });
+  // One corner of the volume is thrown far away; it belongs to one cell.
+  torn.Displacements.back() = { { 5000 * 256, 0, 0 } };
+  const std::vector<float> values(torn.GetNumberOfVoxels(), 2.0F);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const Deformed deformed = LoadAndRun(torn, arrays);
+  EXPECT_EQ(deformed.Report.NumberOfOverstretchedCells, 1);
+  EXPECT_GE(deformed.Report.NumberOfCoveredVoxels, 63);
+  for (std::size_t voxel = 0; voxel < deformed.Coverage.size(); ++voxel)
+  {
+    EXPECT_EQ(deformed.GetOutput<float>(0)[voxel], deformed.Coverage[voxel] != 0 ? 2.0F : 0.0F);
+  }
+}

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Coverage, values and single writes under deformations that differ from cell to cell, against the
+// reference.
+#include "DeformerCase.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/mat4x4.hpp>
+
+#include <tuple>
+
+using namespace deformvolume;
+
+namespace
+{
+
+/// Compares two arrays, one of them categorical.
+void Check(const DeformerCase& deformerCase, Route route = Route::Field)
+{
+  const std::size_t size = deformerCase.GetNumberOfVoxels();
+  const auto values = MakeRandomValues<std::int16_t>(size * 2, 2);
+  const auto labels = MakeRandomValues<std::int32_t>(size, 3);
+  const std::vector<VolumeArray> arrays{ MakeArray(values, 2, false, -3.0),
+    MakeArray(labels, 1, true, 12.0) };
+  const reference::Result reference = ResampleByReference(deformerCase);
+  ExpectEmbedding(reference);
+  EXPECT_GT(reference.NumberOfCoveredVoxels, 0);
+  ExpectEqualsReference(deformerCase, reference, arrays, LoadAndRun(deformerCase, arrays, route));
+}
+
+glm::dmat3 Rotate(double degrees, const glm::dvec3& axis)
+{
+  return glm::dmat3(glm::rotate(glm::dmat4(1.0), glm::radians(degrees), axis));
+}
+
+const std::array<double, 3> NoScale{ { 1, 1, 1 } };
+
+} // namespace
+
+TEST(Piecewise, JitteredVoxels)
+{
+  Check(MakeCase({ { 0, 23, 0, 23, 0, 23 } }, NoScale, MakeJitter(1, 0.17)));
+  Check(MakeCase({ { -5, 10, 3, 20, -30, -17 } }, NoScale, MakeJitter(2, 0.17)), Route::Mesh);
+}
+
+TEST(Piecewise, JitteredAndRotated)
+{
+  std::mt19937 random(77);
+  for (int run = 0; run < 6; ++run)
+  {
+    SCOPED_TRACE(run);
+    const glm::dmat3 matrix = MakeRandomMatrix(random, 0.15);
+    auto jitter = MakeJitter(run, 0.12);
+    Check(MakeCase({ { -run, 9, run - 3, 8, 1, 12 } }, NoScale,
+            [&](const glm::dvec3& index) { return matrix * jitter(index); }),
+      run % 2 == 0 ? Route::Field : Route::Mesh);
+  }
+}
+
+TEST(Piecewise, SmoothBend)
+{
+  Check(MakeCase({ { 0, 23, 0, 15, 0, 15 } }, NoScale,
+    [](const glm::dvec3& index)
+    {
+      const double angle = 0.05 * index.x;
+      const double radius = 20.0 - index.y;
+      return glm::dvec3(radius * std::sin(angle), 20.0 - radius * std::cos(angle), 1.25 * index.z);
+    }));
+}
+
+TEST(Piecewise, CoarseRandomField)
+{
+  // Random displacements at every fourth voxel, linear between them along each axis.
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(-0.7, 0.7);
+  std::array<std::array<std::array<glm::dvec3, 7>, 7>, 7> nodes;
+  for (auto& plane : nodes)
+  {
+    for (auto& row : plane)
+    {
+      for (glm::dvec3& node : row)
+      {
+        const double x = uniform(random);
+        const double y = uniform(random);
+        node = glm::dvec3(x, y, uniform(random));
+      }
+    }
+  }
+  Check(MakeCase({ { 0, 23, 0, 23, 0, 23 } }, NoScale,
+    [&nodes](const glm::dvec3& index)
+    {
+      const glm::ivec3 low = glm::ivec3(index) / 4;
+      const glm::dvec3 t = index / 4.0 - glm::dvec3(low);
+      glm::dvec3 moved = index;
+      for (int corner = 0; corner < 8; ++corner)
+      {
+        const glm::ivec3 c(corner & 1, corner >> 1 & 1, corner >> 2);
+        const glm::dvec3 w = glm::mix(1.0 - t, t, glm::dvec3(c));
+        moved += w.x * w.y * w.z * nodes[low.z + c.z][low.y + c.y][low.x + c.x];
+      }
+      return moved;
+    }));
+}
+
+// Poses that put faces, edges and vertices of many tetrahedra exactly on samples.
+TEST(Piecewise, PosesFullOfTies)
+{
+  const glm::dmat3 swapped(glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0));
+  const std::vector<std::pair<const char*, glm::dmat3>> matrices{
+    { "identity", glm::dmat3(1.0) },
+    { "axes swapped", swapped },
+    { "quarter turn", Rotate(90.0, glm::dvec3(0, 0, 1)) },
+    { "half turn", Rotate(180.0, glm::dvec3(0, 1, 0)) },
+    { "doubled", glm::dmat3(2.0) },
+    { "tripled", glm::dmat3(3.0) },
+    { "halved", glm::dmat3(0.5) },
+    { "one and a half", glm::dmat3(1.5) },
+    { "shear by a quarter", glm::dmat3(1, 0, 0, 0.25, 1, 0, 0, 0.25, 1) },
+    { "shear by one", glm::dmat3(1, 0, 0, 1, 1, 0, 0, 1, 1) },
+    { "turned by the diagonal", glm::dmat3(1, 1, 0, -1, 1, 0, 0, 0, 1) },
+    { "face diagonals to axes", glm::dmat3(1, 1, 0, 1, 0, 1, 0, -1, 1) },
+  };
+  for (const auto& [name, matrix] : matrices)
+  {
+    for (const double shift : { 0.0, 0.5, 0.25 })
+    {
+      SCOPED_TRACE(name);
+      SCOPED_TRACE(shift);
+      Check(MakeCase({ { -1, 4, 0, 5, 3, 7 } }, NoScale,
+        [&, m = matrix](const glm::dvec3& index)
+        { return m * index + glm::dvec3(shift, 0.0, -shift); }));
+    }
+  }
+}
+
+// An interior vertex with all its tetrahedra on a sample: exactly one of 8 or 32 writes it.
+TEST(Piecewise, VerticesOnSamplesOfAJitteredMesh)
+{
+  auto jitter = MakeJitter(3, 0.3);
+  Check(MakeCase({ { 0, 8, 0, 8, 0, 8 } }, NoScale,
+    [&jitter](const glm::dvec3& index)
+    {
+      const glm::dvec3 moved = jitter(index);
+      // Every third vertex stays on its sample, those between are moved along one axis only.
+      const int kind = static_cast<int>(index.x + 2 * index.y + 4 * index.z) % 3;
+      return kind == 0 ? 2.0 * index
+                       : 2.0 * index +
+          (kind == 1 ? glm::dvec3(moved.x - index.x, 0, 0) : glm::dvec3(0, 0, moved.z - index.z));
+    }));
+}
+
+TEST(Piecewise, ScaledLattice)
+{
+  // The rest position is Scale times the index: another output spacing than the volume's.
+  for (const std::array<double, 3>& scale : { std::array<double, 3>{ { 2, 2, 2 } },
+         std::array<double, 3>{ { 0.5, 0.75, 0.25 } }, std::array<double, 3>{ { 1.5, 1, 3.25 } } })
+  {
+    SCOPED_TRACE(scale[0]);
+    const glm::dvec3 s(scale[0], scale[1], scale[2]);
+    auto jitter = MakeJitter(8, 0.15);
+    Check(MakeCase({ { -3, 6, 2, 9, 0, 8 } }, scale,
+      [&](const glm::dvec3& index) { return s * jitter(index); }));
+    Check(MakeCase(
+      { { -3, 6, 2, 9, 0, 8 } }, scale, [&](const glm::dvec3& index) { return s * index; }));
+  }
+}
+
+TEST(Piecewise, ParityIsThatOfTheStructuredIndex)
+{
+  for (int parity = 0; parity < 8; ++parity)
+  {
+    SCOPED_TRACE(parity);
+    const Extent extent{ { -(parity & 1), 4, (parity >> 1 & 1) - 6, -1, parity >> 2, 5 } };
+    Check(MakeCase(extent, NoScale, MakeJitter(parity, 0.15)));
+  }
+}
+
+TEST(Piecewise, ThinVolumes)
+{
+  Check(MakeCase({ { 0, 1, 0, 1, 0, 1 } }, NoScale, MakeJitter(1, 0.15)));
+  Check(MakeCase({ { 0, 20, 3, 4, -1, 0 } }, NoScale, MakeJitter(2, 0.15)));
+  Check(MakeCase({ { 0, 1, 0, 70, 0, 1 } }, NoScale, MakeJitter(3, 0.15)));
+  Check(MakeCase({ { 0, 1, -1, 0, 0, 40 } }, NoScale, MakeJitter(4, 0.15)));
+  Check(MakeCase({ { 0, 130, 0, 2, 0, 2 } }, NoScale, MakeJitter(5, 0.15)));
+}
+
+TEST(Piecewise, OutputSmallerThanTheDeformedVolume)
+{
+  DeformerCase jittered = MakeCase({ { 0, 11, 0, 11, 0, 11 } }, NoScale, MakeJitter(6, 0.15));
+  jittered.Output = { { 3, 7, 4, 4, 5, 30 } };
+  Check(jittered);
+}
+
+TEST(Piecewise, OutputBesideTheDeformedVolume)
+{
+  DeformerCase jittered = MakeCase({ { 0, 5, 0, 5, 0, 5 } }, NoScale, MakeJitter(6, 0.15));
+  jittered.Output = { { 20, 25, 0, 3, -100, -98 } };
+  const std::vector<float> values(jittered.GetNumberOfVoxels(), 1.0F);
+  const std::vector<VolumeArray> arrays{ MakeArray(values, 1, false, 4.0) };
+  ExpectEqualsReference(
+    jittered, ResampleByReference(jittered), arrays, LoadAndRun(jittered, arrays));
+}
+
+TEST(Piecewise, LargeTetrahedra)
+{
+  // Tetrahedra of up to 60 voxels.
+  Check(MakeCase({ { 0, 2, 0, 1, 0, 2 } }, NoScale,
+    [](const glm::dvec3& index)
+    {
+      return glm::dvec3(23.5 * index.x + 11.0 * index.y, 30.25 * index.y - 7.0 * index.z,
+        21.0 * index.z + 9.0 * index.x);
+    }));
+}
+
+class Masks : public testing::TestWithParam<int>
+{
+protected:
+  std::mt19937 Random{ static_cast<unsigned int>(GetParam()) };
+  DeformerCase Case = GetParam() % 2 == 0
+    ? MakeCase({ { -4, 7, 1, 9, 0, 10 } }, NoScale, MakeJitter(GetParam(), 0.15))
+    : MakeCase(
+        { { -4, 7, 1, 9, 0, 10 } }, NoScale, [](const glm::dvec3& index) { return 1.5 * index; });
+};
+
+TEST_P(Masks, InactiveTetrahedra)
+{
+  this->Case.Active.resize(GetNumberOfCells(this->Case.Lattice.VertexExtent));
+  for (unsigned char& cell : this->Case.Active)
+  {
+    const int kind = this->Random() % 3;
+    cell = kind == 0 ? 31 : kind == 1 ? 0 : static_cast<unsigned char>(this->Random());
+  }
+  Check(this->Case);
+}
+
+TEST_P(Masks, BlankedVoxels)
+{
+  this->Case.Blanked.resize(this->Case.GetNumberOfVoxels());
+  for (unsigned char& voxel : this->Case.Blanked)
+  {
+    voxel = this->Random() % 10 == 0 ? 8 : 0;
+  }
+  Check(this->Case);
+}
+
+TEST_P(Masks, UnlinkedVoxels)
+{
+  for (std::int64_t voxel = 0; voxel < this->Case.GetNumberOfVoxels(); ++voxel)
+  {
+    this->Case.Unlinked.push_back(this->Random() % 10 == 0);
+  }
+  Check(this->Case, Route::Mesh);
+}
+
+TEST_P(Masks, AllOfThem)
+{
+  for (std::int64_t voxel = 0; voxel < this->Case.GetNumberOfVoxels(); ++voxel)
+  {
+    this->Case.Unlinked.push_back(this->Random() % 20 == 0);
+    this->Case.Blanked.push_back(this->Random() % 20 == 0 ? 1 : 0);
+  }
+  for (std::int64_t cell = 0; cell < GetNumberOfCells(this->Case.Lattice.VertexExtent); ++cell)
+  {
+    this->Case.Active.push_back(this->Random() % 4 == 0 ? this->Random() % 256 : 31);
+  }
+  Check(this->Case, Route::Mesh);
+}
+
+INSTANTIATE_TEST_SUITE_P(Piecewise, Masks, testing::Range(0, 4));

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Each kernel once on a volume small enough for an interpreting device that watches every access.
+#include "DeformerCase.h"
+
+#include <gtest/gtest.h>
+
+using namespace deformvolume;
+
+namespace
+{
+
+const std::array<double, 3> NoScale{ { 1, 1, 1 } };
+
+void Check(const DeformerCase& tiny, Route route, bool embedding = true)
+{
+  const auto values = MakeRandomValues<std::uint16_t>(tiny.GetNumberOfVoxels(), 2);
+  const auto labels = MakeRandomValues<std::int64_t>(tiny.GetNumberOfVoxels(), 3);
+  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(labels, 1, true) };
+  const reference::Result reference = ResampleByReference(tiny);
+  if (embedding)
+  {
+    ExpectEmbedding(reference);
+  }
+  ExpectEqualsReference(tiny, reference, arrays, LoadAndRun(tiny, arrays, route));
+}
+
+} // namespace
+
+TEST(VolumeDeformer, TinyUndeformed)
+{
+  Check(MakeCase({ { 0, 4, -1, 2, 0, 3 } }, NoScale, [](const glm::dvec3& index) { return index; }),
+    Route::Mesh);
+}
+
+TEST(VolumeDeformer, TinyByMesh)
+{
+  Check(MakeCase({ { -1, 3, 0, 3, 0, 4 } }, NoScale, MakeJitter(1, 0.15)), Route::Mesh);
+}
+
+TEST(VolumeDeformer, TinyByField)
+{
+  Check(MakeCase({ { 0, 3, 0, 4, 1, 5 } }, NoScale, MakeJitter(2, 0.15)), Route::Field);
+}
+
+TEST(VolumeDeformer, TinyFolded)
+{
+  Check(MakeCase({ { 0, 3, 0, 3, 0, 3 } }, NoScale, MakeJitter(3, 1.0)), Route::Field, false);
+}
+
+TEST(VolumeDeformer, TinyMasks)
+{
+  DeformerCase tiny = MakeCase({ { 0, 3, 0, 3, 0, 3 } }, NoScale, MakeJitter(4, 0.15));
+  tiny.Blanked.assign(64, 0);
+  tiny.Blanked[21] = 1;
+  tiny.Active.assign(27, 31);
+  tiny.Active[26] = 0x13;
+  tiny.Unlinked.assign(64, false);
+  tiny.Unlinked[63] = true;
+  Check(tiny, Route::Mesh);
+}
+
+TEST(VolumeDeformer, TinyPublished)
+{
+  const DeformerCase tiny = MakeCase({ { 0, 3, 0, 3, 0, 3 } }, NoScale, MakeJitter(5, 0.15));
+  const auto values = MakeRandomValues<float>(tiny.GetNumberOfVoxels(), 2);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  VolumeDeformer deformer;
+  Load(deformer, tiny, arrays, Route::Field);
+  const Deformed published = RunDeformer(deformer, tiny, arrays, Resampling::Published);
+  const reference::Result reference = ResampleByReference(tiny);
+  for (std::size_t voxel = 0; voxel < reference.Voxels.size(); ++voxel)
+  {
+    ASSERT_EQ(published.Coverage[voxel] != 0, !reference.Voxels[voxel].empty()) << voxel;
+    if (!reference.Voxels[voxel].empty())
+    {
+      EXPECT_NEAR(published.GetOutput<float>(0)[voxel],
+        static_cast<double>(reference.Voxels[voxel].front().Interpolate(values.data(), 1, 0)), 0.2);
+    }
+  }
+}

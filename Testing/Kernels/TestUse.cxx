@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The order of calls: misuse, repeated use, masks that come and go, memory, progress and abort.
+#include "DeformerCase.h"
+#include "Device.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+using namespace deformvolume;
+
+namespace
+{
+
+DeformerCase MakeSmallCase(unsigned int seed = 1)
+{
+  return MakeCase({ { 0, 7, 0, 6, 0, 5 } }, { { 1, 1, 1 } }, MakeJitter(seed, 0.15));
+}
+
+std::string GetError(const std::function<void()>& function)
+{
+  try
+  {
+    function();
+  }
+  catch (const Error& error)
+  {
+    EXPECT_GT(std::strlen(error.what()), 20U) << "an error has to say what is wrong";
+    return error.what();
+  }
+  ADD_FAILURE() << "no error";
+  return "";
+}
+
+class Use : public testing::Test
+{
+protected:
+  DeformerCase Case = MakeSmallCase();
+  reference::Result Reference = ResampleByReference(this->Case);
+  std::vector<float> Values = MakeRandomValues<float>(this->Case.GetNumberOfVoxels(), 3);
+  std::vector<VolumeArray> Arrays{ MakeArray(this->Values) };
+  std::vector<signed char> Coverage =
+    std::vector<signed char>(GetNumberOfPoints(this->Case.Output));
+  std::vector<float> Output = std::vector<float>(GetNumberOfPoints(this->Case.Output));
+  VolumeDeformer Deformer;
+
+  DeformRequest MakeRequest()
+  {
+    DeformRequest request;
+    request.OutputExtent = this->Case.Output;
+    request.Outputs = { this->Output.data() };
+    request.Coverage = this->Coverage.data();
+    return request;
+  }
+  /// The deformer works, whatever happened before.
+  void ExpectUsable()
+  {
+    SCOPED_TRACE("used again");
+    ASSERT_NO_THROW(Load(this->Deformer, this->Case, this->Arrays, Route::Field));
+    ExpectEqualsReference(this->Case, this->Reference, this->Arrays,
+      RunDeformer(this->Deformer, this->Case, this->Arrays));
+  }
+};
+
+} // namespace
+
+TEST_F(Use, DeformBeforeAnythingIsSet)
+{
+  GetError([&] { this->Deformer.Deform(this->MakeRequest()); });
+  this->Deformer.SetDevice("");
+  GetError([&] { this->Deformer.Deform(this->MakeRequest()); });
+  this->Deformer.SetLattice(this->Case.Lattice);
+  GetError([&] { this->Deformer.Deform(this->MakeRequest()); });
+  this->Deformer.SetArrays(this->Arrays);
+  GetError([&] { this->Deformer.Deform(this->MakeRequest()); });
+  this->ExpectUsable();
+}
+
+TEST_F(Use, MeshWithoutDisplacements)
+{
+  Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
+  const std::vector<VertexLink> links(this->Case.GetNumberOfVoxels());
+  const Tetrahedron tetrahedron{ { 0, 1, 2, 3 } };
+  this->Deformer.SetMesh(&tetrahedron, 1, 4, links.data());
+  GetError([&] { this->Deformer.Deform(this->MakeRequest()); });
+  this->ExpectUsable();
+}
+
+TEST_F(Use, SettersOutOfOrder)
+{
+  GetError([&] { this->Deformer.SetArrays(this->Arrays); });
+  GetError([&] { this->Deformer.SetNodeDisplacements(this->Values.data()); });
+  this->ExpectUsable();
+}
+
+TEST_F(Use, WrongNumberOfOutputs)
+{
+  Load(this->Deformer, this->Case, this->Arrays, Route::Field);
+  DeformRequest request = this->MakeRequest();
+  request.Outputs.clear();
+  GetError([&] { this->Deformer.Deform(request); });
+  request.Outputs = { this->Output.data(), this->Output.data() };
+  GetError([&] { this->Deformer.Deform(request); });
+  this->ExpectUsable();
+}
+
+TEST_F(Use, EmptyExtents)
+{
+  Load(this->Deformer, this->Case, this->Arrays, Route::Field);
+  DeformRequest request = this->MakeRequest();
+  request.OutputExtent = { { 0, -1, 0, 3, 0, 3 } };
+  GetError([&] { this->Deformer.Deform(request); });
+  Lattice lattice;
+  GetError([&] { this->Deformer.SetLattice(lattice); });
+  lattice.VertexExtent = { { 0, 5, 0, 5, 3, 3 } };
+  GetError([&] { this->Deformer.SetLattice(lattice); });
+  this->ExpectUsable();
+}
+
+TEST_F(Use, MeshThatPointsOutsideItself)
+{
+  Load(this->Deformer, this->Case, this->Arrays, Route::Field);
+  std::vector<VertexLink> links(this->Case.GetNumberOfVoxels());
+  const Tetrahedron outside{ { 0, 1, 2, 4 } };
+  GetError([&] { this->Deformer.SetMesh(&outside, 1, 4, links.data()); });
+  const Tetrahedron inside{ { 0, 1, 2, 3 } };
+  links[5].Tetrahedron = 1;
+  GetError([&] { this->Deformer.SetMesh(&inside, 1, 4, links.data()); });
+  this->ExpectUsable();
+}
+
+TEST_F(Use, UnknownDevice)
+{
+  const std::string error = GetError([&] { this->Deformer.SetDevice("no such device"); });
+  EXPECT_NE(error.find("no such device"), std::string::npos) << error;
+  GetError([] { ResolveDevice("no such device"); });
+  this->ExpectUsable();
+}
+
+TEST_F(Use, DeviceNames)
+{
+  const std::vector<std::string> names = GetDeviceNames();
+  ASSERT_FALSE(names.empty());
+  EXPECT_EQ(ResolveDevice(names.front()), names.front());
+  EXPECT_EQ(this->Deformer.SetDevice(names.front()), names.front());
+  this->ExpectUsable();
+}
+
+TEST_F(Use, NotEnoughMemory)
+{
+  this->Deformer.SetDevice("");
+  this->Deformer.SetMemoryLimit(12345);
+  Lattice lattice;
+  lattice.VertexExtent = { { 0, 99, 0, 99, 0, 99 } };
+  const std::string error = GetError([&]
+    { this->Deformer.CheckMemory(lattice, this->Arrays, lattice.VertexExtent, 100, 200, false); });
+  EXPECT_NE(error.find("12345"), std::string::npos) << error;
+  // What is needed: at the least the volume of 4 bytes a voxel.
+  std::size_t largest = 0;
+  for (std::size_t i = 0; i < error.size(); ++i)
+  {
+    if (std::isdigit(static_cast<unsigned char>(error[i])) != 0)
+    {
+      std::size_t length = 0;
+      largest = std::max<std::size_t>(largest, std::stoull(error.substr(i), &length));
+      i += length;
+    }
+  }
+  EXPECT_GE(largest, 4000000U) << error;
+  EXPECT_LE(largest, 64000000U) << error;
+  GetError(
+    [&]
+    {
+      Load(this->Deformer, this->Case, this->Arrays, Route::Field);
+      this->Deformer.SetMemoryLimit(1);
+      this->Deformer.Deform(this->MakeRequest());
+    });
+  this->Deformer.SetMemoryLimit(0);
+  this->ExpectUsable();
+}
+
+TEST_F(Use, MemoryIsCountedAndReleased)
+{
+  EXPECT_EQ(this->Deformer.GetDeviceMemory(), 0U);
+  this->ExpectUsable();
+  const std::uint64_t used = this->Deformer.GetDeviceMemory();
+  EXPECT_GE(used, this->Values.size() * sizeof(float));
+  this->ExpectUsable();
+  EXPECT_EQ(this->Deformer.GetDeviceMemory(), used);
+  this->Deformer.ReleaseMemory();
+  EXPECT_EQ(this->Deformer.GetDeviceMemory(), 0U);
+  this->ExpectUsable();
+}
+
+TEST_F(Use, AbortedByProgress)
+{
+  Load(this->Deformer, this->Case, this->Arrays, Route::Field);
+  DeformRequest request = this->MakeRequest();
+  int calls = 0;
+  double last = 0.0;
+  request.Progress = [&](double fraction)
+  {
+    EXPECT_GE(fraction, last);
+    EXPECT_LE(fraction, 1.0);
+    last = fraction;
+    ++calls;
+    return true;
+  };
+  this->Deformer.Deform(request);
+  ASSERT_GT(calls, 0);
+  for (int allowed = 0; allowed < calls; ++allowed)
+  {
+    int left = allowed;
+    request.Progress = [&left](double) { return left-- > 0; };
+    EXPECT_THROW(this->Deformer.Deform(request), Aborted) << allowed << " of " << calls;
+  }
+  // Without loading again.
+  ExpectEqualsReference(this->Case, this->Reference, this->Arrays,
+    RunDeformer(this->Deformer, this->Case, this->Arrays));
+}
+
+TEST_F(Use, MovedAgainAndAgain)
+{
+  Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
+  for (unsigned int seed = 10; seed < 14; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    const DeformerCase moved = MakeSmallCase(seed);
+    std::vector<float> displacements;
+    for (const auto& displacement : moved.Displacements)
+    {
+      for (const std::int64_t component : displacement)
+      {
+        displacements.push_back(static_cast<float>(component) / 256.0F);
+      }
+    }
+    this->Deformer.SetNodeDisplacements(displacements.data());
+    ExpectEqualsReference(moved, ResampleByReference(moved), this->Arrays,
+      RunDeformer(this->Deformer, moved, this->Arrays));
+  }
+}
+
+TEST_F(Use, MasksComeAndGo)
+{
+  Load(this->Deformer, this->Case, this->Arrays, Route::Field);
+  const auto check = [this]
+  {
+    const reference::Result reference = ResampleByReference(this->Case);
+    ExpectEqualsReference(
+      this->Case, reference, this->Arrays, RunDeformer(this->Deformer, this->Case, this->Arrays));
+    return reference.NumberOfCoveredVoxels;
+  };
+  const std::int64_t all = check();
+  this->Case.Blanked.assign(this->Case.GetNumberOfVoxels(), 0);
+  this->Case.Blanked[3 * 8 * 7 + 3 * 8 + 3] = 1;
+  this->Deformer.SetBlanked(this->Case.Blanked.data());
+  EXPECT_LT(check(), all);
+  this->Case.Blanked.clear();
+  this->Deformer.SetBlanked(nullptr);
+  EXPECT_EQ(check(), all);
+  this->Case.Active.assign(GetNumberOfCells(this->Case.Lattice.VertexExtent), 31);
+  std::fill(this->Case.Active.begin(), this->Case.Active.begin() + 60, 0x12);
+  this->Deformer.SetActiveTetrahedra(this->Case.Active.data());
+  EXPECT_LT(check(), all);
+  std::fill(this->Case.Active.begin(), this->Case.Active.end(), 0);
+  this->Deformer.SetActiveTetrahedra(this->Case.Active.data());
+  EXPECT_EQ(check(), 0);
+  this->Case.Active.clear();
+  this->Deformer.SetActiveTetrahedra(nullptr);
+  EXPECT_EQ(check(), all);
+}
+
+TEST_F(Use, ArraysAreReplaced)
+{
+  this->ExpectUsable();
+  const auto labels = MakeRandomValues<std::uint64_t>(this->Values.size() * 2, 4);
+  const std::vector<VolumeArray> arrays{ MakeArray(labels, 2, true), MakeArray(this->Values) };
+  this->Deformer.SetArrays(arrays);
+  ExpectEqualsReference(
+    this->Case, this->Reference, arrays, RunDeformer(this->Deformer, this->Case, arrays));
+}
+
+TEST_F(Use, TimesAreMeasured)
+{
+  Load(this->Deformer, this->Case, this->Arrays, Route::Field);
+  const DeformReport report = RunDeformer(this->Deformer, this->Case, this->Arrays).Report;
+  EXPECT_GT(report.MappingTime, 0.0);
+  EXPECT_GT(report.ResamplingTime, 0.0);
+  EXPECT_GT(report.TransferTime, 0.0);
+  EXPECT_LT(report.MappingTime + report.ResamplingTime + report.TransferTime, 60.0);
+}
+
+TEST_F(Use, TwoDeformersSideBySide)
+{
+  VolumeDeformer other;
+  const DeformerCase otherCase = MakeSmallCase(99);
+  Load(this->Deformer, this->Case, this->Arrays, Route::Field);
+  Load(other, otherCase, this->Arrays, Route::Mesh);
+  ExpectEqualsReference(this->Case, this->Reference, this->Arrays,
+    RunDeformer(this->Deformer, this->Case, this->Arrays));
+  ExpectEqualsReference(otherCase, ResampleByReference(otherCase), this->Arrays,
+    RunDeformer(other, otherCase, this->Arrays));
+}
