@@ -11,6 +11,7 @@ function (deformvolume_set_compile_options)
 endfunction ()
 
 if (DEFORMVOLUME_SANITIZE)
-  add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer)
+  add_compile_options(
+    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
 endif ()
