@@ -9,7 +9,9 @@ set(classes
 
 # Helpers of the classes: neither wrapped nor installed.
 set(helpers
+  BodySurface
   CellSplit
+  ClosedSurface
   Deformation
   DeformationMesh
   DeformedBounds
@@ -20,8 +22,11 @@ set(helpers
   MappingCache
   OutputExtent
   StaticMapping
+  TetGenProcess
+  TetrahedronClipping
   VectorArray
-  VolumeArrays)
+  VolumeArrays
+  vtkDeformVolumeFilterInternals)
 
 foreach (list IN ITEMS classes helpers)
   list(TRANSFORM ${list} PREPEND "Filters/")
@@ -42,3 +47,9 @@ vtk_module_include(DeformVolume::Filters
 vtk_module_link(DeformVolume::Filters PRIVATE DeformVolumeKernels glm::glm)
 vtk_module_compile_options(DeformVolume::Filters PRIVATE
   $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wall;-Wextra;-ffp-contract=off>)
+
+# TetGen is a program that runs as a process of its own; it need not be there at build time.
+if (DEFORMVOLUME_TETGEN_EXECUTABLE)
+  set_source_files_properties(Filters/vtkTetGenMesher.cxx PROPERTIES
+    COMPILE_DEFINITIONS "DEFORMVOLUME_TETGEN_EXECUTABLE=\"${DEFORMVOLUME_TETGEN_EXECUTABLE}\"")
+endif ()

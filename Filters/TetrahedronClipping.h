@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeTetrahedronClipping_h
+#define DeformVolumeTetrahedronClipping_h
+
+#include "BarycentricMap.h"
+#include "DeformedBounds.h" // for IndexBounds
+
+#include <array>
+
+namespace deformvolume
+{
+
+/// A position at rest and its deformed position.
+struct MovedPoint
+{
+  glm::dvec3 Rest;
+  glm::dvec3 Moved;
+};
+
+/// Adds the bounds of the part of a tetrahedron that lies in a box at rest, after the deformation.
+/// map: that of the nodes at rest.
+void AddClippedTetrahedron(const std::array<MovedPoint, 4>& nodes, const BarycentricMap& map,
+  const IndexBounds& box, IndexBounds& bounds);
+
+} // namespace deformvolume
+
+#endif
