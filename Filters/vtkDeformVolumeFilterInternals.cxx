@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDeformVolumeFilterInternals.h"
+
+#include "AbortCheck.h"
+#include "InputUpdate.h"
+#include "VolumeArrays.h"
+
+#include "vtkDataObject.h"
+#include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+
+#include <cmath>
+#include <thread>
+
+using deformvolume::DeformationSource;
+using deformvolume::Error;
+using deformvolume::ImageGeometry;
+using deformvolume::IndexBounds;
+
+//------------------------------------------------------------------------------
+ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetOutputGeometry(
+  const ImageGeometry& volume) const
+{
+  ImageGeometry output = volume;
+  output.PointExtent = ImageGeometry().PointExtent;
+  if (this->Self->OutputSpacingMode == CUSTOM_SPACING)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double spacing = this->Self->CustomSpacing[axis];
+      if (!std::isfinite(spacing) || spacing <= 0.0)
+      {
+        throw Error(std::string("CustomSpacing is ") + std::to_string(spacing) + " on axis " +
+          "xyz"[axis] + ". Set a spacing greater than 0.");
+      }
+      // A volume with negative spacing keeps its sense.
+      output.Spacing[axis] = std::copysign(spacing, volume.Spacing[axis]);
+    }
+  }
+  return output;
+}
+
+//------------------------------------------------------------------------------
+DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
+  const ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest) const
+{
+  DeformationSource source;
+  source.Shape = shape;
+  source.Rest = rest;
+  source.Selector = [this](vtkDataSet* dataSet)
+  {
+    int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+    vtkDataArray* array = this->Self->GetInputArrayToProcess(0, dataSet, association);
+    return association == vtkDataObject::FIELD_ASSOCIATION_POINTS ? array : nullptr;
+  };
+  vtkInformation* choice = this->Self->GetInputArrayInformation(0);
+  if (choice->Has(vtkDataObject::FIELD_NAME()))
+  {
+    source.Wanted = std::string("point array \"") + choice->Get(vtkDataObject::FIELD_NAME()) + "\"";
+  }
+  else
+  {
+    const char* attribute = vtkDataSetAttributes::GetAttributeTypeAsString(
+      choice->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE()));
+    source.Wanted = std::string("active point ") + (attribute ? attribute : "vectors");
+  }
+  source.Choice =
+    source.Wanted + " " + std::to_string(choice->Get(vtkDataObject::FIELD_ASSOCIATION()));
+  source.DisplacementScale = this->Self->DisplacementScale;
+  source.Volume = volume;
+  source.Scale = volume.Spacing / this->GetOutputGeometry(volume).Spacing;
+  return source;
+}
+
+//------------------------------------------------------------------------------
+IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(
+  const ImageGeometry& volume, vtkInformation* output, const double* time)
+{
+  vtkDataObject* shape = deformvolume::UpdateInput(this->Self, 1, output, time);
+  vtkDataObject* rest = deformvolume::UpdateInput(this->Self, 2, output, time);
+  const DeformationSource source = this->MakeSource(volume, shape, rest);
+  this->Deformation.Read(source);
+
+  const deformvolume::Lattice lattice{ volume.PointExtent,
+    { { source.Scale.x, source.Scale.y, source.Scale.z } } };
+  const bool extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
+  if (this->Deformation.IsField())
+  {
+    const IndexBounds bounds =
+      deformvolume::ComputeDeformedBounds(lattice, this->Deformation.GetField(extrapolate));
+    if (bounds.IsEmpty())
+    {
+      throw Error("The displacement field on input port 1 holds no voxel of the volume. Check "
+                  "that both are in the same world coordinates and overlap.");
+    }
+    return bounds;
+  }
+  if (extrapolate)
+  {
+    this->Mapping.Update(this->Deformation, volume, true, {});
+    return deformvolume::ComputeDeformedBounds(lattice, this->Mapping.GetLinks(),
+      this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
+  }
+  const IndexBounds bounds =
+    deformvolume::ComputeDeformedBounds(lattice, this->Deformation.GetRestPoints(),
+      this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
+  if (bounds.IsEmpty())
+  {
+    // Tells what is wrong.
+    this->Mapping.Update(this->Deformation, volume, false, {});
+    throw Error("The deformed volume has no bounds. Check the deformation mesh.");
+  }
+  return bounds;
+}
+
+//------------------------------------------------------------------------------
+IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
+  const ImageGeometry& volume, vtkInformation* output)
+{
+  BoundsKey key;
+  std::set<double> times;
+  for (int port = 1; port < 3; ++port)
+  {
+    if (this->Self->GetNumberOfInputConnections(port) > 0)
+    {
+      const std::vector<double> inputTimes =
+        deformvolume::GetTimes(this->Self->GetInputInformation(port, 0));
+      times.insert(inputTimes.begin(), inputTimes.end());
+    }
+    key.Inputs.push_back(deformvolume::GetInputStamp(this->Self, port));
+  }
+  key.Volume = volume;
+  const DeformationSource source = this->MakeSource(volume, nullptr, nullptr);
+  key.Scale = source.Scale;
+  key.DisplacementScale = source.DisplacementScale;
+  key.Choice = source.Choice;
+  key.OutsideMode = this->Self->OutsideMode;
+  if (key == this->Key)
+  {
+    return this->Bounds;
+  }
+
+  IndexBounds bounds;
+  if (times.empty())
+  {
+    bounds = this->ReadBounds(volume, output, nullptr);
+  }
+  // The first step comes last: it is what an input then holds where no time is asked for.
+  for (auto time = times.rbegin(); time != times.rend(); ++time)
+  {
+    const double step = *time;
+    bounds.Add(this->ReadBounds(volume, output, &step));
+  }
+  this->Key = key;
+  this->Bounds = bounds;
+  return bounds;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
+  vtkImageData* volume, const std::vector<std::string>& leftOut)
+{
+  const auto list = [](const std::vector<std::string>& names)
+  {
+    std::string text;
+    for (const std::string& name : names)
+    {
+      text += (text.empty() ? "" : ", ") + name;
+    }
+    return text;
+  };
+  std::string warning;
+  const std::string cellArrays = list(deformvolume::GetUnusedCellArrays(volume));
+  if (!cellArrays.empty())
+  {
+    warning += "Cell arrays of the volume are not resampled: " + cellArrays +
+      ". Convert them to point arrays where they are wanted. ";
+  }
+  if (!leftOut.empty())
+  {
+    warning +=
+      "Point arrays of the volume that hold no numbers are left out: " + list(leftOut) + ". ";
+  }
+  const std::string& cells = this->Deformation.GetIgnoredCells();
+  if (!this->Deformation.IsField() && !cells.empty())
+  {
+    warning += "Cells of the deformation mesh that are not linear and three-dimensional are "
+               "ignored: " +
+      cells + ". ";
+  }
+  if (warning != this->WarnedOf && !warning.empty())
+  {
+    vtkWarningWithObjectMacro(this->Self, << warning);
+  }
+  this->WarnedOf = warning;
+}
+
+//------------------------------------------------------------------------------
+std::function<bool(double)> vtkDeformVolumeFilter::vtkInternals::GetProgress(
+  double from, double to) const
+{
+  // Observers expect to be called where they live.
+  const std::thread::id thread = std::this_thread::get_id();
+  return [this, from, to, thread](double done)
+  {
+    if (std::this_thread::get_id() == thread)
+    {
+      this->Self->UpdateProgress(from + (to - from) * done);
+      return !deformvolume::IsAborted(this->Self);
+    }
+    return this->Self->GetAbortExecute() == 0;
+  };
+}
