@@ -12,9 +12,9 @@ set(deformvolume_vtk_components
   FiltersCore
   FiltersGeneral
   FiltersGeometry
+  FiltersModeling
   ImagingCore
-  IOGeometry
-  IOLegacy
+  ImagingGeneral
   vtksys)
 if (DEFORMVOLUME_WRAP_PYTHON)
   # Another python3 that comes first on PATH would not know the modules of the system's VTK.
@@ -27,7 +27,6 @@ endif ()
 if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
   list(APPEND deformvolume_vtk_components
     FiltersSources
-    ImagingGeneral
     ImagingMath
     ImagingSources
     InteractionStyle
@@ -41,7 +40,7 @@ if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
     RenderingVolumeOpenGL2)
 endif ()
 if (BUILD_TESTING)
-  list(APPEND deformvolume_vtk_components IOExodus TestingCore TestingRendering)
+  list(APPEND deformvolume_vtk_components IOExodus IOGeometry TestingCore TestingRendering)
 endif ()
 
 if (DEFORMVOLUME_USE_PARAVIEW)
@@ -50,6 +49,9 @@ endif ()
 find_package(VTK 9.1 REQUIRED COMPONENTS ${deformvolume_vtk_components})
 
 find_package(glm REQUIRED)
+
+find_program(DEFORMVOLUME_TETGEN_EXECUTABLE tetgen
+  DOC "The TetGen program that vtkTetGenMesher runs by default")
 
 # The system's OpenCL loader is asked for before those that GPU toolkits put elsewhere: theirs may
 # be older and know fewer vendors.

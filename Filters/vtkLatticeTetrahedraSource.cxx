@@ -32,8 +32,8 @@ namespace
 // Corner and edge vectors from node to node, in world coordinates.
 struct Lattice
 {
-  glm::dvec3 Corner;
-  glm::dmat3 Steps;
+  glm::dvec3 Corner = glm::dvec3(0.0);
+  glm::dmat3 Steps = glm::dmat3(0.0);
 };
 
 glm::dvec3 NodeSteps(const int nodes[3])
@@ -61,7 +61,6 @@ std::string FrameOfBounds(
   }
   const glm::dvec3 step = size / NodeSteps(nodes);
   lattice.Corner = low;
-  lattice.Steps = glm::dmat3(0.0);
   for (int axis = 0; axis < 3; ++axis)
   {
     lattice.Steps[axis][axis] = step[axis];

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Closed triangle surfaces: what TetGen needs, and what it must not be given.
+#ifndef DeformVolumeClosedSurface_h
+#define DeformVolumeClosedSurface_h
+
+#include "Error.h"
+
+#include "vtkSmartPointer.h"
+
+class vtkPolyData;
+
+namespace deformvolume
+{
+
+/// Triangles only, coincident points merged, unused points dropped, double precision.
+vtkSmartPointer<vtkPolyData> CleanTriangles(vtkPolyData* surface);
+
+/// Throws Error unless the surface has triangles, is finite, closed, manifold and not flat. TetGen
+/// ends by a crash on such input.
+void CheckClosedSurface(vtkPolyData* surface);
+
+/// Whether every edge belongs to exactly two triangles.
+bool IsClosedManifold(vtkPolyData* surface);
+
+/// Area in squared world units, and enclosed volume, the absolute value, in cubic ones.
+double SurfaceArea(vtkPolyData* surface);
+double EnclosedVolume(vtkPolyData* surface);
+
+/// The surface with fewer triangles, so that their edges have about the length; null if they are
+/// that long already.
+vtkSmartPointer<vtkPolyData> Decimate(vtkPolyData* surface, double edgeLength);
+
+/// The same surface with edges no longer than the length.
+vtkSmartPointer<vtkPolyData> SplitLongEdges(vtkPolyData* surface, double edgeLength);
+
+} // namespace deformvolume
+
+#endif

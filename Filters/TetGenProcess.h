@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tetrahedra by the program TetGen, as a child process.
+#ifndef DeformVolumeTetGenProcess_h
+#define DeformVolumeTetGenProcess_h
+
+#include "Error.h"
+
+#include "vtkSmartPointer.h"
+
+#include <functional>
+#include <string>
+
+class vtkPolyData;
+class vtkUnstructuredGrid;
+
+namespace deformvolume
+{
+
+/// TetGen could not mesh this surface; it may do better with another one.
+class SurfaceRejected : public Error
+{
+public:
+  using Error::Error;
+};
+
+struct TetGenParameters
+{
+  std::string Executable;
+  double RadiusEdgeRatio = 1.414;
+  double MaximumVolume = 0.0;
+  double TimeLimit = 60.0; // seconds
+};
+
+/// Fills a closed triangle surface with tetrahedra of positive volume. `wait` is called many times
+/// a second with the part of the time limit that has passed; when it returns true, TetGen is ended
+/// and Aborted thrown. All failures throw Error.
+vtkSmartPointer<vtkUnstructuredGrid> RunTetGen(vtkPolyData* surface,
+  const TetGenParameters& parameters, const std::function<bool(double)>& wait);
+
+} // namespace deformvolume
+
+#endif

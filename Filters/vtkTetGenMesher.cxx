@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkTetGenMesher.h"
+
+#include "AbortCheck.h"
+#include "BodySurface.h"
+#include "ClosedSurface.h"
+#include "TetGenProcess.h"
+
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <new>
+#include <sstream>
+
+#include <unistd.h>
+
+vtkStandardNewMacro(vtkTetGenMesher);
+
+namespace
+{
+
+constexpr double MaximumNumberOfTetrahedra = 20e6;
+constexpr double SurfaceShare = 0.3; // of the progress
+constexpr double TetGenShare = 0.65;
+
+vtkDataArray* FindArray(vtkDataArray* array, vtkImageData* volume)
+{
+  int dimensions[3];
+  volume->GetDimensions(dimensions);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (dimensions[axis] < 2)
+    {
+      throw deformvolume::Error("The volume has " + std::to_string(dimensions[axis]) +
+        " voxels on axis " + std::to_string(axis) +
+        ". A body needs at least two on every axis: give the whole volume, not a slice.");
+    }
+    if (!(std::abs(volume->GetSpacing()[axis]) > 0.0) ||
+      !std::isfinite(volume->GetSpacing()[axis]) || !std::isfinite(volume->GetOrigin()[axis]))
+    {
+      throw deformvolume::Error(
+        "The volume's spacing or origin is not valid on axis " + std::to_string(axis) + ".");
+    }
+  }
+  if (!array)
+  {
+    throw deformvolume::Error("The volume has no such point array: set active scalars, or choose "
+                              "an array with SetInputArrayToProcess().");
+  }
+  if (array->GetNumberOfTuples() != volume->GetNumberOfPoints())
+  {
+    throw deformvolume::Error("The volume's array has " +
+      std::to_string(array->GetNumberOfTuples()) + " values for " +
+      std::to_string(volume->GetNumberOfPoints()) + " voxels.");
+  }
+  return array;
+}
+
+double DiagonalOf(vtkImageData* volume)
+{
+  int dimensions[3];
+  volume->GetDimensions(dimensions);
+  double square = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double length = (dimensions[axis] - 1) * volume->GetSpacing()[axis];
+    square += length * length;
+  }
+  return std::sqrt(square);
+}
+
+} // namespace
+
+vtkTetGenMesher::vtkTetGenMesher()
+{
+  this->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+}
+
+void vtkTetGenMesher::AddLabel(vtkTypeInt64 label)
+{
+  this->Labels.push_back(label);
+  this->Modified();
+}
+
+void vtkTetGenMesher::ClearLabels()
+{
+  if (!this->Labels.empty())
+  {
+    this->Labels.clear();
+    this->Modified();
+  }
+}
+
+int vtkTetGenMesher::GetNumberOfLabels()
+{
+  return static_cast<int>(this->Labels.size());
+}
+
+vtkTypeInt64 vtkTetGenMesher::GetLabel(int index)
+{
+  return index >= 0 && index < this->GetNumberOfLabels() ? this->Labels[index] : 0;
+}
+
+int vtkTetGenMesher::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  return 1;
+}
+
+int vtkTetGenMesher::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+{
+  // A part of a body is no closed surface: everybody asks for all of it.
+  vtkInformation* info = inputVector[0]->GetInformationObject(0);
+  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
+  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+  {
+    int extent[6];
+    info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent, 6);
+  }
+  return 1;
+}
+
+int vtkTetGenMesher::ComputePipelineMTime(vtkInformation* request,
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector, int requestFromOutputPort,
+  vtkMTimeType* mtime)
+{
+  // An aborted output is not up to date, but the executive takes it for that. This is the only
+  // moment at which a change of the modification time is seen.
+  if (this->Aborted)
+  {
+    this->Aborted = false;
+    this->Modified();
+  }
+  return this->Superclass::ComputePipelineMTime(
+    request, inputVector, outputVector, requestFromOutputPort, mtime);
+}
+
+int vtkTetGenMesher::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector);
+  output->Initialize();
+  this->UsedIsovalue = 0.0;
+  this->UsedTargetEdgeLength = 0.0;
+  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
+  try
+  {
+    if (vtkImageData* volume = vtkImageData::SafeDownCast(input))
+    {
+      this->MeshVolume(
+        volume, FindArray(this->GetInputArrayToProcess(0, inputVector), volume), output);
+    }
+    else if (vtkPolyData* surface = vtkPolyData::SafeDownCast(input))
+    {
+      this->MeshSurface(surface, output);
+    }
+  }
+  catch (const deformvolume::Aborted&)
+  {
+    output->Initialize();
+    this->Aborted = true;
+  }
+  catch (const std::bad_alloc&)
+  {
+    vtkErrorMacro("Not enough memory. Set a greater TargetEdgeLength.");
+    return 0;
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+    return 0;
+  }
+  return 1;
+}
+
+void vtkTetGenMesher::CheckStep(double share)
+{
+  this->UpdateProgress(SurfaceShare * share);
+  if (deformvolume::IsAborted(this))
+  {
+    throw deformvolume::Aborted();
+  }
+}
+
+void vtkTetGenMesher::MeshVolume(
+  vtkImageData* volume, vtkDataArray* array, vtkUnstructuredGrid* output)
+{
+  const double length =
+    this->TargetEdgeLength > 0.0 ? this->TargetEdgeLength : DiagonalOf(volume) / 20.0;
+  this->UsedTargetEdgeLength = length;
+  deformvolume::BodyParameters parameters;
+  parameters.ByLabels = this->BodyMode == LABELS;
+  parameters.Labels = this->Labels;
+  parameters.AutomaticIsovalue = this->AutomaticIsovalue;
+  parameters.Isovalue = this->Isovalue;
+  parameters.LargestRegionOnly = this->LargestRegionOnly;
+  parameters.Resolution = length / 1.5;
+  parameters.Margin = length * this->Margin;
+  parameters.SmoothingIterations = this->SmoothingIterations;
+  double step = 0.0;
+  auto extract = [&]()
+  {
+    return deformvolume::CleanTriangles(deformvolume::ExtractBodySurface(
+      volume, array, parameters, [&]() { this->CheckStep(std::min(0.9, step += 0.2)); }));
+  };
+  const auto surface = extract();
+  this->UsedIsovalue = parameters.Isovalue;
+  deformvolume::CheckClosedSurface(surface);
+  try
+  {
+    this->Fill(surface, length, output);
+  }
+  catch (const deformvolume::SurfaceRejected&)
+  {
+    if (parameters.SmoothingIterations == 0)
+    {
+      throw;
+    }
+    // An isosurface never intersects itself; smoothing can make it do so.
+    parameters.SmoothingIterations = 0;
+    this->Fill(extract(), length, output);
+  }
+}
+
+void vtkTetGenMesher::MeshSurface(vtkPolyData* input, vtkUnstructuredGrid* output)
+{
+  const auto surface = deformvolume::CleanTriangles(input);
+  deformvolume::CheckClosedSurface(surface);
+  this->CheckStep(0.3);
+  const double length =
+    this->TargetEdgeLength > 0.0 ? this->TargetEdgeLength : surface->GetLength() / 20.0;
+  this->UsedTargetEdgeLength = length;
+  this->Fill(surface, length, output);
+}
+
+void vtkTetGenMesher::Fill(vtkPolyData* surface, double length, vtkUnstructuredGrid* output)
+{
+  deformvolume::TetGenParameters parameters;
+  parameters.Executable = this->FindExecutable();
+  parameters.RadiusEdgeRatio = this->RadiusEdgeRatio;
+  parameters.MaximumVolume = std::sqrt(2.0) / 12.0 * length * length * length;
+  parameters.TimeLimit = this->TimeLimit;
+  // TetGen ends up with about half of the largest volume on average.
+  const double expected = 2.0 * deformvolume::EnclosedVolume(surface) / parameters.MaximumVolume;
+  const double triangles =
+    deformvolume::SurfaceArea(surface) / (std::sqrt(3.0) / 4.0 * length * length);
+  if (!(expected + triangles < MaximumNumberOfTetrahedra))
+  {
+    std::ostringstream message;
+    message << "A TargetEdgeLength of " << length << " asks for about " << expected + triangles
+            << " tetrahedra; at most 20 million are made. Set a greater TargetEdgeLength.";
+    throw deformvolume::Error(message.str());
+  }
+
+  auto wait = [this](double passed)
+  {
+    this->UpdateProgress(SurfaceShare + TetGenShare * std::min(1.0, std::sqrt(passed)));
+    return deformvolume::IsAborted(this);
+  };
+  vtkSmartPointer<vtkUnstructuredGrid> mesh;
+  const auto decimated = this->Decimation ? deformvolume::Decimate(surface, length) : nullptr;
+  this->CheckStep(1.0);
+  if (decimated && deformvolume::IsClosedManifold(decimated))
+  {
+    try
+    {
+      mesh = deformvolume::RunTetGen(decimated, parameters, wait);
+    }
+    catch (const deformvolume::SurfaceRejected&)
+    {
+      // Decimation can make a surface intersect itself: below, it is tried as it was.
+    }
+  }
+  if (!mesh)
+  {
+    const auto split = deformvolume::SplitLongEdges(surface, 1.5 * length);
+    mesh = deformvolume::RunTetGen(
+      deformvolume::IsClosedManifold(split) ? split.Get() : surface, parameters, wait);
+  }
+  output->ShallowCopy(mesh);
+}
+
+std::string vtkTetGenMesher::FindExecutable()
+{
+  if (!this->TetGenExecutable.empty())
+  {
+    return this->TetGenExecutable;
+  }
+  const char* chosen = std::getenv("DEFORMVOLUME_TETGEN");
+  if (chosen && *chosen)
+  {
+    return chosen;
+  }
+#ifdef DEFORMVOLUME_TETGEN_EXECUTABLE
+  if (access(DEFORMVOLUME_TETGEN_EXECUTABLE, X_OK) == 0)
+  {
+    return DEFORMVOLUME_TETGEN_EXECUTABLE;
+  }
+#endif
+  return "tetgen";
+}
+
+void vtkTetGenMesher::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "BodyMode: " << (this->BodyMode == LABELS ? "Labels" : "Isosurface") << "\n";
+  os << indent << "AutomaticIsovalue: " << this->AutomaticIsovalue << "\n";
+  os << indent << "Isovalue: " << this->Isovalue << "\n";
+  os << indent << "Labels:";
+  for (vtkTypeInt64 label : this->Labels)
+  {
+    os << " " << label;
+  }
+  os << "\n" << indent << "LargestRegionOnly: " << this->LargestRegionOnly << "\n";
+  os << indent << "TargetEdgeLength: " << this->TargetEdgeLength << "\n";
+  os << indent << "Margin: " << this->Margin << "\n";
+  os << indent << "SmoothingIterations: " << this->SmoothingIterations << "\n";
+  os << indent << "Decimation: " << this->Decimation << "\n";
+  os << indent << "RadiusEdgeRatio: " << this->RadiusEdgeRatio << "\n";
+  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
+  os << indent << "TetGenExecutable: " << this->TetGenExecutable << "\n";
+  os << indent << "UsedIsovalue: " << this->UsedIsovalue << "\n";
+  os << indent << "UsedTargetEdgeLength: " << this->UsedTargetEdgeLength << "\n";
+}

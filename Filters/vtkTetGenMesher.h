@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkTetGenMesher
+ * @brief   tetrahedral deformation mesh that fits the body in a volume, or a closed surface
+ *
+ * vtkTetGenMesher finds the surface of the body that a volume shows, simplifies it to the edge
+ * length asked for, and fills it with tetrahedra. Cavities of the body are filled too: what lies
+ * in them moves with the body. The tetrahedra are made by TetGen (Hang Si, "TetGen, a
+ * Delaunay-based quality tetrahedral mesh generator"), a program of its own under its own licence
+ * (AGPL), which has to be installed; it runs as a child process with a time limit.
+ *
+ * @par Port 0, one of:
+ * - vtkImageData, the volume, with at least two voxels on each axis; origin, spacing, direction
+ *   matrix and an extent that does not start at 0 are honoured. The array is chosen by
+ *   SetInputArrayToProcess(0, 0, 0, POINTS, name), by default the active scalars; of several
+ *   components the first counts. Points that vtkGhostType hides lie outside the body. Where the
+ *   body is cut off by the volume's border, the surface is closed there.
+ * - vtkPolyData, a closed surface without self-intersections. Coincident points are merged and
+ *   polygons split into triangles. Shells inside others are kept as surfaces, and their insides
+ *   are filled too.
+ *
+ * @par Output:
+ * vtkUnstructuredGrid in world coordinates: points in double precision, vtkTetra cells, all with
+ * positive volume, no data arrays.
+ *
+ * @par Errors:
+ * No body at the isovalue or with the labels; a volume of one slice; a surface that is empty, open,
+ * flat, not manifold, not finite or that intersects itself; an edge length that asks for more than
+ * 20 million tetrahedra; TetGen missing, failing (its own message is then quoted) or exceeding
+ * TimeLimit; a result without tetrahedra. Each is one vtkErrorMacro, the output is then empty, and
+ * the filter works again once the cause is mended.
+ *
+ * @sa vtkLatticeTetrahedraSource vtkDeformVolumeFilter
+ */
+#ifndef vtkTetGenMesher_h
+#define vtkTetGenMesher_h
+
+#include "vtkDeformVolumeModule.h" // for export macro
+#include "vtkUnstructuredGridAlgorithm.h"
+
+#include <string> // for std::string
+#include <vector> // for std::vector
+
+class vtkDataArray;
+class vtkImageData;
+class vtkPolyData;
+
+class VTKDEFORMVOLUME_EXPORT vtkTetGenMesher : public vtkUnstructuredGridAlgorithm
+{
+public:
+  static vtkTetGenMesher* New();
+  vtkTypeMacro(vtkTetGenMesher, vtkUnstructuredGridAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum BodyModes
+  {
+    ISOSURFACE = 0,
+    LABELS = 1
+  };
+
+  ///@{
+  /**
+   * What the body of a volume is: the voxels with at least the isovalue, or those with one of the
+   * labels. Default: ISOSURFACE.
+   */
+  vtkSetClampMacro(BodyMode, int, ISOSURFACE, LABELS);
+  vtkGetMacro(BodyMode, int);
+  void SetBodyModeToIsosurface() { this->SetBodyMode(ISOSURFACE); }
+  void SetBodyModeToLabels() { this->SetBodyMode(LABELS); }
+  ///@}
+
+  ///@{
+  /**
+   * Whether the isovalue is chosen by the volume's histogram (Otsu's method, which separates two
+   * classes of voxels best) rather than by Isovalue. Default: on.
+   */
+  vtkSetMacro(AutomaticIsovalue, bool);
+  vtkGetMacro(AutomaticIsovalue, bool);
+  vtkBooleanMacro(AutomaticIsovalue, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The isovalue when AutomaticIsovalue is off, in the array's units. Default 0.
+   */
+  vtkSetMacro(Isovalue, double);
+  vtkGetMacro(Isovalue, double);
+  ///@}
+
+  ///@{
+  /**
+   * The labels that make up the body in the mode LABELS. None, the default, means every label
+   * other than 0.
+   */
+  void AddLabel(vtkTypeInt64 label);
+  void ClearLabels();
+  int GetNumberOfLabels();
+  vtkTypeInt64 GetLabel(int index);
+  ///@}
+
+  ///@{
+  /**
+   * Whether only the largest connected part of the body is meshed. With off, every part is, noise
+   * included. Volumes only. Default: on.
+   */
+  vtkSetMacro(LargestRegionOnly, bool);
+  vtkGetMacro(LargestRegionOnly, bool);
+  vtkBooleanMacro(LargestRegionOnly, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Length of the edges of the tetrahedra, in world units; 0 is a twentieth of the diagonal of the
+   * input's bounding box. A volume is looked at with a resolution of two thirds of that length, so
+   * finer detail is not followed. Default 0, at least 0.
+   */
+  vtkSetClampMacro(TargetEdgeLength, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TargetEdgeLength, double);
+  ///@}
+
+  ///@{
+  /**
+   * How far the mesh reaches beyond the body, in target edge lengths, so that the body's skin lies
+   * well inside the mesh and is deformed with it. Volumes only. Default 0.5, from 0 to 10.
+   */
+  vtkSetClampMacro(Margin, double, 0.0, 10.0);
+  vtkGetMacro(Margin, double);
+  ///@}
+
+  ///@{
+  /**
+   * Iterations of windowed-sinc smoothing of a volume's surface, 0: none. Default 20, at most 1000.
+   */
+  vtkSetClampMacro(SmoothingIterations, int, 0, 1000);
+  vtkGetMacro(SmoothingIterations, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether a surface with triangles finer than the target edge length is decimated to it. Where
+   * that would make the surface intersect itself, it is meshed undecimated. Default: on.
+   */
+  vtkSetMacro(Decimation, bool);
+  vtkGetMacro(Decimation, bool);
+  vtkBooleanMacro(Decimation, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Quality of the tetrahedra: the greatest ratio of the radius of the circumscribed sphere to the
+   * shortest edge that TetGen aims at inside the body (0.612 is a regular tetrahedron). The lower,
+   * the more tetrahedra. Default 1.414, from 1 to 100.
+   */
+  vtkSetClampMacro(RadiusEdgeRatio, double, 1.0, 100.0);
+  vtkGetMacro(RadiusEdgeRatio, double);
+  ///@}
+
+  ///@{
+  /**
+   * Seconds that TetGen may take. Default 60, at least 0.001.
+   */
+  vtkSetClampMacro(TimeLimit, double, 0.001, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeLimit, double);
+  ///@}
+
+  ///@{
+  /**
+   * The TetGen program: a path, or a name that is looked for on PATH. "", the default, is what the
+   * environment variable DEFORMVOLUME_TETGEN says, or else the one found when this library was
+   * built, or else "tetgen" on PATH.
+   */
+  vtkSetMacro(TetGenExecutable, std::string);
+  vtkGetMacro(TetGenExecutable, std::string);
+  ///@}
+
+  ///@{
+  /**
+   * The isovalue and the target edge length that the last execution used.
+   */
+  vtkGetMacro(UsedIsovalue, double);
+  vtkGetMacro(UsedTargetEdgeLength, double);
+  ///@}
+
+protected:
+  vtkTetGenMesher();
+  ~vtkTetGenMesher() override = default;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector, int requestFromOutputPort, vtkMTimeType* mtime) override;
+
+  int BodyMode = ISOSURFACE;
+  bool AutomaticIsovalue = true;
+  double Isovalue = 0.0;
+  std::vector<vtkTypeInt64> Labels;
+  bool LargestRegionOnly = true;
+  double TargetEdgeLength = 0.0;
+  double Margin = 0.5;
+  int SmoothingIterations = 20;
+  bool Decimation = true;
+  double RadiusEdgeRatio = 1.414;
+  double TimeLimit = 60.0;
+  std::string TetGenExecutable;
+
+private:
+  void MeshVolume(vtkImageData* volume, vtkDataArray* array, vtkUnstructuredGrid* output);
+  void MeshSurface(vtkPolyData* surface, vtkUnstructuredGrid* output);
+  void Fill(vtkPolyData* surface, double length, vtkUnstructuredGrid* output);
+  void CheckStep(double share);
+  std::string FindExecutable();
+
+  double UsedIsovalue = 0.0;
+  double UsedTargetEdgeLength = 0.0;
+  bool Aborted = false;
+
+  vtkTetGenMesher(const vtkTetGenMesher&) = delete;
+  void operator=(const vtkTetGenMesher&) = delete;
+};
+
+#endif
