@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// deform-volume: deforms a volume with a tetrahedral mesh from the command line.
+#include "Failure.h"
+#include "MeshMaking.h"
+#include "Messages.h"
+#include "Options.h"
+#include "Picture.h"
+#include "ProgressBar.h"
+#include "TimingTable.h"
+#include "VolumeReading.h"
+#include "VolumeWriting.h"
+
+#include <vtkDataArray.h>
+#include <vtkDeformVolumeFilter.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkStringArray.h>
+#include <vtksys/SystemTools.hxx>
+
+#include <iostream>
+#include <sstream>
+#include <unistd.h>
+
+namespace
+{
+std::string GetDimensionsText(vtkImageData* image)
+{
+  int dimensions[3];
+  image->GetDimensions(dimensions);
+  std::ostringstream text;
+  text << dimensions[0] << " x " << dimensions[1] << " x " << dimensions[2];
+  return text.str();
+}
+
+void ListDevices()
+{
+  vtkStringArray* names = vtkDeformVolumeFilter::GetDeviceNames();
+  if (names->GetNumberOfValues() == 0)
+  {
+    throw Failure("there is no OpenCL device. Install an OpenCL driver; for the processor that is "
+                  "PoCL (on Debian and Ubuntu the package pocl-opencl-icd)");
+  }
+  for (vtkIdType i = 0; i < names->GetNumberOfValues(); ++i)
+  {
+    std::cout << names->GetValue(i) << "\n";
+  }
+}
+
+// What can be known to fail is said before the work, not after it.
+void CheckOutputs(const Options& options)
+{
+  std::vector<std::string> paths = options.Outputs;
+  paths.push_back(options.Image);
+  paths.push_back(options.MeshOutput);
+  for (const std::string& path : paths)
+  {
+    if (path.empty())
+    {
+      continue;
+    }
+    std::string folder = vtksys::SystemTools::GetFilenamePath(path);
+    folder = !folder.empty() ? folder : path[0] == '/' ? "/" : ".";
+    if (!vtksys::SystemTools::FileIsDirectory(folder))
+    {
+      throw Failure("cannot write " + path + ": there is no folder " + folder);
+    }
+    const std::string& place = vtksys::SystemTools::FileExists(path) ? path : folder;
+    if (access(place.c_str(), W_OK) != 0)
+    {
+      throw Failure("cannot write " + path + ": " + place + " may not be written to");
+    }
+  }
+  if (!options.Image.empty())
+  {
+    CheckDisplay();
+  }
+}
+
+void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* volume,
+  const Deformation& deformation)
+{
+  filter->SetInputData(volume);
+  filter->SetDeformationData(deformation.Data);
+  if (deformation.Rest)
+  {
+    filter->SetRestData(deformation.Rest);
+  }
+  else
+  {
+    filter->SetInputArrayToProcess(
+      0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, deformation.Displacement.c_str());
+  }
+  filter->SetDisplacementScale(options.Scale);
+  filter->SetOutsideMode(
+    options.Extrapolate ? vtkDeformVolumeFilter::EXTRAPOLATE : vtkDeformVolumeFilter::DISCARD);
+  filter->SetOutputBoundsMode(options.VolumeBounds ? vtkDeformVolumeFilter::VOLUME_BOUNDS
+                                                   : vtkDeformVolumeFilter::DEFORMED_BOUNDS);
+  filter->SetPadding(options.Padding);
+  filter->SetBackgroundValue(options.Background);
+  filter->SetResampler(
+    options.Published ? vtkDeformVolumeFilter::PUBLISHED : vtkDeformVolumeFilter::EXACT);
+  filter->SetDevice(options.Device);
+  vtkPointData* arrays = volume->GetPointData();
+  for (const std::string& name : options.CategoricalArrays)
+  {
+    if (!arrays->HasArray(name.c_str()))
+    {
+      std::string names;
+      for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+      {
+        names += std::string(names.empty() ? "" : ", ") + arrays->GetArrayName(i);
+      }
+      throw Failure("--categorical " + name + ": the volume has no such array; it has " + names);
+    }
+    filter->AddCategoricalArray(name.c_str());
+  }
+  for (int i = 0; options.Labels && i < arrays->GetNumberOfArrays(); ++i)
+  {
+    filter->AddCategoricalArray(arrays->GetArrayName(i));
+  }
+}
+
+void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume,
+  const Deformation& deformation, const TimingTable& timings)
+{
+  vtkImageData* result = filter->GetOutput();
+  vtkDataArray* scalars = volume.Image->GetPointData()->GetArray(0);
+  std::cout << "volume     " << GetDimensionsText(volume.Image) << " voxels, "
+            << scalars->GetDataTypeAsString() << "\n"
+            << "mesh       " << deformation.NumberOfNodes << " nodes, " << deformation.NumberOfCells
+            << " cells\n"
+            << "result     " << GetDimensionsText(result) << " voxels, "
+            << filter->GetNumberOfCoveredVoxels() << " of them covered\n"
+            << "inverted   " << filter->GetNumberOfInvertedTetrahedra() << " tetrahedra\n"
+            << "device     " << filter->GetDeviceInUse() << ", "
+            << filter->GetDeviceMemory() / (1024 * 1024) << " MiB in use\n\n";
+  timings.Print(std::cout);
+}
+
+void DeformVolume(const Options& options, Messages& messages)
+{
+  CheckOutputs(options);
+  TimingTable timings;
+
+  const Stopwatch reading;
+  Volume volume = ReadVolume(options.Volume, options.FileCoordinates, messages, !options.Quiet);
+  timings.Add("read volume", reading.GetSeconds());
+
+  const Stopwatch meshing;
+  const Deformation deformation = MakeDeformation(options, volume.Image, messages);
+  timings.Add(options.Mesh.empty() ? "make mesh" : "read mesh", meshing.GetSeconds());
+
+  vtkNew<vtkDeformVolumeFilter> filter;
+  SetUp(filter, options, volume.Image, deformation);
+  const Stopwatch deforming;
+  {
+    const ProgressBar bar(filter, "deforming", !options.Quiet);
+    filter->Update();
+  }
+  messages.Check("cannot deform the volume");
+  timings.Add("deform", deforming.GetSeconds());
+  timings.Add("find tetrahedra of voxels", filter->GetPreprocessingTime(), true);
+  timings.Add("copy to and from device", filter->GetTransferTime(), true);
+  timings.Add("deformation mapping", filter->GetMappingTime(), true);
+  timings.Add("resampling", filter->GetResamplingTime(), true);
+
+  Volume result = volume;
+  result.Image = filter->GetOutput();
+  if (!options.Outputs.empty())
+  {
+    const Stopwatch writing;
+    for (const std::string& output : options.Outputs)
+    {
+      WriteVolume(result, output, messages, !options.Quiet);
+    }
+    timings.Add("write volume", writing.GetSeconds());
+  }
+  if (!options.Image.empty())
+  {
+    const Stopwatch drawing;
+    PictureOptions picture;
+    picture.Threshold = options.Threshold ? *options.Threshold
+      : deformation.Isovalue              ? *deformation.Isovalue
+                                          : FindThreshold(volume.Image);
+    picture.View = options.View ? *options.View : GetFaceView(volume.Axes);
+    WritePicture(volume.Image, result.Image, picture, options.Image, messages);
+    timings.Add("draw picture", drawing.GetSeconds());
+  }
+  if (!options.Quiet)
+  {
+    PrintSummary(filter, volume, deformation, timings);
+  }
+}
+}
+
+int main(int argc, char* argv[])
+{
+  Options options;
+  if (const std::optional<int> code = ParseCommandLine(argc, argv, options))
+  {
+    return *code;
+  }
+  const vtkNew<Messages> messages;
+  vtkOutputWindow::SetInstance(messages);
+  int code = 0;
+  try
+  {
+    if (options.ListDevices)
+    {
+      ListDevices();
+    }
+    else
+    {
+      DeformVolume(options, *messages);
+    }
+    messages->Check("the program ended with an error");
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << "deform-volume: " << error.what() << "\n";
+    code = 1;
+  }
+  vtkOutputWindow::SetInstance(nullptr);
+  return code;
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeMeshMaking_h
+#define DeformVolumeMeshMaking_h
+
+#include "Options.h"
+
+#include <vtkDataObject.h>
+#include <vtkImageData.h>
+#include <vtkSmartPointer.h>
+
+#include <optional>
+
+class Messages;
+
+/// What deforms the volume.
+struct Deformation
+{
+  /// A mesh or a displacement field.
+  vtkSmartPointer<vtkDataObject> Data;
+  /// The mesh at rest, if Data is the deformed mesh.
+  vtkSmartPointer<vtkDataObject> Rest;
+  /// Otherwise the name of the array of displacements.
+  std::string Displacement;
+  /// The isovalue of the surface that was meshed.
+  std::optional<double> Isovalue;
+  long long NumberOfNodes = 0;
+  long long NumberOfCells = 0;
+};
+
+/// Reads or makes what the options ask for. Throws a Failure where that is impossible.
+Deformation MakeDeformation(const Options& options, vtkImageData* volume, Messages& messages);
+
+#endif

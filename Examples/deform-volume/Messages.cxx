@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Messages.h"
+
+#include "Failure.h"
+
+#include <vtkObjectFactory.h>
+
+#include <iostream>
+#include <regex>
+
+namespace
+{
+// "ERROR: In file.cxx, line 12\nvtkClass (0x1234): text" -> "text"
+std::string StripPlace(const std::string& text)
+{
+  static const std::regex place("^\\s*(ERROR|Warning|Generic Warning|Debug):? In .*, line [0-9]+\\n"
+                                "([A-Za-z0-9_]+ \\(0x[0-9a-f]+\\): )?");
+  std::string message =
+    std::regex_replace(text, place, "", std::regex_constants::format_first_only);
+  message.erase(message.find_last_not_of(" \n") + 1);
+  return message;
+}
+}
+
+vtkStandardNewMacro(Messages);
+
+void Messages::DisplayText(const char* text)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  std::cerr << text;
+}
+
+void Messages::DisplayErrorText(const char* text)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  if (this->FirstError.empty())
+  {
+    this->FirstError = StripPlace(text);
+  }
+}
+
+void Messages::DisplayWarningText(const char* text)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  std::cerr << "deform-volume: warning: " << StripPlace(text) << "\n";
+}
+
+void Messages::DisplayGenericWarningText(const char* text)
+{
+  this->DisplayWarningText(text);
+}
+
+void Messages::DisplayDebugText(const char* text)
+{
+  this->DisplayText(text);
+}
+
+void Messages::Check(const std::string& doing, bool succeeded)
+{
+  std::string error;
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    error.swap(this->FirstError);
+  }
+  if (!error.empty())
+  {
+    throw Failure(doing + ": " + error);
+  }
+  if (!succeeded)
+  {
+    throw Failure(doing + " failed without saying why");
+  }
+}

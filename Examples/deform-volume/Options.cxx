@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Options.h"
+
+#include "Failure.h"
+#include "VolumeWriting.h"
+
+#include <CLI/CLI.hpp>
+#include <vtksys/SystemTools.hxx>
+
+#include <iostream>
+#include <sstream>
+
+namespace
+{
+template <typename Number, std::size_t Count>
+std::array<Number, Count> ParseNumbers(
+  const std::string& option, const std::string& text, const std::string& shape)
+{
+  std::array<Number, Count> numbers;
+  std::istringstream stream(text);
+  bool valid = true;
+  for (std::size_t i = 0; i < Count && valid; ++i)
+  {
+    char comma = ',';
+    valid = (i == 0 || stream >> comma) && comma == ',' && static_cast<bool>(stream >> numbers[i]);
+  }
+  if (!valid || !(stream >> std::ws).eof())
+  {
+    throw UsageError(option + " " + text + ": expected " + shape);
+  }
+  return numbers;
+}
+
+Push ParsePush(const std::string& text)
+{
+  const auto numbers = ParseNumbers<double, 7>(
+    "--push", text, "seven numbers X,Y,Z,DX,DY,DZ,RADIUS with commas between them");
+  Push push;
+  push.Center = { { numbers[0], numbers[1], numbers[2] } };
+  push.Displacement = { { numbers[3], numbers[4], numbers[5] } };
+  push.Radius = numbers[6];
+  if (!(push.Radius > 0.0))
+  {
+    throw UsageError("--push " + text + ": the radius must be greater than 0");
+  }
+  return push;
+}
+
+/// Options that need more than their own text to be right.
+struct RawOptions
+{
+  std::string Lattice;
+  std::vector<std::string> Pushes;
+  std::string View;
+  double Isovalue = 0.0;
+  double Threshold = 0.0;
+  std::string Outside = "discard";
+  std::string Bounds = "deformed";
+  std::string Resampler = "exact";
+};
+
+void Check(const Options& options)
+{
+  if (options.ListDevices)
+  {
+    return;
+  }
+  if (options.Volume.empty())
+  {
+    throw UsageError("no VOLUME is given; deform-volume --help tells how to call the program");
+  }
+  const int deformations = !options.Mesh.empty() + options.TetGen + options.HasLattice();
+  if (deformations != 1)
+  {
+    throw UsageError("exactly one of --mesh, --tetgen and --lattice says what deforms the volume");
+  }
+  if (!options.Mesh.empty())
+  {
+    if (options.Displacement.empty() == options.Rest.empty())
+    {
+      throw UsageError("--mesh needs either --displacement (the name of an array of vectors) or "
+                       "--rest (the mesh at rest)");
+    }
+    if (!options.Pushes.empty())
+    {
+      throw UsageError("--push goes with --tetgen or --lattice; a --mesh brings its displacement");
+    }
+  }
+  else if (options.Pushes.empty())
+  {
+    throw UsageError("--tetgen and --lattice need at least one --push X,Y,Z,DX,DY,DZ,RADIUS");
+  }
+  if (options.Outputs.empty() && options.Image.empty())
+  {
+    throw UsageError("nothing to write: give --output or --image");
+  }
+  for (const std::string& output : options.Outputs)
+  {
+    if (!CanWriteVolume(output))
+    {
+      throw UsageError("--output " + output + ": the name must end in .vti, .mhd, .nii or .nii.gz");
+    }
+  }
+  const auto endsIn = [](const std::string& path, const char* suffix)
+  {
+    return path.empty() ||
+      vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(path), suffix);
+  };
+  if (!endsIn(options.Image, ".png"))
+  {
+    throw UsageError("--image " + options.Image + ": the name must end in .png");
+  }
+  if (!endsIn(options.MeshOutput, ".vtu"))
+  {
+    throw UsageError("--write-mesh " + options.MeshOutput + ": the name must end in .vtu");
+  }
+}
+
+void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
+{
+  if (!raw.Lattice.empty())
+  {
+    options.Lattice = ParseNumbers<int, 3>(
+      "--lattice", raw.Lattice, "three node counts NX,NY,NZ with commas between them");
+    for (const int nodes : options.Lattice)
+    {
+      if (nodes < 2)
+      {
+        throw UsageError("--lattice " + raw.Lattice + ": each axis needs at least 2 nodes");
+      }
+    }
+  }
+  for (const std::string& text : raw.Pushes)
+  {
+    options.Pushes.push_back(ParsePush(text));
+  }
+  if (!raw.View.empty())
+  {
+    options.View = ParseNumbers<double, 3>("--view", raw.View, "three numbers X,Y,Z");
+    if (*options.View == std::array<double, 3>{ { 0.0, 0.0, 0.0 } })
+    {
+      throw UsageError("--view 0,0,0 is no direction");
+    }
+  }
+  if (program.count("--isovalue"))
+  {
+    options.Isovalue = raw.Isovalue;
+  }
+  if (program.count("--threshold"))
+  {
+    options.Threshold = raw.Threshold;
+  }
+  options.Extrapolate = raw.Outside == "extrapolate";
+  options.VolumeBounds = raw.Bounds == "volume";
+  options.Published = raw.Resampler == "published";
+  Check(options);
+}
+
+void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
+{
+  const char* group = "What deforms the volume (one of --mesh, --tetgen, --lattice)";
+  program
+    .add_option("--mesh", options.Mesh,
+      "Tetrahedral mesh (.vtu, .vtm; other linear cells are split), or a displacement field (.vti)")
+    ->type_name("FILE")
+    ->group(group);
+  program
+    .add_option("--displacement", options.Displacement,
+      "Name of the point array of --mesh that holds the displacements, in world units; its points "
+      "are then the mesh at rest")
+    ->type_name("NAME")
+    ->group(group);
+  program
+    .add_option("--rest", options.Rest,
+      "The mesh at rest, with the cells of --mesh; the points of --mesh are then deformed")
+    ->type_name("FILE")
+    ->group(group);
+  program.add_option("--scale", options.Scale, "Factor on the displacements of --mesh")
+    ->capture_default_str()
+    ->type_name("NUMBER")
+    ->group(group);
+  program
+    .add_flag(
+      "--tetgen", options.TetGen, "Mesh the body that the volume shows with TetGen, then --push")
+    ->group(group);
+  program
+    .add_option("--lattice", raw.Lattice,
+      "Regular mesh over the whole volume with so many nodes on each axis, then --push")
+    ->type_name("NX,NY,NZ")
+    ->group(group);
+  program
+    .add_option("--push", raw.Pushes,
+      "Move the nodes round X,Y,Z (world coordinates) by DX,DY,DZ (world units), falling smoothly "
+      "to nothing at RADIUS (world units). May be given several times: pushes add up")
+    ->type_name("X,Y,Z,DX,DY,DZ,RADIUS")
+    ->take_all()
+    ->expected(1)
+    ->group(group);
+
+  const char* tetgen = "Mesh of --tetgen";
+  program
+    .add_option("--isovalue", raw.Isovalue,
+      "Value from which on a voxel belongs to the body [chosen by the histogram]")
+    ->type_name("NUMBER")
+    ->group(tetgen);
+  program
+    .add_option("--edge-length", options.EdgeLength,
+      "Length of the tetrahedra's edges, in world units; 0: a twentieth of the diagonal of the "
+      "volume")
+    ->capture_default_str()
+    ->check(CLI::NonNegativeNumber)
+    ->type_name("NUMBER")
+    ->group(tetgen);
+  program
+    .add_option("--radius-edge-ratio", options.RadiusEdgeRatio,
+      "Quality of the tetrahedra: circumscribed radius by shortest edge, 1 to 100")
+    ->capture_default_str()
+    ->check(CLI::Range(1.0, 100.0))
+    ->type_name("NUMBER")
+    ->group(tetgen);
+  program
+    .add_option("--tetgen-executable", options.TetGenExecutable,
+      "The TetGen program [the one found when this program was built]")
+    ->type_name("FILE")
+    ->group(tetgen);
+}
+
+void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
+{
+  const char* group = "How it is deformed";
+  program
+    .add_option("--outside", raw.Outside,
+      "Voxels outside the mesh: discard, or extrapolate from the nearest tetrahedron")
+    ->capture_default_str()
+    ->check(CLI::IsMember({ "discard", "extrapolate" }))
+    ->type_name("MODE")
+    ->group(group);
+  program
+    .add_option("--bounds", raw.Bounds,
+      "Extent of the result: that of the deformed volume, or of the volume at rest")
+    ->capture_default_str()
+    ->check(CLI::IsMember({ "deformed", "volume" }))
+    ->type_name("MODE")
+    ->group(group);
+  program.add_option("--padding", options.Padding, "Border on each side of the result, in voxels")
+    ->capture_default_str()
+    ->check(CLI::Range(0, 1000))
+    ->type_name("VOXELS")
+    ->group(group);
+  program
+    .add_option("--background", options.Background,
+      "Value of the voxels that the deformed volume does not cover")
+    ->capture_default_str()
+    ->type_name("NUMBER")
+    ->group(group);
+  program
+    .add_option("--categorical", options.CategoricalArrays,
+      "Name of an array of labels, which are never mixed. May be given several times")
+    ->type_name("NAME")
+    ->take_all()
+    ->expected(1)
+    ->group(group);
+  program.add_flag("--labels", options.Labels, "All arrays hold labels")->group(group);
+  program
+    .add_option("--resampler", raw.Resampler,
+      "exact: each voxel is written by exactly one tetrahedron; published: the kernel as "
+      "published, for comparison")
+    ->capture_default_str()
+    ->check(CLI::IsMember({ "exact", "published" }))
+    ->type_name("NAME")
+    ->group(group);
+  program
+    .add_option("--device", options.Device,
+      "OpenCL device: cpu, gpu, or a part of a name in --list-devices [the best; or what the "
+      "environment variable DEFORMVOLUME_DEVICE says]")
+    ->type_name("NAME")
+    ->group(group);
+}
+
+void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
+{
+  const char* group = "What is written";
+  program
+    .add_option("-o,--output", options.Outputs,
+      "The deformed volume: .vti (all arrays), .mhd, .nii or .nii.gz (the scalars). May be given "
+      "several times")
+    ->type_name("FILE")
+    ->take_all()
+    ->expected(1)
+    ->group(group);
+  program
+    .add_option("--write-mesh", options.MeshOutput,
+      "The mesh of --tetgen or --lattice at rest, with the point array \"Displacement\" (.vtu)")
+    ->type_name("FILE")
+    ->group(group);
+  program
+    .add_option("--image", options.Image,
+      "Picture of the volume before and after, 700 x 700 pixels each, side by side (.png)")
+    ->type_name("FILE")
+    ->group(group);
+  program
+    .add_option("--threshold", raw.Threshold,
+      "Value from about which on the picture shows something [the isovalue of --tetgen, or a fifth "
+      "of the range of values]")
+    ->type_name("NUMBER")
+    ->group(group);
+  program
+    .add_option("--view", raw.View,
+      "Direction from the volume to the viewer of the picture [one from which a face looks at the "
+      "viewer: in front, a little from the side]")
+    ->type_name("X,Y,Z")
+    ->group(group);
+  program.add_flag("-q,--quiet", options.Quiet, "No progress bar and no table of timings")
+    ->group(group);
+}
+}
+
+std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
+{
+  CLI::App program("Deforms a volume with a tetrahedral mesh, at full resolution, on an OpenCL "
+                   "device.\n",
+    "deform-volume");
+  program.footer(
+    "World coordinates are those of the file: NIfTI files are placed by their s-form, or else "
+    "their\n"
+    "q-form (x to the right, y to the front, z to the head, mostly in mm), MetaImage and NRRD "
+    "files\n"
+    "by origin and direction, .vti files as they are. DICOM slices have the coordinates of\n"
+    "vtkDICOMImageReader: origin 0, spacing in mm. All lengths are in these units.\n\n"
+    "Exit codes: 0 success, 1 failure, 2 wrong usage.\n\n"
+    "Example: dent a head to a depth of 15 mm\n"
+    "  deform-volume head.nii.gz --tetgen --push 0,88,-50,0,-15,0,30 -o dented.nii.gz");
+  options.RadiusEdgeRatio = 1.414;
+  RawOptions raw;
+  program
+    .add_option("VOLUME", options.Volume,
+      "The volume: a .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr or .vti file, or a folder with the "
+      "slices of one DICOM series")
+    ->type_name("FILE");
+  program.add_flag("--file-coordinates", options.FileCoordinates,
+    "Do as VTK's readers do: NIfTI files have origin 0, and no file but .vti has a direction");
+  program.add_flag(
+    "--list-devices", options.ListDevices, "List the OpenCL devices, the best first, and end");
+  AddDeformation(program, options, raw);
+  AddResampling(program, options, raw);
+  AddOutput(program, options, raw);
+  try
+  {
+    program.parse(argc, argv);
+    Complete(program, raw, options);
+  }
+  catch (const CLI::CallForHelp& help)
+  {
+    return program.exit(help);
+  }
+  catch (const CLI::ParseError& error)
+  {
+    std::cerr << "deform-volume: " << error.what() << "\n";
+    return 2;
+  }
+  catch (const UsageError& error)
+  {
+    std::cerr << "deform-volume: " << error.what() << "\n";
+    return 2;
+  }
+  return std::nullopt;
+}

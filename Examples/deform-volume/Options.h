@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeOptions_h
+#define DeformVolumeOptions_h
+
+#include "Push.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What the command line says. Lengths are in the world units of the volume.
+struct Options
+{
+  bool ListDevices = false;
+
+  std::string Volume;
+  bool FileCoordinates = false;
+
+  std::string Mesh;
+  std::string Displacement;
+  std::string Rest;
+  double Scale = 1.0;
+
+  bool TetGen = false;
+  std::optional<double> Isovalue;
+  double EdgeLength = 0.0;
+  double RadiusEdgeRatio = 0.0;
+  std::string TetGenExecutable;
+  std::array<int, 3> Lattice{ { 0, 0, 0 } };
+  std::vector<Push> Pushes;
+
+  bool Extrapolate = false;
+  bool VolumeBounds = false;
+  int Padding = 0;
+  double Background = 0.0;
+  std::vector<std::string> CategoricalArrays;
+  bool Labels = false;
+  bool Published = false;
+  std::string Device;
+
+  std::vector<std::string> Outputs;
+  std::string MeshOutput;
+  std::string Image;
+  std::optional<double> Threshold;
+  std::optional<std::array<double, 3>> View;
+  bool Quiet = false;
+
+  bool HasLattice() const { return this->Lattice[0] > 0; }
+};
+
+/// Reads the command line. Returns the exit code where the program has nothing more to do: 0 after
+/// --help, 2 where the command line makes no sense, after a message that says why.
+std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options);
+
+#endif

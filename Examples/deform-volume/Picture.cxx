@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Picture.h"
+
+#include "Failure.h"
+#include "ImageAxes.h"
+#include "Messages.h"
+
+#include <vtkArrayDispatch.h>
+#include <vtkCamera.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkDataArrayRange.h>
+#include <vtkImageData.h>
+#include <vtkImageExtractComponents.h>
+#include <vtkImageShiftScale.h>
+#include <vtkMath.h>
+#include <vtkNew.h>
+#include <vtkPNGWriter.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkPointData.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkRenderingOpenGLConfigure.h>
+#include <vtkSmartVolumeMapper.h>
+#include <vtkTextActor.h>
+#include <vtkTextProperty.h>
+#include <vtkVolume.h>
+#include <vtkVolumeProperty.h>
+#include <vtkWindowToImageFilter.h>
+
+#if defined(VTK_USE_X) && defined(DEFORMVOLUME_HAVE_X11)
+#include <X11/Xlib.h>
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace
+{
+constexpr int PictureSize = 700;
+
+vtkDataArray* GetShownArray(vtkImageData* image)
+{
+  vtkDataArray* scalars = image->GetPointData()->GetScalars();
+  return scalars ? scalars : image->GetPointData()->GetArray(0);
+}
+
+// The box, in voxels from the first one, of what is shown.
+struct ShownBox
+{
+  double Threshold;
+  int Dimensions[3];
+  int Box[6] = { VTK_INT_MAX, -1, VTK_INT_MAX, -1, VTK_INT_MAX, -1 };
+
+  template <typename ArrayT>
+  void operator()(ArrayT* array)
+  {
+    const auto tuples = vtk::DataArrayTupleRange(array);
+    auto tuple = tuples.cbegin();
+    for (int z = 0; z < this->Dimensions[2]; ++z)
+    {
+      for (int y = 0; y < this->Dimensions[1]; ++y)
+      {
+        for (int x = 0; x < this->Dimensions[0]; ++x, ++tuple)
+        {
+          if (static_cast<double>((*tuple)[0]) >= this->Threshold)
+          {
+            const int index[3] = { x, y, z };
+            for (int axis = 0; axis < 3; ++axis)
+            {
+              this->Box[2 * axis] = std::min(this->Box[2 * axis], index[axis]);
+              this->Box[2 * axis + 1] = std::max(this->Box[2 * axis + 1], index[axis]);
+            }
+          }
+        }
+      }
+    }
+  }
+};
+
+template <typename Worker>
+void Dispatch(vtkDataArray* array, Worker& worker)
+{
+  if (!vtkArrayDispatch::Dispatch::Execute(array, worker))
+  {
+    worker(array);
+  }
+}
+
+// Corners, in world coordinates, of the box of what is shown.
+void AddCorners(vtkImageData* image, double threshold, std::vector<std::array<double, 3>>& corners)
+{
+  ShownBox box;
+  box.Threshold = threshold;
+  image->GetDimensions(box.Dimensions);
+  Dispatch(GetShownArray(image), box);
+  if (box.Box[1] < 0)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      box.Box[2 * axis] = 0;
+      box.Box[2 * axis + 1] = box.Dimensions[axis] - 1;
+    }
+  }
+  int extent[6];
+  image->GetExtent(extent);
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    int index[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      index[axis] = extent[2 * axis] + box.Box[2 * axis + (corner >> axis & 1)];
+    }
+    std::array<double, 3> point;
+    image->TransformIndexToPhysicalPoint(index, point.data());
+    corners.push_back(point);
+  }
+}
+
+// Mappers differ in what they know of directions and of types: they get an image along the axes,
+// and one component of a type that all of them take. The actor's matrix does the rest.
+vtkSmartPointer<vtkImageData> MakeDrawable(vtkImageData* image)
+{
+  vtkNew<vtkImageData> plain;
+  int dimensions[3];
+  image->GetDimensions(dimensions);
+  plain->SetDimensions(dimensions);
+  plain->SetSpacing(image->GetSpacing());
+  plain->GetPointData()->SetScalars(GetShownArray(image));
+  vtkNew<vtkImageExtractComponents> component;
+  component->SetInputData(plain);
+  component->SetComponents(0);
+  component->Update();
+  const int type = component->GetOutput()->GetScalarType();
+  if (type == VTK_UNSIGNED_CHAR || type == VTK_UNSIGNED_SHORT || type == VTK_SHORT ||
+    type == VTK_FLOAT)
+  {
+    return component->GetOutput();
+  }
+  vtkNew<vtkImageShiftScale> cast;
+  cast->SetInputConnection(component->GetOutputPort());
+  cast->SetOutputScalarTypeToFloat();
+  cast->Update();
+  return cast->GetOutput();
+}
+
+vtkSmartPointer<vtkVolumeProperty> MakeProperty(double threshold, double maximum, double spacing)
+{
+  vtkNew<vtkPiecewiseFunction> opacity;
+  const double step = 0.25 * (maximum > threshold ? maximum - threshold : 1.0);
+  opacity->AddPoint(threshold - step, 0.0);
+  opacity->AddPoint(threshold - 0.5 * step, 0.0);
+  opacity->AddPoint(threshold + 0.5 * step, 1.0);
+  opacity->AddPoint(maximum + step, 1.0);
+  vtkNew<vtkColorTransferFunction> colour;
+  colour->AddRGBPoint(threshold, 0.87, 0.62, 0.51);
+  colour->AddRGBPoint(0.5 * (threshold + maximum), 0.96, 0.82, 0.72);
+  colour->AddRGBPoint(maximum, 1.0, 1.0, 0.98);
+  auto property = vtkSmartPointer<vtkVolumeProperty>::New();
+  property->SetScalarOpacity(opacity);
+  property->SetColor(colour);
+  property->SetScalarOpacityUnitDistance(spacing);
+  property->SetInterpolationTypeToLinear();
+  property->ShadeOn();
+  property->SetAmbient(0.15);
+  property->SetDiffuse(0.8);
+  property->SetSpecular(0.15);
+  property->SetSpecularPower(15.0);
+  return property;
+}
+
+// Puts the camera as near as all corners are still seen.
+void AimCamera(vtkCamera* camera, const std::array<double, 3>& view,
+  const std::vector<std::array<double, 3>>& corners)
+{
+  double box[6];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    box[2 * axis] = box[2 * axis + 1] = corners.front()[axis];
+    for (const auto& corner : corners)
+    {
+      box[2 * axis] = std::min(box[2 * axis], corner[axis]);
+      box[2 * axis + 1] = std::max(box[2 * axis + 1], corner[axis]);
+    }
+  }
+  double center[3];
+  double back[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    center[axis] = 0.5 * (box[2 * axis] + box[2 * axis + 1]);
+    back[axis] = view[axis];
+  }
+  vtkMath::Normalize(back);
+  double up[3] = { 0.0, 0.0, 1.0 };
+  if (std::abs(back[2]) > 0.99)
+  {
+    up[1] = 1.0;
+    up[2] = 0.0;
+  }
+  double right[3];
+  vtkMath::Cross(up, back, right);
+  vtkMath::Normalize(right);
+  vtkMath::Cross(back, right, up);
+
+  constexpr double viewAngle = 30.0;
+  constexpr double border = 1.05;
+  const double tangent = std::tan(vtkMath::RadiansFromDegrees(0.5 * viewAngle)) / border;
+  double distance = 0.0;
+  for (const auto& corner : corners)
+  {
+    double offset[3];
+    vtkMath::Subtract(corner.data(), center, offset);
+    const double aside =
+      std::max(std::abs(vtkMath::Dot(offset, right)), std::abs(vtkMath::Dot(offset, up)));
+    distance = std::max(distance, vtkMath::Dot(offset, back) + aside / tangent);
+  }
+  camera->SetViewAngle(viewAngle);
+  camera->SetFocalPoint(center);
+  camera->SetPosition(
+    center[0] + distance * back[0], center[1] + distance * back[1], center[2] + distance * back[2]);
+  camera->SetViewUp(up);
+}
+
+vtkSmartPointer<vtkRenderer> MakeRenderer(
+  vtkImageData* image, vtkVolumeProperty* property, const char* title)
+{
+  vtkNew<vtkSmartVolumeMapper> mapper;
+  mapper->SetInputData(MakeDrawable(image));
+  vtkNew<vtkVolume> actor;
+  actor->SetMapper(mapper);
+  actor->SetProperty(property);
+  actor->SetUserMatrix(GetAxes(image));
+  vtkNew<vtkTextActor> text;
+  text->SetInput(title);
+  text->SetPosition(16, 12);
+  text->GetTextProperty()->SetFontSize(22);
+  auto renderer = vtkSmartPointer<vtkRenderer>::New();
+  renderer->SetBackground(0.10, 0.12, 0.15);
+  renderer->AddVolume(actor);
+  renderer->AddActor2D(text);
+  return renderer;
+}
+}
+
+double FindThreshold(vtkImageData* image)
+{
+  double range[2];
+  GetShownArray(image)->GetFiniteRange(range, 0);
+  return range[0] + 0.2 * (range[1] - range[0]);
+}
+
+std::array<double, 3> GetFaceView(WorldAxes axes)
+{
+  const double front = axes == WorldAxes::LeftPosteriorSuperior ? -1.0 : 1.0;
+  return { { -0.55 * front, front, 0.10 } };
+}
+
+void CheckDisplay()
+{
+#if defined(VTK_USE_X) && defined(DEFORMVOLUME_HAVE_X11)
+  Display* display = XOpenDisplay(nullptr);
+  if (!display)
+  {
+    throw Failure("cannot draw a picture: there is no X display. Set DISPLAY, or start the program "
+                  "with xvfb-run -a -s \"-noreset -screen 0 1400x1024x24\" in front");
+  }
+  XCloseDisplay(display);
+#endif
+}
+
+void WritePicture(vtkImageData* before, vtkImageData* after, const PictureOptions& options,
+  const std::string& path, Messages& messages)
+{
+  double range[2];
+  GetShownArray(before)->GetFiniteRange(range, 0);
+  const double* spacing = before->GetSpacing();
+  const auto property =
+    MakeProperty(options.Threshold, range[1], std::min({ spacing[0], spacing[1], spacing[2] }));
+
+  const auto left = MakeRenderer(before, property, "before");
+  const auto right = MakeRenderer(after, property, "after");
+  left->SetViewport(0.0, 0.0, 0.5, 1.0);
+  right->SetViewport(0.5, 0.0, 1.0, 1.0);
+
+  vtkNew<vtkRenderWindow> window;
+  window->SetOffScreenRendering(1);
+  window->SetMultiSamples(0);
+  window->SetSize(2 * PictureSize, PictureSize);
+  window->AddRenderer(left);
+  window->AddRenderer(right);
+
+  std::vector<std::array<double, 3>> corners;
+  AddCorners(before, options.Threshold, corners);
+  AddCorners(after, options.Threshold, corners);
+  AimCamera(left->GetActiveCamera(), options.View, corners);
+  right->SetActiveCamera(left->GetActiveCamera());
+  left->ResetCameraClippingRange();
+  double clipping[2];
+  left->GetActiveCamera()->GetClippingRange(clipping);
+  right->ResetCameraClippingRange();
+  const double* other = left->GetActiveCamera()->GetClippingRange();
+  left->GetActiveCamera()->SetClippingRange(
+    std::min(clipping[0], other[0]), std::max(clipping[1], other[1]));
+  window->Render();
+  messages.Check("cannot draw the picture");
+
+  vtkNew<vtkWindowToImageFilter> grab;
+  grab->SetInput(window);
+  grab->ReadFrontBufferOff();
+  grab->SetInputBufferTypeToRGB();
+  vtkNew<vtkPNGWriter> writer;
+  writer->SetInputConnection(grab->GetOutputPort());
+  writer->SetFileName(path.c_str());
+  writer->Write();
+  messages.Check("cannot write " + path);
+}

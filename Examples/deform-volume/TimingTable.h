@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeTimingTable_h
+#define DeformVolumeTimingTable_h
+
+#include <chrono>
+#include <ostream>
+#include <string>
+#include <vector>
+
+/// Seconds since it was made.
+class Stopwatch
+{
+public:
+  double GetSeconds() const
+  {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
+  }
+
+private:
+  std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
+};
+
+/// What each step took. Indented rows are parts of the row above them.
+class TimingTable
+{
+public:
+  void Add(const std::string& step, double seconds, bool part = false);
+  void Print(std::ostream& stream) const;
+
+private:
+  struct Row
+  {
+    std::string Step;
+    double Seconds;
+    bool Part;
+  };
+  std::vector<Row> Rows;
+};
+
+#endif

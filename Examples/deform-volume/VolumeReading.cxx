@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VolumeReading.h"
+
+#include "Failure.h"
+#include "ImageAxes.h"
+#include "Messages.h"
+#include "ProgressBar.h"
+
+#include <vtkDICOMImageReader.h>
+#include <vtkImageReader2.h>
+#include <vtkMetaImageReader.h>
+#include <vtkNIFTIImageReader.h>
+#include <vtkNew.h>
+#include <vtkNrrdReader.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtksys/SystemTools.hxx>
+
+#include <array>
+
+namespace
+{
+template <typename Reader>
+vtkSmartPointer<vtkImageData> Update(
+  Reader* reader, const std::string& path, Messages& messages, bool showProgress)
+{
+  const ProgressBar bar(reader, "reading", showProgress);
+  reader->Update();
+  messages.Check("cannot read " + path);
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->ShallowCopy(reader->GetOutput());
+  if (image->GetNumberOfPoints() == 0)
+  {
+    throw Failure("cannot read " + path + ": it holds no voxels");
+  }
+  return image;
+}
+
+Volume ReadNIfTI(
+  const std::string& path, bool fileCoordinates, Messages& messages, bool showProgress)
+{
+  vtkNew<vtkNIFTIImageReader> reader;
+  if (!reader->CanReadFile(path.c_str()))
+  {
+    throw Failure("cannot read " + path + ": it is no NIfTI file");
+  }
+  reader->SetFileName(path.c_str());
+  Volume volume;
+  volume.Image = Update(reader.Get(), path, messages, showProgress);
+  volume.RescaleSlope = reader->GetRescaleSlope();
+  volume.RescaleIntercept = reader->GetRescaleIntercept();
+  if (!fileCoordinates)
+  {
+    vtkMatrix4x4* sform = reader->GetSFormMatrix();
+    vtkMatrix4x4* qform = reader->GetQFormMatrix();
+    if ((sform && SetAxes(volume.Image, sform)) || (qform && SetAxes(volume.Image, qform)))
+    {
+      volume.Axes = WorldAxes::RightAnteriorSuperior;
+    }
+    else if (sform || qform)
+    {
+      messages.DisplayWarningText("The axes of the NIfTI file are not perpendicular, which "
+                                  "vtkImageData cannot hold: origin 0 and no direction are used.");
+    }
+  }
+  return volume;
+}
+
+// Direction cosines that a text header gives, three for each index axis.
+void SetDirection(vtkImageData* image, const std::vector<double>& cosines, bool lengthIsSpacing,
+  const std::string& path, Messages& messages)
+{
+  if (cosines.size() != 9)
+  {
+    return;
+  }
+  vtkNew<vtkMatrix4x4> axes;
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      axes->SetElement(row, column, cosines[3 * column + row]);
+    }
+    axes->SetElement(row, 3, image->GetOrigin()[row]);
+  }
+  if (lengthIsSpacing)
+  {
+    image->SetSpacing(1.0, 1.0, 1.0);
+  }
+  if (!SetAxes(image, axes))
+  {
+    messages.DisplayWarningText(
+      ("The axes of " + path + " are not perpendicular: no direction is used.").c_str());
+  }
+}
+
+Volume ReadMetaImage(
+  const std::string& path, bool fileCoordinates, Messages& messages, bool showProgress)
+{
+  vtkNew<vtkMetaImageReader> reader;
+  if (!reader->CanReadFile(path.c_str()))
+  {
+    throw Failure("cannot read " + path + ": it is no MetaImage file");
+  }
+  reader->SetFileName(path.c_str());
+  Volume volume;
+  volume.Image = Update(reader.Get(), path, messages, showProgress);
+  if (!fileCoordinates)
+  {
+    volume.Axes = WorldAxes::LeftPosteriorSuperior;
+    for (const char* name : { "TransformMatrix", "Rotation", "Orientation" })
+    {
+      const std::string field = ReadHeaderField(path, name, '=');
+      if (!field.empty())
+      {
+        SetDirection(volume.Image, FindNumbers(field), false, path, messages);
+        break;
+      }
+    }
+  }
+  return volume;
+}
+
+Volume ReadNrrd(
+  const std::string& path, bool fileCoordinates, Messages& messages, bool showProgress)
+{
+  vtkNew<vtkNrrdReader> reader;
+  if (!reader->CanReadFile(path.c_str()))
+  {
+    throw Failure("cannot read " + path + ": it is no NRRD file that VTK can read");
+  }
+  reader->SetFileName(path.c_str());
+  Volume volume;
+  volume.Image = Update(reader.Get(), path, messages, showProgress);
+  if (!fileCoordinates)
+  {
+    const std::vector<double> origin = FindNumbers(ReadHeaderField(path, "space origin", ':'));
+    if (origin.size() == 3)
+    {
+      volume.Image->SetOrigin(origin.data());
+    }
+    SetDirection(volume.Image, FindNumbers(ReadHeaderField(path, "space directions", ':')), true,
+      path, messages);
+    const std::string space = vtksys::SystemTools::LowerCase(ReadHeaderField(path, "space", ':'));
+    if (space.find("left-posterior-superior") != std::string::npos ||
+      space.find("lps") != std::string::npos)
+    {
+      volume.Axes = WorldAxes::LeftPosteriorSuperior;
+    }
+    else if (space.find("right-anterior-superior") != std::string::npos ||
+      space.find("ras") != std::string::npos)
+    {
+      volume.Axes = WorldAxes::RightAnteriorSuperior;
+    }
+  }
+  return volume;
+}
+
+Volume ReadVTI(const std::string& path, Messages& messages, bool showProgress)
+{
+  vtkNew<vtkXMLImageDataReader> reader;
+  if (!reader->CanReadFile(path.c_str()))
+  {
+    throw Failure("cannot read " + path + ": it is no image file of VTK");
+  }
+  reader->SetFileName(path.c_str());
+  Volume volume;
+  volume.Image = Update(reader.Get(), path, messages, showProgress);
+  return volume;
+}
+
+Volume ReadDICOM(const std::string& path, Messages& messages, bool showProgress)
+{
+  vtkNew<vtkDICOMImageReader> reader;
+  reader->SetDirectoryName(path.c_str());
+  Volume volume;
+  reader->UpdateInformation();
+  if (reader->GetWidth() < 1 || reader->GetHeight() < 1)
+  {
+    throw Failure("cannot read " + path +
+      ": the folder holds no DICOM slices that VTK can read "
+      "(one uncompressed series)");
+  }
+  volume.Image = Update(reader.Get(), path, messages, showProgress);
+  return volume;
+}
+}
+
+Volume ReadVolume(
+  const std::string& path, bool fileCoordinates, Messages& messages, bool showProgress)
+{
+  if (!vtksys::SystemTools::FileExists(path))
+  {
+    throw Failure("cannot read " + path + ": there is no such file or folder");
+  }
+  Volume volume;
+  const std::string name = vtksys::SystemTools::LowerCase(path);
+  const auto endsWith = [&name](const char* suffix)
+  { return vtksys::SystemTools::StringEndsWith(name, suffix); };
+  if (vtksys::SystemTools::FileIsDirectory(path))
+  {
+    volume = ReadDICOM(path, messages, showProgress);
+  }
+  else if (endsWith(".nii") || endsWith(".nii.gz"))
+  {
+    volume = ReadNIfTI(path, fileCoordinates, messages, showProgress);
+  }
+  else if (endsWith(".mhd") || endsWith(".mha"))
+  {
+    volume = ReadMetaImage(path, fileCoordinates, messages, showProgress);
+  }
+  else if (endsWith(".nrrd") || endsWith(".nhdr"))
+  {
+    volume = ReadNrrd(path, fileCoordinates, messages, showProgress);
+  }
+  else if (endsWith(".vti"))
+  {
+    volume = ReadVTI(path, messages, showProgress);
+  }
+  else
+  {
+    throw Failure("cannot read " + path +
+      ": a volume is a .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr or .vti file, or a folder with the "
+      "slices of one DICOM series");
+  }
+  return volume;
+}

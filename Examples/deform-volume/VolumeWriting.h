@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeVolumeWriting_h
+#define DeformVolumeVolumeWriting_h
+
+#include "Volume.h"
+
+#include <string>
+
+class Messages;
+
+/// True for the names that WriteVolume accepts: .vti, .mhd, .nii, .nii.gz.
+bool CanWriteVolume(const std::string& path);
+
+/// Writes a volume. A .vti file keeps all arrays, the others the scalars alone. Origin, direction
+/// and the place of an extent that does not start at 0 survive in all formats; axes of the world
+/// are turned to the format's own where the volume's are known. Throws a Failure where that fails.
+void WriteVolume(
+  const Volume& volume, const std::string& path, Messages& messages, bool showProgress);
+
+#endif
