@@ -2,6 +2,7 @@
 #include "Reference.h"
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -166,6 +167,24 @@ std::int64_t Containing::GetNearestVertex() const
   return this->Vertices[best];
 }
 
+bool Containing::SharesSimplex(const Containing& other) const
+{
+  std::set<std::int64_t> mine;
+  std::set<std::int64_t> others;
+  for (int k = 0; k < 4; ++k)
+  {
+    if (this->Numerators[k] > 0)
+    {
+      mine.insert(this->Vertices[k]);
+    }
+    if (other.Numerators[k] > 0)
+    {
+      others.insert(other.Vertices[k]);
+    }
+  }
+  return mine == others;
+}
+
 std::int64_t Containing::GetSingleVertex() const
 {
   const std::int64_t nearest = this->GetNearestVertex();
@@ -230,6 +249,11 @@ Result Resample(const SamplingMesh& mesh, const Box& output)
     const auto generic = std::count_if(
       containing.begin(), containing.end(), [](const Containing& c) { return c.Generic; });
     result.NumberOfOverlappedVoxels += generic > 1 ? 1 : 0;
+    result.NumberOfTouchedVoxels +=
+      std::any_of(containing.begin(), containing.end(),
+        [&containing](const Containing& c) { return !c.SharesSimplex(containing.front()); })
+      ? 1
+      : 0;
   }
   return result;
 }

