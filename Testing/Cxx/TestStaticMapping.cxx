@@ -1,0 +1,464 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The static mapping against a search of every voxel in every tetrahedron.
+#include "StaticMapping.h"
+
+#include "TetrahedralMeshes.h"
+
+#include <vtkSMPTools.h>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <thread>
+
+using namespace deformvolume;
+using namespace tetrahedralMeshes;
+
+namespace
+{
+
+__extension__ typedef __int128 WideInteger;
+
+const glm::dvec3 UnitSpacing(1.0);
+
+glm::ivec3 GetVoxel(const Extent& voxels, std::int64_t index)
+{
+  const std::int64_t x = GetSize(voxels, 0);
+  const std::int64_t y = GetSize(voxels, 1);
+  return glm::ivec3(voxels[0] + static_cast<int>(index % x),
+    voxels[2] + static_cast<int>(index / x % y), voxels[4] + static_cast<int>(index / (x * y)));
+}
+
+// Six times the volume of a tetrahedron, in units of 1/256 voxel; exact for points on such units.
+WideInteger GetExactVolume(
+  const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d)
+{
+  const glm::dvec3 points[3] = { b - a, c - a, d - a };
+  WideInteger m[3][3];
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      m[row][column] = static_cast<std::int64_t>(std::llround(256.0 * points[row][column]));
+    }
+  }
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+    m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+    m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
+bool IsInsideExactly(const Mesh& mesh, const Tetrahedron& nodes, const glm::dvec3& point)
+{
+  const glm::dvec3 p[4] = { mesh.Points[nodes[0]], mesh.Points[nodes[1]], mesh.Points[nodes[2]],
+    mesh.Points[nodes[3]] };
+  const WideInteger volumes[4] = { GetExactVolume(point, p[1], p[2], p[3]),
+    GetExactVolume(p[0], point, p[2], p[3]), GetExactVolume(p[0], p[1], point, p[3]),
+    GetExactVolume(p[0], p[1], p[2], point) };
+  return std::all_of(volumes, volumes + 4, [](WideInteger v) { return v >= 0; }) ||
+    std::all_of(volumes, volumes + 4, [](WideInteger v) { return v <= 0; });
+}
+
+// The weights of a link must give back the voxel.
+void CheckWeights(const Mesh& mesh, const VertexLink& link, const glm::dvec3& voxel)
+{
+  const Tetrahedron& nodes = mesh.Tetrahedra[link.Tetrahedron];
+  glm::dvec3 sum = mesh.Points[nodes[3]];
+  double rounding = 1e-9;
+  for (int node = 0; node < 3; ++node)
+  {
+    const glm::dvec3 side = mesh.Points[nodes[node]] - mesh.Points[nodes[3]];
+    const double weight = link.Weights[node];
+    sum += weight * side;
+    // A float is rounded by half of its last bit.
+    rounding += std::ldexp(std::abs(weight), -24) * glm::length(side);
+  }
+  CHECK(glm::length(sum - voxel) <= 1.01 * rounding);
+}
+
+// Meshes whose nodes are multiples of 1/256 voxel: no rounding, so everything is exact.
+void CheckExactly(const Mesh& mesh, const Extent& voxels)
+{
+  const StaticMapping mapping =
+    BuildStaticMapping(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false);
+  std::int64_t flat = 0;
+  std::vector<bool> isFlat;
+  for (const Tetrahedron& nodes : mesh.Tetrahedra)
+  {
+    isFlat.push_back(GetExactVolume(mesh.Points[nodes[0]], mesh.Points[nodes[1]],
+                       mesh.Points[nodes[2]], mesh.Points[nodes[3]]) == 0);
+    flat += isFlat.back() ? 1 : 0;
+  }
+  CHECK(mapping.NumberOfFlatTetrahedra == flat);
+  CHECK(static_cast<std::int64_t>(mapping.Links.size()) == GetNumberOfPoints(voxels));
+  std::int64_t inner = 0;
+  for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
+  {
+    const glm::dvec3 voxel(GetVoxel(voxels, i));
+    std::int32_t expected = -1;
+    for (std::size_t id = 0; id < mesh.Tetrahedra.size() && expected < 0; ++id)
+    {
+      if (!isFlat[id] && IsInsideExactly(mesh, mesh.Tetrahedra[id], voxel))
+      {
+        expected = static_cast<std::int32_t>(id);
+      }
+    }
+    CHECK(mapping.Links[i].Tetrahedron == expected);
+    inner += expected >= 0 ? 1 : 0;
+    if (mapping.Links[i].Tetrahedron >= 0)
+    {
+      CheckWeights(mesh, mapping.Links[i], voxel);
+    }
+  }
+  CHECK(mapping.NumberOfInnerVoxels == inner);
+}
+
+// The depth of a point in a tetrahedron, negative outside; -infinity for flat ones.
+double GetDepth(const Mesh& mesh, const Tetrahedron& nodes, const glm::dvec3& point)
+{
+  double depth = std::numeric_limits<double>::infinity();
+  for (int node = 0; node < 4; ++node)
+  {
+    const glm::dvec3& apex = mesh.Points[nodes[node]];
+    const glm::dvec3& a = mesh.Points[nodes[(node + 1) % 4]];
+    const glm::dvec3 normal =
+      glm::cross(mesh.Points[nodes[(node + 2) % 4]] - a, mesh.Points[nodes[(node + 3) % 4]] - a);
+    const double height = glm::dot(normal, apex - a) / glm::length(normal);
+    if (!(std::abs(height) > 1e-9))
+    {
+      return -std::numeric_limits<double>::infinity();
+    }
+    const double distance = glm::dot(normal, point - a) / glm::length(normal);
+    depth = std::min(depth, height > 0.0 ? distance : -distance);
+  }
+  return depth;
+}
+
+// Meshes with nodes anywhere: right to within the rounding, and without holes.
+void CheckRounded(const Mesh& mesh, const Extent& voxels)
+{
+  // Rounding moves a node by up to sqrt(3) 2^-9 voxel.
+  const double tolerance = std::sqrt(3.0) / 256.0;
+  const StaticMapping mapping =
+    BuildStaticMapping(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false);
+  for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
+  {
+    const glm::dvec3 voxel(GetVoxel(voxels, i));
+    const std::int32_t found = mapping.Links[i].Tetrahedron;
+    for (std::size_t id = 0; id < mesh.Tetrahedra.size(); ++id)
+    {
+      const double depth = GetDepth(mesh, mesh.Tetrahedra[id], voxel);
+      if (depth > tolerance)
+      {
+        CHECK(found >= 0 && found <= static_cast<std::int32_t>(id));
+        break;
+      }
+    }
+    if (found >= 0)
+    {
+      CHECK(GetDepth(mesh, mesh.Tetrahedra[found], voxel) >= -tolerance);
+      CheckWeights(mesh, mapping.Links[i], voxel);
+    }
+  }
+}
+
+void TestMisuse()
+{
+  std::mt19937 random(1);
+  const Mesh mesh = MakeLattice({ 3, 3, 3 }, glm::dvec3(0.0), glm::dvec3(4.0), 0.0, 0.0, random);
+  const Extent voxels{ { 0, 4, 0, 4, 0, 4 } };
+
+  const StaticMapping nothing = BuildStaticMapping(
+    Extent{ { 0, -1, 0, 4, 0, 4 } }, UnitSpacing, mesh.Points, mesh.Tetrahedra, true);
+  CHECK(nothing.Links.empty() && nothing.NumberOfInnerVoxels == 0);
+
+  for (const bool extrapolate : { false, true })
+  {
+    const StaticMapping empty = BuildStaticMapping(voxels, UnitSpacing, {}, {}, extrapolate);
+    CHECK(empty.Links.size() == 125 && empty.NumberOfInnerVoxels == 0);
+    CHECK(std::all_of(empty.Links.begin(), empty.Links.end(),
+      [](const VertexLink& link) { return link.Tetrahedron == -1; }));
+    const StaticMapping apart = BuildStaticMapping(
+      Extent{ { 10, 12, 0, 4, 0, 4 } }, UnitSpacing, mesh.Points, mesh.Tetrahedra, extrapolate);
+    CHECK(apart.NumberOfInnerVoxels == 0 && apart.Links[0].Tetrahedron == -1);
+  }
+
+  bool refused = false;
+  try
+  {
+    Mesh far = mesh;
+    far.Points[13].y = 1e10;
+    BuildStaticMapping(voxels, UnitSpacing, far.Points, far.Tetrahedra, false);
+  }
+  catch (const Error& error)
+  {
+    refused = std::string(error.what()).find("units") != std::string::npos;
+  }
+  CHECK(refused);
+
+  for (const bool extrapolate : { false, true })
+  {
+    const Extent larger{ { -2, 6, 0, 4, 0, 4 } };
+    double last = -1.0;
+    bool ordered = true;
+    const std::thread::id caller = std::this_thread::get_id();
+    BuildStaticMapping(larger, UnitSpacing, mesh.Points, mesh.Tetrahedra, extrapolate,
+      [&](double done)
+      {
+        ordered = ordered && done >= last && done <= 1.0 && std::this_thread::get_id() == caller;
+        last = done;
+        return true;
+      });
+    CHECK(ordered && std::abs(last - 1.0) < 1e-12);
+    for (const double end : { 0.0, 0.3, 0.9 })
+    {
+      bool aborted = false;
+      try
+      {
+        BuildStaticMapping(larger, UnitSpacing, mesh.Points, mesh.Tetrahedra, extrapolate,
+          [&](double done) { return done < end; });
+      }
+      catch (const Aborted&)
+      {
+        aborted = true;
+      }
+      CHECK(aborted);
+    }
+  }
+}
+
+void TestExact()
+{
+  std::mt19937 random(2);
+  const double unit = 1.0 / 256.0;
+  const Extent voxels{ { -5, 12, 3, 21, -20, -2 } };
+  const glm::dvec3 min(-5.0, 3.0, -20.0);
+  const glm::dvec3 max(12.0, 21.0, -2.0);
+
+  // The mesh and the volume have the same bounds: no voxel may be missed.
+  for (const double jitter : { 0.0, 0.2, 0.45 })
+  {
+    const Mesh mesh = MakeLattice({ 5, 4, 6 }, min, max, jitter, unit, random);
+    CheckExactly(mesh, voxels);
+    const StaticMapping mapping =
+      BuildStaticMapping(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false);
+    CHECK(mapping.NumberOfInnerVoxels == GetNumberOfPoints(voxels));
+  }
+  // Larger, smaller, one tetrahedron's worth of voxels and less.
+  CheckExactly(MakeLattice({ 4, 5, 4 }, min - 7.3, max + 5.1, 0.3, unit, random), voxels);
+  CheckExactly(MakeLattice({ 4, 5, 4 }, min + 2.6, max - 4.9, 0.3, unit, random), voxels);
+  CheckExactly(MakeLattice({ 9, 9, 9 }, min + 5.5, min + 8.0, 0.3, unit, random), voxels);
+  // Nodes on voxels, so that many voxels lie on faces, edges and nodes; folded, flat, overlapping.
+  CheckExactly(MakeLattice({ 6, 6, 6 }, min, max, 1.4, 1.0, random), voxels);
+  CheckExactly(MakeSoup(40, 120, -8.0, 24.0, 1.0, random), voxels);
+  CheckExactly(MakeSoup(200, 60, -12.0, 14.0, 0.5, random), voxels);
+  CheckExactly(MakeSoup(200, 60, -30.0, 30.0, unit, random), voxels);
+  // Beyond what 64 bits hold.
+  CheckExactly(MakeSoup(200, 80, -3100.0, 3100.0, unit, random), voxels);
+  CheckExactly(MakeSoup(200, 80, -2.0e9, 2.0e9, 1.0, random), voxels);
+  // More than a tile on each axis, and a volume of two slices.
+  CheckExactly(
+    MakeLattice({ 3, 3, 3 }, glm::dvec3(0.0), glm::dvec3(5.0, 40.0, 37.0), 0.4, unit, random),
+    Extent{ { 0, 4, 0, 40, 0, 37 } });
+  CheckExactly(MakeSoup(50, 60, -4.0, 36.0, 0.25, random), Extent{ { 0, 33, 0, 34, 7, 8 } });
+}
+
+void TestRounded()
+{
+  std::mt19937 random(3);
+  const Extent voxels{ { -7, 8, -9, 4, 2, 15 } };
+  const glm::dvec3 min(-7.0, -9.0, 2.0);
+  const glm::dvec3 max(8.0, 4.0, 15.0);
+  for (int trial = 0; trial < 4; ++trial)
+  {
+    CheckRounded(MakeLattice({ 5, 6, 5 }, min, max, 0.3, 0.0, random), voxels);
+    CheckRounded(MakeLattice({ 4, 4, 4 }, min + 1.7, max - 2.2, 0.3, 0.0, random), voxels);
+    CheckRounded(MakeSoup(150, 60, -15.0, 20.0, 0.0, random), voxels);
+  }
+  // Bounds that a change of coordinates has moved in their last bits.
+  const Mesh mesh = MakeLattice({ 6, 5, 4 }, min + 1e-12, max - 1e-12, 0.3, 0.0, random);
+  CHECK(BuildStaticMapping(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false)
+          .NumberOfInnerVoxels == GetNumberOfPoints(voxels));
+  // Elements far smaller than a voxel, many of them flat once rounded.
+  const Mesh fine =
+    MakeLattice({ 13, 13, 13 }, glm::dvec3(-0.05), glm::dvec3(1.07), 0.3, 0.0, random);
+  const Extent corner{ { 0, 1, 0, 1, 0, 1 } };
+  CheckRounded(fine, corner);
+  CHECK(BuildStaticMapping(corner, UnitSpacing, fine.Points, fine.Tetrahedra, false)
+          .NumberOfInnerVoxels == 8);
+}
+
+// A square between two pyramids that cut it along different diagonals has to be filled with a
+// flat tetrahedron. Rounding opens a gap there, in which no voxel may be lost.
+void TestFlatBetweenOthers()
+{
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  const Extent voxels{ { -3, 3, -3, 3, -3, 3 } };
+  for (int trial = 0; trial < 300; ++trial)
+  {
+    const glm::dvec3 u = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+    const glm::dvec3 v =
+      glm::normalize(glm::cross(u, glm::dvec3(normal(random), normal(random), normal(random))));
+    const glm::dvec3 w = glm::cross(u, v);
+    for (const double height : { 9.0, 1e-7 })
+    {
+      Mesh mesh;
+      mesh.Points = { -10.0 * u - 9.0 * v, 11.0 * u - 10.0 * v, 10.0 * u + 11.0 * v,
+        -10.0 * u + 10.0 * v, 9.0 * w, -9.0 * w };
+      // A sliver with a little volume is no better.
+      mesh.Points[0] += height < 1.0 ? height * w : glm::dvec3(0.0);
+      mesh.Tetrahedra = { { { 0, 1, 2, 3 } }, { { 0, 1, 2, 4 } }, { { 0, 2, 3, 4 } },
+        { { 0, 1, 3, 5 } }, { { 1, 2, 3, 5 } } };
+      const StaticMapping mapping =
+        BuildStaticMapping(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false);
+      CHECK(mapping.NumberOfInnerVoxels == GetNumberOfPoints(voxels));
+      CHECK(mapping.NumberOfFlatTetrahedra == (height < 1.0 ? 0 : 1));
+      for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
+      {
+        const VertexLink& link = mapping.Links[i];
+        const float last = 1.0F - link.Weights[0] - link.Weights[1] - link.Weights[2];
+        CHECK(link.Tetrahedron >= 0);
+        CHECK(std::min({ link.Weights[0], link.Weights[1], link.Weights[2], last }) >= -0.13F);
+      }
+    }
+  }
+  // Alone, a flat one holds nothing.
+  Mesh mesh;
+  mesh.Points = { { -10.0, -9.0, 0.1 }, { 11.0, -10.0, 0.1 }, { 10.0, 11.0, 0.1 },
+    { -10.0, 10.0, 0.1 } };
+  for (glm::dvec3& point : mesh.Points)
+  {
+    point.z += 0.37 * point.x + 0.21 * point.y;
+  }
+  mesh.Tetrahedra = { { { 0, 1, 2, 3 } } };
+  const StaticMapping mapping =
+    BuildStaticMapping(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true);
+  CHECK(mapping.NumberOfInnerVoxels == 0 && mapping.NumberOfFlatTetrahedra == 1);
+}
+
+void TestExtrapolation()
+{
+  std::mt19937 random(5);
+  const Extent voxels{ { -6, 12, 4, 20, -3, 13 } };
+  for (const glm::dvec3& spacing :
+    { glm::dvec3(1.0), glm::dvec3(0.7, 2.3, 1.1), glm::dvec3(5.0, 0.4, 0.9) })
+  {
+    for (const Mesh& mesh : { MakeSoup(40, 10, -4.0, 18.0, 0.0, random),
+           MakeLattice(
+             { 3, 4, 3 }, glm::dvec3(0.3, 7.1, 2.0), glm::dvec3(6.9, 15.0, 8.2), 0.3, 0.0, random),
+           // One voxel only.
+           MakeLattice(
+             { 2, 2, 2 }, glm::dvec3(4.9, 7.9, 6.9), glm::dvec3(5.2, 8.2, 7.2), 0.0, 0.0, random) })
+    {
+      const StaticMapping inside =
+        BuildStaticMapping(voxels, spacing, mesh.Points, mesh.Tetrahedra, false);
+      const StaticMapping all =
+        BuildStaticMapping(voxels, spacing, mesh.Points, mesh.Tetrahedra, true);
+      CHECK(inside.NumberOfInnerVoxels > 0);
+      CHECK(inside.NumberOfInnerVoxels < GetNumberOfPoints(voxels));
+      CHECK(all.NumberOfInnerVoxels == inside.NumberOfInnerVoxels);
+      for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
+      {
+        const VertexLink& link = all.Links[i];
+        if (inside.Links[i].Tetrahedron >= 0)
+        {
+          CHECK(std::memcmp(&link, &inside.Links[i], sizeof(link)) == 0);
+          continue;
+        }
+        double nearest = std::numeric_limits<double>::infinity();
+        double chosen = nearest;
+        for (std::int64_t j = 0; j < GetNumberOfPoints(voxels); ++j)
+        {
+          if (inside.Links[j].Tetrahedron >= 0)
+          {
+            const double distance =
+              glm::length(glm::dvec3(GetVoxel(voxels, i) - GetVoxel(voxels, j)) * spacing);
+            nearest = std::min(nearest, distance);
+            if (inside.Links[j].Tetrahedron == link.Tetrahedron)
+            {
+              chosen = std::min(chosen, distance);
+            }
+          }
+        }
+        CHECK(chosen <= nearest * (1.0 + 1e-12));
+        if (link.Tetrahedron >= 0)
+        {
+          CheckWeights(mesh, link, glm::dvec3(GetVoxel(voxels, i)));
+        }
+      }
+    }
+  }
+}
+
+void TestThreads()
+{
+  std::mt19937 random(6);
+  const Extent voxels{ { 0, 40, -50, 9, 5, 70 } };
+  Mesh mesh = MakeSoup(400, 300, -20.0, 60.0, 0.0, random);
+  const auto build = [&]()
+  {
+    return BuildStaticMapping(
+      voxels, glm::dvec3(0.5, 1.0, 2.0), mesh.Points, mesh.Tetrahedra, true);
+  };
+  StaticMapping expected;
+  vtkSMPTools::LocalScope(vtkSMPTools::Config{ 1 }, [&]() { expected = build(); });
+  CHECK(expected.NumberOfInnerVoxels > 0);
+  for (const char* backend : { "Sequential", "STDThread", "TBB" })
+  {
+    for (const int threads : { 1, 2, 7 })
+    {
+      vtkSMPTools::Config config;
+      config.MaxNumberOfThreads = threads;
+      config.Backend = backend;
+      vtkSMPTools::LocalScope(config,
+        [&]()
+        {
+          const std::string before = vtkSMPTools::GetBackend();
+          const StaticMapping mapping = build();
+          CHECK(before == vtkSMPTools::GetBackend());
+          CHECK(mapping.NumberOfInnerVoxels == expected.NumberOfInnerVoxels);
+          CHECK(mapping.NumberOfFlatTetrahedra == expected.NumberOfFlatTetrahedra);
+          CHECK(std::memcmp(mapping.Links.data(), expected.Links.data(),
+                  expected.Links.size() * sizeof(VertexLink)) == 0);
+        });
+    }
+  }
+}
+
+void TestLarge()
+{
+  std::mt19937 random(7);
+  const Extent voxels{ { 0, 127, 0, 127, 0, 127 } };
+  const Mesh mesh =
+    MakeLattice({ 33, 33, 33 }, glm::dvec3(0.0), glm::dvec3(127.0), 0.25, 0.0, random);
+  const auto start = std::chrono::steady_clock::now();
+  const StaticMapping mapping =
+    BuildStaticMapping(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false);
+  const double seconds =
+    std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::cout << mapping.Links.size() << " voxels, " << mesh.Points.size() << " nodes: " << seconds
+            << " s\n";
+  CHECK(mapping.NumberOfInnerVoxels == GetNumberOfPoints(voxels));
+}
+
+} // namespace
+
+int TestStaticMapping(int, char*[])
+{
+  TestMisuse();
+  TestExact();
+  TestRounded();
+  TestFlatBetweenOthers();
+  TestExtrapolation();
+  TestThreads();
+  TestLarge();
+  if (Failures() > 0)
+  {
+    std::cerr << Failures() << " checks failed\n";
+  }
+  return Failures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

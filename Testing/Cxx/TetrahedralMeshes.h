@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Deformation meshes for the tests of the numeric helpers, and what these tests have in common.
+#ifndef DeformVolumeTetrahedralMeshes_h
+#define DeformVolumeTetrahedralMeshes_h
+
+#include "FiveTetrahedra.h"
+#include "VolumeDeformer.h"
+
+#include <glm/vec3.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <iostream>
+#include <random>
+#include <vector>
+
+/// Counts a failed check and says where; at most twenty are printed.
+#define CHECK(condition)                                                                           \
+  do                                                                                               \
+  {                                                                                                \
+    if (!(condition) && ++tetrahedralMeshes::Failures() <= 20)                                     \
+    {                                                                                              \
+      std::cerr << __FILE__ << ':' << __LINE__ << ": " << #condition << '\n';                      \
+    }                                                                                              \
+  } while (false)
+
+namespace tetrahedralMeshes
+{
+
+inline int& Failures()
+{
+  static int failures = 0;
+  return failures;
+}
+
+struct Mesh
+{
+  std::vector<glm::dvec3> Points;
+  std::vector<deformvolume::Tetrahedron> Tetrahedra;
+};
+
+/// A mirrored lattice between two corners. The nodes within are moved at random, by at most jitter
+/// times their distance; unit: positions are multiples of it, 0: not rounded.
+inline Mesh MakeLattice(const glm::ivec3& nodes, const glm::dvec3& min, const glm::dvec3& max,
+  double jitter, double unit, std::mt19937& random)
+{
+  static const int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+  std::uniform_real_distribution<double> between(-1.0, 1.0);
+  Mesh mesh;
+  for (int z = 0; z < nodes.z; ++z)
+  {
+    for (int y = 0; y < nodes.y; ++y)
+    {
+      for (int x = 0; x < nodes.x; ++x)
+      {
+        const glm::ivec3 node(x, y, z);
+        glm::dvec3 point;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          const double step = (max[axis] - min[axis]) / (nodes[axis] - 1);
+          const bool within = node[axis] > 0 && node[axis] < nodes[axis] - 1;
+          point[axis] = within ? min[axis] + step * (node[axis] + jitter * between(random))
+                               : (node[axis] == 0 ? min[axis] : max[axis]);
+          point[axis] = unit > 0.0 ? unit * std::round(point[axis] / unit) : point[axis];
+        }
+        mesh.Points.push_back(point);
+      }
+    }
+  }
+  for (int z = 0; z + 1 < nodes.z; ++z)
+  {
+    for (int y = 0; y + 1 < nodes.y; ++y)
+    {
+      for (int x = 0; x + 1 < nodes.x; ++x)
+      {
+        for (const auto& corners : split)
+        {
+          deformvolume::Tetrahedron tetrahedron;
+          for (int node = 0; node < 4; ++node)
+          {
+            const int corner = corners[node];
+            const int i = x + ((corner & 1) ^ (x & 1));
+            const int j = y + ((corner >> 2 & 1) ^ (y & 1));
+            const int k = z + ((corner >> 1 & 1) ^ (z & 1));
+            tetrahedron[node] = (k * nodes.y + j) * nodes.x + i;
+          }
+          mesh.Tetrahedra.push_back(tetrahedron);
+        }
+      }
+    }
+  }
+  return mesh;
+}
+
+/// Tetrahedra that have nothing to do with each other, some of them flat.
+inline Mesh MakeSoup(
+  int points, int tetrahedra, double min, double max, double unit, std::mt19937& random)
+{
+  std::uniform_real_distribution<double> position(min, max);
+  std::uniform_int_distribution<std::int32_t> node(0, points - 1);
+  Mesh mesh;
+  for (int i = 0; i < points; ++i)
+  {
+    glm::dvec3 point;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      point[axis] = position(random);
+      point[axis] = unit > 0.0 ? unit * std::round(point[axis] / unit) : point[axis];
+    }
+    mesh.Points.push_back(point);
+  }
+  for (int i = 0; i < tetrahedra; ++i)
+  {
+    mesh.Tetrahedra.push_back({ { node(random), node(random), node(random), node(random) } });
+  }
+  return mesh;
+}
+
+} // namespace tetrahedralMeshes
+
+#endif
