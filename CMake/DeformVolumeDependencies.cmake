@@ -14,7 +14,6 @@ set(deformvolume_vtk_components
   FiltersGeometry
   FiltersModeling
   ImagingCore
-  ImagingGeneral
   vtksys)
 if (DEFORMVOLUME_WRAP_PYTHON)
   # Another python3 that comes first on PATH would not know the modules of the system's VTK.
@@ -27,6 +26,7 @@ endif ()
 if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
   list(APPEND deformvolume_vtk_components
     FiltersSources
+    ImagingGeneral
     ImagingMath
     ImagingSources
     InteractionStyle

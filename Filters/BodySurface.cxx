@@ -8,7 +8,6 @@
 #include "vtkFloatArray.h"
 #include "vtkFlyingEdges3D.h"
 #include "vtkImageData.h"
-#include "vtkImageEuclideanDistance.h"
 #include "vtkMatrix3x3.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -257,6 +256,68 @@ std::vector<unsigned char> FindBody(const Coarse& coarse, double isovalue, bool 
   return marks;
 }
 
+// Squared distances, in world units, of the voxels' centres to the nearest voxel of the body.
+// Felzenszwalb and Huttenlocher, "Distance transforms of sampled functions": along each axis the
+// lower envelope of parabolas. (vtkImageEuclideanDistance of VTK 9.1 is wrong unless the spacing
+// is 1.)
+std::vector<double> SquaredDistances(const Coarse& coarse, const std::vector<unsigned char>& body)
+{
+  const glm::dvec3 size = coarse.Spacing *
+    glm::dvec3(static_cast<double>(coarse.Size[0]), static_cast<double>(coarse.Size[1]),
+      static_cast<double>(coarse.Size[2]));
+  const double far = 4.0 * glm::dot(size, size);
+  std::vector<double> squares(coarse.Count());
+  std::transform(body.begin(), body.end(), squares.begin(),
+    [far](unsigned char inside) { return inside ? 0.0 : far; });
+
+  const vtkIdType strides[3] = { 1, coarse.Size[0], coarse.Size[0] * coarse.Size[1] };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const vtkIdType count = coarse.Size[axis];
+    const double unit = coarse.Spacing[axis] * coarse.Spacing[axis];
+    std::vector<double> line(count);
+    std::vector<vtkIdType> apex(count);
+    std::vector<double> from(count); // where the parabola of that apex becomes the lowest
+    for (vtkIdType start = 0; start < coarse.Count(); ++start)
+    {
+      if (start / strides[axis] % count != 0)
+      {
+        continue;
+      }
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        line[i] = squares[start + i * strides[axis]];
+      }
+      vtkIdType top = 0;
+      apex[0] = 0;
+      from[0] = -std::numeric_limits<double>::infinity();
+      for (vtkIdType i = 1; i < count; ++i)
+      {
+        double meeting;
+        do
+        {
+          const vtkIdType j = apex[top];
+          meeting = 0.5 * (i + j) + (line[i] - line[j]) / (2.0 * unit * (i - j));
+        } while (meeting <= from[top] && top-- > 0);
+        ++top;
+        apex[top] = i;
+        from[top] = meeting;
+      }
+      vtkIdType current = 0;
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        while (current < top && from[current + 1] <= i)
+        {
+          ++current;
+        }
+        const double steps = static_cast<double>(i - apex[current]);
+        squares[start + i * strides[axis]] = unit * steps * steps + line[apex[current]];
+      }
+    }
+  }
+  return squares;
+}
+
 // Replaces the values by a function that is positive in the body (enlarged by the margin) and
 // negative outside.
 void MakeLevelSet(Coarse& coarse, const std::vector<unsigned char>& body, double isovalue,
@@ -264,26 +325,12 @@ void MakeLevelSet(Coarse& coarse, const std::vector<unsigned char>& body, double
 {
   if (margin > 0.0)
   {
-    vtkNew<vtkUnsignedCharArray> mask;
-    mask->SetNumberOfValues(coarse.Count());
-    std::transform(body.begin(), body.end(), mask->GetPointer(0),
-      [](unsigned char inside) { return static_cast<unsigned char>(!inside); });
-    vtkNew<vtkImageData> image;
-    image->SetDimensions(static_cast<int>(coarse.Size[0]), static_cast<int>(coarse.Size[1]),
-      static_cast<int>(coarse.Size[2]));
-    image->SetSpacing(coarse.Spacing.x, coarse.Spacing.y, coarse.Spacing.z);
-    image->GetPointData()->SetScalars(mask);
-    vtkNew<vtkImageEuclideanDistance> distance; // squared, to the nearest voxel of the body
-    distance->SetInputData(image);
-    distance->SetAlgorithmToSaito();
-    distance->Update();
-    vtkDataArray* squares = distance->GetOutput()->GetPointData()->GetScalars();
+    const std::vector<double> squares = SquaredDistances(coarse, body);
     // The body ends about half a voxel beyond its outermost voxels.
     const double half = (coarse.Spacing.x + coarse.Spacing.y + coarse.Spacing.z) / 6.0;
     for (vtkIdType i = 0; i < coarse.Count(); ++i)
     {
-      coarse.Values[i] =
-        static_cast<float>((margin + half - std::sqrt(squares->GetComponent(i, 0))) / half);
+      coarse.Values[i] = static_cast<float>((margin + half - std::sqrt(squares[i])) / half);
     }
   }
   else
