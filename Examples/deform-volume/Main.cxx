@@ -34,7 +34,8 @@ std::string GetDimensionsText(vtkImageData* image)
 
 void ListDevices()
 {
-  vtkStringArray* names = vtkDeformVolumeFilter::GetDeviceNames();
+  const auto names =
+    vtkSmartPointer<vtkStringArray>::Take(vtkDeformVolumeFilter::GetDeviceNames());
   if (names->GetNumberOfValues() == 0)
   {
     throw Failure("there is no OpenCL device. Install an OpenCL driver; for the processor that is "
