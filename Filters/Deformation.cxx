@@ -184,7 +184,7 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   CheckTransform(geometry, "the displacement field on input port 1");
   vtkDataArray* array = FindVectors(image, source.Selector, source.Wanted, FIELD);
   std::vector<glm::dvec3> vectors(static_cast<std::size_t>(image->GetNumberOfPoints()));
-  ReadVectors(array, vectors.data(), "vector of the displacement field on input port 1 at point");
+  ReadVectors(array, vectors.data(), "Vector", FIELD);
   this->SetVectors(std::move(vectors), source.DisplacementScale, source);
 
   image->GetDimensions(this->FieldDimensions.data());

@@ -154,7 +154,7 @@ MeshParts GetMeshParts(vtkDataObject* object, const std::string& name)
     }
     if (parts.empty())
     {
-      throw Error("The composite dataset that is " + name +
+      throw Error("The composite dataset that is the " + name +
         " holds no vtkUnstructuredGrid. Connect one with tetrahedra.");
     }
   }
@@ -219,7 +219,7 @@ std::vector<glm::dvec3> ReadPoints(const MeshParts& parts, const std::string& na
   {
     if (grid->GetNumberOfPoints() > 0)
     {
-      ReadVectors(grid->GetPoints()->GetData(), next, "point of the " + name + " with the number");
+      ReadVectors(grid->GetPoints()->GetData(), next, "Point", name);
       next += grid->GetNumberOfPoints();
     }
   }
@@ -232,10 +232,13 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
   vtkDataArray* array = selector(dataSet);
   if (!array)
   {
+    const char* const alternative = vtkUnstructuredGrid::SafeDownCast(dataSet)
+      ? ", or connect a rest configuration to input port 2 where the mesh is deformed already."
+      : ".";
     throw Error("The " + name + " has no " + wanted +
       ". Choose the displacements with SetInputArrayToProcess(0, 1, 0, "
-      "vtkDataObject::FIELD_ASSOCIATION_POINTS, name), or connect a rest configuration to port 2 "
-      "where the mesh is deformed already.");
+      "vtkDataObject::FIELD_ASSOCIATION_POINTS, name)" +
+      alternative);
   }
   if (array->GetNumberOfComponents() != 3)
   {
@@ -262,8 +265,7 @@ std::vector<glm::dvec3> ReadPointVectors(const MeshParts& parts, const ArraySele
   {
     if (grid->GetNumberOfPoints() > 0)
     {
-      ReadVectors(FindVectors(grid, selector, wanted, name), next,
-        "displacement of the " + name + " at point");
+      ReadVectors(FindVectors(grid, selector, wanted, name), next, "Displacement", name);
       next += grid->GetNumberOfPoints();
     }
   }

@@ -54,7 +54,8 @@ struct VectorReader
 
 } // namespace
 
-void ReadVectors(vtkDataArray* array, glm::dvec3* vectors, const std::string& what)
+void ReadVectors(
+  vtkDataArray* array, glm::dvec3* vectors, const std::string& kind, const std::string& owner)
 {
   using Dispatcher = vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>;
   VectorReader reader;
@@ -64,7 +65,7 @@ void ReadVectors(vtkDataArray* array, glm::dvec3* vectors, const std::string& wh
   }
   if (reader.FirstBad != NONE)
   {
-    throw Error("The " + what + " " + std::to_string(reader.FirstBad) +
+    throw Error(kind + " " + std::to_string(reader.FirstBad) + " of the " + owner +
       " is not finite. Remove NaN and infinity from it.");
   }
 }

@@ -12,8 +12,9 @@ namespace deformvolume
 {
 
 /// Copies the tuples of an array of three components to vectors, in parallel. Throws an Error that
-/// speaks of a tuple as `what` where one is not finite; the first such tuple is named.
-void ReadVectors(vtkDataArray* array, glm::dvec3* vectors, const std::string& what);
+/// names the first tuple that is not finite: "<kind> 5 of the <owner>".
+void ReadVectors(
+  vtkDataArray* array, glm::dvec3* vectors, const std::string& kind, const std::string& owner);
 
 } // namespace deformvolume
 

@@ -64,11 +64,15 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
   {
     const char* attribute = vtkDataSetAttributes::GetAttributeTypeAsString(
       choice->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE()));
-    source.Wanted = std::string("active point ") + (attribute ? attribute : "vectors");
+    source.Wanted = std::string("active ") + (attribute ? attribute : "Vectors") + " of its points";
   }
   source.Choice =
     source.Wanted + " " + std::to_string(choice->Get(vtkDataObject::FIELD_ASSOCIATION()));
   source.DisplacementScale = this->Self->DisplacementScale;
+  if (!std::isfinite(source.DisplacementScale))
+  {
+    throw Error("DisplacementScale is not finite. Set a finite one.");
+  }
   source.Volume = volume;
   source.Scale = volume.Spacing / this->GetOutputGeometry(volume).Spacing;
   return source;
