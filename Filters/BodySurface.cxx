@@ -343,10 +343,11 @@ void MakeLevelSet(Coarse& coarse, const std::vector<unsigned char>& body, double
       coarse.Values[i] = static_cast<float>(body[i] ? level : -level);
     }
   }
-  // A value close to 0 would put several vertices of the surface almost into one place.
+  // A value close to 0 would put several vertices of the surface almost into one place, and
+  // TetGen has to keep the tiny triangles between them.
   for (float& value : coarse.Values)
   {
-    value = std::copysign(std::max(std::abs(value), 1e-3f), value);
+    value = std::copysign(std::max(std::abs(value), 0.1f), value);
   }
 }
 

@@ -375,6 +375,10 @@ vtkSmartPointer<vtkUnstructuredGrid> RunTetGen(
     {
       message = "(no message)";
     }
+    if (!parameters.Diagnose)
+    {
+      throw SurfaceRejected("TetGen failed. It says: " + message);
+    }
     // The other mode of TetGen looks for self-intersections, and names them.
     const Outcome diagnosis = Run(
       { parameters.Executable, "-d", input.string() }, start, parameters.TimeLimit + 10.0, wait);

@@ -29,6 +29,7 @@ struct TetGenParameters
   double RadiusEdgeRatio = 1.414;
   double MaximumVolume = 0.0;
   double TimeLimit = 60.0; // seconds
+  bool Diagnose = true;    // after a failure, look for self-intersections to name them
 };
 
 /// Fills a closed triangle surface with tetrahedra of positive volume. `wait` is called many times

@@ -210,31 +210,58 @@ void vtkTetGenMesher::MeshVolume(
   parameters.AutomaticIsovalue = this->AutomaticIsovalue;
   parameters.Isovalue = this->Isovalue;
   parameters.LargestRegionOnly = this->LargestRegionOnly;
-  parameters.Resolution = length / 1.5;
   parameters.Margin = length * this->Margin;
-  parameters.SmoothingIterations = this->SmoothingIterations;
-  double step = 0.0;
-  auto extract = [&]()
+
+  // Decimation and smoothing can make a surface intersect itself, an isosurface never does. So
+  // surfaces are tried that are ever closer to an isosurface; those without decimation start from
+  // a coarser volume instead.
+  struct Attempt
   {
-    return deformvolume::CleanTriangles(deformvolume::ExtractBodySurface(
-      volume, array, parameters, [&]() { this->CheckStep(std::min(0.9, step += 0.2)); }));
+    double Resolution;
+    int SmoothingIterations;
+    bool Decimation;
   };
-  const auto surface = extract();
-  this->UsedIsovalue = parameters.Isovalue;
-  deformvolume::CheckClosedSurface(surface);
-  try
+  std::vector<Attempt> attempts;
+  attempts.push_back({ length / 1.5, this->SmoothingIterations, this->Decimation });
+  for (int iterations = this->SmoothingIterations; iterations > 0; iterations /= 4)
   {
-    this->Fill(surface, length, output);
+    attempts.push_back({ length, iterations, false });
   }
-  catch (const deformvolume::SurfaceRejected&)
+  attempts.push_back({ length, 0, false });
+
+  for (std::size_t i = 0; i < attempts.size(); ++i)
   {
-    if (parameters.SmoothingIterations == 0)
+    const bool last = i + 1 == attempts.size();
+    parameters.Resolution = attempts[i].Resolution;
+    parameters.SmoothingIterations = attempts[i].SmoothingIterations;
+    double step = 0.0;
+    auto surface = deformvolume::CleanTriangles(deformvolume::ExtractBodySurface(
+      volume, array, parameters, [&]() { this->CheckStep(std::min(0.9, step += 0.2)); }));
+    this->UsedIsovalue = parameters.Isovalue;
+    deformvolume::CheckClosedSurface(surface);
+    if (attempts[i].Decimation)
     {
-      throw;
+      if (const auto decimated = deformvolume::Decimate(surface, length))
+      {
+        if (!deformvolume::IsClosedManifold(decimated))
+        {
+          continue;
+        }
+        surface = decimated;
+      }
     }
-    // An isosurface never intersects itself; smoothing can make it do so.
-    parameters.SmoothingIterations = 0;
-    this->Fill(extract(), length, output);
+    try
+    {
+      this->Fill(surface, length, last, output);
+      return;
+    }
+    catch (const deformvolume::SurfaceRejected&)
+    {
+      if (last)
+      {
+        throw;
+      }
+    }
   }
 }
 
@@ -246,16 +273,33 @@ void vtkTetGenMesher::MeshSurface(vtkPolyData* input, vtkUnstructuredGrid* outpu
   const double length =
     this->TargetEdgeLength > 0.0 ? this->TargetEdgeLength : surface->GetLength() / 20.0;
   this->UsedTargetEdgeLength = length;
-  this->Fill(surface, length, output);
+  const auto decimated = this->Decimation ? deformvolume::Decimate(surface, length) : nullptr;
+  if (decimated && deformvolume::IsClosedManifold(decimated))
+  {
+    try
+    {
+      this->Fill(decimated, length, false, output);
+      return;
+    }
+    catch (const deformvolume::SurfaceRejected&)
+    {
+      // Decimation can make a surface intersect itself: below, it is taken as it is.
+    }
+  }
+  const auto split = deformvolume::SplitLongEdges(surface, 1.5 * length);
+  this->Fill(
+    deformvolume::IsClosedManifold(split) ? split.Get() : surface.Get(), length, true, output);
 }
 
-void vtkTetGenMesher::Fill(vtkPolyData* surface, double length, vtkUnstructuredGrid* output)
+void vtkTetGenMesher::Fill(
+  vtkPolyData* surface, double length, bool diagnose, vtkUnstructuredGrid* output)
 {
   deformvolume::TetGenParameters parameters;
   parameters.Executable = this->FindExecutable();
   parameters.RadiusEdgeRatio = this->RadiusEdgeRatio;
   parameters.MaximumVolume = std::sqrt(2.0) / 12.0 * length * length * length;
   parameters.TimeLimit = this->TimeLimit;
+  parameters.Diagnose = diagnose;
   // TetGen ends up with about half of the largest volume on average.
   const double expected = 2.0 * deformvolume::EnclosedVolume(surface) / parameters.MaximumVolume;
   const double triangles =
@@ -273,27 +317,8 @@ void vtkTetGenMesher::Fill(vtkPolyData* surface, double length, vtkUnstructuredG
     this->UpdateProgress(SurfaceShare + TetGenShare * std::min(1.0, std::sqrt(passed)));
     return deformvolume::IsAborted(this);
   };
-  vtkSmartPointer<vtkUnstructuredGrid> mesh;
-  const auto decimated = this->Decimation ? deformvolume::Decimate(surface, length) : nullptr;
   this->CheckStep(1.0);
-  if (decimated && deformvolume::IsClosedManifold(decimated))
-  {
-    try
-    {
-      mesh = deformvolume::RunTetGen(decimated, parameters, wait);
-    }
-    catch (const deformvolume::SurfaceRejected&)
-    {
-      // Decimation can make a surface intersect itself: below, it is tried as it was.
-    }
-  }
-  if (!mesh)
-  {
-    const auto split = deformvolume::SplitLongEdges(surface, 1.5 * length);
-    mesh = deformvolume::RunTetGen(
-      deformvolume::IsClosedManifold(split) ? split.Get() : surface, parameters, wait);
-  }
-  output->ShallowCopy(mesh);
+  output->ShallowCopy(deformvolume::RunTetGen(surface, parameters, wait));
 }
 
 std::string vtkTetGenMesher::FindExecutable()

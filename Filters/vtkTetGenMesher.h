@@ -129,7 +129,8 @@ public:
 
   ///@{
   /**
-   * Iterations of windowed-sinc smoothing of a volume's surface, 0: none. Default 20, at most 1000.
+   * Iterations of windowed-sinc smoothing of a volume's surface, 0: none. Where smoothing would
+   * make the surface intersect itself, there is less of it. Default 20, at most 1000.
    */
   vtkSetClampMacro(SmoothingIterations, int, 0, 1000);
   vtkGetMacro(SmoothingIterations, int);
@@ -138,7 +139,8 @@ public:
   ///@{
   /**
    * Whether a surface with triangles finer than the target edge length is decimated to it. Where
-   * that would make the surface intersect itself, it is meshed undecimated. Default: on.
+   * that would make the surface intersect itself, it is meshed undecimated (the one of a volume
+   * with less detail). Default: on.
    */
   vtkSetMacro(Decimation, bool);
   vtkGetMacro(Decimation, bool);
@@ -209,7 +211,7 @@ protected:
 private:
   void MeshVolume(vtkImageData* volume, vtkDataArray* array, vtkUnstructuredGrid* output);
   void MeshSurface(vtkPolyData* surface, vtkUnstructuredGrid* output);
-  void Fill(vtkPolyData* surface, double length, vtkUnstructuredGrid* output);
+  void Fill(vtkPolyData* surface, double length, bool diagnose, vtkUnstructuredGrid* output);
   void CheckStep(double share);
   std::string FindExecutable();
 
