@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The bounds of the deformed volume against a list of all possible corners, or of all voxels.
+#include "DeformedBounds.h"
+#include "StaticMapping.h"
+
+#include "TetrahedralMeshes.h"
+
+#include <vtkSMPTools.h>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+
+using namespace deformvolume;
+using namespace tetrahedralMeshes;
+
+namespace
+{
+
+const float NotANumber = std::numeric_limits<float>::quiet_NaN();
+
+Lattice MakeVolume(const Extent& extent, const glm::dvec3& scale)
+{
+  Lattice lattice;
+  lattice.VertexExtent = extent;
+  lattice.Scale = { { scale.x, scale.y, scale.z } };
+  return lattice;
+}
+
+glm::dvec3 GetScale(const Lattice& lattice)
+{
+  return glm::dvec3(lattice.Scale[0], lattice.Scale[1], lattice.Scale[2]);
+}
+
+std::vector<float> MakeVectors(std::size_t count, double size, std::mt19937& random)
+{
+  std::normal_distribution<float> normal(0.0F, static_cast<float>(size));
+  std::vector<float> vectors(3 * count);
+  for (float& value : vectors)
+  {
+    value = normal(random);
+  }
+  return vectors;
+}
+
+glm::dvec3 GetVector(const std::vector<float>& vectors, std::int64_t index)
+{
+  return glm::dvec3(vectors[3 * index], vectors[3 * index + 1], vectors[3 * index + 2]);
+}
+
+bool AreClose(const IndexBounds& a, const IndexBounds& b, double tolerance)
+{
+  return a.IsEmpty() == b.IsEmpty() &&
+    (a.IsEmpty() ||
+      (glm::length(a.Min - b.Min) <= tolerance && glm::length(a.Max - b.Max) <= tolerance));
+}
+
+bool Contains(const IndexBounds& outer, const IndexBounds& inner, double tolerance)
+{
+  bool contains = !outer.IsEmpty() || inner.IsEmpty();
+  for (int axis = 0; axis < 3 && !inner.IsEmpty(); ++axis)
+  {
+    contains = contains && outer.Min[axis] <= inner.Min[axis] + tolerance &&
+      outer.Max[axis] >= inner.Max[axis] - tolerance;
+  }
+  return contains;
+}
+
+// The corners of a tetrahedron within a box are found among the points where three of the ten
+// planes meet.
+void AddCorners(const Lattice& lattice, const Mesh& mesh, const Tetrahedron& nodes,
+  const std::vector<float>& displacements, IndexBounds& bounds)
+{
+  glm::dvec3 rest[4];
+  glm::dvec3 moved[4];
+  for (int node = 0; node < 4; ++node)
+  {
+    rest[node] = mesh.Points[nodes[node]];
+    moved[node] = GetScale(lattice) * rest[node] + GetVector(displacements, nodes[node]);
+  }
+  const glm::dmat3 sides(rest[1] - rest[0], rest[2] - rest[0], rest[3] - rest[0]);
+  if (std::abs(glm::determinant(sides)) < 1e-9)
+  {
+    return;
+  }
+  // Planes as (normal, offset): inside is normal . x >= offset.
+  std::vector<glm::dvec4> planes;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    glm::dvec4 plane(0.0, 0.0, 0.0, lattice.VertexExtent[2 * axis]);
+    plane[axis] = 1.0;
+    planes.push_back(plane);
+    plane[axis] = -1.0;
+    plane.w = -lattice.VertexExtent[2 * axis + 1];
+    planes.push_back(plane);
+  }
+  for (int node = 0; node < 4; ++node)
+  {
+    const glm::dvec3& a = rest[(node + 1) % 4];
+    glm::dvec3 normal =
+      glm::normalize(glm::cross(rest[(node + 2) % 4] - a, rest[(node + 3) % 4] - a));
+    normal *= glm::dot(normal, rest[node] - a) > 0.0 ? 1.0 : -1.0;
+    planes.emplace_back(normal, glm::dot(normal, a));
+  }
+  const int count = static_cast<int>(planes.size());
+  for (int i = 0; i < count; ++i)
+  {
+    for (int j = i + 1; j < count; ++j)
+    {
+      for (int k = j + 1; k < count; ++k)
+      {
+        const glm::dmat3 rows = glm::transpose(
+          glm::dmat3(glm::dvec3(planes[i]), glm::dvec3(planes[j]), glm::dvec3(planes[k])));
+        if (std::abs(glm::determinant(rows)) < 1e-9)
+        {
+          continue;
+        }
+        const glm::dvec3 point =
+          glm::inverse(rows) * glm::dvec3(planes[i].w, planes[j].w, planes[k].w);
+        if (std::all_of(planes.begin(), planes.end(),
+              [&](const glm::dvec4& plane)
+              { return glm::dot(glm::dvec3(plane), point) >= plane.w - 1e-9; }))
+        {
+          const glm::dvec3 weights = glm::inverse(sides) * (point - rest[0]);
+          bounds.Add((1.0 - weights.x - weights.y - weights.z) * moved[0] + weights.x * moved[1] +
+            weights.y * moved[2] + weights.z * moved[3]);
+        }
+      }
+    }
+  }
+}
+
+void TestMesh()
+{
+  std::mt19937 random(11);
+  const Lattice lattice = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.0, 0.7, 2.5));
+  const glm::dvec3 min(-4.0, 2.0, -20.0);
+  const glm::dvec3 max(9.0, 14.0, -9.0);
+  for (int trial = 0; trial < 20; ++trial)
+  {
+    for (const Mesh& mesh : { MakeLattice({ 3, 4, 3 }, min, max, 0.4, 0.0, random),
+           MakeLattice({ 3, 3, 3 }, min - 8.1, max + 5.7, 0.4, 0.0, random),
+           MakeLattice({ 3, 2, 3 }, min + 1.1, max - 2.8, 0.4, 0.0, random),
+           MakeLattice({ 2, 2, 2 }, min - 50.0, max + 70.0, 0.0, 0.0, random),
+           MakeSoup(30, 8, -25.0, 20.0, 1.0, random) })
+    {
+      const std::vector<float> displacements = MakeVectors(mesh.Points.size(), 6.0, random);
+      IndexBounds expected;
+      for (const Tetrahedron& nodes : mesh.Tetrahedra)
+      {
+        AddCorners(lattice, mesh, nodes, displacements, expected);
+      }
+      CHECK(
+        AreClose(ComputeDeformedBounds(lattice, mesh.Points, mesh.Tetrahedra, displacements.data()),
+          expected, 1e-6));
+    }
+  }
+
+  // Undeformed: where mesh and volume overlap, to the last bit.
+  const Lattice plain = MakeVolume(lattice.VertexExtent, glm::dvec3(1.0));
+  const Mesh mesh =
+    MakeLattice({ 4, 4, 4 }, glm::dvec3(-1.0, 0.0, -30.0), glm::dvec3(20.0), 0.3, 0.0, random);
+  std::vector<float> displacements(3 * mesh.Points.size(), 0.0F);
+  const IndexBounds bounds =
+    ComputeDeformedBounds(plain, mesh.Points, mesh.Tetrahedra, displacements.data());
+  CHECK(glm::length(bounds.Min - glm::dvec3(-1.0, 2.0, -20.0)) < 1e-12);
+  CHECK(glm::length(bounds.Max - glm::dvec3(9.0, 14.0, -9.0)) < 1e-12);
+
+  // Nothing there, nothing with volume, nothing finite.
+  CHECK(ComputeDeformedBounds(plain, std::vector<glm::dvec3>(), {}, nullptr).IsEmpty());
+  std::vector<glm::dvec3> apart = mesh.Points;
+  for (glm::dvec3& point : apart)
+  {
+    point.x += 11.0;
+  }
+  CHECK(ComputeDeformedBounds(plain, apart, mesh.Tetrahedra, displacements.data()).IsEmpty());
+  const std::vector<Tetrahedron> flat = { { { 0, 1, 2, 3 } }, { { 4, 4, 20, 30 } } };
+  CHECK(ComputeDeformedBounds(plain, mesh.Points, flat, displacements.data()).IsEmpty());
+  displacements[3 * 21 + 1] = NotANumber;
+  IndexBounds expected;
+  for (const Tetrahedron& nodes : mesh.Tetrahedra)
+  {
+    if (std::find(nodes.begin(), nodes.end(), 21) == nodes.end())
+    {
+      AddCorners(plain, mesh, nodes, displacements, expected);
+    }
+  }
+  CHECK(AreClose(ComputeDeformedBounds(plain, mesh.Points, mesh.Tetrahedra, displacements.data()),
+    expected, 1e-6));
+  std::fill(displacements.begin(), displacements.end(), NotANumber);
+  CHECK(ComputeDeformedBounds(plain, mesh.Points, mesh.Tetrahedra, displacements.data()).IsEmpty());
+}
+
+void TestLinks()
+{
+  std::mt19937 random(12);
+  const Lattice lattice = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.5, 0.7, 2.5));
+  const Extent& extent = lattice.VertexExtent;
+  const Mesh mesh = MakeLattice(
+    { 3, 3, 3 }, glm::dvec3(0.0, 4.0, -18.0), glm::dvec3(5.0, 12.0, -11.0), 0.3, 0.0, random);
+  const std::vector<float> displacements = MakeVectors(mesh.Points.size(), 5.0, random);
+  for (const bool extrapolate : { false, true })
+  {
+    const StaticMapping mapping =
+      BuildStaticMapping(extent, glm::dvec3(1.0), mesh.Points, mesh.Tetrahedra, extrapolate);
+    IndexBounds expected;
+    std::size_t i = 0;
+    for (int z = extent[4]; z <= extent[5]; ++z)
+    {
+      for (int y = extent[2]; y <= extent[3]; ++y)
+      {
+        for (int x = extent[0]; x <= extent[1]; ++x, ++i)
+        {
+          const VertexLink& link = mapping.Links[i];
+          if (link.Tetrahedron >= 0)
+          {
+            const Tetrahedron& nodes = mesh.Tetrahedra[link.Tetrahedron];
+            const double a = link.Weights[0];
+            const double b = link.Weights[1];
+            const double c = link.Weights[2];
+            expected.Add(GetScale(lattice) * glm::dvec3(x, y, z) +
+              a * GetVector(displacements, nodes[0]) + b * GetVector(displacements, nodes[1]) +
+              c * GetVector(displacements, nodes[2]) +
+              (1.0 - a - b - c) * GetVector(displacements, nodes[3]));
+          }
+        }
+      }
+    }
+    CHECK(
+      AreClose(ComputeDeformedBounds(lattice, mapping.Links, mesh.Tetrahedra, displacements.data()),
+        expected, 1e-9));
+  }
+  CHECK(ComputeDeformedBounds(lattice,
+    std::vector<VertexLink>(static_cast<std::size_t>(GetNumberOfPoints(extent))), mesh.Tetrahedra,
+    displacements.data())
+          .IsEmpty());
+}
+
+// All voxels, one by one.
+IndexBounds SearchVoxels(const Lattice& lattice, const DisplacementField& field)
+{
+  const Extent& extent = lattice.VertexExtent;
+  const auto& m = field.IndexToField;
+  IndexBounds bounds;
+  for (int z = extent[4]; z <= extent[5]; ++z)
+  {
+    for (int y = extent[2]; y <= extent[3]; ++y)
+    {
+      for (int x = extent[0]; x <= extent[1]; ++x)
+      {
+        bool inside = true;
+        glm::dvec3 sum(0.0);
+        int low[3];
+        double t[3];
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          const int last = field.Dimensions[axis] - 1;
+          double f = m[4 * axis] * x + m[4 * axis + 1] * y + m[4 * axis + 2] * z + m[4 * axis + 3];
+          inside = inside && f >= -1e-9 && f <= last + 1e-9;
+          // The offsets below are off by 1e-12; a point must not be mixed with its neighbour for
+          // that, which may not be finite.
+          f = std::abs(f - std::round(f)) < 1e-9 ? std::round(f) : f;
+          f = std::clamp(f, 0.0, static_cast<double>(last));
+          low[axis] = std::max(0, std::min(static_cast<int>(std::floor(f)), last - 1));
+          t[axis] = f - low[axis];
+        }
+        for (int corner = 0; corner < 8; ++corner)
+        {
+          double weight = 1.0;
+          std::int64_t index = 0;
+          for (int axis = 2; axis >= 0; --axis)
+          {
+            const int upper = corner >> axis & 1;
+            weight *= upper ? t[axis] : 1.0 - t[axis];
+            index = index * field.Dimensions[axis] +
+              std::min(low[axis] + upper, field.Dimensions[axis] - 1);
+          }
+          if (weight != 0.0)
+          {
+            sum += weight *
+              glm::dvec3(field.Vectors[3 * index], field.Vectors[3 * index + 1],
+                field.Vectors[3 * index + 2]);
+          }
+        }
+        if ((inside || field.Extrapolate) && std::isfinite(sum.x + sum.y + sum.z))
+        {
+          bounds.Add(GetScale(lattice) * glm::dvec3(x, y, z) + sum);
+        }
+      }
+    }
+  }
+  return bounds;
+}
+
+void TestField()
+{
+  std::mt19937 random(13);
+  const Lattice lattice = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.0, 0.7, 2.5));
+  const glm::dvec3 center(2.5, 8.0, -14.5);
+  struct Case
+  {
+    std::array<int, 3> Dimensions;
+    glm::dvec3 Step;   // of the field, in voxels
+    glm::dvec3 Center; // of the field, as an index of the volume
+    double Angle;
+    bool Exact;
+    bool ExactIfConstant;
+  };
+  const Case cases[] = {
+    // The volume's own points, some of them, and more.
+    { { { 14, 13, 12 } }, glm::dvec3(1.0), center, 0.0, true, true },
+    { { { 6, 5, 4 } }, glm::dvec3(1.0), center, 0.0, true, true },
+    { { { 10, 3, 24 } }, glm::dvec3(1.0), center, 0.0, true, true },
+    // Finer than the volume.
+    { { { 40, 41, 42 } }, glm::dvec3(0.4), center, 0.5, true, true },
+    // Coarser: covering all, in part, in part and turned, not at all; one point thick.
+    { { { 7, 7, 7 } }, glm::dvec3(2.6, 2.3, 2.7), center, 0.0, false, true },
+    { { { 4, 4, 4 } }, glm::dvec3(2.15, 1.7, 3.3), center + 1.3, 0.0, false, true },
+    { { { 9, 9, 9 } }, glm::dvec3(3.0), center, 0.6, false, true },
+    { { { 5, 6, 5 } }, glm::dvec3(1.7, 2.1, 2.3), center + 2.0, 0.6, false, false },
+    { { { 5, 6, 5 } }, glm::dvec3(1.7, 2.1, 2.3), center + 60.0, 0.6, false, true },
+    { { { 4, 1, 4 } }, glm::dvec3(2.0), center, 0.0, false, true },
+    { { { 1, 1, 1 } }, glm::dvec3(2.0), center, 0.0, false, true },
+  };
+  for (const Case& item : cases)
+  {
+    DisplacementField field;
+    field.Dimensions = item.Dimensions;
+    const double c = std::cos(item.Angle);
+    const double s = std::sin(item.Angle);
+    const glm::dvec3 rows[3] = { glm::dvec3(c, s, 0.0) / item.Step.x,
+      glm::dvec3(-s, c, 0.0) / item.Step.y, glm::dvec3(0.0, 0.0, 1.0) / item.Step.z };
+    for (int row = 0; row < 3; ++row)
+    {
+      for (int column = 0; column < 3; ++column)
+      {
+        field.IndexToField[4 * row + column] = rows[row][column];
+      }
+      field.IndexToField[4 * row + 3] =
+        0.5 * (item.Dimensions[row] - 1) - glm::dot(rows[row], item.Center);
+      if (item.Step == glm::dvec3(1.0))
+      {
+        field.IndexToField[4 * row + 3] = std::floor(field.IndexToField[4 * row + 3]) + 1e-12;
+      }
+    }
+    const std::size_t points =
+      static_cast<std::size_t>(item.Dimensions[0]) * item.Dimensions[1] * item.Dimensions[2];
+    for (const bool extrapolate : { false, true })
+    {
+      field.Extrapolate = extrapolate;
+      std::vector<float> vectors(3 * points);
+      for (std::size_t i = 0; i < vectors.size(); ++i)
+      {
+        vectors[i] = i % 3 == 0 ? 3.25F : (i % 3 == 1 ? -7.5F : 100.0F);
+      }
+      field.Vectors = vectors.data();
+      IndexBounds expected = SearchVoxels(lattice, field);
+      IndexBounds found = ComputeDeformedBounds(lattice, field);
+      CHECK(Contains(found, expected, 1e-9));
+      CHECK(!(item.ExactIfConstant || extrapolate) || AreClose(found, expected, 1e-9));
+      // No larger than the volume.
+      const glm::dvec3 shift(3.25, -7.5, 100.0);
+      CHECK(found.IsEmpty() ||
+        Contains({ GetScale(lattice) * glm::dvec3(-4.0, 2.0, -20.0) + shift,
+                   GetScale(lattice) * glm::dvec3(9.0, 14.0, -9.0) + shift },
+          found, 1e-9));
+
+      for (const bool broken : { false, true })
+      {
+        vectors = MakeVectors(points, 4.0, random);
+        vectors[0] = broken ? NotANumber : vectors[0];
+        vectors[vectors.size() - 1] =
+          broken ? std::numeric_limits<float>::infinity() : vectors[vectors.size() - 1];
+        field.Vectors = vectors.data();
+        expected = SearchVoxels(lattice, field);
+        found = ComputeDeformedBounds(lattice, field);
+        CHECK(Contains(found, expected, 1e-4));
+        CHECK(!item.Exact || AreClose(found, expected, 1e-4));
+        // Not absurdly large either: no further out than any vector takes a voxel.
+        IndexBounds reach;
+        for (const float value : vectors)
+        {
+          if (std::isfinite(value))
+          {
+            reach.Add(glm::dvec3(value));
+          }
+        }
+        reach.Min += GetScale(lattice) * glm::dvec3(-4.0, 2.0, -20.0);
+        reach.Max += GetScale(lattice) * glm::dvec3(9.0, 14.0, -9.0);
+        CHECK(found.IsEmpty() || Contains(reach, found, 1e-9));
+      }
+    }
+  }
+
+  DisplacementField empty;
+  CHECK(ComputeDeformedBounds(lattice, empty).IsEmpty());
+}
+
+void TestThreads()
+{
+  std::mt19937 random(14);
+  const Lattice lattice = MakeVolume({ { 0, 30, 0, 30, 0, 30 } }, glm::dvec3(1.0));
+  const Mesh mesh = MakeLattice({ 9, 9, 9 }, glm::dvec3(-3.0), glm::dvec3(35.0), 0.3, 0.0, random);
+  const std::vector<float> displacements = MakeVectors(mesh.Points.size(), 3.0, random);
+  const auto compute = [&]()
+  { return ComputeDeformedBounds(lattice, mesh.Points, mesh.Tetrahedra, displacements.data()); };
+  IndexBounds one;
+  IndexBounds two;
+  vtkSMPTools::LocalScope(vtkSMPTools::Config{ 1 }, [&]() { one = compute(); });
+  vtkSMPTools::LocalScope(vtkSMPTools::Config{ 2 }, [&]() { two = compute(); });
+  CHECK(one.Min == two.Min && one.Max == two.Max && !one.IsEmpty());
+}
+
+} // namespace
+
+int TestDeformedBounds(int, char*[])
+{
+  TestMesh();
+  TestLinks();
+  TestField();
+  TestThreads();
+  if (Failures() > 0)
+  {
+    std::cerr << Failures() << " checks failed\n";
+  }
+  return Failures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
