@@ -11,6 +11,9 @@
 // Which of the two holds depends only on the simplex whose interior the centre lies in, so that
 // all tetrahedra round it decide alike.
 //
+// Where the mesh folds over, several may write a voxel, and at the crease none. Further passes then
+// take every tetrahedron that holds the centre, and the winner's key decides.
+//
 // All arithmetic is exact: positions are integers in 1/256 voxel, and for a tetrahedron of e
 // voxels the edge functions are at most 2 (256 e)^3, which fits 64 bits up to 6,500 voxels.
 
@@ -110,11 +113,6 @@ typedef struct
   __global const uchar* Active;
 } SamplingMesh;
 
-static size_t VertexInSlab(int x, int y, int z, const KernelParameters* p)
-{
-  return ((size_t)(z - p->SlabFirst) * p->Size[1] + y) * p->Size[0] + x;
-}
-
 static size_t VertexInChunk(int x, int y, int z, const KernelParameters* p)
 {
   return ((size_t)(z - p->ChunkFirst) * p->Size[1] + y) * p->Size[0] + x;
@@ -142,12 +140,12 @@ static int LoadCell(
   for (int v = 0; v < 8; ++v)
   {
     const int o = v ^ mirror;
-    const int3 q =
-      vload3(VertexInSlab(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p), mesh.Positions);
-    vertices[v].x = q.x;
-    vertices[v].y = q.y;
-    vertices[v].z = q.z;
-    present |= (q.x != INT_MIN) << v;
+    __global const int* q =
+      mesh.Positions + PositionIndex(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+    vertices[v].x = q[0];
+    vertices[v].y = q[p->Size[0]];
+    vertices[v].z = q[2 * p->Size[0]];
+    present |= (q[0] != INT_MIN) << v;
   }
   return present;
 }
@@ -246,6 +244,10 @@ static int IsOwner(SamplingMesh mesh, int x, int y, int z, int tetrahedron, cons
     {
       inside &= ShiftsInside(f->Normals[k]);
     }
+  }
+  if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
+  {
+    return 1; // the winner is chosen by its key
   }
   if ((weights[0] && weights[1] && weights[2] && weights[3]) || (simplex & interior))
   {

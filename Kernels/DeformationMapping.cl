@@ -3,7 +3,8 @@
 // voxel), and the static state of the vertices.
 //
 // Positions are three ints a vertex, in 1/256 of an output voxel: rounding them makes every later
-// decision of the fill rule exact. A vertex without position has INT_MIN in x. What is
+// decision of the fill rule exact. They lie in rows: the x of a row of vertices, then their y, then
+// their z, so that several vertices load at once. A vertex without position has INT_MIN in x. What is
 // interpolated is the displacement and not the position: an undeformed vertex then stays exactly
 // where it was, however the deformation mesh looks and however large the volume is.
 //
@@ -12,7 +13,7 @@
 // output voxels. rest: for each index on x, then y, then z the undeformed position as a whole
 // number of 1/256 voxels and what misses to it.
 //
-// One work-item per vertex: global size (x, y, planes), guarded against rounding up.
+// A work-item takes every global-size(0)-th vertex of one row; global size (any, rows, planes).
 
 #pragma OPENCL FP_CONTRACT OFF
 
@@ -32,15 +33,10 @@ static float3 FieldIndex(const FieldParameters* field, int3 index)
     m[4] * i.x + m[5] * i.y + m[6] * i.z + m[7], m[8] * i.x + m[9] * i.y + m[10] * i.z + m[11]);
 }
 
-static int3 LocalIndex(const KernelParameters* p)
-{
-  return (int3)(get_global_id(0), get_global_id(1), p->PlanesBegin + (int)get_global_id(2));
-}
-
-static int IsOutside(int3 v, const KernelParameters* p)
-{
-  return v.x >= p->Size[0] || v.y >= p->Size[1] || v.z >= p->PlanesEnd;
-}
+// The vertices of a work-item, v being the local index.
+#define FOR_EACH_VERTEX(v, p)                                                                      \
+  int3 v = (int3)(get_global_id(0), get_global_id(1), p.PlanesBegin + (int)get_global_id(2));      \
+  for (; v.x < p.Size[0]; v.x += get_global_size(0))
 
 static size_t VertexIndex(int3 v, int firstPlane, const KernelParameters* p)
 {
@@ -53,14 +49,22 @@ static void StorePosition(__global const RestPosition* rest, __global int* posit
   const RestPosition x = rest[v.x];
   const RestPosition y = rest[p->Size[0] + v.y];
   const RestPosition z = rest[p->Size[0] + p->Size[1] + v.z];
-  const int3 moved = convert_int3_sat_rte(
-    displacement * 256.0f + (float3)(x.Fraction, y.Fraction, z.Fraction));
-  vstore3((int3)(x.Whole, y.Whole, z.Whole) + moved, VertexIndex(v, p->SlabFirst, p), positions);
+  // Clamped, because extrapolation can lead anywhere. rint() and a plain conversion are an
+  // instruction each where the rounding conversions are not.
+  const int3 moved = convert_int3(rint(clamp(
+    displacement * 256.0f + (float3)(x.Fraction, y.Fraction, z.Fraction), -1e9f, 1e9f)));
+  __global int* place = positions + PositionIndex(v.x, v.y, v.z, p);
+  place[0] = x.Whole + moved.x;
+  place[p->Size[0]] = y.Whole + moved.y;
+  place[2 * p->Size[0]] = z.Whole + moved.z;
 }
 
 static void StoreNoPosition(__global int* positions, int3 v, const KernelParameters* p)
 {
-  vstore3((int3)(INT_MIN, 0, 0), VertexIndex(v, p->SlabFirst, p), positions);
+  __global int* place = positions + PositionIndex(v.x, v.y, v.z, p);
+  place[0] = INT_MIN;
+  place[p->Size[0]] = 0;
+  place[2 * p->Size[0]] = 0;
 }
 
 // The deformation is a tetrahedral mesh.
@@ -68,25 +72,23 @@ __kernel void MapByMesh(__global const VertexLink* links, __global const uchar* 
   __global const int4* tetrahedra, __global const float4* nodes, __global const RestPosition* rest,
   __global int* positions, const KernelParameters p)
 {
-  const int3 v = LocalIndex(&p);
-  if (IsOutside(v, &p))
+  FOR_EACH_VERTEX(v, p)
   {
-    return;
+    const size_t i = VertexIndex(v, p.ChunkFirst, &p);
+    if (!(state[i] & DEFORMVOLUME_VERTEX_SOURCE))
+    {
+      StoreNoPosition(positions, v, &p);
+      continue;
+    }
+    const VertexLink link = links[i];
+    const int4 t = tetrahedra[link.Tetrahedron];
+    const float a = link.Weights[0];
+    const float b = link.Weights[1];
+    const float c = link.Weights[2];
+    const float d = 1.0f - a - b - c;
+    const float4 sum = nodes[t.x] * a + nodes[t.y] * b + nodes[t.z] * c + nodes[t.w] * d;
+    StorePosition(rest, positions, v, sum.xyz, &p);
   }
-  const size_t i = VertexIndex(v, p.ChunkFirst, &p);
-  if (!(state[i] & DEFORMVOLUME_VERTEX_SOURCE))
-  {
-    StoreNoPosition(positions, v, &p);
-    return;
-  }
-  const VertexLink link = links[i];
-  const int4 t = tetrahedra[link.Tetrahedron];
-  const float a = link.Weights[0];
-  const float b = link.Weights[1];
-  const float c = link.Weights[2];
-  const float d = 1.0f - a - b - c;
-  const float4 sum = nodes[t.x] * a + nodes[t.y] * b + nodes[t.z] * c + nodes[t.w] * d;
-  StorePosition(rest, positions, v, sum.xyz, &p);
 }
 
 // The deformation is a displacement field, trilinear between its points.
@@ -94,85 +96,73 @@ __kernel void MapByField(__global const uchar* state, __global const float4* vec
   __global const RestPosition* rest, __global int* positions, const FieldParameters field,
   const KernelParameters p)
 {
-  const int3 v = LocalIndex(&p);
-  if (IsOutside(v, &p))
+  FOR_EACH_VERTEX(v, p)
   {
-    return;
+    if (!(state[VertexIndex(v, p.ChunkFirst, &p)] & DEFORMVOLUME_VERTEX_SOURCE))
+    {
+      StoreNoPosition(positions, v, &p);
+      continue;
+    }
+    const int3 last = (int3)(field.Dimensions[0], field.Dimensions[1], field.Dimensions[2]) - 1;
+    const float3 f = clamp(FieldIndex(&field, v + (int3)(p.First[0], p.First[1], p.First[2])), 0.0f,
+      convert_float3(last));
+    const int3 low = convert_int3(floor(f));
+    const int3 high = min(low + 1, last);
+    const float3 t = f - convert_float3(low);
+    const size_t row = field.Dimensions[0];
+    const size_t plane = row * field.Dimensions[1];
+    __global const float4* lowLow = vectors + low.z * plane + low.y * row;
+    __global const float4* lowHigh = vectors + low.z * plane + high.y * row;
+    __global const float4* highLow = vectors + high.z * plane + low.y * row;
+    __global const float4* highHigh = vectors + high.z * plane + high.y * row;
+    // a + t (b - a) is exact for t = 0: no rounding where a voxel is a point of the field.
+    const float4 a = lowLow[low.x] + t.x * (lowLow[high.x] - lowLow[low.x]);
+    const float4 b = lowHigh[low.x] + t.x * (lowHigh[high.x] - lowHigh[low.x]);
+    const float4 c = highLow[low.x] + t.x * (highLow[high.x] - highLow[low.x]);
+    const float4 d = highHigh[low.x] + t.x * (highHigh[high.x] - highHigh[low.x]);
+    const float4 e = a + t.y * (b - a);
+    const float4 g = c + t.y * (d - c);
+    StorePosition(rest, positions, v, (e + t.z * (g - e)).xyz, &p);
   }
-  if (!(state[VertexIndex(v, p.ChunkFirst, &p)] & DEFORMVOLUME_VERTEX_SOURCE))
-  {
-    StoreNoPosition(positions, v, &p);
-    return;
-  }
-  const int3 last = (int3)(field.Dimensions[0], field.Dimensions[1], field.Dimensions[2]) - 1;
-  const float3 f = clamp(FieldIndex(&field, v + (int3)(p.First[0], p.First[1], p.First[2])), 0.0f,
-    convert_float3(last));
-  const int3 low = convert_int3(floor(f));
-  const int3 high = min(low + 1, last);
-  const float3 t = f - convert_float3(low);
-  const size_t row = field.Dimensions[0];
-  const size_t plane = row * field.Dimensions[1];
-  __global const float4* lowLow = vectors + low.z * plane + low.y * row;
-  __global const float4* lowHigh = vectors + low.z * plane + high.y * row;
-  __global const float4* highLow = vectors + high.z * plane + low.y * row;
-  __global const float4* highHigh = vectors + high.z * plane + high.y * row;
-  // a + t (b - a) is exact for t = 0: no rounding where a voxel is a point of the field.
-  const float4 a = lowLow[low.x] + t.x * (lowLow[high.x] - lowLow[low.x]);
-  const float4 b = lowHigh[low.x] + t.x * (lowHigh[high.x] - lowHigh[low.x]);
-  const float4 c = highLow[low.x] + t.x * (highLow[high.x] - highLow[low.x]);
-  const float4 d = highHigh[low.x] + t.x * (highHigh[high.x] - highHigh[low.x]);
-  const float4 e = a + t.y * (b - a);
-  const float4 g = c + t.y * (d - c);
-  StorePosition(rest, positions, v, (e + t.z * (g - e)).xyz, &p);
 }
 
 // State of the vertices, first pass: those are a source that the deformation moves and that are
 // not blanked.
 __kernel void MarkSourcesByMesh(__global const VertexLink* links, __global const uchar* blanked,
-  const int hasBlanked, __global uchar* state, const KernelParameters p)
+  const int hasBlanked, __global uchar* sources, const KernelParameters p)
 {
-  const int3 v = LocalIndex(&p);
-  if (IsOutside(v, &p))
+  FOR_EACH_VERTEX(v, p)
   {
-    return;
+    const size_t i = VertexIndex(v, p.ChunkFirst, &p);
+    const int source = links[i].Tetrahedron >= 0 && !(hasBlanked && blanked[i]);
+    sources[i] = source ? DEFORMVOLUME_VERTEX_SOURCE : 0;
   }
-  const size_t i = VertexIndex(v, p.ChunkFirst, &p);
-  const int source = links[i].Tetrahedron >= 0 && !(hasBlanked && blanked[i]);
-  state[i] = source ? DEFORMVOLUME_VERTEX_SOURCE : 0;
 }
 
 __kernel void MarkSourcesByField(const FieldParameters field, __global const uchar* blanked,
-  const int hasBlanked, __global uchar* state, const KernelParameters p)
+  const int hasBlanked, __global uchar* sources, const KernelParameters p)
 {
-  const int3 v = LocalIndex(&p);
-  if (IsOutside(v, &p))
+  FOR_EACH_VERTEX(v, p)
   {
-    return;
+    const size_t i = VertexIndex(v, p.ChunkFirst, &p);
+    const float3 f = FieldIndex(&field, v + (int3)(p.First[0], p.First[1], p.First[2]));
+    const int inside = f.x >= -FIELD_TOLERANCE && f.y >= -FIELD_TOLERANCE &&
+      f.z >= -FIELD_TOLERANCE && f.x <= field.Dimensions[0] - 1 + FIELD_TOLERANCE &&
+      f.y <= field.Dimensions[1] - 1 + FIELD_TOLERANCE &&
+      f.z <= field.Dimensions[2] - 1 + FIELD_TOLERANCE;
+    const int source = (inside || field.Extrapolate) && !(hasBlanked && blanked[i]);
+    sources[i] = source ? DEFORMVOLUME_VERTEX_SOURCE : 0;
   }
-  const size_t i = VertexIndex(v, p.ChunkFirst, &p);
-  const float3 f = FieldIndex(&field, v + (int3)(p.First[0], p.First[1], p.First[2]));
-  const int inside = f.x >= -FIELD_TOLERANCE && f.y >= -FIELD_TOLERANCE &&
-    f.z >= -FIELD_TOLERANCE && f.x <= field.Dimensions[0] - 1 + FIELD_TOLERANCE &&
-    f.y <= field.Dimensions[1] - 1 + FIELD_TOLERANCE &&
-    f.z <= field.Dimensions[2] - 1 + FIELD_TOLERANCE;
-  const int source = (inside || field.Extrapolate) && !(hasBlanked && blanked[i]);
-  state[i] = source ? DEFORMVOLUME_VERTEX_SOURCE : 0;
 }
 
-// Second pass: a vertex is interior when all vertices round it are sources and all tetrahedra of
-// the eight cells round it are active. Being wrong on the careful side costs time, not truth.
-__kernel void MarkInterior(
-  __global uchar* state, __global const uchar* active, const KernelParameters p)
+static int IsInterior(
+  __global const uchar* sources, __global const uchar* active, int3 v, const KernelParameters* p)
 {
-  const int3 v = LocalIndex(&p);
-  if (IsOutside(v, &p))
+  // Vertices of the planes beyond the layers of this chunk serve only as neighbours.
+  if (v.x == 0 || v.y == 0 || v.z == 0 || v.x == p->Size[0] - 1 || v.y == p->Size[1] - 1 ||
+    v.z == p->Size[2] - 1 || v.z < p->LayersBegin || v.z > p->LayersEnd)
   {
-    return;
-  }
-  if (v.x == 0 || v.y == 0 || v.z == 0 || v.x == p.Size[0] - 1 || v.y == p.Size[1] - 1 ||
-    v.z == p.Size[2] - 1)
-  {
-    return;
+    return 0;
   }
   for (int z = -1; z <= 1; ++z)
   {
@@ -180,28 +170,34 @@ __kernel void MarkInterior(
     {
       for (int x = -1; x <= 1; ++x)
       {
-        // The other work-items change only the other bit.
-        if (!(state[VertexIndex(v + (int3)(x, y, z), p.ChunkFirst, &p)] &
-              DEFORMVOLUME_VERTEX_SOURCE))
+        if (!sources[VertexIndex(v + (int3)(x, y, z), p->ChunkFirst, p)])
         {
-          return;
+          return 0;
         }
       }
     }
   }
-  if (p.HasActive)
+  for (int k = 0; p->HasActive && k < 8; ++k)
   {
-    for (int k = 0; k < 8; ++k)
+    const int3 c = v - (int3)(k & 1, k >> 1 & 1, k >> 2);
+    const size_t cell =
+      ((size_t)(c.z - p->ChunkFirst) * (p->Size[1] - 1) + c.y) * (p->Size[0] - 1) + c.x;
+    if ((active[cell] & 31) != 31)
     {
-      const int3 c = v - (int3)(k & 1, k >> 1 & 1, k >> 2);
-      const size_t cell =
-        ((size_t)(c.z - p.ChunkFirst) * (p.Size[1] - 1) + c.y) * (p.Size[0] - 1) + c.x;
-      if ((active[cell] & 31) != 31)
-      {
-        return;
-      }
+      return 0;
     }
   }
-  state[VertexIndex(v, p.ChunkFirst, &p)] =
-    DEFORMVOLUME_VERTEX_SOURCE | DEFORMVOLUME_VERTEX_INTERIOR;
+  return DEFORMVOLUME_VERTEX_INTERIOR;
+}
+
+// Second pass: a vertex is interior when all vertices round it are sources and all tetrahedra of
+// the eight cells round it are active. Being wrong on the careful side costs time, not truth.
+__kernel void MarkInterior(__global const uchar* sources, __global const uchar* active,
+  __global uchar* state, const KernelParameters p)
+{
+  FOR_EACH_VERTEX(v, p)
+  {
+    const size_t i = VertexIndex(v, p.ChunkFirst, &p);
+    state[i] = sources[i] ? sources[i] | IsInterior(sources, active, v, &p) : 0;
+  }
 }

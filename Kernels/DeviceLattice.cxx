@@ -23,7 +23,7 @@ DeviceLattice::DeviceLattice(OpenCLContext& context, const cl::CommandQueue& que
   const std::uint64_t planeBytes =
     static_cast<std::uint64_t>(plane) * std::max(bytesPerVoxel, sizeof(VertexLink));
   const std::uint64_t planes = allocationLimit / planeBytes;
-  const int neighbours = 3; // planes that a chunk has beyond its number of layers
+  const std::uint64_t neighbours = 4; // planes beyond the number of layers, and room to read ahead
   if (planes <= neighbours)
   {
     throw Error("A slice of the volume needs " + std::to_string(planeBytes) +
@@ -73,16 +73,18 @@ cl::Buffer DeviceLattice::Send(const void* data, std::size_t bytesPerElement,
 {
   const std::uint64_t layerBytes = static_cast<std::uint64_t>(elementsPerLayer) * bytesPerElement;
   const std::uint64_t bytes = layerBytes * static_cast<std::uint64_t>(end - begin);
-  if (bytes > this->AllocationLimit)
+  // Kernels may load whole vectors that reach over the end.
+  const std::uint64_t room = bytes + DEFORMVOLUME_READ_AHEAD * bytesPerElement;
+  if (room > this->AllocationLimit)
   {
-    throw Error("An array of the volume needs " + std::to_string(bytes) +
+    throw Error("An array of the volume needs " + std::to_string(room) +
       " bytes in one piece, and the device gives no more than " +
       std::to_string(this->AllocationLimit) + ".");
   }
   cl::Buffer buffer = previous;
-  if (deformvolume::GetMemory(buffer) != bytes)
+  if (deformvolume::GetMemory(buffer) != room)
   {
-    buffer = cl::Buffer(this->Context.GetContext(), CL_MEM_READ_ONLY, bytes);
+    buffer = cl::Buffer(this->Context.GetContext(), CL_MEM_READ_ONLY, room);
   }
   this->Queue.enqueueWriteBuffer(
     buffer, CL_TRUE, 0, bytes, static_cast<const char*>(data) + layerBytes * begin);
@@ -164,10 +166,17 @@ KernelParameters DeviceLattice::GetParameters(const LatticeChunk& chunk) const
 
 cl::NDRange DeviceLattice::GetVertexRange(int planes) const
 {
-  const std::size_t group = GetVertexGroup()[0];
+  const std::size_t group = this->GetVertexGroup()[0];
   const std::size_t row = static_cast<std::size_t>(this->GetSize(0));
-  return cl::NDRange((row + group - 1) / group * group, static_cast<std::size_t>(this->GetSize(1)),
-    static_cast<std::size_t>(planes));
+  const std::size_t items = group == 1 ? 1 : (row + group - 1) / group * group;
+  return cl::NDRange(
+    items, static_cast<std::size_t>(this->GetSize(1)), static_cast<std::size_t>(planes));
+}
+
+cl::NDRange DeviceLattice::GetVertexGroup() const
+{
+  // On a processor one work-item takes a whole row.
+  return cl::NDRange(this->Context.GetDevice().IsProcessor ? 1 : 64, 1, 1);
 }
 
 void DeviceLattice::UpdateState(const cl::Program& mapping, const FieldParameters* field)
@@ -182,11 +191,13 @@ void DeviceLattice::UpdateState(const cl::Program& mapping, const FieldParameter
   {
     KernelParameters p = this->GetParameters(chunk);
     const std::uint64_t bytes = static_cast<std::uint64_t>(p.Size[0]) * p.Size[1] *
-      static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin);
+        static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin) +
+      DEFORMVOLUME_READ_AHEAD;
     if (deformvolume::GetMemory(chunk.State) != bytes)
     {
       chunk.State = cl::Buffer(this->Context.GetContext(), CL_MEM_READ_WRITE, bytes);
     }
+    const cl::Buffer marked(this->Context.GetContext(), CL_MEM_READ_WRITE, bytes);
     if (field)
     {
       sources.setArg(0, *field);
@@ -199,20 +210,17 @@ void DeviceLattice::UpdateState(const cl::Program& mapping, const FieldParameter
     // one.
     sources.setArg(1, this->WithBlanked ? chunk.Blanked : this->RestPositions);
     sources.setArg(2, cl_int{ this->WithBlanked });
-    sources.setArg(3, chunk.State);
+    sources.setArg(3, marked);
     sources.setArg(4, p);
-    this->Queue.enqueueNDRangeKernel(
-      sources, cl::NullRange, this->GetVertexRange(p.PlanesEnd - p.PlanesBegin), GetVertexGroup());
-
-    // The neighbours of the outermost planes may lie in other chunks; these planes serve only as
-    // neighbours themselves.
-    p.PlanesBegin = chunk.LayersBegin;
-    p.PlanesEnd = chunk.LayersEnd + 1;
-    interior.setArg(0, chunk.State);
+    interior.setArg(0, marked);
     interior.setArg(1, this->WithActive ? chunk.Active : this->RestPositions);
-    interior.setArg(2, p);
-    this->Queue.enqueueNDRangeKernel(
-      interior, cl::NullRange, this->GetVertexRange(p.PlanesEnd - p.PlanesBegin), GetVertexGroup());
+    interior.setArg(2, chunk.State);
+    interior.setArg(3, p);
+    for (const cl::Kernel& kernel : { sources, interior })
+    {
+      this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
+        this->GetVertexRange(p.PlanesEnd - p.PlanesBegin), this->GetVertexGroup());
+    }
   }
   this->StateChanged = false;
 }

@@ -51,9 +51,9 @@ public:
   /// DeformationMapping.cl).
   const cl::Buffer& GetRestPositions() const { return this->RestPositions; }
 
-  /// Global size of a launch with one work-item per vertex of so many planes.
+  /// Global and work-group size of a launch over the vertices of so many planes.
   cl::NDRange GetVertexRange(int planes) const;
-  static cl::NDRange GetVertexGroup() { return cl::NDRange(64, 1, 1); }
+  cl::NDRange GetVertexGroup() const;
 
   /// Brings the state of the vertices up to date, where anything changed that it depends on.
   /// mapping: the program of the deformation mapping. field: null where the deformation is a mesh.

@@ -56,11 +56,26 @@ typedef struct
 #define DEFORMVOLUME_COUNT_OVERSTRETCHED 2
 #define DEFORMVOLUME_COUNTERS 3
 
+// Room behind the output buffers for the writes of lanes that hit nothing, in elements, and how
+// many work-items share it.
+#define DEFORMVOLUME_TRASH_PLACES 64
+#define DEFORMVOLUME_TRASH 4096
+// Elements that may be read behind the end of a buffer of vertices, by vector loads.
+#define DEFORMVOLUME_READ_AHEAD 64
+
 // State of a vertex of the sampling mesh.
 #define DEFORMVOLUME_VERTEX_SOURCE 1   // it has a deformed position and may be interpolated
 #define DEFORMVOLUME_VERTEX_INTERIOR 2 // all tetrahedra that it could belong to are there
 
-#ifndef __OPENCL_VERSION__
+#ifdef __OPENCL_VERSION__
+
+// Place of the x of a vertex's position; its y and z follow one and two rows later.
+static size_t PositionIndex(int x, int y, int z, const KernelParameters* p)
+{
+  return ((size_t)(z - p->SlabFirst) * p->Size[1] + y) * 3 * p->Size[0] + x;
+}
+
+#else
 } // namespace deformvolume
 #endif
 

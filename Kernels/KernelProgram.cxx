@@ -3,6 +3,8 @@
 
 #include "KernelSources.h"
 
+#include <algorithm>
+
 namespace deformvolume
 {
 namespace
@@ -79,6 +81,23 @@ std::string MakePreamble(const OpenCLContext& context, const std::vector<VolumeA
     "\n#define STORE_ARRAYS " + stores + "\n";
 }
 
+/// What LaneResampling.cl expects in front of it.
+std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<VolumeArray>& arrays)
+{
+  const cl_uint width = context.GetDevice().Device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
+  std::string list;
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    list += " DO(" + std::to_string(i) + ", " + GetTypeName(arrays[i].Type) + ", " +
+      std::to_string(8 * GetElementSize(arrays[i].Type)) + ")";
+  }
+  return "#define LANES " +
+    std::string(width >= 16 ? "16"
+        : width >= 8        ? "8"
+                            : "4") +
+    "\n#define LANE_ARRAYS(DO)" + list + "\n";
+}
+
 std::string GetSharedText()
 {
   return std::string(FiveTetrahedra_h) + KernelParameters_h;
@@ -106,9 +125,21 @@ cl::Program GetResamplingProgram(
         "a smaller volume or another device.");
     }
   }
+  const std::string lanes =
+    FitsLanes(arrays) ? MakeLanePreamble(context, arrays) + LaneResampling_cl : "";
   return context.GetProgram(
-    GetSharedText() + MakePreamble(context, arrays) + key + CellCoverage_cl + Resampling_cl,
+    GetSharedText() + MakePreamble(context, arrays) + key + CellCoverage_cl + Resampling_cl + lanes,
     Options);
+}
+
+bool FitsLanes(const std::vector<VolumeArray>& arrays)
+{
+  return std::all_of(arrays.begin(), arrays.end(),
+    [](const VolumeArray& array)
+    {
+      return !array.Categorical && array.Components == 1 &&
+        (array.Type == ElementType::Float32 || GetElementSize(array.Type) <= 2);
+    });
 }
 
 cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays)

@@ -16,6 +16,10 @@ cl::Program GetMappingProgram(OpenCLContext& context);
 cl::Program GetResamplingProgram(
   OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool wideKeys);
 
+/// Whether the kernel ResampleByLanes (LaneResampling.cl) can take these arrays. The program for
+/// the exact resampling holds it only then.
+bool FitsLanes(const std::vector<VolumeArray>& arrays);
+
 /// The published resampling (PublishedResampling.cl) for arrays of these types.
 cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays);
 

@@ -75,7 +75,8 @@ std::vector<Extent> OutputSlab::Split(const Extent& output, const std::vector<Vo
   }
   const std::uint64_t plane = static_cast<std::uint64_t>(GetSize(output, 0)) *
     static_cast<std::uint64_t>(GetSize(output, 1)) * widest;
-  const std::uint64_t planes = allocationLimit / plane;
+  const std::uint64_t trash = DEFORMVOLUME_TRASH * widest;
+  const std::uint64_t planes = allocationLimit > trash ? (allocationLimit - trash) / plane : 0;
   if (planes == 0)
   {
     throw Error("A slice of the output needs " + std::to_string(plane) +
@@ -102,8 +103,9 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   this->Queue = queue;
   this->SlabExtent = extent;
   this->WinnerSize = GetWinnerSize(lattice);
-  const auto voxels = static_cast<std::uint64_t>(GetNumberOfPoints(extent));
-  if (deformvolume::GetMemory(this->Winners) != voxels * this->WinnerSize)
+  this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(extent));
+  const std::uint64_t room = this->NumberOfVoxels + DEFORMVOLUME_TRASH;
+  if (deformvolume::GetMemory(this->Winners) != this->NumberOfVoxels * this->WinnerSize)
   {
     this->Winners = cl::Buffer();
   }
@@ -113,7 +115,7 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   {
     this->TupleSizes[i] =
       GetElementSize(arrays[i].Type) * static_cast<std::size_t>(arrays[i].Components);
-    Reserve(context, this->Arrays[i], voxels * this->TupleSizes[i]);
+    Reserve(context, this->Arrays[i], room * this->TupleSizes[i]);
     switch (arrays[i].Type)
     {
 #define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
@@ -124,7 +126,7 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
 #undef DEFORMVOLUME_CASE
     }
   }
-  Reserve(context, this->Coverage, voxels);
+  Reserve(context, this->Coverage, room);
   Fill<std::int8_t>(queue, this->Coverage, 0.0, events);
   this->NumberOfRows = static_cast<std::size_t>(
     (GetSize(lattice.VertexExtent, 1) - 1) * (GetSize(lattice.VertexExtent, 2) - 1));
@@ -134,8 +136,7 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
 
 void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events)
 {
-  const auto voxels = static_cast<std::uint64_t>(GetNumberOfPoints(this->SlabExtent));
-  Reserve(context, this->Winners, voxels * this->WinnerSize);
+  Reserve(context, this->Winners, this->NumberOfVoxels * this->WinnerSize);
   events.emplace_back();
   this->Queue.enqueueFillBuffer(this->Winners, std::numeric_limits<std::uint32_t>::max(), 0,
     deformvolume::GetMemory(this->Winners), nullptr, &events.back());
@@ -144,12 +145,12 @@ void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& 
 std::uint64_t OutputSlab::CountCovered(
   OpenCLContext& context, const std::vector<VolumeArray>& arrays, std::vector<cl::Event>& events)
 {
-  const auto voxels = static_cast<std::uint64_t>(GetNumberOfPoints(this->SlabExtent));
-  const std::size_t items = static_cast<std::size_t>((voxels + VoxelsPerItem - 1) / VoxelsPerItem);
+  const std::size_t items =
+    static_cast<std::size_t>((this->NumberOfVoxels + VoxelsPerItem - 1) / VoxelsPerItem);
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, items * sizeof(cl_uint));
   cl::Kernel kernel(GetResamplingProgram(context, arrays, this->WinnerSize == 8), "CountCovered");
   kernel.setArg(0, this->Coverage);
-  kernel.setArg(1, cl_ulong{ voxels });
+  kernel.setArg(1, cl_ulong{ this->NumberOfVoxels });
   kernel.setArg(2, sums);
   events.emplace_back();
   this->Queue.enqueueNDRangeKernel(
@@ -180,6 +181,12 @@ OutputSlab::Counts OutputSlab::ReadCounts()
   return counts;
 }
 
+bool OutputSlab::FitsLanes() const
+{
+  return this->NumberOfVoxels + DEFORMVOLUME_TRASH <=
+    static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max());
+}
+
 void OutputSlab::SetParameters(KernelParameters& parameters) const
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -198,11 +205,11 @@ void OutputSlab::Read(const DeformRequest& request)
   for (std::size_t i = 0; i < this->Arrays.size(); ++i)
   {
     this->Queue.enqueueReadBuffer(this->Arrays[i], CL_FALSE, 0,
-      deformvolume::GetMemory(this->Arrays[i]),
+      this->NumberOfVoxels * this->TupleSizes[i],
       static_cast<char*>(request.Outputs[i]) + offset * this->TupleSizes[i]);
   }
-  this->Queue.enqueueReadBuffer(this->Coverage, CL_FALSE, 0,
-    deformvolume::GetMemory(this->Coverage), request.Coverage + offset);
+  this->Queue.enqueueReadBuffer(
+    this->Coverage, CL_FALSE, 0, this->NumberOfVoxels, request.Coverage + offset);
   this->Queue.finish();
 }
 

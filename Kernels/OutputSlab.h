@@ -40,6 +40,9 @@ public:
     OpenCLContext& context, const std::vector<VolumeArray>& arrays, std::vector<cl::Event>& events);
   Counts ReadCounts();
 
+  /// Whether the kernel for processors, with its indices of 31 bits, can write the slab.
+  bool FitsLanes() const;
+
   /// Puts the output extent into the parameters of a launch.
   void SetParameters(KernelParameters& parameters) const;
 
@@ -63,6 +66,7 @@ private:
   cl::Buffer Counters;
   std::size_t WinnerSize = 4;
   std::size_t NumberOfRows = 0;
+  std::uint64_t NumberOfVoxels = 0;
 };
 
 } // namespace deformvolume

@@ -73,10 +73,10 @@ __kernel void ResamplePublished(__global const int* positions, __global const uc
     const int o = v ^ mirror;
     const size_t i = (y + (o >> 2)) * row + x + (o & 1);
     const int dz = o >> 1 & 1;
-    const int3 q = vload3((size_t)(z + dz - p.SlabFirst) * plane + i, positions);
-    vertices[v] = convert_float3(q) * (1.0f / 256.0f) -
+    __global const int* q = positions + PositionIndex(x + (o & 1), y + (o >> 2), z + dz, &p);
+    vertices[v] = (float3)(q[0], q[row], q[2 * row]) * (1.0f / 256.0f) -
       (float3)(p.OutputFirst[0], p.OutputFirst[1], p.OutputFirst[2]);
-    present |= (q.x != INT_MIN) << v;
+    present |= (q[0] != INT_MIN) << v;
     indices[v] = (size_t)(z + dz - p.ChunkFirst) * plane + i;
   }
   const int tetrahedra = p.HasActive

@@ -89,7 +89,10 @@ typedef struct
 {
   __global char* Coverage;
   __global KEY* Winners;
-  uint Writes; // of this work-item
+  // Counts of this work-item.
+  uint Writes;
+  uint Inverted;
+  uint Overstretched;
 } Output;
 
 // Of overlapping tetrahedra upright ones win, then the lowest cell. Within a cell the order of
@@ -256,104 +259,114 @@ static void ResampleTetrahedra(SamplingMesh mesh, int x, int y, int z, const Vec
   }
 }
 
+// One cell, by whichever of the two ways is right for it.
+static void ResampleCell(SamplingMesh mesh, int x, int y, int z, Output* output,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  Vector q[8];
+  const int present = LoadCell(mesh, x, y, z, p, q);
+  int tetrahedra = ActiveTetrahedra(mesh, x, y, z, p);
+  if (present == 0 || tetrahedra == 0)
+  {
+    return;
+  }
+  int interior = 0;
+  const int mirror = Mirror(x, y, z, p);
+  for (int v = 0; v < 8; ++v)
+  {
+    const int o = v ^ mirror;
+    const size_t i = VertexInChunk(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+    interior |= (mesh.State[i] & DEFORMVOLUME_VERTEX_INTERIOR) ? 1 << v : 0;
+  }
+  // Orientations, against the one that the parity of the cell asks for.
+  const int odd = (mirror ^ mirror >> 1 ^ mirror >> 2) & 1;
+  long determinants[5];
+  int inverted = 0;
+  int regular = tetrahedra == 31 && present == 255;
+  for (int t = 0; t < 5; ++t)
+  {
+    determinants[t] = 0;
+    const int needed = VerticesOf(t);
+    if (!(tetrahedra >> t & 1) || (present & needed) != needed)
+    {
+      regular = 0;
+      continue;
+    }
+    const Vector a = q[Tetrahedra[t][0]];
+    const Vector b = q[Tetrahedra[t][1]];
+    const Vector c = q[Tetrahedra[t][2]];
+    const Vector d = q[Tetrahedra[t][3]];
+    const Vector extent = Subtract(
+      Maximum(Maximum(a, b), Maximum(c, d)), Minimum(Minimum(a, b), Minimum(c, d)));
+    if (max(extent.x, max(extent.y, extent.z)) > MAXIMUM_STRETCH)
+    {
+      ++output->Overstretched;
+      tetrahedra &= ~(1 << t);
+      regular = 0;
+      continue;
+    }
+    determinants[t] = Determinant(a, b, c, d);
+    const int upright = odd != (t == 4) ? determinants[t] < 0 : determinants[t] > 0;
+    regular &= upright;
+    inverted |= (!upright && determinants[t] != 0) << t;
+  }
+  output->Inverted += popcount(inverted);
+  if (regular)
+  {
+    Vector low = q[0];
+    Vector high = q[0];
+    for (int v = 1; v < 8; ++v)
+    {
+      low = Minimum(low, q[v]);
+      high = Maximum(high, q[v]);
+    }
+    // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
+    const Candidates c = FindCandidates(
+      low, high, interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT, p);
+    if (!IsEmpty(c))
+    {
+      ResampleUprightCell(mesh, x, y, z, q, interior, c, output, p ARRAY_ARGUMENTS);
+    }
+  }
+  else
+  {
+    ResampleTetrahedra(mesh, x, y, z, q, determinants, tetrahedra, inverted, interior, output,
+      p ARRAY_ARGUMENTS);
+  }
+}
+
+static void AddCounts(
+  const Output* output, int y, int z, __global uint* counters, const KernelParameters* p)
+{
+  if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
+  {
+    return;
+  }
+  __global uint* row = counters + ((size_t)z * (p->Size[1] - 1) + y) * DEFORMVOLUME_COUNTERS;
+  const uint counts[DEFORMVOLUME_COUNTERS] = { output->Writes, output->Inverted,
+    output->Overstretched };
+  for (int i = 0; i < DEFORMVOLUME_COUNTERS; ++i)
+  {
+    if (counts[i])
+    {
+      atomic_add(row + i, counts[i]);
+    }
+  }
+}
+
 __kernel void Resample(__global const int* positions, __global const uchar* state,
   __global const uchar* active, __global char* coverage, __global KEY* winners,
   __global uint* counters, const KernelParameters p ARRAY_PARAMETERS)
 {
   const SamplingMesh mesh = { positions, state, active };
-  Output output = { coverage, winners, 0 };
-  uint invertedCount = 0;
-  uint overstretched = 0;
+  Output output = { coverage, winners, 0, 0, 0 };
   const int y = get_global_id(1);
   const int z = p.LayersBegin + (int)get_global_id(2);
   for (int x = get_global_id(0); x < p.Size[0] - 1; x += get_global_size(0))
   {
-    Vector q[8];
-    const int present = LoadCell(mesh, x, y, z, &p, q);
-    int tetrahedra = ActiveTetrahedra(mesh, x, y, z, &p);
-    if (present == 0 || tetrahedra == 0)
-    {
-      continue;
-    }
-    int interior = 0;
-    const int mirror = Mirror(x, y, z, &p);
-    for (int v = 0; v < 8; ++v)
-    {
-      const int o = v ^ mirror;
-      const size_t i = VertexInChunk(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), &p);
-      interior |= (state[i] & DEFORMVOLUME_VERTEX_INTERIOR) ? 1 << v : 0;
-    }
-    // Orientations, against the one that the parity of the cell asks for.
-    const int odd = (mirror ^ mirror >> 1 ^ mirror >> 2) & 1;
-    long determinants[5];
-    int inverted = 0;
-    int regular = tetrahedra == 31 && present == 255;
-    for (int t = 0; t < 5; ++t)
-    {
-      determinants[t] = 0;
-      const int needed = VerticesOf(t);
-      if (!(tetrahedra >> t & 1) || (present & needed) != needed)
-      {
-        regular = 0;
-        continue;
-      }
-      const Vector a = q[Tetrahedra[t][0]];
-      const Vector b = q[Tetrahedra[t][1]];
-      const Vector c = q[Tetrahedra[t][2]];
-      const Vector d = q[Tetrahedra[t][3]];
-      const Vector extent = Subtract(
-        Maximum(Maximum(a, b), Maximum(c, d)), Minimum(Minimum(a, b), Minimum(c, d)));
-      if (max(extent.x, max(extent.y, extent.z)) > MAXIMUM_STRETCH)
-      {
-        ++overstretched;
-        tetrahedra &= ~(1 << t);
-        regular = 0;
-        continue;
-      }
-      determinants[t] = Determinant(a, b, c, d);
-      const int upright = odd != (t == 4) ? determinants[t] < 0 : determinants[t] > 0;
-      regular &= upright;
-      inverted |= (!upright && determinants[t] != 0) << t;
-    }
-    invertedCount += popcount(inverted);
-    if (regular)
-    {
-      Vector low = q[0];
-      Vector high = q[0];
-      for (int v = 1; v < 8; ++v)
-      {
-        low = Minimum(low, q[v]);
-        high = Maximum(high, q[v]);
-      }
-      // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
-      const Candidates c = FindCandidates(low, high, interior == 255, &p);
-      if (!IsEmpty(c))
-      {
-        ResampleUprightCell(mesh, x, y, z, q, interior, c, &output, &p ARRAY_ARGUMENTS);
-      }
-    }
-    else
-    {
-      ResampleTetrahedra(mesh, x, y, z, q, determinants, tetrahedra, inverted, interior, &output,
-        &p ARRAY_ARGUMENTS);
-    }
+    ResampleCell(mesh, x, y, z, &output, &p ARRAY_ARGUMENTS);
   }
-  if (p.Pass == DEFORMVOLUME_PASS_DIRECT)
-  {
-    __global uint* row = counters + ((size_t)z * (p.Size[1] - 1) + y) * DEFORMVOLUME_COUNTERS;
-    if (output.Writes)
-    {
-      atomic_add(row + DEFORMVOLUME_COUNT_WRITES, output.Writes);
-    }
-    if (invertedCount)
-    {
-      atomic_add(row + DEFORMVOLUME_COUNT_INVERTED, invertedCount);
-    }
-    if (overstretched)
-    {
-      atomic_add(row + DEFORMVOLUME_COUNT_OVERSTRETCHED, overstretched);
-    }
-  }
+  AddCounts(&output, y, z, counters, &p);
 }
 
 #define VOXELS_PER_ITEM 4096

@@ -49,6 +49,36 @@ void CheckExtent(const Extent& extent, const char* what)
   }
 }
 
+// The kernels trust these indices: a wrong one would read beyond a buffer.
+void CheckIndices(const Tetrahedron* tetrahedra, std::size_t count, std::size_t numberOfNodes)
+{
+  for (std::size_t t = 0; t < count; ++t)
+  {
+    for (const std::int32_t node : tetrahedra[t])
+    {
+      if (node < 0 || static_cast<std::size_t>(node) >= numberOfNodes)
+      {
+        throw Error("Tetrahedron " + std::to_string(t) + " of the deformation mesh has the node " +
+          std::to_string(node) + ", but there are " + std::to_string(numberOfNodes) + ".");
+      }
+    }
+  }
+}
+
+void CheckLinks(const VertexLink* links, std::int64_t count, std::size_t numberOfTetrahedra)
+{
+  for (std::int64_t i = 0; i < count; ++i)
+  {
+    if (links[i].Tetrahedron >= 0 &&
+      static_cast<std::size_t>(links[i].Tetrahedron) >= numberOfTetrahedra)
+    {
+      throw Error("Voxel " + std::to_string(i) + " is linked to the tetrahedron " +
+        std::to_string(links[i].Tetrahedron) + ", but there are " +
+        std::to_string(numberOfTetrahedra) + ".");
+    }
+  }
+}
+
 /// The three floats of each point padded to the four that the device reads at once.
 std::vector<float> MakeVectors(const float* vectors, std::size_t count, const char* what)
 {
@@ -161,6 +191,7 @@ public:
     return buffer;
   }
 
+  bool UseLanes(Resampling method, const OutputSlab& output) const;
   void CheckRequest(const DeformRequest& request);
   void Map(const cl::Program& program, const LatticeChunk& chunk, const KernelParameters& p);
   void Launch(cl::Kernel& kernel, const KernelParameters& p, bool exact);
@@ -178,6 +209,7 @@ public:
   cl::Buffer Tetrahedra;
   cl::Buffer Nodes;
   std::size_t NumberOfNodes = 0;
+  std::size_t NumberOfTetrahedra = 0;
   bool NodesSet = false;
   FieldParameters Field = {};
   cl::Buffer FieldVectors;
@@ -323,10 +355,14 @@ void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOf
   {
     throw Error("The deformation mesh is empty.");
   }
+  CheckIndices(tetrahedra, numberOfTetrahedra, numberOfNodes);
   this->Impl->Send(
     [&]
     {
+      CheckLinks(links, GetNumberOfPoints(this->Impl->GetMesh().GetLattice().VertexExtent),
+        numberOfTetrahedra);
       this->Impl->GetMesh().SetLinks(links);
+      this->Impl->NumberOfTetrahedra = numberOfTetrahedra;
       this->Impl->Tetrahedra = this->Impl->SendBuffer(
         tetrahedra, numberOfTetrahedra * sizeof(Tetrahedron), this->Impl->Tetrahedra);
       this->Impl->NumberOfNodes = numberOfNodes;
@@ -400,6 +436,10 @@ void VolumeDeformer::SetDisplacementField(const DisplacementField& field)
 
 DeformReport VolumeDeformer::Deform(const DeformRequest& request)
 {
+  this->Impl->CheckRequest(request);
+  const DeviceLattice& mesh = this->Impl->GetMesh();
+  this->CheckMemory(mesh.GetLattice(), this->Impl->Arrays, request.OutputExtent,
+    this->Impl->NumberOfNodes, this->Impl->NumberOfTetrahedra, !mesh.HasLinks());
   return this->Impl->Guard([&] { return this->Impl->Deform(request); });
 }
 
@@ -421,6 +461,19 @@ void VolumeDeformer::Internals::CheckRequest(const DeformRequest& request)
   {
     throw Error("The request must have room for each array of the volume and for the coverage.");
   }
+}
+
+bool VolumeDeformer::Internals::UseLanes(Resampling method, const OutputSlab& output) const
+{
+  const bool fits = FitsLanes(this->Arrays) && output.FitsLanes();
+  if (method == Resampling::ExactByLanes && !fits)
+  {
+    throw Error("The resampling by lanes takes only arrays of one component that are float or "
+                "integers of 8 or 16 bits and not categorical, and outputs under 2^31 voxels.");
+  }
+  return fits &&
+    (method == Resampling::ExactByLanes ||
+      (method == Resampling::Exact && this->Context->GetDevice().IsProcessor));
 }
 
 void VolumeDeformer::Internals::Map(
@@ -450,8 +503,8 @@ void VolumeDeformer::Internals::Map(
   kernel.setArg(i++, p);
   this->MappingEvents.emplace_back();
   this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
-    this->Mesh->GetVertexRange(p.PlanesEnd - p.PlanesBegin), DeviceLattice::GetVertexGroup(),
-    nullptr, &this->MappingEvents.back());
+    this->Mesh->GetVertexRange(p.PlanesEnd - p.PlanesBegin), this->Mesh->GetVertexGroup(), nullptr,
+    &this->MappingEvents.back());
 }
 
 void VolumeDeformer::Internals::Launch(cl::Kernel& kernel, const KernelParameters& p, bool exact)
@@ -477,12 +530,13 @@ void VolumeDeformer::Internals::Launch(cl::Kernel& kernel, const KernelParameter
 
 void VolumeDeformer::Internals::Run(const DeformRequest& request, OutputSlab& output, int pass)
 {
-  const bool exact = request.Method == Resampling::Exact;
+  const bool exact = request.Method != Resampling::Published;
+  const bool lanes = this->UseLanes(request.Method, output) && pass == DEFORMVOLUME_PASS_DIRECT;
   const cl::Program mapping = GetMappingProgram(*this->Context);
   cl::Kernel kernel = exact
     ? cl::Kernel(GetResamplingProgram(
                    *this->Context, this->Arrays, GetWinnerSize(this->Mesh->GetLattice()) == 8),
-        "Resample")
+        lanes ? "ResampleByLanes" : "Resample")
     : cl::Kernel(GetPublishedProgram(*this->Context, this->Arrays), "ResamplePublished");
   this->Mesh->UpdateState(mapping, this->Mesh->HasLinks() ? nullptr : &this->Field);
   cl::Event previous;
@@ -501,7 +555,8 @@ void VolumeDeformer::Internals::Run(const DeformRequest& request, OutputSlab& ou
       p.Pass = pass;
       output.SetParameters(p);
       const std::uint64_t bytes = static_cast<std::uint64_t>(p.Size[0]) * p.Size[1] * 12 *
-        static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin);
+          static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin) +
+        DEFORMVOLUME_READ_AHEAD * sizeof(cl_int);
       if (GetMemory(this->Positions) < bytes)
       {
         this->Positions = cl::Buffer(this->Context->GetContext(), CL_MEM_READ_WRITE, bytes);
@@ -547,7 +602,6 @@ void VolumeDeformer::Internals::Run(const DeformRequest& request, OutputSlab& ou
 
 DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request)
 {
-  this->CheckRequest(request);
   this->MappingEvents.clear();
   this->ResamplingEvents.clear();
   this->LaunchesDone = 0;
@@ -563,24 +617,26 @@ DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request)
     this->Target.Prepare(*this->Context, this->Queue, slabs[s], this->Arrays,
       this->Mesh->GetLattice(), this->ResamplingEvents);
     this->Run(request, this->Target, DEFORMVOLUME_PASS_DIRECT);
-    const std::uint64_t covered =
+    std::uint64_t covered =
       this->Target.CountCovered(*this->Context, this->Arrays, this->ResamplingEvents);
     const OutputSlab::Counts counts = this->Target.ReadCounts();
-    report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
     if (s == 0) // every slab sees all tetrahedra
     {
       report.NumberOfInvertedTetrahedra = static_cast<std::int64_t>(counts.Inverted);
       report.NumberOfOverstretchedCells = static_cast<std::int64_t>(counts.Overstretched);
     }
-    // Every covered voxel was written once, or some were written again and a winner must be found.
-    if (request.Method == Resampling::Exact && counts.Writes > covered)
+    // Every covered voxel was written once, unless tetrahedra overlap; where the mesh is folded,
+    // voxels on the crease may also be missing.
+    if (request.Method != Resampling::Published && (counts.Writes > covered || counts.Inverted > 0))
     {
-      report.Overlapping = true;
+      report.Overlapping |= counts.Writes > covered;
       this->LaunchesExpected += 2 * launches;
       this->Target.PrepareWinners(*this->Context, this->ResamplingEvents);
       this->Run(request, this->Target, DEFORMVOLUME_PASS_MARK);
       this->Run(request, this->Target, DEFORMVOLUME_PASS_WINNER);
+      covered = this->Target.CountCovered(*this->Context, this->Arrays, this->ResamplingEvents);
     }
+    report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
     this->Queue.finish();
     const Clock::time_point begin = Clock::now();
     this->Target.Read(request);

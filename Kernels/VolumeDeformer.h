@@ -90,8 +90,15 @@ struct DisplacementField
 
 enum class Resampling
 {
-  /// The exact fill rule: every covered voxel is written by exactly one tetrahedron.
+  /// The exact fill rule: every covered voxel is written by exactly one tetrahedron. The kernel is
+  /// chosen by device and arrays.
   Exact,
+  /// The same with the kernel that takes one cell after the other: any arrays, any device.
+  ExactByCell,
+  /// The same with the kernel for processors, several cells in the lanes of vector registers; an
+  /// Error where the arrays are not all linear, of one component, and float or integers of 8 or
+  /// 16 bits.
+  ExactByLanes,
   /// The published kernel, kept as the yardstick of benchmarks: float tolerance, racing writes.
   Published
 };
