@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation.h"
 
+#include "ParallelFor.h"
 #include "VectorArray.h"
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
-#include "vtkSMPTools.h"
 
 #include <atomic>
 #include <cmath>
@@ -92,7 +92,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
   {
     vectors = ReadPoints(shape, MESH);
     const std::vector<glm::dvec3> start = ReadPoints(rest, REST);
-    vtkSMPTools::For(0, static_cast<vtkIdType>(vectors.size()),
+    ParallelFor(0, static_cast<vtkIdType>(vectors.size()), 0,
       [&](vtkIdType begin, vtkIdType end)
       {
         for (vtkIdType i = begin; i < end; ++i)
@@ -151,7 +151,7 @@ void Deformation::ReadRestPoints(const MeshParts& rest, const DeformationSource&
   }
   std::vector<glm::dvec3> points = ReadPoints(rest, source.Rest ? REST : MESH);
   const glm::dmat4 transform = source.Volume.GetWorldToIndex();
-  vtkSMPTools::For(0, static_cast<vtkIdType>(points.size()),
+  ParallelFor(0, static_cast<vtkIdType>(points.size()), 0,
     [&](vtkIdType begin, vtkIdType end)
     {
       for (vtkIdType i = begin; i < end; ++i)
@@ -222,7 +222,7 @@ void Deformation::SetVectors(
   }
   this->Vectors.resize(3 * vectors.size());
   std::atomic<bool> tooFar{ false };
-  vtkSMPTools::For(0, static_cast<vtkIdType>(vectors.size()),
+  ParallelFor(0, static_cast<vtkIdType>(vectors.size()), 0,
     [&](vtkIdType begin, vtkIdType end)
     {
       for (vtkIdType i = begin; i < end; ++i)

@@ -2,11 +2,11 @@
 #include "VectorArray.h"
 
 #include "Error.h"
+#include "ParallelFor.h"
 
 #include "vtkArrayDispatch.h"
 #include "vtkDataArray.h"
 #include "vtkDataArrayRange.h"
-#include "vtkSMPTools.h"
 
 #include <atomic>
 #include <cmath>
@@ -27,7 +27,7 @@ struct VectorReader
   {
     const auto tuples = vtk::DataArrayTupleRange<3>(array);
     std::atomic<vtkIdType> bad{ NONE };
-    vtkSMPTools::For(0, tuples.size(),
+    ParallelFor(0, tuples.size(), 0,
       [&](vtkIdType begin, vtkIdType end)
       {
         for (vtkIdType i = begin; i < end; ++i)

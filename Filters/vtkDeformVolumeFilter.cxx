@@ -398,10 +398,23 @@ int vtkDeformVolumeFilter::RequestData(
                        "4,000 output voxels; these tetrahedra are skipped. Check the deformation, "
                        "or set a greater output spacing.");
   }
+  vtkInformation* imageInfo = image->GetInformation();
   if (outInfo->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
   {
-    image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(),
+    imageInfo->Set(vtkDataObject::DATA_TIME_STEP(),
       outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()));
+  }
+  else
+  {
+    for (vtkDataObject* data : { source.Shape, static_cast<vtkDataObject*>(volume) })
+    {
+      if (data->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
+      {
+        imageInfo->Set(vtkDataObject::DATA_TIME_STEP(),
+          data->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()));
+        break;
+      }
+    }
   }
   return 1;
 }
