@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds the module and wraps it for Python.
+# Builds the module, wraps it for Python, and installs both with a CMake package.
+
+set(deformvolume_package_directory "${CMAKE_INSTALL_LIBDIR}/cmake/DeformVolume")
 
 vtk_module_scan(
   MODULE_FILES "${CMAKE_CURRENT_SOURCE_DIR}/vtk.module"
@@ -18,7 +20,7 @@ function (deformvolume_build_module)
     SOVERSION "${PROJECT_VERSION_MAJOR}"
     LIBRARY_NAME_SUFFIX ""
     INSTALL_EXPORT DeformVolume
-    CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/DeformVolume"
+    CMAKE_DESTINATION "${deformvolume_package_directory}"
     HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/deformvolume"
     LIBRARY_DESTINATION "${CMAKE_INSTALL_LIBDIR}"
     TEST_DIRECTORY_NAME NONE)
@@ -32,7 +34,7 @@ if (DEFORMVOLUME_WRAP_PYTHON)
     PYTHON_PACKAGE deformvolume
     MODULE_DESTINATION "${DEFORMVOLUME_PYTHON_DIRECTORY}"
     LIBRARY_DESTINATION "${CMAKE_INSTALL_LIBDIR}"
-    CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/DeformVolume"
+    CMAKE_DESTINATION "${deformvolume_package_directory}"
     INSTALL_EXPORT ""
     INSTALL_HEADERS OFF
     BUILD_STATIC OFF)
@@ -44,3 +46,17 @@ if (DEFORMVOLUME_WRAP_PYTHON)
     FILES "${CMAKE_CURRENT_SOURCE_DIR}/Python/__init__.py"
     DESTINATION "${DEFORMVOLUME_PYTHON_DIRECTORY}/deformvolume")
 endif ()
+
+include(CMakePackageConfigHelpers)
+configure_package_config_file(
+  CMake/DeformVolumeConfig.cmake.in "${CMAKE_BINARY_DIR}/CMake/DeformVolumeConfig.cmake"
+  INSTALL_DESTINATION "${deformvolume_package_directory}"
+  NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file("${CMAKE_BINARY_DIR}/CMake/DeformVolumeConfigVersion.cmake"
+  COMPATIBILITY SameMinorVersion)
+install(
+  FILES
+    "${CMAKE_BINARY_DIR}/CMake/DeformVolumeConfig.cmake"
+    "${CMAKE_BINARY_DIR}/CMake/DeformVolumeConfigVersion.cmake"
+  DESTINATION "${deformvolume_package_directory}")
+install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/licenses/DeformVolume")

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # deformvolume_set_compile_options(<target>...): how all code of this project is compiled.
 
+# Without contraction, host arithmetic gives the same bits on processors with and without fused
+# multiply-add.
+set(DEFORMVOLUME_COMPILE_OPTIONS
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wall;-Wextra;-ffp-contract=off>)
+
 function (deformvolume_set_compile_options)
   foreach (target IN LISTS ARGN)
-    # Without contraction, host arithmetic gives the same bits on processors with and without fused
-    # multiply-add.
-    target_compile_options("${target}" PRIVATE
-      $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wall;-Wextra;-ffp-contract=off>)
+    target_compile_options("${target}" PRIVATE ${DEFORMVOLUME_COMPILE_OPTIONS})
   endforeach ()
 endfunction ()
 

@@ -15,6 +15,8 @@ set(deformvolume_vtk_components
   FiltersModeling
   ImagingCore
   vtksys)
+# Those that an installed DeformVolume needs.
+set(deformvolume_package_components ${deformvolume_vtk_components})
 if (DEFORMVOLUME_WRAP_PYTHON)
   # Another python3 that comes first on PATH would not know the modules of the system's VTK.
   if (NOT Python3_EXECUTABLE AND EXISTS "/usr/bin/python3")

@@ -28,16 +28,8 @@ set(helpers
   VolumeArrays
   vtkDeformVolumeFilterInternals)
 
-foreach (list IN ITEMS classes helpers)
-  list(TRANSFORM ${list} PREPEND "Filters/")
-  foreach (class IN LISTS ${list})
-    if (NOT EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/${class}.cxx")
-      message(WARNING "skipped: ${class}.cxx")
-      list(REMOVE_ITEM ${list} ${class})
-    endif ()
-  endforeach ()
-endforeach ()
-
+list(TRANSFORM classes PREPEND "Filters/")
+list(TRANSFORM helpers PREPEND "Filters/")
 vtk_module_add_module(DeformVolume::Filters
   CLASSES ${classes}
   PRIVATE_CLASSES ${helpers})
@@ -46,7 +38,11 @@ vtk_module_include(DeformVolume::Filters
   PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/Kernels")
 vtk_module_link(DeformVolume::Filters PRIVATE DeformVolumeKernels glm::glm)
 vtk_module_compile_options(DeformVolume::Filters PRIVATE
-  $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wall;-Wextra;-ffp-contract=off>)
+  ${DEFORMVOLUME_COMPILE_OPTIONS})
+if (CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND NOT APPLE AND NOT DEFORMVOLUME_SANITIZE)
+  # A missing symbol shows when the library is linked rather than when it is loaded.
+  vtk_module_link_options(DeformVolume::Filters PRIVATE "LINKER:--no-undefined")
+endif ()
 
 # TetGen is a program that runs as a process of its own; it need not be there at build time.
 if (DEFORMVOLUME_TETGEN_EXECUTABLE)
