@@ -96,10 +96,21 @@ IndexBounds GetWorldBoxBounds(const double* box, const ImageGeometry& image)
 Extent GetPadded(const Extent& extent, int padding)
 {
   Extent padded;
+  double voxels = 1.0;
   for (int axis = 0; axis < 3; ++axis)
   {
     padded[2 * axis] = extent[2 * axis] - padding;
     padded[2 * axis + 1] = extent[2 * axis + 1] + padding;
+    voxels *= static_cast<double>(GetSize(padded, axis));
+  }
+  // Far below 2^63, so that no count of bytes can overflow.
+  if (voxels > 281474976710656.0)
+  {
+    throw Error(
+      "The output would have more than 2^48 voxels: " + std::to_string(GetSize(padded, 0)) + " x " +
+      std::to_string(GetSize(padded, 1)) + " x " + std::to_string(GetSize(padded, 2)) +
+      ". Check the bounds, the output spacing, and that volume and deformation are in the same "
+      "world units.");
   }
   return padded;
 }

@@ -22,7 +22,8 @@ IndexBounds GetVolumeBounds(const ImageGeometry& volume, const glm::dvec3& scale
 /// indices of an image. Throws an Error where the box is not one.
 IndexBounds GetWorldBoxBounds(const double* box, const ImageGeometry& image);
 
-/// An extent with a border of so many voxels.
+/// An extent with a border of so many voxels. Throws an Error where it counts more voxels than any
+/// machine can hold or stream.
 Extent GetPadded(const Extent& extent, int padding);
 
 } // namespace deformvolume
