@@ -45,32 +45,33 @@ vtkDataArray* GetShownArray(vtkImageData* image)
   return scalars ? scalars : image->GetPointData()->GetArray(0);
 }
 
-// The box, in voxels from the first one, of what is shown.
-struct ShownBox
+// Some of the voxels that are shown: enough to aim a camera at them.
+struct ShownVoxels
 {
   double Threshold;
   int Dimensions[3];
-  int Box[6] = { VTK_INT_MAX, -1, VTK_INT_MAX, -1, VTK_INT_MAX, -1 };
+  std::vector<std::array<int, 3>> Indices;
 
   template <typename ArrayT>
   void operator()(ArrayT* array)
   {
     const auto tuples = vtk::DataArrayTupleRange(array);
-    auto tuple = tuples.cbegin();
-    for (int z = 0; z < this->Dimensions[2]; ++z)
+    int steps[3];
+    for (int axis = 0; axis < 3; ++axis)
     {
-      for (int y = 0; y < this->Dimensions[1]; ++y)
+      constexpr int samplesPerAxis = 64;
+      steps[axis] = 1 + (this->Dimensions[axis] - 1) / samplesPerAxis;
+    }
+    for (int z = 0; z < this->Dimensions[2]; z += steps[2])
+    {
+      for (int y = 0; y < this->Dimensions[1]; y += steps[1])
       {
-        for (int x = 0; x < this->Dimensions[0]; ++x, ++tuple)
+        for (int x = 0; x < this->Dimensions[0]; x += steps[0])
         {
-          if (static_cast<double>((*tuple)[0]) >= this->Threshold)
+          const vtkIdType row = y + static_cast<vtkIdType>(this->Dimensions[1]) * z;
+          if (static_cast<double>(tuples[x + this->Dimensions[0] * row][0]) >= this->Threshold)
           {
-            const int index[3] = { x, y, z };
-            for (int axis = 0; axis < 3; ++axis)
-            {
-              this->Box[2 * axis] = std::min(this->Box[2 * axis], index[axis]);
-              this->Box[2 * axis + 1] = std::max(this->Box[2 * axis + 1], index[axis]);
-            }
+            this->Indices.push_back({ { x, y, z } });
           }
         }
       }
@@ -78,42 +79,35 @@ struct ShownBox
   }
 };
 
-template <typename Worker>
-void Dispatch(vtkDataArray* array, Worker& worker)
+// Adds the world positions of what is shown; of the corners of the image where nothing is.
+void AddShownPoints(
+  vtkImageData* image, double threshold, std::vector<std::array<double, 3>>& points)
 {
-  if (!vtkArrayDispatch::Dispatch::Execute(array, worker))
+  ShownVoxels voxels;
+  voxels.Threshold = threshold;
+  image->GetDimensions(voxels.Dimensions);
+  vtkDataArray* array = GetShownArray(image);
+  if (!vtkArrayDispatch::Dispatch::Execute(array, voxels))
   {
-    worker(array);
+    voxels(array);
   }
-}
-
-// Corners, in world coordinates, of the box of what is shown.
-void AddCorners(vtkImageData* image, double threshold, std::vector<std::array<double, 3>>& corners)
-{
-  ShownBox box;
-  box.Threshold = threshold;
-  image->GetDimensions(box.Dimensions);
-  Dispatch(GetShownArray(image), box);
-  if (box.Box[1] < 0)
+  if (voxels.Indices.empty())
   {
-    for (int axis = 0; axis < 3; ++axis)
+    for (int corner = 0; corner < 8; ++corner)
     {
-      box.Box[2 * axis] = 0;
-      box.Box[2 * axis + 1] = box.Dimensions[axis] - 1;
+      voxels.Indices.push_back({ { (corner & 1) * (voxels.Dimensions[0] - 1),
+        (corner >> 1 & 1) * (voxels.Dimensions[1] - 1),
+        (corner >> 2 & 1) * (voxels.Dimensions[2] - 1) } });
     }
   }
   int extent[6];
   image->GetExtent(extent);
-  for (int corner = 0; corner < 8; ++corner)
+  for (const auto& index : voxels.Indices)
   {
-    int index[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      index[axis] = extent[2 * axis] + box.Box[2 * axis + (corner >> axis & 1)];
-    }
     std::array<double, 3> point;
-    image->TransformIndexToPhysicalPoint(index, point.data());
-    corners.push_back(point);
+    image->TransformIndexToPhysicalPoint(
+      extent[0] + index[0], extent[2] + index[1], extent[4] + index[2], point.data());
+    points.push_back(point);
   }
 }
 
@@ -169,47 +163,47 @@ vtkSmartPointer<vtkVolumeProperty> MakeProperty(double threshold, double maximum
   return property;
 }
 
-// Puts the camera as near as all corners are still seen.
+// Puts the camera as near as all points are still seen.
 void AimCamera(vtkCamera* camera, const std::array<double, 3>& view,
-  const std::vector<std::array<double, 3>>& corners)
+  const std::vector<std::array<double, 3>>& points)
 {
-  double box[6];
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    box[2 * axis] = box[2 * axis + 1] = corners.front()[axis];
-    for (const auto& corner : corners)
-    {
-      box[2 * axis] = std::min(box[2 * axis], corner[axis]);
-      box[2 * axis + 1] = std::max(box[2 * axis + 1], corner[axis]);
-    }
-  }
-  double center[3];
-  double back[3];
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    center[axis] = 0.5 * (box[2 * axis] + box[2 * axis + 1]);
-    back[axis] = view[axis];
-  }
+  // The axes of the camera: to the right, upwards and to the viewer.
+  double axes[3][3];
+  double* right = axes[0];
+  double* up = axes[1];
+  double* back = axes[2];
+  std::copy(view.begin(), view.end(), back);
   vtkMath::Normalize(back);
-  double up[3] = { 0.0, 0.0, 1.0 };
-  if (std::abs(back[2]) > 0.99)
-  {
-    up[1] = 1.0;
-    up[2] = 0.0;
-  }
-  double right[3];
-  vtkMath::Cross(up, back, right);
+  const bool fromAbove = std::abs(back[2]) > 0.99;
+  const double head[3] = { 0.0, fromAbove ? 1.0 : 0.0, fromAbove ? 0.0 : 1.0 };
+  vtkMath::Cross(head, back, right);
   vtkMath::Normalize(right);
   vtkMath::Cross(back, right, up);
 
+  double center[3] = { 0.0, 0.0, 0.0 };
+  for (const double* axis : axes)
+  {
+    double minimum = VTK_DOUBLE_MAX;
+    double maximum = -VTK_DOUBLE_MAX;
+    for (const auto& point : points)
+    {
+      minimum = std::min(minimum, vtkMath::Dot(point.data(), axis));
+      maximum = std::max(maximum, vtkMath::Dot(point.data(), axis));
+    }
+    for (int i = 0; i < 3; ++i)
+    {
+      center[i] += 0.5 * (minimum + maximum) * axis[i];
+    }
+  }
+
   constexpr double viewAngle = 30.0;
-  constexpr double border = 1.05;
+  constexpr double border = 1.12;
   const double tangent = std::tan(vtkMath::RadiansFromDegrees(0.5 * viewAngle)) / border;
   double distance = 0.0;
-  for (const auto& corner : corners)
+  for (const auto& point : points)
   {
     double offset[3];
-    vtkMath::Subtract(corner.data(), center, offset);
+    vtkMath::Subtract(point.data(), center, offset);
     const double aside =
       std::max(std::abs(vtkMath::Dot(offset, right)), std::abs(vtkMath::Dot(offset, up)));
     distance = std::max(distance, vtkMath::Dot(offset, back) + aside / tangent);
@@ -289,10 +283,10 @@ void WritePicture(vtkImageData* before, vtkImageData* after, const PictureOption
   window->AddRenderer(left);
   window->AddRenderer(right);
 
-  std::vector<std::array<double, 3>> corners;
-  AddCorners(before, options.Threshold, corners);
-  AddCorners(after, options.Threshold, corners);
-  AimCamera(left->GetActiveCamera(), options.View, corners);
+  std::vector<std::array<double, 3>> points;
+  AddShownPoints(before, options.Threshold, points);
+  AddShownPoints(after, options.Threshold, points);
+  AimCamera(left->GetActiveCamera(), options.View, points);
   right->SetActiveCamera(left->GetActiveCamera());
   left->ResetCameraClippingRange();
   double clipping[2];
