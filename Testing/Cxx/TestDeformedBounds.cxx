@@ -323,6 +323,7 @@ void TestField()
     { { { 4, 4, 4 } }, glm::dvec3(2.15, 1.7, 3.3), center + 1.3, 0.0, false, true },
     { { { 9, 9, 9 } }, glm::dvec3(3.0), center, 0.6, false, true },
     { { { 5, 6, 5 } }, glm::dvec3(1.7, 2.1, 2.3), center + 2.0, 0.6, false, false },
+    { { { 2, 2, 2 } }, glm::dvec3(16.0), center + glm::dvec3(0.0, 14.0, 0.0), 0.8, false, false },
     { { { 5, 6, 5 } }, glm::dvec3(1.7, 2.1, 2.3), center + 60.0, 0.6, false, true },
     { { { 4, 1, 4 } }, glm::dvec3(2.0), center, 0.0, false, true },
     { { { 1, 1, 1 } }, glm::dvec3(2.0), center, 0.0, false, true },
@@ -363,6 +364,11 @@ void TestField()
       IndexBounds found = ComputeDeformedBounds(lattice, field);
       CHECK(Contains(found, expected, 1e-9));
       CHECK(!(item.ExactIfConstant || extrapolate) || AreClose(found, expected, 1e-9));
+      // The corners of what a turned field covers need not be voxels, but are within one of them.
+      IndexBounds grown = expected;
+      grown.Min -= GetScale(lattice);
+      grown.Max += GetScale(lattice);
+      CHECK(expected.IsEmpty() || Contains(grown, found, 1e-9));
       // No larger than the volume.
       const glm::dvec3 shift(3.25, -7.5, 100.0);
       CHECK(found.IsEmpty() ||
