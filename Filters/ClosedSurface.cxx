@@ -97,6 +97,24 @@ bool IsFlat(vtkPolyData* surface)
 
 vtkSmartPointer<vtkPolyData> CleanTriangles(vtkPolyData* surface)
 {
+  // The filters below drop or merge cells with such points without a word.
+  for (vtkCellArray* cells : { surface->GetPolys(), surface->GetStrips() })
+  {
+    vtkIdType size;
+    const vtkIdType* ids;
+    for (cells->InitTraversal(); cells->GetNextCell(size, ids);)
+    {
+      for (vtkIdType k = 0; k < size; ++k)
+      {
+        double point[3];
+        surface->GetPoint(ids[k], point);
+        if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2]))
+        {
+          throw Error("The surface has a point that is not finite (NaN or infinite).");
+        }
+      }
+    }
+  }
   auto geometry = vtkSmartPointer<vtkPolyData>::New();
   geometry->SetPoints(surface->GetPoints());
   geometry->SetPolys(surface->GetPolys());
@@ -125,15 +143,6 @@ void CheckClosedSurface(vtkPolyData* surface)
   if (surface->GetNumberOfPolys() == 0)
   {
     throw Error("The surface is empty: it has no polygons.");
-  }
-  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
-  {
-    double point[3];
-    surface->GetPoint(i, point);
-    if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2]))
-    {
-      throw Error("The surface has a point that is not finite (NaN or infinite).");
-    }
   }
   if (IsFlat(surface))
   {

@@ -12,11 +12,12 @@ class vtkPolyData;
 namespace deformvolume
 {
 
-/// Triangles only, coincident points merged, unused points dropped, double precision.
+/// Triangles only, coincident points merged, unused points dropped, double precision. Throws Error
+/// where a point is not finite.
 vtkSmartPointer<vtkPolyData> CleanTriangles(vtkPolyData* surface);
 
-/// Throws Error unless the surface has triangles, is finite, closed, manifold and not flat. TetGen
-/// ends by a crash on such input.
+/// Throws Error unless these triangles are some, closed, manifold and not flat. TetGen ends by a
+/// crash on anything else.
 void CheckClosedSurface(vtkPolyData* surface);
 
 /// Whether every edge belongs to exactly two triangles.

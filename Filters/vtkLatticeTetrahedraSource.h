@@ -69,6 +69,8 @@ protected:
   ~vtkLatticeTetrahedraSource() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputVector,

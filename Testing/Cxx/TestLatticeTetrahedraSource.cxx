@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lattices over boxes and volumes: misuse, then volumes, faces and places against sums by hand.
+#include "vtkLatticeTetrahedraSource.h"
+
+#include "MeshChecks.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkImageData.h>
+#include <vtkMatrix3x3.h>
+#include <vtkPoints.h>
+#include <vtkSphereSource.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <sstream>
+
+using namespace meshChecks;
+
+namespace
+{
+
+void SetRotation(vtkImageData* image, double sign)
+{
+  // A rotation that moves every axis; with sign -1 a left-handed matrix.
+  const double m[9] = { 2.0 / 3, -1.0 / 3, 2.0 / 3 * sign, 2.0 / 3, 2.0 / 3, -1.0 / 3 * sign,
+    -1.0 / 3, 2.0 / 3, 2.0 / 3 * sign };
+  image->SetDirectionMatrix(m);
+}
+
+// Two cells share a face exactly where they should: the boundary consists of the lattice's hull.
+void VerifyConforming(vtkUnstructuredGrid* mesh, const int nodes[3])
+{
+  const Summary summary = Summarize(mesh);
+  const int cells[3] = { nodes[0] - 1, nodes[1] - 1, nodes[2] - 1 };
+  VERIFY(mesh->GetNumberOfPoints() == vtkIdType(nodes[0]) * nodes[1] * nodes[2]);
+  VERIFY(mesh->GetNumberOfCells() == vtkIdType(5) * cells[0] * cells[1] * cells[2]);
+  VERIFY(summary.OverusedFaces == 0);
+  VERIFY(summary.OpenBoundaryEdges == 0);
+  VERIFY(
+    summary.BoundaryFaces == 4 * (cells[0] * cells[1] + cells[1] * cells[2] + cells[2] * cells[0]));
+  VERIFY(summary.SmallestVolume > 0.0);
+}
+
+void TestMisuse()
+{
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  FailureCheck check(source);
+  source->SetBounds(0, 0, 0, 1, 0, 1);
+  check.Fails("Bounds are empty");
+  source->SetBounds(0, 1, 2, 1, 0, 1);
+  check.Fails("Bounds are empty");
+  source->SetBounds(0, std::nan(""), 0, 1, 0, 1);
+  check.Fails("not finite");
+  source->SetBounds(0, 1, 0, 1, 0, std::numeric_limits<double>::infinity());
+  check.Fails("not finite");
+  source->SetBounds(0, 1, 0, 1, 0, 1);
+  source->SetNumberOfNodes(2, 1, 2);
+  check.Fails("at least 2 nodes");
+  source->SetNumberOfNodes(-5, 2, 2);
+  check.Fails("at least 2 nodes");
+  source->SetNumberOfNodes(100000, 100000, 100000);
+  check.Fails("more than can be stored");
+  source->SetNumberOfNodes(1 << 30, 2, 2);
+  check.Fails("more than can be stored");
+  source->SetNumberOfNodes(2, 2, 2);
+
+  vtkNew<vtkImageData> slice;
+  slice->SetExtent(3, 12, -4, 5, 7, 7);
+  source->SetInputData(slice);
+  check.Fails("1 voxels on axis 2");
+  vtkNew<vtkImageData> empty;
+  source->SetInputData(empty);
+  check.Fails("0 voxels on axis 0");
+  vtkNew<vtkImageData> flat;
+  flat->SetDimensions(4, 4, 4);
+  const double singular[9] = { 1, 0, 0, 0, 1, 1, 0, 0, 0 };
+  flat->SetDirectionMatrix(singular);
+  source->SetInputData(flat);
+  check.Fails("one plane");
+  vtkNew<vtkSphereSource> sphere;
+  source->SetInputConnection(sphere->GetOutputPort());
+  check.IsRefused("vtkImageData");
+
+  source->SetInputConnection(nullptr);
+  check.Succeeds();
+  VERIFY(source->GetOutput()->GetNumberOfCells() == 5);
+  source->SetMargin(-3.0);
+  VERIFY(source->GetMargin() == 0.0);
+}
+
+void TestBox()
+{
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  int nodes[3];
+  source->GetNumberOfNodes(nodes);
+  VERIFY(nodes[0] == 13 && nodes[1] == 13 && nodes[2] == 13);
+  FailureCheck check(source);
+  check.Succeeds();
+  VERIFY_NEAR(Summarize(source->GetOutput()).Volume, 1.0, 1e-12);
+  VerifyConforming(source->GetOutput(), nodes);
+  VERIFY(source->GetOutput()->GetPoints()->GetDataType() == VTK_DOUBLE);
+
+  const int uneven[3] = { 4, 2, 7 };
+  source->SetNumberOfNodes(uneven[0], uneven[1], uneven[2]);
+  source->SetBounds(-1, 5, 100, 101, -8, -5);
+  check.Succeeds();
+  vtkUnstructuredGrid* mesh = source->GetOutput();
+  VerifyConforming(mesh, uneven);
+  VERIFY_NEAR(Summarize(mesh).Volume, 18.0, 1e-11);
+  // Corner tetrahedra have a sixth of their cell, the central one a third, in this order.
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkUnstructuredGrid> one;
+    one->SetPoints(mesh->GetPoints());
+    one->Allocate(1);
+    one->InsertNextCell(VTK_TETRA, mesh->GetCell(cell)->GetPointIds());
+    VERIFY_NEAR(Summarize(one).Volume, cell % 5 == 4 ? 1.0 / 3 : 1.0 / 6, 1e-12);
+  }
+
+  source->SetMargin(0.5);
+  check.Succeeds();
+  double bounds[6];
+  source->GetOutput()->GetBounds(bounds);
+  const double expected[6] = { -1.5, 5.5, 99.5, 101.5, -8.5, -4.5 };
+  for (int i = 0; i < 6; ++i)
+  {
+    VERIFY_NEAR(bounds[i], expected[i], 1e-12);
+  }
+}
+
+void TestVolume()
+{
+  const int nodes[3] = { 5, 6, 3 };
+  const int extent[6] = { -7, 12, 4, 9, -3, 20 };
+  for (double sign : { 1.0, -1.0 })
+  {
+    vtkNew<vtkImageData> volume;
+    volume->SetExtent(const_cast<int*>(extent));
+    volume->SetOrigin(10.0, -20.0, 5.0);
+    volume->SetSpacing(0.5, 2.0, 1.25);
+    SetRotation(volume, sign);
+    vtkNew<vtkLatticeTetrahedraSource> source;
+    source->SetInputData(volume);
+    source->SetNumberOfNodes(nodes[0], nodes[1], nodes[2]);
+    FailureCheck check(source);
+    check.Succeeds();
+    vtkUnstructuredGrid* mesh = source->GetOutput();
+    VerifyConforming(mesh, nodes);
+    VERIFY_NEAR(Summarize(mesh).Volume, (19 * 0.5) * (5 * 2.0) * (23 * 1.25), 1e-9);
+    // Each node against the volume's own transform.
+    for (vtkIdType node = 0; node < mesh->GetNumberOfPoints(); ++node)
+    {
+      const vtkIdType ijk[3] = { node % nodes[0], node / nodes[0] % nodes[1],
+        node / (nodes[0] * nodes[1]) };
+      double index[3];
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        index[axis] = extent[2 * axis] +
+          (extent[2 * axis + 1] - extent[2 * axis]) * static_cast<double>(ijk[axis]) /
+            (nodes[axis] - 1);
+      }
+      double place[3];
+      double point[3];
+      volume->TransformContinuousIndexToPhysicalPoint(index, place);
+      mesh->GetPoint(node, point);
+      VERIFY_NEAR(
+        std::hypot(place[0] - point[0], place[1] - point[1], place[2] - point[2]), 0.0, 1e-12);
+    }
+    source->SetMargin(2.0);
+    check.Succeeds();
+    VERIFY_NEAR(Summarize(source->GetOutput()).Volume,
+      (19 * 0.5 + 4) * (5 * 2.0 + 4) * (23 * 1.25 + 4), 1e-9);
+    // Back to the box.
+    source->SetInputData(nullptr);
+    source->SetMargin(0.0);
+    check.Succeeds();
+    VERIFY_NEAR(Summarize(source->GetOutput()).Volume, 1.0, 1e-12);
+  }
+}
+
+void TestAbort()
+{
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback(
+    [](vtkObject* caller, unsigned long, void*, void* amount)
+    {
+      if (*static_cast<double*>(amount) > 0.4)
+      {
+        vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1);
+      }
+    });
+  const unsigned long tag = source->AddObserver(vtkCommand::ProgressEvent, abort);
+  source->Update();
+  VERIFY(source->GetOutput()->GetNumberOfPoints() == 0);
+  source->RemoveObserver(tag);
+  source->SetAbortExecute(0);
+  source->Update();
+  VERIFY_NEAR(Summarize(source->GetOutput()).Volume, 1.0, 1e-12);
+}
+
+void TestLarge()
+{
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  source->SetNumberOfNodes(80, 80, 80);
+  const auto start = std::chrono::steady_clock::now();
+  source->Update();
+  const double seconds =
+    std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::cout << "80 x 80 x 80 nodes: " << seconds << " s\n";
+  vtkUnstructuredGrid* mesh = source->GetOutput();
+  VERIFY(mesh->GetNumberOfPoints() == 512000);
+  VERIFY(mesh->GetNumberOfCells() == 2465195);
+  vtkIdType size;
+  const vtkIdType* ids;
+  mesh->GetCellPoints(2465194, size, ids);
+  VERIFY(size == 4 && *std::max_element(ids, ids + 4) < 512000);
+}
+
+} // namespace
+
+int TestLatticeTetrahedraSource(int, char*[])
+{
+  TestMisuse();
+  TestBox();
+  TestVolume();
+  TestAbort();
+  TestLarge();
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  std::ostringstream text;
+  source->Print(text);
+  VERIFY(text.str().find("NumberOfNodes: 13 13 13") != std::string::npos);
+  return Failures() ? EXIT_FAILURE : EXIT_SUCCESS;
+}

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Meshes of volumes and of closed surfaces: size, place and quality against known bodies.
+#include "vtkTetGenMesher.h"
+
+#include "MeshChecks.h"
+
+#include <vtkCubeSource.h>
+#include <vtkDoubleArray.h>
+#include <vtkImageData.h>
+#include <vtkMatrix3x3.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkSphereSource.h>
+#include <vtkTypeInt64Array.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <cstdlib>
+#include <sstream>
+
+using namespace meshChecks;
+
+namespace
+{
+
+using Body = std::function<double(const glm::dvec3&)>;
+
+const double Pi = 3.14159265358979323846;
+
+void VerifySound(const Summary& summary)
+{
+  VERIFY(summary.OverusedFaces == 0);
+  VERIFY(summary.OpenBoundaryEdges == 0);
+  VERIFY(summary.SmallestVolume > 0.0);
+}
+
+// A volume with a rotated direction matrix, uneven spacing and an extent that starts below 0.
+vtkSmartPointer<vtkImageData> MakeVolume(const Body& value)
+{
+  auto volume = vtkSmartPointer<vtkImageData>::New();
+  volume->SetExtent(-20, 30, 5, 75, -30, 10);
+  volume->SetSpacing(1.0, 0.75, 1.25);
+  volume->SetOrigin(100.0, -50.0, 25.0);
+  const double rotation[9] = { 2.0 / 3, -1.0 / 3, 2.0 / 3, 2.0 / 3, 2.0 / 3, -1.0 / 3, -1.0 / 3,
+    2.0 / 3, 2.0 / 3 };
+  volume->SetDirectionMatrix(rotation);
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("values");
+  for (vtkIdType i = 0; i < volume->GetNumberOfPoints(); ++i)
+  {
+    double point[3];
+    volume->GetPoint(i, point);
+    values->InsertNextValue(value(glm::dvec3(point[0], point[1], point[2])));
+  }
+  volume->GetPointData()->SetScalars(values);
+  return volume;
+}
+
+glm::dvec3 CenterOfVolume()
+{
+  vtkSmartPointer<vtkImageData> volume = MakeVolume([](const glm::dvec3&) { return 0.0; });
+  const double middle[3] = { 5.0, 40.0, -10.0 };
+  double center[3];
+  volume->TransformContinuousIndexToPhysicalPoint(middle, center);
+  return glm::dvec3(center[0], center[1], center[2]);
+}
+
+void TestBall()
+{
+  const glm::dvec3 center = CenterOfVolume();
+  const double radius = 20.0;
+  const double ball = 4.0 / 3 * Pi * radius * radius * radius;
+  vtkNew<vtkTetGenMesher> mesher;
+  FailureCheck check(mesher);
+  mesher->SetInputData(
+    MakeVolume([&](const glm::dvec3& point) { return -glm::distance(point, center); }));
+  mesher->AutomaticIsovalueOff();
+  mesher->SetIsovalue(-radius);
+  mesher->SetTargetEdgeLength(radius / 4);
+  mesher->SetMargin(0.0);
+  check.Succeeds();
+  const Summary summary = Summarize(mesher->GetOutput());
+  VerifySound(summary);
+  VERIFY_NEAR(summary.Volume / ball, 1.0, 0.03);
+  VERIFY_NEAR(glm::distance(summary.Centroid, center), 0.0, 0.05 * radius);
+  VERIFY_NEAR(summary.MeanEdge, radius / 4, radius / 8);
+  VERIFY_NEAR(summary.PoorShare, 0.0, 0.02);
+  VERIFY(mesher->GetUsedIsovalue() == -radius);
+  VERIFY(mesher->GetUsedTargetEdgeLength() == radius / 4);
+  std::cout << "Ball: " << mesher->GetOutput()->GetNumberOfCells() << " tetrahedra, volume "
+            << summary.Volume / ball << " of the ball's, mean edge "
+            << summary.MeanEdge / (radius / 4) << " of the target, poor " << summary.PoorShare
+            << '\n';
+
+  // The same again is the same mesh.
+  vtkNew<vtkUnstructuredGrid> first;
+  first->DeepCopy(mesher->GetOutput());
+  check.Succeeds();
+  VERIFY(first->GetNumberOfPoints() == mesher->GetOutput()->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < first->GetNumberOfPoints() && !Failures(); ++i)
+  {
+    double a[3];
+    double b[3];
+    first->GetPoint(i, a);
+    mesher->GetOutput()->GetPoint(i, b);
+    VERIFY(a[0] == b[0] && a[1] == b[1] && a[2] == b[2]);
+  }
+
+  for (double margin : { 0.5, 1.0 })
+  {
+    mesher->SetMargin(margin);
+    check.Succeeds();
+    const Summary wide = Summarize(mesher->GetOutput());
+    VerifySound(wide);
+    VERIFY_NEAR(
+      std::cbrt(wide.Volume / (4.0 / 3 * Pi)), radius + margin * radius / 4, 0.03 * radius);
+  }
+}
+
+void TestBodies()
+{
+  const glm::dvec3 center = CenterOfVolume();
+  const glm::dvec3 aside(13.0, 0.0, 0.0);
+  vtkNew<vtkTetGenMesher> mesher;
+  FailureCheck check(mesher);
+  mesher->SetTargetEdgeLength(3.0);
+  mesher->SetMargin(0.0);
+
+  // Two balls of radius 10 and 6, and an automatic isovalue between 40 and 90.
+  const double large = 4.0 / 3 * Pi * 1000.0;
+  const double small = 4.0 / 3 * Pi * 216.0;
+  mesher->SetInputData(MakeVolume(
+    [&](const glm::dvec3& point)
+    {
+      return glm::distance(point, center + aside) < 10.0 ||
+          glm::distance(point, center - aside) < 6.0
+        ? 90.0
+        : 40.0;
+    }));
+  check.Succeeds();
+  VERIFY(mesher->GetUsedIsovalue() > 45.0 && mesher->GetUsedIsovalue() < 85.0);
+  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / large, 1.0, 0.06);
+  mesher->LargestRegionOnlyOff();
+  check.Succeeds();
+  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (large + small), 1.0, 0.06);
+  mesher->LargestRegionOnlyOn();
+
+  // A cavity is filled.
+  mesher->SetInputData(MakeVolume(
+    [&](const glm::dvec3& point)
+    {
+      const double distance = glm::distance(point, center);
+      return distance < 15.0 && distance > 8.0 ? 90.0 : 40.0;
+    }));
+  check.Succeeds();
+  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (4.0 / 3 * Pi * 3375.0), 1.0, 0.06);
+
+  // A body that fills the volume is closed at the border, half a voxel beyond the outermost ones.
+  mesher->AutomaticIsovalueOff();
+  mesher->SetIsovalue(50.0);
+  mesher->SetSmoothingIterations(0);
+  mesher->SetInputData(MakeVolume([](const glm::dvec3&) { return 90.0; }));
+  check.Succeeds();
+  Summary summary = Summarize(mesher->GetOutput());
+  VerifySound(summary);
+  VERIFY_NEAR(summary.Volume / (51.0 * 71.0 * 0.75 * 41.0 * 1.25), 1.0, 0.06);
+  mesher->SetSmoothingIterations(20);
+
+  // Hidden voxels are outside.
+  vtkSmartPointer<vtkImageData> hidden =
+    MakeVolume([&](const glm::dvec3& point) { return 90.0 - glm::distance(point, center); });
+  mesher->SetIsovalue(75.0); // radius 15
+  hidden->AllocatePointGhostArray();
+  for (vtkIdType i = 0; i < hidden->GetNumberOfPoints(); ++i)
+  {
+    if (i / (51 * 71) < 20) // below the centre
+    {
+      hidden->GetPointGhostArray()->SetValue(i, vtkDataSetAttributes::HIDDENPOINT);
+    }
+  }
+  mesher->SetInputData(hidden);
+  check.Succeeds();
+  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (2.0 / 3 * Pi * 3375.0), 1.0, 0.1);
+}
+
+void TestLabels()
+{
+  // Two boxes whose labels differ by one, beyond what a double can tell apart.
+  const vtkTypeInt64 label = vtkTypeInt64(1) << 53;
+  vtkNew<vtkImageData> volume;
+  volume->SetDimensions(60, 40, 40);
+  vtkNew<vtkTypeInt64Array> labels;
+  labels->SetName("labels");
+  labels->SetNumberOfValues(volume->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < labels->GetNumberOfValues(); ++i)
+  {
+    const vtkIdType x = i % 60;
+    const vtkIdType y = i / 60 % 40;
+    const vtkIdType z = i / 2400;
+    const bool inside = x >= 6 && x < 54 && y >= 8 && y < 32 && z >= 8 && z < 32;
+    labels->SetValue(i, inside ? (x < 24 ? label : label + 1) : 0);
+  }
+  volume->GetPointData()->AddArray(labels);
+  vtkNew<vtkTetGenMesher> mesher;
+  FailureCheck check(mesher);
+  mesher->SetInputData(volume);
+  mesher->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "labels");
+  mesher->SetBodyModeToLabels();
+  mesher->SetTargetEdgeLength(4.0);
+  mesher->SetMargin(0.0);
+  check.Succeeds();
+  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (48 * 24 * 24), 1.0, 0.06);
+  mesher->AddLabel(label);
+  check.Succeeds();
+  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (18 * 24 * 24), 1.0, 0.06);
+  VERIFY(mesher->GetOutput()->GetBounds()[1] < 25.0);
+  mesher->ClearLabels();
+  mesher->AddLabel(label + 1);
+  VERIFY(mesher->GetNumberOfLabels() == 1 && mesher->GetLabel(0) == label + 1);
+  check.Succeeds();
+  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (30 * 24 * 24), 1.0, 0.06);
+  VERIFY(mesher->GetOutput()->GetBounds()[0] > 22.0);
+}
+
+void TestSurfaces()
+{
+  vtkNew<vtkTetGenMesher> mesher;
+  FailureCheck check(mesher);
+  vtkNew<vtkCubeSource> cube; // twelve triangles, to be split
+  cube->SetCenter(1e5, 0.0, 0.0);
+  mesher->SetInputConnection(cube->GetOutputPort());
+  mesher->SetTargetEdgeLength(0.2);
+  check.Succeeds();
+  Summary summary = Summarize(mesher->GetOutput());
+  VerifySound(summary);
+  VERIFY_NEAR(summary.Volume, 1.0, 1e-9);
+  VERIFY_NEAR(summary.MeanEdge, 0.2, 0.1);
+  double bounds[6];
+  mesher->GetOutput()->GetBounds(bounds);
+  VERIFY(bounds[0] == 1e5 - 0.5 && bounds[3] == 0.5);
+
+  vtkNew<vtkSphereSource> sphere; // far too fine, to be decimated
+  sphere->SetThetaResolution(100);
+  sphere->SetPhiResolution(100);
+  sphere->SetRadius(1.0);
+  mesher->SetInputConnection(sphere->GetOutputPort());
+  mesher->SetTargetEdgeLength(0.25);
+  check.Succeeds();
+  summary = Summarize(mesher->GetOutput());
+  VerifySound(summary);
+  VERIFY_NEAR(summary.Volume / (4.0 / 3 * Pi), 1.0, 0.03);
+  VERIFY_NEAR(summary.BoundaryFaces / (4.0 * Pi / (std::sqrt(3.0) / 4 * 0.0625)), 1.0, 0.1);
+  mesher->DecimationOff();
+  check.Succeeds();
+  summary = Summarize(mesher->GetOutput());
+  VERIFY(summary.BoundaryFaces == 2 * 100 * 98);
+}
+
+} // namespace
+
+int TestTetGenMesher(int, char*[])
+{
+  TestBall();
+  TestBodies();
+  TestLabels();
+  TestSurfaces();
+  vtkNew<vtkTetGenMesher> mesher;
+  std::ostringstream text;
+  mesher->Print(text);
+  VERIFY(text.str().find("RadiusEdgeRatio: 1.414") != std::string::npos);
+  return Failures() ? EXIT_FAILURE : EXIT_SUCCESS;
+}

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What vtkTetGenMesher must refuse, with which words, and that it works afterwards.
+#include "vtkTetGenMesher.h"
+
+#include "MeshChecks.h"
+
+#include <vtkAppendPolyData.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCubeSource.h>
+#include <vtkDoubleArray.h>
+#include <vtkImageData.h>
+#include <vtkPlaneSource.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkSphereSource.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+using namespace meshChecks;
+
+namespace
+{
+
+vtkSmartPointer<vtkImageData> MakeVolume(double value)
+{
+  auto volume = vtkSmartPointer<vtkImageData>::New();
+  volume->SetDimensions(20, 20, 20);
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("values");
+  values->SetNumberOfValues(volume->GetNumberOfPoints());
+  values->Fill(value);
+  volume->GetPointData()->SetScalars(values);
+  return volume;
+}
+
+std::string WriteScript(const std::filesystem::path& folder, const char* name, const char* lines)
+{
+  const std::filesystem::path path = folder / name;
+  std::ofstream(path) << "#!/bin/sh\n" << lines << '\n';
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  return path.string();
+}
+
+double SecondsSince(std::chrono::steady_clock::time_point start)
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void TestMisuseOfVolumes()
+{
+  vtkNew<vtkTetGenMesher> mesher;
+  FailureCheck check(mesher);
+  check.IsRefused("Input port 0");
+  vtkNew<vtkRectilinearGrid> rectilinear;
+  mesher->SetInputData(rectilinear);
+  check.IsRefused("vtkRectilinearGrid");
+
+  vtkNew<vtkImageData> empty;
+  mesher->SetInputData(empty);
+  check.Fails("0 voxels on axis 0");
+  vtkNew<vtkImageData> slice;
+  slice->SetDimensions(8, 8, 1);
+  slice->AllocateScalars(VTK_SHORT, 1);
+  mesher->SetInputData(slice);
+  check.Fails("1 voxels on axis 2");
+  vtkNew<vtkImageData> bare;
+  bare->SetDimensions(4, 4, 4);
+  mesher->SetInputData(bare);
+  check.Fails("no such point array");
+  mesher->SetInputData(MakeVolume(7.0));
+  check.Fails("all values of the volume are equal");
+  mesher->AutomaticIsovalueOff();
+  mesher->SetIsovalue(8.0);
+  check.Fails("no value of at least 8");
+  mesher->SetInputData(MakeVolume(std::nan("")));
+  check.Fails("no finite value");
+  mesher->SetBodyModeToLabels();
+  mesher->SetInputData(MakeVolume(0.0));
+  check.Fails("a label other than 0");
+  mesher->AddLabel(3);
+  check.Fails("one of the labels");
+  mesher->ClearLabels();
+  mesher->SetInputData(MakeVolume(3.0));
+  mesher->SetTargetEdgeLength(0.01);
+  check.Fails("at most 20 million");
+  mesher->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "absent");
+  check.Fails("no such point array");
+  mesher->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "values");
+  mesher->SetTargetEdgeLength(0.0);
+  check.Succeeds();
+  VERIFY(mesher->GetOutput()->GetNumberOfCells() > 0);
+}
+
+void TestMisuseOfSurfaces()
+{
+  vtkNew<vtkTetGenMesher> mesher;
+  FailureCheck check(mesher);
+  vtkNew<vtkPolyData> empty;
+  mesher->SetInputData(empty);
+  check.Fails("surface is empty");
+  vtkNew<vtkPlaneSource> plane;
+  mesher->SetInputConnection(plane->GetOutputPort());
+  check.Fails("surface is flat");
+  vtkNew<vtkSphereSource> open;
+  open->SetEndPhi(150.0);
+  mesher->SetInputConnection(open->GetOutputPort());
+  check.Fails("8 edges belong to one triangle only");
+
+  vtkNew<vtkCubeSource> cube;
+  cube->Update();
+  vtkNew<vtkPolyData> broken;
+  broken->DeepCopy(cube->GetOutput());
+  for (vtkIdType i : { 0, 8, 16 }) // the same corner
+  {
+    broken->GetPoints()->SetPoint(i, 0.0, std::nan(""), 0.0);
+  }
+  mesher->SetInputData(broken);
+  check.Fails("not finite");
+  vtkNew<vtkCubeSource> neighbor; // shares one edge
+  neighbor->SetCenter(1.0, 1.0, 0.0);
+  vtkNew<vtkAppendPolyData> both;
+  both->AddInputConnection(cube->GetOutputPort());
+  both->AddInputConnection(neighbor->GetOutputPort());
+  mesher->SetInputConnection(both->GetOutputPort());
+  check.Fails("not manifold: 1 edges");
+  neighbor->SetCenter(0.5, 0.45, 0.4); // runs into it
+  check.Fails("intersects itself. TetGen says:");
+  check.Fails("pairs of faces are intersecting");
+  mesher->SetInputConnection(cube->GetOutputPort());
+  check.Succeeds();
+  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
+}
+
+void TestMisuseOfTheProgram(const std::filesystem::path& folder)
+{
+  vtkNew<vtkCubeSource> cube;
+  vtkNew<vtkTetGenMesher> mesher;
+  mesher->SetInputConnection(cube->GetOutputPort());
+  FailureCheck check(mesher);
+  mesher->SetTetGenExecutable("/does/not/exist");
+  check.Fails("Cannot run TetGen as \"/does/not/exist\": No such file");
+  mesher->SetTetGenExecutable(folder.string());
+  check.Fails("Permission denied");
+  mesher->SetTetGenExecutable("");
+  setenv("DEFORMVOLUME_TETGEN", "no-program-of-this-name", 1);
+  check.Fails("\"no-program-of-this-name\"");
+  unsetenv("DEFORMVOLUME_TETGEN");
+
+  mesher->SetTetGenExecutable(
+    WriteScript(folder, "fails", "echo 'Opening x.'; echo 'the moon is wrong'; exit 3"));
+  check.Fails("It says: the moon is wrong");
+  mesher->SetTetGenExecutable(WriteScript(folder, "silent", "exit 0"));
+  check.Fails("result cannot be read");
+  mesher->SetTetGenExecutable(WriteScript(folder, "nothing",
+    "d=$(dirname $2); printf '1 3 0 0\\n0 0 0 0\\n' > $d/surface.1.node; "
+    "printf '0 4 0\\n' > $d/surface.1.ele"));
+  check.Fails("no tetrahedra");
+  mesher->SetTetGenExecutable(WriteScript(folder, "outside",
+    "d=$(dirname $2); printf '1 3 0 0\\n0 0 0 0\\n' > $d/surface.1.node; "
+    "printf '1 4 0\\n0 0 1 2 3\\n' > $d/surface.1.ele"));
+  check.Fails("result cannot be read");
+
+  const std::string slow = WriteScript(folder, "slow", "sleep 100; exit 0");
+  mesher->SetTetGenExecutable(slow);
+  mesher->SetTimeLimit(0.3);
+  auto start = std::chrono::steady_clock::now();
+  check.Fails("did not finish within the TimeLimit of 0.3 s");
+  VERIFY(SecondsSince(start) < 10.0);
+
+  mesher->SetTimeLimit(60.0);
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback(
+    [](vtkObject* caller, unsigned long, void*, void* amount)
+    {
+      if (*static_cast<double*>(amount) > 0.31) // while the program runs
+      {
+        vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1);
+      }
+    });
+  const unsigned long tag = mesher->AddObserver(vtkCommand::ProgressEvent, abort);
+  start = std::chrono::steady_clock::now();
+  check.Succeeds();
+  VERIFY(SecondsSince(start) < 10.0);
+  VERIFY(mesher->GetOutput()->GetNumberOfPoints() == 0);
+  mesher->RemoveObserver(tag);
+  mesher->SetAbortExecute(0);
+  mesher->SetTetGenExecutable("tetgen"); // on PATH
+  mesher->Update();
+  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
+}
+
+} // namespace
+
+int TestTetGenMesherErrors(int argc, char* argv[])
+{
+  std::filesystem::path folder = std::filesystem::temp_directory_path();
+  for (int i = 1; i + 1 < argc; ++i)
+  {
+    if (std::string(argv[i]) == "-T")
+    {
+      folder = argv[i + 1];
+    }
+  }
+  folder = std::filesystem::absolute(folder) / "TestTetGenMesherErrors";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder / "temporary");
+  setenv("TMPDIR", (folder / "temporary").c_str(), 1);
+
+  TestMisuseOfVolumes();
+  TestMisuseOfSurfaces();
+  TestMisuseOfTheProgram(folder);
+  VERIFY(std::filesystem::is_empty(folder / "temporary"));
+
+  setenv("TMPDIR", (folder / "absent").c_str(), 1);
+  vtkNew<vtkCubeSource> cube;
+  vtkNew<vtkTetGenMesher> mesher;
+  mesher->SetInputConnection(cube->GetOutputPort());
+  FailureCheck(mesher).Fails("Set the environment variable TMPDIR");
+  unsetenv("TMPDIR");
+  return Failures() ? EXIT_FAILURE : EXIT_SUCCESS;
+}
