@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the tests of vtkDeformVolumeFilter have in common: volumes and meshes of world functions,
+// and checks that count their failures.
+#ifndef FilterTesting_h
+#define FilterTesting_h
+
+#include "vtkDeformVolumeFilter.h"
+#include "vtkLatticeTetrahedraSource.h"
+#include "vtkTestErrorObserver.h"
+
+#include <vtkAOSDataArrayTemplate.h>
+#include <vtkCommand.h>
+#include <vtkDataArray.h>
+#include <vtkDataArrayRange.h>
+#include <vtkExecutive.h>
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
+#include <vtkMatrix3x3.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkSmartPointer.h>
+#include <vtkTypeTraits.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <iostream>
+#include <string>
+
+namespace filterTesting
+{
+
+inline int& GetNumberOfFailures()
+{
+  static int failures = 0;
+  return failures;
+}
+
+inline int GetExitCode()
+{
+  std::cout << GetNumberOfFailures() << " checks failed\n";
+  return GetNumberOfFailures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+#define VERIFY(condition)                                                                          \
+  do                                                                                               \
+  {                                                                                                \
+    if (!(condition))                                                                              \
+    {                                                                                              \
+      ++filterTesting::GetNumberOfFailures();                                                      \
+      std::cerr << __FILE__ << ':' << __LINE__ << ": not true: " << #condition << '\n';            \
+    }                                                                                              \
+  } while (false)
+
+#define VERIFY_EQUAL(actual, expected)                                                             \
+  do                                                                                               \
+  {                                                                                                \
+    const auto verifiedActual = (actual);                                                          \
+    const auto verifiedExpected = (expected);                                                      \
+    if (!(verifiedActual == verifiedExpected))                                                     \
+    {                                                                                              \
+      ++filterTesting::GetNumberOfFailures();                                                      \
+      std::cerr << __FILE__ << ':' << __LINE__ << ": " << #actual << " is " << verifiedActual      \
+                << " instead of " << verifiedExpected << '\n';                                     \
+    }                                                                                              \
+  } while (false)
+
+using Extent = std::array<int, 6>;
+
+inline std::ostream& operator<<(std::ostream& stream, const Extent& extent)
+{
+  for (const int bound : extent)
+  {
+    stream << bound << ' ';
+  }
+  return stream;
+}
+
+inline Extent GetExtent(vtkImageData* image)
+{
+  Extent extent;
+  image->GetExtent(extent.data());
+  return extent;
+}
+
+inline glm::dvec3 GetPoint(vtkDataSet* dataSet, vtkIdType id)
+{
+  glm::dvec3 point;
+  dataSet->GetPoint(id, &point.x);
+  return point;
+}
+
+using WorldFunction = std::function<double(const glm::dvec3&)>;
+using WorldMap = std::function<glm::dvec3(const glm::dvec3&)>;
+
+/// Adds a point array of a function of the world position, and makes it the scalars.
+template <typename T>
+void AddScalars(vtkImageData* image, const char* name, const WorldFunction& function)
+{
+  vtkSmartPointer<vtkDataArray> made;
+  made.TakeReference(vtkDataArray::CreateDataArray(vtkTypeTraits<T>::VTK_TYPE_ID));
+  auto* array = static_cast<vtkAOSDataArrayTemplate<T>*>(made.Get());
+  array->SetName(name);
+  array->SetNumberOfTuples(image->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < image->GetNumberOfPoints(); ++id)
+  {
+    array->SetValue(id, static_cast<T>(function(GetPoint(image, id))));
+  }
+  image->GetPointData()->SetScalars(array);
+}
+
+inline vtkSmartPointer<vtkImageData> MakeImage(const Extent& extent,
+  const glm::dvec3& spacing = glm::dvec3(1.0), const glm::dvec3& origin = glm::dvec3(0.0))
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetExtent(extent[0], extent[1], extent[2], extent[3], extent[4], extent[5]);
+  image->SetSpacing(spacing.x, spacing.y, spacing.z);
+  image->SetOrigin(origin.x, origin.y, origin.z);
+  return image;
+}
+
+/// A rotation by 30 degrees about z, then by 50 degrees about x.
+inline void SetObliqueDirection(vtkImageData* image)
+{
+  vtkNew<vtkMatrix3x3> direction;
+  const double a = std::cos(0.5235987755982988);
+  const double b = std::sin(0.5235987755982988);
+  const double c = std::cos(0.8726646259971648);
+  const double d = std::sin(0.8726646259971648);
+  const double elements[9] = { a, -b, 0, c * b, c * a, -d, d * b, d * a, c };
+  direction->DeepCopy(elements);
+  image->SetDirectionMatrix(direction);
+}
+
+/// A volume with scalars "value" that vary from voxel to voxel.
+inline vtkSmartPointer<vtkImageData> MakeVolume(const Extent& extent = { { 0, 9, 0, 8, 0, 7 } })
+{
+  auto volume = MakeImage(extent);
+  AddScalars<short>(volume, "value",
+    [](const glm::dvec3& p)
+    { return 100.0 * std::sin(0.7 * p.x) + 90.0 * std::cos(0.9 * p.y) + 35.0 * p.z; });
+  return volume;
+}
+
+/// A lattice of tetrahedra round the world bounds of a volume, somewhat larger.
+inline vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(
+  vtkImageData* volume, int nodes = 3, double margin = 0.5)
+{
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  source->SetNumberOfNodes(nodes, nodes, nodes);
+  double bounds[6];
+  volume->GetBounds(bounds);
+  for (int i = 0; i < 6; ++i)
+  {
+    bounds[i] += i % 2 == 0 ? -margin : margin;
+  }
+  source->SetBounds(bounds);
+  source->Update();
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  mesh->ShallowCopy(source->GetOutput());
+  return mesh;
+}
+
+/// Sets the displacements "displacement" that take each point to its image.
+inline void SetDisplacements(
+  vtkDataSet* dataSet, const WorldMap& map, const char* name = "displacement")
+{
+  vtkNew<vtkFloatArray> vectors;
+  vectors->SetName(name);
+  vectors->SetNumberOfComponents(3);
+  vectors->SetNumberOfTuples(dataSet->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < dataSet->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 point = GetPoint(dataSet, id);
+    const glm::dvec3 displacement = map(point) - point;
+    vectors->SetTuple(id, &displacement.x);
+  }
+  dataSet->GetPointData()->SetVectors(vectors);
+}
+
+inline WorldMap Shift(double x, double y, double z)
+{
+  return [=](const glm::dvec3& point) { return point + glm::dvec3(x, y, z); };
+}
+
+/// A filter on a volume and a deformation, with its errors and warnings caught.
+struct Deformed
+{
+  Deformed()
+  {
+    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
+    {
+      this->Filter->AddObserver(event, this->Observer);
+      this->Filter->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
+    }
+  }
+  Deformed(vtkDataObject* volume, vtkDataObject* deformation)
+    : Deformed()
+  {
+    this->Filter->SetInputData(volume);
+    this->Filter->SetDeformationData(deformation);
+  }
+
+  /// Errors of the filter since the last call.
+  int TakeErrors()
+  {
+    const std::string message = this->Observer->GetErrorMessage();
+    this->LastError = message;
+    int count = 0;
+    for (std::size_t at = message.find("ERROR: "); at != std::string::npos;
+         at = message.find("ERROR: ", at + 1))
+    {
+      ++count;
+    }
+    this->Observer->Clear();
+    this->ExecutiveObserver->Clear();
+    return count;
+  }
+  std::string TakeWarning()
+  {
+    const std::string message = this->Observer->GetWarningMessage();
+    this->Observer->Clear();
+    return message;
+  }
+
+  /// Updates without an error and gives the output.
+  vtkImageData* Update()
+  {
+    this->Filter->Update();
+    VERIFY_EQUAL(this->TakeErrors(), 0);
+    if (!this->LastError.empty())
+    {
+      std::cerr << this->LastError.substr(this->LastError.find("):") + 1);
+    }
+    return this->Filter->GetOutput();
+  }
+  vtkDataArray* GetValues() { return this->Filter->GetOutput()->GetPointData()->GetScalars(); }
+  bool IsCovered(vtkIdType id)
+  {
+    vtkDataArray* mask = this->Filter->GetOutput()->GetPointData()->GetArray("vtkValidPointMask");
+    return mask->GetComponent(id, 0) != 0.0;
+  }
+
+  vtkNew<vtkDeformVolumeFilter> Filter;
+  vtkNew<vtkTest::ErrorObserver> Observer;
+  vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
+  std::string LastError;
+};
+
+/// Same type, size and bits, component by component.
+inline bool HaveEqualBits(vtkDataArray* first, vtkDataArray* second)
+{
+  if (!first || !second || first->GetDataType() != second->GetDataType() ||
+    first->GetNumberOfComponents() != second->GetNumberOfComponents() ||
+    first->GetNumberOfTuples() != second->GetNumberOfTuples())
+  {
+    return false;
+  }
+  const std::size_t bytes = static_cast<std::size_t>(first->GetNumberOfValues()) *
+    static_cast<std::size_t>(first->GetDataTypeSize());
+  return std::memcmp(first->GetVoidPointer(0), second->GetVoidPointer(0), bytes) == 0;
+}
+
+/// Every point array, extent, origin, spacing and direction.
+inline bool AreEqual(vtkImageData* first, vtkImageData* second)
+{
+  bool equal = GetExtent(first) == GetExtent(second) &&
+    GetPoint(first, first->GetNumberOfPoints() - 1) ==
+      GetPoint(second, second->GetNumberOfPoints() - 1) &&
+    first->GetPointData()->GetNumberOfArrays() == second->GetPointData()->GetNumberOfArrays();
+  for (int i = 0; equal && i < first->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    equal = HaveEqualBits(first->GetPointData()->GetArray(i), second->GetPointData()->GetArray(i));
+  }
+  return equal;
+}
+
+} // namespace filterTesting
+
+#endif

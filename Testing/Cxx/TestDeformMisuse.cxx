@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bad input: one error that says what is wrong, an empty output, and a filter that works again.
+#include "FilterTesting.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkStringArray.h>
+
+#include <limits>
+
+using namespace filterTesting;
+
+namespace
+{
+
+/// A filter that works, is spoilt, has to say so once, and works again once it is mended.
+class Misuse
+{
+public:
+  Misuse()
+    : Volume(MakeVolume())
+    , Mesh(MakeMesh(Volume))
+    , Subject(Volume, Mesh)
+  {
+    SetDisplacements(this->Mesh, Shift(1.0, 0.0, 0.0));
+    this->Subject.Update();
+    this->Expected->DeepCopy(this->Subject.Filter->GetOutput());
+  }
+
+  void Expect(const char* what, const std::string& word)
+  {
+    for (int repeat = 0; repeat < 2; ++repeat)
+    {
+      this->Subject.Filter->Modified();
+      this->Subject.Filter->Update();
+      const int errors = this->Subject.TakeErrors();
+      const std::string message = this->Subject.LastError;
+      if (errors != 1 || message.find(word) == std::string::npos)
+      {
+        ++GetNumberOfFailures();
+        std::cerr << what << ": " << errors << " errors, expected one with \"" << word << "\"\n";
+        std::cerr << (message.empty() ? "" : message.substr(message.find("):") + 2)) << '\n';
+      }
+      vtkImageData* output = this->Subject.Filter->GetOutput();
+      if (output->GetNumberOfPoints() != 0 || output->GetPointData()->GetNumberOfArrays() != 0)
+      {
+        ++GetNumberOfFailures();
+        std::cerr << what << ": the output looks valid\n";
+      }
+    }
+    this->Mend();
+    vtkImageData* output = this->Subject.Update();
+    if (!AreEqual(output, this->Expected))
+    {
+      ++GetNumberOfFailures();
+      std::cerr << what << ": the filter does not work afterwards\n";
+    }
+  }
+
+  vtkDeformVolumeFilter* GetFilter() { return this->Subject.Filter; }
+  vtkSmartPointer<vtkUnstructuredGrid> CopyMesh()
+  {
+    auto copy = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    copy->DeepCopy(this->Mesh);
+    return copy;
+  }
+  vtkImageData* GetVolume() { return this->Volume; }
+
+private:
+  void Mend()
+  {
+    vtkDeformVolumeFilter* filter = this->GetFilter();
+    filter->SetInputData(this->Volume);
+    filter->SetDeformationData(this->Mesh);
+    filter->SetInputConnection(2, nullptr);
+    filter->SetInputArrayToProcess(
+      0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::VECTORS);
+    filter->SetDevice("");
+    filter->SetMemoryLimit(0);
+    filter->SetDisplacementScale(1.0);
+    filter->SetOutputSpacingModeToVolumeSpacing();
+    filter->SetOutputBoundsModeToDeformedBounds();
+  }
+
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh;
+  Deformed Subject;
+  vtkNew<vtkImageData> Expected;
+};
+
+void TestVolumes(Misuse& misuse)
+{
+  misuse.GetFilter()->SetInputConnection(0, nullptr);
+  misuse.Expect("no volume", "no volume");
+
+  for (const Extent& extent : { Extent{ { 0, 9, 0, 8, 3, 3 } }, Extent{ { 0, 0, 0, 8, 0, 3 } },
+         Extent{ { 1, 1, 2, 2, 3, 3 } } })
+  {
+    auto flat = MakeImage(extent);
+    AddScalars<short>(flat, "value", [](const glm::dvec3&) { return 1.0; });
+    misuse.GetFilter()->SetInputData(flat);
+    misuse.Expect("a flat volume", "two voxels");
+  }
+
+  vtkNew<vtkImageData> empty;
+  misuse.GetFilter()->SetInputData(empty);
+  misuse.Expect("an empty volume", "volume");
+
+  auto bare = MakeImage({ { 0, 4, 0, 4, 0, 4 } });
+  misuse.GetFilter()->SetInputData(bare);
+  misuse.Expect("a volume without arrays", "no numeric point array");
+
+  auto strange = MakeVolume();
+  strange->SetSpacing(1.0, 0.0, 1.0);
+  misuse.GetFilter()->SetInputData(strange);
+  misuse.Expect("a volume without spacing", "pacing");
+
+  auto unnumbered = MakeVolume();
+  strange->SetSpacing(1.0, 1.0, 1.0);
+  unnumbered->SetOrigin(std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
+  misuse.GetFilter()->SetInputData(unnumbered);
+  misuse.Expect("a volume with an origin that is no number", "rigin");
+
+  auto active = MakeVolume();
+  vtkNew<vtkFloatArray> mask;
+  mask->SetName("ActiveTetrahedra");
+  mask->SetNumberOfTuples(active->GetNumberOfCells());
+  active->GetCellData()->AddArray(mask);
+  misuse.GetFilter()->SetInputData(active);
+  misuse.Expect("active tetrahedra of another type", "ActiveTetrahedra");
+}
+
+void TestMeshes(Misuse& misuse)
+{
+  misuse.GetFilter()->SetInputConnection(1, nullptr);
+  misuse.Expect("no deformation", "no deformation");
+
+  vtkNew<vtkUnstructuredGrid> empty;
+  misuse.GetFilter()->SetDeformationData(empty);
+  misuse.Expect("an empty mesh", "no points");
+
+  auto pointsOnly = misuse.CopyMesh();
+  pointsOnly->SetCells(VTK_TETRA, vtkNew<vtkCellArray>());
+  misuse.GetFilter()->SetDeformationData(pointsOnly);
+  misuse.Expect("a mesh without cells", "no tetrahedra");
+
+  auto triangles = misuse.CopyMesh();
+  vtkNew<vtkCellArray> cells;
+  const vtkIdType triangle[3] = { 0, 1, 5 };
+  cells->InsertNextCell(3, triangle);
+  triangles->SetCells(VTK_TRIANGLE, cells);
+  misuse.GetFilter()->SetDeformationData(triangles);
+  misuse.Expect("a mesh of triangles", "no tetrahedra");
+
+  auto away = misuse.CopyMesh();
+  for (vtkIdType id = 0; id < away->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 point = GetPoint(away, id) + glm::dvec3(1000.0, 0.0, 0.0);
+    away->GetPoints()->SetPoint(id, &point.x);
+  }
+  misuse.GetFilter()->SetDeformationData(away);
+  misuse.Expect("a mesh outside the volume", "volume");
+
+  auto flat = misuse.CopyMesh();
+  for (vtkIdType id = 0; id < flat->GetNumberOfPoints(); ++id)
+  {
+    glm::dvec3 point = GetPoint(flat, id);
+    point.z = 3.0;
+    flat->GetPoints()->SetPoint(id, &point.x);
+  }
+  misuse.GetFilter()->SetDeformationData(flat);
+  misuse.Expect("a mesh of flat tetrahedra only", "flat");
+
+  for (const double bad :
+    { std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity() })
+  {
+    auto nowhere = misuse.CopyMesh();
+    nowhere->GetPoints()->SetPoint(3, 0.0, bad, 0.0);
+    misuse.GetFilter()->SetDeformationData(nowhere);
+    misuse.Expect("a point that is no number", "Point 3");
+
+    auto moved = misuse.CopyMesh();
+    moved->GetPointData()->GetVectors()->SetComponent(4, 2, bad);
+    misuse.GetFilter()->SetDeformationData(moved);
+    misuse.Expect("a displacement that is no number", "isplacement");
+  }
+
+  auto dangling = misuse.CopyMesh();
+  vtkNew<vtkCellArray> tetrahedra;
+  const vtkIdType tetrahedron[4] = { 0, 1, 5, 1000 };
+  tetrahedra->InsertNextCell(4, tetrahedron);
+  dangling->SetCells(VTK_TETRA, tetrahedra);
+  misuse.GetFilter()->SetDeformationData(dangling);
+  misuse.Expect("a cell with a point that is not there", "1000");
+
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  misuse.GetFilter()->SetDeformationData(blocks);
+  misuse.Expect("a composite dataset of nothing", "vtkUnstructuredGrid");
+}
+
+void TestDisplacements(Misuse& misuse)
+{
+  auto without = misuse.CopyMesh();
+  without->GetPointData()->Initialize();
+  misuse.GetFilter()->SetDeformationData(without);
+  misuse.Expect("no displacements", "SetInputArrayToProcess");
+
+  misuse.GetFilter()->SetInputArrayToProcess(
+    0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "absent");
+  misuse.Expect("an array that is not there", "absent");
+
+  auto pairs = misuse.CopyMesh();
+  vtkNew<vtkFloatArray> two;
+  two->SetName("two");
+  two->SetNumberOfComponents(2);
+  two->SetNumberOfTuples(pairs->GetNumberOfPoints());
+  two->Fill(0.0);
+  pairs->GetPointData()->AddArray(two);
+  misuse.GetFilter()->SetDeformationData(pairs);
+  misuse.GetFilter()->SetInputArrayToProcess(
+    0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "two");
+  misuse.Expect("displacements of two components", "three components");
+
+  auto few = misuse.CopyMesh();
+  vtkNew<vtkFloatArray> less;
+  less->SetName("less");
+  less->SetNumberOfComponents(3);
+  less->SetNumberOfTuples(few->GetNumberOfPoints() - 1);
+  less->Fill(0.0);
+  few->GetPointData()->AddArray(less);
+  misuse.GetFilter()->SetDeformationData(few);
+  misuse.GetFilter()->SetInputArrayToProcess(
+    0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "less");
+  misuse.Expect("too few displacements", "tuples");
+
+  misuse.GetFilter()->SetDisplacementScale(1e12);
+  misuse.Expect("displacements beyond all bounds", "DisplacementScale");
+
+  auto field = MakeImage({ { 0, 4, 0, 4, 0, 4 } });
+  AddScalars<float>(field, "scalar", [](const glm::dvec3&) { return 1.0; });
+  misuse.GetFilter()->SetDeformationData(field);
+  misuse.Expect("a displacement field without vectors", "displacement field");
+
+  vtkNew<vtkImageData> nothing;
+  misuse.GetFilter()->SetDeformationData(nothing);
+  misuse.Expect("an empty displacement field", "displacement field");
+
+  auto besides = MakeImage({ { 0, 4, 0, 4, 0, 4 } }, glm::dvec3(1.0), glm::dvec3(500.0, 0.0, 0.0));
+  SetDisplacements(besides, Shift(0.0, 0.0, 0.0));
+  misuse.GetFilter()->SetDeformationData(besides);
+  misuse.Expect("a displacement field beside the volume", "no voxel of the volume");
+}
+
+void TestRestMeshes(Misuse& misuse)
+{
+  vtkNew<vtkUnstructuredGrid> empty;
+  misuse.GetFilter()->SetRestData(empty);
+  misuse.Expect("an empty rest mesh", "no points");
+
+  auto other = MakeMesh(misuse.GetVolume(), 4);
+  misuse.GetFilter()->SetRestData(other);
+  misuse.Expect("a rest mesh with other points", "points");
+
+  auto fewer = misuse.CopyMesh();
+  vtkNew<vtkCellArray> cells;
+  for (vtkIdType cell = 1; cell < fewer->GetNumberOfCells(); ++cell)
+  {
+    cells->InsertNextCell(fewer->GetCell(cell));
+  }
+  fewer->SetCells(VTK_TETRA, cells);
+  misuse.GetFilter()->SetRestData(fewer);
+  misuse.Expect("a rest mesh with other cells", "cells");
+
+  auto field = MakeImage({ { -1, 10, -1, 10, -1, 10 } });
+  SetDisplacements(field, Shift(0.0, 0.0, 0.0));
+  misuse.GetFilter()->SetDeformationData(field);
+  misuse.GetFilter()->SetRestData(misuse.CopyMesh());
+  misuse.Expect("a rest mesh with a displacement field", "port 2");
+}
+
+void TestSettings(Misuse& misuse)
+{
+  misuse.GetFilter()->SetDevice("a device that nobody has");
+  misuse.Expect("an unknown device", "a device that nobody has");
+
+  misuse.GetFilter()->SetMemoryLimit(1000);
+  misuse.Expect("not enough memory", "1000");
+
+  misuse.GetFilter()->SetOutputSpacingModeToCustomSpacing();
+  misuse.GetFilter()->SetCustomSpacing(1.0, 0.0, 1.0);
+  misuse.Expect("no output spacing", "CustomSpacing");
+
+  misuse.GetFilter()->SetOutputBoundsModeToCustomBounds();
+  misuse.GetFilter()->SetCustomBounds(5.0, 1.0, 0.0, 1.0, 0.0, 1.0);
+  misuse.Expect("bounds the wrong way round", "CustomBounds");
+}
+
+} // namespace
+
+int TestDeformMisuse(int, char*[])
+{
+  Misuse misuse;
+  TestVolumes(misuse);
+  TestMeshes(misuse);
+  TestDisplacements(misuse);
+  TestRestMeshes(misuse);
+  TestSettings(misuse);
+
+  // Nothing is connected at all.
+  Deformed nothing;
+  nothing.Filter->Update();
+  VERIFY_EQUAL(nothing.TakeErrors(), 1);
+  return GetExitCode();
+}

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The ways to describe one deformation give one result: displacements, rest and deformed meshes,
+// composite datasets, other cells than tetrahedra, displacement fields.
+#include "FilterTesting.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellType.h>
+#include <vtkDoubleArray.h>
+#include <vtkMultiBlockDataSet.h>
+
+#include <algorithm>
+
+using namespace filterTesting;
+
+namespace
+{
+
+glm::dvec3 Bend(const glm::dvec3& p)
+{
+  return p +
+    glm::dvec3(0.6 * std::sin(0.4 * p.y), 0.5 * std::cos(0.5 * p.z), 0.4 * std::sin(0.3 * p.x));
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> Warp(vtkUnstructuredGrid* rest, const WorldMap& map)
+{
+  auto deformed = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  deformed->DeepCopy(rest);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (vtkIdType id = 0; id < rest->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 moved = map(GetPoint(rest, id));
+    points->InsertNextPoint(&moved.x);
+  }
+  deformed->SetPoints(points);
+  return deformed;
+}
+
+/// The largest difference of scalars where both cover a voxel, and how many only one covers.
+void Compare(vtkImageData* first, vtkImageData* second, double tolerance, int border)
+{
+  VERIFY_EQUAL(GetExtent(first), GetExtent(second));
+  double worst = 0.0;
+  int differences = 0;
+  for (vtkIdType id = 0; id < std::min(first->GetNumberOfPoints(), second->GetNumberOfPoints());
+       ++id)
+  {
+    const auto covers = [id](vtkImageData* image)
+    { return image->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(id, 0) != 0.0; };
+    differences += covers(first) != covers(second) ? 1 : 0;
+    if (covers(first) && covers(second))
+    {
+      worst = std::max(worst,
+        std::abs(first->GetPointData()->GetScalars()->GetComponent(id, 0) -
+          second->GetPointData()->GetScalars()->GetComponent(id, 0)));
+    }
+  }
+  if (!(worst <= tolerance) || differences > border)
+  {
+    ++GetNumberOfFailures();
+    std::cerr << "values differ by " << worst << " and coverage at " << differences << " voxels\n";
+  }
+}
+
+vtkSmartPointer<vtkImageData> MakeFloatVolume()
+{
+  auto volume = MakeImage({ { 0, 13, 0, 11, 0, 9 } });
+  AddScalars<float>(volume, "value",
+    [](const glm::dvec3& p) { return 30.0 * std::sin(0.7 * p.x) + 20.0 * p.y - 10.0 * p.z; });
+  return volume;
+}
+
+void TestMeshes()
+{
+  auto volume = MakeFloatVolume();
+  auto rest = MakeMesh(volume, 4);
+  SetDisplacements(rest, Bend);
+  Deformed byDisplacement(volume, rest);
+  vtkImageData* expected = byDisplacement.Update();
+  VERIFY(byDisplacement.Filter->GetNumberOfCoveredVoxels() > 1000);
+
+  // Positions in float and displacements in float differ by rounding, which may move a vertex by
+  // 1/256 voxel; the volume's slope is at most 41 a voxel.
+  const double tolerance = 41.0 * 3.0 / 256.0;
+  auto deformed = Warp(rest, Bend);
+  Deformed byRestMesh(volume, deformed);
+  byRestMesh.Filter->SetRestData(rest);
+  Compare(byRestMesh.Update(), expected, tolerance, 12);
+
+  // With port 2 connected displacements do not count.
+  byRestMesh.Filter->SetDisplacementScale(5.0);
+  Compare(byRestMesh.Update(), expected, tolerance, 12);
+
+  // The deformed mesh at rest changes nothing.
+  byRestMesh.Filter->SetDeformationData(rest);
+  Deformed still(volume, rest);
+  still.Filter->SetDisplacementScale(0.0);
+  VERIFY(AreEqual(byRestMesh.Update(), still.Update()));
+  VERIFY_EQUAL(GetExtent(still.Filter->GetOutput()), GetExtent(volume));
+}
+
+void TestChoiceOfDisplacements()
+{
+  auto volume = MakeFloatVolume();
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0), "first");
+  vtkSmartPointer<vtkDataArray> first = mesh->GetPointData()->GetVectors();
+  SetDisplacements(mesh, Shift(0.0, 2.0, 0.0), "second");
+  mesh->GetPointData()->AddArray(first);
+  Deformed deformed(volume, mesh);
+  VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { 0, 13, 2, 13, 0, 9 } }));
+  deformed.Filter->SetInputArrayToProcess(
+    0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "first");
+  VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { 1, 14, 0, 11, 0, 9 } }));
+  deformed.Filter->SetDisplacementScale(-3.0);
+  VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { -3, 10, 0, 11, 0, 9 } }));
+  deformed.Filter->SetInputArrayToProcess(
+    0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "second");
+  VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { 0, 13, -6, 5, 0, 9 } }));
+
+  // Any numeric type of three components.
+  vtkNew<vtkDoubleArray> doubles;
+  doubles->SetName("doubles");
+  doubles->SetNumberOfComponents(3);
+  doubles->SetNumberOfTuples(mesh->GetNumberOfPoints());
+  doubles->Fill(1.0);
+  mesh->GetPointData()->AddArray(doubles);
+  mesh->Modified();
+  deformed.Filter->SetInputArrayToProcess(
+    0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "doubles");
+  deformed.Filter->SetDisplacementScale(1.0);
+  VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { 1, 14, 1, 12, 1, 10 } }));
+}
+
+void TestCompositeDatasets()
+{
+  auto volume = MakeFloatVolume();
+  auto whole = MakeMesh(volume, 4);
+  SetDisplacements(whole, Bend);
+  Deformed expected(volume, whole);
+  expected.Update();
+
+  // The cells dealt out to three blocks, one of them nested, one empty.
+  vtkNew<vtkMultiBlockDataSet> inner;
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  for (int part = 0; part < 3; ++part)
+  {
+    vtkNew<vtkUnstructuredGrid> grid;
+    grid->SetPoints(whole->GetPoints());
+    grid->GetPointData()->ShallowCopy(whole->GetPointData());
+    vtkNew<vtkCellArray> cells;
+    for (vtkIdType cell = part; cell < whole->GetNumberOfCells(); cell += 3)
+    {
+      cells->InsertNextCell(whole->GetCell(cell));
+    }
+    grid->SetCells(VTK_TETRA, cells);
+    if (part < 2)
+    {
+      inner->SetBlock(part, grid);
+    }
+    else
+    {
+      blocks->SetBlock(2, grid);
+    }
+  }
+  blocks->SetBlock(0, inner);
+  blocks->SetBlock(1, vtkNew<vtkUnstructuredGrid>());
+  Deformed composite(volume, blocks);
+  // Shared faces may go to another cell, whose affine map agrees there up to rounding.
+  Compare(composite.Update(), expected.Filter->GetOutput(), 41.0 * 3.0 / 256.0, 12);
+
+  vtkNew<vtkMultiBlockDataSet> restBlocks;
+  vtkNew<vtkMultiBlockDataSet> deformedBlocks;
+  auto moved = Warp(whole, Bend);
+  restBlocks->SetBlock(0, whole);
+  deformedBlocks->SetBlock(0, moved);
+  Deformed pair(volume, deformedBlocks);
+  pair.Filter->SetRestData(restBlocks);
+  Compare(pair.Update(), expected.Filter->GetOutput(), 41.0 * 3.0 / 256.0, 12);
+}
+
+void TestOtherCells()
+{
+  // An affine map is the same whichever way a cell is split.
+  auto volume = MakeFloatVolume();
+  const WorldMap map = [](const glm::dvec3& p)
+  { return glm::dvec3(1.2 * p.x + 0.1 * p.y, p.y - 0.2 * p.z, 1.1 * p.z + 0.3); };
+  auto tetrahedra = MakeMesh(volume);
+  SetDisplacements(tetrahedra, map);
+  Deformed expected(volume, tetrahedra);
+  expected.Update();
+
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (int corner = 0; corner < 12; ++corner)
+  {
+    points->InsertNextPoint(corner % 3 == 0 ? -0.5
+        : corner % 3 == 1                   ? 6.0
+                                            : 13.5,
+      corner / 3 % 2 == 0 ? -0.5 : 11.5, corner / 6 == 0 ? -0.5 : 9.5);
+  }
+  vtkNew<vtkUnstructuredGrid> hexahedra;
+  hexahedra->SetPoints(points);
+  const vtkIdType left[8] = { 0, 1, 4, 3, 6, 7, 10, 9 };
+  const vtkIdType right[8] = { 1, 2, 4, 5, 7, 8, 10, 11 };
+  hexahedra->InsertNextCell(VTK_HEXAHEDRON, 8, left);
+  hexahedra->InsertNextCell(VTK_VOXEL, 8, right);
+  SetDisplacements(hexahedra, map);
+  Deformed deformed(volume, hexahedra);
+  Compare(deformed.Update(), expected.Filter->GetOutput(), 41.0 * 3.0 / 256.0, 30);
+
+  // Wedges and pyramids fill the same box.
+  vtkNew<vtkUnstructuredGrid> mixed;
+  points->InsertNextPoint(9.75, 5.5, 4.5);
+  mixed->SetPoints(points);
+  const vtkIdType lower[6] = { 0, 1, 4, 6, 7, 10 };
+  const vtkIdType upper[6] = { 0, 4, 3, 6, 10, 9 };
+  mixed->InsertNextCell(VTK_WEDGE, 6, lower);
+  mixed->InsertNextCell(VTK_WEDGE, 6, upper);
+  const vtkIdType faces[6][5] = { { 1, 2, 5, 4, 12 }, { 7, 10, 11, 8, 12 }, { 1, 7, 8, 2, 12 },
+    { 4, 5, 11, 10, 12 }, { 1, 4, 10, 7, 12 }, { 2, 8, 11, 5, 12 } };
+  for (const auto& face : faces)
+  {
+    mixed->InsertNextCell(VTK_PYRAMID, 5, face);
+  }
+  // A surface cell among them is ignored, and said so.
+  const vtkIdType triangle[3] = { 0, 1, 4 };
+  mixed->InsertNextCell(VTK_TRIANGLE, 3, triangle);
+  SetDisplacements(mixed, map);
+  deformed.Filter->SetDeformationData(mixed);
+  deformed.Filter->Update();
+  VERIFY(!deformed.TakeWarning().empty());
+  Compare(deformed.Update(), expected.Filter->GetOutput(), 41.0 * 3.0 / 256.0, 30);
+}
+
+void TestFlatTetrahedraAreCounted()
+{
+  auto volume = MakeFloatVolume();
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Bend);
+  Deformed deformed(volume, mesh);
+  deformed.Update();
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfFlatTetrahedra(), 0);
+  vtkNew<vtkImageData> expected;
+  expected->DeepCopy(deformed.Filter->GetOutput());
+  const vtkIdType flat[2][4] = { { 0, 1, 2, 3 }, { 4, 4, 7, 13 } };
+  for (const auto& tetrahedron : flat)
+  {
+    mesh->InsertNextCell(VTK_TETRA, 4, tetrahedron);
+  }
+  mesh->Modified();
+  VERIFY(AreEqual(deformed.Update(), expected));
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfFlatTetrahedra(), 2);
+}
+
+void TestDisplacementFields()
+{
+  auto volume = MakeFloatVolume();
+  // Trilinear in the position, hence the same at any resolution of the field.
+  const WorldMap map = [](const glm::dvec3& p)
+  {
+    return p +
+      glm::dvec3(0.02 * p.x * p.y, 0.3 + 0.01 * p.y * p.z, 0.002 * p.x * p.y * p.z - 0.05 * p.x);
+  };
+  auto atVoxels = MakeImage({ { 0, 13, 0, 11, 0, 9 } });
+  SetDisplacements(atVoxels, map);
+  Deformed fine(volume, atVoxels);
+  fine.Update();
+  VERIFY(fine.Filter->GetNumberOfCoveredVoxels() > 1000);
+  VERIFY_EQUAL(fine.Filter->GetNumberOfInvertedTetrahedra(), 0);
+  VERIFY_EQUAL(fine.Filter->GetNumberOfMappingBuilds(), 0);
+
+  auto coarse =
+    MakeImage({ { -1, 3, 2, 5, -4, -1 } }, glm::dvec3(4.0, 5.0, 4.5), glm::dvec3(2.0, -12.0, 17.0));
+  SetDisplacements(coarse, map);
+  Deformed other(volume, coarse);
+  // The bounds of a coarse field may be wider than needed.
+  for (vtkDeformVolumeFilter* filter : { fine.Filter.Get(), other.Filter.Get() })
+  {
+    filter->SetOutputBoundsModeToVolumeBounds();
+    filter->SetPadding(3);
+  }
+  fine.Update();
+  Compare(other.Update(), fine.Filter->GetOutput(), 41.0 * 3.0 / 256.0, 12);
+
+  // Vectors of type double, chosen by name.
+  auto doubles = vtkSmartPointer<vtkImageData>::New();
+  doubles->CopyStructure(coarse);
+  vtkNew<vtkDoubleArray> vectors;
+  vectors->DeepCopy(coarse->GetPointData()->GetVectors());
+  vectors->SetName("field");
+  doubles->GetPointData()->AddArray(vectors);
+  other.Filter->SetDeformationData(doubles);
+  other.Filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "field");
+  Compare(other.Update(), fine.Filter->GetOutput(), 41.0 * 3.0 / 256.0, 12);
+
+  // Scaled like the displacements of a mesh.
+  other.Filter->SetDisplacementScale(0.0);
+  other.Filter->SetOutputBoundsModeToDeformedBounds();
+  other.Filter->SetPadding(0);
+  VERIFY_EQUAL(GetExtent(other.Update()), GetExtent(volume));
+  VERIFY(HaveEqualBits(other.GetValues(), volume->GetPointData()->GetScalars()));
+}
+
+void TestFieldWithDirection()
+{
+  // Field and volume are oblique in different ways; displacements are in world coordinates.
+  auto volume = MakeImage({ { 0, 9, 0, 9, 0, 9 } }, glm::dvec3(1.0, 1.5, 0.5));
+  SetObliqueDirection(volume);
+  AddScalars<float>(volume, "value", [](const glm::dvec3& p) { return p.x + 10.0 * p.y - p.z; });
+  auto field = MakeImage({ { -15, 15, -15, 15, -15, 15 } }, glm::dvec3(2.0));
+  SetDisplacements(field, Shift(0.4, -0.7, 0.9));
+  Deformed straight(volume, field);
+  straight.Update();
+  auto turned = MakeImage({ { -15, 15, -15, 15, -15, 15 } }, glm::dvec3(2.5));
+  SetObliqueDirection(turned);
+  SetDisplacements(turned, Shift(0.4, -0.7, 0.9));
+  Deformed oblique(volume, turned);
+  VERIFY(AreEqual(straight.Filter->GetOutput(), oblique.Update()));
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.4, -0.7, 0.9));
+  Deformed byMesh(volume, mesh);
+  Compare(byMesh.Update(), oblique.Filter->GetOutput(), 12.0 * 3.0 / 256.0, 30);
+}
+
+} // namespace
+
+int TestDeformSources(int, char*[])
+{
+  TestMeshes();
+  TestChoiceOfDisplacements();
+  TestCompositeDatasets();
+  TestOtherCells();
+  TestFlatTetrahedraAreCounted();
+  TestDisplacementFields();
+  TestFieldWithDirection();
+  return GetExitCode();
+}
