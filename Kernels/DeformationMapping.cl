@@ -23,6 +23,7 @@ typedef struct
   float Weights[3];
 } VertexLink;
 
+#define LARGEST 4194303.0f // 1/256 voxels: about 2^14 voxels
 #define FIELD_TOLERANCE 1e-3f // of a field cell: rounding must not lose the field's border
 
 static float3 FieldIndex(const FieldParameters* field, int3 index)
@@ -49,10 +50,11 @@ static void StorePosition(__global const RestPosition* rest, __global int* posit
   const RestPosition x = rest[v.x];
   const RestPosition y = rest[p->Size[0] + v.y];
   const RestPosition z = rest[p->Size[0] + p->Size[1] + v.z];
-  // Clamped, because extrapolation can lead anywhere. rint() and a plain conversion are an
-  // instruction each where the rounding conversions are not.
-  const int3 moved = convert_int3(rint(clamp(
-    displacement * 256.0f + (float3)(x.Fraction, y.Fraction, z.Fraction), -1e9f, 1e9f)));
+  // Clamped, because extrapolation can lead anywhere. Adding 1.5 * 2^23 leaves the rounded value in
+  // the low bits: an addition where conversions that round are many instructions.
+  const float3 shifted = clamp(displacement * 256.0f +
+      (float3)(x.Fraction, y.Fraction, z.Fraction), -LARGEST, LARGEST) + 12582912.0f;
+  const int3 moved = as_int3(shifted) - 0x4b400000;
   __global int* place = positions + PositionIndex(v.x, v.y, v.z, p);
   place[0] = x.Whole + moved.x;
   place[p->Size[0]] = y.Whole + moved.y;
@@ -155,49 +157,75 @@ __kernel void MarkSourcesByField(const FieldParameters field, __global const uch
   }
 }
 
-static int IsInterior(
-  __global const uchar* sources, __global const uchar* active, int3 v, const KernelParameters* p)
+static int IsActive(__global const uchar* active, int x, int y, int z, const KernelParameters* p)
 {
-  // Vertices of the planes beyond the layers of this chunk serve only as neighbours.
-  if (v.x == 0 || v.y == 0 || v.z == 0 || v.x == p->Size[0] - 1 || v.y == p->Size[1] - 1 ||
-    v.z == p->Size[2] - 1 || v.z < p->LayersBegin || v.z > p->LayersEnd)
+  return !p->HasActive ||
+    (active[((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x] & 31) ==
+    31;
+}
+
+// Whether the vertices from begin to end, both included, are all sources.
+static int AreSources(
+  __global const uchar* sources, int3 begin, int3 end, const KernelParameters* p)
+{
+  for (int z = begin.z; z <= end.z; ++z)
   {
-    return 0;
-  }
-  for (int z = -1; z <= 1; ++z)
-  {
-    for (int y = -1; y <= 1; ++y)
+    for (int y = begin.y; y <= end.y; ++y)
     {
-      for (int x = -1; x <= 1; ++x)
+      for (int x = begin.x; x <= end.x; ++x)
       {
-        if (!sources[VertexIndex(v + (int3)(x, y, z), p->ChunkFirst, p)])
+        if (!sources[VertexIndex((int3)(x, y, z), p->ChunkFirst, p)])
         {
           return 0;
         }
       }
     }
   }
-  for (int k = 0; p->HasActive && k < 8; ++k)
+  return 1;
+}
+
+static int IsInterior(
+  __global const uchar* sources, __global const uchar* active, int3 v, const KernelParameters* p)
+{
+  // Vertices of the planes beyond the layers of this chunk serve only as neighbours.
+  if (v.x == 0 || v.y == 0 || v.z == 0 || v.x == p->Size[0] - 1 || v.y == p->Size[1] - 1 ||
+    v.z == p->Size[2] - 1 || v.z < p->LayersBegin || v.z > p->LayersEnd ||
+    !AreSources(sources, v - 1, v + 1, p))
   {
-    const int3 c = v - (int3)(k & 1, k >> 1 & 1, k >> 2);
-    const size_t cell =
-      ((size_t)(c.z - p->ChunkFirst) * (p->Size[1] - 1) + c.y) * (p->Size[0] - 1) + c.x;
-    if ((active[cell] & 31) != 31)
+    return 0;
+  }
+  for (int k = 0; k < 8; ++k)
+  {
+    if (!IsActive(active, v.x - (k & 1), v.y - (k >> 1 & 1), v.z - (k >> 2), p))
     {
       return 0;
     }
   }
-  return DEFORMVOLUME_VERTEX_INTERIOR;
+  return 1;
+}
+
+static int IsWholeCell(
+  __global const uchar* sources, __global const uchar* active, int3 v, const KernelParameters* p)
+{
+  return v.x < p->Size[0] - 1 && v.y < p->Size[1] - 1 && v.z >= p->LayersBegin &&
+    v.z < p->LayersEnd && IsActive(active, v.x, v.y, v.z, p) && AreSources(sources, v, v + 1, p);
 }
 
 // Second pass: a vertex is interior when all vertices round it are sources and all tetrahedra of
-// the eight cells round it are active. Being wrong on the careful side costs time, not truth.
-__kernel void MarkInterior(__global const uchar* sources, __global const uchar* active,
+// the eight cells round it are active. Being wrong on the careful side costs time, not truth. A
+// cell is whole when its vertices are sources and its tetrahedra active.
+__kernel void MarkVertices(__global const uchar* sources, __global const uchar* active,
   __global uchar* state, const KernelParameters p)
 {
   FOR_EACH_VERTEX(v, p)
   {
     const size_t i = VertexIndex(v, p.ChunkFirst, &p);
-    state[i] = sources[i] ? sources[i] | IsInterior(sources, active, v, &p) : 0;
+    int bits = sources[i];
+    if (bits)
+    {
+      bits |= IsInterior(sources, active, v, &p) ? DEFORMVOLUME_VERTEX_INTERIOR : 0;
+      bits |= IsWholeCell(sources, active, v, &p) ? DEFORMVOLUME_CELL_WHOLE : 0;
+    }
+    state[i] = bits;
   }
 }

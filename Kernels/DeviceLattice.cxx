@@ -186,7 +186,7 @@ void DeviceLattice::UpdateState(const cl::Program& mapping, const FieldParameter
     return;
   }
   cl::Kernel sources(mapping, field ? "MarkSourcesByField" : "MarkSourcesByMesh");
-  cl::Kernel interior(mapping, "MarkInterior");
+  cl::Kernel vertices(mapping, "MarkVertices");
   for (LatticeChunk& chunk : this->Chunks)
   {
     KernelParameters p = this->GetParameters(chunk);
@@ -212,11 +212,11 @@ void DeviceLattice::UpdateState(const cl::Program& mapping, const FieldParameter
     sources.setArg(2, cl_int{ this->WithBlanked });
     sources.setArg(3, marked);
     sources.setArg(4, p);
-    interior.setArg(0, marked);
-    interior.setArg(1, this->WithActive ? chunk.Active : this->RestPositions);
-    interior.setArg(2, chunk.State);
-    interior.setArg(3, p);
-    for (const cl::Kernel& kernel : { sources, interior })
+    vertices.setArg(0, marked);
+    vertices.setArg(1, this->WithActive ? chunk.Active : this->RestPositions);
+    vertices.setArg(2, chunk.State);
+    vertices.setArg(3, p);
+    for (const cl::Kernel& kernel : { sources, vertices })
     {
       this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
         this->GetVertexRange(p.PlanesEnd - p.PlanesBegin), this->GetVertexGroup());

@@ -56,16 +56,13 @@ typedef struct
 #define DEFORMVOLUME_COUNT_OVERSTRETCHED 2
 #define DEFORMVOLUME_COUNTERS 3
 
-// Room behind the output buffers for the writes of lanes that hit nothing, in elements, and how
-// many work-items share it.
-#define DEFORMVOLUME_TRASH_PLACES 64
-#define DEFORMVOLUME_TRASH 4096
 // Elements that may be read behind the end of a buffer of vertices, by vector loads.
 #define DEFORMVOLUME_READ_AHEAD 64
 
 // State of a vertex of the sampling mesh.
 #define DEFORMVOLUME_VERTEX_SOURCE 1   // it has a deformed position and may be interpolated
 #define DEFORMVOLUME_VERTEX_INTERIOR 2 // all tetrahedra that it could belong to are there
+#define DEFORMVOLUME_CELL_WHOLE 4      // of the cell that begins at it, all tetrahedra are there
 
 #ifdef __OPENCL_VERSION__
 

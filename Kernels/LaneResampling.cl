@@ -52,28 +52,42 @@ static FLOATS Most(FLOATS a, FLOATS b)
   return a > b ? a : b;
 }
 
-// Two private vectors that are read back lane by lane, in pairs; aligned, or each store would
-// touch two cache lines.
+#if LANES == 16
+#define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#elif LANES == 8
+#define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7))
+#else
+#define LANE_INDEX ((INTS)(0, 1, 2, 3))
+#endif
+#define LANE_BITS ((INTS)(1) << LANE_INDEX)
+
+// A vector that is read back lane by lane.
 typedef union
 {
-  INTS Vectors[2];
-  ulong Pairs[LANES];
-  int Lanes[2 * LANES];
-} Scratch;
+  INTS Vector;
+  int Lanes[LANES];
+} Lanes;
 
-static int AnyLane(INTS mask)
+// A bit for each lane that is set.
+static uint LaneBits(INTS mask)
 {
+  const INTS bits = mask & LANE_BITS;
 #if LANES == 16
-  const int8 a = mask.lo | mask.hi;
+  const int8 a = bits.lo | bits.hi;
   const int4 b = a.lo | a.hi;
 #elif LANES == 8
-  const int4 b = mask.lo | mask.hi;
+  const int4 b = bits.lo | bits.hi;
 #else
-  const int4 b = mask;
+  const int4 b = bits;
 #endif
   const long2 c = as_long2(b);
-  return (c.x | c.y) != 0;
+  const long d = c.x | c.y;
+  return (uint)d | (uint)(d >> 32);
 }
+
+// For each set bit, the highest first: lane is its number.
+#define FOR_EACH_LANE(lane, bits)                                                                  \
+  for (int lane = 31 - clz(bits); lane >= 0; bits ^= 1u << lane, lane = 31 - clz(bits))
 
 // The largest of each byte over all lanes.
 static int MostOfBytes(INTS v)
@@ -89,14 +103,6 @@ static int MostOfBytes(INTS v)
   const uchar8 b = max(a.lo, a.hi);
   return as_int(max(b.lo, b.hi));
 }
-
-#if LANES == 16
-#define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
-#elif LANES == 8
-#define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7))
-#else
-#define LANE_INDEX ((INTS)(0, 1, 2, 3))
-#endif
 
 // Every second element of two loads: the low sides of LANES cells, and their high sides.
 #define SPLIT(low, high, p, CONVERT)                                                               \
@@ -178,9 +184,9 @@ static void LoadCoordinate(__global const int* const* rows, int offset, int orig
 #define LANE_CONVERT_16(TYPE, bits) ((TYPE)(bits))
 #define LANE_CONVERT_8(TYPE, bits) ((TYPE)(bits))
 
-// Stores the values of the lanes that hit; the others write to a place behind the output. The
-// indices are in the first vector of the scratch.
-#define LANE_STORE(index, TYPE, BITS)                                                              \
+// The interpolated values of an array, rounded where it holds integers.
+#define LANE_RESULTS(index, TYPE, BITS)                                                            \
+  Lanes results##index;                                                                            \
   {                                                                                                \
     FLOATS v = t0 * values##index[0];                                                              \
     v = fma(t3, values##index[3], v);                                                              \
@@ -192,24 +198,18 @@ static void LoadCoordinate(__global const int* const* rows, int offset, int orig
     v = fma(u7, values##index[7], v);                                                              \
     if (BITS != 32)                                                                                \
     {                                                                                              \
-      v = Least(Most(v, LANE_RANGE_LOW_##TYPE), LANE_RANGE_HIGH_##TYPE) +              \
-        ROUND_TO_INTEGER;                                                                          \
+      v = Least(Most(v, LANE_RANGE_LOW_##TYPE), LANE_RANGE_HIGH_##TYPE) + ROUND_TO_INTEGER;        \
     }                                                                                              \
-    scratch->Vectors[1] = AS_INTS(v);                                                              \
-    volatile const ulong* pairs = scratch->Pairs;                                                  \
-    _Pragma("unroll") for (int k = 0; k < LANES / 2; ++k)                                          \
-    {                                                                                              \
-      const ulong place = pairs[k];                                                                \
-      const ulong value = pairs[LANES / 2 + k];                                                    \
-      target##index[(uint)place] = LANE_CONVERT_##BITS(TYPE, (uint)value);                         \
-      target##index[(uint)(place >> 32)] = LANE_CONVERT_##BITS(TYPE, (uint)(value >> 32));         \
-    }                                                                                              \
+    results##index.Vector = AS_INTS(v);                                                            \
   }
 
-// LANES cells: from x on every second one. trash: a place behind the output that only this
-// work-item writes to. Returns the writes; leaves the cells to be repeated in the scratch's lanes.
+#define LANE_STORE(index, TYPE, BITS)                                                              \
+  target##index[place] = LANE_CONVERT_##BITS(TYPE, results##index.Lanes[lane]);
+
+// LANES cells: from x on every second one. Returns the cells that must be repeated, as bits, and
+// adds to the writes those of the others.
 static __attribute__((noinline)) uint ResampleLanes(SamplingMesh mesh, int x, int y, int z,
-  __global char* coverage, uint trash, Scratch* scratch, const KernelParameters* p ARRAY_PARAMETERS)
+  __global char* coverage, uint* writes, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int odd = (p->First[0] + x) & 1;
   const int oddY = (p->First[1] + y) & 1;
@@ -217,7 +217,7 @@ static __attribute__((noinline)) uint ResampleLanes(SamplingMesh mesh, int x, in
   // The rows of vertices: bit 0 odd z, bit 1 odd y.
   __global const int* rows[4];
   size_t sources[4];
-  INTS interior = -1;
+  INTS state = -1;
 #pragma unroll
   for (int r = 0; r < 4; ++r)
   {
@@ -230,23 +230,26 @@ static __attribute__((noinline)) uint ResampleLanes(SamplingMesh mesh, int x, in
     first &= LOAD(mesh.State + sources[r] + 1);
     second &= LOAD(mesh.State + sources[r] + LANES + 1);
     const JOIN(uchar, LANES) both = (JOIN(uchar, LANES))(first.even, second.even);
-    interior &= TO_INTS(both);
+    state &= TO_INTS(both);
   }
   const INTS there = x + 2 * LANE_INDEX < p->Size[0] - 1;
-  interior = ((interior & DEFORMVOLUME_VERTEX_INTERIOR) != 0) & there;
+  const INTS interior = (state & DEFORMVOLUME_VERTEX_INTERIOR) != 0;
+  const JOIN(uchar, LANES) whole = (JOIN(uchar, LANES))(LOAD(mesh.State + VertexInChunk(x, y, z, p)).even,
+    LOAD(mesh.State + VertexInChunk(x, y, z, p) + LANES).even);
   Coordinate X, Y, Z;
   LoadCoordinate(rows, 0, p->OutputFirst[0] * 256, odd, &X);
   LoadCoordinate(rows, p->Size[0], p->OutputFirst[1] * 256, odd, &Y);
   LoadCoordinate(rows, 2 * p->Size[0], p->OutputFirst[2] * 256, odd, &Z);
 
-  // The box of the cell, and the candidates: half-open, as for all cells inside the mesh.
+  // The box of the cell, and the candidates: half-open for all cells inside the mesh.
   FLOATS lowX = EIGHT(Least, X), lowY = EIGHT(Least, Y), lowZ = EIGHT(Least, Z);
   const FLOATS highX = EIGHT(Most, X), highY = EIGHT(Most, Y),
                highZ = EIGHT(Most, Z);
   const FLOATS extent = Most(highX - lowX, Most(highY - lowY, highZ - lowZ));
   const INTS small = extent <= MAXIMUM_EXTENT;
 #define FIRST_OF(low, size) TO_INTS(Least(Most(low, 0.0f), (float)(size)) + ALMOST_ONE)
-#define END_OF(high, size) TO_INTS(Most(Least((high) + ALMOST_ONE, (float)(size)), 0.0f))
+  const FLOATS toEnd = interior ? (FLOATS)(ALMOST_ONE) : (FLOATS)(1.0f);
+#define END_OF(high, size) TO_INTS(Most(Least((high) + toEnd, (float)(size)), 0.0f))
   const INTS firstX = FIRST_OF(lowX, p->OutputSize[0]);
   const INTS firstY = FIRST_OF(lowY, p->OutputSize[1]);
   const INTS firstZ = FIRST_OF(lowZ, p->OutputSize[2]);
@@ -281,26 +284,22 @@ static __attribute__((noinline)) uint ResampleLanes(SamplingMesh mesh, int x, in
       Least(Least(b20, b73), Least(b75, b76)));
   const FLOATS mostOwn = Most(Most(b16, b43), Most(b25, b70));
   const FLOATS leastOwn = Least(Least(b16, b43), Least(b25, b70));
-  const FLOATS bound = ((mostOwn <= -0.35f) & (leastOwn >= -1.0f) ? (FLOATS)(3.4e-5f)
-                                                                 : (FLOATS)(8.5e-5f)) *
-    extent * Most(Most(NORM(n3), NORM(n5)), NORM(n6));
+  const INTS tame = (mostOwn <= -0.35f) & (leastOwn >= -1.0f);
+  const FLOATS bound = (tame ? (FLOATS)(3.4e-5f) : (FLOATS)(8.5e-5f)) * extent *
+    Most(Most(NORM(n3), NORM(n5)), NORM(n6));
   const INTS upright = (odd ^ oddY ^ oddZ) ? determinant < 0.0f : determinant > 0.0f;
-  const INTS nice = interior & small & upright & (leastOther >= 0.015625f) &
+  const INTS nice = there & ((TO_INTS(whole) & DEFORMVOLUME_CELL_WHOLE) != 0) & small & upright & (leastOther >= 0.015625f) &
     (mostOwn <= -0.125f) & (leastOwn >= -2.0f) & (bound <= 0.0078125f);
   INTS unsure = there & ~nice;
+  INTS count = 0; // writes
   const INTS candidates = nice & (countX > 0) & (countY > 0) & (countZ > 0);
   const int counts = MostOfBytes((countX | countY << 8 | countZ << 16) & candidates);
-  scratch->Vectors[0] = unsure;
-  if (!counts)
-  {
-    return 0;
-  }
-  INTS writes = 0;
+  if (counts)
   {
     // Cells that are boxes take all their candidates: all faces of the box are on the upper side of
     // no candidate. These are the cells of an undeformed, shifted or axis-wise scaled volume.
 #define DIFFER(c, a, b) (AS_INTS(c.V[a]) ^ AS_INTS(c.V[b]))
-    const INTS box = candidates &
+    const INTS box = candidates & interior &
       ((DIFFER(X, 0, 2) | DIFFER(X, 4, 6) | DIFFER(X, 0, 4) | DIFFER(X, 1, 3) | DIFFER(X, 5, 7) |
          DIFFER(X, 1, 5) | DIFFER(Y, 0, 1) | DIFFER(Y, 2, 3) | DIFFER(Y, 0, 2) | DIFFER(Y, 4, 5) |
          DIFFER(Y, 6, 7) | DIFFER(Y, 4, 6) | DIFFER(Z, 0, 1) | DIFFER(Z, 4, 5) | DIFFER(Z, 0, 4) |
@@ -310,7 +309,7 @@ static __attribute__((noinline)) uint ResampleLanes(SamplingMesh mesh, int x, in
     const FLOATS startX = TO_FLOATS(firstX) - X.V[0];
     const FLOATS startY = TO_FLOATS(firstY) - Y.V[0];
     const FLOATS startZ = TO_FLOATS(firstZ) - Z.V[0];
-    const INTS place = (firstZ * p->OutputSize[1] + firstY) * p->OutputSize[0] + firstX;
+    const INTS first = (firstZ * p->OutputSize[1] + firstY) * p->OutputSize[0] + firstX;
     for (int dz = 0; dz < (counts >> 16 & 255); ++dz)
     {
       for (int dy = 0; dy < (counts >> 8 & 255); ++dy)
@@ -344,37 +343,32 @@ static __attribute__((noinline)) uint ResampleLanes(SamplingMesh mesh, int x, in
             Least(Most(lowA, lowB), Least(highA, highB));
           const INTS hit = maybe & ((second > bound) | box);
           unsure |= maybe & ~hit;
-          if (AnyLane(hit))
+          uint bits = LaneBits(hit);
+          if (bits)
           {
-            writes -= hit;
-            const INTS target = place + ((dz * p->OutputSize[1] + dy) * p->OutputSize[0] + dx);
-            scratch->Vectors[0] = hit ? target : (INTS)((int)trash);
-            LANE_ARRAYS(LANE_STORE)
-            volatile const ulong* pairs = scratch->Pairs;
-#pragma unroll
-            for (int k = 0; k < LANES / 2; ++k)
+            LANE_ARRAYS(LANE_RESULTS)
+            count -= hit;
+            Lanes places;
+            places.Vector = first + ((dz * p->OutputSize[1] + dy) * p->OutputSize[0] + dx);
+            FOR_EACH_LANE(lane, bits)
             {
-              const ulong pair = pairs[k];
-              coverage[(uint)pair] = 1;
-              coverage[(uint)(pair >> 32)] = 1;
+              const uint place = places.Lanes[lane];
+              coverage[place] = 1;
+              LANE_ARRAYS(LANE_STORE)
             }
           }
         }
       }
     }
   }
-  unsure &= there;
   // What an unsure cell wrote so far is written again with it, and must not count twice.
-  writes = unsure ? (INTS)(0) : writes;
-  scratch->Vectors[0] = unsure;
-  scratch->Vectors[1] = writes;
-  uint sum = 0;
-  volatile const int* lanes = scratch->Lanes;
-  for (int k = LANES; k < 2 * LANES; ++k)
+  Lanes written;
+  written.Vector = unsure ? (INTS)(0) : count;
+  for (int k = 0; k < LANES; ++k)
   {
-    sum += lanes[k];
+    *writes += written.Lanes[k];
   }
-  return sum;
+  return LaneBits(unsure & there);
 }
 
 // As the kernel Resample, for the direct pass.
@@ -384,30 +378,18 @@ __kernel void ResampleByLanes(__global const int* positions, __global const ucha
 {
   const SamplingMesh mesh = { positions, state, active };
   Output output = { coverage, winners, 0, 0, 0 };
-  Scratch scratch;
   const int y = get_global_id(1);
   const int z = p.LayersBegin + (int)get_global_id(2);
-  // Work-items that run at one time must not share a cache line behind the output.
-  const uint trash = p.OutputSize[0] * p.OutputSize[1] * p.OutputSize[2] +
-    (y + get_global_id(0) & DEFORMVOLUME_TRASH_PLACES - 1) * 64;
   for (int x = 2 * LANES * get_global_id(0); x < p.Size[0] - 1;
        x += 2 * LANES * get_global_size(0))
   {
     for (int side = 0; side < 2 && x + side < p.Size[0] - 1; ++side)
     {
-      output.Writes += ResampleLanes(
-        mesh, x + side, y, z, coverage, trash, &scratch, &p ARRAY_ARGUMENTS);
-      if (AnyLane(scratch.Vectors[0]))
+      uint unsure =
+        ResampleLanes(mesh, x + side, y, z, coverage, &output.Writes, &p ARRAY_ARGUMENTS);
+      FOR_EACH_LANE(lane, unsure)
       {
-        int unsure[LANES];
-        JOIN(vstore, LANES)(scratch.Vectors[0], 0, unsure);
-        for (int k = 0; k < LANES; ++k)
-        {
-          if (unsure[k])
-          {
-            ResampleCell(mesh, x + side + 2 * k, y, z, &output, &p ARRAY_ARGUMENTS);
-          }
-        }
+        ResampleCell(mesh, x + side + 2 * lane, y, z, &output, &p ARRAY_ARGUMENTS);
       }
     }
   }

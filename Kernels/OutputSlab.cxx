@@ -75,8 +75,7 @@ std::vector<Extent> OutputSlab::Split(const Extent& output, const std::vector<Vo
   }
   const std::uint64_t plane = static_cast<std::uint64_t>(GetSize(output, 0)) *
     static_cast<std::uint64_t>(GetSize(output, 1)) * widest;
-  const std::uint64_t trash = DEFORMVOLUME_TRASH * widest;
-  const std::uint64_t planes = allocationLimit > trash ? (allocationLimit - trash) / plane : 0;
+  const std::uint64_t planes = allocationLimit / plane;
   if (planes == 0)
   {
     throw Error("A slice of the output needs " + std::to_string(plane) +
@@ -104,7 +103,6 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   this->SlabExtent = extent;
   this->WinnerSize = GetWinnerSize(lattice);
   this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(extent));
-  const std::uint64_t room = this->NumberOfVoxels + DEFORMVOLUME_TRASH;
   if (deformvolume::GetMemory(this->Winners) != this->NumberOfVoxels * this->WinnerSize)
   {
     this->Winners = cl::Buffer();
@@ -115,7 +113,7 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   {
     this->TupleSizes[i] =
       GetElementSize(arrays[i].Type) * static_cast<std::size_t>(arrays[i].Components);
-    Reserve(context, this->Arrays[i], room * this->TupleSizes[i]);
+    Reserve(context, this->Arrays[i], this->NumberOfVoxels * this->TupleSizes[i]);
     switch (arrays[i].Type)
     {
 #define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
@@ -126,7 +124,7 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
 #undef DEFORMVOLUME_CASE
     }
   }
-  Reserve(context, this->Coverage, room);
+  Reserve(context, this->Coverage, this->NumberOfVoxels);
   Fill<std::int8_t>(queue, this->Coverage, 0.0, events);
   this->NumberOfRows = static_cast<std::size_t>(
     (GetSize(lattice.VertexExtent, 1) - 1) * (GetSize(lattice.VertexExtent, 2) - 1));
@@ -183,7 +181,7 @@ OutputSlab::Counts OutputSlab::ReadCounts()
 
 bool OutputSlab::FitsLanes() const
 {
-  return this->NumberOfVoxels + DEFORMVOLUME_TRASH <=
+  return this->NumberOfVoxels <=
     static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max());
 }
 

@@ -20,8 +20,8 @@ namespace
 /// reported, and enough that the planes mapped twice cost little.
 const int LayersPerLaunch = 32;
 
-/// Displacements over so many voxels leave the range of positions in 1/256 voxel.
-const float LargestDisplacement = 2097152.0F;
+/// Displacements over so many voxels leave the range in which the kernels round them.
+const float LargestDisplacement = 16383.0F;
 
 using Clock = std::chrono::steady_clock;
 
@@ -91,7 +91,7 @@ std::vector<float> MakeVectors(const float* vectors, std::size_t count, const ch
       if (!(std::abs(value) <= LargestDisplacement))
       {
         throw Error(std::string("The displacement of ") + what + " " + std::to_string(i) +
-          " is not finite or over 2^21 voxels.");
+          " is not finite, or over 16,383 output voxels.");
       }
       padded[4 * i + c] = value;
     }
