@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is built and sent once and kept, and what the filter reports of its work.
+#include "FilterTesting.h"
+
+#include <vtkStringArray.h>
+
+using namespace filterTesting;
+
+namespace
+{
+
+class Counted
+{
+public:
+  Counted()
+    : Volume(MakeVolume({ { 0, 20, 0, 19, 0, 18 } }))
+    , Mesh(MakeMesh(Volume))
+    , Subject(Volume, Mesh)
+  {
+    SetDisplacements(this->Mesh, Shift(1.0, 0.0, 0.0));
+  }
+
+  /// Updates and says which of static mapping and volume were made anew.
+  void Expect(const char* what, int builds, int uploads)
+  {
+    vtkDeformVolumeFilter* filter = this->Subject.Filter;
+    this->Subject.Update();
+    const vtkIdType built = filter->GetNumberOfMappingBuilds() - this->Builds;
+    const vtkIdType sent = filter->GetNumberOfVolumeUploads() - this->Uploads;
+    this->Builds += built;
+    this->Uploads += sent;
+    if (built != builds || sent != uploads)
+    {
+      ++GetNumberOfFailures();
+      std::cerr << what << ": " << built << " mappings and " << sent << " uploads instead of "
+                << builds << " and " << uploads << '\n';
+    }
+    VERIFY_EQUAL(filter->GetPreprocessingTime() > 0.0, builds > 0);
+    VERIFY(filter->GetMappingTime() > 0.0 && filter->GetMappingTime() < 60.0);
+    VERIFY(filter->GetResamplingTime() > 0.0 && filter->GetResamplingTime() < 60.0);
+    VERIFY(filter->GetTransferTime() > 0.0 && filter->GetTransferTime() < 60.0);
+  }
+
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh;
+  Deformed Subject;
+
+private:
+  vtkIdType Builds = 0;
+  vtkIdType Uploads = 0;
+};
+
+void TestCounters()
+{
+  Counted counted;
+  vtkDeformVolumeFilter* filter = counted.Subject.Filter;
+  counted.Expect("first", 1, 1);
+  filter->Modified();
+  counted.Expect("filter modified", 0, 0);
+  SetDisplacements(counted.Mesh, Shift(0.0, 3.5, 0.0));
+  counted.Expect("moved by new vectors", 0, 0);
+  counted.Mesh->GetPointData()->GetVectors()->SetComponent(0, 0, 1.25);
+  counted.Mesh->GetPointData()->GetVectors()->Modified();
+  counted.Expect("moved by changed vectors", 0, 0);
+  filter->SetDisplacementScale(0.5);
+  counted.Expect("displacement scale", 0, 0);
+  filter->SetPadding(2);
+  counted.Expect("padding", 0, 0);
+  filter->SetWorkGroupSize(32);
+  counted.Expect("work-group size", 0, 0);
+
+  counted.Volume->GetPointData()->GetScalars()->SetComponent(5, 0, 17.0);
+  counted.Volume->GetPointData()->GetScalars()->Modified();
+  counted.Expect("values of the volume", 0, 1);
+  counted.Volume->SetOrigin(0.5, 0.0, 0.0);
+  counted.Expect("origin of the volume", 1, 0);
+
+  counted.Mesh->GetPoints()->SetPoint(0, -2.0, -2.0, -2.0);
+  counted.Mesh->GetPoints()->Modified();
+  counted.Expect("rest points", 1, 0);
+
+  auto other = MakeMesh(counted.Volume, 4);
+  SetDisplacements(other, Shift(0.0, 0.0, 1.0));
+  filter->SetDeformationData(other);
+  counted.Expect("another mesh", 1, 0);
+
+  vtkNew<vtkUnstructuredGrid> deformed;
+  deformed->DeepCopy(other);
+  filter->SetDeformationData(deformed);
+  filter->SetRestData(other);
+  counted.Expect("the same rest points on port 2", 0, 0);
+  deformed->GetPoints()->SetPoint(3, 5.0, 5.0, 5.0);
+  deformed->GetPoints()->Modified();
+  counted.Expect("deformed points", 0, 0);
+
+  filter->SetOutsideModeToExtrapolate();
+  counted.Expect("outside mode", 1, 0);
+  filter->ReleaseDeviceMemory();
+  VERIFY_EQUAL(filter->GetDeviceMemory(), 0);
+  filter->Modified();
+  counted.Expect("after its device memory was released", 0, 1);
+}
+
+void TestReports()
+{
+  Counted counted;
+  vtkDeformVolumeFilter* filter = counted.Subject.Filter;
+  VERIFY(filter->GetDeviceInUse().empty());
+  VERIFY_EQUAL(filter->GetDeviceMemory(), 0);
+  counted.Expect("first", 1, 1);
+  vtkSmartPointer<vtkStringArray> names;
+  names.TakeReference(vtkDeformVolumeFilter::GetDeviceNames());
+  VERIFY(names->GetNumberOfValues() > 0);
+  VERIFY_EQUAL(filter->GetDeviceInUse(), std::string(names->GetValue(0)));
+  // Volume of two bytes a voxel, and the links.
+  VERIFY(filter->GetDeviceMemory() > counted.Volume->GetNumberOfPoints() * 16);
+  VERIFY(filter->GetDeviceMemory() < counted.Volume->GetNumberOfPoints() * 100);
+}
+
+// The budget holds before anything is allocated, and the message has both numbers.
+void TestMemoryLimit()
+{
+  Counted counted;
+  vtkDeformVolumeFilter* filter = counted.Subject.Filter;
+  filter->SetMemoryLimit(54321);
+  filter->Update();
+  VERIFY_EQUAL(counted.Subject.TakeErrors(), 1);
+  const std::string message = counted.Subject.LastError;
+  VERIFY(message.find("54321") != std::string::npos || message.find("54,321") != std::string::npos);
+  VERIFY_EQUAL(filter->GetDeviceMemory(), 0);
+  filter->SetMemoryLimit(100000000);
+  counted.Expect("with enough memory", 1, 1);
+  VERIFY(filter->GetDeviceMemory() < 100000000);
+}
+
+// The published kernel is there for comparison and agrees on a smooth deformation.
+void TestPublishedResampler()
+{
+  auto volume = MakeImage({ { 0, 20, 0, 19, 0, 18 } });
+  AddScalars<float>(volume, "value",
+    [](const glm::dvec3& p) { return 10.0 * p.x + 5.0 * p.y - 3.0 * std::sin(p.z); });
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh,
+    [](const glm::dvec3& p)
+    { return p + glm::dvec3(0.7 * std::sin(0.3 * p.y) + 0.1, 0.37, 0.21 * std::cos(0.3 * p.x)); });
+  Deformed deformed(volume, mesh);
+  vtkNew<vtkImageData> exact;
+  exact->DeepCopy(deformed.Update());
+  deformed.Filter->SetResamplerToPublished();
+  VERIFY_EQUAL(deformed.Filter->GetResampler(), 1);
+  vtkImageData* published = deformed.Update();
+  VERIFY_EQUAL(GetExtent(published), GetExtent(exact));
+  int border = 0;
+  for (vtkIdType id = 0; id < exact->GetNumberOfPoints(); ++id)
+  {
+    const bool covered =
+      exact->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(id, 0) != 0.0;
+    border += covered != deformed.IsCovered(id) ? 1 : 0;
+    if (covered && deformed.IsCovered(id))
+    {
+      // Positions are not rounded there: a slope of 11.6 over 3 x 2^-9 voxel.
+      VERIFY(std::abs(exact->GetPointData()->GetScalars()->GetComponent(id, 0) -
+               deformed.GetValues()->GetComponent(id, 0)) < 11.6 * 3.0 / 512.0 * 2.0);
+    }
+  }
+  VERIFY(border < 60);
+}
+
+} // namespace
+
+int TestDeformCaching(int, char*[])
+{
+  TestCounters();
+  TestReports();
+  TestMemoryLimit();
+  TestPublishedResampler();
+  return GetExitCode();
+}

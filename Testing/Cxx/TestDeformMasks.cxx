@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is no source: inactive tetrahedra, hidden cells, ghost and blanked points.
+#include "FilterTesting.h"
+
+#include <vtkCellData.h>
+#include <vtkDataSetAttributes.h>
+#include <vtkUniformGrid.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <glm/common.hpp>
+
+using namespace filterTesting;
+
+namespace
+{
+
+const Extent Box{ { -1, 8, 0, 8, 3, 10 } };
+
+vtkSmartPointer<vtkUnsignedCharArray> MakeBytes(const char* name, vtkIdType size, int value)
+{
+  auto bytes = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  bytes->SetName(name);
+  bytes->SetNumberOfTuples(size);
+  bytes->Fill(value);
+  return bytes;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> MakeStillMesh(vtkImageData* volume)
+{
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  return mesh;
+}
+
+vtkIdType CountCovered(Deformed& deformed)
+{
+  deformed.Update();
+  vtkIdType count = 0;
+  for (vtkIdType id = 0; id < deformed.Filter->GetOutput()->GetNumberOfPoints(); ++id)
+  {
+    count += deformed.IsCovered(id) ? 1 : 0;
+  }
+  VERIFY_EQUAL(count, deformed.Filter->GetNumberOfCoveredVoxels());
+  return count;
+}
+
+// The output is four times as fine, so that the tetrahedra of a cell can be told apart.
+void TestActiveTetrahedra()
+{
+  auto volume = MakeVolume(Box);
+  auto active = MakeBytes("ActiveTetrahedra", volume->GetNumberOfCells(), 31);
+  volume->GetCellData()->AddArray(active);
+  auto mesh = MakeStillMesh(volume);
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetOutputSpacingModeToCustomSpacing();
+  deformed.Filter->SetCustomSpacing(0.25, 0.25, 0.25);
+  const vtkIdType all = CountCovered(deformed);
+  VERIFY_EQUAL(all, 37 * 33 * 29);
+  VERIFY(deformed.TakeWarning().empty());
+
+  // Bits above the five mean nothing.
+  active->Fill(255);
+  active->Modified();
+  VERIFY_EQUAL(CountCovered(deformed), all);
+
+  // One cell of even parity, at (2, 4, 6): the voxels strictly within it that remain. Its corner
+  // tetrahedra 0 to 3 lie at the corners (0,0,1), (1,1,1), (1,0,0), (0,1,0).
+  const int cellIndex[3] = { 2, 4, 6 };
+  const vtkIdType cell =
+    ((cellIndex[2] - Box[4]) * 8 + cellIndex[1] - Box[2]) * 9 + cellIndex[0] - Box[0];
+  const glm::dvec3 corners[4] = { glm::dvec3(0, 0, 1), glm::dvec3(1, 1, 1), glm::dvec3(1, 0, 0),
+    glm::dvec3(0, 1, 0) };
+  for (int mask = 0; mask < 32; ++mask)
+  {
+    active->Fill(31);
+    active->SetValue(cell, static_cast<unsigned char>(mask));
+    active->Modified();
+    vtkImageData* output = deformed.Update();
+    int wrong = 0;
+    for (int k = 1; k < 4; ++k)
+    {
+      for (int j = 1; j < 4; ++j)
+      {
+        for (int i = 1; i < 4; ++i)
+        {
+          // A corner tetrahedron holds the points within the distance 1 of its corner, measured
+          // along the axes; a fourth belongs to the central one as well where it is equal to 1.
+          const glm::dvec3 p = glm::dvec3(i, j, k) / 4.0;
+          bool expected = false;
+          bool central = true;
+          for (int t = 0; t < 4; ++t)
+          {
+            const glm::dvec3 d = glm::abs(p - corners[t]);
+            const double distance = d.x + d.y + d.z;
+            expected |= (mask >> t & 1) != 0 && distance <= 1.0;
+            central &= distance >= 1.0;
+          }
+          expected |= (mask >> 4 & 1) != 0 && central;
+          int index[3] = { 4 * cellIndex[0] + i, 4 * cellIndex[1] + j, 4 * cellIndex[2] + k };
+          wrong += deformed.IsCovered(output->ComputePointId(index)) != expected ? 1 : 0;
+        }
+      }
+    }
+    VERIFY_EQUAL(wrong, 0);
+  }
+  active->Fill(0);
+  active->Modified();
+  VERIFY_EQUAL(CountCovered(deformed), 0);
+  volume->GetCellData()->RemoveArray("ActiveTetrahedra");
+  VERIFY_EQUAL(CountCovered(deformed), all);
+}
+
+void TestHiddenCells()
+{
+  auto volume = MakeVolume(Box);
+  auto mesh = MakeStillMesh(volume);
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetOutputSpacingModeToCustomSpacing();
+  deformed.Filter->SetCustomSpacing(0.5, 0.5, 0.5);
+  const vtkIdType all = CountCovered(deformed);
+  auto ghosts = MakeBytes(vtkDataSetAttributes::GhostArrayName(), volume->GetNumberOfCells(), 0);
+  ghosts->SetValue((3 * 8 + 4) * 9 + 5, vtkDataSetAttributes::HIDDENCELL);
+  volume->GetCellData()->AddArray(ghosts);
+  // Only the middle of the cell; its faces belong to the neighbours, too.
+  VERIFY_EQUAL(CountCovered(deformed), all - 1);
+}
+
+void TestHiddenAndDuplicatePoints()
+{
+  for (const unsigned char kind :
+    { vtkDataSetAttributes::HIDDENPOINT, vtkDataSetAttributes::DUPLICATEPOINT })
+  {
+    auto volume = MakeVolume(Box);
+    auto mesh = MakeStillMesh(volume);
+    Deformed deformed(volume, mesh);
+    const vtkIdType all = CountCovered(deformed);
+    auto ghosts = MakeBytes(vtkDataSetAttributes::GhostArrayName(), volume->GetNumberOfPoints(), 0);
+    int inside[3] = { 3, 4, 7 };
+    int corner[3] = { -1, 0, 3 };
+    ghosts->SetValue(volume->ComputePointId(inside), kind);
+    ghosts->SetValue(volume->ComputePointId(corner), kind);
+    volume->GetPointData()->AddArray(ghosts);
+    VERIFY_EQUAL(CountCovered(deformed), all - 2);
+    vtkImageData* output = deformed.Filter->GetOutput();
+    VERIFY(!deformed.IsCovered(output->ComputePointId(inside)));
+    VERIFY_EQUAL(deformed.GetValues()->GetComponent(output->ComputePointId(inside), 0), 0.0);
+    // What is blank in the volume is nothing to the output.
+    VERIFY(!output->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
+    ghosts->Fill(0);
+    ghosts->Modified();
+    VERIFY_EQUAL(CountCovered(deformed), all);
+  }
+}
+
+void TestBlankingByUniformGrid()
+{
+  vtkNew<vtkUniformGrid> volume;
+  volume->DeepCopy(MakeVolume(Box));
+  auto mesh = MakeStillMesh(volume);
+  Deformed deformed(volume, mesh);
+  const vtkIdType all = CountCovered(deformed);
+  int inside[3] = { 3, 4, 7 };
+  volume->BlankPoint(volume->ComputePointId(inside));
+  volume->Modified();
+  VERIFY_EQUAL(CountCovered(deformed), all - 1);
+  VERIFY(!deformed.IsCovered(volume->ComputePointId(inside)));
+}
+
+} // namespace
+
+int TestDeformMasks(int, char*[])
+{
+  TestActiveTetrahedra();
+  TestHiddenCells();
+  TestHiddenAndDuplicatePoints();
+  TestBlankingByUniformGrid();
+  return GetExitCode();
+}

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The filter in a pipeline: whole extents that follow the deformation, pieces, progress, abort.
+#include "FilterTesting.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkFlyingEdges3D.h>
+#include <vtkImageDataStreamer.h>
+#include <vtkImageGaussianSmooth.h>
+#include <vtkInformation.h>
+#include <vtkPolyData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkTrivialProducer.h>
+
+#include <glm/geometric.hpp>
+
+using namespace filterTesting;
+
+namespace
+{
+
+Extent GetWholeExtent(vtkAlgorithm* algorithm)
+{
+  Extent extent;
+  algorithm->GetOutputInformation(0)->Get(
+    vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent.data());
+  return extent;
+}
+
+Extent Moved(const Extent& extent, int x)
+{
+  Extent moved = extent;
+  moved[0] += x;
+  moved[1] += x;
+  return moved;
+}
+
+// Consumers see the right extent in the first update and after each change of the deformation.
+void TestWholeExtentDownstream()
+{
+  auto volume = MakeImage({ { 0, 19, 0, 17, 0, 15 } });
+  AddScalars<float>(volume, "value",
+    [](const glm::dvec3& p) { return 50.0 - 10.0 * glm::length(p - glm::dvec3(9.5, 8.5, 7.5)); });
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  Deformed deformed(volume, mesh);
+  vtkNew<vtkImageGaussianSmooth> smooth;
+  smooth->SetStandardDeviation(0.5);
+  smooth->SetInputConnection(deformed.Filter->GetOutputPort());
+  vtkNew<vtkFlyingEdges3D> surface;
+  surface->SetInputConnection(smooth->GetOutputPort());
+  surface->SetValue(0, 0.0);
+  vtkNew<vtkFlyingEdges3D> direct;
+  direct->SetInputConnection(deformed.Filter->GetOutputPort());
+  direct->SetValue(0, 0.0);
+
+  vtkIdType points = 0;
+  for (const int shift : { 0, 40, -25, 3 })
+  {
+    SetDisplacements(mesh, Shift(shift, 0.0, 0.0));
+    mesh->Modified();
+    surface->Update();
+    direct->Update();
+    VERIFY_EQUAL(deformed.TakeErrors(), 0);
+    const Extent expected = Moved(GetExtent(volume), shift);
+    VERIFY_EQUAL(GetWholeExtent(deformed.Filter), expected);
+    VERIFY_EQUAL(GetExtent(deformed.Filter->GetOutput()), expected);
+    VERIFY_EQUAL(GetExtent(smooth->GetOutput()), expected);
+    for (vtkPolyData* sphere : { surface->GetOutput(), direct->GetOutput() })
+    {
+      double bounds[6];
+      sphere->GetBounds(bounds);
+      VERIFY(std::abs(bounds[0] - (9.5 - 5.0 + shift)) < 0.3);
+      VERIFY(std::abs(bounds[1] - (9.5 + 5.0 + shift)) < 0.3);
+    }
+    points = points == 0 ? direct->GetOutput()->GetNumberOfPoints() : points;
+    VERIFY_EQUAL(direct->GetOutput()->GetNumberOfPoints(), points);
+  }
+  // An idle update runs nothing.
+  const vtkMTimeType before = deformed.Filter->GetOutput()->GetMTime();
+  surface->Update();
+  VERIFY_EQUAL(deformed.Filter->GetOutput()->GetMTime(), before);
+}
+
+// A deformation that a pipeline makes, and a change at its far end.
+void TestUpstreamPipeline()
+{
+  auto volume = MakeVolume();
+  vtkNew<vtkTrivialProducer> volumeSource;
+  volumeSource->SetOutput(volume);
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetNumberOfNodes(3, 4, 5);
+  lattice->SetBounds(-1.0, 10.0, -1.0, 10.0, -1.0, 10.0);
+  Deformed deformed;
+  deformed.Filter->SetInputConnection(volumeSource->GetOutputPort());
+  deformed.Filter->SetDeformationConnection(lattice->GetOutputPort());
+  deformed.Filter->SetRestConnection(lattice->GetOutputPort());
+  VERIFY_EQUAL(GetExtent(deformed.Update()), GetExtent(volume));
+  lattice->SetNumberOfNodes(2, 2, 2);
+  VERIFY_EQUAL(GetExtent(deformed.Update()), GetExtent(volume));
+  VERIFY(HaveEqualBits(deformed.GetValues(), volume->GetPointData()->GetScalars()));
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfMappingBuilds(), 2);
+}
+
+void TestPieces()
+{
+  auto volume = MakeVolume({ { 0, 20, 0, 18, 0, 16 } });
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh,
+    [](const glm::dvec3& p)
+    { return p + glm::dvec3(2.0 * std::sin(0.3 * p.y), 1.5 * std::cos(0.2 * p.z), 0.1 * p.x); });
+  Deformed deformed(volume, mesh);
+  vtkNew<vtkImageData> whole;
+  whole->DeepCopy(deformed.Update());
+  const Extent extent = GetExtent(whole);
+  const vtkIdType covered = deformed.Filter->GetNumberOfCoveredVoxels();
+
+  Deformed pieces(volume, mesh);
+  vtkNew<vtkImageDataStreamer> streamer;
+  streamer->SetInputConnection(pieces.Filter->GetOutputPort());
+  streamer->SetNumberOfStreamDivisions(5);
+  streamer->Update();
+  VERIFY_EQUAL(pieces.TakeErrors(), 0);
+  VERIFY(GetExtent(pieces.Filter->GetOutput()) != extent);
+  VERIFY_EQUAL(GetExtent(streamer->GetOutput()), extent);
+  VERIFY(HaveEqualBits(
+    streamer->GetOutput()->GetPointData()->GetScalars(), whole->GetPointData()->GetScalars()));
+  VERIFY_EQUAL(pieces.Filter->GetNumberOfMappingBuilds(), 1);
+  VERIFY_EQUAL(pieces.Filter->GetNumberOfVolumeUploads(), 1);
+
+  // Any box.
+  const Extent box{ { extent[0] + 3, extent[0] + 8, 4, 4, 5, 11 } };
+  pieces.Filter->UpdateExtent(box.data());
+  vtkImageData* part = pieces.Filter->GetOutput();
+  VERIFY_EQUAL(GetExtent(part), box);
+  for (int z = box[4]; z <= box[5]; ++z)
+  {
+    for (int x = box[0]; x <= box[1]; ++x)
+    {
+      VERIFY_EQUAL(part->GetScalarComponentAsDouble(x, 4, z, 0),
+        whole->GetScalarComponentAsDouble(x, 4, z, 0));
+    }
+  }
+  pieces.Filter->UpdateWholeExtent();
+  VERIFY(AreEqual(pieces.Filter->GetOutput(), whole));
+  VERIFY_EQUAL(pieces.Filter->GetNumberOfCoveredVoxels(), covered);
+}
+
+struct ProgressLog
+{
+  double Last = 0.0;
+  int Calls = 0;
+  int AbortAt = -1;
+  bool Backwards = false;
+
+  static void Execute(vtkObject* caller, unsigned long, void* clientData, void* callData)
+  {
+    auto* log = static_cast<ProgressLog*>(clientData);
+    const double progress = *static_cast<double*>(callData);
+    log->Backwards |= progress < log->Last || progress > 1.0;
+    log->Last = progress;
+    if (log->Calls++ == log->AbortAt)
+    {
+      static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+    }
+  }
+};
+
+void TestProgressAndAbort()
+{
+  auto volume = MakeVolume({ { 0, 20, 0, 18, 0, 16 } });
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.5, 0.0, 0.0));
+  ProgressLog log;
+  vtkNew<vtkCallbackCommand> command;
+  command->SetCallback(ProgressLog::Execute);
+  command->SetClientData(&log);
+  Deformed deformed(volume, mesh);
+  deformed.Filter->AddObserver(vtkCommand::ProgressEvent, command);
+  vtkNew<vtkImageData> expected;
+  expected->DeepCopy(deformed.Update());
+  VERIFY(log.Calls > 2);
+  VERIFY(!log.Backwards);
+  VERIFY_EQUAL(log.Last, 1.0);
+
+  const int calls = log.Calls;
+  for (const int abortAt : { 0, 1, calls / 2 })
+  {
+    Deformed aborted(volume, mesh);
+    aborted.Filter->AddObserver(vtkCommand::ProgressEvent, command);
+    log = ProgressLog();
+    log.AbortAt = abortAt;
+    aborted.Filter->Update();
+    VERIFY_EQUAL(aborted.TakeErrors(), 0);
+    VERIFY_EQUAL(aborted.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    // The next update makes up for it.
+    log = ProgressLog();
+    aborted.Filter->SetAbortExecute(0);
+    VERIFY(AreEqual(aborted.Update(), expected));
+  }
+}
+
+} // namespace
+
+int TestDeformPipeline(int, char*[])
+{
+  TestWholeExtentDownstream();
+  TestUpstreamPipeline();
+  TestPieces();
+  TestProgressAndAbort();
+  return GetExitCode();
+}
