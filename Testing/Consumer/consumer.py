@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Imports the installed package, and makes sure that it is the installed one that came."""
+import os
+import sys
+
+import deformvolume
+
+prefix = os.path.realpath(sys.argv[1])
+assert os.path.realpath(deformvolume.__file__).startswith(prefix), deformvolume.__file__
+devices = deformvolume.vtkDeformVolumeFilter.GetDeviceNames()
+assert devices.GetNumberOfValues() > 0
+with open("/proc/self/maps", encoding="utf-8") as maps:
+    libraries = {line.split()[-1] for line in maps if "libvtkDeformVolume" in line}
+assert libraries and all(name.startswith(prefix) for name in libraries), libraries
