@@ -178,8 +178,9 @@ const void* GetValues(vtkDataArray* array, vtkSmartPointer<vtkDataArray>& copy)
 
 vtkSmartPointer<vtkDataArray> MakeLike(vtkDataArray* array, vtkIdType numberOfTuples)
 {
-  const auto made =
-    vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
+  // A class of its own is kept, unless its layout is one that the kernels cannot write.
+  const auto made = vtkSmartPointer<vtkDataArray>::Take(
+    FindValues(array) ? array->NewInstance() : vtkDataArray::CreateDataArray(array->GetDataType()));
   made->SetName(array->GetName());
   made->SetNumberOfComponents(array->GetNumberOfComponents());
   made->CopyComponentNames(array);
