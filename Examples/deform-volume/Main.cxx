@@ -12,6 +12,7 @@
 
 #include <vtkDataArray.h>
 #include <vtkDeformVolumeFilter.h>
+#include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkStringArray.h>
@@ -34,8 +35,7 @@ std::string GetDimensionsText(vtkImageData* image)
 
 void ListDevices()
 {
-  const auto names =
-    vtkSmartPointer<vtkStringArray>::Take(vtkDeformVolumeFilter::GetDeviceNames());
+  const auto names = vtkSmartPointer<vtkStringArray>::Take(vtkDeformVolumeFilter::GetDeviceNames());
   if (names->GetNumberOfValues() == 0)
   {
     throw Failure("there is no OpenCL device. Install an OpenCL driver; for the processor that is "
@@ -201,6 +201,8 @@ int main(int argc, char* argv[])
   {
     return *code;
   }
+  // VTK writes its errors to a log, too; once is enough.
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   const vtkNew<Messages> messages;
   vtkOutputWindow::SetInstance(messages);
   int code = 0;

@@ -321,12 +321,13 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
                    "device.\n",
     "deform-volume");
   program.footer(
-    "World coordinates are those of the file: NIfTI files are placed by their s-form, or else "
-    "their\n"
-    "q-form (x to the right, y to the front, z to the head, mostly in mm), MetaImage and NRRD "
-    "files\n"
-    "by origin and direction, .vti files as they are. DICOM slices have the coordinates of\n"
-    "vtkDICOMImageReader: origin 0, spacing in mm. All lengths are in these units.\n\n"
+    "World coordinates are those of the file, mostly in mm: NIfTI files are placed by their "
+    "s-form,\n"
+    "or else their q-form (x to the right, y to the front, z to the head); DICOM series, "
+    "MetaImage\n"
+    "and NRRD files by origin and direction (x to the left, y to the back, z to the head, unless "
+    "an\n"
+    "NRRD file says otherwise); .vti files as they are. All lengths are in these units.\n\n"
     "Exit codes: 0 success, 1 failure, 2 wrong usage.\n\n"
     "Example: dent a head to a depth of 15 mm\n"
     "  deform-volume head.nii.gz --tetgen --push 0,88,-50,0,-15,0,30 -o dented.nii.gz");
@@ -338,7 +339,9 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
       "slices of one DICOM series")
     ->type_name("FILE");
   program.add_flag("--file-coordinates", options.FileCoordinates,
-    "Do as VTK's readers do: NIfTI files have origin 0, and no file but .vti has a direction");
+    "Do as VTK's readers do: NIfTI files and DICOM series have origin 0, and only .vti files have "
+    "a "
+    "direction");
   program.add_flag(
     "--list-devices", options.ListDevices, "List the OpenCL devices, the best first, and end");
   AddDeformation(program, options, raw);

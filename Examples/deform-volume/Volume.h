@@ -11,7 +11,7 @@ enum class WorldAxes
   Unknown,
   /// x to the right, y to the front, z to the head: NIfTI.
   RightAnteriorSuperior,
-  /// x to the left, y to the back, z to the head: MetaImage, and most NRRD files.
+  /// x to the left, y to the back, z to the head: DICOM, MetaImage, and most NRRD files.
   LeftPosteriorSuperior
 };
 

@@ -8,6 +8,7 @@
 
 #include <vtkDICOMImageReader.h>
 #include <vtkImageReader2.h>
+#include <vtkMath.h>
 #include <vtkMetaImageReader.h>
 #include <vtkNIFTIImageReader.h>
 #include <vtkNew.h>
@@ -168,7 +169,40 @@ Volume ReadVTI(const std::string& path, Messages& messages, bool showProgress)
   return volume;
 }
 
-Volume ReadDICOM(const std::string& path, Messages& messages, bool showProgress)
+// VTK's reader puts the last row first, and the slice with the highest position along the normal of
+// the slices; it tells the position of the slice that it has read last.
+void SetDICOMAxes(vtkDICOMImageReader* reader, Volume& volume)
+{
+  const float* row = reader->GetImageOrientationPatient();
+  const float* column = row + 3;
+  const float* position = reader->GetImagePositionPatient();
+  float normal[3];
+  vtkMath::Cross(row, column, normal);
+  if (!(vtkMath::Norm(normal) > 0.0F))
+  {
+    return;
+  }
+  int dimensions[3];
+  volume.Image->GetDimensions(dimensions);
+  const double* spacing = volume.Image->GetSpacing();
+  vtkNew<vtkMatrix4x4> axes;
+  for (int i = 0; i < 3; ++i)
+  {
+    axes->SetElement(i, 0, row[i]);
+    axes->SetElement(i, 1, -column[i]);
+    axes->SetElement(i, 2, -normal[i]);
+    axes->SetElement(i, 3,
+      position[i] + (dimensions[1] - 1) * spacing[1] * column[i] +
+        (dimensions[2] - 1) * spacing[2] * normal[i]);
+  }
+  if (SetAxes(volume.Image, axes))
+  {
+    volume.Axes = WorldAxes::LeftPosteriorSuperior;
+  }
+}
+
+Volume ReadDICOM(
+  const std::string& path, bool fileCoordinates, Messages& messages, bool showProgress)
 {
   vtkNew<vtkDICOMImageReader> reader;
   reader->SetDirectoryName(path.c_str());
@@ -181,6 +215,10 @@ Volume ReadDICOM(const std::string& path, Messages& messages, bool showProgress)
       "(one uncompressed series)");
   }
   volume.Image = Update(reader.Get(), path, messages, showProgress);
+  if (!fileCoordinates)
+  {
+    SetDICOMAxes(reader, volume);
+  }
   return volume;
 }
 }
@@ -198,7 +236,7 @@ Volume ReadVolume(
   { return vtksys::SystemTools::StringEndsWith(name, suffix); };
   if (vtksys::SystemTools::FileIsDirectory(path))
   {
-    volume = ReadDICOM(path, messages, showProgress);
+    volume = ReadDICOM(path, fileCoordinates, messages, showProgress);
   }
   else if (endsWith(".nii") || endsWith(".nii.gz"))
   {

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""deform-volume says clearly what is wrong, with the right exit code, and deforms as it is told.
+Usage: TestCommandLine.py PROGRAM FOLDER"""
+import os
+import sys
+
+import numpy
+from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
+
+program = sys.argv[1]
+folder = make_folder(sys.argv[2], "CommandLine")
+
+
+def path(name):
+    return os.path.join(folder, name)
+
+
+volume = make_ball()
+write_vti(volume, path("in.vti"))
+push = ("--push", "9,20,25,3,0,0,15")
+lattice = ("--lattice", "9,9,9")
+
+
+def fails(code, expected, *arguments, environment=None):
+    output, errors = call(program, *arguments, code=code, environment=environment)
+    assert output == "", output
+    assert errors.startswith("deform-volume: "), errors
+    assert expected in errors, f"{expected} is not in {errors}"
+
+
+# Wrong usage.
+fails(2, "no VOLUME")
+fails(2, "exactly one of --mesh, --tetgen and --lattice", path("in.vti"), "-o", path("o.vti"))
+fails(2, "exactly one of", path("in.vti"), "--tetgen", *lattice, *push, "-o", path("o.vti"))
+fails(2, "at least one --push", path("in.vti"), *lattice, "-o", path("o.vti"))
+fails(2, "seven numbers", path("in.vti"), *lattice, "--push", "1,2,3", "-o", path("o.vti"))
+fails(2, "seven numbers", path("in.vti"), *lattice, "--push", "1,2,3,4,5,6,7,8", "-o",
+      path("o.vti"))
+fails(2, "radius", path("in.vti"), *lattice, "--push", "1,2,3,4,5,6,0", "-o", path("o.vti"))
+fails(2, "at least 2 nodes", path("in.vti"), "--lattice", "3,1,3", *push, "-o", path("o.vti"))
+fails(2, "three node counts", path("in.vti"), "--lattice", "3,3", *push, "-o", path("o.vti"))
+fails(2, "nothing to write", path("in.vti"), *lattice, *push)
+fails(2, "must end in .vti", path("in.vti"), *lattice, *push, "-o", path("o.jpg"))
+fails(2, "must end in .png", path("in.vti"), *lattice, *push, "--image", path("o.jpg"))
+fails(2, "--displacement", path("in.vti"), "--mesh", path("m.vtu"), "-o", path("o.vti"))
+fails(2, "--nonsense", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "--nonsense")
+fails(2, "--outside", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "--outside", "x")
+
+# Failures.
+fails(1, "no such file", path("none.nii.gz"), *lattice, *push, "-o", path("o.vti"))
+with open(path("text.nii"), "w", encoding="utf-8") as file:
+    file.write("no volume")
+fails(1, "no NIfTI file", path("text.nii"), *lattice, *push, "-o", path("o.vti"))
+fails(1, "a volume is a", __file__, *lattice, *push, "-o", path("o.vti"))
+os.makedirs(path("empty"), exist_ok=True)
+fails(1, "DICOM", path("empty"), *lattice, *push, "-o", path("o.vti"))
+fails(1, "no folder", path("in.vti"), *lattice, *push, "-o", path("none/o.vti"))
+fails(1, "no such file", path("in.vti"), "--mesh", path("none.vtu"), "--displacement", "D", "-o",
+      path("o.vti"))
+fails(1, "no-such-device", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "--device",
+      "no-such-device")
+fails(1, "no such array", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "--categorical",
+      "Labels")
+no_display = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
+fails(1, "xvfb-run", path("in.vti"), *lattice, *push, "--image", path("o.png"),
+      environment=no_display)
+assert not os.path.exists(path("o.vti"))
+assert not os.path.exists(path("o.png"))
+
+# What is asked for.
+output, _ = call(program, "--help")
+for option in ("--mesh", "--displacement", "--rest", "--tetgen", "--lattice", "--push", "--image",
+               "--list-devices", "--device", "--categorical", "--background", "--resampler",
+               "world units", "Exit codes"):
+    assert option in output, option
+output, _ = call(program, "--list-devices")
+assert output.strip(), "no device"
+
+# A push moves what it should: the ball's voxels near the centre of the push by its displacement,
+# and nothing beyond its radius.
+output, errors = call(program, path("in.vti"), *lattice, *push, "-o", path("pushed.vti"),
+                      "--write-mesh", path("mesh.vtu"), "--background", "-7", "--bounds", "volume")
+for word in ("step", "resampling", "total", "25 x 22 x 19", "729 nodes"):
+    assert word in output, word
+assert "\r" not in errors, "a progress bar without a terminal"
+pushed = read_vti(path("pushed.vti"))
+before = get_values(volume)
+after = get_values(pushed, "Values")
+assert pushed.GetDimensions() == volume.GetDimensions()
+assert not numpy.array_equal(before, after)
+mask = get_values(pushed, "vtkValidPointMask")
+assert numpy.array_equal(after[mask == 0], numpy.full((mask == 0).sum(), -7))
+# The nodes of the lowest layer, at z = 7, are 18 away from the push.
+assert numpy.array_equal(before[0], after[0]), "voxels beyond the radius have moved"
+
+reader = vtkXMLUnstructuredGridReader()
+reader.SetFileName(path("mesh.vtu"))
+reader.Update()
+mesh = reader.GetOutput()
+points = vtk_to_numpy(mesh.GetPoints().GetData())
+moves = vtk_to_numpy(mesh.GetPointData().GetArray("Displacement"))
+distance = numpy.linalg.norm(points - (9.0, 20.0, 25.0), axis=1) / 15.0
+profile = numpy.where(distance < 1, (1 - distance ** 2) ** 2, 0.0)
+assert numpy.allclose(moves, profile[:, None] * (3.0, 0.0, 0.0), atol=1e-12)
+
+# The mesh that was written gives the same again, and so does the pair of rest and deformed mesh.
+call(program, path("in.vti"), "--mesh", path("mesh.vtu"), "--displacement", "Displacement", "-o",
+     path("again.vti"), "--background", "-7", "--bounds", "volume")
+assert numpy.array_equal(after, get_values(read_vti(path("again.vti")), "Values"))
+deformed = vtkUnstructuredGrid()
+deformed.DeepCopy(mesh)
+for node, move in enumerate(moves):
+    deformed.GetPoints().SetPoint(node, *(points[node] + move))
+writer = vtkXMLUnstructuredGridWriter()
+writer.SetInputData(deformed)
+writer.SetFileName(path("deformed.vtu"))
+assert writer.Write()
+call(program, path("in.vti"), "--mesh", path("deformed.vtu"), "--rest", path("mesh.vtu"), "-o",
+     path("pair.vti"), "--background", "-7", "--bounds", "volume", "--quiet")
+assert numpy.array_equal(after, get_values(read_vti(path("pair.vti")), "Values"))
+
+# A mesh of the ball alone discards what lies outside.
+output, _ = call(program, path("in.vti"), "--tetgen", "--isovalue", "400", "--edge-length", "5",
+                 *push, "--quiet", "-o", path("ball.vti"), "--padding",
+                 "2")
+assert output == ""
+ball = read_vti(path("ball.vti"))
+mask = get_values(ball, "vtkValidPointMask")
+assert 0 < mask.sum() < mask.size
+assert get_values(ball, "Values")[mask == 1].max() >= 800
+# Labels are never mixed.
+call(program, path("in.vti"), *lattice, *push, "-o", path("labels.vti"), "--labels", "--padding",
+     "2")
+labels = get_values(read_vti(path("labels.vti")), "Values")
+assert set(numpy.unique(labels)) <= set(numpy.unique(before)) | {0}

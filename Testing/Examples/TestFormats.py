@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""deform-volume reads and writes volumes at their place in the world.
+Usage: TestFormats.py PROGRAM FOLDER"""
+import gzip
+import math
+import os
+import struct
+import sys
+
+import numpy
+from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+
+program = sys.argv[1]
+folder = make_folder(sys.argv[2], "Formats")
+
+
+def path(name):
+    return os.path.join(folder, name)
+
+
+# A push that moves no voxel by as much as 1/512, so that values stay as they are.
+still = ("--lattice", "3,3,3", "--push", "0,0,0,0.0001,0,0,1000")
+
+
+def convert(source, *targets):
+    for target in targets:
+        call(program, path(source), *still, "-o", path(target), "--quiet", "--bounds", "volume")
+    return read_vti(path(targets[-1])) if targets[-1].endswith(".vti") else None
+
+
+def get_matrix(image):
+    """Index to world, of the index counted from the first voxel."""
+    extent = image.GetExtent()
+    first = [0.0] * 3
+    image.TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], first)
+    direction = image.GetDirectionMatrix()
+    matrix = numpy.array([[direction.GetElement(row, column) for column in range(3)]
+                          for row in range(3)]) * numpy.array(image.GetSpacing())
+    return numpy.column_stack([matrix, first])
+
+
+def same(image, values, matrix):
+    assert numpy.array_equal(get_values(image), values), "values"
+    assert numpy.allclose(get_matrix(image), matrix, atol=1e-5), (get_matrix(image), matrix)
+
+
+# Oblique axes: turned by 30 degrees round z, then x and y exchanged.
+c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
+turned = (c, -s, 0, s, c, 0, 0, 0, 1)
+volume = make_ball(direction=turned)
+values = get_values(volume)
+matrix = get_matrix(volume)
+write_vti(volume, path("in.vti"))
+
+# Unknown world axes stay as they are.
+same(convert("in.vti", "a.vti"), values, matrix)
+convert("in.vti", "a.nii.gz")
+same(convert("a.nii.gz", "b.vti"), values, matrix)
+convert("in.vti", "a.nii")
+same(convert("a.nii", "b.vti"), values, matrix)
+convert("in.vti", "a.mhd")
+same(convert("a.mhd", "b.vti"), values, matrix)
+
+# Known ones are turned: right and anterior become left and posterior.
+flip = numpy.diag([-1.0, -1.0, 1.0])
+convert("a.nii.gz", "c.mhd")
+same(convert("c.mhd", "c.vti"), values, flip @ matrix)
+convert("c.mhd", "d.nii.gz")
+same(convert("d.nii.gz", "d.vti"), values, matrix)
+
+# A mirrored volume. The reader of NIfTI files turns the order of the slices, so that the axes are
+# right-handed: then the last slice is the first, and z the other way.
+mirrored = make_ball(direction=(-1, 0, 0, 0, 1, 0, 0, 0, 1))
+write_vti(mirrored, path("mirrored.vti"))
+convert("mirrored.vti", "mirrored.mhd")
+same(convert("mirrored.mhd", "e.vti"), get_values(mirrored), get_matrix(mirrored))
+convert("mirrored.vti", "mirrored.nii.gz")
+turned_matrix = get_matrix(mirrored)
+turned_matrix[:, 3] += (mirrored.GetDimensions()[2] - 1) * turned_matrix[:, 2]
+turned_matrix[:, 2] *= -1
+same(convert("mirrored.nii.gz", "e.vti"), get_values(mirrored)[::-1], turned_matrix)
+
+# An extent that does not start at 0 keeps its place, whatever the format makes of it.
+shifted = make_ball(direction=turned)
+shifted.SetExtent(-4, 20, 3, 24, -1, 17)
+shifted.GetPointData().ShallowCopy(volume.GetPointData())
+write_vti(shifted, path("shifted.vti"))
+for name in ("shifted.nii.gz", "shifted.mhd"):
+    convert("shifted.vti", name)
+    same(convert(name, "e.vti"), values, get_matrix(shifted))
+
+# --file-coordinates: what VTK's reader makes of a NIfTI file.
+call(program, path("a.nii.gz"), *still, "-o", path("f.vti"), "--quiet", "--bounds", "volume",
+     "--file-coordinates")
+plain = numpy.column_stack([numpy.diag(volume.GetSpacing()), (0, 0, 0)])
+same(read_vti(path("f.vti")), values, plain)
+
+# NRRD, with a header of its own.
+columns = matrix[:, :3]
+with open(path("n.nrrd"), "wb") as file:
+    directions = " ".join("(" + ",".join(repr(float(number)) for number in columns[:, axis]) + ")"
+                          for axis in range(3))
+    header = ("NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\n"
+              f"sizes: {' '.join(str(n) for n in volume.GetDimensions())}\n"
+              f"space directions: {directions}\nkinds: domain domain domain\nendian: little\n"
+              "encoding: gzip\n"
+              f"space origin: ({','.join(repr(float(number)) for number in matrix[:, 3])})\n\n")
+    file.write(header.encode() + gzip.compress(values.astype("<i2").tobytes()))
+same(convert("n.nrrd", "n.vti"), values, matrix)
+convert("n.nrrd", "n.nii")
+same(convert("n.nii", "n.vti"), values, flip @ matrix)
+
+
+# A DICOM series of unsigned shorts, explicit little endian.
+def element(group, number, kind, value):
+    if isinstance(value, str):
+        value = value.encode()
+    if len(value) % 2:
+        value += b"\0" if kind == "UI" else b" "
+    head = struct.pack("<HH", group, number) + kind.encode()
+    if kind in ("OB", "OW"):
+        return head + struct.pack("<HI", 0, len(value)) + value
+    return head + struct.pack("<H", len(value)) + value
+
+
+def short(number):
+    return struct.pack("<H", number)
+
+
+series = numpy.arange(6 * 5 * 4, dtype="<u2").reshape(6, 5, 4)
+os.makedirs(path("series"), exist_ok=True)
+for slice_number, pixels in enumerate(series):
+    meta = element(2, 0x10, "UI", "1.2.840.10008.1.2.1")
+    data = b"".join([
+        element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.4"),
+        element(8, 0x18, "UI", f"1.2.3.4.{slice_number + 1}"),
+        element(0x20, 0xE, "UI", "1.2.3.4"),
+        element(0x20, 0x13, "IS", str(slice_number + 1)),
+        element(0x20, 0x32, "DS", f"-10\\-20\\{30 + 3 * slice_number}"),
+        element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0"),
+        element(0x28, 2, "US", short(1)),
+        element(0x28, 4, "CS", "MONOCHROME2"),
+        element(0x28, 0x10, "US", short(5)),
+        element(0x28, 0x11, "US", short(4)),
+        element(0x28, 0x30, "DS", "2\\2"),
+        element(0x28, 0x100, "US", short(16)),
+        element(0x28, 0x101, "US", short(16)),
+        element(0x28, 0x102, "US", short(15)),
+        element(0x28, 0x103, "US", short(0)),
+        element(0x7FE0, 0x10, "OW", pixels.tobytes())])
+    with open(path(f"series/{slice_number}.dcm"), "wb") as file:
+        file.write(b"\0" * 128 + b"DICM" + element(2, 0, "UL", struct.pack("<I", len(meta))) +
+                   meta + data)
+call(program, path("series"), *still, "-o", path("s.vti"), "--quiet", "--bounds", "volume")
+result = read_vti(path("s.vti"))
+assert result.GetDimensions() == (4, 5, 6)
+assert numpy.allclose(result.GetSpacing(), (2, 2, 3))
+# VTK's reader gives the last row and the last slice first. The first voxel of the first slice is at
+# (-10, -20, 30), rows and slices are 2 and 3 apart.
+expected = numpy.array([[2, 0, 0, -10], [0, -2, 0, -20 + 4 * 2], [0, 0, -3, 30 + 5 * 3]])
+same(result, series[::-1, ::-1, :], expected)
+
+# Rescaling is carried through.
+with gzip.open(path("a.nii.gz"), "rb") as file:
+    raw = bytearray(file.read())
+raw[112:120] = struct.pack("<ff", 2.5, -100.0)
+with gzip.open(path("r.nii.gz"), "wb") as file:
+    file.write(raw)
+call(program, path("r.nii.gz"), *still, "-o", path("q.nii.gz"), "--quiet")
+with gzip.open(path("q.nii.gz"), "rb") as file:
+    assert struct.unpack("<ff", file.read()[112:120]) == (2.5, -100.0)

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""deform-volume draws a picture that shows the volume, and what has changed, on the right.
+Usage: TestPicture.py PROGRAM FOLDER"""
+import os
+import sys
+
+import numpy
+from Volumes import call, make_ball, make_folder, write_vti
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+program = sys.argv[1]
+folder = make_folder(sys.argv[2], "Picture")
+write_vti(make_ball(dimensions=(41, 36, 31), spacing=(1.0, 1.0, 1.0)), os.path.join(folder, "in.vti"))
+
+
+def draw(name, push, *arguments):
+    file = os.path.join(folder, name)
+    call(program, os.path.join(folder, "in.vti"), "--lattice", "12,12,12", "--push", push, "--image",
+         file, "--quiet", *arguments)
+    reader = vtkPNGReader()
+    reader.SetFileName(file)
+    reader.Update()
+    assert reader.GetOutput().GetDimensions() == (1400, 700, 1)
+    picture = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+    picture = picture.reshape(700, 1400, -1).astype(int)
+    # Without the captions.
+    return picture[60:, :700], picture[60:, 700:]
+
+
+def is_ball(half):
+    """Skin colour on a dark background."""
+    return half[:, :, 0] > half[:, :, 2] + 15
+
+
+left, right = draw("still.png", "0,0,0,0.0001,0,0,1000")
+assert 0.1 < is_ball(left).mean() < 0.8, "the ball fills too little or too much of the picture"
+# One rim pixel more or less is what a deformation of no voxel may change.
+assert (numpy.abs(left - right).max(axis=2) > 8).mean() < 0.002
+
+# Pushed from above, towards -z.
+left, right = draw("pushed.png", "17,22.5,31,0,0,-8,16")
+assert (numpy.abs(left - right).max(axis=2) > 8).mean() > 0.02, "no difference"
+top = [numpy.flatnonzero(is_ball(half).any(axis=1)).max() for half in (left, right)]
+assert top[1] < top[0] - 20, top

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Small volumes, and programs that are called with them."""
+import os
+import subprocess
+
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
+
+
+def make_ball(dimensions=(25, 22, 19), spacing=(1.0, 1.5, 2.0), origin=(-3.0, 5.0, 7.0),
+              direction=(1, 0, 0, 0, 1, 0, 0, 0, 1)):
+    """A bright ball in the middle of noise, as signed 16-bit integers."""
+    image = vtkImageData()
+    image.SetDimensions(*dimensions)
+    image.SetSpacing(*spacing)
+    image.SetOrigin(*origin)
+    image.SetDirectionMatrix(*direction)
+    z, y, x = numpy.meshgrid(*(numpy.arange(n, dtype=float) for n in reversed(dimensions)),
+                             indexing="ij")
+    middle = [(n - 1) / 2 for n in dimensions]
+    radius = numpy.sqrt(sum(((index - centre) * step) ** 2
+                            for index, centre, step in zip((x, y, z), middle, spacing)))
+    noise = numpy.random.default_rng(1).integers(0, 50, x.shape)
+    values = numpy.where(radius < 9.0, 800, 0) + noise
+    array = numpy_to_vtk(values.astype(numpy.int16).ravel(), deep=True)
+    array.SetName("Values")
+    image.GetPointData().SetScalars(array)
+    return image
+
+
+def get_values(image, name=None):
+    """The values as an array [z, y, x]."""
+    data = image.GetPointData()
+    array = data.GetArray(name) if name else data.GetScalars()
+    return vtk_to_numpy(array).reshape(image.GetDimensions()[::-1])
+
+
+def write_vti(image, path):
+    writer = vtkXMLImageDataWriter()
+    writer.SetInputData(image)
+    writer.SetFileName(path)
+    assert writer.Write(), path
+
+
+def read_vti(path):
+    reader = vtkXMLImageDataReader()
+    reader.SetFileName(path)
+    reader.Update()
+    return reader.GetOutput()
+
+
+def make_folder(parent, name):
+    folder = os.path.join(parent, name)
+    os.makedirs(folder, exist_ok=True)
+    for file in os.listdir(folder):
+        if os.path.isfile(os.path.join(folder, file)):
+            os.remove(os.path.join(folder, file))
+    return folder
+
+
+def call(*command, code=0, environment=None):
+    """Calls a program, checks its exit code, and returns what it wrote to both streams."""
+    result = subprocess.run([str(word) for word in command], capture_output=True, text=True,
+                            timeout=240, check=False, env=environment)
+    print("$", *command)
+    print(result.stdout + result.stderr)
+    assert result.returncode == code, f"exit code {result.returncode} instead of {code}"
+    return result.stdout, result.stderr
