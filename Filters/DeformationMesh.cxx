@@ -279,6 +279,9 @@ Stamp GetCellsStamp(const MeshParts& parts)
   { stamp.emplace_back(object, object ? object->GetMTime() : 0); };
   for (vtkUnstructuredGrid* grid : parts)
   {
+    // The time of the grid itself: cells that are inserted leave no trace in those of its parts.
+    stamp.emplace_back(grid, grid->vtkObject::GetMTime());
+    stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(grid->GetNumberOfCells()));
     vtkCellArray* cells = grid->GetCells();
     add(cells);
     add(cells ? cells->GetConnectivityArray() : nullptr);
