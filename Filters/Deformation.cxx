@@ -76,13 +76,14 @@ void Deformation::ReadMesh(const DeformationSource& source)
   this->ReadTetrahedra(shape, rest);
   this->ReadRestPoints(rest, source);
 
-  Stamp stamp = GetGridsStamp(shape);
+  Stamp stamp = source.Rest ? GetPointsStamp(shape) : GetPointVectorsStamp(shape);
   if (source.Rest)
   {
-    const Stamp restStamp = GetGridsStamp(rest);
-    stamp.emplace_back(nullptr, 0);
+    const Stamp restStamp = GetPointsStamp(rest);
     stamp.insert(stamp.end(), restStamp.begin(), restStamp.end());
   }
+  // The two ways to give displacements never count as the same.
+  stamp.emplace_back(nullptr, source.Rest ? 1 : 0);
   if (this->VectorsAreCurrent(stamp, source, false))
   {
     return;
@@ -144,7 +145,7 @@ void Deformation::ReadTetrahedra(const MeshParts& shape, const MeshParts& rest)
 
 void Deformation::ReadRestPoints(const MeshParts& rest, const DeformationSource& source)
 {
-  const Stamp stamp = GetGridsStamp(rest);
+  const Stamp stamp = GetPointsStamp(rest);
   if (stamp == this->RestStamp && source.Volume == this->RestVolume)
   {
     return;

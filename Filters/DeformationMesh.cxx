@@ -294,14 +294,24 @@ Stamp GetCellsStamp(const MeshParts& parts)
   return stamp;
 }
 
-Stamp GetGridsStamp(const MeshParts& parts)
+Stamp GetPointsStamp(const MeshParts& parts)
 {
   Stamp stamp;
   for (vtkUnstructuredGrid* grid : parts)
   {
-    stamp.emplace_back(grid, grid->GetMTime());
+    stamp.emplace_back(grid, grid->vtkObject::GetMTime());
     vtkPoints* points = grid->GetPoints();
     stamp.emplace_back(points, points ? points->GetMTime() : 0);
+  }
+  return stamp;
+}
+
+Stamp GetPointVectorsStamp(const MeshParts& parts)
+{
+  Stamp stamp;
+  for (vtkUnstructuredGrid* grid : parts)
+  {
+    stamp.emplace_back(grid, grid->vtkObject::GetMTime());
     stamp.emplace_back(nullptr, grid->GetPointData()->GetMTime());
   }
   return stamp;

@@ -60,11 +60,12 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
 std::vector<glm::dvec3> ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
   const std::string& wanted, const std::string& name);
 
-/// What ReadCells depends on.
+///@{
+/// What the functions above depend on.
 Stamp GetCellsStamp(const MeshParts& parts);
-
-/// What everything else depends on.
-Stamp GetGridsStamp(const MeshParts& parts);
+Stamp GetPointsStamp(const MeshParts& parts);
+Stamp GetPointVectorsStamp(const MeshParts& parts);
+///@}
 
 } // namespace deformvolume
 
