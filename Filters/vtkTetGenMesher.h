@@ -21,7 +21,7 @@
  *
  * @par Output:
  * vtkUnstructuredGrid in world coordinates: points in double precision, vtkTetra cells, all with
- * positive volume, no data arrays.
+ * positive volume, no data arrays. Whichever piece is asked for, it is the whole mesh.
  *
  * @par Errors:
  * No body at the isovalue or with the labels; a volume of one slice; a surface that is empty, open,
