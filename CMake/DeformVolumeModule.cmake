@@ -24,6 +24,7 @@ set(helpers
   StaticMapping
   TetGenProcess
   TetrahedronClipping
+  TetrahedronTiles
   VectorArray
   VolumeArrays
   vtkDeformVolumeFilterInternals)

@@ -35,7 +35,8 @@ struct StaticMapping
 /// of the volume. extrapolate: voxels outside the mesh are linked to the tetrahedron of the
 /// nearest voxel (in continuous indices times spacing, hence world distance) inside it, with
 /// weights outside 0 to 1; otherwise their link is -1. progress: as in DeformRequest; throws
-/// Aborted where it returns false.
+/// Aborted where it returns false. Throws Error where a tetrahedron has a node more than 2^31
+/// voxels away from index 0.
 StaticMapping BuildStaticMapping(const Extent& voxels, const glm::dvec3& spacing,
   const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
   bool extrapolate, const std::function<bool(double)>& progress = {});

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeTetrahedronTiles_h
+#define DeformVolumeTetrahedronTiles_h
+
+#include "TetrahedronRaster.h" // for VoxelBox
+#include "VolumeDeformer.h"    // for Extent, Tetrahedron
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// Splits a volume into tiles, each the rows of voxels in a rectangle of y and z, and lists the
+/// tetrahedra of each tile. One thread links all voxels of a tile, so that nothing has to be locked
+/// and the order of the tetrahedra decides.
+class TetrahedronTiles
+{
+public:
+  /// A tetrahedron belongs to the tiles with voxels in its box, widened by a margin in voxels.
+  /// Throws Error where a node is more than 2^31 voxels away.
+  TetrahedronTiles(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
+    const std::vector<Tetrahedron>& tetrahedra, double margin);
+
+  std::int64_t GetNumberOfTiles() const { return this->Count[0] * this->Count[1]; }
+  VoxelBox GetVoxels(std::int64_t tile) const;
+
+  /// The tetrahedra of a tile in ascending order.
+  struct List
+  {
+    const std::int32_t* First;
+    const std::int32_t* Last;
+    const std::int32_t* begin() const { return this->First; }
+    const std::int32_t* end() const { return this->Last; }
+  };
+  List GetTetrahedra(std::int64_t tile) const
+  {
+    return { this->Bins.data() + this->Offsets[tile], this->Bins.data() + this->Offsets[tile + 1] };
+  }
+
+  /// Tetrahedra without volume, wherever they are. They are listed too.
+  std::int64_t GetNumberOfFlatTetrahedra() const { return this->FlatTetrahedra; }
+
+private:
+  // The tiles of a tetrahedron, both ends included; empty where it has no voxel.
+  struct Range
+  {
+    std::int16_t Min[2] = { 0, 0 };
+    std::int16_t Max[2] = { -1, -1 };
+  };
+
+  void ChooseSize();
+  Range FindRange(
+    const Tetrahedron& tetrahedron, const std::vector<glm::dvec3>& restPoints, double margin) const;
+  template <typename Body>
+  void ForEachTile(const Range& range, Body&& body) const;
+
+  const Extent Voxels;
+  std::int64_t Size[2] = { 16, 16 };
+  std::int64_t Count[2] = { 0, 0 };
+  // The tetrahedra of tile i are Bins[Offsets[i]] to Bins[Offsets[i + 1]].
+  std::vector<std::int64_t> Offsets;
+  std::vector<std::int32_t> Bins;
+  std::int64_t FlatTetrahedra = 0;
+};
+
+} // namespace deformvolume
+
+#endif
