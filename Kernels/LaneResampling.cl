@@ -153,7 +153,7 @@ static void LoadCoordinate(__global const int* const* rows, int offset, int orig
   OP(OP(OP(c.V[0], c.V[1]), OP(c.V[2], c.V[3])), OP(OP(c.V[4], c.V[5]), OP(c.V[6], c.V[7])))
 
 // The values of an array at the vertices. Lanes with a value that the sum of products would not
-// give back bit for bit (not finite, or -0) are unsure.
+// give back bit for bit (-0, not finite, or so large that the sum may overflow) are unsure.
 #define LANE_VALUES(index, TYPE, BITS)                                                             \
   FLOATS values##index[8];                                                                         \
   _Pragma("unroll") for (int r = 0; r < 4; ++r)                                                    \
@@ -165,8 +165,8 @@ static void LoadCoordinate(__global const int* const* rows, int offset, int orig
     values##index[2 * r + 1] = odd ? low : high;                                                   \
     if (BITS == 32)                                                                                \
     {                                                                                              \
-      unsure |= (AS_INTS(low) & 0x7f800000) == 0x7f800000 | AS_INTS(low) == INT_MIN |              \
-        (AS_INTS(high) & 0x7f800000) == 0x7f800000 | AS_INTS(high) == INT_MIN;                     \
+      unsure |= ((AS_INTS(low) & 0x7f800000) >= 0x7e000000) | (AS_INTS(low) == INT_MIN) |          \
+        ((AS_INTS(high) & 0x7f800000) >= 0x7e000000) | (AS_INTS(high) == INT_MIN);                 \
     }                                                                                              \
   }
 

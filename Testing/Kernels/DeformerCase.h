@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -63,6 +64,9 @@ struct Deformed
   std::vector<std::vector<unsigned char>> Outputs;
   std::vector<signed char> Coverage;
   deformvolume::DeformReport Report;
+  deformvolume::Resampling Method = deformvolume::Resampling::Exact;
+  /// The same by the kernel that takes one cell after the other, where the method is left open.
+  std::shared_ptr<Deformed> ByCell;
 
   template <typename T>
   const T* GetOutput(int array) const
@@ -76,11 +80,12 @@ Deformed RunDeformer(deformvolume::VolumeDeformer& deformer, const DeformerCase&
   const std::vector<deformvolume::VolumeArray>& arrays,
   deformvolume::Resampling method = deformvolume::Resampling::Exact);
 
-/// Load and RunDeformer on a new deformer.
+/// Load and RunDeformer on a new deformer, by the kernel of its choice and cell by cell.
 Deformed LoadAndRun(const DeformerCase& deformerCase,
   const std::vector<deformvolume::VolumeArray>& arrays, Route route = Route::Field);
 
-/// Coverage, counts and all values against the reference.
+/// Coverage, counts and all values against the reference, also those found cell by cell. Values of
+/// arrays that go by lanes have single precision, all others the precision of the reference.
 void ExpectEqualsReference(const DeformerCase& deformerCase, const reference::Result& reference,
   const std::vector<deformvolume::VolumeArray>& arrays, const Deformed& deformed);
 

@@ -19,16 +19,48 @@ glm::dvec3 Stay(const glm::dvec3& index)
   return index;
 }
 
-/// Random bits of a type come out at the voxels that a shift by whole voxels takes them to.
-template <typename T>
-void CheckShift(const glm::dvec3& shift, int components, bool categorical)
+/// Arrays of all types: interpolated ones, and with labels as many categorical ones.
+class AllTypes
+{
+public:
+  AllTypes(std::size_t voxels, int components, bool labels, double background, bool bits)
+  {
+#define ADD(name, type, cl)                                                                        \
+  this->Values##name = bits ? MakeRandomBits<type>(voxels * components, 11)                        \
+                            : MakeRandomValues<type>(voxels * components, 11);                     \
+  this->Arrays.push_back(MakeArray(this->Values##name, components, false, background));            \
+  if (labels)                                                                                      \
+  {                                                                                                \
+    this->Arrays.push_back(MakeArray(this->Values##name, components, true, background));           \
+  }
+    DEFORMVOLUME_ELEMENT_TYPES(ADD)
+#undef ADD
+  }
+  AllTypes(const AllTypes&) = delete;
+  AllTypes& operator=(const AllTypes&) = delete;
+
+  std::vector<VolumeArray> Arrays;
+
+private:
+#define DECLARE(name, type, cl) std::vector<type> Values##name;
+  DEFORMVOLUME_ELEMENT_TYPES(DECLARE)
+#undef DECLARE
+};
+
+/// Random bits come out at the voxels that a shift by whole voxels takes them to.
+void CheckShift(const glm::dvec3& shift, const std::vector<VolumeArray>& arrays)
 {
   const DeformerCase moved = MakeCase(
     Volume, { { 1, 1, 1 } }, [&shift](const glm::dvec3& index) { return index + shift; }, 0);
-  const auto input = MakeRandomBits<T>(GetNumberOfPoints(Volume) * components, 11);
-  const Deformed deformed = LoadAndRun(moved, { MakeArray(input, components, categorical) });
-  ASSERT_EQ(deformed.Outputs[0].size(), input.size() * sizeof(T));
-  EXPECT_EQ(std::memcmp(deformed.Outputs[0].data(), input.data(), input.size() * sizeof(T)), 0);
+  const Deformed deformed = LoadAndRun(moved, arrays);
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    SCOPED_TRACE(i);
+    const std::size_t bytes =
+      GetNumberOfPoints(Volume) * arrays[i].Components * GetElementSize(arrays[i].Type);
+    ASSERT_EQ(deformed.Outputs[i].size(), bytes);
+    EXPECT_EQ(std::memcmp(deformed.Outputs[i].data(), arrays[i].Data, bytes), 0);
+  }
   EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, GetNumberOfPoints(Volume));
   EXPECT_EQ(deformed.Report.NumberOfInvertedTetrahedra, 0);
   EXPECT_FALSE(deformed.Report.Overlapping);
@@ -38,79 +70,38 @@ void CheckShift(const glm::dvec3& shift, int components, bool categorical)
   }
 }
 
-/// Random values under a deformation against the reference.
-template <typename T>
-void CheckAgainstReference(bool categorical)
-{
-  const DeformerCase jittered =
-    MakeCase({ { -2, 5, 0, 6, 3, 9 } }, { { 1, 1, 1 } }, MakeJitter(5, 0.15));
-  const reference::Result reference = ResampleByReference(jittered);
-  ExpectEmbedding(reference);
-  const auto values = MakeRandomValues<T>(jittered.GetNumberOfVoxels() * 2, 3);
-  const std::vector<VolumeArray> arrays{ MakeArray(values, 2, categorical, 7.0) };
-  ExpectEqualsReference(jittered, reference, arrays, LoadAndRun(jittered, arrays));
-}
-
 } // namespace
 
-TEST(ElementTypes, UndeformedVolumeComesOutBitForBit){
-#define CHECK(name, type, cl)                                                                      \
-  {                                                                                                \
-    SCOPED_TRACE(#name);                                                                           \
-    CheckShift<type>(glm::dvec3(0.0), 1, false);                                                   \
-  }
-  DEFORMVOLUME_ELEMENT_TYPES(CHECK)
-#undef CHECK
-}
-
-TEST(ElementTypes, ShiftByWholeVoxelsIsBitExact){
-#define CHECK(name, type, cl)                                                                      \
-  {                                                                                                \
-    SCOPED_TRACE(#name);                                                                           \
-    CheckShift<type>(glm::dvec3(4.0, -7.0, 1.0), 3, false);                                        \
-    CheckShift<type>(glm::dvec3(-1.0, 2.0, 30.0), 1, true);                                        \
-  }
-  DEFORMVOLUME_ELEMENT_TYPES(CHECK)
-#undef CHECK
-}
-
-TEST(ElementTypes, InterpolatedValuesEqualReference){
-#define CHECK(name, type, cl)                                                                      \
-  {                                                                                                \
-    SCOPED_TRACE(#name);                                                                           \
-    CheckAgainstReference<type>(false);                                                            \
-  }
-  DEFORMVOLUME_ELEMENT_TYPES(CHECK)
-#undef CHECK
-}
-
-TEST(ElementTypes, CategoricalValuesEqualReference){
-#define CHECK(name, type, cl)                                                                      \
-  {                                                                                                \
-    SCOPED_TRACE(#name);                                                                           \
-    CheckAgainstReference<type>(true);                                                             \
-  }
-  DEFORMVOLUME_ELEMENT_TYPES(CHECK)
-#undef CHECK
-}
-
-TEST(ElementTypes, AllTypesInOnePass)
+// One by one: each type alone has a kernel of its own.
+TEST(ElementTypes, UndeformedVolumeComesOutBitForBit)
 {
-  const DeformerCase jittered =
-    MakeCase({ { 1, 7, 0, 5, 0, 6 } }, { { 1, 1, 1 } }, MakeJitter(9, 0.15));
-  const reference::Result reference = ResampleByReference(jittered);
-  ExpectEmbedding(reference);
-  const std::size_t size = jittered.GetNumberOfVoxels();
-  std::vector<VolumeArray> arrays;
-#define VALUES(name, type, cl) const auto values##name = MakeRandomValues<type>(size * 3, 17);
-  DEFORMVOLUME_ELEMENT_TYPES(VALUES)
-#undef VALUES
-#define ARRAYS(name, type, cl)                                                                     \
-  arrays.push_back(MakeArray(values##name, 3, false, -5.0));                                       \
-  arrays.push_back(MakeArray(values##name, 1, true, 5.0));
-  DEFORMVOLUME_ELEMENT_TYPES(ARRAYS)
-#undef ARRAYS
-  ExpectEqualsReference(jittered, reference, arrays, LoadAndRun(jittered, arrays));
+  const AllTypes types(GetNumberOfPoints(Volume), 1, false, 0.0, true);
+  for (const VolumeArray& array : types.Arrays)
+  {
+    SCOPED_TRACE(static_cast<int>(array.Type));
+    CheckShift(glm::dvec3(0.0), { array });
+  }
+}
+
+TEST(ElementTypes, ShiftByWholeVoxelsIsBitExact)
+{
+  const AllTypes types(GetNumberOfPoints(Volume), 3, true, 0.0, true);
+  CheckShift(glm::dvec3(4.0, -7.0, 1.0), types.Arrays);
+  CheckShift(glm::dvec3(-1.0, 2.0, 30.0), types.Arrays);
+}
+
+TEST(ElementTypes, DeformedValuesEqualReference)
+{
+  for (const int components : { 1, 2 })
+  {
+    SCOPED_TRACE(components);
+    const DeformerCase jittered =
+      MakeCase({ { -2, 5, 0, 6, 3, 9 } }, { { 1, 1, 1 } }, MakeJitter(5, 0.15));
+    const reference::Result reference = ResampleByReference(jittered);
+    ExpectEmbedding(reference);
+    const AllTypes types(jittered.GetNumberOfVoxels(), components, true, -5.0, false);
+    ExpectEqualsReference(jittered, reference, types.Arrays, LoadAndRun(jittered, types.Arrays));
+  }
 }
 
 TEST(ElementTypes, LabelsOf64BitsSurvive)
@@ -186,18 +177,12 @@ TEST(ElementTypes, IntegersAreRoundedToNearestEvenAndStayInRange)
 TEST(ElementTypes, BackgroundIsClampedToTheType)
 {
   DeformerCase still = MakeCase({ { 0, 2, 0, 2, 0, 2 } }, { { 1, 1, 1 } }, Stay, 2);
-  const std::size_t size = still.GetNumberOfVoxels();
-#define VALUES(name, type, cl) const auto values##name = MakeRandomValues<type>(size, 1);
-  DEFORMVOLUME_ELEMENT_TYPES(VALUES)
-#undef VALUES
   for (const double background : { 1e30, -1e30, 1.5, -0.75 })
   {
     SCOPED_TRACE(background);
-    std::vector<VolumeArray> arrays;
-#define ARRAYS(name, type, cl) arrays.push_back(MakeArray(values##name, 1, false, background));
-    DEFORMVOLUME_ELEMENT_TYPES(ARRAYS)
-#undef ARRAYS
-    ExpectEqualsReference(still, ResampleByReference(still), arrays, LoadAndRun(still, arrays));
+    const AllTypes types(still.GetNumberOfVoxels(), 1, false, background, false);
+    ExpectEqualsReference(
+      still, ResampleByReference(still), types.Arrays, LoadAndRun(still, types.Arrays));
   }
 }
 
