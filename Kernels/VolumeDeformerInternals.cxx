@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VolumeDeformerInternals.h"
+
+#include "KernelProgram.h"
+
+#include <algorithm>
+
+namespace deformvolume
+{
+namespace
+{
+
+using Clock = std::chrono::steady_clock;
+
+double GetSeconds(const std::vector<cl::Event>& events)
+{
+  double nanoseconds = 0.0;
+  for (const cl::Event& event : events)
+  {
+    nanoseconds += static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+      event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+  }
+  return nanoseconds * 1e-9;
+}
+
+void CheckExtent(const Extent& extent, const char* what)
+{
+  if (GetNumberOfPoints(extent) == 0)
+  {
+    throw Error(std::string("The extent of the ") + what + " is empty.");
+  }
+}
+
+} // namespace
+
+void VolumeDeformer::Internals::Forget()
+{
+  this->Mesh.reset();
+  this->Arrays.clear();
+  this->Tetrahedra = cl::Buffer();
+  this->Nodes = cl::Buffer();
+  this->FieldVectors = cl::Buffer();
+  this->Positions = cl::Buffer();
+  this->Target = OutputSlab();
+  this->NumberOfNodes = 0;
+  this->NodesSet = false;
+}
+
+OpenCLContext& VolumeDeformer::Internals::GetContext()
+{
+  if (!this->Context)
+  {
+    this->SelectDevice("");
+  }
+  return *this->Context;
+}
+
+void VolumeDeformer::Internals::SelectDevice(const std::string& request)
+{
+  const OpenCLDevice device = FindDevice(request);
+  OpenCLContext& context = OpenCLContext::Get(device);
+  if (&context != this->Context)
+  {
+    this->Forget();
+    this->Context = &context;
+    this->Queue =
+      cl::CommandQueue(context.GetContext(), context.GetDevice().Device, CL_QUEUE_PROFILING_ENABLE);
+  }
+}
+
+DeviceLattice& VolumeDeformer::Internals::GetMesh()
+{
+  if (!this->Mesh)
+  {
+    throw Error("No volume is set: call SetLattice first.");
+  }
+  return *this->Mesh;
+}
+
+std::uint64_t VolumeDeformer::Internals::GetAllocationLimit()
+{
+  const std::uint64_t device =
+    this->GetContext().GetDevice().Device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+  return this->AllocationLimit ? std::min(device, this->AllocationLimit) : device;
+}
+
+cl::Buffer VolumeDeformer::Internals::SendBuffer(
+  const void* data, std::size_t bytes, const cl::Buffer& previous)
+{
+  cl::Buffer buffer = previous;
+  if (GetMemory(buffer) != bytes)
+  {
+    buffer = cl::Buffer(this->GetContext().GetContext(), CL_MEM_READ_ONLY, bytes);
+  }
+  this->Queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data);
+  return buffer;
+}
+
+void VolumeDeformer::Internals::CheckRequest(const DeformRequest& request)
+{
+  CheckExtent(request.OutputExtent, "output");
+  const DeviceLattice& mesh = this->GetMesh();
+  if (this->Arrays.empty())
+  {
+    throw Error("No arrays are set: call SetArrays first.");
+  }
+  if (!(mesh.HasLinks() && this->NodesSet) && !this->FieldVectors())
+  {
+    throw Error("No deformation is set: call SetMesh and SetNodeDisplacements, or "
+                "SetDisplacementField, first.");
+  }
+  if (request.Outputs.size() != this->Arrays.size() || !request.Coverage ||
+    std::count(request.Outputs.begin(), request.Outputs.end(), nullptr))
+  {
+    throw Error("The request must have room for each array of the volume and for the coverage.");
+  }
+}
+
+bool VolumeDeformer::Internals::UseLanes(Resampling method, const OutputSlab& output) const
+{
+  const bool fits = FitsLanes(this->Arrays) && output.FitsLanes();
+  if (method == Resampling::ExactByLanes && !fits)
+  {
+    throw Error("The resampling by lanes takes only arrays of one component that are float or "
+                "integers of 8 or 16 bits and not categorical, and outputs under 2^31 voxels.");
+  }
+  return fits &&
+    (method == Resampling::ExactByLanes ||
+      (method == Resampling::Exact && this->Context->GetDevice().IsProcessor));
+}
+
+void VolumeDeformer::Internals::Map(
+  const cl::Program& program, const LatticeChunk& chunk, const KernelParameters& p)
+{
+  const bool byMesh = this->Mesh->HasLinks();
+  cl::Kernel kernel(program, byMesh ? "MapByMesh" : "MapByField");
+  cl_uint i = 0;
+  if (byMesh)
+  {
+    kernel.setArg(i++, chunk.Links);
+    kernel.setArg(i++, chunk.State);
+    kernel.setArg(i++, this->Tetrahedra);
+    kernel.setArg(i++, this->Nodes);
+  }
+  else
+  {
+    kernel.setArg(i++, chunk.State);
+    kernel.setArg(i++, this->FieldVectors);
+  }
+  kernel.setArg(i++, this->Mesh->GetRestPositions());
+  kernel.setArg(i++, this->Positions);
+  if (!byMesh)
+  {
+    kernel.setArg(i++, this->Field);
+  }
+  kernel.setArg(i++, p);
+  this->MappingEvents.emplace_back();
+  this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
+    this->Mesh->GetVertexRange(p.PlanesEnd - p.PlanesBegin), this->Mesh->GetVertexGroup(), nullptr,
+    &this->MappingEvents.back());
+}
+
+void VolumeDeformer::Internals::Launch(cl::Kernel& kernel, const KernelParameters& p, bool exact)
+{
+  const OpenCLDevice& device = this->Context->GetDevice();
+  const std::size_t cells = static_cast<std::size_t>(p.Size[0] - 1);
+  const auto largest = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.Device);
+  std::size_t group = this->WorkGroupSize ? std::min(this->WorkGroupSize, largest)
+                                          : std::min<std::size_t>(64, largest);
+  // On a processor one work-item takes a whole row of cells.
+  std::size_t items = (cells + group - 1) / group * group;
+  if (exact && device.IsProcessor)
+  {
+    group = this->WorkGroupSize ? group : 1;
+    items = group;
+  }
+  this->ResamplingEvents.emplace_back();
+  this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
+    cl::NDRange(items, static_cast<std::size_t>(p.Size[1] - 1),
+      static_cast<std::size_t>(p.LayersEnd - p.LayersBegin)),
+    cl::NDRange(group, 1, 1), nullptr, &this->ResamplingEvents.back());
+}
+
+void VolumeDeformer::Internals::Run(const DeformRequest& request, OutputSlab& output, int pass)
+{
+  const bool exact = request.Method != Resampling::Published;
+  const bool lanes = this->UseLanes(request.Method, output) && pass == DEFORMVOLUME_PASS_DIRECT;
+  const cl::Program mapping = GetMappingProgram(*this->Context);
+  cl::Kernel kernel = exact
+    ? cl::Kernel(GetResamplingProgram(
+                   *this->Context, this->Arrays, GetWinnerSize(this->Mesh->GetLattice()) == 8),
+        lanes ? "ResampleByLanes" : "Resample")
+    : cl::Kernel(GetPublishedProgram(*this->Context, this->Arrays), "ResamplePublished");
+  this->Mesh->UpdateState(mapping, this->Mesh->HasLinks() ? nullptr : &this->Field);
+  cl::Event previous;
+  for (const LatticeChunk& chunk : this->Mesh->GetChunks())
+  {
+    // The published method maps all vertices, and then resamples all cells.
+    const int step = exact ? LayersPerLaunch : chunk.LayersEnd - chunk.LayersBegin;
+    for (int begin = chunk.LayersBegin; begin < chunk.LayersEnd; begin += step)
+    {
+      KernelParameters p = this->Mesh->GetParameters(chunk);
+      p.LayersBegin = begin;
+      p.LayersEnd = std::min(begin + step, chunk.LayersEnd);
+      p.PlanesBegin = std::max(p.LayersBegin - 1, 0);
+      p.PlanesEnd = std::min(p.LayersEnd + 2, p.Size[2]);
+      p.SlabFirst = p.PlanesBegin;
+      p.Pass = pass;
+      output.SetParameters(p);
+      const std::uint64_t bytes = static_cast<std::uint64_t>(p.Size[0]) * p.Size[1] * 12 *
+          static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin) +
+        DEFORMVOLUME_READ_AHEAD * sizeof(cl_int);
+      if (GetMemory(this->Positions) < bytes)
+      {
+        this->Positions = cl::Buffer(this->Context->GetContext(), CL_MEM_READ_WRITE, bytes);
+      }
+      this->Map(mapping, chunk, p);
+      cl_uint i = 0;
+      kernel.setArg(i++, this->Positions);
+      if (exact)
+      {
+        kernel.setArg(i++, chunk.State);
+      }
+      kernel.setArg(i++, p.HasActive ? chunk.Active : chunk.State);
+      kernel.setArg(i++, output.GetCoverage());
+      if (exact)
+      {
+        kernel.setArg(i++, output.GetWinners());
+        kernel.setArg(i++, output.GetCounters());
+      }
+      kernel.setArg(i++, p);
+      for (std::size_t a = 0; a < this->Arrays.size(); ++a)
+      {
+        kernel.setArg(i++, chunk.Arrays[a]);
+        kernel.setArg(i++, output.GetArray(a));
+      }
+      this->Launch(kernel, p, exact);
+      this->Queue.flush();
+      // Wait for the launch before this one: the device always has work while we report.
+      if (previous())
+      {
+        previous.wait();
+      }
+      previous = this->ResamplingEvents.back();
+      ++this->LaunchesDone;
+      if (request.Progress &&
+        !request.Progress(std::min(1.0, double(this->LaunchesDone) / this->LaunchesExpected)))
+      {
+        this->Queue.finish();
+        throw Aborted();
+      }
+    }
+  }
+}
+
+DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request)
+{
+  this->MappingEvents.clear();
+  this->ResamplingEvents.clear();
+  this->LaunchesDone = 0;
+  DeformReport report;
+  const std::vector<Extent> slabs = OutputSlab::Split(
+    request.OutputExtent, this->Arrays, this->Mesh->GetLattice(), this->GetAllocationLimit());
+  const std::size_t launches =
+    static_cast<std::size_t>((this->Mesh->GetSize(2) + LayersPerLaunch - 1) / LayersPerLaunch);
+  double transferTime = 0.0;
+  for (std::size_t s = 0; s < slabs.size(); ++s)
+  {
+    this->LaunchesExpected = (slabs.size() - s) * launches + this->LaunchesDone;
+    this->Target.Prepare(*this->Context, this->Queue, slabs[s], this->Arrays,
+      this->Mesh->GetLattice(), this->ResamplingEvents);
+    this->Run(request, this->Target, DEFORMVOLUME_PASS_DIRECT);
+    std::uint64_t covered =
+      this->Target.CountCovered(*this->Context, this->Arrays, this->ResamplingEvents);
+    const OutputSlab::Counts counts = this->Target.ReadCounts();
+    if (s == 0) // every slab sees all tetrahedra
+    {
+      report.NumberOfInvertedTetrahedra = static_cast<std::int64_t>(counts.Inverted);
+      report.NumberOfOverstretchedCells = static_cast<std::int64_t>(counts.Overstretched);
+    }
+    // Every covered voxel was written once, unless tetrahedra overlap; where the mesh is folded,
+    // voxels on the crease may also be missing.
+    if (request.Method != Resampling::Published && (counts.Writes > covered || counts.Inverted > 0))
+    {
+      report.Overlapping |= counts.Writes > covered;
+      this->LaunchesExpected += 2 * launches;
+      this->Target.PrepareWinners(*this->Context, this->ResamplingEvents);
+      this->Run(request, this->Target, DEFORMVOLUME_PASS_MARK);
+      this->Run(request, this->Target, DEFORMVOLUME_PASS_WINNER);
+      covered = this->Target.CountCovered(*this->Context, this->Arrays, this->ResamplingEvents);
+    }
+    report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
+    this->Queue.finish();
+    const Clock::time_point begin = Clock::now();
+    this->Target.Read(request);
+    transferTime += std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+  report.MappingTime = GetSeconds(this->MappingEvents);
+  report.ResamplingTime = GetSeconds(this->ResamplingEvents);
+  report.TransferTime = transferTime + this->SendingTime;
+  this->SendingTime = 0.0;
+  this->MappingEvents.clear();
+  this->ResamplingEvents.clear();
+  return report;
+}
+
+} // namespace deformvolume

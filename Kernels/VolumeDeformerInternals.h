@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeVolumeDeformerInternals_h
+#define DeformVolumeVolumeDeformerInternals_h
+
+#include "DeviceLattice.h"
+#include "KernelParameters.h"
+#include "OpenCLContext.h"
+#include "OutputSlab.h"
+#include "VolumeDeformer.h"
+
+#include <chrono>
+
+namespace deformvolume
+{
+
+/// Cell layers in a launch: few enough that positions stay in the caches and that progress is
+/// reported, and enough that the planes mapped twice cost little.
+constexpr int LayersPerLaunch = 32;
+
+/// What a VolumeDeformer holds on its device, and how it runs the kernels.
+class VolumeDeformer::Internals
+{
+public:
+  /// Runs a function, with floating-point traps off and OpenCL's errors put into words.
+  template <typename Function>
+  auto Guard(Function&& function)
+  {
+    const FloatingPointTrapGuard guard;
+    try
+    {
+      return function();
+    }
+    catch (const cl::Error& error)
+    {
+      this->Forget(); // what is on the device may be half done
+      throw Error(Describe(error));
+    }
+  }
+
+  /// Like Guard, for functions that send data: their time belongs to the next execution.
+  template <typename Function>
+  void Send(Function&& function)
+  {
+    const auto begin = std::chrono::steady_clock::now();
+    this->Guard(function);
+    this->SendingTime +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+
+  void Forget();
+
+  OpenCLContext& GetContext();
+
+  void SelectDevice(const std::string& request);
+
+  DeviceLattice& GetMesh();
+
+  std::uint64_t GetAllocationLimit();
+
+  cl::Buffer SendBuffer(const void* data, std::size_t bytes, const cl::Buffer& previous);
+
+  bool UseLanes(Resampling method, const OutputSlab& output) const;
+  void CheckRequest(const DeformRequest& request);
+  void Map(const cl::Program& program, const LatticeChunk& chunk, const KernelParameters& p);
+  void Launch(cl::Kernel& kernel, const KernelParameters& p, bool exact);
+  void Run(const DeformRequest& request, OutputSlab& output, int pass);
+  DeformReport Deform(const DeformRequest& request);
+
+  OpenCLContext* Context = nullptr;
+  cl::CommandQueue Queue;
+  std::uint64_t MemoryLimit = 0;
+  std::uint64_t AllocationLimit = 0;
+  std::size_t WorkGroupSize = 0;
+
+  std::unique_ptr<DeviceLattice> Mesh;
+  std::vector<VolumeArray> Arrays; // their Data is not used after it was sent
+  cl::Buffer Tetrahedra;
+  cl::Buffer Nodes;
+  std::size_t NumberOfNodes = 0;
+  std::size_t NumberOfTetrahedra = 0;
+  bool NodesSet = false;
+  FieldParameters Field = {};
+  cl::Buffer FieldVectors;
+  cl::Buffer Positions;
+  OutputSlab Target;
+
+  double SendingTime = 0.0;
+  std::vector<cl::Event> MappingEvents;
+  std::vector<cl::Event> ResamplingEvents;
+  // Progress: launches done, and to do as far as is known.
+  std::size_t LaunchesDone = 0;
+  std::size_t LaunchesExpected = 1;
+};
+
+} // namespace deformvolume
+
+#endif
