@@ -41,25 +41,27 @@ void CheckSpeedAndMemory(int nodesPerAxis)
       subject.Move(pose, phase += 0.01);
       return subject.Update();
     };
+    // The published kernel wants more memory, which is kept: it comes last.
+    filter->ReleaseDeviceMemory();
     measure(vtkDeformVolumeFilter::EXACT);
+    const double bytesPerVoxel =
+      static_cast<double>(filter->GetDeviceMemory()) / subject.GetNumberOfVoxels();
     measure(vtkDeformVolumeFilter::PUBLISHED);
     const vtkIdType builds = filter->GetNumberOfMappingBuilds();
     const vtkIdType uploads = filter->GetNumberOfVolumeUploads();
     std::vector<double> ratios;
-    double bytes = 0.0;
     double preprocessing = 0.0;
     for (int round = 0; round < NumberOfRounds; ++round)
     {
       const double ours = measure(vtkDeformVolumeFilter::EXACT);
-      bytes = std::max(bytes, static_cast<double>(filter->GetDeviceMemory()));
       preprocessing += filter->GetPreprocessingTime();
       ratios.push_back(measure(vtkDeformVolumeFilter::PUBLISHED) / ours);
     }
     const std::string where = nodes + (pose == Pose::General ? "general pose" : "near identity");
     const double ratio = GetMedian(ratios);
     Demand(ratio >= 1.0, where + ": published time by default time", ratio);
-    Demand(bytes / subject.GetNumberOfVoxels() <= MaximumBytesPerVoxel,
-      where + ": bytes of device memory per voxel", bytes / subject.GetNumberOfVoxels());
+    Demand(bytesPerVoxel <= MaximumBytesPerVoxel, where + ": bytes of device memory per voxel",
+      bytesPerVoxel);
     Demand(filter->GetNumberOfMappingBuilds() == builds && preprocessing == 0.0,
       where + ": static mappings built for moved meshes",
       static_cast<double>(filter->GetNumberOfMappingBuilds() - builds));
