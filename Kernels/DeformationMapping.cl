@@ -34,52 +34,79 @@ static float3 FieldIndex(const FieldParameters* field, int3 index)
     m[4] * i.x + m[5] * i.y + m[6] * i.z + m[7], m[8] * i.x + m[9] * i.y + m[10] * i.z + m[11]);
 }
 
-// The vertices of a work-item, v being the local index.
-#define FOR_EACH_VERTEX(v, p)                                                                      \
-  int3 v = (int3)(get_global_id(0), get_global_id(1), p.PlanesBegin + (int)get_global_id(2));      \
-  for (; v.x < p.Size[0]; v.x += get_global_size(0))
+// The local index of the first vertex of a work-item.
+static int3 FirstVertex(const KernelParameters* p)
+{
+  return (int3)(get_global_id(0), get_global_id(1), p->PlanesBegin + (int)get_global_id(2));
+}
 
 static size_t VertexIndex(int3 v, int firstPlane, const KernelParameters* p)
 {
   return ((size_t)(v.z - firstPlane) * p->Size[1] + v.y) * p->Size[0] + v.x;
 }
 
-static void StorePosition(__global const RestPosition* rest, __global int* positions, int3 v,
-  float3 displacement, const KernelParameters* p)
+// What the vertices of a row have in common.
+typedef struct
 {
-  const RestPosition x = rest[v.x];
+  __global const RestPosition* restrict RestX;
+  int3 Whole;     // undeformed position but for x
+  float4 Fraction;
+  __global int* restrict X; // places of the positions
+  __global int* restrict Y;
+  __global int* restrict Z;
+} Row;
+
+static Row MakeRow(__global const RestPosition* rest, __global int* positions, int3 v,
+  const KernelParameters* p)
+{
   const RestPosition y = rest[p->Size[0] + v.y];
   const RestPosition z = rest[p->Size[0] + p->Size[1] + v.z];
-  // Clamped, because extrapolation can lead anywhere. Adding 1.5 * 2^23 leaves the rounded value in
-  // the low bits: an addition where conversions that round are many instructions.
-  const float3 shifted = clamp(displacement * 256.0f +
-      (float3)(x.Fraction, y.Fraction, z.Fraction), -LARGEST, LARGEST) + 12582912.0f;
-  const int3 moved = as_int3(shifted) - 0x4b400000;
-  __global int* place = positions + PositionIndex(v.x, v.y, v.z, p);
-  place[0] = x.Whole + moved.x;
-  place[p->Size[0]] = y.Whole + moved.y;
-  place[2 * p->Size[0]] = z.Whole + moved.z;
+  Row row;
+  row.RestX = rest;
+  row.Whole = (int3)(0, y.Whole, z.Whole);
+  row.Fraction = (float4)(0.0f, y.Fraction, z.Fraction, 0.0f);
+  row.X = positions + PositionIndex(0, v.y, v.z, p);
+  row.Y = row.X + p->Size[0];
+  row.Z = row.Y + p->Size[0];
+  return row;
 }
 
-static void StoreNoPosition(__global int* positions, int3 v, const KernelParameters* p)
+static void StorePosition(const Row* row, int x, float4 displacement)
 {
-  __global int* place = positions + PositionIndex(v.x, v.y, v.z, p);
-  place[0] = INT_MIN;
-  place[p->Size[0]] = 0;
-  place[2 * p->Size[0]] = 0;
+  const RestPosition rest = row->RestX[x];
+  // Clamped, because extrapolation can lead anywhere. Adding 1.5 * 2^23 leaves the rounded value in
+  // the low bits: an addition where conversions that round are many instructions.
+  float4 moved = displacement * 256.0f + (row->Fraction + (float4)(rest.Fraction, 0.0f, 0.0f, 0.0f));
+  moved = moved < -LARGEST ? (float4)(-LARGEST) : moved;
+  moved = moved > LARGEST ? (float4)(LARGEST) : moved;
+  const int4 steps = as_int4(moved + 12582912.0f) - 0x4b400000;
+  row->X[x] = rest.Whole + steps.x;
+  row->Y[x] = row->Whole.y + steps.y;
+  row->Z[x] = row->Whole.z + steps.z;
+}
+
+static void StoreNoPosition(const Row* row, int x)
+{
+  row->X[x] = INT_MIN;
+  row->Y[x] = 0;
+  row->Z[x] = 0;
 }
 
 // The deformation is a tetrahedral mesh.
-__kernel void MapByMesh(__global const VertexLink* links, __global const uchar* state,
-  __global const int4* tetrahedra, __global const float4* nodes, __global const RestPosition* rest,
-  __global int* positions, const KernelParameters p)
+__kernel void MapByMesh(__global const VertexLink* restrict links,
+  __global const uchar* restrict state, __global const int4* restrict tetrahedra,
+  __global const float4* restrict nodes, __global const RestPosition* restrict rest,
+  __global int* restrict positions, const KernelParameters p)
 {
-  FOR_EACH_VERTEX(v, p)
+  int3 v = FirstVertex(&p);
+  const Row row = MakeRow(rest, positions, v, &p);
+  const size_t first = VertexIndex((int3)(0, v.y, v.z), p.ChunkFirst, &p);
+  for (; v.x < p.Size[0]; v.x += get_global_size(0))
   {
-    const size_t i = VertexIndex(v, p.ChunkFirst, &p);
+    const size_t i = first + v.x;
     if (!(state[i] & DEFORMVOLUME_VERTEX_SOURCE))
     {
-      StoreNoPosition(positions, v, &p);
+      StoreNoPosition(&row, v.x);
       continue;
     }
     const VertexLink link = links[i];
@@ -89,7 +116,7 @@ __kernel void MapByMesh(__global const VertexLink* links, __global const uchar* 
     const float c = link.Weights[2];
     const float d = 1.0f - a - b - c;
     const float4 sum = nodes[t.x] * a + nodes[t.y] * b + nodes[t.z] * c + nodes[t.w] * d;
-    StorePosition(rest, positions, v, sum.xyz, &p);
+    StorePosition(&row, v.x, sum);
   }
 }
 
@@ -98,11 +125,13 @@ __kernel void MapByField(__global const uchar* state, __global const float4* vec
   __global const RestPosition* rest, __global int* positions, const FieldParameters field,
   const KernelParameters p)
 {
-  FOR_EACH_VERTEX(v, p)
+  int3 v = FirstVertex(&p);
+  const Row row = MakeRow(rest, positions, v, &p);
+  for (; v.x < p.Size[0]; v.x += get_global_size(0))
   {
     if (!(state[VertexIndex(v, p.ChunkFirst, &p)] & DEFORMVOLUME_VERTEX_SOURCE))
     {
-      StoreNoPosition(positions, v, &p);
+      StoreNoPosition(&row, v.x);
       continue;
     }
     const int3 last = (int3)(field.Dimensions[0], field.Dimensions[1], field.Dimensions[2]) - 1;
@@ -111,12 +140,12 @@ __kernel void MapByField(__global const uchar* state, __global const float4* vec
     const int3 low = convert_int3(floor(f));
     const int3 high = min(low + 1, last);
     const float3 t = f - convert_float3(low);
-    const size_t row = field.Dimensions[0];
-    const size_t plane = row * field.Dimensions[1];
-    __global const float4* lowLow = vectors + low.z * plane + low.y * row;
-    __global const float4* lowHigh = vectors + low.z * plane + high.y * row;
-    __global const float4* highLow = vectors + high.z * plane + low.y * row;
-    __global const float4* highHigh = vectors + high.z * plane + high.y * row;
+    const size_t width = field.Dimensions[0];
+    const size_t plane = width * field.Dimensions[1];
+    __global const float4* lowLow = vectors + low.z * plane + low.y * width;
+    __global const float4* lowHigh = vectors + low.z * plane + high.y * width;
+    __global const float4* highLow = vectors + high.z * plane + low.y * width;
+    __global const float4* highHigh = vectors + high.z * plane + high.y * width;
     // a + t (b - a) is exact for t = 0: no rounding where a voxel is a point of the field.
     const float4 a = lowLow[low.x] + t.x * (lowLow[high.x] - lowLow[low.x]);
     const float4 b = lowHigh[low.x] + t.x * (lowHigh[high.x] - lowHigh[low.x]);
@@ -124,7 +153,7 @@ __kernel void MapByField(__global const uchar* state, __global const float4* vec
     const float4 d = highHigh[low.x] + t.x * (highHigh[high.x] - highHigh[low.x]);
     const float4 e = a + t.y * (b - a);
     const float4 g = c + t.y * (d - c);
-    StorePosition(rest, positions, v, (e + t.z * (g - e)).xyz, &p);
+    StorePosition(&row, v.x, e + t.z * (g - e));
   }
 }
 
@@ -133,7 +162,7 @@ __kernel void MapByField(__global const uchar* state, __global const float4* vec
 __kernel void MarkSourcesByMesh(__global const VertexLink* links, __global const uchar* blanked,
   const int hasBlanked, __global uchar* sources, const KernelParameters p)
 {
-  FOR_EACH_VERTEX(v, p)
+  for (int3 v = FirstVertex(&p); v.x < p.Size[0]; v.x += get_global_size(0))
   {
     const size_t i = VertexIndex(v, p.ChunkFirst, &p);
     const int source = links[i].Tetrahedron >= 0 && !(hasBlanked && blanked[i]);
@@ -144,7 +173,7 @@ __kernel void MarkSourcesByMesh(__global const VertexLink* links, __global const
 __kernel void MarkSourcesByField(const FieldParameters field, __global const uchar* blanked,
   const int hasBlanked, __global uchar* sources, const KernelParameters p)
 {
-  FOR_EACH_VERTEX(v, p)
+  for (int3 v = FirstVertex(&p); v.x < p.Size[0]; v.x += get_global_size(0))
   {
     const size_t i = VertexIndex(v, p.ChunkFirst, &p);
     const float3 f = FieldIndex(&field, v + (int3)(p.First[0], p.First[1], p.First[2]));
@@ -217,7 +246,7 @@ static int IsWholeCell(
 __kernel void MarkVertices(__global const uchar* sources, __global const uchar* active,
   __global uchar* state, const KernelParameters p)
 {
-  FOR_EACH_VERTEX(v, p)
+  for (int3 v = FirstVertex(&p); v.x < p.Size[0]; v.x += get_global_size(0))
   {
     const size_t i = VertexIndex(v, p.ChunkFirst, &p);
     int bits = sources[i];
