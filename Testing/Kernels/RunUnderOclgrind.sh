@@ -11,9 +11,12 @@ log=$2
 shift 2
 rm -f "$log"
 
-# The device is named, so that the program fails rather than run elsewhere.
+# The device is named, so that the program fails rather than run elsewhere. Without optimisation,
+# because Oclgrind 21.10 does not know all that its own compiler puts into inlined functions. Its
+# search for uninitialised values is left out: it takes what clEnqueueFillBuffer wrote for such.
 OCL_ICD_VENDORS="$library" DEFORMVOLUME_DEVICE=oclgrind OCLGRIND_LOG="$log" \
-  OCLGRIND_DATA_RACES=1 OCLGRIND_UNINITIALIZED=1 "$@" || exit 1
+  OCLGRIND_BUILD_OPTIONS=-cl-opt-disable \
+  OCLGRIND_DATA_RACES="${OCLGRIND_DATA_RACES:-1}" "$@" || exit 1
 
 if [ ! -e "$log" ]; then
   echo "Oclgrind left no log"
