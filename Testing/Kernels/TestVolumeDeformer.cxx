@@ -59,6 +59,20 @@ TEST(VolumeDeformer, TinyMasks)
   Check(tiny, Route::Mesh);
 }
 
+TEST(VolumeDeformer, TinyByLanes)
+{
+  const DeformerCase tiny = MakeCase({ { 0, 5, 0, 3, -1, 2 } }, NoScale, MakeJitter(6, 0.15));
+  const auto values = MakeRandomValues<std::uint16_t>(tiny.GetNumberOfVoxels(), 2);
+  const auto others = MakeRandomValues<float>(tiny.GetNumberOfVoxels(), 3);
+  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(others) };
+  VolumeDeformer deformer;
+  Load(deformer, tiny, arrays, Route::Field);
+  const reference::Result reference = ResampleByReference(tiny);
+  ExpectEmbedding(reference);
+  ExpectEqualsReference(
+    tiny, reference, arrays, RunDeformer(deformer, tiny, arrays, Resampling::ExactByLanes));
+}
+
 TEST(VolumeDeformer, TinyPublished)
 {
   const DeformerCase tiny = MakeCase({ { 0, 3, 0, 3, 0, 3 } }, NoScale, MakeJitter(5, 0.15));
