@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Regression image: an MRI of a head, and the same head with a thumb pressed between its eyes.
+#include "FilterTesting.h"
+
+#include <vtkCamera.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkGPUVolumeRayCastMapper.h>
+#include <vtkNIFTIImageReader.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkRegressionTestImage.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkVolume.h>
+#include <vtkVolumeProperty.h>
+#include <vtksys/SystemTools.hxx>
+
+#include <glm/geometric.hpp>
+
+using namespace filterTesting;
+
+namespace
+{
+
+void AddVolume(vtkRenderWindow* window, vtkImageData* image, double left, double right)
+{
+  vtkNew<vtkGPUVolumeRayCastMapper> mapper;
+  mapper->SetInputData(image);
+  mapper->SetUseJittering(0);
+  mapper->SetAutoAdjustSampleDistances(0);
+  mapper->SetSampleDistance(0.5);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(25.0, 0.0);
+  opacity->AddPoint(55.0, 0.9);
+  vtkNew<vtkColorTransferFunction> colour;
+  colour->AddRGBPoint(0.0, 0.9, 0.7, 0.6);
+  vtkNew<vtkVolume> volume;
+  volume->SetMapper(mapper);
+  volume->GetProperty()->SetScalarOpacity(opacity);
+  volume->GetProperty()->SetColor(colour);
+  volume->GetProperty()->SetInterpolationTypeToLinear();
+  volume->GetProperty()->ShadeOn();
+  vtkNew<vtkRenderer> renderer;
+  renderer->SetViewport(left, 0.0, right, 1.0);
+  renderer->SetBackground(0.1, 0.1, 0.2);
+  renderer->AddVolume(volume);
+  vtkCamera* camera = renderer->GetActiveCamera();
+  camera->SetFocalPoint(90.0, 108.0, 90.0);
+  camera->SetPosition(390.0, 590.0, 100.0);
+  camera->SetViewUp(0.0, 0.0, 1.0);
+  camera->SetViewAngle(24.0);
+  renderer->ResetCameraClippingRange();
+  window->AddRenderer(renderer);
+}
+
+} // namespace
+
+int TestDeformHead(int argc, char* argv[])
+{
+  const std::string file = "/usr/share/mricron/templates/ch2.nii.gz";
+  if (!vtksys::SystemTools::FileExists(file))
+  {
+    std::cout << "skipped: " << file << " is missing, install the package mricron-data\n";
+    return 125; // VTK_SKIP_RETURN_CODE
+  }
+  vtkNew<vtkNIFTIImageReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  vtkImageData* head = reader->GetOutput();
+  head->SetOrigin(0.0, 0.0, 0.0);
+
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetNumberOfNodes(19, 22, 19);
+  lattice->SetInputData(head);
+  lattice->Update();
+  vtkUnstructuredGrid* mesh = lattice->GetOutput();
+  // A thumb on the root of the nose.
+  const glm::dvec3 nose(90.0, 213.0, 38.0);
+  SetDisplacements(mesh,
+    [&nose](const glm::dvec3& p)
+    {
+      const double distance = glm::length((p - nose) / glm::dvec3(1.0, 1.4, 1.0)) / 45.0;
+      const double fall = distance < 1.0 ? (1.0 - distance * distance) : 0.0;
+      return p + glm::dvec3(0.0, -26.0 * fall * fall, 0.0);
+    });
+
+  Deformed deformed(head, mesh);
+  deformed.Filter->SetOutputBoundsModeToVolumeBounds();
+  vtkImageData* output = deformed.Update();
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), 0);
+  VERIFY_EQUAL(output->GetScalarType(), head->GetScalarType());
+
+  vtkNew<vtkRenderWindow> window;
+  window->SetSize(600, 300);
+  window->SetMultiSamples(0);
+  AddVolume(window, head, 0.0, 0.5);
+  AddVolume(window, output, 0.5, 1.0);
+  window->Render();
+  const int result = vtkRegressionTestImage(window);
+  VERIFY(result == vtkRegressionTester::PASSED);
+  return GetExitCode();
+}
