@@ -113,7 +113,18 @@ void VolumeDeformer::CheckMemory(const Lattice& lattice, const std::vector<Volum
     tuple += GetTupleSize(array);
   }
   const auto voxels = static_cast<std::uint64_t>(GetNumberOfPoints(lattice.VertexExtent));
-  const auto outputVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(outputExtent));
+  // The output is worked on in slabs, one after the other in the same buffers.
+  const std::uint64_t outputVoxels = this->Impl->Guard(
+    [&]() -> std::uint64_t
+    {
+      if (GetNumberOfPoints(outputExtent) == 0)
+      {
+        return 0;
+      }
+      const std::vector<Extent> slabs =
+        OutputSlab::Split(outputExtent, arrays, lattice, this->Impl->GetAllocationLimit());
+      return static_cast<std::uint64_t>(GetNumberOfPoints(slabs.front()));
+    });
   const auto plane =
     static_cast<std::uint64_t>(GetSize(lattice.VertexExtent, 0) * GetSize(lattice.VertexExtent, 1));
   // Arrays, state, active tetrahedra and blanking; links where there is a mesh; arrays, coverage
