@@ -10,9 +10,11 @@ vtk_module_scan(
   ENABLE_TESTS OFF)
 
 # vtk_module_build adds the module's directory by its path relative to CMAKE_SOURCE_DIR, which would
-# be empty for a module at the root; so that variable points one level up, in this scope only.
+# be empty for a module at the root; so that variable points one level down, in this scope only. The
+# path is then "..", and leads to <build>/Module.
 function (deformvolume_build_module)
-  cmake_path(GET CMAKE_SOURCE_DIR PARENT_PATH CMAKE_SOURCE_DIR)
+  string(APPEND CMAKE_SOURCE_DIR "/CMake")
+  string(APPEND CMAKE_BINARY_DIR "/Module/CMake")
   vtk_module_build(
     MODULES ${deformvolume_modules}
     PACKAGE DeformVolume
