@@ -19,6 +19,11 @@ void Check(const DeformerCase& folded, const reference::Result& reference)
   const auto labels = MakeRandomValues<std::uint16_t>(size * 2, 3);
   const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(labels, 2, true, 12.0) };
   ExpectEqualsReference(folded, reference, arrays, LoadAndRun(folded, arrays));
+  SCOPED_TRACE("by lanes");
+  const auto shorts = MakeRandomValues<std::int16_t>(size, 4);
+  const auto floats = MakeRandomValues<float>(size, 5);
+  const std::vector<VolumeArray> linear{ MakeArray(shorts), MakeArray(floats, 1, false, 2.0) };
+  ExpectEqualsReference(folded, reference, linear, LoadAndRun(folded, linear));
 }
 
 void Check(const DeformerCase& folded)

@@ -15,7 +15,7 @@ using namespace deformvolume;
 namespace
 {
 
-/// Compares two arrays, one of them categorical.
+/// Compares arrays that any kernel takes, then such that go by lanes on a processor.
 void Check(const DeformerCase& deformerCase, Route route = Route::Field)
 {
   const std::size_t size = deformerCase.GetNumberOfVoxels();
@@ -27,6 +27,12 @@ void Check(const DeformerCase& deformerCase, Route route = Route::Field)
   ExpectEmbedding(reference);
   EXPECT_GT(reference.NumberOfCoveredVoxels, 0);
   ExpectEqualsReference(deformerCase, reference, arrays, LoadAndRun(deformerCase, arrays, route));
+  SCOPED_TRACE("by lanes");
+  const auto bytes = MakeRandomValues<std::uint8_t>(size, 4);
+  const auto floats = MakeRandomValues<float>(size, 5);
+  const std::vector<VolumeArray> linear{ MakeArray(bytes, 1, false, 5.0),
+    MakeArray(floats, 1, false, -3.0) };
+  ExpectEqualsReference(deformerCase, reference, linear, LoadAndRun(deformerCase, linear, route));
 }
 
 glm::dmat3 Rotate(double degrees, const glm::dvec3& axis)
