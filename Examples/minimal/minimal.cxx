@@ -44,5 +44,6 @@ int main(int argc, char* argv[])
   vtkNew<vtkXMLImageDataWriter> writer;
   writer->SetInputConnection(deform->GetOutputPort());
   writer->SetFileName(argv[2]);
-  return writer->Write() ? 0 : 1;
+  const bool written = writer->Write() != 0;
+  return written && deform->GetNumberOfCoveredVoxels() > 0 ? 0 : 1;
 }

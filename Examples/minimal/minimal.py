@@ -34,6 +34,6 @@ deform.SetInputArrayToProcess(0, 1, 0, 0, "Displacement")
 writer = vtkXMLImageDataWriter()
 writer.SetInputConnection(deform.GetOutputPort())
 writer.SetFileName(sys.argv[2])
-if not writer.Write():
-    sys.exit(f"cannot write {sys.argv[2]}")
+if not writer.Write() or deform.GetNumberOfCoveredVoxels() == 0:
+    sys.exit(f"cannot deform {sys.argv[1]} into {sys.argv[2]}")
 print(f"{deform.GetNumberOfCoveredVoxels()} voxels covered on {deform.GetDeviceInUse()}")

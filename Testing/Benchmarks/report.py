@@ -42,7 +42,7 @@ def main(path):
 
     print("## Deformation mapping and resampling, 189 x 305 x 229 voxels of 16 bits\n")
     rows = []
-    for name in runs:
+    for name in sorted(runs):
         if not name.startswith("Deform/") or not name.endswith("/default"):
             continue
         _, _, nodes, pose, _ = name.split("/")
@@ -61,7 +61,7 @@ def main(path):
 
     print("## Preprocessing: the tetrahedron of each voxel\n")
     rows = [name.split("/")[1:] + [f"{median(name):.0f}"]
-            for name in runs if name.startswith("Preprocess/")]
+            for name in sorted(runs) if name.startswith("Preprocess/")]
     table(["voxels", "nodes", "ms"], rows)
 
 

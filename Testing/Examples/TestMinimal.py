@@ -12,7 +12,8 @@ folder = make_folder(sys.argv[3], "Minimal")
 source, first, second = (os.path.join(folder, name) for name in ("in.vti", "cxx.vti", "py.vti"))
 
 call(program, code=2)
-call(program, os.path.join(folder, "missing.vti"), first, code=1)
+call(program, os.path.join(folder, "missing.vti"), first, code=1, quiet=True)
+call(sys.executable, script, os.path.join(folder, "missing.vti"), first, code=1, quiet=True)
 
 volume = make_ball(origin=(0.0, 0.0, 0.0))
 write_vti(volume, source)
