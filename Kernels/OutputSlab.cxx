@@ -181,6 +181,14 @@ OutputSlab::Counts OutputSlab::ReadCounts()
 
 bool OutputSlab::FitsLanes() const
 {
+  // Positions in 1/256 voxel are exact in float up to 2^24.
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (GetSize(this->SlabExtent, axis) > 32768)
+    {
+      return false;
+    }
+  }
   return this->NumberOfVoxels <=
     static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max());
 }

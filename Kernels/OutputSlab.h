@@ -40,7 +40,8 @@ public:
     OpenCLContext& context, const std::vector<VolumeArray>& arrays, std::vector<cl::Event>& events);
   Counts ReadCounts();
 
-  /// Whether the kernel for processors, with its indices of 31 bits, can write the slab.
+  /// Whether the kernel for processors, with positions in float and indices of 31 bits, can write
+  /// the slab.
   bool FitsLanes() const;
 
   /// Puts the output extent into the parameters of a launch.

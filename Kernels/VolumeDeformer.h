@@ -97,7 +97,7 @@ enum class Resampling
   ExactByCell,
   /// The same with the kernel for processors, several cells in the lanes of vector registers; an
   /// Error where the arrays are not all linear, of one component, and float or integers of 8 or
-  /// 16 bits.
+  /// 16 bits, or the output is over 32,768 voxels on an axis.
   ExactByLanes,
   /// The published kernel, kept as the yardstick of benchmarks: float tolerance, racing writes.
   Published

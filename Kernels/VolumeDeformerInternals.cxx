@@ -122,7 +122,8 @@ bool VolumeDeformer::Internals::UseLanes(Resampling method, const OutputSlab& ou
   if (method == Resampling::ExactByLanes && !fits)
   {
     throw Error("The resampling by lanes takes only arrays of one component that are float or "
-                "integers of 8 or 16 bits and not categorical, and outputs under 2^31 voxels.");
+                "integers of 8 or 16 bits and not categorical, and outputs under 2^31 voxels and "
+                "32,769 on an axis.");
   }
   return fits &&
     (method == Resampling::ExactByLanes ||
