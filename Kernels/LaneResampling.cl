@@ -298,12 +298,20 @@ static __attribute__((noinline)) uint ResampleLanes(SamplingMesh mesh, int x, in
   {
     // Cells that are boxes take all their candidates: all faces of the box are on the upper side of
     // no candidate. These are the cells of an undeformed, shifted or axis-wise scaled volume.
+    // A sample at a vertex takes its value bit for bit, and the weights there are 0 and 1 exactly
+    // only where the edges are powers of two: others with such a sample are left as unsure.
+#define FRACTION_BITS(edge) (AS_INTS(edge) & 0x7fffff)
+    const INTS powersOfTwo = (FRACTION_BITS(highX - lowX) | FRACTION_BITS(highY - lowY) |
+                               FRACTION_BITS(highZ - lowZ)) == 0;
+    const INTS vertexOnSample =
+      (floor(lowX) == lowX) & (floor(lowY) == lowY) & (floor(lowZ) == lowZ);
 #define DIFFER(c, a, b) (AS_INTS(c.V[a]) ^ AS_INTS(c.V[b]))
     const INTS box = candidates & interior &
       ((DIFFER(X, 0, 2) | DIFFER(X, 4, 6) | DIFFER(X, 0, 4) | DIFFER(X, 1, 3) | DIFFER(X, 5, 7) |
          DIFFER(X, 1, 5) | DIFFER(Y, 0, 1) | DIFFER(Y, 2, 3) | DIFFER(Y, 0, 2) | DIFFER(Y, 4, 5) |
          DIFFER(Y, 6, 7) | DIFFER(Y, 4, 6) | DIFFER(Z, 0, 1) | DIFFER(Z, 4, 5) | DIFFER(Z, 0, 4) |
-         DIFFER(Z, 2, 3) | DIFFER(Z, 6, 7) | DIFFER(Z, 2, 6)) == 0);
+         DIFFER(Z, 2, 3) | DIFFER(Z, 6, 7) | DIFFER(Z, 2, 6)) == 0) &
+      (!vertexOnSample | powersOfTwo);
     LANE_ARRAYS(LANE_VALUES)
     const FLOATS s1 = 1.0f / b16, s2 = 1.0f / b25, s4 = 1.0f / b43, s7 = 1.0f / b70;
     const FLOATS startX = TO_FLOATS(firstX) - X.V[0];

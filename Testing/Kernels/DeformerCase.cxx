@@ -106,13 +106,8 @@ std::string CompareValue(const reference::Containing& winner, const VolumeArray&
   std::ostringstream message;
   if (exact >= 0)
   {
-    // Single precision may miss a vertex of a scaled volume by a unit in the last place, which
-    // rounding hides in integers.
     const T source = input[exact * array.Components + component];
-    const bool near = std::is_floating_point<T>::value && slack > 0.0L &&
-      std::fabs(static_cast<long double>(value) - static_cast<long double>(source)) <=
-        std::numeric_limits<float>::epsilon() * std::fabs(static_cast<long double>(source));
-    if (!near && std::memcmp(&source, &value, sizeof(T)) != 0)
+    if (std::memcmp(&source, &value, sizeof(T)) != 0)
     {
       message << +value << " instead of the bits of "
               << +input[exact * array.Components + component];
