@@ -7,8 +7,11 @@
 #include <CLI/CLI.hpp>
 #include <vtksys/SystemTools.hxx>
 
+#include <cmath>
+#include <initializer_list>
 #include <iostream>
 #include <sstream>
+#include <utility>
 
 namespace
 {
@@ -58,6 +61,40 @@ struct RawOptions
   std::string Bounds = "deformed";
   std::string Resampler = "exact";
 };
+
+/// NaN passes all comparisons of a range, and no length or value is infinite.
+void CheckNumbers(const Options& options)
+{
+  const std::pair<const char*, double> numbers[] = { { "--scale", options.Scale },
+    { "--isovalue", options.Isovalue.value_or(0.0) }, { "--edge-length", options.EdgeLength },
+    { "--radius-edge-ratio", options.RadiusEdgeRatio },
+    { "--threshold", options.Threshold.value_or(0.0) } };
+  for (const auto& [option, number] : numbers)
+  {
+    if (!std::isfinite(number))
+    {
+      throw UsageError(std::string(option) + " must be a finite number");
+    }
+  }
+}
+
+/// The result never takes the place of what it is made from.
+void CheckOverwriting(const Options& options)
+{
+  std::vector<std::string> outputs = options.Outputs;
+  outputs.push_back(options.Image);
+  outputs.push_back(options.MeshOutput);
+  for (const std::string& output : outputs)
+  {
+    for (const std::string& input : { options.Volume, options.Mesh, options.Rest })
+    {
+      if (!output.empty() && !input.empty() && vtksys::SystemTools::SameFile(output, input))
+      {
+        throw UsageError(output + " is read and would be overwritten: give another name");
+      }
+    }
+  }
+}
 
 void Check(const Options& options)
 {
@@ -114,6 +151,8 @@ void Check(const Options& options)
   {
     throw UsageError("--write-mesh " + options.MeshOutput + ": the name must end in .vtu");
   }
+  CheckNumbers(options);
+  CheckOverwriting(options);
 }
 
 void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
@@ -223,6 +262,25 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
       "The TetGen program [the one found when this program was built]")
     ->type_name("FILE")
     ->group(tetgen);
+}
+
+/// Options that say nothing about what is asked for are mistakes, and are not ignored.
+void AddDependencies(CLI::App& program)
+{
+  const auto needs = [&](const char* needed, std::initializer_list<const char*> options)
+  {
+    for (const char* option : options)
+    {
+      program.get_option(option)->needs(program.get_option(needed));
+    }
+  };
+  needs("--mesh", { "--displacement", "--rest", "--scale" });
+  needs(
+    "--tetgen", { "--isovalue", "--edge-length", "--radius-edge-ratio", "--tetgen-executable" });
+  needs("--image", { "--threshold", "--view" });
+  program.get_option("--scale")->excludes(program.get_option("--rest"));
+  program.get_option("--isovalue")->excludes(program.get_option("--labels"));
+  program.get_option("--write-mesh")->excludes(program.get_option("--mesh"));
 }
 
 void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
@@ -347,6 +405,7 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
   AddDeformation(program, options, raw);
   AddResampling(program, options, raw);
   AddOutput(program, options, raw);
+  AddDependencies(program);
   try
   {
     program.parse(argc, argv);

@@ -49,6 +49,58 @@ fails(2, "--displacement", path("in.vti"), "--mesh", path("m.vtu"), "-o", path("
 fails(2, "--nonsense", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "--nonsense")
 fails(2, "--outside", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "--outside", "x")
 
+# Options that do not apply to what is asked for.
+mesh = ("--mesh", path("m.vtu"), "--displacement", "D")
+tetgen = ("--tetgen", *push)
+for deformation, option, expected in (
+        ((*lattice, *push), ("--rest", path("m.vtu")), "--rest requires --mesh"),
+        ((*lattice, *push), ("--displacement", "D"), "--displacement requires --mesh"),
+        ((*lattice, *push), ("--scale", "2"), "--scale requires --mesh"),
+        (tetgen, ("--rest", path("m.vtu")), "--rest requires --mesh"),
+        (tetgen, ("--displacement", "D"), "--displacement requires --mesh"),
+        (tetgen, ("--scale", "2"), "--scale requires --mesh"),
+        ((*lattice, *push), ("--isovalue", "4"), "--isovalue requires --tetgen"),
+        ((*lattice, *push), ("--edge-length", "4"), "--edge-length requires --tetgen"),
+        (mesh, ("--edge-length", "4"), "--edge-length requires --tetgen"),
+        (mesh, ("--radius-edge-ratio", "2"), "--radius-edge-ratio requires --tetgen"),
+        (mesh, ("--tetgen-executable", "t"), "--tetgen-executable requires --tetgen"),
+        (mesh, ("--write-mesh", path("o.vtu")), "excludes"),
+        (mesh, push, "--push goes with"),
+        (("--mesh", path("m.vtu"), "--rest", path("r.vtu")), ("--scale", "2"), "excludes"),
+        (tetgen, ("--isovalue", "4", "--labels"), "excludes"),
+        (mesh, ("--threshold", "4"), "--threshold requires --image"),
+        (mesh, ("--view", "0,1,0"), "--view requires --image")):
+    fails(2, expected, path("in.vti"), *deformation, *option, "-o", path("o.vti"))
+
+# Numbers without a meaning.
+for number in ("nan", "inf", "-inf", "many"):
+    for deformation, option in ((mesh, "--scale"), (tetgen, "--isovalue"),
+                                (tetgen, "--edge-length"), (tetgen, "--radius-edge-ratio"),
+                                (("--image", path("o.png"), *mesh), "--threshold")):
+        fails(2, option, path("in.vti"), *deformation, option, number, "-o", path("o.vti"))
+    fails(2, "seven numbers", path("in.vti"), *lattice, "--push", f"1,2,3,4,{number},6,7", "-o",
+          path("o.vti"))
+    fails(2, "three node counts", path("in.vti"), "--lattice", f"3,{number},3", *push, "-o",
+          path("o.vti"))
+fails(2, "--edge-length", path("in.vti"), *tetgen, "--edge-length", "-1", "-o", path("o.vti"))
+fails(2, "--radius-edge-ratio", path("in.vti"), *tetgen, "--radius-edge-ratio", "-1", "-o",
+      path("o.vti"))
+fails(2, "--padding", path("in.vti"), *lattice, *push, "--padding", "-1", "-o", path("o.vti"))
+fails(2, "radius", path("in.vti"), *lattice, "--push", "1,2,3,4,5,6,-1", "-o", path("o.vti"))
+fails(2, "at least 2 nodes", path("in.vti"), "--lattice", "3,-3,3", *push, "-o", path("o.vti"))
+
+# What is read is not overwritten, however it is called.
+with open(path("in.vti"), "rb") as file:
+    content = file.read()
+os.symlink("in.vti", path("link.vti"))
+for output in ("in.vti", "../" + os.path.basename(folder) + "/in.vti", "link.vti"):
+    fails(2, "overwritten", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "-o",
+          path(output))
+fails(2, "overwritten", path("other.vti"), "--mesh", path("in.vti"), "--displacement", "D", "-o",
+      path("in.vti"))
+with open(path("in.vti"), "rb") as file:
+    assert file.read() == content
+
 # Failures.
 fails(1, "no such file", path("none.nii.gz"), *lattice, *push, "-o", path("o.vti"))
 with open(path("text.nii"), "w", encoding="utf-8") as file:
