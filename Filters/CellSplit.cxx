@@ -58,6 +58,28 @@ const CellFaces* GetCellFaces(int cellType)
   }
 }
 
+int GetNumberOfCellPoints(int cellType)
+{
+  switch (cellType)
+  {
+    case VTK_TETRA:
+      return 4;
+    case VTK_PYRAMID:
+      return 5;
+    case VTK_WEDGE:
+      return 6;
+    case VTK_HEXAHEDRON:
+    case VTK_VOXEL:
+      return 8;
+    case VTK_PENTAGONAL_PRISM:
+      return 10;
+    case VTK_HEXAGONAL_PRISM:
+      return 12;
+    default:
+      return 0;
+  }
+}
+
 void SplitCell(const std::vector<std::int32_t>& nodes, const CellFaces& faces,
   std::vector<Tetrahedron>& tetrahedra)
 {

@@ -12,8 +12,7 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkIdList.h"
-#include "vtkNew.h"
+#include "vtkIdTypeArray.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
@@ -29,24 +28,79 @@ namespace deformvolume
 namespace
 {
 
+void CheckPoint(vtkIdType point, vtkIdType numberOfPoints, vtkIdType cell)
+{
+  if (point < 0 || point >= numberOfPoints)
+  {
+    throw Error("Cell " + std::to_string(cell) + " of the deformation mesh uses point " +
+      std::to_string(point) + ", and there are only " + std::to_string(numberOfPoints) +
+      " points. Mend the cells of the mesh.");
+  }
+}
+
+[[noreturn]] void ThrowBadCell(
+  vtkIdType cell, int type, vtkIdType count, const std::string& complaint)
+{
+  const char* className = vtkCellTypes::GetClassNameFromTypeId(type);
+  throw Error("Cell " + std::to_string(cell) + " of the deformation mesh is a " +
+    (className ? className : "cell of unknown type") + " with " + std::to_string(count) +
+    " points" + complaint + ". Mend the cells of the mesh.");
+}
+
+// What would have to be read beyond the end of an array, once it is followed.
+void CheckStructure(vtkUnstructuredGrid* grid)
+{
+  const vtkIdType numberOfCells = grid->GetNumberOfCells();
+  const vtkUnsignedCharArray* types = grid->GetCellTypesArray();
+  const vtkIdType numberOfTypes = types ? types->GetNumberOfValues() : 0;
+  if (numberOfTypes < numberOfCells)
+  {
+    throw Error("The deformation mesh has " + std::to_string(numberOfCells) + " cells, but " +
+      std::to_string(numberOfTypes) + " cell types. Mend the cells of the mesh.");
+  }
+  if (!grid->GetCells()->IsValid())
+  {
+    throw Error("The offsets of the deformation mesh's cells do not fit their connectivity. Mend "
+                "the cells of the mesh.");
+  }
+}
+
 // A polyhedron brings its own faces. Its points may be listed in any order, so positions are
 // looked up by id.
-void SplitPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell, std::int32_t firstNode,
-  std::vector<Tetrahedron>& tetrahedra)
+void SplitPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell, vtkIdType count,
+  std::int32_t firstNode, std::vector<Tetrahedron>& tetrahedra)
 {
-  vtkNew<vtkIdList> stream;
-  grid->GetFaceStream(cell, stream);
+  vtkIdTypeArray* stream = grid->GetFaces();
+  vtkIdTypeArray* locations = grid->GetFaceLocations();
+  const vtkIdType length = stream ? stream->GetNumberOfValues() : 0;
+  vtkIdType next =
+    locations && cell < locations->GetNumberOfValues() ? locations->GetValue(cell) : -1;
+  const auto check = [&](bool complete)
+  {
+    if (!complete)
+    {
+      ThrowBadCell(cell, VTK_POLYHEDRON, count, " and incomplete faces");
+    }
+  };
+  const auto read = [&]
+  {
+    check(next >= 0 && next < length);
+    return stream->GetValue(next++);
+  };
   std::vector<std::int32_t> nodes;
   CellFaces faces;
   std::map<vtkIdType, int> positions;
-  vtkIdType next = 0;
-  const vtkIdType numberOfFaces = stream->GetNumberOfIds() > 0 ? stream->GetId(next++) : 0;
+  const vtkIdType numberOfFaces = read();
+  check(numberOfFaces >= 4);
   for (vtkIdType i = 0; i < numberOfFaces; ++i)
   {
     std::vector<int> face;
-    for (vtkIdType left = stream->GetId(next++); left > 0; --left)
+    const vtkIdType size = read();
+    check(size >= 3);
+    for (vtkIdType left = size; left > 0; --left)
     {
-      const vtkIdType point = stream->GetId(next++);
+      const vtkIdType point = read();
+      CheckPoint(point, grid->GetNumberOfPoints(), cell);
       const auto inserted = positions.emplace(point, static_cast<int>(nodes.size()));
       if (inserted.second)
       {
@@ -56,24 +110,7 @@ void SplitPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell, std::int32_t fir
     }
     faces.push_back(face);
   }
-  if (!nodes.empty())
-  {
-    SplitCell(nodes, faces, tetrahedra);
-  }
-}
-
-void CheckCellPoints(
-  const vtkIdType* points, vtkIdType count, vtkIdType numberOfPoints, vtkIdType cell)
-{
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    if (points[i] < 0 || points[i] >= numberOfPoints)
-    {
-      throw Error("Cell " + std::to_string(cell) + " of the deformation mesh uses point " +
-        std::to_string(points[i]) + ", and there are only " + std::to_string(numberOfPoints) +
-        " points. Mend the cells of the mesh.");
-    }
-  }
+  SplitCell(nodes, faces, tetrahedra);
 }
 
 void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode,
@@ -85,6 +122,7 @@ void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode,
     vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
   const vtkIdType numberOfCells = grid->GetNumberOfCells();
   const vtkIdType numberOfPoints = grid->GetNumberOfPoints();
+  CheckStructure(grid);
   std::vector<std::int32_t> nodes;
   for (vtkIdType cell = 0; cell < numberOfCells; ++cell)
   {
@@ -96,8 +134,16 @@ void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode,
     vtkIdType count = 0;
     const vtkIdType* points = nullptr;
     grid->GetCells()->GetCellAtId(cell, count, points);
-    CheckCellPoints(points, count, numberOfPoints, cell);
-    if (type == VTK_TETRA && count == 4)
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      CheckPoint(points[i], numberOfPoints, cell);
+    }
+    const int needed = GetNumberOfCellPoints(type);
+    if (needed > 0 && count != needed)
+    {
+      ThrowBadCell(cell, type, count, " instead of " + std::to_string(needed));
+    }
+    if (type == VTK_TETRA)
     {
       tetrahedra.emplace_back();
       for (int i = 0; i < 4; ++i)
@@ -108,7 +154,7 @@ void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode,
     }
     if (type == VTK_POLYHEDRON)
     {
-      SplitPolyhedron(grid, cell, firstNode, tetrahedra);
+      SplitPolyhedron(grid, cell, count, firstNode, tetrahedra);
       continue;
     }
     nodes.resize(static_cast<std::size_t>(count));
@@ -116,7 +162,7 @@ void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode,
     {
       nodes[i] = firstNode + static_cast<std::int32_t>(points[i]);
     }
-    if (type == VTK_VOXEL && count == 8)
+    if (type == VTK_VOXEL)
     {
       std::swap(nodes[2], nodes[3]);
       std::swap(nodes[6], nodes[7]);

@@ -43,6 +43,8 @@ struct MeshCells
 
 /// The tetrahedra of a mesh, and those that its other linear three-dimensional cells are split
 /// into. Cells that vtkGhostType marks as hidden or duplicate are left out.
+/// Throws an Error where a cell has a wrong number of points, points that are not there or
+/// incomplete faces.
 MeshCells ReadCells(const MeshParts& parts);
 
 /// The points, in world coordinates.

@@ -5,10 +5,13 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
+#include <vtkIdTypeArray.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <limits>
+#include <numeric>
 
 using namespace filterTesting;
 
@@ -200,6 +203,84 @@ void TestMeshes(Misuse& misuse)
   misuse.Expect("a composite dataset of nothing", "vtkUnstructuredGrid");
 }
 
+void TestCells(Misuse& misuse)
+{
+  // A good cell before and after, so that the number of the bad one is told, and not just any.
+  const vtkIdType good[4] = { 0, 1, 3, 9 };
+  std::vector<vtkIdType> points(13);
+  std::iota(points.begin(), points.end(), 0);
+  const auto insert = [&](vtkIdType count, int type)
+  {
+    auto mesh = misuse.CopyMesh();
+    mesh->Reset();
+    mesh->Allocate(3);
+    mesh->InsertNextCell(VTK_TETRA, 4, good);
+    mesh->InsertNextCell(type, count, points.data());
+    mesh->InsertNextCell(VTK_TETRA, 4, good);
+    misuse.GetFilter()->SetDeformationData(mesh);
+  };
+  const struct
+  {
+    int Type;
+    const char* Name;
+    vtkIdType Points;
+  } shapes[] = { { VTK_TETRA, "vtkTetra", 4 }, { VTK_VOXEL, "vtkVoxel", 8 },
+    { VTK_HEXAHEDRON, "vtkHexahedron", 8 }, { VTK_WEDGE, "vtkWedge", 6 },
+    { VTK_PYRAMID, "vtkPyramid", 5 }, { VTK_PENTAGONAL_PRISM, "vtkPentagonalPrism", 10 },
+    { VTK_HEXAGONAL_PRISM, "vtkHexagonalPrism", 12 } };
+  for (const auto& shape : shapes)
+  {
+    for (const vtkIdType count : { vtkIdType(0), vtkIdType(3), shape.Points - 1, shape.Points + 1 })
+    {
+      insert(count, shape.Type);
+      const std::string expected = std::string("Cell 1 of the deformation mesh is a ") +
+        shape.Name + " with " + std::to_string(count) + " points instead of " +
+        std::to_string(shape.Points);
+      misuse.Expect("a cell with a wrong number of points", expected);
+    }
+  }
+
+  points[4] = -1;
+  insert(8, VTK_HEXAHEDRON);
+  misuse.Expect("a cell with a negative point", "Cell 1 of the deformation mesh uses point -1");
+
+  auto untyped = misuse.CopyMesh();
+  vtkNew<vtkUnsignedCharArray> types;
+  types->InsertNextValue(VTK_TETRA);
+  untyped->SetCells(types, untyped->GetCells(), nullptr, nullptr);
+  misuse.GetFilter()->SetDeformationData(untyped);
+  misuse.Expect("fewer types than cells", "1 cell types");
+
+  // Faces that are not there, too few, too small, cut off, or of a point that is not there.
+  const struct
+  {
+    vtkIdType Location;
+    std::vector<vtkIdType> Faces;
+    const char* Complaint;
+  } polyhedra[] = { { -1, { 4, 3, 0, 1, 3 }, " with 4 points and incomplete faces" },
+    { 5, { 4, 3, 0, 1, 3 }, "incomplete faces" }, { 0, { 0, 3, 0, 1, 3 }, "incomplete faces" },
+    { 0, { 4, 2, 0, 1, 2 }, "incomplete faces" }, { 0, { 4, 3, 0, 1, 3 }, "incomplete faces" },
+    { 0, { 4, 3, 0, 1, 5000 }, " uses point 5000" } };
+  for (const auto& polyhedron : polyhedra)
+  {
+    vtkNew<vtkIdTypeArray> faces;
+    for (const vtkIdType value : polyhedron.Faces)
+    {
+      faces->InsertNextValue(value);
+    }
+    vtkNew<vtkIdTypeArray> locations;
+    locations->InsertNextValue(polyhedron.Location);
+    vtkNew<vtkUnsignedCharArray> polyhedronType;
+    polyhedronType->InsertNextValue(VTK_POLYHEDRON);
+    vtkNew<vtkCellArray> cells;
+    cells->InsertNextCell(4, good);
+    auto mesh = misuse.CopyMesh();
+    mesh->SetCells(polyhedronType, cells, locations, faces);
+    misuse.GetFilter()->SetDeformationData(mesh);
+    misuse.Expect("a polyhedron with bad faces", polyhedron.Complaint);
+  }
+}
+
 void TestDisplacements(Misuse& misuse)
 {
   auto without = misuse.CopyMesh();
@@ -304,6 +385,7 @@ int TestDeformMisuse(int, char*[])
   Misuse misuse;
   TestVolumes(misuse);
   TestMeshes(misuse);
+  TestCells(misuse);
   TestDisplacements(misuse);
   TestRestMeshes(misuse);
   TestSettings(misuse);
