@@ -108,7 +108,7 @@ std::vector<SourceArray> SelectArrays(
     ElementType type;
     if (!array || !FindElementType(array->GetDataType(), type))
     {
-      leftOut.push_back(GetLabel(abstract, i));
+      leftOut.push_back(GetLabel(abstract, i) + " (" + abstract->GetDataTypeAsString() + ")");
       continue;
     }
     if (array->GetNumberOfTuples() != volume->GetNumberOfPoints())

@@ -29,8 +29,8 @@ struct SourceArray
   bool Categorical = false;
 };
 
-/// The point arrays of a volume to resample; the names of those that cannot be, because they hold
-/// no numbers, are appended to leftOut. Throws an Error where there is nothing to resample or a
+/// The point arrays of a volume to resample; the names and types of those that cannot be (bits,
+/// strings) are appended to leftOut. Throws an Error where there is nothing to resample or a
 /// size is wrong.
 std::vector<SourceArray> SelectArrays(vtkImageData* volume,
   const std::set<std::string>& categorical, std::vector<std::string>& leftOut);
