@@ -298,20 +298,18 @@ static __attribute__((noinline)) uint ResampleLanes(SamplingMesh mesh, int x, in
   {
     // Cells that are boxes take all their candidates: all faces of the box are on the upper side of
     // no candidate. These are the cells of an undeformed, shifted or axis-wise scaled volume.
-    // A sample at a vertex takes its value bit for bit, and the weights there are 0 and 1 exactly
-    // only where the edges are powers of two: others with such a sample are left as unsure.
-#define FRACTION_BITS(edge) (AS_INTS(edge) & 0x7fffff)
-    const INTS powersOfTwo = (FRACTION_BITS(highX - lowX) | FRACTION_BITS(highY - lowY) |
-                               FRACTION_BITS(highZ - lowZ)) == 0;
-    const INTS vertexOnSample =
-      (floor(lowX) == lowX) & (floor(lowY) == lowY) & (floor(lowZ) == lowZ);
 #define DIFFER(c, a, b) (AS_INTS(c.V[a]) ^ AS_INTS(c.V[b]))
     const INTS box = candidates & interior &
       ((DIFFER(X, 0, 2) | DIFFER(X, 4, 6) | DIFFER(X, 0, 4) | DIFFER(X, 1, 3) | DIFFER(X, 5, 7) |
          DIFFER(X, 1, 5) | DIFFER(Y, 0, 1) | DIFFER(Y, 2, 3) | DIFFER(Y, 0, 2) | DIFFER(Y, 4, 5) |
          DIFFER(Y, 6, 7) | DIFFER(Y, 4, 6) | DIFFER(Z, 0, 1) | DIFFER(Z, 4, 5) | DIFFER(Z, 0, 4) |
-         DIFFER(Z, 2, 3) | DIFFER(Z, 6, 7) | DIFFER(Z, 2, 6)) == 0) &
-      (!vertexOnSample | powersOfTwo);
+         DIFFER(Z, 2, 3) | DIFFER(Z, 6, 7) | DIFFER(Z, 2, 6)) == 0);
+    // Where a vertex of a box lies on a sample, on its first candidate then, its value is taken bit
+    // for bit: the weights, which rounding may have touched, are made 0 and 1.
+#define STARTS_ON_SAMPLE(low) (((low) >= 0.0f) & (floor(low) == (low)))
+    const INTS vertexOnSample =
+      box & STARTS_ON_SAMPLE(lowX) & STARTS_ON_SAMPLE(lowY) & STARTS_ON_SAMPLE(lowZ);
+#define SNAP(weight) weight = vertexOnSample ? rint(weight) : weight;
     LANE_ARRAYS(LANE_VALUES)
     const FLOATS s1 = 1.0f / b16, s2 = 1.0f / b25, s4 = 1.0f / b43, s7 = 1.0f / b70;
     const FLOATS startX = TO_FLOATS(firstX) - X.V[0];
@@ -335,14 +333,18 @@ static __attribute__((noinline)) uint ResampleLanes(SamplingMesh mesh, int x, in
           const FLOATS l5 = fma(rx, n5x, g5);
           const FLOATS l6 = fma(rx, n6x, g6);
           const FLOATS l0 = ((1.0f - l3) - l5) - l6;
-          const FLOATS u1 = Least(l6, 0.0f) * s1;
-          const FLOATS u2 = Least(l5, 0.0f) * s2;
-          const FLOATS u4 = Least(l3, 0.0f) * s4;
-          const FLOATS u7 = Least(l0, 0.0f) * s7;
-          const FLOATS t3 = fma(-u7, b73, fma(-u2, b23, fma(-u1, b13, Most(l3, 0.0f))));
-          const FLOATS t5 = fma(-u7, b75, fma(-u4, b45, fma(-u1, b15, Most(l5, 0.0f))));
-          const FLOATS t6 = fma(-u7, b76, fma(-u2, b26, fma(-u4, b46, Most(l6, 0.0f))));
-          const FLOATS t0 = fma(-u2, b20, fma(-u4, b40, fma(-u1, b10, Most(l0, 0.0f))));
+          FLOATS u1 = Least(l6, 0.0f) * s1;
+          FLOATS u2 = Least(l5, 0.0f) * s2;
+          FLOATS u4 = Least(l3, 0.0f) * s4;
+          FLOATS u7 = Least(l0, 0.0f) * s7;
+          FLOATS t3 = fma(-u7, b73, fma(-u2, b23, fma(-u1, b13, Most(l3, 0.0f))));
+          FLOATS t5 = fma(-u7, b75, fma(-u4, b45, fma(-u1, b15, Most(l5, 0.0f))));
+          FLOATS t6 = fma(-u7, b76, fma(-u2, b26, fma(-u4, b46, Most(l6, 0.0f))));
+          FLOATS t0 = fma(-u2, b20, fma(-u4, b40, fma(-u1, b10, Most(l0, 0.0f))));
+          if ((dx | dy | dz) == 0)
+          {
+            SNAP(t0) SNAP(t3) SNAP(t5) SNAP(t6) SNAP(u1) SNAP(u2) SNAP(u4) SNAP(u7)
+          }
           const FLOATS lowA = Least(t3, t5), highA = Most(t3, t5);
           const FLOATS lowB = Least(t6, t0), highB = Most(t6, t0);
           const INTS maybe = (Least(lowA, lowB) >= -bound) & row & (countX > dx);

@@ -198,6 +198,19 @@ TEST(Piecewise, OutputSmallerThanTheDeformedVolume)
   Check(jittered);
 }
 
+// Boxes of three voxels that the border of the output cuts between their vertices.
+TEST(Piecewise, OutputCutsBoxes)
+{
+  DeformerCase tripled = MakeCase(
+    { { 0, 24, 0, 8, 0, 8 } }, NoScale, [](const glm::dvec3& index) { return 3.0 * index; });
+  for (const int cut : { 4, 5, 6 })
+  {
+    SCOPED_TRACE(cut);
+    tripled.Output = { { cut, 60 + cut, cut, 15 + cut, cut, 15 + cut } };
+    Check(tripled);
+  }
+}
+
 TEST(Piecewise, OutputBesideTheDeformedVolume)
 {
   DeformerCase jittered = MakeCase({ { 0, 5, 0, 5, 0, 5 } }, NoScale, MakeJitter(6, 0.15));
