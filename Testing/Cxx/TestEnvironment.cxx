@@ -51,7 +51,9 @@ int TestEnvironment(int argc, char* argv[])
 
   if (name == "NoPlatform")
   {
-    VERIFY_EQUAL(vtkDeformVolumeFilter::GetDeviceNames()->GetNumberOfValues(), 0);
+    const auto names =
+      vtkSmartPointer<vtkStringArray>::Take(vtkDeformVolumeFilter::GetDeviceNames());
+    VERIFY_EQUAL(names->GetNumberOfValues(), 0);
   }
   if (name == "UnknownDefaultDevice")
   {
