@@ -22,9 +22,6 @@ const char* const MESH = "deformation mesh on input port 1";
 const char* const REST = "rest configuration on input port 2";
 const char* const FIELD = "displacement field on input port 1";
 
-// Positions in 1/256 voxel have to fit into the integers of the kernels.
-constexpr double FARTHEST = 1 << 21;
-
 // Products of matrices and their inverses miss the simple numbers that are meant, and then the
 // last row of voxels is outside a field of the same extent. The grain is far below a voxel.
 double DropRoundingError(double value)
@@ -232,7 +229,7 @@ void Deformation::SetVectors(
         for (int axis = 0; axis < 3; ++axis)
         {
           // The negation catches NaN as well.
-          if (!(std::abs(vector[axis]) < FARTHEST))
+          if (!(std::abs(vector[axis]) <= LargestDisplacement))
           {
             tooFar = true;
             return;
@@ -244,7 +241,7 @@ void Deformation::SetVectors(
   ++this->VectorsVersion;
   if (tooFar)
   {
-    throw Error("The deformation moves the volume by more than 2,097,152 output voxels. Check "
+    throw Error("The deformation moves the volume by more than 16,383 output voxels. Check "
                 "DisplacementScale, the output spacing, and that displacements and volume are in "
                 "the same world units.");
   }

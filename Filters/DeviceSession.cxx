@@ -63,7 +63,8 @@ void DeviceSession::SetVolume(const Lattice& lattice, vtkImageData* volume,
   }
   Transfer transfer(this);
   std::size_t widest = 0;
-  for (const VolumeArray& array : Describe(arrays, background))
+  const std::vector<VolumeArray> described = Describe(arrays, background);
+  for (const VolumeArray& array : described)
   {
     widest =
       std::max(widest, GetElementSize(array.Type) * static_cast<std::size_t>(array.Components));
@@ -77,10 +78,10 @@ void DeviceSession::SetVolume(const Lattice& lattice, vtkImageData* volume,
     this->SentWidth = widest;
   }
 
-  const Stamp stamp = GetStamp(arrays, background);
+  const Stamp stamp = GetStamp(arrays);
   if (this->SentArrays != stamp)
   {
-    std::vector<VolumeArray> sent = Describe(arrays, background);
+    std::vector<VolumeArray> sent = described;
     std::vector<vtkSmartPointer<vtkDataArray>> copies(arrays.size());
     for (std::size_t i = 0; i < arrays.size(); ++i)
     {
@@ -90,6 +91,7 @@ void DeviceSession::SetVolume(const Lattice& lattice, vtkImageData* volume,
     this->SentArrays = stamp;
     ++this->NumberOfVolumeUploads;
   }
+  this->Deformer.SetArrayOptions(described);
 
   const Stamp masksStamp = GetMasksStamp(volume);
   if (!this->MasksAreSet || this->SentMasks != masksStamp)

@@ -96,6 +96,9 @@ std::vector<SourceArray> SelectArrays(
   vtkImageData* volume, const std::set<std::string>& categorical, std::vector<std::string>& leftOut)
 {
   vtkPointData* pointData = volume->GetPointData();
+  // Ids are never mixed, whatever their arrays are called.
+  int roles[vtkDataSetAttributes::NUM_ATTRIBUTES];
+  pointData->GetAttributeIndices(roles);
   std::vector<SourceArray> arrays;
   for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
   {
@@ -122,7 +125,10 @@ std::vector<SourceArray> SelectArrays(
     {
       continue;
     }
-    arrays.push_back({ array, i, array->GetName() && categorical.count(array->GetName()) > 0 });
+    const bool isId =
+      roles[vtkDataSetAttributes::GLOBALIDS] == i || roles[vtkDataSetAttributes::PEDIGREEIDS] == i;
+    arrays.push_back(
+      { array, i, isId || (array->GetName() && categorical.count(array->GetName()) > 0) });
   }
   if (arrays.empty())
   {
@@ -147,21 +153,16 @@ std::vector<VolumeArray> Describe(const std::vector<SourceArray>& arrays, double
   return described;
 }
 
-Stamp GetStamp(const std::vector<SourceArray>& arrays, double background)
+Stamp GetStamp(const std::vector<SourceArray>& arrays)
 {
   Stamp stamp;
   for (const SourceArray& source : arrays)
   {
     stamp.emplace_back(source.Array, source.Array->GetMTime());
-    stamp.emplace_back(nullptr, source.Categorical ? 1 : 0);
     // Values may be exchanged under an array that stays, as SetArray() does.
     stamp.emplace_back(
       FindValues(source.Array), static_cast<vtkMTimeType>(source.Array->GetNumberOfValues()));
   }
-  vtkMTimeType bits = 0;
-  static_assert(sizeof(bits) >= sizeof(background), "a double does not fit into a time stamp");
-  std::memcpy(&bits, &background, sizeof(background));
-  stamp.emplace_back(nullptr, bits);
   return stamp;
 }
 

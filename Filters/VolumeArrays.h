@@ -39,7 +39,7 @@ std::vector<SourceArray> SelectArrays(vtkImageData* volume,
 std::vector<VolumeArray> Describe(const std::vector<SourceArray>& arrays, double background);
 
 /// What an upload of arrays depends on.
-Stamp GetStamp(const std::vector<SourceArray>& arrays, double background);
+Stamp GetStamp(const std::vector<SourceArray>& arrays);
 
 /// The values of an array, tuple after tuple; an array in another layout is copied, and the copy
 /// kept in `copy`.

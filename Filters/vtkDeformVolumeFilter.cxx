@@ -203,6 +203,7 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   {
     return 1;
   }
+  vtkInternals::ForgetRequestedExtent(outInfo);
   if (request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
   {
     // Nothing is offered, so that a pass that goes on in spite of the failure finds nothing.
@@ -312,8 +313,12 @@ int vtkDeformVolumeFilter::RequestData(
     {
       data->Initialize();
     }
+    vtkInternals::ForgetRequestedExtent(outInfo);
     return 0;
   }
+  // Nothing of an earlier execution is left standing beside a failure.
+  this->PreprocessingTime = this->TransferTime = this->MappingTime = this->ResamplingTime = 0.0;
+  this->NumberOfInvertedTetrahedra = this->NumberOfFlatTetrahedra = this->NumberOfCoveredVoxels = 0;
   vtkImageData* volume = vtkImageData::GetData(input[0]);
   if (!volume)
   {
@@ -397,6 +402,15 @@ int vtkDeformVolumeFilter::RequestData(
                     << " cells of the volume have a tetrahedron that is stretched over more than "
                        "4,000 output voxels; these tetrahedra are skipped. Check the deformation, "
                        "or set a greater output spacing.");
+  }
+  int whole[6];
+  outInfo->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+  if (report.NumberOfCoveredVoxels == 0 &&
+    std::equal(whole, whole + 6, request.OutputExtent.begin()))
+  {
+    vtkWarningMacro("The deformed volume covers no voxel of the output: all of it is background. "
+                    "Check the output bounds, and that the deformation mesh holds neighbouring "
+                    "voxels of the volume.");
   }
   vtkInformation* imageInfo = image->GetInformation();
   if (outInfo->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))

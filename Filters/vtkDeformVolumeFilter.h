@@ -282,7 +282,9 @@ public:
   ///@{
   /**
    * How often this filter has built a static mapping, and sent a volume to the device: a moved mesh
-   * costs neither.
+   * costs neither. The mapping is built anew after a change of the mesh at rest, of the volume's
+   * geometry, of the ratio of spacings, of OutsideMode or of the device, and after
+   * ReleaseDeviceMemory().
    */
   vtkGetMacro(NumberOfMappingBuilds, vtkIdType);
   vtkGetMacro(NumberOfVolumeUploads, vtkIdType);

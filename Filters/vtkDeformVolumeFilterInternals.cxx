@@ -10,6 +10,8 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerVectorKey.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <cmath>
 #include <thread>
@@ -103,6 +105,10 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(
   }
   if (extrapolate)
   {
+    // The links are made before any output is asked for: what they need is checked here.
+    this->Device.SetDevice(this->Self->Device, static_cast<std::uint64_t>(this->Self->MemoryLimit),
+      static_cast<std::size_t>(this->Self->WorkGroupSize));
+    this->Device.CheckMemory(lattice, {}, { { 0, -1, 0, -1, 0, -1 } }, this->Deformation);
     this->Mapping.Update(this->Deformation, volume, true, {});
     return deformvolume::ComputeDeformedBounds(lattice, this->Mapping.GetLinks(),
       this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
@@ -163,6 +169,12 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
 }
 
 //------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::ForgetRequestedExtent(vtkInformation* output)
+{
+  output->Remove(vtkStreamingDemandDrivenPipeline::COMBINED_UPDATE_EXTENT());
+}
+
+//------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
   vtkImageData* volume, const std::vector<std::string>& leftOut)
 {
@@ -184,8 +196,8 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
   }
   if (!leftOut.empty())
   {
-    warning +=
-      "Point arrays of the volume that hold no numbers are left out: " + list(leftOut) + ". ";
+    warning += "Point arrays of the volume of a type that cannot be resampled are left out: " +
+      list(leftOut) + ". ";
   }
   const std::string& cells = this->Deformation.GetIgnoredCells();
   if (!this->Deformation.IsField() && !cells.empty())

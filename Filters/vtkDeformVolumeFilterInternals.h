@@ -38,6 +38,10 @@ public:
   deformvolume::IndexBounds GetDeformedBounds(
     const deformvolume::ImageGeometry& volume, vtkInformation* output);
 
+  /// The executive unites the extents asked for until an execution succeeds: after a failure the
+  /// next one must start anew.
+  static void ForgetRequestedExtent(vtkInformation* output);
+
   /// Warns where what is ignored changed since the last call.
   void WarnOfIgnored(vtkImageData* volume, const std::vector<std::string>& leftOut);
 

@@ -135,7 +135,7 @@ __kernel void MapByField(__global const uchar* state, __global const float4* vec
       continue;
     }
     const int3 last = (int3)(field.Dimensions[0], field.Dimensions[1], field.Dimensions[2]) - 1;
-    const float3 f = clamp(FieldIndex(&field, v + (int3)(p.First[0], p.First[1], p.First[2])), 0.0f,
+    const float3 f = clamp(FieldIndex(&field, v), 0.0f,
       convert_float3(last));
     const int3 low = convert_int3(floor(f));
     const int3 high = min(low + 1, last);
@@ -176,7 +176,7 @@ __kernel void MarkSourcesByField(const FieldParameters field, __global const uch
   for (int3 v = FirstVertex(&p); v.x < p.Size[0]; v.x += get_global_size(0))
   {
     const size_t i = VertexIndex(v, p.ChunkFirst, &p);
-    const float3 f = FieldIndex(&field, v + (int3)(p.First[0], p.First[1], p.First[2]));
+    const float3 f = FieldIndex(&field, v);
     const int inside = f.x >= -FIELD_TOLERANCE && f.y >= -FIELD_TOLERANCE &&
       f.z >= -FIELD_TOLERANCE && f.x <= field.Dimensions[0] - 1 + FIELD_TOLERANCE &&
       f.y <= field.Dimensions[1] - 1 + FIELD_TOLERANCE &&

@@ -36,7 +36,7 @@ typedef struct
   float Fraction;
 } RestPosition;
 
-// A displacement field. IndexToField: row-major 3 x 4, from the structured index of a voxel to a
+// A displacement field. IndexToField: row-major 3 x 4, from the local index of a voxel to a
 // continuous index of the field.
 typedef struct
 {

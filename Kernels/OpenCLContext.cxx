@@ -59,23 +59,6 @@ std::string ListNames(const std::vector<OpenCLDevice>& devices)
   return list;
 }
 
-/// Bytes of memory that the system can still give; 0 where it does not tell.
-std::uint64_t GetSystemMemory()
-{
-  std::ifstream file("/proc/meminfo");
-  std::string key;
-  std::uint64_t kibibytes = 0;
-  std::string unit;
-  while (file >> key >> kibibytes >> unit)
-  {
-    if (key == "MemAvailable:")
-    {
-      return kibibytes * 1024;
-    }
-  }
-  return 0;
-}
-
 } // namespace
 
 std::vector<OpenCLDevice> FindDevices()
@@ -224,6 +207,22 @@ std::uint64_t OpenCLContext::GetAvailableMemory() const
   const std::uint64_t device = this->Device.Device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
   const std::uint64_t system = this->Device.IsProcessor ? GetSystemMemory() : 0;
   return system ? std::min(device, system) : device;
+}
+
+std::uint64_t OpenCLContext::GetSystemMemory()
+{
+  std::ifstream file("/proc/meminfo");
+  std::string key;
+  std::uint64_t kibibytes = 0;
+  std::string unit;
+  while (file >> key >> kibibytes >> unit)
+  {
+    if (key == "MemAvailable:")
+    {
+      return kibibytes * 1024;
+    }
+  }
+  return 0;
 }
 
 std::string Describe(const cl::Error& error)

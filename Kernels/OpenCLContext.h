@@ -51,6 +51,9 @@ public:
   /// has left.
   std::uint64_t GetAvailableMemory() const;
 
+  /// Bytes of memory that the system can still give; 0 where it does not tell.
+  static std::uint64_t GetSystemMemory();
+
 private:
   explicit OpenCLContext(const OpenCLDevice& device);
 

@@ -37,7 +37,10 @@ T ClampTo(double value)
     }
     return static_cast<T>(std::nearbyint(value));
   }
-  return static_cast<T>(value);
+  // A finite value stays finite.
+  const double largest = static_cast<double>(std::numeric_limits<T>::max());
+  return static_cast<T>(
+    std::isfinite(value) ? std::min(std::max(value, -largest), largest) : value);
 }
 
 template <typename T>

@@ -11,9 +11,6 @@ namespace deformvolume
 namespace
 {
 
-/// Displacements over so many voxels leave the range in which the kernels round them.
-const float LargestDisplacement = 16383.0F;
-
 std::size_t GetTupleSize(const VolumeArray& array)
 {
   return GetElementSize(array.Type) * static_cast<std::size_t>(array.Components);
@@ -49,6 +46,17 @@ void CheckLinks(const VertexLink* links, std::int64_t count, std::size_t numberO
   }
 }
 
+void CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where)
+{
+  if (needed > available)
+  {
+    throw Error(std::string("Not enough memory ") + where + ": " + std::to_string(needed) +
+      " bytes are needed and " + std::to_string(available) +
+      " are available. Use a smaller volume, fewer arrays or smaller output bounds, raise the "
+      "memory limit if one is set, or choose another device.");
+  }
+}
+
 /// The three floats of each point padded to the four that the device reads at once.
 std::vector<float> MakeVectors(const float* vectors, std::size_t count, const char* what)
 {
@@ -61,7 +69,8 @@ std::vector<float> MakeVectors(const float* vectors, std::size_t count, const ch
       if (!(std::abs(value) <= LargestDisplacement))
       {
         throw Error(std::string("The displacement of ") + what + " " + std::to_string(i) +
-          " is not finite, or over 16,383 output voxels.");
+          " is not finite, or over 16,383 output voxels. Check the scale of the displacements and "
+          "the output spacing.");
       }
       padded[4 * i + c] = value;
     }
@@ -103,9 +112,9 @@ void VolumeDeformer::SetWorkGroupSize(std::size_t size)
   this->Impl->WorkGroupSize = size;
 }
 
-void VolumeDeformer::CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
-  const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
-  bool field) const
+std::uint64_t VolumeDeformer::CheckDeviceMemory(const Lattice& lattice,
+  const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
+  std::size_t numberOfTetrahedra, bool field) const
 {
   std::uint64_t tuple = 0;
   for (const VolumeArray& array : arrays)
@@ -142,12 +151,33 @@ void VolumeDeformer::CheckMemory(const Lattice& lattice, const std::vector<Volum
       const std::uint64_t device = this->Impl->GetContext().GetAvailableMemory();
       return this->Impl->MemoryLimit ? this->Impl->MemoryLimit : device + held;
     });
-  if (needed > available)
+  CheckBytes(needed, available, "on the device");
+  return needed;
+}
+
+void VolumeDeformer::CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
+  const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
+  bool field) const
+{
+  const std::uint64_t needed = this->CheckDeviceMemory(
+    lattice, arrays, outputExtent, numberOfNodes, numberOfTetrahedra, field);
+  std::uint64_t tuple = 0;
+  for (const VolumeArray& array : arrays)
   {
-    throw Error("Not enough memory on the device: " + std::to_string(needed) +
-      " bytes are needed and " + std::to_string(available) +
-      " are available. Use a smaller volume, fewer arrays or smaller output bounds, raise the "
-      "memory limit if one is set, or choose another device.");
+    tuple += GetTupleSize(array);
+  }
+  // What the caller holds, in the memory of the system, which a processor shares with its device.
+  const std::uint64_t system = OpenCLContext::GetSystemMemory();
+  if (system > 0)
+  {
+    const bool shared = this->Impl->GetContext().GetDevice().IsProcessor;
+    const std::uint64_t host =
+      (field ? 0
+             : static_cast<std::uint64_t>(GetNumberOfPoints(lattice.VertexExtent)) *
+            sizeof(VertexLink)) +
+      static_cast<std::uint64_t>(GetNumberOfPoints(outputExtent)) * (tuple + 1);
+    CheckBytes(host + (shared ? needed : 0), system + (shared ? this->GetDeviceMemory() : 0),
+      "in the system");
   }
 }
 
@@ -193,6 +223,23 @@ void VolumeDeformer::SetArrays(const std::vector<VolumeArray>& arrays)
       this->Impl->GetMesh().SetArrays(arrays);
       this->Impl->Arrays = arrays;
     });
+}
+
+void VolumeDeformer::SetArrayOptions(const std::vector<VolumeArray>& arrays)
+{
+  std::vector<VolumeArray>& set = this->Impl->Arrays;
+  const bool alike = std::equal(arrays.begin(), arrays.end(), set.begin(), set.end(),
+    [](const VolumeArray& a, const VolumeArray& b)
+    { return a.Type == b.Type && a.Components == b.Components; });
+  if (!alike)
+  {
+    throw Error("The options are those of other arrays than are set: call SetArrays first.");
+  }
+  for (std::size_t i = 0; i < set.size(); ++i)
+  {
+    set[i].Categorical = arrays[i].Categorical;
+    set[i].Background = arrays[i].Background;
+  }
 }
 
 void VolumeDeformer::SetBlanked(const unsigned char* blanked)
@@ -263,6 +310,14 @@ void VolumeDeformer::SetDisplacementField(const DisplacementField& field)
       {
         parameters.IndexToField[i] = static_cast<float>(field.IndexToField[i]);
       }
+      // The kernels count from the first voxel: large structured indices do not fit into a float.
+      const Extent& extent = this->Impl->GetMesh().GetLattice().VertexExtent;
+      for (int row = 0; row < 3; ++row)
+      {
+        const double* m = &field.IndexToField[4 * row];
+        parameters.IndexToField[4 * row + 3] =
+          static_cast<float>(m[0] * extent[0] + m[1] * extent[2] + m[2] * extent[4] + m[3]);
+      }
       std::copy_n(field.Dimensions.begin(), 3, parameters.Dimensions);
       parameters.Extrapolate = field.Extrapolate;
       DeviceLattice& mesh = this->Impl->GetMesh();
@@ -296,7 +351,7 @@ DeformReport VolumeDeformer::Deform(const DeformRequest& request)
 {
   this->Impl->CheckRequest(request);
   const DeviceLattice& mesh = this->Impl->GetMesh();
-  this->CheckMemory(mesh.GetLattice(), this->Impl->Arrays, request.OutputExtent,
+  this->CheckDeviceMemory(mesh.GetLattice(), this->Impl->Arrays, request.OutputExtent,
     this->Impl->NumberOfNodes, this->Impl->NumberOfTetrahedra, !mesh.HasLinks());
   return this->Impl->Guard([&] { return this->Impl->Deform(request); });
 }

@@ -62,6 +62,9 @@ struct VolumeArray
   double Background = 0.0;
 };
 
+/// Displacements over so many output voxels are refused: the kernels could not round them.
+constexpr double LargestDisplacement = 16383.0;
+
 /// The static link of one voxel into the deformation mesh; 16 bytes.
 struct VertexLink
 {
@@ -166,7 +169,8 @@ public:
 
   /// Checks that a lattice, arrays and an output of these sizes fit into the memory of the device,
   /// before anything is allocated; throws an Error that names the bytes needed and available.
-  /// outputExtent is that of the output; only types and components of the arrays are read.
+  /// outputExtent is that of the output; only types and components of the arrays are read. Counts
+  /// what the caller is about to allocate, too: the output, and the links of a mesh.
   void CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
     const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
     bool field) const;
@@ -175,6 +179,10 @@ public:
   /// over the allocation limit is split.
   void SetLattice(const Lattice& lattice, std::size_t bytesPerVoxel = 16);
   void SetArrays(const std::vector<VolumeArray>& arrays);
+
+  /// Changes which arrays are categorical and their background, and sends nothing: of arrays of the
+  /// types and components that were set.
+  void SetArrayOptions(const std::vector<VolumeArray>& arrays);
 
   /// One byte a voxel: nonzero where the voxel is no source (blanked or a ghost). Null: all are.
   void SetBlanked(const unsigned char* blanked);
@@ -199,6 +207,11 @@ public:
   void ReleaseMemory();
 
 private:
+  /// The part of CheckMemory for the device; returns the bytes needed there.
+  std::uint64_t CheckDeviceMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
+    const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
+    bool field) const;
+
   class Internals;
   std::unique_ptr<Internals> Impl;
 };
