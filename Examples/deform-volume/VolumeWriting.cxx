@@ -124,6 +124,8 @@ void WriteMetaImage(
 void WriteVTI(const Volume& volume, const std::string& path, Messages& messages, bool showProgress)
 {
   vtkNew<vtkXMLImageDataWriter> writer;
+  // Not appended: with recent versions of libexpat, ParaView 5.11 cannot read appended data.
+  writer->SetDataModeToBinary();
   writer->SetInputData(volume.Image);
   writer->SetFileName(path.c_str());
   // zlib's fastest level: most of the size at a fraction of the time.

@@ -42,6 +42,7 @@ int main(int argc, char* argv[])
   deform->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Displacement");
 
   vtkNew<vtkXMLImageDataWriter> writer;
+  writer->SetDataModeToBinary();
   writer->SetInputConnection(deform->GetOutputPort());
   writer->SetFileName(argv[2]);
   const bool written = writer->Write() != 0;

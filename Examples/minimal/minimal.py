@@ -32,6 +32,7 @@ deform.SetDeformationConnection(displacement.GetOutputPort())
 deform.SetInputArrayToProcess(0, 1, 0, 0, "Displacement")
 
 writer = vtkXMLImageDataWriter()
+writer.SetDataModeToBinary()
 writer.SetInputConnection(deform.GetOutputPort())
 writer.SetFileName(sys.argv[2])
 if not writer.Write() or deform.GetNumberOfCoveredVoxels() == 0:

@@ -39,6 +39,8 @@ def get_values(image, name=None):
 
 def write_vti(image, path):
     writer = vtkXMLImageDataWriter()
+    # Not appended: with recent versions of libexpat, ParaView 5.11 cannot read appended data.
+    writer.SetDataModeToBinary()
     writer.SetInputData(image)
     writer.SetFileName(path)
     assert writer.Write(), path
