@@ -378,6 +378,38 @@ void TestSettings(Misuse& misuse)
   misuse.Expect("bounds the wrong way round", "CustomBounds");
 }
 
+// What is mended after a failure may also change the extent of the output.
+void TestExtentAfterFailure(vtkImageData* volume, vtkUnstructuredGrid* mesh)
+{
+  Deformed deformed(volume, mesh);
+  vtkDeformVolumeFilter* filter = deformed.Filter;
+  for (const bool device : { false, true })
+  {
+    filter->SetOutputBoundsModeToDeformedBounds();
+    filter->SetDevice(device ? "a device that nobody has" : "");
+    filter->SetMemoryLimit(device ? 0 : 1000);
+    filter->Update();
+    VERIFY_EQUAL(deformed.TakeErrors(), 1);
+    filter->SetDevice("");
+    filter->SetMemoryLimit(0);
+    filter->SetOutputBoundsModeToCustomBounds();
+    filter->SetCustomBounds(0.0, 2.0, 0.0, 2.0, 0.0, 2.0);
+    const Extent small{ { 0, 2, 0, 2, 0, 2 } };
+    VERIFY_EQUAL(GetExtent(deformed.Update()), small);
+  }
+}
+
+// More than any machine has: one error with the bytes, before anything is allocated.
+void TestOutputBeyondAllMemory(vtkImageData* volume, vtkUnstructuredGrid* mesh)
+{
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetOutputBoundsModeToCustomBounds();
+  deformed.Filter->SetCustomBounds(0.0, 20000.0, 0.0, 20000.0, 0.0, 20000.0);
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeErrors(), 1);
+  VERIFY(deformed.LastError.find("Not enough memory") != std::string::npos);
+}
+
 } // namespace
 
 int TestDeformMisuse(int, char*[])
@@ -389,6 +421,9 @@ int TestDeformMisuse(int, char*[])
   TestDisplacements(misuse);
   TestRestMeshes(misuse);
   TestSettings(misuse);
+  auto mesh = misuse.CopyMesh();
+  TestExtentAfterFailure(misuse.GetVolume(), mesh);
+  TestOutputBeyondAllMemory(misuse.GetVolume(), mesh);
 
   // Nothing is connected at all.
   Deformed nothing;

@@ -49,14 +49,19 @@ TEST(Mapping, PublishedKernelEqualsExactOneOnASmoothBend)
   EXPECT_LE(differences, 20);
 }
 
-TEST(Mapping, FieldOfHalfTheResolution)
+namespace
 {
-  const Extent extent{ { -2, 8, 1, 9, 0, 10 } };
+
+/// first: where the structured indices begin, an even number. Large ones do not fit into a float.
+void TestFieldOfHalfTheResolution(int first)
+{
+  const Extent extent{ { first - 2, first + 8, first + 1, first + 9, first, first + 10 } };
   std::mt19937 random(6);
   std::uniform_int_distribution<int> uniform(-5, 5);
   DisplacementField field;
   field.Dimensions = { { 6, 5, 6 } };
-  field.IndexToField = { { 0.5, 0, 0, 1, 0, 0.5, 0, -0.5, 0, 0, 0.5, 0 } };
+  const double begin = -0.5 * first;
+  field.IndexToField = { { 0.5, 0, 0, begin + 1, 0, 0.5, 0, begin - 0.5, 0, 0, 0.5, begin } };
   // Whole numbers of 8/256 voxel: means of two, four and eight are exact.
   std::vector<int> units(3 * 6 * 5 * 6);
   std::generate(units.begin(), units.end(), [&] { return uniform(random); });
@@ -95,6 +100,18 @@ TEST(Mapping, FieldOfHalfTheResolution)
   Load(deformer, refined, arrays, Route::Field);
   deformer.SetDisplacementField(field);
   ExpectEqualsReference(refined, reference, arrays, RunDeformer(deformer, refined, arrays));
+}
+
+} // namespace
+
+TEST(Mapping, FieldOfHalfTheResolution)
+{
+  TestFieldOfHalfTheResolution(0);
+}
+
+TEST(Mapping, FieldOfHalfTheResolutionFarFromTheFirstIndex)
+{
+  TestFieldOfHalfTheResolution(300000);
 }
 
 TEST(Mapping, VoxelsOutsideTheField)
