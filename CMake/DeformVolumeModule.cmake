@@ -12,6 +12,7 @@ set(helpers
   BodySurface
   CellSplit
   ClosedSurface
+  CoarseVolume
   Deformation
   DeformationMesh
   DeformedBounds
