@@ -217,7 +217,8 @@ static __attribute__((noinline)) uint ResampleLanes(SamplingMesh mesh, int x, in
   // The rows of vertices: bit 0 odd z, bit 1 odd y.
   __global const int* rows[4];
   size_t sources[4];
-  INTS state = -1;
+  INTS state = -1; // what the vertices of a cell have in common
+  INTS some = 0;   // what at least one of them has
 #pragma unroll
   for (int r = 0; r < 4; ++r)
   {
@@ -225,14 +226,19 @@ static __attribute__((noinline)) uint ResampleLanes(SamplingMesh mesh, int x, in
     const int rowZ = z + ((r & 1) ^ oddZ);
     rows[r] = mesh.Positions + PositionIndex(x, rowY, rowZ, p);
     sources[r] = VertexInChunk(x, rowY, rowZ, p);
-    JOIN(uchar, LANES) first = LOAD(mesh.State + sources[r]);
-    JOIN(uchar, LANES) second = LOAD(mesh.State + sources[r] + LANES);
-    first &= LOAD(mesh.State + sources[r] + 1);
-    second &= LOAD(mesh.State + sources[r] + LANES + 1);
-    const JOIN(uchar, LANES) both = (JOIN(uchar, LANES))(first.even, second.even);
-    state &= TO_INTS(both);
+    const JOIN(uchar, LANES) first = LOAD(mesh.State + sources[r]);
+    const JOIN(uchar, LANES) second = LOAD(mesh.State + sources[r] + LANES);
+    const JOIN(uchar, LANES) low = (JOIN(uchar, LANES))(first.even, second.even);
+    const JOIN(uchar, LANES) high = (JOIN(uchar, LANES))(first.odd, second.odd);
+    state &= TO_INTS(low & high);
+    some |= TO_INTS(low | high);
   }
-  const INTS there = x + 2 * LANE_INDEX < p->Size[0] - 1;
+  // Cells outside the deformation mesh have nothing to give.
+  const INTS there = (x + 2 * LANE_INDEX < p->Size[0] - 1) & ((some & DEFORMVOLUME_VERTEX_SOURCE) != 0);
+  if (!LaneBits(there))
+  {
+    return 0;
+  }
   const INTS interior = (state & DEFORMVOLUME_VERTEX_INTERIOR) != 0;
   const JOIN(uchar, LANES) whole = (JOIN(uchar, LANES))(LOAD(mesh.State + VertexInChunk(x, y, z, p)).even,
     LOAD(mesh.State + VertexInChunk(x, y, z, p) + LANES).even);
