@@ -66,8 +66,7 @@ void DeviceSession::SetVolume(const Lattice& lattice, vtkImageData* volume,
   const std::vector<VolumeArray> described = Describe(arrays, background);
   for (const VolumeArray& array : described)
   {
-    widest =
-      std::max(widest, GetElementSize(array.Type) * static_cast<std::size_t>(array.Components));
+    widest = std::max(widest, GetTupleSize(array));
   }
   if (this->SentLattice.VertexExtent != lattice.VertexExtent ||
     this->SentLattice.Scale != lattice.Scale || this->SentWidth < widest)

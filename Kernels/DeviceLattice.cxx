@@ -99,8 +99,7 @@ void DeviceLattice::SetArrays(const std::vector<VolumeArray>& arrays)
     chunk.Arrays.resize(arrays.size());
     for (std::size_t i = 0; i < arrays.size(); ++i)
     {
-      chunk.Arrays[i] = this->Send(arrays[i].Data,
-        GetElementSize(arrays[i].Type) * static_cast<std::size_t>(arrays[i].Components), plane,
+      chunk.Arrays[i] = this->Send(arrays[i].Data, GetTupleSize(arrays[i]), plane,
         chunk.PlanesBegin, chunk.PlanesEnd, chunk.Arrays[i]);
     }
   }

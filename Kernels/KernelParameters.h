@@ -59,6 +59,9 @@ typedef struct
 // Elements that may be read behind the end of a buffer of vertices, by vector loads.
 #define DEFORMVOLUME_READ_AHEAD 64
 
+// Output voxels that a work-item of the kernel CountCovered takes.
+#define DEFORMVOLUME_COUNTED_VOXELS 4096
+
 // State of a vertex of the sampling mesh.
 #define DEFORMVOLUME_VERTEX_SOURCE 1   // it has a deformed position and may be interpolated
 #define DEFORMVOLUME_VERTEX_INTERIOR 2 // all tetrahedra that it could belong to are there

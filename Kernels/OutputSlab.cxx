@@ -14,9 +14,6 @@ namespace deformvolume
 namespace
 {
 
-/// Voxels that a work-item of CountCovered takes; the number in Resampling.cl.
-const std::size_t VoxelsPerItem = 4096;
-
 template <typename T>
 T ClampTo(double value)
 {
@@ -73,8 +70,7 @@ std::vector<Extent> OutputSlab::Split(const Extent& output, const std::vector<Vo
   std::uint64_t widest = GetWinnerSize(lattice);
   for (const VolumeArray& array : arrays)
   {
-    widest = std::max<std::uint64_t>(
-      widest, GetElementSize(array.Type) * static_cast<std::size_t>(array.Components));
+    widest = std::max<std::uint64_t>(widest, GetTupleSize(array));
   }
   const std::uint64_t plane = static_cast<std::uint64_t>(GetSize(output, 0)) *
     static_cast<std::uint64_t>(GetSize(output, 1)) * widest;
@@ -114,8 +110,7 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   this->TupleSizes.resize(arrays.size());
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
-    this->TupleSizes[i] =
-      GetElementSize(arrays[i].Type) * static_cast<std::size_t>(arrays[i].Components);
+    this->TupleSizes[i] = GetTupleSize(arrays[i]);
     Reserve(context, this->Arrays[i], this->NumberOfVoxels * this->TupleSizes[i]);
     switch (arrays[i].Type)
     {
@@ -146,8 +141,8 @@ void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& 
 std::uint64_t OutputSlab::CountCovered(
   OpenCLContext& context, const std::vector<VolumeArray>& arrays, std::vector<cl::Event>& events)
 {
-  const std::size_t items =
-    static_cast<std::size_t>((this->NumberOfVoxels + VoxelsPerItem - 1) / VoxelsPerItem);
+  const std::size_t items = static_cast<std::size_t>(
+    (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS);
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, items * sizeof(cl_uint));
   cl::Kernel kernel(GetResamplingProgram(context, arrays, this->WinnerSize == 8), "CountCovered");
   kernel.setArg(0, this->Coverage);

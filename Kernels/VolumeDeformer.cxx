@@ -11,11 +11,6 @@ namespace deformvolume
 namespace
 {
 
-std::size_t GetTupleSize(const VolumeArray& array)
-{
-  return GetElementSize(array.Type) * static_cast<std::size_t>(array.Components);
-}
-
 // The kernels trust these indices: a wrong one would read beyond a buffer.
 void CheckIndices(const Tetrahedron* tetrahedra, std::size_t count, std::size_t numberOfNodes)
 {

@@ -62,6 +62,12 @@ struct VolumeArray
   double Background = 0.0;
 };
 
+/// Bytes of one tuple.
+inline std::size_t GetTupleSize(const VolumeArray& array)
+{
+  return GetElementSize(array.Type) * static_cast<std::size_t>(array.Components);
+}
+
 /// Displacements over so many output voxels are refused: the kernels could not round them.
 constexpr double LargestDisplacement = 16383.0;
 
