@@ -158,7 +158,7 @@ __kernel void MapByField(__global const uchar* state, __global const float4* vec
 }
 
 // State of the vertices, first pass: those are a source that the deformation moves and that are
-// not blanked.
+// not blanked. Sources lie in slabs of planes, as positions do.
 __kernel void MarkSourcesByMesh(__global const VertexLink* links, __global const uchar* blanked,
   const int hasBlanked, __global uchar* sources, const KernelParameters p)
 {
@@ -166,7 +166,7 @@ __kernel void MarkSourcesByMesh(__global const VertexLink* links, __global const
   {
     const size_t i = VertexIndex(v, p.ChunkFirst, &p);
     const int source = links[i].Tetrahedron >= 0 && !(hasBlanked && blanked[i]);
-    sources[i] = source ? DEFORMVOLUME_VERTEX_SOURCE : 0;
+    sources[VertexIndex(v, p.SlabFirst, &p)] = source ? DEFORMVOLUME_VERTEX_SOURCE : 0;
   }
 }
 
@@ -182,7 +182,7 @@ __kernel void MarkSourcesByField(const FieldParameters field, __global const uch
       f.y <= field.Dimensions[1] - 1 + FIELD_TOLERANCE &&
       f.z <= field.Dimensions[2] - 1 + FIELD_TOLERANCE;
     const int source = (inside || field.Extrapolate) && !(hasBlanked && blanked[i]);
-    sources[i] = source ? DEFORMVOLUME_VERTEX_SOURCE : 0;
+    sources[VertexIndex(v, p.SlabFirst, &p)] = source ? DEFORMVOLUME_VERTEX_SOURCE : 0;
   }
 }
 
@@ -203,7 +203,7 @@ static int AreSources(
     {
       for (int x = begin.x; x <= end.x; ++x)
       {
-        if (!sources[VertexIndex((int3)(x, y, z), p->ChunkFirst, p)])
+        if (!sources[VertexIndex((int3)(x, y, z), p->SlabFirst, p)])
         {
           return 0;
         }
@@ -248,13 +248,12 @@ __kernel void MarkVertices(__global const uchar* sources, __global const uchar* 
 {
   for (int3 v = FirstVertex(&p); v.x < p.Size[0]; v.x += get_global_size(0))
   {
-    const size_t i = VertexIndex(v, p.ChunkFirst, &p);
-    int bits = sources[i];
+    int bits = sources[VertexIndex(v, p.SlabFirst, &p)];
     if (bits)
     {
       bits |= IsInterior(sources, active, v, &p) ? DEFORMVOLUME_VERTEX_INTERIOR : 0;
       bits |= IsWholeCell(sources, active, v, &p) ? DEFORMVOLUME_CELL_WHOLE : 0;
     }
-    state[i] = bits;
+    state[VertexIndex(v, p.ChunkFirst, &p)] = bits;
   }
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DeviceLattice.h"
 
+#include "KernelProgram.h"
+#include "VertexRuns.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -69,7 +72,7 @@ cl::Buffer DeviceLattice::MakeRestPositions() const
 }
 
 cl::Buffer DeviceLattice::Send(const void* data, std::size_t bytesPerElement,
-  std::int64_t elementsPerLayer, int begin, int end, const cl::Buffer& previous)
+  std::int64_t elementsPerLayer, std::int64_t begin, std::int64_t end, const cl::Buffer& previous)
 {
   const std::uint64_t layerBytes = static_cast<std::uint64_t>(elementsPerLayer) * bytesPerElement;
   const std::uint64_t bytes = layerBytes * static_cast<std::uint64_t>(end - begin);
@@ -86,8 +89,11 @@ cl::Buffer DeviceLattice::Send(const void* data, std::size_t bytesPerElement,
   {
     buffer = cl::Buffer(this->Context.GetContext(), CL_MEM_READ_ONLY, room);
   }
-  this->Queue.enqueueWriteBuffer(
-    buffer, CL_TRUE, 0, bytes, static_cast<const char*>(data) + layerBytes * begin);
+  if (bytes > 0)
+  {
+    this->Queue.enqueueWriteBuffer(
+      buffer, CL_TRUE, 0, bytes, static_cast<const char*>(data) + layerBytes * begin);
+  }
   return buffer;
 }
 
@@ -107,15 +113,118 @@ void DeviceLattice::SetArrays(const std::vector<VolumeArray>& arrays)
 
 void DeviceLattice::SetLinks(const VertexLink* links)
 {
-  this->WithLinks = links != nullptr;
+  this->ForgetRuns();
+  this->WithLinks = true;
   this->StateChanged = true;
   const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
   for (LatticeChunk& chunk : this->Chunks)
   {
-    chunk.Links = links ? this->Send(links, sizeof(VertexLink), plane, chunk.PlanesBegin,
-                            chunk.PlanesEnd, chunk.Links)
-                        : cl::Buffer();
+    chunk.Links =
+      this->Send(links, sizeof(VertexLink), plane, chunk.PlanesBegin, chunk.PlanesEnd, chunk.Links);
   }
+}
+
+void DeviceLattice::ForgetRuns()
+{
+  for (LatticeChunk& chunk : this->Chunks)
+  {
+    chunk.Runs = cl::Buffer();
+    chunk.RowBegins = cl::Buffer();
+  }
+  this->RestTetrahedra = cl::Buffer();
+  this->RecordOwners = cl::Buffer();
+  this->Records = cl::Buffer();
+  this->RunBytes = 0;
+}
+
+void DeviceLattice::ForgetMesh()
+{
+  this->ForgetRuns();
+  for (LatticeChunk& chunk : this->Chunks)
+  {
+    chunk.Links = cl::Buffer();
+  }
+  this->WithLinks = false;
+  this->StateChanged = true;
+}
+
+void DeviceLattice::SetRuns(const VertexRuns& runs)
+{
+  static_assert(
+    sizeof(VertexRun) == 8 && sizeof(TetrahedronRecord) == 64, "as the kernels have it");
+  this->ForgetMesh();
+  const std::int64_t rows = this->GetSize(1);
+  std::vector<std::uint32_t> begins;
+  for (LatticeChunk& chunk : this->Chunks)
+  {
+    const auto first = runs.RowBegins.begin() + rows * chunk.PlanesBegin;
+    const auto last = runs.RowBegins.begin() + rows * chunk.PlanesEnd;
+    chunk.Runs = this->Send(runs.Runs.data(), sizeof(VertexRun), 1, *first, *last, chunk.Runs);
+    begins.assign(first, last + 1);
+    for (std::uint32_t& begin : begins)
+    {
+      begin -= *first;
+    }
+    chunk.RowBegins = this->Send(begins.data(), sizeof(std::uint32_t), 1, 0,
+      static_cast<std::int64_t>(begins.size()), chunk.RowBegins);
+  }
+  this->SendRecords(runs.Tetrahedra);
+  this->RunBytes = GetBytes(runs);
+}
+
+void DeviceLattice::SendRecords(const std::vector<RestTetrahedron>& tetrahedra)
+{
+  std::vector<double> values;
+  std::vector<std::int32_t> owners;
+  values.reserve(15 * tetrahedra.size());
+  owners.reserve(tetrahedra.size());
+  for (const RestTetrahedron& tetrahedron : tetrahedra)
+  {
+    values.insert(values.end(), tetrahedron.Origin.begin(), tetrahedron.Origin.end());
+    values.insert(values.end(), tetrahedron.Weights.begin(), tetrahedron.Weights.end());
+    for (const auto& gradient : tetrahedron.Gradients)
+    {
+      values.insert(values.end(), gradient.begin(), gradient.end());
+    }
+    owners.push_back(tetrahedron.Tetrahedron);
+  }
+  const auto size = static_cast<std::int64_t>(tetrahedra.size());
+  if (HasDouble(this->Context))
+  {
+    this->RestTetrahedra =
+      this->Send(values.data(), 15 * sizeof(double), 1, 0, size, this->RestTetrahedra);
+  }
+  else
+  {
+    const std::vector<float> rounded(values.begin(), values.end());
+    this->RestTetrahedra =
+      this->Send(rounded.data(), 15 * sizeof(float), 1, 0, size, this->RestTetrahedra);
+  }
+  this->RecordOwners =
+    this->Send(owners.data(), sizeof(std::int32_t), 1, 0, size, this->RecordOwners);
+  this->Records = cl::Buffer(this->Context.GetContext(), CL_MEM_READ_WRITE,
+    (tetrahedra.size() + 1) * sizeof(TetrahedronRecord));
+  this->NumberOfRecords = static_cast<cl_uint>(size);
+  this->RecordsChanged = true;
+}
+
+cl::Event DeviceLattice::EvaluateTetrahedra(
+  const cl::Program& mapping, const cl::Buffer& tetrahedra, const cl::Buffer& nodes)
+{
+  cl::Kernel kernel(mapping, "EvaluateTetrahedra");
+  kernel.setArg(0, this->RestTetrahedra);
+  kernel.setArg(1, this->RecordOwners);
+  kernel.setArg(2, tetrahedra);
+  kernel.setArg(3, nodes);
+  kernel.setArg(4, this->Records);
+  kernel.setArg(5, this->NumberOfRecords);
+  constexpr std::size_t group = 64;
+  const std::size_t items = (this->NumberOfRecords + group) / group * group;
+  cl::Event event;
+  this->Queue.enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(group), nullptr, &event);
+  this->RecordsChanged = false;
+  return event;
 }
 
 void DeviceLattice::SetBlanked(const unsigned char* blanked)
@@ -184,52 +293,82 @@ void DeviceLattice::UpdateState(const cl::Program& mapping, const FieldParameter
   {
     return;
   }
-  cl::Kernel sources(mapping, field ? "MarkSourcesByField" : "MarkSourcesByMesh");
+  const bool byRuns = this->HasRuns();
+  cl::Kernel sources(mapping,
+    field      ? "MarkSourcesByField"
+      : byRuns ? "MarkSourcesByRuns"
+               : "MarkSourcesByMesh");
   cl::Kernel vertices(mapping, "MarkVertices");
   for (LatticeChunk& chunk : this->Chunks)
   {
-    KernelParameters p = this->GetParameters(chunk);
-    const std::uint64_t bytes = static_cast<std::uint64_t>(p.Size[0]) * p.Size[1] *
-        static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin) +
+    const std::uint64_t bytes = static_cast<std::uint64_t>(this->GetSize(0)) * this->GetSize(1) *
+        static_cast<std::uint64_t>(chunk.PlanesEnd - chunk.PlanesBegin) +
       DEFORMVOLUME_READ_AHEAD;
     if (deformvolume::GetMemory(chunk.State) != bytes)
     {
       chunk.State = cl::Buffer(this->Context.GetContext(), CL_MEM_READ_WRITE, bytes);
     }
-    const cl::Buffer marked(this->Context.GetContext(), CL_MEM_READ_WRITE, bytes);
     if (field)
     {
       sources.setArg(0, *field);
     }
     else
     {
-      sources.setArg(0, chunk.Links);
+      sources.setArg(0, byRuns ? chunk.Runs : chunk.Links);
     }
     // A null pointer is not something that all drivers take: any buffer stands in for a missing
     // one.
     sources.setArg(1, this->WithBlanked ? chunk.Blanked : this->RestPositions);
     sources.setArg(2, cl_int{ this->WithBlanked });
-    sources.setArg(3, marked);
-    sources.setArg(4, p);
-    vertices.setArg(0, marked);
+    if (byRuns && !field)
+    {
+      sources.setArg(5, chunk.RowBegins);
+    }
     vertices.setArg(1, this->WithActive ? chunk.Active : this->RestPositions);
     vertices.setArg(2, chunk.State);
-    vertices.setArg(3, p);
-    for (const cl::Kernel& kernel : { sources, vertices })
-    {
-      this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
-        this->GetVertexRange(p.PlanesEnd - p.PlanesBegin), this->GetVertexGroup());
-    }
+    this->MarkChunk(sources, vertices, chunk);
   }
   this->StateChanged = false;
 }
 
+// Some planes after the others: sources of a whole volume would be one more byte a voxel.
+void DeviceLattice::MarkChunk(cl::Kernel& sources, cl::Kernel& vertices, const LatticeChunk& chunk)
+{
+  constexpr int step = 64;
+  const int most = std::min(step + 2, chunk.PlanesEnd - chunk.PlanesBegin);
+  const cl::Buffer marked(this->Context.GetContext(), CL_MEM_READ_WRITE,
+    static_cast<std::uint64_t>(this->GetSize(0)) * this->GetSize(1) *
+      static_cast<std::uint64_t>(most));
+  for (int begin = chunk.PlanesBegin; begin < chunk.PlanesEnd; begin += step)
+  {
+    KernelParameters p = this->GetParameters(chunk);
+    const int end = std::min(begin + step, chunk.PlanesEnd);
+    p.PlanesBegin = std::max(begin - 1, chunk.PlanesBegin);
+    p.PlanesEnd = std::min(end + 1, chunk.PlanesEnd);
+    p.SlabFirst = p.PlanesBegin;
+    const auto launch = [&](cl::Kernel& kernel, cl_uint sourcesIndex)
+    {
+      kernel.setArg(sourcesIndex, marked);
+      kernel.setArg(sourcesIndex == 0 ? 3 : 4, p);
+      this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
+        this->GetVertexRange(p.PlanesEnd - p.PlanesBegin), this->GetVertexGroup());
+    };
+    launch(sources, 3);
+    p.PlanesBegin = begin;
+    p.PlanesEnd = end;
+    launch(vertices, 0);
+  }
+}
+
 std::uint64_t DeviceLattice::GetMemory() const
 {
-  std::uint64_t bytes = deformvolume::GetMemory(this->RestPositions);
+  std::uint64_t bytes = deformvolume::GetMemory(this->RestPositions) +
+    deformvolume::GetMemory(this->RestTetrahedra) + deformvolume::GetMemory(this->RecordOwners) +
+    deformvolume::GetMemory(this->Records);
   for (const LatticeChunk& chunk : this->Chunks)
   {
-    bytes += deformvolume::GetMemory(chunk.Links) + deformvolume::GetMemory(chunk.State) +
+    bytes += deformvolume::GetMemory(chunk.Links) + deformvolume::GetMemory(chunk.Runs) +
+      deformvolume::GetMemory(chunk.RowBegins) + deformvolume::GetMemory(chunk.State) +
       deformvolume::GetMemory(chunk.Blanked) + deformvolume::GetMemory(chunk.Active);
     for (const cl::Buffer& array : chunk.Arrays)
     {

@@ -17,15 +17,17 @@ struct LatticeChunk
   int LayersEnd = 0;
   int PlanesBegin = 0; // vertices, local z: one plane more than the cells have on each side
   int PlanesEnd = 0;
-  cl::Buffer Links;
+  cl::Buffer Links;     // one a voxel, or else runs
+  cl::Buffer Runs;      // those of the rows of the planes
+  cl::Buffer RowBegins; // 4 bytes a row, counted from the chunk's first run
   cl::Buffer State;
   cl::Buffer Blanked;
   cl::Buffer Active;
   std::vector<cl::Buffer> Arrays;
 };
 
-/// What the device holds of the sampling mesh: per voxel the arrays, the static link into the
-/// deformation mesh, the state; per cell the active tetrahedra.
+/// What the device holds of the sampling mesh: per voxel the arrays and the state; the static links
+/// into the deformation mesh, or runs; per cell the active tetrahedra.
 class DeviceLattice
 {
 public:
@@ -34,6 +36,10 @@ public:
 
   void SetArrays(const std::vector<VolumeArray>& arrays);
   void SetLinks(const VertexLink* links);
+  /// The runs were checked (CheckRuns).
+  void SetRuns(const VertexRuns& runs);
+  /// Frees the links or the runs.
+  void ForgetMesh();
   void SetBlanked(const unsigned char* blanked);
   void SetActive(const unsigned char* active);
 
@@ -44,12 +50,23 @@ public:
   }
   bool HasActive() const { return this->WithActive; }
   bool HasBlanked() const { return this->WithBlanked; }
-  bool HasLinks() const { return this->WithLinks; }
+  bool HasMesh() const { return this->WithLinks || this->RunBytes > 0; }
+  bool HasRuns() const { return this->RunBytes > 0; }
+  /// See GetRunBytes in VertexRuns.h; 0 without runs.
+  std::uint64_t GetRunBytes() const { return this->RunBytes; }
   const std::vector<LatticeChunk>& GetChunks() const { return this->Chunks; }
 
   /// For each index on x, then y, then z the undeformed position (RestPosition in
   /// DeformationMapping.cl).
   const cl::Buffer& GetRestPositions() const { return this->RestPositions; }
+
+  /// The record of each tetrahedron that the runs refer to (TetrahedronRecord), after
+  /// EvaluateTetrahedra, which is due after the nodes have moved.
+  const cl::Buffer& GetRecords() const { return this->Records; }
+  bool NeedsRecords() const { return this->RecordsChanged; }
+  void ForgetRecords() { this->RecordsChanged = true; }
+  cl::Event EvaluateTetrahedra(
+    const cl::Program& mapping, const cl::Buffer& tetrahedra, const cl::Buffer& nodes);
 
   /// Global and work-group size of a launch over the vertices of so many planes.
   cl::NDRange GetVertexRange(int planes) const;
@@ -67,7 +84,10 @@ public:
 
 private:
   cl::Buffer Send(const void* data, std::size_t bytesPerElement, std::int64_t elementsPerLayer,
-    int begin, int end, const cl::Buffer& previous);
+    std::int64_t begin, std::int64_t end, const cl::Buffer& previous);
+  void ForgetRuns();
+  void SendRecords(const std::vector<RestTetrahedron>& tetrahedra);
+  void MarkChunk(cl::Kernel& sources, cl::Kernel& vertices, const LatticeChunk& chunk);
   cl::Buffer MakeRestPositions() const;
 
   OpenCLContext& Context;
@@ -77,6 +97,12 @@ private:
   std::vector<LatticeChunk> Chunks;
   cl::Buffer RestPositions;
   bool WithLinks = false;
+  std::uint64_t RunBytes = 0;
+  cl::Buffer RestTetrahedra; // of each record 15 reals, see RunMapping.cl
+  cl::Buffer RecordOwners;   // and its tetrahedron, 4 bytes
+  cl::Buffer Records;
+  cl_uint NumberOfRecords = 0;
+  bool RecordsChanged = true;
   bool WithBlanked = false;
   bool WithActive = false;
   bool StateChanged = true;

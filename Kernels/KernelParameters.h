@@ -45,6 +45,19 @@ typedef struct
   int Extrapolate; // whether voxels outside the field follow its border
 } FieldParameters;
 
+// The displacement in a tetrahedron of the deformation mesh, in output voxels; 64 bytes. That of the
+// voxel with the local index (x, y, z) is, in this order,
+//   Displacement + ((AlongY * (y - Origin[1]) + AlongZ * (z - Origin[2])) + AlongX * (x - Origin[0])).
+typedef struct
+{
+  float Displacement[3]; // at Origin
+  float AlongX[3];       // its derivatives
+  float AlongY[3];
+  float AlongZ[3];
+  float Origin[3]; // local index of a voxel in the tetrahedron
+  float Padding;
+} TetrahedronRecord;
+
 // Passes of the exact resampling kernel.
 #define DEFORMVOLUME_PASS_DIRECT 0 // write, and count the writes
 #define DEFORMVOLUME_PASS_MARK 1   // find the winner of each voxel

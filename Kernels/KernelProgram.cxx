@@ -7,6 +7,12 @@
 
 namespace deformvolume
 {
+
+bool HasDouble(const OpenCLContext& context)
+{
+  return context.HasExtension("cl_khr_fp64");
+}
+
 namespace
 {
 
@@ -30,11 +36,6 @@ bool IsReal(ElementType type)
   return type == ElementType::Float32 || type == ElementType::Float64;
 }
 
-bool HasDouble(const OpenCLContext& context)
-{
-  return context.HasExtension("cl_khr_fp64");
-}
-
 /// The statement that stores one array at a sample.
 std::string MakeStore(const VolumeArray& array, const std::string& index)
 {
@@ -51,6 +52,14 @@ std::string MakeStore(const VolumeArray& array, const std::string& index)
     return "STORE_LINEAR_64(" + places + components + ", " + type + ", " + convert + ") ";
   }
   return "STORE_LINEAR(" + places + components + ", " + convert + ") ";
+}
+
+/// The type of arithmetic that is as precise as the device has it.
+std::string GetReal(const OpenCLContext& context)
+{
+  return HasDouble(context) ? "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n"
+                              "#define REAL double\n"
+                            : "#define REAL float\n";
 }
 
 /// What the resampling kernels expect in front of them.
@@ -74,11 +83,8 @@ std::string MakePreamble(const OpenCLContext& context, const std::vector<VolumeA
     arguments += ", source" + index + ", target" + index;
     stores += MakeStore(arrays[i], index);
   }
-  return std::string(HasDouble(context) ? "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n"
-                                          "#define REAL double\n"
-                                        : "#define REAL float\n") +
-    "#define ARRAY_PARAMETERS " + parameters + "\n#define ARRAY_ARGUMENTS " + arguments +
-    "\n#define STORE_ARRAYS " + stores + "\n";
+  return GetReal(context) + "#define ARRAY_PARAMETERS " + parameters +
+    "\n#define ARRAY_ARGUMENTS " + arguments + "\n#define STORE_ARRAYS " + stores + "\n";
 }
 
 /// What LaneResampling.cl expects in front of it.
@@ -107,7 +113,8 @@ std::string GetSharedText()
 
 cl::Program GetMappingProgram(OpenCLContext& context)
 {
-  return context.GetProgram(GetSharedText() + DeformationMapping_cl, Options);
+  return context.GetProgram(
+    GetReal(context) + GetSharedText() + DeformationMapping_cl + RunMapping_cl, Options);
 }
 
 cl::Program GetResamplingProgram(

@@ -8,7 +8,10 @@
 namespace deformvolume
 {
 
-/// The deformation mapping (DeformationMapping.cl).
+/// Whether the device has double precision.
+bool HasDouble(const OpenCLContext& context);
+
+/// The deformation mapping (DeformationMapping.cl and RunMapping.cl).
 cl::Program GetMappingProgram(OpenCLContext& context);
 
 /// The exact resampling (Resampling.cl) for arrays of these types. wideKeys: cells are too many for

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VolumeDeformer.h"
 
+#include "VertexRuns.h"
 #include "VolumeDeformerInternals.h"
 
 #include <algorithm>
@@ -50,6 +51,15 @@ void CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where
       " are available. Use a smaller volume, fewer arrays or smaller output bounds, raise the "
       "memory limit if one is set, or choose another device.");
   }
+}
+
+/// Bytes of the static mapping; see CheckMemory.
+std::uint64_t GetMappingBytes(const Lattice& lattice, bool field, std::uint64_t runBytes)
+{
+  return field ? 0
+    : runBytes
+    ? runBytes
+    : static_cast<std::uint64_t>(GetNumberOfPoints(lattice.VertexExtent)) * sizeof(VertexLink);
 }
 
 /// The three floats of each point padded to the four that the device reads at once.
@@ -109,7 +119,7 @@ void VolumeDeformer::SetWorkGroupSize(std::size_t size)
 
 std::uint64_t VolumeDeformer::CheckDeviceMemory(const Lattice& lattice,
   const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
-  std::size_t numberOfTetrahedra, bool field) const
+  std::size_t numberOfTetrahedra, std::uint64_t mappingBytes) const
 {
   std::uint64_t tuple = 0;
   for (const VolumeArray& array : arrays)
@@ -131,9 +141,9 @@ std::uint64_t VolumeDeformer::CheckDeviceMemory(const Lattice& lattice,
     });
   const auto plane =
     static_cast<std::uint64_t>(GetSize(lattice.VertexExtent, 0) * GetSize(lattice.VertexExtent, 1));
-  // Arrays, state, active tetrahedra and blanking; links where there is a mesh; arrays, coverage
+  // Arrays, state, active tetrahedra and blanking; links or runs of a mesh; arrays, coverage
   // and winners of the output; positions of one launch; the deformation itself.
-  const std::uint64_t needed = voxels * (tuple + 3 + (field ? 0 : sizeof(VertexLink))) +
+  const std::uint64_t needed = voxels * (tuple + 3) + mappingBytes +
     outputVoxels * (tuple + 1 + GetWinnerSize(lattice)) +
     plane * 12 *
       std::min<std::uint64_t>(
@@ -151,11 +161,12 @@ std::uint64_t VolumeDeformer::CheckDeviceMemory(const Lattice& lattice,
 }
 
 void VolumeDeformer::CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
-  const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
-  bool field) const
+  const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra, bool field,
+  std::uint64_t runBytes) const
 {
+  const std::uint64_t mappingBytes = GetMappingBytes(lattice, field, runBytes);
   const std::uint64_t needed = this->CheckDeviceMemory(
-    lattice, arrays, outputExtent, numberOfNodes, numberOfTetrahedra, field);
+    lattice, arrays, outputExtent, numberOfNodes, numberOfTetrahedra, mappingBytes);
   std::uint64_t tuple = 0;
   for (const VolumeArray& array : arrays)
   {
@@ -167,10 +178,7 @@ void VolumeDeformer::CheckMemory(const Lattice& lattice, const std::vector<Volum
   {
     const bool shared = this->Impl->GetContext().GetDevice().IsProcessor;
     const std::uint64_t host =
-      (field ? 0
-             : static_cast<std::uint64_t>(GetNumberOfPoints(lattice.VertexExtent)) *
-            sizeof(VertexLink)) +
-      static_cast<std::uint64_t>(GetNumberOfPoints(outputExtent)) * (tuple + 1);
+      mappingBytes + static_cast<std::uint64_t>(GetNumberOfPoints(outputExtent)) * (tuple + 1);
     CheckBytes(host + (shared ? needed : 0), system + (shared ? this->GetDeviceMemory() : 0),
       "in the system");
   }
@@ -262,12 +270,24 @@ void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOf
       CheckLinks(links, GetNumberOfPoints(this->Impl->GetMesh().GetLattice().VertexExtent),
         numberOfTetrahedra);
       this->Impl->GetMesh().SetLinks(links);
-      this->Impl->NumberOfTetrahedra = numberOfTetrahedra;
-      this->Impl->Tetrahedra = this->Impl->SendBuffer(
-        tetrahedra, numberOfTetrahedra * sizeof(Tetrahedron), this->Impl->Tetrahedra);
-      this->Impl->NumberOfNodes = numberOfNodes;
-      this->Impl->NodesSet = false;
-      this->Impl->FieldVectors = cl::Buffer();
+      this->Impl->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes);
+    });
+}
+
+void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+  std::size_t numberOfNodes, const VertexRuns& runs)
+{
+  if (!numberOfTetrahedra || !numberOfNodes || !tetrahedra)
+  {
+    throw Error("The deformation mesh is empty.");
+  }
+  CheckIndices(tetrahedra, numberOfTetrahedra, numberOfNodes);
+  this->Impl->Send(
+    [&]
+    {
+      CheckRuns(runs, this->Impl->GetMesh().GetLattice(), numberOfTetrahedra);
+      this->Impl->GetMesh().SetRuns(runs);
+      this->Impl->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes);
     });
 }
 
@@ -276,7 +296,7 @@ void VolumeDeformer::SetNodeDisplacements(const float* displacements)
   this->Impl->Send(
     [&]
     {
-      if (!this->Impl->GetMesh().HasLinks())
+      if (!this->Impl->GetMesh().HasMesh())
       {
         throw Error("No deformation mesh is set: call SetMesh first.");
       }
@@ -285,6 +305,7 @@ void VolumeDeformer::SetNodeDisplacements(const float* displacements)
       this->Impl->Nodes =
         this->Impl->SendBuffer(nodes.data(), nodes.size() * sizeof(float), this->Impl->Nodes);
       this->Impl->NodesSet = true;
+      this->Impl->GetMesh().ForgetRecords();
     });
 }
 
@@ -316,9 +337,9 @@ void VolumeDeformer::SetDisplacementField(const DisplacementField& field)
       std::copy_n(field.Dimensions.begin(), 3, parameters.Dimensions);
       parameters.Extrapolate = field.Extrapolate;
       DeviceLattice& mesh = this->Impl->GetMesh();
-      if (mesh.HasLinks())
+      if (mesh.HasMesh())
       {
-        mesh.SetLinks(nullptr);
+        mesh.ForgetMesh();
       }
       const bool same = this->Impl->FieldVectors() &&
         std::equal(
@@ -347,7 +368,8 @@ DeformReport VolumeDeformer::Deform(const DeformRequest& request)
   this->Impl->CheckRequest(request);
   const DeviceLattice& mesh = this->Impl->GetMesh();
   this->CheckDeviceMemory(mesh.GetLattice(), this->Impl->Arrays, request.OutputExtent,
-    this->Impl->NumberOfNodes, this->Impl->NumberOfTetrahedra, !mesh.HasLinks());
+    this->Impl->NumberOfNodes, this->Impl->NumberOfTetrahedra,
+    GetMappingBytes(mesh.GetLattice(), !mesh.HasMesh(), mesh.GetRunBytes()));
   return this->Impl->Guard([&] { return this->Impl->Deform(request); });
 }
 

@@ -80,6 +80,40 @@ struct VertexLink
   float Weights[3] = { 0.0F, 0.0F, 0.0F };
 };
 
+/// A run of voxels of a row, along x, in one tetrahedron; 8 bytes. It ends where the next run of
+/// its row begins, the last one at the end of the row.
+struct VertexRun
+{
+  /// Index into VertexRuns::Tetrahedra, or -1 outside the deformation mesh.
+  std::int32_t Tetrahedron = -1;
+  /// Local x index of its first voxel: counted from the first voxel of the lattice.
+  std::int32_t Begin = 0;
+};
+
+/// Where a tetrahedron of the deformation mesh lies at rest: weight k < 3 of the voxel with local
+/// index v is Weights[k] + dot(Gradients[k], v - Origin). In doubles: the displacements of the
+/// nodes make small numbers of the large gradients of a thin tetrahedron.
+struct RestTetrahedron
+{
+  /// Local index of a voxel in the tetrahedron.
+  std::array<double, 3> Origin{ { 0.0, 0.0, 0.0 } };
+  std::array<double, 3> Weights{ { 0.0, 0.0, 0.0 } };
+  std::array<std::array<double, 3>, 3> Gradients{};
+  /// Index of the tetrahedron in the deformation mesh.
+  std::int32_t Tetrahedron = 0;
+};
+
+/// The static mapping where many voxels lie in each tetrahedron: runs instead of a link a voxel.
+struct VertexRuns
+{
+  std::vector<VertexRun> Runs;
+  /// The runs of row r = z * (voxels on y) + y, in local indices, are those from RowBegins[r] to
+  /// RowBegins[r + 1].
+  std::vector<std::uint32_t> RowBegins;
+  /// Those that hold voxels; several of them may be one tetrahedron of the mesh.
+  std::vector<RestTetrahedron> Tetrahedra;
+};
+
 /// The nodes of a tetrahedron of the deformation mesh.
 using Tetrahedron = std::array<std::int32_t, 4>;
 
@@ -176,10 +210,12 @@ public:
   /// Checks that a lattice, arrays and an output of these sizes fit into the memory of the device,
   /// before anything is allocated; throws an Error that names the bytes needed and available.
   /// outputExtent is that of the output; only types and components of the arrays are read. Counts
-  /// what the caller is about to allocate, too: the output, and the links of a mesh.
+  /// what the caller is about to allocate, too: the output, and the links or runs of a mesh.
+  /// runBytes: GetRunBytes (VertexRuns.h) where the mesh comes with runs, 0 where it comes with
+  /// links.
   void CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
     const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
-    bool field) const;
+    bool field, std::uint64_t runBytes = 0) const;
 
   /// bytesPerVoxel: a voxel's bytes in the widest array that will be set; it decides how a volume
   /// over the allocation limit is split.
@@ -199,6 +235,11 @@ public:
   /// A tetrahedral deformation mesh, with a link for each voxel.
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const VertexLink* links);
+  /// The same with runs of voxels. Displacements are as exact as by links but for rounding errors
+  /// of less than 1/1024 output voxel where they are under 8,192 voxels (VertexRuns.h has the
+  /// bound); equal displacements of all nodes move each voxel by exactly that.
+  void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const VertexRuns& runs);
   /// Displacements of the nodes, three floats each, in output voxels.
   void SetNodeDisplacements(const float* displacements);
 
@@ -216,7 +257,7 @@ private:
   /// The part of CheckMemory for the device; returns the bytes needed there.
   std::uint64_t CheckDeviceMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
     const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
-    bool field) const;
+    std::uint64_t mappingBytes) const;
 
   class Internals;
   std::unique_ptr<Internals> Impl;

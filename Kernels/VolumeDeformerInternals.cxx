@@ -96,6 +96,17 @@ cl::Buffer VolumeDeformer::Internals::SendBuffer(
   return buffer;
 }
 
+void VolumeDeformer::Internals::SendTetrahedra(
+  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes)
+{
+  this->NumberOfTetrahedra = numberOfTetrahedra;
+  this->Tetrahedra =
+    this->SendBuffer(tetrahedra, numberOfTetrahedra * sizeof(Tetrahedron), this->Tetrahedra);
+  this->NumberOfNodes = numberOfNodes;
+  this->NodesSet = false;
+  this->FieldVectors = cl::Buffer();
+}
+
 void VolumeDeformer::Internals::CheckRequest(const DeformRequest& request)
 {
   CheckExtent(request.OutputExtent, "output");
@@ -104,7 +115,7 @@ void VolumeDeformer::Internals::CheckRequest(const DeformRequest& request)
   {
     throw Error("No arrays are set: call SetArrays first.");
   }
-  if (!(mesh.HasLinks() && this->NodesSet) && !this->FieldVectors())
+  if (!(mesh.HasMesh() && this->NodesSet) && !this->FieldVectors())
   {
     throw Error("No deformation is set: call SetMesh and SetNodeDisplacements, or "
                 "SetDisplacementField, first.");
@@ -130,13 +141,30 @@ bool VolumeDeformer::Internals::UseLanes(Resampling method, const OutputSlab& ou
       (method == Resampling::Exact && this->Context->GetDevice().IsProcessor));
 }
 
+void VolumeDeformer::Internals::Evaluate(const cl::Program& program)
+{
+  if (this->Mesh->HasRuns() && this->Mesh->NeedsRecords())
+  {
+    this->MappingEvents.push_back(
+      this->Mesh->EvaluateTetrahedra(program, this->Tetrahedra, this->Nodes));
+  }
+}
+
 void VolumeDeformer::Internals::Map(
   const cl::Program& program, const LatticeChunk& chunk, const KernelParameters& p)
 {
-  const bool byMesh = this->Mesh->HasLinks();
-  cl::Kernel kernel(program, byMesh ? "MapByMesh" : "MapByField");
+  const bool byMesh = this->Mesh->HasMesh();
+  const bool byRuns = this->Mesh->HasRuns();
+  cl::Kernel kernel(program, byRuns ? "MapByRuns" : byMesh ? "MapByMesh" : "MapByField");
   cl_uint i = 0;
-  if (byMesh)
+  if (byRuns)
+  {
+    kernel.setArg(i++, chunk.Runs);
+    kernel.setArg(i++, chunk.RowBegins);
+    kernel.setArg(i++, chunk.State);
+    kernel.setArg(i++, this->Mesh->GetRecords());
+  }
+  else if (byMesh)
   {
     kernel.setArg(i++, chunk.Links);
     kernel.setArg(i++, chunk.State);
@@ -192,7 +220,8 @@ void VolumeDeformer::Internals::Run(const DeformRequest& request, OutputSlab& ou
                    *this->Context, this->Arrays, GetWinnerSize(this->Mesh->GetLattice()) == 8),
         lanes ? "ResampleByLanes" : "Resample")
     : cl::Kernel(GetPublishedProgram(*this->Context, this->Arrays), "ResamplePublished");
-  this->Mesh->UpdateState(mapping, this->Mesh->HasLinks() ? nullptr : &this->Field);
+  this->Mesh->UpdateState(mapping, this->Mesh->HasMesh() ? nullptr : &this->Field);
+  this->Evaluate(mapping);
   cl::Event previous;
   for (const LatticeChunk& chunk : this->Mesh->GetChunks())
   {

@@ -59,8 +59,13 @@ public:
 
   cl::Buffer SendBuffer(const void* data, std::size_t bytes, const cl::Buffer& previous);
 
+  void SendTetrahedra(
+    const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
+
   bool UseLanes(Resampling method, const OutputSlab& output) const;
   void CheckRequest(const DeformRequest& request);
+  /// Brings the records of the tetrahedra up to date where the mesh has runs.
+  void Evaluate(const cl::Program& program);
   void Map(const cl::Program& program, const LatticeChunk& chunk, const KernelParameters& p);
   void Launch(cl::Kernel& kernel, const KernelParameters& p, bool exact);
   void Run(const DeformRequest& request, OutputSlab& output, int pass);

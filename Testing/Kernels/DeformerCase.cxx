@@ -281,12 +281,11 @@ void Load(VolumeDeformer& deformer, const DeformerCase& deformerCase,
     deformer.SetDisplacementField(field);
     return;
   }
-  // The position of the voxel's node changes from link to link, so that all four weights count.
   std::vector<Tetrahedron> tetrahedra(size);
   std::vector<VertexLink> links(size);
   for (std::size_t voxel = 0; voxel < size; ++voxel)
   {
-    const int corner = static_cast<int>(voxel % 4);
+    const int corner = GetCorner(static_cast<std::int64_t>(voxel));
     for (int k = 0; k < 4; ++k)
     {
       tetrahedra[voxel][k] = static_cast<std::int32_t>((voxel + size + k - corner) % size);
@@ -298,7 +297,14 @@ void Load(VolumeDeformer& deformer, const DeformerCase& deformerCase,
       links[voxel].Weights[corner] = 1.0F;
     }
   }
-  deformer.SetMesh(tetrahedra.data(), size, size, links.data());
+  if (route == Route::Runs)
+  {
+    deformer.SetMesh(tetrahedra.data(), size, size, MakeRuns(deformerCase));
+  }
+  else
+  {
+    deformer.SetMesh(tetrahedra.data(), size, size, links.data());
+  }
   deformer.SetNodeDisplacements(displacements.data());
 }
 

@@ -26,8 +26,10 @@ enum class Route
 {
   /// A displacement field whose points are the voxels.
   Field,
-  /// A mesh with a node for each voxel.
-  Mesh
+  /// A mesh with a node for each voxel, and a link for each.
+  Mesh,
+  /// The same mesh with runs: of neighbours that move alike.
+  Runs
 };
 
 struct DeformerCase
@@ -53,6 +55,16 @@ DeformerCase MakeCase(const deformvolume::Extent& extent, const std::array<doubl
   const std::function<glm::dvec3(const glm::dvec3&)>& deformation, int margin = 1);
 
 reference::Result ResampleByReference(const DeformerCase& deformerCase);
+
+/// Which of the nodes of its tetrahedron a voxel is: it changes from voxel to voxel, so that all four
+/// weights count.
+inline int GetCorner(std::int64_t voxel)
+{
+  return static_cast<int>(voxel % 4);
+}
+
+/// The runs of Route::Runs: each begins with the voxel whose tetrahedron it takes.
+deformvolume::VertexRuns MakeRuns(const DeformerCase& deformerCase);
 
 /// Sets the lattice, the arrays, the masks and the deformation.
 void Load(deformvolume::VolumeDeformer& deformer, const DeformerCase& deformerCase,

@@ -48,6 +48,7 @@ TEST(Piecewise, JitteredVoxels)
 {
   Check(MakeCase({ { 0, 23, 0, 23, 0, 23 } }, NoScale, MakeJitter(1, 0.17)));
   Check(MakeCase({ { -5, 10, 3, 20, -30, -17 } }, NoScale, MakeJitter(2, 0.17)), Route::Mesh);
+  Check(MakeCase({ { -5, 10, 3, 20, -30, -17 } }, NoScale, MakeJitter(3, 0.17)), Route::Runs);
 }
 
 TEST(Piecewise, JitteredAndRotated)
@@ -270,6 +271,7 @@ TEST_P(Masks, UnlinkedVoxels)
     this->Case.Unlinked.push_back(this->Random() % 10 == 0);
   }
   Check(this->Case, Route::Mesh);
+  Check(this->Case, Route::Runs);
 }
 
 TEST_P(Masks, AllOfThem)
@@ -284,6 +286,7 @@ TEST_P(Masks, AllOfThem)
     this->Case.Active.push_back(this->Random() % 4 == 0 ? this->Random() % 256 : 31);
   }
   Check(this->Case, Route::Mesh);
+  Check(this->Case, Route::Runs);
 }
 
 INSTANTIATE_TEST_SUITE_P(Piecewise, Masks, testing::Range(0, 4));

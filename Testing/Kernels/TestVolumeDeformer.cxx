@@ -37,6 +37,18 @@ TEST(VolumeDeformer, TinyByMesh)
   Check(MakeCase({ { -1, 3, 0, 3, 0, 4 } }, NoScale, MakeJitter(1, 0.15)), Route::Mesh);
 }
 
+TEST(VolumeDeformer, TinyByRuns)
+{
+  auto jitter = MakeJitter(7, 0.15);
+  DeformerCase tiny = MakeCase({ { -1, 4, 0, 3, 0, 4 } }, NoScale,
+    [&jitter](const glm::dvec3& index) { return index.y < 2 ? index : jitter(index); });
+  tiny.Unlinked.assign(tiny.GetNumberOfVoxels(), false);
+  tiny.Unlinked[40] = true;
+  tiny.Blanked.assign(tiny.GetNumberOfVoxels(), 0);
+  tiny.Blanked[75] = 1;
+  Check(tiny, Route::Runs);
+}
+
 TEST(VolumeDeformer, TinyByField)
 {
   Check(MakeCase({ { 0, 3, 0, 4, 1, 5 } }, NoScale, MakeJitter(2, 0.15)), Route::Field);

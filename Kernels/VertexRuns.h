@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeVertexRuns_h
+#define DeformVolumeVertexRuns_h
+
+#include "VolumeDeformer.h"
+
+#include <cstdint>
+
+namespace deformvolume
+{
+
+// How exact displacements by runs are. The device rounds an affine function to floats and evaluates
+// it in floats: Displacement + ((AlongY y + AlongZ z) + AlongX x), with x, y and z counted from the
+// origin, which lies in the tetrahedron, so that displacements there and at the voxel are at most
+// the largest one D of its nodes. Four roundings to 24 bits of the first kind (of the coefficient,
+// the product and two sums) touch terms that sum up to S = |AlongX x| + |AlongY y| + |AlongZ z|,
+// and two (of Displacement and the last sum) such of at most D:
+//   error <= 2^-24 (4 S + 2 D), or for the latter two half a unit in the last place, less.
+// That is less than 1/1024 output voxel for displacements under 8,192 voxels as long as S is under
+// 2,048, and less than 1/512 up to the limit of 16,383. S is bounded by what the tetrahedron's
+// nodes move against each other times the greatest value of the sum of |gradient component| times
+// extent, which LargestRunReach limits.
+
+/// A tetrahedron has one record for all its runs where, for each of its weights, the sum over the
+/// axes of the size of the weight's derivative times the extent of the tetrahedron within the
+/// volume is at most this. Else it is a sliver, and each of its runs gets a record with an origin
+/// of its own: along a run weights change by 1 at most.
+constexpr double LargestRunReach = 32.0;
+
+/// Bytes of a mapping by so many runs, rows and records, where the host holds it or the device
+/// does.
+std::uint64_t GetRunBytes(std::uint64_t runs, std::uint64_t rows, std::uint64_t records);
+std::uint64_t GetBytes(const VertexRuns& runs);
+
+/// Throws Error unless there is a row of runs for each row of voxels, begins ascend from 0 within
+/// the row, and runs and records name records and tetrahedra that are there.
+void CheckRuns(const VertexRuns& runs, const Lattice& lattice, std::size_t numberOfTetrahedra);
+
+} // namespace deformvolume
+
+#endif
