@@ -22,12 +22,14 @@ set(helpers
   LinkExtrapolation
   MappingCache
   OutputExtent
+  RunBuilder
   StaticMapping
   TetGenProcess
   TetrahedronClipping
   TetrahedronTiles
   VectorArray
   VolumeArrays
+  VoxelLinker
   vtkDeformVolumeFilterInternals)
 
 list(TRANSFORM classes PREPEND "Filters/")

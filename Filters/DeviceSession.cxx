@@ -38,7 +38,7 @@ std::string DeviceSession::SetDevice(
 }
 
 void DeviceSession::CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
-  const Extent& outputExtent, const Deformation& deformation) const
+  const Extent& outputExtent, const Deformation& deformation, std::uint64_t runBytes) const
 {
   const bool field = deformation.IsField();
   std::size_t numberOfNodes = deformation.GetRestPoints().size();
@@ -51,7 +51,7 @@ void DeviceSession::CheckMemory(const Lattice& lattice, const std::vector<Volume
     }
   }
   this->Deformer.CheckMemory(lattice, arrays, outputExtent, numberOfNodes,
-    field ? 0 : deformation.GetTetrahedra().size(), field);
+    field ? 0 : deformation.GetTetrahedra().size(), field, runBytes);
 }
 
 void DeviceSession::SetVolume(const Lattice& lattice, vtkImageData* volume,
@@ -128,15 +128,23 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
       mapping.Update(deformation, volume, extrapolate, progress);
       Transfer transfer(this);
       const std::vector<Tetrahedron>& tetrahedra = deformation.GetTetrahedra();
-      this->Deformer.SetMesh(tetrahedra.data(), tetrahedra.size(),
-        deformation.GetRestPoints().size(), mapping.GetLinks().data());
+      const std::size_t nodes = deformation.GetRestPoints().size();
+      if (mapping.IsByRuns())
+      {
+        this->Deformer.SetMesh(tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetRuns());
+      }
+      else
+      {
+        this->Deformer.SetMesh(
+          tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetLinks().data());
+      }
       transfer.End();
       this->SentMapping = mapping.GetVersion();
     }
     if (!extrapolate)
     {
       // Only the bounds of an extrapolated deformation need them again.
-      mapping.ReleaseLinks();
+      mapping.ReleaseVoxels();
     }
     if (!meshIsSent || this->SentVectors != vectors)
     {

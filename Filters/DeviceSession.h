@@ -27,7 +27,7 @@ public:
 
   /// See VolumeDeformer.
   void CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
-    const Extent& outputExtent, const Deformation& deformation) const;
+    const Extent& outputExtent, const Deformation& deformation, std::uint64_t runBytes) const;
 
   void SetVolume(const Lattice& lattice, vtkImageData* volume,
     const std::vector<SourceArray>& arrays, double background);

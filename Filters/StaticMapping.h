@@ -2,23 +2,42 @@
 #ifndef DeformVolumeStaticMapping_h
 #define DeformVolumeStaticMapping_h
 
-#include "VolumeDeformer.h" // for Extent, Tetrahedron, VertexLink
+#include "VolumeDeformer.h" // for Extent, Tetrahedron, VertexLink, VertexRuns
 
 #include <glm/vec3.hpp>
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace deformvolume
 {
 
-/// The static part of the deformation mapping: a link of each voxel of the volume into the
-/// tetrahedra of the deformation mesh at rest.
+class VoxelLinker;
+
+/// Runs are made where they are so long on average, in voxels: below, finding the run of a voxel
+/// costs what reading less memory gains.
+constexpr double LeastMeanRunLength = 3.0;
+
+enum class MappingForm
+{
+  /// Runs where they are long enough (LeastMeanRunLength, by a sample of the volume that is always
+  /// the same) and need less memory than links, and voxels are not extrapolated; else links.
+  Automatic,
+  Links,
+  /// Not where voxels are extrapolated, which needs to see all of them at once.
+  Runs
+};
+
+/// The static part of the deformation mapping: where each voxel of the volume lies in the
+/// tetrahedra of the deformation mesh at rest. In one of two forms.
 struct StaticMapping
 {
-  /// One link a voxel, x varying fastest.
+  /// One link a voxel, x varying fastest; or none.
   std::vector<VertexLink> Links;
+  /// Runs of voxels; or none.
+  VertexRuns Runs;
   /// Voxels inside the mesh (extrapolated ones do not count).
   std::int64_t NumberOfInnerVoxels = 0;
   /// Tetrahedra without volume; they are skipped.
@@ -29,17 +48,47 @@ struct StaticMapping
 /// parallel over slabs of voxels, with exact integer arithmetic on positions rounded to 1/256
 /// voxel: no voxel inside the mesh is missed, those on its surface included, and the result does
 /// not depend on the number of threads. Where tetrahedra overlap the one with the lowest index
-/// gets the voxel.
+/// gets the voxel. Both forms give a voxel to the same tetrahedron.
 ///
 /// voxels: structured indices of the volume. restPoints: the nodes at rest in continuous indices
 /// of the volume. extrapolate: voxels outside the mesh are linked to the tetrahedron of the
 /// nearest voxel (in continuous indices times spacing, hence world distance) inside it, with
-/// weights outside 0 to 1; otherwise their link is -1. progress: as in DeformRequest; throws
-/// Aborted where it returns false. Throws Error where a tetrahedron has a node more than 2^31
-/// voxels away from index 0.
+/// weights outside 0 to 1; otherwise they have none.
+class StaticMappingBuilder
+{
+public:
+  /// Decides on the form. restPoints and tetrahedra must live and stay the same until Build
+  /// returns. Throws Error where a tetrahedron has a node more than 2^31 voxels away from index 0,
+  /// and where runs are demanded of voxels that are extrapolated.
+  StaticMappingBuilder(const Extent& voxels, const glm::dvec3& spacing,
+    const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
+    bool extrapolate, MappingForm form = MappingForm::Automatic);
+  ~StaticMappingBuilder();
+  StaticMappingBuilder(const StaticMappingBuilder&) = delete;
+  StaticMappingBuilder& operator=(const StaticMappingBuilder&) = delete;
+
+  /// Bytes of the runs, about; 0 for links.
+  std::uint64_t GetRunBytes() const { return this->RunBytes; }
+
+  /// progress: as in DeformRequest; throws Aborted where it returns false.
+  StaticMapping Build(const std::function<bool(double)>& progress = {}) const;
+
+private:
+  void BuildLinks(const std::function<void(double)>& report, StaticMapping& mapping) const;
+
+  const Extent Voxels;
+  const glm::dvec3 Spacing;
+  const std::vector<glm::dvec3>& RestPoints;
+  const std::vector<Tetrahedron>& Tetrahedra;
+  const bool Extrapolate;
+  std::uint64_t RunBytes = 0;
+  std::unique_ptr<VoxelLinker> Linker; // null for a volume without voxels
+};
+
+/// Build by a StaticMappingBuilder.
 StaticMapping BuildStaticMapping(const Extent& voxels, const glm::dvec3& spacing,
   const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
-  bool extrapolate, const std::function<bool(double)>& progress = {});
+  bool extrapolate, MappingForm form, const std::function<bool(double)>& progress = {});
 
 } // namespace deformvolume
 

@@ -25,6 +25,8 @@ public:
     const std::vector<Tetrahedron>& tetrahedra, double margin);
 
   std::int64_t GetNumberOfTiles() const { return this->Count[0] * this->Count[1]; }
+  /// Tiles on y (0) and z (1); tile = z * (tiles on y) + y.
+  std::int64_t GetNumberOfTiles(int axis) const { return this->Count[axis]; }
   VoxelBox GetVoxels(std::int64_t tile) const;
 
   /// The tetrahedra of a tile in ascending order.
@@ -39,6 +41,9 @@ public:
   {
     return { this->Bins.data() + this->Offsets[tile], this->Bins.data() + this->Offsets[tile + 1] };
   }
+
+  /// Tetrahedra of all tiles; those in several are counted several times.
+  std::int64_t GetNumberOfEntries() const { return static_cast<std::int64_t>(this->Bins.size()); }
 
   /// Tetrahedra without volume, wherever they are. They are listed too.
   std::int64_t GetNumberOfFlatTetrahedra() const { return this->FlatTetrahedra; }

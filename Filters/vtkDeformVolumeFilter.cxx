@@ -350,7 +350,8 @@ int vtkDeformVolumeFilter::RequestData(
   this->DeviceInUse = device.SetDevice(this->Device, static_cast<std::uint64_t>(this->MemoryLimit),
     static_cast<std::size_t>(this->WorkGroupSize));
   device.CheckMemory(lattice, deformvolume::Describe(arrays, this->BackgroundValue),
-    request.OutputExtent, deformation);
+    request.OutputExtent, deformation,
+    this->Internals->Mapping.GetRunBytes(deformation, geometry, extrapolate));
 
   device.SetVolume(lattice, volume, arrays, this->BackgroundValue);
   device.SetDeformation(deformation, this->Internals->Mapping, geometry, extrapolate,

@@ -179,7 +179,8 @@ public:
    * What happens to voxels of the volume outside the deformation mesh or field: they are discarded,
    * or they follow the nearest tetrahedron, whose affine map is extended (it is the tetrahedron
    * of the nearest voxel inside the mesh; with a field, the displacement of the nearest point of
-   * the field). Default: DISCARD.
+   * the field). The latter needs 16 bytes a voxel for the mapping whatever the mesh, while the
+   * former makes do with less where tetrahedra are large. Default: DISCARD.
    */
   vtkSetClampMacro(OutsideMode, int, DISCARD, EXTRAPOLATE);
   vtkGetMacro(OutsideMode, int);

@@ -108,7 +108,8 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(
     // The links are made before any output is asked for: what they need is checked here.
     this->Device.SetDevice(this->Self->Device, static_cast<std::uint64_t>(this->Self->MemoryLimit),
       static_cast<std::size_t>(this->Self->WorkGroupSize));
-    this->Device.CheckMemory(lattice, {}, { { 0, -1, 0, -1, 0, -1 } }, this->Deformation);
+    this->Device.CheckMemory(lattice, {}, { { 0, -1, 0, -1, 0, -1 } }, this->Deformation,
+      this->Mapping.GetRunBytes(this->Deformation, volume, true));
     this->Mapping.Update(this->Deformation, volume, true, {});
     return deformvolume::ComputeDeformedBounds(lattice, this->Mapping.GetLinks(),
       this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());

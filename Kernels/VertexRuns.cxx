@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VertexRuns.h"
 
-#include "KernelParameters.h"
-
-#include <algorithm>
-#include <limits>
 #include <string>
 
 namespace deformvolume
 {
 namespace
 {
-
-// The kernels form differences of indices in floats.
-constexpr std::int64_t LargestSize = 1 << 24;
 
 void CheckRecords(const VertexRuns& runs, std::size_t numberOfTetrahedra)
 {
@@ -60,26 +53,13 @@ void CheckRow(const VertexRuns& runs, std::size_t row, std::int64_t size)
 
 } // namespace
 
-std::uint64_t GetRunBytes(std::uint64_t runs, std::uint64_t rows, std::uint64_t records)
-{
-  return runs * sizeof(VertexRun) + (rows + 1) * sizeof(std::uint32_t) +
-    records * (sizeof(RestTetrahedron) + sizeof(TetrahedronRecord));
-}
-
-std::uint64_t GetBytes(const VertexRuns& runs)
-{
-  return runs.RowBegins.empty()
-    ? 0
-    : GetRunBytes(runs.Runs.size(), runs.RowBegins.size() - 1, runs.Tetrahedra.size());
-}
-
 void CheckRuns(const VertexRuns& runs, const Lattice& lattice, std::size_t numberOfTetrahedra)
 {
   const Extent& extent = lattice.VertexExtent;
   const auto rows = static_cast<std::size_t>(GetSize(extent, 1) * GetSize(extent, 2));
   for (int axis = 0; axis < 3; ++axis)
   {
-    if (GetSize(extent, axis) > LargestSize)
+    if (GetSize(extent, axis) > LargestRunSize)
     {
       throw Error("A volume of more than 16,777,216 voxels on an axis cannot be mapped by runs: "
                   "give a link for each voxel.");

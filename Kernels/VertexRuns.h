@@ -2,6 +2,7 @@
 #ifndef DeformVolumeVertexRuns_h
 #define DeformVolumeVertexRuns_h
 
+#include "KernelParameters.h"
 #include "VolumeDeformer.h"
 
 #include <cstdint>
@@ -21,16 +22,27 @@ namespace deformvolume
 // nodes move against each other times the greatest value of the sum of |gradient component| times
 // extent, which LargestRunReach limits.
 
-/// A tetrahedron has one record for all its runs where, for each of its weights, the sum over the
-/// axes of the size of the weight's derivative times the extent of the tetrahedron within the
-/// volume is at most this. Else it is a sliver, and each of its runs gets a record with an origin
-/// of its own: along a run weights change by 1 at most.
+/// A tetrahedron has one record for all its runs where, for each of its first three weights, the
+/// sum over the axes of the size of the weight's derivative times the extent of the tetrahedron
+/// within the volume is at most this. Else it is a sliver, and each of its runs gets a record with
+/// an origin of its own: along a run weights change by 1 at most.
 constexpr double LargestRunReach = 32.0;
 
-/// Bytes of a mapping by so many runs, rows and records, where the host holds it or the device
-/// does.
-std::uint64_t GetRunBytes(std::uint64_t runs, std::uint64_t rows, std::uint64_t records);
-std::uint64_t GetBytes(const VertexRuns& runs);
+/// The kernels form differences of indices in floats: no more voxels on an axis.
+constexpr std::int64_t LargestRunSize = 1 << 24;
+
+/// Bytes of a mapping by so many runs, rows and records, on the device; the host has about as many.
+inline std::uint64_t GetRunBytes(std::uint64_t runs, std::uint64_t rows, std::uint64_t records)
+{
+  return runs * sizeof(VertexRun) + (rows + 1) * sizeof(std::uint32_t) +
+    records * (sizeof(RestTetrahedron) + sizeof(TetrahedronRecord));
+}
+inline std::uint64_t GetBytes(const VertexRuns& runs)
+{
+  return runs.RowBegins.empty()
+    ? 0
+    : GetRunBytes(runs.Runs.size(), runs.RowBegins.size() - 1, runs.Tetrahedra.size());
+}
 
 /// Throws Error unless there is a row of runs for each row of voxels, begins ascend from 0 within
 /// the row, and runs and records name records and tetrahedra that are there.

@@ -206,8 +206,8 @@ void TestLinks()
   const std::vector<float> displacements = MakeVectors(mesh.Points.size(), 5.0, random);
   for (const bool extrapolate : { false, true })
   {
-    const StaticMapping mapping =
-      BuildStaticMapping(extent, glm::dvec3(1.0), mesh.Points, mesh.Tetrahedra, extrapolate);
+    const StaticMapping mapping = BuildStaticMapping(
+      extent, glm::dvec3(1.0), mesh.Points, mesh.Tetrahedra, extrapolate, MappingForm::Links);
     IndexBounds expected;
     std::size_t i = 0;
     for (int z = extent[4]; z <= extent[5]; ++z)

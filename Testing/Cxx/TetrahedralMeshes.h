@@ -6,10 +6,12 @@
 #include "FiveTetrahedra.h"
 #include "VolumeDeformer.h"
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <iostream>
 #include <random>
 #include <vector>
@@ -31,6 +33,16 @@ inline int& Failures()
 {
   static int failures = 0;
   return failures;
+}
+
+/// What a test returns.
+inline int GetResult()
+{
+  if (Failures() > 0)
+  {
+    std::cerr << Failures() << " checks failed\n";
+  }
+  return Failures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 struct Mesh
@@ -114,6 +126,33 @@ inline Mesh MakeSoup(
     mesh.Tetrahedra.push_back({ { node(random), node(random), node(random), node(random) } });
   }
   return mesh;
+}
+
+/// The structured indices of a voxel.
+inline glm::ivec3 GetVoxel(const deformvolume::Extent& voxels, std::int64_t index)
+{
+  const std::int64_t x = deformvolume::GetSize(voxels, 0);
+  const std::int64_t y = deformvolume::GetSize(voxels, 1);
+  return glm::ivec3(voxels[0] + static_cast<int>(index % x),
+    voxels[2] + static_cast<int>(index / x % y), voxels[4] + static_cast<int>(index / (x * y)));
+}
+
+/// The weights of a link must give back the voxel.
+inline void CheckWeights(
+  const Mesh& mesh, const deformvolume::VertexLink& link, const glm::dvec3& voxel)
+{
+  const deformvolume::Tetrahedron& nodes = mesh.Tetrahedra[link.Tetrahedron];
+  glm::dvec3 sum = mesh.Points[nodes[3]];
+  double rounding = 1e-9;
+  for (int node = 0; node < 3; ++node)
+  {
+    const glm::dvec3 side = mesh.Points[nodes[node]] - mesh.Points[nodes[3]];
+    const double weight = link.Weights[node];
+    sum += weight * side;
+    // A float is rounded by half of its last bit.
+    rounding += std::ldexp(std::abs(weight), -24) * glm::length(side);
+  }
+  CHECK(glm::length(sum - voxel) <= 1.01 * rounding);
 }
 
 } // namespace tetrahedralMeshes

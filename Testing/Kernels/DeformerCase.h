@@ -56,8 +56,8 @@ DeformerCase MakeCase(const deformvolume::Extent& extent, const std::array<doubl
 
 reference::Result ResampleByReference(const DeformerCase& deformerCase);
 
-/// Which of the nodes of its tetrahedron a voxel is: it changes from voxel to voxel, so that all four
-/// weights count.
+/// Which of the nodes of its tetrahedron a voxel is: it changes from voxel to voxel, so that all
+/// four weights count.
 inline int GetCorner(std::int64_t voxel)
 {
   return static_cast<int>(voxel % 4);

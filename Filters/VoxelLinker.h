@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeVoxelLinker_h
+#define DeformVolumeVoxelLinker_h
+
+#include "BarycentricMap.h"
+#include "TetrahedronRaster.h"
+#include "TetrahedronTiles.h"
+#include "VolumeDeformer.h" // for Extent, Tetrahedron, VertexLink
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// What is to be known of each voxel of a box: a VertexLink, or the tetrahedron alone, an
+/// std::int32_t that is -1 outside the mesh.
+template <typename Element>
+struct VoxelTarget
+{
+  /// The first voxel's element; x varies fastest.
+  Element* Data = nullptr;
+  /// Structured index of the first voxel, and voxels on x and y.
+  std::int64_t First[3] = { 0, 0, 0 };
+  std::int64_t Size[2] = { 0, 0 };
+
+  Element& At(std::int64_t x, std::int64_t y, std::int64_t z) const
+  {
+    return this
+      ->Data[((z - this->First[2]) * this->Size[1] + (y - this->First[1])) * this->Size[0] +
+        (x - this->First[0])];
+  }
+};
+
+/// Finds the tetrahedra of voxels, tile by tile. Calls for several tiles may run at a time. What
+/// it is made of must outlive it.
+class VoxelLinker
+{
+public:
+  /// Throws Error where a tetrahedron has a node more than 2^31 voxels away from index 0.
+  VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
+    const std::vector<Tetrahedron>& tetrahedra);
+
+  const TetrahedronTiles& GetTiles() const { return this->Tiles; }
+
+  /// Fills the elements of the voxels of a tile, which are outside the mesh so far; returns how
+  /// many have a tetrahedron. Element: VertexLink or std::int32_t.
+  template <typename Element>
+  std::int64_t LinkTile(std::int64_t tile, const VoxelTarget<Element>& target) const;
+
+private:
+  using Nodes = std::array<RasterPoint, 4>;
+
+  Nodes GetNodes(const Tetrahedron& tetrahedron) const;
+  template <typename Integer, typename Element>
+  std::int64_t LinkTetrahedron(std::int32_t id, const Nodes& nodes, const VoxelBox& box,
+    const VoxelTarget<Element>& target, std::vector<glm::i64vec3>& doubtful) const;
+  template <typename Element>
+  bool LinkDoubtful(std::int64_t tile, const glm::i64vec3& voxel, Element& element) const;
+
+  const std::vector<glm::dvec3>& RestPoints;
+  const std::vector<Tetrahedron>& Tetrahedra;
+  const TetrahedronTiles Tiles;
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The static mapping by runs against that by links, and the choice between the two.
+#include "StaticMapping.h"
+
+#include "TetrahedralMeshes.h"
+#include "VertexRuns.h"
+
+#include <vtkSMPTools.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <string>
+
+using namespace deformvolume;
+using namespace tetrahedralMeshes;
+
+namespace
+{
+
+const glm::dvec3 UnitSpacing(1.0);
+
+StaticMapping Build(const Mesh& mesh, const Extent& voxels, MappingForm form)
+{
+  return BuildStaticMapping(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, form);
+}
+
+bool IsRefused(const std::function<void()>& function, const std::string& words)
+{
+  try
+  {
+    function();
+  }
+  catch (const Error& error)
+  {
+    return std::string(error.what()).find(words) != std::string::npos;
+  }
+  return false;
+}
+
+// The sum that decides whether a tetrahedron is a sliver, from the definition in VertexRuns.h.
+double GetReach(const RestTetrahedron& rest, const Mesh& mesh, const Extent& voxels)
+{
+  double reach = 0.0;
+  for (int k = 0; k < 3; ++k)
+  {
+    double sum = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      double min = voxels[2 * axis + 1];
+      double max = voxels[2 * axis];
+      for (const std::int32_t node : mesh.Tetrahedra[rest.Tetrahedron])
+      {
+        min = std::min(min, mesh.Points[node][axis]);
+        max = std::max(max, mesh.Points[node][axis]);
+      }
+      sum += std::abs(rest.Gradients[k][axis]) *
+        (std::min<double>(max, voxels[2 * axis + 1]) - std::max<double>(min, voxels[2 * axis]));
+    }
+    reach = std::max(reach, sum);
+  }
+  return reach;
+}
+
+// Every voxel has the tetrahedron of its link, and its weights as far as floats go.
+void Compare(const Mesh& mesh, const Extent& voxels)
+{
+  const StaticMapping byLinks = Build(mesh, voxels, MappingForm::Links);
+  const StaticMapping byRuns = Build(mesh, voxels, MappingForm::Runs);
+  CHECK(byLinks.Runs.RowBegins.empty() && byRuns.Links.empty());
+  CHECK(byRuns.NumberOfInnerVoxels == byLinks.NumberOfInnerVoxels);
+  CHECK(byRuns.NumberOfFlatTetrahedra == byLinks.NumberOfFlatTetrahedra);
+  const VertexRuns& runs = byRuns.Runs;
+  Lattice lattice;
+  lattice.VertexExtent = voxels;
+  CheckRuns(runs, lattice, mesh.Tetrahedra.size());
+  const std::int64_t size = GetSize(voxels, 0);
+  std::set<std::int32_t> used;
+  for (std::size_t row = 0; row + 1 < runs.RowBegins.size(); ++row)
+  {
+    for (std::uint32_t i = runs.RowBegins[row]; i < runs.RowBegins[row + 1]; ++i)
+    {
+      const bool last = i + 1 == runs.RowBegins[row + 1];
+      const std::int64_t end = last ? size : runs.Runs[i + 1].Begin;
+      const std::int32_t record = runs.Runs[i].Tetrahedron;
+      const RestTetrahedron rest = record < 0 ? RestTetrahedron() : runs.Tetrahedra[record];
+      for (std::int64_t x = runs.Runs[i].Begin; x < end; ++x)
+      {
+        const std::int64_t voxel = static_cast<std::int64_t>(row) * size + x;
+        const VertexLink& link = byLinks.Links[voxel];
+        CHECK(link.Tetrahedron == (record < 0 ? -1 : rest.Tetrahedron));
+        const glm::ivec3 local =
+          GetVoxel(voxels, voxel) - glm::ivec3(voxels[0], voxels[2], voxels[4]);
+        for (int k = 0; k < 3 && record >= 0; ++k)
+        {
+          double weight = rest.Weights[k];
+          double magnitude = std::abs(weight);
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            const double term = rest.Gradients[k][axis] * (local[axis] - rest.Origin[axis]);
+            weight += term;
+            magnitude += std::abs(term);
+          }
+          // Half a unit of the float, and what the sums in double cost.
+          CHECK(std::abs(weight - link.Weights[k]) <=
+            std::ldexp(std::abs(weight), -24) + 1e-12 * magnitude + 1e-9);
+        }
+      }
+      // Neighbouring runs are of different tetrahedra, or else they would be one.
+      CHECK(last || record < 0 || runs.Runs[i + 1].Tetrahedron < 0 ||
+        runs.Tetrahedra[runs.Runs[i + 1].Tetrahedron].Tetrahedron != rest.Tetrahedron);
+      CHECK(last || record >= 0 || runs.Runs[i + 1].Tetrahedron >= 0);
+      if (record >= 0)
+      {
+        const bool sliver = GetReach(rest, mesh, voxels) > LargestRunReach;
+        const bool first = used.insert(record).second;
+        CHECK(!sliver || first);
+        // Records come in the order of the voxels, and lie where they are first used.
+        CHECK(!first || record + 1 == static_cast<std::int32_t>(used.size()));
+        CHECK(!first || rest.Origin[0] == runs.Runs[i].Begin);
+      }
+    }
+  }
+  CHECK(used.size() == runs.Tetrahedra.size());
+  std::set<std::int32_t> owners;
+  for (const RestTetrahedron& rest : runs.Tetrahedra)
+  {
+    CHECK(owners.insert(rest.Tetrahedron).second || GetReach(rest, mesh, voxels) > LargestRunReach);
+  }
+}
+
+void TestMisuse()
+{
+  std::mt19937 random(1);
+  const Mesh mesh = MakeLattice({ 3, 3, 3 }, glm::dvec3(0.0), glm::dvec3(9.0), 0.0, 0.0, random);
+  const Extent voxels{ { 0, 9, 0, 9, 0, 9 } };
+  CHECK(IsRefused(
+    [&]() {
+      BuildStaticMapping(
+        voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true, MappingForm::Runs);
+    },
+    "extrapolated"));
+  CHECK(IsRefused(
+    [&]()
+    {
+      Mesh far = mesh;
+      far.Points[13].y = 1e10;
+      Build(far, voxels, MappingForm::Automatic);
+    },
+    "units"));
+  for (const MappingForm form : { MappingForm::Automatic, MappingForm::Runs })
+  {
+    const StaticMapping nothing = Build(mesh, Extent{ { 0, -1, 0, 4, 0, 4 } }, form);
+    CHECK(nothing.Links.empty() && nothing.Runs.Runs.empty());
+    for (const Mesh& apart :
+      { Mesh(), MakeLattice({ 2, 2, 2 }, glm::dvec3(20.0), glm::dvec3(30.0), 0.0, 0.0, random) })
+    {
+      const StaticMapping outside = Build(apart, voxels, form);
+      CHECK(outside.NumberOfInnerVoxels == 0 && outside.Links.empty());
+      CHECK(outside.Runs.Runs.size() == 100 && outside.Runs.Tetrahedra.empty());
+      CHECK(std::all_of(outside.Runs.Runs.begin(), outside.Runs.Runs.end(),
+        [](const VertexRun& run) { return run.Tetrahedron == -1 && run.Begin == 0; }));
+    }
+  }
+  double last = -1.0;
+  bool ordered = true;
+  const auto build = [&](const std::function<bool(double)>& progress)
+  {
+    return BuildStaticMapping(
+      voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, MappingForm::Runs, progress);
+  };
+  build(
+    [&](double done)
+    {
+      ordered = ordered && done >= last && done <= 1.0;
+      last = done;
+      return true;
+    });
+  CHECK(ordered && std::abs(last - 1.0) < 1e-12);
+  for (const double end : { 0.0, 0.3, 0.9 })
+  {
+    bool aborted = false;
+    try
+    {
+      build([&](double done) { return done < end; });
+    }
+    catch (const Aborted&)
+    {
+      aborted = true;
+    }
+    CHECK(aborted);
+  }
+}
+
+void TestAgainstLinks()
+{
+  std::mt19937 random(2);
+  const double unit = 1.0 / 256.0;
+  const Extent voxels{ { -5, 12, 3, 21, -20, -2 } };
+  const glm::dvec3 min(-5.0, 3.0, -20.0);
+  const glm::dvec3 max(12.0, 21.0, -2.0);
+  for (const double jitter : { 0.0, 0.2, 0.45 })
+  {
+    Compare(MakeLattice({ 5, 4, 6 }, min, max, jitter, unit, random), voxels);
+    Compare(MakeLattice({ 2, 3, 2 }, min, max, jitter, 0.0, random), voxels);
+  }
+  // Rows outside, holes, one voxel wide runs; nodes on voxels, folded, flat, overlapping.
+  Compare(MakeLattice({ 4, 5, 4 }, min - 7.3, max + 5.1, 0.3, unit, random), voxels);
+  Compare(MakeLattice({ 4, 5, 4 }, min + 2.6, max - 4.9, 0.3, 0.0, random), voxels);
+  Compare(MakeLattice({ 9, 9, 9 }, min + 5.5, min + 8.0, 0.3, 0.0, random), voxels);
+  Compare(MakeLattice({ 6, 6, 6 }, min, max, 1.4, 1.0, random), voxels);
+  Compare(MakeSoup(40, 120, -8.0, 24.0, 1.0, random), voxels);
+  Compare(MakeSoup(200, 60, -30.0, 30.0, 0.0, random), voxels);
+  Compare(MakeSoup(200, 80, -3100.0, 3100.0, unit, random), voxels);
+  Compare(MakeSoup(200, 80, -2.0e9, 2.0e9, 1.0, random), voxels);
+  // Several tiles on y and z, the last ones of each narrower; a row of tiles, and a column.
+  for (const Extent& many : { Extent{ { 0, 4, 0, 40, 0, 37 } }, Extent{ { 0, 70, 5, 1300, 7, 8 } },
+         Extent{ { -3, 9, -1, 0, -500, 600 } } })
+  {
+    const glm::dvec3 first(many[0], many[2], many[4]);
+    const glm::dvec3 end(many[1], many[3], many[5]);
+    Compare(MakeLattice({ 3, 6, 5 }, first, end, 0.4, 0.0, random), many);
+    Compare(MakeLattice({ 4, 3, 3 }, first + 0.3, end - 1.2, 0.4, 0.0, random), many);
+  }
+}
+
+// A layer of tetrahedra between two planes that are close together: each run has its own origin.
+void TestSlivers()
+{
+  const Extent voxels{ { 0, 40, 0, 30, 0, 20 } };
+  for (const double height : { 0.1, 0.03 })
+  {
+    std::mt19937 random(3);
+    Mesh mesh =
+      MakeLattice({ 3, 3, 2 }, glm::dvec3(0.0), glm::dvec3(40.0, 30.0, height), 0.0, 0.0, random);
+    for (glm::dvec3& point : mesh.Points)
+    {
+      point.z += 0.25 * point.x + 0.2 * point.y; // through some voxels
+    }
+    Compare(mesh, voxels);
+    const StaticMapping mapping = Build(mesh, voxels, MappingForm::Runs);
+    CHECK(mapping.NumberOfInnerVoxels > 0);
+    CHECK(mapping.Runs.Tetrahedra.size() > mesh.Tetrahedra.size());
+    const auto inner = std::count_if(mapping.Runs.Runs.begin(), mapping.Runs.Runs.end(),
+      [](const VertexRun& run) { return run.Tetrahedron >= 0; });
+    CHECK(mapping.Runs.Tetrahedra.size() == static_cast<std::size_t>(inner));
+  }
+}
+
+void TestChoice()
+{
+  std::mt19937 random(4);
+  const Extent voxels{ { 0, 95, 0, 79, 0, 69 } };
+  const glm::dvec3 max(95.0, 79.0, 69.0);
+  for (const int nodes : { 3, 7, 13, 20, 31 })
+  {
+    const Mesh mesh = MakeLattice(glm::ivec3(nodes), glm::dvec3(0.0), max, 0.2, 0.0, random);
+    const StaticMapping runs = Build(mesh, voxels, MappingForm::Runs);
+    const double mean =
+      static_cast<double>(GetNumberOfPoints(voxels)) / static_cast<double>(runs.Runs.Runs.size());
+    const StaticMappingBuilder builder(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false);
+    std::cout << nodes << " nodes an axis: mean run length " << mean << ", "
+              << static_cast<double>(GetBytes(runs.Runs)) / GetNumberOfPoints(voxels)
+              << " bytes a voxel, estimated "
+              << static_cast<double>(builder.GetRunBytes()) / GetNumberOfPoints(voxels) << "\n";
+    if (std::abs(mean - LeastMeanRunLength) > 0.3)
+    {
+      CHECK((builder.GetRunBytes() > 0) == (mean > LeastMeanRunLength));
+    }
+    const StaticMapping chosen = builder.Build();
+    CHECK(chosen.Links.empty() == (builder.GetRunBytes() > 0));
+    CHECK(chosen.Runs.Runs.empty() == (builder.GetRunBytes() == 0));
+    if (builder.GetRunBytes() > 0)
+    {
+      const double ratio = static_cast<double>(builder.GetRunBytes()) / GetBytes(runs.Runs);
+      CHECK(ratio > 0.8 && ratio < 1.25);
+      CHECK(GetBytes(runs.Runs) < 6 * static_cast<std::uint64_t>(GetNumberOfPoints(voxels)));
+    }
+    // Extrapolation has links whatever the mesh.
+    const StaticMapping extrapolated = BuildStaticMapping(
+      voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true, MappingForm::Automatic);
+    CHECK(extrapolated.Runs.Runs.empty() && !extrapolated.Links.empty());
+  }
+}
+
+void TestThreads()
+{
+  std::mt19937 random(6);
+  const Extent voxels{ { 0, 40, -50, 9, 5, 70 } };
+  const Mesh mesh = MakeSoup(400, 100, -20.0, 60.0, 0.0, random);
+  StaticMapping expected;
+  std::uint64_t bytes = 0;
+  for (const int threads : { 1, 2, 4 })
+  {
+    vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads, "STDThread", false },
+      [&]()
+      {
+        const StaticMapping mapping = Build(mesh, voxels, MappingForm::Runs);
+        const StaticMappingBuilder builder(
+          voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, MappingForm::Runs);
+        if (threads == 1)
+        {
+          expected = mapping;
+          bytes = builder.GetRunBytes();
+        }
+        const VertexRuns& a = mapping.Runs;
+        const VertexRuns& b = expected.Runs;
+        CHECK(builder.GetRunBytes() == bytes);
+        CHECK(a.RowBegins == b.RowBegins && a.Runs.size() == b.Runs.size());
+        CHECK(std::memcmp(a.Runs.data(), b.Runs.data(), a.Runs.size() * sizeof(VertexRun)) == 0);
+        CHECK(a.Tetrahedra.size() == b.Tetrahedra.size());
+        for (std::size_t i = 0; i < a.Tetrahedra.size(); ++i)
+        {
+          CHECK(a.Tetrahedra[i].Tetrahedron == b.Tetrahedra[i].Tetrahedron &&
+            a.Tetrahedra[i].Origin == b.Tetrahedra[i].Origin &&
+            a.Tetrahedra[i].Weights == b.Tetrahedra[i].Weights &&
+            a.Tetrahedra[i].Gradients == b.Tetrahedra[i].Gradients);
+        }
+      });
+  }
+  CHECK(expected.NumberOfInnerVoxels > 0);
+}
+
+} // namespace
+
+int TestStaticRuns(int, char*[])
+{
+  TestMisuse();
+  TestAgainstLinks();
+  TestSlivers();
+  TestChoice();
+  TestThreads();
+  return GetResult();
+}
