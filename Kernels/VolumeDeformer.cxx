@@ -42,17 +42,6 @@ void CheckLinks(const VertexLink* links, std::int64_t count, std::size_t numberO
   }
 }
 
-void CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where)
-{
-  if (needed > available)
-  {
-    throw Error(std::string("Not enough memory ") + where + ": " + std::to_string(needed) +
-      " bytes are needed and " + std::to_string(available) +
-      " are available. Use a smaller volume, fewer arrays or smaller output bounds, raise the "
-      "memory limit if one is set, or choose another device.");
-  }
-}
-
 /// Bytes of the static mapping; see CheckMemory.
 std::uint64_t GetMappingBytes(const Lattice& lattice, bool field, std::uint64_t runBytes)
 {
@@ -141,22 +130,15 @@ std::uint64_t VolumeDeformer::CheckDeviceMemory(const Lattice& lattice,
     });
   const auto plane =
     static_cast<std::uint64_t>(GetSize(lattice.VertexExtent, 0) * GetSize(lattice.VertexExtent, 1));
-  // Arrays, state, active tetrahedra and blanking; links or runs of a mesh; arrays, coverage
-  // and winners of the output; positions of one launch; the deformation itself.
-  const std::uint64_t needed = voxels * (tuple + 3) + mappingBytes +
-    outputVoxels * (tuple + 1 + GetWinnerSize(lattice)) +
+  // Arrays, state, active tetrahedra and blanking; links or runs of a mesh; arrays and
+  // coverage of the output; positions of one launch; the deformation itself. Winners of the output
+  // are counted when a deformation turns out to fold the volume (CheckWinners).
+  const std::uint64_t needed = voxels * (tuple + 3) + mappingBytes + outputVoxels * (tuple + 1) +
     plane * 12 *
       std::min<std::uint64_t>(
         LayersPerLaunch + 3, static_cast<std::uint64_t>(GetSize(lattice.VertexExtent, 2))) +
     (numberOfNodes + numberOfTetrahedra) * 16;
-  const std::uint64_t held = this->GetDeviceMemory(); // will be freed or used again
-  const std::uint64_t available = this->Impl->Guard(
-    [&]
-    {
-      const std::uint64_t device = this->Impl->GetContext().GetAvailableMemory();
-      return this->Impl->MemoryLimit ? this->Impl->MemoryLimit : device + held;
-    });
-  CheckBytes(needed, available, "on the device");
+  CheckBytes(needed, this->Impl->GetUsableMemory(), "on the device");
   return needed;
 }
 
@@ -375,10 +357,7 @@ DeformReport VolumeDeformer::Deform(const DeformRequest& request)
 
 std::uint64_t VolumeDeformer::GetDeviceMemory() const
 {
-  const Internals& impl = *this->Impl;
-  return (impl.Mesh ? impl.Mesh->GetMemory() : 0) + GetMemory(impl.Tetrahedra) +
-    GetMemory(impl.Nodes) + GetMemory(impl.FieldVectors) + GetMemory(impl.Positions) +
-    impl.Target.GetMemory();
+  return this->Impl->GetHeldMemory();
 }
 
 void VolumeDeformer::ReleaseMemory()

@@ -33,6 +33,17 @@ void CheckExtent(const Extent& extent, const char* what)
 
 } // namespace
 
+void CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where)
+{
+  if (needed > available)
+  {
+    throw Error(std::string("Not enough memory ") + where + ": " + std::to_string(needed) +
+      " bytes are needed and " + std::to_string(available) +
+      " are available. Use a smaller volume, fewer arrays or smaller output bounds, raise the "
+      "memory limit if one is set, or choose another device.");
+  }
+}
+
 void VolumeDeformer::Internals::Forget()
 {
   this->Mesh.reset();
@@ -82,6 +93,31 @@ std::uint64_t VolumeDeformer::Internals::GetAllocationLimit()
   const std::uint64_t device =
     this->GetContext().GetDevice().Device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   return this->AllocationLimit ? std::min(device, this->AllocationLimit) : device;
+}
+
+std::uint64_t VolumeDeformer::Internals::GetHeldMemory() const
+{
+  return (this->Mesh ? this->Mesh->GetMemory() : 0) + GetMemory(this->Tetrahedra) +
+    GetMemory(this->Nodes) + GetMemory(this->FieldVectors) + GetMemory(this->Positions) +
+    this->Target.GetMemory();
+}
+
+std::uint64_t VolumeDeformer::Internals::GetUsableMemory()
+{
+  return this->Guard(
+    [&]
+    {
+      const std::uint64_t device = this->GetContext().GetAvailableMemory();
+      return this->MemoryLimit ? this->MemoryLimit : device + this->GetHeldMemory();
+    });
+}
+
+void VolumeDeformer::Internals::CheckWinners(const Extent& slab)
+{
+  const std::uint64_t winners =
+    static_cast<std::uint64_t>(GetNumberOfPoints(slab)) * GetWinnerSize(this->Mesh->GetLattice());
+  CheckBytes(this->GetHeldMemory() + winners, this->GetUsableMemory(),
+    "on the device for a deformation that folds the volume over");
 }
 
 cl::Buffer VolumeDeformer::Internals::SendBuffer(
@@ -314,6 +350,7 @@ DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request)
     {
       report.Overlapping |= counts.Writes > covered;
       this->LaunchesExpected += 2 * launches;
+      this->CheckWinners(slabs[s]);
       this->Target.PrepareWinners(*this->Context, this->ResamplingEvents);
       this->Run(request, this->Target, DEFORMVOLUME_PASS_MARK);
       this->Run(request, this->Target, DEFORMVOLUME_PASS_WINNER);

@@ -17,6 +17,9 @@ namespace deformvolume
 /// reported, and enough that the planes mapped twice cost little.
 constexpr int LayersPerLaunch = 32;
 
+/// Throws an Error that names the bytes where there are too few.
+void CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where);
+
 /// What a VolumeDeformer holds on its device, and how it runs the kernels.
 class VolumeDeformer::Internals
 {
@@ -56,6 +59,13 @@ public:
   DeviceLattice& GetMesh();
 
   std::uint64_t GetAllocationLimit();
+
+  /// Bytes allocated on the device.
+  std::uint64_t GetHeldMemory() const;
+  /// Bytes that may be allocated there, those included that are and will be freed or used again.
+  std::uint64_t GetUsableMemory();
+  /// Throws an Error where there is no room for the winners of a slab of the output.
+  void CheckWinners(const Extent& slab);
 
   cl::Buffer SendBuffer(const void* data, std::size_t bytes, const cl::Buffer& previous);
 

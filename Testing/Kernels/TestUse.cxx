@@ -179,6 +179,36 @@ TEST_F(Use, NotEnoughMemory)
   this->ExpectUsable();
 }
 
+// Memory for winners is asked for only where tetrahedra overlap.
+TEST_F(Use, NotEnoughMemoryForAFold)
+{
+  const DeformerCase folded =
+    MakeCase(this->Case.Lattice.VertexExtent, { { 1, 1, 1 } }, MakeJitter(3, 1.0));
+  const auto nodes = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
+  std::uint64_t limit = 1000;
+  for (bool enough = false; !enough; limit += enough ? 0 : 100)
+  {
+    this->Deformer.SetMemoryLimit(limit);
+    try
+    {
+      this->Deformer.CheckMemory(folded.Lattice, this->Arrays, folded.Output, nodes, nodes, true);
+      enough = true;
+    }
+    catch (const Error&)
+    {
+      ASSERT_LT(limit, 1000000U);
+    }
+  }
+  Load(this->Deformer, folded, this->Arrays, Route::Field);
+  const std::string error = GetError([&] { RunDeformer(this->Deformer, folded, this->Arrays); });
+  EXPECT_NE(error.find("folds"), std::string::npos) << error;
+  this->Deformer.SetMemoryLimit(limit + 4 * GetNumberOfPoints(folded.Output));
+  ExpectEqualsReference(folded, ResampleByReference(folded), this->Arrays,
+    RunDeformer(this->Deformer, folded, this->Arrays));
+  this->Deformer.SetMemoryLimit(0);
+  this->ExpectUsable();
+}
+
 TEST_F(Use, MemoryIsCountedAndReleased)
 {
   EXPECT_EQ(this->Deformer.GetDeviceMemory(), 0U);
