@@ -256,7 +256,8 @@ public:
   /**
    * What the last execution did. Times are in seconds: PreprocessingTime for the static mapping (0
    * when the one of an earlier execution served), TransferTime for copies to and from the device,
-   * MappingTime and ResamplingTime for the kernels.
+   * ResamplingTime for the kernels. The exact kernels map and resample in one, and MappingTime is
+   * 0 then; the published method does one after the other.
    */
   vtkGetMacro(PreprocessingTime, double);
   vtkGetMacro(TransferTime, double);

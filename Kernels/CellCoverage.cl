@@ -6,7 +6,7 @@
 // exactly one of them writes it:
 // - inside the mesh the one that holds the centre after a shift by (e, e^2, e^3) for an
 //   infinitesimal e > 0 (the top-left rule of triangle rasterisation in three dimensions);
-// - on the border of the mesh, where that one may be missing, the first one in the order of cells
+// - on the border of the mesh, where that one may be missing, the last one in the order of cells
 //   and tetrahedra.
 // Which of the two holds depends only on the simplex whose interior the centre lies in, so that
 // all tetrahedra round it decide alike.
@@ -108,20 +108,15 @@ static int ShiftsInside(Vector normal)
 // The sampling mesh round a launch's cells.
 typedef struct
 {
-  __global const int* Positions;
+  Mapping Map;
   __global const uchar* State;
   __global const uchar* Active;
 } SamplingMesh;
 
-static size_t VertexInChunk(int x, int y, int z, const KernelParameters* p)
-{
-  return ((size_t)(z - p->ChunkFirst) * p->Size[1] + y) * p->Size[0] + x;
-}
-
-static int ActiveTetrahedra(SamplingMesh mesh, int x, int y, int z, const KernelParameters* p)
+static int ActiveTetrahedra(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
   return p->HasActive
-    ? mesh.Active[((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x] & 31
+    ? mesh->Active[((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x] & 31
     : 31;
 }
 
@@ -133,19 +128,28 @@ static int Mirror(int x, int y, int z, const KernelParameters* p)
 
 // The eight vertices of a cell; returns the mask of those that have a position.
 static int LoadCell(
-  SamplingMesh mesh, int x, int y, int z, const KernelParameters* p, Vector* vertices)
+  const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p, Vector* vertices)
 {
   const int mirror = Mirror(x, y, z, p);
   int present = 0;
   for (int v = 0; v < 8; ++v)
   {
     const int o = v ^ mirror;
-    __global const int* q =
-      mesh.Positions + PositionIndex(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
-    vertices[v].x = q[0];
-    vertices[v].y = q[p->Size[0]];
-    vertices[v].z = q[2 * p->Size[0]];
-    present |= (q[0] != INT_MIN) << v;
+    const int vx = x + (o & 1);
+    const int vy = y + (o >> 2);
+    const int vz = z + (o >> 1 & 1);
+    if (mesh->State[VertexInChunk(vx, vy, vz, p)] & DEFORMVOLUME_VERTEX_SOURCE)
+    {
+      const int4 q = PositionOf(&mesh->Map, vx, vy, vz, p);
+      vertices[v].x = q.x;
+      vertices[v].y = q.y;
+      vertices[v].z = q.z;
+      present |= 1 << v;
+    }
+    else
+    {
+      vertices[v].x = vertices[v].y = vertices[v].z = 0;
+    }
   }
   return present;
 }
@@ -156,10 +160,10 @@ static int VerticesOf(int tetrahedron)
     1 << Tetrahedra[tetrahedron][2] | 1 << Tetrahedra[tetrahedron][3];
 }
 
-// Whether this tetrahedron of the cell is the first one that is there of all that share the simplex
+// Whether this tetrahedron of the cell is the last one that is there of all that share the simplex
 // with these vertices (a mask over the cell's vertices).
-static int IsFirstOwner(
-  SamplingMesh mesh, int x, int y, int z, int tetrahedron, int simplex, const KernelParameters* p)
+static int IsLastOwner(
+  const SamplingMesh* mesh, int x, int y, int z, int tetrahedron, int simplex, const KernelParameters* p)
 {
   // The simplex in the lattice: does it reach the low and the high side of the cell on each axis?
   const int mirror = Mirror(x, y, z, p);
@@ -173,11 +177,11 @@ static int IsFirstOwner(
       low |= ~(v ^ mirror) & 7;
     }
   }
-  for (int dz = -1; dz <= 1; ++dz)
+  for (int dz = 1; dz >= -1; --dz)
   {
-    for (int dy = -1; dy <= 1; ++dy)
+    for (int dy = 1; dy >= -1; --dy)
     {
-      for (int dx = -1; dx <= 1; ++dx)
+      for (int dx = 1; dx >= -1; --dx)
       {
         // A neighbour on the low side shares the simplex only if that does not reach the high side.
         const int needsLow = (dx < 0) | (dz < 0) << 1 | (dy < 0) << 2;
@@ -195,7 +199,7 @@ static int IsFirstOwner(
         // neighbour sides are exchanged, and so is the mirroring, hence numbers do not change.
         Vector vertices[8];
         int present = -1;
-        for (int t = 0; t < 5; ++t)
+        for (int t = 4; t >= 0; --t)
         {
           if (dx == 0 && dy == 0 && dz == 0 && t == tetrahedron)
           {
@@ -225,7 +229,7 @@ static int IsFirstOwner(
 
 // Whether a tetrahedron of a cell writes the sample with these weights. interior: mask of the
 // cell's vertices that are interior.
-static int IsOwner(SamplingMesh mesh, int x, int y, int z, int tetrahedron, const long* weights,
+static int IsOwner(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron, const long* weights,
   const EdgeFunctions* f, int interior, const KernelParameters* p)
 {
   int simplex = 0;
@@ -253,5 +257,5 @@ static int IsOwner(SamplingMesh mesh, int x, int y, int z, int tetrahedron, cons
   {
     return inside;
   }
-  return IsFirstOwner(mesh, x, y, z, tetrahedron, simplex, p);
+  return IsLastOwner(mesh, x, y, z, tetrahedron, simplex, p);
 }

@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Deformation mapping: the deformed position of each vertex of the sampling mesh (one vertex per
-// voxel), and the static state of the vertices.
+// Deformation mapping: the deformed position of a vertex of the sampling mesh (one vertex a voxel).
 //
-// Positions are three ints a vertex, in 1/256 of an output voxel: rounding them makes every later
-// decision of the fill rule exact. They lie in rows: the x of a row of vertices, then their y, then
-// their z, so that several vertices load at once. A vertex without position has INT_MIN in x. What is
-// interpolated is the displacement and not the position: an undeformed vertex then stays exactly
-// where it was, however the deformation mesh looks and however large the volume is.
+// A position is an undeformed one plus a displacement, rounded to 1/256 of an output voxel: that
+// makes every later decision of the fill rule exact. What is interpolated is the displacement and
+// not the position: an undeformed vertex then stays exactly where it was, however the deformation
+// mesh looks and however large the volume is. All kernels find a vertex's position with the same
+// operations in the same order, so that wherever it is found it is the same to the last bit.
 //
-// Data, one element a vertex: links 16 bytes (tetrahedron, three barycentric weights), state one
-// byte, positions 12 bytes; nodes of the mesh and points of the field: float4, displacement in
-// output voxels. rest: for each index on x, then y, then z the undeformed position as a whole
-// number of 1/256 voxels and what misses to it.
-//
-// A work-item takes every global-size(0)-th vertex of one row; global size (any, rows, planes).
+// What the host puts in front of this text: MAPPING, one of
+//   MAPPING_LINKS  links: 16 bytes a voxel (tetrahedron, three barycentric weights); tetrahedra:
+//                  int4; nodes: float4, displacement in output voxels
+//   MAPPING_RUNS   runs of voxels in one tetrahedron, see RunMapping.cl
+//   MAPPING_FIELD  vectors: float4 a point of the field, displacement in output voxels; trilinear
+// and rest: for each index on x, then y, then z the undeformed position as a whole number of 1/256
+// output voxels and what misses to it.
 
 #pragma OPENCL FP_CONTRACT OFF
+
+#define MAPPING_LINKS 0
+#define MAPPING_RUNS 1
+#define MAPPING_FIELD 2
 
 typedef struct
 {
@@ -24,7 +28,20 @@ typedef struct
 } VertexLink;
 
 #define LARGEST 4194303.0f // 1/256 voxels: about 2^14 voxels
+#define ROUND_TO_INTEGER 12582912.0f // 1.5 * 2^23: added to v and subtracted again, v is rounded
 #define FIELD_TOLERANCE 1e-3f // of a field cell: rounding must not lose the field's border
+
+// Fused where that is one instruction; the same everywhere on a device.
+#ifdef FP_FAST_FMAF
+#define MULTIPLY_ADD(a, b, c) fma(a, b, c)
+#else
+#define MULTIPLY_ADD(a, b, c) ((a) * (b) + (c))
+#endif
+
+static size_t VertexInChunk(int x, int y, int z, const KernelParameters* p)
+{
+  return ((size_t)(z - p->ChunkFirst) * p->Size[1] + y) * p->Size[0] + x;
+}
 
 static float3 FieldIndex(const FieldParameters* field, int3 index)
 {
@@ -34,226 +51,174 @@ static float3 FieldIndex(const FieldParameters* field, int3 index)
     m[4] * i.x + m[5] * i.y + m[6] * i.z + m[7], m[8] * i.x + m[9] * i.y + m[10] * i.z + m[11]);
 }
 
-// The local index of the first vertex of a work-item.
-static int3 FirstVertex(const KernelParameters* p)
-{
-  return (int3)(get_global_id(0), get_global_id(1), p->PlanesBegin + (int)get_global_id(2));
-}
+#if MAPPING == MAPPING_LINKS
 
-static size_t VertexIndex(int3 v, int firstPlane, const KernelParameters* p)
-{
-  return ((size_t)(v.z - firstPlane) * p->Size[1] + v.y) * p->Size[0] + v.x;
-}
+#define MAPPING_PARAMETERS                                                                         \
+  __global const VertexLink *restrict links, __global const int4 *restrict tetrahedra,             \
+    __global const float4 *restrict nodes, __global const RestPosition *restrict rest
+#define MAPPING_ARGUMENTS { links, tetrahedra, nodes, rest }
 
-// What the vertices of a row have in common.
 typedef struct
 {
-  __global const RestPosition* restrict RestX;
-  int3 Whole;     // undeformed position but for x
-  float4 Fraction;
-  __global int* restrict X; // places of the positions
-  __global int* restrict Y;
-  __global int* restrict Z;
-} Row;
+  __global const VertexLink* Links;
+  __global const int4* Tetrahedra;
+  __global const float4* Nodes;
+  __global const RestPosition* Rest;
+} Mapping;
 
-static Row MakeRow(__global const RestPosition* rest, __global int* positions, int3 v,
-  const KernelParameters* p)
+// The displacement of a linked vertex.
+static float4 FollowLink(const Mapping* m, __global const VertexLink* link)
 {
-  const RestPosition y = rest[p->Size[0] + v.y];
-  const RestPosition z = rest[p->Size[0] + p->Size[1] + v.z];
-  Row row;
-  row.RestX = rest;
-  row.Whole = (int3)(0, y.Whole, z.Whole);
-  row.Fraction = (float4)(0.0f, y.Fraction, z.Fraction, 0.0f);
-  row.X = positions + PositionIndex(0, v.y, v.z, p);
-  row.Y = row.X + p->Size[0];
-  row.Z = row.Y + p->Size[0];
-  return row;
+  const int4 t = m->Tetrahedra[link->Tetrahedron];
+  const float a = link->Weights[0];
+  const float b = link->Weights[1];
+  const float c = link->Weights[2];
+  const float d = 1.0f - a - b - c;
+  return MULTIPLY_ADD(m->Nodes[t.w], (float4)d,
+    MULTIPLY_ADD(m->Nodes[t.z], (float4)c,
+      MULTIPLY_ADD(m->Nodes[t.y], (float4)b, m->Nodes[t.x] * a)));
 }
 
-static void StorePosition(const Row* row, int x, float4 displacement)
+static float4 Displacement(const Mapping* m, int x, int y, int z, const KernelParameters* p)
 {
-  const RestPosition rest = row->RestX[x];
-  // Clamped, because extrapolation can lead anywhere. Adding 1.5 * 2^23 leaves the rounded value in
-  // the low bits: an addition where conversions that round are many instructions.
-  float4 moved = displacement * 256.0f + (row->Fraction + (float4)(rest.Fraction, 0.0f, 0.0f, 0.0f));
+  return FollowLink(m, m->Links + VertexInChunk(x, y, z, p));
+}
+
+// Whether the deformation moves a vertex.
+static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters* p)
+{
+  return m->Links[VertexInChunk(x, y, z, p)].Tetrahedron >= 0;
+}
+
+#elif MAPPING == MAPPING_RUNS
+
+#define MAPPING_PARAMETERS                                                                         \
+  __global const VertexRun *restrict runs, __global const uint *restrict rowBegins,                \
+    __global const TetrahedronRecord *restrict records, __global const RestPosition *restrict rest
+#define MAPPING_ARGUMENTS { runs, rowBegins, records, rest }
+
+typedef struct
+{
+  __global const VertexRun* Runs;
+  __global const uint* RowBegins;
+  __global const TetrahedronRecord* Records;
+  __global const RestPosition* Rest;
+} Mapping;
+
+// The place in RowBegins of a row.
+static size_t RowIndex(int y, int z, const KernelParameters* p)
+{
+  return (size_t)(z - p->ChunkFirst) * p->Size[1] + y;
+}
+
+// The run of a vertex.
+static VertexRun RunOf(const Mapping* m, int x, int y, int z, const KernelParameters* p)
+{
+  const size_t row = RowIndex(y, z, p);
+  return m->Runs[FindRun(m->Runs, m->RowBegins[row], m->RowBegins[row + 1], x)];
+}
+
+static float4 Displacement(const Mapping* m, int x, int y, int z, const KernelParameters* p)
+{
+  const VertexRun run = RunOf(m, x, y, z, p);
+  const RunDisplacement displacement = MakeRunDisplacement(m->Records + run.Tetrahedron, y, z);
+  return GetDisplacement(&displacement, x);
+}
+
+// Whether the deformation moves a vertex.
+static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters* p)
+{
+  return RunOf(m, x, y, z, p).Tetrahedron >= 0;
+}
+
+#else
+
+#define MAPPING_PARAMETERS                                                                         \
+  __global const float4 *restrict vectors, const FieldParameters field,                            \
+    __global const RestPosition *restrict rest
+#define MAPPING_ARGUMENTS { vectors, field, rest }
+
+typedef struct
+{
+  __global const float4* Vectors;
+  FieldParameters Field;
+  __global const RestPosition* Rest;
+} Mapping;
+
+static float4 Displacement(const Mapping* m, int x, int y, int z, const KernelParameters* p)
+{
+  const FieldParameters* field = &m->Field;
+  const size_t width = field->Dimensions[0];
+  const size_t plane = width * field->Dimensions[1];
+  if (field->SameGrid)
+  {
+    return m->Vectors[(z + field->Offset[2]) * plane + (y + field->Offset[1]) * width + x +
+      field->Offset[0]];
+  }
+  const int3 last =
+    (int3)(field->Dimensions[0], field->Dimensions[1], field->Dimensions[2]) - 1;
+  const float3 f = clamp(FieldIndex(field, (int3)(x, y, z)), 0.0f, convert_float3(last));
+  const int3 low = convert_int3(floor(f));
+  const int3 high = min(low + 1, last);
+  const float3 t = f - convert_float3(low);
+  __global const float4* lowLow = m->Vectors + low.z * plane + low.y * width;
+  __global const float4* lowHigh = m->Vectors + low.z * plane + high.y * width;
+  __global const float4* highLow = m->Vectors + high.z * plane + low.y * width;
+  __global const float4* highHigh = m->Vectors + high.z * plane + high.y * width;
+  // a + t (b - a) is exact for t = 0: no rounding where a voxel is a point of the field.
+  const float4 a = lowLow[low.x] + t.x * (lowLow[high.x] - lowLow[low.x]);
+  const float4 b = lowHigh[low.x] + t.x * (lowHigh[high.x] - lowHigh[low.x]);
+  const float4 c = highLow[low.x] + t.x * (highLow[high.x] - highLow[low.x]);
+  const float4 d = highHigh[low.x] + t.x * (highHigh[high.x] - highHigh[low.x]);
+  const float4 e = a + t.y * (b - a);
+  const float4 g = c + t.y * (d - c);
+  return e + t.z * (g - e);
+}
+
+static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters* p)
+{
+  const FieldParameters* field = &m->Field;
+  const float3 f = FieldIndex(field, (int3)(x, y, z));
+  return field->Extrapolate ||
+    (f.x >= -FIELD_TOLERANCE && f.y >= -FIELD_TOLERANCE && f.z >= -FIELD_TOLERANCE &&
+      f.x <= field->Dimensions[0] - 1 + FIELD_TOLERANCE &&
+      f.y <= field->Dimensions[1] - 1 + FIELD_TOLERANCE &&
+      f.z <= field->Dimensions[2] - 1 + FIELD_TOLERANCE);
+}
+
+#endif
+
+// The position of a vertex that has one, in 1/256 of an output voxel.
+static int4 PositionOf(const Mapping* m, int x, int y, int z, const KernelParameters* p)
+{
+  const RestPosition rx = m->Rest[x];
+  const RestPosition ry = m->Rest[p->Size[0] + y];
+  const RestPosition rz = m->Rest[p->Size[0] + p->Size[1] + z];
+  // Clamped, because extrapolation can lead anywhere.
+  float4 moved = Displacement(m, x, y, z, p) * 256.0f +
+    (float4)(rx.Fraction, ry.Fraction, rz.Fraction, 0.0f);
   moved = moved < -LARGEST ? (float4)(-LARGEST) : moved;
   moved = moved > LARGEST ? (float4)(LARGEST) : moved;
-  const int4 steps = as_int4(moved + 12582912.0f) - 0x4b400000;
-  row->X[x] = rest.Whole + steps.x;
-  row->Y[x] = row->Whole.y + steps.y;
-  row->Z[x] = row->Whole.z + steps.z;
+  const float4 steps = (moved + ROUND_TO_INTEGER) - ROUND_TO_INTEGER;
+  return (int4)(rx.Whole, ry.Whole, rz.Whole, 0) + convert_int4(steps);
 }
 
-static void StoreNoPosition(const Row* row, int x)
-{
-  row->X[x] = INT_MIN;
-  row->Y[x] = 0;
-  row->Z[x] = 0;
-}
-
-// The deformation is a tetrahedral mesh.
-__kernel void MapByMesh(__global const VertexLink* restrict links,
-  __global const uchar* restrict state, __global const int4* restrict tetrahedra,
-  __global const float4* restrict nodes, __global const RestPosition* restrict rest,
+// Maps the vertices of some planes into rows: the x of a row of vertices, then their y, then their
+// z. A vertex without position has INT_MIN in x. A work-item takes every global-size(0)-th vertex of
+// one row; global size (any, rows, planes).
+__kernel void MapPositions(MAPPING_PARAMETERS, __global const uchar* restrict state,
   __global int* restrict positions, const KernelParameters p)
 {
-  int3 v = FirstVertex(&p);
-  const Row row = MakeRow(rest, positions, v, &p);
-  const size_t first = VertexIndex((int3)(0, v.y, v.z), p.ChunkFirst, &p);
-  for (; v.x < p.Size[0]; v.x += get_global_size(0))
+  const Mapping m = MAPPING_ARGUMENTS;
+  const int y = get_global_id(1);
+  const int z = p.PlanesBegin + (int)get_global_id(2);
+  for (int x = get_global_id(0); x < p.Size[0]; x += get_global_size(0))
   {
-    const size_t i = first + v.x;
-    if (!(state[i] & DEFORMVOLUME_VERTEX_SOURCE))
-    {
-      StoreNoPosition(&row, v.x);
-      continue;
-    }
-    const VertexLink link = links[i];
-    const int4 t = tetrahedra[link.Tetrahedron];
-    const float a = link.Weights[0];
-    const float b = link.Weights[1];
-    const float c = link.Weights[2];
-    const float d = 1.0f - a - b - c;
-    const float4 sum = nodes[t.x] * a + nodes[t.y] * b + nodes[t.z] * c + nodes[t.w] * d;
-    StorePosition(&row, v.x, sum);
-  }
-}
-
-// The deformation is a displacement field, trilinear between its points.
-__kernel void MapByField(__global const uchar* state, __global const float4* vectors,
-  __global const RestPosition* rest, __global int* positions, const FieldParameters field,
-  const KernelParameters p)
-{
-  int3 v = FirstVertex(&p);
-  const Row row = MakeRow(rest, positions, v, &p);
-  for (; v.x < p.Size[0]; v.x += get_global_size(0))
-  {
-    if (!(state[VertexIndex(v, p.ChunkFirst, &p)] & DEFORMVOLUME_VERTEX_SOURCE))
-    {
-      StoreNoPosition(&row, v.x);
-      continue;
-    }
-    const int3 last = (int3)(field.Dimensions[0], field.Dimensions[1], field.Dimensions[2]) - 1;
-    const float3 f = clamp(FieldIndex(&field, v), 0.0f,
-      convert_float3(last));
-    const int3 low = convert_int3(floor(f));
-    const int3 high = min(low + 1, last);
-    const float3 t = f - convert_float3(low);
-    const size_t width = field.Dimensions[0];
-    const size_t plane = width * field.Dimensions[1];
-    __global const float4* lowLow = vectors + low.z * plane + low.y * width;
-    __global const float4* lowHigh = vectors + low.z * plane + high.y * width;
-    __global const float4* highLow = vectors + high.z * plane + low.y * width;
-    __global const float4* highHigh = vectors + high.z * plane + high.y * width;
-    // a + t (b - a) is exact for t = 0: no rounding where a voxel is a point of the field.
-    const float4 a = lowLow[low.x] + t.x * (lowLow[high.x] - lowLow[low.x]);
-    const float4 b = lowHigh[low.x] + t.x * (lowHigh[high.x] - lowHigh[low.x]);
-    const float4 c = highLow[low.x] + t.x * (highLow[high.x] - highLow[low.x]);
-    const float4 d = highHigh[low.x] + t.x * (highHigh[high.x] - highHigh[low.x]);
-    const float4 e = a + t.y * (b - a);
-    const float4 g = c + t.y * (d - c);
-    StorePosition(&row, v.x, e + t.z * (g - e));
-  }
-}
-
-// State of the vertices, first pass: those are a source that the deformation moves and that are
-// not blanked. Sources lie in slabs of planes, as positions do.
-__kernel void MarkSourcesByMesh(__global const VertexLink* links, __global const uchar* blanked,
-  const int hasBlanked, __global uchar* sources, const KernelParameters p)
-{
-  for (int3 v = FirstVertex(&p); v.x < p.Size[0]; v.x += get_global_size(0))
-  {
-    const size_t i = VertexIndex(v, p.ChunkFirst, &p);
-    const int source = links[i].Tetrahedron >= 0 && !(hasBlanked && blanked[i]);
-    sources[VertexIndex(v, p.SlabFirst, &p)] = source ? DEFORMVOLUME_VERTEX_SOURCE : 0;
-  }
-}
-
-__kernel void MarkSourcesByField(const FieldParameters field, __global const uchar* blanked,
-  const int hasBlanked, __global uchar* sources, const KernelParameters p)
-{
-  for (int3 v = FirstVertex(&p); v.x < p.Size[0]; v.x += get_global_size(0))
-  {
-    const size_t i = VertexIndex(v, p.ChunkFirst, &p);
-    const float3 f = FieldIndex(&field, v);
-    const int inside = f.x >= -FIELD_TOLERANCE && f.y >= -FIELD_TOLERANCE &&
-      f.z >= -FIELD_TOLERANCE && f.x <= field.Dimensions[0] - 1 + FIELD_TOLERANCE &&
-      f.y <= field.Dimensions[1] - 1 + FIELD_TOLERANCE &&
-      f.z <= field.Dimensions[2] - 1 + FIELD_TOLERANCE;
-    const int source = (inside || field.Extrapolate) && !(hasBlanked && blanked[i]);
-    sources[VertexIndex(v, p.SlabFirst, &p)] = source ? DEFORMVOLUME_VERTEX_SOURCE : 0;
-  }
-}
-
-static int IsActive(__global const uchar* active, int x, int y, int z, const KernelParameters* p)
-{
-  return !p->HasActive ||
-    (active[((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x] & 31) ==
-    31;
-}
-
-// Whether the vertices from begin to end, both included, are all sources.
-static int AreSources(
-  __global const uchar* sources, int3 begin, int3 end, const KernelParameters* p)
-{
-  for (int z = begin.z; z <= end.z; ++z)
-  {
-    for (int y = begin.y; y <= end.y; ++y)
-    {
-      for (int x = begin.x; x <= end.x; ++x)
-      {
-        if (!sources[VertexIndex((int3)(x, y, z), p->SlabFirst, p)])
-        {
-          return 0;
-        }
-      }
-    }
-  }
-  return 1;
-}
-
-static int IsInterior(
-  __global const uchar* sources, __global const uchar* active, int3 v, const KernelParameters* p)
-{
-  // Vertices of the planes beyond the layers of this chunk serve only as neighbours.
-  if (v.x == 0 || v.y == 0 || v.z == 0 || v.x == p->Size[0] - 1 || v.y == p->Size[1] - 1 ||
-    v.z == p->Size[2] - 1 || v.z < p->LayersBegin || v.z > p->LayersEnd ||
-    !AreSources(sources, v - 1, v + 1, p))
-  {
-    return 0;
-  }
-  for (int k = 0; k < 8; ++k)
-  {
-    if (!IsActive(active, v.x - (k & 1), v.y - (k >> 1 & 1), v.z - (k >> 2), p))
-    {
-      return 0;
-    }
-  }
-  return 1;
-}
-
-static int IsWholeCell(
-  __global const uchar* sources, __global const uchar* active, int3 v, const KernelParameters* p)
-{
-  return v.x < p->Size[0] - 1 && v.y < p->Size[1] - 1 && v.z >= p->LayersBegin &&
-    v.z < p->LayersEnd && IsActive(active, v.x, v.y, v.z, p) && AreSources(sources, v, v + 1, p);
-}
-
-// Second pass: a vertex is interior when all vertices round it are sources and all tetrahedra of
-// the eight cells round it are active. Being wrong on the careful side costs time, not truth. A
-// cell is whole when its vertices are sources and its tetrahedra active.
-__kernel void MarkVertices(__global const uchar* sources, __global const uchar* active,
-  __global uchar* state, const KernelParameters p)
-{
-  for (int3 v = FirstVertex(&p); v.x < p.Size[0]; v.x += get_global_size(0))
-  {
-    int bits = sources[VertexIndex(v, p.SlabFirst, &p)];
-    if (bits)
-    {
-      bits |= IsInterior(sources, active, v, &p) ? DEFORMVOLUME_VERTEX_INTERIOR : 0;
-      bits |= IsWholeCell(sources, active, v, &p) ? DEFORMVOLUME_CELL_WHOLE : 0;
-    }
-    state[VertexIndex(v, p.ChunkFirst, &p)] = bits;
+    const int isSource = state[VertexInChunk(x, y, z, &p)] & DEFORMVOLUME_VERTEX_SOURCE;
+    const int4 q = isSource ? PositionOf(&m, x, y, z, &p) : (int4)(INT_MIN, 0, 0, 0);
+    __global int* place = positions + PositionIndex(x, y, z, &p);
+    place[0] = q.x;
+    place[p.Size[0]] = q.y;
+    place[2 * p.Size[0]] = q.z;
   }
 }

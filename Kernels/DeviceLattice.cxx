@@ -9,6 +9,12 @@
 
 namespace deformvolume
 {
+namespace
+{
+
+const int BrickSize[3] = { DEFORMVOLUME_BRICK_X, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z };
+
+} // namespace
 
 std::uint64_t GetMemory(const cl::Buffer& buffer)
 {
@@ -261,6 +267,8 @@ KernelParameters DeviceLattice::GetParameters(const LatticeChunk& chunk) const
   {
     p.Size[axis] = this->GetSize(axis);
     p.First[axis] = this->Shape.VertexExtent[2 * axis];
+    p.BrickOrigin[axis] = this->GetBrickOrigin(axis);
+    p.BrickCount[axis] = this->GetNumberOfBricks(axis);
   }
   p.ChunkFirst = chunk.PlanesBegin;
   p.SlabFirst = chunk.PlanesBegin;
@@ -270,6 +278,35 @@ KernelParameters DeviceLattice::GetParameters(const LatticeChunk& chunk) const
   p.LayersEnd = chunk.LayersEnd;
   p.HasActive = this->WithActive;
   return p;
+}
+
+int DeviceLattice::GetBrickOrigin(int axis) const
+{
+  const int first = this->Shape.VertexExtent[2 * axis];
+  const int remainder = first % BrickSize[axis];
+  return -(remainder < 0 ? remainder + BrickSize[axis] : remainder);
+}
+
+int DeviceLattice::GetNumberOfBricks(int axis) const
+{
+  const int cells = this->GetSize(axis) - 1 - this->GetBrickOrigin(axis);
+  return (cells + BrickSize[axis] - 1) / BrickSize[axis];
+}
+
+std::size_t DeviceLattice::GetNumberOfBricks() const
+{
+  return static_cast<std::size_t>(this->GetNumberOfBricks(0)) *
+    static_cast<std::size_t>(this->GetNumberOfBricks(1)) *
+    static_cast<std::size_t>(this->GetNumberOfBricks(2));
+}
+
+std::pair<cl_uint, cl_uint> DeviceLattice::GetBrickRange(int layersBegin, int layersEnd) const
+{
+  const int origin = this->GetBrickOrigin(2);
+  const cl_uint layer = static_cast<cl_uint>(this->GetNumberOfBricks(0)) *
+    static_cast<cl_uint>(this->GetNumberOfBricks(1));
+  return { static_cast<cl_uint>((layersBegin - origin) / BrickSize[2]) * layer,
+    static_cast<cl_uint>((layersEnd - 1 - origin) / BrickSize[2] + 1) * layer };
 }
 
 cl::NDRange DeviceLattice::GetVertexRange(int planes) const
@@ -287,17 +324,14 @@ cl::NDRange DeviceLattice::GetVertexGroup() const
   return cl::NDRange(this->Context.GetDevice().IsProcessor ? 1 : 64, 1, 1);
 }
 
-void DeviceLattice::UpdateState(const cl::Program& mapping, const FieldParameters* field)
+void DeviceLattice::UpdateState(
+  const cl::Program& mapping, const std::function<cl_uint(cl::Kernel&, const LatticeChunk&)>& set)
 {
   if (!this->StateChanged)
   {
     return;
   }
-  const bool byRuns = this->HasRuns();
-  cl::Kernel sources(mapping,
-    field      ? "MarkSourcesByField"
-      : byRuns ? "MarkSourcesByRuns"
-               : "MarkSourcesByMesh");
+  cl::Kernel sources(mapping, "MarkSources");
   cl::Kernel vertices(mapping, "MarkVertices");
   for (LatticeChunk& chunk : this->Chunks)
   {
@@ -308,35 +342,25 @@ void DeviceLattice::UpdateState(const cl::Program& mapping, const FieldParameter
     {
       chunk.State = cl::Buffer(this->Context.GetContext(), CL_MEM_READ_WRITE, bytes);
     }
-    if (field)
-    {
-      sources.setArg(0, *field);
-    }
-    else
-    {
-      sources.setArg(0, byRuns ? chunk.Runs : chunk.Links);
-    }
+    cl_uint i = set(sources, chunk);
     // A null pointer is not something that all drivers take: any buffer stands in for a missing
     // one.
-    sources.setArg(1, this->WithBlanked ? chunk.Blanked : this->RestPositions);
-    sources.setArg(2, cl_int{ this->WithBlanked });
-    if (byRuns && !field)
-    {
-      sources.setArg(5, chunk.RowBegins);
-    }
+    sources.setArg(i++, this->WithBlanked ? chunk.Blanked : this->RestPositions);
+    sources.setArg(i++, cl_int{ this->WithBlanked });
     vertices.setArg(1, this->WithActive ? chunk.Active : this->RestPositions);
     vertices.setArg(2, chunk.State);
-    this->MarkChunk(sources, vertices, chunk);
+    this->MarkChunk(sources, i, vertices, chunk);
   }
   this->StateChanged = false;
 }
 
 // Some planes after the others: sources of a whole volume would be one more byte a voxel.
-void DeviceLattice::MarkChunk(cl::Kernel& sources, cl::Kernel& vertices, const LatticeChunk& chunk)
+void DeviceLattice::MarkChunk(
+  cl::Kernel& sources, cl_uint sourcesIndex, cl::Kernel& vertices, const LatticeChunk& chunk)
 {
   constexpr int step = 64;
   const int most = std::min(step + 2, chunk.PlanesEnd - chunk.PlanesBegin);
-  const cl::Buffer marked(this->Context.GetContext(), CL_MEM_READ_WRITE,
+  this->Marked = cl::Buffer(this->Context.GetContext(), CL_MEM_READ_WRITE,
     static_cast<std::uint64_t>(this->GetSize(0)) * this->GetSize(1) *
       static_cast<std::uint64_t>(most));
   for (int begin = chunk.PlanesBegin; begin < chunk.PlanesEnd; begin += step)
@@ -346,18 +370,21 @@ void DeviceLattice::MarkChunk(cl::Kernel& sources, cl::Kernel& vertices, const L
     p.PlanesBegin = std::max(begin - 1, chunk.PlanesBegin);
     p.PlanesEnd = std::min(end + 1, chunk.PlanesEnd);
     p.SlabFirst = p.PlanesBegin;
-    const auto launch = [&](cl::Kernel& kernel, cl_uint sourcesIndex)
+    const auto launch = [&](cl::Kernel& kernel, cl_uint markedIndex, cl_uint parametersIndex)
     {
-      kernel.setArg(sourcesIndex, marked);
-      kernel.setArg(sourcesIndex == 0 ? 3 : 4, p);
+      kernel.setArg(markedIndex, this->Marked);
+      kernel.setArg(parametersIndex, p);
       this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
         this->GetVertexRange(p.PlanesEnd - p.PlanesBegin), this->GetVertexGroup());
     };
-    launch(sources, 3);
+    launch(sources, sourcesIndex, sourcesIndex + 1);
     p.PlanesBegin = begin;
     p.PlanesEnd = end;
-    launch(vertices, 0);
+    launch(vertices, 0, 3);
   }
+  // A buffer must not be released while launches that use it are queued: PoCL 3.1 crashes.
+  this->Queue.finish();
+  this->Marked = cl::Buffer();
 }
 
 std::uint64_t DeviceLattice::GetMemory() const

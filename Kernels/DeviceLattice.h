@@ -6,6 +6,9 @@
 #include "OpenCLContext.h"
 #include "VolumeDeformer.h"
 
+#include <functional>
+#include <utility>
+
 namespace deformvolume
 {
 
@@ -72,9 +75,18 @@ public:
   cl::NDRange GetVertexRange(int planes) const;
   cl::NDRange GetVertexGroup() const;
 
+  /// The bricks that the cells are worked on in: how many there are on an axis and altogether, and
+  /// the first and one past the last of some layers of cells. Their numbers grow with x, then y,
+  /// then z.
+  int GetNumberOfBricks(int axis) const;
+  std::size_t GetNumberOfBricks() const;
+  std::pair<cl_uint, cl_uint> GetBrickRange(int layersBegin, int layersEnd) const;
+
   /// Brings the state of the vertices up to date, where anything changed that it depends on.
-  /// mapping: the program of the deformation mapping. field: null where the deformation is a mesh.
-  void UpdateState(const cl::Program& mapping, const FieldParameters* field);
+  /// mapping: the program of the deformation mapping. set: sets a kernel's arguments of the mapping
+  /// for a chunk, which come first, and returns how many they are.
+  void UpdateState(const cl::Program& mapping,
+    const std::function<cl_uint(cl::Kernel&, const LatticeChunk&)>& set);
   void ForgetState() { this->StateChanged = true; }
 
   /// The parameters of a launch over the whole of a chunk.
@@ -83,11 +95,13 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
+  int GetBrickOrigin(int axis) const;
   cl::Buffer Send(const void* data, std::size_t bytesPerElement, std::int64_t elementsPerLayer,
     std::int64_t begin, std::int64_t end, const cl::Buffer& previous);
   void ForgetRuns();
   void SendRecords(const std::vector<RestTetrahedron>& tetrahedra);
-  void MarkChunk(cl::Kernel& sources, cl::Kernel& vertices, const LatticeChunk& chunk);
+  void MarkChunk(
+    cl::Kernel& sources, cl_uint sourcesIndex, cl::Kernel& vertices, const LatticeChunk& chunk);
   cl::Buffer MakeRestPositions() const;
 
   OpenCLContext& Context;
@@ -96,6 +110,7 @@ private:
   std::uint64_t AllocationLimit;
   std::vector<LatticeChunk> Chunks;
   cl::Buffer RestPositions;
+  cl::Buffer Marked; // sources, while the state is brought up to date
   bool WithLinks = false;
   std::uint64_t RunBytes = 0;
   cl::Buffer RestTetrahedra; // of each record 15 reals, see RunMapping.cl

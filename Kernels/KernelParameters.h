@@ -26,6 +26,9 @@ typedef struct
   int OutputSize[3];  // output voxels in the buffers on each axis
   int Pass;           // one of the passes below
   int HasActive;      // whether a mask of active tetrahedra is there; without one all are active
+  int BrickOrigin[3]; // local index of the first cell of the first brick; may lie before the volume
+  int BrickCount[3];  // bricks on each axis
+  int ListBegin;      // place in the list of bricks of the first one to work on
 } KernelParameters;
 
 // The undeformed position of the voxels with one index on an axis, in 1/256 output voxel: a whole
@@ -43,6 +46,8 @@ typedef struct
   float IndexToField[12];
   int Dimensions[3];
   int Extrapolate; // whether voxels outside the field follow its border
+  int SameGrid;    // whether voxels are points of the field, and all lie in it: the point of voxel
+  int Offset[3];   // (i, j, k) is (i, j, k) + Offset
 } FieldParameters;
 
 // The displacement in a tetrahedron of the deformation mesh, in output voxels; 64 bytes. That of the
@@ -63,11 +68,19 @@ typedef struct
 #define DEFORMVOLUME_PASS_MARK 1   // find the winner of each voxel
 #define DEFORMVOLUME_PASS_WINNER 2 // write where this tetrahedron is the winner
 
-// Counters of a row of cells.
+// Cells of a brick. Bricks begin at structured indices that are multiples of these numbers, which
+// are even: the parity of a place in a brick is that of the structured index.
+#define DEFORMVOLUME_BRICK_X 64
+#define DEFORMVOLUME_BRICK_Y 16
+#define DEFORMVOLUME_BRICK_Z 16
+
+// Counters of a brick of cells.
 #define DEFORMVOLUME_COUNT_WRITES 0
 #define DEFORMVOLUME_COUNT_INVERTED 1
 #define DEFORMVOLUME_COUNT_OVERSTRETCHED 2
-#define DEFORMVOLUME_COUNTERS 3
+#define DEFORMVOLUME_COUNT_FLAT 3    // on the border of the mesh
+#define DEFORMVOLUME_COUNT_ASSUMED 4 // nonzero where it was assumed that there are none such
+#define DEFORMVOLUME_COUNTERS 5
 
 // Elements that may be read behind the end of a buffer of vertices, by vector loads.
 #define DEFORMVOLUME_READ_AHEAD 64
@@ -79,6 +92,7 @@ typedef struct
 #define DEFORMVOLUME_VERTEX_SOURCE 1   // it has a deformed position and may be interpolated
 #define DEFORMVOLUME_VERTEX_INTERIOR 2 // all tetrahedra that it could belong to are there
 #define DEFORMVOLUME_CELL_WHOLE 4      // of the cell that begins at it, all tetrahedra are there
+#define DEFORMVOLUME_VERTEX_REGULAR 8  // interior, but that it may lie on the border of the volume
 
 #ifdef __OPENCL_VERSION__
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "KernelProgram.h"
 
+#include "KernelParameters.h"
 #include "KernelSources.h"
 
 #include <algorithm>
@@ -87,21 +88,63 @@ std::string MakePreamble(const OpenCLContext& context, const std::vector<VolumeA
     "\n#define ARRAY_ARGUMENTS " + arguments + "\n#define STORE_ARRAYS " + stores + "\n";
 }
 
-/// What LaneResampling.cl expects in front of it.
-std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<VolumeArray>& arrays)
+/// Floats in a vector of the device that the kernels for processors use.
+int GetLanes(const OpenCLContext& context)
 {
   const cl_uint width = context.GetDevice().Device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
+  return width >= 16 ? 16 : width >= 8 ? 8 : 4;
+}
+
+/// Bytes of local memory that the kernel ResampleBricks wants for so many arrays.
+std::size_t GetBrickMemory(const OpenCLContext& context, std::size_t slots)
+{
+  const std::size_t lanes = static_cast<std::size_t>(GetLanes(context));
+  const std::size_t halfRow = (DEFORMVOLUME_BRICK_X / 2 / lanes + 1) * lanes;
+  const std::size_t row = 2 * (3 + slots) * halfRow;
+  return (4 * halfRow + 3 * (DEFORMVOLUME_BRICK_X + 16) + 2 * (DEFORMVOLUME_BRICK_Y + 1) * row) *
+    sizeof(cl_float);
+}
+
+/// For each array whether the kernel ResampleBricks interpolates it in single precision: as many as
+/// the local memory holds.
+std::vector<bool> FindLaneArrays(
+  const OpenCLContext& context, const std::vector<VolumeArray>& arrays)
+{
+  const std::size_t memory = context.GetDevice().Device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+  std::vector<bool> found;
+  std::size_t slots = 0;
+  for (const VolumeArray& array : arrays)
+  {
+    const bool fits = !array.Categorical && array.Components == 1 &&
+      (array.Type == ElementType::Float32 || GetElementSize(array.Type) <= 2) &&
+      GetBrickMemory(context, slots + 1) <= memory;
+    found.push_back(fits);
+    slots += fits;
+  }
+  return found;
+}
+
+/// What BrickResampling.cl expects in front of it.
+std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<VolumeArray>& arrays)
+{
+  const std::vector<bool> inLanes = FindLaneArrays(context, arrays);
   std::string list;
+  std::string others;
+  int slots = 0;
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
-    list += " DO(" + std::to_string(i) + ", " + GetTypeName(arrays[i].Type) + ", " +
-      std::to_string(8 * GetElementSize(arrays[i].Type)) + ")";
+    const std::string index = std::to_string(i);
+    if (!inLanes[i])
+    {
+      others += MakeStore(arrays[i], index);
+      continue;
+    }
+    list += " DO(" + index + ", " + GetTypeName(arrays[i].Type) + ", " +
+      std::to_string(8 * GetElementSize(arrays[i].Type)) + ", " + std::to_string(slots++) + ")";
   }
-  return "#define LANES " +
-    std::string(width >= 16 ? "16"
-        : width >= 8        ? "8"
-                            : "4") +
-    "\n#define LANE_ARRAYS(DO)" + list + "\n";
+  return "#define LANES " + std::to_string(GetLanes(context)) + "\n#define LANE_SLOTS " +
+    std::to_string(slots) + "\n#define LANE_ARRAYS(DO)" + list + "\n#define HAS_OTHER_ARRAYS " +
+    (others.empty() ? "0" : "1") + "\n#define STORE_OTHER_ARRAYS " + others + "\n";
 }
 
 std::string GetSharedText()
@@ -109,16 +152,36 @@ std::string GetSharedText()
   return std::string(FiveTetrahedra_h) + KernelParameters_h;
 }
 
-} // namespace
-
-cl::Program GetMappingProgram(OpenCLContext& context)
+std::string GetMappingText(MappingForm mapping)
 {
-  return context.GetProgram(
-    GetReal(context) + GetSharedText() + DeformationMapping_cl + RunMapping_cl, Options);
+  switch (mapping)
+  {
+    case MappingForm::Links:
+      return std::string("#define MAPPING 0\n") + DeformationMapping_cl;
+    case MappingForm::Runs:
+      return std::string("#define MAPPING 1\n") + RunMapping_cl + DeformationMapping_cl;
+    default:
+      return std::string("#define MAPPING 2\n") + DeformationMapping_cl;
+  }
 }
 
-cl::Program GetResamplingProgram(
-  OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool wideKeys)
+} // namespace
+
+cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping)
+{
+  const std::string evaluation = mapping == MappingForm::Runs ? RunEvaluation_cl : "";
+  return context.GetProgram(
+    GetReal(context) + GetSharedText() + GetMappingText(mapping) + VertexState_cl + evaluation,
+    Options);
+}
+
+cl::Program GetCountingProgram(OpenCLContext& context)
+{
+  return context.GetProgram(GetSharedText() + CoverageCount_cl, Options);
+}
+
+cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
+  const std::vector<VolumeArray>& arrays, bool wideKeys)
 {
   std::string key = "#define KEY uint\n#define ATOMIC_MIN atomic_min\n";
   if (wideKeys)
@@ -132,21 +195,17 @@ cl::Program GetResamplingProgram(
         "a smaller volume or another device.");
     }
   }
-  const std::string lanes =
-    FitsLanes(arrays) ? MakeLanePreamble(context, arrays) + LaneResampling_cl : "";
-  return context.GetProgram(
-    GetSharedText() + MakePreamble(context, arrays) + key + CellCoverage_cl + Resampling_cl + lanes,
+  return context.GetProgram(GetSharedText() + MakePreamble(context, arrays) + key +
+      GetMappingText(mapping) + CellCoverage_cl + Resampling_cl +
+      MakeLanePreamble(context, arrays) + BrickResampling_cl,
     Options);
 }
 
-bool FitsLanes(const std::vector<VolumeArray>& arrays)
+std::size_t GetBrickMemory(const OpenCLContext& context, const std::vector<VolumeArray>& arrays)
 {
-  return std::all_of(arrays.begin(), arrays.end(),
-    [](const VolumeArray& array)
-    {
-      return !array.Categorical && array.Components == 1 &&
-        (array.Type == ElementType::Float32 || GetElementSize(array.Type) <= 2);
-    });
+  const std::vector<bool> inLanes = FindLaneArrays(context, arrays);
+  return GetBrickMemory(
+    context, static_cast<std::size_t>(std::count(inLanes.begin(), inLanes.end(), true)));
 }
 
 cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays)

@@ -11,17 +11,29 @@ namespace deformvolume
 /// Whether the device has double precision.
 bool HasDouble(const OpenCLContext& context);
 
-/// The deformation mapping (DeformationMapping.cl and RunMapping.cl).
-cl::Program GetMappingProgram(OpenCLContext& context);
+/// How the kernels find the displacement of a vertex: the names of MAPPING in
+/// DeformationMapping.cl.
+enum class MappingForm
+{
+  Links,
+  Runs,
+  Field
+};
 
-/// The exact resampling (Resampling.cl) for arrays of these types. wideKeys: cells are too many for
-/// the 31 bits of a narrow winner's key. Throws Error where the device lacks what the arrays need.
-cl::Program GetResamplingProgram(
-  OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool wideKeys);
+/// The deformation mapping (DeformationMapping.cl) and the state of vertices (VertexState.cl).
+cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping);
 
-/// Whether the kernel ResampleByLanes (LaneResampling.cl) can take these arrays. The program for
-/// the exact resampling holds it only then.
-bool FitsLanes(const std::vector<VolumeArray>& arrays);
+/// The exact resampling for arrays of these types: cell by cell (Resampling.cl) and by lanes
+/// (BrickResampling.cl). wideKeys: cells are too many for the 31 bits of a narrow winner's key.
+/// Throws Error where the device lacks what the arrays need.
+cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
+  const std::vector<VolumeArray>& arrays, bool wideKeys);
+
+/// Bytes of local memory that the kernel ResampleBricks wants.
+std::size_t GetBrickMemory(const OpenCLContext& context, const std::vector<VolumeArray>& arrays);
+
+/// The kernel CountCovered (CoverageCount.cl).
+cl::Program GetCountingProgram(OpenCLContext& context);
 
 /// The published resampling (PublishedResampling.cl) for arrays of these types.
 cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays);

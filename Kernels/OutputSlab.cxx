@@ -96,7 +96,7 @@ std::vector<Extent> OutputSlab::Split(const Extent& output, const std::vector<Vo
 
 void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   const Extent& extent, const std::vector<VolumeArray>& arrays, const Lattice& lattice,
-  std::vector<cl::Event>& events)
+  std::size_t numberOfBricks, std::vector<cl::Event>& events)
 {
   this->Queue = queue;
   this->SlabExtent = extent;
@@ -124,9 +124,8 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   }
   Reserve(context, this->Coverage, this->NumberOfVoxels);
   Fill<std::int8_t>(queue, this->Coverage, 0.0, events);
-  this->NumberOfRows = static_cast<std::size_t>(
-    (GetSize(lattice.VertexExtent, 1) - 1) * (GetSize(lattice.VertexExtent, 2) - 1));
-  Reserve(context, this->Counters, this->NumberOfRows * DEFORMVOLUME_COUNTERS * sizeof(cl_uint));
+  this->NumberOfBricks = numberOfBricks;
+  Reserve(context, this->Counters, this->NumberOfBricks * DEFORMVOLUME_COUNTERS * sizeof(cl_uint));
   Fill<std::uint32_t>(queue, this->Counters, 0.0, events);
 }
 
@@ -138,13 +137,12 @@ void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& 
     deformvolume::GetMemory(this->Winners), nullptr, &events.back());
 }
 
-std::uint64_t OutputSlab::CountCovered(
-  OpenCLContext& context, const std::vector<VolumeArray>& arrays, std::vector<cl::Event>& events)
+std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::Event>& events)
 {
   const std::size_t items = static_cast<std::size_t>(
     (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS);
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, items * sizeof(cl_uint));
-  cl::Kernel kernel(GetResamplingProgram(context, arrays, this->WinnerSize == 8), "CountCovered");
+  cl::Kernel kernel(GetCountingProgram(context), "CountCovered");
   kernel.setArg(0, this->Coverage);
   kernel.setArg(1, cl_ulong{ this->NumberOfVoxels });
   kernel.setArg(2, sums);
@@ -163,17 +161,22 @@ std::uint64_t OutputSlab::CountCovered(
 
 OutputSlab::Counts OutputSlab::ReadCounts()
 {
-  std::vector<cl_uint> counters(this->NumberOfRows * DEFORMVOLUME_COUNTERS);
+  std::vector<cl_uint> counters(this->NumberOfBricks * DEFORMVOLUME_COUNTERS);
   this->Queue.enqueueReadBuffer(
     this->Counters, CL_TRUE, 0, counters.size() * sizeof(cl_uint), counters.data());
   Counts counts;
-  for (std::size_t row = 0; row < this->NumberOfRows; ++row)
+  std::uint64_t flat = 0;
+  std::uint64_t assumed = 0;
+  for (std::size_t brick = 0; brick < this->NumberOfBricks; ++brick)
   {
-    const cl_uint* counter = counters.data() + row * DEFORMVOLUME_COUNTERS;
+    const cl_uint* counter = counters.data() + brick * DEFORMVOLUME_COUNTERS;
     counts.Writes += counter[DEFORMVOLUME_COUNT_WRITES];
     counts.Inverted += counter[DEFORMVOLUME_COUNT_INVERTED];
     counts.Overstretched += counter[DEFORMVOLUME_COUNT_OVERSTRETCHED];
+    flat += counter[DEFORMVOLUME_COUNT_FLAT];
+    assumed += counter[DEFORMVOLUME_COUNT_ASSUMED];
   }
+  counts.FlatWhereAssumedNone = flat > 0 && assumed > 0;
   return counts;
 }
 

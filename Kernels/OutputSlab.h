@@ -13,7 +13,7 @@ namespace deformvolume
 std::size_t GetWinnerSize(const Lattice& lattice);
 
 /// What the device holds of the output: a range of planes of all arrays, their coverage, the
-/// winners where tetrahedra overlap, and the counters of the rows of cells.
+/// winners where tetrahedra overlap, and the counters of the bricks of cells.
 class OutputSlab
 {
 public:
@@ -22,6 +22,8 @@ public:
     std::uint64_t Writes = 0;
     std::uint64_t Inverted = 0;
     std::uint64_t Overstretched = 0;
+    /// On the border of the mesh, flat tetrahedra, of which the kernel took none to be there.
+    bool FlatWhereAssumedNone = false;
   };
 
   /// Splits an output into slabs that the device can allocate. Throws Error where not even one
@@ -32,12 +34,12 @@ public:
   /// Makes room for a slab, or uses what is there, and fills it with the background. Events of
   /// launches are added to a list.
   void Prepare(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
-    const std::vector<VolumeArray>& arrays, const Lattice& lattice, std::vector<cl::Event>& events);
+    const std::vector<VolumeArray>& arrays, const Lattice& lattice, std::size_t numberOfBricks,
+    std::vector<cl::Event>& events);
 
   void PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events);
 
-  std::uint64_t CountCovered(
-    OpenCLContext& context, const std::vector<VolumeArray>& arrays, std::vector<cl::Event>& events);
+  std::uint64_t CountCovered(OpenCLContext& context, std::vector<cl::Event>& events);
   Counts ReadCounts();
 
   /// Whether the kernel for processors, with positions in float and indices of 31 bits, can write
@@ -66,7 +68,7 @@ private:
   cl::Buffer Winners;
   cl::Buffer Counters;
   std::size_t WinnerSize = 4;
-  std::size_t NumberOfRows = 0;
+  std::size_t NumberOfBricks = 0;
   std::uint64_t NumberOfVoxels = 0;
 };
 

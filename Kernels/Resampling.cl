@@ -2,7 +2,7 @@
 // Resampling: rasterises the five tetrahedra of each cell of the sampling mesh into the output, by
 // the fill rule of CellCoverage.cl, for all arrays of the volume in one pass over the geometry.
 //
-// Data: positions 12 bytes a vertex (DeformationMapping.cl), state 1 byte a vertex, active
+// Data: what the mapping needs (DeformationMapping.cl), state 1 byte a vertex, active
 // tetrahedra 1 byte a cell (optional), coverage 1 byte an output voxel, winners 4 or 8 bytes an
 // output voxel (only where tetrahedra overlap), and the arrays themselves in their own types.
 //
@@ -93,6 +93,8 @@ typedef struct
   uint Writes;
   uint Inverted;
   uint Overstretched;
+  uint Flat;    // flat tetrahedra on the border
+  uint Assumed; // whether cells on the border left samples to the next cells without looking at these
 } Output;
 
 // Of overlapping tetrahedra upright ones win, then the lowest cell. Within a cell the order of
@@ -103,26 +105,14 @@ static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
   return cell | (KEY)(inverted != 0) << (sizeof(KEY) * 8 - 1);
 }
 
-static void Write(int x, int y, int z, int t, const long* weights, long volume, int inverted,
-  Vector voxel, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+// The weights and their sum as the edge functions give them.
+static Sample MakeSample(int x, int y, int z, int t, const long* weights, long volume,
+  size_t target, const KernelParameters* p)
 {
-  Sample s;
-  s.Target = ((size_t)(voxel.z - p->OutputFirst[2]) * p->OutputSize[1] +
-               (voxel.y - p->OutputFirst[1])) *
-      p->OutputSize[0] +
-    (voxel.x - p->OutputFirst[0]);
-  const KEY key = MakeKey(x, y, z, inverted, p);
-  if (p->Pass == DEFORMVOLUME_PASS_MARK)
-  {
-    ATOMIC_MIN(output->Winners + s.Target, key);
-    return;
-  }
-  if (p->Pass == DEFORMVOLUME_PASS_WINNER && output->Winners[s.Target] != key)
-  {
-    return;
-  }
   const int mirror = Mirror(x, y, z, p);
   const REAL scale = (REAL)1 / (REAL)volume;
+  Sample s;
+  s.Target = target;
   s.Only = -1;
   s.Nearest = 0;
   for (int k = 0; k < 4; ++k)
@@ -135,7 +125,28 @@ static void Write(int x, int y, int z, int t, const long* weights, long volume, 
     s.Nearest =
       lead > 0 || (lead == 0 && s.Sources[k] < s.Sources[s.Nearest]) ? k : s.Nearest;
   }
-  output->Coverage[s.Target] = 1;
+  return s;
+}
+
+static void Write(int x, int y, int z, int t, const long* weights, long volume, int inverted,
+  Vector voxel, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const size_t target = ((size_t)(voxel.z - p->OutputFirst[2]) * p->OutputSize[1] +
+                          (voxel.y - p->OutputFirst[1])) *
+      p->OutputSize[0] +
+    (voxel.x - p->OutputFirst[0]);
+  const KEY key = MakeKey(x, y, z, inverted, p);
+  if (p->Pass == DEFORMVOLUME_PASS_MARK)
+  {
+    ATOMIC_MIN(output->Winners + target, key);
+    return;
+  }
+  if (p->Pass == DEFORMVOLUME_PASS_WINNER && output->Winners[target] != key)
+  {
+    return;
+  }
+  const Sample s = MakeSample(x, y, z, t, weights, volume, target, p);
+  output->Coverage[target] = 1;
   output->Writes++;
   StoreArrays(&s ARRAY_ARGUMENTS);
 }
@@ -188,7 +199,7 @@ static Vector SamplePosition(Vector voxel)
 
 // A cell whose tetrahedra are all there and upright: a sample behind no face of the central
 // tetrahedron is in it, and a corner tetrahedron holds only samples behind its face.
-static void ResampleUprightCell(SamplingMesh mesh, int x, int y, int z, const Vector* q,
+static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, const Vector* q,
   int interior, Candidates c, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const EdgeFunctions central = MakeEdgeFunctions(
@@ -225,7 +236,7 @@ static void ResampleUprightCell(SamplingMesh mesh, int x, int y, int z, const Ve
 }
 
 // Any cell: each tetrahedron on its own. The lowest one last, because the last one to write wins.
-static void ResampleTetrahedra(SamplingMesh mesh, int x, int y, int z, const Vector* q,
+static void ResampleTetrahedra(const SamplingMesh* mesh, int x, int y, int z, const Vector* q,
   const long* determinants, int tetrahedra, int inverted, int interior, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -260,7 +271,7 @@ static void ResampleTetrahedra(SamplingMesh mesh, int x, int y, int z, const Vec
 }
 
 // One cell, by whichever of the two ways is right for it.
-static void ResampleCell(SamplingMesh mesh, int x, int y, int z, Output* output,
+static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Vector q[8];
@@ -276,12 +287,13 @@ static void ResampleCell(SamplingMesh mesh, int x, int y, int z, Output* output,
   {
     const int o = v ^ mirror;
     const size_t i = VertexInChunk(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
-    interior |= (mesh.State[i] & DEFORMVOLUME_VERTEX_INTERIOR) ? 1 << v : 0;
+    interior |= (mesh->State[i] & DEFORMVOLUME_VERTEX_INTERIOR) ? 1 << v : 0;
   }
   // Orientations, against the one that the parity of the cell asks for.
   const int odd = (mirror ^ mirror >> 1 ^ mirror >> 2) & 1;
   long determinants[5];
   int inverted = 0;
+  int flat = 0;
   int regular = tetrahedra == 31 && present == 255;
   for (int t = 0; t < 5; ++t)
   {
@@ -309,8 +321,10 @@ static void ResampleCell(SamplingMesh mesh, int x, int y, int z, Output* output,
     const int upright = odd != (t == 4) ? determinants[t] < 0 : determinants[t] > 0;
     regular &= upright;
     inverted |= (!upright && determinants[t] != 0) << t;
+    flat |= determinants[t] == 0;
   }
   output->Inverted += popcount(inverted);
+  output->Flat += flat && interior != 255;
   if (regular)
   {
     Vector low = q[0];
@@ -335,51 +349,39 @@ static void ResampleCell(SamplingMesh mesh, int x, int y, int z, Output* output,
   }
 }
 
+// Adds the counts of a work-item to those of a brick of cells.
 static void AddCounts(
-  const Output* output, int y, int z, __global uint* counters, const KernelParameters* p)
+  const Output* output, uint brick, __global uint* counters, const KernelParameters* p)
 {
   if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
   {
     return;
   }
-  __global uint* row = counters + ((size_t)z * (p->Size[1] - 1) + y) * DEFORMVOLUME_COUNTERS;
   const uint counts[DEFORMVOLUME_COUNTERS] = { output->Writes, output->Inverted,
-    output->Overstretched };
+    output->Overstretched, output->Flat, output->Assumed };
   for (int i = 0; i < DEFORMVOLUME_COUNTERS; ++i)
   {
     if (counts[i])
     {
-      atomic_add(row + i, counts[i]);
+      atomic_add(counters + brick * DEFORMVOLUME_COUNTERS + i, counts[i]);
     }
   }
 }
 
-__kernel void Resample(__global const int* positions, __global const uchar* state,
+__kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   __global const uchar* active, __global char* coverage, __global KEY* winners,
   __global uint* counters, const KernelParameters p ARRAY_PARAMETERS)
 {
-  const SamplingMesh mesh = { positions, state, active };
-  Output output = { coverage, winners, 0, 0, 0 };
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active };
+  Output output = { coverage, winners, 0, 0, 0, 0, 0 };
   const int y = get_global_id(1);
   const int z = p.LayersBegin + (int)get_global_id(2);
   for (int x = get_global_id(0); x < p.Size[0] - 1; x += get_global_size(0))
   {
-    ResampleCell(mesh, x, y, z, &output, &p ARRAY_ARGUMENTS);
+    ResampleCell(&mesh, x, y, z, &output, &p ARRAY_ARGUMENTS);
   }
-  AddCounts(&output, y, z, counters, &p);
-}
-
-// Counts the covered voxels: a partial sum a work-item.
-__kernel void CountCovered(
-  __global const char* coverage, const ulong numberOfVoxels, __global uint* sums)
-{
-  const size_t item = get_global_id(0);
-  const size_t begin = item * DEFORMVOLUME_COUNTED_VOXELS;
-  const size_t end = min(begin + DEFORMVOLUME_COUNTED_VOXELS, (size_t)numberOfVoxels);
-  uint sum = 0;
-  for (size_t i = begin; i < end; ++i)
-  {
-    sum += coverage[i];
-  }
-  sums[item] = sum;
+  const uint brick = ((uint)(z - p.BrickOrigin[2]) / DEFORMVOLUME_BRICK_Z * p.BrickCount[1] +
+                       (uint)(y - p.BrickOrigin[1]) / DEFORMVOLUME_BRICK_Y) *
+    p.BrickCount[0];
+  AddCounts(&output, brick, counters, &p);
 }

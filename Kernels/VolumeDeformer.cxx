@@ -72,6 +72,24 @@ std::vector<float> MakeVectors(const float* vectors, std::size_t count, const ch
   return padded;
 }
 
+/// Finds out whether the voxels are points of a field.
+void SetSameGrid(FieldParameters& field, const Extent& extent)
+{
+  field.SameGrid = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      field.SameGrid &= field.IndexToField[4 * axis + column] == (axis == column ? 1.0F : 0.0F);
+    }
+    const float offset = field.IndexToField[4 * axis + 3];
+    field.SameGrid &= offset == std::floor(offset) && offset >= 0.0F &&
+      offset + static_cast<float>(GetSize(extent, axis)) <=
+        static_cast<float>(field.Dimensions[axis]);
+    field.Offset[axis] = field.SameGrid ? static_cast<int>(offset) : 0;
+  }
+}
+
 } // namespace
 
 VolumeDeformer::VolumeDeformer()
@@ -318,6 +336,7 @@ void VolumeDeformer::SetDisplacementField(const DisplacementField& field)
       }
       std::copy_n(field.Dimensions.begin(), 3, parameters.Dimensions);
       parameters.Extrapolate = field.Extrapolate;
+      SetSameGrid(parameters, extent);
       DeviceLattice& mesh = this->Impl->GetMesh();
       if (mesh.HasMesh())
       {

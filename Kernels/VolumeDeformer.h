@@ -138,9 +138,10 @@ enum class Resampling
   Exact,
   /// The same with the kernel that takes one cell after the other: any arrays, any device.
   ExactByCell,
-  /// The same with the kernel for processors, several cells in the lanes of vector registers; an
-  /// Error where the arrays are not all linear, of one component, and float or integers of 8 or
-  /// 16 bits, or the output is over 32,768 voxels on an axis.
+  /// The same with the kernel for processors, several cells in the lanes of vector registers: any
+  /// arrays; an Error where the output is over 32,768 voxels on an axis, or 2^31 altogether. Linear
+  /// arrays of one component, of float or integers of 8 or 16 bits, are interpolated in single
+  /// precision.
   ExactByLanes,
   /// The published kernel, kept as the yardstick of benchmarks: float tolerance, racing writes.
   Published
@@ -170,7 +171,7 @@ struct DeformReport
   /// True where tetrahedra overlap, so that a winner had to be chosen: upright before inverted,
   /// then the lowest cell and tetrahedron.
   bool Overlapping = false;
-  /// Seconds.
+  /// Seconds. The exact kernels map and resample in one: their MappingTime is 0.
   double MappingTime = 0.0;
   double ResamplingTime = 0.0;
   double TransferTime = 0.0;

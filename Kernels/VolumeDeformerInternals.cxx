@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VolumeDeformerInternals.h"
 
-#include "KernelProgram.h"
-
 #include <algorithm>
+#include <numeric>
 
 namespace deformvolume
 {
@@ -165,59 +164,62 @@ void VolumeDeformer::Internals::CheckRequest(const DeformRequest& request)
 
 bool VolumeDeformer::Internals::UseLanes(Resampling method, const OutputSlab& output) const
 {
-  const bool fits = FitsLanes(this->Arrays) && output.FitsLanes();
+  const bool fits = output.FitsLanes();
   if (method == Resampling::ExactByLanes && !fits)
   {
-    throw Error("The resampling by lanes takes only arrays of one component that are float or "
-                "integers of 8 or 16 bits and not categorical, and outputs under 2^31 voxels and "
-                "32,769 on an axis.");
+    throw Error(
+      "The resampling by lanes takes only outputs under 2^31 voxels, and of at most 32,768 "
+      "on an axis.");
   }
   return fits &&
     (method == Resampling::ExactByLanes ||
       (method == Resampling::Exact && this->Context->GetDevice().IsProcessor));
 }
 
-void VolumeDeformer::Internals::Evaluate(const cl::Program& program)
+MappingForm VolumeDeformer::Internals::GetMappingForm() const
 {
-  if (this->Mesh->HasRuns() && this->Mesh->NeedsRecords())
-  {
-    this->MappingEvents.push_back(
-      this->Mesh->EvaluateTetrahedra(program, this->Tetrahedra, this->Nodes));
-  }
+  return this->Mesh->HasRuns() ? MappingForm::Runs
+    : this->Mesh->HasMesh()    ? MappingForm::Links
+                               : MappingForm::Field;
 }
 
-void VolumeDeformer::Internals::Map(
-  const cl::Program& program, const LatticeChunk& chunk, const KernelParameters& p)
+cl_uint VolumeDeformer::Internals::SetMappingArguments(
+  cl::Kernel& kernel, const LatticeChunk& chunk) const
 {
-  const bool byMesh = this->Mesh->HasMesh();
-  const bool byRuns = this->Mesh->HasRuns();
-  cl::Kernel kernel(program, byRuns ? "MapByRuns" : byMesh ? "MapByMesh" : "MapByField");
   cl_uint i = 0;
-  if (byRuns)
+  if (this->GetMappingForm() == MappingForm::Runs)
   {
     kernel.setArg(i++, chunk.Runs);
     kernel.setArg(i++, chunk.RowBegins);
-    kernel.setArg(i++, chunk.State);
     kernel.setArg(i++, this->Mesh->GetRecords());
   }
-  else if (byMesh)
+  else if (this->GetMappingForm() == MappingForm::Links)
   {
     kernel.setArg(i++, chunk.Links);
-    kernel.setArg(i++, chunk.State);
     kernel.setArg(i++, this->Tetrahedra);
     kernel.setArg(i++, this->Nodes);
   }
   else
   {
-    kernel.setArg(i++, chunk.State);
     kernel.setArg(i++, this->FieldVectors);
-  }
-  kernel.setArg(i++, this->Mesh->GetRestPositions());
-  kernel.setArg(i++, this->Positions);
-  if (!byMesh)
-  {
     kernel.setArg(i++, this->Field);
   }
+  kernel.setArg(i++, this->Mesh->GetRestPositions());
+  return i;
+}
+
+void VolumeDeformer::Internals::Map(const LatticeChunk& chunk, const KernelParameters& p)
+{
+  const std::uint64_t bytes = static_cast<std::uint64_t>(p.Size[0]) * p.Size[1] * 3 *
+    sizeof(cl_int) * static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin);
+  if (GetMemory(this->Positions) < bytes)
+  {
+    this->Positions = cl::Buffer(this->Context->GetContext(), CL_MEM_READ_WRITE, bytes);
+  }
+  cl::Kernel kernel(GetMappingProgram(*this->Context, this->GetMappingForm()), "MapPositions");
+  cl_uint i = this->SetMappingArguments(kernel, chunk);
+  kernel.setArg(i++, chunk.State);
+  kernel.setArg(i++, this->Positions);
   kernel.setArg(i++, p);
   this->MappingEvents.emplace_back();
   this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
@@ -225,74 +227,108 @@ void VolumeDeformer::Internals::Map(
     &this->MappingEvents.back());
 }
 
-void VolumeDeformer::Internals::Launch(cl::Kernel& kernel, const KernelParameters& p, bool exact)
+std::size_t VolumeDeformer::Internals::GetGroupSize(const cl::Kernel& kernel) const
 {
-  const OpenCLDevice& device = this->Context->GetDevice();
-  const std::size_t cells = static_cast<std::size_t>(p.Size[0] - 1);
-  const auto largest = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.Device);
-  std::size_t group = this->WorkGroupSize ? std::min(this->WorkGroupSize, largest)
-                                          : std::min<std::size_t>(64, largest);
-  // On a processor one work-item takes a whole row of cells.
-  std::size_t items = (cells + group - 1) / group * group;
-  if (exact && device.IsProcessor)
-  {
-    group = this->WorkGroupSize ? group : 1;
-    items = group;
-  }
-  this->ResamplingEvents.emplace_back();
-  this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
-    cl::NDRange(items, static_cast<std::size_t>(p.Size[1] - 1),
-      static_cast<std::size_t>(p.LayersEnd - p.LayersBegin)),
-    cl::NDRange(group, 1, 1), nullptr, &this->ResamplingEvents.back());
+  const auto largest =
+    kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(this->Context->GetDevice().Device);
+  return std::min<std::size_t>(this->WorkGroupSize ? this->WorkGroupSize : 64, largest);
 }
 
-void VolumeDeformer::Internals::Run(const DeformRequest& request, OutputSlab& output, int pass)
+void VolumeDeformer::Internals::Launch(
+  cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group)
 {
-  const bool exact = request.Method != Resampling::Published;
-  const bool lanes = this->UseLanes(request.Method, output) && pass == DEFORMVOLUME_PASS_DIRECT;
-  const cl::Program mapping = GetMappingProgram(*this->Context);
-  cl::Kernel kernel = exact
-    ? cl::Kernel(GetResamplingProgram(
-                   *this->Context, this->Arrays, GetWinnerSize(this->Mesh->GetLattice()) == 8),
-        lanes ? "ResampleByLanes" : "Resample")
-    : cl::Kernel(GetPublishedProgram(*this->Context, this->Arrays), "ResamplePublished");
-  this->Mesh->UpdateState(mapping, this->Mesh->HasMesh() ? nullptr : &this->Field);
-  this->Evaluate(mapping);
+  this->ResamplingEvents.emplace_back();
+  this->Queue.enqueueNDRangeKernel(
+    kernel, cl::NullRange, items, group, nullptr, &this->ResamplingEvents.back());
+  this->Queue.flush();
+}
+
+void VolumeDeformer::Internals::ReportLaunch(const DeformRequest& request, cl::Event& previous)
+{
+  if (previous())
+  {
+    previous.wait();
+  }
+  previous = this->ResamplingEvents.back();
+  ++this->LaunchesDone;
+  if (request.Progress &&
+    !request.Progress(std::min(1.0, double(this->LaunchesDone) / this->LaunchesExpected)))
+  {
+    this->Queue.finish();
+    throw Aborted();
+  }
+}
+
+void VolumeDeformer::Internals::RunPublished(const DeformRequest& request, OutputSlab& output)
+{
+  cl::Kernel kernel(GetPublishedProgram(*this->Context, this->Arrays), "ResamplePublished");
+  const std::size_t group = this->GetGroupSize(kernel);
   cl::Event previous;
   for (const LatticeChunk& chunk : this->Mesh->GetChunks())
   {
     // The published method maps all vertices, and then resamples all cells.
-    const int step = exact ? LayersPerLaunch : chunk.LayersEnd - chunk.LayersBegin;
-    for (int begin = chunk.LayersBegin; begin < chunk.LayersEnd; begin += step)
+    KernelParameters p = this->Mesh->GetParameters(chunk);
+    p.PlanesBegin = p.LayersBegin;
+    p.PlanesEnd = p.LayersEnd + 1;
+    p.SlabFirst = p.PlanesBegin;
+    output.SetParameters(p);
+    this->Map(chunk, p);
+    cl_uint i = 0;
+    kernel.setArg(i++, this->Positions);
+    kernel.setArg(i++, p.HasActive ? chunk.Active : chunk.State);
+    kernel.setArg(i++, output.GetCoverage());
+    kernel.setArg(i++, p);
+    for (std::size_t a = 0; a < this->Arrays.size(); ++a)
+    {
+      kernel.setArg(i++, chunk.Arrays[a]);
+      kernel.setArg(i++, output.GetArray(a));
+    }
+    const std::size_t cells = static_cast<std::size_t>(p.Size[0] - 1);
+    this->Launch(kernel,
+      cl::NDRange((cells + group - 1) / group * group, static_cast<std::size_t>(p.Size[1] - 1),
+        static_cast<std::size_t>(p.LayersEnd - p.LayersBegin)),
+      cl::NDRange(group, 1, 1));
+    this->ReportLaunch(request, previous);
+  }
+}
+
+void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSlab& output, int pass)
+{
+  const bool lanes = this->UseLanes(request.Method, output);
+  cl::Kernel kernel(GetResamplingProgram(*this->Context, this->GetMappingForm(), this->Arrays,
+                      GetWinnerSize(this->Mesh->GetLattice()) == 8),
+    lanes ? "ResampleBricks" : "Resample");
+  if (lanes)
+  {
+    std::vector<cl_uint> bricks(this->Mesh->GetNumberOfBricks());
+    std::iota(bricks.begin(), bricks.end(), 0U);
+    this->Bricks = this->SendBuffer(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
+  }
+  cl::Event previous;
+  for (const LatticeChunk& chunk : this->Mesh->GetChunks())
+  {
+    for (int begin = chunk.LayersBegin; begin < chunk.LayersEnd;)
     {
       KernelParameters p = this->Mesh->GetParameters(chunk);
+      // Launches end where bricks do.
+      const int step = LayersPerLaunch - (begin - p.BrickOrigin[2]) % DEFORMVOLUME_BRICK_Z;
       p.LayersBegin = begin;
       p.LayersEnd = std::min(begin + step, chunk.LayersEnd);
-      p.PlanesBegin = std::max(p.LayersBegin - 1, 0);
-      p.PlanesEnd = std::min(p.LayersEnd + 2, p.Size[2]);
-      p.SlabFirst = p.PlanesBegin;
       p.Pass = pass;
       output.SetParameters(p);
-      const std::uint64_t bytes = static_cast<std::uint64_t>(p.Size[0]) * p.Size[1] * 12 *
-          static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin) +
-        DEFORMVOLUME_READ_AHEAD * sizeof(cl_int);
-      if (GetMemory(this->Positions) < bytes)
-      {
-        this->Positions = cl::Buffer(this->Context->GetContext(), CL_MEM_READ_WRITE, bytes);
-      }
-      this->Map(mapping, chunk, p);
-      cl_uint i = 0;
-      kernel.setArg(i++, this->Positions);
-      if (exact)
-      {
-        kernel.setArg(i++, chunk.State);
-      }
+      cl_uint i = this->SetMappingArguments(kernel, chunk);
+      kernel.setArg(i++, chunk.State);
       kernel.setArg(i++, p.HasActive ? chunk.Active : chunk.State);
       kernel.setArg(i++, output.GetCoverage());
-      if (exact)
+      kernel.setArg(i++, output.GetWinners());
+      kernel.setArg(i++, output.GetCounters());
+      const std::pair<cl_uint, cl_uint> bricks =
+        this->Mesh->GetBrickRange(p.LayersBegin, p.LayersEnd);
+      p.ListBegin = static_cast<int>(bricks.first);
+      if (lanes)
       {
-        kernel.setArg(i++, output.GetWinners());
-        kernel.setArg(i++, output.GetCounters());
+        kernel.setArg(i++, this->Bricks);
+        kernel.setArg(i++, cl::Local(GetBrickMemory(*this->Context, this->Arrays)));
       }
       kernel.setArg(i++, p);
       for (std::size_t a = 0; a < this->Arrays.size(); ++a)
@@ -300,22 +336,47 @@ void VolumeDeformer::Internals::Run(const DeformRequest& request, OutputSlab& ou
         kernel.setArg(i++, chunk.Arrays[a]);
         kernel.setArg(i++, output.GetArray(a));
       }
-      this->Launch(kernel, p, exact);
-      this->Queue.flush();
-      // Wait for the launch before this one: the device always has work while we report.
-      if (previous())
+      if (lanes)
       {
-        previous.wait();
+        this->Launch(kernel, cl::NDRange(bricks.second - bricks.first), cl::NDRange(1));
       }
-      previous = this->ResamplingEvents.back();
-      ++this->LaunchesDone;
-      if (request.Progress &&
-        !request.Progress(std::min(1.0, double(this->LaunchesDone) / this->LaunchesExpected)))
+      else
       {
-        this->Queue.finish();
-        throw Aborted();
+        // On a processor one work-item takes a whole row of cells.
+        const bool processor = this->Context->GetDevice().IsProcessor;
+        const std::size_t group =
+          processor && !this->WorkGroupSize ? 1 : this->GetGroupSize(kernel);
+        const std::size_t cells = static_cast<std::size_t>(p.Size[0] - 1);
+        this->Launch(kernel,
+          cl::NDRange(processor ? group : (cells + group - 1) / group * group,
+            static_cast<std::size_t>(p.Size[1] - 1),
+            static_cast<std::size_t>(p.LayersEnd - p.LayersBegin)),
+          cl::NDRange(group, 1, 1));
       }
+      this->ReportLaunch(request, previous);
+      begin = p.LayersEnd;
     }
+  }
+}
+
+void VolumeDeformer::Internals::Run(const DeformRequest& request, OutputSlab& output, int pass)
+{
+  const cl::Program mapping = GetMappingProgram(*this->Context, this->GetMappingForm());
+  if (this->Mesh->HasRuns() && this->Mesh->NeedsRecords())
+  {
+    this->MappingEvents.push_back(
+      this->Mesh->EvaluateTetrahedra(mapping, this->Tetrahedra, this->Nodes));
+  }
+  this->Mesh->UpdateState(mapping,
+    [this](cl::Kernel& kernel, const LatticeChunk& chunk)
+    { return this->SetMappingArguments(kernel, chunk); });
+  if (request.Method == Resampling::Published)
+  {
+    this->RunPublished(request, output);
+  }
+  else
+  {
+    this->RunExact(request, output, pass);
   }
 }
 
@@ -334,10 +395,9 @@ DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request)
   {
     this->LaunchesExpected = (slabs.size() - s) * launches + this->LaunchesDone;
     this->Target.Prepare(*this->Context, this->Queue, slabs[s], this->Arrays,
-      this->Mesh->GetLattice(), this->ResamplingEvents);
+      this->Mesh->GetLattice(), this->Mesh->GetNumberOfBricks(), this->ResamplingEvents);
     this->Run(request, this->Target, DEFORMVOLUME_PASS_DIRECT);
-    std::uint64_t covered =
-      this->Target.CountCovered(*this->Context, this->Arrays, this->ResamplingEvents);
+    std::uint64_t covered = this->Target.CountCovered(*this->Context, this->ResamplingEvents);
     const OutputSlab::Counts counts = this->Target.ReadCounts();
     if (s == 0) // every slab sees all tetrahedra
     {
@@ -346,7 +406,8 @@ DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request)
     }
     // Every covered voxel was written once, unless tetrahedra overlap; where the mesh is folded,
     // voxels on the crease may also be missing.
-    if (request.Method != Resampling::Published && (counts.Writes > covered || counts.Inverted > 0))
+    if (request.Method != Resampling::Published &&
+      (counts.Writes > covered || counts.Inverted > 0 || counts.FlatWhereAssumedNone))
     {
       report.Overlapping |= counts.Writes > covered;
       this->LaunchesExpected += 2 * launches;
@@ -354,7 +415,7 @@ DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request)
       this->Target.PrepareWinners(*this->Context, this->ResamplingEvents);
       this->Run(request, this->Target, DEFORMVOLUME_PASS_MARK);
       this->Run(request, this->Target, DEFORMVOLUME_PASS_WINNER);
-      covered = this->Target.CountCovered(*this->Context, this->Arrays, this->ResamplingEvents);
+      covered = this->Target.CountCovered(*this->Context, this->ResamplingEvents);
     }
     report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
     this->Queue.finish();

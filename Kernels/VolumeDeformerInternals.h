@@ -4,6 +4,7 @@
 
 #include "DeviceLattice.h"
 #include "KernelParameters.h"
+#include "KernelProgram.h"
 #include "OpenCLContext.h"
 #include "OutputSlab.h"
 #include "VolumeDeformer.h"
@@ -13,9 +14,8 @@
 namespace deformvolume
 {
 
-/// Cell layers in a launch: few enough that positions stay in the caches and that progress is
-/// reported, and enough that the planes mapped twice cost little.
-constexpr int LayersPerLaunch = 32;
+/// Cell layers in a launch, whole bricks of them: few enough that progress is reported.
+constexpr int LayersPerLaunch = 2 * DEFORMVOLUME_BRICK_Z;
 
 /// Throws an Error that names the bytes where there are too few.
 void CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where);
@@ -74,11 +74,17 @@ public:
 
   bool UseLanes(Resampling method, const OutputSlab& output) const;
   void CheckRequest(const DeformRequest& request);
-  /// Brings the records of the tetrahedra up to date where the mesh has runs.
-  void Evaluate(const cl::Program& program);
-  void Map(const cl::Program& program, const LatticeChunk& chunk, const KernelParameters& p);
-  void Launch(cl::Kernel& kernel, const KernelParameters& p, bool exact);
+  MappingForm GetMappingForm() const;
+  /// Sets a kernel's first arguments, those of the mapping, and returns how many they are.
+  cl_uint SetMappingArguments(cl::Kernel& kernel, const LatticeChunk& chunk) const;
+  void Map(const LatticeChunk& chunk, const KernelParameters& p);
+  void Launch(cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group);
   void Run(const DeformRequest& request, OutputSlab& output, int pass);
+  void RunPublished(const DeformRequest& request, OutputSlab& output);
+  void RunExact(const DeformRequest& request, OutputSlab& output, int pass);
+  /// Waits for the launch before the last one, so that the device always has work, and reports.
+  void ReportLaunch(const DeformRequest& request, cl::Event& previous);
+  std::size_t GetGroupSize(const cl::Kernel& kernel) const;
   DeformReport Deform(const DeformRequest& request);
 
   OpenCLContext* Context = nullptr;
@@ -97,6 +103,7 @@ public:
   FieldParameters Field = {};
   cl::Buffer FieldVectors;
   cl::Buffer Positions;
+  cl::Buffer Bricks; // the list of those to work on
   OutputSlab Target;
 
   double SendingTime = 0.0;

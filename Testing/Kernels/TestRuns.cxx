@@ -160,7 +160,6 @@ public:
     , Context(OpenCLContext::Get(FindDevice("")))
     , Queue(Context.GetContext(), Context.GetDevice().Device, CL_QUEUE_PROFILING_ENABLE)
     , Mesh(Context, Queue, runCase.Shape, 1, allocationLimit)
-    , Program(GetMappingProgram(Context))
   {
   }
 
@@ -180,19 +179,31 @@ public:
     if (byRuns)
     {
       this->Mesh.SetRuns(this->Case.Runs);
-      this->Mesh.EvaluateTetrahedra(this->Program, tetrahedra, nodes);
+      this->Mesh.EvaluateTetrahedra(
+        GetMappingProgram(this->Context, MappingForm::Runs), tetrahedra, nodes);
     }
     else
     {
       this->Mesh.SetLinks(this->Case.Links.data());
     }
-    this->Mesh.UpdateState(this->Program, nullptr);
+    const cl::Program program =
+      GetMappingProgram(this->Context, byRuns ? MappingForm::Runs : MappingForm::Links);
+    const auto setMapping = [&](cl::Kernel& kernel, const LatticeChunk& chunk)
+    {
+      kernel.setArg(0, byRuns ? chunk.Runs : chunk.Links);
+      kernel.setArg(1, byRuns ? chunk.RowBegins : tetrahedra);
+      kernel.setArg(2, byRuns ? this->Mesh.GetRecords() : nodes);
+      kernel.setArg(3, this->Mesh.GetRestPositions());
+      return cl_uint{ 4 };
+    };
+    this->Mesh.UpdateState(program, setMapping);
     Mapped mapped;
     mapped.Positions.resize(this->Case.GetNumberOfVoxels(), { { 1, 2, 3 } });
     mapped.States.resize(this->Case.GetNumberOfVoxels(), 99);
     for (const LatticeChunk& chunk : this->Mesh.GetChunks())
     {
-      this->MapChunk(byRuns, chunk, tetrahedra, nodes, mapped);
+      cl::Kernel kernel(program, "MapPositions");
+      this->MapChunk(kernel, setMapping(kernel, chunk), chunk, mapped);
     }
     return mapped;
   }
@@ -207,28 +218,14 @@ private:
     return buffer;
   }
 
-  void MapChunk(bool byRuns, const LatticeChunk& chunk, const cl::Buffer& tetrahedra,
-    const cl::Buffer& nodes, Mapped& mapped)
+  void MapChunk(cl::Kernel& kernel, cl_uint i, const LatticeChunk& chunk, Mapped& mapped)
   {
     const KernelParameters p = this->Mesh.GetParameters(chunk);
     const std::size_t plane = static_cast<std::size_t>(p.Size[0]) * p.Size[1];
     const std::size_t voxels = plane * (p.PlanesEnd - p.PlanesBegin);
     const cl::Buffer positions(
       this->Context.GetContext(), CL_MEM_READ_WRITE, voxels * 3 * sizeof(int));
-    cl::Kernel kernel(this->Program, byRuns ? "MapByRuns" : "MapByMesh");
-    cl_uint i = 0;
-    kernel.setArg(i++, byRuns ? chunk.Runs : chunk.Links);
-    if (byRuns)
-    {
-      kernel.setArg(i++, chunk.RowBegins);
-    }
     kernel.setArg(i++, chunk.State);
-    kernel.setArg(i++, byRuns ? this->Mesh.GetRecords() : tetrahedra);
-    if (!byRuns)
-    {
-      kernel.setArg(i++, nodes);
-    }
-    kernel.setArg(i++, this->Mesh.GetRestPositions());
     kernel.setArg(i++, positions);
     kernel.setArg(i++, p);
     this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
@@ -258,7 +255,6 @@ private:
   OpenCLContext& Context;
   cl::CommandQueue Queue;
   DeviceLattice Mesh;
-  cl::Program Program;
 };
 
 constexpr std::uint64_t NoLimit = std::uint64_t{ 1 } << 30;

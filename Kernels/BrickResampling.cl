@@ -1,0 +1,796 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mapping and resampling in one, for processors: a work-item takes a brick of cells, and LANES cells
+// of a row lie side by side in the lanes of vector registers. It comes after Resampling.cl and gives
+// the same voxels; cells that it is not sure of it leaves to ResampleCell.
+//
+// Why it is shaped so: compilers do not turn a kernel with data-dependent loops over candidates
+// into vector code, so the lanes are written out. Positions are found plane by plane, as the cells
+// need them, and never leave the innermost cache: two planes of a brick, 17 rows each. A row is
+// split into vertices of even and of odd index: cells of equal parity, every second one of a row, are
+// taken together, and no lane needs another 5T split than its neighbour. Every lane goes through its own
+// candidates, one after the other, until the last lane has none left.
+//
+// Data: links 16 bytes a voxel (or a field), state 1 byte, the arrays in their own types. In local
+// memory, a row: for even, then for odd vertices the position in output voxels relative to the first
+// output voxel (x, y, z; float, exact multiples of 1/256), then the values of the arrays that are
+// interpolated in single precision, HALF_ROW floats each.
+//
+// The method. The central tetrahedron has the vertices 0, 3, 5, 6 of the cell; l0, l3, l5, l6 are a
+// sample's barycentric coordinates in it. The corner tetrahedra replace one of them by the vertex
+// 1 (for 6), 2 (for 5), 4 (for 3) or 7 (for 0). In a cell that is not too bent a sample has at most
+// one negative coordinate li, and lies behind that face: in the corner's coordinates the corner
+// vertex c has the weight u = li / bi, where bi < 0 is the corner's own coordinate, and the others
+// have tj = lj - u bj. For samples of the central tetrahedron u is 0 and tj = lj. So
+//   u = min(li, 0) / bi for each corner,  tj = max(lj, 0) - sum of u bj
+// are the weights of all eight vertices without a branch, and the sample is in the cell where
+// no tj is negative.
+//
+// The fill rule stays exact. Positions are exact in float (cells under 8 voxels, steps of 1/256),
+// and the error of tj is at most d = 8.5e-5 (3.4e-5 where -1 <= bi <= -0.35) times the cell's
+// extent times the largest 1-norm of the gradients of the lj: with u = 2^-24 and k = extent times
+// that norm >= 1, the error of lj is at most (7 + 5 |lj|) u k, that of l0 (30 + 5 |1 - l0|) u k,
+// and that of tj no more than (2 M + 1) times their sum with M = max |bj / bi|. When three of the
+// tj exceed d, the sample is inside; when one is under -d, outside. In between the cell is left
+// to ResampleCell, which repeats it in integers.
+//
+// What the host puts in front of this text, besides that of Resampling.cl:
+//   LANES                16, 8 or 4: floats in a vector
+//   LANE_ARRAYS(DO)      DO(index, type, bits, slot) for each array that is interpolated in single
+//                        precision: linear ones of one component, float (bits 32) or integers of 8 or
+//                        16 bits
+//   LANE_SLOTS           how many these are
+//   STORE_OTHER_ARRAYS   statements that store all other arrays at a sample; HAS_OTHER_ARRAYS 0 or 1
+
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#define FLOATS JOIN(float, LANES)
+#define INTS JOIN(int, LANES)
+#define LOAD(p) JOIN(vload, LANES)(0, p)
+#define TO_FLOATS JOIN(convert_float, LANES)
+#define TO_INTS JOIN(convert_int, LANES)
+#define AS_INTS JOIN(as_int, LANES)
+
+#define MAXIMUM_EXTENT 7.99f  // voxels: the normals of larger cells are not exact in float
+#define ALMOST_ONE (255.0f / 256.0f) // ceil(v) = trunc(v + ALMOST_ONE) for multiples of 1/256
+
+static FLOATS Least(FLOATS a, FLOATS b)
+{
+  return a < b ? a : b;
+}
+
+static FLOATS Most(FLOATS a, FLOATS b)
+{
+  return a > b ? a : b;
+}
+
+#if LANES == 16
+#define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#elif LANES == 8
+#define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7))
+#else
+#define LANE_INDEX ((INTS)(0, 1, 2, 3))
+#endif
+#define LANE_BITS ((INTS)(1) << LANE_INDEX)
+
+// A vector that is read back lane by lane.
+typedef union
+{
+  INTS Vector;
+  int Lanes[LANES];
+} Lanes;
+
+// A bit for each lane that is set.
+static uint LaneBits(INTS mask)
+{
+  const INTS bits = mask & LANE_BITS;
+#if LANES == 16
+  const int8 a = bits.lo | bits.hi;
+  const int4 b = a.lo | a.hi;
+#elif LANES == 8
+  const int4 b = bits.lo | bits.hi;
+#else
+  const int4 b = bits;
+#endif
+  const long2 c = as_long2(b);
+  const long d = c.x | c.y;
+  return (uint)d | (uint)(d >> 32);
+}
+
+// For each set bit, the highest first: lane is its number.
+#define FOR_EACH_LANE(lane, bits)                                                                  \
+  for (int lane = 31 - clz(bits); lane >= 0; bits ^= 1u << lane, lane = 31 - clz(bits))
+
+
+// The largest lane.
+static int MostOf(INTS v)
+{
+#if LANES == 16
+  const int8 a = max(v.lo, v.hi);
+  const int4 b = max(a.lo, a.hi);
+#elif LANES == 8
+  const int4 b = max(v.lo, v.hi);
+#else
+  const int4 b = v;
+#endif
+  const int2 c = max(b.lo, b.hi);
+  return max(c.x, c.y);
+}
+
+// The sum of the lanes.
+static int SumOf(INTS v)
+{
+#if LANES == 16
+  const int8 a = v.lo + v.hi;
+  const int4 b = a.lo + a.hi;
+#elif LANES == 8
+  const int4 b = v.lo + v.hi;
+#else
+  const int4 b = v;
+#endif
+  const int2 c = b.lo + b.hi;
+  return c.x + c.y;
+}
+
+#ifdef __clang__
+#define PREFETCH(address) __builtin_prefetch((const void*)(size_t)(address));
+#else
+#define PREFETCH(address)
+#endif
+
+#define HALF_ROW ((DEFORMVOLUME_BRICK_X / 2 / LANES + 1) * LANES)
+#define SLOTS (3 + LANE_SLOTS)
+#define ODD (SLOTS * HALF_ROW)   // from an even vertex to the odd one with the same place
+#define ROW (2 * ODD)
+#define ROWS (DEFORMVOLUME_BRICK_Y + 1)
+#define NOT_THERE -1e30f // x of places beyond the volume
+#define NO_SOURCE 1e30f  // x of vertices without position
+
+typedef __local const float* LocalRow;
+
+// What is known of the vertices of a row, eight of them a bit, the lowest first.
+typedef struct
+{
+  uint Border;  // one is not interior
+  uint Special; // one has a value that sums of products do not give back bit for bit
+} RowFlags;
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Mapping: fills rows.
+
+#define ROW_PLACES (DEFORMVOLUME_BRICK_X + 16) // of a row that is not split; vectors may reach beyond the end
+
+#if MAPPING == MAPPING_RUNS
+
+// The displacements of the vertices of a row from x to end, x, y and z apart, one after the other from
+// place i: affine from one run's begin to the next.
+static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
+  __local float* places, const KernelParameters* p)
+{
+  const float8 steps = (float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f);
+  const size_t row = RowIndex(y, z, p);
+  const uint last = m->RowBegins[row + 1] - 1;
+  uint run = FindRun(m->Runs, m->RowBegins[row], last + 1, x);
+  int next = m->Runs[run].Tetrahedron;
+  while (x < end)
+  {
+    const int tetrahedron = next;
+    int runEnd = end;
+    if (run < last)
+    {
+      const VertexRun following = m->Runs[++run];
+      runEnd = min(following.Begin, end);
+      next = following.Tetrahedron;
+    }
+    if (tetrahedron >= 0)
+    {
+      const RunDisplacement d = MakeRunDisplacement(m->Records + tetrahedron, y, z);
+      for (int k = 0; k < runEnd - x; k += 8)
+      {
+        const float8 offset = ((float)(x + k) + steps) - d.OriginX;
+        __local float* place = places + i + k;
+        vstore8(d.Displacement.x + (d.Across.x + d.AlongX.x * offset), 0, place);
+        vstore8(d.Displacement.y + (d.Across.y + d.AlongX.y * offset), 0, place + ROW_PLACES);
+        vstore8(d.Displacement.z + (d.Across.z + d.AlongX.z * offset), 0, place + 2 * ROW_PLACES);
+      }
+    }
+    i += runEnd - x;
+    x = runEnd;
+  }
+}
+
+#define ROW_DISPLACEMENTS DisplaceRow(m, x, end, i, y, z, displaced, p);
+#define ROW_DISPLACEMENT                                                                           \
+  (float4)(displaced[i], displaced[i + ROW_PLACES], displaced[i + 2 * ROW_PLACES], 0.0f)
+#define EIGHT_ROW_DISPLACEMENTS                                                                    \
+  const float8 xs = vload8(0, displaced + i);                                                      \
+  const float8 ys = vload8(0, displaced + i + ROW_PLACES);                                         \
+  const float8 zs = vload8(0, displaced + i + 2 * ROW_PLACES);                                     \
+  const float8 dx = (float8)(xs.even, xs.odd);                                                     \
+  const float8 dy = (float8)(ys.even, ys.odd);                                                     \
+  const float8 dz = (float8)(zs.even, zs.odd);
+
+#else
+
+#if MAPPING == MAPPING_LINKS
+#define ROW_DISPLACEMENTS                                                                          \
+  __global const VertexLink* const rowLinks = m->Links + VertexInChunk(0, y, z, p);
+#define VERTEX_DISPLACEMENT(x) FollowLink(m, rowLinks + (x))
+// Links are most of what is read, each once: they are fetched ahead.
+#define FETCH_AHEAD PREFETCH(rowLinks + x + 256) PREFETCH(rowLinks + x + 260)
+#else
+#define ROW_DISPLACEMENTS
+#define VERTEX_DISPLACEMENT(x) Displacement(m, x, y, z, p)
+#define FETCH_AHEAD
+#endif
+#define ROW_DISPLACEMENT VERTEX_DISPLACEMENT(x)
+#define EIGHT_ROW_DISPLACEMENTS                                                                    \
+  FETCH_AHEAD                                                                                      \
+  const float4 d0 = VERTEX_DISPLACEMENT(x);                                                        \
+  const float4 d2 = VERTEX_DISPLACEMENT(x + 2);                                                    \
+  const float4 d4 = VERTEX_DISPLACEMENT(x + 4);                                                    \
+  const float4 d6 = VERTEX_DISPLACEMENT(x + 6);                                                    \
+  const float4 d1 = VERTEX_DISPLACEMENT(x + 1);                                                    \
+  const float4 d3 = VERTEX_DISPLACEMENT(x + 3);                                                    \
+  const float4 d5 = VERTEX_DISPLACEMENT(x + 5);                                                    \
+  const float4 d7 = VERTEX_DISPLACEMENT(x + 7);                                                    \
+  const float8 dx = (float8)(d0.x, d2.x, d4.x, d6.x, d1.x, d3.x, d5.x, d7.x);                      \
+  const float8 dy = (float8)(d0.y, d2.y, d4.y, d6.y, d1.y, d3.y, d5.y, d7.y);                      \
+  const float8 dz = (float8)(d0.z, d2.z, d4.z, d6.z, d1.z, d3.z, d5.z, d7.z);
+
+#endif
+
+#define SOURCES 0x0101010101010101UL
+#define INTERIORS 0x0202020202020202UL
+
+// A value that the sum of products would not give back: -0, not finite, or so large that the sum may
+// overflow.
+#define IS_SPECIAL(v) (((as_int(v) & 0x7f800000) >= 0x7e000000) | (as_int(v) == INT_MIN))
+
+#define PUT_VALUE(index, TYPE, BITS, SLOT)                                  \
+  {                                                                                                \
+    const float value = (float)source##index[chunk + x];                \
+    place[(3 + SLOT) * HALF_ROW] = value;                                                          \
+    if (BITS == 32 && IS_SPECIAL(value))                                                           \
+    {                                                                                              \
+      flags.Special |= 1u << (i >> 3);                                                             \
+    }                                                                                              \
+  }
+#define PUT_EIGHT_VALUES(index, TYPE, BITS, SLOT)                           \
+  {                                                                                                \
+    const float8 value = convert_float8(vload8(0, source##index + chunk + x));                     \
+    vstore4(value.even, 0, place + (3 + SLOT) * HALF_ROW);                                         \
+    vstore4(value.odd, 0, place + ODD + (3 + SLOT) * HALF_ROW);                                    \
+    if (BITS == 32)                                                                                \
+    {                                                                                              \
+      const int8 bits = as_int8(value);                                                            \
+      if (any(((bits & 0x7f800000) >= 0x7e000000) | (bits == INT_MIN)))                            \
+      {                                                                                            \
+        flags.Special |= 3u << (i >> 3);                                                           \
+      }                                                                                            \
+    }                                                                                              \
+  }
+
+// Maps the vertices of a row from x to end; i: place of x in the brick.
+static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, int z,
+  __local float* row, __local const float* restX, __local float* displaced,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const Mapping* m = &mesh->Map;
+  const RestPosition ry = m->Rest[p->Size[0] + y];
+  const RestPosition rz = m->Rest[p->Size[0] + p->Size[1] + z];
+  const float wholeY = ry.Whole - p->OutputFirst[1] * 256;
+  const float wholeZ = rz.Whole - p->OutputFirst[2] * 256;
+  const size_t chunk = VertexInChunk(0, y, z, p);
+  __global const uchar* state = mesh->State + chunk;
+  ROW_DISPLACEMENTS
+  RowFlags flags = { 0, 0 };
+  while (x < end)
+  {
+    __local float* place = row + (i >> 1) + (i & 1 ? ODD : 0);
+    __local const float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
+    const ulong states = x + 8 <= end ? as_ulong(vload8(0, state + x)) : 0;
+    if ((i & 1) || (states & SOURCES) != SOURCES)
+    {
+      // One vertex.
+      float4 position = (float4)(NO_SOURCE, 0.0f, 0.0f, 0.0f);
+      if (state[x] & DEFORMVOLUME_VERTEX_SOURCE)
+      {
+        float4 moved = ROW_DISPLACEMENT * 256.0f +
+          (float4)(rest[HALF_ROW], ry.Fraction, rz.Fraction, 0.0f);
+        moved = moved < -LARGEST ? (float4)(-LARGEST) : moved;
+        moved = moved > LARGEST ? (float4)(LARGEST) : moved;
+        const float4 steps = (moved + ROUND_TO_INTEGER) - ROUND_TO_INTEGER;
+        position = (steps + (float4)(rest[0], wholeY, wholeZ, 0.0f)) * (1.0f / 256.0f);
+      }
+      place[0] = position.x;
+      place[HALF_ROW] = position.y;
+      place[2 * HALF_ROW] = position.z;
+      if (!(state[x] & DEFORMVOLUME_VERTEX_INTERIOR))
+      {
+        flags.Border |= 1u << (i >> 3);
+      }
+      LANE_ARRAYS(PUT_VALUE)
+      ++x;
+      ++i;
+      continue;
+    }
+    // Eight vertices.
+    EIGHT_ROW_DISPLACEMENTS
+#define POSITIONS(C, OFFSET, WHOLE_EVEN, WHOLE_ODD, FRACTION_EVEN, FRACTION_ODD)                   \
+  {                                                                                                \
+    float8 moved = d##C * 256.0f +                                                                \
+      (float8)(FRACTION_EVEN, FRACTION_ODD);                                                       \
+    moved = moved < -LARGEST ? (float8)(-LARGEST) : moved;                                         \
+    moved = moved > LARGEST ? (float8)(LARGEST) : moved;                                           \
+    const float8 steps = (moved + ROUND_TO_INTEGER) - ROUND_TO_INTEGER;                            \
+    const float8 position = (steps + (float8)(WHOLE_EVEN, WHOLE_ODD)) * (1.0f / 256.0f);           \
+    vstore4(position.lo, 0, place + (OFFSET)*HALF_ROW);                                            \
+    vstore4(position.hi, 0, place + ODD + (OFFSET)*HALF_ROW);                                      \
+  }
+    POSITIONS(x, 0, vload4(0, rest), vload4(0, rest + 2 * HALF_ROW), vload4(0, rest + HALF_ROW),
+      vload4(0, rest + 3 * HALF_ROW))
+    POSITIONS(y, 1, (float4)wholeY, (float4)wholeY, (float4)ry.Fraction, (float4)ry.Fraction)
+    POSITIONS(z, 2, (float4)wholeZ, (float4)wholeZ, (float4)rz.Fraction, (float4)rz.Fraction)
+    if ((states & INTERIORS) != INTERIORS)
+    {
+      flags.Border |= 3u << (i >> 3);
+    }
+    LANE_ARRAYS(PUT_EIGHT_VALUES)
+    x += 8;
+    i += 8;
+  }
+  return flags;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Resampling: LANES cells.
+
+// The vertices of a cell by the parity of their structured indices, as in CellCoverage.cl. Low are
+// places of even x, High of odd x; the rows r by bit 0: odd z, bit 1: odd y.
+typedef struct
+{
+  LocalRow Low[4];
+  LocalRow High[4];
+} Group;
+
+#define VERTEX(v, slot) LOAD(((v)&1 ? group->High[(v) >> 1] : group->Low[(v) >> 1]) + (slot)*HALF_ROW)
+
+// 1-norm of a vector.
+#define NORM(v) (fabs(v##x) + fabs(v##y) + fabs(v##z))
+// Barycentric coordinates of vertex c relative to the central tetrahedron.
+#define COORDINATES(c)                                                                             \
+  FLOATS b##c##3, b##c##5, b##c##6, b##c##0;                                                       \
+  {                                                                                                \
+    const FLOATS rx = X##c - X0;                                                                   \
+    const FLOATS ry = Y##c - Y0;                                                                   \
+    const FLOATS rz = Z##c - Z0;                                                                   \
+    b##c##3 = fma(rx, n3x, fma(ry, n3y, rz * n3z));                                                \
+    b##c##5 = fma(rx, n5x, fma(ry, n5y, rz * n5z));                                                \
+    b##c##6 = fma(rx, n6x, fma(ry, n6y, rz * n6z));                                                \
+    b##c##0 = ((1.0f - b##c##3) - b##c##5) - b##c##6;                                              \
+  }
+#define EIGHT(OP, C) OP(OP(OP(C##0, C##1), OP(C##2, C##3)), OP(OP(C##4, C##5), OP(C##6, C##7)))
+
+#define LANE_RANGE_LOW_char -128.0f
+#define LANE_RANGE_HIGH_char 127.0f
+#define LANE_RANGE_LOW_uchar 0.0f
+#define LANE_RANGE_HIGH_uchar 255.0f
+#define LANE_RANGE_LOW_short -32768.0f
+#define LANE_RANGE_HIGH_short 32767.0f
+#define LANE_RANGE_LOW_ushort 0.0f
+#define LANE_RANGE_HIGH_ushort 65535.0f
+#define LANE_RANGE_LOW_float 0.0f
+#define LANE_RANGE_HIGH_float 0.0f
+#define LANE_CONVERT_32(TYPE, bits) as_float(bits)
+#define LANE_CONVERT_16(TYPE, bits) ((TYPE)(bits))
+#define LANE_CONVERT_8(TYPE, bits) ((TYPE)(bits))
+
+
+// The interpolated values of an array, rounded where it holds integers.
+#define LANE_RESULTS(index, TYPE, BITS, SLOT)                               \
+  Lanes results##index;                                                             \
+  {                                                                                                \
+    FLOATS v = t0 * VERTEX(0, 3 + SLOT);                                                           \
+    v = fma(t3, VERTEX(3, 3 + SLOT), v);                                                           \
+    v = fma(t5, VERTEX(5, 3 + SLOT), v);                                                           \
+    v = fma(t6, VERTEX(6, 3 + SLOT), v);                                                           \
+    v = fma(u1, VERTEX(1, 3 + SLOT), v);                                                           \
+    v = fma(u2, VERTEX(2, 3 + SLOT), v);                                                           \
+    v = fma(u4, VERTEX(4, 3 + SLOT), v);                                                           \
+    v = fma(u7, VERTEX(7, 3 + SLOT), v);                                                           \
+    if (BITS != 32)                                                                                \
+    {                                                                                              \
+      v = Least(Most(v, LANE_RANGE_LOW_##TYPE), LANE_RANGE_HIGH_##TYPE) + ROUND_TO_INTEGER;        \
+    }                                                                                              \
+    results##index.Vector = AS_INTS(v);                                             \
+  }
+
+#define LANE_STORE(index, TYPE, BITS, SLOT)                                 \
+  target##index[place] =                                          \
+    LANE_CONVERT_##BITS(TYPE, results##index.Lanes[lane]);
+
+#if HAS_OTHER_ARRAYS
+// A sample that is in a cell, for the arrays that want its weights as they are: which of the cell's
+// tetrahedra holds it is found out again, in integers.
+static __attribute__((noinline)) void StoreOtherArrays(const Group* group, int lane, int x, int y,
+  int z, uint place, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  Vector q[8];
+#pragma unroll
+  for (int v = 0; v < 8; ++v)
+  {
+    LocalRow vertex = (v & 1 ? group->High[v >> 1] : group->Low[v >> 1]) + lane;
+    q[v].x = (long)(vertex[0] * 256.0f);
+    q[v].y = (long)(vertex[HALF_ROW] * 256.0f);
+    q[v].z = (long)(vertex[2 * HALF_ROW] * 256.0f);
+  }
+  const uint plane = p->OutputSize[0] * p->OutputSize[1];
+  const Vector voxel = { place % p->OutputSize[0], place % plane / p->OutputSize[0], place / plane };
+  int t = 4;
+  long weights[4];
+  long volume;
+  for (int corner = 0; corner < 2; ++corner)
+  {
+    const EdgeFunctions f = MakeEdgeFunctions(
+      q[Tetrahedra[t][0]], q[Tetrahedra[t][1]], q[Tetrahedra[t][2]], q[Tetrahedra[t][3]]);
+    Evaluate(&f, SamplePosition(voxel), weights);
+    volume = f.Volume;
+    for (int k = 0; k < 4 && corner == 0; ++k)
+    {
+      t = weights[k] < 0 ? CornerBehindFace[k] : t;
+    }
+    if (t == 4)
+    {
+      break;
+    }
+  }
+  const Sample sample = MakeSample(x, y, z, t, weights, volume, place, p);
+  const Sample* s = &sample;
+  STORE_OTHER_ARRAYS
+}
+#endif
+
+// Whether all that surrounds the cells is there, but for what would lie beyond the volume.
+static INTS IsRegular(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
+{
+  Lanes regular;
+  for (int lane = 0; lane < LANES; ++lane)
+  {
+    int state = x + 2 * lane < p->Size[0] - 1 ? DEFORMVOLUME_VERTEX_REGULAR : 0;
+    for (int v = 0; state && v < 8; ++v)
+    {
+      state &= mesh->State[VertexInChunk(x + 2 * lane + (v & 1), y + (v >> 2), z + (v >> 1 & 1), p)];
+    }
+    regular.Lanes[lane] = state ? -1 : 0;
+  }
+  return regular.Vector;
+}
+
+// LANES cells: from x on every second one. odd: parity of x, y and z together. border: whether a vertex
+// may not be interior. Returns the cells that must be repeated, as bits, and adds to the writes those
+// of the others.
+static __attribute__((noinline)) uint ResampleGroup(const Group* group, int x, int y, int z, int odd,
+  int border, const SamplingMesh* mesh, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+#define LOAD_VERTEX(v)                                                                             \
+  const FLOATS X##v = VERTEX(v, 0), Y##v = VERTEX(v, 1), Z##v = VERTEX(v, 2);
+  LOAD_VERTEX(0)
+  LOAD_VERTEX(1)
+  LOAD_VERTEX(2)
+  LOAD_VERTEX(3)
+  LOAD_VERTEX(4)
+  LOAD_VERTEX(5)
+  LOAD_VERTEX(6)
+  LOAD_VERTEX(7)
+
+  // The box of the cell.
+  const FLOATS lowX = EIGHT(Least, X), lowY = EIGHT(Least, Y), lowZ = EIGHT(Least, Z);
+  const FLOATS highX = EIGHT(Most, X), highY = EIGHT(Most, Y), highZ = EIGHT(Most, Z);
+  const FLOATS extent = Most(highX - lowX, Most(highY - lowY, highZ - lowZ));
+  // Cells that have a vertex with a position, and none beyond the volume.
+  const INTS there = (lowX > 0.5f * NOT_THERE) & (lowX < 0.5f * NO_SOURCE);
+
+  // Cells that are boxes, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume:
+  // each coordinate varies along one axis of the lattice only. If one edge of the first cell is not
+  // parallel to an axis, no need to look.
+  INTS box = 0;
+  if (((X0.s0 == X1.s0) + (Y0.s0 == Y1.s0) + (Z0.s0 == Z1.s0)) == 2)
+  {
+#define SAME(C, a, b) (C##a == C##b)
+#define ALONG_X(C) (SAME(C, 0, 1) & SAME(C, 2, 3) & SAME(C, 4, 5) & SAME(C, 6, 7))
+#define ALONG_Z(C) (SAME(C, 0, 2) & SAME(C, 1, 3) & SAME(C, 4, 6) & SAME(C, 5, 7))
+#define ALONG_Y(C) (SAME(C, 0, 4) & SAME(C, 1, 5) & SAME(C, 2, 6) & SAME(C, 3, 7))
+#define ALIGNED(C)                                                                                 \
+  ((ALONG_X(C) & ALONG_Y(C)) | (ALONG_X(C) & ALONG_Z(C)) | (ALONG_Y(C) & ALONG_Z(C)))
+    box = ALIGNED(X) & ALIGNED(Y) & ALIGNED(Z);
+  }
+
+  // Candidates are half-open inside the mesh: by the fill rule no sample on the upper side is taken.
+  INTS whole = -1;
+  FLOATS toEndX = ALMOST_ONE, toEndY = ALMOST_ONE, toEndZ = ALMOST_ONE;
+  if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
+  {
+    toEndX = toEndY = toEndZ = 1.0f;
+  }
+  if (border)
+  {
+    const size_t i = VertexInChunk(x, y, z, p);
+    Lanes state;
+    for (int k = 0; k < LANES; ++k)
+    {
+      state.Lanes[k] = x + 2 * k < p->Size[0] - 1 ? mesh->State[i + 2 * k] : 0;
+    }
+    whole = (state.Vector & DEFORMVOLUME_CELL_WHOLE) != 0;
+    if (p->Pass == DEFORMVOLUME_PASS_DIRECT)
+    {
+      // A box that lies as the lattice does leaves what is on its upper sides to the next cells, if
+      // there are any: they come later.
+      if (LaneBits(box))
+      {
+        const FLOATS dx = x & 1 ^ p->First[0] & 1 ? X0 - X1 : X1 - X0;
+        const FLOATS dz = z & 1 ^ p->First[2] & 1 ? Z0 - Z2 : Z2 - Z0;
+        const FLOATS dy = y & 1 ^ p->First[1] & 1 ? Y0 - Y4 : Y4 - Y0;
+        box &= (dx > 0.0f) & (dy > 0.0f) & (dz > 0.0f) & IsRegular(mesh, x, y, z, p);
+        output->Assumed |= LaneBits(box) != 0;
+      }
+      const INTS closed = ~box;
+      toEndX = closed | (x + 2 * LANE_INDEX == p->Size[0] - 2) ? (FLOATS)(1.0f) : toEndX;
+      toEndY = closed | (y == p->Size[1] - 2 ? -1 : 0) ? (FLOATS)(1.0f) : toEndY;
+      toEndZ = closed | (z == p->Size[2] - 2 ? -1 : 0) ? (FLOATS)(1.0f) : toEndZ;
+    }
+  }
+#define FIRST_OF(low, size) TO_INTS(Least(Most(low, 0.0f), (float)(size)) + ALMOST_ONE)
+#define END_OF(high, toEnd, size) TO_INTS(Most(Least((high) + toEnd, (float)(size)), 0.0f))
+  const INTS firstX = FIRST_OF(lowX, p->OutputSize[0]);
+  const INTS firstY = FIRST_OF(lowY, p->OutputSize[1]);
+  const INTS firstZ = FIRST_OF(lowZ, p->OutputSize[2]);
+  const INTS countX = END_OF(highX, toEndX, p->OutputSize[0]) - firstX;
+  const INTS countY = END_OF(highY, toEndY, p->OutputSize[1]) - firstY;
+  const INTS countZ = END_OF(highZ, toEndZ, p->OutputSize[2]) - firstZ;
+  const INTS small = extent <= MAXIMUM_EXTENT;
+  const INTS fit = there & small & whole;
+  // Cells without candidates need not be looked at, unless they may be inverted.
+
+  // Gradients of l3, l5 and l6.
+#define EDGE(a, v) const FLOATS a##x = X##v - X0, a##y = Y##v - Y0, a##z = Z##v - Z0;
+  EDGE(e3, 3)
+  EDGE(e5, 5)
+  EDGE(e6, 6)
+#define NORMAL(n, a, b)                                                                            \
+  FLOATS n##x = fma(a##y, b##z, -(a##z * b##y)), n##y = fma(a##z, b##x, -(a##x * b##z)),           \
+         n##z = fma(a##x, b##y, -(a##y * b##x));
+  NORMAL(n3, e5, e6)
+  NORMAL(n5, e6, e3)
+  NORMAL(n6, e3, e5)
+  const FLOATS determinant = fma(e3z, n3z, fma(e3y, n3y, e3x * n3x));
+  const FLOATS inverse = 1.0f / determinant;
+#define SCALE(n) n##x *= inverse; n##y *= inverse; n##z *= inverse;
+  SCALE(n3)
+  SCALE(n5)
+  SCALE(n6)
+  COORDINATES(1)
+  COORDINATES(2)
+  COORDINATES(4)
+  COORDINATES(7)
+  const FLOATS leastOther =
+    Least(Least(Least(Least(b13, b15), Least(b10, b45)), Least(Least(b46, b40), Least(b23, b26))),
+      Least(Least(b20, b73), Least(b75, b76)));
+  const FLOATS mostOwn = Most(Most(b16, b43), Most(b25, b70));
+  const FLOATS leastOwn = Least(Least(b16, b43), Least(b25, b70));
+  const INTS tame = (mostOwn <= -0.35f) & (leastOwn >= -1.0f);
+  const FLOATS bound = (tame ? (FLOATS)(3.4e-5f) : (FLOATS)(8.5e-5f)) * extent *
+    Most(Most(NORM(n3), NORM(n5)), NORM(n6));
+  const INTS upright = odd ? determinant < 0.0f : determinant > 0.0f;
+  const INTS nice = fit & upright & (leastOther >= 0.015625f) & (mostOwn <= -0.125f) &
+    (leastOwn >= -2.0f) & (bound <= 0.0078125f);
+  INTS unsure = there & ~nice;
+  const INTS none = (countX <= 0) | (countY <= 0) | (countZ <= 0);
+  const INTS candidates = nice & ~none;
+  const INTS number = candidates & (countX * countY * countZ);
+  const int iterations = MostOf(number);
+  INTS count = 0; // writes
+  if (iterations)
+  {
+    // Boxes take all their candidates. Where a vertex of a box lies on a sample its value is taken bit
+    // for bit: the weights, which rounding may have touched, are made 0 and 1.
+    box &= candidates;
+    const int snap = LaneBits(box) != 0;
+    const FLOATS s1 = 1.0f / b16, s2 = 1.0f / b25, s4 = 1.0f / b43, s7 = 1.0f / b70;
+    const FLOATS startX = TO_FLOATS(firstX) - X0;
+    const FLOATS startY = TO_FLOATS(firstY) - Y0;
+    const FLOATS startZ = TO_FLOATS(firstZ) - Z0;
+    const FLOATS endX = startX + (TO_FLOATS(countX) - 0.5f);
+    const FLOATS endY = startY + (TO_FLOATS(countY) - 0.5f);
+    const INTS toNextRow = p->OutputSize[0] - countX;
+    const INTS toNextPlane = (p->OutputSize[1] - countY) * p->OutputSize[0];
+    INTS place = (firstZ * p->OutputSize[1] + firstY) * p->OutputSize[0] + firstX;
+    FLOATS rx = startX;
+    FLOATS ry = startY;
+    FLOATS rz = startZ;
+    for (int i = 0; i < iterations; ++i)
+    {
+      const FLOATS l3 = fma(rx, n3x, fma(ry, n3y, rz * n3z));
+      const FLOATS l5 = fma(rx, n5x, fma(ry, n5y, rz * n5z));
+      const FLOATS l6 = fma(rx, n6x, fma(ry, n6y, rz * n6z));
+      const FLOATS l0 = ((1.0f - l3) - l5) - l6;
+      FLOATS u1 = Least(l6, 0.0f) * s1;
+      FLOATS u2 = Least(l5, 0.0f) * s2;
+      FLOATS u4 = Least(l3, 0.0f) * s4;
+      FLOATS u7 = Least(l0, 0.0f) * s7;
+      FLOATS t3 = fma(-u7, b73, fma(-u2, b23, fma(-u1, b13, Most(l3, 0.0f))));
+      FLOATS t5 = fma(-u7, b75, fma(-u4, b45, fma(-u1, b15, Most(l5, 0.0f))));
+      FLOATS t6 = fma(-u7, b76, fma(-u2, b26, fma(-u4, b46, Most(l6, 0.0f))));
+      FLOATS t0 = fma(-u2, b20, fma(-u4, b40, fma(-u1, b10, Most(l0, 0.0f))));
+      const FLOATS lowA = Least(t3, t5), highA = Most(t3, t5);
+      const FLOATS lowB = Least(t6, t0), highB = Most(t6, t0);
+      const INTS maybe = (Least(lowA, lowB) >= -bound) & (number > i);
+      // The second smallest weight decides: that opposite the corner may be 0.
+      const FLOATS second = Least(Most(lowA, lowB), Least(highA, highB));
+      const INTS hit = maybe & ((second > bound) | box);
+      unsure |= maybe & ~hit;
+      const uint bits = LaneBits(hit);
+      if (bits)
+      {
+        if (snap)
+        {
+          const FLOATS sx = rx + X0, sy = ry + Y0, sz = rz + Z0;
+          const INTS onVertex = box & ((sx == lowX) | (sx == highX)) &
+            ((sy == lowY) | (sy == highY)) & ((sz == lowZ) | (sz == highZ));
+#define SNAP(weight) weight = onVertex ? rint(weight) : weight;
+          SNAP(t0) SNAP(t3) SNAP(t5) SNAP(t6) SNAP(u1) SNAP(u2) SNAP(u4) SNAP(u7)
+        }
+        Lanes places;
+        places.Vector = place;
+        uint left = bits;
+        if (p->Pass == DEFORMVOLUME_PASS_MARK)
+        {
+          FOR_EACH_LANE(lane, left)
+          {
+            const KEY key = MakeKey(x + 2 * lane, y, z, 0, p);
+            __global KEY* winner = output->Winners + (uint)places.Lanes[lane];
+            if (*winner > key)
+            {
+              ATOMIC_MIN(winner, key);
+            }
+          }
+        }
+        else
+        {
+          LANE_ARRAYS(LANE_RESULTS)
+          count -= hit;
+          FOR_EACH_LANE(lane, left)
+          {
+            const uint place = places.Lanes[lane];
+            if (p->Pass == DEFORMVOLUME_PASS_WINNER &&
+              output->Winners[place] != MakeKey(x + 2 * lane, y, z, 0, p))
+            {
+              continue;
+            }
+            output->Coverage[place] = 1;
+            LANE_ARRAYS(LANE_STORE)
+#if HAS_OTHER_ARRAYS
+            StoreOtherArrays(group, lane, x + 2 * lane, y, z, place, p ARRAY_ARGUMENTS);
+#endif
+          }
+        }
+      }
+      // The next candidate of each lane.
+      rx += 1.0f;
+      const INTS rowDone = rx > endX;
+      rx = rowDone ? startX : rx;
+      ry = rowDone ? ry + 1.0f : ry;
+      const INTS planeDone = ry > endY;
+      ry = planeDone ? startY : ry;
+      rz = planeDone ? rz + 1.0f : rz;
+      place += 1 + (rowDone & toNextRow) + (planeDone & toNextPlane);
+    }
+  }
+  // What an unsure cell wrote so far is written again with it, and must not count twice.
+  output->Writes += SumOf(unsure ? (INTS)(0) : count);
+  return LaneBits(unsure);
+}
+
+// A brick of cells. bricks: the numbers of those to work on, one a work-item.
+// rows: 4 HALF_ROW + 3 ROW_PLACES + 2 ROWS ROW floats (GetBrickMemory).
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
+  __global const uchar* state, __global const uchar* active, __global char* coverage,
+  __global KEY* winners, __global uint* counters, __global const uint* bricks, __local float* rows,
+  const KernelParameters p ARRAY_PARAMETERS)
+{
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active };
+  Output output = { coverage, winners, 0, 0, 0, 0, 0 };
+  const uint brick = bricks[p.ListBegin + get_global_id(0)];
+  // Cells of the brick, and the local x of its first place, which may lie before the volume.
+  const int bx = brick % p.BrickCount[0] * DEFORMVOLUME_BRICK_X + p.BrickOrigin[0];
+  const int by = brick / p.BrickCount[0] % p.BrickCount[1] * DEFORMVOLUME_BRICK_Y + p.BrickOrigin[1];
+  const int bz = brick / p.BrickCount[0] / p.BrickCount[1] * DEFORMVOLUME_BRICK_Z + p.BrickOrigin[2];
+  const int beginX = max(bx, 0);
+  const int endX = min(bx + DEFORMVOLUME_BRICK_X, p.Size[0] - 1);
+  const int beginY = max(by, 0);
+  const int endY = min(by + DEFORMVOLUME_BRICK_Y, p.Size[1] - 1);
+  const int beginZ = max(bz, p.LayersBegin);
+  const int endZ = min(bz + DEFORMVOLUME_BRICK_Z, p.LayersEnd);
+
+  // The undeformed x of the brick's vertices: for even, then odd ones, whole 1/256 voxels relative to
+  // the output, and fractions.
+  __local float* restX = rows;
+  __local float* displaced = restX + 4 * HALF_ROW;
+  __local float* ring = displaced + 3 * ROW_PLACES;
+  for (int i = 0; i < 2 * HALF_ROW; ++i)
+  {
+    const int x = clamp(bx + i, 0, p.Size[0] - 1);
+    __local float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
+    rest[0] = mesh.Map.Rest[x].Whole - p.OutputFirst[0] * 256;
+    rest[HALF_ROW] = mesh.Map.Rest[x].Fraction;
+  }
+  for (int row = 0; row < 2 * ROWS; ++row)
+  {
+    for (int i = 0; i < HALF_ROW; ++i)
+    {
+      ring[row * ROW + i] = NOT_THERE;
+      ring[row * ROW + ODD + i] = NOT_THERE;
+    }
+  }
+
+  RowFlags flags[2][ROWS];
+  for (int z = beginZ; z <= endZ; ++z)
+  {
+    const int plane = (p.First[2] + z) & 1;
+    for (int y = beginY; y <= endY; ++y)
+    {
+      flags[plane][y - by] = MapRow(&mesh, beginX, endX + 1, beginX - bx, y, z,
+        ring + (plane * ROWS + (y - by)) * ROW, restX, displaced, &p ARRAY_ARGUMENTS);
+    }
+    if (z == beginZ)
+    {
+      continue;
+    }
+    for (int y = beginY; y < endY; ++y)
+    {
+      // Rows of even and of odd structured y; planes likewise lie by their parity.
+      const int low = y - by;
+      const int rowEven = low + (low & 1);
+      const int rowOdd = low + 1 - (low & 1);
+      const uint borders = flags[0][low].Border | flags[0][low + 1].Border | flags[1][low].Border |
+        flags[1][low + 1].Border;
+      const uint specials = flags[0][low].Special | flags[0][low + 1].Special |
+        flags[1][low].Special | flags[1][low + 1].Special;
+      for (int k = (beginX - bx) >> 1 & ~(LANES - 1); bx + 2 * k < endX; k += LANES)
+      {
+        const uint span = ((2u << (2 * LANES / 8)) - 1) << (k >> 2);
+        for (int side = 0; side < 2; ++side)
+        {
+          Group group;
+#pragma unroll
+          for (int r = 0; r < 4; ++r)
+          {
+            LocalRow row = ring + ((r & 1) * ROWS + (r >> 1 ? rowOdd : rowEven)) * ROW + k;
+            group.Low[r] = row + side;
+            group.High[r] = row + ODD;
+          }
+          const int x = bx + 2 * k + side;
+          const int odd = (side ^ (p.First[1] + y) ^ (p.First[2] + z - 1)) & 1;
+          uint again;
+          if (specials & span)
+          {
+            again = (1u << LANES) - 1;
+          }
+          else
+          {
+            again = ResampleGroup(&group, x, y, z - 1, odd, (borders & span) != 0, &mesh, &output,
+              &p ARRAY_ARGUMENTS);
+          }
+          FOR_EACH_LANE(lane, again)
+          {
+            const int cell = x + 2 * lane;
+            if (cell >= beginX && cell < endX)
+            {
+              ResampleCell(&mesh, cell, y, z - 1, &output, &p ARRAY_ARGUMENTS);
+            }
+          }
+        }
+      }
+    }
+  }
+  AddCounts(&output, brick, counters, &p);
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The records of the tetrahedra that RunMapping.cl reads.
+//
+// Data: rest: for each record 15 reals, the origin, the weights of the first three nodes there, and the
+// gradient of each of these weights, an index a unit; owners: the tetrahedron of each record.
+//
+// REAL is double where the device has it: the gradients of a thin tetrahedron are large, and only
+// their sum with the displacements is small again.
+
+#pragma OPENCL FP_CONTRACT OFF
+
+// A work-item takes a record.
+__kernel void EvaluateTetrahedra(__global const REAL* restrict rest,
+  __global const int* restrict owners, __global const int4* restrict tetrahedra,
+  __global const float4* restrict nodes, __global TetrahedronRecord* restrict records,
+  const uint count)
+{
+  const size_t id = get_global_id(0);
+  if (id >= count)
+  {
+    return;
+  }
+  __global const REAL* origin = rest + 15 * id;
+  __global const REAL* weights = origin + 3;
+  __global const REAL* gradients = origin + 6;
+  const int4 t = tetrahedra[owners[id]];
+  __global const float* a = (__global const float*)(nodes + t.x);
+  __global const float* b = (__global const float*)(nodes + t.y);
+  __global const float* c = (__global const float*)(nodes + t.z);
+  __global const float* d = (__global const float*)(nodes + t.w);
+  __global TetrahedronRecord* record = records + id;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    // Differences to the last node: where all nodes move alike, so does each voxel, exactly.
+    const REAL last = d[axis];
+    const REAL u = a[axis] - last;
+    const REAL v = b[axis] - last;
+    const REAL w = c[axis] - last;
+    record->Displacement[axis] = (float)(last + (weights[0] * u + weights[1] * v + weights[2] * w));
+    record->AlongX[axis] = (float)(gradients[0] * u + gradients[3] * v + gradients[6] * w);
+    record->AlongY[axis] = (float)(gradients[1] * u + gradients[4] * v + gradients[7] * w);
+    record->AlongZ[axis] = (float)(gradients[2] * u + gradients[5] * v + gradients[8] * w);
+    record->Origin[axis] = (float)origin[axis];
+  }
+  record->Padding = 0.0f;
+}
