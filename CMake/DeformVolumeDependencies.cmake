@@ -42,7 +42,8 @@ if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
     RenderingVolumeOpenGL2)
 endif ()
 if (BUILD_TESTING)
-  list(APPEND deformvolume_vtk_components IOExodus IOGeometry TestingCore TestingRendering)
+  list(APPEND deformvolume_vtk_components
+    FiltersHybrid IOExodus IOGeometry TestingCore TestingRendering)
 endif ()
 
 if (DEFORMVOLUME_USE_PARAVIEW)

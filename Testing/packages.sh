@@ -6,7 +6,8 @@
 # Usage: packages.sh SET...
 #   library   to build the library and its Python package against VTK
 #   example   to build and run the programs in Examples
-#   test      to build and run the tests and benchmarks
+#   test      to build and run the tests
+#   benchmark to measure and draw the results, besides test
 #   paraview  to build and test against ParaView's VTK on the same machine
 #   check     to check the style of the sources
 set -euo pipefail
@@ -16,6 +17,7 @@ declare -A packages=(
     opencl-clhpp-headers ocl-icd-opencl-dev pocl-opencl-icd tetgen"
   [example]="libcli11-dev mricron-data xvfb xauth"
   [test]="libgtest-dev libbenchmark-dev oclgrind python3-numpy mricron-data xvfb xauth"
+  [benchmark]="python3-matplotlib"
   [paraview]="paraview paraview-dev libopenmpi-dev libdouble-conversion-dev libutfcpp-dev
     liblz4-dev liblzma-dev libgl-dev libopengl-dev libx11-dev libglew-dev libfreetype-dev"
   [check]="clang-format"

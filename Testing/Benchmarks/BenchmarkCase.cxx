@@ -1,99 +1,155 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BenchmarkCase.h"
 
+#include "Timing.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkLatticeTetrahedraSource.h>
 #include <vtkPointData.h>
-#include <vtkTransform.h>
+#include <vtkSMPTools.h>
+#include <vtkUnstructuredGrid.h>
 
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 namespace
 {
-vtkSmartPointer<vtkImageData> MakeVolume(const std::array<int, 3>& dimensions)
+template <typename T>
+void FillWaves(vtkImageData* volume, double mean, double amplitude)
 {
-  auto volume = vtkSmartPointer<vtkImageData>::New();
-  volume->SetDimensions(dimensions.data());
-  volume->AllocateScalars(VTK_UNSIGNED_SHORT, 1);
-  auto* value = static_cast<unsigned short*>(volume->GetScalarPointer());
-  for (int z = 0; z < dimensions[2]; ++z)
+  constexpr double frequencies[3] = { 0.11, 0.07, 0.05 };
+  int dimensions[3];
+  volume->GetDimensions(dimensions);
+  std::vector<double> waves[3];
+  for (int axis = 0; axis < 3; ++axis)
   {
-    for (int y = 0; y < dimensions[1]; ++y)
+    for (int i = 0; i < dimensions[axis]; ++i)
     {
-      for (int x = 0; x < dimensions[0]; ++x)
+      waves[axis].push_back(amplitude * std::sin(frequencies[axis] * i));
+    }
+  }
+  auto* value = static_cast<T*>(volume->GetScalarPointer());
+  for (const double z : waves[2])
+  {
+    for (const double y : waves[1])
+    {
+      for (const double x : waves[0])
       {
-        const double wave = std::sin(0.11 * x) + std::sin(0.07 * y) + std::sin(0.05 * z);
-        *value++ = static_cast<unsigned short>(2000.0 + 600.0 * wave);
+        *value++ = static_cast<T>(mean + x + y + z);
       }
     }
   }
+}
+}
+
+vtkSmartPointer<vtkImageData> MakeVolume(const std::array<int, 3>& dimensions, int type)
+{
+  auto volume = vtkSmartPointer<vtkImageData>::New();
+  volume->SetDimensions(dimensions.data());
+  volume->AllocateScalars(type, 1);
+  switch (type)
+  {
+    case VTK_UNSIGNED_SHORT:
+      FillWaves<unsigned short>(volume, 2000.0, 600.0);
+      break;
+    case VTK_UNSIGNED_CHAR:
+      FillWaves<unsigned char>(volume, 128.0, 40.0);
+      break;
+    default:
+      throw std::invalid_argument("MakeVolume makes unsigned short and unsigned char only");
+  }
   return volume;
 }
-}
 
-BenchmarkCase::BenchmarkCase(const std::array<int, 3>& dimensions, int nodesPerAxis)
-  : Dimensions(dimensions)
+BenchmarkCase::BenchmarkCase(vtkImageData* volume, int nodesPerAxis, int resampler)
 {
-  const auto volume = MakeVolume(dimensions);
-  vtkNew<vtkLatticeTetrahedraSource> lattice;
-  lattice->SetInputData(volume);
-  lattice->SetNumberOfNodes(nodesPerAxis, nodesPerAxis, nodesPerAxis);
-  lattice->Update();
-  this->Mesh = lattice->GetOutput();
+  volume->GetDimensions(this->Dimensions.data());
+  if (nodesPerAxis == DenseField)
+  {
+    vtkNew<vtkImageData> field;
+    field->CopyStructure(volume);
+    this->Deformation = field;
+  }
+  else
+  {
+    vtkNew<vtkLatticeTetrahedraSource> lattice;
+    lattice->SetInputData(volume);
+    lattice->SetNumberOfNodes(nodesPerAxis, nodesPerAxis, nodesPerAxis);
+    lattice->Update();
+    this->Deformation = lattice->GetOutput();
+  }
+  this->Displacements = vtkSmartPointer<vtkFloatArray>::New();
   this->Displacements->SetName("Displacement");
   this->Displacements->SetNumberOfComponents(3);
-  this->Displacements->SetNumberOfTuples(this->Mesh->GetNumberOfPoints());
-  this->Mesh->GetPointData()->SetVectors(this->Displacements);
+  this->Displacements->SetNumberOfTuples(this->Deformation->GetNumberOfPoints());
+  this->Deformation->GetPointData()->SetVectors(this->Displacements);
   this->Filter->SetInputData(volume);
-  this->Filter->SetDeformationData(this->Mesh);
+  this->Filter->SetDeformationData(this->Deformation);
+  this->Filter->SetResampler(resampler);
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetClientData(&this->Error);
+  observer->SetCallback([](vtkObject*, unsigned long, void* error, void* text)
+    { *static_cast<std::string*>(error) = static_cast<const char*>(text); });
+  this->Filter->AddObserver(vtkCommand::ErrorEvent, observer);
 }
 
-void BenchmarkCase::Move(Pose pose, double phase)
+BenchmarkCase::~BenchmarkCase() = default;
+
+void BenchmarkCase::Move(Pose pose)
 {
-  const double center[3] = { 0.5 * (this->Dimensions[0] - 1), 0.5 * (this->Dimensions[1] - 1),
-    0.5 * (this->Dimensions[2] - 1) };
-  vtkNew<vtkTransform> transform;
-  transform->Translate(center);
-  transform->RotateX(7.0 + phase);
-  transform->RotateY(7.0);
-  transform->RotateZ(7.0);
-  transform->Scale(1.03, 1.03, 1.03);
-  transform->Translate(-center[0], -center[1], -center[2]);
-  for (vtkIdType node = 0; node < this->Mesh->GetNumberOfPoints(); ++node)
-  {
-    double rest[3];
-    this->Mesh->GetPoint(node, rest);
-    double moved[3];
-    if (pose == Pose::General)
+  const PoseMap map(pose, this->Dimensions, ++this->Step);
+  auto* displacement = vtkFloatArray::SafeDownCast(this->Displacements)->GetPointer(0);
+  vtkDataSet* points = this->Deformation;
+  points->GetPoint(0); // some datasets get ready at the first call
+  vtkSMPTools::For(0, points->GetNumberOfPoints(),
+    [&](vtkIdType begin, vtkIdType end)
     {
-      transform->TransformPoint(rest, moved);
-    }
-    else
-    {
-      constexpr double amplitude = 12.0;
-      moved[0] = rest[0] + amplitude * std::sin(0.02 * rest[1] + phase);
-      moved[1] = rest[1] + amplitude * std::sin(0.02 * rest[2] + phase);
-      moved[2] = rest[2] + amplitude * std::sin(0.02 * rest[0] + phase);
-    }
-    const double displacement[3] = { moved[0] - rest[0], moved[1] - rest[1], moved[2] - rest[2] };
-    this->Displacements->SetTypedTuple(node, displacement);
-  }
+      for (vtkIdType point = begin; point < end; ++point)
+      {
+        std::array<double, 3> rest;
+        points->GetPoint(point, rest.data());
+        const auto moved = map(rest);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          displacement[3 * point + axis] = static_cast<float>(moved[axis] - rest[axis]);
+        }
+      }
+    });
   this->Displacements->Modified();
-  this->Mesh->Modified();
+  this->Deformation->Modified();
 }
 
-double BenchmarkCase::Update()
+UpdateTimes BenchmarkCase::Update()
 {
-  this->Filter->Update();
+  UpdateTimes times;
+  times.Update = Time([this]() { this->Filter->Update(); });
+  if (!this->Error.empty())
+  {
+    std::string error;
+    error.swap(this->Error);
+    throw std::runtime_error(error);
+  }
   if (this->Filter->GetNumberOfCoveredVoxels() == 0)
   {
-    throw std::runtime_error("the filter failed");
+    throw std::runtime_error("no voxel is covered");
   }
-  return this->Filter->GetMappingTime() + this->Filter->GetResamplingTime();
+  times.Mapping = this->Filter->GetMappingTime();
+  times.Resampling = this->Filter->GetResamplingTime();
+  times.Transfer = this->Filter->GetTransferTime();
+  times.Preprocessing = this->Filter->GetPreprocessingTime();
+  return times;
 }
 
-double BenchmarkCase::GetNumberOfVoxels() const
+vtkIdType BenchmarkCase::GetNumberOfVoxels() const
 {
-  return 1.0 * this->Dimensions[0] * this->Dimensions[1] * this->Dimensions[2];
+  return static_cast<vtkIdType>(this->Dimensions[0]) * this->Dimensions[1] * this->Dimensions[2];
+}
+
+vtkIdType BenchmarkCase::GetNumberOfTetrahedra() const
+{
+  vtkUnstructuredGrid* mesh = vtkUnstructuredGrid::SafeDownCast(this->Deformation);
+  return mesh ? mesh->GetNumberOfCells() : 0;
 }

@@ -2,14 +2,18 @@
 #ifndef BenchmarkCase_h
 #define BenchmarkCase_h
 
+#include "Pose.h"
+
 #include <vtkDeformVolumeFilter.h>
-#include <vtkDoubleArray.h>
 #include <vtkNew.h>
 #include <vtkSmartPointer.h>
-#include <vtkUnstructuredGrid.h>
+#include <vtkType.h>
 
 #include <array>
+#include <string>
 
+class vtkDataArray;
+class vtkDataSet;
 class vtkImageData;
 
 /// The sizes that the demands on speed and memory are stated for.
@@ -17,36 +21,55 @@ inline constexpr std::array<int, 3> BenchmarkVolume{ { 189, 305, 229 } };
 inline constexpr std::array<int, 3> HeadVolume{ { 301, 370, 316 } };
 inline constexpr int CoarseNodes = 13; // on each axis: 2,197 nodes
 inline constexpr int FineNodes = 80;   // on each axis: 512,000 nodes
+/// Instead of nodes: a displacement field with a vector for each voxel.
+inline constexpr int DenseField = 0;
 
-enum class Pose
+/// A synthetic volume, waves along each axis. type: VTK_UNSIGNED_SHORT or VTK_UNSIGNED_CHAR.
+vtkSmartPointer<vtkImageData> MakeVolume(
+  const std::array<int, 3>& dimensions, int type = VTK_UNSIGNED_SHORT);
+
+/// Wall-clock seconds of one update, as a whole, and what of them the filter reports.
+struct UpdateTimes
 {
-  /// A smooth displacement of up to 12 voxels.
-  NearIdentity,
-  /// Turned by 7 degrees round each axis, and scaled by 1.03.
-  General
+  double Update = 0.0;
+  double Mapping = 0.0;
+  double Resampling = 0.0;
+  double Transfer = 0.0;
+  double Preprocessing = 0.0;
+
+  double GetKernels() const { return this->Mapping + this->Resampling; }
 };
 
-/// A synthetic volume of unsigned shorts with a lattice over it, and the filter that deforms it.
+/// A volume with a lattice or a displacement field over it, and the filter that deforms it.
 class BenchmarkCase
 {
 public:
-  BenchmarkCase(const std::array<int, 3>& dimensions, int nodesPerAxis);
+  /// nodesPerAxis: of a lattice of tetrahedra, or DenseField.
+  BenchmarkCase(
+    vtkImageData* volume, int nodesPerAxis, int resampler = vtkDeformVolumeFilter::EXACT);
+  ~BenchmarkCase();
 
-  /// Moves the nodes to a pose. phase: a small change that makes the poses differ.
-  void Move(Pose pose, double phase);
+  /// Moves the nodes to the next step of a pose. Not part of what is measured.
+  void Move(Pose pose);
 
-  /// Brings the filter up to date. Returns its mapping and resampling time, in seconds. Throws
-  /// where the filter fails.
-  double Update();
+  /// Brings the filter up to date. Throws the filter's error where it fails.
+  UpdateTimes Update();
 
   vtkDeformVolumeFilter* GetFilter() { return this->Filter; }
-  double GetNumberOfVoxels() const;
+  int GetStep() const { return this->Step; }
+  vtkIdType GetNumberOfVoxels() const;
+  /// Of the deformation mesh; 0 with a displacement field.
+  vtkIdType GetNumberOfTetrahedra() const;
 
 private:
   std::array<int, 3> Dimensions;
   vtkNew<vtkDeformVolumeFilter> Filter;
-  vtkSmartPointer<vtkUnstructuredGrid> Mesh;
-  vtkNew<vtkDoubleArray> Displacements;
+  /// The lattice or the displacement field.
+  vtkSmartPointer<vtkDataSet> Deformation;
+  vtkSmartPointer<vtkDataArray> Displacements;
+  int Step = 0;
+  /// What the filter complained of.
+  std::string Error;
 };
 
 #endif

@@ -1,84 +1,158 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What users may rely on for speed and memory, as a test: ratios within one run and on one device,
-// so that a slow or busy machine does not matter; the one absolute limit is generous.
+// What users may rely on for speed and memory, as a test: medians of ratios within rounds on one
+// device, so that a slow or busy machine does not matter; the one absolute limit is generous.
+// report.py states what is aimed at, and measures it with more rounds.
 #include "BenchmarkCase.h"
+#include "Peers.h"
+
+#include <vtkImageData.h>
 
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <vector>
 
 namespace
 {
-constexpr double MaximumBytesPerVoxel = 31.0;
-constexpr double MaximumPreprocessingTime = 5.0; // seconds
-constexpr int NumberOfRounds = 7;
+// All limits, the highest values that are allowed. The volume has 189 x 305 x 229 voxels of 16 bits
+// and the mesh 2,197 nodes where nothing else is said.
+struct Limit
+{
+  const char* What;
+  double Highest;
+};
+// The times of whole updates by those of vtkImageReslice with an affine transform, same output.
+constexpr Limit UpdateNear{ "near identity: update by affine vtkImageReslice", 8.0 };
+constexpr Limit UpdateGeneral{ "general pose: update by affine vtkImageReslice", 10.0 };
+// The times of mapping and resampling by those of the published kernel.
+constexpr Limit PublishedNear{ "near identity: default by published kernel", 1.0 };
+constexpr Limit PublishedGeneral{ "general pose: default by published kernel", 1.0 };
+// The times of mapping and resampling by those of the coarse mesh near identity.
+constexpr Limit FineMesh{ "near identity: 512000 nodes by 2197 nodes", 2.0 };
+constexpr Limit Rotated{ "turned by 45 degrees round each axis, by near identity", 6.0 };
+constexpr Limit Scaled{ "scaled by 1.5, by near identity", 6.0 };
+constexpr Limit BytesCoarse{ "2197 nodes: bytes of device memory per voxel", 31.0 };
+constexpr Limit BytesFine{ "512000 nodes: bytes of device memory per voxel", 31.0 };
+constexpr Limit Builds{ "static mappings built for moved meshes", 0.0 };
+constexpr Limit Uploads{ "uploads of the volume for moved meshes", 0.0 };
+constexpr Limit Preprocessing{ "301 x 370 x 316 voxels, 512000 nodes: seconds of preprocessing",
+  10.0 };
+
+constexpr int NumberOfRounds = 5;
 
 int Failures = 0;
 
-void Demand(bool met, const std::string& what, double value)
+void Check(const Limit& limit, double value)
 {
-  std::cout << (met ? "met:     " : "NOT MET: ") << what << ": " << value << "\n";
+  const bool met = value <= limit.Highest;
+  std::cout << (met ? "met:     " : "NOT MET: ") << limit.What << ": " << value << ", at most "
+            << limit.Highest << "\n";
   Failures += !met;
 }
 
-double GetMedian(std::vector<double> values)
+class Ratios
 {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
+public:
+  void Add(double value) { this->Values.push_back(value); }
+
+  double GetMedian()
+  {
+    const auto middle = this->Values.begin() + this->Values.size() / 2;
+    std::nth_element(this->Values.begin(), middle, this->Values.end());
+    return *middle;
+  }
+
+private:
+  std::vector<double> Values;
+};
+
+double GetBytesPerVoxel(BenchmarkCase& subject)
+{
+  return static_cast<double>(subject.GetFilter()->GetDeviceMemory()) /
+    static_cast<double>(subject.GetNumberOfVoxels());
 }
 
-void CheckSpeedAndMemory(int nodesPerAxis)
+void CheckSpeedAndMemory()
 {
-  BenchmarkCase subject(BenchmarkVolume, nodesPerAxis);
-  vtkDeformVolumeFilter* filter = subject.GetFilter();
-  const std::string nodes = std::to_string(nodesPerAxis * nodesPerAxis * nodesPerAxis) + " nodes, ";
-  for (const Pose pose : { Pose::NearIdentity, Pose::General })
+  const auto volume = MakeVolume(BenchmarkVolume);
+  BenchmarkCase near(volume, CoarseNodes);
+  BenchmarkCase general(volume, CoarseNodes);
+  BenchmarkCase fine(volume, FineNodes);
+  BenchmarkCase rotated(volume, CoarseNodes);
+  BenchmarkCase scaled(volume, CoarseNodes);
+  BenchmarkCase published(volume, CoarseNodes, vtkDeformVolumeFilter::PUBLISHED);
+  const auto reslice = MakeAffineReslice(volume);
+
+  const auto update = [](BenchmarkCase& subject, Pose pose)
   {
-    double phase = 0.0;
-    const auto measure = [&](int resampler)
+    subject.Move(pose);
+    return subject.Update();
+  };
+  const auto resliceLike = [&](BenchmarkCase& subject)
+  {
+    return reslice->Update(
+      Pose::General, subject.GetStep(), subject.GetFilter()->GetOutput()->GetExtent());
+  };
+
+  Ratios updateNear, updateGeneral, publishedNear, publishedGeneral, fineMesh, rotation, scaling;
+  vtkIdType builds = 0;
+  vtkIdType uploads = 0;
+  const auto countWork = [&]()
+  {
+    builds = 0;
+    uploads = 0;
+    for (BenchmarkCase* subject : { &near, &general, &fine, &rotated, &scaled })
     {
-      filter->SetResampler(resampler);
-      subject.Move(pose, phase += 0.01);
-      return subject.Update();
-    };
-    // The published kernel wants more memory, which is kept: it comes last.
-    filter->ReleaseDeviceMemory();
-    measure(vtkDeformVolumeFilter::EXACT);
-    const double bytesPerVoxel =
-      static_cast<double>(filter->GetDeviceMemory()) / subject.GetNumberOfVoxels();
-    measure(vtkDeformVolumeFilter::PUBLISHED);
-    const vtkIdType builds = filter->GetNumberOfMappingBuilds();
-    const vtkIdType uploads = filter->GetNumberOfVolumeUploads();
-    std::vector<double> ratios;
-    double preprocessing = 0.0;
-    for (int round = 0; round < NumberOfRounds; ++round)
-    {
-      const double ours = measure(vtkDeformVolumeFilter::EXACT);
-      preprocessing += filter->GetPreprocessingTime();
-      ratios.push_back(measure(vtkDeformVolumeFilter::PUBLISHED) / ours);
+      builds += subject->GetFilter()->GetNumberOfMappingBuilds();
+      uploads += subject->GetFilter()->GetNumberOfVolumeUploads();
     }
-    const std::string where = nodes + (pose == Pose::General ? "general pose" : "near identity");
-    const double ratio = GetMedian(ratios);
-    Demand(ratio >= 1.0, where + ": published time by default time", ratio);
-    Demand(bytesPerVoxel <= MaximumBytesPerVoxel, where + ": bytes of device memory per voxel",
-      bytesPerVoxel);
-    Demand(filter->GetNumberOfMappingBuilds() == builds && preprocessing == 0.0,
-      where + ": static mappings built for moved meshes",
-      static_cast<double>(filter->GetNumberOfMappingBuilds() - builds));
-    Demand(filter->GetNumberOfVolumeUploads() == uploads,
-      where + ": uploads of the volume for moved meshes",
-      static_cast<double>(filter->GetNumberOfVolumeUploads() - uploads));
+  };
+  // The first round builds kernels and static mappings, and does not count.
+  for (int round = 0; round <= NumberOfRounds; ++round)
+  {
+    const UpdateTimes nearTimes = update(near, Pose::NearIdentity);
+    const double resliceNear = resliceLike(near);
+    const double publishedNearTime = update(published, Pose::NearIdentity).GetKernels();
+    const double fineTime = update(fine, Pose::NearIdentity).GetKernels();
+    const double rotatedTime = update(rotated, Pose::Rotated).GetKernels();
+    const double scaledTime = update(scaled, Pose::UniformScale).GetKernels();
+    const UpdateTimes generalTimes = update(general, Pose::General);
+    const double resliceGeneral = resliceLike(general);
+    const double publishedGeneralTime = update(published, Pose::General).GetKernels();
+    if (round == 0)
+    {
+      countWork();
+      continue;
+    }
+    updateNear.Add(nearTimes.Update / resliceNear);
+    updateGeneral.Add(generalTimes.Update / resliceGeneral);
+    publishedNear.Add(nearTimes.GetKernels() / publishedNearTime);
+    publishedGeneral.Add(generalTimes.GetKernels() / publishedGeneralTime);
+    fineMesh.Add(fineTime / nearTimes.GetKernels());
+    rotation.Add(rotatedTime / nearTimes.GetKernels());
+    scaling.Add(scaledTime / nearTimes.GetKernels());
   }
+  Check(UpdateNear, updateNear.GetMedian());
+  Check(UpdateGeneral, updateGeneral.GetMedian());
+  Check(PublishedNear, publishedNear.GetMedian());
+  Check(PublishedGeneral, publishedGeneral.GetMedian());
+  Check(FineMesh, fineMesh.GetMedian());
+  Check(Rotated, rotation.GetMedian());
+  Check(Scaled, scaling.GetMedian());
+  Check(BytesCoarse, GetBytesPerVoxel(near));
+  Check(BytesFine, GetBytesPerVoxel(fine));
+  const vtkIdType buildsBefore = builds;
+  const vtkIdType uploadsBefore = uploads;
+  countWork();
+  Check(Builds, static_cast<double>(builds - buildsBefore));
+  Check(Uploads, static_cast<double>(uploads - uploadsBefore));
 }
 
 void CheckPreprocessing()
 {
-  BenchmarkCase subject(HeadVolume, FineNodes);
-  subject.Move(Pose::NearIdentity, 0.0);
-  subject.Update();
-  const double seconds = subject.GetFilter()->GetPreprocessingTime();
-  Demand(seconds > 0.0 && seconds < MaximumPreprocessingTime,
-    "301 x 370 x 316 voxels, 512000 nodes: seconds of preprocessing", seconds);
+  BenchmarkCase subject(MakeVolume(HeadVolume), FineNodes);
+  subject.Move(Pose::NearIdentity);
+  Check(Preprocessing, subject.Update().Preprocessing);
 }
 }
 
@@ -86,8 +160,7 @@ int main()
 {
   try
   {
-    CheckSpeedAndMemory(CoarseNodes);
-    CheckSpeedAndMemory(FineNodes);
+    CheckSpeedAndMemory();
     CheckPreprocessing();
   }
   catch (const std::exception& error)

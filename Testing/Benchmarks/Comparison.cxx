@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Evaluation.h"
+#include "Peers.h"
+
+#include <vtkImageData.h>
+
+namespace
+{
+// The resamplers on one volume, each with a filter of its own, and the peers, which fill the extent
+// that the first filter has filled.
+struct ComparisonStage
+{
+  vtkSmartPointer<vtkImageData> Volume = MakeVolume(BenchmarkVolume);
+  std::map<std::string, std::unique_ptr<BenchmarkCase>> Cases;
+  std::map<std::string, std::unique_ptr<Peer>> Peers;
+
+  BenchmarkCase& GetCase(const std::string& name) { return *this->Cases.at(name); }
+};
+
+struct NamedDeformation
+{
+  const char* Name;
+  int NodesPerAxis;
+};
+constexpr NamedDeformation Deformations[] = { { "2197", CoarseNodes }, { "512000", FineNodes },
+  { "field", DenseField } };
+constexpr NamedResampler Resamplers[] = { ExactResampler, PublishedResampler };
+
+using PeerMaker = std::function<std::unique_ptr<Peer>(vtkImageData*)>;
+const std::map<std::string, PeerMaker> PeerMakers = {
+  { "reslice-affine", MakeAffineReslice },
+  { "reslice-grid",
+    [](vtkImageData* volume)
+    { return MakeGridReslice(volume, CoarseNodes, GridDirection::Backward); } },
+  { "reslice-grid-solved",
+    [](vtkImageData* volume)
+    { return MakeGridReslice(volume, CoarseNodes, GridDirection::Solved); } },
+};
+
+Contestant<ComparisonStage> MakeCaseContestant(
+  const std::string& name, Pose pose, bool warmUp = true)
+{
+  return { name,
+    [name, pose](ComparisonStage& stage) { return Measure(stage.GetCase(name), pose); }, warmUp };
+}
+
+Contestant<ComparisonStage> MakePeerContestant(
+  const std::string& peer, const std::string& subject, Pose pose, bool warmUp)
+{
+  return { peer,
+    [=](ComparisonStage& stage)
+    {
+      BenchmarkCase& first = stage.GetCase(subject);
+      Measurement measurement;
+      measurement.Seconds = stage.Peers.at(peer)->Update(
+        pose, first.GetStep(), first.GetFilter()->GetOutput()->GetExtent());
+      return measurement;
+    },
+    warmUp };
+}
+}
+
+void RegisterComparison(const EvaluationSize& size)
+{
+  for (const Pose pose : { Pose::NearIdentity, Pose::General })
+  {
+    std::vector<Contestant<ComparisonStage>> contestants;
+    for (const NamedDeformation& deformation : Deformations)
+    {
+      for (const NamedResampler& resampler : Resamplers)
+      {
+        contestants.push_back(
+          MakeCaseContestant(std::string(deformation.Name) + "/" + resampler.Name, pose,
+            size.GetWarmUp(resampler.Resampler)));
+      }
+    }
+    for (const auto& named : PeerMakers)
+    {
+      contestants.push_back(MakePeerContestant(named.first, "2197/exact", pose, size.GetWarmUp()));
+    }
+    RegisterRounds<ComparisonStage>(
+      std::string("Deform/") + GetName(pose), size.GetRounds(),
+      []()
+      {
+        auto stage = std::make_shared<ComparisonStage>();
+        for (const NamedDeformation& deformation : Deformations)
+        {
+          for (const NamedResampler& resampler : Resamplers)
+          {
+            stage->Cases[std::string(deformation.Name) + "/" + resampler.Name] =
+              std::make_unique<BenchmarkCase>(
+                stage->Volume, deformation.NodesPerAxis, resampler.Resampler);
+          }
+        }
+        for (const auto& [name, make] : PeerMakers)
+        {
+          stage->Peers[name] = make(stage->Volume);
+        }
+        return stage;
+      },
+      contestants);
+  }
+}
+
+void RegisterProbe(const EvaluationSize& size)
+{
+  for (const Pose pose : { Pose::NearIdentity, Pose::General })
+  {
+    if (size.Quick && pose != Pose::NearIdentity)
+    {
+      continue;
+    }
+    RegisterRounds<ComparisonStage>(std::string("Probe/") + GetName(pose), size.Quick ? 1 : 2,
+      []()
+      {
+        auto stage = std::make_shared<ComparisonStage>();
+        stage->Cases["exact"] = std::make_unique<BenchmarkCase>(stage->Volume, CoarseNodes);
+        stage->Peers["probe"] = MakeProbeChain(stage->Volume, CoarseNodes);
+        return stage;
+      },
+      { MakeCaseContestant("exact", pose), MakePeerContestant("probe", "exact", pose, false) });
+  }
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Evaluation.h"
+
+#include <vtkImageData.h>
+
+Measurement Measure(BenchmarkCase& subject, Pose pose)
+{
+  vtkDeformVolumeFilter* filter = subject.GetFilter();
+  const vtkIdType builds = filter->GetNumberOfMappingBuilds();
+  const vtkIdType uploads = filter->GetNumberOfVolumeUploads();
+  subject.Move(pose);
+  const UpdateTimes times = subject.Update();
+  const auto voxels = static_cast<double>(subject.GetNumberOfVoxels());
+  Measurement measurement;
+  measurement.Seconds = times.Update;
+  measurement.Counters = {
+    { "mapping", times.Mapping },
+    { "resampling", times.Resampling },
+    { "kernels", times.GetKernels() },
+    { "transfer", times.Transfer },
+    { "preprocessing", times.Preprocessing },
+    { "voxels", voxels },
+    { "output_voxels", static_cast<double>(filter->GetOutput()->GetNumberOfPoints()) },
+    { "tetrahedra_of_mesh", static_cast<double>(subject.GetNumberOfTetrahedra()) },
+    { "device_bytes_per_voxel", static_cast<double>(filter->GetDeviceMemory()) / voxels },
+    { "mapping_builds", static_cast<double>(filter->GetNumberOfMappingBuilds() - builds) },
+    { "volume_uploads", static_cast<double>(filter->GetNumberOfVolumeUploads() - uploads) },
+  };
+  return measurement;
+}
+
+std::string GetName(const std::array<int, 3>& dimensions)
+{
+  return std::to_string(dimensions[0]) + "x" + std::to_string(dimensions[1]) + "x" +
+    std::to_string(dimensions[2]);
+}

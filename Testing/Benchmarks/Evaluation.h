@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef Evaluation_h
+#define Evaluation_h
+
+#include "BenchmarkCase.h"
+#include "Rounds.h"
+
+#include <string>
+
+// The parts of the evaluation; each registers its measurements with Google Benchmark. report.py
+// knows them by their names.
+
+struct EvaluationSize
+{
+  /// Few rounds of less, to see that it works.
+  bool Quick = false;
+
+  int GetRounds() const { return this->Quick ? 1 : 7; }
+  /// For what takes long.
+  int GetSlowRounds() const { return this->Quick ? 1 : 3; }
+  /// Whether what is compared with the exact resampler has a turn that does not count, too.
+  bool GetWarmUp() const { return !this->Quick; }
+  bool GetWarmUp(int resampler) const
+  {
+    return resampler == vtkDeformVolumeFilter::EXACT || this->GetWarmUp();
+  }
+};
+
+/// Deform/<pose>/<deformation>/<resampler>, Deform/<pose>/<peer>: table 1 and the peers.
+void RegisterComparison(const EvaluationSize& size);
+
+/// Probe/<pose>/<resampler or probe>: the slowest peer.
+void RegisterProbe(const EvaluationSize& size);
+
+/// Table2/<pose>/<resampler>, and Poses/<pose> for the volume of the comparison.
+void RegisterPoses(const EvaluationSize& size);
+
+/// Tetrahedra/<number>/<resampler>: figure 7.
+void RegisterTetrahedra(const EvaluationSize& size);
+
+/// Voxels/<dimensions>/<resampler>: figure 8.
+void RegisterVoxels(const EvaluationSize& size);
+
+/// Preprocess/<dimensions>/<nodes>: the static mapping.
+void RegisterPreprocessing(const EvaluationSize& size);
+
+/// Incremental/<whole or local>: a mesh that moves in one place only.
+void RegisterIncremental(const EvaluationSize& size);
+
+/// The resamplers that are compared, by their names in the results. The first is the subject of
+/// the demands.
+struct NamedResampler
+{
+  const char* Name;
+  int Resampler;
+};
+inline constexpr NamedResampler ExactResampler{ "exact", vtkDeformVolumeFilter::EXACT };
+inline constexpr NamedResampler PublishedResampler{ "published", vtkDeformVolumeFilter::PUBLISHED };
+
+/// Moves a case and brings it up to date.
+Measurement Measure(BenchmarkCase& subject, Pose pose);
+
+/// 189x305x229
+std::string GetName(const std::array<int, 3>& dimensions);
+
+#endif

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef Peers_h
+#define Peers_h
+
+#include "Pose.h"
+
+#include <memory>
+
+class vtkImageData;
+
+/// What VTK itself has to deform a volume with. A peer fills the output extent that the filter has
+/// filled, in the volume's own coordinates.
+class Peer
+{
+public:
+  virtual ~Peer() = default;
+
+  /// Moves to a step of a pose, which is not measured, and fills an extent. Returns the wall-clock
+  /// seconds that the update took.
+  virtual double Update(Pose pose, int step, const int extent[6]) = 0;
+
+  virtual vtkImageData* GetOutput() = 0;
+};
+
+/// vtkImageReslice with an affine transform, linear: the pose General, whatever is asked for. This
+/// is what it costs in VTK to rotate a volume.
+std::unique_ptr<Peer> MakeAffineReslice(vtkImageData* volume);
+
+enum class GridDirection
+{
+  /// The vectors of the grid are taken as the inverse deformation, as if that were known.
+  Backward,
+  /// The transform inverts the deformation at each voxel by Newton's method.
+  Solved
+};
+
+/// vtkImageReslice with a vtkGridTransform, linear, whose grid has the nodes of a lattice.
+std::unique_ptr<Peer> MakeGridReslice(
+  vtkImageData* volume, int nodesPerAxis, GridDirection direction);
+
+/// Two vtkProbeFilter: the deformed tetrahedra, which carry their rest coordinates, are probed at
+/// the voxels of the output; then the volume is probed at those coordinates.
+std::unique_ptr<Peer> MakeProbeChain(vtkImageData* volume, int nodesPerAxis);
+
+#endif

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The evaluation of what the time depends on: the deformation mesh, the volume, what moves.
+#include "Evaluation.h"
+
+#include <vtkImageData.h>
+
+namespace
+{
+using CaseMap = std::map<std::string, std::unique_ptr<BenchmarkCase>>;
+
+Contestant<CaseMap> MakeContestant(const std::string& name, Pose pose, bool warmUp = true)
+{
+  return { name, [=](CaseMap& cases) { return Measure(*cases.at(name), pose); }, warmUp };
+}
+
+constexpr NamedResampler Resamplers[] = { ExactResampler, PublishedResampler };
+}
+
+void RegisterTetrahedra(const EvaluationSize& size)
+{
+  for (const int nodes : { 5, 9, 13, 21, 41, 80 })
+  {
+    if (size.Quick && (nodes == 9 || nodes == 21))
+    {
+      continue;
+    }
+    const int cells = nodes - 1;
+    std::vector<Contestant<CaseMap>> contestants;
+    for (const NamedResampler& resampler : Resamplers)
+    {
+      contestants.push_back(
+        MakeContestant(resampler.Name, Pose::NearIdentity, size.GetWarmUp(resampler.Resampler)));
+    }
+    RegisterRounds<CaseMap>(
+      "Tetrahedra/" + std::to_string(5 * cells * cells * cells), size.GetRounds(),
+      [nodes]()
+      {
+        auto cases = std::make_shared<CaseMap>();
+        const auto volume = MakeVolume(BenchmarkVolume);
+        for (const NamedResampler& resampler : Resamplers)
+        {
+          (*cases)[resampler.Name] =
+            std::make_unique<BenchmarkCase>(volume, nodes, resampler.Resampler);
+        }
+        return cases;
+      },
+      contestants);
+  }
+}
+
+void RegisterVoxels(const EvaluationSize& size)
+{
+  // 1, 4, 13.2, 30, 60 and 100 million.
+  constexpr std::array<int, 3> all[] = { { { 100, 100, 100 } }, { { 160, 160, 160 } },
+    BenchmarkVolume, { { 311, 311, 311 } }, { { 391, 391, 391 } }, { { 464, 464, 464 } } };
+  // The published kernel needs too much memory for the largest.
+  constexpr int largestPublished = 311;
+  struct Wanted
+  {
+    std::array<int, 3> Dimensions;
+    int Resampler;
+  };
+  // All volumes stand at once, so that a round holds all of them.
+  std::map<std::string, Wanted> wanted;
+  std::vector<Contestant<CaseMap>> contestants;
+  for (const auto& dimensions : all)
+  {
+    const bool published = dimensions[0] <= largestPublished;
+    if (size.Quick && !published)
+    {
+      continue;
+    }
+    for (const NamedResampler& resampler : Resamplers)
+    {
+      if (resampler.Resampler == PublishedResampler.Resampler && !published)
+      {
+        continue;
+      }
+      const std::string name = GetName(dimensions) + "/" + resampler.Name;
+      wanted[name] = { dimensions, resampler.Resampler };
+      contestants.push_back(
+        MakeContestant(name, Pose::NearIdentity, size.GetWarmUp(resampler.Resampler)));
+    }
+  }
+  RegisterRounds<CaseMap>(
+    "Voxels", size.GetSlowRounds(),
+    [wanted]()
+    {
+      auto cases = std::make_shared<CaseMap>();
+      for (const auto& [name, one] : wanted)
+      {
+        (*cases)[name] =
+          std::make_unique<BenchmarkCase>(MakeVolume(one.Dimensions), CoarseNodes, one.Resampler);
+      }
+      return cases;
+    },
+    contestants);
+}
+
+void RegisterPreprocessing(const EvaluationSize& size)
+{
+  for (const auto& dimensions : { BenchmarkVolume, HeadVolume })
+  {
+    std::vector<Contestant<CaseMap>> contestants;
+    std::map<std::string, int> nodesPerAxis;
+    for (const int nodes : { CoarseNodes, FineNodes })
+    {
+      const std::string name = std::to_string(nodes * nodes * nodes);
+      nodesPerAxis[name] = nodes;
+      contestants.push_back({ name,
+        [name](CaseMap& cases)
+        {
+          BenchmarkCase& subject = *cases.at(name);
+          subject.GetFilter()->ReleaseDeviceMemory();
+          Measurement measurement = Measure(subject, Pose::NearIdentity);
+          measurement.Seconds = measurement.Counters.at("preprocessing");
+          // Otherwise the next one would find the memory of this one taken.
+          subject.GetFilter()->ReleaseDeviceMemory();
+          return measurement;
+        },
+        size.GetWarmUp() });
+    }
+    RegisterRounds<CaseMap>(
+      "Preprocess/" + GetName(dimensions), size.GetSlowRounds(),
+      [=]()
+      {
+        auto cases = std::make_shared<CaseMap>();
+        const auto volume = MakeVolume(dimensions);
+        for (const auto& [name, nodes] : nodesPerAxis)
+        {
+          (*cases)[name] = std::make_unique<BenchmarkCase>(volume, nodes);
+        }
+        return cases;
+      },
+      contestants);
+  }
+}
+
+void RegisterIncremental(const EvaluationSize& size)
+{
+  RegisterRounds<CaseMap>("Incremental", size.GetRounds(),
+    []()
+    {
+      auto cases = std::make_shared<CaseMap>();
+      const auto volume = MakeVolume(BenchmarkVolume);
+      for (const Pose pose : { Pose::NearIdentity, Pose::LocalEdit })
+      {
+        (*cases)[GetName(pose)] = std::make_unique<BenchmarkCase>(volume, FineNodes);
+      }
+      return cases;
+    },
+    { MakeContestant(GetName(Pose::NearIdentity), Pose::NearIdentity),
+      MakeContestant(GetName(Pose::LocalEdit), Pose::LocalEdit) });
+}

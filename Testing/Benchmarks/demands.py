@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The demands on speed and memory that the report answers. All ratios are medians of ratios within
+rounds of one run; the volume has 189 x 305 x 229 voxels of 16 bits and the mesh 2,197 nodes where
+nothing else is said."""
+import dataclasses
+import typing
+
+SLACK_IN_VOXELS = 3.9e6  # "from 4 million voxels": 160^3 is 4.1 million
+
+
+@dataclasses.dataclass
+class Demand:
+    """value takes Results and returns the number that must not be over limit, or None where it was
+    not measured."""
+    words: str
+    limit: float
+    value: typing.Callable
+    unit: str = ""
+    only_on: str = ""  # "gpu": of no other kind of device
+
+
+def _update_by_affine(pose, nodes="2197"):
+    return lambda r: r.ratio(f"Deform/{pose}/{nodes}/exact", f"Deform/{pose}/reslice-affine")
+
+
+def _kernels_by_published(pose, nodes="2197"):
+    return lambda r: r.ratio(
+        f"Deform/{pose}/{nodes}/exact", f"Deform/{pose}/{nodes}/published", "kernels")
+
+
+def _fine_by_coarse(pose):
+    return lambda r: r.ratio(
+        f"Deform/{pose}/512000/exact", f"Deform/{pose}/2197/exact", "kernels")
+
+
+def _pose_by_near(pose):
+    return lambda r: r.ratio(f"Poses/{pose}", "Poses/near", "kernels")
+
+
+def time_per_voxel(run):
+    """Seconds."""
+    return run["kernels"] / run["voxels"]
+
+
+def _spread_of_sizes(results):
+    names = [name for name in results.names("Voxels/") if name.endswith("/exact")
+             and (results.median(name, "voxels") or 0) > SLACK_IN_VOXELS]
+    return results.spread(names, time_per_voxel) if len(names) > 1 else None
+
+
+def _resident_gigabytes(results):
+    resident = results.median("Memory/1000x1000x1000/uchar/2197/exact", "resident_bytes")
+    return None if resident is None else resident / 1e9
+
+
+def _preprocessing(results):
+    return results.median("Preprocess/301x370x316/512000", "preprocessing")
+
+
+DEMANDS = [
+    Demand("Update() by vtkImageReslice affine, near identity", 0.5, _update_by_affine("near")),
+    Demand("Update() by vtkImageReslice affine, general pose", 0.9, _update_by_affine("general")),
+    Demand("mapping and resampling by the published kernel, near identity", 1 / 13,
+           _kernels_by_published("near")),
+    Demand("mapping and resampling by the published kernel, general pose", 1 / 9,
+           _kernels_by_published("general")),
+    Demand("mapping and resampling, 512,000 by 2,197 nodes, near identity", 1.2,
+           _fine_by_coarse("near")),
+    Demand("mapping and resampling, 512,000 by 2,197 nodes, general pose", 1.2,
+           _fine_by_coarse("general")),
+    Demand("mapping and resampling, turned by 45 degrees round each axis, by near identity", 2.5,
+           _pose_by_near("rotated-45")),
+    Demand("mapping and resampling, scaled by 1.5, by near identity", 1.8,
+           _pose_by_near("scale-1.5")),
+    Demand("time per voxel, from 4 million voxels to the largest volume: distance from the middle",
+           0.2, _spread_of_sizes),
+    Demand("device memory, 512,000 nodes (a map of 16 bytes per voxel)", 20.0,
+           lambda r: r.median("Deform/near/512000/exact", "device_bytes_per_voxel"),
+           "bytes per voxel"),
+    Demand("device memory, 2,197 nodes (runs)", 6.0,
+           lambda r: r.median("Deform/near/2197/exact", "device_bytes_per_voxel"),
+           "bytes per voxel"),
+    Demand("1000 x 1000 x 1000 voxels of 8 bits, 2,197 nodes: resident memory of the process", 8.0,
+           _resident_gigabytes, "GB"),
+    Demand("preprocessing of 301 x 370 x 316 voxels with 512,000 nodes", 3.0, _preprocessing, "s"),
+    Demand("Update() after an edit in a box of 4 % of the volume by one of all, 512,000 nodes", 0.15,
+           lambda r: r.ratio("Incremental/local-edit", "Incremental/near")),
+    Demand("mapping and resampling of 13.2 million voxels, near identity", 1.0,
+           lambda r: r.milliseconds("Deform/near/2197/exact", "kernels"), "ms", "gpu"),
+]

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The plots of the report."""
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (after the choice of what draws)
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
+
+STYLES = {
+    "exact": ("Exact", "tab:blue", "o"),
+    "mesh-rasterization": ("MeshRasterization", "tab:green", "s"),
+    "published": ("published", "tab:orange", "^"),
+}
+
+
+def _finish(axes, path, title):
+    axes.figure.suptitle(title, fontsize=10)
+    axes.grid(True, which="both", alpha=0.25)
+    axes.figure.tight_layout()
+    axes.figure.savefig(path, dpi=110)
+    plt.close(axes.figure)
+
+
+def _label_plainly(axis):
+    """Ticks of a logarithmic axis at 1, 2 and 5, as plain numbers."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def plot_curves(path, title, labels, curves, band=None):
+    """curves: resampler -> (x, y). band: (lower, upper) of y."""
+    _, axes = plt.subplots(figsize=(7, 4.2))
+    for resampler, (x, y) in curves.items():
+        label, colour, marker = STYLES[resampler]
+        axes.plot(x, y, marker=marker, color=colour, label=label)
+    if band:
+        axes.axhspan(*band, color="tab:blue", alpha=0.12, label="Exact, ±20 %")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    _label_plainly(axes.yaxis)
+    axes.set_xlabel(labels[0])
+    axes.set_ylabel(labels[1])
+    axes.legend()
+    _finish(axes, path, title)
+
+
+def plot_bars(path, title, label, bars):
+    """bars: (name, value, true for what is ours)."""
+    _, axes = plt.subplots(figsize=(9, 0.36 * len(bars) + 1.3))
+    names = [name for name, _, _ in bars]
+    values = [value for _, value, _ in bars]
+    colours = ["tab:blue" if ours else "tab:gray" for _, _, ours in bars]
+    drawn = axes.barh(names, values, color=colours)
+    axes.bar_label(drawn, [f"{value:.0f}" for value in values], padding=3, fontsize=8)
+    axes.invert_yaxis()
+    axes.set_xscale("log")
+    axes.set_xlim(0.3 * min(values), 4.0 * max(values))
+    axes.set_xlabel(label)
+    _finish(axes, path, title)

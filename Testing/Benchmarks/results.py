@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reads what the benchmark programs wrote for one device."""
+import collections
+import json
+import pathlib
+import statistics
+
+# Google Benchmark appends how a run was done.
+SUFFIX = "/iterations:"
+
+
+class Results:
+    """The measurements of all JSON files in a folder, by name, in the order of the rounds."""
+
+    def __init__(self, folder):
+        self.runs = collections.defaultdict(list)
+        self.context = {}
+        for path in sorted(pathlib.Path(folder).glob("*.json")):
+            with open(path, encoding="utf-8") as file:
+                result = json.load(file)
+            self.context.update(result["context"])
+            for run in result["benchmarks"]:
+                self.runs[run["name"].split(SUFFIX)[0]].append(run)
+
+    def names(self, prefix):
+        """Names that begin with a prefix, in the order of their first run."""
+        return [name for name in self.runs if name.startswith(prefix)]
+
+    def errors(self):
+        """(name, message) of each measurement that failed."""
+        return [(name, runs[0]["error_message"]) for name, runs in self.runs.items()
+                if runs[0].get("error_occurred")]
+
+    def values(self, name, key="real_time"):
+        """One value for each round; None where it failed."""
+        return [None if run.get("error_occurred") else run.get(key)
+                for run in self.runs.get(name, [])]
+
+    def median(self, name, key="real_time"):
+        """Median over the rounds; None where there is no value."""
+        values = [value for value in self.values(name, key) if value is not None]
+        return statistics.median(values) if values else None
+
+    def milliseconds(self, name, key):
+        """Median over the rounds of a counter that is in seconds."""
+        seconds = self.median(name, key)
+        return None if seconds is None else 1e3 * seconds
+
+    def ratio(self, name, other, key="real_time"):
+        """Median of the ratios of name to other within each round."""
+        pairs = zip(self.values(name, key), self.values(other, key))
+        ratios = [a / b for a, b in pairs if a is not None and b]
+        return statistics.median(ratios) if ratios else None
+
+    def spread(self, names, value):
+        """How far the values of a round lie from their middle, as a part of it, at most; the
+        median of that over the rounds. value: of a run."""
+        rounds = zip(*(self.runs[name] for name in names))
+        spreads = []
+        for runs in rounds:
+            if any(run.get("error_occurred") for run in runs):
+                continue
+            values = [value(run) for run in runs]
+            spreads.append((max(values) - min(values)) / (max(values) + min(values)))
+        return statistics.median(spreads) if spreads else None

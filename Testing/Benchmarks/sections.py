@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The sections of the report on one device. Each yields Markdown, nothing where nothing was
+measured, and may write plots to the folder of the report."""
+from demands import time_per_voxel
+from plots import STYLES, plot_bars, plot_curves
+
+# The method's authors measured these on a Radeon R9 270X: Rodriguez, Leon, Martin and Otaduy,
+# "A parallel resampling method for interactive deformation of volumetric models"; the frames were cast with 500 samples a ray.
+PAPER_RESAMPLING = {"undeformed": 14.6, "rotated-45": 23.6, "scale-1.5": 51.2}  # ms
+PAPER_RENDERING = {("700x700", "unshaded"): 7.4, ("700x700", "shaded"): 24.1,
+                   ("1920x1080", "unshaded"): 40.3, ("1920x1080", "shaded"): 107.7}  # ms
+
+POSES = {"near": "near identity", "general": "general pose"}
+# What they are called in tables and in plots.
+PEERS = {
+    "reslice-affine": ("vtkImageReslice, affine (it rotates instead)", "reslice, affine"),
+    "reslice-grid": ("vtkImageReslice, vtkGridTransform, backward vectors given",
+                     "reslice, grid given backward"),
+    "reslice-grid-solved": ("vtkImageReslice, vtkGridTransform, inverse solved",
+                            "reslice, grid inverted"),
+    "probe": ("vtkProbeFilter of the mesh, then of the volume", "probe chain"),
+}
+
+
+def cell(value, digits=1):
+    """A number in a table: with so many significant digits, at least all before the point."""
+    if value is None:
+        return "-"
+    if isinstance(value, str):
+        return value
+    if value == 0:
+        return "0"
+    magnitude = len(str(int(abs(value))))
+    return f"{value:.{max(digits - magnitude, 0)}f}" if abs(value) >= 1 else f"{value:.{digits}f}"
+
+
+def table(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|---" * len(header) + "|"]
+    lines += ["| " + " | ".join(cell(value, 3) for value in row) + " |" for row in rows]
+    return "\n".join(lines) + "\n"
+
+
+def _resamplers(results, prefix):
+    """Those that were measured under a prefix, in the order of STYLES."""
+    return [name for name in STYLES if f"{prefix}/{name}" in results.runs]
+
+
+def device(results, _folder, _kind):
+    rate = results.median("Device/copy", "bytes_per_second")
+    if not rate:
+        return
+    voxels = 189 * 305 * 229
+    yield "## Memory bandwidth\n"
+    yield (f"A kernel that copies 256 MiB reads and writes {rate / 1e9:.1f} GB/s together. For "
+           "189 x 305 x 229 voxels of 16 bits, reading the volume and writing the result and its "
+           f"mask (5 bytes per voxel) takes {5e3 * voxels / rate:.2f} ms at that rate, with a static "
+           f"map of 16 bytes per voxel {21e3 * voxels / rate:.2f} ms: no resampling is faster.\n")
+
+
+def comparison(results, folder, kind):
+    for pose, words in POSES.items():
+        rows, bars = [], []
+        for name in results.names(f"Deform/{pose}/"):
+            parts = name.split("/")
+            if len(parts) != 4:
+                continue
+            other = f"Deform/{pose}/{parts[2]}/published"
+            rows.append([parts[2], STYLES[parts[3]][0], results.median(name)]
+                        + [results.milliseconds(name, key)
+                           for key in ("mapping", "resampling", "transfer")]
+                        + [results.ratio(name, other, "kernels"),
+                           results.ratio(name, f"Deform/{pose}/reslice-affine"),
+                           results.median(name, "device_bytes_per_voxel"),
+                           results.median(name, "mapping_builds"),
+                           results.median(name, "volume_uploads")])
+            if results.median(name):
+                bars.append((f"{STYLES[parts[3]][0]}, {parts[2]}", results.median(name),
+                             parts[3] != "published"))
+        if not rows:
+            continue
+        yield f"## Table 1: 189 x 305 x 229 voxels of 16 bits, {words}\n"
+        yield table(["deformation", "resampler", "Update(), ms", "mapping, ms", "resampling, ms",
+                     "transfer, ms", "mapping + resampling by published",
+                     "Update() by affine vtkImageReslice", "device bytes per voxel",
+                     "mappings built", "uploads of the volume"], rows)
+        rows = []
+        for peer, (what, short) in PEERS.items():
+            group = "Probe" if peer == "probe" else "Deform"
+            ours = f"Probe/{pose}/exact" if peer == "probe" else f"Deform/{pose}/2197/exact"
+            name = f"{group}/{pose}/{peer}"
+            if results.median(name):
+                rows.append([what, results.median(name), results.ratio(ours, name)])
+                bars.append((short, results.median(name), False))
+        yield f"Peers over the same output, {words}, 2,197 nodes:\n"
+        yield table(["peer", "Update(), ms", "ours by peer"], rows)
+        image = f"{kind}-peers-{pose}.png"
+        plot_bars(folder / image, f"Whole update, 13.2 million voxels, {words}\n"
+                  f"{results.context['device']}", "ms", bars)
+        yield f"![Whole updates, {words}]({image})\n"
+
+
+def poses(results, _folder, _kind):
+    rows = []
+    for name in results.names("Table2/"):
+        _, pose, resampler = name.split("/")
+        kernels = results.milliseconds(name, "kernels")
+        samples = results.median(name, "samples")
+        if not kernels:
+            continue
+        fewest, most = (results.median(name, key) for key in ("fewest_samples", "most_samples"))
+        per_tetrahedron = samples / results.median(name, "tetrahedra")
+        rows.append([pose, STYLES[resampler][0], kernels, results.median(name),
+                     results.ratio(name, f"Table2/{pose}/published", "kernels"),
+                     f"{per_tetrahedron:.2f} ({fewest:.0f}, {most:.0f})",
+                     f"{samples / kernels:.3g}", PAPER_RESAMPLING.get(pose)])
+    if rows:
+        yield "## Table 2: 256 x 256 x 113 voxels of 16 bits, 2,197 nodes\n"
+        yield table(["pose", "resampler", "mapping + resampling, ms", "Update(), ms",
+                     "by published", "samples per tetrahedron (fewest, most)", "samples per ms",
+                     "resampling in the paper (Radeon R9 270X), ms"], rows)
+    rows = [[name.split("/")[1], results.milliseconds(name, "kernels"), results.median(name),
+             results.ratio(name, "Poses/near", "kernels")] for name in results.names("Poses/")]
+    if rows:
+        yield "## Poses: 189 x 305 x 229 voxels of 16 bits, 2,197 nodes\n"
+        yield table(["pose", "mapping + resampling, ms", "Update(), ms",
+                     "mapping + resampling by near identity"], rows)
+
+
+def tetrahedra(results, folder, kind):
+    counts = list(dict.fromkeys(name.split("/")[1] for name in results.names("Tetrahedra/")))
+    rows, curves = [], {}
+    for count in counts:
+        row = [count]
+        for resampler in _resamplers(results, f"Tetrahedra/{count}"):
+            name = f"Tetrahedra/{count}/{resampler}"
+            time = results.milliseconds(name, "kernels")
+            row += [time, results.median(name)]
+            if time:
+                x, y = curves.setdefault(resampler, ([], []))
+                x.append(int(count))
+                y.append(time)
+        rows.append(row)
+    if not rows:
+        return
+    names = [STYLES[name][0] for name in _resamplers(results, f"Tetrahedra/{counts[0]}")]
+    yield "## Figure 7: time against the tetrahedra of the deformation mesh\n"
+    yield table(["tetrahedra"] + [f"{name}: {what}" for name in names
+                                  for what in ("mapping + resampling, ms", "Update(), ms")], rows)
+    image = f"{kind}-tetrahedra.png"
+    plot_curves(folder / image, "189 x 305 x 229 voxels, near identity\n"
+                + results.context["device"],
+                ("tetrahedra of the deformation mesh", "mapping + resampling, ms"), curves)
+    yield f"![Time against tetrahedra]({image})\n"
+
+
+def voxels(results, folder, kind):
+    rows, curves = [], {}
+    for name in results.names("Voxels/"):
+        _, dimensions, resampler = name.split("/")
+        count = results.median(name, "voxels")
+        if not count:
+            continue
+        time = 1e9 * results.median(name, "kernels") / count
+        rows.append([dimensions, f"{count / 1e6:.1f}", STYLES[resampler][0],
+                     results.milliseconds(name, "kernels"), f"{time:.2f}",
+                     1e6 * results.median(name) / count])
+        x, y = curves.setdefault(resampler, ([], []))
+        x.append(count / 1e6)
+        y.append(time)
+    if not rows:
+        return
+    yield "## Figure 8: time against voxels, near identity, 2,197 nodes\n"
+    yield table(["dimensions", "million voxels", "resampler", "mapping + resampling, ms",
+                 "mapping + resampling, ns per voxel", "Update(), ns per voxel"], rows)
+    image = f"{kind}-voxels.png"
+    ours = [time for count, time in zip(*curves.get("exact", ((), ()))) if count > 3.9]
+    middle = 0.5 * (min(ours) + max(ours)) if ours else None
+    plot_curves(folder / image, "Near identity, 2,197 nodes\n" + results.context["device"],
+                ("million voxels", "mapping + resampling, ns per voxel"), curves,
+                (0.8 * middle, 1.2 * middle) if middle else None)
+    yield f"![Time per voxel]({image})\n"
+
+
+def preprocessing(results, _folder, _kind):
+    rows = [name.split("/")[1:] + [results.median(name)] for name in results.names("Preprocess/")]
+    if rows:
+        yield "## Preprocessing: the static mapping, once for a volume and a mesh at rest\n"
+        yield table(["voxels", "nodes", "ms"], rows)
+
+
+def memory(results, _folder, _kind):
+    rows = []
+    for name in results.names("Memory/"):
+        _, dimensions, scalars, nodes, resampler = name.split("/")
+        resident = results.median(name, "resident_bytes")
+        rows.append([dimensions, scalars, nodes, STYLES[resampler][0],
+                     results.median(name, "device_bytes_per_voxel"),
+                     results.median(name, "resident_bytes_per_voxel"),
+                     f"{resident / 1e9:.2f}" if resident else "failed"])
+    if rows:
+        yield "## Memory: one update in a process of its own\n"
+        yield table(["voxels", "type", "nodes", "resampler", "device bytes per voxel",
+                     "resident bytes per voxel", "highest resident memory of the process, GB"], rows)
+
+
+def incremental(results, _folder, _kind):
+    rows = [[words, results.median(name), results.milliseconds(name, "kernels"),
+             results.ratio(name, "Incremental/near")]
+            for name, words in (("Incremental/near", "all"),
+                                ("Incremental/local-edit", "a box of 4 % of the volume"))
+            if name in results.runs]
+    if rows:
+        yield "## Edits: what moves of 512,000 nodes, 189 x 305 x 229 voxels\n"
+        yield table(["what moves", "Update(), ms", "mapping + resampling, ms", "by all"], rows)
+
+
+def rendering(results, folder, kind):
+    rows = []
+    for name in results.names("Render/"):
+        if not name.endswith("/undeformed"):
+            continue
+        _, mapper, viewport, shading, _ = name.split("/")
+        deformed = name.replace("/undeformed", "/deformed")
+        rows.append([mapper, viewport, shading, results.median(name), results.median(deformed),
+                     results.ratio(deformed, name), results.milliseconds(deformed, "update"),
+                     PAPER_RENDERING[viewport, shading]])
+    if not rows:
+        return
+    yield "## Viewports: frames of VTK's mappers, the head of ch2 (181 x 217 x 181 voxels)\n"
+    yield table(["mapper", "viewport", "gradients", "undeformed, ms", "deformed, ms",
+                 "deformed by undeformed", "update of the filter before the frame, ms",
+                 "ray casting in the paper (Radeon R9 270X), ms"], rows)
+    for path in sorted((folder / kind).glob("head-*.png")):
+        yield f"![{path.stem}]({kind}/{path.name})"
+    yield ""
+
+
+ALL = [device, comparison, poses, tetrahedra, voxels, preprocessing, memory, incremental, rendering]
