@@ -22,6 +22,7 @@ set(helpers
   LinkExtrapolation
   MappingCache
   OutputExtent
+  ResamplerChoice
   RunBuilder
   StaticMapping
   TetGenProcess

@@ -38,7 +38,8 @@ std::string DeviceSession::SetDevice(
 }
 
 void DeviceSession::CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
-  const Extent& outputExtent, const Deformation& deformation, std::uint64_t runBytes) const
+  const Extent& outputExtent, const Deformation& deformation, std::uint64_t runBytes,
+  Resampling method) const
 {
   const bool field = deformation.IsField();
   std::size_t numberOfNodes = deformation.GetRestPoints().size();
@@ -50,18 +51,25 @@ void DeviceSession::CheckMemory(const Lattice& lattice, const std::vector<Volume
       numberOfNodes *= static_cast<std::size_t>(size);
     }
   }
+  if (method == Resampling::MeshRasterization)
+  {
+    this->Deformer.CheckRasterizationMemory(
+      lattice, arrays, outputExtent, numberOfNodes, deformation.GetTetrahedra().size());
+    return;
+  }
   this->Deformer.CheckMemory(lattice, arrays, outputExtent, numberOfNodes,
     field ? 0 : deformation.GetTetrahedra().size(), field, runBytes);
 }
 
 void DeviceSession::SetVolume(const Lattice& lattice, vtkImageData* volume,
-  const std::vector<SourceArray>& arrays, double background)
+  const std::vector<SourceArray>& arrays, double background, Resampling method)
 {
   if (!this->Known)
   {
     this->Forget();
   }
   Transfer transfer(this);
+  const bool links = method != Resampling::MeshRasterization;
   std::size_t widest = 0;
   const std::vector<VolumeArray> described = Describe(arrays, background);
   for (const VolumeArray& array : described)
@@ -69,12 +77,14 @@ void DeviceSession::SetVolume(const Lattice& lattice, vtkImageData* volume,
     widest = std::max(widest, GetTupleSize(array));
   }
   if (this->SentLattice.VertexExtent != lattice.VertexExtent ||
-    this->SentLattice.Scale != lattice.Scale || this->SentWidth < widest)
+    this->SentLattice.Scale != lattice.Scale || this->SentWidth < widest ||
+    this->SentForLinks != links)
   {
     this->Forget();
-    this->Deformer.SetLattice(lattice, widest);
+    this->Deformer.SetLattice(lattice, widest, links);
     this->SentLattice = lattice;
     this->SentWidth = widest;
+    this->SentForLinks = links;
   }
 
   const Stamp stamp = GetStamp(arrays);
@@ -117,7 +127,7 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
       transfer.End();
     }
     this->HasField = true;
-    this->HasMesh = false;
+    this->HasMesh = this->HasRestMesh = false;
   }
   else
   {
@@ -153,10 +163,33 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
       transfer.End();
     }
     this->HasMesh = true;
-    this->HasField = false;
+    this->HasField = this->HasRestMesh = false;
   }
   this->SentVectors = vectors;
   this->SentExtrapolate = extrapolate;
+}
+
+void DeviceSession::SetRestMesh(const Deformation& deformation)
+{
+  static_assert(sizeof(glm::dvec3) == 3 * sizeof(double), "as the deformer reads it");
+  const bool meshIsSent = this->HasRestMesh && this->SentRest == deformation.GetRestVersion();
+  const std::uint64_t vectors = deformation.GetVectorsVersion();
+  Transfer transfer(this);
+  if (!meshIsSent)
+  {
+    const std::vector<Tetrahedron>& tetrahedra = deformation.GetTetrahedra();
+    this->Deformer.SetRestMesh(tetrahedra.data(), tetrahedra.size(),
+      deformation.GetRestPoints().size(), &deformation.GetRestPoints().front().x);
+  }
+  if (!meshIsSent || this->SentVectors != vectors)
+  {
+    this->Deformer.SetNodeDisplacements(deformation.GetNodeDisplacements());
+  }
+  transfer.End();
+  this->HasRestMesh = true;
+  this->HasMesh = this->HasField = false;
+  this->SentRest = deformation.GetRestVersion();
+  this->SentVectors = vectors;
 }
 
 DeformReport DeviceSession::Deform(const DeformRequest& request)
@@ -191,6 +224,7 @@ void DeviceSession::Forget()
   this->MasksAreSet = false;
   this->HasMesh = false;
   this->HasField = false;
+  this->HasRestMesh = false;
 }
 
 } // namespace deformvolume

@@ -27,14 +27,20 @@ public:
 
   /// See VolumeDeformer.
   void CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
-    const Extent& outputExtent, const Deformation& deformation, std::uint64_t runBytes) const;
+    const Extent& outputExtent, const Deformation& deformation, std::uint64_t runBytes,
+    Resampling method = Resampling::Exact) const;
 
+  /// A change to or from the method MeshRasterization sends the volume anew.
   void SetVolume(const Lattice& lattice, vtkImageData* volume,
-    const std::vector<SourceArray>& arrays, double background);
+    const std::vector<SourceArray>& arrays, double background,
+    Resampling method = Resampling::Exact);
 
   /// Brings the mapping up to date, too, where it has to be sent.
   void SetDeformation(const Deformation& deformation, MappingCache& mapping,
     const ImageGeometry& volume, bool extrapolate, const std::function<bool(double)>& progress);
+
+  /// A mesh, for the method MeshRasterization: there is no mapping.
+  void SetRestMesh(const Deformation& deformation);
 
   DeformReport Deform(const DeformRequest& request);
 
@@ -56,11 +62,14 @@ private:
   Lattice SentLattice;
   // Bytes of a voxel in the widest array that the lattice was prepared for.
   std::size_t SentWidth = 0;
+  bool SentForLinks = false;
   Stamp SentArrays;
   Stamp SentMasks;
   bool MasksAreSet = false;
   bool HasMesh = false;
   bool HasField = false;
+  bool HasRestMesh = false;
+  std::uint64_t SentRest = 0;
   std::uint64_t SentMapping = 0;
   std::uint64_t SentVectors = 0;
   bool SentExtrapolate = false;

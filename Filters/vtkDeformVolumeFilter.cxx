@@ -349,13 +349,35 @@ int vtkDeformVolumeFilter::RequestData(
   deformvolume::DeviceSession& device = this->Internals->Device;
   this->DeviceInUse = device.SetDevice(this->Device, static_cast<std::uint64_t>(this->MemoryLimit),
     static_cast<std::size_t>(this->WorkGroupSize));
-  device.CheckMemory(lattice, deformvolume::Describe(arrays, this->BackgroundValue),
-    request.OutputExtent, deformation,
-    this->Internals->Mapping.GetRunBytes(deformation, geometry, extrapolate));
+  const std::vector<deformvolume::VolumeArray> described =
+    deformvolume::Describe(arrays, this->BackgroundValue);
+  Extent whole;
+  outInfo->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
+  request.Interpolation = this->Interpolation == CUBIC_INTERPOLATION
+    ? deformvolume::Interpolation::Cubic
+    : deformvolume::Interpolation::Linear;
+  const std::function<void(const Extent&, deformvolume::Resampling)> checkMemory =
+    [&](const Extent& extent, deformvolume::Resampling method)
+  {
+    const bool mapped = method != deformvolume::Resampling::MeshRasterization;
+    device.CheckMemory(lattice, described, extent, deformation,
+      mapped ? this->Internals->Mapping.GetRunBytes(deformation, geometry, extrapolate) : 0,
+      method);
+  };
+  request.Method = this->Internals->ChooseResampler(
+    [&](deformvolume::Resampling method) { checkMemory(whole, method); });
+  checkMemory(request.OutputExtent, request.Method);
 
-  device.SetVolume(lattice, volume, arrays, this->BackgroundValue);
-  device.SetDeformation(deformation, this->Internals->Mapping, geometry, extrapolate,
-    this->Internals->GetProgress(0.0, 0.3));
+  device.SetVolume(lattice, volume, arrays, this->BackgroundValue, request.Method);
+  if (request.Method == deformvolume::Resampling::MeshRasterization)
+  {
+    device.SetRestMesh(deformation);
+  }
+  else
+  {
+    device.SetDeformation(deformation, this->Internals->Mapping, geometry, extrapolate,
+      this->Internals->GetProgress(0.0, 0.3));
+  }
   request.Progress = this->Internals->GetProgress(0.3, 1.0);
   if (!request.Progress(0.0))
   {
@@ -383,8 +405,6 @@ int vtkDeformVolumeFilter::RequestData(
   mask->SetNumberOfTuples(numberOfPoints);
   image->GetPointData()->AddArray(mask);
   request.Coverage = reinterpret_cast<signed char*>(mask->GetPointer(0));
-  request.Method = this->Resampler == PUBLISHED ? deformvolume::Resampling::Published
-                                                : deformvolume::Resampling::Exact;
 
   const deformvolume::DeformReport report = device.Deform(request);
   this->PreprocessingTime = this->Internals->Mapping.TakeTime();
@@ -392,8 +412,10 @@ int vtkDeformVolumeFilter::RequestData(
   this->MappingTime = report.MappingTime;
   this->ResamplingTime = report.ResamplingTime;
   this->NumberOfInvertedTetrahedra = report.NumberOfInvertedTetrahedra;
-  this->NumberOfFlatTetrahedra =
-    deformation.IsField() ? 0 : this->Internals->Mapping.GetNumberOfFlatTetrahedra();
+  this->NumberOfFlatTetrahedra = request.Method == deformvolume::Resampling::MeshRasterization
+    ? report.NumberOfFlatTetrahedra
+    : deformation.IsField() ? 0
+                            : this->Internals->Mapping.GetNumberOfFlatTetrahedra();
   this->NumberOfCoveredVoxels = report.NumberOfCoveredVoxels;
   this->NumberOfMappingBuilds = this->Internals->Mapping.GetNumberOfBuilds();
   this->NumberOfVolumeUploads = device.GetNumberOfVolumeUploads();
@@ -404,10 +426,7 @@ int vtkDeformVolumeFilter::RequestData(
                        "4,000 output voxels; these tetrahedra are skipped. Check the deformation, "
                        "or set a greater output spacing.");
   }
-  int whole[6];
-  outInfo->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
-  if (report.NumberOfCoveredVoxels == 0 &&
-    std::equal(whole, whole + 6, request.OutputExtent.begin()))
+  if (report.NumberOfCoveredVoxels == 0 && whole == request.OutputExtent)
   {
     vtkWarningMacro("The deformed volume covers no voxel of the output: all of it is background. "
                     "Check the output bounds, and that the deformation mesh holds neighbouring "
@@ -459,6 +478,8 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   }
   os << "\n";
   os << indent << "Resampler: " << this->Resampler << "\n";
+  os << indent << "Interpolation: " << this->Interpolation << "\n";
+  os << indent << "ResamplerInUse: " << this->ResamplerInUse << "\n";
   os << indent << "Device: \"" << this->Device << "\"\n";
   os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
   os << indent << "WorkGroupSize: " << this->WorkGroupSize << "\n";

@@ -202,19 +202,62 @@ public:
   enum Resamplers
   {
     EXACT = 0,
-    PUBLISHED = 1
+    PUBLISHED = 1,
+    MESH_RASTERIZATION = 2,
+    AUTOMATIC = 3
   };
 
   ///@{
   /**
-   * The resampling kernel. EXACT: every covered voxel is written by exactly one tetrahedron.
-   * PUBLISHED: the kernel as published, the yardstick of the benchmarks; it has a float tolerance,
-   * and which tetrahedron writes a voxel is left to chance. Default: EXACT.
+   * How the deformed volume is resampled.
+   * - EXACT: the tetrahedra of the sampling mesh are rasterised, and values are interpolated over
+   *   their vertices; every covered voxel is written by exactly one tetrahedron.
+   * - MESH_RASTERIZATION: the tetrahedra of the deformation mesh (port 1) are rasterised
+   *   themselves, and the volume is interpolated, over the voxels of a cell, at the rest position
+   *   of each output voxel. Every covered voxel is written once: by the first tetrahedron that is
+   *   upright, or else by the first inverted one. There is no sampling mesh and no static mapping,
+   *   which saves their memory and suits coarse meshes. Not for displacement fields nor for
+   *   EXTRAPOLATE.
+   * - PUBLISHED: the kernel as published, the yardstick of the benchmarks; it has a float
+   *   tolerance, and which tetrahedron writes a voxel is left to chance.
+   * - AUTOMATIC: EXACT, unless the interpolation is cubic, or the memory suffices for
+   *   MESH_RASTERIZATION only and that can do the deformation. The whole extent of the output
+   *   counts, so that its parts are done alike.
+   *
+   * Both give the same image of an undeformed volume, bit for bit, and of one that moves by whole
+   * voxels. Default: AUTOMATIC.
    */
-  vtkSetClampMacro(Resampler, int, EXACT, PUBLISHED);
+  vtkSetClampMacro(Resampler, int, EXACT, AUTOMATIC);
   vtkGetMacro(Resampler, int);
   void SetResamplerToExact() { this->SetResampler(EXACT); }
   void SetResamplerToPublished() { this->SetResampler(PUBLISHED); }
+  void SetResamplerToMeshRasterization() { this->SetResampler(MESH_RASTERIZATION); }
+  void SetResamplerToAutomatic() { this->SetResampler(AUTOMATIC); }
+  ///@}
+
+  /**
+   * The resampler of the last execution: EXACT, PUBLISHED or MESH_RASTERIZATION; AUTOMATIC before
+   * the first.
+   */
+  vtkGetMacro(ResamplerInUse, int);
+
+  enum Interpolations
+  {
+    LINEAR_INTERPOLATION = 0,
+    CUBIC_INTERPOLATION = 1
+  };
+
+  ///@{
+  /**
+   * The interpolation of arrays that are not categorical: linear, or cubic (Catmull-Rom, as
+   * vtkImageInterpolator does it) over four voxels on each axis, rounded and clamped to the range
+   * of integer types. Cubic interpolation goes with the resampler MESH_RASTERIZATION only, and a
+   * voxel is then covered only where none of the 64 is blanked. Default: LINEAR_INTERPOLATION.
+   */
+  vtkSetClampMacro(Interpolation, int, LINEAR_INTERPOLATION, CUBIC_INTERPOLATION);
+  vtkGetMacro(Interpolation, int);
+  void SetInterpolationToLinearInterpolation() { this->SetInterpolation(LINEAR_INTERPOLATION); }
+  void SetInterpolationToCubicInterpolation() { this->SetInterpolation(CUBIC_INTERPOLATION); }
   ///@}
 
   ///@{
@@ -257,7 +300,8 @@ public:
    * What the last execution did. Times are in seconds: PreprocessingTime for the static mapping (0
    * when the one of an earlier execution served), TransferTime for copies to and from the device,
    * ResamplingTime for the kernels. The exact kernels map and resample in one, and MappingTime is
-   * 0 then; the published method does one after the other.
+   * 0 then; the published method does one after the other. With MESH_RASTERIZATION the mapping is
+   * the listing of the tetrahedra of each part of the output.
    */
   vtkGetMacro(PreprocessingTime, double);
   vtkGetMacro(TransferTime, double);
@@ -267,7 +311,7 @@ public:
 
   /**
    * Active tetrahedra of the sampling mesh that the deformation turned inside out at the last
-   * execution.
+   * execution; with MESH_RASTERIZATION tetrahedra of the deformation mesh.
    */
   vtkGetMacro(NumberOfInvertedTetrahedra, vtkIdType);
 
@@ -284,7 +328,8 @@ public:
   ///@{
   /**
    * How often this filter has built a static mapping, and sent a volume to the device: a moved mesh
-   * costs neither. The mapping is built anew after a change of the mesh at rest, of the volume's
+   * costs neither. MESH_RASTERIZATION needs no mapping; a change to it or from it sends the volume.
+   * The mapping is built anew after a change of the mesh at rest, of the volume's
    * geometry, of the ratio of spacings, of OutsideMode or of the device, and after
    * ReleaseDeviceMemory().
    */
@@ -335,7 +380,8 @@ private:
   double CustomSpacing[3] = { 1.0, 1.0, 1.0 };
   double BackgroundValue = 0.0;
   int OutsideMode = DISCARD;
-  int Resampler = EXACT;
+  int Resampler = AUTOMATIC;
+  int Interpolation = LINEAR_INTERPOLATION;
   std::string Device;
   vtkTypeInt64 MemoryLimit = 0;
   int WorkGroupSize = 0;
@@ -349,6 +395,7 @@ private:
   vtkIdType NumberOfCoveredVoxels = 0;
   vtkIdType NumberOfMappingBuilds = 0;
   vtkIdType NumberOfVolumeUploads = 0;
+  int ResamplerInUse = AUTOMATIC;
   std::string DeviceInUse;
 
   class vtkInternals;

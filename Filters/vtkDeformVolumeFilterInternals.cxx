@@ -3,6 +3,7 @@
 
 #include "AbortCheck.h"
 #include "InputUpdate.h"
+#include "ResamplerChoice.h"
 #include "VolumeArrays.h"
 
 #include "vtkDataObject.h"
@@ -167,6 +168,50 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
   this->Key = key;
   this->Bounds = bounds;
   return bounds;
+}
+
+//------------------------------------------------------------------------------
+deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
+  const std::function<void(deformvolume::Resampling)>& checkMemory) const
+{
+  deformvolume::ResamplerWish wish;
+  switch (this->Self->Resampler)
+  {
+    case EXACT:
+      wish.Method = deformvolume::Resampling::Exact;
+      break;
+    case PUBLISHED:
+      wish.Method = deformvolume::Resampling::Published;
+      break;
+    case MESH_RASTERIZATION:
+      wish.Method = deformvolume::Resampling::MeshRasterization;
+      break;
+    default:
+      break;
+  }
+  if (this->Self->Interpolation == CUBIC_INTERPOLATION)
+  {
+    wish.Interpolation = deformvolume::Interpolation::Cubic;
+  }
+  wish.Extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
+  const deformvolume::Resampling method = deformvolume::ChooseResampler(wish, this->Deformation,
+    [&](deformvolume::Resampling tried)
+    {
+      try
+      {
+        checkMemory(tried);
+        return true;
+      }
+      catch (const Error&)
+      {
+        return false;
+      }
+    });
+  this->Self->ResamplerInUse = method == deformvolume::Resampling::MeshRasterization
+    ? MESH_RASTERIZATION
+    : method == deformvolume::Resampling::Published ? PUBLISHED
+                                                    : EXACT;
+  return method;
 }
 
 //------------------------------------------------------------------------------

@@ -38,6 +38,11 @@ public:
   deformvolume::IndexBounds GetDeformedBounds(
     const deformvolume::ImageGeometry& volume, vtkInformation* output);
 
+  /// The resampler for the current deformation, which also becomes ResamplerInUse. checkMemory
+  /// throws an Error where the memory does not suffice for one.
+  deformvolume::Resampling ChooseResampler(
+    const std::function<void(deformvolume::Resampling)>& checkMemory) const;
+
   /// The executive unites the extents asked for until an execution succeeds: after a failure the
   /// next one must start anew.
   static void ForgetRequestedExtent(vtkInformation* output);

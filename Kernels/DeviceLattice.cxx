@@ -22,7 +22,7 @@ std::uint64_t GetMemory(const cl::Buffer& buffer)
 }
 
 DeviceLattice::DeviceLattice(OpenCLContext& context, const cl::CommandQueue& queue,
-  const Lattice& lattice, std::size_t bytesPerVoxel, std::uint64_t allocationLimit)
+  const Lattice& lattice, std::size_t bytesPerVoxel, std::uint64_t allocationLimit, bool withLinks)
   : Context(context)
   , Queue(queue)
   , Shape(lattice)
@@ -30,7 +30,7 @@ DeviceLattice::DeviceLattice(OpenCLContext& context, const cl::CommandQueue& que
 {
   const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
   const std::uint64_t planeBytes =
-    static_cast<std::uint64_t>(plane) * std::max(bytesPerVoxel, sizeof(VertexLink));
+    static_cast<std::uint64_t>(plane) * std::max(bytesPerVoxel, withLinks ? sizeof(VertexLink) : 0);
   const std::uint64_t planes = allocationLimit / planeBytes;
   const std::uint64_t neighbours = 4; // planes beyond the number of layers, and room to read ahead
   if (planes <= neighbours)

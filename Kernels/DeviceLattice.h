@@ -35,7 +35,7 @@ class DeviceLattice
 {
 public:
   DeviceLattice(OpenCLContext& context, const cl::CommandQueue& queue, const Lattice& lattice,
-    std::size_t bytesPerVoxel, std::uint64_t allocationLimit);
+    std::size_t bytesPerVoxel, std::uint64_t allocationLimit, bool withLinks = true);
 
   void SetArrays(const std::vector<VolumeArray>& arrays);
   void SetLinks(const VertexLink* links);

@@ -5,6 +5,7 @@
 #include "KernelSources.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace deformvolume
 {
@@ -105,6 +106,13 @@ std::size_t GetBrickMemory(const OpenCLContext& context, std::size_t slots)
     sizeof(cl_float);
 }
 
+/// Whether single precision is enough to interpolate an array, and vectors of it are worthwhile.
+bool FitsFloat(const VolumeArray& array)
+{
+  return !array.Categorical && array.Components == 1 &&
+    (array.Type == ElementType::Float32 || GetElementSize(array.Type) <= 2);
+}
+
 /// For each array whether the kernel ResampleBricks interpolates it in single precision: as many as
 /// the local memory holds.
 std::vector<bool> FindLaneArrays(
@@ -115,9 +123,7 @@ std::vector<bool> FindLaneArrays(
   std::size_t slots = 0;
   for (const VolumeArray& array : arrays)
   {
-    const bool fits = !array.Categorical && array.Components == 1 &&
-      (array.Type == ElementType::Float32 || GetElementSize(array.Type) <= 2) &&
-      GetBrickMemory(context, slots + 1) <= memory;
+    const bool fits = FitsFloat(array) && GetBrickMemory(context, slots + 1) <= memory;
     found.push_back(fits);
     slots += fits;
   }
@@ -212,6 +218,45 @@ cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<Volume
 {
   return context.GetProgram(
     GetSharedText() + MakePreamble(context, arrays) + PublishedResampling_cl, Options);
+}
+
+cl::Program GetBinningProgram(OpenCLContext& context)
+{
+  return context.GetProgram(std::string(RasterParameters_h) + TetrahedronBinning_cl, Options);
+}
+
+cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
+  const Lattice& lattice, Interpolation interpolation)
+{
+  const bool processor = context.GetDevice().IsProcessor;
+  std::string stores;
+  std::string laneArrays;
+  std::string tapArrays;
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    const std::string index = std::to_string(i);
+    const std::string element = " DO(" + index + ", " + GetTypeName(arrays[i].Type) + ", ";
+    if (processor && interpolation == Interpolation::Linear && FitsFloat(arrays[i]))
+    {
+      laneArrays += element + std::to_string(8 * GetElementSize(arrays[i].Type)) + ")";
+    }
+    else
+    {
+      tapArrays += element + std::to_string(arrays[i].Components) + ")";
+      stores += "#define STORE_ARRAY_" + index + " " + MakeStore(arrays[i], index) + "\n";
+    }
+  }
+  const bool wide = GetNumberOfPoints(lattice.VertexExtent) > std::numeric_limits<cl_int>::max();
+  return context.GetProgram(std::string(FiveTetrahedra_h) + RasterParameters_h +
+      MakePreamble(context, arrays) + stores + "#define LANES " +
+      std::to_string(processor ? GetLanes(context) : 4) + "\n#define CUBIC " +
+      (interpolation == Interpolation::Cubic ? "1" : "0") + "\n#define CHUNK " +
+      (processor ? "32" : "1") + "\n#define INDEX " + (wide ? "long" : "int") +
+      (laneArrays.empty() ? "" : "\n#define HAS_LANE_ARRAYS") +
+      (tapArrays.empty() ? "" : "\n#define HAS_TAP_ARRAYS") + "\n#define LANE_ARRAYS(DO)" +
+      laneArrays + "\n#define TAP_ARRAYS(DO)" + tapArrays + "\n" + TetrahedronBinning_cl +
+      RestSampling_cl + MeshRasterization_cl,
+    Options);
 }
 
 } // namespace deformvolume

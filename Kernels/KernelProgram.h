@@ -38,6 +38,14 @@ cl::Program GetCountingProgram(OpenCLContext& context);
 /// The published resampling (PublishedResampling.cl) for arrays of these types.
 cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays);
 
+/// The binning of the tetrahedra of the deformation mesh (TetrahedronBinning.cl).
+cl::Program GetBinningProgram(OpenCLContext& context);
+
+/// The mesh rasterisation (MeshRasterization.cl, RestSampling.cl) for arrays of these types. Throws
+/// Error where the device lacks what the arrays need.
+cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
+  const Lattice& lattice, Interpolation interpolation);
+
 } // namespace deformvolume
 
 #endif

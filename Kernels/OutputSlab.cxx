@@ -1,44 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OutputSlab.h"
 
+#include "Background.h"
 #include "DeviceLattice.h" // for GetMemory
 #include "KernelProgram.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <type_traits>
 
 namespace deformvolume
 {
 namespace
 {
-
-template <typename T>
-T ClampTo(double value)
-{
-  if (std::is_integral<T>::value)
-  {
-    if (std::isnan(value))
-    {
-      return 0;
-    }
-    // As doubles the ends of the range may round outwards, hence >= and <=.
-    if (value >= static_cast<double>(std::numeric_limits<T>::max()))
-    {
-      return std::numeric_limits<T>::max();
-    }
-    if (value <= static_cast<double>(std::numeric_limits<T>::lowest()))
-    {
-      return std::numeric_limits<T>::lowest();
-    }
-    return static_cast<T>(std::nearbyint(value));
-  }
-  // A finite value stays finite.
-  const double largest = static_cast<double>(std::numeric_limits<T>::max());
-  return static_cast<T>(
-    std::isfinite(value) ? std::min(std::max(value, -largest), largest) : value);
-}
 
 template <typename T>
 void Fill(const cl::CommandQueue& queue, const cl::Buffer& buffer, double value,

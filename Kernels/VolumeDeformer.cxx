@@ -12,22 +12,6 @@ namespace deformvolume
 namespace
 {
 
-// The kernels trust these indices: a wrong one would read beyond a buffer.
-void CheckIndices(const Tetrahedron* tetrahedra, std::size_t count, std::size_t numberOfNodes)
-{
-  for (std::size_t t = 0; t < count; ++t)
-  {
-    for (const std::int32_t node : tetrahedra[t])
-    {
-      if (node < 0 || static_cast<std::size_t>(node) >= numberOfNodes)
-      {
-        throw Error("Tetrahedron " + std::to_string(t) + " of the deformation mesh has the node " +
-          std::to_string(node) + ", but there are " + std::to_string(numberOfNodes) + ".");
-      }
-    }
-  }
-}
-
 void CheckLinks(const VertexLink* links, std::int64_t count, std::size_t numberOfTetrahedra)
 {
   for (std::int64_t i = 0; i < count; ++i)
@@ -91,6 +75,21 @@ void SetSameGrid(FieldParameters& field, const Extent& extent)
 }
 
 } // namespace
+
+void CheckIndices(const Tetrahedron* tetrahedra, std::size_t count, std::size_t numberOfNodes)
+{
+  for (std::size_t t = 0; t < count; ++t)
+  {
+    for (const std::int32_t node : tetrahedra[t])
+    {
+      if (node < 0 || static_cast<std::size_t>(node) >= numberOfNodes)
+      {
+        throw Error("Tetrahedron " + std::to_string(t) + " of the deformation mesh has the node " +
+          std::to_string(node) + ", but there are " + std::to_string(numberOfNodes) + ".");
+      }
+    }
+  }
+}
 
 VolumeDeformer::VolumeDeformer()
   : Impl(new Internals)
@@ -184,7 +183,7 @@ void VolumeDeformer::CheckMemory(const Lattice& lattice, const std::vector<Volum
   }
 }
 
-void VolumeDeformer::SetLattice(const Lattice& lattice, std::size_t bytesPerVoxel)
+void VolumeDeformer::SetLattice(const Lattice& lattice, std::size_t bytesPerVoxel, bool withLinks)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -202,8 +201,8 @@ void VolumeDeformer::SetLattice(const Lattice& lattice, std::size_t bytesPerVoxe
     {
       OpenCLContext& context = this->Impl->GetContext();
       this->Impl->Forget();
-      this->Impl->Mesh = std::make_unique<DeviceLattice>(
-        context, this->Impl->Queue, lattice, bytesPerVoxel, this->Impl->GetAllocationLimit());
+      this->Impl->Mesh = std::make_unique<DeviceLattice>(context, this->Impl->Queue, lattice,
+        bytesPerVoxel, this->Impl->GetAllocationLimit(), withLinks);
     });
 }
 
@@ -296,12 +295,18 @@ void VolumeDeformer::SetNodeDisplacements(const float* displacements)
   this->Impl->Send(
     [&]
     {
-      if (!this->Impl->GetMesh().HasMesh())
+      if (!this->Impl->GetMesh().HasMesh() && !this->Impl->Rasterizer.HasMesh())
       {
         throw Error("No deformation mesh is set: call SetMesh first.");
       }
       const std::vector<float> nodes =
         MakeVectors(displacements, this->Impl->NumberOfNodes, "node");
+      if (this->Impl->Rasterizer.HasMesh())
+      {
+        this->Impl->Rasterizer.SetDisplacements(this->Impl->GetRasterizerSetting(), displacements,
+          this->Impl->GetMesh().GetLattice().Scale);
+        return;
+      }
       this->Impl->Nodes =
         this->Impl->SendBuffer(nodes.data(), nodes.size() * sizeof(float), this->Impl->Nodes);
       this->Impl->NodesSet = true;
@@ -338,6 +343,7 @@ void VolumeDeformer::SetDisplacementField(const DisplacementField& field)
       parameters.Extrapolate = field.Extrapolate;
       SetSameGrid(parameters, extent);
       DeviceLattice& mesh = this->Impl->GetMesh();
+      this->Impl->Rasterizer.Clear();
       if (mesh.HasMesh())
       {
         mesh.ForgetMesh();
@@ -368,6 +374,12 @@ DeformReport VolumeDeformer::Deform(const DeformRequest& request)
 {
   this->Impl->CheckRequest(request);
   const DeviceLattice& mesh = this->Impl->GetMesh();
+  if (request.Method == Resampling::MeshRasterization)
+  {
+    this->CheckRasterizationDeviceMemory(mesh.GetLattice(), this->Impl->Arrays,
+      request.OutputExtent, this->Impl->NumberOfNodes, this->Impl->NumberOfTetrahedra);
+    return this->Impl->Guard([&] { return this->Impl->Rasterize(request); });
+  }
   this->CheckDeviceMemory(mesh.GetLattice(), this->Impl->Arrays, request.OutputExtent,
     this->Impl->NumberOfNodes, this->Impl->NumberOfTetrahedra,
     GetMappingBytes(mesh.GetLattice(), !mesh.HasMesh(), mesh.GetRunBytes()));

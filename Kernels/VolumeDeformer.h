@@ -144,12 +144,25 @@ enum class Resampling
   /// precision.
   ExactByLanes,
   /// The published kernel, kept as the yardstick of benchmarks: float tolerance, racing writes.
-  Published
+  Published,
+  /// The tetrahedra of the deformation mesh themselves are rasterised, and the volume is looked up
+  /// at the interpolated rest coordinate (MeshRasterizer.h). Goes with SetRestMesh.
+  MeshRasterization
+};
+
+/// How a volume is interpolated at a rest coordinate.
+enum class Interpolation
+{
+  Linear,
+  /// Catmull-Rom, over four voxels on each axis, clamped to the range of integer types. Only with
+  /// MeshRasterization.
+  Cubic
 };
 
 struct DeformRequest
 {
   Resampling Method = Resampling::Exact;
+  deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
   /// Structured indices of the output voxels.
   Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
   /// For each array of the volume, room for Components elements a voxel of OutputExtent.
@@ -163,7 +176,8 @@ struct DeformRequest
 struct DeformReport
 {
   std::int64_t NumberOfCoveredVoxels = 0;
-  /// Active tetrahedra of the sampling mesh that the deformation turns inside out.
+  /// Active tetrahedra of the sampling mesh that the deformation turns inside out; with
+  /// MeshRasterization tetrahedra of the deformation mesh.
   std::int64_t NumberOfInvertedTetrahedra = 0;
   /// Cells with a tetrahedron that is stretched over more than 4,000 output voxels; such tetrahedra
   /// are skipped.
@@ -171,7 +185,10 @@ struct DeformReport
   /// True where tetrahedra overlap, so that a winner had to be chosen: upright before inverted,
   /// then the lowest cell and tetrahedron.
   bool Overlapping = false;
-  /// Seconds. The exact kernels map and resample in one: their MappingTime is 0.
+  /// Tetrahedra of the deformation mesh without volume at rest; counted by MeshRasterization only.
+  std::int64_t NumberOfFlatTetrahedra = 0;
+  /// Seconds. The exact kernels map and resample in one: their MappingTime is 0. With
+  /// MeshRasterization the mapping is the listing of the tetrahedra of each part of the output.
   double MappingTime = 0.0;
   double ResamplingTime = 0.0;
   double TransferTime = 0.0;
@@ -180,10 +197,11 @@ struct DeformReport
 /// Deforms a volume on an OpenCL device: keeps the volume, its sampling mesh and the static
 /// mapping there, and maps and resamples whenever it is asked to.
 ///
-/// Order of calls: SetDevice, SetLattice, SetArrays, then either SetMesh and SetNodeDisplacements
-/// or SetDisplacementField, then Deform, as often as wanted. SetBlanked and SetActiveTetrahedra
-/// are optional. SetLattice forgets everything that was set after it. All pointers are read
-/// during the call only. Every failure is an Error; the object can be used again afterwards.
+/// Order of calls: SetDevice, SetLattice, SetArrays, then SetMesh or SetRestMesh and
+/// SetNodeDisplacements, or SetDisplacementField, then Deform, as often as wanted. SetBlanked and
+/// SetActiveTetrahedra are optional. SetLattice forgets everything that was set after it. All
+/// pointers are read during the call only. Every failure is an Error; the object can be used again
+/// afterwards.
 class VolumeDeformer
 {
 public:
@@ -218,9 +236,14 @@ public:
     const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
     bool field, std::uint64_t runBytes = 0) const;
 
+  /// The same for MeshRasterization, which needs neither links nor runs.
+  void CheckRasterizationMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
+    const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra) const;
+
   /// bytesPerVoxel: a voxel's bytes in the widest array that will be set; it decides how a volume
-  /// over the allocation limit is split.
-  void SetLattice(const Lattice& lattice, std::size_t bytesPerVoxel = 16);
+  /// over the allocation limit is split, and so does whether links may be set. MeshRasterization
+  /// needs the volume whole.
+  void SetLattice(const Lattice& lattice, std::size_t bytesPerVoxel = 16, bool withLinks = true);
   void SetArrays(const std::vector<VolumeArray>& arrays);
 
   /// Changes which arrays are categorical and their background, and sends nothing: of arrays of the
@@ -241,6 +264,10 @@ public:
   /// bound); equal displacements of all nodes move each voxel by exactly that.
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const VertexRuns& runs);
+  /// The deformation mesh for MeshRasterization, in place of SetMesh. restNodes: three numbers a
+  /// node, continuous indices of the volume.
+  void SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const double* restNodes);
   /// Displacements of the nodes, three floats each, in output voxels.
   void SetNodeDisplacements(const float* displacements);
 
@@ -259,6 +286,9 @@ private:
   std::uint64_t CheckDeviceMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
     const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
     std::uint64_t mappingBytes) const;
+  std::uint64_t CheckRasterizationDeviceMemory(const Lattice& lattice,
+    const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
+    std::size_t numberOfTetrahedra) const;
 
   class Internals;
   std::unique_ptr<Internals> Impl;

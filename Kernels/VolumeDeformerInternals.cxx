@@ -52,6 +52,7 @@ void VolumeDeformer::Internals::Forget()
   this->FieldVectors = cl::Buffer();
   this->Positions = cl::Buffer();
   this->Target = OutputSlab();
+  this->Rasterizer.Clear();
   this->NumberOfNodes = 0;
   this->NodesSet = false;
 }
@@ -97,8 +98,8 @@ std::uint64_t VolumeDeformer::Internals::GetAllocationLimit()
 std::uint64_t VolumeDeformer::Internals::GetHeldMemory() const
 {
   return (this->Mesh ? this->Mesh->GetMemory() : 0) + GetMemory(this->Tetrahedra) +
-    GetMemory(this->Nodes) + GetMemory(this->FieldVectors) + GetMemory(this->Positions) +
-    this->Target.GetMemory();
+    GetMemory(this->Nodes) + this->Rasterizer.GetMemory() + GetMemory(this->FieldVectors) +
+    GetMemory(this->Positions) + this->Target.GetMemory();
 }
 
 std::uint64_t VolumeDeformer::Internals::GetUsableMemory()
@@ -140,6 +141,7 @@ void VolumeDeformer::Internals::SendTetrahedra(
   this->NumberOfNodes = numberOfNodes;
   this->NodesSet = false;
   this->FieldVectors = cl::Buffer();
+  this->Rasterizer.Clear();
 }
 
 void VolumeDeformer::Internals::CheckRequest(const DeformRequest& request)
@@ -150,7 +152,12 @@ void VolumeDeformer::Internals::CheckRequest(const DeformRequest& request)
   {
     throw Error("No arrays are set: call SetArrays first.");
   }
-  if (!(mesh.HasMesh() && this->NodesSet) && !this->FieldVectors())
+  if (request.Method == Resampling::MeshRasterization ||
+    request.Interpolation != Interpolation::Linear)
+  {
+    this->CheckRasterization(request);
+  }
+  else if (!(mesh.HasMesh() && this->NodesSet) && !this->FieldVectors())
   {
     throw Error("No deformation is set: call SetMesh and SetNodeDisplacements, or "
                 "SetDisplacementField, first.");

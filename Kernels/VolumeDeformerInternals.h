@@ -5,6 +5,7 @@
 #include "DeviceLattice.h"
 #include "KernelParameters.h"
 #include "KernelProgram.h"
+#include "MeshRasterizer.h"
 #include "OpenCLContext.h"
 #include "OutputSlab.h"
 #include "VolumeDeformer.h"
@@ -19,6 +20,10 @@ constexpr int LayersPerLaunch = 2 * DEFORMVOLUME_BRICK_Z;
 
 /// Throws an Error that names the bytes where there are too few.
 void CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where);
+
+/// Throws an Error where a tetrahedron has a node that is none: the kernels trust these indices,
+/// and a wrong one would read beyond a buffer.
+void CheckIndices(const Tetrahedron* tetrahedra, std::size_t count, std::size_t numberOfNodes);
 
 /// What a VolumeDeformer holds on its device, and how it runs the kernels.
 class VolumeDeformer::Internals
@@ -86,6 +91,10 @@ public:
   void ReportLaunch(const DeformRequest& request, cl::Event& previous);
   std::size_t GetGroupSize(const cl::Kernel& kernel) const;
   DeformReport Deform(const DeformRequest& request);
+  /// What mesh rasterisation needs and does; in VolumeDeformerRasterization.cxx.
+  MeshRasterizer::Setting GetRasterizerSetting();
+  void CheckRasterization(const DeformRequest& request) const;
+  DeformReport Rasterize(const DeformRequest& request);
 
   OpenCLContext* Context = nullptr;
   cl::CommandQueue Queue;
@@ -105,6 +114,7 @@ public:
   cl::Buffer Positions;
   cl::Buffer Bricks; // the list of those to work on
   OutputSlab Target;
+  MeshRasterizer Rasterizer;
 
   double SendingTime = 0.0;
   std::vector<cl::Event> MappingEvents;

@@ -19,6 +19,7 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <iostream>
+#include <map>
 #include <sstream>
 #include <unistd.h>
 
@@ -98,8 +99,13 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
                                                    : vtkDeformVolumeFilter::DEFORMED_BOUNDS);
   filter->SetPadding(options.Padding);
   filter->SetBackgroundValue(options.Background);
-  filter->SetResampler(
-    options.Published ? vtkDeformVolumeFilter::PUBLISHED : vtkDeformVolumeFilter::EXACT);
+  const std::map<std::string, int> resamplers{ { "automatic", vtkDeformVolumeFilter::AUTOMATIC },
+    { "exact", vtkDeformVolumeFilter::EXACT },
+    { "mesh-rasterization", vtkDeformVolumeFilter::MESH_RASTERIZATION },
+    { "published", vtkDeformVolumeFilter::PUBLISHED } };
+  filter->SetResampler(resamplers.at(options.Resampler));
+  filter->SetInterpolation(options.Cubic ? vtkDeformVolumeFilter::CUBIC_INTERPOLATION
+                                         : vtkDeformVolumeFilter::LINEAR_INTERPOLATION);
   filter->SetDevice(options.Device);
   vtkPointData* arrays = volume->GetPointData();
   for (const std::string& name : options.CategoricalArrays)

@@ -59,7 +59,7 @@ struct RawOptions
   double Threshold = 0.0;
   std::string Outside = "discard";
   std::string Bounds = "deformed";
-  std::string Resampler = "exact";
+  std::string Interpolation = "linear";
 };
 
 /// NaN passes all comparisons of a range, and no length or value is infinite.
@@ -191,7 +191,7 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
   }
   options.Extrapolate = raw.Outside == "extrapolate";
   options.VolumeBounds = raw.Bounds == "volume";
-  options.Published = raw.Resampler == "published";
+  options.Cubic = raw.Interpolation == "cubic";
   Check(options);
 }
 
@@ -320,11 +320,18 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program.add_flag("--labels", options.Labels, "All arrays hold labels")->group(group);
   program
-    .add_option("--resampler", raw.Resampler,
-      "exact: each voxel is written by exactly one tetrahedron; published: the kernel as "
-      "published, for comparison")
+    .add_option("--resampler", options.Resampler,
+      "exact: deforms a mesh of the voxels; mesh-rasterization: looks the volume up from the "
+      "deformation mesh, with less memory; published: the kernel as published, for comparison")
     ->capture_default_str()
-    ->check(CLI::IsMember({ "exact", "published" }))
+    ->check(CLI::IsMember({ "automatic", "exact", "mesh-rasterization", "published" }))
+    ->type_name("NAME")
+    ->group(group);
+  program
+    .add_option("--interpolation", raw.Interpolation,
+      "linear, or cubic, which goes with mesh-rasterization only")
+    ->capture_default_str()
+    ->check(CLI::IsMember({ "linear", "cubic" }))
     ->type_name("NAME")
     ->group(group);
   program

@@ -36,7 +36,8 @@ struct Options
   double Background = 0.0;
   std::vector<std::string> CategoricalArrays;
   bool Labels = false;
-  bool Published = false;
+  std::string Resampler = "automatic";
+  bool Cubic = false;
   std::string Device;
 
   std::vector<std::string> Outputs;

@@ -126,6 +126,7 @@ assert not os.path.exists(path("o.png"))
 output, _ = call(program, "--help")
 for option in ("--mesh", "--displacement", "--rest", "--tetgen", "--lattice", "--push", "--image",
                "--list-devices", "--device", "--categorical", "--background", "--resampler",
+               "--interpolation",
                "world units", "Exit codes"):
     assert option in output, option
 output, _ = call(program, "--list-devices")

@@ -309,13 +309,14 @@ void Load(VolumeDeformer& deformer, const DeformerCase& deformerCase,
 }
 
 Deformed RunDeformer(VolumeDeformer& deformer, const DeformerCase& deformerCase,
-  const std::vector<VolumeArray>& arrays, Resampling method)
+  const std::vector<VolumeArray>& arrays, Resampling method, Interpolation interpolation)
 {
   const std::size_t voxels = GetNumberOfPoints(deformerCase.Output);
   Deformed deformed;
   deformed.Method = method;
   DeformRequest request;
   request.Method = method;
+  request.Interpolation = interpolation;
   request.OutputExtent = deformerCase.Output;
   std::vector<std::size_t> sizes;
   for (const VolumeArray& array : arrays)

@@ -90,7 +90,8 @@ struct Deformed
 /// Runs a loaded deformer and checks that it writes inside its arrays and all of them.
 Deformed RunDeformer(deformvolume::VolumeDeformer& deformer, const DeformerCase& deformerCase,
   const std::vector<deformvolume::VolumeArray>& arrays,
-  deformvolume::Resampling method = deformvolume::Resampling::Exact);
+  deformvolume::Resampling method = deformvolume::Resampling::Exact,
+  deformvolume::Interpolation interpolation = deformvolume::Interpolation::Linear);
 
 /// Load and RunDeformer on a new deformer, by the kernel of its choice and cell by cell.
 Deformed LoadAndRun(const DeformerCase& deformerCase,

@@ -1,0 +1,451 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mesh rasterisation: rasterises the tetrahedra of the deformation mesh itself into the output, and
+// finds for each voxel the rest coordinate at which RestSampling.cl looks the volume up.
+//
+// Data: tetrahedra, positions of nodes and lists of tetrahedra as in TetrahedronBinning.cl;
+// displacements of nodes, 16 bytes, in output voxels (the last four unused). In local memory for
+// each voxel of a tile the rest coordinate: three integers, the index from the volume's first voxel
+// times 2^FractionBits; and for each row of a tile a bit a voxel that is covered, and
+// one that a tetrahedron holds of its own.
+//
+// A work-group takes an output tile, its work-items the rows of the tile in turn, and each goes
+// through the tetrahedra of the tile in their order: nothing is shared until all rows are done, no
+// voxel has two writers, and the result does not depend on the size of the group. The voxels of a
+// row that a tetrahedron holds are one interval, which the four edge functions bound: integers in
+// (1/256 voxel)^3, zero on a face and positive inside. An estimate in float is put right by the
+// exact function, so that a voxel on a face is in both tetrahedra, and the first one takes it.
+//
+// What is interpolated is the displacement, d3 + sum of w_k (d_k - d3), rather than the rest
+// coordinate: a mesh that moves as a whole moves the volume exactly. It is evaluated where the row
+// enters the tile and goes on from there by forward differences; neither depends on the output's
+// extent.
+//
+// This text comes after TetrahedronBinning.cl and RestSampling.cl, and the host puts nothing more in
+// front of it than of those.
+
+// Rest coordinates within this are found by forward differences; beyond it (slivers, whose
+// gradients are huge) voxel by voxel.
+#define LARGEST_REST 1048576.0f
+
+// A tetrahedron in a tile.
+typedef struct
+{
+  int4 Nodes;
+  VoxelBox Box;       // the voxels of the tile that may lie in it
+  long Start[4];      // edge function opposite node k at the lowest voxel of the box
+  Vector Steps[4];    // and its steps from voxel to voxel
+  float Inverse[4];   // of the step along a row, made positive
+  int AcceptsTie[4];  // whether a voxel on the face stays inside after a shift by (e, e^2, e^3)
+  REAL InverseVolume;
+} TileTetrahedron;
+
+static int ShiftsInside(Vector normal)
+{
+  return normal.x > 0 || (normal.x == 0 && (normal.y > 0 || (normal.y == 0 && normal.z > 0)));
+}
+
+static Vector Scaled(Vector v, long factor)
+{
+  const Vector r = { v.x * factor, v.y * factor, v.z * factor };
+  return r;
+}
+
+// Returns 0 where the tetrahedron has no voxel in the tile.
+static int SetUpTetrahedron(int4 nodes, __global const int4* positions, VoxelBox tile,
+  TileTetrahedron* t, const RasterParameters* p)
+{
+  const int4 a = positions[nodes.x];
+  const int4 b = positions[nodes.y];
+  const int4 c = positions[nodes.z];
+  const int4 d = positions[nodes.w];
+  t->Nodes = nodes;
+  t->Box = FindVoxels(min(min(a, b), min(c, d)), max(max(a, b), max(c, d)), p);
+  t->Box.Low = max(t->Box.Low, tile.Low);
+  t->Box.High = min(t->Box.High, tile.High);
+  if (IsEmpty(t->Box))
+  {
+    return 0;
+  }
+  const Vector u = Difference(a, d);
+  const Vector v = Difference(b, d);
+  const Vector w = Difference(c, d);
+  Vector normals[4];
+  normals[0] = Cross(v, w);
+  normals[1] = Cross(w, u);
+  normals[2] = Cross(u, v);
+  long volume = Dot(u, normals[0]);
+  const long sign = volume < 0 ? -1 : 1;
+  volume *= sign;
+  for (int k = 0; k < 3; ++k)
+  {
+    normals[k] = Scaled(normals[k], sign);
+  }
+  normals[3].x = -(normals[0].x + normals[1].x + normals[2].x);
+  normals[3].y = -(normals[0].y + normals[1].y + normals[2].y);
+  normals[3].z = -(normals[0].z + normals[1].z + normals[2].z);
+  const Vector r = Difference(t->Box.Low * 256, d);
+  t->Start[3] = volume;
+  for (int k = 0; k < 3; ++k)
+  {
+    t->Start[k] = Dot(normals[k], r);
+    t->Start[3] -= t->Start[k];
+  }
+  const int4 size = t->Box.High - t->Box.Low;
+  for (int k = 0; k < 4; ++k)
+  {
+    const Vector step = Scaled(normals[k], 256);
+    t->Steps[k] = step;
+    // The whole box may lie behind the face.
+    if (t->Start[k] + max(0L, step.x * size.x) + max(0L, step.y * size.y) +
+        max(0L, step.z * size.z) <
+      0)
+    {
+      return 0;
+    }
+    t->Inverse[k] = step.x != 0 ? 1.0f / fabs((float)step.x) : 0.0f;
+    t->AcceptsTie[k] = ShiftsInside(normals[k]);
+  }
+  t->InverseVolume = (REAL)1 / (REAL)volume;
+  return 1;
+}
+
+// The bits from first to last, both included; none where last is before first.
+static uint Bits(int first, int last)
+{
+  return last < first ? 0u : (0xffffffffu >> (31 - (last - first))) << first;
+}
+
+// The voxels of a row that the tetrahedron holds, counted from the lowest of its box. edges: the
+// edge functions at the lowest voxel; count: of voxels, less one. Those that it holds after the
+// shift, too, which no neighbour holds as well, are *own.
+static uint FindRow(const TileTetrahedron* t, const long* edges, int count, uint* own)
+{
+  int low = 0;
+  int high = count;
+  int ownHigh = count;
+  *own = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const long e = edges[k];
+    const long step = t->Steps[k].x;
+    if (step > 0)
+    {
+      if (e < 0)
+      {
+        const float root = (float)(-e) * t->Inverse[k];
+        int x = root < (float)count ? (int)root : count;
+        while (x <= count && e + x * step < 0)
+        {
+          ++x;
+        }
+        while (x > 0 && e + (x - 1) * step >= 0)
+        {
+          --x;
+        }
+        low = max(low, x);
+      }
+    }
+    else if (e < 0)
+    {
+      return 0;
+    }
+    else if (step < 0)
+    {
+      const float root = (float)e * t->Inverse[k];
+      int x = root < (float)count ? (int)root : count;
+      while (e + x * step < 0)
+      {
+        --x;
+      }
+      while (x < count && e + (x + 1) * step >= 0)
+      {
+        ++x;
+      }
+      high = min(high, x);
+      ownHigh = min(ownHigh, e + x * step == 0 ? x - 1 : x);
+    }
+    else if (e == 0 && !t->AcceptsTie[k])
+    {
+      ownHigh = -1;
+    }
+  }
+  *own = Bits(low, ownHigh);
+  return Bits(low, high);
+}
+
+// What turns edge functions into rest coordinates, in 2^-FractionBits voxel.
+typedef struct
+{
+  REAL Last[3];         // displacement of the last node, in output voxels
+  REAL Gradients[3][3]; // by edge function, by axis
+  REAL Scale[3];        // from output voxels
+  REAL Steps[3];        // from voxel to voxel of a row
+} RestMap;
+
+static void SetRestMap(const TileTetrahedron* t, __global const float4* displacements,
+  RestMap* map, const RasterParameters* p)
+{
+  const int nodes[4] = { t->Nodes.x, t->Nodes.y, t->Nodes.z, t->Nodes.w };
+  const float4 last = displacements[nodes[3]];
+  const float lasts[3] = { last.x, last.y, last.z };
+  REAL slopes[3] = { 0, 0, 0 };
+  for (int k = 0; k < 3; ++k)
+  {
+    const float4 d = displacements[nodes[k]];
+    const float ds[3] = { d.x, d.y, d.z };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const REAL gradient = ((REAL)ds[axis] - (REAL)lasts[axis]) * t->InverseVolume;
+      map->Gradients[k][axis] = gradient;
+      slopes[axis] += (REAL)t->Steps[k].x * gradient;
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    map->Last[axis] = (REAL)lasts[axis];
+    map->Scale[axis] = ((REAL)p->InverseScale[axis] + (REAL)p->InverseScaleRest[axis]) *
+      (REAL)(1 << p->FractionBits[axis]);
+    map->Steps[axis] = ((axis == 0 ? (REAL)1 : (REAL)0) - slopes[axis]) * map->Scale[axis];
+  }
+}
+
+// edges: the edge functions at this output voxel.
+static void FindRest(const RestMap* map, const long* edges, const int* voxel, REAL* rest,
+  const RasterParameters* p)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    REAL d = map->Last[axis];
+    for (int k = 0; k < 3; ++k)
+    {
+      d += (REAL)edges[k] * map->Gradients[k][axis];
+    }
+    rest[axis] = ((REAL)voxel[axis] - d) * map->Scale[axis] -
+      (REAL)((long)p->First[axis] << p->FractionBits[axis]);
+  }
+}
+
+// Rest coordinates of some voxels of a row, one by one. voxel: the first of the row; edges: there;
+// bits: those wanted; returns those within the volume.
+static uint FindRestsOneByOne(const TileTetrahedron* t, const RestMap* map, const long* edges,
+  const int* voxel, uint bits, __local int* rests, const RasterParameters* p)
+{
+  uint found = 0;
+  for (int x = 0; x < 32; ++x)
+  {
+    if (!(bits >> x & 1))
+    {
+      continue;
+    }
+    const long here[3] = { edges[0] + x * t->Steps[0].x, edges[1] + x * t->Steps[1].x,
+      edges[2] + x * t->Steps[2].x };
+    const int at[3] = { voxel[0] + x, voxel[1], voxel[2] };
+    REAL rest[3];
+    FindRest(map, here, at, rest, p);
+    int inside = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      inside &= rest[axis] >= (REAL)-p->Tolerance[axis] &&
+        rest[axis] <= (REAL)((p->Size[axis] - 1) << p->FractionBits[axis]) + p->Tolerance[axis];
+    }
+    if (inside)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const int most = (p->Size[axis] - 1) << p->FractionBits[axis];
+        rests[axis * DEFORMVOLUME_TILE_VOXELS + x] =
+          min(max(convert_int_sat_rte(rest[axis]), 0), most);
+      }
+      found |= 1u << x;
+    }
+  }
+  return found;
+}
+
+// The same by forward differences. Integers wrap round, and come out right for voxels near to the
+// volume, which an estimate in float tells.
+static uint FindRests(const TileTetrahedron* t, const RestMap* map, const long* edges,
+  const int* voxel, uint bits, __local int* rests, const RasterParameters* p)
+{
+  REAL start[3];
+  FindRest(map, edges, voxel, start, p);
+  uint whole[3];
+  uint wholeStep[3];
+  float fraction[3];
+  float fractionStep[3];
+  float estimate[3];
+  float estimateStep[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const REAL unit = (REAL)1 / (REAL)(1 << p->FractionBits[axis]);
+    estimate[axis] = (float)(start[axis] * unit);
+    estimateStep[axis] = (float)(map->Steps[axis] * unit);
+    if (!(fabs(estimate[axis]) + 32.0f * fabs(estimateStep[axis]) < LARGEST_REST))
+    {
+      return FindRestsOneByOne(t, map, edges, voxel, bits, rests, p);
+    }
+    const REAL startFloor = floor(start[axis]);
+    const REAL stepFloor = floor(map->Steps[axis]);
+    whole[axis] = (uint)(long)startFloor;
+    wholeStep[axis] = (uint)(long)stepFloor;
+    fraction[axis] = (float)(start[axis] - startFloor);
+    fractionStep[axis] = (float)(map->Steps[axis] - stepFloor);
+  }
+  uint found = 0;
+  for (int x = 0; x < 32; x += LANES)
+  {
+    const uint wanted = bits >> x & LANE_MASK;
+    if (!wanted)
+    {
+      continue;
+    }
+    const INTS lane = LANE_INDEX + x;
+    const FLOATS laneFloat = TO_FLOATS(lane);
+    INTS mask = -((INTS)((int)wanted) >> LANE_INDEX & 1);
+    INTS rest[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int most = (p->Size[axis] - 1) << p->FractionBits[axis];
+      const FLOATS near = estimate[axis] + laneFloat * estimateStep[axis];
+      rest[axis] = AS_INTS(whole[axis] + AS_UINTS(lane) * wholeStep[axis]) +
+        ROUND_TO_INTS(fraction[axis] + laneFloat * fractionStep[axis]);
+      mask &= (near > -1.0f) & (near < (float)p->Size[axis]) &
+        (rest[axis] >= -p->Tolerance[axis]) & (rest[axis] <= most + p->Tolerance[axis]);
+      rest[axis] = min(max(rest[axis], 0), most);
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      __local int* place = rests + axis * DEFORMVOLUME_TILE_VOXELS + x;
+      STORE(select(LOAD(place), rest[axis], mask), place);
+    }
+    // A bit for each lane that is set.
+    int lanes[LANES];
+    STORE(mask, lanes);
+    for (int i = 0; i < LANES; ++i)
+    {
+      found |= (uint)(lanes[i] & 1) << (x + i);
+    }
+  }
+  return found;
+}
+
+// All rows of a tile that are this work-item's. Returns whether tetrahedra overlap.
+static int RasterizeRows(__global const int4* tetrahedra, __global const int4* positions,
+  __global const float4* displacements, __global const int* list, uint listed, VolumeMasks masks,
+  VoxelBox tile, const int* origin, __local int* rests, __local uint* covered,
+  __local uint* own, const RasterParameters* p)
+{
+  const int items = get_local_size(0);
+  const int item = get_local_id(0);
+  for (int row = item; row < DEFORMVOLUME_TILE_ROWS; row += items)
+  {
+    own[row] = covered[row] = 0;
+  }
+  int overlaps = 0;
+  for (uint i = 0; i < listed; ++i)
+  {
+    TileTetrahedron t;
+    if (!SetUpTetrahedron(tetrahedra[list[i]], positions, tile, &t, p))
+    {
+      continue;
+    }
+    RestMap map;
+    int mapped = 0;
+    const int first = t.Box.Low.x - origin[0];
+    const int count = t.Box.High.x - t.Box.Low.x;
+    for (int z = t.Box.Low.z; z <= t.Box.High.z; ++z)
+    {
+      for (int y = t.Box.Low.y; y <= t.Box.High.y; ++y)
+      {
+        const int row = ((z - origin[2]) << DEFORMVOLUME_TILE_BITS_Y) + y - origin[1];
+        if (items > 1 && row % items != item)
+        {
+          continue;
+        }
+        long edges[4];
+        for (int k = 0; k < 4; ++k)
+        {
+          edges[k] = t.Start[k] + (y - t.Box.Low.y) * t.Steps[k].y +
+            (z - t.Box.Low.z) * t.Steps[k].z;
+        }
+        uint ownHere;
+        const uint held = FindRow(&t, edges, count, &ownHere) << first;
+        ownHere <<= first;
+        overlaps |= (own[row] & ownHere) != 0;
+        own[row] |= ownHere;
+        const uint wanted = held & ~covered[row];
+        if (!wanted)
+        {
+          continue;
+        }
+        if (!mapped)
+        {
+          SetRestMap(&t, displacements, &map, p);
+          mapped = 1;
+        }
+        for (int k = 0; k < 4; ++k)
+        {
+          edges[k] -= first * t.Steps[k].x;
+        }
+        const int voxel[3] = { origin[0], y, z };
+        __local int* rowRests = rests + (row << DEFORMVOLUME_TILE_BITS_X);
+        uint found = FindRests(&t, &map, edges, voxel, wanted, rowRests, p);
+        if (p->HasActive || p->HasBlanked)
+        {
+          found = SelectSources(masks, found, rowRests, p);
+        }
+        covered[row] |= found;
+      }
+    }
+  }
+  return overlaps;
+}
+
+__kernel void RasterizeMesh(__global const int4* tetrahedra, __global const int4* positions,
+  __global const float4* displacements, __global const uint* listBegins,
+  __global const int* lists, __global const uchar* active, __global const uchar* blanked,
+  __global const ulong* backgrounds, __global char* coverage, __global uint* counters,
+  const RasterParameters p ARRAY_PARAMETERS)
+{
+  __local int rests[3 * DEFORMVOLUME_TILE_VOXELS];
+  __local uint covered[DEFORMVOLUME_TILE_ROWS];
+  __local uint own[DEFORMVOLUME_TILE_ROWS];
+  __local uint overlaps;
+  const int index = p.TileBegin + (int)get_group_id(0);
+  const int tileIndex[3] = { p.TileFirst[0] + index % p.TileCount[0],
+    p.TileFirst[1] + index / p.TileCount[0] % p.TileCount[1],
+    p.TileFirst[2] + index / p.TileCount[0] / p.TileCount[1] };
+  const int origin[3] = { tileIndex[0] * (1 << DEFORMVOLUME_TILE_BITS_X),
+    tileIndex[1] * (1 << DEFORMVOLUME_TILE_BITS_Y), tileIndex[2] * (1 << DEFORMVOLUME_TILE_BITS_Z) };
+  const int4 corner = { origin[0], origin[1], origin[2], 0 };
+  const int4 outputFirst = { p.OutputFirst[0], p.OutputFirst[1], p.OutputFirst[2], 0 };
+  const int4 outputSize = { p.OutputSize[0], p.OutputSize[1], p.OutputSize[2], 1 };
+  const int4 tileSize = { 1 << DEFORMVOLUME_TILE_BITS_X, 1 << DEFORMVOLUME_TILE_BITS_Y,
+    1 << DEFORMVOLUME_TILE_BITS_Z, 1 };
+  VoxelBox tile;
+  tile.Low = max(corner, outputFirst);
+  tile.High = min(corner + tileSize, outputFirst + outputSize) - 1;
+  if (get_local_id(0) == 0)
+  {
+    overlaps = 0;
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  const VolumeMasks masks = { active, blanked };
+  if (RasterizeRows(tetrahedra, positions, displacements, lists + listBegins[index],
+        listBegins[index + 1] - listBegins[index], masks, tile, origin, rests, covered, own, &p))
+  {
+    atomic_or(&overlaps, 1);
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  SampleTile(tile, origin, rests, covered, backgrounds, coverage, &p ARRAY_ARGUMENTS);
+  if (get_local_id(0) == 0)
+  {
+    uint sum = 0;
+    for (int row = 0; row < DEFORMVOLUME_TILE_ROWS; ++row)
+    {
+      sum += popcount(covered[row]);
+    }
+    counters[index * DEFORMVOLUME_TILE_COUNTERS + DEFORMVOLUME_TILE_COVERED] = sum;
+    counters[index * DEFORMVOLUME_TILE_COUNTERS + DEFORMVOLUME_TILE_OVERLAPS] = overlaps;
+  }
+}

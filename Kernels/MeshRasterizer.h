@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeMeshRasterizer_h
+#define DeformVolumeMeshRasterizer_h
+
+#include "OpenCLContext.h"
+#include "RasterParameters.h"
+#include "VolumeDeformer.h"
+
+namespace deformvolume
+{
+
+class DeviceLattice;
+
+/// Resamples by rasterising the tetrahedra of the deformation mesh into the output
+/// (TetrahedronBinning.cl, MeshRasterization.cl, RestSampling.cl). Needs of the volume nothing but
+/// its arrays and masks: no links, no state and no positions of its voxels.
+class MeshRasterizer
+{
+public:
+  /// What a rasterisation is done with.
+  struct Setting
+  {
+    OpenCLContext& Context;
+    cl::CommandQueue Queue;
+    std::uint64_t AllocationLimit;
+    std::size_t WorkGroupSize; // 0: chosen by device
+  };
+
+  /// tetrahedra: node indices that are in range. restNodes: three numbers a node, continuous
+  /// indices of the volume.
+  void SetMesh(const Setting& setting, const Tetrahedron* tetrahedra,
+    std::size_t numberOfTetrahedra, const double* restNodes, std::size_t numberOfNodes);
+
+  /// Three floats a node, in output voxels, finite.
+  void SetDisplacements(
+    const Setting& setting, const float* displacements, const std::array<double, 3>& scale);
+
+  /// Forgets all.
+  void Clear() { *this = MeshRasterizer(); }
+
+  bool HasMesh() const { return !this->RestNodes.empty(); }
+  /// Whether mesh and displacements are set.
+  bool IsReady() const { return this->DisplacementsSet; }
+
+  /// Throws an Error where the deformation or the volume is beyond what can be rasterised.
+  DeformReport Deform(const Setting& setting, const DeviceLattice& volume,
+    const std::vector<VolumeArray>& arrays, const DeformRequest& request);
+
+  /// Bytes on the device, and those that a rasterisation needs there besides the arrays of the
+  /// volume and its masks, as far as is known beforehand.
+  std::uint64_t GetMemory() const;
+  static std::uint64_t GetMemoryNeeded(std::uint64_t outputVoxels, std::uint64_t bytesPerVoxel,
+    std::size_t numberOfNodes, std::size_t numberOfTetrahedra);
+
+private:
+  class Target;
+
+  void Bin(const Setting& setting, RasterParameters& parameters, DeformReport& report);
+  void CheckPositions() const;
+
+  std::vector<double> RestNodes;
+  std::size_t NumberOfTetrahedra = 0;
+  std::int64_t NumberOfFlatTetrahedra = 0;
+  bool DisplacementsSet = false;
+  // The node that is farthest from the output's index 0, and how far on an axis, in output voxels.
+  std::size_t FarthestNode = 0;
+  double FarthestPosition = 0.0;
+  cl::Buffer Tetrahedra;
+  cl::Buffer Positions;
+  cl::Buffer Displacements;
+  cl::Buffer Places;
+  cl::Buffer ListBegins;
+  cl::Buffer Lists;
+};
+
+} // namespace deformvolume
+
+#endif

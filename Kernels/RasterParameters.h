@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the kernels of the mesh rasterisation work on. Shared by the C++ code and the kernels:
+// four-byte numbers only, so that both sides lay it out alike.
+#ifndef DeformVolumeRasterParameters_h
+#define DeformVolumeRasterParameters_h
+
+// A tile of output voxels: 32 x 8 x 8. Tiles are aligned to multiples of their size in structured
+// indices, so that no result depends on where an output begins. The bits of an uint stand for the
+// voxels of a row.
+#define DEFORMVOLUME_TILE_BITS_X 5
+#define DEFORMVOLUME_TILE_BITS_Y 3
+#define DEFORMVOLUME_TILE_BITS_Z 3
+#define DEFORMVOLUME_TILE_ROWS 64
+#define DEFORMVOLUME_TILE_VOXELS 2048
+
+// Tetrahedra over more output voxels than this on an axis do not fit the 64 bits of the edge
+// functions: with e in 1/256 voxel, they are at most 2 e^3, and their partial sums 3 e^3.
+#define DEFORMVOLUME_LARGEST_TETRAHEDRON 5000
+
+// Counters of a range of tetrahedra.
+#define DEFORMVOLUME_BINNED_INVERTED 0
+#define DEFORMVOLUME_BINNED_OVERSTRETCHED 1
+#define DEFORMVOLUME_BINNED_COUNTERS 2
+
+// Counters of a tile.
+#define DEFORMVOLUME_TILE_COVERED 0  // voxels
+#define DEFORMVOLUME_TILE_OVERLAPS 1 // whether tetrahedra overlap
+#define DEFORMVOLUME_TILE_COUNTERS 2
+
+#ifndef __OPENCL_VERSION__
+namespace deformvolume
+{
+#endif
+
+typedef struct
+{
+  int Size[3];        // voxels of the volume on each axis
+  int First[3];       // structured index of its first voxel
+  int OutputFirst[3]; // structured index of the first output voxel in the buffers
+  int OutputSize[3];  // output voxels in the buffers on each axis
+  int TileFirst[3];   // index of the first tile: of its first voxel, divided by the tile's size
+  int TileCount[3];
+  int TileBegin;       // first tile of a launch
+  int Tetrahedra;      // of the deformation mesh
+  int Ranges;          // work-items that bin them, each a range of tetrahedra
+  int FractionBits[3]; // of rest coordinates, see MeshRasterization.cl
+  int Tolerance[3];    // by which a rest coordinate may leave the volume, in its own unit
+  int HasActive;       // whether a mask of active tetrahedra is there
+  int HasBlanked;      // whether a mask of blanked voxels is there
+  // Voxels of the volume an output voxel, as a sum of two floats.
+  float InverseScale[3];
+  float InverseScaleRest[3];
+} RasterParameters;
+
+#ifndef __OPENCL_VERSION__
+} // namespace deformvolume
+#endif
+
+#endif

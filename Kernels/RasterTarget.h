@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeRasterTarget_h
+#define DeformVolumeRasterTarget_h
+
+#include "OpenCLContext.h"
+#include "VolumeDeformer.h"
+
+namespace deformvolume
+{
+
+/// A slab of an output that a kernel writes wholly, background included. A processor writes the
+/// memory of the request itself; another device a copy, which Read brings there.
+class RasterTarget
+{
+public:
+  /// The request must outlive the object.
+  RasterTarget(OpenCLContext& context, const cl::CommandQueue& queue,
+    const std::vector<VolumeArray>& arrays, const DeformRequest& request, const Extent& slab);
+
+  const cl::Buffer& GetArray(std::size_t index) const { return this->Parts[index].Buffer; }
+  const cl::Buffer& GetCoverage() const { return this->Parts.back().Buffer; }
+  /// Eight bytes an array, the first of which are the background in the array's type.
+  const cl::Buffer& GetBackgrounds() const { return this->Backgrounds; }
+
+  /// Waits for the kernels; then the request has its voxels.
+  void Read();
+
+private:
+  struct Part
+  {
+    cl::Buffer Buffer;
+    char* Memory;
+    std::size_t Bytes;
+  };
+  void AddPart(OpenCLContext& context, void* memory, std::uint64_t tuple);
+
+  cl::CommandQueue Queue;
+  bool IsShared;
+  std::uint64_t FirstVoxel; // of the slab in the output
+  std::uint64_t NumberOfVoxels;
+  std::vector<Part> Parts;
+  cl::Buffer Backgrounds;
+};
+
+} // namespace deformvolume
+
+#endif

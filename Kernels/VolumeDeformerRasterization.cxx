@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What VolumeDeformer does with a mesh that is rasterised itself.
+#include "VolumeDeformer.h"
+
+#include "VolumeDeformerInternals.h"
+
+namespace deformvolume
+{
+
+MeshRasterizer::Setting VolumeDeformer::Internals::GetRasterizerSetting()
+{
+  return { this->GetContext(), this->Queue, this->GetAllocationLimit(), this->WorkGroupSize };
+}
+
+void VolumeDeformer::Internals::CheckRasterization(const DeformRequest& request) const
+{
+  if (request.Method != Resampling::MeshRasterization)
+  {
+    throw Error("Cubic interpolation is there only with the resampler MeshRasterization.");
+  }
+  if (!this->Rasterizer.IsReady())
+  {
+    throw Error("The resampler MeshRasterization needs a deformation mesh with its rest positions: "
+                "call SetRestMesh and SetNodeDisplacements first. For a displacement field use the "
+                "resampler Exact.");
+  }
+}
+
+DeformReport VolumeDeformer::Internals::Rasterize(const DeformRequest& request)
+{
+  DeformReport report =
+    this->Rasterizer.Deform(this->GetRasterizerSetting(), *this->Mesh, this->Arrays, request);
+  report.TransferTime += this->SendingTime;
+  this->SendingTime = 0.0;
+  return report;
+}
+
+void VolumeDeformer::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+  std::size_t numberOfNodes, const double* restNodes)
+{
+  if (!numberOfTetrahedra || !numberOfNodes || !tetrahedra || !restNodes)
+  {
+    throw Error("The deformation mesh is empty.");
+  }
+  CheckIndices(tetrahedra, numberOfTetrahedra, numberOfNodes);
+  this->Impl->Send(
+    [&]
+    {
+      this->Impl->GetMesh().ForgetMesh();
+      this->Impl->Tetrahedra = cl::Buffer();
+      this->Impl->Nodes = cl::Buffer();
+      this->Impl->NodesSet = false;
+      this->Impl->FieldVectors = cl::Buffer();
+      this->Impl->NumberOfTetrahedra = numberOfTetrahedra;
+      this->Impl->NumberOfNodes = numberOfNodes;
+      this->Impl->Rasterizer.SetMesh(this->Impl->GetRasterizerSetting(), tetrahedra,
+        numberOfTetrahedra, restNodes, numberOfNodes);
+    });
+}
+
+std::uint64_t VolumeDeformer::CheckRasterizationDeviceMemory(const Lattice& lattice,
+  const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
+  std::size_t numberOfTetrahedra) const
+{
+  std::uint64_t tuple = 0;
+  for (const VolumeArray& array : arrays)
+  {
+    tuple += GetTupleSize(array);
+  }
+  return this->Impl->Guard(
+    [&]
+    {
+      OpenCLContext& context = this->Impl->GetContext();
+      std::uint64_t outputVoxels = 0;
+      if (GetNumberOfPoints(outputExtent) > 0)
+      {
+        outputVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(
+          OutputSlab::Split(outputExtent, arrays, lattice, this->Impl->GetAllocationLimit())
+            .front()));
+      }
+      // Arrays and both masks; a processor writes to the memory of the output itself.
+      const std::uint64_t needed =
+        static_cast<std::uint64_t>(GetNumberOfPoints(lattice.VertexExtent)) * (tuple + 2) +
+        MeshRasterizer::GetMemoryNeeded(outputVoxels,
+          context.GetDevice().IsProcessor ? 0 : tuple + 1, numberOfNodes, numberOfTetrahedra);
+      CheckBytes(needed, this->Impl->GetUsableMemory(), "on the device");
+      return needed;
+    });
+}
+
+void VolumeDeformer::CheckRasterizationMemory(const Lattice& lattice,
+  const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
+  std::size_t numberOfTetrahedra) const
+{
+  const std::uint64_t needed = this->CheckRasterizationDeviceMemory(
+    lattice, arrays, outputExtent, numberOfNodes, numberOfTetrahedra);
+  std::uint64_t tuple = 0;
+  for (const VolumeArray& array : arrays)
+  {
+    tuple += GetTupleSize(array);
+  }
+  const std::uint64_t system = OpenCLContext::GetSystemMemory();
+  if (system > 0)
+  {
+    const bool shared = this->Impl->GetContext().GetDevice().IsProcessor;
+    const std::uint64_t host =
+      static_cast<std::uint64_t>(GetNumberOfPoints(outputExtent)) * (tuple + 1);
+    CheckBytes(host + (shared ? needed : 0), system + (shared ? this->GetDeviceMemory() : 0),
+      "in the system");
+  }
+}
+
+} // namespace deformvolume

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The resampler MESH_RASTERIZATION through the filter, cubic interpolation, and AUTOMATIC.
+#include "FilterTesting.h"
+
+#include <vtkCellData.h>
+#include <vtkDataSetAttributes.h>
+#include <vtkImageInterpolator.h>
+#include <vtkPNGWriter.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+using namespace filterTesting;
+
+namespace
+{
+
+const Extent Box{ { -3, 16, 2, 17, -8, 10 } };
+
+glm::dvec3 Bend(const glm::dvec3& p)
+{
+  return p + glm::dvec3(0.9 * std::sin(0.25 * p.y), 0.4, 0.8 * std::cos(0.3 * p.x));
+}
+
+std::string GetError(Deformed& deformed)
+{
+  deformed.Filter->Modified();
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeErrors(), 1);
+  VERIFY_EQUAL(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
+  return deformed.LastError;
+}
+
+bool Contains(const std::string& text, const std::string& part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+void TestMisuse()
+{
+  auto volume = MakeVolume(Box);
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Bend);
+  auto field = MakeImage(Box);
+  SetDisplacements(field, Bend);
+
+  Deformed byField(volume, field);
+  byField.Filter->SetResamplerToMeshRasterization();
+  VERIFY(Contains(GetError(byField), "displacement fields"));
+  byField.Filter->SetResamplerToAutomatic();
+  byField.Update();
+  VERIFY_EQUAL(byField.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::EXACT));
+  byField.Filter->SetInterpolationToCubicInterpolation();
+  VERIFY(Contains(GetError(byField), "LINEAR_INTERPOLATION"));
+
+  Deformed deformed(volume, mesh);
+  VERIFY_EQUAL(deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::AUTOMATIC));
+  deformed.Filter->SetResamplerToMeshRasterization();
+  deformed.Filter->SetOutsideModeToExtrapolate();
+  VERIFY(Contains(GetError(deformed), "OutsideMode"));
+  deformed.Filter->SetOutsideModeToDiscard();
+  deformed.Filter->SetInterpolationToCubicInterpolation();
+  for (const int resampler : { vtkDeformVolumeFilter::EXACT, vtkDeformVolumeFilter::PUBLISHED })
+  {
+    deformed.Filter->SetResampler(resampler);
+    VERIFY(Contains(GetError(deformed), "AUTOMATIC or MESH_RASTERIZATION"));
+  }
+  deformed.Filter->SetResamplerToMeshRasterization();
+  deformed.Filter->SetMemoryLimit(1000);
+  VERIFY(Contains(GetError(deformed), "1000"));
+  deformed.Filter->SetMemoryLimit(0);
+  deformed.Update();
+  VERIFY_EQUAL(
+    deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
+}
+
+// Both resamplers give the volume itself, or moved by whole voxels, whatever its geometry.
+void TestUndeformed()
+{
+  for (const double sign : { 1.0, -1.0 })
+  {
+    for (const double voxels : { 0.0, 3.0 })
+    {
+      auto volume = MakeImage(Box, glm::dvec3(0.5, sign * 2.0, 1.25), glm::dvec3(10.0, -20.0, 3.0));
+      if (sign > 0.0)
+      {
+        SetObliqueDirection(volume);
+      }
+      AddScalars<float>(volume, "value",
+        [](const glm::dvec3& p) { return std::sin(p.x) - std::cos(13.0 * p.y * p.z); });
+      volume->GetPointData()->GetScalars()->SetComponent(1234, 0, std::nan(""));
+      volume->GetPointData()->GetScalars()->SetComponent(99, 0, -0.0);
+      auto mesh = MakeMesh(volume, 4);
+      const glm::dvec3 step = GetPoint(volume, 1) - GetPoint(volume, 0);
+      SetDisplacements(mesh, Shift(voxels * step.x, voxels * step.y, voxels * step.z));
+      Deformed deformed(volume, mesh);
+      deformed.Filter->SetResamplerToExact();
+      vtkNew<vtkImageData> exact;
+      exact->DeepCopy(deformed.Update());
+      deformed.Filter->SetResamplerToMeshRasterization();
+      VERIFY(AreEqual(deformed.Update(), exact));
+      VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+      VERIFY(HaveEqualBits(deformed.GetValues(), volume->GetPointData()->GetScalars()));
+    }
+  }
+}
+
+// A linear function under an affine map of the world: its values are known everywhere.
+void TestAffineMap()
+{
+  auto volume = MakeImage(Box, glm::dvec3(0.8, 1.1, -1.3), glm::dvec3(5.0, 6.0, 7.0));
+  const auto function = [](const glm::dvec3& p) { return 3.0 * p.x - 2.0 * p.y + 0.5 * p.z; };
+  AddScalars<unsigned short>(volume, "integer",
+    [&](const glm::dvec3& p) { return std::round(20.0 * function(p) + 2000.0); });
+  const vtkSmartPointer<vtkDataArray> integer = volume->GetPointData()->GetScalars();
+  AddScalars<double>(volume, "value", function); // which takes the place of the integers
+  volume->GetPointData()->AddArray(integer);
+  auto mesh = MakeMesh(volume, 3, 1.0);
+  const glm::dmat3 matrix(1.1, 0.2, -0.1, -0.3, 0.9, 0.15, 0.05, -0.2, 1.3);
+  const glm::dvec3 offset(0.37, -1.2, 2.5);
+  SetDisplacements(mesh, [&](const glm::dvec3& p) { return matrix * p + offset; });
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetResamplerToMeshRasterization();
+  deformed.Filter->SetOutputSpacingModeToCustomSpacing();
+  deformed.Filter->SetCustomSpacing(0.6, 0.7, 0.9);
+  vtkImageData* output = deformed.Update();
+  vtkDataArray* integers = output->GetPointData()->GetArray("integer");
+  double bounds[6];
+  volume->GetBounds(bounds);
+  vtkIdType covered = 0;
+  int wrong = 0;
+  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 rest = glm::inverse(matrix) * (GetPoint(output, id) - offset);
+    double outside = -1e9;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      outside =
+        std::max({ outside, bounds[2 * axis] - rest[axis], rest[axis] - bounds[2 * axis + 1] });
+    }
+    // Positions are rounded to 1/256 voxel, which moves the border.
+    if (std::abs(outside) > 0.01)
+    {
+      wrong += deformed.IsCovered(id) != (outside < 0.0);
+    }
+    if (deformed.IsCovered(id))
+    {
+      ++covered;
+      // Displacements are linear over the mesh, but for the rounding of positions (1/512 voxel on
+      // each axis) and of displacements (float).
+      wrong += std::abs(deformed.GetValues()->GetComponent(id, 0) - function(rest)) > 0.02;
+      wrong += std::abs(integers->GetComponent(id, 0) - (20.0 * function(rest) + 2000.0)) >
+        0.5 + 0.4 + 0.5;
+    }
+  }
+  VERIFY_EQUAL(wrong, 0);
+  VERIFY_EQUAL(covered, deformed.Filter->GetNumberOfCoveredVoxels());
+  VERIFY(covered > 5000);
+
+  // What it tells: there is no mapping, and a moved mesh sends nothing.
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfMappingBuilds(), 0);
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfVolumeUploads(), 1);
+  VERIFY_EQUAL(deformed.Filter->GetPreprocessingTime(), 0.0);
+  VERIFY(deformed.Filter->GetMappingTime() > 0.0);
+  VERIFY(deformed.Filter->GetResamplingTime() > 0.0);
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), 0);
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfFlatTetrahedra(), 0);
+  SetDisplacements(mesh, [](const glm::dvec3& p) { return glm::dvec3(-p.x, p.y, p.z); });
+  deformed.Update();
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfMappingBuilds(), 0);
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfVolumeUploads(), 1);
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), mesh->GetNumberOfCells());
+  VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 5000);
+
+  // To the other resampler and back.
+  deformed.Filter->SetResamplerToExact();
+  deformed.Update();
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfMappingBuilds(), 1);
+  deformed.Filter->SetResamplerToMeshRasterization();
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  deformed.Filter->SetOutputSpacingModeToVolumeSpacing();
+  VERIFY(HaveEqualBits(deformed.Update()->GetPointData()->GetArray("value"),
+    volume->GetPointData()->GetArray("value")));
+}
+
+// In an undeformed volume the masks act at the same places with both resamplers.
+void TestMasks()
+{
+  auto volume = MakeVolume(Box);
+  vtkNew<vtkUnsignedCharArray> active;
+  active->SetName("ActiveTetrahedra");
+  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  for (vtkIdType cell = 0; cell < volume->GetNumberOfCells(); ++cell)
+  {
+    active->SetValue(cell, static_cast<unsigned char>(cell * 7919 % 32));
+  }
+  volume->GetCellData()->AddArray(active);
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetOutputSpacingModeToCustomSpacing();
+  deformed.Filter->SetCustomSpacing(0.25, 0.25, 0.25);
+  deformed.Filter->SetResamplerToExact();
+  vtkNew<vtkImageData> exact;
+  exact->DeepCopy(deformed.Update());
+  deformed.Filter->SetResamplerToMeshRasterization();
+  deformed.Update();
+  VERIFY(HaveEqualBits(exact->GetPointData()->GetArray("vtkValidPointMask"),
+    deformed.Filter->GetOutput()->GetPointData()->GetArray("vtkValidPointMask")));
+  VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 1000);
+  VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() < exact->GetNumberOfPoints());
+
+  // A blanked point: nothing is covered that it has a weight in.
+  volume->GetCellData()->RemoveArray("ActiveTetrahedra");
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(volume->GetNumberOfPoints());
+  ghosts->Fill(0);
+  const int center[3] = { 4, 9, -1 };
+  ghosts->SetValue(
+    volume->ComputePointId(const_cast<int*>(center)), vtkDataSetAttributes::HIDDENPOINT);
+  volume->GetPointData()->AddArray(ghosts);
+  for (const bool cubic : { false, true })
+  {
+    deformed.Filter->SetInterpolation(cubic ? vtkDeformVolumeFilter::CUBIC_INTERPOLATION
+                                            : vtkDeformVolumeFilter::LINEAR_INTERPOLATION);
+    vtkImageData* output = deformed.Update();
+    int wrong = 0;
+    for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+    {
+      const glm::dvec3 d = glm::abs(GetPoint(output, id) - glm::dvec3(4.0, 9.0, -1.0));
+      bool weighs = true;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        weighs &= d[axis] < (cubic ? 2.0 : 1.0) && !(d[axis] == 1.0);
+      }
+      wrong += deformed.IsCovered(id) == weighs;
+    }
+    VERIFY_EQUAL(wrong, 0);
+  }
+}
+
+// Against VTK's own cubic interpolation.
+void TestCubic()
+{
+  auto volume = MakeImage(Box);
+  AddScalars<double>(volume, "value",
+    [](const glm::dvec3& p) { return std::sin(1.7 * p.x) + std::cos(2.1 * p.y) * p.z; });
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.25, -0.625, 0.125));
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetInterpolationToCubicInterpolation();
+  vtkImageData* output = deformed.Update();
+  VERIFY_EQUAL(
+    deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
+  vtkNew<vtkImageInterpolator> interpolator;
+  interpolator->SetInterpolationModeToCubic();
+  interpolator->Initialize(volume);
+  double largest = 0.0;
+  vtkIdType compared = 0;
+  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+  {
+    if (deformed.IsCovered(id))
+    {
+      const glm::dvec3 rest = GetPoint(output, id) - glm::dvec3(0.25, -0.625, 0.125);
+      const double expected = interpolator->Interpolate(rest.x, rest.y, rest.z, 0);
+      largest = std::max(largest, std::abs(deformed.GetValues()->GetComponent(id, 0) - expected));
+      ++compared;
+    }
+  }
+  VERIFY(compared > 4000);
+  VERIFY(largest < 1e-9); // rest coordinates are multiples of 1/8, hence exact
+}
+
+// The memory decides, for all parts of an output alike.
+void TestAutomatic()
+{
+  auto volume = MakeVolume({ { 0, 63, 0, 63, 0, 63 } });
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Bend);
+  Deformed deformed(volume, mesh);
+  deformed.Update();
+  VERIFY_EQUAL(deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::EXACT));
+  const vtkIdType voxels = volume->GetNumberOfPoints();
+  deformed.Filter->SetMemoryLimit(8 * voxels);
+  deformed.Update();
+  VERIFY_EQUAL(
+    deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
+  deformed.Filter->ReleaseDeviceMemory();
+  vtkNew<vtkImageData> whole;
+  whole->DeepCopy(deformed.Update());
+  VERIFY(deformed.Filter->GetDeviceMemory() < 8 * voxels);
+  int part[6] = { 7, 40, 3, 37, 11, 29 };
+  deformed.Filter->Modified();
+  deformed.Filter->UpdateExtent(part);
+  VERIFY_EQUAL(deformed.TakeErrors(), 0);
+  VERIFY_EQUAL(
+    deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
+  int wrong = 0;
+  vtkImageData* output = deformed.Filter->GetOutput();
+  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 point = GetPoint(output, id);
+    const vtkIdType other = whole->FindPoint(point.x, point.y, point.z);
+    wrong += deformed.GetValues()->GetComponent(id, 0) !=
+      whole->GetPointData()->GetScalars()->GetComponent(other, 0);
+  }
+  VERIFY_EQUAL(wrong, 0);
+  VERIFY(output->GetNumberOfPoints() >= 34 * 35 * 19);
+
+  // What only the exact resampler can do fails with its words.
+  deformed.Filter->SetOutsideModeToExtrapolate();
+  VERIFY(Contains(GetError(deformed), std::to_string(8 * voxels)));
+}
+
+// Both resamplers side by side, and 8 times their difference: a picture to look at.
+void TestImage(const std::string& directory)
+{
+  auto volume = MakeImage({ { 0, 99, 0, 99, 0, 40 } });
+  AddScalars<unsigned char>(volume, "value",
+    [](const glm::dvec3& p)
+    {
+      const double r = glm::length(p - glm::dvec3(50.0, 50.0, 20.0));
+      const double checks = (int(p.x / 9.0) + int(p.y / 9.0) + int(p.z / 9.0)) % 2 ? 200.0 : 90.0;
+      return r < 46.0 ? checks + 30.0 * std::sin(r) : 20.0;
+    });
+  auto mesh = MakeMesh(volume, 12);
+  SetDisplacements(mesh,
+    [](const glm::dvec3& p)
+    {
+      const glm::dvec3 d = p - glm::dvec3(50.0, 50.0, 20.0);
+      const double angle = 0.9 * std::exp(-glm::dot(d, d) / 900.0);
+      return glm::dvec3(50.0, 50.0, 20.0) +
+        glm::dvec3(std::cos(angle) * d.x - std::sin(angle) * d.y,
+          std::sin(angle) * d.x + std::cos(angle) * d.y, d.z + 3.0 * std::sin(0.1 * p.x));
+    });
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetOutputBoundsModeToVolumeBounds();
+  deformed.Filter->SetResamplerToExact();
+  vtkNew<vtkImageData> exact;
+  exact->DeepCopy(deformed.Update());
+  deformed.Filter->SetResamplerToMeshRasterization();
+  vtkImageData* rasterized = deformed.Update();
+  auto picture = MakeImage({ { 0, 299, 0, 99, 0, 0 } });
+  vtkNew<vtkUnsignedCharArray> pixels;
+  pixels->SetNumberOfTuples(30000);
+  double sum = 0.0;
+  vtkIdType both = 0;
+  vtkIdType one = 0;
+  for (int z = 0; z < 41; ++z)
+  {
+    for (int y = 0; y < 100; ++y)
+    {
+      for (int x = 0; x < 100; ++x)
+      {
+        const vtkIdType id = (z * 100 + y) * 100 + x;
+        const double a = exact->GetPointData()->GetScalars()->GetComponent(id, 0);
+        const double b = rasterized->GetPointData()->GetScalars()->GetComponent(id, 0);
+        const bool covered =
+          exact->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(id, 0) != 0.0;
+        if (covered && deformed.IsCovered(id))
+        {
+          sum += std::abs(a - b);
+          ++both;
+        }
+        one += covered != deformed.IsCovered(id);
+        if (z == 20)
+        {
+          pixels->SetValue(300 * y + x, static_cast<unsigned char>(a));
+          pixels->SetValue(300 * y + x + 100, static_cast<unsigned char>(b));
+          pixels->SetValue(
+            300 * y + x + 200, static_cast<unsigned char>(std::min(255.0, 8.0 * std::abs(a - b))));
+        }
+      }
+    }
+  }
+  std::cout << "mean difference " << sum / double(both) << " of 255, covered by one only " << one
+            << " of " << both << "\n";
+  // The exact one interpolates over tetrahedra, this one over cubes: edges of the checks differ.
+  VERIFY(sum / double(both) < 4.0);
+  VERIFY(one < both / 100);
+  picture->GetPointData()->SetScalars(pixels);
+  vtkNew<vtkPNGWriter> writer;
+  writer->SetInputData(picture);
+  writer->SetFileName((directory + "/TestDeformRasterization.png").c_str());
+  writer->Write();
+}
+
+} // namespace
+
+int TestDeformRasterization(int argc, char* argv[])
+{
+  TestMisuse();
+  TestUndeformed();
+  TestAffineMap();
+  TestMasks();
+  TestCubic();
+  TestAutomatic();
+  for (int i = 1; i + 1 < argc; ++i)
+  {
+    if (std::string(argv[i]) == "-T")
+    {
+      TestImage(argv[i + 1]);
+    }
+  }
+  return GetExitCode();
+}

@@ -1,0 +1,623 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The resampler MeshRasterization against a brute-force reference: misuse, coverage, values, and
+// that nothing depends on tiles, slabs and work-groups.
+#include "RasterReference.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+using namespace deformvolume;
+
+namespace
+{
+
+using Map = std::function<glm::dvec3(const glm::dvec3&)>;
+
+// Corners of a cube, bit 0 for x, 1 for y, 2 for z: six tetrahedra round a diagonal.
+constexpr int Kuhn[6][4] = { { 0, 1, 3, 7 }, { 0, 3, 2, 7 }, { 0, 2, 6, 7 }, { 0, 6, 4, 7 },
+  { 0, 4, 5, 7 }, { 0, 5, 1, 7 } };
+
+/// A mesh of cells x cells x cells cubes over a box of continuous indices. deformation takes an
+/// index of the volume to a continuous index of the output. The output holds the result and margin
+/// voxels more.
+RasterCase MakeRasterCase(const Lattice& lattice, const glm::dvec3& low, const glm::dvec3& high,
+  int cells, const Map& deformation, int margin = 1)
+{
+  RasterCase made;
+  made.Lattice = lattice;
+  const glm::dvec3 scale(lattice.Scale[0], lattice.Scale[1], lattice.Scale[2]);
+  glm::dvec3 least(1e9);
+  glm::dvec3 most(-1e9);
+  const int nodes = cells + 1;
+  for (int z = 0; z < nodes; ++z)
+  {
+    for (int y = 0; y < nodes; ++y)
+    {
+      for (int x = 0; x < nodes; ++x)
+      {
+        const glm::dvec3 rest = low + (high - low) * glm::dvec3(x, y, z) / double(cells);
+        const glm::dvec3 moved = deformation(rest);
+        made.RestNodes.push_back(rest);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          made.Displacements.push_back(static_cast<float>((moved - scale * rest)[axis]));
+        }
+        least = glm::min(least, moved);
+        most = glm::max(most, moved);
+        if (x < cells && y < cells && z < cells)
+        {
+          for (const auto& corners : Kuhn)
+          {
+            Tetrahedron tetrahedron{};
+            for (int k = 0; k < 4; ++k)
+            {
+              const int v = corners[k];
+              tetrahedron[k] = ((z + (v >> 2)) * nodes + y + (v >> 1 & 1)) * nodes + x + (v & 1);
+            }
+            made.Tetrahedra.push_back(tetrahedron);
+          }
+        }
+      }
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    made.Output[2 * axis] = static_cast<int>(std::floor(least[axis])) - margin;
+    made.Output[2 * axis + 1] = static_cast<int>(std::ceil(most[axis])) + margin;
+  }
+  return made;
+}
+
+/// The same with a mesh over just the volume.
+RasterCase MakeRasterCase(
+  const Extent& extent, int cells, const Map& deformation, const std::array<double, 3>& scale)
+{
+  return MakeRasterCase({ extent, scale }, glm::dvec3(extent[0], extent[2], extent[4]),
+    glm::dvec3(extent[1], extent[3], extent[5]), cells, deformation);
+}
+
+void Load(VolumeDeformer& deformer, const RasterCase& c, const std::vector<VolumeArray>& arrays)
+{
+  deformer.SetDevice("");
+  deformer.SetLattice(c.Lattice);
+  deformer.SetArrays(arrays);
+  deformer.SetBlanked(c.Blanked.empty() ? nullptr : c.Blanked.data());
+  deformer.SetActiveTetrahedra(c.Active.empty() ? nullptr : c.Active.data());
+  deformer.SetRestMesh(
+    c.Tetrahedra.data(), c.Tetrahedra.size(), c.RestNodes.size(), &c.RestNodes.front().x);
+  deformer.SetNodeDisplacements(c.Displacements.data());
+}
+
+Deformed Rasterize(VolumeDeformer& deformer, const RasterCase& c,
+  const std::vector<VolumeArray>& arrays, Interpolation interpolation = Interpolation::Linear)
+{
+  DeformerCase output;
+  output.Output = c.Output;
+  return RunDeformer(deformer, output, arrays, Resampling::MeshRasterization, interpolation);
+}
+
+Deformed LoadAndRun(const RasterCase& c, const std::vector<VolumeArray>& arrays,
+  Interpolation interpolation = Interpolation::Linear)
+{
+  VolumeDeformer deformer;
+  Load(deformer, c, arrays);
+  return Rasterize(deformer, c, arrays, interpolation);
+}
+
+template <typename T>
+void ExpectValues(const RasterCase& c, const reference::RasterResult& reference,
+  const VolumeArray& array, int index, const Deformed& deformed, bool cubic)
+{
+  const T* input = static_cast<const T*>(array.Data);
+  const T* output = deformed.GetOutput<T>(index);
+  long double largest = 0.0L;
+  for (std::int64_t i = 0; i < c.GetNumberOfVoxels() * array.Components; ++i)
+  {
+    largest = std::max(largest, std::fabs(static_cast<long double>(input[i])));
+  }
+  int failures = 0;
+  for (std::size_t voxel = 0; voxel < reference.Voxels.size() && failures < 4; ++voxel)
+  {
+    const reference::RasterVoxel& expected = reference.Voxels[voxel];
+    if (!expected.Covered || expected.Uncertain)
+    {
+      continue;
+    }
+    const auto weights = reference::GetWeights(c.Lattice.VertexExtent, expected.Rest, cubic);
+    for (int component = 0; component < array.Components; ++component)
+    {
+      const T value = output[voxel * array.Components + component];
+      if (array.Categorical)
+      {
+        // One of the voxels within half a voxel on every axis.
+        bool found = false;
+        for (std::int64_t corner = 0; corner < 8; ++corner)
+        {
+          std::array<std::int64_t, 3> at{};
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            at[axis] =
+              std::llround(expected.Rest[axis] + ((corner >> axis & 1) != 0 ? 1e-5L : -1e-5L));
+            at[axis] = std::min(
+              std::max<std::int64_t>(at[axis], 0), GetSize(c.Lattice.VertexExtent, axis) - 1);
+          }
+          found |= std::memcmp(&value,
+                     &input[((at[2] * GetSize(c.Lattice.VertexExtent, 1) + at[1]) *
+                                GetSize(c.Lattice.VertexExtent, 0) +
+                              at[0]) *
+                         array.Components +
+                       component],
+                     sizeof(T)) == 0;
+        }
+        failures += found ? 0 : 1;
+        EXPECT_TRUE(found) << "array " << index << " voxel " << voxel;
+        continue;
+      }
+      long double sum = 0.0L;
+      for (const auto& weight : weights)
+      {
+        sum += weight.second *
+          static_cast<long double>(input[weight.first * array.Components + component]);
+      }
+      if (std::is_integral<T>::value)
+      {
+        sum = std::min(std::max(sum, static_cast<long double>(std::numeric_limits<T>::lowest())),
+          static_cast<long double>(std::numeric_limits<T>::max()));
+      }
+      const long double tolerance = 1e-5L * largest + (std::is_integral<T>::value ? 0.5L : 0.0L);
+      const long double difference = std::fabs(static_cast<long double>(value) - sum);
+      EXPECT_LE(difference, tolerance)
+        << "array " << index << " voxel " << voxel << " of tetrahedron " << expected.Tetrahedron;
+      failures += difference <= tolerance ? 0 : 1;
+    }
+  }
+}
+
+/// Coverage exactly, counts, values.
+void ExpectEqualsReference(const RasterCase& c, const std::vector<VolumeArray>& arrays,
+  const Deformed& deformed, Interpolation interpolation = Interpolation::Linear)
+{
+  const bool cubic = interpolation == Interpolation::Cubic;
+  const reference::RasterResult reference = reference::Rasterize(c, cubic);
+  std::int64_t covered = 0;
+  std::int64_t uncertain = 0;
+  std::int64_t wrong = 0;
+  for (std::size_t voxel = 0; voxel < reference.Voxels.size(); ++voxel)
+  {
+    covered += deformed.Coverage[voxel];
+    uncertain += reference.Voxels[voxel].Uncertain;
+    wrong += !reference.Voxels[voxel].Uncertain &&
+      deformed.Coverage[voxel] != (reference.Voxels[voxel].Covered ? 1 : 0);
+  }
+  EXPECT_EQ(wrong, 0) << "voxels whose coverage is wrong, of " << reference.Voxels.size();
+  EXPECT_LT(uncertain, static_cast<std::int64_t>(reference.Voxels.size()) / 20 + 1);
+  EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, covered);
+  EXPECT_EQ(deformed.Report.NumberOfInvertedTetrahedra, reference.NumberOfInvertedTetrahedra);
+  if (reference.NumberOfOverlappedVoxels > 0 || reference.NumberOfInvertedTetrahedra == 0)
+  {
+    EXPECT_EQ(deformed.Report.Overlapping, reference.NumberOfOverlappedVoxels > 0);
+  }
+  for (std::size_t array = 0; array < arrays.size(); ++array)
+  {
+    const int index = static_cast<int>(array);
+    switch (arrays[array].Type)
+    {
+#define COMPARE_CASE(name, type, cl)                                                               \
+  case ElementType::name:                                                                          \
+    ExpectValues<type>(c, reference, arrays[array], index, deformed, cubic);                       \
+    break;
+      DEFORMVOLUME_ELEMENT_TYPES(COMPARE_CASE)
+#undef COMPARE_CASE
+    }
+  }
+}
+
+const Extent Volume{ { -3, 18, 2, 16, -9, 5 } };
+
+std::string GetError(const std::function<void()>& function)
+{
+  try
+  {
+    function();
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+  ADD_FAILURE() << "no error";
+  return "";
+}
+
+glm::dvec3 Wave(const glm::dvec3& index)
+{
+  return index +
+    glm::dvec3(0.8 * std::sin(0.5 * index.y) + 0.31, 0.6 * std::cos(0.4 * index.z) - 0.17,
+      0.7 * std::sin(0.3 * index.x));
+}
+
+} // namespace
+
+TEST(MeshRasterization, MisuseIsAnErrorAndLeavesTheDeformerUsable)
+{
+  const RasterCase good = MakeRasterCase(Volume, 2, Wave, { { 1, 1, 1 } });
+  const auto values = MakeRandomValues<float>(good.GetNumberOfVoxels(), 1);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  VolumeDeformer deformer;
+  deformer.SetDevice("");
+  deformer.SetLattice(good.Lattice);
+  deformer.SetArrays(arrays);
+  EXPECT_NE(
+    GetError([&] { Rasterize(deformer, good, arrays); }).find("SetRestMesh"), std::string::npos);
+  EXPECT_NE(
+    GetError([&] { deformer.SetNodeDisplacements(good.Displacements.data()); }).find("SetMesh"),
+    std::string::npos);
+  EXPECT_NE(GetError(
+              [&]
+              {
+                deformer.SetRestMesh(
+                  good.Tetrahedra.data(), good.Tetrahedra.size(), good.RestNodes.size(), nullptr);
+              })
+              .find("empty"),
+    std::string::npos);
+  Load(deformer, good, arrays);
+  // Without links all else is impossible.
+  DeformerCase output;
+  output.Output = good.Output;
+  EXPECT_NE(GetError([&] { RunDeformer(deformer, output, arrays); }).find("deformation"),
+    std::string::npos);
+
+  // A node far away, and a tetrahedron that is too large.
+  RasterCase far = good;
+  far.RestNodes[0].x = 4e6;
+  EXPECT_NE(GetError([&] { LoadAndRun(far, arrays); }).find("Node 0 "), std::string::npos);
+  far = good;
+  far.RestNodes[0].x = -6000.0;
+  EXPECT_NE(GetError([&] { LoadAndRun(far, arrays); }).find("5,000"), std::string::npos);
+  far.RestNodes[0].x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(GetError([&] { LoadAndRun(far, arrays); }).find("Node 0 "), std::string::npos);
+
+  // A field instead of a mesh.
+  const std::vector<float> vectors(24);
+  DisplacementField field;
+  field.Dimensions = { { 2, 2, 2 } };
+  field.Vectors = vectors.data();
+  deformer.SetDisplacementField(field);
+  EXPECT_NE(GetError([&] { Rasterize(deformer, good, arrays); }).find("field"), std::string::npos);
+  EXPECT_NE(GetError([&]
+              { RunDeformer(deformer, output, arrays, Resampling::Exact, Interpolation::Cubic); })
+              .find("Cubic"),
+    std::string::npos);
+
+  Load(deformer, good, arrays);
+  ExpectEqualsReference(good, arrays, Rasterize(deformer, good, arrays));
+}
+
+TEST(MeshRasterization, AbortThrows)
+{
+  const RasterCase good = MakeRasterCase(Volume, 2, Wave, { { 1, 1, 1 } });
+  const auto values = MakeRandomValues<float>(good.GetNumberOfVoxels(), 1);
+  VolumeDeformer deformer;
+  Load(deformer, good, { MakeArray(values) });
+  std::vector<float> output(GetNumberOfPoints(good.Output));
+  std::vector<signed char> coverage(output.size());
+  DeformRequest request;
+  request.Method = Resampling::MeshRasterization;
+  request.OutputExtent = good.Output;
+  request.Outputs = { output.data() };
+  request.Coverage = coverage.data();
+  double last = -1.0;
+  request.Progress = [&last](double done)
+  {
+    EXPECT_GE(done, last);
+    EXPECT_LE(done, 1.0);
+    last = done;
+    return true;
+  };
+  deformer.Deform(request);
+  EXPECT_GE(last, 0.0);
+  request.Progress = [](double) { return false; };
+  EXPECT_THROW(deformer.Deform(request), Aborted);
+}
+
+// Bits of every kind come out where a mesh that moves by whole voxels takes them; each type alone,
+// and with three components, labels and all types together.
+TEST(MeshRasterization, IdentityAndWholeShiftsAreBitExact)
+{
+  for (const double shift : { 0.0, -5.0 })
+  {
+    const RasterCase moved = MakeRasterCase(
+      { Volume, { { 1, 1, 1 } } }, glm::dvec3(Volume[0], Volume[2], Volume[4]) - 0.3,
+      glm::dvec3(Volume[1], Volume[3], Volume[5]) + 2.7, 3,
+      [shift](const glm::dvec3& index) { return index + glm::dvec3(shift, 2.0 * shift, 0.0); }, 0);
+    const std::size_t voxels = static_cast<std::size_t>(moved.GetNumberOfVoxels());
+#define DECLARE(name, type, cl)                                                                    \
+  const auto one##name = MakeRandomBits<type>(voxels, 11);                                         \
+  const auto three##name = MakeRandomBits<type>(3 * voxels, 12);
+    DEFORMVOLUME_ELEMENT_TYPES(DECLARE)
+#undef DECLARE
+    std::vector<std::vector<VolumeArray>> runs(1);
+#define ADD(name, type, cl)                                                                        \
+  runs.push_back({ MakeArray(one##name) });                                                        \
+  runs.front().push_back(MakeArray(three##name, 3));                                               \
+  runs.front().push_back(MakeArray(one##name, 1, true));
+    DEFORMVOLUME_ELEMENT_TYPES(ADD)
+#undef ADD
+    for (const Interpolation interpolation : { Interpolation::Linear, Interpolation::Cubic })
+    {
+      for (const auto& arrays : runs)
+      {
+        if (interpolation == Interpolation::Cubic && arrays.size() == 1)
+        {
+          continue; // the kernel is the one of all types
+        }
+        const Deformed deformed = LoadAndRun(moved, arrays, interpolation);
+        EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, moved.GetNumberOfVoxels());
+        EXPECT_FALSE(deformed.Report.Overlapping);
+        for (std::size_t i = 0; i < arrays.size(); ++i)
+        {
+          const std::size_t tuple = GetTupleSize(arrays[i]);
+          std::size_t wrong = 0;
+          std::size_t voxel = 0;
+          for (int z = Volume[4]; z <= Volume[5]; ++z)
+          {
+            for (int y = Volume[2]; y <= Volume[3]; ++y)
+            {
+              for (int x = Volume[0]; x <= Volume[1]; ++x, ++voxel)
+              {
+                const auto target =
+                  static_cast<std::size_t>(((z - moved.Output[4]) * GetSize(moved.Output, 1) + y +
+                                             int(2 * shift) - moved.Output[2]) *
+                      GetSize(moved.Output, 0) +
+                    x + int(shift) - moved.Output[0]);
+                wrong += deformed.Coverage[target] != 1 ||
+                  std::memcmp(deformed.Outputs[i].data() + target * tuple,
+                    static_cast<const char*>(arrays[i].Data) + voxel * tuple, tuple) != 0;
+              }
+            }
+          }
+          EXPECT_EQ(wrong, 0U) << "type " << static_cast<int>(arrays[i].Type) << " components "
+                               << arrays[i].Components << " cubic "
+                               << (interpolation == Interpolation::Cubic);
+        }
+      }
+    }
+  }
+}
+
+// A finer output: every voxel of the volume comes out at its place.
+TEST(MeshRasterization, UndeformedAtAnotherSpacingKeepsTheVoxels)
+{
+  const RasterCase finer = MakeRasterCase(Volume, 3,
+    [](const glm::dvec3& index) { return index * glm::dvec3(3, 2, 7); }, { { 3, 2, 7 } });
+  const auto values = MakeRandomBits<float>(finer.GetNumberOfVoxels(), 5);
+  const Deformed deformed = LoadAndRun(finer, { MakeArray(values) });
+  std::size_t voxel = 0;
+  for (int z = Volume[4]; z <= Volume[5]; ++z)
+  {
+    for (int y = Volume[2]; y <= Volume[3]; ++y)
+    {
+      for (int x = Volume[0]; x <= Volume[1]; ++x, ++voxel)
+      {
+        const std::int64_t target =
+          ((7 * z - finer.Output[4]) * GetSize(finer.Output, 1) + 2 * y - finer.Output[2]) *
+            GetSize(finer.Output, 0) +
+          3 * x - finer.Output[0];
+        ASSERT_EQ(std::memcmp(&deformed.GetOutput<float>(0)[target], &values[voxel], 4), 0)
+          << voxel;
+      }
+    }
+  }
+}
+
+TEST(MeshRasterization, ValuesOfAllTypesEqualReference)
+{
+  const RasterCase waved = MakeRasterCase(Volume, 4, Wave, { { 1, 1, 1 } });
+  const std::size_t voxels = static_cast<std::size_t>(waved.GetNumberOfVoxels());
+#define DECLARE(name, type, cl)                                                                    \
+  const auto one##name = MakeRandomValues<type>(voxels, 21);                                       \
+  const auto two##name = MakeRandomValues<type>(2 * voxels, 22);
+  DEFORMVOLUME_ELEMENT_TYPES(DECLARE)
+#undef DECLARE
+  std::vector<VolumeArray> arrays;
+#define ADD(name, type, cl)                                                                        \
+  arrays.push_back(MakeArray(one##name));                                                          \
+  arrays.push_back(MakeArray(two##name, 2));                                                       \
+  arrays.push_back(MakeArray(one##name, 1, true));
+  DEFORMVOLUME_ELEMENT_TYPES(ADD)
+#undef ADD
+  for (const Interpolation interpolation : { Interpolation::Linear, Interpolation::Cubic })
+  {
+    SCOPED_TRACE(interpolation == Interpolation::Cubic);
+    ExpectEqualsReference(waved, arrays, LoadAndRun(waved, arrays, interpolation), interpolation);
+  }
+}
+
+TEST(MeshRasterization, AffineMapsEqualReference)
+{
+  std::mt19937 random(7);
+  for (int run = 0; run < 12; ++run)
+  {
+    SCOPED_TRACE(run);
+    glm::dmat3 matrix = MakeRandomMatrix(random);
+    std::array<double, 3> scale{ { 1, 1, 1 } };
+    if (run == 1)
+    {
+      matrix = glm::dmat3(glm::rotate(glm::dmat4(1.0), 0.7853981633974483, glm::dvec3(1, 0, 0)));
+    }
+    if (run == 2)
+    {
+      matrix = glm::dmat3(0, 1, 0, 0, 0, 1, 1, 0, 0); // a permutation: all voxels on faces
+    }
+    if (run % 3 == 0)
+    {
+      scale = { { 0.7, 1.9, 1.3 } };
+    }
+    const RasterCase affine = MakeRasterCase(
+      Volume, 1 + run % 4, [&matrix](const glm::dvec3& index) { return matrix * index; }, scale);
+    const auto values = MakeRandomValues<std::uint16_t>(affine.GetNumberOfVoxels(), run);
+    const auto floats = MakeRandomValues<float>(affine.GetNumberOfVoxels(), run);
+    const auto doubles = MakeRandomValues<double>(affine.GetNumberOfVoxels(), run);
+    const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(floats),
+      MakeArray(doubles) };
+    ExpectEqualsReference(affine, arrays, LoadAndRun(affine, arrays));
+  }
+}
+
+// Nodes that move on their own by much: inverted tetrahedra, slivers, overlaps everywhere.
+TEST(MeshRasterization, FoldedMeshesEqualReference)
+{
+  for (unsigned int seed = 1; seed < 6; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    RasterCase folded =
+      MakeRasterCase({ Volume, { { 1, 1, 1 } } }, glm::dvec3(Volume[0], Volume[2], Volume[4]) - 3.0,
+        glm::dvec3(Volume[1], Volume[3], Volume[5]) + 2.0, 3, MakeJitter(seed, 6.0));
+    // Flat at rest, flat when deformed, and twice the same.
+    folded.Tetrahedra.push_back({ { 0, 1, 2, 3 } });
+    folded.Tetrahedra.push_back({ { 5, 5, 9, 20 } });
+    folded.Tetrahedra.push_back(folded.Tetrahedra[7]);
+    const auto values = MakeRandomValues<std::int16_t>(folded.GetNumberOfVoxels(), seed);
+    const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(values, 1, true) };
+    const Deformed deformed = LoadAndRun(folded, arrays);
+    EXPECT_TRUE(deformed.Report.Overlapping);
+    EXPECT_GT(deformed.Report.NumberOfInvertedTetrahedra, 0);
+    ExpectEqualsReference(folded, arrays, deformed);
+  }
+}
+
+// A mesh that is pressed almost flat at an angle, and one that is spread far.
+TEST(MeshRasterization, SliversAndStretchedMeshesEqualReference)
+{
+  for (const double thickness : { 0.02, 0.3 })
+  {
+    const RasterCase flat = MakeRasterCase(Volume, 2,
+      [thickness](const glm::dvec3& index) {
+        return glm::dvec3(
+          index.x + 0.5 * index.y, index.y + 0.4, 0.5 * index.x + thickness * index.z);
+      },
+      { { 1, 1, 1 } });
+    const auto values = MakeRandomValues<float>(flat.GetNumberOfVoxels(), 3);
+    const std::vector<VolumeArray> arrays{ MakeArray(values) };
+    // Rest coordinates change by up to 50 voxels from one output voxel to the next, and positions
+    // are rounded to 1/256: only coverage and order are compared voxel by voxel there.
+    const Deformed deformed = LoadAndRun(flat, arrays);
+    EXPECT_GT(deformed.Report.NumberOfCoveredVoxels, 0);
+    ExpectEqualsReference(flat, arrays, deformed);
+  }
+  const RasterCase wide = MakeRasterCase({ 0, 3, 0, 3, 0, 3 }, 1,
+    [](const glm::dvec3& index)
+    { return index * glm::dvec3(40.0, 9.0, 13.0) + glm::dvec3(-50.5, 3.25, 0.1 * index.x); },
+    { { 1, 1, 1 } });
+  const auto values = MakeRandomValues<float>(wide.GetNumberOfVoxels(), 3);
+  ExpectEqualsReference(wide, { MakeArray(values) }, LoadAndRun(wide, { MakeArray(values) }));
+}
+
+TEST(MeshRasterization, MasksEqualReference)
+{
+  for (const double amplitude : { 0.0, 0.4, 4.0 })
+  {
+    SCOPED_TRACE(amplitude);
+    RasterCase masked = MakeRasterCase(Volume, 3, MakeJitter(4, amplitude), { { 1, 1, 1 } });
+    std::mt19937 random(5);
+    masked.Blanked.resize(masked.GetNumberOfVoxels());
+    for (auto& byte : masked.Blanked)
+    {
+      byte = random() % 20 == 0 ? 3 : 0;
+    }
+    masked.Active.resize(GetNumberOfCells(Volume));
+    for (auto& byte : masked.Active)
+    {
+      byte = random() % 4 == 0 ? static_cast<unsigned char>(random() % 32) : 31;
+    }
+    const auto values = MakeRandomValues<std::uint8_t>(masked.GetNumberOfVoxels(), 3);
+    const std::vector<VolumeArray> arrays{ MakeArray(values, 1, false, 200.4) };
+    for (const Interpolation interpolation : { Interpolation::Linear, Interpolation::Cubic })
+    {
+      ExpectEqualsReference(
+        masked, arrays, LoadAndRun(masked, arrays, interpolation), interpolation);
+    }
+    masked.Blanked.clear();
+    const Deformed deformed = LoadAndRun(masked, arrays);
+    ExpectEqualsReference(masked, arrays, deformed);
+    for (std::size_t voxel = 0; voxel < deformed.Coverage.size(); ++voxel)
+    {
+      if (deformed.Coverage[voxel] == 0)
+      {
+        ASSERT_EQ(deformed.GetOutput<std::uint8_t>(0)[voxel], 200);
+      }
+    }
+  }
+}
+
+// Work-groups, slabs, and the part of the output that is asked for change no bit.
+TEST(MeshRasterization, ResultDoesNotDependOnHowTheWorkIsSplit)
+{
+  const RasterCase folded = MakeRasterCase(Volume, 3, MakeJitter(9, 3.0), { { 2.3, 2.3, 1.7 } });
+  const auto values = MakeRandomValues<float>(folded.GetNumberOfVoxels(), 3);
+  const auto doubles = MakeRandomValues<double>(2 * folded.GetNumberOfVoxels(), 4);
+  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(doubles, 2) };
+  VolumeDeformer deformer;
+  Load(deformer, folded, arrays);
+  const Deformed whole = Rasterize(deformer, folded, arrays);
+  ExpectEqualsReference(folded, arrays, whole);
+  for (const std::size_t group : { 2, 7, 64 })
+  {
+    deformer.SetWorkGroupSize(group);
+    const Deformed other = Rasterize(deformer, folded, arrays);
+    EXPECT_EQ(other.Outputs, whole.Outputs) << group;
+    EXPECT_EQ(other.Coverage, whole.Coverage) << group;
+  }
+  deformer.SetWorkGroupSize(0);
+  // A few planes at a time.
+  const std::uint64_t plane = 16 * GetSize(folded.Output, 0) * GetSize(folded.Output, 1);
+  deformer.SetAllocationLimit(std::max<std::uint64_t>(3 * plane, 250000));
+  Deformed other = Rasterize(deformer, folded, arrays);
+  EXPECT_EQ(other.Outputs, whole.Outputs);
+  EXPECT_EQ(other.Coverage, whole.Coverage);
+  EXPECT_EQ(other.Report.NumberOfInvertedTetrahedra, whole.Report.NumberOfInvertedTetrahedra);
+  EXPECT_EQ(other.Report.NumberOfCoveredVoxels, whole.Report.NumberOfCoveredVoxels);
+  deformer.SetAllocationLimit(0);
+  // A box that begins anywhere.
+  RasterCase part = folded;
+  part.Output = { { folded.Output[0] + 11, folded.Output[1] - 5, folded.Output[2] + 3,
+    folded.Output[3] - 9, folded.Output[4] + 5, folded.Output[5] - 2 } };
+  other = Rasterize(deformer, part, arrays);
+  std::size_t voxel = 0;
+  for (int z = part.Output[4]; z <= part.Output[5]; ++z)
+  {
+    for (int y = part.Output[2]; y <= part.Output[3]; ++y)
+    {
+      for (int x = part.Output[0]; x <= part.Output[1]; ++x, ++voxel)
+      {
+        const std::int64_t at =
+          ((z - folded.Output[4]) * GetSize(folded.Output, 1) + y - folded.Output[2]) *
+            GetSize(folded.Output, 0) +
+          x - folded.Output[0];
+        ASSERT_EQ(other.Coverage[voxel], whole.Coverage[at]);
+        ASSERT_EQ(other.GetOutput<float>(0)[voxel], whole.GetOutput<float>(0)[at]);
+      }
+    }
+  }
+}
+
+// NaN and infinities stay in the cells that they belong to.
+TEST(MeshRasterization, NotANumberStaysWithinItsCells)
+{
+  const RasterCase shifted = MakeRasterCase(Volume, 2,
+    [](const glm::dvec3& index) { return index + glm::dvec3(0.5, 0.0, 1.0); }, { { 1, 1, 1 } });
+  auto values = MakeRandomValues<float>(shifted.GetNumberOfVoxels(), 3);
+  const std::int64_t place = (5 * GetSize(Volume, 1) + 6) * GetSize(Volume, 0) + 9;
+  values[place] = std::numeric_limits<float>::quiet_NaN();
+  const Deformed deformed = LoadAndRun(shifted, { MakeArray(values) });
+  std::int64_t numberOfNaN = 0;
+  for (std::size_t voxel = 0; voxel < deformed.Coverage.size(); ++voxel)
+  {
+    numberOfNaN += std::isnan(deformed.GetOutput<float>(0)[voxel]);
+  }
+  EXPECT_EQ(numberOfNaN, 2); // half a voxel to the left and to the right of it
+}
