@@ -28,14 +28,14 @@ bool FitsRuns(const Extent& voxels)
 
 StaticMappingBuilder::StaticMappingBuilder(const Extent& voxels, const glm::dvec3& spacing,
   const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
-  bool extrapolate, MappingForm form)
+  bool extrapolate, StaticMappingForm form)
   : Voxels(voxels)
   , Spacing(spacing)
   , RestPoints(restPoints)
   , Tetrahedra(tetrahedra)
   , Extrapolate(extrapolate)
 {
-  if (form == MappingForm::Runs && extrapolate)
+  if (form == StaticMappingForm::Runs && extrapolate)
   {
     throw Error("Voxels outside the mesh cannot be extrapolated by runs: make links.");
   }
@@ -45,7 +45,7 @@ StaticMappingBuilder::StaticMappingBuilder(const Extent& voxels, const glm::dvec
     return;
   }
   this->Linker = std::make_unique<VoxelLinker>(this->Voxels, restPoints, tetrahedra);
-  if (form == MappingForm::Links || extrapolate || !FitsRuns(voxels))
+  if (form == StaticMappingForm::Links || extrapolate || !FitsRuns(voxels))
   {
     return;
   }
@@ -53,7 +53,7 @@ StaticMappingBuilder::StaticMappingBuilder(const Extent& voxels, const glm::dvec
     RunBuilder(*this->Linker, this->Voxels, restPoints, tetrahedra).EstimateRuns();
   const bool worthwhile = estimate.MeanLength >= LeastMeanRunLength &&
     estimate.Bytes < static_cast<std::uint64_t>(size) * sizeof(VertexLink);
-  if (worthwhile || form == MappingForm::Runs)
+  if (worthwhile || form == StaticMappingForm::Runs)
   {
     this->RunBytes = estimate.Bytes;
   }
@@ -128,7 +128,7 @@ void StaticMappingBuilder::BuildLinks(
 
 StaticMapping BuildStaticMapping(const Extent& voxels, const glm::dvec3& spacing,
   const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
-  bool extrapolate, MappingForm form, const std::function<bool(double)>& progress)
+  bool extrapolate, StaticMappingForm form, const std::function<bool(double)>& progress)
 {
   return StaticMappingBuilder(voxels, spacing, restPoints, tetrahedra, extrapolate, form)
     .Build(progress);

@@ -20,7 +20,7 @@ class VoxelLinker;
 /// costs what reading less memory gains.
 constexpr double LeastMeanRunLength = 3.0;
 
-enum class MappingForm
+enum class StaticMappingForm
 {
   /// Runs where they are long enough (LeastMeanRunLength, by a sample of the volume that is always
   /// the same) and need less memory than links, and voxels are not extrapolated; else links.
@@ -62,7 +62,7 @@ public:
   /// and where runs are demanded of voxels that are extrapolated.
   StaticMappingBuilder(const Extent& voxels, const glm::dvec3& spacing,
     const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
-    bool extrapolate, MappingForm form = MappingForm::Automatic);
+    bool extrapolate, StaticMappingForm form = StaticMappingForm::Automatic);
   ~StaticMappingBuilder();
   StaticMappingBuilder(const StaticMappingBuilder&) = delete;
   StaticMappingBuilder& operator=(const StaticMappingBuilder&) = delete;
@@ -88,7 +88,7 @@ private:
 /// Build by a StaticMappingBuilder.
 StaticMapping BuildStaticMapping(const Extent& voxels, const glm::dvec3& spacing,
   const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
-  bool extrapolate, MappingForm form, const std::function<bool(double)>& progress = {});
+  bool extrapolate, StaticMappingForm form, const std::function<bool(double)>& progress = {});
 
 } // namespace deformvolume
 

@@ -207,7 +207,7 @@ void TestLinks()
   for (const bool extrapolate : { false, true })
   {
     const StaticMapping mapping = BuildStaticMapping(
-      extent, glm::dvec3(1.0), mesh.Points, mesh.Tetrahedra, extrapolate, MappingForm::Links);
+      extent, glm::dvec3(1.0), mesh.Points, mesh.Tetrahedra, extrapolate, StaticMappingForm::Links);
     IndexBounds expected;
     std::size_t i = 0;
     for (int z = extent[4]; z <= extent[5]; ++z)

@@ -27,9 +27,9 @@ int TestLinkExtrapolation(int, char*[])
              { 2, 2, 2 }, glm::dvec3(4.9, 7.9, 6.9), glm::dvec3(5.2, 8.2, 7.2), 0.0, 0.0, random) })
     {
       const StaticMapping inside = BuildStaticMapping(
-        voxels, spacing, mesh.Points, mesh.Tetrahedra, false, MappingForm::Links);
+        voxels, spacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links);
       const StaticMapping all = BuildStaticMapping(
-        voxels, spacing, mesh.Points, mesh.Tetrahedra, true, MappingForm::Automatic);
+        voxels, spacing, mesh.Points, mesh.Tetrahedra, true, StaticMappingForm::Automatic);
       CHECK(inside.NumberOfInnerVoxels > 0);
       CHECK(inside.NumberOfInnerVoxels < GetNumberOfPoints(voxels));
       CHECK(all.NumberOfInnerVoxels == inside.NumberOfInnerVoxels);

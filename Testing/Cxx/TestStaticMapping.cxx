@@ -58,7 +58,7 @@ bool IsInsideExactly(const Mesh& mesh, const Tetrahedron& nodes, const glm::dvec
 void CheckExactly(const Mesh& mesh, const Extent& voxels)
 {
   const StaticMapping mapping = BuildStaticMapping(
-    voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, MappingForm::Links);
+    voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links);
   std::int64_t flat = 0;
   std::vector<bool> isFlat;
   for (const Tetrahedron& nodes : mesh.Tetrahedra)
@@ -118,7 +118,7 @@ void CheckRounded(const Mesh& mesh, const Extent& voxels)
   // Rounding moves a node by up to sqrt(3) 2^-9 voxel.
   const double tolerance = std::sqrt(3.0) / 256.0;
   const StaticMapping mapping = BuildStaticMapping(
-    voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, MappingForm::Links);
+    voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links);
   for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
   {
     const glm::dvec3 voxel(GetVoxel(voxels, i));
@@ -147,18 +147,18 @@ void TestMisuse()
   const Extent voxels{ { 0, 4, 0, 4, 0, 4 } };
 
   const StaticMapping nothing = BuildStaticMapping(Extent{ { 0, -1, 0, 4, 0, 4 } }, UnitSpacing,
-    mesh.Points, mesh.Tetrahedra, true, MappingForm::Links);
+    mesh.Points, mesh.Tetrahedra, true, StaticMappingForm::Links);
   CHECK(nothing.Links.empty() && nothing.NumberOfInnerVoxels == 0);
 
   for (const bool extrapolate : { false, true })
   {
     const StaticMapping empty =
-      BuildStaticMapping(voxels, UnitSpacing, {}, {}, extrapolate, MappingForm::Links);
+      BuildStaticMapping(voxels, UnitSpacing, {}, {}, extrapolate, StaticMappingForm::Links);
     CHECK(empty.Links.size() == 125 && empty.NumberOfInnerVoxels == 0);
     CHECK(std::all_of(empty.Links.begin(), empty.Links.end(),
       [](const VertexLink& link) { return link.Tetrahedron == -1; }));
     const StaticMapping apart = BuildStaticMapping(Extent{ { 10, 12, 0, 4, 0, 4 } }, UnitSpacing,
-      mesh.Points, mesh.Tetrahedra, extrapolate, MappingForm::Links);
+      mesh.Points, mesh.Tetrahedra, extrapolate, StaticMappingForm::Links);
     CHECK(apart.NumberOfInnerVoxels == 0 && apart.Links[0].Tetrahedron == -1);
   }
 
@@ -167,7 +167,8 @@ void TestMisuse()
   {
     Mesh far = mesh;
     far.Points[13].y = 1e10;
-    BuildStaticMapping(voxels, UnitSpacing, far.Points, far.Tetrahedra, false, MappingForm::Links);
+    BuildStaticMapping(
+      voxels, UnitSpacing, far.Points, far.Tetrahedra, false, StaticMappingForm::Links);
   }
   catch (const Error& error)
   {
@@ -182,7 +183,7 @@ void TestMisuse()
     bool ordered = true;
     const std::thread::id caller = std::this_thread::get_id();
     BuildStaticMapping(larger, UnitSpacing, mesh.Points, mesh.Tetrahedra, extrapolate,
-      MappingForm::Links,
+      StaticMappingForm::Links,
       [&](double done)
       {
         ordered = ordered && done >= last && done <= 1.0 && std::this_thread::get_id() == caller;
@@ -196,7 +197,7 @@ void TestMisuse()
       try
       {
         BuildStaticMapping(larger, UnitSpacing, mesh.Points, mesh.Tetrahedra, extrapolate,
-          MappingForm::Links, [&](double done) { return done < end; });
+          StaticMappingForm::Links, [&](double done) { return done < end; });
       }
       catch (const Aborted&)
       {
@@ -221,7 +222,7 @@ void TestExact()
     const Mesh mesh = MakeLattice({ 5, 4, 6 }, min, max, jitter, unit, random);
     CheckExactly(mesh, voxels);
     const StaticMapping mapping = BuildStaticMapping(
-      voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, MappingForm::Links);
+      voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links);
     CHECK(mapping.NumberOfInnerVoxels == GetNumberOfPoints(voxels));
   }
   // Larger, smaller, one tetrahedron's worth of voxels and less.
@@ -257,17 +258,17 @@ void TestRounded()
   }
   // Bounds that a change of coordinates has moved in their last bits.
   const Mesh mesh = MakeLattice({ 6, 5, 4 }, min + 1e-12, max - 1e-12, 0.3, 0.0, random);
-  CHECK(
-    BuildStaticMapping(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, MappingForm::Links)
-      .NumberOfInnerVoxels == GetNumberOfPoints(voxels));
+  CHECK(BuildStaticMapping(
+          voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links)
+          .NumberOfInnerVoxels == GetNumberOfPoints(voxels));
   // Elements far smaller than a voxel, many of them flat once rounded.
   const Mesh fine =
     MakeLattice({ 13, 13, 13 }, glm::dvec3(-0.05), glm::dvec3(1.07), 0.3, 0.0, random);
   const Extent corner{ { 0, 1, 0, 1, 0, 1 } };
   CheckRounded(fine, corner);
-  CHECK(
-    BuildStaticMapping(corner, UnitSpacing, fine.Points, fine.Tetrahedra, false, MappingForm::Links)
-      .NumberOfInnerVoxels == 8);
+  CHECK(BuildStaticMapping(
+          corner, UnitSpacing, fine.Points, fine.Tetrahedra, false, StaticMappingForm::Links)
+          .NumberOfInnerVoxels == 8);
 }
 
 // A square between two pyramids that cut it along different diagonals has to be filled with a
@@ -293,7 +294,7 @@ void TestFlatBetweenOthers()
       mesh.Tetrahedra = { { { 0, 1, 2, 3 } }, { { 0, 1, 2, 4 } }, { { 0, 2, 3, 4 } },
         { { 0, 1, 3, 5 } }, { { 1, 2, 3, 5 } } };
       const StaticMapping mapping = BuildStaticMapping(
-        voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, MappingForm::Links);
+        voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links);
       CHECK(mapping.NumberOfInnerVoxels == GetNumberOfPoints(voxels));
       CHECK(mapping.NumberOfFlatTetrahedra == (height < 1.0 ? 0 : 1));
       for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
@@ -314,8 +315,8 @@ void TestFlatBetweenOthers()
     point.z += 0.37 * point.x + 0.21 * point.y;
   }
   mesh.Tetrahedra = { { { 0, 1, 2, 3 } } };
-  const StaticMapping mapping =
-    BuildStaticMapping(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true, MappingForm::Links);
+  const StaticMapping mapping = BuildStaticMapping(
+    voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true, StaticMappingForm::Links);
   CHECK(mapping.NumberOfInnerVoxels == 0 && mapping.NumberOfFlatTetrahedra == 1);
 }
 
@@ -326,8 +327,8 @@ void TestThreads()
   Mesh mesh = MakeSoup(400, 300, -20.0, 60.0, 0.0, random);
   const auto build = [&]()
   {
-    return BuildStaticMapping(
-      voxels, glm::dvec3(0.5, 1.0, 2.0), mesh.Points, mesh.Tetrahedra, true, MappingForm::Links);
+    return BuildStaticMapping(voxels, glm::dvec3(0.5, 1.0, 2.0), mesh.Points, mesh.Tetrahedra, true,
+      StaticMappingForm::Links);
   };
   std::vector<const char*> backends{ "Sequential", "STDThread" };
 #if VTK_SMP_ENABLE_TBB
@@ -366,7 +367,7 @@ void TestLarge()
     MakeLattice({ 33, 33, 33 }, glm::dvec3(0.0), glm::dvec3(127.0), 0.25, 0.0, random);
   const auto start = std::chrono::steady_clock::now();
   const StaticMapping mapping = BuildStaticMapping(
-    voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, MappingForm::Links);
+    voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links);
   const double seconds =
     std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::cout << mapping.Links.size() << " voxels, " << mesh.Points.size() << " nodes: " << seconds

@@ -21,7 +21,7 @@ namespace
 
 const glm::dvec3 UnitSpacing(1.0);
 
-StaticMapping Build(const Mesh& mesh, const Extent& voxels, MappingForm form)
+StaticMapping Build(const Mesh& mesh, const Extent& voxels, StaticMappingForm form)
 {
   return BuildStaticMapping(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, form);
 }
@@ -66,8 +66,8 @@ double GetReach(const RestTetrahedron& rest, const Mesh& mesh, const Extent& vox
 // Every voxel has the tetrahedron of its link, and its weights as far as floats go.
 void Compare(const Mesh& mesh, const Extent& voxels)
 {
-  const StaticMapping byLinks = Build(mesh, voxels, MappingForm::Links);
-  const StaticMapping byRuns = Build(mesh, voxels, MappingForm::Runs);
+  const StaticMapping byLinks = Build(mesh, voxels, StaticMappingForm::Links);
+  const StaticMapping byRuns = Build(mesh, voxels, StaticMappingForm::Runs);
   CHECK(byLinks.Runs.RowBegins.empty() && byRuns.Links.empty());
   CHECK(byRuns.NumberOfInnerVoxels == byLinks.NumberOfInnerVoxels);
   CHECK(byRuns.NumberOfFlatTetrahedra == byLinks.NumberOfFlatTetrahedra);
@@ -136,9 +136,10 @@ void TestMisuse()
   const Mesh mesh = MakeLattice({ 3, 3, 3 }, glm::dvec3(0.0), glm::dvec3(9.0), 0.0, 0.0, random);
   const Extent voxels{ { 0, 9, 0, 9, 0, 9 } };
   CHECK(IsRefused(
-    [&]() {
+    [&]()
+    {
       BuildStaticMapping(
-        voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true, MappingForm::Runs);
+        voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true, StaticMappingForm::Runs);
     },
     "extrapolated"));
   CHECK(IsRefused(
@@ -146,10 +147,10 @@ void TestMisuse()
     {
       Mesh far = mesh;
       far.Points[13].y = 1e10;
-      Build(far, voxels, MappingForm::Automatic);
+      Build(far, voxels, StaticMappingForm::Automatic);
     },
     "units"));
-  for (const MappingForm form : { MappingForm::Automatic, MappingForm::Runs })
+  for (const StaticMappingForm form : { StaticMappingForm::Automatic, StaticMappingForm::Runs })
   {
     const StaticMapping nothing = Build(mesh, Extent{ { 0, -1, 0, 4, 0, 4 } }, form);
     CHECK(nothing.Links.empty() && nothing.Runs.Runs.empty());
@@ -168,7 +169,7 @@ void TestMisuse()
   const auto build = [&](const std::function<bool(double)>& progress)
   {
     return BuildStaticMapping(
-      voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, MappingForm::Runs, progress);
+      voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Runs, progress);
   };
   build(
     [&](double done)
@@ -239,7 +240,7 @@ void TestSlivers()
       point.z += 0.25 * point.x + 0.2 * point.y; // through some voxels
     }
     Compare(mesh, voxels);
-    const StaticMapping mapping = Build(mesh, voxels, MappingForm::Runs);
+    const StaticMapping mapping = Build(mesh, voxels, StaticMappingForm::Runs);
     CHECK(mapping.NumberOfInnerVoxels > 0);
     CHECK(mapping.Runs.Tetrahedra.size() > mesh.Tetrahedra.size());
     const auto inner = std::count_if(mapping.Runs.Runs.begin(), mapping.Runs.Runs.end(),
@@ -256,7 +257,7 @@ void TestChoice()
   for (const int nodes : { 3, 7, 13, 20, 31 })
   {
     const Mesh mesh = MakeLattice(glm::ivec3(nodes), glm::dvec3(0.0), max, 0.2, 0.0, random);
-    const StaticMapping runs = Build(mesh, voxels, MappingForm::Runs);
+    const StaticMapping runs = Build(mesh, voxels, StaticMappingForm::Runs);
     const double mean =
       static_cast<double>(GetNumberOfPoints(voxels)) / static_cast<double>(runs.Runs.Runs.size());
     const StaticMappingBuilder builder(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false);
@@ -279,7 +280,7 @@ void TestChoice()
     }
     // Extrapolation has links whatever the mesh.
     const StaticMapping extrapolated = BuildStaticMapping(
-      voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true, MappingForm::Automatic);
+      voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true, StaticMappingForm::Automatic);
     CHECK(extrapolated.Runs.Runs.empty() && !extrapolated.Links.empty());
   }
 }
@@ -296,9 +297,9 @@ void TestThreads()
     vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads, "STDThread", false },
       [&]()
       {
-        const StaticMapping mapping = Build(mesh, voxels, MappingForm::Runs);
+        const StaticMapping mapping = Build(mesh, voxels, StaticMappingForm::Runs);
         const StaticMappingBuilder builder(
-          voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, MappingForm::Runs);
+          voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Runs);
         if (threads == 1)
         {
           expected = mapping;
