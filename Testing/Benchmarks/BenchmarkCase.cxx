@@ -91,8 +91,15 @@ BenchmarkCase::BenchmarkCase(vtkImageData* volume, int nodesPerAxis, int resampl
   this->Filter->SetResampler(resampler);
   vtkNew<vtkCallbackCommand> observer;
   observer->SetClientData(&this->Error);
-  observer->SetCallback([](vtkObject*, unsigned long, void* error, void* text)
-    { *static_cast<std::string*>(error) = static_cast<const char*>(text); });
+  observer->SetCallback(
+    [](vtkObject*, unsigned long, void* error, void* text)
+    {
+      // Without the place in the sources, and the name of the filter with its address.
+      const std::string words = static_cast<const char*>(text);
+      const std::size_t begin = words.find("): ");
+      *static_cast<std::string*>(error) =
+        begin == std::string::npos ? words : words.substr(begin + 3);
+    });
   this->Filter->AddObserver(vtkCommand::ErrorEvent, observer);
 }
 
@@ -119,7 +126,6 @@ void BenchmarkCase::Move(Pose pose)
       }
     });
   this->Displacements->Modified();
-  this->Deformation->Modified();
 }
 
 UpdateTimes BenchmarkCase::Update()

@@ -24,7 +24,33 @@ struct NamedDeformation
 };
 constexpr NamedDeformation Deformations[] = { { "2197", CoarseNodes }, { "512000", FineNodes },
   { "field", DenseField } };
-constexpr NamedResampler Resamplers[] = { ExactResampler, PublishedResampler };
+
+// What is resampled, by its name in the results.
+struct NamedCase
+{
+  std::string Name;
+  int NodesPerAxis;
+  int Resampler;
+};
+
+std::vector<NamedCase> MakeNamedCases()
+{
+  std::vector<NamedCase> cases;
+  for (const NamedDeformation& deformation : Deformations)
+  {
+    for (const NamedResampler& resampler : AllResamplers)
+    {
+      // A field has no tetrahedra to rasterise.
+      if (deformation.NodesPerAxis != DenseField ||
+        resampler.Resampler != vtkDeformVolumeFilter::MESH_RASTERIZATION)
+      {
+        cases.push_back({ std::string(deformation.Name) + "/" + resampler.Name,
+          deformation.NodesPerAxis, resampler.Resampler });
+      }
+    }
+  }
+  return cases;
+}
 
 using PeerMaker = std::function<std::unique_ptr<Peer>(vtkImageData*)>;
 const std::map<std::string, PeerMaker> PeerMakers = {
@@ -65,14 +91,9 @@ void RegisterComparison(const EvaluationSize& size)
   for (const Pose pose : { Pose::NearIdentity, Pose::General })
   {
     std::vector<Contestant<ComparisonStage>> contestants;
-    for (const NamedDeformation& deformation : Deformations)
+    for (const NamedCase& named : MakeNamedCases())
     {
-      for (const NamedResampler& resampler : Resamplers)
-      {
-        contestants.push_back(
-          MakeCaseContestant(std::string(deformation.Name) + "/" + resampler.Name, pose,
-            size.GetWarmUp(resampler.Resampler)));
-      }
+      contestants.push_back(MakeCaseContestant(named.Name, pose, size.GetWarmUp(named.Resampler)));
     }
     for (const auto& named : PeerMakers)
     {
@@ -83,14 +104,10 @@ void RegisterComparison(const EvaluationSize& size)
       []()
       {
         auto stage = std::make_shared<ComparisonStage>();
-        for (const NamedDeformation& deformation : Deformations)
+        for (const NamedCase& named : MakeNamedCases())
         {
-          for (const NamedResampler& resampler : Resamplers)
-          {
-            stage->Cases[std::string(deformation.Name) + "/" + resampler.Name] =
-              std::make_unique<BenchmarkCase>(
-                stage->Volume, deformation.NodesPerAxis, resampler.Resampler);
-          }
+          stage->Cases[named.Name] =
+            std::make_unique<BenchmarkCase>(stage->Volume, named.NodesPerAxis, named.Resampler);
         }
         for (const auto& [name, make] : PeerMakers)
         {

@@ -22,6 +22,7 @@ Measurement Measure(BenchmarkCase& subject, Pose pose)
     { "voxels", voxels },
     { "output_voxels", static_cast<double>(filter->GetOutput()->GetNumberOfPoints()) },
     { "tetrahedra_of_mesh", static_cast<double>(subject.GetNumberOfTetrahedra()) },
+    { "resampler_in_use", static_cast<double>(filter->GetResamplerInUse()) },
     { "device_bytes_per_voxel", static_cast<double>(filter->GetDeviceMemory()) / voxels },
     { "mapping_builds", static_cast<double>(filter->GetNumberOfMappingBuilds() - builds) },
     { "volume_uploads", static_cast<double>(filter->GetNumberOfVolumeUploads() - uploads) },

@@ -18,11 +18,11 @@ struct EvaluationSize
   int GetRounds() const { return this->Quick ? 1 : 7; }
   /// For what takes long.
   int GetSlowRounds() const { return this->Quick ? 1 : 3; }
-  /// Whether what is compared with the exact resampler has a turn that does not count, too.
+  /// Whether the peers and the published kernel have a turn that does not count, as others do.
   bool GetWarmUp() const { return !this->Quick; }
   bool GetWarmUp(int resampler) const
   {
-    return resampler == vtkDeformVolumeFilter::EXACT || this->GetWarmUp();
+    return resampler != vtkDeformVolumeFilter::PUBLISHED || this->GetWarmUp();
   }
 };
 
@@ -47,15 +47,19 @@ void RegisterPreprocessing(const EvaluationSize& size);
 /// Incremental/<whole or local>: a mesh that moves in one place only.
 void RegisterIncremental(const EvaluationSize& size);
 
-/// The resamplers that are compared, by their names in the results. The first is the subject of
-/// the demands.
+/// A resampler by its name in the results.
 struct NamedResampler
 {
   const char* Name;
   int Resampler;
 };
+/// The subject of the demands.
 inline constexpr NamedResampler ExactResampler{ "exact", vtkDeformVolumeFilter::EXACT };
+inline constexpr NamedResampler MeshRasterizationResampler{ "mesh-rasterization",
+  vtkDeformVolumeFilter::MESH_RASTERIZATION };
 inline constexpr NamedResampler PublishedResampler{ "published", vtkDeformVolumeFilter::PUBLISHED };
+inline constexpr NamedResampler AllResamplers[] = { ExactResampler, MeshRasterizationResampler,
+  PublishedResampler };
 
 /// Moves a case and brings it up to date.
 Measurement Measure(BenchmarkCase& subject, Pose pose);

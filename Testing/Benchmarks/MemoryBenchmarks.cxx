@@ -3,7 +3,7 @@
 // Benchmark; run.sh starts one process for each line. The highest resident memory counts all: the
 // volume, the mesh, the result, VTK and the OpenCL driver.
 //
-// Usage: DeformVolumeMemory NX NY NZ uchar|ushort NODES_PER_AXIS exact|published [option of Google
+// Usage: DeformVolumeMemory NX NY NZ uchar|ushort NODES_PER_AXIS RESAMPLER [option of Google
 // Benchmark]...
 #include "Evaluation.h"
 
@@ -40,7 +40,8 @@ int main(int argc, char* argv[])
 {
   if (argc < 7)
   {
-    std::cerr << "usage: DeformVolumeMemory NX NY NZ uchar|ushort NODES_PER_AXIS exact|published\n";
+    std::cerr << "usage: DeformVolumeMemory NX NY NZ uchar|ushort NODES_PER_AXIS "
+                 "exact|mesh-rasterization|published\n";
     return 2;
   }
   const std::array<int, 3> dimensions{ { std::atoi(argv[1]), std::atoi(argv[2]),
@@ -48,9 +49,8 @@ int main(int argc, char* argv[])
   const std::string type = argv[4];
   const int nodes = std::atoi(argv[5]);
   const std::string resampler = argv[6];
-  constexpr NamedResampler resamplers[] = { ExactResampler, PublishedResampler };
   const NamedResampler* chosen = nullptr;
-  for (const NamedResampler& named : resamplers)
+  for (const NamedResampler& named : AllResamplers)
   {
     chosen = resampler == named.Name ? &named : chosen;
   }

@@ -8,7 +8,6 @@
 namespace
 {
 constexpr std::array<int, 3> Table2Volume{ { 256, 256, 113 } };
-constexpr NamedResampler Resamplers[] = { ExactResampler, PublishedResampler };
 
 struct Table2Stage
 {
@@ -19,7 +18,7 @@ struct Table2Stage
 void RegisterTable2(Pose pose, const EvaluationSize& size)
 {
   std::vector<Contestant<Table2Stage>> contestants;
-  for (const NamedResampler& resampler : Resamplers)
+  for (const NamedResampler& resampler : AllResamplers)
   {
     const std::string name = resampler.Name;
     contestants.push_back({ name,
@@ -41,7 +40,7 @@ void RegisterTable2(Pose pose, const EvaluationSize& size)
       auto stage = std::make_shared<Table2Stage>();
       stage->Samples = CountSamples(Table2Volume, pose);
       const auto volume = MakeVolume(Table2Volume);
-      for (const NamedResampler& resampler : Resamplers)
+      for (const NamedResampler& resampler : AllResamplers)
       {
         stage->Cases[resampler.Name] =
           std::make_unique<BenchmarkCase>(volume, CoarseNodes, resampler.Resampler);

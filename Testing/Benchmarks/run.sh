@@ -37,17 +37,20 @@ measure() # PROGRAM NAME-OF-RESULT [ARGUMENT]...
 
 # Volume, type, nodes on each axis, resampler; a process of its own for each.
 memory=("189 305 229 ushort 13 exact" "189 305 229 ushort 80 exact"
-  "189 305 229 ushort 13 published")
-[ ${#quick[@]} -gt 0 ] || memory+=("464 464 464 ushort 13 exact" "1000 1000 1000 uchar 13 exact")
+  "189 305 229 ushort 13 mesh-rasterization" "189 305 229 ushort 13 published")
+[ ${#quick[@]} -gt 0 ] || memory+=("464 464 464 ushort 13 exact" \
+  "1000 1000 1000 uchar 13 exact" "1000 1000 1000 uchar 13 mesh-rasterization")
 
-for device in ${DEFORMVOLUME_DEVICE:-cpu gpu}; do
+devices=(cpu gpu)
+[ -z "${DEFORMVOLUME_DEVICE-}" ] || devices=("$DEFORMVOLUME_DEVICE")
+for device in "${devices[@]}"; do
   export DEFORMVOLUME_DEVICE=$device
-  folder=$results/$device
+  folder=$results/${device//[^[:alnum:]]/-}
   mkdir -p "$folder"
   status=0
   measure DeformVolumeDevice device || status=$?
   if [ $status -eq 125 ]; then
-    rmdir "$folder" 2>/dev/null || rm -r "$folder"
+    rm -r "$folder"
     continue
   fi
   [ $status -eq 0 ]

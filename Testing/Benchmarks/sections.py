@@ -40,11 +40,6 @@ def table(header, rows):
     return "\n".join(lines) + "\n"
 
 
-def _resamplers(results, prefix):
-    """Those that were measured under a prefix, in the order of STYLES."""
-    return [name for name in STYLES if f"{prefix}/{name}" in results.runs]
-
-
 def device(results, _folder, _kind):
     rate = results.median("Device/copy", "bytes_per_second")
     if not rate:
@@ -126,12 +121,18 @@ def poses(results, _folder, _kind):
                      "mapping + resampling by near identity"], rows)
 
 
+def _chosen(results, name):
+    """What the filter chose by itself: vtkDeformVolumeFilter::Resamplers."""
+    return {0: "Exact", 1: "published", 2: "MeshRasterization"}.get(
+        results.median(name, "resampler_in_use"), "-")
+
+
 def tetrahedra(results, folder, kind):
     counts = list(dict.fromkeys(name.split("/")[1] for name in results.names("Tetrahedra/")))
     rows, curves = [], {}
     for count in counts:
         row = [count]
-        for resampler in _resamplers(results, f"Tetrahedra/{count}"):
+        for resampler in STYLES:
             name = f"Tetrahedra/{count}/{resampler}"
             time = results.milliseconds(name, "kernels")
             row += [time, results.median(name)]
@@ -139,13 +140,13 @@ def tetrahedra(results, folder, kind):
                 x, y = curves.setdefault(resampler, ([], []))
                 x.append(int(count))
                 y.append(time)
-        rows.append(row)
+        rows.append(row + [_chosen(results, f"Tetrahedra/{count}/automatic")])
     if not rows:
         return
-    names = [STYLES[name][0] for name in _resamplers(results, f"Tetrahedra/{counts[0]}")]
     yield "## Figure 7: time against the tetrahedra of the deformation mesh\n"
-    yield table(["tetrahedra"] + [f"{name}: {what}" for name in names
-                                  for what in ("mapping + resampling, ms", "Update(), ms")], rows)
+    yield table(["tetrahedra"] + [f"{name}: {what}" for name, _, _ in STYLES.values()
+                                  for what in ("mapping + resampling, ms", "Update(), ms")]
+                + ["Automatic takes"], rows)
     image = f"{kind}-tetrahedra.png"
     plot_curves(folder / image, "189 x 305 x 229 voxels, near identity\n"
                 + results.context["device"],
