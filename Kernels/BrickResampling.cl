@@ -30,8 +30,9 @@
 // extent times the largest 1-norm of the gradients of the lj: with u = 2^-24 and k = extent times
 // that norm >= 1, the error of lj is at most (7 + 5 |lj|) u k, that of l0 (30 + 5 |1 - l0|) u k,
 // and that of tj no more than (2 M + 1) times their sum with M = max |bj / bi|. When three of the
-// tj exceed d, the sample is inside; when one is under -d, outside. In between the cell is left
-// to ResampleCell, which repeats it in integers.
+// tj exceed d, the sample is inside; when one is under -d, outside. Cells with a sample in between
+// are repeated: inside the mesh with edge functions in integers, LANES cells at once again; on its
+// border, and where they are large or bent, by ResampleCell.
 //
 // What the host puts in front of this text, besides that of Resampling.cl:
 //   LANES                16, 8 or 4: floats in a vector
@@ -51,6 +52,7 @@
 #define AS_INTS JOIN(as_int, LANES)
 
 #define MAXIMUM_EXTENT 7.99f  // voxels: the normals of larger cells are not exact in float
+#define MAXIMUM_EXACT_EXTENT 3.99f // voxels: edge functions of larger cells need more than 32 bits
 #define ALMOST_ONE (255.0f / 256.0f) // ceil(v) = trunc(v + ALMOST_ONE) for multiples of 1/256
 
 static FLOATS Least(FLOATS a, FLOATS b)
@@ -82,6 +84,11 @@ typedef union
 // A bit for each lane that is set.
 static uint LaneBits(INTS mask)
 {
+#if LANES == 8 && defined(__AVX__)
+  return __builtin_ia32_movmskps256(as_float8(mask));
+#elif LANES == 16 && defined(__AVX512DQ__)
+  return __builtin_ia32_cvtd2mask512(mask);
+#else
   const INTS bits = mask & LANE_BITS;
 #if LANES == 16
   const int8 a = bits.lo | bits.hi;
@@ -94,12 +101,18 @@ static uint LaneBits(INTS mask)
   const long2 c = as_long2(b);
   const long d = c.x | c.y;
   return (uint)d | (uint)(d >> 32);
+#endif
 }
 
-// For each set bit, the highest first: lane is its number.
+// For each set bit, the lowest first: lane is its number.
+#ifdef __clang__
+#define LOWEST_BIT(bits) __builtin_ctz(bits)
+#else
+#define LOWEST_BIT(bits) popcount(~(bits) & ((bits)-1))
+#endif
 #define FOR_EACH_LANE(lane, bits)                                                                  \
-  for (int lane = 31 - clz(bits); lane >= 0; bits ^= 1u << lane, lane = 31 - clz(bits))
-
+  for (int lane = bits ? LOWEST_BIT(bits) : 0; bits;                                               \
+       bits &= bits - 1, lane = bits ? LOWEST_BIT(bits) : 0)
 
 // The largest lane.
 static int MostOf(INTS v)
@@ -450,6 +463,16 @@ static __attribute__((noinline)) void StoreOtherArrays(const Group* group, int l
 }
 #endif
 
+// Whether cells of a row of the lattice are the last ones on the upper side in space. edge: from the vertex
+// of even index to that of odd one; 0 where the row leads elsewhere.
+static INTS LastAlong(FLOATS edge, INTS cell, int first, int size)
+{
+  const INTS odd = ((cell + first) & 1) != 0;
+  const INTS upwards = odd ? edge < 0.0f : edge > 0.0f;
+  const INTS downwards = odd ? edge > 0.0f : edge < 0.0f;
+  return (upwards & (cell == size - 2)) | (downwards & (cell == 0));
+}
+
 // Whether all that surrounds the cells is there, but for what would lie beyond the volume.
 static INTS IsRegular(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
@@ -466,11 +489,75 @@ static INTS IsRegular(const SamplingMesh* mesh, int x, int y, int z, const Kerne
   return regular.Vector;
 }
 
+// Which lanes hold a sample after the shift of the fill rule, by edge functions in integers of 32 bits,
+// for upright cells of less than MAXIMUM_EXACT_EXTENT: these are at most 2 (256 extent)^3. sx, sy, sz: the
+// sample relative to vertex 0 of the cell, in voxels.
+static __attribute__((noinline)) INTS HoldSample(
+  const Group* group, const FLOATS* sample, int odd)
+{
+  INTS q[8][3];
+  for (int v = 0; v < 8; ++v)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      q[v][axis] = TO_INTS((VERTEX(v, axis) - VERTEX(0, axis)) * 256.0f);
+    }
+  }
+  INTS held = 0;
+  for (int t = 0; t < 5; ++t)
+  {
+    INTS e[3][3]; // edges from the first vertex, and the normals of the faces opposite the others
+    INTS n[4][3];
+    INTS r[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const INTS first = q[Tetrahedra[t][0]][axis];
+      r[axis] = TO_INTS(sample[axis] * 256.0f) - first;
+      for (int k = 0; k < 3; ++k)
+      {
+        e[k][axis] = q[Tetrahedra[t][k + 1]][axis] - first;
+      }
+    }
+    // The orientation that the parity of the cell asks for: normals point inside.
+    const int sign = odd != (t == 4) ? -1 : 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int a = (axis + 1) % 3;
+      const int b = (axis + 2) % 3;
+      n[1][axis] = (e[1][a] * e[2][b] - e[1][b] * e[2][a]) * sign;
+      n[2][axis] = (e[2][a] * e[0][b] - e[2][b] * e[0][a]) * sign;
+      n[3][axis] = (e[0][a] * e[1][b] - e[0][b] * e[1][a]) * sign;
+      n[0][axis] = -(n[1][axis] + n[2][axis] + n[3][axis]);
+    }
+    INTS first = e[0][0] * n[1][0] + e[0][1] * n[1][1] + e[0][2] * n[1][2];
+    INTS inside = -1;
+    for (int k = 3; k >= 0; --k)
+    {
+      const INTS f = k ? n[k][0] * r[0] + n[k][1] * r[1] + n[k][2] * r[2] : first;
+      first -= f;
+      // As ShiftsInside.
+      inside &= (f > 0) |
+        ((f == 0) &
+          ((n[k][0] > 0) | ((n[k][0] == 0) & ((n[k][1] > 0) | ((n[k][1] == 0) & (n[k][2] > 0))))));
+    }
+    held |= inside;
+  }
+  return held;
+}
+
+// What became of LANES cells, as bits.
+typedef struct
+{
+  uint Ambiguous; // repeat them with integers
+  uint Unsure;    // leave them to ResampleCell
+} Outcome;
+
 // LANES cells: from x on every second one. odd: parity of x, y and z together. border: whether a vertex
-// may not be interior. Returns the cells that must be repeated, as bits, and adds to the writes those
-// of the others.
-static __attribute__((noinline)) uint ResampleGroup(const Group* group, int x, int y, int z, int odd,
-  int border, const SamplingMesh* mesh, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+// may not be interior. only: the cells to look at, as bits. exact: whether the samples that floats do not
+// decide are decided by integers. What cells that must be repeated have written is not counted.
+static __attribute__((always_inline)) Outcome ResampleGroup(const Group* group, int x, int y, int z,
+  int odd, int border, uint only, int exact, const SamplingMesh* mesh, Output* output,
+  const KernelParameters* p ARRAY_PARAMETERS)
 {
 #define LOAD_VERTEX(v)                                                                             \
   const FLOATS X##v = VERTEX(v, 0), Y##v = VERTEX(v, 1), Z##v = VERTEX(v, 2);
@@ -488,7 +575,11 @@ static __attribute__((noinline)) uint ResampleGroup(const Group* group, int x, i
   const FLOATS highX = EIGHT(Most, X), highY = EIGHT(Most, Y), highZ = EIGHT(Most, Z);
   const FLOATS extent = Most(highX - lowX, Most(highY - lowY, highZ - lowZ));
   // Cells that have a vertex with a position, and none beyond the volume.
-  const INTS there = (lowX > 0.5f * NOT_THERE) & (lowX < 0.5f * NO_SOURCE);
+  INTS there = (lowX > 0.5f * NOT_THERE) & (lowX < 0.5f * NO_SOURCE);
+  if (exact)
+  {
+    there &= ((INTS)only & LANE_BITS) != 0;
+  }
 
   // Cells that are boxes, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume:
   // each coordinate varies along one axis of the lattice only. If one edge of the first cell is not
@@ -523,20 +614,20 @@ static __attribute__((noinline)) uint ResampleGroup(const Group* group, int x, i
     whole = (state.Vector & DEFORMVOLUME_CELL_WHOLE) != 0;
     if (p->Pass == DEFORMVOLUME_PASS_DIRECT)
     {
-      // A box that lies as the lattice does leaves what is on its upper sides to the next cells, if
-      // there are any: they come later.
+      // Boxes leave what is on their upper sides to the next cells there, if there are any.
       if (LaneBits(box))
       {
-        const FLOATS dx = x & 1 ^ p->First[0] & 1 ? X0 - X1 : X1 - X0;
-        const FLOATS dz = z & 1 ^ p->First[2] & 1 ? Z0 - Z2 : Z2 - Z0;
-        const FLOATS dy = y & 1 ^ p->First[1] & 1 ? Y0 - Y4 : Y4 - Y0;
-        box &= (dx > 0.0f) & (dy > 0.0f) & (dz > 0.0f) & IsRegular(mesh, x, y, z, p);
+        box &= IsRegular(mesh, x, y, z, p);
         output->Assumed |= LaneBits(box) != 0;
       }
-      const INTS closed = ~box;
-      toEndX = closed | (x + 2 * LANE_INDEX == p->Size[0] - 2) ? (FLOATS)(1.0f) : toEndX;
-      toEndY = closed | (y == p->Size[1] - 2 ? -1 : 0) ? (FLOATS)(1.0f) : toEndY;
-      toEndZ = closed | (z == p->Size[2] - 2 ? -1 : 0) ? (FLOATS)(1.0f) : toEndZ;
+      const INTS cellX = x + 2 * LANE_INDEX;
+#define CLOSED(C)                                                                                  \
+  (~box | LastAlong(C##1 - C##0, cellX, p->First[0], p->Size[0]) |                                 \
+    LastAlong(C##2 - C##0, (INTS)(z), p->First[2], p->Size[2]) |                                   \
+    LastAlong(C##4 - C##0, (INTS)(y), p->First[1], p->Size[1]))
+      toEndX = CLOSED(X) ? (FLOATS)(1.0f) : toEndX;
+      toEndY = CLOSED(Y) ? (FLOATS)(1.0f) : toEndY;
+      toEndZ = CLOSED(Z) ? (FLOATS)(1.0f) : toEndZ;
     }
   }
 #define FIRST_OF(low, size) TO_INTS(Least(Most(low, 0.0f), (float)(size)) + ALMOST_ONE)
@@ -584,6 +675,7 @@ static __attribute__((noinline)) uint ResampleGroup(const Group* group, int x, i
   const INTS nice = fit & upright & (leastOther >= 0.015625f) & (mostOwn <= -0.125f) &
     (leastOwn >= -2.0f) & (bound <= 0.0078125f);
   INTS unsure = there & ~nice;
+  INTS ambiguous = 0;
   const INTS none = (countX <= 0) | (countY <= 0) | (countZ <= 0);
   const INTS candidates = nice & ~none;
   const INTS number = candidates & (countX * countY * countZ);
@@ -626,8 +718,20 @@ static __attribute__((noinline)) uint ResampleGroup(const Group* group, int x, i
       const INTS maybe = (Least(lowA, lowB) >= -bound) & (number > i);
       // The second smallest weight decides: that opposite the corner may be 0.
       const FLOATS second = Least(Most(lowA, lowB), Least(highA, highB));
-      const INTS hit = maybe & ((second > bound) | box);
-      unsure |= maybe & ~hit;
+      INTS hit = maybe & ((second > bound) | box);
+      const INTS undecided = maybe & ~hit;
+      if (exact)
+      {
+        if (LaneBits(undecided))
+        {
+          const FLOATS sample[3] = { rx, ry, rz };
+          hit |= undecided & HoldSample(group, sample, odd);
+        }
+      }
+      else
+      {
+        ambiguous |= undecided;
+      }
       const uint bits = LaneBits(hit);
       if (bits)
       {
@@ -685,9 +789,27 @@ static __attribute__((noinline)) uint ResampleGroup(const Group* group, int x, i
       place += 1 + (rowDone & toNextRow) + (planeDone & toNextPlane);
     }
   }
-  // What an unsure cell wrote so far is written again with it, and must not count twice.
-  output->Writes += SumOf(unsure ? (INTS)(0) : count);
-  return LaneBits(unsure);
+  // What an undecided cell wrote so far is written again with it, and must not count twice.
+  output->Writes += SumOf(unsure | ambiguous ? (INTS)(0) : count);
+  // Integers of 32 bits decide inside the mesh, in the direct pass, and for cells that are small enough.
+  const INTS decidable = ambiguous & (extent < MAXIMUM_EXACT_EXTENT) &
+    (border || p->Pass != DEFORMVOLUME_PASS_DIRECT ? 0 : -1);
+  const Outcome outcome = { LaneBits(decidable), LaneBits(unsure | (ambiguous & ~decidable)) };
+  return outcome;
+}
+
+static __attribute__((noinline)) Outcome ResampleByFloats(const Group* group, int x, int y, int z,
+  int odd, int border, const SamplingMesh* mesh, Output* output,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  return ResampleGroup(group, x, y, z, odd, border, 0, 0, mesh, output, p ARRAY_ARGUMENTS);
+}
+
+static __attribute__((noinline)) void ResampleByIntegers(const Group* group, int x, int y, int z,
+  int odd, uint only, const SamplingMesh* mesh, Output* output,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  ResampleGroup(group, x, y, z, odd, 0, only, 1, mesh, output, p ARRAY_ARGUMENTS);
 }
 
 // A brick of cells. bricks: the numbers of those to work on, one a work-item.
@@ -770,15 +892,17 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
           }
           const int x = bx + 2 * k + side;
           const int odd = (side ^ (p.First[1] + y) ^ (p.First[2] + z - 1)) & 1;
-          uint again;
-          if (specials & span)
+          uint again = (1u << LANES) - 1;
+          if (!(specials & span))
           {
-            again = (1u << LANES) - 1;
-          }
-          else
-          {
-            again = ResampleGroup(&group, x, y, z - 1, odd, (borders & span) != 0, &mesh, &output,
-              &p ARRAY_ARGUMENTS);
+            const Outcome outcome = ResampleByFloats(&group, x, y, z - 1, odd,
+              (borders & span) != 0, &mesh, &output, &p ARRAY_ARGUMENTS);
+            if (outcome.Ambiguous)
+            {
+              ResampleByIntegers(
+                &group, x, y, z - 1, odd, outcome.Ambiguous, &mesh, &output, &p ARRAY_ARGUMENTS);
+            }
+            again = outcome.Unsure;
           }
           FOR_EACH_LANE(lane, again)
           {

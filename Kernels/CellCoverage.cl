@@ -6,8 +6,9 @@
 // exactly one of them writes it:
 // - inside the mesh the one that holds the centre after a shift by (e, e^2, e^3) for an
 //   infinitesimal e > 0 (the top-left rule of triangle rasterisation in three dimensions);
-// - on the border of the mesh, where that one may be missing, the last one in the order of cells
-//   and tetrahedra.
+// - on the border of the mesh, where that one may be missing, the one that holds the centre after
+//   a shift by (+-e, +-e^2, +-e^3), whichever of the signs +++, -++, +-+, --+, ++-, ... comes first; if no
+//   shift leads into the mesh, the last one in the order of cells and tetrahedra.
 // Which of the two holds depends only on the simplex whose interior the centre lies in, so that
 // all tetrahedra round it decide alike.
 //
@@ -98,11 +99,14 @@ static void Evaluate(const EdgeFunctions* f, Vector sample, long* weights)
   weights[0] = f->Volume - weights[1] - weights[2] - weights[3];
 }
 
-// Whether a shift by (e, e^2, e^3) moves a sample on the face towards the inside.
-static int ShiftsInside(Vector normal)
+// Whether a shift by (e, e^2, e^3) moves a sample on the face towards the inside; of the signs of the
+// shift those are reversed whose bits are set.
+static int ShiftsInside(Vector normal, int signs)
 {
-  return normal.x > 0 ||
-    (normal.x == 0 && (normal.y > 0 || (normal.y == 0 && normal.z > 0)));
+  const long along = normal.x ? (signs & 1 ? -normal.x : normal.x)
+    : normal.y                ? (signs & 2 ? -normal.y : normal.y)
+                              : (signs & 4 ? -normal.z : normal.z);
+  return along > 0;
 }
 
 // The sampling mesh round a launch's cells.
@@ -160,11 +164,36 @@ static int VerticesOf(int tetrahedron)
     1 << Tetrahedra[tetrahedron][2] | 1 << Tetrahedra[tetrahedron][3];
 }
 
-// Whether this tetrahedron of the cell is the last one that is there of all that share the simplex
-// with these vertices (a mask over the cell's vertices).
-static int IsLastOwner(
-  const SamplingMesh* mesh, int x, int y, int z, int tetrahedron, int simplex, const KernelParameters* p)
+// The first shift that leads from a simplex into the tetrahedron with these edge functions and
+// vertices (a mask over the cell's vertices for each), or 8 where none does.
+static int FirstShiftInside(const EdgeFunctions* f, int tetrahedron, int simplex)
 {
+  for (int signs = 0; signs < 8; ++signs)
+  {
+    int inside = 1;
+    for (int k = 0; k < 4; ++k)
+    {
+      inside &= (simplex >> Tetrahedra[tetrahedron][k] & 1) || ShiftsInside(f->Normals[k], signs);
+    }
+    if (inside)
+    {
+      return signs;
+    }
+  }
+  return 8;
+}
+
+// Whether of the tetrahedra that share the simplex with these vertices (a mask over the cell's vertices)
+// none comes before this one of the cell by the rule for the border of the mesh.
+static int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron,
+  int simplex, const EdgeFunctions* f, const KernelParameters* p)
+{
+  const int own = FirstShiftInside(f, tetrahedron, simplex);
+  if (own == 0)
+  {
+    return 1; // another one with that shift overlaps this one
+  }
+  int later = 0; // whether the loops are past the tetrahedron itself
   // The simplex in the lattice: does it reach the low and the high side of the cell on each axis?
   const int mirror = Mirror(x, y, z, p);
   int low = 0;
@@ -177,11 +206,11 @@ static int IsLastOwner(
       low |= ~(v ^ mirror) & 7;
     }
   }
-  for (int dz = 1; dz >= -1; --dz)
+  for (int dz = -1; dz <= 1; ++dz)
   {
-    for (int dy = 1; dy >= -1; --dy)
+    for (int dy = -1; dy <= 1; ++dy)
     {
-      for (int dx = 1; dx >= -1; --dx)
+      for (int dx = -1; dx <= 1; ++dx)
       {
         // A neighbour on the low side shares the simplex only if that does not reach the high side.
         const int needsLow = (dx < 0) | (dz < 0) << 1 | (dy < 0) << 2;
@@ -197,13 +226,14 @@ static int IsLastOwner(
         const int active = ActiveTetrahedra(mesh, nx, ny, nz, p);
         // The simplex in the numbers of the neighbour's vertices: on an axis that leads to the
         // neighbour sides are exchanged, and so is the mirroring, hence numbers do not change.
-        Vector vertices[8];
+        Vector q[8];
         int present = -1;
-        for (int t = 4; t >= 0; --t)
+        for (int t = 0; t < 5; ++t)
         {
           if (dx == 0 && dy == 0 && dz == 0 && t == tetrahedron)
           {
-            return 1;
+            later = 1;
+            continue;
           }
           const int needed = VerticesOf(t);
           if (!(active >> t & 1) || (simplex & needed) != simplex)
@@ -212,11 +242,16 @@ static int IsLastOwner(
           }
           if (present < 0)
           {
-            present = LoadCell(mesh, nx, ny, nz, p, vertices);
+            present = LoadCell(mesh, nx, ny, nz, p, q);
           }
-          if ((present & needed) == needed &&
-            Determinant(vertices[Tetrahedra[t][0]], vertices[Tetrahedra[t][1]],
-              vertices[Tetrahedra[t][2]], vertices[Tetrahedra[t][3]]) != 0)
+          if ((present & needed) != needed)
+          {
+            continue;
+          }
+          const EdgeFunctions other = MakeEdgeFunctions(
+            q[Tetrahedra[t][0]], q[Tetrahedra[t][1]], q[Tetrahedra[t][2]], q[Tetrahedra[t][3]]);
+          const int shift = FirstShiftInside(&other, t, simplex);
+          if (other.Volume != 0 && (shift < own || (shift == own && later)))
           {
             return 0;
           }
@@ -224,7 +259,7 @@ static int IsLastOwner(
       }
     }
   }
-  return 1; // not reached: the loops come past the tetrahedron itself
+  return 1;
 }
 
 // Whether a tetrahedron of a cell writes the sample with these weights. interior: mask of the
@@ -246,7 +281,7 @@ static int IsOwner(const SamplingMesh* mesh, int x, int y, int z, int tetrahedro
     }
     else
     {
-      inside &= ShiftsInside(f->Normals[k]);
+      inside &= ShiftsInside(f->Normals[k], 0);
     }
   }
   if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
@@ -257,5 +292,5 @@ static int IsOwner(const SamplingMesh* mesh, int x, int y, int z, int tetrahedro
   {
     return inside;
   }
-  return IsLastOwner(mesh, x, y, z, tetrahedron, simplex, p);
+  return IsOwnerOnBorder(mesh, x, y, z, tetrahedron, simplex, f, p);
 }
