@@ -53,6 +53,26 @@ static long Determinant(Vector a, Vector b, Vector c, Vector d)
   return Dot(Subtract(b, a), Cross(Subtract(c, a), Subtract(d, a)));
 }
 
+static Vector Minimum(Vector a, Vector b)
+{
+  const Vector r = { min(a.x, b.x), min(a.y, b.y), min(a.z, b.z) };
+  return r;
+}
+
+static Vector Maximum(Vector a, Vector b)
+{
+  const Vector r = { max(a.x, b.x), max(a.y, b.y), max(a.z, b.z) };
+  return r;
+}
+
+// Tetrahedra that the edge functions do not hold are left out.
+static int IsOverstretched(Vector a, Vector b, Vector c, Vector d)
+{
+  const Vector extent =
+    Subtract(Maximum(Maximum(a, b), Maximum(c, d)), Minimum(Minimum(a, b), Minimum(c, d)));
+  return max(extent.x, max(extent.y, extent.z)) > MAXIMUM_STRETCH;
+}
+
 // A tetrahedron ready to be evaluated: the edge function of the face opposite vertex k is
 // Normals[k] . (sample - Origin), plus Volume for k = 0. It is positive inside, and the four add up
 // to Volume, so that they are the barycentric weights times Volume.
@@ -244,7 +264,9 @@ static int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int te
           {
             present = LoadCell(mesh, nx, ny, nz, p, q);
           }
-          if ((present & needed) != needed)
+          if ((present & needed) != needed ||
+            IsOverstretched(
+              q[Tetrahedra[t][0]], q[Tetrahedra[t][1]], q[Tetrahedra[t][2]], q[Tetrahedra[t][3]]))
           {
             continue;
           }

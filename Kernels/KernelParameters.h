@@ -78,8 +78,8 @@ typedef struct
 #define DEFORMVOLUME_COUNT_WRITES 0
 #define DEFORMVOLUME_COUNT_INVERTED 1
 #define DEFORMVOLUME_COUNT_OVERSTRETCHED 2
-#define DEFORMVOLUME_COUNT_FLAT 3    // on the border of the mesh
-#define DEFORMVOLUME_COUNT_ASSUMED 4 // nonzero where it was assumed that there are none such
+#define DEFORMVOLUME_COUNT_MISSING 3 // cells on the border with a tetrahedron that is flat or left out
+#define DEFORMVOLUME_COUNT_ASSUMED 4 // nonzero where cells on the border took it that there are none such
 #define DEFORMVOLUME_COUNTERS 5
 
 // Elements that may be read behind the end of a buffer of vertices, by vector loads.

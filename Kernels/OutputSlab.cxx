@@ -138,7 +138,7 @@ OutputSlab::Counts OutputSlab::ReadCounts()
   this->Queue.enqueueReadBuffer(
     this->Counters, CL_TRUE, 0, counters.size() * sizeof(cl_uint), counters.data());
   Counts counts;
-  std::uint64_t flat = 0;
+  std::uint64_t missing = 0;
   std::uint64_t assumed = 0;
   for (std::size_t brick = 0; brick < this->NumberOfBricks; ++brick)
   {
@@ -146,10 +146,10 @@ OutputSlab::Counts OutputSlab::ReadCounts()
     counts.Writes += counter[DEFORMVOLUME_COUNT_WRITES];
     counts.Inverted += counter[DEFORMVOLUME_COUNT_INVERTED];
     counts.Overstretched += counter[DEFORMVOLUME_COUNT_OVERSTRETCHED];
-    flat += counter[DEFORMVOLUME_COUNT_FLAT];
+    missing += counter[DEFORMVOLUME_COUNT_MISSING];
     assumed += counter[DEFORMVOLUME_COUNT_ASSUMED];
   }
-  counts.FlatWhereAssumedNone = flat > 0 && assumed > 0;
+  counts.MissingWhereAssumed = missing > 0 && assumed > 0;
   return counts;
 }
 

@@ -22,8 +22,8 @@ public:
     std::uint64_t Writes = 0;
     std::uint64_t Inverted = 0;
     std::uint64_t Overstretched = 0;
-    /// On the border of the mesh, flat tetrahedra, of which the kernel took none to be there.
-    bool FlatWhereAssumedNone = false;
+    /// On the border of the mesh, tetrahedra that cover nothing, where the kernel took them to.
+    bool MissingWhereAssumed = false;
   };
 
   /// Splits an output into slabs that the device can allocate. Throws Error where not even one

@@ -93,7 +93,7 @@ typedef struct
   uint Writes;
   uint Inverted;
   uint Overstretched;
-  uint Flat;    // flat tetrahedra on the border
+  uint Missing; // cells on the border with a tetrahedron that is flat or left out
   uint Assumed; // whether cells on the border left samples to the next cells without looking at these
 } Output;
 
@@ -178,18 +178,6 @@ static int IsEmpty(Candidates c)
   for (voxel.z = c.Low.z; voxel.z <= c.High.z; ++voxel.z)                                          \
     for (voxel.y = c.Low.y; voxel.y <= c.High.y; ++voxel.y)                                        \
       for (voxel.x = c.Low.x; voxel.x <= c.High.x; ++voxel.x)
-
-static Vector Minimum(Vector a, Vector b)
-{
-  const Vector r = { min(a.x, b.x), min(a.y, b.y), min(a.z, b.z) };
-  return r;
-}
-
-static Vector Maximum(Vector a, Vector b)
-{
-  const Vector r = { max(a.x, b.x), max(a.y, b.y), max(a.z, b.z) };
-  return r;
-}
 
 static Vector SamplePosition(Vector voxel)
 {
@@ -293,7 +281,7 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
   const int odd = (mirror ^ mirror >> 1 ^ mirror >> 2) & 1;
   long determinants[5];
   int inverted = 0;
-  int flat = 0;
+  int missing = 0;
   int regular = tetrahedra == 31 && present == 255;
   for (int t = 0; t < 5; ++t)
   {
@@ -308,23 +296,22 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
     const Vector b = q[Tetrahedra[t][1]];
     const Vector c = q[Tetrahedra[t][2]];
     const Vector d = q[Tetrahedra[t][3]];
-    const Vector extent = Subtract(
-      Maximum(Maximum(a, b), Maximum(c, d)), Minimum(Minimum(a, b), Minimum(c, d)));
-    if (max(extent.x, max(extent.y, extent.z)) > MAXIMUM_STRETCH)
+    if (IsOverstretched(a, b, c, d))
     {
       ++output->Overstretched;
       tetrahedra &= ~(1 << t);
       regular = 0;
+      missing = 1;
       continue;
     }
     determinants[t] = Determinant(a, b, c, d);
     const int upright = odd != (t == 4) ? determinants[t] < 0 : determinants[t] > 0;
     regular &= upright;
     inverted |= (!upright && determinants[t] != 0) << t;
-    flat |= determinants[t] == 0;
+    missing |= determinants[t] == 0;
   }
   output->Inverted += popcount(inverted);
-  output->Flat += flat && interior != 255;
+  output->Missing += missing && interior != 255;
   if (regular)
   {
     Vector low = q[0];
@@ -358,7 +345,7 @@ static void AddCounts(
     return;
   }
   const uint counts[DEFORMVOLUME_COUNTERS] = { output->Writes, output->Inverted,
-    output->Overstretched, output->Flat, output->Assumed };
+    output->Overstretched, output->Missing, output->Assumed };
   for (int i = 0; i < DEFORMVOLUME_COUNTERS; ++i)
   {
     if (counts[i])

@@ -145,15 +145,10 @@ std::uint64_t VolumeDeformer::CheckDeviceMemory(const Lattice& lattice,
         OutputSlab::Split(outputExtent, arrays, lattice, this->Impl->GetAllocationLimit());
       return static_cast<std::uint64_t>(GetNumberOfPoints(slabs.front()));
     });
-  const auto plane =
-    static_cast<std::uint64_t>(GetSize(lattice.VertexExtent, 0) * GetSize(lattice.VertexExtent, 1));
   // Arrays, state, active tetrahedra and blanking; links or runs of a mesh; arrays and
-  // coverage of the output; positions of one launch; the deformation itself. Winners of the output
-  // are counted when a deformation turns out to fold the volume (CheckWinners).
+  // coverage of the output; the deformation itself. Winners of the output are counted when a
+  // deformation turns out to fold the volume (CheckWinners).
   const std::uint64_t needed = voxels * (tuple + 3) + mappingBytes + outputVoxels * (tuple + 1) +
-    plane * 12 *
-      std::min<std::uint64_t>(
-        LayersPerLaunch + 3, static_cast<std::uint64_t>(GetSize(lattice.VertexExtent, 2))) +
     (numberOfNodes + numberOfTetrahedra) * 16;
   CheckBytes(needed, this->Impl->GetUsableMemory(), "on the device");
   return needed;

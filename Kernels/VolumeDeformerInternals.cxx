@@ -414,7 +414,7 @@ DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request)
     // Every covered voxel was written once, unless tetrahedra overlap; where the mesh is folded,
     // voxels on the crease may also be missing.
     if (request.Method != Resampling::Published &&
-      (counts.Writes > covered || counts.Inverted > 0 || counts.FlatWhereAssumedNone))
+      (counts.Writes > covered || counts.Inverted > 0 || counts.MissingWhereAssumed))
     {
       report.Overlapping |= counts.Writes > covered;
       this->LaunchesExpected += 2 * launches;

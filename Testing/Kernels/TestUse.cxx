@@ -191,7 +191,7 @@ TEST_F(Use, NotEnoughMemoryForAFold)
     this->Deformer.SetMemoryLimit(limit);
     try
     {
-      this->Deformer.CheckMemory(folded.Lattice, this->Arrays, folded.Output, nodes, nodes, true);
+      this->Deformer.CheckMemory(folded.Lattice, this->Arrays, folded.Output, nodes, 0, true);
       enough = true;
     }
     catch (const Error&)
