@@ -16,16 +16,17 @@
 // exact function, so that a voxel on a face is in both tetrahedra, and the first one takes it.
 //
 // What is interpolated is the displacement, d3 + sum of w_k (d_k - d3), rather than the rest
-// coordinate: a mesh that moves as a whole moves the volume exactly. It is evaluated where the row
-// enters the tile and goes on from there by forward differences; neither depends on the output's
-// extent.
+// coordinate: a mesh that moves as a whole moves the volume exactly. It is evaluated at the tile's first
+// voxel and goes on from there by forward differences in integers, which do not drift; neither
+// depends on the output's extent.
 //
 // This text comes after TetrahedronBinning.cl and RestSampling.cl, and the host puts nothing more in
 // front of it than of those.
 
 // Rest coordinates within this are found by forward differences; beyond it (slivers, whose
 // gradients are huge) voxel by voxel.
-#define LARGEST_REST 1048576.0f
+#define LARGEST_REST 524288
+#define STEP_BITS 18
 
 // A tetrahedron in a tile.
 typedef struct
@@ -179,35 +180,12 @@ typedef struct
   REAL Last[3];         // displacement of the last node, in output voxels
   REAL Gradients[3][3]; // by edge function, by axis
   REAL Scale[3];        // from output voxels
-  REAL Steps[3];        // from voxel to voxel of a row
+  // In a tile: the rest coordinate of its first voxel, and its steps from voxel to voxel on x, y and
+  // z, all by axis, with STEP_BITS more bits; and whether they fit.
+  long Start[3];
+  long Steps[3][3];
+  int Fits;
 } RestMap;
-
-static void SetRestMap(const TileTetrahedron* t, __global const float4* displacements,
-  RestMap* map, const RasterParameters* p)
-{
-  const int nodes[4] = { t->Nodes.x, t->Nodes.y, t->Nodes.z, t->Nodes.w };
-  const float4 last = displacements[nodes[3]];
-  const float lasts[3] = { last.x, last.y, last.z };
-  REAL slopes[3] = { 0, 0, 0 };
-  for (int k = 0; k < 3; ++k)
-  {
-    const float4 d = displacements[nodes[k]];
-    const float ds[3] = { d.x, d.y, d.z };
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const REAL gradient = ((REAL)ds[axis] - (REAL)lasts[axis]) * t->InverseVolume;
-      map->Gradients[k][axis] = gradient;
-      slopes[axis] += (REAL)t->Steps[k].x * gradient;
-    }
-  }
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    map->Last[axis] = (REAL)lasts[axis];
-    map->Scale[axis] = ((REAL)p->InverseScale[axis] + (REAL)p->InverseScaleRest[axis]) *
-      (REAL)(1 << p->FractionBits[axis]);
-    map->Steps[axis] = ((axis == 0 ? (REAL)1 : (REAL)0) - slopes[axis]) * map->Scale[axis];
-  }
-}
 
 // edges: the edge functions at this output voxel.
 static void FindRest(const RestMap* map, const long* edges, const int* voxel, REAL* rest,
@@ -225,8 +203,56 @@ static void FindRest(const RestMap* map, const long* edges, const int* voxel, RE
   }
 }
 
-// Rest coordinates of some voxels of a row, one by one. voxel: the first of the row; edges: there;
-// bits: those wanted; returns those within the volume.
+static void SetRestMap(const TileTetrahedron* t, __global const float4* displacements,
+  const int* origin, RestMap* map, const RasterParameters* p)
+{
+  const int nodes[4] = { t->Nodes.x, t->Nodes.y, t->Nodes.z, t->Nodes.w };
+  const float4 last = displacements[nodes[3]];
+  const float lasts[3] = { last.x, last.y, last.z };
+  REAL slopes[3][3] = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 } };
+  long edges[3];
+  for (int k = 0; k < 3; ++k)
+  {
+    const float4 d = displacements[nodes[k]];
+    const float ds[3] = { d.x, d.y, d.z };
+    const Vector step = t->Steps[k];
+    edges[k] = t->Start[k] + (origin[0] - t->Box.Low.x) * step.x +
+      (origin[1] - t->Box.Low.y) * step.y + (origin[2] - t->Box.Low.z) * step.z;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const REAL gradient = ((REAL)ds[axis] - (REAL)lasts[axis]) * t->InverseVolume;
+      map->Gradients[k][axis] = gradient;
+      slopes[0][axis] += (REAL)step.x * gradient;
+      slopes[1][axis] += (REAL)step.y * gradient;
+      slopes[2][axis] += (REAL)step.z * gradient;
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    map->Last[axis] = (REAL)lasts[axis];
+    map->Scale[axis] = ((REAL)p->InverseScale[axis] + (REAL)p->InverseScaleRest[axis]) *
+      (REAL)(1 << p->FractionBits[axis]);
+  }
+  REAL start[3];
+  FindRest(map, edges, origin, start, p);
+  map->Fits = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    REAL range = fabs(start[axis]);
+    for (int direction = 0; direction < 3; ++direction)
+    {
+      const REAL step =
+        ((direction == axis ? (REAL)1 : (REAL)0) - slopes[direction][axis]) * map->Scale[axis];
+      range += 32 * fabs(step);
+      map->Steps[direction][axis] = convert_long_sat_rte(step * (REAL)(1 << STEP_BITS));
+    }
+    map->Start[axis] = convert_long_sat_rte(start[axis] * (REAL)(1 << STEP_BITS));
+    map->Fits &= range < LARGEST_REST * (REAL)(1 << p->FractionBits[axis]);
+  }
+}
+
+// Rest coordinates of some voxels of a row, one by one. voxel: the first of the row; edges: the edge
+// functions there; bits: the voxels that are wanted; returns those within the volume.
 static uint FindRestsOneByOne(const TileTetrahedron* t, const RestMap* map, const long* edges,
   const int* voxel, uint bits, __local int* rests, const RasterParameters* p)
 {
@@ -262,68 +288,71 @@ static uint FindRestsOneByOne(const TileTetrahedron* t, const RestMap* map, cons
   return found;
 }
 
-// The same by forward differences. Integers wrap round, and come out right for voxels near to the
-// volume, which an estimate in float tells.
-static uint FindRests(const TileTetrahedron* t, const RestMap* map, const long* edges,
-  const int* voxel, uint bits, __local int* rests, const RasterParameters* p)
+// The same by forward differences: x, y and z count from the tile's first voxel.
+static uint FindRests(
+  const RestMap* map, int y, int z, uint bits, __local int* rests, const RasterParameters* p)
 {
-  REAL start[3];
-  FindRest(map, edges, voxel, start, p);
+  const int first = popcount((bits & -bits) - 1);
+  const int last = 31 - clz(bits);
   uint whole[3];
   uint wholeStep[3];
   float fraction[3];
   float fractionStep[3];
   float estimate[3];
   float estimateStep[3];
+  int inside = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const REAL unit = (REAL)1 / (REAL)(1 << p->FractionBits[axis]);
-    estimate[axis] = (float)(start[axis] * unit);
-    estimateStep[axis] = (float)(map->Steps[axis] * unit);
-    if (!(fabs(estimate[axis]) + 32.0f * fabs(estimateStep[axis]) < LARGEST_REST))
-    {
-      return FindRestsOneByOne(t, map, edges, voxel, bits, rests, p);
-    }
-    const REAL startFloor = floor(start[axis]);
-    const REAL stepFloor = floor(map->Steps[axis]);
-    whole[axis] = (uint)(long)startFloor;
-    wholeStep[axis] = (uint)(long)stepFloor;
-    fraction[axis] = (float)(start[axis] - startFloor);
-    fractionStep[axis] = (float)(map->Steps[axis] - stepFloor);
+    const long start = map->Start[axis] + y * map->Steps[1][axis] + z * map->Steps[2][axis];
+    const long step = map->Steps[0][axis];
+    const long most = (long)((p->Size[axis] - 1) << p->FractionBits[axis]) << STEP_BITS;
+    const long begin = start + first * step;
+    const long end = start + last * step;
+    inside &= begin >= 0 && begin <= most && end >= 0 && end <= most;
+    whole[axis] = (uint)(start >> STEP_BITS);
+    wholeStep[axis] = (uint)(step >> STEP_BITS);
+    fraction[axis] = (float)(start & ((1 << STEP_BITS) - 1)) * (1.0f / (1 << STEP_BITS));
+    fractionStep[axis] = (float)(step & ((1 << STEP_BITS) - 1)) * (1.0f / (1 << STEP_BITS));
+    const float unit = 1.0f / ((float)(1 << STEP_BITS) * (float)(1 << p->FractionBits[axis]));
+    estimate[axis] = (float)start * unit;
+    estimateStep[axis] = (float)step * unit;
   }
-  uint found = 0;
-  for (int x = 0; x < 32; x += LANES)
+  uint found = inside ? bits : 0;
+  for (int x = first & -LANES; x <= last; x += LANES)
   {
     const uint wanted = bits >> x & LANE_MASK;
-    if (!wanted)
-    {
-      continue;
-    }
     const INTS lane = LANE_INDEX + x;
     const FLOATS laneFloat = TO_FLOATS(lane);
     INTS mask = -((INTS)((int)wanted) >> LANE_INDEX & 1);
     INTS rest[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      const int most = (p->Size[axis] - 1) << p->FractionBits[axis];
-      const FLOATS near = estimate[axis] + laneFloat * estimateStep[axis];
       rest[axis] = AS_INTS(whole[axis] + AS_UINTS(lane) * wholeStep[axis]) +
         ROUND_TO_INTS(fraction[axis] + laneFloat * fractionStep[axis]);
-      mask &= (near > -1.0f) & (near < (float)p->Size[axis]) &
-        (rest[axis] >= -p->Tolerance[axis]) & (rest[axis] <= most + p->Tolerance[axis]);
-      rest[axis] = min(max(rest[axis], 0), most);
+    }
+    if (!inside)
+    {
+      // Integers wrap round; they are right near to the volume, which an estimate in float tells.
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const int most = (p->Size[axis] - 1) << p->FractionBits[axis];
+        const FLOATS near = estimate[axis] + laneFloat * estimateStep[axis];
+        mask &= (near > -1.0f) & (near < (float)p->Size[axis]) &
+          (rest[axis] >= -p->Tolerance[axis]) & (rest[axis] <= most + p->Tolerance[axis]);
+        rest[axis] = min(max(rest[axis], 0), most);
+      }
+      // A bit for each lane that is set.
+      int lanes[LANES];
+      STORE(mask, lanes);
+      for (int i = 0; i < LANES; ++i)
+      {
+        found |= (uint)(lanes[i] & 1) << (x + i);
+      }
     }
     for (int axis = 0; axis < 3; ++axis)
     {
       __local int* place = rests + axis * DEFORMVOLUME_TILE_VOXELS + x;
       STORE(select(LOAD(place), rest[axis], mask), place);
-    }
-    // A bit for each lane that is set.
-    int lanes[LANES];
-    STORE(mask, lanes);
-    for (int i = 0; i < LANES; ++i)
-    {
-      found |= (uint)(lanes[i] & 1) << (x + i);
     }
   }
   return found;
@@ -380,16 +409,24 @@ static int RasterizeRows(__global const int4* tetrahedra, __global const int4* p
         }
         if (!mapped)
         {
-          SetRestMap(&t, displacements, &map, p);
+          SetRestMap(&t, displacements, origin, &map, p);
           mapped = 1;
         }
-        for (int k = 0; k < 4; ++k)
-        {
-          edges[k] -= first * t.Steps[k].x;
-        }
-        const int voxel[3] = { origin[0], y, z };
         __local int* rowRests = rests + (row << DEFORMVOLUME_TILE_BITS_X);
-        uint found = FindRests(&t, &map, edges, voxel, wanted, rowRests, p);
+        uint found;
+        if (map.Fits)
+        {
+          found = FindRests(&map, y - origin[1], z - origin[2], wanted, rowRests, p);
+        }
+        else
+        {
+          for (int k = 0; k < 4; ++k)
+          {
+            edges[k] -= first * t.Steps[k].x;
+          }
+          const int voxel[3] = { origin[0], y, z };
+          found = FindRestsOneByOne(&t, &map, edges, voxel, wanted, rowRests, p);
+        }
         if (p->HasActive || p->HasBlanked)
         {
           found = SelectSources(masks, found, rowRests, p);
