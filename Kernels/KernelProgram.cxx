@@ -255,7 +255,7 @@ cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<Vo
       (laneArrays.empty() ? "" : "\n#define HAS_LANE_ARRAYS") +
       (tapArrays.empty() ? "" : "\n#define HAS_TAP_ARRAYS") + "\n#define LANE_ARRAYS(DO)" +
       laneArrays + "\n#define TAP_ARRAYS(DO)" + tapArrays + "\n" + TetrahedronBinning_cl +
-      RestSampling_cl + MeshRasterization_cl,
+      LaneSampling_cl + RestSampling_cl + RestCoordinates_cl + MeshRasterization_cl,
     Options);
 }
 

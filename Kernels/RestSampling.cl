@@ -8,44 +8,17 @@
 // 64, which repeat those of the volume's border beyond it. Voxels without weight are not read into
 // the sum: a NaN stays within its cells, and a voxel's own place gives its bits.
 //
-// On processors arrays of one component, linear, and of float or integers of 8 or 16 bits go
-// by lanes, LANES voxels of a row side by side: memory is gathered lane by lane, two neighbours on x
-// at once, and all arithmetic is in vectors of float. All else goes voxel by voxel in REAL.
+// On processors arrays of one component, linear, and of float or integers of 8 or 16 bits go by lanes
+// (LaneSampling.cl). All else goes voxel by voxel in REAL.
 //
-// What the host puts in front of this text:
+// What the host puts in front of this text, besides that of LaneSampling.cl:
 //   REAL                  type of the interpolation: double where the device has it, else float
-//   LANES                 16, 8 or 4: floats in a vector
 //   CUBIC                 whether the interpolation is cubic
 //   CHUNK                 neighbouring voxels that a work-item takes: 32 on processors, else 1
-//   INDEX                 int, or long where the volume has too many voxels for it
 //   ARRAY_PARAMETERS      kernel parameters: source and target of each array
-//   LANE_ARRAYS(DO)       DO(index, type, bits) for arrays by lanes, bits 32 for float
 //   TAP_ARRAYS(DO)        DO(index, type, components) for the others
 //   HAS_LANE_ARRAYS, HAS_TAP_ARRAYS  defined where there are such
 //   STORE_ARRAY_i         statement that stores array i at a sample
-
-#pragma OPENCL FP_CONTRACT OFF
-
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
-#define FLOATS JOIN(float, LANES)
-#define INTS JOIN(int, LANES)
-#define UINTS JOIN(uint, LANES)
-#define AS_INTS JOIN(as_int, LANES)
-#define AS_UINTS JOIN(as_uint, LANES)
-#define LOAD(p) JOIN(vload, LANES)(0, p)
-#define STORE(v, p) JOIN(vstore, LANES)(v, 0, p)
-#define TO_FLOATS JOIN(convert_float, LANES)
-#define ROUND_TO_INTS JOIN(JOIN(convert_int, LANES), _rte)
-
-#if LANES == 16
-#define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
-#elif LANES == 8
-#define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7))
-#else
-#define LANE_INDEX ((INTS)(0, 1, 2, 3))
-#endif
-#define LANE_MASK ((uint)(((ulong)1 << LANES) - 1))
 
 __constant uchar Tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
 
@@ -291,115 +264,6 @@ static uint SelectSources(
   }
   return bits;
 }
-
-// By lanes.
-
-#define INDICES JOIN(INDEX, LANES)
-#define TO_INDICES JOIN(convert_, INDICES)
-#define STORE_INDICES(v, p) JOIN(vstore, LANES)(v, 0, p)
-#if LANES == 16
-#define GATHER(F, o)                                                                               \
-  F(0, o), F(1, o), F(2, o), F(3, o), F(4, o), F(5, o), F(6, o), F(7, o), F(8, o), F(9, o),        \
-    F(10, o), F(11, o), F(12, o), F(13, o), F(14, o), F(15, o)
-#elif LANES == 8
-#define GATHER(F, o) F(0, o), F(1, o), F(2, o), F(3, o), F(4, o), F(5, o), F(6, o), F(7, o)
-#else
-#define GATHER(F, o) F(0, o), F(1, o), F(2, o), F(3, o)
-#endif
-
-// Where the values of LANES neighbouring voxels come from.
-typedef struct
-{
-  INDEX Places[LANES]; // lowest voxel of the cell
-  INDEX StepY, StepZ;
-  FLOATS Fractions[3];
-  INTS Mask; // lanes that are covered
-} LaneCells;
-
-static void MakeLaneCells(
-  __local const int* rests, uint bits, LaneCells* cells, const RasterParameters* p)
-{
-  cells->Mask = -((INTS)((int)bits) >> LANE_INDEX & 1);
-  INTS voxels[3];
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const int shift = p->FractionBits[axis];
-    const INTS rest = LOAD(rests + axis * DEFORMVOLUME_TILE_VOXELS) & cells->Mask;
-    voxels[axis] = min(rest >> shift, p->Size[axis] - 2);
-    cells->Fractions[axis] =
-      TO_FLOATS(rest - (voxels[axis] << shift)) * (1.0f / (float)(1 << shift));
-  }
-  cells->StepY = p->Size[0];
-  cells->StepZ = (INDEX)p->Size[0] * p->Size[1];
-  STORE_INDICES(TO_INDICES(voxels[2]) * cells->StepZ + TO_INDICES(voxels[1]) * cells->StepY +
-      TO_INDICES(voxels[0]),
-    cells->Places);
-}
-
-// Integers are exact in float, and so are both ends. For floats the ends are chosen, as a NaN times
-// 0 is none.
-static FLOATS MixIntegers(FLOATS a, FLOATS b, FLOATS f)
-{
-  return a + f * (b - a);
-}
-
-static FLOATS MixFloats(FLOATS a, FLOATS b, FLOATS f)
-{
-  const FLOATS mixed = (1.0f - f) * a + f * b;
-  return f > 0.0f ? (f < 1.0f ? mixed : b) : a;
-}
-
-// Two neighbours on x at once, and the parts of that.
-#define LOAD_PAIR_8(k, o) (int)as_ushort(vload2(0, source + cells->Places[k] + (o)))
-#define LOAD_PAIR_16(k, o) as_int(vload2(0, source + cells->Places[k] + (o)))
-#define LOW_uchar(pair) ((pair) & 255)
-#define HIGH_uchar(pair) ((pair) >> 8)
-#define LOW_char(pair) ((pair) << 24 >> 24)
-#define HIGH_char(pair) ((pair) << 16 >> 24)
-#define LOW_ushort(pair) ((pair) & 65535)
-#define HIGH_ushort(pair) AS_INTS(AS_UINTS(pair) >> 16)
-#define LOW_short(pair) ((pair) << 16 >> 16)
-#define HIGH_short(pair) ((pair) >> 16)
-
-#define MIX_X_INTEGER(row, o, TYPE, BITS)                                                          \
-  {                                                                                                \
-    const INTS pairs = (INTS)(GATHER(LOAD_PAIR_##BITS, o));                                        \
-    row = MixIntegers(                                                                             \
-      TO_FLOATS(LOW_##TYPE(pairs)), TO_FLOATS(HIGH_##TYPE(pairs)), cells->Fractions[0]);           \
-  }
-#define MIX_X_8(row, o, TYPE) MIX_X_INTEGER(row, o, TYPE, 8)
-#define MIX_X_16(row, o, TYPE) MIX_X_INTEGER(row, o, TYPE, 16)
-
-#define LOAD_FLOAT(k, o) source[cells->Places[k] + (o)]
-#define MIX_X_32(row, o, TYPE)                                                                     \
-  {                                                                                                \
-    const FLOATS low = (FLOATS)(GATHER(LOAD_FLOAT, o));                                            \
-    const FLOATS high = (FLOATS)(GATHER(LOAD_FLOAT, (o) + 1));                                     \
-    row = MixFloats(low, high, cells->Fractions[0]);                                               \
-  }
-#define MIX_8 MixIntegers
-#define MIX_16 MixIntegers
-#define MIX_32 MixFloats
-
-#define TO_8(TYPE) JOIN(JOIN(JOIN(convert_, TYPE), LANES), _sat_rte)
-#define TO_16(TYPE) TO_8(TYPE)
-#define TO_32(TYPE) // floats they are
-
-// The values of LANES voxels, as a vector of the array's type.
-#define DEFINE_LANE_SAMPLING(NUMBER, TYPE, BITS)                                                   \
-  static JOIN(TYPE, LANES) SampleLanes##NUMBER(                                                    \
-    __global const TYPE* restrict source, const LaneCells* cells, float background)                \
-  {                                                                                                \
-    FLOATS rows[4];                                                                                \
-    MIX_X_##BITS(rows[0], 0, TYPE);                                                                \
-    MIX_X_##BITS(rows[1], cells->StepY, TYPE);                                                     \
-    MIX_X_##BITS(rows[2], cells->StepZ, TYPE);                                                     \
-    MIX_X_##BITS(rows[3], cells->StepZ + cells->StepY, TYPE);                                      \
-    const FLOATS value = MIX_##BITS(MIX_##BITS(rows[0], rows[1], cells->Fractions[1]),             \
-      MIX_##BITS(rows[2], rows[3], cells->Fractions[1]), cells->Fractions[2]);                     \
-    return TO_##BITS(TYPE)(cells->Mask ? value : background);                                      \
-  }
-LANE_ARRAYS(DEFINE_LANE_SAMPLING)
 
 #define BACKGROUND(NUMBER, TYPE) (*(__global const TYPE*)(backgrounds + NUMBER))
 

@@ -5,28 +5,10 @@
 #ifndef RasterReference_h
 #define RasterReference_h
 
-#include "DeformerCase.h"
+#include "RasterCase.h"
 
 #include <array>
 #include <vector>
-
-struct RasterCase
-{
-  deformvolume::Lattice Lattice;
-  std::vector<deformvolume::Tetrahedron> Tetrahedra;
-  /// Continuous indices of the volume, and displacements in output voxels.
-  std::vector<glm::dvec3> RestNodes;
-  std::vector<float> Displacements;
-  /// Empty: none are blanked, all are active.
-  std::vector<unsigned char> Blanked;
-  std::vector<unsigned char> Active;
-  deformvolume::Extent Output;
-
-  std::int64_t GetNumberOfVoxels() const
-  {
-    return deformvolume::GetNumberOfPoints(this->Lattice.VertexExtent);
-  }
-};
 
 namespace reference
 {

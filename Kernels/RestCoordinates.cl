@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rest coordinates for the mesh rasterisation: a tetrahedron in a tile, and where in the undeformed
+// volume the voxels are that it holds.
+//
+// What is interpolated is the displacement, d3 + sum of w_k (d_k - d3), rather than the rest
+// coordinate: a mesh that moves as a whole moves the volume exactly. It is evaluated at the tile's first
+// voxel and goes on from there by forward differences in integers, which do not drift; neither
+// depends on the output's extent.
+//
+// Data: see MeshRasterization.cl. Rest coordinates are integers of 32 bits, their steps integers of 64
+// bits with STEP_BITS more.
+
+// Rest coordinates within this are found by forward differences; beyond it (slivers, whose
+// gradients are huge) voxel by voxel.
+#define LARGEST_REST 524288
+#define STEP_BITS 18
+
+// A tetrahedron in a tile.
+typedef struct
+{
+  int4 Nodes;
+  VoxelBox Box;       // the voxels of the tile that may lie in it
+  long Start[4];      // edge function opposite node k at the lowest voxel of the box
+  Vector Steps[4];    // and its steps from voxel to voxel
+  float Inverse[4];   // of the step along a row, made positive
+  int AcceptsTie[4];  // whether a voxel on the face stays inside after a shift by (e, e^2, e^3)
+  REAL InverseVolume;
+} TileTetrahedron;
+
+static int ShiftsInside(Vector normal)
+{
+  return normal.x > 0 || (normal.x == 0 && (normal.y > 0 || (normal.y == 0 && normal.z > 0)));
+}
+
+static Vector Scaled(Vector v, long factor)
+{
+  const Vector r = { v.x * factor, v.y * factor, v.z * factor };
+  return r;
+}
+
+// Returns 0 where the tetrahedron has no voxel in the tile.
+static int SetUpTetrahedron(int4 nodes, __global const int4* positions, VoxelBox tile,
+  TileTetrahedron* t, const RasterParameters* p)
+{
+  const int4 a = positions[nodes.x];
+  const int4 b = positions[nodes.y];
+  const int4 c = positions[nodes.z];
+  const int4 d = positions[nodes.w];
+  t->Nodes = nodes;
+  t->Box = FindVoxels(min(min(a, b), min(c, d)), max(max(a, b), max(c, d)), p);
+  t->Box.Low = max(t->Box.Low, tile.Low);
+  t->Box.High = min(t->Box.High, tile.High);
+  if (IsEmpty(t->Box))
+  {
+    return 0;
+  }
+  const Vector u = Difference(a, d);
+  const Vector v = Difference(b, d);
+  const Vector w = Difference(c, d);
+  Vector normals[4];
+  normals[0] = Cross(v, w);
+  normals[1] = Cross(w, u);
+  normals[2] = Cross(u, v);
+  long volume = Dot(u, normals[0]);
+  const long sign = volume < 0 ? -1 : 1;
+  volume *= sign;
+  for (int k = 0; k < 3; ++k)
+  {
+    normals[k] = Scaled(normals[k], sign);
+  }
+  normals[3].x = -(normals[0].x + normals[1].x + normals[2].x);
+  normals[3].y = -(normals[0].y + normals[1].y + normals[2].y);
+  normals[3].z = -(normals[0].z + normals[1].z + normals[2].z);
+  const Vector r = Difference(t->Box.Low * 256, d);
+  t->Start[3] = volume;
+  for (int k = 0; k < 3; ++k)
+  {
+    t->Start[k] = Dot(normals[k], r);
+    t->Start[3] -= t->Start[k];
+  }
+  const int4 size = t->Box.High - t->Box.Low;
+  for (int k = 0; k < 4; ++k)
+  {
+    const Vector step = Scaled(normals[k], 256);
+    t->Steps[k] = step;
+    // The whole box may lie behind the face.
+    if (t->Start[k] + max(0L, step.x * size.x) + max(0L, step.y * size.y) +
+        max(0L, step.z * size.z) <
+      0)
+    {
+      return 0;
+    }
+    t->Inverse[k] = step.x != 0 ? 1.0f / fabs((float)step.x) : 0.0f;
+    t->AcceptsTie[k] = ShiftsInside(normals[k]);
+  }
+  t->InverseVolume = (REAL)1 / (REAL)volume;
+  return 1;
+}
+
+// What turns edge functions into rest coordinates, in 2^-FractionBits voxel.
+typedef struct
+{
+  REAL Last[3];         // displacement of the last node, in output voxels
+  REAL Gradients[3][3]; // by edge function, by axis
+  REAL Scale[3];        // from output voxels
+  // In a tile: the rest coordinate of its first voxel, and its steps from voxel to voxel on x, y and
+  // z, all by axis, with STEP_BITS more bits; and whether they fit.
+  long Start[3];
+  long Steps[3][3];
+  int Fits;
+} RestMap;
+
+// edges: the edge functions at this output voxel.
+static void FindRest(const RestMap* map, const long* edges, const int* voxel, REAL* rest,
+  const RasterParameters* p)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    REAL d = map->Last[axis];
+    for (int k = 0; k < 3; ++k)
+    {
+      d += (REAL)edges[k] * map->Gradients[k][axis];
+    }
+    rest[axis] = ((REAL)voxel[axis] - d) * map->Scale[axis] -
+      (REAL)((long)p->First[axis] << p->FractionBits[axis]);
+  }
+}
+
+static void SetRestMap(const TileTetrahedron* t, __global const float4* displacements,
+  const int* origin, RestMap* map, const RasterParameters* p)
+{
+  const int nodes[4] = { t->Nodes.x, t->Nodes.y, t->Nodes.z, t->Nodes.w };
+  const float4 last = displacements[nodes[3]];
+  const float lasts[3] = { last.x, last.y, last.z };
+  REAL slopes[3][3] = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 } };
+  long edges[3];
+  for (int k = 0; k < 3; ++k)
+  {
+    const float4 d = displacements[nodes[k]];
+    const float ds[3] = { d.x, d.y, d.z };
+    const Vector step = t->Steps[k];
+    edges[k] = t->Start[k] + (origin[0] - t->Box.Low.x) * step.x +
+      (origin[1] - t->Box.Low.y) * step.y + (origin[2] - t->Box.Low.z) * step.z;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const REAL gradient = ((REAL)ds[axis] - (REAL)lasts[axis]) * t->InverseVolume;
+      map->Gradients[k][axis] = gradient;
+      slopes[0][axis] += (REAL)step.x * gradient;
+      slopes[1][axis] += (REAL)step.y * gradient;
+      slopes[2][axis] += (REAL)step.z * gradient;
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    map->Last[axis] = (REAL)lasts[axis];
+    map->Scale[axis] = ((REAL)p->InverseScale[axis] + (REAL)p->InverseScaleRest[axis]) *
+      (REAL)(1 << p->FractionBits[axis]);
+  }
+  REAL start[3];
+  FindRest(map, edges, origin, start, p);
+  map->Fits = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    REAL range = fabs(start[axis]);
+    for (int direction = 0; direction < 3; ++direction)
+    {
+      const REAL step =
+        ((direction == axis ? (REAL)1 : (REAL)0) - slopes[direction][axis]) * map->Scale[axis];
+      range += 32 * fabs(step);
+      map->Steps[direction][axis] = convert_long_sat_rte(step * (REAL)(1 << STEP_BITS));
+    }
+    map->Start[axis] = convert_long_sat_rte(start[axis] * (REAL)(1 << STEP_BITS));
+    map->Fits &= range < LARGEST_REST * (REAL)(1 << p->FractionBits[axis]);
+  }
+}
+
+// Rest coordinates of some voxels of a row, one by one. voxel: the first of the row; edges: the edge
+// functions there; bits: the voxels that are wanted; returns those within the volume.
+static uint FindRestsOneByOne(const TileTetrahedron* t, const RestMap* map, const long* edges,
+  const int* voxel, uint bits, __local int* rests, const RasterParameters* p)
+{
+  uint found = 0;
+  for (int x = 0; x < 32; ++x)
+  {
+    if (!(bits >> x & 1))
+    {
+      continue;
+    }
+    const long here[3] = { edges[0] + x * t->Steps[0].x, edges[1] + x * t->Steps[1].x,
+      edges[2] + x * t->Steps[2].x };
+    const int at[3] = { voxel[0] + x, voxel[1], voxel[2] };
+    REAL rest[3];
+    FindRest(map, here, at, rest, p);
+    int inside = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      inside &= rest[axis] >= (REAL)-p->Tolerance[axis] &&
+        rest[axis] <= (REAL)((p->Size[axis] - 1) << p->FractionBits[axis]) + p->Tolerance[axis];
+    }
+    if (inside)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const int most = (p->Size[axis] - 1) << p->FractionBits[axis];
+        rests[axis * DEFORMVOLUME_TILE_VOXELS + x] =
+          min(max(convert_int_sat_rte(rest[axis]), 0), most);
+      }
+      found |= 1u << x;
+    }
+  }
+  return found;
+}
+
+// The same by forward differences: x, y and z count from the tile's first voxel.
+static uint FindRests(
+  const RestMap* map, int y, int z, uint bits, __local int* rests, const RasterParameters* p)
+{
+  const int first = popcount((bits & -bits) - 1);
+  const int last = 31 - clz(bits);
+  uint whole[3];
+  uint wholeStep[3];
+  float fraction[3];
+  float fractionStep[3];
+  float estimate[3];
+  float estimateStep[3];
+  int inside = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const long start = map->Start[axis] + y * map->Steps[1][axis] + z * map->Steps[2][axis];
+    const long step = map->Steps[0][axis];
+    const long most = (long)((p->Size[axis] - 1) << p->FractionBits[axis]) << STEP_BITS;
+    const long begin = start + first * step;
+    const long end = start + last * step;
+    inside &= begin >= 0 && begin <= most && end >= 0 && end <= most;
+    whole[axis] = (uint)(start >> STEP_BITS);
+    wholeStep[axis] = (uint)(step >> STEP_BITS);
+    fraction[axis] = (float)(start & ((1 << STEP_BITS) - 1)) * (1.0f / (1 << STEP_BITS));
+    fractionStep[axis] = (float)(step & ((1 << STEP_BITS) - 1)) * (1.0f / (1 << STEP_BITS));
+    const float unit = 1.0f / ((float)(1 << STEP_BITS) * (float)(1 << p->FractionBits[axis]));
+    estimate[axis] = (float)start * unit;
+    estimateStep[axis] = (float)step * unit;
+  }
+  uint found = inside ? bits : 0;
+  for (int x = first & -LANES; x <= last; x += LANES)
+  {
+    const uint wanted = bits >> x & LANE_MASK;
+    const INTS lane = LANE_INDEX + x;
+    const FLOATS laneFloat = TO_FLOATS(lane);
+    INTS mask = -((INTS)((int)wanted) >> LANE_INDEX & 1);
+    INTS rest[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      rest[axis] = AS_INTS(whole[axis] + AS_UINTS(lane) * wholeStep[axis]) +
+        ROUND_TO_INTS(fraction[axis] + laneFloat * fractionStep[axis]);
+    }
+    if (!inside)
+    {
+      // Integers wrap round; they are right near to the volume, which an estimate in float tells.
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const int most = (p->Size[axis] - 1) << p->FractionBits[axis];
+        const FLOATS near = estimate[axis] + laneFloat * estimateStep[axis];
+        mask &= (near > -1.0f) & (near < (float)p->Size[axis]) &
+          (rest[axis] >= -p->Tolerance[axis]) & (rest[axis] <= most + p->Tolerance[axis]);
+        rest[axis] = min(max(rest[axis], 0), most);
+      }
+      // A bit for each lane that is set.
+      int lanes[LANES];
+      STORE(mask, lanes);
+      for (int i = 0; i < LANES; ++i)
+      {
+        found |= (uint)(lanes[i] & 1) << (x + i);
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      __local int* place = rests + axis * DEFORMVOLUME_TILE_VOXELS + x;
+      STORE(select(LOAD(place), rest[axis], mask), place);
+    }
+  }
+  return found;
+}

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A volume with a deformation mesh that is rasterised itself, given to a VolumeDeformer and to the
+// host reference alike, and the comparison of what the two make of it.
+#ifndef RasterCase_h
+#define RasterCase_h
+
+#include "DeformerCase.h"
+
+struct RasterCase
+{
+  deformvolume::Lattice Lattice;
+  std::vector<deformvolume::Tetrahedron> Tetrahedra;
+  /// Continuous indices of the volume, and displacements in output voxels.
+  std::vector<glm::dvec3> RestNodes;
+  std::vector<float> Displacements;
+  /// Empty: none are blanked, all are active.
+  std::vector<unsigned char> Blanked;
+  std::vector<unsigned char> Active;
+  deformvolume::Extent Output;
+
+  std::int64_t GetNumberOfVoxels() const
+  {
+    return deformvolume::GetNumberOfPoints(this->Lattice.VertexExtent);
+  }
+};
+
+/// A mesh of cells x cells x cells cubes, six tetrahedra each, over a box of continuous indices.
+/// deformation takes an index of the volume to a continuous index of the output. The output holds
+/// the result and margin voxels more.
+RasterCase MakeRasterCase(const deformvolume::Lattice& lattice, const glm::dvec3& low,
+  const glm::dvec3& high, int cells,
+  const std::function<glm::dvec3(const glm::dvec3&)>& deformation, int margin = 1);
+
+/// The same with a mesh over just the volume.
+RasterCase MakeRasterCase(const deformvolume::Extent& extent, int cells,
+  const std::function<glm::dvec3(const glm::dvec3&)>& deformation,
+  const std::array<double, 3>& scale = { { 1, 1, 1 } });
+
+/// Sets the lattice, the arrays, the masks and the mesh.
+void Load(deformvolume::VolumeDeformer& deformer, const RasterCase& rasterCase,
+  const std::vector<deformvolume::VolumeArray>& arrays);
+
+/// Runs a loaded deformer.
+Deformed Rasterize(deformvolume::VolumeDeformer& deformer, const RasterCase& rasterCase,
+  const std::vector<deformvolume::VolumeArray>& arrays,
+  deformvolume::Interpolation interpolation = deformvolume::Interpolation::Linear);
+
+/// Load and Rasterize on a new deformer.
+Deformed LoadAndRun(const RasterCase& rasterCase,
+  const std::vector<deformvolume::VolumeArray>& arrays,
+  deformvolume::Interpolation interpolation = deformvolume::Interpolation::Linear);
+
+/// Coverage and counts exactly, and values within 1e-5 of the largest of their array.
+void ExpectEqualsReference(const RasterCase& rasterCase,
+  const std::vector<deformvolume::VolumeArray>& arrays, const Deformed& deformed,
+  deformvolume::Interpolation interpolation = deformvolume::Interpolation::Linear);
+
+#endif
