@@ -420,3 +420,25 @@ TEST(MeshRasterization, NotANumberStaysWithinItsCells)
   }
   EXPECT_EQ(numberOfNaN, 2); // half a voxel to the left and to the right of it
 }
+
+// Small enough for an interpreter of kernels, and with all that they have to do: folds, masks,
+// arrays by lanes and not, work-groups of several items.
+TEST(MeshRasterization, Tiny)
+{
+  RasterCase tiny = MakeRasterCase({ { { 0, 6, -2, 3, 1, 5 } }, { { 1, 1, 1 } } },
+    glm::dvec3(0.0, -2.0, 1.0), glm::dvec3(6.0, 3.0, 5.0), 1, MakeJitter(3, 2.0), 0);
+  tiny.Active.assign(GetNumberOfCells(tiny.Lattice.VertexExtent), 31);
+  tiny.Active[7] = 5;
+  tiny.Blanked.assign(tiny.GetNumberOfVoxels(), 0);
+  tiny.Blanked[50] = 1;
+  const auto shorts = MakeRandomValues<std::uint16_t>(tiny.GetNumberOfVoxels(), 3);
+  const auto floats = MakeRandomValues<float>(3 * tiny.GetNumberOfVoxels(), 4);
+  const std::vector<VolumeArray> arrays{ MakeArray(shorts), MakeArray(floats, 3) };
+  VolumeDeformer deformer;
+  Load(deformer, tiny, arrays);
+  for (const std::size_t group : { 0, 4 })
+  {
+    deformer.SetWorkGroupSize(group);
+    ExpectEqualsReference(tiny, arrays, Rasterize(deformer, tiny, arrays));
+  }
+}
