@@ -819,7 +819,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
   __global KEY* winners, __global uint* counters, __global const uint* bricks, __local float* rows,
   const KernelParameters p ARRAY_PARAMETERS)
 {
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active };
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
   Output output = { coverage, winners, 0, 0, 0, 0, 0 };
   const uint brick = bricks[p.ListBegin + get_global_id(0)];
   // Cells of the brick, and the local x of its first place, which may lie before the volume.

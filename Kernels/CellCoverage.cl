@@ -135,7 +135,36 @@ typedef struct
   Mapping Map;
   __global const uchar* State;
   __global const uchar* Active;
+  // Positions that are in local memory: of each vertex of a block x, y and z, INT_MIN for a vertex without
+  // position. Null: none are.
+  __local const int* Block;
+  int BlockFirst[3]; // local index of the first cell
 } SamplingMesh;
+
+// The place of a vertex in a block, or -1 outside it.
+static int PlaceInBlock(const SamplingMesh* mesh, int x, int y, int z)
+{
+  const uint bx = x - mesh->BlockFirst[0];
+  const uint by = y - mesh->BlockFirst[1];
+  const uint bz = z - mesh->BlockFirst[2];
+  return bx <= DEFORMVOLUME_BLOCK_X && by <= DEFORMVOLUME_BLOCK_Y && bz <= DEFORMVOLUME_BLOCK_Z
+    ? (int)((bz * (DEFORMVOLUME_BLOCK_Y + 1) + by) * (DEFORMVOLUME_BLOCK_X + 1) + bx)
+    : -1;
+}
+
+// The position of a vertex in 1/256 output voxel; INT_MIN in x where it has none.
+static int4 VertexPosition(
+  const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
+{
+  const int place = mesh->Block ? PlaceInBlock(mesh, x, y, z) : -1;
+  if (place >= 0)
+  {
+    return (int4)(mesh->Block[3 * place], mesh->Block[3 * place + 1], mesh->Block[3 * place + 2], 0);
+  }
+  return mesh->State[VertexInChunk(x, y, z, p)] & DEFORMVOLUME_VERTEX_SOURCE
+    ? PositionOf(&mesh->Map, x, y, z, p)
+    : (int4)(INT_MIN, 0, 0, 0);
+}
 
 static int ActiveTetrahedra(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
@@ -159,21 +188,11 @@ static int LoadCell(
   for (int v = 0; v < 8; ++v)
   {
     const int o = v ^ mirror;
-    const int vx = x + (o & 1);
-    const int vy = y + (o >> 2);
-    const int vz = z + (o >> 1 & 1);
-    if (mesh->State[VertexInChunk(vx, vy, vz, p)] & DEFORMVOLUME_VERTEX_SOURCE)
-    {
-      const int4 q = PositionOf(&mesh->Map, vx, vy, vz, p);
-      vertices[v].x = q.x;
-      vertices[v].y = q.y;
-      vertices[v].z = q.z;
-      present |= 1 << v;
-    }
-    else
-    {
-      vertices[v].x = vertices[v].y = vertices[v].z = 0;
-    }
+    const int4 q = VertexPosition(mesh, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+    vertices[v].x = q.x;
+    vertices[v].y = q.y;
+    vertices[v].z = q.z;
+    present |= (q.x != INT_MIN) << v;
   }
   return present;
 }

@@ -74,6 +74,14 @@ typedef struct
 #define DEFORMVOLUME_BRICK_Y 16
 #define DEFORMVOLUME_BRICK_Z 16
 
+// Cells of a block, whose vertices a work-group of the kernel Resample maps into local memory.
+#define DEFORMVOLUME_BLOCK_X 64
+#define DEFORMVOLUME_BLOCK_Y 4
+#define DEFORMVOLUME_BLOCK_Z 4
+// Vertices of a block.
+#define DEFORMVOLUME_BLOCK_VERTICES                                                                \
+  ((DEFORMVOLUME_BLOCK_X + 1) * (DEFORMVOLUME_BLOCK_Y + 1) * (DEFORMVOLUME_BLOCK_Z + 1))
+
 // Counters of a brick of cells.
 #define DEFORMVOLUME_COUNT_WRITES 0
 #define DEFORMVOLUME_COUNT_INVERTED 1

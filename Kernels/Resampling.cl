@@ -6,10 +6,10 @@
 // tetrahedra 1 byte a cell (optional), coverage 1 byte an output voxel, winners 4 or 8 bytes an
 // output voxel (only where tetrahedra overlap), and the arrays themselves in their own types.
 //
-// A work-item takes every global-size(0)-th cell of one row of cells: on a processor one item a
-// row, so that memory is read in order; on a graphics processor one item a cell, neighbours side
-// by side. Almost all cells are convex enough that a sample needs the central tetrahedron's edge
-// functions and at most those of the corner behind a face; the others try each tetrahedron.
+// A work-group takes a block of cells: it maps the block's vertices into local memory, once each, and
+// then a work-item takes a cell, neighbours side by side. Almost all cells are convex enough that a sample
+// needs the central tetrahedron's edge functions and at most those of the corner behind a face; the others
+// try each tetrahedron.
 //
 // What the host puts in front of this text:
 //   REAL                 type of the interpolation: double where the device has it, else float
@@ -355,20 +355,48 @@ static void AddCounts(
   }
 }
 
+// A work-group takes a block of cells. positions: room for three ints a vertex of the block.
 __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   __global const uchar* active, __global char* coverage, __global KEY* winners,
-  __global uint* counters, const KernelParameters p ARRAY_PARAMETERS)
+  __global uint* counters, __local int* positions, const KernelParameters p ARRAY_PARAMETERS)
 {
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active };
-  Output output = { coverage, winners, 0, 0, 0, 0, 0 };
-  const int y = get_global_id(1);
-  const int z = p.LayersBegin + (int)get_global_id(2);
-  for (int x = get_global_id(0); x < p.Size[0] - 1; x += get_global_size(0))
+  const int first[3] = { get_group_id(0) * DEFORMVOLUME_BLOCK_X,
+    get_group_id(1) * DEFORMVOLUME_BLOCK_Y, p.LayersBegin + get_group_id(2) * DEFORMVOLUME_BLOCK_Z };
+  const SamplingMesh unmapped = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
+  const int width = DEFORMVOLUME_BLOCK_X + 1;
+  const int height = DEFORMVOLUME_BLOCK_Y + 1;
+  for (int i = get_local_id(0); i < DEFORMVOLUME_BLOCK_VERTICES; i += get_local_size(0))
   {
-    ResampleCell(&mesh, x, y, z, &output, &p ARRAY_ARGUMENTS);
+    const int x = first[0] + i % width;
+    const int y = first[1] + i / width % height;
+    const int z = first[2] + i / (width * height);
+    const int4 q = x < p.Size[0] && y < p.Size[1] && z <= p.LayersEnd
+      ? VertexPosition(&unmapped, x, y, z, &p)
+      : (int4)(INT_MIN, 0, 0, 0);
+    positions[3 * i] = q.x;
+    positions[3 * i + 1] = q.y;
+    positions[3 * i + 2] = q.z;
   }
-  const uint brick = ((uint)(z - p.BrickOrigin[2]) / DEFORMVOLUME_BRICK_Z * p.BrickCount[1] +
-                       (uint)(y - p.BrickOrigin[1]) / DEFORMVOLUME_BRICK_Y) *
+  barrier(CLK_LOCAL_MEM_FENCE);
+
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, positions,
+    { first[0], first[1], first[2] } };
+  Output output = { coverage, winners, 0, 0, 0, 0, 0 };
+  for (int i = get_local_id(0);
+       i < DEFORMVOLUME_BLOCK_X * DEFORMVOLUME_BLOCK_Y * DEFORMVOLUME_BLOCK_Z;
+       i += get_local_size(0))
+  {
+    const int x = first[0] + i % DEFORMVOLUME_BLOCK_X;
+    const int y = first[1] + i / DEFORMVOLUME_BLOCK_X % DEFORMVOLUME_BLOCK_Y;
+    const int z = first[2] + i / (DEFORMVOLUME_BLOCK_X * DEFORMVOLUME_BLOCK_Y);
+    if (x < p.Size[0] - 1 && y < p.Size[1] - 1 && z < p.LayersEnd)
+    {
+      ResampleCell(&mesh, x, y, z, &output, &p ARRAY_ARGUMENTS);
+    }
+  }
+  // The sums over all bricks are what counts here.
+  const uint brick = ((uint)(first[2] - p.BrickOrigin[2]) / DEFORMVOLUME_BRICK_Z * p.BrickCount[1] +
+                       (uint)(first[1] - p.BrickOrigin[1]) / DEFORMVOLUME_BRICK_Y) *
     p.BrickCount[0];
   AddCounts(&output, brick, counters, &p);
 }

@@ -337,6 +337,10 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
         kernel.setArg(i++, this->Bricks);
         kernel.setArg(i++, cl::Local(GetBrickMemory(*this->Context, this->Arrays)));
       }
+      else
+      {
+        kernel.setArg(i++, cl::Local(3 * sizeof(cl_int) * DEFORMVOLUME_BLOCK_VERTICES));
+      }
       kernel.setArg(i++, p);
       for (std::size_t a = 0; a < this->Arrays.size(); ++a)
       {
@@ -349,15 +353,16 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
       }
       else
       {
-        // On a processor one work-item takes a whole row of cells.
+        // A work-group takes a block; on a processor its only item does.
         const bool processor = this->Context->GetDevice().IsProcessor;
         const std::size_t group =
           processor && !this->WorkGroupSize ? 1 : this->GetGroupSize(kernel);
-        const std::size_t cells = static_cast<std::size_t>(p.Size[0] - 1);
+        const auto count = [](int cells, int size)
+        { return static_cast<std::size_t>((cells + size - 1) / size); };
         this->Launch(kernel,
-          cl::NDRange(processor ? group : (cells + group - 1) / group * group,
-            static_cast<std::size_t>(p.Size[1] - 1),
-            static_cast<std::size_t>(p.LayersEnd - p.LayersBegin)),
+          cl::NDRange(group * count(p.Size[0] - 1, DEFORMVOLUME_BLOCK_X),
+            count(p.Size[1] - 1, DEFORMVOLUME_BLOCK_Y),
+            count(p.LayersEnd - p.LayersBegin, DEFORMVOLUME_BLOCK_Z)),
           cl::NDRange(group, 1, 1));
       }
       this->ReportLaunch(request, previous);
