@@ -33,7 +33,7 @@ struct NamedCase
   int Resampler;
 };
 
-std::vector<NamedCase> MakeNamedCases()
+std::vector<NamedCase> MakeNamedCases(bool quick)
 {
   std::vector<NamedCase> cases;
   for (const NamedDeformation& deformation : Deformations)
@@ -41,8 +41,11 @@ std::vector<NamedCase> MakeNamedCases()
     for (const NamedResampler& resampler : AllResamplers)
     {
       // A field has no tetrahedra to rasterise.
-      if (deformation.NodesPerAxis != DenseField ||
-        resampler.Resampler != vtkDeformVolumeFilter::MESH_RASTERIZATION)
+      const bool possible = deformation.NodesPerAxis != DenseField ||
+        resampler.Resampler != vtkDeformVolumeFilter::MESH_RASTERIZATION;
+      const bool wanted = !quick || deformation.NodesPerAxis == CoarseNodes ||
+        resampler.Resampler == vtkDeformVolumeFilter::EXACT;
+      if (possible && wanted)
       {
         cases.push_back({ std::string(deformation.Name) + "/" + resampler.Name,
           deformation.NodesPerAxis, resampler.Resampler });
@@ -91,7 +94,7 @@ void RegisterComparison(const EvaluationSize& size)
   for (const Pose pose : { Pose::NearIdentity, Pose::General })
   {
     std::vector<Contestant<ComparisonStage>> contestants;
-    for (const NamedCase& named : MakeNamedCases())
+    for (const NamedCase& named : MakeNamedCases(size.Quick))
     {
       contestants.push_back(MakeCaseContestant(named.Name, pose, size.GetWarmUp(named.Resampler)));
     }
@@ -101,10 +104,10 @@ void RegisterComparison(const EvaluationSize& size)
     }
     RegisterRounds<ComparisonStage>(
       std::string("Deform/") + GetName(pose), size.GetRounds(),
-      []()
+      [size]()
       {
         auto stage = std::make_shared<ComparisonStage>();
-        for (const NamedCase& named : MakeNamedCases())
+        for (const NamedCase& named : MakeNamedCases(size.Quick))
         {
           stage->Cases[named.Name] =
             std::make_unique<BenchmarkCase>(stage->Volume, named.NodesPerAxis, named.Resampler);

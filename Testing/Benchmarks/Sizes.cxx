@@ -21,7 +21,7 @@ void RegisterTetrahedra(const EvaluationSize& size)
 {
   for (const int nodes : { 5, 9, 13, 21, 41, 80 })
   {
-    if (size.Quick && (nodes == 9 || nodes == 21))
+    if (size.Quick && (nodes == 9 || nodes == 21 || nodes == 41))
     {
       continue;
     }
