@@ -21,6 +21,7 @@ set(helpers
   InputUpdate
   LinkExtrapolation
   MappingCache
+  OutputArrays
   OutputExtent
   ResamplerChoice
   RunBuilder

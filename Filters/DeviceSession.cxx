@@ -38,8 +38,8 @@ std::string DeviceSession::SetDevice(
 }
 
 void DeviceSession::CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
-  const Extent& outputExtent, const Deformation& deformation, std::uint64_t runBytes,
-  Resampling method) const
+  const Extent& outputExtent, std::uint64_t heldBytes, const Deformation& deformation,
+  std::uint64_t runBytes, Resampling method) const
 {
   const bool field = deformation.IsField();
   std::size_t numberOfNodes = deformation.GetRestPoints().size();
@@ -54,11 +54,11 @@ void DeviceSession::CheckMemory(const Lattice& lattice, const std::vector<Volume
   if (method == Resampling::MeshRasterization)
   {
     this->Deformer.CheckRasterizationMemory(
-      lattice, arrays, outputExtent, numberOfNodes, deformation.GetTetrahedra().size());
+      lattice, arrays, outputExtent, numberOfNodes, deformation.GetTetrahedra().size(), heldBytes);
     return;
   }
   this->Deformer.CheckMemory(lattice, arrays, outputExtent, numberOfNodes,
-    field ? 0 : deformation.GetTetrahedra().size(), field, runBytes);
+    field ? 0 : deformation.GetTetrahedra().size(), field, runBytes, heldBytes);
 }
 
 void DeviceSession::SetVolume(const Lattice& lattice, vtkImageData* volume,
@@ -91,10 +91,12 @@ void DeviceSession::SetVolume(const Lattice& lattice, vtkImageData* volume,
   if (this->SentArrays != stamp)
   {
     std::vector<VolumeArray> sent = described;
-    std::vector<vtkSmartPointer<vtkDataArray>> copies(arrays.size());
     for (std::size_t i = 0; i < arrays.size(); ++i)
     {
-      sent[i].Data = GetValues(arrays[i].Array, copies[i]);
+      if (!sent[i].Data)
+      {
+        CopyIntoCommonLayout(arrays[i].Array, sent[i]);
+      }
     }
     this->Deformer.SetArrays(sent);
     this->SentArrays = stamp;

@@ -27,8 +27,8 @@ public:
 
   /// See VolumeDeformer.
   void CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
-    const Extent& outputExtent, const Deformation& deformation, std::uint64_t runBytes,
-    Resampling method = Resampling::Exact) const;
+    const Extent& outputExtent, std::uint64_t heldBytes, const Deformation& deformation,
+    std::uint64_t runBytes, Resampling method = Resampling::Exact) const;
 
   /// A change to or from the method MeshRasterization sends the volume anew.
   void SetVolume(const Lattice& lattice, vtkImageData* volume,

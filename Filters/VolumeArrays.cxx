@@ -11,6 +11,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <cstring>
+#include <memory>
 #include <type_traits>
 
 namespace deformvolume
@@ -60,6 +61,12 @@ void* FindValues(vtkDataArray* array)
     default:
       return nullptr;
   }
+}
+
+std::shared_ptr<const void> MakeOwner(vtkDataArray* array)
+{
+  array->Register(nullptr);
+  return { array, [](vtkDataArray* owned) { owned->UnRegister(nullptr); } };
 }
 
 std::string GetLabel(vtkAbstractArray* array, int index)
@@ -145,6 +152,11 @@ std::vector<VolumeArray> Describe(const std::vector<SourceArray>& arrays, double
   {
     VolumeArray array;
     FindElementType(source.Array->GetDataType(), array.Type);
+    if (const void* values = FindValues(source.Array))
+    {
+      array.Data = values;
+      array.Owner = MakeOwner(source.Array);
+    }
     array.Components = source.Array->GetNumberOfComponents();
     array.Categorical = source.Categorical;
     array.Background = background;
@@ -166,15 +178,13 @@ Stamp GetStamp(const std::vector<SourceArray>& arrays)
   return stamp;
 }
 
-const void* GetValues(vtkDataArray* array, vtkSmartPointer<vtkDataArray>& copy)
+void CopyIntoCommonLayout(vtkDataArray* array, VolumeArray& described)
 {
-  if (const void* values = FindValues(array))
-  {
-    return values;
-  }
-  copy.TakeReference(vtkDataArray::CreateDataArray(array->GetDataType()));
+  const auto copy =
+    vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
   copy->DeepCopy(array);
-  return FindValues(copy);
+  described.Data = FindValues(copy);
+  described.Owner = MakeOwner(copy);
 }
 
 vtkSmartPointer<vtkDataArray> MakeLike(vtkDataArray* array, vtkIdType numberOfTuples)

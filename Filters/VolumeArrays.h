@@ -35,15 +35,14 @@ struct SourceArray
 std::vector<SourceArray> SelectArrays(vtkImageData* volume,
   const std::set<std::string>& categorical, std::vector<std::string>& leftOut);
 
-/// Arrays without their data.
+/// The arrays, with their data and an owner where the kernels can read these as they are.
 std::vector<VolumeArray> Describe(const std::vector<SourceArray>& arrays, double background);
 
 /// What an upload of arrays depends on.
 Stamp GetStamp(const std::vector<SourceArray>& arrays);
 
-/// The values of an array, tuple after tuple; an array in another layout is copied, and the copy
-/// kept in `copy`.
-const void* GetValues(vtkDataArray* array, vtkSmartPointer<vtkDataArray>& copy);
+/// Gives an array in another layout the data and the owner of a copy.
+void CopyIntoCommonLayout(vtkDataArray* array, VolumeArray& described);
 
 /// A new array with the type, components and names of another and the given number of tuples.
 vtkSmartPointer<vtkDataArray> MakeLike(vtkDataArray* array, vtkIdType numberOfTuples);

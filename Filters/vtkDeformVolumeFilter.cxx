@@ -8,14 +8,12 @@
 #include "OutputExtent.h"
 #include "VolumeArrays.h"
 
-#include "vtkCharArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -135,6 +133,7 @@ vtkTypeInt64 vtkDeformVolumeFilter::GetDeviceMemory()
 void vtkDeformVolumeFilter::ReleaseDeviceMemory()
 {
   this->Internals->Device.ReleaseMemory();
+  this->Internals->Outputs.Forget();
 }
 
 //------------------------------------------------------------------------------
@@ -199,6 +198,7 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   {
     data->Initialize();
   }
+  this->Internals->Outputs.Forget();
   if (message.empty())
   {
     return 1;
@@ -317,6 +317,7 @@ int vtkDeformVolumeFilter::RequestData(
     return 0;
   }
   // Nothing of an earlier execution is left standing beside a failure.
+  image->Initialize();
   this->PreprocessingTime = this->TransferTime = this->MappingTime = this->ResamplingTime = 0.0;
   this->NumberOfInvertedTetrahedra = this->NumberOfFlatTetrahedra = this->NumberOfCoveredVoxels = 0;
   vtkImageData* volume = vtkImageData::GetData(input[0]);
@@ -340,9 +341,9 @@ int vtkDeformVolumeFilter::RequestData(
   outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), request.OutputExtent.data());
   if (deformvolume::GetNumberOfPoints(request.OutputExtent) == 0)
   {
-    image->Initialize();
     return 1;
   }
+  const vtkIdType numberOfPoints = deformvolume::GetNumberOfPoints(request.OutputExtent);
   const deformvolume::Lattice lattice{ geometry.PointExtent,
     { { source.Scale.x, source.Scale.y, source.Scale.z } } };
   const bool extrapolate = this->OutsideMode == EXTRAPOLATE;
@@ -356,11 +357,12 @@ int vtkDeformVolumeFilter::RequestData(
   request.Interpolation = this->Interpolation == CUBIC_INTERPOLATION
     ? deformvolume::Interpolation::Cubic
     : deformvolume::Interpolation::Linear;
+  const std::uint64_t heldBytes = this->Internals->Outputs.Prepare(arrays, numberOfPoints);
   const std::function<void(const Extent&, deformvolume::Resampling)> checkMemory =
     [&](const Extent& extent, deformvolume::Resampling method)
   {
     const bool mapped = method != deformvolume::Resampling::MeshRasterization;
-    device.CheckMemory(lattice, described, extent, deformation,
+    device.CheckMemory(lattice, described, extent, heldBytes, deformation,
       mapped ? this->Internals->Mapping.GetRunBytes(deformation, geometry, extrapolate) : 0,
       method);
   };
@@ -386,27 +388,23 @@ int vtkDeformVolumeFilter::RequestData(
 
   const ImageGeometry outputGeometry = this->Internals->GetOutputGeometry(geometry);
   const glm::dmat3 rows = glm::transpose(outputGeometry.Direction);
-  image->Initialize();
   image->SetExtent(request.OutputExtent.data());
   image->SetOrigin(glm::value_ptr(outputGeometry.Origin));
   image->SetSpacing(glm::value_ptr(outputGeometry.Spacing));
   image->SetDirectionMatrix(glm::value_ptr(rows));
   image->GetFieldData()->ShallowCopy(volume->GetFieldData());
-  const vtkIdType numberOfPoints = image->GetNumberOfPoints();
-  for (const deformvolume::SourceArray& array : arrays)
-  {
-    const auto made = deformvolume::MakeLike(array.Array, numberOfPoints);
-    request.Outputs.push_back(deformvolume::GetWritableValues(made));
-    image->GetPointData()->AddArray(made);
-  }
+  this->Internals->Outputs.Make(arrays, image, request);
   deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
-  vtkNew<vtkCharArray> mask;
-  mask->SetName("vtkValidPointMask");
-  mask->SetNumberOfTuples(numberOfPoints);
-  image->GetPointData()->AddArray(mask);
-  request.Coverage = reinterpret_cast<signed char*>(mask->GetPointer(0));
 
   const deformvolume::DeformReport report = device.Deform(request);
+  if (vtkInternals::IsReleased(outInfo))
+  {
+    this->Internals->Outputs.Forget();
+  }
+  else
+  {
+    this->Internals->Outputs.Keep();
+  }
   this->PreprocessingTime = this->Internals->Mapping.TakeTime();
   this->TransferTime = report.TransferTime;
   this->MappingTime = report.MappingTime;

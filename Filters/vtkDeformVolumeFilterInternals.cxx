@@ -109,7 +109,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(
     // The links are made before any output is asked for: what they need is checked here.
     this->Device.SetDevice(this->Self->Device, static_cast<std::uint64_t>(this->Self->MemoryLimit),
       static_cast<std::size_t>(this->Self->WorkGroupSize));
-    this->Device.CheckMemory(lattice, {}, { { 0, -1, 0, -1, 0, -1 } }, this->Deformation,
+    this->Device.CheckMemory(lattice, {}, { { 0, -1, 0, -1, 0, -1 } }, 0, this->Deformation,
       this->Mapping.GetRunBytes(this->Deformation, volume, true));
     this->Mapping.Update(this->Deformation, volume, true, {});
     return deformvolume::ComputeDeformedBounds(lattice, this->Mapping.GetLinks(),
@@ -218,6 +218,13 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
 void vtkDeformVolumeFilter::vtkInternals::ForgetRequestedExtent(vtkInformation* output)
 {
   output->Remove(vtkStreamingDemandDrivenPipeline::COMBINED_UPDATE_EXTENT());
+}
+
+//------------------------------------------------------------------------------
+bool vtkDeformVolumeFilter::vtkInternals::IsReleased(vtkInformation* output)
+{
+  return vtkDataObject::GetGlobalReleaseDataFlag() != 0 ||
+    output->Get(vtkDemandDrivenPipeline::RELEASE_DATA()) != 0;
 }
 
 //------------------------------------------------------------------------------

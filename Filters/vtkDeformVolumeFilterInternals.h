@@ -7,6 +7,7 @@
 #include "DeviceSession.h"
 #include "ImageGeometry.h"
 #include "MappingCache.h"
+#include "OutputArrays.h"
 
 #include "vtkDeformVolumeFilter.h"
 #include "vtkTimeStamp.h"
@@ -47,6 +48,9 @@ public:
   /// next one must start anew.
   static void ForgetRequestedExtent(vtkInformation* output);
 
+  /// Whether the output is given up as soon as those after it have used it.
+  static bool IsReleased(vtkInformation* output);
+
   /// Warns where what is ignored changed since the last call.
   void WarnOfIgnored(vtkImageData* volume, const std::vector<std::string>& leftOut);
 
@@ -57,6 +61,7 @@ public:
   deformvolume::Deformation Deformation;
   deformvolume::MappingCache Mapping;
   deformvolume::DeviceSession Device;
+  deformvolume::OutputArrays Outputs;
 
   // An error is told once: what comes after a failed information pass is silent.
   bool InformationFailed = false;

@@ -14,12 +14,23 @@ namespace
 
 const int BrickSize[3] = { DEFORMVOLUME_BRICK_X, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z };
 
-} // namespace
-
-std::uint64_t GetMemory(const cl::Buffer& buffer)
+/// Waits, however it is left, for transfers from memory of the caller.
+class TransferGuard
 {
-  return buffer() ? buffer.getInfo<CL_MEM_SIZE>() : 0;
-}
+public:
+  explicit TransferGuard(const cl::CommandQueue& queue)
+    : Queue(queue)
+  {
+  }
+  ~TransferGuard() { clFinish(this->Queue()); }
+  TransferGuard(const TransferGuard&) = delete;
+  TransferGuard& operator=(const TransferGuard&) = delete;
+
+private:
+  cl::CommandQueue Queue;
+};
+
+} // namespace
 
 DeviceLattice::DeviceLattice(OpenCLContext& context, const cl::CommandQueue& queue,
   const Lattice& lattice, std::size_t bytesPerVoxel, std::uint64_t allocationLimit, bool withLinks)
@@ -32,7 +43,7 @@ DeviceLattice::DeviceLattice(OpenCLContext& context, const cl::CommandQueue& que
   const std::uint64_t planeBytes =
     static_cast<std::uint64_t>(plane) * std::max(bytesPerVoxel, withLinks ? sizeof(VertexLink) : 0);
   const std::uint64_t planes = allocationLimit / planeBytes;
-  const std::uint64_t neighbours = 4; // planes beyond the number of layers, and room to read ahead
+  const std::uint64_t neighbours = 3; // planes beyond the number of layers
   if (planes <= neighbours)
   {
     throw Error("A slice of the volume needs " + std::to_string(planeBytes) +
@@ -82,14 +93,14 @@ cl::Buffer DeviceLattice::Send(const void* data, std::size_t bytesPerElement,
 {
   const std::uint64_t layerBytes = static_cast<std::uint64_t>(elementsPerLayer) * bytesPerElement;
   const std::uint64_t bytes = layerBytes * static_cast<std::uint64_t>(end - begin);
-  // Kernels may load whole vectors that reach over the end.
-  const std::uint64_t room = bytes + DEFORMVOLUME_READ_AHEAD * bytesPerElement;
-  if (room > this->AllocationLimit)
+  if (bytes > this->AllocationLimit)
   {
-    throw Error("An array of the volume needs " + std::to_string(room) +
+    throw Error("An array of the volume needs " + std::to_string(bytes) +
       " bytes in one piece, and the device gives no more than " +
       std::to_string(this->AllocationLimit) + ".");
   }
+  // No buffer is of no bytes.
+  const std::uint64_t room = std::max<std::uint64_t>(bytes, bytesPerElement);
   cl::Buffer buffer = previous;
   if (deformvolume::GetMemory(buffer) != room)
   {
@@ -98,27 +109,46 @@ cl::Buffer DeviceLattice::Send(const void* data, std::size_t bytesPerElement,
   if (bytes > 0)
   {
     this->Queue.enqueueWriteBuffer(
-      buffer, CL_TRUE, 0, bytes, static_cast<const char*>(data) + layerBytes * begin);
+      buffer, CL_FALSE, 0, bytes, static_cast<const char*>(data) + layerBytes * begin);
   }
   return buffer;
 }
 
 void DeviceLattice::SetArrays(const std::vector<VolumeArray>& arrays)
 {
+  const TransferGuard guard(this->Queue);
   const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
+  const auto last = static_cast<std::ptrdiff_t>(this->Owners.size());
   for (LatticeChunk& chunk : this->Chunks)
   {
     chunk.Arrays.resize(arrays.size());
     for (std::size_t i = 0; i < arrays.size(); ++i)
     {
-      chunk.Arrays[i] = this->Send(arrays[i].Data, GetTupleSize(arrays[i]), plane,
-        chunk.PlanesBegin, chunk.PlanesEnd, chunk.Arrays[i]);
+      const VolumeArray& array = arrays[i];
+      const std::uint64_t bytesPerPlane = static_cast<std::uint64_t>(plane) * GetTupleSize(array);
+      if (IsUsedInPlace(this->Context, array))
+      {
+        // The kernels only read it.
+        chunk.Arrays[i] = MakeBufferOver(this->Context, CL_MEM_READ_ONLY,
+          static_cast<char*>(const_cast<void*>(array.Data)) +
+            bytesPerPlane * static_cast<std::uint64_t>(chunk.PlanesBegin),
+          bytesPerPlane * static_cast<std::uint64_t>(chunk.PlanesEnd - chunk.PlanesBegin));
+        this->Owners.push_back(array.Owner);
+      }
+      else
+      {
+        chunk.Arrays[i] = this->Send(array.Data, GetTupleSize(array), plane, chunk.PlanesBegin,
+          chunk.PlanesEnd, chunk.Arrays[i]);
+      }
     }
   }
+  // Only now no buffer lies over the memory of the last ones.
+  this->Owners.erase(this->Owners.begin(), this->Owners.begin() + last);
 }
 
 void DeviceLattice::SetLinks(const VertexLink* links)
 {
+  const TransferGuard guard(this->Queue);
   this->ForgetRuns();
   this->WithLinks = true;
   this->StateChanged = true;
@@ -160,9 +190,10 @@ void DeviceLattice::SetRuns(const VertexRuns& runs)
     sizeof(VertexRun) == 8 && sizeof(TetrahedronRecord) == 64, "as the kernels have it");
   this->ForgetMesh();
   const std::int64_t rows = this->GetSize(1);
-  std::vector<std::uint32_t> begins;
   for (LatticeChunk& chunk : this->Chunks)
   {
+    std::vector<std::uint32_t> begins;
+    const TransferGuard guard(this->Queue);
     const auto first = runs.RowBegins.begin() + rows * chunk.PlanesBegin;
     const auto last = runs.RowBegins.begin() + rows * chunk.PlanesEnd;
     chunk.Runs = this->Send(runs.Runs.data(), sizeof(VertexRun), 1, *first, *last, chunk.Runs);
@@ -195,6 +226,8 @@ void DeviceLattice::SendRecords(const std::vector<RestTetrahedron>& tetrahedra)
     owners.push_back(tetrahedron.Tetrahedron);
   }
   const auto size = static_cast<std::int64_t>(tetrahedra.size());
+  std::vector<float> rounded;
+  const TransferGuard guard(this->Queue);
   if (HasDouble(this->Context))
   {
     this->RestTetrahedra =
@@ -202,7 +235,7 @@ void DeviceLattice::SendRecords(const std::vector<RestTetrahedron>& tetrahedra)
   }
   else
   {
-    const std::vector<float> rounded(values.begin(), values.end());
+    rounded.assign(values.begin(), values.end());
     this->RestTetrahedra =
       this->Send(rounded.data(), 15 * sizeof(float), 1, 0, size, this->RestTetrahedra);
   }
@@ -235,6 +268,7 @@ cl::Event DeviceLattice::EvaluateTetrahedra(
 
 void DeviceLattice::SetBlanked(const unsigned char* blanked)
 {
+  const TransferGuard guard(this->Queue);
   this->WithBlanked = blanked != nullptr;
   this->StateChanged = true;
   const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
@@ -248,6 +282,7 @@ void DeviceLattice::SetBlanked(const unsigned char* blanked)
 
 void DeviceLattice::SetActive(const unsigned char* active)
 {
+  const TransferGuard guard(this->Queue);
   this->WithActive = active != nullptr;
   this->StateChanged = true;
   const std::int64_t layer =
@@ -336,8 +371,7 @@ void DeviceLattice::UpdateState(
   for (LatticeChunk& chunk : this->Chunks)
   {
     const std::uint64_t bytes = static_cast<std::uint64_t>(this->GetSize(0)) * this->GetSize(1) *
-        static_cast<std::uint64_t>(chunk.PlanesEnd - chunk.PlanesBegin) +
-      DEFORMVOLUME_READ_AHEAD;
+      static_cast<std::uint64_t>(chunk.PlanesEnd - chunk.PlanesBegin);
     if (deformvolume::GetMemory(chunk.State) != bytes)
     {
       chunk.State = cl::Buffer(this->Context.GetContext(), CL_MEM_READ_WRITE, bytes);

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeDeviceLattice_h
 #define DeformVolumeDeviceLattice_h
 
+#include "HostMemory.h"
 #include "KernelParameters.h"
 #include "OpenCLContext.h"
 #include "VolumeDeformer.h"
@@ -37,6 +38,7 @@ public:
   DeviceLattice(OpenCLContext& context, const cl::CommandQueue& queue, const Lattice& lattice,
     std::size_t bytesPerVoxel, std::uint64_t allocationLimit, bool withLinks = true);
 
+  /// Arrays with an owner are used where they lie, if the device can.
   void SetArrays(const std::vector<VolumeArray>& arrays);
   void SetLinks(const VertexLink* links);
   /// The runs were checked (CheckRuns).
@@ -96,6 +98,7 @@ public:
 
 private:
   int GetBrickOrigin(int axis) const;
+  /// Reads the data until the queue has finished.
   cl::Buffer Send(const void* data, std::size_t bytesPerElement, std::int64_t elementsPerLayer,
     std::int64_t begin, std::int64_t end, const cl::Buffer& previous);
   void ForgetRuns();
@@ -108,6 +111,7 @@ private:
   cl::CommandQueue Queue;
   Lattice Shape;
   std::uint64_t AllocationLimit;
+  std::vector<std::shared_ptr<const void>> Owners; // of arrays that are used in place
   std::vector<LatticeChunk> Chunks;
   cl::Buffer RestPositions;
   cl::Buffer Marked; // sources, while the state is brought up to date
@@ -122,9 +126,6 @@ private:
   bool WithActive = false;
   bool StateChanged = true;
 };
-
-/// Bytes of a buffer; 0 for none.
-std::uint64_t GetMemory(const cl::Buffer& buffer);
 
 } // namespace deformvolume
 

@@ -90,11 +90,11 @@ typedef struct
 #define DEFORMVOLUME_COUNT_ASSUMED 4 // nonzero where cells on the border took it that there are none such
 #define DEFORMVOLUME_COUNTERS 5
 
-// Elements that may be read behind the end of a buffer of vertices, by vector loads.
-#define DEFORMVOLUME_READ_AHEAD 64
-
 // Output voxels that a work-item of the kernel CountCovered takes.
 #define DEFORMVOLUME_COUNTED_VOXELS 4096
+
+// Bytes that a work-item of the kernels Fill1 to Fill8 writes.
+#define DEFORMVOLUME_FILLED_BYTES 65536
 
 // State of a vertex of the sampling mesh.
 #define DEFORMVOLUME_VERTEX_SOURCE 1   // it has a deformed position and may be interpolated

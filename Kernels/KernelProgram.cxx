@@ -181,9 +181,9 @@ cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping)
     Options);
 }
 
-cl::Program GetCountingProgram(OpenCLContext& context)
+cl::Program GetOutputProgram(OpenCLContext& context)
 {
-  return context.GetProgram(GetSharedText() + CoverageCount_cl, Options);
+  return context.GetProgram(GetSharedText() + CoverageCount_cl + OutputClearing_cl, Options);
 }
 
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,

@@ -32,8 +32,8 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
 /// Bytes of local memory that the kernel ResampleBricks wants.
 std::size_t GetBrickMemory(const OpenCLContext& context, const std::vector<VolumeArray>& arrays);
 
-/// The kernel CountCovered (CoverageCount.cl).
-cl::Program GetCountingProgram(OpenCLContext& context);
+/// What is done with the output besides resampling (CoverageCount.cl, OutputClearing.cl).
+cl::Program GetOutputProgram(OpenCLContext& context);
 
 /// The published resampling (PublishedResampling.cl) for arrays of these types.
 cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays);

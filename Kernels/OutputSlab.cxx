@@ -2,23 +2,42 @@
 #include "OutputSlab.h"
 
 #include "Background.h"
-#include "DeviceLattice.h" // for GetMemory
 #include "KernelProgram.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
+#include <type_traits>
 
 namespace deformvolume
 {
 namespace
 {
 
+/// Fills a buffer of so many elements. Processors do that with a kernel: see OutputClearing.cl.
 template <typename T>
-void Fill(const cl::CommandQueue& queue, const cl::Buffer& buffer, double value,
-  std::vector<cl::Event>& events)
+void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer, T value,
+  std::uint64_t size, std::vector<cl::Event>& events)
 {
   events.emplace_back();
-  queue.enqueueFillBuffer(buffer, ClampTo<T>(value), 0, GetMemory(buffer), nullptr, &events.back());
+  if (!context.GetDevice().IsProcessor)
+  {
+    queue.enqueueFillBuffer(buffer, value, 0, size * sizeof(T), nullptr, &events.back());
+    return;
+  }
+  using Bits = std::conditional_t<sizeof(T) == 1, cl_uchar,
+    std::conditional_t<sizeof(T) == 2, cl_ushort,
+      std::conditional_t<sizeof(T) == 4, cl_uint, cl_ulong>>>;
+  Bits bits;
+  std::memcpy(&bits, &value, sizeof(T));
+  cl::Kernel kernel(GetOutputProgram(context), ("Fill" + std::to_string(sizeof(T))).c_str());
+  kernel.setArg(0, buffer);
+  kernel.setArg(1, cl_ulong{ size });
+  kernel.setArg(2, bits);
+  constexpr std::uint64_t step = DEFORMVOLUME_FILLED_BYTES / sizeof(T);
+  queue.enqueueNDRangeKernel(kernel, cl::NullRange,
+    cl::NDRange(static_cast<std::size_t>((size + step - 1) / step)), cl::NullRange, nullptr,
+    &events.back());
 }
 
 void Reserve(OpenCLContext& context, cl::Buffer& buffer, std::uint64_t bytes)
@@ -27,6 +46,34 @@ void Reserve(OpenCLContext& context, cl::Buffer& buffer, std::uint64_t bytes)
   {
     buffer = cl::Buffer(); // free the old one before the new one is made
     buffer = cl::Buffer(context.GetContext(), CL_MEM_READ_WRITE, bytes);
+  }
+}
+
+/// A buffer over memory of the host, if the device can work there, else one of the device.
+void Place(OpenCLContext& context, cl::Buffer& buffer, void* memory, std::size_t elementSize,
+  std::uint64_t bytes)
+{
+  if (CanWorkInPlace(context, memory, elementSize))
+  {
+    buffer = MakeBufferOver(context, CL_MEM_READ_WRITE, memory, bytes);
+  }
+  else
+  {
+    Reserve(context, buffer, bytes);
+  }
+}
+
+bool IsInPlace(const cl::Buffer& buffer)
+{
+  return buffer() && deformvolume::GetMemory(buffer) == 0;
+}
+
+/// Lets go of memory of the host.
+void Release(cl::Buffer& buffer)
+{
+  if (IsInPlace(buffer))
+  {
+    buffer = cl::Buffer();
   }
 }
 
@@ -67,10 +114,39 @@ std::vector<Extent> OutputSlab::Split(const Extent& output, const std::vector<Vo
   return slabs;
 }
 
-void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
-  const Extent& extent, const std::vector<VolumeArray>& arrays, const Lattice& lattice,
-  std::size_t numberOfBricks, std::vector<cl::Event>& events)
+std::uint64_t OutputSlab::GetBytesPerVoxel(const OpenCLContext& context,
+  const std::vector<VolumeArray>& arrays, const DeformRequest& request)
 {
+  std::uint64_t bytes = CanWorkInPlace(context, request.Coverage, 1) ? 0 : 1;
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    if (!CanWorkInPlace(context, request.Outputs[i], GetElementSize(arrays[i].Type)))
+    {
+      bytes += GetTupleSize(arrays[i]);
+    }
+  }
+  return bytes;
+}
+
+void OutputSlab::Clear(OpenCLContext& context, const cl::Buffer& buffer, double value,
+  ElementType type, std::uint64_t size, std::vector<cl::Event>& events) const
+{
+  switch (type)
+  {
+#define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
+  case ElementType::name:                                                                          \
+    Fill(context, this->Queue, buffer, ClampTo<ctype>(value), size, events);                       \
+    break;
+    DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
+#undef DEFORMVOLUME_CASE
+  }
+}
+
+void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
+  const Extent& extent, const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+  const Lattice& lattice, std::size_t numberOfBricks, std::vector<cl::Event>& events)
+{
+  this->Finish();
   this->Queue = queue;
   this->SlabExtent = extent;
   this->WinnerSize = GetWinnerSize(lattice);
@@ -81,33 +157,35 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   }
   this->Arrays.resize(arrays.size());
   this->TupleSizes.resize(arrays.size());
+  const std::uint64_t offset = this->GetOffset(request);
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
-    this->TupleSizes[i] = GetTupleSize(arrays[i]);
-    Reserve(context, this->Arrays[i], this->NumberOfVoxels * this->TupleSizes[i]);
-    switch (arrays[i].Type)
-    {
-#define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
-  case ElementType::name:                                                                          \
-    Fill<ctype>(queue, this->Arrays[i], arrays[i].Background, events);                             \
-    break;
-      DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
-#undef DEFORMVOLUME_CASE
-    }
+    const VolumeArray& array = arrays[i];
+    this->TupleSizes[i] = GetTupleSize(array);
+    Place(context, this->Arrays[i],
+      static_cast<char*>(request.Outputs[i]) + offset * this->TupleSizes[i],
+      GetElementSize(array.Type), this->NumberOfVoxels * this->TupleSizes[i]);
+    this->Clear(context, this->Arrays[i], array.Background, array.Type,
+      this->NumberOfVoxels * static_cast<std::uint64_t>(array.Components), events);
   }
-  Reserve(context, this->Coverage, this->NumberOfVoxels);
-  Fill<std::int8_t>(queue, this->Coverage, 0.0, events);
+  Place(context, this->Coverage, request.Coverage + offset, 1, this->NumberOfVoxels);
+  this->Clear(context, this->Coverage, 0.0, ElementType::Int8, this->NumberOfVoxels, events);
   this->NumberOfBricks = numberOfBricks;
-  Reserve(context, this->Counters, this->NumberOfBricks * DEFORMVOLUME_COUNTERS * sizeof(cl_uint));
-  Fill<std::uint32_t>(queue, this->Counters, 0.0, events);
+  const std::uint64_t counters = this->NumberOfBricks * DEFORMVOLUME_COUNTERS;
+  Reserve(context, this->Counters, counters * sizeof(cl_uint));
+  Fill(context, this->Queue, this->Counters, cl_uint{ 0 }, counters, events);
+}
+
+std::uint64_t OutputSlab::GetMissingWinnerMemory() const
+{
+  return this->NumberOfVoxels * this->WinnerSize - deformvolume::GetMemory(this->Winners);
 }
 
 void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events)
 {
   Reserve(context, this->Winners, this->NumberOfVoxels * this->WinnerSize);
-  events.emplace_back();
-  this->Queue.enqueueFillBuffer(this->Winners, std::numeric_limits<std::uint32_t>::max(), 0,
-    deformvolume::GetMemory(this->Winners), nullptr, &events.back());
+  Fill(context, this->Queue, this->Winners, std::numeric_limits<cl_uint>::max(),
+    this->NumberOfVoxels * this->WinnerSize / sizeof(cl_uint), events);
 }
 
 std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::Event>& events)
@@ -115,7 +193,7 @@ std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::E
   const std::size_t items = static_cast<std::size_t>(
     (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS);
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, items * sizeof(cl_uint));
-  cl::Kernel kernel(GetCountingProgram(context), "CountCovered");
+  cl::Kernel kernel(GetOutputProgram(context), "CountCovered");
   kernel.setArg(0, this->Coverage);
   kernel.setArg(1, cl_ulong{ this->NumberOfVoxels });
   kernel.setArg(2, sums);
@@ -176,21 +254,56 @@ void OutputSlab::SetParameters(KernelParameters& parameters) const
   }
 }
 
-void OutputSlab::Read(const DeformRequest& request)
+std::uint64_t OutputSlab::GetOffset(const DeformRequest& request) const
 {
   const std::uint64_t plane = static_cast<std::uint64_t>(GetSize(this->SlabExtent, 0)) *
     static_cast<std::uint64_t>(GetSize(this->SlabExtent, 1));
-  const std::uint64_t offset = plane *
+  return plane *
     static_cast<std::uint64_t>(std::int64_t{ this->SlabExtent[4] } - request.OutputExtent[4]);
+}
+
+void OutputSlab::Read(const cl::CommandQueue& queue, const DeformRequest& request)
+{
+  this->ReadQueue = queue;
+  const std::uint64_t offset = this->GetOffset(request);
+  const auto read = [&](const cl::Buffer& buffer, std::uint64_t bytes, char* target)
+  {
+    if (IsInPlace(buffer))
+    {
+      // What was written is sure to be in the host's memory only while it is mapped there.
+      void* mapped = queue.enqueueMapBuffer(buffer, CL_FALSE, CL_MAP_READ, 0, bytes);
+      queue.enqueueUnmapMemObject(buffer, mapped);
+    }
+    else
+    {
+      queue.enqueueReadBuffer(buffer, CL_FALSE, 0, bytes, target);
+    }
+  };
   for (std::size_t i = 0; i < this->Arrays.size(); ++i)
   {
-    this->Queue.enqueueReadBuffer(this->Arrays[i], CL_FALSE, 0,
-      this->NumberOfVoxels * this->TupleSizes[i],
+    read(this->Arrays[i], this->NumberOfVoxels * this->TupleSizes[i],
       static_cast<char*>(request.Outputs[i]) + offset * this->TupleSizes[i]);
   }
-  this->Queue.enqueueReadBuffer(
-    this->Coverage, CL_FALSE, 0, this->NumberOfVoxels, request.Coverage + offset);
-  this->Queue.finish();
+  read(this->Coverage, this->NumberOfVoxels, reinterpret_cast<char*>(request.Coverage) + offset);
+  queue.flush();
+}
+
+void OutputSlab::Finish()
+{
+  // The calls of C: they throw nothing, and this is also called after a failure.
+  for (cl::CommandQueue* queue : { &this->Queue, &this->ReadQueue })
+  {
+    if ((*queue)())
+    {
+      clFinish((*queue)());
+    }
+  }
+  this->ReadQueue = cl::CommandQueue();
+  for (cl::Buffer& array : this->Arrays)
+  {
+    Release(array);
+  }
+  Release(this->Coverage);
 }
 
 std::uint64_t OutputSlab::GetMemory() const

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeOutputSlab_h
 #define DeformVolumeOutputSlab_h
 
+#include "HostMemory.h"
 #include "KernelParameters.h"
 #include "OpenCLContext.h"
 #include "VolumeDeformer.h"
@@ -31,12 +32,19 @@ public:
   static std::vector<Extent> Split(const Extent& output, const std::vector<VolumeArray>& arrays,
     const Lattice& lattice, std::uint64_t allocationLimit);
 
-  /// Makes room for a slab, or uses what is there, and fills it with the background. Events of
-  /// launches are added to a list.
-  void Prepare(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
-    const std::vector<VolumeArray>& arrays, const Lattice& lattice, std::size_t numberOfBricks,
-    std::vector<cl::Event>& events);
+  /// Bytes of a voxel of the request's output that need memory of the device: those of the arrays
+  /// and the coverage that are not worked on in place.
+  static std::uint64_t GetBytesPerVoxel(const OpenCLContext& context,
+    const std::vector<VolumeArray>& arrays, const DeformRequest& request);
 
+  /// Makes room for a slab of the request's output, or uses what is there, or the memory of the
+  /// request; fills it with the background. Events of launches are added to a list.
+  void Prepare(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
+    const DeformRequest& request, const std::vector<VolumeArray>& arrays, const Lattice& lattice,
+    std::size_t numberOfBricks, std::vector<cl::Event>& events);
+
+  /// Bytes that PrepareWinners will allocate.
+  std::uint64_t GetMissingWinnerMemory() const;
   void PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events);
 
   std::uint64_t CountCovered(OpenCLContext& context, std::vector<cl::Event>& events);
@@ -54,13 +62,21 @@ public:
   const cl::Buffer& GetWinners() const { return this->Winners() ? this->Winners : this->Coverage; }
   const cl::Buffer& GetCounters() const { return this->Counters; }
 
-  /// Copies the slab to its place in the request's memory.
-  void Read(const DeformRequest& request);
+  /// Begins to copy the slab, which is done, to its place in the request's memory, in a queue of
+  /// its own.
+  void Read(const cl::CommandQueue& queue, const DeformRequest& request);
+  /// Waits until the slab is in the request's memory, and lets go of that memory.
+  void Finish();
 
   std::uint64_t GetMemory() const;
 
 private:
+  std::uint64_t GetOffset(const DeformRequest& request) const;
+  void Clear(OpenCLContext& context, const cl::Buffer& buffer, double value, ElementType type,
+    std::uint64_t size, std::vector<cl::Event>& events) const;
+
   cl::CommandQueue Queue;
+  cl::CommandQueue ReadQueue; // while the slab is copied
   Extent SlabExtent{ { 0, -1, 0, -1, 0, -1 } };
   std::vector<cl::Buffer> Arrays;
   std::vector<std::size_t> TupleSizes;

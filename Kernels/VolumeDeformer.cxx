@@ -123,14 +123,17 @@ void VolumeDeformer::SetWorkGroupSize(std::size_t size)
   this->Impl->WorkGroupSize = size;
 }
 
-std::uint64_t VolumeDeformer::CheckDeviceMemory(const Lattice& lattice,
-  const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
-  std::size_t numberOfTetrahedra, std::uint64_t mappingBytes) const
+VolumeDeformer::DeviceMemory VolumeDeformer::CheckDeviceMemory(const Lattice& lattice,
+  const std::vector<VolumeArray>& arrays, const Extent& outputExtent,
+  std::uint64_t outputBytesPerVoxel, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
+  std::uint64_t mappingBytes) const
 {
+  this->Impl->Guard([&] { this->Impl->GetContext(); });
+  const OpenCLContext& context = *this->Impl->Context;
   std::uint64_t tuple = 0;
   for (const VolumeArray& array : arrays)
   {
-    tuple += GetTupleSize(array);
+    tuple += IsUsedInPlace(context, array) ? 0 : GetTupleSize(array);
   }
   const auto voxels = static_cast<std::uint64_t>(GetNumberOfPoints(lattice.VertexExtent));
   // The output is worked on in slabs, one after the other in the same buffers.
@@ -148,33 +151,39 @@ std::uint64_t VolumeDeformer::CheckDeviceMemory(const Lattice& lattice,
   // Arrays, state, active tetrahedra and blanking; links or runs of a mesh; arrays and
   // coverage of the output; the deformation itself. Winners of the output are counted when a
   // deformation turns out to fold the volume (CheckWinners).
-  const std::uint64_t needed = voxels * (tuple + 3) + mappingBytes + outputVoxels * (tuple + 1) +
-    (numberOfNodes + numberOfTetrahedra) * 16;
-  CheckBytes(needed, this->Impl->GetUsableMemory(), "on the device");
-  return needed;
+  const std::uint64_t needed = voxels * (tuple + 3) + mappingBytes +
+    outputVoxels * outputBytesPerVoxel + (numberOfNodes + numberOfTetrahedra) * 16;
+  const std::uint64_t available = this->Impl->GetUsableMemory();
+  CheckBytes(needed, available, "on the device");
+  return { needed, available };
 }
 
 void VolumeDeformer::CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
   const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra, bool field,
-  std::uint64_t runBytes) const
+  std::uint64_t runBytes, std::uint64_t heldBytes) const
 {
   const std::uint64_t mappingBytes = GetMappingBytes(lattice, field, runBytes);
-  const std::uint64_t needed = this->CheckDeviceMemory(
-    lattice, arrays, outputExtent, numberOfNodes, numberOfTetrahedra, mappingBytes);
+  const bool shared =
+    this->Impl->Guard([&] { return this->Impl->GetContext().GetDevice().IsProcessor; });
   std::uint64_t tuple = 0;
   for (const VolumeArray& array : arrays)
   {
     tuple += GetTupleSize(array);
   }
+  // A processor works in the memory of the output.
+  const std::uint64_t needed =
+    this
+      ->CheckDeviceMemory(lattice, arrays, outputExtent, shared ? 0 : tuple + 1, numberOfNodes,
+        numberOfTetrahedra, mappingBytes)
+      .Needed;
   // What the caller holds, in the memory of the system, which a processor shares with its device.
   const std::uint64_t system = OpenCLContext::GetSystemMemory();
   if (system > 0)
   {
-    const bool shared = this->Impl->GetContext().GetDevice().IsProcessor;
     const std::uint64_t host =
       mappingBytes + static_cast<std::uint64_t>(GetNumberOfPoints(outputExtent)) * (tuple + 1);
-    CheckBytes(host + (shared ? needed : 0), system + (shared ? this->GetDeviceMemory() : 0),
-      "in the system");
+    CheckBytes(host + (shared ? needed : 0),
+      system + heldBytes + (shared ? this->GetDeviceMemory() : 0), "in the system");
   }
 }
 
@@ -219,6 +228,13 @@ void VolumeDeformer::SetArrays(const std::vector<VolumeArray>& arrays)
     {
       this->Impl->GetMesh().SetArrays(arrays);
       this->Impl->Arrays = arrays;
+      for (VolumeArray& array : this->Impl->Arrays)
+      {
+        if (!IsUsedInPlace(*this->Impl->Context, array))
+        {
+          array.Owner.reset(); // the data were copied
+        }
+      }
     });
 }
 
@@ -375,10 +391,13 @@ DeformReport VolumeDeformer::Deform(const DeformRequest& request)
       request.OutputExtent, this->Impl->NumberOfNodes, this->Impl->NumberOfTetrahedra);
     return this->Impl->Guard([&] { return this->Impl->Rasterize(request); });
   }
-  this->CheckDeviceMemory(mesh.GetLattice(), this->Impl->Arrays, request.OutputExtent,
-    this->Impl->NumberOfNodes, this->Impl->NumberOfTetrahedra,
-    GetMappingBytes(mesh.GetLattice(), !mesh.HasMesh(), mesh.GetRunBytes()));
-  return this->Impl->Guard([&] { return this->Impl->Deform(request); });
+  const DeviceMemory memory =
+    this->CheckDeviceMemory(mesh.GetLattice(), this->Impl->Arrays, request.OutputExtent,
+      OutputSlab::GetBytesPerVoxel(*this->Impl->Context, this->Impl->Arrays, request),
+      this->Impl->NumberOfNodes, this->Impl->NumberOfTetrahedra,
+      GetMappingBytes(mesh.GetLattice(), !mesh.HasMesh(), mesh.GetRunBytes()));
+  return this->Impl->Guard(
+    [&] { return this->Impl->Deform(request, memory.Available - memory.Needed); });
 }
 
 std::uint64_t VolumeDeformer::GetDeviceMemory() const

@@ -53,6 +53,10 @@ struct Lattice
 struct VolumeArray
 {
   const void* Data = nullptr;
+  /// What keeps Data where it is and as it is. With it a device that is a processor reads Data
+  /// where it lies, at each Deform(), and holds the owner until it has other arrays; without it,
+  /// and on other devices, Data is copied during the call. Null by default.
+  std::shared_ptr<const void> Owner;
   ElementType Type = ElementType::UInt8;
   int Components = 1;
   /// True: take the value of the nearest vertex. False: interpolate linearly, and round to the
@@ -165,7 +169,8 @@ struct DeformRequest
   deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
   /// Structured indices of the output voxels.
   Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
-  /// For each array of the volume, room for Components elements a voxel of OutputExtent.
+  /// For each array of the volume, room for Components elements a voxel of OutputExtent. A device
+  /// that is a processor works there; after a failure the contents are undefined.
   std::vector<void*> Outputs;
   /// Room for one byte a voxel: 1 where the deformed volume covers it, else 0.
   signed char* Coverage = nullptr;
@@ -199,9 +204,9 @@ struct DeformReport
 ///
 /// Order of calls: SetDevice, SetLattice, SetArrays, then SetMesh or SetRestMesh and
 /// SetNodeDisplacements, or SetDisplacementField, then Deform, as often as wanted. SetBlanked and
-/// SetActiveTetrahedra are optional. SetLattice forgets everything that was set after it. All
-/// pointers are read during the call only. Every failure is an Error; the object can be used again
-/// afterwards.
+/// SetActiveTetrahedra are optional. SetLattice forgets everything that was set after it. Pointers
+/// are used during the call only, but for the data of arrays that have an owner. Every failure is
+/// an Error; the object can be used again afterwards.
 class VolumeDeformer
 {
 public:
@@ -228,17 +233,18 @@ public:
 
   /// Checks that a lattice, arrays and an output of these sizes fit into the memory of the device,
   /// before anything is allocated; throws an Error that names the bytes needed and available.
-  /// outputExtent is that of the output; only types and components of the arrays are read. Counts
+  /// outputExtent is that of the output; the values of the arrays are not read. Counts
   /// what the caller is about to allocate, too: the output, and the links or runs of a mesh.
   /// runBytes: GetRunBytes (VertexRuns.h) where the mesh comes with runs, 0 where it comes with
-  /// links.
+  /// links. heldBytes: how much memory for the output the caller has already.
   void CheckMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
     const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
-    bool field, std::uint64_t runBytes = 0) const;
+    bool field, std::uint64_t runBytes = 0, std::uint64_t heldBytes = 0) const;
 
   /// The same for MeshRasterization, which needs neither links nor runs.
   void CheckRasterizationMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
-    const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra) const;
+    const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
+    std::uint64_t heldBytes = 0) const;
 
   /// bytesPerVoxel: a voxel's bytes in the widest array that will be set; it decides how a volume
   /// over the allocation limit is split, and so does whether links may be set. MeshRasterization
@@ -282,10 +288,16 @@ public:
   void ReleaseMemory();
 
 private:
-  /// The part of CheckMemory for the device; returns the bytes needed there.
-  std::uint64_t CheckDeviceMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
-    const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
-    std::uint64_t mappingBytes) const;
+  /// Bytes on the device.
+  struct DeviceMemory
+  {
+    std::uint64_t Needed;
+    std::uint64_t Available;
+  };
+  /// The part of CheckMemory for the device. outputBytesPerVoxel: of the output there.
+  DeviceMemory CheckDeviceMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
+    const Extent& outputExtent, std::uint64_t outputBytesPerVoxel, std::size_t numberOfNodes,
+    std::size_t numberOfTetrahedra, std::uint64_t mappingBytes) const;
   std::uint64_t CheckRasterizationDeviceMemory(const Lattice& lattice,
     const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
     std::size_t numberOfTetrahedra) const;

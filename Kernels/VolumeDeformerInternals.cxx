@@ -51,7 +51,7 @@ void VolumeDeformer::Internals::Forget()
   this->Nodes = cl::Buffer();
   this->FieldVectors = cl::Buffer();
   this->Positions = cl::Buffer();
-  this->Target = OutputSlab();
+  this->Targets = {};
   this->Rasterizer.Clear();
   this->NumberOfNodes = 0;
   this->NodesSet = false;
@@ -76,6 +76,7 @@ void VolumeDeformer::Internals::SelectDevice(const std::string& request)
     this->Context = &context;
     this->Queue =
       cl::CommandQueue(context.GetContext(), context.GetDevice().Device, CL_QUEUE_PROFILING_ENABLE);
+    this->ReadQueue = cl::CommandQueue(context.GetContext(), context.GetDevice().Device);
   }
 }
 
@@ -99,7 +100,7 @@ std::uint64_t VolumeDeformer::Internals::GetHeldMemory() const
 {
   return (this->Mesh ? this->Mesh->GetMemory() : 0) + GetMemory(this->Tetrahedra) +
     GetMemory(this->Nodes) + this->Rasterizer.GetMemory() + GetMemory(this->FieldVectors) +
-    GetMemory(this->Positions) + this->Target.GetMemory();
+    GetMemory(this->Positions) + this->Targets[0].GetMemory() + this->Targets[1].GetMemory();
 }
 
 std::uint64_t VolumeDeformer::Internals::GetUsableMemory()
@@ -112,11 +113,9 @@ std::uint64_t VolumeDeformer::Internals::GetUsableMemory()
     });
 }
 
-void VolumeDeformer::Internals::CheckWinners(const Extent& slab)
+void VolumeDeformer::Internals::CheckWinners(const OutputSlab& slab)
 {
-  const std::uint64_t winners =
-    static_cast<std::uint64_t>(GetNumberOfPoints(slab)) * GetWinnerSize(this->Mesh->GetLattice());
-  CheckBytes(this->GetHeldMemory() + winners, this->GetUsableMemory(),
+  CheckBytes(this->GetHeldMemory() + slab.GetMissingWinnerMemory(), this->GetUsableMemory(),
     "on the device for a deformation that folds the volume over");
 }
 
@@ -392,47 +391,80 @@ void VolumeDeformer::Internals::Run(const DeformRequest& request, OutputSlab& ou
   }
 }
 
-DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request)
+void VolumeDeformer::Internals::RunSlab(
+  const DeformRequest& request, OutputSlab& output, bool first, DeformReport& report)
 {
+  this->Run(request, output, DEFORMVOLUME_PASS_DIRECT);
+  std::uint64_t covered = output.CountCovered(*this->Context, this->ResamplingEvents);
+  const OutputSlab::Counts counts = output.ReadCounts();
+  if (first) // every slab sees all tetrahedra
+  {
+    report.NumberOfInvertedTetrahedra = static_cast<std::int64_t>(counts.Inverted);
+    report.NumberOfOverstretchedCells = static_cast<std::int64_t>(counts.Overstretched);
+  }
+  // Every covered voxel was written once, unless tetrahedra overlap; where the mesh is folded,
+  // voxels on the crease may also be missing.
+  if (request.Method != Resampling::Published &&
+    (counts.Writes > covered || counts.Inverted > 0 || counts.MissingWhereAssumed))
+  {
+    report.Overlapping |= counts.Writes > covered;
+    this->LaunchesExpected += 2 * this->GetNumberOfLaunches();
+    this->CheckWinners(output);
+    output.PrepareWinners(*this->Context, this->ResamplingEvents);
+    this->Run(request, output, DEFORMVOLUME_PASS_MARK);
+    this->Run(request, output, DEFORMVOLUME_PASS_WINNER);
+    covered = output.CountCovered(*this->Context, this->ResamplingEvents);
+  }
+  report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
+}
+
+std::size_t VolumeDeformer::Internals::GetNumberOfLaunches() const
+{
+  return static_cast<std::size_t>((this->Mesh->GetSize(2) + LayersPerLaunch - 1) / LayersPerLaunch);
+}
+
+DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request, std::uint64_t spare)
+{
+  // However this ends, the memory of the request is left alone afterwards.
+  struct Finish
+  {
+    ~Finish()
+    {
+      for (OutputSlab& target : this->Targets)
+      {
+        target.Finish();
+      }
+    }
+    std::array<OutputSlab, 2>& Targets;
+  };
+  const Finish finish{ this->Targets };
   this->MappingEvents.clear();
   this->ResamplingEvents.clear();
   this->LaunchesDone = 0;
   DeformReport report;
   const std::vector<Extent> slabs = OutputSlab::Split(
     request.OutputExtent, this->Arrays, this->Mesh->GetLattice(), this->GetAllocationLimit());
-  const std::size_t launches =
-    static_cast<std::size_t>((this->Mesh->GetSize(2) + LayersPerLaunch - 1) / LayersPerLaunch);
+  const std::uint64_t bytes = OutputSlab::GetBytesPerVoxel(*this->Context, this->Arrays, request) *
+    static_cast<std::uint64_t>(GetNumberOfPoints(slabs.front()));
+  const bool overlapped = bytes > 0 && slabs.size() > 1 && spare >= bytes;
+  if (!overlapped)
+  {
+    this->Targets[1] = OutputSlab();
+  }
   double transferTime = 0.0;
   for (std::size_t s = 0; s < slabs.size(); ++s)
   {
-    this->LaunchesExpected = (slabs.size() - s) * launches + this->LaunchesDone;
-    this->Target.Prepare(*this->Context, this->Queue, slabs[s], this->Arrays,
+    OutputSlab& target = this->Targets[overlapped ? s % 2 : 0];
+    this->LaunchesExpected = (slabs.size() - s) * this->GetNumberOfLaunches() + this->LaunchesDone;
+    target.Prepare(*this->Context, this->Queue, slabs[s], request, this->Arrays,
       this->Mesh->GetLattice(), this->Mesh->GetNumberOfBricks(), this->ResamplingEvents);
-    this->Run(request, this->Target, DEFORMVOLUME_PASS_DIRECT);
-    std::uint64_t covered = this->Target.CountCovered(*this->Context, this->ResamplingEvents);
-    const OutputSlab::Counts counts = this->Target.ReadCounts();
-    if (s == 0) // every slab sees all tetrahedra
-    {
-      report.NumberOfInvertedTetrahedra = static_cast<std::int64_t>(counts.Inverted);
-      report.NumberOfOverstretchedCells = static_cast<std::int64_t>(counts.Overstretched);
-    }
-    // Every covered voxel was written once, unless tetrahedra overlap; where the mesh is folded,
-    // voxels on the crease may also be missing.
-    if (request.Method != Resampling::Published &&
-      (counts.Writes > covered || counts.Inverted > 0 || counts.MissingWhereAssumed))
-    {
-      report.Overlapping |= counts.Writes > covered;
-      this->LaunchesExpected += 2 * launches;
-      this->CheckWinners(slabs[s]);
-      this->Target.PrepareWinners(*this->Context, this->ResamplingEvents);
-      this->Run(request, this->Target, DEFORMVOLUME_PASS_MARK);
-      this->Run(request, this->Target, DEFORMVOLUME_PASS_WINNER);
-      covered = this->Target.CountCovered(*this->Context, this->ResamplingEvents);
-    }
-    report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
-    this->Queue.finish();
+    this->RunSlab(request, target, s == 0, report);
     const Clock::time_point begin = Clock::now();
-    this->Target.Read(request);
+    target.Read(this->ReadQueue, request);
+    if (!overlapped || s + 1 == slabs.size())
+    {
+      this->ReadQueue.finish();
+    }
     transferTime += std::chrono::duration<double>(Clock::now() - begin).count();
   }
   report.MappingTime = GetSeconds(this->MappingEvents);

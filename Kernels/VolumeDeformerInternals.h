@@ -70,7 +70,7 @@ public:
   /// Bytes that may be allocated there, those included that are and will be freed or used again.
   std::uint64_t GetUsableMemory();
   /// Throws an Error where there is no room for the winners of a slab of the output.
-  void CheckWinners(const Extent& slab);
+  void CheckWinners(const OutputSlab& slab);
 
   cl::Buffer SendBuffer(const void* data, std::size_t bytes, const cl::Buffer& previous);
 
@@ -90,7 +90,10 @@ public:
   /// Waits for the launch before the last one, so that the device always has work, and reports.
   void ReportLaunch(const DeformRequest& request, cl::Event& previous);
   std::size_t GetGroupSize(const cl::Kernel& kernel) const;
-  DeformReport Deform(const DeformRequest& request);
+  std::size_t GetNumberOfLaunches() const;
+  void RunSlab(const DeformRequest& request, OutputSlab& output, bool first, DeformReport& report);
+  /// spare: bytes of device memory that may be used beyond those of one slab.
+  DeformReport Deform(const DeformRequest& request, std::uint64_t spare);
   /// What mesh rasterisation needs and does; in VolumeDeformerRasterization.cxx.
   MeshRasterizer::Setting GetRasterizerSetting();
   void CheckRasterization(const DeformRequest& request) const;
@@ -98,6 +101,7 @@ public:
 
   OpenCLContext* Context = nullptr;
   cl::CommandQueue Queue;
+  cl::CommandQueue ReadQueue; // for copies to the caller
   std::uint64_t MemoryLimit = 0;
   std::uint64_t AllocationLimit = 0;
   std::size_t WorkGroupSize = 0;
@@ -113,7 +117,8 @@ public:
   cl::Buffer FieldVectors;
   cl::Buffer Positions;
   cl::Buffer Bricks; // the list of those to work on
-  OutputSlab Target;
+  /// Work on one slab goes on while the other is copied to the caller.
+  std::array<OutputSlab, 2> Targets;
   MeshRasterizer Rasterizer;
 
   double SendingTime = 0.0;

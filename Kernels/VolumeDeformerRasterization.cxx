@@ -62,15 +62,17 @@ std::uint64_t VolumeDeformer::CheckRasterizationDeviceMemory(const Lattice& latt
   const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
   std::size_t numberOfTetrahedra) const
 {
-  std::uint64_t tuple = 0;
-  for (const VolumeArray& array : arrays)
-  {
-    tuple += GetTupleSize(array);
-  }
   return this->Impl->Guard(
     [&]
     {
       OpenCLContext& context = this->Impl->GetContext();
+      std::uint64_t tuple = 0;
+      std::uint64_t sent = 0;
+      for (const VolumeArray& array : arrays)
+      {
+        tuple += GetTupleSize(array);
+        sent += IsUsedInPlace(context, array) ? 0 : GetTupleSize(array);
+      }
       std::uint64_t outputVoxels = 0;
       if (GetNumberOfPoints(outputExtent) > 0)
       {
@@ -80,7 +82,7 @@ std::uint64_t VolumeDeformer::CheckRasterizationDeviceMemory(const Lattice& latt
       }
       // Arrays and both masks; a processor writes to the memory of the output itself.
       const std::uint64_t needed =
-        static_cast<std::uint64_t>(GetNumberOfPoints(lattice.VertexExtent)) * (tuple + 2) +
+        static_cast<std::uint64_t>(GetNumberOfPoints(lattice.VertexExtent)) * (sent + 2) +
         MeshRasterizer::GetMemoryNeeded(outputVoxels,
           context.GetDevice().IsProcessor ? 0 : tuple + 1, numberOfNodes, numberOfTetrahedra);
       CheckBytes(needed, this->Impl->GetUsableMemory(), "on the device");
@@ -90,7 +92,7 @@ std::uint64_t VolumeDeformer::CheckRasterizationDeviceMemory(const Lattice& latt
 
 void VolumeDeformer::CheckRasterizationMemory(const Lattice& lattice,
   const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
-  std::size_t numberOfTetrahedra) const
+  std::size_t numberOfTetrahedra, std::uint64_t heldBytes) const
 {
   const std::uint64_t needed = this->CheckRasterizationDeviceMemory(
     lattice, arrays, outputExtent, numberOfNodes, numberOfTetrahedra);
@@ -105,8 +107,8 @@ void VolumeDeformer::CheckRasterizationMemory(const Lattice& lattice,
     const bool shared = this->Impl->GetContext().GetDevice().IsProcessor;
     const std::uint64_t host =
       static_cast<std::uint64_t>(GetNumberOfPoints(outputExtent)) * (tuple + 1);
-    CheckBytes(host + (shared ? needed : 0), system + (shared ? this->GetDeviceMemory() : 0),
-      "in the system");
+    CheckBytes(host + (shared ? needed : 0),
+      system + heldBytes + (shared ? this->GetDeviceMemory() : 0), "in the system");
   }
 }
 

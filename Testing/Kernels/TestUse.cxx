@@ -182,8 +182,9 @@ TEST_F(Use, NotEnoughMemory)
 // Memory for winners is asked for only where tetrahedra overlap.
 TEST_F(Use, NotEnoughMemoryForAFold)
 {
+  // So large an output that its winners do not fit into what is counted on, but not used.
   const DeformerCase folded =
-    MakeCase(this->Case.Lattice.VertexExtent, { { 1, 1, 1 } }, MakeJitter(3, 1.0));
+    MakeCase(this->Case.Lattice.VertexExtent, { { 1, 1, 1 } }, MakeJitter(3, 1.0), 10);
   const auto nodes = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
   std::uint64_t limit = 1000;
   for (bool enough = false; !enough; limit += enough ? 0 : 100)

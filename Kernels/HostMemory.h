@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeHostMemory_h
+#define DeformVolumeHostMemory_h
+
+#include "OpenCLContext.h"
+#include "VolumeDeformer.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace deformvolume
+{
+
+/// Bytes that were allocated for a buffer; 0 for none, and for one over memory of the host.
+std::uint64_t GetMemory(const cl::Buffer& buffer);
+
+/// Whether the kernels can work in memory of the host as it is: a processor can where it is aligned
+/// for its elements, which is all that the kernels ask for.
+bool CanWorkInPlace(const OpenCLContext& context, const void* data, std::size_t elementSize);
+
+/// Whether an array of the volume is not copied to the device.
+bool IsUsedInPlace(const OpenCLContext& context, const VolumeArray& array);
+
+/// A buffer over memory of the host, which has to stay for as long as the buffer does.
+cl::Buffer MakeBufferOver(
+  const OpenCLContext& context, cl_mem_flags access, void* data, std::size_t bytes);
+
+/// A buffer as the host sees it, for the life of this object: waits for all that was enqueued
+/// before. For processors: elsewhere the whole buffer is copied.
+template <typename T>
+class MappedBuffer
+{
+public:
+  MappedBuffer(const cl::CommandQueue& queue, const cl::Buffer& buffer, cl_map_flags access)
+    : Queue(queue)
+    , Buffer(buffer)
+    , Data(static_cast<T*>(
+        queue.enqueueMapBuffer(buffer, CL_TRUE, access, 0, buffer.getInfo<CL_MEM_SIZE>())))
+  {
+  }
+  ~MappedBuffer()
+  {
+    // clEnqueueUnmapMemObject as such: an exception must not leave a destructor.
+    clEnqueueUnmapMemObject(this->Queue(), this->Buffer(), this->Data, 0, nullptr, nullptr);
+    clFinish(this->Queue());
+  }
+  MappedBuffer(const MappedBuffer&) = delete;
+  MappedBuffer& operator=(const MappedBuffer&) = delete;
+
+  T* Get() const { return this->Data; }
+  T& operator[](std::size_t i) const { return this->Data[i]; }
+
+private:
+  cl::CommandQueue Queue;
+  cl::Buffer Buffer;
+  T* Data;
+};
+
+} // namespace deformvolume
+
+#endif

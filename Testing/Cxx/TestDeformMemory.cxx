@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Arrays of the volume are read where they lie, and arrays of the output serve again: what holds
+// what, and that nobody's data change under them.
+#include "FilterTesting.h"
+
+#include <vtkImageShiftScale.h>
+#include <vtkLookupTable.h>
+#include <vtkMath.h>
+#include <vtkSOADataArrayTemplate.h>
+
+using namespace filterTesting;
+
+namespace
+{
+
+struct Subject
+{
+  Subject()
+    : Volume(MakeVolume({ { 0, 24, 0, 19, 0, 18 } }))
+    , Mesh(MakeMesh(Volume))
+    , Filtered(Volume, Mesh)
+  {
+    Filtered.Filter->SetOutputBoundsModeToVolumeBounds();
+    this->Move(0.25);
+  }
+
+  void Move(double amount) { SetDisplacements(this->Mesh, Shift(amount, 0.1, 0.0)); }
+
+  /// What a filter that has never run makes of the same.
+  vtkSmartPointer<vtkImageData> GetFresh()
+  {
+    Deformed fresh(this->Volume, this->Mesh);
+    fresh.Filter->SetOutputBoundsMode(this->Filtered.Filter->GetOutputBoundsMode());
+    fresh.Filter->SetBackgroundValue(this->Filtered.Filter->GetBackgroundValue());
+    auto copy = vtkSmartPointer<vtkImageData>::New();
+    copy->ShallowCopy(fresh.Update());
+    return copy;
+  }
+
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh;
+  Deformed Filtered;
+};
+
+// An output that someone holds is left as it is, also where only one array is held.
+void TestHeldOutputs()
+{
+  Subject subject;
+  vtkNew<vtkImageData> held;
+  held->ShallowCopy(subject.Filtered.Update());
+  vtkNew<vtkImageData> before;
+  before->DeepCopy(held);
+  subject.Move(1.75);
+  VERIFY(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
+  VERIFY(AreEqual(held, before));
+  VERIFY(!AreEqual(subject.Filtered.Filter->GetOutput(), before));
+
+  vtkSmartPointer<vtkDataArray> values = subject.Filtered.GetValues();
+  vtkNew<vtkImageData> second;
+  second->DeepCopy(subject.Filtered.Filter->GetOutput());
+  subject.Move(-2.5);
+  VERIFY(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
+  VERIFY(HaveEqualBits(values, second->GetPointData()->GetScalars()));
+}
+
+// One that nobody holds is written again, and those after the filter see that it has changed.
+void TestOutputsServeAgain()
+{
+  Subject subject;
+  vtkNew<vtkImageShiftScale> after;
+  after->SetInputConnection(subject.Filtered.Filter->GetOutputPort());
+  after->SetShift(3.0);
+  after->SetOutputScalarTypeToDouble();
+  after->Update();
+  const void* memory = subject.Filtered.GetValues()->GetVoidPointer(0);
+  double range[2];
+  subject.Filtered.GetValues()->GetRange(range);
+  for (int i = 1; i < 4; ++i)
+  {
+    subject.Move(0.5 * i);
+    subject.Volume->GetPointData()->GetScalars()->SetComponent(800, 0, 1000.0 * i);
+    subject.Volume->GetPointData()->GetScalars()->Modified();
+    const vtkMTimeType time = subject.Filtered.GetValues()->GetMTime();
+    after->Update();
+    VERIFY_EQUAL(subject.Filtered.GetValues()->GetVoidPointer(0), memory);
+    VERIFY(subject.Filtered.GetValues()->GetMTime() > time);
+    const auto fresh = subject.GetFresh();
+    VERIFY(AreEqual(subject.Filtered.Filter->GetOutput(), fresh));
+    VERIFY_EQUAL(subject.Filtered.GetValues()->GetRange()[1],
+      fresh->GetPointData()->GetScalars()->GetRange()[1]);
+    VERIFY_EQUAL(after->GetOutput()->GetPointData()->GetScalars()->GetComponent(900, 0),
+      fresh->GetPointData()->GetScalars()->GetComponent(900, 0) + 3.0);
+  }
+}
+
+// What serves again looks like a new one.
+void TestDescriptionOfArrays()
+{
+  Subject subject;
+  vtkNew<vtkLookupTable> table;
+  subject.Filtered.Update();
+  vtkDataArray* values = subject.Volume->GetPointData()->GetScalars();
+  values->SetName("other");
+  values->SetLookupTable(table);
+  values->SetComponentName(0, "first");
+  subject.Volume->Modified();
+  subject.Filtered.Update();
+  VERIFY_EQUAL(std::string(subject.Filtered.GetValues()->GetName()), std::string("other"));
+  VERIFY_EQUAL(
+    std::string(subject.Filtered.GetValues()->GetComponentName(0)), std::string("first"));
+  VERIFY(subject.Filtered.GetValues()->GetLookupTable() == table);
+  subject.Volume->GetPointData()->SetScalars(nullptr);
+  subject.Volume->GetPointData()->RemoveArray("other");
+  AddScalars<double>(subject.Volume, "third", [](const glm::dvec3& p) { return p.x - p.z; });
+  VERIFY(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
+  VERIFY_EQUAL(std::string(subject.Filtered.GetValues()->GetName()), std::string("third"));
+  VERIFY(subject.Filtered.GetValues()->GetComponentName(0) == nullptr);
+  VERIFY(subject.Filtered.GetValues()->GetLookupTable() == nullptr);
+}
+
+// The volume's arrays are not copied by a processor: they are held as long as they are needed.
+void TestVolumeInPlace()
+{
+  Subject subject;
+  vtkDataArray* values = subject.Volume->GetPointData()->GetScalars();
+  const int references = values->GetReferenceCount();
+  subject.Filtered.Update();
+  const vtkTypeInt64 memory = subject.Filtered.Filter->GetDeviceMemory();
+  VERIFY(memory > 0);
+  const bool inPlace = values->GetReferenceCount() > references;
+  subject.Filtered.Filter->ReleaseDeviceMemory();
+  VERIFY_EQUAL(values->GetReferenceCount(), references);
+
+  // An array in another layout is copied, whatever the device.
+  auto soa = vtkSmartPointer<vtkSOADataArrayTemplate<double>>::New();
+  soa->SetNumberOfComponents(2);
+  soa->SetNumberOfTuples(subject.Volume->GetNumberOfPoints());
+  soa->SetName("pairs");
+  for (vtkIdType i = 0; i < soa->GetNumberOfTuples(); ++i)
+  {
+    soa->SetComponent(i, 0, 0.5 * i);
+    soa->SetComponent(i, 1, -1.0 * i);
+  }
+  subject.Volume->GetPointData()->AddArray(soa);
+  const int soaReferences = soa->GetReferenceCount();
+  subject.Filtered.Filter->Modified();
+  VERIFY(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
+  VERIFY_EQUAL(soa->GetReferenceCount(), soaReferences);
+  if (inPlace)
+  {
+    // 16 bytes a voxel or less by runs of the mesh, and the state; not the values.
+    VERIFY_EQUAL(subject.Filtered.Filter->GetDeviceMemory(), memory);
+  }
+
+  // Another volume takes the place of the first one.
+  auto other = MakeVolume({ { 0, 24, 0, 19, 0, 18 } });
+  subject.Filtered.Filter->SetInputData(other);
+  subject.Volume->GetPointData()->RemoveArray("pairs");
+  subject.Filtered.Update();
+  VERIFY_EQUAL(values->GetReferenceCount(), references);
+}
+
+// Memory that is given up is not kept behind the back of the pipeline.
+void TestReleasedOutputs()
+{
+  for (const bool failing : { false, true })
+  {
+    Subject subject;
+    subject.Filtered.Filter->SetReleaseDataFlag(failing ? 0 : 1);
+    vtkSmartPointer<vtkDataArray> values;
+    subject.Filtered.Update();
+    values = subject.Filtered.GetValues();
+    if (failing)
+    {
+      subject.Filtered.Filter->SetDisplacementScale(vtkMath::Inf());
+      subject.Filtered.Filter->Update();
+      VERIFY_EQUAL(subject.Filtered.TakeErrors(), 1);
+      subject.Filtered.Filter->SetDisplacementScale(1.0);
+    }
+    else
+    {
+      subject.Filtered.Filter->GetOutput()->ReleaseData();
+    }
+    VERIFY_EQUAL(values->GetReferenceCount(), 1);
+    subject.Filtered.Filter->Modified();
+    VERIFY(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
+  }
+}
+
+} // namespace
+
+int TestDeformMemory(int, char*[])
+{
+  TestHeldOutputs();
+  TestOutputsServeAgain();
+  TestDescriptionOfArrays();
+  TestVolumeInPlace();
+  TestReleasedOutputs();
+  return GetExitCode();
+}
