@@ -23,7 +23,8 @@
 #define LOAD(p) JOIN(vload, LANES)(0, p)
 #define STORE(v, p) JOIN(vstore, LANES)(v, 0, p)
 #define TO_FLOATS JOIN(convert_float, LANES)
-#define ROUND_TO_INTS JOIN(JOIN(convert_int, LANES), _rte)
+// Of small numbers: added to 1.5 * 2^23, they are rounded to the nearest integer.
+#define ROUND_TO_INTS(v) (AS_INTS((v) + 12582912.0f) - 0x4B400000)
 
 #if LANES == 16
 #define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))

@@ -35,6 +35,16 @@ static uint FindRow(const TileTetrahedron* t, const long* edges, int count, uint
   int high = count;
   int ownHigh = count;
   *own = 0;
+  // Most rows that are missed lie behind one face as a whole.
+  long behind = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    behind |= edges[k] + max(0L, t->Steps[k].x) * count;
+  }
+  if (behind < 0)
+  {
+    return 0;
+  }
   for (int k = 0; k < 4; ++k)
   {
     const long e = edges[k];
@@ -55,10 +65,6 @@ static uint FindRow(const TileTetrahedron* t, const long* edges, int count, uint
         }
         low = max(low, x);
       }
-    }
-    else if (e < 0)
-    {
-      return 0;
     }
     else if (step < 0)
     {
@@ -108,20 +114,27 @@ static int RasterizeRows(__global const int4* tetrahedra, __global const int4* p
     int mapped = 0;
     const int first = t.Box.Low.x - origin[0];
     const int count = t.Box.High.x - t.Box.Low.x;
+    long slice[4] = { t.Start[0], t.Start[1], t.Start[2], t.Start[3] };
     for (int z = t.Box.Low.z; z <= t.Box.High.z; ++z)
     {
+      long next[4];
+      for (int k = 0; k < 4; ++k)
+      {
+        next[k] = slice[k];
+        slice[k] += t.Steps[k].z;
+      }
       for (int y = t.Box.Low.y; y <= t.Box.High.y; ++y)
       {
+        long edges[4];
+        for (int k = 0; k < 4; ++k)
+        {
+          edges[k] = next[k];
+          next[k] += t.Steps[k].y;
+        }
         const int row = ((z - origin[2]) << DEFORMVOLUME_TILE_BITS_Y) + y - origin[1];
         if (items > 1 && row % items != item)
         {
           continue;
-        }
-        long edges[4];
-        for (int k = 0; k < 4; ++k)
-        {
-          edges[k] = t.Start[k] + (y - t.Box.Low.y) * t.Steps[k].y +
-            (z - t.Box.Low.z) * t.Steps[k].z;
         }
         uint ownHere;
         const uint held = FindRow(&t, edges, count, &ownHere) << first;

@@ -158,19 +158,28 @@ static void SetRestMap(const TileTetrahedron* t, __global const float4* displace
   }
   REAL start[3];
   FindRest(map, edges, origin, start, p);
+  const REAL finer = (REAL)(1 << STEP_BITS);
   map->Fits = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
+    REAL steps[3];
     REAL range = fabs(start[axis]);
     for (int direction = 0; direction < 3; ++direction)
     {
-      const REAL step =
+      steps[direction] =
         ((direction == axis ? (REAL)1 : (REAL)0) - slopes[direction][axis]) * map->Scale[axis];
-      range += 32 * fabs(step);
-      map->Steps[direction][axis] = convert_long_sat_rte(step * (REAL)(1 << STEP_BITS));
+      range += 32 * fabs(steps[direction]);
     }
-    map->Start[axis] = convert_long_sat_rte(start[axis] * (REAL)(1 << STEP_BITS));
-    map->Fits &= range < LARGEST_REST * (REAL)(1 << p->FractionBits[axis]);
+    if (!(range < LARGEST_REST * (REAL)(1 << p->FractionBits[axis])))
+    {
+      map->Fits = 0;
+      return;
+    }
+    map->Start[axis] = (long)floor(start[axis] * finer + (REAL)0.5);
+    for (int direction = 0; direction < 3; ++direction)
+    {
+      map->Steps[direction][axis] = (long)floor(steps[direction] * finer + (REAL)0.5);
+    }
   }
 }
 
