@@ -284,14 +284,20 @@ void TestAutomatic()
   deformed.Update();
   VERIFY_EQUAL(deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::EXACT));
   const vtkIdType voxels = volume->GetNumberOfPoints();
-  deformed.Filter->SetMemoryLimit(8 * voxels);
-  deformed.Update();
+  // The least memory that suffices at all is not enough for EXACT.
+  vtkIdType limit = voxels;
+  do
+  {
+    limit += voxels / 16;
+    deformed.Filter->SetMemoryLimit(limit);
+    deformed.Filter->Update();
+  } while (deformed.TakeErrors() > 0 && limit < 100 * voxels);
   VERIFY_EQUAL(
     deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
   deformed.Filter->ReleaseDeviceMemory();
   vtkNew<vtkImageData> whole;
   whole->DeepCopy(deformed.Update());
-  VERIFY(deformed.Filter->GetDeviceMemory() < 8 * voxels);
+  VERIFY(deformed.Filter->GetDeviceMemory() < limit);
   int part[6] = { 7, 40, 3, 37, 11, 29 };
   deformed.Filter->Modified();
   deformed.Filter->UpdateExtent(part);
@@ -312,7 +318,7 @@ void TestAutomatic()
 
   // What only the exact resampler can do fails with its words.
   deformed.Filter->SetOutsideModeToExtrapolate();
-  VERIFY(Contains(GetError(deformed), std::to_string(8 * voxels)));
+  VERIFY(Contains(GetError(deformed), std::to_string(limit)));
 }
 
 // Both resamplers side by side, and 8 times their difference: a picture to look at.
