@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 
@@ -357,31 +358,102 @@ void IndexBounds::Add(const IndexBounds& other)
   }
 }
 
+MeshBoundsPlan MakeMeshBoundsPlan(const Lattice& lattice, const std::vector<glm::dvec3>& restPoints,
+  const std::vector<Tetrahedron>& tetrahedra)
+{
+  const IndexBounds box = GetBox(lattice);
+  const auto isInside = [&](std::int32_t node)
+  {
+    return glm::all(glm::greaterThanEqual(restPoints[node], box.Min)) &&
+      glm::all(glm::lessThanEqual(restPoints[node], box.Max));
+  };
+  // Bytes, which several threads may set to the same.
+  std::vector<unsigned char> clipped(tetrahedra.size(), 0);
+  std::vector<std::atomic<unsigned char>> wanted(restPoints.size());
+  ParallelFor(0, static_cast<vtkIdType>(tetrahedra.size()), 0,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType id = begin; id < end; ++id)
+      {
+        const Tetrahedron& nodes = tetrahedra[id];
+        if (!std::all_of(nodes.begin(), nodes.end(), isInside))
+        {
+          clipped[id] = 1;
+          continue;
+        }
+        BarycentricMap map;
+        if (map.SetTetrahedron(nodes, restPoints)) // not flat
+        {
+          for (const std::int32_t node : nodes)
+          {
+            wanted[node].store(1, std::memory_order_relaxed);
+          }
+        }
+      }
+    });
+  MeshBoundsPlan plan;
+  for (std::size_t id = 0; id < clipped.size(); ++id)
+  {
+    if (clipped[id])
+    {
+      plan.ClippedTetrahedra.push_back(static_cast<std::int32_t>(id));
+    }
+  }
+  for (std::size_t node = 0; node < wanted.size(); ++node)
+  {
+    if (wanted[node])
+    {
+      plan.Nodes.push_back(static_cast<std::int32_t>(node));
+    }
+  }
+  return plan;
+}
+
 IndexBounds ComputeDeformedBounds(const Lattice& lattice, const std::vector<glm::dvec3>& restPoints,
-  const std::vector<Tetrahedron>& tetrahedra, const float* displacements)
+  const std::vector<Tetrahedron>& tetrahedra, const float* displacements,
+  const MeshBoundsPlan& plan)
 {
   const IndexBounds box = GetBox(lattice);
   const glm::dvec3 scale = GetScale(lattice);
-  return ComputeInParallel(static_cast<std::int64_t>(tetrahedra.size()),
-    [&](std::int64_t id, IndexBounds& bounds)
+  const auto move = [&](std::int32_t node)
+  { return scale * restPoints[node] + GetVector(displacements, node); };
+  IndexBounds all = ComputeInParallel(static_cast<std::int64_t>(plan.Nodes.size()),
+    [&](std::int64_t i, IndexBounds& bounds)
     {
+      const glm::dvec3 moved = move(plan.Nodes[i]);
+      if (IsFinite(moved))
+      {
+        bounds.Add(moved);
+      }
+    });
+  all.Add(ComputeInParallel(static_cast<std::int64_t>(plan.ClippedTetrahedra.size()),
+    [&](std::int64_t i, IndexBounds& bounds)
+    {
+      const Tetrahedron& tetrahedron = tetrahedra[plan.ClippedTetrahedra[i]];
       std::array<MovedPoint, 4> nodes;
       for (int node = 0; node < 4; ++node)
       {
-        const std::int32_t point = tetrahedra[id][node];
-        nodes[node].Rest = restPoints[point];
-        nodes[node].Moved = scale * restPoints[point] + GetVector(displacements, point);
+        nodes[node].Rest = restPoints[tetrahedron[node]];
+        nodes[node].Moved = move(tetrahedron[node]);
         if (!IsFinite(nodes[node].Moved))
         {
           return;
         }
       }
       BarycentricMap map;
-      if (map.SetTetrahedron(tetrahedra[id], restPoints))
+      if (map.SetTetrahedron(tetrahedron, restPoints))
       {
         AddClippedTetrahedron(nodes, map, box, bounds);
       }
-    });
+    }));
+  return all;
+}
+
+IndexBounds ComputeDeformedBounds(const Lattice& lattice, const std::vector<glm::dvec3>& restPoints,
+  const std::vector<Tetrahedron>& tetrahedra, const float* displacements)
+{
+  return ComputeDeformedBounds(lattice, restPoints, tetrahedra, displacements,
+    MakeMeshBoundsPlan(lattice, restPoints, tetrahedra));
 }
 
 IndexBounds ComputeDeformedBounds(const Lattice& lattice, const std::vector<VertexLink>& links,

@@ -6,6 +6,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstdint>
 #include <vector>
 
 namespace deformvolume
@@ -30,6 +31,21 @@ struct IndexBounds
 /// voxels.
 IndexBounds ComputeDeformedBounds(const Lattice& lattice, const std::vector<glm::dvec3>& restPoints,
   const std::vector<Tetrahedron>& tetrahedra, const float* displacements);
+
+/// What the bounds of a deformed mesh depend on, found once for a mesh at rest. Of a tetrahedron
+/// inside the volume the nodes tell the bounds; only the others have to be clipped.
+struct MeshBoundsPlan
+{
+  std::vector<std::int32_t> Nodes;
+  std::vector<std::int32_t> ClippedTetrahedra;
+};
+MeshBoundsPlan MakeMeshBoundsPlan(const Lattice& lattice, const std::vector<glm::dvec3>& restPoints,
+  const std::vector<Tetrahedron>& tetrahedra);
+
+/// The same as the function above, with its plan.
+IndexBounds ComputeDeformedBounds(const Lattice& lattice, const std::vector<glm::dvec3>& restPoints,
+  const std::vector<Tetrahedron>& tetrahedra, const float* displacements,
+  const MeshBoundsPlan& plan);
 
 /// Bounds of all linked voxels after the deformation: for links that extrapolate.
 IndexBounds ComputeDeformedBounds(const Lattice& lattice, const std::vector<VertexLink>& links,

@@ -115,9 +115,17 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(
     return deformvolume::ComputeDeformedBounds(lattice, this->Mapping.GetLinks(),
       this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
   }
+  if (this->PlanRestVersion != this->Deformation.GetRestVersion() ||
+    this->PlanExtent != lattice.VertexExtent)
+  {
+    this->Plan = deformvolume::MakeMeshBoundsPlan(
+      lattice, this->Deformation.GetRestPoints(), this->Deformation.GetTetrahedra());
+    this->PlanRestVersion = this->Deformation.GetRestVersion();
+    this->PlanExtent = lattice.VertexExtent;
+  }
   const IndexBounds bounds =
     deformvolume::ComputeDeformedBounds(lattice, this->Deformation.GetRestPoints(),
-      this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
+      this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements(), this->Plan);
   if (bounds.IsEmpty())
   {
     // Tells what is wrong.

@@ -94,6 +94,11 @@ private:
   BoundsKey Key;
   deformvolume::IndexBounds Bounds;
 
+  // Of the mesh at rest, and which that is.
+  deformvolume::MeshBoundsPlan Plan;
+  std::uint64_t PlanRestVersion = 0;
+  deformvolume::Extent PlanExtent{ { 0, -1, 0, -1, 0, -1 } };
+
   std::string WarnedOf;
 };
 
