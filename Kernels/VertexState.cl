@@ -36,54 +36,42 @@ static int IsActive(__global const uchar* active, int x, int y, int z, const Ker
     31;
 }
 
-// Whether the vertices from begin to end, both included, are all sources.
-static int AreSources(
-  __global const uchar* sources, int3 begin, int3 end, const KernelParameters* p)
+// What vertices with one x have in common, those round (x, y, z) on y and z: bit 0 whether they are all
+// sources, as far as they lie in the volume, and bit 1 whether those of the cells from y and z on are.
+static int MarkColumn(
+  __global const uchar* sources, int x, int y, int z, const KernelParameters* p)
 {
-  for (int z = begin.z; z <= end.z; ++z)
+  if (x < 0 || x >= p->Size[0])
   {
-    for (int y = begin.y; y <= end.y; ++y)
+    return 1;
+  }
+  int round = 1;
+  int cell = y < p->Size[1] - 1 && z < p->Size[2] - 1;
+  for (int k = max(z - 1, 0); k <= min(z + 1, p->Size[2] - 1); ++k)
+  {
+    for (int j = max(y - 1, 0); j <= min(y + 1, p->Size[1] - 1); ++j)
     {
-      for (int x = begin.x; x <= end.x; ++x)
-      {
-        if (!sources[VertexInSlab(x, y, z, p)])
-        {
-          return 0;
-        }
-      }
+      const int source = sources[VertexInSlab(x, j, k, p)];
+      round &= source;
+      cell &= source | (j < y) | (k < z);
     }
   }
-  return 1;
+  return round | cell << 1;
 }
 
-// Whether all vertices round a vertex are sources and all tetrahedra of the cells round it active, as
-// far as they lie in the volume.
-static int IsRegular(
-  __global const uchar* sources, __global const uchar* active, int3 v, const KernelParameters* p)
+// Whether all tetrahedra of the cells round a vertex are active, as far as they lie in the volume.
+static int IsActiveRound(__global const uchar* active, int x, int y, int z, const KernelParameters* p)
 {
-  // Vertices of the planes beyond the layers of this chunk serve only as neighbours.
-  const int3 last = (int3)(p->Size[0], p->Size[1], p->Size[2]) - 1;
-  if (v.z < p->LayersBegin || v.z > p->LayersEnd ||
-    !AreSources(sources, max(v - 1, 0), min(v + 1, last), p))
+  for (int k = 0; p->HasActive && k < 8; ++k)
   {
-    return 0;
-  }
-  for (int k = 0; k < 8; ++k)
-  {
-    const int3 c = v - (int3)(k & 1, k >> 1 & 1, k >> 2);
-    if (all(c >= 0) && all(c < last) && !IsActive(active, c.x, c.y, c.z, p))
+    const int3 c = (int3)(x, y, z) - (int3)(k & 1, k >> 1 & 1, k >> 2);
+    if (all(c >= 0) && all(c < (int3)(p->Size[0], p->Size[1], p->Size[2]) - 1) &&
+      !IsActive(active, c.x, c.y, c.z, p))
     {
       return 0;
     }
   }
   return 1;
-}
-
-static int IsWholeCell(
-  __global const uchar* sources, __global const uchar* active, int3 v, const KernelParameters* p)
-{
-  return v.x < p->Size[0] - 1 && v.y < p->Size[1] - 1 && v.z >= p->LayersBegin &&
-    v.z < p->LayersEnd && IsActive(active, v.x, v.y, v.z, p) && AreSources(sources, v, v + 1, p);
 }
 
 // Second pass: a vertex is interior when all vertices round it are sources and all tetrahedra of
@@ -92,19 +80,41 @@ static int IsWholeCell(
 __kernel void MarkVertices(__global const uchar* sources, __global const uchar* active,
   __global uchar* state, const KernelParameters p)
 {
-  for (int3 v = FirstVertex(&p); v.x < p.Size[0]; v.x += get_global_size(0))
+  const int3 first = FirstVertex(&p);
+  const int y = first.y;
+  const int z = first.z;
+  const int step = get_global_size(0);
+  // Vertices of the planes beyond the layers of this chunk serve only as neighbours.
+  if (z < p.LayersBegin || z > p.LayersEnd)
   {
-    int bits = sources[VertexInSlab(v.x, v.y, v.z, &p)];
+    for (int x = first.x; x < p.Size[0]; x += step)
+    {
+      state[VertexInChunk(x, y, z, &p)] = sources[VertexInSlab(x, y, z, &p)];
+    }
+    return;
+  }
+  int before = MarkColumn(sources, first.x - 1, y, z, &p);
+  int here = MarkColumn(sources, first.x, y, z, &p);
+  for (int x = first.x; x < p.Size[0]; x += step)
+  {
+    const int after = MarkColumn(sources, x + 1, y, z, &p);
+    int bits = sources[VertexInSlab(x, y, z, &p)];
     if (bits)
     {
-      const int3 last = (int3)(p.Size[0], p.Size[1], p.Size[2]) - 1;
-      if (IsRegular(sources, active, v, &p))
+      if ((before & here & after & 1) && IsActiveRound(active, x, y, z, &p))
       {
         bits |= DEFORMVOLUME_VERTEX_REGULAR;
-        bits |= all(v > 0) && all(v < last) ? DEFORMVOLUME_VERTEX_INTERIOR : 0;
+        bits |= x > 0 && y > 0 && z > 0 && x < p.Size[0] - 1 && y < p.Size[1] - 1 && z < p.Size[2] - 1
+          ? DEFORMVOLUME_VERTEX_INTERIOR
+          : 0;
       }
-      bits |= IsWholeCell(sources, active, v, &p) ? DEFORMVOLUME_CELL_WHOLE : 0;
+      bits |= (here & after & 2) && x < p.Size[0] - 1 && z < p.LayersEnd &&
+          IsActive(active, x, y, z, &p)
+        ? DEFORMVOLUME_CELL_WHOLE
+        : 0;
     }
-    state[VertexInChunk(v.x, v.y, v.z, &p)] = bits;
+    state[VertexInChunk(x, y, z, &p)] = bits;
+    before = step == 1 ? here : MarkColumn(sources, x + step - 1, y, z, &p);
+    here = step == 1 ? after : MarkColumn(sources, x + step, y, z, &p);
   }
 }
