@@ -50,9 +50,10 @@ typedef struct
   int Offset[3];   // (i, j, k) is (i, j, k) + Offset
 } FieldParameters;
 
-// The displacement in a tetrahedron of the deformation mesh, in output voxels; 64 bytes. That of the
-// voxel with the local index (x, y, z) is, in this order,
-//   Displacement + ((AlongY * (y - Origin[1]) + AlongZ * (z - Origin[2])) + AlongX * (x - Origin[0])).
+// The displacement in a tetrahedron of the deformation mesh, in output voxels; 64 bytes. That of
+// the voxel with the local index (x, y, z) is, in this order,
+//   Displacement +
+//     ((AlongY * (y - Origin[1]) + AlongZ * (z - Origin[2])) + AlongX * (x - Origin[0])).
 typedef struct
 {
   float Displacement[3]; // at Origin
@@ -86,8 +87,8 @@ typedef struct
 #define DEFORMVOLUME_COUNT_WRITES 0
 #define DEFORMVOLUME_COUNT_INVERTED 1
 #define DEFORMVOLUME_COUNT_OVERSTRETCHED 2
-#define DEFORMVOLUME_COUNT_MISSING 3 // cells on the border with a tetrahedron that is flat or left out
-#define DEFORMVOLUME_COUNT_ASSUMED 4 // nonzero where cells on the border took it that there are none such
+#define DEFORMVOLUME_COUNT_MISSING 3 // cells on the border with flat tetrahedra or left-out ones
+#define DEFORMVOLUME_COUNT_ASSUMED 4 // nonzero where it was assumed that there are none such
 #define DEFORMVOLUME_COUNTERS 5
 
 // Output voxels that a work-item of the kernel CountCovered takes.
