@@ -255,6 +255,18 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
 #define SOURCES 0x0101010101010101UL
 #define INTERIORS 0x0202020202020202UL
 
+// The states of eight vertices; without a state the bits of SOURCES and INTERIORS only.
+static ulong StatesOf(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
+{
+  if (p->HasState)
+  {
+    return as_ulong(vload8(0, state + VertexInChunk(x, y, z, p)));
+  }
+  const int inside = x > 0 && x + 8 < p->Size[0] && y > 0 && y < p->Size[1] - 1 && z > 0 &&
+    z < p->Size[2] - 1;
+  return SOURCES | (inside ? INTERIORS : 0);
+}
+
 // A value that the sum of products would not give back: -0, not finite, or so large that the sum may
 // overflow.
 #define IS_SPECIAL(v) (((as_int(v) & 0x7f800000) >= 0x7e000000) | (as_int(v) == INT_MIN))
@@ -294,19 +306,19 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
   const float wholeY = ry.Whole - p->OutputFirst[1] * 256;
   const float wholeZ = rz.Whole - p->OutputFirst[2] * 256;
   const size_t chunk = VertexInChunk(0, y, z, p);
-  __global const uchar* state = mesh->State + chunk;
   ROW_DISPLACEMENTS
   RowFlags flags = { 0, 0 };
   while (x < end)
   {
     __local float* place = row + (i >> 1) + (i & 1 ? ODD : 0);
     __local const float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
-    const ulong states = x + 8 <= end ? as_ulong(vload8(0, state + x)) : 0;
+    const ulong states = x + 8 <= end ? StatesOf(mesh->State, x, y, z, p) : 0;
     if ((i & 1) || (states & SOURCES) != SOURCES)
     {
       // One vertex.
+      const int state = StateOf(mesh->State, x, y, z, p);
       float4 position = (float4)(NO_SOURCE, 0.0f, 0.0f, 0.0f);
-      if (state[x] & DEFORMVOLUME_VERTEX_SOURCE)
+      if (state & DEFORMVOLUME_VERTEX_SOURCE)
       {
         float4 moved = ROW_DISPLACEMENT * 256.0f +
           (float4)(rest[HALF_ROW], ry.Fraction, rz.Fraction, 0.0f);
@@ -318,7 +330,7 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
       place[0] = position.x;
       place[HALF_ROW] = position.y;
       place[2 * HALF_ROW] = position.z;
-      if (!(state[x] & DEFORMVOLUME_VERTEX_INTERIOR))
+      if (!(state & DEFORMVOLUME_VERTEX_INTERIOR))
       {
         flags.Border |= 1u << (i >> 3);
       }
@@ -482,7 +494,8 @@ static INTS IsRegular(const SamplingMesh* mesh, int x, int y, int z, const Kerne
     int state = x + 2 * lane < p->Size[0] - 1 ? DEFORMVOLUME_VERTEX_REGULAR : 0;
     for (int v = 0; state && v < 8; ++v)
     {
-      state &= mesh->State[VertexInChunk(x + 2 * lane + (v & 1), y + (v >> 2), z + (v >> 1 & 1), p)];
+      state &=
+        StateOf(mesh->State, x + 2 * lane + (v & 1), y + (v >> 2), z + (v >> 1 & 1), p);
     }
     regular.Lanes[lane] = state ? -1 : 0;
   }
@@ -605,11 +618,10 @@ static __attribute__((always_inline)) Outcome ResampleGroup(const Group* group, 
   }
   if (border)
   {
-    const size_t i = VertexInChunk(x, y, z, p);
     Lanes state;
     for (int k = 0; k < LANES; ++k)
     {
-      state.Lanes[k] = x + 2 * k < p->Size[0] - 1 ? mesh->State[i + 2 * k] : 0;
+      state.Lanes[k] = x + 2 * k < p->Size[0] - 1 ? StateOf(mesh->State, x + 2 * k, y, z, p) : 0;
     }
     whole = (state.Vector & DEFORMVOLUME_CELL_WHOLE) != 0;
     if (p->Pass == DEFORMVOLUME_PASS_DIRECT)

@@ -161,7 +161,7 @@ static int4 VertexPosition(
   {
     return (int4)(mesh->Block[3 * place], mesh->Block[3 * place + 1], mesh->Block[3 * place + 2], 0);
   }
-  return mesh->State[VertexInChunk(x, y, z, p)] & DEFORMVOLUME_VERTEX_SOURCE
+  return StateOf(mesh->State, x, y, z, p) & DEFORMVOLUME_VERTEX_SOURCE
     ? PositionOf(&mesh->Map, x, y, z, p)
     : (int4)(INT_MIN, 0, 0, 0);
 }

@@ -43,6 +43,20 @@ static size_t VertexInChunk(int x, int y, int z, const KernelParameters* p)
   return ((size_t)(z - p->ChunkFirst) * p->Size[1] + y) * p->Size[0] + x;
 }
 
+// The state of a vertex.
+static int StateOf(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
+{
+  if (p->HasState)
+  {
+    return state[VertexInChunk(x, y, z, p)];
+  }
+  const int3 v = (int3)(x, y, z);
+  const int3 last = (int3)(p->Size[0], p->Size[1], p->Size[2]) - 1;
+  return DEFORMVOLUME_VERTEX_SOURCE | DEFORMVOLUME_VERTEX_REGULAR |
+    (all(v > 0) && all(v < last) ? DEFORMVOLUME_VERTEX_INTERIOR : 0) |
+    (all(v < last) ? DEFORMVOLUME_CELL_WHOLE : 0);
+}
+
 static float3 FieldIndex(const FieldParameters* field, int3 index)
 {
   const float3 i = convert_float3(index);
@@ -214,7 +228,7 @@ __kernel void MapPositions(MAPPING_PARAMETERS, __global const uchar* restrict st
   const int z = p.PlanesBegin + (int)get_global_id(2);
   for (int x = get_global_id(0); x < p.Size[0]; x += get_global_size(0))
   {
-    const int isSource = state[VertexInChunk(x, y, z, &p)] & DEFORMVOLUME_VERTEX_SOURCE;
+    const int isSource = StateOf(state, x, y, z, &p) & DEFORMVOLUME_VERTEX_SOURCE;
     const int4 q = isSource ? PositionOf(&m, x, y, z, &p) : (int4)(INT_MIN, 0, 0, 0);
     __global int* place = positions + PositionIndex(x, y, z, &p);
     place[0] = q.x;

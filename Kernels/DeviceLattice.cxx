@@ -151,6 +151,8 @@ void DeviceLattice::SetLinks(const VertexLink* links)
   const TransferGuard guard(this->Queue);
   this->ForgetRuns();
   this->WithLinks = true;
+  this->AllLinked = std::all_of(links, links + GetNumberOfPoints(this->Shape.VertexExtent),
+    [](const VertexLink& link) { return link.Tetrahedron >= 0; });
   this->StateChanged = true;
   const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
   for (LatticeChunk& chunk : this->Chunks)
@@ -189,6 +191,8 @@ void DeviceLattice::SetRuns(const VertexRuns& runs)
   static_assert(
     sizeof(VertexRun) == 8 && sizeof(TetrahedronRecord) == 64, "as the kernels have it");
   this->ForgetMesh();
+  this->AllLinked = std::all_of(
+    runs.Runs.begin(), runs.Runs.end(), [](const VertexRun& run) { return run.Tetrahedron >= 0; });
   const std::int64_t rows = this->GetSize(1);
   for (LatticeChunk& chunk : this->Chunks)
   {
@@ -312,6 +316,7 @@ KernelParameters DeviceLattice::GetParameters(const LatticeChunk& chunk) const
   p.LayersBegin = chunk.LayersBegin;
   p.LayersEnd = chunk.LayersEnd;
   p.HasActive = this->WithActive;
+  p.HasState = this->WithState;
   return p;
 }
 
@@ -359,11 +364,22 @@ cl::NDRange DeviceLattice::GetVertexGroup() const
   return cl::NDRange(this->Context.GetDevice().IsProcessor ? 1 : 64, 1, 1);
 }
 
-void DeviceLattice::UpdateState(
-  const cl::Program& mapping, const std::function<cl_uint(cl::Kernel&, const LatticeChunk&)>& set)
+void DeviceLattice::UpdateState(const cl::Program& mapping, bool movesAll,
+  const std::function<cl_uint(cl::Kernel&, const LatticeChunk&)>& set)
 {
   if (!this->StateChanged)
   {
+    return;
+  }
+  this->WithState =
+    this->WithBlanked || this->WithActive || !(this->HasMesh() ? this->AllLinked : movesAll);
+  this->StateChanged = this->WithState;
+  if (!this->WithState)
+  {
+    for (LatticeChunk& chunk : this->Chunks)
+    {
+      chunk.State = cl::Buffer();
+    }
     return;
   }
   cl::Kernel sources(mapping, "MarkSources");

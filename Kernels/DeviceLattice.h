@@ -87,9 +87,16 @@ public:
   /// Brings the state of the vertices up to date, where anything changed that it depends on.
   /// mapping: the program of the deformation mapping. set: sets a kernel's arguments of the mapping
   /// for a chunk, which come first, and returns how many they are.
-  void UpdateState(const cl::Program& mapping,
+  /// Where the deformation moves all voxels and no mask is set there is no state to keep. movesAll:
+  /// whether a field moves all voxels; links and runs tell by themselves.
+  void UpdateState(const cl::Program& mapping, bool movesAll,
     const std::function<cl_uint(cl::Kernel&, const LatticeChunk&)>& set);
   void ForgetState() { this->StateChanged = true; }
+  /// The state, or any buffer that stands in for it.
+  const cl::Buffer& GetState(const LatticeChunk& chunk) const
+  {
+    return chunk.State() ? chunk.State : this->RestPositions;
+  }
 
   /// The parameters of a launch over the whole of a chunk.
   KernelParameters GetParameters(const LatticeChunk& chunk) const;
@@ -125,6 +132,8 @@ private:
   bool WithBlanked = false;
   bool WithActive = false;
   bool StateChanged = true;
+  bool WithState = true;
+  bool AllLinked = false; // no link or run says that a voxel is outside
 };
 
 } // namespace deformvolume

@@ -26,6 +26,7 @@ typedef struct
   int OutputSize[3];  // output voxels in the buffers on each axis
   int Pass;           // one of the passes below
   int HasActive;      // whether a mask of active tetrahedra is there; without one all are active
+  int HasState;       // whether the vertices have a state; without one all that could be is there
   int BrickOrigin[3]; // local index of the first cell of the first brick; may lie before the volume
   int BrickCount[3];  // bricks on each axis
   int ListBegin;      // place in the list of bricks of the first one to work on

@@ -274,8 +274,8 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
   for (int v = 0; v < 8; ++v)
   {
     const int o = v ^ mirror;
-    const size_t i = VertexInChunk(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
-    interior |= (mesh->State[i] & DEFORMVOLUME_VERTEX_INTERIOR) ? 1 << v : 0;
+    const int state = StateOf(mesh->State, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+    interior |= (state & DEFORMVOLUME_VERTEX_INTERIOR) ? 1 << v : 0;
   }
   // Orientations, against the one that the parity of the cell asks for.
   const int odd = (mirror ^ mirror >> 1 ^ mirror >> 2) & 1;

@@ -224,7 +224,7 @@ void VolumeDeformer::Internals::Map(const LatticeChunk& chunk, const KernelParam
   }
   cl::Kernel kernel(GetMappingProgram(*this->Context, this->GetMappingForm()), "MapPositions");
   cl_uint i = this->SetMappingArguments(kernel, chunk);
-  kernel.setArg(i++, chunk.State);
+  kernel.setArg(i++, this->Mesh->GetState(chunk));
   kernel.setArg(i++, this->Positions);
   kernel.setArg(i++, p);
   this->MappingEvents.emplace_back();
@@ -281,7 +281,7 @@ void VolumeDeformer::Internals::RunPublished(const DeformRequest& request, Outpu
     this->Map(chunk, p);
     cl_uint i = 0;
     kernel.setArg(i++, this->Positions);
-    kernel.setArg(i++, p.HasActive ? chunk.Active : chunk.State);
+    kernel.setArg(i++, p.HasActive ? chunk.Active : this->Mesh->GetState(chunk));
     kernel.setArg(i++, output.GetCoverage());
     kernel.setArg(i++, p);
     for (std::size_t a = 0; a < this->Arrays.size(); ++a)
@@ -323,8 +323,8 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
       p.Pass = pass;
       output.SetParameters(p);
       cl_uint i = this->SetMappingArguments(kernel, chunk);
-      kernel.setArg(i++, chunk.State);
-      kernel.setArg(i++, p.HasActive ? chunk.Active : chunk.State);
+      kernel.setArg(i++, this->Mesh->GetState(chunk));
+      kernel.setArg(i++, p.HasActive ? chunk.Active : this->Mesh->GetState(chunk));
       kernel.setArg(i++, output.GetCoverage());
       kernel.setArg(i++, output.GetWinners());
       kernel.setArg(i++, output.GetCounters());
@@ -378,7 +378,7 @@ void VolumeDeformer::Internals::Run(const DeformRequest& request, OutputSlab& ou
     this->MappingEvents.push_back(
       this->Mesh->EvaluateTetrahedra(mapping, this->Tetrahedra, this->Nodes));
   }
-  this->Mesh->UpdateState(mapping,
+  this->Mesh->UpdateState(mapping, this->Field.Extrapolate || this->Field.SameGrid,
     [this](cl::Kernel& kernel, const LatticeChunk& chunk)
     { return this->SetMappingArguments(kernel, chunk); });
   if (request.Method == Resampling::Published)

@@ -196,7 +196,7 @@ public:
       kernel.setArg(3, this->Mesh.GetRestPositions());
       return cl_uint{ 4 };
     };
-    this->Mesh.UpdateState(program, setMapping);
+    this->Mesh.UpdateState(program, false, setMapping);
     Mapped mapped;
     mapped.Positions.resize(this->Case.GetNumberOfVoxels(), { { 1, 2, 3 } });
     mapped.States.resize(this->Case.GetNumberOfVoxels(), 99);
@@ -225,7 +225,7 @@ private:
     const std::size_t voxels = plane * (p.PlanesEnd - p.PlanesBegin);
     const cl::Buffer positions(
       this->Context.GetContext(), CL_MEM_READ_WRITE, voxels * 3 * sizeof(int));
-    kernel.setArg(i++, chunk.State);
+    kernel.setArg(i++, this->Mesh.GetState(chunk));
     kernel.setArg(i++, positions);
     kernel.setArg(i++, p);
     this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
@@ -233,8 +233,11 @@ private:
     std::vector<int> values(3 * voxels);
     this->Queue.enqueueReadBuffer(
       positions, CL_TRUE, 0, values.size() * sizeof(int), values.data());
-    std::vector<unsigned char> states(voxels);
-    this->Queue.enqueueReadBuffer(chunk.State, CL_TRUE, 0, voxels, states.data());
+    std::vector<unsigned char> states(voxels); // stay 0 where there is no need to keep any
+    if (chunk.State())
+    {
+      this->Queue.enqueueReadBuffer(chunk.State, CL_TRUE, 0, voxels, states.data());
+    }
     // The planes beyond the layers of the chunk are those of its neighbours.
     const int end = std::min(p.LayersEnd + 1, p.Size[2]);
     for (int z = p.LayersBegin; z < end; ++z)
