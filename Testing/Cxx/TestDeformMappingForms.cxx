@@ -129,11 +129,11 @@ void TestMemoryLimit()
   auto coarse = MakeMesh(volume, 4);
   SetDisplacements(coarse, Shift(1.0, 0.0, 0.0));
   Deformed runs(volume, coarse);
-  runs.Filter->SetMemoryLimit(24 * volume->GetNumberOfPoints());
+  runs.Filter->SetMemoryLimit(12 * volume->GetNumberOfPoints());
   runs.Update();
   Deformed links(volume, coarse);
   links.Filter->SetOutsideModeToExtrapolate();
-  links.Filter->SetMemoryLimit(24 * volume->GetNumberOfPoints());
+  links.Filter->SetMemoryLimit(12 * volume->GetNumberOfPoints());
   links.Filter->Update();
   VERIFY(links.TakeErrors() >= 1);
   VERIFY(links.LastError.find("bytes are needed") != std::string::npos);
