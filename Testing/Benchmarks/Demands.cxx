@@ -22,17 +22,17 @@ struct Limit
   double Highest;
 };
 // The times of whole updates by those of vtkImageReslice with an affine transform, same output.
-constexpr Limit UpdateNear{ "near identity: update by affine vtkImageReslice", 8.0 };
-constexpr Limit UpdateGeneral{ "general pose: update by affine vtkImageReslice", 10.0 };
+constexpr Limit UpdateNear{ "near identity: update by affine vtkImageReslice", 1.5 };
+constexpr Limit UpdateGeneral{ "general pose: update by affine vtkImageReslice", 1.5 };
 // The times of mapping and resampling by those of the published kernel.
-constexpr Limit PublishedNear{ "near identity: default by published kernel", 1.0 };
-constexpr Limit PublishedGeneral{ "general pose: default by published kernel", 1.0 };
+constexpr Limit PublishedNear{ "near identity: default by published kernel", 0.15 };
+constexpr Limit PublishedGeneral{ "general pose: default by published kernel", 0.2 };
 // The times of mapping and resampling by those of the coarse mesh near identity.
-constexpr Limit FineMesh{ "near identity: 512000 nodes by 2197 nodes", 2.0 };
-constexpr Limit Rotated{ "turned by 45 degrees round each axis, by near identity", 6.0 };
-constexpr Limit Scaled{ "scaled by 1.5, by near identity", 6.0 };
-constexpr Limit BytesCoarse{ "2197 nodes: bytes of device memory per voxel", 31.0 };
-constexpr Limit BytesFine{ "512000 nodes: bytes of device memory per voxel", 31.0 };
+constexpr Limit FineMesh{ "near identity: 512000 nodes by 2197 nodes", 1.6 };
+constexpr Limit Rotated{ "turned by 45 degrees round each axis, by near identity", 2.5 };
+constexpr Limit Scaled{ "scaled by 1.5, by near identity", 2.5 };
+constexpr Limit BytesCoarse{ "2197 nodes: bytes of device memory per voxel", 6.0 };
+constexpr Limit BytesFine{ "512000 nodes: bytes of device memory per voxel", 20.0 };
 constexpr Limit Builds{ "static mappings built for moved meshes", 0.0 };
 constexpr Limit Uploads{ "uploads of the volume for moved meshes", 0.0 };
 constexpr Limit Preprocessing{ "301 x 370 x 316 voxels, 512000 nodes: seconds of preprocessing",
