@@ -38,6 +38,17 @@ bool IsHeldByOthers(vtkDataArray* array)
   return array->GetReferenceCount() > 1;
 }
 
+// What tells that arrays have their values still.
+Stamp GetStamp(const std::vector<vtkSmartPointer<vtkDataArray>>& arrays)
+{
+  Stamp stamp;
+  for (const auto& array : arrays)
+  {
+    stamp.emplace_back(GetWritableValues(array), array->GetMTime());
+  }
+  return stamp;
+}
+
 // Names and the like; values are not touched.
 void Describe(vtkDataArray* array, vtkDataArray* wanted)
 {
@@ -89,6 +100,14 @@ std::uint64_t OutputArrays::Prepare(
 void OutputArrays::Make(
   const std::vector<SourceArray>& sources, vtkImageData* image, DeformRequest& request)
 {
+  if (!this->Last.empty() && GetStamp(this->Last) == this->LastStamp)
+  {
+    for (std::size_t i = 0; i < sources.size(); ++i)
+    {
+      request.LastOutputs.push_back(GetWritableValues(this->Last[i]));
+    }
+    request.LastCoverage = static_cast<signed char*>(GetWritableValues(this->Last.back()));
+  }
   for (std::size_t i = 0; i <= sources.size(); ++i)
   {
     const bool isMask = i == sources.size();
@@ -123,6 +142,7 @@ void OutputArrays::Keep()
   {
     array->Modified(); // ranges that were found of earlier values do not hold
   }
+  this->LastStamp = GetStamp(this->Last);
 }
 
 void OutputArrays::Forget()

@@ -26,7 +26,8 @@ public:
   std::uint64_t Prepare(const std::vector<SourceArray>& sources, vtkIdType numberOfTuples);
 
   /// Gives the image a point array like each of the sources and vtkValidPointMask, and the request
-  /// their memory. After Prepare() with the same arguments.
+  /// their memory, and that of the last output where nobody has changed it. After Prepare() with
+  /// the same arguments.
   void Make(const std::vector<SourceArray>& sources, vtkImageData* image, DeformRequest& request);
 
   /// Keeps what Make() made, now that it is written, for the next execution.
@@ -38,6 +39,7 @@ private:
 
   vtkIdType NumberOfTuples = 0;
   Arrays Last;
+  Stamp LastStamp;
   Arrays Made;
 };
 

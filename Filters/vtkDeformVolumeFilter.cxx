@@ -320,6 +320,7 @@ int vtkDeformVolumeFilter::RequestData(
   image->Initialize();
   this->PreprocessingTime = this->TransferTime = this->MappingTime = this->ResamplingTime = 0.0;
   this->NumberOfInvertedTetrahedra = this->NumberOfFlatTetrahedra = this->NumberOfCoveredVoxels = 0;
+  this->NumberOfBricks = this->NumberOfResampledBricks = 0;
   vtkImageData* volume = vtkImageData::GetData(input[0]);
   if (!volume)
   {
@@ -394,6 +395,7 @@ int vtkDeformVolumeFilter::RequestData(
   image->SetDirectionMatrix(glm::value_ptr(rows));
   image->GetFieldData()->ShallowCopy(volume->GetFieldData());
   this->Internals->Outputs.Make(arrays, image, request);
+  request.Incremental = this->Incremental;
   deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
 
   const deformvolume::DeformReport report = device.Deform(request);
@@ -415,6 +417,8 @@ int vtkDeformVolumeFilter::RequestData(
     : deformation.IsField() ? 0
                             : this->Internals->Mapping.GetNumberOfFlatTetrahedra();
   this->NumberOfCoveredVoxels = report.NumberOfCoveredVoxels;
+  this->NumberOfBricks = report.NumberOfBricks;
+  this->NumberOfResampledBricks = report.NumberOfResampledBricks;
   this->NumberOfMappingBuilds = this->Internals->Mapping.GetNumberOfBuilds();
   this->NumberOfVolumeUploads = device.GetNumberOfVolumeUploads();
   if (report.NumberOfOverstretchedCells > 0)
@@ -478,6 +482,7 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Resampler: " << this->Resampler << "\n";
   os << indent << "Interpolation: " << this->Interpolation << "\n";
   os << indent << "ResamplerInUse: " << this->ResamplerInUse << "\n";
+  os << indent << "Incremental: " << (this->Incremental ? "on" : "off") << "\n";
   os << indent << "Device: \"" << this->Device << "\"\n";
   os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
   os << indent << "WorkGroupSize: " << this->WorkGroupSize << "\n";
@@ -488,6 +493,8 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfInvertedTetrahedra: " << this->NumberOfInvertedTetrahedra << "\n";
   os << indent << "NumberOfFlatTetrahedra: " << this->NumberOfFlatTetrahedra << "\n";
   os << indent << "NumberOfCoveredVoxels: " << this->NumberOfCoveredVoxels << "\n";
+  os << indent << "NumberOfBricks: " << this->NumberOfBricks << "\n";
+  os << indent << "NumberOfResampledBricks: " << this->NumberOfResampledBricks << "\n";
   os << indent << "NumberOfMappingBuilds: " << this->NumberOfMappingBuilds << "\n";
   os << indent << "NumberOfVolumeUploads: " << this->NumberOfVolumeUploads << "\n";
   os << indent << "DeviceInUse: \"" << this->DeviceInUse << "\"\n";

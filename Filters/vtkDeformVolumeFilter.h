@@ -262,6 +262,20 @@ public:
 
   ///@{
   /**
+   * Whether an update resamples only the bricks of the volume (64 x 16 x 16 cells) whose nodes
+   * moved or whose masks changed, and those that overlap them in the output. The result is the same
+   * to the last bit. Needs the resampler EXACT, a processor as device, and an output of the same
+   * extent as the last one; all is resampled where that is not so, where more than 60 % would have
+   * to be, where the volume's arrays changed, where the volume is folded over, and after an abort
+   * or an error. Default: on.
+   */
+  vtkSetMacro(Incremental, bool);
+  vtkGetMacro(Incremental, bool);
+  vtkBooleanMacro(Incremental, bool);
+  ///@}
+
+  ///@{
+  /**
    * The OpenCL device: "" is the best there is, or what the environment variable
    * DEFORMVOLUME_DEVICE asks for in the same words; "cpu" and "gpu" are the best of that kind;
    * anything else is a part of a device's name, without regard to case. A request that cannot be
@@ -327,6 +341,15 @@ public:
 
   ///@{
   /**
+   * Bricks of 64 x 16 x 16 cells that the volume has, and how many of them the last execution
+   * resampled; 0 with MESH_RASTERIZATION, which knows no bricks.
+   */
+  vtkGetMacro(NumberOfBricks, vtkIdType);
+  vtkGetMacro(NumberOfResampledBricks, vtkIdType);
+  ///@}
+
+  ///@{
+  /**
    * How often this filter has built a static mapping, and sent a volume to the device: a moved mesh
    * costs neither. MESH_RASTERIZATION needs no mapping; a change to it or from it sends the volume.
    * The mapping is built anew after a change of the mesh at rest, of the volume's
@@ -382,6 +405,7 @@ private:
   int OutsideMode = DISCARD;
   int Resampler = AUTOMATIC;
   int Interpolation = LINEAR_INTERPOLATION;
+  bool Incremental = true;
   std::string Device;
   vtkTypeInt64 MemoryLimit = 0;
   int WorkGroupSize = 0;
@@ -393,6 +417,8 @@ private:
   vtkIdType NumberOfInvertedTetrahedra = 0;
   vtkIdType NumberOfFlatTetrahedra = 0;
   vtkIdType NumberOfCoveredVoxels = 0;
+  vtkIdType NumberOfBricks = 0;
+  vtkIdType NumberOfResampledBricks = 0;
   vtkIdType NumberOfMappingBuilds = 0;
   vtkIdType NumberOfVolumeUploads = 0;
   int ResamplerInUse = AUTOMATIC;

@@ -349,6 +349,47 @@ std::pair<cl_uint, cl_uint> DeviceLattice::GetBrickRange(int layersBegin, int la
     static_cast<cl_uint>((layersEnd - 1 - origin) / BrickSize[2] + 1) * layer };
 }
 
+BrickGrid DeviceLattice::GetBrickGrid() const
+{
+  BrickGrid grid;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    grid.Size[axis] = this->GetSize(axis);
+    grid.Origin[axis] = this->GetBrickOrigin(axis);
+    grid.Count[axis] = this->GetNumberOfBricks(axis);
+  }
+  return grid;
+}
+
+BrickPoints DeviceLattice::MakeBrickPoints(
+  const cl::Buffer& tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes) const
+{
+  const LatticeChunk& chunk = this->Chunks.front();
+  const MappedBuffer<const Tetrahedron> nodes(this->Queue, tetrahedra, CL_MAP_READ);
+  if (!this->HasRuns())
+  {
+    const MappedBuffer<const VertexLink> links(this->Queue, chunk.Links, CL_MAP_READ);
+    return BrickPoints::FromLinks(
+      this->GetBrickGrid(), links.Get(), nodes.Get(), numberOfTetrahedra, numberOfNodes);
+  }
+  const MappedBuffer<const VertexRun> runs(this->Queue, chunk.Runs, CL_MAP_READ);
+  const MappedBuffer<const std::uint32_t> begins(this->Queue, chunk.RowBegins, CL_MAP_READ);
+  const MappedBuffer<const std::int32_t> owners(this->Queue, this->RecordOwners, CL_MAP_READ);
+  std::vector<double> rest(15 * std::size_t{ this->NumberOfRecords });
+  if (HasDouble(this->Context))
+  {
+    const MappedBuffer<const double> records(this->Queue, this->RestTetrahedra, CL_MAP_READ);
+    std::copy_n(records.Get(), rest.size(), rest.begin());
+  }
+  else
+  {
+    const MappedBuffer<const float> records(this->Queue, this->RestTetrahedra, CL_MAP_READ);
+    std::copy_n(records.Get(), rest.size(), rest.begin());
+  }
+  return BrickPoints::FromRuns(this->GetBrickGrid(), runs.Get(), begins.Get(), rest.data(),
+    owners.Get(), nodes.Get(), numberOfTetrahedra, numberOfNodes);
+}
+
 cl::NDRange DeviceLattice::GetVertexRange(int planes) const
 {
   const std::size_t group = this->GetVertexGroup()[0];

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeDeviceLattice_h
 #define DeformVolumeDeviceLattice_h
 
+#include "BrickPoints.h"
 #include "HostMemory.h"
 #include "KernelParameters.h"
 #include "OpenCLContext.h"
@@ -83,6 +84,11 @@ public:
   int GetNumberOfBricks(int axis) const;
   std::size_t GetNumberOfBricks() const;
   std::pair<cl_uint, cl_uint> GetBrickRange(int layersBegin, int layersEnd) const;
+
+  BrickGrid GetBrickGrid() const;
+  /// Of a mesh, on a processor, where the lattice is one chunk.
+  BrickPoints MakeBrickPoints(
+    const cl::Buffer& tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes) const;
 
   /// Brings the state of the vertices up to date, where anything changed that it depends on.
   /// mapping: the program of the deformation mapping. set: sets a kernel's arguments of the mapping

@@ -34,26 +34,24 @@ public:
   MappedBuffer(const cl::CommandQueue& queue, const cl::Buffer& buffer, cl_map_flags access)
     : Queue(queue)
     , Buffer(buffer)
-    , Data(static_cast<T*>(
-        queue.enqueueMapBuffer(buffer, CL_TRUE, access, 0, buffer.getInfo<CL_MEM_SIZE>())))
+    , Mapped(queue.enqueueMapBuffer(buffer, CL_TRUE, access, 0, buffer.getInfo<CL_MEM_SIZE>()))
   {
   }
   ~MappedBuffer()
   {
     // clEnqueueUnmapMemObject as such: an exception must not leave a destructor.
-    clEnqueueUnmapMemObject(this->Queue(), this->Buffer(), this->Data, 0, nullptr, nullptr);
+    clEnqueueUnmapMemObject(this->Queue(), this->Buffer(), this->Mapped, 0, nullptr, nullptr);
     clFinish(this->Queue());
   }
   MappedBuffer(const MappedBuffer&) = delete;
   MappedBuffer& operator=(const MappedBuffer&) = delete;
 
-  T* Get() const { return this->Data; }
-  T& operator[](std::size_t i) const { return this->Data[i]; }
+  T* Get() const { return static_cast<T*>(this->Mapped); }
 
 private:
   cl::CommandQueue Queue;
   cl::Buffer Buffer;
-  T* Data;
+  void* Mapped;
 };
 
 } // namespace deformvolume

@@ -95,6 +95,9 @@ typedef struct
 // Output voxels that a work-item of the kernel CountCovered takes.
 #define DEFORMVOLUME_COUNTED_VOXELS 4096
 
+// Voxels of a patch of the output on each axis: what is cleared where a part is made anew.
+#define DEFORMVOLUME_PATCH 16
+
 // Bytes that a work-item of the kernels Fill1 to Fill8 writes.
 #define DEFORMVOLUME_FILLED_BYTES 65536
 

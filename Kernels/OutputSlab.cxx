@@ -7,12 +7,26 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <type_traits>
 
 namespace deformvolume
 {
 namespace
 {
+
+template <typename T>
+using BitsOf = std::conditional_t<sizeof(T) == 1, cl_uchar,
+  std::conditional_t<sizeof(T) == 2, cl_ushort,
+    std::conditional_t<sizeof(T) == 4, cl_uint, cl_ulong>>>;
+
+template <typename T>
+BitsOf<T> GetBits(T value)
+{
+  BitsOf<T> bits;
+  std::memcpy(&bits, &value, sizeof(T));
+  return bits;
+}
 
 /// Fills a buffer of so many elements. Processors do that with a kernel: see OutputClearing.cl.
 template <typename T>
@@ -25,19 +39,40 @@ void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffe
     queue.enqueueFillBuffer(buffer, value, 0, size * sizeof(T), nullptr, &events.back());
     return;
   }
-  using Bits = std::conditional_t<sizeof(T) == 1, cl_uchar,
-    std::conditional_t<sizeof(T) == 2, cl_ushort,
-      std::conditional_t<sizeof(T) == 4, cl_uint, cl_ulong>>>;
-  Bits bits;
-  std::memcpy(&bits, &value, sizeof(T));
   cl::Kernel kernel(GetOutputProgram(context), ("Fill" + std::to_string(sizeof(T))).c_str());
   kernel.setArg(0, buffer);
   kernel.setArg(1, cl_ulong{ size });
-  kernel.setArg(2, bits);
+  kernel.setArg(2, GetBits(value));
   constexpr std::uint64_t step = DEFORMVOLUME_FILLED_BYTES / sizeof(T);
   queue.enqueueNDRangeKernel(kernel, cl::NullRange,
     cl::NDRange(static_cast<std::size_t>((size + step - 1) / step)), cl::NullRange, nullptr,
     &events.back());
+}
+
+/// Clears patches of a buffer of so many elements a voxel.
+template <typename T>
+void ClearPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  int components, T value, const cl::Buffer& patches, std::size_t numberOfPatches,
+  const KernelParameters& p, std::vector<cl::Event>& events)
+{
+  cl::Kernel kernel(
+    GetOutputProgram(context), ("ClearPatches" + std::to_string(sizeof(T))).c_str());
+  kernel.setArg(0, buffer);
+  kernel.setArg(1, cl_int{ components });
+  kernel.setArg(2, GetBits(value));
+  kernel.setArg(3, patches);
+  kernel.setArg(4, p);
+  events.emplace_back();
+  queue.enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(numberOfPatches), cl::NDRange(1), nullptr, &events.back());
+}
+
+/// The sum of what a kernel writes for each of its work-items.
+std::uint64_t ReadSum(const cl::CommandQueue& queue, const cl::Buffer& sums, std::size_t items)
+{
+  std::vector<cl_uint> counts(items);
+  queue.enqueueReadBuffer(sums, CL_TRUE, 0, items * sizeof(cl_uint), counts.data());
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{ 0 });
 }
 
 void Reserve(OpenCLContext& context, cl::Buffer& buffer, std::uint64_t bytes)
@@ -142,6 +177,88 @@ void OutputSlab::Clear(OpenCLContext& context, const cl::Buffer& buffer, double 
   }
 }
 
+void OutputSlab::PlaceArrays(
+  OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays)
+{
+  this->Arrays.resize(arrays.size());
+  this->TupleSizes.resize(arrays.size());
+  const std::uint64_t offset = this->GetOffset(request);
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    this->TupleSizes[i] = GetTupleSize(arrays[i]);
+    Place(context, this->Arrays[i],
+      static_cast<char*>(request.Outputs[i]) + offset * this->TupleSizes[i],
+      GetElementSize(arrays[i].Type), this->NumberOfVoxels * this->TupleSizes[i]);
+  }
+  Place(context, this->Coverage, request.Coverage + offset, 1, this->NumberOfVoxels);
+}
+
+std::uint64_t OutputSlab::PreparePatches(OpenCLContext& context, const cl::CommandQueue& queue,
+  const Extent& extent, const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+  const std::vector<cl_uint>& patches, const std::vector<cl_uint>& bricks,
+  std::vector<cl::Event>& events)
+{
+  this->Finish();
+  this->Queue = queue;
+  this->SlabExtent = extent;
+  this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(extent));
+  this->PlaceArrays(context, request, arrays);
+  this->NumberOfPatches = patches.size();
+  std::uint64_t covered = 0;
+  if (!patches.empty())
+  {
+    const std::size_t bytes = patches.size() * sizeof(cl_uint);
+    Reserve(context, this->Patches, bytes);
+    queue.enqueueWriteBuffer(this->Patches, CL_TRUE, 0, bytes, patches.data());
+    covered = this->CountPatches(context, events);
+    KernelParameters p = {};
+    this->SetParameters(p);
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+    {
+      switch (arrays[i].Type)
+      {
+#define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
+  case ElementType::name:                                                                          \
+    ClearPatches(context, queue, this->Arrays[i], arrays[i].Components,                            \
+      ClampTo<ctype>(arrays[i].Background), this->Patches, patches.size(), p, events);             \
+    break;
+        DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
+#undef DEFORMVOLUME_CASE
+      }
+    }
+    ClearPatches(context, queue, this->Coverage, 1, std::int8_t{ 0 }, this->Patches, patches.size(),
+      p, events);
+  }
+  const MappedBuffer<cl_uint> counters(queue, this->Counters, CL_MAP_READ | CL_MAP_WRITE);
+  for (const cl_uint brick : bricks)
+  {
+    std::fill_n(counters.Get() + std::size_t{ brick } * DEFORMVOLUME_COUNTERS,
+      DEFORMVOLUME_COUNTERS, cl_uint{ 0 });
+  }
+  return covered;
+}
+
+std::uint64_t OutputSlab::CountPatches(OpenCLContext& context, std::vector<cl::Event>& events)
+{
+  if (this->NumberOfPatches == 0)
+  {
+    return 0;
+  }
+  const cl::Buffer sums(
+    context.GetContext(), CL_MEM_WRITE_ONLY, this->NumberOfPatches * sizeof(cl_uint));
+  KernelParameters p = {};
+  this->SetParameters(p);
+  cl::Kernel kernel(GetOutputProgram(context), "CountPatches");
+  kernel.setArg(0, this->Coverage);
+  kernel.setArg(1, this->Patches);
+  kernel.setArg(2, sums);
+  kernel.setArg(3, p);
+  events.emplace_back();
+  this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->NumberOfPatches),
+    cl::NDRange(1), nullptr, &events.back());
+  return ReadSum(this->Queue, sums, this->NumberOfPatches);
+}
+
 void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   const Extent& extent, const DeformRequest& request, const std::vector<VolumeArray>& arrays,
   const Lattice& lattice, std::size_t numberOfBricks, std::vector<cl::Event>& events)
@@ -155,20 +272,13 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   {
     this->Winners = cl::Buffer();
   }
-  this->Arrays.resize(arrays.size());
-  this->TupleSizes.resize(arrays.size());
-  const std::uint64_t offset = this->GetOffset(request);
+  this->PlaceArrays(context, request, arrays);
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
     const VolumeArray& array = arrays[i];
-    this->TupleSizes[i] = GetTupleSize(array);
-    Place(context, this->Arrays[i],
-      static_cast<char*>(request.Outputs[i]) + offset * this->TupleSizes[i],
-      GetElementSize(array.Type), this->NumberOfVoxels * this->TupleSizes[i]);
     this->Clear(context, this->Arrays[i], array.Background, array.Type,
       this->NumberOfVoxels * static_cast<std::uint64_t>(array.Components), events);
   }
-  Place(context, this->Coverage, request.Coverage + offset, 1, this->NumberOfVoxels);
   this->Clear(context, this->Coverage, 0.0, ElementType::Int8, this->NumberOfVoxels, events);
   this->NumberOfBricks = numberOfBricks;
   const std::uint64_t counters = this->NumberOfBricks * DEFORMVOLUME_COUNTERS;
@@ -200,14 +310,7 @@ std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::E
   events.emplace_back();
   this->Queue.enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(items), cl::NullRange, nullptr, &events.back());
-  std::vector<cl_uint> counts(items);
-  this->Queue.enqueueReadBuffer(sums, CL_TRUE, 0, items * sizeof(cl_uint), counts.data());
-  std::uint64_t covered = 0;
-  for (const cl_uint count : counts)
-  {
-    covered += count;
-  }
-  return covered;
+  return ReadSum(this->Queue, sums, items);
 }
 
 OutputSlab::Counts OutputSlab::ReadCounts()

@@ -25,6 +25,13 @@ public:
     std::uint64_t Overstretched = 0;
     /// On the border of the mesh, tetrahedra that cover nothing, where the kernel took them to.
     bool MissingWhereAssumed = false;
+
+    /// Every covered voxel was written once, unless tetrahedra overlap; where the mesh is folded,
+    /// voxels on the crease may also be missing.
+    bool NeedWinners(std::uint64_t covered) const
+    {
+      return this->Writes > covered || this->Inverted > 0 || this->MissingWhereAssumed;
+    }
   };
 
   /// Splits an output into slabs that the device can allocate. Throws Error where not even one
@@ -42,6 +49,17 @@ public:
   void Prepare(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
     const DeformRequest& request, const std::vector<VolumeArray>& arrays, const Lattice& lattice,
     std::size_t numberOfBricks, std::vector<cl::Event>& events);
+
+  /// The same where the memory of the request, which is worked on in place, holds the last output
+  /// and the counters are still those of it: clears some patches (see IncrementalUpdate) and the
+  /// counters of some bricks, and returns how many voxels of the patches were covered.
+  std::uint64_t PreparePatches(OpenCLContext& context, const cl::CommandQueue& queue,
+    const Extent& extent, const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+    const std::vector<cl_uint>& patches, const std::vector<cl_uint>& bricks,
+    std::vector<cl::Event>& events);
+
+  /// Covered voxels of the patches that were prepared.
+  std::uint64_t CountPatches(OpenCLContext& context, std::vector<cl::Event>& events);
 
   /// Bytes that PrepareWinners will allocate.
   std::uint64_t GetMissingWinnerMemory() const;
@@ -71,6 +89,8 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
+  void PlaceArrays(
+    OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays);
   std::uint64_t GetOffset(const DeformRequest& request) const;
   void Clear(OpenCLContext& context, const cl::Buffer& buffer, double value, ElementType type,
     std::uint64_t size, std::vector<cl::Event>& events) const;
@@ -83,6 +103,8 @@ private:
   cl::Buffer Coverage;
   cl::Buffer Winners;
   cl::Buffer Counters;
+  cl::Buffer Patches;
+  std::size_t NumberOfPatches = 0;
   std::size_t WinnerSize = 4;
   std::size_t NumberOfBricks = 0;
   std::uint64_t NumberOfVoxels = 0;

@@ -35,27 +35,6 @@ std::uint64_t GetMappingBytes(const Lattice& lattice, bool field, std::uint64_t 
     : static_cast<std::uint64_t>(GetNumberOfPoints(lattice.VertexExtent)) * sizeof(VertexLink);
 }
 
-/// The three floats of each point padded to the four that the device reads at once.
-std::vector<float> MakeVectors(const float* vectors, std::size_t count, const char* what)
-{
-  std::vector<float> padded(4 * count);
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    for (std::size_t c = 0; c < 3; ++c)
-    {
-      const float value = vectors[3 * i + c];
-      if (!(std::abs(value) <= LargestDisplacement))
-      {
-        throw Error(std::string("The displacement of ") + what + " " + std::to_string(i) +
-          " is not finite, or over 16,383 output voxels. Check the scale of the displacements and "
-          "the output spacing.");
-      }
-      padded[4 * i + c] = value;
-    }
-  }
-  return padded;
-}
-
 /// Finds out whether the voxels are points of a field.
 void SetSameGrid(FieldParameters& field, const Extent& extent)
 {
@@ -226,6 +205,7 @@ void VolumeDeformer::SetArrays(const std::vector<VolumeArray>& arrays)
   this->Impl->Send(
     [&]
     {
+      this->Impl->Update.Forget();
       this->Impl->GetMesh().SetArrays(arrays);
       this->Impl->Arrays = arrays;
       for (VolumeArray& array : this->Impl->Arrays)
@@ -250,6 +230,11 @@ void VolumeDeformer::SetArrayOptions(const std::vector<VolumeArray>& arrays)
   }
   for (std::size_t i = 0; i < set.size(); ++i)
   {
+    // Not-a-number never counts as the same.
+    if (set[i].Categorical != arrays[i].Categorical || !(set[i].Background == arrays[i].Background))
+    {
+      this->Impl->Update.Forget();
+    }
     set[i].Categorical = arrays[i].Categorical;
     set[i].Background = arrays[i].Background;
   }
@@ -257,12 +242,22 @@ void VolumeDeformer::SetArrayOptions(const std::vector<VolumeArray>& arrays)
 
 void VolumeDeformer::SetBlanked(const unsigned char* blanked)
 {
-  this->Impl->Send([&] { this->Impl->GetMesh().SetBlanked(blanked); });
+  this->Impl->Send(
+    [&]
+    {
+      this->Impl->TellMask(blanked, false);
+      this->Impl->GetMesh().SetBlanked(blanked);
+    });
 }
 
 void VolumeDeformer::SetActiveTetrahedra(const unsigned char* active)
 {
-  this->Impl->Send([&] { this->Impl->GetMesh().SetActive(active); });
+  this->Impl->Send(
+    [&]
+    {
+      this->Impl->TellMask(active, true);
+      this->Impl->GetMesh().SetActive(active);
+    });
 }
 
 void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
@@ -310,16 +305,14 @@ void VolumeDeformer::SetNodeDisplacements(const float* displacements)
       {
         throw Error("No deformation mesh is set: call SetMesh first.");
       }
-      const std::vector<float> nodes =
-        MakeVectors(displacements, this->Impl->NumberOfNodes, "node");
+      Internals::CheckVectors(displacements, this->Impl->NumberOfNodes, "node");
       if (this->Impl->Rasterizer.HasMesh())
       {
         this->Impl->Rasterizer.SetDisplacements(this->Impl->GetRasterizerSetting(), displacements,
           this->Impl->GetMesh().GetLattice().Scale);
         return;
       }
-      this->Impl->Nodes =
-        this->Impl->SendBuffer(nodes.data(), nodes.size() * sizeof(float), this->Impl->Nodes);
+      this->Impl->SendVectors(displacements, this->Impl->NumberOfNodes, this->Impl->Nodes);
       this->Impl->NodesSet = true;
       this->Impl->GetMesh().ForgetRecords();
     });
@@ -367,17 +360,17 @@ void VolumeDeformer::SetDisplacementField(const DisplacementField& field)
         parameters.Extrapolate == this->Impl->Field.Extrapolate;
       if (!same)
       {
+        this->Impl->Update.ForgetMapping();
         mesh.ForgetState();
       }
       this->Impl->Field = parameters;
-      const std::vector<float> vectors = MakeVectors(field.Vectors, points, "point");
-      if (vectors.size() * sizeof(float) > this->Impl->GetAllocationLimit())
+      Internals::CheckVectors(field.Vectors, points, "point");
+      if (4 * points * sizeof(float) > this->Impl->GetAllocationLimit())
       {
         throw Error("The displacement field is larger than the device can hold in one piece. Use a "
                     "coarser field or another device.");
       }
-      this->Impl->FieldVectors = this->Impl->SendBuffer(
-        vectors.data(), vectors.size() * sizeof(float), this->Impl->FieldVectors);
+      this->Impl->SendVectors(field.Vectors, points, this->Impl->FieldVectors);
     });
 }
 

@@ -174,6 +174,15 @@ struct DeformRequest
   std::vector<void*> Outputs;
   /// Room for one byte a voxel: 1 where the deformed volume covers it, else 0.
   signed char* Coverage = nullptr;
+  /// Keeps what is needed to write only what changes until the next call. That call needs the
+  /// output of this one in LastOutputs and LastCoverage. Where that is not faster or not possible,
+  /// all is written; the result is the same to the last bit. For processors, volumes and outputs
+  /// within the allocation limit, and methods Exact and ExactByLanes.
+  bool Incremental = false;
+  /// What the last call wrote, unchanged: the same memory as Outputs and Coverage, or other memory,
+  /// from which it is copied. Empty and null where there is none.
+  std::vector<const void*> LastOutputs;
+  const signed char* LastCoverage = nullptr;
   /// Called between launches with the fraction done, 0 to 1; returning false aborts the work.
   std::function<bool(double)> Progress;
 };
@@ -192,6 +201,10 @@ struct DeformReport
   bool Overlapping = false;
   /// Tetrahedra of the deformation mesh without volume at rest; counted by MeshRasterization only.
   std::int64_t NumberOfFlatTetrahedra = 0;
+  /// Bricks of 64 x 16 x 16 cells of the volume, and how many of them were resampled: fewer only
+  /// in an incremental update. 0 for MeshRasterization.
+  std::int64_t NumberOfBricks = 0;
+  std::int64_t NumberOfResampledBricks = 0;
   /// Seconds. The exact kernels map and resample in one: their MappingTime is 0. With
   /// MeshRasterization the mapping is the listing of the tetrahedra of each part of the output.
   double MappingTime = 0.0;

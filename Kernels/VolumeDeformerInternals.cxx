@@ -52,6 +52,7 @@ void VolumeDeformer::Internals::Forget()
   this->FieldVectors = cl::Buffer();
   this->Positions = cl::Buffer();
   this->Targets = {};
+  this->Update = IncrementalUpdate();
   this->Rasterizer.Clear();
   this->NumberOfNodes = 0;
   this->NodesSet = false;
@@ -140,6 +141,7 @@ void VolumeDeformer::Internals::SendTetrahedra(
   this->NumberOfNodes = numberOfNodes;
   this->NodesSet = false;
   this->FieldVectors = cl::Buffer();
+  this->Update.ForgetMapping();
   this->Rasterizer.Clear();
 }
 
@@ -298,12 +300,70 @@ void VolumeDeformer::Internals::RunPublished(const DeformRequest& request, Outpu
   }
 }
 
+cl::Kernel VolumeDeformer::Internals::MakeResamplingKernel(bool lanes)
+{
+  return cl::Kernel(GetResamplingProgram(*this->Context, this->GetMappingForm(), this->Arrays,
+                      GetWinnerSize(this->Mesh->GetLattice()) == 8),
+    lanes ? "ResampleBricks" : "Resample");
+}
+
+void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
+  const LatticeChunk& chunk, const OutputSlab& output, bool lanes, const KernelParameters& p) const
+{
+  cl_uint i = this->SetMappingArguments(kernel, chunk);
+  kernel.setArg(i++, this->Mesh->GetState(chunk));
+  kernel.setArg(i++, p.HasActive ? chunk.Active : this->Mesh->GetState(chunk));
+  kernel.setArg(i++, output.GetCoverage());
+  kernel.setArg(i++, output.GetWinners());
+  kernel.setArg(i++, output.GetCounters());
+  if (lanes)
+  {
+    kernel.setArg(i++, this->Bricks);
+    kernel.setArg(i++, cl::Local(GetBrickMemory(*this->Context, this->Arrays)));
+  }
+  else
+  {
+    kernel.setArg(i++, cl::Local(3 * sizeof(cl_int) * DEFORMVOLUME_BLOCK_VERTICES));
+  }
+  kernel.setArg(i++, p);
+  for (std::size_t a = 0; a < this->Arrays.size(); ++a)
+  {
+    kernel.setArg(i++, chunk.Arrays[a]);
+    kernel.setArg(i++, output.GetArray(a));
+  }
+}
+
+void VolumeDeformer::Internals::RunBricks(
+  const DeformRequest& request, OutputSlab& output, int pass, const std::vector<cl_uint>& bricks)
+{
+  if (bricks.empty())
+  {
+    return;
+  }
+  cl::Kernel kernel = this->MakeResamplingKernel(true);
+  this->Bricks = this->SendBuffer(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
+  const LatticeChunk& chunk = this->Mesh->GetChunks().front();
+  KernelParameters p = this->Mesh->GetParameters(chunk);
+  p.Pass = pass;
+  output.SetParameters(p);
+  // As many in a launch as there are when all are run.
+  const std::size_t step = static_cast<std::size_t>(p.BrickCount[0]) *
+    static_cast<std::size_t>(p.BrickCount[1]) * (LayersPerLaunch / DEFORMVOLUME_BRICK_Z);
+  this->LaunchesExpected = this->LaunchesDone + (bricks.size() + step - 1) / step;
+  cl::Event previous;
+  for (std::size_t begin = 0; begin < bricks.size(); begin += step)
+  {
+    p.ListBegin = static_cast<int>(begin);
+    this->SetResamplingArguments(kernel, chunk, output, true, p);
+    this->Launch(kernel, cl::NDRange(std::min(step, bricks.size() - begin)), cl::NDRange(1));
+    this->ReportLaunch(request, previous);
+  }
+}
+
 void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSlab& output, int pass)
 {
   const bool lanes = this->UseLanes(request.Method, output);
-  cl::Kernel kernel(GetResamplingProgram(*this->Context, this->GetMappingForm(), this->Arrays,
-                      GetWinnerSize(this->Mesh->GetLattice()) == 8),
-    lanes ? "ResampleBricks" : "Resample");
+  cl::Kernel kernel = this->MakeResamplingKernel(lanes);
   if (lanes)
   {
     std::vector<cl_uint> bricks(this->Mesh->GetNumberOfBricks());
@@ -322,30 +382,10 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
       p.LayersEnd = std::min(begin + step, chunk.LayersEnd);
       p.Pass = pass;
       output.SetParameters(p);
-      cl_uint i = this->SetMappingArguments(kernel, chunk);
-      kernel.setArg(i++, this->Mesh->GetState(chunk));
-      kernel.setArg(i++, p.HasActive ? chunk.Active : this->Mesh->GetState(chunk));
-      kernel.setArg(i++, output.GetCoverage());
-      kernel.setArg(i++, output.GetWinners());
-      kernel.setArg(i++, output.GetCounters());
       const std::pair<cl_uint, cl_uint> bricks =
         this->Mesh->GetBrickRange(p.LayersBegin, p.LayersEnd);
       p.ListBegin = static_cast<int>(bricks.first);
-      if (lanes)
-      {
-        kernel.setArg(i++, this->Bricks);
-        kernel.setArg(i++, cl::Local(GetBrickMemory(*this->Context, this->Arrays)));
-      }
-      else
-      {
-        kernel.setArg(i++, cl::Local(3 * sizeof(cl_int) * DEFORMVOLUME_BLOCK_VERTICES));
-      }
-      kernel.setArg(i++, p);
-      for (std::size_t a = 0; a < this->Arrays.size(); ++a)
-      {
-        kernel.setArg(i++, chunk.Arrays[a]);
-        kernel.setArg(i++, output.GetArray(a));
-      }
+      this->SetResamplingArguments(kernel, chunk, output, lanes, p);
       if (lanes)
       {
         this->Launch(kernel, cl::NDRange(bricks.second - bricks.first), cl::NDRange(1));
@@ -370,7 +410,8 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
   }
 }
 
-void VolumeDeformer::Internals::Run(const DeformRequest& request, OutputSlab& output, int pass)
+void VolumeDeformer::Internals::Run(
+  const DeformRequest& request, OutputSlab& output, int pass, const std::vector<cl_uint>* bricks)
 {
   const cl::Program mapping = GetMappingProgram(*this->Context, this->GetMappingForm());
   if (this->Mesh->HasRuns() && this->Mesh->NeedsRecords())
@@ -385,13 +426,17 @@ void VolumeDeformer::Internals::Run(const DeformRequest& request, OutputSlab& ou
   {
     this->RunPublished(request, output);
   }
+  else if (bricks)
+  {
+    this->RunBricks(request, output, pass, *bricks);
+  }
   else
   {
     this->RunExact(request, output, pass);
   }
 }
 
-void VolumeDeformer::Internals::RunSlab(
+bool VolumeDeformer::Internals::RunSlab(
   const DeformRequest& request, OutputSlab& output, bool first, DeformReport& report)
 {
   this->Run(request, output, DEFORMVOLUME_PASS_DIRECT);
@@ -402,10 +447,8 @@ void VolumeDeformer::Internals::RunSlab(
     report.NumberOfInvertedTetrahedra = static_cast<std::int64_t>(counts.Inverted);
     report.NumberOfOverstretchedCells = static_cast<std::int64_t>(counts.Overstretched);
   }
-  // Every covered voxel was written once, unless tetrahedra overlap; where the mesh is folded,
-  // voxels on the crease may also be missing.
-  if (request.Method != Resampling::Published &&
-    (counts.Writes > covered || counts.Inverted > 0 || counts.MissingWhereAssumed))
+  const bool folded = request.Method != Resampling::Published && counts.NeedWinners(covered);
+  if (folded)
   {
     report.Overlapping |= counts.Writes > covered;
     this->LaunchesExpected += 2 * this->GetNumberOfLaunches();
@@ -416,11 +459,51 @@ void VolumeDeformer::Internals::RunSlab(
     covered = output.CountCovered(*this->Context, this->ResamplingEvents);
   }
   report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
+  return !folded;
 }
 
 std::size_t VolumeDeformer::Internals::GetNumberOfLaunches() const
 {
   return static_cast<std::size_t>((this->Mesh->GetSize(2) + LayersPerLaunch - 1) / LayersPerLaunch);
+}
+
+void VolumeDeformer::Internals::DeformSlabs(
+  const DeformRequest& request, std::uint64_t spare, DeformReport& report)
+{
+  const std::vector<Extent> slabs = OutputSlab::Split(
+    request.OutputExtent, this->Arrays, this->Mesh->GetLattice(), this->GetAllocationLimit());
+  const std::uint64_t bytes = OutputSlab::GetBytesPerVoxel(*this->Context, this->Arrays, request) *
+    static_cast<std::uint64_t>(GetNumberOfPoints(slabs.front()));
+  const bool overlapped = bytes > 0 && slabs.size() > 1 && spare >= bytes;
+  if (!overlapped)
+  {
+    this->Targets[1] = OutputSlab();
+  }
+  bool plain = slabs.size() == 1 && this->Mesh->GetChunks().size() == 1;
+  for (std::size_t s = 0; s < slabs.size(); ++s)
+  {
+    OutputSlab& target = this->Targets[overlapped ? s % 2 : 0];
+    this->LaunchesExpected = (slabs.size() - s) * this->GetNumberOfLaunches() + this->LaunchesDone;
+    target.Prepare(*this->Context, this->Queue, slabs[s], request, this->Arrays,
+      this->Mesh->GetLattice(), this->Mesh->GetNumberOfBricks(), this->ResamplingEvents);
+    plain = this->RunSlab(request, target, s == 0, report) && plain;
+    const Clock::time_point begin = Clock::now();
+    target.Read(this->ReadQueue, request);
+    if (!overlapped || s + 1 == slabs.size())
+    {
+      this->ReadQueue.finish();
+    }
+    report.TransferTime += std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+  report.NumberOfResampledBricks = report.NumberOfBricks;
+  // Only the kernel for processors works on bricks one by one.
+  if (request.Incremental && plain && this->Context->GetDevice().IsProcessor &&
+    request.Method != Resampling::Published && this->UseLanes(request.Method, this->Targets[0]))
+  {
+    this->Update.Start(this->Mesh->GetBrickGrid(), this->Mesh->GetLattice(), request.OutputExtent);
+    this->LastMethod = request.Method;
+    this->LastCovered = static_cast<std::uint64_t>(report.NumberOfCoveredVoxels);
+  }
 }
 
 DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request, std::uint64_t spare)
@@ -441,35 +524,27 @@ DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request, std
   this->MappingEvents.clear();
   this->ResamplingEvents.clear();
   this->LaunchesDone = 0;
+  this->PlanningTime = 0.0;
   DeformReport report;
-  const std::vector<Extent> slabs = OutputSlab::Split(
-    request.OutputExtent, this->Arrays, this->Mesh->GetLattice(), this->GetAllocationLimit());
-  const std::uint64_t bytes = OutputSlab::GetBytesPerVoxel(*this->Context, this->Arrays, request) *
-    static_cast<std::uint64_t>(GetNumberOfPoints(slabs.front()));
-  const bool overlapped = bytes > 0 && slabs.size() > 1 && spare >= bytes;
-  if (!overlapped)
+  report.NumberOfBricks = static_cast<std::int64_t>(this->Mesh->GetNumberOfBricks());
+  bool updated = false;
+  try
   {
-    this->Targets[1] = OutputSlab();
+    updated = this->UpdateOutput(request, this->Targets[0], report);
   }
-  double transferTime = 0.0;
-  for (std::size_t s = 0; s < slabs.size(); ++s)
+  catch (...)
   {
-    OutputSlab& target = this->Targets[overlapped ? s % 2 : 0];
-    this->LaunchesExpected = (slabs.size() - s) * this->GetNumberOfLaunches() + this->LaunchesDone;
-    target.Prepare(*this->Context, this->Queue, slabs[s], request, this->Arrays,
-      this->Mesh->GetLattice(), this->Mesh->GetNumberOfBricks(), this->ResamplingEvents);
-    this->RunSlab(request, target, s == 0, report);
-    const Clock::time_point begin = Clock::now();
-    target.Read(this->ReadQueue, request);
-    if (!overlapped || s + 1 == slabs.size())
-    {
-      this->ReadQueue.finish();
-    }
-    transferTime += std::chrono::duration<double>(Clock::now() - begin).count();
+    this->Update.Forget();
+    throw;
+  }
+  if (!updated)
+  {
+    this->Update.Forget();
+    this->DeformSlabs(request, spare, report);
   }
   report.MappingTime = GetSeconds(this->MappingEvents);
-  report.ResamplingTime = GetSeconds(this->ResamplingEvents);
-  report.TransferTime = transferTime + this->SendingTime;
+  report.ResamplingTime = GetSeconds(this->ResamplingEvents) + this->PlanningTime;
+  report.TransferTime += this->SendingTime;
   this->SendingTime = 0.0;
   this->MappingEvents.clear();
   this->ResamplingEvents.clear();

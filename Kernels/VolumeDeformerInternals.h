@@ -3,6 +3,7 @@
 #define DeformVolumeVolumeDeformerInternals_h
 
 #include "DeviceLattice.h"
+#include "IncrementalUpdate.h"
 #include "KernelParameters.h"
 #include "KernelProgram.h"
 #include "MeshRasterizer.h"
@@ -84,16 +85,35 @@ public:
   cl_uint SetMappingArguments(cl::Kernel& kernel, const LatticeChunk& chunk) const;
   void Map(const LatticeChunk& chunk, const KernelParameters& p);
   void Launch(cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group);
-  void Run(const DeformRequest& request, OutputSlab& output, int pass);
+  /// bricks: those to run, null: all.
+  void Run(const DeformRequest& request, OutputSlab& output, int pass,
+    const std::vector<cl_uint>* bricks = nullptr);
   void RunPublished(const DeformRequest& request, OutputSlab& output);
+  cl::Kernel MakeResamplingKernel(bool lanes);
+  void SetResamplingArguments(cl::Kernel& kernel, const LatticeChunk& chunk,
+    const OutputSlab& output, bool lanes, const KernelParameters& p) const;
   void RunExact(const DeformRequest& request, OutputSlab& output, int pass);
+  void RunBricks(
+    const DeformRequest& request, OutputSlab& output, int pass, const std::vector<cl_uint>& bricks);
   /// Waits for the launch before the last one, so that the device always has work, and reports.
   void ReportLaunch(const DeformRequest& request, cl::Event& previous);
   std::size_t GetGroupSize(const cl::Kernel& kernel) const;
   std::size_t GetNumberOfLaunches() const;
-  void RunSlab(const DeformRequest& request, OutputSlab& output, bool first, DeformReport& report);
+  /// False where a winner had to be chosen.
+  bool RunSlab(const DeformRequest& request, OutputSlab& output, bool first, DeformReport& report);
   /// spare: bytes of device memory that may be used beyond those of one slab.
   DeformReport Deform(const DeformRequest& request, std::uint64_t spare);
+  void DeformSlabs(const DeformRequest& request, std::uint64_t spare, DeformReport& report);
+
+  /// Displacements and incremental updates; in VolumeDeformerUpdate.cxx.
+  static void CheckVectors(const float* vectors, std::size_t count, const char* what);
+  void SendVectors(const float* vectors, std::size_t count, cl::Buffer& buffer);
+  void PrepareBrickPoints();
+  void TellMask(const unsigned char* next, bool ofCells);
+  bool CanUpdate(const DeformRequest& request);
+  void CopyLastOutput(const DeformRequest& request) const;
+  /// False where the whole output has to be made.
+  bool UpdateOutput(const DeformRequest& request, OutputSlab& output, DeformReport& report);
   /// What mesh rasterisation needs and does; in VolumeDeformerRasterization.cxx.
   MeshRasterizer::Setting GetRasterizerSetting();
   void CheckRasterization(const DeformRequest& request) const;
@@ -121,7 +141,12 @@ public:
   std::array<OutputSlab, 2> Targets;
   MeshRasterizer Rasterizer;
 
+  IncrementalUpdate Update;
+  Resampling LastMethod = Resampling::Exact;
+  std::uint64_t LastCovered = 0;
+
   double SendingTime = 0.0;
+  double PlanningTime = 0.0; // of an incremental update
   std::vector<cl::Event> MappingEvents;
   std::vector<cl::Event> ResamplingEvents;
   // Progress: launches done, and to do as far as is known.

@@ -28,6 +28,7 @@ void VolumeDeformer::Internals::CheckRasterization(const DeformRequest& request)
 
 DeformReport VolumeDeformer::Internals::Rasterize(const DeformRequest& request)
 {
+  this->Update.Forget();
   DeformReport report =
     this->Rasterizer.Deform(this->GetRasterizerSetting(), *this->Mesh, this->Arrays, request);
   report.TransferTime += this->SendingTime;
@@ -51,6 +52,7 @@ void VolumeDeformer::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numb
       this->Impl->Nodes = cl::Buffer();
       this->Impl->NodesSet = false;
       this->Impl->FieldVectors = cl::Buffer();
+      this->Impl->Update.ForgetMapping();
       this->Impl->NumberOfTetrahedra = numberOfTetrahedra;
       this->Impl->NumberOfNodes = numberOfNodes;
       this->Impl->Rasterizer.SetMesh(this->Impl->GetRasterizerSetting(), tetrahedra,

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeBrickPoints_h
+#define DeformVolumeBrickPoints_h
+
+#include "KernelParameters.h"
+#include "VolumeDeformer.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// The bricks of cells that a lattice is worked on in.
+struct BrickGrid
+{
+  std::array<int, 3> Size{ { 0, 0, 0 } };   // vertices of the lattice
+  std::array<int, 3> Origin{ { 0, 0, 0 } }; // local index of the first cell of the first brick
+  std::array<int, 3> Count{ { 0, 0, 0 } };  // bricks on each axis
+
+  std::size_t GetNumberOfBricks() const
+  {
+    return static_cast<std::size_t>(this->Count[0]) * static_cast<std::size_t>(this->Count[1]) *
+      static_cast<std::size_t>(this->Count[2]);
+  }
+
+  /// Local indices of the vertices of a brick, and so many beyond them on each side, within the
+  /// lattice.
+  Extent GetVertices(std::size_t brick, int reach) const;
+};
+
+/// How far a brick looks beyond its vertices: the fill rule asks the cells round a vertex.
+constexpr int BrickReach = 1;
+
+/// Which points of the deformation, nodes of the mesh or points of the field, move the vertices
+/// that a brick depends on.
+class BrickPoints
+{
+public:
+  BrickPoints() = default;
+  static BrickPoints FromLinks(const BrickGrid& grid, const VertexLink* links,
+    const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
+  /// rest: 15 numbers a record, and owners: the tetrahedron of each (RunMapping.cl).
+  static BrickPoints FromRuns(const BrickGrid& grid, const VertexRun* runs,
+    const std::uint32_t* rowBegins, const double* rest, const std::int32_t* owners,
+    const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
+  static BrickPoints FromField(const BrickGrid& grid, const FieldParameters& field);
+
+  bool IsEmpty() const { return this->Begins.empty() && this->Boxes.empty(); }
+
+  /// Whether body(point) was true for one of a brick's points; no more are asked then.
+  template <typename Body>
+  bool AnyOf(std::size_t brick, Body&& body) const
+  {
+    if (this->Boxes.empty())
+    {
+      for (std::size_t i = this->Begins[brick]; i < this->Begins[brick + 1]; ++i)
+      {
+        if (body(static_cast<std::size_t>(this->Points[i])))
+        {
+          return true;
+        }
+      }
+      return false;
+    }
+    const Extent& box = this->Boxes[brick];
+    for (std::int64_t z = box[4]; z <= box[5]; ++z)
+    {
+      for (std::int64_t y = box[2]; y <= box[3]; ++y)
+      {
+        const std::int64_t row = (z * this->FieldSize[1] + y) * this->FieldSize[0];
+        for (std::int64_t x = box[0]; x <= box[1]; ++x)
+        {
+          if (body(static_cast<std::size_t>(row + x)))
+          {
+            return true;
+          }
+        }
+      }
+    }
+    return false;
+  }
+
+  /// The largest sum of the negative weights of one of the brick's vertices, as a positive number:
+  /// a vertex moves by no more than the greatest displacement of its points and so many times the
+  /// difference to the least.
+  double GetExcess(std::size_t brick) const
+  {
+    return this->Excess.empty() ? 0.0 : this->Excess[brick];
+  }
+
+private:
+  template <typename Visit>
+  void Collect(const BrickGrid& grid, const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, Visit&& visit);
+
+  std::vector<std::size_t> Begins; // the points of each brick, in Points
+  std::vector<std::int32_t> Points;
+  std::vector<double> Excess;
+  // Or, of a field, a box of points for each.
+  std::vector<Extent> Boxes;
+  std::array<std::int64_t, 3> FieldSize{ { 0, 0, 0 } };
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// 200 random edits with Incremental on, each compared bit by bit with a filter with Incremental
+// off: nodes that move, masks, extents, spacings, arrays, backgrounds, aborts, outputs that others
+// hold.
+#include "FilterTesting.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkCellData.h>
+#include <vtkImageShiftScale.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+using namespace filterTesting;
+
+namespace
+{
+
+void AbortAtOnce(vtkObject* caller, unsigned long, void*, void*)
+{
+  static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+}
+
+class Edits
+{
+public:
+  Edits()
+    : Volume(MakeImage({ { -3, 90, 0, 60, 2, 50 } }, glm::dvec3(1.0, 1.0, 1.25)))
+    , Mesh(MakeMesh(Volume, 14, 0.0))
+    , Tested(Volume, Mesh)
+    , Whole(Volume, Mesh)
+  {
+    AddScalars<short>(this->Volume, "labels",
+      [](const glm::dvec3& p) { return std::floor(p.x / 7.0) + 3.0 * std::floor(p.y / 9.0); });
+    AddScalars<float>(this->Volume, "value",
+      [](const glm::dvec3& p) { return 100.0 * std::sin(0.7 * p.x) + 35.0 * p.z + p.y; });
+    SetDisplacements(this->Mesh, Shift(0.25, 0.0, 0.0));
+    for (vtkDeformVolumeFilter* filter : { this->Tested.Filter.Get(), this->Whole.Filter.Get() })
+    {
+      filter->SetResamplerToExact();
+      filter->AddCategoricalArray("labels");
+      filter->SetOutputBoundsModeToVolumeBounds();
+    }
+    VERIFY(this->Tested.Filter->GetIncremental());
+    this->Whole.Filter->IncrementalOff();
+  }
+
+  void Run(int edits)
+  {
+    for (int edit = 0; edit < edits; ++edit)
+    {
+      const int failures = GetNumberOfFailures();
+      const int kind = this->Random() % 3 ? static_cast<int>(this->Random() % 3)
+                                          : static_cast<int>(this->Random() % 14);
+      this->Apply(kind);
+      this->Compare();
+      if (GetNumberOfFailures() > failures)
+      {
+        std::cerr << "after edit " << edit << " of kind " << kind << '\n';
+        return;
+      }
+    }
+    std::cout << this->Parts << " of " << edits << " edits were made in part\n";
+    VERIFY(this->Parts > edits / 5);
+  }
+
+private:
+  void ForBoth(const std::function<void(vtkDeformVolumeFilter*)>& change)
+  {
+    change(this->Tested.Filter);
+    change(this->Whole.Filter);
+  }
+
+  // Moves nodes within a distance from a random one.
+  void Move(double distance, double amount)
+  {
+    vtkDataArray* vectors = this->Mesh->GetPointData()->GetVectors();
+    std::uniform_real_distribution<double> move(-amount, amount);
+    const glm::dvec3 center =
+      GetPoint(this->Mesh, static_cast<vtkIdType>(this->Random() % vectors->GetNumberOfTuples()));
+    for (vtkIdType node = 0; node < vectors->GetNumberOfTuples(); ++node)
+    {
+      const glm::dvec3 offset = GetPoint(this->Mesh, node) - center;
+      if (offset.x * offset.x + offset.y * offset.y + offset.z * offset.z <= distance * distance)
+      {
+        vectors->SetTuple3(node, move(this->Random), move(this->Random), move(this->Random));
+      }
+    }
+    vectors->Modified();
+  }
+
+  void SetMask(vtkDataSetAttributes* attributes, const char* name, vtkIdType size,
+    unsigned char usual, unsigned char other)
+  {
+    vtkSmartPointer<vtkUnsignedCharArray> mask =
+      vtkUnsignedCharArray::SafeDownCast(attributes->GetArray(name));
+    if (!mask)
+    {
+      mask = vtkSmartPointer<vtkUnsignedCharArray>::New();
+      mask->SetName(name);
+      mask->SetNumberOfTuples(size);
+      mask->Fill(usual);
+      attributes->AddArray(mask);
+    }
+    const auto place = static_cast<vtkIdType>(this->Random() % size);
+    mask->SetValue(place, mask->GetValue(place) == usual ? other : usual);
+    mask->Modified();
+  }
+
+  void Apply(int kind)
+  {
+    switch (kind)
+    {
+      case 0: // one node, or few
+        this->Move(0.0, 1.2);
+        break;
+      case 1:
+        this->Move(9.0, 1.0);
+        break;
+      case 2:
+        this->SetMask(this->Volume->GetPointData(), vtkDataSetAttributes::GhostArrayName(),
+          this->Volume->GetNumberOfPoints(), 0, vtkDataSetAttributes::HIDDENPOINT);
+        this->SetMask(this->Volume->GetCellData(), "ActiveTetrahedra",
+          this->Volume->GetNumberOfCells(), 31, this->Random() % 31);
+        break;
+      case 3: // many, all, none
+        this->Move(40.0, 1.0);
+        break;
+      case 4:
+        this->Move(1000.0, 1.0);
+        break;
+      case 5:
+        this->Mesh->GetPointData()->GetVectors()->Modified();
+        this->Mesh->Modified();
+        break;
+      case 6: // a fold, and back
+        this->Move(0.0, 20.0);
+        break;
+      case 7:
+        SetDisplacements(this->Mesh, Shift(0.5, -0.25, 0.0));
+        break;
+      case 8:
+        this->ForBoth([](vtkDeformVolumeFilter* filter)
+          { filter->SetPadding((filter->GetPadding() + 1) % 3); });
+        break;
+      case 9:
+        this->ForBoth(
+          [](vtkDeformVolumeFilter* filter)
+          {
+            filter->SetCustomSpacing(1.5, 1.0, 1.25);
+            filter->SetOutputSpacingMode(1 - filter->GetOutputSpacingMode());
+          });
+        break;
+      case 10:
+        this->ForBoth([](vtkDeformVolumeFilter* filter)
+          { filter->SetBackgroundValue(filter->GetBackgroundValue() + 1.0); });
+        break;
+      case 11:
+      {
+        vtkDataArray* values = this->Volume->GetPointData()->GetScalars();
+        values->SetComponent(
+          static_cast<vtkIdType>(this->Random() % values->GetNumberOfTuples()), 0, 77.0);
+        values->Modified();
+        break;
+      }
+      case 12:
+        this->Abort();
+        break;
+      default:
+        this->ForBoth([](vtkDeformVolumeFilter* filter)
+          { filter->SetOutputBoundsMode(1 - filter->GetOutputBoundsMode()); });
+    }
+  }
+
+  void Abort()
+  {
+    this->Move(9.0, 1.0);
+    vtkNew<vtkCallbackCommand> callback;
+    callback->SetCallback(AbortAtOnce);
+    const unsigned long observer =
+      this->Tested.Filter->AddObserver(vtkCommand::ProgressEvent, callback);
+    this->Tested.Filter->Update();
+    this->Tested.Filter->RemoveObserver(observer);
+    this->Tested.Filter->SetAbortExecute(0);
+    VERIFY_EQUAL(this->Tested.Filter->GetOutput()->GetNumberOfPoints(), 0);
+  }
+
+  void Compare()
+  {
+    // Someone may hold the last output, or a part of it, or write to it.
+    vtkNew<vtkImageData> held;
+    vtkNew<vtkImageData> before;
+    vtkSmartPointer<vtkDataArray> heldArray;
+    switch (this->Random() % 6)
+    {
+      case 0:
+        held->ShallowCopy(this->Tested.Filter->GetOutput());
+        before->DeepCopy(held);
+        break;
+      case 1:
+        heldArray = this->Tested.GetValues();
+        break;
+      case 2:
+        if (vtkDataArray* values = this->Tested.GetValues())
+        {
+          values->Fill(-1.0);
+          values->Modified();
+        }
+        break;
+      default:
+        break;
+    }
+    vtkImageData* output = this->Tested.Update();
+    VERIFY(AreEqual(output, this->Whole.Update()));
+    if (before->GetNumberOfPoints() > 0)
+    {
+      VERIFY(AreEqual(held, before));
+    }
+    const auto same = [this](vtkIdType (vtkDeformVolumeFilter::*get)())
+    { VERIFY_EQUAL((this->Tested.Filter->*get)(), (this->Whole.Filter->*get)()); };
+    same(&vtkDeformVolumeFilter::GetNumberOfCoveredVoxels);
+    same(&vtkDeformVolumeFilter::GetNumberOfInvertedTetrahedra);
+    same(&vtkDeformVolumeFilter::GetNumberOfBricks);
+    VERIFY_EQUAL(
+      this->Whole.Filter->GetNumberOfResampledBricks(), this->Whole.Filter->GetNumberOfBricks());
+    this->Parts +=
+      this->Tested.Filter->GetNumberOfResampledBricks() < this->Tested.Filter->GetNumberOfBricks()
+      ? 1
+      : 0;
+  }
+
+  std::mt19937 Random{ 5 };
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh;
+  Deformed Tested;
+  Deformed Whole;
+  int Parts = 0;
+};
+
+// What only some devices can do must not change what all others give.
+void TestProperty()
+{
+  vtkNew<vtkDeformVolumeFilter> filter;
+  VERIFY(filter->GetIncremental());
+  VERIFY_EQUAL(filter->GetNumberOfBricks(), 0);
+  VERIFY_EQUAL(filter->GetNumberOfResampledBricks(), 0);
+  const vtkMTimeType time = filter->GetMTime();
+  filter->IncrementalOff();
+  VERIFY(filter->GetMTime() > time);
+}
+
+} // namespace
+
+int TestDeformIncremental(int, char*[])
+{
+  TestProperty();
+  Edits edits;
+  edits.Run(200);
+  return GetExitCode();
+}
