@@ -491,11 +491,11 @@ static INTS IsRegular(const SamplingMesh* mesh, int x, int y, int z, const Kerne
   Lanes regular;
   for (int lane = 0; lane < LANES; ++lane)
   {
-    int state = x + 2 * lane < p->Size[0] - 1 ? DEFORMVOLUME_VERTEX_REGULAR : 0;
+    const int cell = x + 2 * lane; // may lie before the volume
+    int state = cell >= 0 && cell < p->Size[0] - 1 ? DEFORMVOLUME_VERTEX_REGULAR : 0;
     for (int v = 0; state && v < 8; ++v)
     {
-      state &=
-        StateOf(mesh->State, x + 2 * lane + (v & 1), y + (v >> 2), z + (v >> 1 & 1), p);
+      state &= StateOf(mesh->State, cell + (v & 1), y + (v >> 2), z + (v >> 1 & 1), p);
     }
     regular.Lanes[lane] = state ? -1 : 0;
   }
@@ -595,10 +595,10 @@ static __attribute__((always_inline)) Outcome ResampleGroup(const Group* group, 
   }
 
   // Cells that are boxes, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume:
-  // each coordinate varies along one axis of the lattice only. If one edge of the first cell is not
-  // parallel to an axis, no need to look.
+  // each coordinate varies along one axis of the lattice only. If one edge of no cell is parallel to an
+  // axis, no need to look. Lanes that hold no cell hold anything, and must not decide.
   INTS box = 0;
-  if (((X0.s0 == X1.s0) + (Y0.s0 == Y1.s0) + (Z0.s0 == Z1.s0)) == 2)
+  if (LaneBits(there & ((X0 == X1) + (Y0 == Y1) + (Z0 == Z1) == -2)))
   {
 #define SAME(C, a, b) (C##a == C##b)
 #define ALONG_X(C) (SAME(C, 0, 1) & SAME(C, 2, 3) & SAME(C, 4, 5) & SAME(C, 6, 7))
@@ -621,7 +621,9 @@ static __attribute__((always_inline)) Outcome ResampleGroup(const Group* group, 
     Lanes state;
     for (int k = 0; k < LANES; ++k)
     {
-      state.Lanes[k] = x + 2 * k < p->Size[0] - 1 ? StateOf(mesh->State, x + 2 * k, y, z, p) : 0;
+      const int cell = x + 2 * k;
+      state.Lanes[k] =
+        cell >= 0 && cell < p->Size[0] - 1 ? StateOf(mesh->State, cell, y, z, p) : 0;
     }
     whole = (state.Vector & DEFORMVOLUME_CELL_WHOLE) != 0;
     if (p->Pass == DEFORMVOLUME_PASS_DIRECT)
@@ -629,7 +631,8 @@ static __attribute__((always_inline)) Outcome ResampleGroup(const Group* group, 
       // Boxes leave what is on their upper sides to the next cells there, if there are any.
       if (LaneBits(box))
       {
-        box &= IsRegular(mesh, x, y, z, p);
+        // Lanes that hold no cell hold anything.
+        box &= there & IsRegular(mesh, x, y, z, p);
         output->Assumed |= LaneBits(box) != 0;
       }
       const INTS cellX = x + 2 * LANE_INDEX;
