@@ -12,7 +12,10 @@ namespace deformvolume
 namespace
 {
 
-constexpr int BrickSize[3] = { DEFORMVOLUME_BRICK_X, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z };
+constexpr int PartSize[3] = { 16, 8, 8 };
+static_assert(DEFORMVOLUME_BRICK_X % PartSize[0] == 0 && DEFORMVOLUME_BRICK_Y % PartSize[1] == 0 &&
+    DEFORMVOLUME_BRICK_Z % PartSize[2] == 0,
+  "bricks are made of parts");
 
 // What a brick's vertices are found to need.
 struct Needs
@@ -36,6 +39,32 @@ struct Needs
 
 } // namespace
 
+BrickGrid BrickGrid::GetParts() const
+{
+  BrickGrid parts = *this;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    parts.Cells[axis] = PartSize[axis];
+    parts.Count[axis] = this->Count[axis] * (this->Cells[axis] / PartSize[axis]);
+  }
+  return parts;
+}
+
+std::size_t BrickGrid::GetBrick(const BrickGrid& parts, std::size_t part) const
+{
+  std::size_t brick = 0;
+  std::size_t stride = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const auto count = static_cast<std::size_t>(parts.Count[axis]);
+    const auto place = static_cast<int>(part % count);
+    brick += stride * static_cast<std::size_t>(place * parts.Cells[axis] / this->Cells[axis]);
+    part /= count;
+    stride *= static_cast<std::size_t>(this->Count[axis]);
+  }
+  return brick;
+}
+
 Extent BrickGrid::GetVertices(std::size_t brick, int reach) const
 {
   const std::size_t index[3] = { brick % this->Count[0], brick / this->Count[0] % this->Count[1],
@@ -43,9 +72,9 @@ Extent BrickGrid::GetVertices(std::size_t brick, int reach) const
   Extent vertices;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const int begin = this->Origin[axis] + static_cast<int>(index[axis]) * BrickSize[axis];
+    const int begin = this->Origin[axis] + static_cast<int>(index[axis]) * this->Cells[axis];
     vertices[2 * axis] = std::max(begin - reach, 0);
-    vertices[2 * axis + 1] = std::min(begin + BrickSize[axis] + reach, this->Size[axis] - 1);
+    vertices[2 * axis + 1] = std::min(begin + this->Cells[axis] + reach, this->Size[axis] - 1);
   }
   return vertices;
 }

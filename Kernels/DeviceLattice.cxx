@@ -370,7 +370,7 @@ BrickPoints DeviceLattice::MakeBrickPoints(
   {
     const MappedBuffer<const VertexLink> links(this->Queue, chunk.Links, CL_MAP_READ);
     return BrickPoints::FromLinks(
-      this->GetBrickGrid(), links.Get(), nodes.Get(), numberOfTetrahedra, numberOfNodes);
+      this->GetBrickGrid().GetParts(), links.Get(), nodes.Get(), numberOfTetrahedra, numberOfNodes);
   }
   const MappedBuffer<const VertexRun> runs(this->Queue, chunk.Runs, CL_MAP_READ);
   const MappedBuffer<const std::uint32_t> begins(this->Queue, chunk.RowBegins, CL_MAP_READ);
@@ -386,8 +386,8 @@ BrickPoints DeviceLattice::MakeBrickPoints(
     const MappedBuffer<const float> records(this->Queue, this->RestTetrahedra, CL_MAP_READ);
     std::copy_n(records.Get(), rest.size(), rest.begin());
   }
-  return BrickPoints::FromRuns(this->GetBrickGrid(), runs.Get(), begins.Get(), rest.data(),
-    owners.Get(), nodes.Get(), numberOfTetrahedra, numberOfNodes);
+  return BrickPoints::FromRuns(this->GetBrickGrid().GetParts(), runs.Get(), begins.Get(),
+    rest.data(), owners.Get(), nodes.Get(), numberOfTetrahedra, numberOfNodes);
 }
 
 cl::NDRange DeviceLattice::GetVertexRange(int planes) const

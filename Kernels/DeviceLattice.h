@@ -86,7 +86,7 @@ public:
   std::pair<cl_uint, cl_uint> GetBrickRange(int layersBegin, int layersEnd) const;
 
   BrickGrid GetBrickGrid() const;
-  /// Of a mesh, on a processor, where the lattice is one chunk.
+  /// Those of the parts of the bricks, of a mesh, on a processor, where the lattice is one chunk.
   BrickPoints MakeBrickPoints(
     const cl::Buffer& tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes) const;
 

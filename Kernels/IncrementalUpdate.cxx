@@ -40,14 +40,15 @@ bool IsDifferent(const unsigned char* last, const unsigned char* next, unsigned 
 
 } // namespace
 
-void IncrementalUpdate::Start(const BrickGrid& grid, const Lattice& lattice, const Extent& output)
+void IncrementalUpdate::Start(const BrickGrid& bricks, const Lattice& lattice, const Extent& output)
 {
-  const std::size_t bricks = grid.GetNumberOfBricks();
-  if (output != this->OutputExtent || this->Known.size() != bricks)
+  this->Bricks = bricks;
+  this->Grid = bricks.GetParts();
+  const std::size_t parts = this->Grid.GetNumberOfBricks();
+  if (output != this->OutputExtent || this->Known.size() != parts)
   {
-    this->Known.assign(bricks, 0); // boxes are relative to the output
+    this->Known.assign(parts, 0); // boxes are relative to the output
   }
-  this->Grid = grid;
   this->Shape = lattice;
   this->OutputExtent = output;
   for (int axis = 0; axis < 3; ++axis)
@@ -55,8 +56,8 @@ void IncrementalUpdate::Start(const BrickGrid& grid, const Lattice& lattice, con
     this->PatchCount[axis] =
       static_cast<int>((GetSize(output, axis) + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH);
   }
-  this->Boxes.resize(bricks);
-  this->LastBoxes.resize(bricks);
+  this->Boxes.resize(parts);
+  this->LastBoxes.resize(parts);
   this->Finish();
   this->Tracking = true;
 }
@@ -81,12 +82,12 @@ void IncrementalUpdate::ForgetMapping()
 }
 
 IncrementalUpdate::Box IncrementalUpdate::ComputeBox(
-  std::size_t brick, const float* displacements) const
+  std::size_t part, const float* displacements) const
 {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   float least[3] = { infinity, infinity, infinity };
   float greatest[3] = { -infinity, -infinity, -infinity };
-  this->Points.AnyOf(brick,
+  this->Points.AnyOf(part,
     [&](std::size_t point)
     {
       for (int axis = 0; axis < 3; ++axis)
@@ -96,14 +97,15 @@ IncrementalUpdate::Box IncrementalUpdate::ComputeBox(
       }
       return false;
     });
-  const Extent vertices = this->Grid.GetVertices(brick, 0);
-  const double excess = this->Points.GetExcess(brick);
+  const Extent vertices = this->Grid.GetVertices(part, 0);
+  const double excess = this->Points.GetExcess(part);
   Box box;
   for (int axis = 0; axis < 3; ++axis)
   {
-    if (!(least[axis] <= greatest[axis]))
+    if (!(least[axis] <= greatest[axis]) || vertices[2 * axis] >= vertices[2 * axis + 1])
     {
-      return { { { 1.0, 1.0, 1.0 } }, { { 0.0, 0.0, 0.0 } } }; // no vertex has a place
+      // No vertex has a place, or there are no cells.
+      return { { { 1.0, 1.0, 1.0 } }, { { 0.0, 0.0, 0.0 } } };
     }
     const double widening = excess * (double(greatest[axis]) - double(least[axis])) + Margin;
     const double low = std::min(least[axis] - widening, LargestMove);
@@ -145,17 +147,17 @@ IncrementalUpdate::Patches IncrementalUpdate::GetPatches(const Box& box) const
 void IncrementalUpdate::MovePoints(const std::vector<unsigned char>& changed, const float* last)
 {
   RunOnThreads(this->Grid.GetNumberOfBricks(),
-    [&](std::size_t brick)
+    [&](std::size_t part)
     {
-      if (this->Points.AnyOf(brick, [&](std::size_t point) { return changed[point] != 0; }))
+      if (this->Points.AnyOf(part, [&](std::size_t point) { return changed[point] != 0; }))
       {
-        if (!this->Moved[brick])
+        if (!this->Moved[part])
         {
-          this->LastBoxes[brick] =
-            this->Known[brick] ? this->Boxes[brick] : this->ComputeBox(brick, last);
-          this->Moved[brick] = 1;
+          this->LastBoxes[part] =
+            this->Known[part] ? this->Boxes[part] : this->ComputeBox(part, last);
+          this->Moved[part] = 1;
         }
-        this->Known[brick] = 0;
+        this->Known[part] = 0;
       }
     });
 }
@@ -166,17 +168,17 @@ void IncrementalUpdate::ChangeMask(
   const int less = ofCells ? 1 : 0;
   const std::int64_t size[2] = { this->Grid.Size[0] - less, this->Grid.Size[1] - less };
   RunOnThreads(this->Grid.GetNumberOfBricks(),
-    [&](std::size_t brick)
+    [&](std::size_t part)
     {
-      const Extent region = this->Grid.GetVertices(brick, MaskReach);
-      const auto row =
-        static_cast<std::size_t>(std::min<std::int64_t>(region[1], size[0] - 1) - region[0] + 1);
-      for (std::int64_t z = region[4]; z <= region[5] - less && !this->Masked[brick]; ++z)
+      const Extent region = this->Grid.GetVertices(part, MaskReach);
+      const std::int64_t row = region[1] - less - region[0] + 1;
+      for (std::int64_t z = region[4]; z <= region[5] - less && !this->Masked[part]; ++z)
       {
-        for (std::int64_t y = region[2]; y <= region[3] - less && !this->Masked[brick]; ++y)
+        for (std::int64_t y = region[2]; y <= region[3] - less && !this->Masked[part]; ++y)
         {
           const std::int64_t begin = (z * size[1] + y) * size[0] + region[0];
-          this->Masked[brick] = IsDifferent(last, next, value, begin, row) ? 1 : 0;
+          this->Masked[part] =
+            row > 0 && IsDifferent(last, next, value, begin, static_cast<std::size_t>(row)) ? 1 : 0;
         }
       }
     });
@@ -184,29 +186,35 @@ void IncrementalUpdate::ChangeMask(
 
 bool IncrementalUpdate::MakePlan(const float* displacements, Plan& plan)
 {
-  const std::size_t bricks = this->Grid.GetNumberOfBricks();
-  const auto isChanged = [&](std::size_t brick)
-  { return this->Moved[brick] != 0 || this->Masked[brick] != 0; };
-  std::size_t changed = 0;
-  for (std::size_t brick = 0; brick < bricks; ++brick)
+  const std::size_t parts = this->Grid.GetNumberOfBricks();
+  std::vector<unsigned char> run(this->Bricks.GetNumberOfBricks());
+  for (std::size_t part = 0; part < parts; ++part)
   {
-    changed += isChanged(brick) ? 1 : 0;
+    if (this->IsChanged(part))
+    {
+      run[this->Bricks.GetBrick(this->Grid, part)] = 1;
+    }
   }
-  if (changed == 0)
+  const auto isTooMuch = [](const std::vector<unsigned char>& marked)
   {
-    return true;
-  }
-  if (static_cast<double>(changed) > LargestPart * static_cast<double>(bricks))
+    return static_cast<double>(std::count(marked.begin(), marked.end(), 1)) >
+      LargestPart * static_cast<double>(marked.size());
+  };
+  if (isTooMuch(run))
   {
     return false;
   }
-  RunOnThreads(bricks,
-    [&](std::size_t brick)
+  if (std::count(run.begin(), run.end(), 1) == 0)
+  {
+    return true;
+  }
+  RunOnThreads(parts,
+    [&](std::size_t part)
     {
-      if (!this->Known[brick])
+      if (!this->Known[part])
       {
-        this->Boxes[brick] = this->ComputeBox(brick, displacements);
-        this->Known[brick] = 1;
+        this->Boxes[part] = this->ComputeBox(part, displacements);
+        this->Known[part] = 1;
       }
     });
 
@@ -238,35 +246,37 @@ bool IncrementalUpdate::MakePlan(const float* displacements, Plan& plan)
     patch = 1;
     return false;
   };
-  for (std::size_t brick = 0; brick < bricks; ++brick)
+  for (std::size_t part = 0; part < parts; ++part)
   {
-    if (isChanged(brick))
+    if (this->IsChanged(part))
     {
-      anyOf(this->Boxes[brick], mark);
-      if (this->Moved[brick])
+      anyOf(this->Boxes[part], mark);
+      if (this->Moved[part])
       {
-        anyOf(this->LastBoxes[brick], mark);
+        anyOf(this->LastBoxes[part], mark);
       }
     }
   }
-  for (std::size_t patch = 0; patch < dirty.size(); ++patch)
+  const auto isDirty = [](unsigned char patch) { return patch != 0; };
+  for (std::size_t part = 0; part < parts; ++part)
   {
-    if (dirty[patch])
-    {
-      plan.Patches.push_back(static_cast<std::uint32_t>(patch));
-    }
+    unsigned char& brick = run[this->Bricks.GetBrick(this->Grid, part)];
+    brick = brick || anyOf(this->Boxes[part], isDirty) ? 1 : 0;
   }
-  for (std::size_t brick = 0; brick < bricks; ++brick)
+  const auto list = [](
+                      const std::vector<unsigned char>& marked, std::vector<std::uint32_t>& numbers)
   {
-    if (isChanged(brick) ||
-      anyOf(this->Boxes[brick], [](unsigned char patch) { return patch != 0; }))
+    for (std::size_t i = 0; i < marked.size(); ++i)
     {
-      plan.Bricks.push_back(static_cast<std::uint32_t>(brick));
+      if (marked[i])
+      {
+        numbers.push_back(static_cast<std::uint32_t>(i));
+      }
     }
-  }
-  return static_cast<double>(plan.Patches.size()) <=
-    LargestPart * static_cast<double>(dirty.size()) &&
-    static_cast<double>(plan.Bricks.size()) <= LargestPart * static_cast<double>(bricks);
+  };
+  list(dirty, plan.Patches);
+  list(run, plan.Bricks);
+  return !isTooMuch(dirty) && !isTooMuch(run);
 }
 
 } // namespace deformvolume

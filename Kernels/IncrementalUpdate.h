@@ -14,12 +14,12 @@ namespace deformvolume
 /// Finds out which part of an output has to be made anew after a change of the deformation or of
 /// the masks.
 ///
-/// A brick of cells changes when a point that moves its vertices does, or a mask near it. All that
-/// it wrote, and all that it will write, lies within a box: its box at rest, widened by the least
-/// and the greatest displacement of its points. Patches of the output that the boxes of changed
-/// bricks touch, before or after the change, are cleared, and all bricks whose boxes touch such a
-/// patch are run, wholly: what they write outside these patches they wrote before, since nobody
-/// else writes there.
+/// A part of a brick of cells changes when a point that moves its vertices does, or a mask near it.
+/// All that it wrote, and all that it will write, lies within a box: its box at rest, widened by
+/// the least and the greatest displacement of its points. Patches of the output that the boxes of
+/// changed parts touch, before or after the change, are cleared, and all bricks with a part whose
+/// box touches such a patch are run, wholly: what they write outside these patches they wrote
+/// before, since nobody else writes there.
 class IncrementalUpdate
 {
 public:
@@ -27,14 +27,14 @@ public:
   struct Plan
   {
     std::vector<std::uint32_t> Bricks;
-    std::vector<std::uint32_t> Patches; // 16 x 16 x 16 voxels, counted along x, then y, then z
+    std::vector<std::uint32_t> Patches; // counted along x, then y, then z
   };
 
   /// Whether the last output can serve, so that what changes has to be told.
   bool IsTracking() const { return this->Tracking; }
 
   /// An output of this extent was made, wholly, of what is set now.
-  void Start(const BrickGrid& grid, const Lattice& lattice, const Extent& output);
+  void Start(const BrickGrid& bricks, const Lattice& lattice, const Extent& output);
   /// The last output is of no use any more.
   void Forget() { this->Tracking = false; }
   /// All points change; the last output is of no use any more.
@@ -42,7 +42,8 @@ public:
   /// The last output was brought up to date.
   void Finish();
 
-  /// The points of the bricks; found when they are needed first, and forgotten with the mapping.
+  /// The points of the parts of bricks; found when they are needed first, and forgotten with the
+  /// mapping.
   bool HasPoints() const { return !this->Points.IsEmpty(); }
   void SetPoints(BrickPoints&& points) { this->Points = std::move(points); }
   void ForgetMapping();
@@ -70,18 +71,20 @@ private:
   };
   using Patches = std::array<int, 6>; // first and last patch on each axis
 
-  Box ComputeBox(std::size_t brick, const float* displacements) const;
+  Box ComputeBox(std::size_t part, const float* displacements) const;
+  bool IsChanged(std::size_t part) const { return this->Moved[part] || this->Masked[part]; }
   Patches GetPatches(const Box& box) const;
 
   bool Tracking = false;
-  BrickGrid Grid;
+  BrickGrid Bricks;
+  BrickGrid Grid; // of their parts, which all that follows is about
   Lattice Shape;
   Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
   std::array<int, 3> PatchCount{ { 0, 0, 0 } };
   BrickPoints Points;
   std::vector<Box> Boxes; // as far as they are known
   std::vector<unsigned char> Known;
-  std::vector<Box> LastBoxes; // of bricks that were moved
+  std::vector<Box> LastBoxes; // of those that were moved
   std::vector<unsigned char> Moved;
   std::vector<unsigned char> Masked;
 };

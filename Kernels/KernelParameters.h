@@ -96,7 +96,7 @@ typedef struct
 #define DEFORMVOLUME_COUNTED_VOXELS 4096
 
 // Voxels of a patch of the output on each axis: what is cleared where a part is made anew.
-#define DEFORMVOLUME_PATCH 16
+#define DEFORMVOLUME_PATCH 8
 
 // Bytes that a work-item of the kernels Fill1 to Fill8 writes.
 #define DEFORMVOLUME_FILLED_BYTES 65536

@@ -157,7 +157,7 @@ void VolumeDeformer::Internals::PrepareBrickPoints()
     this->Update.SetPoints(this->Mesh->HasMesh()
         ? this->Mesh->MakeBrickPoints(
             this->Tetrahedra, this->NumberOfTetrahedra, this->NumberOfNodes)
-        : BrickPoints::FromField(this->Mesh->GetBrickGrid(), this->Field));
+        : BrickPoints::FromField(this->Mesh->GetBrickGrid().GetParts(), this->Field));
   }
 }
 
