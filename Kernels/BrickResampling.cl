@@ -104,15 +104,9 @@ static uint LaneBits(INTS mask)
 #endif
 }
 
-// For each set bit, the lowest first: lane is its number.
-#ifdef __clang__
-#define LOWEST_BIT(bits) __builtin_ctz(bits)
-#else
-#define LOWEST_BIT(bits) popcount(~(bits) & ((bits)-1))
-#endif
+// For each set bit, the highest first: lane is its number.
 #define FOR_EACH_LANE(lane, bits)                                                                  \
-  for (int lane = bits ? LOWEST_BIT(bits) : 0; bits;                                               \
-       bits &= bits - 1, lane = bits ? LOWEST_BIT(bits) : 0)
+  for (int lane = 31 - clz(bits); lane >= 0; bits ^= 1u << lane, lane = 31 - clz(bits))
 
 // The largest lane.
 static int MostOf(INTS v)
@@ -144,7 +138,7 @@ static int SumOf(INTS v)
   return c.x + c.y;
 }
 
-#ifdef __clang__
+#ifdef __x86_64__
 #define PREFETCH(address) __builtin_prefetch((const void*)(size_t)(address));
 #else
 #define PREFETCH(address)
