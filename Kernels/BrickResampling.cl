@@ -562,9 +562,9 @@ typedef struct
 // LANES cells: from x on every second one. odd: parity of x, y and z together. border: whether a vertex
 // may not be interior. only: the cells to look at, as bits. exact: whether the samples that floats do not
 // decide are decided by integers. What cells that must be repeated have written is not counted.
-static __attribute__((always_inline)) Outcome ResampleGroup(const Group* group, int x, int y, int z,
+static __attribute__((always_inline)) void ResampleGroup(const Group* group, int x, int y, int z,
   int odd, int border, uint only, int exact, const SamplingMesh* mesh, Output* output,
-  const KernelParameters* p ARRAY_PARAMETERS)
+  Outcome* outcome, const KernelParameters* p ARRAY_PARAMETERS)
 {
 #define LOAD_VERTEX(v)                                                                             \
   const FLOATS X##v = VERTEX(v, 0), Y##v = VERTEX(v, 1), Z##v = VERTEX(v, 2);
@@ -803,22 +803,25 @@ static __attribute__((always_inline)) Outcome ResampleGroup(const Group* group, 
   // Integers of 32 bits decide inside the mesh, in the direct pass, and for cells that are small enough.
   const INTS decidable = ambiguous & (extent < MAXIMUM_EXACT_EXTENT) &
     (border || p->Pass != DEFORMVOLUME_PASS_DIRECT ? 0 : -1);
-  const Outcome outcome = { LaneBits(decidable), LaneBits(unsure | (ambiguous & ~decidable)) };
-  return outcome;
+  outcome->Ambiguous = LaneBits(decidable);
+  outcome->Unsure = LaneBits(unsure | (ambiguous & ~decidable));
 }
 
 static __attribute__((noinline)) Outcome ResampleByFloats(const Group* group, int x, int y, int z,
   int odd, int border, const SamplingMesh* mesh, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
-  return ResampleGroup(group, x, y, z, odd, border, 0, 0, mesh, output, p ARRAY_ARGUMENTS);
+  Outcome outcome;
+  ResampleGroup(group, x, y, z, odd, border, 0, 0, mesh, output, &outcome, p ARRAY_ARGUMENTS);
+  return outcome;
 }
 
 static __attribute__((noinline)) void ResampleByIntegers(const Group* group, int x, int y, int z,
   int odd, uint only, const SamplingMesh* mesh, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
-  ResampleGroup(group, x, y, z, odd, 0, only, 1, mesh, output, p ARRAY_ARGUMENTS);
+  Outcome outcome; // all is decided
+  ResampleGroup(group, x, y, z, odd, 0, only, 1, mesh, output, &outcome, p ARRAY_ARGUMENTS);
 }
 
 // A brick of cells. bricks: the numbers of those to work on, one a work-item.

@@ -80,8 +80,8 @@ std::string MakePreamble(const OpenCLContext& context, const std::vector<VolumeA
     }
     const std::string index = std::to_string(i);
     const std::string type = GetTypeName(arrays[i].Type);
-    parameters += ", __global const " + type + "* restrict source" + index + ", __global " + type +
-      "* restrict target" + index;
+    parameters +=
+      ", __global const " + type + "* source" + index + ", __global " + type + "* target" + index;
     arguments += ", source" + index + ", target" + index;
     stores += MakeStore(arrays[i], index);
   }
