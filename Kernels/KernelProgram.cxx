@@ -18,6 +18,11 @@ bool HasDouble(const OpenCLContext& context)
 namespace
 {
 
+// Oclgrind knows no restrict in functions that are inlined.
+const char* const Restrict =
+  "#ifdef __x86_64__\n#define RESTRICT restrict\n#else\n#define RESTRICT\n"
+  "#endif\n";
+
 const char* const Options = "-cl-std=CL1.2";
 
 std::string GetTypeName(ElementType type)
@@ -80,12 +85,12 @@ std::string MakePreamble(const OpenCLContext& context, const std::vector<VolumeA
     }
     const std::string index = std::to_string(i);
     const std::string type = GetTypeName(arrays[i].Type);
-    parameters +=
-      ", __global const " + type + "* source" + index + ", __global " + type + "* target" + index;
+    parameters += ", __global const " + type + "* RESTRICT source" + index + ", __global " + type +
+      "* RESTRICT target" + index;
     arguments += ", source" + index + ", target" + index;
     stores += MakeStore(arrays[i], index);
   }
-  return GetReal(context) + "#define ARRAY_PARAMETERS " + parameters +
+  return GetReal(context) + Restrict + "#define ARRAY_PARAMETERS " + parameters +
     "\n#define ARRAY_ARGUMENTS " + arguments + "\n#define STORE_ARRAYS " + stores + "\n";
 }
 
