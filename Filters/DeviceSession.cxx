@@ -28,7 +28,7 @@ std::string DeviceSession::SetDevice(
 {
   this->Deformer.SetMemoryLimit(memoryLimit);
   this->Deformer.SetWorkGroupSize(workGroupSize);
-  const std::string device = this->Deformer.SetDevice(request);
+  const std::string device = this->Deformer.SetDevice(request == BEST_DEVICE ? "" : request);
   if (device != this->Device)
   {
     this->Known = false;

@@ -17,6 +17,9 @@ class vtkImageData;
 namespace deformvolume
 {
 
+/// Stands for no wish, as "" does, where a wish has to be seen.
+constexpr const char* BEST_DEVICE = "best";
+
 /// A VolumeDeformer that remembers what it was sent and is sent only what changed.
 class DeviceSession
 {

@@ -7,6 +7,8 @@
 #include "vtkArrayDispatch.h"
 #include "vtkDataArray.h"
 #include "vtkDataArrayRange.h"
+#include "vtkDataSet.h"
+#include "vtkPointData.h"
 
 #include <atomic>
 #include <cmath>
@@ -68,6 +70,29 @@ void ReadVectors(
     throw Error(kind + " " + std::to_string(reader.FirstBad) + " of the " + owner +
       " is not finite. Remove NaN and infinity from it.");
   }
+}
+
+vtkDataArray* FindVectors(vtkDataSet* dataSet)
+{
+  vtkPointData* pointData = dataSet->GetPointData();
+  if (vtkDataArray* vectors = pointData->GetVectors())
+  {
+    return vectors;
+  }
+  vtkDataArray* found = nullptr;
+  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = pointData->GetArray(i);
+    if (array && array->GetNumberOfComponents() == 3)
+    {
+      if (found)
+      {
+        return nullptr;
+      }
+      found = array;
+    }
+  }
+  return found;
 }
 
 } // namespace deformvolume

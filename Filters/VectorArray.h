@@ -7,6 +7,7 @@
 #include <string>
 
 class vtkDataArray;
+class vtkDataSet;
 
 namespace deformvolume
 {
@@ -15,6 +16,10 @@ namespace deformvolume
 /// names the first tuple that is not finite: "<kind> 5 of the <owner>".
 void ReadVectors(
   vtkDataArray* array, glm::dvec3* vectors, const std::string& kind, const std::string& owner);
+
+/// The vectors of a dataset's points where nobody chose: the active ones, or else the only array of
+/// three components; null where there is no such array.
+vtkDataArray* FindVectors(vtkDataSet* dataSet);
 
 } // namespace deformvolume
 

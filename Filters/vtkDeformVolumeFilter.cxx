@@ -124,6 +124,24 @@ vtkStringArray* vtkDeformVolumeFilter::GetDeviceNames()
 }
 
 //------------------------------------------------------------------------------
+vtkStringArray* vtkDeformVolumeFilter::GetDeviceChoices()
+{
+  vtkStringArray* choices = this->Internals->DeviceChoices;
+  choices->Initialize();
+  std::vector<std::string> names = deformvolume::GetDeviceNames();
+  names.insert(names.begin(), { deformvolume::BEST_DEVICE, "cpu", "gpu" });
+  for (const std::string& name : names)
+  {
+    // Devices of one name cannot be told apart.
+    if (choices->LookupValue(name.c_str()) < 0)
+    {
+      choices->InsertNextValue(name);
+    }
+  }
+  return choices;
+}
+
+//------------------------------------------------------------------------------
 vtkTypeInt64 vtkDeformVolumeFilter::GetDeviceMemory()
 {
   return static_cast<vtkTypeInt64>(this->Internals->Device.GetDeviceMemory());

@@ -25,7 +25,8 @@
  *   linear three-dimensional cells are split into tetrahedra. Without port 2 its points are the
  *   rest positions, and the vectors chosen by SetInputArrayToProcess(0, 1, 0, POINTS, name), three
  *   components in world units, are added DisplacementScale times. By default these are the active
- *   vectors. With port 2 its points are the deformed positions, in world coordinates.
+ *   vectors; an empty name stands for the active vectors or else the only array of three
+ *   components. With port 2 its points are the deformed positions, in world coordinates.
  * - vtkImageData with a three-component point array chosen in the same way: a displacement field,
  *   forward, in world units, at the volume's resolution or any other, trilinear between its
  *   points.
@@ -276,7 +277,7 @@ public:
 
   ///@{
   /**
-   * The OpenCL device: "" is the best there is, or what the environment variable
+   * The OpenCL device: "" or "best" is the best there is, or what the environment variable
    * DEFORMVOLUME_DEVICE asks for in the same words; "cpu" and "gpu" are the best of that kind;
    * anything else is a part of a device's name, without regard to case. A request that cannot be
    * met is an error at the next update. Default: "".
@@ -290,6 +291,12 @@ public:
    * array is a new one and belongs to the caller (Python sees to that by itself).
    */
   static VTK_NEWINSTANCE vtkStringArray* GetDeviceNames();
+
+  /**
+   * What a list of devices to choose from may offer on this machine: "best", "cpu", "gpu", and the
+   * names of the devices. The array belongs to this filter.
+   */
+  vtkStringArray* GetDeviceChoices();
 
   ///@{
   /**

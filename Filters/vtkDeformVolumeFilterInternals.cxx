@@ -4,6 +4,7 @@
 #include "AbortCheck.h"
 #include "InputUpdate.h"
 #include "ResamplerChoice.h"
+#include "VectorArray.h"
 #include "VolumeArrays.h"
 
 #include "vtkDataObject.h"
@@ -52,21 +53,25 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
   DeformationSource source;
   source.Shape = shape;
   source.Rest = rest;
-  source.Selector = [this](vtkDataSet* dataSet)
+  vtkInformation* choice = this->Self->GetInputArrayInformation(0);
+  const char* name = choice->Get(vtkDataObject::FIELD_NAME());
+  const bool unnamed = name && !*name;
+  source.Selector = [this, unnamed](vtkDataSet* dataSet)
   {
     int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-    vtkDataArray* array = this->Self->GetInputArrayToProcess(0, dataSet, association);
+    vtkDataArray* array = unnamed ? deformvolume::FindVectors(dataSet)
+                                  : this->Self->GetInputArrayToProcess(0, dataSet, association);
     return association == vtkDataObject::FIELD_ASSOCIATION_POINTS ? array : nullptr;
   };
-  vtkInformation* choice = this->Self->GetInputArrayInformation(0);
-  if (choice->Has(vtkDataObject::FIELD_NAME()))
+  if (name && *name)
   {
-    source.Wanted = std::string("point array \"") + choice->Get(vtkDataObject::FIELD_NAME()) + "\"";
+    source.Wanted = std::string("point array \"") + name + "\"";
   }
   else
   {
-    const char* attribute = vtkDataSetAttributes::GetAttributeTypeAsString(
-      choice->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE()));
+    const char* attribute = unnamed ? "Vectors"
+                                    : vtkDataSetAttributes::GetAttributeTypeAsString(
+                                        choice->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE()));
     source.Wanted = std::string("active ") + (attribute ? attribute : "Vectors") + " of its points";
   }
   source.Choice =

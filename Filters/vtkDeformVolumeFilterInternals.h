@@ -10,6 +10,8 @@
 #include "OutputArrays.h"
 
 #include "vtkDeformVolumeFilter.h"
+#include "vtkNew.h"
+#include "vtkStringArray.h"
 #include "vtkTimeStamp.h"
 
 #include <functional>
@@ -58,6 +60,7 @@ public:
   std::function<bool(double)> GetProgress(double from, double to) const;
 
   std::set<std::string> CategoricalArrays;
+  vtkNew<vtkStringArray> DeviceChoices;
   deformvolume::Deformation Deformation;
   deformvolume::MappingCache Mapping;
   deformvolume::DeviceSession Device;
