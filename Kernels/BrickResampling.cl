@@ -31,8 +31,8 @@
 // that norm >= 1, the error of lj is at most (7 + 5 |lj|) u k, that of l0 (30 + 5 |1 - l0|) u k,
 // and that of tj no more than (2 M + 1) times their sum with M = max |bj / bi|. When three of the
 // tj exceed d, the sample is inside; when one is under -d, outside. Cells with a sample in between
-// are repeated: inside the mesh with edge functions in integers, LANES cells at once again; on its
-// border, and where they are large or bent, by ResampleCell.
+// are repeated: with edge functions in integers, LANES cells at once again; where they are large or
+// bent, or what surrounds them is not all there, by ResampleCell.
 //
 // What the host puts in front of this text, besides that of Resampling.cl:
 //   LANES                16, 8 or 4: floats in a vector
@@ -101,6 +101,22 @@ static uint LaneBits(INTS mask)
   const long2 c = as_long2(b);
   const long d = c.x | c.y;
   return (uint)d | (uint)(d >> 32);
+#endif
+}
+
+// Writes the lanes with set bits to a place, one after the other; what comes behind them there is lost.
+static void Append(INTS v, uint bits, int* place)
+{
+#if LANES == 16 && defined(__AVX512F__)
+  vstore16(__builtin_ia32_compresssi512_mask(v, v, bits), 0, place);
+#else
+  Lanes lanes;
+  lanes.Vector = v;
+  for (int lane = 0; lane < LANES; ++lane)
+  {
+    *place = lanes.Lanes[lane];
+    place += bits >> lane & 1;
+  }
 #endif
 }
 
@@ -191,10 +207,11 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
     if (tetrahedron >= 0)
     {
       const RunDisplacement d = MakeRunDisplacement(m->Records + tetrahedron, y, z);
-      for (int k = 0; k < runEnd - x; k += 8)
+      float8 index = (float)x + steps;
+      for (__local float* place = places + i; place < places + i + (runEnd - x); place += 8)
       {
-        const float8 offset = ((float)(x + k) + steps) - d.OriginX;
-        __local float* place = places + i + k;
+        const float8 offset = index - d.OriginX;
+        index += 8.0f;
         vstore8(d.Displacement.x + (d.Across.x + d.AlongX.x * offset), 0, place);
         vstore8(d.Displacement.y + (d.Across.y + d.AlongX.y * offset), 0, place + ROW_PLACES);
         vstore8(d.Displacement.z + (d.Across.z + d.AlongX.z * offset), 0, place + 2 * ROW_PLACES);
@@ -289,6 +306,13 @@ static ulong StatesOf(__global const uchar* state, int x, int y, int z, const Ke
     }                                                                                              \
   }
 
+// The values of a row are few, and the next row lies far away.
+#define FETCH_NEXT_ROW(index, TYPE, BITS, SLOT)                                                    \
+  for (int k = x; k < end; k += 512 / BITS)                                                        \
+  {                                                                                                \
+    PREFETCH(source##index + chunk + p->Size[0] + k)                                               \
+  }
+
 // Maps the vertices of a row from x to end; i: place of x in the brick.
 static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, int z,
   __local float* row, __local const float* restX, __local float* displaced,
@@ -301,6 +325,7 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
   const float wholeZ = rz.Whole - p->OutputFirst[2] * 256;
   const size_t chunk = VertexInChunk(0, y, z, p);
   ROW_DISPLACEMENTS
+  LANE_ARRAYS(FETCH_NEXT_ROW)
   RowFlags flags = { 0, 0 };
   while (x < end)
   {
@@ -407,7 +432,6 @@ typedef struct
 
 // The interpolated values of an array, rounded where it holds integers.
 #define LANE_RESULTS(index, TYPE, BITS, SLOT)                               \
-  Lanes results##index;                                                             \
   {                                                                                                \
     FLOATS v = t0 * VERTEX(0, 3 + SLOT);                                                           \
     v = fma(t3, VERTEX(3, 3 + SLOT), v);                                                           \
@@ -421,12 +445,11 @@ typedef struct
     {                                                                                              \
       v = Least(Most(v, LANE_RANGE_LOW_##TYPE), LANE_RANGE_HIGH_##TYPE) + ROUND_TO_INTEGER;        \
     }                                                                                              \
-    results##index.Vector = AS_INTS(v);                                             \
+    Append(AS_INTS(v), bits, found->Values##index + found->Count);                                   \
   }
 
-#define LANE_STORE(index, TYPE, BITS, SLOT)                                 \
-  target##index[place] =                                          \
-    LANE_CONVERT_##BITS(TYPE, results##index.Lanes[lane]);
+#define LANE_STORE(index, TYPE, BITS, SLOT)                                                        \
+  target##index[place] = LANE_CONVERT_##BITS(TYPE, found->Values##index[i]);
 
 #if HAS_OTHER_ARRAYS
 // A sample that is in a cell, for the arrays that want its weights as they are: which of the cell's
@@ -469,38 +492,107 @@ static __attribute__((noinline)) void StoreOtherArrays(const Group* group, int l
 }
 #endif
 
-// Whether cells of a row of the lattice are the last ones on the upper side in space. edge: from the vertex
-// of even index to that of odd one; 0 where the row leads elsewhere.
-static INTS LastAlong(FLOATS edge, INTS cell, int first, int size)
+#define FOUND_CAPACITY 256
+#define FOUND_VALUES(index, TYPE, BITS, SLOT) int Values##index[FOUND_CAPACITY + 2 * LANES];
+
+// Whether the cells of samples matter when these are stored: then that happens group by group.
+#define KEEPS_CELLS(p) (HAS_OTHER_ARRAYS || (p)->Pass != DEFORMVOLUME_PASS_DIRECT)
+
+// Samples that have been found in cells, before they are stored: many at once, as a loop that ends after
+// a few is mispredicted each time. Appending writes LANES of them whatever their number.
+typedef struct
 {
-  const INTS odd = ((cell + first) & 1) != 0;
-  const INTS upwards = odd ? edge < 0.0f : edge > 0.0f;
-  const INTS downwards = odd ? edge > 0.0f : edge < 0.0f;
-  return (upwards & (cell == size - 2)) | (downwards & (cell == 0));
+  int Places[FOUND_CAPACITY + 2 * LANES]; // in the output
+  int Lanes[FOUND_CAPACITY + 2 * LANES];
+  LANE_ARRAYS(FOUND_VALUES)
+  uint Count;
+} Found;
+
+// Stores the samples and forgets them.
+static void StoreFound(Found* found, const Group* group, int x, int y, int z, Output* output,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const int pass = p->Pass;
+  const uint count = found->Count;
+  __global char* const coverage = output->Coverage;
+  for (uint i = 0; i < count; ++i)
+  {
+    const uint place = found->Places[i];
+    if (pass != DEFORMVOLUME_PASS_DIRECT)
+    {
+      const KEY key = MakeKey(x + 2 * found->Lanes[i], y, z, 0, p);
+      __global KEY* winner = output->Winners + place;
+      if (pass == DEFORMVOLUME_PASS_MARK && *winner > key)
+      {
+        ATOMIC_MIN(winner, key);
+      }
+      if (pass == DEFORMVOLUME_PASS_MARK || *winner != key)
+      {
+        continue;
+      }
+    }
+    coverage[place] = 1;
+    LANE_ARRAYS(LANE_STORE)
+#if HAS_OTHER_ARRAYS
+    const int lane = found->Lanes[i];
+    StoreOtherArrays(group, lane, x + 2 * lane, y, z, place, p ARRAY_ARGUMENTS);
+#endif
+  }
+  found->Count = 0;
 }
 
-// Whether all that surrounds the cells is there, but for what would lie beyond the volume.
-static INTS IsRegular(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
+// What lies round the cells of a group on the border of the mesh.
+typedef struct
 {
-  Lanes regular;
+  INTS Whole;    // all five tetrahedra are active and have positions
+  INTS Interior; // as CellState
+  INTS Regular;
+} GroupState;
+
+static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, int x, int y, int z,
+  GroupState* states, const KernelParameters* p)
+{
+  const INTS cellX = x + 2 * LANE_INDEX;
+  const INTS inVolume = (cellX >= 0) & (cellX < p->Size[0] - 1);
+  if (!p->HasState)
+  {
+    // What is not on the border of the volume is interior.
+    const int mirror = Mirror(x, y, z, p);
+    const int lowX = LOW_SIDE(0, mirror), lowZ = LOW_SIDE(1, mirror), lowY = LOW_SIDE(2, mirror);
+    const int outer = (y == 0 ? lowY : 0) | (y == p->Size[1] - 2 ? 255 ^ lowY : 0) |
+      (z == 0 ? lowZ : 0) | (z == p->Size[2] - 2 ? 255 ^ lowZ : 0);
+    states->Whole = inVolume;
+    states->Regular = 255;
+    states->Interior =
+      ~(outer | ((cellX == 0) & lowX) | ((cellX == p->Size[0] - 2) & (255 ^ lowX))) & 255;
+    return;
+  }
+  Lanes whole, interior, regular;
+  whole.Vector = inVolume;
   for (int lane = 0; lane < LANES; ++lane)
   {
-    const int cell = x + 2 * lane; // may lie before the volume
-    int state = cell >= 0 && cell < p->Size[0] - 1 ? DEFORMVOLUME_VERTEX_REGULAR : 0;
-    for (int v = 0; state && v < 8; ++v)
+    CellState state = { 0, 0 };
+    if (whole.Lanes[lane])
     {
-      state &= StateOf(mesh->State, cell + (v & 1), y + (v >> 2), z + (v >> 1 & 1), p);
+      const int cell = x + 2 * lane;
+      whole.Lanes[lane] =
+        mesh->State[VertexInChunk(cell, y, z, p)] & DEFORMVOLUME_CELL_WHOLE ? -1 : 0;
+      state = CellStateOf(mesh, cell, y, z, p);
     }
-    regular.Lanes[lane] = state ? -1 : 0;
+    interior.Lanes[lane] = state.Interior;
+    regular.Lanes[lane] = state.Regular;
   }
-  return regular.Vector;
+  states->Whole = whole.Vector;
+  states->Interior = interior.Vector;
+  states->Regular = regular.Vector;
 }
 
-// Which lanes hold a sample after the shift of the fill rule, by edge functions in integers of 32 bits,
-// for upright cells of less than MAXIMUM_EXACT_EXTENT: these are at most 2 (256 extent)^3. sx, sy, sz: the
-// sample relative to vertex 0 of the cell, in voxels.
+// Which lanes own a sample by the fill rule, by edge functions in integers of 32 bits, for upright cells of
+// less than MAXIMUM_EXACT_EXTENT: these are at most 2 (256 extent)^3. sample: in voxels relative to vertex
+// 0 of the cell. simplex: the vertices of the simplex that the sample lies in, 0 where that is not in the
+// cell.
 static __attribute__((noinline)) INTS HoldSample(
-  const Group* group, const FLOATS* sample, int odd)
+  const Group* group, const FLOATS* sample, int odd, INTS* simplex)
 {
   INTS q[8][3];
   for (int v = 0; v < 8; ++v)
@@ -511,6 +603,7 @@ static __attribute__((noinline)) INTS HoldSample(
     }
   }
   INTS held = 0;
+  *simplex = 0;
   for (int t = 0; t < 5; ++t)
   {
     INTS e[3][3]; // edges from the first vertex, and the normals of the faces opposite the others
@@ -538,6 +631,8 @@ static __attribute__((noinline)) INTS HoldSample(
     }
     INTS first = e[0][0] * n[1][0] + e[0][1] * n[1][1] + e[0][2] * n[1][2];
     INTS inside = -1;
+    INTS closed = -1;
+    INTS vertices = 0;
     for (int k = 3; k >= 0; --k)
     {
       const INTS f = k ? n[k][0] * r[0] + n[k][1] * r[1] + n[k][2] * r[2] : first;
@@ -546,8 +641,11 @@ static __attribute__((noinline)) INTS HoldSample(
       inside &= (f > 0) |
         ((f == 0) &
           ((n[k][0] > 0) | ((n[k][0] == 0) & ((n[k][1] > 0) | ((n[k][1] == 0) & (n[k][2] > 0))))));
+      closed &= f >= 0;
+      vertices |= (f > 0) & (1 << Tetrahedra[t][k]);
     }
     held |= inside;
+    *simplex |= closed & vertices;
   }
   return held;
 }
@@ -564,7 +662,7 @@ typedef struct
 // decide are decided by integers. What cells that must be repeated have written is not counted.
 static __attribute__((always_inline)) void ResampleGroup(const Group* group, int x, int y, int z,
   int odd, int border, uint only, int exact, const SamplingMesh* mesh, Output* output,
-  Outcome* outcome, const KernelParameters* p ARRAY_PARAMETERS)
+  Found* found, Outcome* outcome, const KernelParameters* p ARRAY_PARAMETERS)
 {
 #define LOAD_VERTEX(v)                                                                             \
   const FLOATS X##v = VERTEX(v, 0), Y##v = VERTEX(v, 1), Z##v = VERTEX(v, 2);
@@ -604,39 +702,29 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   }
 
   // Candidates are half-open inside the mesh: by the fill rule no sample on the upper side is taken.
-  INTS whole = -1;
+  GroupState state;
+  state.Whole = -1;
+  const INTS cellX = x + 2 * LANE_INDEX;
+  const int mirror = Mirror(x, y, z, p);
   FLOATS toEndX = ALMOST_ONE, toEndY = ALMOST_ONE, toEndZ = ALMOST_ONE;
-  if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
+  if (border || p->Pass != DEFORMVOLUME_PASS_DIRECT)
   {
     toEndX = toEndY = toEndZ = 1.0f;
   }
   if (border)
   {
-    Lanes state;
-    for (int k = 0; k < LANES; ++k)
+    StatesOfGroup(mesh, x, y, z, &state, p);
+    // Boxes on the border leave what is on their high sides to the next cells, if there are any. That the
+    // high sides are the upper ones is wanted for that.
+    if (p->Pass == DEFORMVOLUME_PASS_DIRECT && LaneBits(box))
     {
-      const int cell = x + 2 * k;
-      state.Lanes[k] =
-        cell >= 0 && cell < p->Size[0] - 1 ? StateOf(mesh->State, cell, y, z, p) : 0;
-    }
-    whole = (state.Vector & DEFORMVOLUME_CELL_WHOLE) != 0;
-    if (p->Pass == DEFORMVOLUME_PASS_DIRECT)
-    {
-      // Boxes leave what is on their upper sides to the next cells there, if there are any.
-      if (LaneBits(box))
-      {
-        // Lanes that hold no cell hold anything.
-        box &= there & IsRegular(mesh, x, y, z, p);
-        output->Assumed |= LaneBits(box) != 0;
-      }
-      const INTS cellX = x + 2 * LANE_INDEX;
-#define CLOSED(C)                                                                                  \
-  (~box | LastAlong(C##1 - C##0, cellX, p->First[0], p->Size[0]) |                                 \
-    LastAlong(C##2 - C##0, (INTS)(z), p->First[2], p->Size[2]) |                                   \
-    LastAlong(C##4 - C##0, (INTS)(y), p->First[1], p->Size[1]))
-      toEndX = CLOSED(X) ? (FLOATS)(1.0f) : toEndX;
-      toEndY = CLOSED(Y) ? (FLOATS)(1.0f) : toEndY;
-      toEndZ = CLOSED(Z) ? (FLOATS)(1.0f) : toEndZ;
+#define RISES(C, to) ((mirror & to) ? C##to < C##0 : C##to > C##0)
+      const INTS inner = state.Interior == 255;
+      box &= there & (inner | ((state.Regular == 255) & RISES(X, 1) & RISES(Z, 2) & RISES(Y, 4)));
+      output->Assumed |= LaneBits(box & ~inner) != 0;
+      toEndX = box & (cellX != p->Size[0] - 2) ? ALMOST_ONE : toEndX;
+      toEndY = box & (INTS)(y != p->Size[1] - 2 ? -1 : 0) ? ALMOST_ONE : toEndY;
+      toEndZ = box & (INTS)(z != p->Size[2] - 2 ? -1 : 0) ? ALMOST_ONE : toEndZ;
     }
   }
 #define FIRST_OF(low, size) TO_INTS(Least(Most(low, 0.0f), (float)(size)) + ALMOST_ONE)
@@ -648,7 +736,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   const INTS countY = END_OF(highY, toEndY, p->OutputSize[1]) - firstY;
   const INTS countZ = END_OF(highZ, toEndZ, p->OutputSize[2]) - firstZ;
   const INTS small = extent <= MAXIMUM_EXTENT;
-  const INTS fit = there & small & whole;
+  const INTS fit = there & small & state.Whole;
   // Cells without candidates need not be looked at, unless they may be inverted.
 
   // Gradients of l3, l5 and l6.
@@ -692,11 +780,16 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   INTS count = 0; // writes
   if (iterations)
   {
-    // Boxes take all their candidates. Where a vertex of a box lies on a sample its value is taken bit
-    // for bit: the weights, which rounding may have touched, are made 0 and 1.
+    // Boxes take all their candidates. Where a vertex lies on a sample its value is taken bit for bit: the
+    // weights, which rounding may have touched, are made 0 and 1.
     box &= candidates;
     const int snap = LaneBits(box) != 0;
-    const FLOATS s1 = 1.0f / b16, s2 = 1.0f / b25, s4 = 1.0f / b43, s7 = 1.0f / b70;
+    // One division for four.
+    const FLOATS product12 = b16 * b25, product47 = b43 * b70;
+    const FLOATS inverses = 1.0f / (product12 * product47);
+    const FLOATS inverse12 = inverses * product47, inverse47 = inverses * product12;
+    const FLOATS s1 = inverse12 * b25, s2 = inverse12 * b16;
+    const FLOATS s4 = inverse47 * b70, s7 = inverse47 * b43;
     const FLOATS startX = TO_FLOATS(firstX) - X0;
     const FLOATS startY = TO_FLOATS(firstY) - Y0;
     const FLOATS startZ = TO_FLOATS(firstZ) - Z0;
@@ -728,13 +821,29 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
       // The second smallest weight decides: that opposite the corner may be 0.
       const FLOATS second = Least(Most(lowA, lowB), Least(highA, highB));
       INTS hit = maybe & ((second > bound) | box);
+      INTS onVertex = 0;
       const INTS undecided = maybe & ~hit;
       if (exact)
       {
         if (LaneBits(undecided))
         {
           const FLOATS sample[3] = { rx, ry, rz };
-          hit |= undecided & HoldSample(group, sample, odd);
+          INTS simplex;
+          INTS held = HoldSample(group, sample, odd, &simplex);
+          if (border)
+          {
+            // As IsOwner.
+            const INTS outer = (simplex != 0) & ((simplex & state.Interior) == 0);
+            const INTS regular = (simplex & ~state.Regular) == 0;
+            const INTS first = (((simplex & LOW_SIDE(0, mirror)) != 0) | (cellX == p->Size[0] - 2)) &
+              (((simplex & LOW_SIDE(1, mirror)) != 0) | (INTS)(z == p->Size[2] - 2 ? -1 : 0)) &
+              (((simplex & LOW_SIDE(2, mirror)) != 0) | (INTS)(y == p->Size[1] - 2 ? -1 : 0));
+            held = outer ? first & regular : held;
+            ambiguous |= undecided & outer & ~regular;
+            output->Assumed |= LaneBits(undecided & outer) != 0;
+          }
+          hit |= undecided & held;
+          onVertex = undecided & ((simplex & (simplex - 1)) == 0);
         }
       }
       else
@@ -747,44 +856,28 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
         if (snap)
         {
           const FLOATS sx = rx + X0, sy = ry + Y0, sz = rz + Z0;
-          const INTS onVertex = box & ((sx == lowX) | (sx == highX)) &
-            ((sy == lowY) | (sy == highY)) & ((sz == lowZ) | (sz == highZ));
+          onVertex |= box & ((sx == lowX) | (sx == highX)) & ((sy == lowY) | (sy == highY)) &
+            ((sz == lowZ) | (sz == highZ));
+        }
+        if (snap || exact)
+        {
 #define SNAP(weight) weight = onVertex ? rint(weight) : weight;
           SNAP(t0) SNAP(t3) SNAP(t5) SNAP(t6) SNAP(u1) SNAP(u2) SNAP(u4) SNAP(u7)
         }
-        Lanes places;
-        places.Vector = place;
-        uint left = bits;
-        if (p->Pass == DEFORMVOLUME_PASS_MARK)
-        {
-          FOR_EACH_LANE(lane, left)
-          {
-            const KEY key = MakeKey(x + 2 * lane, y, z, 0, p);
-            __global KEY* winner = output->Winners + (uint)places.Lanes[lane];
-            if (*winner > key)
-            {
-              ATOMIC_MIN(winner, key);
-            }
-          }
-        }
-        else
+        if (p->Pass != DEFORMVOLUME_PASS_MARK)
         {
           LANE_ARRAYS(LANE_RESULTS)
           count -= hit;
-          FOR_EACH_LANE(lane, left)
-          {
-            const uint place = places.Lanes[lane];
-            if (p->Pass == DEFORMVOLUME_PASS_WINNER &&
-              output->Winners[place] != MakeKey(x + 2 * lane, y, z, 0, p))
-            {
-              continue;
-            }
-            output->Coverage[place] = 1;
-            LANE_ARRAYS(LANE_STORE)
-#if HAS_OTHER_ARRAYS
-            StoreOtherArrays(group, lane, x + 2 * lane, y, z, place, p ARRAY_ARGUMENTS);
-#endif
-          }
+        }
+        Append(place, bits, found->Places + found->Count);
+        if (KEEPS_CELLS(p))
+        {
+          Append(LANE_INDEX, bits, found->Lanes + found->Count);
+        }
+        found->Count += popcount(bits);
+        if (found->Count > FOUND_CAPACITY)
+        {
+          StoreFound(found, group, x, y, z, output, p ARRAY_ARGUMENTS);
         }
       }
       // The next candidate of each lane.
@@ -797,31 +890,38 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
       rz = planeDone ? rz + 1.0f : rz;
       place += 1 + (rowDone & toNextRow) + (planeDone & toNextPlane);
     }
+    if (KEEPS_CELLS(p))
+    {
+      StoreFound(found, group, x, y, z, output, p ARRAY_ARGUMENTS);
+    }
   }
   // What an undecided cell wrote so far is written again with it, and must not count twice.
   output->Writes += SumOf(unsure | ambiguous ? (INTS)(0) : count);
-  // Integers of 32 bits decide inside the mesh, in the direct pass, and for cells that are small enough.
+  // Integers of 32 bits decide in the direct pass, for cells that are small enough.
   const INTS decidable = ambiguous & (extent < MAXIMUM_EXACT_EXTENT) &
-    (border || p->Pass != DEFORMVOLUME_PASS_DIRECT ? 0 : -1);
+    (exact || p->Pass != DEFORMVOLUME_PASS_DIRECT ? 0 : -1);
   outcome->Ambiguous = LaneBits(decidable);
   outcome->Unsure = LaneBits(unsure | (ambiguous & ~decidable));
 }
 
 static __attribute__((noinline)) Outcome ResampleByFloats(const Group* group, int x, int y, int z,
-  int odd, int border, const SamplingMesh* mesh, Output* output,
+  int odd, int border, const SamplingMesh* mesh, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Outcome outcome;
-  ResampleGroup(group, x, y, z, odd, border, 0, 0, mesh, output, &outcome, p ARRAY_ARGUMENTS);
+  ResampleGroup(group, x, y, z, odd, border, 0, 0, mesh, output, found, &outcome, p ARRAY_ARGUMENTS);
   return outcome;
 }
 
-static __attribute__((noinline)) void ResampleByIntegers(const Group* group, int x, int y, int z,
-  int odd, uint only, const SamplingMesh* mesh, Output* output,
+// Returns the cells that are left to ResampleCell.
+static __attribute__((noinline)) uint ResampleByIntegers(const Group* group, int x, int y, int z,
+  int odd, int border, uint only, const SamplingMesh* mesh, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
-  Outcome outcome; // all is decided
-  ResampleGroup(group, x, y, z, odd, 0, only, 1, mesh, output, &outcome, p ARRAY_ARGUMENTS);
+  Outcome outcome;
+  ResampleGroup(
+    group, x, y, z, odd, border, only, 1, mesh, output, found, &outcome, p ARRAY_ARGUMENTS);
+  return outcome.Unsure;
 }
 
 // A brick of cells. bricks: the numbers of those to work on, one a work-item.
@@ -833,6 +933,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
 {
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
   Output output = { coverage, winners, 0, 0, 0, 0, 0 };
+  Found found;
+  found.Count = 0;
   const uint brick = bricks[p.ListBegin + get_global_id(0)];
   // Cells of the brick, and the local x of its first place, which may lie before the volume.
   const int bx = brick % p.BrickCount[0] * DEFORMVOLUME_BRICK_X + p.BrickOrigin[0];
@@ -907,14 +1009,20 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
           uint again = (1u << LANES) - 1;
           if (!(specials & span))
           {
-            const Outcome outcome = ResampleByFloats(&group, x, y, z - 1, odd,
-              (borders & span) != 0, &mesh, &output, &p ARRAY_ARGUMENTS);
+            const int border = (borders & span) != 0;
+            const Outcome outcome = ResampleByFloats(
+              &group, x, y, z - 1, odd, border, &mesh, &output, &found, &p ARRAY_ARGUMENTS);
+            again = outcome.Unsure;
             if (outcome.Ambiguous)
             {
-              ResampleByIntegers(
-                &group, x, y, z - 1, odd, outcome.Ambiguous, &mesh, &output, &p ARRAY_ARGUMENTS);
+              again |= ResampleByIntegers(&group, x, y, z - 1, odd, border, outcome.Ambiguous, &mesh,
+                &output, &found, &p ARRAY_ARGUMENTS);
             }
-            again = outcome.Unsure;
+          }
+          if (again)
+          {
+            // These are written again.
+            StoreFound(&found, &group, x, y, z - 1, &output, &p ARRAY_ARGUMENTS);
           }
           FOR_EACH_LANE(lane, again)
           {
@@ -928,5 +1036,6 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
       }
     }
   }
+  StoreFound(&found, 0, 0, 0, 0, &output, &p ARRAY_ARGUMENTS);
   AddCounts(&output, brick, counters, &p);
 }

@@ -6,10 +6,12 @@
 // exactly one of them writes it:
 // - inside the mesh the one that holds the centre after a shift by (e, e^2, e^3) for an
 //   infinitesimal e > 0 (the top-left rule of triangle rasterisation in three dimensions);
-// - on the border of the mesh, where that one may be missing, the one that holds the centre after
+// - on the border of the volume, where all cells are there, the cell that has the simplex on its low sides,
+//   in the order of the lattice, or is the last one on an axis; of its tetrahedra the first;
+// - on the border of the mesh elsewhere, where any may be missing, the one that holds the centre after
 //   a shift by (+-e, +-e^2, +-e^3), whichever of the signs +++, -++, +-+, --+, ++-, ... comes first; if no
 //   shift leads into the mesh, the last one in the order of cells and tetrahedra.
-// Which of the two holds depends only on the simplex whose interior the centre lies in, so that
+// Which of the three holds depends only on the simplex whose interior the centre lies in, so that
 // all tetrahedra round it decide alike.
 //
 // Where the mesh folds over, several may write a voxel, and at the crease none. Further passes then
@@ -303,10 +305,52 @@ static int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int te
   return 1;
 }
 
-// Whether a tetrahedron of a cell writes the sample with these weights. interior: mask of the
-// cell's vertices that are interior.
+// The state of a cell's vertices, as masks.
+typedef struct
+{
+  int Interior;
+  int Regular; // all that surrounds these is there, but for what would lie beyond the volume
+} CellState;
+
+static CellState CellStateOf(
+  const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
+{
+  const int mirror = Mirror(x, y, z, p);
+  CellState cell = { 0, 0 };
+  for (int v = 0; v < 8; ++v)
+  {
+    const int o = v ^ mirror;
+    const int state = StateOf(mesh->State, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+    cell.Interior |= (state & DEFORMVOLUME_VERTEX_INTERIOR) ? 1 << v : 0;
+    cell.Regular |= (state & DEFORMVOLUME_VERTEX_REGULAR) ? 1 << v : 0;
+  }
+  return cell;
+}
+
+// The vertices on the low side of a cell on the axis of a bit of vertex numbers.
+#define LOW_SIDE(axis, mirror) (LOW_VERTICES(axis) ^ ((mirror) >> (axis)&1 ? 255 : 0))
+#define LOW_VERTICES(axis) ((axis) == 0 ? 0x55 : (axis) == 1 ? 0x33 : 0x0f)
+
+// Whether a tetrahedron of a cell owns a simplex on the border of the volume, where all cells are there.
+static int IsOwnerInLattice(
+  int x, int y, int z, int tetrahedron, int simplex, const KernelParameters* p)
+{
+  for (int before = 0; before < tetrahedron; ++before)
+  {
+    if ((simplex & VerticesOf(before)) == simplex)
+    {
+      return 0;
+    }
+  }
+  const int mirror = Mirror(x, y, z, p);
+  return ((simplex & LOW_SIDE(0, mirror)) || x == p->Size[0] - 2) &&
+    ((simplex & LOW_SIDE(1, mirror)) || z == p->Size[2] - 2) &&
+    ((simplex & LOW_SIDE(2, mirror)) || y == p->Size[1] - 2);
+}
+
+// Whether a tetrahedron of a cell writes the sample with these weights.
 static int IsOwner(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron, const long* weights,
-  const EdgeFunctions* f, int interior, const KernelParameters* p)
+  const EdgeFunctions* f, CellState state, const KernelParameters* p)
 {
   int simplex = 0;
   int inside = 1;
@@ -329,9 +373,13 @@ static int IsOwner(const SamplingMesh* mesh, int x, int y, int z, int tetrahedro
   {
     return 1; // the winner is chosen by its key
   }
-  if ((weights[0] && weights[1] && weights[2] && weights[3]) || (simplex & interior))
+  if ((weights[0] && weights[1] && weights[2] && weights[3]) || (simplex & state.Interior))
   {
     return inside;
+  }
+  if ((simplex & state.Regular) == simplex)
+  {
+    return IsOwnerInLattice(x, y, z, tetrahedron, simplex, p);
   }
   return IsOwnerOnBorder(mesh, x, y, z, tetrahedron, simplex, f, p);
 }

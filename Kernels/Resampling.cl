@@ -188,7 +188,7 @@ static Vector SamplePosition(Vector voxel)
 // A cell whose tetrahedra are all there and upright: a sample behind no face of the central
 // tetrahedron is in it, and a corner tetrahedron holds only samples behind its face.
 static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, const Vector* q,
-  int interior, Candidates c, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+  CellState state, Candidates c, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const EdgeFunctions central = MakeEdgeFunctions(
     q[Tetrahedra[4][0]], q[Tetrahedra[4][1]], q[Tetrahedra[4][2]], q[Tetrahedra[4][3]]);
@@ -198,7 +198,7 @@ static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, c
     const Vector sample = SamplePosition(voxel);
     long behind[4];
     Evaluate(&central, sample, behind);
-    if (IsOwner(mesh, x, y, z, 4, behind, &central, interior, p))
+    if (IsOwner(mesh, x, y, z, 4, behind, &central, state, p))
     {
       Write(x, y, z, 4, behind, central.Volume, 0, voxel, output, p ARRAY_ARGUMENTS);
       continue;
@@ -214,7 +214,7 @@ static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, c
         q[Tetrahedra[t][0]], q[Tetrahedra[t][1]], q[Tetrahedra[t][2]], q[Tetrahedra[t][3]]);
       long weights[4];
       Evaluate(&corner, sample, weights);
-      if (IsOwner(mesh, x, y, z, t, weights, &corner, interior, p))
+      if (IsOwner(mesh, x, y, z, t, weights, &corner, state, p))
       {
         Write(x, y, z, t, weights, corner.Volume, 0, voxel, output, p ARRAY_ARGUMENTS);
         break;
@@ -225,7 +225,7 @@ static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, c
 
 // Any cell: each tetrahedron on its own. The lowest one last, because the last one to write wins.
 static void ResampleTetrahedra(const SamplingMesh* mesh, int x, int y, int z, const Vector* q,
-  const long* determinants, int tetrahedra, int inverted, int interior, Output* output,
+  const long* determinants, int tetrahedra, int inverted, CellState state, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   for (int t = 4; t >= 0; --t)
@@ -250,7 +250,7 @@ static void ResampleTetrahedra(const SamplingMesh* mesh, int x, int y, int z, co
     {
       long weights[4];
       Evaluate(&f, SamplePosition(voxel), weights);
-      if (IsOwner(mesh, x, y, z, t, weights, &f, interior, p))
+      if (IsOwner(mesh, x, y, z, t, weights, &f, state, p))
       {
         Write(x, y, z, t, weights, f.Volume, inverted >> t & 1, voxel, output, p ARRAY_ARGUMENTS);
       }
@@ -269,14 +269,8 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
   {
     return;
   }
-  int interior = 0;
   const int mirror = Mirror(x, y, z, p);
-  for (int v = 0; v < 8; ++v)
-  {
-    const int o = v ^ mirror;
-    const int state = StateOf(mesh->State, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
-    interior |= (state & DEFORMVOLUME_VERTEX_INTERIOR) ? 1 << v : 0;
-  }
+  const CellState state = CellStateOf(mesh, x, y, z, p);
   // Orientations, against the one that the parity of the cell asks for.
   const int odd = (mirror ^ mirror >> 1 ^ mirror >> 2) & 1;
   long determinants[5];
@@ -311,7 +305,8 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
     missing |= determinants[t] == 0;
   }
   output->Inverted += popcount(inverted);
-  output->Missing += missing && interior != 255;
+  output->Missing += missing && state.Interior != 255;
+  output->Assumed |= (state.Regular & ~state.Interior) != 0;
   if (regular)
   {
     Vector low = q[0];
@@ -323,15 +318,15 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
     }
     // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
     const Candidates c = FindCandidates(
-      low, high, interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT, p);
+      low, high, state.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT, p);
     if (!IsEmpty(c))
     {
-      ResampleUprightCell(mesh, x, y, z, q, interior, c, output, p ARRAY_ARGUMENTS);
+      ResampleUprightCell(mesh, x, y, z, q, state, c, output, p ARRAY_ARGUMENTS);
     }
   }
   else
   {
-    ResampleTetrahedra(mesh, x, y, z, q, determinants, tetrahedra, inverted, interior, output,
+    ResampleTetrahedra(mesh, x, y, z, q, determinants, tetrahedra, inverted, state, output,
       p ARRAY_ARGUMENTS);
   }
 }

@@ -298,9 +298,10 @@ static uint SelectSources(
   }
 #define STORE_VALUES(NUMBER, TYPE, COMPONENTS) STORE_ARRAY_##NUMBER
 
-static void SampleTile(VoxelBox tile, const int* origin, __local const int* rests,
-  __local const uint* covered, __global const ulong* backgrounds, __global char* coverage,
-  const RasterParameters* p ARRAY_PARAMETERS)
+// Always inlined: PoCL 3.1, with 16 lanes and four arrays, writes nothing where it is called.
+static __attribute__((always_inline)) void SampleTile(VoxelBox tile, const int* origin,
+  __local const int* rests, __local const uint* covered, __global const ulong* backgrounds,
+  __global char* coverage, const RasterParameters* p ARRAY_PARAMETERS)
 {
   for (int chunk = get_local_id(0); chunk < DEFORMVOLUME_TILE_VOXELS / CHUNK;
        chunk += get_local_size(0))

@@ -29,11 +29,12 @@ typedef struct
 
 static RunDisplacement MakeRunDisplacement(__global const TetrahedronRecord* record, int y, int z)
 {
+  // The fourth component is whatever follows in the record.
   RunDisplacement run;
-  run.Displacement = (float4)(vload3(0, record->Displacement), 0.0f);
-  run.AlongX = (float4)(vload3(0, record->AlongX), 0.0f);
-  run.Across = (float4)(vload3(0, record->AlongY), 0.0f) * ((float)y - record->Origin[1]) +
-    (float4)(vload3(0, record->AlongZ), 0.0f) * ((float)z - record->Origin[2]);
+  run.Displacement = vload4(0, record->Displacement);
+  run.AlongX = vload4(0, record->AlongX);
+  run.Across = vload4(0, record->AlongY) * ((float)y - record->Origin[1]) +
+    vload4(0, record->AlongZ) * ((float)z - record->Origin[2]);
   run.OriginX = record->Origin[0];
   return run;
 }
