@@ -263,12 +263,12 @@ public:
 
   ///@{
   /**
-   * Whether an update resamples only the bricks of the volume (64 x 16 x 16 cells) whose nodes
-   * moved or whose masks changed, and those that overlap them in the output. The result is the same
-   * to the last bit. Needs the resampler EXACT, a processor as device, and an output of the same
-   * extent as the last one; all is resampled where that is not so, where more than 60 % would have
-   * to be, where the volume's arrays changed, where the volume is folded over, and after an abort
-   * or an error. Default: on.
+   * Whether an update resamples only the bricks of the volume (64 x 16 x 16 cells, or halves of
+   * these) whose nodes moved or whose masks changed, and those that overlap them in the output. The
+   * result is the same to the last bit. Needs the resampler EXACT, a processor as device, and an
+   * output of the same extent as the last one; all is resampled where that is not so, where more
+   * than 60 % would have to be, where the volume's arrays changed, where the volume is folded over,
+   * and after an abort or an error. Default: on.
    */
   vtkSetMacro(Incremental, bool);
   vtkGetMacro(Incremental, bool);
@@ -348,8 +348,8 @@ public:
 
   ///@{
   /**
-   * Bricks of 64 x 16 x 16 cells that the volume has, and how many of them the last execution
-   * resampled; 0 with MESH_RASTERIZATION, which knows no bricks.
+   * Bricks of 64 x 16 x 16 cells that the volume has, and of how many of them the last execution
+   * resampled all or a part; 0 with MESH_RASTERIZATION, which knows no bricks.
    */
   vtkGetMacro(NumberOfBricks, vtkIdType);
   vtkGetMacro(NumberOfResampledBricks, vtkIdType);

@@ -13,8 +13,8 @@ namespace
 {
 
 constexpr int PartSize[3] = { 16, 8, 8 };
-static_assert(DEFORMVOLUME_BRICK_X % PartSize[0] == 0 && DEFORMVOLUME_BRICK_Y % PartSize[1] == 0 &&
-    DEFORMVOLUME_BRICK_Z % PartSize[2] == 0,
+static_assert(DEFORMVOLUME_BRICK_X / 2 % PartSize[0] == 0 &&
+    DEFORMVOLUME_BRICK_Y / 2 % PartSize[1] == 0 && DEFORMVOLUME_BRICK_Z / 2 % PartSize[2] == 0,
   "bricks are made of parts");
 
 // What a brick's vertices are found to need.
@@ -50,19 +50,23 @@ BrickGrid BrickGrid::GetParts() const
   return parts;
 }
 
-std::size_t BrickGrid::GetBrick(const BrickGrid& parts, std::size_t part) const
+std::pair<std::size_t, std::uint32_t> BrickGrid::GetBrick(
+  const BrickGrid& parts, std::size_t part) const
 {
   std::size_t brick = 0;
   std::size_t stride = 1;
+  std::uint32_t halves = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
     const auto count = static_cast<std::size_t>(parts.Count[axis]);
-    const auto place = static_cast<int>(part % count);
-    brick += stride * static_cast<std::size_t>(place * parts.Cells[axis] / this->Cells[axis]);
+    const int cell = static_cast<int>(part % count) * parts.Cells[axis];
+    const bool upper = cell % this->Cells[axis] >= this->Cells[axis] / 2;
+    halves |= (upper ? 2U : 1U) << 2 * axis;
+    brick += stride * static_cast<std::size_t>(cell / this->Cells[axis]);
     part /= count;
     stride *= static_cast<std::size_t>(this->Count[axis]);
   }
-  return brick;
+  return { brick, halves };
 }
 
 Extent BrickGrid::GetVertices(std::size_t brick, int reach) const

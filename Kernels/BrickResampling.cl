@@ -722,9 +722,9 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
       const INTS inner = state.Interior == 255;
       box &= there & (inner | ((state.Regular == 255) & RISES(X, 1) & RISES(Z, 2) & RISES(Y, 4)));
       output->Assumed |= LaneBits(box & ~inner) != 0;
-      toEndX = box & (cellX != p->Size[0] - 2) ? ALMOST_ONE : toEndX;
-      toEndY = box & (INTS)(y != p->Size[1] - 2 ? -1 : 0) ? ALMOST_ONE : toEndY;
-      toEndZ = box & (INTS)(z != p->Size[2] - 2 ? -1 : 0) ? ALMOST_ONE : toEndZ;
+      toEndX = (box & (cellX != p->Size[0] - 2)) ? ALMOST_ONE : toEndX;
+      toEndY = (box & (INTS)(y != p->Size[1] - 2 ? -1 : 0)) ? ALMOST_ONE : toEndY;
+      toEndZ = (box & (INTS)(z != p->Size[2] - 2 ? -1 : 0)) ? ALMOST_ONE : toEndZ;
     }
   }
 #define FIRST_OF(low, size) TO_INTS(Least(Most(low, 0.0f), (float)(size)) + ALMOST_ONE)
@@ -924,28 +924,49 @@ static __attribute__((noinline)) uint ResampleByIntegers(const Group* group, int
   return outcome.Unsure;
 }
 
-// A brick of cells. bricks: the numbers of those to work on, one a work-item.
-// rows: 4 HALF_ROW + 3 ROW_PLACES + 2 ROWS ROW floats (GetBrickMemory).
+// The cells of a brick on an axis that a work-item takes: from 0 or the middle to the middle or the end.
+static int BeginIn(uint item, int axis, int cells)
+{
+  return item >> (DEFORMVOLUME_BRICK_BITS + 2 * axis) & 1 ? 0 : cells / 2;
+}
+
+static int EndIn(uint item, int axis, int cells)
+{
+  return item >> (DEFORMVOLUME_BRICK_BITS + 2 * axis) & 2 ? cells : cells / 2;
+}
+
+// A brick of cells, or half of it on some axes. bricks: those to work on, one a work-item
+// (DEFORMVOLUME_BRICK_BITS). rows: 4 HALF_ROW + 3 ROW_PLACES + 2 ROWS ROW floats (GetBrickMemory).
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
   __global const uchar* state, __global const uchar* active, __global char* coverage,
   __global KEY* winners, __global uint* counters, __global const uint* bricks, __local float* rows,
   const KernelParameters p ARRAY_PARAMETERS)
 {
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
-  Output output = { coverage, winners, 0, 0, 0, 0, 0 };
+  Output outputs[8]; // of the octants
+  for (int octant = 0; octant < 8; ++octant)
+  {
+    const Output output = { coverage, winners, 0, 0, 0, 0, 0 };
+    outputs[octant] = output;
+  }
   Found found;
   found.Count = 0;
-  const uint brick = bricks[p.ListBegin + get_global_id(0)];
+  const uint item = bricks[p.ListBegin + get_global_id(0)];
+  const uint brick = item & ((1u << DEFORMVOLUME_BRICK_BITS) - 1);
   // Cells of the brick, and the local x of its first place, which may lie before the volume.
   const int bx = brick % p.BrickCount[0] * DEFORMVOLUME_BRICK_X + p.BrickOrigin[0];
   const int by = brick / p.BrickCount[0] % p.BrickCount[1] * DEFORMVOLUME_BRICK_Y + p.BrickOrigin[1];
   const int bz = brick / p.BrickCount[0] / p.BrickCount[1] * DEFORMVOLUME_BRICK_Z + p.BrickOrigin[2];
-  const int beginX = max(bx, 0);
-  const int endX = min(bx + DEFORMVOLUME_BRICK_X, p.Size[0] - 1);
-  const int beginY = max(by, 0);
-  const int endY = min(by + DEFORMVOLUME_BRICK_Y, p.Size[1] - 1);
-  const int beginZ = max(bz, p.LayersBegin);
-  const int endZ = min(bz + DEFORMVOLUME_BRICK_Z, p.LayersEnd);
+  const int beginX = max(bx + BeginIn(item, 0, DEFORMVOLUME_BRICK_X), 0);
+  const int endX = min(bx + EndIn(item, 0, DEFORMVOLUME_BRICK_X), p.Size[0] - 1);
+  const int beginY = max(by + BeginIn(item, 1, DEFORMVOLUME_BRICK_Y), 0);
+  const int endY = min(by + EndIn(item, 1, DEFORMVOLUME_BRICK_Y), p.Size[1] - 1);
+  const int beginZ = max(bz + BeginIn(item, 2, DEFORMVOLUME_BRICK_Z), p.LayersBegin);
+  const int endZ = min(bz + EndIn(item, 2, DEFORMVOLUME_BRICK_Z), p.LayersEnd);
+  if (beginX >= endX || beginY >= endY || beginZ >= endZ)
+  {
+    return;
+  }
 
   // The undeformed x of the brick's vertices: for even, then odd ones, whole 1/256 voxels relative to
   // the output, and fractions.
@@ -994,6 +1015,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
       for (int k = (beginX - bx) >> 1 & ~(LANES - 1); bx + 2 * k < endX; k += LANES)
       {
         const uint span = ((2u << (2 * LANES / 8)) - 1) << (k >> 2);
+        Output* const output = outputs + (k >= DEFORMVOLUME_BRICK_X / 4) +
+          2 * (low >= DEFORMVOLUME_BRICK_Y / 2) + 4 * (z - 1 - bz >= DEFORMVOLUME_BRICK_Z / 2);
         for (int side = 0; side < 2; ++side)
         {
           Group group;
@@ -1011,31 +1034,34 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
           {
             const int border = (borders & span) != 0;
             const Outcome outcome = ResampleByFloats(
-              &group, x, y, z - 1, odd, border, &mesh, &output, &found, &p ARRAY_ARGUMENTS);
+              &group, x, y, z - 1, odd, border, &mesh, output, &found, &p ARRAY_ARGUMENTS);
             again = outcome.Unsure;
             if (outcome.Ambiguous)
             {
               again |= ResampleByIntegers(&group, x, y, z - 1, odd, border, outcome.Ambiguous, &mesh,
-                &output, &found, &p ARRAY_ARGUMENTS);
+                output, &found, &p ARRAY_ARGUMENTS);
             }
           }
           if (again)
           {
             // These are written again.
-            StoreFound(&found, &group, x, y, z - 1, &output, &p ARRAY_ARGUMENTS);
+            StoreFound(&found, &group, x, y, z - 1, output, &p ARRAY_ARGUMENTS);
           }
           FOR_EACH_LANE(lane, again)
           {
             const int cell = x + 2 * lane;
             if (cell >= beginX && cell < endX)
             {
-              ResampleCell(&mesh, cell, y, z - 1, &output, &p ARRAY_ARGUMENTS);
+              ResampleCell(&mesh, cell, y, z - 1, output, &p ARRAY_ARGUMENTS);
             }
           }
         }
       }
     }
   }
-  StoreFound(&found, 0, 0, 0, 0, &output, &p ARRAY_ARGUMENTS);
-  AddCounts(&output, brick, counters, &p);
+  StoreFound(&found, 0, 0, 0, 0, outputs, &p ARRAY_ARGUMENTS);
+  for (int octant = 0; octant < 8; ++octant)
+  {
+    AddCounts(outputs + octant, 8 * (size_t)brick + octant, counters, &p);
+  }
 }

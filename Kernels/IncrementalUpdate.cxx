@@ -187,24 +187,25 @@ void IncrementalUpdate::ChangeMask(
 bool IncrementalUpdate::MakePlan(const float* displacements, Plan& plan)
 {
   const std::size_t parts = this->Grid.GetNumberOfBricks();
-  std::vector<unsigned char> run(this->Bricks.GetNumberOfBricks());
+  std::vector<unsigned char> run(this->Bricks.GetNumberOfBricks()); // halves of bricks
   for (std::size_t part = 0; part < parts; ++part)
   {
     if (this->IsChanged(part))
     {
-      run[this->Bricks.GetBrick(this->Grid, part)] = 1;
+      const auto [brick, halves] = this->Bricks.GetBrick(this->Grid, part);
+      run[brick] |= halves;
     }
   }
   const auto isTooMuch = [](const std::vector<unsigned char>& marked)
   {
-    return static_cast<double>(std::count(marked.begin(), marked.end(), 1)) >
+    return static_cast<double>(marked.size() - std::count(marked.begin(), marked.end(), 0)) >
       LargestPart * static_cast<double>(marked.size());
   };
   if (isTooMuch(run))
   {
     return false;
   }
-  if (std::count(run.begin(), run.end(), 1) == 0)
+  if (std::all_of(run.begin(), run.end(), [](unsigned char halves) { return halves == 0; }))
   {
     return true;
   }
@@ -260,22 +261,27 @@ bool IncrementalUpdate::MakePlan(const float* displacements, Plan& plan)
   const auto isDirty = [](unsigned char patch) { return patch != 0; };
   for (std::size_t part = 0; part < parts; ++part)
   {
-    unsigned char& brick = run[this->Bricks.GetBrick(this->Grid, part)];
-    brick = brick || anyOf(this->Boxes[part], isDirty) ? 1 : 0;
-  }
-  const auto list = [](
-                      const std::vector<unsigned char>& marked, std::vector<std::uint32_t>& numbers)
-  {
-    for (std::size_t i = 0; i < marked.size(); ++i)
+    const auto [brick, halves] = this->Bricks.GetBrick(this->Grid, part);
+    if ((run[brick] & halves) != halves && anyOf(this->Boxes[part], isDirty))
     {
-      if (marked[i])
-      {
-        numbers.push_back(static_cast<std::uint32_t>(i));
-      }
+      run[brick] |= halves;
     }
-  };
-  list(dirty, plan.Patches);
-  list(run, plan.Bricks);
+  }
+  for (std::size_t patch = 0; patch < dirty.size(); ++patch)
+  {
+    if (dirty[patch])
+    {
+      plan.Patches.push_back(static_cast<std::uint32_t>(patch));
+    }
+  }
+  for (std::size_t brick = 0; brick < run.size(); ++brick)
+  {
+    if (run[brick])
+    {
+      plan.Bricks.push_back(
+        static_cast<std::uint32_t>(brick | std::uint32_t{ run[brick] } << DEFORMVOLUME_BRICK_BITS));
+    }
+  }
   return !isTooMuch(dirty) && !isTooMuch(run);
 }
 

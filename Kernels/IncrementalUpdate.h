@@ -17,16 +17,16 @@ namespace deformvolume
 /// A part of a brick of cells changes when a point that moves its vertices does, or a mask near it.
 /// All that it wrote, and all that it will write, lies within a box: its box at rest, widened by
 /// the least and the greatest displacement of its points. Patches of the output that the boxes of
-/// changed parts touch, before or after the change, are cleared, and all bricks with a part whose
-/// box touches such a patch are run, wholly: what they write outside these patches they wrote
-/// before, since nobody else writes there.
+/// changed parts touch, before or after the change, are cleared, and of all bricks with a part
+/// whose box touches such a patch the halves that these parts lie in are run: what they write
+/// outside these patches they wrote before, since nobody else writes there.
 class IncrementalUpdate
 {
 public:
   /// What there is to do.
   struct Plan
   {
-    std::vector<std::uint32_t> Bricks;
+    std::vector<std::uint32_t> Bricks;  // as DEFORMVOLUME_BRICK_BITS says
     std::vector<std::uint32_t> Patches; // counted along x, then y, then z
   };
 

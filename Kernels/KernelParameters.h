@@ -76,6 +76,11 @@ typedef struct
 #define DEFORMVOLUME_BRICK_Y 16
 #define DEFORMVOLUME_BRICK_Z 16
 
+// What a work-item of the kernel ResampleBricks takes: the number of a brick, and above that for x,
+// y and z a bit for the lower half of the brick and one for the upper half.
+#define DEFORMVOLUME_BRICK_BITS 26
+#define DEFORMVOLUME_WHOLE_BRICK 63
+
 // Cells of a block, whose vertices a work-group of the kernel Resample maps into local memory.
 #define DEFORMVOLUME_BLOCK_X 64
 #define DEFORMVOLUME_BLOCK_Y 4
@@ -84,7 +89,7 @@ typedef struct
 #define DEFORMVOLUME_BLOCK_VERTICES                                                                \
   ((DEFORMVOLUME_BLOCK_X + 1) * (DEFORMVOLUME_BLOCK_Y + 1) * (DEFORMVOLUME_BLOCK_Z + 1))
 
-// Counters of a brick of cells.
+// Counters of an octant of a brick of cells; a brick has eight.
 #define DEFORMVOLUME_COUNT_WRITES 0
 #define DEFORMVOLUME_COUNT_INVERTED 1
 #define DEFORMVOLUME_COUNT_OVERSTRETCHED 2

@@ -15,6 +15,8 @@ namespace deformvolume
 namespace
 {
 
+constexpr std::size_t OctantsPerBrick = 8;
+
 template <typename T>
 using BitsOf = std::conditional_t<sizeof(T) == 1, cl_uchar,
   std::conditional_t<sizeof(T) == 2, cl_ushort,
@@ -232,8 +234,17 @@ std::uint64_t OutputSlab::PreparePatches(OpenCLContext& context, const cl::Comma
   const MappedBuffer<cl_uint> counters(queue, this->Counters, CL_MAP_READ | CL_MAP_WRITE);
   for (const cl_uint brick : bricks)
   {
-    std::fill_n(counters.Get() + std::size_t{ brick } * DEFORMVOLUME_COUNTERS,
-      DEFORMVOLUME_COUNTERS, cl_uint{ 0 });
+    const std::size_t number = brick & ((1U << DEFORMVOLUME_BRICK_BITS) - 1);
+    for (std::size_t octant = 0; octant < OctantsPerBrick; ++octant)
+    {
+      const auto isIn = [&](unsigned axis)
+      { return brick >> (DEFORMVOLUME_BRICK_BITS + 2 * axis + (octant >> axis & 1)) & 1; };
+      if (isIn(0) && isIn(1) && isIn(2))
+      {
+        std::fill_n(counters.Get() + (OctantsPerBrick * number + octant) * DEFORMVOLUME_COUNTERS,
+          DEFORMVOLUME_COUNTERS, cl_uint{ 0 });
+      }
+    }
   }
   return covered;
 }
@@ -280,8 +291,8 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
       this->NumberOfVoxels * static_cast<std::uint64_t>(array.Components), events);
   }
   this->Clear(context, this->Coverage, 0.0, ElementType::Int8, this->NumberOfVoxels, events);
-  this->NumberOfBricks = numberOfBricks;
-  const std::uint64_t counters = this->NumberOfBricks * DEFORMVOLUME_COUNTERS;
+  this->NumberOfOctants = OctantsPerBrick * numberOfBricks;
+  const std::uint64_t counters = this->NumberOfOctants * DEFORMVOLUME_COUNTERS;
   Reserve(context, this->Counters, counters * sizeof(cl_uint));
   Fill(context, this->Queue, this->Counters, cl_uint{ 0 }, counters, events);
 }
@@ -315,15 +326,15 @@ std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::E
 
 OutputSlab::Counts OutputSlab::ReadCounts()
 {
-  std::vector<cl_uint> counters(this->NumberOfBricks * DEFORMVOLUME_COUNTERS);
+  std::vector<cl_uint> counters(this->NumberOfOctants * DEFORMVOLUME_COUNTERS);
   this->Queue.enqueueReadBuffer(
     this->Counters, CL_TRUE, 0, counters.size() * sizeof(cl_uint), counters.data());
   Counts counts;
   std::uint64_t missing = 0;
   std::uint64_t assumed = 0;
-  for (std::size_t brick = 0; brick < this->NumberOfBricks; ++brick)
+  for (std::size_t octant = 0; octant < this->NumberOfOctants; ++octant)
   {
-    const cl_uint* counter = counters.data() + brick * DEFORMVOLUME_COUNTERS;
+    const cl_uint* counter = counters.data() + octant * DEFORMVOLUME_COUNTERS;
     counts.Writes += counter[DEFORMVOLUME_COUNT_WRITES];
     counts.Inverted += counter[DEFORMVOLUME_COUNT_INVERTED];
     counts.Overstretched += counter[DEFORMVOLUME_COUNT_OVERSTRETCHED];

@@ -331,9 +331,10 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
   }
 }
 
-// Adds the counts of a work-item to those of a brick of cells.
+// Adds counts to those of an octant of a brick of cells: octant number 8 brick + 4 (upper z) + 2 (upper y) +
+// (upper x).
 static void AddCounts(
-  const Output* output, uint brick, __global uint* counters, const KernelParameters* p)
+  const Output* output, size_t octant, __global uint* counters, const KernelParameters* p)
 {
   if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
   {
@@ -345,7 +346,7 @@ static void AddCounts(
   {
     if (counts[i])
     {
-      atomic_add(counters + brick * DEFORMVOLUME_COUNTERS + i, counts[i]);
+      atomic_add(counters + octant * DEFORMVOLUME_COUNTERS + i, counts[i]);
     }
   }
 }
@@ -393,5 +394,5 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   const uint brick = ((uint)(first[2] - p.BrickOrigin[2]) / DEFORMVOLUME_BRICK_Z * p.BrickCount[1] +
                        (uint)(first[1] - p.BrickOrigin[1]) / DEFORMVOLUME_BRICK_Y) *
     p.BrickCount[0];
-  AddCounts(&output, brick, counters, &p);
+  AddCounts(&output, 8 * (size_t)brick, counters, &p);
 }

@@ -348,7 +348,8 @@ void VolumeDeformer::Internals::RunBricks(
   output.SetParameters(p);
   // As many in a launch as there are when all are run.
   const std::size_t step = static_cast<std::size_t>(p.BrickCount[0]) *
-    static_cast<std::size_t>(p.BrickCount[1]) * (LayersPerLaunch / DEFORMVOLUME_BRICK_Z);
+    static_cast<std::size_t>(p.BrickCount[1]) *
+    static_cast<std::size_t>(this->GetLayersPerLaunch() / DEFORMVOLUME_BRICK_Z);
   this->LaunchesExpected = this->LaunchesDone + (bricks.size() + step - 1) / step;
   cl::Event previous;
   for (std::size_t begin = 0; begin < bricks.size(); begin += step)
@@ -367,7 +368,12 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
   if (lanes)
   {
     std::vector<cl_uint> bricks(this->Mesh->GetNumberOfBricks());
-    std::iota(bricks.begin(), bricks.end(), 0U);
+    if (bricks.size() >> DEFORMVOLUME_BRICK_BITS)
+    {
+      throw Error("The volume has more than 10^12 voxels. Use a smaller volume.");
+    }
+    std::iota(
+      bricks.begin(), bricks.end(), cl_uint{ DEFORMVOLUME_WHOLE_BRICK } << DEFORMVOLUME_BRICK_BITS);
     this->Bricks = this->SendBuffer(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
   }
   cl::Event previous;
@@ -377,7 +383,8 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
     {
       KernelParameters p = this->Mesh->GetParameters(chunk);
       // Launches end where bricks do.
-      const int step = LayersPerLaunch - (begin - p.BrickOrigin[2]) % DEFORMVOLUME_BRICK_Z;
+      const int step =
+        this->GetLayersPerLaunch() - (begin - p.BrickOrigin[2]) % DEFORMVOLUME_BRICK_Z;
       p.LayersBegin = begin;
       p.LayersEnd = std::min(begin + step, chunk.LayersEnd);
       p.Pass = pass;
@@ -462,9 +469,21 @@ bool VolumeDeformer::Internals::RunSlab(
   return !folded;
 }
 
+int VolumeDeformer::Internals::GetLayersPerLaunch() const
+{
+  constexpr std::int64_t cells = 1 << 23;
+  constexpr std::int64_t leastBricks = 2;
+  const std::int64_t layer = std::int64_t{ this->Mesh->GetSize(0) } * this->Mesh->GetSize(1);
+  const std::int64_t bricks = (cells / layer + DEFORMVOLUME_BRICK_Z - 1) / DEFORMVOLUME_BRICK_Z;
+  const std::int64_t mostBricks = this->Mesh->GetSize(2) / DEFORMVOLUME_BRICK_Z + 1;
+  return static_cast<int>(std::clamp(bricks, leastBricks, std::max(mostBricks, leastBricks))) *
+    DEFORMVOLUME_BRICK_Z;
+}
+
 std::size_t VolumeDeformer::Internals::GetNumberOfLaunches() const
 {
-  return static_cast<std::size_t>((this->Mesh->GetSize(2) + LayersPerLaunch - 1) / LayersPerLaunch);
+  const int layers = this->GetLayersPerLaunch();
+  return static_cast<std::size_t>((this->Mesh->GetSize(2) + layers - 1) / layers);
 }
 
 void VolumeDeformer::Internals::DeformSlabs(

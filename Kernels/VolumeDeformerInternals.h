@@ -16,9 +16,6 @@
 namespace deformvolume
 {
 
-/// Cell layers in a launch, whole bricks of them: few enough that progress is reported.
-constexpr int LayersPerLaunch = 2 * DEFORMVOLUME_BRICK_Z;
-
 /// Throws an Error that names the bytes where there are too few.
 void CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where);
 
@@ -98,6 +95,9 @@ public:
   /// Waits for the launch before the last one, so that the device always has work, and reports.
   void ReportLaunch(const DeformRequest& request, cl::Event& previous);
   std::size_t GetGroupSize(const cl::Kernel& kernel) const;
+  /// Cell layers in a launch, whole bricks of them: few enough that progress is reported, and
+  /// enough that processors are not kept waiting at its end.
+  int GetLayersPerLaunch() const;
   std::size_t GetNumberOfLaunches() const;
   /// False where a winner had to be chosen.
   bool RunSlab(const DeformRequest& request, OutputSlab& output, bool first, DeformReport& report);
