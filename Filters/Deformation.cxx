@@ -85,25 +85,33 @@ void Deformation::ReadMesh(const DeformationSource& source)
   {
     return;
   }
-  std::vector<glm::dvec3> vectors;
+  const std::size_t count = GetNumberOfNodes(shape);
   if (source.Rest)
   {
-    vectors = ReadPoints(shape, MESH);
+    std::vector<glm::dvec3> vectors = ReadPoints(shape, MESH);
     const std::vector<glm::dvec3> start = ReadPoints(rest, REST);
-    ParallelFor(0, static_cast<vtkIdType>(vectors.size()), 0,
-      [&](vtkIdType begin, vtkIdType end)
-      {
-        for (vtkIdType i = begin; i < end; ++i)
+    const auto read = [&](const VectorTaker& take)
+    {
+      ParallelFor(0, static_cast<vtkIdType>(count), 0,
+        [&](vtkIdType begin, vtkIdType end)
         {
-          vectors[i] -= start[i];
-        }
-      });
+          for (vtkIdType i = begin; i < end; ++i)
+          {
+            vectors[i] -= start[i];
+          }
+          take(begin, vectors.data() + begin, end - begin);
+        });
+    };
+    this->SetVectors(count, read, 1.0, source);
   }
   else
   {
-    vectors = ReadPointVectors(shape, source.Selector, source.Wanted, MESH);
+    this->SetVectors(
+      count,
+      [&](const VectorTaker& take)
+      { ReadPointVectors(shape, source.Selector, source.Wanted, MESH, take); },
+      source.DisplacementScale, source);
   }
-  this->SetVectors(std::move(vectors), source.Rest ? 1.0 : source.DisplacementScale, source);
   this->Field = false;
   this->VectorsStamp = stamp;
 }
@@ -181,9 +189,10 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   const ImageGeometry geometry = GetGeometry(image);
   CheckTransform(geometry, "the displacement field on input port 1");
   vtkDataArray* array = FindVectors(image, source.Selector, source.Wanted, FIELD);
-  std::vector<glm::dvec3> vectors(static_cast<std::size_t>(image->GetNumberOfPoints()));
-  ReadVectors(array, vectors.data(), "Vector", FIELD);
-  this->SetVectors(std::move(vectors), source.DisplacementScale, source);
+  this->SetVectors(
+    static_cast<std::size_t>(image->GetNumberOfPoints()),
+    [&](const VectorTaker& take) { ReadVectors(array, take, "Vector", FIELD); },
+    source.DisplacementScale, source);
 
   image->GetDimensions(this->FieldDimensions.data());
   const glm::dmat4 toField = geometry.GetWorldToIndex() * source.Volume.GetIndexToWorld();
@@ -208,22 +217,24 @@ bool Deformation::VectorsAreCurrent(
     source.Scale == last.Scale;
 }
 
-void Deformation::SetVectors(
-  std::vector<glm::dvec3>&& vectors, double factor, const DeformationSource& source)
+void Deformation::SetVectors(std::size_t count, const std::function<void(const VectorTaker&)>& read,
+  double factor, const DeformationSource& source)
 {
   // Whatever fails from here on, the vectors are not those of any source.
   this->VectorsStamp.clear();
+  ++this->VectorsVersion;
   glm::dmat3 transform(source.Volume.GetWorldToIndex());
   for (int column = 0; column < 3; ++column)
   {
     transform[column] *= source.Scale * factor;
   }
-  this->Vectors.resize(3 * vectors.size());
+  this->Vectors.resize(3 * count);
   std::atomic<bool> tooFar{ false };
-  ParallelFor(0, static_cast<vtkIdType>(vectors.size()), 0,
-    [&](vtkIdType begin, vtkIdType end)
+  read(
+    [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType number)
     {
-      for (vtkIdType i = begin; i < end; ++i)
+      float* next = this->Vectors.data() + 3 * first;
+      for (vtkIdType i = 0; i < number; ++i)
       {
         const glm::dvec3 vector = transform * vectors[i];
         for (int axis = 0; axis < 3; ++axis)
@@ -234,11 +245,10 @@ void Deformation::SetVectors(
             tooFar = true;
             return;
           }
-          this->Vectors[3 * i + axis] = static_cast<float>(vector[axis]);
+          *next++ = static_cast<float>(vector[axis]);
         }
       }
     });
-  ++this->VectorsVersion;
   if (tooFar)
   {
     throw Error("The deformation moves the volume by more than 16,383 output voxels. Check "

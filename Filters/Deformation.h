@@ -4,9 +4,11 @@
 
 #include "DeformationMesh.h"
 #include "ImageGeometry.h"
+#include "VectorArray.h"
 #include "VolumeDeformer.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -67,8 +69,9 @@ private:
   void ReadRestPoints(const MeshParts& rest, const DeformationSource& source);
   void ReadField(vtkImageData* image, const DeformationSource& source);
   bool VectorsAreCurrent(const Stamp& stamp, const DeformationSource& source, bool field) const;
-  void SetVectors(
-    std::vector<glm::dvec3>&& vectors, double factor, const DeformationSource& source);
+  /// read: calls its argument for all displacements in world units, of which there are count.
+  void SetVectors(std::size_t count, const std::function<void(const VectorTaker&)>& read,
+    double factor, const DeformationSource& source);
 
   bool Field = false;
   std::vector<Tetrahedron> Tetrahedra;

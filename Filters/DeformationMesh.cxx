@@ -19,6 +19,7 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <algorithm>
 #include <limits>
 #include <map>
 
@@ -265,7 +266,11 @@ std::vector<glm::dvec3> ReadPoints(const MeshParts& parts, const std::string& na
   {
     if (grid->GetNumberOfPoints() > 0)
     {
-      ReadVectors(grid->GetPoints()->GetData(), next, "Point", name);
+      ReadVectors(
+        grid->GetPoints()->GetData(),
+        [next](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
+        { std::copy_n(vectors, count, next + first); },
+        "Point", name);
       next += grid->GetNumberOfPoints();
     }
   }
@@ -302,20 +307,22 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
   return array;
 }
 
-std::vector<glm::dvec3> ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
-  const std::string& wanted, const std::string& name)
+void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
+  const std::string& wanted, const std::string& name, const VectorTaker& take)
 {
-  std::vector<glm::dvec3> vectors(GetNumberOfNodes(parts));
-  glm::dvec3* next = vectors.data();
+  vtkIdType next = 0;
   for (vtkUnstructuredGrid* grid : parts)
   {
     if (grid->GetNumberOfPoints() > 0)
     {
-      ReadVectors(FindVectors(grid, selector, wanted, name), next, "Displacement", name);
+      ReadVectors(
+        FindVectors(grid, selector, wanted, name),
+        [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
+        { take(next + first, vectors, count); },
+        "Displacement", name);
       next += grid->GetNumberOfPoints();
     }
   }
-  return vectors;
 }
 
 Stamp GetCellsStamp(const MeshParts& parts)

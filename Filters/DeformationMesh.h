@@ -2,6 +2,7 @@
 #ifndef DeformVolumeDeformationMesh_h
 #define DeformVolumeDeformationMesh_h
 
+#include "VectorArray.h"
 #include "VolumeDeformer.h" // for Tetrahedron
 
 #include "vtkType.h"
@@ -58,9 +59,9 @@ using ArraySelector = std::function<vtkDataArray*(vtkDataSet*)>;
 vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
   const std::string& wanted, const std::string& name);
 
-/// Vectors of all points.
-std::vector<glm::dvec3> ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
-  const std::string& wanted, const std::string& name);
+/// Vectors of all points, one part's after the other's.
+void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
+  const std::string& wanted, const std::string& name, const VectorTaker& take);
 
 ///@{
 /// What the functions above depend on.

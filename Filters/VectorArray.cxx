@@ -10,6 +10,8 @@
 #include "vtkDataSet.h"
 #include "vtkPointData.h"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -20,32 +22,39 @@ namespace deformvolume
 namespace
 {
 
+constexpr vtkIdType BLOCK = 512; // tuples at a time
 constexpr vtkIdType NONE = std::numeric_limits<vtkIdType>::max();
 
 struct VectorReader
 {
   template <typename ArrayT>
-  void operator()(ArrayT* array, glm::dvec3* vectors)
+  void operator()(ArrayT* array, const VectorTaker& take)
   {
     const auto tuples = vtk::DataArrayTupleRange<3>(array);
     std::atomic<vtkIdType> bad{ NONE };
     ParallelFor(0, tuples.size(), 0,
       [&](vtkIdType begin, vtkIdType end)
       {
-        for (vtkIdType i = begin; i < end; ++i)
+        std::array<glm::dvec3, BLOCK> vectors;
+        for (vtkIdType first = begin; first < end; first += BLOCK)
         {
-          const auto tuple = tuples[i];
-          const glm::dvec3 vector(static_cast<double>(tuple[0]), static_cast<double>(tuple[1]),
-            static_cast<double>(tuple[2]));
-          if (!std::isfinite(vector.x) || !std::isfinite(vector.y) || !std::isfinite(vector.z))
+          const vtkIdType count = std::min(BLOCK, end - first);
+          for (vtkIdType i = 0; i < count; ++i)
           {
-            vtkIdType first = bad;
-            while (i < first && !bad.compare_exchange_weak(first, i))
+            const auto tuple = tuples[first + i];
+            vectors[i] = glm::dvec3(static_cast<double>(tuple[0]), static_cast<double>(tuple[1]),
+              static_cast<double>(tuple[2]));
+            if (!std::isfinite(vectors[i].x) || !std::isfinite(vectors[i].y) ||
+              !std::isfinite(vectors[i].z))
             {
+              vtkIdType least = bad;
+              while (first + i < least && !bad.compare_exchange_weak(least, first + i))
+              {
+              }
+              return;
             }
-            return;
           }
-          vectors[i] = vector;
+          take(first, vectors.data(), count);
         }
       });
     this->FirstBad = bad;
@@ -57,13 +66,13 @@ struct VectorReader
 } // namespace
 
 void ReadVectors(
-  vtkDataArray* array, glm::dvec3* vectors, const std::string& kind, const std::string& owner)
+  vtkDataArray* array, const VectorTaker& take, const std::string& kind, const std::string& owner)
 {
   using Dispatcher = vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>;
   VectorReader reader;
-  if (!Dispatcher::Execute(array, reader, vectors))
+  if (!Dispatcher::Execute(array, reader, take))
   {
-    reader(array, vectors);
+    reader(array, take);
   }
   if (reader.FirstBad != NONE)
   {
