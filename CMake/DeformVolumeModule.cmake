@@ -17,6 +17,7 @@ set(helpers
   DeformationMesh
   DeformedBounds
   DeviceSession
+  FailureReport
   ImageGeometry
   InputUpdate
   LinkExtrapolation

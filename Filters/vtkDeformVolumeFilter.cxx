@@ -4,6 +4,7 @@
 #include "vtkDeformVolumeFilterInternals.h"
 
 #include "Device.h"
+#include "FailureReport.h"
 #include "InputUpdate.h"
 #include "OutputExtent.h"
 #include "VolumeArrays.h"
@@ -195,7 +196,7 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   std::string message;
   try
   {
-    return this->Superclass::ProcessRequest(request, input, output);
+    return this->Superclass::ProcessRequest(request, input, output) ? 1 : deformvolume::Fail(this);
   }
   catch (const deformvolume::Aborted&)
   {
@@ -229,9 +230,15 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
     outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
     outInfo->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), empty, 6);
     this->Internals->InformationFailed = true;
+    if (this->GetNumberOfInputConnections(0) == 0 || this->GetNumberOfInputConnections(1) == 0)
+    {
+      // Who asks for information may be about to connect the inputs.
+      this->Internals->MissingInput = message;
+      return 1;
+    }
   }
   vtkErrorMacro(<< message);
-  return 0;
+  return deformvolume::Fail(this);
 }
 
 //------------------------------------------------------------------------------
@@ -244,6 +251,7 @@ int vtkDeformVolumeFilter::RequestInformation(
     // The executive then asks for the whole extent anew.
     outInfo->Remove(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT_INITIALIZED());
     this->Internals->InformationFailed = false;
+    this->Internals->MissingInput.clear();
   }
   if (this->GetNumberOfInputConnections(0) == 0)
   {
@@ -306,6 +314,10 @@ int vtkDeformVolumeFilter::RequestUpdateExtent(
 {
   if (this->Internals->InformationFailed)
   {
+    if (!this->Internals->MissingInput.empty())
+    {
+      throw Error(this->Internals->MissingInput);
+    }
     return 0;
   }
   // Any voxel may move anywhere.

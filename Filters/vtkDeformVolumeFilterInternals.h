@@ -68,6 +68,8 @@ public:
 
   // An error is told once: what comes after a failed information pass is silent.
   bool InformationFailed = false;
+  // What is wrong where that is told with the data only.
+  std::string MissingInput;
   // An aborted execution leaves the filter out of date, and the next pass has to see that.
   bool Aborted = false;
   vtkTimeStamp AbortTime;

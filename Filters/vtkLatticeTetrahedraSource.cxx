@@ -2,6 +2,7 @@
 #include "vtkLatticeTetrahedraSource.h"
 
 #include "AbortCheck.h"
+#include "FailureReport.h"
 #include "FiveTetrahedra.h"
 
 #include "vtkCellArray.h"
@@ -175,7 +176,7 @@ int vtkLatticeTetrahedraSource::RequestData(
   {
     vtkErrorMacro("NumberOfNodes is " << nodes[0] << ", " << nodes[1] << ", " << nodes[2]
                                       << ". A lattice needs at least 2 nodes on every axis.");
-    return 0;
+    return deformvolume::Fail(this);
   }
   const double nodeCount = 1.0 * nodes[0] * nodes[1] * nodes[2];
   const double tetrahedronCount = 5.0 * (nodes[0] - 1.0) * (nodes[1] - 1.0) * (nodes[2] - 1.0);
@@ -188,7 +189,7 @@ int vtkLatticeTetrahedraSource::RequestData(
                                   << " nodes takes " << bytes / (1024.0 * 1024.0 * 1024.0)
                                   << " GiB, which is more than can be stored. Reduce "
                                      "NumberOfNodes.");
-    return 0;
+    return deformvolume::Fail(this);
   }
 
   Lattice lattice;
@@ -218,7 +219,7 @@ int vtkLatticeTetrahedraSource::RequestData(
   if (!problem.empty())
   {
     vtkErrorMacro(<< problem);
-    return 0;
+    return deformvolume::Fail(this);
   }
 
   const vtkIdType rowLength = nodes[0];

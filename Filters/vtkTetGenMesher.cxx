@@ -4,6 +4,7 @@
 #include "AbortCheck.h"
 #include "BodySurface.h"
 #include "ClosedSurface.h"
+#include "FailureReport.h"
 #include "TetGenProcess.h"
 
 #include "vtkImageData.h"
@@ -179,12 +180,12 @@ int vtkTetGenMesher::RequestData(
   catch (const std::bad_alloc&)
   {
     vtkErrorMacro("Not enough memory. Set a greater TargetEdgeLength.");
-    return 0;
+    return deformvolume::Fail(this);
   }
   catch (const std::exception& error)
   {
     vtkErrorMacro(<< error.what());
-    return 0;
+    return deformvolume::Fail(this);
   }
   return 1;
 }
