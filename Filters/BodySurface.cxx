@@ -236,16 +236,16 @@ vtkSmartPointer<vtkPolyData> ExtractBodySurface(vtkImageData* volume, vtkDataArr
   smoother->FeatureEdgeSmoothingOff();
   smoother->NonManifoldSmoothingOn();
   smoother->NormalizeCoordinatesOn();
-  vtkPolyData* local;
+  contour->Update();
+  vtkPolyData* local = contour->GetOutput();
+  if (local->GetNumberOfPolys() == 0)
+  {
+    throw Error("Nothing is left of the body's surface. Set a smaller TargetEdgeLength.");
+  }
   if (parameters.SmoothingIterations > 0)
   {
     smoother->Update();
     local = smoother->GetOutput();
-  }
-  else
-  {
-    contour->Update();
-    local = contour->GetOutput();
   }
   check();
 

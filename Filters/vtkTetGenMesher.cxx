@@ -79,6 +79,27 @@ double DiagonalOf(vtkImageData* volume)
   return std::sqrt(square);
 }
 
+// Volume of a regular tetrahedron with edges of this length.
+double RegularVolume(double length)
+{
+  return std::sqrt(2.0) / 12.0 * length * length * length;
+}
+
+void CheckSize(vtkPolyData* surface, double length)
+{
+  // TetGen ends up with about half of the largest volume on average.
+  const double expected = 2.0 * deformvolume::EnclosedVolume(surface) / RegularVolume(length);
+  const double triangles =
+    deformvolume::SurfaceArea(surface) / (std::sqrt(3.0) / 4.0 * length * length);
+  if (!(expected + triangles < MaximumNumberOfTetrahedra))
+  {
+    std::ostringstream message;
+    message << "A TargetEdgeLength of " << length << " asks for about " << expected + triangles
+            << " tetrahedra; at most 20 million are made. Set a greater TargetEdgeLength.";
+    throw deformvolume::Error(message.str());
+  }
+}
+
 } // namespace
 
 vtkTetGenMesher::vtkTetGenMesher()
@@ -287,6 +308,7 @@ void vtkTetGenMesher::MeshSurface(vtkPolyData* input, vtkUnstructuredGrid* outpu
       // Decimation can make a surface intersect itself: below, it is taken as it is.
     }
   }
+  CheckSize(surface, length);
   const auto split = deformvolume::SplitLongEdges(surface, 1.5 * length);
   this->Fill(
     deformvolume::IsClosedManifold(split) ? split.Get() : surface.Get(), length, true, output);
@@ -298,20 +320,10 @@ void vtkTetGenMesher::Fill(
   deformvolume::TetGenParameters parameters;
   parameters.Executable = this->FindExecutable();
   parameters.RadiusEdgeRatio = this->RadiusEdgeRatio;
-  parameters.MaximumVolume = std::sqrt(2.0) / 12.0 * length * length * length;
+  parameters.MaximumVolume = RegularVolume(length);
   parameters.TimeLimit = this->TimeLimit;
   parameters.Diagnose = diagnose;
-  // TetGen ends up with about half of the largest volume on average.
-  const double expected = 2.0 * deformvolume::EnclosedVolume(surface) / parameters.MaximumVolume;
-  const double triangles =
-    deformvolume::SurfaceArea(surface) / (std::sqrt(3.0) / 4.0 * length * length);
-  if (!(expected + triangles < MaximumNumberOfTetrahedra))
-  {
-    std::ostringstream message;
-    message << "A TargetEdgeLength of " << length << " asks for about " << expected + triangles
-            << " tetrahedra; at most 20 million are made. Set a greater TargetEdgeLength.";
-    throw deformvolume::Error(message.str());
-  }
+  CheckSize(surface, length);
 
   auto wait = [this](double passed)
   {

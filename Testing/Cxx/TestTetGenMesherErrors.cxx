@@ -88,6 +88,8 @@ void TestMisuseOfVolumes()
   mesher->SetInputData(MakeVolume(3.0));
   mesher->SetTargetEdgeLength(0.01);
   check.Fails("at most 20 million");
+  mesher->SetTargetEdgeLength(1e300);
+  check.Fails("Nothing is left of the body's surface");
   mesher->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "absent");
   check.Fails("no such point array");
   mesher->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "values");
@@ -132,6 +134,9 @@ void TestMisuseOfSurfaces()
   check.Fails("intersects itself. TetGen says:");
   check.Fails("pairs of faces are intersecting");
   mesher->SetInputConnection(cube->GetOutputPort());
+  mesher->SetTargetEdgeLength(1e-9); // and does not try for hours
+  check.Fails("at most 20 million");
+  mesher->SetTargetEdgeLength(0.0);
   check.Succeeds();
   VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
 }

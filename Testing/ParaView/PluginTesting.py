@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests of the ParaView plugin share: the plugin's place, messages, pipelines, checks."""
+
+import contextlib
+import os
+import sys
+
+import numpy
+from paraview import simple
+from vtkmodules.util import numpy_support
+from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkIOImage import vtkNIFTIImageReader
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+PLUGIN = os.environ["DEFORMVOLUME_PLUGIN"]
+OUTPUT = os.environ["DEFORMVOLUME_TEST_OUTPUT"]
+MRI = "/usr/share/mricron/templates/ch2.nii.gz"  # 181 x 217 x 181 bytes, a head
+
+
+def load_plugin(remote=False):
+    """Makes the plugin's proxies functions of paraview.simple."""
+    simple.LoadPlugin(PLUGIN, remote=remote, ns=vars(simple))
+
+
+def check(condition, text):
+    """Ends the test where something is wrong."""
+    if not condition:
+        raise AssertionError(text)
+
+
+@contextlib.contextmanager
+def messages():
+    """Collects what would be displayed to the user: a list of texts, one for each message."""
+    window = vtkOutputWindow.GetInstance()
+    collecting = vtkStringOutputWindow()
+    verbosity = vtkLogger.GetCurrentVerbosityCutoff()
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    vtkOutputWindow.SetInstance(collecting)
+    texts = []
+    try:
+        yield texts
+    finally:
+        vtkOutputWindow.SetInstance(window)
+        vtkLogger.SetStderrVerbosity(verbosity)
+        text = collecting.GetOutput()
+        for kind in ("ERROR: In ", "Warning: In ", "Generic Warning: In "):
+            text = text.replace(kind, "\0" + kind)
+        texts.extend(part.strip() for part in text.split("\0") if part.strip())
+
+
+def check_one_message(texts, words):
+    check(len(texts) == 1, f"Not one message but {len(texts)}:\n" + "\n".join(texts))
+    for word in words:
+        check(word in texts[0], f'"{word}" is missing in: {texts[0]}')
+
+
+def check_silent(texts):
+    check(not texts, "Unexpected: " + "\n".join(texts))
+
+
+def arrays_of(data):
+    """The point arrays of a dataset by name."""
+    point_data = data.GetPointData()
+    return {
+        point_data.GetArrayName(i): numpy_support.vtk_to_numpy(point_data.GetArray(i))
+        for i in range(point_data.GetNumberOfArrays())
+    }
+
+
+def fetch(proxy):
+    return simple.servermanager.Fetch(proxy)
+
+
+def check_equal_images(first, second, what):
+    """Geometry, and all point arrays to the last bit."""
+    for method in ("GetExtent", "GetOrigin", "GetSpacing"):
+        one, other = getattr(first, method)(), getattr(second, method)()
+        check(one == other, f"{what}: {method} gives {one} and {other}")
+    directions = [
+        [image.GetDirectionMatrix().GetElement(i, j) for i in range(3) for j in range(3)]
+        for image in (first, second)
+    ]
+    check(directions[0] == directions[1], f"{what}: directions {directions}")
+    one, other = arrays_of(first), arrays_of(second)
+    check(one and list(one) == list(other), f"{what}: arrays {list(one)} and {list(other)}")
+    for name, values in one.items():
+        check(values.dtype == other[name].dtype, f"{what}: {name} changes its type")
+        check(numpy.array_equal(values, other[name]), f"{what}: {name} differs")
+
+
+def wavelet(half=10):
+    return simple.Wavelet(WholeExtent=[-half, half] * 3)
+
+
+def head_file():
+    """The MRI as a file that ParaView opens; the test is skipped where there is none."""
+    if not os.path.exists(MRI):
+        print(f"{MRI} of the package mricron-data is missing")
+        sys.exit(125)
+    reader = vtkNIFTIImageReader()
+    reader.SetFileName(MRI)
+    writer = vtkXMLImageDataWriter()
+    # Several tests may run at once.
+    path = os.path.join(OUTPUT, f"head-{os.path.basename(sys.argv[0])}.vti")
+    writer.SetFileName(path)
+    writer.SetInputConnection(reader.GetOutputPort())
+    writer.SetCompressorTypeToNone()
+    writer.SetDataModeToAppended()
+    writer.EncodeAppendedDataOff()
+    writer.Write()
+    return path
+
+
+def bent_lattice(volume, nodes=6, array="Displacement", function="0.05*coordsY*coordsY*iHat"):
+    """A lattice over a volume with displacements."""
+    volume.UpdatePipeline()
+    lattice = simple.TetrahedralLatticeOfVolume(Volume=volume)
+    lattice.NumberOfNodes = [nodes] * 3
+    bent = simple.Calculator(Input=lattice)
+    bent.ResultArrayName = array
+    bent.Function = function
+    bent.UpdatePipeline()
+    return bent
+
+
+def deformed(volume, deformation, **properties):
+    """A filter that is up to date, with its properties of information."""
+    filter_ = simple.DeformVolume(Volume=volume, Deformation=deformation, **properties)
+    filter_.UpdatePipeline()
+    filter_.UpdatePipelineInformation()
+    return filter_

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A deformation mesh over ten time steps, from files: the animation links the voxels once and sends
+the volume once, and each step has the voxels that a fresh filter gives."""
+
+import os
+
+import deformvolume
+import numpy
+from paraview import simple
+from vtkmodules.util import numpy_support
+from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+
+from PluginTesting import OUTPUT, arrays_of, check, fetch, load_plugin, wavelet
+
+STEPS = 10
+
+
+def displacements(points, time):
+    """Swings, so that the steps do not grow one from the other."""
+    x, y, z = points.T
+    amount = 3.0 * numpy.sin(2.0 * numpy.pi * time / STEPS + 0.3)
+    return numpy.stack(
+        [amount * y * y / 100.0, amount * numpy.sin(z / 8.0), 0.1 * amount + 0.0 * x], axis=1
+    )
+
+
+def write_series(image):
+    """A .pvd of the lattice with its displacements at each step, and the meshes."""
+    lattice = deformvolume.vtkLatticeTetrahedraSource()
+    lattice.SetInputData(image)
+    lattice.SetNumberOfNodes(7, 7, 7)
+    lattice.SetMargin(0.5)
+    lattice.Update()
+    meshes, entries = [], []
+    for step in range(STEPS):
+        mesh = vtkUnstructuredGrid()
+        mesh.DeepCopy(lattice.GetOutput())
+        points = numpy_support.vtk_to_numpy(mesh.GetPoints().GetData())
+        vectors = numpy_support.numpy_to_vtk(displacements(points, step), deep=1)
+        vectors.SetName("U")
+        mesh.GetPointData().AddArray(vectors)
+        writer = vtkXMLUnstructuredGridWriter()
+        name = f"TestAnimation{step}.vtu"
+        writer.SetFileName(os.path.join(OUTPUT, name))
+        writer.SetInputData(mesh)
+        writer.Write()
+        entries.append(f'<DataSet timestep="{step * 0.5}" part="0" file="{name}"/>')
+        meshes.append(mesh)
+    path = os.path.join(OUTPUT, "TestAnimation.pvd")
+    with open(path, "w", encoding="ascii") as file:
+        file.write(
+            '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n<Collection>\n'
+            + "\n".join(entries)
+            + "\n</Collection>\n</VTKFile>\n"
+        )
+    return path, meshes
+
+
+def main():
+    load_plugin()
+    volume = wavelet(10)
+    volume.UpdatePipeline()
+    image = fetch(volume)
+    path, meshes = write_series(image)
+    series = simple.OpenDataFile(path)
+    filter_ = simple.DeformVolume(Volume=volume, Deformation=series, Incremental=0)
+    scene = simple.GetAnimationScene()
+    scene.UpdateAnimationUsingDataTimeSteps()
+    scene.PlayMode = "Snap To TimeSteps"
+    keeper = simple.GetTimeKeeper()
+    times = [0.5 * step for step in range(STEPS)]
+    check(list(keeper.TimestepValues) == times, f"ParaView sees {list(keeper.TimestepValues)}")
+
+    seen = []
+    # Forwards, then a jump back: nothing may accumulate.
+    for step in list(range(STEPS)) + [2]:
+        scene.AnimationTime = 0.5 * step
+        filter_.UpdatePipeline(keeper.Time)
+        got = fetch(filter_)
+        fresh = deformvolume.vtkDeformVolumeFilter()
+        fresh.SetInputData(image)
+        fresh.SetDeformationData(meshes[step])
+        fresh.SetInputArrayToProcess(0, 1, 0, 0, "U")
+        # The animation has one lattice for all steps, and so gets the fresh filter.
+        fresh.SetOutputBoundsModeToCustomBounds()
+        bounds = list(got.GetBounds())
+        fresh.SetCustomBounds([edge + (0.25, -0.25)[i % 2] for i, edge in enumerate(bounds)])
+        fresh.Update()
+        check(fresh.GetOutput().GetExtent() == got.GetExtent(), f"step {step}: extents differ")
+        for name, values in arrays_of(fresh.GetOutput()).items():
+            check(numpy.array_equal(arrays_of(got)[name], values), f"step {step}: {name} differs")
+        seen.append(arrays_of(got)["RTData"].copy())
+    check(numpy.array_equal(seen[2], seen[-1]), "Step 2 differs the second time")
+    different = {values.tobytes() for values in seen}
+    check(len(different) == STEPS, f"Only {len(different)} of the steps differ")
+
+    filter_.UpdatePipelineInformation()
+    check(filter_.MappingBuilds == 1.0, f"The voxels were linked {filter_.MappingBuilds} times")
+    check(filter_.VolumeUploads == 1.0, f"The volume was sent {filter_.VolumeUploads} times")
+
+
+main()

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The proxies' results against those of the classes used without ParaView's server manager: a head
+of an MRI, and ParaView's wavelet with several arrays and all kinds of deformation."""
+
+import deformvolume
+import numpy
+from paraview import simple
+from vtkmodules.util import numpy_support
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
+
+from PluginTesting import (
+    arrays_of,
+    bent_lattice,
+    check,
+    check_equal_images,
+    deformed,
+    fetch,
+    head_file,
+    load_plugin,
+    wavelet,
+)
+
+POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
+
+
+def plain_filter(volume, deformation, array, rest=None):
+    filter_ = deformvolume.vtkDeformVolumeFilter()
+    filter_.SetInputData(volume)
+    filter_.SetDeformationData(deformation)
+    if rest is not None:
+        filter_.SetRestData(rest)
+    if array:
+        filter_.SetInputArrayToProcess(0, 1, 0, POINTS, array)
+    filter_.Update()
+    return filter_
+
+
+def plain_mesh(volume, nodes, displace):
+    """The lattice over a volume with displacements made by numpy."""
+    lattice = deformvolume.vtkLatticeTetrahedraSource()
+    lattice.SetInputData(volume)
+    lattice.SetNumberOfNodes(nodes, nodes, nodes)
+    lattice.Update()
+    mesh = lattice.GetOutput()
+    points = numpy_support.vtk_to_numpy(mesh.GetPoints().GetData())
+    vectors = numpy_support.numpy_to_vtk(displace(points), deep=1)
+    vectors.SetName("Displacement")
+    mesh.GetPointData().AddArray(vectors)
+    return mesh
+
+
+def test_mri():
+    """A head, pushed in: 7 million voxels of bytes."""
+    reader = simple.OpenDataFile(head_file())
+    reader.UpdatePipeline()
+    head = fetch(reader)
+
+    mesh = bent_lattice(
+        reader, nodes=9, function="-15*exp(-((coordsX-90)^2+(coordsZ-60)^2)/1000)*jHat"
+    )
+    filter_ = deformed(reader, mesh)
+    plain = plain_filter(head, fetch(mesh), "Displacement")
+    check_equal_images(fetch(filter_), plain.GetOutput(), "MRI")
+    check(
+        filter_.CoveredVoxels == plain.GetNumberOfCoveredVoxels() > 7e6,
+        f"{filter_.CoveredVoxels} voxels are covered",
+    )
+    name = list(arrays_of(head))[0]
+    check(fetch(filter_).GetPointData().GetScalars().GetName() == name, "Active scalars are lost")
+    check(plain.GetOutput().GetExtent() != head.GetExtent(), "Nothing has moved")
+
+
+def test_wavelet():
+    volume = wavelet(10)
+    more = simple.Calculator(Input=volume)
+    more.ResultArrayName = "Label"
+    more.Function = "floor(RTData/50)"
+    more.UpdatePipeline()
+    image = fetch(more)
+
+    # Independent of the proxies from the volume on: the displacements are numpy's.
+    mesh = bent_lattice(more)
+    filter_ = deformed(more, mesh, CategoricalArrays=["Label"], Padding=2, BackgroundValue=-1.0)
+    displaced = plain_mesh(
+        image, 6, lambda points: numpy.outer(0.05 * points[:, 1] * points[:, 1], [1.0, 0.0, 0.0])
+    )
+    plain = plain_filter(image, displaced, "Displacement")
+    plain.AddCategoricalArray("Label")
+    plain.SetPadding(2)
+    plain.SetBackgroundValue(-1.0)
+    plain.Update()
+    check_equal_images(fetch(filter_), plain.GetOutput(), "wavelet")
+    labels = set(numpy.unique(arrays_of(image)["Label"])) | {-1.0}
+    mixed = set(numpy.unique(arrays_of(fetch(filter_))["Label"])) - labels
+    check(not mixed, f"Labels are mixed: {mixed}")
+
+    # The same deformation as two meshes, and without any displacement.
+    warp = simple.WarpByVector(Input=mesh, Vectors=["POINTS", "Displacement"])
+    rest = simple.TetrahedralLatticeOfVolume(Volume=more, NumberOfNodes=[6, 6, 6])
+    two = deformed(more, warp, RestMesh=rest)
+    plain = plain_filter(image, fetch(warp), None, fetch(rest))
+    check_equal_images(fetch(two), plain.GetOutput(), "two meshes")
+    scaled = deformed(more, mesh, DisplacementScale=0.0)
+    output = fetch(scaled)
+    for name, values in arrays_of(image).items():
+        check(numpy.array_equal(arrays_of(output)[name], values), f"At rest {name} differs")
+
+    # A displacement field, at a resolution of its own.
+    field = simple.Calculator(Input=wavelet(12))
+    field.ResultArrayName = "Field"
+    field.Function = "0.1*coordsX*jHat+2*kHat"
+    field.UpdatePipeline()
+    by_field = deformed(more, field)
+    check(list(by_field.DisplacementArray) == ["POINTS", "Field"], f"{by_field.DisplacementArray}")
+    plain = plain_filter(image, fetch(field), "Field")
+    check_equal_images(fetch(by_field), plain.GetOutput(), "field")
+
+    # A composite dataset, as Exodus readers give.
+    group = simple.GroupDatasets(Input=[mesh])
+    group.UpdatePipeline()
+    by_group = deformed(more, group)
+    check_equal_images(
+        fetch(by_group), plain_filter(image, fetch(mesh), "Displacement").GetOutput(), "composite"
+    )
+
+    # TetGen's mesh.
+    mesher = simple.TetGenMesher(Input=volume)
+    mesher.UpdatePipeline()
+    mesher.UpdatePipelineInformation()
+    plain = deformvolume.vtkTetGenMesher()
+    plain.SetInputData(fetch(volume))
+    plain.Update()
+    check(mesher.UsedIsovalue == plain.GetUsedIsovalue() != 0.0, f"{mesher.UsedIsovalue}")
+    check(
+        fetch(mesher).GetNumberOfCells() == plain.GetOutput().GetNumberOfCells() > 100,
+        "TetGen gives another mesh",
+    )
+
+
+def main():
+    load_plugin()
+    check(isinstance(fetch(wavelet(2)), vtkImageData), "A wavelet is no image")
+    test_wavelet()
+    test_mri()
+
+
+main()

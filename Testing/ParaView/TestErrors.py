@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Misuse through the proxies: one readable message each, a living process, and a filter that works
+once its input is mended."""
+
+from paraview import simple
+
+from PluginTesting import (
+    bent_lattice,
+    check,
+    check_one_message,
+    check_silent,
+    deformed,
+    load_plugin,
+    messages,
+    wavelet,
+)
+
+
+def update(filter_):
+    with messages() as texts:
+        filter_.UpdatePipeline()
+    return texts
+
+
+def check_works(filter_):
+    check_silent(update(filter_))
+    check(filter_.GetDataInformation().GetNumberOfPoints() > 0, "There is no output")
+
+
+def main():
+    load_plugin()
+    volume = wavelet(6)
+    mesh = bent_lattice(volume)
+    bare = simple.TetrahedralLatticeOfVolume(Volume=volume)
+
+    # Nothing is wrong while inputs are still being chosen.
+    with messages() as texts:
+        filter_ = simple.DeformVolume(Volume=volume)
+    check_silent(texts)
+    check_one_message(update(filter_), ["There is no deformation", "input port 1"])
+    check(filter_.GetDataInformation().GetNumberOfPoints() == 0, "An error and an output")
+    filter_.Deformation = mesh
+    check_works(filter_)
+
+    # The volume is missing.
+    simple.SetActiveSource(None)
+    with messages() as texts:
+        filter_ = simple.DeformVolume(Deformation=mesh)
+    check_silent(texts)
+    check_one_message(update(filter_), ["There is no volume", "input port 0"])
+    filter_.Volume = volume
+    check_works(filter_)
+
+    # Arrays: none in the mesh, one that is not there, one with a single component.
+    bare.UpdatePipeline()
+    with messages():
+        filter_ = simple.DeformVolume(Volume=volume, Deformation=bare)
+    check_one_message(update(filter_), ["has no active Vectors of its points"])
+    filter_.Deformation = mesh
+    check_works(filter_)
+    filter_.DisplacementArray = ["POINTS", "no such array"]
+    check_one_message(update(filter_), ['no point array "no such array"'])
+    scalar = bent_lattice(volume, array="Height", function="coordsY")
+    filter_.Deformation = scalar
+    filter_.DisplacementArray = ["POINTS", "Height"]
+    check_one_message(update(filter_), ['"Height"', "1 component"])
+    filter_.Deformation = mesh
+    filter_.DisplacementArray = ["POINTS", "Displacement"]
+    check_works(filter_)
+
+    # A rest mesh with another number of points.
+    other = bent_lattice(volume, nodes=5)
+    filter_.RestMesh = other
+    check_one_message(update(filter_), ["points"])
+    filter_.RestMesh = None
+    check_works(filter_)
+
+    # A volume as a surface, and a surface as deformation.
+    surface = simple.Sphere()
+    surface.UpdatePipeline()
+    filter_.Deformation = surface
+    texts = update(filter_)
+    check(len(texts) >= 1 and "vtkPolyData" in texts[0], f"A surface deforms: {texts}")
+    filter_.Deformation = mesh
+    check_works(filter_)
+
+    # A device that does not exist, and memory that does not suffice.
+    filter_.Device = "no such device"
+    check_one_message(update(filter_), ['no OpenCL device "no such device"', "Ask for"])
+    filter_.Device = "cpu"
+    filter_.MemoryLimit = 1000
+    check_one_message(update(filter_), ["memory"])
+    filter_.MemoryLimit = 0
+    check_works(filter_)
+
+    # The other classes.
+    lattice = simple.TetrahedralLattice()
+    lattice.NumberOfNodes = [1, 5, 5]
+    check_one_message(update(lattice), ["at least 2 nodes"])
+    lattice.NumberOfNodes = [2, 2, 2]
+    check_works(lattice)
+    mesher = simple.TetGenMesher(Input=volume)
+    mesher.TetGenExecutable = "/no/such/program"
+    check_one_message(update(mesher), ["/no/such/program"])
+    mesher.TetGenExecutable = ""
+    mesher.AutomaticIsovalue = 0
+    mesher.Isovalue = 1e6
+    check_one_message(update(mesher), ["sovalue"])
+    check(deformed(volume, mesh).CoveredVoxels > 0, "The process does not work on")
+
+
+main()

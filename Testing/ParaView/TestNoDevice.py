@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Without any OpenCL device there is one message that says what to install, and a living process."""
+
+from PluginTesting import bent_lattice, check, check_one_message, load_plugin, messages, simple, wavelet
+
+
+def main():
+    load_plugin()
+    volume = wavelet(6)
+    mesh = bent_lattice(volume)
+    with messages() as texts:
+        filter_ = simple.DeformVolume(Volume=volume, Deformation=mesh)
+    check(not texts, f"A message before the first update: {texts}")
+    choices = filter_.GetProperty("DeviceChoices").GetData()
+    check(choices == ["best", "cpu", "gpu"], f"Devices where there are none: {choices}")
+    with messages() as texts:
+        filter_.UpdatePipeline()
+    check_one_message(texts, ["no OpenCL", "pocl-opencl-icd"])
+    check(mesh.GetDataInformation().GetNumberOfPoints() == 216, "The process does not work on")
+
+
+main()

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every class of the module has a proxy, every method that sets, adds, tells or does something has a
+property, and what the XML says of it (defaults, ranges, enumerations) is what the class does."""
+
+import inspect
+import os
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+
+import deformvolume
+from paraview import simple
+from vtkmodules.vtkCommonCore import vtkObject
+
+from PluginTesting import load_plugin, messages
+
+PLUGIN_SOURCE = os.path.join(os.path.dirname(__file__), "..", "..", "Plugin")
+
+# Methods that need no property: data instead of a connection, what a command with clean_command
+# makes superfluous, and what is there for lists in C++.
+WITHOUT_PROPERTY = {
+    "SetDeformationData",
+    "SetRestData",
+    "RemoveCategoricalArray",
+    "GetNumberOfCategoricalArrays",
+    "GetCategoricalArray",
+    "GetNumberOfLabels",
+    "GetLabel",
+    "GetDeviceNames",
+}
+
+failures = []
+
+
+def check(condition, text):
+    if not condition:
+        failures.append(text)
+
+
+def proxies_by_class():
+    result = {}
+    for name in sorted(os.listdir(PLUGIN_SOURCE)):
+        if not name.endswith(".xml"):
+            continue
+        root = ElementTree.parse(os.path.join(PLUGIN_SOURCE, name)).getroot()
+        for group in root.iter("ProxyGroup"):
+            for proxy in group:
+                result.setdefault(proxy.get("class"), []).append((group.get("name"), proxy))
+    return result
+
+
+def properties_of(proxy):
+    return [child for child in proxy if child.tag.endswith("Property")]
+
+
+def own_methods(cls):
+    """Methods that the class adds to those of its base."""
+    inherited = set(dir(cls.__bases__[0]))
+    methods = [name for name in vars(cls) if callable(getattr(cls, name)) and name not in inherited]
+    setters = {name[3:] for name in methods if name.startswith("Set")}
+
+    def redundant(name):
+        return (
+            re.match(r"Set\w+To[A-Z]", name)
+            or re.fullmatch(r"Get\w+(Min|Max)Value", name)
+            or re.sub("(On|Off)$", "", name) in setters
+            or (name.startswith("Get") and name[3:] in setters)
+        )
+
+    return sorted(
+        name
+        for name in methods
+        if not inspect.isclass(getattr(cls, name)) and not redundant(name)
+    )
+
+
+def check_complete(cls, proxies):
+    commands = set()
+    for _, proxy in proxies:
+        for prop in properties_of(proxy):
+            commands.update((prop.get("command"), prop.get("clean_command")))
+    for name in own_methods(cls):
+        if name not in WITHOUT_PROPERTY:
+            check(name in commands, f"{cls.__name__}.{name} has no property")
+    for command in commands - {None}:
+        check(hasattr(cls, command), f"{cls.__name__} has no method {command}")
+
+
+def check_words(proxy):
+    name = proxy.get("name")
+    documentation = proxy.find("Documentation")
+    check(documentation is not None, f"{name}: no documentation")
+    for attribute in ("short_help", "long_help"):
+        check(documentation.get(attribute), f"{name}: no {attribute}")
+    check((documentation.text or "").strip(), f"{name}: no description")
+    menu = proxy.find("Hints/ShowInMenu")
+    check(menu is not None and menu.get("category") == "Deform Volume", f"{name}: not in the menu")
+    grouped = [entry.get("name") for entry in proxy.findall("PropertyGroup/Property")]
+    names = [prop.get("name") for prop in properties_of(proxy)]
+    check(len(set(grouped)) == len(grouped), f"{name}: a property in two groups")
+    check(set(grouped) <= set(names), f"{name}: groups hold {set(grouped) - set(names)}")
+    for prop in properties_of(proxy):
+        text = prop.find("Documentation")
+        label = f"{name}.{prop.get('name')}"
+        check(text is not None and text.text.strip(), f"{label}: no documentation")
+        for decorator in prop.iter("PropertyWidgetDecorator"):
+            other = decorator.get("property")
+            check(other is None or other in names, f"{label}: decorated by the unknown {other}")
+        for required in prop.iter("RequiredProperties"):
+            for entry in required:
+                check(entry.get("name") in names, f"{label}: requires {entry.get('name')}")
+
+
+def check_values(cls, proxy):
+    instance = cls()
+    for prop in properties_of(proxy):
+        command, label = prop.get("command"), f"{proxy.get('name')}.{prop.get('name')}"
+        attribute = command[3:]
+        if not command.startswith("Set") or "Get" + attribute not in vars(cls):
+            continue
+        default, value = prop.get("default_values"), getattr(instance, "Get" + attribute)()
+        if isinstance(value, str):
+            check(default in (value, "best"), f"{label}: {default} is not {value}")
+            continue
+        values = value if isinstance(value, tuple) else (value,)
+        check(
+            [float(word) for word in default.split()] == [float(item) for item in values],
+            f"{label}: the default {default} is not {values}",
+        )
+        check(int(prop.get("number_of_elements")) == len(values), f"{label}: number of elements")
+        if hasattr(instance, f"Get{attribute}MaxValue"):
+            low = getattr(instance, f"Get{attribute}MinValue")()
+            high = getattr(instance, f"Get{attribute}MaxValue")()
+            entries = {int(entry.get("value")): entry.get("text") for entry in prop.iter("Entry")}
+            if entries:
+                check(set(entries) == set(range(low, high + 1)), f"{label}: entries {entries}")
+                for number, text in entries.items():
+                    setter = f"Set{attribute}To{text.replace(' ', '')}"
+                    setter = setter if hasattr(instance, setter) else setter + attribute
+                    if not hasattr(instance, setter):
+                        check(False, f"{label}: no {setter}")
+                        continue
+                    getattr(instance, setter)()
+                    got = getattr(instance, "Get" + attribute)()
+                    check(got == number, f"{label}: {text} is {got}, not {number}")
+            else:
+                ranges = [child for child in prop if child.tag.endswith("RangeDomain")]
+                check(len(ranges) == 1, f"{label}: no range")
+                check(float(ranges[0].get("min")) == low, f"{label}: the least is {low}")
+                if high < 2**31:
+                    check(float(ranges[0].get("max")) == high, f"{label}: the greatest is {high}")
+        elif isinstance(value, bool):
+            check(prop.find("BooleanDomain") is not None, f"{label}: no check box")
+
+
+def check_made(cls, group, proxy):
+    """The proxy can be made, and the object that it makes has the class's own values."""
+    name = proxy.get("name")
+    made = getattr(simple, name, None)
+    check(made is not None, f"{name}: not in paraview.simple")
+    if made is None:
+        return
+    simple.SetActiveSource(None)  # would become the input
+    with messages():  # inputs are missing
+        instance = made().GetClientSideObject()
+    fresh = cls()
+    for prop in properties_of(proxy):
+        command = prop.get("command")
+        getter = "Get" + command[3:]
+        if not command.startswith("Set") or getter not in vars(cls) or command == "SetDevice":
+            continue
+        got, expected = getattr(instance, getter)(), getattr(fresh, getter)()
+        check(got == expected, f"{group}.{name}.{prop.get('name')}: {got}, not {expected}")
+
+
+def main():
+    load_plugin()
+    proxies = proxies_by_class()
+    classes = {
+        name: value
+        for name, value in vars(deformvolume).items()
+        if inspect.isclass(value) and issubclass(value, vtkObject)
+    }
+    check(len(classes) >= 3, f"The package has only {sorted(classes)}")
+    for name, cls in sorted(classes.items()):
+        check(name in proxies, f"{name} has no proxy in Plugin")
+        if name not in proxies:
+            continue
+        check_complete(cls, proxies[name])
+        for group, proxy in proxies[name]:
+            check_words(proxy)
+            check_values(cls, proxy)
+            check_made(cls, group, proxy)
+    for failure in failures:
+        print(failure)
+    return 1 if failures else 0
+
+
+sys.exit(main())
