@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A server and a client: the plugin is loaded on both, data and properties go both ways, and the list
+of devices is the server's: the client of this test has none."""
+
+import os
+import re
+import socket
+import subprocess
+import sys
+import time
+
+import deformvolume
+from paraview import simple
+
+from PluginTesting import (
+    OUTPUT,
+    arrays_of,
+    bent_lattice,
+    check,
+    check_equal_images,
+    check_one_message,
+    deformed,
+    fetch,
+    load_plugin,
+    messages,
+    wavelet,
+)
+
+LOG = os.path.join(OUTPUT, "TestClientServer.log")
+
+
+def free_port():
+    with socket.socket() as listener:
+        listener.bind(("localhost", 0))
+        return listener.getsockname()[1]
+
+
+def start_server(port):
+    """A server on this machine, which has OpenCL devices, unlike the client."""
+    environment = dict(os.environ)
+    del environment["OCL_ICD_VENDORS"]
+    with open(LOG, "w", encoding="utf-8") as log:
+        server = subprocess.Popen(
+            [os.environ["DEFORMVOLUME_PVSERVER"], f"--server-port={port}"],
+            stdout=log,
+            stderr=subprocess.STDOUT,
+            env=environment,
+        )
+    end = time.monotonic() + 60.0
+    while "Accepting connection" not in server_log():
+        check(server.poll() is None and time.monotonic() < end, f"No server: {server_log()}")
+        time.sleep(0.1)
+    return server
+
+
+def server_log():
+    with open(LOG, encoding="utf-8", errors="replace") as log:
+        return log.read()
+
+
+def check_session():
+    load_plugin(remote=True)
+    load_plugin()
+    here = deformvolume.vtkDeformVolumeFilter.GetDeviceNames()
+    check(here.GetNumberOfValues() == 0, "The client has devices: it proves nothing")
+
+    volume = wavelet(9)
+    mesh = bent_lattice(volume)
+    filter_ = simple.DeformVolume(Volume=volume, Deformation=mesh)
+    check(list(filter_.DisplacementArray) == ["POINTS", "Displacement"], "No array was found")
+    choices = filter_.GetProperty("DeviceChoices").GetData()
+    check(len(choices) > 3, f"The server's devices are not listed: {choices}")
+    filter_.Device = choices[3]
+    filter_.Padding = 1
+    filter_.CategoricalArrays = ["RTData"]
+    filter_.UpdatePipeline()
+    filter_.UpdatePipelineInformation()
+    check(filter_.DeviceInUse == choices[3], f"In use is {filter_.DeviceInUse}")
+    check(filter_.CoveredVoxels > 1000.0 and filter_.ResamplingTime > 0.0, "No information")
+    check(filter_.GetClientSideObject() is None, "The filter is in the client")
+
+    # What the client gets is what the server computes: undeformed, the volume itself.
+    filter_.DisplacementScale = 0.0
+    filter_.Padding = 0
+    filter_.UpdatePipeline()
+    at_rest = arrays_of(fetch(filter_))["RTData"]
+    check((at_rest == arrays_of(fetch(volume))["RTData"]).all(), "The volume at rest differs")
+    filter_.DisplacementScale = 1.0
+    first = fetch(deformed(volume, mesh, CategoricalArrays=["RTData"]))
+    filter_.UpdatePipeline()
+    check_equal_images(fetch(filter_), first, "two filters on the server")
+
+    # An error is told once, by the server; both live, and go on once it is mended.
+    filter_.Device = "no such device"
+    with messages() as texts:
+        filter_.UpdatePipeline()
+    check_one_message(texts, ['no OpenCL device "no such device"'])
+    check(filter_.GetDataInformation().GetNumberOfPoints() == 0, "An error and an output")
+    filter_.Device = "best"
+    filter_.UpdatePipeline()
+    check(filter_.GetDataInformation().GetNumberOfPoints() > 0, "It does not work again")
+
+
+def client(port):
+    simple.Connect("localhost", port)
+    check_session()
+
+
+def main():
+    if len(sys.argv) > 1:
+        client(int(sys.argv[1]))
+        return
+    port = free_port()
+    server = start_server(port)
+    try:
+        # A process of its own: its end is what ends the session.
+        subprocess.run(
+            [os.environ["DEFORMVOLUME_PVPYTHON"], __file__, str(port)], timeout=200, check=True
+        )
+        server.wait(timeout=60)
+    finally:
+        if server.poll() is None:
+            server.kill()
+            server.wait()
+    check(server.returncode == 0, f"The server ends with {server.returncode}: {server_log()}")
+    told = re.findall(r"ERR\|.*", server_log())
+    check(
+        len(told) == 1 and 'no OpenCL device "no such device"' in told[0],
+        f"The server does not tell the error once: {server_log()}",
+    )
+
+
+main()

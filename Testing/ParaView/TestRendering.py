@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The output of the filter shows up as a volume, in the colours of its input: a head of an MRI, pushed
+in from the front."""
+
+import os
+import sys
+
+import numpy
+from paraview import simple
+from vtkmodules.util import numpy_support
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+from PluginTesting import OUTPUT, bent_lattice, check, head_file, load_plugin
+
+
+def read_png(path):
+    reader = vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    values = numpy_support.vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+    return values.reshape(-1, reader.GetOutput().GetNumberOfScalarComponents()).astype(float)
+
+
+def main(baseline):
+    load_plugin()
+    head = simple.OpenDataFile(head_file())
+    head.UpdatePipeline()
+    name = head.PointData.keys()[0]
+    view = simple.GetActiveViewOrCreate("RenderView")
+    view.ViewSize = [300, 300]
+    view.OrientationAxesVisibility = 0
+    view.UseColorPaletteForBackground = 0
+    view.Background = [0.2, 0.2, 0.3]
+
+    # The user has chosen colours for the volume at rest.
+    shown = simple.Show(head, view)
+    shown.SetRepresentationType("Volume")
+    simple.ColorBy(shown, ("POINTS", name))
+    colours = simple.GetColorTransferFunction(name)
+    colours.RGBPoints = [0.0, 0.1, 0.0, 0.0, 60.0, 0.8, 0.5, 0.3, 160.0, 1.0, 1.0, 0.9]
+    opacity = simple.GetOpacityTransferFunction(name)
+    points = [(0.0, 0.0), (30.0, 0.0), (90.0, 0.5), (160.0, 0.9)]
+    opacity.Points = [item for value, amount in points for item in (value, amount, 0.5, 0.0)]
+
+    mesh = bent_lattice(
+        head, nodes=13, function="-45*exp(-((coordsX-90)^2+(coordsZ-60)^2)/2000)*jHat"
+    )
+    deformed = simple.DeformVolume(Volume=head, Deformation=mesh)
+    representation = simple.Show(deformed, view)
+    simple.Hide(head, view)
+    check(representation.Representation == "Volume", f"Shown as {representation.Representation}")
+    check(
+        list(representation.ColorArrayName) == ["POINTS", name],
+        f"Coloured by {list(representation.ColorArrayName)}",
+    )
+    check(representation.LookupTable.SMProxy == colours.SMProxy, "The colours are not the input's")
+    representation.Shade = 1
+
+    view.CameraFocalPoint = [90.0, 108.0, 90.0]
+    view.CameraPosition = [450.0, 480.0, 180.0]
+    view.CameraViewUp = [0.0, 0.0, 1.0]
+    view.CameraViewAngle = 28.0
+    picture = os.path.join(OUTPUT, "TestParaViewRendering.png")
+    simple.SaveScreenshot(picture, view, ImageResolution=[300, 300])
+    check(os.path.exists(baseline), f"There is no {baseline}; look at {picture}")
+    shown, expected = read_png(picture), read_png(baseline)
+    check(shown.shape == expected.shape, f"{picture} has another size than {baseline}")
+    # Undeformed, the head differs by 6.1; renderers that are both right differ by far less.
+    error = numpy.abs(shown - expected).mean()
+    check(error < 0.7, f"{picture} differs from {baseline} by {error} of 255 on average")
+
+
+main(sys.argv[1])
