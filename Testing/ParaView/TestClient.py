@@ -7,7 +7,6 @@ import re
 import shutil
 import signal
 import subprocess
-import sys
 import time
 
 import numpy
@@ -152,6 +151,4 @@ def main():
     )
 
 
-if __name__ == "__main__":
-    main()
-    sys.exit(0)
+main()
