@@ -7,11 +7,10 @@
 
 #include <string>
 
+// The test of this check has another one.
 #ifndef DEFORMVOLUME_PARAVIEW_VERSION
 #define DEFORMVOLUME_PARAVIEW_VERSION                                                              \
-  {                                                                                                \
-    PARAVIEW_VERSION_MAJOR, PARAVIEW_VERSION_MINOR, PARAVIEW_VERSION_PATCH                         \
-  }
+  PARAVIEW_VERSION_MAJOR, PARAVIEW_VERSION_MINOR, PARAVIEW_VERSION_PATCH
 #endif
 
 namespace deformvolume
@@ -19,7 +18,7 @@ namespace deformvolume
 
 void CheckParaViewVersion()
 {
-  const int built[3] = DEFORMVOLUME_PARAVIEW_VERSION;
+  const int built[3] = { DEFORMVOLUME_PARAVIEW_VERSION };
   const int running[3] = { vtkSMProxyManager::GetVersionMajor(),
     vtkSMProxyManager::GetVersionMinor(), vtkSMProxyManager::GetVersionPatch() };
   const auto text = [](const int version[3])

@@ -3,6 +3,7 @@
 
 import contextlib
 import os
+import re
 import sys
 
 import numpy
@@ -43,9 +44,8 @@ def messages():
         vtkOutputWindow.SetInstance(window)
         vtkLogger.SetStderrVerbosity(verbosity)
         text = collecting.GetOutput()
-        for kind in ("ERROR: In ", "Warning: In ", "Generic Warning: In "):
-            text = text.replace(kind, "\0" + kind)
-        texts.extend(part.strip() for part in text.split("\0") if part.strip())
+        starts = r"(?=ERROR: In |Generic Warning: In |(?<!Generic )Warning: In )"
+        texts.extend(part.strip() for part in re.split(starts, text) if part.strip())
 
 
 def check_one_message(texts, words):

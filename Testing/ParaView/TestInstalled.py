@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The installed plugin, found through PV_PLUGIN_PATH."""
+
+import os
+
+from paraview import servermanager
+
+from PluginTesting import bent_lattice, check, deformed, wavelet
+
+filters = [name for name in ("DeformVolume", "TetGenMesher") if hasattr(servermanager.filters, name)]
+check(len(filters) == 2, f"Of the filters there are only {filters}")
+volume = wavelet(5)
+filter_ = deformed(volume, bent_lattice(volume))
+check(filter_.CoveredVoxels > 500.0, f"{filter_.CoveredVoxels} voxels are covered")
+
+with open("/proc/self/maps", encoding="ascii", errors="replace") as file:
+    libraries = {line.split()[-1] for line in file if "DeformVolume" in line}
+folder = os.environ["PV_PLUGIN_PATH"].split("/Testing/Install/")[0] + "/Testing/Install/"
+check(
+    len(libraries) == 2 and all(library.startswith(folder) for library in libraries),
+    f"Libraries of another place: {libraries}",
+)

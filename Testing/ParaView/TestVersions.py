@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Plugins for another ParaView than the running one: each is told in one message, and the process
+lives. The plugin for this one is silent."""
+
+import contextlib
+import sys
+
+from paraview import simple
+
+from PluginTesting import check_one_message, check_silent, load_plugin, messages, wavelet
+
+
+def load(path):
+    with messages() as texts:
+        with contextlib.suppress(RuntimeError):
+            simple.LoadPlugin(path, remote=False, ns={})
+    return texts
+
+
+def main(major, patch, not_loadable):
+    running = ".".join(
+        str(getattr(simple.servermanager.vtkSMProxyManager, f"GetVersion{part}")())
+        for part in ("Major", "Minor", "Patch")
+    )
+    texts = load(major)
+    check_one_message(texts, ["ERROR", "ParaView 4.9.1", f"this is ParaView {running}", "Build"])
+    texts = load(patch)
+    check_one_message(texts, ["Warning", running.rpartition(".")[0] + ".99", running])
+    texts = load(not_loadable)
+    check_one_message(texts, ["vtkRemotingCore-pv4.9", "DeformVolumeNotLoadable.so"])
+    with messages() as texts:
+        load_plugin()
+    check_silent(texts)
+    wavelet(4).UpdatePipeline()
+
+
+main(*sys.argv[1:])
