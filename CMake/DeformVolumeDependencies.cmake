@@ -14,6 +14,7 @@ set(deformvolume_vtk_components
   FiltersGeometry
   FiltersModeling
   ImagingCore
+  ParallelCore
   vtksys)
 # Those that an installed DeformVolume needs.
 set(deformvolume_package_components ${deformvolume_vtk_components})

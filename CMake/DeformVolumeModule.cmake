@@ -22,9 +22,12 @@ set(helpers
   InputUpdate
   LinkExtrapolation
   MappingCache
+  MeshGathering
   OutputArrays
   OutputExtent
+  Ranks
   ResamplerChoice
+  RestRegions
   RunBuilder
   StaticMapping
   TetGenProcess
@@ -39,7 +42,8 @@ list(TRANSFORM classes PREPEND "Filters/")
 list(TRANSFORM helpers PREPEND "Filters/")
 vtk_module_add_module(DeformVolume::Filters
   CLASSES ${classes}
-  PRIVATE_CLASSES ${helpers})
+  PRIVATE_CLASSES ${helpers}
+  SOURCES Filters/vtkDeformVolumeFilterParts.cxx)
 vtk_module_include(DeformVolume::Filters
   PUBLIC "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/Filters>"
   PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/Kernels")

@@ -8,6 +8,19 @@
 namespace deformvolume
 {
 
+std::string DescribeKernels(const std::string& device, const DeformRequest& request,
+  const std::string& form, const std::vector<VolumeArray>& arrays)
+{
+  std::string kind = device + " " + std::to_string(static_cast<int>(request.Method)) + " " +
+    std::to_string(static_cast<int>(request.Interpolation)) + " " + form;
+  for (const VolumeArray& array : arrays)
+  {
+    kind += " " + std::to_string(static_cast<int>(array.Type)) + "/" +
+      std::to_string(array.Components) + (array.Categorical ? "c" : "");
+  }
+  return kind;
+}
+
 // Marks what the device has as unknown unless a transfer ends well.
 class DeviceSession::Transfer
 {
@@ -77,6 +90,7 @@ void DeviceSession::SetVolume(const Lattice& lattice, vtkImageData* volume,
     widest = std::max(widest, GetTupleSize(array));
   }
   if (this->SentLattice.VertexExtent != lattice.VertexExtent ||
+    this->SentLattice.WholeExtent != lattice.WholeExtent ||
     this->SentLattice.Scale != lattice.Scale || this->SentWidth < widest ||
     this->SentForLinks != links)
   {
@@ -117,8 +131,9 @@ void DeviceSession::SetVolume(const Lattice& lattice, vtkImageData* volume,
 }
 
 void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache& mapping,
-  const ImageGeometry& volume, bool extrapolate, const std::function<bool(double)>& progress)
+  const MappedVolume& volume, const std::function<bool(double)>& progress)
 {
+  const bool extrapolate = volume.Extrapolate;
   const std::uint64_t vectors = deformation.GetVectorsVersion();
   if (deformation.IsField())
   {
@@ -134,10 +149,10 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
   else
   {
     const bool meshIsSent = this->HasMesh && this->SentMapping == mapping.GetVersion() &&
-      mapping.IsCurrent(deformation, volume, extrapolate);
+      mapping.IsCurrent(deformation, volume);
     if (!meshIsSent)
     {
-      mapping.Update(deformation, volume, extrapolate, progress);
+      mapping.Update(deformation, volume, progress);
       Transfer transfer(this);
       const std::vector<Tetrahedron>& tetrahedra = deformation.GetTetrahedra();
       const std::size_t nodes = deformation.GetRestPoints().size();

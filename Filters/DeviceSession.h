@@ -20,6 +20,10 @@ namespace deformvolume
 /// Stands for no wish, as "" does, where a wish has to be seen.
 constexpr const char* BEST_DEVICE = "best";
 
+/// Tells apart what needs different kernels. form: of the mapping.
+std::string DescribeKernels(const std::string& device, const DeformRequest& request,
+  const std::string& form, const std::vector<VolumeArray>& arrays);
+
 /// A VolumeDeformer that remembers what it was sent and is sent only what changed.
 class DeviceSession
 {
@@ -40,7 +44,7 @@ public:
 
   /// Brings the mapping up to date, too, where it has to be sent.
   void SetDeformation(const Deformation& deformation, MappingCache& mapping,
-    const ImageGeometry& volume, bool extrapolate, const std::function<bool(double)>& progress);
+    const MappedVolume& volume, const std::function<bool(double)>& progress);
 
   /// A mesh, for the method MeshRasterization: there is no mapping.
   void SetRestMesh(const Deformation& deformation);

@@ -58,6 +58,17 @@ bool ImageGeometry::operator==(const ImageGeometry& other) const
     this->Spacing == other.Spacing && this->Direction == other.Direction;
 }
 
+bool Contains(const Extent& extent, const Extent& other)
+{
+  bool contains = true;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    contains = contains && extent[2 * axis] <= other[2 * axis] &&
+      extent[2 * axis + 1] >= other[2 * axis + 1];
+  }
+  return contains;
+}
+
 ImageGeometry GetGeometry(vtkImageData* image)
 {
   ImageGeometry geometry;

@@ -33,6 +33,9 @@ struct ImageGeometry
   bool operator!=(const ImageGeometry& other) const { return !(*this == other); }
 };
 
+/// Whether an extent holds all of another one.
+bool Contains(const Extent& extent, const Extent& other);
+
 ImageGeometry GetGeometry(vtkImageData* image);
 
 /// The geometry that pipeline information announces, with the whole extent.

@@ -5,14 +5,18 @@
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataObject.h"
 #include "vtkDemandDrivenPipeline.h"
+#include "vtkExtentTranslator.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
 #include "vtkInformationDoubleVectorKey.h"
 #include "vtkInformationIntegerKey.h"
+#include "vtkInformationIntegerRequestKey.h"
 #include "vtkInformationIntegerVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTrivialProducer.h"
 
 #include <algorithm>
 #include <set>
@@ -22,8 +26,60 @@ namespace deformvolume
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
+namespace
+{
+
+void RequestPiece(vtkInformation* request, int piece, int pieces)
+{
+  request->Set(Pipeline::UPDATE_PIECE_NUMBER(), piece);
+  request->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), pieces);
+  request->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+}
+
+// What an input is asked for, given what it announces.
+void Request(vtkInformation* input, vtkInformation* request, const Ranks& ranks)
+{
+  if (input->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    RequestPiece(request, 0, 1);
+    request->Set(Pipeline::UPDATE_EXTENT(), input->Get(Pipeline::WHOLE_EXTENT()), 6);
+  }
+  else
+  {
+    RequestPiece(request, ranks.GetRank(), ranks.GetCount());
+    request->Remove(Pipeline::UPDATE_EXTENT());
+  }
+}
+
+bool CanProduceParts(vtkAlgorithm* producer, int index, int depth)
+{
+  constexpr int deepest = 1000;
+  vtkInformation* information = producer->GetOutputInformation(index);
+  if ((information && information->Has(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT())) ||
+    vtkTrivialProducer::SafeDownCast(producer))
+  {
+    return true;
+  }
+  int inputs = 0;
+  for (int port = 0; port < producer->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < producer->GetNumberOfInputConnections(port); ++i, ++inputs)
+    {
+      vtkAlgorithmOutput* source = producer->GetInputConnection(port, i);
+      if (depth > deepest || !vtkImageData::SafeDownCast(producer->GetInputDataObject(port, i)) ||
+        !CanProduceParts(source->GetProducer(), source->GetIndex(), depth + 1))
+      {
+        return false;
+      }
+    }
+  }
+  return inputs > 0;
+}
+
+} // namespace
+
 vtkDataObject* UpdateInput(
-  vtkAlgorithm* filter, int port, vtkInformation* output, const double* time)
+  vtkAlgorithm* filter, int port, vtkInformation* output, const double* time, const Ranks& ranks)
 {
   if (filter->GetNumberOfInputConnections(port) == 0)
   {
@@ -33,14 +89,7 @@ vtkDataObject* UpdateInput(
   vtkNew<vtkInformationVector> requests;
   requests->SetNumberOfInformationObjects(source->GetIndex() + 1);
   vtkInformation* request = requests->GetInformationObject(source->GetIndex());
-  request->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-  request->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-  request->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-  vtkInformation* input = filter->GetInputInformation(port, 0);
-  if (input->Has(Pipeline::WHOLE_EXTENT()))
-  {
-    request->Set(Pipeline::UPDATE_EXTENT(), input->Get(Pipeline::WHOLE_EXTENT()), 6);
-  }
+  Request(filter->GetInputInformation(port, 0), request, ranks);
   if (time)
   {
     request->Set(Pipeline::UPDATE_TIME_STEP(), *time);
@@ -53,19 +102,51 @@ vtkDataObject* UpdateInput(
   return source->GetProducer()->GetOutputDataObject(source->GetIndex());
 }
 
-void RequestWhole(vtkInformation* input)
+void RequestInput(vtkInformation* input, const Ranks& ranks)
 {
-  input->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-  input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-  input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-  if (input->Has(Pipeline::WHOLE_EXTENT()))
+  Request(input, input, ranks);
+}
+
+void RequestExtent(vtkInformation* input, const Extent& extent)
+{
+  RequestPiece(input, 0, 1);
+  input->Set(Pipeline::UPDATE_EXTENT(), extent.data(), 6);
+}
+
+Extent GetRequestedPart(vtkInformation* output)
+{
+  Extent asked;
+  output->Get(Pipeline::UPDATE_EXTENT(), asked.data());
+  const auto get = [&](vtkInformationIntegerKey* key, int otherwise)
+  { return output->Has(key) ? output->Get(key) : otherwise; };
+  const int pieces = get(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  if (pieces <= 1 || GetNumberOfPoints(asked) == 0)
   {
-    input->Set(Pipeline::UPDATE_EXTENT(), input->Get(Pipeline::WHOLE_EXTENT()), 6);
+    return asked;
   }
-  else
-  {
-    input->Remove(Pipeline::UPDATE_EXTENT());
-  }
+  // As the executive does it before the data pass.
+  const int mode = output->Has(vtkExtentTranslator::UPDATE_SPLIT_MODE())
+    ? output->Get(vtkExtentTranslator::UPDATE_SPLIT_MODE())
+    : vtkExtentTranslator::BLOCK_MODE;
+  Extent part = asked;
+  vtkNew<vtkExtentTranslator> translator;
+  translator->PieceToExtentThreadSafe(get(Pipeline::UPDATE_PIECE_NUMBER(), 0), pieces,
+    get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0), asked.data(), part.data(), mode, 0);
+  return part;
+}
+
+bool CanProduceParts(vtkAlgorithm* filter, int port)
+{
+  vtkAlgorithmOutput* source =
+    filter->GetNumberOfInputConnections(port) > 0 ? filter->GetInputConnection(port, 0) : nullptr;
+  return source && CanProduceParts(source->GetProducer(), source->GetIndex(), 0);
+}
+
+bool IsInMemory(vtkAlgorithm* filter, int port)
+{
+  vtkAlgorithmOutput* source =
+    filter->GetNumberOfInputConnections(port) > 0 ? filter->GetInputConnection(port, 0) : nullptr;
+  return source && vtkTrivialProducer::SafeDownCast(source->GetProducer());
 }
 
 std::pair<const void*, vtkMTimeType> GetInputStamp(vtkAlgorithm* filter, int port)

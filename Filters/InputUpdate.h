@@ -2,6 +2,9 @@
 #ifndef DeformVolumeInputUpdate_h
 #define DeformVolumeInputUpdate_h
 
+#include "Ranks.h"
+#include "VolumeDeformer.h" // for Extent
+
 #include "vtkType.h"
 
 #include <utility>
@@ -14,14 +17,30 @@ class vtkInformation;
 namespace deformvolume
 {
 
-/// Brings what is connected to an input port up to date, whole, at a time or, where that is null,
-/// at the time asked for at the output, and returns it; null where nothing is connected. Meant for
-/// the information pass: a whole extent may depend on the data of an input.
+/// Brings what is connected to an input port up to date, at a time or, where that is null, at the
+/// time asked for at the output, and returns it; null where nothing is connected. Of an image each
+/// rank gets all, of other data its piece. Meant for the information pass: a whole extent may
+/// depend on the data of an input.
 vtkDataObject* UpdateInput(
-  vtkAlgorithm* filter, int port, vtkInformation* output, const double* time);
+  vtkAlgorithm* filter, int port, vtkInformation* output, const double* time, const Ranks& ranks);
 
-/// Asks an input for all of its data, whatever part of the output is asked for.
-void RequestWhole(vtkInformation* input);
+/// Asks an input for the same: all of an image, of other data the piece of this rank, whatever part
+/// of the output is asked for.
+void RequestInput(vtkInformation* input, const Ranks& ranks);
+
+/// Asks an input for an extent, and for nothing else.
+void RequestExtent(vtkInformation* input, const Extent& extent);
+
+/// The part of the output that is asked for while requests go upstream: of the extent the piece,
+/// with its ghost levels.
+Extent GetRequestedPart(vtkInformation* output);
+
+/// Whether all that an image port's data come from can make a part of it. That a source can, it has
+/// to say itself (CAN_PRODUCE_SUB_EXTENT); filters from images to images can.
+bool CanProduceParts(vtkAlgorithm* filter, int port);
+
+/// Whether an image port has its data already, as a whole.
+bool IsInMemory(vtkAlgorithm* filter, int port);
 
 /// The producer of an input and the time of the last change up to it.
 std::pair<const void*, vtkMTimeType> GetInputStamp(vtkAlgorithm* filter, int port);

@@ -35,46 +35,53 @@ private:
 
 } // namespace
 
-bool MappingCache::IsCurrent(
-  const Deformation& deformation, const ImageGeometry& volume, bool extrapolate) const
+bool MappingCache::IsCurrent(const Deformation& deformation, const MappedVolume& volume) const
 {
-  return this->MappingKey == Key{ &deformation, deformation.GetRestVersion(), volume, extrapolate };
+  return this->MappingKey == Key{ &deformation, deformation.GetRestVersion(), volume };
 }
 
 StaticMappingBuilder& MappingCache::GetBuilder(const Deformation& deformation, const Key& key)
 {
-  if (!this->Builder || !(this->BuilderKey == key))
+  Key wholeKey = key;
+  wholeKey.Volume.Part = key.Volume.Whole.PointExtent;
+  if (!this->Builder || !(this->BuilderKey == wholeKey))
   {
     this->Builder.reset();
-    this->Builder =
-      std::make_unique<StaticMappingBuilder>(key.Volume.PointExtent, key.Volume.Spacing,
-        deformation.GetRestPoints(), deformation.GetTetrahedra(), key.Extrapolate);
-    this->BuilderKey = key;
+    const ImageGeometry& whole = key.Volume.Whole;
+    this->Builder = std::make_unique<StaticMappingBuilder>(whole.PointExtent, whole.Spacing,
+      deformation.GetRestPoints(), deformation.GetTetrahedra(), key.Volume.Extrapolate);
+    this->BuilderKey = wholeKey;
   }
   return *this->Builder;
 }
 
-std::uint64_t MappingCache::GetRunBytes(
-  const Deformation& deformation, const ImageGeometry& volume, bool extrapolate)
+std::uint64_t MappingCache::GetRunBytes(const Deformation& deformation, const MappedVolume& volume)
 {
   if (deformation.IsField())
   {
     return 0;
   }
-  if (this->IsCurrent(deformation, volume, extrapolate))
+  if (this->IsCurrent(deformation, volume))
   {
     return this->RunBytes;
   }
   const Stopwatch stopwatch(this->Time);
-  return this
-    ->GetBuilder(deformation, { &deformation, deformation.GetRestVersion(), volume, extrapolate })
-    .GetRunBytes();
+  const std::uint64_t bytes =
+    this->GetBuilder(deformation, { &deformation, deformation.GetRestVersion(), volume })
+      .GetRunBytes();
+  if (bytes == 0 || volume.IsWhole())
+  {
+    return bytes;
+  }
+  const double share = static_cast<double>(GetNumberOfPoints(volume.Part)) /
+    static_cast<double>(GetNumberOfPoints(volume.Whole.PointExtent));
+  return 1 + static_cast<std::uint64_t>(share * static_cast<double>(bytes));
 }
 
-void MappingCache::Update(const Deformation& deformation, const ImageGeometry& volume,
-  bool extrapolate, const std::function<bool(double)>& progress)
+void MappingCache::Update(const Deformation& deformation, const MappedVolume& volume,
+  const std::function<bool(double)>& progress)
 {
-  if (this->HasVoxels() && this->IsCurrent(deformation, volume, extrapolate))
+  if (this->HasVoxels() && this->IsCurrent(deformation, volume))
   {
     return;
   }
@@ -87,15 +94,18 @@ void MappingCache::Update(const Deformation& deformation, const ImageGeometry& v
   // The old links go first, so that two sets never stand in memory.
   this->Mapping = StaticMapping();
   this->MappingKey = Key();
-  const Key key{ &deformation, deformation.GetRestVersion(), volume, extrapolate };
-  StaticMapping mapping = this->GetBuilder(deformation, key).Build(progress);
-  this->Builder.reset();
+  const Key key{ &deformation, deformation.GetRestVersion(), volume };
+  StaticMapping mapping = this->GetBuilder(deformation, key).Build(volume.Part, progress);
+  if (volume.IsWhole())
+  {
+    this->Builder.reset();
+  }
   if (mapping.NumberOfFlatTetrahedra == static_cast<std::int64_t>(tetrahedra.size()))
   {
     throw Error("All " + std::to_string(tetrahedra.size()) +
       " tetrahedra of the deformation mesh are flat at rest. Connect a mesh with volume.");
   }
-  if (mapping.NumberOfInnerVoxels == 0)
+  if (mapping.NumberOfInnerVoxels == 0 && volume.IsWhole())
   {
     throw Error("The deformation mesh at rest holds no voxel of the volume. Check that both are "
                 "in the same world coordinates and overlap, and that input port 1 or, where it is "

@@ -14,23 +14,38 @@
 namespace deformvolume
 {
 
-/// Keeps the static mapping of a volume into a deformation mesh for as long as it serves.
+/// What a static mapping is made for.
+struct MappedVolume
+{
+  ImageGeometry Whole;
+  /// The voxels to map: all of them, or a part with whole rows where nothing is extrapolated.
+  Extent Part{ { 0, -1, 0, -1, 0, -1 } };
+  bool Extrapolate = false;
+
+  bool IsWhole() const { return this->Part == this->Whole.PointExtent; }
+  bool operator==(const MappedVolume& other) const
+  {
+    return this->Whole == other.Whole && this->Part == other.Part &&
+      this->Extrapolate == other.Extrapolate;
+  }
+};
+
+/// Keeps the static mapping of a volume into a deformation mesh for as long as it serves. What all
+/// parts of a volume have in common is found once.
 class MappingCache
 {
 public:
   /// Bytes of the runs of the mapping of a volume and a mesh, 0 where it has links: of the mapping
   /// that is there, or else, about, of that which Update will make.
-  std::uint64_t GetRunBytes(
-    const Deformation& deformation, const ImageGeometry& volume, bool extrapolate);
+  std::uint64_t GetRunBytes(const Deformation& deformation, const MappedVolume& volume);
 
   /// Makes the mapping that of a volume and a mesh, with its links or runs. Throws an Error where
-  /// the mesh holds no voxel, and Aborted where progress asked for an end.
-  void Update(const Deformation& deformation, const ImageGeometry& volume, bool extrapolate,
+  /// the mesh holds no voxel of the whole volume, and Aborted where progress asked for an end.
+  void Update(const Deformation& deformation, const MappedVolume& volume,
     const std::function<bool(double)>& progress);
 
   /// Whether the mapping is that of a volume and a mesh, with or without its links or runs.
-  bool IsCurrent(
-    const Deformation& deformation, const ImageGeometry& volume, bool extrapolate) const;
+  bool IsCurrent(const Deformation& deformation, const MappedVolume& volume) const;
 
   const std::vector<VertexLink>& GetLinks() const { return this->Mapping.Links; }
   const VertexRuns& GetRuns() const { return this->Mapping.Runs; }
@@ -57,12 +72,11 @@ private:
   {
     const Deformation* Source = nullptr;
     std::uint64_t RestVersion = 0;
-    ImageGeometry Volume;
-    bool Extrapolate = false;
+    MappedVolume Volume;
     bool operator==(const Key& other) const
     {
       return this->Source == other.Source && this->RestVersion == other.RestVersion &&
-        this->Volume == other.Volume && this->Extrapolate == other.Extrapolate;
+        this->Volume == other.Volume;
     }
   };
 
@@ -73,7 +87,7 @@ private:
   Key MappingKey; // without a source: there is no mapping
   std::uint64_t RunBytes = 0;
   std::unique_ptr<StaticMappingBuilder> Builder;
-  Key BuilderKey;
+  Key BuilderKey; // that of the whole volume
   std::uint64_t Version = 0;
   std::int64_t NumberOfBuilds = 0;
   double Time = 0.0;

@@ -13,19 +13,21 @@ namespace deformvolume
 {
 
 // Gives records their numbers: one for a tetrahedron, or one for each run of a sliver, in the order
-// in which they appear, which does not depend on threads.
+// in which they appear, which does not depend on threads. The origin of a tetrahedron's record is a
+// voxel that does not depend on the part of the volume that the runs are made for.
 class RunBuilder::Numbering
 {
 public:
-  Numbering(const RunBuilder& builder, std::vector<RestTetrahedron>& records)
+  Numbering(const RunBuilder& builder, const Extent& part, std::vector<RestTetrahedron>& records)
     : Builder(builder)
+    , First(part[0], part[2], part[4])
     , Records(records)
     , Known(builder.Tetrahedra.size(), Unknown)
   {
   }
 
-  // voxel: local index of the run's first one.
-  std::int32_t GetRecord(std::int32_t tetrahedron, const glm::i64vec3& voxel)
+  // voxel: the run's first one.
+  std::int32_t GetRecord(std::int32_t tetrahedron, glm::i64vec3 voxel)
   {
     std::int32_t& known = this->Known[tetrahedron];
     if (known >= 0)
@@ -33,19 +35,29 @@ public:
       return known;
     }
     const auto record = static_cast<std::int32_t>(this->Records.size());
-    this->Records.push_back(this->Builder.MakeRest(tetrahedron, voxel));
     if (known == Unknown)
     {
-      known = this->Builder.IsSliver(tetrahedron) ? Sliver : record;
+      const bool shared =
+        !this->Builder.IsSliver(tetrahedron) && this->Builder.Linker.FindVoxel(tetrahedron, voxel);
+      known = shared ? record : Sliver;
     }
+    RestTetrahedron rest = this->Builder.MakeRest(tetrahedron, voxel);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      rest.Origin[axis] = static_cast<double>(voxel[axis] - this->First[axis]);
+    }
+    this->Records.push_back(rest);
     return record;
   }
+
+  const glm::i64vec3& GetFirst() const { return this->First; }
 
 private:
   static constexpr std::int32_t Unknown = -1;
   static constexpr std::int32_t Sliver = -2;
 
   const RunBuilder& Builder;
+  const glm::i64vec3 First;
   std::vector<RestTetrahedron>& Records;
   std::vector<std::int32_t> Known;
 };
@@ -59,9 +71,8 @@ RunBuilder::RunBuilder(const VoxelLinker& linker, const Extent& voxels,
 {
 }
 
-RunBuilder::TileRuns RunBuilder::MakeTileRuns(std::int64_t tile) const
+RunBuilder::TileRuns RunBuilder::MakeTileRuns(std::int64_t tile, const VoxelBox& box) const
 {
-  const VoxelBox box = this->Linker.GetTiles().GetVoxels(tile);
   VoxelTarget<std::int32_t> target;
   std::copy(box.Min.begin(), box.Min.end(), target.First);
   target.Size[0] = box.Max[0] - box.Min[0] + 1;
@@ -71,7 +82,7 @@ RunBuilder::TileRuns RunBuilder::MakeTileRuns(std::int64_t tile) const
   target.Data = tetrahedra.data();
 
   TileRuns made;
-  made.InnerVoxels = this->Linker.LinkTile(tile, target);
+  made.InnerVoxels = this->Linker.LinkTile(tile, box, target);
   made.RunsOfRow.reserve(rows);
   const std::int32_t* row = tetrahedra.data();
   for (std::int64_t r = 0; r < rows; ++r, row += target.Size[0])
@@ -123,14 +134,12 @@ RestTetrahedron RunBuilder::MakeRest(std::int32_t tetrahedron, const glm::i64vec
 {
   BarycentricMap map; // a tetrahedron that holds voxels is not flat
   map.SetTetrahedron(this->Tetrahedra[tetrahedron], this->RestPoints);
-  const glm::i64vec3 first(this->Voxels[0], this->Voxels[2], this->Voxels[4]);
-  const glm::dvec3 weights = map.GetWeights(glm::dvec3(voxel + first));
+  const glm::dvec3 weights = map.GetWeights(glm::dvec3(voxel));
   RestTetrahedron rest;
   rest.Tetrahedron = tetrahedron;
   for (int i = 0; i < 3; ++i)
   {
     const glm::dvec3 gradient = map.GetGradient(i);
-    rest.Origin[i] = static_cast<double>(voxel[i]);
     rest.Weights[i] = weights[i];
     rest.Gradients[i] = { { gradient.x, gradient.y, gradient.z } };
   }
@@ -164,7 +173,7 @@ RunBuilder::Estimate RunBuilder::EstimateRuns() const
     {
       for (vtkIdType i = begin; i < end; ++i)
       {
-        made[i] = this->MakeTileRuns(chosen[i]);
+        made[i] = this->MakeTileRuns(chosen[i], tiles.GetVoxels(chosen[i]));
         for (const VertexRun& run : made[i].Runs)
         {
           ofSlivers[i] += run.Tetrahedron >= 0 && this->IsSliver(run.Tetrahedron) ? 1 : 0;
@@ -192,11 +201,11 @@ RunBuilder::Estimate RunBuilder::EstimateRuns() const
   return estimate;
 }
 
-void RunBuilder::Append(const std::vector<TileRuns>& tiles, std::int64_t firstTile,
+void RunBuilder::Append(const std::vector<TileRuns>& tiles, const VoxelBox& firstBox,
   Numbering& numbering, VertexRuns& runs) const
 {
   // Tiles lie side by side on y: a plane of rows goes through all of them.
-  const VoxelBox box = this->Linker.GetTiles().GetVoxels(firstTile);
+  const std::int64_t planes = firstBox.Max[2] - firstBox.Min[2] + 1;
   std::vector<const VertexRun*> next;
   std::vector<const std::uint32_t*> row;
   for (const TileRuns& tile : tiles)
@@ -204,13 +213,12 @@ void RunBuilder::Append(const std::vector<TileRuns>& tiles, std::int64_t firstTi
     next.push_back(tile.Runs.data());
     row.push_back(tile.RunsOfRow.data());
   }
-  for (std::int64_t z = box.Min[2]; z <= box.Max[2]; ++z)
+  for (std::int64_t z = firstBox.Min[2]; z <= firstBox.Max[2]; ++z)
   {
-    std::int64_t y = 0;
+    std::int64_t y = firstBox.Min[1];
     for (std::size_t tile = 0; tile < tiles.size(); ++tile)
     {
-      const auto planes = static_cast<std::size_t>(box.Max[2] - box.Min[2] + 1);
-      const std::size_t rows = tiles[tile].RunsOfRow.size() / planes;
+      const std::size_t rows = tiles[tile].RunsOfRow.size() / static_cast<std::size_t>(planes);
       for (std::size_t r = 0; r < rows; ++r, ++y, ++row[tile])
       {
         if (runs.Runs.size() + *row[tile] > std::numeric_limits<std::uint32_t>::max())
@@ -224,8 +232,8 @@ void RunBuilder::Append(const std::vector<TileRuns>& tiles, std::int64_t firstTi
           VertexRun run = *next[tile]++;
           if (run.Tetrahedron >= 0)
           {
-            run.Tetrahedron =
-              numbering.GetRecord(run.Tetrahedron, glm::i64vec3(run.Begin, y, z - this->Voxels[4]));
+            run.Tetrahedron = numbering.GetRecord(
+              run.Tetrahedron, glm::i64vec3(numbering.GetFirst().x + run.Begin, y, z));
           }
           runs.Runs.push_back(run);
         }
@@ -234,15 +242,20 @@ void RunBuilder::Append(const std::vector<TileRuns>& tiles, std::int64_t firstTi
   }
 }
 
-VertexRuns RunBuilder::Build(
-  std::int64_t& numberOfInnerVoxels, const std::function<void(double)>& progress) const
+VertexRuns RunBuilder::Build(const Extent& part, std::int64_t& numberOfInnerVoxels,
+  const std::function<void(double)>& progress) const
 {
   const TetrahedronTiles& tiles = this->Linker.GetTiles();
-  const std::int64_t across = tiles.GetNumberOfTiles(0);
-  const std::int64_t layers = tiles.GetNumberOfTiles(1);
+  const TetrahedronTiles::Rectangle wanted = tiles.GetTiles(MakeVoxelBox(part));
+  const std::int64_t across = wanted.End[0] - wanted.Begin[0];
+  const std::int64_t layers = wanted.End[1] - wanted.Begin[1];
+  const auto getTile = [&](std::int64_t layer, std::int64_t place)
+  { return (wanted.Begin[1] + layer) * tiles.GetNumberOfTiles(0) + wanted.Begin[0] + place; };
+  const auto getBox = [&](std::int64_t layer, std::int64_t place)
+  { return Intersect(tiles.GetVoxels(getTile(layer, place)), MakeVoxelBox(part)); };
   VertexRuns runs;
-  runs.RowBegins.reserve(GetSize(this->Voxels, 1) * GetSize(this->Voxels, 2) + 1);
-  Numbering numbering(*this, runs.Tetrahedra);
+  runs.RowBegins.reserve(GetSize(part, 1) * GetSize(part, 2) + 1);
+  Numbering numbering(*this, part, runs.Tetrahedra);
   numberOfInnerVoxels = 0;
   // Enough tiles at a time to keep all threads busy.
   const std::int64_t step = std::max<std::int64_t>(1, 64 / across);
@@ -255,12 +268,15 @@ VertexRuns RunBuilder::Build(
       {
         for (vtkIdType tile = first; tile < last; ++tile)
         {
-          made[tile / across - begin][tile % across] = this->MakeTileRuns(tile);
+          const std::int64_t layer = tile / across;
+          const std::int64_t place = tile % across;
+          made[layer - begin][place] =
+            this->MakeTileRuns(getTile(layer, place), getBox(layer, place));
         }
       });
     for (std::int64_t layer = begin; layer < end; ++layer)
     {
-      this->Append(made[layer - begin], layer * across, numbering, runs);
+      this->Append(made[layer - begin], getBox(layer, 0), numbering, runs);
       for (const TileRuns& tile : made[layer - begin])
       {
         numberOfInnerVoxels += tile.InnerVoxels;

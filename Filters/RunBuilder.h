@@ -16,7 +16,8 @@ namespace deformvolume
 
 /// Makes the static mapping by runs, some tiles of a VoxelLinker after the others, in parallel over
 /// tiles, without ever holding more than the tetrahedra of the voxels of some tiles. What it is
-/// made of must outlive it.
+/// made of must outlive it. The displacement of a voxel is the same to the last bit whatever part
+/// of the volume the runs are made for.
 class RunBuilder
 {
 public:
@@ -34,8 +35,9 @@ public:
 
   /// numberOfInnerVoxels: of voxels with a tetrahedron. progress gets the fraction done and may
   /// throw. Throws Error where there are more runs than 32 bits count.
-  VertexRuns Build(
-    std::int64_t& numberOfInnerVoxels, const std::function<void(double)>& progress) const;
+  /// part: voxels of the volume, whole rows.
+  VertexRuns Build(const Extent& part, std::int64_t& numberOfInnerVoxels,
+    const std::function<void(double)>& progress) const;
 
 private:
   struct TileRuns
@@ -47,8 +49,9 @@ private:
   };
   class Numbering;
 
-  TileRuns MakeTileRuns(std::int64_t tile) const;
-  void Append(const std::vector<TileRuns>& tiles, std::int64_t firstTile, Numbering& numbering,
+  /// box: voxels of a tile.
+  TileRuns MakeTileRuns(std::int64_t tile, const VoxelBox& box) const;
+  void Append(const std::vector<TileRuns>& tiles, const VoxelBox& firstBox, Numbering& numbering,
     VertexRuns& runs) const;
   bool IsSliver(std::int32_t tetrahedron) const;
   RestTetrahedron MakeRest(std::int32_t tetrahedron, const glm::i64vec3& voxel) const;

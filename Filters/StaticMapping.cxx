@@ -61,7 +61,8 @@ StaticMappingBuilder::StaticMappingBuilder(const Extent& voxels, const glm::dvec
 
 StaticMappingBuilder::~StaticMappingBuilder() = default;
 
-StaticMapping StaticMappingBuilder::Build(const std::function<bool(double)>& progress) const
+StaticMapping StaticMappingBuilder::Build(
+  const Extent& part, const std::function<bool(double)>& progress) const
 {
   const auto report = [&](double done)
   {
@@ -79,41 +80,47 @@ StaticMapping StaticMappingBuilder::Build(const std::function<bool(double)>& pro
   if (this->RunBytes > 0)
   {
     const RunBuilder builder(*this->Linker, this->Voxels, this->RestPoints, this->Tetrahedra);
-    mapping.Runs = builder.Build(mapping.NumberOfInnerVoxels,
+    mapping.Runs = builder.Build(part, mapping.NumberOfInnerVoxels,
       [&](double done) { report(SortedFraction + (1.0 - SortedFraction) * done); });
   }
   else
   {
-    this->BuildLinks(report, mapping);
+    this->BuildLinks(part, report, mapping);
   }
   mapping.NumberOfFlatTetrahedra = this->Linker->GetTiles().GetNumberOfFlatTetrahedra();
   return mapping;
 }
 
 void StaticMappingBuilder::BuildLinks(
-  const std::function<void(double)>& report, StaticMapping& mapping) const
+  const Extent& part, const std::function<void(double)>& report, StaticMapping& mapping) const
 {
   const double linkingDone = this->Extrapolate ? 0.6 : 1.0;
-  mapping.Links.resize(GetNumberOfPoints(this->Voxels));
+  mapping.Links.resize(GetNumberOfPoints(part));
   VoxelTarget<VertexLink> target;
   target.Data = mapping.Links.data();
   for (int axis = 0; axis < 3; ++axis)
   {
-    target.First[axis] = this->Voxels[2 * axis];
+    target.First[axis] = part[2 * axis];
   }
-  target.Size[0] = GetSize(this->Voxels, 0);
-  target.Size[1] = GetSize(this->Voxels, 1);
+  target.Size[0] = GetSize(part, 0);
+  target.Size[1] = GetSize(part, 1);
   constexpr int steps = 16;
-  const std::int64_t tiles = this->Linker->GetTiles().GetNumberOfTiles();
+  const TetrahedronTiles& all = this->Linker->GetTiles();
+  const TetrahedronTiles::Rectangle wanted = all.GetTiles(MakeVoxelBox(part));
+  const std::int64_t across = wanted.End[0] - wanted.Begin[0];
+  const std::int64_t tiles = across * (wanted.End[1] - wanted.Begin[1]);
   std::atomic<std::int64_t> inner{ 0 };
   for (int step = 0; step < steps; ++step)
   {
     ParallelFor(tiles * step / steps, tiles * (step + 1) / steps, 1,
       [&](vtkIdType first, vtkIdType last)
       {
-        for (vtkIdType tile = first; tile < last; ++tile)
+        for (vtkIdType i = first; i < last; ++i)
         {
-          inner += this->Linker->LinkTile(tile, target);
+          const std::int64_t tile =
+            (wanted.Begin[1] + i / across) * all.GetNumberOfTiles(0) + wanted.Begin[0] + i % across;
+          inner += this->Linker->LinkTile(
+            tile, Intersect(all.GetVoxels(tile), MakeVoxelBox(part)), target);
         }
       });
     report(SortedFraction + (linkingDone - SortedFraction) * (step + 1) / steps);

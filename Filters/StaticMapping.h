@@ -71,10 +71,17 @@ public:
   std::uint64_t GetRunBytes() const { return this->RunBytes; }
 
   /// progress: as in DeformRequest; throws Aborted where it returns false.
-  StaticMapping Build(const std::function<bool(double)>& progress = {}) const;
+  StaticMapping Build(const std::function<bool(double)>& progress = {}) const
+  {
+    return this->Build(this->Voxels, progress);
+  }
+  /// The mapping of a part of the volume alone, whole rows of voxels, of a mapping that does not
+  /// extrapolate. Voxels are displaced as by the mapping of the whole, to the last bit.
+  StaticMapping Build(const Extent& part, const std::function<bool(double)>& progress = {}) const;
 
 private:
-  void BuildLinks(const std::function<void(double)>& report, StaticMapping& mapping) const;
+  void BuildLinks(
+    const Extent& part, const std::function<void(double)>& report, StaticMapping& mapping) const;
 
   const Extent Voxels;
   const glm::dvec3 Spacing;

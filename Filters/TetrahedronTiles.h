@@ -29,6 +29,24 @@ public:
   std::int64_t GetNumberOfTiles(int axis) const { return this->Count[axis]; }
   VoxelBox GetVoxels(std::int64_t tile) const;
 
+  /// The tiles that hold voxels of a box within the volume, on y (0) and z (1).
+  struct Rectangle
+  {
+    std::int64_t Begin[2];
+    std::int64_t End[2];
+  };
+  Rectangle GetTiles(const VoxelBox& box) const
+  {
+    Rectangle tiles;
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      const std::int64_t first = this->Voxels[2 * axis + 2];
+      tiles.Begin[axis] = (box.Min[axis + 1] - first) / this->Size[axis];
+      tiles.End[axis] = (box.Max[axis + 1] - first) / this->Size[axis] + 1;
+    }
+    return tiles;
+  }
+
   /// The tetrahedra of a tile in ascending order.
   struct List
   {

@@ -72,6 +72,7 @@ VoxelLinker::VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& re
   const std::vector<Tetrahedron>& tetrahedra)
   : RestPoints(restPoints)
   , Tetrahedra(tetrahedra)
+  , Voxels(MakeVoxelBox(voxels))
   , Tiles(voxels, restPoints, tetrahedra, RoundingDistance)
 {
 }
@@ -89,32 +90,91 @@ VoxelLinker::Nodes VoxelLinker::GetNodes(const Tetrahedron& tetrahedron) const
   return nodes;
 }
 
-template <typename Element>
-std::int64_t VoxelLinker::LinkTile(std::int64_t tile, const VoxelTarget<Element>& target) const
+VoxelBox VoxelLinker::GetBox(const Nodes& nodes, const VoxelBox& part)
 {
-  const VoxelBox tileBox = this->Tiles.GetVoxels(tile);
+  VoxelBox box;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const auto ends =
+      std::minmax({ nodes[0][axis], nodes[1][axis], nodes[2][axis], nodes[3][axis] });
+    // Shifts round down, of negative numbers too.
+    box.Min[axis] = std::max((ends.first + RasterUnit - 1) >> RasterBits, part.Min[axis]);
+    box.Max[axis] = std::min(ends.second >> RasterBits, part.Max[axis]);
+  }
+  return box;
+}
+
+bool VoxelLinker::FitsInt64(const Nodes& nodes)
+{
+  RasterPoint min = nodes[0];
+  RasterPoint max = nodes[0];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int node = 1; node < 4; ++node)
+    {
+      min[axis] = std::min(min[axis], nodes[node][axis]);
+      max[axis] = std::max(max[axis], nodes[node][axis]);
+    }
+  }
+  return deformvolume::FitsInt64(min, max);
+}
+
+template <typename Integer>
+bool VoxelLinker::FindVoxel(const Nodes& nodes, const VoxelBox& box, glm::i64vec3& voxel)
+{
+  TetrahedronRaster<Integer> raster;
+  bool found = false;
+  const auto take = [&](std::int64_t y, std::int64_t z, std::int64_t first, std::int64_t last)
+  {
+    voxel = found ? voxel : glm::i64vec3(first + (last - first) / 2, y, z);
+    found = true;
+  };
+  // The row nearest to the centroid has voxels, but for small and thin tetrahedra.
+  VoxelBox row = box;
+  for (int axis = 1; axis < 3; ++axis)
+  {
+    const std::int64_t sum = nodes[0][axis] + nodes[1][axis] + nodes[2][axis] + nodes[3][axis];
+    const std::int64_t middle = (sum + 2 * RasterUnit) >> (RasterBits + 2);
+    row.Min[axis] = row.Max[axis] = std::min(std::max(middle, box.Min[axis]), box.Max[axis]);
+  }
+  if (raster.SetTetrahedron(nodes, row))
+  {
+    raster.ForEachRow(take);
+  }
+  for (row = box; !found && row.Min[2] <= box.Max[2]; ++row.Min[2])
+  {
+    row.Max[2] = row.Min[2];
+    if (!raster.SetTetrahedron(nodes, row))
+    {
+      return false;
+    }
+    raster.ForEachRow(take);
+  }
+  return found;
+}
+
+bool VoxelLinker::FindVoxel(std::int32_t tetrahedron, glm::i64vec3& voxel) const
+{
+  const Nodes nodes = this->GetNodes(this->Tetrahedra[tetrahedron]);
+  const VoxelBox box = GetBox(nodes, this->Voxels);
+  return !box.IsEmpty() &&
+    (FitsInt64(nodes) ? FindVoxel<std::int64_t>(nodes, box, voxel)
+                      : FindVoxel<WideInteger>(nodes, box, voxel));
+}
+
+template <typename Element>
+std::int64_t VoxelLinker::LinkTile(
+  std::int64_t tile, const VoxelBox& part, const VoxelTarget<Element>& target) const
+{
   std::vector<glm::i64vec3> doubtful;
   std::int64_t linked = 0;
   for (const std::int32_t id : this->Tiles.GetTetrahedra(tile))
   {
     const Nodes nodes = this->GetNodes(this->Tetrahedra[id]);
-    RasterPoint min = nodes[0];
-    RasterPoint max = nodes[0];
-    VoxelBox box;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      for (int node = 1; node < 4; ++node)
-      {
-        min[axis] = std::min(min[axis], nodes[node][axis]);
-        max[axis] = std::max(max[axis], nodes[node][axis]);
-      }
-      // Shifts round down, of negative numbers too.
-      box.Min[axis] = std::max((min[axis] + RasterUnit - 1) >> RasterBits, tileBox.Min[axis]);
-      box.Max[axis] = std::min(max[axis] >> RasterBits, tileBox.Max[axis]);
-    }
+    const VoxelBox box = GetBox(nodes, part);
     if (!box.IsEmpty())
     {
-      linked += FitsInt64(min, max)
+      linked += FitsInt64(nodes)
         ? this->LinkTetrahedron<std::int64_t>(id, nodes, box, target, doubtful)
         : this->LinkTetrahedron<WideInteger>(id, nodes, box, target, doubtful);
     }
@@ -222,7 +282,9 @@ bool VoxelLinker::LinkDoubtful(std::int64_t tile, const glm::i64vec3& voxel, Ele
   return IsLinked(element);
 }
 
-template std::int64_t VoxelLinker::LinkTile(std::int64_t, const VoxelTarget<VertexLink>&) const;
-template std::int64_t VoxelLinker::LinkTile(std::int64_t, const VoxelTarget<std::int32_t>&) const;
+template std::int64_t VoxelLinker::LinkTile(
+  std::int64_t, const VoxelBox&, const VoxelTarget<VertexLink>&) const;
+template std::int64_t VoxelLinker::LinkTile(
+  std::int64_t, const VoxelBox&, const VoxelTarget<std::int32_t>&) const;
 
 } // namespace deformvolume

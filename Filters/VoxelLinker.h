@@ -9,6 +9,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -34,6 +35,30 @@ struct VoxelTarget
   }
 };
 
+/// The voxels of an extent.
+inline VoxelBox MakeVoxelBox(const Extent& extent)
+{
+  VoxelBox box;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    box.Min[axis] = extent[2 * axis];
+    box.Max[axis] = extent[2 * axis + 1];
+  }
+  return box;
+}
+
+/// The voxels that two boxes share.
+inline VoxelBox Intersect(const VoxelBox& a, const VoxelBox& b)
+{
+  VoxelBox box;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    box.Min[axis] = std::max(a.Min[axis], b.Min[axis]);
+    box.Max[axis] = std::min(a.Max[axis], b.Max[axis]);
+  }
+  return box;
+}
+
 /// Finds the tetrahedra of voxels, tile by tile. Calls for several tiles may run at a time. What
 /// it is made of must outlive it.
 class VoxelLinker
@@ -45,15 +70,26 @@ public:
 
   const TetrahedronTiles& GetTiles() const { return this->Tiles; }
 
-  /// Fills the elements of the voxels of a tile, which are outside the mesh so far; returns how
-  /// many have a tetrahedron. Element: VertexLink or std::int32_t.
+  /// Fills the elements of the voxels of a tile that lie in a part of it, and which are outside the
+  /// mesh so far; returns how many have a tetrahedron. What a voxel gets does not depend on the
+  /// part, if that has whole rows. Element: VertexLink or std::int32_t.
   template <typename Element>
-  std::int64_t LinkTile(std::int64_t tile, const VoxelTarget<Element>& target) const;
+  std::int64_t LinkTile(
+    std::int64_t tile, const VoxelBox& part, const VoxelTarget<Element>& target) const;
+
+  /// A voxel in a tetrahedron, always the same one; false where no voxel of the volume lies in the
+  /// tetrahedron after its nodes are rounded.
+  bool FindVoxel(std::int32_t tetrahedron, glm::i64vec3& voxel) const;
 
 private:
   using Nodes = std::array<RasterPoint, 4>;
 
   Nodes GetNodes(const Tetrahedron& tetrahedron) const;
+  /// The voxels of a part of the volume in the box of a tetrahedron.
+  static VoxelBox GetBox(const Nodes& nodes, const VoxelBox& part);
+  static bool FitsInt64(const Nodes& nodes);
+  template <typename Integer>
+  static bool FindVoxel(const Nodes& nodes, const VoxelBox& box, glm::i64vec3& voxel);
   template <typename Integer, typename Element>
   std::int64_t LinkTetrahedron(std::int32_t id, const Nodes& nodes, const VoxelBox& box,
     const VoxelTarget<Element>& target, std::vector<glm::i64vec3>& doubtful) const;
@@ -62,6 +98,7 @@ private:
 
   const std::vector<glm::dvec3>& RestPoints;
   const std::vector<Tetrahedron>& Tetrahedra;
+  const VoxelBox Voxels;
   const TetrahedronTiles Tiles;
 };
 

@@ -253,26 +253,42 @@ int vtkDeformVolumeFilter::RequestInformation(
     this->Internals->InformationFailed = false;
     this->Internals->MissingInput.clear();
   }
-  if (this->GetNumberOfInputConnections(0) == 0)
+  const deformvolume::Ranks ranks;
+  if (ranks.AreMany())
   {
-    throw Error("There is no volume. Connect a vtkImageData to input port 0.");
-  }
-  if (this->GetNumberOfInputConnections(1) == 0)
-  {
-    throw Error("There is no deformation. Connect a vtkUnstructuredGrid with tetrahedra or a "
-                "vtkImageData with displacements to input port 1.");
+    ranks.GetNeighbours(); // before anything asks for a device
   }
   vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
-  if (!volumeInfo->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-  {
-    throw Error("The volume on input port 0 announces no whole extent. Connect a vtkImageData; "
-                "from a composite dataset, extract one block.");
-  }
-  const ImageGeometry volume = deformvolume::GetGeometry(volumeInfo);
-  deformvolume::CheckVolume(volume);
-  const ImageGeometry outputGeometry = this->Internals->GetOutputGeometry(volume);
+  ImageGeometry volume;
+  ImageGeometry outputGeometry;
+  ranks.Attempt(
+    [&]
+    {
+      if (this->GetNumberOfInputConnections(0) == 0)
+      {
+        throw Error("There is no volume. Connect a vtkImageData to input port 0.");
+      }
+      if (this->GetNumberOfInputConnections(1) == 0)
+      {
+        throw Error("There is no deformation. Connect a vtkUnstructuredGrid with tetrahedra or a "
+                    "vtkImageData with displacements to input port 1.");
+      }
+      if (!volumeInfo->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+      {
+        throw Error("The volume on input port 0 announces no whole extent. Connect a "
+                    "vtkImageData; from a composite dataset, extract one block.");
+      }
+      volume = deformvolume::GetGeometry(volumeInfo);
+      deformvolume::CheckVolume(volume);
+      outputGeometry = this->Internals->GetOutputGeometry(volume);
+    });
   deformvolume::MergeTimes(this, outInfo);
 
+  deformvolume::IndexBounds deformed;
+  if (this->OutputBoundsMode == DEFORMED_BOUNDS)
+  {
+    deformed = this->Internals->GetDeformedBounds(ranks, volume, outInfo);
+  }
   Extent whole;
   switch (this->OutputBoundsMode)
   {
@@ -285,7 +301,7 @@ int vtkDeformVolumeFilter::RequestInformation(
         deformvolume::GetWorldBoxBounds(this->CustomBounds, outputGeometry));
       break;
     default:
-      whole = deformvolume::GetExtentInside(this->Internals->GetDeformedBounds(volume, outInfo));
+      whole = deformvolume::GetExtentInside(deformed);
   }
   whole = deformvolume::GetPadded(whole, this->Padding);
 
@@ -310,7 +326,7 @@ int vtkDeformVolumeFilter::RequestInformation(
 
 //------------------------------------------------------------------------------
 int vtkDeformVolumeFilter::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   if (this->Internals->InformationFailed)
   {
@@ -320,14 +336,17 @@ int vtkDeformVolumeFilter::RequestUpdateExtent(
     }
     return 0;
   }
-  // Any voxel may move anywhere.
-  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
+  const deformvolume::Ranks ranks;
+  for (int port = 1; port < this->GetNumberOfInputPorts(); ++port)
   {
     if (input[port]->GetNumberOfInformationObjects() > 0)
     {
-      deformvolume::RequestWhole(input[port]->GetInformationObject(0));
+      deformvolume::RequestInput(input[port]->GetInformationObject(0), ranks);
     }
   }
+  vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
+  deformvolume::RequestExtent(volumeInfo,
+    this->Internals->GetNeededExtent(ranks, volumeInfo, output->GetInformationObject(0)));
   return 1;
 }
 
@@ -351,36 +370,42 @@ int vtkDeformVolumeFilter::RequestData(
   this->PreprocessingTime = this->TransferTime = this->MappingTime = this->ResamplingTime = 0.0;
   this->NumberOfInvertedTetrahedra = this->NumberOfFlatTetrahedra = this->NumberOfCoveredVoxels = 0;
   this->NumberOfBricks = this->NumberOfResampledBricks = 0;
+  const deformvolume::Ranks ranks;
   vtkImageData* volume = vtkImageData::GetData(input[0]);
-  if (!volume)
-  {
-    throw Error("There is no volume. Connect a vtkImageData to input port 0.");
-  }
-  const ImageGeometry geometry = deformvolume::GetGeometry(volume);
-  deformvolume::CheckVolume(geometry);
-  const DeformationSource source = this->Internals->MakeSource(
-    geometry, vtkDataObject::GetData(input[1]), vtkDataObject::GetData(input[2]));
+  deformvolume::MappedVolume mapped;
+  ranks.Attempt(
+    [&]
+    {
+      if (!volume)
+      {
+        throw Error("There is no volume. Connect a vtkImageData to input port 0.");
+      }
+      mapped = this->Internals->GetMappedVolume(volume, input[0]->GetInformationObject(0));
+    });
+  const ImageGeometry& geometry = mapped.Whole;
+  const DeformationSource source = this->Internals->ReadDeformation(
+    ranks, geometry, vtkDataObject::GetData(input[1]), vtkDataObject::GetData(input[2]));
   deformvolume::Deformation& deformation = this->Internals->Deformation;
-  deformation.Read(source);
 
-  std::vector<std::string> leftOut;
-  const std::vector<deformvolume::SourceArray> arrays =
-    deformvolume::SelectArrays(volume, this->Internals->CategoricalArrays, leftOut);
-  this->Internals->WarnOfIgnored(volume, leftOut);
+  std::vector<deformvolume::SourceArray> arrays;
+  ranks.Attempt(
+    [&]
+    {
+      std::vector<std::string> leftOut;
+      arrays = deformvolume::SelectArrays(volume, this->Internals->CategoricalArrays, leftOut);
+      this->Internals->WarnOfIgnored(volume, leftOut);
+    });
 
   deformvolume::DeformRequest request;
   outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), request.OutputExtent.data());
-  if (deformvolume::GetNumberOfPoints(request.OutputExtent) == 0)
+  const vtkIdType numberOfPoints = deformvolume::GetNumberOfPoints(request.OutputExtent);
+  if (numberOfPoints == 0 && !ranks.AreMany())
   {
     return 1;
   }
-  const vtkIdType numberOfPoints = deformvolume::GetNumberOfPoints(request.OutputExtent);
-  const deformvolume::Lattice lattice{ geometry.PointExtent,
-    { { source.Scale.x, source.Scale.y, source.Scale.z } } };
-  const bool extrapolate = this->OutsideMode == EXTRAPOLATE;
+  deformvolume::Lattice lattice{ mapped.Part,
+    { { source.Scale.x, source.Scale.y, source.Scale.z } }, geometry.PointExtent };
   deformvolume::DeviceSession& device = this->Internals->Device;
-  this->DeviceInUse = device.SetDevice(this->Device, static_cast<std::uint64_t>(this->MemoryLimit),
-    static_cast<std::size_t>(this->WorkGroupSize));
   const std::vector<deformvolume::VolumeArray> described =
     deformvolume::Describe(arrays, this->BackgroundValue);
   Extent whole;
@@ -388,47 +413,86 @@ int vtkDeformVolumeFilter::RequestData(
   request.Interpolation = this->Interpolation == CUBIC_INTERPOLATION
     ? deformvolume::Interpolation::Cubic
     : deformvolume::Interpolation::Linear;
-  const std::uint64_t heldBytes = this->Internals->Outputs.Prepare(arrays, numberOfPoints);
+  std::uint64_t heldBytes = 0;
   const std::function<void(const Extent&, deformvolume::Resampling)> checkMemory =
     [&](const Extent& extent, deformvolume::Resampling method)
   {
-    const bool mapped = method != deformvolume::Resampling::MeshRasterization;
+    const bool isMapped = method != deformvolume::Resampling::MeshRasterization;
     device.CheckMemory(lattice, described, extent, heldBytes, deformation,
-      mapped ? this->Internals->Mapping.GetRunBytes(deformation, geometry, extrapolate) : 0,
-      method);
+      isMapped ? this->Internals->Mapping.GetRunBytes(deformation, mapped) : 0, method);
   };
-  request.Method = this->Internals->ChooseResampler(
-    [&](deformvolume::Resampling method) { checkMemory(whole, method); });
-  checkMemory(request.OutputExtent, request.Method);
-
-  device.SetVolume(lattice, volume, arrays, this->BackgroundValue, request.Method);
-  if (request.Method == deformvolume::Resampling::MeshRasterization)
+  std::string form = "field";
+  ranks.Attempt(
+    [&]
+    {
+      if (numberOfPoints == 0)
+      {
+        return;
+      }
+      this->DeviceInUse =
+        device.SetDevice(this->Device, static_cast<std::uint64_t>(this->MemoryLimit),
+          static_cast<std::size_t>(this->WorkGroupSize));
+      heldBytes = this->Internals->Outputs.Prepare(arrays, numberOfPoints);
+      // The memory for the whole decides, so that all parts are made alike. A volume that is read
+      // in parts need never fit.
+      request.Method = this->Internals->ChooseResampler(
+        [&](deformvolume::Resampling method)
+        {
+          if (mapped.IsWhole())
+          {
+            checkMemory(whole, method);
+          }
+        });
+      if (!deformation.IsField() && request.Method != deformvolume::Resampling::MeshRasterization)
+      {
+        form = this->Internals->Mapping.GetRunBytes(deformation, mapped) > 0 ? "runs" : "links";
+      }
+    });
+  if (ranks.IsAny(request.Method == deformvolume::Resampling::MeshRasterization))
   {
-    device.SetRestMesh(deformation);
+    request.Method = deformvolume::Resampling::MeshRasterization;
+    this->Internals->SetResamplerInUse(request.Method);
   }
-  else
+  deformvolume::DeformReport report;
+  const auto deform = [&]
   {
-    device.SetDeformation(deformation, this->Internals->Mapping, geometry, extrapolate,
-      this->Internals->GetProgress(0.0, 0.3));
-  }
-  request.Progress = this->Internals->GetProgress(0.3, 1.0);
-  if (!request.Progress(0.0))
+    checkMemory(request.OutputExtent, request.Method);
+    device.SetVolume(lattice, volume, arrays, this->BackgroundValue, request.Method);
+    if (request.Method == deformvolume::Resampling::MeshRasterization)
+    {
+      device.SetRestMesh(deformation);
+    }
+    else
+    {
+      device.SetDeformation(
+        deformation, this->Internals->Mapping, mapped, this->Internals->GetProgress(0.0, 0.3));
+    }
+    request.Progress = this->Internals->GetProgress(0.3, 1.0);
+    if (!request.Progress(0.0))
+    {
+      throw deformvolume::Aborted();
+    }
+
+    const ImageGeometry outputGeometry = this->Internals->GetOutputGeometry(geometry);
+    const glm::dmat3 rows = glm::transpose(outputGeometry.Direction);
+    image->SetExtent(request.OutputExtent.data());
+    image->SetOrigin(glm::value_ptr(outputGeometry.Origin));
+    image->SetSpacing(glm::value_ptr(outputGeometry.Spacing));
+    image->SetDirectionMatrix(glm::value_ptr(rows));
+    image->GetFieldData()->ShallowCopy(volume->GetFieldData());
+    this->Internals->Outputs.Make(arrays, image, request);
+    request.Incremental = this->Incremental;
+    deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
+
+    report = device.Deform(request);
+  };
+  this->Internals->RunInTurn(ranks,
+    deformvolume::DescribeKernels(this->DeviceInUse, request, form, described), numberOfPoints > 0,
+    deform);
+  if (numberOfPoints == 0)
   {
-    throw deformvolume::Aborted();
+    return 1;
   }
-
-  const ImageGeometry outputGeometry = this->Internals->GetOutputGeometry(geometry);
-  const glm::dmat3 rows = glm::transpose(outputGeometry.Direction);
-  image->SetExtent(request.OutputExtent.data());
-  image->SetOrigin(glm::value_ptr(outputGeometry.Origin));
-  image->SetSpacing(glm::value_ptr(outputGeometry.Spacing));
-  image->SetDirectionMatrix(glm::value_ptr(rows));
-  image->GetFieldData()->ShallowCopy(volume->GetFieldData());
-  this->Internals->Outputs.Make(arrays, image, request);
-  request.Incremental = this->Incremental;
-  deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
-
-  const deformvolume::DeformReport report = device.Deform(request);
   if (vtkInternals::IsReleased(outInfo))
   {
     this->Internals->Outputs.Forget();
@@ -513,6 +577,7 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Interpolation: " << this->Interpolation << "\n";
   os << indent << "ResamplerInUse: " << this->ResamplerInUse << "\n";
   os << indent << "Incremental: " << (this->Incremental ? "on" : "off") << "\n";
+  os << indent << "StreamInput: " << (this->StreamInput ? "on" : "off") << "\n";
   os << indent << "Device: \"" << this->Device << "\"\n";
   os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
   os << indent << "WorkGroupSize: " << this->WorkGroupSize << "\n";

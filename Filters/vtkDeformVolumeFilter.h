@@ -44,6 +44,15 @@
  * overlap, upright ones win over inverted ones and then the lowest cell; the result is the same
  * from run to run.
  *
+ * @par Parts and ranks:
+ * The filter makes any extent of its output, and under MPI each rank makes its piece; voxels are
+ * the same to the last bit however the output is divided. Where a part is asked for, the input is
+ * asked for the voxels that can land there only, provided that all sources of the volume can make
+ * parts (they say so with CAN_PRODUCE_SUB_EXTENT) and the resampler is exact; see StreamInput. Of
+ * the deformation mesh each rank may have a piece, none, or the whole: it is gathered through
+ * vtkMultiProcessController::GetGlobalController(). A displacement field every rank must be given
+ * whole. All ranks have to update together; an error of one is told on all.
+ *
  * @par Errors:
  * All failures are one vtkErrorMacro that says what is wrong and what to do; the output is then
  * empty, and the filter works again once its input is mended.
@@ -277,6 +286,20 @@ public:
 
   ///@{
   /**
+   * Whether the input is asked only for what can land in the output even where all of the output is
+   * asked for. Where a part is asked for that is done anyway. It matters where the output shows a
+   * part of the deformed volume only (CUSTOM_BOUNDS). The volume is asked for whole all the same
+   * where one of its sources cannot make parts of it, with other resamplers than EXACT, and where a
+   * mesh is extrapolated. What is read in parts is resampled by EXACT under AUTOMATIC, even if the
+   * whole would not have fit into memory. Default: off.
+   */
+  vtkSetMacro(StreamInput, bool);
+  vtkGetMacro(StreamInput, bool);
+  vtkBooleanMacro(StreamInput, bool);
+  ///@}
+
+  ///@{
+  /**
    * The OpenCL device: "" or "best" is the best there is, or what the environment variable
    * DEFORMVOLUME_DEVICE asks for in the same words; "cpu" and "gpu" are the best of that kind;
    * anything else is a part of a device's name, without regard to case. A request that cannot be
@@ -413,6 +436,7 @@ private:
   int Resampler = AUTOMATIC;
   int Interpolation = LINEAR_INTERPOLATION;
   bool Incremental = true;
+  bool StreamInput = false;
   std::string Device;
   vtkTypeInt64 MemoryLimit = 0;
   int WorkGroupSize = 0;

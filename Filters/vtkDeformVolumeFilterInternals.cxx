@@ -87,14 +87,21 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
 }
 
 //------------------------------------------------------------------------------
-IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(
+IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(const deformvolume::Ranks& ranks,
   const ImageGeometry& volume, vtkInformation* output, const double* time)
 {
-  vtkDataObject* shape = deformvolume::UpdateInput(this->Self, 1, output, time);
-  vtkDataObject* rest = deformvolume::UpdateInput(this->Self, 2, output, time);
-  const DeformationSource source = this->MakeSource(volume, shape, rest);
-  this->Deformation.Read(source);
+  vtkDataObject* shape = deformvolume::UpdateInput(this->Self, 1, output, time, ranks);
+  vtkDataObject* rest = deformvolume::UpdateInput(this->Self, 2, output, time, ranks);
+  const DeformationSource source = this->ReadDeformation(ranks, volume, shape, rest);
+  IndexBounds bounds;
+  ranks.Attempt([&] { bounds = this->ComputeBounds(volume, source); });
+  return bounds;
+}
 
+//------------------------------------------------------------------------------
+IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
+  const ImageGeometry& volume, const DeformationSource& source)
+{
   const deformvolume::Lattice lattice{ volume.PointExtent,
     { { source.Scale.x, source.Scale.y, source.Scale.z } } };
   const bool extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
@@ -115,8 +122,8 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(
     this->Device.SetDevice(this->Self->Device, static_cast<std::uint64_t>(this->Self->MemoryLimit),
       static_cast<std::size_t>(this->Self->WorkGroupSize));
     this->Device.CheckMemory(lattice, {}, { { 0, -1, 0, -1, 0, -1 } }, 0, this->Deformation,
-      this->Mapping.GetRunBytes(this->Deformation, volume, true));
-    this->Mapping.Update(this->Deformation, volume, true, {});
+      this->Mapping.GetRunBytes(this->Deformation, { volume, volume.PointExtent, true }));
+    this->Mapping.Update(this->Deformation, { volume, volume.PointExtent, true }, {});
     return deformvolume::ComputeDeformedBounds(lattice, this->Mapping.GetLinks(),
       this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
   }
@@ -134,7 +141,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(
   if (bounds.IsEmpty())
   {
     // Tells what is wrong.
-    this->Mapping.Update(this->Deformation, volume, false, {});
+    this->Mapping.Update(this->Deformation, { volume, volume.PointExtent, false }, {});
     throw Error("The deformed volume has no bounds. Check the deformation mesh.");
   }
   return bounds;
@@ -142,7 +149,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(
 
 //------------------------------------------------------------------------------
 IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
-  const ImageGeometry& volume, vtkInformation* output)
+  const deformvolume::Ranks& ranks, const ImageGeometry& volume, vtkInformation* output)
 {
   BoundsKey key;
   std::set<double> times;
@@ -162,21 +169,26 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
   key.DisplacementScale = source.DisplacementScale;
   key.Choice = source.Choice;
   key.OutsideMode = this->Self->OutsideMode;
-  if (key == this->Key)
+  if (!ranks.IsAny(!(key == this->Key)))
   {
     return this->Bounds;
+  }
+  if (!ranks.AreEqual(times.size()))
+  {
+    throw Error("The deformation has different time steps on different ranks. Connect a source "
+                "that announces the same on all.");
   }
 
   IndexBounds bounds;
   if (times.empty())
   {
-    bounds = this->ReadBounds(volume, output, nullptr);
+    bounds = this->ReadBounds(ranks, volume, output, nullptr);
   }
   // The first step comes last: it is what an input then holds where no time is asked for.
   for (auto time = times.rbegin(); time != times.rend(); ++time)
   {
     const double step = *time;
-    bounds.Add(this->ReadBounds(volume, output, &step));
+    bounds.Add(this->ReadBounds(ranks, volume, output, &step));
   }
   this->Key = key;
   this->Bounds = bounds;
@@ -220,11 +232,17 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
         return false;
       }
     });
+  this->SetResamplerInUse(method);
+  return method;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::SetResamplerInUse(deformvolume::Resampling method) const
+{
   this->Self->ResamplerInUse = method == deformvolume::Resampling::MeshRasterization
     ? MESH_RASTERIZATION
     : method == deformvolume::Resampling::Published ? PUBLISHED
                                                     : EXACT;
-  return method;
 }
 
 //------------------------------------------------------------------------------
@@ -265,7 +283,9 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
     warning += "Point arrays of the volume of a type that cannot be resampled are left out: " +
       list(leftOut) + ". ";
   }
-  const std::string& cells = this->Deformation.GetIgnoredCells();
+  const std::string& cells = this->Deformation.GetIgnoredCells().empty()
+    ? this->Gathering.GetIgnoredCells()
+    : this->Deformation.GetIgnoredCells();
   if (!this->Deformation.IsField() && !cells.empty())
   {
     warning += "Cells of the deformation mesh that are not linear and three-dimensional are "

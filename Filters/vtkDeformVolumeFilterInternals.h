@@ -7,7 +7,10 @@
 #include "DeviceSession.h"
 #include "ImageGeometry.h"
 #include "MappingCache.h"
+#include "MeshGathering.h"
 #include "OutputArrays.h"
+#include "Ranks.h"
+#include "RestRegions.h"
 
 #include "vtkDeformVolumeFilter.h"
 #include "vtkNew.h"
@@ -15,6 +18,8 @@
 #include "vtkTimeStamp.h"
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -37,14 +42,34 @@ public:
   deformvolume::DeformationSource MakeSource(
     const deformvolume::ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest) const;
 
-  /// The bounds of the deformed volume, united over the time steps of the deformation.
-  deformvolume::IndexBounds GetDeformedBounds(
+  /// Brings the deformation up to date with what ports 1 and 2 have, on all ranks together.
+  /// Collective.
+  deformvolume::DeformationSource ReadDeformation(const deformvolume::Ranks& ranks,
+    const deformvolume::ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest);
+
+  /// The bounds of the deformed volume, united over the time steps of the deformation. Collective.
+  deformvolume::IndexBounds GetDeformedBounds(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkInformation* output);
+
+  /// The extent of the volume that is needed for what is asked for: all of it, unless a part of the
+  /// output or StreamInput asks for less, and all before the volume can give less. Collective.
+  deformvolume::Extent GetNeededExtent(
+    const deformvolume::Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output);
+
+  /// The volume whose data are there, and what they are a part of.
+  deformvolume::MappedVolume GetMappedVolume(vtkImageData* volume, vtkInformation* info) const;
+
+  /// Runs a function on the ranks that have work. The first time that kernels of a kind are wanted
+  /// one rank of each machine goes first, and leaves what it compiled to the others: two processes
+  /// that fill one cache disturb each other. Collective.
+  void RunInTurn(const deformvolume::Ranks& ranks, const std::string& kind, bool hasWork,
+    const std::function<void()>& function) const;
 
   /// The resampler for the current deformation, which also becomes ResamplerInUse. checkMemory
   /// throws an Error where the memory does not suffice for one.
   deformvolume::Resampling ChooseResampler(
     const std::function<void(deformvolume::Resampling)>& checkMemory) const;
+  void SetResamplerInUse(deformvolume::Resampling method) const;
 
   /// The executive unites the extents asked for until an execution succeeds: after a failure the
   /// next one must start anew.
@@ -61,6 +86,7 @@ public:
 
   std::set<std::string> CategoricalArrays;
   vtkNew<vtkStringArray> DeviceChoices;
+  deformvolume::MeshGathering Gathering;
   deformvolume::Deformation Deformation;
   deformvolume::MappingCache Mapping;
   deformvolume::DeviceSession Device;
@@ -75,8 +101,15 @@ public:
   vtkTimeStamp AbortTime;
 
 private:
-  deformvolume::IndexBounds ReadBounds(
+  deformvolume::IndexBounds ReadBounds(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkInformation* output, const double* time);
+  deformvolume::IndexBounds ComputeBounds(
+    const deformvolume::ImageGeometry& volume, const deformvolume::DeformationSource& source);
+  bool WantsPart(vtkInformation* output) const;
+  bool CanTakePart() const;
+  /// Where the voxels of the volume go.
+  const deformvolume::RestRegions& GetRegions(
+    const deformvolume::ImageGeometry& volume, const deformvolume::DeformationSource& source);
 
   vtkDeformVolumeFilter* Self;
 
@@ -103,6 +136,24 @@ private:
   deformvolume::MeshBoundsPlan Plan;
   std::uint64_t PlanRestVersion = 0;
   deformvolume::Extent PlanExtent{ { 0, -1, 0, -1, 0, -1 } };
+
+  // And what these are of.
+  struct RegionsKey
+  {
+    std::uint64_t RestVersion = 0;
+    std::uint64_t VectorsVersion = 0;
+    deformvolume::ImageGeometry Volume;
+    glm::dvec3 Scale{ 0.0 };
+    bool Extrapolate = false;
+    bool operator==(const RegionsKey& other) const
+    {
+      return this->RestVersion == other.RestVersion &&
+        this->VectorsVersion == other.VectorsVersion && this->Volume == other.Volume &&
+        this->Scale == other.Scale && this->Extrapolate == other.Extrapolate;
+    }
+  };
+  RegionsKey KeyOfRegions;
+  std::unique_ptr<deformvolume::RestRegions> Regions;
 
   std::string WarnedOf;
 };

@@ -220,8 +220,10 @@ BrickPoints BrickPoints::FromField(const BrickGrid& grid, const FieldParameters&
       double high = row[3];
       for (int k = 0; k < 3; ++k)
       {
-        low += std::min(double(row[k]) * vertices[2 * k], double(row[k]) * vertices[2 * k + 1]);
-        high += std::max(double(row[k]) * vertices[2 * k], double(row[k]) * vertices[2 * k + 1]);
+        const double ends[2] = { double(row[k]) * (vertices[2 * k] + field.First[k]),
+          double(row[k]) * (vertices[2 * k + 1] + field.First[k]) };
+        low += std::min(ends[0], ends[1]);
+        high += std::max(ends[0], ends[1]);
       }
       // The device finds the place with the precision of float: a quarter of a cell is more than it
       // misses, for the fields that fit into memory.

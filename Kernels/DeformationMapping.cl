@@ -59,7 +59,7 @@ static int StateOf(__global const uchar* state, int x, int y, int z, const Kerne
 
 static float3 FieldIndex(const FieldParameters* field, int3 index)
 {
-  const float3 i = convert_float3(index);
+  const float3 i = convert_float3(index + (int3)(field->First[0], field->First[1], field->First[2]));
   const float* m = field->IndexToField;
   return (float3)(m[0] * i.x + m[1] * i.y + m[2] * i.z + m[3],
     m[4] * i.x + m[5] * i.y + m[6] * i.z + m[7], m[8] * i.x + m[9] * i.y + m[10] * i.z + m[11]);

@@ -3,6 +3,10 @@
 
 #include "OpenCLContext.h"
 
+#include <algorithm>
+#include <cstdlib>
+#include <thread>
+
 namespace deformvolume
 {
 
@@ -19,6 +23,16 @@ std::vector<std::string> GetDeviceNames()
 std::string ResolveDevice(const std::string& request)
 {
   return FindDevice(request).Name;
+}
+
+void ShareProcessors(int processes)
+{
+  if (processes > 1)
+  {
+    const int processors = static_cast<int>(std::thread::hardware_concurrency());
+    const int share = std::max(1, processors / processes);
+    setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(share).c_str(), 0);
+  }
 }
 
 } // namespace deformvolume

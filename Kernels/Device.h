@@ -19,6 +19,11 @@ std::vector<std::string> GetDeviceNames();
 /// device answers to the request.
 std::string ResolveDevice(const std::string& request);
 
+/// So many processes share the processors of this machine: devices that are processors take their
+/// share of these, unless the environment variable POCL_MAX_PTHREAD_COUNT is set. To be called
+/// before any other function, as devices start once.
+void ShareProcessors(int processes);
+
 } // namespace deformvolume
 
 #endif

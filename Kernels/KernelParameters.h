@@ -40,11 +40,12 @@ typedef struct
   float Fraction;
 } RestPosition;
 
-// A displacement field. IndexToField: row-major 3 x 4, from the local index of a voxel to a
-// continuous index of the field.
+// A displacement field. IndexToField: row-major 3 x 4, from an index counted from the first voxel
+// of the whole volume to a continuous index of the field.
 typedef struct
 {
   float IndexToField[12];
+  int First[3]; // of the lattice, counted so
   int Dimensions[3];
   int Extrapolate; // whether voxels outside the field follow its border
   int SameGrid;    // whether voxels are points of the field, and all lie in it: the point of voxel

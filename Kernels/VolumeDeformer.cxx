@@ -45,7 +45,7 @@ void SetSameGrid(FieldParameters& field, const Extent& extent)
     {
       field.SameGrid &= field.IndexToField[4 * axis + column] == (axis == column ? 1.0F : 0.0F);
     }
-    const float offset = field.IndexToField[4 * axis + 3];
+    const float offset = field.IndexToField[4 * axis + 3] + static_cast<float>(field.First[axis]);
     field.SameGrid &= offset == std::floor(offset) && offset >= 0.0F &&
       offset + static_cast<float>(GetSize(extent, axis)) <=
         static_cast<float>(field.Dimensions[axis]);
@@ -335,13 +335,18 @@ void VolumeDeformer::SetDisplacementField(const DisplacementField& field)
       {
         parameters.IndexToField[i] = static_cast<float>(field.IndexToField[i]);
       }
-      // The kernels count from the first voxel: large structured indices do not fit into a float.
-      const Extent& extent = this->Impl->GetMesh().GetLattice().VertexExtent;
+      // The kernels count from the first voxel of the whole volume: large structured indices do
+      // not fit into a float, and a part must round as the whole does.
+      const Lattice& lattice = this->Impl->GetMesh().GetLattice();
+      const Extent& extent = lattice.VertexExtent;
+      const Extent& whole =
+        GetNumberOfPoints(lattice.WholeExtent) > 0 ? lattice.WholeExtent : extent;
       for (int row = 0; row < 3; ++row)
       {
         const double* m = &field.IndexToField[4 * row];
         parameters.IndexToField[4 * row + 3] =
-          static_cast<float>(m[0] * extent[0] + m[1] * extent[2] + m[2] * extent[4] + m[3]);
+          static_cast<float>(m[0] * whole[0] + m[1] * whole[2] + m[2] * whole[4] + m[3]);
+        parameters.First[row] = extent[2 * row] - whole[2 * row];
       }
       std::copy_n(field.Dimensions.begin(), 3, parameters.Dimensions);
       parameters.Extrapolate = field.Extrapolate;

@@ -47,6 +47,9 @@ struct Lattice
   /// Voxel (i, j, k) at rest has the continuous output index Scale * (i, j, k), axis by axis:
   /// the ratio of the volume's spacing to the output's; 1 where both share one spacing.
   std::array<double, 3> Scale{ { 1.0, 1.0, 1.0 } };
+  /// Structured indices of the volume that the voxels are a part of; empty: they are all of it.
+  /// Voxels of a part are displaced as in the whole, to the last bit.
+  Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } };
 };
 
 /// One array over the voxels of the volume: tuples of Components elements, x varying fastest.

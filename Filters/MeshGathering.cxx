@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshGathering.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellType.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+const char* const MESH = "deformation mesh on input port 1";
+const char* const REST = "rest configuration on input port 2";
+
+// The grids of a piece, which may have none.
+MeshParts GetPieceParts(vtkDataObject* object)
+{
+  MeshParts parts;
+  if (const auto grid = vtkUnstructuredGrid::SafeDownCast(object))
+  {
+    parts.push_back(grid);
+  }
+  else if (const auto composite = vtkCompositeDataSet::SafeDownCast(object))
+  {
+    const auto leaves = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+    for (leaves->InitTraversal(); !leaves->IsDoneWithTraversal(); leaves->GoToNextItem())
+    {
+      if (const auto leaf = vtkUnstructuredGrid::SafeDownCast(leaves->GetCurrentDataObject()))
+      {
+        parts.push_back(leaf);
+      }
+    }
+  }
+  return parts;
+}
+
+Stamp GetPieceStamp(const DeformationSource& source)
+{
+  Stamp stamp;
+  for (vtkDataObject* object : { source.Shape, source.Rest })
+  {
+    const MeshParts parts = GetPieceParts(object);
+    for (const Stamp& part :
+      { GetCellsStamp(parts), GetPointsStamp(parts), GetPointVectorsStamp(parts) })
+    {
+      stamp.insert(stamp.end(), part.begin(), part.end());
+    }
+    stamp.emplace_back(object, 0);
+  }
+  return stamp;
+}
+
+// FNV-1a, eight bytes at a time.
+void AddToHash(std::uint64_t& hash, const void* data, std::size_t bytes)
+{
+  const auto* next = static_cast<const char*>(data);
+  for (; bytes > 0;)
+  {
+    std::uint64_t word = 0;
+    const std::size_t size = std::min<std::size_t>(bytes, sizeof(word));
+    std::memcpy(&word, next, size);
+    hash = (hash ^ word) * 1099511628211U;
+    hash ^= hash >> 29;
+    next += size;
+    bytes -= size;
+  }
+}
+
+template <typename T>
+void AddToHash(std::uint64_t& hash, const std::vector<T>& values)
+{
+  const std::uint64_t size = values.size();
+  AddToHash(hash, &size, sizeof(size));
+  AddToHash(hash, values.data(), values.size() * sizeof(T));
+}
+
+template <typename T>
+void GatherVector(const Ranks& ranks, std::vector<T>& values, const std::string& what)
+{
+  const std::vector<char> all = ranks.Gather(values.data(), values.size() * sizeof(T), what);
+  values.resize(all.size() / sizeof(T));
+  if (!all.empty())
+  {
+    std::memcpy(static_cast<void*>(values.data()), all.data(), all.size());
+  }
+}
+
+vtkSmartPointer<vtkDoubleArray> MakeArray(const std::vector<glm::dvec3>& vectors)
+{
+  const auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetNumberOfComponents(3);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(vectors.size()));
+  if (!vectors.empty())
+  {
+    std::memcpy(array->GetPointer(0), vectors.data(), vectors.size() * sizeof(glm::dvec3));
+  }
+  return array;
+}
+
+} // namespace
+
+struct MeshGathering::Piece
+{
+  std::vector<Tetrahedron> Tetrahedra;
+  std::vector<glm::dvec3> RestPoints;
+  /// Deformed positions where there is a rest configuration, else displacements.
+  std::vector<glm::dvec3> Vectors;
+  std::string IgnoredCells;
+};
+
+MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
+{
+  const MeshParts shape = GetPieceParts(source.Shape);
+  const MeshParts rest = source.Rest ? GetPieceParts(source.Rest) : shape;
+  const std::size_t nodes = GetNumberOfNodes(shape);
+  Piece piece;
+  if (nodes != GetNumberOfNodes(rest))
+  {
+    throw Error("A rank has " + std::to_string(nodes) +
+      " points of the deformation mesh on input port 1 and " +
+      std::to_string(GetNumberOfNodes(rest)) +
+      " of the rest configuration on port 2. Connect two configurations of one mesh, split alike.");
+  }
+  if (nodes == 0)
+  {
+    return piece;
+  }
+  MeshCells cells = ReadCells(rest);
+  if (source.Rest && ReadCells(shape).Tetrahedra != cells.Tetrahedra)
+  {
+    throw Error("The cells of the deformation mesh on input port 1 are not those of the rest "
+                "configuration on port 2. Connect two configurations of one mesh, split alike.");
+  }
+  piece.Tetrahedra = std::move(cells.Tetrahedra);
+  piece.IgnoredCells = std::move(cells.Ignored);
+  piece.RestPoints = ReadPoints(rest, source.Rest ? REST : MESH);
+  if (source.Rest)
+  {
+    piece.Vectors = ReadPoints(shape, MESH);
+    return piece;
+  }
+  piece.Vectors.resize(nodes);
+  ReadPointVectors(shape, source.Selector, source.Wanted, MESH,
+    [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
+    { std::copy(vectors, vectors + count, piece.Vectors.begin() + first); });
+  return piece;
+}
+
+void MeshGathering::Make(const Piece& whole, bool withRest)
+{
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIdTypeArray> connectivity;
+  vtkNew<vtkIdTypeArray> offsets;
+  const auto count = static_cast<vtkIdType>(whole.Tetrahedra.size());
+  connectivity->SetNumberOfValues(4 * count);
+  offsets->SetNumberOfValues(count + 1);
+  for (vtkIdType cell = 0; cell < count; ++cell)
+  {
+    offsets->SetValue(cell, 4 * cell);
+    for (int node = 0; node < 4; ++node)
+    {
+      connectivity->SetValue(4 * cell + node, whole.Tetrahedra[cell][node]);
+    }
+  }
+  offsets->SetValue(count, 4 * count);
+  cells->SetData(offsets, connectivity);
+  const auto makeGrid = [&](const std::vector<glm::dvec3>& positions)
+  {
+    const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    vtkNew<vtkPoints> points;
+    points->SetData(MakeArray(positions));
+    grid->SetPoints(points);
+    grid->SetCells(VTK_TETRA, cells);
+    return grid;
+  };
+  if (withRest)
+  {
+    this->Shape = makeGrid(whole.Vectors);
+    this->Rest = makeGrid(whole.RestPoints);
+    return;
+  }
+  this->Shape = makeGrid(whole.RestPoints);
+  this->Rest = nullptr;
+  const auto vectors = MakeArray(whole.Vectors);
+  vectors->SetName("displacements");
+  this->Shape->GetPointData()->AddArray(vectors);
+}
+
+DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSource& source)
+{
+  if (!ranks.AreMany() || ranks.IsAny(vtkImageData::SafeDownCast(source.Shape) != nullptr))
+  {
+    return source;
+  }
+  const Stamp stamp = GetPieceStamp(source);
+  const bool withRest = ranks.IsAny(source.Rest != nullptr);
+  if (ranks.IsAny(stamp != this->PieceStamp || source.Choice != this->Choice))
+  {
+    this->PieceStamp.clear();
+    Piece piece;
+    ranks.Attempt([&] { piece = this->Read(source); });
+    std::uint64_t hash = 14695981039346656037U;
+    AddToHash(hash, piece.Tetrahedra);
+    AddToHash(hash, piece.RestPoints);
+    AddToHash(hash, piece.Vectors);
+    this->IgnoredCells = piece.IgnoredCells;
+    if (!ranks.AreEqual(hash))
+    {
+      const std::vector<std::uint64_t> nodes = ranks.Gather(piece.RestPoints.size());
+      std::uint64_t first = 0;
+      std::uint64_t sum = 0;
+      for (int rank = 0; rank < ranks.GetCount(); ++rank)
+      {
+        first += rank < ranks.GetRank() ? nodes[rank] : 0;
+        sum += nodes[rank];
+      }
+      if (sum > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max()))
+      {
+        throw Error("The " + std::string(MESH) +
+          " has more than 2,147,483,647 points on all ranks. Connect a coarser one.");
+      }
+      for (Tetrahedron& tetrahedron : piece.Tetrahedra)
+      {
+        for (std::int32_t& node : tetrahedron)
+        {
+          node += static_cast<std::int32_t>(first);
+        }
+      }
+      GatherVector(ranks, piece.Tetrahedra, MESH);
+      GatherVector(ranks, piece.RestPoints, MESH);
+      GatherVector(ranks, piece.Vectors, MESH);
+    }
+    ranks.Attempt([&] { this->Make(piece, withRest); });
+    this->PieceStamp = stamp;
+    this->Choice = source.Choice;
+  }
+  DeformationSource whole = source;
+  whole.Shape = this->Shape;
+  whole.Rest = this->Rest;
+  whole.Selector = [](vtkDataSet* dataSet)
+  { return vtkDataSet::SafeDownCast(dataSet)->GetPointData()->GetArray(0); };
+  return whole;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeMeshGathering_h
+#define DeformVolumeMeshGathering_h
+
+#include "Deformation.h"
+#include "Ranks.h"
+
+#include "vtkSmartPointer.h"
+
+#include <string>
+
+class vtkUnstructuredGrid;
+
+namespace deformvolume
+{
+
+/// Makes a deformation mesh of which each rank has a piece whole on every rank: pieces one after
+/// the other in the order of ranks, ghost cells left out. A mesh that every rank has whole is taken
+/// once. Keeps what it made until the piece of any rank changes.
+class MeshGathering
+{
+public:
+  /// Collective. The source of the whole mesh; a displacement field, which every rank has whole,
+  /// and any source of a single process are given back as they are. Throws the same Error on all
+  /// ranks.
+  DeformationSource Gather(const Ranks& ranks, const DeformationSource& source);
+
+  /// Cells of this rank's piece that were ignored, in words; "" without such.
+  const std::string& GetIgnoredCells() const { return this->IgnoredCells; }
+
+private:
+  struct Piece;
+
+  Piece Read(const DeformationSource& source) const;
+  void Make(const Piece& whole, bool withRest);
+
+  Stamp PieceStamp; // empty: there is no mesh
+  std::string Choice;
+  vtkSmartPointer<vtkUnstructuredGrid> Shape;
+  vtkSmartPointer<vtkUnstructuredGrid> Rest;
+  std::string IgnoredCells;
+};
+
+} // namespace deformvolume
+
+#endif

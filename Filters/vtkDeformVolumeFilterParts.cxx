@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What vtkDeformVolumeFilter does where it has a part of the volume, of the output or of the
+// deformation mesh only.
+#include "vtkDeformVolumeFilterInternals.h"
+
+#include "InputUpdate.h"
+
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <exception>
+
+using deformvolume::DeformationSource;
+using deformvolume::Error;
+using deformvolume::Extent;
+using deformvolume::ImageGeometry;
+using deformvolume::Ranks;
+using deformvolume::RestRegions;
+
+//------------------------------------------------------------------------------
+DeformationSource vtkDeformVolumeFilter::vtkInternals::ReadDeformation(
+  const Ranks& ranks, const ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest)
+{
+  DeformationSource source;
+  ranks.Attempt([&] { source = this->MakeSource(volume, shape, rest); });
+  source = this->Gathering.Gather(ranks, source);
+  ranks.Attempt([&] { this->Deformation.Read(source); });
+  return source;
+}
+
+//------------------------------------------------------------------------------
+bool vtkDeformVolumeFilter::vtkInternals::WantsPart(vtkInformation* output) const
+{
+  Extent whole;
+  output->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
+  return this->Self->StreamInput || deformvolume::GetRequestedPart(output) != whole;
+}
+
+//------------------------------------------------------------------------------
+bool vtkDeformVolumeFilter::vtkInternals::CanTakePart() const
+{
+  // The other resamplers want the volume whole, and so do voxels that follow the nearest
+  // tetrahedron of a mesh, wherever it may be.
+  const bool exact = this->Self->Resampler == EXACT ||
+    (this->Self->Resampler == AUTOMATIC && this->Self->Interpolation == LINEAR_INTERPOLATION);
+  const bool local = this->Deformation.IsField() || this->Self->OutsideMode == DISCARD;
+  // Data that are there already cost nothing.
+  return exact && local && !deformvolume::IsInMemory(this->Self, 0) &&
+    deformvolume::CanProduceParts(this->Self, 0);
+}
+
+//------------------------------------------------------------------------------
+const RestRegions& vtkDeformVolumeFilter::vtkInternals::GetRegions(
+  const ImageGeometry& volume, const DeformationSource& source)
+{
+  const RegionsKey key{ this->Deformation.GetRestVersion(), this->Deformation.GetVectorsVersion(),
+    volume, source.Scale, this->Self->OutsideMode == EXTRAPOLATE };
+  if (!this->Regions || !(this->KeyOfRegions == key))
+  {
+    const deformvolume::Lattice lattice{ volume.PointExtent,
+      { { source.Scale.x, source.Scale.y, source.Scale.z } }, {} };
+    this->Regions = this->Deformation.IsField()
+      ? std::make_unique<RestRegions>(lattice, this->Deformation.GetField(key.Extrapolate))
+      : std::make_unique<RestRegions>(lattice, this->Deformation.GetRestPoints(),
+          this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
+    this->KeyOfRegions = key;
+  }
+  return *this->Regions;
+}
+
+//------------------------------------------------------------------------------
+Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
+  const Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output)
+{
+  const ImageGeometry volume = deformvolume::GetGeometry(volumeInfo);
+  Extent needed = volume.PointExtent;
+  if (!ranks.IsAny(this->WantsPart(output)))
+  {
+    return needed;
+  }
+  vtkDataObject* shape = deformvolume::UpdateInput(this->Self, 1, output, nullptr, ranks);
+  vtkDataObject* rest = deformvolume::UpdateInput(this->Self, 2, output, nullptr, ranks);
+  const DeformationSource source = this->ReadDeformation(ranks, volume, shape, rest);
+  ranks.Attempt(
+    [&]
+    {
+      if (!this->CanTakePart())
+      {
+        return;
+      }
+      const RestRegions& regions = this->GetRegions(volume, source);
+      if (!regions.HasVoxels())
+      {
+        return; // the data pass tells what is wrong
+      }
+      needed = regions.Find(deformvolume::GetRequestedPart(output));
+      // What the input holds is not made anew, if it is enough.
+      vtkImageData* held = vtkImageData::GetData(volumeInfo);
+      if (held && !this->Self->StreamInput)
+      {
+        const Extent extent = deformvolume::GetGeometry(held).PointExtent;
+        if (deformvolume::Contains(extent, needed) &&
+          deformvolume::Contains(volume.PointExtent, extent))
+        {
+          needed = extent;
+        }
+      }
+    });
+  return needed;
+}
+
+//------------------------------------------------------------------------------
+deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
+  vtkImageData* volume, vtkInformation* info) const
+{
+  deformvolume::MappedVolume mapped;
+  mapped.Whole = deformvolume::GetGeometry(volume);
+  mapped.Part = mapped.Whole.PointExtent;
+  mapped.Extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
+  const Extent whole = deformvolume::GetGeometry(info).PointExtent;
+  Extent asked = whole;
+  info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked.data());
+  if (asked != whole && !deformvolume::Contains(mapped.Part, whole))
+  {
+    if (!deformvolume::Contains(mapped.Part, asked) || !deformvolume::Contains(whole, mapped.Part))
+    {
+      throw Error("The source of the volume on input port 0 was asked for a part of it and gave "
+                  "another one, although it says that it can make parts. Mend the source, or read "
+                  "the volume into memory first.");
+    }
+    mapped.Whole.PointExtent = whole;
+  }
+  deformvolume::CheckVolume(mapped.Whole);
+  return mapped;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::RunInTurn(const Ranks& ranks, const std::string& kind,
+  bool hasWork, const std::function<void()>& function) const
+{
+  std::exception_ptr failure;
+  const auto run = [&]
+  {
+    try
+    {
+      if (hasWork)
+      {
+        function();
+      }
+    }
+    catch (...)
+    {
+      failure = std::current_exception();
+    }
+  };
+  // Kernels are compiled once in a process, whichever filter wants them.
+  static std::set<std::string> compiled;
+  if (ranks.AreMany() && ranks.IsAny(compiled.count(kind) == 0 && hasWork))
+  {
+    const std::vector<std::uint64_t> works = ranks.Gather(hasWork ? 1 : 0);
+    int leader = ranks.GetRank();
+    for (const int neighbour : ranks.GetNeighbours())
+    {
+      if (works[neighbour] > 0)
+      {
+        leader = neighbour;
+        break;
+      }
+    }
+    if (leader == ranks.GetRank())
+    {
+      run();
+    }
+    ranks.Wait();
+    if (leader != ranks.GetRank())
+    {
+      run();
+    }
+  }
+  else
+  {
+    run();
+  }
+  if (hasWork && !failure)
+  {
+    compiled.insert(kind);
+  }
+  ranks.Attempt(
+    [&]
+    {
+      if (failure)
+      {
+        std::rethrow_exception(failure);
+      }
+    });
+}
