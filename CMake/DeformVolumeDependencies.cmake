@@ -50,7 +50,13 @@ endif ()
 if (DEFORMVOLUME_USE_PARAVIEW)
   find_package(ParaView 5.11 REQUIRED COMPONENTS RemotingCore RemotingServerManager)
 endif ()
-find_package(VTK 9.1 REQUIRED COMPONENTS ${deformvolume_vtk_components})
+set(deformvolume_optional_vtk_components "")
+if (BUILD_TESTING AND NOT DEFORMVOLUME_SANITIZE)
+  set(deformvolume_optional_vtk_components OPTIONAL_COMPONENTS ParallelMPI)
+endif ()
+find_package(VTK 9.1 REQUIRED
+  COMPONENTS ${deformvolume_vtk_components}
+  ${deformvolume_optional_vtk_components})
 
 find_package(glm REQUIRED)
 

@@ -380,7 +380,7 @@ int vtkDeformVolumeFilter::RequestData(
       {
         throw Error("There is no volume. Connect a vtkImageData to input port 0.");
       }
-      mapped = this->Internals->GetMappedVolume(volume, input[0]->GetInformationObject(0));
+      mapped = this->Internals->GetMappedVolume(ranks, volume, input[0]->GetInformationObject(0));
     });
   const ImageGeometry& geometry = mapped.Whole;
   const DeformationSource source = this->Internals->ReadDeformation(

@@ -57,7 +57,8 @@ public:
     const deformvolume::Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output);
 
   /// The volume whose data are there, and what they are a part of.
-  deformvolume::MappedVolume GetMappedVolume(vtkImageData* volume, vtkInformation* info) const;
+  deformvolume::MappedVolume GetMappedVolume(
+    const deformvolume::Ranks& ranks, vtkImageData* volume, vtkInformation* info) const;
 
   /// Runs a function on the ranks that have work. The first time that kernels of a kind are wanted
   /// one rank of each machine goes first, and leaves what it compiled to the others: two processes

@@ -95,24 +95,13 @@ Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
         return; // the data pass tells what is wrong
       }
       needed = regions.Find(deformvolume::GetRequestedPart(output));
-      // What the input holds is not made anew, if it is enough.
-      vtkImageData* held = vtkImageData::GetData(volumeInfo);
-      if (held && !this->Self->StreamInput)
-      {
-        const Extent extent = deformvolume::GetGeometry(held).PointExtent;
-        if (deformvolume::Contains(extent, needed) &&
-          deformvolume::Contains(volume.PointExtent, extent))
-        {
-          needed = extent;
-        }
-      }
     });
   return needed;
 }
 
 //------------------------------------------------------------------------------
 deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
-  vtkImageData* volume, vtkInformation* info) const
+  const Ranks& ranks, vtkImageData* volume, vtkInformation* info) const
 {
   deformvolume::MappedVolume mapped;
   mapped.Whole = deformvolume::GetGeometry(volume);
@@ -121,14 +110,16 @@ deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
   const Extent whole = deformvolume::GetGeometry(info).PointExtent;
   Extent asked = whole;
   info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked.data());
-  if (asked != whole && !deformvolume::Contains(mapped.Part, whole))
+  // One process believes what it is given for the whole.
+  const bool isPart = asked != whole && !deformvolume::Contains(mapped.Part, whole);
+  if ((isPart || ranks.AreMany()) &&
+    (!deformvolume::Contains(mapped.Part, asked) || !deformvolume::Contains(whole, mapped.Part)))
   {
-    if (!deformvolume::Contains(mapped.Part, asked) || !deformvolume::Contains(whole, mapped.Part))
-    {
-      throw Error("The source of the volume on input port 0 was asked for a part of it and gave "
-                  "another one, although it says that it can make parts. Mend the source, or read "
-                  "the volume into memory first.");
-    }
+    throw Error("The source of the volume on input port 0 was asked for an extent of it and gave "
+                "another one. Mend the source, or read the volume into memory first.");
+  }
+  if (isPart)
+  {
     mapped.Whole.PointExtent = whole;
   }
   deformvolume::CheckVolume(mapped.Whole);

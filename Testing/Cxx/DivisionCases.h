@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Volumes and deformations whose deformed volume must not depend on how the work is divided, and a
+// source that makes any part of a volume. For the tests of streaming and of several ranks.
+#ifndef DivisionCases_h
+#define DivisionCases_h
+
+#include "FilterTesting.h"
+
+#include <vtkCellData.h>
+#include <vtkDataObject.h>
+#include <vtkImageAlgorithm.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkObjectFactory.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+/// Gives the extent of a volume that it is asked for, and remembers what that was.
+class PartSource : public vtkImageAlgorithm
+{
+public:
+  static PartSource* New();
+  vtkTypeMacro(PartSource, vtkImageAlgorithm);
+
+  void SetVolume(vtkImageData* volume)
+  {
+    this->Volume = volume;
+    this->Modified();
+  }
+  /// Whether it says that it can make parts, and does.
+  bool CanMakeParts = true;
+  /// Gives another extent than it is asked for.
+  bool GivesOtherParts = false;
+
+  std::vector<filterTesting::Extent> Made;
+  /// Voxels of the largest part made so far.
+  vtkIdType GetMost() const
+  {
+    vtkIdType most = 0;
+    for (const filterTesting::Extent& extent : this->Made)
+    {
+      vtkIdType size = 1;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        size *= extent[2 * axis + 1] - extent[2 * axis] + 1;
+      }
+      most = std::max(most, size);
+    }
+    return most;
+  }
+
+protected:
+  PartSource() { this->SetNumberOfInputPorts(0); }
+
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
+  {
+    vtkInformation* info = output->GetInformationObject(0);
+    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), this->Volume->GetExtent(), 6);
+    info->Set(vtkDataObject::ORIGIN(), this->Volume->GetOrigin(), 3);
+    info->Set(vtkDataObject::SPACING(), this->Volume->GetSpacing(), 3);
+    info->Set(vtkDataObject::DIRECTION(), this->Volume->GetDirectionMatrix()->GetData(), 9);
+    vtkDataObject::SetPointDataActiveScalarInfo(info,
+      this->Volume->GetPointData()->GetScalars()->GetDataType(),
+      this->Volume->GetPointData()->GetScalars()->GetNumberOfComponents());
+    if (this->CanMakeParts)
+    {
+      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+    }
+    return 1;
+  }
+
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
+  {
+    vtkInformation* info = output->GetInformationObject(0);
+    vtkImageData* image = vtkImageData::GetData(info);
+    filterTesting::Extent asked;
+    info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked.data());
+    image->ShallowCopy(this->Volume);
+    if (this->CanMakeParts)
+    {
+      asked[1] -= this->GivesOtherParts ? 1 : 0;
+      image->Crop(asked.data());
+    }
+    this->Made.push_back(filterTesting::GetExtent(image));
+    return 1;
+  }
+
+  vtkSmartPointer<vtkImageData> Volume;
+};
+inline vtkStandardNewMacro(PartSource);
+
+namespace divisionCases
+{
+
+using namespace filterTesting;
+
+struct Case
+{
+  std::string Name;
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkSmartPointer<vtkDataSet> Deformation;
+  std::function<void(vtkDeformVolumeFilter*)> Set = [](vtkDeformVolumeFilter*) {};
+};
+
+/// A volume with arrays of several types, over more than one brick of the kernels.
+inline vtkSmartPointer<vtkImageData> MakeVolume(
+  const Extent& extent, const glm::dvec3& spacing = glm::dvec3(1.0))
+{
+  auto volume = MakeImage(extent, spacing, glm::dvec3(3.0, -2.0, 1.0));
+  const auto add = [&](vtkImageData* one)
+  {
+    vtkDataArray* array = one->GetPointData()->GetScalars();
+    volume->GetPointData()->AddArray(array);
+  };
+  const auto one = MakeImage(extent, spacing, glm::dvec3(3.0, -2.0, 1.0));
+  AddScalars<double>(one, "double", [](const glm::dvec3& p) { return p.x + 0.1 * p.y * p.z; });
+  add(one);
+  AddScalars<unsigned char>(
+    one, "byte", [](const glm::dvec3& p) { return 120.0 + 100.0 * std::sin(p.x + 0.3 * p.y); });
+  add(one);
+  AddScalars<long long>(one, "label",
+    [](const glm::dvec3& p) { return std::floor(0.3 * p.x) + 1000.0 * std::floor(0.2 * p.z); });
+  add(one);
+  AddScalars<float>(one, "float",
+    [](const glm::dvec3& p)
+    { return 100.0 * std::sin(0.7 * p.x) + 90.0 * std::cos(0.9 * p.y) + 35.0 * p.z; });
+  add(one);
+  volume->GetPointData()->SetActiveScalars("float");
+  return volume;
+}
+
+/// Random bits that follow from a voxel's place alone.
+inline std::uint32_t Scatter(vtkIdType id)
+{
+  std::uint32_t bits = static_cast<std::uint32_t>(id) * 2654435761U;
+  bits ^= bits >> 15;
+  return bits * 2246822519U >> 8;
+}
+
+inline glm::dvec3 GetCenter(vtkImageData* volume)
+{
+  glm::dvec3 center;
+  volume->GetCenter(&center.x);
+  return center;
+}
+
+/// Turns round the centre, bends and swells.
+inline WorldMap Bend(vtkImageData* volume, double amount = 1.0)
+{
+  const glm::dvec3 center = GetCenter(volume);
+  return [=](const glm::dvec3& point)
+  {
+    const glm::dvec3 p = point - center;
+    const double angle = amount * 0.3 * std::sin(0.05 * p.z + 0.4);
+    return center +
+      glm::dvec3(
+        p.x * std::cos(angle) - p.y * std::sin(angle) + amount * 2.0 * std::sin(0.11 * p.y),
+        p.x * std::sin(angle) + p.y * std::cos(angle) + amount * 1.5 * std::cos(0.09 * p.z),
+        p.z * (1.0 + 0.05 * amount) + amount * 1.7 * std::sin(0.13 * p.x));
+  };
+}
+
+/// Folds the last part of the volume back along z, by steps that leave voxels on faces of cells.
+inline WorldMap Fold(vtkImageData* volume)
+{
+  const glm::dvec3 center = GetCenter(volume);
+  return [=](const glm::dvec3& point)
+  {
+    glm::dvec3 p = point - center;
+    p.z = p.z > 7.0 ? 7.0 - 0.75 * (p.z - 7.0) : p.z;
+    p.x += 0.25 * p.z;
+    return center + p;
+  };
+}
+
+inline std::vector<Case> MakeCases()
+{
+  const Extent extent{ { -9, 62, 3, 29, -15, 18 } };
+  std::vector<Case> cases;
+  const auto add = [&](const std::string& name, vtkSmartPointer<vtkImageData> volume,
+                     vtkSmartPointer<vtkDataSet> deformation) -> Case&
+  {
+    Case made;
+    made.Name = name;
+    made.Volume = volume;
+    made.Deformation = deformation;
+    cases.push_back(made);
+    return cases.back();
+  };
+  const auto volume = MakeVolume(extent);
+  const auto deform = [&](vtkSmartPointer<vtkDataSet> dataSet, const WorldMap& map)
+  {
+    SetDisplacements(dataSet, map);
+    return dataSet;
+  };
+
+  add("Identity", volume, deform(MakeMesh(volume, 4), Shift(0.0, 0.0, 0.0)));
+  add("Half a voxel", volume, deform(MakeMesh(volume, 4), Shift(0.5, 1.5, -2.0)));
+  add("Runs", volume, deform(MakeMesh(volume, 4), Bend(volume))).Set =
+    [](vtkDeformVolumeFilter* filter)
+  {
+    filter->AddCategoricalArray("label");
+    filter->SetPadding(2);
+    filter->SetBackgroundValue(7.0);
+  };
+  add("Links", volume, deform(MakeMesh(volume, 24), Bend(volume)));
+  add("Smaller mesh", volume, deform(MakeMesh(volume, 5, -6.3), Bend(volume, 1.5)));
+  add("Torn mesh", volume, nullptr).Deformation = [&]
+  {
+    // Two lattices with a gap between them that cells of the volume span, pulled apart.
+    double bounds[6];
+    volume->GetBounds(bounds);
+    const double middle = 0.5 * (bounds[4] + bounds[5]) + 0.4;
+    auto whole = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    whole->Allocate();
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkFloatArray> vectors;
+    vectors->SetName("displacement");
+    vectors->SetNumberOfComponents(3);
+    for (int half = 0; half < 2; ++half)
+    {
+      vtkNew<vtkLatticeTetrahedraSource> source;
+      source->SetNumberOfNodes(4, 4, 3);
+      source->SetBounds(bounds[0] - 1.0, bounds[1] + 1.0, bounds[2] - 1.0, bounds[3] + 1.0,
+        half ? middle + 0.1 : bounds[4] - 1.0, half ? bounds[5] + 1.0 : middle);
+      source->Update();
+      const vtkIdType first = points->GetNumberOfPoints();
+      for (vtkIdType id = 0; id < source->GetOutput()->GetNumberOfPoints(); ++id)
+      {
+        points->InsertNextPoint(source->GetOutput()->GetPoint(id));
+        vectors->InsertNextTuple3(half ? 2.3 : -1.1, 0.7, half ? 9.4 : -8.2);
+      }
+      for (vtkIdType id = 0; id < source->GetOutput()->GetNumberOfCells(); ++id)
+      {
+        vtkNew<vtkIdList> ids;
+        source->GetOutput()->GetCellPoints(id, ids);
+        for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k)
+        {
+          ids->SetId(k, first + ids->GetId(k));
+        }
+        whole->InsertNextCell(source->GetOutput()->GetCellType(id), ids);
+      }
+    }
+    whole->SetPoints(points);
+    whole->GetPointData()->SetVectors(vectors);
+    return whole;
+  }();
+  {
+    const auto masked = MakeVolume(extent);
+    const auto active = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    active->SetName("ActiveTetrahedra");
+    for (vtkIdType id = 0; id < masked->GetNumberOfCells(); ++id)
+    {
+      const std::uint32_t bits = Scatter(id);
+      active->InsertNextValue(bits % 4 == 0 ? bits >> 3 & 31 : 31);
+    }
+    masked->GetCellData()->AddArray(active);
+    const auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    for (vtkIdType id = 0; id < masked->GetNumberOfPoints(); ++id)
+    {
+      ghosts->InsertNextValue(Scatter(id + 99) % 200 == 0 ? vtkDataSetAttributes::HIDDENPOINT : 0);
+    }
+    masked->GetPointData()->AddArray(ghosts);
+    add("Masks", masked, deform(MakeMesh(masked, 4), Bend(masked)));
+    add("Masks, half a voxel", masked, deform(MakeMesh(masked, 4), Shift(0.5, 1.0, -2.5)));
+  }
+  add("Coarser output", volume, deform(MakeMesh(volume, 6), Bend(volume))).Set =
+    [](vtkDeformVolumeFilter* filter)
+  {
+    filter->SetOutputSpacingModeToCustomSpacing();
+    filter->SetCustomSpacing(1.3, 0.7, 1.1);
+  };
+  add("Volume's bounds", volume, deform(MakeMesh(volume, 6), Bend(volume))).Set =
+    [](vtkDeformVolumeFilter* filter) { filter->SetOutputBoundsModeToVolumeBounds(); };
+  {
+    // In no step with the voxels, and smaller than the volume.
+    const auto field =
+      MakeImage({ { 0, 9, 0, 6, 0, 5 } }, glm::dvec3(7.3, 5.9, 6.7), glm::dvec3(-4.1, 2.2, -15.3));
+    add("Field", volume, deform(field, Bend(volume)));
+    add("Extrapolated field", volume, field).Set = [](vtkDeformVolumeFilter* filter)
+    { filter->SetOutsideModeToExtrapolate(); };
+    const auto same = MakeImage(extent, glm::dvec3(1.0), glm::dvec3(3.0, -2.0, 1.0));
+    add("Field of voxels", volume, deform(same, Bend(volume)));
+  }
+  add("Extrapolated mesh", volume, deform(MakeMesh(volume, 5, -6.3), Bend(volume))).Set =
+    [](vtkDeformVolumeFilter* filter) { filter->SetOutsideModeToExtrapolate(); };
+  add("Mesh rasterisation", volume, deform(MakeMesh(volume, 5), Bend(volume))).Set =
+    [](vtkDeformVolumeFilter* filter)
+  { filter->SetResampler(vtkDeformVolumeFilter::MESH_RASTERIZATION); };
+  add("Folded", volume, deform(MakeMesh(volume, 8), Fold(volume)));
+  return cases;
+}
+
+} // namespace divisionCases
+
+#endif

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Streaming: parts of the output, made from parts of the volume, are those of the whole to the last
+// bit; the input is asked for what is needed only, where its sources can make parts.
+#include "DivisionCases.h"
+
+#include <vtkExtentTranslator.h>
+#include <vtkImageDataStreamer.h>
+#include <vtkImageShiftScale.h>
+
+using namespace divisionCases;
+
+namespace
+{
+
+/// A filter on a case, with a source that makes parts.
+struct Streamed : Deformed
+{
+  explicit Streamed(const Case& from)
+  {
+    this->Source->SetVolume(from.Volume);
+    this->Filter->SetInputConnection(this->Source->GetOutputPort());
+    this->Filter->SetDeformationData(from.Deformation);
+    from.Set(this->Filter);
+  }
+  Extent GetWhole()
+  {
+    this->Filter->UpdateInformation();
+    Extent whole;
+    this->Filter->GetOutputInformation(0)->Get(
+      vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
+    return whole;
+  }
+  vtkNew<PartSource> Source;
+};
+
+vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
+{
+  Deformed whole(from.Volume, from.Deformation);
+  from.Set(whole.Filter);
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->ShallowCopy(whole.Update());
+  VERIFY(image->GetNumberOfPoints() > 0);
+  return image;
+}
+
+bool IsPartOf(vtkImageData* part, vtkImageData* whole)
+{
+  vtkNew<vtkImageData> cropped;
+  cropped->ShallowCopy(whole);
+  cropped->Crop(part->GetExtent());
+  return AreEqual(part, cropped);
+}
+
+/// What differs, in words.
+std::string Compare(vtkImageData* part, vtkImageData* whole)
+{
+  if (IsPartOf(part, whole))
+  {
+    return "";
+  }
+  vtkNew<vtkImageData> cropped;
+  cropped->ShallowCopy(whole);
+  cropped->Crop(part->GetExtent());
+  std::string words = " differs:";
+  for (int i = 0; i < cropped->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* expected = cropped->GetPointData()->GetArray(i);
+    vtkDataArray* actual = part->GetPointData()->GetArray(expected->GetName());
+    int differences = 0;
+    for (vtkIdType id = 0; actual && id < expected->GetNumberOfTuples(); ++id)
+    {
+      differences += expected->GetComponent(id, 0) != actual->GetComponent(id, 0) ? 1 : 0;
+    }
+    words += std::string(" ") + expected->GetName() + " " + std::to_string(differences);
+  }
+  return words;
+}
+
+/// Every array, by requests for pieces.
+void TestPieces(const Case& from, vtkImageData* whole, int pieces, int mode)
+{
+  Streamed streamed(from);
+  Extent extent = streamed.GetWhole();
+  VERIFY_EQUAL(extent, GetExtent(whole));
+  vtkNew<vtkExtentTranslator> translator;
+  for (int piece = 0; piece < pieces; ++piece)
+  {
+    Extent part;
+    translator->PieceToExtentThreadSafe(piece, pieces, 0, extent.data(), part.data(), mode, 0);
+    streamed.Filter->UpdateExtent(part.data());
+    VERIFY_EQUAL(streamed.TakeErrors(), 0);
+    VERIFY_EQUAL(GetExtent(streamed.Filter->GetOutput()), part);
+    const std::string differences = Compare(streamed.Filter->GetOutput(), whole);
+    if (!differences.empty())
+    {
+      std::cerr << from.Name << ", piece " << piece << " of " << pieces << differences << '\n';
+      VERIFY(false);
+    }
+  }
+}
+
+/// The streamer divides by itself, and takes the scalars.
+void TestStreamer(const Case& from, vtkImageData* whole, int divisions)
+{
+  Streamed streamed(from);
+  vtkNew<vtkImageDataStreamer> streamer;
+  streamer->SetInputConnection(streamed.Filter->GetOutputPort());
+  streamer->SetNumberOfStreamDivisions(divisions);
+  streamer->Update();
+  VERIFY_EQUAL(streamed.TakeErrors(), 0);
+  VERIFY_EQUAL(GetExtent(streamer->GetOutput()), GetExtent(whole));
+  VERIFY(HaveEqualBits(
+    streamer->GetOutput()->GetPointData()->GetScalars(), whole->GetPointData()->GetScalars()));
+}
+
+// A source that says that it can make parts, and then gives others.
+void TestWrongParts(const Case& from)
+{
+  Streamed streamed(from);
+  streamed.Source->GivesOtherParts = true;
+  Extent part = streamed.GetWhole();
+  part[5] = part[4] + 3;
+  streamed.Filter->UpdateExtent(part.data());
+  VERIFY_EQUAL(streamed.TakeErrors(), 1);
+  VERIFY(streamed.LastError.find("was asked for an extent") != std::string::npos);
+  VERIFY_EQUAL(streamed.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
+  // Mended, it goes on.
+  streamed.Source->GivesOtherParts = false;
+  streamed.Source->Modified();
+  streamed.Filter->UpdateExtent(part.data());
+  VERIFY_EQUAL(streamed.TakeErrors(), 0);
+  VERIFY(IsPartOf(streamed.Filter->GetOutput(), MakeWhole(from)));
+}
+
+// What the source is asked for.
+void TestRequests(const Case& from)
+{
+  const vtkIdType all = from.Volume->GetNumberOfPoints();
+  {
+    // The whole output: the whole volume, once.
+    Streamed streamed(from);
+    streamed.Update();
+    VERIFY_EQUAL(streamed.Source->Made.size(), std::size_t{ 1 });
+    VERIFY_EQUAL(streamed.Source->GetMost(), all);
+    // It is there now, and serves parts as well.
+    Extent part = streamed.GetWhole();
+    part[5] = part[4] + 3;
+    streamed.Filter->UpdateExtent(part.data());
+    VERIFY_EQUAL(streamed.Source->Made.size(), std::size_t{ 1 });
+    VERIFY(IsPartOf(streamed.Filter->GetOutput(), MakeWhole(from)));
+  }
+  {
+    // A part: at most a third of a volume for an eighth of its output.
+    Case high = from;
+    high.Volume = divisionCases::MakeVolume({ { 0, 15, 0, 17, -60, 139 } });
+    high.Deformation = MakeMesh(high.Volume, 6);
+    SetDisplacements(high.Deformation, Bend(high.Volume));
+    Streamed streamed(high);
+    const vtkIdType all = high.Volume->GetNumberOfPoints();
+    const Extent whole = streamed.GetWhole();
+    for (int i = 0; i < 8; ++i)
+    {
+      Extent part = whole;
+      part[4] = whole[4] + (whole[5] - whole[4] + 1) * i / 8;
+      part[5] = whole[4] + (whole[5] - whole[4] + 1) * (i + 1) / 8 - 1;
+      streamed.Filter->UpdateExtent(part.data());
+    }
+    VERIFY_EQUAL(streamed.TakeErrors(), 0);
+    VERIFY(streamed.Source->Made.size() > 1);
+    VERIFY(3 * streamed.Source->GetMost() < all);
+    // A filter between changes nothing.
+    vtkNew<vtkImageShiftScale> shift;
+    shift->SetInputConnection(streamed.Source->GetOutputPort());
+    shift->SetOutputScalarTypeToFloat();
+    streamed.Filter->SetInputConnection(shift->GetOutputPort());
+    streamed.Source->Made.clear();
+    Extent part = whole;
+    part[5] = part[4] + 3;
+    streamed.Filter->UpdateExtent(part.data());
+    VERIFY(!streamed.Source->Made.empty() && 3 * streamed.Source->GetMost() < all);
+  }
+  {
+    // A source that cannot make parts gives the volume once.
+    Streamed streamed(from);
+    streamed.Source->CanMakeParts = false;
+    TestStreamer(from, MakeWhole(from), 4);
+    vtkNew<vtkImageDataStreamer> streamer;
+    streamer->SetInputConnection(streamed.Filter->GetOutputPort());
+    streamer->SetNumberOfStreamDivisions(4);
+    streamer->Update();
+    VERIFY_EQUAL(streamed.Source->Made.size(), std::size_t{ 1 });
+    VERIFY_EQUAL(streamed.Filter->GetNumberOfVolumeUploads(), vtkTypeInt64{ 1 });
+    VERIFY_EQUAL(streamed.Filter->GetNumberOfMappingBuilds(), vtkTypeInt64{ 1 });
+  }
+  {
+    // Beside the volume, there is nothing to read, and all is background.
+    Streamed streamed(from);
+    streamed.Filter->SetOutputBoundsModeToCustomBounds();
+    streamed.Filter->SetCustomBounds(1000.0, 1010.0, 0.0, 9.0, 0.0, 9.0);
+    streamed.Filter->SetBackgroundValue(5.0);
+    streamed.Filter->StreamInputOn();
+    streamed.Filter->Update();
+    VERIFY_EQUAL(streamed.TakeErrors(), 0);
+    VERIFY(10 * streamed.Source->GetMost() < all);
+    double range[2];
+    streamed.GetValues()->GetRange(range);
+    VERIFY(range[0] == 5.0 && range[1] == 5.0);
+  }
+}
+
+} // namespace
+
+int TestDeformStreaming(int, char*[])
+{
+  const std::vector<Case> cases = MakeCases();
+  TestWrongParts(cases[2]);
+  TestRequests(cases[2]);
+  for (const Case& from : cases)
+  {
+    const auto whole = MakeWhole(from);
+    TestPieces(from, whole, 3, vtkExtentTranslator::Y_SLAB_MODE);
+    TestPieces(from, whole, 8, vtkExtentTranslator::BLOCK_MODE);
+    TestStreamer(from, whole, 5);
+  }
+  const auto whole = MakeWhole(cases[2]);
+  for (const int divisions : { 1, 2, 32 })
+  {
+    TestStreamer(cases[2], whole, divisions);
+  }
+  return GetExitCode();
+}

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Several ranks: each makes its piece of the output, and all pieces are those that one process
+// makes, to the last bit; whoever has the deformation mesh; errors end alike on all ranks.
+#include "DivisionCases.h"
+
+#include <vtkExtentTranslator.h>
+#include <vtkIdList.h>
+#include <vtkIdTypeArray.h>
+#include <vtkMPIController.h>
+#include <vtkTrivialProducer.h>
+
+#include <limits>
+
+using namespace divisionCases;
+
+namespace
+{
+
+vtkMPIController* Controller = nullptr;
+
+int GetRank()
+{
+  return Controller->GetLocalProcessId();
+}
+int GetRanks()
+{
+  return Controller->GetNumberOfProcesses();
+}
+
+/// What one process makes, on all ranks.
+vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  if (GetRank() == 0)
+  {
+    vtkMultiProcessController::SetGlobalController(nullptr);
+    Deformed whole(from.Volume, from.Deformation);
+    from.Set(whole.Filter);
+    image->ShallowCopy(whole.Update());
+    vtkMultiProcessController::SetGlobalController(Controller);
+  }
+  Controller->Broadcast(image, 0);
+  VERIFY(image->GetNumberOfPoints() > 0);
+  return image;
+}
+
+/// The extent that a rank has to make.
+Extent GetPiece(Extent whole, int ghosts)
+{
+  Extent piece;
+  vtkNew<vtkExtentTranslator> translator;
+  translator->PieceToExtentThreadSafe(
+    GetRank(), GetRanks(), ghosts, whole.data(), piece.data(), vtkExtentTranslator::BLOCK_MODE, 0);
+  return piece;
+}
+
+/// Arrays by name: their order does not survive the way to other ranks.
+bool IsPartOf(vtkImageData* part, vtkImageData* whole)
+{
+  vtkNew<vtkImageData> cropped;
+  cropped->ShallowCopy(whole);
+  cropped->Crop(part->GetExtent());
+  vtkPointData* expected = cropped->GetPointData();
+  bool equal = GetExtent(part) == GetExtent(cropped) &&
+    GetPoint(part, part->GetNumberOfPoints() - 1) ==
+      GetPoint(cropped, part->GetNumberOfPoints() - 1);
+  for (int i = 0; i < expected->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = expected->GetArray(i);
+    equal = equal && HaveEqualBits(array, part->GetPointData()->GetArray(array->GetName()));
+  }
+  return equal && expected->GetNumberOfArrays() > 1;
+}
+
+/// This rank's piece.
+void Check(Deformed& deformed, vtkImageData* whole, const std::string& name, int ghosts = 0)
+{
+  deformed.Filter->UpdatePiece(GetRank(), GetRanks(), ghosts);
+  VERIFY_EQUAL(deformed.TakeErrors(), 0);
+  if (!deformed.LastError.empty())
+  {
+    std::cerr << deformed.LastError;
+  }
+  vtkImageData* output = deformed.Filter->GetOutput();
+  const Extent piece = GetPiece(GetExtent(whole), ghosts);
+  if (piece[1] < piece[0])
+  {
+    VERIFY_EQUAL(output->GetNumberOfPoints(), vtkIdType{ 0 });
+    return;
+  }
+  VERIFY_EQUAL(GetExtent(output), piece);
+  const bool equal = IsPartOf(output, whole);
+  VERIFY(equal);
+  if (!equal)
+  {
+    std::cerr << name << " differs on rank " << GetRank() << " of " << GetRanks() << '\n';
+  }
+}
+
+enum class Spread
+{
+  Everywhere, // each rank has it whole
+  OnOne,      // the last rank has it
+  Pieces,     // each rank has some cells, and the points of these
+  WithGhosts  // and the cells round them as ghosts
+};
+
+/// What this rank has of a mesh.
+vtkSmartPointer<vtkUnstructuredGrid> Distribute(vtkUnstructuredGrid* mesh, Spread spread)
+{
+  auto mine = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  const vtkIdType cells = mesh->GetNumberOfCells();
+  vtkIdType begin = cells * GetRank() / GetRanks();
+  vtkIdType end = cells * (GetRank() + 1) / GetRanks();
+  if (spread == Spread::Everywhere || (spread == Spread::OnOne && GetRank() + 1 == GetRanks()))
+  {
+    mine->ShallowCopy(mesh);
+    return mine;
+  }
+  if (spread == Spread::OnOne)
+  {
+    return mine;
+  }
+  const vtkIdType ghosts = spread == Spread::WithGhosts ? 40 : 0;
+  vtkNew<vtkUnsignedCharArray> types;
+  types->SetName(vtkDataSetAttributes::GhostArrayName());
+  vtkNew<vtkPoints> points;
+  points->SetDataType(mesh->GetPoints()->GetDataType());
+  vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+  const auto mineVectors = vtkSmartPointer<vtkDataArray>::Take(vectors->NewInstance());
+  mineVectors->SetName(vectors->GetName());
+  mineVectors->SetNumberOfComponents(3);
+  std::vector<vtkIdType> known(mesh->GetNumberOfPoints(), -1);
+  mine->Allocate();
+  for (vtkIdType cell = std::max<vtkIdType>(0, begin - ghosts);
+       cell < std::min(cells, end + ghosts); ++cell)
+  {
+    vtkNew<vtkIdList> ids;
+    mesh->GetCellPoints(cell, ids);
+    for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k)
+    {
+      vtkIdType& id = known[ids->GetId(k)];
+      if (id < 0)
+      {
+        id = points->InsertNextPoint(mesh->GetPoint(ids->GetId(k)));
+        mineVectors->InsertNextTuple(ids->GetId(k), vectors);
+      }
+      ids->SetId(k, id);
+    }
+    mine->InsertNextCell(mesh->GetCellType(cell), ids);
+    types->InsertNextValue(cell < begin || cell >= end ? vtkDataSetAttributes::DUPLICATECELL : 0);
+  }
+  mine->SetPoints(points);
+  mine->GetPointData()->SetVectors(mineVectors);
+  if (spread == Spread::WithGhosts)
+  {
+    mine->GetCellData()->AddArray(types);
+  }
+  return mine;
+}
+
+struct Parallel : Deformed
+{
+  explicit Parallel(const Case& from, bool parts = true)
+  {
+    this->Source->SetVolume(from.Volume);
+    this->Source->CanMakeParts = parts;
+    this->Filter->SetInputConnection(this->Source->GetOutputPort());
+    this->Filter->SetDeformationData(from.Deformation);
+    from.Set(this->Filter);
+  }
+  vtkNew<PartSource> Source;
+};
+
+void TestSpread(const Case& from, vtkImageData* whole)
+{
+  auto* mesh = vtkUnstructuredGrid::SafeDownCast(from.Deformation);
+  for (const Spread spread :
+    { Spread::Everywhere, Spread::OnOne, Spread::Pieces, Spread::WithGhosts })
+  {
+    Parallel parallel(from);
+    parallel.Filter->SetDeformationData(Distribute(mesh, spread));
+    Check(parallel, whole, from.Name + ", spread " + std::to_string(static_cast<int>(spread)));
+    // With a rest configuration instead of displacements, of floats as VTK rounds them.
+    const auto rest = Distribute(mesh, spread);
+    auto moved = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    moved->DeepCopy(rest);
+    for (vtkIdType id = 0; id < moved->GetNumberOfPoints(); ++id)
+    {
+      double vector[3];
+      rest->GetPointData()->GetVectors()->GetTuple(id, vector);
+      const glm::dvec3 point = GetPoint(rest, id) + glm::dvec3(vector[0], vector[1], vector[2]);
+      moved->GetPoints()->SetPoint(id, &point.x);
+    }
+    Parallel two(from);
+    two.Filter->SetDeformationData(moved);
+    two.Filter->SetRestData(rest);
+    two.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
+    VERIFY_EQUAL(two.TakeErrors(), 0);
+    VERIFY(two.Filter->GetNumberOfCoveredVoxels() > 0);
+  }
+}
+
+/// An error that one rank causes is told by all in the same words, and can be mended.
+void TestError(const Case& from, vtkImageData* whole, const std::string& words,
+  const std::function<void(Parallel&)>& spoil, const std::function<void(Parallel&)>& mend)
+{
+  Parallel parallel(from);
+  if (GetRank() == GetRanks() - 1)
+  {
+    spoil(parallel);
+  }
+  parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
+  VERIFY_EQUAL(parallel.TakeErrors(), 1);
+  const bool told = parallel.LastError.find(words) != std::string::npos;
+  VERIFY(told);
+  if (!told)
+  {
+    std::cerr << "instead of \"" << words << "\": " << parallel.LastError << '\n';
+  }
+  VERIFY_EQUAL(parallel.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
+  mend(parallel);
+  Check(parallel, whole, words);
+}
+
+void TestErrors(const Case& from, vtkImageData* whole)
+{
+  const auto mesh = vtkUnstructuredGrid::SafeDownCast(from.Deformation);
+  const auto pieces = Distribute(mesh, Spread::Pieces);
+  const auto useMesh = [&](Parallel& parallel)
+  { parallel.Filter->SetDeformationData(Distribute(mesh, Spread::Pieces)); };
+
+  TestError(
+    from, whole, "has no ",
+    [&](Parallel& parallel)
+    {
+      auto bare = vtkSmartPointer<vtkUnstructuredGrid>::New();
+      bare->CopyStructure(pieces);
+      parallel.Filter->SetDeformationData(bare);
+    },
+    useMesh);
+  TestError(
+    from, whole, "not finite",
+    [&](Parallel& parallel)
+    {
+      auto broken = vtkSmartPointer<vtkUnstructuredGrid>::New();
+      broken->DeepCopy(pieces);
+      broken->GetPoints()->SetPoint(0, std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
+      parallel.Filter->SetDeformationData(broken);
+    },
+    useMesh);
+  TestError(
+    from, whole, "no such device",
+    [](Parallel& parallel) { parallel.Filter->SetDevice("no such device"); },
+    [](Parallel& parallel)
+    {
+      parallel.Filter->SetDevice("");
+      parallel.Filter->Modified(); // on all ranks
+    });
+  TestError(
+    from, whole, "was asked for",
+    [](Parallel& parallel) { parallel.Source->GivesOtherParts = true; },
+    [](Parallel& parallel)
+    {
+      parallel.Source->GivesOtherParts = false;
+      parallel.Source->Modified();
+    });
+  {
+    // No rank has anything.
+    Parallel parallel(from);
+    parallel.Filter->SetDeformationData(vtkSmartPointer<vtkUnstructuredGrid>::New());
+    parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
+    VERIFY_EQUAL(parallel.TakeErrors(), 1);
+    VERIFY(parallel.LastError.find("has no points") != std::string::npos);
+  }
+}
+
+/// More ranks than voxels on an axis, and a mesh that moves.
+void TestSmallAndMoving(const Case& from)
+{
+  Case small = from;
+  small.Set = [](vtkDeformVolumeFilter* filter)
+  {
+    filter->SetOutputBoundsModeToCustomBounds();
+    filter->SetCustomBounds(10.0, 12.0, 8.0, 8.0, 3.0, 4.0);
+  };
+  Parallel parallel(small);
+  parallel.Filter->SetDeformationData(
+    Distribute(vtkUnstructuredGrid::SafeDownCast(from.Deformation), Spread::Pieces));
+  Check(parallel, MakeWhole(small), "Small output");
+
+  Parallel moving(from);
+  for (const double amount : { 0.4, 1.2 })
+  {
+    Case step = from;
+    auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    mesh->ShallowCopy(from.Deformation);
+    SetDisplacements(mesh, Bend(from.Volume, amount));
+    step.Deformation = mesh;
+    moving.Filter->SetDeformationData(Distribute(mesh, Spread::Pieces));
+    Check(moving, MakeWhole(step), "Moving mesh");
+  }
+  VERIFY_EQUAL(moving.Filter->GetNumberOfMappingBuilds() <= 2, true);
+}
+
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  vtkNew<vtkMPIController> controller;
+  controller->Initialize(&argc, &argv);
+  vtkMultiProcessController::SetGlobalController(controller);
+  Controller = controller;
+
+  for (const Case& from : MakeCases())
+  {
+    const auto whole = MakeWhole(from);
+    Parallel parallel(from);
+    Check(parallel, whole, from.Name);
+    if (from.Name == "Runs")
+    {
+      Parallel ghosts(from);
+      Check(ghosts, whole, "Ghost levels", 2);
+      Parallel noParts(from, false);
+      Check(noParts, whole, "Source without parts");
+      TestSpread(from, whole);
+      TestErrors(from, whole);
+      TestSmallAndMoving(from);
+    }
+  }
+  int failures = filterTesting::GetNumberOfFailures();
+  int all = 0;
+  controller->AllReduce(&failures, &all, 1, vtkCommunicator::SUM_OP);
+  if (GetRank() == 0)
+  {
+    std::cout << all << " checks failed on " << GetRanks() << " ranks\n";
+  }
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  controller->Finalize();
+  return all == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
