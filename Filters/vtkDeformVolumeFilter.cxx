@@ -410,6 +410,7 @@ int vtkDeformVolumeFilter::RequestData(
     deformvolume::Describe(arrays, this->BackgroundValue);
   Extent whole;
   outInfo->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
+  request.WholeOutputExtent = whole;
   request.Interpolation = this->Interpolation == CUBIC_INTERPOLATION
     ? deformvolume::Interpolation::Cubic
     : deformvolume::Interpolation::Linear;

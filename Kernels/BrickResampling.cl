@@ -518,18 +518,10 @@ static void StoreFound(Found* found, const Group* group, int x, int y, int z, Ou
   for (uint i = 0; i < count; ++i)
   {
     const uint place = found->Places[i];
-    if (pass != DEFORMVOLUME_PASS_DIRECT)
+    if (pass != DEFORMVOLUME_PASS_DIRECT &&
+      !TakesPlace(output, place, MakeKey(x + 2 * found->Lanes[i], y, z, 0, p), p))
     {
-      const KEY key = MakeKey(x + 2 * found->Lanes[i], y, z, 0, p);
-      __global KEY* winner = output->Winners + place;
-      if (pass == DEFORMVOLUME_PASS_MARK && *winner > key)
-      {
-        ATOMIC_MIN(winner, key);
-      }
-      if (pass == DEFORMVOLUME_PASS_MARK || *winner != key)
-      {
-        continue;
-      }
+      continue;
     }
     coverage[place] = 1;
     LANE_ARRAYS(LANE_STORE)
@@ -707,7 +699,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   const INTS cellX = x + 2 * LANE_INDEX;
   const int mirror = Mirror(x, y, z, p);
   FLOATS toEndX = ALMOST_ONE, toEndY = ALMOST_ONE, toEndZ = ALMOST_ONE;
-  if (border || p->Pass != DEFORMVOLUME_PASS_DIRECT)
+  if (border || DEFORMVOLUME_IS_CLOSED(p->Pass))
   {
     toEndX = toEndY = toEndZ = 1.0f;
   }
@@ -716,7 +708,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
     StatesOfGroup(mesh, x, y, z, &state, p);
     // Boxes on the border leave what is on their high sides to the next cells, if there are any. That the
     // high sides are the upper ones is wanted for that.
-    if (p->Pass == DEFORMVOLUME_PASS_DIRECT && LaneBits(box))
+    if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && LaneBits(box))
     {
 #define RISES(C, to) ((mirror & to) ? C##to < C##0 : C##to > C##0)
       const INTS inner = state.Interior == 255;
@@ -729,12 +721,12 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   }
 #define FIRST_OF(low, size) TO_INTS(Least(Most(low, 0.0f), (float)(size)) + ALMOST_ONE)
 #define END_OF(high, toEnd, size) TO_INTS(Most(Least((high) + toEnd, (float)(size)), 0.0f))
-  const INTS firstX = FIRST_OF(lowX, p->OutputSize[0]);
-  const INTS firstY = FIRST_OF(lowY, p->OutputSize[1]);
-  const INTS firstZ = FIRST_OF(lowZ, p->OutputSize[2]);
-  const INTS countX = END_OF(highX, toEndX, p->OutputSize[0]) - firstX;
-  const INTS countY = END_OF(highY, toEndY, p->OutputSize[1]) - firstY;
-  const INTS countZ = END_OF(highZ, toEndZ, p->OutputSize[2]) - firstZ;
+  INTS firstX = FIRST_OF(lowX, p->OutputSize[0]);
+  INTS firstY = FIRST_OF(lowY, p->OutputSize[1]);
+  INTS firstZ = FIRST_OF(lowZ, p->OutputSize[2]);
+  INTS countX = END_OF(highX, toEndX, p->OutputSize[0]) - firstX;
+  INTS countY = END_OF(highY, toEndY, p->OutputSize[1]) - firstY;
+  INTS countZ = END_OF(highZ, toEndZ, p->OutputSize[2]) - firstZ;
   const INTS small = extent <= MAXIMUM_EXTENT;
   const INTS fit = there & small & state.Whole;
   // Cells without candidates need not be looked at, unless they may be inverted.
@@ -775,6 +767,21 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   INTS ambiguous = 0;
   const INTS none = (countX <= 0) | (countY <= 0) | (countZ <= 0);
   const INTS candidates = nice & ~none;
+  if (p->IsPart)
+  {
+    // A cell that reaches beyond the part is looked at as in the whole: what becomes of it must not
+    // depend on where the part ends. It begins less than MAXIMUM_EXTENT before the part.
+#define WHOLE_FIRST(low, axis)                                                                     \
+  TO_INTS(Most(low, (float)max(p->WholeFirst[axis], -8)) + (8.0f + ALMOST_ONE)) - 8
+#define WHOLE_END(high, toEnd, axis)                                                               \
+  TO_INTS(Least((high) + toEnd, (float)min(p->WholeEnd[axis], p->OutputSize[axis] + 8)) + 8.0f) - 8
+    firstX = WHOLE_FIRST(lowX, 0);
+    firstY = WHOLE_FIRST(lowY, 1);
+    firstZ = WHOLE_FIRST(lowZ, 2);
+    countX = WHOLE_END(highX, toEndX, 0) - firstX;
+    countY = WHOLE_END(highY, toEndY, 1) - firstY;
+    countZ = WHOLE_END(highZ, toEndZ, 2) - firstZ;
+  }
   const INTS number = candidates & (countX * countY * countZ);
   const int iterations = MostOf(number);
   INTS count = 0; // writes
@@ -850,6 +857,12 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
       {
         ambiguous |= undecided;
       }
+      if (p->IsPart)
+      {
+        const FLOATS sx = rx + X0, sy = ry + Y0, sz = rz + Z0;
+        hit &= (sx >= 0.0f) & (sx < (float)p->OutputSize[0]) & (sy >= 0.0f) &
+          (sy < (float)p->OutputSize[1]) & (sz >= 0.0f) & (sz < (float)p->OutputSize[2]);
+      }
       const uint bits = LaneBits(hit);
       if (bits)
       {
@@ -864,7 +877,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
 #define SNAP(weight) weight = onVertex ? rint(weight) : weight;
           SNAP(t0) SNAP(t3) SNAP(t5) SNAP(t6) SNAP(u1) SNAP(u2) SNAP(u4) SNAP(u7)
         }
-        if (p->Pass != DEFORMVOLUME_PASS_MARK)
+        if (DEFORMVOLUME_IS_WRITING(p->Pass))
         {
           LANE_ARRAYS(LANE_RESULTS)
           count -= hit;
@@ -897,9 +910,9 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   }
   // What an undecided cell wrote so far is written again with it, and must not count twice.
   output->Writes += SumOf(unsure | ambiguous ? (INTS)(0) : count);
-  // Integers of 32 bits decide in the direct pass, for cells that are small enough.
+  // Integers of 32 bits decide who owns a sample, for cells that are small enough.
   const INTS decidable = ambiguous & (extent < MAXIMUM_EXACT_EXTENT) &
-    (exact || p->Pass != DEFORMVOLUME_PASS_DIRECT ? 0 : -1);
+    (exact || DEFORMVOLUME_IS_CLOSED(p->Pass) ? 0 : -1);
   outcome->Ambiguous = LaneBits(decidable);
   outcome->Unsure = LaneBits(unsure | (ambiguous & ~decidable));
 }

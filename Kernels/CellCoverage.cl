@@ -15,7 +15,7 @@
 // all tetrahedra round it decide alike.
 //
 // Where the mesh folds over, several may write a voxel, and at the crease none. Further passes then
-// take every tetrahedron that holds the centre, and the winner's key decides.
+// take every tetrahedron that holds the centre of such a voxel, and the winner's key decides.
 //
 // All arithmetic is exact: positions are integers in 1/256 voxel, and for a tetrahedron of e
 // voxels the edge functions are at most 2 (256 e)^3, which fits 64 bits up to 6,500 voxels.
@@ -369,7 +369,7 @@ static int IsOwner(const SamplingMesh* mesh, int x, int y, int z, int tetrahedro
       inside &= ShiftsInside(f->Normals[k], 0);
     }
   }
-  if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
+  if (DEFORMVOLUME_IS_CLOSED(p->Pass))
   {
     return 1; // the winner is chosen by its key
   }

@@ -24,6 +24,9 @@ typedef struct
   int LayersEnd;   // and one past the last
   int OutputFirst[3]; // structured index of the first output voxel in the output buffers
   int OutputSize[3];  // output voxels in the buffers on each axis
+  int WholeFirst[3];  // the output that these are a part of: its first voxel, and one past the last
+  int WholeEnd[3];    // one, counted from the first voxel in the buffers
+  int IsPart;         // whether there are voxels beyond those in the buffers
   int Pass;           // one of the passes below
   int HasActive;      // whether a mask of active tetrahedra is there; without one all are active
   int HasState;       // whether the vertices have a state; without one all that could be is there
@@ -66,10 +69,19 @@ typedef struct
   float Padding;
 } TetrahedronRecord;
 
-// Passes of the exact resampling kernel.
-#define DEFORMVOLUME_PASS_DIRECT 0 // write, and count the writes
-#define DEFORMVOLUME_PASS_MARK 1   // find the winner of each voxel
-#define DEFORMVOLUME_PASS_WINNER 2 // write where this tetrahedron is the winner
+// Passes of the exact resampling kernel. What comes after the first is for voxels that several
+// cells write, and for those on a crease, which none does. All others keep what the first pass gave
+// them: a voxel never depends on others, and so not on how the output is divided.
+#define DEFORMVOLUME_PASS_DIRECT 0  // write, and count the writes
+#define DEFORMVOLUME_PASS_OWNERS 1  // find one of the cells that write each voxel
+#define DEFORMVOLUME_PASS_CONTEST 2 // mark the voxels that another cell writes, too
+#define DEFORMVOLUME_PASS_MARK 3    // find the winner of each voxel that is not settled
+#define DEFORMVOLUME_PASS_WINNER 4  // write where this tetrahedron is the winner
+// Whether every tetrahedron that holds a voxel takes part, and not only the one that writes it.
+#define DEFORMVOLUME_IS_CLOSED(pass) ((pass) >= DEFORMVOLUME_PASS_MARK)
+// Whether values are written.
+#define DEFORMVOLUME_IS_WRITING(pass)                                                              \
+  ((pass) == DEFORMVOLUME_PASS_DIRECT || (pass) == DEFORMVOLUME_PASS_WINNER)
 
 // Cells of a brick. Bricks begin at structured indices that are multiples of these numbers, which
 // are even: the parity of a place in a brick is that of the structured index.

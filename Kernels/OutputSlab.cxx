@@ -116,6 +116,17 @@ void Release(cl::Buffer& buffer)
 
 } // namespace
 
+namespace
+{
+
+Extent GetWholeOutput(const DeformRequest& request)
+{
+  return GetNumberOfPoints(request.WholeOutputExtent) > 0 ? request.WholeOutputExtent
+                                                          : request.OutputExtent;
+}
+
+} // namespace
+
 std::size_t GetWinnerSize(const Lattice& lattice)
 {
   return GetNumberOfCells(lattice.VertexExtent) < std::numeric_limits<std::int32_t>::max() ? 4 : 8;
@@ -203,6 +214,7 @@ std::uint64_t OutputSlab::PreparePatches(OpenCLContext& context, const cl::Comma
   this->Finish();
   this->Queue = queue;
   this->SlabExtent = extent;
+  this->WholeExtent = GetWholeOutput(request);
   this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(extent));
   this->PlaceArrays(context, request, arrays);
   this->NumberOfPatches = patches.size();
@@ -277,6 +289,7 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   this->Finish();
   this->Queue = queue;
   this->SlabExtent = extent;
+  this->WholeExtent = GetWholeOutput(request);
   this->WinnerSize = GetWinnerSize(lattice);
   this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(extent));
   if (deformvolume::GetMemory(this->Winners) != this->NumberOfVoxels * this->WinnerSize)
@@ -307,6 +320,20 @@ void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& 
   Reserve(context, this->Winners, this->NumberOfVoxels * this->WinnerSize);
   Fill(context, this->Queue, this->Winners, std::numeric_limits<cl_uint>::max(),
     this->NumberOfVoxels * this->WinnerSize / sizeof(cl_uint), events);
+}
+
+void OutputSlab::Settle(OpenCLContext& context, std::vector<cl::Event>& events)
+{
+  const std::size_t items = static_cast<std::size_t>(
+    (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS);
+  cl::Kernel kernel(GetOutputProgram(context), "Settle");
+  kernel.setArg(0, this->Coverage);
+  kernel.setArg(1, this->Winners);
+  kernel.setArg(2, cl_ulong{ this->NumberOfVoxels });
+  kernel.setArg(3, static_cast<cl_uint>(this->WinnerSize / sizeof(cl_uint)));
+  events.emplace_back();
+  this->Queue.enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(items), cl::NullRange, nullptr, &events.back());
 }
 
 std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::Event>& events)
@@ -365,7 +392,10 @@ void OutputSlab::SetParameters(KernelParameters& parameters) const
   {
     parameters.OutputFirst[axis] = this->SlabExtent[2 * axis];
     parameters.OutputSize[axis] = static_cast<int>(GetSize(this->SlabExtent, axis));
+    parameters.WholeFirst[axis] = this->WholeExtent[2 * axis] - this->SlabExtent[2 * axis];
+    parameters.WholeEnd[axis] = this->WholeExtent[2 * axis + 1] + 1 - this->SlabExtent[2 * axis];
   }
+  parameters.IsPart = this->WholeExtent != this->SlabExtent ? 1 : 0;
 }
 
 std::uint64_t OutputSlab::GetOffset(const DeformRequest& request) const

@@ -10,7 +10,8 @@
 namespace deformvolume
 {
 
-/// Bytes of a winner's key: four hold a cell of up to 2^31 and a bit for inverted tetrahedra.
+/// Bytes of a winner's key: four hold a cell of up to 2^31, counted from 1, and a bit for inverted
+/// tetrahedra.
 std::size_t GetWinnerSize(const Lattice& lattice);
 
 /// What the device holds of the output: a range of planes of all arrays, their coverage, the
@@ -30,7 +31,8 @@ public:
     /// voxels on the crease may also be missing.
     bool NeedWinners(std::uint64_t covered) const
     {
-      return this->Writes > covered || this->Inverted > 0 || this->MissingWhereAssumed;
+      return this->Writes > covered || this->Inverted > 0 || this->Overstretched > 0 ||
+        this->MissingWhereAssumed;
     }
   };
 
@@ -64,6 +66,9 @@ public:
   /// Bytes that PrepareWinners will allocate.
   std::uint64_t GetMissingWinnerMemory() const;
   void PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events);
+  /// After the passes that find contested voxels, or without them where there are none: leaves
+  /// those to be won, and voxels that nobody has written.
+  void Settle(OpenCLContext& context, std::vector<cl::Event>& events);
 
   std::uint64_t CountCovered(OpenCLContext& context, std::vector<cl::Event>& events);
   Counts ReadCounts();
@@ -98,6 +103,7 @@ private:
   cl::CommandQueue Queue;
   cl::CommandQueue ReadQueue; // while the slab is copied
   Extent SlabExtent{ { 0, -1, 0, -1, 0, -1 } };
+  Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } }; // of the output
   std::vector<cl::Buffer> Arrays;
   std::vector<std::size_t> TupleSizes;
   cl::Buffer Coverage;

@@ -98,11 +98,34 @@ typedef struct
 } Output;
 
 // Of overlapping tetrahedra upright ones win, then the lowest cell. Within a cell the order of
-// writing decides, the lowest tetrahedron last.
+// writing decides, the lowest tetrahedron last. 0 is the key of voxels that are settled.
 static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
 {
-  const KEY cell = ((KEY)z * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x;
+  const KEY cell = ((KEY)z * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x + 1;
   return cell | (KEY)(inverted != 0) << (sizeof(KEY) * 8 - 1);
+}
+
+// What passes but the first do with a voxel that a cell writes. Returns whether values are to follow.
+static int TakesPlace(const Output* output, size_t target, KEY key, const KernelParameters* p)
+{
+  __global KEY* winner = output->Winners + target;
+  const KEY found = *winner;
+  if (p->Pass == DEFORMVOLUME_PASS_WINNER)
+  {
+    return found == key;
+  }
+  if (p->Pass == DEFORMVOLUME_PASS_CONTEST)
+  {
+    if (found != key)
+    {
+      output->Coverage[target] = 2;
+    }
+  }
+  else if (found > key)
+  {
+    ATOMIC_MIN(winner, key);
+  }
+  return 0;
 }
 
 // The weights and their sum as the edge functions give them.
@@ -135,13 +158,8 @@ static void Write(int x, int y, int z, int t, const long* weights, long volume, 
                           (voxel.y - p->OutputFirst[1])) *
       p->OutputSize[0] +
     (voxel.x - p->OutputFirst[0]);
-  const KEY key = MakeKey(x, y, z, inverted, p);
-  if (p->Pass == DEFORMVOLUME_PASS_MARK)
-  {
-    ATOMIC_MIN(output->Winners + target, key);
-    return;
-  }
-  if (p->Pass == DEFORMVOLUME_PASS_WINNER && output->Winners[target] != key)
+  if (p->Pass != DEFORMVOLUME_PASS_DIRECT &&
+    !TakesPlace(output, target, MakeKey(x, y, z, inverted, p), p))
   {
     return;
   }
@@ -318,7 +336,7 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
     }
     // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
     const Candidates c = FindCandidates(
-      low, high, state.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT, p);
+      low, high, state.Interior == 255 && !DEFORMVOLUME_IS_CLOSED(p->Pass), p);
     if (!IsEmpty(c))
     {
       ResampleUprightCell(mesh, x, y, z, q, state, c, output, p ARRAY_ARGUMENTS);

@@ -172,6 +172,9 @@ struct DeformRequest
   deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
   /// Structured indices of the output voxels.
   Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
+  /// The output that these are a part of; empty: they are all of it. What a voxel gets with the
+  /// methods Exact, ExactByCell and ExactByLanes depends on this one alone, to the last bit.
+  Extent WholeOutputExtent{ { 0, -1, 0, -1, 0, -1 } };
   /// For each array of the volume, room for Components elements a voxel of OutputExtent. A device
   /// that is a processor works there; after a failure the contents are undefined.
   std::vector<void*> Outputs;

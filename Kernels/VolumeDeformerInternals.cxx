@@ -457,10 +457,17 @@ bool VolumeDeformer::Internals::RunSlab(
   const bool folded = request.Method != Resampling::Published && counts.NeedWinners(covered);
   if (folded)
   {
-    report.Overlapping |= counts.Writes > covered;
-    this->LaunchesExpected += 2 * this->GetNumberOfLaunches();
+    const bool contested = counts.Writes > covered;
+    report.Overlapping |= contested;
+    this->LaunchesExpected += (contested ? 4 : 2) * this->GetNumberOfLaunches();
     this->CheckWinners(output);
     output.PrepareWinners(*this->Context, this->ResamplingEvents);
+    if (contested)
+    {
+      this->Run(request, output, DEFORMVOLUME_PASS_OWNERS);
+      this->Run(request, output, DEFORMVOLUME_PASS_CONTEST);
+    }
+    output.Settle(*this->Context, this->ResamplingEvents);
     this->Run(request, output, DEFORMVOLUME_PASS_MARK);
     this->Run(request, output, DEFORMVOLUME_PASS_WINNER);
     covered = output.CountCovered(*this->Context, this->ResamplingEvents);
