@@ -165,16 +165,30 @@ inline WorldMap Bend(vtkImageData* volume, double amount = 1.0)
   };
 }
 
-/// Folds the last part of the volume back along z, by steps that leave voxels on faces of cells.
-inline WorldMap Fold(vtkImageData* volume)
+/// Folds the last part of the volume back along z; with a factor of 1, so that voxels come to lie
+/// on voxels.
+inline WorldMap Fold(vtkImageData* volume, double factor)
 {
   const glm::dvec3 center = GetCenter(volume);
   return [=](const glm::dvec3& point)
   {
     glm::dvec3 p = point - center;
-    p.z = p.z > 7.0 ? 7.0 - 0.75 * (p.z - 7.0) : p.z;
+    p.z = p.z > 7.5 ? 7.5 - factor * (p.z - 7.5) : p.z;
     p.x += 0.25 * p.z;
     return center + p;
+  };
+}
+
+/// Winds the volume round an axis until it lies on itself, nowhere inside out.
+inline WorldMap Wind(vtkImageData* volume)
+{
+  const glm::dvec3 center = GetCenter(volume);
+  return [=](const glm::dvec3& point)
+  {
+    const glm::dvec3 p = point - center;
+    const double angle = 0.12 * p.x;
+    const double radius = 22.0 + 1.1 * p.y;
+    return center + glm::dvec3(radius * std::sin(angle), radius * std::cos(angle), p.z);
   };
 }
 
@@ -250,8 +264,8 @@ inline std::vector<Case> MakeCases()
     whole->GetPointData()->SetVectors(vectors);
     return whole;
   }();
+  const auto masked = MakeVolume(extent);
   {
-    const auto masked = MakeVolume(extent);
     const auto active = vtkSmartPointer<vtkUnsignedCharArray>::New();
     active->SetName("ActiveTetrahedra");
     for (vtkIdType id = 0; id < masked->GetNumberOfCells(); ++id)
@@ -267,6 +281,8 @@ inline std::vector<Case> MakeCases()
       ghosts->InsertNextValue(Scatter(id + 99) % 200 == 0 ? vtkDataSetAttributes::HIDDENPOINT : 0);
     }
     masked->GetPointData()->AddArray(ghosts);
+  }
+  {
     add("Masks", masked, deform(MakeMesh(masked, 4), Bend(masked)));
     add("Masks, half a voxel", masked, deform(MakeMesh(masked, 4), Shift(0.5, 1.0, -2.5)));
   }
@@ -293,7 +309,11 @@ inline std::vector<Case> MakeCases()
   add("Mesh rasterisation", volume, deform(MakeMesh(volume, 5), Bend(volume))).Set =
     [](vtkDeformVolumeFilter* filter)
   { filter->SetResampler(vtkDeformVolumeFilter::MESH_RASTERIZATION); };
-  add("Folded", volume, deform(MakeMesh(volume, 8), Fold(volume)));
+  // The crease lies on nodes of the mesh.
+  add("Folded", volume, deform(MakeMesh(volume, 12), Fold(volume, 0.75)));
+  add("Folded on voxels", volume, deform(MakeMesh(volume, 35), Fold(volume, 1.0)));
+  add("Folded, masks", masked, deform(MakeMesh(masked, 35), Fold(masked, 1.0)));
+  add("Wound", volume, deform(MakeMesh(volume, 25), Wind(volume)));
   return cases;
 }
 

@@ -218,6 +218,7 @@ int TestDeformStreaming(int, char*[])
   for (const Case& from : cases)
   {
     const auto whole = MakeWhole(from);
+    std::cout << from.Name << '\n';
     TestPieces(from, whole, 3, vtkExtentTranslator::Y_SLAB_MODE);
     TestPieces(from, whole, 8, vtkExtentTranslator::BLOCK_MODE);
     TestStreamer(from, whole, 5);
