@@ -145,6 +145,168 @@ void AddTetrahedron(const std::array<Position, 4>& points, Containing candidate,
   }
 }
 
+/// Which simplices of the lattice have a tetrahedron that writes the voxels in them, by the fill
+/// rule for the undeformed lattice.
+class Ownership
+{
+public:
+  explicit Ownership(const SamplingMesh& mesh)
+    : Mesh(mesh)
+  {
+  }
+
+  /// group: all tetrahedra that contain a voxel in one simplex.
+  bool IsOwned(const std::vector<const Containing*>& group) const
+  {
+    bool interior = false;
+    bool regular = true;
+    for (const std::int64_t vertex : GetSimplex(*group.front()))
+    {
+      const Position place = this->GetPlace(vertex);
+      const bool isRegular = this->IsRegular(place);
+      regular = regular && isRegular;
+      interior = interior || (isRegular && !this->IsOnBorder(place));
+    }
+    const bool inside = GetSimplex(*group.front()).size() == 4;
+    if (inside || interior)
+    {
+      return std::any_of(
+        group.begin(), group.end(), [](const Containing* c) { return c->Generic; });
+    }
+    // Elsewhere on the border of the mesh one of the group is taken, whatever is missing.
+    return !regular || this->HasLatticeOwner(group);
+  }
+
+private:
+  static std::vector<std::int64_t> GetSimplex(const Containing& containing)
+  {
+    std::vector<std::int64_t> vertices;
+    for (int k = 0; k < 4; ++k)
+    {
+      if (containing.Numerators[k] > 0)
+      {
+        vertices.push_back(containing.Vertices[k]);
+      }
+    }
+    return vertices;
+  }
+
+  /// Counted from the first voxel.
+  Position GetPlace(std::int64_t vertex) const
+  {
+    const std::int64_t x = GetSize(this->Mesh.Voxels, 0);
+    const std::int64_t y = GetSize(this->Mesh.Voxels, 1);
+    return { { vertex % x, vertex / x % y, vertex / (x * y) } };
+  }
+
+  bool IsOnBorder(const Position& place) const
+  {
+    bool border = false;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      border = border || place[axis] == 0 || place[axis] == GetSize(this->Mesh.Voxels, axis) - 1;
+    }
+    return border;
+  }
+
+  /// Whether all round a vertex is there that is not beyond the volume.
+  bool IsRegular(const Position& place) const
+  {
+    const Box& box = this->Mesh.Voxels;
+    const std::int64_t size[3] = { GetSize(box, 0), GetSize(box, 1), GetSize(box, 2) };
+    bool regular = true;
+    for (int step = 0; step < 27; ++step)
+    {
+      const std::int64_t x = place[0] + step % 3 - 1;
+      const std::int64_t y = place[1] + step / 3 % 3 - 1;
+      const std::int64_t z = place[2] + step / 9 - 1;
+      const bool lower = x >= 0 && y >= 0 && z >= 0;
+      if (lower && x < size[0] && y < size[1] && z < size[2])
+      {
+        regular = regular &&
+          (this->Mesh.Present.empty() || this->Mesh.Present[(z * size[1] + y) * size[0] + x]);
+      }
+      const bool isCell = step % 3 < 2 && step / 3 % 3 < 2 && step / 9 < 2;
+      if (isCell && lower && x < size[0] - 1 && y < size[1] - 1 && z < size[2] - 1)
+      {
+        regular = regular &&
+          (this->Mesh.Active.empty() ||
+            (this->Mesh.Active[(z * (size[1] - 1) + y) * (size[0] - 1) + x] & 31) == 31);
+      }
+    }
+    return regular;
+  }
+
+  /// On the border of the volume: the cell with the simplex on its low sides, or the last one on an
+  /// axis; of its tetrahedra the first with that simplex, which must not be flat.
+  bool HasLatticeOwner(const std::vector<const Containing*>& group) const
+  {
+    const std::vector<std::int64_t> simplex = GetSimplex(*group.front());
+    Position owner{};
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      owner[axis] = GetSize(this->Mesh.Voxels, axis) - 2;
+      for (const std::int64_t vertex : simplex)
+      {
+        owner[axis] = std::min(owner[axis], this->GetPlace(vertex)[axis]);
+      }
+    }
+    const std::int64_t cell = (owner[2] * (GetSize(this->Mesh.Voxels, 1) - 1) + owner[1]) *
+        (GetSize(this->Mesh.Voxels, 0) - 1) +
+      owner[0];
+    const auto vertices = NumberVertices(static_cast<int>(this->Mesh.Voxels[0] + owner[0]),
+      static_cast<int>(this->Mesh.Voxels[2] + owner[1]),
+      static_cast<int>(this->Mesh.Voxels[4] + owner[2]));
+    for (int t = 0; t < 5; ++t)
+    {
+      std::set<std::int64_t> ids;
+      for (int k = 0; k < 4; ++k)
+      {
+        const Offset& offset = vertices[NumbersOfTetrahedra[t][k]];
+        ids.insert(((owner[2] + offset[2]) * GetSize(this->Mesh.Voxels, 1) + owner[1] + offset[1]) *
+            GetSize(this->Mesh.Voxels, 0) +
+          owner[0] + offset[0]);
+      }
+      if (std::all_of(simplex.begin(), simplex.end(),
+            [&ids](std::int64_t vertex) { return ids.count(vertex) > 0; }))
+      {
+        return std::any_of(group.begin(), group.end(),
+          [&](const Containing* c) { return c->Cell == cell && c->Tetrahedron == t; });
+      }
+    }
+    return false;
+  }
+
+  const SamplingMesh& Mesh;
+};
+
+/// Puts those first that have the voxel in the one simplex which is owned, if there is one only.
+void PreferOwned(const Ownership& ownership, std::vector<Containing>& containing)
+{
+  std::vector<std::vector<const Containing*>> groups;
+  for (const Containing& one : containing)
+  {
+    const auto group = std::find_if(groups.begin(), groups.end(),
+      [&one](const std::vector<const Containing*>& g) { return g.front()->SharesSimplex(one); });
+    if (group == groups.end())
+    {
+      groups.push_back({ &one });
+    }
+    else
+    {
+      group->push_back(&one);
+    }
+  }
+  const auto isOwned = [&ownership](const std::vector<const Containing*>& group)
+  { return ownership.IsOwned(group); };
+  if (groups.size() > 1 && std::count_if(groups.begin(), groups.end(), isOwned) == 1)
+  {
+    const Containing first = *std::find_if(groups.begin(), groups.end(), isOwned)->front();
+    std::stable_partition(containing.begin(), containing.end(),
+      [&first](const Containing& one) { return one.SharesSimplex(first); });
+  }
+}
+
 } // namespace
 
 bool Containing::operator<(const Containing& other) const
@@ -242,9 +404,11 @@ Result Resample(const SamplingMesh& mesh, const Box& output)
       }
     }
   }
+  const Ownership ownership(mesh);
   for (auto& containing : result.Voxels)
   {
     std::sort(containing.begin(), containing.end());
+    PreferOwned(ownership, containing);
     result.NumberOfCoveredVoxels += containing.empty() ? 0 : 1;
     const auto generic = std::count_if(
       containing.begin(), containing.end(), [](const Containing& c) { return c.Generic; });

@@ -98,7 +98,9 @@ struct Containing
 
 struct Result
 {
-  /// For each output voxel all tetrahedra whose closed region contains it, the best first.
+  /// For each output voxel all tetrahedra whose closed region contains it, the best first: where a
+  /// single one writes the voxel by the fill rule, those that have it in the same simplex, and
+  /// then in the order of Containing.
   std::vector<std::vector<Containing>> Voxels;
   std::int64_t NumberOfCoveredVoxels = 0;
   std::int64_t NumberOfInvertedTetrahedra = 0;
