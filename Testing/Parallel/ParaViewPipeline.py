@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Deforms a volume in pvbatch and saves the result: data as <prefix>.pvti, a picture as <prefix>.png.
+
+Arguments: the plugin, the prefix, the volume (.vti), the number of ranks that there should be.
+"""
+import sys
+
+from paraview import servermanager, simple
+
+plugin, prefix, volume_file, ranks = sys.argv[1:]
+simple.LoadPlugin(plugin, remote=False, ns=globals())
+if servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartitions() != int(ranks):
+    sys.exit(f"not {ranks} ranks")
+
+volume = simple.XMLImageDataReader(FileName=[volume_file])
+lattice = TetrahedralLattice(NumberOfNodes=[7, 7, 7], Bounds=[-32, 32, -31, 31, -33, 33])
+displaced = simple.Calculator(
+    Input=lattice,
+    ResultArrayName="displacement",
+    Function="iHat*(6*sin(0.09*coordsY)) + jHat*(5*cos(0.07*coordsZ)) + kHat*(0.2*coordsX)",
+)
+# The mesh is distributed as ParaView does that.
+distributed = simple.RedistributeDataSet(Input=displaced)
+deformed = DeformVolume(Volume=volume, Deformation=distributed)
+deformed.DisplacementArray = ["POINTS", "displacement"]
+deformed.UpdatePipeline()
+simple.SaveData(prefix + ".pvti", proxy=deformed, DataMode="Binary")
+
+view = simple.CreateView("RenderView")
+view.ViewSize = [400, 400]
+view.OrientationAxesVisibility = 0
+display = simple.Show(deformed, view)
+display.SetRepresentationType("Volume")
+simple.ColorBy(display, ("POINTS", "RTData"))
+colours = simple.GetColorTransferFunction("RTData")
+colours.RescaleTransferFunction(40.0, 280.0)
+simple.GetOpacityTransferFunction("RTData").Points = [40, 0, 0.5, 0, 120, 0.02, 0.5, 0, 280, 0.6, 0.5, 0]
+display.SetScalarBarVisibility(view, False)
+view.CameraPosition = [110, 90, 150]
+view.CameraFocalPoint = [0, 0, 0]
+view.CameraViewUp = [0, 1, 0]
+simple.Render(view)
+simple.SaveScreenshot(prefix + ".png", view, ImageResolution=[400, 400])
