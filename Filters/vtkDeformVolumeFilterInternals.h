@@ -108,6 +108,10 @@ private:
     const deformvolume::ImageGeometry& volume, const deformvolume::DeformationSource& source);
   bool WantsPart(vtkInformation* output) const;
   bool CanTakePart() const;
+  /// An extent that is needed, and what was needed before for the same share of the output: where
+  /// the deformation moves to and fro, the volume is not read, sent and mapped at each step.
+  deformvolume::Extent KeepNeeded(const deformvolume::Extent& needed,
+    const deformvolume::ImageGeometry& volume, vtkInformation* output);
   /// Where the voxels of the volume go.
   const deformvolume::RestRegions& GetRegions(
     const deformvolume::ImageGeometry& volume, const deformvolume::DeformationSource& source);
@@ -153,6 +157,22 @@ private:
         this->Scale == other.Scale && this->Extrapolate == other.Extrapolate;
     }
   };
+  // What was needed last, and for which share of the output of which volume.
+  struct Share
+  {
+    deformvolume::Extent Asked{ { 0, -1, 0, -1, 0, -1 } }; // empty: all
+    int Piece = 0;
+    int Pieces = 0;
+    deformvolume::ImageGeometry Volume;
+    bool operator==(const Share& other) const
+    {
+      return this->Asked == other.Asked && this->Piece == other.Piece &&
+        this->Pieces == other.Pieces && this->Volume == other.Volume;
+    }
+  };
+  Share LastShare;
+  deformvolume::Extent LastNeeded{ { 0, -1, 0, -1, 0, -1 } };
+
   RegionsKey KeyOfRegions;
   std::unique_ptr<deformvolume::RestRegions> Regions;
 

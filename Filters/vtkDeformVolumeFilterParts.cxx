@@ -9,6 +9,7 @@
 #include "vtkInformation.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <algorithm>
 #include <exception>
 
 using deformvolume::DeformationSource;
@@ -70,6 +71,37 @@ const RestRegions& vtkDeformVolumeFilter::vtkInternals::GetRegions(
 }
 
 //------------------------------------------------------------------------------
+Extent vtkDeformVolumeFilter::vtkInternals::KeepNeeded(
+  const Extent& needed, const ImageGeometry& volume, vtkInformation* output)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  Share share;
+  share.Volume = volume;
+  share.Piece = output->Get(Pipeline::UPDATE_PIECE_NUMBER());
+  share.Pieces = output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
+  Extent asked;
+  Extent whole;
+  output->Get(Pipeline::UPDATE_EXTENT(), asked.data());
+  output->Get(Pipeline::WHOLE_EXTENT(), whole.data());
+  if (asked != whole)
+  {
+    share.Asked = asked;
+  }
+  Extent kept = needed;
+  if (share == this->LastShare)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      kept[2 * axis] = std::min(kept[2 * axis], this->LastNeeded[2 * axis]);
+      kept[2 * axis + 1] = std::max(kept[2 * axis + 1], this->LastNeeded[2 * axis + 1]);
+    }
+  }
+  this->LastShare = share;
+  this->LastNeeded = kept;
+  return kept;
+}
+
+//------------------------------------------------------------------------------
 Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
   const Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output)
 {
@@ -94,7 +126,8 @@ Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
       {
         return; // the data pass tells what is wrong
       }
-      needed = regions.Find(deformvolume::GetRequestedPart(output));
+      needed =
+        this->KeepNeeded(regions.Find(deformvolume::GetRequestedPart(output)), volume, output);
     });
   return needed;
 }

@@ -63,6 +63,130 @@ double GetReach(const RestTetrahedron& rest, const Mesh& mesh, const Extent& vox
   return reach;
 }
 
+// The origin is a voxel in the tetrahedron, whose nodes are rounded by up to 1/512 voxel on an
+// axis.
+void CheckOrigin(const RestTetrahedron& rest, const Extent& voxels)
+{
+  double last = 1.0;
+  double lastReach = 0.0;
+  for (int k = 0; k < 3; ++k)
+  {
+    double reach = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double origin = rest.Origin[axis];
+      CHECK(origin == std::floor(origin) && origin >= 0.0 &&
+        origin < static_cast<double>(GetSize(voxels, axis)));
+      reach += std::abs(rest.Gradients[k][axis]) / 128.0;
+    }
+    CHECK(rest.Weights[k] >= -reach && rest.Weights[k] <= 1.0 + reach);
+    last -= rest.Weights[k];
+    lastReach += reach;
+  }
+  CHECK(last >= -lastReach && last <= 1.0 + lastReach);
+}
+
+// What displaces a voxel, bit for bit: counted from index 0 and not from the first voxel.
+struct Displacer
+{
+  std::int32_t Tetrahedron = -1;
+  std::array<double, 3> Origin{};
+  std::array<double, 3> Weights{};
+  std::array<std::array<double, 3>, 3> Gradients{};
+  bool operator==(const Displacer& other) const
+  {
+    return this->Tetrahedron == other.Tetrahedron && this->Origin == other.Origin &&
+      this->Weights == other.Weights && this->Gradients == other.Gradients;
+  }
+};
+
+std::vector<Displacer> GetDisplacers(const VertexRuns& runs, const Extent& voxels)
+{
+  std::vector<Displacer> displacers;
+  const std::int64_t size = GetSize(voxels, 0);
+  for (std::size_t row = 0; row + 1 < runs.RowBegins.size(); ++row)
+  {
+    std::uint32_t run = runs.RowBegins[row];
+    for (std::int64_t x = 0; x < size; ++x)
+    {
+      run += run + 1 < runs.RowBegins[row + 1] && runs.Runs[run + 1].Begin == x ? 1 : 0;
+      Displacer displacer;
+      if (runs.Runs[run].Tetrahedron >= 0)
+      {
+        const RestTetrahedron& rest = runs.Tetrahedra[runs.Runs[run].Tetrahedron];
+        displacer.Tetrahedron = rest.Tetrahedron;
+        displacer.Weights = rest.Weights;
+        displacer.Gradients = rest.Gradients;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          displacer.Origin[axis] = rest.Origin[axis] + voxels[2 * axis];
+        }
+      }
+      displacers.push_back(displacer);
+    }
+  }
+  return displacers;
+}
+
+// The mapping of a part is that of the whole, to the last bit.
+void TestParts()
+{
+  std::mt19937 random(11);
+  const Extent voxels{ { -7, 40, 3, 40, -20, 29 } };
+  for (const int nodes : { 4, 9, 30 })
+  {
+    Mesh mesh = MakeLattice(glm::ivec3(nodes), glm::dvec3(-5.0, 1.0, -18.5),
+      glm::dvec3(43.0, 38.0, 27.25), 0.45, 0.0, random);
+    if (nodes == 4)
+    {
+      // Thin ones, which have an origin for each run.
+      const Mesh soup = MakeSoup(60, 90, -5.0, 40.0, 0.0, random);
+      for (Tetrahedron tetrahedron : soup.Tetrahedra)
+      {
+        for (std::int32_t& node : tetrahedron)
+        {
+          node += static_cast<std::int32_t>(mesh.Points.size());
+        }
+        mesh.Tetrahedra.push_back(tetrahedron);
+      }
+      mesh.Points.insert(mesh.Points.end(), soup.Points.begin(), soup.Points.end());
+    }
+    for (const StaticMappingForm form : { StaticMappingForm::Links, StaticMappingForm::Runs })
+    {
+      const StaticMappingBuilder builder(
+        voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, form);
+      const StaticMapping whole = builder.Build();
+      const std::vector<Displacer> wholeDisplacers = GetDisplacers(whole.Runs, voxels);
+      std::int64_t inner = 0;
+      for (const Extent& part : { Extent{ { -7, 40, 3, 40, -20, -20 } },
+             Extent{ { -7, 40, 3, 22, -19, 29 } }, Extent{ { -7, 40, 23, 40, -19, 29 } } })
+      {
+        const StaticMapping mapping = builder.Build(part);
+        inner += mapping.NumberOfInnerVoxels;
+        const std::vector<Displacer> displacers = GetDisplacers(mapping.Runs, part);
+        for (std::int64_t i = 0; i < GetNumberOfPoints(part); ++i)
+        {
+          const glm::ivec3 voxel = GetVoxel(part, i);
+          const std::int64_t at =
+            (static_cast<std::int64_t>(voxel.z - voxels[4]) * GetSize(voxels, 1) +
+              (voxel.y - voxels[2])) *
+              GetSize(voxels, 0) +
+            (voxel.x - voxels[0]);
+          if (form == StaticMappingForm::Runs)
+          {
+            CHECK(displacers[i] == wholeDisplacers[at]);
+          }
+          else
+          {
+            CHECK(std::memcmp(&mapping.Links[i], &whole.Links[at], sizeof(VertexLink)) == 0);
+          }
+        }
+      }
+      CHECK(inner == whole.NumberOfInnerVoxels && inner > 0);
+    }
+  }
+}
+
 // Every voxel has the tetrahedron of its link, and its weights as far as floats go.
 void Compare(const Mesh& mesh, const Extent& voxels)
 {
@@ -116,9 +240,10 @@ void Compare(const Mesh& mesh, const Extent& voxels)
         const bool sliver = GetReach(rest, mesh, voxels) > LargestRunReach;
         const bool first = used.insert(record).second;
         CHECK(!sliver || first);
-        // Records come in the order of the voxels, and lie where they are first used.
+        // Records come in the order of the voxels; those of slivers lie where they are used.
         CHECK(!first || record + 1 == static_cast<std::int32_t>(used.size()));
-        CHECK(!first || rest.Origin[0] == runs.Runs[i].Begin);
+        CHECK(!sliver || rest.Origin[0] == runs.Runs[i].Begin);
+        CheckOrigin(rest, voxels);
       }
     }
   }
@@ -327,6 +452,7 @@ void TestThreads()
 
 int TestStaticRuns(int, char*[])
 {
+  TestParts();
   TestMisuse();
   TestAgainstLinks();
   TestSlivers();
