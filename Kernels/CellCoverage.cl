@@ -27,28 +27,6 @@
 __constant uchar Tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
 __constant uchar CornerBehindFace[4] = DEFORMVOLUME_CORNER_BEHIND_FACE;
 
-typedef struct
-{
-  long x, y, z;
-} Vector;
-
-static Vector Subtract(Vector a, Vector b)
-{
-  const Vector r = { a.x - b.x, a.y - b.y, a.z - b.z };
-  return r;
-}
-
-static Vector Cross(Vector a, Vector b)
-{
-  const Vector r = { a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x };
-  return r;
-}
-
-static long Dot(Vector a, Vector b)
-{
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 // Six times the signed volume.
 static long Determinant(Vector a, Vector b, Vector c, Vector d)
 {

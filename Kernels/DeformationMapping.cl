@@ -38,6 +38,17 @@ typedef struct
 #define MULTIPLY_ADD(a, b, c) ((a) * (b) + (c))
 #endif
 
+// Displacements in 1/256 voxel, rounded. Clamped, because extrapolation can lead anywhere.
+#define DEFINE_ROUND_STEPS(TYPE)                                                                   \
+  static TYPE RoundSteps_##TYPE(TYPE moved)                                                        \
+  {                                                                                                \
+    moved = moved < -LARGEST ? (TYPE)(-LARGEST) : moved;                                           \
+    moved = moved > LARGEST ? (TYPE)(LARGEST) : moved;                                             \
+    return (moved + ROUND_TO_INTEGER) - ROUND_TO_INTEGER;                                          \
+  }
+DEFINE_ROUND_STEPS(float4)
+DEFINE_ROUND_STEPS(float8)
+
 static size_t VertexInChunk(int x, int y, int z, const KernelParameters* p)
 {
   return ((size_t)(z - p->ChunkFirst) * p->Size[1] + y) * p->Size[0] + x;
@@ -208,12 +219,8 @@ static int4 PositionOf(const Mapping* m, int x, int y, int z, const KernelParame
   const RestPosition rx = m->Rest[x];
   const RestPosition ry = m->Rest[p->Size[0] + y];
   const RestPosition rz = m->Rest[p->Size[0] + p->Size[1] + z];
-  // Clamped, because extrapolation can lead anywhere.
-  float4 moved = Displacement(m, x, y, z, p) * 256.0f +
-    (float4)(rx.Fraction, ry.Fraction, rz.Fraction, 0.0f);
-  moved = moved < -LARGEST ? (float4)(-LARGEST) : moved;
-  moved = moved > LARGEST ? (float4)(LARGEST) : moved;
-  const float4 steps = (moved + ROUND_TO_INTEGER) - ROUND_TO_INTEGER;
+  const float4 steps = RoundSteps_float4(Displacement(m, x, y, z, p) * 256.0f +
+    (float4)(rx.Fraction, ry.Fraction, rz.Fraction, 0.0f));
   return (int4)(rx.Whole, ry.Whole, rz.Whole, 0) + convert_int4(steps);
 }
 

@@ -135,7 +135,7 @@ std::vector<bool> FindLaneArrays(
   return found;
 }
 
-/// What BrickResampling.cl expects in front of it.
+/// What the texts from LaneVectors.cl to BrickResampling.cl expect in front of them.
 std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<VolumeArray>& arrays)
 {
   const std::vector<bool> inLanes = FindLaneArrays(context, arrays);
@@ -207,8 +207,9 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
     }
   }
   return context.GetProgram(GetSharedText() + MakePreamble(context, arrays) + key +
-      GetMappingText(mapping) + CellCoverage_cl + Resampling_cl +
-      MakeLanePreamble(context, arrays) + BrickResampling_cl,
+      GetMappingText(mapping) + IntegerVectors_cl + CellCoverage_cl + Resampling_cl +
+      MakeLanePreamble(context, arrays) + LaneVectors_cl + BrickMapping_cl + GroupSamples_cl +
+      GroupCoverage_cl + BrickResampling_cl,
     Options);
 }
 
@@ -227,7 +228,8 @@ cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<Volume
 
 cl::Program GetBinningProgram(OpenCLContext& context)
 {
-  return context.GetProgram(std::string(RasterParameters_h) + TetrahedronBinning_cl, Options);
+  return context.GetProgram(
+    std::string(RasterParameters_h) + IntegerVectors_cl + TetrahedronBinning_cl, Options);
 }
 
 cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
@@ -259,8 +261,9 @@ cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<Vo
       (processor ? "32" : "1") + "\n#define INDEX " + (wide ? "long" : "int") +
       (laneArrays.empty() ? "" : "\n#define HAS_LANE_ARRAYS") +
       (tapArrays.empty() ? "" : "\n#define HAS_TAP_ARRAYS") + "\n#define LANE_ARRAYS(DO)" +
-      laneArrays + "\n#define TAP_ARRAYS(DO)" + tapArrays + "\n" + TetrahedronBinning_cl +
-      LaneSampling_cl + RestSampling_cl + RestCoordinates_cl + MeshRasterization_cl,
+      laneArrays + "\n#define TAP_ARRAYS(DO)" + tapArrays + "\n" + IntegerVectors_cl +
+      TetrahedronBinning_cl + LaneVectors_cl + LaneSampling_cl + RestSampling_cl +
+      RestCoordinates_cl + MeshRasterization_cl,
     Options);
 }
 

@@ -1,38 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The part of RestSampling.cl for processors, and its vectors: looks the volume up at the rest
+// The part of RestSampling.cl for processors: looks the volume up at the rest
 // coordinates of LANES neighbouring voxels of a row, side by side.
 //
 // Why it is shaped so: rest coordinates of neighbours may be anywhere, so that memory is read lane by
 // lane, two neighbours on x at once; all arithmetic is in vectors of float. Integers of 8 and 16 bits
 // are exact in float, and an interpolation that has no weight on a side leaves that side out.
 //
-// What the host puts in front of this text:
-//   LANES                 16, 8 or 4: floats in a vector
+// It comes after LaneVectors.cl. What the host puts in front of this text besides:
 //   INDEX                 int, or long where the volume has too many voxels for it
 //   LANE_ARRAYS(DO)       DO(index, type, bits) for arrays by lanes, bits 32 for float
 
 #pragma OPENCL FP_CONTRACT OFF
 
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
-#define FLOATS JOIN(float, LANES)
-#define INTS JOIN(int, LANES)
 #define UINTS JOIN(uint, LANES)
-#define AS_INTS JOIN(as_int, LANES)
 #define AS_UINTS JOIN(as_uint, LANES)
-#define LOAD(p) JOIN(vload, LANES)(0, p)
 #define STORE(v, p) JOIN(vstore, LANES)(v, 0, p)
-#define TO_FLOATS JOIN(convert_float, LANES)
 // Of small numbers: added to 1.5 * 2^23, they are rounded to the nearest integer.
 #define ROUND_TO_INTS(v) (AS_INTS((v) + 12582912.0f) - 0x4B400000)
 
-#if LANES == 16
-#define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
-#elif LANES == 8
-#define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7))
-#else
-#define LANE_INDEX ((INTS)(0, 1, 2, 3))
-#endif
 #define LANE_MASK ((uint)(((ulong)1 << LANES) - 1))
 
 #define INDICES JOIN(INDEX, LANES)

@@ -11,26 +11,10 @@
 // once for inverted ones. Their sums over the ranges are the places to write to, so that the lists
 // come out in order without atomic operations. The host does the sums in between.
 
-typedef struct
-{
-  long x, y, z;
-} Vector;
-
 static Vector Difference(int4 a, int4 b)
 {
   const Vector r = { (long)a.x - b.x, (long)a.y - b.y, (long)a.z - b.z };
   return r;
-}
-
-static Vector Cross(Vector a, Vector b)
-{
-  const Vector r = { a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x };
-  return r;
-}
-
-static long Dot(Vector a, Vector b)
-{
-  return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 // The voxels of the output in the box of a tetrahedron, both ends included.

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The fill rule of CellCoverage.cl for a group of cells side by side, in integers of 32 bits: for the samples that
+// floats do not decide (BrickResampling.cl).
+
+#define MAXIMUM_EXACT_EXTENT 3.99f // voxels: edge functions of larger cells need more than 32 bits
+
+// What lies round the cells of a group on the border of the mesh.
+typedef struct
+{
+  INTS Whole;    // all five tetrahedra are active and have positions
+  INTS Interior; // as CellState
+  INTS Regular;
+} GroupState;
+
+static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, int x, int y, int z,
+  GroupState* states, const KernelParameters* p)
+{
+  const INTS cellX = x + 2 * LANE_INDEX;
+  const INTS inVolume = (cellX >= 0) & (cellX < p->Size[0] - 1);
+  if (!p->HasState)
+  {
+    // What is not on the border of the volume is interior.
+    const int mirror = Mirror(x, y, z, p);
+    const int lowX = LOW_SIDE(0, mirror), lowZ = LOW_SIDE(1, mirror), lowY = LOW_SIDE(2, mirror);
+    const int outer = (y == 0 ? lowY : 0) | (y == p->Size[1] - 2 ? 255 ^ lowY : 0) |
+      (z == 0 ? lowZ : 0) | (z == p->Size[2] - 2 ? 255 ^ lowZ : 0);
+    states->Whole = inVolume;
+    states->Regular = 255;
+    states->Interior =
+      ~(outer | ((cellX == 0) & lowX) | ((cellX == p->Size[0] - 2) & (255 ^ lowX))) & 255;
+    return;
+  }
+  Lanes whole, interior, regular;
+  whole.Vector = inVolume;
+  for (int lane = 0; lane < LANES; ++lane)
+  {
+    CellState state = { 0, 0 };
+    if (whole.Lanes[lane])
+    {
+      const int cell = x + 2 * lane;
+      whole.Lanes[lane] =
+        mesh->State[VertexInChunk(cell, y, z, p)] & DEFORMVOLUME_CELL_WHOLE ? -1 : 0;
+      state = CellStateOf(mesh, cell, y, z, p);
+    }
+    interior.Lanes[lane] = state.Interior;
+    regular.Lanes[lane] = state.Regular;
+  }
+  states->Whole = whole.Vector;
+  states->Interior = interior.Vector;
+  states->Regular = regular.Vector;
+}
+
+// Which lanes own a sample by the fill rule, by edge functions in integers of 32 bits, for upright cells of
+// less than MAXIMUM_EXACT_EXTENT: these are at most 2 (256 extent)^3. sample: in voxels relative to vertex
+// 0 of the cell. simplex: the vertices of the simplex that the sample lies in, 0 where that is not in the
+// cell.
+static __attribute__((noinline)) INTS HoldSample(
+  const Group* group, const FLOATS* sample, int odd, INTS* simplex)
+{
+  INTS q[8][3];
+  for (int v = 0; v < 8; ++v)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      q[v][axis] = TO_INTS((VERTEX(v, axis) - VERTEX(0, axis)) * 256.0f);
+    }
+  }
+  INTS held = 0;
+  *simplex = 0;
+  for (int t = 0; t < 5; ++t)
+  {
+    INTS e[3][3]; // edges from the first vertex, and the normals of the faces opposite the others
+    INTS n[4][3];
+    INTS r[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const INTS first = q[Tetrahedra[t][0]][axis];
+      r[axis] = TO_INTS(sample[axis] * 256.0f) - first;
+      for (int k = 0; k < 3; ++k)
+      {
+        e[k][axis] = q[Tetrahedra[t][k + 1]][axis] - first;
+      }
+    }
+    // The orientation that the parity of the cell asks for: normals point inside.
+    const int sign = odd != (t == 4) ? -1 : 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int a = (axis + 1) % 3;
+      const int b = (axis + 2) % 3;
+      n[1][axis] = (e[1][a] * e[2][b] - e[1][b] * e[2][a]) * sign;
+      n[2][axis] = (e[2][a] * e[0][b] - e[2][b] * e[0][a]) * sign;
+      n[3][axis] = (e[0][a] * e[1][b] - e[0][b] * e[1][a]) * sign;
+      n[0][axis] = -(n[1][axis] + n[2][axis] + n[3][axis]);
+    }
+    INTS first = e[0][0] * n[1][0] + e[0][1] * n[1][1] + e[0][2] * n[1][2];
+    INTS inside = -1;
+    INTS closed = -1;
+    INTS vertices = 0;
+    for (int k = 3; k >= 0; --k)
+    {
+      const INTS f = k ? n[k][0] * r[0] + n[k][1] * r[1] + n[k][2] * r[2] : first;
+      first -= f;
+      // As ShiftsInside.
+      inside &= (f > 0) |
+        ((f == 0) &
+          ((n[k][0] > 0) | ((n[k][0] == 0) & ((n[k][1] > 0) | ((n[k][1] == 0) & (n[k][2] > 0))))));
+      closed &= f >= 0;
+      vertices |= (f > 0) & (1 << Tetrahedra[t][k]);
+    }
+    held |= inside;
+    *simplex |= closed & vertices;
+  }
+  return held;
+}

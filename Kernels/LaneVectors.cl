@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Vectors of LANES floats or integers, for the kernels that say themselves what the lanes of a processor's vectors
+// do. What the host puts in front of this text:
+//   LANES  16, 8 or 4: floats in a vector
+
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#define FLOATS JOIN(float, LANES)
+#define INTS JOIN(int, LANES)
+#define LOAD(p) JOIN(vload, LANES)(0, p)
+#define TO_FLOATS JOIN(convert_float, LANES)
+#define TO_INTS JOIN(convert_int, LANES)
+#define AS_INTS JOIN(as_int, LANES)
+
+static FLOATS Least(FLOATS a, FLOATS b)
+{
+  return a < b ? a : b;
+}
+
+static FLOATS Most(FLOATS a, FLOATS b)
+{
+  return a > b ? a : b;
+}
+
+#if LANES == 16
+#define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#elif LANES == 8
+#define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7))
+#else
+#define LANE_INDEX ((INTS)(0, 1, 2, 3))
+#endif
+#define LANE_BITS ((INTS)(1) << LANE_INDEX)
+
+// A vector that is read back lane by lane.
+typedef union
+{
+  INTS Vector;
+  int Lanes[LANES];
+} Lanes;
+
+// A bit for each lane that is set.
+static uint LaneBits(INTS mask)
+{
+#if LANES == 8 && defined(__AVX__)
+  return __builtin_ia32_movmskps256(as_float8(mask));
+#elif LANES == 16 && defined(__AVX512DQ__)
+  return __builtin_ia32_cvtd2mask512(mask);
+#else
+  const INTS bits = mask & LANE_BITS;
+#if LANES == 16
+  const int8 a = bits.lo | bits.hi;
+  const int4 b = a.lo | a.hi;
+#elif LANES == 8
+  const int4 b = bits.lo | bits.hi;
+#else
+  const int4 b = bits;
+#endif
+  const long2 c = as_long2(b);
+  const long d = c.x | c.y;
+  return (uint)d | (uint)(d >> 32);
+#endif
+}
+
+// Writes the lanes with set bits to a place, one after the other; what comes behind them there is lost.
+static void Append(INTS v, uint bits, int* place)
+{
+#if LANES == 16 && defined(__AVX512F__)
+  vstore16(__builtin_ia32_compresssi512_mask(v, v, bits), 0, place);
+#else
+  Lanes lanes;
+  lanes.Vector = v;
+  for (int lane = 0; lane < LANES; ++lane)
+  {
+    *place = lanes.Lanes[lane];
+    place += bits >> lane & 1;
+  }
+#endif
+}
+
+// For each set bit, the highest first: lane is its number.
+#define FOR_EACH_LANE(lane, bits)                                                                  \
+  for (int lane = 31 - clz(bits); lane >= 0; bits ^= 1u << lane, lane = 31 - clz(bits))
+
+// The largest lane.
+static int MostOf(INTS v)
+{
+#if LANES == 16
+  const int8 a = max(v.lo, v.hi);
+  const int4 b = max(a.lo, a.hi);
+#elif LANES == 8
+  const int4 b = max(v.lo, v.hi);
+#else
+  const int4 b = v;
+#endif
+  const int2 c = max(b.lo, b.hi);
+  return max(c.x, c.y);
+}
+
+// The sum of the lanes.
+static int SumOf(INTS v)
+{
+#if LANES == 16
+  const int8 a = v.lo + v.hi;
+  const int4 b = a.lo + a.hi;
+#elif LANES == 8
+  const int4 b = v.lo + v.hi;
+#else
+  const int4 b = v;
+#endif
+  const int2 c = b.lo + b.hi;
+  return c.x + c.y;
+}
