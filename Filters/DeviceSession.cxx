@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DeviceSession.h"
 
+#include "Device.h"
+
 #include "vtkImageData.h"
 
 #include <algorithm>
@@ -36,12 +38,27 @@ private:
   DeviceSession* Session;
 };
 
+namespace
+{
+
+std::string Translate(const std::string& request)
+{
+  return request == BEST_DEVICE ? "" : request;
+}
+
+} // namespace
+
+void DeviceSession::CheckDevice(const std::string& request)
+{
+  ResolveDevice(Translate(request));
+}
+
 std::string DeviceSession::SetDevice(
   const std::string& request, std::uint64_t memoryLimit, std::size_t workGroupSize)
 {
   this->Deformer.SetMemoryLimit(memoryLimit);
   this->Deformer.SetWorkGroupSize(workGroupSize);
-  const std::string device = this->Deformer.SetDevice(request == BEST_DEVICE ? "" : request);
+  const std::string device = this->Deformer.SetDevice(Translate(request));
   if (device != this->Device)
   {
     this->Known = false;

@@ -28,6 +28,9 @@ std::string DescribeKernels(const std::string& device, const DeformRequest& requ
 class DeviceSession
 {
 public:
+  /// Throws an Error where no device answers to a request.
+  static void CheckDevice(const std::string& request);
+
   /// Chooses the device and returns its name.
   std::string SetDevice(
     const std::string& request, std::uint64_t memoryLimit, std::size_t workGroupSize);

@@ -129,15 +129,13 @@ vtkStringArray* vtkDeformVolumeFilter::GetDeviceChoices()
 {
   vtkStringArray* choices = this->Internals->DeviceChoices;
   choices->Initialize();
-  std::vector<std::string> names = deformvolume::GetDeviceNames();
-  names.insert(names.begin(), { deformvolume::BEST_DEVICE, "cpu", "gpu" });
-  for (const std::string& name : names)
+  for (const char* kind : { deformvolume::BEST_DEVICE, "cpu", "gpu" })
   {
-    // Devices of one name cannot be told apart.
-    if (choices->LookupValue(name.c_str()) < 0)
-    {
-      choices->InsertNextValue(name);
-    }
+    choices->InsertNextValue(kind);
+  }
+  for (const std::string& name : deformvolume::GetDeviceNames())
+  {
+    choices->InsertNextValue(name);
   }
   return choices;
 }
@@ -196,7 +194,15 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   std::string message;
   try
   {
-    return this->Superclass::ProcessRequest(request, input, output) ? 1 : deformvolume::Fail(this);
+    if (!this->Superclass::ProcessRequest(request, input, output))
+    {
+      return deformvolume::Fail(this);
+    }
+    if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
+    {
+      this->Internals->ToldMessage.clear();
+    }
+    return 1;
   }
   catch (const deformvolume::Aborted&)
   {
@@ -229,15 +235,15 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
     const int empty[6] = { 0, -1, 0, -1, 0, -1 };
     outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
     outInfo->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), empty, 6);
+    // Told with the data: who asks for information may be about to choose inputs and arrays.
     this->Internals->InformationFailed = true;
-    if (this->GetNumberOfInputConnections(0) == 0 || this->GetNumberOfInputConnections(1) == 0)
-    {
-      // Who asks for information may be about to connect the inputs.
-      this->Internals->MissingInput = message;
-      return 1;
-    }
+    this->Internals->PostponedError = message;
+    return 1;
   }
-  vtkErrorMacro(<< message);
+  if (this->Internals->IsNews(message))
+  {
+    vtkErrorMacro(<< message);
+  }
   return deformvolume::Fail(this);
 }
 
@@ -251,7 +257,7 @@ int vtkDeformVolumeFilter::RequestInformation(
     // The executive then asks for the whole extent anew.
     outInfo->Remove(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT_INITIALIZED());
     this->Internals->InformationFailed = false;
-    this->Internals->MissingInput.clear();
+    this->Internals->PostponedError.clear();
   }
   const deformvolume::Ranks ranks;
   if (ranks.AreMany())
@@ -281,6 +287,8 @@ int vtkDeformVolumeFilter::RequestInformation(
       volume = deformvolume::GetGeometry(volumeInfo);
       deformvolume::CheckVolume(volume);
       outputGeometry = this->Internals->GetOutputGeometry(volume);
+      // Here, since ParaView's views complain, too, where data fail that were announced.
+      deformvolume::DeviceSession::CheckDevice(this->Device);
     });
   deformvolume::MergeTimes(this, outInfo);
 
@@ -330,11 +338,7 @@ int vtkDeformVolumeFilter::RequestUpdateExtent(
 {
   if (this->Internals->InformationFailed)
   {
-    if (!this->Internals->MissingInput.empty())
-    {
-      throw Error(this->Internals->MissingInput);
-    }
-    return 0;
+    throw Error(this->Internals->PostponedError);
   }
   const deformvolume::Ranks ranks;
   for (int port = 1; port < this->GetNumberOfInputPorts(); ++port)

@@ -55,7 +55,8 @@
  *
  * @par Errors:
  * All failures are one vtkErrorMacro that says what is wrong and what to do; the output is then
- * empty, and the filter works again once its input is mended.
+ * empty, and the filter works again once its input is mended. Errors are told when data are
+ * asked for, and not again by an update that is repeated although nothing has changed.
  *
  * The method is that of Rodriguez, Leon, Martin and Otaduy, "A parallel resampling method for
  * interactive deformation of volumetric models".

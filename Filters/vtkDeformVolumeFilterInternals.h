@@ -79,6 +79,10 @@ public:
   /// Whether the output is given up as soon as those after it have used it.
   static bool IsReleased(vtkInformation* output);
 
+  /// Whether an error has to be told: not where one update failed in the same way as the last, and
+  /// nothing has changed in between. Interfaces update several times what they show.
+  bool IsNews(const std::string& message);
+
   /// Warns where what is ignored changed since the last call.
   void WarnOfIgnored(vtkImageData* volume, const std::vector<std::string>& leftOut);
 
@@ -93,10 +97,11 @@ public:
   deformvolume::DeviceSession Device;
   deformvolume::OutputArrays Outputs;
 
-  // An error is told once: what comes after a failed information pass is silent.
+  // What is wrong with a failed information pass is told when data are asked for.
   bool InformationFailed = false;
-  // What is wrong where that is told with the data only.
-  std::string MissingInput;
+  std::string PostponedError;
+  // The last error, until an execution succeeds.
+  std::string ToldMessage;
   // An aborted execution leaves the filter out of date, and the next pass has to see that.
   bool Aborted = false;
   vtkTimeStamp AbortTime;
@@ -177,6 +182,8 @@ private:
   std::unique_ptr<deformvolume::RestRegions> Regions;
 
   std::string WarnedOf;
+  // When what the last error was about had been changed.
+  vtkMTimeType ToldTime = 0;
 };
 
 #endif

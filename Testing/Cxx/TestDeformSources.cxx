@@ -130,6 +130,18 @@ void TestChoiceOfDisplacements()
     0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "doubles");
   deformed.Filter->SetDisplacementScale(1.0);
   VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { 1, 14, 1, 12, 1, 10 } }));
+
+  // Without a name: the active vectors, or else the only ones.
+  deformed.Filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "");
+  VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { 0, 13, 2, 13, 0, 9 } }));
+  mesh->GetPointData()->SetActiveVectors(nullptr);
+  mesh->Modified();
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeErrors(), 1);
+  mesh->GetPointData()->RemoveArray("second");
+  mesh->GetPointData()->RemoveArray("doubles");
+  mesh->Modified();
+  VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { 1, 14, 0, 11, 0, 9 } }));
 }
 
 void TestCompositeDatasets()

@@ -10,7 +10,15 @@ from paraview import simple
 from vtkmodules.util import numpy_support
 from vtkmodules.vtkIOImage import vtkPNGReader
 
-from PluginTesting import OUTPUT, bent_lattice, check, head_file, load_plugin
+from PluginTesting import (
+    OUTPUT,
+    bent_lattice,
+    check,
+    check_one_message,
+    head_file,
+    load_plugin,
+    messages,
+)
 
 
 def read_png(path):
@@ -68,6 +76,18 @@ def main(baseline):
     # Undeformed, the head differs by 6.1; renderers that are both right differ by far less.
     error = numpy.abs(shown - expected).mean()
     check(error < 0.7, f"{picture} differs from {baseline} by {error} of 255 on average")
+
+
+    # A failure is one message, however often views update what they show.
+    deformed.Device = "no such device"
+    with messages() as texts:
+        for _ in range(3):
+            simple.Render(view)
+        simple.Show(simple.DeformVolume(Volume=head, Deformation=mesh, MemoryLimit=1000.0), view)
+        simple.Render(view)
+    check_one_message(texts[:1], ["no such device"])
+    others = [text for text in texts[1:] if "vtkDeformVolumeFilter" in text]
+    check_one_message(others, ["Not enough memory"])
 
 
 main(sys.argv[1])

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a user sees of a failure, where nobody observes errors: one message, at each attempt after a
+// change. What a
+// list of devices to choose from offers.
+#include "FilterTesting.h"
+
+#include <vtkLogger.h>
+#include <vtkOutputWindow.h>
+#include <vtkSphereSource.h>
+#include <vtkStringArray.h>
+#include <vtkStringOutputWindow.h>
+
+using namespace filterTesting;
+
+namespace
+{
+
+/// What is displayed while it lives.
+class Display
+{
+public:
+  Display()
+  {
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+    vtkOutputWindow::SetInstance(this->Window);
+  }
+  ~Display() { vtkOutputWindow::SetInstance(nullptr); }
+
+  int CountErrors() const
+  {
+    const std::string text = this->Window->GetOutput();
+    int count = 0;
+    for (std::size_t at = text.find("ERROR: "); at != std::string::npos;
+         at = text.find("ERROR: ", at + 1))
+    {
+      ++count;
+    }
+    return count;
+  }
+
+private:
+  vtkNew<vtkStringOutputWindow> Window;
+};
+
+void TestMessages(vtkImageData* volume, vtkUnstructuredGrid* mesh)
+{
+  const Display display;
+  vtkNew<vtkDeformVolumeFilter> filter;
+  filter->SetInputData(volume);
+  filter->UpdateInformation();
+  VERIFY_EQUAL(display.CountErrors(), 0); // the deformation may be about to come
+  filter->Update();
+  VERIFY_EQUAL(display.CountErrors(), 1);
+  filter->Modified();
+  filter->Update();
+  VERIFY_EQUAL(display.CountErrors(), 2);
+  filter->SetDeformationData(mesh);
+  filter->Update();
+  VERIFY_EQUAL(display.CountErrors(), 2);
+  VERIFY(filter->GetOutput()->GetNumberOfPoints() > 0);
+  filter->SetDevice("a device that nobody has");
+  filter->Update();
+  VERIFY_EQUAL(display.CountErrors(), 3);
+  filter->Update(); // as views do that draw again
+  filter->UpdateWholeExtent();
+  VERIFY_EQUAL(display.CountErrors(), 3);
+
+  // Who observes the executive gets its error all the same.
+  vtkNew<vtkTest::ErrorObserver> observer;
+  filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+  filter->Modified();
+  filter->Update();
+  VERIFY_EQUAL(display.CountErrors(), 4);
+  VERIFY(observer->GetErrorMessage().find("returned failure") != std::string::npos);
+
+  // Other errors of an executive are displayed.
+  vtkNew<vtkDeformVolumeFilter> other;
+  other->SetInputData(volume);
+  other->SetDevice("a device that nobody has");
+  other->SetDeformationData(mesh);
+  other->Update();
+  VERIFY_EQUAL(display.CountErrors(), 5);
+  vtkNew<vtkSphereSource> surface;
+  other->SetDeformationConnection(surface->GetOutputPort());
+  other->Update();
+  VERIFY(display.CountErrors() > 5);
+}
+
+void TestDeviceChoices(vtkImageData* volume, vtkUnstructuredGrid* mesh)
+{
+  Deformed deformed(volume, mesh);
+  vtkStringArray* choices = deformed.Filter->GetDeviceChoices();
+  VERIFY_EQUAL(choices, deformed.Filter->GetDeviceChoices());
+  vtkSmartPointer<vtkStringArray> names;
+  names.TakeReference(vtkDeformVolumeFilter::GetDeviceNames());
+  VERIFY(names->GetNumberOfValues() > 0);
+  VERIFY_EQUAL(std::string(choices->GetValue(0)), std::string("best"));
+  VERIFY_EQUAL(std::string(choices->GetValue(1)), std::string("cpu"));
+  VERIFY_EQUAL(std::string(choices->GetValue(2)), std::string("gpu"));
+  for (vtkIdType i = 0; i < names->GetNumberOfValues(); ++i)
+  {
+    VERIFY(choices->LookupValue(names->GetValue(i).c_str()) >= 3);
+    deformed.Filter->SetDevice(names->GetValue(i));
+    deformed.Update();
+    VERIFY_EQUAL(deformed.Filter->GetDeviceInUse(), std::string(names->GetValue(i)));
+  }
+  deformed.Filter->SetDevice("");
+  deformed.Update();
+  const std::string best = deformed.Filter->GetDeviceInUse();
+  deformed.Filter->SetDevice("best");
+  deformed.Update();
+  VERIFY_EQUAL(deformed.Filter->GetDeviceInUse(), best);
+}
+
+} // namespace
+
+int TestFailureReport(int, char*[])
+{
+  auto volume = MakeVolume();
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
+  TestDeviceChoices(volume, mesh);
+  TestMessages(volume, mesh);
+  return GetExitCode();
+}
