@@ -13,8 +13,9 @@ function (deformvolume_add_other_version name version)
   target_compile_definitions("${name}" PRIVATE "DEFORMVOLUME_PARAVIEW_VERSION=${version}")
 endfunction ()
 
-# These are not installed.
+# These are not installed. The folder above asks for the install script all the same.
 set(CMAKE_SKIP_INSTALL_RULES ON)
+file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/cmake_install.cmake" "# Nothing is installed from here.\n")
 paraview_plugin_scan(
   PLUGIN_FILES
     "${CMAKE_CURRENT_LIST_DIR}/Major/paraview.plugin"
