@@ -31,6 +31,9 @@ namespace deformvolume
 namespace
 {
 
+// Values that a margin may add to the volume that the surface is taken from.
+constexpr double MaximumMarginValues = 2e9;
+
 template <typename T>
 bool IsLabel(T value, const std::vector<vtkTypeInt64>& labels)
 {
@@ -153,6 +156,8 @@ vtkSmartPointer<vtkPolyData> ExtractBodySurface(vtkImageData* volume, vtkDataArr
 
   CoarseVolume coarse;
   Index factor;
+  double inside = 1.0;
+  double count = 1.0;
   for (int axis = 0; axis < 3; ++axis)
   {
     const double size = std::abs(spacing[axis]);
@@ -160,7 +165,18 @@ vtkSmartPointer<vtkPolyData> ExtractBodySurface(vtkImageData* volume, vtkDataArr
       std::min(std::max(1.0, std::floor(parameters.Resolution / size)), dimensions[axis] / 2.0));
     coarse.Spacing[axis] = factor[axis] * size;
     coarse.IndexStep[axis] = static_cast<double>(factor[axis]);
-    coarse.Border[axis] = static_cast<vtkIdType>(parameters.Margin / coarse.Spacing[axis]) + 3;
+    const double border = parameters.Margin / coarse.Spacing[axis];
+    inside *= dimensions[axis] / static_cast<double>(factor[axis]);
+    count *= dimensions[axis] / static_cast<double>(factor[axis]) + 2.0 * border;
+    if (!(border <= MaximumMarginValues && count - inside <= MaximumMarginValues))
+    {
+      std::ostringstream text;
+      text << "The body's surface cannot be moved out by a margin of " << parameters.Margin
+           << " world units: that is too far for a volume of this size. Set a smaller Margin or "
+              "TargetEdgeLength.";
+      throw Error(text.str());
+    }
+    coarse.Border[axis] = static_cast<vtkIdType>(border) + 3;
     coarse.Size[axis] =
       (dimensions[axis] + factor[axis] - 1) / factor[axis] + 2 * coarse.Border[axis];
     coarse.FirstIndex[axis] =
