@@ -177,9 +177,10 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   const INTS tame = (mostOwn <= -0.35f) & (leastOwn >= -1.0f);
   const FLOATS bound = (tame ? (FLOATS)(3.4e-5f) : (FLOATS)(8.5e-5f)) * extent *
     Most(Most(NORM(n3), NORM(n5)), NORM(n6));
-  const INTS upright = odd ? determinant < 0.0f : determinant > 0.0f;
-  const INTS nice = fit & upright & (leastOther >= 0.015625f) & (mostOwn <= -0.125f) &
+  const INTS nice = fit & (leastOther >= 0.015625f) & (mostOwn <= -0.125f) &
     (leastOwn >= -2.0f) & (bound <= 0.0078125f);
+  // Coordinates do not tell a cell from its mirror image: all its tetrahedra are inverted then.
+  const INTS inverted = nice & (odd ? determinant > 0.0f : determinant < 0.0f);
   INTS unsure = there & ~nice;
   INTS ambiguous = 0;
   const INTS none = (countX <= 0) | (countY <= 0) | (countZ <= 0);
@@ -253,7 +254,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
         {
           const FLOATS sample[3] = { rx, ry, rz };
           INTS simplex;
-          INTS held = HoldSample(group, sample, odd, &simplex);
+          INTS held = HoldSample(group, sample, odd, inverted, &simplex);
           if (border)
           {
             // As IsOwner.
@@ -302,7 +303,8 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
         Append(place, bits, found->Places + found->Count);
         if (KEEPS_CELLS(p))
         {
-          Append(LANE_INDEX, bits, found->Lanes + found->Count);
+          Append(
+            LANE_INDEX | (inverted & INVERTED_LANE), bits, found->Lanes + found->Count);
         }
         found->Count += popcount(bits);
         if (found->Count > FOUND_CAPACITY)
@@ -327,6 +329,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   }
   // What an undecided cell wrote so far is written again with it, and must not count twice.
   output->Writes += SumOf(unsure | ambiguous ? (INTS)(0) : count);
+  output->Inverted += 5 * popcount(LaneBits(inverted & ~ambiguous));
   // Integers of 32 bits decide who owns a sample, for cells that are small enough.
   const INTS decidable = ambiguous & (extent < MAXIMUM_EXACT_EXTENT) &
     (exact || DEFORMVOLUME_IS_CLOSED(p->Pass) ? 0 : -1);

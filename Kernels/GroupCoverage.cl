@@ -50,12 +50,12 @@ static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, in
   states->Regular = regular.Vector;
 }
 
-// Which lanes own a sample by the fill rule, by edge functions in integers of 32 bits, for upright cells of
-// less than MAXIMUM_EXACT_EXTENT: these are at most 2 (256 extent)^3. sample: in voxels relative to vertex
-// 0 of the cell. simplex: the vertices of the simplex that the sample lies in, 0 where that is not in the
+// Which lanes own a sample by the fill rule, by edge functions in integers of 32 bits, for cells of less than
+// MAXIMUM_EXACT_EXTENT, all of whose tetrahedra are upright, or all inverted: these are at most
+// 2 (256 extent)^3. sample: in voxels relative to vertex 0 of the cell. inverted: lanes. simplex: the vertices of the simplex that the sample lies in, 0 where that is not in the
 // cell.
 static __attribute__((noinline)) INTS HoldSample(
-  const Group* group, const FLOATS* sample, int odd, INTS* simplex)
+  const Group* group, const FLOATS* sample, int odd, INTS inverted, INTS* simplex)
 {
   INTS q[8][3];
   for (int v = 0; v < 8; ++v)
@@ -81,15 +81,16 @@ static __attribute__((noinline)) INTS HoldSample(
         e[k][axis] = q[Tetrahedra[t][k + 1]][axis] - first;
       }
     }
-    // The orientation that the parity of the cell asks for: normals point inside.
-    const int sign = odd != (t == 4) ? -1 : 1;
+    // The orientation that the parity of the cell asks for: normals point inside. Negated by -1, not by 0.
+    const INTS negative = odd != (t == 4) ? ~inverted : inverted;
+#define NEGATED(v) (((v) ^ negative) - negative)
     for (int axis = 0; axis < 3; ++axis)
     {
       const int a = (axis + 1) % 3;
       const int b = (axis + 2) % 3;
-      n[1][axis] = (e[1][a] * e[2][b] - e[1][b] * e[2][a]) * sign;
-      n[2][axis] = (e[2][a] * e[0][b] - e[2][b] * e[0][a]) * sign;
-      n[3][axis] = (e[0][a] * e[1][b] - e[0][b] * e[1][a]) * sign;
+      n[1][axis] = NEGATED(e[1][a] * e[2][b] - e[1][b] * e[2][a]);
+      n[2][axis] = NEGATED(e[2][a] * e[0][b] - e[2][b] * e[0][a]);
+      n[3][axis] = NEGATED(e[0][a] * e[1][b] - e[0][b] * e[1][a]);
       n[0][axis] = -(n[1][axis] + n[2][axis] + n[3][axis]);
     }
     INTS first = e[0][0] * n[1][0] + e[0][1] * n[1][1] + e[0][2] * n[1][2];

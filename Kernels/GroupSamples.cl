@@ -89,6 +89,7 @@ static __attribute__((noinline)) void StoreOtherArrays(const Group* group, int l
 #endif
 
 #define FOUND_CAPACITY 256
+#define INVERTED_LANE 16 // added to the lane of a cell whose tetrahedra are inverted
 #define FOUND_VALUES(index, TYPE, BITS, SLOT) int Values##index[FOUND_CAPACITY + 2 * LANES];
 
 // Whether the cells of samples matter when these are stored: then that happens group by group.
@@ -99,7 +100,7 @@ static __attribute__((noinline)) void StoreOtherArrays(const Group* group, int l
 typedef struct
 {
   int Places[FOUND_CAPACITY + 2 * LANES]; // in the output
-  int Lanes[FOUND_CAPACITY + 2 * LANES];
+  int Lanes[FOUND_CAPACITY + 2 * LANES]; // of their cells
   LANE_ARRAYS(FOUND_VALUES)
   uint Count;
 } Found;
@@ -115,14 +116,17 @@ static void StoreFound(Found* found, const Group* group, int x, int y, int z, Ou
   {
     const uint place = found->Places[i];
     if (pass != DEFORMVOLUME_PASS_DIRECT &&
-      !TakesPlace(output, place, MakeKey(x + 2 * found->Lanes[i], y, z, 0, p), p))
+      !TakesPlace(output, place,
+        MakeKey(x + 2 * (found->Lanes[i] & (INVERTED_LANE - 1)), y, z,
+          found->Lanes[i] & INVERTED_LANE, p),
+        p))
     {
       continue;
     }
     coverage[place] = 1;
     LANE_ARRAYS(LANE_STORE)
 #if HAS_OTHER_ARRAYS
-    const int lane = found->Lanes[i];
+    const int lane = found->Lanes[i] & (INVERTED_LANE - 1);
     StoreOtherArrays(group, lane, x + 2 * lane, y, z, place, p ARRAY_ARGUMENTS);
 #endif
   }
