@@ -144,6 +144,21 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   INTS countX = END_OF(highX, toEndX, p->OutputSize[0]) - firstX;
   INTS countY = END_OF(highY, toEndY, p->OutputSize[1]) - firstY;
   INTS countZ = END_OF(highZ, toEndZ, p->OutputSize[2]) - firstZ;
+  if (DEFORMVOLUME_IS_CLOSED(p->Pass) && !exact)
+  {
+    // No cell that touches a voxel to be won.
+    const INTS some = there & (countX > 0) & (countY > 0) & (countZ > 0);
+    const int first[3] = { LeastAmong(some, firstX), LeastAmong(some, firstY),
+      LeastAmong(some, firstZ) };
+    const int last[3] = { MostAmong(some, firstX + countX - 1), MostAmong(some, firstY + countY - 1),
+      MostAmong(some, firstZ + countZ - 1) };
+    if (!LaneBits(some) || !AnyUnsettled(output->Unsettled, first, last, p))
+    {
+      const Outcome nothing = { 0, 0 };
+      *outcome = nothing;
+      return;
+    }
+  }
   const INTS small = extent <= MAXIMUM_EXTENT;
   const INTS fit = there & small & state.Whole;
   // Cells without candidates need not be looked at, unless they may be inverted.
@@ -372,14 +387,14 @@ static int EndIn(uint item, int axis, int cells)
 // (DEFORMVOLUME_BRICK_BITS). rows: 4 HALF_ROW + 3 ROW_PLACES + 2 ROWS ROW floats (GetBrickMemory).
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
   __global const uchar* state, __global const uchar* active, __global char* coverage,
-  __global KEY* winners, __global uint* counters, __global const uint* bricks, __local float* rows,
-  const KernelParameters p ARRAY_PARAMETERS)
+  __global KEY* winners, __global const char* unsettled, __global uint* counters,
+  __global const uint* bricks, __local float* rows, const KernelParameters p ARRAY_PARAMETERS)
 {
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
   Output outputs[8]; // of the octants
   for (int octant = 0; octant < 8; ++octant)
   {
-    const Output output = { coverage, winners, 0, 0, 0, 0, 0 };
+    const Output output = { coverage, winners, unsettled, 0, 0, 0, 0, 0, 0 };
     outputs[octant] = output;
   }
   Found found;

@@ -72,16 +72,14 @@ typedef struct
 // Passes of the exact resampling kernel. What comes after the first is for voxels that several
 // cells write, and for those on a crease, which none does. All others keep what the first pass gave
 // them: a voxel never depends on others, and so not on how the output is divided.
-#define DEFORMVOLUME_PASS_DIRECT 0  // write, and count the writes
-#define DEFORMVOLUME_PASS_OWNERS 1  // find one of the cells that write each voxel
-#define DEFORMVOLUME_PASS_CONTEST 2 // mark the voxels that another cell writes, too
-#define DEFORMVOLUME_PASS_MARK 3    // find the winner of each voxel that is not settled
-#define DEFORMVOLUME_PASS_WINNER 4  // write where this tetrahedron is the winner
+#define DEFORMVOLUME_PASS_DIRECT 0 // write, and count the writes
+#define DEFORMVOLUME_PASS_OWNERS 1 // the same, and find the voxels that several cells write
+#define DEFORMVOLUME_PASS_MARK 2   // find the winner of each voxel that is not settled
+#define DEFORMVOLUME_PASS_WINNER 3 // write where this tetrahedron is the winner
 // Whether every tetrahedron that holds a voxel takes part, and not only the one that writes it.
 #define DEFORMVOLUME_IS_CLOSED(pass) ((pass) >= DEFORMVOLUME_PASS_MARK)
 // Whether values are written.
-#define DEFORMVOLUME_IS_WRITING(pass)                                                              \
-  ((pass) == DEFORMVOLUME_PASS_DIRECT || (pass) == DEFORMVOLUME_PASS_WINNER)
+#define DEFORMVOLUME_IS_WRITING(pass) ((pass) != DEFORMVOLUME_PASS_MARK)
 
 // Cells of a brick. Bricks begin at structured indices that are multiples of these numbers, which
 // are even: the parity of a place in a brick is that of the structured index.
@@ -106,14 +104,16 @@ typedef struct
 #define DEFORMVOLUME_COUNT_WRITES 0
 #define DEFORMVOLUME_COUNT_INVERTED 1
 #define DEFORMVOLUME_COUNT_OVERSTRETCHED 2
-#define DEFORMVOLUME_COUNT_MISSING 3 // cells on the border with flat tetrahedra or left-out ones
-#define DEFORMVOLUME_COUNT_ASSUMED 4 // nonzero where it was assumed that there are none such
-#define DEFORMVOLUME_COUNTERS 5
+#define DEFORMVOLUME_COUNT_MISSING 3    // cells on the border with flat tetrahedra or left-out ones
+#define DEFORMVOLUME_COUNT_ASSUMED 4    // nonzero where it was assumed that there are none such
+#define DEFORMVOLUME_COUNT_CANDIDATES 5 // voxels that cells may have won
+#define DEFORMVOLUME_COUNTERS 6
 
 // Output voxels that a work-item of the kernel CountCovered takes.
 #define DEFORMVOLUME_COUNTED_VOXELS 4096
 
-// Voxels of a patch of the output on each axis: what is cleared where a part is made anew.
+// Voxels of a patch of the output on each axis: what is cleared where a part is made anew, and what
+// is looked at where voxels are not settled.
 #define DEFORMVOLUME_PATCH 8
 
 // Bytes that a work-item of the kernels Fill1 to Fill8 writes.
@@ -131,6 +131,14 @@ typedef struct
 static size_t PositionIndex(int x, int y, int z, const KernelParameters* p)
 {
   return ((size_t)(z - p->SlabFirst) * p->Size[1] + y) * 3 * p->Size[0] + x;
+}
+
+// Patches of the output along x that hold the voxels with an y and a z: number of the first one.
+static size_t PatchRow(size_t y, size_t z, const KernelParameters* p)
+{
+  const size_t width = (p->OutputSize[0] + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH;
+  const size_t height = (p->OutputSize[1] + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH;
+  return (z / DEFORMVOLUME_PATCH * height + y / DEFORMVOLUME_PATCH) * width;
 }
 
 #else

@@ -194,15 +194,18 @@ cl::Program GetOutputProgram(OpenCLContext& context)
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
   const std::vector<VolumeArray>& arrays, bool wideKeys)
 {
-  std::string key = "#define KEY uint\n#define ATOMIC_MIN atomic_min\n";
+  std::string key = "#define KEY uint\n#define ATOMIC_MIN atomic_min\n"
+                    "#define ATOMIC_CMPXCHG atomic_cmpxchg\n";
   if (wideKeys)
   {
-    key = "#pragma OPENCL EXTENSION cl_khr_int64_extended_atomics : enable\n"
-          "#define KEY ulong\n#define ATOMIC_MIN atom_min\n";
-    if (!context.HasExtension("cl_khr_int64_extended_atomics"))
+    key = "#pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable\n"
+          "#pragma OPENCL EXTENSION cl_khr_int64_extended_atomics : enable\n"
+          "#define KEY ulong\n#define ATOMIC_MIN atom_min\n#define ATOMIC_CMPXCHG atom_cmpxchg\n";
+    if (!context.HasExtension("cl_khr_int64_base_atomics") ||
+      !context.HasExtension("cl_khr_int64_extended_atomics"))
     {
       throw Error("The device \"" + context.GetDevice().Name +
-        "\" lacks atomic operations of 64 bits, which a volume of more than 2^31 cells needs. Use "
+        "\" lacks atomic operations of 64 bits, which a volume of more than 2^30 cells needs. Use "
         "a smaller volume or another device.");
     }
   }

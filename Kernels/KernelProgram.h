@@ -24,7 +24,7 @@ enum class MappingForm
 cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping);
 
 /// The exact resampling for arrays of these types: cell by cell (Resampling.cl) and by lanes
-/// (BrickResampling.cl). wideKeys: cells are too many for the 31 bits of a narrow winner's key.
+/// (BrickResampling.cl). wideKeys: cells are too many for the 30 bits of a narrow winner's key.
 /// Throws Error where the device lacks what the arrays need.
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
   const std::vector<VolumeArray>& arrays, bool wideKeys);

@@ -96,6 +96,17 @@ static int MostOf(INTS v)
   return max(c.x, c.y);
 }
 
+// The least and the largest of some lanes.
+static int MostAmong(INTS some, INTS v)
+{
+  return MostOf(some ? v : (INTS)INT_MIN);
+}
+
+static int LeastAmong(INTS some, INTS v)
+{
+  return ~MostAmong(some, ~v);
+}
+
 // The sum of the lanes.
 static int SumOf(INTS v)
 {

@@ -17,6 +17,17 @@ namespace
 
 constexpr std::size_t OctantsPerBrick = 8;
 
+/// The halves of a brick that an octant is in on each axis, as DEFORMVOLUME_BRICK_BITS says.
+cl_uint GetHalves(std::size_t octant)
+{
+  cl_uint halves = 0;
+  for (unsigned axis = 0; axis < 3; ++axis)
+  {
+    halves |= 1U << (2 * axis + (octant >> axis & 1));
+  }
+  return halves;
+}
+
 template <typename T>
 using BitsOf = std::conditional_t<sizeof(T) == 1, cl_uchar,
   std::conditional_t<sizeof(T) == 2, cl_ushort,
@@ -129,7 +140,8 @@ Extent GetWholeOutput(const DeformRequest& request)
 
 std::size_t GetWinnerSize(const Lattice& lattice)
 {
-  return GetNumberOfCells(lattice.VertexExtent) < std::numeric_limits<std::int32_t>::max() ? 4 : 8;
+  constexpr std::int64_t mostCells = (std::int64_t{ 1 } << 30) - 2;
+  return GetNumberOfCells(lattice.VertexExtent) <= mostCells ? 4 : 8;
 }
 
 std::vector<Extent> OutputSlab::Split(const Extent& output, const std::vector<VolumeArray>& arrays,
@@ -249,9 +261,8 @@ std::uint64_t OutputSlab::PreparePatches(OpenCLContext& context, const cl::Comma
     const std::size_t number = brick & ((1U << DEFORMVOLUME_BRICK_BITS) - 1);
     for (std::size_t octant = 0; octant < OctantsPerBrick; ++octant)
     {
-      const auto isIn = [&](unsigned axis)
-      { return brick >> (DEFORMVOLUME_BRICK_BITS + 2 * axis + (octant >> axis & 1)) & 1; };
-      if (isIn(0) && isIn(1) && isIn(2))
+      const cl_uint halves = GetHalves(octant);
+      if ((brick >> DEFORMVOLUME_BRICK_BITS & halves) == halves)
       {
         std::fill_n(counters.Get() + (OctantsPerBrick * number + octant) * DEFORMVOLUME_COUNTERS,
           DEFORMVOLUME_COUNTERS, cl_uint{ 0 });
@@ -295,6 +306,7 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   if (deformvolume::GetMemory(this->Winners) != this->NumberOfVoxels * this->WinnerSize)
   {
     this->Winners = cl::Buffer();
+    this->Unsettled = cl::Buffer();
   }
   this->PlaceArrays(context, request, arrays);
   for (std::size_t i = 0; i < arrays.size(); ++i)
@@ -312,7 +324,8 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
 
 std::uint64_t OutputSlab::GetMissingWinnerMemory() const
 {
-  return this->NumberOfVoxels * this->WinnerSize - deformvolume::GetMemory(this->Winners);
+  return this->NumberOfVoxels * this->WinnerSize + this->CountAllPatches() -
+    deformvolume::GetMemory(this->Winners) - deformvolume::GetMemory(this->Unsettled);
 }
 
 void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events)
@@ -320,17 +333,34 @@ void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& 
   Reserve(context, this->Winners, this->NumberOfVoxels * this->WinnerSize);
   Fill(context, this->Queue, this->Winners, std::numeric_limits<cl_uint>::max(),
     this->NumberOfVoxels * this->WinnerSize / sizeof(cl_uint), events);
+  Reserve(context, this->Unsettled, this->CountAllPatches());
+  Fill(context, this->Queue, this->Unsettled, cl_uchar{ 0 }, this->CountAllPatches(), events);
 }
 
-void OutputSlab::Settle(OpenCLContext& context, std::vector<cl::Event>& events)
+std::uint64_t OutputSlab::CountAllPatches() const
+{
+  std::uint64_t patches = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    patches *= static_cast<std::uint64_t>(
+      (GetSize(this->SlabExtent, axis) + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH);
+  }
+  return patches;
+}
+
+void OutputSlab::Settle(OpenCLContext& context, bool contested, std::vector<cl::Event>& events)
 {
   const std::size_t items = static_cast<std::size_t>(
     (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS);
+  KernelParameters p = {};
+  this->SetParameters(p);
   cl::Kernel kernel(GetOutputProgram(context), "Settle");
   kernel.setArg(0, this->Coverage);
   kernel.setArg(1, this->Winners);
-  kernel.setArg(2, cl_ulong{ this->NumberOfVoxels });
-  kernel.setArg(3, static_cast<cl_uint>(this->WinnerSize / sizeof(cl_uint)));
+  kernel.setArg(2, static_cast<cl_uint>(this->WinnerSize / sizeof(cl_uint)));
+  kernel.setArg(3, cl_int{ contested });
+  kernel.setArg(4, this->Unsettled);
+  kernel.setArg(5, p);
   events.emplace_back();
   this->Queue.enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(items), cl::NullRange, nullptr, &events.back());
@@ -351,11 +381,40 @@ std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::E
   return ReadSum(this->Queue, sums, items);
 }
 
-OutputSlab::Counts OutputSlab::ReadCounts()
+std::vector<cl_uint> OutputSlab::ReadCounters()
 {
   std::vector<cl_uint> counters(this->NumberOfOctants * DEFORMVOLUME_COUNTERS);
   this->Queue.enqueueReadBuffer(
     this->Counters, CL_TRUE, 0, counters.size() * sizeof(cl_uint), counters.data());
+  return counters;
+}
+
+std::vector<cl_uint> OutputSlab::FindBricksOfWinners()
+{
+  const std::vector<cl_uint> counters = this->ReadCounters();
+  std::vector<cl_uint> bricks;
+  for (std::size_t brick = 0; brick < this->NumberOfOctants / OctantsPerBrick; ++brick)
+  {
+    cl_uint halves = 0;
+    for (std::size_t octant = 0; octant < OctantsPerBrick; ++octant)
+    {
+      const std::size_t place = (OctantsPerBrick * brick + octant) * DEFORMVOLUME_COUNTERS;
+      if (counters[place + DEFORMVOLUME_COUNT_CANDIDATES])
+      {
+        halves |= GetHalves(octant);
+      }
+    }
+    if (halves)
+    {
+      bricks.push_back(static_cast<cl_uint>(brick) | halves << DEFORMVOLUME_BRICK_BITS);
+    }
+  }
+  return bricks;
+}
+
+OutputSlab::Counts OutputSlab::ReadCounts()
+{
+  const std::vector<cl_uint> counters = this->ReadCounters();
   Counts counts;
   std::uint64_t missing = 0;
   std::uint64_t assumed = 0;
@@ -453,7 +512,8 @@ void OutputSlab::Finish()
 std::uint64_t OutputSlab::GetMemory() const
 {
   std::uint64_t bytes = deformvolume::GetMemory(this->Coverage) +
-    deformvolume::GetMemory(this->Winners) + deformvolume::GetMemory(this->Counters);
+    deformvolume::GetMemory(this->Winners) + deformvolume::GetMemory(this->Unsettled) +
+    deformvolume::GetMemory(this->Counters);
   for (const cl::Buffer& array : this->Arrays)
   {
     bytes += deformvolume::GetMemory(array);

@@ -10,8 +10,8 @@
 namespace deformvolume
 {
 
-/// Bytes of a winner's key: four hold a cell of up to 2^31, counted from 1, and a bit for inverted
-/// tetrahedra.
+/// Bytes of a winner's key: four hold a cell of up to 2^30, and two bits, for inverted
+/// tetrahedra and for voxels that are still to be won.
 std::size_t GetWinnerSize(const Lattice& lattice);
 
 /// What the device holds of the output: a range of planes of all arrays, their coverage, the
@@ -66,9 +66,9 @@ public:
   /// Bytes that PrepareWinners will allocate.
   std::uint64_t GetMissingWinnerMemory() const;
   void PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events);
-  /// After the passes that find contested voxels, or without them where there are none: leaves
-  /// those to be won, and voxels that nobody has written.
-  void Settle(OpenCLContext& context, std::vector<cl::Event>& events);
+  /// After the pass that finds contested voxels, or without it where there are none: leaves those
+  /// to be won, and voxels that nobody has written.
+  void Settle(OpenCLContext& context, bool contested, std::vector<cl::Event>& events);
 
   std::uint64_t CountCovered(OpenCLContext& context, std::vector<cl::Event>& events);
   Counts ReadCounts();
@@ -77,12 +77,20 @@ public:
   /// the slab.
   bool FitsLanes() const;
 
+  /// After the pass that finds winners: the bricks that may hold one, as DEFORMVOLUME_BRICK_BITS
+  /// says.
+  std::vector<cl_uint> FindBricksOfWinners();
+
   /// Puts the output extent into the parameters of a launch.
   void SetParameters(KernelParameters& parameters) const;
 
   const cl::Buffer& GetArray(std::size_t index) const { return this->Arrays[index]; }
   const cl::Buffer& GetCoverage() const { return this->Coverage; }
   const cl::Buffer& GetWinners() const { return this->Winners() ? this->Winners : this->Coverage; }
+  const cl::Buffer& GetUnsettled() const
+  {
+    return this->Unsettled() ? this->Unsettled : this->Coverage;
+  }
   const cl::Buffer& GetCounters() const { return this->Counters; }
 
   /// Begins to copy the slab, which is done, to its place in the request's memory, in a queue of
@@ -96,6 +104,8 @@ public:
 private:
   void PlaceArrays(
     OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays);
+  std::uint64_t CountAllPatches() const;
+  std::vector<cl_uint> ReadCounters();
   std::uint64_t GetOffset(const DeformRequest& request) const;
   void Clear(OpenCLContext& context, const cl::Buffer& buffer, double value, ElementType type,
     std::uint64_t size, std::vector<cl::Event>& events) const;
@@ -108,6 +118,7 @@ private:
   std::vector<std::size_t> TupleSizes;
   cl::Buffer Coverage;
   cl::Buffer Winners;
+  cl::Buffer Unsettled; // a byte a patch of the output
   cl::Buffer Counters;
   cl::Buffer Patches;
   std::size_t NumberOfPatches = 0;

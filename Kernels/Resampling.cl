@@ -13,7 +13,8 @@
 //
 // What the host puts in front of this text:
 //   REAL                 type of the interpolation: double where the device has it, else float
-//   KEY, ATOMIC_MIN      type and minimum of the winner's key
+//   KEY, ATOMIC_MIN,     type of the winner's key, and its minimum and conditional exchange
+//   ATOMIC_CMPXCHG
 //   ARRAY_PARAMETERS     kernel parameters: source and target of each array
 //   ARRAY_ARGUMENTS      the same as arguments
 //   STORE_ARRAYS         statements that store all arrays at a sample
@@ -89,24 +90,28 @@ typedef struct
 {
   __global char* Coverage;
   __global KEY* Winners;
+  __global const char* Unsettled;
   // Counts of this work-item.
   uint Writes;
   uint Inverted;
   uint Overstretched;
   uint Missing; // cells on the border with a tetrahedron that is flat or left out
   uint Assumed; // whether cells on the border left samples to the next cells without looking at these
+  uint Candidates; // voxels that were won, as far as others had marked them by then
 } Output;
 
 // Of overlapping tetrahedra upright ones win, then the lowest cell. Within a cell the order of
-// writing decides, the lowest tetrahedron last. 0 is the key of voxels that are settled.
+// writing decides, the lowest tetrahedron last. The key that settles a voxel is less than all that are there to
+// win one.
 static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
 {
-  const KEY cell = ((KEY)z * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x + 1;
-  return cell | (KEY)(inverted != 0) << (sizeof(KEY) * 8 - 1);
+  const KEY cell = ((KEY)z * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x;
+  return cell | (KEY)(inverted != 0) << (sizeof(KEY) * 8 - 2) |
+    (KEY)DEFORMVOLUME_IS_CLOSED(p->Pass) << (sizeof(KEY) * 8 - 1);
 }
 
 // What passes but the first do with a voxel that a cell writes. Returns whether values are to follow.
-static int TakesPlace(const Output* output, size_t target, KEY key, const KernelParameters* p)
+static int TakesPlace(Output* output, size_t target, KEY key, const KernelParameters* p)
 {
   __global KEY* winner = output->Winners + target;
   const KEY found = *winner;
@@ -114,18 +119,27 @@ static int TakesPlace(const Output* output, size_t target, KEY key, const Kernel
   {
     return found == key;
   }
-  if (p->Pass == DEFORMVOLUME_PASS_CONTEST)
+  if (p->Pass == DEFORMVOLUME_PASS_MARK)
   {
-    if (found != key)
+    if (found > key)
     {
-      output->Coverage[target] = 2;
+      ATOMIC_MIN(winner, key);
+      output->Candidates++;
+    }
+    return 0;
+  }
+  // The first cell leaves its key, and any other one what can still be won.
+  const KEY none = (KEY)-1;
+  const KEY several = none - 1;
+  if (found != key && found != several)
+  {
+    const KEY first = ATOMIC_CMPXCHG(winner, none, key);
+    if (first != none && first != key)
+    {
+      *winner = several;
     }
   }
-  else if (found > key)
-  {
-    ATOMIC_MIN(winner, key);
-  }
-  return 0;
+  return 1;
 }
 
 // The weights and their sum as the edge functions give them.
@@ -149,6 +163,27 @@ static Sample MakeSample(int x, int y, int z, int t, const long* weights, long v
       lead > 0 || (lead == 0 && s.Sources[k] < s.Sources[s.Nearest]) ? k : s.Nearest;
   }
   return s;
+}
+
+// Whether one of the patches is marked that hold the voxels of the output from first to last.
+static int AnyUnsettled(
+  __global const char* unsettled, const int* first, const int* last, const KernelParameters* p)
+{
+  for (int z = first[2] / DEFORMVOLUME_PATCH; z <= last[2] / DEFORMVOLUME_PATCH; ++z)
+  {
+    for (int y = first[1] / DEFORMVOLUME_PATCH; y <= last[1] / DEFORMVOLUME_PATCH; ++y)
+    {
+      __global const char* row = unsettled + PatchRow(y * DEFORMVOLUME_PATCH, z * DEFORMVOLUME_PATCH, p);
+      for (int x = first[0] / DEFORMVOLUME_PATCH; x <= last[0] / DEFORMVOLUME_PATCH; ++x)
+      {
+        if (row[x])
+        {
+          return 1;
+        }
+      }
+    }
+  }
+  return 0;
 }
 
 static void Write(int x, int y, int z, int t, const long* weights, long volume, int inverted,
@@ -276,6 +311,28 @@ static void ResampleTetrahedra(const SamplingMesh* mesh, int x, int y, int z, co
   }
 }
 
+// Whether the bounds of a cell meet a patch of the output with voxels that are not settled.
+static int TouchesUnsettled(const Vector* q, const Output* output, const KernelParameters* p)
+{
+  Vector low = q[0];
+  Vector high = q[0];
+  for (int v = 1; v < 8; ++v)
+  {
+    low = Minimum(low, q[v]);
+    high = Maximum(high, q[v]);
+  }
+  const Candidates c = FindCandidates(low, high, 0, p);
+  if (IsEmpty(c))
+  {
+    return 0;
+  }
+  const int first[3] = { c.Low.x - p->OutputFirst[0], c.Low.y - p->OutputFirst[1],
+    c.Low.z - p->OutputFirst[2] };
+  const int last[3] = { c.High.x - p->OutputFirst[0], c.High.y - p->OutputFirst[1],
+    c.High.z - p->OutputFirst[2] };
+  return AnyUnsettled(output->Unsettled, first, last, p);
+}
+
 // One cell, by whichever of the two ways is right for it.
 static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -284,6 +341,10 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
   const int present = LoadCell(mesh, x, y, z, p, q);
   int tetrahedra = ActiveTetrahedra(mesh, x, y, z, p);
   if (present == 0 || tetrahedra == 0)
+  {
+    return;
+  }
+  if (DEFORMVOLUME_IS_CLOSED(p->Pass) && present == 255 && !TouchesUnsettled(q, output, p))
   {
     return;
   }
@@ -354,15 +415,12 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
 static void AddCounts(
   const Output* output, size_t octant, __global uint* counters, const KernelParameters* p)
 {
-  if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
-  {
-    return;
-  }
   const uint counts[DEFORMVOLUME_COUNTERS] = { output->Writes, output->Inverted,
-    output->Overstretched, output->Missing, output->Assumed };
+    output->Overstretched, output->Missing, output->Assumed, output->Candidates };
   for (int i = 0; i < DEFORMVOLUME_COUNTERS; ++i)
   {
-    if (counts[i])
+    // The passes that come later count nothing again.
+    if (counts[i] && (i == DEFORMVOLUME_COUNT_CANDIDATES || !DEFORMVOLUME_IS_CLOSED(p->Pass)))
     {
       atomic_add(counters + octant * DEFORMVOLUME_COUNTERS + i, counts[i]);
     }
@@ -372,7 +430,7 @@ static void AddCounts(
 // A work-group takes a block of cells. positions: room for three ints a vertex of the block.
 __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   __global const uchar* active, __global char* coverage, __global KEY* winners,
-  __global uint* counters, __local int* positions, const KernelParameters p ARRAY_PARAMETERS)
+  __global const char* unsettled, __global uint* counters, __local int* positions, const KernelParameters p ARRAY_PARAMETERS)
 {
   const int first[3] = { get_group_id(0) * DEFORMVOLUME_BLOCK_X,
     get_group_id(1) * DEFORMVOLUME_BLOCK_Y, p.LayersBegin + get_group_id(2) * DEFORMVOLUME_BLOCK_Z };
@@ -395,7 +453,7 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
 
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, positions,
     { first[0], first[1], first[2] } };
-  Output output = { coverage, winners, 0, 0, 0, 0, 0 };
+  Output output = { coverage, winners, unsettled, 0, 0, 0, 0, 0, 0 };
   for (int i = get_local_id(0);
        i < DEFORMVOLUME_BLOCK_X * DEFORMVOLUME_BLOCK_Y * DEFORMVOLUME_BLOCK_Z;
        i += get_local_size(0))

@@ -56,6 +56,7 @@ void VolumeDeformer::Internals::Forget()
   this->Rasterizer.Clear();
   this->NumberOfNodes = 0;
   this->NodesSet = false;
+  this->WasContested = false;
 }
 
 OpenCLContext& VolumeDeformer::Internals::GetContext()
@@ -315,6 +316,7 @@ void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
   kernel.setArg(i++, p.HasActive ? chunk.Active : this->Mesh->GetState(chunk));
   kernel.setArg(i++, output.GetCoverage());
   kernel.setArg(i++, output.GetWinners());
+  kernel.setArg(i++, output.GetUnsettled());
   kernel.setArg(i++, output.GetCounters());
   if (lanes)
   {
@@ -350,7 +352,8 @@ void VolumeDeformer::Internals::RunBricks(
   const std::size_t step = static_cast<std::size_t>(p.BrickCount[0]) *
     static_cast<std::size_t>(p.BrickCount[1]) *
     static_cast<std::size_t>(this->GetLayersPerLaunch() / DEFORMVOLUME_BRICK_Z);
-  this->LaunchesExpected = this->LaunchesDone + (bricks.size() + step - 1) / step;
+  this->LaunchesExpected =
+    std::max(this->LaunchesExpected, this->LaunchesDone + (bricks.size() + step - 1) / step);
   cl::Event previous;
   for (std::size_t begin = 0; begin < bricks.size(); begin += step)
   {
@@ -446,7 +449,14 @@ void VolumeDeformer::Internals::Run(
 bool VolumeDeformer::Internals::RunSlab(
   const DeformRequest& request, OutputSlab& output, bool first, DeformReport& report)
 {
-  this->Run(request, output, DEFORMVOLUME_PASS_DIRECT);
+  // What was folded last time probably still is: then one pass does for two.
+  const bool expected = this->WasContested && request.Method != Resampling::Published &&
+    output.GetMissingWinnerMemory() == 0;
+  if (expected)
+  {
+    output.PrepareWinners(*this->Context, this->ResamplingEvents);
+  }
+  this->Run(request, output, expected ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT);
   std::uint64_t covered = output.CountCovered(*this->Context, this->ResamplingEvents);
   const OutputSlab::Counts counts = output.ReadCounts();
   if (first) // every slab sees all tetrahedra
@@ -459,17 +469,27 @@ bool VolumeDeformer::Internals::RunSlab(
   {
     const bool contested = counts.Writes > covered;
     report.Overlapping |= contested;
-    this->LaunchesExpected += (contested ? 4 : 2) * this->GetNumberOfLaunches();
-    this->CheckWinners(output);
-    output.PrepareWinners(*this->Context, this->ResamplingEvents);
-    if (contested)
+    this->LaunchesExpected += (contested && !expected ? 3 : 2) * this->GetNumberOfLaunches();
+    if (!expected)
     {
-      this->Run(request, output, DEFORMVOLUME_PASS_OWNERS);
-      this->Run(request, output, DEFORMVOLUME_PASS_CONTEST);
+      this->CheckWinners(output);
+      output.PrepareWinners(*this->Context, this->ResamplingEvents);
+      if (contested)
+      {
+        this->Run(request, output, DEFORMVOLUME_PASS_OWNERS);
+      }
     }
-    output.Settle(*this->Context, this->ResamplingEvents);
+    output.Settle(*this->Context, contested, this->ResamplingEvents);
     this->Run(request, output, DEFORMVOLUME_PASS_MARK);
-    this->Run(request, output, DEFORMVOLUME_PASS_WINNER);
+    if (this->UseLanes(request.Method, output) && this->Mesh->GetChunks().size() == 1)
+    {
+      const std::vector<cl_uint> bricks = output.FindBricksOfWinners();
+      this->Run(request, output, DEFORMVOLUME_PASS_WINNER, &bricks);
+    }
+    else
+    {
+      this->Run(request, output, DEFORMVOLUME_PASS_WINNER);
+    }
     covered = output.CountCovered(*this->Context, this->ResamplingEvents);
   }
   report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
@@ -521,6 +541,7 @@ void VolumeDeformer::Internals::DeformSlabs(
     }
     report.TransferTime += std::chrono::duration<double>(Clock::now() - begin).count();
   }
+  this->WasContested = report.Overlapping;
   report.NumberOfResampledBricks = report.NumberOfBricks;
   // Only the kernel for processors works on bricks one by one.
   if (request.Incremental && plain && this->Context->GetDevice().IsProcessor &&
@@ -550,6 +571,7 @@ DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request, std
   this->MappingEvents.clear();
   this->ResamplingEvents.clear();
   this->LaunchesDone = 0;
+  this->LaunchesExpected = 1;
   this->PlanningTime = 0.0;
   DeformReport report;
   report.NumberOfBricks = static_cast<std::int64_t>(this->Mesh->GetNumberOfBricks());

@@ -144,6 +144,7 @@ public:
   IncrementalUpdate Update;
   Resampling LastMethod = Resampling::Exact;
   std::uint64_t LastCovered = 0;
+  bool WasContested = false; // whether cells of the last output overlapped
 
   double SendingTime = 0.0;
   double PlanningTime = 0.0; // of an incremental update

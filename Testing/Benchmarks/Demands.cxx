@@ -31,6 +31,7 @@ constexpr Limit PublishedGeneral{ "general pose: default by published kernel", 0
 constexpr Limit FineMesh{ "near identity: 512000 nodes by 2197 nodes", 1.6 };
 constexpr Limit Rotated{ "turned by 45 degrees round each axis, by near identity", 2.5 };
 constexpr Limit Scaled{ "scaled by 1.5, by near identity", 2.5 };
+constexpr Limit FoldedOver{ "a third folded back over the rest, by near identity", 5.0 };
 constexpr Limit BytesCoarse{ "2197 nodes: bytes of device memory per voxel", 6.0 };
 constexpr Limit BytesFine{ "512000 nodes: bytes of device memory per voxel", 20.0 };
 constexpr Limit Builds{ "static mappings built for moved meshes", 0.0 };
@@ -80,6 +81,7 @@ void CheckSpeedAndMemory()
   BenchmarkCase fine(volume, FineNodes);
   BenchmarkCase rotated(volume, CoarseNodes);
   BenchmarkCase scaled(volume, CoarseNodes);
+  BenchmarkCase folded(volume, CoarseNodes);
   BenchmarkCase published(volume, CoarseNodes, vtkDeformVolumeFilter::PUBLISHED);
   const auto reslice = MakeAffineReslice(volume);
 
@@ -94,14 +96,15 @@ void CheckSpeedAndMemory()
       Pose::General, subject.GetStep(), subject.GetFilter()->GetOutput()->GetExtent());
   };
 
-  Ratios updateNear, updateGeneral, publishedNear, publishedGeneral, fineMesh, rotation, scaling;
+  Ratios updateNear, updateGeneral, publishedNear, publishedGeneral, fineMesh, rotation, scaling,
+    folding;
   vtkIdType builds = 0;
   vtkIdType uploads = 0;
   const auto countWork = [&]()
   {
     builds = 0;
     uploads = 0;
-    for (BenchmarkCase* subject : { &near, &general, &fine, &rotated, &scaled })
+    for (BenchmarkCase* subject : { &near, &general, &fine, &rotated, &scaled, &folded })
     {
       builds += subject->GetFilter()->GetNumberOfMappingBuilds();
       uploads += subject->GetFilter()->GetNumberOfVolumeUploads();
@@ -116,6 +119,7 @@ void CheckSpeedAndMemory()
     const double fineTime = update(fine, Pose::NearIdentity).GetKernels();
     const double rotatedTime = update(rotated, Pose::Rotated).GetKernels();
     const double scaledTime = update(scaled, Pose::UniformScale).GetKernels();
+    const double foldedTime = update(folded, Pose::Folded).GetKernels();
     const UpdateTimes generalTimes = update(general, Pose::General);
     const double resliceGeneral = resliceLike(general);
     const double publishedGeneralTime = update(published, Pose::General).GetKernels();
@@ -131,6 +135,7 @@ void CheckSpeedAndMemory()
     fineMesh.Add(fineTime / nearTimes.GetKernels());
     rotation.Add(rotatedTime / nearTimes.GetKernels());
     scaling.Add(scaledTime / nearTimes.GetKernels());
+    folding.Add(foldedTime / nearTimes.GetKernels());
   }
   Check(UpdateNear, updateNear.GetMedian());
   Check(UpdateGeneral, updateGeneral.GetMedian());
@@ -139,6 +144,7 @@ void CheckSpeedAndMemory()
   Check(FineMesh, fineMesh.GetMedian());
   Check(Rotated, rotation.GetMedian());
   Check(Scaled, scaling.GetMedian());
+  Check(FoldedOver, folding.GetMedian());
   Check(BytesCoarse, GetBytesPerVoxel(near));
   Check(BytesFine, GetBytesPerVoxel(fine));
   const vtkIdType buildsBefore = builds;

@@ -45,6 +45,8 @@ const char* GetName(Pose pose)
       return "varying-scale";
     case Pose::UniformScale:
       return "scale-1.5";
+    case Pose::Folded:
+      return "folded";
     case Pose::LocalEdit:
       return "local-edit";
   }
@@ -151,6 +153,13 @@ std::array<double, 3> PoseMap::operator()(const std::array<double, 3>& rest) con
         moved[axis] = length * t * (0.7 + 0.45 * t) + this->Phase;
       }
       break;
+    case Pose::Folded:
+    {
+      const double crease = 2.0 / 3.0 * (this->Dimensions[0] - 1);
+      moved = this->MoveNearIdentity(rest, this->Phase);
+      moved[0] -= 2.0 * std::max(0.0, rest[0] - crease);
+      break;
+    }
     case Pose::LocalEdit:
     {
       constexpr double amplitude = 3.0;

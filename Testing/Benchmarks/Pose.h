@@ -23,6 +23,8 @@ enum class Pose
   VaryingScale,
   /// Scaled by 1.5.
   UniformScale,
+  /// NearIdentity, with the last third on x laid back over the rest.
+  Folded,
   /// NearIdentity, where only the nodes of a box move from step to step, see GetLocalEditBox().
   LocalEdit
 };

@@ -54,7 +54,7 @@ void RegisterTable2(Pose pose, const EvaluationSize& size)
 // at each measurement.
 using PoseCases = std::map<Pose, std::unique_ptr<BenchmarkCase>>;
 constexpr Pose ComparedPoses[] = { Pose::NearIdentity, Pose::General, Pose::Rotated,
-  Pose::UniformScale };
+  Pose::UniformScale, Pose::Folded };
 }
 
 void RegisterPoses(const EvaluationSize& size)

@@ -72,6 +72,8 @@ DEMANDS = [
            _pose_by_near("rotated-45")),
     Demand("mapping and resampling, scaled by 1.5, by near identity", 1.8,
            _pose_by_near("scale-1.5")),
+    Demand("mapping and resampling, a third of the volume folded back over the rest, by near "
+           "identity", 3.0, _pose_by_near("folded")),
     Demand("time per voxel, from 4 million voxels to the largest volume: distance from the middle",
            0.2, _spread_of_sizes),
     Demand("device memory, 512,000 nodes (a map of 16 bytes per voxel)", 20.0,

@@ -147,6 +147,42 @@ TEST(Folded, SameFromRunToRunAndForEveryWorkGroupSize)
   }
 }
 
+TEST(Folded, OutputsBeforeDoNotMatter)
+{
+  // The passes depend on whether the output before was folded, what comes out does not.
+  const Extent large{ { 0, 79, 0, 19, 0, 17 } };
+  const auto fold = [&](double crease)
+  {
+    return MakeCase(large, NoScale,
+      [=](const glm::dvec3& index)
+      {
+        const double x = index.x > crease ? 2.0 * crease - index.x : index.x;
+        return glm::dvec3(x + 0.3 * index.y, index.y + 0.01 * index.x, index.z + 0.02 * x);
+      });
+  };
+  const auto values = MakeRandomValues<std::uint16_t>(fold(60.0).GetNumberOfVoxels(), 2);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  for (const Resampling method : { Resampling::ExactByLanes, Resampling::ExactByCell })
+  {
+    VolumeDeformer deformer;
+    for (const double crease : { 60.0, 47.5, 100.0, 60.0, 20.25, 100.0, 100.0 })
+    {
+      SCOPED_TRACE(crease);
+      const DeformerCase folded = fold(crease);
+      Load(deformer, folded, arrays, Route::Field);
+      const Deformed again = RunDeformer(deformer, folded, arrays, method);
+      VolumeDeformer fresh;
+      Load(fresh, folded, arrays, Route::Field);
+      const Deformed first = RunDeformer(fresh, folded, arrays, method);
+      EXPECT_EQ(again.Outputs, first.Outputs);
+      EXPECT_EQ(again.Coverage, first.Coverage);
+      EXPECT_EQ(again.Report.Overlapping, crease < 80.0);
+      EXPECT_EQ(again.Report.NumberOfInvertedTetrahedra, first.Report.NumberOfInvertedTetrahedra);
+      EXPECT_EQ(again.Report.NumberOfCoveredVoxels, first.Report.NumberOfCoveredVoxels);
+    }
+  }
+}
+
 TEST(Folded, OverstretchedTetrahedraAreSkippedAndCounted)
 {
   const Extent small{ { 0, 3, 0, 3, 0, 3 } };
