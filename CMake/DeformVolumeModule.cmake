@@ -43,7 +43,9 @@ list(TRANSFORM helpers PREPEND "Filters/")
 vtk_module_add_module(DeformVolume::Filters
   CLASSES ${classes}
   PRIVATE_CLASSES ${helpers}
-  SOURCES Filters/vtkDeformVolumeFilterParts.cxx)
+  SOURCES
+    Filters/vtkDeformVolumeFilterParts.cxx
+    Filters/vtkDeformVolumeFilterRequests.cxx)
 vtk_module_include(DeformVolume::Filters
   PUBLIC "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/Filters>"
   PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/Kernels")

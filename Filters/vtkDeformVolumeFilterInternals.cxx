@@ -246,6 +246,34 @@ void vtkDeformVolumeFilter::vtkInternals::SetResamplerInUse(deformvolume::Resamp
 }
 
 //------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::TakeReport(
+  const deformvolume::DeformReport& report, deformvolume::Resampling method)
+{
+  this->Self->PreprocessingTime = this->Mapping.TakeTime();
+  this->Self->TransferTime = report.TransferTime;
+  this->Self->MappingTime = report.MappingTime;
+  this->Self->ResamplingTime = report.ResamplingTime;
+  this->Self->NumberOfInvertedTetrahedra = report.NumberOfInvertedTetrahedra;
+  this->Self->NumberOfFlatTetrahedra = method == deformvolume::Resampling::MeshRasterization
+    ? report.NumberOfFlatTetrahedra
+    : this->Deformation.IsField() ? 0
+                                  : this->Mapping.GetNumberOfFlatTetrahedra();
+  this->Self->NumberOfCoveredVoxels = report.NumberOfCoveredVoxels;
+  this->Self->NumberOfBricks = report.NumberOfBricks;
+  this->Self->NumberOfResampledBricks = report.NumberOfResampledBricks;
+  this->Self->NumberOfMappingBuilds = this->Mapping.GetNumberOfBuilds();
+  this->Self->NumberOfVolumeUploads = this->Device.GetNumberOfVolumeUploads();
+  if (report.NumberOfOverstretchedCells > 0)
+  {
+    vtkWarningWithObjectMacro(
+      this->Self, << report.NumberOfOverstretchedCells
+                  << " cells of the volume have a tetrahedron that is stretched over more than "
+                     "4,000 output voxels; these tetrahedra are skipped. Check the deformation, "
+                     "or set a greater output spacing.");
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::ForgetRequestedExtent(vtkInformation* output)
 {
   output->Remove(vtkStreamingDemandDrivenPipeline::COMBINED_UPDATE_EXTENT());

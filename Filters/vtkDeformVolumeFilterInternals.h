@@ -72,6 +72,9 @@ public:
     const std::function<void(deformvolume::Resampling)>& checkMemory) const;
   void SetResamplerInUse(deformvolume::Resampling method) const;
 
+  /// Sets what the filter tells of an execution.
+  void TakeReport(const deformvolume::DeformReport& report, deformvolume::Resampling method);
+
   /// The executive unites the extents asked for until an execution succeeds: after a failure the
   /// next one must start anew.
   static void ForgetRequestedExtent(vtkInformation* output);

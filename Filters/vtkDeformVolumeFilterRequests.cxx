@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How vtkDeformVolumeFilter answers the requests of the pipeline.
+#include "vtkDeformVolumeFilter.h"
+
+#include "vtkDeformVolumeFilterInternals.h"
+
+#include "FailureReport.h"
+#include "InputUpdate.h"
+#include "OutputExtent.h"
+#include "VolumeArrays.h"
+
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+
+#include <initializer_list>
+
+using deformvolume::DeformationSource;
+using deformvolume::Error;
+using deformvolume::Extent;
+using deformvolume::ImageGeometry;
+
+namespace
+{
+
+// The time asked for, or else that of the first input that has one.
+void SetTimeStep(
+  vtkImageData* image, vtkInformation* output, std::initializer_list<vtkDataObject*> inputs)
+{
+  vtkInformation* info = image->GetInformation();
+  if (output->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
+  {
+    info->Set(vtkDataObject::DATA_TIME_STEP(),
+      output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()));
+    return;
+  }
+  for (vtkDataObject* data : inputs)
+  {
+    if (data && data->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
+    {
+      info->Set(vtkDataObject::DATA_TIME_STEP(),
+        data->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()));
+      return;
+    }
+  }
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+{
+  std::string message;
+  try
+  {
+    if (!this->Superclass::ProcessRequest(request, input, output))
+    {
+      return deformvolume::Fail(this);
+    }
+    if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
+    {
+      this->Internals->ToldMessage.clear();
+    }
+    return 1;
+  }
+  catch (const deformvolume::Aborted&)
+  {
+    this->Internals->Aborted = true;
+  }
+  catch (const std::bad_alloc&)
+  {
+    message = "The memory of this machine does not suffice for the deformed volume. Use a smaller "
+              "volume, a coarser output spacing or narrower output bounds.";
+  }
+  catch (const std::exception& error)
+  {
+    message = error.what();
+  }
+
+  vtkInformation* outInfo = output->GetInformationObject(0);
+  if (vtkDataObject* data = vtkDataObject::GetData(outInfo))
+  {
+    data->Initialize();
+  }
+  this->Internals->Outputs.Forget();
+  if (message.empty())
+  {
+    return 1;
+  }
+  vtkInternals::ForgetRequestedExtent(outInfo);
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
+  {
+    // Nothing is offered, so that a pass that goes on in spite of the failure finds nothing.
+    const int empty[6] = { 0, -1, 0, -1, 0, -1 };
+    outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
+    outInfo->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), empty, 6);
+    // Told with the data: who asks for information may be about to choose inputs and arrays.
+    this->Internals->InformationFailed = true;
+    this->Internals->PostponedError = message;
+    return 1;
+  }
+  if (this->Internals->IsNews(message))
+  {
+    vtkErrorMacro(<< message);
+  }
+  return deformvolume::Fail(this);
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformVolumeFilter::RequestInformation(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  vtkInformation* outInfo = output->GetInformationObject(0);
+  if (this->Internals->InformationFailed)
+  {
+    // The executive then asks for the whole extent anew.
+    outInfo->Remove(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT_INITIALIZED());
+    this->Internals->InformationFailed = false;
+    this->Internals->PostponedError.clear();
+  }
+  const deformvolume::Ranks ranks;
+  if (ranks.AreMany())
+  {
+    ranks.GetNeighbours(); // before anything asks for a device
+  }
+  vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
+  ImageGeometry volume;
+  ImageGeometry outputGeometry;
+  ranks.Attempt(
+    [&]
+    {
+      if (this->GetNumberOfInputConnections(0) == 0)
+      {
+        throw Error("There is no volume. Connect a vtkImageData to input port 0.");
+      }
+      if (this->GetNumberOfInputConnections(1) == 0)
+      {
+        throw Error("There is no deformation. Connect a vtkUnstructuredGrid with tetrahedra or a "
+                    "vtkImageData with displacements to input port 1.");
+      }
+      if (!volumeInfo->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+      {
+        throw Error("The volume on input port 0 announces no whole extent. Connect a "
+                    "vtkImageData; from a composite dataset, extract one block.");
+      }
+      volume = deformvolume::GetGeometry(volumeInfo);
+      deformvolume::CheckVolume(volume);
+      outputGeometry = this->Internals->GetOutputGeometry(volume);
+      // Here, since ParaView's views complain, too, where data fail that were announced.
+      deformvolume::DeviceSession::CheckDevice(this->Device);
+    });
+  deformvolume::MergeTimes(this, outInfo);
+
+  deformvolume::IndexBounds deformed;
+  if (this->OutputBoundsMode == DEFORMED_BOUNDS)
+  {
+    deformed = this->Internals->GetDeformedBounds(ranks, volume, outInfo);
+  }
+  Extent whole;
+  switch (this->OutputBoundsMode)
+  {
+    case VOLUME_BOUNDS:
+      whole = deformvolume::GetExtentAround(
+        deformvolume::GetVolumeBounds(volume, volume.Spacing / outputGeometry.Spacing));
+      break;
+    case CUSTOM_BOUNDS:
+      whole = deformvolume::GetExtentAround(
+        deformvolume::GetWorldBoxBounds(this->CustomBounds, outputGeometry));
+      break;
+    default:
+      whole = deformvolume::GetExtentInside(deformed);
+  }
+  whole = deformvolume::GetPadded(whole, this->Padding);
+
+  const glm::dmat3 rows = glm::transpose(outputGeometry.Direction);
+  outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data(), 6);
+  outInfo->Set(vtkDataObject::ORIGIN(), glm::value_ptr(outputGeometry.Origin), 3);
+  outInfo->Set(vtkDataObject::SPACING(), glm::value_ptr(outputGeometry.Spacing), 3);
+  outInfo->Set(vtkDataObject::DIRECTION(), glm::value_ptr(rows), 9);
+  outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
+    volumeInfo, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  if (scalars && scalars->Has(vtkDataObject::FIELD_ARRAY_TYPE()))
+  {
+    const int components = scalars->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
+      ? scalars->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
+      : 1;
+    vtkDataObject::SetPointDataActiveScalarInfo(
+      outInfo, scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()), components);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformVolumeFilter::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  if (this->Internals->InformationFailed)
+  {
+    throw Error(this->Internals->PostponedError);
+  }
+  const deformvolume::Ranks ranks;
+  for (int port = 1; port < this->GetNumberOfInputPorts(); ++port)
+  {
+    if (input[port]->GetNumberOfInformationObjects() > 0)
+    {
+      deformvolume::RequestInput(input[port]->GetInformationObject(0), ranks);
+    }
+  }
+  vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
+  deformvolume::RequestExtent(volumeInfo,
+    this->Internals->GetNeededExtent(ranks, volumeInfo, output->GetInformationObject(0)));
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformVolumeFilter::RequestData(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  vtkInformation* outInfo = output->GetInformationObject(0);
+  vtkImageData* image = vtkImageData::GetData(outInfo);
+  if (this->Internals->InformationFailed || !image)
+  {
+    if (vtkDataObject* data = vtkDataObject::GetData(outInfo))
+    {
+      data->Initialize();
+    }
+    vtkInternals::ForgetRequestedExtent(outInfo);
+    return 0;
+  }
+  // Nothing of an earlier execution is left standing beside a failure.
+  image->Initialize();
+  this->PreprocessingTime = this->TransferTime = this->MappingTime = this->ResamplingTime = 0.0;
+  this->NumberOfInvertedTetrahedra = this->NumberOfFlatTetrahedra = this->NumberOfCoveredVoxels = 0;
+  this->NumberOfBricks = this->NumberOfResampledBricks = 0;
+  const deformvolume::Ranks ranks;
+  vtkImageData* volume = vtkImageData::GetData(input[0]);
+  deformvolume::MappedVolume mapped;
+  ranks.Attempt(
+    [&]
+    {
+      if (!volume)
+      {
+        throw Error("There is no volume. Connect a vtkImageData to input port 0.");
+      }
+      mapped = this->Internals->GetMappedVolume(ranks, volume, input[0]->GetInformationObject(0));
+    });
+  const ImageGeometry& geometry = mapped.Whole;
+  const DeformationSource source = this->Internals->ReadDeformation(
+    ranks, geometry, vtkDataObject::GetData(input[1]), vtkDataObject::GetData(input[2]));
+  deformvolume::Deformation& deformation = this->Internals->Deformation;
+
+  std::vector<deformvolume::SourceArray> arrays;
+  ranks.Attempt(
+    [&]
+    {
+      std::vector<std::string> leftOut;
+      arrays = deformvolume::SelectArrays(volume, this->Internals->CategoricalArrays, leftOut);
+      this->Internals->WarnOfIgnored(volume, leftOut);
+    });
+
+  deformvolume::DeformRequest request;
+  outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), request.OutputExtent.data());
+  const vtkIdType numberOfPoints = deformvolume::GetNumberOfPoints(request.OutputExtent);
+  if (numberOfPoints == 0 && !ranks.AreMany())
+  {
+    return 1;
+  }
+  deformvolume::Lattice lattice{ mapped.Part,
+    { { source.Scale.x, source.Scale.y, source.Scale.z } }, geometry.PointExtent };
+  deformvolume::DeviceSession& device = this->Internals->Device;
+  const std::vector<deformvolume::VolumeArray> described =
+    deformvolume::Describe(arrays, this->BackgroundValue);
+  Extent whole;
+  outInfo->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
+  request.WholeOutputExtent = whole;
+  request.Interpolation = this->Interpolation == CUBIC_INTERPOLATION
+    ? deformvolume::Interpolation::Cubic
+    : deformvolume::Interpolation::Linear;
+  std::uint64_t heldBytes = 0;
+  const std::function<void(const Extent&, deformvolume::Resampling)> checkMemory =
+    [&](const Extent& extent, deformvolume::Resampling method)
+  {
+    const bool isMapped = method != deformvolume::Resampling::MeshRasterization;
+    device.CheckMemory(lattice, described, extent, heldBytes, deformation,
+      isMapped ? this->Internals->Mapping.GetRunBytes(deformation, mapped) : 0, method);
+  };
+  std::string form = "field";
+  ranks.Attempt(
+    [&]
+    {
+      if (numberOfPoints == 0)
+      {
+        return;
+      }
+      this->DeviceInUse =
+        device.SetDevice(this->Device, static_cast<std::uint64_t>(this->MemoryLimit),
+          static_cast<std::size_t>(this->WorkGroupSize));
+      heldBytes = this->Internals->Outputs.Prepare(arrays, numberOfPoints);
+      // The memory for the whole decides, so that all parts are made alike. A volume that is read
+      // in parts need never fit.
+      request.Method = this->Internals->ChooseResampler(
+        [&](deformvolume::Resampling method)
+        {
+          if (mapped.IsWhole())
+          {
+            checkMemory(whole, method);
+          }
+        });
+      if (!deformation.IsField() && request.Method != deformvolume::Resampling::MeshRasterization)
+      {
+        form = this->Internals->Mapping.GetRunBytes(deformation, mapped) > 0 ? "runs" : "links";
+      }
+    });
+  if (ranks.IsAny(request.Method == deformvolume::Resampling::MeshRasterization))
+  {
+    request.Method = deformvolume::Resampling::MeshRasterization;
+    this->Internals->SetResamplerInUse(request.Method);
+  }
+  deformvolume::DeformReport report;
+  const auto deform = [&]
+  {
+    checkMemory(request.OutputExtent, request.Method);
+    device.SetVolume(lattice, volume, arrays, this->BackgroundValue, request.Method);
+    if (request.Method == deformvolume::Resampling::MeshRasterization)
+    {
+      device.SetRestMesh(deformation);
+    }
+    else
+    {
+      device.SetDeformation(
+        deformation, this->Internals->Mapping, mapped, this->Internals->GetProgress(0.0, 0.3));
+    }
+    request.Progress = this->Internals->GetProgress(0.3, 1.0);
+    if (!request.Progress(0.0))
+    {
+      throw deformvolume::Aborted();
+    }
+
+    const ImageGeometry outputGeometry = this->Internals->GetOutputGeometry(geometry);
+    const glm::dmat3 rows = glm::transpose(outputGeometry.Direction);
+    image->SetExtent(request.OutputExtent.data());
+    image->SetOrigin(glm::value_ptr(outputGeometry.Origin));
+    image->SetSpacing(glm::value_ptr(outputGeometry.Spacing));
+    image->SetDirectionMatrix(glm::value_ptr(rows));
+    image->GetFieldData()->ShallowCopy(volume->GetFieldData());
+    this->Internals->Outputs.Make(arrays, image, request);
+    request.Incremental = this->Incremental;
+    deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
+
+    report = device.Deform(request);
+  };
+  this->Internals->RunInTurn(ranks,
+    deformvolume::DescribeKernels(this->DeviceInUse, request, form, described), numberOfPoints > 0,
+    deform);
+  if (numberOfPoints == 0)
+  {
+    return 1;
+  }
+  if (vtkInternals::IsReleased(outInfo))
+  {
+    this->Internals->Outputs.Forget();
+  }
+  else
+  {
+    this->Internals->Outputs.Keep();
+  }
+  this->Internals->TakeReport(report, request.Method);
+  if (report.NumberOfCoveredVoxels == 0 && whole == request.OutputExtent)
+  {
+    vtkWarningMacro("The deformed volume covers no voxel of the output: all of it is background. "
+                    "Check the output bounds, and that the deformation mesh holds neighbouring "
+                    "voxels of the volume.");
+  }
+  SetTimeStep(image, outInfo, { vtkDataObject::GetData(input[1]), volume });
+  return 1;
+}
