@@ -19,7 +19,9 @@
 #include "vtkTrivialProducer.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <set>
+#include <string>
 
 namespace deformvolume
 {
@@ -49,6 +51,29 @@ void Request(vtkInformation* input, vtkInformation* request, const Ranks& ranks)
     RequestPiece(request, ranks.GetRank(), ranks.GetCount());
     request->Remove(Pipeline::UPDATE_EXTENT());
   }
+}
+
+// A source that fails on one rank fails on all: the ranks that go on would wait for it.
+vtkDataObject* Update(vtkAlgorithm* filter, int port, vtkInformation* request, const Ranks& ranks)
+{
+  static const char* const names[3] = { "volume", "deformation", "rest configuration" };
+  vtkAlgorithmOutput* source = filter->GetInputConnection(port, 0);
+  vtkNew<vtkInformationVector> requests;
+  requests->SetNumberOfInformationObjects(source->GetIndex() + 1);
+  requests->SetInformationObject(source->GetIndex(), request);
+  const bool done = source->GetProducer()->Update(source->GetIndex(), requests) != 0;
+  ranks.Attempt(
+    [&]
+    {
+      if (!done)
+      {
+        throw Error(std::string("The source of the ") + names[port] + " on input port " +
+          std::to_string(port) + " failed" +
+          (ranks.AreMany() ? " on rank " + std::to_string(ranks.GetRank()) : "") +
+          ". Mend what its own message tells.");
+      }
+    });
+  return source->GetProducer()->GetOutputDataObject(source->GetIndex());
 }
 
 bool CanProduceParts(vtkAlgorithm* producer, int index, int depth)
@@ -85,10 +110,7 @@ vtkDataObject* UpdateInput(
   {
     return nullptr;
   }
-  vtkAlgorithmOutput* source = filter->GetInputConnection(port, 0);
-  vtkNew<vtkInformationVector> requests;
-  requests->SetNumberOfInformationObjects(source->GetIndex() + 1);
-  vtkInformation* request = requests->GetInformationObject(source->GetIndex());
+  vtkNew<vtkInformation> request;
   Request(filter->GetInputInformation(port, 0), request, ranks);
   if (time)
   {
@@ -98,8 +120,29 @@ vtkDataObject* UpdateInput(
   {
     request->Set(Pipeline::UPDATE_TIME_STEP(), output->Get(Pipeline::UPDATE_TIME_STEP()));
   }
-  source->GetProducer()->Update(source->GetIndex(), requests);
-  return source->GetProducer()->GetOutputDataObject(source->GetIndex());
+  return Update(filter, port, request, ranks);
+}
+
+void UpdateRequested(vtkAlgorithm* filter, vtkInformationVector** input, const Ranks& ranks)
+{
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    if (input[port]->GetNumberOfInformationObjects() == 0)
+    {
+      continue;
+    }
+    vtkInformation* requested = input[port]->GetInformationObject(0);
+    vtkNew<vtkInformation> request;
+    for (vtkInformationIntegerKey* key :
+      std::initializer_list<vtkInformationIntegerKey*>{ Pipeline::UPDATE_PIECE_NUMBER(),
+        Pipeline::UPDATE_NUMBER_OF_PIECES(), Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS() })
+    {
+      request->CopyEntry(requested, key);
+    }
+    request->CopyEntry(requested, Pipeline::UPDATE_EXTENT());
+    request->CopyEntry(requested, Pipeline::UPDATE_TIME_STEP());
+    Update(filter, port, request, ranks);
+  }
 }
 
 void RequestInput(vtkInformation* input, const Ranks& ranks)

@@ -13,6 +13,7 @@
 class vtkAlgorithm;
 class vtkDataObject;
 class vtkInformation;
+class vtkInformationVector;
 
 namespace deformvolume
 {
@@ -20,7 +21,7 @@ namespace deformvolume
 /// Brings what is connected to an input port up to date, at a time or, where that is null, at the
 /// time asked for at the output, and returns it; null where nothing is connected. Of an image each
 /// rank gets all, of other data its piece. Meant for the information pass: a whole extent may
-/// depend on the data of an input.
+/// depend on the data of an input. Throws an Error, on all ranks, where a source fails. Collective.
 vtkDataObject* UpdateInput(
   vtkAlgorithm* filter, int port, vtkInformation* output, const double* time, const Ranks& ranks);
 
@@ -30,6 +31,11 @@ void RequestInput(vtkInformation* input, const Ranks& ranks);
 
 /// Asks an input for an extent, and for nothing else.
 void RequestExtent(vtkInformation* input, const Extent& extent);
+
+/// Brings all inputs up to date with what they have been asked for. The executive would do it, too;
+/// but where a source fails on one rank, the executive ends the data pass on that rank alone.
+/// Throws an Error, on all ranks. Collective.
+void UpdateRequested(vtkAlgorithm* filter, vtkInformationVector** input, const Ranks& ranks);
 
 /// The part of the output that is asked for while requests go upstream: of the extent the piece,
 /// with its ghost levels.

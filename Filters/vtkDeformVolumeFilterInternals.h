@@ -103,6 +103,8 @@ public:
   // What is wrong with a failed information pass is told when data are asked for.
   bool InformationFailed = false;
   std::string PostponedError;
+  // Whether the last request for extents failed.
+  bool RequestFailed = false;
   // The last error, until an execution succeeds.
   std::string ToldMessage;
   // An aborted execution leaves the filter out of date, and the next pass has to see that.

@@ -108,6 +108,10 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
     this->Internals->PostponedError = message;
     return 1;
   }
+  // The executive goes on to the data pass all the same, and on the ranks whose inputs have failed
+  // it gets no further than these.
+  this->Internals->RequestFailed =
+    request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) != 0;
   if (this->Internals->IsNews(message))
   {
     vtkErrorMacro(<< message);
@@ -204,6 +208,7 @@ int vtkDeformVolumeFilter::RequestInformation(
 int vtkDeformVolumeFilter::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
+  this->Internals->RequestFailed = false;
   if (this->Internals->InformationFailed)
   {
     throw Error(this->Internals->PostponedError);
@@ -219,6 +224,10 @@ int vtkDeformVolumeFilter::RequestUpdateExtent(
   vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
   deformvolume::RequestExtent(volumeInfo,
     this->Internals->GetNeededExtent(ranks, volumeInfo, output->GetInformationObject(0)));
+  if (ranks.AreMany())
+  {
+    deformvolume::UpdateRequested(this, input, ranks);
+  }
   return 1;
 }
 
@@ -228,7 +237,7 @@ int vtkDeformVolumeFilter::RequestData(
 {
   vtkInformation* outInfo = output->GetInformationObject(0);
   vtkImageData* image = vtkImageData::GetData(outInfo);
-  if (this->Internals->InformationFailed || !image)
+  if (this->Internals->InformationFailed || this->Internals->RequestFailed || !image)
   {
     if (vtkDataObject* data = vtkDataObject::GetData(outInfo))
     {
