@@ -273,7 +273,7 @@ public:
 
   ///@{
   /**
-   * Whether an update resamples only the bricks of the volume (64 x 16 x 16 cells, or halves of
+   * Whether an update resamples only the bricks of the volume (192 x 16 x 16 cells, or parts of
    * these) whose nodes moved or whose masks changed, and those that overlap them in the output. The
    * result is the same to the last bit. Needs the resampler EXACT, a processor as device, and an
    * output of the same extent as the last one; all is resampled where that is not so, where more

@@ -6,8 +6,9 @@
 // first output voxel (x, y, z; float, exact multiples of 1/256), then the values of the arrays that are
 // interpolated in single precision, HALF_ROW floats each.
 //
-// Vertices come eight at a time, with the operations of PositionOf (DeformationMapping.cl) in the same order;
-// where one of the eight is missing, one at a time.
+// Vertices come TOGETHER, 8 or 16 at a time, with the operations of PositionOf (DeformationMapping.cl) in the same
+// order; where one of these is missing, one at a time. The last ones of a row come with some before them, which
+// then come twice.
 
 #ifdef __x86_64__
 #define PREFETCH(address) __builtin_prefetch((const void*)(size_t)(address));
@@ -36,12 +37,16 @@ typedef struct
 
 #if MAPPING == MAPPING_RUNS
 
+#define TOGETHER 16
+#define HALF_TOGETHER 8
+
 // The displacements of the vertices of a row from x to end, x, y and z apart, one after the other from
 // place i: affine from one run's begin to the next.
 static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
   __local float* places, const KernelParameters* p)
 {
-  const float8 steps = (float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f);
+  const float16 steps = (float16)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f, 8.0f, 9.0f, 10.0f,
+    11.0f, 12.0f, 13.0f, 14.0f, 15.0f);
   const size_t row = RowIndex(y, z, p);
   const uint last = m->RowBegins[row + 1] - 1;
   uint run = FindRun(m->Runs, m->RowBegins[row], last + 1, x);
@@ -58,15 +63,20 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
     }
     if (tetrahedron >= 0)
     {
-      const RunDisplacement d = MakeRunDisplacement(m->Records + tetrahedron, y, z);
-      float8 index = (float)x + steps;
-      for (__local float* place = places + i; place < places + i + (runEnd - x); place += 8)
+      __global const TetrahedronRecord* const record = m->Records + tetrahedron;
+      const RunDisplacement d = MakeRunDisplacement(record, y, z);
+      float16 index = (float)x + steps;
+      for (__local float* place = places + i; place < places + i + (runEnd - x); place += 16)
       {
-        const float8 offset = index - d.OriginX;
-        index += 8.0f;
-        vstore8(d.Displacement.x + (d.Across.x + d.AlongX.x * offset), 0, place);
-        vstore8(d.Displacement.y + (d.Across.y + d.AlongX.y * offset), 0, place + ROW_PLACES);
-        vstore8(d.Displacement.z + (d.Across.z + d.AlongX.z * offset), 0, place + 2 * ROW_PLACES);
+        // From memory one number goes to all lanes at no cost, from another vector it does not.
+        const float16 offset = index - record->Origin[0];
+        index += 16.0f;
+        *(__local PlacedFloat16*)place =
+          record->Displacement[0] + (d.Across.x + record->AlongX[0] * offset);
+        *(__local PlacedFloat16*)(place + ROW_PLACES) =
+          record->Displacement[1] + (d.Across.y + record->AlongX[1] * offset);
+        *(__local PlacedFloat16*)(place + 2 * ROW_PLACES) =
+          record->Displacement[2] + (d.Across.z + record->AlongX[2] * offset);
       }
     }
     i += runEnd - x;
@@ -77,15 +87,18 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
 #define ROW_DISPLACEMENTS DisplaceRow(m, x, end, i, y, z, displaced, p);
 #define ROW_DISPLACEMENT                                                                           \
   (float4)(displaced[i], displaced[i + ROW_PLACES], displaced[i + 2 * ROW_PLACES], 0.0f)
-#define EIGHT_ROW_DISPLACEMENTS                                                                    \
-  const float8 xs = vload8(0, displaced + i);                                                      \
-  const float8 ys = vload8(0, displaced + i + ROW_PLACES);                                         \
-  const float8 zs = vload8(0, displaced + i + 2 * ROW_PLACES);                                     \
-  const float8 dx = (float8)(xs.even, xs.odd);                                                     \
-  const float8 dy = (float8)(ys.even, ys.odd);                                                     \
-  const float8 dz = (float8)(zs.even, zs.odd);
+#define ROW_DISPLACEMENTS_TOGETHER                                                                 \
+  const float16 xs = vload16(0, displaced + i);                                                    \
+  const float16 ys = vload16(0, displaced + i + ROW_PLACES);                                       \
+  const float16 zs = vload16(0, displaced + i + 2 * ROW_PLACES);                                   \
+  const float16 dx = (float16)(xs.even, xs.odd);                                                   \
+  const float16 dy = (float16)(ys.even, ys.odd);                                                   \
+  const float16 dz = (float16)(zs.even, zs.odd);
 
 #else
+
+#define TOGETHER 8
+#define HALF_TOGETHER 4
 
 #if MAPPING == MAPPING_LINKS
 #define ROW_DISPLACEMENTS                                                                          \
@@ -99,7 +112,7 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
 #define FETCH_AHEAD
 #endif
 #define ROW_DISPLACEMENT VERTEX_DISPLACEMENT(x)
-#define EIGHT_ROW_DISPLACEMENTS                                                                    \
+#define ROW_DISPLACEMENTS_TOGETHER                                                                 \
   FETCH_AHEAD                                                                                      \
   const float4 d0 = VERTEX_DISPLACEMENT(x);                                                        \
   const float4 d2 = VERTEX_DISPLACEMENT(x + 2);                                                    \
@@ -119,7 +132,7 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
 #define INTERIORS 0x0202020202020202UL
 
 // The states of eight vertices; without a state the bits of SOURCES and INTERIORS only.
-static ulong StatesOf(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
+static ulong StatesOfEight(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
 {
   if (p->HasState)
   {
@@ -129,6 +142,20 @@ static ulong StatesOf(__global const uchar* state, int x, int y, int z, const Ke
     z < p->Size[2] - 1;
   return SOURCES | (inside ? INTERIORS : 0);
 }
+
+// The same of TOGETHER vertices: bits that vertices of both eights have, where these are 16.
+static ulong StatesOf(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
+{
+  const ulong states = StatesOfEight(state, x, y, z, p);
+  return TOGETHER == 8 ? states : states & StatesOfEight(state, x + 8, y, z, p);
+}
+
+#define FLOATS_TOGETHER JOIN(float, TOGETHER)
+#define HALF_FLOATS JOIN(float, HALF_TOGETHER)
+#define LOAD_HALF(place) JOIN(vload, HALF_TOGETHER)(0, place)
+#define STORE_HALF(v, place) *(__local JOIN(PlacedFloat, HALF_TOGETHER)*)(place) = v;
+// Those of RowFlags that TOGETHER vertices may be in.
+#define FLAGS_TOGETHER ((2u << (TOGETHER / 8)) - 1)
 
 // A value, by its bits, that the sum of products would not give back: -0, not finite, or so large that the
 // sum may overflow.
@@ -143,16 +170,17 @@ static ulong StatesOf(__global const uchar* state, int x, int y, int z, const Ke
       flags.Special |= 1u << (i >> 3);                                                             \
     }                                                                                              \
   }
-#define PUT_EIGHT_VALUES(index, TYPE, BITS, SLOT)                                                  \
+#define PUT_VALUES_TOGETHER(index, TYPE, BITS, SLOT)                                               \
   {                                                                                                \
-    const float8 value = convert_float8(vload8(0, source##index + chunk + x));                     \
-    vstore4(value.even, 0, place + (3 + SLOT) * HALF_ROW);                                         \
-    vstore4(value.odd, 0, place + ODD + (3 + SLOT) * HALF_ROW);                                    \
+    const FLOATS_TOGETHER value =                                                                  \
+      JOIN(convert_float, TOGETHER)(JOIN(vload, TOGETHER)(0, source##index + chunk + x));          \
+    STORE_HALF(value.even, place + (3 + SLOT) * HALF_ROW)                                          \
+    STORE_HALF(value.odd, place + ODD + (3 + SLOT) * HALF_ROW)                                     \
     if (BITS == 32)                                                                                \
     {                                                                                              \
-      if (any(IS_SPECIAL(as_int8(value))))                                                         \
+      if (any(IS_SPECIAL(JOIN(as_int, TOGETHER)(value))))                                          \
       {                                                                                            \
-        flags.Special |= 3u << (i >> 3);                                                           \
+        flags.Special |= FLAGS_TOGETHER << (i >> 3);                                               \
       }                                                                                            \
     }                                                                                              \
   }
@@ -178,14 +206,24 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
   ROW_DISPLACEMENTS
   LANE_ARRAYS(FETCH_NEXT_ROW)
   RowFlags flags = { 0, 0 };
+  const int begin = x;
   while (x < end)
   {
-    __local float* place = row + (i >> 1) + (i & 1 ? ODD : 0);
-    __local const float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
-    const ulong states = x + 8 <= end ? StatesOf(mesh->State, x, y, z, p) : 0;
-    if ((i & 1) || (states & SOURCES) != SOURCES)
+    // How many to take again.
+    int again = 0;
+    if (x + 1 < end && x + TOGETHER > end)
+    {
+      again = x + TOGETHER - end;
+      again += (i - again) & 1;
+      again = again > x - begin ? 0 : again;
+    }
+    const ulong states =
+      x - again + TOGETHER <= end ? StatesOf(mesh->State, x - again, y, z, p) : 0;
+    if (((i - again) & 1) || (states & SOURCES) != SOURCES)
     {
       // One vertex.
+      __local float* place = row + (i >> 1) + (i & 1 ? ODD : 0);
+      __local const float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
       const int state = StateOf(mesh->State, x, y, z, p);
       float4 position = (float4)(NO_SOURCE, 0.0f, 0.0f, 0.0f);
       if (state & DEFORMVOLUME_VERTEX_SOURCE)
@@ -206,27 +244,33 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
       ++i;
       continue;
     }
-    // Eight vertices.
-    EIGHT_ROW_DISPLACEMENTS
+    x -= again;
+    i -= again;
+    __local float* place = row + (i >> 1);
+    __local const float* rest = restX + (i >> 1);
+    ROW_DISPLACEMENTS_TOGETHER
 #define POSITIONS(C, OFFSET, WHOLE_EVEN, WHOLE_ODD, FRACTION_EVEN, FRACTION_ODD)                   \
   {                                                                                                \
-    const float8 steps =                                                                           \
-      RoundSteps_float8(d##C * 256.0f + (float8)(FRACTION_EVEN, FRACTION_ODD));                    \
-    const float8 position = (steps + (float8)(WHOLE_EVEN, WHOLE_ODD)) * (1.0f / 256.0f);           \
-    vstore4(position.lo, 0, place + (OFFSET)*HALF_ROW);                                            \
-    vstore4(position.hi, 0, place + ODD + (OFFSET)*HALF_ROW);                                      \
+    const FLOATS_TOGETHER steps = JOIN(RoundSteps_float, TOGETHER)(                                \
+      d##C * 256.0f + (FLOATS_TOGETHER)(FRACTION_EVEN, FRACTION_ODD));                             \
+    const FLOATS_TOGETHER position =                                                               \
+      (steps + (FLOATS_TOGETHER)(WHOLE_EVEN, WHOLE_ODD)) * (1.0f / 256.0f);                        \
+    STORE_HALF(position.lo, place + (OFFSET)*HALF_ROW)                                             \
+    STORE_HALF(position.hi, place + ODD + (OFFSET)*HALF_ROW)                                       \
   }
-    POSITIONS(x, 0, vload4(0, rest), vload4(0, rest + 2 * HALF_ROW), vload4(0, rest + HALF_ROW),
-      vload4(0, rest + 3 * HALF_ROW))
-    POSITIONS(y, 1, (float4)wholeY, (float4)wholeY, (float4)ry.Fraction, (float4)ry.Fraction)
-    POSITIONS(z, 2, (float4)wholeZ, (float4)wholeZ, (float4)rz.Fraction, (float4)rz.Fraction)
+    POSITIONS(x, 0, LOAD_HALF(rest), LOAD_HALF(rest + 2 * HALF_ROW), LOAD_HALF(rest + HALF_ROW),
+      LOAD_HALF(rest + 3 * HALF_ROW))
+    POSITIONS(y, 1, (HALF_FLOATS)wholeY, (HALF_FLOATS)wholeY, (HALF_FLOATS)ry.Fraction,
+      (HALF_FLOATS)ry.Fraction)
+    POSITIONS(z, 2, (HALF_FLOATS)wholeZ, (HALF_FLOATS)wholeZ, (HALF_FLOATS)rz.Fraction,
+      (HALF_FLOATS)rz.Fraction)
     if ((states & INTERIORS) != INTERIORS)
     {
-      flags.Border |= 3u << (i >> 3);
+      flags.Border |= FLAGS_TOGETHER << (i >> 3);
     }
-    LANE_ARRAYS(PUT_EIGHT_VALUES)
-    x += 8;
-    i += 8;
+    LANE_ARRAYS(PUT_VALUES_TOGETHER)
+    x += TOGETHER;
+    i += TOGETHER;
   }
   return flags;
 }

@@ -13,7 +13,7 @@ namespace
 {
 
 constexpr int PartSize[3] = { 16, 8, 8 };
-static_assert(DEFORMVOLUME_BRICK_X / 2 % PartSize[0] == 0 &&
+static_assert(DEFORMVOLUME_COLUMN % PartSize[0] == 0 &&
     DEFORMVOLUME_BRICK_Y / 2 % PartSize[1] == 0 && DEFORMVOLUME_BRICK_Z / 2 % PartSize[2] == 0,
   "bricks are made of parts");
 
@@ -55,18 +55,20 @@ std::pair<std::size_t, std::uint32_t> BrickGrid::GetBrick(
 {
   std::size_t brick = 0;
   std::size_t stride = 1;
-  std::uint32_t halves = 0;
+  std::uint32_t bits = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
     const auto count = static_cast<std::size_t>(parts.Count[axis]);
     const int cell = static_cast<int>(part % count) * parts.Cells[axis];
-    const bool upper = cell % this->Cells[axis] >= this->Cells[axis] / 2;
-    halves |= (upper ? 2U : 1U) << 2 * axis;
+    const int place = cell % this->Cells[axis];
+    bits |= axis == 0
+      ? 1U << place / DEFORMVOLUME_COLUMN
+      : (place < this->Cells[axis] / 2 ? 1U : 2U) << (DEFORMVOLUME_COLUMNS + 2 * (axis - 1));
     brick += stride * static_cast<std::size_t>(cell / this->Cells[axis]);
     part /= count;
     stride *= static_cast<std::size_t>(this->Count[axis]);
   }
-  return { brick, halves };
+  return { brick, bits };
 }
 
 Extent BrickGrid::GetVertices(std::size_t brick, int reach) const

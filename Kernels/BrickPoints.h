@@ -30,7 +30,8 @@ struct BrickGrid
 
   /// The parts of the bricks, 16 x 8 x 8 cells each.
   BrickGrid GetParts() const;
-  /// The brick that a part is of, and bits for the halves of it (DEFORMVOLUME_BRICK_BITS).
+  /// The brick that a part is of, and the bits of its section, from the lowest one on
+  /// (DEFORMVOLUME_BRICK_BITS).
   std::pair<std::size_t, std::uint32_t> GetBrick(const BrickGrid& parts, std::size_t part) const;
 
   /// Local indices of the vertices of a brick, and so many beyond them on each side, within the

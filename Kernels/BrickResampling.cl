@@ -372,18 +372,19 @@ static __attribute__((noinline)) uint ResampleByIntegers(const Group* group, int
   return outcome.Unsure;
 }
 
-// The cells of a brick on an axis that a work-item takes: from 0 or the middle to the middle or the end.
-static int BeginIn(uint item, int axis, int cells)
+// The cells of a brick on y or z that a work-item takes: from 0 or the middle to the middle or the end.
+// halves: the number of the lower half's bit.
+static int BeginIn(uint item, int halves, int cells)
 {
-  return item >> (DEFORMVOLUME_BRICK_BITS + 2 * axis) & 1 ? 0 : cells / 2;
+  return item >> halves & 1 ? 0 : cells / 2;
 }
 
-static int EndIn(uint item, int axis, int cells)
+static int EndIn(uint item, int halves, int cells)
 {
-  return item >> (DEFORMVOLUME_BRICK_BITS + 2 * axis) & 2 ? cells : cells / 2;
+  return item >> halves & 2 ? cells : cells / 2;
 }
 
-// A brick of cells, or half of it on some axes. bricks: those to work on, one a work-item
+// A brick of cells, or some of its sections. bricks: those to work on, one a work-item
 // (DEFORMVOLUME_BRICK_BITS). rows: 4 HALF_ROW + 3 ROW_PLACES + 2 ROWS ROW floats (GetBrickMemory).
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
   __global const uchar* state, __global const uchar* active, __global char* coverage,
@@ -391,11 +392,11 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
   __global const uint* bricks, __local float* rows, const KernelParameters p ARRAY_PARAMETERS)
 {
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
-  Output outputs[8]; // of the octants
-  for (int octant = 0; octant < 8; ++octant)
+  Output outputs[DEFORMVOLUME_SECTIONS];
+  for (int section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
   {
     const Output output = { coverage, winners, unsettled, 0, 0, 0, 0, 0, 0 };
-    outputs[octant] = output;
+    outputs[section] = output;
   }
   Found found;
   found.Count = 0;
@@ -405,12 +406,17 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
   const int bx = brick % p.BrickCount[0] * DEFORMVOLUME_BRICK_X + p.BrickOrigin[0];
   const int by = brick / p.BrickCount[0] % p.BrickCount[1] * DEFORMVOLUME_BRICK_Y + p.BrickOrigin[1];
   const int bz = brick / p.BrickCount[0] / p.BrickCount[1] * DEFORMVOLUME_BRICK_Z + p.BrickOrigin[2];
-  const int beginX = max(bx + BeginIn(item, 0, DEFORMVOLUME_BRICK_X), 0);
-  const int endX = min(bx + EndIn(item, 0, DEFORMVOLUME_BRICK_X), p.Size[0] - 1);
-  const int beginY = max(by + BeginIn(item, 1, DEFORMVOLUME_BRICK_Y), 0);
-  const int endY = min(by + EndIn(item, 1, DEFORMVOLUME_BRICK_Y), p.Size[1] - 1);
-  const int beginZ = max(bz + BeginIn(item, 2, DEFORMVOLUME_BRICK_Z), p.LayersBegin);
-  const int endZ = min(bz + EndIn(item, 2, DEFORMVOLUME_BRICK_Z), p.LayersEnd);
+  const uint columns = item >> DEFORMVOLUME_BRICK_BITS & ((1u << DEFORMVOLUME_COLUMNS) - 1);
+  const int firstColumn = 31 - clz(columns & -columns);
+  const int endColumn = 32 - clz(columns);
+  const int halvesY = DEFORMVOLUME_BRICK_BITS + DEFORMVOLUME_COLUMNS;
+  const int halvesZ = halvesY + 2;
+  const int beginX = max(bx + firstColumn * DEFORMVOLUME_COLUMN, 0);
+  const int endX = min(bx + endColumn * DEFORMVOLUME_COLUMN, p.Size[0] - 1);
+  const int beginY = max(by + BeginIn(item, halvesY, DEFORMVOLUME_BRICK_Y), 0);
+  const int endY = min(by + EndIn(item, halvesY, DEFORMVOLUME_BRICK_Y), p.Size[1] - 1);
+  const int beginZ = max(bz + BeginIn(item, halvesZ, DEFORMVOLUME_BRICK_Z), p.LayersBegin);
+  const int endZ = min(bz + EndIn(item, halvesZ, DEFORMVOLUME_BRICK_Z), p.LayersEnd);
   if (beginX >= endX || beginY >= endY || beginZ >= endZ)
   {
     return;
@@ -463,8 +469,9 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
       for (int k = (beginX - bx) >> 1 & ~(LANES - 1); bx + 2 * k < endX; k += LANES)
       {
         const uint span = ((2u << (2 * LANES / 8)) - 1) << (k >> 2);
-        Output* const output = outputs + (k >= DEFORMVOLUME_BRICK_X / 4) +
-          2 * (low >= DEFORMVOLUME_BRICK_Y / 2) + 4 * (z - 1 - bz >= DEFORMVOLUME_BRICK_Z / 2);
+        Output* const output = outputs + 2 * k / DEFORMVOLUME_COLUMN +
+          DEFORMVOLUME_COLUMNS *
+            ((low >= DEFORMVOLUME_BRICK_Y / 2) + 2 * (z - 1 - bz >= DEFORMVOLUME_BRICK_Z / 2));
         for (int side = 0; side < 2; ++side)
         {
           Group group;
@@ -508,8 +515,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
     }
   }
   StoreFound(&found, 0, 0, 0, 0, outputs, &p ARRAY_ARGUMENTS);
-  for (int octant = 0; octant < 8; ++octant)
+  for (int section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
   {
-    AddCounts(outputs + octant, 8 * (size_t)brick + octant, counters, &p);
+    AddCounts(outputs + section, DEFORMVOLUME_SECTIONS * (size_t)brick + section, counters, &p);
   }
 }

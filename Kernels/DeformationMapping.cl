@@ -48,6 +48,7 @@ typedef struct
   }
 DEFINE_ROUND_STEPS(float4)
 DEFINE_ROUND_STEPS(float8)
+DEFINE_ROUND_STEPS(float16)
 
 static size_t VertexInChunk(int x, int y, int z, const KernelParameters* p)
 {

@@ -13,6 +13,7 @@ namespace
 {
 
 const int BrickSize[3] = { DEFORMVOLUME_BRICK_X, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z };
+const int BrickStep[3] = DEFORMVOLUME_BRICK_STEPS;
 
 /// Waits, however it is left, for transfers from memory of the caller.
 class TransferGuard
@@ -323,8 +324,8 @@ KernelParameters DeviceLattice::GetParameters(const LatticeChunk& chunk) const
 int DeviceLattice::GetBrickOrigin(int axis) const
 {
   const int first = this->Shape.VertexExtent[2 * axis];
-  const int remainder = first % BrickSize[axis];
-  return -(remainder < 0 ? remainder + BrickSize[axis] : remainder);
+  const int remainder = first % BrickStep[axis];
+  return -(remainder < 0 ? remainder + BrickStep[axis] : remainder);
 }
 
 int DeviceLattice::GetNumberOfBricks(int axis) const

@@ -4,9 +4,11 @@
 #include "HostThreads.h"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 namespace deformvolume
 {
@@ -36,6 +38,29 @@ bool IsDifferent(const unsigned char* last, const unsigned char* next, unsigned 
   const unsigned char* mask = last ? last : next;
   return mask &&
     std::any_of(mask + begin, mask + begin + size, [=](unsigned char v) { return v != value; });
+}
+
+constexpr std::uint32_t AllColumns = (1U << DEFORMVOLUME_COLUMNS) - 1;
+
+// The bits of a brick's sections, and those of the columns between the lowest and the highest one.
+std::uint32_t JoinColumns(std::uint32_t bits)
+{
+  const std::uint32_t columns = bits & AllColumns;
+  std::uint32_t upToHighest = columns;
+  for (int shift = 1; shift < DEFORMVOLUME_COLUMNS; shift *= 2)
+  {
+    upToHighest |= upToHighest >> shift;
+  }
+  const std::uint32_t belowLowest = (columns & (~columns + 1)) - 1;
+  return bits | (columns ? upToHighest & ~belowLowest : 0);
+}
+
+// How many sections of a brick are run with these.
+std::size_t CountSections(std::uint32_t bits)
+{
+  const auto count = [](std::uint32_t v) { return std::bitset<32>(v).count(); };
+  const std::uint32_t halves = bits >> DEFORMVOLUME_COLUMNS;
+  return count(JoinColumns(bits) & AllColumns) * count(halves & 3) * count(halves >> 2);
 }
 
 } // namespace
@@ -187,25 +212,29 @@ void IncrementalUpdate::ChangeMask(
 bool IncrementalUpdate::MakePlan(const float* displacements, Plan& plan)
 {
   const std::size_t parts = this->Grid.GetNumberOfBricks();
-  std::vector<unsigned char> run(this->Bricks.GetNumberOfBricks()); // halves of bricks
+  std::vector<std::uint32_t> run(this->Bricks.GetNumberOfBricks()); // sections of bricks
   for (std::size_t part = 0; part < parts; ++part)
   {
     if (this->IsChanged(part))
     {
-      const auto [brick, halves] = this->Bricks.GetBrick(this->Grid, part);
-      run[brick] |= halves;
+      const auto [brick, bits] = this->Bricks.GetBrick(this->Grid, part);
+      run[brick] |= bits;
     }
   }
-  const auto isTooMuch = [](const std::vector<unsigned char>& marked)
+  const auto isTooMuch = [](std::size_t marked, std::size_t all)
+  { return static_cast<double>(marked) > LargestPart * static_cast<double>(all); };
+  const auto isRunTooMuch = [&]
   {
-    return static_cast<double>(marked.size() - std::count(marked.begin(), marked.end(), 0)) >
-      LargestPart * static_cast<double>(marked.size());
+    return isTooMuch(
+      std::accumulate(run.begin(), run.end(), std::size_t{ 0 },
+        [](std::size_t sum, std::uint32_t bits) { return sum + CountSections(bits); }),
+      DEFORMVOLUME_SECTIONS * run.size());
   };
-  if (isTooMuch(run))
+  if (isRunTooMuch())
   {
     return false;
   }
-  if (std::all_of(run.begin(), run.end(), [](unsigned char halves) { return halves == 0; }))
+  if (std::all_of(run.begin(), run.end(), [](std::uint32_t bits) { return bits == 0; }))
   {
     return true;
   }
@@ -261,10 +290,10 @@ bool IncrementalUpdate::MakePlan(const float* displacements, Plan& plan)
   const auto isDirty = [](unsigned char patch) { return patch != 0; };
   for (std::size_t part = 0; part < parts; ++part)
   {
-    const auto [brick, halves] = this->Bricks.GetBrick(this->Grid, part);
-    if ((run[brick] & halves) != halves && anyOf(this->Boxes[part], isDirty))
+    const auto [brick, bits] = this->Bricks.GetBrick(this->Grid, part);
+    if ((run[brick] & bits) != bits && anyOf(this->Boxes[part], isDirty))
     {
-      run[brick] |= halves;
+      run[brick] |= bits;
     }
   }
   for (std::size_t patch = 0; patch < dirty.size(); ++patch)
@@ -279,10 +308,10 @@ bool IncrementalUpdate::MakePlan(const float* displacements, Plan& plan)
     if (run[brick])
     {
       plan.Bricks.push_back(
-        static_cast<std::uint32_t>(brick | std::uint32_t{ run[brick] } << DEFORMVOLUME_BRICK_BITS));
+        static_cast<std::uint32_t>(brick | JoinColumns(run[brick]) << DEFORMVOLUME_BRICK_BITS));
     }
   }
-  return !isTooMuch(dirty) && !isTooMuch(run);
+  return !isTooMuch(plan.Patches.size(), dirty.size()) && !isRunTooMuch();
 }
 
 } // namespace deformvolume

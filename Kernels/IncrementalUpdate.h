@@ -18,7 +18,7 @@ namespace deformvolume
 /// All that it wrote, and all that it will write, lies within a box: its box at rest, widened by
 /// the least and the greatest displacement of its points. Patches of the output that the boxes of
 /// changed parts touch, before or after the change, are cleared, and of all bricks with a part
-/// whose box touches such a patch the halves that these parts lie in are run: what they write
+/// whose box touches such a patch the sections that these parts lie in are run: what they write
 /// outside these patches they wrote before, since nobody else writes there.
 class IncrementalUpdate
 {

@@ -81,16 +81,26 @@ typedef struct
 // Whether values are written.
 #define DEFORMVOLUME_IS_WRITING(pass) ((pass) != DEFORMVOLUME_PASS_MARK)
 
-// Cells of a brick. Bricks begin at structured indices that are multiples of these numbers, which
-// are even: the parity of a place in a brick is that of the structured index.
-#define DEFORMVOLUME_BRICK_X 64
+// Cells of a brick, which begins at even structured indices: the parity of a place in a brick is
+// that of the structured index. It is long on x, in whose direction memory is contiguous.
+#define DEFORMVOLUME_BRICK_X 192
 #define DEFORMVOLUME_BRICK_Y 16
 #define DEFORMVOLUME_BRICK_Z 16
+// Bricks begin at structured indices that are multiples of these numbers.
+#define DEFORMVOLUME_BRICK_STEPS                                                                   \
+  {                                                                                                \
+    2, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z                                                  \
+  }
+// What can be run of a brick by itself: columns of so many cells on x, and halves on y and z.
+#define DEFORMVOLUME_COLUMN 32
+#define DEFORMVOLUME_COLUMNS (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_COLUMN)
+#define DEFORMVOLUME_SECTIONS (4 * DEFORMVOLUME_COLUMNS)
 
-// What a work-item of the kernel ResampleBricks takes: the number of a brick, and above that for x,
-// y and z a bit for the lower half of the brick and one for the upper half.
-#define DEFORMVOLUME_BRICK_BITS 26
-#define DEFORMVOLUME_WHOLE_BRICK 63
+// What a work-item of the kernel ResampleBricks takes: the number of a brick, and above that a bit
+// for each column, all from the lowest one to the highest one being run, and for y and z a bit for
+// the lower half and one for the upper half.
+#define DEFORMVOLUME_BRICK_BITS 22
+#define DEFORMVOLUME_WHOLE_BRICK ((1 << (DEFORMVOLUME_COLUMNS + 4)) - 1)
 
 // Cells of a block, whose vertices a work-group of the kernel Resample maps into local memory.
 #define DEFORMVOLUME_BLOCK_X 64
@@ -100,7 +110,8 @@ typedef struct
 #define DEFORMVOLUME_BLOCK_VERTICES                                                                \
   ((DEFORMVOLUME_BLOCK_X + 1) * (DEFORMVOLUME_BLOCK_Y + 1) * (DEFORMVOLUME_BLOCK_Z + 1))
 
-// Counters of an octant of a brick of cells; a brick has eight.
+// Counters of a section of a brick: number (brick * 4 + 2 (upper z) + (upper y)) * COLUMNS +
+// column.
 #define DEFORMVOLUME_COUNT_WRITES 0
 #define DEFORMVOLUME_COUNT_INVERTED 1
 #define DEFORMVOLUME_COUNT_OVERSTRETCHED 2

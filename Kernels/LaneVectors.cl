@@ -12,6 +12,12 @@
 #define TO_INTS JOIN(convert_int, LANES)
 #define AS_INTS JOIN(as_int, LANES)
 
+// Vectors where their elements may lie. Stored so they take one instruction; vstore16 of PoCL 3.1 takes three.
+typedef float16 __attribute__((aligned(4))) PlacedFloat16;
+typedef float8 __attribute__((aligned(4))) PlacedFloat8;
+typedef float4 __attribute__((aligned(4))) PlacedFloat4;
+typedef int16 __attribute__((aligned(4))) PlacedInt16;
+
 static FLOATS Least(FLOATS a, FLOATS b)
 {
   return a < b ? a : b;
@@ -65,7 +71,7 @@ static uint LaneBits(INTS mask)
 static void Append(INTS v, uint bits, int* place)
 {
 #if LANES == 16 && defined(__AVX512F__)
-  vstore16(__builtin_ia32_compresssi512_mask(v, v, bits), 0, place);
+  *(PlacedInt16*)place = __builtin_ia32_compresssi512_mask(v, v, bits);
 #else
   Lanes lanes;
   lanes.Vector = v;

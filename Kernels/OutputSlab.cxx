@@ -15,17 +15,14 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::size_t OctantsPerBrick = 8;
-
-/// The halves of a brick that an octant is in on each axis, as DEFORMVOLUME_BRICK_BITS says.
-cl_uint GetHalves(std::size_t octant)
+/// The bits of a section of a brick, as DEFORMVOLUME_BRICK_BITS says.
+cl_uint GetSectionBits(std::size_t section)
 {
-  cl_uint halves = 0;
-  for (unsigned axis = 0; axis < 3; ++axis)
-  {
-    halves |= 1U << (2 * axis + (octant >> axis & 1));
-  }
-  return halves;
+  const std::size_t column = section % DEFORMVOLUME_COLUMNS;
+  const std::size_t halves = section / DEFORMVOLUME_COLUMNS;
+  return (1U << column | (halves & 1 ? 2U : 1U) << DEFORMVOLUME_COLUMNS |
+           (halves & 2 ? 2U : 1U) << (DEFORMVOLUME_COLUMNS + 2))
+    << DEFORMVOLUME_BRICK_BITS;
 }
 
 template <typename T>
@@ -259,12 +256,13 @@ std::uint64_t OutputSlab::PreparePatches(OpenCLContext& context, const cl::Comma
   for (const cl_uint brick : bricks)
   {
     const std::size_t number = brick & ((1U << DEFORMVOLUME_BRICK_BITS) - 1);
-    for (std::size_t octant = 0; octant < OctantsPerBrick; ++octant)
+    for (std::size_t section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
     {
-      const cl_uint halves = GetHalves(octant);
-      if ((brick >> DEFORMVOLUME_BRICK_BITS & halves) == halves)
+      const cl_uint bits = GetSectionBits(section);
+      if ((brick & bits) == bits)
       {
-        std::fill_n(counters.Get() + (OctantsPerBrick * number + octant) * DEFORMVOLUME_COUNTERS,
+        std::fill_n(
+          counters.Get() + (DEFORMVOLUME_SECTIONS * number + section) * DEFORMVOLUME_COUNTERS,
           DEFORMVOLUME_COUNTERS, cl_uint{ 0 });
       }
     }
@@ -316,8 +314,8 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
       this->NumberOfVoxels * static_cast<std::uint64_t>(array.Components), events);
   }
   this->Clear(context, this->Coverage, 0.0, ElementType::Int8, this->NumberOfVoxels, events);
-  this->NumberOfOctants = OctantsPerBrick * numberOfBricks;
-  const std::uint64_t counters = this->NumberOfOctants * DEFORMVOLUME_COUNTERS;
+  this->NumberOfSections = DEFORMVOLUME_SECTIONS * numberOfBricks;
+  const std::uint64_t counters = this->NumberOfSections * DEFORMVOLUME_COUNTERS;
   Reserve(context, this->Counters, counters * sizeof(cl_uint));
   Fill(context, this->Queue, this->Counters, cl_uint{ 0 }, counters, events);
 }
@@ -383,7 +381,7 @@ std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::E
 
 std::vector<cl_uint> OutputSlab::ReadCounters()
 {
-  std::vector<cl_uint> counters(this->NumberOfOctants * DEFORMVOLUME_COUNTERS);
+  std::vector<cl_uint> counters(this->NumberOfSections * DEFORMVOLUME_COUNTERS);
   this->Queue.enqueueReadBuffer(
     this->Counters, CL_TRUE, 0, counters.size() * sizeof(cl_uint), counters.data());
   return counters;
@@ -393,20 +391,20 @@ std::vector<cl_uint> OutputSlab::FindBricksOfWinners()
 {
   const std::vector<cl_uint> counters = this->ReadCounters();
   std::vector<cl_uint> bricks;
-  for (std::size_t brick = 0; brick < this->NumberOfOctants / OctantsPerBrick; ++brick)
+  for (std::size_t brick = 0; brick < this->NumberOfSections / DEFORMVOLUME_SECTIONS; ++brick)
   {
-    cl_uint halves = 0;
-    for (std::size_t octant = 0; octant < OctantsPerBrick; ++octant)
+    cl_uint bits = 0;
+    for (std::size_t section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
     {
-      const std::size_t place = (OctantsPerBrick * brick + octant) * DEFORMVOLUME_COUNTERS;
+      const std::size_t place = (DEFORMVOLUME_SECTIONS * brick + section) * DEFORMVOLUME_COUNTERS;
       if (counters[place + DEFORMVOLUME_COUNT_CANDIDATES])
       {
-        halves |= GetHalves(octant);
+        bits |= GetSectionBits(section);
       }
     }
-    if (halves)
+    if (bits)
     {
-      bricks.push_back(static_cast<cl_uint>(brick) | halves << DEFORMVOLUME_BRICK_BITS);
+      bricks.push_back(static_cast<cl_uint>(brick) | bits);
     }
   }
   return bricks;
@@ -418,9 +416,9 @@ OutputSlab::Counts OutputSlab::ReadCounts()
   Counts counts;
   std::uint64_t missing = 0;
   std::uint64_t assumed = 0;
-  for (std::size_t octant = 0; octant < this->NumberOfOctants; ++octant)
+  for (std::size_t section = 0; section < this->NumberOfSections; ++section)
   {
-    const cl_uint* counter = counters.data() + octant * DEFORMVOLUME_COUNTERS;
+    const cl_uint* counter = counters.data() + section * DEFORMVOLUME_COUNTERS;
     counts.Writes += counter[DEFORMVOLUME_COUNT_WRITES];
     counts.Inverted += counter[DEFORMVOLUME_COUNT_INVERTED];
     counts.Overstretched += counter[DEFORMVOLUME_COUNT_OVERSTRETCHED];

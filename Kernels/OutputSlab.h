@@ -123,7 +123,7 @@ private:
   cl::Buffer Patches;
   std::size_t NumberOfPatches = 0;
   std::size_t WinnerSize = 4;
-  std::size_t NumberOfOctants = 0; // of bricks
+  std::size_t NumberOfSections = 0; // of bricks
   std::uint64_t NumberOfVoxels = 0;
 };
 

@@ -410,10 +410,9 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
   }
 }
 
-// Adds counts to those of an octant of a brick of cells: octant number 8 brick + 4 (upper z) + 2 (upper y) +
-// (upper x).
+// Adds counts to those of a section of a brick.
 static void AddCounts(
-  const Output* output, size_t octant, __global uint* counters, const KernelParameters* p)
+  const Output* output, size_t section, __global uint* counters, const KernelParameters* p)
 {
   const uint counts[DEFORMVOLUME_COUNTERS] = { output->Writes, output->Inverted,
     output->Overstretched, output->Missing, output->Assumed, output->Candidates };
@@ -422,7 +421,7 @@ static void AddCounts(
     // The passes that come later count nothing again.
     if (counts[i] && (i == DEFORMVOLUME_COUNT_CANDIDATES || !DEFORMVOLUME_IS_CLOSED(p->Pass)))
     {
-      atomic_add(counters + octant * DEFORMVOLUME_COUNTERS + i, counts[i]);
+      atomic_add(counters + section * DEFORMVOLUME_COUNTERS + i, counts[i]);
     }
   }
 }
@@ -470,5 +469,5 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   const uint brick = ((uint)(first[2] - p.BrickOrigin[2]) / DEFORMVOLUME_BRICK_Z * p.BrickCount[1] +
                        (uint)(first[1] - p.BrickOrigin[1]) / DEFORMVOLUME_BRICK_Y) *
     p.BrickCount[0];
-  AddCounts(&output, 8 * (size_t)brick, counters, &p);
+  AddCounts(&output, DEFORMVOLUME_SECTIONS * (size_t)brick, counters, &p);
 }

@@ -373,7 +373,7 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
     std::vector<cl_uint> bricks(this->Mesh->GetNumberOfBricks());
     if (bricks.size() >> DEFORMVOLUME_BRICK_BITS)
     {
-      throw Error("The volume has more than 10^12 voxels. Use a smaller volume.");
+      throw Error("The volume has more than 10^11 voxels. Use a smaller volume.");
     }
     std::iota(
       bricks.begin(), bricks.end(), cl_uint{ DEFORMVOLUME_WHOLE_BRICK } << DEFORMVOLUME_BRICK_BITS);

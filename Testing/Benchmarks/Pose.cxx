@@ -11,8 +11,8 @@
 
 namespace
 {
-// A box of this part of each axis touches 5 % of the bricks of the benchmarks' volume: 1 of 3 on x,
-// 7 of 19 on y and 6 of 15 on z.
+// A box of this part of each axis touches 5 % of the blocks of 64 x 16 x 16 voxels of the
+// benchmarks' volume: 1 of 3 on x, 7 of 19 on y and 6 of 15 on z.
 constexpr double LocalEditFraction = 0.28;
 
 // 1 in the middle of an interval, 0 and level at its ends and outside.
