@@ -85,7 +85,7 @@ DEMANDS = [
     Demand("1000 x 1000 x 1000 voxels of 8 bits, 2,197 nodes: resident memory of the process", 8.0,
            _resident_gigabytes, "GB"),
     Demand("preprocessing of 301 x 370 x 316 voxels with 512,000 nodes", 3.0, _preprocessing, "s"),
-    Demand("mapping and resampling after an edit that touches 5 % of the volume by a full pass, "
+    Demand("mapping and resampling after an edit that touches 5 % of the blocks by a full pass, "
            "512,000 nodes", 0.15,
            lambda r: r.ratio("Incremental/local-edit", "Incremental/near", "kernels")),
     Demand("Update() after that edit by a full one", 0.15,
