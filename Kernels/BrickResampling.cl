@@ -217,7 +217,8 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   }
   const INTS number = candidates & (countX * countY * countZ);
   const int iterations = MostOf(number);
-  INTS count = 0; // writes
+  INTS count = 0; // writes of each cell
+  uint written = 0;
   if (iterations)
   {
     // Boxes take all their candidates. Where a vertex lies on a sample its value is taken bit for bit: the
@@ -314,6 +315,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
         {
           LANE_ARRAYS(LANE_RESULTS)
           count -= hit;
+          written += popcount(bits);
         }
         Append(place, bits, found->Places + found->Count);
         if (KEEPS_CELLS(p))
@@ -342,9 +344,16 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
       StoreFound(found, group, x, y, z, output, p ARRAY_ARGUMENTS);
     }
   }
+  output->Inverted += 5 * popcount(LaneBits(inverted & ~ambiguous));
+  if (!LaneBits(unsure | ambiguous))
+  {
+    const Outcome decided = { 0, 0 };
+    output->Writes += written;
+    *outcome = decided;
+    return;
+  }
   // What an undecided cell wrote so far is written again with it, and must not count twice.
   output->Writes += SumOf(unsure | ambiguous ? (INTS)(0) : count);
-  output->Inverted += 5 * popcount(LaneBits(inverted & ~ambiguous));
   // Integers of 32 bits decide who owns a sample, for cells that are small enough.
   const INTS decidable = ambiguous & (extent < MAXIMUM_EXACT_EXTENT) &
     (exact || DEFORMVOLUME_IS_CLOSED(p->Pass) ? 0 : -1);

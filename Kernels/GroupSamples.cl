@@ -47,6 +47,13 @@ typedef struct
 #define LANE_STORE(index, TYPE, BITS, SLOT)                                                        \
   target##index[place] = LANE_CONVERT_##BITS(TYPE, found->Values##index[i]);
 
+#define LANE_STORE_ALL(index, TYPE, BITS, SLOT)                                                    \
+  _Pragma("clang loop vectorize(disable) unroll_count(4)")                                         \
+  for (uint i = 0; i < count; ++i)                                                                 \
+  {                                                                                                \
+    target##index[(uint)found->Places[i]] = LANE_CONVERT_##BITS(TYPE, found->Values##index[i]);    \
+  }
+
 #if HAS_OTHER_ARRAYS
 // A sample that is in a cell, for the arrays that want its weights as they are: which of the cell's
 // tetrahedra holds it is found out again, in integers.
@@ -112,6 +119,17 @@ static void StoreFound(Found* found, const Group* group, int x, int y, int z, Ou
   const int pass = p->Pass;
   const uint count = found->Count;
   __global char* const coverage = output->Coverage;
+  if (pass == DEFORMVOLUME_PASS_DIRECT && !HAS_OTHER_ARRAYS)
+  {
+    _Pragma("clang loop vectorize(disable) unroll_count(4)")
+    for (uint i = 0; i < count; ++i)
+    {
+      coverage[(uint)found->Places[i]] = 1;
+    }
+    LANE_ARRAYS(LANE_STORE_ALL)
+    found->Count = 0;
+    return;
+  }
   for (uint i = 0; i < count; ++i)
   {
     const uint place = found->Places[i];
