@@ -69,6 +69,12 @@ std::uint64_t Ranks::GetMost(std::uint64_t value) const
   return *std::max_element(values.begin(), values.end());
 }
 
+std::uint64_t Ranks::GetSum(std::uint64_t value) const
+{
+  const std::vector<std::uint64_t> values = this->Gather(value);
+  return std::accumulate(values.begin(), values.end(), std::uint64_t{ 0 });
+}
+
 bool Ranks::AreEqual(std::uint64_t value) const
 {
   const std::vector<std::uint64_t> values = this->Gather(value);

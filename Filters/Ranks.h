@@ -29,8 +29,9 @@ public:
   int GetCount() const { return this->Count; }
   bool AreMany() const { return this->Count > 1; }
 
-  /// The largest of the values of all ranks.
+  /// The largest of the values of all ranks, and their sum.
   std::uint64_t GetMost(std::uint64_t value) const;
+  std::uint64_t GetSum(std::uint64_t value) const;
   bool IsAny(bool value) const { return this->GetMost(value ? 1 : 0) > 0; }
   /// Whether all ranks have the same value.
   bool AreEqual(std::uint64_t value) const;

@@ -51,7 +51,8 @@
  * parts (they say so with CAN_PRODUCE_SUB_EXTENT) and the resampler is exact; see StreamInput. Of
  * the deformation mesh each rank may have a piece, none, or the whole: it is gathered through
  * vtkMultiProcessController::GetGlobalController(). A displacement field every rank must be given
- * whole. All ranks have to update together; an error of one is told on all.
+ * whole. All ranks have to update together; an error of one is told on all. Counts of voxels,
+ * tetrahedra and bricks are summed over the ranks: what two of them have counts twice.
  *
  * @par Errors:
  * All failures are one vtkErrorMacro that says what is wrong and what to do; the output is then

@@ -75,6 +75,9 @@ public:
   /// Sets what the filter tells of an execution.
   void TakeReport(const deformvolume::DeformReport& report, deformvolume::Resampling method);
 
+  /// Makes what has been counted on this rank that of all ranks. Collective.
+  void AddUpCounts(const deformvolume::Ranks& ranks) const;
+
   /// The executive unites the extents asked for until an execution succeeds: after a failure the
   /// next one must start anew.
   static void ForgetRequestedExtent(vtkInformation* output);

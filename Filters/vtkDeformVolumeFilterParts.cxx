@@ -219,3 +219,21 @@ void vtkDeformVolumeFilter::vtkInternals::RunInTurn(const Ranks& ranks, const st
       }
     });
 }
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::AddUpCounts(const Ranks& ranks) const
+{
+  if (!ranks.AreMany())
+  {
+    return;
+  }
+  for (vtkIdType* count :
+    { &this->Self->NumberOfInvertedTetrahedra, &this->Self->NumberOfCoveredVoxels,
+      &this->Self->NumberOfBricks, &this->Self->NumberOfResampledBricks })
+  {
+    *count = static_cast<vtkIdType>(ranks.GetSum(static_cast<std::uint64_t>(*count)));
+  }
+  // Of the whole mesh, which each rank knows that has work.
+  this->Self->NumberOfFlatTetrahedra = static_cast<vtkIdType>(
+    ranks.GetMost(static_cast<std::uint64_t>(this->Self->NumberOfFlatTetrahedra)));
+}

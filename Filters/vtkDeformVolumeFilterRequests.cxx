@@ -371,6 +371,11 @@ int vtkDeformVolumeFilter::RequestData(
   this->Internals->RunInTurn(ranks,
     deformvolume::DescribeKernels(this->DeviceInUse, request, form, described), numberOfPoints > 0,
     deform);
+  if (numberOfPoints > 0)
+  {
+    this->Internals->TakeReport(report, request.Method);
+  }
+  this->Internals->AddUpCounts(ranks);
   if (numberOfPoints == 0)
   {
     return 1;
@@ -383,7 +388,6 @@ int vtkDeformVolumeFilter::RequestData(
   {
     this->Internals->Outputs.Keep();
   }
-  this->Internals->TakeReport(report, request.Method);
   if (report.NumberOfCoveredVoxels == 0 && whole == request.OutputExtent)
   {
     vtkWarningMacro("The deformed volume covers no voxel of the output: all of it is background. "

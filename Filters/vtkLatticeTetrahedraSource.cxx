@@ -4,6 +4,7 @@
 #include "AbortCheck.h"
 #include "FailureReport.h"
 #include "FiveTetrahedra.h"
+#include "PieceRequest.h"
 
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
@@ -170,6 +171,10 @@ int vtkLatticeTetrahedraSource::RequestData(
 {
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector);
   output->Initialize();
+  if (!deformvolume::IsFirstPiece(outputVector))
+  {
+    return 1;
+  }
 
   const int* nodes = this->NumberOfNodes;
   if (*std::min_element(nodes, nodes + 3) < 2)

@@ -17,8 +17,8 @@
  * vtkUnstructuredGrid. Points in double precision, the first axis varying fastest. Cells are
  * vtkTetra, all with positive volume (the fourth vertex on the side to which the normal of the
  * first three points); the five of a cell follow each other. There are
- * nx * ny * nz points and 5 (nx-1) (ny-1) (nz-1) tetrahedra. Whichever piece is asked for, it is
- * the whole lattice.
+ * nx * ny * nz points and 5 (nx-1) (ny-1) (nz-1) tetrahedra. The first piece is the whole lattice,
+ * all others are empty.
  *
  * @par Errors:
  * Bounds that are empty or not finite, a volume with fewer than two voxels on an axis, fewer than

@@ -5,6 +5,7 @@
 #include "BodySurface.h"
 #include "ClosedSurface.h"
 #include "FailureReport.h"
+#include "PieceRequest.h"
 #include "TetGenProcess.h"
 
 #include "vtkImageData.h"
@@ -180,6 +181,10 @@ int vtkTetGenMesher::RequestData(
   output->Initialize();
   this->UsedIsovalue = 0.0;
   this->UsedTargetEdgeLength = 0.0;
+  if (!deformvolume::IsFirstPiece(outputVector))
+  {
+    return 1;
+  }
   vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
   try
   {

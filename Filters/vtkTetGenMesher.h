@@ -21,7 +21,8 @@
  *
  * @par Output:
  * vtkUnstructuredGrid in world coordinates: points in double precision, vtkTetra cells, all with
- * positive volume, no data arrays. Whichever piece is asked for, it is the whole mesh.
+ * positive volume, no data arrays. The first piece is the whole mesh, all others are empty: with
+ * several ranks, only the first of them runs TetGen. What is told of an execution is told there.
  *
  * @par Errors:
  * No body at the isovalue or with the labels; a volume of one slice; a surface that is empty, open,

@@ -199,6 +199,24 @@ void TestAbort()
   VERIFY_NEAR(Summarize(source->GetOutput()).Volume, 1.0, 1e-12);
 }
 
+/// All pieces together are the lattice.
+void TestPieces()
+{
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  vtkNew<vtkImageData> volume;
+  volume->SetDimensions(4, 5, 6);
+  for (vtkImageData* input : { static_cast<vtkImageData*>(nullptr), volume.Get() })
+  {
+    source->SetInputData(input);
+    for (const int piece : { 2, 0, 1 })
+    {
+      source->UpdatePiece(piece, 3, 0);
+      VERIFY(source->GetOutput()->GetNumberOfCells() == (piece == 0 ? 5 * 12 * 12 * 12 : 0));
+      VERIFY(source->GetOutput()->GetNumberOfPoints() == (piece == 0 ? 13 * 13 * 13 : 0));
+    }
+  }
+}
+
 void TestLarge()
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
@@ -225,6 +243,7 @@ int TestLatticeTetrahedraSource(int, char*[])
   TestBox();
   TestVolume();
   TestAbort();
+  TestPieces();
   TestLarge();
   vtkNew<vtkLatticeTetrahedraSource> source;
   std::ostringstream text;

@@ -255,6 +255,21 @@ void TestSurfaces()
   VERIFY(summary.BoundaryFaces == 2 * 100 * 98);
 }
 
+/// All pieces together are the mesh, and only one of them is worked on.
+void TestPieces()
+{
+  vtkNew<vtkCubeSource> cube;
+  vtkNew<vtkTetGenMesher> mesher;
+  mesher->SetInputConnection(cube->GetOutputPort());
+  mesher->SetTargetEdgeLength(0.4);
+  for (const int piece : { 1, 0, 2 })
+  {
+    mesher->UpdatePiece(piece, 3, 0);
+    VERIFY((mesher->GetOutput()->GetNumberOfCells() > 0) == (piece == 0));
+    VERIFY((mesher->GetUsedTargetEdgeLength() > 0.0) == (piece == 0));
+  }
+}
+
 } // namespace
 
 int TestTetGenMesher(int, char*[])
@@ -263,6 +278,7 @@ int TestTetGenMesher(int, char*[])
   TestBodies();
   TestLabels();
   TestSurfaces();
+  TestPieces();
   vtkNew<vtkTetGenMesher> mesher;
   std::ostringstream text;
   mesher->Print(text);

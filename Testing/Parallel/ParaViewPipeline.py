@@ -14,6 +14,9 @@ if servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartitions(
 
 volume = simple.XMLImageDataReader(FileName=[volume_file])
 lattice = TetrahedralLattice(NumberOfNodes=[7, 7, 7], Bounds=[-32, 32, -31, 31, -33, 33])
+lattice.UpdatePipeline()
+if lattice.GetDataInformation().GetNumberOfCells() != 5 * 6**3:
+    sys.exit(f"{ranks} ranks make {lattice.GetDataInformation().GetNumberOfCells()} cells")
 displaced = simple.Calculator(
     Input=lattice,
     ResultArrayName="displacement",

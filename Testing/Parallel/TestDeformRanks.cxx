@@ -84,6 +84,16 @@ void Check(Deformed& deformed, vtkImageData* whole, const std::string& name, int
     std::cerr << deformed.LastError;
   }
   vtkImageData* output = deformed.Filter->GetOutput();
+  // What is told counts for all ranks.
+  vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
+  vtkIdType mine = 0;
+  for (vtkIdType id = 0; mask && id < mask->GetNumberOfTuples(); ++id)
+  {
+    mine += mask->GetComponent(id, 0) != 0.0 ? 1 : 0;
+  }
+  vtkIdType all = 0;
+  Controller->AllReduce(&mine, &all, 1, vtkCommunicator::SUM_OP);
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), all);
   const Extent piece = GetPiece(GetExtent(whole), ghosts);
   if (piece[1] < piece[0])
   {
