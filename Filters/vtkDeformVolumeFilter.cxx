@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <sstream>
 
 vtkStandardNewMacro(vtkDeformVolumeFilter);
 
@@ -122,6 +123,33 @@ vtkStringArray* vtkDeformVolumeFilter::GetDeviceChoices()
     choices->InsertNextValue(name);
   }
   return choices;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkDeformVolumeFilter::GetSummary()
+{
+  if (this->DeviceInUse.empty())
+  {
+    return "";
+  }
+  const auto count = [](vtkIdType number)
+  {
+    std::string text = std::to_string(number);
+    for (auto at = static_cast<int>(text.size()) - 3; at > 0; at -= 3)
+    {
+      text.insert(static_cast<std::size_t>(at), ",");
+    }
+    return text;
+  };
+  std::ostringstream text;
+  text.precision(3);
+  text << "Device: " << this->DeviceInUse << "\n"
+       << "Inverted tetrahedra: " << count(this->NumberOfInvertedTetrahedra) << "\n"
+       << "Covered voxels: " << count(this->NumberOfCoveredVoxels) << "\n"
+       << "Seconds for links: " << this->PreprocessingTime << "\n"
+       << "Seconds for transfer: " << this->TransferTime << "\n"
+       << "Seconds in kernels: " << this->MappingTime + this->ResamplingTime;
+  return text.str();
 }
 
 //------------------------------------------------------------------------------

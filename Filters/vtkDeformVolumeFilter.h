@@ -398,6 +398,12 @@ public:
   vtkGetMacro(DeviceInUse, std::string);
 
   /**
+   * The device, the most important counts and the times of the last execution in a few lines of
+   * words, for people to read; "" before the first.
+   */
+  std::string GetSummary();
+
+  /**
    * Bytes that this filter holds on the device.
    */
   vtkTypeInt64 GetDeviceMemory();

@@ -103,7 +103,27 @@ def check_defaults(volume):
     filter_.ReleaseDeviceMemory()
     filter_.UpdatePipelineInformation()
     check(filter_.DeviceMemory == 0.0, f"{filter_.DeviceMemory} bytes are left")
+    # Panels show what is there after an update, without asking for it.
+    def shown(name):
+        return filter_.SMProxy.GetProperty(name).GetElement(0)
+
+    stretched = bent_lattice(volume, function="0.5*coordsX*iHat")
+    filter_ = simple.DeformVolume(Volume=volume, Deformation=stretched)
+    check(shown("NumberOfCoveredVoxels") == 0.0 and shown("Summary") == "", "Nothing was updated")
+    for scale, covered in ((0.0, 13 * 13 * 13), (2.0, 25 * 13 * 13)):
+        filter_.DisplacementScale = scale
+        filter_.UpdatePipeline()
+        got = shown("NumberOfCoveredVoxels")
+        check(got == covered, f"{got} covered voxels are shown, not {covered}")
+        check(shown("DeviceInUse") != "", "No device is shown")
+        check(f"Covered voxels: {covered:,}\n" in shown("Summary"), shown("Summary"))
+        check("Inverted tetrahedra: 0\n" in shown("Summary"), shown("Summary"))
+    mesher = simple.TetGenMesher(Input=volume, AutomaticIsovalue=0, Isovalue=150.0)
+    mesher.UpdatePipeline()
+    check(mesher.SMProxy.GetProperty("UsedIsovalue").GetElement(0) == 150.0, "No isovalue is shown")
+
     # Folded over, tetrahedra are inverted and counted.
+    filter_ = deformed(volume, two)
     filter_.DisplacementArray = ["POINTS", "a"]
     filter_.DisplacementScale = -1.0
     filter_.UpdatePipeline()

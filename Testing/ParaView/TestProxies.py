@@ -38,14 +38,21 @@ def check(condition, text):
 
 
 def proxies_by_class():
-    result = {}
+    elements = []
     for name in sorted(os.listdir(PLUGIN_SOURCE)):
-        if not name.endswith(".xml"):
-            continue
-        root = ElementTree.parse(os.path.join(PLUGIN_SOURCE, name)).getroot()
-        for group in root.iter("ProxyGroup"):
-            for proxy in group:
-                result.setdefault(proxy.get("class"), []).append((group.get("name"), proxy))
+        if name.endswith(".xml"):
+            root = ElementTree.parse(os.path.join(PLUGIN_SOURCE, name)).getroot()
+            for group in root.iter("ProxyGroup"):
+                elements += [(group.get("name"), element) for element in group]
+    proxies = {
+        (group, proxy.get("name")): proxy for group, proxy in elements if proxy.tag != "Extension"
+    }
+    for group, extension in elements:
+        if extension.tag == "Extension":
+            proxies[group, extension.get("name")].extend(extension)
+    result = {}
+    for (group, _), proxy in proxies.items():
+        result.setdefault(proxy.get("class"), []).append((group, proxy))
     return result
 
 
@@ -162,7 +169,11 @@ def check_made(cls, group, proxy):
         return
     simple.SetActiveSource(None)  # would become the input
     with messages():  # inputs are missing
-        instance = made().GetClientSideObject()
+        made_proxy = made()
+    instance = made_proxy.GetClientSideObject()
+    for prop in properties_of(proxy):
+        present = made_proxy.SMProxy.GetProperty(prop.get("name")) is not None
+        check(present, f"{name}: ParaView has no {prop.get('name')}")
     fresh = cls()
     for prop in properties_of(proxy):
         command = prop.get("command")

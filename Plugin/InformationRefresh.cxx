@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "InformationRefresh.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkNew.h"
+#include "vtkProcessModule.h"
+#include "vtkSMProxyIterator.h"
+#include "vtkSMProxyManager.h"
+#include "vtkSMSession.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkSessionIterator.h"
+#include "vtkSmartPointer.h"
+
+#include <string>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+void Fetch(vtkObject* proxy, unsigned long, void*, void*)
+{
+  static_cast<vtkSMProxy*>(proxy)->UpdatePropertyInformation();
+}
+
+void ObserveProxy(vtkSMProxy* proxy)
+{
+  static vtkNew<vtkCallbackCommand> fetch;
+  fetch->SetCallback(Fetch);
+  const char* name = proxy && proxy->IsA("vtkSMSourceProxy") ? proxy->GetVTKClassName() : nullptr;
+  const std::string made = name ? name : "";
+  if ((made == "vtkDeformVolumeFilter" || made == "vtkTetGenMesher") &&
+    !proxy->HasObserver(vtkCommand::UpdateDataEvent, fetch))
+  {
+    proxy->AddObserver(vtkCommand::UpdateDataEvent, fetch);
+  }
+}
+
+void Registered(vtkObject*, unsigned long, void*, void* data)
+{
+  const auto* information = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(data);
+  if (information->Type == vtkSMProxyManager::RegisteredProxyInformation::PROXY)
+  {
+    ObserveProxy(information->Proxy);
+  }
+}
+
+void ObserveSession(vtkSession* session)
+{
+  static vtkNew<vtkCallbackCommand> registered;
+  registered->SetCallback(Registered);
+  const auto client = vtkSMSession::SafeDownCast(session);
+  vtkSMSessionProxyManager* proxies = client ? client->GetSessionProxyManager() : nullptr;
+  if (!proxies || proxies->HasObserver(vtkCommand::RegisterEvent, registered))
+  {
+    return;
+  }
+  proxies->AddObserver(vtkCommand::RegisterEvent, registered);
+  vtkNew<vtkSMProxyIterator> present;
+  present->SetSessionProxyManager(proxies);
+  for (present->Begin("sources"); !present->IsAtEnd(); present->Next())
+  {
+    ObserveProxy(present->GetProxy());
+  }
+}
+
+void Connected(vtkObject* module, unsigned long, void*, void* id)
+{
+  ObserveSession(
+    static_cast<vtkProcessModule*>(module)->GetSession(*static_cast<const vtkIdType*>(id)));
+}
+
+} // namespace
+
+void RefreshInformation()
+{
+  static vtkNew<vtkCallbackCommand> connected;
+  connected->SetCallback(Connected);
+  vtkProcessModule* module = vtkProcessModule::GetProcessModule();
+  if (!module || module->HasObserver(vtkCommand::ConnectionCreatedEvent, connected))
+  {
+    return;
+  }
+  module->AddObserver(vtkCommand::ConnectionCreatedEvent, connected);
+  const auto sessions = vtkSmartPointer<vtkSessionIterator>::Take(module->NewSessionIterator());
+  for (sessions->InitTraversal(); !sessions->IsDoneWithTraversal(); sessions->GoToNextItem())
+  {
+    ObserveSession(sessions->GetCurrentSession());
+  }
+}
+
+} // namespace deformvolume
