@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -171,9 +172,27 @@ const std::vector<int>& Ranks::GetNeighbours() const
         neighbours.push_back(rank);
       }
     }
-    ShareProcessors(static_cast<int>(neighbours.size()));
+    deformvolume::ShareProcessors(static_cast<int>(neighbours.size()));
   }
   return neighbours;
+}
+
+void Ranks::ShareProcessors() const
+{
+  int here = this->Count;
+  // Open MPI, MPICH and its kin, MVAPICH, Slurm.
+  for (const char* name : { "OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS",
+         "MV2_COMM_WORLD_LOCAL_SIZE", "SLURM_STEP_TASKS_PER_NODE" })
+  {
+    const char* value = std::getenv(name);
+    const int told = value ? std::atoi(value) : 0;
+    if (told > 0)
+    {
+      here = std::min(here, told);
+      break;
+    }
+  }
+  deformvolume::ShareProcessors(here);
 }
 
 } // namespace deformvolume

@@ -18,13 +18,14 @@ namespace deformvolume
 {
 
 /// The processes that VTK's global controller knows, and what they decide together. With one
-/// process nothing is sent. All functions but GetRank and GetCount are collective: every rank has
-/// to call them, in the same order.
+/// process nothing is sent. Functions are collective unless they say otherwise: every rank has to
+/// call them, in the same order.
 class Ranks
 {
 public:
   Ranks();
 
+  /// Not collective.
   int GetRank() const { return this->Rank; }
   int GetCount() const { return this->Count; }
   bool AreMany() const { return this->Count > 1; }
@@ -77,6 +78,11 @@ public:
   /// The ranks on this machine, this one included, in ascending order. They share its processors:
   /// the first call on a machine makes the device's share smaller, before there is a device.
   const std::vector<int>& GetNeighbours() const;
+
+  /// Makes the device's share smaller on this rank alone, where a device is asked for before all
+  /// ranks have come together: by the number of ranks on this machine that the launcher tells, or
+  /// else by that of all. Not collective.
+  void ShareProcessors() const;
 
 private:
   enum class Outcome

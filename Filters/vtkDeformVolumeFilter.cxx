@@ -101,6 +101,7 @@ const char* vtkDeformVolumeFilter::GetCategoricalArray(int index)
 //------------------------------------------------------------------------------
 vtkStringArray* vtkDeformVolumeFilter::GetDeviceNames()
 {
+  deformvolume::Ranks().ShareProcessors();
   vtkStringArray* names = vtkStringArray::New();
   for (const std::string& name : deformvolume::GetDeviceNames())
   {
@@ -112,6 +113,7 @@ vtkStringArray* vtkDeformVolumeFilter::GetDeviceNames()
 //------------------------------------------------------------------------------
 vtkStringArray* vtkDeformVolumeFilter::GetDeviceChoices()
 {
+  deformvolume::Ranks().ShareProcessors();
   vtkStringArray* choices = this->Internals->DeviceChoices;
   choices->Initialize();
   for (const char* kind : { deformvolume::BEST_DEVICE, "cpu", "gpu" })
