@@ -4,10 +4,8 @@ of devices is the server's: the client of this test has none."""
 
 import os
 import re
-import socket
 import subprocess
 import sys
-import time
 
 import deformvolume
 from paraview import simple
@@ -25,37 +23,9 @@ from PluginTesting import (
     messages,
     wavelet,
 )
+from ServerTesting import Server
 
 LOG = os.path.join(OUTPUT, "TestClientServer.log")
-
-
-def free_port():
-    with socket.socket() as listener:
-        listener.bind(("localhost", 0))
-        return listener.getsockname()[1]
-
-
-def start_server(port):
-    """A server on this machine, which has OpenCL devices, unlike the client."""
-    environment = dict(os.environ)
-    del environment["OCL_ICD_VENDORS"]
-    with open(LOG, "w", encoding="utf-8") as log:
-        server = subprocess.Popen(
-            [os.environ["DEFORMVOLUME_PVSERVER"], f"--server-port={port}"],
-            stdout=log,
-            stderr=subprocess.STDOUT,
-            env=environment,
-        )
-    end = time.monotonic() + 60.0
-    while "Accepting connection" not in server_log():
-        check(server.poll() is None and time.monotonic() < end, f"No server: {server_log()}")
-        time.sleep(0.1)
-    return server
-
-
-def server_log():
-    with open(LOG, encoding="utf-8", errors="replace") as log:
-        return log.read()
 
 
 def check_session():
@@ -110,23 +80,21 @@ def main():
     if len(sys.argv) > 1:
         client(int(sys.argv[1]))
         return
-    port = free_port()
-    server = start_server(port)
-    try:
+    # The server has OpenCL devices, unlike the client.
+    environment = dict(os.environ)
+    del environment["OCL_ICD_VENDORS"]
+    with Server([os.environ["DEFORMVOLUME_PVSERVER"]], LOG, environment) as server:
         # A process of its own: its end is what ends the session.
         subprocess.run(
-            [os.environ["DEFORMVOLUME_PVPYTHON"], __file__, str(port)], timeout=200, check=True
+            [os.environ["DEFORMVOLUME_PVPYTHON"], __file__, str(server.port)],
+            timeout=200,
+            check=True,
         )
-        server.wait(timeout=60)
-    finally:
-        if server.poll() is None:
-            server.kill()
-            server.wait()
-    check(server.returncode == 0, f"The server ends with {server.returncode}: {server_log()}")
-    told = re.findall(r"ERR\|.*", server_log())
+        server.wait()
+    told = re.findall(r"ERR\|.*", server.log())
     check(
         len(told) == 1 and 'no OpenCL device "no such device"' in told[0],
-        f"The server does not tell the error once: {server_log()}",
+        f"The server does not tell the error once: {server.log()}",
     )
 
 

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A client and a pvserver of three ranks: the voxels are those of one process, properties of information
+are those of all ranks, a mesh may lie on one rank only, and an error is one message.
+
+Arguments: mpiexec, pvserver, pvpython, the folder for output.
+"""
+import os
+import re
+import subprocess
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "..", "ParaView"))
+from ServerTesting import Server  # noqa: E402
+
+RANKS = 3
+mpiexec, pvserver, pvpython, output = sys.argv[1:]
+log = os.path.join(output, "TestServerRanks.log")
+with Server([mpiexec, "-n", str(RANKS), pvserver], log) as server:
+    client = os.path.join(HERE, "ServerRanksClient.py")
+    subprocess.run([pvpython, client, str(server.port), str(RANKS)], timeout=200, check=True)
+    server.wait()
+told = re.findall(r"ERR\|.*", server.log())
+if len(told) != 2 * RANKS:
+    sys.exit(f"Not two errors on each rank: {server.log()}")
