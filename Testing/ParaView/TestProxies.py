@@ -38,20 +38,21 @@ def check(condition, text):
 
 
 def proxies_by_class():
-    elements = []
+    """Each proxy that a user meets, with all that it is based on."""
+    elements = {}
     for name in sorted(os.listdir(PLUGIN_SOURCE)):
         if name.endswith(".xml"):
             root = ElementTree.parse(os.path.join(PLUGIN_SOURCE, name)).getroot()
             for group in root.iter("ProxyGroup"):
-                elements += [(group.get("name"), element) for element in group]
-    proxies = {
-        (group, proxy.get("name")): proxy for group, proxy in elements if proxy.tag != "Extension"
-    }
-    for group, extension in elements:
-        if extension.tag == "Extension":
-            proxies[group, extension.get("name")].extend(extension)
+                elements.update({(group.get("name"), proxy.get("name")): proxy for proxy in group})
     result = {}
-    for (group, _), proxy in proxies.items():
+    for (group, _), proxy in elements.items():
+        if group == "internal_filters":
+            continue
+        base = proxy
+        while base.get("base_proxyname"):
+            base = elements[base.get("base_proxygroup"), base.get("base_proxyname")]
+            proxy.extend(list(base))
         result.setdefault(proxy.get("class"), []).append((group, proxy))
     return result
 
