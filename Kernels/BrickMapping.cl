@@ -6,8 +6,7 @@
 // first output voxel (x, y, z; float, exact multiples of 1/256), then the values of the arrays that are
 // interpolated in single precision, HALF_ROW floats each.
 //
-// Vertices come TOGETHER, 8 or 16 at a time, with the operations of PositionOf (DeformationMapping.cl) in the same
-// order; where one of these is missing, one at a time. The last ones of a row come with some before them, which
+// Vertices come sixteen at a time, with the operations of PositionOf (DeformationMapping.cl) in the same order; where one of these is missing, one at a time. The last ones of a row come with some before them, which
 // then come twice.
 
 #ifdef __x86_64__
@@ -36,9 +35,6 @@ typedef struct
 #define ROW_PLACES (DEFORMVOLUME_BRICK_X + 16) // of a row that is not split; vectors may reach beyond the end
 
 #if MAPPING == MAPPING_RUNS
-
-#define TOGETHER 16
-#define HALF_TOGETHER 8
 
 // The displacements of the vertices of a row from x to end, x, y and z apart, one after the other from
 // place i: affine from one run's begin to the next.
@@ -97,34 +93,76 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
 
 #else
 
-#define TOGETHER 8
-#define HALF_TOGETHER 4
-
 #if MAPPING == MAPPING_LINKS
+
+// The element i of each four, to all of these.
+#ifdef __clang__
+#define OF_EACH_FOUR(v, i)                                                                         \
+  __builtin_shufflevector(v, v, i, i, i, i, i + 4, i + 4, i + 4, i + 4, i + 8, i + 8, i + 8,       \
+    i + 8, i + 12, i + 12, i + 12, i + 12)
+#else
+#define OF_EACH_FOUR(v, i)                                                                         \
+  shuffle(v, (uint16)(i, i, i, i, i + 4, i + 4, i + 4, i + 4, i + 8, i + 8, i + 8, i + 8, i + 12,  \
+               i + 12, i + 12, i + 12))
+#endif
+
+// The displacements of four vertices with links behind one another, with the operations of FollowLink.
+static float16 FollowFourLinks(const Mapping* m, __global const VertexLink* links)
+{
+  const float16 four = *(__global const PlacedFloat16*)links;
+  const float16 a = OF_EACH_FOUR(four, 1);
+  const float16 b = OF_EACH_FOUR(four, 2);
+  const float16 c = OF_EACH_FOUR(four, 3);
+  const float16 d = 1.0f - a - b - c;
+  const int4 t0 = m->Tetrahedra[links[0].Tetrahedron];
+  const int4 t1 = m->Tetrahedra[links[1].Tetrahedron];
+  const int4 t2 = m->Tetrahedra[links[2].Tetrahedron];
+  const int4 t3 = m->Tetrahedra[links[3].Tetrahedron];
+#define FOUR_NODES(k) (float16)(m->Nodes[t0.k], m->Nodes[t1.k], m->Nodes[t2.k], m->Nodes[t3.k])
+  return MULTIPLY_ADD(FOUR_NODES(w), d,
+    MULTIPLY_ADD(FOUR_NODES(z), c, MULTIPLY_ADD(FOUR_NODES(y), b, FOUR_NODES(x) * a)));
+}
+
 #define ROW_DISPLACEMENTS                                                                          \
   __global const VertexLink* const rowLinks = m->Links + VertexInChunk(0, y, z, p);
-#define VERTEX_DISPLACEMENT(x) FollowLink(m, rowLinks + (x))
+#define ROW_DISPLACEMENT FollowLink(m, rowLinks + x)
+#define FOUR_DISPLACEMENTS(x) FollowFourLinks(m, rowLinks + (x))
 // Links are most of what is read, each once: they are fetched ahead.
-#define FETCH_AHEAD PREFETCH(rowLinks + x + 256) PREFETCH(rowLinks + x + 260)
+#define FETCH_AHEAD                                                                                \
+  PREFETCH(rowLinks + x + 256)                                                                     \
+  PREFETCH(rowLinks + x + 260)                                                                     \
+  PREFETCH(rowLinks + x + 264)                                                                     \
+  PREFETCH(rowLinks + x + 268)
+
 #else
+
 #define ROW_DISPLACEMENTS
-#define VERTEX_DISPLACEMENT(x) Displacement(m, x, y, z, p)
+#define ROW_DISPLACEMENT Displacement(m, x, y, z, p)
+#define FOUR_DISPLACEMENTS(x)                                                                      \
+  (float16)(Displacement(m, x, y, z, p), Displacement(m, (x) + 1, y, z, p),                        \
+    Displacement(m, (x) + 2, y, z, p), Displacement(m, (x) + 3, y, z, p))
 #define FETCH_AHEAD
+
 #endif
-#define ROW_DISPLACEMENT VERTEX_DISPLACEMENT(x)
+
+// Of two vectors at a time: that is one instruction.
 #define ROW_DISPLACEMENTS_TOGETHER                                                                 \
   FETCH_AHEAD                                                                                      \
-  const float4 d0 = VERTEX_DISPLACEMENT(x);                                                        \
-  const float4 d2 = VERTEX_DISPLACEMENT(x + 2);                                                    \
-  const float4 d4 = VERTEX_DISPLACEMENT(x + 4);                                                    \
-  const float4 d6 = VERTEX_DISPLACEMENT(x + 6);                                                    \
-  const float4 d1 = VERTEX_DISPLACEMENT(x + 1);                                                    \
-  const float4 d3 = VERTEX_DISPLACEMENT(x + 3);                                                    \
-  const float4 d5 = VERTEX_DISPLACEMENT(x + 5);                                                    \
-  const float4 d7 = VERTEX_DISPLACEMENT(x + 7);                                                    \
-  const float8 dx = (float8)(d0.x, d2.x, d4.x, d6.x, d1.x, d3.x, d5.x, d7.x);                      \
-  const float8 dy = (float8)(d0.y, d2.y, d4.y, d6.y, d1.y, d3.y, d5.y, d7.y);                      \
-  const float8 dz = (float8)(d0.z, d2.z, d4.z, d6.z, d1.z, d3.z, d5.z, d7.z);
+  const float16 d0 = FOUR_DISPLACEMENTS(x);                                                        \
+  const float16 d4 = FOUR_DISPLACEMENTS(x + 4);                                                    \
+  const float16 d8 = FOUR_DISPLACEMENTS(x + 8);                                                    \
+  const float16 d12 = FOUR_DISPLACEMENTS(x + 12);                                                  \
+  const float16 xyLow =                                                                            \
+    (float16)(d0.s08, d4.s08, d0.s4c, d4.s4c, d0.s19, d4.s19, d0.s5d, d4.s5d);                     \
+  const float16 xyHigh =                                                                           \
+    (float16)(d8.s08, d12.s08, d8.s4c, d12.s4c, d8.s19, d12.s19, d8.s5d, d12.s5d);                 \
+  const float16 zLow =                                                                             \
+    (float16)(d0.s2a, d4.s2a, d0.s6e, d4.s6e, d0.s2a, d4.s2a, d0.s6e, d4.s6e);                     \
+  const float16 zHigh =                                                                            \
+    (float16)(d8.s2a, d12.s2a, d8.s6e, d12.s6e, d8.s2a, d12.s2a, d8.s6e, d12.s6e);                 \
+  const float16 dx = (float16)(xyLow.s0123, xyHigh.s0123, xyLow.s4567, xyHigh.s4567);              \
+  const float16 dy = (float16)(xyLow.s89ab, xyHigh.s89ab, xyLow.scdef, xyHigh.scdef);              \
+  const float16 dz = (float16)(zLow.s0123, zHigh.s0123, zLow.s4567, zHigh.s4567);
 
 #endif
 
@@ -143,19 +181,14 @@ static ulong StatesOfEight(__global const uchar* state, int x, int y, int z, con
   return SOURCES | (inside ? INTERIORS : 0);
 }
 
-// The same of TOGETHER vertices: bits that vertices of both eights have, where these are 16.
+// The bits that both eights of sixteen vertices have.
 static ulong StatesOf(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
 {
-  const ulong states = StatesOfEight(state, x, y, z, p);
-  return TOGETHER == 8 ? states : states & StatesOfEight(state, x + 8, y, z, p);
+  return StatesOfEight(state, x, y, z, p) & StatesOfEight(state, x + 8, y, z, p);
 }
 
-#define FLOATS_TOGETHER JOIN(float, TOGETHER)
-#define HALF_FLOATS JOIN(float, HALF_TOGETHER)
-#define LOAD_HALF(place) JOIN(vload, HALF_TOGETHER)(0, place)
-#define STORE_HALF(v, place) *(__local JOIN(PlacedFloat, HALF_TOGETHER)*)(place) = v;
-// Those of RowFlags that TOGETHER vertices may be in.
-#define FLAGS_TOGETHER ((2u << (TOGETHER / 8)) - 1)
+#define STORE_EIGHT(v, place) *(__local PlacedFloat8*)(place) = v;
+#define FLAGS_TOGETHER 7u // those of RowFlags that sixteen vertices may be in
 
 // A value, by its bits, that the sum of products would not give back: -0, not finite, or so large that the
 // sum may overflow.
@@ -172,13 +205,13 @@ static ulong StatesOf(__global const uchar* state, int x, int y, int z, const Ke
   }
 #define PUT_VALUES_TOGETHER(index, TYPE, BITS, SLOT)                                               \
   {                                                                                                \
-    const FLOATS_TOGETHER value =                                                                  \
-      JOIN(convert_float, TOGETHER)(JOIN(vload, TOGETHER)(0, source##index + chunk + x));          \
-    STORE_HALF(value.even, place + (3 + SLOT) * HALF_ROW)                                          \
-    STORE_HALF(value.odd, place + ODD + (3 + SLOT) * HALF_ROW)                                     \
+    const float16 value =                                                                  \
+      convert_float16(vload16(0, source##index + chunk + x));          \
+    STORE_EIGHT(value.even, place + (3 + SLOT) * HALF_ROW)                                          \
+    STORE_EIGHT(value.odd, place + ODD + (3 + SLOT) * HALF_ROW)                                     \
     if (BITS == 32)                                                                                \
     {                                                                                              \
-      if (any(IS_SPECIAL(JOIN(as_int, TOGETHER)(value))))                                          \
+      if (any(IS_SPECIAL(as_int16(value))))                                          \
       {                                                                                            \
         flags.Special |= FLAGS_TOGETHER << (i >> 3);                                               \
       }                                                                                            \
@@ -211,14 +244,14 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
   {
     // How many to take again.
     int again = 0;
-    if (x + 1 < end && x + TOGETHER > end)
+    if (x + 1 < end && x + 16 > end)
     {
-      again = x + TOGETHER - end;
+      again = x + 16 - end;
       again += (i - again) & 1;
       again = again > x - begin ? 0 : again;
     }
     const ulong states =
-      x - again + TOGETHER <= end ? StatesOf(mesh->State, x - again, y, z, p) : 0;
+      x - again + 16 <= end ? StatesOf(mesh->State, x - again, y, z, p) : 0;
     if (((i - again) & 1) || (states & SOURCES) != SOURCES)
     {
       // One vertex.
@@ -251,26 +284,26 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
     ROW_DISPLACEMENTS_TOGETHER
 #define POSITIONS(C, OFFSET, WHOLE_EVEN, WHOLE_ODD, FRACTION_EVEN, FRACTION_ODD)                   \
   {                                                                                                \
-    const FLOATS_TOGETHER steps = JOIN(RoundSteps_float, TOGETHER)(                                \
-      d##C * 256.0f + (FLOATS_TOGETHER)(FRACTION_EVEN, FRACTION_ODD));                             \
-    const FLOATS_TOGETHER position =                                                               \
-      (steps + (FLOATS_TOGETHER)(WHOLE_EVEN, WHOLE_ODD)) * (1.0f / 256.0f);                        \
-    STORE_HALF(position.lo, place + (OFFSET)*HALF_ROW)                                             \
-    STORE_HALF(position.hi, place + ODD + (OFFSET)*HALF_ROW)                                       \
+    const float16 steps = RoundSteps_float16(                                \
+      d##C * 256.0f + (float16)(FRACTION_EVEN, FRACTION_ODD));                             \
+    const float16 position =                                                               \
+      (steps + (float16)(WHOLE_EVEN, WHOLE_ODD)) * (1.0f / 256.0f);                        \
+    STORE_EIGHT(position.lo, place + (OFFSET)*HALF_ROW)                                             \
+    STORE_EIGHT(position.hi, place + ODD + (OFFSET)*HALF_ROW)                                       \
   }
-    POSITIONS(x, 0, LOAD_HALF(rest), LOAD_HALF(rest + 2 * HALF_ROW), LOAD_HALF(rest + HALF_ROW),
-      LOAD_HALF(rest + 3 * HALF_ROW))
-    POSITIONS(y, 1, (HALF_FLOATS)wholeY, (HALF_FLOATS)wholeY, (HALF_FLOATS)ry.Fraction,
-      (HALF_FLOATS)ry.Fraction)
-    POSITIONS(z, 2, (HALF_FLOATS)wholeZ, (HALF_FLOATS)wholeZ, (HALF_FLOATS)rz.Fraction,
-      (HALF_FLOATS)rz.Fraction)
+    POSITIONS(x, 0, vload8(0, rest), vload8(0, rest + 2 * HALF_ROW), vload8(0, rest + HALF_ROW),
+      vload8(0, rest + 3 * HALF_ROW))
+    POSITIONS(y, 1, (float8)wholeY, (float8)wholeY, (float8)ry.Fraction,
+      (float8)ry.Fraction)
+    POSITIONS(z, 2, (float8)wholeZ, (float8)wholeZ, (float8)rz.Fraction,
+      (float8)rz.Fraction)
     if ((states & INTERIORS) != INTERIORS)
     {
       flags.Border |= FLAGS_TOGETHER << (i >> 3);
     }
     LANE_ARRAYS(PUT_VALUES_TOGETHER)
-    x += TOGETHER;
-    i += TOGETHER;
+    x += 16;
+    i += 16;
   }
   return flags;
 }

@@ -47,7 +47,6 @@ typedef struct
     return (moved + ROUND_TO_INTEGER) - ROUND_TO_INTEGER;                                          \
   }
 DEFINE_ROUND_STEPS(float4)
-DEFINE_ROUND_STEPS(float8)
 DEFINE_ROUND_STEPS(float16)
 
 static size_t VertexInChunk(int x, int y, int z, const KernelParameters* p)

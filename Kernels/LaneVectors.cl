@@ -15,7 +15,6 @@
 // Vectors where their elements may lie. Stored so they take one instruction; vstore16 of PoCL 3.1 takes three.
 typedef float16 __attribute__((aligned(4))) PlacedFloat16;
 typedef float8 __attribute__((aligned(4))) PlacedFloat8;
-typedef float4 __attribute__((aligned(4))) PlacedFloat4;
 typedef int16 __attribute__((aligned(4))) PlacedInt16;
 
 static FLOATS Least(FLOATS a, FLOATS b)

@@ -180,7 +180,15 @@ bool VolumeDeformer::Internals::UseLanes(Resampling method, const OutputSlab& ou
       "The resampling by lanes takes only outputs under 2^31 voxels, and of at most 32,768 "
       "on an axis.");
   }
-  return fits &&
+  const std::uint64_t needed = GetBrickMemory(*this->Context, this->Arrays);
+  const std::uint64_t available =
+    this->Context->GetDevice().Device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+  if (method == Resampling::ExactByLanes && needed > available)
+  {
+    throw Error("The resampling by lanes needs " + std::to_string(needed) +
+      " bytes of local memory, and the device has " + std::to_string(available) + ".");
+  }
+  return fits && needed <= available &&
     (method == Resampling::ExactByLanes ||
       (method == Resampling::Exact && this->Context->GetDevice().IsProcessor));
 }

@@ -16,7 +16,8 @@ rm -f "$log"
 # search for uninitialised values is left out: it takes what clEnqueueFillBuffer wrote for such.
 OCL_ICD_VENDORS="$library" DEFORMVOLUME_DEVICE=oclgrind OCLGRIND_LOG="$log" \
   OCLGRIND_BUILD_OPTIONS=-cl-opt-disable \
-  OCLGRIND_DATA_RACES="${OCLGRIND_DATA_RACES:-1}" "$@" || exit 1
+  OCLGRIND_DATA_RACES="${OCLGRIND_DATA_RACES:-1}" \
+  OCLGRIND_LOCAL_MEM_SIZE="${OCLGRIND_LOCAL_MEM_SIZE:-1048576}" "$@" || exit 1
 
 if [ ! -e "$log" ]; then
   echo "Oclgrind left no log"
