@@ -6,8 +6,9 @@
 // first output voxel (x, y, z; float, exact multiples of 1/256), then the values of the arrays that are
 // interpolated in single precision, HALF_ROW floats each.
 //
-// Vertices come sixteen at a time, with the operations of PositionOf (DeformationMapping.cl) in the same order; where one of these is missing, one at a time. The last ones of a row come with some before them, which
-// then come twice.
+// Vertices come sixteen at a time, with the operations of PositionOf (DeformationMapping.cl) in the same order;
+// where one of these is missing, one at a time. The last ones of a row come with some before them, which then
+// come twice.
 
 #ifdef __x86_64__
 #define PREFETCH(address) __builtin_prefetch((const void*)(size_t)(address));
@@ -205,13 +206,12 @@ static ulong StatesOf(__global const uchar* state, int x, int y, int z, const Ke
   }
 #define PUT_VALUES_TOGETHER(index, TYPE, BITS, SLOT)                                               \
   {                                                                                                \
-    const float16 value =                                                                  \
-      convert_float16(vload16(0, source##index + chunk + x));          \
-    STORE_EIGHT(value.even, place + (3 + SLOT) * HALF_ROW)                                          \
-    STORE_EIGHT(value.odd, place + ODD + (3 + SLOT) * HALF_ROW)                                     \
+    const float16 value = convert_float16(vload16(0, source##index + chunk + x));                  \
+    STORE_EIGHT(value.even, place + (3 + SLOT) * HALF_ROW)                                         \
+    STORE_EIGHT(value.odd, place + ODD + (3 + SLOT) * HALF_ROW)                                    \
     if (BITS == 32)                                                                                \
     {                                                                                              \
-      if (any(IS_SPECIAL(as_int16(value))))                                          \
+      if (any(IS_SPECIAL(as_int16(value))))                                                        \
       {                                                                                            \
         flags.Special |= FLAGS_TOGETHER << (i >> 3);                                               \
       }                                                                                            \
@@ -250,8 +250,7 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
       again += (i - again) & 1;
       again = again > x - begin ? 0 : again;
     }
-    const ulong states =
-      x - again + 16 <= end ? StatesOf(mesh->State, x - again, y, z, p) : 0;
+    const ulong states = x - again + 16 <= end ? StatesOf(mesh->State, x - again, y, z, p) : 0;
     if (((i - again) & 1) || (states & SOURCES) != SOURCES)
     {
       // One vertex.
@@ -284,12 +283,11 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
     ROW_DISPLACEMENTS_TOGETHER
 #define POSITIONS(C, OFFSET, WHOLE_EVEN, WHOLE_ODD, FRACTION_EVEN, FRACTION_ODD)                   \
   {                                                                                                \
-    const float16 steps = RoundSteps_float16(                                \
-      d##C * 256.0f + (float16)(FRACTION_EVEN, FRACTION_ODD));                             \
-    const float16 position =                                                               \
-      (steps + (float16)(WHOLE_EVEN, WHOLE_ODD)) * (1.0f / 256.0f);                        \
-    STORE_EIGHT(position.lo, place + (OFFSET)*HALF_ROW)                                             \
-    STORE_EIGHT(position.hi, place + ODD + (OFFSET)*HALF_ROW)                                       \
+    const float16 steps =                                                                          \
+      RoundSteps_float16(d##C * 256.0f + (float16)(FRACTION_EVEN, FRACTION_ODD));                  \
+    const float16 position = (steps + (float16)(WHOLE_EVEN, WHOLE_ODD)) * (1.0f / 256.0f);         \
+    STORE_EIGHT(position.lo, place + (OFFSET)*HALF_ROW)                                            \
+    STORE_EIGHT(position.hi, place + ODD + (OFFSET)*HALF_ROW)                                      \
   }
     POSITIONS(x, 0, vload8(0, rest), vload8(0, rest + 2 * HALF_ROW), vload8(0, rest + HALF_ROW),
       vload8(0, rest + 3 * HALF_ROW))

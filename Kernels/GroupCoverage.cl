@@ -52,8 +52,8 @@ static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, in
 
 // Which lanes own a sample by the fill rule, by edge functions in integers of 32 bits, for cells of less than
 // MAXIMUM_EXACT_EXTENT, all of whose tetrahedra are upright, or all inverted: these are at most
-// 2 (256 extent)^3. sample: in voxels relative to vertex 0 of the cell. inverted: lanes. simplex: the vertices of the simplex that the sample lies in, 0 where that is not in the
-// cell.
+// 2 (256 extent)^3. sample: in voxels relative to vertex 0 of the cell. inverted: lanes whose tetrahedra are.
+// simplex: the vertices of the simplex that the sample lies in, 0 where that is not in the cell.
 static __attribute__((noinline)) INTS HoldSample(
   const Group* group, const FLOATS* sample, int odd, INTS inverted, INTS* simplex)
 {

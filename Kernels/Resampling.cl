@@ -429,7 +429,8 @@ static void AddCounts(
 // A work-group takes a block of cells. positions: room for three ints a vertex of the block.
 __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   __global const uchar* active, __global char* coverage, __global KEY* winners,
-  __global const char* unsettled, __global uint* counters, __local int* positions, const KernelParameters p ARRAY_PARAMETERS)
+  __global const char* unsettled, __global uint* counters, __local int* positions,
+  const KernelParameters p ARRAY_PARAMETERS)
 {
   const int first[3] = { get_group_id(0) * DEFORMVOLUME_BLOCK_X,
     get_group_id(1) * DEFORMVOLUME_BLOCK_Y, p.LayersBegin + get_group_id(2) * DEFORMVOLUME_BLOCK_Z };
