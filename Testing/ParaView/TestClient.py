@@ -143,7 +143,8 @@ def main():
     shown = read_png(os.path.join(FOLDER, "client.png"))
     check_picture(shown, "The client's view")
     difference = numpy.abs(shown - expected).mean()
-    check(difference < 1.0, f"Client and pvpython differ by {difference} of 255 on average")
+    # Moved by one pixel, the picture differs by 0.7.
+    check(difference < 0.3, f"Client and pvpython differ by {difference} of 255 on average")
     told = re.findall(r"ERR\|.*", client_log())
     check(
         len(told) == 1 and "There is no deformation" in told[0],
