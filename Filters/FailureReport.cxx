@@ -37,6 +37,12 @@ public:
 
 int Fail(vtkAlgorithm* algorithm)
 {
+  // A ParaView view that has met a request that failed is not told of later changes of the
+  // algorithm's settings: it would never show what the mended algorithm makes.
+  if (algorithm->HasExecutive() && algorithm->GetExecutive()->IsA("vtkPVCompositeDataPipeline"))
+  {
+    return 1;
+  }
   // Where nothing is displayed the executive reports nothing, and the observer would stay.
   if (vtkObject::GetGlobalWarningDisplay() && algorithm->HasExecutive())
   {
