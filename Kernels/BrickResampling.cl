@@ -318,10 +318,14 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
           written += popcount(bits);
         }
         Append(place, bits, found->Places + found->Count);
-        if (KEEPS_CELLS(p))
+        if (KEEPS_KEYS && p->Pass != DEFORMVOLUME_PASS_DIRECT)
         {
-          Append(
-            LANE_INDEX | (inverted & INVERTED_LANE), bits, found->Lanes + found->Count);
+          const INTS keys = (int)MakeKey(x, y, z, 0, p) + 2 * LANE_INDEX;
+          Append(keys | (inverted & (int)MakeKey(0, 0, 0, 1, p)), bits, found->Cells + found->Count);
+        }
+        else if (HAS_OTHER_ARRAYS || p->Pass != DEFORMVOLUME_PASS_DIRECT)
+        {
+          Append(LANE_INDEX | (inverted & INVERTED_LANE), bits, found->Cells + found->Count);
         }
         found->Count += popcount(bits);
         if (found->Count > FOUND_CAPACITY)
@@ -339,7 +343,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
       rz = planeDone ? rz + 1.0f : rz;
       place += 1 + (rowDone & toNextRow) + (planeDone & toNextPlane);
     }
-    if (KEEPS_CELLS(p))
+    if (KEEPS_GROUP(p))
     {
       StoreFound(found, group, x, y, z, output, p ARRAY_ARGUMENTS);
     }

@@ -99,15 +99,20 @@ static __attribute__((noinline)) void StoreOtherArrays(const Group* group, int l
 #define INVERTED_LANE 16 // added to the lane of a cell whose tetrahedra are inverted
 #define FOUND_VALUES(index, TYPE, BITS, SLOT) int Values##index[FOUND_CAPACITY + 2 * LANES];
 
-// Whether the cells of samples matter when these are stored: then that happens group by group.
-#define KEEPS_CELLS(p) (HAS_OTHER_ARRAYS || (p)->Pass != DEFORMVOLUME_PASS_DIRECT)
+// Whether samples are kept with their winner's key; else with the lane of their cell.
+#define KEEPS_KEYS (!HAS_OTHER_ARRAYS && sizeof(KEY) == sizeof(int))
+// Whether the group matters when samples are stored, so that this happens group by group: where their weights
+// are found again, keys are too long, or it is counted where voxels are won.
+#define KEEPS_GROUP(p)                                                                             \
+  (HAS_OTHER_ARRAYS || (!KEEPS_KEYS && (p)->Pass != DEFORMVOLUME_PASS_DIRECT) ||                   \
+    (p)->Pass == DEFORMVOLUME_PASS_MARK)
 
 // Samples that have been found in cells, before they are stored: many at once, as a loop that ends after
 // a few is mispredicted each time. Appending writes LANES of them whatever their number.
 typedef struct
 {
   int Places[FOUND_CAPACITY + 2 * LANES]; // in the output
-  int Lanes[FOUND_CAPACITY + 2 * LANES]; // of their cells
+  int Cells[FOUND_CAPACITY + 2 * LANES]; // as KEEPS_KEYS says; nothing in the first pass, but for other arrays
   LANE_ARRAYS(FOUND_VALUES)
   uint Count;
 } Found;
@@ -133,18 +138,21 @@ static void StoreFound(Found* found, const Group* group, int x, int y, int z, Ou
   for (uint i = 0; i < count; ++i)
   {
     const uint place = found->Places[i];
-    if (pass != DEFORMVOLUME_PASS_DIRECT &&
-      !TakesPlace(output, place,
-        MakeKey(x + 2 * (found->Lanes[i] & (INVERTED_LANE - 1)), y, z,
-          found->Lanes[i] & INVERTED_LANE, p),
-        p))
+    if (pass != DEFORMVOLUME_PASS_DIRECT)
     {
-      continue;
+      const int cell = found->Cells[i];
+      const KEY key = KEEPS_KEYS
+        ? (KEY)(uint)cell
+        : MakeKey(x + 2 * (cell & (INVERTED_LANE - 1)), y, z, cell & INVERTED_LANE, p);
+      if (!TakesPlace(output, place, key, p))
+      {
+        continue;
+      }
     }
     coverage[place] = 1;
     LANE_ARRAYS(LANE_STORE)
 #if HAS_OTHER_ARRAYS
-    const int lane = found->Lanes[i] & (INVERTED_LANE - 1);
+    const int lane = found->Cells[i] & (INVERTED_LANE - 1);
     StoreOtherArrays(group, lane, x + 2 * lane, y, z, place, p ARRAY_ARGUMENTS);
 #endif
   }
