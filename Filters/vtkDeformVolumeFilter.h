@@ -373,7 +373,7 @@ public:
 
   ///@{
   /**
-   * Bricks of 64 x 16 x 16 cells that the volume has, and of how many of them the last execution
+   * Bricks of 192 x 16 x 16 cells that the volume has, and of how many of them the last execution
    * resampled all or a part; 0 with MESH_RASTERIZATION, which knows no bricks.
    */
   vtkGetMacro(NumberOfBricks, vtkIdType);

@@ -208,7 +208,7 @@ struct DeformReport
   bool Overlapping = false;
   /// Tetrahedra of the deformation mesh without volume at rest; counted by MeshRasterization only.
   std::int64_t NumberOfFlatTetrahedra = 0;
-  /// Bricks of 64 x 16 x 16 cells of the volume, and how many of them were resampled: fewer only
+  /// Bricks of 192 x 16 x 16 cells of the volume, and how many of them were resampled: fewer only
   /// in an incremental update. 0 for MeshRasterization.
   std::int64_t NumberOfBricks = 0;
   std::int64_t NumberOfResampledBricks = 0;
