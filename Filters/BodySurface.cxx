@@ -166,8 +166,9 @@ vtkSmartPointer<vtkPolyData> ExtractBodySurface(vtkImageData* volume, vtkDataArr
     coarse.Spacing[axis] = factor[axis] * size;
     coarse.IndexStep[axis] = static_cast<double>(factor[axis]);
     const double border = parameters.Margin / coarse.Spacing[axis];
-    inside *= dimensions[axis] / static_cast<double>(factor[axis]);
-    count *= dimensions[axis] / static_cast<double>(factor[axis]) + 2.0 * border;
+    const double blocks = dimensions[axis] / static_cast<double>(factor[axis]);
+    inside *= blocks;
+    count *= blocks + 2.0 * border;
     if (!(border <= MaximumMarginValues && count - inside <= MaximumMarginValues))
     {
       std::ostringstream text;

@@ -182,7 +182,7 @@ void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode,
 
 } // namespace
 
-MeshParts GetMeshParts(vtkDataObject* object, const std::string& name)
+MeshParts FindGrids(vtkDataObject* object)
 {
   MeshParts parts;
   if (const auto grid = vtkUnstructuredGrid::SafeDownCast(object))
@@ -199,11 +199,17 @@ MeshParts GetMeshParts(vtkDataObject* object, const std::string& name)
         parts.push_back(leaf);
       }
     }
-    if (parts.empty())
-    {
-      throw Error("The composite dataset that is the " + name +
-        " holds no vtkUnstructuredGrid. Connect one with tetrahedra.");
-    }
+  }
+  return parts;
+}
+
+MeshParts GetMeshParts(vtkDataObject* object, const std::string& name)
+{
+  MeshParts parts = FindGrids(object);
+  if (parts.empty() && vtkCompositeDataSet::SafeDownCast(object))
+  {
+    throw Error("The composite dataset that is the " + name +
+      " holds no vtkUnstructuredGrid. Connect one with tetrahedra.");
   }
   if (parts.empty())
   {

@@ -29,6 +29,9 @@ using MeshParts = std::vector<vtkUnstructuredGrid*>;
 /// Tells two states of VTK objects apart: addresses and modification times.
 using Stamp = std::vector<std::pair<const void*, vtkMTimeType>>;
 
+/// The grids in a data object, which may have none, or be null.
+MeshParts FindGrids(vtkDataObject* object);
+
 /// The grids in a data object, which the Errors thrown call by `name`: there must be one, and it
 /// must have points.
 MeshParts GetMeshParts(vtkDataObject* object, const std::string& name);

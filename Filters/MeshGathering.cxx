@@ -3,8 +3,6 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellType.h"
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
@@ -27,34 +25,12 @@ namespace
 const char* const MESH = "deformation mesh on input port 1";
 const char* const REST = "rest configuration on input port 2";
 
-// The grids of a piece, which may have none.
-MeshParts GetPieceParts(vtkDataObject* object)
-{
-  MeshParts parts;
-  if (const auto grid = vtkUnstructuredGrid::SafeDownCast(object))
-  {
-    parts.push_back(grid);
-  }
-  else if (const auto composite = vtkCompositeDataSet::SafeDownCast(object))
-  {
-    const auto leaves = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
-    for (leaves->InitTraversal(); !leaves->IsDoneWithTraversal(); leaves->GoToNextItem())
-    {
-      if (const auto leaf = vtkUnstructuredGrid::SafeDownCast(leaves->GetCurrentDataObject()))
-      {
-        parts.push_back(leaf);
-      }
-    }
-  }
-  return parts;
-}
-
 Stamp GetPieceStamp(const DeformationSource& source)
 {
   Stamp stamp;
   for (vtkDataObject* object : { source.Shape, source.Rest })
   {
-    const MeshParts parts = GetPieceParts(object);
+    const MeshParts parts = FindGrids(object);
     for (const Stamp& part :
       { GetCellsStamp(parts), GetPointsStamp(parts), GetPointVectorsStamp(parts) })
     {
@@ -125,8 +101,8 @@ struct MeshGathering::Piece
 
 MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
 {
-  const MeshParts shape = GetPieceParts(source.Shape);
-  const MeshParts rest = source.Rest ? GetPieceParts(source.Rest) : shape;
+  const MeshParts shape = FindGrids(source.Shape);
+  const MeshParts rest = source.Rest ? FindGrids(source.Rest) : shape;
   const std::size_t nodes = GetNumberOfNodes(shape);
   Piece piece;
   if (nodes != GetNumberOfNodes(rest))

@@ -55,20 +55,19 @@ std::pair<std::size_t, std::uint32_t> BrickGrid::GetBrick(
 {
   std::size_t brick = 0;
   std::size_t stride = 1;
-  std::uint32_t bits = 0;
+  int place[3];
   for (int axis = 0; axis < 3; ++axis)
   {
     const auto count = static_cast<std::size_t>(parts.Count[axis]);
     const int cell = static_cast<int>(part % count) * parts.Cells[axis];
-    const int place = cell % this->Cells[axis];
-    bits |= axis == 0
-      ? 1U << place / DEFORMVOLUME_COLUMN
-      : (place < this->Cells[axis] / 2 ? 1U : 2U) << (DEFORMVOLUME_COLUMNS + 2 * (axis - 1));
+    place[axis] = cell % this->Cells[axis];
     brick += stride * static_cast<std::size_t>(cell / this->Cells[axis]);
     part /= count;
     stride *= static_cast<std::size_t>(this->Count[axis]);
   }
-  return { brick, bits };
+  return { brick,
+    MakeSectionBits(static_cast<std::uint32_t>(place[0] / DEFORMVOLUME_COLUMN),
+      place[1] >= this->Cells[1] / 2, place[2] >= this->Cells[2] / 2) };
 }
 
 Extent BrickGrid::GetVertices(std::size_t brick, int reach) const

@@ -13,6 +13,13 @@
 namespace deformvolume
 {
 
+/// The bits that a section of a brick is run by, from the lowest one on (DEFORMVOLUME_BRICK_BITS).
+inline std::uint32_t MakeSectionBits(std::uint32_t column, bool upperY, bool upperZ)
+{
+  return 1U << column | (upperY ? 2U : 1U) << DEFORMVOLUME_COLUMNS |
+    (upperZ ? 2U : 1U) << (DEFORMVOLUME_COLUMNS + 2);
+}
+
 /// The bricks of cells that a lattice is worked on in, or the parts of these bricks.
 struct BrickGrid
 {

@@ -51,7 +51,8 @@ typedef struct
   _Pragma("clang loop vectorize(disable) unroll_count(4)")                                         \
   for (uint i = 0; i < count; ++i)                                                                 \
   {                                                                                                \
-    target##index[(uint)found->Places[i]] = LANE_CONVERT_##BITS(TYPE, found->Values##index[i]);    \
+    const uint place = found->Places[i];                                                           \
+    LANE_STORE(index, TYPE, BITS, SLOT)                                                            \
   }
 
 #if HAS_OTHER_ARRAYS
@@ -112,7 +113,7 @@ static __attribute__((noinline)) void StoreOtherArrays(const Group* group, int l
 typedef struct
 {
   int Places[FOUND_CAPACITY + 2 * LANES]; // in the output
-  int Cells[FOUND_CAPACITY + 2 * LANES]; // as KEEPS_KEYS says; nothing in the first pass, but for other arrays
+  int Cells[FOUND_CAPACITY + 2 * LANES]; // as KEEPS_KEYS says; in the first pass for other arrays only
   LANE_ARRAYS(FOUND_VALUES)
   uint Count;
 } Found;

@@ -78,8 +78,7 @@ void IncrementalUpdate::Start(const BrickGrid& bricks, const Lattice& lattice, c
   this->OutputExtent = output;
   for (int axis = 0; axis < 3; ++axis)
   {
-    this->PatchCount[axis] =
-      static_cast<int>((GetSize(output, axis) + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH);
+    this->PatchCount[axis] = static_cast<int>(DEFORMVOLUME_PATCHES(GetSize(output, axis)));
   }
   this->Boxes.resize(parts);
   this->LastBoxes.resize(parts);

@@ -126,6 +126,8 @@ typedef struct
 // Voxels of a patch of the output on each axis: what is cleared where a part is made anew, and what
 // is looked at where voxels are not settled.
 #define DEFORMVOLUME_PATCH 8
+// Patches that so many voxels on an axis lie in.
+#define DEFORMVOLUME_PATCHES(voxels) (((voxels) + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH)
 
 // Bytes that a work-item of the kernels Fill1 to Fill8 writes.
 #define DEFORMVOLUME_FILLED_BYTES 65536
@@ -147,8 +149,8 @@ static size_t PositionIndex(int x, int y, int z, const KernelParameters* p)
 // Patches of the output along x that hold the voxels with an y and a z: number of the first one.
 static size_t PatchRow(size_t y, size_t z, const KernelParameters* p)
 {
-  const size_t width = (p->OutputSize[0] + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH;
-  const size_t height = (p->OutputSize[1] + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH;
+  const size_t width = DEFORMVOLUME_PATCHES(p->OutputSize[0]);
+  const size_t height = DEFORMVOLUME_PATCHES(p->OutputSize[1]);
   return (z / DEFORMVOLUME_PATCH * height + y / DEFORMVOLUME_PATCH) * width;
 }
 

@@ -36,8 +36,8 @@ typedef struct
 
 static Patch PatchOf(uint number, const KernelParameters* p)
 {
-  const uint width = (p->OutputSize[0] + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH;
-  const uint height = (p->OutputSize[1] + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH;
+  const uint width = DEFORMVOLUME_PATCHES(p->OutputSize[0]);
+  const uint height = DEFORMVOLUME_PATCHES(p->OutputSize[1]);
   const uint index[3] = { number % width, number / width % height, number / width / height };
   Patch patch;
   for (int axis = 0; axis < 3; ++axis)

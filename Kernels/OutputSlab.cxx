@@ -2,6 +2,7 @@
 #include "OutputSlab.h"
 
 #include "Background.h"
+#include "BrickPoints.h"
 #include "KernelProgram.h"
 
 #include <algorithm>
@@ -18,10 +19,9 @@ namespace
 /// The bits of a section of a brick, as DEFORMVOLUME_BRICK_BITS says.
 cl_uint GetSectionBits(std::size_t section)
 {
-  const std::size_t column = section % DEFORMVOLUME_COLUMNS;
   const std::size_t halves = section / DEFORMVOLUME_COLUMNS;
-  return (1U << column | (halves & 1 ? 2U : 1U) << DEFORMVOLUME_COLUMNS |
-           (halves & 2 ? 2U : 1U) << (DEFORMVOLUME_COLUMNS + 2))
+  return MakeSectionBits(
+           static_cast<cl_uint>(section % DEFORMVOLUME_COLUMNS), halves & 1, halves & 2)
     << DEFORMVOLUME_BRICK_BITS;
 }
 
@@ -340,8 +340,7 @@ std::uint64_t OutputSlab::CountAllPatches() const
   std::uint64_t patches = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
-    patches *= static_cast<std::uint64_t>(
-      (GetSize(this->SlabExtent, axis) + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH);
+    patches *= static_cast<std::uint64_t>(DEFORMVOLUME_PATCHES(GetSize(this->SlabExtent, axis)));
   }
   return patches;
 }

@@ -222,6 +222,19 @@ static Candidates FindCandidates(Vector low, Vector high, int open, const Kernel
   return c;
 }
 
+// Those of a cell whose vertices are all there.
+static Candidates CandidatesOfCell(const Vector* q, int open, const KernelParameters* p)
+{
+  Vector low = q[0];
+  Vector high = q[0];
+  for (int v = 1; v < 8; ++v)
+  {
+    low = Minimum(low, q[v]);
+    high = Maximum(high, q[v]);
+  }
+  return FindCandidates(low, high, open, p);
+}
+
 static int IsEmpty(Candidates c)
 {
   return c.Low.x > c.High.x || c.Low.y > c.High.y || c.Low.z > c.High.z;
@@ -314,14 +327,7 @@ static void ResampleTetrahedra(const SamplingMesh* mesh, int x, int y, int z, co
 // Whether the bounds of a cell meet a patch of the output with voxels that are not settled.
 static int TouchesUnsettled(const Vector* q, const Output* output, const KernelParameters* p)
 {
-  Vector low = q[0];
-  Vector high = q[0];
-  for (int v = 1; v < 8; ++v)
-  {
-    low = Minimum(low, q[v]);
-    high = Maximum(high, q[v]);
-  }
-  const Candidates c = FindCandidates(low, high, 0, p);
+  const Candidates c = CandidatesOfCell(q, 0, p);
   if (IsEmpty(c))
   {
     return 0;
@@ -388,16 +394,9 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
   output->Assumed |= (state.Regular & ~state.Interior) != 0;
   if (regular)
   {
-    Vector low = q[0];
-    Vector high = q[0];
-    for (int v = 1; v < 8; ++v)
-    {
-      low = Minimum(low, q[v]);
-      high = Maximum(high, q[v]);
-    }
     // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
-    const Candidates c = FindCandidates(
-      low, high, state.Interior == 255 && !DEFORMVOLUME_IS_CLOSED(p->Pass), p);
+    const Candidates c =
+      CandidatesOfCell(q, state.Interior == 255 && !DEFORMVOLUME_IS_CLOSED(p->Pass), p);
     if (!IsEmpty(c))
     {
       ResampleUprightCell(mesh, x, y, z, q, state, c, output, p ARRAY_ARGUMENTS);
