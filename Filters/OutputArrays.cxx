@@ -7,6 +7,7 @@
 #include "vtkLookupTable.h"
 #include "vtkPointData.h"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -25,12 +26,26 @@ vtkSmartPointer<vtkDataArray> MakeMask(vtkIdType numberOfTuples)
 }
 
 // Whether an array can be made into what MakeLike() would make of another, given without tuples.
+// The size of the output follows the deformation, and memory for some voxels more or less serves as
+// well.
 bool CanServe(vtkDataArray* last, vtkDataArray* wanted, vtkIdType numberOfTuples)
 {
+  constexpr vtkIdType mostWaste = 2;
   return std::strcmp(last->GetClassName(), wanted->GetClassName()) == 0 &&
     last->GetNumberOfComponents() == wanted->GetNumberOfComponents() &&
-    last->GetNumberOfTuples() == numberOfTuples &&
+    numberOfTuples >= last->GetSize() / last->GetNumberOfComponents() / mostWaste &&
     last->HasAComponentName() == wanted->HasAComponentName();
+}
+
+// Gives an array its size, for values to be written. Where it must grow it may soon grow again.
+void SetSize(vtkDataArray* array, vtkIdType numberOfTuples)
+{
+  constexpr vtkIdType reserve = 32; // one part in so many
+  if (numberOfTuples > array->GetSize() / array->GetNumberOfComponents())
+  {
+    array->Resize(numberOfTuples + numberOfTuples / reserve);
+  }
+  array->SetNumberOfTuples(numberOfTuples);
 }
 
 bool IsHeldByOthers(vtkDataArray* array)
@@ -90,9 +105,11 @@ std::uint64_t OutputArrays::Prepare(
   std::uint64_t bytes = 0;
   for (const auto& array : this->Last)
   {
-    bytes += IsHeldByOthers(array) ? 0
-                                   : static_cast<std::uint64_t>(array->GetNumberOfValues()) *
-        static_cast<std::uint64_t>(array->GetDataTypeSize());
+    const vtkIdType values =
+      std::min(array->GetSize(), numberOfTuples * array->GetNumberOfComponents());
+    bytes += IsHeldByOthers(array)
+      ? 0
+      : static_cast<std::uint64_t>(values) * static_cast<std::uint64_t>(array->GetDataTypeSize());
   }
   return bytes;
 }
@@ -100,7 +117,8 @@ std::uint64_t OutputArrays::Prepare(
 void OutputArrays::Make(
   const std::vector<SourceArray>& sources, vtkImageData* image, DeformRequest& request)
 {
-  if (!this->Last.empty() && GetStamp(this->Last) == this->LastStamp)
+  if (!this->Last.empty() && this->Last.back()->GetNumberOfTuples() == this->NumberOfTuples &&
+    GetStamp(this->Last) == this->LastStamp)
   {
     for (std::size_t i = 0; i < sources.size(); ++i)
     {
@@ -115,6 +133,7 @@ void OutputArrays::Make(
     if (!this->Last.empty() && !IsHeldByOthers(this->Last[i]))
     {
       made = this->Last[i];
+      SetSize(made, this->NumberOfTuples);
       Describe(made, isMask ? MakeMask(0) : MakeLike(sources[i].Array, 0));
     }
     else

@@ -40,9 +40,6 @@
 //   LANE_SLOTS           how many these are
 //   STORE_OTHER_ARRAYS   statements that store all other arrays at a sample; HAS_OTHER_ARRAYS 0 or 1
 
-#define MAXIMUM_EXTENT 7.99f  // voxels: the normals of larger cells are not exact in float
-#define ALMOST_ONE (255.0f / 256.0f) // ceil(v) = trunc(v + ALMOST_ONE) for multiples of 1/256
-
 // 1-norm of a vector.
 #define NORM(v) (fabs(v##x) + fabs(v##y) + fabs(v##z))
 // Barycentric coordinates of vertex c relative to the central tetrahedron.
@@ -57,7 +54,6 @@
     b##c##6 = fma(rx, n6x, fma(ry, n6y, rz * n6z));                                                \
     b##c##0 = ((1.0f - b##c##3) - b##c##5) - b##c##6;                                              \
   }
-#define EIGHT(OP, C) OP(OP(OP(C##0, C##1), OP(C##2, C##3)), OP(OP(C##4, C##5), OP(C##6, C##7)))
 
 // What became of LANES cells, as bits.
 typedef struct
@@ -70,11 +66,9 @@ typedef struct
 // may not be interior. only: the cells to look at, as bits. exact: whether the samples that floats do not
 // decide are decided by integers. What cells that must be repeated have written is not counted.
 static __attribute__((always_inline)) void ResampleGroup(const Group* group, int x, int y, int z,
-  int odd, int border, uint only, int exact, const SamplingMesh* mesh, Output* output,
+  int odd, int border, uint only, int exact, const GroupCandidates* c, Output* output,
   Found* found, Outcome* outcome, const KernelParameters* p ARRAY_PARAMETERS)
 {
-#define LOAD_VERTEX(v)                                                                             \
-  const FLOATS X##v = VERTEX(v, 0), Y##v = VERTEX(v, 1), Z##v = VERTEX(v, 2);
   LOAD_VERTEX(0)
   LOAD_VERTEX(1)
   LOAD_VERTEX(2)
@@ -84,83 +78,15 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   LOAD_VERTEX(6)
   LOAD_VERTEX(7)
 
-  // The box of the cell.
-  const FLOATS lowX = EIGHT(Least, X), lowY = EIGHT(Least, Y), lowZ = EIGHT(Least, Z);
-  const FLOATS highX = EIGHT(Most, X), highY = EIGHT(Most, Y), highZ = EIGHT(Most, Z);
-  const FLOATS extent = Most(highX - lowX, Most(highY - lowY, highZ - lowZ));
-  // Cells that have a vertex with a position, and none beyond the volume.
-  INTS there = (lowX > 0.5f * NOT_THERE) & (lowX < 0.5f * NO_SOURCE);
+  const INTS cellX = x + 2 * LANE_INDEX;
+  const int mirror = Mirror(x, y, z, p);
+  const FLOATS extent = c->Extent;
+  INTS there = c->There;
   if (exact)
   {
     there &= ((INTS)only & LANE_BITS) != 0;
   }
-
-  // Cells that are boxes, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume:
-  // each coordinate varies along one axis of the lattice only. If one edge of no cell is parallel to an
-  // axis, no need to look. Lanes that hold no cell hold anything, and must not decide.
-  INTS box = 0;
-  if (LaneBits(there & ((X0 == X1) + (Y0 == Y1) + (Z0 == Z1) == -2)))
-  {
-#define SAME(C, a, b) (C##a == C##b)
-#define ALONG_X(C) (SAME(C, 0, 1) & SAME(C, 2, 3) & SAME(C, 4, 5) & SAME(C, 6, 7))
-#define ALONG_Z(C) (SAME(C, 0, 2) & SAME(C, 1, 3) & SAME(C, 4, 6) & SAME(C, 5, 7))
-#define ALONG_Y(C) (SAME(C, 0, 4) & SAME(C, 1, 5) & SAME(C, 2, 6) & SAME(C, 3, 7))
-#define ALIGNED(C)                                                                                 \
-  ((ALONG_X(C) & ALONG_Y(C)) | (ALONG_X(C) & ALONG_Z(C)) | (ALONG_Y(C) & ALONG_Z(C)))
-    box = ALIGNED(X) & ALIGNED(Y) & ALIGNED(Z);
-  }
-
-  // Candidates are half-open inside the mesh: by the fill rule no sample on the upper side is taken.
-  GroupState state;
-  state.Whole = -1;
-  const INTS cellX = x + 2 * LANE_INDEX;
-  const int mirror = Mirror(x, y, z, p);
-  FLOATS toEndX = ALMOST_ONE, toEndY = ALMOST_ONE, toEndZ = ALMOST_ONE;
-  if (border || DEFORMVOLUME_IS_CLOSED(p->Pass))
-  {
-    toEndX = toEndY = toEndZ = 1.0f;
-  }
-  if (border)
-  {
-    StatesOfGroup(mesh, x, y, z, &state, p);
-    // Boxes on the border leave what is on their high sides to the next cells, if there are any. That the
-    // high sides are the upper ones is wanted for that.
-    if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && LaneBits(box))
-    {
-#define RISES(C, to) ((mirror & to) ? C##to < C##0 : C##to > C##0)
-      const INTS inner = state.Interior == 255;
-      box &= there & (inner | ((state.Regular == 255) & RISES(X, 1) & RISES(Z, 2) & RISES(Y, 4)));
-      output->Assumed |= LaneBits(box & ~inner) != 0;
-      toEndX = (box & (cellX != p->Size[0] - 2)) ? ALMOST_ONE : toEndX;
-      toEndY = (box & (INTS)(y != p->Size[1] - 2 ? -1 : 0)) ? ALMOST_ONE : toEndY;
-      toEndZ = (box & (INTS)(z != p->Size[2] - 2 ? -1 : 0)) ? ALMOST_ONE : toEndZ;
-    }
-  }
-#define FIRST_OF(low, size) TO_INTS(Least(Most(low, 0.0f), (float)(size)) + ALMOST_ONE)
-#define END_OF(high, toEnd, size) TO_INTS(Most(Least((high) + toEnd, (float)(size)), 0.0f))
-  INTS firstX = FIRST_OF(lowX, p->OutputSize[0]);
-  INTS firstY = FIRST_OF(lowY, p->OutputSize[1]);
-  INTS firstZ = FIRST_OF(lowZ, p->OutputSize[2]);
-  INTS countX = END_OF(highX, toEndX, p->OutputSize[0]) - firstX;
-  INTS countY = END_OF(highY, toEndY, p->OutputSize[1]) - firstY;
-  INTS countZ = END_OF(highZ, toEndZ, p->OutputSize[2]) - firstZ;
-  if (DEFORMVOLUME_IS_CLOSED(p->Pass) && !exact)
-  {
-    // No cell that touches a voxel to be won.
-    const INTS some = there & (countX > 0) & (countY > 0) & (countZ > 0);
-    const int first[3] = { LeastAmong(some, firstX), LeastAmong(some, firstY),
-      LeastAmong(some, firstZ) };
-    const int last[3] = { MostAmong(some, firstX + countX - 1), MostAmong(some, firstY + countY - 1),
-      MostAmong(some, firstZ + countZ - 1) };
-    if (!LaneBits(some) || !AnyUnsettled(output->Unsettled, first, last, p))
-    {
-      const Outcome nothing = { 0, 0 };
-      *outcome = nothing;
-      return;
-    }
-  }
-  const INTS small = extent <= MAXIMUM_EXTENT;
-  const INTS fit = there & small & state.Whole;
+  const INTS fit = there & (extent <= MAXIMUM_EXTENT) & (border ? c->State.Whole : (INTS)(-1));
   // Cells without candidates need not be looked at, unless they may be inverted.
 
   // Gradients of l3, l5 and l6.
@@ -198,47 +124,37 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   const INTS inverted = nice & (odd ? determinant > 0.0f : determinant < 0.0f);
   INTS unsure = there & ~nice;
   INTS ambiguous = 0;
-  const INTS none = (countX <= 0) | (countY <= 0) | (countZ <= 0);
-  const INTS candidates = nice & ~none;
-  if (p->IsPart)
+  const INTS number = nice & c->Number;
+  int iterations = c->Iterations;
+  if (exact || LaneBits(fit & ~nice))
   {
-    // A cell that reaches beyond the part is looked at as in the whole: what becomes of it must not
-    // depend on where the part ends. It begins less than MAXIMUM_EXTENT before the part.
-#define WHOLE_FIRST(low, axis)                                                                     \
-  TO_INTS(Most(low, (float)max(p->WholeFirst[axis], -8)) + (8.0f + ALMOST_ONE)) - 8
-#define WHOLE_END(high, toEnd, axis)                                                               \
-  TO_INTS(Least((high) + toEnd, (float)min(p->WholeEnd[axis], p->OutputSize[axis] + 8)) + 8.0f) - 8
-    firstX = WHOLE_FIRST(lowX, 0);
-    firstY = WHOLE_FIRST(lowY, 1);
-    firstZ = WHOLE_FIRST(lowZ, 2);
-    countX = WHOLE_END(highX, toEndX, 0) - firstX;
-    countY = WHOLE_END(highY, toEndY, 1) - firstY;
-    countZ = WHOLE_END(highZ, toEndZ, 2) - firstZ;
+    iterations = MostOf(number);
   }
-  const INTS number = candidates & (countX * countY * countZ);
-  const int iterations = MostOf(number);
   INTS count = 0; // writes of each cell
   uint written = 0;
   if (iterations)
   {
     // Boxes take all their candidates. Where a vertex lies on a sample its value is taken bit for bit: the
     // weights, which rounding may have touched, are made 0 and 1.
-    box &= candidates;
-    const int snap = LaneBits(box) != 0;
+    const int snap = c->HasBoxes;
+    const INTS box = snap ? nice & c->Box : (INTS)(0);
+    const INTS countX = c->Count[0];
+    const INTS countY = c->Count[1];
     // One division for four.
     const FLOATS product12 = b16 * b25, product47 = b43 * b70;
     const FLOATS inverses = 1.0f / (product12 * product47);
     const FLOATS inverse12 = inverses * product47, inverse47 = inverses * product12;
     const FLOATS s1 = inverse12 * b25, s2 = inverse12 * b16;
     const FLOATS s4 = inverse47 * b70, s7 = inverse47 * b43;
-    const FLOATS startX = TO_FLOATS(firstX) - X0;
-    const FLOATS startY = TO_FLOATS(firstY) - Y0;
-    const FLOATS startZ = TO_FLOATS(firstZ) - Z0;
+    const FLOATS startX = TO_FLOATS(c->First[0]) - X0;
+    const FLOATS startY = TO_FLOATS(c->First[1]) - Y0;
+    const FLOATS startZ = TO_FLOATS(c->First[2]) - Z0;
     const FLOATS endX = startX + (TO_FLOATS(countX) - 0.5f);
     const FLOATS endY = startY + (TO_FLOATS(countY) - 0.5f);
     const INTS toNextRow = p->OutputSize[0] - countX;
     const INTS toNextPlane = (p->OutputSize[1] - countY) * p->OutputSize[0];
-    INTS place = (firstZ * p->OutputSize[1] + firstY) * p->OutputSize[0] + firstX;
+    INTS place =
+      (c->First[2] * p->OutputSize[1] + c->First[1]) * p->OutputSize[0] + c->First[0];
     FLOATS rx = startX;
     FLOATS ry = startY;
     FLOATS rz = startZ;
@@ -274,8 +190,8 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
           if (border)
           {
             // As IsOwner.
-            const INTS outer = (simplex != 0) & ((simplex & state.Interior) == 0);
-            const INTS regular = (simplex & ~state.Regular) == 0;
+            const INTS outer = (simplex != 0) & ((simplex & c->State.Interior) == 0);
+            const INTS regular = (simplex & ~c->State.Regular) == 0;
             const INTS first = (((simplex & LOW_SIDE(0, mirror)) != 0) | (cellX == p->Size[0] - 2)) &
               (((simplex & LOW_SIDE(1, mirror)) != 0) | (INTS)(z == p->Size[2] - 2 ? -1 : 0)) &
               (((simplex & LOW_SIDE(2, mirror)) != 0) | (INTS)(y == p->Size[1] - 2 ? -1 : 0));
@@ -303,8 +219,8 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
         if (snap)
         {
           const FLOATS sx = rx + X0, sy = ry + Y0, sz = rz + Z0;
-          onVertex |= box & ((sx == lowX) | (sx == highX)) & ((sy == lowY) | (sy == highY)) &
-            ((sz == lowZ) | (sz == highZ));
+          onVertex |= box & ((sx == X0) | (sx == X7)) & ((sy == Y0) | (sy == Y7)) &
+            ((sz == Z0) | (sz == Z7));
         }
         if (snap || exact)
         {
@@ -366,22 +282,22 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
 }
 
 static __attribute__((noinline)) Outcome ResampleByFloats(const Group* group, int x, int y, int z,
-  int odd, int border, const SamplingMesh* mesh, Output* output, Found* found,
+  int odd, int border, const GroupCandidates* c, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Outcome outcome;
-  ResampleGroup(group, x, y, z, odd, border, 0, 0, mesh, output, found, &outcome, p ARRAY_ARGUMENTS);
+  ResampleGroup(group, x, y, z, odd, border, 0, 0, c, output, found, &outcome, p ARRAY_ARGUMENTS);
   return outcome;
 }
 
 // Returns the cells that are left to ResampleCell.
 static __attribute__((noinline)) uint ResampleByIntegers(const Group* group, int x, int y, int z,
-  int odd, int border, uint only, const SamplingMesh* mesh, Output* output, Found* found,
+  int odd, int border, uint only, const GroupCandidates* c, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Outcome outcome;
   ResampleGroup(
-    group, x, y, z, odd, border, only, 1, mesh, output, found, &outcome, p ARRAY_ARGUMENTS);
+    group, x, y, z, odd, border, only, 1, c, output, found, &outcome, p ARRAY_ARGUMENTS);
   return outcome.Unsure;
 }
 
@@ -397,14 +313,13 @@ static int EndIn(uint item, int halves, int cells)
   return item >> halves & 2 ? cells : cells / 2;
 }
 
-// A brick of cells, or some of its sections. bricks: those to work on, one a work-item
-// (DEFORMVOLUME_BRICK_BITS). rows: 4 HALF_ROW + 3 ROW_PLACES + 2 ROWS ROW floats (GetBrickMemory).
-__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
-  __global const uchar* state, __global const uchar* active, __global char* coverage,
+#define GROUPS (DEFORMVOLUME_BRICK_X / 2 / LANES + 1)
+
+// A brick of cells, or some of its sections. item: which (DEFORMVOLUME_BRICK_BITS).
+static void ResampleBrick(const SamplingMesh* mesh, uint item, __global char* coverage,
   __global KEY* winners, __global const char* unsettled, __global uint* counters,
-  __global const uint* bricks, __local float* rows, const KernelParameters p ARRAY_PARAMETERS)
+  __local float* rows, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
   Output outputs[DEFORMVOLUME_SECTIONS];
   for (int section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
   {
@@ -413,23 +328,22 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
   }
   Found found;
   found.Count = 0;
-  const uint item = bricks[p.ListBegin + get_global_id(0)];
   const uint brick = item & ((1u << DEFORMVOLUME_BRICK_BITS) - 1);
   // Cells of the brick, and the local x of its first place, which may lie before the volume.
-  const int bx = brick % p.BrickCount[0] * DEFORMVOLUME_BRICK_X + p.BrickOrigin[0];
-  const int by = brick / p.BrickCount[0] % p.BrickCount[1] * DEFORMVOLUME_BRICK_Y + p.BrickOrigin[1];
-  const int bz = brick / p.BrickCount[0] / p.BrickCount[1] * DEFORMVOLUME_BRICK_Z + p.BrickOrigin[2];
+  const int bx = brick % p->BrickCount[0] * DEFORMVOLUME_BRICK_X + p->BrickOrigin[0];
+  const int by = brick / p->BrickCount[0] % p->BrickCount[1] * DEFORMVOLUME_BRICK_Y + p->BrickOrigin[1];
+  const int bz = brick / p->BrickCount[0] / p->BrickCount[1] * DEFORMVOLUME_BRICK_Z + p->BrickOrigin[2];
   const uint columns = item >> DEFORMVOLUME_BRICK_BITS & ((1u << DEFORMVOLUME_COLUMNS) - 1);
   const int firstColumn = 31 - clz(columns & -columns);
   const int endColumn = 32 - clz(columns);
   const int halvesY = DEFORMVOLUME_BRICK_BITS + DEFORMVOLUME_COLUMNS;
   const int halvesZ = halvesY + 2;
   const int beginX = max(bx + firstColumn * DEFORMVOLUME_COLUMN, 0);
-  const int endX = min(bx + endColumn * DEFORMVOLUME_COLUMN, p.Size[0] - 1);
+  const int endX = min(bx + endColumn * DEFORMVOLUME_COLUMN, p->Size[0] - 1);
   const int beginY = max(by + BeginIn(item, halvesY, DEFORMVOLUME_BRICK_Y), 0);
-  const int endY = min(by + EndIn(item, halvesY, DEFORMVOLUME_BRICK_Y), p.Size[1] - 1);
-  const int beginZ = max(bz + BeginIn(item, halvesZ, DEFORMVOLUME_BRICK_Z), p.LayersBegin);
-  const int endZ = min(bz + EndIn(item, halvesZ, DEFORMVOLUME_BRICK_Z), p.LayersEnd);
+  const int endY = min(by + EndIn(item, halvesY, DEFORMVOLUME_BRICK_Y), p->Size[1] - 1);
+  const int beginZ = max(bz + BeginIn(item, halvesZ, DEFORMVOLUME_BRICK_Z), p->LayersBegin);
+  const int endZ = min(bz + EndIn(item, halvesZ, DEFORMVOLUME_BRICK_Z), p->LayersEnd);
   if (beginX >= endX || beginY >= endY || beginZ >= endZ)
   {
     return;
@@ -442,10 +356,10 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
   __local float* ring = displaced + 3 * ROW_PLACES;
   for (int i = 0; i < 2 * HALF_ROW; ++i)
   {
-    const int x = clamp(bx + i, 0, p.Size[0] - 1);
+    const int x = clamp(bx + i, 0, p->Size[0] - 1);
     __local float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
-    rest[0] = mesh.Map.Rest[x].Whole - p.OutputFirst[0] * 256;
-    rest[HALF_ROW] = mesh.Map.Rest[x].Fraction;
+    rest[0] = mesh->Map.Rest[x].Whole - p->OutputFirst[0] * 256;
+    rest[HALF_ROW] = mesh->Map.Rest[x].Fraction;
   }
   for (int row = 0; row < 2 * ROWS; ++row)
   {
@@ -459,11 +373,11 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
   RowFlags flags[2][ROWS];
   for (int z = beginZ; z <= endZ; ++z)
   {
-    const int plane = (p.First[2] + z) & 1;
+    const int plane = (p->First[2] + z) & 1;
     for (int y = beginY; y <= endY; ++y)
     {
-      flags[plane][y - by] = MapRow(&mesh, beginX, endX + 1, beginX - bx, y, z,
-        ring + (plane * ROWS + (y - by)) * ROW, restX, displaced, &p ARRAY_ARGUMENTS);
+      flags[plane][y - by] = MapRow(mesh, beginX, endX + 1, beginX - bx, y, z,
+        ring + (plane * ROWS + (y - by)) * ROW, restX, displaced, p ARRAY_ARGUMENTS);
     }
     if (z == beginZ)
     {
@@ -479,9 +393,13 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
         flags[1][low + 1].Border;
       const uint specials = flags[0][low].Special | flags[0][low + 1].Special |
         flags[1][low].Special | flags[1][low + 1].Special;
+      GroupCandidates candidates[2 * GROUPS];
+      for (int find = 1; find >= 0; --find)
+      {
       for (int k = (beginX - bx) >> 1 & ~(LANES - 1); bx + 2 * k < endX; k += LANES)
       {
         const uint span = ((2u << (2 * LANES / 8)) - 1) << (k >> 2);
+        const int border = (borders & span) != 0;
         Output* const output = outputs + 2 * k / DEFORMVOLUME_COLUMN +
           DEFORMVOLUME_COLUMNS *
             ((low >= DEFORMVOLUME_BRICK_Y / 2) + 2 * (z - 1 - bz >= DEFORMVOLUME_BRICK_Z / 2));
@@ -496,40 +414,70 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
             group.High[r] = row + ODD;
           }
           const int x = bx + 2 * k + side;
-          const int odd = (side ^ (p.First[1] + y) ^ (p.First[2] + z - 1)) & 1;
+          GroupCandidates* const c = candidates + 2 * k / LANES + side;
+          if (find)
+          {
+            FindGroupCandidates(&group, x, y, z - 1, border, mesh, output, c, p);
+            continue;
+          }
+          const int odd = (side ^ (p->First[1] + y) ^ (p->First[2] + z - 1)) & 1;
           uint again = (1u << LANES) - 1;
           if (!(specials & span))
           {
-            const int border = (borders & span) != 0;
+            if (c->Skip)
+            {
+              continue;
+            }
             const Outcome outcome = ResampleByFloats(
-              &group, x, y, z - 1, odd, border, &mesh, output, &found, &p ARRAY_ARGUMENTS);
+              &group, x, y, z - 1, odd, border, c, output, &found, p ARRAY_ARGUMENTS);
             again = outcome.Unsure;
             if (outcome.Ambiguous)
             {
-              again |= ResampleByIntegers(&group, x, y, z - 1, odd, border, outcome.Ambiguous, &mesh,
-                output, &found, &p ARRAY_ARGUMENTS);
+              again |= ResampleByIntegers(&group, x, y, z - 1, odd, border, outcome.Ambiguous, c,
+                output, &found, p ARRAY_ARGUMENTS);
             }
           }
           if (again)
           {
             // These are written again.
-            StoreFound(&found, &group, x, y, z - 1, output, &p ARRAY_ARGUMENTS);
+            StoreFound(&found, &group, x, y, z - 1, output, p ARRAY_ARGUMENTS);
           }
           FOR_EACH_LANE(lane, again)
           {
             const int cell = x + 2 * lane;
             if (cell >= beginX && cell < endX)
             {
-              ResampleCell(&mesh, cell, y, z - 1, output, &p ARRAY_ARGUMENTS);
+              ResampleCell(mesh, cell, y, z - 1, output, p ARRAY_ARGUMENTS);
             }
           }
         }
       }
+      }
     }
   }
-  StoreFound(&found, 0, 0, 0, 0, outputs, &p ARRAY_ARGUMENTS);
+  StoreFound(&found, 0, 0, 0, 0, outputs, p ARRAY_ARGUMENTS);
   for (int section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
   {
-    AddCounts(outputs + section, DEFORMVOLUME_SECTIONS * (size_t)brick + section, counters, &p);
+    AddCounts(outputs + section, DEFORMVOLUME_SECTIONS * (size_t)brick + section, counters, p);
+  }
+}
+
+// Bricks of a list from p.ListBegin to p.ListEnd. taken: how many of these work-items have begun to work on; 0 at
+// first. rows: 4 HALF_ROW + 3 ROW_PLACES + 2 ROWS ROW floats (GetBrickMemory).
+//
+// Why items take one brick after the other: drivers deal out work-groups in large portions, and wait at the end
+// for the thread that the system has let wait, or that has more to do.
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
+  __global const uchar* state, __global const uchar* active, __global char* coverage,
+  __global KEY* winners, __global const char* unsettled, __global uint* counters,
+  __global const uint* bricks, __global uint* taken, __local float* rows,
+  const KernelParameters p ARRAY_PARAMETERS)
+{
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
+  for (uint i = p.ListBegin + atomic_inc(taken); i < p.ListEnd;
+       i = p.ListBegin + atomic_inc(taken))
+  {
+    ResampleBrick(
+      &mesh, bricks[i], coverage, winners, unsettled, counters, rows, &p ARRAY_ARGUMENTS);
   }
 }

@@ -33,6 +33,7 @@ typedef struct
   int BrickOrigin[3]; // local index of the first cell of the first brick; may lie before the volume
   int BrickCount[3];  // bricks on each axis
   int ListBegin;      // place in the list of bricks of the first one to work on
+  int ListEnd;        // and one past the last
 } KernelParameters;
 
 // The undeformed position of the voxels with one index on an axis, in 1/256 output voxel: a whole
@@ -120,7 +121,7 @@ typedef struct
 #define DEFORMVOLUME_COUNT_CANDIDATES 5 // voxels that cells may have won
 #define DEFORMVOLUME_COUNTERS 6
 
-// Output voxels that a work-item of the kernel CountCovered takes.
+// Output voxels that a work-item takes of the kernels that count, settle or clear all that are covered or not.
 #define DEFORMVOLUME_COUNTED_VOXELS 4096
 
 // Voxels of a patch of the output on each axis: what is cleared where a part is made anew, and what

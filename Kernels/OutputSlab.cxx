@@ -38,6 +38,13 @@ BitsOf<T> GetBits(T value)
   return bits;
 }
 
+/// The group of a kernel whose items have much to do. Groups run on one thread, and drivers for
+/// processors put many items into one.
+cl::NDRange GetGroupOfBusyItems(const OpenCLContext& context)
+{
+  return context.GetDevice().IsProcessor ? cl::NDRange(1) : cl::NDRange(cl::NullRange);
+}
+
 /// Fills a buffer of so many elements. Processors do that with a kernel: see OutputClearing.cl.
 template <typename T>
 void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer, T value,
@@ -55,8 +62,8 @@ void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffe
   kernel.setArg(2, GetBits(value));
   constexpr std::uint64_t step = DEFORMVOLUME_FILLED_BYTES / sizeof(T);
   queue.enqueueNDRangeKernel(kernel, cl::NullRange,
-    cl::NDRange(static_cast<std::size_t>((size + step - 1) / step)), cl::NullRange, nullptr,
-    &events.back());
+    cl::NDRange(static_cast<std::size_t>((size + step - 1) / step)), GetGroupOfBusyItems(context),
+    nullptr, &events.back());
 }
 
 /// Clears patches of a buffer of so many elements a voxel.
@@ -347,8 +354,7 @@ std::uint64_t OutputSlab::CountAllPatches() const
 
 void OutputSlab::Settle(OpenCLContext& context, bool contested, std::vector<cl::Event>& events)
 {
-  const std::size_t items = static_cast<std::size_t>(
-    (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS);
+  const std::size_t items = this->CountItems();
   KernelParameters p = {};
   this->SetParameters(p);
   cl::Kernel kernel(GetOutputProgram(context), "Settle");
@@ -360,13 +366,19 @@ void OutputSlab::Settle(OpenCLContext& context, bool contested, std::vector<cl::
   kernel.setArg(5, p);
   events.emplace_back();
   this->Queue.enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(items), cl::NullRange, nullptr, &events.back());
+    kernel, cl::NullRange, cl::NDRange(items), GetGroupOfBusyItems(context), nullptr,
+    &events.back());
+}
+
+std::size_t OutputSlab::CountItems() const
+{
+  return static_cast<std::size_t>(
+    (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS);
 }
 
 std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::Event>& events)
 {
-  const std::size_t items = static_cast<std::size_t>(
-    (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS);
+  const std::size_t items = this->CountItems();
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, items * sizeof(cl_uint));
   cl::Kernel kernel(GetOutputProgram(context), "CountCovered");
   kernel.setArg(0, this->Coverage);
@@ -374,7 +386,8 @@ std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::E
   kernel.setArg(2, sums);
   events.emplace_back();
   this->Queue.enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(items), cl::NullRange, nullptr, &events.back());
+    kernel, cl::NullRange, cl::NDRange(items), GetGroupOfBusyItems(context), nullptr,
+    &events.back());
   return ReadSum(this->Queue, sums, items);
 }
 

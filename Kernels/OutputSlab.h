@@ -107,6 +107,7 @@ private:
   std::uint64_t CountAllPatches() const;
   std::vector<cl_uint> ReadCounters();
   std::uint64_t GetOffset(const DeformRequest& request) const;
+  std::size_t CountItems() const;
   void Clear(OpenCLContext& context, const cl::Buffer& buffer, double value, ElementType type,
     std::uint64_t size, std::vector<cl::Event>& events) const;
 

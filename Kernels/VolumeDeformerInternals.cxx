@@ -79,6 +79,7 @@ void VolumeDeformer::Internals::SelectDevice(const std::string& request)
     this->Queue =
       cl::CommandQueue(context.GetContext(), context.GetDevice().Device, CL_QUEUE_PROFILING_ENABLE);
     this->ReadQueue = cl::CommandQueue(context.GetContext(), context.GetDevice().Device);
+    this->TakenBricks = cl::Buffer(context.GetContext(), CL_MEM_READ_WRITE, sizeof(cl_uint));
   }
 }
 
@@ -329,6 +330,7 @@ void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
   if (lanes)
   {
     kernel.setArg(i++, this->Bricks);
+    kernel.setArg(i++, this->TakenBricks);
     kernel.setArg(i++, cl::Local(GetBrickMemory(*this->Context, this->Arrays)));
   }
   else
@@ -341,6 +343,14 @@ void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
     kernel.setArg(i++, chunk.Arrays[a]);
     kernel.setArg(i++, output.GetArray(a));
   }
+}
+
+void VolumeDeformer::Internals::LaunchBricks(cl::Kernel& kernel, const KernelParameters& p)
+{
+  this->Queue.enqueueFillBuffer(this->TakenBricks, cl_uint{ 0 }, 0, sizeof(cl_uint));
+  const cl_uint units = this->Context->GetDevice().Device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  this->Launch(kernel, cl::NDRange(std::min(units, static_cast<cl_uint>(p.ListEnd - p.ListBegin))),
+    cl::NDRange(1));
 }
 
 void VolumeDeformer::Internals::RunBricks(
@@ -366,8 +376,9 @@ void VolumeDeformer::Internals::RunBricks(
   for (std::size_t begin = 0; begin < bricks.size(); begin += step)
   {
     p.ListBegin = static_cast<int>(begin);
+    p.ListEnd = static_cast<int>(std::min(begin + step, bricks.size()));
     this->SetResamplingArguments(kernel, chunk, output, true, p);
-    this->Launch(kernel, cl::NDRange(std::min(step, bricks.size() - begin)), cl::NDRange(1));
+    this->LaunchBricks(kernel, p);
     this->ReportLaunch(request, previous);
   }
 }
@@ -403,10 +414,11 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
       const std::pair<cl_uint, cl_uint> bricks =
         this->Mesh->GetBrickRange(p.LayersBegin, p.LayersEnd);
       p.ListBegin = static_cast<int>(bricks.first);
+      p.ListEnd = static_cast<int>(bricks.second);
       this->SetResamplingArguments(kernel, chunk, output, lanes, p);
       if (lanes)
       {
-        this->Launch(kernel, cl::NDRange(bricks.second - bricks.first), cl::NDRange(1));
+        this->LaunchBricks(kernel, p);
       }
       else
       {

@@ -90,6 +90,7 @@ public:
   void SetResamplingArguments(cl::Kernel& kernel, const LatticeChunk& chunk,
     const OutputSlab& output, bool lanes, const KernelParameters& p) const;
   void RunExact(const DeformRequest& request, OutputSlab& output, int pass);
+  void LaunchBricks(cl::Kernel& kernel, const KernelParameters& p);
   void RunBricks(
     const DeformRequest& request, OutputSlab& output, int pass, const std::vector<cl_uint>& bricks);
   /// Waits for the launch before the last one, so that the device always has work, and reports.
@@ -136,7 +137,8 @@ public:
   FieldParameters Field = {};
   cl::Buffer FieldVectors;
   cl::Buffer Positions;
-  cl::Buffer Bricks; // the list of those to work on
+  cl::Buffer Bricks;      // the list of those to work on
+  cl::Buffer TakenBricks; // how many of these the launch that runs has taken
   /// Work on one slab goes on while the other is copied to the caller.
   std::array<OutputSlab, 2> Targets;
   MeshRasterizer Rasterizer;
