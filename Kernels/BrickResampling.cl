@@ -40,8 +40,6 @@
 //   LANE_SLOTS           how many these are
 //   STORE_OTHER_ARRAYS   statements that store all other arrays at a sample; HAS_OTHER_ARRAYS 0 or 1
 
-// 1-norm of a vector.
-#define NORM(v) (fabs(v##x) + fabs(v##y) + fabs(v##z))
 // Barycentric coordinates of vertex c relative to the central tetrahedron.
 #define COORDINATES(c)                                                                             \
   FLOATS b##c##3, b##c##5, b##c##6, b##c##0;                                                       \
@@ -116,8 +114,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   const FLOATS mostOwn = Most(Most(b16, b43), Most(b25, b70));
   const FLOATS leastOwn = Least(Least(b16, b43), Least(b25, b70));
   const INTS tame = (mostOwn <= -0.35f) & (leastOwn >= -1.0f);
-  const FLOATS bound = (tame ? (FLOATS)(3.4e-5f) : (FLOATS)(8.5e-5f)) * extent *
-    Most(Most(NORM(n3), NORM(n5)), NORM(n6));
+  const FLOATS bound = (tame ? (FLOATS)(3.4e-5f) : (FLOATS)(8.5e-5f)) * (c->Reach * fabs(inverse));
   const INTS nice = fit & (leastOther >= 0.015625f) & (mostOwn <= -0.125f) &
     (leastOwn >= -2.0f) & (bound <= 0.0078125f);
   // Coordinates do not tell a cell from its mirror image: all its tetrahedra are inverted then.
@@ -136,8 +133,15 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   {
     // Boxes take all their candidates. Where a vertex lies on a sample its value is taken bit for bit: the
     // weights, which rounding may have touched, are made 0 and 1.
+    // From where on the second smallest weight tells that a sample is inside.
     const int snap = c->HasBoxes;
-    const INTS box = snap ? nice & c->Box : (INTS)(0);
+    FLOATS decisive = bound;
+    INTS box = 0;
+    if (snap)
+    {
+      box = nice & c->Box;
+      decisive = box ? (FLOATS)(-1.0f) : bound;
+    }
     const INTS countX = c->Count[0];
     const INTS countY = c->Count[1];
     // One division for four.
@@ -177,7 +181,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
       const INTS maybe = (Least(lowA, lowB) >= -bound) & (number > i);
       // The second smallest weight decides: that opposite the corner may be 0.
       const FLOATS second = Least(Most(lowA, lowB), Least(highA, highB));
-      INTS hit = maybe & ((second > bound) | box);
+      INTS hit = maybe & (second > decisive);
       INTS onVertex = 0;
       const INTS undecided = maybe & ~hit;
       if (exact)

@@ -14,6 +14,7 @@ typedef struct
 {
   INTS There;     // cells that have a vertex with a position, and none beyond the volume
   FLOATS Extent;  // the longest edge of the box
+  FLOATS Reach;   // the extent times the box's three faces
   INTS First[3];  // the first candidate, in voxels of the output
   INTS Count[3];  // how many on each axis
   INTS Number;    // how many in all, of cells that are small and whole
@@ -41,7 +42,8 @@ static __attribute__((noinline)) void FindGroupCandidates(const Group* group, in
   LOAD_VERTEX(7)
   const FLOATS lowX = EIGHT(Least, X), lowY = EIGHT(Least, Y), lowZ = EIGHT(Least, Z);
   const FLOATS highX = EIGHT(Most, X), highY = EIGHT(Most, Y), highZ = EIGHT(Most, Z);
-  const FLOATS extent = Most(highX - lowX, Most(highY - lowY, highZ - lowZ));
+  const FLOATS sizeX = highX - lowX, sizeY = highY - lowY, sizeZ = highZ - lowZ;
+  const FLOATS extent = Most(sizeX, Most(sizeY, sizeZ));
   const INTS there = (lowX > 0.5f * NOT_THERE) & (lowX < 0.5f * NO_SOURCE);
 
   // Cells that are boxes, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume:
@@ -127,6 +129,7 @@ static __attribute__((noinline)) void FindGroupCandidates(const Group* group, in
   const INTS number = some & whole & (extent <= MAXIMUM_EXTENT) & (countX * countY * countZ);
   c->There = there;
   c->Extent = extent;
+  c->Reach = extent * fma(sizeX, sizeY, sizeZ * (sizeX + sizeY));
   c->First[0] = firstX;
   c->First[1] = firstY;
   c->First[2] = firstZ;
