@@ -12,8 +12,10 @@
 
 #ifdef __x86_64__
 #define PREFETCH(address) __builtin_prefetch((const void*)(size_t)(address));
+#define PREFETCH_TO_WRITE(address) __builtin_prefetch((const void*)(size_t)(address), 1);
 #else
 #define PREFETCH(address)
+#define PREFETCH_TO_WRITE(address)
 #endif
 
 #define HALF_ROW ((DEFORMVOLUME_BRICK_X / 2 / LANES + 1) * LANES)
@@ -35,6 +37,8 @@ typedef struct
 
 #define ROW_PLACES (DEFORMVOLUME_BRICK_X + 16) // of a row that is not split; vectors may reach beyond the end
 
+#define LOAD_PLACED(place) *(__local const PlacedFloat16*)(place)
+
 #if MAPPING == MAPPING_RUNS
 
 // The displacements of the vertices of a row from x to end, x, y and z apart, one after the other from
@@ -45,38 +49,35 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
   const float16 steps = (float16)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f, 8.0f, 9.0f, 10.0f,
     11.0f, 12.0f, 13.0f, 14.0f, 15.0f);
   const size_t row = RowIndex(y, z, p);
+  const uint first = m->RowBegins[row];
   const uint last = m->RowBegins[row + 1] - 1;
-  uint run = FindRun(m->Runs, m->RowBegins[row], last + 1, x);
-  int next = m->Runs[run].Tetrahedron;
+  __global const VertexRun* run =
+    m->Runs + (x == 0 ? first : FindRun(m->Runs, first, last + 1, x));
+  __global const VertexRun* const lastRun = m->Runs + last;
+  places += i - x;
   while (x < end)
   {
-    const int tetrahedron = next;
-    int runEnd = end;
-    if (run < last)
-    {
-      const VertexRun following = m->Runs[++run];
-      runEnd = min(following.Begin, end);
-      next = following.Tetrahedron;
-    }
+    const int tetrahedron = run->Tetrahedron;
+    const int runEnd = run < lastRun ? min(run[1].Begin, end) : end;
+    ++run;
     if (tetrahedron >= 0)
     {
       __global const TetrahedronRecord* const record = m->Records + tetrahedron;
       const RunDisplacement d = MakeRunDisplacement(record, y, z);
-      float16 index = (float)x + steps;
-      for (__local float* place = places + i; place < places + i + (runEnd - x); place += 16)
+      do
       {
         // From memory one number goes to all lanes at no cost, from another vector it does not.
-        const float16 offset = index - record->Origin[0];
-        index += 16.0f;
-        *(__local PlacedFloat16*)place =
-          record->Displacement[0] + (d.Across.x + record->AlongX[0] * offset);
-        *(__local PlacedFloat16*)(place + ROW_PLACES) =
-          record->Displacement[1] + (d.Across.y + record->AlongX[1] * offset);
-        *(__local PlacedFloat16*)(place + 2 * ROW_PLACES) =
-          record->Displacement[2] + (d.Across.z + record->AlongX[2] * offset);
-      }
+        __local float* const place = places + x;
+        const float16 offset = ((float)x + steps) - record->Origin[0];
+#define DISPLACE_AXIS(axis, across)                                                                \
+  *(__local PlacedFloat16*)(place + (axis)*ROW_PLACES) =                                           \
+    record->Displacement[axis] + MULTIPLY_ADD((float16)record->AlongX[axis], offset, (float16)across);
+        DISPLACE_AXIS(0, d.Across.x)
+        DISPLACE_AXIS(1, d.Across.y)
+        DISPLACE_AXIS(2, d.Across.z)
+        x += 16;
+      } while (x < runEnd);
     }
-    i += runEnd - x;
     x = runEnd;
   }
 }
@@ -85,9 +86,9 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
 #define ROW_DISPLACEMENT                                                                           \
   (float4)(displaced[i], displaced[i + ROW_PLACES], displaced[i + 2 * ROW_PLACES], 0.0f)
 #define ROW_DISPLACEMENTS_TOGETHER                                                                 \
-  const float16 xs = vload16(0, displaced + i);                                                    \
-  const float16 ys = vload16(0, displaced + i + ROW_PLACES);                                       \
-  const float16 zs = vload16(0, displaced + i + 2 * ROW_PLACES);                                   \
+  const float16 xs = LOAD_PLACED(displaced + i);                                                   \
+  const float16 ys = LOAD_PLACED(displaced + i + ROW_PLACES);                                      \
+  const float16 zs = LOAD_PLACED(displaced + i + 2 * ROW_PLACES);                                  \
   const float16 dx = (float16)(xs.even, xs.odd);                                                   \
   const float16 dy = (float16)(ys.even, ys.odd);                                                   \
   const float16 dz = (float16)(zs.even, zs.odd);
@@ -170,22 +171,17 @@ static float16 FollowFourLinks(const Mapping* m, __global const VertexLink* link
 #define SOURCES 0x0101010101010101UL
 #define INTERIORS 0x0202020202020202UL
 
-// The states of eight vertices; without a state the bits of SOURCES and INTERIORS only.
-static ulong StatesOfEight(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
+// The bits that both eights of sixteen vertices of a row have; rowInside: whether the row is not on the border
+// of the volume.
+static ulong StatesOf(
+  __global const uchar* rowState, int x, int rowInside, const KernelParameters* p)
 {
   if (p->HasState)
   {
-    return as_ulong(vload8(0, state + VertexInChunk(x, y, z, p)));
+    const ulong2 states = as_ulong2(vload16(0, rowState + x));
+    return states.x & states.y;
   }
-  const int inside = x > 0 && x + 8 < p->Size[0] && y > 0 && y < p->Size[1] - 1 && z > 0 &&
-    z < p->Size[2] - 1;
-  return SOURCES | (inside ? INTERIORS : 0);
-}
-
-// The bits that both eights of sixteen vertices have.
-static ulong StatesOf(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
-{
-  return StatesOfEight(state, x, y, z, p) & StatesOfEight(state, x + 8, y, z, p);
+  return SOURCES | (rowInside && x > 0 && x + 16 < p->Size[0] ? INTERIORS : 0);
 }
 
 #define STORE_EIGHT(v, place) *(__local PlacedFloat8*)(place) = v;
@@ -240,6 +236,8 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
   LANE_ARRAYS(FETCH_NEXT_ROW)
   RowFlags flags = { 0, 0 };
   const int begin = x;
+  const int rowInside = y > 0 && y < p->Size[1] - 1 && z > 0 && z < p->Size[2] - 1;
+  __global const uchar* const rowState = mesh->State + chunk;
   while (x < end)
   {
     // How many to take again.
@@ -250,7 +248,7 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
       again += (i - again) & 1;
       again = again > x - begin ? 0 : again;
     }
-    const ulong states = x - again + 16 <= end ? StatesOf(mesh->State, x - again, y, z, p) : 0;
+    const ulong states = x - again + 16 <= end ? StatesOf(rowState, x - again, rowInside, p) : 0;
     if (((i - again) & 1) || (states & SOURCES) != SOURCES)
     {
       // One vertex.
@@ -284,7 +282,7 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
 #define POSITIONS(C, OFFSET, WHOLE_EVEN, WHOLE_ODD, FRACTION_EVEN, FRACTION_ODD)                   \
   {                                                                                                \
     const float16 steps =                                                                          \
-      RoundSteps_float16(d##C * 256.0f + (float16)(FRACTION_EVEN, FRACTION_ODD));                  \
+      RoundSteps_float16(fma(d##C, (float16)256.0f, (float16)(FRACTION_EVEN, FRACTION_ODD)));      \
     const float16 position = (steps + (float16)(WHOLE_EVEN, WHOLE_ODD)) * (1.0f / 256.0f);         \
     STORE_EIGHT(position.lo, place + (OFFSET)*HALF_ROW)                                            \
     STORE_EIGHT(position.hi, place + ODD + (OFFSET)*HALF_ROW)                                      \

@@ -60,22 +60,15 @@ typedef struct
   uint Unsure;    // leave them to ResampleCell
 } Outcome;
 
-// LANES cells: from x on every second one. odd: parity of x, y and z together. border: whether a vertex
-// may not be interior. only: the cells to look at, as bits. exact: whether the samples that floats do not
+// A group of cells. only: the cells to look at, as bits. exact: whether the samples that floats do not
 // decide are decided by integers. What cells that must be repeated have written is not counted.
-static __attribute__((always_inline)) void ResampleGroup(const Group* group, int x, int y, int z,
-  int odd, int border, uint only, int exact, const GroupCandidates* c, Output* output,
-  Found* found, Outcome* outcome, const KernelParameters* p ARRAY_PARAMETERS)
+static __attribute__((always_inline)) void ResampleGroup(const Group* group, uint only, int exact,
+  const GroupCandidates* c, Output* output, Found* found, Outcome* outcome,
+  const KernelParameters* p ARRAY_PARAMETERS)
 {
-  LOAD_VERTEX(0)
-  LOAD_VERTEX(1)
-  LOAD_VERTEX(2)
-  LOAD_VERTEX(3)
-  LOAD_VERTEX(4)
-  LOAD_VERTEX(5)
-  LOAD_VERTEX(6)
-  LOAD_VERTEX(7)
-
+  LOAD_VERTICES
+  const int x = group->X, y = group->Y, z = group->Z;
+  const int border = group->Border;
   const INTS cellX = x + 2 * LANE_INDEX;
   const int mirror = Mirror(x, y, z, p);
   const FLOATS extent = c->Extent;
@@ -118,7 +111,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   const INTS nice = fit & (leastOther >= 0.015625f) & (mostOwn <= -0.125f) &
     (leastOwn >= -2.0f) & (bound <= 0.0078125f);
   // Coordinates do not tell a cell from its mirror image: all its tetrahedra are inverted then.
-  const INTS inverted = nice & (odd ? determinant > 0.0f : determinant < 0.0f);
+  const INTS inverted = nice & (group->Odd ? determinant > 0.0f : determinant < 0.0f);
   INTS unsure = there & ~nice;
   INTS ambiguous = 0;
   const INTS number = nice & c->Number;
@@ -190,7 +183,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
         {
           const FLOATS sample[3] = { rx, ry, rz };
           INTS simplex;
-          INTS held = HoldSample(group, sample, odd, inverted, &simplex);
+          INTS held = HoldSample(group, sample, group->Odd, inverted, &simplex);
           if (border)
           {
             // As IsOwner.
@@ -250,7 +243,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
         found->Count += popcount(bits);
         if (found->Count > FOUND_CAPACITY)
         {
-          StoreFound(found, group, x, y, z, output, p ARRAY_ARGUMENTS);
+          StoreFound(found, group, output, p ARRAY_ARGUMENTS);
         }
       }
       // The next candidate of each lane.
@@ -265,7 +258,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
     }
     if (KEEPS_GROUP(p))
     {
-      StoreFound(found, group, x, y, z, output, p ARRAY_ARGUMENTS);
+      StoreFound(found, group, output, p ARRAY_ARGUMENTS);
     }
   }
   output->Inverted += 5 * popcount(LaneBits(inverted & ~ambiguous));
@@ -285,24 +278,71 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, int
   outcome->Unsure = LaneBits(unsure | (ambiguous & ~decidable));
 }
 
-static __attribute__((noinline)) Outcome ResampleByFloats(const Group* group, int x, int y, int z,
-  int odd, int border, const GroupCandidates* c, Output* output, Found* found,
+static __attribute__((noinline)) Outcome ResampleByFloats(const Group* group,
+  const GroupCandidates* c, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Outcome outcome;
-  ResampleGroup(group, x, y, z, odd, border, 0, 0, c, output, found, &outcome, p ARRAY_ARGUMENTS);
+  ResampleGroup(group, 0, 0, c, output, found, &outcome, p ARRAY_ARGUMENTS);
   return outcome;
 }
 
 // Returns the cells that are left to ResampleCell.
-static __attribute__((noinline)) uint ResampleByIntegers(const Group* group, int x, int y, int z,
-  int odd, int border, uint only, const GroupCandidates* c, Output* output, Found* found,
+static __attribute__((noinline)) uint ResampleByIntegers(const Group* group, uint only,
+  const GroupCandidates* c, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Outcome outcome;
-  ResampleGroup(
-    group, x, y, z, odd, border, only, 1, c, output, found, &outcome, p ARRAY_ARGUMENTS);
+  ResampleGroup(group, only, 1, c, output, found, &outcome, p ARRAY_ARGUMENTS);
   return outcome.Unsure;
+}
+
+// The groups of a row of cells from place begin on up to one that begins at end. beginX, endX: its cells.
+// specials: as RowFlags. outputs: of the columns of the brick.
+static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, int endX,
+  uint specials, const SamplingMesh* mesh, Output* outputs, Found* found,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  GroupCandidates candidates[2 * HALF_ROW / LANES];
+  FindRowCandidates(row, begin, end, mesh, outputs, candidates, p ARRAY_ARGUMENTS);
+  for (int k = begin; k < end; k += LANES)
+  {
+    Output* const output = outputs + 2 * k / DEFORMVOLUME_COLUMN;
+    for (int side = 0; side < 2; ++side)
+    {
+      const GroupCandidates* const c = candidates + 2 * k / LANES + side;
+      Group group;
+      MakeGroup(row, k, side, &group);
+      uint again = (1u << LANES) - 1;
+      if (!(specials & GROUP_FLAGS(k)))
+      {
+        if (c->Skip)
+        {
+          continue;
+        }
+        const Outcome outcome = ResampleByFloats(&group, c, output, found, p ARRAY_ARGUMENTS);
+        again = outcome.Unsure;
+        if (outcome.Ambiguous)
+        {
+          again |=
+            ResampleByIntegers(&group, outcome.Ambiguous, c, output, found, p ARRAY_ARGUMENTS);
+        }
+      }
+      if (again)
+      {
+        // These are written again.
+        StoreFound(found, &group, output, p ARRAY_ARGUMENTS);
+      }
+      FOR_EACH_LANE(lane, again)
+      {
+        const int cell = group.X + 2 * lane;
+        if (cell >= beginX && cell < endX)
+        {
+          ResampleCell(mesh, cell, row->Y, row->Z, output, p ARRAY_ARGUMENTS);
+        }
+      }
+    }
+  }
 }
 
 // The cells of a brick on y or z that a work-item takes: from 0 or the middle to the middle or the end.
@@ -316,8 +356,6 @@ static int EndIn(uint item, int halves, int cells)
 {
   return item >> halves & 2 ? cells : cells / 2;
 }
-
-#define GROUPS (DEFORMVOLUME_BRICK_X / 2 / LANES + 1)
 
 // A brick of cells, or some of its sections. item: which (DEFORMVOLUME_BRICK_BITS).
 static void ResampleBrick(const SamplingMesh* mesh, uint item, __global char* coverage,
@@ -375,6 +413,8 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, __global char* co
   }
 
   RowFlags flags[2][ROWS];
+  const int begin = (beginX - bx) >> 1 & ~(LANES - 1);
+  const int end = (endX - bx + 1) >> 1;
   for (int z = beginZ; z <= endZ; ++z)
   {
     const int plane = (p->First[2] + z) & 1;
@@ -382,84 +422,34 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, __global char* co
     {
       flags[plane][y - by] = MapRow(mesh, beginX, endX + 1, beginX - bx, y, z,
         ring + (plane * ROWS + (y - by)) * ROW, restX, displaced, p ARRAY_ARGUMENTS);
-    }
-    if (z == beginZ)
-    {
-      continue;
-    }
-    for (int y = beginY; y < endY; ++y)
-    {
-      // Rows of even and of odd structured y; planes likewise lie by their parity.
-      const int low = y - by;
-      const int rowEven = low + (low & 1);
-      const int rowOdd = low + 1 - (low & 1);
-      const uint borders = flags[0][low].Border | flags[0][low + 1].Border | flags[1][low].Border |
-        flags[1][low + 1].Border;
-      const uint specials = flags[0][low].Special | flags[0][low + 1].Special |
-        flags[1][low].Special | flags[1][low + 1].Special;
-      GroupCandidates candidates[2 * GROUPS];
-      for (int find = 1; find >= 0; --find)
+      if (z == beginZ || y == beginY)
       {
-      for (int k = (beginX - bx) >> 1 & ~(LANES - 1); bx + 2 * k < endX; k += LANES)
+        continue;
+      }
+      // The cells that this is the last row of vertices for. Rows of even and of odd structured y, and planes,
+      // lie by their parity.
+      const int low = y - 1 - by;
+      const RowFlags* const f[4] = { flags[0] + low, flags[0] + low + 1, flags[1] + low,
+        flags[1] + low + 1 };
+      RowOfCells row;
+      for (int r = 0; r < 4; ++r)
       {
-        const uint span = ((2u << (2 * LANES / 8)) - 1) << (k >> 2);
-        const int border = (borders & span) != 0;
-        Output* const output = outputs + 2 * k / DEFORMVOLUME_COLUMN +
-          DEFORMVOLUME_COLUMNS *
-            ((low >= DEFORMVOLUME_BRICK_Y / 2) + 2 * (z - 1 - bz >= DEFORMVOLUME_BRICK_Z / 2));
-        for (int side = 0; side < 2; ++side)
-        {
-          Group group;
-#pragma unroll
-          for (int r = 0; r < 4; ++r)
-          {
-            LocalRow row = ring + ((r & 1) * ROWS + (r >> 1 ? rowOdd : rowEven)) * ROW + k;
-            group.Low[r] = row + side;
-            group.High[r] = row + ODD;
-          }
-          const int x = bx + 2 * k + side;
-          GroupCandidates* const c = candidates + 2 * k / LANES + side;
-          if (find)
-          {
-            FindGroupCandidates(&group, x, y, z - 1, border, mesh, output, c, p);
-            continue;
-          }
-          const int odd = (side ^ (p->First[1] + y) ^ (p->First[2] + z - 1)) & 1;
-          uint again = (1u << LANES) - 1;
-          if (!(specials & span))
-          {
-            if (c->Skip)
-            {
-              continue;
-            }
-            const Outcome outcome = ResampleByFloats(
-              &group, x, y, z - 1, odd, border, c, output, &found, p ARRAY_ARGUMENTS);
-            again = outcome.Unsure;
-            if (outcome.Ambiguous)
-            {
-              again |= ResampleByIntegers(&group, x, y, z - 1, odd, border, outcome.Ambiguous, c,
-                output, &found, p ARRAY_ARGUMENTS);
-            }
-          }
-          if (again)
-          {
-            // These are written again.
-            StoreFound(&found, &group, x, y, z - 1, output, p ARRAY_ARGUMENTS);
-          }
-          FOR_EACH_LANE(lane, again)
-          {
-            const int cell = x + 2 * lane;
-            if (cell >= beginX && cell < endX)
-            {
-              ResampleCell(mesh, cell, y, z - 1, output, p ARRAY_ARGUMENTS);
-            }
-          }
-        }
+        const int vertexRow = r >> 1 ? low + 1 - (low & 1) : low + (low & 1);
+        row.Rows[r] = ring + ((r & 1) * ROWS + vertexRow) * ROW;
       }
-      }
+      row.X = bx;
+      row.Y = y - 1;
+      row.Z = z - 1;
+      row.Odd = (p->First[1] + y - 1 + p->First[2] + z - 1) & 1;
+      row.Borders = f[0]->Border | f[1]->Border | f[2]->Border | f[3]->Border;
+      const uint specials = f[0]->Special | f[1]->Special | f[2]->Special | f[3]->Special;
+      const int quarter =
+        (low >= DEFORMVOLUME_BRICK_Y / 2) + 2 * (z - 1 - bz >= DEFORMVOLUME_BRICK_Z / 2);
+      ResampleRow(&row, begin, end, beginX, endX, specials, mesh,
+        outputs + quarter * DEFORMVOLUME_COLUMNS, &found, p ARRAY_ARGUMENTS);
     }
   }
-  StoreFound(&found, 0, 0, 0, 0, outputs, p ARRAY_ARGUMENTS);
+  StoreFound(&found, 0, outputs, p ARRAY_ARGUMENTS);
   for (int section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
   {
     AddCounts(outputs + section, DEFORMVOLUME_SECTIONS * (size_t)brick + section, counters, p);

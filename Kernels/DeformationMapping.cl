@@ -31,13 +31,6 @@ typedef struct
 #define ROUND_TO_INTEGER 12582912.0f // 1.5 * 2^23: added to v and subtracted again, v is rounded
 #define FIELD_TOLERANCE 1e-3f // of a field cell: rounding must not lose the field's border
 
-// Fused where that is one instruction; the same everywhere on a device.
-#ifdef FP_FAST_FMAF
-#define MULTIPLY_ADD(a, b, c) fma(a, b, c)
-#else
-#define MULTIPLY_ADD(a, b, c) ((a) * (b) + (c))
-#endif
-
 // Displacements in 1/256 voxel, rounded. Clamped, because extrapolation can lead anywhere.
 #define DEFINE_ROUND_STEPS(TYPE)                                                                   \
   static TYPE RoundSteps_##TYPE(TYPE moved)                                                        \

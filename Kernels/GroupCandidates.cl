@@ -1,66 +1,120 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The candidates of a group of cells: the samples in the box of each cell (BrickResampling.cl).
+// The candidates of groups of cells: the samples in the box of each cell (BrickResampling.cl).
 //
-// Why apart from what becomes of them, for all groups of a row at once: how many rounds a group takes is no
-// two times the same, and the processor guesses it wrong. It finds that out at once where the number lies in
-// memory, and only after all that precedes if it had just been computed.
+// Why they are found for all groups of a row before one of these is looked at: how many rounds a group takes is
+// no two times the same, and the processor guesses it wrong. It finds that out at once where the number lies in
+// memory, and only after all that precedes if it has just been computed. Neighbours share vertices, so that the
+// bounds of a row's columns of vertices are found once. And there is time to fetch the output.
 
-#define MAXIMUM_EXTENT 7.99f  // voxels: the normals of larger cells are not exact in float
+#define MAXIMUM_EXTENT 7.99f // voxels: the normals of larger cells are not exact in float
 #define ALMOST_ONE (255.0f / 256.0f) // ceil(v) = trunc(v + ALMOST_ONE) for multiples of 1/256
-
-#define EIGHT(OP, C) OP(OP(OP(C##0, C##1), OP(C##2, C##3)), OP(OP(C##4, C##5), OP(C##6, C##7)))
 
 typedef struct
 {
-  INTS There;     // cells that have a vertex with a position, and none beyond the volume
-  FLOATS Extent;  // the longest edge of the box
-  FLOATS Reach;   // the extent times the box's three faces
-  INTS First[3];  // the first candidate, in voxels of the output
-  INTS Count[3];  // how many on each axis
-  INTS Number;    // how many in all, of cells that are small and whole
-  INTS Box;       // cells that are boxes, if there are any
-  GroupState State; // on the border
-  int Iterations; // the largest number
+  INTS There;       // cells that have a vertex with a position, and none beyond the volume
+  FLOATS Extent;    // the longest edge of the box
+  FLOATS Reach;     // the extent times the sum of the box's three faces
+  INTS First[3];    // the first candidate, in voxels of the output
+  INTS Count[3];    // how many on each axis
+  INTS Number;      // how many in all, of cells that are small and whole
+  INTS Box;         // cells that are boxes, if HasBoxes
+  GroupState State; // where the group is on the border
+  int Iterations;   // the largest number
   int HasBoxes;
-  int Skip;       // no cell touches a voxel to be won
+  int Skip; // no cell touches a voxel to be won
 } GroupCandidates;
 
-#define LOAD_VERTEX(v)                                                                             \
-  const FLOATS X##v = VERTEX(v, 0), Y##v = VERTEX(v, 1), Z##v = VERTEX(v, 2);
-
-// Cells from x on every second one. border: whether a vertex may not be interior.
-static __attribute__((noinline)) void FindGroupCandidates(const Group* group, int x, int y, int z, int border,
-  const SamplingMesh* mesh, Output* output, GroupCandidates* c, const KernelParameters* p)
+// Bounds of vertices or of cells.
+typedef struct
 {
-  LOAD_VERTEX(0)
-  LOAD_VERTEX(1)
-  LOAD_VERTEX(2)
-  LOAD_VERTEX(3)
-  LOAD_VERTEX(4)
-  LOAD_VERTEX(5)
-  LOAD_VERTEX(6)
-  LOAD_VERTEX(7)
-  const FLOATS lowX = EIGHT(Least, X), lowY = EIGHT(Least, Y), lowZ = EIGHT(Least, Z);
-  const FLOATS highX = EIGHT(Most, X), highY = EIGHT(Most, Y), highZ = EIGHT(Most, Z);
-  const FLOATS sizeX = highX - lowX, sizeY = highY - lowY, sizeZ = highZ - lowZ;
-  const FLOATS extent = Most(sizeX, Most(sizeY, sizeZ));
-  const INTS there = (lowX > 0.5f * NOT_THERE) & (lowX < 0.5f * NO_SOURCE);
+  FLOATS LowX, LowY, LowZ;
+  FLOATS HighX, HighY, HighZ;
+} Bounds;
 
-  // Cells that are boxes, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume:
-  // each coordinate varies along one axis of the lattice only. If one edge of no cell is parallel to an
-  // axis, no need to look. Lanes that hold no cell hold anything, and must not decide.
-  INTS box = 0;
-  c->HasBoxes = 0;
-  if (LaneBits(there & ((X0 == X1) + (Y0 == Y1) + (Z0 == Z1) == -2)))
-  {
+// Functions that are inlined give no structures back: Oclgrind does not know what compilers make of that.
+
+// Bounds of the columns of four vertices at a place of the rows.
+static __attribute__((always_inline)) void BoundColumns(const LocalRow* rows, int place, Bounds* b)
+{
+#define BOUND_COLUMNS(C, slot)                                                                     \
+  {                                                                                                \
+    const FLOATS c0 = LOAD(rows[0] + place + (slot)*HALF_ROW);                                     \
+    const FLOATS c1 = LOAD(rows[1] + place + (slot)*HALF_ROW);                                     \
+    const FLOATS c2 = LOAD(rows[2] + place + (slot)*HALF_ROW);                                     \
+    const FLOATS c3 = LOAD(rows[3] + place + (slot)*HALF_ROW);                                     \
+    b->Low##C = Least(Least(c0, c1), Least(c2, c3));                                               \
+    b->High##C = Most(Most(c0, c1), Most(c2, c3));                                                 \
+  }
+  BOUND_COLUMNS(X, 0)
+  BOUND_COLUMNS(Y, 1)
+  BOUND_COLUMNS(Z, 2)
+}
+
+static __attribute__((always_inline)) void Join(const Bounds* a, const Bounds* b, Bounds* joined)
+{
+  joined->LowX = Least(a->LowX, b->LowX);
+  joined->LowY = Least(a->LowY, b->LowY);
+  joined->LowZ = Least(a->LowZ, b->LowZ);
+  joined->HighX = Most(a->HighX, b->HighX);
+  joined->HighY = Most(a->HighY, b->HighY);
+  joined->HighZ = Most(a->HighZ, b->HighZ);
+}
+
+// From the second lane on, and the first lane of what comes behind.
+static __attribute__((always_inline)) void Shift(const Bounds* a, const Bounds* behind, Bounds* b)
+{
+  b->LowX = NextLanes(a->LowX, behind->LowX);
+  b->LowY = NextLanes(a->LowY, behind->LowY);
+  b->LowZ = NextLanes(a->LowZ, behind->LowZ);
+  b->HighX = NextLanes(a->HighX, behind->HighX);
+  b->HighY = NextLanes(a->HighY, behind->HighY);
+  b->HighZ = NextLanes(a->HighZ, behind->HighZ);
+}
+
+// Cells that are boxes, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume: each
+// coordinate varies along one axis of the lattice only. rises: those whose coordinates grow with the indices.
+static __attribute__((noinline)) INTS FindBoxes(const Group* group, int mirror, INTS* rises)
+{
+  LOAD_VERTICES
 #define SAME(C, a, b) (C##a == C##b)
 #define ALONG_X(C) (SAME(C, 0, 1) & SAME(C, 2, 3) & SAME(C, 4, 5) & SAME(C, 6, 7))
 #define ALONG_Z(C) (SAME(C, 0, 2) & SAME(C, 1, 3) & SAME(C, 4, 6) & SAME(C, 5, 7))
 #define ALONG_Y(C) (SAME(C, 0, 4) & SAME(C, 1, 5) & SAME(C, 2, 6) & SAME(C, 3, 7))
 #define ALIGNED(C)                                                                                 \
   ((ALONG_X(C) & ALONG_Y(C)) | (ALONG_X(C) & ALONG_Z(C)) | (ALONG_Y(C) & ALONG_Z(C)))
-    box = ALIGNED(X) & ALIGNED(Y) & ALIGNED(Z);
-    c->HasBoxes = 1;
+#define RISES(C, to) ((mirror & to) ? C##to < C##0 : C##to > C##0)
+  *rises = RISES(X, 1) & RISES(Z, 2) & RISES(Y, 4);
+  return ALIGNED(X) & ALIGNED(Y) & ALIGNED(Z);
+}
+
+// Whether the processor should fetch the output where the candidates of a lane begin.
+#define FETCH_OUTPUT(index, TYPE, BITS, SLOT) PREFETCH_TO_WRITE(target##index + place)
+#define FIRST_OF_LANE(axis, lane) ((const int*)&c->First[axis])[lane]
+
+// b: the bounds of the cells.
+static __attribute__((always_inline)) void FindGroupCandidates(const Group* group, const Bounds* b,
+  const SamplingMesh* mesh, Output* output, GroupCandidates* c,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const FLOATS sizeX = b->HighX - b->LowX, sizeY = b->HighY - b->LowY, sizeZ = b->HighZ - b->LowZ;
+  const FLOATS extent = Most(sizeX, Most(sizeY, sizeZ));
+  const INTS there = (b->LowX > 0.5f * NOT_THERE) & (b->LowX < 0.5f * NO_SOURCE);
+  c->There = there;
+  c->Extent = extent;
+  c->Reach = extent * fma(sizeX, sizeY, sizeZ * (sizeX + sizeY));
+
+  // If one edge of no cell is parallel to an axis, no need to look for boxes. Lanes that hold no cell hold
+  // anything, and must not decide.
+#define SAME_FIRST_TWO(slot) (VERTEX(0, slot) == VERTEX(1, slot))
+  const int border = group->Border;
+  INTS box = 0;
+  INTS rises = 0;
+  c->HasBoxes =
+    LaneBits(there & (SAME_FIRST_TWO(0) + SAME_FIRST_TWO(1) + SAME_FIRST_TWO(2) == -2)) != 0;
+  if (c->HasBoxes)
+  {
+    box = FindBoxes(group, Mirror(group->X, group->Y, group->Z, p), &rises);
+    c->HasBoxes = LaneBits(there & box) != 0;
   }
 
   // Candidates are half-open inside the mesh: by the fill rule no sample on the upper side is taken.
@@ -72,21 +126,19 @@ static __attribute__((noinline)) void FindGroupCandidates(const Group* group, in
   }
   if (border)
   {
-    StatesOfGroup(mesh, x, y, z, &c->State, p);
+    StatesOfGroup(mesh, group->X, group->Y, group->Z, &c->State, p);
     whole = c->State.Whole;
     // Boxes on the border leave what is on their high sides to the next cells, if there are any. That the
     // high sides are the upper ones is wanted for that.
     if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && c->HasBoxes)
     {
-      const INTS cellX = x + 2 * LANE_INDEX;
-      const int mirror = Mirror(x, y, z, p);
-#define RISES(C, to) ((mirror & to) ? C##to < C##0 : C##to > C##0)
       const INTS inner = c->State.Interior == 255;
-      box &= there & (inner | ((c->State.Regular == 255) & RISES(X, 1) & RISES(Z, 2) & RISES(Y, 4)));
+      box &= there & (inner | ((c->State.Regular == 255) & rises));
       output->Assumed |= LaneBits(box & ~inner) != 0;
-      toEndX = (box & (cellX != p->Size[0] - 2)) ? ALMOST_ONE : toEndX;
-      toEndY = (box & (INTS)(y != p->Size[1] - 2 ? -1 : 0)) ? ALMOST_ONE : toEndY;
-      toEndZ = (box & (INTS)(z != p->Size[2] - 2 ? -1 : 0)) ? ALMOST_ONE : toEndZ;
+      const INTS isLastX = group->X + 2 * LANE_INDEX == p->Size[0] - 2;
+      toEndX = (box & ~isLastX) ? ALMOST_ONE : toEndX;
+      toEndY = (box & (INTS)(group->Y != p->Size[1] - 2 ? -1 : 0)) ? ALMOST_ONE : toEndY;
+      toEndZ = (box & (INTS)(group->Z != p->Size[2] - 2 ? -1 : 0)) ? ALMOST_ONE : toEndZ;
     }
   }
   if (c->HasBoxes)
@@ -95,20 +147,20 @@ static __attribute__((noinline)) void FindGroupCandidates(const Group* group, in
   }
 #define FIRST_OF(low, size) TO_INTS(Least(Most(low, 0.0f), (float)(size)) + ALMOST_ONE)
 #define END_OF(high, toEnd, size) TO_INTS(Most(Least((high) + toEnd, (float)(size)), 0.0f))
-  INTS firstX = FIRST_OF(lowX, p->OutputSize[0]);
-  INTS firstY = FIRST_OF(lowY, p->OutputSize[1]);
-  INTS firstZ = FIRST_OF(lowZ, p->OutputSize[2]);
-  INTS countX = END_OF(highX, toEndX, p->OutputSize[0]) - firstX;
-  INTS countY = END_OF(highY, toEndY, p->OutputSize[1]) - firstY;
-  INTS countZ = END_OF(highZ, toEndZ, p->OutputSize[2]) - firstZ;
+  INTS firstX = FIRST_OF(b->LowX, p->OutputSize[0]);
+  INTS firstY = FIRST_OF(b->LowY, p->OutputSize[1]);
+  INTS firstZ = FIRST_OF(b->LowZ, p->OutputSize[2]);
+  INTS countX = END_OF(b->HighX, toEndX, p->OutputSize[0]) - firstX;
+  INTS countY = END_OF(b->HighY, toEndY, p->OutputSize[1]) - firstY;
+  INTS countZ = END_OF(b->HighZ, toEndZ, p->OutputSize[2]) - firstZ;
   const INTS some = there & (countX > 0) & (countY > 0) & (countZ > 0);
   c->Skip = 0;
   if (DEFORMVOLUME_IS_CLOSED(p->Pass))
   {
     const int first[3] = { LeastAmong(some, firstX), LeastAmong(some, firstY),
       LeastAmong(some, firstZ) };
-    const int last[3] = { MostAmong(some, firstX + countX - 1), MostAmong(some, firstY + countY - 1),
-      MostAmong(some, firstZ + countZ - 1) };
+    const int last[3] = { MostAmong(some, firstX + countX - 1),
+      MostAmong(some, firstY + countY - 1), MostAmong(some, firstZ + countZ - 1) };
     c->Skip = !LaneBits(some) || !AnyUnsettled(output->Unsettled, first, last, p);
   }
   if (p->IsPart)
@@ -119,17 +171,15 @@ static __attribute__((noinline)) void FindGroupCandidates(const Group* group, in
   TO_INTS(Most(low, (float)max(p->WholeFirst[axis], -8)) + (8.0f + ALMOST_ONE)) - 8
 #define WHOLE_END(high, toEnd, axis)                                                               \
   TO_INTS(Least((high) + toEnd, (float)min(p->WholeEnd[axis], p->OutputSize[axis] + 8)) + 8.0f) - 8
-    firstX = WHOLE_FIRST(lowX, 0);
-    firstY = WHOLE_FIRST(lowY, 1);
-    firstZ = WHOLE_FIRST(lowZ, 2);
-    countX = WHOLE_END(highX, toEndX, 0) - firstX;
-    countY = WHOLE_END(highY, toEndY, 1) - firstY;
-    countZ = WHOLE_END(highZ, toEndZ, 2) - firstZ;
+    firstX = WHOLE_FIRST(b->LowX, 0);
+    firstY = WHOLE_FIRST(b->LowY, 1);
+    firstZ = WHOLE_FIRST(b->LowZ, 2);
+    countX = WHOLE_END(b->HighX, toEndX, 0) - firstX;
+    countY = WHOLE_END(b->HighY, toEndY, 1) - firstY;
+    countZ = WHOLE_END(b->HighZ, toEndZ, 2) - firstZ;
   }
-  const INTS number = some & whole & (extent <= MAXIMUM_EXTENT) & (countX * countY * countZ);
-  c->There = there;
-  c->Extent = extent;
-  c->Reach = extent * fma(sizeX, sizeY, sizeZ * (sizeX + sizeY));
+  const INTS number =
+    some & whole & (extent <= MAXIMUM_EXTENT) & (countX * countY * countZ);
   c->First[0] = firstX;
   c->First[1] = firstY;
   c->First[2] = firstZ;
@@ -138,4 +188,41 @@ static __attribute__((noinline)) void FindGroupCandidates(const Group* group, in
   c->Count[2] = countZ;
   c->Number = number;
   c->Iterations = MostOf(number);
+}
+
+// For the groups of a row of cells from place k on up to one that begins at end, each for even and for odd x:
+// cells of the second begin at the odd vertices.
+static __attribute__((noinline)) void FindRowCandidates(const RowOfCells* row, int begin, int end,
+  const SamplingMesh* mesh, Output* output, GroupCandidates* candidates,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  int k = begin + (end - begin - 1) / LANES * LANES;
+  Bounds behind, even, odd, cells;
+  BoundColumns(row->Rows, k + LANES, &behind);
+  for (; k >= begin; k -= LANES)
+  {
+    BoundColumns(row->Rows, k, &even);
+    BoundColumns(row->Rows, k + ODD, &odd);
+    GroupCandidates* const c = candidates + 2 * k / LANES;
+    Group group;
+    MakeGroup(row, k, 0, &group);
+    Join(&even, &odd, &cells);
+    FindGroupCandidates(&group, &cells, mesh, output, c, p ARRAY_ARGUMENTS);
+    MakeGroup(row, k, 1, &group);
+    Shift(&even, &behind, &cells);
+    Join(&cells, &odd, &cells);
+    FindGroupCandidates(&group, &cells, mesh, output, c + 1, p ARRAY_ARGUMENTS);
+    behind = even;
+#define FETCH_AT(lane)                                                                             \
+  {                                                                                                \
+    const int place = (FIRST_OF_LANE(2, lane) * p->OutputSize[1] + FIRST_OF_LANE(1, lane)) *       \
+        p->OutputSize[0] +                                                                         \
+      FIRST_OF_LANE(0, lane);                                                                      \
+    LANE_ARRAYS(FETCH_OUTPUT)                                                                      \
+    PREFETCH_TO_WRITE(output->Coverage + place)                                                    \
+  }
+    FETCH_AT(0)
+    FETCH_AT(LANES / 2)
+    FETCH_AT(LANES - 1)
+  }
 }

@@ -2,15 +2,57 @@
 // A group of cells, LANES of a row of equal parity (BrickResampling.cl), and the samples that have been found in
 // them: how these are interpolated, kept and stored.
 
-// The vertices of a cell by the parity of their structured indices, as in CellCoverage.cl. Low are
-// places of even x, High of odd x; the rows r by bit 0: odd z, bit 1: odd y.
+// A row of cells between two rows of vertices in each of two planes. Rows: of places of even x, by bit 0: odd z,
+// bit 1: odd y, as the vertices of a cell have their numbers by the parity of their structured indices
+// (CellCoverage.cl). Odd: the parity of y and z together.
 typedef struct
 {
-  LocalRow Low[4];
-  LocalRow High[4];
+  LocalRow Rows[4];
+  int X; // of the brick's first place
+  int Y;
+  int Z;
+  int Odd;
+  uint Borders; // as RowFlags
+} RowOfCells;
+
+// Cells from X on, every second one. Side: 1 where these have vertices of even x behind those of odd x. Odd:
+// parity of x, y and z together. Border: whether a vertex may not be interior.
+typedef struct
+{
+  LocalRow Rows[4];
+  int Side;
+  int X;
+  int Y;
+  int Z;
+  int Odd;
+  int Border;
 } Group;
 
-#define VERTEX(v, slot) LOAD(((v)&1 ? group->High[(v) >> 1] : group->Low[(v) >> 1]) + (slot)*HALF_ROW)
+// The flags of the vertices of a group's cells.
+#define GROUP_FLAGS(k) (((2u << (2 * LANES / 8)) - 1) << ((k) >> 2))
+
+static __attribute__((always_inline)) void MakeGroup(
+  const RowOfCells* row, int k, int side, Group* group)
+{
+  const Group made = { { row->Rows[0] + k, row->Rows[1] + k, row->Rows[2] + k, row->Rows[3] + k },
+    side, row->X + 2 * k + side, row->Y, row->Z, row->Odd ^ side,
+    (row->Borders & GROUP_FLAGS(k)) != 0 };
+  *group = made;
+}
+
+#define VERTEX(v, slot)                                                                            \
+  LOAD(group->Rows[(v) >> 1] + ((v)&1 ? ODD : group->Side) + (slot)*HALF_ROW)
+#define LOAD_VERTEX(v)                                                                             \
+  const FLOATS X##v = VERTEX(v, 0), Y##v = VERTEX(v, 1), Z##v = VERTEX(v, 2);
+#define LOAD_VERTICES                                                                              \
+  LOAD_VERTEX(0)                                                                                   \
+  LOAD_VERTEX(1)                                                                                   \
+  LOAD_VERTEX(2)                                                                                   \
+  LOAD_VERTEX(3)                                                                                   \
+  LOAD_VERTEX(4)                                                                                   \
+  LOAD_VERTEX(5)                                                                                   \
+  LOAD_VERTEX(6)                                                                                   \
+  LOAD_VERTEX(7)
 
 #define LANE_RANGE_LOW_char -128.0f
 #define LANE_RANGE_HIGH_char 127.0f
@@ -58,14 +100,14 @@ typedef struct
 #if HAS_OTHER_ARRAYS
 // A sample that is in a cell, for the arrays that want its weights as they are: which of the cell's
 // tetrahedra holds it is found out again, in integers.
-static __attribute__((noinline)) void StoreOtherArrays(const Group* group, int lane, int x, int y,
-  int z, uint place, const KernelParameters* p ARRAY_PARAMETERS)
+static __attribute__((noinline)) void StoreOtherArrays(
+  const Group* group, int lane, uint place, const KernelParameters* p ARRAY_PARAMETERS)
 {
   Vector q[8];
 #pragma unroll
   for (int v = 0; v < 8; ++v)
   {
-    LocalRow vertex = (v & 1 ? group->High[v >> 1] : group->Low[v >> 1]) + lane;
+    LocalRow vertex = group->Rows[v >> 1] + (v & 1 ? ODD : group->Side) + lane;
     q[v].x = (long)(vertex[0] * 256.0f);
     q[v].y = (long)(vertex[HALF_ROW] * 256.0f);
     q[v].z = (long)(vertex[2 * HALF_ROW] * 256.0f);
@@ -90,7 +132,8 @@ static __attribute__((noinline)) void StoreOtherArrays(const Group* group, int l
       break;
     }
   }
-  const Sample sample = MakeSample(x, y, z, t, weights, volume, place, p);
+  const Sample sample = MakeSample(
+    group->X + 2 * lane, group->Y, group->Z, t, weights, volume, place, p);
   const Sample* s = &sample;
   STORE_OTHER_ARRAYS
 }
@@ -119,7 +162,7 @@ typedef struct
 } Found;
 
 // Stores the samples and forgets them.
-static void StoreFound(Found* found, const Group* group, int x, int y, int z, Output* output,
+static void StoreFound(Found* found, const Group* group, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int pass = p->Pass;
@@ -144,7 +187,8 @@ static void StoreFound(Found* found, const Group* group, int x, int y, int z, Ou
       const int cell = found->Cells[i];
       const KEY key = KEEPS_KEYS
         ? (KEY)(uint)cell
-        : MakeKey(x + 2 * (cell & (INVERTED_LANE - 1)), y, z, cell & INVERTED_LANE, p);
+        : MakeKey(group->X + 2 * (cell & (INVERTED_LANE - 1)), group->Y, group->Z,
+          cell & INVERTED_LANE, p);
       if (!TakesPlace(output, place, key, p))
       {
         continue;
@@ -153,8 +197,7 @@ static void StoreFound(Found* found, const Group* group, int x, int y, int z, Ou
     coverage[place] = 1;
     LANE_ARRAYS(LANE_STORE)
 #if HAS_OTHER_ARRAYS
-    const int lane = found->Cells[i] & (INVERTED_LANE - 1);
-    StoreOtherArrays(group, lane, x + 2 * lane, y, z, place, p ARRAY_ARGUMENTS);
+    StoreOtherArrays(group, found->Cells[i] & (INVERTED_LANE - 1), place, p ARRAY_ARGUMENTS);
 #endif
   }
   found->Count = 0;

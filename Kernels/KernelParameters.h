@@ -121,7 +121,8 @@ typedef struct
 #define DEFORMVOLUME_COUNT_CANDIDATES 5 // voxels that cells may have won
 #define DEFORMVOLUME_COUNTERS 6
 
-// Output voxels that a work-item takes of the kernels that count, settle or clear all that are covered or not.
+// Output voxels that a work-item takes of the kernels that count, settle or clear all that are
+// covered or not.
 #define DEFORMVOLUME_COUNTED_VOXELS 4096
 
 // Voxels of a patch of the output on each axis: what is cleared where a part is made anew, and what

@@ -168,11 +168,12 @@ std::string GetMappingText(MappingForm mapping)
   switch (mapping)
   {
     case MappingForm::Links:
-      return std::string("#define MAPPING 0\n") + DeformationMapping_cl;
+      return std::string("#define MAPPING 0\n") + MultiplyAdd_cl + DeformationMapping_cl;
     case MappingForm::Runs:
-      return std::string("#define MAPPING 1\n") + RunMapping_cl + DeformationMapping_cl;
+      return std::string("#define MAPPING 1\n") + MultiplyAdd_cl + RunMapping_cl +
+        DeformationMapping_cl;
     default:
-      return std::string("#define MAPPING 2\n") + DeformationMapping_cl;
+      return std::string("#define MAPPING 2\n") + MultiplyAdd_cl + DeformationMapping_cl;
   }
 }
 

@@ -36,6 +36,18 @@ static FLOATS Most(FLOATS a, FLOATS b)
 #endif
 #define LANE_BITS ((INTS)(1) << LANE_INDEX)
 
+// From the second lane on, and the first lane of another vector.
+static FLOATS NextLanes(FLOATS v, FLOATS behind)
+{
+#if LANES == 16
+  return (FLOATS)(v.s1, v.s23, v.s4567, v.s89abcdef, behind.s0);
+#elif LANES == 8
+  return (FLOATS)(v.s1, v.s23, v.s4567, behind.s0);
+#else
+  return (FLOATS)(v.s1, v.s23, behind.s0);
+#endif
+}
+
 // A vector that is read back lane by lane.
 typedef union
 {

@@ -42,7 +42,8 @@ static RunDisplacement MakeRunDisplacement(__global const TetrahedronRecord* rec
 // What is small is added first: the error bound in VertexRuns.h wants this order.
 static float4 GetDisplacement(const RunDisplacement* run, int x)
 {
-  return run->Displacement + (run->Across + run->AlongX * ((float)x - run->OriginX));
+  return run->Displacement +
+    MULTIPLY_ADD(run->AlongX, (float4)((float)x - run->OriginX), run->Across);
 }
 
 // The run that holds x, of those from first to before end.

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A product and a sum: fused where that is one instruction, and the same everywhere on a device.
+#ifdef FP_FAST_FMAF
+#define MULTIPLY_ADD(a, b, c) fma(a, b, c)
+#else
+#define MULTIPLY_ADD(a, b, c) ((a) * (b) + (c))
+#endif
+
