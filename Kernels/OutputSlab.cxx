@@ -50,6 +50,16 @@ template <typename T>
 void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer, T value,
   std::uint64_t size, std::vector<cl::Event>& events)
 {
+  if constexpr (sizeof(T) > 1)
+  {
+    unsigned char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    if (std::all_of(bytes, bytes + sizeof(T), [&](unsigned char byte) { return byte == bytes[0]; }))
+    {
+      Fill(context, queue, buffer, bytes[0], size * sizeof(T), events);
+      return;
+    }
+  }
   events.emplace_back();
   if (!context.GetDevice().IsProcessor)
   {
@@ -365,9 +375,8 @@ void OutputSlab::Settle(OpenCLContext& context, bool contested, std::vector<cl::
   kernel.setArg(4, this->Unsettled);
   kernel.setArg(5, p);
   events.emplace_back();
-  this->Queue.enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(items), GetGroupOfBusyItems(context), nullptr,
-    &events.back());
+  this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items),
+    GetGroupOfBusyItems(context), nullptr, &events.back());
 }
 
 std::size_t OutputSlab::CountItems() const
@@ -385,9 +394,8 @@ std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::E
   kernel.setArg(1, cl_ulong{ this->NumberOfVoxels });
   kernel.setArg(2, sums);
   events.emplace_back();
-  this->Queue.enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(items), GetGroupOfBusyItems(context), nullptr,
-    &events.back());
+  this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items),
+    GetGroupOfBusyItems(context), nullptr, &events.back());
   return ReadSum(this->Queue, sums, items);
 }
 
