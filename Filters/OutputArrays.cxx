@@ -43,7 +43,7 @@ void SetSize(vtkDataArray* array, vtkIdType numberOfTuples)
   constexpr vtkIdType reserve = 32; // one part in so many
   if (numberOfTuples > array->GetSize() / array->GetNumberOfComponents())
   {
-    array->Resize(numberOfTuples + numberOfTuples / reserve);
+    array->Allocate((numberOfTuples + numberOfTuples / reserve) * array->GetNumberOfComponents());
   }
   array->SetNumberOfTuples(numberOfTuples);
 }

@@ -93,6 +93,39 @@ void TestOutputsServeAgain()
   }
 }
 
+// Memory serves outputs of other sizes, as long as not most of it would lie idle.
+void TestOutputsOfOtherSizes()
+{
+  Subject subject;
+  subject.Filtered.Filter->SetOutputBoundsModeToDeformedBounds();
+  const auto update = [&](double scale)
+  {
+    SetDisplacements(subject.Mesh, [&](const glm::dvec3& p) { return scale * p; });
+    VERIFY(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
+    return subject.Filtered.GetValues();
+  };
+  const vtkIdType whole = update(1.0)->GetNumberOfTuples();
+  vtkIdType size = update(1.3)->GetSize();
+  VERIFY(subject.Filtered.GetValues()->GetNumberOfTuples() > whole);
+  const void* memory = subject.Filtered.GetValues()->GetVoidPointer(0);
+  for (const double scale : { 1.2, 1.28, 1.15, 1.3 })
+  {
+    vtkDataArray* values = update(scale);
+    VERIFY_EQUAL(values->GetVoidPointer(0), memory);
+    VERIFY_EQUAL(values->GetSize(), size);
+  }
+  // A little more, a last time less than half, and held by someone.
+  VERIFY(update(1.33)->GetSize() > size);
+  size = subject.Filtered.GetValues()->GetSize();
+  VERIFY(update(0.9)->GetSize() < size / 2);
+  vtkNew<vtkImageData> held;
+  held->ShallowCopy(subject.Filtered.Filter->GetOutput());
+  vtkNew<vtkImageData> before;
+  before->DeepCopy(held);
+  update(1.2);
+  VERIFY(AreEqual(held, before));
+}
+
 // What serves again looks like a new one.
 void TestDescriptionOfArrays()
 {
@@ -193,6 +226,7 @@ int TestDeformMemory(int, char*[])
 {
   TestHeldOutputs();
   TestOutputsServeAgain();
+  TestOutputsOfOtherSizes();
   TestDescriptionOfArrays();
   TestVolumeInPlace();
   TestReleasedOutputs();
