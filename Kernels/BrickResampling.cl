@@ -4,8 +4,8 @@
 // voxels as Resampling.cl; cells that it is not sure of it leaves to ResampleCell.
 //
 // Why it is shaped so: compilers do not turn a kernel with data-dependent loops over candidates
-// into vector code, so the lanes are written out. Positions are found plane by plane, as the cells
-// need them, and never leave the innermost cache: two planes of a brick, 17 rows each. A row is
+// into vector code, so the lanes are written out. Positions are found row by row, as the cells
+// need them, and never leave the inner caches: two planes of a brick, 17 rows each. A row is
 // split into vertices of even and of odd index: cells of equal parity, every second one of a row, are
 // taken together, and no lane needs another 5T split than its neighbour. Every lane goes through its own
 // candidates, one after the other, until the last lane has none left.
@@ -27,7 +27,9 @@
 // and the error of tj is at most d = 8.5e-5 (3.4e-5 where -1 <= bi <= -0.35) times the cell's
 // extent times the largest 1-norm of the gradients of the lj: with u = 2^-24 and k = extent times
 // that norm >= 1, the error of lj is at most (7 + 5 |lj|) u k, that of l0 (30 + 5 |1 - l0|) u k,
-// and that of tj no more than (2 M + 1) times their sum with M = max |bj / bi|. When three of the
+// and that of tj no more than (2 M + 1) times their sum with M = max |bj / bi|. The 1-norm is at most the sum of
+// the areas of the box's three faces by the determinant, as each component of a normal is twice the area of a
+// triangle in such a face; in cells that are not turned it is just that. When three of the
 // tj exceed d, the sample is inside; when one is under -d, outside. Cells with a sample in between
 // are repeated: with edge functions in integers, LANES cells at once again; where they are large or
 // bent, or what surrounds them is not all there, by ResampleCell.
