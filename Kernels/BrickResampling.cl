@@ -188,7 +188,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
           INTS held = HoldSample(group, sample, group->Odd, inverted, &simplex);
           if (border)
           {
-            // As IsOwner.
+            // As RoleOf.
             const INTS outer = (simplex != 0) & ((simplex & c->State.Interior) == 0);
             const INTS regular = (simplex & ~c->State.Regular) == 0;
             const INTS first = (((simplex & LOW_SIDE(0, mirror)) != 0) | (cellX == p->Size[0] - 2)) &
@@ -199,6 +199,10 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
             output->Assumed |= LaneBits(undecided & outer) != 0;
           }
           hit |= undecided & held;
+          if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
+          {
+            TouchHeld(undecided & ~held & (simplex != 0), rx + X0, ry + Y0, rz + Z0, output, p);
+          }
           onVertex = undecided & ((simplex & (simplex - 1)) == 0);
         }
       }
@@ -361,13 +365,13 @@ static int EndIn(uint item, int halves, int cells)
 
 // A brick of cells, or some of its sections. item: which (DEFORMVOLUME_BRICK_BITS).
 static void ResampleBrick(const SamplingMesh* mesh, uint item, __global char* coverage,
-  __global KEY* winners, __global const char* unsettled, __global uint* counters,
+  __global KEY* winners, __global char* patches, __global uint* counters,
   __local float* rows, const KernelParameters* p ARRAY_PARAMETERS)
 {
   Output outputs[DEFORMVOLUME_SECTIONS];
   for (int section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
   {
-    const Output output = { coverage, winners, unsettled, 0, 0, 0, 0, 0, 0 };
+    const Output output = { coverage, winners, patches, 0, 0, 0, 0, 0, 0, 0 };
     outputs[section] = output;
   }
   Found found;
@@ -465,7 +469,7 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, __global char* co
 // for the thread that the system has let wait, or that has more to do.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
   __global const uchar* state, __global const uchar* active, __global char* coverage,
-  __global KEY* winners, __global const char* unsettled, __global uint* counters,
+  __global KEY* winners, __global char* patches, __global uint* counters,
   __global const uint* bricks, __global uint* taken, __local float* rows,
   const KernelParameters p ARRAY_PARAMETERS)
 {
@@ -474,6 +478,6 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
        i = p.ListBegin + atomic_inc(taken))
   {
     ResampleBrick(
-      &mesh, bricks[i], coverage, winners, unsettled, counters, rows, &p ARRAY_ARGUMENTS);
+      &mesh, bricks[i], coverage, winners, patches, counters, rows, &p ARRAY_ARGUMENTS);
   }
 }

@@ -326,8 +326,13 @@ static int IsOwnerInLattice(
     ((simplex & LOW_SIDE(2, mirror)) || y == p->Size[1] - 2);
 }
 
-// Whether a tetrahedron of a cell writes the sample with these weights.
-static int IsOwner(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron, const long* weights,
+// What a tetrahedron is to a sample.
+#define STRANGER 0 // does not hold it
+#define HOLDER 1   // holds it on its surface, and leaves it to another one
+#define OWNER 2    // writes it
+
+// What a tetrahedron of a cell is to the sample with these weights.
+static int RoleOf(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron, const long* weights,
   const EdgeFunctions* f, CellState state, const KernelParameters* p)
 {
   int simplex = 0;
@@ -336,7 +341,7 @@ static int IsOwner(const SamplingMesh* mesh, int x, int y, int z, int tetrahedro
   {
     if (weights[k] < 0)
     {
-      return 0;
+      return STRANGER;
     }
     if (weights[k] > 0)
     {
@@ -349,15 +354,14 @@ static int IsOwner(const SamplingMesh* mesh, int x, int y, int z, int tetrahedro
   }
   if (DEFORMVOLUME_IS_CLOSED(p->Pass))
   {
-    return 1; // the winner is chosen by its key
+    return OWNER; // the winner is chosen by its key
   }
   if ((weights[0] && weights[1] && weights[2] && weights[3]) || (simplex & state.Interior))
   {
-    return inside;
+    return inside ? OWNER : HOLDER;
   }
-  if ((simplex & state.Regular) == simplex)
-  {
-    return IsOwnerInLattice(x, y, z, tetrahedron, simplex, p);
-  }
-  return IsOwnerOnBorder(mesh, x, y, z, tetrahedron, simplex, f, p);
+  const int owner = (simplex & state.Regular) == simplex
+    ? IsOwnerInLattice(x, y, z, tetrahedron, simplex, p)
+    : IsOwnerOnBorder(mesh, x, y, z, tetrahedron, simplex, f, p);
+  return owner ? OWNER : HOLDER;
 }

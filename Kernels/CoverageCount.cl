@@ -14,41 +14,90 @@ __kernel void CountCovered(
   sums[item] = sum;
 }
 
-// After the pass that finds the voxels that several cells write: those that one cell writes are settled, as
-// their keys say. Where that pass was not made, as no voxel is written twice, contested is 0, and all voxels
-// are that are covered. words: uints of a key; unsettled: set for patches of the output with voxels that are not
-// settled.
-__kernel void Settle(__global const char* coverage, __global uint* winners, const uint words,
-  const int contested, __global char* unsettled, const KernelParameters p)
+// Sections of bricks that hold the winners of voxels: counts in them are set where there is one. Voxels side by side
+// mostly have winners side by side, and only cells outside a run are looked for.
+typedef struct
 {
+  ulong Begin; // cells of a row in one section
+  ulong End;
+} CellRun;
+
+static void MarkSection(ulong cell, CellRun* run, __global uint* counters, const KernelParameters* p)
+{
+  if (cell >= run->Begin && cell < run->End)
+  {
+    return;
+  }
+  const ulong width = p->Size[0] - 1;
+  const ulong row = cell / width;
+  const int x = cell - row * width;
+  const int z = row / (p->Size[1] - 1);
+  const int y = row - (ulong)z * (p->Size[1] - 1);
+  const int inBricks[3] = { x - p->BrickOrigin[0], y - p->BrickOrigin[1], z - p->BrickOrigin[2] };
+  const int column = inBricks[0] / DEFORMVOLUME_COLUMN;
+  const size_t brick = ((size_t)(inBricks[2] / DEFORMVOLUME_BRICK_Z) * p->BrickCount[1] +
+                         inBricks[1] / DEFORMVOLUME_BRICK_Y) *
+      p->BrickCount[0] +
+    inBricks[0] / DEFORMVOLUME_BRICK_X;
+  const int halves = inBricks[1] % DEFORMVOLUME_BRICK_Y / (DEFORMVOLUME_BRICK_Y / 2) +
+    inBricks[2] % DEFORMVOLUME_BRICK_Z / (DEFORMVOLUME_BRICK_Z / 2) * 2;
+  const size_t section = DEFORMVOLUME_SECTIONS * brick + halves * DEFORMVOLUME_COLUMNS +
+    column % DEFORMVOLUME_COLUMNS;
+  counters[section * DEFORMVOLUME_COUNTERS + DEFORMVOLUME_COUNT_CANDIDATES] = 1;
+  run->Begin = cell - min(x, inBricks[0] % DEFORMVOLUME_COLUMN);
+  run->End = cell + min((int)width - x, DEFORMVOLUME_COLUMN - inBricks[0] % DEFORMVOLUME_COLUMN);
+}
+
+// After a pass that finds the voxels that several cells write, as their keys say: marks patches with voxels that are
+// not settled, and the sections of bricks that hold winners so far. Where that pass was not made, as no voxel is
+// written twice, claimed is 0: those that are covered are settled then. words: uints of a key; patches: what is known
+// of them, in which voxels that are not covered can be won where cells touch them.
+__kernel void Settle(__global const char* coverage, __global uint* winners, const uint words,
+  const int claimed, __global char* patches, __global uint* counters, const KernelParameters p)
+{
+  const uint contested = 1u << 31;
   const size_t width = p.OutputSize[0];
   const size_t height = p.OutputSize[1];
   const size_t item = get_global_id(0);
   const size_t begin = item * DEFORMVOLUME_COUNTED_VOXELS;
   const size_t end = min(begin + DEFORMVOLUME_COUNTED_VOXELS, width * height * p.OutputSize[2]);
+  CellRun run = { 0, 0 };
   for (size_t i = begin; i < end;)
   {
     const size_t row = i / width;
     const size_t first = i - row * width;
     const size_t last = min(width, first + end - i);
-    __global char* patches = unsettled + PatchRow(row % height, row / height, &p);
+    __global char* patchRow = patches + PatchRow(row % height, row / height, &p);
     for (size_t x = first; x < last;)
     {
       const size_t patch = x / DEFORMVOLUME_PATCH;
       const size_t patchEnd = min((patch + 1) * DEFORMVOLUME_PATCH, last);
-      uint unsettledKeys = 0;
+      uint some = 0;
+      uint none = 0;
       for (; x < patchEnd; ++x, ++i)
       {
-        __global uint* highWord = winners + i * words + words - 1;
-        if (!contested && coverage[i])
+        __global uint* key = winners + i * words;
+        const uint high = key[words - 1];
+        if (!claimed && coverage[i])
         {
-          *highWord = 0;
+          key[words - 1] = 0;
         }
-        unsettledKeys |= *highWord;
+        else if (high == 0xffffffff)
+        {
+          none = 1;
+        }
+        else if (high & contested)
+        {
+          some = 1;
+          const uint part = high & (contested >> 1) - 1; // without the two bits that tell of keys
+          MarkSection(
+            words == 1 ? part : (ulong)part << 32 | key[0], &run, counters, &p);
+        }
       }
-      if (unsettledKeys >> 31)
+      const int touched = patchRow[patch] & DEFORMVOLUME_PATCH_TOUCHED;
+      if (some || (none && touched))
       {
-        patches[patch] = 1;
+        patchRow[patch] = touched | DEFORMVOLUME_PATCH_UNSETTLED;
       }
     }
   }

@@ -87,6 +87,41 @@ static __attribute__((noinline)) INTS FindBoxes(const Group* group, int mirror, 
   return ALIGNED(X) & ALIGNED(Y) & ALIGNED(Z);
 }
 
+// The first of the samples of the output that lie within bounds on an axis, and one past the last.
+#define FIRST_OF(low, size) TO_INTS(Least(Most(low, 0.0f), (float)(size)) + ALMOST_ONE)
+#define END_OF(high, toEnd, size) TO_INTS(Most(Least((high) + toEnd, (float)(size)), 0.0f))
+
+// Boxes do not look at their high sides, nor at whether they own a sample: all samples in them count as touched.
+static __attribute__((noinline)) void TouchBoxes(
+  INTS box, const Bounds* b, Output* output, const KernelParameters* p)
+{
+  const INTS firstX = FIRST_OF(b->LowX, p->OutputSize[0]);
+  const INTS firstY = FIRST_OF(b->LowY, p->OutputSize[1]);
+  const INTS firstZ = FIRST_OF(b->LowZ, p->OutputSize[2]);
+  const INTS endX = END_OF(b->HighX, 1.0f, p->OutputSize[0]);
+  const INTS endY = END_OF(b->HighY, 1.0f, p->OutputSize[1]);
+  const INTS endZ = END_OF(b->HighZ, 1.0f, p->OutputSize[2]);
+  const INTS some = box & (firstX < endX) & (firstY < endY) & (firstZ < endZ);
+  if (!LaneBits(some))
+  {
+    return;
+  }
+  const int lastX = MostAmong(some, endX) - 1;
+  const int lastY = MostAmong(some, endY) - 1;
+  const int lastZ = MostAmong(some, endZ) - 1;
+  for (int z = LeastAmong(some, firstZ); z < lastZ + DEFORMVOLUME_PATCH; z += DEFORMVOLUME_PATCH)
+  {
+    for (int y = LeastAmong(some, firstY); y < lastY + DEFORMVOLUME_PATCH; y += DEFORMVOLUME_PATCH)
+    {
+      for (int x = LeastAmong(some, firstX); x < lastX + DEFORMVOLUME_PATCH;
+           x += DEFORMVOLUME_PATCH)
+      {
+        Touch(min(x, lastX), min(y, lastY), min(z, lastZ), output, p);
+      }
+    }
+  }
+}
+
 // Whether the processor should fetch the output where the candidates of a lane begin.
 #define FETCH_OUTPUT(index, TYPE, BITS, SLOT) PREFETCH_TO_WRITE(target##index + place)
 #define FIRST_OF_LANE(axis, lane) ((const int*)&c->First[axis])[lane]
@@ -120,7 +155,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Group* grou
   // Candidates are half-open inside the mesh: by the fill rule no sample on the upper side is taken.
   INTS whole = -1;
   FLOATS toEndX = ALMOST_ONE, toEndY = ALMOST_ONE, toEndZ = ALMOST_ONE;
-  if (border || DEFORMVOLUME_IS_CLOSED(p->Pass))
+  if (border || p->Pass != DEFORMVOLUME_PASS_DIRECT)
   {
     toEndX = toEndY = toEndZ = 1.0f;
   }
@@ -144,9 +179,15 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Group* grou
   if (c->HasBoxes)
   {
     c->Box = box;
+    if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
+    {
+      if (!border)
+      {
+        toEndX = toEndY = toEndZ = box ? ALMOST_ONE : 1.0f;
+      }
+      TouchBoxes(there & box, b, output, p);
+    }
   }
-#define FIRST_OF(low, size) TO_INTS(Least(Most(low, 0.0f), (float)(size)) + ALMOST_ONE)
-#define END_OF(high, toEnd, size) TO_INTS(Most(Least((high) + toEnd, (float)(size)), 0.0f))
   INTS firstX = FIRST_OF(b->LowX, p->OutputSize[0]);
   INTS firstY = FIRST_OF(b->LowY, p->OutputSize[1]);
   INTS firstZ = FIRST_OF(b->LowZ, p->OutputSize[2]);
@@ -161,7 +202,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Group* grou
       LeastAmong(some, firstZ) };
     const int last[3] = { MostAmong(some, firstX + countX - 1),
       MostAmong(some, firstY + countY - 1), MostAmong(some, firstZ + countZ - 1) };
-    c->Skip = !LaneBits(some) || !AnyUnsettled(output->Unsettled, first, last, p);
+    c->Skip = !LaneBits(some) || !AnyUnsettled(output->Patches, first, last, p);
   }
   if (p->IsPart)
   {

@@ -74,8 +74,8 @@ typedef struct
 // cells write, and for those on a crease, which none does. All others keep what the first pass gave
 // them: a voxel never depends on others, and so not on how the output is divided.
 #define DEFORMVOLUME_PASS_DIRECT 0 // write, and count the writes
-#define DEFORMVOLUME_PASS_OWNERS 1 // the same, and find the voxels that several cells write
-#define DEFORMVOLUME_PASS_MARK 2   // find the winner of each voxel that is not settled
+#define DEFORMVOLUME_PASS_OWNERS 1 // the same, and find voxels that several cells write: who wins
+#define DEFORMVOLUME_PASS_MARK 2   // find who wins of those that only hold a voxel not settled
 #define DEFORMVOLUME_PASS_WINNER 3 // write where this tetrahedron is the winner
 // Whether every tetrahedron that holds a voxel takes part, and not only the one that writes it.
 #define DEFORMVOLUME_IS_CLOSED(pass) ((pass) >= DEFORMVOLUME_PASS_MARK)
@@ -119,7 +119,9 @@ typedef struct
 #define DEFORMVOLUME_COUNT_MISSING 3    // cells on the border with flat tetrahedra or left-out ones
 #define DEFORMVOLUME_COUNT_ASSUMED 4    // nonzero where it was assumed that there are none such
 #define DEFORMVOLUME_COUNT_CANDIDATES 5 // voxels that cells may have won
-#define DEFORMVOLUME_COUNTERS 6
+#define DEFORMVOLUME_COUNT_TOUCHED                                                                 \
+  6 // nonzero where samples are held by cells that do not write them
+#define DEFORMVOLUME_COUNTERS 7
 
 // Output voxels that a work-item takes of the kernels that count, settle or clear all that are
 // covered or not.
@@ -130,6 +132,9 @@ typedef struct
 #define DEFORMVOLUME_PATCH 8
 // Patches that so many voxels on an axis lie in.
 #define DEFORMVOLUME_PATCHES(voxels) (((voxels) + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH)
+// What is known of a patch.
+#define DEFORMVOLUME_PATCH_UNSETTLED 1 // voxels have to be won
+#define DEFORMVOLUME_PATCH_TOUCHED 2   // cells may hold voxels that others write, or none
 
 // Bytes that a work-item of the kernels Fill1 to Fill8 writes.
 #define DEFORMVOLUME_FILLED_BYTES 65536

@@ -321,7 +321,7 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   if (deformvolume::GetMemory(this->Winners) != this->NumberOfVoxels * this->WinnerSize)
   {
     this->Winners = cl::Buffer();
-    this->Unsettled = cl::Buffer();
+    this->PatchStates = cl::Buffer();
   }
   this->PlaceArrays(context, request, arrays);
   for (std::size_t i = 0; i < arrays.size(); ++i)
@@ -340,7 +340,7 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
 std::uint64_t OutputSlab::GetMissingWinnerMemory() const
 {
   return this->NumberOfVoxels * this->WinnerSize + this->CountAllPatches() -
-    deformvolume::GetMemory(this->Winners) - deformvolume::GetMemory(this->Unsettled);
+    deformvolume::GetMemory(this->Winners) - deformvolume::GetMemory(this->PatchStates);
 }
 
 void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events)
@@ -348,8 +348,8 @@ void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& 
   Reserve(context, this->Winners, this->NumberOfVoxels * this->WinnerSize);
   Fill(context, this->Queue, this->Winners, std::numeric_limits<cl_uint>::max(),
     this->NumberOfVoxels * this->WinnerSize / sizeof(cl_uint), events);
-  Reserve(context, this->Unsettled, this->CountAllPatches());
-  Fill(context, this->Queue, this->Unsettled, cl_uchar{ 0 }, this->CountAllPatches(), events);
+  Reserve(context, this->PatchStates, this->CountAllPatches());
+  Fill(context, this->Queue, this->PatchStates, cl_uchar{ 0 }, this->CountAllPatches(), events);
 }
 
 std::uint64_t OutputSlab::CountAllPatches() const
@@ -362,18 +362,26 @@ std::uint64_t OutputSlab::CountAllPatches() const
   return patches;
 }
 
-void OutputSlab::Settle(OpenCLContext& context, bool contested, std::vector<cl::Event>& events)
+void OutputSlab::Settle(OpenCLContext& context, bool claimed, const KernelParameters& parameters,
+  std::vector<cl::Event>& events)
 {
   const std::size_t items = this->CountItems();
-  KernelParameters p = {};
+  KernelParameters p = parameters;
   this->SetParameters(p);
+  if (!claimed)
+  {
+    // Nor is it known what cells hold beside what they own.
+    Fill(context, this->Queue, this->PatchStates, cl_uchar{ DEFORMVOLUME_PATCH_TOUCHED },
+      this->CountAllPatches(), events);
+  }
   cl::Kernel kernel(GetOutputProgram(context), "Settle");
   kernel.setArg(0, this->Coverage);
   kernel.setArg(1, this->Winners);
   kernel.setArg(2, static_cast<cl_uint>(this->WinnerSize / sizeof(cl_uint)));
-  kernel.setArg(3, cl_int{ contested });
-  kernel.setArg(4, this->Unsettled);
-  kernel.setArg(5, p);
+  kernel.setArg(3, cl_int{ claimed });
+  kernel.setArg(4, this->PatchStates);
+  kernel.setArg(5, this->Counters);
+  kernel.setArg(6, p);
   events.emplace_back();
   this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items),
     GetGroupOfBusyItems(context), nullptr, &events.back());
@@ -407,7 +415,7 @@ std::vector<cl_uint> OutputSlab::ReadCounters()
   return counters;
 }
 
-std::vector<cl_uint> OutputSlab::FindBricksOfWinners()
+std::vector<cl_uint> OutputSlab::FindBricks(int counter)
 {
   const std::vector<cl_uint> counters = this->ReadCounters();
   std::vector<cl_uint> bricks;
@@ -417,7 +425,7 @@ std::vector<cl_uint> OutputSlab::FindBricksOfWinners()
     for (std::size_t section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
     {
       const std::size_t place = (DEFORMVOLUME_SECTIONS * brick + section) * DEFORMVOLUME_COUNTERS;
-      if (counters[place + DEFORMVOLUME_COUNT_CANDIDATES])
+      if (counters[place + static_cast<std::size_t>(counter)])
       {
         bits |= GetSectionBits(section);
       }
@@ -530,7 +538,7 @@ void OutputSlab::Finish()
 std::uint64_t OutputSlab::GetMemory() const
 {
   std::uint64_t bytes = deformvolume::GetMemory(this->Coverage) +
-    deformvolume::GetMemory(this->Winners) + deformvolume::GetMemory(this->Unsettled) +
+    deformvolume::GetMemory(this->Winners) + deformvolume::GetMemory(this->PatchStates) +
     deformvolume::GetMemory(this->Counters);
   for (const cl::Buffer& array : this->Arrays)
   {

@@ -66,9 +66,10 @@ public:
   /// Bytes that PrepareWinners will allocate.
   std::uint64_t GetMissingWinnerMemory() const;
   void PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events);
-  /// After the pass that finds contested voxels, or without it where there are none: leaves those
-  /// to be won, and voxels that nobody has written.
-  void Settle(OpenCLContext& context, bool contested, std::vector<cl::Event>& events);
+  /// After the pass in which cells claim voxels, or without it where none is contested: finds those
+  /// to be won, and those that nobody has written. parameters: of the mesh.
+  void Settle(OpenCLContext& context, bool claimed, const KernelParameters& parameters,
+    std::vector<cl::Event>& events);
 
   std::uint64_t CountCovered(OpenCLContext& context, std::vector<cl::Event>& events);
   Counts ReadCounts();
@@ -77,9 +78,8 @@ public:
   /// the slab.
   bool FitsLanes() const;
 
-  /// After the pass that finds winners: the bricks that may hold one, as DEFORMVOLUME_BRICK_BITS
-  /// says.
-  std::vector<cl_uint> FindBricksOfWinners();
+  /// The bricks with sections of which a counter is not 0, as DEFORMVOLUME_BRICK_BITS says.
+  std::vector<cl_uint> FindBricks(int counter);
 
   /// Puts the output extent into the parameters of a launch.
   void SetParameters(KernelParameters& parameters) const;
@@ -87,9 +87,9 @@ public:
   const cl::Buffer& GetArray(std::size_t index) const { return this->Arrays[index]; }
   const cl::Buffer& GetCoverage() const { return this->Coverage; }
   const cl::Buffer& GetWinners() const { return this->Winners() ? this->Winners : this->Coverage; }
-  const cl::Buffer& GetUnsettled() const
+  const cl::Buffer& GetPatches() const
   {
-    return this->Unsettled() ? this->Unsettled : this->Coverage;
+    return this->PatchStates() ? this->PatchStates : this->Coverage;
   }
   const cl::Buffer& GetCounters() const { return this->Counters; }
 
@@ -119,7 +119,7 @@ private:
   std::vector<std::size_t> TupleSizes;
   cl::Buffer Coverage;
   cl::Buffer Winners;
-  cl::Buffer Unsettled; // a byte a patch of the output
+  cl::Buffer PatchStates; // a byte a patch of the output
   cl::Buffer Counters;
   cl::Buffer Patches;
   std::size_t NumberOfPatches = 0;

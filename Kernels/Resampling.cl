@@ -90,7 +90,7 @@ typedef struct
 {
   __global char* Coverage;
   __global KEY* Winners;
-  __global const char* Unsettled;
+  __global char* Patches; // what is known of them
   // Counts of this work-item.
   uint Writes;
   uint Inverted;
@@ -98,16 +98,43 @@ typedef struct
   uint Missing; // cells on the border with a tetrahedron that is flat or left out
   uint Assumed; // whether cells on the border left samples to the next cells without looking at these
   uint Candidates; // voxels that were won, as far as others had marked them by then
+  uint Touched; // nonzero where samples are held that others write, or none
 } Output;
 
 // Of overlapping tetrahedra upright ones win, then the lowest cell. Within a cell the order of
-// writing decides, the lowest tetrahedron last. The key that settles a voxel is less than all that are there to
-// win one.
+// writing decides, the lowest tetrahedron last. The key of a voxel that is contested has the highest bit: so it is
+// more than those of settled voxels.
+#define CONTESTED ((KEY)1 << (sizeof(KEY) * 8 - 1))
+
 static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
 {
   const KEY cell = ((KEY)z * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x;
   return cell | (KEY)(inverted != 0) << (sizeof(KEY) * 8 - 2) |
-    (KEY)DEFORMVOLUME_IS_CLOSED(p->Pass) << (sizeof(KEY) * 8 - 1);
+    (DEFORMVOLUME_IS_CLOSED(p->Pass) ? CONTESTED : 0);
+}
+
+// A cell that writes a voxel leaves its key there: the first one, or the lowest, which has the voxel then contested.
+// Returns whether the voxel is the cell's so far.
+static int Claim(__global KEY* winner, KEY key)
+{
+  const KEY none = (KEY)-1;
+  KEY found = *winner;
+  for (;;)
+  {
+    const KEY lowest = found & ~CONTESTED;
+    const int wins = found == none || key <= lowest;
+    if (lowest == key || (!wins && lowest != found))
+    {
+      return wins;
+    }
+    const KEY next = found == none ? key : CONTESTED | min(key, lowest);
+    const KEY seen = ATOMIC_CMPXCHG(winner, found, next);
+    if (seen == found)
+    {
+      return wins;
+    }
+    found = seen;
+  }
 }
 
 // What passes but the first do with a voxel that a cell writes. Returns whether values are to follow.
@@ -128,18 +155,7 @@ static int TakesPlace(Output* output, size_t target, KEY key, const KernelParame
     }
     return 0;
   }
-  // The first cell leaves its key, and any other one what can still be won.
-  const KEY none = (KEY)-1;
-  const KEY several = none - 1;
-  if (found != key && found != several)
-  {
-    const KEY first = ATOMIC_CMPXCHG(winner, none, key);
-    if (first != none && first != key)
-    {
-      *winner = several;
-    }
-  }
-  return 1;
+  return Claim(winner, key);
 }
 
 // The weights and their sum as the edge functions give them.
@@ -165,18 +181,21 @@ static Sample MakeSample(int x, int y, int z, int t, const long* weights, long v
   return s;
 }
 
-// Whether one of the patches is marked that hold the voxels of the output from first to last.
+// Whether in one of the patches that hold the voxels of the output from first to last there is work for a pass.
 static int AnyUnsettled(
-  __global const char* unsettled, const int* first, const int* last, const KernelParameters* p)
+  __global const char* patches, const int* first, const int* last, const KernelParameters* p)
 {
+  // What cells own has been claimed before.
+  const char wanted = DEFORMVOLUME_PATCH_UNSETTLED |
+    (p->Pass == DEFORMVOLUME_PASS_MARK ? DEFORMVOLUME_PATCH_TOUCHED : 0);
   for (int z = first[2] / DEFORMVOLUME_PATCH; z <= last[2] / DEFORMVOLUME_PATCH; ++z)
   {
     for (int y = first[1] / DEFORMVOLUME_PATCH; y <= last[1] / DEFORMVOLUME_PATCH; ++y)
     {
-      __global const char* row = unsettled + PatchRow(y * DEFORMVOLUME_PATCH, z * DEFORMVOLUME_PATCH, p);
+      __global const char* row = patches + PatchRow(y * DEFORMVOLUME_PATCH, z * DEFORMVOLUME_PATCH, p);
       for (int x = first[0] / DEFORMVOLUME_PATCH; x <= last[0] / DEFORMVOLUME_PATCH; ++x)
       {
-        if (row[x])
+        if ((row[x] & wanted) == wanted)
         {
           return 1;
         }
@@ -186,13 +205,30 @@ static int AnyUnsettled(
   return 0;
 }
 
-static void Write(int x, int y, int z, int t, const long* weights, long volume, int inverted,
-  Vector voxel, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+// A cell holds a voxel of the output that it does not own. If there turns out to be a winner, it may be this cell.
+static void Touch(int x, int y, int z, Output* output, const KernelParameters* p)
 {
-  const size_t target = ((size_t)(voxel.z - p->OutputFirst[2]) * p->OutputSize[1] +
-                          (voxel.y - p->OutputFirst[1])) *
-      p->OutputSize[0] +
-    (voxel.x - p->OutputFirst[0]);
+  output->Patches[PatchRow(y, z, p) + x / DEFORMVOLUME_PATCH] = DEFORMVOLUME_PATCH_TOUCHED;
+  output->Touched = 1;
+}
+
+static void Write(int x, int y, int z, int t, const long* weights, long volume, int inverted,
+  Vector voxel, int role, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const int placeX = voxel.x - p->OutputFirst[0];
+  const int placeY = voxel.y - p->OutputFirst[1];
+  const int placeZ = voxel.z - p->OutputFirst[2];
+  if (role == HOLDER)
+  {
+    if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
+    {
+      Touch(placeX, placeY, placeZ, output, p);
+    }
+    return;
+  }
+  const size_t target =
+    ((size_t)placeZ * p->OutputSize[1] + placeY) * p->OutputSize[0] + placeX;
+  output->Writes++;
   if (p->Pass != DEFORMVOLUME_PASS_DIRECT &&
     !TakesPlace(output, target, MakeKey(x, y, z, inverted, p), p))
   {
@@ -200,7 +236,6 @@ static void Write(int x, int y, int z, int t, const long* weights, long volume, 
   }
   const Sample s = MakeSample(x, y, z, t, weights, volume, target, p);
   output->Coverage[target] = 1;
-  output->Writes++;
   StoreArrays(&s ARRAY_ARGUMENTS);
 }
 
@@ -264,9 +299,13 @@ static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, c
     const Vector sample = SamplePosition(voxel);
     long behind[4];
     Evaluate(&central, sample, behind);
-    if (IsOwner(mesh, x, y, z, 4, behind, &central, state, p))
+    const int role = RoleOf(mesh, x, y, z, 4, behind, &central, state, p);
+    if (role != STRANGER)
     {
-      Write(x, y, z, 4, behind, central.Volume, 0, voxel, output, p ARRAY_ARGUMENTS);
+      Write(x, y, z, 4, behind, central.Volume, 0, voxel, role, output, p ARRAY_ARGUMENTS);
+    }
+    if (role == OWNER)
+    {
       continue;
     }
     for (int k = 0; k < 4; ++k)
@@ -280,9 +319,14 @@ static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, c
         q[Tetrahedra[t][0]], q[Tetrahedra[t][1]], q[Tetrahedra[t][2]], q[Tetrahedra[t][3]]);
       long weights[4];
       Evaluate(&corner, sample, weights);
-      if (IsOwner(mesh, x, y, z, t, weights, &corner, state, p))
+      const int roleOfCorner = RoleOf(mesh, x, y, z, t, weights, &corner, state, p);
+      if (roleOfCorner != STRANGER)
       {
-        Write(x, y, z, t, weights, corner.Volume, 0, voxel, output, p ARRAY_ARGUMENTS);
+        Write(x, y, z, t, weights, corner.Volume, 0, voxel, roleOfCorner, output,
+          p ARRAY_ARGUMENTS);
+      }
+      if (roleOfCorner == OWNER)
+      {
         break;
       }
     }
@@ -316,9 +360,11 @@ static void ResampleTetrahedra(const SamplingMesh* mesh, int x, int y, int z, co
     {
       long weights[4];
       Evaluate(&f, SamplePosition(voxel), weights);
-      if (IsOwner(mesh, x, y, z, t, weights, &f, state, p))
+      const int role = RoleOf(mesh, x, y, z, t, weights, &f, state, p);
+      if (role != STRANGER)
       {
-        Write(x, y, z, t, weights, f.Volume, inverted >> t & 1, voxel, output, p ARRAY_ARGUMENTS);
+        Write(x, y, z, t, weights, f.Volume, inverted >> t & 1, voxel, role, output,
+          p ARRAY_ARGUMENTS);
       }
     }
   }
@@ -336,7 +382,7 @@ static int TouchesUnsettled(const Vector* q, const Output* output, const KernelP
     c.Low.z - p->OutputFirst[2] };
   const int last[3] = { c.High.x - p->OutputFirst[0], c.High.y - p->OutputFirst[1],
     c.High.z - p->OutputFirst[2] };
-  return AnyUnsettled(output->Unsettled, first, last, p);
+  return AnyUnsettled(output->Patches, first, last, p);
 }
 
 // One cell, by whichever of the two ways is right for it.
@@ -396,7 +442,7 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
   {
     // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
     const Candidates c =
-      CandidatesOfCell(q, state.Interior == 255 && !DEFORMVOLUME_IS_CLOSED(p->Pass), p);
+      CandidatesOfCell(q, state.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT, p);
     if (!IsEmpty(c))
     {
       ResampleUprightCell(mesh, x, y, z, q, state, c, output, p ARRAY_ARGUMENTS);
@@ -414,7 +460,8 @@ static void AddCounts(
   const Output* output, size_t section, __global uint* counters, const KernelParameters* p)
 {
   const uint counts[DEFORMVOLUME_COUNTERS] = { output->Writes, output->Inverted,
-    output->Overstretched, output->Missing, output->Assumed, output->Candidates };
+    output->Overstretched, output->Missing, output->Assumed, output->Candidates,
+    output->Touched };
   for (int i = 0; i < DEFORMVOLUME_COUNTERS; ++i)
   {
     // The passes that come later count nothing again.
@@ -428,7 +475,7 @@ static void AddCounts(
 // A work-group takes a block of cells. positions: room for three ints a vertex of the block.
 __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   __global const uchar* active, __global char* coverage, __global KEY* winners,
-  __global const char* unsettled, __global uint* counters, __local int* positions,
+  __global char* patches, __global uint* counters, __local int* positions,
   const KernelParameters p ARRAY_PARAMETERS)
 {
   const int first[3] = { get_group_id(0) * DEFORMVOLUME_BLOCK_X,
@@ -452,7 +499,7 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
 
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, positions,
     { first[0], first[1], first[2] } };
-  Output output = { coverage, winners, unsettled, 0, 0, 0, 0, 0, 0 };
+  Output output = { coverage, winners, patches, 0, 0, 0, 0, 0, 0, 0 };
   for (int i = get_local_id(0);
        i < DEFORMVOLUME_BLOCK_X * DEFORMVOLUME_BLOCK_Y * DEFORMVOLUME_BLOCK_Z;
        i += get_local_size(0))

@@ -325,7 +325,7 @@ void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
   kernel.setArg(i++, p.HasActive ? chunk.Active : this->Mesh->GetState(chunk));
   kernel.setArg(i++, output.GetCoverage());
   kernel.setArg(i++, output.GetWinners());
-  kernel.setArg(i++, output.GetUnsettled());
+  kernel.setArg(i++, output.GetPatches());
   kernel.setArg(i++, output.GetCounters());
   if (lanes)
   {
@@ -499,17 +499,22 @@ bool VolumeDeformer::Internals::RunSlab(
         this->Run(request, output, DEFORMVOLUME_PASS_OWNERS);
       }
     }
-    output.Settle(*this->Context, contested, this->ResamplingEvents);
-    this->Run(request, output, DEFORMVOLUME_PASS_MARK);
-    if (this->UseLanes(request.Method, output) && this->Mesh->GetChunks().size() == 1)
+    const bool claimed = expected || contested;
+    output.Settle(*this->Context, claimed,
+      this->Mesh->GetParameters(this->Mesh->GetChunks().front()), this->ResamplingEvents);
+    const bool someBricks =
+      this->UseLanes(request.Method, output) && this->Mesh->GetChunks().size() == 1;
+    const auto run = [&](int pass, bool all, int counter)
     {
-      const std::vector<cl_uint> bricks = output.FindBricksOfWinners();
-      this->Run(request, output, DEFORMVOLUME_PASS_WINNER, &bricks);
-    }
-    else
-    {
-      this->Run(request, output, DEFORMVOLUME_PASS_WINNER);
-    }
+      std::vector<cl_uint> bricks;
+      if (!all)
+      {
+        bricks = output.FindBricks(counter);
+      }
+      this->Run(request, output, pass, all ? nullptr : &bricks);
+    };
+    run(DEFORMVOLUME_PASS_MARK, !someBricks || !claimed, DEFORMVOLUME_COUNT_TOUCHED);
+    run(DEFORMVOLUME_PASS_WINNER, !someBricks, DEFORMVOLUME_COUNT_CANDIDATES);
     covered = output.CountCovered(*this->Context, this->ResamplingEvents);
   }
   report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
