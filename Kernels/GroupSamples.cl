@@ -161,15 +161,41 @@ typedef struct
   uint Count;
 } Found;
 
+#define KEEP_VALUE(index, TYPE, BITS, SLOT) found->Values##index[kept] = found->Values##index[i];
+
+// Has the cells claim their samples, and returns how many of these are theirs so far: the first ones then. An atomic
+// operation waits for memory, and nothing that follows goes on meanwhile: hence the loop that fetches.
+static uint KeepClaimed(Found* found, const Output* output)
+{
+  uint kept = 0;
+  for (uint i = 0; i < found->Count; ++i)
+  {
+    PREFETCH(output->Winners + (uint)found->Places[i])
+  }
+  for (uint i = 0; i < found->Count; ++i)
+  {
+    const uint place = found->Places[i];
+    found->Places[kept] = place;
+    LANE_ARRAYS(KEEP_VALUE)
+    kept += Claim(output->Winners + place, (KEY)(uint)found->Cells[i]);
+  }
+  return kept;
+}
+
 // Stores the samples and forgets them.
 static void StoreFound(Found* found, const Group* group, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int pass = p->Pass;
-  const uint count = found->Count;
+  uint count = found->Count;
   __global char* const coverage = output->Coverage;
-  if (pass == DEFORMVOLUME_PASS_DIRECT && !HAS_OTHER_ARRAYS)
+  if ((pass == DEFORMVOLUME_PASS_DIRECT || (pass == DEFORMVOLUME_PASS_OWNERS && KEEPS_KEYS)) &&
+    !HAS_OTHER_ARRAYS)
   {
+    if (pass == DEFORMVOLUME_PASS_OWNERS)
+    {
+      count = KeepClaimed(found, output);
+    }
     _Pragma("clang loop vectorize(disable) unroll_count(4)")
     for (uint i = 0; i < count; ++i)
     {

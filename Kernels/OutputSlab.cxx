@@ -318,7 +318,7 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   this->WholeExtent = GetWholeOutput(request);
   this->WinnerSize = GetWinnerSize(lattice);
   this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(extent));
-  if (deformvolume::GetMemory(this->Winners) != this->NumberOfVoxels * this->WinnerSize)
+  if (!this->HasWinners())
   {
     this->Winners = cl::Buffer();
     this->PatchStates = cl::Buffer();
@@ -337,18 +337,30 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   Fill(context, this->Queue, this->Counters, cl_uint{ 0 }, counters, events);
 }
 
+bool OutputSlab::HasWinners() const
+{
+  // Those of a somewhat larger output serve as well: to touch fresh memory takes longer than to
+  // fill it.
+  const std::uint64_t needed = this->NumberOfVoxels * this->WinnerSize;
+  const std::uint64_t held = deformvolume::GetMemory(this->Winners);
+  return held >= needed && held - needed <= needed / 4 &&
+    deformvolume::GetMemory(this->PatchStates) >= this->CountAllPatches();
+}
+
 std::uint64_t OutputSlab::GetMissingWinnerMemory() const
 {
-  return this->NumberOfVoxels * this->WinnerSize + this->CountAllPatches() -
-    deformvolume::GetMemory(this->Winners) - deformvolume::GetMemory(this->PatchStates);
+  return this->HasWinners() ? 0 : this->NumberOfVoxels * this->WinnerSize + this->CountAllPatches();
 }
 
 void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events)
 {
-  Reserve(context, this->Winners, this->NumberOfVoxels * this->WinnerSize);
+  if (!this->HasWinners())
+  {
+    Reserve(context, this->Winners, this->NumberOfVoxels * this->WinnerSize);
+    Reserve(context, this->PatchStates, this->CountAllPatches());
+  }
   Fill(context, this->Queue, this->Winners, std::numeric_limits<cl_uint>::max(),
     this->NumberOfVoxels * this->WinnerSize / sizeof(cl_uint), events);
-  Reserve(context, this->PatchStates, this->CountAllPatches());
   Fill(context, this->Queue, this->PatchStates, cl_uchar{ 0 }, this->CountAllPatches(), events);
 }
 

@@ -104,6 +104,7 @@ public:
 private:
   void PlaceArrays(
     OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays);
+  bool HasWinners() const;
   std::uint64_t CountAllPatches() const;
   std::vector<cl_uint> ReadCounters();
   std::uint64_t GetOffset(const DeformRequest& request) const;

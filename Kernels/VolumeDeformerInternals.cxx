@@ -116,6 +116,12 @@ std::uint64_t VolumeDeformer::Internals::GetUsableMemory()
     });
 }
 
+bool VolumeDeformer::Internals::HasRoomForWinners(const OutputSlab& slab)
+{
+  const std::uint64_t missing = slab.GetMissingWinnerMemory();
+  return missing == 0 || this->GetHeldMemory() + missing <= this->GetUsableMemory();
+}
+
 void VolumeDeformer::Internals::CheckWinners(const OutputSlab& slab)
 {
   CheckBytes(this->GetHeldMemory() + slab.GetMissingWinnerMemory(), this->GetUsableMemory(),
@@ -471,7 +477,7 @@ bool VolumeDeformer::Internals::RunSlab(
 {
   // What was folded last time probably still is: then one pass does for two.
   const bool expected = this->WasContested && request.Method != Resampling::Published &&
-    output.GetMissingWinnerMemory() == 0;
+    this->HasRoomForWinners(output);
   if (expected)
   {
     output.PrepareWinners(*this->Context, this->ResamplingEvents);

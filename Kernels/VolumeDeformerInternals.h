@@ -67,7 +67,8 @@ public:
   std::uint64_t GetHeldMemory() const;
   /// Bytes that may be allocated there, those included that are and will be freed or used again.
   std::uint64_t GetUsableMemory();
-  /// Throws an Error where there is no room for the winners of a slab of the output.
+  /// Whether there is room for the winners of a slab of the output, or an Error where there is not.
+  bool HasRoomForWinners(const OutputSlab& slab);
   void CheckWinners(const OutputSlab& slab);
 
   cl::Buffer SendBuffer(const void* data, std::size_t bytes, const cl::Buffer& previous);
