@@ -31,7 +31,7 @@ constexpr Limit PublishedGeneral{ "general pose: default by published kernel", 0
 constexpr Limit FineMesh{ "near identity: 512000 nodes by 2197 nodes", 1.6 };
 constexpr Limit Rotated{ "turned by 45 degrees round each axis, by near identity", 2.5 };
 constexpr Limit Scaled{ "scaled by 1.5, by near identity", 2.5 };
-constexpr Limit FoldedOver{ "a third folded back over the rest, by near identity", 5.0 };
+constexpr Limit FoldedOver{ "a third folded back over the rest, by near identity", 3.5 };
 constexpr Limit BytesCoarse{ "2197 nodes: bytes of device memory per voxel", 6.0 };
 constexpr Limit BytesFine{ "512000 nodes: bytes of device memory per voxel", 20.0 };
 constexpr Limit Builds{ "static mappings built for moved meshes", 0.0 };

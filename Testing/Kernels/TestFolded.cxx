@@ -183,6 +183,45 @@ TEST(Folded, OutputsBeforeDoNotMatter)
   }
 }
 
+TEST(Folded, OnSamplesAfterAFold)
+{
+  // Where the output before was folded, one pass finds who wins, but for cells that only touch a
+  // sample: all cells here have samples on their faces, as boxes and sheared, with the crease on
+  // samples and between.
+  const Extent wide{ { -1, 40, 0, 8, 1, 9 } };
+  const auto fold = [&](double crease, double shear, double scale)
+  {
+    return MakeCase(wide, NoScale,
+      [=](const glm::dvec3& index)
+      {
+        const double x = index.x > crease ? 2.0 * crease - index.x : index.x;
+        return glm::dvec3(scale * x + shear * index.y, index.y, index.z + shear * x);
+      });
+  };
+  const auto shorts = MakeRandomValues<std::int16_t>(fold(25.0, 0.0, 1.0).GetNumberOfVoxels(), 4);
+  const auto floats = MakeRandomValues<float>(shorts.size(), 5);
+  const std::vector<VolumeArray> arrays{ MakeArray(shorts), MakeArray(floats, 1, false, 2.0) };
+  for (const Resampling method : { Resampling::ExactByLanes, Resampling::ExactByCell })
+  {
+    VolumeDeformer deformer;
+    for (const double shear : { 0.0, 1.0 })
+    {
+      for (const double scale : { 1.0, 1.5 })
+      {
+        for (const double crease : { 25.0, 30.5, 22.25 })
+        {
+          SCOPED_TRACE(testing::Message() << shear << ' ' << scale << ' ' << crease);
+          const DeformerCase folded = fold(crease, shear, scale);
+          Load(deformer, folded, arrays, Route::Field);
+          const Deformed deformed = RunDeformer(deformer, folded, arrays, method);
+          EXPECT_TRUE(deformed.Report.Overlapping);
+          ExpectEqualsReference(folded, ResampleByReference(folded), arrays, deformed);
+        }
+      }
+    }
+  }
+}
+
 TEST(Folded, OverstretchedTetrahedraAreSkippedAndCounted)
 {
   const Extent small{ { 0, 3, 0, 3, 0, 3 } };
