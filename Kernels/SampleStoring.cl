@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a sample of a tetrahedron is, and how the arrays are interpolated at it and stored.
+//
+// What the host puts in front of this text:
+//   REAL                 type of the interpolation: double where the device has it, else float
+//   ARRAY_PARAMETERS     kernel parameters: source and target of each array
+//   ARRAY_ARGUMENTS      the same as arguments
+//   STORE_ARRAYS         statements that store all arrays at a sample
+
+// One sample of one tetrahedron.
+typedef struct
+{
+  size_t Target;    // output voxel in the buffers
+  size_t Sources[4]; // voxels of the chunk at the tetrahedron's vertices
+  REAL Weights[4];  // barycentric weights
+  int Only;         // the vertex at which the sample lies exactly, or -1
+  int Nearest;      // the vertex with the largest weight; of equal ones the lowest voxel
+} Sample;
+
+// Vertices without weight are not read into the sum: a NaN stays within its tetrahedra. A sample at
+// a vertex takes its value as it is, bit for bit.
+#define STORE_LINEAR(SOURCE, TARGET, COMPONENTS, CONVERT)                                          \
+  for (int c = 0; c < COMPONENTS; ++c)                                                             \
+  {                                                                                                \
+    if (s->Only >= 0)                                                                              \
+    {                                                                                              \
+      TARGET[s->Target * COMPONENTS + c] = SOURCE[s->Sources[s->Only] * COMPONENTS + c];           \
+    }                                                                                              \
+    else                                                                                           \
+    {                                                                                              \
+      REAL sum = 0;                                                                                \
+      for (int k = 0; k < 4; ++k)                                                                  \
+      {                                                                                            \
+        sum += s->Weights[k] > 0                                                                   \
+          ? s->Weights[k] * (REAL)SOURCE[s->Sources[k] * COMPONENTS + c]                           \
+          : (REAL)0;                                                                               \
+      }                                                                                            \
+      TARGET[s->Target * COMPONENTS + c] = CONVERT(sum);                                           \
+    }                                                                                              \
+  }
+
+// Integers of 64 bits do not fit into REAL: what is interpolated is the difference to the first
+// vertex, which is exact wherever the values are near to each other.
+#define STORE_LINEAR_64(SOURCE, TARGET, COMPONENTS, TYPE, CONVERT)                                 \
+  for (int c = 0; c < COMPONENTS; ++c)                                                             \
+  {                                                                                                \
+    const TYPE first = SOURCE[s->Sources[s->Only >= 0 ? s->Only : 0] * COMPONENTS + c];            \
+    TYPE value = first;                                                                            \
+    if (s->Only < 0)                                                                               \
+    {                                                                                              \
+      REAL sum = (REAL)first;                                                                      \
+      REAL difference = 0;                                                                         \
+      int near = 1;                                                                                \
+      for (int k = 1; k < 4; ++k)                                                                  \
+      {                                                                                            \
+        const TYPE other = SOURCE[s->Sources[k] * COMPONENTS + c];                                 \
+        near &= abs_diff(other, first) < (1UL << 62);                                              \
+        difference += s->Weights[k] * (REAL)(long)((ulong)other - (ulong)first);                   \
+        sum += s->Weights[k] * ((REAL)other - (REAL)first);                                        \
+      }                                                                                            \
+      value = near ? (TYPE)((ulong)first + (ulong)convert_long_rte(difference)) : CONVERT(sum);    \
+    }                                                                                              \
+    TARGET[s->Target * COMPONENTS + c] = value;                                                    \
+  }
+
+#define STORE_NEAREST(SOURCE, TARGET, COMPONENTS)                                                  \
+  for (int c = 0; c < COMPONENTS; ++c)                                                             \
+  {                                                                                                \
+    TARGET[s->Target * COMPONENTS + c] = SOURCE[s->Sources[s->Nearest] * COMPONENTS + c];          \
+  }
+
+static void StoreArrays(const Sample* s ARRAY_PARAMETERS)
+{
+  STORE_ARRAYS
+}
+
+// The weights and their sum as the edge functions give them.
+static Sample MakeSample(int x, int y, int z, int t, const long* weights, long volume,
+  size_t target, const KernelParameters* p)
+{
+  const int mirror = Mirror(x, y, z, p);
+  const REAL scale = (REAL)1 / (REAL)volume;
+  Sample s;
+  s.Target = target;
+  s.Only = -1;
+  s.Nearest = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const int o = Tetrahedra[t][k] ^ mirror;
+    s.Sources[k] = VertexInChunk(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+    s.Weights[k] = (REAL)weights[k] * scale;
+    s.Only = weights[k] == volume ? k : s.Only;
+    const long lead = weights[k] - weights[s.Nearest];
+    s.Nearest =
+      lead > 0 || (lead == 0 && s.Sources[k] < s.Sources[s.Nearest]) ? k : s.Nearest;
+  }
+  return s;
+}

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How a slab of the output is made: the passes over the cells of the sampling mesh, and their launches.
+#include "VolumeDeformerInternals.h"
+
+#include "KernelProgram.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace deformvolume
+{
+
+void VolumeDeformer::Internals::Map(const LatticeChunk& chunk, const KernelParameters& p)
+{
+  const std::uint64_t bytes = static_cast<std::uint64_t>(p.Size[0]) * p.Size[1] * 3 *
+    sizeof(cl_int) * static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin);
+  if (GetMemory(this->Positions) < bytes)
+  {
+    this->Positions = cl::Buffer(this->Context->GetContext(), CL_MEM_READ_WRITE, bytes);
+  }
+  cl::Kernel kernel(GetMappingProgram(*this->Context, this->GetMappingForm()), "MapPositions");
+  cl_uint i = this->SetMappingArguments(kernel, chunk);
+  kernel.setArg(i++, this->Mesh->GetState(chunk));
+  kernel.setArg(i++, this->Positions);
+  kernel.setArg(i++, p);
+  this->MappingEvents.emplace_back();
+  this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
+    this->Mesh->GetVertexRange(p.PlanesEnd - p.PlanesBegin), this->Mesh->GetVertexGroup(), nullptr,
+    &this->MappingEvents.back());
+}
+
+std::size_t VolumeDeformer::Internals::GetGroupSize(const cl::Kernel& kernel) const
+{
+  const auto largest =
+    kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(this->Context->GetDevice().Device);
+  return std::min<std::size_t>(this->WorkGroupSize ? this->WorkGroupSize : 64, largest);
+}
+
+void VolumeDeformer::Internals::Launch(
+  cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group)
+{
+  this->ResamplingEvents.emplace_back();
+  this->Queue.enqueueNDRangeKernel(
+    kernel, cl::NullRange, items, group, nullptr, &this->ResamplingEvents.back());
+  this->Queue.flush();
+}
+
+void VolumeDeformer::Internals::ReportLaunch(const DeformRequest& request, cl::Event& previous)
+{
+  if (previous())
+  {
+    previous.wait();
+  }
+  previous = this->ResamplingEvents.back();
+  ++this->LaunchesDone;
+  if (request.Progress &&
+    !request.Progress(std::min(1.0, double(this->LaunchesDone) / this->LaunchesExpected)))
+  {
+    this->Queue.finish();
+    throw Aborted();
+  }
+}
+
+void VolumeDeformer::Internals::RunPublished(const DeformRequest& request, OutputSlab& output)
+{
+  cl::Kernel kernel(GetPublishedProgram(*this->Context, this->Arrays), "ResamplePublished");
+  const std::size_t group = this->GetGroupSize(kernel);
+  cl::Event previous;
+  for (const LatticeChunk& chunk : this->Mesh->GetChunks())
+  {
+    // The published method maps all vertices, and then resamples all cells.
+    KernelParameters p = this->Mesh->GetParameters(chunk);
+    p.PlanesBegin = p.LayersBegin;
+    p.PlanesEnd = p.LayersEnd + 1;
+    p.SlabFirst = p.PlanesBegin;
+    output.SetParameters(p);
+    this->Map(chunk, p);
+    cl_uint i = 0;
+    kernel.setArg(i++, this->Positions);
+    kernel.setArg(i++, p.HasActive ? chunk.Active : this->Mesh->GetState(chunk));
+    kernel.setArg(i++, output.GetCoverage());
+    kernel.setArg(i++, p);
+    for (std::size_t a = 0; a < this->Arrays.size(); ++a)
+    {
+      kernel.setArg(i++, chunk.Arrays[a]);
+      kernel.setArg(i++, output.GetArray(a));
+    }
+    const std::size_t cells = static_cast<std::size_t>(p.Size[0] - 1);
+    this->Launch(kernel,
+      cl::NDRange((cells + group - 1) / group * group, static_cast<std::size_t>(p.Size[1] - 1),
+        static_cast<std::size_t>(p.LayersEnd - p.LayersBegin)),
+      cl::NDRange(group, 1, 1));
+    this->ReportLaunch(request, previous);
+  }
+}
+
+cl::Kernel VolumeDeformer::Internals::MakeResamplingKernel(bool lanes)
+{
+  return cl::Kernel(GetResamplingProgram(*this->Context, this->GetMappingForm(), this->Arrays,
+                      GetWinnerSize(this->Mesh->GetLattice()) == 8),
+    lanes ? "ResampleBricks" : "Resample");
+}
+
+void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
+  const LatticeChunk& chunk, const OutputSlab& output, bool lanes, const KernelParameters& p) const
+{
+  cl_uint i = this->SetMappingArguments(kernel, chunk);
+  kernel.setArg(i++, this->Mesh->GetState(chunk));
+  kernel.setArg(i++, p.HasActive ? chunk.Active : this->Mesh->GetState(chunk));
+  kernel.setArg(i++, output.GetCoverage());
+  kernel.setArg(i++, output.GetWinners());
+  kernel.setArg(i++, output.GetPatches());
+  kernel.setArg(i++, output.GetCounters());
+  if (lanes)
+  {
+    kernel.setArg(i++, this->Bricks);
+    kernel.setArg(i++, this->TakenBricks);
+    kernel.setArg(i++, cl::Local(GetBrickMemory(*this->Context, this->Arrays)));
+  }
+  else
+  {
+    kernel.setArg(i++, cl::Local(3 * sizeof(cl_int) * DEFORMVOLUME_BLOCK_VERTICES));
+  }
+  kernel.setArg(i++, p);
+  for (std::size_t a = 0; a < this->Arrays.size(); ++a)
+  {
+    kernel.setArg(i++, chunk.Arrays[a]);
+    kernel.setArg(i++, output.GetArray(a));
+  }
+}
+
+void VolumeDeformer::Internals::LaunchBricks(cl::Kernel& kernel, const KernelParameters& p)
+{
+  this->Queue.enqueueFillBuffer(this->TakenBricks, cl_uint{ 0 }, 0, sizeof(cl_uint));
+  const cl_uint units = this->Context->GetDevice().Device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  this->Launch(kernel, cl::NDRange(std::min(units, static_cast<cl_uint>(p.ListEnd - p.ListBegin))),
+    cl::NDRange(1));
+}
+
+void VolumeDeformer::Internals::RunBricks(
+  const DeformRequest& request, OutputSlab& output, int pass, const std::vector<cl_uint>& bricks)
+{
+  if (bricks.empty())
+  {
+    return;
+  }
+  cl::Kernel kernel = this->MakeResamplingKernel(true);
+  this->Bricks = this->SendBuffer(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
+  const LatticeChunk& chunk = this->Mesh->GetChunks().front();
+  KernelParameters p = this->Mesh->GetParameters(chunk);
+  p.Pass = pass;
+  output.SetParameters(p);
+  // As many in a launch as there are when all are run.
+  const std::size_t step = static_cast<std::size_t>(p.BrickCount[0]) *
+    static_cast<std::size_t>(p.BrickCount[1]) *
+    static_cast<std::size_t>(this->GetLayersPerLaunch() / DEFORMVOLUME_BRICK_Z);
+  this->LaunchesExpected =
+    std::max(this->LaunchesExpected, this->LaunchesDone + (bricks.size() + step - 1) / step);
+  cl::Event previous;
+  for (std::size_t begin = 0; begin < bricks.size(); begin += step)
+  {
+    p.ListBegin = static_cast<int>(begin);
+    p.ListEnd = static_cast<int>(std::min(begin + step, bricks.size()));
+    this->SetResamplingArguments(kernel, chunk, output, true, p);
+    this->LaunchBricks(kernel, p);
+    this->ReportLaunch(request, previous);
+  }
+}
+
+void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSlab& output, int pass)
+{
+  const bool lanes = this->UseLanes(request.Method, output);
+  cl::Kernel kernel = this->MakeResamplingKernel(lanes);
+  if (lanes)
+  {
+    std::vector<cl_uint> bricks(this->Mesh->GetNumberOfBricks());
+    if (bricks.size() >> DEFORMVOLUME_BRICK_BITS)
+    {
+      throw Error("The volume has more than 10^11 voxels. Use a smaller volume.");
+    }
+    std::iota(
+      bricks.begin(), bricks.end(), cl_uint{ DEFORMVOLUME_WHOLE_BRICK } << DEFORMVOLUME_BRICK_BITS);
+    this->Bricks = this->SendBuffer(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
+  }
+  cl::Event previous;
+  for (const LatticeChunk& chunk : this->Mesh->GetChunks())
+  {
+    for (int begin = chunk.LayersBegin; begin < chunk.LayersEnd;)
+    {
+      KernelParameters p = this->Mesh->GetParameters(chunk);
+      // Launches end where bricks do.
+      const int step =
+        this->GetLayersPerLaunch() - (begin - p.BrickOrigin[2]) % DEFORMVOLUME_BRICK_Z;
+      p.LayersBegin = begin;
+      p.LayersEnd = std::min(begin + step, chunk.LayersEnd);
+      p.Pass = pass;
+      output.SetParameters(p);
+      const std::pair<cl_uint, cl_uint> bricks =
+        this->Mesh->GetBrickRange(p.LayersBegin, p.LayersEnd);
+      p.ListBegin = static_cast<int>(bricks.first);
+      p.ListEnd = static_cast<int>(bricks.second);
+      this->SetResamplingArguments(kernel, chunk, output, lanes, p);
+      if (lanes)
+      {
+        this->LaunchBricks(kernel, p);
+      }
+      else
+      {
+        // A work-group takes a block; on a processor its only item does.
+        const bool processor = this->Context->GetDevice().IsProcessor;
+        const std::size_t group =
+          processor && !this->WorkGroupSize ? 1 : this->GetGroupSize(kernel);
+        const auto count = [](int cells, int size)
+        { return static_cast<std::size_t>((cells + size - 1) / size); };
+        this->Launch(kernel,
+          cl::NDRange(group * count(p.Size[0] - 1, DEFORMVOLUME_BLOCK_X),
+            count(p.Size[1] - 1, DEFORMVOLUME_BLOCK_Y),
+            count(p.LayersEnd - p.LayersBegin, DEFORMVOLUME_BLOCK_Z)),
+          cl::NDRange(group, 1, 1));
+      }
+      this->ReportLaunch(request, previous);
+      begin = p.LayersEnd;
+    }
+  }
+}
+
+void VolumeDeformer::Internals::Run(
+  const DeformRequest& request, OutputSlab& output, int pass, const std::vector<cl_uint>* bricks)
+{
+  const cl::Program mapping = GetMappingProgram(*this->Context, this->GetMappingForm());
+  if (this->Mesh->HasRuns() && this->Mesh->NeedsRecords())
+  {
+    this->MappingEvents.push_back(
+      this->Mesh->EvaluateTetrahedra(mapping, this->Tetrahedra, this->Nodes));
+  }
+  this->Mesh->UpdateState(mapping, this->Field.Extrapolate || this->Field.SameGrid,
+    [this](cl::Kernel& kernel, const LatticeChunk& chunk)
+    { return this->SetMappingArguments(kernel, chunk); });
+  if (request.Method == Resampling::Published)
+  {
+    this->RunPublished(request, output);
+  }
+  else if (bricks)
+  {
+    this->RunBricks(request, output, pass, *bricks);
+  }
+  else
+  {
+    this->RunExact(request, output, pass);
+  }
+}
+
+bool VolumeDeformer::Internals::RunSlab(
+  const DeformRequest& request, OutputSlab& output, bool first, DeformReport& report)
+{
+  // What was folded last time probably still is: then one pass does for two.
+  const bool expected = this->WasContested && request.Method != Resampling::Published &&
+    this->HasRoomForWinners(output);
+  if (expected)
+  {
+    output.PrepareWinners(*this->Context, this->ResamplingEvents);
+  }
+  this->Run(request, output, expected ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT);
+  std::uint64_t covered = output.CountCovered(*this->Context, this->ResamplingEvents);
+  const OutputSlab::Counts counts = output.ReadCounts();
+  if (first) // every slab sees all tetrahedra
+  {
+    report.NumberOfInvertedTetrahedra = static_cast<std::int64_t>(counts.Inverted);
+    report.NumberOfOverstretchedCells = static_cast<std::int64_t>(counts.Overstretched);
+  }
+  const bool folded = request.Method != Resampling::Published && counts.NeedWinners(covered);
+  if (folded)
+  {
+    const bool contested = counts.Writes > covered;
+    report.Overlapping |= contested;
+    this->LaunchesExpected += (contested && !expected ? 3 : 2) * this->GetNumberOfLaunches();
+    if (!expected)
+    {
+      this->CheckWinners(output);
+      output.PrepareWinners(*this->Context, this->ResamplingEvents);
+      if (contested)
+      {
+        this->Run(request, output, DEFORMVOLUME_PASS_OWNERS);
+      }
+    }
+    const bool claimed = expected || contested;
+    output.Settle(*this->Context, claimed,
+      this->Mesh->GetParameters(this->Mesh->GetChunks().front()), this->ResamplingEvents);
+    const bool someBricks =
+      this->UseLanes(request.Method, output) && this->Mesh->GetChunks().size() == 1;
+    const auto run = [&](int pass, bool all, int counter)
+    {
+      std::vector<cl_uint> bricks;
+      if (!all)
+      {
+        bricks = output.FindBricks(counter);
+      }
+      this->Run(request, output, pass, all ? nullptr : &bricks);
+    };
+    run(DEFORMVOLUME_PASS_MARK, !someBricks || !claimed, DEFORMVOLUME_COUNT_TOUCHED);
+    run(DEFORMVOLUME_PASS_WINNER, !someBricks, DEFORMVOLUME_COUNT_CANDIDATES);
+    covered = output.CountCovered(*this->Context, this->ResamplingEvents);
+  }
+  report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
+  return !folded;
+}
+
+int VolumeDeformer::Internals::GetLayersPerLaunch() const
+{
+  constexpr std::int64_t cells = 1 << 23;
+  constexpr std::int64_t leastBricks = 2;
+  const std::int64_t layer = std::int64_t{ this->Mesh->GetSize(0) } * this->Mesh->GetSize(1);
+  const std::int64_t bricks = (cells / layer + DEFORMVOLUME_BRICK_Z - 1) / DEFORMVOLUME_BRICK_Z;
+  const std::int64_t mostBricks = this->Mesh->GetSize(2) / DEFORMVOLUME_BRICK_Z + 1;
+  return static_cast<int>(std::clamp(bricks, leastBricks, std::max(mostBricks, leastBricks))) *
+    DEFORMVOLUME_BRICK_Z;
+}
+
+std::size_t VolumeDeformer::Internals::GetNumberOfLaunches() const
+{
+  const int layers = this->GetLayersPerLaunch();
+  return static_cast<std::size_t>((this->Mesh->GetSize(2) + layers - 1) / layers);
+}
+
+} // namespace deformvolume

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The output of a launch, and which cell wins a voxel that several cells write.
+//
+// Data: coverage 1 byte an output voxel; winners 4 or 8 bytes an output voxel (only where tetrahedra overlap);
+// patches of the output 1 byte each.
+//
+// What the host puts in front of this text:
+//   KEY, ATOMIC_MIN,     type of the winner's key, and its minimum and conditional exchange
+//   ATOMIC_CMPXCHG
+
+typedef struct
+{
+  __global char* Coverage;
+  __global KEY* Winners;
+  __global char* Patches; // what is known of them
+  // Counts of this work-item.
+  uint Writes;
+  uint Inverted;
+  uint Overstretched;
+  uint Missing; // cells on the border with a tetrahedron that is flat or left out
+  uint Assumed; // whether cells on the border left samples to the next cells without looking at these
+  uint Candidates; // voxels that were won, as far as others had marked them by then
+  uint Touched; // nonzero where samples are held that others write, or none
+} Output;
+
+// Of overlapping tetrahedra upright ones win, then the lowest cell. Within a cell the order of
+// writing decides, the lowest tetrahedron last. The key of a voxel that is contested has the highest bit: so it is
+// more than those of settled voxels.
+#define CONTESTED ((KEY)1 << (sizeof(KEY) * 8 - 1))
+
+static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
+{
+  const KEY cell = ((KEY)z * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x;
+  return cell | (KEY)(inverted != 0) << (sizeof(KEY) * 8 - 2) |
+    (DEFORMVOLUME_IS_CLOSED(p->Pass) ? CONTESTED : 0);
+}
+
+// A cell that writes a voxel leaves its key there: the first one, or the lowest, which has the voxel then contested.
+// Returns whether the voxel is the cell's so far.
+static int Claim(__global KEY* winner, KEY key)
+{
+  const KEY none = (KEY)-1;
+  KEY found = *winner;
+  for (;;)
+  {
+    const KEY lowest = found & ~CONTESTED;
+    const int wins = found == none || key <= lowest;
+    if (lowest == key || (!wins && lowest != found))
+    {
+      return wins;
+    }
+    const KEY next = found == none ? key : CONTESTED | min(key, lowest);
+    const KEY seen = ATOMIC_CMPXCHG(winner, found, next);
+    if (seen == found)
+    {
+      return wins;
+    }
+    found = seen;
+  }
+}
+
+// What passes but the first do with a voxel that a cell writes. Returns whether values are to follow.
+static int TakesPlace(Output* output, size_t target, KEY key, const KernelParameters* p)
+{
+  __global KEY* winner = output->Winners + target;
+  const KEY found = *winner;
+  if (p->Pass == DEFORMVOLUME_PASS_WINNER)
+  {
+    return found == key;
+  }
+  if (p->Pass == DEFORMVOLUME_PASS_MARK)
+  {
+    if (found > key)
+    {
+      ATOMIC_MIN(winner, key);
+      output->Candidates++;
+    }
+    return 0;
+  }
+  return Claim(winner, key);
+}
+
+// Whether in one of the patches that hold the voxels of the output from first to last there is work for a pass.
+static int AnyUnsettled(
+  __global const char* patches, const int* first, const int* last, const KernelParameters* p)
+{
+  // What cells own has been claimed before.
+  const char wanted = DEFORMVOLUME_PATCH_UNSETTLED |
+    (p->Pass == DEFORMVOLUME_PASS_MARK ? DEFORMVOLUME_PATCH_TOUCHED : 0);
+  for (int z = first[2] / DEFORMVOLUME_PATCH; z <= last[2] / DEFORMVOLUME_PATCH; ++z)
+  {
+    for (int y = first[1] / DEFORMVOLUME_PATCH; y <= last[1] / DEFORMVOLUME_PATCH; ++y)
+    {
+      __global const char* row = patches + PatchRow(y * DEFORMVOLUME_PATCH, z * DEFORMVOLUME_PATCH, p);
+      for (int x = first[0] / DEFORMVOLUME_PATCH; x <= last[0] / DEFORMVOLUME_PATCH; ++x)
+      {
+        if ((row[x] & wanted) == wanted)
+        {
+          return 1;
+        }
+      }
+    }
+  }
+  return 0;
+}
+
+// A cell holds a voxel of the output that it does not own. If there turns out to be a winner, it may be this cell.
+static void Touch(int x, int y, int z, Output* output, const KernelParameters* p)
+{
+  output->Patches[PatchRow(y, z, p) + x / DEFORMVOLUME_PATCH] = DEFORMVOLUME_PATCH_TOUCHED;
+  output->Touched = 1;
+}
