@@ -129,8 +129,18 @@ void BrickPoints::Collect(const BrickGrid& grid, const Tetrahedron* tetrahedra,
   for (Needs& need : needs)
   {
     std::sort(need.Nodes.begin(), need.Nodes.end());
-    this->Points.insert(this->Points.end(), need.Nodes.begin(), need.Nodes.end());
-    this->Begins.push_back(this->Points.size());
+    for (const std::int32_t node : need.Nodes)
+    {
+      if (this->Ranges.size() > this->Begins.back() && this->Ranges.back().End == node)
+      {
+        ++this->Ranges.back().End;
+      }
+      else
+      {
+        this->Ranges.push_back({ node, node + 1 });
+      }
+    }
+    this->Begins.push_back(this->Ranges.size());
     this->Excess.push_back(need.Excess);
   }
 }

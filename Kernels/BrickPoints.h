@@ -65,7 +65,8 @@ public:
 
   bool IsEmpty() const { return this->Begins.empty() && this->Boxes.empty(); }
 
-  /// Whether body(point) was true for one of a brick's points; no more are asked then.
+  /// Whether body(begin, end) was true for one of the ranges that a brick's points are; no more are
+  /// asked then.
   template <typename Body>
   bool AnyOf(std::size_t brick, Body&& body) const
   {
@@ -73,7 +74,8 @@ public:
     {
       for (std::size_t i = this->Begins[brick]; i < this->Begins[brick + 1]; ++i)
       {
-        if (body(static_cast<std::size_t>(this->Points[i])))
+        const Range& range = this->Ranges[i];
+        if (body(static_cast<std::size_t>(range.Begin), static_cast<std::size_t>(range.End)))
         {
           return true;
         }
@@ -86,16 +88,30 @@ public:
       for (std::int64_t y = box[2]; y <= box[3]; ++y)
       {
         const std::int64_t row = (z * this->FieldSize[1] + y) * this->FieldSize[0];
-        for (std::int64_t x = box[0]; x <= box[1]; ++x)
+        if (body(
+              static_cast<std::size_t>(row + box[0]), static_cast<std::size_t>(row + box[1] + 1)))
         {
-          if (body(static_cast<std::size_t>(row + x)))
-          {
-            return true;
-          }
+          return true;
         }
       }
     }
     return false;
+  }
+
+  /// Whether all of a brick's points lie before one, or from another one on.
+  bool IsApart(std::size_t brick, std::size_t begin, std::size_t end) const
+  {
+    if (!this->Boxes.empty())
+    {
+      const Extent& box = this->Boxes[brick];
+      const auto plane = static_cast<std::size_t>(this->FieldSize[0] * this->FieldSize[1]);
+      return plane * static_cast<std::size_t>(box[5] + 1) <= begin ||
+        plane * static_cast<std::size_t>(box[4]) >= end;
+    }
+    const std::size_t first = this->Begins[brick];
+    const std::size_t past = this->Begins[brick + 1];
+    return first == past || static_cast<std::size_t>(this->Ranges[past - 1].End) <= begin ||
+      static_cast<std::size_t>(this->Ranges[first].Begin) >= end;
   }
 
   /// The largest sum of the negative weights of one of the brick's vertices, as a positive number:
@@ -111,8 +127,15 @@ private:
   void Collect(const BrickGrid& grid, const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, Visit&& visit);
 
-  std::vector<std::size_t> Begins; // the points of each brick, in Points
-  std::vector<std::int32_t> Points;
+  // Points with numbers that follow each other: in meshes that are lattices they are many.
+  struct Range
+  {
+    std::int32_t Begin;
+    std::int32_t End;
+  };
+
+  std::vector<std::size_t> Begins; // the ranges of each brick, in Ranges
+  std::vector<Range> Ranges;
   std::vector<double> Excess;
   // Or, of a field, a box of points for each.
   std::vector<Extent> Boxes;

@@ -49,11 +49,11 @@ void RunOnThreads(std::size_t parts, Body&& body)
   }
 }
 
-/// Calls body(begin, end) for parts of 0 to size, side by side. body must not throw.
+/// Calls body(begin, end) for parts of 0 to size, of so many each, side by side. body must not
+/// throw.
 template <typename Body>
-void RunOnParts(std::size_t size, Body&& body)
+void RunOnParts(std::size_t size, std::size_t step, Body&& body)
 {
-  constexpr std::size_t step = 16384;
   RunOnThreads((size + step - 1) / step,
     [&](std::size_t part) { body(part * step, std::min(size, (part + 1) * step)); });
 }

@@ -4,19 +4,19 @@
 #include "HostThreads.h"
 
 #include <algorithm>
-#include <bitset>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <numeric>
+#include <mutex>
+
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
 
 namespace deformvolume
 {
 namespace
 {
-
-// Above these parts of the whole it is faster to make all anew.
-constexpr double LargestPart = 0.6;
 
 // In output voxels: positions are rounded to 1/256, and displacements, of at most 2^14 voxels, are
 // summed up in floats, with errors of some 2^-10.
@@ -40,30 +40,41 @@ bool IsDifferent(const unsigned char* last, const unsigned char* next, unsigned 
     std::any_of(mask + begin, mask + begin + size, [=](unsigned char v) { return v != value; });
 }
 
-constexpr std::uint32_t AllColumns = (1U << DEFORMVOLUME_COLUMNS) - 1;
-
-// The bits of a brick's sections, and those of the columns between the lowest and the highest one.
-std::uint32_t JoinColumns(std::uint32_t bits)
-{
-  const std::uint32_t columns = bits & AllColumns;
-  std::uint32_t upToHighest = columns;
-  for (int shift = 1; shift < DEFORMVOLUME_COLUMNS; shift *= 2)
-  {
-    upToHighest |= upToHighest >> shift;
-  }
-  const std::uint32_t belowLowest = (columns & (~columns + 1)) - 1;
-  return bits | (columns ? upToHighest & ~belowLowest : 0);
-}
-
-// How many sections of a brick are run with these.
-std::size_t CountSections(std::uint32_t bits)
-{
-  const auto count = [](std::uint32_t v) { return std::bitset<32>(v).count(); };
-  const std::uint32_t halves = bits >> DEFORMVOLUME_COLUMNS;
-  return count(JoinColumns(bits) & AllColumns) * count(halves & 3) * count(halves >> 2);
-}
+// Parts of bricks that a thread takes at a time.
+constexpr std::size_t PartStep = 256;
 
 } // namespace
+
+IncrementalUpdate::Bounds::Bounds()
+{
+  this->Least.fill(std::numeric_limits<float>::infinity());
+  this->Greatest.fill(-std::numeric_limits<float>::infinity());
+}
+
+void IncrementalUpdate::Bounds::Add(const float* displacement)
+{
+#ifdef __SSE__
+  // Compilers do not find these by themselves, and there are millions of points.
+  const __m128 next = _mm_loadu_ps(displacement);
+  _mm_store_ps(this->Least.data(), _mm_min_ps(_mm_load_ps(this->Least.data()), next));
+  _mm_store_ps(this->Greatest.data(), _mm_max_ps(_mm_load_ps(this->Greatest.data()), next));
+#else
+  for (int c = 0; c < 4; ++c)
+  {
+    this->Least[c] = std::min(this->Least[c], displacement[c]);
+    this->Greatest[c] = std::max(this->Greatest[c], displacement[c]);
+  }
+#endif
+}
+
+void IncrementalUpdate::Bounds::Add(const Bounds& other)
+{
+  for (int c = 0; c < 4; ++c)
+  {
+    this->Least[c] = std::min(this->Least[c], other.Least[c]);
+    this->Greatest[c] = std::max(this->Greatest[c], other.Greatest[c]);
+  }
+}
 
 void IncrementalUpdate::Start(const BrickGrid& bricks, const Lattice& lattice, const Extent& output)
 {
@@ -73,6 +84,14 @@ void IncrementalUpdate::Start(const BrickGrid& bricks, const Lattice& lattice, c
   if (output != this->OutputExtent || this->Known.size() != parts)
   {
     this->Known.assign(parts, 0); // boxes are relative to the output
+    this->BoxesKnown = false;
+  }
+  if (this->Places.empty())
+  {
+    for (std::size_t part = 0; part < parts; ++part)
+    {
+      this->Places.push_back(bricks.GetBrick(this->Grid, part));
+    }
   }
   this->Shape = lattice;
   this->OutputExtent = output;
@@ -92,10 +111,12 @@ void IncrementalUpdate::Finish()
   this->Masked.assign(this->Grid.GetNumberOfBricks(), 0);
 }
 
-void IncrementalUpdate::MoveAll()
+void IncrementalUpdate::MoveAll(const std::optional<Bounds>& after)
 {
   this->Tracking = false;
   this->Known.assign(this->Known.size(), 0);
+  this->BoxesKnown = false;
+  this->AllBounds = after;
 }
 
 void IncrementalUpdate::ForgetMapping()
@@ -103,37 +124,68 @@ void IncrementalUpdate::ForgetMapping()
   this->Tracking = false;
   this->Points = BrickPoints();
   this->Known.clear();
+  this->BoxesKnown = false;
+  this->AllBounds.reset();
 }
 
-IncrementalUpdate::Box IncrementalUpdate::ComputeBox(
+IncrementalUpdate::Bounds IncrementalUpdate::ComputeBounds(
   std::size_t part, const float* displacements) const
 {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  float least[3] = { infinity, infinity, infinity };
-  float greatest[3] = { -infinity, -infinity, -infinity };
+  Bounds bounds;
   this->Points.AnyOf(part,
-    [&](std::size_t point)
+    [&](std::size_t begin, std::size_t end)
     {
-      for (int axis = 0; axis < 3; ++axis)
+      Bounds found = bounds; // which the compiler keeps in registers
+      for (std::size_t point = begin; point < end; ++point)
       {
-        least[axis] = std::min(least[axis], displacements[4 * point + axis]);
-        greatest[axis] = std::max(greatest[axis], displacements[4 * point + axis]);
+        found.Add(displacements + 4 * point);
       }
+      bounds = found;
       return false;
     });
+  return bounds;
+}
+
+IncrementalUpdate::Bounds IncrementalUpdate::ComputeAllBounds(
+  const float* displacements, std::size_t numberOfPoints) const
+{
+  constexpr std::size_t step = 65536;
+  std::vector<Bounds> parts((numberOfPoints + step - 1) / step);
+  RunOnParts(numberOfPoints, step,
+    [&](std::size_t begin, std::size_t end)
+    {
+      Bounds found;
+      for (std::size_t point = begin; point < end; ++point)
+      {
+        found.Add(displacements + 4 * point);
+      }
+      parts[begin / step] = found;
+    });
+  Bounds all;
+  for (const Bounds& part : parts)
+  {
+    all.Add(part);
+  }
+  return all;
+}
+
+IncrementalUpdate::Box IncrementalUpdate::MakeBox(std::size_t part, const Bounds& bounds) const
+{
   const Extent vertices = this->Grid.GetVertices(part, 0);
   const double excess = this->Points.GetExcess(part);
   Box box;
   for (int axis = 0; axis < 3; ++axis)
   {
-    if (!(least[axis] <= greatest[axis]) || vertices[2 * axis] >= vertices[2 * axis + 1])
+    const float least = bounds.Least[axis];
+    const float greatest = bounds.Greatest[axis];
+    if (!(least <= greatest) || vertices[2 * axis] >= vertices[2 * axis + 1])
     {
       // No vertex has a place, or there are no cells.
       return { { { 1.0, 1.0, 1.0 } }, { { 0.0, 0.0, 0.0 } } };
     }
-    const double widening = excess * (double(greatest[axis]) - double(least[axis])) + Margin;
-    const double low = std::min(least[axis] - widening, LargestMove);
-    const double high = std::max(greatest[axis] + widening, -LargestMove);
+    const double widening = excess * (double(greatest) - double(least)) + Margin;
+    const double low = std::min(least - widening, LargestMove);
+    const double high = std::max(greatest + widening, -LargestMove);
     const double first = this->Shape.VertexExtent[2 * axis];
     box.Min[axis] =
       this->Shape.Scale[axis] * (first + vertices[2 * axis]) + low - this->OutputExtent[2 * axis];
@@ -149,41 +201,117 @@ IncrementalUpdate::Box IncrementalUpdate::ComputeBox(
   return box;
 }
 
-IncrementalUpdate::Patches IncrementalUpdate::GetPatches(const Box& box) const
+IncrementalUpdate::Box IncrementalUpdate::GetReach() const
 {
-  Patches patches;
-  for (int axis = 0; axis < 3; ++axis)
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Box reach{ { { infinity, infinity, infinity } }, { { -infinity, -infinity, -infinity } } };
+  const auto add = [&](const Box& box)
   {
-    // The voxels inside, within the output.
-    const double size = static_cast<double>(GetSize(this->OutputExtent, axis));
-    const double low = std::max(std::ceil(box.Min[axis]), 0.0);
-    const double high = std::min(std::floor(box.Max[axis]), size - 1.0);
-    if (!(low <= high))
+    for (int axis = 0; axis < 3 && box.Min[0] <= box.Max[0]; ++axis)
     {
-      return { { 0, -1, 0, -1, 0, -1 } };
+      reach.Min[axis] = std::min(reach.Min[axis], box.Min[axis] - DEFORMVOLUME_PATCH);
+      reach.Max[axis] = std::max(reach.Max[axis], box.Max[axis] + DEFORMVOLUME_PATCH);
     }
-    patches[2 * axis] = static_cast<int>(low) / DEFORMVOLUME_PATCH;
-    patches[2 * axis + 1] = static_cast<int>(high) / DEFORMVOLUME_PATCH;
+  };
+  for (std::size_t part = 0; part < this->Moved.size(); ++part)
+  {
+    if (this->IsChanged(part))
+    {
+      add(this->Boxes[part]);
+      if (this->Moved[part])
+      {
+        add(this->LastBoxes[part]);
+      }
+    }
   }
-  return patches;
+  return reach;
 }
 
-void IncrementalUpdate::MovePoints(const std::vector<unsigned char>& changed, const float* last)
+bool IncrementalUpdate::TouchesPatches(
+  const Box& box, const std::vector<unsigned char>& dirty) const
 {
-  RunOnThreads(this->Grid.GetNumberOfBricks(),
-    [&](std::size_t part)
+  const Patches patches = this->GetPatches(box);
+  for (int z = patches[4]; z <= patches[5]; ++z)
+  {
+    for (int y = patches[2]; y <= patches[3]; ++y)
     {
-      if (this->Points.AnyOf(part, [&](std::size_t point) { return changed[point] != 0; }))
+      const auto row = dirty.begin() +
+        (static_cast<std::ptrdiff_t>(z) * this->PatchCount[1] + y) * this->PatchCount[0];
+      if (std::find(row + patches[0], row + patches[1] + 1, 1) != row + patches[1] + 1)
       {
-        if (!this->Moved[part])
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+void IncrementalUpdate::MovePoints(const PointSet& changed, const float* last)
+{
+  std::size_t first = 0;
+  std::size_t past = 0;
+  changed.GetEnds(first, past);
+  const auto isMoved = [&](std::size_t part)
+  {
+    // Most parts are nowhere near.
+    return !this->Points.IsApart(part, first, past) &&
+      this->Points.AnyOf(
+        part, [&](std::size_t begin, std::size_t end) { return changed.HasAnyOf(begin, end); });
+  };
+  RunOnParts(this->Grid.GetNumberOfBricks(), PartStep,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t part = begin; part < end; ++part)
+      {
+        if (isMoved(part))
         {
-          this->LastBoxes[part] =
-            this->Known[part] ? this->Boxes[part] : this->ComputeBox(part, last);
-          this->Moved[part] = 1;
+          if (!this->Moved[part])
+          {
+            this->LastBoxes[part] = this->Known[part]
+              ? this->Boxes[part]
+              : this->MakeBox(part, this->ComputeBounds(part, last));
+            this->Moved[part] = 1;
+          }
+          this->Known[part] = 0;
         }
-        this->Known[part] = 0;
       }
     });
+  this->BoxesKnown = false;
+}
+
+void IncrementalUpdate::FindBoxes(const float* displacements, std::size_t numberOfPoints)
+{
+  if (!this->AllBounds)
+  {
+    this->AllBounds = this->ComputeAllBounds(displacements, numberOfPoints);
+  }
+  std::mutex mutex;
+  const auto find = [&](const auto& isWanted)
+  {
+    RunOnParts(this->Grid.GetNumberOfBricks(), PartStep,
+      [&](std::size_t begin, std::size_t end)
+      {
+        Bounds found;
+        for (std::size_t part = begin; part < end; ++part)
+        {
+          if (!this->Known[part] && isWanted(part))
+          {
+            const Bounds bounds = this->ComputeBounds(part, displacements);
+            this->Boxes[part] = this->MakeBox(part, bounds);
+            this->Known[part] = 1;
+            found.Add(bounds);
+          }
+        }
+        const std::lock_guard<std::mutex> lock(mutex);
+        this->AllBounds->Add(found);
+      });
+  };
+  // Every point that has changed is one of these parts'.
+  find([&](std::size_t part) { return this->IsChanged(part); });
+  const Box reach = this->GetReach();
+  const Bounds all = *this->AllBounds;
+  find([&](std::size_t part) { return !IsApart(this->MakeBox(part, all), reach); });
+  this->BoxesKnown = true;
 }
 
 void IncrementalUpdate::ChangeMask(
@@ -206,111 +334,17 @@ void IncrementalUpdate::ChangeMask(
         }
       }
     });
+  this->BoxesKnown = false; // of parts that have changed now
 }
 
-bool IncrementalUpdate::MakePlan(const float* displacements, Plan& plan)
+bool IncrementalUpdate::IsApart(const Box& a, const Box& b)
 {
-  const std::size_t parts = this->Grid.GetNumberOfBricks();
-  std::vector<std::uint32_t> run(this->Bricks.GetNumberOfBricks()); // sections of bricks
-  for (std::size_t part = 0; part < parts; ++part)
+  bool apart = false;
+  for (int axis = 0; axis < 3; ++axis)
   {
-    if (this->IsChanged(part))
-    {
-      const auto [brick, bits] = this->Bricks.GetBrick(this->Grid, part);
-      run[brick] |= bits;
-    }
+    apart |= a.Min[axis] > b.Max[axis] || a.Max[axis] < b.Min[axis];
   }
-  const auto isTooMuch = [](std::size_t marked, std::size_t all)
-  { return static_cast<double>(marked) > LargestPart * static_cast<double>(all); };
-  const auto isRunTooMuch = [&]
-  {
-    return isTooMuch(
-      std::accumulate(run.begin(), run.end(), std::size_t{ 0 },
-        [](std::size_t sum, std::uint32_t bits) { return sum + CountSections(bits); }),
-      DEFORMVOLUME_SECTIONS * run.size());
-  };
-  if (isRunTooMuch())
-  {
-    return false;
-  }
-  if (std::all_of(run.begin(), run.end(), [](std::uint32_t bits) { return bits == 0; }))
-  {
-    return true;
-  }
-  RunOnThreads(parts,
-    [&](std::size_t part)
-    {
-      if (!this->Known[part])
-      {
-        this->Boxes[part] = this->ComputeBox(part, displacements);
-        this->Known[part] = 1;
-      }
-    });
-
-  std::vector<unsigned char> dirty(static_cast<std::size_t>(this->PatchCount[0]) *
-    static_cast<std::size_t>(this->PatchCount[1]) * static_cast<std::size_t>(this->PatchCount[2]));
-  // Whether body was true for one of the patches that a box touches.
-  const auto anyOf = [&](const Box& box, const auto& body)
-  {
-    const Patches patches = this->GetPatches(box);
-    for (int z = patches[4]; z <= patches[5]; ++z)
-    {
-      for (int y = patches[2]; y <= patches[3]; ++y)
-      {
-        const std::size_t row =
-          (static_cast<std::size_t>(z) * this->PatchCount[1] + y) * this->PatchCount[0];
-        for (int x = patches[0]; x <= patches[1]; ++x)
-        {
-          if (body(dirty[row + x]))
-          {
-            return true;
-          }
-        }
-      }
-    }
-    return false;
-  };
-  const auto mark = [](unsigned char& patch)
-  {
-    patch = 1;
-    return false;
-  };
-  for (std::size_t part = 0; part < parts; ++part)
-  {
-    if (this->IsChanged(part))
-    {
-      anyOf(this->Boxes[part], mark);
-      if (this->Moved[part])
-      {
-        anyOf(this->LastBoxes[part], mark);
-      }
-    }
-  }
-  const auto isDirty = [](unsigned char patch) { return patch != 0; };
-  for (std::size_t part = 0; part < parts; ++part)
-  {
-    const auto [brick, bits] = this->Bricks.GetBrick(this->Grid, part);
-    if ((run[brick] & bits) != bits && anyOf(this->Boxes[part], isDirty))
-    {
-      run[brick] |= bits;
-    }
-  }
-  for (std::size_t patch = 0; patch < dirty.size(); ++patch)
-  {
-    if (dirty[patch])
-    {
-      plan.Patches.push_back(static_cast<std::uint32_t>(patch));
-    }
-  }
-  for (std::size_t brick = 0; brick < run.size(); ++brick)
-  {
-    if (run[brick])
-    {
-      plan.Bricks.push_back(
-        static_cast<std::uint32_t>(brick | JoinColumns(run[brick]) << DEFORMVOLUME_BRICK_BITS));
-    }
-  }
-  return !isTooMuch(plan.Patches.size(), dirty.size()) && !isRunTooMuch();
+  return apart;
 }
 
 } // namespace deformvolume

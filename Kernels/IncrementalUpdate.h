@@ -3,9 +3,11 @@
 #define DeformVolumeIncrementalUpdate_h
 
 #include "BrickPoints.h"
+#include "PointSet.h"
 #include "VolumeDeformer.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace deformvolume
@@ -30,6 +32,16 @@ public:
     std::vector<std::uint32_t> Patches; // counted along x, then y, then z
   };
 
+  /// The least and the greatest displacement of some points, of four floats each.
+  struct Bounds
+  {
+    Bounds();
+    void Add(const float* displacement);
+    void Add(const Bounds& other);
+    alignas(16) std::array<float, 4> Least;
+    alignas(16) std::array<float, 4> Greatest;
+  };
+
   /// Whether the last output can serve, so that what changes has to be told.
   bool IsTracking() const { return this->Tracking; }
 
@@ -37,8 +49,9 @@ public:
   void Start(const BrickGrid& bricks, const Lattice& lattice, const Extent& output);
   /// The last output is of no use any more.
   void Forget() { this->Tracking = false; }
-  /// All points change; the last output is of no use any more.
-  void MoveAll();
+  /// All points change; the last output is of no use any more. after: of all of them, where it is
+  /// known.
+  void MoveAll(const std::optional<Bounds>& after = {});
   /// The last output was brought up to date.
   void Finish();
 
@@ -48,17 +61,21 @@ public:
   void SetPoints(BrickPoints&& points) { this->Points = std::move(points); }
   void ForgetMapping();
 
-  /// Points will change: nonzero where they do. last: four floats a point, the displacements before
-  /// the change.
-  void MovePoints(const std::vector<unsigned char>& changed, const float* last);
+  /// Points will change. last: four floats a point, the displacements before the change.
+  void MovePoints(const PointSet& changed, const float* last);
+
+  /// Whether it is known where the parts of bricks lie, as far as MakePlan wants it.
+  bool HasBoxes() const { return this->BoxesKnown; }
+  /// Finds that out. displacements: four floats for each of so many points, after the change.
+  void FindBoxes(const float* displacements, std::size_t numberOfPoints);
 
   /// A mask will change: of vertices, one byte each, or of cells. Null stands for a mask that is
   /// the given value everywhere.
   void ChangeMask(
     const unsigned char* last, const unsigned char* next, unsigned char value, bool ofCells);
 
-  /// displacements: four floats a point. False where it is better to make all anew.
-  bool MakePlan(const float* displacements, Plan& plan);
+  /// False where it is better to make all anew.
+  bool MakePlan(Plan& plan);
 
   const Extent& GetOutputExtent() const { return this->OutputExtent; }
 
@@ -71,9 +88,16 @@ private:
   };
   using Patches = std::array<int, 6>; // first and last patch on each axis
 
-  Box ComputeBox(std::size_t part, const float* displacements) const;
+  Bounds ComputeBounds(std::size_t part, const float* displacements) const;
+  Box MakeBox(std::size_t part, const Bounds& bounds) const;
+  Bounds ComputeAllBounds(const float* displacements, std::size_t numberOfPoints) const;
   bool IsChanged(std::size_t part) const { return this->Moved[part] || this->Masked[part]; }
+  /// A box round the patches that the boxes of changed parts touch, before or after the change.
+  Box GetReach() const;
+  static bool IsApart(const Box& a, const Box& b);
   Patches GetPatches(const Box& box) const;
+  void MarkPatches(const Box& box, std::vector<unsigned char>& dirty) const;
+  bool TouchesPatches(const Box& box, const std::vector<unsigned char>& dirty) const;
 
   bool Tracking = false;
   BrickGrid Bricks;
@@ -82,9 +106,13 @@ private:
   Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
   std::array<int, 3> PatchCount{ { 0, 0, 0 } };
   BrickPoints Points;
+  // The brick and the section of each part: see BrickGrid::GetBrick.
+  std::vector<std::pair<std::size_t, std::uint32_t>> Places;
   std::vector<Box> Boxes; // as far as they are known
   std::vector<unsigned char> Known;
-  std::vector<Box> LastBoxes; // of those that were moved
+  bool BoxesKnown = false;         // all that changed, and all that may touch what these touch
+  std::optional<Bounds> AllBounds; // of all points, or wider
+  std::vector<Box> LastBoxes;      // of those that were moved
   std::vector<unsigned char> Moved;
   std::vector<unsigned char> Masked;
 };

@@ -76,24 +76,6 @@ void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffe
     nullptr, &events.back());
 }
 
-/// Clears patches of a buffer of so many elements a voxel.
-template <typename T>
-void ClearPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
-  int components, T value, const cl::Buffer& patches, std::size_t numberOfPatches,
-  const KernelParameters& p, std::vector<cl::Event>& events)
-{
-  cl::Kernel kernel(
-    GetOutputProgram(context), ("ClearPatches" + std::to_string(sizeof(T))).c_str());
-  kernel.setArg(0, buffer);
-  kernel.setArg(1, cl_int{ components });
-  kernel.setArg(2, GetBits(value));
-  kernel.setArg(3, patches);
-  kernel.setArg(4, p);
-  events.emplace_back();
-  queue.enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(numberOfPatches), cl::NDRange(1), nullptr, &events.back());
-}
-
 /// The sum of what a kernel writes for each of its work-items.
 std::uint64_t ReadSum(const cl::CommandQueue& queue, const cl::Buffer& sums, std::size_t items)
 {
@@ -232,44 +214,16 @@ void OutputSlab::PlaceArrays(
   Place(context, this->Coverage, request.Coverage + offset, 1, this->NumberOfVoxels);
 }
 
-std::uint64_t OutputSlab::PreparePatches(OpenCLContext& context, const cl::CommandQueue& queue,
-  const Extent& extent, const DeformRequest& request, const std::vector<VolumeArray>& arrays,
-  const std::vector<cl_uint>& patches, const std::vector<cl_uint>& bricks,
-  std::vector<cl::Event>& events)
+void OutputSlab::PrepareAgain(OpenCLContext& context, const cl::CommandQueue& queue,
+  const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+  const std::vector<cl_uint>& bricks)
 {
   this->Finish();
   this->Queue = queue;
-  this->SlabExtent = extent;
+  this->SlabExtent = request.OutputExtent;
   this->WholeExtent = GetWholeOutput(request);
-  this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(extent));
+  this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(request.OutputExtent));
   this->PlaceArrays(context, request, arrays);
-  this->NumberOfPatches = patches.size();
-  std::uint64_t covered = 0;
-  if (!patches.empty())
-  {
-    const std::size_t bytes = patches.size() * sizeof(cl_uint);
-    Reserve(context, this->Patches, bytes);
-    queue.enqueueWriteBuffer(this->Patches, CL_TRUE, 0, bytes, patches.data());
-    covered = this->CountPatches(context, events);
-    KernelParameters p = {};
-    this->SetParameters(p);
-    for (std::size_t i = 0; i < arrays.size(); ++i)
-    {
-      switch (arrays[i].Type)
-      {
-#define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
-  case ElementType::name:                                                                          \
-    ClearPatches(context, queue, this->Arrays[i], arrays[i].Components,                            \
-      ClampTo<ctype>(arrays[i].Background), this->Patches, patches.size(), p, events);             \
-    break;
-        DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
-#undef DEFORMVOLUME_CASE
-      }
-    }
-    ClearPatches(context, queue, this->Coverage, 1, std::int8_t{ 0 }, this->Patches, patches.size(),
-      p, events);
-  }
-  const MappedBuffer<cl_uint> counters(queue, this->Counters, CL_MAP_READ | CL_MAP_WRITE);
   for (const cl_uint brick : bricks)
   {
     const std::size_t number = brick & ((1U << DEFORMVOLUME_BRICK_BITS) - 1);
@@ -278,34 +232,19 @@ std::uint64_t OutputSlab::PreparePatches(OpenCLContext& context, const cl::Comma
       const cl_uint bits = GetSectionBits(section);
       if ((brick & bits) == bits)
       {
-        std::fill_n(
-          counters.Get() + (DEFORMVOLUME_SECTIONS * number + section) * DEFORMVOLUME_COUNTERS,
+        std::fill_n(this->LastCounters.begin() +
+            static_cast<std::ptrdiff_t>(
+              (DEFORMVOLUME_SECTIONS * number + section) * DEFORMVOLUME_COUNTERS),
           DEFORMVOLUME_COUNTERS, cl_uint{ 0 });
       }
     }
   }
-  return covered;
-}
-
-std::uint64_t OutputSlab::CountPatches(OpenCLContext& context, std::vector<cl::Event>& events)
-{
-  if (this->NumberOfPatches == 0)
+  if (!bricks.empty())
   {
-    return 0;
+    // Done when Finish() is, at the latest.
+    queue.enqueueWriteBuffer(this->Counters, CL_FALSE, 0,
+      this->LastCounters.size() * sizeof(cl_uint), this->LastCounters.data());
   }
-  const cl::Buffer sums(
-    context.GetContext(), CL_MEM_WRITE_ONLY, this->NumberOfPatches * sizeof(cl_uint));
-  KernelParameters p = {};
-  this->SetParameters(p);
-  cl::Kernel kernel(GetOutputProgram(context), "CountPatches");
-  kernel.setArg(0, this->Coverage);
-  kernel.setArg(1, this->Patches);
-  kernel.setArg(2, sums);
-  kernel.setArg(3, p);
-  events.emplace_back();
-  this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->NumberOfPatches),
-    cl::NDRange(1), nullptr, &events.back());
-  return ReadSum(this->Queue, sums, this->NumberOfPatches);
 }
 
 void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
@@ -419,17 +358,17 @@ std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::E
   return ReadSum(this->Queue, sums, items);
 }
 
-std::vector<cl_uint> OutputSlab::ReadCounters()
+const std::vector<cl_uint>& OutputSlab::ReadCounters()
 {
-  std::vector<cl_uint> counters(this->NumberOfSections * DEFORMVOLUME_COUNTERS);
-  this->Queue.enqueueReadBuffer(
-    this->Counters, CL_TRUE, 0, counters.size() * sizeof(cl_uint), counters.data());
-  return counters;
+  this->LastCounters.resize(this->NumberOfSections * DEFORMVOLUME_COUNTERS);
+  this->Queue.enqueueReadBuffer(this->Counters, CL_TRUE, 0,
+    this->LastCounters.size() * sizeof(cl_uint), this->LastCounters.data());
+  return this->LastCounters;
 }
 
 std::vector<cl_uint> OutputSlab::FindBricks(int counter)
 {
-  const std::vector<cl_uint> counters = this->ReadCounters();
+  const std::vector<cl_uint>& counters = this->ReadCounters();
   std::vector<cl_uint> bricks;
   for (std::size_t brick = 0; brick < this->NumberOfSections / DEFORMVOLUME_SECTIONS; ++brick)
   {
@@ -452,7 +391,7 @@ std::vector<cl_uint> OutputSlab::FindBricks(int counter)
 
 OutputSlab::Counts OutputSlab::ReadCounts()
 {
-  const std::vector<cl_uint> counters = this->ReadCounters();
+  const std::vector<cl_uint>& counters = this->ReadCounters();
   Counts counts;
   std::uint64_t missing = 0;
   std::uint64_t assumed = 0;

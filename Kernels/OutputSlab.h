@@ -52,16 +52,12 @@ public:
     const DeformRequest& request, const std::vector<VolumeArray>& arrays, const Lattice& lattice,
     std::size_t numberOfBricks, std::vector<cl::Event>& events);
 
-  /// The same where the memory of the request, which is worked on in place, holds the last output
-  /// and the counters are still those of it: clears some patches (see IncrementalUpdate) and the
-  /// counters of some bricks, and returns how many voxels of the patches were covered.
-  std::uint64_t PreparePatches(OpenCLContext& context, const cl::CommandQueue& queue,
-    const Extent& extent, const DeformRequest& request, const std::vector<VolumeArray>& arrays,
-    const std::vector<cl_uint>& patches, const std::vector<cl_uint>& bricks,
-    std::vector<cl::Event>& events);
-
-  /// Covered voxels of the patches that were prepared.
-  std::uint64_t CountPatches(OpenCLContext& context, std::vector<cl::Event>& events);
+  /// The same where the memory of the request, which is worked on in place, holds the last output,
+  /// as far as it is still wanted, and the counters are those of it that ReadCounts has read last:
+  /// clears the counters of some bricks.
+  void PrepareAgain(OpenCLContext& context, const cl::CommandQueue& queue,
+    const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+    const std::vector<cl_uint>& bricks);
 
   /// Bytes that PrepareWinners will allocate.
   std::uint64_t GetMissingWinnerMemory() const;
@@ -106,7 +102,7 @@ private:
     OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays);
   bool HasWinners() const;
   std::uint64_t CountAllPatches() const;
-  std::vector<cl_uint> ReadCounters();
+  const std::vector<cl_uint>& ReadCounters();
   std::uint64_t GetOffset(const DeformRequest& request) const;
   std::size_t CountItems() const;
   void Clear(OpenCLContext& context, const cl::Buffer& buffer, double value, ElementType type,
@@ -122,8 +118,7 @@ private:
   cl::Buffer Winners;
   cl::Buffer PatchStates; // a byte a patch of the output
   cl::Buffer Counters;
-  cl::Buffer Patches;
-  std::size_t NumberOfPatches = 0;
+  std::vector<cl_uint> LastCounters; // as they were read
   std::size_t WinnerSize = 4;
   std::size_t NumberOfSections = 0; // of bricks
   std::uint64_t NumberOfVoxels = 0;

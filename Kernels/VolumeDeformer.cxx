@@ -296,7 +296,7 @@ void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOf
     });
 }
 
-void VolumeDeformer::SetNodeDisplacements(const float* displacements)
+void VolumeDeformer::SetNodeDisplacements(const float* displacements, const PointRanges* changes)
 {
   this->Impl->Send(
     [&]
@@ -305,20 +305,23 @@ void VolumeDeformer::SetNodeDisplacements(const float* displacements)
       {
         throw Error("No deformation mesh is set: call SetMesh first.");
       }
-      Internals::CheckVectors(displacements, this->Impl->NumberOfNodes, "node");
-      if (this->Impl->Rasterizer.HasMesh())
+      const bool rasterized = this->Impl->Rasterizer.HasMesh();
+      const PointRanges* news = this->Impl->NodesSet && !rasterized ? changes : nullptr;
+      Internals::CheckVectors(displacements, this->Impl->NumberOfNodes, "node", news);
+      if (rasterized)
       {
         this->Impl->Rasterizer.SetDisplacements(this->Impl->GetRasterizerSetting(), displacements,
           this->Impl->GetMesh().GetLattice().Scale);
         return;
       }
-      this->Impl->SendVectors(displacements, this->Impl->NumberOfNodes, this->Impl->Nodes);
+      this->Impl->SendVectors(displacements, this->Impl->NumberOfNodes, this->Impl->Nodes, news);
       this->Impl->NodesSet = true;
       this->Impl->GetMesh().ForgetRecords();
     });
 }
 
-void VolumeDeformer::SetDisplacementField(const DisplacementField& field)
+void VolumeDeformer::SetDisplacementField(
+  const DisplacementField& field, const PointRanges* changes)
 {
   const std::size_t points = static_cast<std::size_t>(std::max(field.Dimensions[0], 0)) *
     static_cast<std::size_t>(std::max(field.Dimensions[1], 0)) *
@@ -368,14 +371,18 @@ void VolumeDeformer::SetDisplacementField(const DisplacementField& field)
         this->Impl->Update.ForgetMapping();
         mesh.ForgetState();
       }
+      const PointRanges* news = GetMemory(this->Impl->FieldVectors) == 4 * points * sizeof(float) &&
+          std::equal(parameters.Dimensions, parameters.Dimensions + 3, this->Impl->Field.Dimensions)
+        ? changes
+        : nullptr;
       this->Impl->Field = parameters;
-      Internals::CheckVectors(field.Vectors, points, "point");
+      Internals::CheckVectors(field.Vectors, points, "point", news);
       if (4 * points * sizeof(float) > this->Impl->GetAllocationLimit())
       {
         throw Error("The displacement field is larger than the device can hold in one piece. Use a "
                     "coarser field or another device.");
       }
-      this->Impl->SendVectors(field.Vectors, points, this->Impl->FieldVectors);
+      this->Impl->SendVectors(field.Vectors, points, this->Impl->FieldVectors, news);
     });
 }
 

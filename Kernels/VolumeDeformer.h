@@ -124,6 +124,9 @@ struct VertexRuns
 /// The nodes of a tetrahedron of the deformation mesh.
 using Tetrahedron = std::array<std::int32_t, 4>;
 
+/// Points of a deformation: of each range the first one, and one past the last. In ascending order.
+using PointRanges = std::vector<std::array<std::size_t, 2>>;
+
 /// A displacement field on a regular grid, trilinear between its points.
 struct DisplacementField
 {
@@ -294,10 +297,13 @@ public:
   /// node, continuous indices of the volume.
   void SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const double* restNodes);
-  /// Displacements of the nodes, three floats each, in output voxels.
-  void SetNodeDisplacements(const float* displacements);
+  /// Displacements of the nodes, three floats each, in output voxels. changes: all others are those
+  /// of the last call, and are not looked at, if there was one for this mesh. Null: any may have
+  /// changed.
+  void SetNodeDisplacements(const float* displacements, const PointRanges* changes = nullptr);
 
-  void SetDisplacementField(const DisplacementField& field);
+  /// changes: as above, for fields of the same dimensions.
+  void SetDisplacementField(const DisplacementField& field, const PointRanges* changes = nullptr);
 
   DeformReport Deform(const DeformRequest& request);
 

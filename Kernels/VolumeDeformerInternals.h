@@ -108,8 +108,11 @@ public:
   void DeformSlabs(const DeformRequest& request, std::uint64_t spare, DeformReport& report);
 
   /// Displacements and incremental updates; in VolumeDeformerUpdate.cxx.
-  static void CheckVectors(const float* vectors, std::size_t count, const char* what);
-  void SendVectors(const float* vectors, std::size_t count, cl::Buffer& buffer);
+  /// changes: see VolumeDeformer::SetNodeDisplacements.
+  static void CheckVectors(
+    const float* vectors, std::size_t count, const char* what, const PointRanges* changes);
+  void SendVectors(
+    const float* vectors, std::size_t count, cl::Buffer& buffer, const PointRanges* changes);
   void PrepareBrickPoints();
   void TellMask(const unsigned char* next, bool ofCells);
   bool CanUpdate(const DeformRequest& request);
@@ -145,6 +148,7 @@ public:
   MeshRasterizer Rasterizer;
 
   IncrementalUpdate Update;
+  PointSet Changed; // vectors, while they are sent
   Resampling LastMethod = Resampling::Exact;
   std::uint64_t LastCovered = 0;
   bool WasContested = false; // whether cells of the last output overlapped

@@ -4,12 +4,16 @@
 #include "VolumeDeformerInternals.h"
 
 #include "HostThreads.h"
+#include "OutputPatches.h"
 
 #include <algorithm>
 #include <atomic>
+#include <bitset>
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <mutex>
+#include <optional>
 
 namespace deformvolume
 {
@@ -19,23 +23,63 @@ namespace
 // If more points than this part change, all is made anew.
 constexpr double LargestPart = 0.6;
 
+// Vectors are worked on by words of a PointSet.
+constexpr std::size_t WordSize = PointSet::PointsPerWord;
+constexpr std::size_t WordStep = 65536 / WordSize; // that a thread takes at a time
+
+// Calls body(word, begin, end) for words and the vectors of each, of which there are count
+// altogether, side by side.
+template <typename Body>
+void ForWords(const std::vector<std::size_t>& words, std::size_t count, Body&& body)
+{
+  RunOnParts(words.size(), WordStep,
+    [&](std::size_t first, std::size_t past)
+    {
+      for (std::size_t i = first; i < past; ++i)
+      {
+        const std::size_t begin = words[i] * WordSize;
+        body(words[i], begin, std::min(begin + WordSize, count));
+      }
+    });
+}
+
+// The words of all points, or of those that may have changed.
+std::vector<std::size_t> FindWords(const PointRanges* changes, std::size_t count)
+{
+  const PointRanges all{ { { 0, count } } };
+  std::vector<std::size_t> words;
+  for (const auto& range : changes ? *changes : all)
+  {
+    std::size_t word = range[0] / WordSize;
+    if (!words.empty())
+    {
+      word = std::max(word, words.back() + 1);
+    }
+    for (; word * WordSize < std::min(range[1], count); ++word)
+    {
+      words.push_back(word);
+    }
+  }
+  return words;
+}
+
 // The first of the vectors that is not finite or too large; count where there is none.
-std::size_t FindBadVector(const float* vectors, std::size_t count)
+std::size_t FindBadVector(
+  const float* vectors, const std::vector<std::size_t>& words, std::size_t count)
 {
   std::atomic<std::size_t> bad{ count };
-  RunOnParts(count,
-    [&](std::size_t begin, std::size_t end)
+  ForWords(words, count,
+    [&](std::size_t, std::size_t begin, std::size_t end)
     {
-      for (std::size_t i = 3 * begin; i < 3 * end; ++i)
+      // The negation catches NaN as well.
+      const auto found = std::find_if(vectors + 3 * begin, vectors + 3 * end,
+        [](float component) { return !(std::abs(component) <= LargestDisplacement); });
+      if (found != vectors + 3 * end)
       {
-        // The negation catches NaN as well.
-        if (!(std::abs(vectors[i]) <= LargestDisplacement))
+        const auto vector = static_cast<std::size_t>(found - vectors) / 3;
+        std::size_t first = bad;
+        while (vector < first && !bad.compare_exchange_weak(first, vector))
         {
-          std::size_t first = bad;
-          while (i / 3 < first && !bad.compare_exchange_weak(first, i / 3))
-          {
-          }
-          return;
         }
       }
     });
@@ -44,40 +88,68 @@ std::size_t FindBadVector(const float* vectors, std::size_t count)
 
 // Marks the vectors that differ from those that the device has, four floats each; returns their
 // number.
-std::size_t MarkChanges(
-  const float* vectors, const float* last, std::vector<unsigned char>& changed)
+std::size_t MarkChanges(const float* vectors, const float* last,
+  const std::vector<std::size_t>& words, std::size_t count, PointSet& changed)
 {
   std::atomic<std::size_t> number{ 0 };
-  RunOnParts(changed.size(),
-    [&](std::size_t begin, std::size_t end)
+  ForWords(words, count,
+    [&](std::size_t word, std::size_t begin, std::size_t end)
     {
-      std::size_t found = 0;
+      std::uint64_t bits = 0;
       for (std::size_t i = begin; i < end; ++i)
       {
         // Bit by bit: -0 is not 0, and what is not the same may not be taken for it.
-        changed[i] = std::memcmp(vectors + 3 * i, last + 4 * i, 3 * sizeof(float)) != 0 ? 1 : 0;
-        found += changed[i];
+        const bool differs = std::memcmp(vectors + 3 * i, last + 4 * i, 3 * sizeof(float)) != 0;
+        bits |= std::uint64_t{ differs } << (i - begin);
       }
-      number += found;
+      if (bits)
+      {
+        changed.SetWord(word, bits);
+        number += std::bitset<WordSize>(bits).count();
+      }
     });
   return number;
 }
 
-// The three floats of each vector become the four that the device reads at once.
-void PadVectors(const float* vectors, std::size_t count, float* padded)
+// The three floats of each vector become the four that the device reads at once; returns what they
+// lie between.
+IncrementalUpdate::Bounds PadVectors(
+  const float* vectors, const std::vector<std::size_t>& words, std::size_t count, float* padded)
 {
-  RunOnParts(count,
-    [&](std::size_t begin, std::size_t end)
+  IncrementalUpdate::Bounds all;
+  std::mutex mutex;
+  RunOnParts(words.size(), WordStep,
+    [&](std::size_t first, std::size_t past)
     {
-      for (std::size_t i = begin; i < end; ++i)
+      IncrementalUpdate::Bounds bounds;
+      for (std::size_t word = first; word < past; ++word)
       {
-        for (std::size_t c = 0; c < 3; ++c)
+        const std::size_t begin = words[word] * WordSize;
+        const std::size_t end = std::min(begin + WordSize, count);
+        for (std::size_t i = begin; i < end; ++i)
         {
-          padded[4 * i + c] = vectors[3 * i + c];
+          for (std::size_t c = 0; c < 3; ++c)
+          {
+            padded[4 * i + c] = vectors[3 * i + c];
+          }
+          padded[4 * i + 3] = 0.0F;
         }
-        padded[4 * i + 3] = 0.0F;
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          bounds.Add(padded + 4 * i);
+        }
       }
+      const std::lock_guard<std::mutex> lock(mutex);
+      all.Add(bounds);
     });
+  return all;
+}
+
+using Clock = std::chrono::steady_clock;
+
+double GetSecondsSince(const Clock::time_point& begin)
+{
+  return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
 void CopyOnThreads(void* to, const void* from, std::uint64_t bytes)
@@ -95,9 +167,9 @@ void CopyOnThreads(void* to, const void* from, std::uint64_t bytes)
 } // namespace
 
 void VolumeDeformer::Internals::CheckVectors(
-  const float* vectors, std::size_t count, const char* what)
+  const float* vectors, std::size_t count, const char* what, const PointRanges* changes)
 {
-  const std::size_t bad = FindBadVector(vectors, count);
+  const std::size_t bad = FindBadVector(vectors, FindWords(changes, count), count);
   if (bad < count)
   {
     throw Error(std::string("The displacement of ") + what + " " + std::to_string(bad) +
@@ -107,13 +179,13 @@ void VolumeDeformer::Internals::CheckVectors(
 }
 
 void VolumeDeformer::Internals::SendVectors(
-  const float* vectors, std::size_t count, cl::Buffer& buffer)
+  const float* vectors, std::size_t count, cl::Buffer& buffer, const PointRanges* changes)
 {
   const std::size_t bytes = 4 * count * sizeof(float);
   if (!this->GetContext().GetDevice().IsProcessor)
   {
     std::vector<float> padded(4 * count);
-    PadVectors(vectors, count, padded.data());
+    PadVectors(vectors, FindWords(nullptr, count), count, padded.data());
     buffer = this->SendBuffer(padded.data(), bytes, buffer);
     this->Update.MoveAll();
     return;
@@ -122,32 +194,33 @@ void VolumeDeformer::Internals::SendVectors(
   {
     buffer = cl::Buffer(this->Context->GetContext(), CL_MEM_READ_ONLY, bytes);
     this->Update.MoveAll();
+    changes = nullptr;
   }
-  if (this->Update.IsTracking())
+  const std::vector<std::size_t> words = FindWords(changes, count);
+  const MappedBuffer<float> sent(this->Queue, buffer, CL_MAP_READ | CL_MAP_WRITE);
+  bool partly = this->Update.IsTracking();
+  if (partly)
   {
-    std::vector<unsigned char> changed(count);
-    const MappedBuffer<const float> last(this->Queue, buffer, CL_MAP_READ);
-    const std::size_t number = MarkChanges(vectors, last.Get(), changed);
+    this->Changed.Clear(count);
+    const std::size_t number = MarkChanges(vectors, sent.Get(), words, count, this->Changed);
     if (number == 0)
     {
       return;
     }
-    if (static_cast<double>(number) <= LargestPart * static_cast<double>(count))
-    {
-      this->PrepareBrickPoints();
-      this->Update.MovePoints(changed, last.Get());
-    }
-    else
-    {
-      this->Update.MoveAll();
-    }
+    partly = static_cast<double>(number) <= LargestPart * static_cast<double>(count);
+  }
+  if (partly)
+  {
+    this->PrepareBrickPoints();
+    this->Update.MovePoints(this->Changed, sent.Get());
+    PadVectors(vectors, words, count, sent.Get());
+    this->Update.FindBoxes(sent.Get(), count);
   }
   else
   {
-    this->Update.MoveAll();
+    const IncrementalUpdate::Bounds bounds = PadVectors(vectors, words, count, sent.Get());
+    this->Update.MoveAll(words.size() * WordSize >= count ? std::optional(bounds) : std::nullopt);
   }
-  const MappedBuffer<float> padded(this->Queue, buffer, CL_MAP_WRITE);
-  PadVectors(vectors, count, padded.Get());
 }
 
 void VolumeDeformer::Internals::PrepareBrickPoints()
@@ -215,35 +288,38 @@ bool VolumeDeformer::Internals::UpdateOutput(
   {
     return false;
   }
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   this->PrepareBrickPoints();
-  IncrementalUpdate::Plan plan;
+  if (!this->Update.HasBoxes())
   {
-    const MappedBuffer<const float> vectors(
-      this->Queue, this->Mesh->HasMesh() ? this->Nodes : this->FieldVectors, CL_MAP_READ);
-    if (!this->Update.MakePlan(vectors.Get(), plan))
-    {
-      return false;
-    }
+    const cl::Buffer& buffer = this->Mesh->HasMesh() ? this->Nodes : this->FieldVectors;
+    const MappedBuffer<const float> vectors(this->Queue, buffer, CL_MAP_READ);
+    this->Update.FindBoxes(vectors.Get(), GetMemory(buffer) / (4 * sizeof(float)));
+  }
+  IncrementalUpdate::Plan plan;
+  if (!this->Update.MakePlan(plan))
+  {
+    return false;
   }
   this->CopyLastOutput(request);
-  this->PlanningTime =
-    std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const std::uint64_t before = output.PreparePatches(*this->Context, this->Queue,
-    request.OutputExtent, request, this->Arrays, plan.Patches, plan.Bricks, this->ResamplingEvents);
+  // Before the memory becomes that of buffers, and after the device has given it back.
+  const std::uint64_t before = ClearPatches(request, this->Arrays, plan.Patches);
+  this->PlanningTime = GetSecondsSince(begin);
+  output.PrepareAgain(*this->Context, this->Queue, request, this->Arrays, plan.Bricks);
   this->Run(request, output, DEFORMVOLUME_PASS_DIRECT, &plan.Bricks);
-  const std::uint64_t covered =
-    this->LastCovered - before + output.CountPatches(*this->Context, this->ResamplingEvents);
   const OutputSlab::Counts counts = output.ReadCounts();
+  const auto done = Clock::now();
+  output.Read(this->ReadQueue, request);
+  this->ReadQueue.finish();
+  report.TransferTime = GetSecondsSince(done);
+  const auto read = Clock::now();
+  const std::uint64_t covered =
+    this->LastCovered - before + CountCoveredInPatches(request, plan.Patches);
+  this->PlanningTime += GetSecondsSince(read);
   if (counts.NeedWinners(covered))
   {
     return false;
   }
-  const auto done = std::chrono::steady_clock::now();
-  output.Read(this->ReadQueue, request);
-  this->ReadQueue.finish();
-  report.TransferTime =
-    std::chrono::duration<double>(std::chrono::steady_clock::now() - done).count();
   this->LastCovered = covered;
   this->Update.Finish();
   report.NumberOfOverstretchedCells = static_cast<std::int64_t>(counts.Overstretched);

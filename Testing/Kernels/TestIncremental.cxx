@@ -175,11 +175,12 @@ struct Subject
       MakeArray(this->Second, 2, false, this->Background) };
   }
 
-  void SendDisplacements(VolumeDeformer& deformer, Route route) const
+  void SendDisplacements(
+    VolumeDeformer& deformer, Route route, const PointRanges* changes = nullptr) const
   {
     if (route != Route::Field)
     {
-      deformer.SetNodeDisplacements(this->Displacements.data());
+      deformer.SetNodeDisplacements(this->Displacements.data(), changes);
       return;
     }
     DisplacementField field;
@@ -190,7 +191,28 @@ struct Subject
       field.IndexToField[5 * axis] = 1.0 / Step;
       field.IndexToField[4 * axis + 3] = -double(this->Shape.VertexExtent[2 * axis]) / Step;
     }
-    deformer.SetDisplacementField(field);
+    deformer.SetDisplacementField(field, changes);
+  }
+
+  // Where the displacements are not those, and a few points more.
+  PointRanges FindChanges(const std::vector<float>& last, std::mt19937& random) const
+  {
+    PointRanges changes;
+    for (std::size_t point = 0; point < this->GetNumberOfNodes(); ++point)
+    {
+      if (std::equal(last.begin() + 3 * point, last.begin() + 3 * point + 3,
+            this->Displacements.begin() + 3 * point) &&
+        random() % 50)
+      {
+        continue;
+      }
+      if (changes.empty() || changes.back()[1] != point)
+      {
+        changes.push_back({ { point, point } });
+      }
+      changes.back()[1] = point + 1;
+    }
+    return changes;
   }
 
   void SendMasks(VolumeDeformer& deformer) const
@@ -381,7 +403,9 @@ TEST_P(Incremental, EqualsWholeUpdates)
       : random() % 3        ? small[random() % 4]
                             : static_cast<Edit>(random() % static_cast<int>(Edit::Count));
     SCOPED_TRACE("edit " + std::to_string(i) + " of kind " + std::to_string(int(edit)));
+    const std::vector<float> sent = subject.Displacements;
     Change(subject, edit, random);
+    const PointRanges changes = subject.FindChanges(sent, random);
     for (VolumeDeformer* deformer : { &whole, &incremental })
     {
       if (edit == Edit::Values)
@@ -393,7 +417,8 @@ TEST_P(Incremental, EqualsWholeUpdates)
       {
         subject.SendMasks(*deformer);
       }
-      subject.SendDisplacements(*deformer, route);
+      subject.SendDisplacements(
+        *deformer, route, deformer == &incremental && i % 2 ? &changes : nullptr);
     }
     Outputs expected(subject);
     const DeformReport wanted = whole.Deform(expected.MakeRequest(subject));
