@@ -22,6 +22,7 @@ set(helpers
   InputUpdate
   LinkExtrapolation
   MappingCache
+  MeshBounds
   MeshGathering
   OutputArrays
   OutputExtent

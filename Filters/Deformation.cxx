@@ -8,8 +8,10 @@
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 namespace deformvolume
@@ -88,6 +90,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
   const std::size_t count = GetNumberOfNodes(shape);
   if (source.Rest)
   {
+    this->Memories.clear();
     std::vector<glm::dvec3> vectors = ReadPoints(shape, MESH);
     const std::vector<glm::dvec3> start = ReadPoints(rest, REST);
     const auto read = [&](const VectorTaker& take)
@@ -109,7 +112,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
     this->SetVectors(
       count,
       [&](const VectorTaker& take)
-      { ReadPointVectors(shape, source.Selector, source.Wanted, MESH, take); },
+      { ReadPointVectors(shape, source.Selector, source.Wanted, MESH, take, &this->Memories); },
       source.DisplacementScale, source);
   }
   this->Field = false;
@@ -189,6 +192,8 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   const ImageGeometry geometry = GetGeometry(image);
   CheckTransform(geometry, "the displacement field on input port 1");
   vtkDataArray* array = FindVectors(image, source.Selector, source.Wanted, FIELD);
+  // Nothing is remembered: a field may have as many points as the volume has voxels.
+  this->Memories.clear();
   this->SetVectors(
     static_cast<std::size_t>(image->GetNumberOfPoints()),
     [&](const VectorTaker& take) { ReadVectors(array, take, "Vector", FIELD); },
@@ -211,10 +216,35 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
 bool Deformation::VectorsAreCurrent(
   const Stamp& stamp, const DeformationSource& source, bool field) const
 {
+  return this->Field == field && stamp == this->VectorsStamp &&
+    source.Choice == this->VectorsSource.Choice && this->HasSameUnits(source);
+}
+
+bool Deformation::HasSameUnits(const DeformationSource& source) const
+{
   const DeformationSource& last = this->VectorsSource;
-  return this->Field == field && stamp == this->VectorsStamp && source.Choice == last.Choice &&
-    source.DisplacementScale == last.DisplacementScale && source.Volume == last.Volume &&
+  return source.DisplacementScale == last.DisplacementScale && source.Volume == last.Volume &&
     source.Scale == last.Scale;
+}
+
+PointRanges Deformation::GetChanges(std::uint64_t version) const
+{
+  PointRanges changes;
+  const std::size_t count = this->Vectors.size() / 3;
+  for (std::size_t block = 0; block < this->BlockVersions.size(); ++block)
+  {
+    if (this->BlockVersions[block] <= version)
+    {
+      continue;
+    }
+    const std::size_t begin = block * PointsPerBlock;
+    if (changes.empty() || changes.back()[1] != begin)
+    {
+      changes.push_back({ { begin, begin } });
+    }
+    changes.back()[1] = std::min(begin + PointsPerBlock, count);
+  }
+  return changes;
 }
 
 void Deformation::SetVectors(std::size_t count, const std::function<void(const VectorTaker&)>& read,
@@ -222,21 +252,33 @@ void Deformation::SetVectors(std::size_t count, const std::function<void(const V
 {
   // Whatever fails from here on, the vectors are not those of any source.
   this->VectorsStamp.clear();
-  ++this->VectorsVersion;
+  const std::uint64_t version = ++this->VectorsVersion;
+  const std::size_t blocks = (count + PointsPerBlock - 1) / PointsPerBlock;
+  const bool comparable = this->VectorsAreWhole && this->Vectors.size() == 3 * count;
+  if (!comparable)
+  {
+    this->Vectors.resize(3 * count);
+    this->BlockVersions.assign(blocks, version);
+  }
+  if (!comparable || !this->HasSameUnits(source))
+  {
+    this->Memories.clear();
+  }
+  this->VectorsAreWhole = false;
   glm::dmat3 transform(source.Volume.GetWorldToIndex());
   for (int column = 0; column < 3; ++column)
   {
     transform[column] *= source.Scale * factor;
   }
-  this->Vectors.resize(3 * count);
+  std::vector<std::atomic<bool>> changed(blocks);
   std::atomic<bool> tooFar{ false };
   read(
     [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType number)
     {
-      float* next = this->Vectors.data() + 3 * first;
       for (vtkIdType i = 0; i < number; ++i)
       {
         const glm::dvec3 vector = transform * vectors[i];
+        std::array<float, 3> displacement;
         for (int axis = 0; axis < 3; ++axis)
         {
           // The negation catches NaN as well.
@@ -245,7 +287,14 @@ void Deformation::SetVectors(std::size_t count, const std::function<void(const V
             tooFar = true;
             return;
           }
-          *next++ = static_cast<float>(vector[axis]);
+          displacement[axis] = static_cast<float>(vector[axis]);
+        }
+        const auto point = static_cast<std::size_t>(first + i);
+        float* last = this->Vectors.data() + 3 * point;
+        if (std::memcmp(last, displacement.data(), sizeof(displacement)) != 0)
+        {
+          std::copy(displacement.begin(), displacement.end(), last);
+          changed[point / PointsPerBlock].store(true, std::memory_order_relaxed);
         }
       }
     });
@@ -255,6 +304,14 @@ void Deformation::SetVectors(std::size_t count, const std::function<void(const V
                 "DisplacementScale, the output spacing, and that displacements and volume are in "
                 "the same world units.");
   }
+  for (std::size_t block = 0; block < blocks; ++block)
+  {
+    if (changed[block])
+    {
+      this->BlockVersions[block] = version;
+    }
+  }
+  this->VectorsAreWhole = true;
   this->VectorsSource = source;
   // Only compared, never called or read through again.
   this->VectorsSource.Shape = nullptr;

@@ -60,6 +60,10 @@ public:
   /// Changes with the displacements and with the kind of the deformation.
   std::uint64_t GetVectorsVersion() const { return this->VectorsVersion; }
 
+  /// What changed of the displacements after a version of them: blocks of points, some of which may
+  /// be as they were.
+  PointRanges GetChanges(std::uint64_t version) const;
+
   /// Cells that were ignored, in words for a warning; "" without such.
   const std::string& GetIgnoredCells() const { return this->IgnoredCells; }
 
@@ -69,6 +73,8 @@ private:
   void ReadRestPoints(const MeshParts& rest, const DeformationSource& source);
   void ReadField(vtkImageData* image, const DeformationSource& source);
   bool VectorsAreCurrent(const Stamp& stamp, const DeformationSource& source, bool field) const;
+  /// Whether equal vectors are equal displacements, now and when they were read last.
+  bool HasSameUnits(const DeformationSource& source) const;
   /// read: calls its argument for all displacements in world units, of which there are count.
   void SetVectors(std::size_t count, const std::function<void(const VectorTaker&)>& read,
     double factor, const DeformationSource& source);
@@ -77,6 +83,9 @@ private:
   std::vector<Tetrahedron> Tetrahedra;
   std::vector<glm::dvec3> RestPoints;
   std::vector<float> Vectors;
+  static constexpr std::size_t PointsPerBlock = 512;
+  std::vector<std::uint64_t> BlockVersions; // that with which each block of the vectors came
+  bool VectorsAreWhole = false;             // else the last reading of them failed
   std::array<int, 3> FieldDimensions{ { 0, 0, 0 } };
   std::array<double, 12> IndexToField{};
   std::string IgnoredCells;
@@ -89,6 +98,7 @@ private:
   ImageGeometry RestVolume;
   Stamp VectorsStamp;
   DeformationSource VectorsSource;
+  std::vector<VectorMemory> Memories; // of each part of a mesh
 };
 
 } // namespace deformvolume

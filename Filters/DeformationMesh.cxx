@@ -314,20 +314,31 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
 }
 
 void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
-  const std::string& wanted, const std::string& name, const VectorTaker& take)
+  const std::string& wanted, const std::string& name, const VectorTaker& take,
+  std::vector<VectorMemory>* memories)
 {
+  std::vector<VectorMemory> none;
+  std::vector<VectorMemory>& last = memories ? *memories : none;
+  last.resize(parts.size());
   vtkIdType next = 0;
-  for (vtkUnstructuredGrid* grid : parts)
+  for (std::size_t part = 0; part < parts.size(); ++part)
   {
-    if (grid->GetNumberOfPoints() > 0)
+    vtkUnstructuredGrid* grid = parts[part];
+    const vtkIdType points = grid->GetNumberOfPoints();
+    if (points == 0 || last[part].Place != next)
+    {
+      last[part] = VectorMemory();
+      last[part].Place = next;
+    }
+    if (points > 0)
     {
       ReadVectors(
         FindVectors(grid, selector, wanted, name),
         [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
         { take(next + first, vectors, count); },
-        "Displacement", name);
-      next += grid->GetNumberOfPoints();
+        "Displacement", name, memories ? &last[part] : nullptr);
     }
+    next += points;
   }
 }
 

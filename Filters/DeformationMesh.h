@@ -62,9 +62,11 @@ using ArraySelector = std::function<vtkDataArray*(vtkDataSet*)>;
 vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
   const std::string& wanted, const std::string& name);
 
-/// Vectors of all points, one part's after the other's.
+/// Vectors of all points, one part's after the other's. memories: of the last reading (see
+/// ReadVectors), where they were taken to the same places; null: all are taken.
 void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
-  const std::string& wanted, const std::string& name, const VectorTaker& take);
+  const std::string& wanted, const std::string& name, const VectorTaker& take,
+  std::vector<VectorMemory>* memories = nullptr);
 
 ///@{
 /// What the functions above depend on.

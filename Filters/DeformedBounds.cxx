@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 
@@ -21,31 +20,6 @@ namespace deformvolume
 
 namespace
 {
-
-bool IsFinite(const glm::dvec3& v)
-{
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-glm::dvec3 GetScale(const Lattice& lattice)
-{
-  return glm::dvec3(lattice.Scale[0], lattice.Scale[1], lattice.Scale[2]);
-}
-
-// The volume's box, in continuous indices.
-IndexBounds GetBox(const Lattice& lattice)
-{
-  const Extent& extent = lattice.VertexExtent;
-  IndexBounds box;
-  box.Min = glm::dvec3(extent[0], extent[2], extent[4]);
-  box.Max = glm::dvec3(extent[1], extent[3], extent[5]);
-  return box;
-}
-
-glm::dvec3 GetVector(const float* vectors, std::int64_t index)
-{
-  return glm::dvec3(vectors[3 * index], vectors[3 * index + 1], vectors[3 * index + 2]);
-}
 
 // The bounds of what body(item, bounds) adds for each of a number of items, in parallel.
 template <typename Body>
@@ -336,125 +310,6 @@ IndexBounds ComputeBoundsOfCells(
 }
 
 } // namespace
-
-void IndexBounds::Add(const glm::dvec3& point)
-{
-  if (this->IsEmpty())
-  {
-    this->Min = point;
-    this->Max = point;
-    return;
-  }
-  this->Min = glm::min(this->Min, point);
-  this->Max = glm::max(this->Max, point);
-}
-
-void IndexBounds::Add(const IndexBounds& other)
-{
-  if (!other.IsEmpty())
-  {
-    this->Add(other.Min);
-    this->Add(other.Max);
-  }
-}
-
-MeshBoundsPlan MakeMeshBoundsPlan(const Lattice& lattice, const std::vector<glm::dvec3>& restPoints,
-  const std::vector<Tetrahedron>& tetrahedra)
-{
-  const IndexBounds box = GetBox(lattice);
-  const auto isInside = [&](std::int32_t node)
-  {
-    return glm::all(glm::greaterThanEqual(restPoints[node], box.Min)) &&
-      glm::all(glm::lessThanEqual(restPoints[node], box.Max));
-  };
-  // Bytes, which several threads may set to the same.
-  std::vector<unsigned char> clipped(tetrahedra.size(), 0);
-  std::vector<std::atomic<unsigned char>> wanted(restPoints.size());
-  ParallelFor(0, static_cast<vtkIdType>(tetrahedra.size()), 0,
-    [&](vtkIdType begin, vtkIdType end)
-    {
-      for (vtkIdType id = begin; id < end; ++id)
-      {
-        const Tetrahedron& nodes = tetrahedra[id];
-        if (!std::all_of(nodes.begin(), nodes.end(), isInside))
-        {
-          clipped[id] = 1;
-          continue;
-        }
-        BarycentricMap map;
-        if (map.SetTetrahedron(nodes, restPoints)) // not flat
-        {
-          for (const std::int32_t node : nodes)
-          {
-            wanted[node].store(1, std::memory_order_relaxed);
-          }
-        }
-      }
-    });
-  MeshBoundsPlan plan;
-  for (std::size_t id = 0; id < clipped.size(); ++id)
-  {
-    if (clipped[id])
-    {
-      plan.ClippedTetrahedra.push_back(static_cast<std::int32_t>(id));
-    }
-  }
-  for (std::size_t node = 0; node < wanted.size(); ++node)
-  {
-    if (wanted[node])
-    {
-      plan.Nodes.push_back(static_cast<std::int32_t>(node));
-    }
-  }
-  return plan;
-}
-
-IndexBounds ComputeDeformedBounds(const Lattice& lattice, const std::vector<glm::dvec3>& restPoints,
-  const std::vector<Tetrahedron>& tetrahedra, const float* displacements,
-  const MeshBoundsPlan& plan)
-{
-  const IndexBounds box = GetBox(lattice);
-  const glm::dvec3 scale = GetScale(lattice);
-  const auto move = [&](std::int32_t node)
-  { return scale * restPoints[node] + GetVector(displacements, node); };
-  IndexBounds all = ComputeInParallel(static_cast<std::int64_t>(plan.Nodes.size()),
-    [&](std::int64_t i, IndexBounds& bounds)
-    {
-      const glm::dvec3 moved = move(plan.Nodes[i]);
-      if (IsFinite(moved))
-      {
-        bounds.Add(moved);
-      }
-    });
-  all.Add(ComputeInParallel(static_cast<std::int64_t>(plan.ClippedTetrahedra.size()),
-    [&](std::int64_t i, IndexBounds& bounds)
-    {
-      const Tetrahedron& tetrahedron = tetrahedra[plan.ClippedTetrahedra[i]];
-      std::array<MovedPoint, 4> nodes;
-      for (int node = 0; node < 4; ++node)
-      {
-        nodes[node].Rest = restPoints[tetrahedron[node]];
-        nodes[node].Moved = move(tetrahedron[node]);
-        if (!IsFinite(nodes[node].Moved))
-        {
-          return;
-        }
-      }
-      BarycentricMap map;
-      if (map.SetTetrahedron(tetrahedron, restPoints))
-      {
-        AddClippedTetrahedron(nodes, map, box, bounds);
-      }
-    }));
-  return all;
-}
-
-IndexBounds ComputeDeformedBounds(const Lattice& lattice, const std::vector<glm::dvec3>& restPoints,
-  const std::vector<Tetrahedron>& tetrahedra, const float* displacements)
-{
-  return ComputeDeformedBounds(lattice, restPoints, tetrahedra, displacements,
-    MakeMeshBoundsPlan(lattice, restPoints, tetrahedra));
-}
 
 IndexBounds ComputeDeformedBounds(const Lattice& lattice, const std::vector<VertexLink>& links,
   const std::vector<Tetrahedron>& tetrahedra, const float* displacements)

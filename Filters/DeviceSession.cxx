@@ -156,8 +156,10 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
   {
     if (!this->HasField || this->SentVectors != vectors || this->SentExtrapolate != extrapolate)
     {
+      const PointRanges changes = deformation.GetChanges(this->SentVectors);
       Transfer transfer(this);
-      this->Deformer.SetDisplacementField(deformation.GetField(extrapolate));
+      this->Deformer.SetDisplacementField(
+        deformation.GetField(extrapolate), this->HasField ? &changes : nullptr);
       transfer.End();
     }
     this->HasField = true;
@@ -192,8 +194,10 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
     }
     if (!meshIsSent || this->SentVectors != vectors)
     {
+      const PointRanges changes = deformation.GetChanges(this->SentVectors);
       Transfer transfer(this);
-      this->Deformer.SetNodeDisplacements(deformation.GetNodeDisplacements());
+      this->Deformer.SetNodeDisplacements(
+        deformation.GetNodeDisplacements(), meshIsSent ? &changes : nullptr);
       transfer.End();
     }
     this->HasMesh = true;

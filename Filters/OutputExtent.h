@@ -2,8 +2,8 @@
 #ifndef DeformVolumeOutputExtent_h
 #define DeformVolumeOutputExtent_h
 
-#include "DeformedBounds.h" // for IndexBounds
 #include "ImageGeometry.h"
+#include "IndexBounds.h"
 
 namespace deformvolume
 {

@@ -25,11 +25,6 @@ constexpr double PositionTolerance = 1.0 / 32.0;
 
 constexpr std::int64_t MostBricks = std::int64_t{ 1 } << 17;
 
-glm::dvec3 GetVector(const float* vectors, std::int64_t index)
-{
-  return glm::dvec3(vectors[3 * index], vectors[3 * index + 1], vectors[3 * index + 2]);
-}
-
 } // namespace
 
 RestRegions::RestRegions(const Lattice& lattice)

@@ -2,7 +2,7 @@
 #ifndef DeformVolumeRestRegions_h
 #define DeformVolumeRestRegions_h
 
-#include "DeformedBounds.h" // for IndexBounds
+#include "IndexBounds.h"
 #include "VolumeDeformer.h" // for Extent, Lattice, Tetrahedron, DisplacementField
 
 #include <glm/vec3.hpp>

@@ -3,7 +3,7 @@
 #define DeformVolumeTetrahedronClipping_h
 
 #include "BarycentricMap.h"
-#include "DeformedBounds.h" // for IndexBounds
+#include "IndexBounds.h"
 
 #include <array>
 

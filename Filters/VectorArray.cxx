@@ -4,6 +4,7 @@
 #include "Error.h"
 #include "ParallelFor.h"
 
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkArrayDispatch.h"
 #include "vtkDataArray.h"
 #include "vtkDataArrayRange.h"
@@ -14,6 +15,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace deformvolume
@@ -25,54 +27,123 @@ namespace
 constexpr vtkIdType BLOCK = 512; // tuples at a time
 constexpr vtkIdType NONE = std::numeric_limits<vtkIdType>::max();
 
+// The values of an array that lies in memory tuple by tuple; null for others.
+template <typename T>
+const void* GetBytes(vtkAOSDataArrayTemplate<T>* array)
+{
+  return array->GetPointer(0);
+}
+const void* GetBytes(vtkDataArray*)
+{
+  return nullptr;
+}
+
+// Finds out which blocks of an array are not as they were.
+class BlockComparison
+{
+public:
+  BlockComparison(vtkDataArray* array, const void* bytes, VectorMemory* memory)
+    : Values(static_cast<const unsigned char*>(bytes))
+    , TupleSize(3 * static_cast<std::size_t>(array->GetDataTypeSize()))
+  {
+    if (!memory || !bytes)
+    {
+      return;
+    }
+    const std::size_t size = static_cast<std::size_t>(array->GetNumberOfTuples()) * this->TupleSize;
+    this->Known = memory->Type == array->GetDataType() && memory->Bytes.size() == size;
+    memory->Bytes.resize(size);
+    this->Last = memory->Bytes.data();
+  }
+
+  bool IsSame(vtkIdType first, vtkIdType count) const
+  {
+    const std::size_t begin = static_cast<std::size_t>(first) * this->TupleSize;
+    return this->Known &&
+      std::memcmp(this->Values + begin, this->Last + begin,
+        static_cast<std::size_t>(count) * this->TupleSize) == 0;
+  }
+  void Remember(vtkIdType first, vtkIdType count) const
+  {
+    if (this->Last)
+    {
+      const std::size_t begin = static_cast<std::size_t>(first) * this->TupleSize;
+      std::memcpy(this->Last + begin, this->Values + begin,
+        static_cast<std::size_t>(count) * this->TupleSize);
+    }
+  }
+
+private:
+  const unsigned char* Values;
+  std::size_t TupleSize;
+  unsigned char* Last = nullptr;
+  bool Known = false;
+};
+
 struct VectorReader
 {
   template <typename ArrayT>
-  void operator()(ArrayT* array, const VectorTaker& take)
+  void operator()(ArrayT* array, const VectorTaker& take, VectorMemory* memory)
   {
     const auto tuples = vtk::DataArrayTupleRange<3>(array);
+    const BlockComparison comparison(array, GetBytes(array), memory);
     std::atomic<vtkIdType> bad{ NONE };
-    ParallelFor(0, tuples.size(), 0,
+    const auto read = [&](vtkIdType first, vtkIdType count)
+    {
+      std::array<glm::dvec3, BLOCK> vectors;
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        const auto tuple = tuples[first + i];
+        vectors[i] = glm::dvec3(static_cast<double>(tuple[0]), static_cast<double>(tuple[1]),
+          static_cast<double>(tuple[2]));
+        if (!std::isfinite(vectors[i].x) || !std::isfinite(vectors[i].y) ||
+          !std::isfinite(vectors[i].z))
+        {
+          vtkIdType least = bad;
+          while (first + i < least && !bad.compare_exchange_weak(least, first + i))
+          {
+          }
+          return;
+        }
+      }
+      take(first, vectors.data(), count);
+      comparison.Remember(first, count);
+    };
+    ParallelFor(0, (tuples.size() + BLOCK - 1) / BLOCK, 0,
       [&](vtkIdType begin, vtkIdType end)
       {
-        std::array<glm::dvec3, BLOCK> vectors;
-        for (vtkIdType first = begin; first < end; first += BLOCK)
+        for (vtkIdType first = begin * BLOCK; first < std::min(end * BLOCK, tuples.size());
+             first += BLOCK)
         {
-          const vtkIdType count = std::min(BLOCK, end - first);
-          for (vtkIdType i = 0; i < count; ++i)
+          const vtkIdType count = std::min(BLOCK, tuples.size() - first);
+          if (!comparison.IsSame(first, count))
           {
-            const auto tuple = tuples[first + i];
-            vectors[i] = glm::dvec3(static_cast<double>(tuple[0]), static_cast<double>(tuple[1]),
-              static_cast<double>(tuple[2]));
-            if (!std::isfinite(vectors[i].x) || !std::isfinite(vectors[i].y) ||
-              !std::isfinite(vectors[i].z))
-            {
-              vtkIdType least = bad;
-              while (first + i < least && !bad.compare_exchange_weak(least, first + i))
-              {
-              }
-              return;
-            }
+            read(first, count);
           }
-          take(first, vectors.data(), count);
         }
       });
     this->FirstBad = bad;
+    this->HasBytes = GetBytes(array) != nullptr;
   }
 
   vtkIdType FirstBad = NONE;
+  bool HasBytes = false;
 };
 
 } // namespace
 
-void ReadVectors(
-  vtkDataArray* array, const VectorTaker& take, const std::string& kind, const std::string& owner)
+void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string& kind,
+  const std::string& owner, VectorMemory* memory)
 {
   using Dispatcher = vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>;
   VectorReader reader;
-  if (!Dispatcher::Execute(array, reader, take))
+  if (!Dispatcher::Execute(array, reader, take, memory))
   {
-    reader(array, take);
+    reader(array, take, memory);
+  }
+  if (memory)
+  {
+    memory->Type = reader.HasBytes && reader.FirstBad == NONE ? array->GetDataType() : VTK_VOID;
   }
   if (reader.FirstBad != NONE)
   {

@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 class vtkDataArray;
 class vtkDataSet;
@@ -19,10 +20,20 @@ namespace deformvolume
 using VectorTaker =
   std::function<void(vtkIdType first, const glm::dvec3* vectors, vtkIdType count)>;
 
+/// What an array held when it was read last, as it lay in memory.
+struct VectorMemory
+{
+  int Type = 0; // of its elements, as VTK numbers them; VTK_VOID where nothing is known
+  std::vector<unsigned char> Bytes;
+  vtkIdType Place = 0; // what its first tuple counted as
+};
+
 /// Reads the tuples of an array of three components, in parallel, some at a time. Throws an Error
 /// that names the first tuple that is not finite: "<kind> 5 of the <owner>".
-void ReadVectors(
-  vtkDataArray* array, const VectorTaker& take, const std::string& kind, const std::string& owner);
+/// memory: of the last reading of this array or of one in its place. Blocks of tuples that are as
+/// they were then need not be taken again, and are left out. Null: all are taken.
+void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string& kind,
+  const std::string& owner, VectorMemory* memory = nullptr);
 
 /// The vectors of a dataset's points where nobody chose: the active ones, or else the only array of
 /// three components; null where there is no such array.

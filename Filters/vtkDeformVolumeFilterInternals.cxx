@@ -127,17 +127,19 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
     return deformvolume::ComputeDeformedBounds(lattice, this->Mapping.GetLinks(),
       this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
   }
-  if (this->PlanRestVersion != this->Deformation.GetRestVersion() ||
-    this->PlanExtent != lattice.VertexExtent)
+  const deformvolume::Deformation& mesh = this->Deformation;
+  if (this->BoundsRestVersion != mesh.GetRestVersion() ||
+    this->BoundsLattice.VertexExtent != lattice.VertexExtent ||
+    this->BoundsLattice.Scale != lattice.Scale)
   {
-    this->Plan = deformvolume::MakeMeshBoundsPlan(
-      lattice, this->Deformation.GetRestPoints(), this->Deformation.GetTetrahedra());
-    this->PlanRestVersion = this->Deformation.GetRestVersion();
-    this->PlanExtent = lattice.VertexExtent;
+    this->BoundsOfMesh.SetMesh(lattice, mesh.GetRestPoints(), mesh.GetTetrahedra());
+    this->BoundsRestVersion = mesh.GetRestVersion();
+    this->BoundsLattice = lattice;
   }
-  const IndexBounds bounds =
-    deformvolume::ComputeDeformedBounds(lattice, this->Deformation.GetRestPoints(),
-      this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements(), this->Plan);
+  const deformvolume::PointRanges changes = mesh.GetChanges(this->BoundsVectorsVersion);
+  const IndexBounds bounds = this->BoundsOfMesh.Compute(
+    mesh.GetRestPoints(), mesh.GetTetrahedra(), mesh.GetNodeDisplacements(), &changes);
+  this->BoundsVectorsVersion = mesh.GetVectorsVersion();
   if (bounds.IsEmpty())
   {
     // Tells what is wrong.

@@ -7,6 +7,7 @@
 #include "DeviceSession.h"
 #include "ImageGeometry.h"
 #include "MappingCache.h"
+#include "MeshBounds.h"
 #include "MeshGathering.h"
 #include "OutputArrays.h"
 #include "Ranks.h"
@@ -150,10 +151,11 @@ private:
   BoundsKey Key;
   deformvolume::IndexBounds Bounds;
 
-  // Of the mesh at rest, and which that is.
-  deformvolume::MeshBoundsPlan Plan;
-  std::uint64_t PlanRestVersion = 0;
-  deformvolume::Extent PlanExtent{ { 0, -1, 0, -1, 0, -1 } };
+  // Of the mesh, and which that is.
+  deformvolume::MeshBounds BoundsOfMesh;
+  std::uint64_t BoundsRestVersion = 0;
+  std::uint64_t BoundsVectorsVersion = 0;
+  deformvolume::Lattice BoundsLattice;
 
   // And what these are of.
   struct RegionsKey

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // 200 random edits with Incremental on, each compared bit by bit with a filter with Incremental
 // off: nodes that move, masks, extents, spacings, arrays, backgrounds, aborts, outputs that others
-// hold.
+// hold. Before that, what is read of displacements against filters that have read nothing before.
 #include "FilterTesting.h"
 
 #include <vtkCallbackCommand.h>
@@ -239,6 +239,120 @@ private:
   int Parts = 0;
 };
 
+// What an array holds is found out again only where it changed: each time as by a filter that has
+// read nothing before.
+class Readings
+{
+public:
+  Readings()
+    : Volume(MakeImage({ { 0, 40, 0, 30, 0, 30 } }))
+    , Mesh(MakeMesh(Volume, 14, 0.0))
+    , Tested(Volume, Mesh)
+  {
+    AddScalars<float>(this->Volume, "value",
+      [](const glm::dvec3& p) { return 100.0 * std::sin(0.7 * p.x) + 35.0 * p.z + p.y; });
+    SetDisplacements(this->Mesh, Shift(0.25, 0.0, 0.0));
+  }
+
+  void Run()
+  {
+    this->Compare("first");
+    const vtkIdType last = this->Mesh->GetNumberOfPoints() - 1;
+    for (const vtkIdType node : { vtkIdType{ 0 }, vtkIdType{ 511 }, vtkIdType{ 512 }, last })
+    {
+      for (int component = 0; component < 3; ++component)
+      {
+        this->SetComponent(node, component, 1.5);
+        this->Compare("one number of node " + std::to_string(node));
+      }
+    }
+    this->RunErrors();
+    this->Tested.Filter->SetDisplacementScale(-2.0);
+    this->Compare("another scale");
+    this->SetComponent(600, 1, 0.75);
+    this->Tested.Filter->SetDisplacementScale(1.0);
+    this->Compare("the scale that was, and a node");
+    this->Volume->SetSpacing(1.0, 1.5, 1.0);
+    this->Compare("another spacing");
+    this->RunTypes();
+    this->RunPorts();
+  }
+
+private:
+  vtkDataArray* GetVectors() { return this->Mesh->GetPointData()->GetVectors(); }
+
+  void SetComponent(vtkIdType node, int component, double value)
+  {
+    this->GetVectors()->SetComponent(node, component, value);
+    this->GetVectors()->Modified();
+  }
+
+  void Compare(const std::string& what, vtkDataObject* rest = nullptr)
+  {
+    Deformed fresh(this->Volume, this->Mesh);
+    for (vtkDeformVolumeFilter* filter : { this->Tested.Filter.Get(), fresh.Filter.Get() })
+    {
+      filter->SetInputDataObject(2, rest);
+    }
+    fresh.Filter->SetDisplacementScale(this->Tested.Filter->GetDisplacementScale());
+    const int failures = GetNumberOfFailures();
+    VERIFY(AreEqual(this->Tested.Update(), fresh.Update()));
+    VERIFY(fresh.Filter->GetNumberOfCoveredVoxels() > 0);
+    if (GetNumberOfFailures() > failures)
+    {
+      std::cerr << "after " << what << '\n';
+    }
+  }
+
+  // What an error leaves behind is not taken for what was read before.
+  void RunErrors()
+  {
+    for (const double bad : { std::nan(""), 1e6 })
+    {
+      const double good = this->GetVectors()->GetComponent(700, 2);
+      this->SetComponent(700, 2, bad);
+      this->SetComponent(30, 0, 0.5 + this->GetVectors()->GetComponent(30, 0));
+      this->Tested.Filter->Update();
+      VERIFY_EQUAL(this->Tested.TakeErrors(), 1);
+      this->SetComponent(700, 2, good);
+      this->Compare("a number that is mended");
+    }
+  }
+
+  void RunTypes()
+  {
+    const vtkSmartPointer<vtkDataArray> floats = this->GetVectors();
+    for (const int type : { VTK_DOUBLE, VTK_INT, VTK_FLOAT })
+    {
+      const auto copy = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
+      copy->DeepCopy(floats);
+      copy->SetName("displacement");
+      copy->SetComponent(40, 0, type - 3.0);
+      this->Mesh->GetPointData()->SetVectors(copy);
+      this->Compare("an array of type " + std::to_string(type));
+    }
+    this->Mesh->GetPointData()->SetVectors(floats);
+    this->Compare("the array that was");
+  }
+
+  // Displacements, then two configurations, then the same displacements again.
+  void RunPorts()
+  {
+    vtkNew<vtkUnstructuredGrid> rest;
+    rest->DeepCopy(this->Mesh);
+    double point[3];
+    rest->GetPoint(800, point);
+    point[0] += 0.25;
+    rest->GetPoints()->SetPoint(800, point);
+    this->Compare("a rest configuration", rest);
+    this->Compare("displacements again");
+  }
+
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh;
+  Deformed Tested;
+};
+
 // What only some devices can do must not change what all others give.
 void TestProperty()
 {
@@ -256,6 +370,7 @@ void TestProperty()
 int TestDeformIncremental(int, char*[])
 {
   TestProperty();
+  Readings().Run();
   Edits edits;
   edits.Run(200);
   return GetExitCode();

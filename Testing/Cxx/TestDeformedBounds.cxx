@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The bounds of the deformed volume against a list of all possible corners, or of all voxels.
 #include "DeformedBounds.h"
+#include "MeshBounds.h"
 #include "StaticMapping.h"
 
 #include "TetrahedralMeshes.h"
@@ -32,7 +33,7 @@ Lattice MakeVolume(const Extent& extent, const glm::dvec3& scale)
   return lattice;
 }
 
-glm::dvec3 GetScale(const Lattice& lattice)
+glm::dvec3 GetRatio(const Lattice& lattice)
 {
   return glm::dvec3(lattice.Scale[0], lattice.Scale[1], lattice.Scale[2]);
 }
@@ -81,7 +82,7 @@ void AddCorners(const Lattice& lattice, const Mesh& mesh, const Tetrahedron& nod
   for (int node = 0; node < 4; ++node)
   {
     rest[node] = mesh.Points[nodes[node]];
-    moved[node] = GetScale(lattice) * rest[node] + GetVector(displacements, nodes[node]);
+    moved[node] = GetRatio(lattice) * rest[node] + GetVector(displacements, nodes[node]);
   }
   const glm::dmat3 sides(rest[1] - rest[0], rest[2] - rest[0], rest[3] - rest[0]);
   if (std::abs(glm::determinant(sides)) < 1e-9)
@@ -196,6 +197,55 @@ void TestMesh()
   CHECK(ComputeDeformedBounds(plain, mesh.Points, mesh.Tetrahedra, displacements.data()).IsEmpty());
 }
 
+// Edits of some nodes, each told of by ranges of nodes, against bounds that are computed at once.
+void TestChanges()
+{
+  std::mt19937 random(23);
+  const Lattice lattice = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.0, 0.7, 2.5));
+  const glm::dvec3 min(-4.0, 2.0, -20.0);
+  const glm::dvec3 max(9.0, 14.0, -9.0);
+  // Of several blocks of nodes, the second one with many tetrahedra that are clipped.
+  for (const Mesh& mesh : { MakeLattice({ 12, 12, 12 }, min, max, 0.2, 0.0, random),
+         MakeLattice({ 12, 12, 12 }, min - 8.1, max + 5.7, 0.2, 0.0, random) })
+  {
+    std::vector<float> displacements = MakeVectors(mesh.Points.size(), 2.0, random);
+    MeshBounds bounds;
+    bounds.SetMesh(lattice, mesh.Points, mesh.Tetrahedra);
+    const PointRanges none;
+    int changes = 0;
+    IndexBounds last;
+    for (int edit = 0; edit < 60; ++edit)
+    {
+      PointRanges ranges;
+      const std::size_t end = random() % mesh.Points.size() + 1;
+      const std::size_t begin = random() % end;
+      if (edit > 0)
+      {
+        ranges.push_back({ { begin, end } });
+        // Every other one goes back, so that bounds shrink as well.
+        const double reach = edit % 2 ? 30.0 : 2.0;
+        const std::vector<float> moved = MakeVectors(mesh.Points.size(), reach, random);
+        std::copy(
+          moved.begin() + 3 * begin, moved.begin() + 3 * end, displacements.begin() + 3 * begin);
+      }
+      // At first there is nothing that could be the same, whatever is told.
+      const IndexBounds found =
+        bounds.Compute(mesh.Points, mesh.Tetrahedra, displacements.data(), &ranges);
+      const IndexBounds expected =
+        ComputeDeformedBounds(lattice, mesh.Points, mesh.Tetrahedra, displacements.data());
+      CHECK(found.Min == expected.Min && found.Max == expected.Max);
+      changes += found.Min != last.Min || found.Max != last.Max ? 1 : 0;
+      last = found;
+    }
+    CHECK(changes > 30);
+    // Nobody looks at the others.
+    std::fill(displacements.begin(), displacements.end(), 1000.0F);
+    CHECK(
+      bounds.Compute(mesh.Points, mesh.Tetrahedra, displacements.data(), &none).Max == last.Max);
+    CHECK(bounds.Compute(mesh.Points, mesh.Tetrahedra, displacements.data()).Max.x > 900.0);
+  }
+}
+
 void TestLinks()
 {
   std::mt19937 random(12);
@@ -223,7 +273,7 @@ void TestLinks()
             const double a = link.Weights[0];
             const double b = link.Weights[1];
             const double c = link.Weights[2];
-            expected.Add(GetScale(lattice) * glm::dvec3(x, y, z) +
+            expected.Add(GetRatio(lattice) * glm::dvec3(x, y, z) +
               a * GetVector(displacements, nodes[0]) + b * GetVector(displacements, nodes[1]) +
               c * GetVector(displacements, nodes[2]) +
               (1.0 - a - b - c) * GetVector(displacements, nodes[3]));
@@ -289,7 +339,7 @@ IndexBounds SearchVoxels(const Lattice& lattice, const DisplacementField& field)
         }
         if ((inside || field.Extrapolate) && std::isfinite(sum.x + sum.y + sum.z))
         {
-          bounds.Add(GetScale(lattice) * glm::dvec3(x, y, z) + sum);
+          bounds.Add(GetRatio(lattice) * glm::dvec3(x, y, z) + sum);
         }
       }
     }
@@ -366,14 +416,14 @@ void TestField()
       CHECK(!(item.ExactIfConstant || extrapolate) || AreClose(found, expected, 1e-9));
       // The corners of what a turned field covers need not be voxels, but are within one of them.
       IndexBounds grown = expected;
-      grown.Min -= GetScale(lattice);
-      grown.Max += GetScale(lattice);
+      grown.Min -= GetRatio(lattice);
+      grown.Max += GetRatio(lattice);
       CHECK(expected.IsEmpty() || Contains(grown, found, 1e-9));
       // No larger than the volume.
       const glm::dvec3 shift(3.25, -7.5, 100.0);
       CHECK(found.IsEmpty() ||
-        Contains({ GetScale(lattice) * glm::dvec3(-4.0, 2.0, -20.0) + shift,
-                   GetScale(lattice) * glm::dvec3(9.0, 14.0, -9.0) + shift },
+        Contains({ GetRatio(lattice) * glm::dvec3(-4.0, 2.0, -20.0) + shift,
+                   GetRatio(lattice) * glm::dvec3(9.0, 14.0, -9.0) + shift },
           found, 1e-9));
 
       for (const bool broken : { false, true })
@@ -396,8 +446,8 @@ void TestField()
             reach.Add(glm::dvec3(value));
           }
         }
-        reach.Min += GetScale(lattice) * glm::dvec3(-4.0, 2.0, -20.0);
-        reach.Max += GetScale(lattice) * glm::dvec3(9.0, 14.0, -9.0);
+        reach.Min += GetRatio(lattice) * glm::dvec3(-4.0, 2.0, -20.0);
+        reach.Max += GetRatio(lattice) * glm::dvec3(9.0, 14.0, -9.0);
         CHECK(found.IsEmpty() || Contains(reach, found, 1e-9));
       }
     }
@@ -427,6 +477,7 @@ void TestThreads()
 int TestDeformedBounds(int, char*[])
 {
   TestMesh();
+  TestChanges();
   TestLinks();
   TestField();
   TestThreads();
