@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a slab of the output is made: the passes over the cells of the sampling mesh, and their launches.
+// How a slab of the output is made: the passes over the cells of the sampling mesh, and their
+// launches.
 #include "VolumeDeformerInternals.h"
 
 #include "KernelProgram.h"
