@@ -110,7 +110,7 @@ IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
 {
   const std::vector<unsigned char> changed =
     MarkBlocks(this->IsComputed ? changes : nullptr, this->NodeBounds.size());
-  this->IsComputed = true;
+  this->IsComputed = false; // half done, if this ends early
   const IndexBounds box = GetBox(this->Shape);
   const glm::dvec3 scale = GetScale(this->Shape);
   const auto move = [&](std::int32_t node)
@@ -184,6 +184,7 @@ IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
         }
       }
     });
+  this->IsComputed = true;
   IndexBounds all;
   for (const std::vector<IndexBounds>* parts : { &this->NodeBounds, &this->ClippedBounds })
   {

@@ -133,7 +133,11 @@ void OutputArrays::Make(
     if (!this->Last.empty() && !IsHeldByOthers(this->Last[i]))
     {
       made = this->Last[i];
-      SetSize(made, this->NumberOfTuples);
+      if (made->GetNumberOfTuples() != this->NumberOfTuples)
+      {
+        this->LastStamp.clear(); // it holds the last output no more
+        SetSize(made, this->NumberOfTuples);
+      }
       Describe(made, isMask ? MakeMask(0) : MakeLike(sources[i].Array, 0));
     }
     else

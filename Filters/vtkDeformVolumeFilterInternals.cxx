@@ -132,6 +132,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
     this->BoundsLattice.VertexExtent != lattice.VertexExtent ||
     this->BoundsLattice.Scale != lattice.Scale)
   {
+    this->BoundsRestVersion = 0; // nothing, if this fails
     this->BoundsOfMesh.SetMesh(lattice, mesh.GetRestPoints(), mesh.GetTetrahedra());
     this->BoundsRestVersion = mesh.GetRestVersion();
     this->BoundsLattice = lattice;

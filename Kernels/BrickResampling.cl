@@ -239,7 +239,8 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
         Append(place, bits, found->Places + found->Count);
         if (KEEPS_KEYS && p->Pass != DEFORMVOLUME_PASS_DIRECT)
         {
-          const INTS keys = (int)MakeKey(x, y, z, 0, p) + 2 * LANE_INDEX;
+          // The first cell of the row, as the first one of the group may lie before the volume.
+          const INTS keys = (int)MakeKey(0, y, z, 0, p) + cellX;
           Append(keys | (inverted & (int)MakeKey(0, 0, 0, 1, p)), bits, found->Cells + found->Count);
         }
         else if (HAS_OTHER_ARRAYS || p->Pass != DEFORMVOLUME_PASS_DIRECT)
@@ -313,7 +314,7 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
   FindRowCandidates(row, begin, end, mesh, outputs, candidates, p ARRAY_ARGUMENTS);
   for (int k = begin; k < end; k += LANES)
   {
-    Output* const output = outputs + 2 * k / DEFORMVOLUME_COLUMN;
+    Output* const output = OUTPUT_OF_COLUMN(outputs, k);
     for (int side = 0; side < 2; ++side)
     {
       const GroupCandidates* const c = candidates + 2 * k / LANES + side;

@@ -14,8 +14,8 @@ __kernel void CountCovered(
   sums[item] = sum;
 }
 
-// Sections of bricks that hold the winners of voxels: counts in them are set where there is one. Voxels side by side
-// mostly have winners side by side, and only cells outside a run are looked for.
+// Sections of bricks that hold the winners of voxels: counts in them are set where there is one. Voxels side by
+// side mostly have winners side by side, and only cells outside a run are looked for.
 typedef struct
 {
   ulong Begin; // cells of a row in one section
@@ -48,10 +48,10 @@ static void MarkSection(ulong cell, CellRun* run, __global uint* counters, const
   run->End = cell + min((int)width - x, DEFORMVOLUME_COLUMN - inBricks[0] % DEFORMVOLUME_COLUMN);
 }
 
-// After a pass that finds the voxels that several cells write, as their keys say: marks patches with voxels that are
-// not settled, and the sections of bricks that hold winners so far. Where that pass was not made, as no voxel is
-// written twice, claimed is 0: those that are covered are settled then. words: uints of a key; patches: what is known
-// of them, in which voxels that are not covered can be won where cells touch them.
+// After a pass that finds the voxels that several cells write, as their keys say: marks patches with voxels that
+// are not settled, and the sections of bricks that hold winners so far. Where that pass was not made, as no voxel
+// is written twice, claimed is 0: those that are covered are settled then. words: uints of a key; patches: what is
+// known of them, in which voxels that are not covered can be won where cells touch them.
 __kernel void Settle(__global const char* coverage, __global uint* winners, const uint words,
   const int claimed, __global char* patches, __global uint* counters, const KernelParameters p)
 {

@@ -183,7 +183,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Group* grou
     {
       if (!border)
       {
-        toEndX = toEndY = toEndZ = box ? ALMOST_ONE : 1.0f;
+        toEndX = toEndY = toEndZ = box ? (FLOATS)(ALMOST_ONE) : (FLOATS)(1.0f);
       }
       TouchBoxes(there & box, b, output, p);
     }
@@ -231,10 +231,10 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Group* grou
   c->Iterations = MostOf(number);
 }
 
-// For the groups of a row of cells from place k on up to one that begins at end, each for even and for odd x:
-// cells of the second begin at the odd vertices.
+// For the groups of a row of cells from place begin on up to one that begins at end, each for even and for odd x:
+// cells of the second begin at the odd vertices. outputs: of the columns of the brick, each for some whole groups.
 static __attribute__((noinline)) void FindRowCandidates(const RowOfCells* row, int begin, int end,
-  const SamplingMesh* mesh, Output* output, GroupCandidates* candidates,
+  const SamplingMesh* mesh, Output* outputs, GroupCandidates* candidates,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   int k = begin + (end - begin - 1) / LANES * LANES;
@@ -245,6 +245,7 @@ static __attribute__((noinline)) void FindRowCandidates(const RowOfCells* row, i
     BoundColumns(row->Rows, k, &even);
     BoundColumns(row->Rows, k + ODD, &odd);
     GroupCandidates* const c = candidates + 2 * k / LANES;
+    Output* const output = OUTPUT_OF_COLUMN(outputs, k);
     Group group;
     MakeGroup(row, k, 0, &group);
     Join(&even, &odd, &cells);
@@ -256,9 +257,10 @@ static __attribute__((noinline)) void FindRowCandidates(const RowOfCells* row, i
     behind = even;
 #define FETCH_AT(lane)                                                                             \
   {                                                                                                \
-    const int place = (FIRST_OF_LANE(2, lane) * p->OutputSize[1] + FIRST_OF_LANE(1, lane)) *       \
+    const uint place = ((uint)FIRST_OF_LANE(2, lane) * p->OutputSize[1] +                          \
+                         (uint)FIRST_OF_LANE(1, lane)) *                                           \
         p->OutputSize[0] +                                                                         \
-      FIRST_OF_LANE(0, lane);                                                                      \
+      (uint)FIRST_OF_LANE(0, lane);                                                                \
     LANE_ARRAYS(FETCH_OUTPUT)                                                                      \
     PREFETCH_TO_WRITE(output->Coverage + place)                                                    \
   }

@@ -31,6 +31,9 @@ typedef struct
 // The flags of the vertices of a group's cells.
 #define GROUP_FLAGS(k) (((2u << (2 * LANES / 8)) - 1) << ((k) >> 2))
 
+// Where the groups at place k are counted.
+#define OUTPUT_OF_COLUMN(outputs, k) ((outputs) + 2 * (k) / DEFORMVOLUME_COLUMN)
+
 static __attribute__((always_inline)) void MakeGroup(
   const RowOfCells* row, int k, int side, Group* group)
 {
@@ -163,8 +166,8 @@ typedef struct
 
 #define KEEP_VALUE(index, TYPE, BITS, SLOT) found->Values##index[kept] = found->Values##index[i];
 
-// Has the cells claim their samples, and returns how many of these are theirs so far: the first ones then. An atomic
-// operation waits for memory, and nothing that follows goes on meanwhile: hence the loop that fetches.
+// Has the cells claim their samples, and returns how many of these are theirs so far: the first ones then. An
+// atomic operation waits for memory, and nothing that follows goes on meanwhile: hence the loop that fetches.
 static uint KeepClaimed(Found* found, const Output* output)
 {
   uint kept = 0;

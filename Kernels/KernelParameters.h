@@ -123,7 +123,7 @@ typedef struct
   6 // nonzero where samples are held by cells that do not write them
 #define DEFORMVOLUME_COUNTERS 7
 
-// Output voxels that a work-item takes of the kernels that count, settle or clear all that are
+// Output voxels that a work-item takes of the kernels that count or settle all that are
 // covered or not.
 #define DEFORMVOLUME_COUNTED_VOXELS 4096
 

@@ -6,17 +6,6 @@
 // touch of fresh memory costs more than all else.
 
 // A work-item fills as many bytes as DEFORMVOLUME_FILLED_BYTES says; size: elements.
-
-// Bytes, and values whose bytes are alike: most of what is filled. The C library sets memory without reading it
-// before, where the processor can.
-__kernel void Fill1(__global uchar* restrict target, const ulong size, const uchar value)
-{
-  const size_t begin = get_global_id(0) * DEFORMVOLUME_FILLED_BYTES;
-  const size_t end = min(begin + DEFORMVOLUME_FILLED_BYTES, (size_t)size);
-  __builtin_memset((void*)(size_t)(target + begin), value, end - begin);
-}
-
-// Other values.
 #define FILL(NAME, TYPE, VECTOR)                                                                   \
   __kernel void NAME(__global TYPE* restrict target, const ulong size, const TYPE value)           \
   {                                                                                                \
@@ -33,6 +22,18 @@ __kernel void Fill1(__global uchar* restrict target, const ulong size, const uch
     }                                                                                              \
   }
 
+// Bytes, and values whose bytes are alike: most of what is filled. The C library sets memory without reading it
+// before, where the processor can.
+#ifdef __x86_64__
+__kernel void Fill1(__global uchar* restrict target, const ulong size, const uchar value)
+{
+  const size_t begin = get_global_id(0) * DEFORMVOLUME_FILLED_BYTES;
+  const size_t end = min(begin + DEFORMVOLUME_FILLED_BYTES, (size_t)size);
+  __builtin_memset((void*)(size_t)(target + begin), value, end - begin);
+}
+#else
+FILL(Fill1, uchar, uchar16)
+#endif
 FILL(Fill2, ushort, ushort16)
 FILL(Fill4, uint, uint16)
 FILL(Fill8, ulong, ulong16)

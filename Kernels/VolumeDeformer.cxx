@@ -306,7 +306,9 @@ void VolumeDeformer::SetNodeDisplacements(const float* displacements, const Poin
         throw Error("No deformation mesh is set: call SetMesh first.");
       }
       const bool rasterized = this->Impl->Rasterizer.HasMesh();
-      const PointRanges* news = this->Impl->NodesSet && !rasterized ? changes : nullptr;
+      const PointRanges* news =
+        this->Impl->NodesSet && this->Impl->LastVectorsSent && !rasterized ? changes : nullptr;
+      this->Impl->LastVectorsSent = false;
       Internals::CheckVectors(displacements, this->Impl->NumberOfNodes, "node", news);
       if (rasterized)
       {
@@ -316,6 +318,7 @@ void VolumeDeformer::SetNodeDisplacements(const float* displacements, const Poin
       }
       this->Impl->SendVectors(displacements, this->Impl->NumberOfNodes, this->Impl->Nodes, news);
       this->Impl->NodesSet = true;
+      this->Impl->LastVectorsSent = true;
       this->Impl->GetMesh().ForgetRecords();
     });
 }
@@ -371,18 +374,21 @@ void VolumeDeformer::SetDisplacementField(
         this->Impl->Update.ForgetMapping();
         mesh.ForgetState();
       }
-      const PointRanges* news = GetMemory(this->Impl->FieldVectors) == 4 * points * sizeof(float) &&
+      const PointRanges* news = this->Impl->LastVectorsSent &&
+          GetMemory(this->Impl->FieldVectors) == 4 * points * sizeof(float) &&
           std::equal(parameters.Dimensions, parameters.Dimensions + 3, this->Impl->Field.Dimensions)
         ? changes
         : nullptr;
-      this->Impl->Field = parameters;
+      this->Impl->LastVectorsSent = false;
       Internals::CheckVectors(field.Vectors, points, "point", news);
       if (4 * points * sizeof(float) > this->Impl->GetAllocationLimit())
       {
         throw Error("The displacement field is larger than the device can hold in one piece. Use a "
                     "coarser field or another device.");
       }
+      this->Impl->Field = parameters;
       this->Impl->SendVectors(field.Vectors, points, this->Impl->FieldVectors, news);
+      this->Impl->LastVectorsSent = true;
     });
 }
 

@@ -298,8 +298,8 @@ public:
   void SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const double* restNodes);
   /// Displacements of the nodes, three floats each, in output voxels. changes: all others are those
-  /// of the last call, and are not looked at, if there was one for this mesh. Null: any may have
-  /// changed.
+  /// of the last call, and are not looked at, if there was one for this mesh and it did not fail.
+  /// Null: any may have changed.
   void SetNodeDisplacements(const float* displacements, const PointRanges* changes = nullptr);
 
   /// changes: as above, for fields of the same dimensions.

@@ -56,6 +56,7 @@ void VolumeDeformer::Internals::Forget()
   this->Rasterizer.Clear();
   this->NumberOfNodes = 0;
   this->NodesSet = false;
+  this->LastVectorsSent = false;
   this->WasContested = false;
 }
 
@@ -148,6 +149,7 @@ void VolumeDeformer::Internals::SendTetrahedra(
     this->SendBuffer(tetrahedra, numberOfTetrahedra * sizeof(Tetrahedron), this->Tetrahedra);
   this->NumberOfNodes = numberOfNodes;
   this->NodesSet = false;
+  this->LastVectorsSent = false;
   this->FieldVectors = cl::Buffer();
   this->Update.ForgetMapping();
   this->Rasterizer.Clear();
@@ -268,6 +270,7 @@ void VolumeDeformer::Internals::DeformSlabs(
   {
     this->Update.Start(this->Mesh->GetBrickGrid(), this->Mesh->GetLattice(), request.OutputExtent);
     this->LastMethod = request.Method;
+    this->LastWholeExtent = request.WholeOutputExtent;
     this->LastCovered = static_cast<std::uint64_t>(report.NumberOfCoveredVoxels);
   }
 }

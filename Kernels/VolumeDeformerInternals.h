@@ -138,6 +138,7 @@ public:
   std::size_t NumberOfNodes = 0;
   std::size_t NumberOfTetrahedra = 0;
   bool NodesSet = false;
+  bool LastVectorsSent = false; // the last displacements that were given are on the device
   FieldParameters Field = {};
   cl::Buffer FieldVectors;
   cl::Buffer Positions;
@@ -150,6 +151,7 @@ public:
   IncrementalUpdate Update;
   PointSet Changed; // vectors, while they are sent
   Resampling LastMethod = Resampling::Exact;
+  Extent LastWholeExtent{ { 0, -1, 0, -1, 0, -1 } };
   std::uint64_t LastCovered = 0;
   bool WasContested = false; // whether cells of the last output overlapped
 

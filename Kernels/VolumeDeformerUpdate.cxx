@@ -258,7 +258,8 @@ void VolumeDeformer::Internals::TellMask(const unsigned char* next, bool ofCells
 bool VolumeDeformer::Internals::CanUpdate(const DeformRequest& request)
 {
   return request.Incremental && this->Update.IsTracking() &&
-    this->Update.GetOutputExtent() == request.OutputExtent && this->LastMethod == request.Method &&
+    this->Update.GetOutputExtent() == request.OutputExtent &&
+    this->LastWholeExtent == request.WholeOutputExtent && this->LastMethod == request.Method &&
     request.LastCoverage && request.LastOutputs.size() == request.Outputs.size() &&
     !std::count(request.LastOutputs.begin(), request.LastOutputs.end(), nullptr) &&
     OutputSlab::GetBytesPerVoxel(*this->Context, this->Arrays, request) == 0;

@@ -35,8 +35,8 @@ static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
     (DEFORMVOLUME_IS_CLOSED(p->Pass) ? CONTESTED : 0);
 }
 
-// A cell that writes a voxel leaves its key there: the first one, or the lowest, which has the voxel then contested.
-// Returns whether the voxel is the cell's so far.
+// A cell that writes a voxel leaves its key there: the first one, or the lowest, which has the voxel then
+// contested. Returns whether the voxel is the cell's so far.
 static int Claim(__global KEY* winner, KEY key)
 {
   const KEY none = (KEY)-1;

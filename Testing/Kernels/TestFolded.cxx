@@ -188,37 +188,72 @@ TEST(Folded, OnSamplesAfterAFold)
   // Where the output before was folded, one pass finds who wins, but for cells that only touch a
   // sample: all cells here have samples on their faces, as boxes and sheared, with the crease on
   // samples and between.
-  const Extent wide{ { -1, 40, 0, 8, 1, 9 } };
-  const auto fold = [&](double crease, double shear, double scale)
+  const auto fold = [](const Extent& extent, double crease, double shear, double scale)
   {
-    return MakeCase(wide, NoScale,
+    return MakeCase(extent, NoScale,
       [=](const glm::dvec3& index)
       {
         const double x = index.x > crease ? 2.0 * crease - index.x : index.x;
         return glm::dvec3(scale * x + shear * index.y, index.y, index.z + shear * x);
       });
   };
-  const auto shorts = MakeRandomValues<std::int16_t>(fold(25.0, 0.0, 1.0).GetNumberOfVoxels(), 4);
-  const auto floats = MakeRandomValues<float>(shorts.size(), 5);
-  const std::vector<VolumeArray> arrays{ MakeArray(shorts), MakeArray(floats, 1, false, 2.0) };
+  struct Volume
+  {
+    Extent VertexExtent;
+    std::vector<double> Creases;
+  };
+  // The second one has creases in later columns of a brick, and in a second brick.
+  const std::vector<Volume> volumes{ { { { -1, 40, 0, 8, 1, 9 } }, { 25.0, 30.5, 22.25 } },
+    { { { 1, 212, 0, 4, 1, 5 } }, { 110.0, 140.5, 202.0 } } };
   for (const Resampling method : { Resampling::ExactByLanes, Resampling::ExactByCell })
   {
-    VolumeDeformer deformer;
-    for (const double shear : { 0.0, 1.0 })
+    for (const Volume& volume : volumes)
     {
-      for (const double scale : { 1.0, 1.5 })
+      const std::size_t size = fold(volume.VertexExtent, 0.0, 0.0, 1.0).GetNumberOfVoxels();
+      const auto shorts = MakeRandomValues<std::int16_t>(size, 4);
+      const auto floats = MakeRandomValues<float>(size, 5);
+      const std::vector<VolumeArray> arrays{ MakeArray(shorts), MakeArray(floats, 1, false, 2.0) };
+      VolumeDeformer deformer;
+      for (const double shear : { 0.0, 1.0 })
       {
-        for (const double crease : { 25.0, 30.5, 22.25 })
+        for (const double scale : { 1.0, 1.5 })
         {
-          SCOPED_TRACE(testing::Message() << shear << ' ' << scale << ' ' << crease);
-          const DeformerCase folded = fold(crease, shear, scale);
-          Load(deformer, folded, arrays, Route::Field);
-          const Deformed deformed = RunDeformer(deformer, folded, arrays, method);
-          EXPECT_TRUE(deformed.Report.Overlapping);
-          ExpectEqualsReference(folded, ResampleByReference(folded), arrays, deformed);
+          for (const double crease : volume.Creases)
+          {
+            SCOPED_TRACE(testing::Message() << shear << ' ' << scale << ' ' << crease);
+            const DeformerCase folded = fold(volume.VertexExtent, crease, shear, scale);
+            Load(deformer, folded, arrays, Route::Field);
+            const Deformed deformed = RunDeformer(deformer, folded, arrays, method);
+            EXPECT_TRUE(deformed.Report.Overlapping);
+            ExpectEqualsReference(folded, ResampleByReference(folded), arrays, deformed);
+          }
         }
       }
     }
+  }
+}
+
+TEST(Folded, CreaseAwayFromTheBorder)
+{
+  // Boxes on both sides of a crease on samples, which none of them writes, in a brick that holds
+  // nothing but boxes, and not in its first column.
+  const Extent large{ { 0, 400, 0, 34, 0, 34 } };
+  const DeformerCase folded = MakeCase(large, NoScale,
+    [](const glm::dvec3& index)
+    { return glm::dvec3(index.x > 240.0 ? 480.0 - index.x : index.x, index.y, index.z); });
+  const auto values = MakeRandomValues<std::int16_t>(folded.GetNumberOfVoxels(), 6);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  VolumeDeformer byCells;
+  Load(byCells, folded, arrays, Route::Field);
+  const Deformed reference = RunDeformer(byCells, folded, arrays, Resampling::ExactByCell);
+  VolumeDeformer byLanes;
+  Load(byLanes, folded, arrays, Route::Field);
+  for (int i = 0; i < 2; ++i) // the second time it is known to be folded
+  {
+    const Deformed deformed = RunDeformer(byLanes, folded, arrays, Resampling::ExactByLanes);
+    EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, std::int64_t{ 241 } * 35 * 35);
+    EXPECT_TRUE(deformed.Coverage == reference.Coverage);
+    EXPECT_TRUE(deformed.Outputs == reference.Outputs);
   }
 }
 
