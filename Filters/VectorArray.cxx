@@ -2,6 +2,7 @@
 #include "VectorArray.h"
 
 #include "Error.h"
+#include "IndexBounds.h" // for IsFinite
 #include "ParallelFor.h"
 
 #include "vtkAOSDataArrayTemplate.h"
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -96,8 +96,7 @@ struct VectorReader
         const auto tuple = tuples[first + i];
         vectors[i] = glm::dvec3(static_cast<double>(tuple[0]), static_cast<double>(tuple[1]),
           static_cast<double>(tuple[2]));
-        if (!std::isfinite(vectors[i].x) || !std::isfinite(vectors[i].y) ||
-          !std::isfinite(vectors[i].z))
+        if (!IsFinite(vectors[i]))
         {
           vtkIdType least = bad;
           while (first + i < least && !bad.compare_exchange_weak(least, first + i))

@@ -12,9 +12,6 @@ namespace deformvolume
 namespace
 {
 
-// Above these parts of the whole it is faster to make all anew.
-constexpr double LargestPart = 0.6;
-
 constexpr std::uint32_t AllColumns = (1U << DEFORMVOLUME_COLUMNS) - 1;
 
 // The bits of a brick's sections, and those of the columns between the lowest and the highest one.
@@ -39,6 +36,12 @@ std::size_t CountSections(std::uint32_t bits)
 }
 
 } // namespace
+
+bool IncrementalUpdate::IsTooMuch(std::size_t some, std::size_t all)
+{
+  constexpr double largestPart = 0.6;
+  return static_cast<double>(some) > largestPart * static_cast<double>(all);
+}
 
 IncrementalUpdate::Patches IncrementalUpdate::GetPatches(const Box& box) const
 {
@@ -89,11 +92,9 @@ bool IncrementalUpdate::MakePlan(Plan& plan)
   {
     return true;
   }
-  const auto isTooMuch = [](std::size_t marked, std::size_t all)
-  { return static_cast<double>(marked) > LargestPart * static_cast<double>(all); };
   const auto isRunTooMuch = [&]
   {
-    return isTooMuch(
+    return IsTooMuch(
       std::accumulate(run.begin(), run.end(), std::size_t{ 0 },
         [](std::size_t sum, std::uint32_t bits) { return sum + CountSections(bits); }),
       DEFORMVOLUME_SECTIONS * run.size());
@@ -138,7 +139,7 @@ bool IncrementalUpdate::MakePlan(Plan& plan)
         static_cast<std::uint32_t>(brick | JoinColumns(run[brick]) << DEFORMVOLUME_BRICK_BITS));
     }
   }
-  return !isTooMuch(plan.Patches.size(), dirty.size()) && !isRunTooMuch();
+  return !IsTooMuch(plan.Patches.size(), dirty.size()) && !isRunTooMuch();
 }
 
 } // namespace deformvolume

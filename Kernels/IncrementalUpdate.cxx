@@ -51,18 +51,25 @@ IncrementalUpdate::Bounds::Bounds()
   this->Greatest.fill(-std::numeric_limits<float>::infinity());
 }
 
-void IncrementalUpdate::Bounds::Add(const float* displacement)
+void IncrementalUpdate::Bounds::Add(const float* displacements, std::size_t begin, std::size_t end)
 {
 #ifdef __SSE__
   // Compilers do not find these by themselves, and there are millions of points.
-  const __m128 next = _mm_loadu_ps(displacement);
-  _mm_store_ps(this->Least.data(), _mm_min_ps(_mm_load_ps(this->Least.data()), next));
-  _mm_store_ps(this->Greatest.data(), _mm_max_ps(_mm_load_ps(this->Greatest.data()), next));
-#else
-  for (int c = 0; c < 4; ++c)
+  __m128 least = _mm_load_ps(this->Least.data());
+  __m128 greatest = _mm_load_ps(this->Greatest.data());
+  for (std::size_t point = begin; point < end; ++point)
   {
-    this->Least[c] = std::min(this->Least[c], displacement[c]);
-    this->Greatest[c] = std::max(this->Greatest[c], displacement[c]);
+    const __m128 next = _mm_loadu_ps(displacements + 4 * point);
+    least = _mm_min_ps(least, next);
+    greatest = _mm_max_ps(greatest, next);
+  }
+  _mm_store_ps(this->Least.data(), least);
+  _mm_store_ps(this->Greatest.data(), greatest);
+#else
+  for (std::size_t i = 4 * begin; i < 4 * end; ++i)
+  {
+    this->Least[i % 4] = std::min(this->Least[i % 4], displacements[i]);
+    this->Greatest[i % 4] = std::max(this->Greatest[i % 4], displacements[i]);
   }
 #endif
 }
@@ -135,12 +142,7 @@ IncrementalUpdate::Bounds IncrementalUpdate::ComputeBounds(
   this->Points.AnyOf(part,
     [&](std::size_t begin, std::size_t end)
     {
-      Bounds found = bounds; // which the compiler keeps in registers
-      for (std::size_t point = begin; point < end; ++point)
-      {
-        found.Add(displacements + 4 * point);
-      }
-      bounds = found;
+      bounds.Add(displacements, begin, end);
       return false;
     });
   return bounds;
@@ -153,14 +155,7 @@ IncrementalUpdate::Bounds IncrementalUpdate::ComputeAllBounds(
   std::vector<Bounds> parts((numberOfPoints + step - 1) / step);
   RunOnParts(numberOfPoints, step,
     [&](std::size_t begin, std::size_t end)
-    {
-      Bounds found;
-      for (std::size_t point = begin; point < end; ++point)
-      {
-        found.Add(displacements + 4 * point);
-      }
-      parts[begin / step] = found;
-    });
+    { parts[begin / step].Add(displacements, begin, end); });
   Bounds all;
   for (const Bounds& part : parts)
   {

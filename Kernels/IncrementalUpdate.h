@@ -36,7 +36,8 @@ public:
   struct Bounds
   {
     Bounds();
-    void Add(const float* displacement);
+    /// Points from begin to before end.
+    void Add(const float* displacements, std::size_t begin, std::size_t end);
     void Add(const Bounds& other);
     alignas(16) std::array<float, 4> Least;
     alignas(16) std::array<float, 4> Greatest;
@@ -76,6 +77,9 @@ public:
 
   /// False where it is better to make all anew.
   bool MakePlan(Plan& plan);
+
+  /// Whether so many of all points, parts or patches change that it is faster to make all anew.
+  static bool IsTooMuch(std::size_t some, std::size_t all);
 
   const Extent& GetOutputExtent() const { return this->OutputExtent; }
 

@@ -16,7 +16,8 @@ namespace deformvolume
 std::uint64_t CountCoveredInPatches(
   const DeformRequest& request, const std::vector<std::uint32_t>& patches);
 
-/// The same, and gives them what is not covered. arrays: those of the volume.
+/// The same, and gives all voxels of the patches the arrays' background, and covers none. arrays:
+/// those of the volume.
 std::uint64_t ClearPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
   const std::vector<std::uint32_t>& patches);
 

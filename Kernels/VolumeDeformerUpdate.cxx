@@ -20,9 +20,6 @@ namespace deformvolume
 namespace
 {
 
-// If more points than this part change, all is made anew.
-constexpr double LargestPart = 0.6;
-
 // Vectors are worked on by words of a PointSet.
 constexpr std::size_t WordSize = PointSet::PointsPerWord;
 constexpr std::size_t WordStep = 65536 / WordSize; // that a thread takes at a time
@@ -134,10 +131,7 @@ IncrementalUpdate::Bounds PadVectors(
           }
           padded[4 * i + 3] = 0.0F;
         }
-        for (std::size_t i = begin; i < end; ++i)
-        {
-          bounds.Add(padded + 4 * i);
-        }
+        bounds.Add(padded, begin, end);
       }
       const std::lock_guard<std::mutex> lock(mutex);
       all.Add(bounds);
@@ -207,7 +201,7 @@ void VolumeDeformer::Internals::SendVectors(
     {
       return;
     }
-    partly = static_cast<double>(number) <= LargestPart * static_cast<double>(count);
+    partly = !IncrementalUpdate::IsTooMuch(number, count);
   }
   if (partly)
   {
