@@ -52,7 +52,7 @@
     b##c##3 = fma(rx, n3x, fma(ry, n3y, rz * n3z));                                                \
     b##c##5 = fma(rx, n5x, fma(ry, n5y, rz * n5z));                                                \
     b##c##6 = fma(rx, n6x, fma(ry, n6y, rz * n6z));                                                \
-    b##c##0 = ((1.0f - b##c##3) - b##c##5) - b##c##6;                                              \
+    b##c##0 = ((determinant - b##c##3) - b##c##5) - b##c##6;                                       \
   }
 
 // What became of LANES cells, as bits.
@@ -88,17 +88,32 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
   EDGE(e5, 5)
   EDGE(e6, 6)
 #define NORMAL(n, a, b)                                                                            \
-  FLOATS n##x = fma(a##y, b##z, -(a##z * b##y)), n##y = fma(a##z, b##x, -(a##x * b##z)),           \
-         n##z = fma(a##x, b##y, -(a##y * b##x));
-  NORMAL(n3, e5, e6)
-  NORMAL(n5, e6, e3)
-  NORMAL(n6, e3, e5)
-  const FLOATS determinant = fma(e3z, n3z, fma(e3y, n3y, e3x * n3x));
-  const FLOATS inverse = 1.0f / determinant;
-#define SCALE(n) n##x *= inverse; n##y *= inverse; n##z *= inverse;
-  SCALE(n3)
-  SCALE(n5)
-  SCALE(n6)
+  n##x = fma(a##y, b##z, -(a##z * b##y));                                                          \
+  n##y = fma(a##z, b##x, -(a##x * b##z));                                                          \
+  n##z = fma(a##x, b##y, -(a##y * b##x));
+  FLOATS n3x, n3y, n3z, n5x, n5y, n5z, n6x, n6y, n6z;
+  if (group->Odd)
+  {
+    NORMAL(n3, e6, e5)
+    NORMAL(n5, e3, e6)
+    NORMAL(n6, e5, e3)
+  }
+  else
+  {
+    NORMAL(n3, e5, e6)
+    NORMAL(n5, e6, e3)
+    NORMAL(n6, e3, e5)
+  }
+  FLOATS determinant = fma(e3z, n3z, fma(e3y, n3y, e3x * n3x));
+  // Coordinates do not tell a cell from its mirror image: all its tetrahedra are inverted then.
+  INTS inverted = 0;
+  if (LaneBits(fit & (determinant < 0.0f)))
+  {
+    inverted = determinant < 0.0f;
+#define TURN(v) v = inverted ? -v : v;
+    TURN(n3x) TURN(n3y) TURN(n3z) TURN(n5x) TURN(n5y) TURN(n5z) TURN(n6x) TURN(n6y) TURN(n6z)
+    TURN(determinant)
+  }
   COORDINATES(1)
   COORDINATES(2)
   COORDINATES(4)
@@ -108,12 +123,11 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
       Least(Least(b20, b73), Least(b75, b76)));
   const FLOATS mostOwn = Most(Most(b16, b43), Most(b25, b70));
   const FLOATS leastOwn = Least(Least(b16, b43), Least(b25, b70));
-  const INTS tame = (mostOwn <= -0.35f) & (leastOwn >= -1.0f);
-  const FLOATS bound = (tame ? (FLOATS)(3.4e-5f) : (FLOATS)(8.5e-5f)) * (c->Reach * fabs(inverse));
-  const INTS nice = fit & (leastOther >= 0.015625f) & (mostOwn <= -0.125f) &
-    (leastOwn >= -2.0f) & (bound <= 0.0078125f);
-  // Coordinates do not tell a cell from its mirror image: all its tetrahedra are inverted then.
-  const INTS inverted = nice & (group->Odd ? determinant > 0.0f : determinant < 0.0f);
+  const INTS tame = (mostOwn <= determinant * -0.35f) & (leastOwn >= -determinant);
+  const FLOATS bound = (tame ? (FLOATS)(3.4e-5f) : (FLOATS)(8.5e-5f)) * c->Reach;
+  const INTS nice = fit & (leastOther >= determinant * 0.015625f) & (mostOwn <= determinant * -0.125f) &
+    (leastOwn >= determinant * -2.0f) & (bound < determinant * 0.0078125f);
+  inverted &= nice;
   INTS unsure = there & ~nice;
   INTS ambiguous = 0;
   const INTS number = nice & c->Number;
@@ -137,6 +151,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
       box = nice & c->Box;
       decisive = box ? (FLOATS)(-1.0f) : bound;
     }
+    const FLOATS inverse = 1.0f / determinant;
     const INTS countX = c->Count[0];
     const INTS countY = c->Count[1];
     // One division for four.
@@ -157,12 +172,12 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
     FLOATS rx = startX;
     FLOATS ry = startY;
     FLOATS rz = startZ;
-    for (int i = 0; i < iterations; ++i)
+    for (int i = 0;;)
     {
       const FLOATS l3 = fma(rx, n3x, fma(ry, n3y, rz * n3z));
       const FLOATS l5 = fma(rx, n5x, fma(ry, n5y, rz * n5z));
       const FLOATS l6 = fma(rx, n6x, fma(ry, n6y, rz * n6z));
-      const FLOATS l0 = ((1.0f - l3) - l5) - l6;
+      const FLOATS l0 = ((determinant - l3) - l5) - l6;
       FLOATS u1 = Least(l6, 0.0f) * s1;
       FLOATS u2 = Least(l5, 0.0f) * s2;
       FLOATS u4 = Least(l3, 0.0f) * s4;
@@ -225,8 +240,14 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
           onVertex |= box & ((sx == X0) | (sx == X7)) & ((sy == Y0) | (sy == Y7)) &
             ((sz == Z0) | (sz == Z7));
         }
+        FLOATS scale = inverse;
         if (snap || exact)
         {
+          t0 *= inverse;
+          t3 *= inverse;
+          t5 *= inverse;
+          t6 *= inverse;
+          scale = 1.0f;
 #define SNAP(weight) weight = onVertex ? rint(weight) : weight;
           SNAP(t0) SNAP(t3) SNAP(t5) SNAP(t6) SNAP(u1) SNAP(u2) SNAP(u4) SNAP(u7)
         }
@@ -252,6 +273,10 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
         {
           StoreFound(found, group, output, p ARRAY_ARGUMENTS);
         }
+      }
+      if (++i == iterations)
+      {
+        break;
       }
       // The next candidate of each lane.
       rx += 1.0f;

@@ -74,14 +74,15 @@ static __attribute__((always_inline)) void MakeGroup(
 // The interpolated values of an array, rounded where it holds integers.
 #define LANE_RESULTS(index, TYPE, BITS, SLOT)                                                      \
   {                                                                                                \
-    FLOATS v = t0 * VERTEX(0, 3 + SLOT);                                                           \
-    v = fma(t3, VERTEX(3, 3 + SLOT), v);                                                           \
-    v = fma(t5, VERTEX(5, 3 + SLOT), v);                                                           \
-    v = fma(t6, VERTEX(6, 3 + SLOT), v);                                                           \
-    v = fma(u1, VERTEX(1, 3 + SLOT), v);                                                           \
-    v = fma(u2, VERTEX(2, 3 + SLOT), v);                                                           \
-    v = fma(u4, VERTEX(4, 3 + SLOT), v);                                                           \
-    v = fma(u7, VERTEX(7, 3 + SLOT), v);                                                           \
+    FLOATS inner = t0 * VERTEX(0, 3 + SLOT);                                                       \
+    inner = fma(t3, VERTEX(3, 3 + SLOT), inner);                                                   \
+    inner = fma(t5, VERTEX(5, 3 + SLOT), inner);                                                   \
+    inner = fma(t6, VERTEX(6, 3 + SLOT), inner);                                                   \
+    FLOATS outer = u1 * VERTEX(1, 3 + SLOT);                                                       \
+    outer = fma(u2, VERTEX(2, 3 + SLOT), outer);                                                   \
+    outer = fma(u4, VERTEX(4, 3 + SLOT), outer);                                                   \
+    outer = fma(u7, VERTEX(7, 3 + SLOT), outer);                                                   \
+    FLOATS v = fma(inner, scale, outer);                                                           \
     if (BITS != 32)                                                                                \
     {                                                                                              \
       v = Least(Most(v, LANE_RANGE_LOW_##TYPE), LANE_RANGE_HIGH_##TYPE) + ROUND_TO_INTEGER;        \
