@@ -52,7 +52,7 @@
     b##c##3 = fma(rx, n3x, fma(ry, n3y, rz * n3z));                                                \
     b##c##5 = fma(rx, n5x, fma(ry, n5y, rz * n5z));                                                \
     b##c##6 = fma(rx, n6x, fma(ry, n6y, rz * n6z));                                                \
-    b##c##0 = ((determinant - b##c##3) - b##c##5) - b##c##6;                                       \
+    b##c##0 = (determinant - b##c##3) - (b##c##5 + b##c##6);                                       \
   }
 
 // What became of LANES cells, as bits.
@@ -128,15 +128,15 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
   const INTS nice = fit & (leastOther >= determinant * 0.015625f) & (mostOwn <= determinant * -0.125f) &
     (leastOwn >= determinant * -2.0f) & (bound < determinant * 0.0078125f);
   inverted &= nice;
-  INTS unsure = there & ~nice;
-  INTS ambiguous = 0;
+  const uint unsure = LaneBits(there & ~nice);
+  uint ambiguous = 0;
   const INTS number = nice & c->Number;
   int iterations = c->Iterations;
   if (exact || LaneBits(fit & ~nice))
   {
     iterations = MostOf(number);
   }
-  INTS count = 0; // writes of each cell
+  ushort hits[MAXIMUM_CANDIDATES]; // the cells that each round has found a sample in, as bits
   uint written = 0;
   if (iterations)
   {
@@ -172,12 +172,13 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
     FLOATS rx = startX;
     FLOATS ry = startY;
     FLOATS rz = startZ;
+    uint kept = found->Count;
     for (int i = 0;;)
     {
       const FLOATS l3 = fma(rx, n3x, fma(ry, n3y, rz * n3z));
       const FLOATS l5 = fma(rx, n5x, fma(ry, n5y, rz * n5z));
       const FLOATS l6 = fma(rx, n6x, fma(ry, n6y, rz * n6z));
-      const FLOATS l0 = ((determinant - l3) - l5) - l6;
+      const FLOATS l0 = (determinant - l3) - (l5 + l6);
       FLOATS u1 = Least(l6, 0.0f) * s1;
       FLOATS u2 = Least(l5, 0.0f) * s2;
       FLOATS u4 = Least(l3, 0.0f) * s4;
@@ -210,7 +211,7 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
               (((simplex & LOW_SIDE(1, mirror)) != 0) | (INTS)(z == p->Size[2] - 2 ? -1 : 0)) &
               (((simplex & LOW_SIDE(2, mirror)) != 0) | (INTS)(y == p->Size[1] - 2 ? -1 : 0));
             held = outer ? first & regular : held;
-            ambiguous |= undecided & outer & ~regular;
+            ambiguous |= LaneBits(undecided & outer & ~regular);
             output->Assumed |= LaneBits(undecided & outer) != 0;
           }
           hit |= undecided & held;
@@ -221,9 +222,9 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
           onVertex = undecided & ((simplex & (simplex - 1)) == 0);
         }
       }
-      else
+      if (!exact)
       {
-        ambiguous |= undecided;
+        ambiguous |= LaneBits(maybe) & ~LaneBits(hit);
       }
       if (p->IsPart)
       {
@@ -232,47 +233,46 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
           (sy < (float)p->OutputSize[1]) & (sz >= 0.0f) & (sz < (float)p->OutputSize[2]);
       }
       const uint bits = LaneBits(hit);
-      if (bits)
+      if (snap)
       {
-        if (snap)
-        {
-          const FLOATS sx = rx + X0, sy = ry + Y0, sz = rz + Z0;
-          onVertex |= box & ((sx == X0) | (sx == X7)) & ((sy == Y0) | (sy == Y7)) &
-            ((sz == Z0) | (sz == Z7));
-        }
-        FLOATS scale = inverse;
-        if (snap || exact)
-        {
-          t0 *= inverse;
-          t3 *= inverse;
-          t5 *= inverse;
-          t6 *= inverse;
-          scale = 1.0f;
+        const FLOATS sx = rx + X0, sy = ry + Y0, sz = rz + Z0;
+        onVertex |= box & ((sx == X0) | (sx == X7)) & ((sy == Y0) | (sy == Y7)) &
+          ((sz == Z0) | (sz == Z7));
+      }
+      FLOATS scale = inverse;
+      if (snap || exact)
+      {
+        t0 *= inverse;
+        t3 *= inverse;
+        t5 *= inverse;
+        t6 *= inverse;
+        scale = 1.0f;
 #define SNAP(weight) weight = onVertex ? rint(weight) : weight;
-          SNAP(t0) SNAP(t3) SNAP(t5) SNAP(t6) SNAP(u1) SNAP(u2) SNAP(u4) SNAP(u7)
-        }
-        if (DEFORMVOLUME_IS_WRITING(p->Pass))
-        {
-          LANE_ARRAYS(LANE_RESULTS)
-          count -= hit;
-          written += popcount(bits);
-        }
-        Append(place, bits, found->Places + found->Count);
-        if (KEEPS_KEYS && p->Pass != DEFORMVOLUME_PASS_DIRECT)
-        {
-          // The first cell of the row, as the first one of the group may lie before the volume.
-          const INTS keys = (int)MakeKey(0, y, z, 0, p) + cellX;
-          Append(keys | (inverted & (int)MakeKey(0, 0, 0, 1, p)), bits, found->Cells + found->Count);
-        }
-        else if (HAS_OTHER_ARRAYS || p->Pass != DEFORMVOLUME_PASS_DIRECT)
-        {
-          Append(LANE_INDEX | (inverted & INVERTED_LANE), bits, found->Cells + found->Count);
-        }
-        found->Count += popcount(bits);
-        if (found->Count > FOUND_CAPACITY)
-        {
-          StoreFound(found, group, output, p ARRAY_ARGUMENTS);
-        }
+        SNAP(t0) SNAP(t3) SNAP(t5) SNAP(t6) SNAP(u1) SNAP(u2) SNAP(u4) SNAP(u7)
+      }
+      if (DEFORMVOLUME_IS_WRITING(p->Pass))
+      {
+        LANE_ARRAYS(LANE_RESULTS)
+      }
+      hits[i] = bits;
+      written += popcount(bits);
+      Append(place, bits, found->Places + kept);
+      if (KEEPS_KEYS && p->Pass != DEFORMVOLUME_PASS_DIRECT)
+      {
+        // The first cell of the row, as the first one of the group may lie before the volume.
+        const INTS keys = (int)MakeKey(0, y, z, 0, p) + cellX;
+        Append(keys | (inverted & (int)MakeKey(0, 0, 0, 1, p)), bits, found->Cells + kept);
+      }
+      else if (HAS_OTHER_ARRAYS || p->Pass != DEFORMVOLUME_PASS_DIRECT)
+      {
+        Append(LANE_INDEX | (inverted & INVERTED_LANE), bits, found->Cells + kept);
+      }
+      kept += popcount(bits);
+      if (kept > FOUND_CAPACITY)
+      {
+        found->Count = kept;
+        kept = 0;
+        StoreFound(found, group, output, p ARRAY_ARGUMENTS);
       }
       if (++i == iterations)
       {
@@ -288,26 +288,28 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
       rz = planeDone ? rz + 1.0f : rz;
       place += 1 + (rowDone & toNextRow) + (planeDone & toNextPlane);
     }
+    found->Count = kept;
     if (KEEPS_GROUP(p))
     {
       StoreFound(found, group, output, p ARRAY_ARGUMENTS);
     }
   }
-  output->Inverted += 5 * popcount(LaneBits(inverted & ~ambiguous));
-  if (!LaneBits(unsure | ambiguous))
+  output->Inverted += 5 * popcount(LaneBits(inverted) & ~ambiguous);
+  const uint again = unsure | ambiguous;
+  if (again)
   {
-    const Outcome decided = { 0, 0 };
-    output->Writes += written;
-    *outcome = decided;
-    return;
+    // What an undecided cell wrote so far is written again with it, and must not count twice.
+    for (int i = 0; i < iterations; ++i)
+    {
+      written -= popcount(hits[i] & again);
+    }
   }
-  // What an undecided cell wrote so far is written again with it, and must not count twice.
-  output->Writes += SumOf(unsure | ambiguous ? (INTS)(0) : count);
+  output->Writes += written;
   // Integers of 32 bits decide who owns a sample, for cells that are small enough.
-  const INTS decidable = ambiguous & (extent < MAXIMUM_EXACT_EXTENT) &
-    (exact || DEFORMVOLUME_IS_CLOSED(p->Pass) ? 0 : -1);
-  outcome->Ambiguous = LaneBits(decidable);
-  outcome->Unsure = LaneBits(unsure | (ambiguous & ~decidable));
+  outcome->Ambiguous = exact || DEFORMVOLUME_IS_CLOSED(p->Pass) || !ambiguous
+    ? 0
+    : ambiguous & LaneBits(extent < MAXIMUM_EXACT_EXTENT);
+  outcome->Unsure = again & ~outcome->Ambiguous;
 }
 
 static __attribute__((noinline)) Outcome ResampleByFloats(const Group* group,

@@ -7,6 +7,7 @@
 // bounds of a row's columns of vertices are found once. And there is time to fetch the output.
 
 #define MAXIMUM_EXTENT 7.99f // voxels: the normals of larger cells are not exact in float
+#define MAXIMUM_CANDIDATES 512 // of a cell that is not larger
 #define ALMOST_ONE (255.0f / 256.0f) // ceil(v) = trunc(v + ALMOST_ONE) for multiples of 1/256
 
 typedef struct

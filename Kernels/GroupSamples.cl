@@ -87,7 +87,7 @@ static __attribute__((always_inline)) void MakeGroup(
     {                                                                                              \
       v = Least(Most(v, LANE_RANGE_LOW_##TYPE), LANE_RANGE_HIGH_##TYPE) + ROUND_TO_INTEGER;        \
     }                                                                                              \
-    Append(AS_INTS(v), bits, found->Values##index + found->Count);                                 \
+    Append(AS_INTS(v), bits, found->Values##index + kept);                                 \
   }
 
 #define LANE_STORE(index, TYPE, BITS, SLOT)                                                        \

@@ -123,18 +123,3 @@ static int LeastAmong(INTS some, INTS v)
 {
   return ~MostAmong(some, ~v);
 }
-
-// The sum of the lanes.
-static int SumOf(INTS v)
-{
-#if LANES == 16
-  const int8 a = v.lo + v.hi;
-  const int4 b = a.lo + a.hi;
-#elif LANES == 8
-  const int4 b = v.lo + v.hi;
-#else
-  const int4 b = v;
-#endif
-  const int2 c = b.lo + b.hi;
-  return c.x + c.y;
-}
