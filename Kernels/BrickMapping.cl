@@ -131,10 +131,10 @@ static float16 FollowFourLinks(const Mapping* m, __global const VertexLink* link
 #define FOUR_DISPLACEMENTS(x) FollowFourLinks(m, rowLinks + (x))
 // Links are most of what is read, each once: they are fetched ahead.
 #define FETCH_AHEAD                                                                                \
-  PREFETCH(rowLinks + x + 256)                                                                     \
-  PREFETCH(rowLinks + x + 260)                                                                     \
-  PREFETCH(rowLinks + x + 264)                                                                     \
-  PREFETCH(rowLinks + x + 268)
+  PREFETCH(rowLinks + p->Size[0] + x)                                                              \
+  PREFETCH(rowLinks + p->Size[0] + x + 4)                                                          \
+  PREFETCH(rowLinks + p->Size[0] + x + 8)                                                          \
+  PREFETCH(rowLinks + p->Size[0] + x + 12)
 
 #else
 

@@ -93,12 +93,16 @@ static __attribute__((always_inline)) void MakeGroup(
 #define LANE_STORE(index, TYPE, BITS, SLOT)                                                        \
   target##index[place] = LANE_CONVERT_##BITS(TYPE, found->Values##index[i]);
 
+// Two at once: what is read costs as much as what is written.
 #define LANE_STORE_ALL(index, TYPE, BITS, SLOT)                                                    \
+  found->Values##index[count] = found->Values##index[count - 1];                                   \
   _Pragma("clang loop vectorize(disable) unroll_count(4)")                                         \
-  for (uint i = 0; i < count; ++i)                                                                 \
+  for (uint i = 0; i < count; i += 2)                                                              \
   {                                                                                                \
-    const uint place = found->Places[i];                                                           \
-    LANE_STORE(index, TYPE, BITS, SLOT)                                                            \
+    const ulong places = *(const ulong*)(found->Places + i);                                       \
+    const ulong values = *(const ulong*)(found->Values##index + i);                                \
+    target##index[(uint)places] = LANE_CONVERT_##BITS(TYPE, (int)values);                          \
+    target##index[places >> 32] = LANE_CONVERT_##BITS(TYPE, (int)(values >> 32));                  \
   }
 
 #if HAS_OTHER_ARRAYS
@@ -145,7 +149,8 @@ static __attribute__((noinline)) void StoreOtherArrays(
 
 #define FOUND_CAPACITY 256
 #define INVERTED_LANE 16 // added to the lane of a cell whose tetrahedra are inverted
-#define FOUND_VALUES(index, TYPE, BITS, SLOT) int Values##index[FOUND_CAPACITY + 2 * LANES];
+#define FOUND_VALUES(index, TYPE, BITS, SLOT)                                                      \
+  int Values##index[FOUND_CAPACITY + 2 * LANES] __attribute__((aligned(8)));
 
 // Whether samples are kept with their winner's key; else with the lane of their cell.
 #define KEEPS_KEYS (!HAS_OTHER_ARRAYS && sizeof(KEY) == sizeof(int))
@@ -159,7 +164,7 @@ static __attribute__((noinline)) void StoreOtherArrays(
 // a few is mispredicted each time. Appending writes LANES of them whatever their number.
 typedef struct
 {
-  int Places[FOUND_CAPACITY + 2 * LANES]; // in the output
+  int Places[FOUND_CAPACITY + 2 * LANES] __attribute__((aligned(8))); // in the output
   int Cells[FOUND_CAPACITY + 2 * LANES]; // as KEEPS_KEYS says; in the first pass for other arrays only
   LANE_ARRAYS(FOUND_VALUES)
   uint Count;
@@ -200,13 +205,21 @@ static void StoreFound(Found* found, const Group* group, Output* output,
     {
       count = KeepClaimed(found, output);
     }
-    _Pragma("clang loop vectorize(disable) unroll_count(4)")
-    for (uint i = 0; i < count; ++i)
+    found->Count = 0;
+    if (count == 0)
     {
-      coverage[(uint)found->Places[i]] = 1;
+      return;
+    }
+    // The last one twice, where their number is odd.
+    found->Places[count] = found->Places[count - 1];
+    _Pragma("clang loop vectorize(disable) unroll_count(4)")
+    for (uint i = 0; i < count; i += 2)
+    {
+      const ulong places = *(const ulong*)(found->Places + i);
+      coverage[(uint)places] = 1;
+      coverage[places >> 32] = 1;
     }
     LANE_ARRAYS(LANE_STORE_ALL)
-    found->Count = 0;
     return;
   }
   for (uint i = 0; i < count; ++i)

@@ -84,7 +84,7 @@ typedef struct
 
 // Cells of a brick, which begins at even structured indices: the parity of a place in a brick is
 // that of the structured index. It is long on x, in whose direction memory is contiguous.
-#define DEFORMVOLUME_BRICK_X 96
+#define DEFORMVOLUME_BRICK_X 192
 #define DEFORMVOLUME_BRICK_Y 16
 #define DEFORMVOLUME_BRICK_Z 16
 // Bricks begin at structured indices that are multiples of these numbers.
