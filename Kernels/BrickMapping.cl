@@ -25,6 +25,7 @@
 #define ROWS (DEFORMVOLUME_BRICK_Y + 1)
 #define NOT_THERE -1e30f // x of places beyond the volume
 #define NO_SOURCE 1e30f  // x of vertices without position
+#define STEP (1.0f / 256.0f) // of positions, in voxels
 
 typedef __local const float* LocalRow;
 
@@ -229,8 +230,10 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
   const Mapping* m = &mesh->Map;
   const RestPosition ry = m->Rest[p->Size[0] + y];
   const RestPosition rz = m->Rest[p->Size[0] + p->Size[1] + z];
-  const float wholeY = ry.Whole - p->OutputFirst[1] * 256;
-  const float wholeZ = rz.Whole - p->OutputFirst[2] * 256;
+  const float wholeY = (ry.Whole - p->OutputFirst[1] * 256) * STEP;
+  const float wholeZ = (rz.Whole - p->OutputFirst[2] * 256) * STEP;
+  const float fractionY = ry.Fraction * STEP;
+  const float fractionZ = rz.Fraction * STEP;
   const size_t chunk = VertexInChunk(0, y, z, p);
   ROW_DISPLACEMENTS
   LANE_ARRAYS(FETCH_NEXT_ROW)
@@ -258,9 +261,9 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
       float4 position = (float4)(NO_SOURCE, 0.0f, 0.0f, 0.0f);
       if (state & DEFORMVOLUME_VERTEX_SOURCE)
       {
-        const float4 steps = RoundSteps_float4(ROW_DISPLACEMENT * 256.0f +
-          (float4)(rest[HALF_ROW], ry.Fraction, rz.Fraction, 0.0f));
-        position = (steps + (float4)(rest[0], wholeY, wholeZ, 0.0f)) * (1.0f / 256.0f);
+        const float4 moved =
+          ROW_DISPLACEMENT + (float4)(rest[HALF_ROW], fractionY, fractionZ, 0.0f);
+        position = RoundSteps_float4(moved, STEP) + (float4)(rest[0], wholeY, wholeZ, 0.0f);
       }
       place[0] = position.x;
       place[HALF_ROW] = position.y;
@@ -281,18 +284,16 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
     ROW_DISPLACEMENTS_TOGETHER
 #define POSITIONS(C, OFFSET, WHOLE_EVEN, WHOLE_ODD, FRACTION_EVEN, FRACTION_ODD)                   \
   {                                                                                                \
-    const float16 steps =                                                                          \
-      RoundSteps_float16(fma(d##C, (float16)256.0f, (float16)(FRACTION_EVEN, FRACTION_ODD)));      \
-    const float16 position = (steps + (float16)(WHOLE_EVEN, WHOLE_ODD)) * (1.0f / 256.0f);         \
+    const float16 moved = d##C + (float16)(FRACTION_EVEN, FRACTION_ODD);                           \
+    const float16 position =                                                                       \
+      RoundSteps_float16(moved, STEP) + (float16)(WHOLE_EVEN, WHOLE_ODD);                          \
     STORE_EIGHT(position.lo, place + (OFFSET)*HALF_ROW)                                            \
     STORE_EIGHT(position.hi, place + ODD + (OFFSET)*HALF_ROW)                                      \
   }
     POSITIONS(x, 0, vload8(0, rest), vload8(0, rest + 2 * HALF_ROW), vload8(0, rest + HALF_ROW),
       vload8(0, rest + 3 * HALF_ROW))
-    POSITIONS(y, 1, (float8)wholeY, (float8)wholeY, (float8)ry.Fraction,
-      (float8)ry.Fraction)
-    POSITIONS(z, 2, (float8)wholeZ, (float8)wholeZ, (float8)rz.Fraction,
-      (float8)rz.Fraction)
+    POSITIONS(y, 1, (float8)wholeY, (float8)wholeY, (float8)fractionY, (float8)fractionY)
+    POSITIONS(z, 2, (float8)wholeZ, (float8)wholeZ, (float8)fractionZ, (float8)fractionZ)
     if ((states & INTERIORS) != INTERIORS)
     {
       flags.Border |= FLAGS_TOGETHER << (i >> 3);

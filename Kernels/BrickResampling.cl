@@ -425,8 +425,8 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, __global char* co
     return;
   }
 
-  // The undeformed x of the brick's vertices: for even, then odd ones, whole 1/256 voxels relative to
-  // the output, and fractions.
+  // The undeformed x of the brick's vertices, in voxels: for even, then odd ones, whole steps relative to the
+  // output, and what misses.
   __local float* restX = rows;
   __local float* displaced = restX + 4 * HALF_ROW;
   __local float* ring = displaced + 3 * ROW_PLACES;
@@ -434,8 +434,8 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, __global char* co
   {
     const int x = clamp(bx + i, 0, p->Size[0] - 1);
     __local float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
-    rest[0] = mesh->Map.Rest[x].Whole - p->OutputFirst[0] * 256;
-    rest[HALF_ROW] = mesh->Map.Rest[x].Fraction;
+    rest[0] = (mesh->Map.Rest[x].Whole - p->OutputFirst[0] * 256) * STEP;
+    rest[HALF_ROW] = mesh->Map.Rest[x].Fraction * STEP;
   }
   for (int row = 0; row < 2 * ROWS; ++row)
   {

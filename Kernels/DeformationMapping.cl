@@ -31,13 +31,14 @@ typedef struct
 #define ROUND_TO_INTEGER 12582912.0f // 1.5 * 2^23: added to v and subtracted again, v is rounded
 #define FIELD_TOLERANCE 1e-3f // of a field cell: rounding must not lose the field's border
 
-// Displacements in 1/256 voxel, rounded. Clamped, because extrapolation can lead anywhere.
+// Displacements, rounded to multiples of 1/256 voxel. unit: 1 where they are in 1/256 voxel, 1/256 where they are
+// in voxels. Clamped, because extrapolation can lead anywhere.
 #define DEFINE_ROUND_STEPS(TYPE)                                                                   \
-  static TYPE RoundSteps_##TYPE(TYPE moved)                                                        \
+  static TYPE RoundSteps_##TYPE(TYPE moved, float unit)                                            \
   {                                                                                                \
-    moved = moved < -LARGEST ? (TYPE)(-LARGEST) : moved;                                           \
-    moved = moved > LARGEST ? (TYPE)(LARGEST) : moved;                                             \
-    return (moved + ROUND_TO_INTEGER) - ROUND_TO_INTEGER;                                          \
+    moved = (moved + ROUND_TO_INTEGER * unit) - ROUND_TO_INTEGER * unit;                           \
+    moved = moved < -LARGEST * unit ? (TYPE)(-LARGEST * unit) : moved;                             \
+    return moved > LARGEST * unit ? (TYPE)(LARGEST * unit) : moved;                                \
   }
 DEFINE_ROUND_STEPS(float4)
 DEFINE_ROUND_STEPS(float16)
@@ -213,7 +214,7 @@ static int4 PositionOf(const Mapping* m, int x, int y, int z, const KernelParame
   const RestPosition ry = m->Rest[p->Size[0] + y];
   const RestPosition rz = m->Rest[p->Size[0] + p->Size[1] + z];
   const float4 steps = RoundSteps_float4(Displacement(m, x, y, z, p) * 256.0f +
-    (float4)(rx.Fraction, ry.Fraction, rz.Fraction, 0.0f));
+    (float4)(rx.Fraction, ry.Fraction, rz.Fraction, 0.0f), 1.0f);
   return (int4)(rx.Whole, ry.Whole, rz.Whole, 0) + convert_int4(steps);
 }
 
