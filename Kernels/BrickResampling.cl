@@ -64,10 +64,11 @@ typedef struct
 
 // A group of cells. only: the cells to look at, as bits. exact: whether the samples that floats do not
 // decide are decided by integers. What cells that must be repeated have written is not counted.
-static __attribute__((always_inline)) void ResampleGroup(const Group* group, uint only, int exact,
-  const GroupCandidates* c, Output* output, Found* found, Outcome* outcome,
+static __attribute__((always_inline)) void ResampleGroup(
+  const GroupCandidates* c, uint only, int exact, Output* output, Found* found, Outcome* outcome,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
+  const Group* const group = &c->Cells;
   LOAD_VERTICES
   const int x = group->X, y = group->Y, z = group->Z;
   const int border = group->Border;
@@ -312,22 +313,22 @@ static __attribute__((always_inline)) void ResampleGroup(const Group* group, uin
   outcome->Unsure = again & ~outcome->Ambiguous;
 }
 
-static __attribute__((noinline)) Outcome ResampleByFloats(const Group* group,
+static __attribute__((noinline)) Outcome ResampleByFloats(
   const GroupCandidates* c, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Outcome outcome;
-  ResampleGroup(group, 0, 0, c, output, found, &outcome, p ARRAY_ARGUMENTS);
+  ResampleGroup(c, 0, 0, output, found, &outcome, p ARRAY_ARGUMENTS);
   return outcome;
 }
 
 // Returns the cells that are left to ResampleCell.
-static __attribute__((noinline)) uint ResampleByIntegers(const Group* group, uint only,
-  const GroupCandidates* c, Output* output, Found* found,
+static __attribute__((noinline)) uint ResampleByIntegers(
+  const GroupCandidates* c, uint only, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Outcome outcome;
-  ResampleGroup(group, only, 1, c, output, found, &outcome, p ARRAY_ARGUMENTS);
+  ResampleGroup(c, only, 1, output, found, &outcome, p ARRAY_ARGUMENTS);
   return outcome.Unsure;
 }
 
@@ -345,8 +346,6 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
     for (int side = 0; side < 2; ++side)
     {
       const GroupCandidates* const c = candidates + 2 * k / LANES + side;
-      Group group;
-      MakeGroup(row, k, side, &group);
       uint again = (1u << LANES) - 1;
       if (!(specials & GROUP_FLAGS(k)))
       {
@@ -354,22 +353,21 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
         {
           continue;
         }
-        const Outcome outcome = ResampleByFloats(&group, c, output, found, p ARRAY_ARGUMENTS);
+        const Outcome outcome = ResampleByFloats(c, output, found, p ARRAY_ARGUMENTS);
         again = outcome.Unsure;
         if (outcome.Ambiguous)
         {
-          again |=
-            ResampleByIntegers(&group, outcome.Ambiguous, c, output, found, p ARRAY_ARGUMENTS);
+          again |= ResampleByIntegers(c, outcome.Ambiguous, output, found, p ARRAY_ARGUMENTS);
         }
       }
       if (again)
       {
         // These are written again.
-        StoreFound(found, &group, output, p ARRAY_ARGUMENTS);
+        StoreFound(found, &c->Cells, output, p ARRAY_ARGUMENTS);
       }
       FOR_EACH_LANE(lane, again)
       {
-        const int cell = group.X + 2 * lane;
+        const int cell = c->Cells.X + 2 * lane;
         if (cell >= beginX && cell < endX)
         {
           ResampleCell(mesh, cell, row->Y, row->Z, output, p ARRAY_ARGUMENTS);

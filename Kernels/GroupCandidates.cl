@@ -12,6 +12,7 @@
 
 typedef struct
 {
+  Group Cells;
   INTS There;       // cells that have a vertex with a position, and none beyond the volume
   FLOATS Extent;    // the longest edge of the box
   FLOATS Reach;     // the extent times the sum of the box's three faces
@@ -89,16 +90,17 @@ static __attribute__((noinline)) INTS FindBoxes(const Group* group, int mirror, 
 }
 
 // The first of the samples of the output that lie within bounds on an axis, and one past the last.
-#define FIRST_OF(low, size) TO_INTS(Least(Most(low, 0.0f), (float)(size)) + ALMOST_ONE)
-#define END_OF(high, toEnd, size) TO_INTS(Most(Least((high) + toEnd, (float)(size)), 0.0f))
+// Of cells that are not there either may be anything.
+#define FIRST_OF(low) TO_INTS(Most(low, 0.0f) + ALMOST_ONE)
+#define END_OF(high, toEnd, size) TO_INTS(Least((high) + toEnd, (float)(size)))
 
 // Boxes do not look at their high sides, nor at whether they own a sample: all samples in them count as touched.
 static __attribute__((noinline)) void TouchBoxes(
   INTS box, const Bounds* b, Output* output, const KernelParameters* p)
 {
-  const INTS firstX = FIRST_OF(b->LowX, p->OutputSize[0]);
-  const INTS firstY = FIRST_OF(b->LowY, p->OutputSize[1]);
-  const INTS firstZ = FIRST_OF(b->LowZ, p->OutputSize[2]);
+  const INTS firstX = FIRST_OF(b->LowX);
+  const INTS firstY = FIRST_OF(b->LowY);
+  const INTS firstZ = FIRST_OF(b->LowZ);
   const INTS endX = END_OF(b->HighX, 1.0f, p->OutputSize[0]);
   const INTS endY = END_OF(b->HighY, 1.0f, p->OutputSize[1]);
   const INTS endZ = END_OF(b->HighZ, 1.0f, p->OutputSize[2]);
@@ -128,10 +130,11 @@ static __attribute__((noinline)) void TouchBoxes(
 #define FIRST_OF_LANE(axis, lane) ((const int*)&c->First[axis])[lane]
 
 // b: the bounds of the cells.
-static __attribute__((always_inline)) void FindGroupCandidates(const Group* group, const Bounds* b,
+static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   const SamplingMesh* mesh, Output* output, GroupCandidates* c,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
+  const Group* const group = &c->Cells;
   const FLOATS sizeX = b->HighX - b->LowX, sizeY = b->HighY - b->LowY, sizeZ = b->HighZ - b->LowZ;
   const FLOATS extent = Most(sizeX, Most(sizeY, sizeZ));
   const INTS there = (b->LowX > 0.5f * NOT_THERE) & (b->LowX < 0.5f * NO_SOURCE);
@@ -139,14 +142,15 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Group* grou
   c->Extent = extent;
   c->Reach = extent * fma(sizeX, sizeY, sizeZ * (sizeX + sizeY));
 
-  // If one edge of no cell is parallel to an axis, no need to look for boxes. Lanes that hold no cell hold
-  // anything, and must not decide.
-#define SAME_FIRST_TWO(slot) (VERTEX(0, slot) == VERTEX(1, slot))
+  // If one edge of no cell is parallel to an axis, no need to look for boxes: of its two ends two coordinates are the
+  // same. Lanes that hold no cell hold anything, and must not decide.
+#define SAME_FIRST_TWO(slot) LaneBits(VERTEX(0, slot) == VERTEX(1, slot))
   const int border = group->Border;
   INTS box = 0;
   INTS rises = 0;
+  const uint sameX = SAME_FIRST_TWO(0), sameY = SAME_FIRST_TWO(1), sameZ = SAME_FIRST_TWO(2);
   c->HasBoxes =
-    LaneBits(there & (SAME_FIRST_TWO(0) + SAME_FIRST_TWO(1) + SAME_FIRST_TWO(2) == -2)) != 0;
+    (((sameX & sameY) | ((sameX ^ sameY) & sameZ)) & ~(sameX & sameY & sameZ) & LaneBits(there)) != 0;
   if (c->HasBoxes)
   {
     box = FindBoxes(group, Mirror(group->X, group->Y, group->Z, p), &rises);
@@ -189,9 +193,9 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Group* grou
       TouchBoxes(there & box, b, output, p);
     }
   }
-  INTS firstX = FIRST_OF(b->LowX, p->OutputSize[0]);
-  INTS firstY = FIRST_OF(b->LowY, p->OutputSize[1]);
-  INTS firstZ = FIRST_OF(b->LowZ, p->OutputSize[2]);
+  INTS firstX = FIRST_OF(b->LowX);
+  INTS firstY = FIRST_OF(b->LowY);
+  INTS firstZ = FIRST_OF(b->LowZ);
   INTS countX = END_OF(b->HighX, toEndX, p->OutputSize[0]) - firstX;
   INTS countY = END_OF(b->HighY, toEndY, p->OutputSize[1]) - firstY;
   INTS countZ = END_OF(b->HighZ, toEndZ, p->OutputSize[2]) - firstZ;
@@ -247,14 +251,13 @@ static __attribute__((noinline)) void FindRowCandidates(const RowOfCells* row, i
     BoundColumns(row->Rows, k + ODD, &odd);
     GroupCandidates* const c = candidates + 2 * k / LANES;
     Output* const output = OUTPUT_OF_COLUMN(outputs, k);
-    Group group;
-    MakeGroup(row, k, 0, &group);
+    MakeGroup(row, k, 0, &c[0].Cells);
     Join(&even, &odd, &cells);
-    FindGroupCandidates(&group, &cells, mesh, output, c, p ARRAY_ARGUMENTS);
-    MakeGroup(row, k, 1, &group);
+    FindGroupCandidates(&cells, mesh, output, c, p ARRAY_ARGUMENTS);
+    MakeGroup(row, k, 1, &c[1].Cells);
     Shift(&even, &behind, &cells);
     Join(&cells, &odd, &cells);
-    FindGroupCandidates(&group, &cells, mesh, output, c + 1, p ARRAY_ARGUMENTS);
+    FindGroupCandidates(&cells, mesh, output, c + 1, p ARRAY_ARGUMENTS);
     behind = even;
 #define FETCH_AT(lane)                                                                             \
   {                                                                                                \
