@@ -62,26 +62,27 @@ typedef struct
   uint Unsure;    // leave them to ResampleCell
 } Outcome;
 
-// A group of cells. only: the cells to look at, as bits. exact: whether the samples that floats do not
-// decide are decided by integers. What cells that must be repeated have written is not counted.
+// The samples of a group of cells. state: where the group is on the border, if samples that floats do not decide
+// are to be decided by integers: those of the cells in only, as bits. Else null. What cells that must be repeated
+// have written is not counted.
 static __attribute__((always_inline)) void ResampleGroup(
-  const GroupCandidates* c, uint only, int exact, Output* output, Found* found, Outcome* outcome,
-  const KernelParameters* p ARRAY_PARAMETERS)
+  const GroupCandidates* c, uint only, const GroupState* state, Output* output, Found* found,
+  Outcome* outcome, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Group* const group = &c->Cells;
   LOAD_VERTICES
   const int x = group->X, y = group->Y, z = group->Z;
-  const int border = group->Border;
+  const int exact = state != 0;
   const INTS cellX = x + 2 * LANE_INDEX;
   const int mirror = Mirror(x, y, z, p);
-  const FLOATS extent = c->Extent;
   INTS there = c->There;
+  INTS fit = c->Fit;
   if (exact)
   {
-    there &= ((INTS)only & LANE_BITS) != 0;
+    const INTS chosen = ((INTS)only & LANE_BITS) != 0;
+    there &= chosen;
+    fit &= chosen;
   }
-  const INTS fit = there & (extent <= MAXIMUM_EXTENT) & (border ? c->State.Whole : (INTS)(-1));
-  // Cells without candidates need not be looked at, unless they may be inverted.
 
   // Gradients of l3, l5 and l6.
 #define EDGE(a, v) const FLOATS a##x = X##v - X0, a##y = Y##v - Y0, a##z = Z##v - Z0;
@@ -203,11 +204,11 @@ static __attribute__((always_inline)) void ResampleGroup(
           const FLOATS sample[3] = { rx, ry, rz };
           INTS simplex;
           INTS held = HoldSample(group, sample, group->Odd, inverted, &simplex);
-          if (border)
+          if (group->Border)
           {
             // As RoleOf.
-            const INTS outer = (simplex != 0) & ((simplex & c->State.Interior) == 0);
-            const INTS regular = (simplex & ~c->State.Regular) == 0;
+            const INTS outer = (simplex != 0) & ((simplex & state->Interior) == 0);
+            const INTS regular = (simplex & ~state->Regular) == 0;
             const INTS first = (((simplex & LOW_SIDE(0, mirror)) != 0) | (cellX == p->Size[0] - 2)) &
               (((simplex & LOW_SIDE(1, mirror)) != 0) | (INTS)(z == p->Size[2] - 2 ? -1 : 0)) &
               (((simplex & LOW_SIDE(2, mirror)) != 0) | (INTS)(y == p->Size[1] - 2 ? -1 : 0));
@@ -309,7 +310,7 @@ static __attribute__((always_inline)) void ResampleGroup(
   // Integers of 32 bits decide who owns a sample, for cells that are small enough.
   outcome->Ambiguous = exact || DEFORMVOLUME_IS_CLOSED(p->Pass) || !ambiguous
     ? 0
-    : ambiguous & LaneBits(extent < MAXIMUM_EXACT_EXTENT);
+    : ambiguous & LaneBits(c->Extent < MAXIMUM_EXACT_EXTENT);
   outcome->Unsure = again & ~outcome->Ambiguous;
 }
 
@@ -324,11 +325,16 @@ static __attribute__((noinline)) Outcome ResampleByFloats(
 
 // Returns the cells that are left to ResampleCell.
 static __attribute__((noinline)) uint ResampleByIntegers(
-  const GroupCandidates* c, uint only, Output* output, Found* found,
+  const GroupCandidates* c, uint only, const SamplingMesh* mesh, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
+  GroupState state;
+  if (c->Cells.Border)
+  {
+    StatesOfGroup(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, &state, p);
+  }
   Outcome outcome;
-  ResampleGroup(c, only, 1, output, found, &outcome, p ARRAY_ARGUMENTS);
+  ResampleGroup(c, only, &state, output, found, &outcome, p ARRAY_ARGUMENTS);
   return outcome.Unsure;
 }
 
@@ -357,7 +363,8 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
         again = outcome.Unsure;
         if (outcome.Ambiguous)
         {
-          again |= ResampleByIntegers(c, outcome.Ambiguous, output, found, p ARRAY_ARGUMENTS);
+          again |=
+            ResampleByIntegers(c, outcome.Ambiguous, mesh, output, found, p ARRAY_ARGUMENTS);
         }
       }
       if (again)

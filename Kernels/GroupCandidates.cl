@@ -14,13 +14,13 @@ typedef struct
 {
   Group Cells;
   INTS There;       // cells that have a vertex with a position, and none beyond the volume
+  INTS Fit;         // of these the small ones all of whose tetrahedra are active and have positions
   FLOATS Extent;    // the longest edge of the box
   FLOATS Reach;     // the extent times the sum of the box's three faces
   INTS First[3];    // the first candidate, in voxels of the output
   INTS Count[3];    // how many on each axis
   INTS Number;      // how many in all, of cells that are small and whole
   INTS Box;         // cells that are boxes, if HasBoxes
-  GroupState State; // where the group is on the border
   int Iterations;   // the largest number
   int HasBoxes;
   int Skip; // no cell touches a voxel to be won
@@ -166,14 +166,19 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   }
   if (border)
   {
-    StatesOfGroup(mesh, group->X, group->Y, group->Z, &c->State, p);
-    whole = c->State.Whole;
+    // Without states all that is there is whole.
+    GroupState state;
+    if (p->HasState || c->HasBoxes)
+    {
+      StatesOfGroup(mesh, group->X, group->Y, group->Z, &state, p);
+      whole = state.Whole;
+    }
     // Boxes on the border leave what is on their high sides to the next cells, if there are any. That the
     // high sides are the upper ones is wanted for that.
     if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && c->HasBoxes)
     {
-      const INTS inner = c->State.Interior == 255;
-      box &= there & (inner | ((c->State.Regular == 255) & rises));
+      const INTS inner = state.Interior == 255;
+      box &= there & (inner | ((state.Regular == 255) & rises));
       output->Assumed |= LaneBits(box & ~inner) != 0;
       const INTS isLastX = group->X + 2 * LANE_INDEX == p->Size[0] - 2;
       toEndX = (box & ~isLastX) ? ALMOST_ONE : toEndX;
@@ -224,8 +229,9 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
     countY = WHOLE_END(b->HighY, toEndY, 1) - firstY;
     countZ = WHOLE_END(b->HighZ, toEndZ, 2) - firstZ;
   }
-  const INTS number =
-    some & whole & (extent <= MAXIMUM_EXTENT) & (countX * countY * countZ);
+  const INTS fit = there & whole & (extent <= MAXIMUM_EXTENT);
+  const INTS number = some & fit & (countX * countY * countZ);
+  c->Fit = fit;
   c->First[0] = firstX;
   c->First[1] = firstY;
   c->First[2] = firstZ;
