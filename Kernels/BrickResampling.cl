@@ -169,8 +169,7 @@ static __attribute__((always_inline)) void ResampleGroup(
     const FLOATS endY = startY + (TO_FLOATS(countY) - 0.5f);
     const INTS toNextRow = p->OutputSize[0] - countX;
     const INTS toNextPlane = (p->OutputSize[1] - countY) * p->OutputSize[0];
-    INTS place =
-      (c->First[2] * p->OutputSize[1] + c->First[1]) * p->OutputSize[0] + c->First[0];
+    INTS place = c->Place;
     FLOATS rx = startX;
     FLOATS ry = startY;
     FLOATS rz = startZ;

@@ -19,6 +19,7 @@ typedef struct
   FLOATS Reach;     // the extent times the sum of the box's three faces
   INTS First[3];    // the first candidate, in voxels of the output
   INTS Count[3];    // how many on each axis
+  INTS Place;       // of the first one in the output
   INTS Number;      // how many in all, of cells that are small and whole
   INTS Box;         // cells that are boxes, if HasBoxes
   int Iterations;   // the largest number
@@ -125,9 +126,20 @@ static __attribute__((noinline)) void TouchBoxes(
   }
 }
 
-// Whether the processor should fetch the output where the candidates of a lane begin.
+// Has the processor fetch the output where the candidates of some lanes of a group begin.
 #define FETCH_OUTPUT(index, TYPE, BITS, SLOT) PREFETCH_TO_WRITE(target##index + place)
-#define FIRST_OF_LANE(axis, lane) ((const int*)&c->First[axis])[lane]
+static __attribute__((always_inline)) void FetchOutput(
+  const GroupCandidates* c, const Output* output ARRAY_PARAMETERS)
+{
+  const uint* const places = (const uint*)&c->Place;
+#pragma unroll
+  for (int i = 0; i < 3; ++i)
+  {
+    const uint place = places[i * (LANES - 1) / 2];
+    LANE_ARRAYS(FETCH_OUTPUT)
+    PREFETCH_TO_WRITE(output->Coverage + place)
+  }
+}
 
 // b: the bounds of the cells.
 static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
@@ -238,6 +250,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   c->Count[0] = countX;
   c->Count[1] = countY;
   c->Count[2] = countZ;
+  c->Place = (firstZ * p->OutputSize[1] + firstY) * p->OutputSize[0] + firstX;
   c->Number = number;
   c->Iterations = MostOf(number);
 }
@@ -265,17 +278,13 @@ static __attribute__((noinline)) void FindRowCandidates(const RowOfCells* row, i
     Join(&cells, &odd, &cells);
     FindGroupCandidates(&cells, mesh, output, c + 1, p ARRAY_ARGUMENTS);
     behind = even;
-#define FETCH_AT(lane)                                                                             \
-  {                                                                                                \
-    const uint place = ((uint)FIRST_OF_LANE(2, lane) * p->OutputSize[1] +                          \
-                         (uint)FIRST_OF_LANE(1, lane)) *                                           \
-        p->OutputSize[0] +                                                                         \
-      (uint)FIRST_OF_LANE(0, lane);                                                                \
-    LANE_ARRAYS(FETCH_OUTPUT)                                                                      \
-    PREFETCH_TO_WRITE(output->Coverage + place)                                                    \
+    // Of the groups before these: what has just been stored is not read at once.
+    if (k + LANES < end)
+    {
+      FetchOutput(c + 2, output ARRAY_ARGUMENTS);
+      FetchOutput(c + 3, output ARRAY_ARGUMENTS);
+    }
   }
-    FETCH_AT(0)
-    FETCH_AT(LANES / 2)
-    FETCH_AT(LANES - 1)
-  }
+  FetchOutput(candidates + 2 * begin / LANES, outputs ARRAY_ARGUMENTS);
+  FetchOutput(candidates + 2 * begin / LANES + 1, outputs ARRAY_ARGUMENTS);
 }
