@@ -132,15 +132,18 @@ static __attribute__((always_inline)) void ResampleGroup(
   inverted &= nice;
   const uint unsure = LaneBits(there & ~nice);
   uint ambiguous = 0;
-  const INTS number = nice & c->Number;
-  int iterations = c->Iterations;
+  // Cells that are not nice take part in the rounds of the others, if there are any, and hold nothing.
+  INTS number = c->Number;
+  FLOATS lowest = nice ? -bound : (FLOATS)(INFINITY);
+  int rounds = 0;
   if (exact || LaneBits(fit & ~nice))
   {
-    iterations = MostOf(number);
+    number &= nice;
   }
   ushort hits[MAXIMUM_CANDIDATES]; // the cells that each round has found a sample in, as bits
   uint written = 0;
-  if (iterations)
+  INTS some = number > 0;
+  if (LaneBits(some))
   {
     // Boxes take all their candidates. Where a vertex lies on a sample its value is taken bit for bit: the
     // weights, which rounding may have touched, are made 0 and 1.
@@ -174,7 +177,7 @@ static __attribute__((always_inline)) void ResampleGroup(
     FLOATS ry = startY;
     FLOATS rz = startZ;
     uint kept = found->Count;
-    for (int i = 0;;)
+    for (;;)
     {
       const FLOATS l3 = fma(rx, n3x, fma(ry, n3y, rz * n3z));
       const FLOATS l5 = fma(rx, n5x, fma(ry, n5y, rz * n5z));
@@ -190,7 +193,7 @@ static __attribute__((always_inline)) void ResampleGroup(
       FLOATS t0 = fma(-u2, b20, fma(-u4, b40, fma(-u1, b10, Most(l0, 0.0f))));
       const FLOATS lowA = Least(t3, t5), highA = Most(t3, t5);
       const FLOATS lowB = Least(t6, t0), highB = Most(t6, t0);
-      const INTS maybe = (Least(lowA, lowB) >= -bound) & (number > i);
+      const INTS maybe = (Least(lowA, lowB) >= lowest) & some;
       // The second smallest weight decides: that opposite the corner may be 0.
       const FLOATS second = Least(Most(lowA, lowB), Least(highA, highB));
       INTS hit = maybe & (second > decisive);
@@ -255,7 +258,7 @@ static __attribute__((always_inline)) void ResampleGroup(
       {
         LANE_ARRAYS(LANE_RESULTS)
       }
-      hits[i] = bits;
+      hits[rounds] = bits;
       written += popcount(bits);
       Append(place, bits, found->Places + kept);
       if (KEEPS_KEYS && p->Pass != DEFORMVOLUME_PASS_DIRECT)
@@ -275,7 +278,8 @@ static __attribute__((always_inline)) void ResampleGroup(
         kept = 0;
         StoreFound(found, group, output, p ARRAY_ARGUMENTS);
       }
-      if (++i == iterations)
+      some = number > ++rounds;
+      if (!LaneBits(some))
       {
         break;
       }
@@ -300,7 +304,7 @@ static __attribute__((always_inline)) void ResampleGroup(
   if (again)
   {
     // What an undecided cell wrote so far is written again with it, and must not count twice.
-    for (int i = 0; i < iterations; ++i)
+    for (int i = 0; i < rounds; ++i)
     {
       written -= popcount(hits[i] & again);
     }

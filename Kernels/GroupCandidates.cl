@@ -22,7 +22,6 @@ typedef struct
   INTS Place;       // of the first one in the output
   INTS Number;      // how many in all, of cells that are small and whole
   INTS Box;         // cells that are boxes, if HasBoxes
-  int Iterations;   // the largest number
   int HasBoxes;
   int Skip; // no cell touches a voxel to be won
 } GroupCandidates;
@@ -252,7 +251,6 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   c->Count[2] = countZ;
   c->Place = (firstZ * p->OutputSize[1] + firstY) * p->OutputSize[0] + firstX;
   c->Number = number;
-  c->Iterations = MostOf(number);
 }
 
 // For the groups of a row of cells from place begin on up to one that begins at end, each for even and for odd x:
