@@ -347,14 +347,27 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
   uint specials, const SamplingMesh* mesh, Output* outputs, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
-  GroupCandidates candidates[2 * HALF_ROW / LANES];
-  FindRowCandidates(row, begin, end, mesh, outputs, candidates, p ARRAY_ARGUMENTS);
-  for (int k = begin; k < end; k += LANES)
+  GroupCandidates candidates[2][2]; // of a place and the next one
+  Bounds even;
+  BoundColumns(row->Rows, begin, &even);
+  FindPairCandidates(row, begin, &even, mesh, OUTPUT_OF_COLUMN(outputs, begin), candidates[0],
+    p ARRAY_ARGUMENTS);
+  for (int k = begin, place = 0; k < end; k += LANES, place ^= 1)
   {
     Output* const output = OUTPUT_OF_COLUMN(outputs, k);
+    const int next = k + LANES;
+    if (next < end)
+    {
+      FindPairCandidates(row, next, &even, mesh, OUTPUT_OF_COLUMN(outputs, next), candidates[!place],
+        p ARRAY_ARGUMENTS);
+    }
     for (int side = 0; side < 2; ++side)
     {
-      const GroupCandidates* const c = candidates + 2 * k / LANES + side;
+      if (next < end)
+      {
+        FetchOutput(candidates[!place] + side, output ARRAY_ARGUMENTS);
+      }
+      const GroupCandidates* const c = candidates[place] + side;
       uint again = (1u << LANES) - 1;
       if (!(specials & GROUP_FLAGS(k)))
       {

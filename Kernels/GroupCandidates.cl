@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The candidates of groups of cells: the samples in the box of each cell (BrickResampling.cl).
 //
-// Why they are found for all groups of a row before one of these is looked at: how many rounds a group takes is
-// no two times the same, and the processor guesses it wrong. It finds that out at once where the number lies in
-// memory, and only after all that precedes if it has just been computed. Neighbours share vertices, so that the
-// bounds of a row's columns of vertices are found once. And there is time to fetch the output.
+// Why they are found some groups before these are looked at: how many rounds a group takes is no two times the same,
+// and the processor guesses it wrong. It finds that out at once where the numbers lie in memory, and only after all
+// that precedes if they have just been computed. And there is time to fetch the output. Not for all groups of a row:
+// what is known of these would take the innermost cache. Neighbours share vertices, so that the bounds of a row's
+// columns of vertices are found once.
 
 #define MAXIMUM_EXTENT 7.99f // voxels: the normals of larger cells are not exact in float
 #define MAXIMUM_CANDIDATES 512 // of a cell that is not larger
@@ -253,36 +254,22 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   c->Number = number;
 }
 
-// For the groups of a row of cells from place begin on up to one that begins at end, each for even and for odd x:
-// cells of the second begin at the odd vertices. outputs: of the columns of the brick, each for some whole groups.
-static __attribute__((noinline)) void FindRowCandidates(const RowOfCells* row, int begin, int end,
-  const SamplingMesh* mesh, Output* outputs, GroupCandidates* candidates,
+// For the two groups at place k of a row of cells, for even and for odd x: cells of the second begin at the odd
+// vertices. even: the bounds of the columns of even x at this place, and then at the next one. output: of the
+// column of the brick.
+static __attribute__((noinline)) void FindPairCandidates(const RowOfCells* row, int k, Bounds* even,
+  const SamplingMesh* mesh, Output* output, GroupCandidates* candidates,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
-  int k = begin + (end - begin - 1) / LANES * LANES;
-  Bounds behind, even, odd, cells;
+  Bounds odd, behind, cells;
+  BoundColumns(row->Rows, k + ODD, &odd);
   BoundColumns(row->Rows, k + LANES, &behind);
-  for (; k >= begin; k -= LANES)
-  {
-    BoundColumns(row->Rows, k, &even);
-    BoundColumns(row->Rows, k + ODD, &odd);
-    GroupCandidates* const c = candidates + 2 * k / LANES;
-    Output* const output = OUTPUT_OF_COLUMN(outputs, k);
-    MakeGroup(row, k, 0, &c[0].Cells);
-    Join(&even, &odd, &cells);
-    FindGroupCandidates(&cells, mesh, output, c, p ARRAY_ARGUMENTS);
-    MakeGroup(row, k, 1, &c[1].Cells);
-    Shift(&even, &behind, &cells);
-    Join(&cells, &odd, &cells);
-    FindGroupCandidates(&cells, mesh, output, c + 1, p ARRAY_ARGUMENTS);
-    behind = even;
-    // Of the groups before these: what has just been stored is not read at once.
-    if (k + LANES < end)
-    {
-      FetchOutput(c + 2, output ARRAY_ARGUMENTS);
-      FetchOutput(c + 3, output ARRAY_ARGUMENTS);
-    }
-  }
-  FetchOutput(candidates + 2 * begin / LANES, outputs ARRAY_ARGUMENTS);
-  FetchOutput(candidates + 2 * begin / LANES + 1, outputs ARRAY_ARGUMENTS);
+  MakeGroup(row, k, 0, &candidates[0].Cells);
+  Join(even, &odd, &cells);
+  FindGroupCandidates(&cells, mesh, output, candidates, p ARRAY_ARGUMENTS);
+  MakeGroup(row, k, 1, &candidates[1].Cells);
+  Shift(even, &behind, &cells);
+  Join(&cells, &odd, &cells);
+  FindGroupCandidates(&cells, mesh, output, candidates + 1, p ARRAY_ARGUMENTS);
+  *even = behind;
 }
