@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The candidates of groups of cells: the samples in the box of each cell (BrickResampling.cl).
 //
-// Why they are found some groups before these are looked at: how many rounds a group takes is no two times the same,
-// and the processor guesses it wrong. It finds that out at once where the numbers lie in memory, and only after all
-// that precedes if they have just been computed. And there is time to fetch the output. Not for all groups of a row:
-// what is known of these would take the innermost cache. Neighbours share vertices, so that the bounds of a row's
-// columns of vertices are found once.
+// Why they are found a group before this is looked at: how many rounds a group takes is no two times the same, and
+// the processor guesses it wrong. It finds that out at once where the numbers lie in memory, and only after all
+// that precedes if they have just been computed. And there is time to fetch the output. Not for all groups of a
+// row: what is known of these would take the innermost cache. Neighbours share vertices, so that the bounds of a
+// row's columns of vertices are found once.
 
 #define MAXIMUM_EXTENT 7.99f // voxels: the normals of larger cells are not exact in float
 #define MAXIMUM_CANDIDATES 512 // of a cell that is not larger
@@ -154,8 +154,8 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   c->Extent = extent;
   c->Reach = extent * fma(sizeX, sizeY, sizeZ * (sizeX + sizeY));
 
-  // If one edge of no cell is parallel to an axis, no need to look for boxes: of its two ends two coordinates are the
-  // same. Lanes that hold no cell hold anything, and must not decide.
+  // If one edge of no cell is parallel to an axis, no need to look for boxes: two coordinates of its ends are the
+  // same, and one is not. Lanes that hold no cell hold anything, and must not decide.
 #define SAME_FIRST_TWO(slot) LaneBits(VERTEX(0, slot) == VERTEX(1, slot))
   const int border = group->Border;
   INTS box = 0;

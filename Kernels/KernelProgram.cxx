@@ -214,7 +214,7 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
       GetMappingText(mapping) + IntegerVectors_cl + CellCoverage_cl + SampleStoring_cl +
       VoxelWinners_cl + Resampling_cl + MakeLanePreamble(context, arrays) + LaneVectors_cl +
       BrickMapping_cl + GroupSamples_cl + GroupCoverage_cl + GroupCandidates_cl +
-      BrickResampling_cl,
+      GroupResampling_cl + BrickResampling_cl,
     Options);
 }
 

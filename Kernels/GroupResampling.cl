@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The samples that a group of cells holds, with their values (BrickResampling.cl): by floats where the sign of a
+// coordinate is certain, by integers where it is not.
+//
+// The method. The central tetrahedron has the vertices 0, 3, 5, 6 of the cell; l0, l3, l5, l6 are a
+// sample's barycentric coordinates in it. The corner tetrahedra replace one of them by the vertex
+// 1 (for 6), 2 (for 5), 4 (for 3) or 7 (for 0). In a cell that is not too bent a sample has at most
+// one negative coordinate li, and lies behind that face: in the corner's coordinates the corner
+// vertex c has the weight u = li / bi, where bi < 0 is the corner's own coordinate, and the others
+// have tj = lj - u bj. For samples of the central tetrahedron u is 0 and tj = lj. So
+//   u = min(li, 0) / bi for each corner,  tj = max(lj, 0) - sum of u bj
+// are the weights of all eight vertices without a branch, and the sample is in the cell where
+// no tj is negative. All coordinates of cells and of samples are left multiplied by the determinant D of the
+// central tetrahedron, and so are the tj, so that nothing waits for a division by it; where D is negative, the
+// normals are turned.
+//
+// The fill rule stays exact. Positions are exact in float (cells under 8 voxels, steps of 1/256),
+// and so are the normals. The error of tj is at most d = 8.5e-5 (3.4e-5 where -1 <= bi <= -0.35) times the cell's
+// extent times the largest 1-norm of the normals: with u = 2^-24 and k = extent times that norm >= D, the three
+// roundings of lj, of D and of the bj are at most 3 u k, the error of l0 = (D - l3) - (l5 + l6) is at most
+// (4 * 3 + 2 + 2 + 4) u k, and that of tj no more than (2 M + 1) times their sum with M = max |bj / bi|. The 1-norm
+// is at most the sum of the areas of the box's three faces, as each component of a normal is twice the area of a
+// triangle in such a face; in cells that are not turned it is just that. When three of the
+// tj exceed d, the sample is inside; when one is under -d, outside. Cells with a sample in between
+// are repeated: with edge functions in integers, LANES cells at once again; where they are large or
+// bent, or what surrounds them is not all there, by ResampleCell.
+
+// Barycentric coordinates of vertex c relative to the central tetrahedron.
+#define COORDINATES(c)                                                                             \
+  FLOATS b##c##3, b##c##5, b##c##6, b##c##0;                                                       \
+  {                                                                                                \
+    const FLOATS rx = X##c - X0;                                                                   \
+    const FLOATS ry = Y##c - Y0;                                                                   \
+    const FLOATS rz = Z##c - Z0;                                                                   \
+    b##c##3 = fma(rx, n3x, fma(ry, n3y, rz * n3z));                                                \
+    b##c##5 = fma(rx, n5x, fma(ry, n5y, rz * n5z));                                                \
+    b##c##6 = fma(rx, n6x, fma(ry, n6y, rz * n6z));                                                \
+    b##c##0 = (determinant - b##c##3) - (b##c##5 + b##c##6);                                       \
+  }
+
+// What became of LANES cells, as bits.
+typedef struct
+{
+  uint Ambiguous; // repeat them with integers
+  uint Unsure;    // leave them to ResampleCell
+} Outcome;
+
+// The samples of a group of cells. state: where the group is on the border, if samples that floats do not decide
+// are to be decided by integers: those of the cells in only, as bits. Else null. What cells that must be repeated
+// have written is not counted.
+static __attribute__((always_inline)) void ResampleGroup(
+  const GroupCandidates* c, uint only, const GroupState* state, Output* output, Found* found,
+  Outcome* outcome, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const Group* const group = &c->Cells;
+  LOAD_VERTICES
+  const int x = group->X, y = group->Y, z = group->Z;
+  const int exact = state != 0;
+  const INTS cellX = x + 2 * LANE_INDEX;
+  const int mirror = Mirror(x, y, z, p);
+  INTS there = c->There;
+  INTS fit = c->Fit;
+  if (exact)
+  {
+    const INTS chosen = ((INTS)only & LANE_BITS) != 0;
+    there &= chosen;
+    fit &= chosen;
+  }
+
+  // Normals: the gradients of l3, l5 and l6.
+#define EDGE(a, v) const FLOATS a##x = X##v - X0, a##y = Y##v - Y0, a##z = Z##v - Z0;
+  EDGE(e3, 3)
+  EDGE(e5, 5)
+  EDGE(e6, 6)
+#define NORMAL(n, a, b)                                                                            \
+  n##x = fma(a##y, b##z, -(a##z * b##y));                                                          \
+  n##y = fma(a##z, b##x, -(a##x * b##z));                                                          \
+  n##z = fma(a##x, b##y, -(a##y * b##x));
+  FLOATS n3x, n3y, n3z, n5x, n5y, n5z, n6x, n6y, n6z;
+  if (group->Odd)
+  {
+    NORMAL(n3, e6, e5)
+    NORMAL(n5, e3, e6)
+    NORMAL(n6, e5, e3)
+  }
+  else
+  {
+    NORMAL(n3, e5, e6)
+    NORMAL(n5, e6, e3)
+    NORMAL(n6, e3, e5)
+  }
+  FLOATS determinant = fma(e3z, n3z, fma(e3y, n3y, e3x * n3x));
+  // Coordinates do not tell a cell from its mirror image: all its tetrahedra are inverted then.
+  INTS inverted = 0;
+  if (LaneBits(fit & (determinant < 0.0f)))
+  {
+    inverted = determinant < 0.0f;
+#define TURN(v) v = inverted ? -v : v;
+    TURN(n3x) TURN(n3y) TURN(n3z) TURN(n5x) TURN(n5y) TURN(n5z) TURN(n6x) TURN(n6y) TURN(n6z)
+    TURN(determinant)
+  }
+  COORDINATES(1)
+  COORDINATES(2)
+  COORDINATES(4)
+  COORDINATES(7)
+  const FLOATS leastOther =
+    Least(Least(Least(Least(b13, b15), Least(b10, b45)), Least(Least(b46, b40), Least(b23, b26))),
+      Least(Least(b20, b73), Least(b75, b76)));
+  const FLOATS mostOwn = Most(Most(b16, b43), Most(b25, b70));
+  const FLOATS leastOwn = Least(Least(b16, b43), Least(b25, b70));
+  const INTS tame = (mostOwn <= determinant * -0.35f) & (leastOwn >= -determinant);
+  const FLOATS bound = (tame ? (FLOATS)(3.4e-5f) : (FLOATS)(8.5e-5f)) * c->Reach;
+  const INTS nice = fit & (leastOther >= determinant * 0.015625f) & (mostOwn <= determinant * -0.125f) &
+    (leastOwn >= determinant * -2.0f) & (bound < determinant * 0.0078125f);
+  inverted &= nice;
+  const uint unsure = LaneBits(there & ~nice);
+  uint ambiguous = 0;
+  // Cells that are not nice take part in the rounds of the others, if there are any, and hold nothing.
+  INTS number = c->Number;
+  FLOATS lowest = nice ? -bound : (FLOATS)(INFINITY);
+  int rounds = 0;
+  if (exact || LaneBits(fit & ~nice))
+  {
+    number &= nice;
+  }
+  ushort hits[MAXIMUM_CANDIDATES]; // the cells that each round has found a sample in, as bits
+  uint written = 0;
+  INTS some = number > 0;
+  if (LaneBits(some))
+  {
+    // Boxes take all their candidates. Where a vertex lies on a sample its value is taken bit for bit: the
+    // weights, which rounding may have touched, are made 0 and 1.
+    // From where on the second smallest weight tells that a sample is inside.
+    const int snap = c->HasBoxes;
+    FLOATS decisive = bound;
+    INTS box = 0;
+    if (snap)
+    {
+      box = nice & c->Box;
+      decisive = box ? (FLOATS)(-1.0f) : bound;
+    }
+    const FLOATS inverse = 1.0f / determinant;
+    const INTS countX = c->Count[0];
+    const INTS countY = c->Count[1];
+    // One division for four.
+    const FLOATS product12 = b16 * b25, product47 = b43 * b70;
+    const FLOATS inverses = 1.0f / (product12 * product47);
+    const FLOATS inverse12 = inverses * product47, inverse47 = inverses * product12;
+    const FLOATS s1 = inverse12 * b25, s2 = inverse12 * b16;
+    const FLOATS s4 = inverse47 * b70, s7 = inverse47 * b43;
+    const FLOATS startX = TO_FLOATS(c->First[0]) - X0;
+    const FLOATS startY = TO_FLOATS(c->First[1]) - Y0;
+    const FLOATS startZ = TO_FLOATS(c->First[2]) - Z0;
+    const FLOATS endX = startX + (TO_FLOATS(countX) - 0.5f);
+    const FLOATS endY = startY + (TO_FLOATS(countY) - 0.5f);
+    const INTS toNextRow = p->OutputSize[0] - countX;
+    const INTS toNextPlane = (p->OutputSize[1] - countY) * p->OutputSize[0];
+    INTS place = c->Place;
+    FLOATS rx = startX;
+    FLOATS ry = startY;
+    FLOATS rz = startZ;
+    uint kept = found->Count;
+    for (;;)
+    {
+      const FLOATS l3 = fma(rx, n3x, fma(ry, n3y, rz * n3z));
+      const FLOATS l5 = fma(rx, n5x, fma(ry, n5y, rz * n5z));
+      const FLOATS l6 = fma(rx, n6x, fma(ry, n6y, rz * n6z));
+      const FLOATS l0 = (determinant - l3) - (l5 + l6);
+      FLOATS u1 = Least(l6, 0.0f) * s1;
+      FLOATS u2 = Least(l5, 0.0f) * s2;
+      FLOATS u4 = Least(l3, 0.0f) * s4;
+      FLOATS u7 = Least(l0, 0.0f) * s7;
+      FLOATS t3 = fma(-u7, b73, fma(-u2, b23, fma(-u1, b13, Most(l3, 0.0f))));
+      FLOATS t5 = fma(-u7, b75, fma(-u4, b45, fma(-u1, b15, Most(l5, 0.0f))));
+      FLOATS t6 = fma(-u7, b76, fma(-u2, b26, fma(-u4, b46, Most(l6, 0.0f))));
+      FLOATS t0 = fma(-u2, b20, fma(-u4, b40, fma(-u1, b10, Most(l0, 0.0f))));
+      const FLOATS lowA = Least(t3, t5), highA = Most(t3, t5);
+      const FLOATS lowB = Least(t6, t0), highB = Most(t6, t0);
+      const INTS maybe = (Least(lowA, lowB) >= lowest) & some;
+      // The second smallest weight decides: that opposite the corner may be 0.
+      const FLOATS second = Least(Most(lowA, lowB), Least(highA, highB));
+      INTS hit = maybe & (second > decisive);
+      INTS onVertex = 0;
+      const INTS undecided = maybe & ~hit;
+      if (exact)
+      {
+        if (LaneBits(undecided))
+        {
+          const FLOATS sample[3] = { rx, ry, rz };
+          INTS simplex;
+          INTS held = HoldSample(group, sample, group->Odd, inverted, &simplex);
+          if (group->Border)
+          {
+            // As RoleOf.
+            const INTS outer = (simplex != 0) & ((simplex & state->Interior) == 0);
+            const INTS regular = (simplex & ~state->Regular) == 0;
+            const INTS first = (((simplex & LOW_SIDE(0, mirror)) != 0) | (cellX == p->Size[0] - 2)) &
+              (((simplex & LOW_SIDE(1, mirror)) != 0) | (INTS)(z == p->Size[2] - 2 ? -1 : 0)) &
+              (((simplex & LOW_SIDE(2, mirror)) != 0) | (INTS)(y == p->Size[1] - 2 ? -1 : 0));
+            held = outer ? first & regular : held;
+            ambiguous |= LaneBits(undecided & outer & ~regular);
+            output->Assumed |= LaneBits(undecided & outer) != 0;
+          }
+          hit |= undecided & held;
+          if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
+          {
+            TouchHeld(undecided & ~held & (simplex != 0), rx + X0, ry + Y0, rz + Z0, output, p);
+          }
+          onVertex = undecided & ((simplex & (simplex - 1)) == 0);
+        }
+      }
+      if (!exact)
+      {
+        ambiguous |= LaneBits(maybe) & ~LaneBits(hit);
+      }
+      if (p->IsPart)
+      {
+        const FLOATS sx = rx + X0, sy = ry + Y0, sz = rz + Z0;
+        hit &= (sx >= 0.0f) & (sx < (float)p->OutputSize[0]) & (sy >= 0.0f) &
+          (sy < (float)p->OutputSize[1]) & (sz >= 0.0f) & (sz < (float)p->OutputSize[2]);
+      }
+      const uint bits = LaneBits(hit);
+      if (snap)
+      {
+        const FLOATS sx = rx + X0, sy = ry + Y0, sz = rz + Z0;
+        onVertex |= box & ((sx == X0) | (sx == X7)) & ((sy == Y0) | (sy == Y7)) &
+          ((sz == Z0) | (sz == Z7));
+      }
+      FLOATS scale = inverse;
+      if (snap || exact)
+      {
+        t0 *= inverse;
+        t3 *= inverse;
+        t5 *= inverse;
+        t6 *= inverse;
+        scale = 1.0f;
+#define SNAP(weight) weight = onVertex ? rint(weight) : weight;
+        SNAP(t0) SNAP(t3) SNAP(t5) SNAP(t6) SNAP(u1) SNAP(u2) SNAP(u4) SNAP(u7)
+      }
+      if (DEFORMVOLUME_IS_WRITING(p->Pass))
+      {
+        LANE_ARRAYS(LANE_RESULTS)
+      }
+      hits[rounds] = bits;
+      written += popcount(bits);
+      Append(place, bits, found->Places + kept);
+      if (KEEPS_KEYS && p->Pass != DEFORMVOLUME_PASS_DIRECT)
+      {
+        // The first cell of the row, as the first one of the group may lie before the volume.
+        const INTS keys = (int)MakeKey(0, y, z, 0, p) + cellX;
+        Append(keys | (inverted & (int)MakeKey(0, 0, 0, 1, p)), bits, found->Cells + kept);
+      }
+      else if (HAS_OTHER_ARRAYS || p->Pass != DEFORMVOLUME_PASS_DIRECT)
+      {
+        Append(LANE_INDEX | (inverted & INVERTED_LANE), bits, found->Cells + kept);
+      }
+      kept += popcount(bits);
+      if (kept > FOUND_CAPACITY)
+      {
+        found->Count = kept;
+        kept = 0;
+        StoreFound(found, group, output, p ARRAY_ARGUMENTS);
+      }
+      some = number > ++rounds;
+      if (!LaneBits(some))
+      {
+        break;
+      }
+      // The next candidate of each lane.
+      rx += 1.0f;
+      const INTS rowDone = rx > endX;
+      rx = rowDone ? startX : rx;
+      ry = rowDone ? ry + 1.0f : ry;
+      const INTS planeDone = ry > endY;
+      ry = planeDone ? startY : ry;
+      rz = planeDone ? rz + 1.0f : rz;
+      place += 1 + (rowDone & toNextRow) + (planeDone & toNextPlane);
+    }
+    found->Count = kept;
+    if (KEEPS_GROUP(p))
+    {
+      StoreFound(found, group, output, p ARRAY_ARGUMENTS);
+    }
+  }
+  output->Inverted += 5 * popcount(LaneBits(inverted) & ~ambiguous);
+  const uint again = unsure | ambiguous;
+  if (again)
+  {
+    // What an undecided cell wrote so far is written again with it, and must not count twice.
+    for (int i = 0; i < rounds; ++i)
+    {
+      written -= popcount(hits[i] & again);
+    }
+  }
+  output->Writes += written;
+  // Integers of 32 bits decide who owns a sample, for cells that are small enough.
+  outcome->Ambiguous = exact || DEFORMVOLUME_IS_CLOSED(p->Pass) || !ambiguous
+    ? 0
+    : ambiguous & LaneBits(c->Extent < MAXIMUM_EXACT_EXTENT);
+  outcome->Unsure = again & ~outcome->Ambiguous;
+}
+
+static __attribute__((noinline)) Outcome ResampleByFloats(
+  const GroupCandidates* c, Output* output, Found* found,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  Outcome outcome;
+  ResampleGroup(c, 0, 0, output, found, &outcome, p ARRAY_ARGUMENTS);
+  return outcome;
+}
+
+// Returns the cells that are left to ResampleCell.
+static __attribute__((noinline)) uint ResampleByIntegers(
+  const GroupCandidates* c, uint only, const SamplingMesh* mesh, Output* output, Found* found,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  GroupState state;
+  if (c->Cells.Border)
+  {
+    StatesOfGroup(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, &state, p);
+  }
+  Outcome outcome;
+  ResampleGroup(c, only, &state, output, found, &outcome, p ARRAY_ARGUMENTS);
+  return outcome.Unsure;
+}
