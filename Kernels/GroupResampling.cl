@@ -67,7 +67,7 @@ static __attribute__((always_inline)) void ResampleGroup(
     fit &= chosen;
   }
 
-  // Normals: the gradients of l3, l5 and l6.
+  // Normals: the gradients of l3, l5 and l6. They point inside.
 #define EDGE(a, v) const FLOATS a##x = X##v - X0, a##y = Y##v - Y0, a##z = Z##v - Z0;
   EDGE(e3, 3)
   EDGE(e5, 5)
@@ -128,16 +128,16 @@ static __attribute__((always_inline)) void ResampleGroup(
   INTS some = number > 0;
   if (LaneBits(some))
   {
-    // Boxes take all their candidates. Where a vertex lies on a sample its value is taken bit for bit: the
-    // weights, which rounding may have touched, are made 0 and 1.
-    // From where on the second smallest weight tells that a sample is inside.
+    // Boxes take all their candidates, whatever the second smallest weight is, from which it is told that a sample
+    // is inside. Where a vertex lies on a sample its value is taken bit for bit: the weights, which rounding may
+    // have touched, are made 0 and 1.
     const int snap = c->HasBoxes;
     FLOATS decisive = bound;
     INTS box = 0;
     if (snap)
     {
       box = nice & c->Box;
-      decisive = box ? (FLOATS)(-1.0f) : bound;
+      decisive = box ? (FLOATS)(-INFINITY) : bound;
     }
     const FLOATS inverse = 1.0f / determinant;
     const INTS countX = c->Count[0];
@@ -209,9 +209,9 @@ static __attribute__((always_inline)) void ResampleGroup(
           onVertex = undecided & ((simplex & (simplex - 1)) == 0);
         }
       }
-      if (!exact)
+      else
       {
-        ambiguous |= LaneBits(maybe) & ~LaneBits(hit);
+        ambiguous |= LaneBits(undecided);
       }
       if (p->IsPart)
       {
