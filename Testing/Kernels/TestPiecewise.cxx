@@ -121,6 +121,9 @@ TEST(Piecewise, PosesFullOfTies)
     { "half turn", Rotate(180.0, glm::dvec3(0, 1, 0)) },
     { "doubled", glm::dmat3(2.0) },
     { "tripled", glm::dmat3(3.0) },
+    { "seven and a half times", glm::dmat3(7.5) },
+    { "unequally stretched", glm::dmat3(7, 0, 0, 0, 1, 0, 0, 0, 0.25) },
+    { "large and sheared", glm::dmat3(5, 0, 0, 1, 5, 0, 0, -1, 5) },
     { "halved", glm::dmat3(0.5) },
     { "one and a half", glm::dmat3(1.5) },
     { "shear by a quarter", glm::dmat3(1, 0, 0, 0.25, 1, 0, 0, 0.25, 1) },
@@ -160,8 +163,9 @@ TEST(Piecewise, VerticesOnSamplesOfAJitteredMesh)
 TEST(Piecewise, ScaledLattice)
 {
   // The rest position is Scale times the index: another output spacing than the volume's.
-  for (const std::array<double, 3>& scale : { std::array<double, 3>{ { 2, 2, 2 } },
-         std::array<double, 3>{ { 0.5, 0.75, 0.25 } }, std::array<double, 3>{ { 1.5, 1, 3.25 } } })
+  for (const std::array<double, 3>& scale :
+    { std::array<double, 3>{ { 2, 2, 2 } }, std::array<double, 3>{ { 0.5, 0.75, 0.25 } },
+      std::array<double, 3>{ { 1.5, 1, 3.25 } }, std::array<double, 3>{ { 4.5, 6, 5 } } })
   {
     SCOPED_TRACE(scale[0]);
     const glm::dvec3 s(scale[0], scale[1], scale[2]);
