@@ -188,9 +188,9 @@ static ulong StatesOf(
 #define STORE_EIGHT(v, place) *(__local PlacedFloat8*)(place) = v;
 #define FLAGS_TOGETHER 7u // those of RowFlags that sixteen vertices may be in
 
-// A value, by its bits, that the sum of products would not give back: -0, not finite, or so large that the
-// sum may overflow.
-#define IS_SPECIAL(bits) ((((bits)&0x7f800000) >= 0x7e000000) | ((bits) == INT_MIN))
+// A value, by its bits, that the sum of products would not give back: -0, not finite, or so large (2^115) that the
+// sum may overflow, as weights add up to the determinant, which is under 2^11.
+#define IS_SPECIAL(bits) ((((bits)&0x7f800000) >= 0x79000000) | ((bits) == INT_MIN))
 
 #define PUT_VALUE(index, TYPE, BITS, SLOT)                                                         \
   {                                                                                                \

@@ -115,9 +115,7 @@ static __attribute__((always_inline)) void ResampleGroup(
   inverted &= nice;
   const uint unsure = LaneBits(there & ~nice);
   uint ambiguous = 0;
-  // Cells that are not nice take part in the rounds of the others, if there are any, and hold nothing.
   INTS number = c->Number;
-  FLOATS lowest = nice ? -bound : (FLOATS)(INFINITY);
   int rounds = 0;
   if (exact || LaneBits(fit & ~nice))
   {
@@ -176,7 +174,7 @@ static __attribute__((always_inline)) void ResampleGroup(
       FLOATS t0 = fma(-u2, b20, fma(-u4, b40, fma(-u1, b10, Most(l0, 0.0f))));
       const FLOATS lowA = Least(t3, t5), highA = Most(t3, t5);
       const FLOATS lowB = Least(t6, t0), highB = Most(t6, t0);
-      const INTS maybe = (Least(lowA, lowB) >= lowest) & some;
+      const INTS maybe = (Least(lowA, lowB) >= -bound) & some;
       // The second smallest weight decides: that opposite the corner may be 0.
       const FLOATS second = Least(Most(lowA, lowB), Least(highA, highB));
       INTS hit = maybe & (second > decisive);
@@ -229,13 +227,11 @@ static __attribute__((always_inline)) void ResampleGroup(
       FLOATS scale = inverse;
       if (snap || exact)
       {
-        t0 *= inverse;
-        t3 *= inverse;
-        t5 *= inverse;
-        t6 *= inverse;
-        scale = 1.0f;
-#define SNAP(weight) weight = onVertex ? rint(weight) : weight;
-        SNAP(t0) SNAP(t3) SNAP(t5) SNAP(t6) SNAP(u1) SNAP(u2) SNAP(u4) SNAP(u7)
+        // All other lanes keep their bits, whatever their neighbours are.
+#define SNAP(weight, by) weight = onVertex ? rint(weight * (by)) : weight;
+        SNAP(t0, inverse) SNAP(t3, inverse) SNAP(t5, inverse) SNAP(t6, inverse)
+        SNAP(u1, 1.0f) SNAP(u2, 1.0f) SNAP(u4, 1.0f) SNAP(u7, 1.0f)
+        scale = onVertex ? (FLOATS)(1.0f) : inverse;
       }
       if (DEFORMVOLUME_IS_WRITING(p->Pass))
       {

@@ -87,11 +87,13 @@ static __attribute__((always_inline)) void MakeGroup(
     {                                                                                              \
       v = Least(Most(v, LANE_RANGE_LOW_##TYPE), LANE_RANGE_HIGH_##TYPE) + ROUND_TO_INTEGER;        \
     }                                                                                              \
-    Append(AS_INTS(v), bits, found->Values##index + kept);                                 \
+    Append(AS_INTS(v), bits, found->Values##index + kept);                                         \
   }
 
 #define LANE_STORE(index, TYPE, BITS, SLOT)                                                        \
   target##index[place] = LANE_CONVERT_##BITS(TYPE, found->Values##index[i]);
+
+typedef ulong __attribute__((may_alias)) TwoInts;
 
 // Two at once: what is read costs as much as what is written.
 #define LANE_STORE_ALL(index, TYPE, BITS, SLOT)                                                    \
@@ -99,8 +101,8 @@ static __attribute__((always_inline)) void MakeGroup(
   _Pragma("clang loop vectorize(disable) unroll_count(4)")                                         \
   for (uint i = 0; i < count; i += 2)                                                              \
   {                                                                                                \
-    const ulong places = *(const ulong*)(found->Places + i);                                       \
-    const ulong values = *(const ulong*)(found->Values##index + i);                                \
+    const ulong places = *(const TwoInts*)(found->Places + i);                                     \
+    const ulong values = *(const TwoInts*)(found->Values##index + i);                              \
     target##index[(uint)places] = LANE_CONVERT_##BITS(TYPE, (int)values);                          \
     target##index[places >> 32] = LANE_CONVERT_##BITS(TYPE, (int)(values >> 32));                  \
   }
@@ -215,7 +217,7 @@ static void StoreFound(Found* found, const Group* group, Output* output,
     _Pragma("clang loop vectorize(disable) unroll_count(4)")
     for (uint i = 0; i < count; i += 2)
     {
-      const ulong places = *(const ulong*)(found->Places + i);
+      const ulong places = *(const TwoInts*)(found->Places + i);
       coverage[(uint)places] = 1;
       coverage[places >> 32] = 1;
     }

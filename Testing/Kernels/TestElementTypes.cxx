@@ -207,3 +207,19 @@ TEST(ElementTypes, NotANumberStaysWithinItsTetrahedra)
   EXPECT_GT(spoilt, 0);
   EXPECT_LE(spoilt, 64);
 }
+
+TEST(ElementTypes, LargeFloatsInLargeCellsStayFinite)
+{
+  // 9.97e36 is what NetCDF fills with.
+  for (const double size : { 1.5, 3.0, 7.0 })
+  {
+    SCOPED_TRACE(size);
+    const DeformerCase sheared = MakeCase({ { 0, 20, 0, 4, 0, 4 } }, { { 1, 1, 1 } },
+      [=](const glm::dvec3& index)
+      { return size * index + glm::dvec3(0.3 * index.y, 0.1 * index.x, 0.2 * index.y); });
+    const std::vector<float> values(sheared.GetNumberOfVoxels(), 9.96921e36F);
+    const std::vector<VolumeArray> arrays{ MakeArray(values) };
+    const Deformed deformed = LoadAndRun(sheared, arrays);
+    ExpectEqualsReference(sheared, ResampleByReference(sheared), arrays, deformed);
+  }
+}
