@@ -250,19 +250,38 @@ reference::Result ResampleByReference(const DeformerCase& deformerCase)
   return reference::Resample(mesh, deformerCase.Output);
 }
 
-void Load(VolumeDeformer& deformer, const DeformerCase& deformerCase,
-  const std::vector<VolumeArray>& arrays, Route route)
+std::vector<float> DeformerCase::GetDisplacements() const
 {
-  const std::size_t size = deformerCase.GetNumberOfVoxels();
   std::vector<float> displacements;
-  displacements.reserve(3 * size);
-  for (const reference::Position& displacement : deformerCase.Displacements)
+  displacements.reserve(3 * this->Displacements.size());
+  for (const reference::Position& displacement : this->Displacements)
   {
     for (const std::int64_t component : displacement)
     {
       displacements.push_back(static_cast<float>(component) / 256.0F);
     }
   }
+  return displacements;
+}
+
+void MoveByField(VolumeDeformer& deformer, const DeformerCase& deformerCase)
+{
+  ASSERT_TRUE(deformerCase.Unlinked.empty()) << "a field at the voxels links them all";
+  const std::vector<float> displacements = deformerCase.GetDisplacements();
+  DisplacementField field;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    field.Dimensions[axis] = static_cast<int>(GetSize(deformerCase.Lattice.VertexExtent, axis));
+    field.IndexToField[4 * axis + 3] = -deformerCase.Lattice.VertexExtent[2 * axis];
+  }
+  field.Vectors = displacements.data();
+  deformer.SetDisplacementField(field);
+}
+
+void Load(VolumeDeformer& deformer, const DeformerCase& deformerCase,
+  const std::vector<VolumeArray>& arrays, Route route)
+{
+  const std::size_t size = deformerCase.GetNumberOfVoxels();
   deformer.SetDevice("");
   deformer.SetLattice(deformerCase.Lattice);
   deformer.SetArrays(arrays);
@@ -270,15 +289,7 @@ void Load(VolumeDeformer& deformer, const DeformerCase& deformerCase,
   deformer.SetActiveTetrahedra(deformerCase.Active.empty() ? nullptr : deformerCase.Active.data());
   if (route == Route::Field)
   {
-    ASSERT_TRUE(deformerCase.Unlinked.empty()) << "a field at the voxels links them all";
-    DisplacementField field;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      field.Dimensions[axis] = static_cast<int>(GetSize(deformerCase.Lattice.VertexExtent, axis));
-      field.IndexToField[4 * axis + 3] = -deformerCase.Lattice.VertexExtent[2 * axis];
-    }
-    field.Vectors = displacements.data();
-    deformer.SetDisplacementField(field);
+    MoveByField(deformer, deformerCase);
     return;
   }
   std::vector<Tetrahedron> tetrahedra(size);
@@ -305,7 +316,7 @@ void Load(VolumeDeformer& deformer, const DeformerCase& deformerCase,
   {
     deformer.SetMesh(tetrahedra.data(), size, size, links.data());
   }
-  deformer.SetNodeDisplacements(displacements.data());
+  deformer.SetNodeDisplacements(deformerCase.GetDisplacements().data());
 }
 
 Deformed RunDeformer(VolumeDeformer& deformer, const DeformerCase& deformerCase,

@@ -43,6 +43,8 @@ struct DeformerCase
   std::vector<unsigned char> Active;
   deformvolume::Extent Output;
 
+  /// In output voxels, x, y and z of each voxel.
+  std::vector<float> GetDisplacements() const;
   std::int64_t GetNumberOfVoxels() const
   {
     return deformvolume::GetNumberOfPoints(this->Lattice.VertexExtent);
@@ -69,6 +71,9 @@ deformvolume::VertexRuns MakeRuns(const DeformerCase& deformerCase);
 /// Sets the lattice, the arrays, the masks and the deformation.
 void Load(deformvolume::VolumeDeformer& deformer, const DeformerCase& deformerCase,
   const std::vector<deformvolume::VolumeArray>& arrays, Route route);
+
+/// Moves a volume that has been loaded with Route::Field.
+void MoveByField(deformvolume::VolumeDeformer& deformer, const DeformerCase& deformerCase);
 
 struct Deformed
 {

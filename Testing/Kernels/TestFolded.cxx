@@ -174,11 +174,12 @@ TEST(Folded, OutputsBeforeDoNotMatter)
     SCOPED_TRACE(number);
     pose = number;
     VolumeDeformer deformer;
+    Load(deformer, fold(60.0), arrays, Route::Field);
     for (const double crease : { 60.0, 47.5, 100.0, 60.0, 20.25, 100.0, 100.0 })
     {
       SCOPED_TRACE(crease);
       const DeformerCase folded = fold(crease);
-      Load(deformer, folded, arrays, Route::Field);
+      MoveByField(deformer, folded);
       const Deformed again = RunDeformer(deformer, folded, arrays, method);
       VolumeDeformer fresh;
       Load(fresh, folded, arrays, Route::Field);
@@ -223,6 +224,7 @@ TEST(Folded, OnSamplesAfterAFold)
       const auto floats = MakeRandomValues<float>(size, 5);
       const std::vector<VolumeArray> arrays{ MakeArray(shorts), MakeArray(floats, 1, false, 2.0) };
       VolumeDeformer deformer;
+      Load(deformer, fold(volume.VertexExtent, 0.0, 0.0, 1.0), arrays, Route::Field);
       for (const double shear : { 0.0, 1.0 })
       {
         for (const double scale : { 1.0, 1.5 })
@@ -231,7 +233,7 @@ TEST(Folded, OnSamplesAfterAFold)
           {
             SCOPED_TRACE(testing::Message() << shear << ' ' << scale << ' ' << crease);
             const DeformerCase folded = fold(volume.VertexExtent, crease, shear, scale);
-            Load(deformer, folded, arrays, Route::Field);
+            MoveByField(deformer, folded);
             const Deformed deformed = RunDeformer(deformer, folded, arrays, method);
             EXPECT_TRUE(deformed.Report.Overlapping);
             ExpectEqualsReference(folded, ResampleByReference(folded), arrays, deformed);
