@@ -228,9 +228,11 @@ static __attribute__((always_inline)) void ResampleGroup(
       if (snap || exact)
       {
         // All other lanes keep their bits, whatever their neighbours are.
-#define SNAP(weight, by) weight = onVertex ? rint(weight * (by)) : weight;
-        SNAP(t0, inverse) SNAP(t3, inverse) SNAP(t5, inverse) SNAP(t6, inverse)
-        SNAP(u1, 1.0f) SNAP(u2, 1.0f) SNAP(u4, 1.0f) SNAP(u7, 1.0f)
+        const FLOATS middle = determinant * 0.5f;
+#define SNAP(weight, least)                                                                        \
+  weight = onVertex ? (weight > (least) ? (FLOATS)(1.0f) : (FLOATS)(0.0f)) : weight;
+        SNAP(t0, middle) SNAP(t3, middle) SNAP(t5, middle) SNAP(t6, middle)
+        SNAP(u1, 0.5f) SNAP(u2, 0.5f) SNAP(u4, 0.5f) SNAP(u7, 0.5f)
         scale = onVertex ? (FLOATS)(1.0f) : inverse;
       }
       if (DEFORMVOLUME_IS_WRITING(p->Pass))
