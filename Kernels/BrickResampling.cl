@@ -97,10 +97,11 @@ static int EndIn(uint item, int halves, int cells)
   return item >> halves & 2 ? cells : cells / 2;
 }
 
-// A brick of cells, or some of its sections. item: which (DEFORMVOLUME_BRICK_BITS).
-static void ResampleBrick(const SamplingMesh* mesh, uint item, __global char* coverage,
-  __global KEY* winners, __global char* patches, __global uint* counters,
-  __local float* rows, const KernelParameters* p ARRAY_PARAMETERS)
+// A brick of cells, or some of its sections. item: which (DEFORMVOLUME_BRICK_BITS). isAbove: whether it is the whole
+// brick above the one before, so that its first plane of vertices is in the rows, with their flags.
+static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __global char* coverage,
+  __global KEY* winners, __global char* patches, __global uint* counters, __local float* rows,
+  RowFlags (*flags)[ROWS], const KernelParameters* p ARRAY_PARAMETERS)
 {
   Output outputs[DEFORMVOLUME_SECTIONS];
   for (int section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
@@ -136,26 +137,28 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, __global char* co
   __local float* restX = rows;
   __local float* displaced = restX + 4 * HALF_ROW;
   __local float* ring = displaced + 3 * ROW_PLACES;
-  for (int i = 0; i < 2 * HALF_ROW; ++i)
+  if (!isAbove)
   {
-    const int x = clamp(bx + i, 0, p->Size[0] - 1);
-    __local float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
-    rest[0] = (mesh->Map.Rest[x].Whole - p->OutputFirst[0] * 256) * STEP;
-    rest[HALF_ROW] = mesh->Map.Rest[x].Fraction * STEP;
-  }
-  for (int row = 0; row < 2 * ROWS; ++row)
-  {
-    for (int i = 0; i < HALF_ROW; ++i)
+    for (int i = 0; i < 2 * HALF_ROW; ++i)
     {
-      ring[row * ROW + i] = NOT_THERE;
-      ring[row * ROW + ODD + i] = NOT_THERE;
+      const int x = clamp(bx + i, 0, p->Size[0] - 1);
+      __local float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
+      rest[0] = (mesh->Map.Rest[x].Whole - p->OutputFirst[0] * 256) * STEP;
+      rest[HALF_ROW] = mesh->Map.Rest[x].Fraction * STEP;
+    }
+    for (int row = 0; row < 2 * ROWS; ++row)
+    {
+      for (int i = 0; i < HALF_ROW; ++i)
+      {
+        ring[row * ROW + i] = NOT_THERE;
+        ring[row * ROW + ODD + i] = NOT_THERE;
+      }
     }
   }
 
-  RowFlags flags[2][ROWS];
   const int begin = (beginX - bx) >> 1 & ~(LANES - 1);
   const int end = (endX - bx + 1) >> 1;
-  for (int z = beginZ; z <= endZ; ++z)
+  for (int z = isAbove ? beginZ + 1 : beginZ; z <= endZ; ++z)
   {
     const int plane = (p->First[2] + z) & 1;
     for (int y = beginY; y <= endY; ++y)
@@ -199,8 +202,8 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, __global char* co
 // Bricks of a list from p.ListBegin to p.ListEnd. taken: how many of these work-items have begun to work on; 0 at
 // first. rows: 4 HALF_ROW + 3 ROW_PLACES + 2 ROWS ROW floats (GetBrickMemory).
 //
-// Why items take one brick after the other: drivers deal out work-groups in large portions, and wait at the end
-// for the thread that the system has let wait, or that has more to do.
+// Why items take one small portion after the other: drivers deal out work-groups in large portions, and wait at the
+// end for the thread that the system has let wait, or that has more to do.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
   __global const uchar* state, __global const uchar* active, __global char* coverage,
   __global KEY* winners, __global char* patches, __global uint* counters,
@@ -208,10 +211,18 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
   const KernelParameters p ARRAY_PARAMETERS)
 {
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
-  for (uint i = p.ListBegin + atomic_inc(taken); i < p.ListEnd;
-       i = p.ListBegin + atomic_inc(taken))
+  RowFlags flags[2][ROWS]; // of the rows of vertices
+  for (uint begin = p.ListBegin + atomic_add(taken, p.Portion); begin < p.ListEnd;
+       begin = p.ListBegin + atomic_add(taken, p.Portion))
   {
-    ResampleBrick(
-      &mesh, bricks[i], coverage, winners, patches, counters, rows, &p ARRAY_ARGUMENTS);
+    const uint end = min(begin + p.Portion, (uint)p.ListEnd);
+    for (uint i = begin; i < end; ++i)
+    {
+      const uint above = i > begin ? bricks[i - 1] + p.BrickCount[0] * p.BrickCount[1] : 0;
+      const int isAbove =
+        bricks[i] == above && above >> DEFORMVOLUME_BRICK_BITS == DEFORMVOLUME_WHOLE_BRICK;
+      ResampleBrick(&mesh, bricks[i], isAbove, coverage, winners, patches, counters, rows, flags,
+        &p ARRAY_ARGUMENTS);
+    }
   }
 }

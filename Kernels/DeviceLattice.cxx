@@ -341,13 +341,23 @@ std::size_t DeviceLattice::GetNumberOfBricks() const
     static_cast<std::size_t>(this->GetNumberOfBricks(2));
 }
 
-std::pair<cl_uint, cl_uint> DeviceLattice::GetBrickRange(int layersBegin, int layersEnd) const
+void DeviceLattice::AppendBricks(int layersBegin, int layersEnd, std::vector<cl_uint>& bricks) const
 {
   const int origin = this->GetBrickOrigin(2);
-  const cl_uint layer = static_cast<cl_uint>(this->GetNumberOfBricks(0)) *
+  const auto layer = static_cast<cl_uint>(this->GetNumberOfBricks(0)) *
     static_cast<cl_uint>(this->GetNumberOfBricks(1));
-  return { static_cast<cl_uint>((layersBegin - origin) / BrickSize[2]) * layer,
-    static_cast<cl_uint>((layersEnd - 1 - origin) / BrickSize[2] + 1) * layer };
+  const auto end = static_cast<cl_uint>((layersEnd - 1 - origin) / BrickSize[2] + 1);
+  for (auto z = static_cast<cl_uint>((layersBegin - origin) / BrickSize[2]); z < end;
+       z += BricksInPile)
+  {
+    for (cl_uint column = 0; column < layer; ++column)
+    {
+      for (cl_uint i = z; i < std::min(z + BricksInPile, end); ++i)
+      {
+        bricks.push_back(i * layer + column);
+      }
+    }
+  }
 }
 
 BrickGrid DeviceLattice::GetBrickGrid() const

@@ -78,12 +78,15 @@ public:
   cl::NDRange GetVertexRange(int planes) const;
   cl::NDRange GetVertexGroup() const;
 
-  /// The bricks that the cells are worked on in: how many there are on an axis and altogether, and
-  /// the first and one past the last of some layers of cells. Their numbers grow with x, then y,
-  /// then z.
+  /// The bricks that the cells are worked on in: how many there are on an axis and altogether.
+  /// Their numbers grow with x, then y, then z.
   int GetNumberOfBricks(int axis) const;
   std::size_t GetNumberOfBricks() const;
-  std::pair<cl_uint, cl_uint> GetBrickRange(int layersBegin, int layersEnd) const;
+  /// So many bricks, each above the one before, are worked on one after the other where all are:
+  /// the positions of vertices between them are found once.
+  static constexpr cl_uint BricksInPile = 2;
+  /// Appends the bricks of some layers of cells, pile by pile.
+  void AppendBricks(int layersBegin, int layersEnd, std::vector<cl_uint>& bricks) const;
 
   BrickGrid GetBrickGrid() const;
   /// Those of the parts of the bricks, of a mesh, on a processor, where the lattice is one chunk.

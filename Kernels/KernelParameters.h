@@ -34,6 +34,7 @@ typedef struct
   int BrickCount[3];  // bricks on each axis
   int ListBegin;      // place in the list of bricks of the first one to work on
   int ListEnd;        // and one past the last
+  int Portion;        // bricks of the list that a work-item takes at once
 } KernelParameters;
 
 // The undeformed position of the voxels with one index on an axis, in 1/256 output voxel: a whole

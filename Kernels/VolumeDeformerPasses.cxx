@@ -162,6 +162,7 @@ void VolumeDeformer::Internals::RunBricks(
   {
     p.ListBegin = static_cast<int>(begin);
     p.ListEnd = static_cast<int>(std::min(begin + step, bricks.size()));
+    p.Portion = 1;
     this->SetResamplingArguments(kernel, chunk, output, true, p);
     this->LaunchBricks(kernel, p);
     this->ReportLaunch(request, previous);
@@ -172,18 +173,12 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
 {
   const bool lanes = this->UseLanes(request.Method, output);
   cl::Kernel kernel = this->MakeResamplingKernel(lanes);
-  if (lanes)
+  if (lanes && this->Mesh->GetNumberOfBricks() >> DEFORMVOLUME_BRICK_BITS)
   {
-    std::vector<cl_uint> bricks(this->Mesh->GetNumberOfBricks());
-    if (bricks.size() >> DEFORMVOLUME_BRICK_BITS)
-    {
-      throw Error("The volume has more than 10^11 voxels. Use a smaller volume.");
-    }
-    std::iota(
-      bricks.begin(), bricks.end(), cl_uint{ DEFORMVOLUME_WHOLE_BRICK } << DEFORMVOLUME_BRICK_BITS);
-    this->Bricks = this->SendBuffer(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
+    throw Error("The volume has more than 10^11 voxels. Use a smaller volume.");
   }
-  cl::Event previous;
+  std::vector<std::pair<const LatticeChunk*, KernelParameters>> launches;
+  std::vector<cl_uint> bricks;
   for (const LatticeChunk& chunk : this->Mesh->GetChunks())
   {
     for (int begin = chunk.LayersBegin; begin < chunk.LayersEnd;)
@@ -196,32 +191,44 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
       p.LayersEnd = std::min(begin + step, chunk.LayersEnd);
       p.Pass = pass;
       output.SetParameters(p);
-      const std::pair<cl_uint, cl_uint> bricks =
-        this->Mesh->GetBrickRange(p.LayersBegin, p.LayersEnd);
-      p.ListBegin = static_cast<int>(bricks.first);
-      p.ListEnd = static_cast<int>(bricks.second);
-      this->SetResamplingArguments(kernel, chunk, output, lanes, p);
-      if (lanes)
-      {
-        this->LaunchBricks(kernel, p);
-      }
-      else
-      {
-        // A work-group takes a block; on a processor its only item does.
-        const bool processor = this->Context->GetDevice().IsProcessor;
-        const std::size_t group =
-          processor && !this->WorkGroupSize ? 1 : this->GetGroupSize(kernel);
-        const auto count = [](int cells, int size)
-        { return static_cast<std::size_t>((cells + size - 1) / size); };
-        this->Launch(kernel,
-          cl::NDRange(group * count(p.Size[0] - 1, DEFORMVOLUME_BLOCK_X),
-            count(p.Size[1] - 1, DEFORMVOLUME_BLOCK_Y),
-            count(p.LayersEnd - p.LayersBegin, DEFORMVOLUME_BLOCK_Z)),
-          cl::NDRange(group, 1, 1));
-      }
-      this->ReportLaunch(request, previous);
+      p.ListBegin = static_cast<int>(bricks.size());
+      this->Mesh->AppendBricks(p.LayersBegin, p.LayersEnd, bricks);
+      p.ListEnd = static_cast<int>(bricks.size());
+      p.Portion = static_cast<int>(DeviceLattice::BricksInPile);
+      launches.emplace_back(&chunk, p);
       begin = p.LayersEnd;
     }
+  }
+  if (lanes)
+  {
+    for (cl_uint& brick : bricks)
+    {
+      brick |= cl_uint{ DEFORMVOLUME_WHOLE_BRICK } << DEFORMVOLUME_BRICK_BITS;
+    }
+    this->Bricks = this->SendBuffer(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
+  }
+  cl::Event previous;
+  for (const auto& [chunk, p] : launches)
+  {
+    this->SetResamplingArguments(kernel, *chunk, output, lanes, p);
+    if (lanes)
+    {
+      this->LaunchBricks(kernel, p);
+    }
+    else
+    {
+      // A work-group takes a block; on a processor its only item does.
+      const bool processor = this->Context->GetDevice().IsProcessor;
+      const std::size_t group = processor && !this->WorkGroupSize ? 1 : this->GetGroupSize(kernel);
+      const auto count = [](int cells, int size)
+      { return static_cast<std::size_t>((cells + size - 1) / size); };
+      this->Launch(kernel,
+        cl::NDRange(group * count(p.Size[0] - 1, DEFORMVOLUME_BLOCK_X),
+          count(p.Size[1] - 1, DEFORMVOLUME_BLOCK_Y),
+          count(p.LayersEnd - p.LayersBegin, DEFORMVOLUME_BLOCK_Z)),
+        cl::NDRange(group, 1, 1));
+    }
+    this->ReportLaunch(request, previous);
   }
 }
 
