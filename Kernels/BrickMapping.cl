@@ -121,7 +121,8 @@ static float16 FollowFourLinks(const Mapping* m, __global const VertexLink* link
   const int4 t1 = m->Tetrahedra[links[1].Tetrahedron];
   const int4 t2 = m->Tetrahedra[links[2].Tetrahedron];
   const int4 t3 = m->Tetrahedra[links[3].Tetrahedron];
-#define FOUR_NODES(k) (float16)(m->Nodes[t0.k], m->Nodes[t1.k], m->Nodes[t2.k], m->Nodes[t3.k])
+#define FOUR_NODES(k)                                                                              \
+  (float16)(NODE(m->Nodes, t0.k), NODE(m->Nodes, t1.k), NODE(m->Nodes, t2.k), NODE(m->Nodes, t3.k))
   return MULTIPLY_ADD(FOUR_NODES(w), d,
     MULTIPLY_ADD(FOUR_NODES(z), c, MULTIPLY_ADD(FOUR_NODES(y), b, FOUR_NODES(x) * a)));
 }

@@ -112,8 +112,9 @@ void BrickPoints::Collect(const BrickGrid& grid, const Tetrahedron* tetrahedra,
           if (seenTetrahedra[part][tetrahedron] != mark)
           {
             seenTetrahedra[part][tetrahedron] = mark;
-            for (const std::int32_t node : tetrahedra[tetrahedron])
+            for (const std::int32_t place : tetrahedra[tetrahedron])
             {
+              const std::int32_t node = place / DEFORMVOLUME_NODE_PLACES;
               if (seenNodes[part][node] != mark)
               {
                 seenNodes[part][node] = mark;

@@ -9,7 +9,8 @@
 //
 // What the host puts in front of this text: MAPPING, one of
 //   MAPPING_LINKS  links: 16 bytes a voxel (tetrahedron, three barycentric weights); tetrahedra:
-//                  int4; nodes: float4, displacement in output voxels
+//                  int4, the places of nodes (DEFORMVOLUME_NODE_PLACES); nodes: float4,
+//                  displacement in output voxels
 //   MAPPING_RUNS   runs of voxels in one tetrahedron, see RunMapping.cl
 //   MAPPING_FIELD  vectors: float4 a point of the field, displacement in output voxels; trilinear
 // and rest: for each index on x, then y, then z the undeformed position as a whole number of 1/256
@@ -26,6 +27,9 @@ typedef struct
   int Tetrahedron;
   float Weights[3];
 } VertexLink;
+
+// A node, of an array of these, by what a tetrahedron names it by.
+#define NODE(nodes, place) (*(__global const float4*)((__global const float2*)(nodes) + (place)))
 
 #define LARGEST 4194303.0f // 1/256 voxels: about 2^14 voxels
 #define ROUND_TO_INTEGER 12582912.0f // 1.5 * 2^23: added to v and subtracted again, v is rounded
@@ -93,9 +97,9 @@ static float4 FollowLink(const Mapping* m, __global const VertexLink* link)
   const float b = link->Weights[1];
   const float c = link->Weights[2];
   const float d = 1.0f - a - b - c;
-  return MULTIPLY_ADD(m->Nodes[t.w], (float4)d,
-    MULTIPLY_ADD(m->Nodes[t.z], (float4)c,
-      MULTIPLY_ADD(m->Nodes[t.y], (float4)b, m->Nodes[t.x] * a)));
+  return MULTIPLY_ADD(NODE(m->Nodes, t.w), (float4)d,
+    MULTIPLY_ADD(NODE(m->Nodes, t.z), (float4)c,
+      MULTIPLY_ADD(NODE(m->Nodes, t.y), (float4)b, NODE(m->Nodes, t.x) * a)));
 }
 
 static float4 Displacement(const Mapping* m, int x, int y, int z, const KernelParameters* p)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DeviceLattice.h"
 
+#include "HostThreads.h"
 #include "KernelProgram.h"
 #include "VertexRuns.h"
 
@@ -32,6 +33,22 @@ private:
 };
 
 } // namespace
+
+std::vector<Tetrahedron> NameNodePlaces(
+  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra)
+{
+  std::vector<Tetrahedron> places(numberOfTetrahedra);
+  RunOnParts(numberOfTetrahedra, 1 << 16,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        std::transform(tetrahedra[t].begin(), tetrahedra[t].end(), places[t].begin(),
+          [](std::int32_t node) { return DEFORMVOLUME_NODE_PLACES * node; });
+      }
+    });
+  return places;
+}
 
 DeviceLattice::DeviceLattice(OpenCLContext& context, const cl::CommandQueue& queue,
   const Lattice& lattice, std::size_t bytesPerVoxel, std::uint64_t allocationLimit, bool withLinks)

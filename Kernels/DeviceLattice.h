@@ -14,6 +14,10 @@
 namespace deformvolume
 {
 
+/// Tetrahedra as the device has them, with the places of their nodes (DEFORMVOLUME_NODE_PLACES).
+std::vector<Tetrahedron> NameNodePlaces(
+  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra);
+
 /// A range of cell layers of the sampling mesh with the vertex planes that they and their
 /// neighbours need: a volume over the device's allocation limit is held in several.
 struct LatticeChunk

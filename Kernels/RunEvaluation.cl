@@ -24,10 +24,10 @@ __kernel void EvaluateTetrahedra(__global const REAL* restrict rest,
   __global const REAL* weights = origin + 3;
   __global const REAL* gradients = origin + 6;
   const int4 t = tetrahedra[owners[id]];
-  __global const float* a = (__global const float*)(nodes + t.x);
-  __global const float* b = (__global const float*)(nodes + t.y);
-  __global const float* c = (__global const float*)(nodes + t.z);
-  __global const float* d = (__global const float*)(nodes + t.w);
+  __global const float* a = (__global const float*)&NODE(nodes, t.x);
+  __global const float* b = (__global const float*)&NODE(nodes, t.y);
+  __global const float* c = (__global const float*)&NODE(nodes, t.z);
+  __global const float* d = (__global const float*)&NODE(nodes, t.w);
   __global TetrahedronRecord* record = records + id;
   for (int axis = 0; axis < 3; ++axis)
   {

@@ -2,7 +2,6 @@
 #include "VolumeDeformerInternals.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace deformvolume
 {
@@ -145,8 +144,9 @@ void VolumeDeformer::Internals::SendTetrahedra(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes)
 {
   this->NumberOfTetrahedra = numberOfTetrahedra;
+  const std::vector<Tetrahedron> places = NameNodePlaces(tetrahedra, numberOfTetrahedra);
   this->Tetrahedra =
-    this->SendBuffer(tetrahedra, numberOfTetrahedra * sizeof(Tetrahedron), this->Tetrahedra);
+    this->SendBuffer(places.data(), numberOfTetrahedra * sizeof(Tetrahedron), this->Tetrahedra);
   this->NumberOfNodes = numberOfNodes;
   this->NodesSet = false;
   this->LastVectorsSent = false;

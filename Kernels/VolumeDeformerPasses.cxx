@@ -6,7 +6,6 @@
 #include "KernelProgram.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace deformvolume
 {

@@ -168,7 +168,8 @@ public:
   Mapped Map(bool byRuns, const std::vector<float>& displacements, const unsigned char* blanked)
   {
     this->Mesh.SetBlanked(blanked);
-    const cl::Buffer tetrahedra = this->Send(this->Case.Tetrahedra);
+    const cl::Buffer tetrahedra =
+      this->Send(NameNodePlaces(this->Case.Tetrahedra.data(), this->Case.Tetrahedra.size()));
     std::vector<float> padded;
     for (std::size_t i = 0; i < displacements.size(); i += 3)
     {
