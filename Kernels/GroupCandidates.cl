@@ -14,14 +14,15 @@
 typedef struct
 {
   Group Cells;
-  INTS There;       // cells that have a vertex with a position, and none beyond the volume
-  INTS Fit;         // of these the small ones all of whose tetrahedra are active and have positions
+  uint There;       // cells that have a vertex with a position, and none beyond the volume, as bits
+  uint Fit;         // of these the small ones all of whose tetrahedra are active and have positions
+  uint Some;        // of these the ones that have candidates
   FLOATS Extent;    // the longest edge of the box
   FLOATS Reach;     // the extent times the sum of the box's three faces
   INTS First[3];    // the first candidate, in voxels of the output
   INTS Count[3];    // how many on each axis
   INTS Place;       // of the first one in the output
-  INTS Number;      // how many in all, of cells that are small and whole
+  INTS Number;      // how many in all
   INTS Box;         // cells that are boxes, if HasBoxes
   int HasBoxes;
   int Skip; // no cell touches a voxel to be won
@@ -149,7 +150,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   const Group* const group = &c->Cells;
   const FLOATS sizeX = b->HighX - b->LowX, sizeY = b->HighY - b->LowY, sizeZ = b->HighZ - b->LowZ;
   const FLOATS extent = Most(sizeX, Most(sizeY, sizeZ));
-  const INTS there = (b->LowX > 0.5f * NOT_THERE) & (b->LowX < 0.5f * NO_SOURCE);
+  const uint there = LaneBits((b->LowX > 0.5f * NOT_THERE) & (b->LowX < 0.5f * NO_SOURCE));
   c->There = there;
   c->Extent = extent;
   c->Reach = extent * fma(sizeX, sizeY, sizeZ * (sizeX + sizeY));
@@ -162,15 +163,15 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   INTS rises = 0;
   const uint sameX = SAME_FIRST_TWO(0), sameY = SAME_FIRST_TWO(1), sameZ = SAME_FIRST_TWO(2);
   c->HasBoxes =
-    (((sameX & sameY) | ((sameX ^ sameY) & sameZ)) & ~(sameX & sameY & sameZ) & LaneBits(there)) != 0;
+    (((sameX & sameY) | ((sameX ^ sameY) & sameZ)) & ~(sameX & sameY & sameZ) & there) != 0;
   if (c->HasBoxes)
   {
     box = FindBoxes(group, Mirror(group->X, group->Y, group->Z, p), &rises);
-    c->HasBoxes = LaneBits(there & box) != 0;
+    c->HasBoxes = (there & LaneBits(box)) != 0;
   }
 
   // Candidates are half-open inside the mesh: by the fill rule no sample on the upper side is taken.
-  INTS whole = -1;
+  uint whole = there;
   FLOATS toEndX = ALMOST_ONE, toEndY = ALMOST_ONE, toEndZ = ALMOST_ONE;
   if (border || p->Pass != DEFORMVOLUME_PASS_DIRECT)
   {
@@ -183,14 +184,14 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
     if (p->HasState || c->HasBoxes)
     {
       StatesOfGroup(mesh, group->X, group->Y, group->Z, &state, p);
-      whole = state.Whole;
+      whole = there & LaneBits(state.Whole);
     }
     // Boxes on the border leave what is on their high sides to the next cells, if there are any. That the
     // high sides are the upper ones is wanted for that.
     if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && c->HasBoxes)
     {
       const INTS inner = state.Interior == 255;
-      box &= there & (inner | ((state.Regular == 255) & rises));
+      box &= LanesOf(there) & (inner | ((state.Regular == 255) & rises));
       output->Assumed |= LaneBits(box & ~inner) != 0;
       const INTS isLastX = group->X + 2 * LANE_INDEX == p->Size[0] - 2;
       toEndX = (box & ~isLastX) ? ALMOST_ONE : toEndX;
@@ -207,7 +208,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
       {
         toEndX = toEndY = toEndZ = box ? (FLOATS)(ALMOST_ONE) : (FLOATS)(1.0f);
       }
-      TouchBoxes(there & box, b, output, p);
+      TouchBoxes(LanesOf(there) & box, b, output, p);
     }
   }
   INTS firstX = FIRST_OF(b->LowX);
@@ -216,15 +217,16 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   INTS countX = END_OF(b->HighX, toEndX, p->OutputSize[0]) - firstX;
   INTS countY = END_OF(b->HighY, toEndY, p->OutputSize[1]) - firstY;
   INTS countZ = END_OF(b->HighZ, toEndZ, p->OutputSize[2]) - firstZ;
-  const INTS some = there & (countX > 0) & (countY > 0) & (countZ > 0);
+  const uint some = there & LaneBits((countX > 0) & (countY > 0) & (countZ > 0));
   c->Skip = 0;
   if (DEFORMVOLUME_IS_CLOSED(p->Pass))
   {
-    const int first[3] = { LeastAmong(some, firstX), LeastAmong(some, firstY),
-      LeastAmong(some, firstZ) };
-    const int last[3] = { MostAmong(some, firstX + countX - 1),
-      MostAmong(some, firstY + countY - 1), MostAmong(some, firstZ + countZ - 1) };
-    c->Skip = !LaneBits(some) || !AnyUnsettled(output->Patches, first, last, p);
+    const INTS among = LanesOf(some);
+    const int first[3] = { LeastAmong(among, firstX), LeastAmong(among, firstY),
+      LeastAmong(among, firstZ) };
+    const int last[3] = { MostAmong(among, firstX + countX - 1),
+      MostAmong(among, firstY + countY - 1), MostAmong(among, firstZ + countZ - 1) };
+    c->Skip = !some || !AnyUnsettled(output->Patches, first, last, p);
   }
   if (p->IsPart)
   {
@@ -241,9 +243,8 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
     countY = WHOLE_END(b->HighY, toEndY, 1) - firstY;
     countZ = WHOLE_END(b->HighZ, toEndZ, 2) - firstZ;
   }
-  const INTS fit = there & whole & (extent <= MAXIMUM_EXTENT);
-  const INTS number = some & fit & (countX * countY * countZ);
-  c->Fit = fit;
+  c->Fit = whole & LaneBits(extent <= MAXIMUM_EXTENT);
+  c->Some = some & c->Fit;
   c->First[0] = firstX;
   c->First[1] = firstY;
   c->First[2] = firstZ;
@@ -251,7 +252,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   c->Count[1] = countY;
   c->Count[2] = countZ;
   c->Place = (firstZ * p->OutputSize[1] + firstY) * p->OutputSize[0] + firstX;
-  c->Number = number;
+  c->Number = countX * countY * countZ;
 }
 
 // For the two groups at place k of a row of cells, for even and for odd x: cells of the second begin at the odd

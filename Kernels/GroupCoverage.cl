@@ -114,17 +114,18 @@ static __attribute__((noinline)) INTS HoldSample(
   return held;
 }
 
-// Marks the samples of some lanes, which hold these and do not own them. x, y, z: in voxels of the output.
+// Marks the samples of some lanes, by bits, which hold these and do not own them. x, y, z: in voxels of the output.
 static __attribute__((noinline)) void TouchHeld(
-  INTS lanes, FLOATS x, FLOATS y, FLOATS z, Output* output, const KernelParameters* p)
+  uint lanes, FLOATS x, FLOATS y, FLOATS z, Output* output, const KernelParameters* p)
 {
   Lanes place[3];
   place[0].Vector = TO_INTS(x);
   place[1].Vector = TO_INTS(y);
   place[2].Vector = TO_INTS(z);
   // Part of a cell may lie beyond the output.
-  uint bits = LaneBits(lanes & (x >= 0.0f) & (x < (float)p->OutputSize[0]) & (y >= 0.0f) &
-    (y < (float)p->OutputSize[1]) & (z >= 0.0f) & (z < (float)p->OutputSize[2]));
+  uint bits = lanes &
+    LaneBits((x >= 0.0f) & (x < (float)p->OutputSize[0]) & (y >= 0.0f) &
+      (y < (float)p->OutputSize[1]) & (z >= 0.0f) & (z < (float)p->OutputSize[2]));
   FOR_EACH_LANE(lane, bits)
   {
     Touch(place[0].Lanes[lane], place[1].Lanes[lane], place[2].Lanes[lane], output, p);

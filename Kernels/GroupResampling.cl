@@ -58,14 +58,8 @@ static __attribute__((always_inline)) void ResampleGroup(
   const int exact = state != 0;
   const INTS cellX = x + 2 * LANE_INDEX;
   const int mirror = Mirror(x, y, z, p);
-  INTS there = c->There;
-  INTS fit = c->Fit;
-  if (exact)
-  {
-    const INTS chosen = ((INTS)only & LANE_BITS) != 0;
-    there &= chosen;
-    fit &= chosen;
-  }
+  const uint there = exact ? c->There & only : c->There;
+  const uint fit = c->Fit & there;
 
   // Normals: the gradients of l3, l5 and l6. They point inside.
 #define EDGE(a, v) const FLOATS a##x = X##v - X0, a##y = Y##v - Y0, a##z = Z##v - Z0;
@@ -92,7 +86,8 @@ static __attribute__((always_inline)) void ResampleGroup(
   FLOATS determinant = fma(e3z, n3z, fma(e3y, n3y, e3x * n3x));
   // Coordinates do not tell a cell from its mirror image: all its tetrahedra are inverted then.
   INTS inverted = 0;
-  if (LaneBits(fit & (determinant < 0.0f)))
+  const uint turned = LaneBits(determinant < 0.0f) & fit;
+  if (turned)
   {
     inverted = determinant < 0.0f;
 #define TURN(v) v = inverted ? -v : v;
@@ -110,21 +105,16 @@ static __attribute__((always_inline)) void ResampleGroup(
   const FLOATS leastOwn = Least(Least(b16, b43), Least(b25, b70));
   const INTS tame = (mostOwn <= determinant * -0.35f) & (leastOwn >= -determinant);
   const FLOATS bound = (tame ? (FLOATS)(3.4e-5f) : (FLOATS)(8.5e-5f)) * c->Reach;
-  const INTS nice = fit & (leastOther >= determinant * 0.015625f) & (mostOwn <= determinant * -0.125f) &
-    (leastOwn >= determinant * -2.0f) & (bound < determinant * 0.0078125f);
-  inverted &= nice;
-  const uint unsure = LaneBits(there & ~nice);
+  const uint nice = fit &
+    LaneBits((leastOther >= determinant * 0.015625f) & (mostOwn <= determinant * -0.125f) &
+      (leastOwn >= determinant * -2.0f) & (bound < determinant * 0.0078125f));
+  const uint unsure = there & ~nice;
   uint ambiguous = 0;
-  INTS number = c->Number;
   int rounds = 0;
-  if (exact || LaneBits(fit & ~nice))
-  {
-    number &= nice;
-  }
-  ushort hits[MAXIMUM_CANDIDATES]; // the cells that each round has found a sample in, as bits
+  ushort hits[MAXIMUM_CANDIDATES]; // the cells that each round has found a sample in
   uint written = 0;
-  INTS some = number > 0;
-  if (LaneBits(some))
+  uint some = c->Some & nice;
+  if (some)
   {
     // Boxes take all their candidates, whatever the second smallest weight is, from which it is told that a sample
     // is inside. Where a vertex lies on a sample its value is taken bit for bit: the weights, which rounding may
@@ -134,7 +124,7 @@ static __attribute__((always_inline)) void ResampleGroup(
     INTS box = 0;
     if (snap)
     {
-      box = nice & c->Box;
+      box = LanesOf(nice) & c->Box;
       decisive = box ? (FLOATS)(-INFINITY) : bound;
     }
     const FLOATS inverse = 1.0f / determinant;
@@ -174,15 +164,15 @@ static __attribute__((always_inline)) void ResampleGroup(
       FLOATS t0 = fma(-u2, b20, fma(-u4, b40, fma(-u1, b10, Most(l0, 0.0f))));
       const FLOATS lowA = Least(t3, t5), highA = Most(t3, t5);
       const FLOATS lowB = Least(t6, t0), highB = Most(t6, t0);
-      const INTS maybe = (Least(lowA, lowB) >= -bound) & some;
+      const uint maybe = LaneBits(Least(lowA, lowB) >= -bound) & some;
       // The second smallest weight decides: that opposite the corner may be 0.
       const FLOATS second = Least(Most(lowA, lowB), Least(highA, highB));
-      INTS hit = maybe & (second > decisive);
+      uint bits = maybe & LaneBits(second > decisive); // the cells that hold their candidate
       INTS onVertex = 0;
-      const INTS undecided = maybe & ~hit;
+      const uint undecided = maybe & ~bits;
       if (exact)
       {
-        if (LaneBits(undecided))
+        if (undecided)
         {
           const FLOATS sample[3] = { rx, ry, rz };
           INTS simplex;
@@ -196,28 +186,28 @@ static __attribute__((always_inline)) void ResampleGroup(
               (((simplex & LOW_SIDE(1, mirror)) != 0) | (INTS)(z == p->Size[2] - 2 ? -1 : 0)) &
               (((simplex & LOW_SIDE(2, mirror)) != 0) | (INTS)(y == p->Size[1] - 2 ? -1 : 0));
             held = outer ? first & regular : held;
-            ambiguous |= LaneBits(undecided & outer & ~regular);
-            output->Assumed |= LaneBits(undecided & outer) != 0;
+            ambiguous |= undecided & LaneBits(outer & ~regular);
+            output->Assumed |= (undecided & LaneBits(outer)) != 0;
           }
-          hit |= undecided & held;
+          bits |= undecided & LaneBits(held);
           if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
           {
-            TouchHeld(undecided & ~held & (simplex != 0), rx + X0, ry + Y0, rz + Z0, output, p);
+            TouchHeld(undecided & LaneBits(~held & (simplex != 0)), rx + X0, ry + Y0, rz + Z0,
+              output, p);
           }
-          onVertex = undecided & ((simplex & (simplex - 1)) == 0);
+          onVertex = LanesOf(undecided) & ((simplex & (simplex - 1)) == 0);
         }
       }
       else
       {
-        ambiguous |= LaneBits(undecided);
+        ambiguous |= undecided;
       }
       if (p->IsPart)
       {
         const FLOATS sx = rx + X0, sy = ry + Y0, sz = rz + Z0;
-        hit &= (sx >= 0.0f) & (sx < (float)p->OutputSize[0]) & (sy >= 0.0f) &
-          (sy < (float)p->OutputSize[1]) & (sz >= 0.0f) & (sz < (float)p->OutputSize[2]);
+        bits &= LaneBits((sx >= 0.0f) & (sx < (float)p->OutputSize[0]) & (sy >= 0.0f) &
+          (sy < (float)p->OutputSize[1]) & (sz >= 0.0f) & (sz < (float)p->OutputSize[2]));
       }
-      const uint bits = LaneBits(hit);
       if (snap)
       {
         const FLOATS sx = rx + X0, sy = ry + Y0, sz = rz + Z0;
@@ -259,8 +249,8 @@ static __attribute__((always_inline)) void ResampleGroup(
         kept = 0;
         StoreFound(found, group, output, p ARRAY_ARGUMENTS);
       }
-      some = number > ++rounds;
-      if (!LaneBits(some))
+      some &= LaneBits(c->Number > ++rounds);
+      if (!some)
       {
         break;
       }
@@ -280,7 +270,7 @@ static __attribute__((always_inline)) void ResampleGroup(
       StoreFound(found, group, output, p ARRAY_ARGUMENTS);
     }
   }
-  output->Inverted += 5 * popcount(LaneBits(inverted) & ~ambiguous);
+  output->Inverted += 5 * popcount(turned & nice & ~ambiguous);
   const uint again = unsure | ambiguous;
   if (again)
   {

@@ -78,6 +78,11 @@ static uint LaneBits(INTS mask)
 #endif
 }
 
+static INTS LanesOf(uint bits)
+{
+  return ((INTS)bits & LANE_BITS) != 0;
+}
+
 // Writes the lanes with set bits to a place, one after the other; what comes behind them there is lost.
 static void Append(INTS v, uint bits, int* place)
 {
