@@ -14,16 +14,20 @@
 // central tetrahedron, and so are the tj, so that nothing waits for a division by it; where D is negative, the
 // normals are turned.
 //
-// The fill rule stays exact. Positions are exact in float (cells under 8 voxels, steps of 1/256),
-// and so are the normals. The error of tj is at most d = 8.5e-5 (3.4e-5 where -1 <= bi <= -0.35) times the cell's
-// extent times the largest 1-norm of the normals: with u = 2^-24 and k = extent times that norm >= D, the three
-// roundings of lj, of D and of the bj are at most 3 u k, the error of l0 = (D - l3) - (l5 + l6) is at most
-// (4 * 3 + 2 + 2 + 4) u k, and that of tj no more than (2 M + 1) times their sum with M = max |bj / bi|. The 1-norm
-// is at most the sum of the areas of the box's three faces, as each component of a normal is twice the area of a
-// triangle in such a face; in cells that are not turned it is just that. When three of the
-// tj exceed d, the sample is inside; when one is under -d, outside. Cells with a sample in between
-// are repeated: with edge functions in integers, LANES cells at once again; where they are large or
-// bent, or what surrounds them is not all there, by ResampleCell.
+// The fill rule stays exact. Positions are exact in float (cells under 8 voxels, steps of 1/256), and so are
+// the normals. Let e = 2^-24, and k >= D the cell's extent times the largest 1-norm of the normals. The three
+// roundings of l3, l5, l6, of D and of the like bj are at most 3 e k, and the errors of l0 = (D - l3) - (l5 +
+// l6) and of the bj with j = 0 at most (4 * 3 + 2 + 2 + 4) e k. With M = max |bj / bi|, and where u is not
+// over 1, as other samples are outside anyway, tj is off by the errors of lj and bj, M times those of li and
+// bi, 7 M e k as u has seven roundings, and its own rounding: at most (7 + 47 M) e k, when i is 0. A second
+// li that is negative only by its error adds M times that, which makes (7 + 56 M) e k for all of them. As the
+// bj are at least 1/64 and bi is at most -1/8, M is at most (1 - bi) / -bi = 9; where the bj are at least
+// 0.35 and bi is at most -0.42, as in cells that are hardly bent, M is at most (0.3 - bi) / -bi < 1.72: so d
+// = 3.2e-5 k, or 6.5e-6 k. The 1-norm is at most the sum of the areas of the box's three faces, as each
+// component of a normal is twice the area of a triangle in such a face. When three of the tj exceed d, the
+// sample is inside; when one is under -d, outside. Cells with a sample in between are repeated: with edge
+// functions in integers, LANES cells at once again; where they are large or bent, or what surrounds them is
+// not all there, by ResampleCell.
 
 // Barycentric coordinates of vertex c relative to the central tetrahedron.
 #define COORDINATES(c)                                                                             \
@@ -103,8 +107,8 @@ static __attribute__((always_inline)) void ResampleGroup(
       Least(Least(b20, b73), Least(b75, b76)));
   const FLOATS mostOwn = Most(Most(b16, b43), Most(b25, b70));
   const FLOATS leastOwn = Least(Least(b16, b43), Least(b25, b70));
-  const INTS tame = (mostOwn <= determinant * -0.35f) & (leastOwn >= -determinant);
-  const FLOATS bound = (tame ? (FLOATS)(3.4e-5f) : (FLOATS)(8.5e-5f)) * c->Reach;
+  const INTS tame = (mostOwn <= determinant * -0.42f) & (leastOther >= determinant * 0.35f);
+  const FLOATS bound = (tame ? (FLOATS)(6.5e-6f) : (FLOATS)(3.2e-5f)) * c->Reach;
   const uint nice = fit &
     LaneBits((leastOther >= determinant * 0.015625f) & (mostOwn <= determinant * -0.125f) &
       (leastOwn >= determinant * -2.0f) & (bound < determinant * 0.0078125f));
