@@ -55,7 +55,7 @@ class BrickPoints
 {
 public:
   BrickPoints() = default;
-  /// tetrahedra: as on the device (DEFORMVOLUME_NODE_PLACES).
+  /// From links or runs. tetrahedra: as on the device (DEFORMVOLUME_NODE_PLACES).
   static BrickPoints FromLinks(const BrickGrid& grid, const VertexLink* links,
     const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
   /// rest: 15 numbers a record, and owners: the tetrahedron of each (RunMapping.cl).

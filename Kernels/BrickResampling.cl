@@ -98,7 +98,8 @@ static int EndIn(uint item, int halves, int cells)
 }
 
 // A brick of cells, or some of its sections. item: which (DEFORMVOLUME_BRICK_BITS). isAbove: whether it is the
-// whole brick above the one before, so that its first plane of vertices is in the rows, with their flags.
+// whole brick above the one before, so that its first plane of vertices is in the rows, with their flags (lists
+// hold no bricks without cells).
 static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __global char* coverage,
   __global KEY* winners, __global char* patches, __global uint* counters, __local float* rows,
   RowFlags (*flags)[ROWS], const KernelParameters* p ARRAY_PARAMETERS)

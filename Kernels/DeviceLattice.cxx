@@ -363,13 +363,13 @@ void DeviceLattice::AppendBricks(int layersBegin, int layersEnd, std::vector<cl_
   const int origin = this->GetBrickOrigin(2);
   const auto layer = static_cast<cl_uint>(this->GetNumberOfBricks(0)) *
     static_cast<cl_uint>(this->GetNumberOfBricks(1));
+  const auto pile = static_cast<cl_uint>(BricksInPile);
   const auto end = static_cast<cl_uint>((layersEnd - 1 - origin) / BrickSize[2] + 1);
-  for (auto z = static_cast<cl_uint>((layersBegin - origin) / BrickSize[2]); z < end;
-       z += BricksInPile)
+  for (auto z = static_cast<cl_uint>((layersBegin - origin) / BrickSize[2]); z < end; z += pile)
   {
     for (cl_uint column = 0; column < layer; ++column)
     {
-      for (cl_uint i = z; i < std::min(z + BricksInPile, end); ++i)
+      for (cl_uint i = z; i < std::min(z + pile, end); ++i)
       {
         bricks.push_back(i * layer + column);
       }
@@ -393,12 +393,12 @@ BrickPoints DeviceLattice::MakeBrickPoints(
   const cl::Buffer& tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes) const
 {
   const LatticeChunk& chunk = this->Chunks.front();
-  const MappedBuffer<const Tetrahedron> nodes(this->Queue, tetrahedra, CL_MAP_READ);
+  const MappedBuffer<const Tetrahedron> places(this->Queue, tetrahedra, CL_MAP_READ);
   if (!this->HasRuns())
   {
     const MappedBuffer<const VertexLink> links(this->Queue, chunk.Links, CL_MAP_READ);
-    return BrickPoints::FromLinks(
-      this->GetBrickGrid().GetParts(), links.Get(), nodes.Get(), numberOfTetrahedra, numberOfNodes);
+    return BrickPoints::FromLinks(this->GetBrickGrid().GetParts(), links.Get(), places.Get(),
+      numberOfTetrahedra, numberOfNodes);
   }
   const MappedBuffer<const VertexRun> runs(this->Queue, chunk.Runs, CL_MAP_READ);
   const MappedBuffer<const std::uint32_t> begins(this->Queue, chunk.RowBegins, CL_MAP_READ);
@@ -415,7 +415,7 @@ BrickPoints DeviceLattice::MakeBrickPoints(
     std::copy_n(records.Get(), rest.size(), rest.begin());
   }
   return BrickPoints::FromRuns(this->GetBrickGrid().GetParts(), runs.Get(), begins.Get(),
-    rest.data(), owners.Get(), nodes.Get(), numberOfTetrahedra, numberOfNodes);
+    rest.data(), owners.Get(), places.Get(), numberOfTetrahedra, numberOfNodes);
 }
 
 cl::NDRange DeviceLattice::GetVertexRange(int planes) const

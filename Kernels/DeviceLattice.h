@@ -88,7 +88,7 @@ public:
   std::size_t GetNumberOfBricks() const;
   /// So many bricks, each above the one before, are worked on one after the other where all are:
   /// the positions of vertices between them are found once.
-  static constexpr cl_uint BricksInPile = 2;
+  static constexpr int BricksInPile = 2;
   /// Appends the bricks of some layers of cells, pile by pile.
   void AppendBricks(int layersBegin, int layersEnd, std::vector<cl_uint>& bricks) const;
 

@@ -22,7 +22,7 @@ typedef struct
   INTS First[3];    // the first candidate, in voxels of the output
   INTS Count[3];    // how many on each axis
   INTS Place;       // of the first one in the output
-  INTS Number;      // how many in all
+  INTS Number;      // how many in all, in cells that have some
   INTS Box;         // cells that are boxes, if HasBoxes
   int HasBoxes;
   int Skip; // no cell touches a voxel to be won

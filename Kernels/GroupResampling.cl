@@ -14,20 +14,24 @@
 // central tetrahedron, and so are the tj, so that nothing waits for a division by it; where D is negative, the
 // normals are turned.
 //
-// The fill rule stays exact. Positions are exact in float (cells under 8 voxels, steps of 1/256), and so are
-// the normals. Let e = 2^-24, and k >= D the cell's extent times the largest 1-norm of the normals. The three
+// The fill rule stays exact. Positions are exact in float (cells under 8 voxels, steps of 1/256), and so are the
+// normals. Let e = 2^-24, and k >= D the cell's extent times the largest 1-norm of the normals. The three
 // roundings of l3, l5, l6, of D and of the like bj are at most 3 e k, and the errors of l0 = (D - l3) - (l5 +
-// l6) and of the bj with j = 0 at most (4 * 3 + 2 + 2 + 4) e k. With M = max |bj / bi|, and where u is not
-// over 1, as other samples are outside anyway, tj is off by the errors of lj and bj, M times those of li and
-// bi, 7 M e k as u has seven roundings, and its own rounding: at most (7 + 47 M) e k, when i is 0. A second
-// li that is negative only by its error adds M times that, which makes (7 + 56 M) e k for all of them. As the
-// bj are at least 1/64 and bi is at most -1/8, M is at most (1 - bi) / -bi = 9; where the bj are at least
-// 0.35 and bi is at most -0.42, as in cells that are hardly bent, M is at most (0.3 - bi) / -bi < 1.72: so d
-// = 3.2e-5 k, or 6.5e-6 k. The 1-norm is at most the sum of the areas of the box's three faces, as each
-// component of a normal is twice the area of a triangle in such a face. When three of the tj exceed d, the
-// sample is inside; when one is under -d, outside. Cells with a sample in between are repeated: with edge
-// functions in integers, LANES cells at once again; where they are large or bent, or what surrounds them is
-// not all there, by ResampleCell.
+// l6) and of the bj with j = 0 at most (4 * 3 + 2 + 2 + 4) e k. With M = max |bj / bi|, and where u is not over
+// 1, tj is off by the errors of lj and bj, M times those of li and bi, 7 M e k as u has six roundings that count
+// and divisions may be off by more than one, and three roundings of its own: at most (9 + 47 M) e k, when i is
+// 0. Up to two more li that are negative only by their error add M times that, 6 M e k, which makes (9 + 53 M) e
+// k. (Where u is over 1 the tj add up to D (1 - u), and the least of them is clearly negative as long as d < D /
+// 3, which cells that are not too flat keep by far.) As the bj are at least 1/64 and bi is at most -1/8, M is at
+// most (1 - bi) / -bi = 9; where the bj are at least 0.35 and bi is at most -0.42, as in cells that are hardly
+// bent, M is at most (0.3 - bi) / -bi < 1.72. So d = 3.2e-5 k, or 6.5e-6 k, which is more by 5 %. The 1-norm is
+// at most the sum of the areas of the box's three faces, as each component of a normal is twice the area of a
+// triangle in such a face. When three of the tj exceed d, the sample is inside; when one is under -d, outside.
+// Cells with a sample in between are repeated: with edge functions in integers, LANES cells at once again; where
+// they are large or bent, or what surrounds them is not all there, by ResampleCell.
+
+// Cells that are flatter are left out: d / D, which weights are off by at most, is 1.5e-3 or 7.4e-3 in others.
+#define MOST_REACH 4.35e-3f
 
 // Barycentric coordinates of vertex c relative to the central tetrahedron.
 #define COORDINATES(c)                                                                             \
@@ -111,7 +115,7 @@ static __attribute__((always_inline)) void ResampleGroup(
   const FLOATS bound = (tame ? (FLOATS)(6.5e-6f) : (FLOATS)(3.2e-5f)) * c->Reach;
   const uint nice = fit &
     LaneBits((leastOther >= determinant * 0.015625f) & (mostOwn <= determinant * -0.125f) &
-      (leastOwn >= determinant * -2.0f) & (bound < determinant * 0.0078125f));
+      (leastOwn >= determinant * -2.0f) & (c->Reach * MOST_REACH < determinant));
   const uint unsure = there & ~nice;
   uint ambiguous = 0;
   int rounds = 0;

@@ -71,8 +71,8 @@ typedef struct
   float Padding;
 } TetrahedronRecord;
 
-// Places, of 8 bytes, that a node takes of those that tetrahedra on the device name their nodes by:
-// processors add eight times a number to an address at no cost, but not sixteen times.
+// Tetrahedra on the device name a node by its place in units of 8 bytes, of which it takes this
+// many: processors add eight times a number to an address at no cost, but not sixteen times.
 #define DEFORMVOLUME_NODE_PLACES 2
 
 // Passes of the exact resampling kernel. What comes after the first is for voxels that several

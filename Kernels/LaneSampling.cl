@@ -45,7 +45,7 @@ typedef struct
 static void MakeLaneCells(
   __local const int* rests, uint bits, LaneCells* cells, const RasterParameters* p)
 {
-  cells->Mask = -((INTS)((int)bits) >> LANE_INDEX & 1);
+  cells->Mask = LanesOf(bits);
   INTS voxels[3];
   for (int axis = 0; axis < 3; ++axis)
   {

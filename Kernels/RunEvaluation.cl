@@ -2,7 +2,8 @@
 // The records of the tetrahedra that RunMapping.cl reads.
 //
 // Data: rest: for each record 15 reals, the origin, the weights of the first three nodes there, and the
-// gradient of each of these weights, an index a unit; owners: the tetrahedron of each record.
+// gradient of each of these weights, an index a unit; owners: the tetrahedron of each record; tetrahedra: the
+// places of their nodes (DEFORMVOLUME_NODE_PLACES).
 //
 // REAL is double where the device has it: the gradients of a thin tetrahedron are large, and only
 // their sum with the displacements is small again.

@@ -57,10 +57,6 @@ void SetSameGrid(FieldParameters& field, const Extent& extent)
 
 void CheckIndices(const Tetrahedron* tetrahedra, std::size_t count, std::size_t numberOfNodes)
 {
-  if (numberOfNodes > (std::size_t{ 1 } << 31) / DEFORMVOLUME_NODE_PLACES)
-  {
-    throw Error("The deformation mesh has more than 2^30 nodes. Use a coarser mesh.");
-  }
   for (std::size_t t = 0; t < count; ++t)
   {
     for (const std::int32_t node : tetrahedra[t])

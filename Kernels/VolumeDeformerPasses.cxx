@@ -176,6 +176,8 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
   {
     throw Error("The volume has more than 10^11 voxels. Use a smaller volume.");
   }
+  const auto units =
+    static_cast<int>(this->Context->GetDevice().Device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
   std::vector<std::pair<const LatticeChunk*, KernelParameters>> launches;
   std::vector<cl_uint> bricks;
   for (const LatticeChunk& chunk : this->Mesh->GetChunks())
@@ -190,10 +192,15 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
       p.LayersEnd = std::min(begin + step, chunk.LayersEnd);
       p.Pass = pass;
       output.SetParameters(p);
-      p.ListBegin = static_cast<int>(bricks.size());
-      this->Mesh->AppendBricks(p.LayersBegin, p.LayersEnd, bricks);
-      p.ListEnd = static_cast<int>(bricks.size());
-      p.Portion = static_cast<int>(DeviceLattice::BricksInPile);
+      if (lanes)
+      {
+        p.ListBegin = static_cast<int>(bricks.size());
+        this->Mesh->AppendBricks(p.LayersBegin, p.LayersEnd, bricks);
+        p.ListEnd = static_cast<int>(bricks.size());
+        // Piles are too much at once where there are few bricks for each unit.
+        constexpr int leastBricks = 32;
+        p.Portion = p.ListEnd - p.ListBegin < leastBricks * units ? 1 : DeviceLattice::BricksInPile;
+      }
       launches.emplace_back(&chunk, p);
       begin = p.LayersEnd;
     }
@@ -315,12 +322,11 @@ bool VolumeDeformer::Internals::RunSlab(
 int VolumeDeformer::Internals::GetLayersPerLaunch() const
 {
   constexpr std::int64_t cells = 1 << 23;
-  constexpr std::int64_t leastBricks = 2;
   const std::int64_t layer = std::int64_t{ this->Mesh->GetSize(0) } * this->Mesh->GetSize(1);
-  const std::int64_t bricks = (cells / layer + DEFORMVOLUME_BRICK_Z - 1) / DEFORMVOLUME_BRICK_Z;
-  const std::int64_t mostBricks = this->Mesh->GetSize(2) / DEFORMVOLUME_BRICK_Z + 1;
-  return static_cast<int>(std::clamp(bricks, leastBricks, std::max(mostBricks, leastBricks))) *
-    DEFORMVOLUME_BRICK_Z;
+  constexpr std::int64_t pile = DeviceLattice::BricksInPile * DEFORMVOLUME_BRICK_Z;
+  const std::int64_t piles = (cells / layer + pile - 1) / pile;
+  const std::int64_t mostPiles = this->Mesh->GetSize(2) / pile + 1;
+  return static_cast<int>(std::clamp<std::int64_t>(piles, 1, mostPiles) * pile);
 }
 
 std::size_t VolumeDeformer::Internals::GetNumberOfLaunches() const

@@ -8,6 +8,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/mat4x4.hpp>
 
+#include <algorithm>
+#include <thread>
 #include <tuple>
 
 using namespace deformvolume;
@@ -194,6 +196,22 @@ TEST(Piecewise, ThinVolumes)
   Check(MakeCase({ { 0, 1, 0, 70, 0, 1 } }, NoScale, MakeJitter(3, 0.15)));
   Check(MakeCase({ { 0, 1, -1, 0, 0, 40 } }, NoScale, MakeJitter(4, 0.15)));
   Check(MakeCase({ { 0, 130, 0, 2, 0, 2 } }, NoScale, MakeJitter(5, 0.15)));
+}
+
+// Bricks that are worked on one above the other, as they are where there are many for each
+// processor: five layers of them, the first and the last not whole, so that one has no partner.
+TEST(Piecewise, PilesOfBricks)
+{
+  const int units = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  DeformerCase jittered =
+    MakeCase({ { 0, 2, 1, 7 * 16 * units, -5, 65 } }, NoScale, MakeJitter(7, 0.15));
+  Check(jittered, Route::Mesh);
+  std::mt19937 random(8);
+  for (std::int64_t voxel = 0; voxel < jittered.GetNumberOfVoxels(); ++voxel)
+  {
+    jittered.Blanked.push_back(random() % 500 == 0 ? 8 : 0);
+  }
+  Check(jittered);
 }
 
 TEST(Piecewise, OutputSmallerThanTheDeformedVolume)
