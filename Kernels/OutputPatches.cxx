@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <numeric>
 
 namespace deformvolume
@@ -53,7 +54,14 @@ std::uint64_t CountCovered(const DeformRequest& request, const PatchRow& patches
     [&](std::int64_t voxel, std::int64_t voxels)
     {
       const signed char* row = request.Coverage + voxel;
-      covered += std::accumulate(row, row + voxels, std::uint64_t{ 0 });
+      // Eight at once: the product adds up the bytes, which are 0 or 1, in its highest one.
+      for (; voxels >= 8; voxels -= 8, row += 8)
+      {
+        std::uint64_t eight;
+        std::memcpy(&eight, row, sizeof(eight));
+        covered += eight * 0x0101010101010101U >> 56;
+      }
+      covered = std::accumulate(row, row + voxels, covered);
     });
   return covered;
 }
