@@ -58,8 +58,9 @@ struct Contestant
 
 /// A turn. Where a run takes less than this many seconds it is several: the first one finds the
 /// caches full of what others left there, which is not so while a volume is worked with, and of the
-/// rest the one in the middle counts.
-constexpr double ShortRun = 0.3;
+/// rest the one in the middle counts. In longer runs that makes no difference, so that it does not
+/// matter on which side of the limit one of two that are compared is.
+constexpr double ShortRun = 1.0;
 constexpr int RunsAfterShortOne = 3;
 
 template <typename Stage>
@@ -84,7 +85,7 @@ Measurement TakeTurn(const Contestant<Stage>& contestant, Stage& stage)
 /// Registers measurements that are taken in turn, A B C A B C and so on: when the machine becomes
 /// slower for a while it does so for all, and the ratio within a round stays. Each measurement is a
 /// turn, and a run of Google Benchmark of its own, named group/contestant, in the order of the
-/// rounds. build makes what is measured, at the first measurement; then each contestant has a turn
+/// rounds. build makes what is measured, at the first measurement; then each contestant has a run
 /// that does not count.
 template <typename Stage>
 void RegisterRounds(const std::string& group, int rounds,
