@@ -127,8 +127,8 @@ static __attribute__((noinline)) void TouchBoxes(
   }
 }
 
-// Has the processor fetch the output where the candidates of some lanes of a group begin.
-#define FETCH_OUTPUT(index, TYPE, BITS, SLOT) PREFETCH_TO_WRITE(target##index + place)
+// Has the processor fetch the output where the candidates of some lanes of a group begin, long before it is written:
+// FetchFound reaches the caches in time, and memory only where this has begun.
 static __attribute__((always_inline)) void FetchOutput(
   const GroupCandidates* c, const Output* output ARRAY_PARAMETERS)
 {

@@ -174,15 +174,20 @@ typedef struct
 
 #define KEEP_VALUE(index, TYPE, BITS, SLOT) found->Values##index[kept] = found->Values##index[i];
 
-// Has the cells claim their samples, and returns how many of these are theirs so far: the first ones then. An
-// atomic operation waits for memory, and nothing that follows goes on meanwhile: hence the loop that fetches.
-static uint KeepClaimed(Found* found, const Output* output)
+// An atomic operation waits for memory, and nothing that follows goes on meanwhile.
+static __attribute__((always_inline)) void FetchWinners(const Found* found, const Output* output)
 {
-  uint kept = 0;
   for (uint i = 0; i < found->Count; ++i)
   {
-    PREFETCH(output->Winners + (uint)found->Places[i])
+    PREFETCH_TO_WRITE(output->Winners + (uint)found->Places[i])
   }
+}
+
+// Has the cells claim their samples, and returns how many of these are theirs so far: the first ones then.
+static uint KeepClaimed(Found* found, const Output* output)
+{
+  FetchWinners(found, output);
+  uint kept = 0;
   for (uint i = 0; i < found->Count; ++i)
   {
     const uint place = found->Places[i];
@@ -191,6 +196,24 @@ static uint KeepClaimed(Found* found, const Output* output)
     kept += Claim(output->Winners + place, (KEY)(uint)found->Cells[i]);
   }
   return kept;
+}
+
+#define FETCH_OUTPUT(index, TYPE, BITS, SLOT) PREFETCH_TO_WRITE(target##index + place)
+
+// Has the processor fetch the output where the samples will be stored. Stores leave one after the other, so that
+// one that misses the innermost cache, or the page table's, keeps all others waiting. Of neighbours, which share
+// what is fetched, one in four does.
+static __attribute__((always_inline)) void FetchFound(
+  const Found* found, uint count, __global char* coverage ARRAY_PARAMETERS)
+{
+  const int apart = found->Places[count / 2] - found->Places[count / 2 + 1];
+  const uint step = abs(apart) > 64 ? 1 : 4;
+  for (uint i = 0; i < count; i += step)
+  {
+    const uint place = found->Places[i];
+    LANE_ARRAYS(FETCH_OUTPUT)
+    PREFETCH_TO_WRITE(coverage + place)
+  }
 }
 
 // Stores the samples and forgets them.
@@ -214,6 +237,7 @@ static void StoreFound(Found* found, const Group* group, Output* output,
     }
     // The last one twice, where their number is odd.
     found->Places[count] = found->Places[count - 1];
+    FetchFound(found, count, coverage ARRAY_ARGUMENTS);
     _Pragma("clang loop vectorize(disable) unroll_count(4)")
     for (uint i = 0; i < count; i += 2)
     {
@@ -223,6 +247,10 @@ static void StoreFound(Found* found, const Group* group, Output* output,
     }
     LANE_ARRAYS(LANE_STORE_ALL)
     return;
+  }
+  if (pass != DEFORMVOLUME_PASS_DIRECT)
+  {
+    FetchWinners(found, output);
   }
   for (uint i = 0; i < count; ++i)
   {
