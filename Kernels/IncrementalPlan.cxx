@@ -76,7 +76,30 @@ void IncrementalUpdate::MarkPatches(const Box& box, std::vector<unsigned char>& 
   }
 }
 
-bool IncrementalUpdate::MakePlan(Plan& plan)
+void IncrementalUpdate::PlanPatches(const std::vector<std::size_t>& changed,
+  std::vector<std::uint32_t>& run, std::vector<unsigned char>& dirty) const
+{
+  for (const std::size_t part : changed)
+  {
+    this->MarkPatches(this->Boxes[part], dirty);
+    if (this->Moved[part])
+    {
+      this->MarkPatches(this->LastBoxes[part], dirty);
+    }
+  }
+  const Box reach = this->GetReach();
+  for (std::size_t part = 0; part < this->Places.size(); ++part)
+  {
+    const auto [brick, bits] = this->Places[part];
+    if (this->Known[part] && !IsApart(this->Boxes[part], reach) && (run[brick] & bits) != bits &&
+      this->TouchesPatches(this->Boxes[part], dirty))
+    {
+      run[brick] |= bits;
+    }
+  }
+}
+
+bool IncrementalUpdate::MakePlan(bool inside, Plan& plan)
 {
   std::vector<std::uint32_t> run(this->Bricks.GetNumberOfBricks()); // sections of bricks
   std::vector<std::size_t> changed;
@@ -103,32 +126,22 @@ bool IncrementalUpdate::MakePlan(Plan& plan)
   {
     return false;
   }
-
-  std::vector<unsigned char> dirty(static_cast<std::size_t>(this->PatchCount[0]) *
-    static_cast<std::size_t>(this->PatchCount[1]) * static_cast<std::size_t>(this->PatchCount[2]));
-  for (const std::size_t part : changed)
+  if (!inside)
   {
-    this->MarkPatches(this->Boxes[part], dirty);
-    if (this->Moved[part])
+    std::vector<unsigned char> dirty(static_cast<std::size_t>(this->PatchCount[0]) *
+      static_cast<std::size_t>(this->PatchCount[1]) *
+      static_cast<std::size_t>(this->PatchCount[2]));
+    this->PlanPatches(changed, run, dirty);
+    for (std::size_t patch = 0; patch < dirty.size(); ++patch)
     {
-      this->MarkPatches(this->LastBoxes[part], dirty);
+      if (dirty[patch])
+      {
+        plan.Patches.push_back(static_cast<std::uint32_t>(patch));
+      }
     }
-  }
-  const Box reach = this->GetReach();
-  for (std::size_t part = 0; part < this->Places.size(); ++part)
-  {
-    const auto [brick, bits] = this->Places[part];
-    if (this->Known[part] && !IsApart(this->Boxes[part], reach) && (run[brick] & bits) != bits &&
-      this->TouchesPatches(this->Boxes[part], dirty))
+    if (IsTooMuch(plan.Patches.size(), dirty.size()) || isRunTooMuch())
     {
-      run[brick] |= bits;
-    }
-  }
-  for (std::size_t patch = 0; patch < dirty.size(); ++patch)
-  {
-    if (dirty[patch])
-    {
-      plan.Patches.push_back(static_cast<std::uint32_t>(patch));
+      return false;
     }
   }
   for (std::size_t brick = 0; brick < run.size(); ++brick)
@@ -139,7 +152,7 @@ bool IncrementalUpdate::MakePlan(Plan& plan)
         static_cast<std::uint32_t>(brick | JoinColumns(run[brick]) << DEFORMVOLUME_BRICK_BITS));
     }
   }
-  return !IsTooMuch(plan.Patches.size(), dirty.size()) && !isRunTooMuch();
+  return true;
 }
 
 } // namespace deformvolume

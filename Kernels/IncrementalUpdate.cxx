@@ -4,10 +4,10 @@
 #include "HostThreads.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <mutex>
 
 #ifdef __SSE__
 #include <xmmintrin.h>
@@ -274,34 +274,80 @@ void IncrementalUpdate::MovePoints(const PointSet& changed, const float* last)
   this->BoxesKnown = false;
 }
 
+void IncrementalUpdate::AddMoved(const Bounds& after)
+{
+  if (this->AllBounds)
+  {
+    this->AllBounds->Add(after);
+  }
+}
+
+bool IncrementalUpdate::HasOnlyInterior(std::size_t part, const unsigned char* state) const
+{
+  const Extent vertices = this->Grid.GetVertices(part, 0);
+  const std::array<int, 3>& size = this->Grid.Size;
+  if (!state)
+  {
+    bool interior = true;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      interior &= vertices[2 * axis] > 0 && vertices[2 * axis + 1] < size[axis] - 1;
+    }
+    return interior;
+  }
+  for (std::int64_t z = vertices[4]; z <= vertices[5]; ++z)
+  {
+    for (std::int64_t y = vertices[2]; y <= vertices[3]; ++y)
+    {
+      const unsigned char* row = state + (z * size[1] + y) * size[0];
+      if (!std::all_of(row + vertices[0], row + vertices[1] + 1,
+            [](unsigned char v) { return (v & DEFORMVOLUME_VERTEX_INTERIOR) != 0; }))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool IncrementalUpdate::IsInside(const unsigned char* state) const
+{
+  std::atomic<bool> inside{ true };
+  RunOnParts(this->Grid.GetNumberOfBricks(), PartStep,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t part = begin; part < end && inside; ++part)
+      {
+        if (this->Masked[part] || (this->Moved[part] && !this->HasOnlyInterior(part, state)))
+        {
+          inside = false;
+        }
+      }
+    });
+  return inside;
+}
+
 void IncrementalUpdate::FindBoxes(const float* displacements, std::size_t numberOfPoints)
 {
   if (!this->AllBounds)
   {
     this->AllBounds = this->ComputeAllBounds(displacements, numberOfPoints);
   }
-  std::mutex mutex;
   const auto find = [&](const auto& isWanted)
   {
     RunOnParts(this->Grid.GetNumberOfBricks(), PartStep,
       [&](std::size_t begin, std::size_t end)
       {
-        Bounds found;
         for (std::size_t part = begin; part < end; ++part)
         {
           if (!this->Known[part] && isWanted(part))
           {
-            const Bounds bounds = this->ComputeBounds(part, displacements);
-            this->Boxes[part] = this->MakeBox(part, bounds);
+            this->Boxes[part] = this->MakeBox(part, this->ComputeBounds(part, displacements));
             this->Known[part] = 1;
-            found.Add(bounds);
           }
         }
-        const std::lock_guard<std::mutex> lock(mutex);
-        this->AllBounds->Add(found);
       });
   };
-  // Every point that has changed is one of these parts'.
   find([&](std::size_t part) { return this->IsChanged(part); });
   const Box reach = this->GetReach();
   const Bounds all = *this->AllBounds;

@@ -22,6 +22,10 @@ namespace deformvolume
 /// changed parts touch, before or after the change, are cleared, and of all bricks with a part
 /// whose box touches such a patch the sections that these parts lie in are run: what they write
 /// outside these patches they wrote before, since nobody else writes there.
+///
+/// Where only vertices inside the sampling mesh moved, nothing is cleared and only changed parts
+/// are run: their cells fill the same space as before, between cells that stay, so that together
+/// they own the same voxels, unless some are inverted, which the counts tell.
 class IncrementalUpdate
 {
 public:
@@ -62,8 +66,14 @@ public:
   void SetPoints(BrickPoints&& points) { this->Points = std::move(points); }
   void ForgetMapping();
 
-  /// Points will change. last: four floats a point, the displacements before the change.
+  /// Points will change. last: four floats a point, the displacements before the change. after: of
+  /// those that change, or of more.
   void MovePoints(const PointSet& changed, const float* last);
+  void AddMoved(const Bounds& after);
+
+  /// Whether all that changed are vertices that moved inside the sampling mesh. state: of all
+  /// vertices (VertexState.cl), null where all have a position and all cells are active.
+  bool IsInside(const unsigned char* state) const;
 
   /// Whether it is known where the parts of bricks lie, as far as MakePlan wants it.
   bool HasBoxes() const { return this->BoxesKnown; }
@@ -75,8 +85,8 @@ public:
   void ChangeMask(
     const unsigned char* last, const unsigned char* next, unsigned char value, bool ofCells);
 
-  /// False where it is better to make all anew.
-  bool MakePlan(Plan& plan);
+  /// False where it is better to make all anew. inside: see IsInside; boxes are not needed then.
+  bool MakePlan(bool inside, Plan& plan);
 
   /// Whether so many of all points, parts or patches change that it is faster to make all anew.
   static bool IsTooMuch(std::size_t some, std::size_t all);
@@ -99,8 +109,12 @@ private:
   /// A box round the patches that the boxes of changed parts touch, before or after the change.
   Box GetReach() const;
   static bool IsApart(const Box& a, const Box& b);
+  bool HasOnlyInterior(std::size_t part, const unsigned char* state) const;
   Patches GetPatches(const Box& box) const;
   void MarkPatches(const Box& box, std::vector<unsigned char>& dirty) const;
+  /// Finds the patches to clear, and adds the parts that touch them to the sections to run.
+  void PlanPatches(const std::vector<std::size_t>& changed, std::vector<std::uint32_t>& run,
+    std::vector<unsigned char>& dirty) const;
   bool TouchesPatches(const Box& box, const std::vector<unsigned char>& dirty) const;
 
   bool Tracking = false;

@@ -115,6 +115,8 @@ public:
     const float* vectors, std::size_t count, cl::Buffer& buffer, const PointRanges* changes);
   void PrepareBrickPoints();
   void TellMask(const unsigned char* next, bool ofCells);
+  /// See IncrementalUpdate::IsInside.
+  bool IsChangeInside() const;
   bool CanUpdate(const DeformRequest& request);
   void CopyLastOutput(const DeformRequest& request) const;
   /// False where the whole output has to be made.

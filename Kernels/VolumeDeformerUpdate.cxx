@@ -207,8 +207,7 @@ void VolumeDeformer::Internals::SendVectors(
   {
     this->PrepareBrickPoints();
     this->Update.MovePoints(this->Changed, sent.Get());
-    PadVectors(vectors, words, count, sent.Get());
-    this->Update.FindBoxes(sent.Get(), count);
+    this->Update.AddMoved(PadVectors(vectors, words, count, sent.Get()));
   }
   else
   {
@@ -249,6 +248,18 @@ void VolumeDeformer::Internals::TellMask(const unsigned char* next, bool ofCells
   }
 }
 
+bool VolumeDeformer::Internals::IsChangeInside() const
+{
+  const cl::Buffer& state = this->Mesh->GetChunks().front().State;
+  if (!state())
+  {
+    return this->Update.IsInside(nullptr);
+  }
+  // As it was for the last output: where a mask has changed, the change is not inside.
+  const MappedBuffer<const unsigned char> mapped(this->Queue, state, CL_MAP_READ);
+  return this->Update.IsInside(mapped.Get());
+}
+
 bool VolumeDeformer::Internals::CanUpdate(const DeformRequest& request)
 {
   return request.Incremental && this->Update.IsTracking() &&
@@ -285,14 +296,15 @@ bool VolumeDeformer::Internals::UpdateOutput(
   }
   const auto begin = Clock::now();
   this->PrepareBrickPoints();
-  if (!this->Update.HasBoxes())
+  const bool inside = this->IsChangeInside();
+  if (!inside && !this->Update.HasBoxes())
   {
     const cl::Buffer& buffer = this->Mesh->HasMesh() ? this->Nodes : this->FieldVectors;
     const MappedBuffer<const float> vectors(this->Queue, buffer, CL_MAP_READ);
     this->Update.FindBoxes(vectors.Get(), GetMemory(buffer) / (4 * sizeof(float)));
   }
   IncrementalUpdate::Plan plan;
-  if (!this->Update.MakePlan(plan))
+  if (!this->Update.MakePlan(inside, plan))
   {
     return false;
   }
@@ -311,7 +323,7 @@ bool VolumeDeformer::Internals::UpdateOutput(
   const std::uint64_t covered =
     this->LastCovered - before + CountCoveredInPatches(request, plan.Patches);
   this->PlanningTime += GetSecondsSince(read);
-  if (counts.NeedWinners(covered))
+  if (counts.NeedWinners(covered) || (inside && counts.Writes != covered))
   {
     return false;
   }

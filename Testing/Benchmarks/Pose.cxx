@@ -49,17 +49,25 @@ const char* GetName(Pose pose)
       return "folded";
     case Pose::LocalEdit:
       return "local-edit";
+    case Pose::LocalEditAtSide:
+      return "local-edit-at-side";
   }
   return "";
 }
 
-std::array<double, 6> GetLocalEditBox(const std::array<int, 3>& dimensions)
+std::array<double, 6> GetLocalEditBox(Pose pose, const std::array<int, 3>& dimensions)
 {
   std::array<double, 6> box;
   for (int axis = 0; axis < 3; ++axis)
   {
     box[2 * axis] = 0.5 * (1.0 - LocalEditFraction) * (dimensions[axis] - 1);
     box[2 * axis + 1] = 0.5 * (1.0 + LocalEditFraction) * (dimensions[axis] - 1);
+  }
+  if (pose == Pose::LocalEditAtSide)
+  {
+    // As much of the volume, and the middle of the box on its side.
+    box[2] = (1.0 - LocalEditFraction) * (dimensions[1] - 1);
+    box[3] = (1.0 + LocalEditFraction) * (dimensions[1] - 1);
   }
   return box;
 }
@@ -161,12 +169,14 @@ std::array<double, 3> PoseMap::operator()(const std::array<double, 3>& rest) con
       break;
     }
     case Pose::LocalEdit:
+    case Pose::LocalEditAtSide:
     {
       constexpr double amplitude = 3.0;
-      const auto box = GetLocalEditBox(this->Dimensions);
+      const auto box = GetLocalEditBox(this->ThePose, this->Dimensions);
       moved = this->MoveNearIdentity(rest, 0.0);
-      moved[0] += amplitude * std::cos(10.0 * this->Phase) * Window(rest[0], box[0], box[1]) *
-        Window(rest[1], box[2], box[3]) * Window(rest[2], box[4], box[5]);
+      moved[this->ThePose == Pose::LocalEdit ? 0 : 1] += amplitude * std::cos(10.0 * this->Phase) *
+        Window(rest[0], box[0], box[1]) * Window(rest[1], box[2], box[3]) *
+        Window(rest[2], box[4], box[5]);
       break;
     }
   }

@@ -26,14 +26,17 @@ enum class Pose
   /// NearIdentity, with the last third on x laid back over the rest.
   Folded,
   /// NearIdentity, where only the nodes of a box move from step to step, see GetLocalEditBox().
-  LocalEdit
+  LocalEdit,
+  /// The same on a side of the volume, which goes in and out.
+  LocalEditAtSide
 };
 
 /// The name of a pose in the results.
 const char* GetName(Pose pose);
 
-/// The box of the pose LocalEdit: x min, x max, y min, y max, z min, z max in voxels.
-std::array<double, 6> GetLocalEditBox(const std::array<int, 3>& dimensions);
+/// The box of the poses LocalEdit and LocalEditAtSide: x min, x max, y min, y max, z min, z max in
+/// voxels.
+std::array<double, 6> GetLocalEditBox(Pose pose, const std::array<int, 3>& dimensions);
 
 /// Where the points of a volume with spacing 1 and origin 0 go in a pose. Each step is a little
 /// different from the one before, so that all has to be computed anew.

@@ -148,12 +148,13 @@ void RegisterIncremental(const EvaluationSize& size)
     {
       auto cases = std::make_shared<CaseMap>();
       const auto volume = MakeVolume(BenchmarkVolume);
-      for (const Pose pose : { Pose::NearIdentity, Pose::LocalEdit })
+      for (const Pose pose : { Pose::NearIdentity, Pose::LocalEdit, Pose::LocalEditAtSide })
       {
         (*cases)[GetName(pose)] = std::make_unique<BenchmarkCase>(volume, FineNodes);
       }
       return cases;
     },
     { MakeContestant(GetName(Pose::NearIdentity), Pose::NearIdentity),
-      MakeContestant(GetName(Pose::LocalEdit), Pose::LocalEdit) });
+      MakeContestant(GetName(Pose::LocalEdit), Pose::LocalEdit),
+      MakeContestant(GetName(Pose::LocalEditAtSide), Pose::LocalEditAtSide) });
 }

@@ -90,6 +90,10 @@ DEMANDS = [
            lambda r: r.ratio("Incremental/local-edit", "Incremental/near", "kernels")),
     Demand("Update() after that edit by a full one", 0.15,
            lambda r: r.ratio("Incremental/local-edit", "Incremental/near")),
+    Demand("mapping and resampling after such an edit on a side of the volume by a full pass", 0.15,
+           lambda r: r.ratio("Incremental/local-edit-at-side", "Incremental/near", "kernels")),
+    Demand("Update() after that one by a full one", 0.15,
+           lambda r: r.ratio("Incremental/local-edit-at-side", "Incremental/near")),
     Demand("mapping and resampling of 13.2 million voxels, near identity", 1.0,
            lambda r: r.milliseconds("Deform/near/2197/exact", "kernels"), "ms", "gpu"),
 ]

@@ -208,7 +208,8 @@ def incremental(results, _folder, _kind):
     rows = [[words, results.median(name), results.milliseconds(name, "kernels"),
              results.ratio(name, "Incremental/near")]
             for name, words in (("Incremental/near", "all"),
-                                ("Incremental/local-edit", "a box that touches 5 % of the blocks"))
+                                ("Incremental/local-edit", "a box that touches 5 % of the blocks"),
+                                ("Incremental/local-edit-at-side", "one on a side of the volume"))
             if name in results.runs]
     if rows:
         yield "## Edits: what moves of 512,000 nodes, 189 x 305 x 229 voxels\n"

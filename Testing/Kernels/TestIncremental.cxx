@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <random>
 
 using namespace deformvolume;
@@ -243,12 +244,29 @@ struct Subject
   // Moves nodes round one by up to so many voxels; a radius of 0 moves one node.
   void Move(std::mt19937& random, int radius, float amount)
   {
-    std::uniform_real_distribution<float> move(-amount, amount);
     std::array<int, 3> center;
     for (int axis = 0; axis < 3; ++axis)
     {
       center[axis] = static_cast<int>(random() % this->Nodes[axis]);
     }
+    this->MoveRound(center, random, radius, amount);
+  }
+
+  // Moves a node that moves no vertex near the border of the volume.
+  void MoveInside(std::mt19937& random, float amount)
+  {
+    std::array<int, 3> center;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int border = this->Nodes[axis] / 2 - 1;
+      center[axis] = border + static_cast<int>(random() % (this->Nodes[axis] - 2 * border));
+    }
+    this->MoveRound(center, random, 0, amount);
+  }
+
+  void MoveRound(const std::array<int, 3>& center, std::mt19937& random, int radius, float amount)
+  {
+    std::uniform_real_distribution<float> move(-amount, amount);
     for (int z = 0; z < this->Nodes[2]; ++z)
     {
       for (int y = 0; y < this->Nodes[1]; ++y)
@@ -307,6 +325,8 @@ enum class Edit
 {
   None,
   Node,
+  Inside,
+  FoldInside,
   Region,
   Half,
   All,
@@ -328,6 +348,12 @@ void Change(Subject& subject, Edit edit, std::mt19937& random)
   {
     case Edit::Node:
       subject.Move(random, 0, 1.5F);
+      break;
+    case Edit::Inside:
+      subject.MoveInside(random, 2.0F);
+      break;
+    case Edit::FoldInside:
+      subject.MoveInside(random, 14.0F);
       break;
     case Edit::Region:
       subject.Move(random, 1, 1.5F);
@@ -395,12 +421,13 @@ TEST_P(Incremental, EqualsWholeUpdates)
   bool hasLast = false;
   int parts = 0;
   std::int64_t fewest = 1000000;
-  for (int i = 0; i < 120; ++i)
+  for (int i = 0; i < 150; ++i)
   {
     // Small edits come more often: only they are worked on in part.
-    static const Edit small[] = { Edit::Node, Edit::Region, Edit::Blanked, Edit::Active };
+    static const Edit small[] = { Edit::Node, Edit::Inside, Edit::Region, Edit::Blanked,
+      Edit::Active };
     const Edit edit = i < 3 ? Edit::None
-      : random() % 3        ? small[random() % 4]
+      : random() % 3        ? small[random() % std::size(small)]
                             : static_cast<Edit>(random() % static_cast<int>(Edit::Count));
     SCOPED_TRACE("edit " + std::to_string(i) + " of kind " + std::to_string(int(edit)));
     const std::vector<float> sent = subject.Displacements;
@@ -477,6 +504,54 @@ TEST_P(Incremental, EqualsWholeUpdates)
   }
 }
 
+// Where only vertices inside the mesh move nothing is cleared, as long as nothing folds.
+TEST_P(Incremental, EditsInsideEqualWholeUpdates)
+{
+  const Route route = GetParam();
+  Subject subject;
+  VolumeDeformer whole;
+  VolumeDeformer incremental;
+  subject.SendAll(whole, route);
+  subject.SendAll(incremental, route);
+  Outputs outputs(subject);
+  std::mt19937 random(29);
+  int parts = 0;
+  int folds = 0;
+  for (int i = 0; i < 50; ++i)
+  {
+    SCOPED_TRACE("edit " + std::to_string(i));
+    const bool folding = i % 5 == 3;
+    const bool unfolding = i % 5 == 4;
+    Change(subject, folding ? Edit::FoldInside : unfolding ? Edit::Unfold : Edit::Inside, random);
+    subject.SendDisplacements(whole, route);
+    subject.SendDisplacements(incremental, route);
+    Outputs expected(subject);
+    const DeformReport wanted = whole.Deform(expected.MakeRequest(subject));
+    DeformRequest request = outputs.MakeRequest(subject);
+    request.Incremental = true;
+    if (i > 0)
+    {
+      outputs.SetLast(request);
+    }
+    const DeformReport report = incremental.Deform(request);
+    ASSERT_TRUE(outputs == expected);
+    EXPECT_EQ(report.NumberOfCoveredVoxels, wanted.NumberOfCoveredVoxels);
+    EXPECT_EQ(report.Overlapping, wanted.Overlapping);
+    EXPECT_EQ(report.NumberOfInvertedTetrahedra, wanted.NumberOfInvertedTetrahedra);
+    folds += wanted.NumberOfInvertedTetrahedra > 0;
+    if (report.NumberOfResampledBricks < report.NumberOfBricks)
+    {
+      EXPECT_EQ(wanted.NumberOfInvertedTetrahedra, 0);
+      ++parts;
+    }
+  }
+  EXPECT_GT(folds, 3);
+  if (parts > 0) // else the device is no processor
+  {
+    EXPECT_GT(parts, 20);
+  }
+}
+
 TEST_P(Incremental, LocalEditsRunFewBricks)
 {
   Subject subject(Extent{ { -5, 140, 0, 100, 3, 80 } });
@@ -489,7 +564,7 @@ TEST_P(Incremental, LocalEditsRunFewBricks)
   EXPECT_EQ(first.NumberOfResampledBricks, first.NumberOfBricks);
   EXPECT_EQ(first.NumberOfBricks, 1 * 7 * 5);
   outputs.SetLast(request);
-  // A node in the middle of a brick moves that brick only, and its neighbours touch what it wrote.
+  // A node inside moves the bricks that it lies between, and what others own stays as it is.
   const std::int32_t node = subject.GetNode({ { 12, 6, 5 } });
   subject.Displacements[3 * node] = 0.5F;
   subject.SendDisplacements(deformer, GetParam());
@@ -499,7 +574,14 @@ TEST_P(Incremental, LocalEditsRunFewBricks)
     GTEST_SKIP() << "the device is no processor";
   }
   EXPECT_GE(second.NumberOfResampledBricks, 1);
-  EXPECT_LE(second.NumberOfResampledBricks, 1 * 4 * 4);
+  EXPECT_LE(second.NumberOfResampledBricks, 1 * 2 * 2);
+  EXPECT_EQ(second.NumberOfCoveredVoxels, first.NumberOfCoveredVoxels);
+  // One on the border of the mesh changes what is covered: neighbours may own what it leaves.
+  subject.Displacements[3 * subject.GetNode({ { 12, 6, 0 } }) + 2] = 1.5F;
+  subject.SendDisplacements(deformer, GetParam());
+  const DeformReport third = deformer.Deform(request);
+  EXPECT_LE(third.NumberOfResampledBricks, 1 * 4 * 3);
+  EXPECT_LT(third.NumberOfCoveredVoxels, first.NumberOfCoveredVoxels);
   // Nothing changed.
   subject.SendDisplacements(deformer, GetParam());
   EXPECT_EQ(deformer.Deform(request).NumberOfResampledBricks, 0);
