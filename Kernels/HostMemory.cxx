@@ -28,4 +28,46 @@ cl::Buffer MakeBufferOver(
   return cl::Buffer(context.GetContext(), access | CL_MEM_USE_HOST_PTR, bytes, data);
 }
 
+void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t bytes)
+{
+  if (GetMemory(buffer) != bytes)
+  {
+    buffer = cl::Buffer(); // free the old one before the new one is made
+    buffer = cl::Buffer(context.GetContext(), CL_MEM_READ_WRITE, bytes);
+  }
+}
+
+void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::size_t elementSize,
+  std::uint64_t bytes)
+{
+  if (CanWorkInPlace(context, memory, elementSize))
+  {
+    buffer = MakeBufferOver(context, CL_MEM_READ_WRITE, memory, bytes);
+  }
+  else
+  {
+    Reserve(context, buffer, bytes);
+  }
+}
+
+void BeginToRead(
+  const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t bytes, void* memory)
+{
+  if (IsInPlace(buffer))
+  {
+    // What was written is sure to be in the host's memory only while it is mapped there.
+    void* mapped = queue.enqueueMapBuffer(buffer, CL_FALSE, CL_MAP_READ, 0, bytes);
+    queue.enqueueUnmapMemObject(buffer, mapped);
+  }
+  else
+  {
+    queue.enqueueReadBuffer(buffer, CL_FALSE, 0, bytes, memory);
+  }
+}
+
+bool IsInPlace(const cl::Buffer& buffer)
+{
+  return buffer() && GetMemory(buffer) == 0;
+}
+
 } // namespace deformvolume

@@ -25,6 +25,20 @@ bool IsUsedInPlace(const OpenCLContext& context, const VolumeArray& array);
 cl::Buffer MakeBufferOver(
   const OpenCLContext& context, cl_mem_flags access, void* data, std::size_t bytes);
 
+/// Makes a buffer of the device of so many bytes, where it is not one.
+void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t bytes);
+
+/// A buffer for an output: over the memory of the host where it goes, if the device can work there,
+/// else one of the device. Then BeginToRead brings it there, or what the device has not yet written
+/// of it; it is there when the queue has finished.
+void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::size_t elementSize,
+  std::uint64_t bytes);
+void BeginToRead(
+  const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t bytes, void* memory);
+
+/// Whether a buffer lies over memory of the host.
+bool IsInPlace(const cl::Buffer& buffer);
+
 /// A buffer as the host sees it, for the life of this object: waits for all that was enqueued
 /// before. For processors: elsewhere the whole buffer is copied.
 template <typename T>

@@ -7,9 +7,12 @@
 #include "RasterTarget.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
 
 namespace deformvolume
 {
@@ -271,8 +274,71 @@ void MeshRasterizer::Bin(const Setting& setting, RasterParameters& p, DeformRepo
   setting.Queue.finish();
 }
 
+void MeshRasterizer::RunTiles(const Setting& setting, cl::Kernel& kernel, const LatticeChunk& chunk,
+  RasterParameters p, const RasterTarget& target, const std::function<bool(double)>& progress,
+  DeformReport& report)
+{
+  const std::size_t tiles = static_cast<std::size_t>(p.TileCount[0]) *
+    static_cast<std::size_t>(p.TileCount[1]) * static_cast<std::size_t>(p.TileCount[2]);
+  const std::size_t counterBytes = tiles * DEFORMVOLUME_TILE_COUNTERS * sizeof(cl_uint);
+  const cl::Buffer counters(setting.Context.GetContext(), CL_MEM_WRITE_ONLY, counterBytes);
+  cl_uint i = 0;
+  kernel.setArg(i++, this->Tetrahedra);
+  kernel.setArg(i++, this->Positions);
+  kernel.setArg(i++, this->Displacements);
+  kernel.setArg(i++, this->ListBegins);
+  kernel.setArg(i++, this->Lists);
+  // Any buffer stands in for a missing one: not all drivers take a null pointer.
+  kernel.setArg(i++, p.HasActive ? chunk.Active : this->Tetrahedra);
+  kernel.setArg(i++, p.HasBlanked ? chunk.Blanked : this->Tetrahedra);
+  kernel.setArg(i++, target.GetBackgrounds());
+  kernel.setArg(i++, target.GetCoverage());
+  kernel.setArg(i++, counters);
+  const cl_uint parameters = i++;
+  for (std::size_t a = 0; a < chunk.Arrays.size(); ++a)
+  {
+    kernel.setArg(i++, chunk.Arrays[a]);
+    kernel.setArg(i++, target.GetArray(a));
+  }
+  const OpenCLDevice& device = setting.Context.GetDevice();
+  const auto largest = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.Device);
+  const std::size_t wanted =
+    setting.WorkGroupSize ? setting.WorkGroupSize : (device.IsProcessor ? 1 : 64);
+  const std::size_t group = std::min(wanted, largest);
+  const std::size_t step = (tiles + LaunchesPerSlab - 1) / LaunchesPerSlab;
+  cl::Event previous;
+  for (std::size_t tile = 0; tile < tiles; tile += step)
+  {
+    p.TileBegin = static_cast<int>(tile);
+    kernel.setArg(parameters, p);
+    cl::Event event;
+    setting.Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
+      cl::NDRange(std::min(step, tiles - tile) * group), cl::NDRange(group), nullptr, &event);
+    setting.Queue.flush();
+    // Wait for the launch before this one: the device always has work while we report.
+    if (previous())
+    {
+      previous.wait();
+    }
+    previous = event;
+    if (!progress(static_cast<double>(tile) / static_cast<double>(tiles)))
+    {
+      setting.Queue.finish();
+      throw Aborted();
+    }
+  }
+  std::vector<cl_uint> counts(tiles * DEFORMVOLUME_TILE_COUNTERS);
+  setting.Queue.enqueueReadBuffer(counters, CL_TRUE, 0, counterBytes, counts.data());
+  for (std::size_t tile = 0; tile < tiles; ++tile)
+  {
+    const cl_uint* counter = counts.data() + tile * DEFORMVOLUME_TILE_COUNTERS;
+    report.NumberOfCoveredVoxels += counter[DEFORMVOLUME_TILE_COVERED];
+    report.Overlapping |= counter[DEFORMVOLUME_TILE_OVERLAPS] != 0;
+  }
+}
+
 DeformReport MeshRasterizer::Deform(const Setting& setting, const DeviceLattice& volume,
-  const std::vector<VolumeArray>& arrays, const DeformRequest& request)
+  const std::vector<VolumeArray>& arrays, const DeformRequest& request, std::uint64_t spare)
 {
   this->CheckPositions();
   if (volume.GetChunks().size() > 1)
@@ -280,13 +346,16 @@ DeformReport MeshRasterizer::Deform(const Setting& setting, const DeviceLattice&
     throw Error("The volume has more bytes than the device gives in one piece, which the resampler "
                 "MeshRasterization needs. Use the resampler Exact, or another device.");
   }
-  const LatticeChunk& chunk = volume.GetChunks().front();
-  const OpenCLDevice& device = setting.Context.GetDevice();
   cl::Kernel kernel(
     GetRasterizationProgram(setting.Context, arrays, volume.GetLattice(), request.Interpolation),
     "RasterizeMesh");
   const std::vector<Extent> slabs =
     OutputSlab::Split(request.OutputExtent, arrays, volume.GetLattice(), setting.AllocationLimit);
+  const bool overlapped = slabs.size() > 1 &&
+    spare >= OutputSlab::GetBytesPerVoxel(setting.Context, arrays, request) *
+        static_cast<std::uint64_t>(GetNumberOfPoints(slabs.front()));
+  // One is made while the other is copied to the caller.
+  std::array<std::unique_ptr<RasterTarget>, 2> targets;
   DeformReport report;
   report.NumberOfFlatTetrahedra = this->NumberOfFlatTetrahedra;
   for (std::size_t s = 0; s < slabs.size(); ++s)
@@ -299,68 +368,28 @@ DeformReport MeshRasterizer::Deform(const Setting& setting, const DeviceLattice&
     report.MappingTime += GetSeconds(begin);
 
     begin = Clock::now();
-    RasterTarget target(setting.Context, setting.Queue, arrays, request, slabs[s]);
-    const std::size_t tiles = static_cast<std::size_t>(p.TileCount[0]) *
-      static_cast<std::size_t>(p.TileCount[1]) * static_cast<std::size_t>(p.TileCount[2]);
-    const std::size_t counterBytes = tiles * DEFORMVOLUME_TILE_COUNTERS * sizeof(cl_uint);
-    const cl::Buffer counters(setting.Context.GetContext(), CL_MEM_WRITE_ONLY, counterBytes);
-    cl_uint i = 0;
-    kernel.setArg(i++, this->Tetrahedra);
-    kernel.setArg(i++, this->Positions);
-    kernel.setArg(i++, this->Displacements);
-    kernel.setArg(i++, this->ListBegins);
-    kernel.setArg(i++, this->Lists);
-    // Any buffer stands in for a missing one: not all drivers take a null pointer.
-    kernel.setArg(i++, p.HasActive ? chunk.Active : this->Tetrahedra);
-    kernel.setArg(i++, p.HasBlanked ? chunk.Blanked : this->Tetrahedra);
-    kernel.setArg(i++, target.GetBackgrounds());
-    kernel.setArg(i++, target.GetCoverage());
-    kernel.setArg(i++, counters);
-    const cl_uint parameters = i++;
-    for (std::size_t a = 0; a < arrays.size(); ++a)
-    {
-      kernel.setArg(i++, chunk.Arrays[a]);
-      kernel.setArg(i++, target.GetArray(a));
-    }
-    const auto largest = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.Device);
-    const std::size_t wanted =
-      setting.WorkGroupSize ? setting.WorkGroupSize : (device.IsProcessor ? 1 : 64);
-    const std::size_t group = std::min(wanted, largest);
-    const std::size_t step = (tiles + LaunchesPerSlab - 1) / LaunchesPerSlab;
-    cl::Event previous;
-    for (std::size_t tile = 0; tile < tiles; tile += step)
-    {
-      p.TileBegin = static_cast<int>(tile);
-      kernel.setArg(parameters, p);
-      cl::Event event;
-      setting.Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
-        cl::NDRange(std::min(step, tiles - tile) * group), cl::NDRange(group), nullptr, &event);
-      setting.Queue.flush();
-      // Wait for the launch before this one: the device always has work while we report.
-      if (previous())
-      {
-        previous.wait();
-      }
-      previous = event;
-      const double done = static_cast<double>(tile) / static_cast<double>(tiles);
-      if (request.Progress &&
-        !request.Progress((static_cast<double>(s) + done) / static_cast<double>(slabs.size())))
-      {
-        setting.Queue.finish();
-        throw Aborted();
-      }
-    }
-    std::vector<cl_uint> counts(tiles * DEFORMVOLUME_TILE_COUNTERS);
-    setting.Queue.enqueueReadBuffer(counters, CL_TRUE, 0, counterBytes, counts.data());
-    for (std::size_t tile = 0; tile < tiles; ++tile)
-    {
-      const cl_uint* counter = counts.data() + tile * DEFORMVOLUME_TILE_COUNTERS;
-      report.NumberOfCoveredVoxels += counter[DEFORMVOLUME_TILE_COVERED];
-      report.Overlapping |= counter[DEFORMVOLUME_TILE_OVERLAPS] != 0;
-    }
-    report.ResamplingTime += GetSeconds(begin);
+    std::unique_ptr<RasterTarget>& target = targets[overlapped ? s % 2 : 0];
+    target.reset();
+    report.TransferTime += GetSeconds(begin);
+
     begin = Clock::now();
-    target.Read();
+    target = std::make_unique<RasterTarget>(setting.Context, arrays, request, slabs[s]);
+    this->RunTiles(
+      setting, kernel, volume.GetChunks().front(), p, *target,
+      [&](double done)
+      {
+        return !request.Progress ||
+          request.Progress((static_cast<double>(s) + done) / static_cast<double>(slabs.size()));
+      },
+      report);
+    report.ResamplingTime += GetSeconds(begin);
+
+    begin = Clock::now();
+    target->Read(setting.ReadQueue);
+    if (!overlapped || s + 1 == slabs.size())
+    {
+      setting.ReadQueue.finish();
+    }
     report.TransferTime += GetSeconds(begin);
   }
   return report;

@@ -6,10 +6,14 @@
 #include "RasterParameters.h"
 #include "VolumeDeformer.h"
 
+#include <functional>
+
 namespace deformvolume
 {
 
 class DeviceLattice;
+class RasterTarget;
+struct LatticeChunk;
 
 /// Resamples by rasterising the tetrahedra of the deformation mesh into the output
 /// (TetrahedronBinning.cl, MeshRasterization.cl, RestSampling.cl). Needs of the volume nothing but
@@ -22,6 +26,7 @@ public:
   {
     OpenCLContext& Context;
     cl::CommandQueue Queue;
+    cl::CommandQueue ReadQueue; // for copies to the caller
     std::uint64_t AllocationLimit;
     std::size_t WorkGroupSize; // 0: chosen by device
   };
@@ -42,9 +47,10 @@ public:
   /// Whether mesh and displacements are set.
   bool IsReady() const { return this->DisplacementsSet; }
 
-  /// Throws an Error where the deformation or the volume is beyond what can be rasterised.
+  /// Throws an Error where the deformation or the volume is beyond what can be rasterised. spare:
+  /// bytes of device memory that may be used beyond those of one slab of the output.
   DeformReport Deform(const Setting& setting, const DeviceLattice& volume,
-    const std::vector<VolumeArray>& arrays, const DeformRequest& request);
+    const std::vector<VolumeArray>& arrays, const DeformRequest& request, std::uint64_t spare);
 
   /// Bytes on the device, and those that a rasterisation needs there besides the arrays of the
   /// volume and its masks, as far as is known beforehand.
@@ -53,10 +59,13 @@ public:
     std::size_t numberOfNodes, std::size_t numberOfTetrahedra);
 
 private:
-  class Target;
-
   void Bin(const Setting& setting, RasterParameters& parameters, DeformReport& report);
   void CheckPositions() const;
+  /// Makes a slab, tile by tile, after Bin. progress: how much of it is done; false ends it with
+  /// Aborted.
+  void RunTiles(const Setting& setting, cl::Kernel& kernel, const LatticeChunk& chunk,
+    RasterParameters parameters, const RasterTarget& target,
+    const std::function<bool(double)>& progress, DeformReport& report);
 
   std::vector<double> RestNodes;
   std::size_t NumberOfTetrahedra = 0;

@@ -84,34 +84,6 @@ std::uint64_t ReadSum(const cl::CommandQueue& queue, const cl::Buffer& sums, std
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{ 0 });
 }
 
-void Reserve(OpenCLContext& context, cl::Buffer& buffer, std::uint64_t bytes)
-{
-  if (GetMemory(buffer) != bytes)
-  {
-    buffer = cl::Buffer(); // free the old one before the new one is made
-    buffer = cl::Buffer(context.GetContext(), CL_MEM_READ_WRITE, bytes);
-  }
-}
-
-/// A buffer over memory of the host, if the device can work there, else one of the device.
-void Place(OpenCLContext& context, cl::Buffer& buffer, void* memory, std::size_t elementSize,
-  std::uint64_t bytes)
-{
-  if (CanWorkInPlace(context, memory, elementSize))
-  {
-    buffer = MakeBufferOver(context, CL_MEM_READ_WRITE, memory, bytes);
-  }
-  else
-  {
-    Reserve(context, buffer, bytes);
-  }
-}
-
-bool IsInPlace(const cl::Buffer& buffer)
-{
-  return buffer() && deformvolume::GetMemory(buffer) == 0;
-}
-
 /// Lets go of memory of the host.
 void Release(cl::Buffer& buffer)
 {
@@ -446,25 +418,12 @@ void OutputSlab::Read(const cl::CommandQueue& queue, const DeformRequest& reques
 {
   this->ReadQueue = queue;
   const std::uint64_t offset = this->GetOffset(request);
-  const auto read = [&](const cl::Buffer& buffer, std::uint64_t bytes, char* target)
-  {
-    if (IsInPlace(buffer))
-    {
-      // What was written is sure to be in the host's memory only while it is mapped there.
-      void* mapped = queue.enqueueMapBuffer(buffer, CL_FALSE, CL_MAP_READ, 0, bytes);
-      queue.enqueueUnmapMemObject(buffer, mapped);
-    }
-    else
-    {
-      queue.enqueueReadBuffer(buffer, CL_FALSE, 0, bytes, target);
-    }
-  };
   for (std::size_t i = 0; i < this->Arrays.size(); ++i)
   {
-    read(this->Arrays[i], this->NumberOfVoxels * this->TupleSizes[i],
+    BeginToRead(queue, this->Arrays[i], this->NumberOfVoxels * this->TupleSizes[i],
       static_cast<char*>(request.Outputs[i]) + offset * this->TupleSizes[i]);
   }
-  read(this->Coverage, this->NumberOfVoxels, reinterpret_cast<char*>(request.Coverage) + offset);
+  BeginToRead(queue, this->Coverage, this->NumberOfVoxels, request.Coverage + offset);
   queue.flush();
 }
 

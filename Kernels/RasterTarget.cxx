@@ -2,16 +2,15 @@
 #include "RasterTarget.h"
 
 #include "Background.h"
+#include "HostMemory.h"
 
 #include <cstring>
 
 namespace deformvolume
 {
 
-RasterTarget::RasterTarget(OpenCLContext& context, const cl::CommandQueue& queue,
-  const std::vector<VolumeArray>& arrays, const DeformRequest& request, const Extent& slab)
-  : Queue(queue)
-  , IsShared(context.GetDevice().IsProcessor)
+RasterTarget::RasterTarget(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
+  const DeformRequest& request, const Extent& slab)
 {
   const std::uint64_t plane = static_cast<std::uint64_t>(GetSize(slab, 0) * GetSize(slab, 1));
   this->FirstVoxel =
@@ -20,7 +19,8 @@ RasterTarget::RasterTarget(OpenCLContext& context, const cl::CommandQueue& queue
   std::vector<cl_ulong> backgrounds(arrays.size());
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
-    this->AddPart(context, request.Outputs[i], GetTupleSize(arrays[i]));
+    this->AddPart(
+      context, request.Outputs[i], GetTupleSize(arrays[i]), GetElementSize(arrays[i].Type));
     switch (arrays[i].Type)
     {
 #define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
@@ -34,38 +34,38 @@ RasterTarget::RasterTarget(OpenCLContext& context, const cl::CommandQueue& queue
 #undef DEFORMVOLUME_CASE
     }
   }
-  this->AddPart(context, request.Coverage, 1);
+  this->AddPart(context, request.Coverage, 1, 1);
   this->Backgrounds = cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
     backgrounds.size() * sizeof(cl_ulong), backgrounds.data());
 }
 
-void RasterTarget::AddPart(OpenCLContext& context, void* memory, std::uint64_t tuple)
+void RasterTarget::AddPart(
+  OpenCLContext& context, void* memory, std::uint64_t tuple, std::size_t elementSize)
 {
   Part part;
   part.Memory = static_cast<char*>(memory) + this->FirstVoxel * tuple;
-  part.Bytes = static_cast<std::size_t>(this->NumberOfVoxels * tuple);
-  part.Buffer =
-    cl::Buffer(context.GetContext(), CL_MEM_WRITE_ONLY | (this->IsShared ? CL_MEM_USE_HOST_PTR : 0),
-      part.Bytes, this->IsShared ? part.Memory : nullptr);
+  part.Bytes = this->NumberOfVoxels * tuple;
+  Place(context, part.Buffer, part.Memory, elementSize, part.Bytes);
   this->Parts.push_back(part);
 }
 
-void RasterTarget::Read()
+void RasterTarget::Read(const cl::CommandQueue& queue)
 {
-  for (Part& part : this->Parts)
+  this->ReadQueue = queue;
+  for (const Part& part : this->Parts)
   {
-    if (this->IsShared)
-    {
-      // Brings the memory up to date, where the device did not write to it directly.
-      void* mapped = this->Queue.enqueueMapBuffer(part.Buffer, CL_TRUE, CL_MAP_READ, 0, part.Bytes);
-      this->Queue.enqueueUnmapMemObject(part.Buffer, mapped);
-    }
-    else
-    {
-      this->Queue.enqueueReadBuffer(part.Buffer, CL_FALSE, 0, part.Bytes, part.Memory);
-    }
+    BeginToRead(queue, part.Buffer, part.Bytes, part.Memory);
   }
-  this->Queue.finish();
+  queue.flush();
+}
+
+void RasterTarget::Finish()
+{
+  if (this->ReadQueue())
+  {
+    clFinish(this->ReadQueue()); // throws nothing: this is also called after a failure
+    this->ReadQueue = cl::CommandQueue();
+  }
 }
 
 } // namespace deformvolume

@@ -9,34 +9,39 @@ namespace deformvolume
 {
 
 /// A slab of an output that a kernel writes wholly, background included. A processor writes the
-/// memory of the request itself; another device a copy, which Read brings there.
+/// memory of the request itself, where that is aligned; another device a copy, which Read brings
+/// there.
 class RasterTarget
 {
 public:
   /// The request must outlive the object.
-  RasterTarget(OpenCLContext& context, const cl::CommandQueue& queue,
-    const std::vector<VolumeArray>& arrays, const DeformRequest& request, const Extent& slab);
+  RasterTarget(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
+    const DeformRequest& request, const Extent& slab);
+  ~RasterTarget() { this->Finish(); }
+  RasterTarget(const RasterTarget&) = delete;
+  RasterTarget& operator=(const RasterTarget&) = delete;
 
   const cl::Buffer& GetArray(std::size_t index) const { return this->Parts[index].Buffer; }
   const cl::Buffer& GetCoverage() const { return this->Parts.back().Buffer; }
   /// Eight bytes an array, the first of which are the background in the array's type.
   const cl::Buffer& GetBackgrounds() const { return this->Backgrounds; }
 
-  /// Waits for the kernels; then the request has its voxels.
-  void Read();
+  /// Begins to copy the slab, which is done, in a queue of its own.
+  void Read(const cl::CommandQueue& queue);
+  /// Waits until the request has its voxels.
+  void Finish();
 
 private:
   struct Part
   {
     cl::Buffer Buffer;
     char* Memory;
-    std::size_t Bytes;
+    std::uint64_t Bytes;
   };
-  void AddPart(OpenCLContext& context, void* memory, std::uint64_t tuple);
+  void AddPart(OpenCLContext& context, void* memory, std::uint64_t tuple, std::size_t elementSize);
 
-  cl::CommandQueue Queue;
-  bool IsShared;
-  std::uint64_t FirstVoxel; // of the slab in the output
+  cl::CommandQueue ReadQueue; // while the slab is copied
+  std::uint64_t FirstVoxel;   // of the slab in the output
   std::uint64_t NumberOfVoxels;
   std::vector<Part> Parts;
   cl::Buffer Backgrounds;

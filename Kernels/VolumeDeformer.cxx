@@ -398,9 +398,12 @@ DeformReport VolumeDeformer::Deform(const DeformRequest& request)
   const DeviceLattice& mesh = this->Impl->GetMesh();
   if (request.Method == Resampling::MeshRasterization)
   {
-    this->CheckRasterizationDeviceMemory(mesh.GetLattice(), this->Impl->Arrays,
-      request.OutputExtent, this->Impl->NumberOfNodes, this->Impl->NumberOfTetrahedra);
-    return this->Impl->Guard([&] { return this->Impl->Rasterize(request); });
+    const std::uint64_t needed =
+      this->CheckRasterizationDeviceMemory(mesh.GetLattice(), this->Impl->Arrays,
+        request.OutputExtent, this->Impl->NumberOfNodes, this->Impl->NumberOfTetrahedra);
+    const std::uint64_t usable = this->Impl->GetUsableMemory();
+    return this->Impl->Guard(
+      [&] { return this->Impl->Rasterize(request, usable > needed ? usable - needed : 0); });
   }
   const DeviceMemory memory =
     this->CheckDeviceMemory(mesh.GetLattice(), this->Impl->Arrays, request.OutputExtent,

@@ -124,7 +124,7 @@ public:
   /// What mesh rasterisation needs and does; in VolumeDeformerRasterization.cxx.
   MeshRasterizer::Setting GetRasterizerSetting();
   void CheckRasterization(const DeformRequest& request) const;
-  DeformReport Rasterize(const DeformRequest& request);
+  DeformReport Rasterize(const DeformRequest& request, std::uint64_t spare);
 
   OpenCLContext* Context = nullptr;
   cl::CommandQueue Queue;

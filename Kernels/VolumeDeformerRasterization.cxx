@@ -9,7 +9,8 @@ namespace deformvolume
 
 MeshRasterizer::Setting VolumeDeformer::Internals::GetRasterizerSetting()
 {
-  return { this->GetContext(), this->Queue, this->GetAllocationLimit(), this->WorkGroupSize };
+  OpenCLContext& context = this->GetContext(); // which makes the queues
+  return { context, this->Queue, this->ReadQueue, this->GetAllocationLimit(), this->WorkGroupSize };
 }
 
 void VolumeDeformer::Internals::CheckRasterization(const DeformRequest& request) const
@@ -26,11 +27,11 @@ void VolumeDeformer::Internals::CheckRasterization(const DeformRequest& request)
   }
 }
 
-DeformReport VolumeDeformer::Internals::Rasterize(const DeformRequest& request)
+DeformReport VolumeDeformer::Internals::Rasterize(const DeformRequest& request, std::uint64_t spare)
 {
   this->Update.Forget();
-  DeformReport report =
-    this->Rasterizer.Deform(this->GetRasterizerSetting(), *this->Mesh, this->Arrays, request);
+  DeformReport report = this->Rasterizer.Deform(
+    this->GetRasterizerSetting(), *this->Mesh, this->Arrays, request, spare);
   report.TransferTime += this->SendingTime;
   this->SendingTime = 0.0;
   return report;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 
 using namespace deformvolume;
 
@@ -370,12 +371,40 @@ TEST(MeshRasterization, ResultDoesNotDependOnHowTheWorkIsSplit)
   deformer.SetWorkGroupSize(0);
   // A few planes at a time.
   const std::uint64_t plane = 16 * GetSize(folded.Output, 0) * GetSize(folded.Output, 1);
-  deformer.SetAllocationLimit(std::max<std::uint64_t>(3 * plane, 250000));
+  deformer.SetAllocationLimit(3 * plane);
   Deformed other = Rasterize(deformer, folded, arrays);
   EXPECT_EQ(other.Outputs, whole.Outputs);
   EXPECT_EQ(other.Coverage, whole.Coverage);
   EXPECT_EQ(other.Report.NumberOfInvertedTetrahedra, whole.Report.NumberOfInvertedTetrahedra);
   EXPECT_EQ(other.Report.NumberOfCoveredVoxels, whole.Report.NumberOfCoveredVoxels);
+  // The same copied from the device, as to memory that is not aligned, while the next ones are
+  // made.
+  const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(folded.Output));
+  const std::size_t bytes[] = { sizeof(float) * voxels, 2 * sizeof(double) * voxels };
+  for (const int calls : { 1000, 2, 40 })
+  {
+    auto first = std::make_unique<std::vector<unsigned char>>(bytes[0] + 1);
+    auto second = std::make_unique<std::vector<unsigned char>>(bytes[1] + 1);
+    std::vector<signed char> coverage(voxels);
+    DeformRequest request;
+    request.Method = Resampling::MeshRasterization;
+    request.OutputExtent = folded.Output;
+    request.Outputs = { first->data() + 1, second->data() + 1 };
+    request.Coverage = coverage.data();
+    int left = calls;
+    request.Progress = [&left](double) { return --left > 0; };
+    if (calls < 1000)
+    {
+      // The memory is gone as soon as the call has ended.
+      EXPECT_THROW(deformer.Deform(request), Aborted);
+      continue;
+    }
+    EXPECT_EQ(deformer.Deform(request).NumberOfCoveredVoxels, whole.Report.NumberOfCoveredVoxels);
+    EXPECT_LT(left, 1000 - 2 * 32) << "not more than two slabs";
+    EXPECT_EQ(std::memcmp(first->data() + 1, whole.Outputs[0].data(), bytes[0]), 0);
+    EXPECT_EQ(std::memcmp(second->data() + 1, whole.Outputs[1].data(), bytes[1]), 0);
+    EXPECT_EQ(coverage, whole.Coverage);
+  }
   deformer.SetAllocationLimit(0);
   // A box that begins anywhere.
   RasterCase part = folded;
