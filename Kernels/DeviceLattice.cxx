@@ -364,6 +364,7 @@ void DeviceLattice::AppendBricks(int layersBegin, int layersEnd, std::vector<cl_
   const auto layer = static_cast<cl_uint>(this->GetNumberOfBricks(0)) *
     static_cast<cl_uint>(this->GetNumberOfBricks(1));
   const auto pile = static_cast<cl_uint>(BricksInPile);
+  constexpr cl_uint whole = cl_uint{ DEFORMVOLUME_WHOLE_BRICK } << DEFORMVOLUME_BRICK_BITS;
   const auto end = static_cast<cl_uint>((layersEnd - 1 - origin) / BrickSize[2] + 1);
   for (auto z = static_cast<cl_uint>((layersBegin - origin) / BrickSize[2]); z < end; z += pile)
   {
@@ -371,7 +372,7 @@ void DeviceLattice::AppendBricks(int layersBegin, int layersEnd, std::vector<cl_
     {
       for (cl_uint i = z; i < std::min(z + pile, end); ++i)
       {
-        bricks.push_back(i * layer + column);
+        bricks.push_back((i * layer + column) | whole);
       }
     }
   }

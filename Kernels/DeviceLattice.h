@@ -89,7 +89,8 @@ public:
   /// So many bricks, each above the one before, are worked on one after the other where all are:
   /// the positions of vertices between them are found once.
   static constexpr int BricksInPile = 2;
-  /// Appends the bricks of some layers of cells, pile by pile.
+  /// Appends the bricks of some layers of cells, whole ones (DEFORMVOLUME_BRICK_BITS), pile by
+  /// pile.
   void AppendBricks(int layersBegin, int layersEnd, std::vector<cl_uint>& bricks) const;
 
   BrickGrid GetBrickGrid() const;

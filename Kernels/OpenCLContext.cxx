@@ -165,6 +165,7 @@ OpenCLContext& OpenCLContext::Get(const OpenCLDevice& device)
 
 OpenCLContext::OpenCLContext(const OpenCLDevice& device)
   : Device(device)
+  , NumberOfUnits(device.Device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>())
 {
   if (IsPoCL(device))
   {

@@ -42,6 +42,7 @@ public:
   const OpenCLDevice& GetDevice() const { return this->Device; }
   const cl::Context& GetContext() const { return this->Context; }
   bool HasExtension(const std::string& name) const;
+  cl_uint GetNumberOfUnits() const { return this->NumberOfUnits; }
 
   /// The program of this text and these options; built at the first request. Throws Error with the
   /// compiler's log.
@@ -60,6 +61,7 @@ private:
   OpenCLDevice Device;
   cl::Context Context;
   std::string Extensions;
+  cl_uint NumberOfUnits;
   std::mutex Mutex;
   std::map<std::string, cl::Program> Programs;
 };

@@ -90,8 +90,17 @@ public:
   cl::Kernel MakeResamplingKernel(bool lanes);
   void SetResamplingArguments(cl::Kernel& kernel, const LatticeChunk& chunk,
     const OutputSlab& output, bool lanes, const KernelParameters& p) const;
+  struct PlannedLaunch
+  {
+    const LatticeChunk& Chunk;
+    KernelParameters Parameters;
+  };
+  /// The launches of a pass over all cells. bricks: where these go brick by brick, their list.
+  std::vector<PlannedLaunch> PlanLaunches(
+    const OutputSlab& output, int pass, std::vector<cl_uint>* bricks) const;
   void RunExact(const DeformRequest& request, OutputSlab& output, int pass);
   void LaunchBricks(cl::Kernel& kernel, const KernelParameters& p);
+  void LaunchCells(cl::Kernel& kernel, const KernelParameters& p);
   void RunBricks(
     const DeformRequest& request, OutputSlab& output, int pass, const std::vector<cl_uint>& bricks);
   /// Waits for the launch before the last one, so that the device always has work, and reports.

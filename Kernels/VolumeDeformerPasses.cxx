@@ -132,8 +132,9 @@ void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
 void VolumeDeformer::Internals::LaunchBricks(cl::Kernel& kernel, const KernelParameters& p)
 {
   this->Queue.enqueueFillBuffer(this->TakenBricks, cl_uint{ 0 }, 0, sizeof(cl_uint));
-  const cl_uint units = this->Context->GetDevice().Device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
-  this->Launch(kernel, cl::NDRange(std::min(units, static_cast<cl_uint>(p.ListEnd - p.ListBegin))),
+  this->Launch(kernel,
+    cl::NDRange(
+      std::min(this->Context->GetNumberOfUnits(), static_cast<cl_uint>(p.ListEnd - p.ListBegin))),
     cl::NDRange(1));
 }
 
@@ -168,18 +169,12 @@ void VolumeDeformer::Internals::RunBricks(
   }
 }
 
-void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSlab& output, int pass)
+std::vector<VolumeDeformer::Internals::PlannedLaunch> VolumeDeformer::Internals::PlanLaunches(
+  const OutputSlab& output, int pass, std::vector<cl_uint>* bricks) const
 {
-  const bool lanes = this->UseLanes(request.Method, output);
-  cl::Kernel kernel = this->MakeResamplingKernel(lanes);
-  if (lanes && this->Mesh->GetNumberOfBricks() >> DEFORMVOLUME_BRICK_BITS)
-  {
-    throw Error("The volume has more than 10^11 voxels. Use a smaller volume.");
-  }
-  const auto units =
-    static_cast<int>(this->Context->GetDevice().Device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
-  std::vector<std::pair<const LatticeChunk*, KernelParameters>> launches;
-  std::vector<cl_uint> bricks;
+  // Piles are too much at once where there are few bricks for each unit.
+  const int leastForPiles = 32 * static_cast<int>(this->Context->GetNumberOfUnits());
+  std::vector<PlannedLaunch> launches;
   for (const LatticeChunk& chunk : this->Mesh->GetChunks())
   {
     for (int begin = chunk.LayersBegin; begin < chunk.LayersEnd;)
@@ -192,47 +187,60 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
       p.LayersEnd = std::min(begin + step, chunk.LayersEnd);
       p.Pass = pass;
       output.SetParameters(p);
-      if (lanes)
+      if (bricks)
       {
-        p.ListBegin = static_cast<int>(bricks.size());
-        this->Mesh->AppendBricks(p.LayersBegin, p.LayersEnd, bricks);
-        p.ListEnd = static_cast<int>(bricks.size());
-        // Piles are too much at once where there are few bricks for each unit.
-        constexpr int leastBricks = 32;
-        p.Portion = p.ListEnd - p.ListBegin < leastBricks * units ? 1 : DeviceLattice::BricksInPile;
+        p.ListBegin = static_cast<int>(bricks->size());
+        this->Mesh->AppendBricks(p.LayersBegin, p.LayersEnd, *bricks);
+        p.ListEnd = static_cast<int>(bricks->size());
+        p.Portion = p.ListEnd - p.ListBegin < leastForPiles ? 1 : DeviceLattice::BricksInPile;
       }
-      launches.emplace_back(&chunk, p);
+      launches.push_back({ chunk, p });
       begin = p.LayersEnd;
     }
   }
+  return launches;
+}
+
+void VolumeDeformer::Internals::LaunchCells(cl::Kernel& kernel, const KernelParameters& p)
+{
+  // A work-group takes a block; on a processor its only item does.
+  const bool processor = this->Context->GetDevice().IsProcessor;
+  const std::size_t group = processor && !this->WorkGroupSize ? 1 : this->GetGroupSize(kernel);
+  const auto count = [](int cells, int size)
+  { return static_cast<std::size_t>((cells + size - 1) / size); };
+  this->Launch(kernel,
+    cl::NDRange(group * count(p.Size[0] - 1, DEFORMVOLUME_BLOCK_X),
+      count(p.Size[1] - 1, DEFORMVOLUME_BLOCK_Y),
+      count(p.LayersEnd - p.LayersBegin, DEFORMVOLUME_BLOCK_Z)),
+    cl::NDRange(group, 1, 1));
+}
+
+void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSlab& output, int pass)
+{
+  const bool lanes = this->UseLanes(request.Method, output);
+  cl::Kernel kernel = this->MakeResamplingKernel(lanes);
+  if (lanes && this->Mesh->GetNumberOfBricks() >> DEFORMVOLUME_BRICK_BITS)
+  {
+    throw Error("The volume has more than 10^11 voxels. Use a smaller volume.");
+  }
+  std::vector<cl_uint> bricks;
+  const std::vector<PlannedLaunch> launches =
+    this->PlanLaunches(output, pass, lanes ? &bricks : nullptr);
   if (lanes)
   {
-    for (cl_uint& brick : bricks)
-    {
-      brick |= cl_uint{ DEFORMVOLUME_WHOLE_BRICK } << DEFORMVOLUME_BRICK_BITS;
-    }
     this->Bricks = this->SendBuffer(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
   }
   cl::Event previous;
   for (const auto& [chunk, p] : launches)
   {
-    this->SetResamplingArguments(kernel, *chunk, output, lanes, p);
+    this->SetResamplingArguments(kernel, chunk, output, lanes, p);
     if (lanes)
     {
       this->LaunchBricks(kernel, p);
     }
     else
     {
-      // A work-group takes a block; on a processor its only item does.
-      const bool processor = this->Context->GetDevice().IsProcessor;
-      const std::size_t group = processor && !this->WorkGroupSize ? 1 : this->GetGroupSize(kernel);
-      const auto count = [](int cells, int size)
-      { return static_cast<std::size_t>((cells + size - 1) / size); };
-      this->Launch(kernel,
-        cl::NDRange(group * count(p.Size[0] - 1, DEFORMVOLUME_BLOCK_X),
-          count(p.Size[1] - 1, DEFORMVOLUME_BLOCK_Y),
-          count(p.LayersEnd - p.LayersBegin, DEFORMVOLUME_BLOCK_Z)),
-        cl::NDRange(group, 1, 1));
+      this->LaunchCells(kernel, p);
     }
     this->ReportLaunch(request, previous);
   }
