@@ -12,11 +12,6 @@ namespace deformvolume
 namespace
 {
 
-constexpr int PartSize[3] = { 16, 8, 8 };
-static_assert(DEFORMVOLUME_COLUMN % PartSize[0] == 0 &&
-    DEFORMVOLUME_BRICK_Y / 2 % PartSize[1] == 0 && DEFORMVOLUME_BRICK_Z / 2 % PartSize[2] == 0,
-  "bricks are made of parts");
-
 // What a brick's vertices are found to need.
 struct Needs
 {
@@ -38,51 +33,6 @@ struct Needs
 };
 
 } // namespace
-
-BrickGrid BrickGrid::GetParts() const
-{
-  BrickGrid parts = *this;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    parts.Cells[axis] = PartSize[axis];
-    parts.Count[axis] = this->Count[axis] * (this->Cells[axis] / PartSize[axis]);
-  }
-  return parts;
-}
-
-std::pair<std::size_t, std::uint32_t> BrickGrid::GetBrick(
-  const BrickGrid& parts, std::size_t part) const
-{
-  std::size_t brick = 0;
-  std::size_t stride = 1;
-  int place[3];
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const auto count = static_cast<std::size_t>(parts.Count[axis]);
-    const int cell = static_cast<int>(part % count) * parts.Cells[axis];
-    place[axis] = cell % this->Cells[axis];
-    brick += stride * static_cast<std::size_t>(cell / this->Cells[axis]);
-    part /= count;
-    stride *= static_cast<std::size_t>(this->Count[axis]);
-  }
-  return { brick,
-    MakeSectionBits(static_cast<std::uint32_t>(place[0] / DEFORMVOLUME_COLUMN),
-      place[1] >= this->Cells[1] / 2, place[2] >= this->Cells[2] / 2) };
-}
-
-Extent BrickGrid::GetVertices(std::size_t brick, int reach) const
-{
-  const std::size_t index[3] = { brick % this->Count[0], brick / this->Count[0] % this->Count[1],
-    brick / this->Count[0] / this->Count[1] };
-  Extent vertices;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const int begin = this->Origin[axis] + static_cast<int>(index[axis]) * this->Cells[axis];
-    vertices[2 * axis] = std::max(begin - reach, 0);
-    vertices[2 * axis + 1] = std::min(begin + this->Cells[axis] + reach, this->Size[axis] - 1);
-  }
-  return vertices;
-}
 
 // visit(vertices, needs, add): calls add(tetrahedron) for those that the vertices are linked to.
 template <typename Visit>

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeBrickPoints_h
 #define DeformVolumeBrickPoints_h
 
+#include "BrickGrid.h"
 #include "KernelParameters.h"
 #include "VolumeDeformer.h"
 
@@ -12,39 +13,6 @@
 
 namespace deformvolume
 {
-
-/// The bits that a section of a brick is run by, from the lowest one on (DEFORMVOLUME_BRICK_BITS).
-inline std::uint32_t MakeSectionBits(std::uint32_t column, bool upperY, bool upperZ)
-{
-  return 1U << column | (upperY ? 2U : 1U) << DEFORMVOLUME_COLUMNS |
-    (upperZ ? 2U : 1U) << (DEFORMVOLUME_COLUMNS + 2);
-}
-
-/// The bricks of cells that a lattice is worked on in, or the parts of these bricks.
-struct BrickGrid
-{
-  std::array<int, 3> Size{ { 0, 0, 0 } };   // vertices of the lattice
-  std::array<int, 3> Origin{ { 0, 0, 0 } }; // local index of the first cell of the first brick
-  std::array<int, 3> Count{ { 0, 0, 0 } };  // bricks on each axis
-  std::array<int, 3> Cells{ { DEFORMVOLUME_BRICK_X, DEFORMVOLUME_BRICK_Y,
-    DEFORMVOLUME_BRICK_Z } }; // of a brick
-
-  std::size_t GetNumberOfBricks() const
-  {
-    return static_cast<std::size_t>(this->Count[0]) * static_cast<std::size_t>(this->Count[1]) *
-      static_cast<std::size_t>(this->Count[2]);
-  }
-
-  /// The parts of the bricks, 16 x 8 x 8 cells each.
-  BrickGrid GetParts() const;
-  /// The brick that a part is of, and the bits of its section, from the lowest one on
-  /// (DEFORMVOLUME_BRICK_BITS).
-  std::pair<std::size_t, std::uint32_t> GetBrick(const BrickGrid& parts, std::size_t part) const;
-
-  /// Local indices of the vertices of a brick, and so many beyond them on each side, within the
-  /// lattice.
-  Extent GetVertices(std::size_t brick, int reach) const;
-};
 
 /// How far a brick looks beyond its vertices: the fill rule asks the cells round a vertex.
 constexpr int BrickReach = 1;

@@ -13,9 +13,6 @@ namespace deformvolume
 namespace
 {
 
-const int BrickSize[3] = { DEFORMVOLUME_BRICK_X, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z };
-const int BrickStep[3] = DEFORMVOLUME_BRICK_STEPS;
-
 /// Waits, however it is left, for transfers from memory of the caller.
 class TransferGuard
 {
@@ -55,6 +52,7 @@ DeviceLattice::DeviceLattice(OpenCLContext& context, const cl::CommandQueue& que
   : Context(context)
   , Queue(queue)
   , Shape(lattice)
+  , Bricks(lattice)
   , AllocationLimit(allocationLimit)
 {
   const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
@@ -324,8 +322,8 @@ KernelParameters DeviceLattice::GetParameters(const LatticeChunk& chunk) const
   {
     p.Size[axis] = this->GetSize(axis);
     p.First[axis] = this->Shape.VertexExtent[2 * axis];
-    p.BrickOrigin[axis] = this->GetBrickOrigin(axis);
-    p.BrickCount[axis] = this->GetNumberOfBricks(axis);
+    p.BrickOrigin[axis] = this->Bricks.Origin[axis];
+    p.BrickCount[axis] = this->Bricks.Count[axis];
   }
   p.ChunkFirst = chunk.PlanesBegin;
   p.SlabFirst = chunk.PlanesBegin;
@@ -338,58 +336,6 @@ KernelParameters DeviceLattice::GetParameters(const LatticeChunk& chunk) const
   return p;
 }
 
-int DeviceLattice::GetBrickOrigin(int axis) const
-{
-  const int first = this->Shape.VertexExtent[2 * axis];
-  const int remainder = first % BrickStep[axis];
-  return -(remainder < 0 ? remainder + BrickStep[axis] : remainder);
-}
-
-int DeviceLattice::GetNumberOfBricks(int axis) const
-{
-  const int cells = this->GetSize(axis) - 1 - this->GetBrickOrigin(axis);
-  return (cells + BrickSize[axis] - 1) / BrickSize[axis];
-}
-
-std::size_t DeviceLattice::GetNumberOfBricks() const
-{
-  return static_cast<std::size_t>(this->GetNumberOfBricks(0)) *
-    static_cast<std::size_t>(this->GetNumberOfBricks(1)) *
-    static_cast<std::size_t>(this->GetNumberOfBricks(2));
-}
-
-void DeviceLattice::AppendBricks(int layersBegin, int layersEnd, std::vector<cl_uint>& bricks) const
-{
-  const int origin = this->GetBrickOrigin(2);
-  const auto layer = static_cast<cl_uint>(this->GetNumberOfBricks(0)) *
-    static_cast<cl_uint>(this->GetNumberOfBricks(1));
-  const auto pile = static_cast<cl_uint>(BricksInPile);
-  constexpr cl_uint whole = cl_uint{ DEFORMVOLUME_WHOLE_BRICK } << DEFORMVOLUME_BRICK_BITS;
-  const auto end = static_cast<cl_uint>((layersEnd - 1 - origin) / BrickSize[2] + 1);
-  for (auto z = static_cast<cl_uint>((layersBegin - origin) / BrickSize[2]); z < end; z += pile)
-  {
-    for (cl_uint column = 0; column < layer; ++column)
-    {
-      for (cl_uint i = z; i < std::min(z + pile, end); ++i)
-      {
-        bricks.push_back((i * layer + column) | whole);
-      }
-    }
-  }
-}
-
-BrickGrid DeviceLattice::GetBrickGrid() const
-{
-  BrickGrid grid;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    grid.Size[axis] = this->GetSize(axis);
-    grid.Origin[axis] = this->GetBrickOrigin(axis);
-    grid.Count[axis] = this->GetNumberOfBricks(axis);
-  }
-  return grid;
-}
-
 BrickPoints DeviceLattice::MakeBrickPoints(
   const cl::Buffer& tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes) const
 {
@@ -398,8 +344,8 @@ BrickPoints DeviceLattice::MakeBrickPoints(
   if (!this->HasRuns())
   {
     const MappedBuffer<const VertexLink> links(this->Queue, chunk.Links, CL_MAP_READ);
-    return BrickPoints::FromLinks(this->GetBrickGrid().GetParts(), links.Get(), places.Get(),
-      numberOfTetrahedra, numberOfNodes);
+    return BrickPoints::FromLinks(
+      this->Bricks.GetParts(), links.Get(), places.Get(), numberOfTetrahedra, numberOfNodes);
   }
   const MappedBuffer<const VertexRun> runs(this->Queue, chunk.Runs, CL_MAP_READ);
   const MappedBuffer<const std::uint32_t> begins(this->Queue, chunk.RowBegins, CL_MAP_READ);
@@ -415,8 +361,8 @@ BrickPoints DeviceLattice::MakeBrickPoints(
     const MappedBuffer<const float> records(this->Queue, this->RestTetrahedra, CL_MAP_READ);
     std::copy_n(records.Get(), rest.size(), rest.begin());
   }
-  return BrickPoints::FromRuns(this->GetBrickGrid().GetParts(), runs.Get(), begins.Get(),
-    rest.data(), owners.Get(), places.Get(), numberOfTetrahedra, numberOfNodes);
+  return BrickPoints::FromRuns(this->Bricks.GetParts(), runs.Get(), begins.Get(), rest.data(),
+    owners.Get(), places.Get(), numberOfTetrahedra, numberOfNodes);
 }
 
 cl::NDRange DeviceLattice::GetVertexRange(int planes) const

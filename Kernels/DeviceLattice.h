@@ -82,18 +82,7 @@ public:
   cl::NDRange GetVertexRange(int planes) const;
   cl::NDRange GetVertexGroup() const;
 
-  /// The bricks that the cells are worked on in: how many there are on an axis and altogether.
-  /// Their numbers grow with x, then y, then z.
-  int GetNumberOfBricks(int axis) const;
-  std::size_t GetNumberOfBricks() const;
-  /// So many bricks, each above the one before, are worked on one after the other where all are:
-  /// the positions of vertices between them are found once.
-  static constexpr int BricksInPile = 2;
-  /// Appends the bricks of some layers of cells, whole ones (DEFORMVOLUME_BRICK_BITS), pile by
-  /// pile.
-  void AppendBricks(int layersBegin, int layersEnd, std::vector<cl_uint>& bricks) const;
-
-  BrickGrid GetBrickGrid() const;
+  const BrickGrid& GetBricks() const { return this->Bricks; }
   /// Those of the parts of the bricks, of a mesh, on a processor, where the lattice is one chunk.
   BrickPoints MakeBrickPoints(
     const cl::Buffer& tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes) const;
@@ -118,7 +107,6 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
-  int GetBrickOrigin(int axis) const;
   /// Reads the data until the queue has finished.
   cl::Buffer Send(const void* data, std::size_t bytesPerElement, std::int64_t elementsPerLayer,
     std::int64_t begin, std::int64_t end, const cl::Buffer& previous);
@@ -131,6 +119,7 @@ private:
   OpenCLContext& Context;
   cl::CommandQueue Queue;
   Lattice Shape;
+  BrickGrid Bricks;
   std::uint64_t AllocationLimit;
   std::vector<std::shared_ptr<const void>> Owners; // of arrays that are used in place
   std::vector<LatticeChunk> Chunks;

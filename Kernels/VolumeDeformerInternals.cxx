@@ -257,7 +257,8 @@ void VolumeDeformer::Internals::DeformSlabs(
     OutputSlab& target = this->Targets[overlapped ? s % 2 : 0];
     this->LaunchesExpected = (slabs.size() - s) * this->GetNumberOfLaunches() + this->LaunchesDone;
     target.Prepare(*this->Context, this->Queue, slabs[s], request, this->Arrays,
-      this->Mesh->GetLattice(), this->Mesh->GetNumberOfBricks(), this->ResamplingEvents);
+      this->Mesh->GetLattice(), this->Mesh->GetBricks().GetNumberOfBricks(),
+      this->ResamplingEvents);
     plain = this->RunSlab(request, target, s == 0, report) && plain;
     const Clock::time_point begin = Clock::now();
     target.Read(this->ReadQueue, request);
@@ -273,7 +274,7 @@ void VolumeDeformer::Internals::DeformSlabs(
   if (request.Incremental && plain && this->Context->GetDevice().IsProcessor &&
     request.Method != Resampling::Published && this->UseLanes(request.Method, this->Targets[0]))
   {
-    this->Update.Start(this->Mesh->GetBrickGrid(), this->Mesh->GetLattice(), request.OutputExtent);
+    this->Update.Start(this->Mesh->GetBricks(), this->Mesh->GetLattice(), request.OutputExtent);
     this->LastMethod = request.Method;
     this->LastWholeExtent = request.WholeOutputExtent;
     this->LastCovered = static_cast<std::uint64_t>(report.NumberOfCoveredVoxels);
@@ -301,7 +302,7 @@ DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request, std
   this->LaunchesExpected = 1;
   this->PlanningTime = 0.0;
   DeformReport report;
-  report.NumberOfBricks = static_cast<std::int64_t>(this->Mesh->GetNumberOfBricks());
+  report.NumberOfBricks = static_cast<std::int64_t>(this->Mesh->GetBricks().GetNumberOfBricks());
   bool updated = false;
   try
   {

@@ -190,9 +190,9 @@ std::vector<VolumeDeformer::Internals::PlannedLaunch> VolumeDeformer::Internals:
       if (bricks)
       {
         p.ListBegin = static_cast<int>(bricks->size());
-        this->Mesh->AppendBricks(p.LayersBegin, p.LayersEnd, *bricks);
+        this->Mesh->GetBricks().AppendPiles(p.LayersBegin, p.LayersEnd, *bricks);
         p.ListEnd = static_cast<int>(bricks->size());
-        p.Portion = p.ListEnd - p.ListBegin < leastForPiles ? 1 : DeviceLattice::BricksInPile;
+        p.Portion = p.ListEnd - p.ListBegin < leastForPiles ? 1 : BrickGrid::BricksInPile;
       }
       launches.push_back({ chunk, p });
       begin = p.LayersEnd;
@@ -219,7 +219,7 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
 {
   const bool lanes = this->UseLanes(request.Method, output);
   cl::Kernel kernel = this->MakeResamplingKernel(lanes);
-  if (lanes && this->Mesh->GetNumberOfBricks() >> DEFORMVOLUME_BRICK_BITS)
+  if (lanes && this->Mesh->GetBricks().GetNumberOfBricks() >> DEFORMVOLUME_BRICK_BITS)
   {
     throw Error("The volume has more than 10^11 voxels. Use a smaller volume.");
   }
@@ -331,7 +331,7 @@ int VolumeDeformer::Internals::GetLayersPerLaunch() const
 {
   constexpr std::int64_t cells = 1 << 23;
   const std::int64_t layer = std::int64_t{ this->Mesh->GetSize(0) } * this->Mesh->GetSize(1);
-  constexpr std::int64_t pile = DeviceLattice::BricksInPile * DEFORMVOLUME_BRICK_Z;
+  constexpr std::int64_t pile = BrickGrid::BricksInPile * DEFORMVOLUME_BRICK_Z;
   const std::int64_t piles = (cells / layer + pile - 1) / pile;
   const std::int64_t mostPiles = this->Mesh->GetSize(2) / pile + 1;
   return static_cast<int>(std::clamp<std::int64_t>(piles, 1, mostPiles) * pile);

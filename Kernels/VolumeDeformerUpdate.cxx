@@ -223,7 +223,7 @@ void VolumeDeformer::Internals::PrepareBrickPoints()
     this->Update.SetPoints(this->Mesh->HasMesh()
         ? this->Mesh->MakeBrickPoints(
             this->Tetrahedra, this->NumberOfTetrahedra, this->NumberOfNodes)
-        : BrickPoints::FromField(this->Mesh->GetBrickGrid().GetParts(), this->Field));
+        : BrickPoints::FromField(this->Mesh->GetBricks().GetParts(), this->Field));
   }
 }
 
