@@ -275,11 +275,11 @@ public:
   ///@{
   /**
    * Whether an update resamples only the bricks of the volume (192 x 16 x 16 cells, or parts of
-   * these) whose nodes moved or whose masks changed, and those that overlap them in the output. The
-   * result is the same to the last bit. Needs the resampler EXACT, a processor as device, and an
-   * output of the same extent as the last one; all is resampled where that is not so, where more
-   * than 60 % would have to be, where the volume's arrays changed, where the volume is folded over,
-   * and after an abort or an error. Default: on.
+   * these) whose nodes moved or whose masks changed, and, unless all that moved is inside the mesh,
+   * those that overlap them in the output. The result is the same to the last bit. Needs the
+   * resampler EXACT, a processor as device, and an output of the same extent as the last one; all
+   * is resampled where that is not so, where more than 60 % would have to be, where the volume's
+   * arrays changed, where the volume is folded over, and after an abort or an error. Default: on.
    */
   vtkSetMacro(Incremental, bool);
   vtkGetMacro(Incremental, bool);
