@@ -10,27 +10,6 @@
 
 namespace deformvolume
 {
-namespace
-{
-
-/// Waits, however it is left, for transfers from memory of the caller.
-class TransferGuard
-{
-public:
-  explicit TransferGuard(const cl::CommandQueue& queue)
-    : Queue(queue)
-  {
-  }
-  ~TransferGuard() { clFinish(this->Queue()); }
-  TransferGuard(const TransferGuard&) = delete;
-  TransferGuard& operator=(const TransferGuard&) = delete;
-
-private:
-  cl::CommandQueue Queue;
-};
-
-} // namespace
-
 std::vector<Tetrahedron> NameNodePlaces(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra)
 {
@@ -132,7 +111,7 @@ cl::Buffer DeviceLattice::Send(const void* data, std::size_t bytesPerElement,
 
 void DeviceLattice::SetArrays(const std::vector<VolumeArray>& arrays)
 {
-  const TransferGuard guard(this->Queue);
+  const QueueGuard guard(this->Queue);
   const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
   const auto last = static_cast<std::ptrdiff_t>(this->Owners.size());
   for (LatticeChunk& chunk : this->Chunks)
@@ -164,7 +143,7 @@ void DeviceLattice::SetArrays(const std::vector<VolumeArray>& arrays)
 
 void DeviceLattice::SetLinks(const VertexLink* links)
 {
-  const TransferGuard guard(this->Queue);
+  const QueueGuard guard(this->Queue);
   this->ForgetRuns();
   this->WithLinks = true;
   this->AllLinked = std::all_of(links, links + GetNumberOfPoints(this->Shape.VertexExtent),
@@ -213,7 +192,7 @@ void DeviceLattice::SetRuns(const VertexRuns& runs)
   for (LatticeChunk& chunk : this->Chunks)
   {
     std::vector<std::uint32_t> begins;
-    const TransferGuard guard(this->Queue);
+    const QueueGuard guard(this->Queue);
     const auto first = runs.RowBegins.begin() + rows * chunk.PlanesBegin;
     const auto last = runs.RowBegins.begin() + rows * chunk.PlanesEnd;
     chunk.Runs = this->Send(runs.Runs.data(), sizeof(VertexRun), 1, *first, *last, chunk.Runs);
@@ -247,7 +226,7 @@ void DeviceLattice::SendRecords(const std::vector<RestTetrahedron>& tetrahedra)
   }
   const auto size = static_cast<std::int64_t>(tetrahedra.size());
   std::vector<float> rounded;
-  const TransferGuard guard(this->Queue);
+  const QueueGuard guard(this->Queue);
   if (HasDouble(this->Context))
   {
     this->RestTetrahedra =
@@ -288,7 +267,7 @@ cl::Event DeviceLattice::EvaluateTetrahedra(
 
 void DeviceLattice::SetBlanked(const unsigned char* blanked)
 {
-  const TransferGuard guard(this->Queue);
+  const QueueGuard guard(this->Queue);
   this->WithBlanked = blanked != nullptr;
   this->StateChanged = true;
   const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
@@ -302,7 +281,7 @@ void DeviceLattice::SetBlanked(const unsigned char* blanked)
 
 void DeviceLattice::SetActive(const unsigned char* active)
 {
-  const TransferGuard guard(this->Queue);
+  const QueueGuard guard(this->Queue);
   this->WithActive = active != nullptr;
   this->StateChanged = true;
   const std::int64_t layer =

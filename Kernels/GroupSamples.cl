@@ -201,8 +201,8 @@ static uint KeepClaimed(Found* found, const Output* output)
 #define FETCH_OUTPUT(index, TYPE, BITS, SLOT) PREFETCH_TO_WRITE(target##index + place)
 
 // Has the processor fetch the output where the samples will be stored. Stores leave one after the other, so that
-// one that misses the innermost cache, or the page table's, keeps all others waiting. Of neighbours, which share
-// what is fetched, one in four does.
+// one that misses the innermost cache, or the page table's, keeps all others waiting. For neighbours, which share
+// what is fetched, it is enough to do so for one in four.
 static __attribute__((always_inline)) void FetchFound(
   const Found* found, uint count, __global char* coverage ARRAY_PARAMETERS)
 {

@@ -50,18 +50,30 @@ void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::
   }
 }
 
-void BeginToRead(
+cl::Event BeginToRead(
   const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t bytes, void* memory)
 {
+  cl::Event done;
   if (IsInPlace(buffer))
   {
     // What was written is sure to be in the host's memory only while it is mapped there.
     void* mapped = queue.enqueueMapBuffer(buffer, CL_FALSE, CL_MAP_READ, 0, bytes);
-    queue.enqueueUnmapMemObject(buffer, mapped);
+    queue.enqueueUnmapMemObject(buffer, mapped, nullptr, &done);
   }
   else
   {
-    queue.enqueueReadBuffer(buffer, CL_FALSE, 0, bytes, memory);
+    queue.enqueueReadBuffer(buffer, CL_FALSE, 0, bytes, memory, nullptr, &done);
+  }
+  return done;
+}
+
+void Await(cl::Event& event)
+{
+  if (event())
+  {
+    const cl_event waited = event();
+    clWaitForEvents(1, &waited);
+    event = cl::Event();
   }
 }
 

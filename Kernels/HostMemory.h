@@ -30,11 +30,31 @@ void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t byt
 
 /// A buffer for an output: over the memory of the host where it goes, if the device can work there,
 /// else one of the device. Then BeginToRead brings it there, or what the device has not yet written
-/// of it; it is there when the queue has finished.
+/// of it; the event is that it is there.
 void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::size_t elementSize,
   std::uint64_t bytes);
-void BeginToRead(
+cl::Event BeginToRead(
   const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t bytes, void* memory);
+/// Waits for an event, if there is one, and forgets it. Throws nothing.
+void Await(cl::Event& event);
+
+/// Waits for a queue, however a scope is left: before memory of the caller, or buffers that are
+/// declared before, are gone. (To release a buffer while launches that use it are queued crashes
+/// PoCL 3.1.)
+class QueueGuard
+{
+public:
+  explicit QueueGuard(const cl::CommandQueue& queue)
+    : Queue(queue)
+  {
+  }
+  ~QueueGuard() { clFinish(this->Queue()); }
+  QueueGuard(const QueueGuard&) = delete;
+  QueueGuard& operator=(const QueueGuard&) = delete;
+
+private:
+  cl::CommandQueue Queue;
+};
 
 /// Whether a buffer lies over memory of the host.
 bool IsInPlace(const cl::Buffer& buffer);

@@ -286,6 +286,13 @@ bool IncrementalUpdate::HasOnlyInterior(std::size_t part, const unsigned char* s
 {
   const Extent vertices = this->Grid.GetVertices(part, 0);
   const std::array<int, 3>& size = this->Grid.Size;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (vertices[2 * axis] >= vertices[2 * axis + 1])
+    {
+      return true; // there are no cells
+    }
+  }
   if (!state)
   {
     bool interior = true;

@@ -23,9 +23,9 @@ namespace deformvolume
 /// whose box touches such a patch the sections that these parts lie in are run: what they write
 /// outside these patches they wrote before, since nobody else writes there.
 ///
-/// Where only vertices inside the sampling mesh moved, nothing is cleared and only changed parts
-/// are run: their cells fill the same space as before, between cells that stay, so that together
-/// they own the same voxels, unless some are inverted, which the counts tell.
+/// Where all vertices of the changed parts are inside the sampling mesh, nothing is cleared and
+/// only changed parts are run: their cells fill the same space as before, between cells that stay,
+/// so that together they own the same voxels, unless some are inverted, which the counts tell.
 class IncrementalUpdate
 {
 public:
@@ -66,13 +66,15 @@ public:
   void SetPoints(BrickPoints&& points) { this->Points = std::move(points); }
   void ForgetMapping();
 
-  /// Points will change. last: four floats a point, the displacements before the change. after: of
-  /// those that change, or of more.
+  /// Points will change. last: four floats a point, the displacements before the change.
   void MovePoints(const PointSet& changed, const float* last);
+  /// They have changed. after: of these points, or of more. (The bounds of all points only grow, as
+  /// long as not all change.)
   void AddMoved(const Bounds& after);
 
-  /// Whether all that changed are vertices that moved inside the sampling mesh. state: of all
-  /// vertices (VertexState.cl), null where all have a position and all cells are active.
+  /// Whether all that changed are parts of which points moved and all vertices are inside the
+  /// sampling mesh. state: of all vertices (VertexState.cl), null where all have a position and all
+  /// cells are active.
   bool IsInside(const unsigned char* state) const;
 
   /// Whether it is known where the parts of bricks lie, as far as MakePlan wants it.

@@ -132,8 +132,8 @@ typedef struct
 // covered or not.
 #define DEFORMVOLUME_COUNTED_VOXELS 4096
 
-// Voxels of a patch of the output on each axis: what is cleared where a part is made anew, and what
-// is looked at where voxels are not settled.
+// Voxels of a patch of the output on each axis: what is cleared where a part is made anew and what
+// it covers may change, and what is looked at where voxels are not settled.
 #define DEFORMVOLUME_PATCH 8
 // Patches that so many voxels on an axis lie in.
 #define DEFORMVOLUME_PATCHES(voxels) (((voxels) + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH)

@@ -282,6 +282,7 @@ void MeshRasterizer::RunTiles(const Setting& setting, cl::Kernel& kernel, const 
     static_cast<std::size_t>(p.TileCount[1]) * static_cast<std::size_t>(p.TileCount[2]);
   const std::size_t counterBytes = tiles * DEFORMVOLUME_TILE_COUNTERS * sizeof(cl_uint);
   const cl::Buffer counters(setting.Context.GetContext(), CL_MEM_WRITE_ONLY, counterBytes);
+  const QueueGuard guard(setting.Queue);
   cl_uint i = 0;
   kernel.setArg(i++, this->Tetrahedra);
   kernel.setArg(i++, this->Positions);
@@ -323,7 +324,6 @@ void MeshRasterizer::RunTiles(const Setting& setting, cl::Kernel& kernel, const 
     previous = event;
     if (!progress(static_cast<double>(tile) / static_cast<double>(tiles)))
     {
-      setting.Queue.finish();
       throw Aborted();
     }
   }
@@ -351,11 +351,13 @@ DeformReport MeshRasterizer::Deform(const Setting& setting, const DeviceLattice&
     "RasterizeMesh");
   const std::vector<Extent> slabs =
     OutputSlab::Split(request.OutputExtent, arrays, volume.GetLattice(), setting.AllocationLimit);
-  const bool overlapped = slabs.size() > 1 &&
-    spare >= OutputSlab::GetBytesPerVoxel(setting.Context, arrays, request) *
-        static_cast<std::uint64_t>(GetNumberOfPoints(slabs.front()));
+  const std::uint64_t bytes = OutputSlab::GetBytesPerVoxel(setting.Context, arrays, request) *
+    static_cast<std::uint64_t>(GetNumberOfPoints(slabs.front()));
+  // As much again for lists of tetrahedra that are longer than was foreseen.
+  const bool overlapped = bytes > 0 && slabs.size() > 1 && spare >= 2 * bytes;
   // One is made while the other is copied to the caller.
   std::array<std::unique_ptr<RasterTarget>, 2> targets;
+  const QueueGuard reads(setting.ReadQueue);
   DeformReport report;
   report.NumberOfFlatTetrahedra = this->NumberOfFlatTetrahedra;
   for (std::size_t s = 0; s < slabs.size(); ++s)

@@ -2,7 +2,7 @@
 #include "OutputSlab.h"
 
 #include "Background.h"
-#include "BrickPoints.h"
+#include "BrickGrid.h"
 #include "KernelProgram.h"
 
 #include <algorithm>
@@ -416,28 +416,24 @@ std::uint64_t OutputSlab::GetOffset(const DeformRequest& request) const
 
 void OutputSlab::Read(const cl::CommandQueue& queue, const DeformRequest& request)
 {
-  this->ReadQueue = queue;
   const std::uint64_t offset = this->GetOffset(request);
   for (std::size_t i = 0; i < this->Arrays.size(); ++i)
   {
-    BeginToRead(queue, this->Arrays[i], this->NumberOfVoxels * this->TupleSizes[i],
+    this->ReadDone = BeginToRead(queue, this->Arrays[i], this->NumberOfVoxels * this->TupleSizes[i],
       static_cast<char*>(request.Outputs[i]) + offset * this->TupleSizes[i]);
   }
-  BeginToRead(queue, this->Coverage, this->NumberOfVoxels, request.Coverage + offset);
+  this->ReadDone =
+    BeginToRead(queue, this->Coverage, this->NumberOfVoxels, request.Coverage + offset);
   queue.flush();
 }
 
 void OutputSlab::Finish()
 {
-  // The calls of C: they throw nothing, and this is also called after a failure.
-  for (cl::CommandQueue* queue : { &this->Queue, &this->ReadQueue })
+  if (this->Queue())
   {
-    if ((*queue)())
-    {
-      clFinish((*queue)());
-    }
+    clFinish(this->Queue()); // throws nothing: this is also called after a failure
   }
-  this->ReadQueue = cl::CommandQueue();
+  Await(this->ReadDone);
   for (cl::Buffer& array : this->Arrays)
   {
     Release(array);

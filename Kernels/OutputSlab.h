@@ -109,7 +109,7 @@ private:
     std::uint64_t size, std::vector<cl::Event>& events) const;
 
   cl::CommandQueue Queue;
-  cl::CommandQueue ReadQueue; // while the slab is copied
+  cl::Event ReadDone; // while the slab is copied
   Extent SlabExtent{ { 0, -1, 0, -1, 0, -1 } };
   Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } }; // of the output
   std::vector<cl::Buffer> Arrays;

@@ -2,7 +2,6 @@
 #include "RasterTarget.h"
 
 #include "Background.h"
-#include "HostMemory.h"
 
 #include <cstring>
 
@@ -51,21 +50,11 @@ void RasterTarget::AddPart(
 
 void RasterTarget::Read(const cl::CommandQueue& queue)
 {
-  this->ReadQueue = queue;
   for (const Part& part : this->Parts)
   {
-    BeginToRead(queue, part.Buffer, part.Bytes, part.Memory);
+    this->ReadDone = BeginToRead(queue, part.Buffer, part.Bytes, part.Memory);
   }
   queue.flush();
-}
-
-void RasterTarget::Finish()
-{
-  if (this->ReadQueue())
-  {
-    clFinish(this->ReadQueue()); // throws nothing: this is also called after a failure
-    this->ReadQueue = cl::CommandQueue();
-  }
 }
 
 } // namespace deformvolume

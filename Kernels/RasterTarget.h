@@ -2,6 +2,7 @@
 #ifndef DeformVolumeRasterTarget_h
 #define DeformVolumeRasterTarget_h
 
+#include "HostMemory.h"
 #include "OpenCLContext.h"
 #include "VolumeDeformer.h"
 
@@ -17,7 +18,7 @@ public:
   /// The request must outlive the object.
   RasterTarget(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
     const DeformRequest& request, const Extent& slab);
-  ~RasterTarget() { this->Finish(); }
+  ~RasterTarget() { Await(this->ReadDone); }
   RasterTarget(const RasterTarget&) = delete;
   RasterTarget& operator=(const RasterTarget&) = delete;
 
@@ -26,10 +27,9 @@ public:
   /// Eight bytes an array, the first of which are the background in the array's type.
   const cl::Buffer& GetBackgrounds() const { return this->Backgrounds; }
 
-  /// Begins to copy the slab, which is done, in a queue of its own.
+  /// Begins to copy the slab, which is done, in a queue of its own. The request has its voxels when
+  /// that has finished.
   void Read(const cl::CommandQueue& queue);
-  /// Waits until the request has its voxels.
-  void Finish();
 
 private:
   struct Part
@@ -40,8 +40,8 @@ private:
   };
   void AddPart(OpenCLContext& context, void* memory, std::uint64_t tuple, std::size_t elementSize);
 
-  cl::CommandQueue ReadQueue; // while the slab is copied
-  std::uint64_t FirstVoxel;   // of the slab in the output
+  cl::Event ReadDone;       // while the slab is copied
+  std::uint64_t FirstVoxel; // of the slab in the output
   std::uint64_t NumberOfVoxels;
   std::vector<Part> Parts;
   cl::Buffer Backgrounds;

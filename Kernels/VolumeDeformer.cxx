@@ -398,12 +398,12 @@ DeformReport VolumeDeformer::Deform(const DeformRequest& request)
   const DeviceLattice& mesh = this->Impl->GetMesh();
   if (request.Method == Resampling::MeshRasterization)
   {
-    const std::uint64_t needed =
-      this->CheckRasterizationDeviceMemory(mesh.GetLattice(), this->Impl->Arrays,
-        request.OutputExtent, this->Impl->NumberOfNodes, this->Impl->NumberOfTetrahedra);
-    const std::uint64_t usable = this->Impl->GetUsableMemory();
+    const DeviceMemory memory = this->CheckRasterizationDeviceMemory(mesh.GetLattice(),
+      this->Impl->Arrays, request.OutputExtent,
+      OutputSlab::GetBytesPerVoxel(*this->Impl->Context, this->Impl->Arrays, request),
+      this->Impl->NumberOfNodes, this->Impl->NumberOfTetrahedra);
     return this->Impl->Guard(
-      [&] { return this->Impl->Rasterize(request, usable > needed ? usable - needed : 0); });
+      [&] { return this->Impl->Rasterize(request, memory.Available - memory.Needed); });
   }
   const DeviceMemory memory =
     this->CheckDeviceMemory(mesh.GetLattice(), this->Impl->Arrays, request.OutputExtent,

@@ -324,8 +324,9 @@ private:
   DeviceMemory CheckDeviceMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
     const Extent& outputExtent, std::uint64_t outputBytesPerVoxel, std::size_t numberOfNodes,
     std::size_t numberOfTetrahedra, std::uint64_t mappingBytes) const;
-  std::uint64_t CheckRasterizationDeviceMemory(const Lattice& lattice,
-    const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
+  DeviceMemory CheckRasterizationDeviceMemory(const Lattice& lattice,
+    const std::vector<VolumeArray>& arrays, const Extent& outputExtent,
+    std::uint64_t outputBytesPerVoxel, std::size_t numberOfNodes,
     std::size_t numberOfTetrahedra) const;
 
   class Internals;

@@ -296,6 +296,7 @@ DeformReport VolumeDeformer::Internals::Deform(const DeformRequest& request, std
     std::array<OutputSlab, 2>& Targets;
   };
   const Finish finish{ this->Targets };
+  const QueueGuard reads(this->ReadQueue);
   this->MappingEvents.clear();
   this->ResamplingEvents.clear();
   this->LaunchesDone = 0;

@@ -61,19 +61,18 @@ void VolumeDeformer::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numb
     });
 }
 
-std::uint64_t VolumeDeformer::CheckRasterizationDeviceMemory(const Lattice& lattice,
-  const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
+VolumeDeformer::DeviceMemory VolumeDeformer::CheckRasterizationDeviceMemory(const Lattice& lattice,
+  const std::vector<VolumeArray>& arrays, const Extent& outputExtent,
+  std::uint64_t outputBytesPerVoxel, std::size_t numberOfNodes,
   std::size_t numberOfTetrahedra) const
 {
   return this->Impl->Guard(
     [&]
     {
       OpenCLContext& context = this->Impl->GetContext();
-      std::uint64_t tuple = 0;
       std::uint64_t sent = 0;
       for (const VolumeArray& array : arrays)
       {
-        tuple += GetTupleSize(array);
         sent += IsUsedInPlace(context, array) ? 0 : GetTupleSize(array);
       }
       std::uint64_t outputVoxels = 0;
@@ -83,13 +82,14 @@ std::uint64_t VolumeDeformer::CheckRasterizationDeviceMemory(const Lattice& latt
           OutputSlab::Split(outputExtent, arrays, lattice, this->Impl->GetAllocationLimit())
             .front()));
       }
-      // Arrays and both masks; a processor writes to the memory of the output itself.
+      // Arrays and both masks.
       const std::uint64_t needed =
         static_cast<std::uint64_t>(GetNumberOfPoints(lattice.VertexExtent)) * (sent + 2) +
-        MeshRasterizer::GetMemoryNeeded(outputVoxels,
-          context.GetDevice().IsProcessor ? 0 : tuple + 1, numberOfNodes, numberOfTetrahedra);
-      CheckBytes(needed, this->Impl->GetUsableMemory(), "on the device");
-      return needed;
+        MeshRasterizer::GetMemoryNeeded(
+          outputVoxels, outputBytesPerVoxel, numberOfNodes, numberOfTetrahedra);
+      const std::uint64_t available = this->Impl->GetUsableMemory();
+      CheckBytes(needed, available, "on the device");
+      return DeviceMemory{ needed, available };
     });
 }
 
@@ -97,17 +97,20 @@ void VolumeDeformer::CheckRasterizationMemory(const Lattice& lattice,
   const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
   std::size_t numberOfTetrahedra, std::uint64_t heldBytes) const
 {
-  const std::uint64_t needed = this->CheckRasterizationDeviceMemory(
-    lattice, arrays, outputExtent, numberOfNodes, numberOfTetrahedra);
   std::uint64_t tuple = 0;
   for (const VolumeArray& array : arrays)
   {
     tuple += GetTupleSize(array);
   }
+  // A processor works in the memory of the output.
+  const bool shared = this->Impl->GetContext().GetDevice().IsProcessor;
+  const std::uint64_t needed = this
+                                 ->CheckRasterizationDeviceMemory(lattice, arrays, outputExtent,
+                                   shared ? 0 : tuple + 1, numberOfNodes, numberOfTetrahedra)
+                                 .Needed;
   const std::uint64_t system = OpenCLContext::GetSystemMemory();
   if (system > 0)
   {
-    const bool shared = this->Impl->GetContext().GetDevice().IsProcessor;
     const std::uint64_t host =
       static_cast<std::uint64_t>(GetNumberOfPoints(outputExtent)) * (tuple + 1);
     CheckBytes(host + (shared ? needed : 0),

@@ -34,8 +34,10 @@ struct Subject
   std::vector<unsigned char> Active;
   Extent Output;
   double Background = 3.0;
+  bool HasCorner; // a corner of the volume is outside the mesh
 
-  explicit Subject(const Extent& extent = { { -5, 140, 0, 50, 3, 40 } })
+  explicit Subject(const Extent& extent = { { -5, 140, 0, 50, 3, 40 } }, bool hasCorner = true)
+    : HasCorner(hasCorner)
   {
     this->Shape.VertexExtent = extent;
     for (int axis = 0; axis < 3; ++axis)
@@ -128,8 +130,7 @@ struct Subject
       order = GetOrder(++permutation);
     }
     VertexLink link;
-    // A corner of the volume is outside the mesh.
-    if (voxel[0] + voxel[1] + voxel[2] >= 12)
+    if (!this->HasCorner || voxel[0] + voxel[1] + voxel[2] >= 12)
     {
       link.Tetrahedron =
         6 * ((cell[2] * (this->Nodes[1] - 1) + cell[1]) * (this->Nodes[0] - 1) + cell[0]) +
@@ -252,7 +253,7 @@ struct Subject
     this->MoveRound(center, random, radius, amount);
   }
 
-  // Moves a node that moves no vertex near the border of the volume.
+  // Moves a node in the middle.
   void MoveInside(std::mt19937& random, float amount)
   {
     std::array<int, 3> center;
@@ -508,7 +509,8 @@ TEST_P(Incremental, EqualsWholeUpdates)
 TEST_P(Incremental, EditsInsideEqualWholeUpdates)
 {
   const Route route = GetParam();
-  Subject subject;
+  // So deep that these parts reach no border.
+  Subject subject(Extent{ { -5, 140, 0, 74, 3, 78 } });
   VolumeDeformer whole;
   VolumeDeformer incremental;
   subject.SendAll(whole, route);
@@ -542,14 +544,133 @@ TEST_P(Incremental, EditsInsideEqualWholeUpdates)
     if (report.NumberOfResampledBricks < report.NumberOfBricks)
     {
       EXPECT_EQ(wanted.NumberOfInvertedTetrahedra, 0);
+      // What a node moves lies in three bricks on an axis at most.
+      EXPECT_LE(report.NumberOfResampledBricks, 3 * 3);
       ++parts;
     }
   }
   EXPECT_GT(folds, 3);
   if (parts > 0) // else the device is no processor
   {
-    EXPECT_GT(parts, 20);
+    EXPECT_GT(parts, 5);
   }
+}
+
+// Edits that change what is covered, but not how much of it, so that counts do not tell: of two
+// sides, of a hole, and of masks.
+class IncrementalBorders : public Incremental
+{
+protected:
+  IncrementalBorders()
+    : Edited(Extent{ { 0, 64, 0, 64, 0, 128 } }, false)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Edited.Output[2 * axis] -= 4;
+      this->Edited.Output[2 * axis + 1] += 4;
+    }
+  }
+
+  // A node that lies on a voxel.
+  float* At(int x, int y, int z)
+  {
+    return &this->Edited.Displacements[3 * this->Edited.GetNode({ { x, y, z } })];
+  }
+  unsigned char& BlankedAt(int x, int y, int z)
+  {
+    this->Edited.Blanked.resize(GetNumberOfPoints(this->Edited.Shape.VertexExtent));
+    return this->Edited.Blanked[(z * 65 + y) * 65 + x];
+  }
+
+  void Start()
+  {
+    this->Edited.SendAll(this->Whole, GetParam());
+    this->Edited.SendAll(this->Updated, GetParam());
+    this->Last = std::make_unique<Outputs>(this->Edited);
+    DeformRequest request = this->Last->MakeRequest(this->Edited);
+    request.Incremental = true;
+    this->LastCovered = this->Updated.Deform(request).NumberOfCoveredVoxels;
+  }
+
+  // Whether as much is covered as before.
+  bool Update()
+  {
+    this->Edited.SendMasks(this->Whole);
+    this->Edited.SendMasks(this->Updated);
+    this->Edited.SendDisplacements(this->Whole, GetParam());
+    this->Edited.SendDisplacements(this->Updated, GetParam());
+    Outputs expected(this->Edited);
+    const DeformReport wanted = this->Whole.Deform(expected.MakeRequest(this->Edited));
+    DeformRequest request = this->Last->MakeRequest(this->Edited);
+    request.Incremental = true;
+    this->Last->SetLast(request);
+    const DeformReport report = this->Updated.Deform(request);
+    EXPECT_TRUE(*this->Last == expected);
+    EXPECT_EQ(report.NumberOfCoveredVoxels, wanted.NumberOfCoveredVoxels);
+    const bool same = wanted.NumberOfCoveredVoxels == this->LastCovered;
+    this->Parts += report.NumberOfResampledBricks < report.NumberOfBricks;
+    this->LastCovered = wanted.NumberOfCoveredVoxels;
+    return same;
+  }
+
+  // Unless the device is no processor.
+  void ExpectParts(int number) const { EXPECT_TRUE(this->Parts == number || this->Parts == 0); }
+
+  Subject Edited;
+  VolumeDeformer Whole;
+  VolumeDeformer Updated;
+  std::unique_ptr<Outputs> Last;
+  std::int64_t LastCovered = 0;
+  int Parts = 0; // updates that were not whole
+};
+
+TEST_P(IncrementalBorders, OneSideGoesOutAndTheOtherIn)
+{
+  this->Start();
+  for (int y = 0; y < this->Edited.Nodes[1]; ++y)
+  {
+    for (int x = 0; x < this->Edited.Nodes[0]; ++x)
+    {
+      this->At(x, y, 0)[2] = -1.0F;
+      this->At(x, y, 16)[2] = -1.0F;
+    }
+  }
+  EXPECT_TRUE(this->Update()) << "a plane comes, and one goes";
+  this->ExpectParts(1);
+}
+
+TEST_P(IncrementalBorders, AHoleMoves)
+{
+  this->BlankedAt(32, 32, 64) = 1;
+  this->Start();
+  int same = 0;
+  for (const float shift : { 1.0F, 2.0F, -1.0F, 0.0F })
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->At(4, 4, 8)[axis] = shift;
+      same += this->Update();
+    }
+  }
+  EXPECT_GT(same, 0) << "the hole never covers as much";
+  this->ExpectParts(12);
+}
+
+TEST_P(IncrementalBorders, AMaskChangesAndWhatIsInsideMoves)
+{
+  this->BlankedAt(32, 32, 64) = 1;
+  this->Start();
+  int same = 0;
+  for (int step = 1; step <= 3; ++step)
+  {
+    // The hole goes elsewhere, and something far away moves.
+    this->BlankedAt(32, 32, 63 + step) = 0;
+    this->BlankedAt(32, 32, 64 + step) = 1;
+    *this->At(4, 4, 4) = 0.25F * static_cast<float>(step);
+    same += this->Update();
+  }
+  EXPECT_GT(same, 0) << "the hole never covers as much";
+  this->ExpectParts(3);
 }
 
 TEST_P(Incremental, LocalEditsRunFewBricks)
@@ -591,11 +712,17 @@ TEST_P(Incremental, LocalEditsRunFewBricks)
   EXPECT_EQ(last.NumberOfResampledBricks, last.NumberOfBricks);
 }
 
-INSTANTIATE_TEST_SUITE_P(Routes, Incremental,
-  testing::Values(Route::Mesh, Route::Runs, Route::Field),
-  [](const testing::TestParamInfo<Route>& info)
-  {
-    return std::string(info.param == Route::Mesh ? "Links"
-        : info.param == Route::Runs              ? "Runs"
-                                                 : "Field");
-  });
+namespace
+{
+
+std::string GetRouteName(const testing::TestParamInfo<Route>& info)
+{
+  return info.param == Route::Mesh ? "Links" : info.param == Route::Runs ? "Runs" : "Field";
+}
+
+} // namespace
+
+INSTANTIATE_TEST_SUITE_P(
+  Routes, Incremental, testing::Values(Route::Mesh, Route::Runs, Route::Field), GetRouteName);
+INSTANTIATE_TEST_SUITE_P(Routes, IncrementalBorders,
+  testing::Values(Route::Mesh, Route::Runs, Route::Field), GetRouteName);
