@@ -32,6 +32,9 @@ constexpr Limit FineMesh{ "near identity: 512000 nodes by 2197 nodes", 1.6 };
 constexpr Limit Rotated{ "turned by 45 degrees round each axis, by near identity", 2.5 };
 constexpr Limit Scaled{ "scaled by 1.5, by near identity", 2.5 };
 constexpr Limit FoldedOver{ "a third folded back over the rest, by near identity", 3.5 };
+// The times of edits in a box that touches 5 % of the blocks by those of a whole pass.
+constexpr Limit EditedInside{ "512000 nodes: edit in the middle by all", 0.15 };
+constexpr Limit EditedAtSide{ "512000 nodes: edit on a side by all", 0.25 };
 constexpr Limit BytesCoarse{ "2197 nodes: bytes of device memory per voxel", 6.0 };
 constexpr Limit BytesFine{ "512000 nodes: bytes of device memory per voxel", 20.0 };
 constexpr Limit Builds{ "static mappings built for moved meshes", 0.0 };
@@ -82,6 +85,8 @@ void CheckSpeedAndMemory()
   BenchmarkCase rotated(volume, CoarseNodes);
   BenchmarkCase scaled(volume, CoarseNodes);
   BenchmarkCase folded(volume, CoarseNodes);
+  BenchmarkCase editedInside(volume, FineNodes);
+  BenchmarkCase editedAtSide(volume, FineNodes);
   BenchmarkCase published(volume, CoarseNodes, vtkDeformVolumeFilter::PUBLISHED);
   const auto reslice = MakeAffineReslice(volume);
 
@@ -97,14 +102,15 @@ void CheckSpeedAndMemory()
   };
 
   Ratios updateNear, updateGeneral, publishedNear, publishedGeneral, fineMesh, rotation, scaling,
-    folding;
+    folding, editingInside, editingAtSide;
   vtkIdType builds = 0;
   vtkIdType uploads = 0;
   const auto countWork = [&]()
   {
     builds = 0;
     uploads = 0;
-    for (BenchmarkCase* subject : { &near, &general, &fine, &rotated, &scaled, &folded })
+    for (BenchmarkCase* subject :
+      { &near, &general, &fine, &rotated, &scaled, &folded, &editedInside, &editedAtSide })
     {
       builds += subject->GetFilter()->GetNumberOfMappingBuilds();
       uploads += subject->GetFilter()->GetNumberOfVolumeUploads();
@@ -117,6 +123,8 @@ void CheckSpeedAndMemory()
     const double resliceNear = resliceLike(near);
     const double publishedNearTime = update(published, Pose::NearIdentity).GetKernels();
     const double fineTime = update(fine, Pose::NearIdentity).GetKernels();
+    const double insideTime = update(editedInside, Pose::LocalEdit).GetKernels();
+    const double sideTime = update(editedAtSide, Pose::LocalEditAtSide).GetKernels();
     const double rotatedTime = update(rotated, Pose::Rotated).GetKernels();
     const double scaledTime = update(scaled, Pose::UniformScale).GetKernels();
     const double foldedTime = update(folded, Pose::Folded).GetKernels();
@@ -133,6 +141,8 @@ void CheckSpeedAndMemory()
     publishedNear.Add(nearTimes.GetKernels() / publishedNearTime);
     publishedGeneral.Add(generalTimes.GetKernels() / publishedGeneralTime);
     fineMesh.Add(fineTime / nearTimes.GetKernels());
+    editingInside.Add(insideTime / fineTime);
+    editingAtSide.Add(sideTime / fineTime);
     rotation.Add(rotatedTime / nearTimes.GetKernels());
     scaling.Add(scaledTime / nearTimes.GetKernels());
     folding.Add(foldedTime / nearTimes.GetKernels());
@@ -142,6 +152,8 @@ void CheckSpeedAndMemory()
   Check(PublishedNear, publishedNear.GetMedian());
   Check(PublishedGeneral, publishedGeneral.GetMedian());
   Check(FineMesh, fineMesh.GetMedian());
+  Check(EditedInside, editingInside.GetMedian());
+  Check(EditedAtSide, editingAtSide.GetMedian());
   Check(Rotated, rotation.GetMedian());
   Check(Scaled, scaling.GetMedian());
   Check(FoldedOver, folding.GetMedian());
