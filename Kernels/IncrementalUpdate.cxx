@@ -357,8 +357,7 @@ void IncrementalUpdate::FindBoxes(const float* displacements, std::size_t number
   };
   find([&](std::size_t part) { return this->IsChanged(part); });
   const Box reach = this->GetReach();
-  const Bounds all = *this->AllBounds;
-  find([&](std::size_t part) { return !IsApart(this->MakeBox(part, all), reach); });
+  find([&](std::size_t part) { return !IsApart(this->MakeBox(part, *this->AllBounds), reach); });
   this->BoxesKnown = true;
 }
 

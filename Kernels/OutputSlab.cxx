@@ -93,11 +93,6 @@ void Release(cl::Buffer& buffer)
   }
 }
 
-} // namespace
-
-namespace
-{
-
 Extent GetWholeOutput(const DeformRequest& request)
 {
   return GetNumberOfPoints(request.WholeOutputExtent) > 0 ? request.WholeOutputExtent

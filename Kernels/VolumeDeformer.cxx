@@ -142,6 +142,18 @@ void VolumeDeformer::CheckMemory(const Lattice& lattice, const std::vector<Volum
   std::uint64_t runBytes, std::uint64_t heldBytes) const
 {
   const std::uint64_t mappingBytes = GetMappingBytes(lattice, field, runBytes);
+  this->CheckMemories(arrays, outputExtent, mappingBytes, heldBytes,
+    [&](std::uint64_t outputBytesPerVoxel)
+    {
+      return this->CheckDeviceMemory(lattice, arrays, outputExtent, outputBytesPerVoxel,
+        numberOfNodes, numberOfTetrahedra, mappingBytes);
+    });
+}
+
+void VolumeDeformer::CheckMemories(const std::vector<VolumeArray>& arrays,
+  const Extent& outputExtent, std::uint64_t mappingBytes, std::uint64_t heldBytes,
+  const std::function<DeviceMemory(std::uint64_t)>& checkDevice) const
+{
   const bool shared =
     this->Impl->Guard([&] { return this->Impl->GetContext().GetDevice().IsProcessor; });
   std::uint64_t tuple = 0;
@@ -150,11 +162,7 @@ void VolumeDeformer::CheckMemory(const Lattice& lattice, const std::vector<Volum
     tuple += GetTupleSize(array);
   }
   // A processor works in the memory of the output.
-  const std::uint64_t needed =
-    this
-      ->CheckDeviceMemory(lattice, arrays, outputExtent, shared ? 0 : tuple + 1, numberOfNodes,
-        numberOfTetrahedra, mappingBytes)
-      .Needed;
+  const std::uint64_t needed = checkDevice(shared ? 0 : tuple + 1).Needed;
   // What the caller holds, in the memory of the system, which a processor shares with its device.
   const std::uint64_t system = OpenCLContext::GetSystemMemory();
   if (system > 0)

@@ -329,6 +329,13 @@ private:
     std::uint64_t outputBytesPerVoxel, std::size_t numberOfNodes,
     std::size_t numberOfTetrahedra) const;
 
+  /// The part of both for the device, by a function that is given the bytes of a voxel of the
+  /// output there, and then the part for the system. mappingBytes: of links or runs that the caller
+  /// holds.
+  void CheckMemories(const std::vector<VolumeArray>& arrays, const Extent& outputExtent,
+    std::uint64_t mappingBytes, std::uint64_t heldBytes,
+    const std::function<DeviceMemory(std::uint64_t)>& checkDevice) const;
+
   class Internals;
   std::unique_ptr<Internals> Impl;
 };

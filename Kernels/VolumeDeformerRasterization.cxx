@@ -97,25 +97,12 @@ void VolumeDeformer::CheckRasterizationMemory(const Lattice& lattice,
   const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
   std::size_t numberOfTetrahedra, std::uint64_t heldBytes) const
 {
-  std::uint64_t tuple = 0;
-  for (const VolumeArray& array : arrays)
-  {
-    tuple += GetTupleSize(array);
-  }
-  // A processor works in the memory of the output.
-  const bool shared = this->Impl->GetContext().GetDevice().IsProcessor;
-  const std::uint64_t needed = this
-                                 ->CheckRasterizationDeviceMemory(lattice, arrays, outputExtent,
-                                   shared ? 0 : tuple + 1, numberOfNodes, numberOfTetrahedra)
-                                 .Needed;
-  const std::uint64_t system = OpenCLContext::GetSystemMemory();
-  if (system > 0)
-  {
-    const std::uint64_t host =
-      static_cast<std::uint64_t>(GetNumberOfPoints(outputExtent)) * (tuple + 1);
-    CheckBytes(host + (shared ? needed : 0),
-      system + heldBytes + (shared ? this->GetDeviceMemory() : 0), "in the system");
-  }
+  this->CheckMemories(arrays, outputExtent, 0, heldBytes,
+    [&](std::uint64_t outputBytesPerVoxel)
+    {
+      return this->CheckRasterizationDeviceMemory(
+        lattice, arrays, outputExtent, outputBytesPerVoxel, numberOfNodes, numberOfTetrahedra);
+    });
 }
 
 } // namespace deformvolume

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <memory>
 #include <random>
 
 using namespace deformvolume;
@@ -403,6 +404,55 @@ void Change(Subject& subject, Edit edit, std::mt19937& random)
   }
 }
 
+// Two deformers, one of which updates what it made last, in place.
+struct Twins
+{
+  VolumeDeformer Whole;
+  VolumeDeformer Updated;
+  std::unique_ptr<Outputs> Last;
+  DeformReport WholeReport;
+  DeformReport UpdatedReport;
+
+  void SendAll(const Subject& subject, Route route)
+  {
+    subject.SendAll(this->Whole, route);
+    subject.SendAll(this->Updated, route);
+  }
+
+  // After displacements have changed. Expects the same of both.
+  void Deform(const Subject& subject, Route route)
+  {
+    subject.SendDisplacements(this->Whole, route);
+    subject.SendDisplacements(this->Updated, route);
+    Outputs expected(subject);
+    this->WholeReport = this->Whole.Deform(expected.MakeRequest(subject));
+    const bool isFirst = !this->Last;
+    if (isFirst)
+    {
+      this->Last = std::make_unique<Outputs>(subject);
+    }
+    DeformRequest request = this->Last->MakeRequest(subject);
+    request.Incremental = true;
+    if (!isFirst)
+    {
+      this->Last->SetLast(request);
+    }
+    this->UpdatedReport = this->Updated.Deform(request);
+    const DeformReport& wanted = this->WholeReport;
+    const DeformReport& report = this->UpdatedReport;
+    ASSERT_TRUE(*this->Last == expected);
+    EXPECT_EQ(report.NumberOfCoveredVoxels, wanted.NumberOfCoveredVoxels);
+    EXPECT_EQ(report.Overlapping, wanted.Overlapping);
+    EXPECT_EQ(report.NumberOfInvertedTetrahedra, wanted.NumberOfInvertedTetrahedra);
+  }
+
+  // Whether the last one ran a part of the bricks only.
+  bool IsPart() const
+  {
+    return this->UpdatedReport.NumberOfResampledBricks < this->UpdatedReport.NumberOfBricks;
+  }
+};
+
 class Incremental : public testing::TestWithParam<Route>
 {
 };
@@ -511,11 +561,8 @@ TEST_P(Incremental, EditsInsideEqualWholeUpdates)
   const Route route = GetParam();
   // So deep that these parts reach no border.
   Subject subject(Extent{ { -5, 140, 0, 74, 3, 78 } });
-  VolumeDeformer whole;
-  VolumeDeformer incremental;
-  subject.SendAll(whole, route);
-  subject.SendAll(incremental, route);
-  Outputs outputs(subject);
+  Twins twins;
+  twins.SendAll(subject, route);
   std::mt19937 random(29);
   int parts = 0;
   int folds = 0;
@@ -525,27 +572,13 @@ TEST_P(Incremental, EditsInsideEqualWholeUpdates)
     const bool folding = i % 5 == 3;
     const bool unfolding = i % 5 == 4;
     Change(subject, folding ? Edit::FoldInside : unfolding ? Edit::Unfold : Edit::Inside, random);
-    subject.SendDisplacements(whole, route);
-    subject.SendDisplacements(incremental, route);
-    Outputs expected(subject);
-    const DeformReport wanted = whole.Deform(expected.MakeRequest(subject));
-    DeformRequest request = outputs.MakeRequest(subject);
-    request.Incremental = true;
-    if (i > 0)
+    ASSERT_NO_FATAL_FAILURE(twins.Deform(subject, route));
+    folds += twins.WholeReport.NumberOfInvertedTetrahedra > 0;
+    if (twins.IsPart())
     {
-      outputs.SetLast(request);
-    }
-    const DeformReport report = incremental.Deform(request);
-    ASSERT_TRUE(outputs == expected);
-    EXPECT_EQ(report.NumberOfCoveredVoxels, wanted.NumberOfCoveredVoxels);
-    EXPECT_EQ(report.Overlapping, wanted.Overlapping);
-    EXPECT_EQ(report.NumberOfInvertedTetrahedra, wanted.NumberOfInvertedTetrahedra);
-    folds += wanted.NumberOfInvertedTetrahedra > 0;
-    if (report.NumberOfResampledBricks < report.NumberOfBricks)
-    {
-      EXPECT_EQ(wanted.NumberOfInvertedTetrahedra, 0);
+      EXPECT_EQ(twins.WholeReport.NumberOfInvertedTetrahedra, 0);
       // What a node moves lies in three bricks on an axis at most.
-      EXPECT_LE(report.NumberOfResampledBricks, 3 * 3);
+      EXPECT_LE(twins.UpdatedReport.NumberOfResampledBricks, 3 * 3);
       ++parts;
     }
   }
@@ -584,43 +617,26 @@ protected:
 
   void Start()
   {
-    this->Edited.SendAll(this->Whole, GetParam());
-    this->Edited.SendAll(this->Updated, GetParam());
-    this->Last = std::make_unique<Outputs>(this->Edited);
-    DeformRequest request = this->Last->MakeRequest(this->Edited);
-    request.Incremental = true;
-    this->LastCovered = this->Updated.Deform(request).NumberOfCoveredVoxels;
+    this->Both.SendAll(this->Edited, GetParam());
+    this->Both.Deform(this->Edited, GetParam());
   }
 
   // Whether as much is covered as before.
   bool Update()
   {
-    this->Edited.SendMasks(this->Whole);
-    this->Edited.SendMasks(this->Updated);
-    this->Edited.SendDisplacements(this->Whole, GetParam());
-    this->Edited.SendDisplacements(this->Updated, GetParam());
-    Outputs expected(this->Edited);
-    const DeformReport wanted = this->Whole.Deform(expected.MakeRequest(this->Edited));
-    DeformRequest request = this->Last->MakeRequest(this->Edited);
-    request.Incremental = true;
-    this->Last->SetLast(request);
-    const DeformReport report = this->Updated.Deform(request);
-    EXPECT_TRUE(*this->Last == expected);
-    EXPECT_EQ(report.NumberOfCoveredVoxels, wanted.NumberOfCoveredVoxels);
-    const bool same = wanted.NumberOfCoveredVoxels == this->LastCovered;
-    this->Parts += report.NumberOfResampledBricks < report.NumberOfBricks;
-    this->LastCovered = wanted.NumberOfCoveredVoxels;
-    return same;
+    const std::int64_t before = this->Both.WholeReport.NumberOfCoveredVoxels;
+    this->Edited.SendMasks(this->Both.Whole);
+    this->Edited.SendMasks(this->Both.Updated);
+    this->Both.Deform(this->Edited, GetParam());
+    this->Parts += this->Both.IsPart();
+    return this->Both.WholeReport.NumberOfCoveredVoxels == before;
   }
 
   // Unless the device is no processor.
   void ExpectParts(int number) const { EXPECT_TRUE(this->Parts == number || this->Parts == 0); }
 
   Subject Edited;
-  VolumeDeformer Whole;
-  VolumeDeformer Updated;
-  std::unique_ptr<Outputs> Last;
-  std::int64_t LastCovered = 0;
+  Twins Both;
   int Parts = 0; // updates that were not whole
 };
 
