@@ -109,6 +109,19 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
                i + 12, i + 12, i + 12))
 #endif
 
+// The nodes of four tetrahedra that two places, read as one number, name first and second: loads are what takes
+// longest here.
+#ifdef __ENDIAN_LITTLE__
+#define FIRST_NODE(m, places) NODE((m)->Nodes, (ulong)(uint)(places))
+#define SECOND_NODE(m, places) NODE((m)->Nodes, (places) >> 32)
+#else
+#define FIRST_NODE(m, places) NODE((m)->Nodes, (places) >> 32)
+#define SECOND_NODE(m, places) NODE((m)->Nodes, (ulong)(uint)(places))
+#endif
+#define FOUR_NODES(WHICH, m, places)                                                               \
+  (float16)(WHICH##_NODE(m, places##0), WHICH##_NODE(m, places##1), WHICH##_NODE(m, places##2),    \
+    WHICH##_NODE(m, places##3))
+
 // The displacements of four vertices with links behind one another, with the operations of FollowLink.
 static float16 FollowFourLinks(const Mapping* m, __global const VertexLink* links)
 {
@@ -117,14 +130,18 @@ static float16 FollowFourLinks(const Mapping* m, __global const VertexLink* link
   const float16 b = OF_EACH_FOUR(four, 2);
   const float16 c = OF_EACH_FOUR(four, 3);
   const float16 d = 1.0f - a - b - c;
-  const int4 t0 = m->Tetrahedra[links[0].Tetrahedron];
-  const int4 t1 = m->Tetrahedra[links[1].Tetrahedron];
-  const int4 t2 = m->Tetrahedra[links[2].Tetrahedron];
-  const int4 t3 = m->Tetrahedra[links[3].Tetrahedron];
-#define FOUR_NODES(k)                                                                              \
-  (float16)(NODE(m->Nodes, t0.k), NODE(m->Nodes, t1.k), NODE(m->Nodes, t2.k), NODE(m->Nodes, t3.k))
-  return MULTIPLY_ADD(FOUR_NODES(w), d,
-    MULTIPLY_ADD(FOUR_NODES(z), c, MULTIPLY_ADD(FOUR_NODES(y), b, FOUR_NODES(x) * a)));
+#define PLACES_OF(k)                                                                               \
+  __global const ulong* const tetrahedron##k =                                                     \
+    (__global const ulong*)(m->Tetrahedra + links[k].Tetrahedron);                                 \
+  const ulong xy##k = tetrahedron##k[0];                                                           \
+  const ulong zw##k = tetrahedron##k[1];
+  PLACES_OF(0)
+  PLACES_OF(1)
+  PLACES_OF(2)
+  PLACES_OF(3)
+  return MULTIPLY_ADD(FOUR_NODES(SECOND, m, zw), d,
+    MULTIPLY_ADD(FOUR_NODES(FIRST, m, zw), c,
+      MULTIPLY_ADD(FOUR_NODES(SECOND, m, xy), b, FOUR_NODES(FIRST, m, xy) * a)));
 }
 
 #define ROW_DISPLACEMENTS                                                                          \

@@ -4,11 +4,13 @@
 // voxels as Resampling.cl; cells that it is not sure of it leaves to ResampleCell.
 //
 // Why it is shaped so: compilers do not turn a kernel with data-dependent loops over candidates
-// into vector code, so the lanes are written out. Positions are found row by row, as the cells
-// need them, and never leave the inner caches: two planes of a brick, 17 rows each. A row is
-// split into vertices of even and of odd index: cells of equal parity, every second one of a row, are
-// taken together, and no lane needs another 5T split than its neighbour. Every lane goes through its own
-// candidates, one after the other, until the last lane has none left.
+// into vector code, so the lanes are written out. Positions are found plane by plane, as the cells
+// need them, and never leave the inner caches: two planes of a brick, 17 rows each. A plane is
+// mapped as a whole before the cells below it are resampled: rows side by side follow the same
+// tetrahedra, which are then still in the innermost cache. A row is split into vertices of even and
+// of odd index: cells of equal parity, every second one of a row, are taken together, and no lane
+// needs another 5T split than its neighbour. Every lane goes through its own candidates, one after
+// the other, until the last lane has none left.
 //
 // Data: links 16 bytes a voxel (or runs, or a field), state 1 byte, the arrays in their own types; rows in local
 // memory as BrickMapping.cl has them. It comes after GroupResampling.cl.
@@ -166,13 +168,15 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
     {
       flags[plane][y - by] = MapRow(mesh, beginX, endX + 1, beginX - bx, y, z,
         ring + (plane * ROWS + (y - by)) * ROW, restX, displaced, p ARRAY_ARGUMENTS);
-      if (z == beginZ || y == beginY)
-      {
-        continue;
-      }
-      // The cells that this is the last row of vertices for. Rows of even and of odd structured y, and planes,
-      // lie by their parity.
-      const int low = y - 1 - by;
+    }
+    if (z == beginZ)
+    {
+      continue;
+    }
+    // The cells below it. Rows of even and of odd structured y, and planes, lie by their parity.
+    for (int y = beginY; y < endY; ++y)
+    {
+      const int low = y - by;
       const RowFlags* const f[4] = { flags[0] + low, flags[0] + low + 1, flags[1] + low,
         flags[1] + low + 1 };
       RowOfCells row;
@@ -182,9 +186,9 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
         row.Rows[r] = ring + ((r & 1) * ROWS + vertexRow) * ROW;
       }
       row.X = bx;
-      row.Y = y - 1;
+      row.Y = y;
       row.Z = z - 1;
-      row.Odd = (p->First[1] + y - 1 + p->First[2] + z - 1) & 1;
+      row.Odd = (p->First[1] + y + p->First[2] + z - 1) & 1;
       row.Borders = f[0]->Border | f[1]->Border | f[2]->Border | f[3]->Border;
       const uint specials = f[0]->Special | f[1]->Special | f[2]->Special | f[3]->Special;
       const int quarter =
