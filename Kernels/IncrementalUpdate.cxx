@@ -40,6 +40,12 @@ bool IsDifferent(const unsigned char* last, const unsigned char* next, unsigned 
     std::any_of(mask + begin, mask + begin + size, [=](unsigned char v) { return v != value; });
 }
 
+// Whether there are cells between some vertices.
+bool HasCells(const Extent& vertices)
+{
+  return vertices[0] < vertices[1] && vertices[2] < vertices[3] && vertices[4] < vertices[5];
+}
+
 // Parts of bricks that a thread takes at a time.
 constexpr std::size_t PartStep = 256;
 
@@ -168,15 +174,19 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(std::size_t part, const Bounds
 {
   const Extent vertices = this->Grid.GetVertices(part, 0);
   const double excess = this->Points.GetExcess(part);
+  constexpr Box nothing = { { { 1.0, 1.0, 1.0 } }, { { 0.0, 0.0, 0.0 } } };
+  if (!HasCells(vertices))
+  {
+    return nothing;
+  }
   Box box;
   for (int axis = 0; axis < 3; ++axis)
   {
     const float least = bounds.Least[axis];
     const float greatest = bounds.Greatest[axis];
-    if (!(least <= greatest) || vertices[2 * axis] >= vertices[2 * axis + 1])
+    if (!(least <= greatest)) // no vertex has a place
     {
-      // No vertex has a place, or there are no cells.
-      return { { { 1.0, 1.0, 1.0 } }, { { 0.0, 0.0, 0.0 } } };
+      return nothing;
     }
     const double widening = excess * (double(greatest) - double(least)) + Margin;
     const double low = std::min(least - widening, LargestMove);
@@ -286,12 +296,9 @@ bool IncrementalUpdate::HasOnlyInterior(std::size_t part, const unsigned char* s
 {
   const Extent vertices = this->Grid.GetVertices(part, 0);
   const std::array<int, 3>& size = this->Grid.Size;
-  for (int axis = 0; axis < 3; ++axis)
+  if (!HasCells(vertices))
   {
-    if (vertices[2 * axis] >= vertices[2 * axis + 1])
-    {
-      return true; // there are no cells
-    }
+    return true;
   }
   if (!state)
   {

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A volume in a grid of nodes that are moved bit by bit, and two deformers of it, of which one does
+// all anew each time and one updates what it made last.
+#ifndef EditedVolume_h
+#define EditedVolume_h
+
+#include "DeformerCase.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <vector>
+
+/// A volume of several bricks, and a grid of nodes round it. Each cell of the grid is split into
+/// six tetrahedra, one for each order of the axes: along a way from its lowest to its highest
+/// corner.
+struct EditedVolume
+{
+  static constexpr int Step = 8; // voxels between nodes
+
+  deformvolume::Lattice Shape;
+  std::array<int, 3> Nodes;
+  std::vector<deformvolume::Tetrahedron> Tetrahedra;
+  std::vector<deformvolume::VertexLink> Links;
+  deformvolume::VertexRuns Runs;
+  std::vector<float> Displacements;
+  std::vector<std::uint16_t> First;
+  std::vector<double> Second;
+  std::vector<unsigned char> Blanked;
+  std::vector<unsigned char> Active;
+  deformvolume::Extent Output;
+  double Background = 3.0;
+
+  /// hasCorner: whether a corner of the volume is outside the mesh.
+  explicit EditedVolume(
+    const deformvolume::Extent& extent = { { -5, 140, 0, 50, 3, 40 } }, bool hasCorner = true);
+
+  std::size_t GetNumberOfNodes() const;
+  std::int32_t GetNode(const std::array<int, 3>& place) const;
+  std::vector<deformvolume::VolumeArray> GetArrays() const;
+
+  void SendAll(deformvolume::VolumeDeformer& deformer, Route route) const;
+  void SendMasks(deformvolume::VolumeDeformer& deformer) const;
+  void SendDisplacements(deformvolume::VolumeDeformer& deformer, Route route,
+    const deformvolume::PointRanges* changes = nullptr) const;
+
+  /// Where the displacements are not those, and a few points more.
+  deformvolume::PointRanges FindChanges(const std::vector<float>& last, std::mt19937& random) const;
+
+  /// Moves nodes round one by up to so many voxels; a radius of 0 moves one node.
+  void Move(std::mt19937& random, int radius, float amount);
+  /// Moves a node in the middle.
+  void MoveInside(std::mt19937& random, float amount);
+
+private:
+  void MakeTetrahedra();
+  void MakeLinks(bool hasCorner);
+  void AddVoxel(const std::array<int, 3>& voxel, bool linked, std::vector<std::int32_t>& records,
+    std::int32_t& last);
+  void MoveRound(const std::array<int, 3>& center, std::mt19937& random, int radius, float amount);
+};
+
+/// What becomes of an EditedVolume.
+struct EditedOutputs
+{
+  std::vector<std::uint16_t> First;
+  std::vector<double> Second;
+  std::vector<signed char> Coverage;
+
+  explicit EditedOutputs(const EditedVolume& volume);
+
+  deformvolume::DeformRequest MakeRequest(const EditedVolume& volume);
+  /// Tells a request that this is the last output.
+  void SetLast(deformvolume::DeformRequest& request) const;
+  bool operator==(const EditedOutputs& other) const;
+};
+
+/// Expects two reports to tell the same of an output.
+void ExpectSame(const deformvolume::DeformReport& report, const deformvolume::DeformReport& wanted);
+
+/// Two deformers, one of which updates what it made last, in place.
+struct Twins
+{
+  deformvolume::VolumeDeformer Whole;
+  deformvolume::VolumeDeformer Updated;
+  std::unique_ptr<EditedOutputs> Last;
+  deformvolume::DeformReport WholeReport;
+  deformvolume::DeformReport UpdatedReport;
+
+  void SendAll(const EditedVolume& volume, Route route);
+  /// After displacements have changed. Expects the same of both.
+  void Deform(const EditedVolume& volume, Route route);
+  /// Whether the last one ran a part of the bricks only.
+  bool IsPart() const;
+};
+
+#endif
