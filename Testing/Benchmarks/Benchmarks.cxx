@@ -18,6 +18,7 @@ int main(int argc, char* argv[])
     size.Quick = true;
   }
   RegisterComparison(size);
+  RegisterNodes(size);
   RegisterProbe(size);
   RegisterPoses(size);
   RegisterTetrahedra(size);

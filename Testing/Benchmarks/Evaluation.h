@@ -17,7 +17,9 @@ struct EvaluationSize
 
   int GetRounds() const { return this->Quick ? 1 : 7; }
   /// For what takes long.
-  int GetSlowRounds() const { return this->Quick ? 1 : 3; }
+  int GetSlowRounds() const { return this->Quick ? 1 : 5; }
+  /// For what takes short and whose difference is small beside what the machine varies by.
+  int GetManyRounds() const { return this->Quick ? 1 : 21; }
   /// Whether the peers and the published kernel have a turn that does not count, as others do.
   bool GetWarmUp() const { return !this->Quick; }
   bool GetWarmUp(int resampler) const
@@ -28,6 +30,9 @@ struct EvaluationSize
 
 /// Deform/<pose>/<deformation>/<resampler>, Deform/<pose>/<peer>: table 1 and the peers.
 void RegisterComparison(const EvaluationSize& size);
+
+/// Nodes/<pose>/<nodes>: meshes of few and of many nodes, alone.
+void RegisterNodes(const EvaluationSize& size);
 
 /// Probe/<pose>/<resampler or probe>: the slowest peer.
 void RegisterProbe(const EvaluationSize& size);

@@ -30,7 +30,7 @@ def _kernels_by_published(pose, nodes="2197"):
 
 def _fine_by_coarse(pose):
     return lambda r: r.ratio(
-        f"Deform/{pose}/512000/exact", f"Deform/{pose}/2197/exact", "kernels")
+        f"Nodes/{pose}/512000", f"Nodes/{pose}/2197", "kernels")
 
 
 def _pose_by_near(pose):

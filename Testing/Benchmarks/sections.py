@@ -119,6 +119,15 @@ def poses(results, _folder, _kind):
         yield "## Poses: 189 x 305 x 229 voxels of 16 bits, 2,197 nodes\n"
         yield table(["pose", "mapping + resampling, ms", "Update(), ms",
                      "mapping + resampling by near identity"], rows)
+    rows = []
+    for name in results.names("Nodes/"):
+        _, pose, nodes = name.split("/")
+        rows.append([pose, nodes, results.milliseconds(name, "kernels"), results.median(name),
+                     results.ratio(name, f"Nodes/{pose}/2197", "kernels")])
+    if rows:
+        yield "## Nodes: 189 x 305 x 229 voxels of 16 bits\n"
+        yield table(["pose", "nodes", "mapping + resampling, ms", "Update(), ms",
+                     "mapping + resampling by 2197"], rows)
 
 
 def _chosen(results, name):
