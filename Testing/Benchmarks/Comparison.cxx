@@ -131,31 +131,6 @@ void RegisterComparison(const EvaluationSize& size)
   }
 }
 
-void RegisterNodes(const EvaluationSize& size)
-{
-  for (const Pose pose : { Pose::NearIdentity, Pose::General })
-  {
-    std::vector<Contestant<ComparisonStage>> contestants;
-    for (const int nodes : { CoarseNodes, FineNodes })
-    {
-      contestants.push_back(MakeCaseContestant(std::to_string(nodes * nodes * nodes), pose));
-    }
-    RegisterRounds<ComparisonStage>(
-      std::string("Nodes/") + GetName(pose), size.GetManyRounds(),
-      []()
-      {
-        auto stage = std::make_shared<ComparisonStage>();
-        for (const int nodes : { CoarseNodes, FineNodes })
-        {
-          stage->Cases[std::to_string(nodes * nodes * nodes)] =
-            std::make_unique<BenchmarkCase>(stage->Volume, nodes);
-        }
-        return stage;
-      },
-      contestants);
-  }
-}
-
 void RegisterProbe(const EvaluationSize& size)
 {
   for (const Pose pose : { Pose::NearIdentity, Pose::General })

@@ -15,6 +15,43 @@ Contestant<CaseMap> MakeContestant(const std::string& name, Pose pose, bool warm
 {
   return { name, [=](CaseMap& cases) { return Measure(*cases.at(name), pose); }, warmUp };
 }
+
+// Meshes of few and of many nodes, by the number of these.
+std::map<std::string, int> GetNodesPerAxis()
+{
+  std::map<std::string, int> nodesPerAxis;
+  for (const int nodes : { CoarseNodes, FineNodes })
+  {
+    nodesPerAxis[std::to_string(nodes * nodes * nodes)] = nodes;
+  }
+  return nodesPerAxis;
+}
+
+std::shared_ptr<CaseMap> MakeCasesByNodes(const std::array<int, 3>& dimensions)
+{
+  auto cases = std::make_shared<CaseMap>();
+  const auto volume = MakeVolume(dimensions);
+  for (const auto& [name, nodes] : GetNodesPerAxis())
+  {
+    (*cases)[name] = std::make_unique<BenchmarkCase>(volume, nodes);
+  }
+  return cases;
+}
+}
+
+void RegisterNodes(const EvaluationSize& size)
+{
+  for (const Pose pose : { Pose::NearIdentity, Pose::General })
+  {
+    std::vector<Contestant<CaseMap>> contestants;
+    for (const auto& named : GetNodesPerAxis())
+    {
+      contestants.push_back(MakeContestant(named.first, pose));
+    }
+    RegisterRounds<CaseMap>(
+      std::string("Nodes/") + GetName(pose), size.GetManyRounds(),
+      []() { return MakeCasesByNodes(BenchmarkVolume); }, contestants);
+  }
 }
 
 void RegisterTetrahedra(const EvaluationSize& size)
@@ -107,11 +144,9 @@ void RegisterPreprocessing(const EvaluationSize& size)
   for (const auto& dimensions : { BenchmarkVolume, HeadVolume })
   {
     std::vector<Contestant<CaseMap>> contestants;
-    std::map<std::string, int> nodesPerAxis;
-    for (const int nodes : { CoarseNodes, FineNodes })
+    for (const auto& named : GetNodesPerAxis())
     {
-      const std::string name = std::to_string(nodes * nodes * nodes);
-      nodesPerAxis[name] = nodes;
+      const std::string name = named.first;
       contestants.push_back({ name,
         [name](CaseMap& cases)
         {
@@ -127,17 +162,7 @@ void RegisterPreprocessing(const EvaluationSize& size)
     }
     RegisterRounds<CaseMap>(
       "Preprocess/" + GetName(dimensions), size.GetSlowRounds(),
-      [=]()
-      {
-        auto cases = std::make_shared<CaseMap>();
-        const auto volume = MakeVolume(dimensions);
-        for (const auto& [name, nodes] : nodesPerAxis)
-        {
-          (*cases)[name] = std::make_unique<BenchmarkCase>(volume, nodes);
-        }
-        return cases;
-      },
-      contestants);
+      [dimensions]() { return MakeCasesByNodes(dimensions); }, contestants);
   }
 }
 

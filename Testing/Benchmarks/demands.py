@@ -37,15 +37,17 @@ def _pose_by_near(pose):
     return lambda r: r.ratio(f"Poses/{pose}", "Poses/near", "kernels")
 
 
-def time_per_voxel(run):
-    """Seconds."""
-    return run["kernels"] / run["voxels"]
-
-
 def _spread_of_sizes(results):
     names = [name for name in results.names("Voxels/") if name.endswith("/exact")
              and (results.median(name, "voxels") or 0) > SLACK_IN_VOXELS]
-    return results.spread(names, time_per_voxel) if len(names) > 1 else None
+    if len(names) < 2:
+        return None
+    by_first = [results.ratio(name, names[0], "kernels") for name in names]
+    if None in by_first:
+        return None
+    # Time per voxel, in a unit that cancels out.
+    relative = [ratio / results.median(name, "voxels") for name, ratio in zip(names, by_first)]
+    return (max(relative) - min(relative)) / (max(relative) + min(relative))
 
 
 def _resident_gigabytes(results):

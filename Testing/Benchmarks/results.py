@@ -51,15 +51,3 @@ class Results:
         pairs = zip(self.values(name, key), self.values(other, key))
         ratios = [a / b for a, b in pairs if a is not None and b]
         return statistics.median(ratios) if ratios else None
-
-    def spread(self, names, value):
-        """How far some lie from their middle, as a part of it, at most, each being the median over
-        the rounds of its ratio to the first one. (Spreads within rounds would add how much the
-        machine varies.) value: of a run; None where there is no round without errors."""
-        rounds = [[value(run) for run in runs] for runs in zip(*(self.runs[name] for name in names))
-                  if not any(run.get("error_occurred") for run in runs)]
-        if not rounds:
-            return None
-        ratios = [statistics.median(ratios) for ratios in
-                  zip(*([one / values[0] for one in values] for values in rounds))]
-        return (max(ratios) - min(ratios)) / (max(ratios) + min(ratios))

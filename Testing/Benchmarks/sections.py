@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The sections of the report on one device. Each yields Markdown, nothing where nothing was
 measured, and may write plots to the folder of the report."""
-from demands import time_per_voxel
 from plots import STYLES, plot_bars, plot_curves
 
 # The method's authors measured these on a Radeon R9 270X: Rodriguez, Leon, Martin and Otaduy,
@@ -119,10 +118,13 @@ def poses(results, _folder, _kind):
         yield "## Poses: 189 x 305 x 229 voxels of 16 bits, 2,197 nodes\n"
         yield table(["pose", "mapping + resampling, ms", "Update(), ms",
                      "mapping + resampling by near identity"], rows)
+
+
+def nodes(results, _folder, _kind):
     rows = []
     for name in results.names("Nodes/"):
-        _, pose, nodes = name.split("/")
-        rows.append([pose, nodes, results.milliseconds(name, "kernels"), results.median(name),
+        _, pose, number = name.split("/")
+        rows.append([pose, number, results.milliseconds(name, "kernels"), results.median(name),
                      results.ratio(name, f"Nodes/{pose}/2197", "kernels")])
     if rows:
         yield "## Nodes: 189 x 305 x 229 voxels of 16 bits\n"
@@ -246,4 +248,4 @@ def rendering(results, folder, kind):
     yield ""
 
 
-ALL = [device, comparison, poses, tetrahedra, voxels, preprocessing, memory, incremental, rendering]
+ALL = [device, comparison, poses, nodes, tetrahedra, voxels, preprocessing, memory, incremental, rendering]
