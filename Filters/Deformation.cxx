@@ -275,27 +275,44 @@ void Deformation::SetVectors(std::size_t count, const std::function<void(const V
   read(
     [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType number)
     {
-      for (vtkIdType i = 0; i < number; ++i)
+      std::array<glm::dvec3, PointsPerBlock> moves;
+      std::array<float, 3 * PointsPerBlock> displacements;
+      auto point = static_cast<std::size_t>(first);
+      const std::size_t end = point + static_cast<std::size_t>(number);
+      while (point < end)
       {
-        const glm::dvec3 vector = transform * vectors[i];
-        std::array<float, 3> displacement;
-        for (int axis = 0; axis < 3; ++axis)
+        const std::size_t block = point / PointsPerBlock;
+        const std::size_t some = std::min(end, (block + 1) * PointsPerBlock) - point;
+        int near = 1; // without branches: there are millions of points
+        for (std::size_t i = 0; i < some; ++i)
         {
-          // The negation catches NaN as well.
-          if (!(std::abs(vector[axis]) <= LargestDisplacement))
+          moves[i] = transform * vectors[i];
+          const glm::dvec3 distance = glm::abs(moves[i]);
+          // Not-a-number is not near either.
+          near &= (distance.x <= LargestDisplacement ? 1 : 0) &
+            (distance.y <= LargestDisplacement ? 1 : 0) &
+            (distance.z <= LargestDisplacement ? 1 : 0);
+        }
+        if (!near)
+        {
+          tooFar = true;
+          return;
+        }
+        for (std::size_t i = 0; i < some; ++i)
+        {
+          for (int axis = 0; axis < 3; ++axis)
           {
-            tooFar = true;
-            return;
+            displacements[3 * i + axis] = static_cast<float>(moves[i][axis]);
           }
-          displacement[axis] = static_cast<float>(vector[axis]);
         }
-        const auto point = static_cast<std::size_t>(first + i);
         float* last = this->Vectors.data() + 3 * point;
-        if (std::memcmp(last, displacement.data(), sizeof(displacement)) != 0)
+        if (std::memcmp(last, displacements.data(), 3 * some * sizeof(float)) != 0)
         {
-          std::copy(displacement.begin(), displacement.end(), last);
-          changed[point / PointsPerBlock].store(true, std::memory_order_relaxed);
+          std::copy_n(displacements.begin(), 3 * some, last);
+          changed[block].store(true, std::memory_order_relaxed);
         }
+        vectors += some;
+        point += some;
       }
     });
   if (tooFar)

@@ -75,6 +75,15 @@ static __attribute__((always_inline)) void Shift(const Bounds* a, const Bounds* 
   b->HighZ = NextLanes(a->HighZ, behind->HighZ);
 }
 
+// The cells, as bits, whose edge from vertex 0 to another one is parallel to an axis: two coordinates of its ends
+// are the same, and one is not.
+static __attribute__((always_inline)) uint FindAxialEdges(const Group* group, int to)
+{
+#define IS_SAME(slot) LaneBits(VERTEX(0, slot) == VERTEX(to, slot))
+  const uint x = IS_SAME(0), y = IS_SAME(1), z = IS_SAME(2);
+  return ((x & y) | ((x ^ y) & z)) & ~(x & y & z);
+}
+
 // Cells that are boxes, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume: each
 // coordinate varies along one axis of the lattice only. rises: those whose coordinates grow with the indices.
 static __attribute__((noinline)) INTS FindBoxes(const Group* group, int mirror, INTS* rises)
@@ -155,15 +164,17 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   c->Extent = extent;
   c->Reach = extent * fma(sizeX, sizeY, sizeZ * (sizeX + sizeY));
 
-  // If one edge of no cell is parallel to an axis, no need to look for boxes: two coordinates of its ends are the
-  // same, and one is not. Lanes that hold no cell hold anything, and must not decide.
-#define SAME_FIRST_TWO(slot) LaneBits(VERTEX(0, slot) == VERTEX(1, slot))
+  // If two edges of no cell are parallel to axes, no need to look for boxes. Lanes that hold no cell hold anything,
+  // and must not decide.
   const int border = group->Border;
   INTS box = 0;
   INTS rises = 0;
-  const uint sameX = SAME_FIRST_TWO(0), sameY = SAME_FIRST_TWO(1), sameZ = SAME_FIRST_TWO(2);
-  c->HasBoxes =
-    (((sameX & sameY) | ((sameX ^ sameY) & sameZ)) & ~(sameX & sameY & sameZ) & there) != 0;
+  uint boxes = there & FindAxialEdges(group, 1);
+  if (boxes)
+  {
+    boxes &= FindAxialEdges(group, 2);
+  }
+  c->HasBoxes = boxes != 0;
   if (c->HasBoxes)
   {
     box = FindBoxes(group, Mirror(group->X, group->Y, group->Z, p), &rises);

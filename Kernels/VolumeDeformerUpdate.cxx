@@ -68,11 +68,17 @@ std::size_t FindBadVector(
   ForWords(words, count,
     [&](std::size_t, std::size_t begin, std::size_t end)
     {
-      // The negation catches NaN as well.
-      const auto found = std::find_if(vectors + 3 * begin, vectors + 3 * end,
-        [](float component) { return !(std::abs(component) <= LargestDisplacement); });
-      if (found != vectors + 3 * end)
+      const auto isGood = [](float component)
+      { return std::abs(component) <= static_cast<float>(LargestDisplacement); };
+      // All at once, without an early end, is what compilers make vectors of.
+      int good = 1;
+      for (std::size_t i = 3 * begin; i < 3 * end; ++i)
       {
+        good &= isGood(vectors[i]) ? 1 : 0;
+      }
+      if (!good)
+      {
+        const float* found = std::find_if_not(vectors + 3 * begin, vectors + 3 * end, isGood);
         const auto vector = static_cast<std::size_t>(found - vectors) / 3;
         std::size_t first = bad;
         while (vector < first && !bad.compare_exchange_weak(first, vector))
@@ -84,7 +90,7 @@ std::size_t FindBadVector(
 }
 
 // Marks the vectors that differ from those that the device has, four floats each; returns their
-// number.
+// number. Once they are too many to be worked on one by one, it leaves out the rest.
 std::size_t MarkChanges(const float* vectors, const float* last,
   const std::vector<std::size_t>& words, std::size_t count, PointSet& changed)
 {
@@ -92,6 +98,10 @@ std::size_t MarkChanges(const float* vectors, const float* last,
   ForWords(words, count,
     [&](std::size_t word, std::size_t begin, std::size_t end)
     {
+      if (IncrementalUpdate::IsTooMuch(number.load(std::memory_order_relaxed), count))
+      {
+        return;
+      }
       std::uint64_t bits = 0;
       for (std::size_t i = begin; i < end; ++i)
       {

@@ -160,7 +160,7 @@ TEST_F(HostMemory, ArraysThatEndTheirMemory)
       const GuardedMemory coverage(outputVoxels);
       DeformRequest request;
       request.OutputExtent = small.Output;
-      request.Outputs = { first.Data, second.Data };
+      request.Outputs = std::vector<void*>{ first.Data, second.Data };
       request.Coverage = reinterpret_cast<signed char*>(coverage.Data);
       this->Deformer.Deform(request);
       EXPECT_EQ(std::memcmp(first.Data, expected.Outputs[0].data(), outputVoxels), 0);
