@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Mapping and resampling in one, for processors: a work-item takes a brick of cells, and LANES cells
 // of a row lie side by side in the lanes of vector registers. It gives the same
-// voxels as Resampling.cl; cells that it is not sure of it leaves to ResampleCell.
+// voxels as Resampling.cl; cells, or samples of large ones, that it is not sure of it leaves to ResampleCell.
 //
 // Why it is shaped so: compilers do not turn a kernel with data-dependent loops over candidates
 // into vector code, so the lanes are written out. Positions are found plane by plane, as the cells
@@ -26,7 +26,7 @@
 // A group of a row whose cells from beginX to endX are wanted. special: whether a value is one that sums of
 // products do not give back.
 static __attribute__((always_inline)) void ResampleCells(const GroupCandidates* c, int special,
-  int beginX, int endX, const SamplingMesh* mesh, Output* output, Found* found,
+  int beginX, int endX, const SamplingMesh* mesh, Output* output, Found* found, Doubts* doubts,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   uint again = (1u << LANES) - 1;
@@ -36,8 +36,13 @@ static __attribute__((always_inline)) void ResampleCells(const GroupCandidates* 
     {
       return;
     }
-    const Outcome outcome = ResampleByFloats(c, output, found, p ARRAY_ARGUMENTS);
+    const Outcome outcome = ResampleByFloats(c, output, found, doubts, p ARRAY_ARGUMENTS);
     again = outcome.Unsure;
+    if (outcome.Doubtful)
+    {
+      ResampleDoubts(
+        c, doubts, outcome.Doubtful, beginX, endX, mesh, output, p ARRAY_ARGUMENTS);
+    }
     if (outcome.Ambiguous)
     {
       again |= ResampleByIntegers(c, outcome.Ambiguous, mesh, output, found, p ARRAY_ARGUMENTS);
@@ -48,12 +53,13 @@ static __attribute__((always_inline)) void ResampleCells(const GroupCandidates* 
     // These are written again.
     StoreFound(found, &c->Cells, output, p ARRAY_ARGUMENTS);
   }
+  const Candidates all = AllCandidates(p);
   FOR_EACH_LANE(lane, again)
   {
     const int cell = c->Cells.X + 2 * lane;
     if (cell >= beginX && cell < endX)
     {
-      ResampleCell(mesh, cell, c->Cells.Y, c->Cells.Z, output, p ARRAY_ARGUMENTS);
+      ResampleCell(mesh, cell, c->Cells.Y, c->Cells.Z, &all, output, p ARRAY_ARGUMENTS);
     }
   }
 }
@@ -61,7 +67,7 @@ static __attribute__((always_inline)) void ResampleCells(const GroupCandidates* 
 // The groups of a row of cells from place begin on up to one that begins at end. beginX, endX: its cells.
 // specials: as RowFlags. outputs: of the columns of the brick.
 static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, int endX,
-  uint specials, const SamplingMesh* mesh, Output* outputs, Found* found,
+  uint specials, const SamplingMesh* mesh, Output* outputs, Found* found, Doubts* doubts,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   GroupCandidates candidates[2][2]; // of a place and the next one
@@ -75,7 +81,7 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
     const int special = (specials & GROUP_FLAGS(k)) != 0;
     const GroupCandidates* const here = candidates[place];
     FetchOutput(here + 1, output ARRAY_ARGUMENTS);
-    ResampleCells(here, special, beginX, endX, mesh, output, found, p ARRAY_ARGUMENTS);
+    ResampleCells(here, special, beginX, endX, mesh, output, found, doubts, p ARRAY_ARGUMENTS);
     const int next = k + LANES;
     if (next < end)
     {
@@ -83,7 +89,7 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
         p ARRAY_ARGUMENTS);
       FetchOutput(candidates[!place], output ARRAY_ARGUMENTS);
     }
-    ResampleCells(here + 1, special, beginX, endX, mesh, output, found, p ARRAY_ARGUMENTS);
+    ResampleCells(here + 1, special, beginX, endX, mesh, output, found, doubts, p ARRAY_ARGUMENTS);
   }
 }
 
@@ -112,6 +118,7 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
     const Output output = { coverage, winners, patches, 0, 0, 0, 0, 0, 0, 0 };
     outputs[section] = output;
   }
+  Doubts doubts;
   Found found;
   found.Count = 0;
   const uint brick = item & ((1u << DEFORMVOLUME_BRICK_BITS) - 1);
@@ -194,7 +201,7 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
       const int quarter =
         (low >= DEFORMVOLUME_BRICK_Y / 2) + 2 * (z - 1 - bz >= DEFORMVOLUME_BRICK_Z / 2);
       ResampleRow(&row, begin, end, beginX, endX, specials, mesh,
-        outputs + quarter * DEFORMVOLUME_COLUMNS, &found, p ARRAY_ARGUMENTS);
+        outputs + quarter * DEFORMVOLUME_COLUMNS, &found, &doubts, p ARRAY_ARGUMENTS);
     }
   }
   StoreFound(&found, 0, outputs, p ARRAY_ARGUMENTS);

@@ -7,8 +7,10 @@
 // row: what is known of these would take the innermost cache. Neighbours share vertices, so that the bounds of a
 // row's columns of vertices are found once.
 
-#define MAXIMUM_EXTENT 7.99f // voxels: the normals of larger cells are not exact in float
-#define MAXIMUM_CANDIDATES 512 // of a cell that is not larger
+#define MAXIMUM_EXTENT 64.0f // voxels
+#define MAXIMUM_CANDIDATES 4096 // of a cell
+#define EXACT_NORMALS_EXTENT 7.99f // voxels: the normals of larger cells are not exact in float
+#define INEXACT_NORMALS 1.35f // by how much more coordinates in these are off (GroupResampling.cl)
 #define ALMOST_ONE (255.0f / 256.0f) // ceil(v) = trunc(v + ALMOST_ONE) for multiples of 1/256
 
 typedef struct
@@ -18,7 +20,7 @@ typedef struct
   uint Fit;         // of these the small ones all of whose tetrahedra are active and have positions
   uint Some;        // of these the ones that have candidates
   FLOATS Extent;    // the longest edge of the box
-  FLOATS Reach;     // the extent times the sum of the box's three faces
+  FLOATS Reach;     // the extent times the sum of the box's three faces, and more where normals are not exact
   INTS First[3];    // the first candidate, in voxels of the output
   INTS Count[3];    // how many on each axis
   INTS Place;       // of the first one in the output
@@ -163,6 +165,10 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   c->There = there;
   c->Extent = extent;
   c->Reach = extent * fma(sizeX, sizeY, sizeZ * (sizeX + sizeY));
+  if (LaneBits(extent > EXACT_NORMALS_EXTENT) & there)
+  {
+    c->Reach *= extent > EXACT_NORMALS_EXTENT ? (FLOATS)(INEXACT_NORMALS) : (FLOATS)(1.0f);
+  }
 
   // If two edges of no cell are parallel to axes, no need to look for boxes. Lanes that hold no cell hold anything,
   // and must not decide.
@@ -244,9 +250,12 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
     // A cell that reaches beyond the part is looked at as in the whole: what becomes of it must not
     // depend on where the part ends. It begins less than MAXIMUM_EXTENT before the part.
 #define WHOLE_FIRST(low, axis)                                                                     \
-  TO_INTS(Most(low, (float)max(p->WholeFirst[axis], -8)) + (8.0f + ALMOST_ONE)) - 8
+  TO_INTS(Most(low, max((float)p->WholeFirst[axis], -MAXIMUM_EXTENT)) +                            \
+    (MAXIMUM_EXTENT + ALMOST_ONE)) - (int)MAXIMUM_EXTENT
 #define WHOLE_END(high, toEnd, axis)                                                               \
-  TO_INTS(Least((high) + toEnd, (float)min(p->WholeEnd[axis], p->OutputSize[axis] + 8)) + 8.0f) - 8
+  TO_INTS(Least((high) + toEnd,                                                                    \
+            min((float)p->WholeEnd[axis], p->OutputSize[axis] + MAXIMUM_EXTENT)) +                 \
+    MAXIMUM_EXTENT) - (int)MAXIMUM_EXTENT
     firstX = WHOLE_FIRST(b->LowX, 0);
     firstY = WHOLE_FIRST(b->LowY, 1);
     firstZ = WHOLE_FIRST(b->LowZ, 2);
@@ -254,8 +263,6 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
     countY = WHOLE_END(b->HighY, toEndY, 1) - firstY;
     countZ = WHOLE_END(b->HighZ, toEndZ, 2) - firstZ;
   }
-  c->Fit = whole & LaneBits(extent <= MAXIMUM_EXTENT);
-  c->Some = some & c->Fit;
   c->First[0] = firstX;
   c->First[1] = firstY;
   c->First[2] = firstZ;
@@ -264,6 +271,9 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   c->Count[2] = countZ;
   c->Place = (firstZ * p->OutputSize[1] + firstY) * p->OutputSize[0] + firstX;
   c->Number = countX * countY * countZ;
+  c->Fit = whole & LaneBits(extent < MAXIMUM_EXTENT) &
+    ~(some & LaneBits(c->Number > MAXIMUM_CANDIDATES));
+  c->Some = some & c->Fit;
 }
 
 // For the two groups at place k of a row of cells, for even and for odd x: cells of the second begin at the odd

@@ -28,7 +28,12 @@
 // at most the sum of the areas of the box's three faces, as each component of a normal is twice the area of a
 // triangle in such a face. When three of the tj exceed d, the sample is inside; when one is under -d, outside.
 // Cells with a sample in between are repeated: with edge functions in integers, LANES cells at once again; where
-// they are large or bent, or what surrounds them is not all there, by ResampleCell.
+// they are bent, or what surrounds them is not all there, by ResampleCell. Of cells that are too large for integers
+// of 32 bits only these samples are left to it: they have many samples, and hardly one of them is in between.
+//
+// In cells over 8 voxels the normals have rounding errors, too: of a product, at most as large as the face of the
+// box, and of the difference. That adds 2 e k to each product with a normal, 5 e k instead of 3, and makes the
+// above 28 e k instead of 20, (13 + 73 M) e k instead of (9 + 53 M), and d more by a third (INEXACT_NORMALS).
 
 // Cells that are flatter are left out: d / D, which weights are off by at most, is 1.5e-3 or 7.4e-3 in others.
 #define MOST_REACH 4.35e-3f
@@ -51,14 +56,23 @@ typedef struct
 {
   uint Ambiguous; // repeat them with integers
   uint Unsure;    // leave them to ResampleCell
+  uint Doubtful;  // leave some samples of theirs to it
 } Outcome;
 
+// The samples that floats have not decided: of each round that had some its number, and in the lower 16 bits the
+// cells.
+typedef struct
+{
+  uint Rounds[MAXIMUM_CANDIDATES];
+  uint Count;
+} Doubts;
+
 // The samples of a group of cells. state: where the group is on the border, if samples that floats do not decide
-// are to be decided by integers: those of the cells in only, as bits. Else null. What cells that must be repeated
-// have written is not counted.
+// are to be decided by integers: those of the cells in only, as bits. Else null, and doubts takes these samples.
+// What cells that must be repeated have written is not counted.
 static __attribute__((always_inline)) void ResampleGroup(
   const GroupCandidates* c, uint only, const GroupState* state, Output* output, Found* found,
-  Outcome* outcome, const KernelParameters* p ARRAY_PARAMETERS)
+  Doubts* doubts, Outcome* outcome, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Group* const group = &c->Cells;
   LOAD_VERTICES
@@ -119,6 +133,7 @@ static __attribute__((always_inline)) void ResampleGroup(
   const uint unsure = there & ~nice;
   uint ambiguous = 0;
   int rounds = 0;
+  uint doubtful = 0;
   ushort hits[MAXIMUM_CANDIDATES]; // the cells that each round has found a sample in
   uint written = 0;
   uint some = c->Some & nice;
@@ -206,9 +221,10 @@ static __attribute__((always_inline)) void ResampleGroup(
           onVertex = LanesOf(undecided) & ((simplex & (simplex - 1)) == 0);
         }
       }
-      else
+      else if (undecided)
       {
         ambiguous |= undecided;
+        doubts->Rounds[doubtful++] = (uint)rounds << 16 | undecided;
       }
       if (p->IsPart)
       {
@@ -278,6 +294,13 @@ static __attribute__((always_inline)) void ResampleGroup(
       StoreFound(found, group, output, p ARRAY_ARGUMENTS);
     }
   }
+  outcome->Doubtful = 0;
+  if (!exact && ambiguous)
+  {
+    doubts->Count = doubtful;
+    outcome->Doubtful = ambiguous & ~LaneBits(c->Extent < MAXIMUM_EXACT_EXTENT);
+    ambiguous ^= outcome->Doubtful;
+  }
   output->Inverted += 5 * popcount(turned & nice & ~ambiguous);
   const uint again = unsure | ambiguous;
   if (again)
@@ -289,19 +312,17 @@ static __attribute__((always_inline)) void ResampleGroup(
     }
   }
   output->Writes += written;
-  // Integers of 32 bits decide who owns a sample, for cells that are small enough.
-  outcome->Ambiguous = exact || DEFORMVOLUME_IS_CLOSED(p->Pass) || !ambiguous
-    ? 0
-    : ambiguous & LaneBits(c->Extent < MAXIMUM_EXACT_EXTENT);
+  // Integers of 32 bits decide who owns a sample.
+  outcome->Ambiguous = exact || DEFORMVOLUME_IS_CLOSED(p->Pass) ? 0 : ambiguous;
   outcome->Unsure = again & ~outcome->Ambiguous;
 }
 
 static __attribute__((noinline)) Outcome ResampleByFloats(
-  const GroupCandidates* c, Output* output, Found* found,
+  const GroupCandidates* c, Output* output, Found* found, Doubts* doubts,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Outcome outcome;
-  ResampleGroup(c, 0, 0, output, found, &outcome, p ARRAY_ARGUMENTS);
+  ResampleGroup(c, 0, 0, output, found, doubts, &outcome, p ARRAY_ARGUMENTS);
   return outcome;
 }
 
@@ -316,6 +337,43 @@ static __attribute__((noinline)) uint ResampleByIntegers(
     StatesOfGroup(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, &state, p);
   }
   Outcome outcome;
-  ResampleGroup(c, only, &state, output, found, &outcome, p ARRAY_ARGUMENTS);
+  ResampleGroup(c, only, &state, output, found, 0, &outcome, p ARRAY_ARGUMENTS);
   return outcome.Unsure;
+}
+
+// The samples in doubt of some cells, as bits, from beginX to endX.
+static __attribute__((noinline)) void ResampleDoubts(const GroupCandidates* c, const Doubts* doubts,
+  uint cells, int beginX, int endX, const SamplingMesh* mesh, Output* output,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  Lanes first[3], count[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    first[axis].Vector = c->First[axis];
+    count[axis].Vector = c->Count[axis];
+  }
+  // It is counted already which cells are inverted.
+  const uint inverted = output->Inverted;
+  for (uint i = 0; i < doubts->Count; ++i)
+  {
+    const int round = doubts->Rounds[i] >> 16;
+    uint here = doubts->Rounds[i] & cells;
+    FOR_EACH_LANE(lane, here)
+    {
+      const int cell = c->Cells.X + 2 * lane;
+      const int width = count[0].Lanes[lane], height = count[1].Lanes[lane];
+      const int x = first[0].Lanes[lane] + round % width;
+      const int y = first[1].Lanes[lane] + round / width % height;
+      const int z = first[2].Lanes[lane] + round / (width * height);
+      if (cell < beginX || cell >= endX || x < 0 || x >= p->OutputSize[0] || y < 0 ||
+        y >= p->OutputSize[1] || z < 0 || z >= p->OutputSize[2])
+      {
+        continue;
+      }
+      const Vector voxel = { x + p->OutputFirst[0], y + p->OutputFirst[1], z + p->OutputFirst[2] };
+      const Candidates only = { voxel, voxel };
+      ResampleCell(mesh, cell, c->Cells.Y, c->Cells.Z, &only, output, p ARRAY_ARGUMENTS);
+    }
+  }
+  output->Inverted = inverted;
 }

@@ -37,26 +37,36 @@ static void Write(int x, int y, int z, int t, const long* weights, long volume, 
   StoreArrays(&s ARRAY_ARGUMENTS);
 }
 
-// The output voxels that may lie within some bounds in 1/256 voxel; closed where the bounds count.
+// A box of output voxels, from the lowest to the highest on each axis.
 typedef struct
 {
   Vector Low, High;
 } Candidates;
 
-static Candidates FindCandidates(Vector low, Vector high, int open, const KernelParameters* p)
+static Candidates AllCandidates(const KernelParameters* p)
+{
+  const Vector low = { p->OutputFirst[0], p->OutputFirst[1], p->OutputFirst[2] };
+  const Vector high = { low.x + p->OutputSize[0] - 1, low.y + p->OutputSize[1] - 1,
+    low.z + p->OutputSize[2] - 1 };
+  const Candidates all = { low, high };
+  return all;
+}
+
+// Those of all that may lie within some bounds in 1/256 voxel. open: 1 where the high ones do not count, else 0.
+static Candidates FindCandidates(Vector low, Vector high, int open, const Candidates* all)
 {
   Candidates c;
-  c.Low.x = max((low.x + 255) >> 8, (long)p->OutputFirst[0]);
-  c.Low.y = max((low.y + 255) >> 8, (long)p->OutputFirst[1]);
-  c.Low.z = max((low.z + 255) >> 8, (long)p->OutputFirst[2]);
-  c.High.x = min((high.x - open) >> 8, (long)p->OutputFirst[0] + p->OutputSize[0] - 1);
-  c.High.y = min((high.y - open) >> 8, (long)p->OutputFirst[1] + p->OutputSize[1] - 1);
-  c.High.z = min((high.z - open) >> 8, (long)p->OutputFirst[2] + p->OutputSize[2] - 1);
+  c.Low.x = max((low.x + 255) >> 8, all->Low.x);
+  c.Low.y = max((low.y + 255) >> 8, all->Low.y);
+  c.Low.z = max((low.z + 255) >> 8, all->Low.z);
+  c.High.x = min((high.x - open) >> 8, all->High.x);
+  c.High.y = min((high.y - open) >> 8, all->High.y);
+  c.High.z = min((high.z - open) >> 8, all->High.z);
   return c;
 }
 
 // Those of a cell whose vertices are all there.
-static Candidates CandidatesOfCell(const Vector* q, int open, const KernelParameters* p)
+static Candidates CandidatesOfCell(const Vector* q, int open, const Candidates* all)
 {
   Vector low = q[0];
   Vector high = q[0];
@@ -65,7 +75,7 @@ static Candidates CandidatesOfCell(const Vector* q, int open, const KernelParame
     low = Minimum(low, q[v]);
     high = Maximum(high, q[v]);
   }
-  return FindCandidates(low, high, open, p);
+  return FindCandidates(low, high, open, all);
 }
 
 static int IsEmpty(Candidates c)
@@ -133,8 +143,8 @@ static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, c
 
 // Any cell: each tetrahedron on its own. The lowest one last, because the last one to write wins.
 static void ResampleTetrahedra(const SamplingMesh* mesh, int x, int y, int z, const Vector* q,
-  const long* determinants, int tetrahedra, int inverted, CellState state, Output* output,
-  const KernelParameters* p ARRAY_PARAMETERS)
+  const long* determinants, int tetrahedra, int inverted, CellState state, const Candidates* all,
+  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   for (int t = 4; t >= 0; --t)
   {
@@ -147,7 +157,7 @@ static void ResampleTetrahedra(const SamplingMesh* mesh, int x, int y, int z, co
     const Vector c = q[Tetrahedra[t][2]];
     const Vector d = q[Tetrahedra[t][3]];
     const Candidates candidates = FindCandidates(Minimum(Minimum(a, b), Minimum(c, d)),
-      Maximum(Maximum(a, b), Maximum(c, d)), 0, p);
+      Maximum(Maximum(a, b), Maximum(c, d)), 0, all);
     if (IsEmpty(candidates))
     {
       continue;
@@ -169,9 +179,10 @@ static void ResampleTetrahedra(const SamplingMesh* mesh, int x, int y, int z, co
 }
 
 // Whether the bounds of a cell meet a patch of the output with voxels that are not settled.
-static int TouchesUnsettled(const Vector* q, const Output* output, const KernelParameters* p)
+static int TouchesUnsettled(
+  const Vector* q, const Candidates* all, const Output* output, const KernelParameters* p)
 {
-  const Candidates c = CandidatesOfCell(q, 0, p);
+  const Candidates c = CandidatesOfCell(q, 0, all);
   if (IsEmpty(c))
   {
     return 0;
@@ -183,9 +194,9 @@ static int TouchesUnsettled(const Vector* q, const Output* output, const KernelP
   return AnyUnsettled(output->Patches, first, last, p);
 }
 
-// One cell, by whichever of the two ways is right for it.
-static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* output,
-  const KernelParameters* p ARRAY_PARAMETERS)
+// One cell, by whichever of the two ways is right for it. all: the samples that are wanted.
+static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all,
+  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   Vector q[8];
   const int present = LoadCell(mesh, x, y, z, p, q);
@@ -194,7 +205,7 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
   {
     return;
   }
-  if (DEFORMVOLUME_IS_CLOSED(p->Pass) && present == 255 && !TouchesUnsettled(q, output, p))
+  if (DEFORMVOLUME_IS_CLOSED(p->Pass) && present == 255 && !TouchesUnsettled(q, all, output, p))
   {
     return;
   }
@@ -240,7 +251,7 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
   {
     // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
     const Candidates c =
-      CandidatesOfCell(q, state.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT, p);
+      CandidatesOfCell(q, state.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT, all);
     if (!IsEmpty(c))
     {
       ResampleUprightCell(mesh, x, y, z, q, state, c, output, p ARRAY_ARGUMENTS);
@@ -248,7 +259,7 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, Output* 
   }
   else
   {
-    ResampleTetrahedra(mesh, x, y, z, q, determinants, tetrahedra, inverted, state, output,
+    ResampleTetrahedra(mesh, x, y, z, q, determinants, tetrahedra, inverted, state, all, output,
       p ARRAY_ARGUMENTS);
   }
 }
@@ -298,6 +309,7 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, positions,
     { first[0], first[1], first[2] } };
   Output output = { coverage, winners, patches, 0, 0, 0, 0, 0, 0, 0 };
+  const Candidates all = AllCandidates(&p);
   for (int i = get_local_id(0);
        i < DEFORMVOLUME_BLOCK_X * DEFORMVOLUME_BLOCK_Y * DEFORMVOLUME_BLOCK_Z;
        i += get_local_size(0))
@@ -307,7 +319,7 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
     const int z = first[2] + i / (DEFORMVOLUME_BLOCK_X * DEFORMVOLUME_BLOCK_Y);
     if (x < p.Size[0] - 1 && y < p.Size[1] - 1 && z < p.LayersEnd)
     {
-      ResampleCell(&mesh, x, y, z, &output, &p ARRAY_ARGUMENTS);
+      ResampleCell(&mesh, x, y, z, &all, &output, &p ARRAY_ARGUMENTS);
     }
   }
   // The sums over all bricks are what counts here.

@@ -81,6 +81,28 @@ TEST(Folded, FoldedLikeAPage)
   }
 }
 
+// Cells of more than four and of more than eight voxels, with a crease on samples and beside, that
+// lie on themselves aslant.
+TEST(Folded, LargeCells)
+{
+  for (const double size : { 5.0, 9.0 })
+  {
+    for (const double crease : { 3.0, 2.75 })
+    {
+      SCOPED_TRACE(size * crease);
+      const auto fold = [=](const glm::dvec3& index)
+      {
+        const double across = std::abs(index.x - crease);
+        return size * glm::dvec3(across, index.y + 0.25 * across + 0.125 * index.x, index.z);
+      };
+      Check(MakeCase({ { 0, 6, 0, 2, -1, 1 } }, NoScale, fold));
+      const auto mirror = [=](const glm::dvec3& index)
+      { return size * glm::dvec3(-index.x, index.y + 0.125 * index.x, index.z); };
+      Check(MakeCase({ { 0, 6, 0, 2, -1, 1 } }, NoScale, mirror));
+    }
+  }
+}
+
 TEST(Folded, FlattenedVolume)
 {
   // A slab of cells has no thickness: its tetrahedra are flat and cover nothing of their own.

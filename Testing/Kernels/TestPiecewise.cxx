@@ -244,6 +244,44 @@ TEST(Piecewise, OutputBesideTheDeformedVolume)
     jittered, ResampleByReference(jittered), arrays, LoadAndRun(jittered, arrays));
 }
 
+// Cells of more than four voxels, whose undecided samples are decided one by one, of more than
+// eight, whose normals floats do not hold, and of more samples than the lanes take. The shears put
+// every face on samples.
+TEST(Piecewise, LargeCells)
+{
+  const glm::dmat3 turned = Rotate(23.0, glm::dvec3(1, 2, 3));
+  const glm::dmat3 sheared(1, 0.25, 0, 0.25, 1, 0, 0, -0.25, 1);
+  for (const glm::dvec3& size :
+    { glm::dvec3(4.5, 4.25, 4.75), glm::dvec3(6.5), glm::dvec3(8.0), glm::dvec3(9.25, 9.0, 8.5),
+      glm::dvec3(1.0, 1.25, 10.0), glm::dvec3(40.0, 3.0, 2.0), glm::dvec3(12.0, 12.5, 12.25) })
+  {
+    SCOPED_TRACE(size.x);
+    const glm::dmat3 stretched(size.x, 0, 0, 0, size.y, 0, 0, 0, size.z);
+    for (const glm::dmat3& matrix : { stretched, turned * stretched, sheared * stretched })
+    {
+      auto jitter = MakeJitter(4, 0.1);
+      const auto move = [&](const glm::dvec3& index) { return matrix * index; };
+      const auto moveAndJitter = [&](const glm::dvec3& index) { return matrix * jitter(index); };
+      const Extent extent{ { -1, 4, 0, 2, 2, 4 } };
+      Check(MakeCase(extent, NoScale, move));
+      DeformerCase jittered = MakeCase(extent, NoScale, moveAndJitter);
+      Check(jittered, Route::Mesh);
+      for (std::int64_t cell = 0; cell < GetNumberOfCells(extent); ++cell)
+      {
+        jittered.Active.push_back(static_cast<unsigned char>(cell % 4 == 0 ? 27 : 31));
+      }
+      // The middle of the output, whose border cuts cells.
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const int part = (jittered.Output[2 * axis + 1] - jittered.Output[2 * axis]) / 3;
+        jittered.Output[2 * axis] += part;
+        jittered.Output[2 * axis + 1] -= part;
+      }
+      Check(jittered);
+    }
+  }
+}
+
 TEST(Piecewise, LargeTetrahedra)
 {
   // Tetrahedra of up to 60 voxels.
