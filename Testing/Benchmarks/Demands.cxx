@@ -32,6 +32,8 @@ constexpr Limit FineMesh{ "near identity: 512000 nodes by 2197 nodes", 1.6 };
 constexpr Limit Rotated{ "turned by 45 degrees round each axis, by near identity", 2.5 };
 constexpr Limit Scaled{ "scaled by 1.5, by near identity", 2.5 };
 constexpr Limit FoldedOver{ "a third folded back over the rest, by near identity", 3.5 };
+// Cells ten output voxels long, and as many voxels of the output.
+constexpr Limit ThickSlices{ "slices of ten voxels, near identity: by slices of one", 2.0 };
 // The times of edits in a box that touches 5 % of the blocks by those of a whole pass.
 constexpr Limit EditedInside{ "512000 nodes: edit in the middle by all", 0.15 };
 constexpr Limit EditedAtSide{ "512000 nodes: edit on a side by all", 0.25 };
@@ -88,6 +90,12 @@ void CheckSpeedAndMemory()
   BenchmarkCase editedInside(volume, FineNodes);
   BenchmarkCase editedAtSide(volume, FineNodes);
   BenchmarkCase published(volume, CoarseNodes, vtkDeformVolumeFilter::PUBLISHED);
+  const auto slices =
+    MakeVolume({ BenchmarkVolume[0], BenchmarkVolume[1], BenchmarkVolume[2] / 10 });
+  slices->SetSpacing(1.0, 1.0, 10.0);
+  BenchmarkCase thick(slices, CoarseNodes);
+  thick.GetFilter()->SetOutputSpacingModeToCustomSpacing();
+  thick.GetFilter()->SetCustomSpacing(1.0, 1.0, 1.0);
   const auto reslice = MakeAffineReslice(volume);
 
   const auto update = [](BenchmarkCase& subject, Pose pose)
@@ -102,7 +110,7 @@ void CheckSpeedAndMemory()
   };
 
   Ratios updateNear, updateGeneral, publishedNear, publishedGeneral, fineMesh, rotation, scaling,
-    folding, editingInside, editingAtSide;
+    folding, slicing, editingInside, editingAtSide;
   vtkIdType builds = 0;
   vtkIdType uploads = 0;
   const auto countWork = [&]()
@@ -128,6 +136,7 @@ void CheckSpeedAndMemory()
     const double rotatedTime = update(rotated, Pose::Rotated).GetKernels();
     const double scaledTime = update(scaled, Pose::UniformScale).GetKernels();
     const double foldedTime = update(folded, Pose::Folded).GetKernels();
+    const double thickTime = update(thick, Pose::NearIdentity).GetKernels();
     const UpdateTimes generalTimes = update(general, Pose::General);
     const double resliceGeneral = resliceLike(general);
     const double publishedGeneralTime = update(published, Pose::General).GetKernels();
@@ -146,6 +155,7 @@ void CheckSpeedAndMemory()
     rotation.Add(rotatedTime / nearTimes.GetKernels());
     scaling.Add(scaledTime / nearTimes.GetKernels());
     folding.Add(foldedTime / nearTimes.GetKernels());
+    slicing.Add(thickTime / nearTimes.GetKernels());
   }
   Check(UpdateNear, updateNear.GetMedian());
   Check(UpdateGeneral, updateGeneral.GetMedian());
@@ -157,6 +167,7 @@ void CheckSpeedAndMemory()
   Check(Rotated, rotation.GetMedian());
   Check(Scaled, scaling.GetMedian());
   Check(FoldedOver, folding.GetMedian());
+  Check(ThickSlices, slicing.GetMedian());
   Check(BytesCoarse, GetBytesPerVoxel(near));
   Check(BytesFine, GetBytesPerVoxel(fine));
   const vtkIdType buildsBefore = builds;
