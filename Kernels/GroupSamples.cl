@@ -108,43 +108,63 @@ typedef ulong __attribute__((may_alias)) TwoInts;
   }
 
 #if HAS_OTHER_ARRAYS
+// The weights and their sum, as of edge functions, of the origin in a tetrahedron of a cell with these vertices.
+// Coordinates are whole numbers of 1/256 voxel under 2^14, so that all numbers are under 2^47, and exact.
+static __attribute__((always_inline)) void WeighOrigin(
+  const EXACT* x, const EXACT* y, const EXACT* z, int t, long* weights, long* volume)
+{
+  const int a = Tetrahedra[t][0], b = Tetrahedra[t][1], c = Tetrahedra[t][2], d = Tetrahedra[t][3];
+  const EXACT ux = x[b] - x[a], uy = y[b] - y[a], uz = z[b] - z[a];
+  const EXACT vx = x[c] - x[a], vy = y[c] - y[a], vz = z[c] - z[a];
+  const EXACT wx = x[d] - x[a], wy = y[d] - y[a], wz = z[d] - z[a];
+  // The normals of the faces opposite b, c and d.
+  const EXACT bx = vy * wz - vz * wy, by = vz * wx - vx * wz, bz = vx * wy - vy * wx;
+  const EXACT cx = wy * uz - wz * uy, cy = wz * ux - wx * uz, cz = wx * uy - wy * ux;
+  const EXACT dx = uy * vz - uz * vy, dy = uz * vx - ux * vz, dz = ux * vy - uy * vx;
+  const EXACT sum = ux * bx + uy * by + uz * bz;
+  const EXACT sign = sum < 0 ? -1 : 1;
+  weights[1] = (long)(-sign * (x[a] * bx + y[a] * by + z[a] * bz));
+  weights[2] = (long)(-sign * (x[a] * cx + y[a] * cy + z[a] * cz));
+  weights[3] = (long)(-sign * (x[a] * dx + y[a] * dy + z[a] * dz));
+  *volume = (long)(sign * sum);
+  weights[0] = *volume - weights[1] - weights[2] - weights[3];
+}
+
 // A sample that is in a cell, for the arrays that want its weights as they are: which of the cell's
-// tetrahedra holds it is found out again, in integers.
+// tetrahedra holds it is found out again, in whole numbers.
 static __attribute__((noinline)) void StoreOtherArrays(
   const Group* group, int lane, uint place, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  Vector q[8];
+  const uint width = p->OutputSize[0];
+  const uint plane = width * p->OutputSize[1];
+  const uint sampleZ = place / plane;
+  const uint inPlane = place - sampleZ * plane;
+  const uint sampleY = inPlane / width;
+  const float sample[3] = { inPlane - sampleY * width, sampleY, sampleZ };
+  EXACT x[8], y[8], z[8]; // relative to the sample
 #pragma unroll
   for (int v = 0; v < 8; ++v)
   {
     LocalRow vertex = group->Rows[v >> 1] + (v & 1 ? ODD : group->Side) + lane;
-    q[v].x = (long)(vertex[0] * 256.0f);
-    q[v].y = (long)(vertex[HALF_ROW] * 256.0f);
-    q[v].z = (long)(vertex[2 * HALF_ROW] * 256.0f);
+    x[v] = (EXACT)((vertex[0] - sample[0]) * 256.0f);
+    y[v] = (EXACT)((vertex[HALF_ROW] - sample[1]) * 256.0f);
+    z[v] = (EXACT)((vertex[2 * HALF_ROW] - sample[2]) * 256.0f);
   }
-  const uint plane = p->OutputSize[0] * p->OutputSize[1];
-  const Vector voxel = { place % p->OutputSize[0], place % plane / p->OutputSize[0], place / plane };
-  int t = 4;
   long weights[4];
   long volume;
-  for (int corner = 0; corner < 2; ++corner)
+  WeighOrigin(x, y, z, 4, weights, &volume);
+  int t = 4;
+  for (int k = 0; k < 4; ++k)
   {
-    const EdgeFunctions f = MakeEdgeFunctions(
-      q[Tetrahedra[t][0]], q[Tetrahedra[t][1]], q[Tetrahedra[t][2]], q[Tetrahedra[t][3]]);
-    Evaluate(&f, SamplePosition(voxel), weights);
-    volume = f.Volume;
-    for (int k = 0; k < 4 && corner == 0; ++k)
-    {
-      t = weights[k] < 0 ? CornerBehindFace[k] : t;
-    }
-    if (t == 4)
-    {
-      break;
-    }
+    t = weights[k] < 0 ? CornerBehindFace[k] : t;
   }
-  const Sample sample = MakeSample(
+  if (t != 4)
+  {
+    WeighOrigin(x, y, z, t, weights, &volume);
+  }
+  const Sample made = MakeSample(
     group->X + 2 * lane, group->Y, group->Z, t, weights, volume, place, p);
-  const Sample* s = &sample;
+  const Sample* s = &made;
   STORE_OTHER_ARRAYS
 }
 #endif

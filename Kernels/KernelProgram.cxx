@@ -65,8 +65,8 @@ std::string MakeStore(const VolumeArray& array, const std::string& index)
 std::string GetReal(const OpenCLContext& context)
 {
   return HasDouble(context) ? "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n"
-                              "#define REAL double\n"
-                            : "#define REAL float\n";
+                              "#define REAL double\n#define EXACT double\n"
+                            : "#define REAL float\n#define EXACT long\n";
 }
 
 /// What the resampling kernels expect in front of them.

@@ -3,6 +3,7 @@
 //
 // What the host puts in front of this text:
 //   REAL                 type of the interpolation: double where the device has it, else float
+//   EXACT                type that holds whole numbers to 2^53: double where the device has it, else long
 //   ARRAY_PARAMETERS     kernel parameters: source and target of each array
 //   ARRAY_ARGUMENTS      the same as arguments
 //   STORE_ARRAYS         statements that store all arrays at a sample
