@@ -26,7 +26,7 @@
 // A group of a row whose cells from beginX to endX are wanted. special: whether a value is one that sums of
 // products do not give back.
 static __attribute__((always_inline)) void ResampleCells(const GroupCandidates* c, int special,
-  int beginX, int endX, const SamplingMesh* mesh, Output* output, Found* found, Doubts* doubts,
+  int beginX, int endX, const SamplingMesh* mesh, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   uint again = (1u << LANES) - 1;
@@ -36,12 +36,13 @@ static __attribute__((always_inline)) void ResampleCells(const GroupCandidates* 
     {
       return;
     }
-    const Outcome outcome = ResampleByFloats(c, output, found, doubts, p ARRAY_ARGUMENTS);
+    Doubts doubts;
+    const Outcome outcome = ResampleByFloats(c, output, found, &doubts, p ARRAY_ARGUMENTS);
     again = outcome.Unsure;
     if (outcome.Doubtful)
     {
       ResampleDoubts(
-        c, doubts, outcome.Doubtful, beginX, endX, mesh, output, p ARRAY_ARGUMENTS);
+        c, &doubts, outcome.Doubtful, beginX, endX, mesh, output, p ARRAY_ARGUMENTS);
     }
     if (outcome.Ambiguous)
     {
@@ -67,7 +68,7 @@ static __attribute__((always_inline)) void ResampleCells(const GroupCandidates* 
 // The groups of a row of cells from place begin on up to one that begins at end. beginX, endX: its cells.
 // specials: as RowFlags. outputs: of the columns of the brick.
 static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, int endX,
-  uint specials, const SamplingMesh* mesh, Output* outputs, Found* found, Doubts* doubts,
+  uint specials, const SamplingMesh* mesh, Output* outputs, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   GroupCandidates candidates[2][2]; // of a place and the next one
@@ -81,7 +82,7 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
     const int special = (specials & GROUP_FLAGS(k)) != 0;
     const GroupCandidates* const here = candidates[place];
     FetchOutput(here + 1, output ARRAY_ARGUMENTS);
-    ResampleCells(here, special, beginX, endX, mesh, output, found, doubts, p ARRAY_ARGUMENTS);
+    ResampleCells(here, special, beginX, endX, mesh, output, found, p ARRAY_ARGUMENTS);
     const int next = k + LANES;
     if (next < end)
     {
@@ -89,7 +90,7 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
         p ARRAY_ARGUMENTS);
       FetchOutput(candidates[!place], output ARRAY_ARGUMENTS);
     }
-    ResampleCells(here + 1, special, beginX, endX, mesh, output, found, doubts, p ARRAY_ARGUMENTS);
+    ResampleCells(here + 1, special, beginX, endX, mesh, output, found, p ARRAY_ARGUMENTS);
   }
 }
 
@@ -118,7 +119,6 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
     const Output output = { coverage, winners, patches, 0, 0, 0, 0, 0, 0, 0 };
     outputs[section] = output;
   }
-  Doubts doubts;
   Found found;
   found.Count = 0;
   const uint brick = item & ((1u << DEFORMVOLUME_BRICK_BITS) - 1);
@@ -201,7 +201,7 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
       const int quarter =
         (low >= DEFORMVOLUME_BRICK_Y / 2) + 2 * (z - 1 - bz >= DEFORMVOLUME_BRICK_Z / 2);
       ResampleRow(&row, begin, end, beginX, endX, specials, mesh,
-        outputs + quarter * DEFORMVOLUME_COLUMNS, &found, &doubts, p ARRAY_ARGUMENTS);
+        outputs + quarter * DEFORMVOLUME_COLUMNS, &found, p ARRAY_ARGUMENTS);
     }
   }
   StoreFound(&found, 0, outputs, p ARRAY_ARGUMENTS);

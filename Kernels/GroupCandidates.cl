@@ -7,7 +7,7 @@
 // row: what is known of these would take the innermost cache. Neighbours share vertices, so that the bounds of a
 // row's columns of vertices are found once.
 
-#define MAXIMUM_EXTENT 64.0f // voxels
+#define MAXIMUM_EXTENT 64.0f // voxels; WeighOrigin (GroupSamples.cl) counts on it
 #define MAXIMUM_CANDIDATES 4096 // of a cell
 #define EXACT_NORMALS_EXTENT 7.99f // voxels: the normals of larger cells are not exact in float
 #define INEXACT_NORMALS 1.35f // by how much more coordinates in these are off (GroupResampling.cl)

@@ -109,7 +109,8 @@ typedef ulong __attribute__((may_alias)) TwoInts;
 
 #if HAS_OTHER_ARRAYS
 // The weights and their sum, as of edge functions, of the origin in a tetrahedron of a cell with these vertices.
-// Coordinates are whole numbers of 1/256 voxel under 2^14, so that all numbers are under 2^47, and exact.
+// Coordinates are whole numbers of 1/256 voxel under 2^14, so that all numbers are under 2^47, and exact. (What
+// MakeEdgeFunctions and Evaluate are for larger cells, which doubles do not hold.)
 static __attribute__((always_inline)) void WeighOrigin(
   const EXACT* x, const EXACT* y, const EXACT* z, int t, long* weights, long* volume)
 {
