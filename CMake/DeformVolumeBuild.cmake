@@ -20,7 +20,6 @@ function (deformvolume_build_module)
     PACKAGE DeformVolume
     VERSION "${PROJECT_VERSION}"
     SOVERSION "${PROJECT_VERSION_MAJOR}"
-    LIBRARY_NAME_SUFFIX ""
     INSTALL_EXPORT DeformVolume
     CMAKE_DESTINATION "${deformvolume_package_directory}"
     HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/deformvolume"
@@ -37,7 +36,6 @@ if (DEFORMVOLUME_WRAP_PYTHON)
     MODULE_DESTINATION "${DEFORMVOLUME_PYTHON_DIRECTORY}"
     LIBRARY_DESTINATION "${CMAKE_INSTALL_LIBDIR}"
     CMAKE_DESTINATION "${deformvolume_package_directory}"
-    INSTALL_EXPORT ""
     INSTALL_HEADERS OFF
     BUILD_STATIC OFF)
   configure_file(

@@ -40,12 +40,16 @@ if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
     RenderingFreeType
     RenderingOpenGL2
     RenderingVolume
-    RenderingVolumeOpenGL2)
+    RenderingVolumeOpenGL2
+    zlib)
 endif ()
 if (BUILD_TESTING)
   list(APPEND deformvolume_vtk_components
     FiltersHybrid IOExodus IOGeometry TestingCore TestingRendering)
 endif ()
+
+# VTK 9.6's own functions pass empty arguments on, of which CMake 3.31 and later warn.
+set(CMAKE_POLICY_DEFAULT_CMP0174 OLD)
 
 if (DEFORMVOLUME_USE_PARAVIEW)
   find_package(ParaView 5.11 REQUIRED COMPONENTS RemotingCore RemotingServerManager)

@@ -37,4 +37,4 @@ deform() # volume, results, and other options of deform-volume
 deform $templates/ch2better.nii.gz deformed.vti before-after.png \
   --push 0,72,-5,0,-25,0,60
 deform $templates/ch2.nii.gz head-deformed.vti head-before-after.png \
-  --edge-length 12 --isovalue 20 --threshold 45 --push 0,90,-54,0,-20,0,45
+  --push 0,90,-54,0,-20,0,45

@@ -1,39 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The surface of the body in a volume, as a closed triangle mesh.
+// The surface of a body of voxels, as a closed triangle mesh.
 #ifndef DeformVolumeBodySurface_h
 #define DeformVolumeBodySurface_h
 
-#include "Error.h"
+#include "BodyLevelSet.h"
 
 #include "vtkSmartPointer.h"
-#include "vtkType.h"
 
-#include <functional>
-#include <vector>
-
-class vtkDataArray;
-class vtkImageData;
 class vtkPolyData;
 
 namespace deformvolume
 {
 
-struct BodyParameters
-{
-  bool ByLabels = false;
-  std::vector<vtkTypeInt64> Labels; // empty: all but 0
-  bool AutomaticIsovalue = true;
-  double Isovalue = 0.0; // set when it is found automatically
-  bool LargestRegionOnly = true;
-  double Resolution = 0.0; // world units
-  double Margin = 0.0;     // world units
-  int SmoothingIterations = 20;
-};
+/// The surface on which the values are 0, in the positions of the grid: closed, of triangles, as a
+/// manifold, without points that coincide.
+vtkSmartPointer<vtkPolyData> ExtractSurface(const BodyLevelSet& grid);
 
-/// The closed surface of the body in world coordinates, double precision. `check` is called between
-/// the steps and throws to give up. Throws Error.
-vtkSmartPointer<vtkPolyData> ExtractBodySurface(vtkImageData* volume, vtkDataArray* array,
-  BodyParameters& parameters, const std::function<void()>& check);
+/// The surface after so many iterations of windowed-sinc smoothing, 0: as it is.
+vtkSmartPointer<vtkPolyData> Smooth(vtkPolyData* surface, int iterations);
 
 } // namespace deformvolume
 

@@ -75,6 +75,24 @@ int GetNumberOfCellPoints(int cellType)
       return 10;
     case VTK_HEXAGONAL_PRISM:
       return 12;
+    case VTK_QUADRATIC_TETRA:
+      return 10;
+    case VTK_QUADRATIC_LINEAR_WEDGE:
+      return 12;
+    case VTK_QUADRATIC_PYRAMID:
+      return 13;
+    case VTK_QUADRATIC_WEDGE:
+      return 15;
+    case VTK_BIQUADRATIC_QUADRATIC_WEDGE:
+      return 18;
+    case VTK_TRIQUADRATIC_PYRAMID:
+      return 19;
+    case VTK_QUADRATIC_HEXAHEDRON:
+      return 20;
+    case VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON:
+      return 24;
+    case VTK_TRIQUADRATIC_HEXAHEDRON:
+      return 27;
     default:
       return 0;
   }

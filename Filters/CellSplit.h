@@ -20,8 +20,8 @@ using CellFaces = std::vector<std::vector<int>>;
 /// null for all other types.
 const CellFaces* GetCellFaces(int cellType);
 
-/// How many points a cell of a linear three-dimensional VTK type of fixed shape has; 0 for all
-/// other types.
+/// How many points a cell of a linear or quadratic three-dimensional VTK type of fixed shape has;
+/// 0 for all other types.
 int GetNumberOfCellPoints(int cellType);
 
 /// Splits a convex cell into tetrahedra between its own points and appends them.

@@ -98,14 +98,26 @@ bool IsFlat(vtkPolyData* surface)
 vtkSmartPointer<vtkPolyData> CleanTriangles(vtkPolyData* surface)
 {
   // The filters below drop or merge cells with such points without a word.
+  const vtkIdType numberOfPoints = surface->GetNumberOfPoints();
   for (vtkCellArray* cells : { surface->GetPolys(), surface->GetStrips() })
   {
+    if (!cells->IsValid())
+    {
+      throw Error("The offsets of the surface's polygons do not fit their connectivity. Correct "
+                  "the polygons.");
+    }
     vtkIdType size;
     const vtkIdType* ids;
     for (cells->InitTraversal(); cells->GetNextCell(size, ids);)
     {
       for (vtkIdType k = 0; k < size; ++k)
       {
+        if (ids[k] < 0 || ids[k] >= numberOfPoints)
+        {
+          throw Error("A polygon of the surface uses point " + std::to_string(ids[k]) +
+            ", and there are only " + std::to_string(numberOfPoints) +
+            " points. Correct the polygons.");
+        }
         double point[3];
         surface->GetPoint(ids[k], point);
         if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2]))

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation.h"
 
+#include "MeshCells.h"
 #include "ParallelFor.h"
 #include "VectorArray.h"
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <atomic>
@@ -22,17 +25,69 @@ namespace
 
 const char* const MESH = "deformation mesh on input port 1";
 const char* const REST = "rest configuration on input port 2";
-const char* const FIELD = "displacement field on input port 1";
 
-// Products of matrices and their inverses miss the simple numbers that are meant, and then the
-// last row of voxels is outside a field of the same extent. The grain is far below a voxel.
-double DropRoundingError(double value)
+// What is to be added to the points of one mesh to have those of another, part by part. memories:
+// of the last reading, from the same points.
+void ReadPointDifferences(const MeshParts& shape, const MeshParts& rest, const VectorTaker& take,
+  std::vector<VectorMemory>& memories)
 {
-  constexpr double grain = 4294967296.0;
-  return std::round(value * grain) / grain;
+  const std::vector<glm::dvec3> starts = ReadPoints(rest, REST);
+  memories.resize(shape.size());
+  vtkIdType next = 0;
+  for (std::size_t part = 0; part < shape.size(); ++part)
+  {
+    const vtkIdType count = shape[part]->GetNumberOfPoints();
+    if (count == 0 || memories[part].Place != next)
+    {
+      memories[part] = VectorMemory();
+      memories[part].Place = next;
+    }
+    if (count > 0)
+    {
+      ReadVectors(
+        shape[part]->GetPoints()->GetData(),
+        [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType some)
+        {
+          std::vector<glm::dvec3> moves(vectors, vectors + some);
+          for (vtkIdType i = 0; i < some; ++i)
+          {
+            moves[i] -= starts[next + first + i];
+          }
+          take(next + first, moves.data(), some);
+        },
+        "Point", MESH, &memories[part]);
+    }
+    next += count;
+  }
+}
+
+// The mesh at rest is the one on port 1 where port 2 has none.
+bool IsRestMade(const DeformationSource& source)
+{
+  return source.Rest ? source.RestIsMade : source.ShapeIsMade;
+}
+
+std::vector<vtkIdType> GetNodesOfParts(const MeshParts& parts)
+{
+  std::vector<vtkIdType> nodes;
+  for (vtkUnstructuredGrid* grid : parts)
+  {
+    nodes.push_back(grid->GetNumberOfPoints());
+  }
+  return nodes;
 }
 
 } // namespace
+
+glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor)
+{
+  glm::dmat3 transform(source.Volume.GetWorldToIndex());
+  for (int column = 0; column < 3; ++column)
+  {
+    transform[column] *= source.Scale * factor;
+  }
+  return transform;
+}
 
 void Deformation::Read(const DeformationSource& source)
 {
@@ -51,16 +106,6 @@ void Deformation::Read(const DeformationSource& source)
   }
 }
 
-DisplacementField Deformation::GetField(bool extrapolate) const
-{
-  DisplacementField field;
-  field.Dimensions = this->FieldDimensions;
-  field.Vectors = this->Vectors.data();
-  field.IndexToField = this->IndexToField;
-  field.Extrapolate = extrapolate;
-  return field;
-}
-
 void Deformation::ReadMesh(const DeformationSource& source)
 {
   const MeshParts shape = GetMeshParts(source.Shape, MESH);
@@ -72,8 +117,8 @@ void Deformation::ReadMesh(const DeformationSource& source)
       " points and the rest configuration on port 2 has " + std::to_string(GetNumberOfNodes(rest)) +
       ". Connect two configurations of one mesh.");
   }
-  this->ReadTetrahedra(shape, rest);
-  this->ReadRestPoints(rest, source);
+  this->ReadTetrahedra(shape, rest, source);
+  const bool sameRest = this->ReadRestPoints(rest, source);
 
   Stamp stamp = source.Rest ? GetPointsStamp(shape) : GetPointVectorsStamp(shape);
   if (source.Rest)
@@ -82,135 +127,107 @@ void Deformation::ReadMesh(const DeformationSource& source)
     stamp.insert(stamp.end(), restStamp.begin(), restStamp.end());
   }
   // The two ways to give displacements never count as the same.
-  stamp.emplace_back(nullptr, source.Rest ? 1 : 0);
+  const bool ofPoints = source.Rest != nullptr;
+  stamp.emplace_back(nullptr, ofPoints ? 1 : 0);
   if (this->VectorsAreCurrent(stamp, source, false))
   {
     return;
   }
-  const std::size_t count = GetNumberOfNodes(shape);
-  if (source.Rest)
+  if (this->MemoriesAreOfPoints != ofPoints || (ofPoints && !sameRest))
   {
     this->Memories.clear();
-    std::vector<glm::dvec3> vectors = ReadPoints(shape, MESH);
-    const std::vector<glm::dvec3> start = ReadPoints(rest, REST);
-    const auto read = [&](const VectorTaker& take)
+  }
+  this->MemoriesAreOfPoints = ofPoints;
+  this->SetVectors(
+    GetNumberOfNodes(shape),
+    [&](const VectorTaker& take)
     {
-      ParallelFor(0, static_cast<vtkIdType>(count), 0,
+      if (ofPoints)
+      {
+        ReadPointDifferences(shape, rest, take, this->Memories);
+      }
+      else
+      {
+        ReadPointVectors(shape, source.Selector, source.Wanted, MESH, take, &this->Memories);
+      }
+    },
+    ofPoints ? 1.0 : source.DisplacementScale, source);
+  this->RememberVectors(stamp, source, false);
+}
+
+bool Deformation::HasSameCells(
+  const MeshParts& parts, const MeshStamp& stamp, const MeshStamp& lastStamp) const
+{
+  if (stamp.IsThatOf(lastStamp))
+  {
+    return true;
+  }
+  return !this->Tetrahedra.empty() && this->IgnoredCells.empty() &&
+    GetNodesOfParts(parts) == this->NodesOfParts && HasCells(parts, this->Tetrahedra);
+}
+
+void Deformation::ReadTetrahedra(
+  const MeshParts& shape, const MeshParts& rest, const DeformationSource& source)
+{
+  const MeshStamp restCells = MeshStamp::OfCells(rest, IsRestMade(source));
+  const MeshStamp shapeCells = MeshStamp::OfCells(shape, source.ShapeIsMade);
+  const bool shared = shapeCells.HasArraysOf(restCells);
+  if (!this->HasSameCells(rest, restCells, this->RestCells) ||
+    !(shared || this->HasSameCells(shape, shapeCells, this->ShapeCells)))
+  {
+    this->RestCells = this->ShapeCells = MeshStamp(); // of nothing, where this fails
+    MeshCells cells = ReadCells(rest);
+    if (cells.Tetrahedra.empty())
+    {
+      throw Error("The deformation mesh has no tetrahedra" +
+        (cells.Ignored.empty() ? std::string() : ", but " + cells.Ignored) +
+        ". Connect a mesh of three-dimensional cells, for example from "
+        "vtkLatticeTetrahedraSource, vtkTetGenMesher or vtkDelaunay3D.");
+    }
+    if (!shared && ReadCells(shape).Tetrahedra != cells.Tetrahedra)
+    {
+      throw Error("The cells of the deformation mesh on input port 1 are not those of the rest "
+                  "configuration on port 2. Connect two configurations of one mesh.");
+    }
+    if (cells.Tetrahedra != this->Tetrahedra)
+    {
+      this->Tetrahedra = std::move(cells.Tetrahedra);
+      ++this->RestVersion;
+    }
+    this->IgnoredCells = cells.Ignored;
+    this->NodesOfParts = GetNodesOfParts(rest);
+  }
+  this->RestCells = restCells;
+  this->ShapeCells = shapeCells;
+}
+
+bool Deformation::ReadRestPoints(const MeshParts& rest, const DeformationSource& source)
+{
+  const char* const name = source.Rest ? REST : MESH;
+  const MeshStamp stamp = MeshStamp::OfPoints(rest, IsRestMade(source));
+  const bool same = stamp.IsThatOf(this->RestStamp) && source.Volume == this->RestVolume;
+  if (!same)
+  {
+    this->RestStamp = MeshStamp(); // of nothing, where this fails
+    const glm::dmat4 transform = source.Volume.GetWorldToIndex();
+    if (!HasPoints(rest, transform, this->RestPoints, name))
+    {
+      std::vector<glm::dvec3> points = ReadPoints(rest, name);
+      ParallelFor(0, static_cast<vtkIdType>(points.size()), 0,
         [&](vtkIdType begin, vtkIdType end)
         {
           for (vtkIdType i = begin; i < end; ++i)
           {
-            vectors[i] -= start[i];
+            points[i] = glm::dvec3(transform * glm::dvec4(points[i], 1.0));
           }
-          take(begin, vectors.data() + begin, end - begin);
         });
-    };
-    this->SetVectors(count, read, 1.0, source);
-  }
-  else
-  {
-    this->SetVectors(
-      count,
-      [&](const VectorTaker& take)
-      { ReadPointVectors(shape, source.Selector, source.Wanted, MESH, take, &this->Memories); },
-      source.DisplacementScale, source);
-  }
-  this->Field = false;
-  this->VectorsStamp = stamp;
-}
-
-void Deformation::ReadTetrahedra(const MeshParts& shape, const MeshParts& rest)
-{
-  Stamp stamp = GetCellsStamp(rest);
-  const Stamp shapeStamp = GetCellsStamp(shape);
-  const bool shared = stamp == shapeStamp;
-  stamp.insert(stamp.end(), shapeStamp.begin(), shapeStamp.end());
-  if (stamp == this->CellsStamp)
-  {
-    return;
-  }
-  MeshCells cells = ReadCells(rest);
-  if (cells.Tetrahedra.empty())
-  {
-    throw Error("The deformation mesh has no tetrahedra" +
-      (cells.Ignored.empty() ? std::string() : ", but " + cells.Ignored) +
-      ". Connect a mesh of linear three-dimensional cells, for example from "
-      "vtkLatticeTetrahedraSource, vtkTetGenMesher or vtkDelaunay3D.");
-  }
-  if (!shared && ReadCells(shape).Tetrahedra != cells.Tetrahedra)
-  {
-    throw Error("The cells of the deformation mesh on input port 1 are not those of the rest "
-                "configuration on port 2. Connect two configurations of one mesh.");
-  }
-  if (cells.Tetrahedra != this->Tetrahedra)
-  {
-    this->Tetrahedra = std::move(cells.Tetrahedra);
-    ++this->RestVersion;
-  }
-  this->IgnoredCells = cells.Ignored;
-  this->CellsStamp = stamp;
-}
-
-void Deformation::ReadRestPoints(const MeshParts& rest, const DeformationSource& source)
-{
-  const Stamp stamp = GetPointsStamp(rest);
-  if (stamp == this->RestStamp && source.Volume == this->RestVolume)
-  {
-    return;
-  }
-  std::vector<glm::dvec3> points = ReadPoints(rest, source.Rest ? REST : MESH);
-  const glm::dmat4 transform = source.Volume.GetWorldToIndex();
-  ParallelFor(0, static_cast<vtkIdType>(points.size()), 0,
-    [&](vtkIdType begin, vtkIdType end)
-    {
-      for (vtkIdType i = begin; i < end; ++i)
-      {
-        points[i] = glm::dvec3(transform * glm::dvec4(points[i], 1.0));
-      }
-    });
-  if (points != this->RestPoints)
-  {
-    this->RestPoints = std::move(points);
-    ++this->RestVersion;
+      this->RestPoints = std::move(points);
+      ++this->RestVersion;
+    }
   }
   this->RestStamp = stamp;
   this->RestVolume = source.Volume;
-}
-
-void Deformation::ReadField(vtkImageData* image, const DeformationSource& source)
-{
-  Stamp stamp{ { image, image->GetMTime() }, { nullptr, image->GetPointData()->GetMTime() } };
-  if (this->VectorsAreCurrent(stamp, source, true))
-  {
-    return;
-  }
-  if (image->GetNumberOfPoints() == 0)
-  {
-    throw Error("The displacement field on input port 1 is empty. Connect a vtkImageData with a "
-                "point array of three components.");
-  }
-  const ImageGeometry geometry = GetGeometry(image);
-  CheckTransform(geometry, "the displacement field on input port 1");
-  vtkDataArray* array = FindVectors(image, source.Selector, source.Wanted, FIELD);
-  // Nothing is remembered: a field may have as many points as the volume has voxels.
-  this->Memories.clear();
-  this->SetVectors(
-    static_cast<std::size_t>(image->GetNumberOfPoints()),
-    [&](const VectorTaker& take) { ReadVectors(array, take, "Vector", FIELD); },
-    source.DisplacementScale, source);
-
-  image->GetDimensions(this->FieldDimensions.data());
-  const glm::dmat4 toField = geometry.GetWorldToIndex() * source.Volume.GetIndexToWorld();
-  for (int row = 0; row < 3; ++row)
-  {
-    for (int column = 0; column < 4; ++column)
-    {
-      const double first = column == 3 ? geometry.PointExtent[2 * row] : 0.0;
-      this->IndexToField[4 * row + column] = DropRoundingError(toField[column][row] - first);
-    }
-  }
-  this->Field = true;
-  this->VectorsStamp = stamp;
+  return same;
 }
 
 bool Deformation::VectorsAreCurrent(
@@ -230,6 +247,10 @@ bool Deformation::HasSameUnits(const DeformationSource& source) const
 PointRanges Deformation::GetChanges(std::uint64_t version) const
 {
   PointRanges changes;
+  if (this->FieldInPlace.Owner)
+  {
+    return { { { 0, static_cast<std::size_t>(GetNumberOfPoints(this->FieldInPlace)) } } };
+  }
   const std::size_t count = this->Vectors.size() / 3;
   for (std::size_t block = 0; block < this->BlockVersions.size(); ++block)
   {
@@ -252,6 +273,7 @@ void Deformation::SetVectors(std::size_t count, const std::function<void(const V
 {
   // Whatever fails from here on, the vectors are not those of any source.
   this->VectorsStamp.clear();
+  this->FieldInPlace = DisplacementField();
   const std::uint64_t version = ++this->VectorsVersion;
   const std::size_t blocks = (count + PointsPerBlock - 1) / PointsPerBlock;
   const bool comparable = this->VectorsAreWhole && this->Vectors.size() == 3 * count;
@@ -265,11 +287,7 @@ void Deformation::SetVectors(std::size_t count, const std::function<void(const V
     this->Memories.clear();
   }
   this->VectorsAreWhole = false;
-  glm::dmat3 transform(source.Volume.GetWorldToIndex());
-  for (int column = 0; column < 3; ++column)
-  {
-    transform[column] *= source.Scale * factor;
-  }
+  const glm::dmat3 transform = GetToDisplacement(source, factor);
   std::vector<std::atomic<bool>> changed(blocks);
   std::atomic<bool> tooFar{ false };
   read(
@@ -329,6 +347,12 @@ void Deformation::SetVectors(std::size_t count, const std::function<void(const V
     }
   }
   this->VectorsAreWhole = true;
+}
+
+void Deformation::RememberVectors(const Stamp& stamp, const DeformationSource& source, bool field)
+{
+  this->Field = field;
+  this->VectorsStamp = stamp;
   this->VectorsSource = source;
   // Only compared, never called or read through again.
   this->VectorsSource.Shape = nullptr;

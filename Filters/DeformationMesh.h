@@ -3,7 +3,6 @@
 #define DeformVolumeDeformationMesh_h
 
 #include "VectorArray.h"
-#include "VolumeDeformer.h" // for Tetrahedron
 
 #include "vtkType.h"
 
@@ -37,19 +36,6 @@ MeshParts FindGrids(vtkDataObject* object);
 MeshParts GetMeshParts(vtkDataObject* object, const std::string& name);
 
 std::size_t GetNumberOfNodes(const MeshParts& parts);
-
-struct MeshCells
-{
-  std::vector<Tetrahedron> Tetrahedra;
-  /// Cells that are no linear three-dimensional cells, in words for a warning; "" without such.
-  std::string Ignored;
-};
-
-/// The tetrahedra of a mesh, and those that its other linear three-dimensional cells are split
-/// into. Cells that vtkGhostType marks as hidden or duplicate are left out.
-/// Throws an Error where a cell has a wrong number of points, points that are not there or
-/// incomplete faces.
-MeshCells ReadCells(const MeshParts& parts);
 
 /// The points, in world coordinates.
 std::vector<glm::dvec3> ReadPoints(const MeshParts& parts, const std::string& name);

@@ -195,7 +195,7 @@ glm::dvec3 Interpolate(const DisplacementField& field, const glm::dvec3& positio
     high[axis] = low[axis] + (t[axis] > 0.0 ? 1 : 0);
   }
   const auto at = [&](std::int64_t x, std::int64_t y, std::int64_t z)
-  { return GetVector(field.Vectors, (z * field.Dimensions[1] + y) * field.Dimensions[0] + x); };
+  { return GetVector(field, (z * field.Dimensions[1] + y) * field.Dimensions[0] + x); };
   if (t == glm::dvec3(0.0))
   {
     return at(low[0], low[1], low[2]);
@@ -294,8 +294,8 @@ IndexBounds ComputeBoundsOfCells(
           point[axis] =
             std::min<std::int64_t>(index[axis] + (corner >> axis & 1), field.Dimensions[axis] - 1);
         }
-        const glm::dvec3 vector = GetVector(field.Vectors,
-          (point[2] * field.Dimensions[1] + point[1]) * field.Dimensions[0] + point[0]);
+        const glm::dvec3 vector = GetVector(
+          field, (point[2] * field.Dimensions[1] + point[1]) * field.Dimensions[0] + point[0]);
         if (IsFinite(vector))
         {
           displacement.Add(vector);

@@ -83,8 +83,8 @@ void DeviceSession::CheckMemory(const Lattice& lattice, const std::vector<Volume
   }
   if (method == Resampling::MeshRasterization)
   {
-    this->Deformer.CheckRasterizationMemory(
-      lattice, arrays, outputExtent, numberOfNodes, deformation.GetTetrahedra().size(), heldBytes);
+    this->Deformer.CheckRasterizationMemory(lattice, arrays, outputExtent, numberOfNodes,
+      field ? 0 : deformation.GetTetrahedra().size(), heldBytes);
     return;
   }
   this->Deformer.CheckMemory(lattice, arrays, outputExtent, numberOfNodes,
@@ -163,7 +163,7 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
       transfer.End();
     }
     this->HasField = true;
-    this->HasMesh = this->HasRestMesh = false;
+    this->HasMesh = this->HasRestMesh = this->HasInverseField = false;
   }
   else
   {
@@ -201,15 +201,31 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
       transfer.End();
     }
     this->HasMesh = true;
-    this->HasField = this->HasRestMesh = false;
+    this->HasField = this->HasRestMesh = this->HasInverseField = false;
   }
   this->SentVectors = vectors;
   this->SentExtrapolate = extrapolate;
 }
 
-void DeviceSession::SetRestMesh(const Deformation& deformation)
+void DeviceSession::SetRestMesh(const Deformation& deformation, bool extrapolate)
 {
   static_assert(sizeof(glm::dvec3) == 3 * sizeof(double), "as the deformer reads it");
+  if (deformation.IsInverseField())
+  {
+    const std::uint64_t version = deformation.GetVectorsVersion();
+    if (!this->HasInverseField || this->SentVectors != version ||
+      this->SentExtrapolate != extrapolate)
+    {
+      Transfer transfer(this);
+      this->Deformer.SetInverseField(deformation.GetField(extrapolate));
+      transfer.End();
+    }
+    this->HasInverseField = true;
+    this->HasMesh = this->HasField = this->HasRestMesh = false;
+    this->SentVectors = version;
+    this->SentExtrapolate = extrapolate;
+    return;
+  }
   const bool meshIsSent = this->HasRestMesh && this->SentRest == deformation.GetRestVersion();
   const std::uint64_t vectors = deformation.GetVectorsVersion();
   Transfer transfer(this);
@@ -225,7 +241,7 @@ void DeviceSession::SetRestMesh(const Deformation& deformation)
   }
   transfer.End();
   this->HasRestMesh = true;
-  this->HasMesh = this->HasField = false;
+  this->HasMesh = this->HasField = this->HasInverseField = false;
   this->SentRest = deformation.GetRestVersion();
   this->SentVectors = vectors;
 }
@@ -262,6 +278,7 @@ void DeviceSession::Forget()
   this->MasksAreSet = false;
   this->HasMesh = false;
   this->HasField = false;
+  this->HasInverseField = false;
   this->HasRestMesh = false;
 }
 

@@ -49,8 +49,8 @@ public:
   void SetDeformation(const Deformation& deformation, MappingCache& mapping,
     const MappedVolume& volume, const std::function<bool(double)>& progress);
 
-  /// A mesh, for the method MeshRasterization: there is no mapping.
-  void SetRestMesh(const Deformation& deformation);
+  /// A mesh, or an inverse field, for the method MeshRasterization: there is no mapping.
+  void SetRestMesh(const Deformation& deformation, bool extrapolate = false);
 
   DeformReport Deform(const DeformRequest& request);
 
@@ -78,6 +78,7 @@ private:
   bool MasksAreSet = false;
   bool HasMesh = false;
   bool HasField = false;
+  bool HasInverseField = false;
   bool HasRestMesh = false;
   std::uint64_t SentRest = 0;
   std::uint64_t SentMapping = 0;

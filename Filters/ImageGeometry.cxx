@@ -9,11 +9,13 @@
 #include "vtkMatrix3x3.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <glm/common.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace deformvolume
 {
@@ -56,6 +58,44 @@ bool ImageGeometry::operator==(const ImageGeometry& other) const
 {
   return this->PointExtent == other.PointExtent && this->Origin == other.Origin &&
     this->Spacing == other.Spacing && this->Direction == other.Direction;
+}
+
+bool AreSamePlaces(const ImageGeometry& first, const ImageGeometry& second, const Extent& extent)
+{
+  constexpr double tolerance = 1e-3; // far more than the rounding of floats, far less than a voxel
+  const glm::dmat4 transform = second.GetWorldToIndex() * first.GetIndexToWorld();
+  bool same = true;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec4 index(
+      extent[corner & 1], extent[2 + (corner >> 1 & 1)], extent[4 + (corner >> 2 & 1)], 1.0);
+    const glm::dvec4 distance = glm::abs(transform * index - index);
+    same = same && distance.x <= tolerance && distance.y <= tolerance && distance.z <= tolerance;
+  }
+  return same;
+}
+
+std::string DescribeTransform(const ImageGeometry& geometry)
+{
+  std::ostringstream text;
+  text << "origin " << geometry.Origin.x << ", " << geometry.Origin.y << ", " << geometry.Origin.z
+       << ", spacing " << geometry.Spacing.x << ", " << geometry.Spacing.y << ", "
+       << geometry.Spacing.z << " and direction";
+  for (int element = 0; element < 9; ++element)
+  {
+    text << (element == 0 ? " " : ", ") << geometry.Direction[element % 3][element / 3];
+  }
+  return text.str();
+}
+
+std::string DescribeExtent(const Extent& extent)
+{
+  std::string text;
+  for (int bound : extent)
+  {
+    text += (text.empty() ? "" : ", ") + std::to_string(bound);
+  }
+  return text;
 }
 
 bool Contains(const Extent& extent, const Extent& other)

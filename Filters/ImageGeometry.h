@@ -33,6 +33,16 @@ struct ImageGeometry
   bool operator!=(const ImageGeometry& other) const { return !(*this == other); }
 };
 
+/// Whether the points of an extent lie at the same places in the world, to a thousandth of the
+/// distance between them. The second geometry must have a transform that can be inverted.
+bool AreSamePlaces(const ImageGeometry& first, const ImageGeometry& second, const Extent& extent);
+
+/// Origin, spacing and direction, in words for an error.
+std::string DescribeTransform(const ImageGeometry& geometry);
+
+/// An extent in words for an error.
+std::string DescribeExtent(const Extent& extent);
+
 /// Whether an extent holds all of another one.
 bool Contains(const Extent& extent, const Extent& other);
 

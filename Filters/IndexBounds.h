@@ -66,6 +66,13 @@ inline glm::dvec3 GetVector(const float* vectors, std::int64_t index)
   return glm::dvec3(vectors[3 * index], vectors[3 * index + 1], vectors[3 * index + 2]);
 }
 
+/// The displacement of a point of a field.
+inline glm::dvec3 GetVector(const DisplacementField& field, std::int64_t point)
+{
+  const std::array<float, 3> displacement = GetDisplacement(field, point);
+  return glm::dvec3(displacement[0], displacement[1], displacement[2]);
+}
+
 } // namespace deformvolume
 
 #endif

@@ -32,6 +32,10 @@ void RequestInput(vtkInformation* input, const Ranks& ranks);
 /// Asks an input for an extent, and for nothing else.
 void RequestExtent(vtkInformation* input, const Extent& extent);
 
+/// Asks an image for no voxel, at the lower corner of its whole extent: where that does not begin
+/// at 0, an empty extent there would be an error of its own.
+void RequestNothing(vtkInformation* input);
+
 /// Brings all inputs up to date with what they have been asked for. The executive would do it, too;
 /// but where a source fails on one rank, the executive ends the data pass on that rank alone.
 /// Throws an Error, on all ranks. Collective.
@@ -51,9 +55,19 @@ bool IsInMemory(vtkAlgorithm* filter, int port);
 /// The producer of an input and the time of the last change up to it.
 std::pair<const void*, vtkMTimeType> GetInputStamp(vtkAlgorithm* filter, int port);
 
-/// The times at which an input can differ: its steps, or the ends of its range where it has no
-/// steps; none for one that does not vary.
+/// Brings a part of the image on an input port up to date, like UpdateInput() at the output's time.
+vtkDataObject* UpdateInputPart(
+  vtkAlgorithm* filter, int port, vtkInformation* output, const Extent& part, const Ranks& ranks);
+
+/// The times that an input announces: its steps, or the ends of its range where it has no steps;
+/// none for one that does not vary.
 std::vector<double> GetTimes(vtkInformation* input);
+
+/// The times at which to look at an input in order to know all of it: its steps; or, where it
+/// announces a range without steps, the steps that are announced farther up for the same range
+/// (vtkTemporalInterpolator is linear between these), and without such so many samples of the
+/// range, its ends included.
+std::vector<double> GetSampleTimes(vtkAlgorithm* filter, int port, int samples);
 
 /// Gives the output the time steps and the range of all inputs.
 void MergeTimes(vtkAlgorithm* filter, vtkInformation* output);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshGathering.h"
 
+#include "MeshCells.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellType.h"
 #include "vtkDoubleArray.h"
@@ -69,7 +71,7 @@ template <typename T>
 void GatherVector(const Ranks& ranks, std::vector<T>& values, const std::string& what)
 {
   const std::vector<char> all = ranks.Gather(values.data(), values.size() * sizeof(T), what);
-  values.resize(all.size() / sizeof(T));
+  ranks.Attempt([&] { values.resize(all.size() / sizeof(T)); });
   if (!all.empty())
   {
     std::memcpy(static_cast<void*>(values.data()), all.data(), all.size());

@@ -11,8 +11,10 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <numeric>
 #include <unistd.h>
+#include <utility>
 
 namespace deformvolume
 {
@@ -101,14 +103,20 @@ std::vector<char> Ranks::Gather(const void* data, std::size_t bytes, const std::
   }
   std::vector<vtkIdType> lengths;
   std::vector<vtkIdType> offsets;
-  vtkIdType offset = 0;
-  for (const std::uint64_t size : sizes)
-  {
-    lengths.push_back(static_cast<vtkIdType>(size));
-    offsets.push_back(offset);
-    offset += lengths.back();
-  }
-  std::vector<char> all(static_cast<std::size_t>(sum));
+  std::vector<char> all;
+  // Before the message: a rank that lacks the memory would leave the others waiting in it.
+  this->Attempt(
+    [&]
+    {
+      vtkIdType offset = 0;
+      for (const std::uint64_t size : sizes)
+      {
+        lengths.push_back(static_cast<vtkIdType>(size));
+        offsets.push_back(offset);
+        offset += lengths.back();
+      }
+      all.resize(static_cast<std::size_t>(sum));
+    });
   if (sum > 0)
   {
     char none = 0; // where there is nothing to send or to receive
@@ -156,25 +164,33 @@ void Ranks::Agree(Outcome outcome, const std::string& message) const
 
 const std::vector<int>& Ranks::GetNeighbours() const
 {
-  // Found once: ranks stay where they are.
+  // Found once: ranks stay where they are. A list is complete before it is entered, and never
+  // changes then.
+  static std::mutex mutex;
   static std::map<int, std::vector<int>> found;
-  std::vector<int>& neighbours = found[this->Count];
-  if (neighbours.empty())
   {
-    constexpr std::size_t length = 256;
-    std::array<char, length> name{};
-    gethostname(name.data(), length - 1);
-    const std::vector<char> names = this->Gather(name.data(), length, "names of machines");
-    for (int rank = 0; rank < this->Count; ++rank)
+    const std::lock_guard<std::mutex> lock(mutex);
+    const auto known = found.find(this->Count);
+    if (known != found.end())
     {
-      if (std::equal(name.begin(), name.end(), names.begin() + rank * static_cast<int>(length)))
-      {
-        neighbours.push_back(rank);
-      }
+      return known->second;
     }
-    deformvolume::ShareProcessors(static_cast<int>(neighbours.size()));
   }
-  return neighbours;
+  std::vector<int> neighbours;
+  constexpr std::size_t length = 256;
+  std::array<char, length> name{};
+  gethostname(name.data(), length - 1);
+  const std::vector<char> names = this->Gather(name.data(), length, "names of machines");
+  for (int rank = 0; rank < this->Count; ++rank)
+  {
+    if (std::equal(name.begin(), name.end(), names.begin() + rank * static_cast<int>(length)))
+    {
+      neighbours.push_back(rank);
+    }
+  }
+  deformvolume::ShareProcessors(static_cast<int>(neighbours.size()));
+  const std::lock_guard<std::mutex> lock(mutex);
+  return found.emplace(this->Count, std::move(neighbours)).first->second;
 }
 
 void Ranks::ShareProcessors() const

@@ -12,6 +12,17 @@ Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deforma
   const std::function<bool(Resampling)>& fits)
 {
   const bool cubic = wish.Interpolation == Interpolation::Cubic;
+  if (deformation.IsInverseField())
+  {
+    if (wish.Method && *wish.Method != Resampling::MeshRasterization)
+    {
+      throw Error(
+        "An inverse displacement field leads from the output to the volume, so that there "
+        "is no sampling mesh to deform. Set Resampler to AUTOMATIC or "
+        "MESH_RASTERIZATION.");
+    }
+    return Resampling::MeshRasterization;
+  }
   if (cubic && wish.Method && *wish.Method != Resampling::MeshRasterization)
   {
     throw Error("The cubic interpolation is there only with the resampler MESH_RASTERIZATION. Set "
@@ -19,7 +30,7 @@ Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deforma
                 "LINEAR_INTERPOLATION.");
   }
   const std::string obstacle = deformation.IsField()
-    ? "displacement fields. Connect a tetrahedral mesh to input port 1"
+    ? "forward displacement fields. Connect a tetrahedral mesh to input port 1"
     : wish.Extrapolate ? "the outside mode EXTRAPOLATE. Set OutsideMode to DISCARD"
                        : "";
   if (!obstacle.empty() && (cubic || (wish.Method == Resampling::MeshRasterization)))

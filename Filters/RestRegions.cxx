@@ -207,7 +207,7 @@ RestRegions::RestRegions(const Lattice& lattice, const DisplacementField& field)
             for (std::int64_t x = low[0]; x <= high[0]; ++x)
             {
               displacement.Add(
-                GetVector(field.Vectors, (z * field.Dimensions[1] + y) * field.Dimensions[0] + x));
+                GetVector(field, (z * field.Dimensions[1] + y) * field.Dimensions[0] + x));
             }
           }
         }

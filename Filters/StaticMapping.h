@@ -47,8 +47,11 @@ struct StaticMapping
 /// Finds the tetrahedron of each voxel by rasterising the tetrahedra into the voxel grid, in
 /// parallel over slabs of voxels, with exact integer arithmetic on positions rounded to 1/256
 /// voxel: no voxel inside the mesh is missed, those on its surface included, and the result does
-/// not depend on the number of threads. Where tetrahedra overlap the one with the lowest index
-/// gets the voxel. Both forms give a voxel to the same tetrahedron.
+/// not depend on the number of threads. A voxel that several tetrahedra hold, such as one on a
+/// face, goes to the tetrahedron whose nodes come first by their positions: those of the first
+/// nodes are compared by x, then y, then z, then those of the second nodes, and so on. So the
+/// mapping does not depend on how nodes and tetrahedra are numbered; only of tetrahedra in one
+/// place the lowest index gets the voxel. Both forms give a voxel to the same tetrahedron.
 ///
 /// voxels: structured indices of the volume. restPoints: the nodes at rest in continuous indices
 /// of the volume. extrapolate: voxels outside the mesh are linked to the tetrahedron of the

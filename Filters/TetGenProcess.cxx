@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TetGenProcess.h"
 
+#include "ChildOutput.h"
+
 #include "vtkCellArray.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -62,59 +64,12 @@ public:
   std::filesystem::path Path;
 };
 
-// The side of a pseudo terminal that reads what the child prints. TetGen ends by abort() on every
-// error; into a pipe or a file its message would stay in its buffer and be lost.
-class Terminal
-{
-public:
-  Terminal()
-    : Descriptor(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK))
-  {
-    const char* name = nullptr;
-    if (this->Descriptor < 0 || grantpt(this->Descriptor) != 0 || unlockpt(this->Descriptor) != 0 ||
-      !(name = ptsname(this->Descriptor)))
-    {
-      const std::string reason = std::strerror(errno);
-      if (this->Descriptor >= 0)
-      {
-        close(this->Descriptor);
-      }
-      throw Error("Cannot open a pseudo terminal for TetGen's messages: " + reason +
-        ". Is /dev/pts there and a terminal free?");
-    }
-    this->ChildName = name;
-  }
-  ~Terminal() { close(this->Descriptor); }
-  Terminal(const Terminal&) = delete;
-  Terminal& operator=(const Terminal&) = delete;
-
-  void Read()
-  {
-    char buffer[4096];
-    ssize_t length;
-    while ((length = read(this->Descriptor, buffer, sizeof buffer)) > 0)
-    {
-      // More than enough for a message, whatever the program prints.
-      if (this->Text.size() < (1u << 20))
-      {
-        this->Text.append(buffer, static_cast<std::size_t>(length));
-      }
-    }
-  }
-
-  std::string ChildName;
-  std::string Text;
-
-private:
-  int Descriptor;
-};
-
 // A child process in a process group of its own, so that its children end with it. posix_spawn
 // rather than fork: a process in which an OpenCL runtime has started threads must not be forked.
 class Child
 {
 public:
-  Child(const std::vector<std::string>& arguments, const Terminal& terminal)
+  Child(const std::vector<std::string>& arguments, const ChildOutput& output)
   {
     std::vector<char*> argv;
     for (const std::string& argument : arguments)
@@ -126,9 +81,7 @@ public:
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(
-      &actions, 1, terminal.ChildName.c_str(), O_WRONLY | O_NOCTTY, 0);
-    posix_spawn_file_actions_adddup2(&actions, 1, 2);
+    output.AddTo(actions);
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     sigset_t signals;
@@ -184,16 +137,17 @@ struct Outcome
 {
   bool Succeeded;
   std::string Text;
+  bool Complete; // whether Text is all that was printed
 };
 
 Outcome Run(const std::vector<std::string>& arguments, Clock::time_point start, double limit,
   const std::function<bool(double)>& wait)
 {
-  Terminal terminal;
-  Child child(arguments, terminal);
+  ChildOutput output;
+  Child child(arguments, output);
   while (!child.HasEnded())
   {
-    terminal.Read();
+    output.Read();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     if (wait(seconds / limit))
     {
@@ -208,8 +162,8 @@ Outcome Run(const std::vector<std::string>& arguments, Clock::time_point start, 
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  terminal.Read();
-  return { child.HasSucceeded(), terminal.Text };
+  output.Read();
+  return { child.HasSucceeded(), output.GetText(), output.IsTerminal() };
 }
 
 // TetGen's output without the report of its progress.
@@ -238,18 +192,24 @@ std::string Complaint(const std::string& text)
   return complaint;
 }
 
-void WriteSurface(const std::filesystem::path& path, vtkPolyData* surface)
+void WriteSurface(const std::filesystem::path& path, vtkPolyData* surface,
+  const std::vector<glm::dvec3>& morePoints)
 {
   std::ofstream file(path);
   file.imbue(std::locale::classic());
   file.precision(std::numeric_limits<double>::max_digits10);
   const vtkIdType numberOfPoints = surface->GetNumberOfPoints();
-  file << numberOfPoints << " 3 0 0\n";
+  file << numberOfPoints + static_cast<vtkIdType>(morePoints.size()) << " 3 0 0\n";
   for (vtkIdType i = 0; i < numberOfPoints; ++i)
   {
     double point[3];
     surface->GetPoint(i, point);
     file << i << ' ' << point[0] << ' ' << point[1] << ' ' << point[2] << '\n';
+  }
+  vtkIdType next = numberOfPoints;
+  for (const glm::dvec3& point : morePoints)
+  {
+    file << next++ << ' ' << point.x << ' ' << point.y << ' ' << point.z << '\n';
   }
   file << surface->GetNumberOfPolys() << " 0\n";
   vtkCellArray* triangles = surface->GetPolys();
@@ -354,7 +314,7 @@ vtkSmartPointer<vtkUnstructuredGrid> RunTetGen(
 {
   const TemporaryFolder folder;
   const std::filesystem::path input = folder.Path / "surface.smesh";
-  WriteSurface(input, surface);
+  WriteSurface(input, surface, parameters.Points);
 
   // p: fill a surface; Y: put no points on it, which would cascade near small angles; F: write no
   // faces; q: quality; a: the largest volume, in digits without an exponent.
@@ -373,7 +333,8 @@ vtkSmartPointer<vtkUnstructuredGrid> RunTetGen(
     std::string message = Complaint(outcome.Text);
     if (message.empty())
     {
-      message = "(no message)";
+      message = outcome.Complete ? "(no message)"
+                                 : "(no message: without pseudo terminals, its messages are lost)";
     }
     if (!parameters.Diagnose)
     {
@@ -382,13 +343,15 @@ vtkSmartPointer<vtkUnstructuredGrid> RunTetGen(
     // The other mode of TetGen looks for self-intersections, and names them.
     const Outcome diagnosis = Run(
       { parameters.Executable, "-d", input.string() }, start, parameters.TimeLimit + 10.0, wait);
+    // TetGen 1.5 counts them there; 1.6 warns of each where it fails, and of others there.
     const std::size_t found = diagnosis.Text.find("!! Found");
-    if (found != std::string::npos)
+    const bool counted = found != std::string::npos;
+    if (counted || message.find("intersect") != std::string::npos)
     {
       throw SurfaceRejected("TetGen cannot fill the surface, because it intersects itself. TetGen "
                             "says: " +
-        message + " " + Complaint(diagnosis.Text.substr(found)) +
-        " Mend the surface, or for a volume change the isovalue, TargetEdgeLength or "
+        message + (counted ? " " + Complaint(diagnosis.Text.substr(found)) : "") +
+        " Fix the surface, or for a volume change the isovalue, TargetEdgeLength or "
         "SmoothingIterations.");
     }
     throw SurfaceRejected("TetGen failed. It says: " + message +

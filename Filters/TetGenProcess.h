@@ -7,8 +7,11 @@
 
 #include "vtkSmartPointer.h"
 
+#include <glm/vec3.hpp>
+
 #include <functional>
 #include <string>
+#include <vector>
 
 class vtkPolyData;
 class vtkUnstructuredGrid;
@@ -28,8 +31,9 @@ struct TetGenParameters
   std::string Executable;
   double RadiusEdgeRatio = 1.414;
   double MaximumVolume = 0.0;
-  double TimeLimit = 60.0; // seconds
-  bool Diagnose = true;    // after a failure, look for self-intersections to name them
+  double TimeLimit = 60.0;        // seconds
+  bool Diagnose = true;           // after a failure, look for self-intersections to name them
+  std::vector<glm::dvec3> Points; // more nodes for the mesh, as far as they lie in the surface
 };
 
 /// Fills a closed triangle surface with tetrahedra of positive volume. `wait` is called many times

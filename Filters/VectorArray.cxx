@@ -135,6 +135,11 @@ void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string
   const std::string& owner, VectorMemory* memory)
 {
   using Dispatcher = vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>;
+  if (array->GetNumberOfComponents() != 3)
+  {
+    throw Error(kind + "s of the " + owner + " have " +
+      std::to_string(array->GetNumberOfComponents()) + " components. Give each of them three.");
+  }
   VectorReader reader;
   if (!Dispatcher::Execute(array, reader, take, memory))
   {

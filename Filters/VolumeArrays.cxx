@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VolumeArrays.h"
 
+#include "MaskArray.h"
+
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -22,6 +24,7 @@ namespace
 
 const char* const MASK = "vtkValidPointMask";
 const char* const ACTIVE = "ActiveTetrahedra";
+const char* const VOLUME = "volume"; // in errors
 
 // The element type of the same size and kind: VTK has several names for most of them.
 template <typename T>
@@ -78,23 +81,6 @@ std::string GetLabel(vtkAbstractArray* array, int index)
 bool HasName(vtkAbstractArray* array, const char* name)
 {
   return array->GetName() && std::strcmp(array->GetName(), name) == 0;
-}
-
-// A mask of the volume, or null; throws where the array is there but cannot be one.
-vtkUnsignedCharArray* FindMask(
-  vtkDataSetAttributes* attributes, const char* name, vtkIdType size, const std::string& what)
-{
-  vtkAbstractArray* array = attributes->GetAbstractArray(name);
-  const auto mask = vtkUnsignedCharArray::SafeDownCast(array);
-  if (array && (!mask || mask->GetNumberOfComponents() != 1 || mask->GetNumberOfTuples() != size))
-  {
-    throw Error("The " + what + " array \"" + name + "\" of the volume is " +
-      array->GetDataTypeAsString() + ", " + std::to_string(array->GetNumberOfTuples()) +
-      " tuples of " + std::to_string(array->GetNumberOfComponents()) +
-      " components. Give it type unsigned char, one component and " + std::to_string(size) +
-      " tuples, one for each " + what + ".");
-  }
-  return mask;
 }
 
 } // namespace
@@ -233,7 +219,8 @@ VolumeMasks ReadMasks(vtkImageData* volume)
   const vtkIdType numberOfCells = volume->GetNumberOfCells();
   VolumeMasks masks;
 
-  if (const auto ghosts = FindMask(volume->GetPointData(), ghostName, numberOfPoints, "point"))
+  if (const auto ghosts =
+        FindMask(volume->GetPointData(), ghostName, numberOfPoints, "point", VOLUME))
   {
     constexpr unsigned char blanked =
       vtkDataSetAttributes::DUPLICATEPOINT | vtkDataSetAttributes::HIDDENPOINT;
@@ -253,11 +240,11 @@ VolumeMasks ReadMasks(vtkImageData* volume)
     }
   }
 
-  if (const auto active = FindMask(volume->GetCellData(), ACTIVE, numberOfCells, "cell"))
+  if (const auto active = FindMask(volume->GetCellData(), ACTIVE, numberOfCells, "cell", VOLUME))
   {
     masks.Active.assign(active->GetPointer(0), active->GetPointer(0) + numberOfCells);
   }
-  if (const auto ghosts = FindMask(volume->GetCellData(), ghostName, numberOfCells, "cell"))
+  if (const auto ghosts = FindMask(volume->GetCellData(), ghostName, numberOfCells, "cell", VOLUME))
   {
     for (vtkIdType i = 0; i < numberOfCells; ++i)
     {
@@ -283,6 +270,7 @@ Stamp GetMasksStamp(vtkImageData* volume)
          volume->GetCellData()->GetAbstractArray(ACTIVE) })
   {
     stamp.emplace_back(array, array ? array->GetMTime() : 0);
+    stamp.emplace_back(nullptr, array ? static_cast<vtkMTimeType>(array->GetNumberOfValues()) : 0);
   }
   return stamp;
 }

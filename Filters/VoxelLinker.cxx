@@ -17,13 +17,19 @@ constexpr double RoundingDistance = 1.0 / 128.0;
 constexpr double ThinHeight = 1.0 / 16.0;
 constexpr double LeastThinWeight = -1.0 / 8.0;
 
-bool IsLinked(const VertexLink& link)
+std::int32_t GetTetrahedron(const VertexLink& link)
 {
-  return link.Tetrahedron >= 0;
+  return link.Tetrahedron;
 }
-bool IsLinked(std::int32_t tetrahedron)
+std::int32_t GetTetrahedron(std::int32_t tetrahedron)
 {
-  return tetrahedron >= 0;
+  return tetrahedron;
+}
+
+template <typename Element>
+bool IsLinked(const Element& element)
+{
+  return GetTetrahedron(element) >= 0;
 }
 
 void Link(VertexLink& link, std::int32_t id, const glm::dvec3& weights)
@@ -35,37 +41,6 @@ void Link(std::int32_t& tetrahedron, std::int32_t id, const glm::dvec3&)
   tetrahedron = id;
 }
 
-// Links voxels of a row, from the first one on, that have no tetrahedron yet; returns their number.
-std::int64_t LinkRow(std::int32_t id, const BarycentricMap& map, const glm::i64vec3& first,
-  std::int64_t count, VertexLink* links)
-{
-  const glm::dvec3 start = map.GetWeights(glm::dvec3(first));
-  const glm::dvec3 step(map.GetGradient(0).x, map.GetGradient(1).x, map.GetGradient(2).x);
-  std::int64_t linked = 0;
-  for (std::int64_t offset = 0; offset < count; ++offset)
-  {
-    if (!IsLinked(links[offset]))
-    {
-      Link(links[offset], id, start + step * static_cast<double>(offset));
-      ++linked;
-    }
-  }
-  return linked;
-}
-
-std::int64_t LinkRow(std::int32_t id, const BarycentricMap&, const glm::i64vec3&,
-  std::int64_t count, std::int32_t* tetrahedra)
-{
-  std::int64_t linked = 0;
-  for (std::int64_t offset = 0; offset < count; ++offset)
-  {
-    const bool free = !IsLinked(tetrahedra[offset]);
-    tetrahedra[offset] = free ? id : tetrahedra[offset];
-    linked += free ? 1 : 0;
-  }
-  return linked;
-}
-
 } // namespace
 
 VoxelLinker::VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
@@ -75,6 +50,63 @@ VoxelLinker::VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& re
   , Voxels(MakeVoxelBox(voxels))
   , Tiles(voxels, restPoints, tetrahedra, RoundingDistance)
 {
+}
+
+bool VoxelLinker::ComesBefore(std::int32_t id, std::int32_t other) const
+{
+  for (int node = 0; node < 4; ++node)
+  {
+    const glm::dvec3& a = this->RestPoints[this->Tetrahedra[id][node]];
+    const glm::dvec3& b = this->RestPoints[this->Tetrahedra[other][node]];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (a[axis] != b[axis])
+      {
+        return a[axis] < b[axis];
+      }
+    }
+  }
+  return id < other;
+}
+
+// Links voxels of a row, from the first one on; returns how many had no tetrahedron yet.
+std::int64_t VoxelLinker::LinkRow(std::int32_t id, const BarycentricMap& map,
+  const glm::i64vec3& first, std::int64_t count, VertexLink* links) const
+{
+  const glm::dvec3 start = map.GetWeights(glm::dvec3(first));
+  const glm::dvec3 step(map.GetGradient(0).x, map.GetGradient(1).x, map.GetGradient(2).x);
+  std::int64_t linked = 0;
+  for (std::int64_t offset = 0; offset < count; ++offset)
+  {
+    const bool free = !IsLinked(links[offset]);
+    if (free || this->ComesBefore(id, links[offset].Tetrahedron))
+    {
+      Link(links[offset], id, start + step * static_cast<double>(offset));
+    }
+    linked += free ? 1 : 0;
+  }
+  return linked;
+}
+
+std::int64_t VoxelLinker::LinkRow(std::int32_t id, const BarycentricMap&, const glm::i64vec3&,
+  std::int64_t count, std::int32_t* tetrahedra) const
+{
+  std::int64_t linked = 0;
+  for (std::int64_t offset = 0; offset < count; ++offset)
+  {
+    const bool free = !IsLinked(tetrahedra[offset]);
+    tetrahedra[offset] = free ? id : tetrahedra[offset];
+    linked += free ? 1 : 0;
+  }
+  // Few voxels are held by several tetrahedra.
+  for (std::int64_t offset = 0; linked < count && offset < count; ++offset)
+  {
+    if (tetrahedra[offset] != id && this->ComesBefore(id, tetrahedra[offset]))
+    {
+      tetrahedra[offset] = id;
+    }
+  }
+  return linked;
 }
 
 VoxelLinker::Nodes VoxelLinker::GetNodes(const Tetrahedron& tetrahedron) const
@@ -210,24 +242,27 @@ std::int64_t VoxelLinker::LinkTetrahedron(std::int32_t id, const Nodes& nodes, c
       Element* element = &target.At(first, y, z);
       if (!thin)
       {
-        linked += LinkRow(id, map, glm::i64vec3(first, y, z), last - first + 1, element);
+        linked += this->LinkRow(id, map, glm::i64vec3(first, y, z), last - first + 1, element);
         return;
       }
       for (std::int64_t x = first; x <= last; ++x, ++element)
       {
-        if (IsLinked(*element))
+        const bool free = !IsLinked(*element);
+        if (!free && !this->ComesBefore(id, GetTetrahedron(*element)))
         {
           continue;
         }
         const glm::dvec4 weights = flat ? glm::dvec4(-1.0) : map.GetAllWeights(glm::dvec3(x, y, z));
-        if (std::min({ weights.x, weights.y, weights.z, weights.w }) < LeastThinWeight)
+        const bool doubted =
+          std::min({ weights.x, weights.y, weights.z, weights.w }) < LeastThinWeight;
+        if (doubted && free)
         {
           doubtful.emplace_back(x, y, z);
         }
-        else
+        if (!doubted)
         {
           Link(*element, id, glm::dvec3(weights));
-          ++linked;
+          linked += free ? 1 : 0;
         }
       }
     });
@@ -273,7 +308,9 @@ bool VoxelLinker::LinkDoubtful(std::int64_t tile, const glm::i64vec3& voxel, Ele
       least = std::min(least, weights[node]);
       near = near && weights[node] >= -RoundingDistance * glm::length(map.GetGradient(node));
     }
-    if (near && least > best)
+    const bool better = least > best ||
+      (IsLinked(element) && least == best && this->ComesBefore(id, GetTetrahedron(element)));
+    if (near && better)
     {
       best = least;
       Link(element, id, glm::dvec3(weights));

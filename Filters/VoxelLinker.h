@@ -72,7 +72,8 @@ public:
 
   /// Fills the elements of the voxels of a tile that lie in a part of it, and which are outside the
   /// mesh so far; returns how many have a tetrahedron. What a voxel gets does not depend on the
-  /// part, if that has whole rows. Element: VertexLink or std::int32_t.
+  /// part, if that has whole rows. Of tetrahedra that hold a voxel the first one by the positions
+  /// of its nodes gets it (see StaticMappingBuilder). Element: VertexLink or std::int32_t.
   template <typename Element>
   std::int64_t LinkTile(
     std::int64_t tile, const VoxelBox& part, const VoxelTarget<Element>& target) const;
@@ -95,6 +96,12 @@ private:
     const VoxelTarget<Element>& target, std::vector<glm::i64vec3>& doubtful) const;
   template <typename Element>
   bool LinkDoubtful(std::int64_t tile, const glm::i64vec3& voxel, Element& element) const;
+  std::int64_t LinkRow(std::int32_t id, const BarycentricMap& map, const glm::i64vec3& first,
+    std::int64_t count, VertexLink* links) const;
+  std::int64_t LinkRow(std::int32_t id, const BarycentricMap& map, const glm::i64vec3& first,
+    std::int64_t count, std::int32_t* tetrahedra) const;
+  /// Whether a tetrahedron gets the voxels that another one holds, too.
+  bool ComesBefore(std::int32_t id, std::int32_t other) const;
 
   const std::vector<glm::dvec3>& RestPoints;
   const std::vector<Tetrahedron>& Tetrahedra;

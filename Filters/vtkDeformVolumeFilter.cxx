@@ -150,7 +150,8 @@ std::string vtkDeformVolumeFilter::GetSummary()
        << "Covered voxels: " << count(this->NumberOfCoveredVoxels) << "\n"
        << "Seconds for links: " << this->PreprocessingTime << "\n"
        << "Seconds for transfer: " << this->TransferTime << "\n"
-       << "Seconds in kernels: " << this->MappingTime + this->ResamplingTime;
+       << "Seconds in kernels: " << this->MappingTime + this->ResamplingTime << "\n"
+       << "Seconds for compilation: " << this->CompilationTime;
   return text.str();
 }
 
@@ -192,9 +193,9 @@ int vtkDeformVolumeFilter::FillInputPortInformation(int port, vtkInformation* in
 int vtkDeformVolumeFilter::ComputePipelineMTime(
   vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
 {
-  if (this->Internals->Aborted)
+  if (this->Internals->Aborted || this->Internals->BoundsHaveGrown)
   {
-    this->Internals->Aborted = false;
+    this->Internals->Aborted = this->Internals->BoundsHaveGrown = false;
     this->Internals->AbortTime.Modified();
   }
   *mtime = std::max(this->GetMTime(), this->Internals->AbortTime.GetMTime());
@@ -206,7 +207,9 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "DisplacementScale: " << this->DisplacementScale << "\n";
+  os << indent << "FieldIsInverse: " << (this->FieldIsInverse ? "on" : "off") << "\n";
   os << indent << "OutputBoundsMode: " << this->OutputBoundsMode << "\n";
+  os << indent << "NumberOfTimeSamples: " << this->NumberOfTimeSamples << "\n";
   os << indent << "CustomBounds:";
   for (double bound : this->CustomBounds)
   {
@@ -237,6 +240,7 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "TransferTime: " << this->TransferTime << "\n";
   os << indent << "MappingTime: " << this->MappingTime << "\n";
   os << indent << "ResamplingTime: " << this->ResamplingTime << "\n";
+  os << indent << "CompilationTime: " << this->CompilationTime << "\n";
   os << indent << "NumberOfInvertedTetrahedra: " << this->NumberOfInvertedTetrahedra << "\n";
   os << indent << "NumberOfFlatTetrahedra: " << this->NumberOfFlatTetrahedra << "\n";
   os << indent << "NumberOfCoveredVoxels: " << this->NumberOfCoveredVoxels << "\n";

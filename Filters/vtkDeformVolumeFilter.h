@@ -12,24 +12,28 @@
  *
  * @par Port 0, the volume:
  * vtkImageData at rest, of at least two voxels on each axis. Any extent, origin, spacing and
- * direction matrix. All numeric point arrays go through, each in its own type, with any number of
- * components: interpolated linearly (integers rounded to nearest), or, where the array is named
- * with AddCategoricalArray(), taken from the nearest vertex, so that label ids of 64 bits survive.
- * Attributes keep their role, field data passes. Points that vtkGhostType marks as hidden or
- * duplicate are no source. A cell array "ActiveTetrahedra" (unsigned char, one component; bit i
- * stands for tetrahedron i of the cell) switches tetrahedra of the sampling mesh off; hidden cells
- * are off too. Other cell arrays are not resampled, and a warning names them.
+ * direction matrix; the source must announce in its information what it gives (an origin or a
+ * spacing that is not announced is read from the data). All numeric point arrays go through, each
+ * in its own type, with any number of components: interpolated linearly (integers rounded to
+ * nearest), or, where the array is named with AddCategoricalArray(), taken from the nearest vertex,
+ * so that label ids of 64 bits survive. Attributes keep their role, field data passes. Points that
+ * vtkGhostType marks as hidden or duplicate are no source. A cell array "ActiveTetrahedra"
+ * (unsigned char, one component; bit i stands for tetrahedron i of the cell) switches tetrahedra of
+ * the sampling mesh off; hidden cells are off too. Other cell arrays are not resampled, and a
+ * warning names them.
  *
  * @par Port 1, the deformation, one of:
  * - vtkUnstructuredGrid, or a composite dataset of such (they are joined): tetrahedra; other
- *   linear three-dimensional cells are split into tetrahedra. Without port 2 its points are the
+ *   three-dimensional cells, quadratic and Lagrange cells included, are split into tetrahedra
+ *   between their nodes (Bezier cells are an error). Without port 2 its points are the
  *   rest positions, and the vectors chosen by SetInputArrayToProcess(0, 1, 0, POINTS, name), three
  *   components in world units, are added DisplacementScale times. By default these are the active
  *   vectors; an empty name stands for the active vectors or else the only array of three
  *   components. With port 2 its points are the deformed positions, in world coordinates.
  * - vtkImageData with a three-component point array chosen in the same way: a displacement field,
- *   forward, in world units, at the volume's resolution or any other, trilinear between its
- *   points.
+ *   in world units, at the volume's resolution or any other, trilinear between its points. It is
+ *   forward: it leads from a point of the volume at rest to where that point goes. Registration
+ *   programs write inverse fields, see FieldIsInverse.
  *
  * @par Port 2, optional, the rest configuration:
  * vtkUnstructuredGrid (or a composite dataset of such) with the cells and the number of points of
@@ -48,11 +52,12 @@
  * The filter makes any extent of its output, and under MPI each rank makes its piece; voxels are
  * the same to the last bit however the output is divided. Where a part is asked for, the input is
  * asked for the voxels that can land there only, provided that all sources of the volume can make
- * parts (they say so with CAN_PRODUCE_SUB_EXTENT) and the resampler is exact; see StreamInput. Of
- * the deformation mesh each rank may have a piece, none, or the whole: it is gathered through
- * vtkMultiProcessController::GetGlobalController(). A displacement field every rank must be given
- * whole. All ranks have to update together; an error of one is told on all. Counts of voxels,
- * tetrahedra and bricks are summed over the ranks: what two of them have counts twice.
+ * parts (they say so with CAN_PRODUCE_SUB_EXTENT) and the resampler is exact; see StreamInput. With
+ * FieldIsInverse it is asked for whole. Of the deformation mesh each rank may have a piece, none,
+ * or the whole: it is gathered through vtkMultiProcessController::GetGlobalController(). A
+ * displacement field every rank must be given whole. All ranks have to update together; an error of
+ * one is told on all. Counts of voxels, tetrahedra and bricks are summed over the ranks: what two
+ * of them have counts twice.
  *
  * @par Errors:
  * All failures are one vtkErrorMacro that says what is wrong and what to do; the output is then
@@ -107,6 +112,20 @@ public:
   vtkGetMacro(DisplacementScale, double);
   ///@}
 
+  ///@{
+  /**
+   * Whether a displacement field on port 1 is inverse: it leads from a point of the output to the
+   * point of the volume that is seen there, as registration programs write it (from the fixed to
+   * the moving image), and not from a point of the volume to where that goes. Each output voxel
+   * within the field is then looked up in the volume, by the resampler MESH_RASTERIZATION (which
+   * AUTOMATIC takes; others are errors), linearly over the voxels of a cell or cubically. No field
+   * is inverted. Not used with a mesh. Default: off.
+   */
+  vtkSetMacro(FieldIsInverse, bool);
+  vtkGetMacro(FieldIsInverse, bool);
+  vtkBooleanMacro(FieldIsInverse, bool);
+  ///@}
+
   enum OutputBoundsModes
   {
     DEFORMED_BOUNDS = 0,
@@ -117,7 +136,8 @@ public:
   ///@{
   /**
    * What decides the output's whole extent: the bounds of the deformed volume (for a deformation
-   * that varies in time the union over its time steps), those of the volume at rest, or
+   * that varies in time the union over its time steps, see NumberOfTimeSamples), those of the
+   * volume at rest, or
    * CustomBounds. Default: DEFORMED_BOUNDS.
    */
   vtkSetClampMacro(OutputBoundsMode, int, DEFORMED_BOUNDS, CUSTOM_BOUNDS);
@@ -125,6 +145,18 @@ public:
   void SetOutputBoundsModeToDeformedBounds() { this->SetOutputBoundsMode(DEFORMED_BOUNDS); }
   void SetOutputBoundsModeToVolumeBounds() { this->SetOutputBoundsMode(VOLUME_BOUNDS); }
   void SetOutputBoundsModeToCustomBounds() { this->SetOutputBoundsMode(CUSTOM_BOUNDS); }
+  ///@}
+
+  ///@{
+  /**
+   * At how many times, evenly spaced over its range, a deformation is looked at for DEFORMED_BOUNDS
+   * whose source announces a range of time and no steps. Where a source farther up announces steps
+   * from one end of this range to the other, these are taken instead: vtkTemporalInterpolator is
+   * linear between them. Where the deformed volume at another time leaves the extent found in this
+   * way, a warning tells, and the next update has a greater one. Default 11, at least 2.
+   */
+  vtkSetClampMacro(NumberOfTimeSamples, int, 2, 100000);
+  vtkGetMacro(NumberOfTimeSamples, int);
   ///@}
 
   ///@{
@@ -228,8 +260,8 @@ public:
    *   themselves, and the volume is interpolated, over the voxels of a cell, at the rest position
    *   of each output voxel. Every covered voxel is written once: by the first tetrahedron that is
    *   upright, or else by the first inverted one. There is no sampling mesh and no static mapping,
-   *   which saves their memory and suits coarse meshes. Not for displacement fields nor for
-   *   EXTRAPOLATE.
+   *   which saves their memory and suits coarse meshes. Not for forward displacement fields, and
+   *   not for meshes with EXTRAPOLATE. With FieldIsInverse the field says the rest position.
    * - PUBLISHED: the kernel as published, the yardstick of the benchmarks; it has a float
    *   tolerance, and which tetrahedron writes a voxel is left to chance.
    * - AUTOMATIC: EXACT, unless the interpolation is cubic, or the memory suffices for
@@ -302,10 +334,10 @@ public:
 
   ///@{
   /**
-   * The OpenCL device: "" or "best" is the best there is, or what the environment variable
-   * DEFORMVOLUME_DEVICE asks for in the same words; "cpu" and "gpu" are the best of that kind;
-   * anything else is a part of a device's name, without regard to case. A request that cannot be
-   * met is an error at the next update. Default: "".
+   * The OpenCL device: "" or "best" is the best there is (the first of GetDeviceNames()), or what
+   * the environment variable DEFORMVOLUME_DEVICE asks for in the same words; "cpu" and "gpu" are
+   * the best of that kind; anything else is a part of a device's name, without regard to case. A
+   * request that cannot be met is an error at the next update. Default: "".
    */
   vtkSetMacro(Device, std::string);
   vtkGetMacro(Device, std::string);
@@ -313,7 +345,11 @@ public:
 
   /**
    * Names of the OpenCL devices of this machine, the best first; empty where there is none. The
-   * array is a new one and belongs to the caller (Python sees to that by itself).
+   * order is: graphics processors with memory of their own, other accelerators with memory of their
+   * own, processors, devices that share the memory of the processor, and devices that software
+   * emulates (llvmpipe). Of one kind those with double precision come first, then those with more
+   * compute units. The array is a new one and belongs to the caller (Python sees to that by
+   * itself).
    */
   static VTK_NEWINSTANCE vtkStringArray* GetDeviceNames();
 
@@ -345,19 +381,22 @@ public:
   /**
    * What the last execution did. Times are in seconds: PreprocessingTime for the static mapping (0
    * when the one of an earlier execution served), TransferTime for copies to and from the device,
-   * ResamplingTime for the kernels. The exact kernels map and resample in one, and MappingTime is
-   * 0 then; the published method does one after the other. With MESH_RASTERIZATION the mapping is
-   * the listing of the tetrahedra of each part of the output.
+   * ResamplingTime for the kernels, CompilationTime for their compilation, which is part of no
+   * other time and close to 0 once the kernels are known. The exact kernels map and resample in
+   * one, and MappingTime is 0 then; the published method does one after the other. With
+   * MESH_RASTERIZATION the mapping is the listing of the tetrahedra of each part of the output.
    */
   vtkGetMacro(PreprocessingTime, double);
   vtkGetMacro(TransferTime, double);
   vtkGetMacro(MappingTime, double);
   vtkGetMacro(ResamplingTime, double);
+  vtkGetMacro(CompilationTime, double);
   ///@}
 
   /**
    * Active tetrahedra of the sampling mesh that the deformation turned inside out at the last
-   * execution; with MESH_RASTERIZATION tetrahedra of the deformation mesh.
+   * execution; with MESH_RASTERIZATION tetrahedra of the deformation mesh, and with FieldIsInverse
+   * those of the field's lattice, five for each cell: parts of the volume are then seen twice.
    */
   vtkGetMacro(NumberOfInvertedTetrahedra, vtkIdType);
 
@@ -434,7 +473,9 @@ private:
   void operator=(const vtkDeformVolumeFilter&) = delete;
 
   double DisplacementScale = 1.0;
+  bool FieldIsInverse = false;
   int OutputBoundsMode = DEFORMED_BOUNDS;
+  int NumberOfTimeSamples = 11;
   double CustomBounds[6] = { -1.0, 1.0, -1.0, 1.0, -1.0, 1.0 };
   int Padding = 0;
   int OutputSpacingMode = VOLUME_SPACING;
@@ -453,6 +494,7 @@ private:
   double TransferTime = 0.0;
   double MappingTime = 0.0;
   double ResamplingTime = 0.0;
+  double CompilationTime = 0.0;
   vtkIdType NumberOfInvertedTetrahedra = 0;
   vtkIdType NumberOfFlatTetrahedra = 0;
   vtkIdType NumberOfCoveredVoxels = 0;

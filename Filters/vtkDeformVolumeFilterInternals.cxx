@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDeformVolumeFilterInternals.h"
 
-#include "AbortCheck.h"
+#include "FieldFolds.h"
 #include "InputUpdate.h"
+#include "LookupBounds.h"
+#include "OutputExtent.h"
 #include "ResamplerChoice.h"
+#include "VTKVersions/AbortCheck.h"
 #include "VectorArray.h"
 #include "VolumeArrays.h"
 
@@ -12,6 +15,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationDoubleKey.h"
 #include "vtkInformationIntegerVectorKey.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -74,8 +78,10 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
                                         choice->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE()));
     source.Wanted = std::string("active ") + (attribute ? attribute : "Vectors") + " of its points";
   }
-  source.Choice =
-    source.Wanted + " " + std::to_string(choice->Get(vtkDataObject::FIELD_ASSOCIATION()));
+  source.FieldIsInverse = this->Self->FieldIsInverse;
+  source.Choice = source.Wanted + " " +
+    std::to_string(choice->Get(vtkDataObject::FIELD_ASSOCIATION())) +
+    (source.FieldIsInverse ? " inverse" : "");
   source.DisplacementScale = this->Self->DisplacementScale;
   if (!std::isfinite(source.DisplacementScale))
   {
@@ -95,7 +101,14 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(const deformvolume::
   const DeformationSource source = this->ReadDeformation(ranks, volume, shape, rest);
   IndexBounds bounds;
   ranks.Attempt([&] { bounds = this->ComputeBounds(volume, source); });
+  this->VersionsInBounds = this->GetVersions();
   return bounds;
+}
+
+//------------------------------------------------------------------------------
+std::pair<std::uint64_t, std::uint64_t> vtkDeformVolumeFilter::vtkInternals::GetVersions() const
+{
+  return { this->Deformation.GetRestVersion(), this->Deformation.GetVectorsVersion() };
 }
 
 //------------------------------------------------------------------------------
@@ -107,8 +120,11 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   const bool extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
   if (this->Deformation.IsField())
   {
-    const IndexBounds bounds =
-      deformvolume::ComputeDeformedBounds(lattice, this->Deformation.GetField(extrapolate));
+    const deformvolume::DisplacementField field = this->Deformation.GetField(extrapolate);
+    const IndexBounds* known = this->Deformation.GetFieldBounds();
+    const IndexBounds bounds = known       ? *known
+      : this->Deformation.IsInverseField() ? deformvolume::ComputeLookupBounds(lattice, field)
+                                           : deformvolume::ComputeDeformedBounds(lattice, field);
     if (bounds.IsEmpty())
     {
       throw Error("The displacement field on input port 1 holds no voxel of the volume. Check "
@@ -161,7 +177,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
     if (this->Self->GetNumberOfInputConnections(port) > 0)
     {
       const std::vector<double> inputTimes =
-        deformvolume::GetTimes(this->Self->GetInputInformation(port, 0));
+        deformvolume::GetSampleTimes(this->Self, port, this->Self->NumberOfTimeSamples);
       times.insert(inputTimes.begin(), inputTimes.end());
     }
     key.Inputs.push_back(deformvolume::GetInputStamp(this->Self, port));
@@ -172,6 +188,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
   key.DisplacementScale = source.DisplacementScale;
   key.Choice = source.Choice;
   key.OutsideMode = this->Self->OutsideMode;
+  key.NumberOfTimeSamples = this->Self->NumberOfTimeSamples;
   if (!ranks.IsAny(!(key == this->Key)))
   {
     return this->Bounds;
@@ -195,7 +212,39 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
   }
   this->Key = key;
   this->Bounds = bounds;
+  this->TimesInBounds = times;
   return bounds;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::KeepInBounds(const deformvolume::Ranks& ranks,
+  const ImageGeometry& volume, const DeformationSource& source, vtkInformation* output)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  if (this->Self->OutputBoundsMode != DEFORMED_BOUNDS || !output->Has(Pipeline::UPDATE_TIME_STEP()))
+  {
+    return;
+  }
+  const double time = output->Get(Pipeline::UPDATE_TIME_STEP());
+  if (!ranks.IsAny(
+        this->TimesInBounds.count(time) == 0 && this->VersionsInBounds != this->GetVersions()))
+  {
+    return;
+  }
+  IndexBounds bounds = this->Bounds;
+  ranks.Attempt([&] { bounds.Add(this->ComputeBounds(volume, source)); });
+  this->VersionsInBounds = this->GetVersions();
+  if (deformvolume::GetExtentInside(bounds) == deformvolume::GetExtentInside(this->Bounds))
+  {
+    return;
+  }
+  this->Bounds = bounds;
+  this->BoundsHaveGrown = true;
+  vtkWarningWithObjectMacro(this->Self,
+    << "The deformed volume at time " << time
+    << " leaves the extent of the output, which was found from other times, and is cut off there. "
+       "The next update has an extent that holds it. Set a greater NumberOfTimeSamples or Padding, "
+       "or CustomBounds.");
 }
 
 //------------------------------------------------------------------------------
@@ -256,7 +305,10 @@ void vtkDeformVolumeFilter::vtkInternals::TakeReport(
   this->Self->TransferTime = report.TransferTime;
   this->Self->MappingTime = report.MappingTime;
   this->Self->ResamplingTime = report.ResamplingTime;
-  this->Self->NumberOfInvertedTetrahedra = report.NumberOfInvertedTetrahedra;
+  this->Self->CompilationTime = report.CompilationTime;
+  this->Self->NumberOfInvertedTetrahedra = this->Deformation.IsInverseField()
+    ? this->GetNumberOfFolds()
+    : report.NumberOfInvertedTetrahedra;
   this->Self->NumberOfFlatTetrahedra = method == deformvolume::Resampling::MeshRasterization
     ? report.NumberOfFlatTetrahedra
     : this->Deformation.IsField() ? 0
@@ -274,6 +326,18 @@ void vtkDeformVolumeFilter::vtkInternals::TakeReport(
                      "4,000 output voxels; these tetrahedra are skipped. Check the deformation, "
                      "or set a greater output spacing.");
   }
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkDeformVolumeFilter::vtkInternals::GetNumberOfFolds()
+{
+  const std::uint64_t version = this->Deformation.GetVectorsVersion();
+  if (this->FoldsVersion != version)
+  {
+    this->NumberOfFolds = deformvolume::CountInvertedTetrahedra(this->Deformation.GetField(false));
+    this->FoldsVersion = version;
+  }
+  return static_cast<vtkIdType>(this->NumberOfFolds);
 }
 
 //------------------------------------------------------------------------------
@@ -333,8 +397,8 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
     : this->Deformation.GetIgnoredCells();
   if (!this->Deformation.IsField() && !cells.empty())
   {
-    warning += "Cells of the deformation mesh that are not linear and three-dimensional are "
-               "ignored: " +
+    warning += "Cells of the deformation mesh that are not three-dimensional, or of a type that "
+               "cannot be split into tetrahedra, are ignored: " +
       cells + ". ";
   }
   if (warning != this->WarnedOf && !warning.empty())
@@ -358,5 +422,19 @@ std::function<bool(double)> vtkDeformVolumeFilter::vtkInternals::GetProgress(
       return !deformvolume::IsAborted(this->Self);
     }
     return this->Self->GetAbortExecute() == 0;
+  };
+}
+
+//------------------------------------------------------------------------------
+std::function<void(bool)> vtkDeformVolumeFilter::vtkInternals::GetCompilationReport() const
+{
+  const std::thread::id thread = std::this_thread::get_id();
+  return [this, thread](bool begins)
+  {
+    if (std::this_thread::get_id() == thread)
+    {
+      this->Self->SetProgressText(begins ? "Compiling kernels" : nullptr);
+      this->Self->UpdateProgress(this->Self->GetProgress());
+    }
   };
 }

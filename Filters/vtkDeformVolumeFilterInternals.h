@@ -15,6 +15,7 @@
 
 #include "vtkDeformVolumeFilter.h"
 #include "vtkNew.h"
+#include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 #include "vtkTimeStamp.h"
 
@@ -23,6 +24,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkImageData;
@@ -48,18 +50,32 @@ public:
   deformvolume::DeformationSource ReadDeformation(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest);
 
+  /// Where the voxels of the whole volume lie: as its source announces it, and what it does not
+  /// announce as its data have it. Collective.
+  deformvolume::ImageGeometry GetVolumeGeometry(
+    const deformvolume::Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output);
+
   /// The bounds of the deformed volume, united over the time steps of the deformation. Collective.
   deformvolume::IndexBounds GetDeformedBounds(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkInformation* output);
+
+  /// Warns where the deformation at the time asked for leaves the bounds that decided the extent of
+  /// the output, as can happen between the times that were looked at. These bounds then grow, and
+  /// the next pass finds the filter out of date. Collective.
+  void KeepInBounds(const deformvolume::Ranks& ranks, const deformvolume::ImageGeometry& volume,
+    const deformvolume::DeformationSource& source, vtkInformation* output);
 
   /// The extent of the volume that is needed for what is asked for: all of it, unless a part of the
   /// output or StreamInput asks for less, and all before the volume can give less. Collective.
   deformvolume::Extent GetNeededExtent(
     const deformvolume::Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output);
 
-  /// The volume whose data are there, and what they are a part of.
-  deformvolume::MappedVolume GetMappedVolume(
-    const deformvolume::Ranks& ranks, vtkImageData* volume, vtkInformation* info) const;
+  /// The volume whose data are there, and what they are a part of. Throws an Error where they are
+  /// not what the source announced or was asked for.
+  deformvolume::MappedVolume GetMappedVolume(vtkImageData* volume, vtkInformation* info) const;
+
+  /// The volume without what is outside its whole extent, about which it warns.
+  vtkImageData* CutToWhole(vtkImageData* volume, vtkInformation* info);
 
   /// Runs a function on the ranks that have work. The first time that kernels of a kind are wanted
   /// one rank of each machine goes first, and leaves what it compiled to the others: two processes
@@ -96,6 +112,10 @@ public:
   /// A progress callback for the part of the execution between two fractions.
   std::function<bool(double)> GetProgress(double from, double to) const;
 
+  /// A callback that is told when the compilation of kernels begins and ends: while it lasts, the
+  /// progress of the filter has a text that says so.
+  std::function<void(bool)> GetCompilationReport() const;
+
   std::set<std::string> CategoricalArrays;
   vtkNew<vtkStringArray> DeviceChoices;
   deformvolume::MeshGathering Gathering;
@@ -113,6 +133,8 @@ public:
   std::string ToldMessage;
   // An aborted execution leaves the filter out of date, and the next pass has to see that.
   bool Aborted = false;
+  // So does one whose output was too small.
+  bool BoundsHaveGrown = false;
   vtkTimeStamp AbortTime;
 
 private:
@@ -120,12 +142,16 @@ private:
     const deformvolume::ImageGeometry& volume, vtkInformation* output, const double* time);
   deformvolume::IndexBounds ComputeBounds(
     const deformvolume::ImageGeometry& volume, const deformvolume::DeformationSource& source);
+  /// Of the deformation at rest and of its displacements.
+  std::pair<std::uint64_t, std::uint64_t> GetVersions() const;
   bool WantsPart(vtkInformation* output) const;
   bool CanTakePart() const;
   /// An extent that is needed, and what was needed before for the same share of the output: where
   /// the deformation moves to and fro, the volume is not read, sent and mapped at each step.
   deformvolume::Extent KeepNeeded(const deformvolume::Extent& needed,
     const deformvolume::ImageGeometry& volume, vtkInformation* output);
+  /// Inverted tetrahedra of an inverse field.
+  vtkIdType GetNumberOfFolds();
   /// Where the voxels of the volume go.
   const deformvolume::RestRegions& GetRegions(
     const deformvolume::ImageGeometry& volume, const deformvolume::DeformationSource& source);
@@ -141,15 +167,27 @@ private:
     double DisplacementScale = 0.0;
     std::string Choice;
     int OutsideMode = -1;
+    int NumberOfTimeSamples = 0;
     bool operator==(const BoundsKey& other) const
     {
       return this->Inputs == other.Inputs && this->Volume == other.Volume &&
         this->Scale == other.Scale && this->DisplacementScale == other.DisplacementScale &&
-        this->Choice == other.Choice && this->OutsideMode == other.OutsideMode;
+        this->Choice == other.Choice && this->OutsideMode == other.OutsideMode &&
+        this->NumberOfTimeSamples == other.NumberOfTimeSamples;
     }
   };
   BoundsKey Key;
   deformvolume::IndexBounds Bounds;
+  std::set<double> TimesInBounds;
+  // Of the deformation whose bounds were computed last.
+  std::pair<std::uint64_t, std::uint64_t> VersionsInBounds;
+
+  // What the source of the volume announced, and of which state of it that is.
+  deformvolume::ImageGeometry VolumeGeometry;
+  std::pair<const void*, vtkMTimeType> VolumeStamp;
+  // What is left of a volume beyond its whole extent, and of which volume.
+  vtkSmartPointer<vtkImageData> CutVolume;
+  std::pair<const void*, vtkMTimeType> CutStamp;
 
   // Of the mesh, and which that is.
   deformvolume::MeshBounds BoundsOfMesh;
@@ -190,6 +228,10 @@ private:
 
   RegionsKey KeyOfRegions;
   std::unique_ptr<deformvolume::RestRegions> Regions;
+
+  // And for which displacements this was counted.
+  std::uint64_t FoldsVersion = 0;
+  std::int64_t NumberOfFolds = 0;
 
   std::string WarnedOf;
   // When what the last error was about had been changed.

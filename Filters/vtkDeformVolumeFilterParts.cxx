@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <mutex>
+#include <set>
 
 using deformvolume::DeformationSource;
 using deformvolume::Error;
@@ -25,6 +27,8 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::ReadDeformation(
 {
   DeformationSource source;
   ranks.Attempt([&] { source = this->MakeSource(volume, shape, rest); });
+  source.ShapeIsMade = !deformvolume::IsInMemory(this->Self, 1);
+  source.RestIsMade = !deformvolume::IsInMemory(this->Self, 2);
   source = this->Gathering.Gather(ranks, source);
   ranks.Attempt([&] { this->Deformation.Read(source); });
   return source;
@@ -45,7 +49,8 @@ bool vtkDeformVolumeFilter::vtkInternals::CanTakePart() const
   // tetrahedron of a mesh, wherever it may be.
   const bool exact = this->Self->Resampler == EXACT ||
     (this->Self->Resampler == AUTOMATIC && this->Self->Interpolation == LINEAR_INTERPOLATION);
-  const bool local = this->Deformation.IsField() || this->Self->OutsideMode == DISCARD;
+  const bool local = this->Deformation.IsField() ? !this->Deformation.IsInverseField()
+                                                 : this->Self->OutsideMode == DISCARD;
   // Data that are there already cost nothing.
   return exact && local && !deformvolume::IsInMemory(this->Self, 0) &&
     deformvolume::CanProduceParts(this->Self, 0);
@@ -105,7 +110,7 @@ Extent vtkDeformVolumeFilter::vtkInternals::KeepNeeded(
 Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
   const Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output)
 {
-  const ImageGeometry volume = deformvolume::GetGeometry(volumeInfo);
+  const ImageGeometry volume = this->GetVolumeGeometry(ranks, volumeInfo, output);
   Extent needed = volume.PointExtent;
   if (!ranks.IsAny(this->WantsPart(output)))
   {
@@ -133,31 +138,36 @@ Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
 }
 
 //------------------------------------------------------------------------------
-deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
-  const Ranks& ranks, vtkImageData* volume, vtkInformation* info) const
+namespace
 {
-  deformvolume::MappedVolume mapped;
-  mapped.Whole = deformvolume::GetGeometry(volume);
-  mapped.Part = mapped.Whole.PointExtent;
-  mapped.Extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
-  const Extent whole = deformvolume::GetGeometry(info).PointExtent;
-  Extent asked = whole;
-  info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked.data());
-  // One process believes what it is given for the whole.
-  const bool isPart = asked != whole && !deformvolume::Contains(mapped.Part, whole);
-  if ((isPart || ranks.AreMany()) &&
-    (!deformvolume::Contains(mapped.Part, asked) || !deformvolume::Contains(whole, mapped.Part)))
+
+// The kinds of kernels that have been compiled: once in a process, whichever filter of whichever
+// thread wants them.
+class CompiledKinds
+{
+public:
+  static CompiledKinds& Get()
   {
-    throw Error("The source of the volume on input port 0 was asked for an extent of it and gave "
-                "another one. Mend the source, or read the volume into memory first.");
+    static CompiledKinds kinds;
+    return kinds;
   }
-  if (isPart)
+  bool Has(const std::string& kind)
   {
-    mapped.Whole.PointExtent = whole;
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    return this->Kinds.count(kind) > 0;
   }
-  deformvolume::CheckVolume(mapped.Whole);
-  return mapped;
-}
+  void Add(const std::string& kind)
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->Kinds.insert(kind);
+  }
+
+private:
+  std::mutex Mutex;
+  std::set<std::string> Kinds;
+};
+
+} // namespace
 
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::RunInTurn(const Ranks& ranks, const std::string& kind,
@@ -178,9 +188,7 @@ void vtkDeformVolumeFilter::vtkInternals::RunInTurn(const Ranks& ranks, const st
       failure = std::current_exception();
     }
   };
-  // Kernels are compiled once in a process, whichever filter wants them.
-  static std::set<std::string> compiled;
-  if (ranks.AreMany() && ranks.IsAny(compiled.count(kind) == 0 && hasWork))
+  if (ranks.AreMany() && ranks.IsAny(!CompiledKinds::Get().Has(kind) && hasWork))
   {
     const std::vector<std::uint64_t> works = ranks.Gather(hasWork ? 1 : 0);
     int leader = ranks.GetRank();
@@ -208,7 +216,7 @@ void vtkDeformVolumeFilter::vtkInternals::RunInTurn(const Ranks& ranks, const st
   }
   if (hasWork && !failure)
   {
-    compiled.insert(kind);
+    CompiledKinds::Get().Add(kind);
   }
   ranks.Attempt(
     [&]

@@ -112,6 +112,13 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   // it gets no further than these.
   this->Internals->RequestFailed =
     request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) != 0;
+  for (int port = 0; port < 2 && this->Internals->RequestFailed; ++port)
+  {
+    if (input[port]->GetNumberOfInformationObjects() > 0)
+    {
+      deformvolume::RequestNothing(input[port]->GetInformationObject(0));
+    }
+  }
   if (this->Internals->IsNews(message))
   {
     vtkErrorMacro(<< message);
@@ -156,7 +163,11 @@ int vtkDeformVolumeFilter::RequestInformation(
         throw Error("The volume on input port 0 announces no whole extent. Connect a "
                     "vtkImageData; from a composite dataset, extract one block.");
       }
-      volume = deformvolume::GetGeometry(volumeInfo);
+    });
+  volume = this->Internals->GetVolumeGeometry(ranks, volumeInfo, outInfo);
+  ranks.Attempt(
+    [&]
+    {
       deformvolume::CheckVolume(volume);
       outputGeometry = this->Internals->GetOutputGeometry(volume);
       // Here, since ParaView's views complain, too, where data fail that were announced.
@@ -249,6 +260,7 @@ int vtkDeformVolumeFilter::RequestData(
   // Nothing of an earlier execution is left standing beside a failure.
   image->Initialize();
   this->PreprocessingTime = this->TransferTime = this->MappingTime = this->ResamplingTime = 0.0;
+  this->CompilationTime = 0.0;
   this->NumberOfInvertedTetrahedra = this->NumberOfFlatTetrahedra = this->NumberOfCoveredVoxels = 0;
   this->NumberOfBricks = this->NumberOfResampledBricks = 0;
   const deformvolume::Ranks ranks;
@@ -261,12 +273,15 @@ int vtkDeformVolumeFilter::RequestData(
       {
         throw Error("There is no volume. Connect a vtkImageData to input port 0.");
       }
-      mapped = this->Internals->GetMappedVolume(ranks, volume, input[0]->GetInformationObject(0));
+      vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
+      volume = this->Internals->CutToWhole(volume, volumeInfo);
+      mapped = this->Internals->GetMappedVolume(volume, volumeInfo);
     });
   const ImageGeometry& geometry = mapped.Whole;
   const DeformationSource source = this->Internals->ReadDeformation(
     ranks, geometry, vtkDataObject::GetData(input[1]), vtkDataObject::GetData(input[2]));
   deformvolume::Deformation& deformation = this->Internals->Deformation;
+  this->Internals->KeepInBounds(ranks, geometry, source, outInfo);
 
   std::vector<deformvolume::SourceArray> arrays;
   ranks.Attempt(
@@ -342,7 +357,7 @@ int vtkDeformVolumeFilter::RequestData(
     device.SetVolume(lattice, volume, arrays, this->BackgroundValue, request.Method);
     if (request.Method == deformvolume::Resampling::MeshRasterization)
     {
-      device.SetRestMesh(deformation);
+      device.SetRestMesh(deformation, mapped.Extrapolate);
     }
     else
     {
@@ -350,6 +365,7 @@ int vtkDeformVolumeFilter::RequestData(
         deformation, this->Internals->Mapping, mapped, this->Internals->GetProgress(0.0, 0.3));
     }
     request.Progress = this->Internals->GetProgress(0.3, 1.0);
+    request.Compiling = this->Internals->GetCompilationReport();
     if (!request.Progress(0.0))
     {
       throw deformvolume::Aborted();

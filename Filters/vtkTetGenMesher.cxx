@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkTetGenMesher.h"
 
-#include "AbortCheck.h"
-#include "BodySurface.h"
 #include "ClosedSurface.h"
 #include "FailureReport.h"
+#include "MeshRefinement.h"
 #include "PieceRequest.h"
 #include "TetGenProcess.h"
+#include "VTKVersions/AbortCheck.h"
+#include "VolumeFrame.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -67,26 +68,14 @@ vtkDataArray* FindArray(vtkDataArray* array, vtkImageData* volume)
   return array;
 }
 
-double DiagonalOf(vtkImageData* volume)
-{
-  int dimensions[3];
-  volume->GetDimensions(dimensions);
-  double square = 0.0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double length = (dimensions[axis] - 1) * volume->GetSpacing()[axis];
-    square += length * length;
-  }
-  return std::sqrt(square);
-}
-
 // Volume of a regular tetrahedron with edges of this length.
 double RegularVolume(double length)
 {
   return std::sqrt(2.0) / 12.0 * length * length * length;
 }
 
-void CheckSize(vtkPolyData* surface, double length)
+void CheckSize(
+  vtkPolyData* surface, double length, const std::vector<deformvolume::RefinementSphere>& spheres)
 {
   // TetGen ends up with about half of the largest volume on average.
   const double expected = 2.0 * deformvolume::EnclosedVolume(surface) / RegularVolume(length);
@@ -99,6 +88,35 @@ void CheckSize(vtkPolyData* surface, double length)
             << " tetrahedra; at most 20 million are made. Set a greater TargetEdgeLength.";
     throw deformvolume::Error(message.str());
   }
+  const double refined = deformvolume::EstimateTetrahedra(surface, spheres);
+  if (!(expected + triangles + refined < MaximumNumberOfTetrahedra))
+  {
+    std::ostringstream message;
+    message << "The refinement spheres ask for about " << refined
+            << " tetrahedra; at most 20 million are made. Give them smaller radii or longer edges.";
+    throw deformvolume::Error(message.str());
+  }
+}
+
+std::vector<deformvolume::RefinementSphere> GetSpheres(
+  const std::vector<std::array<double, 5>>& numbers)
+{
+  std::vector<deformvolume::RefinementSphere> spheres;
+  for (const std::array<double, 5>& n : numbers)
+  {
+    const bool finite =
+      std::all_of(n.begin(), n.end(), [](double number) { return std::isfinite(number); });
+    if (!finite || !(n[3] > 0.0) || !(n[4] > 0.0))
+    {
+      std::ostringstream message;
+      message << "Refinement sphere " << spheres.size() << " has the center " << n[0] << ", "
+              << n[1] << ", " << n[2] << ", the radius " << n[3] << " and the edge length " << n[4]
+              << ": all have to be finite, and the last two greater than 0.";
+      throw deformvolume::Error(message.str());
+    }
+    spheres.push_back({ glm::dvec3(n[0], n[1], n[2]), n[3], n[4] });
+  }
+  return spheres;
 }
 
 } // namespace
@@ -132,6 +150,36 @@ int vtkTetGenMesher::GetNumberOfLabels()
 vtkTypeInt64 vtkTetGenMesher::GetLabel(int index)
 {
   return index >= 0 && index < this->GetNumberOfLabels() ? this->Labels[index] : 0;
+}
+
+void vtkTetGenMesher::AddRefinementSphere(
+  double x, double y, double z, double radius, double edgeLength)
+{
+  this->RefinementSpheres.push_back({ { x, y, z, radius, edgeLength } });
+  this->Modified();
+}
+
+void vtkTetGenMesher::ClearRefinementSpheres()
+{
+  if (!this->RefinementSpheres.empty())
+  {
+    this->RefinementSpheres.clear();
+    this->Modified();
+  }
+}
+
+int vtkTetGenMesher::GetNumberOfRefinementSpheres()
+{
+  return static_cast<int>(this->RefinementSpheres.size());
+}
+
+void vtkTetGenMesher::GetRefinementSphere(int index, double sphere[5])
+{
+  std::fill_n(sphere, 5, 0.0);
+  if (index >= 0 && index < this->GetNumberOfRefinementSpheres())
+  {
+    std::copy_n(this->RefinementSpheres[index].begin(), 5, sphere);
+  }
 }
 
 int vtkTetGenMesher::FillInputPortInformation(int, vtkInformation* info)
@@ -181,6 +229,10 @@ int vtkTetGenMesher::RequestData(
   output->Initialize();
   this->UsedIsovalue = 0.0;
   this->UsedTargetEdgeLength = 0.0;
+  this->NumberOfBodyVoxels = 0;
+  this->NumberOfBodyVoxelsOutside = 0;
+  this->NumberOfSpeckVoxels = 0;
+  this->NumberOfPieces = 0;
   if (!deformvolume::IsFirstPiece(outputVector))
   {
     return 1;
@@ -225,73 +277,6 @@ void vtkTetGenMesher::CheckStep(double share)
   }
 }
 
-void vtkTetGenMesher::MeshVolume(
-  vtkImageData* volume, vtkDataArray* array, vtkUnstructuredGrid* output)
-{
-  const double length =
-    this->TargetEdgeLength > 0.0 ? this->TargetEdgeLength : DiagonalOf(volume) / 20.0;
-  this->UsedTargetEdgeLength = length;
-  deformvolume::BodyParameters parameters;
-  parameters.ByLabels = this->BodyMode == LABELS;
-  parameters.Labels = this->Labels;
-  parameters.AutomaticIsovalue = this->AutomaticIsovalue;
-  parameters.Isovalue = this->Isovalue;
-  parameters.LargestRegionOnly = this->LargestRegionOnly;
-  parameters.Margin = length * this->Margin;
-
-  // Decimation and smoothing can make a surface intersect itself, an isosurface never does. So
-  // surfaces are tried that are ever closer to an isosurface; those without decimation start from
-  // a coarser volume instead.
-  struct Attempt
-  {
-    double Resolution;
-    int SmoothingIterations;
-    bool Decimation;
-  };
-  std::vector<Attempt> attempts;
-  attempts.push_back({ length / 1.5, this->SmoothingIterations, this->Decimation });
-  for (int iterations = this->SmoothingIterations; iterations > 0; iterations /= 4)
-  {
-    attempts.push_back({ length, iterations, false });
-  }
-  attempts.push_back({ length, 0, false });
-
-  for (std::size_t i = 0; i < attempts.size(); ++i)
-  {
-    const bool last = i + 1 == attempts.size();
-    parameters.Resolution = attempts[i].Resolution;
-    parameters.SmoothingIterations = attempts[i].SmoothingIterations;
-    double step = 0.0;
-    auto surface = deformvolume::CleanTriangles(deformvolume::ExtractBodySurface(
-      volume, array, parameters, [&]() { this->CheckStep(std::min(0.9, step += 0.2)); }));
-    this->UsedIsovalue = parameters.Isovalue;
-    deformvolume::CheckClosedSurface(surface);
-    if (attempts[i].Decimation)
-    {
-      if (const auto decimated = deformvolume::Decimate(surface, length))
-      {
-        if (!deformvolume::IsClosedManifold(decimated))
-        {
-          continue;
-        }
-        surface = decimated;
-      }
-    }
-    try
-    {
-      this->Fill(surface, length, last, output);
-      return;
-    }
-    catch (const deformvolume::SurfaceRejected&)
-    {
-      if (last)
-      {
-        throw;
-      }
-    }
-  }
-}
-
 void vtkTetGenMesher::MeshSurface(vtkPolyData* input, vtkUnstructuredGrid* output)
 {
   const auto surface = deformvolume::CleanTriangles(input);
@@ -305,7 +290,7 @@ void vtkTetGenMesher::MeshSurface(vtkPolyData* input, vtkUnstructuredGrid* outpu
   {
     try
     {
-      this->Fill(decimated, length, false, output);
+      this->Fill(decimated, length, nullptr, false, output);
       return;
     }
     catch (const deformvolume::SurfaceRejected&)
@@ -313,22 +298,29 @@ void vtkTetGenMesher::MeshSurface(vtkPolyData* input, vtkUnstructuredGrid* outpu
       // Decimation can make a surface intersect itself: below, it is taken as it is.
     }
   }
-  CheckSize(surface, length);
+  CheckSize(surface, length, {});
   const auto split = deformvolume::SplitLongEdges(surface, 1.5 * length);
-  this->Fill(
-    deformvolume::IsClosedManifold(split) ? split.Get() : surface.Get(), length, true, output);
+  this->Fill(deformvolume::IsClosedManifold(split) ? split.Get() : surface.Get(), length, nullptr,
+    true, output);
 }
 
-void vtkTetGenMesher::Fill(
-  vtkPolyData* surface, double length, bool diagnose, vtkUnstructuredGrid* output)
+void vtkTetGenMesher::Fill(vtkPolyData* coarse, double length,
+  const deformvolume::VolumeFrame* frame, bool diagnose, vtkUnstructuredGrid* output)
 {
+  std::vector<deformvolume::RefinementSphere> spheres = GetSpheres(this->RefinementSpheres);
+  for (deformvolume::RefinementSphere& sphere : spheres)
+  {
+    sphere.Center = frame ? frame->ToOffset(sphere.Center) : sphere.Center;
+  }
   deformvolume::TetGenParameters parameters;
   parameters.Executable = this->FindExecutable();
   parameters.RadiusEdgeRatio = this->RadiusEdgeRatio;
   parameters.MaximumVolume = RegularVolume(length);
   parameters.TimeLimit = this->TimeLimit;
   parameters.Diagnose = diagnose;
-  CheckSize(surface, length);
+  CheckSize(coarse, length, spheres);
+  const auto surface = deformvolume::RefineSurface(coarse, spheres);
+  parameters.Points = deformvolume::MakePoints(surface, spheres);
 
   auto wait = [this](double passed)
   {
@@ -336,7 +328,13 @@ void vtkTetGenMesher::Fill(
     return deformvolume::IsAborted(this);
   };
   this->CheckStep(1.0);
-  output->ShallowCopy(deformvolume::RunTetGen(surface, parameters, wait));
+  const auto mesh = deformvolume::RunTetGen(surface, parameters, wait);
+  deformvolume::SplitLongEdges(mesh, spheres);
+  if (frame)
+  {
+    frame->MoveToWorld(mesh);
+  }
+  output->ShallowCopy(mesh);
 }
 
 std::string vtkTetGenMesher::FindExecutable()
@@ -370,14 +368,26 @@ void vtkTetGenMesher::PrintSelf(ostream& os, vtkIndent indent)
   {
     os << " " << label;
   }
-  os << "\n" << indent << "LargestRegionOnly: " << this->LargestRegionOnly << "\n";
+  const char* const modes[] = { "All Pieces", "Convex Hull", "Largest Piece" };
+  os << "\n" << indent << "PieceMode: " << modes[this->PieceMode] << "\n";
+  os << indent << "SpeckSize: " << this->SpeckSize << "\n";
   os << indent << "TargetEdgeLength: " << this->TargetEdgeLength << "\n";
   os << indent << "Margin: " << this->Margin << "\n";
   os << indent << "SmoothingIterations: " << this->SmoothingIterations << "\n";
   os << indent << "Decimation: " << this->Decimation << "\n";
+  os << indent << "RefinementSpheres: " << this->RefinementSpheres.size() << "\n";
+  for (const std::array<double, 5>& sphere : this->RefinementSpheres)
+  {
+    os << indent.GetNextIndent() << "Center: " << sphere[0] << " " << sphere[1] << " " << sphere[2]
+       << ", Radius: " << sphere[3] << ", EdgeLength: " << sphere[4] << "\n";
+  }
   os << indent << "RadiusEdgeRatio: " << this->RadiusEdgeRatio << "\n";
   os << indent << "TimeLimit: " << this->TimeLimit << "\n";
   os << indent << "TetGenExecutable: " << this->TetGenExecutable << "\n";
   os << indent << "UsedIsovalue: " << this->UsedIsovalue << "\n";
   os << indent << "UsedTargetEdgeLength: " << this->UsedTargetEdgeLength << "\n";
+  os << indent << "NumberOfBodyVoxels: " << this->NumberOfBodyVoxels << "\n";
+  os << indent << "NumberOfBodyVoxelsOutside: " << this->NumberOfBodyVoxelsOutside << "\n";
+  os << indent << "NumberOfSpeckVoxels: " << this->NumberOfSpeckVoxels << "\n";
+  os << indent << "NumberOfPieces: " << this->NumberOfPieces << "\n";
 }

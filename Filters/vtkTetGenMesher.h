@@ -9,6 +9,18 @@
  * Delaunay-based quality tetrahedral mesh generator"), a program of its own under its own licence
  * (AGPL), which has to be installed; it runs as a child process with a time limit.
  *
+ * @par What the mesh of a volume holds:
+ * A voxel is a voxel of the body if its value is finite and at least the isovalue, or one of the
+ * labels, and if vtkGhostType does not hide it. Voxels that share a face, an edge or a corner are
+ * neighbours, and a piece is what neighbours connect. A speck is a piece of at most SpeckSize
+ * voxels; it is not meshed, and its voxels do not count as voxels of the body. A voxel is inside
+ * the mesh if its center is in a tetrahedron, or on its surface, to within 1/256 of a voxel.
+ * @par
+ * The surface follows the body at the distance of Margin. Where smoothing or decimation cuts voxels
+ * off, its vertices are moved outwards. So at most one voxel of 100,000 of the body lies outside
+ * the mesh, in all bodies tried none, unless PieceMode leaves pieces out.
+ * GetNumberOfBodyVoxelsOutside() tells how many do; from one of 1,000 on there is a warning.
+ *
  * @par Port 0, one of:
  * - vtkImageData, the volume, with at least two voxels on each axis; origin, spacing, direction
  *   matrix and an extent that does not start at 0 are honoured. The array is chosen by
@@ -26,10 +38,11 @@
  *
  * @par Errors:
  * No body at the isovalue or with the labels; a volume of one slice; a surface that is empty, open,
- * flat, not manifold, not finite or that intersects itself; an edge length that asks for more than
- * 20 million tetrahedra; TetGen missing, failing (its own message is then quoted) or exceeding
- * TimeLimit; a result without tetrahedra. Each is one vtkErrorMacro, the output is then empty, and
- * the filter works again once the cause is mended.
+ * flat, not manifold, not finite or that intersects itself; an edge length or refinement spheres
+ * that ask for more than 20 million tetrahedra; a refinement sphere that is not valid; TetGen
+ * missing, failing (its own message is then quoted) or exceeding TimeLimit; a result without
+ * tetrahedra. Each is one vtkErrorMacro, the output is then empty, and the filter works again once
+ * the cause is mended.
  *
  * @sa vtkLatticeTetrahedraSource vtkDeformVolumeFilter
  */
@@ -39,12 +52,17 @@
 #include "vtkDeformVolumeModule.h" // for export macro
 #include "vtkUnstructuredGridAlgorithm.h"
 
+#include <array>  // for std::array
 #include <string> // for std::string
 #include <vector> // for std::vector
 
 class vtkDataArray;
 class vtkImageData;
 class vtkPolyData;
+namespace deformvolume
+{
+class VolumeFrame;
+}
 
 class VTKDEFORMVOLUME_EXPORT vtkTetGenMesher : public vtkUnstructuredGridAlgorithm
 {
@@ -57,6 +75,13 @@ public:
   {
     ISOSURFACE = 0,
     LABELS = 1
+  };
+
+  enum PieceModes
+  {
+    ALL_PIECES = 0,
+    CONVEX_HULL = 1,
+    LARGEST_PIECE = 2
   };
 
   ///@{
@@ -101,19 +126,33 @@ public:
 
   ///@{
   /**
-   * Whether only the largest connected part of the body is meshed. With off, every part is, noise
-   * included. Volumes only. Default: on.
+   * What happens to a body of several pieces: each is meshed (ALL_PIECES), the convex hull of all
+   * is (CONVEX_HULL), so that they move together, or the piece with most voxels is and the others
+   * are left out (LARGEST_PIECE). Pieces that are closer together than the mesh reaches beyond them
+   * are meshed as one. Volumes only. Default: ALL_PIECES.
    */
-  vtkSetMacro(LargestRegionOnly, bool);
-  vtkGetMacro(LargestRegionOnly, bool);
-  vtkBooleanMacro(LargestRegionOnly, bool);
+  vtkSetClampMacro(PieceMode, int, ALL_PIECES, LARGEST_PIECE);
+  vtkGetMacro(PieceMode, int);
+  void SetPieceModeToAllPieces() { this->SetPieceMode(ALL_PIECES); }
+  void SetPieceModeToConvexHull() { this->SetPieceMode(CONVEX_HULL); }
+  void SetPieceModeToLargestPiece() { this->SetPieceMode(LARGEST_PIECE); }
+  ///@}
+
+  ///@{
+  /**
+   * Pieces of at most that many voxels are specks, which are not meshed; 0: nothing is a speck. A
+   * body of specks only is meshed all the same. Volumes only. Default 26, one less than a cube of 3
+   * x 3 x 3 voxels has; at least 0.
+   */
+  vtkSetClampMacro(SpeckSize, int, 0, VTK_INT_MAX);
+  vtkGetMacro(SpeckSize, int);
   ///@}
 
   ///@{
   /**
    * Length of the edges of the tetrahedra, in world units; 0 is a twentieth of the diagonal of the
-   * input's bounding box. A volume is looked at with a resolution of two thirds of that length, so
-   * finer detail is not followed. Default 0, at least 0.
+   * input's bounding box. The surface does not follow finer detail, but encloses it. Default 0, at
+   * least 0.
    */
   vtkSetClampMacro(TargetEdgeLength, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TargetEdgeLength, double);
@@ -146,6 +185,21 @@ public:
   vtkSetMacro(Decimation, bool);
   vtkGetMacro(Decimation, bool);
   vtkBooleanMacro(Decimation, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Spheres in which edges are at most so long, also those of the surface; beyond them, edges grow
+   * to the target edge length. A local displacement looks smooth where the edges are at most a
+   * sixth of its radius; with longer ones, the tetrahedra show as facets. All numbers are in world
+   * units; the radius and the edge length have to be greater than 0, otherwise the update fails. An
+   * edge length above the target has no effect. Default: no spheres. GetRefinementSphere gives the
+   * center, the radius and the edge length, all 0 for an index that is out of range.
+   */
+  void AddRefinementSphere(double x, double y, double z, double radius, double edgeLength);
+  void ClearRefinementSpheres();
+  int GetNumberOfRefinementSpheres();
+  void GetRefinementSphere(int index, double sphere[5]);
   ///@}
 
   ///@{
@@ -184,6 +238,23 @@ public:
   vtkGetMacro(UsedTargetEdgeLength, double);
   ///@}
 
+  ///@{
+  /**
+   * The voxels of the body in the volume that the last execution meshed, and how many of them lie
+   * in no tetrahedron, those of pieces that were left out included; the voxels of specks, which are
+   * in neither number; and the number of pieces that are no specks. 0 for a surface.
+   */
+  vtkGetMacro(NumberOfBodyVoxels, vtkIdType);
+  vtkGetMacro(NumberOfBodyVoxelsOutside, vtkIdType);
+  vtkGetMacro(NumberOfSpeckVoxels, vtkIdType);
+  vtkGetMacro(NumberOfPieces, vtkIdType);
+  ///@}
+
+  /**
+   * These numbers as a text of several lines; "" before the first execution and for a surface.
+   */
+  std::string GetSummary();
+
 protected:
   vtkTetGenMesher();
   ~vtkTetGenMesher() override = default;
@@ -200,11 +271,13 @@ protected:
   bool AutomaticIsovalue = true;
   double Isovalue = 0.0;
   std::vector<vtkTypeInt64> Labels;
-  bool LargestRegionOnly = true;
+  int PieceMode = ALL_PIECES;
+  int SpeckSize = 26;
   double TargetEdgeLength = 0.0;
   double Margin = 0.5;
   int SmoothingIterations = 20;
   bool Decimation = true;
+  std::vector<std::array<double, 5>> RefinementSpheres;
   double RadiusEdgeRatio = 1.414;
   double TimeLimit = 60.0;
   std::string TetGenExecutable;
@@ -212,12 +285,18 @@ protected:
 private:
   void MeshVolume(vtkImageData* volume, vtkDataArray* array, vtkUnstructuredGrid* output);
   void MeshSurface(vtkPolyData* surface, vtkUnstructuredGrid* output);
-  void Fill(vtkPolyData* surface, double length, bool diagnose, vtkUnstructuredGrid* output);
+  void Fill(vtkPolyData* surface, double length, const deformvolume::VolumeFrame* frame,
+    bool diagnose, vtkUnstructuredGrid* output);
+  void WarnOfVoxelsOutside();
   void CheckStep(double share);
   std::string FindExecutable();
 
   double UsedIsovalue = 0.0;
   double UsedTargetEdgeLength = 0.0;
+  vtkIdType NumberOfBodyVoxels = 0;
+  vtkIdType NumberOfBodyVoxelsOutside = 0;
+  vtkIdType NumberOfSpeckVoxels = 0;
+  vtkIdType NumberOfPieces = 0;
   bool Aborted = false;
 
   vtkTetGenMesher(const vtkTetGenMesher&) = delete;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The rows of vertices that ResampleBricks (BrickResampling.cl) works on: finds the positions of a row and puts
-// them into local memory, with the values of the arrays.
+// them into memory, with the values of the arrays.
 //
-// Data: in local memory, a row: for even, then for odd vertices the position in output voxels relative to the
+// Data: in ROW_MEMORY, a row: for even, then for odd vertices the position in output voxels relative to the
 // first output voxel (x, y, z; float, exact multiples of 1/256), then the values of the arrays that are
 // interpolated in single precision, HALF_ROW floats each.
 //
@@ -27,7 +27,7 @@
 #define NO_SOURCE 1e30f  // x of vertices without position
 #define STEP (1.0f / 256.0f) // of positions, in voxels
 
-typedef __local const float* LocalRow;
+typedef ROW_MEMORY const float* LocalRow;
 
 // What is known of the vertices of a row, eight of them a bit, the lowest first.
 typedef struct
@@ -38,14 +38,14 @@ typedef struct
 
 #define ROW_PLACES (DEFORMVOLUME_BRICK_X + 16) // of a row that is not split; vectors may reach beyond the end
 
-#define LOAD_PLACED(place) *(__local const PlacedFloat16*)(place)
+#define LOAD_PLACED(place) *(ROW_MEMORY const PlacedFloat16*)(place)
 
 #if MAPPING == MAPPING_RUNS
 
 // The displacements of the vertices of a row from x to end, x, y and z apart, one after the other from
 // place i: affine from one run's begin to the next.
 static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
-  __local float* places, const KernelParameters* p)
+  ROW_MEMORY float* places, const KernelParameters* p)
 {
   const float16 steps = (float16)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f, 8.0f, 9.0f, 10.0f,
     11.0f, 12.0f, 13.0f, 14.0f, 15.0f);
@@ -68,10 +68,10 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
       do
       {
         // From memory one number goes to all lanes at no cost, from another vector it does not.
-        __local float* const place = places + x;
+        ROW_MEMORY float* const place = places + x;
         const float16 offset = ((float)x + steps) - record->Origin[0];
 #define DISPLACE_AXIS(axis, across)                                                                \
-  *(__local PlacedFloat16*)(place + (axis)*ROW_PLACES) =                                           \
+  *(ROW_MEMORY PlacedFloat16*)(place + (axis)*ROW_PLACES) =                                        \
     record->Displacement[axis] + MULTIPLY_ADD((float16)record->AlongX[axis], offset, (float16)across);
         DISPLACE_AXIS(0, d.Across.x)
         DISPLACE_AXIS(1, d.Across.y)
@@ -93,6 +93,30 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
   const float16 dx = (float16)(xs.even, xs.odd);                                                   \
   const float16 dy = (float16)(ys.even, ys.odd);                                                   \
   const float16 dz = (float16)(zs.even, zs.odd);
+
+#elif MAPPING == MAPPING_FIELD_IN_PLACE
+
+#define ROW_DISPLACEMENTS                                                                          \
+  __global const float* const rowVectors = m->Vectors + 3 * PointOf(&m->Field, 0, y, z);
+#define ROW_DISPLACEMENT Displacement(m, x, y, z, p)
+#define MAP_VECTORS(row) ROW_PRODUCT(&m->Field, row, float16, double16, vx, vy, vz)
+// Three floats a vertex: the x of the even vertices are every sixth, from the first one on, and so on.
+#define ROW_DISPLACEMENTS_TOGETHER                                                                 \
+  const float16 v0 = vload16(0, rowVectors + 3 * x);                                               \
+  const float16 v1 = vload16(1, rowVectors + 3 * x);                                               \
+  const float16 v2 = vload16(2, rowVectors + 3 * x);                                               \
+  const float16 vx = (float16)(v0.s06c, v1.s28e, v2.s4a, v0.s39f, v1.s5b, v2.s17d);                \
+  const float16 vy = (float16)(v0.s17d, v1.s39f, v2.s5b, v0.s4a, v1.s06c, v2.s28e);                \
+  const float16 vz = (float16)(v0.s28e, v1.s4a, v2.s06c, v0.s5b, v1.s17d, v2.s39f);                \
+  float16 dx = vx;                                                                                 \
+  float16 dy = vy;                                                                                 \
+  float16 dz = vz;                                                                                 \
+  if (m->Field.IsMapped)                                                                           \
+  {                                                                                                \
+    dx = MAP_VECTORS(0);                                                                           \
+    dy = MAP_VECTORS(1);                                                                           \
+    dz = MAP_VECTORS(2);                                                                           \
+  }
 
 #else
 
@@ -203,7 +227,7 @@ static ulong StatesOf(
   return SOURCES | (rowInside && x > 0 && x + 16 < p->Size[0] ? INTERIORS : 0);
 }
 
-#define STORE_EIGHT(v, place) *(__local PlacedFloat8*)(place) = v;
+#define STORE_EIGHT(v, place) *(ROW_MEMORY PlacedFloat8*)(place) = v;
 #define FLAGS_TOGETHER 7u // those of RowFlags that sixteen vertices may be in
 
 // A value, by its bits, that the sum of products would not give back: -0, not finite, or so large (2^115) that the
@@ -242,7 +266,7 @@ static ulong StatesOf(
 
 // Maps the vertices of a row from x to end; i: place of x in the brick.
 static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, int z,
-  __local float* row, __local const float* restX, __local float* displaced,
+  ROW_MEMORY float* row, ROW_MEMORY const float* restX, ROW_MEMORY float* displaced,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Mapping* m = &mesh->Map;
@@ -273,8 +297,8 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
     if (((i - again) & 1) || (states & SOURCES) != SOURCES)
     {
       // One vertex.
-      __local float* place = row + (i >> 1) + (i & 1 ? ODD : 0);
-      __local const float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
+      ROW_MEMORY float* place = row + (i >> 1) + (i & 1 ? ODD : 0);
+      ROW_MEMORY const float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
       const int state = StateOf(mesh->State, x, y, z, p);
       float4 position = (float4)(NO_SOURCE, 0.0f, 0.0f, 0.0f);
       if (state & DEFORMVOLUME_VERTEX_SOURCE)
@@ -297,8 +321,8 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
     }
     x -= again;
     i -= again;
-    __local float* place = row + (i >> 1);
-    __local const float* rest = restX + (i >> 1);
+    ROW_MEMORY float* place = row + (i >> 1);
+    ROW_MEMORY const float* rest = restX + (i >> 1);
     ROW_DISPLACEMENTS_TOGETHER
 #define POSITIONS(C, OFFSET, WHOLE_EVEN, WHOLE_ODD, FRACTION_EVEN, FRACTION_ODD)                   \
   {                                                                                                \

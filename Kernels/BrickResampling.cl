@@ -12,11 +12,13 @@
 // needs another 5T split than its neighbour. Every lane goes through its own candidates, one after
 // the other, until the last lane has none left.
 //
-// Data: links 16 bytes a voxel (or runs, or a field), state 1 byte, the arrays in their own types; rows in local
-// memory as BrickMapping.cl has them. It comes after GroupResampling.cl.
+// Data: links 16 bytes a voxel (or runs, or a field), state 1 byte, the arrays in their own types; rows of
+// vertices as BrickMapping.cl has them. It comes after GroupResampling.cl.
 //
 // What the host puts in front of this text, besides that of Resampling.cl:
 //   LANES                16, 8 or 4: floats in a vector
+//   ROW_MEMORY           address space of the rows of vertices: __local, or __global where local memory is too small;
+//                        ROWS_ARE_GLOBAL 0 or 1 says the same
 //   LANE_ARRAYS(DO)      DO(index, type, bits, slot) for each array that is interpolated in single
 //                        precision: linear ones of one component, float (bits 32) or integers of 8 or
 //                        16 bits
@@ -110,7 +112,7 @@ static int EndIn(uint item, int halves, int cells)
 // whole brick above the one before, so that its first plane of vertices is in the rows, with their flags (lists
 // hold no bricks without cells).
 static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __global char* coverage,
-  __global KEY* winners, __global char* patches, __global uint* counters, __local float* rows,
+  __global KEY* winners, __global char* patches, __global uint* counters, ROW_MEMORY float* rows,
   RowFlags (*flags)[ROWS], const KernelParameters* p ARRAY_PARAMETERS)
 {
   Output outputs[DEFORMVOLUME_SECTIONS];
@@ -144,15 +146,15 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
 
   // The undeformed x of the brick's vertices, in voxels: for even, then odd ones, whole steps relative to the
   // output, and what misses.
-  __local float* restX = rows;
-  __local float* displaced = restX + 4 * HALF_ROW;
-  __local float* ring = displaced + 3 * ROW_PLACES;
+  ROW_MEMORY float* restX = rows;
+  ROW_MEMORY float* displaced = restX + 4 * HALF_ROW;
+  ROW_MEMORY float* ring = displaced + 3 * ROW_PLACES;
   if (!isAbove)
   {
     for (int i = 0; i < 2 * HALF_ROW; ++i)
     {
       const int x = clamp(bx + i, 0, p->Size[0] - 1);
-      __local float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
+      ROW_MEMORY float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
       rest[0] = (mesh->Map.Rest[x].Whole - p->OutputFirst[0] * 256) * STEP;
       rest[HALF_ROW] = mesh->Map.Rest[x].Fraction * STEP;
     }
@@ -211,17 +213,22 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
   }
 }
 
+#define BRICK_FLOATS (4 * HALF_ROW + 3 * ROW_PLACES + 2 * ROWS * ROW)
+
 // Bricks of a list from p.ListBegin to p.ListEnd. taken: how many of these work-items have begun to work on; 0 at
-// first. rows: 4 HALF_ROW + 3 ROW_PLACES + 2 ROWS ROW floats (GetBrickMemory).
+// first. rows: BRICK_FLOATS floats (GetBrickMemory), in global memory as many for each work-item.
 //
 // Why items take one small portion after the other: drivers deal out work-groups in large portions, and wait at the
 // end for the thread that the system has let wait, or that has more to do.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
   __global const uchar* state, __global const uchar* active, __global char* coverage,
   __global KEY* winners, __global char* patches, __global uint* counters,
-  __global const uint* bricks, __global uint* taken, __local float* rows,
+  __global const uint* bricks, __global uint* taken, ROW_MEMORY float* rows,
   const KernelParameters p ARRAY_PARAMETERS)
 {
+#if ROWS_ARE_GLOBAL
+  rows += get_global_id(0) * BRICK_FLOATS;
+#endif
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
   RowFlags flags[2][ROWS]; // of the rows of vertices
   for (uint begin = p.ListBegin + atomic_add(taken, p.Portion); begin < p.ListEnd;

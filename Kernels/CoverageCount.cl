@@ -6,6 +6,10 @@ __kernel void CountCovered(
   const size_t item = get_global_id(0);
   const size_t begin = item * DEFORMVOLUME_COUNTED_VOXELS;
   const size_t end = min(begin + DEFORMVOLUME_COUNTED_VOXELS, (size_t)numberOfVoxels);
+  if (begin >= end)
+  {
+    return; // an item that only fills its group
+  }
   uint sum = 0;
   for (size_t i = begin; i < end; ++i)
   {

@@ -13,6 +13,9 @@
 //                  displacement in output voxels
 //   MAPPING_RUNS   runs of voxels in one tetrahedron, see RunMapping.cl
 //   MAPPING_FIELD  vectors: float4 a point of the field, displacement in output voxels; trilinear
+//   MAPPING_FIELD_IN_PLACE
+//                  vectors: three floats a point of the field, each voxel being one; a matrix takes
+//                  them to displacements in output voxels
 // and rest: for each index on x, then y, then z the undeformed position as a whole number of 1/256
 // output voxels and what misses to it.
 
@@ -21,6 +24,7 @@
 #define MAPPING_LINKS 0
 #define MAPPING_RUNS 1
 #define MAPPING_FIELD 2
+#define MAPPING_FIELD_IN_PLACE 3
 
 typedef struct
 {
@@ -36,12 +40,12 @@ typedef struct
 #define FIELD_TOLERANCE 1e-3f // of a field cell: rounding must not lose the field's border
 
 // Displacements, rounded to multiples of 1/256 voxel. unit: 1 where they are in 1/256 voxel, 1/256 where they are
-// in voxels. Clamped, because extrapolation can lead anywhere.
+// in voxels. Clamped, because extrapolation can lead anywhere, and a field may hold anything, NaN included.
 #define DEFINE_ROUND_STEPS(TYPE)                                                                   \
   static TYPE RoundSteps_##TYPE(TYPE moved, float unit)                                            \
   {                                                                                                \
     moved = (moved + ROUND_TO_INTEGER * unit) - ROUND_TO_INTEGER * unit;                           \
-    moved = moved < -LARGEST * unit ? (TYPE)(-LARGEST * unit) : moved;                             \
+    moved = moved > -LARGEST * unit ? moved : (TYPE)(-LARGEST * unit);                             \
     return moved > LARGEST * unit ? (TYPE)(LARGEST * unit) : moved;                                \
   }
 DEFINE_ROUND_STEPS(float4)
@@ -154,6 +158,57 @@ static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters
   return RunOf(m, x, y, z, p).Tetrahedron >= 0;
 }
 
+#elif MAPPING == MAPPING_FIELD_IN_PLACE
+
+#define MAPPING_PARAMETERS                                                                         \
+  __global const float *restrict vectors, const FieldParameters field,                             \
+    __global const RestPosition *restrict rest
+#define MAPPING_ARGUMENTS { vectors, field, rest }
+
+typedef struct
+{
+  __global const float* Vectors;
+  FieldParameters Field;
+  __global const RestPosition* Rest;
+} Mapping;
+
+static size_t PointOf(const FieldParameters* field, int x, int y, int z)
+{
+  const size_t width = field->Dimensions[0];
+  const size_t plane = width * field->Dimensions[1];
+  return (z + field->Offset[2]) * plane + (y + field->Offset[1]) * width + x + field->Offset[0];
+}
+
+static double MatrixElement(const FieldParameters* field, int i)
+{
+  return as_double(
+    (ulong)field->ToDisplacement[2 * i] | (ulong)field->ToDisplacement[2 * i + 1] << 32);
+}
+
+// The products of a row of the matrix with vectors, in this order.
+#define ROW_PRODUCT(field, row, FLOATS, DOUBLES, x, y, z)                                          \
+  convert_##FLOATS(MatrixElement(field, 3 * (row)) * convert_##DOUBLES(x) +                        \
+    MatrixElement(field, 3 * (row) + 1) * convert_##DOUBLES(y) +                                   \
+    MatrixElement(field, 3 * (row) + 2) * convert_##DOUBLES(z))
+
+static float4 Displacement(const Mapping* m, int x, int y, int z, const KernelParameters* p)
+{
+  const FieldParameters* field = &m->Field;
+  const float3 v = vload3(PointOf(field, x, y, z), m->Vectors);
+  if (!field->IsMapped)
+  {
+    return (float4)(v, 0.0f);
+  }
+  return (float4)(ROW_PRODUCT(field, 0, float, double, v.x, v.y, v.z),
+    ROW_PRODUCT(field, 1, float, double, v.x, v.y, v.z),
+    ROW_PRODUCT(field, 2, float, double, v.x, v.y, v.z), 0.0f);
+}
+
+static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters* p)
+{
+  return 1;
+}
+
 #else
 
 #define MAPPING_PARAMETERS                                                                         \
@@ -222,6 +277,7 @@ static int4 PositionOf(const Mapping* m, int x, int y, int z, const KernelParame
   return (int4)(rx.Whole, ry.Whole, rz.Whole, 0) + convert_int4(steps);
 }
 
+#if HAS_MAPPING_KERNEL
 // Maps the vertices of some planes into rows: the x of a row of vertices, then their y, then their
 // z. A vertex without position has INT_MIN in x. A work-item takes every global-size(0)-th vertex of
 // one row; global size (any, rows, planes).
@@ -241,3 +297,4 @@ __kernel void MapPositions(MAPPING_PARAMETERS, __global const uchar* restrict st
     place[2 * p.Size[0]] = q.z;
   }
 }
+#endif

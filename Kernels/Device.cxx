@@ -2,10 +2,7 @@
 #include "Device.h"
 
 #include "OpenCLContext.h"
-
-#include <algorithm>
-#include <cstdlib>
-#include <thread>
+#include "Processors.h"
 
 namespace deformvolume
 {
@@ -27,12 +24,8 @@ std::string ResolveDevice(const std::string& request)
 
 void ShareProcessors(int processes)
 {
-  if (processes > 1)
-  {
-    const int processors = static_cast<int>(std::thread::hardware_concurrency());
-    const int share = std::max(1, processors / processes);
-    setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(share).c_str(), 0);
-  }
+  SetProcessesHere(processes);
+  LimitDeviceThreads();
 }
 
 } // namespace deformvolume

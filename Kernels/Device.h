@@ -8,7 +8,15 @@
 namespace deformvolume
 {
 
-/// Names of the OpenCL devices of this machine, the best first, as "device (platform)".
+/// Names of the OpenCL devices of this machine, the best first, as "device (platform)". The order:
+/// 1. graphics processors with memory of their own,
+/// 2. accelerators with memory of their own,
+/// 3. processors,
+/// 4. graphics processors and accelerators that share the memory of the processor
+///    (CL_DEVICE_HOST_UNIFIED_MEMORY): they are bound by the same memory, and the kernels for
+///    processors make more of it,
+/// 5. devices that are emulated by a renderer in software (llvmpipe) or an interpreter (Oclgrind).
+/// Of one kind, devices with double precision come first, then those with more compute units.
 /// Empty where there is no OpenCL platform; never throws for that.
 std::vector<std::string> GetDeviceNames();
 
@@ -19,9 +27,9 @@ std::vector<std::string> GetDeviceNames();
 /// device answers to the request.
 std::string ResolveDevice(const std::string& request);
 
-/// So many processes share the processors of this machine: devices that are processors take their
-/// share of these, unless the environment variable POCL_MAX_PTHREAD_COUNT is set. To be called
-/// before any other function, as devices start once.
+/// So many processes share the processors of this machine: threads of the host, and devices that
+/// are processors unless the environment variable POCL_MAX_PTHREAD_COUNT is set, take their share
+/// of these. To be called before any other function, as devices start once.
 void ShareProcessors(int processes);
 
 } // namespace deformvolume

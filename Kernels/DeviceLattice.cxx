@@ -11,7 +11,7 @@
 namespace deformvolume
 {
 std::vector<Tetrahedron> NameNodePlaces(
-  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra)
+  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, const MeshOrder& order)
 {
   std::vector<Tetrahedron> places(numberOfTetrahedra);
   RunOnParts(numberOfTetrahedra, 1 << 16,
@@ -19,8 +19,10 @@ std::vector<Tetrahedron> NameNodePlaces(
     {
       for (std::size_t t = begin; t < end; ++t)
       {
-        std::transform(tetrahedra[t].begin(), tetrahedra[t].end(), places[t].begin(),
-          [](std::int32_t node) { return DEFORMVOLUME_NODE_PLACES * node; });
+        std::transform(tetrahedra[t].begin(), tetrahedra[t].end(),
+          places[MeshOrder::Get(order.Tetrahedra, t)].begin(),
+          [&](std::int32_t node)
+          { return DEFORMVOLUME_NODE_PLACES * MeshOrder::Get(order.Nodes, node); });
       }
     });
   return places;
@@ -83,17 +85,22 @@ cl::Buffer DeviceLattice::MakeRestPositions() const
     positions.size() * sizeof(RestPosition), positions.data());
 }
 
-cl::Buffer DeviceLattice::Send(const void* data, std::size_t bytesPerElement,
-  std::int64_t elementsPerLayer, std::int64_t begin, std::int64_t end, const cl::Buffer& previous)
+void DeviceLattice::CheckAllocation(std::uint64_t bytes) const
 {
-  const std::uint64_t layerBytes = static_cast<std::uint64_t>(elementsPerLayer) * bytesPerElement;
-  const std::uint64_t bytes = layerBytes * static_cast<std::uint64_t>(end - begin);
   if (bytes > this->AllocationLimit)
   {
     throw Error("An array of the volume needs " + std::to_string(bytes) +
       " bytes in one piece, and the device gives no more than " +
       std::to_string(this->AllocationLimit) + ".");
   }
+}
+
+cl::Buffer DeviceLattice::Send(const void* data, std::size_t bytesPerElement,
+  std::int64_t elementsPerLayer, std::int64_t begin, std::int64_t end, const cl::Buffer& previous)
+{
+  const std::uint64_t layerBytes = static_cast<std::uint64_t>(elementsPerLayer) * bytesPerElement;
+  const std::uint64_t bytes = layerBytes * static_cast<std::uint64_t>(end - begin);
+  this->CheckAllocation(bytes);
   // No buffer is of no bytes.
   const std::uint64_t room = std::max<std::uint64_t>(bytes, bytesPerElement);
   cl::Buffer buffer = previous;
@@ -141,20 +148,50 @@ void DeviceLattice::SetArrays(const std::vector<VolumeArray>& arrays)
   this->Owners.erase(this->Owners.begin(), this->Owners.begin() + last);
 }
 
-void DeviceLattice::SetLinks(const VertexLink* links)
+void DeviceLattice::SendLinks(LatticeChunk& chunk, const VertexLink* links, const MeshOrder& order)
+{
+  const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
+  const auto bytesOf = [&](std::int64_t planes)
+  { return static_cast<std::uint64_t>(planes * plane) * sizeof(VertexLink); };
+  this->CheckAllocation(bytesOf(chunk.PlanesEnd - chunk.PlanesBegin));
+  Reserve(this->Context, chunk.Links, bytesOf(chunk.PlanesEnd - chunk.PlanesBegin));
+  // Some planes after the others: a device with its own memory needs room for them on the host.
+  constexpr std::int64_t linksAtOnce = 1 << 20;
+  const std::int64_t step = std::max<std::int64_t>(1, linksAtOnce / plane);
+  for (std::int64_t first = chunk.PlanesBegin; first < chunk.PlanesEnd; first += step)
+  {
+    const std::int64_t planes = std::min<std::int64_t>(step, chunk.PlanesEnd - first);
+    auto* const sent = static_cast<VertexLink*>(this->Queue.enqueueMapBuffer(chunk.Links, CL_TRUE,
+      CL_MAP_WRITE_INVALIDATE_REGION, bytesOf(first - chunk.PlanesBegin), bytesOf(planes)));
+    RunOnParts(static_cast<std::size_t>(planes * plane), 1 << 16,
+      [&](std::size_t begin, std::size_t end)
+      {
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          VertexLink link = links[first * plane + static_cast<std::int64_t>(i)];
+          link.Tetrahedron =
+            link.Tetrahedron < 0 ? -1 : MeshOrder::Get(order.Tetrahedra, link.Tetrahedron);
+          sent[i] = link;
+        }
+      });
+    this->Queue.enqueueUnmapMemObject(chunk.Links, sent);
+    this->Queue.finish();
+  }
+}
+
+void DeviceLattice::SetLinks(const VertexLink* links, const MeshOrder& order)
 {
   const QueueGuard guard(this->Queue);
   this->ForgetRuns();
-  this->WithLinks = true;
+  this->WithLinks = false; // until all of them are there
   this->AllLinked = std::all_of(links, links + GetNumberOfPoints(this->Shape.VertexExtent),
     [](const VertexLink& link) { return link.Tetrahedron >= 0; });
   this->StateChanged = true;
-  const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
   for (LatticeChunk& chunk : this->Chunks)
   {
-    chunk.Links =
-      this->Send(links, sizeof(VertexLink), plane, chunk.PlanesBegin, chunk.PlanesEnd, chunk.Links);
+    this->SendLinks(chunk, links, order);
   }
+  this->WithLinks = true;
 }
 
 void DeviceLattice::ForgetRuns()
@@ -181,7 +218,7 @@ void DeviceLattice::ForgetMesh()
   this->StateChanged = true;
 }
 
-void DeviceLattice::SetRuns(const VertexRuns& runs)
+void DeviceLattice::SetRuns(const VertexRuns& runs, const MeshOrder& order)
 {
   static_assert(
     sizeof(VertexRun) == 8 && sizeof(TetrahedronRecord) == 64, "as the kernels have it");
@@ -204,11 +241,12 @@ void DeviceLattice::SetRuns(const VertexRuns& runs)
     chunk.RowBegins = this->Send(begins.data(), sizeof(std::uint32_t), 1, 0,
       static_cast<std::int64_t>(begins.size()), chunk.RowBegins);
   }
-  this->SendRecords(runs.Tetrahedra);
+  this->SendRecords(runs.Tetrahedra, order);
   this->RunBytes = GetBytes(runs);
 }
 
-void DeviceLattice::SendRecords(const std::vector<RestTetrahedron>& tetrahedra)
+void DeviceLattice::SendRecords(
+  const std::vector<RestTetrahedron>& tetrahedra, const MeshOrder& order)
 {
   std::vector<double> values;
   std::vector<std::int32_t> owners;
@@ -222,7 +260,7 @@ void DeviceLattice::SendRecords(const std::vector<RestTetrahedron>& tetrahedra)
     {
       values.insert(values.end(), gradient.begin(), gradient.end());
     }
-    owners.push_back(tetrahedron.Tetrahedron);
+    owners.push_back(MeshOrder::Get(order.Tetrahedra, tetrahedron.Tetrahedron));
   }
   const auto size = static_cast<std::int64_t>(tetrahedra.size());
   std::vector<float> rounded;
@@ -258,11 +296,8 @@ cl::Event DeviceLattice::EvaluateTetrahedra(
   kernel.setArg(5, this->NumberOfRecords);
   constexpr std::size_t group = 64;
   const std::size_t items = (this->NumberOfRecords + group) / group * group;
-  cl::Event event;
-  this->Queue.enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(group), nullptr, &event);
   this->RecordsChanged = false;
-  return event;
+  return this->Context.Launch(this->Queue, kernel, cl::NDRange(items), cl::NDRange(group));
 }
 
 void DeviceLattice::SetBlanked(const unsigned char* blanked)
@@ -419,8 +454,8 @@ void DeviceLattice::MarkChunk(
     {
       kernel.setArg(markedIndex, this->Marked);
       kernel.setArg(parametersIndex, p);
-      this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
-        this->GetVertexRange(p.PlanesEnd - p.PlanesBegin), this->GetVertexGroup());
+      this->Context.Launch(this->Queue, kernel, this->GetVertexRange(p.PlanesEnd - p.PlanesBegin),
+        this->GetVertexGroup());
     };
     launch(sources, sourcesIndex, sourcesIndex + 1);
     p.PlanesBegin = begin;

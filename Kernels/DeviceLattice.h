@@ -5,6 +5,7 @@
 #include "BrickPoints.h"
 #include "HostMemory.h"
 #include "KernelParameters.h"
+#include "MeshOrder.h"
 #include "OpenCLContext.h"
 #include "VolumeDeformer.h"
 
@@ -16,7 +17,7 @@ namespace deformvolume
 
 /// Tetrahedra as the device has them, with the places of their nodes (DEFORMVOLUME_NODE_PLACES).
 std::vector<Tetrahedron> NameNodePlaces(
-  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra);
+  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, const MeshOrder& order = {});
 
 /// A range of cell layers of the sampling mesh with the vertex planes that they and their
 /// neighbours need: a volume over the device's allocation limit is held in several.
@@ -45,9 +46,12 @@ public:
 
   /// Arrays with an owner are used where they lie, if the device can.
   void SetArrays(const std::vector<VolumeArray>& arrays);
-  void SetLinks(const VertexLink* links);
+  ///@{
+  /// With numbers of the mesh, which become those of the device.
+  void SetLinks(const VertexLink* links, const MeshOrder& order = {});
   /// The runs were checked (CheckRuns).
-  void SetRuns(const VertexRuns& runs);
+  void SetRuns(const VertexRuns& runs, const MeshOrder& order = {});
+  ///@}
   /// Frees the links or the runs.
   void ForgetMesh();
   void SetBlanked(const unsigned char* blanked);
@@ -107,11 +111,14 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
+  /// Throws an Error where a device gives no buffer of so many bytes.
+  void CheckAllocation(std::uint64_t bytes) const;
   /// Reads the data until the queue has finished.
   cl::Buffer Send(const void* data, std::size_t bytesPerElement, std::int64_t elementsPerLayer,
     std::int64_t begin, std::int64_t end, const cl::Buffer& previous);
   void ForgetRuns();
-  void SendRecords(const std::vector<RestTetrahedron>& tetrahedra);
+  void SendLinks(LatticeChunk& chunk, const VertexLink* links, const MeshOrder& order);
+  void SendRecords(const std::vector<RestTetrahedron>& tetrahedra, const MeshOrder& order);
   void MarkChunk(
     cl::Kernel& sources, cl_uint sourcesIndex, cl::Kernel& vertices, const LatticeChunk& chunk);
   cl::Buffer MakeRestPositions() const;

@@ -244,8 +244,9 @@ static void StoreFound(Found* found, const Group* group, Output* output,
   const int pass = p->Pass;
   uint count = found->Count;
   __global char* const coverage = output->Coverage;
-  if ((pass == DEFORMVOLUME_PASS_DIRECT || (pass == DEFORMVOLUME_PASS_OWNERS && KEEPS_KEYS)) &&
-    !HAS_OTHER_ARRAYS)
+  // Bit by bit: compilers warn of a condition that is constant.
+  if (!HAS_OTHER_ARRAYS &&
+    ((pass == DEFORMVOLUME_PASS_DIRECT) | (KEEPS_KEYS & (pass == DEFORMVOLUME_PASS_OWNERS))))
   {
     if (pass == DEFORMVOLUME_PASS_OWNERS)
     {

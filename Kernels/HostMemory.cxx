@@ -67,14 +67,32 @@ cl::Event BeginToRead(
   return done;
 }
 
-void Await(cl::Event& event)
+void PendingReads::Check()
 {
-  if (event())
+  cl_int error = CL_SUCCESS;
+  for (const cl::Event& event : this->Events)
   {
     const cl_event waited = event();
     clWaitForEvents(1, &waited);
-    event = cl::Event();
+    cl_int status = CL_COMPLETE;
+    clGetEventInfo(waited, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof(status), &status, nullptr);
+    error = status < 0 && error == CL_SUCCESS ? status : error;
   }
+  this->Events.clear();
+  if (error != CL_SUCCESS)
+  {
+    throw cl::Error(error, "copying the output from the device");
+  }
+}
+
+void PendingReads::Wait()
+{
+  for (const cl::Event& event : this->Events)
+  {
+    const cl_event waited = event();
+    clWaitForEvents(1, &waited);
+  }
+  this->Events.clear();
 }
 
 bool IsInPlace(const cl::Buffer& buffer)

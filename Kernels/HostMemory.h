@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace deformvolume
 {
@@ -30,13 +31,38 @@ void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t byt
 
 /// A buffer for an output: over the memory of the host where it goes, if the device can work there,
 /// else one of the device. Then BeginToRead brings it there, or what the device has not yet written
-/// of it; the event is that it is there.
+/// of it; the event tells that it is there.
 void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::size_t elementSize,
   std::uint64_t bytes);
 cl::Event BeginToRead(
   const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t bytes, void* memory);
-/// Waits for an event, if there is one, and forgets it. Throws nothing.
-void Await(cl::Event& event);
+
+/// Copies to memory of the caller that are under way.
+class PendingReads
+{
+public:
+  PendingReads() = default;
+  ~PendingReads() { this->Wait(); }
+  PendingReads(const PendingReads&) = delete;
+  PendingReads& operator=(const PendingReads&) = delete;
+  PendingReads(PendingReads&&) = default;
+  PendingReads& operator=(PendingReads&& other) noexcept
+  {
+    this->Wait();
+    this->Events = std::move(other.Events);
+    return *this;
+  }
+
+  void Add(const cl::Event& event) { this->Events.push_back(event); }
+  /// Waits for all of them, and forgets them. Throws cl::Error where one has failed: what it was to
+  /// copy is not there.
+  void Check();
+  /// The same where that does not matter any more. Throws nothing.
+  void Wait();
+
+private:
+  std::vector<cl::Event> Events;
+};
 
 /// Waits for a queue, however a scope is left: before memory of the caller, or buffers that are
 /// declared before, are gone. (To release a buffer while launches that use it are queued crashes

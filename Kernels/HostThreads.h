@@ -2,9 +2,13 @@
 #ifndef DeformVolumeHostThreads_h
 #define DeformVolumeHostThreads_h
 
+#include "FirstException.h"
+#include "Processors.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <new>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -12,28 +16,32 @@
 namespace deformvolume
 {
 
-/// Threads that RunOnThreads uses at most.
+/// Threads that RunOnThreads uses at most: this process's share of the processors.
 inline std::size_t GetNumberOfThreads()
 {
-  return std::max<std::size_t>(1, std::thread::hardware_concurrency());
+  return static_cast<std::size_t>(GetProcessorShare());
 }
 
-/// Calls body(part) for each of so many parts, side by side. body must not throw.
+/// Calls body(part) for each of so many parts, side by side on at most so many threads. What a call
+/// throws first is thrown once all threads have ended; parts that had not begun are left out then.
 template <typename Body>
-void RunOnThreads(std::size_t parts, Body&& body)
+void RunOnThreads(std::size_t parts, std::size_t limit, Body&& body)
 {
+  FirstException failure;
   std::atomic<std::size_t> next{ 0 };
   const auto work = [&]
   {
     for (std::size_t part = next++; part < parts; part = next++)
     {
-      body(part);
+      failure.Run([&] { body(part); });
     }
   };
   std::vector<std::thread> threads;
   try
   {
-    while (threads.size() + 1 < std::min(parts, GetNumberOfThreads()))
+    const std::size_t wanted = std::min(parts, limit);
+    threads.reserve(wanted);
+    while (threads.size() + 1 < wanted)
     {
       threads.emplace_back(work);
     }
@@ -42,15 +50,25 @@ void RunOnThreads(std::size_t parts, Body&& body)
   {
     // Those that there are do all.
   }
+  catch (const std::bad_alloc&)
+  {
+  }
   work();
   for (std::thread& thread : threads)
   {
     thread.join();
   }
+  failure.Rethrow();
 }
 
-/// Calls body(begin, end) for parts of 0 to size, of so many each, side by side. body must not
-/// throw.
+template <typename Body>
+void RunOnThreads(std::size_t parts, Body&& body)
+{
+  RunOnThreads(parts, GetNumberOfThreads(), body);
+}
+
+/// Calls body(begin, end) for parts of 0 to size, of so many each, side by side. Exceptions as in
+/// RunOnThreads.
 template <typename Body>
 void RunOnParts(std::size_t size, std::size_t step, Body&& body)
 {

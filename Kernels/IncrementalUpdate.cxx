@@ -25,8 +25,12 @@ constexpr double Margin = 1.0 / 16.0;
 // The kernels clamp displacements to 2^22 - 1 steps of 1/256 voxel.
 constexpr double LargestMove = 16384.0;
 
-// State of vertices tells of their neighbours, and the fill rule asks the state of neighbours.
-constexpr int MaskReach = 3;
+// In voxels from a part. What a cell does depends on its own vertices, on their states and, on the
+// border of the mesh, on the cells that share vertices with it; the state of a vertex depends on
+// the vertices and the cells that share a cell with it. So a vertex or a cell that is masked
+// matters to cells that have one of their vertices in a cell with it, or in it: it lies at most one
+// voxel beyond their vertices.
+constexpr int MaskReach = 1;
 
 bool IsDifferent(const unsigned char* last, const unsigned char* next, unsigned char value,
   std::int64_t begin, std::size_t size)
@@ -78,6 +82,26 @@ void IncrementalUpdate::Bounds::Add(const float* displacements, std::size_t begi
     this->Greatest[i % 4] = std::max(this->Greatest[i % 4], displacements[i]);
   }
 #endif
+}
+
+void IncrementalUpdate::Bounds::Add(
+  const Displacements& displacements, std::size_t begin, std::size_t end)
+{
+  if (displacements.Padded)
+  {
+    this->Add(displacements.Padded, begin, end);
+    return;
+  }
+  for (std::size_t point = begin; point < end; ++point)
+  {
+    const std::array<float, 3> found =
+      GetDisplacement(*displacements.Field, static_cast<std::int64_t>(point));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Least[axis] = std::min(this->Least[axis], found[axis]);
+      this->Greatest[axis] = std::max(this->Greatest[axis], found[axis]);
+    }
+  }
 }
 
 void IncrementalUpdate::Bounds::Add(const Bounds& other)
@@ -142,7 +166,7 @@ void IncrementalUpdate::ForgetMapping()
 }
 
 IncrementalUpdate::Bounds IncrementalUpdate::ComputeBounds(
-  std::size_t part, const float* displacements) const
+  std::size_t part, const Displacements& displacements) const
 {
   Bounds bounds;
   this->Points.AnyOf(part,
@@ -155,7 +179,7 @@ IncrementalUpdate::Bounds IncrementalUpdate::ComputeBounds(
 }
 
 IncrementalUpdate::Bounds IncrementalUpdate::ComputeAllBounds(
-  const float* displacements, std::size_t numberOfPoints) const
+  const Displacements& displacements, std::size_t numberOfPoints) const
 {
   constexpr std::size_t step = 65536;
   std::vector<Bounds> parts((numberOfPoints + step - 1) / step);
@@ -274,7 +298,7 @@ void IncrementalUpdate::MovePoints(const PointSet& changed, const float* last)
           {
             this->LastBoxes[part] = this->Known[part]
               ? this->Boxes[part]
-              : this->MakeBox(part, this->ComputeBounds(part, last));
+              : this->MakeBox(part, this->ComputeBounds(part, { last, nullptr }));
             this->Moved[part] = 1;
           }
           this->Known[part] = 0;
@@ -341,7 +365,7 @@ bool IncrementalUpdate::IsInside(const unsigned char* state) const
   return inside;
 }
 
-void IncrementalUpdate::FindBoxes(const float* displacements, std::size_t numberOfPoints)
+void IncrementalUpdate::FindBoxes(const Displacements& displacements, std::size_t numberOfPoints)
 {
   if (!this->AllBounds)
   {

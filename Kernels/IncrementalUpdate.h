@@ -36,12 +36,20 @@ public:
     std::vector<std::uint32_t> Patches; // counted along x, then y, then z
   };
 
-  /// The least and the greatest displacement of some points, of four floats each.
+  /// Displacements of points, in output voxels, as they lie in memory.
+  struct Displacements
+  {
+    const float* Padded = nullptr; // four floats each, or else
+    const DisplacementField* Field = nullptr;
+  };
+
+  /// The least and the greatest displacement of some points.
   struct Bounds
   {
     Bounds();
-    /// Points from begin to before end.
+    /// Points from begin to before end, of four floats each in the first form.
     void Add(const float* displacements, std::size_t begin, std::size_t end);
+    void Add(const Displacements& displacements, std::size_t begin, std::size_t end);
     void Add(const Bounds& other);
     alignas(16) std::array<float, 4> Least;
     alignas(16) std::array<float, 4> Greatest;
@@ -79,8 +87,8 @@ public:
 
   /// Whether it is known where the parts of bricks lie, as far as MakePlan wants it.
   bool HasBoxes() const { return this->BoxesKnown; }
-  /// Finds that out. displacements: four floats for each of so many points, after the change.
-  void FindBoxes(const float* displacements, std::size_t numberOfPoints);
+  /// Finds that out. displacements: of so many points, after the change.
+  void FindBoxes(const Displacements& displacements, std::size_t numberOfPoints);
 
   /// A mask will change: of vertices, one byte each, or of cells. Null stands for a mask that is
   /// the given value everywhere.
@@ -104,9 +112,9 @@ private:
   };
   using Patches = std::array<int, 6>; // first and last patch on each axis
 
-  Bounds ComputeBounds(std::size_t part, const float* displacements) const;
+  Bounds ComputeBounds(std::size_t part, const Displacements& displacements) const;
   Box MakeBox(std::size_t part, const Bounds& bounds) const;
-  Bounds ComputeAllBounds(const float* displacements, std::size_t numberOfPoints) const;
+  Bounds ComputeAllBounds(const Displacements& displacements, std::size_t numberOfPoints) const;
   bool IsChanged(std::size_t part) const { return this->Moved[part] || this->Masked[part]; }
   /// A box round the patches that the boxes of changed parts touch, before or after the change.
   Box GetReach() const;

@@ -55,6 +55,8 @@ typedef struct
   int Extrapolate; // whether voxels outside the field follow its border
   int SameGrid;    // whether voxels are points of the field, and all lie in it: the point of voxel
   int Offset[3];   // (i, j, k) is (i, j, k) + Offset
+  int IsMapped;    // of vectors that are read where they lie: whether the matrix is to be applied
+  unsigned int ToDisplacement[18]; // row-major 3 x 3, of each double the lower four bytes first
 } FieldParameters;
 
 // The displacement in a tetrahedron of the deformation mesh, in output voxels; 64 bytes. That of

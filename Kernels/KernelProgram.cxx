@@ -83,6 +83,13 @@ std::string MakePreamble(const OpenCLContext& context, const std::vector<VolumeA
         "\" has no double precision, which an array of the volume needs. Convert the array to "
         "float, or use another device.");
     }
+    if (!HasDouble(context) && !arrays[i].Categorical && !IsReal(arrays[i].Type) &&
+      GetElementSize(arrays[i].Type) >= 4)
+    {
+      throw Error("The device \"" + context.GetDevice().Name +
+        "\" has no double precision, which integers of 32 or 64 bits need to be interpolated. "
+        "Convert the array to 16 bits or to float, make it categorical, or use another device.");
+    }
     const std::string index = std::to_string(i);
     const std::string type = GetTypeName(arrays[i].Type);
     parameters += ", __global const " + type + "* RESTRICT source" + index + ", __global " + type +
@@ -101,7 +108,7 @@ int GetLanes(const OpenCLContext& context)
   return width >= 16 ? 16 : width >= 8 ? 8 : 4;
 }
 
-/// Bytes of local memory that the kernel ResampleBricks wants for so many arrays.
+/// Bytes that a work-item of the kernel ResampleBricks wants for so many arrays.
 std::size_t GetBrickMemory(const OpenCLContext& context, std::size_t slots)
 {
   const std::size_t lanes = static_cast<std::size_t>(GetLanes(context));
@@ -119,11 +126,13 @@ bool FitsFloat(const VolumeArray& array)
 }
 
 /// For each array whether the kernel ResampleBricks interpolates it in single precision: as many as
-/// the local memory holds.
+/// the local memory holds, if it is used.
 std::vector<bool> FindLaneArrays(
   const OpenCLContext& context, const std::vector<VolumeArray>& arrays)
 {
-  const std::size_t memory = context.GetDevice().Device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+  const std::size_t memory = HasLocalBricks(context)
+    ? context.GetDevice().Device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>()
+    : std::numeric_limits<std::size_t>::max();
   std::vector<bool> found;
   std::size_t slots = 0;
   for (const VolumeArray& array : arrays)
@@ -153,9 +162,12 @@ std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<Vol
     list += " DO(" + index + ", " + GetTypeName(arrays[i].Type) + ", " +
       std::to_string(8 * GetElementSize(arrays[i].Type)) + ", " + std::to_string(slots++) + ")";
   }
-  return "#define LANES " + std::to_string(GetLanes(context)) + "\n#define LANE_SLOTS " +
-    std::to_string(slots) + "\n#define LANE_ARRAYS(DO)" + list + "\n#define HAS_OTHER_ARRAYS " +
-    (others.empty() ? "0" : "1") + "\n#define STORE_OTHER_ARRAYS " + others + "\n";
+  const bool local = HasLocalBricks(context);
+  return "#define LANES " + std::to_string(GetLanes(context)) + "\n#define ROW_MEMORY " +
+    (local ? "__local" : "__global") + "\n#define ROWS_ARE_GLOBAL " + (local ? "0" : "1") +
+    "\n#define LANE_SLOTS " + std::to_string(slots) + "\n#define LANE_ARRAYS(DO)" + list +
+    "\n#define HAS_OTHER_ARRAYS " + (others.empty() ? "0" : "1") + "\n#define STORE_OTHER_ARRAYS " +
+    others + "\n";
 }
 
 std::string GetSharedText()
@@ -172,6 +184,8 @@ std::string GetMappingText(MappingForm mapping)
     case MappingForm::Runs:
       return std::string("#define MAPPING 1\n") + MultiplyAdd_cl + RunMapping_cl +
         DeformationMapping_cl;
+    case MappingForm::FieldInPlace:
+      return std::string("#define MAPPING 3\n") + MultiplyAdd_cl + DeformationMapping_cl;
     default:
       return std::string("#define MAPPING 2\n") + MultiplyAdd_cl + DeformationMapping_cl;
   }
@@ -179,11 +193,17 @@ std::string GetMappingText(MappingForm mapping)
 
 } // namespace
 
+bool HasLocalBricks(const OpenCLContext& context)
+{
+  return GetBrickMemory(context, 0) <=
+    context.GetDevice().Device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+}
+
 cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping)
 {
   const std::string evaluation = mapping == MappingForm::Runs ? RunEvaluation_cl : "";
-  return context.GetProgram(
-    GetReal(context) + GetSharedText() + GetMappingText(mapping) + VertexState_cl + evaluation,
+  return context.GetProgram(GetReal(context) + GetSharedText() + "#define HAS_MAPPING_KERNEL 1\n" +
+      GetMappingText(mapping) + VertexState_cl + evaluation,
     Options);
 }
 
@@ -193,7 +213,7 @@ cl::Program GetOutputProgram(OpenCLContext& context)
 }
 
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
-  const std::vector<VolumeArray>& arrays, bool wideKeys)
+  const std::vector<VolumeArray>& arrays, bool wideKeys, bool lanes)
 {
   std::string key = "#define KEY uint\n#define ATOMIC_MIN atomic_min\n"
                     "#define ATOMIC_CMPXCHG atomic_cmpxchg\n";
@@ -210,11 +230,13 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
         "a smaller volume or another device.");
     }
   }
+  const std::string laneText = MakeLanePreamble(context, arrays) + LaneVectors_cl +
+    BrickMapping_cl + GroupSamples_cl + GroupCoverage_cl + GroupCandidates_cl + GroupResampling_cl +
+    BrickResampling_cl;
   return context.GetProgram(GetSharedText() + MakePreamble(context, arrays) + key +
-      GetMappingText(mapping) + IntegerVectors_cl + CellCoverage_cl + SampleStoring_cl +
-      VoxelWinners_cl + Resampling_cl + MakeLanePreamble(context, arrays) + LaneVectors_cl +
-      BrickMapping_cl + GroupSamples_cl + GroupCoverage_cl + GroupCandidates_cl +
-      GroupResampling_cl + BrickResampling_cl,
+      "#define HAS_MAPPING_KERNEL 0\n" + GetMappingText(mapping) + "#define HAS_CELL_KERNEL " +
+      (lanes ? "0\n" : "1\n") + IntegerVectors_cl + CellCoverage_cl + SampleStoring_cl +
+      VoxelWinners_cl + Resampling_cl + (lanes ? laneText : ""),
     Options);
 }
 
@@ -238,7 +260,7 @@ cl::Program GetBinningProgram(OpenCLContext& context)
 }
 
 cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
-  const Lattice& lattice, Interpolation interpolation)
+  const Lattice& lattice, Interpolation interpolation, bool field)
 {
   const bool processor = context.GetDevice().IsProcessor;
   std::string stores;
@@ -268,7 +290,8 @@ cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<Vo
       (tapArrays.empty() ? "" : "\n#define HAS_TAP_ARRAYS") + "\n#define LANE_ARRAYS(DO)" +
       laneArrays + "\n#define TAP_ARRAYS(DO)" + tapArrays + "\n" + IntegerVectors_cl +
       TetrahedronBinning_cl + LaneVectors_cl + LaneSampling_cl + RestSampling_cl +
-      RestCoordinates_cl + MeshRasterization_cl,
+      (field ? std::string(FieldLookup_cl)
+             : std::string(RestCoordinates_cl) + MeshRasterization_cl),
     Options);
 }
 

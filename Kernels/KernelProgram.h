@@ -17,19 +17,24 @@ enum class MappingForm
 {
   Links,
   Runs,
-  Field
+  Field,
+  /// A field whose vectors are read where they lie; for devices with double precision.
+  FieldInPlace
 };
 
 /// The deformation mapping (DeformationMapping.cl) and the state of vertices (VertexState.cl).
 cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping);
 
-/// The exact resampling for arrays of these types: cell by cell (Resampling.cl) and by lanes
+/// The exact resampling for arrays of these types: cell by cell (Resampling.cl) or by lanes
 /// (BrickResampling.cl). wideKeys: cells are too many for the 30 bits of a narrow winner's key.
 /// Throws Error where the device lacks what the arrays need.
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
-  const std::vector<VolumeArray>& arrays, bool wideKeys);
+  const std::vector<VolumeArray>& arrays, bool wideKeys, bool lanes);
 
-/// Bytes of local memory that the kernel ResampleBricks wants.
+/// Whether the kernel ResampleBricks works in local memory: where there is enough. Else it does so
+/// in a buffer, which has room for each work-item.
+bool HasLocalBricks(const OpenCLContext& context);
+/// Bytes of that for a work-item.
 std::size_t GetBrickMemory(const OpenCLContext& context, const std::vector<VolumeArray>& arrays);
 
 /// What is done with the output besides resampling (CoverageCount.cl, OutputClearing.cl).
@@ -41,10 +46,11 @@ cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<Volume
 /// The binning of the tetrahedra of the deformation mesh (TetrahedronBinning.cl).
 cl::Program GetBinningProgram(OpenCLContext& context);
 
-/// The mesh rasterisation (MeshRasterization.cl, RestSampling.cl) for arrays of these types. Throws
-/// Error where the device lacks what the arrays need.
+/// The mesh rasterisation (MeshRasterization.cl, RestSampling.cl), or for a field the look-up
+/// through it (FieldLookup.cl), for arrays of these types. Throws Error where the device lacks what
+/// the arrays need.
 cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
-  const Lattice& lattice, Interpolation interpolation);
+  const Lattice& lattice, Interpolation interpolation, bool field);
 
 } // namespace deformvolume
 

@@ -188,19 +188,8 @@ __kernel void RasterizeMesh(__global const int4* tetrahedra, __global const int4
   __local uint own[DEFORMVOLUME_TILE_ROWS];
   __local uint overlaps;
   const int index = p.TileBegin + (int)get_group_id(0);
-  const int tileIndex[3] = { p.TileFirst[0] + index % p.TileCount[0],
-    p.TileFirst[1] + index / p.TileCount[0] % p.TileCount[1],
-    p.TileFirst[2] + index / p.TileCount[0] / p.TileCount[1] };
-  const int origin[3] = { tileIndex[0] * (1 << DEFORMVOLUME_TILE_BITS_X),
-    tileIndex[1] * (1 << DEFORMVOLUME_TILE_BITS_Y), tileIndex[2] * (1 << DEFORMVOLUME_TILE_BITS_Z) };
-  const int4 corner = { origin[0], origin[1], origin[2], 0 };
-  const int4 outputFirst = { p.OutputFirst[0], p.OutputFirst[1], p.OutputFirst[2], 0 };
-  const int4 outputSize = { p.OutputSize[0], p.OutputSize[1], p.OutputSize[2], 1 };
-  const int4 tileSize = { 1 << DEFORMVOLUME_TILE_BITS_X, 1 << DEFORMVOLUME_TILE_BITS_Y,
-    1 << DEFORMVOLUME_TILE_BITS_Z, 1 };
-  VoxelBox tile;
-  tile.Low = max(corner, outputFirst);
-  tile.High = min(corner + tileSize, outputFirst + outputSize) - 1;
+  int origin[3];
+  const VoxelBox tile = GetTile(index, origin, &p);
   if (get_local_id(0) == 0)
   {
     overlaps = 0;
@@ -216,12 +205,6 @@ __kernel void RasterizeMesh(__global const int4* tetrahedra, __global const int4
   SampleTile(tile, origin, rests, covered, backgrounds, coverage, &p ARRAY_ARGUMENTS);
   if (get_local_id(0) == 0)
   {
-    uint sum = 0;
-    for (int row = 0; row < DEFORMVOLUME_TILE_ROWS; ++row)
-    {
-      sum += popcount(covered[row]);
-    }
-    counters[index * DEFORMVOLUME_TILE_COUNTERS + DEFORMVOLUME_TILE_COVERED] = sum;
-    counters[index * DEFORMVOLUME_TILE_COUNTERS + DEFORMVOLUME_TILE_OVERLAPS] = overlaps;
+    CountTile(covered, overlaps, counters + index * DEFORMVOLUME_TILE_COUNTERS);
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshRasterizer.h"
 
+#include "CompilationWatch.h"
 #include "DeviceLattice.h"
 #include "KernelProgram.h"
 #include "OutputSlab.h"
@@ -21,10 +22,20 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
-double GetSeconds(const Clock::time_point& begin)
+/// Seconds since it was made, without those in which kernels were compiled.
+class Stopwatch
 {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
+public:
+  double GetSeconds() const
+  {
+    const std::chrono::duration<double> passed = Clock::now() - this->Begin;
+    return passed.count() - (CompilationWatch::GetCurrentSeconds() - this->Compiled);
+  }
+
+private:
+  Clock::time_point Begin = Clock::now();
+  double Compiled = CompilationWatch::GetCurrentSeconds();
+};
 
 // Positions in 1/256 voxel and their differences then fit into 32 bits.
 constexpr double LargestPosition = 1 << 21;
@@ -215,8 +226,8 @@ void MeshRasterizer::Bin(const Setting& setting, RasterParameters& p, DeformRepo
   count.setArg(2, this->Places);
   count.setArg(3, counters);
   count.setArg(4, p);
-  setting.Queue.enqueueNDRangeKernel(
-    count, cl::NullRange, cl::NDRange(static_cast<std::size_t>(ranges)), cl::NullRange);
+  setting.Context.Launch(
+    setting.Queue, count, cl::NDRange(static_cast<std::size_t>(ranges)), cl::NDRange(1));
   std::vector<cl_uint> counts(static_cast<std::size_t>(ranges) * DEFORMVOLUME_BINNED_COUNTERS);
   setting.Queue.enqueueReadBuffer(
     counters, CL_TRUE, 0, counts.size() * sizeof(cl_uint), counts.data());
@@ -269,8 +280,8 @@ void MeshRasterizer::Bin(const Setting& setting, RasterParameters& p, DeformRepo
   list.setArg(2, this->Places);
   list.setArg(3, this->Lists);
   list.setArg(4, p);
-  setting.Queue.enqueueNDRangeKernel(
-    list, cl::NullRange, cl::NDRange(static_cast<std::size_t>(ranges)), cl::NullRange);
+  setting.Context.Launch(
+    setting.Queue, list, cl::NDRange(static_cast<std::size_t>(ranges)), cl::NDRange(1));
   setting.Queue.finish();
 }
 
@@ -283,15 +294,10 @@ void MeshRasterizer::RunTiles(const Setting& setting, cl::Kernel& kernel, const 
   const std::size_t counterBytes = tiles * DEFORMVOLUME_TILE_COUNTERS * sizeof(cl_uint);
   const cl::Buffer counters(setting.Context.GetContext(), CL_MEM_WRITE_ONLY, counterBytes);
   const QueueGuard guard(setting.Queue);
-  cl_uint i = 0;
-  kernel.setArg(i++, this->Tetrahedra);
-  kernel.setArg(i++, this->Positions);
-  kernel.setArg(i++, this->Displacements);
-  kernel.setArg(i++, this->ListBegins);
-  kernel.setArg(i++, this->Lists);
+  cl_uint i = this->SetDeformationArguments(kernel);
   // Any buffer stands in for a missing one: not all drivers take a null pointer.
-  kernel.setArg(i++, p.HasActive ? chunk.Active : this->Tetrahedra);
-  kernel.setArg(i++, p.HasBlanked ? chunk.Blanked : this->Tetrahedra);
+  kernel.setArg(i++, p.HasActive ? chunk.Active : target.GetCoverage());
+  kernel.setArg(i++, p.HasBlanked ? chunk.Blanked : target.GetCoverage());
   kernel.setArg(i++, target.GetBackgrounds());
   kernel.setArg(i++, target.GetCoverage());
   kernel.setArg(i++, counters);
@@ -312,9 +318,9 @@ void MeshRasterizer::RunTiles(const Setting& setting, cl::Kernel& kernel, const 
   {
     p.TileBegin = static_cast<int>(tile);
     kernel.setArg(parameters, p);
-    cl::Event event;
-    setting.Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
-      cl::NDRange(std::min(step, tiles - tile) * group), cl::NDRange(group), nullptr, &event);
+    setting.Context.Prepare(setting.Queue, kernel, cl::NDRange(group)); // of the first tile
+    const cl::Event event = setting.Context.Launch(
+      setting.Queue, kernel, cl::NDRange(std::min(step, tiles - tile) * group), cl::NDRange(group));
     setting.Queue.flush();
     // Wait for the launch before this one: the device always has work while we report.
     if (previous())
@@ -346,9 +352,7 @@ DeformReport MeshRasterizer::Deform(const Setting& setting, const DeviceLattice&
     throw Error("The volume has more bytes than the device gives in one piece, which the resampler "
                 "MeshRasterization needs. Use the resampler Exact, or another device.");
   }
-  cl::Kernel kernel(
-    GetRasterizationProgram(setting.Context, arrays, volume.GetLattice(), request.Interpolation),
-    "RasterizeMesh");
+  cl::Kernel kernel = this->MakeKernel(setting, volume, arrays, request.Interpolation);
   const std::vector<Extent> slabs =
     OutputSlab::Split(request.OutputExtent, arrays, volume.GetLattice(), setting.AllocationLimit);
   const std::uint64_t bytes = OutputSlab::GetBytesPerVoxel(setting.Context, arrays, request) *
@@ -362,19 +366,26 @@ DeformReport MeshRasterizer::Deform(const Setting& setting, const DeviceLattice&
   report.NumberOfFlatTetrahedra = this->NumberOfFlatTetrahedra;
   for (std::size_t s = 0; s < slabs.size(); ++s)
   {
-    Clock::time_point begin = Clock::now();
+    Stopwatch watch;
     RasterParameters p = MakeParameters(volume, slabs[s], this->NumberOfTetrahedra);
     DeformReport binned; // every slab sees all tetrahedra
-    this->Bin(setting, p, binned);
+    if (!this->HasField())
+    {
+      this->Bin(setting, p, binned);
+    }
     report.NumberOfInvertedTetrahedra = binned.NumberOfInvertedTetrahedra;
-    report.MappingTime += GetSeconds(begin);
+    report.MappingTime += watch.GetSeconds();
 
-    begin = Clock::now();
+    watch = Stopwatch();
     std::unique_ptr<RasterTarget>& target = targets[overlapped ? s % 2 : 0];
-    target.reset();
-    report.TransferTime += GetSeconds(begin);
+    if (target)
+    {
+      target->FinishReading();
+      target.reset();
+    }
+    report.TransferTime += watch.GetSeconds();
 
-    begin = Clock::now();
+    watch = Stopwatch();
     target = std::make_unique<RasterTarget>(setting.Context, arrays, request, slabs[s]);
     this->RunTiles(
       setting, kernel, volume.GetChunks().front(), p, *target,
@@ -384,15 +395,21 @@ DeformReport MeshRasterizer::Deform(const Setting& setting, const DeviceLattice&
           request.Progress((static_cast<double>(s) + done) / static_cast<double>(slabs.size()));
       },
       report);
-    report.ResamplingTime += GetSeconds(begin);
+    report.ResamplingTime += watch.GetSeconds();
 
-    begin = Clock::now();
+    watch = Stopwatch();
     target->Read(setting.ReadQueue);
     if (!overlapped || s + 1 == slabs.size())
     {
-      setting.ReadQueue.finish();
+      for (const std::unique_ptr<RasterTarget>& read : targets)
+      {
+        if (read)
+        {
+          read->FinishReading();
+        }
+      }
     }
-    report.TransferTime += GetSeconds(begin);
+    report.TransferTime += watch.GetSeconds();
   }
   return report;
 }
@@ -401,7 +418,7 @@ std::uint64_t MeshRasterizer::GetMemory() const
 {
   std::uint64_t bytes = 0;
   for (const cl::Buffer* buffer : { &this->Tetrahedra, &this->Positions, &this->Displacements,
-         &this->Places, &this->ListBegins, &this->Lists })
+         &this->Places, &this->ListBegins, &this->Lists, &this->FieldVectors })
   {
     bytes += deformvolume::GetMemory(*buffer);
   }
@@ -411,10 +428,11 @@ std::uint64_t MeshRasterizer::GetMemory() const
 std::uint64_t MeshRasterizer::GetMemoryNeeded(std::uint64_t outputVoxels,
   std::uint64_t bytesPerVoxel, std::size_t numberOfNodes, std::size_t numberOfTetrahedra)
 {
-  // Tetrahedra with four places in lists, nodes with positions and displacements; for a tile four
-  // numbers and a few counters.
+  // Tetrahedra with four places in lists, nodes with positions and displacements, or points of a
+  // field with their vectors; for a tile four numbers and a few counters.
+  const std::uint64_t node = numberOfTetrahedra > 0 ? 32 : 3 * sizeof(float);
   return outputVoxels * (bytesPerVoxel + 1) + std::uint64_t{ numberOfTetrahedra } * 32 +
-    std::uint64_t{ numberOfNodes } * 32 + outputVoxels / DEFORMVOLUME_TILE_VOXELS * 128;
+    std::uint64_t{ numberOfNodes } * node + outputVoxels / DEFORMVOLUME_TILE_VOXELS * 128;
 }
 
 } // namespace deformvolume

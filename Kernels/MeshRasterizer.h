@@ -17,7 +17,8 @@ struct LatticeChunk;
 
 /// Resamples by rasterising the tetrahedra of the deformation mesh into the output
 /// (TetrahedronBinning.cl, MeshRasterization.cl, RestSampling.cl). Needs of the volume nothing but
-/// its arrays and masks: no links, no state and no positions of its voxels.
+/// its arrays and masks: no links, no state and no positions of its voxels. The volume can also be
+/// looked up through an inverse displacement field (FieldLookup.cl), without any mesh.
 class MeshRasterizer
 {
 public:
@@ -40,12 +41,17 @@ public:
   void SetDisplacements(
     const Setting& setting, const float* displacements, const std::array<double, 3>& scale);
 
+  /// A field in place of a mesh: its vectors lead from output voxels to where these lie in the
+  /// volume at rest, in output voxels. IndexToField takes the index of an output voxel.
+  void SetField(const Setting& setting, const DisplacementField& inverse);
+
   /// Forgets all.
   void Clear() { *this = MeshRasterizer(); }
 
   bool HasMesh() const { return !this->RestNodes.empty(); }
-  /// Whether mesh and displacements are set.
-  bool IsReady() const { return this->DisplacementsSet; }
+  bool HasField() const { return this->FieldVectors() != nullptr; }
+  /// Whether mesh and displacements are set, or a field.
+  bool IsReady() const { return this->DisplacementsSet || this->HasField(); }
 
   /// Throws an Error where the deformation or the volume is beyond what can be rasterised. spare:
   /// bytes of device memory that may be used beyond those of one slab of the output.
@@ -67,6 +73,11 @@ private:
     RasterParameters parameters, const RasterTarget& target,
     const std::function<bool(double)>& progress, DeformReport& report);
 
+  cl::Kernel MakeKernel(const Setting& setting, const DeviceLattice& volume,
+    const std::vector<VolumeArray>& arrays, Interpolation interpolation) const;
+  /// Sets the arguments of the kernel that come first. Returns how many.
+  cl_uint SetDeformationArguments(cl::Kernel& kernel) const;
+
   std::vector<double> RestNodes;
   std::size_t NumberOfTetrahedra = 0;
   std::int64_t NumberOfFlatTetrahedra = 0;
@@ -80,6 +91,8 @@ private:
   cl::Buffer Places;
   cl::Buffer ListBegins;
   cl::Buffer Lists;
+  cl::Buffer FieldVectors;
+  LookupParameters Field = {};
 };
 
 } // namespace deformvolume

@@ -1,26 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OpenCLContext.h"
 
+#include "CompilationWatch.h"
+#include "DeviceRank.h"
 #include "Error.h"
 #include "KernelCache.h"
+#include "Processors.h"
+#include "ProgramCache.h"
+#include "SystemMemory.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <fstream>
-#include <tuple>
 
 namespace deformvolume
 {
 namespace
 {
-
-std::string ToLower(std::string text)
-{
-  std::transform(text.begin(), text.end(), text.begin(),
-    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 /// Some platforms end names with zeros or pad them with blanks.
 std::string Trim(const std::string& text)
@@ -33,10 +29,21 @@ std::string Trim(const std::string& text)
     : whole.substr(begin, whole.find_last_not_of(blank) - begin + 1);
 }
 
-int GetRank(const cl::Device& device)
+DeviceDescription Describe(const cl::Device& device, const cl::Platform& platform)
 {
+  using Kind = DeviceDescription::Kind;
   const cl_device_type type = device.getInfo<CL_DEVICE_TYPE>();
-  return type & CL_DEVICE_TYPE_GPU ? 2 : type & CL_DEVICE_TYPE_CPU ? 0 : 1;
+  DeviceDescription description;
+  description.Type = type & CL_DEVICE_TYPE_GPU ? Kind::Graphics
+    : type & CL_DEVICE_TYPE_CPU                ? Kind::Processor
+                                               : Kind::Other;
+  description.Name = Trim(device.getInfo<CL_DEVICE_NAME>());
+  description.Platform = Trim(platform.getInfo<CL_PLATFORM_NAME>());
+  description.SharesMemory = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_FALSE;
+  description.HasDouble =
+    (" " + device.getInfo<CL_DEVICE_EXTENSIONS>() + " ").find(" cl_khr_fp64 ") != std::string::npos;
+  description.ComputeUnits = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  return description;
 }
 
 bool IsUsable(const cl::Device& device)
@@ -47,6 +54,62 @@ bool IsUsable(const cl::Device& device)
 bool IsPoCL(const OpenCLDevice& device)
 {
   return device.Name.find("Portable Computing Language") != std::string::npos;
+}
+
+/// What the instructions of the processor are: drivers compile for the one that they run on, and a
+/// home directory may serve several.
+std::string DescribeProcessor()
+{
+  std::ifstream file("/proc/cpuinfo");
+  std::string text;
+  for (std::string line; std::getline(file, line) && !line.empty();) // the first one
+  {
+    for (const char* key : { "vendor_id", "cpu family", "model", "stepping", "flags", "Features" })
+    {
+      if (line.rfind(key, 0) == 0)
+      {
+        text += line + "\n";
+      }
+    }
+  }
+  return text;
+}
+
+/// All that decides, besides source and options, what the driver makes of a program.
+std::string DescribeCompiler(const OpenCLDevice& device)
+{
+  const cl::Platform platform(device.Device.getInfo<CL_DEVICE_PLATFORM>());
+  std::string text;
+  for (const std::string& part :
+    { platform.getInfo<CL_PLATFORM_NAME>(), platform.getInfo<CL_PLATFORM_VENDOR>(),
+      platform.getInfo<CL_PLATFORM_VERSION>(), device.Device.getInfo<CL_DEVICE_NAME>(),
+      device.Device.getInfo<CL_DEVICE_VENDOR>(), device.Device.getInfo<CL_DEVICE_VERSION>(),
+      device.Device.getInfo<CL_DRIVER_VERSION>(), device.Device.getInfo<CL_DEVICE_EXTENSIONS>() })
+  {
+    text += Trim(part) + "\n";
+  }
+  return text + DescribeProcessor();
+}
+
+/// What the driver made of a program; empty where it does not give that.
+std::vector<unsigned char> GetBinary(const cl::Program& program)
+{
+  try
+  {
+    const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+    return binaries.empty() ? std::vector<unsigned char>() : binaries.front();
+  }
+  catch (const cl::Error&)
+  {
+    return {};
+  }
+}
+
+double GetSeconds(const cl::Event& event)
+{
+  return 1e-9 *
+    static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+      event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
 }
 
 std::string ListNames(const std::vector<OpenCLDevice>& devices)
@@ -64,6 +127,11 @@ std::string ListNames(const std::vector<OpenCLDevice>& devices)
 std::vector<OpenCLDevice> FindDevices()
 {
   PrepareKernelCache();
+  // Drivers start here, and not all of them bear that from two threads at once: PoCL then says that
+  // there is no device, or crashes.
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> lock(mutex);
+  LimitDeviceThreads();
   const FloatingPointTrapGuard guard;
   std::vector<OpenCLDevice> found;
   std::vector<cl::Platform> platforms;
@@ -85,10 +153,12 @@ std::vector<OpenCLDevice> FindDevices()
       {
         if (IsUsable(device))
         {
-          found.push_back({ device,
-            Trim(device.getInfo<CL_DEVICE_NAME>()) + " (" +
-              Trim(platform.getInfo<CL_PLATFORM_NAME>()) + ")",
-            GetRank(device) == 0 });
+          OpenCLDevice one;
+          one.Device = device;
+          one.Description = Describe(device, platform);
+          one.Name = one.Description.Name + " (" + one.Description.Platform + ")";
+          one.IsProcessor = one.Description.Type == DeviceDescription::Kind::Processor;
+          found.push_back(one);
         }
       }
     }
@@ -99,10 +169,7 @@ std::vector<OpenCLDevice> FindDevices()
   }
   std::stable_sort(found.begin(), found.end(),
     [](const OpenCLDevice& a, const OpenCLDevice& b)
-    {
-      return std::make_tuple(GetRank(a.Device), a.Device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()) >
-        std::make_tuple(GetRank(b.Device), b.Device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
-    });
+    { return IsBetter(a.Description, b.Description); });
   // Two cards of one kind have one name; the second and later ones get a number.
   std::map<std::string, int> seen;
   for (OpenCLDevice& device : found)
@@ -137,8 +204,9 @@ OpenCLDevice FindDevice(const std::string& request)
   const std::string wanted = ToLower(words);
   for (const OpenCLDevice& device : devices)
   {
-    const int rank = GetRank(device.Device);
-    if (wanted.empty() || (wanted == "cpu" && rank == 0) || (wanted == "gpu" && rank == 2) ||
+    const bool graphics = device.Description.Type == DeviceDescription::Kind::Graphics;
+    if (wanted.empty() || (wanted == "cpu" && device.IsProcessor) ||
+      (wanted == "gpu" && graphics) ||
       (wanted != "cpu" && wanted != "gpu" &&
         ToLower(device.Name).find(wanted) != std::string::npos))
     {
@@ -187,43 +255,101 @@ cl::Program OpenCLContext::GetProgram(const std::string& source, const std::stri
   cl::Program& program = this->Programs[options + "\n" + source];
   if (!program())
   {
-    cl::Program fresh(this->Context, source);
-    try
-    {
-      fresh.build({ this->Device.Device }, options.c_str());
-    }
-    catch (const cl::BuildError&)
-    {
-      throw Error("The OpenCL compiler of \"" + this->Device.Name +
-        "\" refuses the kernels. Its words: " +
-        fresh.getBuildInfo<CL_PROGRAM_BUILD_LOG>(this->Device.Device));
-    }
-    program = fresh;
+    const CompilationWatch::Compilation compilation;
+    program = this->Build(source, options);
   }
   return program;
 }
 
-std::uint64_t OpenCLContext::GetAvailableMemory() const
+cl::Program OpenCLContext::Build(const std::string& source, const std::string& options) const
+{
+  if (IsPoCL(this->Device))
+  {
+    // PoCL keeps what it compiles; asked for a binary, it would compile all kernels once more.
+    return this->BuildSource(source, options);
+  }
+  const ProgramCache cache(ProgramCache::GetDefaultDirectory());
+  const std::string key = DescribeCompiler(this->Device) + options + "\n" + source;
+  const std::vector<unsigned char> binary = cache.Read(key);
+  if (!binary.empty())
+  {
+    try
+    {
+      cl::Program program(this->Context, { this->Device.Device }, { binary });
+      program.build({ this->Device.Device }, options.c_str());
+      return program;
+    }
+    catch (const cl::Error&)
+    {
+      // The driver does not take it any longer.
+    }
+  }
+  const cl::Program program = this->BuildSource(source, options);
+  cache.Write(key, GetBinary(program));
+  return program;
+}
+
+cl::Program OpenCLContext::BuildSource(const std::string& source, const std::string& options) const
+{
+  cl::Program program(this->Context, source);
+  try
+  {
+    program.build({ this->Device.Device }, options.c_str());
+  }
+  catch (const cl::BuildError&)
+  {
+    throw Error("The OpenCL compiler of \"" + this->Device.Name +
+      "\" refuses the kernels. Its words: " +
+      program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(this->Device.Device));
+  }
+  return program;
+}
+
+bool OpenCLContext::IsNew(const cl::Kernel& kernel, const cl::NDRange& group)
+{
+  std::string name = kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
+  for (cl::size_type axis = 0; axis < group.dimensions(); ++axis)
+  {
+    name += " " + std::to_string(group[axis]);
+  }
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->Launched.insert({ kernel.getInfo<CL_KERNEL_PROGRAM>()(), name }).second;
+}
+
+cl::Event OpenCLContext::Launch(const cl::CommandQueue& queue, const cl::Kernel& kernel,
+  const cl::NDRange& items, const cl::NDRange& group)
+{
+  cl::Event event;
+  if (!this->IsNew(kernel, group))
+  {
+    queue.enqueueNDRangeKernel(kernel, cl::NullRange, items, group, nullptr, &event);
+    return event;
+  }
+  queue.finish(); // what is waited for is this launch alone
+  CompilationWatch::Compilation compilation;
+  queue.enqueueNDRangeKernel(kernel, cl::NullRange, items, group, nullptr, &event);
+  event.wait();
+  compilation.Exclude(GetSeconds(event));
+  return event;
+}
+
+void OpenCLContext::Prepare(
+  const cl::CommandQueue& queue, const cl::Kernel& kernel, const cl::NDRange& group)
+{
+  if (this->IsNew(kernel, group))
+  {
+    queue.finish();
+    const CompilationWatch::Compilation compilation;
+    queue.enqueueNDRangeKernel(kernel, cl::NullRange, group, group);
+    queue.finish();
+  }
+}
+
+std::uint64_t OpenCLContext::GetAvailableMemory(std::uint64_t held) const
 {
   const std::uint64_t device = this->Device.Device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
   const std::uint64_t system = this->Device.IsProcessor ? GetSystemMemory() : 0;
-  return system ? std::min(device, system) : device;
-}
-
-std::uint64_t OpenCLContext::GetSystemMemory()
-{
-  std::ifstream file("/proc/meminfo");
-  std::string key;
-  std::uint64_t kibibytes = 0;
-  std::string unit;
-  while (file >> key >> kibibytes >> unit)
-  {
-    if (key == "MemAvailable:")
-    {
-      return kibibytes * 1024;
-    }
-  }
-  return 0;
+  return system ? std::min(device, system + held) : device;
 }
 
 std::string Describe(const cl::Error& error)

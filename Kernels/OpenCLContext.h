@@ -7,11 +7,15 @@
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120
 #include <CL/opencl.hpp>
 
+#include "DeviceRank.h"
+
 #include <cfenv>
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace deformvolume
@@ -22,10 +26,10 @@ struct OpenCLDevice
   cl::Device Device;
   std::string Name; // "device (platform)"
   bool IsProcessor = false;
+  DeviceDescription Description;
 };
 
-/// The devices of this machine, the best first: graphics processors, accelerators, then
-/// processors, each by its number of compute units. Empty where there is no platform.
+/// The devices of this machine, the best first (IsBetter). Empty where there is no platform.
 std::vector<OpenCLDevice> FindDevices();
 
 /// The device for a request in the words of ResolveDevice; throws Error.
@@ -44,19 +48,31 @@ public:
   bool HasExtension(const std::string& name) const;
   cl_uint GetNumberOfUnits() const { return this->NumberOfUnits; }
 
-  /// The program of this text and these options; built at the first request. Throws Error with the
-  /// compiler's log.
+  /// The program of this text and these options; built at the first request, or made of what an
+  /// earlier process has built (ProgramCache). Throws Error with the compiler's log.
   cl::Program GetProgram(const std::string& source, const std::string& options);
 
-  /// Bytes that the device has for us: its memory, and for a processor no more than what the system
-  /// has left.
-  std::uint64_t GetAvailableMemory() const;
+  /// Enqueues a kernel, in a queue that takes the times. Drivers may compile a kernel once more for
+  /// the size of its work-groups: the first launch of a kind is waited for, and what it takes
+  /// before the kernel runs counts as compilation.
+  cl::Event Launch(const cl::CommandQueue& queue, const cl::Kernel& kernel,
+    const cl::NDRange& items, const cl::NDRange& group);
 
-  /// Bytes of memory that the system can still give; 0 where it does not tell.
-  static std::uint64_t GetSystemMemory();
+  /// Runs one work-group of a kernel where no kernel of this kind has been launched: some drivers
+  /// compile when the kernel already counts as running. For kernels that do no harm then.
+  void Prepare(const cl::CommandQueue& queue, const cl::Kernel& kernel, const cl::NDRange& group);
+
+  /// Bytes that the device has for one who holds some of them: its memory, and for a processor no
+  /// more than these and what the system has left.
+  std::uint64_t GetAvailableMemory(std::uint64_t held) const;
 
 private:
   explicit OpenCLContext(const OpenCLDevice& device);
+
+  cl::Program Build(const std::string& source, const std::string& options) const;
+  cl::Program BuildSource(const std::string& source, const std::string& options) const;
+  /// Whether it is the first time that this is asked for such launches.
+  bool IsNew(const cl::Kernel& kernel, const cl::NDRange& group);
 
   OpenCLDevice Device;
   cl::Context Context;
@@ -64,6 +80,7 @@ private:
   cl_uint NumberOfUnits;
   std::mutex Mutex;
   std::map<std::string, cl::Program> Programs;
+  std::set<std::pair<cl_program, std::string>> Launched;
 };
 
 /// What an error of the OpenCL layer means to the user.

@@ -38,11 +38,15 @@ BitsOf<T> GetBits(T value)
   return bits;
 }
 
-/// The group of a kernel whose items have much to do. Groups run on one thread, and drivers for
-/// processors put many items into one.
-cl::NDRange GetGroupOfBusyItems(const OpenCLContext& context)
+/// Launches a kernel over so many items that have much to do. Groups run on one thread, and drivers
+/// for processors put many items into one. Elsewhere items may be more, which the kernel leaves
+/// out: of a prime number drivers would make groups of one item.
+void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
+  const cl::Kernel& kernel, std::size_t items, std::vector<cl::Event>& events)
 {
-  return context.GetDevice().IsProcessor ? cl::NDRange(1) : cl::NDRange(cl::NullRange);
+  const std::size_t group = context.GetDevice().IsProcessor ? 1 : 64;
+  events.push_back(context.Launch(
+    queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group)));
 }
 
 /// Fills a buffer of so many elements. Processors do that with a kernel: see OutputClearing.cl.
@@ -60,9 +64,9 @@ void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffe
       return;
     }
   }
-  events.emplace_back();
   if (!context.GetDevice().IsProcessor)
   {
+    events.emplace_back();
     queue.enqueueFillBuffer(buffer, value, 0, size * sizeof(T), nullptr, &events.back());
     return;
   }
@@ -71,9 +75,8 @@ void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffe
   kernel.setArg(1, cl_ulong{ size });
   kernel.setArg(2, GetBits(value));
   constexpr std::uint64_t step = DEFORMVOLUME_FILLED_BYTES / sizeof(T);
-  queue.enqueueNDRangeKernel(kernel, cl::NullRange,
-    cl::NDRange(static_cast<std::size_t>((size + step - 1) / step)), GetGroupOfBusyItems(context),
-    nullptr, &events.back());
+  LaunchBusyItems(
+    context, queue, kernel, static_cast<std::size_t>((size + step - 1) / step), events);
 }
 
 /// The sum of what a kernel writes for each of its work-items.
@@ -218,6 +221,7 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   const Extent& extent, const DeformRequest& request, const std::vector<VolumeArray>& arrays,
   const Lattice& lattice, std::size_t numberOfBricks, std::vector<cl::Event>& events)
 {
+  this->FinishReading();
   this->Finish();
   this->Queue = queue;
   this->SlabExtent = extent;
@@ -300,9 +304,7 @@ void OutputSlab::Settle(OpenCLContext& context, bool claimed, const KernelParame
   kernel.setArg(4, this->PatchStates);
   kernel.setArg(5, this->Counters);
   kernel.setArg(6, p);
-  events.emplace_back();
-  this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items),
-    GetGroupOfBusyItems(context), nullptr, &events.back());
+  LaunchBusyItems(context, this->Queue, kernel, items, events);
 }
 
 std::size_t OutputSlab::CountItems() const
@@ -319,9 +321,7 @@ std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::E
   kernel.setArg(0, this->Coverage);
   kernel.setArg(1, cl_ulong{ this->NumberOfVoxels });
   kernel.setArg(2, sums);
-  events.emplace_back();
-  this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items),
-    GetGroupOfBusyItems(context), nullptr, &events.back());
+  LaunchBusyItems(context, this->Queue, kernel, items, events);
   return ReadSum(this->Queue, sums, items);
 }
 
@@ -377,10 +377,13 @@ OutputSlab::Counts OutputSlab::ReadCounts()
 
 bool OutputSlab::FitsLanes() const
 {
-  // Positions in 1/256 voxel are exact in float up to 2^24.
+  // Positions in 1/256 voxel are exact in float up to 2^24. Relative to the output they fit 32 bits
+  // where that begins within 2^22 voxels: those at rest lie within 2^21.
+  constexpr int farthest = 1 << 22;
   for (int axis = 0; axis < 3; ++axis)
   {
-    if (GetSize(this->SlabExtent, axis) > 32768)
+    const int first = this->SlabExtent[2 * axis];
+    if (GetSize(this->SlabExtent, axis) > 32768 || first < -farthest || first > farthest)
     {
       return false;
     }
@@ -414,11 +417,11 @@ void OutputSlab::Read(const cl::CommandQueue& queue, const DeformRequest& reques
   const std::uint64_t offset = this->GetOffset(request);
   for (std::size_t i = 0; i < this->Arrays.size(); ++i)
   {
-    this->ReadDone = BeginToRead(queue, this->Arrays[i], this->NumberOfVoxels * this->TupleSizes[i],
-      static_cast<char*>(request.Outputs[i]) + offset * this->TupleSizes[i]);
+    this->Reads.Add(BeginToRead(queue, this->Arrays[i], this->NumberOfVoxels * this->TupleSizes[i],
+      static_cast<char*>(request.Outputs[i]) + offset * this->TupleSizes[i]));
   }
-  this->ReadDone =
-    BeginToRead(queue, this->Coverage, this->NumberOfVoxels, request.Coverage + offset);
+  this->Reads.Add(
+    BeginToRead(queue, this->Coverage, this->NumberOfVoxels, request.Coverage + offset));
   queue.flush();
 }
 
@@ -428,7 +431,7 @@ void OutputSlab::Finish()
   {
     clFinish(this->Queue()); // throws nothing: this is also called after a failure
   }
-  Await(this->ReadDone);
+  this->Reads.Wait();
   for (cl::Buffer& array : this->Arrays)
   {
     Release(array);

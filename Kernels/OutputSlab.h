@@ -92,7 +92,9 @@ public:
   /// Begins to copy the slab, which is done, to its place in the request's memory, in a queue of
   /// its own.
   void Read(const cl::CommandQueue& queue, const DeformRequest& request);
-  /// Waits until the slab is in the request's memory, and lets go of that memory.
+  /// Waits until the slab is in the request's memory. Throws cl::Error where it did not get there.
+  void FinishReading() { this->Reads.Check(); }
+  /// Waits, whatever has happened, and lets go of the request's memory. Throws nothing.
   void Finish();
 
   std::uint64_t GetMemory() const;
@@ -109,7 +111,6 @@ private:
     std::uint64_t size, std::vector<cl::Event>& events) const;
 
   cl::CommandQueue Queue;
-  cl::Event ReadDone; // while the slab is copied
   Extent SlabExtent{ { 0, -1, 0, -1, 0, -1 } };
   Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } }; // of the output
   std::vector<cl::Buffer> Arrays;
@@ -122,6 +123,7 @@ private:
   std::size_t WinnerSize = 4;
   std::size_t NumberOfSections = 0; // of bricks
   std::uint64_t NumberOfVoxels = 0;
+  PendingReads Reads; // last: they end before the buffers do
 };
 
 } // namespace deformvolume

@@ -3,6 +3,7 @@
 #define DeformVolumePointSet_h
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -10,8 +11,7 @@
 namespace deformvolume
 {
 
-/// Some of the points of a deformation, a bit each. Words of different points may be set side by
-/// side.
+/// Some of the points of a deformation, a bit each. Points may be added side by side.
 class PointSet
 {
 public:
@@ -20,16 +20,26 @@ public:
   /// None of so many points.
   void Clear(std::size_t count)
   {
-    this->Words.assign((count + PointsPerWord - 1) / PointsPerWord, 0);
+    std::vector<Word>((count + PointsPerWord - 1) / PointsPerWord).swap(this->Words);
   }
 
   /// Bit k: point PointsPerWord * word + k.
-  void SetWord(std::size_t word, std::uint64_t bits) { this->Words[word] = bits; }
+  void AddWord(std::size_t word, std::uint64_t bits)
+  {
+    if (bits)
+    {
+      this->Words[word].Bits.fetch_or(bits, std::memory_order_relaxed);
+    }
+  }
+  void Add(std::size_t point)
+  {
+    this->AddWord(point / PointsPerWord, std::uint64_t{ 1 } << point % PointsPerWord);
+  }
 
   /// The first one and one past the last, or a few points more; begin = end: there are none.
   void GetEnds(std::size_t& begin, std::size_t& end) const
   {
-    const auto isSet = [](std::uint64_t word) { return word != 0; };
+    const auto isSet = [](const Word& word) { return word.Get() != 0; };
     const auto first = std::find_if(this->Words.begin(), this->Words.end(), isSet);
     const auto last = std::find_if(this->Words.rbegin(), this->Words.rend(), isSet).base();
     begin = PointsPerWord * static_cast<std::size_t>(first - this->Words.begin());
@@ -44,7 +54,7 @@ public:
     {
       const std::size_t first = begin % PointsPerWord;
       const std::size_t count = std::min(PointsPerWord - first, end - begin);
-      if (this->Words[begin / PointsPerWord] >> first << (PointsPerWord - count))
+      if (this->Words[begin / PointsPerWord].Get() >> first << (PointsPerWord - count))
       {
         return true;
       }
@@ -54,7 +64,12 @@ public:
   }
 
 private:
-  std::vector<std::uint64_t> Words;
+  struct Word
+  {
+    std::uint64_t Get() const { return this->Bits.load(std::memory_order_relaxed); }
+    std::atomic<std::uint64_t> Bits{ 0 };
+  };
+  std::vector<Word> Words;
 };
 
 } // namespace deformvolume

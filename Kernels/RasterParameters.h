@@ -27,6 +27,9 @@
 #define DEFORMVOLUME_TILE_OVERLAPS 1 // whether tetrahedra overlap
 #define DEFORMVOLUME_TILE_COUNTERS 2
 
+// Points of a field by which a voxel may lie outside it.
+#define DEFORMVOLUME_LOOKUP_TOLERANCE (1.0 / 1024)
+
 #ifndef __OPENCL_VERSION__
 namespace deformvolume
 {
@@ -51,6 +54,16 @@ typedef struct
   float InverseScale[3];
   float InverseScaleRest[3];
 } RasterParameters;
+
+// An inverse displacement field. OutputToField: row-major 3 x 4, from the index of an output voxel
+// to a continuous index of the field; a sum of two floats.
+typedef struct
+{
+  float OutputToField[12];
+  float OutputToFieldRest[12];
+  int Dimensions[3];
+  int Extrapolate; // whether voxels outside the field follow its border
+} LookupParameters;
 
 #ifndef __OPENCL_VERSION__
 } // namespace deformvolume

@@ -52,7 +52,7 @@ void RasterTarget::Read(const cl::CommandQueue& queue)
 {
   for (const Part& part : this->Parts)
   {
-    this->ReadDone = BeginToRead(queue, part.Buffer, part.Bytes, part.Memory);
+    this->Reads.Add(BeginToRead(queue, part.Buffer, part.Bytes, part.Memory));
   }
   queue.flush();
 }

@@ -18,7 +18,6 @@ public:
   /// The request must outlive the object.
   RasterTarget(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
     const DeformRequest& request, const Extent& slab);
-  ~RasterTarget() { Await(this->ReadDone); }
   RasterTarget(const RasterTarget&) = delete;
   RasterTarget& operator=(const RasterTarget&) = delete;
 
@@ -27,9 +26,10 @@ public:
   /// Eight bytes an array, the first of which are the background in the array's type.
   const cl::Buffer& GetBackgrounds() const { return this->Backgrounds; }
 
-  /// Begins to copy the slab, which is done, in a queue of its own. The request has its voxels when
-  /// that has finished.
+  /// Begins to copy the slab, which is done, in a queue of its own. The request has its voxels
+  /// after FinishReading, which throws cl::Error where that has failed.
   void Read(const cl::CommandQueue& queue);
+  void FinishReading() { this->Reads.Check(); }
 
 private:
   struct Part
@@ -40,11 +40,11 @@ private:
   };
   void AddPart(OpenCLContext& context, void* memory, std::uint64_t tuple, std::size_t elementSize);
 
-  cl::Event ReadDone;       // while the slab is copied
   std::uint64_t FirstVoxel; // of the slab in the output
   std::uint64_t NumberOfVoxels;
   std::vector<Part> Parts;
   cl::Buffer Backgrounds;
+  PendingReads Reads; // last: they end before the buffers do
 };
 
 } // namespace deformvolume

@@ -281,6 +281,7 @@ static void AddCounts(
   }
 }
 
+#if HAS_CELL_KERNEL
 // A work-group takes a block of cells. positions: room for three ints a vertex of the block.
 __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   __global const uchar* active, __global char* coverage, __global KEY* winners,
@@ -297,7 +298,8 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
     const int x = first[0] + i % width;
     const int y = first[1] + i / width % height;
     const int z = first[2] + i / (width * height);
-    const int4 q = x < p.Size[0] && y < p.Size[1] && z <= p.LayersEnd
+    // Cells beyond the launch's last layer are looked at where samples lie on the border of the mesh.
+    const int4 q = x < p.Size[0] && y < p.Size[1] && z < p.Size[2] && z <= p.LayersEnd + 1
       ? VertexPosition(&unmapped, x, y, z, &p)
       : (int4)(INT_MIN, 0, 0, 0);
     positions[3 * i] = q.x;
@@ -328,3 +330,4 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
     p.BrickCount[0];
   AddCounts(&output, DEFORMVOLUME_SECTIONS * (size_t)brick, counters, &p);
 }
+#endif

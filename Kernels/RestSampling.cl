@@ -358,3 +358,17 @@ static __attribute__((always_inline)) void SampleTile(VoxelBox tile, const int* 
 #endif
   }
 }
+
+// Counts what a tile covers, and tells whether tetrahedra overlap there, in the counters of the tile.
+// By one work-item, when all rows are there.
+static inline void CountTile(
+  __local const uint* covered, uint overlaps, __global uint* tileCounters)
+{
+  uint sum = 0;
+  for (int row = 0; row < DEFORMVOLUME_TILE_ROWS; ++row)
+  {
+    sum += popcount(covered[row]);
+  }
+  tileCounters[DEFORMVOLUME_TILE_COVERED] = sum;
+  tileCounters[DEFORMVOLUME_TILE_OVERLAPS] = overlaps;
+}

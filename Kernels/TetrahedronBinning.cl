@@ -38,6 +38,25 @@ static int IsEmpty(VoxelBox box)
   return box.Low.x > box.High.x || box.Low.y > box.High.y || box.Low.z > box.High.z;
 }
 
+// The voxels of the output in a tile, and the tile's first voxel, which may lie before the output.
+static VoxelBox GetTile(int index, int* origin, const RasterParameters* p)
+{
+  origin[0] = (p->TileFirst[0] + index % p->TileCount[0]) * (1 << DEFORMVOLUME_TILE_BITS_X);
+  origin[1] = (p->TileFirst[1] + index / p->TileCount[0] % p->TileCount[1]) *
+    (1 << DEFORMVOLUME_TILE_BITS_Y);
+  origin[2] = (p->TileFirst[2] + index / p->TileCount[0] / p->TileCount[1]) *
+    (1 << DEFORMVOLUME_TILE_BITS_Z);
+  const int4 corner = { origin[0], origin[1], origin[2], 0 };
+  const int4 outputFirst = { p->OutputFirst[0], p->OutputFirst[1], p->OutputFirst[2], 0 };
+  const int4 outputSize = { p->OutputSize[0], p->OutputSize[1], p->OutputSize[2], 1 };
+  const int4 tileSize = { 1 << DEFORMVOLUME_TILE_BITS_X, 1 << DEFORMVOLUME_TILE_BITS_Y,
+    1 << DEFORMVOLUME_TILE_BITS_Z, 1 };
+  VoxelBox tile;
+  tile.Low = max(corner, outputFirst);
+  tile.High = min(corner + tileSize, outputFirst + outputSize) - 1;
+  return tile;
+}
+
 // A tetrahedron as far as binning goes.
 typedef struct
 {

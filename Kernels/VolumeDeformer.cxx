@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VolumeDeformer.h"
 
+#include "CompilationWatch.h"
+#include "SystemMemory.h"
 #include "VertexRuns.h"
 #include "VolumeDeformerInternals.h"
 
@@ -33,24 +35,6 @@ std::uint64_t GetMappingBytes(const Lattice& lattice, bool field, std::uint64_t 
     : runBytes
     ? runBytes
     : static_cast<std::uint64_t>(GetNumberOfPoints(lattice.VertexExtent)) * sizeof(VertexLink);
-}
-
-/// Finds out whether the voxels are points of a field.
-void SetSameGrid(FieldParameters& field, const Extent& extent)
-{
-  field.SameGrid = 1;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    for (int column = 0; column < 3; ++column)
-    {
-      field.SameGrid &= field.IndexToField[4 * axis + column] == (axis == column ? 1.0F : 0.0F);
-    }
-    const float offset = field.IndexToField[4 * axis + 3] + static_cast<float>(field.First[axis]);
-    field.SameGrid &= offset == std::floor(offset) && offset >= 0.0F &&
-      offset + static_cast<float>(GetSize(extent, axis)) <=
-        static_cast<float>(field.Dimensions[axis]);
-    field.Offset[axis] = field.SameGrid ? static_cast<int>(offset) : 0;
-  }
 }
 
 } // namespace
@@ -164,7 +148,7 @@ void VolumeDeformer::CheckMemories(const std::vector<VolumeArray>& arrays,
   // A processor works in the memory of the output.
   const std::uint64_t needed = checkDevice(shared ? 0 : tuple + 1).Needed;
   // What the caller holds, in the memory of the system, which a processor shares with its device.
-  const std::uint64_t system = OpenCLContext::GetSystemMemory();
+  const std::uint64_t system = GetSystemMemory();
   if (system > 0)
   {
     const std::uint64_t host =
@@ -214,7 +198,9 @@ void VolumeDeformer::SetArrays(const std::vector<VolumeArray>& arrays)
     [&]
     {
       this->Impl->Update.Forget();
-      this->Impl->GetMesh().SetArrays(arrays);
+      DeviceLattice& mesh = this->Impl->GetMesh();
+      this->Impl->Arrays.clear(); // there are none if this fails
+      mesh.SetArrays(arrays);
       this->Impl->Arrays = arrays;
       for (VolumeArray& array : this->Impl->Arrays)
       {
@@ -282,8 +268,11 @@ void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOf
     {
       CheckLinks(links, GetNumberOfPoints(this->Impl->GetMesh().GetLattice().VertexExtent),
         numberOfTetrahedra);
-      this->Impl->GetMesh().SetLinks(links);
-      this->Impl->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes);
+      DeviceLattice& mesh = this->Impl->GetMesh();
+      MeshOrder order =
+        FindOrder(mesh.GetBricks(), links, tetrahedra, numberOfTetrahedra, numberOfNodes);
+      mesh.SetLinks(links, order);
+      this->Impl->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes, std::move(order));
     });
 }
 
@@ -299,8 +288,9 @@ void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOf
     [&]
     {
       CheckRuns(runs, this->Impl->GetMesh().GetLattice(), numberOfTetrahedra);
-      this->Impl->GetMesh().SetRuns(runs);
-      this->Impl->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes);
+      MeshOrder order = FindOrder(runs, tetrahedra, numberOfTetrahedra, numberOfNodes);
+      this->Impl->GetMesh().SetRuns(runs, order);
+      this->Impl->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes, std::move(order));
     });
 }
 
@@ -324,85 +314,25 @@ void VolumeDeformer::SetNodeDisplacements(const float* displacements, const Poin
           this->Impl->GetMesh().GetLattice().Scale);
         return;
       }
-      this->Impl->SendVectors(displacements, this->Impl->NumberOfNodes, this->Impl->Nodes, news);
+      this->Impl->SendVectors(
+        displacements, this->Impl->NumberOfNodes, this->Impl->NodeNumbers, this->Impl->Nodes, news);
       this->Impl->NodesSet = true;
       this->Impl->LastVectorsSent = true;
       this->Impl->GetMesh().ForgetRecords();
     });
 }
 
-void VolumeDeformer::SetDisplacementField(
-  const DisplacementField& field, const PointRanges* changes)
-{
-  const std::size_t points = static_cast<std::size_t>(std::max(field.Dimensions[0], 0)) *
-    static_cast<std::size_t>(std::max(field.Dimensions[1], 0)) *
-    static_cast<std::size_t>(std::max(field.Dimensions[2], 0));
-  if (points == 0 || !field.Vectors)
-  {
-    throw Error("The displacement field is empty.");
-  }
-  this->Impl->Send(
-    [&]
-    {
-      FieldParameters parameters = {};
-      for (int i = 0; i < 12; ++i)
-      {
-        parameters.IndexToField[i] = static_cast<float>(field.IndexToField[i]);
-      }
-      // The kernels count from the first voxel of the whole volume: large structured indices do
-      // not fit into a float, and a part must round as the whole does.
-      const Lattice& lattice = this->Impl->GetMesh().GetLattice();
-      const Extent& extent = lattice.VertexExtent;
-      const Extent& whole =
-        GetNumberOfPoints(lattice.WholeExtent) > 0 ? lattice.WholeExtent : extent;
-      for (int row = 0; row < 3; ++row)
-      {
-        const double* m = &field.IndexToField[4 * row];
-        parameters.IndexToField[4 * row + 3] =
-          static_cast<float>(m[0] * whole[0] + m[1] * whole[2] + m[2] * whole[4] + m[3]);
-        parameters.First[row] = extent[2 * row] - whole[2 * row];
-      }
-      std::copy_n(field.Dimensions.begin(), 3, parameters.Dimensions);
-      parameters.Extrapolate = field.Extrapolate;
-      SetSameGrid(parameters, extent);
-      DeviceLattice& mesh = this->Impl->GetMesh();
-      this->Impl->Rasterizer.Clear();
-      if (mesh.HasMesh())
-      {
-        mesh.ForgetMesh();
-      }
-      const bool same = this->Impl->FieldVectors() &&
-        std::equal(
-          parameters.IndexToField, parameters.IndexToField + 12, this->Impl->Field.IndexToField) &&
-        std::equal(
-          parameters.Dimensions, parameters.Dimensions + 3, this->Impl->Field.Dimensions) &&
-        parameters.Extrapolate == this->Impl->Field.Extrapolate;
-      if (!same)
-      {
-        this->Impl->Update.ForgetMapping();
-        mesh.ForgetState();
-      }
-      const PointRanges* news = this->Impl->LastVectorsSent &&
-          GetMemory(this->Impl->FieldVectors) == 4 * points * sizeof(float) &&
-          std::equal(parameters.Dimensions, parameters.Dimensions + 3, this->Impl->Field.Dimensions)
-        ? changes
-        : nullptr;
-      this->Impl->LastVectorsSent = false;
-      Internals::CheckVectors(field.Vectors, points, "point", news);
-      if (4 * points * sizeof(float) > this->Impl->GetAllocationLimit())
-      {
-        throw Error("The displacement field is larger than the device can hold in one piece. Use a "
-                    "coarser field or another device.");
-      }
-      this->Impl->Field = parameters;
-      this->Impl->SendVectors(field.Vectors, points, this->Impl->FieldVectors, news);
-      this->Impl->LastVectorsSent = true;
-    });
-}
-
 DeformReport VolumeDeformer::Deform(const DeformRequest& request)
 {
   this->Impl->CheckRequest(request);
+  const CompilationWatch compilation(request.Compiling);
+  DeformReport report = this->Execute(request);
+  report.CompilationTime = compilation.GetSeconds();
+  return report;
+}
+
+DeformReport VolumeDeformer::Execute(const DeformRequest& request)
+{
   const DeviceLattice& mesh = this->Impl->GetMesh();
   if (request.Method == Resampling::MeshRasterization)
   {

@@ -131,8 +131,18 @@ using PointRanges = std::vector<std::array<std::size_t, 2>>;
 struct DisplacementField
 {
   std::array<int, 3> Dimensions{ { 0, 0, 0 } };
-  /// Three floats a point: displacements in output voxels, x varying fastest.
+  /// Three floats a point, x varying fastest.
   const float* Vectors = nullptr;
+  /// Row-major 3 x 3 matrix that takes a vector to a displacement in output voxels. It is applied
+  /// in double precision, and the result rounded to float.
+  std::array<double, 9> ToDisplacement{ { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };
+  /// What keeps Vectors where they are and as they are. With it a device that is a processor, and
+  /// has double precision, reads Vectors where they lie, at each Deform(), where each voxel is a
+  /// point of the field, and holds the owner until it has another deformation. They are not
+  /// checked then: tetrahedra with displacements that are not finite, or too large, are skipped.
+  /// Nor are they compared: all is made anew where they are set again. Else Vectors are checked,
+  /// converted and copied during the call. Null by default.
+  std::shared_ptr<const void> Owner;
   /// Row-major 3 x 4 matrix that takes a structured index of the volume to a continuous index of
   /// the field, 0 being the field's first point.
   std::array<double, 12> IndexToField{ { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 } };
@@ -140,6 +150,37 @@ struct DisplacementField
   /// False: they are discarded.
   bool Extrapolate = false;
 };
+
+/// The points of a field; 0 where it has none on an axis.
+inline std::int64_t GetNumberOfPoints(const DisplacementField& field)
+{
+  std::int64_t points = 1;
+  for (const int dimension : field.Dimensions)
+  {
+    points *= dimension > 0 ? dimension : 0;
+  }
+  return points;
+}
+
+/// Whether displacements are the vectors of a field as they are.
+inline bool HasDisplacements(const DisplacementField& field)
+{
+  return field.ToDisplacement == DisplacementField().ToDisplacement;
+}
+
+/// The displacement of a point of a field, to the last bit as the kernels have it.
+inline std::array<float, 3> GetDisplacement(const DisplacementField& field, std::int64_t point)
+{
+  const float* vector = field.Vectors + 3 * point;
+  std::array<float, 3> displacement;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double* row = &field.ToDisplacement[3 * axis];
+    displacement[axis] = static_cast<float>(row[0] * static_cast<double>(vector[0]) +
+      row[1] * static_cast<double>(vector[1]) + row[2] * static_cast<double>(vector[2]));
+  }
+  return displacement;
+}
 
 enum class Resampling
 {
@@ -149,15 +190,15 @@ enum class Resampling
   /// The same with the kernel that takes one cell after the other: any arrays, any device.
   ExactByCell,
   /// The same with the kernel for processors, several cells in the lanes of vector registers: any
-  /// arrays; an Error where the output is over 32,768 voxels on an axis, or 2^31 altogether, and
-  /// where the device has less local memory than the kernel takes, some 100 kilobytes. Linear
+  /// arrays; an Error where the output is over 32,768 voxels on an axis, or 2^31 altogether. Linear
   /// arrays of one component, of float or integers of 8 or 16 bits, are interpolated in single
   /// precision.
   ExactByLanes,
   /// The published kernel, kept as the yardstick of benchmarks: float tolerance, racing writes.
   Published,
   /// The tetrahedra of the deformation mesh themselves are rasterised, and the volume is looked up
-  /// at the interpolated rest coordinate (MeshRasterizer.h). Goes with SetRestMesh.
+  /// at the interpolated rest coordinate (MeshRasterizer.h). Goes with SetRestMesh, and with
+  /// SetInverseField, where the field says the rest coordinate.
   MeshRasterization
 };
 
@@ -195,6 +236,9 @@ struct DeformRequest
   const signed char* LastCoverage = nullptr;
   /// Called between launches with the fraction done, 0 to 1; returning false aborts the work.
   std::function<bool(double)> Progress;
+  /// Called with true before kernels are compiled, which may take many seconds, and with false
+  /// after. In the thread that called Deform().
+  std::function<void(bool)> Compiling;
 };
 
 struct DeformReport
@@ -220,6 +264,8 @@ struct DeformReport
   double MappingTime = 0.0;
   double ResamplingTime = 0.0;
   double TransferTime = 0.0;
+  /// The compilation of kernels; it is part of no other time.
+  double CompilationTime = 0.0;
 };
 
 /// Deforms a volume on an OpenCL device: keeps the volume, its sampling mesh and the static
@@ -264,7 +310,8 @@ public:
     const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
     bool field, std::uint64_t runBytes = 0, std::uint64_t heldBytes = 0) const;
 
-  /// The same for MeshRasterization, which needs neither links nor runs.
+  /// The same for MeshRasterization, which needs neither links nor runs. With an inverse field
+  /// numberOfNodes are its points, and there are no tetrahedra.
   void CheckRasterizationMemory(const Lattice& lattice, const std::vector<VolumeArray>& arrays,
     const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
     std::uint64_t heldBytes = 0) const;
@@ -297,6 +344,10 @@ public:
   /// node, continuous indices of the volume.
   void SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const double* restNodes);
+  /// An inverse displacement field for MeshRasterization, in place of SetRestMesh: its vectors, in
+  /// output voxels, lead from a point of the output to the point of the volume at rest that is seen
+  /// there, and IndexToField takes an index of the output.
+  void SetInverseField(const DisplacementField& field);
   /// Displacements of the nodes, three floats each, in output voxels. changes: all others are those
   /// of the last call, and are not looked at, if there was one for this mesh and it did not fail.
   /// Null: any may have changed.
@@ -314,6 +365,8 @@ public:
   void ReleaseMemory();
 
 private:
+  DeformReport Execute(const DeformRequest& request);
+
   /// Bytes on the device.
   struct DeviceMemory
   {

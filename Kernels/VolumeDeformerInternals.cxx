@@ -48,8 +48,10 @@ void VolumeDeformer::Internals::Forget()
   this->Arrays.clear();
   this->Tetrahedra = cl::Buffer();
   this->Nodes = cl::Buffer();
-  this->FieldVectors = cl::Buffer();
+  this->NodeNumbers.clear();
+  this->ForgetField();
   this->Positions = cl::Buffer();
+  this->BrickRows = cl::Buffer();
   this->Targets = {};
   this->Update = IncrementalUpdate();
   this->Rasterizer.Clear();
@@ -103,7 +105,8 @@ std::uint64_t VolumeDeformer::Internals::GetHeldMemory() const
 {
   return (this->Mesh ? this->Mesh->GetMemory() : 0) + GetMemory(this->Tetrahedra) +
     GetMemory(this->Nodes) + this->Rasterizer.GetMemory() + GetMemory(this->FieldVectors) +
-    GetMemory(this->Positions) + this->Targets[0].GetMemory() + this->Targets[1].GetMemory();
+    GetMemory(this->Positions) + GetMemory(this->BrickRows) + this->Targets[0].GetMemory() +
+    this->Targets[1].GetMemory();
 }
 
 std::uint64_t VolumeDeformer::Internals::GetUsableMemory()
@@ -111,8 +114,9 @@ std::uint64_t VolumeDeformer::Internals::GetUsableMemory()
   return this->Guard(
     [&]
     {
-      const std::uint64_t device = this->GetContext().GetAvailableMemory();
-      return this->MemoryLimit ? this->MemoryLimit : device + this->GetHeldMemory();
+      const OpenCLContext& context = this->GetContext();
+      return this->MemoryLimit ? this->MemoryLimit
+                               : context.GetAvailableMemory(this->GetHeldMemory());
     });
 }
 
@@ -140,8 +144,8 @@ cl::Buffer VolumeDeformer::Internals::SendBuffer(
   return buffer;
 }
 
-void VolumeDeformer::Internals::SendTetrahedra(
-  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes)
+void VolumeDeformer::Internals::SendTetrahedra(const Tetrahedron* tetrahedra,
+  std::size_t numberOfTetrahedra, std::size_t numberOfNodes, MeshOrder&& order)
 {
   static_assert(DEFORMVOLUME_NODE_PLACES == 2, "as the message says");
   if (numberOfNodes > std::size_t{ 1 } << 30)
@@ -149,13 +153,14 @@ void VolumeDeformer::Internals::SendTetrahedra(
     throw Error("The deformation mesh has more than 2^30 nodes. Use a coarser mesh.");
   }
   this->NumberOfTetrahedra = numberOfTetrahedra;
-  const std::vector<Tetrahedron> places = NameNodePlaces(tetrahedra, numberOfTetrahedra);
+  const std::vector<Tetrahedron> places = NameNodePlaces(tetrahedra, numberOfTetrahedra, order);
   this->Tetrahedra =
     this->SendBuffer(places.data(), numberOfTetrahedra * sizeof(Tetrahedron), this->Tetrahedra);
   this->NumberOfNodes = numberOfNodes;
+  this->NodeNumbers = std::move(order.Nodes);
   this->NodesSet = false;
   this->LastVectorsSent = false;
-  this->FieldVectors = cl::Buffer();
+  this->ForgetField();
   this->Update.ForgetMapping();
   this->Rasterizer.Clear();
 }
@@ -192,17 +197,9 @@ bool VolumeDeformer::Internals::UseLanes(Resampling method, const OutputSlab& ou
   {
     throw Error(
       "The resampling by lanes takes only outputs under 2^31 voxels, and of at most 32,768 "
-      "on an axis.");
+      "on an axis, that begin within 2^22 voxels of index 0.");
   }
-  const std::uint64_t needed = GetBrickMemory(*this->Context, this->Arrays);
-  const std::uint64_t available =
-    this->Context->GetDevice().Device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
-  if (method == Resampling::ExactByLanes && needed > available)
-  {
-    throw Error("The resampling by lanes needs " + std::to_string(needed) +
-      " bytes of local memory, and the device has " + std::to_string(available) + ".");
-  }
-  return fits && needed <= available &&
+  return fits &&
     (method == Resampling::ExactByLanes ||
       (method == Resampling::Exact && this->Context->GetDevice().IsProcessor));
 }
@@ -211,6 +208,7 @@ MappingForm VolumeDeformer::Internals::GetMappingForm() const
 {
   return this->Mesh->HasRuns() ? MappingForm::Runs
     : this->Mesh->HasMesh()    ? MappingForm::Links
+    : this->FieldInPlace.Owner ? MappingForm::FieldInPlace
                                : MappingForm::Field;
 }
 
@@ -264,7 +262,10 @@ void VolumeDeformer::Internals::DeformSlabs(
     target.Read(this->ReadQueue, request);
     if (!overlapped || s + 1 == slabs.size())
     {
-      this->ReadQueue.finish();
+      for (OutputSlab& read : this->Targets)
+      {
+        read.FinishReading();
+      }
     }
     report.TransferTime += std::chrono::duration<double>(Clock::now() - begin).count();
   }

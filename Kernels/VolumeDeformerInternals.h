@@ -19,6 +19,9 @@ namespace deformvolume
 /// Throws an Error that names the bytes where there are too few.
 void CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where);
 
+/// Points of a field. Throws an Error where it has none.
+std::size_t CountPoints(const DisplacementField& field);
+
 /// Throws an Error where a tetrahedron has a node that is none: the kernels trust these indices,
 /// and a wrong one would read beyond a buffer.
 void CheckIndices(const Tetrahedron* tetrahedra, std::size_t count, std::size_t numberOfNodes);
@@ -73,8 +76,8 @@ public:
 
   cl::Buffer SendBuffer(const void* data, std::size_t bytes, const cl::Buffer& previous);
 
-  void SendTetrahedra(
-    const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
+  void SendTetrahedra(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, MeshOrder&& order);
 
   bool UseLanes(Resampling method, const OutputSlab& output) const;
   void CheckRequest(const DeformRequest& request);
@@ -99,6 +102,9 @@ public:
   std::vector<PlannedLaunch> PlanLaunches(
     const OutputSlab& output, int pass, std::vector<cl_uint>* bricks) const;
   void RunExact(const DeformRequest& request, OutputSlab& output, int pass);
+  /// Has a resampling kernel compiled before it runs (OpenCLContext::Prepare).
+  void PrepareKernel(cl::Kernel& kernel, const LatticeChunk& chunk, const OutputSlab& output,
+    bool lanes, const KernelParameters& parameters);
   void LaunchBricks(cl::Kernel& kernel, const KernelParameters& p);
   void LaunchCells(cl::Kernel& kernel, const KernelParameters& p);
   void RunBricks(
@@ -106,6 +112,7 @@ public:
   /// Waits for the launch before the last one, so that the device always has work, and reports.
   void ReportLaunch(const DeformRequest& request, cl::Event& previous);
   std::size_t GetGroupSize(const cl::Kernel& kernel) const;
+  std::size_t GetCellGroup(const cl::Kernel& kernel) const;
   /// Cell layers in a launch, whole bricks of them: few enough that progress is reported, and
   /// enough that processors are not kept waiting at its end.
   int GetLayersPerLaunch() const;
@@ -120,8 +127,14 @@ public:
   /// changes: see VolumeDeformer::SetNodeDisplacements.
   static void CheckVectors(
     const float* vectors, std::size_t count, const char* what, const PointRanges* changes);
-  void SendVectors(
-    const float* vectors, std::size_t count, cl::Buffer& buffer, const PointRanges* changes);
+  /// numbers: what the device calls each vector, empty: as it comes.
+  void SendVectors(const float* vectors, std::size_t count,
+    const std::vector<std::int32_t>& numbers, cl::Buffer& buffer, const PointRanges* changes);
+  /// Displacement fields; in VolumeDeformerField.cxx.
+  /// Whether the vectors of a field can be read where they lie, and what has them read there.
+  bool CanReadInPlace(const DisplacementField& field, const FieldParameters& parameters);
+  void SetFieldInPlace(const DisplacementField& field);
+  void ForgetField();
   void PrepareBrickPoints();
   void TellMask(const unsigned char* next, bool ofCells);
   /// See IncrementalUpdate::IsInside.
@@ -146,14 +159,17 @@ public:
   std::vector<VolumeArray> Arrays; // their Data is not used after it was sent
   cl::Buffer Tetrahedra;
   cl::Buffer Nodes;
+  std::vector<std::int32_t> NodeNumbers; // see MeshOrder
   std::size_t NumberOfNodes = 0;
   std::size_t NumberOfTetrahedra = 0;
   bool NodesSet = false;
   bool LastVectorsSent = false; // the last displacements that were given are on the device
   FieldParameters Field = {};
   cl::Buffer FieldVectors;
+  DisplacementField FieldInPlace; // with an owner, where FieldVectors lies over its vectors
   cl::Buffer Positions;
   cl::Buffer Bricks;      // the list of those to work on
+  cl::Buffer BrickRows;   // what these need, where local memory is too small
   cl::Buffer TakenBricks; // how many of these the launch that runs has taken
   /// Work on one slab goes on while the other is copied to the caller.
   std::array<OutputSlab, 2> Targets;

@@ -23,10 +23,8 @@ void VolumeDeformer::Internals::Map(const LatticeChunk& chunk, const KernelParam
   kernel.setArg(i++, this->Mesh->GetState(chunk));
   kernel.setArg(i++, this->Positions);
   kernel.setArg(i++, p);
-  this->MappingEvents.emplace_back();
-  this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
-    this->Mesh->GetVertexRange(p.PlanesEnd - p.PlanesBegin), this->Mesh->GetVertexGroup(), nullptr,
-    &this->MappingEvents.back());
+  this->MappingEvents.push_back(this->Context->Launch(this->Queue, kernel,
+    this->Mesh->GetVertexRange(p.PlanesEnd - p.PlanesBegin), this->Mesh->GetVertexGroup()));
 }
 
 std::size_t VolumeDeformer::Internals::GetGroupSize(const cl::Kernel& kernel) const
@@ -39,9 +37,7 @@ std::size_t VolumeDeformer::Internals::GetGroupSize(const cl::Kernel& kernel) co
 void VolumeDeformer::Internals::Launch(
   cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group)
 {
-  this->ResamplingEvents.emplace_back();
-  this->Queue.enqueueNDRangeKernel(
-    kernel, cl::NullRange, items, group, nullptr, &this->ResamplingEvents.back());
+  this->ResamplingEvents.push_back(this->Context->Launch(this->Queue, kernel, items, group));
   this->Queue.flush();
 }
 
@@ -96,8 +92,14 @@ void VolumeDeformer::Internals::RunPublished(const DeformRequest& request, Outpu
 
 cl::Kernel VolumeDeformer::Internals::MakeResamplingKernel(bool lanes)
 {
+  if (lanes && !HasLocalBricks(*this->Context))
+  {
+    Reserve(*this->Context, this->BrickRows,
+      std::uint64_t{ this->Context->GetNumberOfUnits() } *
+        GetBrickMemory(*this->Context, this->Arrays));
+  }
   return cl::Kernel(GetResamplingProgram(*this->Context, this->GetMappingForm(), this->Arrays,
-                      GetWinnerSize(this->Mesh->GetLattice()) == 8),
+                      GetWinnerSize(this->Mesh->GetLattice()) == 8, lanes),
     lanes ? "ResampleBricks" : "Resample");
 }
 
@@ -115,7 +117,14 @@ void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
   {
     kernel.setArg(i++, this->Bricks);
     kernel.setArg(i++, this->TakenBricks);
-    kernel.setArg(i++, cl::Local(GetBrickMemory(*this->Context, this->Arrays)));
+    if (HasLocalBricks(*this->Context))
+    {
+      kernel.setArg(i++, cl::Local(GetBrickMemory(*this->Context, this->Arrays)));
+    }
+    else
+    {
+      kernel.setArg(i++, this->BrickRows);
+    }
   }
   else
   {
@@ -127,6 +136,25 @@ void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
     kernel.setArg(i++, chunk.Arrays[a]);
     kernel.setArg(i++, output.GetArray(a));
   }
+}
+
+void VolumeDeformer::Internals::PrepareKernel(cl::Kernel& kernel, const LatticeChunk& chunk,
+  const OutputSlab& output, bool lanes, const KernelParameters& parameters)
+{
+  // One that has no brick and no layer of cells to work on.
+  KernelParameters p = parameters;
+  p.ListBegin = p.ListEnd = 0;
+  p.LayersEnd = p.LayersBegin;
+  this->SetResamplingArguments(kernel, chunk, output, lanes, p);
+  this->Context->Prepare(
+    this->Queue, kernel, lanes ? cl::NDRange(1) : cl::NDRange(this->GetCellGroup(kernel), 1, 1));
+}
+
+std::size_t VolumeDeformer::Internals::GetCellGroup(const cl::Kernel& kernel) const
+{
+  // A work-group takes a block; on a processor its only item does.
+  const bool processor = this->Context->GetDevice().IsProcessor;
+  return processor && !this->WorkGroupSize ? 1 : this->GetGroupSize(kernel);
 }
 
 void VolumeDeformer::Internals::LaunchBricks(cl::Kernel& kernel, const KernelParameters& p)
@@ -151,6 +179,7 @@ void VolumeDeformer::Internals::RunBricks(
   KernelParameters p = this->Mesh->GetParameters(chunk);
   p.Pass = pass;
   output.SetParameters(p);
+  this->PrepareKernel(kernel, chunk, output, true, p);
   // As many in a launch as there are when all are run.
   const std::size_t step = static_cast<std::size_t>(p.BrickCount[0]) *
     static_cast<std::size_t>(p.BrickCount[1]) *
@@ -203,9 +232,7 @@ std::vector<VolumeDeformer::Internals::PlannedLaunch> VolumeDeformer::Internals:
 
 void VolumeDeformer::Internals::LaunchCells(cl::Kernel& kernel, const KernelParameters& p)
 {
-  // A work-group takes a block; on a processor its only item does.
-  const bool processor = this->Context->GetDevice().IsProcessor;
-  const std::size_t group = processor && !this->WorkGroupSize ? 1 : this->GetGroupSize(kernel);
+  const std::size_t group = this->GetCellGroup(kernel);
   const auto count = [](int cells, int size)
   { return static_cast<std::size_t>((cells + size - 1) / size); };
   this->Launch(kernel,
@@ -230,6 +257,7 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
   {
     this->Bricks = this->SendBuffer(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
   }
+  this->PrepareKernel(kernel, launches.front().Chunk, output, lanes, launches.front().Parameters);
   cl::Event previous;
   for (const auto& [chunk, p] : launches)
   {

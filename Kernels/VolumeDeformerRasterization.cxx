@@ -22,8 +22,8 @@ void VolumeDeformer::Internals::CheckRasterization(const DeformRequest& request)
   if (!this->Rasterizer.IsReady())
   {
     throw Error("The resampler MeshRasterization needs a deformation mesh with its rest positions: "
-                "call SetRestMesh and SetNodeDisplacements first. For a displacement field use the "
-                "resampler Exact.");
+                "call SetRestMesh and SetNodeDisplacements, or SetInverseField, first. For a "
+                "forward displacement field use the resampler Exact.");
   }
 }
 
@@ -52,12 +52,31 @@ void VolumeDeformer::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numb
       this->Impl->Tetrahedra = cl::Buffer();
       this->Impl->Nodes = cl::Buffer();
       this->Impl->NodesSet = false;
-      this->Impl->FieldVectors = cl::Buffer();
+      this->Impl->ForgetField();
       this->Impl->Update.ForgetMapping();
       this->Impl->NumberOfTetrahedra = numberOfTetrahedra;
       this->Impl->NumberOfNodes = numberOfNodes;
       this->Impl->Rasterizer.SetMesh(this->Impl->GetRasterizerSetting(), tetrahedra,
         numberOfTetrahedra, restNodes, numberOfNodes);
+    });
+}
+
+void VolumeDeformer::SetInverseField(const DisplacementField& field)
+{
+  const std::size_t points = CountPoints(field);
+  this->Impl->Send(
+    [&]
+    {
+      Internals::CheckVectors(field.Vectors, points, "point", nullptr);
+      this->Impl->GetMesh().ForgetMesh();
+      this->Impl->Tetrahedra = cl::Buffer();
+      this->Impl->Nodes = cl::Buffer();
+      this->Impl->NodesSet = false;
+      this->Impl->FieldVectors = cl::Buffer();
+      this->Impl->Update.ForgetMapping();
+      this->Impl->NumberOfTetrahedra = 0;
+      this->Impl->NumberOfNodes = points;
+      this->Impl->Rasterizer.SetField(this->Impl->GetRasterizerSetting(), field);
     });
 }
 

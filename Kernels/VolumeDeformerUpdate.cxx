@@ -89,9 +89,13 @@ std::size_t FindBadVector(
   return bad;
 }
 
-// Marks the vectors that differ from those that the device has, four floats each; returns their
-// number. Once they are too many to be worked on one by one, it leaves out the rest.
-std::size_t MarkChanges(const float* vectors, const float* last,
+// What the device calls each vector, empty: as it comes.
+using Numbers = std::vector<std::int32_t>;
+
+// Marks, by the numbers of the device, the vectors that differ from those that it has, four floats
+// each; returns how many they are. Once they are too many to be worked on one by one, it leaves out
+// the rest.
+std::size_t MarkChanges(const float* vectors, const float* last, const Numbers& numbers,
   const std::vector<std::size_t>& words, std::size_t count, PointSet& changed)
 {
   std::atomic<std::size_t> number{ 0 };
@@ -102,26 +106,41 @@ std::size_t MarkChanges(const float* vectors, const float* last,
       {
         return;
       }
-      std::uint64_t bits = 0;
-      for (std::size_t i = begin; i < end; ++i)
+      // Bit by bit: -0 is not 0, and what is not the same may not be taken for it.
+      const auto differs = [&](std::size_t i, std::size_t place)
+      { return std::memcmp(vectors + 3 * i, last + 4 * place, 3 * sizeof(float)) != 0; };
+      std::size_t found = 0;
+      if (numbers.empty())
       {
-        // Bit by bit: -0 is not 0, and what is not the same may not be taken for it.
-        const bool differs = std::memcmp(vectors + 3 * i, last + 4 * i, 3 * sizeof(float)) != 0;
-        bits |= std::uint64_t{ differs } << (i - begin);
+        std::uint64_t bits = 0;
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          bits |= std::uint64_t{ differs(i, i) } << (i - begin);
+        }
+        changed.AddWord(word, bits);
+        found = std::bitset<WordSize>(bits).count();
       }
-      if (bits)
+      else
       {
-        changed.SetWord(word, bits);
-        number += std::bitset<WordSize>(bits).count();
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          const auto place = static_cast<std::size_t>(numbers[i]);
+          if (differs(i, place))
+          {
+            changed.Add(place);
+            ++found;
+          }
+        }
       }
+      number += found;
     });
   return number;
 }
 
 // The three floats of each vector become the four that the device reads at once; returns what they
 // lie between.
-IncrementalUpdate::Bounds PadVectors(
-  const float* vectors, const std::vector<std::size_t>& words, std::size_t count, float* padded)
+IncrementalUpdate::Bounds PadVectors(const float* vectors, const Numbers& numbers,
+  const std::vector<std::size_t>& words, std::size_t count, float* padded)
 {
   IncrementalUpdate::Bounds all;
   std::mutex mutex;
@@ -132,16 +151,27 @@ IncrementalUpdate::Bounds PadVectors(
       for (std::size_t word = first; word < past; ++word)
       {
         const std::size_t begin = words[word] * WordSize;
-        const std::size_t end = std::min(begin + WordSize, count);
-        for (std::size_t i = begin; i < end; ++i)
+        const std::size_t some = std::min(WordSize, count - begin);
+        alignas(16) std::array<float, 4 * WordSize> next;
+        for (std::size_t i = 0; i < some; ++i)
         {
           for (std::size_t c = 0; c < 3; ++c)
           {
-            padded[4 * i + c] = vectors[3 * i + c];
+            next[4 * i + c] = vectors[3 * (begin + i) + c];
           }
-          padded[4 * i + 3] = 0.0F;
+          next[4 * i + 3] = 0.0F;
         }
-        bounds.Add(padded, begin, end);
+        bounds.Add(next.data(), 0, some);
+        if (numbers.empty())
+        {
+          std::copy_n(next.begin(), 4 * some, padded + 4 * begin);
+          continue;
+        }
+        for (std::size_t i = 0; i < some; ++i)
+        {
+          std::copy_n(
+            next.begin() + 4 * i, 4, padded + 4 * static_cast<std::size_t>(numbers[begin + i]));
+        }
       }
       const std::lock_guard<std::mutex> lock(mutex);
       all.Add(bounds);
@@ -182,14 +212,14 @@ void VolumeDeformer::Internals::CheckVectors(
   }
 }
 
-void VolumeDeformer::Internals::SendVectors(
-  const float* vectors, std::size_t count, cl::Buffer& buffer, const PointRanges* changes)
+void VolumeDeformer::Internals::SendVectors(const float* vectors, std::size_t count,
+  const std::vector<std::int32_t>& numbers, cl::Buffer& buffer, const PointRanges* changes)
 {
   const std::size_t bytes = 4 * count * sizeof(float);
   if (!this->GetContext().GetDevice().IsProcessor)
   {
     std::vector<float> padded(4 * count);
-    PadVectors(vectors, FindWords(nullptr, count), count, padded.data());
+    PadVectors(vectors, numbers, FindWords(nullptr, count), count, padded.data());
     buffer = this->SendBuffer(padded.data(), bytes, buffer);
     this->Update.MoveAll();
     return;
@@ -206,7 +236,8 @@ void VolumeDeformer::Internals::SendVectors(
   if (partly)
   {
     this->Changed.Clear(count);
-    const std::size_t number = MarkChanges(vectors, sent.Get(), words, count, this->Changed);
+    const std::size_t number =
+      MarkChanges(vectors, sent.Get(), numbers, words, count, this->Changed);
     if (number == 0)
     {
       return;
@@ -217,11 +248,11 @@ void VolumeDeformer::Internals::SendVectors(
   {
     this->PrepareBrickPoints();
     this->Update.MovePoints(this->Changed, sent.Get());
-    this->Update.AddMoved(PadVectors(vectors, words, count, sent.Get()));
+    this->Update.AddMoved(PadVectors(vectors, numbers, words, count, sent.Get()));
   }
   else
   {
-    const IncrementalUpdate::Bounds bounds = PadVectors(vectors, words, count, sent.Get());
+    const IncrementalUpdate::Bounds bounds = PadVectors(vectors, numbers, words, count, sent.Get());
     this->Update.MoveAll(words.size() * WordSize >= count ? std::optional(bounds) : std::nullopt);
   }
 }
@@ -311,7 +342,15 @@ bool VolumeDeformer::Internals::UpdateOutput(
   {
     const cl::Buffer& buffer = this->Mesh->HasMesh() ? this->Nodes : this->FieldVectors;
     const MappedBuffer<const float> vectors(this->Queue, buffer, CL_MAP_READ);
-    this->Update.FindBoxes(vectors.Get(), GetMemory(buffer) / (4 * sizeof(float)));
+    if (this->GetMappingForm() == MappingForm::FieldInPlace)
+    {
+      this->Update.FindBoxes({ nullptr, &this->FieldInPlace },
+        static_cast<std::size_t>(GetNumberOfPoints(this->FieldInPlace)));
+    }
+    else
+    {
+      this->Update.FindBoxes({ vectors.Get(), nullptr }, GetMemory(buffer) / (4 * sizeof(float)));
+    }
   }
   IncrementalUpdate::Plan plan;
   if (!this->Update.MakePlan(inside, plan))
@@ -327,7 +366,7 @@ bool VolumeDeformer::Internals::UpdateOutput(
   const OutputSlab::Counts counts = output.ReadCounts();
   const auto done = Clock::now();
   output.Read(this->ReadQueue, request);
-  this->ReadQueue.finish();
+  output.FinishReading();
   report.TransferTime = GetSecondsSince(done);
   const auto read = Clock::now();
   const std::uint64_t covered =

@@ -3,13 +3,15 @@
 # Installs what this project needs from Debian's archive, where it is missing. Needs no network,
 # and no rights, where nothing is missing.
 #
-# Usage: packages.sh SET...
+# Usage: packages.sh [--upgrade] SET...
+#   --upgrade first brings the sets and all that they depend on up to date, as users have them
 #   library   to build the library and its Python package against VTK
 #   example   to build and run the programs in Examples
 #   test      to build and run the tests
 #   benchmark to measure and draw the results, besides test
 #   paraview  to build and test against ParaView's VTK on the same machine
 #   check     to check the style of the sources
+#   platforms to try other systems on this one
 set -euo pipefail
 
 declare -A packages=(
@@ -22,7 +24,10 @@ declare -A packages=(
   [paraview]="paraview paraview-dev libopenmpi-dev libdouble-conversion-dev libutfcpp-dev
     liblz4-dev liblzma-dev libgl-dev libopengl-dev libx11-dev libglew-dev libfreetype-dev"
   [check]="clang-format"
+  [platforms]="debootstrap curl"
 )
+# Left out where the system has none: the tests that want them are skipped.
+optional="oclgrind"
 
 version() # of an installed package; empty where it is not installed
 {
@@ -44,11 +49,39 @@ download() # a package's file into a folder
   (cd "$2" && apt-get download -qq -o APT::Sandbox::User=root "$1")
 }
 
+is_available() # whether the archive has a package, as far as the lists are here
+{
+  apt-cache show --no-all-versions "$1" >/dev/null 2>&1
+}
+
+# Brings packages and all that they depend on up to date, where they are installed.
+upgrade()
+{
+  local installed=() package
+  update
+  for package in $(apt-cache depends --recurse --installed --no-suggests --no-conflicts \
+    --no-breaks --no-replaces --no-enhances "$@" 2>/dev/null | grep '^[a-z]' | sort -u); do
+    [ -z "$(version "$package")" ] || installed+=("$package")
+  done
+  [ ${#installed[@]} -eq 0 ] ||
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --only-upgrade --no-install-recommends \
+      --no-remove -o Dpkg::Options::=--force-confold "${installed[@]}" >/dev/null
+}
+
 install()
 {
   local missing=() package
   for package in "$@"; do
     [ -n "$(version "$package")" ] || missing+=("$package")
+  done
+  for package in $optional; do
+    if [[ " ${missing[*]} " == *" $package "* ]]; then
+      # A new system has no lists yet.
+      is_available g++ || update
+      is_available "$package" && continue
+      echo "This system has no package $package: the tests that need it are skipped"
+      mapfile -t missing < <(printf '%s\n' "${missing[@]}" | grep -vx "$package")
+    fi
   done
   [ ${#missing[@]} -eq 0 ] && return
   echo "Installing ${missing[*]}"
@@ -61,27 +94,40 @@ install()
     "${missing[@]}" >/dev/null
 }
 
-# ParaView's Python package conflicts with VTK's, although no file of one overwrites a file of the
-# other's library. So that both can be built against on one machine, a complete ParaView is put
-# together in build/paraview-prefix: that package's files, and links to those of the others.
+# A complete ParaView is put together in build/paraview-prefix, of links to what is installed. Debian's
+# needs that for two reasons: where its Python package conflicts with VTK's (Debian 12 and 13),
+# although no file of one overwrites a file of the other's library, that package is unpacked there, so
+# that both can be built against on one machine; and the CMake files of Debian 13 and later name
+# Python modules without the tag of the Python version that their files have.
 paraview_prefix()
 {
-  local prefix=build/paraview-prefix wanted package
+  local prefix=build/paraview-prefix wanted package linked=(paraview paraview-dev)
   wanted="$(version paraview-dev) $(version paraview)"
   [ "$(cat $prefix/version 2>/dev/null)" = "$wanted" ] && return
   echo "Putting ParaView together in $prefix"
+  is_available python3-paraview || update
   rm -rf $prefix
   mkdir -p $prefix/download
-  package="python3-paraview=$(version paraview)"
-  download "$package" $prefix/download || {
-    update
-    download "$package" $prefix/download
-  }
-  dpkg -x $prefix/download/python3-paraview_*.deb $prefix
+  if apt-cache show --no-all-versions python3-paraview |
+    grep '^Conflicts:.*python3-vtk9' >/dev/null; then
+    package="python3-paraview=$(version paraview)"
+    download "$package" $prefix/download || {
+      update
+      download "$package" $prefix/download
+    }
+    dpkg -x $prefix/download/python3-paraview_*.deb $prefix
+  else
+    install python3-paraview
+    linked+=(python3-paraview)
+  fi
   rm -r $prefix/download
-  dpkg -L paraview paraview-dev | sort -u | while read -r file; do
+  dpkg -L "${linked[@]}" | sort -u | while read -r file; do
     [ -z "$file" ] || [ -d "$file" ] || printf '%s\0' "$file"
   done | xargs -0 cp --symbolic-link --parents --force --target-directory $prefix
+  local module
+  find $prefix/usr/lib/python3 -name '*.cpython-*.so' | while read -r module; do
+    ln -sf "$(basename "$module")" "${module%%.cpython-*}.so"
+  done
   # CMake resolves links before it looks for what lies beside a package file.
   local cmake
   for cmake in /usr/lib/*/cmake/paraview-*; do
@@ -92,8 +138,13 @@ paraview_prefix()
 }
 
 cd "$(dirname "$0")/.."
+upgrade=no
+if [ "${1-}" = --upgrade ]; then
+  upgrade=yes
+  shift
+fi
 if [ $# -eq 0 ]; then
-  echo "usage: packages.sh ${!packages[*]}" >&2
+  echo "usage: packages.sh [--upgrade] ${!packages[*]}" >&2
   exit 2
 fi
 for set in "$@"; do
@@ -101,6 +152,12 @@ for set in "$@"; do
     echo "packages.sh: no set $set; there are: ${!packages[*]}" >&2
     exit 2
   fi
+done
+if [ $upgrade = yes ]; then
+  # shellcheck disable=SC2046 # a list of words
+  upgrade $(for set in "$@"; do echo "${packages[$set]}"; done)
+fi
+for set in "$@"; do
   # shellcheck disable=SC2086 # a list of words
   install ${packages[$set]}
   if [ "$set" = paraview ]; then

@@ -4,10 +4,16 @@
 # runs all tests of each. From a pristine Debian 12 as root; afterwards without a network and
 # without rights.
 #
-# Usage: run.sh [PRESET]...    (default: vtk paraview asan)
+# Usage: run.sh [--quick] [PRESET]...    (default: vtk paraview asan)
+#   --quick leaves out the tests that take long
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+tests=()
+if [ "${1-}" = --quick ]; then
+  tests=(--label-regex quick)
+  shift
+fi
 presets=("$@")
 [ ${#presets[@]} -gt 0 ] || presets=(vtk paraview asan)
 
@@ -30,7 +36,7 @@ done
 
 for preset in "${presets[@]}"; do
   echo "== $preset: test"
-  ctest --preset "$preset" --parallel "$jobs" 2>&1 | tee "build/test-$preset.log" ||
+  ctest --preset "$preset" --parallel "$jobs" "${tests[@]}" 2>&1 | tee "build/test-$preset.log" ||
     failed=1
 done
 

@@ -93,6 +93,7 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
       0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, deformation.Displacement.c_str());
   }
   filter->SetDisplacementScale(options.Scale);
+  filter->SetFieldIsInverse(options.FieldIsInverse);
   filter->SetOutsideMode(
     options.Extrapolate ? vtkDeformVolumeFilter::EXTRAPOLATE : vtkDeformVolumeFilter::DISCARD);
   filter->SetOutputBoundsMode(options.VolumeBounds ? vtkDeformVolumeFilter::VOLUME_BOUNDS
@@ -134,9 +135,17 @@ void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume,
   vtkDataArray* scalars = volume.Image->GetPointData()->GetArray(0);
   std::cout << "volume     " << GetDimensionsText(volume.Image) << " voxels, "
             << scalars->GetDataTypeAsString() << "\n"
-            << "mesh       " << deformation.NumberOfNodes << " nodes, " << deformation.NumberOfCells
-            << " cells\n"
-            << "result     " << GetDimensionsText(result) << " voxels, "
+            << (vtkImageData::SafeDownCast(deformation.Data) ? "field      " : "mesh       ")
+            << deformation.NumberOfNodes << " nodes, " << deformation.NumberOfCells << " cells\n";
+  for (const std::string& edges : deformation.Edges)
+  {
+    std::cout << "edges      " << edges << "\n";
+  }
+  if (!deformation.Body.empty())
+  {
+    std::cout << "body       " << deformation.Body << "\n";
+  }
+  std::cout << "result     " << GetDimensionsText(result) << " voxels, "
             << filter->GetNumberOfCoveredVoxels() << " of them covered\n"
             << "inverted   " << filter->GetNumberOfInvertedTetrahedra() << " tetrahedra\n"
             << "device     " << filter->GetDeviceInUse() << ", "
@@ -154,8 +163,11 @@ void DeformVolume(const Options& options, Messages& messages)
   timings.Add("read volume", reading.GetSeconds());
 
   const Stopwatch meshing;
-  const Deformation deformation = MakeDeformation(options, volume.Image, messages);
-  timings.Add(options.Mesh.empty() ? "make mesh" : "read mesh", meshing.GetSeconds());
+  const Deformation deformation = MakeDeformation(options, volume, messages);
+  timings.Add(!options.Field.empty() ? "read field"
+      : options.Mesh.empty()         ? "make mesh"
+                                     : "read mesh",
+    meshing.GetSeconds());
 
   vtkNew<vtkDeformVolumeFilter> filter;
   SetUp(filter, options, volume.Image, deformation);
@@ -165,8 +177,15 @@ void DeformVolume(const Options& options, Messages& messages)
     filter->Update();
   }
   messages.Check("cannot deform the volume");
+  if (options.FieldIsInverse && filter->GetNumberOfInvertedTetrahedra() > 0)
+  {
+    messages.DisplayWarningText(
+      "The field folds: it leads several points of the result to one point "
+      "of the volume, which is seen more than once.");
+  }
   timings.Add("deform", deforming.GetSeconds());
   timings.Add("find tetrahedra of voxels", filter->GetPreprocessingTime(), true);
+  timings.Add("compile kernels", filter->GetCompilationTime(), true);
   timings.Add("copy to and from device", filter->GetTransferTime(), true);
   timings.Add("deformation mapping", filter->GetMappingTime(), true);
   timings.Add("resampling", filter->GetResamplingTime(), true);

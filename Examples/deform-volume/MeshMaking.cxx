@@ -2,6 +2,7 @@
 #include "MeshMaking.h"
 
 #include "Failure.h"
+#include "FieldReading.h"
 #include "Messages.h"
 #include "ProgressBar.h"
 
@@ -15,6 +16,10 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
+#include <map>
+#include <sstream>
+
 namespace
 {
 vtkSmartPointer<vtkDataObject> ReadMesh(
@@ -23,6 +28,10 @@ vtkSmartPointer<vtkDataObject> ReadMesh(
   if (!vtksys::SystemTools::FileExists(path, true))
   {
     throw Failure("cannot read " + path + ": there is no such file");
+  }
+  if (IsFieldFile(path) && !IsVTKFile(path))
+  {
+    throw Failure("cannot read " + path + " as a mesh: give displacement fields with --field");
   }
   vtkNew<vtkXMLGenericDataObjectReader> reader;
   reader->SetFileName(path.c_str());
@@ -61,12 +70,29 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
     mesher->AutomaticIsovalueOff();
     mesher->SetIsovalue(*options.Isovalue);
   }
+  const std::map<std::string, int> modes{ { "all", vtkTetGenMesher::ALL_PIECES },
+    { "hull", vtkTetGenMesher::CONVEX_HULL }, { "largest", vtkTetGenMesher::LARGEST_PIECE } };
+  mesher->SetPieceMode(modes.at(options.Pieces));
   mesher->SetTargetEdgeLength(options.EdgeLength);
+  for (const Push& push : options.Pushes)
+  {
+    mesher->AddRefinementSphere(
+      push.Center[0], push.Center[1], push.Center[2], push.Radius, push.GetEdgeLength());
+  }
   mesher->SetRadiusEdgeRatio(options.RadiusEdgeRatio);
   mesher->SetTetGenExecutable(options.TetGenExecutable);
   const ProgressBar bar(mesher, "meshing", !options.Quiet);
   mesher->Update();
   messages.Check("cannot mesh the body");
+  std::ostringstream body;
+  body << mesher->GetNumberOfBodyVoxels() << " voxels in " << mesher->GetNumberOfPieces()
+       << " pieces, " << mesher->GetNumberOfBodyVoxelsOutside() << " of them outside the mesh; "
+       << mesher->GetNumberOfSpeckVoxels() << " voxels in specks";
+  deformation.Body = body.str();
+  std::ostringstream edges;
+  edges.precision(3);
+  edges << "about " << mesher->GetUsedTargetEdgeLength() << " away from pushes";
+  deformation.Edges.push_back(edges.str());
   if (!options.Labels)
   {
     deformation.Isovalue = mesher->GetUsedIsovalue();
@@ -74,9 +100,31 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
   return mesher->GetOutput();
 }
 
+// Tetrahedra that are large for a push show as facets.
+void CheckEdges(
+  const Push& push, vtkUnstructuredGrid* mesh, Messages& messages, Deformation& deformation)
+{
+  const double longest = GetLongestEdge(push, mesh);
+  std::ostringstream text;
+  text.precision(3);
+  text << "up to " << longest << " within the push of radius " << push.Radius;
+  deformation.Edges.push_back(text.str());
+  if (longest > push.GetEdgeLength() * (1.0 + 1e-9))
+  {
+    std::ostringstream warning;
+    warning.precision(3);
+    warning << "Edges of tetrahedra are up to " << longest << " long within a push of radius "
+            << push.Radius << ". Longer than a sixth of it, they may show as facets: give "
+            << "--lattice more nodes, or use --tetgen.";
+    messages.DisplayWarningText(warning.str().c_str());
+  }
+}
+
 void WriteMesh(vtkUnstructuredGrid* mesh, const std::string& path, Messages& messages)
 {
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  // Not appended: with recent versions of libexpat, ParaView 5.11 cannot read appended data.
+  writer->SetDataModeToBinary();
   writer->SetInputData(mesh);
   writer->SetFileName(path.c_str());
   const bool written = writer->Write() != 0;
@@ -84,7 +132,7 @@ void WriteMesh(vtkUnstructuredGrid* mesh, const std::string& path, Messages& mes
 }
 }
 
-Deformation MakeDeformation(const Options& options, vtkImageData* volume, Messages& messages)
+Deformation MakeDeformation(const Options& options, const Volume& volume, Messages& messages)
 {
   Deformation deformation;
   if (!options.Mesh.empty())
@@ -96,15 +144,23 @@ Deformation MakeDeformation(const Options& options, vtkImageData* volume, Messag
       deformation.Rest = ReadMesh(options.Rest, options, messages);
     }
   }
+  else if (!options.Field.empty())
+  {
+    deformation.Data =
+      ReadField(options.Field, volume, options.FieldIsInverse, messages, !options.Quiet);
+    deformation.Displacement = IsVTKFile(options.Field) ? options.Displacement : FieldArrayName;
+  }
   else
   {
-    const vtkSmartPointer<vtkUnstructuredGrid> mesh = Mesh(options, volume, messages, deformation);
+    const vtkSmartPointer<vtkUnstructuredGrid> mesh =
+      Mesh(options, volume.Image, messages, deformation);
     for (const Push& push : options.Pushes)
     {
       if (push.Folds())
       {
         messages.DisplayWarningText("A push is too strong for its radius: the volume folds over.");
       }
+      CheckEdges(push, mesh, messages, deformation);
     }
     if (ApplyPushes(options.Pushes, mesh) == 0)
     {

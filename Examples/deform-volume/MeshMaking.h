@@ -3,12 +3,14 @@
 #define DeformVolumeMeshMaking_h
 
 #include "Options.h"
+#include "Volume.h"
 
 #include <vtkDataObject.h>
-#include <vtkImageData.h>
 #include <vtkSmartPointer.h>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 class Messages;
 
@@ -19,15 +21,18 @@ struct Deformation
   vtkSmartPointer<vtkDataObject> Data;
   /// The mesh at rest, if Data is the deformed mesh.
   vtkSmartPointer<vtkDataObject> Rest;
-  /// Otherwise the name of the array of displacements.
+  /// Otherwise the name of the array of displacements; "": the only one there is.
   std::string Displacement;
   /// The isovalue of the surface that was meshed.
   std::optional<double> Isovalue;
+  /// What became of the voxels of the body that was meshed, and how long edges are where.
+  std::string Body;
+  std::vector<std::string> Edges;
   long long NumberOfNodes = 0;
   long long NumberOfCells = 0;
 };
 
 /// Reads or makes what the options ask for. Throws a Failure where that is impossible.
-Deformation MakeDeformation(const Options& options, vtkImageData* volume, Messages& messages);
+Deformation MakeDeformation(const Options& options, const Volume& volume, Messages& messages);
 
 #endif

@@ -2,6 +2,7 @@
 #include "Options.h"
 
 #include "Failure.h"
+#include "FieldReading.h"
 #include "VolumeWriting.h"
 
 #include <CLI/CLI.hpp>
@@ -86,7 +87,7 @@ void CheckOverwriting(const Options& options)
   outputs.push_back(options.MeshOutput);
   for (const std::string& output : outputs)
   {
-    for (const std::string& input : { options.Volume, options.Mesh, options.Rest })
+    for (const std::string& input : { options.Volume, options.Mesh, options.Rest, options.Field })
     {
       if (!output.empty() && !input.empty() && vtksys::SystemTools::SameFile(output, input))
       {
@@ -96,20 +97,15 @@ void CheckOverwriting(const Options& options)
   }
 }
 
-void Check(const Options& options)
+/// One thing deforms the volume, and its options go with it.
+void CheckDeformation(const Options& options)
 {
-  if (options.ListDevices)
-  {
-    return;
-  }
-  if (options.Volume.empty())
-  {
-    throw UsageError("no VOLUME is given; deform-volume --help tells how to call the program");
-  }
-  const int deformations = !options.Mesh.empty() + options.TetGen + options.HasLattice();
+  const int deformations =
+    !options.Mesh.empty() + !options.Field.empty() + options.TetGen + options.HasLattice();
   if (deformations != 1)
   {
-    throw UsageError("exactly one of --mesh, --tetgen and --lattice says what deforms the volume");
+    throw UsageError(
+      "exactly one of --mesh, --field, --tetgen and --lattice says what deforms the volume");
   }
   if (!options.Mesh.empty())
   {
@@ -123,10 +119,40 @@ void Check(const Options& options)
       throw UsageError("--push goes with --tetgen or --lattice; a --mesh brings its displacement");
     }
   }
+  else if (!options.Field.empty())
+  {
+    if (!options.Displacement.empty() && !IsVTKFile(options.Field))
+    {
+      throw UsageError("--displacement names an array of a .vti file; " + options.Field +
+        " has one set of vectors only");
+    }
+    if (!options.Pushes.empty())
+    {
+      throw UsageError("--push goes with --tetgen or --lattice; a --field brings its displacement");
+    }
+  }
+  else if (!options.Displacement.empty() || options.Scale != 1.0)
+  {
+    throw UsageError(std::string(options.Scale != 1.0 ? "--scale" : "--displacement") +
+      " requires --mesh or --field");
+  }
   else if (options.Pushes.empty())
   {
     throw UsageError("--tetgen and --lattice need at least one --push X,Y,Z,DX,DY,DZ,RADIUS");
   }
+}
+
+void Check(const Options& options)
+{
+  if (options.ListDevices)
+  {
+    return;
+  }
+  if (options.Volume.empty())
+  {
+    throw UsageError("no VOLUME is given; deform-volume --help tells how to call the program");
+  }
+  CheckDeformation(options);
   if (options.Outputs.empty() && options.Image.empty())
   {
     throw UsageError("nothing to write: give --output or --image");
@@ -197,16 +223,29 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
 
 void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
 {
-  const char* group = "What deforms the volume (one of --mesh, --tetgen, --lattice)";
+  const char* group = "What deforms the volume (one of --mesh, --field, --tetgen, --lattice)";
   program
     .add_option("--mesh", options.Mesh,
-      "Tetrahedral mesh (.vtu, .vtm; other linear cells are split), or a displacement field (.vti)")
+      "Tetrahedral mesh (.vtu, .vtm; other cells are split), or a displacement field (.vti)")
     ->type_name("FILE")
     ->group(group);
   program
+    .add_option("--field", options.Field,
+      "Displacement field: .nii or .nii.gz of the shape (X,Y,Z,1,3) with the intent 1006 (vectors "
+      "right, anterior, superior) or 1007 (left, posterior, superior, as ITK and ANTs write them), "
+      ".mha, .mhd, .nrrd, .nhdr or .vti. It is forward: it leads from a point of the volume to "
+      "where that point goes, see --field-is-inverse")
+    ->type_name("FILE")
+    ->group(group);
+  program
+    .add_flag("--field-is-inverse", options.FieldIsInverse,
+      "The --field leads from a point of the result to the point of the volume that is seen there, "
+      "as registration programs write it (from the fixed to the moving image)")
+    ->group(group);
+  program
     .add_option("--displacement", options.Displacement,
-      "Name of the point array of --mesh that holds the displacements, in world units; its points "
-      "are then the mesh at rest")
+      "Name of the point array of --mesh or of a --field in a .vti file that holds the "
+      "displacements, in world units and forward; the points of --mesh are then the mesh at rest")
     ->type_name("NAME")
     ->group(group);
   program
@@ -243,9 +282,18 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     ->type_name("NUMBER")
     ->group(tetgen);
   program
+    .add_option("--pieces", options.Pieces,
+      "Of a body in several pieces, mesh all, their convex hull, or the largest alone: all, hull "
+      "or "
+      "largest. Specks of up to 26 voxels are left out")
+    ->capture_default_str()
+    ->check(CLI::IsMember({ "all", "hull", "largest" }))
+    ->type_name("MODE")
+    ->group(tetgen);
+  program
     .add_option("--edge-length", options.EdgeLength,
       "Length of the tetrahedra's edges, in world units; 0: a twentieth of the diagonal of the "
-      "volume")
+      "volume. Within a --push, edges are at most a sixth of its radius")
     ->capture_default_str()
     ->check(CLI::NonNegativeNumber)
     ->type_name("NUMBER")
@@ -274,13 +322,18 @@ void AddDependencies(CLI::App& program)
       program.get_option(option)->needs(program.get_option(needed));
     }
   };
-  needs("--mesh", { "--displacement", "--rest", "--scale" });
-  needs(
-    "--tetgen", { "--isovalue", "--edge-length", "--radius-edge-ratio", "--tetgen-executable" });
+  needs("--mesh", { "--rest" });
+  needs("--field", { "--field-is-inverse" });
+  needs("--tetgen",
+    { "--isovalue", "--pieces", "--edge-length", "--radius-edge-ratio", "--tetgen-executable" });
   needs("--image", { "--threshold", "--view" });
   program.get_option("--scale")->excludes(program.get_option("--rest"));
+  program.get_option("--field")->excludes(program.get_option("--file-coordinates"));
   program.get_option("--isovalue")->excludes(program.get_option("--labels"));
-  program.get_option("--write-mesh")->excludes(program.get_option("--mesh"));
+  for (const char* option : { "--mesh", "--field" })
+  {
+    program.get_option("--write-mesh")->excludes(program.get_option(option));
+  }
 }
 
 void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
@@ -382,8 +435,8 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
 
 std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
 {
-  CLI::App program("Deforms a volume with a tetrahedral mesh, at full resolution, on an OpenCL "
-                   "device.\n",
+  CLI::App program("Deforms a volume with a tetrahedral mesh or a displacement field, at full "
+                   "resolution, on an OpenCL device.\n",
     "deform-volume");
   program.footer(
     "World coordinates are those of the file, mostly in mm: NIfTI files are placed by their "
@@ -392,7 +445,9 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
     "MetaImage\n"
     "and NRRD files by origin and direction (x to the left, y to the back, z to the head, unless "
     "an\n"
-    "NRRD file says otherwise); .vti files as they are. All lengths are in these units.\n\n"
+    "NRRD file says otherwise); .vti files as they are. All lengths are in these units. A --field "
+    "is\n"
+    "turned into the world of the volume, its vectors included.\n\n"
     "Exit codes: 0 success, 1 failure, 2 wrong usage.\n\n"
     "Example: dent a head to a depth of 15 mm\n"
     "  deform-volume head.nii.gz --tetgen --push 0,88,-50,0,-15,0,30 -o dented.nii.gz");

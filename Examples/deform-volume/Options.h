@@ -21,9 +21,12 @@ struct Options
   std::string Displacement;
   std::string Rest;
   double Scale = 1.0;
+  std::string Field;
+  bool FieldIsInverse = false;
 
   bool TetGen = false;
   std::optional<double> Isovalue;
+  std::string Pieces = "all";
   double EdgeLength = 0.0;
   double RadiusEdgeRatio = 0.0;
   std::string TetGenExecutable;

@@ -231,7 +231,7 @@ vtkSmartPointer<vtkRenderer> MakeRenderer(
   auto renderer = vtkSmartPointer<vtkRenderer>::New();
   renderer->SetBackground(0.10, 0.12, 0.15);
   renderer->AddVolume(actor);
-  renderer->AddActor2D(text);
+  renderer->AddViewProp(text);
   return renderer;
 }
 }

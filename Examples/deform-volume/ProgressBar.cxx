@@ -30,14 +30,16 @@ ProgressBar::~ProgressBar()
 void ProgressBar::Show(vtkObject*, unsigned long, void*)
 {
   const int percent = std::clamp(static_cast<int>(100.0 * this->Algorithm->GetProgress()), 0, 100);
-  if (percent == this->LastPercent)
+  const char* text = this->Algorithm->GetProgressText();
+  const std::string label = text ? text : this->Label;
+  if (percent == this->LastPercent && label == this->LastLabel)
   {
     return;
   }
   this->LastPercent = percent;
+  this->LastLabel = label;
   constexpr int width = 40;
   const std::string done(static_cast<std::size_t>(percent * width / 100), '#');
-  std::fprintf(
-    stderr, "\r\033[K%-16s [%-*s] %3d %%", this->Label.c_str(), width, done.c_str(), percent);
+  std::fprintf(stderr, "\r\033[K%-17s [%-*s] %3d %%", label.c_str(), width, done.c_str(), percent);
   std::fflush(stderr);
 }

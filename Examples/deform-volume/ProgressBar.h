@@ -8,7 +8,8 @@ class vtkAlgorithm;
 class vtkObject;
 
 /// A line on the terminal that shows how far an algorithm has come, for as long as this object
-/// lives. Shows nothing where standard error is no terminal, or where it is not wanted.
+/// lives. It begins with the label, or with the algorithm's progress text where there is one. Shows
+/// nothing where standard error is no terminal, or where it is not wanted.
 class ProgressBar
 {
 public:
@@ -24,6 +25,7 @@ private:
   std::string Label;
   unsigned long Observer = 0;
   int LastPercent = -1;
+  std::string LastLabel;
 };
 
 #endif

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Push.h"
 
+#include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkMath.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <algorithm>
 #include <cmath>
 
 bool Push::Folds() const
@@ -50,4 +52,31 @@ long long ApplyPushes(const std::vector<Push>& pushes, vtkUnstructuredGrid* mesh
   mesh->GetPointData()->AddArray(displacements);
   mesh->GetPointData()->SetActiveVectors(PushArrayName);
   return moved;
+}
+
+double GetLongestEdge(const Push& push, vtkUnstructuredGrid* mesh)
+{
+  double longest = 0.0;
+  vtkCellArray* cells = mesh->GetCells();
+  vtkIdType size;
+  const vtkIdType* ids;
+  for (cells->InitTraversal(); cells->GetNextCell(size, ids);)
+  {
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      double end[3];
+      mesh->GetPoint(ids[i], end);
+      if (vtkMath::Distance2BetweenPoints(end, push.Center.data()) >= push.Radius * push.Radius)
+      {
+        continue;
+      }
+      for (vtkIdType j = 0; j < size; ++j)
+      {
+        double other[3];
+        mesh->GetPoint(ids[j], other);
+        longest = std::max(longest, vtkMath::Distance2BetweenPoints(end, other));
+      }
+    }
+  }
+  return std::sqrt(longest);
 }

@@ -18,6 +18,9 @@ struct Push
   /// True where the push is so strong for its radius that the space it moves folds over: where the
   /// displacement is longer than Radius divided by the steepest slope of the profile.
   bool Folds() const;
+
+  /// The longest edges of tetrahedra with which the displaced volume looks smooth.
+  double GetEdgeLength() const { return this->Radius / 6.0; }
 };
 
 /// Name of the point array that ApplyPushes adds.
@@ -26,5 +29,9 @@ inline constexpr const char* PushArrayName = "Displacement";
 /// Adds the sum of the pushes to the mesh, as a vector point array. Returns the number of nodes
 /// that move.
 long long ApplyPushes(const std::vector<Push>& pushes, vtkUnstructuredGrid* mesh);
+
+/// The length of the longest edge of the mesh of which at least one end is within the radius of a
+/// push, 0 if there is none.
+double GetLongestEdge(const Push& push, vtkUnstructuredGrid* mesh);
 
 #endif

@@ -3,6 +3,7 @@
 #define DeformVolumeVolume_h
 
 #include <vtkImageData.h>
+#include <vtkNIFTIImageHeader.h>
 #include <vtkSmartPointer.h>
 
 /// What the axes of the world point to, as far as the file says it.
@@ -23,6 +24,10 @@ struct Volume
   /// Stored value times slope plus intercept is the measured value; carried through, not applied.
   double RescaleSlope = 1.0;
   double RescaleIntercept = 0.0;
+  /// False where the axes that the file gives could not be used.
+  bool IsPlaced = true;
+  /// Null for other formats.
+  vtkSmartPointer<vtkNIFTIImageHeader> NIfTIHeader;
 };
 
 #endif

@@ -4,6 +4,7 @@
 #include "Failure.h"
 #include "ImageAxes.h"
 #include "Messages.h"
+#include "NrrdFile.h"
 #include "ProgressBar.h"
 
 #include <vtkDICOMImageReader.h>
@@ -49,6 +50,7 @@ Volume ReadNIfTI(
   volume.Image = Update(reader.Get(), path, messages, showProgress);
   volume.RescaleSlope = reader->GetRescaleSlope();
   volume.RescaleIntercept = reader->GetRescaleIntercept();
+  volume.NIfTIHeader = reader->GetNIFTIHeader();
   if (!fileCoordinates)
   {
     vtkMatrix4x4* sform = reader->GetSFormMatrix();
@@ -57,7 +59,11 @@ Volume ReadNIfTI(
     {
       volume.Axes = WorldAxes::RightAnteriorSuperior;
     }
-    else if (sform || qform)
+    else
+    {
+      volume.IsPlaced = false;
+    }
+    if (!volume.IsPlaced && (sform || qform))
     {
       messages.DisplayWarningText("The axes of the NIfTI file are not perpendicular, which "
                                   "vtkImageData cannot hold: origin 0 and no direction are used.");
@@ -67,13 +73,15 @@ Volume ReadNIfTI(
 }
 
 // Direction cosines that a text header gives, three for each index axis.
-void SetDirection(vtkImageData* image, const std::vector<double>& cosines, bool lengthIsSpacing,
+void SetDirection(Volume& volume, const std::vector<double>& cosines, bool lengthIsSpacing,
   const std::string& path, Messages& messages)
 {
+  volume.IsPlaced = false;
   if (cosines.size() != 9)
   {
     return;
   }
+  vtkImageData* image = volume.Image;
   vtkNew<vtkMatrix4x4> axes;
   for (int row = 0; row < 3; ++row)
   {
@@ -87,7 +95,8 @@ void SetDirection(vtkImageData* image, const std::vector<double>& cosines, bool 
   {
     image->SetSpacing(1.0, 1.0, 1.0);
   }
-  if (!SetAxes(image, axes))
+  volume.IsPlaced = SetAxes(image, axes);
+  if (!volume.IsPlaced)
   {
     messages.DisplayWarningText(
       ("The axes of " + path + " are not perpendicular: no direction is used.").c_str());
@@ -113,7 +122,7 @@ Volume ReadMetaImage(
       const std::string field = ReadHeaderField(path, name, '=');
       if (!field.empty())
       {
-        SetDirection(volume.Image, FindNumbers(field), false, path, messages);
+        SetDirection(volume, FindNumbers(field), false, path, messages);
         break;
       }
     }
@@ -124,24 +133,31 @@ Volume ReadMetaImage(
 Volume ReadNrrd(
   const std::string& path, bool fileCoordinates, Messages& messages, bool showProgress)
 {
-  vtkNew<vtkNrrdReader> reader;
-  if (!reader->CanReadFile(path.c_str()))
-  {
-    throw Failure("cannot read " + path + ": it is no NRRD file that VTK can read");
-  }
-  reader->SetFileName(path.c_str());
   Volume volume;
-  volume.Image = Update(reader.Get(), path, messages, showProgress);
+  const NrrdFile file(path);
+  if (file.GetNumberOfAxes() == 4)
+  {
+    volume.Image = file.ReadVectors();
+  }
+  else
+  {
+    vtkNew<vtkNrrdReader> reader;
+    if (!reader->CanReadFile(path.c_str()))
+    {
+      throw Failure("cannot read " + path + ": it is no NRRD file that VTK can read");
+    }
+    reader->SetFileName(path.c_str());
+    volume.Image = Update(reader.Get(), path, messages, showProgress);
+  }
   if (!fileCoordinates)
   {
-    const std::vector<double> origin = FindNumbers(ReadHeaderField(path, "space origin", ':'));
+    const std::vector<double> origin = FindNumbers(file.Get("space origin"));
     if (origin.size() == 3)
     {
       volume.Image->SetOrigin(origin.data());
     }
-    SetDirection(volume.Image, FindNumbers(ReadHeaderField(path, "space directions", ':')), true,
-      path, messages);
-    const std::string space = vtksys::SystemTools::LowerCase(ReadHeaderField(path, "space", ':'));
+    SetDirection(volume, FindNumbers(file.Get("space directions")), true, path, messages);
+    const std::string space = vtksys::SystemTools::LowerCase(file.Get("space"));
     if (space.find("left-posterior-superior") != std::string::npos ||
       space.find("lps") != std::string::npos)
     {

@@ -131,7 +131,6 @@ void WriteVTI(const Volume& volume, const std::string& path, Messages& messages,
   // zlib's fastest level: most of the size at a fraction of the time.
   writer->SetCompressorTypeToZLib();
   writer->SetCompressionLevel(1);
-  writer->EncodeAppendedDataOff();
   writer->SetHeaderTypeToUInt64();
   const ProgressBar bar(writer, "writing", showProgress);
   const bool written = writer->Write() != 0;

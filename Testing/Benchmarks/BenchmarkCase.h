@@ -15,6 +15,7 @@
 class vtkDataArray;
 class vtkDataSet;
 class vtkImageData;
+class vtkUnstructuredGrid;
 
 /// The sizes that the demands on speed and memory are stated for.
 inline constexpr std::array<int, 3> BenchmarkVolume{ { 189, 305, 229 } };
@@ -23,6 +24,28 @@ inline constexpr int CoarseNodes = 13; // on each axis: 2,197 nodes
 inline constexpr int FineNodes = 80;   // on each axis: 512,000 nodes
 /// Instead of nodes: a displacement field with a vector for each voxel.
 inline constexpr int DenseField = 0;
+
+/// How the nodes and the cells of a lattice are numbered.
+enum class Numbering
+{
+  /// Along x, then y, then z, as vtkLatticeTetrahedraSource does it.
+  AlongX,
+  /// Along z, then y, then x.
+  AlongZ,
+  /// At random; the same at each call.
+  Random
+};
+
+/// What the filter gets when nodes have moved.
+enum class Grid
+{
+  /// The grid that it has, with other displacements.
+  Same,
+  /// Another grid with the same arrays, as filters give it that pass a mesh on.
+  SharingArrays,
+  /// Another grid with equal arrays, as readers of time series give it.
+  EqualCopy
+};
 
 /// A synthetic volume, waves along each axis. type: VTK_UNSIGNED_SHORT or VTK_UNSIGNED_CHAR.
 vtkSmartPointer<vtkImageData> MakeVolume(
@@ -45,12 +68,16 @@ class BenchmarkCase
 {
 public:
   /// nodesPerAxis: of a lattice of tetrahedra, or DenseField.
-  BenchmarkCase(
-    vtkImageData* volume, int nodesPerAxis, int resampler = vtkDeformVolumeFilter::EXACT);
+  BenchmarkCase(vtkImageData* volume, int nodesPerAxis,
+    int resampler = vtkDeformVolumeFilter::EXACT, Numbering numbering = Numbering::AlongX);
   ~BenchmarkCase();
 
+  /// Instead of displacements: deformed positions, and another grid with equal cells for the rest
+  /// configuration.
+  void ConnectRest();
+
   /// Moves the nodes to the next step of a pose. Not part of what is measured.
-  void Move(Pose pose);
+  void Move(Pose pose, Grid grid = Grid::Same);
 
   /// Brings the filter up to date. Throws the filter's error where it fails.
   UpdateTimes Update();
@@ -67,6 +94,8 @@ private:
   /// The lattice or the displacement field.
   vtkSmartPointer<vtkDataSet> Deformation;
   vtkSmartPointer<vtkDataArray> Displacements;
+  /// Null where there are displacements.
+  vtkSmartPointer<vtkUnstructuredGrid> Rest;
   int Step = 0;
   /// What the filter complained of.
   std::string Error;

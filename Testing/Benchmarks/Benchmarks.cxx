@@ -24,6 +24,7 @@ int main(int argc, char* argv[])
   RegisterTetrahedra(size);
   RegisterVoxels(size);
   RegisterPreprocessing(size);
+  RegisterGivenMeshes(size);
   RegisterIncremental(size);
 
   benchmark::Initialize(&argc, argv);

@@ -3,12 +3,12 @@
 
 #include <vtkImageData.h>
 
-Measurement Measure(BenchmarkCase& subject, Pose pose)
+Measurement Measure(BenchmarkCase& subject, Pose pose, Grid grid)
 {
   vtkDeformVolumeFilter* filter = subject.GetFilter();
   const vtkIdType builds = filter->GetNumberOfMappingBuilds();
   const vtkIdType uploads = filter->GetNumberOfVolumeUploads();
-  subject.Move(pose);
+  subject.Move(pose, grid);
   const UpdateTimes times = subject.Update();
   const auto voxels = static_cast<double>(subject.GetNumberOfVoxels());
   Measurement measurement;

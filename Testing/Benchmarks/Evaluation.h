@@ -49,6 +49,9 @@ void RegisterVoxels(const EvaluationSize& size);
 /// Preprocess/<dimensions>/<nodes>: the static mapping.
 void RegisterPreprocessing(const EvaluationSize& size);
 
+/// One mesh in other grids and with other numbers, and a displacement for each voxel.
+void RegisterGivenMeshes(const EvaluationSize& size);
+
 /// Incremental/<whole or local>: a mesh that moves in one place only.
 void RegisterIncremental(const EvaluationSize& size);
 
@@ -67,7 +70,7 @@ inline constexpr NamedResampler AllResamplers[] = { ExactResampler, MeshRasteriz
   PublishedResampler };
 
 /// Moves a case and brings it up to date.
-Measurement Measure(BenchmarkCase& subject, Pose pose);
+Measurement Measure(BenchmarkCase& subject, Pose pose, Grid grid = Grid::Same);
 
 /// 189x305x229
 std::string GetName(const std::array<int, 3>& dimensions);

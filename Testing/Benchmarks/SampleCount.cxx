@@ -3,12 +3,12 @@
 
 #include "FiveTetrahedra.h"
 
-#include <vtkSMPThreadLocal.h>
 #include <vtkSMPTools.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 namespace
 {
@@ -96,25 +96,24 @@ struct CellLayer
 SampleCount CountSamples(const std::array<int, 3>& dimensions, Pose pose)
 {
   const PoseMap map(pose, dimensions, 0);
-  vtkSMPThreadLocal<SampleCount> counts(MakeEmpty());
+  SampleCount sum = MakeEmpty();
+  std::mutex mutex;
   vtkSMPTools::For(0, dimensions[2] - 1, 8,
     [&](vtkIdType begin, vtkIdType end)
     {
       CellLayer layer{ map, dimensions, {} };
+      SampleCount count = MakeEmpty();
       layer.FillPlane(static_cast<int>(begin));
       for (int z = static_cast<int>(begin); z < end; ++z)
       {
         layer.FillPlane(z + 1);
-        layer.Count(z, counts.Local());
+        layer.Count(z, count);
       }
+      const std::lock_guard<std::mutex> lock(mutex);
+      sum.Tetrahedra += count.Tetrahedra;
+      sum.Samples += count.Samples;
+      sum.Fewest = std::min(sum.Fewest, count.Fewest);
+      sum.Most = std::max(sum.Most, count.Most);
     });
-  SampleCount sum = MakeEmpty();
-  for (const SampleCount& count : counts)
-  {
-    sum.Tetrahedra += count.Tetrahedra;
-    sum.Samples += count.Samples;
-    sum.Fewest = std::min(sum.Fewest, count.Fewest);
-    sum.Most = std::max(sum.Most, count.Most);
-  }
   return sum;
 }

@@ -166,6 +166,41 @@ void RegisterPreprocessing(const EvaluationSize& size)
   }
 }
 
+void RegisterGivenMeshes(const EvaluationSize& size)
+{
+  // What the filter gets at each update, by its name in the results.
+  const auto contestant = [](const std::string& name, Grid grid)
+  {
+    return Contestant<CaseMap>{ name,
+      [=](CaseMap& cases) { return Measure(*cases.at(name), Pose::NearIdentity, grid); } };
+  };
+  RegisterRounds<CaseMap>("Given", size.GetManyRounds(),
+    []()
+    {
+      auto cases = std::make_shared<CaseMap>();
+      const auto volume = MakeVolume(BenchmarkVolume);
+      const auto add = [&](const char* name, Numbering numbering)
+      {
+        return ((*cases)[name] = std::make_unique<BenchmarkCase>(
+                  volume, FineNodes, vtkDeformVolumeFilter::EXACT, numbering))
+          .get();
+      };
+      for (const char* name : { "same-grid", "shared-arrays", "equal-copies" })
+      {
+        add(name, Numbering::AlongX);
+      }
+      add("two-meshes", Numbering::AlongX)->ConnectRest();
+      add("along-z", Numbering::AlongZ);
+      add("at-random", Numbering::Random);
+      (*cases)["dense-field"] = std::make_unique<BenchmarkCase>(volume, DenseField);
+      return cases;
+    },
+    { contestant("same-grid", Grid::Same), contestant("shared-arrays", Grid::SharingArrays),
+      contestant("equal-copies", Grid::EqualCopy), contestant("two-meshes", Grid::Same),
+      contestant("along-z", Grid::Same), contestant("at-random", Grid::Same),
+      contestant("dense-field", Grid::Same) });
+}
+
 void RegisterIncremental(const EvaluationSize& size)
 {
   RegisterRounds<CaseMap>("Incremental", size.GetRounds(),

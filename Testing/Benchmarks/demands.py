@@ -96,6 +96,19 @@ DEMANDS = [
            lambda r: r.ratio("Incremental/local-edit-at-side", "Incremental/near", "kernels")),
     Demand("Update() after that one by a full one", 0.15,
            lambda r: r.ratio("Incremental/local-edit-at-side", "Incremental/near")),
+    Demand("mapping and resampling, 512,000 nodes numbered along z by along x", 1.1,
+           lambda r: r.ratio("Given/along-z", "Given/same-grid", "kernels")),
+    Demand("mapping and resampling, 512,000 nodes numbered at random by along x", 1.1,
+           lambda r: r.ratio("Given/at-random", "Given/same-grid", "kernels")),
+    Demand("Update() with another grid that shares its arrays, beyond that with one grid, 512,000 "
+           "nodes", 3.0, lambda r: r.difference("Given/shared-arrays", "Given/same-grid"), "ms"),
+    Demand("Update() with another grid that is an equal copy, beyond that with one grid, 512,000 "
+           "nodes", 12.0, lambda r: r.difference("Given/equal-copies", "Given/same-grid"), "ms"),
+    Demand("Update() with a deformed mesh, modified, and one at rest, beyond that with one grid, "
+           "512,000 nodes", 12.0, lambda r: r.difference("Given/two-meshes", "Given/same-grid"),
+           "ms"),
+    Demand("Update() by its mapping and resampling, a displacement for each voxel", 1.35,
+           lambda r: r.ratio_to_counter("Given/dense-field", "kernels")),
     Demand("mapping and resampling of 13.2 million voxels, near identity", 1.0,
            lambda r: r.milliseconds("Deform/near/2197/exact", "kernels"), "ms", "gpu"),
 ]

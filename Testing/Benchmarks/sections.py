@@ -227,6 +227,24 @@ def incremental(results, _folder, _kind):
         yield table(["what moves", "Update(), ms", "mapping + resampling, ms", "by all"], rows)
 
 
+def given(results, _folder, _kind):
+    rows = [[words, results.median(name), results.milliseconds(name, "kernels"),
+             results.difference(name, "Given/same-grid")]
+            for name, words in (
+                ("Given/same-grid", "the same grid, other displacements"),
+                ("Given/shared-arrays", "another grid that shares its arrays"),
+                ("Given/equal-copies", "another grid that is an equal copy"),
+                ("Given/two-meshes", "a deformed mesh, modified, and one at rest"),
+                ("Given/along-z", "nodes and cells numbered along z"),
+                ("Given/at-random", "nodes and cells numbered at random"),
+                ("Given/dense-field", "no mesh: a displacement for each voxel"))
+            if name in results.runs]
+    if rows:
+        yield "## What is given: 512,000 nodes, 189 x 305 x 229 voxels, near identity\n"
+        yield table(["given", "Update(), ms", "mapping + resampling, ms",
+                     "Update() beyond that with the same grid, ms"], rows)
+
+
 def rendering(results, folder, kind):
     rows = []
     for name in results.names("Render/"):
@@ -248,4 +266,5 @@ def rendering(results, folder, kind):
     yield ""
 
 
-ALL = [device, comparison, poses, nodes, tetrahedra, voxels, preprocessing, memory, incremental, rendering]
+ALL = [device, comparison, poses, nodes, tetrahedra, voxels, preprocessing, memory, incremental, given,
+       rendering]

@@ -21,6 +21,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace meshChecks
 {
@@ -68,17 +69,22 @@ public:
     algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this->ExecutiveErrors);
   }
 
-  void Fails(const std::string& text)
+  void Fails(const std::string& text) { this->FailsWithAny({ text }); }
+
+  /// For the words of a program that differ from version to version.
+  void FailsWithAny(const std::vector<std::string>& texts)
   {
     this->Update();
-    if (this->Errors->GetErrorMessage().find(text) == std::string::npos ||
-      this->Counter->Count != 1)
+    const std::string message = this->Errors->GetErrorMessage();
+    if (this->Counter->Count != 1 ||
+      std::none_of(texts.begin(), texts.end(),
+        [&](const std::string& text) { return message.find(text) != std::string::npos; }))
     {
       ++Failures();
-      std::cerr << "Expected one error with \"" << text << "\", got " << this->Counter->Count
-                << ": " << this->Errors->GetErrorMessage() << '\n';
+      std::cerr << "Expected one error with \"" << texts.front() << "\", got "
+                << this->Counter->Count << ": " << message << '\n';
     }
-    this->VerifyEmpty(text);
+    this->VerifyEmpty(texts.front());
   }
 
   /// The pipeline itself refuses the request.
@@ -103,6 +109,20 @@ public:
       std::cerr << "Unexpected: " << this->Errors->GetErrorMessage()
                 << this->Errors->GetWarningMessage() << this->ExecutiveErrors->GetErrorMessage()
                 << '\n';
+    }
+  }
+
+  /// There is an output, and a warning with the text.
+  void Warns(const std::string& text)
+  {
+    this->Update();
+    if (this->Errors->GetError() ||
+      this->Errors->GetWarningMessage().find(text) == std::string::npos)
+    {
+      ++Failures();
+      std::cerr << "Expected a warning with \"" << text
+                << "\", got: " << this->Errors->GetErrorMessage()
+                << this->Errors->GetWarningMessage() << '\n';
     }
   }
 

@@ -2,6 +2,7 @@
 // What is built and sent once and kept, and what the filter reports of its work.
 #include "FilterTesting.h"
 
+#include <vtkCommand.h>
 #include <vtkStringArray.h>
 
 using namespace filterTesting;
@@ -167,10 +168,53 @@ void TestPublishedResampler()
   VERIFY(border < 60);
 }
 
+/// Counts how often the progress begins to speak of compilation, and stops.
+class CompilationListener
+{
+public:
+  explicit CompilationListener(vtkDeformVolumeFilter* filter)
+    : Filter(filter)
+  {
+    filter->AddObserver(vtkCommand::ProgressEvent, this, &CompilationListener::Listen);
+  }
+  int Begins = 0;
+  int Ends = 0;
+
+private:
+  void Listen()
+  {
+    const char* text = this->Filter->GetProgressText();
+    const bool compiling = text && std::string(text) == "Compiling kernels";
+    this->Begins += compiling && this->Begins == this->Ends;
+    this->Ends += !compiling && this->Begins > this->Ends;
+  }
+  vtkDeformVolumeFilter* Filter;
+};
+
+// The first update of a process has kernels to compile, or to load; it says so, and their time is
+// no part of the others.
+void TestCompilation()
+{
+  Counted counted;
+  vtkDeformVolumeFilter* filter = counted.Subject.Filter;
+  CompilationListener listener(filter);
+  counted.Expect("first", 1, 1);
+  VERIFY(filter->GetCompilationTime() > 0.0 && filter->GetCompilationTime() < 600.0);
+  VERIFY(listener.Begins > 0);
+  VERIFY_EQUAL(listener.Ends, listener.Begins);
+  VERIFY(filter->GetProgressText() == nullptr);
+  const int begins = listener.Begins;
+  filter->Modified();
+  counted.Expect("filter modified", 0, 0);
+  VERIFY_EQUAL(filter->GetCompilationTime(), 0.0);
+  VERIFY_EQUAL(listener.Begins, begins);
+}
+
 } // namespace
 
 int TestDeformCaching(int, char*[])
 {
+  TestCompilation(); // first, while nothing is compiled
   TestCounters();
   TestReports();
   TestMemoryLimit();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bad input: one error that says what is wrong, an empty output, and a filter that works again.
 #include "FilterTesting.h"
+#include "PolyhedronCells.h"
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
-#include <vtkIdTypeArray.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
@@ -247,37 +247,28 @@ void TestCells(Misuse& misuse)
   auto untyped = misuse.CopyMesh();
   vtkNew<vtkUnsignedCharArray> types;
   types->InsertNextValue(VTK_TETRA);
-  untyped->SetCells(types, untyped->GetCells(), nullptr, nullptr);
+  untyped->SetCells(types, untyped->GetCells());
   misuse.GetFilter()->SetDeformationData(untyped);
   misuse.Expect("fewer types than cells", "1 cell types");
 
   // Faces that are not there, too few, too small, cut off, or of a point that is not there.
   const struct
   {
-    vtkIdType Location;
-    std::vector<vtkIdType> Faces;
+    PolyhedronDescription Polyhedron;
     const char* Complaint;
-  } polyhedra[] = { { -1, { 4, 3, 0, 1, 3 }, " with 4 points and incomplete faces" },
-    { 5, { 4, 3, 0, 1, 3 }, "incomplete faces" }, { 0, { 0, 3, 0, 1, 3 }, "incomplete faces" },
-    { 0, { 4, 2, 0, 1, 2 }, "incomplete faces" }, { 0, { 4, 3, 0, 1, 3 }, "incomplete faces" },
-    { 0, { 4, 3, 0, 1, 5000 }, " uses point 5000" } };
-  for (const auto& polyhedron : polyhedra)
+  } cases[] = { { { -1, 4, { { 0, 1, 3 } } }, " with 4 points and incomplete faces" },
+    { { 5, 4, { { 0, 1, 3 } } }, "incomplete faces" },
+    { { 0, 0, { { 0, 1, 3 } } }, "incomplete faces" },
+    { { 0, 4, { { 0, 1 } } }, "incomplete faces" },
+    { { 0, 4, { { 0, 1, 3 }, { 0, 1 }, { 0, 1, 3 }, { 1, 3, 0 } } }, "incomplete faces" },
+    { { 0, 4, { { 0, 1, 3 } } }, "incomplete faces" },
+    { { 0, 4, { { 0, 1, 5000 } } }, " uses point 5000" } };
+  for (const auto& entry : cases)
   {
-    vtkNew<vtkIdTypeArray> faces;
-    for (const vtkIdType value : polyhedron.Faces)
-    {
-      faces->InsertNextValue(value);
-    }
-    vtkNew<vtkIdTypeArray> locations;
-    locations->InsertNextValue(polyhedron.Location);
-    vtkNew<vtkUnsignedCharArray> polyhedronType;
-    polyhedronType->InsertNextValue(VTK_POLYHEDRON);
-    vtkNew<vtkCellArray> cells;
-    cells->InsertNextCell(4, good);
     auto mesh = misuse.CopyMesh();
-    mesh->SetCells(polyhedronType, cells, locations, faces);
+    SetPolyhedron(mesh, { good, good + 4 }, entry.Polyhedron);
     misuse.GetFilter()->SetDeformationData(mesh);
-    misuse.Expect("a polyhedron with bad faces", polyhedron.Complaint);
+    misuse.Expect("a polyhedron with bad faces", entry.Complaint);
   }
 }
 

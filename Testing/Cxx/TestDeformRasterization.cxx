@@ -308,8 +308,7 @@ void TestAutomatic()
   vtkImageData* output = deformed.Filter->GetOutput();
   for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
   {
-    const glm::dvec3 point = GetPoint(output, id);
-    const vtkIdType other = whole->FindPoint(point.x, point.y, point.z);
+    const vtkIdType other = whole->FindPoint(output->GetPoint(id));
     wrong += deformed.GetValues()->GetComponent(id, 0) !=
       whole->GetPointData()->GetScalars()->GetComponent(other, 0);
   }

@@ -42,6 +42,25 @@ private:
   vtkNew<vtkStringOutputWindow> Window;
 };
 
+// Sources complain where they are asked for what they have not: a failure asks them for nothing.
+void TestSources()
+{
+  const auto volume = MakeVolume({ { 5, 12, -9, -2, 3, 9 } });
+  const auto field = MakeImage({ { 4, 13, -10, -1, 2, 10 } });
+  SetDisplacements(field, Shift(0.5, 0.0, 0.0));
+  const Display display;
+  vtkNew<vtkDeformVolumeFilter> filter;
+  filter->SetInputData(volume);
+  filter->SetDeformationData(field);
+  filter->SetDevice("a device that nobody has");
+  filter->Update();
+  VERIFY_EQUAL(display.CountErrors(), 1);
+  filter->SetDevice("");
+  filter->Update();
+  VERIFY_EQUAL(display.CountErrors(), 1);
+  VERIFY(filter->GetOutput()->GetNumberOfPoints() > 0);
+}
+
 void TestMessages(vtkImageData* volume, vtkUnstructuredGrid* mesh)
 {
   const Display display;
@@ -121,5 +140,6 @@ int TestFailureReport(int, char*[])
   SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
   TestDeviceChoices(volume, mesh);
   TestMessages(volume, mesh);
+  TestSources();
   return GetExitCode();
 }

@@ -10,9 +10,11 @@
 #include <glm/mat3x3.hpp>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <numeric>
 #include <thread>
 
 using namespace deformvolume;
@@ -54,9 +56,28 @@ bool IsInsideExactly(const Mesh& mesh, const Tetrahedron& nodes, const glm::dvec
     std::all_of(volumes, volumes + 4, [](WideInteger v) { return v <= 0; });
 }
 
-// Meshes whose nodes are multiples of 1/256 voxel: no rounding, so everything is exact.
-void CheckExactly(const Mesh& mesh, const Extent& voxels)
+// Tetrahedra in the order of the positions of their nodes: then the first one that holds a voxel
+// gets it.
+Mesh Sort(Mesh mesh)
 {
+  const auto getKey = [&](const Tetrahedron& nodes)
+  {
+    std::array<double, 12> key;
+    for (int i = 0; i < 12; ++i)
+    {
+      key[i] = mesh.Points[nodes[i / 3]][i % 3];
+    }
+    return key;
+  };
+  std::stable_sort(mesh.Tetrahedra.begin(), mesh.Tetrahedra.end(),
+    [&](const Tetrahedron& a, const Tetrahedron& b) { return getKey(a) < getKey(b); });
+  return mesh;
+}
+
+// Meshes whose nodes are multiples of 1/256 voxel: no rounding, so everything is exact.
+void CheckExactly(const Mesh& unsorted, const Extent& voxels)
+{
+  const Mesh mesh = Sort(unsorted);
   const StaticMapping mapping = BuildStaticMapping(
     voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links);
   std::int64_t flat = 0;
@@ -113,8 +134,9 @@ double GetDepth(const Mesh& mesh, const Tetrahedron& nodes, const glm::dvec3& po
 }
 
 // Meshes with nodes anywhere: right to within the rounding, and without holes.
-void CheckRounded(const Mesh& mesh, const Extent& voxels)
+void CheckRounded(const Mesh& unsorted, const Extent& voxels)
 {
+  const Mesh mesh = Sort(unsorted);
   // Rounding moves a node by up to sqrt(3) 2^-9 voxel.
   const double tolerance = std::sqrt(3.0) / 256.0;
   const StaticMapping mapping = BuildStaticMapping(
@@ -287,8 +309,8 @@ void TestFlatBetweenOthers()
     for (const double height : { 9.0, 1e-7 })
     {
       Mesh mesh;
-      mesh.Points = { -10.0 * u - 9.0 * v, 11.0 * u - 10.0 * v, 10.0 * u + 11.0 * v,
-        -10.0 * u + 10.0 * v, 9.0 * w, -9.0 * w };
+      mesh.Points = std::vector<glm::dvec3>{ -10.0 * u - 9.0 * v, 11.0 * u - 10.0 * v,
+        10.0 * u + 11.0 * v, -10.0 * u + 10.0 * v, 9.0 * w, -9.0 * w };
       // A sliver with a little volume is no better.
       mesh.Points[0] += height < 1.0 ? height * w : glm::dvec3(0.0);
       mesh.Tetrahedra = { { { 0, 1, 2, 3 } }, { { 0, 1, 2, 4 } }, { { 0, 2, 3, 4 } },
@@ -308,8 +330,8 @@ void TestFlatBetweenOthers()
   }
   // Alone, a flat one holds nothing.
   Mesh mesh;
-  mesh.Points = { { -10.0, -9.0, 0.1 }, { 11.0, -10.0, 0.1 }, { 10.0, 11.0, 0.1 },
-    { -10.0, 10.0, 0.1 } };
+  mesh.Points = std::vector<glm::dvec3>{ { -10.0, -9.0, 0.1 }, { 11.0, -10.0, 0.1 },
+    { 10.0, 11.0, 0.1 }, { -10.0, 10.0, 0.1 } };
   for (glm::dvec3& point : mesh.Points)
   {
     point.z += 0.37 * point.x + 0.21 * point.y;
@@ -318,6 +340,66 @@ void TestFlatBetweenOthers()
   const StaticMapping mapping = BuildStaticMapping(
     voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true, StaticMappingForm::Links);
   CHECK(mapping.NumberOfInnerVoxels == 0 && mapping.NumberOfFlatTetrahedra == 1);
+}
+
+// The same mesh with other numbers: the same tetrahedra and weights, to the last bit.
+void TestNumbering()
+{
+  std::mt19937 random(8);
+  const Extent voxels{ { 0, 20, -3, 25, 5, 24 } };
+  const glm::dvec3 min(0.0, -3.0, 5.0);
+  const glm::dvec3 max(20.0, 25.0, 24.0);
+  for (const Mesh& mesh : { MakeLattice({ 5, 5, 5 }, min, max, 0.0, 1.0, random),
+         MakeLattice({ 9, 8, 7 }, min - 1.0, max + 2.0, 0.3, 0.0, random),
+         MakeSoup(60, 90, -5.0, 30.0, 1.0, random), MakeSoup(60, 90, -5.0, 30.0, 0.0, random) })
+  {
+    std::vector<std::int32_t> nodes(mesh.Points.size());
+    std::vector<std::int32_t> tetrahedra(mesh.Tetrahedra.size());
+    for (std::vector<std::int32_t>* numbers : { &nodes, &tetrahedra })
+    {
+      std::iota(numbers->begin(), numbers->end(), 0);
+      std::shuffle(numbers->begin(), numbers->end(), random);
+    }
+    Mesh other = mesh;
+    for (std::size_t node = 0; node < nodes.size(); ++node)
+    {
+      other.Points[nodes[node]] = mesh.Points[node];
+    }
+    for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+    {
+      std::transform(mesh.Tetrahedra[t].begin(), mesh.Tetrahedra[t].end(),
+        other.Tetrahedra[tetrahedra[t]].begin(), [&](std::int32_t node) { return nodes[node]; });
+    }
+    for (const bool extrapolate : { false, true })
+    {
+      const StaticMapping expected = BuildStaticMapping(
+        voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, extrapolate, StaticMappingForm::Links);
+      const StaticMapping found = BuildStaticMapping(
+        voxels, UnitSpacing, other.Points, other.Tetrahedra, extrapolate, StaticMappingForm::Links);
+      for (std::size_t i = 0; i < expected.Links.size(); ++i)
+      {
+        const VertexLink& link = expected.Links[i];
+        CHECK(
+          found.Links[i].Tetrahedron == (link.Tetrahedron < 0 ? -1 : tetrahedra[link.Tetrahedron]));
+        CHECK(std::memcmp(found.Links[i].Weights, link.Weights, sizeof(link.Weights)) == 0);
+      }
+    }
+    const StaticMapping expected = BuildStaticMapping(
+      voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Runs);
+    const StaticMapping found = BuildStaticMapping(
+      voxels, UnitSpacing, other.Points, other.Tetrahedra, false, StaticMappingForm::Runs);
+    CHECK(found.Runs.RowBegins == expected.Runs.RowBegins);
+    CHECK(std::memcmp(found.Runs.Runs.data(), expected.Runs.Runs.data(),
+            expected.Runs.Runs.size() * sizeof(VertexRun)) == 0);
+    CHECK(found.Runs.Tetrahedra.size() == expected.Runs.Tetrahedra.size());
+    for (std::size_t i = 0; i < expected.Runs.Tetrahedra.size(); ++i)
+    {
+      const RestTetrahedron& a = expected.Runs.Tetrahedra[i];
+      const RestTetrahedron& b = found.Runs.Tetrahedra[i];
+      CHECK(b.Tetrahedron == tetrahedra[a.Tetrahedron] && b.Origin == a.Origin &&
+        b.Weights == a.Weights && b.Gradients == a.Gradients);
+    }
+  }
 }
 
 void TestThreads()
@@ -383,6 +465,7 @@ int TestStaticMapping(int, char*[])
   TestExact();
   TestRounded();
   TestFlatBetweenOthers();
+  TestNumbering();
   TestThreads();
   TestLarge();
   return GetResult();

@@ -16,12 +16,34 @@
 #include <vtkRectilinearGrid.h>
 #include <vtkSphereSource.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
+#include <dlfcn.h>
+
 using namespace meshChecks;
+
+namespace
+{
+
+bool NoTerminals = false;
+
+} // namespace
+
+/// Takes the place of the C library's, so that pseudo terminals can be missing.
+extern "C" __attribute__((visibility("default"))) int posix_openpt(int flags)
+{
+  if (NoTerminals)
+  {
+    errno = ENOENT;
+    return -1;
+  }
+  static const auto original = reinterpret_cast<int (*)(int)>(dlsym(RTLD_NEXT, "posix_openpt"));
+  return original(flags);
+}
 
 namespace
 {
@@ -90,6 +112,17 @@ void TestMisuseOfVolumes()
   check.Fails("at most 20 million");
   mesher->SetTargetEdgeLength(1e300);
   check.Fails("cannot be moved out by a margin of 5e+298 world units");
+  mesher->SetTargetEdgeLength(0.0);
+  mesher->AddRefinementSphere(10.0, 10.0, 10.0, 5.0, 2.0);
+  mesher->AddRefinementSphere(10.0, 10.0, 10.0, 0.0, 1.0);
+  check.Fails("Refinement sphere 1 has the center 10, 10, 10, the radius 0 and the edge length 1");
+  mesher->ClearRefinementSpheres();
+  mesher->AddRefinementSphere(std::nan(""), 10.0, 10.0, 1.0, 1.0);
+  check.Fails("have to be finite");
+  mesher->ClearRefinementSpheres();
+  mesher->AddRefinementSphere(10.0, 10.0, 10.0, 8.0, 0.01);
+  check.Fails("refinement spheres ask for about");
+  mesher->ClearRefinementSpheres();
   mesher->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "absent");
   check.Fails("no such point array");
   mesher->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "values");
@@ -132,7 +165,8 @@ void TestMisuseOfSurfaces()
   check.Fails("not manifold: 1 edges");
   neighbor->SetCenter(0.5, 0.45, 0.4); // runs into it
   check.Fails("intersects itself. TetGen says:");
-  check.Fails("pairs of faces are intersecting");
+  // Words of TetGen 1.5 and 1.6.
+  check.FailsWithAny({ "pairs of faces are intersecting", "segments exactly intersect" });
   mesher->SetInputConnection(cube->GetOutputPort());
   mesher->SetTargetEdgeLength(1e-9); // and does not try for hours
   check.Fails("at most 20 million");
@@ -199,6 +233,28 @@ void TestMisuseOfTheProgram(const std::filesystem::path& folder)
   VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
 }
 
+/// Without pseudo terminals a pipe does; only a message before abort() is lost.
+void TestNoTerminal(const std::filesystem::path& folder)
+{
+  NoTerminals = true;
+  vtkNew<vtkCubeSource> cube;
+  vtkNew<vtkTetGenMesher> mesher;
+  mesher->SetInputConnection(cube->GetOutputPort());
+  FailureCheck check(mesher);
+  check.Succeeds();
+  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
+  mesher->SetTetGenExecutable(WriteScript(folder, "fails", "echo 'the moon is wrong'; exit 3"));
+  check.Fails("It says: the moon is wrong");
+  mesher->SetTetGenExecutable(WriteScript(folder, "wordless", "exit 3"));
+  check.Fails("without pseudo terminals, its messages are lost");
+  // More than a pipe holds.
+  mesher->SetTetGenExecutable(
+    WriteScript(folder, "talks", "yes 'Opening x.' | head -n 100000; exec tetgen \"$@\""));
+  check.Succeeds();
+  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
+  NoTerminals = false;
+}
+
 } // namespace
 
 int TestTetGenMesherErrors(int argc, char* argv[])
@@ -219,6 +275,7 @@ int TestTetGenMesherErrors(int argc, char* argv[])
   TestMisuseOfVolumes();
   TestMisuseOfSurfaces();
   TestMisuseOfTheProgram(folder);
+  TestNoTerminal(folder);
   VERIFY(std::filesystem::is_empty(folder / "temporary"));
 
   setenv("TMPDIR", (folder / "absent").c_str(), 1);

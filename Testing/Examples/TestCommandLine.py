@@ -33,7 +33,7 @@ def fails(code, expected, *arguments, environment=None):
 
 # Wrong usage.
 fails(2, "no VOLUME")
-fails(2, "exactly one of --mesh, --tetgen and --lattice", path("in.vti"), "-o", path("o.vti"))
+fails(2, "exactly one of --mesh, --field, --tetgen and --lattice", path("in.vti"), "-o", path("o.vti"))
 fails(2, "exactly one of", path("in.vti"), "--tetgen", *lattice, *push, "-o", path("o.vti"))
 fails(2, "at least one --push", path("in.vti"), *lattice, "-o", path("o.vti"))
 fails(2, "seven numbers", path("in.vti"), *lattice, "--push", "1,2,3", "-o", path("o.vti"))
@@ -136,7 +136,7 @@ assert output.strip(), "no device"
 # and nothing beyond its radius.
 output, errors = call(program, path("in.vti"), *lattice, *push, "-o", path("pushed.vti"),
                       "--write-mesh", path("mesh.vtu"), "--background", "-7", "--bounds", "volume")
-for word in ("step", "resampling", "total", "25 x 22 x 19", "729 nodes"):
+for word in ("step", "compile kernels", "resampling", "total", "25 x 22 x 19", "729 nodes"):
     assert word in output, word
 assert "\r" not in errors, "a progress bar without a terminal"
 pushed = read_vti(path("pushed.vti"))
@@ -170,6 +170,7 @@ for node, move in enumerate(moves):
 writer = vtkXMLUnstructuredGridWriter()
 writer.SetInputData(deformed)
 writer.SetFileName(path("deformed.vtu"))
+writer.SetDataModeToBinary()
 assert writer.Write()
 call(program, path("in.vti"), "--mesh", path("deformed.vtu"), "--rest", path("mesh.vtu"), "-o",
      path("pair.vti"), "--background", "-7", "--bounds", "volume", "--quiet")

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 #include <new>
+#include <random>
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -198,6 +199,41 @@ TEST_F(HostMemory, OutputsInSlabs)
       EXPECT_EQ(coverage, expected.Coverage);
       EXPECT_EQ(std::memcmp(first.data() + shift, expected.Outputs[0].data(), 2 * voxels), 0);
       EXPECT_EQ(std::memcmp(second.data() + shift, expected.Outputs[1].data(), 16 * voxels), 0);
+    }
+  }
+}
+
+// Chunks of any number of layers: what cells at their ends do depends on cells of the next chunk,
+// where vertices or tetrahedra are missing.
+TEST_F(HostMemory, MaskedVolumesInChunks)
+{
+  for (const double amplitude : { 0.0, 0.15 })
+  {
+    DeformerCase masked =
+      MakeCase({ { 0, 12, 0, 11, 0, 22 } }, { { 1, 1, 1 } }, MakeJitter(9, amplitude));
+    std::mt19937 random(8);
+    masked.Blanked.resize(static_cast<std::size_t>(masked.GetNumberOfVoxels()));
+    masked.Active.resize(static_cast<std::size_t>(GetNumberOfCells(masked.Lattice.VertexExtent)));
+    std::generate(masked.Blanked.begin(), masked.Blanked.end(), [&] { return random() % 16 == 0; });
+    std::generate(masked.Active.begin(), masked.Active.end(),
+      [&] { return static_cast<unsigned char>(random() % 8 ? 31 : random() % 32); });
+    const auto values =
+      MakeRandomValues<float>(static_cast<std::size_t>(masked.GetNumberOfVoxels()), 3);
+    const std::vector<VolumeArray> arrays{ MakeArray(values) };
+    const reference::Result reference = ResampleByReference(masked);
+    for (const std::uint64_t layers : { 1, 2, 3, 5, 6, 7 })
+    {
+      SCOPED_TRACE(testing::Message() << "amplitude " << amplitude << " layers " << layers);
+      VolumeDeformer deformer;
+      deformer.SetDevice("");
+      // Links have 16 bytes, and a chunk has three planes more than layers.
+      deformer.SetAllocationLimit(16 * 13 * 12 * (layers + 3));
+      Load(deformer, masked, arrays, Route::Mesh);
+      for (const Resampling method : { Resampling::Exact, Resampling::ExactByCell })
+      {
+        ExpectEqualsReference(
+          masked, reference, arrays, RunDeformer(deformer, masked, arrays, method));
+      }
     }
   }
 }

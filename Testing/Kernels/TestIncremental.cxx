@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <iterator>
 #include <memory>
 #include <random>
@@ -366,6 +367,104 @@ TEST_P(Incremental, LocalEditsRunFewBricks)
   request.LastOutputs.clear();
   const DeformReport last = deformer.Deform(request);
   EXPECT_EQ(last.NumberOfResampledBricks, last.NumberOfBricks);
+}
+
+namespace
+{
+
+// A mask changes at one place near a corner between eight parts of bricks, each place in turn.
+class IncrementalMasks : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    this->Case.Output[0] = 0;
+    this->Arrays = { MakeArray(this->Values) };
+    this->Wanted = std::make_unique<VolumeDeformer>();
+    Load(*this->Wanted, this->Case, this->Arrays, Route::Field);
+    Load(this->Updated, this->Case, this->Arrays, Route::Field);
+  }
+
+  DeformReport Deform(
+    VolumeDeformer& deformer, std::vector<float>& output, std::vector<signed char>& coverage) const
+  {
+    DeformRequest request;
+    request.OutputExtent = this->Case.Output;
+    request.Outputs = { output.data() };
+    request.Coverage = coverage.data();
+    request.Incremental = true;
+    if (&deformer == &this->Updated)
+    {
+      request.LastOutputs = { output.data() };
+      request.LastCoverage = coverage.data();
+    }
+    return deformer.Deform(request);
+  }
+
+  // Sends masks and compares.
+  void Update(const std::vector<unsigned char>& blanked, const std::vector<unsigned char>& active)
+  {
+    const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(this->Case.Output));
+    this->Values1.resize(voxels);
+    this->Coverage1.resize(voxels);
+    std::vector<float> values(voxels);
+    std::vector<signed char> coverage(voxels);
+    for (VolumeDeformer* deformer : { this->Wanted.get(), &this->Updated })
+    {
+      deformer->SetBlanked(blanked.data());
+      deformer->SetActiveTetrahedra(active.data());
+    }
+    this->Deform(*this->Wanted, values, coverage);
+    const DeformReport report = this->Deform(this->Updated, this->Values1, this->Coverage1);
+    this->Parts += report.NumberOfResampledBricks < report.NumberOfBricks;
+    ASSERT_EQ(coverage, this->Coverage1);
+    ASSERT_EQ(std::memcmp(values.data(), this->Values1.data(), voxels * sizeof(float)), 0);
+  }
+
+  // Twice as fine as the volume, so that cells are boxes. Samples lie on the border of the volume,
+  // but none on the plane that divides parts on x, and patches of the output end there: then a part
+  // beside one that is made anew touches nothing of it.
+  DeformerCase Case = MakeCase(
+    { { 0, 48, 0, 48, 0, 48 } }, { { 2, 2, 2 } },
+    [](const glm::dvec3& index) { return 2.0 * index - glm::dvec3(0.5, 0.0, 0.0); }, 0);
+  std::vector<float> Values =
+    MakeRandomValues<float>(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()), 3);
+  std::vector<VolumeArray> Arrays;
+  std::unique_ptr<VolumeDeformer> Wanted;
+  VolumeDeformer Updated;
+  std::vector<float> Values1;
+  std::vector<signed char> Coverage1;
+  int Parts = 0;
+};
+
+} // namespace
+
+TEST_F(IncrementalMasks, AMaskChangesBesideAPart)
+{
+  std::vector<unsigned char> blanked(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()));
+  std::vector<unsigned char> active(
+    static_cast<std::size_t>(GetNumberOfCells(this->Case.Lattice.VertexExtent)), 31);
+  this->Update(blanked, active);
+  int changes = 0;
+  for (const int y : { 0, 20 })
+  {
+    // Parts meet at 32.
+    for (int x = 28; x <= 36; ++x)
+    {
+      for (const bool ofCells : { false, true })
+      {
+        SCOPED_TRACE(testing::Message() << "x " << x << " y " << y << " of cells " << ofCells);
+        unsigned char& value =
+          ofCells ? active[(20 * 48 + y) * 48 + x] : blanked[(20 * 49 + y) * 49 + x];
+        value = ofCells ? 0 : 1;
+        ASSERT_NO_FATAL_FAILURE(this->Update(blanked, active));
+        value = ofCells ? 31 : 0;
+        ASSERT_NO_FATAL_FAILURE(this->Update(blanked, active));
+        changes += 2;
+      }
+    }
+  }
+  EXPECT_TRUE(this->Parts == changes || this->Parts == 0) << this->Parts << " of " << changes;
 }
 
 namespace

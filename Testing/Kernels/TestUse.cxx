@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 using namespace deformvolume;
@@ -126,6 +127,31 @@ TEST_F(Use, MeshThatPointsOutsideItself)
   const Tetrahedron inside{ { 0, 1, 2, 3 } };
   links[5].Tetrahedron = 1;
   GetError([&] { this->Deformer.SetMesh(&inside, 1, 4, links.data()); });
+  this->ExpectUsable();
+}
+
+// Positions relative to an output that is 2^24 voxels away do not fit 32 bits.
+TEST_F(Use, OutputsFarAway)
+{
+  Load(this->Deformer, this->Case, this->Arrays, Route::Field);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (const int offset : { -(1 << 24), -(1 << 23), -100000, 1 << 20, 1 << 22, 1 << 23, 1 << 24 })
+    {
+      SCOPED_TRACE(testing::Message() << "axis " << axis << " offset " << offset);
+      DeformerCase away = this->Case;
+      away.Output[2 * axis] += offset;
+      away.Output[2 * axis + 1] += offset;
+      for (const Resampling method : { Resampling::Exact, Resampling::ExactByCell })
+      {
+        const Deformed deformed = RunDeformer(this->Deformer, away, this->Arrays, method);
+        EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, 0);
+        EXPECT_FALSE(deformed.Report.Overlapping);
+        EXPECT_EQ(std::count(deformed.Coverage.begin(), deformed.Coverage.end(), 0),
+          static_cast<std::ptrdiff_t>(deformed.Coverage.size()));
+      }
+    }
+  }
   this->ExpectUsable();
 }
 

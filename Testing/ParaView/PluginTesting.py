@@ -105,8 +105,7 @@ def head_file():
     writer.SetFileName(path)
     writer.SetInputConnection(reader.GetOutputPort())
     writer.SetCompressorTypeToNone()
-    writer.SetDataModeToAppended()
-    writer.EncodeAppendedDataOff()
+    writer.SetDataModeToBinary()  # ParaView 5.11 cannot read what VTK appends
     writer.Write()
     return path
 

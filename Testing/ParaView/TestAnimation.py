@@ -45,6 +45,7 @@ def write_series(image):
         name = f"TestAnimation{step}.vtu"
         writer.SetFileName(os.path.join(OUTPUT, name))
         writer.SetInputData(mesh)
+        writer.SetDataModeToBinary()  # ParaView 5.11 cannot read what VTK appends
         writer.Write()
         entries.append(f'<DataSet timestep="{step * 0.5}" part="0" file="{name}"/>')
         meshes.append(mesh)

@@ -100,6 +100,7 @@ def check_defaults(volume):
     check(filter_.InvertedTetrahedra == 0.0, f"{filter_.InvertedTetrahedra}")
     check(filter_.CoveredVoxels > 1000.0, f"{filter_.CoveredVoxels}")
     check(filter_.ResamplingTime > 0.0 and filter_.DeviceMemory > 0.0, "No time or no memory")
+    check(filter_.CompilationTime >= 0.0, f"{filter_.CompilationTime}")
     filter_.ReleaseDeviceMemory()
     filter_.UpdatePipelineInformation()
     check(filter_.DeviceMemory == 0.0, f"{filter_.DeviceMemory} bytes are left")

@@ -26,6 +26,8 @@ WITHOUT_PROPERTY = {
     "GetCategoricalArray",
     "GetNumberOfLabels",
     "GetLabel",
+    "GetNumberOfRefinementSpheres",
+    "GetRefinementSphere",
     "GetDeviceNames",
 }
 

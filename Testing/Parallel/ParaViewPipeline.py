@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Deforms a volume in pvbatch and saves the result: data as <prefix>.pvti, a picture as <prefix>.png.
 
-Arguments: the plugin, the prefix, the volume (.vti), the number of ranks that there should be.
+Arguments: the plugin, the prefix, the volume (.vti), the deformation mesh (.pvtu), the number of ranks
+that there should be.
 """
 import sys
 
 from paraview import servermanager, simple
 
-plugin, prefix, volume_file, ranks = sys.argv[1:]
+plugin, prefix, volume_file, mesh_file, ranks = sys.argv[1:]
 simple.LoadPlugin(plugin, remote=False, ns=globals())
 if servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartitions() != int(ranks):
     sys.exit(f"not {ranks} ranks")
@@ -17,14 +18,9 @@ lattice = TetrahedralLattice(NumberOfNodes=[7, 7, 7], Bounds=[-32, 32, -31, 31, 
 lattice.UpdatePipeline()
 if lattice.GetDataInformation().GetNumberOfCells() != 5 * 6**3:
     sys.exit(f"{ranks} ranks make {lattice.GetDataInformation().GetNumberOfCells()} cells")
-displaced = simple.Calculator(
-    Input=lattice,
-    ResultArrayName="displacement",
-    Function="iHat*(6*sin(0.09*coordsY)) + jHat*(5*cos(0.07*coordsZ)) + kHat*(0.2*coordsX)",
-)
-# The mesh is distributed as ParaView does that.
-distributed = simple.RedistributeDataSet(Input=displaced)
-deformed = DeformVolume(Volume=volume, Deformation=distributed)
+# ParaView deals the pieces of the file out to the ranks.
+mesh = simple.XMLPartitionedUnstructuredGridReader(FileName=[mesh_file])
+deformed = DeformVolume(Volume=volume, Deformation=mesh)
 deformed.DisplacementArray = ["POINTS", "displacement"]
 deformed.UpdatePipeline()
 simple.SaveData(prefix + ".pvti", proxy=deformed, DataMode="Binary")

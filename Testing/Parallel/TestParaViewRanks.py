@@ -9,10 +9,13 @@ import subprocess
 import sys
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import VTK_TETRA, vtkImageData, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersGeneral import vtkDataSetTriangleFilter
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 from vtkmodules.vtkIOImage import vtkPNGReader
-from vtkmodules.vtkIOXML import vtkXMLImageDataWriter, vtkXMLPImageDataReader
+from vtkmodules.vtkIOXML import (
+    vtkXMLImageDataWriter, vtkXMLPImageDataReader, vtkXMLUnstructuredGridWriter)
 
 mpiexec, pvbatch, plugin, output = sys.argv[1:]
 here = os.path.dirname(os.path.abspath(__file__))
@@ -23,14 +26,54 @@ source.SetWholeExtent(-30, 29, -28, 30, -31, 31)
 writer = vtkXMLImageDataWriter()
 writer.SetInputConnection(source.GetOutputPort())
 writer.SetFileName(volume)
-writer.SetDataModeToBinary()  # this ParaView cannot read what VTK appends
+writer.SetDataModeToBinary()  # ParaView 5.11 cannot read what VTK appends
 writer.Write()
+
+
+def write_mesh(pieces):
+    """A mesh of tetrahedra in a file of pieces, each with every third cell. ParaView could also
+    redistribute a mesh, but 5.11 passes it on as appended data, too."""
+    box = vtkImageData()
+    box.SetDimensions(7, 7, 7)
+    box.SetOrigin(-32, -31, -33)
+    box.SetSpacing(64 / 6, 62 / 6, 66 / 6)
+    split = vtkDataSetTriangleFilter()
+    split.SetInputData(box)
+    split.Update()
+    grid = split.GetOutput()
+    x, y, z = vtk_to_numpy(grid.GetPoints().GetData()).astype(float).T
+    vectors = numpy.stack([6 * numpy.sin(0.09 * y), 5 * numpy.cos(0.07 * z), 0.2 * x], axis=1)
+    displacements = numpy_to_vtk(vectors, deep=1)
+    displacements.SetName("displacement")
+    grid.GetPointData().AddArray(displacements)
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetDataModeToBinary()
+    for piece in range(pieces):
+        part = vtkUnstructuredGrid()
+        part.SetPoints(grid.GetPoints())
+        part.GetPointData().ShallowCopy(grid.GetPointData())
+        for cell in range(piece, grid.GetNumberOfCells(), pieces):
+            part.InsertNextCell(VTK_TETRA, grid.GetCell(cell).GetPointIds())
+        writer.SetInputData(part)
+        writer.SetFileName(f"{mesh[:-5]}_{piece}.vtu")
+        writer.Write()
+    sources = [f'<Piece Source="{os.path.basename(mesh)[:-5]}_{i}.vtu"/>' for i in range(pieces)]
+    with open(mesh, "w", encoding="ascii") as file:
+        file.write(
+            '<VTKFile type="PUnstructuredGrid" version="0.1"><PUnstructuredGrid GhostLevel="0">'
+            '<PPointData><PDataArray type="Float64" Name="displacement" NumberOfComponents="3"/>'
+            '</PPointData><PPoints><PDataArray type="Float32" NumberOfComponents="3"/></PPoints>'
+            + "".join(sources) + "</PUnstructuredGrid></VTKFile>")
+
+
+mesh = os.path.join(output, "TestParaViewRanks.pvtu")
+write_mesh(3)
 
 
 def run(ranks):
     prefix = os.path.join(output, f"TestParaViewRanks{ranks}")
     command = [mpiexec, "-n", str(ranks), pvbatch, os.path.join(here, "ParaViewPipeline.py")]
-    subprocess.run(command + [plugin, prefix, volume, str(ranks)], check=True, timeout=200)
+    subprocess.run(command + [plugin, prefix, volume, mesh, str(ranks)], check=True, timeout=200)
     reader = vtkXMLPImageDataReader()
     reader.SetFileName(prefix + ".pvti")
     reader.Update()

@@ -82,7 +82,8 @@ int main(int argc, char* argv[])
   writer->SetFileName(file.c_str());
   writer->SetNumberOfPieces(16);
   writer->SetCompressorTypeToNone();
-  writer->EncodeAppendedDataOff();
+  // ParaView 5.11 cannot read appended data with recent versions of libexpat.
+  writer->SetDataModeToBinary();
   VERIFY_EQUAL(writer->Write(), 1);
   VERIFY_EQUAL(deformed.TakeErrors(), 0);
   const double peak = GetPeakMemory();

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeFieldFolds_h
+#define DeformVolumeFieldFolds_h
+
+#include "VolumeDeformer.h" // for DisplacementField
+
+#include <cstdint>
+
+namespace deformvolume
+{
+
+/// Of the tetrahedra of a field's lattice, five for each cell, the number that the field turns
+/// inside out. Where there are any, several points are led to one.
+std::int64_t CountInvertedTetrahedra(const DisplacementField& field);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeFieldScan_h
+#define DeformVolumeFieldScan_h
+
+#include "IndexBounds.h"
+#include "VolumeDeformer.h" // for DisplacementField, Lattice
+
+namespace deformvolume
+{
+
+/// What there is to know of the vectors of a displacement field before it is used.
+struct FieldScan
+{
+  /// Whether all vectors are finite, and no displacement is over LargestDisplacement.
+  bool IsUsable = false;
+  /// Of the voxels after the deformation, as ComputeDeformedBounds has them.
+  IndexBounds Bounds;
+};
+
+/// Whether each voxel is a point of a field.
+bool AreVoxelsPoints(const Lattice& lattice, const DisplacementField& field);
+
+/// Looks at each vector once, of a field that has each voxel for a point.
+FieldScan ScanField(const Lattice& lattice, const DisplacementField& field);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shorter edges of tetrahedra where they are asked for.
+#ifndef DeformVolumeMeshRefinement_h
+#define DeformVolumeMeshRefinement_h
+
+#include "vtkSmartPointer.h"
+
+#include <glm/vec3.hpp>
+
+#include <vector>
+
+class vtkPolyData;
+class vtkUnstructuredGrid;
+
+namespace deformvolume
+{
+
+/// Within the radius, edges are at most so long; beyond it, they become longer gradually. World
+/// units.
+struct RefinementSphere
+{
+  glm::dvec3 Center;
+  double Radius = 0.0;
+  double EdgeLength = 0.0;
+};
+
+/// The distance of a point from the edge between two others.
+double GetDistance(const glm::dvec3& point, const glm::dvec3& a, const glm::dvec3& b);
+
+/// About how many tetrahedra the spheres ask for in a surface.
+double EstimateTetrahedra(vtkPolyData* surface, const std::vector<RefinementSphere>& spheres);
+
+/// The same surface with more triangles where the spheres are. No edge that is within the length
+/// anyway is split.
+vtkSmartPointer<vtkPolyData> RefineSurface(
+  vtkPolyData* surface, const std::vector<RefinementSphere>& spheres);
+
+/// Points in the spheres for TetGen to use, evenly spaced, at some distance from the surface and
+/// from each other. Those outside the surface do no harm.
+std::vector<glm::dvec3> MakePoints(
+  vtkPolyData* surface, const std::vector<RefinementSphere>& spheres);
+
+/// Halves the few edges of the mesh that are too long within the spheres all the same, and with
+/// them all tetrahedra that have them.
+void SplitLongEdges(vtkUnstructuredGrid* mesh, const std::vector<RefinementSphere>& spheres);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeCellTypes_h
+#define DeformVolumeCellTypes_h
+
+#include "vtkCell.h"
+#include "vtkDataArray.h"
+#include "vtkGenericCell.h"
+#include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <string>
+
+namespace deformvolume
+{
+
+namespace detail
+{
+// Since VTK 9.6 the types may be in an array of any kind, such as a constant one.
+template <typename Grid>
+auto GetCellTypes(Grid* grid, int) -> decltype(static_cast<vtkDataArray*>(grid->GetCellTypes()))
+{
+  return grid->GetCellTypes();
+}
+
+template <typename Grid>
+vtkDataArray* GetCellTypes(Grid* grid, long)
+{
+  return grid->GetCellTypesArray();
+}
+} // namespace detail
+
+/// The types of a grid's cells, one tuple a cell; null where it has none.
+inline vtkDataArray* GetCellTypes(vtkUnstructuredGrid* grid)
+{
+  return detail::GetCellTypes(grid, 0);
+}
+
+/// The name of the class for a type of cells. The class that holds the names changed in VTK 9.6.
+inline std::string GetCellClassName(int type)
+{
+  const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+  return cell ? cell->GetClassName() : "cell of unknown type";
+}
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What vtkDeformVolumeFilter knows of the volume: what its source announces, and what it gives.
+#include "vtkDeformVolumeFilterInternals.h"
+
+#include "InputUpdate.h"
+
+#include "vtkAbstractArray.h"
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+
+using deformvolume::Error;
+using deformvolume::Extent;
+using deformvolume::ImageGeometry;
+using deformvolume::Ranks;
+
+namespace
+{
+
+// A copy is made of all arrays: none must be read beyond its end.
+void CheckSizes(vtkDataSetAttributes* attributes, vtkIdType size, const std::string& what)
+{
+  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = attributes->GetAbstractArray(i);
+    if (array->GetNumberOfTuples() != size)
+    {
+      throw Error("The " + what + " array number " + std::to_string(i) + " of the volume has " +
+        std::to_string(array->GetNumberOfTuples()) + " tuples for " + std::to_string(size) + " " +
+        what + "s. Remove the array, or give it one tuple for each " + what + ".");
+    }
+  }
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetVolumeGeometry(
+  const Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output)
+{
+  const ImageGeometry announced = deformvolume::GetGeometry(volumeInfo);
+  const std::pair<const void*, vtkMTimeType> stamp = deformvolume::GetInputStamp(this->Self, 0);
+  const bool hasOrigin = volumeInfo->Has(vtkDataObject::ORIGIN()) != 0;
+  const bool hasSpacing = volumeInfo->Has(vtkDataObject::SPACING()) != 0;
+  const bool isKnown =
+    stamp == this->VolumeStamp && announced.PointExtent == this->VolumeGeometry.PointExtent;
+  if (!ranks.IsAny((!hasOrigin || !hasSpacing) && !isKnown))
+  {
+    if (hasOrigin && hasSpacing)
+    {
+      this->VolumeGeometry = announced;
+      this->VolumeStamp = stamp;
+    }
+    return this->VolumeGeometry;
+  }
+  // Sources that leave out one of these have forgotten it, or know that it is the default: only the
+  // data tell. A direction is left out by most.
+  Extent part = announced.PointExtent;
+  if (deformvolume::CanProduceParts(this->Self, 0))
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      part[2 * axis + 1] = std::min(part[2 * axis + 1], part[2 * axis] + 1);
+    }
+  }
+  vtkImageData* volume =
+    vtkImageData::SafeDownCast(deformvolume::UpdateInputPart(this->Self, 0, output, part, ranks));
+  this->VolumeGeometry = announced;
+  this->VolumeStamp = stamp;
+  if (volume && volume->GetNumberOfPoints() > 0)
+  {
+    const ImageGeometry given = deformvolume::GetGeometry(volume);
+    this->VolumeGeometry.Origin = hasOrigin ? announced.Origin : given.Origin;
+    this->VolumeGeometry.Spacing = hasSpacing ? announced.Spacing : given.Spacing;
+    this->VolumeGeometry.Direction =
+      volumeInfo->Has(vtkDataObject::DIRECTION()) ? announced.Direction : given.Direction;
+  }
+  return this->VolumeGeometry;
+}
+
+//------------------------------------------------------------------------------
+deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
+  vtkImageData* volume, vtkInformation* info) const
+{
+  const ImageGeometry given = deformvolume::GetGeometry(volume);
+  deformvolume::MappedVolume mapped;
+  mapped.Whole = this->VolumeGeometry;
+  mapped.Part = given.PointExtent;
+  mapped.Extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
+  Extent asked = mapped.Whole.PointExtent;
+  info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked.data());
+  if (!deformvolume::Contains(mapped.Part, asked) ||
+    !deformvolume::Contains(mapped.Whole.PointExtent, mapped.Part))
+  {
+    throw Error("The source of the volume on input port 0 was asked for an extent of it, " +
+      deformvolume::DescribeExtent(asked) + ", and gave another one, " +
+      deformvolume::DescribeExtent(mapped.Part) +
+      ". Correct the WHOLE_EXTENT that the source announces or what it makes, or read the volume "
+      "into memory first.");
+  }
+  deformvolume::CheckTransform(given, "the volume on input port 0");
+  if (!deformvolume::AreSamePlaces(mapped.Whole, given, mapped.Whole.PointExtent))
+  {
+    throw Error("The volume on input port 0 has " + deformvolume::DescribeTransform(given) +
+      ", but its source announced " + deformvolume::DescribeTransform(mapped.Whole) +
+      ", from which the extent of the output follows. Set ORIGIN(), SPACING() and DIRECTION() of "
+      "vtkDataObject in the source's RequestInformation().");
+  }
+  deformvolume::CheckVolume(mapped.Whole);
+  return mapped;
+}
+
+//------------------------------------------------------------------------------
+vtkImageData* vtkDeformVolumeFilter::vtkInternals::CutToWhole(
+  vtkImageData* volume, vtkInformation* info)
+{
+  const Extent whole = deformvolume::GetGeometry(info).PointExtent;
+  const Extent given = deformvolume::GetGeometry(volume).PointExtent;
+  if (deformvolume::Contains(whole, given) || !deformvolume::Contains(given, whole))
+  {
+    this->CutVolume = nullptr;
+    return volume;
+  }
+  const std::pair<const void*, vtkMTimeType> stamp(volume, volume->GetMTime());
+  if (!this->CutVolume || stamp != this->CutStamp ||
+    deformvolume::GetGeometry(this->CutVolume).PointExtent != whole)
+  {
+    CheckSizes(volume->GetPointData(), volume->GetNumberOfPoints(), "point");
+    CheckSizes(volume->GetCellData(), volume->GetNumberOfCells(), "cell");
+    this->CutVolume = vtkSmartPointer<vtkImageData>::New();
+    this->CutVolume->ShallowCopy(volume);
+    this->CutVolume->Crop(whole.data());
+    this->CutStamp = stamp;
+    vtkWarningWithObjectMacro(this->Self,
+      << "The volume on input port 0 has the extent " << deformvolume::DescribeExtent(given)
+      << ", more than the whole extent " << deformvolume::DescribeExtent(whole)
+      << " that its source announces. Only the latter is deformed. If that is not intended, "
+         "correct "
+         "the WHOLE_EXTENT of the source.");
+  }
+  return this->CutVolume;
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeControlGroups_h
+#define DeformVolumeControlGroups_h
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// The folders of the control groups that this process is in, its own first, then those round it
+/// as far as they can be seen: what limits one of them limits the process.
+struct ControlGroups
+{
+  /// Of version 2.
+  std::vector<std::string> Unified;
+  /// Of version 1, those with the controller that was asked for.
+  std::vector<std::string> Legacy;
+};
+
+/// controller: "memory" or "cpu". root is put in front of all paths, so that tests can bring a tree
+/// of their own. What cannot be read counts as not there.
+ControlGroups FindControlGroups(const std::string& controller, const std::string& root = "");
+
+/// The number that a file begins with; nothing where there is no file, and no number, as in "max".
+std::optional<std::int64_t> ReadNumber(const std::string& path);
+
+/// The number after a key in a file of lines "key number".
+std::optional<std::int64_t> ReadNumber(const std::string& path, const std::string& key);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Inverse displacement fields: finds for each output voxel, through the field, the rest coordinate at
+// which RestSampling.cl looks the volume up. No tetrahedra are there, and no voxel depends on another.
+//
+// Data: the vectors of the field, three floats a point, in output voxels, from a point of the output
+// to the point of the volume at rest that is seen there. In local memory rest coordinates and bits of
+// covered voxels, as in MeshRasterization.cl.
+//
+// A work-group takes an output tile. This text comes after TetrahedronBinning.cl and RestSampling.cl,
+// and the host puts nothing more in front of it than of those.
+
+// What a row of a tile has in common: positions in the field of the tile's first voxel on x, their
+// steps from voxel to voxel, and what takes a position in the output to a rest coordinate.
+typedef struct
+{
+  REAL Start[3];
+  REAL Steps[3];
+  REAL Scale[3];
+  REAL First[3];
+} LookupRow;
+
+static LookupRow MakeLookupRow(const int* voxel, const LookupParameters* f, const RasterParameters* p)
+{
+  LookupRow row;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    REAL matrix[4];
+    for (int column = 0; column < 4; ++column)
+    {
+      matrix[column] =
+        (REAL)f->OutputToField[4 * axis + column] + (REAL)f->OutputToFieldRest[4 * axis + column];
+    }
+    row.Start[axis] = matrix[3] + matrix[0] * (REAL)voxel[0] + matrix[1] * (REAL)voxel[1] +
+      matrix[2] * (REAL)voxel[2];
+    row.Steps[axis] = matrix[0];
+    const REAL one = (REAL)(1 << p->FractionBits[axis]);
+    row.Scale[axis] = ((REAL)p->InverseScale[axis] + (REAL)p->InverseScaleRest[axis]) * one;
+    row.First[axis] = (REAL)p->First[axis] * one;
+  }
+  return row;
+}
+
+#define MIX(A, B, T) ((A) + (T) * ((B) - (A)))
+
+// The vectors of two neighbouring points on x, mixed.
+static void MixAlongX(__global const float* vectors, size_t row, int low, int high, REAL t, REAL* mixed)
+{
+  const float3 a = vload3(row + low, vectors);
+  const float3 b = vload3(row + high, vectors);
+  mixed[0] = MIX((REAL)a.x, (REAL)b.x, t);
+  mixed[1] = MIX((REAL)a.y, (REAL)b.y, t);
+  mixed[2] = MIX((REAL)a.z, (REAL)b.z, t);
+}
+
+// The vector at a position within the field, trilinear.
+static void InterpolateField(
+  __global const float* vectors, const REAL* position, REAL* vector, const LookupParameters* f)
+{
+  const int x = (int)position[0];
+  const int y = (int)position[1];
+  const int z = (int)position[2];
+  const REAL tx = position[0] - (REAL)x;
+  const REAL ty = position[1] - (REAL)y;
+  const REAL tz = position[2] - (REAL)z;
+  const size_t row = ((size_t)z * f->Dimensions[1] + y) * f->Dimensions[0];
+  if (tx == 0 && ty == 0 && tz == 0)
+  {
+    const float3 here = vload3(row + x, vectors);
+    vector[0] = (REAL)here.x;
+    vector[1] = (REAL)here.y;
+    vector[2] = (REAL)here.z;
+    return;
+  }
+  const int high = min(x + 1, f->Dimensions[0] - 1);
+  const size_t nextY = y + 1 < f->Dimensions[1] ? f->Dimensions[0] : 0;
+  const size_t nextZ = z + 1 < f->Dimensions[2] ? (size_t)f->Dimensions[0] * f->Dimensions[1] : 0;
+  REAL a[3], b[3], c[3], d[3];
+  MixAlongX(vectors, row, x, high, tx, a);
+  MixAlongX(vectors, row + nextY, x, high, tx, b);
+  MixAlongX(vectors, row + nextZ, x, high, tx, c);
+  MixAlongX(vectors, row + nextY + nextZ, x, high, tx, d);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const REAL low = MIX(a[axis], b[axis], ty);
+    const REAL upper = MIX(c[axis], d[axis], ty);
+    vector[axis] = MIX(low, upper, tz);
+  }
+}
+
+// The rest coordinate of the x-th voxel of a row, whose first is voxel; 0 where the field does not
+// hold the voxel, or where it leads out of the volume.
+static int LookUpRest(__global const float* vectors, const LookupRow* row, const int* voxel, int x,
+  __local int* rest, const LookupParameters* f, const RasterParameters* p)
+{
+  REAL position[3];
+  int inside = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const REAL last = (REAL)(f->Dimensions[axis] - 1);
+    const REAL here = row->Start[axis] + (REAL)x * row->Steps[axis];
+    inside &= here >= -(REAL)DEFORMVOLUME_LOOKUP_TOLERANCE &&
+      here <= last + (REAL)DEFORMVOLUME_LOOKUP_TOLERANCE;
+    position[axis] = clamp(here, (REAL)0, last);
+  }
+  if (!inside && !f->Extrapolate)
+  {
+    return 0;
+  }
+  REAL vector[3];
+  InterpolateField(vectors, position, vector, f);
+  inside = 1;
+  int found[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const REAL at = (REAL)(voxel[axis] + (axis == 0 ? x : 0)) + vector[axis];
+    const REAL inVolume = at * row->Scale[axis] - row->First[axis];
+    const int most = (p->Size[axis] - 1) << p->FractionBits[axis];
+    inside &= inVolume >= (REAL)-p->Tolerance[axis] &&
+      inVolume <= (REAL)most + (REAL)p->Tolerance[axis];
+    // Nothing negative is left, so that the conversion rounds to nearest.
+    found[axis] = (int)(clamp(inVolume, (REAL)0, (REAL)most) + (REAL)0.5);
+  }
+  if (inside)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      rest[axis * DEFORMVOLUME_TILE_VOXELS + x] = found[axis];
+    }
+  }
+  return inside;
+}
+
+__kernel void LookUpField(__global const float* vectors, const LookupParameters f,
+  __global const uchar* active, __global const uchar* blanked, __global const ulong* backgrounds,
+  __global char* coverage, __global uint* counters, const RasterParameters p ARRAY_PARAMETERS)
+{
+  __local int rests[3 * DEFORMVOLUME_TILE_VOXELS];
+  __local uint covered[DEFORMVOLUME_TILE_ROWS];
+  const int index = p.TileBegin + (int)get_group_id(0);
+  int origin[3];
+  const VoxelBox tile = GetTile(index, origin, &p);
+  const VolumeMasks masks = { active, blanked };
+  for (int row = get_local_id(0); row < DEFORMVOLUME_TILE_ROWS; row += get_local_size(0))
+  {
+    const int y = origin[1] + (row & ((1 << DEFORMVOLUME_TILE_BITS_Y) - 1));
+    const int z = origin[2] + (row >> DEFORMVOLUME_TILE_BITS_Y);
+    __local int* rowRests = rests + (row << DEFORMVOLUME_TILE_BITS_X);
+    uint found = 0;
+    if (y >= tile.Low.y && y <= tile.High.y && z >= tile.Low.z && z <= tile.High.z)
+    {
+      const int voxel[3] = { origin[0], y, z };
+      const LookupRow common = MakeLookupRow(voxel, &f, &p);
+      for (int x = tile.Low.x - origin[0]; x <= tile.High.x - origin[0]; ++x)
+      {
+        found |= (uint)LookUpRest(vectors, &common, voxel, x, rowRests, &f, &p) << x;
+      }
+    }
+    if (found && (p.HasActive || p.HasBlanked))
+    {
+      found = SelectSources(masks, found, rowRests, &p);
+    }
+    covered[row] = found;
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  SampleTile(tile, origin, rests, covered, backgrounds, coverage, &p ARRAY_ARGUMENTS);
+  if (get_local_id(0) == 0)
+  {
+    CountTile(covered, 0, counters + index * DEFORMVOLUME_TILE_COUNTERS);
+  }
+}

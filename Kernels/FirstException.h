@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeFirstException_h
+#define DeformVolumeFirstException_h
+
+#include <atomic>
+#include <exception>
+#include <mutex>
+
+namespace deformvolume
+{
+
+/// Carries the first exception of several threads to the thread that waits for them: an exception
+/// that leaves a thread ends the process.
+class FirstException
+{
+public:
+  /// Calls a function, and nothing once a function has thrown. May be called by many threads.
+  template <typename Function>
+  void Run(Function&& function)
+  {
+    if (this->Thrown)
+    {
+      return;
+    }
+    try
+    {
+      function();
+    }
+    catch (...)
+    {
+      const std::lock_guard<std::mutex> lock(this->Mutex);
+      if (!this->Thrown)
+      {
+        this->Exception = std::current_exception();
+        this->Thrown = true;
+      }
+    }
+  }
+
+  /// Throws what has been thrown. All threads must have ended.
+  void Rethrow() const
+  {
+    if (this->Exception)
+    {
+      std::rethrow_exception(this->Exception);
+    }
+  }
+
+private:
+  std::atomic<bool> Thrown{ false };
+  std::mutex Mutex;
+  std::exception_ptr Exception;
+};
+
+} // namespace deformvolume
+
+#endif

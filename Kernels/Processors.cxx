@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Processors.h"
+
+#include "ControlGroups.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include <sched.h>
+#include <unistd.h>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+constexpr double UNLIMITED = std::numeric_limits<double>::infinity();
+
+int GetMachineProcessors()
+{
+  return std::max(1, static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));
+}
+
+// Those to which this process is bound; all, where it is not, or where there are more than the mask
+// holds.
+int GetBoundProcessors()
+{
+  cpu_set_t set;
+  return sched_getaffinity(0, sizeof(set), &set) == 0 ? std::max(1, CPU_COUNT(&set))
+                                                      : GetMachineProcessors();
+}
+
+// How much of a processor's time a period of it gives, 1 for all of one.
+double GetQuota(double quota, double period)
+{
+  return quota > 0.0 && period > 0.0 ? quota / period : UNLIMITED;
+}
+
+double GetQuota(const std::string& root)
+{
+  double least = UNLIMITED;
+  const ControlGroups groups = FindControlGroups("cpu", root);
+  for (const std::string& folder : groups.Unified)
+  {
+    // "quota period", or "max period" without a limit.
+    std::ifstream file(folder + "/cpu.max");
+    double quota = 0.0;
+    double period = 0.0;
+    if (file >> quota >> period)
+    {
+      least = std::min(least, GetQuota(quota, period));
+    }
+  }
+  for (const std::string& folder : groups.Legacy)
+  {
+    const auto quota = ReadNumber(folder + "/cpu.cfs_quota_us"); // -1 without a limit
+    const auto period = ReadNumber(folder + "/cpu.cfs_period_us");
+    least = std::min(least,
+      GetQuota(static_cast<double>(quota.value_or(0)), static_cast<double>(period.value_or(0))));
+  }
+  return least;
+}
+
+int LimitByQuota(int processors, double quota)
+{
+  return quota < static_cast<double>(processors) ? static_cast<int>(std::ceil(quota)) : processors;
+}
+
+std::atomic<int> Processes{ 1 };
+
+} // namespace
+
+int GetNumberOfProcessors(const std::string& root)
+{
+  return GetProcessorShare(1, root);
+}
+
+int GetProcessorShare(int processes, const std::string& root)
+{
+  const int share =
+    std::max(1, std::min(GetBoundProcessors(), GetMachineProcessors() / std::max(1, processes)));
+  return LimitByQuota(share, GetQuota(root) / std::max(1, processes));
+}
+
+int GetProcessorShare()
+{
+  // The files are read once: this is asked for each time that threads are started.
+  static const double quota = GetQuota("");
+  static const int bound = GetBoundProcessors();
+  const int processes = Processes;
+  return LimitByQuota(
+    std::max(1, std::min(bound, GetMachineProcessors() / processes)), quota / processes);
+}
+
+void SetProcessesHere(int processes)
+{
+  Processes = std::max(1, processes);
+}
+
+void LimitDeviceThreads()
+{
+  const int share = GetProcessorShare();
+  if (share < GetMachineProcessors())
+  {
+    setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(share).c_str(), 0);
+  }
+}
+
+} // namespace deformvolume

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SystemMemory.h"
+
+#include "ControlGroups.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <limits>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+constexpr std::int64_t UNLIMITED = std::numeric_limits<std::int64_t>::max();
+
+// The names of a version's files and of what can be reclaimed.
+struct Names
+{
+  std::initializer_list<const char*> Limits;
+  const char* Usage;
+  std::initializer_list<const char*> Reclaimable;
+};
+
+// What a group has left.
+std::int64_t GetLeft(const std::string& folder, const Names& names)
+{
+  std::int64_t limit = UNLIMITED;
+  for (const char* name : names.Limits)
+  {
+    limit = std::min(limit, ReadNumber(folder + "/" + name).value_or(UNLIMITED));
+  }
+  if (limit == UNLIMITED)
+  {
+    return limit;
+  }
+  const std::int64_t usage = ReadNumber(folder + "/" + names.Usage).value_or(0);
+  std::int64_t reclaimable = 0;
+  for (const char* key : names.Reclaimable)
+  {
+    reclaimable += ReadNumber(folder + "/memory.stat", key).value_or(0);
+  }
+  return limit - std::max<std::int64_t>(0, usage - reclaimable);
+}
+
+} // namespace
+
+std::uint64_t GetSystemMemory(const std::string& root)
+{
+  constexpr std::int64_t kibibyte = 1024;
+  std::int64_t left = UNLIMITED;
+  if (const auto available = ReadNumber(root + "/proc/meminfo", "MemAvailable:"))
+  {
+    left = *available * kibibyte;
+  }
+  // A process seldom changes its groups, and this is asked for at each update.
+  static const ControlGroups own = FindControlGroups("memory");
+  const ControlGroups groups = root.empty() ? own : FindControlGroups("memory", root);
+  const Names unified{ { "memory.max", "memory.high" }, "memory.current",
+    { "inactive_file", "active_file", "slab_reclaimable" } };
+  for (const std::string& folder : groups.Unified)
+  {
+    left = std::min(left, GetLeft(folder, unified));
+  }
+  // A group without a limit has one that is near the largest number.
+  const Names legacy{ { "memory.limit_in_bytes" }, "memory.usage_in_bytes",
+    { "total_inactive_file", "total_active_file" } };
+  for (const std::string& folder : groups.Legacy)
+  {
+    left = std::min(left, GetLeft(folder, legacy));
+  }
+  return left == UNLIMITED ? 0 : static_cast<std::uint64_t>(std::max<std::int64_t>(1, left));
+}
+
+} // namespace deformvolume

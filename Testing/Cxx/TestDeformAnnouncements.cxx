@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sources of volumes whose information is not what their data are: the output holds all of the
+// volume, or an error or a warning says what is wrong.
+#include "FilterTesting.h"
+
+#include <vtkImageAlgorithm.h>
+#include <vtkImageClip.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkObjectFactory.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+
+using namespace filterTesting;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+namespace
+{
+
+/// Gives a volume whatever is asked for, and announces what it is told to.
+class CarelessSource : public vtkImageAlgorithm
+{
+public:
+  static CarelessSource* New();
+  vtkTypeMacro(CarelessSource, vtkImageAlgorithm);
+
+  vtkSmartPointer<vtkImageData> Volume;
+  Extent WholeExtent;
+  vtkNew<vtkInformation> Announced;
+  int Executions = 0;
+
+protected:
+  CarelessSource() { this->SetNumberOfInputPorts(0); }
+
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
+  {
+    vtkInformation* info = output->GetInformationObject(0);
+    info->Set(Pipeline::WHOLE_EXTENT(), this->WholeExtent.data(), 6);
+    info->Remove(vtkDataObject::ORIGIN());
+    info->Remove(vtkDataObject::SPACING());
+    info->Remove(vtkDataObject::DIRECTION());
+    for (vtkInformationDoubleVectorKey* key :
+      { vtkDataObject::ORIGIN(), vtkDataObject::SPACING(), vtkDataObject::DIRECTION() })
+    {
+      info->CopyEntry(this->Announced, key);
+    }
+    return 1;
+  }
+
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
+  {
+    ++this->Executions;
+    vtkImageData::GetData(output)->ShallowCopy(this->Volume);
+    return 1;
+  }
+};
+vtkStandardNewMacro(CarelessSource);
+
+struct Careless
+{
+  Careless()
+  {
+    this->Volume = MakeImage(
+      { { 0, 39, 0, 39, 0, 39 } }, glm::dvec3(2.0, 1.5, 0.5), glm::dvec3(10.0, -5.0, 3.0));
+    AddScalars<short>(this->Volume, "value", [](const glm::dvec3& p) { return p.x + p.y; });
+    this->Mesh = MakeMesh(this->Volume);
+    SetDisplacements(this->Mesh, Shift(2.0, 0.0, 0.0)); // one voxel
+    this->Source->Volume = this->Volume;
+    this->Source->WholeExtent = GetExtent(this->Volume);
+    this->Subject.Filter->SetInputConnection(this->Source->GetOutputPort());
+    this->Subject.Filter->SetDeformationData(this->Mesh);
+  }
+  void Announce(const glm::dvec3& origin, const glm::dvec3& spacing)
+  {
+    this->Source->Announced->Set(vtkDataObject::ORIGIN(), &origin.x, 3);
+    this->Source->Announced->Set(vtkDataObject::SPACING(), &spacing.x, 3);
+    this->Source->Modified();
+  }
+  void IsRight(const char* what)
+  {
+    vtkImageData* output = this->Subject.Update();
+    if (GetExtent(output) != Extent{ { 1, 40, 0, 39, 0, 39 } } ||
+      this->Subject.Filter->GetNumberOfCoveredVoxels() != 64000 ||
+      GetPoint(output, 0) != GetPoint(this->Volume, 1))
+    {
+      ++GetNumberOfFailures();
+      std::cerr << what << ": extent " << GetExtent(output) << ", "
+                << this->Subject.Filter->GetNumberOfCoveredVoxels() << " voxels covered\n";
+    }
+  }
+  void Fails(const char* what, const std::string& words)
+  {
+    this->Source->Modified();
+    this->Subject.Filter->Update();
+    const int errors = this->Subject.TakeErrors();
+    if (errors != 1 || this->Subject.LastError.find(words) == std::string::npos)
+    {
+      ++GetNumberOfFailures();
+      std::cerr << what << ": " << errors << " errors, expected one with " << words << '\n'
+                << this->Subject.LastError << '\n';
+    }
+    VERIFY_EQUAL(this->Subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
+  }
+
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh;
+  vtkNew<CarelessSource> Source;
+  Deformed Subject;
+};
+
+void TestGeometry()
+{
+  const glm::dvec3 origin(10.0, -5.0, 3.0);
+  const glm::dvec3 spacing(2.0, 1.5, 0.5);
+  // Nothing is announced: what is missing is read, once.
+  Careless forgetful;
+  forgetful.IsRight("a source that announces nothing");
+  VERIFY_EQUAL(forgetful.Source->Executions, 1);
+  forgetful.Mesh->Modified();
+  forgetful.IsRight("once more");
+  VERIFY_EQUAL(forgetful.Source->Executions, 1);
+
+  forgetful.Source->Announced->Set(vtkDataObject::ORIGIN(), &origin.x, 3);
+  forgetful.Source->Modified();
+  forgetful.IsRight("a source that forgets its spacing");
+  forgetful.Announce(origin, spacing);
+  forgetful.IsRight("a source that announces what it gives");
+  // As sources in single precision do.
+  forgetful.Announce(origin + glm::dvec3(1e-6), spacing * (1.0 + 1e-7));
+  forgetful.Subject.Update();
+  VERIFY_EQUAL(GetExtent(forgetful.Subject.Filter->GetOutput())[0], 1);
+  VERIFY_EQUAL(GetExtent(forgetful.Subject.Filter->GetOutput())[1], 40);
+
+  forgetful.Announce(origin, glm::dvec3(1.0));
+  forgetful.Fails("a wrong spacing", "spacing 2, 1.5, 0.5 and direction 1");
+  forgetful.Announce(glm::dvec3(0.0), spacing);
+  forgetful.Fails("a wrong origin", "announced origin 0, 0, 0");
+  forgetful.Announce(origin, spacing);
+  forgetful.IsRight("a source that is right again");
+  SetObliqueDirection(forgetful.Volume);
+  forgetful.Fails("a direction that is not announced", "Set ORIGIN(), SPACING() and DIRECTION()");
+  forgetful.Source->Announced->Set(
+    vtkDataObject::DIRECTION(), forgetful.Volume->GetDirectionMatrix()->GetData(), 9);
+  forgetful.Mesh->ShallowCopy(MakeMesh(forgetful.Volume));
+  SetDisplacements(forgetful.Mesh, Shift(0.0, 0.0, 0.0));
+  forgetful.Source->Modified();
+  VERIFY_EQUAL(GetExtent(forgetful.Subject.Update()), GetExtent(forgetful.Volume));
+  VERIFY_EQUAL(forgetful.Subject.Filter->GetNumberOfCoveredVoxels(), 64000);
+}
+
+void TestExtents()
+{
+  Careless careless;
+  careless.Announce(glm::dvec3(10.0, -5.0, 3.0), glm::dvec3(2.0, 1.5, 0.5));
+  careless.IsRight("a source that is right");
+  careless.Source->WholeExtent = { { 0, 49, 0, 39, 0, 39 } };
+  careless.Fails("less than announced",
+    "was asked for an extent of it, 0, 49, 0, 39, 0, 39, and gave another one, 0, 39, 0, 39, 0, "
+    "39");
+  careless.Source->WholeExtent = { { 5, 44, 0, 39, 0, 39 } };
+  careless.Fails("another extent than announced", "asked for an extent of it, 5, 44");
+
+  // More than announced is cut, with a word.
+  careless.Source->WholeExtent = { { 10, 29, 0, 39, 0, 39 } };
+  careless.Source->Modified();
+  careless.Subject.Filter->Update();
+  VERIFY(
+    careless.Subject.TakeWarning().find("more than the whole extent 10, 29") != std::string::npos);
+  VERIFY_EQUAL(
+    GetExtent(careless.Subject.Filter->GetOutput()), (Extent{ { 11, 30, 0, 39, 0, 39 } }));
+  VERIFY_EQUAL(careless.Subject.Filter->GetNumberOfCoveredVoxels(), 32000);
+  const vtkIdType uploads = careless.Subject.Filter->GetNumberOfVolumeUploads();
+  careless.Mesh->Modified();
+  careless.Subject.Update();
+  VERIFY_EQUAL(careless.Subject.Filter->GetNumberOfVolumeUploads(), uploads);
+  VERIFY(careless.Subject.TakeWarning().empty());
+  vtkNew<vtkFloatArray> few;
+  few->SetName("few");
+  few->SetNumberOfTuples(7);
+  careless.Volume->GetPointData()->AddArray(few);
+  careless.Fails("a short array of a volume that is cut", "7 tuples");
+  careless.Volume->GetPointData()->RemoveArray("few");
+  careless.Source->WholeExtent = GetExtent(careless.Volume);
+  careless.Source->Modified();
+  careless.IsRight("a source that is right again");
+
+  // vtkImageClip passes data on that it does not announce.
+  vtkNew<vtkImageClip> clip;
+  clip->SetInputData(careless.Volume);
+  clip->SetOutputWholeExtent(10, 29, 5, 34, 0, 39);
+  careless.Subject.Filter->SetInputConnection(clip->GetOutputPort());
+  careless.Subject.Filter->Update();
+  VERIFY_EQUAL(careless.Subject.TakeErrors(), 0);
+  VERIFY_EQUAL(
+    GetExtent(careless.Subject.Filter->GetOutput()), (Extent{ { 11, 30, 5, 34, 0, 39 } }));
+  VERIFY_EQUAL(careless.Subject.Filter->GetNumberOfCoveredVoxels(), 20 * 30 * 40);
+}
+
+} // namespace
+
+int TestDeformAnnouncements(int, char*[])
+{
+  TestGeometry();
+  TestExtents();
+  return GetExitCode();
+}

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Deformations with a range of time and no steps: the output holds the deformed volume at all times
+// as far as these can be known, and says so where it does not.
+#include "FilterTesting.h"
+
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkObjectFactory.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkTemporalInterpolator.h>
+#include <vtkUnstructuredGridAlgorithm.h>
+
+#include <vector>
+
+using namespace filterTesting;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+namespace
+{
+
+/// A lattice that is moved along x, by so many voxels at each time from 0 to 4. Has steps or not.
+class TimedLattice : public vtkUnstructuredGridAlgorithm
+{
+public:
+  static TimedLattice* New();
+  vtkTypeMacro(TimedLattice, vtkUnstructuredGridAlgorithm);
+
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh;
+  std::function<double(double)> Way;
+  std::vector<double> Steps;
+  int Executions = 0;
+
+protected:
+  TimedLattice() { this->SetNumberOfInputPorts(0); }
+
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
+  {
+    const double range[2] = { 0.0, 4.0 };
+    vtkInformation* info = output->GetInformationObject(0);
+    info->Set(Pipeline::TIME_RANGE(), range, 2);
+    info->Remove(Pipeline::TIME_STEPS());
+    if (!this->Steps.empty())
+    {
+      info->Set(Pipeline::TIME_STEPS(), this->Steps.data(), static_cast<int>(this->Steps.size()));
+    }
+    return 1;
+  }
+
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
+  {
+    ++this->Executions;
+    vtkInformation* info = output->GetInformationObject(0);
+    const double time =
+      info->Has(Pipeline::UPDATE_TIME_STEP()) ? info->Get(Pipeline::UPDATE_TIME_STEP()) : 0.0;
+    auto* grid = vtkUnstructuredGrid::GetData(output);
+    grid->ShallowCopy(this->Mesh);
+    SetDisplacements(grid, Shift(this->Way(time), 0.0, 0.0));
+    grid->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
+    return 1;
+  }
+};
+vtkStandardNewMacro(TimedLattice);
+
+// Updates to a time, and verifies the extent and that nothing is cut off.
+void CheckTime(Deformed& deformed, vtkImageData* volume, double time, int last)
+{
+  deformed.Filter->UpdateTimeStep(time);
+  const std::string warning = deformed.TakeWarning();
+  VERIFY_EQUAL(deformed.TakeErrors(), 0);
+  VERIFY(warning.empty());
+  const Extent extent{ { 0, last, 0, 8, 0, 7 } };
+  VERIFY_EQUAL(GetExtent(deformed.Filter->GetOutput()), extent);
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+}
+
+// A series whose steps are known only behind an interpolator, which announces their range.
+void TestInterpolatedSeries()
+{
+  auto volume = MakeVolume();
+  vtkNew<TimedLattice> lattice;
+  lattice->Mesh = MakeMesh(volume);
+  lattice->Steps = { 0.0, 1.1, 2.0, 4.0 };
+  lattice->Way = [](double time) { return time == 1.1 ? 11.0 : 0.0; };
+  vtkNew<vtkTemporalInterpolator> interpolator;
+  interpolator->SetInputConnection(lattice->GetOutputPort());
+  interpolator->UpdateInformation();
+  VERIFY(!interpolator->GetOutputInformation(0)->Has(Pipeline::TIME_STEPS()));
+  Deformed deformed;
+  deformed.Filter->SetInputData(volume);
+  deformed.Filter->SetDeformationConnection(interpolator->GetOutputPort());
+  deformed.Filter->SetInputArrayToProcess(
+    0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "displacement");
+  for (const double time : { 0.0, 1.1, 0.5, 0.1, 2.0, 4.0 })
+  {
+    CheckTime(deformed, volume, time, 20);
+  }
+  vtkInformation* info = deformed.Filter->GetOutputInformation(0);
+  VERIFY(!info->Has(Pipeline::TIME_STEPS()));
+  VERIFY_EQUAL(info->Get(Pipeline::TIME_RANGE())[1], 4.0);
+
+  // Steps of the interpolator's own count as they are.
+  interpolator->SetDiscreteTimeStepInterval(0.5);
+  deformed.Filter->UpdateTimeStep(2.0);
+  VERIFY_EQUAL(deformed.TakeErrors(), 0);
+  VERIFY(deformed.Filter->GetOutputInformation(0)->Has(Pipeline::TIME_STEPS()));
+}
+
+void TestContinuousSource()
+{
+  auto volume = MakeVolume();
+  vtkNew<TimedLattice> lattice;
+  lattice->Mesh = MakeMesh(volume);
+  // A short jerk between two of the eleven samples, which see 0 everywhere.
+  lattice->Way = [](double time) { return std::abs(time - 1.0) < 0.15 ? 10.0 : 0.0; };
+  Deformed deformed;
+  deformed.Filter->SetInputData(volume);
+  deformed.Filter->SetDeformationConnection(lattice->GetOutputPort());
+  CheckTime(deformed, volume, 3.0, 9);
+  // Once a sample, and once for the time asked for.
+  VERIFY(lattice->Executions >= 11 && lattice->Executions <= 12);
+
+  deformed.Filter->UpdateTimeStep(1.0);
+  const std::string warning = deformed.TakeWarning();
+  VERIFY(warning.find("at time 1 leaves the extent of the output") != std::string::npos);
+  VERIFY(warning.find("NumberOfTimeSamples") != std::string::npos);
+  VERIFY_EQUAL(GetExtent(deformed.Filter->GetOutput()), (Extent{ { 0, 9, 0, 8, 0, 7 } }));
+  CheckTime(deformed, volume, 1.0, 19);
+  CheckTime(deformed, volume, 1.05, 19);
+  CheckTime(deformed, volume, 3.5, 19);
+
+  // As many samples as see the jerk; with the volume's bounds nobody has to look.
+  Deformed finer;
+  finer.Filter->SetInputData(volume);
+  finer.Filter->SetDeformationConnection(lattice->GetOutputPort());
+  finer.Filter->SetNumberOfTimeSamples(41);
+  CheckTime(finer, volume, 3.0, 19);
+  CheckTime(finer, volume, 1.0, 19);
+  finer.Filter->SetOutputBoundsModeToVolumeBounds();
+  lattice->Executions = 0;
+  lattice->Modified();
+  finer.Filter->UpdateTimeStep(3.0);
+  VERIFY(finer.TakeWarning().empty());
+  VERIFY_EQUAL(lattice->Executions, 1);
+  VERIFY_EQUAL(GetExtent(finer.Filter->GetOutput()), GetExtent(volume));
+}
+
+// Steps, and a request between them that the source answers with something else.
+void TestTimesBetweenSteps()
+{
+  auto volume = MakeVolume();
+  vtkNew<TimedLattice> lattice;
+  lattice->Mesh = MakeMesh(volume);
+  lattice->Steps = { 0.0, 2.0, 4.0 };
+  lattice->Way = [](double time) { return time == 1.0 ? 5.0 : 0.0; };
+  Deformed deformed;
+  deformed.Filter->SetInputData(volume);
+  deformed.Filter->SetDeformationConnection(lattice->GetOutputPort());
+  CheckTime(deformed, volume, 2.0, 9);
+  deformed.Filter->UpdateTimeStep(1.0);
+  VERIFY(!deformed.TakeWarning().empty());
+  CheckTime(deformed, volume, 1.0, 14);
+}
+
+} // namespace
+
+int TestDeformContinuousTime(int, char*[])
+{
+  TestInterpolatedSeries();
+  TestContinuousSource();
+  TestTimesBetweenSteps();
+  return GetExitCode();
+}

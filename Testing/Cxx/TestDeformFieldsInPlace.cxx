@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Displacement fields that are read where they lie, large ones of floats over the voxels, against
+// the same numbers as doubles, which are converted: bit by bit, extents included.
+#include "FilterTesting.h"
+
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <limits>
+
+using namespace filterTesting;
+
+namespace
+{
+
+// More voxels than fields are converted with, and rows of no round number.
+constexpr Extent Voxels{ { -4, 68, 3, 64, 0, 66 } };
+
+class Fields
+{
+public:
+  explicit Fields(const glm::dvec3& spacing, bool oblique = false, const Extent& extent = Voxels)
+    : Volume(MakeImage(Voxels, spacing, glm::dvec3(-20.0, 3.0, 5.0)))
+    , Floats(MakeImage(extent, spacing, glm::dvec3(-20.0, 3.0, 5.0)))
+    , Doubles(vtkSmartPointer<vtkImageData>::New())
+    , Tested(Volume, Floats)
+    , Converted(Volume, Doubles)
+  {
+    if (oblique)
+    {
+      SetObliqueDirection(this->Volume);
+      SetObliqueDirection(this->Floats);
+    }
+    AddScalars<short>(this->Volume, "value",
+      [](const glm::dvec3& p) { return 500.0 * std::sin(0.7 * p.x) + 9.0 * p.y + 35.0 * p.z; });
+    this->Doubles->CopyStructure(this->Floats);
+    SetDisplacements(this->Floats,
+      [](const glm::dvec3& p)
+      {
+        return p +
+          glm::dvec3(3.0 * std::sin(0.1 * p.y), -1.7 * std::cos(0.07 * p.z), 0.03 * p.x - 0.4);
+      });
+    vtkNew<vtkDoubleArray> doubles;
+    doubles->SetName("displacement");
+    doubles->SetNumberOfComponents(3);
+    doubles->SetNumberOfTuples(this->Doubles->GetNumberOfPoints());
+    this->Doubles->GetPointData()->SetVectors(doubles);
+    this->ForBoth([](vtkDeformVolumeFilter* filter) { filter->SetResamplerToExact(); });
+  }
+
+  float* GetVectors()
+  {
+    return vtkFloatArray::SafeDownCast(this->Floats->GetPointData()->GetVectors())->GetPointer(0);
+  }
+
+  void ForBoth(const std::function<void(vtkDeformVolumeFilter*)>& change)
+  {
+    change(this->Tested.Filter);
+    change(this->Converted.Filter);
+  }
+
+  void Compare(const char* what)
+  {
+    const int failures = GetNumberOfFailures();
+    this->Floats->GetPointData()->GetVectors()->Modified();
+    this->Doubles->GetPointData()->GetVectors()->DeepCopy(
+      this->Floats->GetPointData()->GetVectors());
+    this->Doubles->GetPointData()->GetVectors()->Modified();
+    this->CompareOutputs();
+    if (GetNumberOfFailures() > failures)
+    {
+      std::cerr << "with " << what << '\n';
+    }
+  }
+  void CompareOutputs()
+  {
+    VERIFY(AreEqual(this->Tested.Update(), this->Converted.Update()));
+    VERIFY_EQUAL(this->Tested.Filter->GetNumberOfInvertedTetrahedra(),
+      this->Converted.Filter->GetNumberOfInvertedTetrahedra());
+    VERIFY(this->Tested.Filter->GetNumberOfCoveredVoxels() > 1000);
+  }
+
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkSmartPointer<vtkImageData> Floats;
+  vtkSmartPointer<vtkImageData> Doubles;
+  Deformed Tested;
+  Deformed Converted;
+};
+
+void TestEqualBits()
+{
+  for (const glm::dvec3& spacing :
+    { glm::dvec3(1.0), glm::dvec3(0.7, 1.3, 0.9), glm::dvec3(-0.7, 1.3, 0.9) })
+  {
+    for (const bool oblique : { false, true })
+    {
+      Fields fields(spacing, oblique);
+      fields.Compare("a field");
+      // The host holds a copy of the field that is converted, and no device one that is not.
+      const vtkIdType bytes = 16 * fields.Floats->GetNumberOfPoints();
+      VERIFY(fields.Tested.Filter->GetDeviceMemory() + bytes <=
+          fields.Converted.Filter->GetDeviceMemory() ||
+        fields.Tested.Filter->GetDeviceInUse().find("cpu") == std::string::npos);
+      fields.ForBoth([](vtkDeformVolumeFilter* filter) { filter->SetDisplacementScale(-1.3); });
+      fields.Compare("a scale");
+      fields.ForBoth(
+        [](vtkDeformVolumeFilter* filter)
+        {
+          filter->SetOutputSpacingModeToCustomSpacing();
+          filter->SetCustomSpacing(1.1, 0.8, 2.0);
+        });
+      fields.Compare("another output spacing");
+      fields.ForBoth(
+        [](vtkDeformVolumeFilter* filter) { filter->SetOutputSpacingModeToVolumeSpacing(); });
+      float* vector = fields.GetVectors() + 3 * (73 * (62 * 30 + 31) + 35);
+      vector[0] += 25.0F; // folds
+      fields.Compare("a fold");
+      vector[0] -= 24.0F;
+      fields.Compare("a small change");
+    }
+  }
+}
+
+// A field that reaches beyond the volume, and one that does not reach as far.
+void TestOtherExtents()
+{
+  Fields larger(glm::dvec3(0.7, 1.3, 0.9), false, { { -9, 70, 0, 64, -3, 70 } });
+  larger.Compare("a larger field");
+  Fields smaller(glm::dvec3(0.7, 1.3, 0.9), false, { { -4, 68, 4, 64, 0, 66 } });
+  smaller.Compare("a smaller field");
+  smaller.ForBoth([](vtkDeformVolumeFilter* filter) { filter->SetOutsideModeToExtrapolate(); });
+  smaller.Compare("a smaller field that is extrapolated");
+}
+
+void TestMasks()
+{
+  Fields fields(glm::dvec3(0.7, 1.3, 0.9));
+  fields.ForBoth(
+    [](vtkDeformVolumeFilter* filter) { filter->SetOutputBoundsModeToVolumeBounds(); });
+  fields.Compare("a field");
+  vtkNew<vtkUnsignedCharArray> active;
+  active->SetName("ActiveTetrahedra");
+  active->SetNumberOfTuples(fields.Volume->GetNumberOfCells());
+  active->Fill(31);
+  fields.Volume->GetCellData()->AddArray(active);
+  fields.Compare("a mask");
+  for (const vtkIdType cell : { 100000, 100001, 150000 })
+  {
+    active->SetValue(cell, 3);
+    active->Modified();
+    fields.CompareOutputs();
+    // The field has not changed: only what the mask touches is made anew.
+    VERIFY(fields.Tested.Filter->GetNumberOfResampledBricks() <
+      fields.Tested.Filter->GetNumberOfBricks());
+  }
+}
+
+void TestMisuse()
+{
+  Fields fields(glm::dvec3(0.7, 1.3, 0.9));
+  fields.Compare("a field");
+  const vtkIdType last = fields.Floats->GetNumberOfPoints() - 1;
+  const vtkIdType places[3] = { 0, 123456, last };
+  for (const vtkIdType place : places)
+  {
+    for (const float wrong : { std::numeric_limits<float>::quiet_NaN(),
+           std::numeric_limits<float>::infinity(), -1e9F, 3e38F })
+    {
+      float& value = fields.GetVectors()[3 * place + place % 3];
+      const float before = value;
+      value = wrong;
+      fields.Floats->GetPointData()->GetVectors()->Modified();
+      fields.Tested.Filter->Update();
+      VERIFY_EQUAL(fields.Tested.TakeErrors(), 1);
+      VERIFY(fields.Tested.LastError.find(std::isfinite(wrong) ? "16,383"
+                                                               : "Vector " + std::to_string(place) +
+                   " of the displacement field") != std::string::npos);
+      value = before;
+    }
+  }
+  fields.Compare("all put right");
+  // From a mesh to a field and back.
+  const auto mesh = MakeMesh(fields.Volume);
+  SetDisplacements(mesh, Shift(0.5, 0.25, 1.0));
+  Deformed fresh(fields.Volume, mesh);
+  fresh.Filter->SetResamplerToExact();
+  fields.Tested.Filter->SetDeformationData(mesh);
+  VERIFY(AreEqual(fields.Tested.Update(), fresh.Update()));
+  fields.Tested.Filter->SetDeformationData(fields.Floats);
+  fields.Compare("the field again");
+  // Memory that moves is looked up again.
+  vtkNew<vtkFloatArray> copy;
+  copy->DeepCopy(fields.Floats->GetPointData()->GetVectors());
+  fields.Floats->GetPointData()->SetVectors(copy);
+  fields.Compare("another array");
+  copy->Resize(2 * copy->GetNumberOfTuples()); // elsewhere, and with the same time
+  fields.GetVectors()[5000] += 1.0F;
+  fields.Volume->GetPointData()->GetScalars()->Modified();
+  fields.Compare("memory elsewhere");
+  fields.Tested.Filter->ReleaseDeviceMemory();
+  fields.Compare("nothing on the device");
+}
+
+} // namespace
+
+int TestDeformFieldsInPlace(int, char*[])
+{
+  TestEqualBits();
+  TestOtherExtents();
+  TestMasks();
+  TestMisuse();
+  return GetExitCode();
+}

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One mesh in other grids: grids that share arrays, equal copies, deformed meshes beside those at
+// rest, other numbers; and edits of a grid in place, which have to be seen. All results are
+// compared bit by bit with those of a new filter.
+#include "FilterTesting.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkIdList.h>
+#include <vtkObjectFactory.h>
+#include <vtkTrivialProducer.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGridAlgorithm.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <vector>
+
+using namespace filterTesting;
+
+namespace
+{
+
+using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
+
+// Passes its mesh on, as simulations do: the output is one object, with new arrays each time or the
+// same ones.
+class Passer : public vtkUnstructuredGridAlgorithm
+{
+public:
+  static Passer* New();
+  vtkTypeMacro(Passer, vtkUnstructuredGridAlgorithm);
+  Grid Mesh;
+
+protected:
+  Passer() { this->SetNumberOfInputPorts(0); }
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
+  {
+    vtkUnstructuredGrid::GetData(output)->ShallowCopy(this->Mesh);
+    return 1;
+  }
+};
+vtkStandardNewMacro(Passer);
+
+Grid ShareArrays(vtkUnstructuredGrid* mesh)
+{
+  auto grid = Grid::New();
+  grid->ShallowCopy(mesh);
+  return grid;
+}
+
+Grid Copy(vtkUnstructuredGrid* mesh)
+{
+  auto grid = Grid::New();
+  grid->DeepCopy(mesh);
+  return grid;
+}
+
+class Meshes
+{
+public:
+  Meshes()
+    : Volume(MakeVolume({ { 0, 30, 0, 25, 2, 27 } }))
+    , Mesh(MakeMesh(Volume, 6))
+    , Tested(Volume, Mesh)
+  {
+    this->Move();
+    this->Expect("first", 1);
+  }
+
+  void Move()
+  {
+    const double phase = 0.3 * ++this->Step;
+    SetDisplacements(this->Mesh,
+      [=](const glm::dvec3& p)
+      { return p + glm::dvec3(1.5 * std::sin(0.2 * p.y + phase), 0.3, std::cos(0.3 * p.x)); });
+  }
+
+  void Give(const Grid& grid)
+  {
+    this->Mesh = grid;
+    this->Tested.Filter->SetDeformationData(grid);
+  }
+
+  // The same as a new filter, and so many static mappings built.
+  void Expect(const char* what, int builds)
+  {
+    const int failures = GetNumberOfFailures();
+    Deformed fresh(this->Volume, this->Mesh);
+    fresh.Filter->SetRestData(this->Rest);
+    VERIFY(AreEqual(this->Tested.Update(), fresh.Update()));
+    const vtkIdType built = this->Tested.Filter->GetNumberOfMappingBuilds();
+    VERIFY_EQUAL(built - this->Builds, builds);
+    this->Builds = built;
+    if (GetNumberOfFailures() > failures)
+    {
+      std::cerr << "with " << what << '\n';
+    }
+  }
+
+  vtkSmartPointer<vtkImageData> Volume;
+  Grid Mesh;
+  Grid Rest;
+  Deformed Tested;
+
+private:
+  int Step = 0;
+  vtkIdType Builds = 0;
+};
+
+// The cells of a grid with those of one point for another.
+void Exchange(vtkUnstructuredGrid* grid, vtkIdType cell)
+{
+  vtkNew<vtkIdList> points;
+  grid->GetCells()->GetCellAtId(cell, points);
+  std::swap(*points->GetPointer(0), *points->GetPointer(1));
+  grid->GetCells()->ReplaceCellAtId(cell, points);
+}
+
+void TestOtherGrids()
+{
+  Meshes meshes;
+  meshes.Give(ShareArrays(meshes.Mesh));
+  meshes.Expect("shared arrays", 0);
+  meshes.Give(ShareArrays(meshes.Mesh));
+  meshes.Move();
+  meshes.Expect("shared arrays and new displacements", 0);
+  meshes.Give(Copy(meshes.Mesh));
+  meshes.Move();
+  meshes.Expect("a copy", 0);
+  Grid changed = Copy(meshes.Mesh);
+  Exchange(changed, changed->GetNumberOfCells() - 1);
+  meshes.Give(changed);
+  meshes.Expect("a copy with another cell", 1);
+  changed = Copy(meshes.Mesh);
+  changed->GetPoints()->SetPoint(
+    7, changed->GetPoint(7)[0], changed->GetPoint(7)[1] + 0.01, changed->GetPoint(7)[2]);
+  meshes.Give(changed);
+  meshes.Expect("a copy with another point", 1);
+  changed = Copy(meshes.Mesh);
+  vtkNew<vtkCellArray> cells;
+  cells->ConvertTo32BitStorage();
+  cells->AllocateExact(changed->GetNumberOfCells(), 4 * changed->GetNumberOfCells());
+  vtkNew<vtkIdList> points;
+  for (vtkIdType cell = 0; cell < changed->GetNumberOfCells(); ++cell)
+  {
+    changed->GetCells()->GetCellAtId(cell, points);
+    cells->InsertNextCell(points);
+  }
+  changed->SetCells(VTK_TETRA, cells);
+  meshes.Give(changed);
+  meshes.Expect("a copy in numbers of 32 bits", 0);
+  // One cell less.
+  Grid smaller = ShareArrays(meshes.Mesh);
+  vtkNew<vtkCellArray> fewer;
+  for (vtkIdType cell = 0; cell + 1 < smaller->GetNumberOfCells(); ++cell)
+  {
+    changed->GetCells()->GetCellAtId(cell, points);
+    fewer->InsertNextCell(points);
+  }
+  smaller->SetCells(VTK_TETRA, fewer);
+  meshes.Give(smaller);
+  meshes.Expect("a cell less", 1);
+}
+
+void TestEditsInPlace()
+{
+  Meshes meshes;
+  meshes.Mesh->Modified();
+  meshes.Expect("modified, and yet the same", 0);
+  Exchange(meshes.Mesh, 11);
+  meshes.Mesh->Modified();
+  meshes.Expect("a cell replaced, and only the grid modified", 1);
+  meshes.Mesh->GetPoints()->GetData()->SetComponent(3, 1, -0.75);
+  meshes.Mesh->Modified();
+  meshes.Expect("a point set, and only the grid modified", 1);
+  const vtkIdType corners[4] = { 0, 7, 50, 100 };
+  meshes.Mesh->InsertNextCell(VTK_TETRA, 4, corners);
+  meshes.Mesh->Modified();
+  meshes.Expect("a cell more", 1);
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(meshes.Mesh->GetNumberOfCells());
+  ghosts->Fill(0);
+  ghosts->SetValue(4, vtkDataSetAttributes::HIDDENCELL);
+  meshes.Mesh->GetCellData()->AddArray(ghosts);
+  meshes.Expect("a hidden cell", 1);
+  meshes.Give(ShareArrays(meshes.Mesh));
+  meshes.Expect("shared with it", 0);
+  meshes.Give(Copy(meshes.Mesh));
+  meshes.Mesh->GetCellData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+  meshes.Expect("and without it", 1);
+}
+
+void TestPipeline()
+{
+  Meshes meshes;
+  vtkNew<Passer> passer;
+  passer->Mesh = meshes.Mesh;
+  meshes.Tested.Filter->SetDeformationConnection(passer->GetOutputPort());
+  meshes.Expect("a filter before it", 0);
+  for (int step = 0; step < 3; ++step)
+  {
+    meshes.Move();
+    passer->Modified();
+    meshes.Expect("new displacements through the filter", 0);
+  }
+  Exchange(meshes.Mesh, 5);
+  meshes.Mesh->GetCells()->Modified();
+  passer->Modified();
+  meshes.Expect("a cell replaced", 1);
+  meshes.Mesh->GetPoints()->SetPoint(3, -0.75, 1.0, 2.0);
+  meshes.Mesh->GetPoints()->Modified();
+  passer->Modified();
+  meshes.Expect("a point set", 1);
+  passer->Mesh = meshes.Mesh = Copy(meshes.Mesh);
+  passer->Modified();
+  meshes.Expect("a copy", 0);
+}
+
+void TestTwoMeshes()
+{
+  Meshes meshes;
+  meshes.Rest = meshes.Mesh;
+  const Grid shape = Copy(meshes.Rest);
+  meshes.Give(shape);
+  meshes.Tested.Filter->SetRestData(meshes.Rest);
+  meshes.Expect("two meshes", 0);
+  for (int step = 0; step < 3; ++step)
+  {
+    shape->GetPoints()->GetData()->SetComponent(20 + step, step, 0.7 * step);
+    shape->GetPoints()->Modified();
+    shape->Modified();
+    meshes.Expect("the deformed one modified", 0);
+  }
+  meshes.Rest = Copy(meshes.Rest);
+  meshes.Tested.Filter->SetRestData(meshes.Rest);
+  meshes.Expect("a copy at rest", 0);
+  meshes.Rest->GetPoints()->GetData()->SetComponent(9, 0, -0.25);
+  meshes.Rest->GetPoints()->Modified();
+  meshes.Expect("another point at rest", 1);
+  Exchange(shape, 3);
+  shape->Modified();
+  meshes.Tested.Filter->Update();
+  VERIFY_EQUAL(meshes.Tested.TakeErrors(), 1);
+  Exchange(shape, 3);
+  shape->Modified();
+  meshes.Expect("the cells put right", 0);
+  // What displacements hold is told from what points hold.
+  meshes.Rest = nullptr;
+  meshes.Give(Copy(shape));
+  meshes.Tested.Filter->SetRestData(nullptr);
+  meshes.Move();
+  meshes.Expect("displacements again", 1);
+}
+
+// Nodes and cells at random, and a mesh whose nodes lie on voxels, which many tetrahedra share.
+void TestNumbers()
+{
+  const auto volume = MakeVolume({ { 0, 40, 0, 24, 0, 32 } });
+  for (const double margin : { 0.0, 0.37 })
+  {
+    const Grid mesh = MakeMesh(volume, margin == 0.0 ? 9 : 30, margin);
+    const vtkIdType nodes = mesh->GetNumberOfPoints();
+    std::vector<vtkIdType> order(nodes);
+    std::vector<vtkIdType> cellOrder(mesh->GetNumberOfCells());
+    std::mt19937 random(2);
+    for (std::vector<vtkIdType>* one : { &order, &cellOrder })
+    {
+      std::iota(one->begin(), one->end(), vtkIdType{ 0 });
+      std::shuffle(one->begin(), one->end(), random);
+    }
+    std::vector<vtkIdType> numbers(nodes);
+    auto other = Grid::New();
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (vtkIdType node = 0; node < nodes; ++node)
+    {
+      points->InsertNextPoint(mesh->GetPoint(order[node]));
+      numbers[order[node]] = node;
+    }
+    other->SetPoints(points);
+    other->AllocateExact(mesh->GetNumberOfCells(), 4 * mesh->GetNumberOfCells());
+    vtkNew<vtkIdList> ids;
+    for (const vtkIdType cell : cellOrder)
+    {
+      mesh->GetCellPoints(cell, ids);
+      for (vtkIdType& id : *ids)
+      {
+        id = numbers[id];
+      }
+      other->InsertNextCell(VTK_TETRA, ids);
+    }
+    for (const bool extrapolate : { false, true })
+    {
+      Deformed first(volume, mesh);
+      Deformed second(volume, other);
+      for (Deformed* deformed : { &first, &second })
+      {
+        deformed->Filter->SetResamplerToExact();
+        deformed->Filter->SetOutsideMode(
+          extrapolate ? vtkDeformVolumeFilter::EXTRAPOLATE : vtkDeformVolumeFilter::DISCARD);
+      }
+      for (int step = 0; step < 4; ++step)
+      {
+        // In the last steps nodes of a corner only.
+        const WorldMap map = [=](const glm::dvec3& p)
+        {
+          const double more = p.x < 12.0 && p.y < 12.0 ? 0.4 * step : 0.0;
+          return p + glm::dvec3(2.3 * std::sin(0.13 * p.y) + more, 0.7 * std::cos(0.21 * p.x), 0.1);
+        };
+        SetDisplacements(mesh, map);
+        SetDisplacements(other, map);
+        VERIFY(AreEqual(first.Update(), second.Update()));
+        VERIFY_EQUAL(
+          first.Filter->GetNumberOfResampledBricks(), second.Filter->GetNumberOfResampledBricks());
+      }
+    }
+  }
+}
+
+} // namespace
+
+int TestDeformGrids(int, char*[])
+{
+  TestOtherGrids();
+  TestEditsInPlace();
+  TestPipeline();
+  TestTwoMeshes();
+  TestNumbers();
+  return GetExitCode();
+}

@@ -1,0 +1,595 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Quadratic and Lagrange cells: the tetrahedra that they are split into fill them, agree with those
+// of their neighbours, use all of their nodes, and come closer to the cells' own shape functions at
+// the rate of linear interpolation where the mesh is refined.
+#include "FilterTesting.h"
+#include "MeshCells.h"
+
+#include <vtkCell.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkCellTypeSource.h>
+#include <vtkDoubleArray.h>
+#include <vtkGenericCell.h>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <random>
+#include <set>
+
+using namespace filterTesting;
+using deformvolume::Tetrahedron;
+
+namespace
+{
+
+using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
+
+double GetVolume(vtkUnstructuredGrid* grid, const Tetrahedron& nodes)
+{
+  const glm::dvec3 origin = GetPoint(grid, nodes[0]);
+  return std::abs(glm::determinant(glm::dmat3(GetPoint(grid, nodes[1]) - origin,
+           GetPoint(grid, nodes[2]) - origin, GetPoint(grid, nodes[3]) - origin))) /
+    6.0;
+}
+
+// A conforming mesh of the cells' parts: each face belongs to one tetrahedron or two, and those of
+// one make up a surface of this area; the volumes of all make up this volume; every node is used.
+void CheckFilled(const std::string& what, vtkUnstructuredGrid* grid, double volume, double area)
+{
+  const std::vector<Tetrahedron> tetrahedra = deformvolume::ReadCells({ grid }).Tetrahedra;
+  std::set<std::int32_t> used;
+  std::map<std::array<std::int32_t, 3>, int> faces;
+  double sum = 0.0;
+  double least = volume;
+  for (const Tetrahedron& tetrahedron : tetrahedra)
+  {
+    used.insert(tetrahedron.begin(), tetrahedron.end());
+    for (std::size_t left = 0; left < 4; ++left)
+    {
+      std::array<std::int32_t, 3> face;
+      for (std::size_t i = 0, j = 0; i < 4; ++i)
+      {
+        if (i != left)
+        {
+          face[j++] = tetrahedron[i];
+        }
+      }
+      std::sort(face.begin(), face.end());
+      ++faces[face];
+    }
+    const double part = GetVolume(grid, tetrahedron);
+    sum += part;
+    least = std::min(least, part);
+  }
+  double surface = 0.0;
+  int most = 0;
+  for (const auto& face : faces)
+  {
+    most = std::max(most, face.second);
+    if (face.second == 1)
+    {
+      const glm::dvec3 origin = GetPoint(grid, face.first[0]);
+      surface += 0.5 *
+        glm::length(glm::cross(
+          GetPoint(grid, face.first[1]) - origin, GetPoint(grid, face.first[2]) - origin));
+    }
+  }
+  // Sums of some thousand numbers of order one.
+  if (std::abs(sum - volume) > 1e-10 * volume || std::abs(surface - area) > 1e-10 * area ||
+    most > 2 || least < 1e-6 * volume / static_cast<double>(tetrahedra.size()) ||
+    static_cast<vtkIdType>(used.size()) != grid->GetNumberOfPoints())
+  {
+    ++GetNumberOfFailures();
+    std::cerr << what << ": " << tetrahedra.size() << " tetrahedra of volume " << sum
+              << " instead of " << volume << ", the least " << least << ", surface " << surface
+              << " instead of " << area << ", up to " << most << " at a face, " << used.size()
+              << " of " << grid->GetNumberOfPoints() << " nodes\n";
+  }
+}
+
+// The same mesh with its points in another order, since splits go by the ids of points.
+Grid Shuffle(vtkUnstructuredGrid* grid, unsigned int seed)
+{
+  std::vector<vtkIdType> place(static_cast<std::size_t>(grid->GetNumberOfPoints()));
+  std::iota(place.begin(), place.end(), 0);
+  std::mt19937 random(seed);
+  std::shuffle(place.begin(), place.end(), random);
+  Grid shuffled = Grid::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(grid->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < grid->GetNumberOfPoints(); ++id)
+  {
+    points->SetPoint(place[id], grid->GetPoint(id));
+  }
+  shuffled->SetPoints(points);
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> ids;
+    grid->GetCellPoints(cell, ids);
+    for (vtkIdType& id : *ids)
+    {
+      id = place[id];
+    }
+    shuffled->InsertNextCell(grid->GetCellType(cell), ids);
+  }
+  shuffled->GetCellData()->ShallowCopy(grid->GetCellData());
+  return shuffled;
+}
+
+// Adds the nodes to corners that a type of quadratic cell has: in the middle of edges, of faces and
+// of the cell, as VTK orders them. Cells share them by the corners between which they lie.
+class Elevation
+{
+public:
+  explicit Elevation(const std::vector<glm::dvec3>& corners)
+    : Corners(corners)
+  {
+    this->Mesh->SetPoints(this->Points);
+    this->Points->SetDataTypeToDouble();
+  }
+
+  void Add(int type, const std::vector<int>& corners)
+  {
+    const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+    const vtkIdType count = cell->GetNumberOfPoints();
+    std::vector<std::vector<int>> between(static_cast<std::size_t>(count), corners);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      cell->PointIds->SetId(i, i);
+    }
+    const auto number = static_cast<vtkIdType>(corners.size());
+    for (vtkIdType i = 0; i < number; ++i)
+    {
+      between[i] = { corners[i] };
+    }
+    const auto take = [&](vtkCell* side, std::size_t sideCorners)
+    {
+      vtkIdList* ids = side->PointIds;
+      if (ids->GetNumberOfIds() > static_cast<vtkIdType>(sideCorners))
+      {
+        std::vector<int> those;
+        for (std::size_t i = 0; i < sideCorners; ++i)
+        {
+          those.push_back(corners[ids->GetId(i)]);
+        }
+        between[ids->GetId(ids->GetNumberOfIds() - 1)] = those;
+      }
+    };
+    for (int i = 0; i < cell->GetNumberOfFaces(); ++i)
+    {
+      vtkCell* face = cell->GetFace(i);
+      const vtkIdType size = face->PointIds->GetNumberOfIds();
+      if (size == 9 || size == 7) // a node in the middle
+      {
+        take(face, static_cast<std::size_t>(size / 2));
+      }
+    }
+    for (int i = 0; i < cell->GetNumberOfEdges(); ++i)
+    {
+      take(cell->GetEdge(i), 2);
+    }
+    vtkNew<vtkIdList> ids;
+    for (const std::vector<int>& some : between)
+    {
+      ids->InsertNextId(this->GetNode(some));
+    }
+    this->Mesh->InsertNextCell(type, ids);
+  }
+
+  Grid Mesh = Grid::New();
+
+private:
+  vtkIdType GetNode(std::vector<int> corners)
+  {
+    glm::dvec3 middle(0.0);
+    for (const int corner : corners)
+    {
+      middle += this->Corners[corner] / static_cast<double>(corners.size());
+    }
+    std::sort(corners.begin(), corners.end());
+    const auto found = this->Nodes.emplace(corners, this->Points->GetNumberOfPoints());
+    if (found.second)
+    {
+      this->Points->InsertNextPoint(&middle.x);
+    }
+    return found.first->second;
+  }
+
+  std::vector<glm::dvec3> Corners;
+  std::map<std::vector<int>, vtkIdType> Nodes;
+  vtkNew<vtkPoints> Points;
+};
+
+// A cube with a pyramid on its top, tetrahedra at the pyramid's sides and a wedge at its own side.
+struct Types
+{
+  int Tetrahedron, Hexahedron, Wedge, Pyramid;
+};
+Grid MakeMixedMesh(const Types& types)
+{
+  Elevation mesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 0, 1 },
+    { 1, 1, 1 }, { 0, 1, 1 }, { 0.5, 0.5, 2 }, { 0.5, -0.5, 1.5 }, { 2, 0, 0 }, { 2, 0, 1 } });
+  mesh.Add(types.Hexahedron, { 0, 1, 2, 3, 4, 5, 6, 7 });
+  mesh.Add(types.Pyramid, { 4, 5, 6, 7, 8 });
+  mesh.Add(types.Tetrahedron, { 4, 9, 5, 8 });
+  mesh.Add(types.Wedge, { 1, 10, 2, 5, 11, 6 });
+  return mesh.Mesh;
+}
+
+void TestNeighbours()
+{
+  // Each set of types has nodes that fit on the faces between them. The surface: of the cube five
+  // faces less one, of the wedge two triangles and two sides, three sides of the pyramid, and of
+  // the tetrahedron three.
+  const glm::dvec3 a(0, 0, 1), b(1, 0, 1), c(0.5, 0.5, 2), d(0.5, -0.5, 1.5);
+  const auto triangle = [](const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& r)
+  { return 0.5 * glm::length(glm::cross(q - p, r - p)); };
+  const double area = 4.0 + 1.0 + 1.0 + std::sqrt(2.0) + 3.0 * triangle(a, b, c) +
+    triangle(a, b, d) + triangle(a, c, d) + triangle(b, c, d);
+  const double tetrahedron = std::abs(glm::determinant(glm::dmat3(b - a, c - a, d - a))) / 6.0;
+  for (const Types& types : { Types{ VTK_QUADRATIC_TETRA, VTK_QUADRATIC_HEXAHEDRON,
+         VTK_QUADRATIC_WEDGE, VTK_QUADRATIC_PYRAMID } })
+  {
+    const Grid mesh = MakeMixedMesh(types);
+    for (unsigned int seed = 0; seed < 50; ++seed)
+    {
+      CheckFilled("a mixed mesh", Shuffle(mesh, seed), 1.0 + 1.0 / 3.0 + 0.5 + tetrahedron, area);
+    }
+  }
+  // Faces with a node in their middle: between these, and, in the same order of corners, linear
+  // ones.
+  for (const int hexahedron : { VTK_TRIQUADRATIC_HEXAHEDRON, VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON })
+  {
+    Elevation mesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 0, 1 },
+      { 1, 1, 1 }, { 0, 1, 1 }, { 2, 0, 0 }, { 2, 0, 1 } });
+    mesh.Add(hexahedron, { 0, 1, 2, 3, 4, 5, 6, 7 });
+    mesh.Add(VTK_BIQUADRATIC_QUADRATIC_WEDGE, { 1, 8, 2, 5, 9, 6 });
+    for (unsigned int seed = 0; seed < 50; ++seed)
+    {
+      CheckFilled("hexahedron and wedge", Shuffle(mesh.Mesh, seed), 1.5, 7.0 + std::sqrt(2.0));
+    }
+  }
+  Elevation center({ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 0, 1 },
+    { 1, 1, 1 }, { 0, 1, 1 }, { 0.5, 0.5, 2 } });
+  center.Add(VTK_TRIQUADRATIC_HEXAHEDRON, { 0, 1, 2, 3, 4, 5, 6, 7 });
+  center.Add(VTK_TRIQUADRATIC_PYRAMID, { 4, 5, 6, 7, 8 });
+  Elevation linear({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 0, 1 }, { 0, 1, 1 },
+    { 0, 0, 2 }, { 1, 0, 2 }, { 0, 1, 2 } });
+  linear.Add(VTK_QUADRATIC_LINEAR_WEDGE, { 0, 1, 2, 3, 4, 5 });
+  linear.Add(VTK_QUADRATIC_LINEAR_WEDGE, { 3, 4, 5, 6, 7, 8 });
+  for (unsigned int seed = 0; seed < 50; ++seed)
+  {
+    CheckFilled("hexahedron and pyramid", Shuffle(center.Mesh, seed), 1.0 + 1.0 / 3.0,
+      5.0 + 4.0 * triangle(a, b, c));
+    CheckFilled("linear wedges", Shuffle(linear.Mesh, seed), 1.0, 1.0 + 4.0 + 2.0 * std::sqrt(2.0));
+  }
+}
+
+Grid MakeBlocks(int type, int order, bool complete, int blocks)
+{
+  vtkNew<vtkCellTypeSource> source;
+  source->SetCellType(type);
+  source->SetCellOrder(order);
+  source->SetCompleteQuadraticSimplicialElements(complete);
+  source->SetBlocksDimensions(blocks, blocks, blocks);
+  source->SetOutputPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  source->Update();
+  // Cells of higher degrees do not share all of their points, which differ by rounding.
+  Grid grid = Grid::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  std::map<std::array<long, 3>, vtkIdType> known;
+  for (vtkIdType cell = 0; cell < source->GetOutput()->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> ids;
+    source->GetOutput()->GetCellPoints(cell, ids);
+    for (vtkIdType& id : *ids)
+    {
+      const glm::dvec3 point = GetPoint(source->GetOutput(), id);
+      const auto found = known.emplace(std::array<long, 3>{ { std::lround(1e6 * point.x),
+                                         std::lround(1e6 * point.y), std::lround(1e6 * point.z) } },
+        points->GetNumberOfPoints());
+      if (found.second)
+      {
+        points->InsertNextPoint(&point.x);
+      }
+      id = found.first->second;
+    }
+    grid->InsertNextCell(type, ids);
+  }
+  grid->SetPoints(points);
+  return grid;
+}
+
+struct Shape
+{
+  const char* Name;
+  int Type;
+  int Order = 2;
+  bool Complete = false;
+};
+
+const std::vector<Shape>& GetShapes()
+{
+  static const std::vector<Shape> shapes{ { "quadratic tetrahedra", VTK_QUADRATIC_TETRA },
+    { "quadratic hexahedra", VTK_QUADRATIC_HEXAHEDRON },
+    { "quadratic wedges", VTK_QUADRATIC_WEDGE }, { "quadratic pyramids", VTK_QUADRATIC_PYRAMID },
+    { "Lagrange tetrahedra of degree 1", VTK_LAGRANGE_TETRAHEDRON, 1 },
+    { "Lagrange tetrahedra of degree 2", VTK_LAGRANGE_TETRAHEDRON, 2 },
+    { "Lagrange tetrahedra of 15 points", VTK_LAGRANGE_TETRAHEDRON, 2, true },
+    { "Lagrange tetrahedra of degree 3", VTK_LAGRANGE_TETRAHEDRON, 3 },
+    { "Lagrange tetrahedra of degree 5", VTK_LAGRANGE_TETRAHEDRON, 5 },
+    { "Lagrange hexahedra of degree 1", VTK_LAGRANGE_HEXAHEDRON, 1 },
+    { "Lagrange hexahedra of degree 2", VTK_LAGRANGE_HEXAHEDRON, 2 },
+    { "Lagrange hexahedra of degree 4", VTK_LAGRANGE_HEXAHEDRON, 4 },
+    { "Lagrange wedges of degree 1", VTK_LAGRANGE_WEDGE, 1 },
+    { "Lagrange wedges of degree 2", VTK_LAGRANGE_WEDGE, 2 },
+    { "Lagrange wedges of 21 points", VTK_LAGRANGE_WEDGE, 2, true },
+    { "Lagrange wedges of degree 3", VTK_LAGRANGE_WEDGE, 3 } };
+  return shapes;
+}
+
+void TestBlocks()
+{
+  for (const Shape& shape : GetShapes())
+  {
+    const Grid grid = MakeBlocks(shape.Type, shape.Order, shape.Complete, 2);
+    for (unsigned int seed = 0; seed < 5; ++seed)
+    {
+      CheckFilled(shape.Name, Shuffle(grid, seed), 8.0, 24.0);
+    }
+  }
+}
+
+// Lagrange cells with a degree of their own along each axis, which an array of the cells tells.
+void TestDegrees()
+{
+  const struct
+  {
+    int Type;
+    std::array<int, 3> Degrees;
+    double Volume, Area;
+  } cells[] = { { VTK_LAGRANGE_HEXAHEDRON, { { 2, 1, 3 } }, 1.0, 6.0 },
+    { VTK_LAGRANGE_HEXAHEDRON, { { 1, 4, 2 } }, 1.0, 6.0 },
+    { VTK_LAGRANGE_WEDGE, { { 2, 2, 1 } }, 0.5, 3.0 + std::sqrt(2.0) },
+    { VTK_LAGRANGE_WEDGE, { { 1, 1, 4 } }, 0.5, 3.0 + std::sqrt(2.0) },
+    { VTK_LAGRANGE_WEDGE, { { 3, 3, 2 } }, 0.5, 3.0 + std::sqrt(2.0) } };
+  for (const auto& expected : cells)
+  {
+    const std::array<int, 3>& n = expected.Degrees;
+    const int count = expected.Type == VTK_LAGRANGE_HEXAHEDRON
+      ? (n[0] + 1) * (n[1] + 1) * (n[2] + 1)
+      : (n[0] + 1) * (n[0] + 2) / 2 * (n[2] + 1);
+    Grid grid = Grid::New();
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    points->SetNumberOfPoints(count);
+    grid->SetPoints(points);
+    std::vector<vtkIdType> ids(static_cast<std::size_t>(count));
+    std::iota(ids.begin(), ids.end(), 0);
+    grid->InsertNextCell(expected.Type, count, ids.data());
+    vtkNew<vtkDoubleArray> degrees;
+    degrees->SetName("degrees");
+    degrees->SetNumberOfComponents(3);
+    degrees->InsertNextTuple3(n[0], n[1], n[2]);
+    grid->GetCellData()->SetHigherOrderDegrees(degrees);
+    // The cell itself knows where its nodes are.
+    const double* places = grid->GetCell(0)->GetParametricCoords();
+    for (vtkIdType id = 0; id < count; ++id)
+    {
+      points->SetPoint(id, places + 3 * id);
+    }
+    CheckFilled("a cell of several degrees", grid, expected.Volume, expected.Area);
+    degrees->SetNumberOfTuples(0);
+    try
+    {
+      deformvolume::ReadCells({ grid });
+      VERIFY(false);
+    }
+    catch (const deformvolume::Error& error)
+    {
+      VERIFY(std::string(error.what()).find("0 tuples of 3 components for 1 cells") !=
+        std::string::npos);
+    }
+  }
+}
+
+glm::dvec3 Curve(const glm::dvec3& p)
+{
+  return p + 0.04 * glm::dvec3(std::sin(3.0 * p.y), std::sin(2.5 * p.z + 1.0), std::cos(3.0 * p.x));
+}
+glm::dvec3 Move(const glm::dvec3& p)
+{
+  return glm::dvec3(
+    std::sin(2.0 * p.x + p.y), std::cos(2.0 * p.y - p.z), std::sin(1.5 * p.z + p.x));
+}
+
+// The root of the mean square of the differences of displacements at random points of curved cells
+// in a unit cube.
+double FindDifference(const Shape& shape, int blocks)
+{
+  const Grid grid = MakeBlocks(shape.Type, shape.Order, shape.Complete, blocks);
+  std::vector<glm::dvec3> displacements;
+  for (vtkIdType id = 0; id < grid->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 point = Curve(GetPoint(grid, id) / static_cast<double>(blocks));
+    grid->GetPoints()->SetPoint(id, &point.x);
+    displacements.push_back(Move(point));
+  }
+  const std::vector<Tetrahedron> tetrahedra = deformvolume::ReadCells({ grid }).Tetrahedra;
+  std::vector<glm::dmat3> inverses;
+  for (const Tetrahedron& nodes : tetrahedra)
+  {
+    const glm::dvec3 last = GetPoint(grid, nodes[3]);
+    inverses.push_back(glm::inverse(glm::dmat3(GetPoint(grid, nodes[0]) - last,
+      GetPoint(grid, nodes[1]) - last, GetPoint(grid, nodes[2]) - last)));
+  }
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  double sum = 0.0;
+  int found = 0;
+  for (int sample = 0; sample < 600; ++sample)
+  {
+    const auto id =
+      static_cast<vtkIdType>(unit(random) * static_cast<double>(grid->GetNumberOfCells()));
+    vtkCell* cell = grid->GetCell(std::min(id, grid->GetNumberOfCells() - 1));
+    glm::dvec3 place(unit(random), unit(random), unit(random));
+    const bool simplex = cell->GetNumberOfFaces() == 4;
+    if ((simplex && place.x + place.y + place.z > 1.0) ||
+      (cell->GetNumberOfFaces() == 5 && cell->GetNumberOfEdges() == 9 && place.x + place.y > 1.0))
+    {
+      continue;
+    }
+    int subId = 0;
+    glm::dvec3 position;
+    std::vector<double> weights(static_cast<std::size_t>(cell->GetNumberOfPoints()));
+    cell->EvaluateLocation(subId, &place.x, &position.x, weights.data());
+    glm::dvec3 expected(0.0);
+    for (vtkIdType i = 0; i < cell->GetNumberOfPoints(); ++i)
+    {
+      expected += weights[i] * displacements[cell->GetPointId(static_cast<int>(i))];
+    }
+    for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+    {
+      const Tetrahedron& nodes = tetrahedra[t];
+      const glm::dvec3 w = inverses[t] * (position - GetPoint(grid, nodes[3]));
+      const double last = 1.0 - w.x - w.y - w.z;
+      if (std::min({ w.x, w.y, w.z, last }) >= -1e-9)
+      {
+        const glm::dvec3 actual = w.x * displacements[nodes[0]] + w.y * displacements[nodes[1]] +
+          w.z * displacements[nodes[2]] + last * displacements[nodes[3]];
+        sum += glm::dot(actual - expected, actual - expected);
+        ++found;
+        break;
+      }
+    }
+  }
+  VERIFY(found > 80); // the others are between a curved boundary and its triangles, or in no cell
+  return std::sqrt(sum / found);
+}
+
+void TestConvergence()
+{
+  for (const Shape& shape : GetShapes())
+  {
+    const double coarse = FindDifference(shape, 2);
+    const double fine = FindDifference(shape, 4);
+    std::cout << shape.Name << ": " << coarse << ", half the size " << fine << ", order "
+              << std::log2(coarse / fine) << '\n';
+    // Second order but for what the higher ones add in cells as large as these. Linear cells agree.
+    const bool linear = shape.Type == VTK_LAGRANGE_TETRAHEDRON && shape.Order == 1;
+    if (linear ? fine > 1e-12 : !(std::log2(coarse / fine) > 1.7 && fine < 0.05))
+    {
+      ++GetNumberOfFailures();
+      std::cerr << shape.Name << " do not converge\n";
+    }
+  }
+}
+
+void ExpectError(int type, vtkIdType count, const std::string& words)
+{
+  Grid grid = Grid::New();
+  vtkNew<vtkPoints> points;
+  points->SetNumberOfPoints(200);
+  grid->SetPoints(points);
+  std::vector<vtkIdType> ids(200);
+  std::iota(ids.begin(), ids.end(), 0);
+  grid->InsertNextCell(type, count, ids.data());
+  try
+  {
+    deformvolume::ReadCells({ grid });
+    ++GetNumberOfFailures();
+    std::cerr << "no error of " << count << " points of type " << type << '\n';
+  }
+  catch (const deformvolume::Error& error)
+  {
+    if (std::string(error.what()).find(words) == std::string::npos)
+    {
+      ++GetNumberOfFailures();
+      std::cerr << error.what() << ", expected: " << words << '\n';
+    }
+  }
+}
+
+void TestErrors()
+{
+  ExpectError(VTK_QUADRATIC_TETRA, 9, "vtkQuadraticTetra with 9 points instead of 10");
+  ExpectError(VTK_QUADRATIC_HEXAHEDRON, 8, "vtkQuadraticHexahedron with 8 points instead of 20");
+  ExpectError(VTK_TRIQUADRATIC_PYRAMID, 20, "with 20 points instead of 19");
+  for (const vtkIdType count : { 0, 1, 11, 14, 16 })
+  {
+    ExpectError(VTK_LAGRANGE_TETRAHEDRON, count, "points, which does not fit its degree");
+  }
+  ExpectError(VTK_LAGRANGE_HEXAHEDRON, 26, "vtkLagrangeHexahedron with 26 points, which does not");
+  ExpectError(VTK_LAGRANGE_WEDGE, 20, "vtkLagrangeWedge with 20 points, which does not");
+  for (const int type : { VTK_BEZIER_TETRAHEDRON, VTK_BEZIER_HEXAHEDRON, VTK_BEZIER_WEDGE })
+  {
+    ExpectError(type, 10, "convert the mesh");
+  }
+}
+
+// A volume bent by a cube of twelve tetrahedra: values come from where the exact inverse says.
+void TestVolume()
+{
+  auto volume = MakeImage({ { 0, 20, 0, 20, 0, 20 } });
+  const auto value = [](const glm::dvec3& p) { return 3.0 * p.x + 5.0 * p.y - 2.0 * p.z; };
+  AddScalars<float>(volume, "value", value);
+  const auto bend = [](const glm::dvec3& p)
+  { return glm::dvec3(0.006 * p.y * p.y, 0.004 * p.z * p.z, -0.005 * p.x * p.y); };
+  double worst[2];
+  for (const bool midsides : { true, false })
+  {
+    const Grid grid = MakeBlocks(midsides ? VTK_QUADRATIC_TETRA : VTK_TETRA, 1, false, 1);
+    for (vtkIdType id = 0; id < grid->GetNumberOfPoints(); ++id)
+    {
+      const glm::dvec3 point = 20.0 * GetPoint(grid, id);
+      grid->GetPoints()->SetPoint(id, &point.x);
+    }
+    SetDisplacements(grid, [&](const glm::dvec3& p) { return p + bend(p); });
+    Deformed deformed(volume, grid);
+    vtkImageData* output = deformed.Update();
+    VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 8000);
+    double& most = worst[midsides ? 0 : 1];
+    most = 0.0;
+    for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+    {
+      const glm::dvec3 point = GetPoint(output, id);
+      glm::dvec3 rest = point;
+      for (int i = 0; i < 100; ++i)
+      {
+        rest = point - bend(rest);
+      }
+      if (deformed.IsCovered(id))
+      {
+        most = std::max(most, std::abs(deformed.GetValues()->GetComponent(id, 0) - value(rest)));
+      }
+    }
+  }
+  std::cout << "Largest error of a bent volume: " << worst[0] << ", without mid-side nodes "
+            << worst[1] << '\n';
+  // Linear interpolation of displacements with second derivatives up to 0.012 over tetrahedra with
+  // edges up to 10 sqrt 2 voxels is off by no more than 3 / 16 * 0.012 * 200 voxels, and values
+  // change by up to 6.2 a voxel.
+  VERIFY(worst[0] < 3.0 / 16.0 * 0.012 * 200.0 * 6.2);
+  VERIFY(worst[0] < 0.5 * worst[1]);
+}
+
+} // namespace
+
+int TestHigherOrderCells(int, char*[])
+{
+  TestErrors();
+  TestNeighbours();
+  TestBlocks();
+  TestDegrees();
+  TestConvergence();
+  TestVolume();
+  return GetExitCode();
+}

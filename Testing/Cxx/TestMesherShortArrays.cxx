@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Arrays that are shorter than what they describe, given to the sources of meshes: one error that
+// says which, never an access beyond their end.
+#include "MeshChecks.h"
+#include "vtkLatticeTetrahedraSource.h"
+#include "vtkTetGenMesher.h"
+
+#include <vtkCellArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkImageData.h>
+#include <vtkIntArray.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSphereSource.h>
+#include <vtkUnsignedCharArray.h>
+
+using namespace meshChecks;
+
+namespace
+{
+
+const char* const GHOSTS = "vtkGhostType";
+
+template <typename ArrayT>
+vtkSmartPointer<ArrayT> MakeArray(const char* name, vtkIdType tuples, int components = 1)
+{
+  auto array = vtkSmartPointer<ArrayT>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(tuples);
+  array->Fill(0.0);
+  return array;
+}
+
+void TestMeshers()
+{
+  vtkNew<vtkImageData> volume;
+  volume->SetDimensions(13, 13, 13);
+  const auto values = MakeArray<vtkDoubleArray>("values", volume->GetNumberOfPoints());
+  values->SetValue(volume->GetNumberOfPoints() / 2, 1.0);
+  volume->GetPointData()->SetScalars(values);
+  const vtkIdType count = volume->GetNumberOfPoints();
+  vtkNew<vtkTetGenMesher> mesher;
+  FailureCheck check(mesher);
+  mesher->SetInputData(volume);
+  vtkPointData* data = volume->GetPointData();
+  data->AddArray(MakeArray<vtkUnsignedCharArray>(GHOSTS, 10));
+  check.Fails("10 tuples");
+  data->AddArray(MakeArray<vtkUnsignedCharArray>(GHOSTS, count, 3));
+  check.Fails("3 components");
+  data->AddArray(MakeArray<vtkIntArray>(GHOSTS, count));
+  check.Fails("unsigned char");
+  data->RemoveArray(GHOSTS);
+  data->GetScalars()->SetNumberOfTuples(count - 1);
+  check.Fails("values for");
+
+  // vtkLatticeTetrahedraSource goes by the geometry of a volume only.
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  FailureCheck latticeCheck(lattice);
+  lattice->SetInputData(volume);
+  latticeCheck.Succeeds();
+  VERIFY(lattice->GetOutput()->GetNumberOfCells() > 0);
+
+  vtkNew<vtkSphereSource> sphere;
+  sphere->Update();
+  vtkNew<vtkPolyData> surface;
+  surface->DeepCopy(sphere->GetOutput());
+  mesher->SetInputData(surface);
+  surface->GetPoints()->SetNumberOfPoints(20);
+  surface->GetPoints()->Modified();
+  check.Fails("there are only 20 points");
+  surface->SetPoints(nullptr);
+  check.Fails("there are only 0 points");
+  surface->DeepCopy(sphere->GetOutput());
+  surface->GetPolys()->GetConnectivityArray()->SetNumberOfTuples(30);
+  surface->GetPolys()->Modified();
+  check.Fails("do not fit their connectivity");
+}
+
+} // namespace
+
+int TestMesherShortArrays(int, char*[])
+{
+  TestMeshers();
+  return Failures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

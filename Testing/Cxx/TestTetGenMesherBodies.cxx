@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The tetrahedra hold every voxel of a body, however thin its parts, and what is left out is told.
+#include "vtkTetGenMesher.h"
+
+#include "BodyChecks.h"
+#include "MeshChecks.h"
+
+#include <vtkImageData.h>
+#include <vtkPointData.h>
+#include <vtkShortArray.h>
+
+#include <cstdlib>
+#include <random>
+
+using namespace meshChecks;
+
+namespace
+{
+
+constexpr int Size = 80;
+using Body = std::function<bool(int, int, int)>;
+
+vtkSmartPointer<vtkImageData> MakeVolume(const Body& body)
+{
+  auto volume = vtkSmartPointer<vtkImageData>::New();
+  volume->SetExtent(3, Size + 2, -5, Size - 6, 0, Size - 1);
+  volume->SetSpacing(1.0, 0.8, 1.2);
+  volume->SetOrigin(10.0, 20.0, -30.0);
+  const double rotation[9] = { 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0 };
+  volume->SetDirectionMatrix(rotation);
+  vtkNew<vtkShortArray> values;
+  values->SetName("values");
+  values->SetNumberOfValues(volume->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < values->GetNumberOfValues(); ++i)
+  {
+    const int x = static_cast<int>(i % Size);
+    const int y = static_cast<int>(i / Size % Size);
+    const int z = static_cast<int>(i / Size / Size);
+    values->SetValue(i, body(x, y, z) ? 100 : 0);
+  }
+  volume->GetPointData()->SetScalars(values);
+  return volume;
+}
+
+double Square(double x)
+{
+  return x * x;
+}
+
+bool IsInBall(int x, int y, int z)
+{
+  return Square(x - 40) + Square(y - 40) + Square(z - 40) < Square(26);
+}
+
+// A nose of six voxels across, and an ear two voxels thick.
+bool IsInHead(int x, int y, int z)
+{
+  const bool nose = Square(x - 40) + Square(z - 40) < 9 && y > 40 && y < 76;
+  const bool ear = (x == 39 || x == 40) && z > 40 && Square(y - 40) + Square(z - 40) < Square(36);
+  return IsInBall(x, y, z) || nose || ear;
+}
+
+// Sheets two voxels thick, one along the border of the volume and one oblique.
+bool IsInSheets(int x, int y, int z)
+{
+  return z < 2 || y == 30 || y == 31 || std::abs(x + y + 2 * z - 130) < 3;
+}
+
+// Vessels two voxels across, in many pieces.
+Body MakeVessels()
+{
+  std::vector<bool> vessels(Size * Size * Size, false);
+  std::mt19937 generator(7);
+  std::uniform_int_distribution<int> start(2, Size - 4);
+  std::uniform_int_distribution<int> direction(-1, 1);
+  for (int vessel = 0; vessel < 150; ++vessel)
+  {
+    int p[3] = { start(generator), start(generator), start(generator) };
+    for (int step = 0; step < 25; ++step)
+    {
+      for (int i = 0; i < 8; ++i)
+      {
+        vessels[((p[2] + (i >> 2)) * Size + p[1] + (i >> 1 & 1)) * Size + p[0] + (i & 1)] = true;
+      }
+      for (int& position : p)
+      {
+        position = std::min(std::max(position + direction(generator), 1), Size - 3);
+      }
+    }
+  }
+  return [vessels](int x, int y, int z) -> bool { return vessels[(z * Size + y) * Size + x]; };
+}
+
+void VerifyHeld(vtkTetGenMesher* mesher, vtkImageData* volume, vtkIdType specks)
+{
+  const bodyChecks::Count count = bodyChecks::CountVoxels(volume, 50.0, mesher->GetOutput());
+  VERIFY(mesher->GetNumberOfSpeckVoxels() == specks);
+  VERIFY(mesher->GetNumberOfBodyVoxels() == count.Body - specks);
+  // One of 100,000 is allowed, of bodies of this size not even one.
+  VERIFY(mesher->GetNumberOfBodyVoxelsOutside() == 0);
+  VERIFY(count.Outside <= specks);
+  const Summary summary = Summarize(mesher->GetOutput());
+  VERIFY(summary.OverusedFaces == 0 && summary.OpenBoundaryEdges == 0);
+  VERIFY(summary.SmallestVolume > 0.0);
+}
+
+void TestThinParts()
+{
+  const std::pair<const char*, Body> bodies[] = { { "head", IsInHead }, { "sheets", IsInSheets },
+    { "vessels", MakeVessels() } };
+  for (const auto& [name, body] : bodies)
+  {
+    const vtkSmartPointer<vtkImageData> volume = MakeVolume(body);
+    for (const double length : { 0.0, 4.0, 20.0 })
+    {
+      for (const double margin : { 0.5, 0.0 })
+      {
+        vtkNew<vtkTetGenMesher> mesher;
+        FailureCheck check(mesher);
+        mesher->SetInputData(volume);
+        mesher->SetTargetEdgeLength(length);
+        mesher->SetMargin(margin);
+        mesher->SetSpeckSize(0);
+        check.Succeeds();
+        const int before = Failures();
+        VerifyHeld(mesher, volume, 0);
+        if (Failures() > before)
+        {
+          std::cerr << "  with " << name << ", edges of " << length << ", margin " << margin << ": "
+                    << mesher->GetNumberOfBodyVoxelsOutside() << " voxels outside\n";
+        }
+      }
+    }
+  }
+}
+
+void TestSpecks()
+{
+  // 200 specks of 8 voxels, which do not touch each other.
+  const vtkIdType specks = 200 * 8;
+  const vtkSmartPointer<vtkImageData> volume = MakeVolume(
+    [](int x, int y, int z)
+    {
+      const int place = (x / 8) + 10 * (y / 8);
+      const bool speck = x % 8 < 2 && y % 8 < 2 && place < 100 && (z / 2 == 1 || z / 2 == 38);
+      return IsInBall(x, y, z) || speck;
+    });
+  vtkNew<vtkTetGenMesher> mesher;
+  FailureCheck check(mesher);
+  mesher->SetInputData(volume);
+  check.Succeeds();
+  VerifyHeld(mesher, volume, specks);
+  VERIFY(mesher->GetNumberOfPieces() == 1);
+  VERIFY(mesher->GetSummary().find("Voxels of specks: 1,600") != std::string::npos);
+  mesher->SetSpeckSize(8);
+  check.Succeeds();
+  VerifyHeld(mesher, volume, specks);
+  mesher->SetSpeckSize(7);
+  check.Succeeds();
+  VerifyHeld(mesher, volume, 0);
+  VERIFY(mesher->GetNumberOfPieces() == 201);
+
+  // A body of specks only is no speck.
+  const vtkSmartPointer<vtkImageData> lonely =
+    MakeVolume([](int x, int y, int z) { return x == 40 && y == 40 && z == 40; });
+  mesher->SetInputData(lonely);
+  mesher->SetSpeckSize(26);
+  mesher->SetTargetEdgeLength(5.0);
+  check.Succeeds();
+  VerifyHeld(mesher, lonely, 0);
+}
+
+void TestPieceModes()
+{
+  // Voxels that touch at a corner only are one piece.
+  const vtkSmartPointer<vtkImageData> volume = MakeVolume(
+    [](int x, int y, int z)
+    {
+      const auto isInCube = [&](int a, int b) {
+        return std::min({ x, y, z }) >= a && std::max({ x, y, z }) < b;
+      };
+      return isInCube(5, 15) || isInCube(15, 20) || isInCube(60, 72);
+    });
+  const vtkIdType first = 1000 + 125;
+  const vtkIdType second = 12 * 12 * 12;
+  vtkNew<vtkTetGenMesher> mesher;
+  FailureCheck check(mesher);
+  mesher->SetInputData(volume);
+  mesher->SetTargetEdgeLength(4.0);
+  check.Succeeds();
+  VERIFY(mesher->GetNumberOfPieces() == 2);
+  VERIFY(mesher->GetNumberOfBodyVoxels() == first + second);
+  VerifyHeld(mesher, volume, 0);
+  const double apart = Summarize(mesher->GetOutput()).Volume;
+
+  mesher->SetPieceModeToConvexHull();
+  check.Succeeds();
+  VerifyHeld(mesher, volume, 0);
+  const double hull = Summarize(mesher->GetOutput()).Volume;
+  // Of a convex body the mesh is convex, so that its boundary is the only one of its points.
+  VERIFY(hull > 2.0 * apart);
+
+  mesher->SetPieceModeToLargestPiece();
+  check.Warns("1,125 of the 2,853 voxels of the body (39 %) lie outside the mesh. The body has 2 "
+              "pieces");
+  VERIFY(mesher->GetNumberOfBodyVoxels() == first + second);
+  VERIFY(mesher->GetNumberOfBodyVoxelsOutside() == first);
+  VERIFY(mesher->GetSummary().find("Body voxels outside the mesh: 1,125") != std::string::npos);
+}
+
+} // namespace
+
+int TestTetGenMesherBodies(int, char*[])
+{
+  TestThinParts();
+  TestSpecks();
+  TestPieceModes();
+  return Failures() ? EXIT_FAILURE : EXIT_SUCCESS;
+}

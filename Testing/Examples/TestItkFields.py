@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""deform-volume reads fields that ITK's own writers wrote, and gives what ITK's WarpImageFilter gives.
+Skipped where no Python has itk: DEFORMVOLUME_ITK_PYTHON names one that has, for example that of a
+virtual environment after pip install itk. Usage: TestItkFields.py PROGRAM FOLDER"""
+import itertools
+import os
+import struct
+import subprocess
+import sys
+import gzip
+
+import numpy
+from Volumes import call, get_values, make_folder, read_vti
+
+program = sys.argv[1]
+folder = make_folder(sys.argv[2], "ItkFields")
+python = os.environ.get("DEFORMVOLUME_ITK_PYTHON", sys.executable)
+# A path for the modules of this Python is none for another one.
+environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+if subprocess.run([python, "-c", "import itk"], env=environment, capture_output=True,
+                  check=False).returncode:
+    print(f"Skipped: {python} has no module itk. Set DEFORMVOLUME_ITK_PYTHON to a Python that has.")
+    sys.exit(125)
+script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "ItkFields.py")
+call(python, script, folder, environment=environment)
+
+with gzip.open(os.path.join(folder, "fine-1006.nii.gz"), "rb") as file:
+    assert struct.unpack("<h", file.read()[68:70]) == (1006,)
+
+suffixes = (".nii.gz", ".nii", ".mha", ".mhd", ".nrrd", ".nhdr", "-zip.nrrd", "-zip.mha", "-1006.nii.gz")
+for name, suffix, volume in itertools.product(("fine", "coarse"), suffixes,
+                                              ("moving.nii.gz", "moving.mha")):
+    target = os.path.join(folder, "out.vti")
+    call(program, os.path.join(folder, volume), "--field", os.path.join(folder, name + suffix),
+         "--field-is-inverse", "--bounds", "volume", "--quiet", "-o", target)
+    result = read_vti(target)
+    values, covered = get_values(result), get_values(result, "vtkValidPointMask") != 0
+    expected = numpy.load(os.path.join(folder, name + ".npy"))
+    # ITK extends the volume by half a voxel, and this program by 1/256.
+    assert not (covered & (expected == -100)).any()
+    assert covered.sum() > 0.5 * covered.size, covered.sum()
+    # Single precision of ITK's field and of the matrices of NIfTI, of values up to 4.5.
+    wrong = numpy.abs(values - expected)[covered].max()
+    assert wrong < 5e-4, (name, suffix, volume, wrong)

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Pipeline.h"
+
+#include "RandomDisplacements.h"
+#include "RandomMesh.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkCompositeDataIterator.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkDataArray.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fuzz
+{
+
+namespace
+{
+
+std::vector<vtkDataSet*> GetLeaves(vtkDataObject* data)
+{
+  if (auto* one = vtkDataSet::SafeDownCast(data))
+  {
+    return { one };
+  }
+  std::vector<vtkDataSet*> leaves;
+  if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    const auto next = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+    for (next->InitTraversal(); !next->IsDoneWithTraversal(); next->GoToNextItem())
+    {
+      if (auto* leaf = vtkUnstructuredGrid::SafeDownCast(next->GetCurrentDataObject()))
+      {
+        leaves.push_back(leaf);
+      }
+    }
+  }
+  return leaves;
+}
+
+vtkSmartPointer<vtkDataObject> Copy(vtkDataObject* data)
+{
+  const auto copy = vtkSmartPointer<vtkDataObject>::Take(data->NewInstance());
+  copy->DeepCopy(data);
+  return copy;
+}
+
+bool IsFinite(vtkDataArray* array)
+{
+  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
+  {
+    for (int component = 0; component < array->GetNumberOfComponents(); ++component)
+    {
+      if (!(std::abs(array->GetComponent(i, component)) < 1e6))
+      {
+        return false;
+      }
+    }
+  }
+  return array != nullptr;
+}
+
+void AbortLater(vtkObject* caller, unsigned long, void* left, void*)
+{
+  if (--*static_cast<int*>(left) <= 0)
+  {
+    static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+  }
+}
+
+} // namespace
+
+Pipeline::Pipeline(std::uint64_t seed, std::ostream& log)
+  : Random(seed)
+  , Log(log)
+  , Geometry(Random.Chance(0.3) ? fuzz::Geometry::Exact : fuzz::Geometry::Any)
+{
+  this->Volume = MakeVolume(this->Random, this->Geometry, log);
+  for (int edits = this->Random.Chance(0.6) ? this->Random.Int(1, 4) : 0; edits > 0; --edits)
+  {
+    EditSettings(this->Settings, this->Volume, this->Random, this->Geometry, log);
+  }
+  this->MakeDeformation();
+  this->VolumeInParts = this->Random.Chance(0.15);
+  this->Parts->Volume = this->Volume;
+  log << (this->VolumeInParts ? "volume from a source of parts\n" : "");
+  this->Connect(this->Tested, false);
+  Apply(this->Settings, this->Tested.GetFilter());
+}
+
+void Pipeline::MakeDeformation()
+{
+  this->Rest = nullptr;
+  this->VariesInTime = false;
+  const bool exact = this->Geometry == fuzz::Geometry::Exact;
+  if (this->Random.Chance(exact ? 0.6 : 0.2))
+  {
+    this->Deformation = MakeField(this->Volume, this->Random, this->Geometry, this->Log);
+    return;
+  }
+  const int* dimensions = this->Volume->GetDimensions();
+  const bool simple = this->Volume->GetNumberOfPoints() < 3000 &&
+    *std::min_element(dimensions, dimensions + 3) > 1 && this->Volume->GetSpacing()[1] != 0.0 &&
+    std::isfinite(this->Volume->GetOrigin()[1]);
+  vtkSmartPointer<vtkUnstructuredGrid> mesh =
+    exact && simple ? MakeVoxelMesh(this->Volume) : MakeMesh(this->Volume, this->Random, this->Log);
+  SetDisplacements(mesh, this->Volume, this->Random, this->Geometry, this->Log);
+  this->Deformation = mesh;
+  if (exact)
+  {
+    return;
+  }
+  if (this->Random.Chance(0.1))
+  {
+    this->Deformation = MakeBlocks(mesh, this->Random);
+    this->Log << "in blocks\n";
+  }
+  else if (this->Random.Chance(0.12))
+  {
+    this->VariesInTime = true;
+    this->Times->Steps = { mesh };
+    for (int steps = this->Random.Int(1, 3); steps > 0; --steps)
+    {
+      const auto step = vtkSmartPointer<vtkUnstructuredGrid>::New();
+      step->ShallowCopy(mesh);
+      SetDisplacements(step, this->Volume, this->Random, this->Geometry, this->Log);
+      this->Times->Steps.push_back(step);
+    }
+    this->Times->Modified();
+    this->Time = this->Random.Int(0, 3);
+    this->Log << "in time\n";
+  }
+  if (!this->VariesInTime && this->Random.Chance(0.15))
+  {
+    this->MakeRest();
+  }
+}
+
+// What deforms becomes the rest configuration, and a copy with moved points deforms.
+void Pipeline::MakeRest()
+{
+  this->Rest = Copy(this->Deformation);
+  for (vtkDataSet* leaf : GetLeaves(this->Deformation))
+  {
+    auto* mesh = vtkUnstructuredGrid::SafeDownCast(leaf);
+    vtkDataArray* vectors = leaf->GetPointData()->GetArray(DISPLACEMENTS);
+    if (!mesh || !mesh->GetPoints() || !IsFinite(vectors) ||
+      vectors->GetNumberOfTuples() != mesh->GetNumberOfPoints())
+    {
+      continue;
+    }
+    for (vtkIdType point = 0; point < mesh->GetNumberOfPoints(); ++point)
+    {
+      double place[3];
+      mesh->GetPoint(point, place);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        place[axis] += vectors->GetComponent(point, axis);
+      }
+      mesh->GetPoints()->SetPoint(point, place);
+    }
+    mesh->GetPoints()->Modified();
+  }
+  this->Log << "with a rest configuration\n";
+}
+
+void Pipeline::Connect(Subject& subject, bool copies)
+{
+  vtkDeformVolumeFilter* filter = subject.GetFilter();
+  const auto give = [&](int port, vtkDataObject* data)
+  {
+    if (data && copies)
+    {
+      filter->SetInputDataObject(port, Copy(data));
+    }
+    else if (filter->GetInputDataObject(port, 0) != data)
+    {
+      filter->SetInputDataObject(port, data);
+    }
+  };
+  if (this->VolumeInParts && !copies)
+  {
+    filter->SetInputConnection(0, this->Parts->GetOutputPort());
+  }
+  else
+  {
+    give(0, this->Volume);
+  }
+  if (this->VariesInTime)
+  {
+    filter->SetInputConnection(1, this->Times->GetOutputPort());
+  }
+  else
+  {
+    give(1, this->Deformation);
+  }
+  if (this->Rest)
+  {
+    give(2, this->Rest);
+  }
+  else
+  {
+    filter->SetInputConnection(2, nullptr);
+  }
+}
+
+std::vector<vtkDataSet*> Pipeline::GetDeformed() const
+{
+  if (!this->VariesInTime)
+  {
+    return GetLeaves(this->Deformation);
+  }
+  std::vector<vtkDataSet*> steps;
+  for (const auto& step : this->Times->Steps)
+  {
+    steps.push_back(step);
+  }
+  return steps;
+}
+
+void Pipeline::TouchSources()
+{
+  this->Parts->Volume = this->Volume;
+  this->Parts->Modified();
+  this->Times->Modified();
+  // The time of a composite dataset does not tell of its blocks.
+  for (vtkDataObject* data : { this->Deformation.Get(), this->Rest.Get() })
+  {
+    if (vtkCompositeDataSet::SafeDownCast(data))
+    {
+      data->Modified();
+    }
+  }
+}
+
+void Pipeline::EditDeformation()
+{
+  const std::vector<vtkDataSet*> leaves = this->GetDeformed();
+  vtkDataSet* leaf = leaves.empty() ? nullptr : this->Random.Pick(leaves);
+  auto* mesh = vtkUnstructuredGrid::SafeDownCast(leaf);
+  const bool any = this->Geometry == fuzz::Geometry::Any;
+  const int kind = this->Random.Int(0, 9);
+  if (!leaf || kind == 0)
+  {
+    this->MakeDeformation();
+  }
+  else if (kind == 1 && any && mesh)
+  {
+    EditCells(mesh, this->Random, this->Log);
+  }
+  else if (kind == 2 && any && mesh && !this->VariesInTime)
+  {
+    if (this->Rest)
+    {
+      this->Deformation = this->Rest;
+      this->Rest = nullptr;
+      this->Log << "no rest configuration\n";
+    }
+    else
+    {
+      this->MakeRest();
+    }
+  }
+  else if (kind == 3 && !this->VariesInTime)
+  {
+    this->Deformation = Copy(this->Deformation);
+    this->Log << "an equal deformation\n";
+  }
+  else if (mesh && this->Rest)
+  {
+    EditCells(mesh, this->Random, this->Log);
+  }
+  else
+  {
+    EditDisplacements(leaf, this->Volume, this->Random, this->Geometry, this->Log);
+  }
+}
+
+void Pipeline::Edit()
+{
+  const int kind = this->Random.Int(0, 19);
+  if (kind < 10)
+  {
+    this->EditDeformation();
+  }
+  else if (kind < 13)
+  {
+    EditVolume(this->Volume, this->Random, this->Geometry, this->Log);
+  }
+  else if (kind < 17)
+  {
+    EditSettings(this->Settings, this->Volume, this->Random, this->Geometry, this->Log);
+  }
+  else if (kind == 17)
+  {
+    this->Abort();
+  }
+  else if (kind == 18)
+  {
+    this->Log << "device memory released\n";
+    this->Tested.GetFilter()->ReleaseDeviceMemory();
+  }
+  else
+  {
+    this->Volume = MakeVolume(this->Random, this->Geometry, this->Log);
+    this->MakeDeformation();
+  }
+  this->Time = this->Random.Int(0, 3);
+  this->TouchSources();
+  this->Connect(this->Tested, false);
+  Apply(this->Settings, this->Tested.GetFilter());
+}
+
+void Pipeline::Abort()
+{
+  this->EditDeformation();
+  this->TouchSources();
+  this->Connect(this->Tested, false);
+  int left = this->Random.Int(1, 6);
+  this->Log << "aborted at progress event " << left << '\n';
+  vtkNew<vtkCallbackCommand> callback;
+  callback->SetCallback(AbortLater);
+  callback->SetClientData(&left);
+  vtkDeformVolumeFilter* filter = this->Tested.GetFilter();
+  const unsigned long observer = filter->AddObserver(vtkCommand::ProgressEvent, callback);
+  const Outcome outcome = this->Tested.Update(nullptr, this->VariesInTime ? &this->Time : nullptr);
+  filter->RemoveObserver(observer);
+  filter->SetAbortExecute(0);
+  if (!outcome.Errors.empty())
+  {
+    this->LastMessage = outcome.Errors.back();
+  }
+}
+
+std::string Pipeline::Run()
+{
+  std::string wrong = this->Check();
+  for (int edits = this->Random.Int(0, 6); edits > 0 && wrong.empty(); --edits)
+  {
+    this->Edit();
+    wrong = this->Check();
+  }
+  return wrong;
+}
+
+} // namespace fuzz

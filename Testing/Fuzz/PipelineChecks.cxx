@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an update of a pipeline must end in.
+#include "Pipeline.h"
+
+#include "Comparison.h"
+
+#include <vtkPointData.h>
+
+#include <algorithm>
+
+namespace fuzz
+{
+
+std::string Pipeline::CheckError(const Outcome& tested, const Outcome& fresh)
+{
+  ++this->Errors;
+  if (fresh.Errors.size() != 1 || fresh.Errors[0].size() < 20)
+  {
+    return "a fresh filter has " + std::to_string(fresh.Errors.size()) + " errors, the last \"" +
+      (fresh.Errors.empty() ? "" : fresh.Errors.back()) + "\", the edited one " +
+      (tested.Errors.empty() ? "none" : tested.Errors.back());
+  }
+  // What has been said is not said again while it stays so.
+  if (tested.Errors != fresh.Errors &&
+    !(tested.Errors.empty() && this->LastMessage == fresh.Errors[0]))
+  {
+    return std::to_string(tested.Errors.size()) + " errors, the last \"" +
+      (tested.Errors.empty() ? "" : tested.Errors.back()) + "\", but of a fresh filter \"" +
+      fresh.Errors[0] + "\"";
+  }
+  this->LastMessage = fresh.Errors[0];
+  this->Log << "  error: " << this->LastMessage << '\n';
+  for (const Outcome* outcome : { &tested, &fresh })
+  {
+    if (outcome->Output->GetNumberOfPoints() != 0 ||
+      outcome->Output->GetPointData()->GetNumberOfArrays() != 0)
+    {
+      return "an error and an output";
+    }
+  }
+  return "";
+}
+
+std::string Pipeline::CheckOutput(const Outcome& tested, const Outcome& fresh, bool divided)
+{
+  ++this->Outputs;
+  this->LastMessage.clear();
+  if (tested.Resampler != fresh.Resampler)
+  {
+    return "resampler " + std::to_string(tested.Resampler) + " instead of " +
+      std::to_string(fresh.Resampler);
+  }
+  if (fresh.Resampler == vtkDeformVolumeFilter::PUBLISHED)
+  {
+    return "";
+  }
+  if (!divided &&
+    !std::equal(
+      tested.Output->GetExtent(), tested.Output->GetExtent() + 6, fresh.Output->GetExtent()))
+  {
+    return "another extent";
+  }
+  const bool whole = tested.Output->GetNumberOfPoints() == fresh.Output->GetNumberOfPoints();
+  if (whole &&
+    (tested.Covered != fresh.Covered || tested.Inverted != fresh.Inverted ||
+      tested.Flat != fresh.Flat))
+  {
+    return "counts of covered, inverted and flat " + std::to_string(tested.Covered) + ' ' +
+      std::to_string(tested.Inverted) + ' ' + std::to_string(tested.Flat) + " instead of " +
+      std::to_string(fresh.Covered) + ' ' + std::to_string(fresh.Inverted) + ' ' +
+      std::to_string(fresh.Flat);
+  }
+  std::string wrong = CompareBits(tested.Output, fresh.Output);
+  if (wrong.empty() && fresh.Output->GetNumberOfPoints() > 0)
+  {
+    wrong = CheckValues(fresh.Output, this->Volume, this->Settings);
+  }
+  if (wrong.empty() && this->Geometry == fuzz::Geometry::Exact && !this->Rest &&
+    fresh.Resampler == vtkDeformVolumeFilter::EXACT && fresh.Output->GetNumberOfPoints() > 0)
+  {
+    ++this->References;
+    wrong = CompareWithReference(fresh.Output, this->Volume,
+      vtkDataSet::SafeDownCast(this->Deformation), this->Settings, fresh.Inverted);
+  }
+  return wrong;
+}
+
+std::string Pipeline::Check()
+{
+  const double* time = this->VariesInTime ? &this->Time : nullptr;
+  Subject other;
+  fuzz::Settings settings = this->Settings;
+  settings.Incremental = settings.Incremental && this->Random.Chance(0.5);
+  Apply(settings, other.GetFilter());
+  // Where a part of the volume is read, a mesh beside it is no error.
+  const bool streamed = this->VolumeInParts && this->Settings.StreamInput;
+  this->Connect(other, this->Random.Chance(0.3) && !streamed);
+  const Outcome fresh = other.Update(nullptr, time);
+
+  // All of the output or a part of it; someone may hold the last one.
+  vtkNew<vtkImageData> held;
+  vtkNew<vtkImageData> before;
+  if (this->Random.Chance(0.3))
+  {
+    held->ShallowCopy(this->Tested.GetFilter()->GetOutput());
+    before->DeepCopy(held);
+  }
+  int part[6];
+  fresh.Output->GetExtent(part);
+  const bool divided = fresh.Output->GetNumberOfPoints() > 0 && this->Random.Chance(0.15);
+  for (int axis = 0; axis < 3 && divided; ++axis)
+  {
+    part[2 * axis] = this->Random.Int(part[2 * axis], part[2 * axis + 1]);
+    part[2 * axis + 1] = this->Random.Int(part[2 * axis], part[2 * axis + 1]);
+  }
+  this->Log << "update" << (divided ? " of a part" : "") << '\n';
+  const Outcome tested = this->Tested.Update(divided ? part : nullptr, time);
+  if (held->GetNumberOfPoints() > 0 && !CompareBits(held, before).empty())
+  {
+    return "an output that is held has changed";
+  }
+  return fresh.Errors.empty() && tested.Errors.empty() ? this->CheckOutput(tested, fresh, divided)
+                                                       : this->CheckError(tested, fresh);
+}
+
+} // namespace fuzz

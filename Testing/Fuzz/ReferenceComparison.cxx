@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Comparison.h"
+
+#include "RandomDisplacements.h"
+#include "Reference.h"
+
+#include <vtkAOSDataArrayTemplate.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace fuzz
+{
+
+namespace
+{
+
+// The reference is slow.
+constexpr vtkIdType LARGEST_VOLUME = 1500;
+constexpr vtkIdType LARGEST_OUTPUT = 60000;
+
+vtkUnsignedCharArray* GetMask(vtkDataSetAttributes* attributes, const char* name)
+{
+  return vtkUnsignedCharArray::SafeDownCast(attributes->GetAbstractArray(name));
+}
+
+// The factor from an index of the volume to one of the output.
+std::array<double, 3> GetScale(vtkImageData* output, vtkImageData* volume)
+{
+  std::array<double, 3> scale;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    scale[axis] = volume->GetSpacing()[axis] / output->GetSpacing()[axis];
+  }
+  return scale;
+}
+
+// The deformed positions of the voxels; false where they are not exact.
+bool FindPositions(vtkImageData* output, vtkImageData* volume, vtkDataSet* deformation,
+  double factor, reference::SamplingMesh& mesh)
+{
+  vtkDataArray* vectors = deformation->GetPointData()->GetArray(DISPLACEMENTS);
+  if (!vectors || deformation->GetNumberOfPoints() != volume->GetNumberOfPoints())
+  {
+    return false;
+  }
+  const std::array<double, 3> scale = GetScale(output, volume);
+  for (vtkIdType point = 0; point < volume->GetNumberOfPoints(); ++point)
+  {
+    double rest[3];
+    double node[3];
+    volume->GetPoint(point, rest);
+    deformation->GetPoint(point, node);
+    reference::Position position;
+    const std::int64_t size[3] = { reference::GetSize(mesh.Voxels, 0),
+      reference::GetSize(mesh.Voxels, 1), reference::GetSize(mesh.Voxels, 2) };
+    const std::int64_t place[3] = { point % size[0], point / size[0] % size[1],
+      point / (size[0] * size[1]) };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double index = static_cast<double>(mesh.Voxels[2 * axis] + place[axis]);
+      const double moved = factor * vectors->GetComponent(point, axis);
+      const double exact = 256.0 * (index * scale[axis] + moved / output->GetSpacing()[axis]);
+      if (node[axis] != rest[axis] || exact != std::nearbyint(exact) || std::abs(exact) > 1e9)
+      {
+        return false;
+      }
+      position[axis] = static_cast<std::int64_t>(exact);
+    }
+    mesh.Positions.push_back(position);
+  }
+  return true;
+}
+
+void FindMasks(vtkImageData* volume, reference::SamplingMesh& mesh)
+{
+  const char* const ghosts = vtkDataSetAttributes::GhostArrayName();
+  mesh.Present.assign(static_cast<std::size_t>(volume->GetNumberOfPoints()), true);
+  if (vtkUnsignedCharArray* points = GetMask(volume->GetPointData(), ghosts))
+  {
+    for (vtkIdType point = 0; point < volume->GetNumberOfPoints(); ++point)
+    {
+      mesh.Present[static_cast<std::size_t>(point)] =
+        (points->GetValue(point) &
+          (vtkDataSetAttributes::HIDDENPOINT | vtkDataSetAttributes::DUPLICATEPOINT)) == 0;
+    }
+  }
+  mesh.Active.assign(static_cast<std::size_t>(volume->GetNumberOfCells()), 31);
+  vtkUnsignedCharArray* active = GetMask(volume->GetCellData(), "ActiveTetrahedra");
+  vtkUnsignedCharArray* hidden = GetMask(volume->GetCellData(), ghosts);
+  for (vtkIdType cell = 0; cell < volume->GetNumberOfCells(); ++cell)
+  {
+    unsigned char& bits = mesh.Active[static_cast<std::size_t>(cell)];
+    bits = active ? active->GetValue(cell) & 31 : bits;
+    bits = hidden && (hidden->GetValue(cell) & vtkDataSetAttributes::HIDDENCELL) ? 0 : bits;
+  }
+}
+
+template <typename T>
+bool IsRight(const reference::Containing& winner, const T* input, int components, int component,
+  T value, bool categorical, long double slack)
+{
+  const std::int64_t exact = categorical ? winner.GetNearestVertex() : winner.GetSingleVertex();
+  if (exact >= 0)
+  {
+    return std::memcmp(&input[exact * components + component], &value, sizeof(T)) == 0;
+  }
+  const long double expected = winner.Interpolate(input, components, component);
+  const long double magnitude = winner.Magnitude(input, components, component);
+  if (!std::isfinite(expected) || !std::isfinite(magnitude))
+  {
+    return std::isnan(expected) ? value != value : static_cast<long double>(value) == expected;
+  }
+  // Half a unit of the result, and what summing in double precision costs.
+  long double tolerance = std::numeric_limits<double>::epsilon() * 8.0L * magnitude + slack;
+  tolerance += std::is_integral<T>::value
+    ? 0.5L
+    : std::numeric_limits<T>::epsilon() * std::fabs(expected) * 0.51L +
+      static_cast<long double>(std::numeric_limits<T>::denorm_min());
+  return std::fabs(static_cast<long double>(value) - expected) <= tolerance;
+}
+
+// All tetrahedra that contain a voxel, the one that writes it first.
+template <typename T>
+std::string Describe(const std::vector<reference::Containing>& candidates, const T* input,
+  int components, int component)
+{
+  std::ostringstream text;
+  for (const reference::Containing& one : candidates)
+  {
+    text << (text.tellp() > 0 ? "; " : " ") << one.Interpolate(input, components, component)
+         << " of tetrahedron " << one.Tetrahedron << " of cell " << one.Cell
+         << (one.Inverted ? ", inverted" : "") << (one.Generic ? ", generic" : "");
+    for (int k = 0; k < 4; ++k)
+    {
+      text << (k == 0 ? ", weights " : " ") << one.Numerators[k] << " of voxel " << one.Vertices[k];
+    }
+  }
+  return text.str();
+}
+
+// The tetrahedra that may write a voxel. Of those that overlap, upright ones win and then the
+// lowest cell; which tetrahedron of that cell is left open, and so is which one of those that share
+// the vertex, edge or face on which the voxel lies.
+std::vector<const reference::Containing*> FindWinners(
+  const std::vector<reference::Containing>& candidates)
+{
+  const reference::Containing& first = candidates.front();
+  std::set<std::pair<std::int64_t, bool>> cells;
+  for (const reference::Containing& one : candidates)
+  {
+    if (one.SharesSimplex(first))
+    {
+      cells.emplace(one.Cell, one.Inverted);
+    }
+  }
+  std::vector<const reference::Containing*> winners;
+  for (const reference::Containing& one : candidates)
+  {
+    if (cells.count({ one.Cell, one.Inverted }) > 0)
+    {
+      winners.push_back(&one);
+    }
+  }
+  return winners;
+}
+
+template <typename T>
+std::string CompareArray(
+  const reference::Result& result, vtkDataArray* source, vtkDataArray* array, bool categorical)
+{
+  // The values in one piece, whatever the layout.
+  vtkNew<vtkAOSDataArrayTemplate<T>> copy;
+  copy->DeepCopy(source);
+  const T* input = copy->GetPointer(0);
+  const auto* output = static_cast<const T*>(array->GetVoidPointer(0));
+  const int components = source->GetNumberOfComponents();
+  // The kernel for processors interpolates these in single precision.
+  long double slack = 0.0L;
+  if (components == 1 && !categorical && (std::is_same<T, float>::value || sizeof(T) <= 2))
+  {
+    for (vtkIdType id = 0; id < source->GetNumberOfTuples(); ++id)
+    {
+      const auto value = std::fabs(static_cast<long double>(input[id]));
+      slack = std::isfinite(value) ? std::max(slack, 1e-5L * value) : slack;
+    }
+  }
+  for (std::size_t voxel = 0; voxel < result.Voxels.size(); ++voxel)
+  {
+    if (result.Voxels[voxel].empty())
+    {
+      continue;
+    }
+    const auto winners = FindWinners(result.Voxels[voxel]);
+    for (int component = 0; component < components; ++component)
+    {
+      const T value = output[voxel * static_cast<std::size_t>(components) + component];
+      if (std::none_of(winners.begin(), winners.end(),
+            [&](const reference::Containing* winner)
+            { return IsRight(*winner, input, components, component, value, categorical, slack); }))
+      {
+        return std::string("array ") + source->GetName() + " is " + std::to_string(value) +
+          " at point " + std::to_string(voxel) + " where the reference has" +
+          Describe(result.Voxels[voxel], input, components, component);
+      }
+    }
+  }
+  return "";
+}
+
+std::string CompareArrays(const reference::Result& result, vtkImageData* output,
+  vtkImageData* volume, const Settings& settings)
+{
+  vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
+  for (std::size_t voxel = 0; voxel < result.Voxels.size(); ++voxel)
+  {
+    const bool covered = mask->GetComponent(static_cast<vtkIdType>(voxel), 0) != 0.0;
+    if (covered == result.Voxels[voxel].empty())
+    {
+      return "point " + std::to_string(voxel) + (covered ? " is covered" : " is not covered") +
+        ", other than by the reference";
+    }
+  }
+  std::string message;
+  for (int i = 0; i < output->GetPointData()->GetNumberOfArrays() && message.empty(); ++i)
+  {
+    vtkDataArray* array = output->GetPointData()->GetArray(i);
+    vtkDataArray* source = volume->GetPointData()->GetArray(array->GetName());
+    if (array == mask || !source)
+    {
+      continue;
+    }
+    const bool categorical = settings.CategoricalArrays.count(array->GetName()) > 0;
+    switch (array->GetDataType())
+    {
+      vtkTemplateMacro(message = CompareArray<VTK_TT>(result, source, array, categorical));
+      default:
+        break;
+    }
+  }
+  return message;
+}
+
+} // namespace
+
+std::string CompareWithReference(vtkImageData* output, vtkImageData* volume,
+  vtkDataSet* deformation, const Settings& settings, vtkIdType inverted)
+{
+  if (volume->GetNumberOfPoints() > LARGEST_VOLUME || output->GetNumberOfPoints() > LARGEST_OUTPUT)
+  {
+    return "";
+  }
+  reference::SamplingMesh mesh;
+  reference::Box box;
+  volume->GetExtent(mesh.Voxels.data());
+  output->GetExtent(box.data());
+  if (!FindPositions(output, volume, deformation, settings.DisplacementScale, mesh))
+  {
+    return "";
+  }
+  FindMasks(volume, mesh);
+  reference::Result result;
+  try
+  {
+    result = reference::Resample(mesh, box);
+  }
+  catch (const std::range_error&)
+  {
+    return "";
+  }
+  if (result.NumberOfInvertedTetrahedra != inverted)
+  {
+    return std::to_string(inverted) + " inverted tetrahedra where the reference has " +
+      std::to_string(result.NumberOfInvertedTetrahedra);
+  }
+  return CompareArrays(result, output, volume, settings);
+}
+
+} // namespace fuzz

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The properties of vtkDeformVolumeFilter, all of them, as one value.
+#ifndef Fuzz_Settings_h
+#define Fuzz_Settings_h
+
+#include "Random.h"
+#include "RandomVolume.h"
+
+#include "vtkDeformVolumeFilter.h"
+
+#include <array>
+#include <ostream>
+#include <set>
+#include <string>
+
+namespace fuzz
+{
+
+struct Settings
+{
+  double DisplacementScale = 1.0;
+  int OutputBoundsMode = vtkDeformVolumeFilter::DEFORMED_BOUNDS;
+  std::array<double, 6> CustomBounds{ { -1.0, 1.0, -1.0, 1.0, -1.0, 1.0 } };
+  int Padding = 0;
+  int OutputSpacingMode = vtkDeformVolumeFilter::VOLUME_SPACING;
+  std::array<double, 3> CustomSpacing{ { 1.0, 1.0, 1.0 } };
+  double BackgroundValue = 0.0;
+  int OutsideMode = vtkDeformVolumeFilter::DISCARD;
+  std::set<std::string> CategoricalArrays{ "label" };
+  int Resampler = vtkDeformVolumeFilter::AUTOMATIC;
+  int Interpolation = vtkDeformVolumeFilter::LINEAR_INTERPOLATION;
+  bool Incremental = true;
+  bool StreamInput = false;
+  std::string Device;
+  vtkTypeInt64 MemoryLimit = 0;
+  int WorkGroupSize = 0;
+  /// The name of the displacements; "" stands for what the filter takes by itself.
+  std::string Displacements;
+};
+
+/// Changes one property or a few that belong together.
+void EditSettings(
+  Settings& settings, vtkImageData* volume, Random& random, Geometry geometry, std::ostream& log);
+
+void Apply(const Settings& settings, vtkDeformVolumeFilter* filter);
+
+} // namespace fuzz
+
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stands between the kernels and the OpenCL driver of a test program: has calls fail, and the
+// device appear to be another one than it is. Programs that link it take its functions in place of
+// those of the OpenCL library, which these call.
+#ifndef FakeDriver_h
+#define FakeDriver_h
+
+#include <cstddef>
+#include <cstdint>
+
+struct FakeDriver
+{
+  /// Copies from the device that the host does not wait for fail, unless 0: with this error.
+  int ReadError = 0;
+  /// The device is a graphics card, and has no double precision. Contexts live as long as the
+  /// process: these are set before the first one.
+  bool IsGraphics = false;
+  bool HasDouble = true;
+  /// Bytes that the device has, 0: as it is.
+  std::uint64_t GlobalMemory = 0;
+  std::uint64_t LocalMemory = 0;
+  /// Launches of more than one work-item that left the size of the groups to the driver.
+  int LaunchesWithoutGroup = 0;
+
+  static FakeDriver& Get();
+};
+
+#endif

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is compiled, what the compiler says to it, and that its time is told apart from that of the
+// kernels.
+#include "CompilationWatch.h"
+#include "DeformerCase.h"
+#include "Device.h"
+#include "KernelProgram.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+
+using namespace deformvolume;
+
+namespace
+{
+
+/// What was compiled before neither takes time nor makes the compiler speak: this process begins
+/// with nothing.
+class EmptyCaches : public testing::Environment
+{
+public:
+  void SetUp() override
+  {
+    this->Directory = testing::TempDir() + "empty-caches-XXXXXX";
+    ASSERT_TRUE(mkdtemp(this->Directory.data()));
+    setenv("POCL_CACHE_DIR", (this->Directory + "/pocl").c_str(), 1);
+    setenv("DEFORMVOLUME_CACHE_DIR", (this->Directory + "/programs").c_str(), 1);
+    setenv("MESA_SHADER_CACHE_DIR", (this->Directory + "/mesa").c_str(), 1);
+  }
+  void TearDown() override
+  {
+    std::error_code error;
+    std::filesystem::remove_all(this->Directory, error);
+  }
+
+private:
+  std::string Directory;
+};
+
+const auto* const Caches = testing::AddGlobalTestEnvironment(new EmptyCaches);
+
+bool IsDevice(const char* part)
+{
+  return ResolveDevice("").find(part) != std::string::npos;
+}
+
+OpenCLContext& GetContext()
+{
+  return OpenCLContext::Get(FindDevice(""));
+}
+
+/// What the compiler says of a program.
+std::string GetLog(const cl::Program& program)
+{
+  return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(GetContext().GetDevice().Device);
+}
+
+std::vector<VolumeArray> MakeArrays(const std::vector<ElementType>& types, bool categorical)
+{
+  std::vector<VolumeArray> arrays;
+  for (const ElementType type : types)
+  {
+    VolumeArray array;
+    array.Type = type;
+    array.Categorical = categorical;
+    if (type != ElementType::Float64 || HasDouble(GetContext()))
+    {
+      arrays.push_back(array);
+    }
+  }
+  return arrays;
+}
+
+std::vector<ElementType> GetAllTypes()
+{
+  std::vector<ElementType> types;
+#define ADD(name, type, cl) types.push_back(ElementType::name);
+  DEFORMVOLUME_ELEMENT_TYPES(ADD)
+#undef ADD
+  return types;
+}
+
+struct Compiled
+{
+  DeformReport Report;
+  double Seconds; // all in all
+  std::vector<bool> Calls;
+};
+
+Compiled Deform(VolumeDeformer& deformer, const DeformerCase& deformerCase, Resampling method)
+{
+  std::vector<float> output(static_cast<std::size_t>(GetNumberOfPoints(deformerCase.Output)));
+  std::vector<signed char> coverage(output.size());
+  Compiled compiled;
+  DeformRequest request;
+  request.Method = method;
+  request.OutputExtent = deformerCase.Output;
+  request.Outputs = { output.data() };
+  request.Coverage = coverage.data();
+  request.Compiling = [&](bool begins) { compiled.Calls.push_back(begins); };
+  const auto begin = std::chrono::steady_clock::now();
+  compiled.Report = deformer.Deform(request);
+  compiled.Seconds =
+    std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return compiled;
+}
+
+} // namespace
+
+// First, while nothing is compiled.
+TEST(Compilation, HasItsOwnTime)
+{
+  if (IsEmulated(FindDevice("").Description))
+  {
+    GTEST_SKIP() << "an emulated device works as slowly as it compiles";
+  }
+  const DeformerCase deformerCase =
+    MakeCase({ { 0, 15, 0, 15, 0, 15 } }, { { 1, 1, 1 } }, MakeJitter(1, 0.15));
+  const std::vector<float> values(static_cast<std::size_t>(deformerCase.GetNumberOfVoxels()), 1.0F);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  for (const Resampling method : { Resampling::Exact, Resampling::Published })
+  {
+    SCOPED_TRACE(static_cast<int>(method));
+    VolumeDeformer deformer;
+    Load(deformer, deformerCase, arrays, Route::Field);
+    const Compiled first = Deform(deformer, deformerCase, method);
+    const Compiled second = Deform(deformer, deformerCase, method);
+    // What is left over is the work of some thousand voxels.
+    const double work = first.Report.MappingTime + first.Report.ResamplingTime;
+    EXPECT_GT(first.Report.CompilationTime, 0.5 * first.Seconds);
+    EXPECT_LE(first.Report.CompilationTime + work, first.Seconds);
+    EXPECT_LT(work, 0.3 * first.Seconds);
+    EXPECT_GE(first.Calls.size(), 2U);
+    for (std::size_t i = 0; i < first.Calls.size(); ++i)
+    {
+      EXPECT_EQ(first.Calls[i], i % 2 == 0) << "an end for each begin";
+    }
+    EXPECT_EQ(second.Report.CompilationTime, 0.0);
+    EXPECT_TRUE(second.Calls.empty());
+  }
+}
+
+TEST(Compilation, WatchesAreOfTheirThread)
+{
+  EXPECT_EQ(CompilationWatch::GetCurrentSeconds(), 0.0);
+  {
+    const CompilationWatch::Compilation nobodyWatches;
+  }
+  const CompilationWatch outer(nullptr);
+  {
+    const CompilationWatch inner(nullptr);
+    CompilationWatch::Compilation compilation;
+    compilation.Exclude(1000.0);
+  }
+  EXPECT_EQ(outer.GetSeconds(), 0.0);
+  EXPECT_EQ(CompilationWatch::GetCurrentSeconds(), 0.0);
+}
+
+// PoCL writes "1 warning generated." to the terminal of the user, who can do nothing about it.
+TEST(Compilation, NoWarnings)
+{
+  if (!IsDevice("Portable Computing Language"))
+  {
+    GTEST_SKIP() << "other drivers say nothing on the terminal";
+  }
+  OpenCLContext& context = GetContext();
+  const std::vector<VolumeArray> linear = MakeArrays(GetAllTypes(), false);
+  const std::vector<VolumeArray> labels = MakeArrays(GetAllTypes(), true);
+  const std::vector<VolumeArray> one = MakeArrays({ ElementType::Int16 }, false);
+  Lattice lattice;
+  lattice.VertexExtent = { { 0, 9, 0, 9, 0, 9 } };
+  for (const MappingForm form : { MappingForm::Links, MappingForm::Runs, MappingForm::Field })
+  {
+    SCOPED_TRACE(static_cast<int>(form));
+    EXPECT_EQ(GetLog(GetMappingProgram(context, form)), "");
+    EXPECT_EQ(GetLog(GetResamplingProgram(context, form, one, false, true)), "");
+  }
+  for (const bool wide : { false, true })
+  {
+    EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, linear, wide, true)), "");
+    EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, linear, wide, false)), "");
+  }
+  EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, labels, false, true)), "");
+  EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, labels, false, false)), "");
+  EXPECT_EQ(GetLog(GetOutputProgram(context)), "");
+  EXPECT_EQ(GetLog(GetPublishedProgram(context, linear)), "");
+  EXPECT_EQ(GetLog(GetBinningProgram(context)), "");
+  for (const Interpolation interpolation : { Interpolation::Linear, Interpolation::Cubic })
+  {
+    EXPECT_EQ(GetLog(GetRasterizationProgram(context, linear, lattice, interpolation, false)), "");
+  }
+}
+
+// A device for graphics has no use for lanes, and a processor none for cells.
+TEST(Compilation, KernelsThatAreNotUsedAreNotCompiled)
+{
+  OpenCLContext& context = GetContext();
+  const std::vector<VolumeArray> arrays = MakeArrays({ ElementType::Int16 }, false);
+  for (const bool lanes : { false, true })
+  {
+    const std::string names =
+      GetResamplingProgram(context, MappingForm::Field, arrays, false, lanes)
+        .getInfo<CL_PROGRAM_KERNEL_NAMES>();
+    EXPECT_EQ(std::string(names.c_str()), lanes ? "ResampleBricks" : "Resample");
+  }
+}

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which of several devices is the best.
+#include "Device.h"
+#include "DeviceRank.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+using namespace deformvolume;
+using Kind = DeviceDescription::Kind;
+
+namespace
+{
+
+DeviceDescription Make(Kind kind, const char* name, const char* platform, bool shares,
+  bool hasDouble, unsigned int units)
+{
+  DeviceDescription device;
+  device.Type = kind;
+  device.Name = name;
+  device.Platform = platform;
+  device.SharesMemory = shares;
+  device.HasDouble = hasDouble;
+  device.ComputeUnits = units;
+  return device;
+}
+
+// As drivers describe them, from the best to the worst.
+const std::vector<DeviceDescription> Ranked{
+  Make(Kind::Graphics, "NVIDIA H100", "NVIDIA CUDA", false, true, 132),
+  Make(Kind::Graphics, "NVIDIA GeForce", "Portable Computing Language", false, true, 20),
+  Make(Kind::Graphics, "Intel(R) Arc(TM)", "Intel(R) OpenCL Graphics", false, false, 512),
+  Make(Kind::Other, "FPGA", "Accelerators", false, true, 1),
+  Make(Kind::Processor, "cpu-haswell", "Portable Computing Language", true, true, 8),
+  Make(Kind::Processor, "Intel(R) Xeon(R)", "Intel(R) OpenCL", true, true, 2),
+  Make(Kind::Graphics, "Intel(R) UHD Graphics", "Intel(R) OpenCL Graphics", true, true, 24),
+  Make(Kind::Graphics, "Intel(R) Iris(R) Xe", "Intel(R) OpenCL Graphics", true, false, 96),
+  Make(Kind::Graphics, "Oclgrind Simulator", "Oclgrind", true, true, 1),
+  Make(Kind::Graphics, "llvmpipe (LLVM 19.1.7, 256 bits)", "rusticl", true, false, 64),
+  Make(Kind::Processor, "llvmpipe (LLVM 21.1.8, 256 bits)", "rusticl", true, false, 8),
+};
+
+} // namespace
+
+TEST(DeviceRank, Order)
+{
+  for (std::size_t i = 0; i < Ranked.size(); ++i)
+  {
+    for (std::size_t j = 0; j < Ranked.size(); ++j)
+    {
+      EXPECT_EQ(IsBetter(Ranked[i], Ranked[j]), i < j)
+        << Ranked[i].Name << " and " << Ranked[j].Name;
+    }
+  }
+}
+
+// Whatever type and memory the driver states for it.
+TEST(DeviceRank, Emulated)
+{
+  const DeviceDescription processor =
+    Make(Kind::Processor, "cpu-haswell", "Portable Computing Language", true, true, 1);
+  EXPECT_FALSE(IsEmulated(processor));
+  for (const char* name : { "llvmpipe (LLVM 19)", "softpipe", "SWRAST", "Google SwiftShader" })
+  {
+    for (const Kind kind : { Kind::Graphics, Kind::Other, Kind::Processor })
+    {
+      for (const bool shares : { false, true })
+      {
+        const DeviceDescription software = Make(kind, name, "any", shares, true, 1000);
+        EXPECT_TRUE(IsEmulated(software)) << name;
+        EXPECT_TRUE(IsBetter(processor, software)) << name;
+        EXPECT_FALSE(IsBetter(software, processor)) << name;
+      }
+    }
+  }
+  // PoCL may state another type than processor, on request of the user.
+  EXPECT_TRUE(
+    IsEmulated(Make(Kind::Graphics, "cpu-haswell", "Portable Computing Language", false, true, 8)));
+  EXPECT_FALSE(IsEmulated(
+    Make(Kind::Graphics, "NVIDIA GeForce", "Portable Computing Language", false, true, 8)));
+}
+
+// With the devices of this machine, as far as their names tell.
+TEST(DeviceRank, ThisMachine)
+{
+  const std::vector<std::string> names = GetDeviceNames();
+  ASSERT_FALSE(names.empty());
+  const auto find = [&](const char* part)
+  {
+    return std::find_if(names.begin(), names.end(),
+      [&](const std::string& name) { return name.find(part) != std::string::npos; });
+  };
+  if (find("llvmpipe") == names.end() || find("Portable Computing Language") == names.end())
+  {
+    GTEST_SKIP() << "PoCL and llvmpipe are not both here";
+  }
+  EXPECT_LT(find("Portable Computing Language") - names.begin(), find("llvmpipe") - names.begin());
+  EXPECT_EQ(ResolveDevice(""), *find("Portable Computing Language"));
+  EXPECT_EQ(ResolveDevice("cpu"), *find("Portable Computing Language"));
+  EXPECT_EQ(ResolveDevice("llvmpipe"), *find("llvmpipe"));
+}

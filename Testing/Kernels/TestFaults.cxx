@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Calls of the driver that fail, settings that fail half way, and processors with little local
+// memory.
+#include "DeformerCase.h"
+#include "FakeDriver.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+using namespace deformvolume;
+
+namespace
+{
+
+class Faults : public testing::Test
+{
+protected:
+  ~Faults() override { FakeDriver::Get() = FakeDriver(); }
+
+  DeformerCase Case = MakeCase({ { 0, 21, 0, 18, -1, 17 } }, { { 1, 1, 1 } }, MakeJitter(5, 0.15));
+  reference::Result Reference = ResampleByReference(this->Case);
+  std::vector<std::uint16_t> Values =
+    MakeRandomValues<std::uint16_t>(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()), 3);
+  std::vector<float> Others =
+    MakeRandomValues<float>(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()), 4);
+  std::vector<VolumeArray> Arrays{ MakeArray(this->Values), MakeArray(this->Others) };
+  VolumeDeformer Deformer;
+
+  void ExpectRight(Resampling method = Resampling::Exact)
+  {
+    ExpectEqualsReference(this->Case, this->Reference, this->Arrays,
+      RunDeformer(this->Deformer, this->Case, this->Arrays, method));
+  }
+};
+
+} // namespace
+
+// What is copied to memory that is not aligned for its elements.
+TEST_F(Faults, ReadsThatFail)
+{
+  const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(this->Case.Output));
+  const std::uint64_t plane =
+    static_cast<std::uint64_t>(GetSize(this->Case.Output, 0) * GetSize(this->Case.Output, 1));
+  for (const Resampling method : { Resampling::Exact, Resampling::MeshRasterization })
+  {
+    for (const std::uint64_t planes : { 6, 1000 })
+    {
+      SCOPED_TRACE(testing::Message() << "method " << int(method) << " planes " << planes);
+      this->Deformer.SetDevice("");
+      this->Deformer.SetAllocationLimit(16 * planes * plane);
+      Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
+      if (method == Resampling::MeshRasterization)
+      {
+        if (planes < 1000)
+        {
+          continue;
+        }
+        const Tetrahedron tetrahedron{ { 0, 1, 2, 3 } };
+        const std::vector<double> nodes{ 0, 0, 0, 12, 0, 0, 0, 12, 0, 0, 0, 12 };
+        const std::vector<float> displacements(12, 0.0F);
+        this->Deformer.SetRestMesh(&tetrahedron, 1, 4, nodes.data());
+        this->Deformer.SetNodeDisplacements(displacements.data());
+      }
+      std::vector<char> first(2 * voxels + 1);
+      std::vector<char> second(4 * voxels + 1);
+      std::vector<signed char> coverage(voxels);
+      DeformRequest request;
+      request.Method = method;
+      request.OutputExtent = this->Case.Output;
+      request.Outputs = { first.data() + 1, second.data() + 1 };
+      request.Coverage = coverage.data();
+      EXPECT_NO_THROW(this->Deformer.Deform(request));
+      FakeDriver::Get().ReadError = -5;
+      EXPECT_THROW(this->Deformer.Deform(request), Error);
+      FakeDriver::Get().ReadError = 0;
+      Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
+      this->ExpectRight();
+    }
+  }
+}
+
+// The second array does not fit into what the device gives in one piece, and the first one is there
+// by then.
+TEST_F(Faults, ArraysThatDoNotFit)
+{
+  const std::uint64_t plane = 22 * 19;
+  this->Deformer.SetDevice("");
+  this->Deformer.SetAllocationLimit(16 * plane * 30);
+  Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
+  const auto bytes =
+    MakeRandomValues<std::uint8_t>(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()), 3);
+  const auto large =
+    MakeRandomValues<double>(static_cast<std::size_t>(8 * this->Case.GetNumberOfVoxels()), 4);
+  EXPECT_THROW(this->Deformer.SetArrays({ MakeArray(bytes), MakeArray(large, 8) }), Error);
+  // What was set before is gone, or whole.
+  try
+  {
+    this->ExpectRight();
+  }
+  catch (const Error& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("SetArrays"), std::string::npos) << error.what();
+  }
+  this->Deformer.SetArrays(this->Arrays);
+  this->ExpectRight();
+}
+
+// Links for which the lattice has made no room: there is no mesh then, and another deformation
+// works.
+TEST_F(Faults, LinksThatDoNotFit)
+{
+  const std::uint64_t plane = 22 * 19;
+  this->Deformer.SetDevice("");
+  this->Deformer.SetAllocationLimit(4 * plane * 30);
+  this->Deformer.SetLattice(this->Case.Lattice, 4, false);
+  this->Deformer.SetArrays(this->Arrays);
+  const std::vector<VertexLink> links(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()));
+  const Tetrahedron tetrahedron{ { 0, 1, 2, 3 } };
+  const std::vector<float> displacements(24, 0.0F);
+  EXPECT_THROW(this->Deformer.SetMesh(&tetrahedron, 1, 4, links.data()), Error);
+  EXPECT_THROW(this->Deformer.SetNodeDisplacements(displacements.data()), Error);
+  DisplacementField field;
+  field.Dimensions = { { 2, 2, 2 } };
+  field.Extrapolate = true;
+  field.Vectors = displacements.data();
+  this->Deformer.SetDisplacementField(field);
+  const Deformed deformed = RunDeformer(this->Deformer, this->Case, this->Arrays);
+  EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, this->Case.GetNumberOfVoxels());
+}
+
+TEST_F(Faults, LittleLocalMemory)
+{
+  FakeDriver::Get().LocalMemory = 32768;
+  Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
+  this->ExpectRight(Resampling::ExactByLanes);
+  const Deformed first =
+    RunDeformer(this->Deformer, this->Case, this->Arrays, Resampling::ExactByLanes);
+  FakeDriver::Get().LocalMemory = 0;
+  const Deformed second =
+    RunDeformer(this->Deformer, this->Case, this->Arrays, Resampling::ExactByLanes);
+  EXPECT_EQ(first.Outputs, second.Outputs);
+}

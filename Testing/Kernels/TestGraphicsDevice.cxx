@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is different on a graphics card, on whatever device there is: memory of its own, no double
+// precision, and groups of work-items.
+#include "DeformerCase.h"
+#include "FakeDriver.h"
+
+#include <gtest/gtest.h>
+
+using namespace deformvolume;
+
+namespace
+{
+
+class GraphicsDevice : public testing::Test
+{
+protected:
+  GraphicsDevice()
+  {
+    FakeDriver::Get().IsGraphics = true;
+    FakeDriver::Get().HasDouble = false;
+  }
+
+  DeformerCase Case = MakeCase({ { 0, 21, 0, 18, -1, 17 } }, { { 1, 1, 1 } }, MakeJitter(5, 0.15));
+  std::vector<std::uint16_t> Values =
+    MakeRandomValues<std::uint16_t>(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()), 3);
+  std::vector<VolumeArray> Arrays{ MakeArray(this->Values) };
+  VolumeDeformer Deformer;
+
+  std::string GetError(const std::vector<VolumeArray>& arrays)
+  {
+    Load(this->Deformer, this->Case, arrays, Route::Mesh);
+    try
+    {
+      RunDeformer(this->Deformer, this->Case, arrays);
+    }
+    catch (const Error& error)
+    {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+} // namespace
+
+TEST_F(GraphicsDevice, EqualsReference)
+{
+  const reference::Result reference = ResampleByReference(this->Case);
+  for (const Route route : { Route::Field, Route::Mesh })
+  {
+    Load(this->Deformer, this->Case, this->Arrays, route);
+    ExpectEqualsReference(
+      this->Case, reference, this->Arrays, RunDeformer(this->Deformer, this->Case, this->Arrays));
+  }
+}
+
+// Drivers take groups of one item where the number of items is prime.
+TEST_F(GraphicsDevice, GroupsAreNotLeftToTheDriver)
+{
+  FakeDriver::Get().LaunchesWithoutGroup = 0;
+  // So large that several items count, and folded.
+  const DeformerCase folded =
+    MakeCase({ { 0, 30, 0, 30, 0, 30 } }, { { 1, 1, 1 } }, MakeJitter(3, 1.0));
+  const auto values =
+    MakeRandomValues<std::uint16_t>(static_cast<std::size_t>(folded.GetNumberOfVoxels()), 3);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  Load(this->Deformer, folded, arrays, Route::Mesh);
+  const DeformReport report = RunDeformer(this->Deformer, folded, arrays).Report;
+  EXPECT_TRUE(report.Overlapping);
+  EXPECT_EQ(report.NumberOfCoveredVoxels, ResampleByReference(folded).NumberOfCoveredVoxels);
+  EXPECT_EQ(FakeDriver::Get().LaunchesWithoutGroup, 0);
+}
+
+// The memory of the device is all that it has, and not what it has beside what is held.
+TEST_F(GraphicsDevice, MemoryIsCountedOnce)
+{
+  Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
+  RunDeformer(this->Deformer, this->Case, this->Arrays);
+  const std::uint64_t held = this->Deformer.GetDeviceMemory();
+  // What has to be there for the next output is not there beside what is held, nor in all.
+  FakeDriver::Get().GlobalMemory = held + held / 4;
+  DeformerCase larger = this->Case;
+  larger.Output[5] += 60;
+  EXPECT_THROW(RunDeformer(this->Deformer, larger, this->Arrays), Error);
+  FakeDriver::Get().GlobalMemory = 0;
+  EXPECT_NO_THROW(RunDeformer(this->Deformer, larger, this->Arrays));
+}
+
+// Single precision holds whole numbers up to 2^24.
+TEST_F(GraphicsDevice, WholeNumbersThatSinglePrecisionDoesNotHold)
+{
+  const auto size = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
+  const auto ints = MakeRandomValues<std::int32_t>(size, 3);
+  const auto longs = MakeRandomValues<std::uint64_t>(size, 3);
+  EXPECT_NE(this->GetError({ MakeArray(ints) }).find("double precision"), std::string::npos);
+  EXPECT_NE(this->GetError({ MakeArray(longs) }).find("double precision"), std::string::npos);
+  EXPECT_EQ(this->GetError({ MakeArray(ints, 1, true), MakeArray(longs, 1, true) }), "");
+  EXPECT_EQ(this->GetError({ MakeArray(this->Values) }), "");
+}

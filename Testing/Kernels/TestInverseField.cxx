@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Inverse displacement fields against a look-up on the host in extended precision: misuse,
+// coverage, values, and that nothing depends on slabs and work-groups.
+#include "RasterCase.h"
+#include "RasterReference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+using namespace deformvolume;
+
+namespace
+{
+
+struct InverseCase
+{
+  deformvolume::Lattice Lattice;
+  DisplacementField Field;
+  std::vector<float> Vectors;
+  Extent Output;
+};
+
+InverseCase MakeCase(const Extent& volume, const std::array<int, 3>& points, float strength,
+  const std::array<double, 3>& scale = { { 1, 1, 1 } })
+{
+  InverseCase made;
+  made.Lattice = { volume, scale };
+  made.Vectors = MakeRandomValues<float>(3L * points[0] * points[1] * points[2], 7);
+  for (float& number : made.Vectors)
+  {
+    number *= strength;
+  }
+  made.Field.Dimensions = points;
+  // The field is turned a little, and reaches from about the first voxel to the last.
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double first = scale[axis] * volume[2 * axis];
+    const double length = scale[axis] * (volume[2 * axis + 1] - volume[2 * axis]);
+    const double step = (points[axis] - 1) / length;
+    made.Field.IndexToField[4 * axis + (axis + 1) % 3] = 0.02;
+    made.Field.IndexToField[4 * axis + axis] = step;
+    made.Field.IndexToField[4 * axis + 3] = 0.1 - step * first;
+    made.Output[2 * axis] = static_cast<int>(std::floor(first)) - 3;
+    made.Output[2 * axis + 1] = static_cast<int>(std::ceil(first + length)) + 2;
+  }
+  return made;
+}
+
+Deformed RunCase(VolumeDeformer& deformer, InverseCase& c, const std::vector<VolumeArray>& arrays,
+  Interpolation interpolation = Interpolation::Linear)
+{
+  c.Field.Vectors = c.Vectors.data();
+  deformer.SetLattice(c.Lattice, sizeof(float), false);
+  deformer.SetArrays(arrays);
+  deformer.SetInverseField(c.Field);
+  DeformerCase output;
+  output.Output = c.Output;
+  return RunDeformer(deformer, output, arrays, Resampling::MeshRasterization, interpolation);
+}
+
+/// Where an output voxel lies in the volume, counted from the first voxel, and how far inside it
+/// is: of the field in points, of the volume in voxels; negative outside.
+std::array<long double, 3> GetRest(
+  const InverseCase& c, const std::array<int, 3>& voxel, long double& margin)
+{
+  margin = 1e9L;
+  std::array<long double, 3> vector{};
+  std::array<long double, 3> place{};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double* row = &c.Field.IndexToField[4 * axis];
+    place[axis] = static_cast<long double>(row[3]);
+    for (int column = 0; column < 3; ++column)
+    {
+      place[axis] += static_cast<long double>(row[column]) * voxel[column];
+    }
+    const long double last = c.Field.Dimensions[axis] - 1;
+    if (!c.Field.Extrapolate)
+    {
+      margin = std::min({ margin, place[axis], last - place[axis] });
+    }
+    place[axis] = std::min(std::max(place[axis], 0.0L), last);
+  }
+  const Extent points{ { 0, c.Field.Dimensions[0] - 1, 0, c.Field.Dimensions[1] - 1, 0,
+    c.Field.Dimensions[2] - 1 } };
+  for (const auto& [point, weight] : reference::GetWeights(points, place, false))
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      vector[axis] += weight * static_cast<long double>(c.Vectors[3 * point + axis]);
+    }
+  }
+  std::array<long double, 3> rest{};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const Extent& volume = c.Lattice.VertexExtent;
+    rest[axis] = (voxel[axis] + vector[axis]) / static_cast<long double>(c.Lattice.Scale[axis]) -
+      volume[2 * axis];
+    margin = std::min(
+      { margin, rest[axis], static_cast<long double>(GetSize(volume, axis) - 1) - rest[axis] });
+  }
+  return rest;
+}
+
+void ExpectLookedUp(const InverseCase& c, const std::vector<float>& values,
+  const std::vector<std::int16_t>& integers, const Deformed& deformed, bool cubic = false)
+{
+  std::int64_t covered = 0;
+  std::int64_t voxel = 0;
+  int wrong = 0;
+  std::array<int, 3> at{};
+  for (at[2] = c.Output[4]; at[2] <= c.Output[5]; ++at[2])
+  {
+    for (at[1] = c.Output[2]; at[1] <= c.Output[3]; ++at[1])
+    {
+      for (at[0] = c.Output[0]; at[0] <= c.Output[1]; ++at[0], ++voxel)
+      {
+        long double margin = 0.0L;
+        const auto rest = GetRest(c, at, margin);
+        const bool isCovered = deformed.Coverage[voxel] != 0;
+        covered += isCovered ? 1 : 0;
+        // The border may be missed by 1/256 output voxel, at most 1/179 voxel here, or by 1/1024
+        // point of the field.
+        if ((margin > 1e-5L && !isCovered) || (margin < -1.0L / 179.0L && isCovered))
+        {
+          ++wrong;
+        }
+        if (!isCovered || margin < 1e-5L)
+        {
+          continue;
+        }
+        long double value = 0.0L;
+        long double integer = 0.0L;
+        for (const auto& [source, weight] :
+          reference::GetWeights(c.Lattice.VertexExtent, rest, cubic))
+        {
+          value += weight * static_cast<long double>(values[source]);
+          integer += weight * integers[source];
+        }
+        integer = std::min(std::max(integer, -32768.0L), 32767.0L);
+        // A bound of 1e-5 of the largest value, as for meshes: 1,000 and 2^15.
+        wrong += std::fabs(deformed.GetOutput<float>(0)[voxel] - value) <= 1e-2L ? 0 : 1;
+        wrong += std::fabs(deformed.GetOutput<std::int16_t>(1)[voxel] - integer) <= 0.83L ? 0 : 1;
+      }
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, covered);
+  EXPECT_GT(covered, GetNumberOfPoints(c.Lattice.VertexExtent) / 8);
+}
+
+std::string GetError(const std::function<void()>& function)
+{
+  try
+  {
+    function();
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+const Extent Volume{ { -3, 18, 2, 16, -9, 5 } };
+
+} // namespace
+
+TEST(InverseField, MisuseIsAnError)
+{
+  InverseCase c = MakeCase(Volume, { { 5, 4, 6 } }, 0.002F);
+  const auto values = MakeRandomValues<float>(GetNumberOfPoints(Volume), 1);
+  const auto integers = MakeRandomValues<std::int16_t>(GetNumberOfPoints(Volume), 2);
+  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(integers) };
+  VolumeDeformer deformer;
+  deformer.SetDevice("");
+  deformer.SetLattice(c.Lattice);
+  deformer.SetArrays(arrays);
+  EXPECT_NE(GetError([&] { deformer.SetInverseField({}); }).find("empty"), std::string::npos);
+  c.Field.Vectors = c.Vectors.data();
+  deformer.SetInverseField(c.Field);
+  DeformerCase output;
+  output.Output = c.Output;
+  EXPECT_NE(GetError([&] { RunDeformer(deformer, output, arrays); }).find("No deformation"),
+    std::string::npos);
+  ExpectLookedUp(c, values, integers, RunCase(deformer, c, arrays));
+}
+
+TEST(InverseField, EqualsReference)
+{
+  for (const std::array<double, 3>& scale :
+    { std::array<double, 3>{ { 1, 1, 1 } }, { { 0.7, 1.3, 1.9 } } })
+  {
+    for (const bool extrapolate : { false, true })
+    {
+      InverseCase c = MakeCase(Volume, { { 5, 4, 6 } }, 0.002F, scale);
+      c.Field.Extrapolate = extrapolate;
+      const auto values = MakeRandomValues<float>(GetNumberOfPoints(Volume), 1);
+      const auto integers = MakeRandomValues<std::int16_t>(GetNumberOfPoints(Volume), 2);
+      const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(integers) };
+      VolumeDeformer deformer;
+      deformer.SetDevice("");
+      const Deformed first = RunCase(deformer, c, arrays);
+      ExpectLookedUp(c, values, integers, first);
+      ExpectLookedUp(c, values, integers, RunCase(deformer, c, arrays, Interpolation::Cubic), true);
+      // In slabs, and with other groups.
+      deformer.SetAllocationLimit(8 * GetNumberOfPoints(Volume));
+      deformer.SetWorkGroupSize(3);
+      const Deformed second = RunCase(deformer, c, arrays);
+      EXPECT_EQ(first.Coverage, second.Coverage);
+      for (std::size_t i = 0; i < first.Coverage.size(); ++i)
+      {
+        ASSERT_EQ(first.GetOutput<float>(0)[i], second.GetOutput<float>(0)[i]);
+      }
+      deformer.SetAllocationLimit(0);
+      deformer.SetWorkGroupSize(0);
+    }
+  }
+}
+
+TEST(InverseField, Tiny)
+{
+  const Extent volume{ { 0, 4, -2, 1, 1, 4 } };
+  InverseCase c = MakeCase(volume, { { 3, 1, 2 } }, 0.0005F);
+  c.Field.IndexToField = { { 0.5, 0, 0, 0, 0, 0.01, 0, 0.02, 0, 0, 0.25, -0.25 } };
+  c.Field.Extrapolate = true;
+  const auto values = MakeRandomValues<float>(GetNumberOfPoints(volume), 1);
+  const auto integers = MakeRandomValues<std::int16_t>(GetNumberOfPoints(volume), 2);
+  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(integers) };
+  VolumeDeformer deformer;
+  deformer.SetDevice("");
+  ExpectLookedUp(c, values, integers, RunCase(deformer, c, arrays));
+}

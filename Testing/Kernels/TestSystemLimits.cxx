@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a process may take of its machine: memory and processors under the limits of control groups,
+// as systems and containers set them, and threads whose work fails.
+#include "ControlGroups.h"
+#include "HostThreads.h"
+#include "Processors.h"
+#include "SystemMemory.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include <sched.h>
+
+using namespace deformvolume;
+
+namespace
+{
+
+constexpr std::uint64_t MiB = 1024 * 1024;
+
+/// A made-up root folder with a system of 8,000 MiB available.
+class SystemLimits : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    std::string name = testing::TempDir() + "deformvolume-limits-XXXXXX";
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    this->Root = name;
+    this->Write("/proc/meminfo",
+      "MemTotal:       16384000 kB\nMemFree:         100000 kB\nMemAvailable:    8192000 kB\n"
+      "HugePages_Total:       0\n");
+  }
+  void TearDown() override { std::filesystem::remove_all(this->Root); }
+
+  void Write(const std::string& path, const std::string& text) const
+  {
+    const std::filesystem::path place = this->Root + path;
+    std::filesystem::create_directories(place.parent_path());
+    std::ofstream(place) << text;
+  }
+  void MountUnified(const std::string& group = "/", const std::string& folder = "/sys/fs/cgroup")
+  {
+    this->Write("/proc/self/mountinfo",
+      "22 1 8:1 / / rw shared:1 - ext4 /dev/sda1 rw\n"
+      "30 23 0:26 " +
+        group + " " + folder + " rw,nosuid shared:4 master:2 - cgroup2 cgroup2 rw,nsdelegate\n");
+  }
+  void MountLegacy(const std::string& group)
+  {
+    this->Write("/proc/self/mountinfo",
+      "31 30 0:27 / /sys/fs/cgroup/systemd rw - cgroup cgroup rw,name=systemd\n"
+      "33 30 0:29 " +
+        group +
+        " /sys/fs/cgroup/memory rw - cgroup cgroup rw,memory\n"
+        "34 30 0:30 " +
+        group + " /sys/fs/cgroup/cpu,cpuacct rw - cgroup cgroup rw,cpu,cpuacct\n");
+  }
+  /// In MiB.
+  std::uint64_t GetMemory() const { return GetSystemMemory(this->Root) / MiB; }
+
+  std::string Root;
+};
+
+std::string InBytes(std::uint64_t mebibytes)
+{
+  return std::to_string(mebibytes * MiB) + "\n";
+}
+
+} // namespace
+
+TEST_F(SystemLimits, WithoutGroups)
+{
+  EXPECT_EQ(this->GetMemory(), 8000U);
+  EXPECT_EQ(GetSystemMemory(this->Root + "/nothing"), 0U);
+}
+
+TEST_F(SystemLimits, UnifiedGroup)
+{
+  this->MountUnified();
+  this->Write("/proc/self/cgroup", "0::/user.slice/app\n");
+  const std::string app = "/sys/fs/cgroup/user.slice/app/";
+  this->Write(app + "memory.max", "max\n");
+  this->Write(app + "memory.current", InBytes(500));
+  EXPECT_EQ(this->GetMemory(), 8000U);
+
+  this->Write(app + "memory.max", InBytes(2000));
+  EXPECT_EQ(this->GetMemory(), 1500U);
+  // Page cache gives way, memory of programs and of shared segments does not.
+  this->Write(app + "memory.stat",
+    "anon " + InBytes(150) + "file " + InBytes(350) + "shmem " + InBytes(50) + "inactive_file " +
+      InBytes(200) + "active_file " + InBytes(100) + "slab_reclaimable " + InBytes(10));
+  EXPECT_EQ(this->GetMemory(), 1810U);
+  // Processes are slowed down from here on.
+  this->Write(app + "memory.high", InBytes(1000));
+  EXPECT_EQ(this->GetMemory(), 810U);
+
+  // Groups round it count, too.
+  this->Write("/sys/fs/cgroup/user.slice/memory.max", InBytes(700));
+  this->Write("/sys/fs/cgroup/user.slice/memory.current", InBytes(600));
+  EXPECT_EQ(this->GetMemory(), 100U);
+  // More is used than is allowed: almost nothing, which is not the same as unknown.
+  this->Write("/sys/fs/cgroup/user.slice/memory.current", InBytes(900));
+  EXPECT_EQ(GetSystemMemory(this->Root), 1U);
+}
+
+// A container sees its own group as the root, whatever it is called outside.
+TEST_F(SystemLimits, UnifiedContainer)
+{
+  this->MountUnified();
+  this->Write("/proc/self/cgroup", "0::/\n");
+  this->Write("/sys/fs/cgroup/memory.max", InBytes(512));
+  this->Write("/sys/fs/cgroup/memory.current", InBytes(12));
+  EXPECT_EQ(this->GetMemory(), 500U);
+
+  this->Write("/proc/self/cgroup", "0::/../other\n");
+  EXPECT_EQ(this->GetMemory(), 500U);
+
+  this->MountUnified("/docker/abc", "/sys/fs/c\\040g");
+  this->Write("/proc/self/cgroup", "0::/docker/abc/job\n");
+  this->Write("/sys/fs/c g/job/memory.max", InBytes(300));
+  this->Write("/sys/fs/c g/memory.max", InBytes(400));
+  EXPECT_EQ(this->GetMemory(), 300U);
+}
+
+TEST_F(SystemLimits, LegacyGroups)
+{
+  this->MountLegacy("/docker/abc");
+  this->Write("/proc/self/cgroup",
+    "5:cpu,cpuacct:/docker/abc\n4:memory:/docker/abc\n1:name=systemd:/docker/abc\n");
+  const std::string folder = "/sys/fs/cgroup/memory/";
+  this->Write(folder + "memory.limit_in_bytes", "9223372036854771712\n");
+  this->Write(folder + "memory.usage_in_bytes", InBytes(100));
+  EXPECT_EQ(this->GetMemory(), 8000U);
+  this->Write(folder + "memory.limit_in_bytes", InBytes(1000));
+  EXPECT_EQ(this->GetMemory(), 900U);
+  this->Write(folder + "memory.stat",
+    "inactive_file " + InBytes(1) + "total_inactive_file " + InBytes(40) + "total_active_file " +
+      InBytes(20));
+  EXPECT_EQ(this->GetMemory(), 960U);
+}
+
+TEST_F(SystemLimits, Processors)
+{
+  const int all = GetNumberOfProcessors(this->Root);
+  EXPECT_GE(all, 1);
+  this->MountUnified();
+  this->Write("/proc/self/cgroup", "0::/app\n");
+  this->Write("/sys/fs/cgroup/app/cpu.max", "max 100000\n");
+  EXPECT_EQ(GetNumberOfProcessors(this->Root), all);
+  this->Write("/sys/fs/cgroup/app/cpu.max", "150000 100000\n");
+  EXPECT_EQ(GetNumberOfProcessors(this->Root), std::min(all, 2));
+  this->Write("/sys/fs/cgroup/app/cpu.max", "20000 100000\n");
+  EXPECT_EQ(GetNumberOfProcessors(this->Root), 1);
+
+  this->MountLegacy("/");
+  this->Write("/proc/self/cgroup", "5:cpu,cpuacct:/\n");
+  this->Write("/sys/fs/cgroup/cpu,cpuacct/cpu.cfs_period_us", "100000\n");
+  this->Write("/sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "-1\n");
+  EXPECT_EQ(GetNumberOfProcessors(this->Root), all);
+  this->Write("/sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "100000\n");
+  EXPECT_EQ(GetNumberOfProcessors(this->Root), 1);
+}
+
+TEST_F(SystemLimits, BoundProcess)
+{
+  cpu_set_t all;
+  ASSERT_EQ(sched_getaffinity(0, sizeof(all), &all), 0);
+  EXPECT_EQ(GetNumberOfProcessors(this->Root), CPU_COUNT(&all));
+  int first = 0;
+  while (!CPU_ISSET(first, &all))
+  {
+    ++first;
+  }
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(first, &one);
+  ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);
+  EXPECT_EQ(GetNumberOfProcessors(this->Root), 1);
+  EXPECT_EQ(sched_setaffinity(0, sizeof(all), &all), 0);
+}
+
+// Ranks of one machine share it.
+TEST_F(SystemLimits, Share)
+{
+  const int all = GetNumberOfProcessors("");
+  EXPECT_EQ(GetProcessorShare(), all);
+  SetProcessesHere(2);
+  EXPECT_EQ(GetProcessorShare(), GetProcessorShare(2, ""));
+  EXPECT_EQ(static_cast<int>(GetNumberOfThreads()), GetProcessorShare(2, ""));
+  SetProcessesHere(1000000);
+  EXPECT_EQ(GetProcessorShare(), 1);
+  SetProcessesHere(1);
+  EXPECT_EQ(GetProcessorShare(), all);
+}
+
+// What is thrown in a thread reaches the caller, once, and the rest is left out.
+TEST(HostThreads, Exceptions)
+{
+  for (const std::size_t threads : { std::size_t(1), std::size_t(4) })
+  {
+    std::atomic<int> calls{ 0 };
+    const auto run = [&]
+    {
+      RunOnThreads(100000, threads,
+        [&](std::size_t part)
+        {
+          ++calls;
+          if (part == 7)
+          {
+            throw std::bad_alloc();
+          }
+        });
+    };
+    EXPECT_THROW(run(), std::bad_alloc);
+    EXPECT_GE(calls.load(), 8);
+    EXPECT_LT(calls.load(), 100000);
+  }
+  const auto runAll = []
+  { RunOnParts(1000, 10, [](auto, auto) { throw std::runtime_error("x"); }); };
+  EXPECT_THROW(runAll(), std::runtime_error);
+}

@@ -1,0 +1,147 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Runs the tests of the kernels and of the VTK classes on each OpenCL driver for processors that is
+# there, with what has been built by preset vtk, and prints a table. What cannot run on a driver
+# counts as skipped, and the reasons are listed.
+#
+# Usage: drivers.sh [DRIVER]...
+#   pocl      PoCL (Debian: pocl-opencl-icd)
+#   intel     Intel's runtime for processors, in build/intel-opencl: made by
+#             python3 -m venv build/intel-opencl &&
+#             build/intel-opencl/bin/pip install intel-opencl-rt intel-cmplr-lib-rt
+#   rusticl   Mesa's rusticl on llvmpipe (Debian 13 or later: mesa-opencl-icd)
+# Default: those that are installed. One driver at a time is loaded: several LLVMs in one process do
+# not get on.
+#
+# DEFORMVOLUME_DRIVER_TESTS: a regular expression of CTest, instead of all tests of the two groups.
+# DEFORMVOLUME_BUILD: another build directory than build/vtk.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+build=$(realpath "${DEFORMVOLUME_BUILD:-build/vtk}")
+output=$PWD/build/drivers
+tests=${DEFORMVOLUME_DRIVER_TESTS:-^(Kernels|Cxx)\.}
+# These choose a driver or a cache of their own, or need no driver.
+others='Oclgrind|ProgramCacheOfDriver|TestEnvironment|TestTetGen|TestDeformHead|TestDeformLarge'
+library=$PWD/build/intel-opencl/lib
+
+icd() # the file of a driver in the system's folder, if any
+{
+  grep -l -i -s "$1" /etc/OpenCL/vendors/*.icd | head -1
+}
+
+is_there()
+{
+  case $1 in
+    pocl) [ -n "$(icd pocl)" ] ;;
+    intel) [ -e "$library/libintelocl.so" ] ;;
+    rusticl) [ -n "$(icd rusticl)" ] ;;
+    *)
+      echo "drivers.sh: no driver $1; there are: pocl intel rusticl" >&2
+      exit 2
+      ;;
+  esac
+}
+
+choose() # a driver, for all that is started afterwards
+{
+  local folder=$output/$1
+  mkdir -p "$folder/vendors"
+  case $1 in
+    pocl) cp "$(icd pocl)" "$folder/vendors" ;;
+    intel)
+      echo "$library/libintelocl.so" >"$folder/vendors/intel.icd"
+      export LD_LIBRARY_PATH=$library
+      ;;
+    rusticl)
+      cp "$(icd rusticl)" "$folder/vendors"
+      export RUSTICL_ENABLE=llvmpipe
+      ;;
+  esac
+  export OCL_ICD_VENDORS=$folder/vendors
+}
+
+first_update() # seconds of compilation in a first and in a second process, on an empty cache
+{
+  local caches=$output/$1/first-update
+  rm -rf "$caches"
+  mkdir -p "$caches"
+  export HOME=$caches XDG_CACHE_HOME=$caches
+  unset POCL_CACHE_DIR DEFORMVOLUME_CACHE_DIR
+  local run
+  for run in 1 2; do
+    "$build/bin/FirstUpdate" 2>&1 | sed -n 's/.* compilation \([0-9.]*\) .*/\1/p'
+  done | paste -s -d ' '
+}
+
+device()
+{
+  "$build/bin/FirstUpdate" 2>/dev/null | sed -n 's/.* device //p'
+}
+
+run() # a driver; leaves its row of the table
+{
+  local folder=$output/$1 log=$output/$1/tests.log times
+  (
+    choose "$1"
+    times=$(first_update "$1")
+    # Tests fill caches one by one, as each has its own; what a driver lets us keep is shared.
+    ctest --test-dir "$build" -R "$tests" -E "$others" --timeout "${DEFORMVOLUME_TEST_TIMEOUT:-900}" \
+      --output-on-failure >"$log" 2>&1 || true
+    {
+      echo "$(device)"
+      sed -n 's/.*tests passed, \([0-9]*\) tests failed out of \([0-9]*\).*/\1 \2/p' "$log"
+      grep -c '\*\*\*Skipped' "$log" || true
+      echo "$times"
+      sed -n 's/^Total Test time (real) = *\([0-9.]*\) sec/\1/p' "$log"
+    } >"$folder/row"
+  )
+}
+
+drivers=("$@")
+if [ ${#drivers[@]} -eq 0 ]; then
+  for driver in pocl intel rusticl; do
+    if is_there $driver; then
+      drivers+=($driver)
+    fi
+  done
+fi
+[ -x "$build/bin/FirstUpdate" ] || {
+  echo "Build first: cmake --preset vtk && cmake --build --preset vtk" >&2
+  exit 1
+}
+
+failed=0
+for driver in "${drivers[@]}"; do
+  if ! is_there "$driver"; then
+    echo "$driver: skipped, it is not installed"
+    continue
+  fi
+  echo "== $driver"
+  mkdir -p "$output/$driver"
+  run "$driver"
+  grep -a -A100 'The following tests FAILED' "$output/$driver/tests.log" | grep -a '^	' || true
+done
+
+echo
+echo '| Driver | Tests passed | Failed | Skipped | Compilation, first process | Second process | Seconds of all tests |'
+echo '|---|---|---|---|---|---|---|'
+for driver in "${drivers[@]}"; do
+  [ -e "$output/$driver/row" ] || continue
+  {
+    read -r name
+    read -r bad all
+    read -r skipped
+    read -r cold warm
+    read -r seconds
+  } <"$output/$driver/row"
+  echo "| $driver: $name | $((all - bad - skipped)) | $bad | $skipped | $cold s | $warm s | $seconds |"
+  [ "$bad" -eq 0 ] || failed=1
+done
+for driver in "${drivers[@]}"; do
+  [ -e "$output/$driver/tests.log" ] || continue
+  # What GoogleTest and the tests of the VTK classes say where they skip.
+  grep -a -A1 ': Skipped$' "$output/$driver/tests.log" | grep -a -v ': Skipped$\|^--' |
+    sed "s/^/$driver: skipped: /" | sort -u || true
+done
+exit $failed

@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Changes constants that correctness rests on, one at a time, and runs the tests that have to notice.
+
+    python3 Testing/mutations.py [NAME...]
+
+Without names all mutations are tried; --list prints them. The sources are copied to build/mutations, so that the
+working tree stays as it is. Each mutation replaces one text in one file; the tests of the kernels are built, and
+those named with the mutation are run. It prints a table of what was changed and the first test that failed, and
+returns 1 if a mutation was not noticed. Before that the tests must pass without a change. CONTRIBUTING.md tells
+when to add one.
+"""
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
+WORK = SOURCE / "build" / "mutations"
+COPY = WORK / "source"
+BUILD = WORK / "build"
+
+NARROW = ("TestNarrowDecisions", "*")
+MASKS = ("TestIncremental", "IncrementalMasks*")
+MEMORY = ("TestHostMemory", "*")
+
+# name: (file, text, replacement, [(program, filter of its tests)])
+MUTATIONS = {
+    "filter-upright": ("Kernels/GroupResampling.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
+    "filter-bent": ("Kernels/GroupResampling.cl", "(FLOATS)(3.2e-5f)", "(FLOATS)(3.2e-7f)", [NARROW]),
+    "mask-reach": ("Kernels/IncrementalUpdate.cxx", "MaskReach = 1;", "MaskReach = 0;", [MASKS]),
+    "launch-end": ("Kernels/Resampling.cl", "z <= p.LayersEnd + 1", "z <= p.LayersEnd", [MEMORY]),
+}
+
+
+def copy_sources():
+    """The files of the working tree that git knows or does not ignore; what did not change keeps its time."""
+    names = subprocess.run(
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=SOURCE, check=True,
+        capture_output=True, text=True).stdout.splitlines()
+    for name in names:
+        if (SOURCE / name).is_file():
+            write(COPY / name, (SOURCE / name).read_bytes())
+
+
+def write(path, content):
+    if path.is_file() and path.read_bytes() == content:
+        return
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)
+
+
+def build(programs):
+    """Returns whether it worked; what the compiler says is printed where it did not."""
+    if not (BUILD / "build.ninja").is_file():
+        subprocess.run(
+            ["cmake", "-S", COPY, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+             "-DBUILD_TESTING=ON", "-DDEFORMVOLUME_WRAP_PYTHON=OFF", "-DDEFORMVOLUME_BUILD_EXAMPLES=OFF",
+             "-DDEFORMVOLUME_BUILD_BENCHMARKS=OFF", "-DPython3_EXECUTABLE=/usr/bin/python3"],
+            check=True, stdout=subprocess.DEVNULL)
+    result = subprocess.run(
+        ["cmake", "--build", BUILD, "--target", *programs], capture_output=True, text=True)
+    if result.returncode:
+        print(result.stdout[-4000:], file=sys.stderr)
+    return result.returncode == 0
+
+
+def find_failure(tests):
+    """The first test that fails, or None."""
+    environment = dict(os.environ, POCL_CACHE_DIR=str(WORK / "kernel-cache"))
+    pathlib.Path(environment["POCL_CACHE_DIR"]).mkdir(parents=True, exist_ok=True)
+    for program, pattern in tests:
+        try:
+            result = subprocess.run(
+                [BUILD / "bin" / program, f"--gtest_filter={pattern}", "--gtest_fail_fast"],
+                capture_output=True, text=True, env=environment, timeout=600)
+        except subprocess.TimeoutExpired:
+            return f"{program} (does not end)"
+        if result.returncode < 0:
+            return f"{program} (signal {-result.returncode})"
+        if result.returncode:
+            failed = [line for line in result.stdout.splitlines() if line.startswith("[  FAILED  ]")]
+            return failed[0].split("]")[1].split(",")[0].split("(")[0].strip() if failed else program
+    return None
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--list", action="store_true", help="print the names of the mutations")
+    arguments = parser.parse_args()
+    if arguments.list:
+        print("\n".join(MUTATIONS))
+        return 0
+    names = arguments.names or list(MUTATIONS)
+    unknown = [name for name in names if name not in MUTATIONS]
+    if unknown:
+        parser.error("there is no mutation " + ", ".join(unknown))
+    copy_sources()
+    tests = sorted({test for name in names for test in MUTATIONS[name][3]})
+    programs = sorted({program for program, _ in tests})
+    if not build(programs):
+        print("The sources do not build without a change.", file=sys.stderr)
+        return 1
+    failure = find_failure(tests)
+    if failure:
+        print(f"{failure} fails without a change.", file=sys.stderr)
+        return 1
+    print("| Mutation | File | From | To | Caught by |\n|---|---|---|---|---|", flush=True)
+    survived = 0
+    for name in names:
+        file, old, new, its_tests = MUTATIONS[name]
+        text = (SOURCE / file).read_text()
+        if text.count(old) != 1:
+            print(f"{name}: the text stands {text.count(old)} times in {file}.", file=sys.stderr)
+            return 1
+        write(COPY / file, text.replace(old, new).encode())
+        built = build(sorted({program for program, _ in its_tests}))
+        caught = find_failure(its_tests) if built else "the compiler"
+        write(COPY / file, text.encode())
+        survived += caught is None
+        row = [name, file, f"`{old}`", f"`{new}`", caught or "**nothing**"]
+        print("| " + " | ".join(row) + " |", flush=True)
+    return 1 if survived else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
