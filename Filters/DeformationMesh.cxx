@@ -2,15 +2,11 @@
 #include "DeformationMesh.h"
 
 #include "Error.h"
-#include "VTKVersions/CellTypes.h"
 #include "VectorArray.h"
 
-#include "vtkCellArray.h"
-#include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
@@ -152,33 +148,6 @@ void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
     }
     next += points;
   }
-}
-
-Stamp GetCellsStamp(const MeshParts& parts)
-{
-  Stamp stamp;
-  const auto add = [&](vtkAbstractArray* array)
-  {
-    stamp.emplace_back(array, array ? array->GetMTime() : 0);
-    // An array that is cut off keeps its time.
-    stamp.emplace_back(nullptr, array ? static_cast<vtkMTimeType>(array->GetNumberOfValues()) : 0);
-  };
-  for (vtkUnstructuredGrid* grid : parts)
-  {
-    // The time of the grid itself: cells that are inserted leave no trace in those of its parts.
-    stamp.emplace_back(grid, grid->vtkObject::GetMTime());
-    stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(grid->GetNumberOfCells()));
-    vtkCellArray* cells = grid->GetCells();
-    stamp.emplace_back(cells, cells ? cells->GetMTime() : 0);
-    add(cells ? cells->GetConnectivityArray() : nullptr);
-    add(cells ? cells->GetOffsetsArray() : nullptr);
-    add(GetCellTypes(grid));
-    add(grid->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
-    add(grid->GetCellData()->GetHigherOrderDegrees());
-    // The node numbers of a part follow from the sizes of the parts before it.
-    stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(grid->GetNumberOfPoints()));
-  }
-  return stamp;
 }
 
 Stamp GetPointsStamp(const MeshParts& parts)

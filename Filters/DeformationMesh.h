@@ -56,7 +56,6 @@ void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
 
 ///@{
 /// What the functions above depend on.
-Stamp GetCellsStamp(const MeshParts& parts);
 Stamp GetPointsStamp(const MeshParts& parts);
 Stamp GetPointVectorsStamp(const MeshParts& parts);
 ///@}

@@ -2,6 +2,7 @@
 #include "MeshGathering.h"
 
 #include "MeshCells.h"
+#include "MeshStamp.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellType.h"
@@ -34,7 +35,7 @@ Stamp GetPieceStamp(const DeformationSource& source)
   {
     const MeshParts parts = FindGrids(object);
     for (const Stamp& part :
-      { GetCellsStamp(parts), GetPointsStamp(parts), GetPointVectorsStamp(parts) })
+      { GetCellArraysStamp(parts), GetPointsStamp(parts), GetPointVectorsStamp(parts) })
     {
       stamp.insert(stamp.end(), part.begin(), part.end());
     }

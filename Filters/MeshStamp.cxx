@@ -132,6 +132,31 @@ bool IsMadeOf(vtkUnstructuredGrid* grid, const Tetrahedron* tetrahedra, std::int
 
 } // namespace
 
+Stamp GetCellArraysStamp(const MeshParts& parts)
+{
+  Stamp stamp;
+  for (vtkUnstructuredGrid* grid : parts)
+  {
+    // The node numbers of a part follow from the sizes of the parts before it.
+    for (const vtkIdType count : { grid->GetNumberOfCells(), grid->GetNumberOfPoints() })
+    {
+      stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(count));
+    }
+    vtkCellArray* cells = grid->GetCells();
+    stamp.emplace_back(cells, cells ? cells->GetMTime() : 0);
+    AddArray(stamp, cells ? cells->GetConnectivityArray() : nullptr);
+    AddArray(stamp, cells ? cells->GetOffsetsArray() : nullptr);
+    AddArray(stamp, GetCellTypes(grid));
+    AddArray(stamp, GetGhosts(grid));
+    AddArray(stamp, grid->GetCellData()->GetHigherOrderDegrees());
+    if (HasPolyhedronFaces(grid))
+    {
+      stamp.emplace_back(grid, grid->vtkObject::GetMTime()); // which knows of the faces
+    }
+  }
+  return stamp;
+}
+
 void MeshStamp::Add(vtkUnstructuredGrid* grid, bool made)
 {
   this->Grids.push_back({ grid, made ? 0 : grid->vtkObject::GetMTime() });
@@ -140,24 +165,10 @@ void MeshStamp::Add(vtkUnstructuredGrid* grid, bool made)
 MeshStamp MeshStamp::OfCells(const MeshParts& parts, bool made)
 {
   MeshStamp stamp;
+  stamp.Arrays = GetCellArraysStamp(parts);
   for (vtkUnstructuredGrid* grid : parts)
   {
     stamp.Add(grid, made);
-    // The node numbers of a part follow from the sizes of the parts before it.
-    for (const vtkIdType count : { grid->GetNumberOfCells(), grid->GetNumberOfPoints() })
-    {
-      stamp.Arrays.emplace_back(nullptr, static_cast<vtkMTimeType>(count));
-    }
-    vtkCellArray* cells = grid->GetCells();
-    stamp.Arrays.emplace_back(cells, cells ? cells->GetMTime() : 0);
-    AddArray(stamp.Arrays, cells ? cells->GetConnectivityArray() : nullptr);
-    AddArray(stamp.Arrays, cells ? cells->GetOffsetsArray() : nullptr);
-    AddArray(stamp.Arrays, GetCellTypes(grid));
-    AddArray(stamp.Arrays, GetGhosts(grid));
-    if (HasPolyhedronFaces(grid))
-    {
-      stamp.Arrays.emplace_back(grid, grid->vtkObject::GetMTime()); // which knows of the faces
-    }
   }
   return stamp;
 }

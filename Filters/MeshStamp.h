@@ -13,6 +13,9 @@
 namespace deformvolume
 {
 
+/// The arrays of the cells of a mesh: their places, modification times and sizes.
+Stamp GetCellArraysStamp(const MeshParts& parts);
+
 /// What the cells or the points of a mesh are known by without a look at them: their arrays, with
 /// modification times and sizes. Another grid with the same arrays has the same cells: that is what
 /// filters give that pass them on, as a new grid or in the one that is their output. Where a grid

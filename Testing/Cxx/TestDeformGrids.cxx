@@ -220,6 +220,56 @@ void TestPipeline()
   meshes.Expect("a copy", 0);
 }
 
+// A Lagrange hexahedron over a volume, whose nodes lie where its degrees say.
+void PlaceNodes(vtkUnstructuredGrid* grid, vtkImageData* volume, const std::array<int, 3>& degrees)
+{
+  vtkDataArray* array = grid->GetCellData()->GetHigherOrderDegrees();
+  array->SetTuple3(0, degrees[0], degrees[1], degrees[2]);
+  array->Modified();
+  std::array<double, 6> bounds;
+  volume->GetBounds(bounds.data());
+  const double* places = grid->GetCell(0)->GetParametricCoords();
+  for (vtkIdType node = 0; node < grid->GetNumberOfPoints(); ++node)
+  {
+    std::array<double, 3> point;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double share = places[3 * node + axis];
+      point[axis] =
+        bounds[2 * axis] - 1.0 + share * (bounds[2 * axis + 1] - bounds[2 * axis] + 2.0);
+    }
+    grid->GetPoints()->SetPoint(node, point.data());
+  }
+  grid->GetPoints()->Modified();
+}
+
+// The same numbers of nodes, in another order.
+void TestDegrees()
+{
+  Meshes meshes;
+  const auto grid = Grid::New();
+  vtkNew<vtkPoints> points;
+  points->SetNumberOfPoints(24);
+  grid->SetPoints(points);
+  std::array<vtkIdType, 24> ids;
+  std::iota(ids.begin(), ids.end(), 0);
+  grid->InsertNextCell(VTK_LAGRANGE_HEXAHEDRON, 24, ids.data());
+  vtkNew<vtkFloatArray> degrees;
+  degrees->SetNumberOfComponents(3);
+  degrees->SetNumberOfTuples(1);
+  grid->GetCellData()->SetHigherOrderDegrees(degrees);
+  PlaceNodes(grid, meshes.Volume, { { 2, 1, 3 } });
+  vtkNew<Passer> passer;
+  passer->Mesh = meshes.Mesh = grid;
+  meshes.Tested.Filter->SetDeformationConnection(passer->GetOutputPort());
+  meshes.Move();
+  meshes.Expect("a Lagrange cell", 1);
+  PlaceNodes(grid, meshes.Volume, { { 1, 2, 3 } });
+  meshes.Move();
+  passer->Modified();
+  meshes.Expect("other degrees", 1);
+}
+
 void TestTwoMeshes()
 {
   Meshes meshes;
@@ -328,6 +378,7 @@ int TestDeformGrids(int, char*[])
   TestOtherGrids();
   TestEditsInPlace();
   TestPipeline();
+  TestDegrees();
   TestTwoMeshes();
   TestNumbers();
   return GetExitCode();
