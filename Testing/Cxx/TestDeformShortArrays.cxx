@@ -2,6 +2,7 @@
 // Arrays that are shorter than what they describe: one error that says which, never an access
 // beyond their end, and a filter that works again. Arrays change after an update, too, when the
 // filter has buffers of the size that they had.
+#include "ArrayMaking.h"
 #include "FilterTesting.h"
 
 #include <vtkCellArray.h>
@@ -69,17 +70,6 @@ struct Case
   Deformed Subject;
   vtkNew<vtkImageData> Expected;
 };
-
-template <typename ArrayT>
-vtkSmartPointer<ArrayT> MakeArray(const char* name, vtkIdType tuples, int components = 1)
-{
-  auto array = vtkSmartPointer<ArrayT>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(tuples);
-  array->Fill(0.0);
-  return array;
-}
 
 // Points come and go, while displacements and cells stay as they were.
 void TestPointsAgainstDisplacements()

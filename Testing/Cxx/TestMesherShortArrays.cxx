@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Arrays that are shorter than what they describe, given to the sources of meshes: one error that
 // says which, never an access beyond their end.
+#include "ArrayMaking.h"
 #include "MeshChecks.h"
 #include "vtkLatticeTetrahedraSource.h"
 #include "vtkTetGenMesher.h"
@@ -21,17 +22,6 @@ namespace
 {
 
 const char* const GHOSTS = "vtkGhostType";
-
-template <typename ArrayT>
-vtkSmartPointer<ArrayT> MakeArray(const char* name, vtkIdType tuples, int components = 1)
-{
-  auto array = vtkSmartPointer<ArrayT>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(tuples);
-  array->Fill(0.0);
-  return array;
-}
 
 void TestMeshers()
 {

@@ -3,11 +3,11 @@
 // makes, to the last bit; whoever has the deformation mesh; errors end alike on all ranks. With the
 // argument "cold": the start with an empty cache of kernels.
 #include "DivisionCases.h"
+#include "RankTesting.h"
 
 #include <vtkExtentTranslator.h>
 #include <vtkIdList.h>
 #include <vtkIdTypeArray.h>
-#include <vtkMPIController.h>
 #include <vtkTrivialProducer.h>
 
 #include <limits>
@@ -365,27 +365,18 @@ void TestColdStart()
 
 int main(int argc, char* argv[])
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
-  vtkMultiProcessController::SetGlobalController(controller);
-  Controller = controller;
-
-  if (argc == 2 && std::string(argv[1]) == "cold")
-  {
-    TestColdStart();
-  }
-  else
-  {
-    TestAll();
-  }
-  int failures = filterTesting::GetNumberOfFailures();
-  int all = 0;
-  controller->AllReduce(&failures, &all, 1, vtkCommunicator::SUM_OP);
-  if (GetRank() == 0)
-  {
-    std::cout << all << " checks failed on " << GetRanks() << " ranks\n";
-  }
-  vtkMultiProcessController::SetGlobalController(nullptr);
-  controller->Finalize();
-  return all == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  const bool cold = argc == 2 && std::string(argv[1]) == "cold";
+  return RunOnRanks(argc, argv,
+    [=](vtkMPIController* controller)
+    {
+      Controller = controller;
+      if (cold)
+      {
+        TestColdStart();
+      }
+      else
+      {
+        TestAll();
+      }
+    });
 }

@@ -2,8 +2,7 @@
 // Memory that does not suffice on one rank: all ranks report one error, none waits for another, and
 // the filter works once there is memory. Every large allocation of an update fails once.
 #include "FilterTesting.h"
-
-#include <vtkMPIController.h>
+#include "RankTesting.h"
 
 #include <cstdlib>
 #include <new>
@@ -141,18 +140,6 @@ private:
 
 int main(int argc, char* argv[])
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
-  vtkMultiProcessController::SetGlobalController(controller);
-  ShortMemory(controller).Run();
-  int failures = GetNumberOfFailures();
-  int all = 0;
-  controller->AllReduce(&failures, &all, 1, vtkCommunicator::SUM_OP);
-  if (controller->GetLocalProcessId() == 0)
-  {
-    std::cout << all << " checks failed\n";
-  }
-  vtkMultiProcessController::SetGlobalController(nullptr);
-  controller->Finalize();
-  return all == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return RunOnRanks(
+    argc, argv, [](vtkMPIController* controller) { ShortMemory(controller).Run(); });
 }

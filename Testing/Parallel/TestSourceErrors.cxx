@@ -2,9 +2,9 @@
 // Sources that fail on one rank, as readers do whose file a machine cannot read: all ranks tell it,
 // none waits for another, and the filter works once the source does.
 #include "DivisionCases.h"
+#include "RankTesting.h"
 
 #include <vtkExecutive.h>
-#include <vtkMPIController.h>
 #include <vtkUnstructuredGridAlgorithm.h>
 
 using namespace divisionCases;
@@ -172,18 +172,5 @@ void TestFailures(vtkMPIController* controller)
 
 int main(int argc, char* argv[])
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
-  vtkMultiProcessController::SetGlobalController(controller);
-  TestFailures(controller);
-  int failures = filterTesting::GetNumberOfFailures();
-  int all = 0;
-  controller->AllReduce(&failures, &all, 1, vtkCommunicator::SUM_OP);
-  if (controller->GetLocalProcessId() == 0)
-  {
-    std::cout << all << " checks failed\n";
-  }
-  vtkMultiProcessController::SetGlobalController(nullptr);
-  controller->Finalize();
-  return all == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return RunOnRanks(argc, argv, TestFailures);
 }
