@@ -25,7 +25,7 @@
   }
 
 // The corner tetrahedron that lies behind the face of the central tetrahedron opposite its
-// k-th vertex.
+// k-th vertex; and by the number of that tetrahedron, the vertex k.
 #define DEFORMVOLUME_CORNER_BEHIND_FACE                                                            \
   {                                                                                                \
     2, 3, 0, 1                                                                                     \

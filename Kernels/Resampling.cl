@@ -95,10 +95,13 @@ static Vector SamplePosition(Vector voxel)
 }
 
 // A cell whose tetrahedra are all there and upright: a sample behind no face of the central
-// tetrahedron is in it, and a corner tetrahedron holds only samples behind its face.
+// tetrahedron is in it, and a corner tetrahedron holds only samples behind its face. Corner tetrahedra of a cell that
+// is much bent overlap. As in any cell, the lowest tetrahedron comes last, because the last one to write wins.
 static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, const Vector* q,
   CellState state, Candidates c, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
+  // All that hold a sample write it in turn then.
+  const int closed = DEFORMVOLUME_IS_CLOSED(p->Pass);
   const EdgeFunctions central = MakeEdgeFunctions(
     q[Tetrahedra[4][0]], q[Tetrahedra[4][1]], q[Tetrahedra[4][2]], q[Tetrahedra[4][3]]);
   Vector voxel;
@@ -112,17 +115,17 @@ static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, c
     {
       Write(x, y, z, 4, behind, central.Volume, 0, voxel, role, output, p ARRAY_ARGUMENTS);
     }
-    if (role == OWNER)
+    if (role == OWNER && !closed)
     {
       continue;
     }
-    for (int k = 0; k < 4; ++k)
+    for (int t = 3; t >= 0; --t)
     {
-      if (behind[k] > 0)
+      const long beyond = behind[CornerBehindFace[t]];
+      if (beyond > 0)
       {
         continue;
       }
-      const int t = CornerBehindFace[k];
       const EdgeFunctions corner = MakeEdgeFunctions(
         q[Tetrahedra[t][0]], q[Tetrahedra[t][1]], q[Tetrahedra[t][2]], q[Tetrahedra[t][3]]);
       long weights[4];
@@ -133,9 +136,9 @@ static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, c
         Write(x, y, z, t, weights, corner.Volume, 0, voxel, roleOfCorner, output,
           p ARRAY_ARGUMENTS);
       }
-      if (roleOfCorner == OWNER)
+      if (roleOfCorner == OWNER && beyond == 0 && !closed)
       {
-        break;
+        break; // on the face: no other corner tetrahedron has the sample inside
       }
     }
   }

@@ -16,11 +16,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 namespace fuzz
@@ -153,32 +151,6 @@ std::string Describe(const std::vector<reference::Containing>& candidates, const
   return text.str();
 }
 
-// The tetrahedra that may write a voxel. Of those that overlap, upright ones win and then the
-// lowest cell; which tetrahedron of that cell is left open, and so is which one of those that share
-// the vertex, edge or face on which the voxel lies.
-std::vector<const reference::Containing*> FindWinners(
-  const std::vector<reference::Containing>& candidates)
-{
-  const reference::Containing& first = candidates.front();
-  std::set<std::pair<std::int64_t, bool>> cells;
-  for (const reference::Containing& one : candidates)
-  {
-    if (one.SharesSimplex(first))
-    {
-      cells.emplace(one.Cell, one.Inverted);
-    }
-  }
-  std::vector<const reference::Containing*> winners;
-  for (const reference::Containing& one : candidates)
-  {
-    if (cells.count({ one.Cell, one.Inverted }) > 0)
-    {
-      winners.push_back(&one);
-    }
-  }
-  return winners;
-}
-
 template <typename T>
 std::string CompareArray(
   const reference::Result& result, vtkDataArray* source, vtkDataArray* array, bool categorical)
@@ -205,13 +177,11 @@ std::string CompareArray(
     {
       continue;
     }
-    const auto winners = FindWinners(result.Voxels[voxel]);
+    const reference::Containing& winner = result.Voxels[voxel].front();
     for (int component = 0; component < components; ++component)
     {
       const T value = output[voxel * static_cast<std::size_t>(components) + component];
-      if (std::none_of(winners.begin(), winners.end(),
-            [&](const reference::Containing* winner)
-            { return IsRight(*winner, input, components, component, value, categorical, slack); }))
+      if (!IsRight(winner, input, components, component, value, categorical, slack))
       {
         return std::string("array ") + source->GetName() + " is " + std::to_string(value) +
           " at point " + std::to_string(voxel) + " where the reference has" +

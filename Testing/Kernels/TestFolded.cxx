@@ -31,6 +31,46 @@ void Check(const DeformerCase& folded)
   Check(folded, ResampleByReference(folded));
 }
 
+// Offsets of a vertex by its number in FiveTetrahedra.h.
+glm::dvec3 GetOffset(int vertex)
+{
+  return glm::dvec3(vertex & 1, vertex >> 2 & 1, vertex >> 1 & 1);
+}
+
+/// A single cell, of which the corners first and second are moved past each other.
+DeformerCase MakeCellWithOverlap(int parity, int first, int second, double size)
+{
+  // Of the central tetrahedron's vertices a corner's face has all but the one across the cell.
+  glm::dvec3 edge(0.0);
+  for (const int vertex : { 0, 3, 5, 6 })
+  {
+    edge += (vertex ^ first) == 7 || (vertex ^ second) == 7 ? glm::dvec3(0.0) : GetOffset(vertex);
+  }
+  edge *= 0.5;
+  const glm::dvec3 outwards = 2.0 * (edge - glm::dvec3(0.5));
+  const glm::dvec3 across = 0.25 * (GetOffset(second) - GetOffset(first));
+  const Extent extent{ { parity & 1, (parity & 1) + 1, parity >> 1 & 1, (parity >> 1 & 1) + 1,
+    parity >> 2 & 1, (parity >> 2 & 1) + 1 } };
+  return MakeCase(extent, NoScale,
+    [=](const glm::dvec3& index)
+    {
+      // Cells of odd index are mirrored.
+      glm::dvec3 offset(0.0);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        offset[axis] = std::fmod(index[axis], 2.0);
+      }
+      glm::dvec3 moved = offset;
+      moved = offset == GetOffset(first) ? edge + outwards + across : moved;
+      moved = offset == GetOffset(second) ? edge + outwards - across : moved;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        moved[axis] *= parity >> axis & 1 ? -size : size;
+      }
+      return moved;
+    });
+}
+
 } // namespace
 
 TEST(Folded, InvertedTetrahedraAreCountedAndRasterised)
@@ -58,6 +98,33 @@ TEST(Folded, MirroredVolumeHasNoOverlap)
   EXPECT_EQ(reference.NumberOfInvertedTetrahedra, 5 * GetNumberOfCells(Volume));
   EXPECT_EQ(reference.NumberOfOverlappedVoxels, 0);
   Check(mirrored, reference);
+}
+
+TEST(Folded, CornersOfOneCellOverlap)
+{
+  // Two corner tetrahedra on an edge of the central one reach over it, past each other, and all
+  // five are upright.
+  constexpr std::array<std::array<int, 2>, 6> pairs{ { { { 1, 2 } }, { { 1, 4 } }, { { 1, 7 } },
+    { { 2, 4 } }, { { 2, 7 } }, { { 4, 7 } } } };
+  for (int parity = 0; parity < 8; ++parity)
+  {
+    for (const auto& [first, second] : pairs)
+    {
+      SCOPED_TRACE(testing::Message() << parity << ' ' << first << ' ' << second);
+      const DeformerCase cell = MakeCellWithOverlap(parity, first, second, 8.0);
+      const reference::Result reference = ResampleByReference(cell);
+      EXPECT_EQ(reference.NumberOfInvertedTetrahedra, 0);
+      EXPECT_GT(reference.NumberOfOverlappedVoxels, 0);
+      Check(cell, reference);
+    }
+  }
+}
+
+TEST(Folded, ManyCells)
+{
+  // So many that in some of them corner tetrahedra overlap.
+  const DeformerCase jittered = MakeCase({ { 0, 30, 0, 30, 0, 30 } }, NoScale, MakeJitter(3, 1.0));
+  Check(jittered);
 }
 
 TEST(Folded, FoldedLikeAPage)
