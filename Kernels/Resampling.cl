@@ -10,7 +10,51 @@
 // needs the central tetrahedron's edge functions and at most those of the corner behind a face; the others
 // try each tetrahedron.
 
-static void Write(int x, int y, int z, int t, const long* weights, long volume, int inverted,
+// A cell of the sampling mesh.
+typedef struct
+{
+  int X, Y, Z;
+  int Tetrahedra; // those that are there and not flat, as bits
+  int Inverted;   // of these the inverted ones
+  CellState State;
+  Vector Vertices[8];
+} Cell;
+
+static EdgeFunctions EdgeFunctionsOf(const Cell* cell, int t)
+{
+  return MakeEdgeFunctions(cell->Vertices[Tetrahedra[t][0]], cell->Vertices[Tetrahedra[t][1]],
+    cell->Vertices[Tetrahedra[t][2]], cell->Vertices[Tetrahedra[t][3]]);
+}
+
+static Vector SamplePosition(Vector voxel)
+{
+  const Vector r = { voxel.x * 256, voxel.y * 256, voxel.z * 256 };
+  return r;
+}
+
+// Whether a tetrahedron of the cell that comes before this one, and has the same key, writes a voxel, too.
+static int IsWrittenBefore(
+  const SamplingMesh* mesh, const Cell* cell, int tetrahedron, Vector voxel, const KernelParameters* p)
+{
+  const int alike =
+    cell->Inverted >> tetrahedron & 1 ? cell->Inverted : cell->Tetrahedra & ~cell->Inverted;
+  for (int t = 4; t > tetrahedron; --t)
+  {
+    if (alike >> t & 1)
+    {
+      const EdgeFunctions f = EdgeFunctionsOf(cell, t);
+      long weights[4];
+      Evaluate(&f, SamplePosition(voxel), weights);
+      if (RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p) == OWNER)
+      {
+        return 1;
+      }
+    }
+  }
+  return 0;
+}
+
+static void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long* weights, long volume,
   Vector voxel, int role, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int placeX = voxel.x - p->OutputFirst[0];
@@ -27,12 +71,21 @@ static void Write(int x, int y, int z, int t, const long* weights, long volume, 
   const size_t target =
     ((size_t)placeZ * p->OutputSize[1] + placeY) * p->OutputSize[0] + placeX;
   output->Writes++;
-  if (p->Pass != DEFORMVOLUME_PASS_DIRECT &&
-    !TakesPlace(output, target, MakeKey(x, y, z, inverted, p), p))
+  if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
   {
-    return;
+    const KEY key = MakeKey(cell->X, cell->Y, cell->Z, cell->Inverted >> t & 1, p);
+    // It may also be there because the cell is repeated (BrickResampling.cl).
+    if (p->Pass == DEFORMVOLUME_PASS_OWNERS && output->Winners[target] == key &&
+      IsWrittenBefore(mesh, cell, t, voxel, p))
+    {
+      Contest(output->Winners + target, key);
+    }
+    if (!TakesPlace(output, target, key, p))
+    {
+      return;
+    }
   }
-  const Sample s = MakeSample(x, y, z, t, weights, volume, target, p);
+  const Sample s = MakeSample(cell->X, cell->Y, cell->Z, t, weights, volume, target, p);
   output->Coverage[target] = 1;
   StoreArrays(&s ARRAY_ARGUMENTS);
 }
@@ -88,32 +141,25 @@ static int IsEmpty(Candidates c)
     for (voxel.y = c.Low.y; voxel.y <= c.High.y; ++voxel.y)                                        \
       for (voxel.x = c.Low.x; voxel.x <= c.High.x; ++voxel.x)
 
-static Vector SamplePosition(Vector voxel)
-{
-  const Vector r = { voxel.x * 256, voxel.y * 256, voxel.z * 256 };
-  return r;
-}
-
 // A cell whose tetrahedra are all there and upright: a sample behind no face of the central
 // tetrahedron is in it, and a corner tetrahedron holds only samples behind its face. Corner tetrahedra of a cell that
 // is much bent overlap. As in any cell, the lowest tetrahedron comes last, because the last one to write wins.
-static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, const Vector* q,
-  CellState state, Candidates c, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+static void ResampleUprightCell(const SamplingMesh* mesh, const Cell* cell, Candidates c,
+  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   // All that hold a sample write it in turn then.
   const int closed = DEFORMVOLUME_IS_CLOSED(p->Pass);
-  const EdgeFunctions central = MakeEdgeFunctions(
-    q[Tetrahedra[4][0]], q[Tetrahedra[4][1]], q[Tetrahedra[4][2]], q[Tetrahedra[4][3]]);
+  const EdgeFunctions central = EdgeFunctionsOf(cell, 4);
   Vector voxel;
   FOR_EACH_CANDIDATE(voxel, c)
   {
     const Vector sample = SamplePosition(voxel);
     long behind[4];
     Evaluate(&central, sample, behind);
-    const int role = RoleOf(mesh, x, y, z, 4, behind, &central, state, p);
+    const int role = RoleOf(mesh, cell->X, cell->Y, cell->Z, 4, behind, &central, cell->State, p);
     if (role != STRANGER)
     {
-      Write(x, y, z, 4, behind, central.Volume, 0, voxel, role, output, p ARRAY_ARGUMENTS);
+      Write(mesh, cell, 4, behind, central.Volume, voxel, role, output, p ARRAY_ARGUMENTS);
     }
     if (role == OWNER && !closed)
     {
@@ -126,15 +172,15 @@ static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, c
       {
         continue;
       }
-      const EdgeFunctions corner = MakeEdgeFunctions(
-        q[Tetrahedra[t][0]], q[Tetrahedra[t][1]], q[Tetrahedra[t][2]], q[Tetrahedra[t][3]]);
+      const EdgeFunctions corner = EdgeFunctionsOf(cell, t);
       long weights[4];
       Evaluate(&corner, sample, weights);
-      const int roleOfCorner = RoleOf(mesh, x, y, z, t, weights, &corner, state, p);
+      const int roleOfCorner =
+        RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &corner, cell->State, p);
       if (roleOfCorner != STRANGER)
       {
-        Write(x, y, z, t, weights, corner.Volume, 0, voxel, roleOfCorner, output,
-          p ARRAY_ARGUMENTS);
+        Write(
+          mesh, cell, t, weights, corner.Volume, voxel, roleOfCorner, output, p ARRAY_ARGUMENTS);
       }
       if (roleOfCorner == OWNER && beyond == 0 && !closed)
       {
@@ -145,20 +191,19 @@ static void ResampleUprightCell(const SamplingMesh* mesh, int x, int y, int z, c
 }
 
 // Any cell: each tetrahedron on its own. The lowest one last, because the last one to write wins.
-static void ResampleTetrahedra(const SamplingMesh* mesh, int x, int y, int z, const Vector* q,
-  const long* determinants, int tetrahedra, int inverted, CellState state, const Candidates* all,
+static void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* cell, const Candidates* all,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   for (int t = 4; t >= 0; --t)
   {
-    if (!(tetrahedra >> t & 1) || determinants[t] == 0)
+    if (!(cell->Tetrahedra >> t & 1))
     {
       continue;
     }
-    const Vector a = q[Tetrahedra[t][0]];
-    const Vector b = q[Tetrahedra[t][1]];
-    const Vector c = q[Tetrahedra[t][2]];
-    const Vector d = q[Tetrahedra[t][3]];
+    const Vector a = cell->Vertices[Tetrahedra[t][0]];
+    const Vector b = cell->Vertices[Tetrahedra[t][1]];
+    const Vector c = cell->Vertices[Tetrahedra[t][2]];
+    const Vector d = cell->Vertices[Tetrahedra[t][3]];
     const Candidates candidates = FindCandidates(Minimum(Minimum(a, b), Minimum(c, d)),
       Maximum(Maximum(a, b), Maximum(c, d)), 0, all);
     if (IsEmpty(candidates))
@@ -171,11 +216,11 @@ static void ResampleTetrahedra(const SamplingMesh* mesh, int x, int y, int z, co
     {
       long weights[4];
       Evaluate(&f, SamplePosition(voxel), weights);
-      const int role = RoleOf(mesh, x, y, z, t, weights, &f, state, p);
+      const int role =
+        RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p);
       if (role != STRANGER)
       {
-        Write(x, y, z, t, weights, f.Volume, inverted >> t & 1, voxel, role, output,
-          p ARRAY_ARGUMENTS);
+        Write(mesh, cell, t, weights, f.Volume, voxel, role, output, p ARRAY_ARGUMENTS);
       }
     }
   }
@@ -201,10 +246,11 @@ static int TouchesUnsettled(
 static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  Vector q[8];
+  Cell cell;
+  Vector* const q = cell.Vertices;
   const int present = LoadCell(mesh, x, y, z, p, q);
-  int tetrahedra = ActiveTetrahedra(mesh, x, y, z, p);
-  if (present == 0 || tetrahedra == 0)
+  const int active = ActiveTetrahedra(mesh, x, y, z, p);
+  if (present == 0 || active == 0)
   {
     return;
   }
@@ -213,20 +259,20 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Ca
     return;
   }
   const int mirror = Mirror(x, y, z, p);
-  const CellState state = CellStateOf(mesh, x, y, z, p);
   // Orientations, against the one that the parity of the cell asks for.
   const int odd = (mirror ^ mirror >> 1 ^ mirror >> 2) & 1;
-  long determinants[5];
-  int inverted = 0;
+  cell.X = x;
+  cell.Y = y;
+  cell.Z = z;
+  cell.State = CellStateOf(mesh, x, y, z, p);
+  cell.Tetrahedra = 0;
+  cell.Inverted = 0;
   int missing = 0;
-  int regular = tetrahedra == 31 && present == 255;
   for (int t = 0; t < 5; ++t)
   {
-    determinants[t] = 0;
     const int needed = VerticesOf(t);
-    if (!(tetrahedra >> t & 1) || (present & needed) != needed)
+    if (!(active >> t & 1) || (present & needed) != needed)
     {
-      regular = 0;
       continue;
     }
     const Vector a = q[Tetrahedra[t][0]];
@@ -236,34 +282,31 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Ca
     if (IsOverstretched(a, b, c, d))
     {
       ++output->Overstretched;
-      tetrahedra &= ~(1 << t);
-      regular = 0;
       missing = 1;
       continue;
     }
-    determinants[t] = Determinant(a, b, c, d);
-    const int upright = odd != (t == 4) ? determinants[t] < 0 : determinants[t] > 0;
-    regular &= upright;
-    inverted |= (!upright && determinants[t] != 0) << t;
-    missing |= determinants[t] == 0;
+    const long determinant = Determinant(a, b, c, d);
+    const int upright = odd != (t == 4) ? determinant < 0 : determinant > 0;
+    cell.Tetrahedra |= (determinant != 0) << t;
+    cell.Inverted |= (!upright && determinant != 0) << t;
+    missing |= determinant == 0;
   }
-  output->Inverted += popcount(inverted);
-  output->Missing += missing && state.Interior != 255;
-  output->Assumed |= (state.Regular & ~state.Interior) != 0;
-  if (regular)
+  output->Inverted += popcount(cell.Inverted);
+  output->Missing += missing && cell.State.Interior != 255;
+  output->Assumed |= (cell.State.Regular & ~cell.State.Interior) != 0;
+  if (cell.Tetrahedra == 31 && cell.Inverted == 0)
   {
     // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
     const Candidates c =
-      CandidatesOfCell(q, state.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT, all);
+      CandidatesOfCell(q, cell.State.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT, all);
     if (!IsEmpty(c))
     {
-      ResampleUprightCell(mesh, x, y, z, q, state, c, output, p ARRAY_ARGUMENTS);
+      ResampleUprightCell(mesh, &cell, c, output, p ARRAY_ARGUMENTS);
     }
   }
   else
   {
-    ResampleTetrahedra(mesh, x, y, z, q, determinants, tetrahedra, inverted, state, all, output,
-      p ARRAY_ARGUMENTS);
+    ResampleTetrahedra(mesh, &cell, all, output, p ARRAY_ARGUMENTS);
   }
 }
 

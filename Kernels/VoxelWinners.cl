@@ -59,6 +59,12 @@ static int Claim(__global KEY* winner, KEY key)
   }
 }
 
+// Several tetrahedra of a cell write a voxel, which is the cell's so far: others that hold it may win.
+static void Contest(__global KEY* winner, KEY key)
+{
+  ATOMIC_CMPXCHG(winner, key, CONTESTED | key);
+}
+
 // What passes but the first do with a voxel that a cell writes. Returns whether values are to follow.
 static int TakesPlace(Output* output, size_t target, KEY key, const KernelParameters* p)
 {

@@ -120,6 +120,26 @@ TEST(Folded, CornersOfOneCellOverlap)
   }
 }
 
+TEST(Folded, VertexInAnotherTetrahedronOfItsCell)
+{
+  // The upper one of two cells writes the sample on a vertex of both, and once more with a
+  // tetrahedron that does not have that vertex. As the sample is contested, it goes to the lower
+  // cell, upright or mirrored.
+  for (const double sign : { 1.0, -1.0 })
+  {
+    SCOPED_TRACE(sign);
+    const DeformerCase cells = MakeCase({ { 0, 1, 0, 1, -1, 1 } }, NoScale,
+      [sign](const glm::dvec3& index)
+      {
+        glm::dvec3 moved = 8.0 * index;
+        moved = index == glm::dvec3(1, 0, 0) ? glm::dvec3(4, -2, 4) : moved;
+        moved = index == glm::dvec3(0, 0, 1) ? glm::dvec3(6, -8, 2) : moved;
+        return glm::dvec3(sign * moved.x, moved.y, moved.z);
+      });
+    Check(cells);
+  }
+}
+
 TEST(Folded, ManyCells)
 {
   // So many that in some of them corner tetrahedra overlap.
