@@ -163,8 +163,9 @@ static __attribute__((noinline)) void StoreOtherArrays(
   {
     WeighOrigin(x, y, z, t, weights, &volume);
   }
-  const Sample made = MakeSample(
-    group->X + 2 * lane, group->Y, group->Z, t, weights, volume, place, p);
+  Sample made;
+  BeginSamples(&made, group->X + 2 * lane, group->Y, group->Z, t, volume, p);
+  PlaceSample(&made, weights, place);
   const Sample* s = &made;
   STORE_OTHER_ARRAYS
 }

@@ -54,8 +54,9 @@ static int IsWrittenBefore(
   return 0;
 }
 
+// s: of the tetrahedron, as far as it is known.
 static void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long* weights, long volume,
-  Vector voxel, int role, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+  Sample* s, Vector voxel, int role, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int placeX = voxel.x - p->OutputFirst[0];
   const int placeY = voxel.y - p->OutputFirst[1];
@@ -85,9 +86,13 @@ static void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long*
       return;
     }
   }
-  const Sample s = MakeSample(cell->X, cell->Y, cell->Z, t, weights, volume, target, p);
+  if (s->Volume == 0)
+  {
+    BeginSamples(s, cell->X, cell->Y, cell->Z, t, volume, p);
+  }
+  PlaceSample(s, weights, target);
   output->Coverage[target] = 1;
-  StoreArrays(&s ARRAY_ARGUMENTS);
+  StoreArrays(s ARRAY_ARGUMENTS);
 }
 
 // A box of output voxels, from the lowest to the highest on each axis.
@@ -118,15 +123,19 @@ static Candidates FindCandidates(Vector low, Vector high, int open, const Candid
   return c;
 }
 
-// Those of a cell whose vertices are all there.
-static Candidates CandidatesOfCell(const Vector* q, int open, const Candidates* all)
+// Those of some vertices of a cell, as bits.
+static Candidates CandidatesAmong(
+  const Vector* q, int vertices, int open, const Candidates* all)
 {
-  Vector low = q[0];
-  Vector high = q[0];
-  for (int v = 1; v < 8; ++v)
+  Vector low = { LONG_MAX, LONG_MAX, LONG_MAX };
+  Vector high = { LONG_MIN, LONG_MIN, LONG_MIN };
+  for (int v = 0; v < 8; ++v)
   {
-    low = Minimum(low, q[v]);
-    high = Maximum(high, q[v]);
+    if (vertices >> v & 1)
+    {
+      low = Minimum(low, q[v]);
+      high = Maximum(high, q[v]);
+    }
   }
   return FindCandidates(low, high, open, all);
 }
@@ -134,6 +143,11 @@ static Candidates CandidatesOfCell(const Vector* q, int open, const Candidates* 
 static int IsEmpty(Candidates c)
 {
   return c.Low.x > c.High.x || c.Low.y > c.High.y || c.Low.z > c.High.z;
+}
+
+static long CountCandidates(Candidates c)
+{
+  return (c.High.x - c.Low.x + 1) * (c.High.y - c.Low.y + 1) * (c.High.z - c.Low.z + 1);
 }
 
 #define FOR_EACH_CANDIDATE(voxel, c)                                                               \
@@ -150,6 +164,8 @@ static void ResampleUprightCell(const SamplingMesh* mesh, const Cell* cell, Cand
   // All that hold a sample write it in turn then.
   const int closed = DEFORMVOLUME_IS_CLOSED(p->Pass);
   const EdgeFunctions central = EdgeFunctionsOf(cell, 4);
+  Sample ofCentral;
+  ofCentral.Volume = 0;
   Vector voxel;
   FOR_EACH_CANDIDATE(voxel, c)
   {
@@ -159,7 +175,8 @@ static void ResampleUprightCell(const SamplingMesh* mesh, const Cell* cell, Cand
     const int role = RoleOf(mesh, cell->X, cell->Y, cell->Z, 4, behind, &central, cell->State, p);
     if (role != STRANGER)
     {
-      Write(mesh, cell, 4, behind, central.Volume, voxel, role, output, p ARRAY_ARGUMENTS);
+      Write(mesh, cell, 4, behind, central.Volume, &ofCentral, voxel, role, output,
+        p ARRAY_ARGUMENTS);
     }
     if (role == OWNER && !closed)
     {
@@ -179,12 +196,83 @@ static void ResampleUprightCell(const SamplingMesh* mesh, const Cell* cell, Cand
         RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &corner, cell->State, p);
       if (roleOfCorner != STRANGER)
       {
-        Write(
-          mesh, cell, t, weights, corner.Volume, voxel, roleOfCorner, output, p ARRAY_ARGUMENTS);
+        Sample s;
+        s.Volume = 0;
+        Write(mesh, cell, t, weights, corner.Volume, &s, voxel, roleOfCorner, output,
+          p ARRAY_ARGUMENTS);
       }
       if (roleOfCorner == OWNER && beyond == 0 && !closed)
       {
         break; // on the face: no other corner tetrahedron has the sample inside
+      }
+    }
+  }
+}
+
+// Rows of fewer samples are not worth to be clipped.
+#define LEAST_CLIPPED_ROW 6
+// By how many samples the ends of a clipped row may be off. They are found in single precision, with an error of less
+// than 2^-20 of their distance from the first sample; that is at most MAXIMUM_STRETCH.
+#define CLIP_TOLERANCE (1.0f / 64.0f)
+
+// The first and the last one of a row of samples that a tetrahedron may hold; none where the first comes later.
+// weights: at the first sample. steps: from a sample to the next one. zeros: 1 / -steps where these are not 0.
+static int2 ClipRow(const long* weights, const long* steps, const float* zeros, long samples)
+{
+  float first = 0.0f;
+  float last = samples - 1;
+  for (int k = 0; k < 4; ++k)
+  {
+    const float zero = (float)weights[k] * zeros[k];
+    first = steps[k] > 0 && zero - CLIP_TOLERANCE > first ? zero - CLIP_TOLERANCE : first;
+    last = steps[k] < 0 && zero + CLIP_TOLERANCE < last ? zero + CLIP_TOLERANCE : last;
+    last = steps[k] == 0 && weights[k] < 0 ? -1.0f : last;
+  }
+  return first > last ? (int2)(1, 0) : (int2)((int)ceil(first), (int)floor(last));
+}
+
+// The samples of a tetrahedron among candidates.
+static void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* cell, int t,
+  const Candidates* candidates, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const EdgeFunctions f = EdgeFunctionsOf(cell, t);
+  Sample s;
+  s.Volume = 0;
+  long steps[4];
+  float zeros[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    steps[k] = 256 * f.Normals[k].x;
+    zeros[k] = steps[k] ? -1.0f / (float)steps[k] : 0.0f;
+  }
+  const long samples = candidates->High.x - candidates->Low.x + 1;
+  Vector voxel = candidates->Low;
+  for (voxel.z = candidates->Low.z; voxel.z <= candidates->High.z; ++voxel.z)
+  {
+    for (voxel.y = candidates->Low.y; voxel.y <= candidates->High.y; ++voxel.y)
+    {
+      voxel.x = candidates->Low.x;
+      long weights[4];
+      Evaluate(&f, SamplePosition(voxel), weights);
+      const int2 row =
+        samples < LEAST_CLIPPED_ROW ? (int2)(0, samples - 1) : ClipRow(weights, steps, zeros, samples);
+      for (int k = 0; k < 4; ++k)
+      {
+        weights[k] += row.x * steps[k];
+      }
+      for (int i = row.x; i <= row.y; ++i)
+      {
+        const int role =
+          RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p);
+        if (role != STRANGER)
+        {
+          voxel.x = candidates->Low.x + i;
+          Write(mesh, cell, t, weights, f.Volume, &s, voxel, role, output, p ARRAY_ARGUMENTS);
+        }
+        for (int k = 0; k < 4; ++k)
+        {
+          weights[k] += steps[k];
+        }
       }
     }
   }
@@ -196,31 +284,12 @@ static void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* cell, const
 {
   for (int t = 4; t >= 0; --t)
   {
-    if (!(cell->Tetrahedra >> t & 1))
+    if (cell->Tetrahedra >> t & 1)
     {
-      continue;
-    }
-    const Vector a = cell->Vertices[Tetrahedra[t][0]];
-    const Vector b = cell->Vertices[Tetrahedra[t][1]];
-    const Vector c = cell->Vertices[Tetrahedra[t][2]];
-    const Vector d = cell->Vertices[Tetrahedra[t][3]];
-    const Candidates candidates = FindCandidates(Minimum(Minimum(a, b), Minimum(c, d)),
-      Maximum(Maximum(a, b), Maximum(c, d)), 0, all);
-    if (IsEmpty(candidates))
-    {
-      continue;
-    }
-    const EdgeFunctions f = MakeEdgeFunctions(a, b, c, d);
-    Vector voxel;
-    FOR_EACH_CANDIDATE(voxel, candidates)
-    {
-      long weights[4];
-      Evaluate(&f, SamplePosition(voxel), weights);
-      const int role =
-        RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p);
-      if (role != STRANGER)
+      const Candidates candidates = CandidatesAmong(cell->Vertices, VerticesOf(t), 0, all);
+      if (!IsEmpty(candidates))
       {
-        Write(mesh, cell, t, weights, f.Volume, voxel, role, output, p ARRAY_ARGUMENTS);
+        ResampleTetrahedron(mesh, cell, t, &candidates, output, p ARRAY_ARGUMENTS);
       }
     }
   }
@@ -230,7 +299,7 @@ static void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* cell, const
 static int TouchesUnsettled(
   const Vector* q, const Candidates* all, const Output* output, const KernelParameters* p)
 {
-  const Candidates c = CandidatesOfCell(q, 0, all);
+  const Candidates c = CandidatesAmong(q, 255, 0, all);
   if (IsEmpty(c))
   {
     return 0;
@@ -241,6 +310,9 @@ static int TouchesUnsettled(
     c.High.z - p->OutputFirst[2] };
   return AnyUnsettled(output->Patches, first, last, p);
 }
+
+// Of cells with more candidates it is faster to take the tetrahedra one after the other, whatever these are.
+#define MOST_ONE_BY_ONE 64
 
 // One cell, by whichever of the two ways is right for it. all: the samples that are wanted.
 static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all,
@@ -298,16 +370,18 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Ca
   {
     // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
     const Candidates c =
-      CandidatesOfCell(q, cell.State.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT, all);
-    if (!IsEmpty(c))
+      CandidatesAmong(q, 255, cell.State.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT, all);
+    if (IsEmpty(c))
+    {
+      return;
+    }
+    if (CountCandidates(c) <= MOST_ONE_BY_ONE)
     {
       ResampleUprightCell(mesh, &cell, c, output, p ARRAY_ARGUMENTS);
+      return;
     }
   }
-  else
-  {
-    ResampleTetrahedra(mesh, &cell, all, output, p ARRAY_ARGUMENTS);
-  }
+  ResampleTetrahedra(mesh, &cell, all, output, p ARRAY_ARGUMENTS);
 }
 
 // Adds counts to those of a section of a brick.

@@ -14,6 +14,8 @@ typedef struct
   size_t Target;    // output voxel in the buffers
   size_t Sources[4]; // voxels of the chunk at the tetrahedron's vertices
   REAL Weights[4];  // barycentric weights
+  REAL Scale;       // of the weights as edge functions give them
+  long Volume;      // their sum as these give them, or 0 where all this is not known yet
   int Only;         // the vertex at which the sample lies exactly, or -1
   int Nearest;      // the vertex with the largest weight; of equal ones the lowest voxel
 } Sample;
@@ -75,25 +77,31 @@ static void StoreArrays(const Sample* s ARRAY_PARAMETERS)
   STORE_ARRAYS
 }
 
-// The weights and their sum as the edge functions give them.
-static Sample MakeSample(int x, int y, int z, int t, const long* weights, long volume,
-  size_t target, const KernelParameters* p)
+// What all samples of a tetrahedron share. volume: the sum of the weights as the edge functions give them.
+static void BeginSamples(
+  Sample* s, int x, int y, int z, int t, long volume, const KernelParameters* p)
 {
   const int mirror = Mirror(x, y, z, p);
-  const REAL scale = (REAL)1 / (REAL)volume;
-  Sample s;
-  s.Target = target;
-  s.Only = -1;
-  s.Nearest = 0;
   for (int k = 0; k < 4; ++k)
   {
     const int o = Tetrahedra[t][k] ^ mirror;
-    s.Sources[k] = VertexInChunk(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
-    s.Weights[k] = (REAL)weights[k] * scale;
-    s.Only = weights[k] == volume ? k : s.Only;
-    const long lead = weights[k] - weights[s.Nearest];
-    s.Nearest =
-      lead > 0 || (lead == 0 && s.Sources[k] < s.Sources[s.Nearest]) ? k : s.Nearest;
+    s->Sources[k] = VertexInChunk(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
   }
-  return s;
+  s->Scale = (REAL)1 / (REAL)volume;
+  s->Volume = volume;
+}
+
+static void PlaceSample(Sample* s, const long* weights, size_t target)
+{
+  s->Target = target;
+  s->Only = -1;
+  s->Nearest = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    s->Weights[k] = (REAL)weights[k] * s->Scale;
+    s->Only = weights[k] == s->Volume ? k : s->Only;
+    const long lead = weights[k] - weights[s->Nearest];
+    s->Nearest =
+      lead > 0 || (lead == 0 && s->Sources[k] < s->Sources[s->Nearest]) ? k : s->Nearest;
+  }
 }
