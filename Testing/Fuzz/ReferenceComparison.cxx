@@ -125,6 +125,17 @@ bool IsRight(const reference::Containing& winner, const T* input, int components
   }
   // Half a unit of the result, and what summing in double precision costs.
   long double tolerance = std::numeric_limits<double>::epsilon() * 8.0L * magnitude + slack;
+  if (std::is_integral<T>::value && sizeof(T) == 8)
+  {
+    // What is interpolated is the difference to one of the vertices, with nine roundings at most.
+    // It may be larger than the result, by that vertex.
+    for (const std::int64_t vertex : winner.Vertices)
+    {
+      const auto of = static_cast<long double>(input[vertex * components + component]);
+      tolerance = std::max(
+        tolerance, std::numeric_limits<double>::epsilon() * 4.5L * (magnitude + std::fabs(of)));
+    }
+  }
   tolerance += std::is_integral<T>::value
     ? 0.5L
     : std::numeric_limits<T>::epsilon() * std::fabs(expected) * 0.51L +
