@@ -112,13 +112,14 @@ static int EndIn(uint item, int halves, int cells)
 // whole brick above the one before, so that its first plane of vertices is in the rows, with their flags (lists
 // hold no bricks without cells).
 static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __global char* coverage,
-  __global KEY* winners, __global char* patches, __global uint* counters, ROW_MEMORY float* rows,
+  __global KEY* winners, __global char* patches, __global uint* largeCells,
+  __global uint* counters, ROW_MEMORY float* rows,
   RowFlags (*flags)[ROWS], const KernelParameters* p ARRAY_PARAMETERS)
 {
   Output outputs[DEFORMVOLUME_SECTIONS];
   for (int section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
   {
-    const Output output = { coverage, winners, patches, 0, 0, 0, 0, 0, 0, 0 };
+    const Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
     outputs[section] = output;
   }
   Found found;
@@ -222,8 +223,8 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
 // end for the thread that the system has let wait, or that has more to do.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
   __global const uchar* state, __global const uchar* active, __global char* coverage,
-  __global KEY* winners, __global char* patches, __global uint* counters,
-  __global const uint* bricks, __global uint* taken, ROW_MEMORY float* rows,
+  __global KEY* winners, __global char* patches, __global uint* largeCells,
+  __global uint* counters, __global const uint* bricks, __global uint* taken, ROW_MEMORY float* rows,
   const KernelParameters p ARRAY_PARAMETERS)
 {
 #if ROWS_ARE_GLOBAL
@@ -240,8 +241,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
       const uint above = i > begin ? bricks[i - 1] + p.BrickCount[0] * p.BrickCount[1] : 0;
       const int isAbove =
         bricks[i] == above && above >> DEFORMVOLUME_BRICK_BITS == DEFORMVOLUME_WHOLE_BRICK;
-      ResampleBrick(&mesh, bricks[i], isAbove, coverage, winners, patches, counters, rows, flags,
-        &p ARRAY_ARGUMENTS);
+      ResampleBrick(&mesh, bricks[i], isAbove, coverage, winners, patches, largeCells, counters, rows,
+        flags, &p ARRAY_ARGUMENTS);
     }
   }
 }

@@ -37,19 +37,11 @@ static void MarkSection(ulong cell, CellRun* run, __global uint* counters, const
   const int x = cell - row * width;
   const int z = row / (p->Size[1] - 1);
   const int y = row - (ulong)z * (p->Size[1] - 1);
-  const int inBricks[3] = { x - p->BrickOrigin[0], y - p->BrickOrigin[1], z - p->BrickOrigin[2] };
-  const int column = inBricks[0] / DEFORMVOLUME_COLUMN;
-  const size_t brick = ((size_t)(inBricks[2] / DEFORMVOLUME_BRICK_Z) * p->BrickCount[1] +
-                         inBricks[1] / DEFORMVOLUME_BRICK_Y) *
-      p->BrickCount[0] +
-    inBricks[0] / DEFORMVOLUME_BRICK_X;
-  const int halves = inBricks[1] % DEFORMVOLUME_BRICK_Y / (DEFORMVOLUME_BRICK_Y / 2) +
-    inBricks[2] % DEFORMVOLUME_BRICK_Z / (DEFORMVOLUME_BRICK_Z / 2) * 2;
-  const size_t section = DEFORMVOLUME_SECTIONS * brick + halves * DEFORMVOLUME_COLUMNS +
-    column % DEFORMVOLUME_COLUMNS;
+  const int inColumn = (x - p->BrickOrigin[0]) % DEFORMVOLUME_COLUMN;
+  const size_t section = SectionOf(x, y, z, p);
   counters[section * DEFORMVOLUME_COUNTERS + DEFORMVOLUME_COUNT_CANDIDATES] = 1;
-  run->Begin = cell - min(x, inBricks[0] % DEFORMVOLUME_COLUMN);
-  run->End = cell + min((int)width - x, DEFORMVOLUME_COLUMN - inBricks[0] % DEFORMVOLUME_COLUMN);
+  run->Begin = cell - min(x, inColumn);
+  run->End = cell + min((int)width - x, DEFORMVOLUME_COLUMN - inColumn);
 }
 
 // After a pass that finds the voxels that several cells write, as their keys say: marks patches with voxels that

@@ -32,9 +32,10 @@ typedef struct
   int HasState;       // whether the vertices have a state; without one all that could be is there
   int BrickOrigin[3]; // local index of the first cell of the first brick; may lie before the volume
   int BrickCount[3];  // bricks on each axis
-  int ListBegin;      // place in the list of bricks of the first one to work on
+  int ListBegin;      // place in the list, of bricks or of pieces of cells, of the first one to work on
   int ListEnd;        // and one past the last
   int Portion;        // bricks of the list that a work-item takes at once
+  int MostLargeCells; // room in the list of large cells
 } KernelParameters;
 
 // The undeformed position of the voxels with one index on an axis, in 1/256 output voxel: a whole
@@ -128,7 +129,17 @@ typedef struct
 #define DEFORMVOLUME_COUNT_CANDIDATES 5 // voxels that cells may have won
 #define DEFORMVOLUME_COUNT_TOUCHED                                                                 \
   6 // nonzero where samples are held by cells that do not write them
-#define DEFORMVOLUME_COUNTERS 7
+#define DEFORMVOLUME_COUNT_LARGE 7 // cells that were put into the list of large ones
+#define DEFORMVOLUME_COUNTERS 8
+
+// Samples that a work-item tries of one cell. A cell whose box has more is large: it goes into a list, and what that
+// lists is resampled in pieces, by kernels that follow (LargeCells.cl).
+#define DEFORMVOLUME_PIECE 65536
+// Room in that list, for four integers a cell: local x, y and z, and in how many pieces. Cells that find no room there
+// are resampled where they are found.
+#define DEFORMVOLUME_MOST_LARGE_CELLS 65536
+// Pieces in a launch.
+#define DEFORMVOLUME_PIECES 1024
 
 // Output voxels that a work-item takes of the kernels that count or settle all that are
 // covered or not.
@@ -166,6 +177,20 @@ static size_t PatchRow(size_t y, size_t z, const KernelParameters* p)
   const size_t width = DEFORMVOLUME_PATCHES(p->OutputSize[0]);
   const size_t height = DEFORMVOLUME_PATCHES(p->OutputSize[1]);
   return (z / DEFORMVOLUME_PATCH * height + y / DEFORMVOLUME_PATCH) * width;
+}
+
+// The section of a brick that a cell lies in, as counters number them.
+static size_t SectionOf(int x, int y, int z, const KernelParameters* p)
+{
+  const int inBricks[3] = { x - p->BrickOrigin[0], y - p->BrickOrigin[1], z - p->BrickOrigin[2] };
+  const size_t brick = ((size_t)(inBricks[2] / DEFORMVOLUME_BRICK_Z) * p->BrickCount[1] +
+                         inBricks[1] / DEFORMVOLUME_BRICK_Y) *
+      p->BrickCount[0] +
+    inBricks[0] / DEFORMVOLUME_BRICK_X;
+  const int halves = inBricks[1] % DEFORMVOLUME_BRICK_Y / (DEFORMVOLUME_BRICK_Y / 2) +
+    inBricks[2] % DEFORMVOLUME_BRICK_Z / (DEFORMVOLUME_BRICK_Z / 2) * 2;
+  return DEFORMVOLUME_SECTIONS * brick + halves * DEFORMVOLUME_COLUMNS +
+    inBricks[0] / DEFORMVOLUME_COLUMN % DEFORMVOLUME_COLUMNS;
 }
 
 #else

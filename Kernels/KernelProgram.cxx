@@ -213,7 +213,7 @@ cl::Program GetOutputProgram(OpenCLContext& context)
 }
 
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
-  const std::vector<VolumeArray>& arrays, bool wideKeys, bool lanes)
+  const std::vector<VolumeArray>& arrays, bool wideKeys, ResamplingForm form)
 {
   std::string key = "#define KEY uint\n#define ATOMIC_MIN atomic_min\n"
                     "#define ATOMIC_CMPXCHG atomic_cmpxchg\n";
@@ -230,13 +230,20 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
         "a smaller volume or another device.");
     }
   }
-  const std::string laneText = MakeLanePreamble(context, arrays) + LaneVectors_cl +
-    BrickMapping_cl + GroupSamples_cl + GroupCoverage_cl + GroupCandidates_cl + GroupResampling_cl +
-    BrickResampling_cl;
+  std::string text = Resampling_cl;
+  if (form == ResamplingForm::Lanes)
+  {
+    text += MakeLanePreamble(context, arrays) + LaneVectors_cl + BrickMapping_cl + GroupSamples_cl +
+      GroupCoverage_cl + GroupCandidates_cl + GroupResampling_cl + BrickResampling_cl;
+  }
+  else if (form == ResamplingForm::LargeCells)
+  {
+    text += LargeCells_cl;
+  }
   return context.GetProgram(GetSharedText() + MakePreamble(context, arrays) + key +
       "#define HAS_MAPPING_KERNEL 0\n" + GetMappingText(mapping) + "#define HAS_CELL_KERNEL " +
-      (lanes ? "0\n" : "1\n") + IntegerVectors_cl + CellCoverage_cl + SampleStoring_cl +
-      VoxelWinners_cl + Resampling_cl + (lanes ? laneText : ""),
+      (form == ResamplingForm::Cells ? "1\n" : "0\n") + IntegerVectors_cl + CellCoverage_cl +
+      SampleStoring_cl + VoxelWinners_cl + text,
     Options);
 }
 

@@ -25,11 +25,21 @@ enum class MappingForm
 /// The deformation mapping (DeformationMapping.cl) and the state of vertices (VertexState.cl).
 cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping);
 
-/// The exact resampling for arrays of these types: cell by cell (Resampling.cl) or by lanes
-/// (BrickResampling.cl). wideKeys: cells are too many for the 30 bits of a narrow winner's key.
-/// Throws Error where the device lacks what the arrays need.
+/// The kernels of the exact resampling.
+enum class ResamplingForm
+{
+  /// Cell by cell: Resample in Resampling.cl.
+  Cells,
+  /// By lanes: ResampleBricks in BrickResampling.cl.
+  Lanes,
+  /// What either puts off: ResampleLargeCells in LargeCells.cl.
+  LargeCells
+};
+
+/// The exact resampling for arrays of these types. wideKeys: cells are too many for the 30 bits of
+/// a narrow winner's key. Throws Error where the device lacks what the arrays need.
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
-  const std::vector<VolumeArray>& arrays, bool wideKeys, bool lanes);
+  const std::vector<VolumeArray>& arrays, bool wideKeys, ResamplingForm form);
 
 /// Whether the kernel ResampleBricks works in local memory: where there is enough. Else it does so
 /// in a buffer, which has room for each work-item.

@@ -245,6 +245,9 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   const std::uint64_t counters = this->NumberOfSections * DEFORMVOLUME_COUNTERS;
   Reserve(context, this->Counters, counters * sizeof(cl_uint));
   Fill(context, this->Queue, this->Counters, cl_uint{ 0 }, counters, events);
+  this->MostLargeCells = static_cast<std::size_t>(
+    std::min<std::int64_t>(GetNumberOfCells(lattice.VertexExtent), DEFORMVOLUME_MOST_LARGE_CELLS));
+  Reserve(context, this->LargeCells, (1 + this->MostLargeCells) * sizeof(LargeCell));
 }
 
 bool OutputSlab::HasWinners() const
@@ -313,6 +316,24 @@ std::size_t OutputSlab::CountItems() const
     (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS);
 }
 
+void OutputSlab::ClearLargeCells() const
+{
+  this->Queue.enqueueFillBuffer(this->LargeCells, cl_uint{ 0 }, 0, sizeof(cl_uint));
+}
+
+std::vector<OutputSlab::LargeCell> OutputSlab::ReadLargeCells() const
+{
+  cl_uint number = 0;
+  this->Queue.enqueueReadBuffer(this->LargeCells, CL_TRUE, 0, sizeof(number), &number);
+  std::vector<LargeCell> cells(std::min<std::size_t>(number, this->MostLargeCells));
+  if (!cells.empty())
+  {
+    this->Queue.enqueueReadBuffer(
+      this->LargeCells, CL_TRUE, sizeof(LargeCell), cells.size() * sizeof(LargeCell), cells.data());
+  }
+  return cells;
+}
+
 std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::Event>& events)
 {
   const std::size_t items = this->CountItems();
@@ -368,6 +389,7 @@ OutputSlab::Counts OutputSlab::ReadCounts()
     counts.Writes += counter[DEFORMVOLUME_COUNT_WRITES];
     counts.Inverted += counter[DEFORMVOLUME_COUNT_INVERTED];
     counts.Overstretched += counter[DEFORMVOLUME_COUNT_OVERSTRETCHED];
+    counts.Large += counter[DEFORMVOLUME_COUNT_LARGE];
     missing += counter[DEFORMVOLUME_COUNT_MISSING];
     assumed += counter[DEFORMVOLUME_COUNT_ASSUMED];
   }
@@ -401,6 +423,7 @@ void OutputSlab::SetParameters(KernelParameters& parameters) const
     parameters.WholeFirst[axis] = this->WholeExtent[2 * axis] - this->SlabExtent[2 * axis];
     parameters.WholeEnd[axis] = this->WholeExtent[2 * axis + 1] + 1 - this->SlabExtent[2 * axis];
   }
+  parameters.MostLargeCells = static_cast<int>(this->MostLargeCells);
   parameters.IsPart = this->WholeExtent != this->SlabExtent ? 1 : 0;
 }
 
@@ -443,7 +466,7 @@ std::uint64_t OutputSlab::GetMemory() const
 {
   std::uint64_t bytes = deformvolume::GetMemory(this->Coverage) +
     deformvolume::GetMemory(this->Winners) + deformvolume::GetMemory(this->PatchStates) +
-    deformvolume::GetMemory(this->Counters);
+    deformvolume::GetMemory(this->Counters) + deformvolume::GetMemory(this->LargeCells);
   for (const cl::Buffer& array : this->Arrays)
   {
     bytes += deformvolume::GetMemory(array);

@@ -24,6 +24,7 @@ public:
     std::uint64_t Writes = 0;
     std::uint64_t Inverted = 0;
     std::uint64_t Overstretched = 0;
+    std::uint64_t Large = 0; // cells
     /// On the border of the mesh, tetrahedra that cover nothing, where the kernel took them to.
     bool MissingWhereAssumed = false;
 
@@ -67,6 +68,15 @@ public:
   void Settle(OpenCLContext& context, bool claimed, const KernelParameters& parameters,
     std::vector<cl::Event>& events);
 
+  /// The list of large cells (DEFORMVOLUME_PIECE), as the launches of a pass leave it.
+  struct LargeCell
+  {
+    std::array<cl_int, 3> Cell; // local index
+    cl_int Pieces;
+  };
+  void ClearLargeCells() const;
+  std::vector<LargeCell> ReadLargeCells() const;
+
   std::uint64_t CountCovered(OpenCLContext& context, std::vector<cl::Event>& events);
   Counts ReadCounts();
 
@@ -87,6 +97,7 @@ public:
   {
     return this->PatchStates() ? this->PatchStates : this->Coverage;
   }
+  const cl::Buffer& GetLargeCells() const { return this->LargeCells; }
   const cl::Buffer& GetCounters() const { return this->Counters; }
 
   /// Begins to copy the slab, which is done, to its place in the request's memory, in a queue of
@@ -119,6 +130,8 @@ private:
   cl::Buffer Winners;
   cl::Buffer PatchStates; // a byte a patch of the output
   cl::Buffer Counters;
+  cl::Buffer LargeCells;
+  std::size_t MostLargeCells = 0;
   std::vector<cl_uint> LastCounters; // as they were read
   std::size_t WinnerSize = 4;
   std::size_t NumberOfSections = 0; // of bricks

@@ -18,6 +18,8 @@ typedef struct
   int Inverted;   // of these the inverted ones
   CellState State;
   Vector Vertices[8];
+  Vector Low; // bounds of the vertices that are there
+  Vector High;
 } Cell;
 
 static EdgeFunctions EdgeFunctionsOf(const Cell* cell, int t)
@@ -33,7 +35,7 @@ static Vector SamplePosition(Vector voxel)
 }
 
 // Whether a tetrahedron of the cell that comes before this one, and has the same key, writes a voxel, too.
-static int IsWrittenBefore(
+static __attribute__((noinline)) int IsWrittenBefore(
   const SamplingMesh* mesh, const Cell* cell, int tetrahedron, Vector voxel, const KernelParameters* p)
 {
   const int alike =
@@ -121,23 +123,6 @@ static Candidates FindCandidates(Vector low, Vector high, int open, const Candid
   c.High.y = min((high.y - open) >> 8, all->High.y);
   c.High.z = min((high.z - open) >> 8, all->High.z);
   return c;
-}
-
-// Those of some vertices of a cell, as bits.
-static Candidates CandidatesAmong(
-  const Vector* q, int vertices, int open, const Candidates* all)
-{
-  Vector low = { LONG_MAX, LONG_MAX, LONG_MAX };
-  Vector high = { LONG_MIN, LONG_MIN, LONG_MIN };
-  for (int v = 0; v < 8; ++v)
-  {
-    if (vertices >> v & 1)
-    {
-      low = Minimum(low, q[v]);
-      high = Maximum(high, q[v]);
-    }
-  }
-  return FindCandidates(low, high, open, all);
 }
 
 static int IsEmpty(Candidates c)
@@ -238,14 +223,15 @@ static void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* cell, int 
   const EdgeFunctions f = EdgeFunctionsOf(cell, t);
   Sample s;
   s.Volume = 0;
+  const long samples = candidates->High.x - candidates->Low.x + 1;
+  const int clipped = samples >= LEAST_CLIPPED_ROW;
   long steps[4];
   float zeros[4];
   for (int k = 0; k < 4; ++k)
   {
     steps[k] = 256 * f.Normals[k].x;
-    zeros[k] = steps[k] ? -1.0f / (float)steps[k] : 0.0f;
+    zeros[k] = clipped && steps[k] ? -1.0f / (float)steps[k] : 0.0f;
   }
-  const long samples = candidates->High.x - candidates->Low.x + 1;
   Vector voxel = candidates->Low;
   for (voxel.z = candidates->Low.z; voxel.z <= candidates->High.z; ++voxel.z)
   {
@@ -254,11 +240,14 @@ static void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* cell, int 
       voxel.x = candidates->Low.x;
       long weights[4];
       Evaluate(&f, SamplePosition(voxel), weights);
-      const int2 row =
-        samples < LEAST_CLIPPED_ROW ? (int2)(0, samples - 1) : ClipRow(weights, steps, zeros, samples);
-      for (int k = 0; k < 4; ++k)
+      int2 row = (int2)(0, samples - 1);
+      if (clipped)
       {
-        weights[k] += row.x * steps[k];
+        row = ClipRow(weights, steps, zeros, samples);
+        for (int k = 0; k < 4; ++k)
+        {
+          weights[k] += row.x * steps[k];
+        }
       }
       for (int i = row.x; i <= row.y; ++i)
       {
@@ -286,7 +275,12 @@ static void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* cell, const
   {
     if (cell->Tetrahedra >> t & 1)
     {
-      const Candidates candidates = CandidatesAmong(cell->Vertices, VerticesOf(t), 0, all);
+      const Vector a = cell->Vertices[Tetrahedra[t][0]];
+      const Vector b = cell->Vertices[Tetrahedra[t][1]];
+      const Vector c = cell->Vertices[Tetrahedra[t][2]];
+      const Vector d = cell->Vertices[Tetrahedra[t][3]];
+      const Candidates candidates = FindCandidates(Minimum(Minimum(a, b), Minimum(c, d)),
+        Maximum(Maximum(a, b), Maximum(c, d)), 0, all);
       if (!IsEmpty(candidates))
       {
         ResampleTetrahedron(mesh, cell, t, &candidates, output, p ARRAY_ARGUMENTS);
@@ -295,11 +289,9 @@ static void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* cell, const
   }
 }
 
-// Whether the bounds of a cell meet a patch of the output with voxels that are not settled.
-static int TouchesUnsettled(
-  const Vector* q, const Candidates* all, const Output* output, const KernelParameters* p)
+// Whether candidates lie in a patch of the output with voxels that are not settled.
+static int AreUnsettled(Candidates c, const Output* output, const KernelParameters* p)
 {
-  const Candidates c = CandidatesAmong(q, 255, 0, all);
   if (IsEmpty(c))
   {
     return 0;
@@ -312,33 +304,66 @@ static int TouchesUnsettled(
 }
 
 // Of cells with more candidates it is faster to take the tetrahedra one after the other, whatever these are.
-#define MOST_ONE_BY_ONE 64
+#define MOST_ONE_BY_ONE 128
 
-// One cell, by whichever of the two ways is right for it. all: the samples that are wanted.
-static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all,
+// The samples of a cell, by whichever of the two ways is right for it. all: those that are wanted.
+static void ResampleSamples(const SamplingMesh* mesh, const Cell* cell, const Candidates* all,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  Cell cell;
-  Vector* const q = cell.Vertices;
+  if (cell->Tetrahedra == 31 && cell->Inverted == 0)
+  {
+    // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
+    const int open = cell->State.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT;
+    const Candidates c = FindCandidates(cell->Low, cell->High, open, all);
+    if (IsEmpty(c))
+    {
+      return;
+    }
+    if (CountCandidates(c) <= MOST_ONE_BY_ONE)
+    {
+      ResampleUprightCell(mesh, cell, c, output, p ARRAY_ARGUMENTS);
+      return;
+    }
+  }
+  ResampleTetrahedra(mesh, cell, all, output, p ARRAY_ARGUMENTS);
+}
+
+// What is known of a cell before its samples are, and is counted. Returns whether it may have some.
+static int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all, Cell* cell,
+  Output* output, const KernelParameters* p)
+{
+  Vector* const q = cell->Vertices;
   const int present = LoadCell(mesh, x, y, z, p, q);
   const int active = ActiveTetrahedra(mesh, x, y, z, p);
   if (present == 0 || active == 0)
   {
-    return;
+    return 0;
   }
-  if (DEFORMVOLUME_IS_CLOSED(p->Pass) && present == 255 && !TouchesUnsettled(q, all, output, p))
+  const Vector none = { LONG_MAX, LONG_MAX, LONG_MAX };
+  cell->Low = none;
+  cell->High.x = cell->High.y = cell->High.z = LONG_MIN;
+  for (int v = 0; v < 8; ++v)
   {
-    return;
+    if (present >> v & 1)
+    {
+      cell->Low = Minimum(cell->Low, q[v]);
+      cell->High = Maximum(cell->High, q[v]);
+    }
+  }
+  if (DEFORMVOLUME_IS_CLOSED(p->Pass) &&
+    !AreUnsettled(FindCandidates(cell->Low, cell->High, 0, all), output, p))
+  {
+    return 0;
   }
   const int mirror = Mirror(x, y, z, p);
   // Orientations, against the one that the parity of the cell asks for.
   const int odd = (mirror ^ mirror >> 1 ^ mirror >> 2) & 1;
-  cell.X = x;
-  cell.Y = y;
-  cell.Z = z;
-  cell.State = CellStateOf(mesh, x, y, z, p);
-  cell.Tetrahedra = 0;
-  cell.Inverted = 0;
+  cell->X = x;
+  cell->Y = y;
+  cell->Z = z;
+  cell->State = CellStateOf(mesh, x, y, z, p);
+  cell->Tetrahedra = 0;
+  cell->Inverted = 0;
   int missing = 0;
   for (int t = 0; t < 5; ++t)
   {
@@ -359,29 +384,85 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Ca
     }
     const long determinant = Determinant(a, b, c, d);
     const int upright = odd != (t == 4) ? determinant < 0 : determinant > 0;
-    cell.Tetrahedra |= (determinant != 0) << t;
-    cell.Inverted |= (!upright && determinant != 0) << t;
+    cell->Tetrahedra |= (determinant != 0) << t;
+    cell->Inverted |= (!upright && determinant != 0) << t;
     missing |= determinant == 0;
   }
-  output->Inverted += popcount(cell.Inverted);
-  output->Missing += missing && cell.State.Interior != 255;
-  output->Assumed |= (cell.State.Regular & ~cell.State.Interior) != 0;
-  if (cell.Tetrahedra == 31 && cell.Inverted == 0)
+  output->Inverted += popcount(cell->Inverted);
+  output->Missing += missing && cell->State.Interior != 255;
+  output->Assumed |= (cell->State.Regular & ~cell->State.Interior) != 0;
+  return 1;
+}
+
+// A box in pieces of at most DEFORMVOLUME_PIECE samples, or of one row: so many rows of so many planes.
+typedef struct
+{
+  int Rows;
+  int Planes;
+  int InPlane; // pieces of a plane
+  int Count;
+} Pieces;
+
+static Pieces DivideBox(Candidates c)
+{
+  const long width = c.High.x - c.Low.x + 1;
+  const long height = c.High.y - c.Low.y + 1;
+  const long depth = c.High.z - c.Low.z + 1;
+  Pieces pieces;
+  pieces.Rows = clamp(DEFORMVOLUME_PIECE / width, 1L, height);
+  pieces.Planes = pieces.Rows < height ? 1 : clamp(DEFORMVOLUME_PIECE / (width * height), 1L, depth);
+  pieces.InPlane = (height + pieces.Rows - 1) / pieces.Rows;
+  pieces.Count = pieces.InPlane * ((depth + pieces.Planes - 1) / pieces.Planes);
+  return pieces;
+}
+
+static Candidates PieceOf(Candidates c, int piece)
+{
+  const Pieces pieces = DivideBox(c);
+  c.Low.y += piece % pieces.InPlane * pieces.Rows;
+  c.High.y = min(c.High.y, c.Low.y + pieces.Rows - 1);
+  c.Low.z += piece / pieces.InPlane * pieces.Planes;
+  c.High.z = min(c.High.z, c.Low.z + pieces.Planes - 1);
+  return c;
+}
+
+// Boxes that are smaller, in 1/256 voxel, have at most as many samples as a piece: 40 * 40 * 40.
+#define LEAST_LARGE_SIZE (39 * 256)
+
+// Whether the cell is large and has been put into the list of such.
+static int IsPutOff(
+  const Cell* cell, const Candidates* all, Output* output, const KernelParameters* p)
+{
+  const Vector size = Subtract(cell->High, cell->Low);
+  if (max(size.x, max(size.y, size.z)) < LEAST_LARGE_SIZE)
   {
-    // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
-    const Candidates c =
-      CandidatesAmong(q, 255, cell.State.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT, all);
-    if (IsEmpty(c))
-    {
-      return;
-    }
-    if (CountCandidates(c) <= MOST_ONE_BY_ONE)
-    {
-      ResampleUprightCell(mesh, &cell, c, output, p ARRAY_ARGUMENTS);
-      return;
-    }
+    return 0;
   }
-  ResampleTetrahedra(mesh, &cell, all, output, p ARRAY_ARGUMENTS);
+  const Candidates box = FindCandidates(cell->Low, cell->High, 0, all);
+  if (IsEmpty(box) || CountCandidates(box) <= DEFORMVOLUME_PIECE)
+  {
+    return 0;
+  }
+  const uint place = atomic_inc(output->LargeCells);
+  if (place >= p->MostLargeCells)
+  {
+    return 0;
+  }
+  const int4 large = { cell->X, cell->Y, cell->Z, DivideBox(box).Count };
+  ((__global int4*)output->LargeCells)[1 + place] = large;
+  output->Large++;
+  return 1;
+}
+
+// One cell. all: the samples that are wanted.
+static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all,
+  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  Cell cell;
+  if (MakeCell(mesh, x, y, z, all, &cell, output, p) && !IsPutOff(&cell, all, output, p))
+  {
+    ResampleSamples(mesh, &cell, all, output, p ARRAY_ARGUMENTS);
+  }
 }
 
 // Adds counts to those of a section of a brick.
@@ -390,7 +471,7 @@ static void AddCounts(
 {
   const uint counts[DEFORMVOLUME_COUNTERS] = { output->Writes, output->Inverted,
     output->Overstretched, output->Missing, output->Assumed, output->Candidates,
-    output->Touched };
+    output->Touched, output->Large };
   for (int i = 0; i < DEFORMVOLUME_COUNTERS; ++i)
   {
     // The passes that come later count nothing again.
@@ -405,7 +486,8 @@ static void AddCounts(
 // A work-group takes a block of cells. positions: room for three ints a vertex of the block.
 __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   __global const uchar* active, __global char* coverage, __global KEY* winners,
-  __global char* patches, __global uint* counters, __local int* positions,
+  __global char* patches, __global uint* largeCells, __global uint* counters,
+  __local int* positions,
   const KernelParameters p ARRAY_PARAMETERS)
 {
   const int first[3] = { get_group_id(0) * DEFORMVOLUME_BLOCK_X,
@@ -430,7 +512,7 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
 
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, positions,
     { first[0], first[1], first[2] } };
-  Output output = { coverage, winners, patches, 0, 0, 0, 0, 0, 0, 0 };
+  Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
   const Candidates all = AllCandidates(&p);
   for (int i = get_local_id(0);
        i < DEFORMVOLUME_BLOCK_X * DEFORMVOLUME_BLOCK_Y * DEFORMVOLUME_BLOCK_Z;

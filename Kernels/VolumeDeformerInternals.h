@@ -90,9 +90,9 @@ public:
   void Run(const DeformRequest& request, OutputSlab& output, int pass,
     const std::vector<cl_uint>* bricks = nullptr);
   void RunPublished(const DeformRequest& request, OutputSlab& output);
-  cl::Kernel MakeResamplingKernel(bool lanes);
+  cl::Kernel MakeResamplingKernel(ResamplingForm form);
   void SetResamplingArguments(cl::Kernel& kernel, const LatticeChunk& chunk,
-    const OutputSlab& output, bool lanes, const KernelParameters& p) const;
+    const OutputSlab& output, ResamplingForm form, const KernelParameters& p) const;
   struct PlannedLaunch
   {
     const LatticeChunk& Chunk;
@@ -104,11 +104,13 @@ public:
   void RunExact(const DeformRequest& request, OutputSlab& output, int pass);
   /// Has a resampling kernel compiled before it runs (OpenCLContext::Prepare).
   void PrepareKernel(cl::Kernel& kernel, const LatticeChunk& chunk, const OutputSlab& output,
-    bool lanes, const KernelParameters& parameters);
+    ResamplingForm form, const KernelParameters& parameters);
   void LaunchBricks(cl::Kernel& kernel, const KernelParameters& p);
   void LaunchCells(cl::Kernel& kernel, const KernelParameters& p);
   void RunBricks(
     const DeformRequest& request, OutputSlab& output, int pass, const std::vector<cl_uint>& bricks);
+  /// The large cells that a pass has put off.
+  void RunLargeCells(const DeformRequest& request, OutputSlab& output, int pass);
   /// Waits for the launch before the last one, so that the device always has work, and reports.
   void ReportLaunch(const DeformRequest& request, cl::Event& previous);
   std::size_t GetGroupSize(const cl::Kernel& kernel) const;
@@ -171,6 +173,7 @@ public:
   cl::Buffer Bricks;      // the list of those to work on
   cl::Buffer BrickRows;   // what these need, where local memory is too small
   cl::Buffer TakenBricks; // how many of these the launch that runs has taken
+  cl::Buffer Pieces;      // of large cells, to work on
   /// Work on one slab goes on while the other is copied to the caller.
   std::array<OutputSlab, 2> Targets;
   MeshRasterizer Rasterizer;

@@ -90,8 +90,9 @@ void VolumeDeformer::Internals::RunPublished(const DeformRequest& request, Outpu
   }
 }
 
-cl::Kernel VolumeDeformer::Internals::MakeResamplingKernel(bool lanes)
+cl::Kernel VolumeDeformer::Internals::MakeResamplingKernel(ResamplingForm form)
 {
+  const bool lanes = form == ResamplingForm::Lanes;
   if (lanes && !HasLocalBricks(*this->Context))
   {
     Reserve(*this->Context, this->BrickRows,
@@ -99,12 +100,15 @@ cl::Kernel VolumeDeformer::Internals::MakeResamplingKernel(bool lanes)
         GetBrickMemory(*this->Context, this->Arrays));
   }
   return cl::Kernel(GetResamplingProgram(*this->Context, this->GetMappingForm(), this->Arrays,
-                      GetWinnerSize(this->Mesh->GetLattice()) == 8, lanes),
-    lanes ? "ResampleBricks" : "Resample");
+                      GetWinnerSize(this->Mesh->GetLattice()) == 8, form),
+    lanes                             ? "ResampleBricks"
+      : form == ResamplingForm::Cells ? "Resample"
+                                      : "ResampleLargeCells");
 }
 
 void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
-  const LatticeChunk& chunk, const OutputSlab& output, bool lanes, const KernelParameters& p) const
+  const LatticeChunk& chunk, const OutputSlab& output, ResamplingForm form,
+  const KernelParameters& p) const
 {
   cl_uint i = this->SetMappingArguments(kernel, chunk);
   kernel.setArg(i++, this->Mesh->GetState(chunk));
@@ -112,8 +116,9 @@ void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
   kernel.setArg(i++, output.GetCoverage());
   kernel.setArg(i++, output.GetWinners());
   kernel.setArg(i++, output.GetPatches());
+  kernel.setArg(i++, output.GetLargeCells());
   kernel.setArg(i++, output.GetCounters());
-  if (lanes)
+  if (form == ResamplingForm::Lanes)
   {
     kernel.setArg(i++, this->Bricks);
     kernel.setArg(i++, this->TakenBricks);
@@ -126,9 +131,13 @@ void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
       kernel.setArg(i++, this->BrickRows);
     }
   }
-  else
+  else if (form == ResamplingForm::Cells)
   {
     kernel.setArg(i++, cl::Local(3 * sizeof(cl_int) * DEFORMVOLUME_BLOCK_VERTICES));
+  }
+  else
+  {
+    kernel.setArg(i++, this->Pieces);
   }
   kernel.setArg(i++, p);
   for (std::size_t a = 0; a < this->Arrays.size(); ++a)
@@ -139,15 +148,18 @@ void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
 }
 
 void VolumeDeformer::Internals::PrepareKernel(cl::Kernel& kernel, const LatticeChunk& chunk,
-  const OutputSlab& output, bool lanes, const KernelParameters& parameters)
+  const OutputSlab& output, ResamplingForm form, const KernelParameters& parameters)
 {
   // One that has no brick and no layer of cells to work on.
   KernelParameters p = parameters;
   p.ListBegin = p.ListEnd = 0;
   p.LayersEnd = p.LayersBegin;
-  this->SetResamplingArguments(kernel, chunk, output, lanes, p);
-  this->Context->Prepare(
-    this->Queue, kernel, lanes ? cl::NDRange(1) : cl::NDRange(this->GetCellGroup(kernel), 1, 1));
+  this->SetResamplingArguments(kernel, chunk, output, form, p);
+  const std::size_t group = this->GetCellGroup(kernel);
+  this->Context->Prepare(this->Queue, kernel,
+    form == ResamplingForm::Cells     ? cl::NDRange(group, 1, 1)
+      : form == ResamplingForm::Lanes ? cl::NDRange(1)
+                                      : cl::NDRange(group));
 }
 
 std::size_t VolumeDeformer::Internals::GetCellGroup(const cl::Kernel& kernel) const
@@ -173,13 +185,13 @@ void VolumeDeformer::Internals::RunBricks(
   {
     return;
   }
-  cl::Kernel kernel = this->MakeResamplingKernel(true);
+  cl::Kernel kernel = this->MakeResamplingKernel(ResamplingForm::Lanes);
   this->Bricks = this->SendBuffer(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
   const LatticeChunk& chunk = this->Mesh->GetChunks().front();
   KernelParameters p = this->Mesh->GetParameters(chunk);
   p.Pass = pass;
   output.SetParameters(p);
-  this->PrepareKernel(kernel, chunk, output, true, p);
+  this->PrepareKernel(kernel, chunk, output, ResamplingForm::Lanes, p);
   // As many in a launch as there are when all are run.
   const std::size_t step = static_cast<std::size_t>(p.BrickCount[0]) *
     static_cast<std::size_t>(p.BrickCount[1]) *
@@ -192,7 +204,7 @@ void VolumeDeformer::Internals::RunBricks(
     p.ListBegin = static_cast<int>(begin);
     p.ListEnd = static_cast<int>(std::min(begin + step, bricks.size()));
     p.Portion = 1;
-    this->SetResamplingArguments(kernel, chunk, output, true, p);
+    this->SetResamplingArguments(kernel, chunk, output, ResamplingForm::Lanes, p);
     this->LaunchBricks(kernel, p);
     this->ReportLaunch(request, previous);
   }
@@ -245,7 +257,8 @@ void VolumeDeformer::Internals::LaunchCells(cl::Kernel& kernel, const KernelPara
 void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSlab& output, int pass)
 {
   const bool lanes = this->UseLanes(request.Method, output);
-  cl::Kernel kernel = this->MakeResamplingKernel(lanes);
+  const ResamplingForm form = lanes ? ResamplingForm::Lanes : ResamplingForm::Cells;
+  cl::Kernel kernel = this->MakeResamplingKernel(form);
   if (lanes && this->Mesh->GetBricks().GetNumberOfBricks() >> DEFORMVOLUME_BRICK_BITS)
   {
     throw Error("The volume has more than 10^11 voxels. Use a smaller volume.");
@@ -257,11 +270,11 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
   {
     this->Bricks = this->SendBuffer(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
   }
-  this->PrepareKernel(kernel, launches.front().Chunk, output, lanes, launches.front().Parameters);
+  this->PrepareKernel(kernel, launches.front().Chunk, output, form, launches.front().Parameters);
   cl::Event previous;
   for (const auto& [chunk, p] : launches)
   {
-    this->SetResamplingArguments(kernel, chunk, output, lanes, p);
+    this->SetResamplingArguments(kernel, chunk, output, form, p);
     if (lanes)
     {
       this->LaunchBricks(kernel, p);
@@ -271,6 +284,63 @@ void VolumeDeformer::Internals::RunExact(const DeformRequest& request, OutputSla
       this->LaunchCells(kernel, p);
     }
     this->ReportLaunch(request, previous);
+  }
+}
+
+void VolumeDeformer::Internals::RunLargeCells(
+  const DeformRequest& request, OutputSlab& output, int pass)
+{
+  const std::vector<OutputSlab::LargeCell> cells = output.ReadLargeCells();
+  if (cells.empty())
+  {
+    return;
+  }
+  using Piece = std::array<cl_int, 4>;
+  std::vector<Piece> pieces;
+  pieces.reserve(DEFORMVOLUME_PIECES);
+  std::uint64_t left = 0;
+  for (const OutputSlab::LargeCell& cell : cells)
+  {
+    left += static_cast<std::uint64_t>(cell.Pieces);
+  }
+  this->LaunchesExpected = this->LaunchesDone + left / DEFORMVOLUME_PIECES + 1;
+  cl::Kernel kernel = this->MakeResamplingKernel(ResamplingForm::LargeCells);
+  const std::size_t group = this->GetCellGroup(kernel);
+  Reserve(*this->Context, this->Pieces, DEFORMVOLUME_PIECES * sizeof(Piece));
+  cl::Event previous;
+  for (const LatticeChunk& chunk : this->Mesh->GetChunks())
+  {
+    KernelParameters p = this->Mesh->GetParameters(chunk);
+    p.Pass = pass;
+    output.SetParameters(p);
+    this->PrepareKernel(kernel, chunk, output, ResamplingForm::LargeCells, p);
+    const auto launch = [&]
+    {
+      this->Queue.enqueueWriteBuffer(
+        this->Pieces, CL_TRUE, 0, pieces.size() * sizeof(Piece), pieces.data());
+      p.ListEnd = static_cast<int>(pieces.size());
+      this->SetResamplingArguments(kernel, chunk, output, ResamplingForm::LargeCells, p);
+      this->Launch(
+        kernel, cl::NDRange((pieces.size() + group - 1) / group * group), cl::NDRange(group));
+      this->ReportLaunch(request, previous);
+      pieces.clear();
+    };
+    for (const auto& [cell, count] : cells)
+    {
+      const bool here = cell[2] >= chunk.LayersBegin && cell[2] < chunk.LayersEnd;
+      for (cl_int piece = 0; here && piece < count; ++piece)
+      {
+        pieces.push_back({ { cell[0], cell[1], cell[2], piece } });
+        if (pieces.size() == DEFORMVOLUME_PIECES)
+        {
+          launch();
+        }
+      }
+    }
+    if (!pieces.empty())
+    {
+      launch();
+    }
   }
 }
 
@@ -290,13 +360,17 @@ void VolumeDeformer::Internals::Run(
   {
     this->RunPublished(request, output);
   }
-  else if (bricks)
-  {
-    this->RunBricks(request, output, pass, *bricks);
-  }
   else
   {
-    this->RunExact(request, output, pass);
+    output.ClearLargeCells();
+    if (bricks)
+    {
+      this->RunBricks(request, output, pass, *bricks);
+    }
+    else
+    {
+      this->RunExact(request, output, pass);
+    }
   }
 }
 
@@ -310,9 +384,17 @@ bool VolumeDeformer::Internals::RunSlab(
   {
     output.PrepareWinners(*this->Context, this->ResamplingEvents);
   }
-  this->Run(request, output, expected ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT);
+  const int firstPass = expected ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT;
+  this->Run(request, output, firstPass);
   std::uint64_t covered = output.CountCovered(*this->Context, this->ResamplingEvents);
-  const OutputSlab::Counts counts = output.ReadCounts();
+  OutputSlab::Counts counts = output.ReadCounts();
+  const bool hasLarge = counts.Large > 0;
+  if (hasLarge)
+  {
+    this->RunLargeCells(request, output, firstPass);
+    covered = output.CountCovered(*this->Context, this->ResamplingEvents);
+    counts = output.ReadCounts();
+  }
   if (first) // every slab sees all tetrahedra
   {
     report.NumberOfInvertedTetrahedra = static_cast<std::int64_t>(counts.Inverted);
@@ -324,13 +406,21 @@ bool VolumeDeformer::Internals::RunSlab(
     const bool contested = counts.Writes > covered;
     report.Overlapping |= contested;
     this->LaunchesExpected += (contested && !expected ? 3 : 2) * this->GetNumberOfLaunches();
+    const auto runPass = [&](int pass, const std::vector<cl_uint>* bricks)
+    {
+      this->Run(request, output, pass, bricks);
+      if (hasLarge)
+      {
+        this->RunLargeCells(request, output, pass);
+      }
+    };
     if (!expected)
     {
       this->CheckWinners(output);
       output.PrepareWinners(*this->Context, this->ResamplingEvents);
       if (contested)
       {
-        this->Run(request, output, DEFORMVOLUME_PASS_OWNERS);
+        runPass(DEFORMVOLUME_PASS_OWNERS, nullptr);
       }
     }
     const bool claimed = expected || contested;
@@ -345,7 +435,7 @@ bool VolumeDeformer::Internals::RunSlab(
       {
         bricks = output.FindBricks(counter);
       }
-      this->Run(request, output, pass, all ? nullptr : &bricks);
+      runPass(pass, all ? nullptr : &bricks);
     };
     run(DEFORMVOLUME_PASS_MARK, !someBricks || !claimed, DEFORMVOLUME_COUNT_TOUCHED);
     run(DEFORMVOLUME_PASS_WINNER, !someBricks, DEFORMVOLUME_COUNT_CANDIDATES);

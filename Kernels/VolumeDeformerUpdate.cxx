@@ -363,7 +363,12 @@ bool VolumeDeformer::Internals::UpdateOutput(
   this->PlanningTime = GetSecondsSince(begin);
   output.PrepareAgain(*this->Context, this->Queue, request, this->Arrays, plan.Bricks);
   this->Run(request, output, DEFORMVOLUME_PASS_DIRECT, &plan.Bricks);
-  const OutputSlab::Counts counts = output.ReadCounts();
+  OutputSlab::Counts counts = output.ReadCounts();
+  if (counts.Large > 0)
+  {
+    this->RunLargeCells(request, output, DEFORMVOLUME_PASS_DIRECT);
+    counts = output.ReadCounts();
+  }
   const auto done = Clock::now();
   output.Read(this->ReadQueue, request);
   output.FinishReading();

@@ -13,6 +13,7 @@ typedef struct
   __global char* Coverage;
   __global KEY* Winners;
   __global char* Patches; // what is known of them
+  __global uint* LargeCells; // their number and three integers that are not used; then the list
   // Counts of this work-item.
   uint Writes;
   uint Inverted;
@@ -21,7 +22,11 @@ typedef struct
   uint Assumed; // whether cells on the border left samples to the next cells without looking at these
   uint Candidates; // voxels that were won, as far as others had marked them by then
   uint Touched; // nonzero where samples are held that others write, or none
+  uint Large;   // cells that were put into the list
 } Output;
+
+#define NEW_OUTPUT(coverage, winners, patches, largeCells)                                      \
+  { coverage, winners, patches, largeCells, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 // Of overlapping tetrahedra upright ones win, then the lowest cell. Within a cell the order of
 // writing decides, the lowest tetrahedron last. The key of a voxel that is contested has the highest bit: so it is

@@ -176,15 +176,21 @@ TEST(Compilation, NoWarnings)
   {
     SCOPED_TRACE(static_cast<int>(form));
     EXPECT_EQ(GetLog(GetMappingProgram(context, form)), "");
-    EXPECT_EQ(GetLog(GetResamplingProgram(context, form, one, false, true)), "");
+    EXPECT_EQ(GetLog(GetResamplingProgram(context, form, one, false, ResamplingForm::Lanes)), "");
   }
   for (const bool wide : { false, true })
   {
-    EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, linear, wide, true)), "");
-    EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, linear, wide, false)), "");
+    for (const ResamplingForm form :
+      { ResamplingForm::Cells, ResamplingForm::Lanes, ResamplingForm::LargeCells })
+    {
+      EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, linear, wide, form)), "");
+    }
   }
-  EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, labels, false, true)), "");
-  EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, labels, false, false)), "");
+  for (const ResamplingForm form :
+    { ResamplingForm::Cells, ResamplingForm::Lanes, ResamplingForm::LargeCells })
+  {
+    EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, labels, false, form)), "");
+  }
   EXPECT_EQ(GetLog(GetOutputProgram(context)), "");
   EXPECT_EQ(GetLog(GetPublishedProgram(context, linear)), "");
   EXPECT_EQ(GetLog(GetBinningProgram(context)), "");
@@ -199,11 +205,12 @@ TEST(Compilation, KernelsThatAreNotUsedAreNotCompiled)
 {
   OpenCLContext& context = GetContext();
   const std::vector<VolumeArray> arrays = MakeArrays({ ElementType::Int16 }, false);
-  for (const bool lanes : { false, true })
+  for (const auto& [form, name] : { std::make_pair(ResamplingForm::Cells, "Resample"),
+         std::make_pair(ResamplingForm::Lanes, "ResampleBricks"),
+         std::make_pair(ResamplingForm::LargeCells, "ResampleLargeCells") })
   {
-    const std::string names =
-      GetResamplingProgram(context, MappingForm::Field, arrays, false, lanes)
-        .getInfo<CL_PROGRAM_KERNEL_NAMES>();
-    EXPECT_EQ(std::string(names.c_str()), lanes ? "ResampleBricks" : "Resample");
+    const std::string names = GetResamplingProgram(context, MappingForm::Field, arrays, false, form)
+                                .getInfo<CL_PROGRAM_KERNEL_NAMES>();
+    EXPECT_EQ(std::string(names.c_str()), name);
   }
 }
