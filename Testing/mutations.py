@@ -24,12 +24,14 @@ BUILD = WORK / "build"
 NARROW = ("TestNarrowDecisions", "*")
 MASKS = ("TestIncremental", "IncrementalMasks*")
 MEMORY = ("TestHostMemory", "*")
+LARGE = ("TestLargeCells", "-*Time*")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
     "filter-upright": ("Kernels/GroupResampling.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
     "filter-bent": ("Kernels/GroupResampling.cl", "(FLOATS)(3.2e-5f)", "(FLOATS)(3.2e-7f)", [NARROW]),
     "mask-reach": ("Kernels/IncrementalUpdate.cxx", "MaskReach = 1;", "MaskReach = 0;", [MASKS]),
+    "clip": ("Kernels/Resampling.cl", "CLIP_TOLERANCE (1.0f / 64.0f)", "CLIP_TOLERANCE 0.0f", [LARGE]),
     "launch-end": ("Kernels/Resampling.cl", "z <= p.LayersEnd + 1", "z <= p.LayersEnd", [MEMORY]),
 }
 
