@@ -7,8 +7,9 @@
 //
 // A work-group takes a block of cells: it maps the block's vertices into local memory, once each, and
 // then a work-item takes a cell, neighbours side by side. Almost all cells are convex enough that a sample
-// needs the central tetrahedron's edge functions and at most those of the corner behind a face; the others
-// try each tetrahedron.
+// needs the central tetrahedron's edge functions and at most those of the corner behind a face; the others, and
+// those with many samples, take one tetrahedron after the other, row by row. Cells with very many samples are put off
+// (LargeCells.cl).
 
 // A cell of the sampling mesh.
 typedef struct

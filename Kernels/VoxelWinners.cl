@@ -22,10 +22,10 @@ typedef struct
   uint Assumed; // whether cells on the border left samples to the next cells without looking at these
   uint Candidates; // voxels that were won, as far as others had marked them by then
   uint Touched; // nonzero where samples are held that others write, or none
-  uint Large;   // cells that were put into the list
+  uint Large; // cells that were put into the list
 } Output;
 
-#define NEW_OUTPUT(coverage, winners, patches, largeCells)                                      \
+#define NEW_OUTPUT(coverage, winners, patches, largeCells)                                         \
   { coverage, winners, patches, largeCells, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 // Of overlapping tetrahedra upright ones win, then the lowest cell. Within a cell the order of

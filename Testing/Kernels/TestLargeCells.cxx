@@ -138,6 +138,34 @@ TEST(LargeCells, MaskedCellsThatOverlap)
   ExpectEqualsReference(cells, reference, arrays, LoadAndRun(cells, arrays));
 }
 
+TEST(LargeCells, InChunksAndSlabs)
+{
+  // Two vertices are pulled out of the volume, and with each the eight cells round it: each is
+  // large in each slab.
+  const DeformerCase cells = MakeCase({ { 0, 34, 0, 34, 0, 40 } }, NoScale,
+    [](const glm::dvec3& index)
+    {
+      const bool pulled = index == glm::dvec3(5, 6, 3) || index == glm::dvec3(8, 4, 25);
+      return 1.25 * index + (pulled ? glm::dvec3(55.5, 60.25, 48.0) : glm::dvec3(0.0));
+    });
+  const auto values =
+    MakeRandomValues<std::uint8_t>(static_cast<std::size_t>(cells.GetNumberOfVoxels()), 2);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const reference::Result reference = ResampleByReference(cells);
+  VolumeDeformer deformer;
+  deformer.SetDevice("");
+  // Links have 16 bytes, and a chunk has three planes more than layers. Winners have four bytes a
+  // voxel.
+  constexpr int layers = 20;
+  deformer.SetAllocationLimit(16 * 35 * 35 * (layers + 3));
+  Load(deformer, cells, arrays, Route::Mesh);
+  for (const Resampling method : { Resampling::ExactByLanes, Resampling::ExactByCell })
+  {
+    SCOPED_TRACE(int(method));
+    ExpectEqualsReference(cells, reference, arrays, RunDeformer(deformer, cells, arrays, method));
+  }
+}
+
 TEST(LargeCells, TimeIsThatOfTheSamplesInThem)
 {
   // One cell fills its box, the other one lies in it from corner to corner.
