@@ -32,9 +32,9 @@ typedef struct
   int HasState;       // whether the vertices have a state; without one all that could be is there
   int BrickOrigin[3]; // local index of the first cell of the first brick; may lie before the volume
   int BrickCount[3];  // bricks on each axis
-  int ListBegin;      // place in the list, of bricks or of pieces of cells, of the first one to work on
-  int ListEnd;        // and one past the last
-  int Portion;        // bricks of the list that a work-item takes at once
+  int ListBegin; // place in the list, of bricks or of pieces of cells, of the first one to work on
+  int ListEnd;   // and one past the last
+  int Portion;   // bricks of the list that a work-item takes at once
   int MostLargeCells; // room in the list of large cells
 } KernelParameters;
 
@@ -127,16 +127,15 @@ typedef struct
 #define DEFORMVOLUME_COUNT_MISSING 3    // cells on the border with flat tetrahedra or left-out ones
 #define DEFORMVOLUME_COUNT_ASSUMED 4    // nonzero where it was assumed that there are none such
 #define DEFORMVOLUME_COUNT_CANDIDATES 5 // voxels that cells may have won
-#define DEFORMVOLUME_COUNT_TOUCHED                                                                 \
-  6 // nonzero where samples are held by cells that do not write them
-#define DEFORMVOLUME_COUNT_LARGE 7 // cells that were put into the list of large ones
+#define DEFORMVOLUME_COUNT_TOUCHED 6 // nonzero where cells hold samples that others write, or none
+#define DEFORMVOLUME_COUNT_LARGE 7   // cells that were put into the list of large ones
 #define DEFORMVOLUME_COUNTERS 8
 
-// Samples that a work-item tries of one cell. A cell whose box has more is large: it goes into a list, and what that
-// lists is resampled in pieces, by kernels that follow (LargeCells.cl).
+// Samples that a work-item tries of one cell. A cell whose box has more is large: it goes into a
+// list, and what that lists is resampled in pieces, by kernels that follow (LargeCells.cl).
 #define DEFORMVOLUME_PIECE 65536
-// Room in that list, for four integers a cell: local x, y and z, and in how many pieces. Cells that find no room there
-// are resampled where they are found.
+// Room in that list, for four integers a cell: local x, y and z, and in how many pieces. Cells that
+// find no room there are resampled where they are found.
 #define DEFORMVOLUME_MOST_LARGE_CELLS 65536
 // Pieces in a launch.
 #define DEFORMVOLUME_PIECES 1024

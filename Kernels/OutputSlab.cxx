@@ -466,7 +466,7 @@ std::uint64_t OutputSlab::GetMemory() const
 {
   std::uint64_t bytes = deformvolume::GetMemory(this->Coverage) +
     deformvolume::GetMemory(this->Winners) + deformvolume::GetMemory(this->PatchStates) +
-    deformvolume::GetMemory(this->Counters) + deformvolume::GetMemory(this->LargeCells);
+    deformvolume::GetMemory(this->Counters);
   for (const cl::Buffer& array : this->Arrays)
   {
     bytes += deformvolume::GetMemory(array);

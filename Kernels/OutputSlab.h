@@ -130,7 +130,8 @@ private:
   cl::Buffer Winners;
   cl::Buffer PatchStates; // a byte a patch of the output
   cl::Buffer Counters;
-  cl::Buffer LargeCells;
+  cl::Buffer
+    LargeCells; // at most a megabyte, which GetMemory leaves out as it does all lists of work
   std::size_t MostLargeCells = 0;
   std::vector<cl_uint> LastCounters; // as they were read
   std::size_t WinnerSize = 4;

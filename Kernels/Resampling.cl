@@ -195,7 +195,7 @@ static void ResampleUprightCell(const SamplingMesh* mesh, const Cell* cell, Cand
   }
 }
 
-// Rows of fewer samples are not worth to be clipped.
+// Rows of fewer samples are not worth clipping.
 #define LEAST_CLIPPED_ROW 6
 // By how many samples the ends of a clipped row may be off. They are found in single precision, with an error of less
 // than 2^-20 of their distance from the first sample; that is at most MAXIMUM_STRETCH.
