@@ -116,36 +116,109 @@ cl::Buffer DeviceLattice::Send(const void* data, std::size_t bytesPerElement,
   return buffer;
 }
 
-void DeviceLattice::SetArrays(const std::vector<VolumeArray>& arrays)
+void DeviceLattice::LeaveArrays()
+{
+  if (this->ChunkInPlace)
+  {
+    this->Queue.finish();
+    for (std::size_t i = 0; i < this->ArraysInPlace.size(); ++i)
+    {
+      if (this->IsInPlace(i))
+      {
+        this->ChunkInPlace->Arrays[i] = cl::Buffer();
+        this->ArraysInPlace[i].Buffer = cl::Buffer();
+      }
+    }
+    this->ChunkInPlace = nullptr;
+  }
+}
+
+BufferInPlace DeviceLattice::FindOverlapping(const void* data, std::uint64_t bytes) const
+{
+  const auto found = std::find_if(this->ArraysInPlace.begin(), this->ArraysInPlace.end(),
+    [&](const BufferInPlace& one) { return one.Overlaps(data, bytes); });
+  return found != this->ArraysInPlace.end() ? *found : BufferInPlace();
+}
+
+void DeviceLattice::SetArrays(const std::vector<VolumeArray>& arrays, const BufferInPlace& field)
 {
   const QueueGuard guard(this->Queue);
+  this->LeaveArrays();
+  this->ArraysInPlace.assign(arrays.size(), BufferInPlace());
+  this->Owners.clear();
   const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
-  const auto last = static_cast<std::ptrdiff_t>(this->Owners.size());
+  const bool whole = this->Chunks.size() == 1;
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    const VolumeArray& array = arrays[i];
+    const std::uint64_t bytes =
+      static_cast<std::uint64_t>(plane * this->GetSize(2)) * GetTupleSize(array);
+    const BufferInPlace other = this->FindOverlapping(array.Data, bytes);
+    // The field lies in one piece.
+    const bool free = other.Bytes == 0 || other.IsOver(array.Data, bytes);
+    const bool freeOfField =
+      !field.Overlaps(array.Data, bytes) || (whole && field.IsOver(array.Data, bytes));
+    if (IsUsedInPlace(this->Context, array) && free && freeOfField)
+    {
+      this->ArraysInPlace[i].Data = array.Data;
+      this->ArraysInPlace[i].Bytes = bytes;
+      this->Owners.push_back(array.Owner);
+    }
+  }
   for (LatticeChunk& chunk : this->Chunks)
   {
     chunk.Arrays.resize(arrays.size());
     for (std::size_t i = 0; i < arrays.size(); ++i)
     {
-      const VolumeArray& array = arrays[i];
-      const std::uint64_t bytesPerPlane = static_cast<std::uint64_t>(plane) * GetTupleSize(array);
-      if (IsUsedInPlace(this->Context, array))
-      {
-        // The kernels only read it.
-        chunk.Arrays[i] = MakeBufferOver(this->Context, CL_MEM_READ_ONLY,
-          static_cast<char*>(const_cast<void*>(array.Data)) +
-            bytesPerPlane * static_cast<std::uint64_t>(chunk.PlanesBegin),
-          bytesPerPlane * static_cast<std::uint64_t>(chunk.PlanesEnd - chunk.PlanesBegin));
-        this->Owners.push_back(array.Owner);
-      }
-      else
-      {
-        chunk.Arrays[i] = this->Send(array.Data, GetTupleSize(array), plane, chunk.PlanesBegin,
-          chunk.PlanesEnd, chunk.Arrays[i]);
-      }
+      chunk.Arrays[i] = this->IsInPlace(i)
+        ? cl::Buffer()
+        : this->Send(arrays[i].Data, GetTupleSize(arrays[i]), plane, chunk.PlanesBegin,
+            chunk.PlanesEnd, chunk.Arrays[i]);
     }
   }
-  // Only now no buffer lies over the memory of the last ones.
-  this->Owners.erase(this->Owners.begin(), this->Owners.begin() + last);
+  if (whole)
+  {
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+    {
+      BufferInPlace& place = this->ArraysInPlace[i];
+      place.Buffer = field.IsOver(place.Data, place.Bytes) ? field.Buffer : cl::Buffer();
+    }
+    this->GetArrays(this->Chunks.front());
+  }
+}
+
+const std::vector<cl::Buffer>& DeviceLattice::GetArrays(const LatticeChunk& chunk)
+{
+  if (&chunk == this->ChunkInPlace)
+  {
+    return chunk.Arrays;
+  }
+  this->LeaveArrays();
+  LatticeChunk& placed = this->Chunks[static_cast<std::size_t>(&chunk - this->Chunks.data())];
+  this->ChunkInPlace = &placed;
+  for (std::size_t i = 0; i < this->ArraysInPlace.size(); ++i)
+  {
+    BufferInPlace& place = this->ArraysInPlace[i];
+    if (place.Bytes == 0)
+    {
+      continue;
+    }
+    const auto same = std::find_if(this->ArraysInPlace.begin(), this->ArraysInPlace.end(),
+      [&](const BufferInPlace& one) { return one.IsOver(place.Data, place.Bytes); });
+    if (!same->Buffer())
+    {
+      const std::uint64_t bytesPerPlane =
+        place.Bytes / static_cast<std::uint64_t>(this->GetSize(2));
+      // The kernels only read it.
+      same->Buffer = MakeBufferOver(this->Context, CL_MEM_READ_ONLY,
+        static_cast<char*>(const_cast<void*>(place.Data)) +
+          bytesPerPlane * static_cast<std::uint64_t>(chunk.PlanesBegin),
+        bytesPerPlane * static_cast<std::uint64_t>(chunk.PlanesEnd - chunk.PlanesBegin));
+    }
+    place.Buffer = same->Buffer;
+    placed.Arrays[i] = place.Buffer;
+  }
+  return chunk.Arrays;
 }
 
 void DeviceLattice::SendLinks(LatticeChunk& chunk, const VertexLink* links, const MeshOrder& order)

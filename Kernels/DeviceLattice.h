@@ -33,7 +33,7 @@ struct LatticeChunk
   cl::Buffer State;
   cl::Buffer Blanked;
   cl::Buffer Active;
-  std::vector<cl::Buffer> Arrays;
+  std::vector<cl::Buffer> Arrays; // see DeviceLattice::GetArrays
 };
 
 /// What the device holds of the sampling mesh: per voxel the arrays and the state; the static links
@@ -44,8 +44,15 @@ public:
   DeviceLattice(OpenCLContext& context, const cl::CommandQueue& queue, const Lattice& lattice,
     std::size_t bytesPerVoxel, std::uint64_t allocationLimit, bool withLinks = true);
 
-  /// Arrays with an owner are used where they lie, if the device can.
-  void SetArrays(const std::vector<VolumeArray>& arrays);
+  /// Arrays with an owner are used where they lie, if the device can, and their memory does not
+  /// overlap that of others. field: where a displacement field lies that is used in place.
+  void SetArrays(const std::vector<VolumeArray>& arrays, const BufferInPlace& field = {});
+  bool IsInPlace(std::size_t array) const { return this->ArraysInPlace[array].Bytes > 0; }
+  /// What lies over memory that overlaps this, with its buffer where there is one chunk only.
+  BufferInPlace FindOverlapping(const void* data, std::uint64_t bytes) const;
+  /// The arrays of a chunk. Those in place overlap from chunk to chunk, so that one chunk has them
+  /// at a time: waits for all that was enqueued where that is another one.
+  const std::vector<cl::Buffer>& GetArrays(const LatticeChunk& chunk);
   ///@{
   /// With numbers of the mesh, which become those of the device.
   void SetLinks(const VertexLink* links, const MeshOrder& order = {});
@@ -116,6 +123,8 @@ private:
   /// Reads the data until the queue has finished.
   cl::Buffer Send(const void* data, std::size_t bytesPerElement, std::int64_t elementsPerLayer,
     std::int64_t begin, std::int64_t end, const cl::Buffer& previous);
+  /// Lets go of the buffers over memory of the host.
+  void LeaveArrays();
   void ForgetRuns();
   void SendLinks(LatticeChunk& chunk, const VertexLink* links, const MeshOrder& order);
   void SendRecords(const std::vector<RestTetrahedron>& tetrahedra, const MeshOrder& order);
@@ -128,8 +137,10 @@ private:
   Lattice Shape;
   BrickGrid Bricks;
   std::uint64_t AllocationLimit;
-  std::vector<std::shared_ptr<const void>> Owners; // of arrays that are used in place
   std::vector<LatticeChunk> Chunks;
+  std::vector<BufferInPlace> ArraysInPlace; // one for each array, of no bytes where it was sent
+  std::vector<std::shared_ptr<const void>> Owners; // of these
+  LatticeChunk* ChunkInPlace = nullptr;            // the one that has buffers over them
   cl::Buffer RestPositions;
   cl::Buffer Marked; // sources, while the state is brought up to date
   bool WithLinks = false;

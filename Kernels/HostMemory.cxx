@@ -42,6 +42,7 @@ void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::
 {
   if (CanWorkInPlace(context, memory, elementSize))
   {
+    buffer = cl::Buffer(); // it may lie over the same memory
     buffer = MakeBufferOver(context, CL_MEM_READ_WRITE, memory, bytes);
   }
   else

@@ -26,6 +26,26 @@ bool IsUsedInPlace(const OpenCLContext& context, const VolumeArray& array);
 cl::Buffer MakeBufferOver(
   const OpenCLContext& context, cl_mem_flags access, void* data, std::size_t bytes);
 
+/// Memory of the host with the buffer over it. What commands do is undefined by OpenCL where they
+/// work on several buffers over the same memory, even if they only read it: no two may overlap.
+struct BufferInPlace
+{
+  const void* Data = nullptr;
+  std::uint64_t Bytes = 0;
+  cl::Buffer Buffer;
+
+  bool Overlaps(const void* data, std::uint64_t bytes) const
+  {
+    const auto begin = reinterpret_cast<std::uintptr_t>(this->Data);
+    const auto other = reinterpret_cast<std::uintptr_t>(data);
+    return begin < other + bytes && other < begin + this->Bytes;
+  }
+  bool IsOver(const void* data, std::uint64_t bytes) const
+  {
+    return this->Data == data && this->Bytes == bytes;
+  }
+};
+
 /// Makes a buffer of the device of so many bytes, where it is not one.
 void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t bytes);
 

@@ -200,13 +200,13 @@ void VolumeDeformer::SetArrays(const std::vector<VolumeArray>& arrays)
       this->Impl->Update.Forget();
       DeviceLattice& mesh = this->Impl->GetMesh();
       this->Impl->Arrays.clear(); // there are none if this fails
-      mesh.SetArrays(arrays);
+      mesh.SetArrays(arrays, this->Impl->GetFieldInPlace());
       this->Impl->Arrays = arrays;
-      for (VolumeArray& array : this->Impl->Arrays)
+      for (std::size_t i = 0; i < arrays.size(); ++i)
       {
-        if (!IsUsedInPlace(*this->Impl->Context, array))
+        if (!mesh.IsInPlace(i))
         {
-          array.Owner.reset(); // the data were copied
+          this->Impl->Arrays[i].Owner.reset(); // the data were copied
         }
       }
     });

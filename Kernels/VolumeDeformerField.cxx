@@ -90,18 +90,37 @@ bool VolumeDeformer::Internals::CanReadInPlace(
   const DisplacementField& field, const FieldParameters& parameters)
 {
   const OpenCLContext& context = this->GetContext();
-  return field.Owner && parameters.SameGrid && HasDouble(context) &&
-    CanWorkInPlace(context, field.Vectors, sizeof(float)) &&
-    GetBytes(field) <= this->GetAllocationLimit();
+  if (!field.Owner || !parameters.SameGrid || !HasDouble(context) ||
+    !CanWorkInPlace(context, field.Vectors, sizeof(float)) ||
+    GetBytes(field) > this->GetAllocationLimit())
+  {
+    return false;
+  }
+  // It may be an array of the volume, too, and lies in one piece.
+  const BufferInPlace array = this->GetMesh().FindOverlapping(field.Vectors, GetBytes(field));
+  return array.Bytes == 0 ||
+    (array.IsOver(field.Vectors, GetBytes(field)) && this->GetMesh().GetChunks().size() == 1);
+}
+
+BufferInPlace VolumeDeformer::Internals::GetFieldInPlace() const
+{
+  return this->FieldInPlace.Owner
+    ? BufferInPlace{ this->FieldInPlace.Vectors, GetBytes(this->FieldInPlace), this->FieldVectors }
+    : BufferInPlace();
 }
 
 void VolumeDeformer::Internals::SetFieldInPlace(const DisplacementField& field)
 {
   this->Update.MoveAll();
   this->LastVectorsSent = false;
-  // The kernels only read them.
-  this->FieldVectors = MakeBufferOver(
-    *this->Context, CL_MEM_READ_ONLY, const_cast<float*>(field.Vectors), GetBytes(field));
+  const BufferInPlace array = this->GetMesh().FindOverlapping(field.Vectors, GetBytes(field));
+  this->FieldVectors = array.Buffer; // that of before may lie over the same memory
+  if (!array.Buffer())
+  {
+    // The kernels only read them.
+    this->FieldVectors = MakeBufferOver(
+      *this->Context, CL_MEM_READ_ONLY, const_cast<float*>(field.Vectors), GetBytes(field));
+  }
   this->FieldInPlace = field; // only now no buffer lies over the memory of the last one
 }
 

@@ -135,6 +135,7 @@ public:
   /// Displacement fields; in VolumeDeformerField.cxx.
   /// Whether the vectors of a field can be read where they lie, and what has them read there.
   bool CanReadInPlace(const DisplacementField& field, const FieldParameters& parameters);
+  BufferInPlace GetFieldInPlace() const;
   void SetFieldInPlace(const DisplacementField& field);
   void ForgetField();
   void PrepareBrickPoints();

@@ -76,9 +76,10 @@ void VolumeDeformer::Internals::RunPublished(const DeformRequest& request, Outpu
     kernel.setArg(i++, p.HasActive ? chunk.Active : this->Mesh->GetState(chunk));
     kernel.setArg(i++, output.GetCoverage());
     kernel.setArg(i++, p);
-    for (std::size_t a = 0; a < this->Arrays.size(); ++a)
+    const std::vector<cl::Buffer>& arrays = this->Mesh->GetArrays(chunk);
+    for (std::size_t a = 0; a < arrays.size(); ++a)
     {
-      kernel.setArg(i++, chunk.Arrays[a]);
+      kernel.setArg(i++, arrays[a]);
       kernel.setArg(i++, output.GetArray(a));
     }
     const std::size_t cells = static_cast<std::size_t>(p.Size[0] - 1);
@@ -140,9 +141,10 @@ void VolumeDeformer::Internals::SetResamplingArguments(cl::Kernel& kernel,
     kernel.setArg(i++, this->Pieces);
   }
   kernel.setArg(i++, p);
-  for (std::size_t a = 0; a < this->Arrays.size(); ++a)
+  const std::vector<cl::Buffer>& arrays = this->Mesh->GetArrays(chunk);
+  for (std::size_t a = 0; a < arrays.size(); ++a)
   {
-    kernel.setArg(i++, chunk.Arrays[a]);
+    kernel.setArg(i++, arrays[a]);
     kernel.setArg(i++, output.GetArray(a));
   }
 }

@@ -4,8 +4,11 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
+#include <algorithm>
 #include <cstring>
 #include <dlfcn.h>
+#include <map>
+#include <mutex>
 #include <string>
 
 FakeDriver& FakeDriver::Get()
@@ -41,7 +44,95 @@ cl_int Give(const void* value, std::size_t size, std::size_t room, void* place, 
   return CL_SUCCESS;
 }
 
+/// Memory of the host with a buffer over it.
+struct Range
+{
+  const char* Begin;
+  const char* End;
+  int References;
+};
+
+std::mutex Mutex;
+std::map<cl_mem, Range> Ranges;
+
 } // namespace
+
+extern "C" cl_mem CL_API_CALL clCreateBuffer(
+  cl_context context, cl_mem_flags flags, std::size_t size, void* memory, cl_int* error)
+{
+  static auto* const real = Find<decltype(clCreateBuffer)>("clCreateBuffer");
+  if (!(flags & CL_MEM_USE_HOST_PTR))
+  {
+    return real(context, flags, size, memory, error);
+  }
+  const char* const begin = static_cast<const char*>(memory);
+  const std::lock_guard<std::mutex> lock(Mutex);
+  const bool overlaps = std::any_of(Ranges.begin(), Ranges.end(),
+    [&](const auto& one) { return one.second.Begin < begin + size && begin < one.second.End; });
+  if (overlaps && FakeDriver::Get().RefusesOverlaps)
+  {
+    if (error)
+    {
+      *error = CL_INVALID_HOST_PTR;
+    }
+    return nullptr;
+  }
+  cl_mem buffer = real(context, flags, size, memory, error);
+  if (buffer)
+  {
+    Ranges[buffer] = { begin, begin + size, 1 };
+  }
+  return buffer;
+}
+
+extern "C" cl_program CL_API_CALL clCreateProgramWithSource(
+  cl_context context, cl_uint number, const char** texts, const std::size_t* lengths, cl_int* error)
+{
+  static auto* const real = Find<decltype(clCreateProgramWithSource)>("clCreateProgramWithSource");
+  if (!FakeDriver::Get().FusesProducts)
+  {
+    return real(context, number, texts, lengths, error);
+  }
+  const std::string fuse =
+    "\n#ifdef __clang__\n#pragma clang fp contract(fast)\n#else\n#pragma OPENCL FP_CONTRACT ON\n"
+    "#endif\n";
+  const std::string separate = "#pragma OPENCL FP_CONTRACT OFF";
+  std::string text = fuse;
+  for (cl_uint i = 0; i < number; ++i)
+  {
+    text += lengths && lengths[i] ? std::string(texts[i], lengths[i]) : std::string(texts[i]);
+  }
+  for (std::size_t place = 0; (place = text.find(separate, place)) != std::string::npos;)
+  {
+    text.replace(place, separate.size(), fuse);
+  }
+  const char* whole = text.c_str();
+  return real(context, 1, &whole, nullptr, error);
+}
+
+extern "C" cl_int CL_API_CALL clRetainMemObject(cl_mem buffer)
+{
+  static auto* const real = Find<decltype(clRetainMemObject)>("clRetainMemObject");
+  const std::lock_guard<std::mutex> lock(Mutex);
+  const auto found = Ranges.find(buffer);
+  if (found != Ranges.end())
+  {
+    ++found->second.References;
+  }
+  return real(buffer);
+}
+
+extern "C" cl_int CL_API_CALL clReleaseMemObject(cl_mem buffer)
+{
+  static auto* const real = Find<decltype(clReleaseMemObject)>("clReleaseMemObject");
+  const std::lock_guard<std::mutex> lock(Mutex);
+  const auto found = Ranges.find(buffer);
+  if (found != Ranges.end() && --found->second.References == 0)
+  {
+    Ranges.erase(found);
+  }
+  return real(buffer);
+}
 
 extern "C" cl_int CL_API_CALL clGetDeviceInfo(
   cl_device_id device, cl_device_info what, std::size_t room, void* place, std::size_t* needed)

@@ -19,6 +19,11 @@ struct FakeDriver
   /// Bytes that the device has, 0: as it is.
   std::uint64_t GlobalMemory = 0;
   std::uint64_t LocalMemory = 0;
+  /// No buffer is made over memory of the host that overlaps that of another one: what commands on
+  /// both do is undefined.
+  bool RefusesOverlaps = false;
+  /// Programs are compiled so that products are fused with sums wherever that is possible.
+  bool FusesProducts = false;
   /// Launches of more than one work-item that left the size of the groups to the driver.
   int LaunchesWithoutGroup = 0;
 

@@ -141,3 +141,82 @@ TEST_F(Faults, LittleLocalMemory)
     RunDeformer(this->Deformer, this->Case, this->Arrays, Resampling::ExactByLanes);
   EXPECT_EQ(first.Outputs, second.Outputs);
 }
+
+// Chunks of a volume share planes, and what commands on buffers over the same memory do is
+// undefined.
+TEST_F(Faults, BuffersOverTheSameMemory)
+{
+  FakeDriver::Get().RefusesOverlaps = true;
+  std::vector<VolumeArray> owned = this->Arrays;
+  owned.push_back(this->Arrays[0]); // twice the same
+  for (VolumeArray& array : owned)
+  {
+    array.Owner = std::make_shared<int>(0);
+  }
+  this->Arrays.push_back(this->Arrays[0]);
+  const std::uint64_t plane = 22 * 19;
+  for (const std::uint64_t planes : { 5, 8, 1000 })
+  {
+    SCOPED_TRACE(testing::Message() << "planes " << planes);
+    this->Deformer.SetDevice("");
+    this->Deformer.SetAllocationLimit(16 * planes * plane);
+    Load(this->Deformer, this->Case, owned, Route::Mesh);
+    for (int times = 0; times < 2; ++times)
+    {
+      this->ExpectRight();
+      this->ExpectRight(Resampling::ExactByCell);
+      this->Deformer.SetArrays(owned);
+    }
+  }
+  // A part of another one.
+  const auto longer = MakeRandomValues<float>(this->Others.size() + 1, 6);
+  this->Arrays[1].Data = owned[1].Data = longer.data();
+  this->Arrays[2] = this->Arrays[1];
+  this->Arrays[2].Data = longer.data() + 1;
+  owned[2] = this->Arrays[2];
+  owned[2].Owner = owned[1].Owner;
+  this->Deformer.SetArrays(owned);
+  this->ExpectRight();
+}
+
+// The vectors of a field may be an array of the volume, too.
+TEST_F(Faults, FieldThatIsAnArray)
+{
+  FakeDriver::Get().RefusesOverlaps = true;
+  const auto size = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
+  const auto vectors = std::make_shared<std::vector<float>>(this->Case.GetDisplacements());
+  const auto numbers = MakeRandomValues<double>(4 * size, 3);
+  this->Arrays = { MakeArray(*vectors, 3), MakeArray(numbers, 4) };
+  std::vector<VolumeArray> owned = this->Arrays;
+  owned[0].Owner = vectors;
+  DisplacementField field;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    field.Dimensions[axis] = static_cast<int>(GetSize(this->Case.Lattice.VertexExtent, axis));
+    field.IndexToField[4 * axis + 3] = -this->Case.Lattice.VertexExtent[2 * axis];
+  }
+  field.Vectors = vectors->data();
+  field.Owner = vectors;
+  const std::uint64_t plane = 22 * 19;
+  for (const std::uint64_t planes : { 10, 1000 })
+  {
+    SCOPED_TRACE(testing::Message() << "planes " << planes);
+    for (const bool fieldFirst : { true, false })
+    {
+      this->Deformer.SetDevice("");
+      this->Deformer.SetAllocationLimit(32 * planes * plane);
+      this->Deformer.SetLattice(this->Case.Lattice, 32, false);
+      if (fieldFirst)
+      {
+        this->Deformer.SetDisplacementField(field);
+      }
+      this->Deformer.SetArrays(owned);
+      this->Deformer.SetDisplacementField(field);
+      this->ExpectRight();
+      this->Deformer.SetArrays(owned);
+      this->ExpectRight();
+      this->Deformer.SetArrays(this->Arrays);
+      this->ExpectRight();
+    }
+  }
+}
