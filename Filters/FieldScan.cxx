@@ -200,7 +200,7 @@ private:
       double high = 0.0;
       for (int k = 0; k < 3; ++k)
       {
-        const double factor = this->Field.ToDisplacement[3 * axis + k];
+        const double factor = GetFactor(this->Field, 3 * axis + k);
         const double a = factor * static_cast<double>(components.Least[k]);
         const double b = factor * static_cast<double>(components.Greatest[k]);
         low += std::min(a, b);

@@ -74,8 +74,9 @@ static float3 FieldIndex(const FieldParameters* field, int3 index)
 {
   const float3 i = convert_float3(index + (int3)(field->First[0], field->First[1], field->First[2]));
   const float* m = field->IndexToField;
-  return (float3)(m[0] * i.x + m[1] * i.y + m[2] * i.z + m[3],
-    m[4] * i.x + m[5] * i.y + m[6] * i.z + m[7], m[8] * i.x + m[9] * i.y + m[10] * i.z + m[11]);
+#define FIELD_ROW(k)                                                                               \
+  (MULTIPLY_ADD(m[k + 2], i.z, MULTIPLY_ADD(m[k + 1], i.y, m[k] * i.x)) + m[k + 3])
+  return (float3)(FIELD_ROW(0), FIELD_ROW(4), FIELD_ROW(8));
 }
 
 #if MAPPING == MAPPING_LINKS
@@ -185,7 +186,8 @@ static double MatrixElement(const FieldParameters* field, int i)
     (ulong)field->ToDisplacement[2 * i] | (ulong)field->ToDisplacement[2 * i + 1] << 32);
 }
 
-// The products of a row of the matrix with vectors, in this order.
+// The products of a row of the matrix with vectors, in this order. No product is rounded (GetFactor in
+// VolumeDeformer.h).
 #define ROW_PRODUCT(field, row, FLOATS, DOUBLES, x, y, z)                                          \
   convert_##FLOATS(MatrixElement(field, 3 * (row)) * convert_##DOUBLES(x) +                        \
     MatrixElement(field, 3 * (row) + 1) * convert_##DOUBLES(y) +                                   \
@@ -244,13 +246,15 @@ static float4 Displacement(const Mapping* m, int x, int y, int z, const KernelPa
   __global const float4* highLow = m->Vectors + high.z * plane + low.y * width;
   __global const float4* highHigh = m->Vectors + high.z * plane + high.y * width;
   // a + t (b - a) is exact for t = 0: no rounding where a voxel is a point of the field.
-  const float4 a = lowLow[low.x] + t.x * (lowLow[high.x] - lowLow[low.x]);
-  const float4 b = lowHigh[low.x] + t.x * (lowHigh[high.x] - lowHigh[low.x]);
-  const float4 c = highLow[low.x] + t.x * (highLow[high.x] - highLow[low.x]);
-  const float4 d = highHigh[low.x] + t.x * (highHigh[high.x] - highHigh[low.x]);
-  const float4 e = a + t.y * (b - a);
-  const float4 g = c + t.y * (d - c);
-  return e + t.z * (g - e);
+#define MIX(a, b, t) MULTIPLY_ADD((float4)(t), (b) - (a), a)
+  const float4 a = MIX(lowLow[low.x], lowLow[high.x], t.x);
+  const float4 b = MIX(lowHigh[low.x], lowHigh[high.x], t.x);
+  const float4 c = MIX(highLow[low.x], highLow[high.x], t.x);
+  const float4 d = MIX(highHigh[low.x], highHigh[high.x], t.x);
+  const float4 e = MIX(a, b, t.y);
+  const float4 g = MIX(c, d, t.y);
+  return MIX(e, g, t.z);
+#undef MIX
 }
 
 static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters* p)
@@ -272,6 +276,7 @@ static int4 PositionOf(const Mapping* m, int x, int y, int z, const KernelParame
   const RestPosition rx = m->Rest[x];
   const RestPosition ry = m->Rest[p->Size[0] + y];
   const RestPosition rz = m->Rest[p->Size[0] + p->Size[1] + z];
+  // This product is not rounded.
   const float4 steps = RoundSteps_float4(Displacement(m, x, y, z, p) * 256.0f +
     (float4)(rx.Fraction, ry.Fraction, rz.Fraction, 0.0f), 1.0f);
   return (int4)(rx.Whole, ry.Whole, rz.Whole, 0) + convert_int4(steps);

@@ -30,8 +30,9 @@ static LookupRow MakeLookupRow(const int* voxel, const LookupParameters* f, cons
       matrix[column] =
         (REAL)f->OutputToField[4 * axis + column] + (REAL)f->OutputToFieldRest[4 * axis + column];
     }
-    row.Start[axis] = matrix[3] + matrix[0] * (REAL)voxel[0] + matrix[1] * (REAL)voxel[1] +
-      matrix[2] * (REAL)voxel[2];
+    row.Start[axis] = MULTIPLY_ADD_REAL(matrix[2], (REAL)voxel[2],
+      MULTIPLY_ADD_REAL(
+        matrix[1], (REAL)voxel[1], MULTIPLY_ADD_REAL(matrix[0], (REAL)voxel[0], matrix[3])));
     row.Steps[axis] = matrix[0];
     const REAL one = (REAL)(1 << p->FractionBits[axis]);
     row.Scale[axis] = ((REAL)p->InverseScale[axis] + (REAL)p->InverseScaleRest[axis]) * one;
@@ -40,7 +41,7 @@ static LookupRow MakeLookupRow(const int* voxel, const LookupParameters* f, cons
   return row;
 }
 
-#define MIX(A, B, T) ((A) + (T) * ((B) - (A)))
+#define MIX(A, B, T) MULTIPLY_ADD_REAL(T, (B) - (A), A)
 
 // The vectors of two neighbouring points on x, mixed.
 static void MixAlongX(__global const float* vectors, size_t row, int low, int high, REAL t, REAL* mixed)
@@ -97,7 +98,7 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
   for (int axis = 0; axis < 3; ++axis)
   {
     const REAL last = (REAL)(f->Dimensions[axis] - 1);
-    const REAL here = row->Start[axis] + (REAL)x * row->Steps[axis];
+    const REAL here = MULTIPLY_ADD_REAL((REAL)x, row->Steps[axis], row->Start[axis]);
     inside &= here >= -(REAL)DEFORMVOLUME_LOOKUP_TOLERANCE &&
       here <= last + (REAL)DEFORMVOLUME_LOOKUP_TOLERANCE;
     position[axis] = clamp(here, (REAL)0, last);
@@ -113,7 +114,7 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
   for (int axis = 0; axis < 3; ++axis)
   {
     const REAL at = (REAL)(voxel[axis] + (axis == 0 ? x : 0)) + vector[axis];
-    const REAL inVolume = at * row->Scale[axis] - row->First[axis];
+    const REAL inVolume = MULTIPLY_ADD_REAL(at, row->Scale[axis], -row->First[axis]);
     const int most = (p->Size[axis] - 1) << p->FractionBits[axis];
     inside &= inVolume >= (REAL)-p->Tolerance[axis] &&
       inVolume <= (REAL)most + (REAL)p->Tolerance[axis];

@@ -64,9 +64,10 @@ std::string MakeStore(const VolumeArray& array, const std::string& index)
 /// The type of arithmetic that is as precise as the device has it.
 std::string GetReal(const OpenCLContext& context)
 {
-  return HasDouble(context) ? "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n"
-                              "#define REAL double\n#define EXACT double\n"
-                            : "#define REAL float\n#define EXACT long\n";
+  return HasDouble(context)
+    ? "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n"
+      "#define REAL double\n#define REAL_IS_DOUBLE 1\n#define EXACT double\n"
+    : "#define REAL float\n#define REAL_IS_DOUBLE 0\n#define EXACT long\n";
 }
 
 /// What the resampling kernels expect in front of them.
@@ -295,8 +296,9 @@ cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<Vo
       (processor ? "32" : "1") + "\n#define INDEX " + (wide ? "long" : "int") +
       (laneArrays.empty() ? "" : "\n#define HAS_LANE_ARRAYS") +
       (tapArrays.empty() ? "" : "\n#define HAS_TAP_ARRAYS") + "\n#define LANE_ARRAYS(DO)" +
-      laneArrays + "\n#define TAP_ARRAYS(DO)" + tapArrays + "\n" + IntegerVectors_cl +
-      TetrahedronBinning_cl + LaneVectors_cl + LaneSampling_cl + RestSampling_cl +
+      laneArrays + "\n#define TAP_ARRAYS(DO)" + tapArrays + "\n" + MultiplyAdd_cl +
+      IntegerVectors_cl + TetrahedronBinning_cl + LaneVectors_cl + LaneSampling_cl +
+      RestSampling_cl +
       (field ? std::string(FieldLookup_cl)
              : std::string(RestCoordinates_cl) + MeshRasterization_cl),
     Options);

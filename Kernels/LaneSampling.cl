@@ -66,12 +66,12 @@ static void MakeLaneCells(
 // 0 is none.
 static FLOATS MixIntegers(FLOATS a, FLOATS b, FLOATS f)
 {
-  return a + f * (b - a);
+  return MULTIPLY_ADD(f, b - a, a);
 }
 
 static FLOATS MixFloats(FLOATS a, FLOATS b, FLOATS f)
 {
-  const FLOATS mixed = (1.0f - f) * a + f * b;
+  const FLOATS mixed = MULTIPLY_ADD(f, b, (1.0f - f) * a);
   return f > 0.0f ? (f < 1.0f ? mixed : b) : a;
 }
 

@@ -119,10 +119,10 @@ static void FindRest(const RestMap* map, const long* edges, const int* voxel, RE
     REAL d = map->Last[axis];
     for (int k = 0; k < 3; ++k)
     {
-      d += (REAL)edges[k] * map->Gradients[k][axis];
+      d = MULTIPLY_ADD_REAL((REAL)edges[k], map->Gradients[k][axis], d);
     }
-    rest[axis] = ((REAL)voxel[axis] - d) * map->Scale[axis] -
-      (REAL)((long)p->First[axis] << p->FractionBits[axis]);
+    rest[axis] = MULTIPLY_ADD_REAL((REAL)voxel[axis] - d, map->Scale[axis],
+      -(REAL)((long)p->First[axis] << p->FractionBits[axis]));
   }
 }
 
@@ -145,9 +145,9 @@ static void SetRestMap(const TileTetrahedron* t, __global const float4* displace
     {
       const REAL gradient = ((REAL)ds[axis] - (REAL)lasts[axis]) * t->InverseVolume;
       map->Gradients[k][axis] = gradient;
-      slopes[0][axis] += (REAL)step.x * gradient;
-      slopes[1][axis] += (REAL)step.y * gradient;
-      slopes[2][axis] += (REAL)step.z * gradient;
+      slopes[0][axis] = MULTIPLY_ADD_REAL((REAL)step.x, gradient, slopes[0][axis]);
+      slopes[1][axis] = MULTIPLY_ADD_REAL((REAL)step.y, gradient, slopes[1][axis]);
+      slopes[2][axis] = MULTIPLY_ADD_REAL((REAL)step.z, gradient, slopes[2][axis]);
     }
   }
   for (int axis = 0; axis < 3; ++axis)

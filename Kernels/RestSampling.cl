@@ -59,9 +59,11 @@ static AxisTaps MakeAxisTaps(int rest, int bits, int size)
     AddTap(&taps, voxel + (fraction != 0), 1);
     return taps;
   }
-  AddTap(&taps, max(voxel - 1, 0), ((2 - f) * f - 1) * f / 2);
-  AddTap(&taps, voxel, ((3 * f - 5) * f * f + 2) / 2);
-  AddTap(&taps, voxel + 1, ((4 - 3 * f) * f + 1) * f / 2);
+  AddTap(&taps, max(voxel - 1, 0), MULTIPLY_ADD_REAL(2 - f, f, (REAL)-1) * f / 2);
+  AddTap(
+    &taps, voxel, MULTIPLY_ADD_REAL(MULTIPLY_ADD_REAL((REAL)3, f, (REAL)-5) * f, f, (REAL)2) / 2);
+  AddTap(&taps, voxel + 1,
+    MULTIPLY_ADD_REAL(MULTIPLY_ADD_REAL((REAL)-3, f, (REAL)4), f, (REAL)1) * f / 2);
   AddTap(&taps, min(voxel + 2, size - 1), (f - 1) * f * f / 2);
 #else
   AddTap(&taps, voxel, 1 - f);
@@ -114,7 +116,8 @@ static void MakeSample(const int* rest, Sample* s, const RasterParameters* p)
       REAL sum = 0;                                                                                \
       for (int k = 0; k < s.Count; ++k)                                                            \
       {                                                                                            \
-        sum += s.Weights[k] * (REAL)SOURCE[s.Sources[k] * COMPONENTS + c];                         \
+        sum = MULTIPLY_ADD_REAL(                                                                   \
+          s.Weights[k], (REAL)SOURCE[s.Sources[k] * COMPONENTS + c], sum);                         \
       }                                                                                            \
       TARGET[s.Target * COMPONENTS + c] = CONVERT(sum);                                            \
     }                                                                                              \
@@ -134,8 +137,9 @@ static void MakeSample(const int* rest, Sample* s, const RasterParameters* p)
     {                                                                                              \
       const TYPE other = SOURCE[s.Sources[k] * COMPONENTS + c];                                    \
       near &= abs_diff(other, first) < (1UL << 58);                                                \
-      difference += s.Weights[k] * (REAL)(long)((ulong)other - (ulong)first);                      \
-      sum += s.Weights[k] * (REAL)other;                                                           \
+      difference = MULTIPLY_ADD_REAL(                                                              \
+        s.Weights[k], (REAL)(long)((ulong)other - (ulong)first), difference);                      \
+      sum = MULTIPLY_ADD_REAL(s.Weights[k], (REAL)other, sum);                                     \
     }                                                                                              \
     const TYPE step = (TYPE)abs(convert_long_rte(near ? difference : 0));                          \
     TARGET[s.Target * COMPONENTS + c] = !near ? CONVERT(sum)                                       \

@@ -37,10 +37,13 @@ __kernel void EvaluateTetrahedra(__global const REAL* restrict rest,
     const REAL u = a[axis] - last;
     const REAL v = b[axis] - last;
     const REAL w = c[axis] - last;
-    record->Displacement[axis] = (float)(last + (weights[0] * u + weights[1] * v + weights[2] * w));
-    record->AlongX[axis] = (float)(gradients[0] * u + gradients[3] * v + gradients[6] * w);
-    record->AlongY[axis] = (float)(gradients[1] * u + gradients[4] * v + gradients[7] * w);
-    record->AlongZ[axis] = (float)(gradients[2] * u + gradients[5] * v + gradients[8] * w);
+#define SUM(factors, first, step)                                                                  \
+  MULTIPLY_ADD_REAL(factors[first + 2 * (step)], w,                                                \
+    MULTIPLY_ADD_REAL(factors[first + (step)], v, factors[first] * u))
+    record->Displacement[axis] = (float)(last + SUM(weights, 0, 1));
+    record->AlongX[axis] = (float)SUM(gradients, 0, 3);
+    record->AlongY[axis] = (float)SUM(gradients, 1, 3);
+    record->AlongZ[axis] = (float)SUM(gradients, 2, 3);
     record->Origin[axis] = (float)origin[axis];
   }
   record->Padding = 0.0f;

@@ -33,8 +33,9 @@ static RunDisplacement MakeRunDisplacement(__global const TetrahedronRecord* rec
   RunDisplacement run;
   run.Displacement = vload4(0, record->Displacement);
   run.AlongX = vload4(0, record->AlongX);
-  run.Across = vload4(0, record->AlongY) * ((float)y - record->Origin[1]) +
-    vload4(0, record->AlongZ) * ((float)z - record->Origin[2]);
+  run.Across =
+    MULTIPLY_ADD(vload4(0, record->AlongY), (float4)((float)y - record->Origin[1]),
+      vload4(0, record->AlongZ) * ((float)z - record->Origin[2]));
   run.OriginX = record->Origin[0];
   return run;
 }

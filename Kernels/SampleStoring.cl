@@ -34,9 +34,8 @@ typedef struct
       REAL sum = 0;                                                                                \
       for (int k = 0; k < 4; ++k)                                                                  \
       {                                                                                            \
-        sum += s->Weights[k] > 0                                                                   \
-          ? s->Weights[k] * (REAL)SOURCE[s->Sources[k] * COMPONENTS + c]                           \
-          : (REAL)0;                                                                               \
+        const REAL value = (REAL)SOURCE[s->Sources[k] * COMPONENTS + c];                           \
+        sum = s->Weights[k] > 0 ? MULTIPLY_ADD_REAL(s->Weights[k], value, sum) : sum;              \
       }                                                                                            \
       TARGET[s->Target * COMPONENTS + c] = CONVERT(sum);                                           \
     }                                                                                              \
@@ -58,8 +57,9 @@ typedef struct
       {                                                                                            \
         const TYPE other = SOURCE[s->Sources[k] * COMPONENTS + c];                                 \
         near &= abs_diff(other, first) < (1UL << 62);                                              \
-        difference += s->Weights[k] * (REAL)(long)((ulong)other - (ulong)first);                   \
-        sum += s->Weights[k] * ((REAL)other - (REAL)first);                                        \
+        difference = MULTIPLY_ADD_REAL(                                                            \
+          s->Weights[k], (REAL)(long)((ulong)other - (ulong)first), difference);                   \
+        sum = MULTIPLY_ADD_REAL(s->Weights[k], (REAL)other - (REAL)first, sum);                    \
       }                                                                                            \
       value = near ? (TYPE)((ulong)first + (ulong)convert_long_rte(difference)) : CONVERT(sum);    \
     }                                                                                              \

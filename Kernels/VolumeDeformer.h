@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <memory>
 #include <string>
@@ -134,7 +135,7 @@ struct DisplacementField
   /// Three floats a point, x varying fastest.
   const float* Vectors = nullptr;
   /// Row-major 3 x 3 matrix that takes a vector to a displacement in output voxels. It is applied
-  /// in double precision, and the result rounded to float.
+  /// in double precision (see GetFactor), and the result rounded to float.
   std::array<double, 9> ToDisplacement{ { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };
   /// What keeps Vectors where they are and as they are. With it a device that is a processor, and
   /// has double precision, reads Vectors where they lie, at each Deform(), where each voxel is a
@@ -168,6 +169,20 @@ inline bool HasDisplacements(const DisplacementField& field)
   return field.ToDisplacement == DisplacementField().ToDisplacement;
 }
 
+/// An element of the matrix of a field as it is applied: rounded to 29 bits, so that its product
+/// with a float is exact in double precision. Then it does not matter whether a compiler, of the
+/// host or of the device, fuses products with sums.
+inline double GetFactor(const DisplacementField& field, int element)
+{
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &field.ToDisplacement[element], sizeof(bits));
+  constexpr std::uint64_t unit = 1 << 24;
+  bits = (bits + unit / 2) & ~(unit - 1);
+  double factor = 0.0;
+  std::memcpy(&factor, &bits, sizeof(factor));
+  return factor;
+}
+
 /// The displacement of a point of a field, to the last bit as the kernels have it.
 inline std::array<float, 3> GetDisplacement(const DisplacementField& field, std::int64_t point)
 {
@@ -175,9 +190,10 @@ inline std::array<float, 3> GetDisplacement(const DisplacementField& field, std:
   std::array<float, 3> displacement;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double* row = &field.ToDisplacement[3 * axis];
-    displacement[axis] = static_cast<float>(row[0] * static_cast<double>(vector[0]) +
-      row[1] * static_cast<double>(vector[1]) + row[2] * static_cast<double>(vector[2]));
+    displacement[axis] =
+      static_cast<float>(GetFactor(field, 3 * axis) * static_cast<double>(vector[0]) +
+        GetFactor(field, 3 * axis + 1) * static_cast<double>(vector[1]) +
+        GetFactor(field, 3 * axis + 2) * static_cast<double>(vector[2]));
   }
   return displacement;
 }

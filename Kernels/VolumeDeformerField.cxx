@@ -51,8 +51,9 @@ FieldParameters MakeFieldParameters(const DisplacementField& field, const Lattic
   parameters.IsMapped = !HasDisplacements(field);
   for (int i = 0; i < 9; ++i)
   {
+    const double factor = GetFactor(field, i);
     std::uint64_t bits = 0;
-    std::memcpy(&bits, &field.ToDisplacement[i], sizeof(bits));
+    std::memcpy(&bits, &factor, sizeof(bits));
     parameters.ToDisplacement[2 * i] = static_cast<unsigned int>(bits);
     parameters.ToDisplacement[2 * i + 1] = static_cast<unsigned int>(bits >> 32);
   }
