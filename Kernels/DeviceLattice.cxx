@@ -464,7 +464,7 @@ cl::NDRange DeviceLattice::GetVertexRange(int planes) const
 cl::NDRange DeviceLattice::GetVertexGroup() const
 {
   // On a processor one work-item takes a whole row.
-  return cl::NDRange(this->Context.GetDevice().IsProcessor ? 1 : 64, 1, 1);
+  return cl::NDRange(this->Context.GetDevice().HasVectors ? 1 : 64, 1, 1);
 }
 
 void DeviceLattice::UpdateState(const cl::Program& mapping, bool movesAll,

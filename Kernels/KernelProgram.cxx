@@ -270,7 +270,7 @@ cl::Program GetBinningProgram(OpenCLContext& context)
 cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
   const Lattice& lattice, Interpolation interpolation, bool field)
 {
-  const bool processor = context.GetDevice().IsProcessor;
+  const bool processor = context.GetDevice().HasVectors;
   std::string stores;
   std::string laneArrays;
   std::string tapArrays;

@@ -310,7 +310,7 @@ void MeshRasterizer::RunTiles(const Setting& setting, cl::Kernel& kernel, const 
   const OpenCLDevice& device = setting.Context.GetDevice();
   const auto largest = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.Device);
   const std::size_t wanted =
-    setting.WorkGroupSize ? setting.WorkGroupSize : (device.IsProcessor ? 1 : 64);
+    setting.WorkGroupSize ? setting.WorkGroupSize : (device.HasVectors ? 1 : 64);
   const std::size_t group = std::min(wanted, largest);
   const std::size_t step = (tiles + LaunchesPerSlab - 1) / LaunchesPerSlab;
   cl::Event previous;

@@ -158,6 +158,8 @@ std::vector<OpenCLDevice> FindDevices()
           one.Description = Describe(device, platform);
           one.Name = one.Description.Name + " (" + one.Description.Platform + ")";
           one.IsProcessor = one.Description.Type == DeviceDescription::Kind::Processor;
+          one.HasVectors =
+            one.IsProcessor && device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>() > 1;
           found.push_back(one);
         }
       }

@@ -26,6 +26,9 @@ struct OpenCLDevice
   cl::Device Device;
   std::string Name; // "device (platform)"
   bool IsProcessor = false;
+  /// Whether a work-item has a thread of a processor, with its vector registers, for itself. Else
+  /// work-items share them, be it on a processor, and groups of one leave most of it idle.
+  bool HasVectors = false;
   DeviceDescription Description;
 };
 

@@ -44,7 +44,7 @@ BitsOf<T> GetBits(T value)
 void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Kernel& kernel, std::size_t items, std::vector<cl::Event>& events)
 {
-  const std::size_t group = context.GetDevice().IsProcessor ? 1 : 64;
+  const std::size_t group = context.GetDevice().HasVectors ? 1 : 64;
   events.push_back(context.Launch(
     queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group)));
 }

@@ -199,9 +199,14 @@ bool VolumeDeformer::Internals::UseLanes(Resampling method, const OutputSlab& ou
       "The resampling by lanes takes only outputs under 2^31 voxels, and of at most 32,768 "
       "on an axis, that begin within 2^22 voxels of index 0.");
   }
-  return fits &&
-    (method == Resampling::ExactByLanes ||
-      (method == Resampling::Exact && this->Context->GetDevice().IsProcessor));
+  const bool hasVectors = this->Context->GetDevice().HasVectors;
+  if (method == Resampling::ExactByLanes && !hasVectors)
+  {
+    throw Error("The resampling by lanes is for processors whose vector registers a work-item has "
+                "for itself, and the device \"" +
+      this->Context->GetDevice().Name + "\" is none.");
+  }
+  return fits && hasVectors && (method == Resampling::ExactByLanes || method == Resampling::Exact);
 }
 
 MappingForm VolumeDeformer::Internals::GetMappingForm() const
@@ -272,7 +277,7 @@ void VolumeDeformer::Internals::DeformSlabs(
   this->WasContested = report.Overlapping;
   report.NumberOfResampledBricks = report.NumberOfBricks;
   // Only the kernel for processors works on bricks one by one.
-  if (request.Incremental && plain && this->Context->GetDevice().IsProcessor &&
+  if (request.Incremental && plain && this->Context->GetDevice().HasVectors &&
     request.Method != Resampling::Published && this->UseLanes(request.Method, this->Targets[0]))
   {
     this->Update.Start(this->Mesh->GetBricks(), this->Mesh->GetLattice(), request.OutputExtent);

@@ -167,7 +167,7 @@ void VolumeDeformer::Internals::PrepareKernel(cl::Kernel& kernel, const LatticeC
 std::size_t VolumeDeformer::Internals::GetCellGroup(const cl::Kernel& kernel) const
 {
   // A work-group takes a block; on a processor its only item does.
-  const bool processor = this->Context->GetDevice().IsProcessor;
+  const bool processor = this->Context->GetDevice().HasVectors;
   return processor && !this->WorkGroupSize ? 1 : this->GetGroupSize(kernel);
 }
 

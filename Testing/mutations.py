@@ -25,6 +25,8 @@ NARROW = ("TestNarrowDecisions", "*")
 MASKS = ("TestIncremental", "IncrementalMasks*")
 MEMORY = ("TestHostMemory", "*")
 LARGE = ("TestLargeCells", "-*Time*")
+FAULTS = ("TestFaults", "*")
+GRAPHICS = ("TestGraphicsDevice", "*")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
@@ -33,6 +35,28 @@ MUTATIONS = {
     "mask-reach": ("Kernels/IncrementalUpdate.cxx", "MaskReach = 1;", "MaskReach = 0;", [MASKS]),
     "clip": ("Kernels/Resampling.cl", "CLIP_TOLERANCE (1.0f / 64.0f)", "CLIP_TOLERANCE 0.0f", [LARGE]),
     "launch-end": ("Kernels/Resampling.cl", "z <= p.LayersEnd + 1", "z <= p.LayersEnd", [MEMORY]),
+    "failed-read": ("Kernels/HostMemory.cxx", "if (error != CL_SUCCESS)", "if (false)", [FAULTS]),
+    "memory-twice": ("Kernels/OpenCLContext.cxx", "std::min(device, system + held) : device;",
+                     "std::min(device, system + held) : device + held;", [GRAPHICS]),
+    "arrays-half-set": ("Kernels/VolumeDeformer.cxx",
+                        "this->Impl->Arrays.clear(); // there are none if this fails", "", [FAULTS]),
+    "links-half-set": ("Kernels/DeviceLattice.cxx", "this->WithLinks = false; // until all of them are there", "",
+                       [FAULTS]),
+    "far-output": ("Kernels/OutputSlab.cxx", "farthest = 1 << 22;", "farthest = 1 << 28;",
+                   [("TestUse", "Use.OutputsFarAway")]),
+    "null-group": ("Kernels/OutputSlab.cxx",
+                   "queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group)));",
+                   "queue, kernel, cl::NDRange(items), cl::NullRange));", [GRAPHICS]),
+    "float-integers": ("Kernels/KernelProgram.cxx", "GetElementSize(arrays[i].Type) >= 4)",
+                       "GetElementSize(arrays[i].Type) >= 16)", [GRAPHICS]),
+    "local-memory": ("Kernels/KernelProgram.cxx", "return GetBrickMemory(context, 0) <=",
+                     "return true || GetBrickMemory(context, 0) <=", [FAULTS]),
+    "chunks-overlap": ("Kernels/DeviceLattice.cxx",
+                       "  this->LeaveArrays();\n  LatticeChunk& placed", "  LatticeChunk& placed", [FAULTS]),
+    "field-overlaps": ("Kernels/DeviceLattice.cxx", "!field.Overlaps(array.Data, bytes) ||", "true ||", [FAULTS]),
+    "fused-field": ("Kernels/DeformationMapping.cl",
+                    "#define MIX(a, b, t) MULTIPLY_ADD((float4)(t), (b) - (a), a)",
+                    "#define MIX(a, b, t) ((a) + (t) * ((b) - (a)))", [("TestContraction", "*")]),
 }
 
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DeformerCase.h"
 
+#include "DeviceNeeds.h"
+
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -70,9 +72,15 @@ T ClampTo(double value)
   return static_cast<T>(value);
 }
 
-/// Whether the kernel for processors may have made the values of an array.
+/// Whether the values of an array may have been interpolated in single precision: by the kernel for
+/// processors, or as there is no double precision.
 bool MayBeSinglePrecision(const VolumeArray& array, Resampling method)
 {
+  static const bool hasDouble = HasDoublePrecision();
+  if (!hasDouble)
+  {
+    return !array.Categorical;
+  }
   return method != Resampling::ExactByCell && !array.Categorical && array.Components == 1 &&
     (array.Type == ElementType::Float32 || GetElementSize(array.Type) <= 2);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A linear function under affine maps, by mesh and by field: the value is known everywhere.
 #include "DeformerCase.h"
+#include "DeviceNeeds.h"
 
 #include <gtest/gtest.h>
 
@@ -255,6 +256,7 @@ void CheckAffine(const AffineCase& affine, void (*deform)(const AffineCase&, Vol
 
 TEST(AffineMaps, LinearFunctionByMesh)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   for (unsigned int seed = 0; seed < 8; ++seed)
   {
     SCOPED_TRACE(seed);
@@ -264,6 +266,7 @@ TEST(AffineMaps, LinearFunctionByMesh)
 
 TEST(AffineMaps, LinearFunctionByField)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   for (unsigned int seed = 20; seed < 28; ++seed)
   {
     SCOPED_TRACE(seed);
@@ -273,6 +276,7 @@ TEST(AffineMaps, LinearFunctionByField)
 
 TEST(AffineMaps, PublishedKernelAgreesWithinItsTolerance)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   for (unsigned int seed = 40; seed < 44; ++seed)
   {
     SCOPED_TRACE(seed);

@@ -4,6 +4,7 @@
 //
 // Programs are compiled once a process. So the test runs itself twice, with compilers that are told
 // not to fuse, and with those that are told to (FakeDriver), and compares what comes out.
+#include "DeviceNeeds.h"
 #include "EditedVolume.h"
 #include "FakeDriver.h"
 #include "OpenCLContext.h"
@@ -56,11 +57,6 @@ std::string Describe(const Deformed& deformed)
   return hash.Get() + " " + std::to_string(deformed.Report.NumberOfCoveredVoxels);
 }
 
-bool CanHoldDouble()
-{
-  return OpenCLContext::Get(FindDevice("")).HasExtension("cl_khr_fp64");
-}
-
 /// Values of different types, of a volume with so many voxels.
 struct Values
 {
@@ -76,7 +72,7 @@ struct Values
   {
     std::vector<VolumeArray> arrays{ MakeArray(this->Shorts), MakeArray(this->Bytes, 2),
       MakeArray(this->Floats), MakeArray(this->Shorts, 1, true) };
-    if (CanHoldDouble())
+    if (HasDoublePrecision())
     {
       arrays.push_back(MakeArray(this->Doubles));
       arrays.push_back(MakeArray(this->Longs));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What happens to values: every element type, several arrays at once, labels, backgrounds.
 #include "DeformerCase.h"
+#include "DeviceNeeds.h"
 
 #include <gtest/gtest.h>
 
@@ -75,6 +76,7 @@ void CheckShift(const glm::dvec3& shift, const std::vector<VolumeArray>& arrays)
 // One by one: each type alone has a kernel of its own.
 TEST(ElementTypes, UndeformedVolumeComesOutBitForBit)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const AllTypes types(GetNumberOfPoints(Volume), 1, false, 0.0, true);
   for (const VolumeArray& array : types.Arrays)
   {
@@ -85,6 +87,7 @@ TEST(ElementTypes, UndeformedVolumeComesOutBitForBit)
 
 TEST(ElementTypes, ShiftByWholeVoxelsIsBitExact)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const AllTypes types(GetNumberOfPoints(Volume), 3, true, 0.0, true);
   CheckShift(glm::dvec3(4.0, -7.0, 1.0), types.Arrays);
   CheckShift(glm::dvec3(-1.0, 2.0, 30.0), types.Arrays);
@@ -92,6 +95,7 @@ TEST(ElementTypes, ShiftByWholeVoxelsIsBitExact)
 
 TEST(ElementTypes, DeformedValuesEqualReference)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   for (const int components : { 1, 2 })
   {
     SCOPED_TRACE(components);
@@ -125,6 +129,7 @@ TEST(ElementTypes, LabelsOf64BitsSurvive)
 
 TEST(ElementTypes, NearLargeIntegersOf64BitsAreRoundedToNearest)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   // Values that a double cannot hold, a few units apart: the mean must lie between them.
   const DeformerCase shifted = MakeCase({ { 0, 6, 0, 6, 0, 6 } }, { { 1, 1, 1 } },
     [](const glm::dvec3& index) { return index + glm::dvec3(0.25, 0.5, 0.125); });
@@ -176,6 +181,7 @@ TEST(ElementTypes, IntegersAreRoundedToNearestEvenAndStayInRange)
 
 TEST(ElementTypes, BackgroundIsClampedToTheType)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   DeformerCase still = MakeCase({ { 0, 2, 0, 2, 0, 2 } }, { { 1, 1, 1 } }, Stay, 2);
   for (const double background : { 1e30, -1e30, 1.5, -0.75 })
   {
@@ -188,6 +194,7 @@ TEST(ElementTypes, BackgroundIsClampedToTheType)
 
 TEST(ElementTypes, NotANumberStaysWithinItsTetrahedra)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const DeformerCase jittered = MakeCase({ { 0, 7, 0, 7, 0, 7 } }, { { 2, 2, 2 } },
     [](const glm::dvec3& index)
     { return 2.0 * index + glm::dvec3(0.25 * index.y, 0.5, 0.125 * index.x); });

@@ -2,6 +2,7 @@
 // Calls of the driver that fail, settings that fail half way, and processors with little local
 // memory.
 #include "DeformerCase.h"
+#include "DeviceNeeds.h"
 #include "FakeDriver.h"
 
 #include <gtest/gtest.h>
@@ -131,6 +132,7 @@ TEST_F(Faults, LinksThatDoNotFit)
 
 TEST_F(Faults, LittleLocalMemory)
 {
+  SKIP_WITHOUT_VECTORS()
   FakeDriver::Get().LocalMemory = 32768;
   Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
   this->ExpectRight(Resampling::ExactByLanes);
@@ -182,6 +184,7 @@ TEST_F(Faults, BuffersOverTheSameMemory)
 // The vectors of a field may be an array of the volume, too.
 TEST_F(Faults, FieldThatIsAnArray)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   FakeDriver::Get().RefusesOverlaps = true;
   const auto size = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
   const auto vectors = std::make_shared<std::vector<float>>(this->Case.GetDisplacements());

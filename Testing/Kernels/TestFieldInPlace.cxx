@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fields that are read where they lie against the same displacements that are copied: the same to
 // the last bit, with all kernels.
+#include "DeviceNeeds.h"
 #include "EditedVolume.h"
 
 #include <gtest/gtest.h>
@@ -66,6 +67,7 @@ std::int64_t Deform(const EditedVolume& volume, const DisplacementField& field, 
 
 TEST(FieldInPlace, EqualsACopy)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   EditedVolume volume;
   for (const int border : { 0, 3 })
   {
@@ -106,6 +108,7 @@ TEST(FieldInPlace, EqualsACopy)
 // The matrix counts where fields are copied, too.
 TEST(FieldInPlace, MatrixIsThatOfScaledVectors)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const EditedVolume volume;
   Vectors vectors(volume, 1);
   EditedOutputs expected(volume);
@@ -124,6 +127,7 @@ TEST(FieldInPlace, MatrixIsThatOfScaledVectors)
 // Vectors that are read where they lie may be anything: what they move is left out.
 TEST(FieldInPlace, IsRobust)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const EditedVolume volume;
   Vectors vectors(volume, 0);
   EditedOutputs outputs(volume);

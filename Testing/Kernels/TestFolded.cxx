@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Deformations that turn tetrahedra inside out or lay the volume over itself.
 #include "DeformerCase.h"
+#include "DeviceNeeds.h"
 
 #include <gtest/gtest.h>
 
@@ -75,6 +76,7 @@ DeformerCase MakeCellWithOverlap(int parity, int first, int second, double size)
 
 TEST(Folded, InvertedTetrahedraAreCountedAndRasterised)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   for (const double amplitude : { 0.4, 0.8, 1.5 })
   {
     SCOPED_TRACE(amplitude);
@@ -91,6 +93,7 @@ TEST(Folded, InvertedTetrahedraAreCountedAndRasterised)
 
 TEST(Folded, MirroredVolumeHasNoOverlap)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const DeformerCase mirrored = MakeCase(Volume, NoScale,
     [](const glm::dvec3& index)
     { return glm::dvec3(-1.25 * index.x, index.y + 0.125 * index.x, index.z); });
@@ -149,6 +152,7 @@ TEST(Folded, ManyCells)
 
 TEST(Folded, FoldedLikeAPage)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   // Both orientations meet in a crease on the plane x = 4, from either side, on samples and beside.
   for (const double sign : { 1.0, -1.0 })
   {
@@ -172,6 +176,7 @@ TEST(Folded, FoldedLikeAPage)
 // lie on themselves aslant.
 TEST(Folded, LargeCells)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   for (const double size : { 5.0, 9.0 })
   {
     for (const double crease : { 3.0, 2.75 })
@@ -192,6 +197,7 @@ TEST(Folded, LargeCells)
 
 TEST(Folded, FlattenedVolume)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   // A slab of cells has no thickness: its tetrahedra are flat and cover nothing of their own.
   Check(MakeCase(Volume, NoScale,
     [](const glm::dvec3& index)
@@ -202,6 +208,7 @@ TEST(Folded, FlattenedVolume)
 
 TEST(Folded, UprightOverlap)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   // Spun round by more than a full turn: upright everywhere, and yet on top of itself.
   const Extent ring{ { 0, 23, 0, 4, 0, 3 } };
   const DeformerCase wound = MakeCase(ring, NoScale,
@@ -219,6 +226,7 @@ TEST(Folded, UprightOverlap)
 
 TEST(Folded, OverlapWithMasks)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   std::mt19937 random(5);
   DeformerCase jittered = MakeCase(Volume, NoScale, MakeJitter(32, 1.0));
   for (std::int64_t cell = 0; cell < GetNumberOfCells(Volume); ++cell)
@@ -280,6 +288,10 @@ TEST(Folded, OutputsBeforeDoNotMatter)
   for (const auto& [method, number] : { std::make_pair(Resampling::ExactByLanes, 0),
          std::make_pair(Resampling::ExactByLanes, 1), std::make_pair(Resampling::ExactByCell, 0) })
   {
+    if (method == Resampling::ExactByLanes && !HasVectors())
+    {
+      continue;
+    }
     SCOPED_TRACE(number);
     pose = number;
     VolumeDeformer deformer;
@@ -326,6 +338,10 @@ TEST(Folded, OnSamplesAfterAFold)
     { { { 1, 212, 0, 4, 1, 5 } }, { 110.0, 140.5, 202.0 } } };
   for (const Resampling method : { Resampling::ExactByLanes, Resampling::ExactByCell })
   {
+    if (method == Resampling::ExactByLanes && !HasVectors())
+    {
+      continue;
+    }
     for (const Volume& volume : volumes)
     {
       const std::size_t size = fold(volume.VertexExtent, 0.0, 0.0, 1.0).GetNumberOfVoxels();
@@ -355,6 +371,7 @@ TEST(Folded, OnSamplesAfterAFold)
 
 TEST(Folded, CreaseAwayFromTheBorder)
 {
+  SKIP_WITHOUT_VECTORS()
   // Boxes on both sides of a crease on samples, which none of them writes, in a brick that holds
   // nothing but boxes, and not in its first column.
   const Extent large{ { 0, 400, 0, 34, 0, 34 } };

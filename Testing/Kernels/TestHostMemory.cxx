@@ -2,6 +2,7 @@
 // Memory of the caller: arrays that are read where they lie, outputs that are written where they
 // lie or copied, slabs.
 #include "DeformerCase.h"
+#include "DeviceNeeds.h"
 
 #include <gtest/gtest.h>
 
@@ -56,6 +57,7 @@ protected:
 
 TEST_F(HostMemory, ArraysWithoutOwnerAreCopied)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
   const Deformed first = RunDeformer(this->Deformer, this->Case, this->Arrays);
   ExpectEqualsReference(this->Case, this->Reference, this->Arrays, first);
@@ -67,6 +69,7 @@ TEST_F(HostMemory, ArraysWithoutOwnerAreCopied)
 
 TEST_F(HostMemory, ArraysWithOwnerAreHeld)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const auto owner = std::make_shared<int>(0);
   std::vector<VolumeArray> owned = this->Arrays;
   for (VolumeArray& array : owned)
@@ -94,6 +97,7 @@ TEST_F(HostMemory, ArraysWithOwnerAreHeld)
 
 TEST_F(HostMemory, ArraysWithOwnerThatAreNotAligned)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   std::vector<char> bytes(this->Values.size() * 2 + 1);
   std::memcpy(bytes.data() + 1, this->Values.data(), this->Values.size() * 2);
   std::vector<VolumeArray> owned = this->Arrays;
@@ -174,6 +178,7 @@ TEST_F(HostMemory, ArraysThatEndTheirMemory)
 // what becomes of memory that is not aligned.
 TEST_F(HostMemory, OutputsInSlabs)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const std::int64_t voxels = GetNumberOfPoints(this->Case.Output);
   const std::int64_t plane = GetSize(this->Case.Output, 0) * GetSize(this->Case.Output, 1);
   // Bytes of a voxel in the widest array are 16, as in a link: five planes of the volume or more.
@@ -240,6 +245,7 @@ TEST_F(HostMemory, MaskedVolumesInChunks)
 
 TEST_F(HostMemory, AbortBetweenSlabs)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const std::int64_t plane = GetSize(this->Case.Output, 0) * GetSize(this->Case.Output, 1);
   this->Deformer.SetDevice("");
   this->Deformer.SetAllocationLimit(static_cast<std::uint64_t>(16 * 6 * plane));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Incremental updates against whole ones of another deformer, bit by bit, after random edits of the
 // deformation, the masks and the request.
+#include "DeviceNeeds.h"
 #include "EditedVolume.h"
 
 #include <gtest/gtest.h>
@@ -105,6 +106,7 @@ class Incremental : public testing::TestWithParam<Route>
 
 TEST_P(Incremental, EqualsWholeUpdates)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const Route route = GetParam();
   EditedVolume volume;
   VolumeDeformer whole;
@@ -199,6 +201,7 @@ TEST_P(Incremental, EqualsWholeUpdates)
 // Where only vertices inside the mesh move nothing is cleared, as long as nothing folds.
 TEST_P(Incremental, EditsInsideEqualWholeUpdates)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const Route route = GetParam();
   // So deep that these parts reach no border.
   EditedVolume volume(Extent{ { -5, 140, 0, 74, 3, 78 } });
@@ -283,6 +286,7 @@ protected:
 
 TEST_P(IncrementalBorders, OneSideGoesOutAndTheOtherIn)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   this->Start();
   for (int y = 0; y < this->Edited.Nodes[1]; ++y)
   {
@@ -298,6 +302,7 @@ TEST_P(IncrementalBorders, OneSideGoesOutAndTheOtherIn)
 
 TEST_P(IncrementalBorders, AHoleMoves)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   this->BlankedAt(32, 32, 64) = 1;
   this->Start();
   int same = 0;
@@ -315,6 +320,7 @@ TEST_P(IncrementalBorders, AHoleMoves)
 
 TEST_P(IncrementalBorders, AMaskChangesAndWhatIsInsideMoves)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   this->BlankedAt(32, 32, 64) = 1;
   this->Start();
   int same = 0;
@@ -332,6 +338,7 @@ TEST_P(IncrementalBorders, AMaskChangesAndWhatIsInsideMoves)
 
 TEST_P(Incremental, LocalEditsRunFewBricks)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   EditedVolume volume(Extent{ { -5, 140, 0, 100, 3, 80 } });
   VolumeDeformer deformer;
   volume.SendAll(deformer, GetParam());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The resampler MeshRasterization against a brute-force reference: misuse, coverage, values, and
 // that nothing depends on tiles, slabs and work-groups.
+#include "DeviceNeeds.h"
 #include "RasterCase.h"
 
 #include <gtest/gtest.h>
@@ -128,6 +129,7 @@ TEST(MeshRasterization, AbortThrows)
 // one component, with three, and as labels.
 TEST(MeshRasterization, IdentityAndWholeShiftsAreBitExact)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   for (const double shift : { 0.0, -5.0 })
   {
     const RasterCase moved = MakeRasterCase(
@@ -188,6 +190,7 @@ TEST(MeshRasterization, IdentityAndWholeShiftsAreBitExact)
 // A finer output: every voxel of the volume comes out at its place.
 TEST(MeshRasterization, UndeformedAtAnotherSpacingKeepsTheVoxels)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const RasterCase finer = MakeRasterCase(Volume, 3,
     [](const glm::dvec3& index) { return index * glm::dvec3(3, 2, 7); }, { { 3, 2, 7 } });
   const auto values = MakeRandomBits<float>(finer.GetNumberOfVoxels(), 5);
@@ -212,6 +215,7 @@ TEST(MeshRasterization, UndeformedAtAnotherSpacingKeepsTheVoxels)
 
 TEST(MeshRasterization, ValuesOfAllTypesEqualReference)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const RasterCase waved = MakeRasterCase(Volume, 4, Wave, { { 1, 1, 1 } });
   const std::size_t voxels = static_cast<std::size_t>(waved.GetNumberOfVoxels());
 #define DECLARE(name, type, cl)                                                                    \
@@ -235,6 +239,7 @@ TEST(MeshRasterization, ValuesOfAllTypesEqualReference)
 
 TEST(MeshRasterization, AffineMapsEqualReference)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   std::mt19937 random(7);
   for (int run = 0; run < 12; ++run)
   {
@@ -267,6 +272,7 @@ TEST(MeshRasterization, AffineMapsEqualReference)
 // Nodes that move on their own by much: inverted tetrahedra, slivers, overlaps everywhere.
 TEST(MeshRasterization, FoldedMeshesEqualReference)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   for (unsigned int seed = 1; seed < 6; ++seed)
   {
     SCOPED_TRACE(seed);
@@ -289,6 +295,7 @@ TEST(MeshRasterization, FoldedMeshesEqualReference)
 // A mesh that is pressed almost flat at an angle, and one that is spread far.
 TEST(MeshRasterization, SliversAndStretchedMeshesEqualReference)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   for (const double thickness : { 0.02, 0.3 })
   {
     const RasterCase flat = MakeRasterCase(Volume, 2,
@@ -353,6 +360,7 @@ TEST(MeshRasterization, MasksEqualReference)
 // Work-groups, slabs, and the part of the output that is asked for change no bit.
 TEST(MeshRasterization, ResultDoesNotDependOnHowTheWorkIsSplit)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const RasterCase folded = MakeRasterCase(Volume, 3, MakeJitter(9, 3.0), { { 2.3, 2.3, 1.7 } });
   const auto values = MakeRandomValues<float>(folded.GetNumberOfVoxels(), 3);
   const auto doubles = MakeRandomValues<double>(2 * folded.GetNumberOfVoxels(), 4);

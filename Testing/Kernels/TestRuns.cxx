@@ -3,6 +3,7 @@
 // double.
 #include "DeformerCase.h"
 #include "DeviceLattice.h"
+#include "DeviceNeeds.h"
 #include "KernelProgram.h"
 #include "VertexRuns.h"
 
@@ -338,6 +339,7 @@ const Extent Extents[] = { { { -3, 40, 2, 14, 5, 20 } }, { { 0, 130, 0, 4, -2, 9
 
 TEST(Runs, PositionsAreThoseOfTheAffineMaps)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   unsigned int seed = 0;
   for (const Extent& extent : Extents)
   {
@@ -569,6 +571,7 @@ TEST_F(RunsMisuse, FormsTakeTurns)
 
 TEST_F(RunsMisuse, MemoryIsThatOfTheRuns)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   Lattice lattice;
   lattice.VertexExtent = { { 0, 199, 0, 199, 0, 199 } };
   const std::uint64_t voxels = 8000000;

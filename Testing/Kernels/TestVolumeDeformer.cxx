@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Each kernel once on a volume small enough for an interpreting device that watches every access.
 #include "DeformerCase.h"
+#include "DeviceNeeds.h"
 
 #include <gtest/gtest.h>
 
@@ -73,6 +74,7 @@ TEST(VolumeDeformer, TinyMasks)
 
 TEST(VolumeDeformer, TinyByLanes)
 {
+  SKIP_WITHOUT_VECTORS()
   const DeformerCase tiny = MakeCase({ { 0, 5, 0, 3, -1, 2 } }, NoScale, MakeJitter(6, 0.15));
   const auto values = MakeRandomValues<std::uint16_t>(tiny.GetNumberOfVoxels(), 2);
   const auto others = MakeRandomValues<float>(tiny.GetNumberOfVoxels(), 3);

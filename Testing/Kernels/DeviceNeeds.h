@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a test needs of the device, by what the device says of itself.
+#ifndef DeviceNeeds_h
+#define DeviceNeeds_h
+
+/// Whether the device of the tests has double precision. Without it arrays of doubles and linear
+/// arrays of integers of 32 and 64 bits are refused, and all others are interpolated in single
+/// precision.
+bool HasDoublePrecision();
+
+/// Whether a work-item has the vector registers of a processor for itself, as the resampling by
+/// lanes and updates of a part of the output need.
+bool HasVectors();
+
+#define SKIP_WITHOUT_DOUBLE_PRECISION()                                                            \
+  if (!HasDoublePrecision())                                                                       \
+  {                                                                                                \
+    GTEST_SKIP() << "the device has no double precision";                                          \
+  }
+
+#define SKIP_WITHOUT_VECTORS()                                                                     \
+  if (!HasVectors())                                                                               \
+  {                                                                                                \
+    GTEST_SKIP() << "work-items of the device have no vector registers for themselves";            \
+  }
+
+#endif
