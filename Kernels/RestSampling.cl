@@ -302,8 +302,7 @@ static uint SelectSources(
   }
 #define STORE_VALUES(NUMBER, TYPE, COMPONENTS) STORE_ARRAY_##NUMBER
 
-// Always inlined: PoCL 3.1, with 16 lanes and four arrays, writes nothing where it is called.
-static __attribute__((always_inline)) void SampleTile(VoxelBox tile, const int* origin,
+static void SampleTile(VoxelBox tile, const int* origin,
   __local const int* rests, __local const uint* covered, __global const ulong* backgrounds,
   __global char* coverage, const RasterParameters* p ARRAY_PARAMETERS)
 {

@@ -88,10 +88,13 @@ run() # a driver; leaves its row of the table
     # Tests fill caches one by one, as each has its own; what a driver lets us keep is shared.
     ctest --test-dir "$build" -R "$tests" -E "$others" --timeout "${DEFORMVOLUME_TEST_TIMEOUT:-900}" \
       --output-on-failure >"$log" 2>&1 || true
+    # What tests that pass, or are skipped, say.
+    cp "$build/Testing/Temporary/LastTest.log" "$folder/output.log"
     {
       echo "$(device)"
       sed -n 's/.*tests passed, \([0-9]*\) tests failed out of \([0-9]*\).*/\1 \2/p' "$log"
       grep -c '\*\*\*Skipped' "$log" || true
+      grep -a -c '^\[  SKIPPED \] .*)$' "$folder/output.log" || true
       echo "$times"
       sed -n 's/^Total Test time (real) = *\([0-9.]*\) sec/\1/p' "$log"
     } >"$folder/row"
@@ -124,24 +127,27 @@ for driver in "${drivers[@]}"; do
 done
 
 echo
-echo '| Driver | Tests passed | Failed | Skipped | Compilation, first process | Second process | Seconds of all tests |'
-echo '|---|---|---|---|---|---|---|'
+echo '| Driver | Tests passed | Failed | Skipped | Cases skipped in tests that pass | Compilation, first process | Second process | Seconds of all tests |'
+echo '|---|---|---|---|---|---|---|---|'
 for driver in "${drivers[@]}"; do
   [ -e "$output/$driver/row" ] || continue
   {
     read -r name
     read -r bad all
     read -r skipped
+    read -r cases
     read -r cold warm
     read -r seconds
   } <"$output/$driver/row"
-  echo "| $driver: $name | $((all - bad - skipped)) | $bad | $skipped | $cold s | $warm s | $seconds |"
+  echo "| $driver: $name | $((all - bad - skipped)) | $bad | $skipped | $cases | $cold s | $warm s | $seconds |"
   [ "$bad" -eq 0 ] || failed=1
 done
 for driver in "${drivers[@]}"; do
-  [ -e "$output/$driver/tests.log" ] || continue
+  [ -e "$output/$driver/output.log" ] || continue
   # What GoogleTest and the tests of the VTK classes say where they skip.
-  grep -a -A1 ': Skipped$' "$output/$driver/tests.log" | grep -a -v ': Skipped$\|^--' |
-    sed "s/^/$driver: skipped: /" | sort -u || true
+  {
+    grep -a -A1 ': Skipped$' "$output/$driver/output.log" | grep -a -v ': Skipped$\|^--'
+    sed -n 's/^skipped: //p' "$output/$driver/output.log"
+  } | sort | uniq -c | sed "s/^ */$driver: skipped /" || true
 done
 exit $failed

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Point arrays of the volume: types, components, roles, labels, background, what is not resampled.
+#include "DeviceNeeds.h"
 #include "FilterTesting.h"
 
 #include <vtkCellData.h>
@@ -301,6 +302,11 @@ void TestCellArraysAreNamedInAWarning()
 
 int TestDeformArrays(int, char*[])
 {
+  if (!HasDoublePrecision())
+  {
+    std::cout << "skipped: the device has no double precision\n";
+    return 125; // VTK_SKIP_RETURN_CODE
+  }
   TestIdentityOfTypes();
   TestOtherMemoryLayouts();
   TestRolesAndFieldData();

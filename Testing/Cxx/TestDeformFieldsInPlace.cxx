@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Displacement fields that are read where they lie, large ones of floats over the voxels, against
 // the same numbers as doubles, which are converted: bit by bit, extents included.
+#include "DeviceNeeds.h"
 #include "FilterTesting.h"
 
 #include <vtkCellData.h>
@@ -150,9 +151,10 @@ void TestMasks()
     active->SetValue(cell, 3);
     active->Modified();
     fields.CompareOutputs();
-    // The field has not changed: only what the mask touches is made anew.
-    VERIFY(fields.Tested.Filter->GetNumberOfResampledBricks() <
-      fields.Tested.Filter->GetNumberOfBricks());
+    // The field has not changed: only what the mask touches is made anew, where the device can.
+    VERIFY(!HasVectors() ||
+      fields.Tested.Filter->GetNumberOfResampledBricks() <
+        fields.Tested.Filter->GetNumberOfBricks());
   }
 }
 

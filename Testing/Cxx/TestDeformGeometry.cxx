@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where voxels go: directions, extents and spacings, and the output's bounds and spacing. A linear
 // function of the world position, carried by an affine map of the world, is the yardstick.
+#include "DeviceNeeds.h"
 #include "FilterTesting.h"
 
 #include <glm/common.hpp>
@@ -265,6 +266,11 @@ void TestOutsideTheMesh()
 
 int TestDeformGeometry(int, char*[])
 {
+  if (!HasDoublePrecision())
+  {
+    std::cout << "skipped: the device has no double precision\n";
+    return 125; // VTK_SKIP_RETURN_CODE
+  }
   TestAffineMaps();
   TestMirroringIsCounted();
   TestOutputSpacing();

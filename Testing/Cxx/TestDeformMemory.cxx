@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Arrays of the volume are read where they lie, and arrays of the output serve again: what holds
 // what, and that nobody's data change under them.
+#include "DeviceNeeds.h"
 #include "FilterTesting.h"
 
 #include <vtkImageShiftScale.h>
@@ -224,6 +225,11 @@ void TestReleasedOutputs()
 
 int TestDeformMemory(int, char*[])
 {
+  if (!HasDoublePrecision())
+  {
+    std::cout << "skipped: the device has no double precision\n";
+    return 125; // VTK_SKIP_RETURN_CODE
+  }
   TestHeldOutputs();
   TestOutputsServeAgain();
   TestOutputsOfOtherSizes();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The resampler MESH_RASTERIZATION through the filter, cubic interpolation, and AUTOMATIC.
+#include "DeviceNeeds.h"
 #include "FilterTesting.h"
 
 #include <vtkCellData.h>
@@ -397,6 +398,11 @@ void TestImage(const std::string& directory)
 
 int TestDeformRasterization(int argc, char* argv[])
 {
+  if (!HasDoublePrecision())
+  {
+    std::cout << "skipped: the device has no double precision\n";
+    return 125; // VTK_SKIP_RETURN_CODE
+  }
   TestMisuse();
   TestUndeformed();
   TestAffineMap();

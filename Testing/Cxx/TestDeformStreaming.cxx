@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Streaming: parts of the output, made from parts of the volume, are those of the whole to the last
 // bit; the input is asked for what is needed only, where its sources can make parts.
+#include "DeviceNeeds.h"
 #include "DivisionCases.h"
 
 #include <vtkExtentTranslator.h>
@@ -212,6 +213,11 @@ void TestRequests(const Case& from)
 
 int TestDeformStreaming(int, char*[])
 {
+  if (!HasDoublePrecision())
+  {
+    std::cout << "skipped: the device has no double precision\n";
+    return 125; // VTK_SKIP_RETURN_CODE
+  }
   const std::vector<Case> cases = MakeCases();
   TestWrongParts(cases[2]);
   TestRequests(cases[2]);
