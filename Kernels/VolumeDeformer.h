@@ -206,7 +206,8 @@ enum class Resampling
   /// The same with the kernel that takes one cell after the other: any arrays, any device.
   ExactByCell,
   /// The same with the kernel for processors, several cells in the lanes of vector registers: any
-  /// arrays; an Error where the output is over 32,768 voxels on an axis, or 2^31 altogether. Linear
+  /// arrays; an Error where the output is over 32,768 voxels on an axis, or 2^31 altogether, and on
+  /// devices whose work-items have no vector registers for themselves. Linear
   /// arrays of one component, of float or integers of 8 or 16 bits, are interpolated in single
   /// precision.
   ExactByLanes,

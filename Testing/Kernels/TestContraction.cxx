@@ -17,9 +17,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <map>
-#include <sstream>
+
+#include <unistd.h>
 
 using namespace deformvolume;
 
@@ -268,7 +268,7 @@ std::string Program;
 
 Results RunMyself(const std::string& option)
 {
-  const std::string file = testing::TempDir() + "DeformVolumeContraction" + option;
+  const std::string file = testing::TempDir() + "DeformVolumeContraction" + std::to_string(getpid()) + option;
   std::remove(file.c_str());
   EXPECT_EQ(std::system(("\"" + Program + "\" " + option + " \"" + file + "\"").c_str()), 0);
   std::ifstream stream(file);
