@@ -268,7 +268,8 @@ std::string Program;
 
 Results RunMyself(const std::string& option)
 {
-  const std::string file = testing::TempDir() + "DeformVolumeContraction" + std::to_string(getpid()) + option;
+  const std::string file =
+    testing::TempDir() + "DeformVolumeContraction" + std::to_string(getpid()) + option;
   std::remove(file.c_str());
   EXPECT_EQ(std::system(("\"" + Program + "\" " + option + " \"" + file + "\"").c_str()), 0);
   std::ifstream stream(file);
