@@ -33,6 +33,18 @@ private:
   const std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
 };
 
+std::uint64_t EstimateRunBytes(const StaticMappingBuilder& builder, const MappedVolume& volume)
+{
+  const std::uint64_t bytes = builder.GetRunBytes();
+  if (bytes == 0 || volume.IsWhole())
+  {
+    return bytes;
+  }
+  const double share = static_cast<double>(GetNumberOfPoints(volume.Part)) /
+    static_cast<double>(GetNumberOfPoints(volume.Whole.PointExtent));
+  return 1 + static_cast<std::uint64_t>(share * static_cast<double>(bytes));
+}
+
 } // namespace
 
 bool MappingCache::IsCurrent(const Deformation& deformation, const MappedVolume& volume) const
@@ -66,16 +78,8 @@ std::uint64_t MappingCache::GetRunBytes(const Deformation& deformation, const Ma
     return this->RunBytes;
   }
   const Stopwatch stopwatch(this->Time);
-  const std::uint64_t bytes =
-    this->GetBuilder(deformation, { &deformation, deformation.GetRestVersion(), volume })
-      .GetRunBytes();
-  if (bytes == 0 || volume.IsWhole())
-  {
-    return bytes;
-  }
-  const double share = static_cast<double>(GetNumberOfPoints(volume.Part)) /
-    static_cast<double>(GetNumberOfPoints(volume.Whole.PointExtent));
-  return 1 + static_cast<std::uint64_t>(share * static_cast<double>(bytes));
+  return EstimateRunBytes(
+    this->GetBuilder(deformation, { &deformation, deformation.GetRestVersion(), volume }), volume);
 }
 
 void MappingCache::Update(const Deformation& deformation, const MappedVolume& volume,
@@ -95,7 +99,9 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
   this->Mapping = StaticMapping();
   this->MappingKey = Key();
   const Key key{ &deformation, deformation.GetRestVersion(), volume };
-  StaticMapping mapping = this->GetBuilder(deformation, key).Build(volume.Part, progress);
+  const StaticMappingBuilder& builder = this->GetBuilder(deformation, key);
+  StaticMapping mapping = builder.Build(volume.Part, progress);
+  const std::uint64_t runBytes = EstimateRunBytes(builder, volume);
   if (volume.IsWhole())
   {
     this->Builder.reset();
@@ -112,7 +118,7 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
                 "connected, port 2 has the rest configuration.");
   }
   this->Mapping = std::move(mapping);
-  this->RunBytes = GetBytes(this->Mapping.Runs);
+  this->RunBytes = runBytes;
   this->MappingKey = key;
   ++this->Version;
   ++this->NumberOfBuilds;

@@ -35,8 +35,8 @@ struct MappedVolume
 class MappingCache
 {
 public:
-  /// Bytes of the runs of the mapping of a volume and a mesh, 0 where it has links: of the mapping
-  /// that is there, or else, about, of that which Update will make.
+  /// Bytes that the runs of the mapping of a volume and a mesh take, about; 0 where it has links. The
+  /// same before and after Update, so that what is chosen by it does not depend on what came before.
   std::uint64_t GetRunBytes(const Deformation& deformation, const MappedVolume& volume);
 
   /// Makes the mapping that of a volume and a mesh, with its links or runs. Throws an Error where
