@@ -9,6 +9,7 @@
 #include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 

@@ -9,6 +9,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace deformvolume

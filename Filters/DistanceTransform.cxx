@@ -3,6 +3,7 @@
 
 #include "ParallelFor.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -22,6 +22,7 @@
 #include <vtkWindowToImageFilter.h>
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
 #include <iostream>
 #include <stdexcept>
 

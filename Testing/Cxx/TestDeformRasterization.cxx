@@ -13,6 +13,8 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include <algorithm>
+
 using namespace filterTesting;
 
 namespace

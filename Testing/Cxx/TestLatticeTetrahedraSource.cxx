@@ -10,6 +10,7 @@
 #include <vtkPoints.h>
 #include <vtkSphereSource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <sstream>

@@ -9,6 +9,7 @@
 #include <vtkPointData.h>
 #include <vtkShortArray.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <random>
 

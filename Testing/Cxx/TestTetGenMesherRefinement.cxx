@@ -9,6 +9,7 @@
 #include <vtkPointData.h>
 #include <vtkSphereSource.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <sstream>
 

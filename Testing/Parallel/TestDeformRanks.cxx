@@ -10,6 +10,7 @@
 #include <vtkIdTypeArray.h>
 #include <vtkTrivialProducer.h>
 
+#include <algorithm>
 #include <limits>
 #include <thread>
 
