@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Runs the two commands of README.md in pristine Debian systems, each made for it in
 # build/platforms, and prints a table of what they found. As root, on Debian; packages come from the
-# archive that this system uses.
+# archive that this system uses. The logs stay in build/platforms, and so do the pictures that
+# Examples/run.sh draws: look at them.
 #
 # Usage: platforms.sh [--quick] [SUITE]...    (default: bookworm trixie forky)
 #   --quick builds against VTK only and runs the quick tests only
@@ -63,9 +64,10 @@ inside() # folder, command...
 
 versions() # folder: of what differs between the systems
 {
+  # A command that failed early has not installed all of these.
   # shellcheck disable=SC2016 # the inner shell expands these
-  inside "$1" dpkg-query --show --showformat='${Package} ${Version}\n' \
-    g++ cmake libvtk9-dev paraview pocl-opencl-icd tetgen libopenmpi-dev 2>/dev/null |
+  { inside "$1" dpkg-query --show --showformat='${Package} ${Version}\n' \
+    g++ cmake libvtk9-dev paraview pocl-opencl-icd tetgen libopenmpi-dev 2>/dev/null || true; } |
     sed -E 's/^libvtk9-dev/VTK/; s/^pocl-opencl-icd/PoCL/; s/^libopenmpi-dev/Open MPI/; s/^paraview/ParaView/
       s/^cmake/CMake/; s/^tetgen/TetGen/; s/ ([0-9]+:)?([0-9]+(\.[0-9]+)*)[^ ]*$/ \2/' |
     paste -s -d, | sed 's/,/, /g'
@@ -85,7 +87,8 @@ for suite in "${suites[@]}"; do
   results=""
   for command in "${commands[@]}"; do
     echo "== $suite: $command"
-    log="$root-$(basename "${command%% --*}" .sh).log"
+    script=${command#bash }
+    log="$root-${script%%/*}.log"
     begin=$SECONDS
     if inside "$root" bash -c "cd /src && $command" >"$log" 2>&1; then
       result="passed"
@@ -100,6 +103,9 @@ for suite in "${suites[@]}"; do
     results+=" | $result${tests:+ ($tests tests)}, $(((SECONDS - begin + 59) / 60)) min"
   done
   rows+=("$row | $(versions "$root")$results |")
+  for picture in "$root"/src/build/demo/*.png; do
+    [ ! -f "$picture" ] || mv "$picture" "$root-$(basename "$picture")"
+  done
   rm -rf --one-file-system "$root"
 done
 
