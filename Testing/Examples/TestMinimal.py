@@ -26,7 +26,7 @@ assert numpy.array_equal(get_values(result, "Values"), get_values(other, "Values
 
 # The slice at a quarter of the height moves by a tenth of the height along +x, which is 3.6 voxels.
 height = 36.0
-index = result.FindPoint(0.0, 15.75, 0.25 * height) // (
+index = result.FindPoint((0.0, 15.75, 0.25 * height)) // (
     result.GetDimensions()[0] * result.GetDimensions()[1])
 before = get_values(volume, "Values")[4:6].astype(float)
 after = get_values(result, "Values")[index:index + 2].astype(float)

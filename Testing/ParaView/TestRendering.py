@@ -48,6 +48,8 @@ def main(baseline):
     simple.ColorBy(shown, ("POINTS", name))
     colours = simple.GetColorTransferFunction(name)
     colours.RGBPoints = [0.0, 0.1, 0.0, 0.0, 60.0, 0.8, 0.5, 0.3, 160.0, 1.0, 1.0, 0.9]
+    # The default differs between versions.
+    colours.ColorSpace = "Diverging"
     opacity = simple.GetOpacityTransferFunction(name)
     points = [(0.0, 0.0), (30.0, 0.0), (90.0, 0.5), (160.0, 0.9)]
     opacity.Points = [item for value, amount in points for item in (value, amount, 0.5, 0.0)]
