@@ -133,10 +133,10 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
 
 __kernel void LookUpField(__global const float* vectors, const LookupParameters f,
   __global const uchar* active, __global const uchar* blanked, __global const ulong* backgrounds,
-  __global char* coverage, __global uint* counters, __local int* rests,
-  const RasterParameters p ARRAY_PARAMETERS)
+  __global char* coverage, __global uint* counters, const RasterParameters p ARRAY_PARAMETERS)
 {
-  __local uint* covered = (__local uint*)rests + 3 * DEFORMVOLUME_TILE_VOXELS;
+  __local int rests[3 * DEFORMVOLUME_TILE_VOXELS];
+  __local uint covered[DEFORMVOLUME_TILE_ROWS];
   const int index = p.TileBegin + (int)get_group_id(0);
   int origin[3];
   const VoxelBox tile = GetTile(index, origin, &p);

@@ -181,10 +181,11 @@ __kernel void RasterizeMesh(__global const int4* tetrahedra, __global const int4
   __global const float4* displacements, __global const uint* listBegins,
   __global const int* lists, __global const uchar* active, __global const uchar* blanked,
   __global const ulong* backgrounds, __global char* coverage, __global uint* counters,
-  __local int* rests, const RasterParameters p ARRAY_PARAMETERS)
+  const RasterParameters p ARRAY_PARAMETERS)
 {
-  __local uint* covered = (__local uint*)rests + 3 * DEFORMVOLUME_TILE_VOXELS;
-  __local uint* own = covered + DEFORMVOLUME_TILE_ROWS;
+  __local int rests[3 * DEFORMVOLUME_TILE_VOXELS];
+  __local uint covered[DEFORMVOLUME_TILE_ROWS];
+  __local uint own[DEFORMVOLUME_TILE_ROWS];
   __local uint overlaps;
   const int index = p.TileBegin + (int)get_group_id(0);
   int origin[3];

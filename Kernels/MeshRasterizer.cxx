@@ -301,11 +301,6 @@ void MeshRasterizer::RunTiles(const Setting& setting, cl::Kernel& kernel, const 
   kernel.setArg(i++, target.GetBackgrounds());
   kernel.setArg(i++, target.GetCoverage());
   kernel.setArg(i++, counters);
-  // An argument rather than variables of the kernel: PoCL 3.1 to 6.0 lose what static functions
-  // write that are called, not inlined, with a local array of a kernel. (LLVM puts the array's
-  // address into the function, and PoCL then replaces the array in the kernel alone.)
-  kernel.setArg(
-    i++, cl::Local((3 * DEFORMVOLUME_TILE_VOXELS + 2 * DEFORMVOLUME_TILE_ROWS) * sizeof(cl_int)));
   const cl_uint parameters = i++;
   for (std::size_t a = 0; a < chunk.Arrays.size(); ++a)
   {

@@ -302,7 +302,9 @@ static uint SelectSources(
   }
 #define STORE_VALUES(NUMBER, TYPE, COMPONENTS) STORE_ARRAY_##NUMBER
 
-static void SampleTile(VoxelBox tile, const int* origin,
+// Always inlined: PoCL 3.1 to 6.0 lose what static functions write that are called with a local array of a kernel. (LLVM
+// puts the array's address into the function, and PoCL then replaces the array in the kernel alone.)
+static __attribute__((always_inline)) void SampleTile(VoxelBox tile, const int* origin,
   __local const int* rests, __local const uint* covered, __global const ulong* backgrounds,
   __global char* coverage, const RasterParameters* p ARRAY_PARAMETERS)
 {
