@@ -35,8 +35,9 @@ struct MappedVolume
 class MappingCache
 {
 public:
-  /// Bytes that the runs of the mapping of a volume and a mesh take, about; 0 where it has links. The
-  /// same before and after Update, so that what is chosen by it does not depend on what came before.
+  /// Bytes that the runs of the mapping of a volume and a mesh take, about; 0 where it has links.
+  /// The same before and after Update, so that what is chosen by it does not depend on what came
+  /// before.
   std::uint64_t GetRunBytes(const Deformation& deformation, const MappedVolume& volume);
 
   /// Makes the mapping that of a volume and a mesh, with its links or runs. Throws an Error where
