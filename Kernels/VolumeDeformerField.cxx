@@ -155,8 +155,9 @@ void VolumeDeformer::SetDisplacementField(
       this->Impl->Rasterizer.Clear();
       if (mesh.HasMesh())
       {
-        mesh.ForgetMesh();
+        this->Impl->ForgetMesh();
       }
+      this->Impl->NumberOfNodes = points;
       const bool same = this->Impl->FieldVectors() &&
         std::equal(
           parameters.IndexToField, parameters.IndexToField + 12, this->Impl->Field.IndexToField) &&

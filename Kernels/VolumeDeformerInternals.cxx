@@ -61,6 +61,17 @@ void VolumeDeformer::Internals::Forget()
   this->WasContested = false;
 }
 
+void VolumeDeformer::Internals::ForgetMesh()
+{
+  this->Mesh->ForgetMesh();
+  this->Tetrahedra = cl::Buffer();
+  this->Nodes = cl::Buffer();
+  this->NodeNumbers.clear();
+  this->NumberOfTetrahedra = 0;
+  this->NumberOfNodes = 0;
+  this->NodesSet = false;
+}
+
 OpenCLContext& VolumeDeformer::Internals::GetContext()
 {
   if (!this->Context)
@@ -122,8 +133,8 @@ std::uint64_t VolumeDeformer::Internals::GetUsableMemory()
 
 bool VolumeDeformer::Internals::HasRoomForWinners(const OutputSlab& slab)
 {
-  const std::uint64_t missing = slab.GetMissingWinnerMemory();
-  return missing == 0 || this->GetHeldMemory() + missing <= this->GetUsableMemory();
+  // Also where none is missing: the limit may be lower now.
+  return this->GetHeldMemory() + slab.GetMissingWinnerMemory() <= this->GetUsableMemory();
 }
 
 void VolumeDeformer::Internals::CheckWinners(const OutputSlab& slab)

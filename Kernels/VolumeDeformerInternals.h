@@ -138,6 +138,7 @@ public:
   BufferInPlace GetFieldInPlace() const;
   void SetFieldInPlace(const DisplacementField& field);
   void ForgetField();
+  void ForgetMesh();
   void PrepareBrickPoints();
   void TellMask(const unsigned char* next, bool ofCells);
   /// See IncrementalUpdate::IsInside.

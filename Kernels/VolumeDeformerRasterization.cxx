@@ -48,10 +48,8 @@ void VolumeDeformer::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numb
   this->Impl->Send(
     [&]
     {
-      this->Impl->GetMesh().ForgetMesh();
-      this->Impl->Tetrahedra = cl::Buffer();
-      this->Impl->Nodes = cl::Buffer();
-      this->Impl->NodesSet = false;
+      this->Impl->GetMesh();
+      this->Impl->ForgetMesh();
       this->Impl->ForgetField();
       this->Impl->Update.ForgetMapping();
       this->Impl->NumberOfTetrahedra = numberOfTetrahedra;
@@ -68,13 +66,10 @@ void VolumeDeformer::SetInverseField(const DisplacementField& field)
     [&]
     {
       Internals::CheckVectors(field.Vectors, points, "point", nullptr);
-      this->Impl->GetMesh().ForgetMesh();
-      this->Impl->Tetrahedra = cl::Buffer();
-      this->Impl->Nodes = cl::Buffer();
-      this->Impl->NodesSet = false;
+      this->Impl->GetMesh();
+      this->Impl->ForgetMesh();
       this->Impl->FieldVectors = cl::Buffer();
       this->Impl->Update.ForgetMapping();
-      this->Impl->NumberOfTetrahedra = 0;
       this->Impl->NumberOfNodes = points;
       this->Impl->Rasterizer.SetField(this->Impl->GetRasterizerSetting(), field);
     });
