@@ -153,7 +153,8 @@ void VolumeDeformer::SetDisplacementField(
       const bool isMapped = !HasDisplacements(field);
       DeviceLattice& mesh = this->Impl->GetMesh();
       this->Impl->Rasterizer.Clear();
-      if (mesh.HasMesh())
+      // Where the volume is another one the mesh is gone, but not what goes with it.
+      if (mesh.HasMesh() || this->Impl->NumberOfTetrahedra > 0)
       {
         this->Impl->ForgetMesh();
       }

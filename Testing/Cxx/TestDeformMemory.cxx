@@ -221,31 +221,37 @@ void TestReleasedOutputs()
   }
 }
 
-// What held another deformation is let go of, and counts no more against the limit.
+// What held another deformation is let go of, and counts no more against the limit; also where the
+// volume is another one at the same time.
 void TestOtherDeformations()
 {
-  Subject subject;
-  vtkNew<vtkImageData> field;
-  field->SetDimensions(3, 3, 3);
-  field->SetSpacing(20.0, 20.0, 20.0);
-  field->SetOrigin(-5.0, -5.0, -5.0);
-  SetDisplacements(field, Shift(0.5, 0.25, 0.0));
-  Deformed fresh(subject.Volume, field);
-  fresh.Filter->SetOutputBoundsModeToVolumeBounds();
-  fresh.Update();
-  const vtkIdType enough = fresh.Filter->GetDeviceMemory();
-  VERIFY(enough > 0);
-  const auto mesh = MakeMesh(subject.Volume, 12);
-  SetDisplacements(mesh, Shift(0.5, 0.25, 0.0));
-  Deformed tested(subject.Volume, mesh);
-  tested.Filter->SetOutputBoundsModeToVolumeBounds();
-  tested.Update();
-  VERIFY(tested.Filter->GetDeviceMemory() > enough);
-  tested.Filter->SetDeformationData(field);
-  tested.Filter->SetMemoryLimit(4 * enough);
-  VERIFY(AreEqual(tested.Update(), fresh.Filter->GetOutput()));
-  VERIFY_EQUAL(tested.TakeErrors(), 0);
-  VERIFY_EQUAL(tested.Filter->GetDeviceMemory(), enough);
+  for (const bool otherVolume : { false, true })
+  {
+    Subject subject;
+    const auto volume = otherVolume ? MakeVolume({ { 0, 22, 0, 19, 0, 18 } }) : subject.Volume;
+    vtkNew<vtkImageData> field;
+    field->SetDimensions(3, 3, 3);
+    field->SetSpacing(20.0, 20.0, 20.0);
+    field->SetOrigin(-5.0, -5.0, -5.0);
+    SetDisplacements(field, Shift(0.5, 0.25, 0.0));
+    Deformed fresh(volume, field);
+    fresh.Filter->SetOutputBoundsModeToVolumeBounds();
+    fresh.Update();
+    const vtkIdType enough = fresh.Filter->GetDeviceMemory();
+    VERIFY(enough > 0);
+    const auto mesh = MakeMesh(subject.Volume, 12);
+    SetDisplacements(mesh, Shift(0.5, 0.25, 0.0));
+    Deformed tested(subject.Volume, mesh);
+    tested.Filter->SetOutputBoundsModeToVolumeBounds();
+    tested.Update();
+    VERIFY(tested.Filter->GetDeviceMemory() > enough);
+    tested.Filter->SetInputData(volume);
+    tested.Filter->SetDeformationData(field);
+    tested.Filter->SetMemoryLimit(4 * enough);
+    VERIFY(AreEqual(tested.Update(), fresh.Filter->GetOutput()));
+    VERIFY_EQUAL(tested.TakeErrors(), 0);
+    VERIFY_EQUAL(tested.Filter->GetDeviceMemory(), enough);
+  }
 }
 
 } // namespace

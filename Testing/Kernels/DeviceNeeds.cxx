@@ -14,3 +14,9 @@ bool HasVectors()
 {
   return FindDevice("").HasVectors;
 }
+
+std::vector<Resampling> GetExactMethods()
+{
+  return HasVectors() ? std::vector<Resampling>{ Resampling::ExactByLanes, Resampling::ExactByCell }
+                      : std::vector<Resampling>{ Resampling::ExactByCell };
+}

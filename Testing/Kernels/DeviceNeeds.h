@@ -3,6 +3,10 @@
 #ifndef DeviceNeeds_h
 #define DeviceNeeds_h
 
+#include "VolumeDeformer.h"
+
+#include <vector>
+
 /// Whether the device of the tests has double precision. Without it arrays of doubles and linear
 /// arrays of integers of 32 and 64 bits are refused, and all others are interpolated in single
 /// precision.
@@ -11,6 +15,9 @@ bool HasDoublePrecision();
 /// Whether a work-item has the vector registers of a processor for itself, as the resampling by
 /// lanes and updates of a part of the output need.
 bool HasVectors();
+
+/// The kernels of the exact resampling that the device can run, lanes first.
+std::vector<deformvolume::Resampling> GetExactMethods();
 
 #define SKIP_WITHOUT_DOUBLE_PRECISION()                                                            \
   if (!HasDoublePrecision())                                                                       \

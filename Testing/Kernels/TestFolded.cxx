@@ -336,12 +336,8 @@ TEST(Folded, OnSamplesAfterAFold)
   // The second one has creases in later columns of a brick, and in a second brick.
   const std::vector<Volume> volumes{ { { { -1, 40, 0, 8, 1, 9 } }, { 25.0, 30.5, 22.25 } },
     { { { 1, 212, 0, 4, 1, 5 } }, { 110.0, 140.5, 202.0 } } };
-  for (const Resampling method : { Resampling::ExactByLanes, Resampling::ExactByCell })
+  for (const Resampling method : GetExactMethods())
   {
-    if (method == Resampling::ExactByLanes && !HasVectors())
-    {
-      continue;
-    }
     for (const Volume& volume : volumes)
     {
       const std::size_t size = fold(volume.VertexExtent, 0.0, 0.0, 1.0).GetNumberOfVoxels();

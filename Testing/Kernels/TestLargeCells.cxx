@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cells that are stretched over much of the output. They are resampled row by row and in pieces.
 #include "DeformerCase.h"
+#include "DeviceNeeds.h"
 
 #include <gtest/gtest.h>
 
@@ -106,7 +107,7 @@ TEST(LargeCells, OneCellOverTheOutput)
     for (const int parity : { 0, 5 })
     {
       const DeformerCase cell = MakeStretchedCell(parity, 120.0, part, 4);
-      for (const Resampling method : { Resampling::ExactByLanes, Resampling::ExactByCell })
+      for (const Resampling method : GetExactMethods())
       {
         SCOPED_TRACE(testing::Message() << part << ' ' << parity << ' ' << int(method));
         VolumeDeformer deformer;
@@ -159,7 +160,7 @@ TEST(LargeCells, InChunksAndSlabs)
   constexpr int layers = 20;
   deformer.SetAllocationLimit(16 * 35 * 35 * (layers + 3));
   Load(deformer, cells, arrays, Route::Mesh);
-  for (const Resampling method : { Resampling::ExactByLanes, Resampling::ExactByCell })
+  for (const Resampling method : GetExactMethods())
   {
     SCOPED_TRACE(int(method));
     ExpectEqualsReference(cells, reference, arrays, RunDeformer(deformer, cells, arrays, method));
@@ -180,7 +181,7 @@ TEST(LargeCells, TimeIsThatOfTheSamplesInThem)
     });
   const std::vector<std::uint8_t> values{ 1, 2, 3, 4, 5, 6, 7, 8 };
   const std::vector<VolumeArray> arrays{ MakeArray(values) };
-  for (const Resampling method : { Resampling::ExactByLanes, Resampling::ExactByCell })
+  for (const Resampling method : GetExactMethods())
   {
     SCOPED_TRACE(int(method));
     const auto measure = [&](const DeformerCase& deformerCase)
