@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <functional>
 #include <iostream>
+#include <iterator>
+#include <utility>
 #include <vector>
 
 namespace
@@ -58,7 +60,10 @@ constexpr Limit Uploads{ "uploads of the volume for moved meshes", 0.0 };
 constexpr Limit Preprocessing{ "301 x 370 x 316 voxels, 512000 nodes: seconds of preprocessing",
   10.0 };
 
-constexpr int NumberOfRounds = 5;
+// So many rounds show a limit that is met. Where one does not seem to be, more of them tell whether
+// that was the machine, whose other work may take half of the time of a few rounds.
+constexpr int FirstRounds = 5;
+constexpr int MostRounds = 15;
 
 int Failures = 0;
 
@@ -134,6 +139,18 @@ void CheckSpeedAndMemory()
   Ratios updateNear, updateGeneral, publishedNear, publishedGeneral, fineMesh, rotation, scaling,
     folding, slicing, editingInside, editingAtSide, numberingAlongZ, numberingAtRandom, sharing,
     copying, withTwo, denseField;
+  const std::pair<const Limit&, Ratios&> measured[] = { { UpdateNear, updateNear },
+    { UpdateGeneral, updateGeneral }, { PublishedNear, publishedNear },
+    { PublishedGeneral, publishedGeneral }, { FineMesh, fineMesh },
+    { NodesAlongZ, numberingAlongZ }, { NodesAtRandom, numberingAtRandom },
+    { SharedArrays, sharing }, { EqualCopies, copying }, { TwoMeshes, withTwo },
+    { Dense, denseField }, { EditedInside, editingInside }, { EditedAtSide, editingAtSide },
+    { Rotated, rotation }, { Scaled, scaling }, { FoldedOver, folding }, { ThickSlices, slicing } };
+  const auto allMet = [&]()
+  {
+    return std::all_of(std::begin(measured), std::end(measured),
+      [](const auto& one) { return one.second.GetMedian() <= one.first.Highest; });
+  };
   vtkIdType builds = 0;
   vtkIdType uploads = 0;
   const auto countWork = [&]()
@@ -148,7 +165,8 @@ void CheckSpeedAndMemory()
     }
   };
   // The first round builds kernels and static mappings, and does not count.
-  for (int round = 0; round <= NumberOfRounds; ++round)
+  int rounds = FirstRounds;
+  for (int round = 0; round <= rounds; ++round)
   {
     const UpdateTimes nearTimes = update(near, Pose::NearIdentity);
     const double resliceNear = resliceLike(near);
@@ -192,24 +210,15 @@ void CheckSpeedAndMemory()
     scaling.Add(scaledTime / nearTimes.GetKernels());
     folding.Add(foldedTime / nearTimes.GetKernels());
     slicing.Add(thickTime / nearTimes.GetKernels());
+    if (round == FirstRounds && !allMet())
+    {
+      rounds = MostRounds;
+    }
   }
-  Check(UpdateNear, updateNear.GetMedian());
-  Check(UpdateGeneral, updateGeneral.GetMedian());
-  Check(PublishedNear, publishedNear.GetMedian());
-  Check(PublishedGeneral, publishedGeneral.GetMedian());
-  Check(FineMesh, fineMesh.GetMedian());
-  Check(NodesAlongZ, numberingAlongZ.GetMedian());
-  Check(NodesAtRandom, numberingAtRandom.GetMedian());
-  Check(SharedArrays, sharing.GetMedian());
-  Check(EqualCopies, copying.GetMedian());
-  Check(TwoMeshes, withTwo.GetMedian());
-  Check(Dense, denseField.GetMedian());
-  Check(EditedInside, editingInside.GetMedian());
-  Check(EditedAtSide, editingAtSide.GetMedian());
-  Check(Rotated, rotation.GetMedian());
-  Check(Scaled, scaling.GetMedian());
-  Check(FoldedOver, folding.GetMedian());
-  Check(ThickSlices, slicing.GetMedian());
+  for (const auto& [limit, ratios] : measured)
+  {
+    Check(limit, ratios.GetMedian());
+  }
   Check(BytesCoarse, GetBytesPerVoxel(near));
   Check(BytesFine, GetBytesPerVoxel(fine));
   const vtkIdType buildsBefore = builds;
