@@ -153,11 +153,11 @@ void VolumeDeformer::SetDisplacementField(
       const bool isMapped = !HasDisplacements(field);
       DeviceLattice& mesh = this->Impl->GetMesh();
       this->Impl->Rasterizer.Clear();
-      // Where the volume is another one the mesh is gone, but not what goes with it.
-      if (mesh.HasMesh() || this->Impl->NumberOfTetrahedra > 0)
+      if (mesh.HasMesh())
       {
-        this->Impl->ForgetMesh();
+        mesh.ForgetMesh();
       }
+      this->Impl->ForgetNodes();
       this->Impl->NumberOfNodes = points;
       const bool same = this->Impl->FieldVectors() &&
         std::equal(

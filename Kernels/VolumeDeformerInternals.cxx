@@ -46,24 +46,19 @@ void VolumeDeformer::Internals::Forget()
 {
   this->Mesh.reset();
   this->Arrays.clear();
-  this->Tetrahedra = cl::Buffer();
-  this->Nodes = cl::Buffer();
-  this->NodeNumbers.clear();
+  this->ForgetNodes();
   this->ForgetField();
   this->Positions = cl::Buffer();
   this->BrickRows = cl::Buffer();
   this->Targets = {};
   this->Update = IncrementalUpdate();
   this->Rasterizer.Clear();
-  this->NumberOfNodes = 0;
-  this->NodesSet = false;
   this->LastVectorsSent = false;
   this->WasContested = false;
 }
 
-void VolumeDeformer::Internals::ForgetMesh()
+void VolumeDeformer::Internals::ForgetNodes()
 {
-  this->Mesh->ForgetMesh();
   this->Tetrahedra = cl::Buffer();
   this->Nodes = cl::Buffer();
   this->NodeNumbers.clear();

@@ -57,6 +57,8 @@ public:
   }
 
   void Forget();
+  /// Of these what is about the nodes and tetrahedra of a mesh.
+  void ForgetNodes();
 
   OpenCLContext& GetContext();
 
@@ -138,7 +140,6 @@ public:
   BufferInPlace GetFieldInPlace() const;
   void SetFieldInPlace(const DisplacementField& field);
   void ForgetField();
-  void ForgetMesh();
   void PrepareBrickPoints();
   void TellMask(const unsigned char* next, bool ofCells);
   /// See IncrementalUpdate::IsInside.

@@ -48,8 +48,8 @@ void VolumeDeformer::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numb
   this->Impl->Send(
     [&]
     {
-      this->Impl->GetMesh();
-      this->Impl->ForgetMesh();
+      this->Impl->GetMesh().ForgetMesh();
+      this->Impl->ForgetNodes();
       this->Impl->ForgetField();
       this->Impl->Update.ForgetMapping();
       this->Impl->NumberOfTetrahedra = numberOfTetrahedra;
@@ -66,8 +66,8 @@ void VolumeDeformer::SetInverseField(const DisplacementField& field)
     [&]
     {
       Internals::CheckVectors(field.Vectors, points, "point", nullptr);
-      this->Impl->GetMesh();
-      this->Impl->ForgetMesh();
+      this->Impl->GetMesh().ForgetMesh();
+      this->Impl->ForgetNodes();
       this->Impl->FieldVectors = cl::Buffer();
       this->Impl->Update.ForgetMapping();
       this->Impl->NumberOfNodes = points;
