@@ -5,7 +5,8 @@
 # archive that this system uses. The logs stay in build/platforms, and so do the pictures that
 # Examples/run.sh draws: look at them.
 #
-# Usage: platforms.sh [--quick] [SUITE]...    (default: bookworm trixie forky)
+# Usage: platforms.sh [--keep] [--quick] [SUITE]...    (default: bookworm trixie forky)
+#   --keep  leaves the systems with what was built in them, to look into a failure
 #   --quick builds against VTK only and runs the quick tests only
 #   SUITE   the name of a Debian release
 # Fails where a command fails.
@@ -13,10 +14,18 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 commands=("bash Examples/run.sh" "bash Testing/run.sh")
-if [ "${1-}" = --quick ]; then
-  commands=("bash Testing/run.sh --quick vtk")
+keep=0
+while [[ "${1-}" == --* ]]; do
+  case $1 in
+    --keep) keep=1 ;;
+    --quick) commands=("bash Testing/run.sh --quick vtk") ;;
+    *)
+      echo "platforms.sh: unknown option $1" >&2
+      exit 2
+      ;;
+  esac
   shift
-fi
+done
 suites=("$@")
 [ ${#suites[@]} -gt 0 ] || suites=(bookworm trixie forky)
 
@@ -106,7 +115,7 @@ for suite in "${suites[@]}"; do
   for picture in "$root"/src/build/demo/*.png; do
     [ ! -f "$picture" ] || mv "$picture" "$root-$(basename "$picture")"
   done
-  rm -rf --one-file-system "$root"
+  [ $keep = 1 ] || rm -rf --one-file-system "$root"
 done
 
 echo
