@@ -102,6 +102,9 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
   const StaticMappingBuilder& builder = this->GetBuilder(deformation, key);
   StaticMapping mapping = builder.Build(volume.Part, progress);
   const std::uint64_t runBytes = EstimateRunBytes(builder, volume);
+  // The same for any part that the volume is read in.
+  const bool holdsVoxels =
+    mapping.NumberOfInnerVoxels > 0 || (!volume.IsWhole() && builder.HoldsVoxels());
   if (volume.IsWhole())
   {
     this->Builder.reset();
@@ -111,7 +114,7 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
     throw Error("All " + std::to_string(tetrahedra.size()) +
       " tetrahedra of the deformation mesh are flat at rest. Connect a mesh with volume.");
   }
-  if (mapping.NumberOfInnerVoxels == 0 && volume.IsWhole())
+  if (!holdsVoxels)
   {
     throw Error("The deformation mesh at rest holds no voxel of the volume. Check that both are "
                 "in the same world coordinates and overlap, and that input port 1 or, where it is "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "StaticMapping.h"
 
+#include "BarycentricMap.h"
 #include "LinkExtrapolation.h"
 #include "ParallelFor.h"
 #include "RunBuilder.h"
@@ -60,6 +61,25 @@ StaticMappingBuilder::StaticMappingBuilder(const Extent& voxels, const glm::dvec
 }
 
 StaticMappingBuilder::~StaticMappingBuilder() = default;
+
+bool StaticMappingBuilder::HoldsVoxels() const
+{
+  if (!this->Linker)
+  {
+    return false;
+  }
+  BarycentricMap map;
+  glm::i64vec3 voxel;
+  for (std::size_t id = 0; id < this->Tetrahedra.size(); ++id)
+  {
+    if (map.SetTetrahedron(this->Tetrahedra[id], this->RestPoints) &&
+      this->Linker->FindVoxel(static_cast<std::int32_t>(id), voxel))
+    {
+      return true;
+    }
+  }
+  return false;
+}
 
 StaticMapping StaticMappingBuilder::Build(
   const Extent& part, const std::function<bool(double)>& progress) const

@@ -73,6 +73,9 @@ public:
   /// Bytes of the runs, about; 0 for links.
   std::uint64_t GetRunBytes() const { return this->RunBytes; }
 
+  /// Whether any tetrahedron holds a voxel of the volume: at once where one of the first does.
+  bool HoldsVoxels() const;
+
   /// progress: as in DeformRequest; throws Aborted where it returns false.
   StaticMapping Build(const std::function<bool(double)>& progress = {}) const
   {

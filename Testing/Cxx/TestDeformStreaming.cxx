@@ -209,6 +209,35 @@ void TestRequests(const Case& from)
   }
 }
 
+// A mesh between the voxels is an error whatever part is asked for, and whatever was before.
+void TestMeshWithoutVoxels(const Case& from)
+{
+  vtkNew<vtkLatticeTetrahedraSource> between;
+  between->SetNumberOfNodes(2, 2, 2);
+  between->SetBounds(10.3, 10.6, 8.3, 8.6, 3.3, 3.6);
+  between->Update();
+  Case none = from;
+  none.Deformation = between->GetOutput();
+  SetDisplacements(none.Deformation, Shift(0.0, 0.0, 0.0));
+  none.Set = [](vtkDeformVolumeFilter* filter) { filter->SetOutputBoundsModeToVolumeBounds(); };
+  Streamed edited(none);
+  const Extent whole = edited.GetWhole();
+  for (const int last : { whole[4] + 3, whole[5], whole[4] + 3 })
+  {
+    Extent part = whole;
+    part[5] = last;
+    Streamed fresh(none);
+    edited.Filter->Modified();
+    for (Streamed* streamed : { &edited, &fresh })
+    {
+      streamed->Filter->UpdateExtent(part.data());
+      streamed->TakeErrors();
+      VERIFY_EQUAL(streamed->Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
+    }
+    VERIFY(fresh.LastError.find("holds no voxel") != std::string::npos);
+  }
+}
+
 } // namespace
 
 int TestDeformStreaming(int, char*[])
@@ -221,6 +250,7 @@ int TestDeformStreaming(int, char*[])
   const std::vector<Case> cases = MakeCases();
   TestWrongParts(cases[2]);
   TestRequests(cases[2]);
+  TestMeshWithoutVoxels(cases[2]);
   for (const Case& from : cases)
   {
     const auto whole = MakeWhole(from);
