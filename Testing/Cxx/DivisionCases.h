@@ -311,6 +311,9 @@ inline std::vector<Case> MakeCases()
     { filter->SetOutsideModeToExtrapolate(); };
     const auto same = MakeImage(extent, glm::dvec3(1.0), glm::dvec3(3.0, -2.0, 1.0));
     add("Field of voxels", volume, deform(same, Bend(volume)));
+    const auto setInverse = [](vtkDeformVolumeFilter* filter) { filter->SetFieldIsInverse(true); };
+    add("Inverse field", volume, field).Set = setInverse;
+    add("Inverse field, masks", masked, field).Set = setInverse;
   }
   add("Extrapolated mesh", volume, deform(MakeMesh(volume, 5, -6.3), Bend(volume))).Set =
     [](vtkDeformVolumeFilter* filter) { filter->SetOutsideModeToExtrapolate(); };

@@ -335,3 +335,36 @@ covered = get(masked.GetOutput(), "vtkValidPointMask") != 0
 near = (np.abs(index - (10, 9, 8)) < 0.999).all(axis=-1)
 assert near.sum() > 2 and not covered[near].any()
 assert covered[(margin > 1e-5) & (np.abs(index - (10, 9, 8)) > 1.001).any(axis=-1)].all()
+
+# Tetrahedra that are switched off hold nothing.
+def find_tetrahedra(index):
+    """Which of the five tetrahedra of its cell holds a point of the volume, and by how much."""
+    cell = np.floor(index).astype(int)
+    part = index - cell
+    odd = (cell + np.array(grid.extent[::2])) % 2 == 1
+    x, y, z = np.moveaxis(np.where(odd, 1 - part, part), -1, 0)
+    # How far it lies behind the faces of the central tetrahedron.
+    behind = np.stack([1 - (x + y + (1 - z)), 1 - ((1 - x) + (1 - y) + (1 - z)),
+                       1 - ((1 - x) + y + z), 1 - (x + (1 - y) + z)], axis=-1)
+    found = np.where(behind.max(axis=-1) > 0, behind.argmax(axis=-1), 4)
+    clear = np.minimum(np.abs(behind).min(axis=-1), np.minimum(part, 1 - part).min(axis=-1))
+    return cell, found, clear
+
+
+switched = vtkImageData()
+switched.DeepCopy(volume)
+active = random.integers(0, 32, size=[n - 1 for n in shape], dtype=np.uint8)
+made = numpy_to_vtk(active.ravel(), deep=True)
+made.SetName("ActiveTetrahedra")
+switched.GetCellData().AddArray(made)
+cut_open = make_filter(switched, field)
+cut_open.SetOutputBoundsModeToVolumeBounds()
+_, margin, index = look_up(grid, arrays["single"], field_grid, vectors, grid)
+cell, found, clear = find_tetrahedra(index)
+sure = (margin > 1e-5) & (clear > 0.01)
+cut_open.Update()
+covered = get(cut_open.GetOutput(), "vtkValidPointMask") != 0
+at = cell[sure]
+expected = active[at[:, 2], at[:, 1], at[:, 0]] >> found[sure] & 1
+assert sure.sum() > 1000 and 0.3 < expected.mean() < 0.7
+assert np.array_equal(covered[sure], expected == 1), (covered[sure] != expected).mean()
