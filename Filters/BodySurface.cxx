@@ -2,6 +2,7 @@
 #include "BodySurface.h"
 
 #include "ClosedSurface.h"
+#include "VTKVersions/SincWindow.h"
 
 #include "vtkFloatArray.h"
 #include "vtkFlyingEdges3D.h"
@@ -46,6 +47,7 @@ vtkSmartPointer<vtkPolyData> Smooth(vtkPolyData* surface, int iterations)
   smoother->SetInputData(surface);
   smoother->SetNumberOfIterations(iterations);
   smoother->SetPassBand(0.05);
+  UseHammingWindow(smoother);
   smoother->BoundarySmoothingOff();
   smoother->FeatureEdgeSmoothingOff();
   smoother->NonManifoldSmoothingOn();
