@@ -232,11 +232,12 @@ void RasterizeMesh(Results& results)
 /// Whether a product and a sum are fused by now.
 bool AreFused()
 {
-  const OpenCLContext& context = OpenCLContext::Get(FindDevice(""));
+  const OpenCLDevice device = FindDevice("");
+  const OpenCLContext& context = OpenCLContext::Get(device);
   cl::Program program(context.GetContext(),
     "#pragma OPENCL FP_CONTRACT OFF\n"
-    "__kernel void Fuse(__global float* v) { v[3] = v[0] * v[1] + v[2]; }",
-    true);
+    "__kernel void Fuse(__global float* v) { v[3] = v[0] * v[1] + v[2]; }");
+  program.build("-cl-std=CL1.2");
   const float epsilon = 1.0F / 4096.0F;
   std::array<float, 4> numbers{ { 1 + epsilon, 1 + epsilon, -1 - 2 * epsilon, 0 } };
   const cl::Buffer buffer(context.GetContext(), CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR,
