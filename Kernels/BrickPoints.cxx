@@ -199,4 +199,54 @@ BrickPoints BrickPoints::FromField(const BrickGrid& grid, const FieldParameters&
   return points;
 }
 
+BrickPoints BrickPoints::Join(
+  const std::vector<std::size_t>& groups, std::size_t numberOfGroups) const
+{
+  BrickPoints joined;
+  if (!this->Boxes.empty())
+  {
+    joined.FieldSize = this->FieldSize;
+    joined.Boxes.resize(numberOfGroups, Extent{ { 0, -1, 0, -1, 0, -1 } });
+    for (std::size_t brick = 0; brick < groups.size(); ++brick)
+    {
+      Extent& box = joined.Boxes[groups[brick]];
+      const bool first = box[0] > box[1];
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const int low = this->Boxes[brick][2 * axis];
+        const int high = this->Boxes[brick][2 * axis + 1];
+        box[2 * axis] = first ? low : std::min(box[2 * axis], low);
+        box[2 * axis + 1] = first ? high : std::max(box[2 * axis + 1], high);
+      }
+    }
+    return joined;
+  }
+  std::vector<std::vector<Range>> ranges(numberOfGroups);
+  for (std::size_t brick = 0; brick < groups.size(); ++brick)
+  {
+    std::vector<Range>& all = ranges[groups[brick]];
+    all.insert(all.end(), this->Ranges.begin() + static_cast<std::ptrdiff_t>(this->Begins[brick]),
+      this->Ranges.begin() + static_cast<std::ptrdiff_t>(this->Begins[brick + 1]));
+  }
+  joined.Begins.assign(1, 0);
+  for (std::vector<Range>& all : ranges)
+  {
+    std::sort(
+      all.begin(), all.end(), [](const Range& a, const Range& b) { return a.Begin < b.Begin; });
+    for (const Range& range : all)
+    {
+      if (joined.Ranges.size() > joined.Begins.back() && joined.Ranges.back().End >= range.Begin)
+      {
+        joined.Ranges.back().End = std::max(joined.Ranges.back().End, range.End);
+      }
+      else
+      {
+        joined.Ranges.push_back(range);
+      }
+    }
+    joined.Begins.push_back(joined.Ranges.size());
+  }
+  return joined;
+}
+
 } // namespace deformvolume

@@ -31,6 +31,9 @@ public:
     const std::uint32_t* rowBegins, const double* rest, const std::int32_t* owners,
     const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
   static BrickPoints FromField(const BrickGrid& grid, const FieldParameters& field);
+  /// Of groups of bricks: the points that any of a group has. groups: the group of each brick. They
+  /// are for AnyOf and IsApart only.
+  BrickPoints Join(const std::vector<std::size_t>& groups, std::size_t numberOfGroups) const;
 
   bool IsEmpty() const { return this->Begins.empty() && this->Boxes.empty(); }
 

@@ -159,7 +159,7 @@ void IncrementalUpdate::MoveAll(const std::optional<Bounds>& after)
 void IncrementalUpdate::ForgetMapping()
 {
   this->Tracking = false;
-  this->Points = BrickPoints();
+  this->Points = this->PointsOfBricks = BrickPoints();
   this->Known.clear();
   this->BoxesKnown = false;
   this->AllBounds.reset();
@@ -275,18 +275,38 @@ bool IncrementalUpdate::TouchesPatches(
   return false;
 }
 
+void IncrementalUpdate::SetPoints(BrickPoints&& points)
+{
+  this->Points = std::move(points);
+  std::vector<std::size_t> bricks(this->Places.size());
+  std::transform(this->Places.begin(), this->Places.end(), bricks.begin(),
+    [](const auto& place) { return place.first; });
+  this->PointsOfBricks = this->Points.Join(bricks, this->Bricks.GetNumberOfBricks());
+}
+
 void IncrementalUpdate::MovePoints(const PointSet& changed, const float* last)
 {
   std::size_t first = 0;
   std::size_t past = 0;
   changed.GetEnds(first, past);
-  const auto isMoved = [&](std::size_t part)
+  const auto hasMoved = [&](const BrickPoints& points, std::size_t brick)
   {
-    // Most parts are nowhere near.
-    return !this->Points.IsApart(part, first, past) &&
-      this->Points.AnyOf(
-        part, [&](std::size_t begin, std::size_t end) { return changed.HasAnyOf(begin, end); });
+    return !points.IsApart(brick, first, past) &&
+      points.AnyOf(
+        brick, [&](std::size_t begin, std::size_t end) { return changed.HasAnyOf(begin, end); });
   };
+  // Most bricks are nowhere near.
+  std::vector<unsigned char> near(this->Bricks.GetNumberOfBricks());
+  RunOnParts(near.size(), PartStep,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t brick = begin; brick < end; ++brick)
+      {
+        near[brick] = hasMoved(this->PointsOfBricks, brick) ? 1 : 0;
+      }
+    });
+  const auto isMoved = [&](std::size_t part)
+  { return near[this->Places[part].first] && hasMoved(this->Points, part); };
   RunOnParts(this->Grid.GetNumberOfBricks(), PartStep,
     [&](std::size_t begin, std::size_t end)
     {

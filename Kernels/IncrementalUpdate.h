@@ -71,7 +71,7 @@ public:
   /// The points of the parts of bricks; found when they are needed first, and forgotten with the
   /// mapping.
   bool HasPoints() const { return !this->Points.IsEmpty(); }
-  void SetPoints(BrickPoints&& points) { this->Points = std::move(points); }
+  void SetPoints(BrickPoints&& points);
   void ForgetMapping();
 
   /// Points will change. last: four floats a point, the displacements before the change.
@@ -134,6 +134,7 @@ private:
   Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
   std::array<int, 3> PatchCount{ { 0, 0, 0 } };
   BrickPoints Points;
+  BrickPoints PointsOfBricks;
   // The brick and the section of each part: see BrickGrid::GetBrick.
   std::vector<std::pair<std::size_t, std::uint32_t>> Places;
   std::vector<Box> Boxes; // as far as they are known
