@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ControlGroups.h"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <utility>
@@ -144,22 +145,25 @@ std::optional<std::int64_t> ReadNumber(const std::string& path)
   return file >> number ? std::optional<std::int64_t>(number) : std::nullopt;
 }
 
-std::optional<std::int64_t> ReadNumber(const std::string& path, const std::string& key)
+std::optional<std::int64_t> ReadSum(const std::string& path, const std::vector<std::string>& keys)
 {
   std::ifstream file(path);
+  std::optional<std::int64_t> sum;
+  std::size_t missing = keys.size();
   std::string name;
   std::string line;
-  while (file >> name)
+  while (missing > 0 && file >> name)
   {
     std::int64_t number = 0;
-    if (name == key && file >> number)
+    if (std::find(keys.begin(), keys.end(), name) != keys.end() && file >> number)
     {
-      return number;
+      sum = sum.value_or(0) + number;
+      --missing;
     }
     file.clear();
     std::getline(file, line);
   }
-  return std::nullopt;
+  return sum;
 }
 
 } // namespace deformvolume

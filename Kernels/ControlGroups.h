@@ -27,8 +27,8 @@ ControlGroups FindControlGroups(const std::string& controller, const std::string
 /// The number that a file begins with; nothing where there is no file, and no number, as in "max".
 std::optional<std::int64_t> ReadNumber(const std::string& path);
 
-/// The number after a key in a file of lines "key number".
-std::optional<std::int64_t> ReadNumber(const std::string& path, const std::string& key);
+/// The sum of the numbers after keys in a file of lines "key number"; nothing where none is there.
+std::optional<std::int64_t> ReadSum(const std::string& path, const std::vector<std::string>& keys);
 
 } // namespace deformvolume
 

@@ -7,9 +7,7 @@
 #include "KernelCache.h"
 #include "Processors.h"
 #include "ProgramCache.h"
-#include "SystemMemory.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 
@@ -345,13 +343,6 @@ void OpenCLContext::Prepare(
     queue.enqueueNDRangeKernel(kernel, cl::NullRange, group, group);
     queue.finish();
   }
-}
-
-std::uint64_t OpenCLContext::GetAvailableMemory(std::uint64_t held) const
-{
-  const std::uint64_t device = this->Device.Device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
-  const std::uint64_t system = this->Device.IsProcessor ? GetSystemMemory() : 0;
-  return system ? std::min(device, system + held) : device;
 }
 
 std::string Describe(const cl::Error& error)

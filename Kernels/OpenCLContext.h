@@ -65,10 +65,6 @@ public:
   /// compile when the kernel already counts as running. For kernels that do no harm then.
   void Prepare(const cl::CommandQueue& queue, const cl::Kernel& kernel, const cl::NDRange& group);
 
-  /// Bytes that the device has for one who holds some of them: its memory, and for a processor no
-  /// more than these and what the system has left.
-  std::uint64_t GetAvailableMemory(std::uint64_t held) const;
-
 private:
   explicit OpenCLContext(const OpenCLDevice& device);
 

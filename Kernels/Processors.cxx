@@ -93,9 +93,9 @@ int GetProcessorShare()
   // The files are read once: this is asked for each time that threads are started.
   static const double quota = GetQuota("");
   static const int bound = GetBoundProcessors();
+  static const int machine = GetMachineProcessors();
   const int processes = Processes;
-  return LimitByQuota(
-    std::max(1, std::min(bound, GetMachineProcessors() / processes)), quota / processes);
+  return LimitByQuota(std::max(1, std::min(bound, machine / processes)), quota / processes);
 }
 
 void SetProcessesHere(int processes)

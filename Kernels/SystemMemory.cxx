@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <initializer_list>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace deformvolume
 {
@@ -20,7 +22,7 @@ struct Names
 {
   std::initializer_list<const char*> Limits;
   const char* Usage;
-  std::initializer_list<const char*> Reclaimable;
+  std::vector<std::string> Reclaimable;
 };
 
 // What a group has left.
@@ -36,11 +38,7 @@ std::int64_t GetLeft(const std::string& folder, const Names& names)
     return limit;
   }
   const std::int64_t usage = ReadNumber(folder + "/" + names.Usage).value_or(0);
-  std::int64_t reclaimable = 0;
-  for (const char* key : names.Reclaimable)
-  {
-    reclaimable += ReadNumber(folder + "/memory.stat", key).value_or(0);
-  }
+  const std::int64_t reclaimable = ReadSum(folder + "/memory.stat", names.Reclaimable).value_or(0);
   return limit - std::max<std::int64_t>(0, usage - reclaimable);
 }
 
@@ -50,7 +48,7 @@ std::uint64_t GetSystemMemory(const std::string& root)
 {
   constexpr std::int64_t kibibyte = 1024;
   std::int64_t left = UNLIMITED;
-  if (const auto available = ReadNumber(root + "/proc/meminfo", "MemAvailable:"))
+  if (const auto available = ReadSum(root + "/proc/meminfo", { "MemAvailable:" }))
   {
     left = *available * kibibyte;
   }

@@ -2,7 +2,6 @@
 #include "VolumeDeformer.h"
 
 #include "CompilationWatch.h"
-#include "SystemMemory.h"
 #include "VertexRuns.h"
 #include "VolumeDeformerInternals.h"
 
@@ -66,6 +65,7 @@ std::string VolumeDeformer::SetDevice(const std::string& request)
   return this->Impl->Guard(
     [&]
     {
+      this->Impl->ForgetSystemMemory();
       this->Impl->SelectDevice(request);
       return this->Impl->Context->GetDevice().Name;
     });
@@ -148,13 +148,12 @@ void VolumeDeformer::CheckMemories(const std::vector<VolumeArray>& arrays,
   // A processor works in the memory of the output.
   const std::uint64_t needed = checkDevice(shared ? 0 : tuple + 1).Needed;
   // What the caller holds, in the memory of the system, which a processor shares with its device.
-  const std::uint64_t system = GetSystemMemory();
+  const std::uint64_t system = this->Impl->Guard([&] { return this->Impl->GetSystemMemory(); });
   if (system > 0)
   {
     const std::uint64_t host =
       mappingBytes + static_cast<std::uint64_t>(GetNumberOfPoints(outputExtent)) * (tuple + 1);
-    CheckBytes(host + (shared ? needed : 0),
-      system + heldBytes + (shared ? this->GetDeviceMemory() : 0), "in the system");
+    CheckBytes(host + (shared ? needed : 0), system + heldBytes, "in the system");
   }
 }
 
@@ -327,6 +326,7 @@ DeformReport VolumeDeformer::Deform(const DeformRequest& request)
   this->Impl->CheckRequest(request);
   const CompilationWatch compilation(request.Compiling);
   DeformReport report = this->Execute(request);
+  this->Impl->ForgetSystemMemory();
   report.CompilationTime = compilation.GetSeconds();
   return report;
 }
@@ -359,6 +359,7 @@ std::uint64_t VolumeDeformer::GetDeviceMemory() const
 
 void VolumeDeformer::ReleaseMemory()
 {
+  this->Impl->ForgetSystemMemory();
   this->Impl->Forget();
 }
 

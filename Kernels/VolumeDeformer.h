@@ -302,7 +302,8 @@ public:
   VolumeDeformer& operator=(const VolumeDeformer&) = delete;
 
   /// Chooses the device (see ResolveDevice) and returns its name. A change of device forgets
-  /// all that was set.
+  /// all that was set. An update begins here: how much memory is free is measured once from this
+  /// call to the end of Deform.
   std::string SetDevice(const std::string& request);
 
   /// Bytes that may be used on the device; 0: what the device (and for a processor, the

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VolumeDeformerInternals.h"
 
+#include "SystemMemory.h"
+
 #include <algorithm>
 
 namespace deformvolume
@@ -120,20 +122,38 @@ std::uint64_t VolumeDeformer::Internals::GetUsableMemory()
   return this->Guard(
     [&]
     {
-      const OpenCLContext& context = this->GetContext();
-      return this->MemoryLimit ? this->MemoryLimit
-                               : context.GetAvailableMemory(this->GetHeldMemory());
+      if (this->MemoryLimit)
+      {
+        return this->MemoryLimit;
+      }
+      const OpenCLDevice& device = this->GetContext().GetDevice();
+      const std::uint64_t all = device.Device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+      const std::uint64_t system = device.IsProcessor ? this->GetSystemMemory() : 0;
+      return system ? std::min(all, system) : all;
     });
+}
+
+std::uint64_t VolumeDeformer::Internals::GetSystemMemory()
+{
+  if (!this->SystemMemory)
+  {
+    const std::uint64_t left = deformvolume::GetSystemMemory();
+    const bool shared = this->GetContext().GetDevice().IsProcessor;
+    this->SystemMemory = left + (left && shared ? this->GetHeldMemory() : 0);
+  }
+  return *this->SystemMemory;
 }
 
 bool VolumeDeformer::Internals::HasRoomForWinners(const OutputSlab& slab)
 {
+  this->ForgetSystemMemory(); // the output takes some of it by now
   // Also where none is missing: the limit may be lower now.
   return this->GetHeldMemory() + slab.GetMissingWinnerMemory() <= this->GetUsableMemory();
 }
 
 void VolumeDeformer::Internals::CheckWinners(const OutputSlab& slab)
 {
+  this->ForgetSystemMemory();
   CheckBytes(this->GetHeldMemory() + slab.GetMissingWinnerMemory(), this->GetUsableMemory(),
     "on the device for a deformation that folds the volume over");
 }

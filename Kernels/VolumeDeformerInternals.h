@@ -12,6 +12,7 @@
 #include "VolumeDeformer.h"
 
 #include <chrono>
+#include <optional>
 
 namespace deformvolume
 {
@@ -70,8 +71,13 @@ public:
 
   /// Bytes allocated on the device.
   std::uint64_t GetHeldMemory() const;
-  /// Bytes that may be allocated there, those included that are and will be freed or used again.
+  /// Bytes that may be allocated there, those included that are and will be freed or used again:
+  /// all that the device has, and for a processor no more than GetSystemMemory().
   std::uint64_t GetUsableMemory();
+  /// Bytes that the system had left when this was asked first in an update (it takes half a
+  /// millisecond), and for a processor those held then, which are of the same memory; 0: unknown.
+  std::uint64_t GetSystemMemory();
+  void ForgetSystemMemory() { this->SystemMemory.reset(); }
   /// Whether there is room for the winners of a slab of the output, or an Error where there is not.
   bool HasRoomForWinners(const OutputSlab& slab);
   void CheckWinners(const OutputSlab& slab);
@@ -157,6 +163,7 @@ public:
   cl::CommandQueue Queue;
   cl::CommandQueue ReadQueue; // for copies to the caller
   std::uint64_t MemoryLimit = 0;
+  std::optional<std::uint64_t> SystemMemory;
   std::uint64_t AllocationLimit = 0;
   std::size_t WorkGroupSize = 0;
 
