@@ -8,6 +8,7 @@
 #include "Processors.h"
 #include "ProgramCache.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 
