@@ -6,16 +6,15 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
-#include "vtkUnsignedCharArray.h"
 
 namespace deformvolume
 {
 
-vtkUnsignedCharArray* FindMask(vtkDataSetAttributes* attributes, const char* name, vtkIdType size,
+ByteArray* FindMask(vtkDataSetAttributes* attributes, const char* name, vtkIdType size,
   const std::string& what, const std::string& owner)
 {
   vtkAbstractArray* array = attributes->GetAbstractArray(name);
-  const auto mask = vtkUnsignedCharArray::SafeDownCast(array);
+  auto* mask = vtkArrayDownCast<ByteArray>(array);
   if (array && (!mask || mask->GetNumberOfComponents() != 1 || mask->GetNumberOfTuples() != size))
   {
     throw Error("The " + what + " array \"" + name + "\" of the " + owner + " is " +
@@ -29,8 +28,8 @@ vtkUnsignedCharArray* FindMask(vtkDataSetAttributes* attributes, const char* nam
 
 const unsigned char* FindPointGhosts(vtkImageData* volume)
 {
-  vtkUnsignedCharArray* ghosts = FindMask(volume->GetPointData(),
-    vtkDataSetAttributes::GhostArrayName(), volume->GetNumberOfPoints(), "point", "volume");
+  ByteArray* ghosts = FindMask(volume->GetPointData(), vtkDataSetAttributes::GhostArrayName(),
+    volume->GetNumberOfPoints(), "point", "volume");
   return ghosts ? ghosts->GetPointer(0) : nullptr;
 }
 

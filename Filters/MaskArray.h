@@ -2,21 +2,25 @@
 #ifndef DeformVolumeMaskArray_h
 #define DeformVolumeMaskArray_h
 
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkType.h"
 
 #include <string>
 
 class vtkDataSetAttributes;
 class vtkImageData;
-class vtkUnsignedCharArray;
 
 namespace deformvolume
 {
 
+/// Bytes in memory, one after the other: a vtkUnsignedCharArray is one, and since VTK 9.6 others
+/// are, too.
+using ByteArray = vtkAOSDataArrayTemplate<unsigned char>;
+
 /// An array of one byte for each of `size` points or cells, or null where there is none of the
 /// name. Throws an Error where the array is there, but of another type, shape or size. `what` and
 /// `owner` are its words: "cell" and "volume" for a cell array of the volume.
-vtkUnsignedCharArray* FindMask(vtkDataSetAttributes* attributes, const char* name, vtkIdType size,
+ByteArray* FindMask(vtkDataSetAttributes* attributes, const char* name, vtkIdType size,
   const std::string& what, const std::string& owner);
 
 /// The ghosts of a volume's points, one byte each; null where there are none. Throws as FindMask.

@@ -12,7 +12,6 @@
 #include "vtkCellType.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <array>
@@ -144,8 +143,8 @@ void SplitHigherOrderCell(vtkUnstructuredGrid* grid, vtkIdType cell, int type,
 void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode,
   std::vector<Tetrahedron>& tetrahedra, std::map<int, vtkIdType>& ignored)
 {
-  vtkUnsignedCharArray* ghosts = FindMask(grid->GetCellData(),
-    vtkDataSetAttributes::GhostArrayName(), grid->GetNumberOfCells(), "cell", "deformation mesh");
+  ByteArray* ghosts = FindMask(grid->GetCellData(), vtkDataSetAttributes::GhostArrayName(),
+    grid->GetNumberOfCells(), "cell", "deformation mesh");
   constexpr unsigned char skipped =
     vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
   const vtkIdType numberOfCells = grid->GetNumberOfCells();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshStamp.h"
 
+#include "MaskArray.h"
 #include "ParallelFor.h"
 #include "VTKVersions/CellTypes.h"
 #include "VTKVersions/PolyhedronFaces.h"
@@ -11,7 +12,6 @@
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkPoints.h"
-#include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
@@ -58,7 +58,8 @@ bool IsTrueForAll(vtkIdType count, Body&& body)
   return all;
 }
 
-// The cells of a part, in arrays of numbers of one size.
+// The cells of a part, in arrays of numbers of one size. Null: all have the type, or the number of
+// nodes, of a tetrahedron.
 template <typename Integer>
 struct PartCells
 {
@@ -72,9 +73,12 @@ struct PartCells
   {
     Integer differences = 0;
     int otherTypes = 0;
-    for (vtkIdType cell = begin; cell < end; ++cell)
+    for (vtkIdType cell = begin; this->Types && cell < end; ++cell)
     {
       otherTypes |= this->Types[cell] ^ VTK_TETRA;
+    }
+    for (vtkIdType cell = begin; this->Offsets && cell < end; ++cell)
+    {
       differences |= this->Offsets[cell] ^ static_cast<Integer>(4 * cell);
     }
     const std::int32_t* nodes = tetrahedra[begin].data();
@@ -88,13 +92,12 @@ struct PartCells
 };
 
 template <typename Integer>
-bool HasCells(vtkUnstructuredGrid* grid, const unsigned char* types, const Tetrahedron* tetrahedra,
-  std::int32_t firstNode)
+bool HasCells(vtkUnstructuredGrid* grid, const unsigned char* types, vtkDataArray* offsets,
+  const Tetrahedron* tetrahedra, std::int32_t firstNode)
 {
   PartCells<Integer> cells;
   cells.Types = types;
-  cells.Offsets =
-    static_cast<const Integer*>(grid->GetCells()->GetOffsetsArray()->GetVoidPointer(0));
+  cells.Offsets = offsets ? static_cast<const Integer*>(offsets->GetVoidPointer(0)) : nullptr;
   cells.Connectivity =
     static_cast<const Integer*>(grid->GetCells()->GetConnectivityArray()->GetVoidPointer(0));
   return IsTrueForAll(grid->GetNumberOfCells(),
@@ -106,25 +109,39 @@ bool HasCells(vtkUnstructuredGrid* grid, const unsigned char* types, const Tetra
 bool IsMadeOf(vtkUnstructuredGrid* grid, const Tetrahedron* tetrahedra, std::int32_t firstNode)
 {
   const vtkIdType count = grid->GetNumberOfCells();
-  const auto types = vtkUnsignedCharArray::SafeDownCast(GetCellTypes(grid));
   vtkCellArray* cells = grid->GetCells();
   vtkDataArray* offsets = cells ? cells->GetOffsetsArray() : nullptr;
   vtkDataArray* connectivity = cells ? cells->GetConnectivityArray() : nullptr;
-  if (GetGhosts(grid) || !types || types->GetNumberOfValues() < count || !offsets ||
-    !connectivity || !offsets->HasStandardMemoryLayout() ||
-    !connectivity->HasStandardMemoryLayout() || offsets->GetNumberOfValues() != count + 1 ||
-    connectivity->GetNumberOfValues() != 4 * count ||
-    offsets->GetDataTypeSize() != connectivity->GetDataTypeSize())
+  if (GetGhosts(grid) || !offsets || !connectivity || !connectivity->HasStandardMemoryLayout() ||
+    offsets->GetNumberOfValues() != count + 1 || connectivity->GetNumberOfValues() != 4 * count)
   {
     return false;
   }
-  const unsigned char* type = types->GetPointer(0);
-  switch (offsets->GetDataTypeSize())
+  auto* types = vtkArrayDownCast<ByteArray>(GetCellTypes(grid));
+  if (types ? types->GetNumberOfValues() < count : GetCommonCellType(grid) != VTK_TETRA)
+  {
+    return false;
+  }
+  if (!offsets->HasStandardMemoryLayout())
+  {
+    // Computed, as where all cells have the same number of nodes.
+    if (cells->IsHomogeneous() != 4)
+    {
+      return false;
+    }
+    offsets = nullptr;
+  }
+  else if (offsets->GetDataTypeSize() != connectivity->GetDataTypeSize())
+  {
+    return false;
+  }
+  const unsigned char* type = types ? types->GetPointer(0) : nullptr;
+  switch (connectivity->GetDataTypeSize())
   {
     case 4:
-      return HasCells<std::int32_t>(grid, type, tetrahedra, firstNode);
+      return HasCells<std::int32_t>(grid, type, offsets, tetrahedra, firstNode);
     case 8:
-      return HasCells<std::int64_t>(grid, type, tetrahedra, firstNode);
+      return HasCells<std::int64_t>(grid, type, offsets, tetrahedra, firstNode);
     default:
       return false;
   }

@@ -10,7 +10,6 @@
 #include "vtkImageData.h"
 #include "vtkLookupTable.h"
 #include "vtkPointData.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <cstring>
 #include <memory>

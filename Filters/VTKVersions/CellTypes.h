@@ -9,6 +9,10 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
+#if __has_include("vtkConstantArray.h")
+#include "vtkConstantArray.h"
+#endif
+
 #include <string>
 
 namespace deformvolume
@@ -34,6 +38,19 @@ vtkDataArray* GetCellTypes(Grid* grid, long)
 inline vtkDataArray* GetCellTypes(vtkUnstructuredGrid* grid)
 {
   return detail::GetCellTypes(grid, 0);
+}
+
+/// The type of all cells of a grid where it is stored once for all of them, as since VTK 9.6; else
+/// -1.
+inline int GetCommonCellType(vtkUnstructuredGrid* grid)
+{
+#if __has_include("vtkConstantArray.h")
+  auto* constant = vtkArrayDownCast<vtkConstantArray<unsigned char>>(GetCellTypes(grid));
+  return constant && constant->GetNumberOfValues() > 0 ? constant->GetValue(0) : -1;
+#else
+  static_cast<void>(grid);
+  return -1;
+#endif
 }
 
 /// The name of the class for a type of cells. The class that holds the names changed in VTK 9.6.

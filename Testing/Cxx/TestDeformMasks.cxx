@@ -108,6 +108,14 @@ void TestActiveTetrahedra()
   VERIFY_EQUAL(CountCovered(deformed), 0);
   volume->GetCellData()->RemoveArray("ActiveTetrahedra");
   VERIFY_EQUAL(CountCovered(deformed), all);
+
+  // Bytes of no class of their own, as VTK itself makes them since 9.6.
+  const auto plain = vtkSmartPointer<vtkAOSDataArrayTemplate<unsigned char>>::New();
+  plain->SetName("ActiveTetrahedra");
+  plain->SetNumberOfTuples(volume->GetNumberOfCells());
+  plain->FillValue(0);
+  volume->GetCellData()->AddArray(plain);
+  VERIFY_EQUAL(CountCovered(deformed), 0);
 }
 
 void TestHiddenCells()

@@ -74,8 +74,10 @@ def start_client():
         str(getattr(simple.servermanager.vtkSMProxyManager, f"GetVersion{part}")())
         for part in ("Major", "Minor", "Patch")
     )
-    with open(os.path.join(settings, f"ParaView{version}.ini"), "w", encoding="ascii") as file:
-        file.write("[General]\nGeneralSettings.ShowWelcomeDialog=false\n")
+    # ParaView 6.1 has one file for all versions, earlier ones have one each.
+    for name in (f"ParaView{version}.ini", "ParaView.ini"):
+        with open(os.path.join(settings, name), "w", encoding="ascii") as file:
+            file.write("[General]\nGeneralSettings.ShowWelcomeDialog=false\n")
     script = os.path.join(FOLDER, "script.py")
     with open(script, "w", encoding="utf-8") as file:
         picture = os.path.join(FOLDER, "client.png")
