@@ -73,13 +73,19 @@ struct PartCells
   {
     Integer differences = 0;
     int otherTypes = 0;
-    for (vtkIdType cell = begin; this->Types && cell < end; ++cell)
+    if (this->Types)
     {
-      otherTypes |= this->Types[cell] ^ VTK_TETRA;
+      for (vtkIdType cell = begin; cell < end; ++cell)
+      {
+        otherTypes |= this->Types[cell] ^ VTK_TETRA;
+      }
     }
-    for (vtkIdType cell = begin; this->Offsets && cell < end; ++cell)
+    if (this->Offsets)
     {
-      differences |= this->Offsets[cell] ^ static_cast<Integer>(4 * cell);
+      for (vtkIdType cell = begin; cell < end; ++cell)
+      {
+        differences |= this->Offsets[cell] ^ static_cast<Integer>(4 * cell);
+      }
     }
     const std::int32_t* nodes = tetrahedra[begin].data();
     const Integer* points = this->Connectivity + 4 * begin;

@@ -324,9 +324,9 @@ void VolumeDeformer::SetNodeDisplacements(const float* displacements, const Poin
 DeformReport VolumeDeformer::Deform(const DeformRequest& request)
 {
   this->Impl->CheckRequest(request);
+  const Internals::SystemMemoryGuard guard(*this->Impl);
   const CompilationWatch compilation(request.Compiling);
   DeformReport report = this->Execute(request);
-  this->Impl->ForgetSystemMemory();
   report.CompilationTime = compilation.GetSeconds();
   return report;
 }

@@ -78,6 +78,21 @@ public:
   /// millisecond), and for a processor those held then, which are of the same memory; 0: unknown.
   std::uint64_t GetSystemMemory();
   void ForgetSystemMemory() { this->SystemMemory.reset(); }
+  /// Forgets it at the end of an update, also of one that fails.
+  class SystemMemoryGuard
+  {
+  public:
+    explicit SystemMemoryGuard(Internals& internals)
+      : Owner(internals)
+    {
+    }
+    ~SystemMemoryGuard() { this->Owner.ForgetSystemMemory(); }
+    SystemMemoryGuard(const SystemMemoryGuard&) = delete;
+    SystemMemoryGuard& operator=(const SystemMemoryGuard&) = delete;
+
+  private:
+    Internals& Owner;
+  };
   /// Whether there is room for the winners of a slab of the output, or an Error where there is not.
   bool HasRoomForWinners(const OutputSlab& slab);
   void CheckWinners(const OutputSlab& slab);
