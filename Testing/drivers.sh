@@ -14,6 +14,8 @@
 # not get on.
 #
 # DEFORMVOLUME_DRIVER_TESTS: a regular expression of CTest, instead of all tests of the two groups.
+# DEFORMVOLUME_TEST_TIMEOUT: seconds that a test may take, 900 by default; more where a driver
+# compiles for minutes.
 # DEFORMVOLUME_BUILD: another build directory than build/vtk.
 set -euo pipefail
 cd "$(dirname "$0")/.."
