@@ -187,6 +187,18 @@ void DeviceLattice::SetArrays(const std::vector<VolumeArray>& arrays, const Buff
   }
 }
 
+void DeviceLattice::ReadArraysAgain() const
+{
+  // The buffers of several chunks are made whenever it is the chunk's turn.
+  if (this->Chunks.size() == 1)
+  {
+    for (const BufferInPlace& place : this->ArraysInPlace)
+    {
+      TellOfWrites(this->Context, this->Queue, place);
+    }
+  }
+}
+
 const std::vector<cl::Buffer>& DeviceLattice::GetArrays(const LatticeChunk& chunk)
 {
   if (&chunk == this->ChunkInPlace)

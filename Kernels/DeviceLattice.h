@@ -50,6 +50,8 @@ public:
   bool IsInPlace(std::size_t array) const { return this->ArraysInPlace[array].Bytes > 0; }
   /// What lies over memory that overlaps this, with its buffer where there is one chunk only.
   BufferInPlace FindOverlapping(const void* data, std::uint64_t bytes) const;
+  /// Has arrays in place be read as they are now.
+  void ReadArraysAgain() const;
   /// The arrays of a chunk. Those in place overlap from chunk to chunk, so that one chunk has them
   /// at a time: waits for all that was enqueued where that is another one.
   const std::vector<cl::Buffer>& GetArrays(const LatticeChunk& chunk);

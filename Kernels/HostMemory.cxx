@@ -28,6 +28,16 @@ cl::Buffer MakeBufferOver(
   return cl::Buffer(context.GetContext(), access | CL_MEM_USE_HOST_PTR, bytes, data);
 }
 
+void TellOfWrites(
+  const OpenCLContext& context, const cl::CommandQueue& queue, const BufferInPlace& place)
+{
+  if (place.Buffer() && !context.SharesHostMemory())
+  {
+    // From the memory that the buffer was made over: OpenCL's way to say that it has changed.
+    queue.enqueueWriteBuffer(place.Buffer, CL_TRUE, 0, place.Bytes, place.Data);
+  }
+}
+
 void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t bytes)
 {
   if (GetMemory(buffer) != bytes)

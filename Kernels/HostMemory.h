@@ -46,6 +46,11 @@ struct BufferInPlace
   }
 };
 
+/// Tells the device that the host may have written to the memory that a buffer lies over, all of
+/// it. Nothing that uses the buffer may be under way.
+void TellOfWrites(
+  const OpenCLContext& context, const cl::CommandQueue& queue, const BufferInPlace& place);
+
 /// Makes a buffer of the device of so many bytes, where it is not one.
 void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t bytes);
 

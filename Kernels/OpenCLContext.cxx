@@ -250,6 +250,11 @@ bool OpenCLContext::HasExtension(const std::string& name) const
   return this->Extensions.find(" " + name + " ") != std::string::npos;
 }
 
+bool OpenCLContext::SharesHostMemory() const
+{
+  return IsPoCL(this->Device);
+}
+
 cl::Program OpenCLContext::GetProgram(const std::string& source, const std::string& options)
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);

@@ -50,6 +50,9 @@ public:
   const cl::Context& GetContext() const { return this->Context; }
   bool HasExtension(const std::string& name) const;
   cl_uint GetNumberOfUnits() const { return this->NumberOfUnits; }
+  /// Whether a buffer over memory of the host (CL_MEM_USE_HOST_PTR) is that memory, wherever it
+  /// lies. Other drivers may keep a copy, which has to be told of what the host writes there.
+  bool SharesHostMemory() const;
 
   /// The program of this text and these options; built at the first request, or made of what an
   /// earlier process has built (ProgramCache). Throws Error with the compiler's log.

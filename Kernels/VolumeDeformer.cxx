@@ -334,6 +334,12 @@ DeformReport VolumeDeformer::Deform(const DeformRequest& request)
 DeformReport VolumeDeformer::Execute(const DeformRequest& request)
 {
   const DeviceLattice& mesh = this->Impl->GetMesh();
+  this->Impl->Guard(
+    [&]
+    {
+      mesh.ReadArraysAgain();
+      TellOfWrites(*this->Impl->Context, this->Impl->Queue, this->Impl->GetFieldInPlace());
+    });
   if (request.Method == Resampling::MeshRasterization)
   {
     const DeviceMemory memory = this->CheckRasterizationDeviceMemory(mesh.GetLattice(),
