@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds the module, wraps it for Python, and installs both with a CMake package.
 
-set(deformvolume_package_directory "${CMAKE_INSTALL_LIBDIR}/cmake/DeformVolume")
-
 vtk_module_scan(
   MODULE_FILES "${CMAKE_CURRENT_SOURCE_DIR}/vtk.module"
   REQUEST_MODULES DeformVolume::Filters
@@ -19,7 +17,7 @@ function (deformvolume_build_module)
     MODULES ${deformvolume_modules}
     PACKAGE DeformVolume
     VERSION "${PROJECT_VERSION}"
-    SOVERSION "${PROJECT_VERSION_MAJOR}"
+    SOVERSION "${DEFORMVOLUME_SOVERSION}"
     INSTALL_EXPORT DeformVolume
     CMAKE_DESTINATION "${deformvolume_package_directory}"
     HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/deformvolume"
@@ -53,7 +51,7 @@ configure_package_config_file(
   INSTALL_DESTINATION "${deformvolume_package_directory}"
   NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file("${CMAKE_BINARY_DIR}/CMake/DeformVolumeConfigVersion.cmake"
-  COMPATIBILITY SameMinorVersion)
+  COMPATIBILITY "${DEFORMVOLUME_COMPATIBILITY}")
 install(
   FILES
     "${CMAKE_BINARY_DIR}/CMake/DeformVolumeConfig.cmake"

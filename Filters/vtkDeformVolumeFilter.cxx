@@ -4,6 +4,7 @@
 #include "vtkDeformVolumeFilterInternals.h"
 
 #include "Device.h"
+#include "VTKThreads.h"
 
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
@@ -22,6 +23,7 @@ vtkStandardNewMacro(vtkDeformVolumeFilter);
 vtkDeformVolumeFilter::vtkDeformVolumeFilter()
   : Internals(new vtkInternals(this))
 {
+  deformvolume::UseVTKThreads();
   this->SetNumberOfInputPorts(3);
   this->SetInputArrayToProcess(
     0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::VECTORS);

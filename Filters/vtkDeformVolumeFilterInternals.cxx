@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDeformVolumeFilterInternals.h"
 
+#include "AbortCheck.h"
 #include "FieldFolds.h"
 #include "InputUpdate.h"
 #include "LookupBounds.h"
 #include "OutputExtent.h"
 #include "ResamplerChoice.h"
-#include "VTKVersions/AbortCheck.h"
 #include "VectorArray.h"
 #include "VolumeArrays.h"
 
@@ -115,7 +115,7 @@ std::pair<std::uint64_t, std::uint64_t> vtkDeformVolumeFilter::vtkInternals::Get
 IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   const ImageGeometry& volume, const DeformationSource& source)
 {
-  const deformvolume::Lattice lattice{ volume.PointExtent,
+  const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent,
     { { source.Scale.x, source.Scale.y, source.Scale.z } } };
   const bool extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
   if (this->Deformation.IsField())
@@ -123,8 +123,8 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
     const deformvolume::DisplacementField field = this->Deformation.GetField(extrapolate);
     const IndexBounds* known = this->Deformation.GetFieldBounds();
     const IndexBounds bounds = known       ? *known
-      : this->Deformation.IsInverseField() ? deformvolume::ComputeLookupBounds(lattice, field)
-                                           : deformvolume::ComputeDeformedBounds(lattice, field);
+      : this->Deformation.IsInverseField() ? deformvolume::ComputeLookupBounds(voxelGrid, field)
+                                           : deformvolume::ComputeDeformedBounds(voxelGrid, field);
     if (bounds.IsEmpty())
     {
       throw Error("The displacement field on input port 1 holds no voxel of the volume. Check "
@@ -137,21 +137,21 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
     // The links are made before any output is asked for: what they need is checked here.
     this->Device.SetDevice(this->Self->Device, static_cast<std::uint64_t>(this->Self->MemoryLimit),
       static_cast<std::size_t>(this->Self->WorkGroupSize));
-    this->Device.CheckMemory(lattice, {}, { { 0, -1, 0, -1, 0, -1 } }, 0, this->Deformation,
+    this->Device.CheckMemory(voxelGrid, {}, { { 0, -1, 0, -1, 0, -1 } }, 0, this->Deformation,
       this->Mapping.GetRunBytes(this->Deformation, { volume, volume.PointExtent, true }));
     this->Mapping.Update(this->Deformation, { volume, volume.PointExtent, true }, {});
-    return deformvolume::ComputeDeformedBounds(lattice, this->Mapping.GetLinks(),
+    return deformvolume::ComputeDeformedBounds(voxelGrid, this->Mapping.GetLinks(),
       this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
   }
   const deformvolume::Deformation& mesh = this->Deformation;
   if (this->BoundsRestVersion != mesh.GetRestVersion() ||
-    this->BoundsLattice.VertexExtent != lattice.VertexExtent ||
-    this->BoundsLattice.Scale != lattice.Scale)
+    this->BoundsGrid.VertexExtent != voxelGrid.VertexExtent ||
+    this->BoundsGrid.Scale != voxelGrid.Scale)
   {
     this->BoundsRestVersion = 0; // nothing, if this fails
-    this->BoundsOfMesh.SetMesh(lattice, mesh.GetRestPoints(), mesh.GetTetrahedra());
+    this->BoundsOfMesh.SetMesh(voxelGrid, mesh.GetRestPoints(), mesh.GetTetrahedra());
     this->BoundsRestVersion = mesh.GetRestVersion();
-    this->BoundsLattice = lattice;
+    this->BoundsGrid = voxelGrid;
   }
   const deformvolume::PointRanges changes = mesh.GetChanges(this->BoundsVectorsVersion);
   const IndexBounds bounds = this->BoundsOfMesh.Compute(

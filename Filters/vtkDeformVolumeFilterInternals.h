@@ -193,7 +193,7 @@ private:
   deformvolume::MeshBounds BoundsOfMesh;
   std::uint64_t BoundsRestVersion = 0;
   std::uint64_t BoundsVectorsVersion = 0;
-  deformvolume::Lattice BoundsLattice;
+  deformvolume::VoxelGrid BoundsGrid;
 
   // And what these are of.
   struct RegionsKey

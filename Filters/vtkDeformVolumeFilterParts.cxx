@@ -64,11 +64,11 @@ const RestRegions& vtkDeformVolumeFilter::vtkInternals::GetRegions(
     volume, source.Scale, this->Self->OutsideMode == EXTRAPOLATE };
   if (!this->Regions || !(this->KeyOfRegions == key))
   {
-    const deformvolume::Lattice lattice{ volume.PointExtent,
+    const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent,
       { { source.Scale.x, source.Scale.y, source.Scale.z } }, {} };
     this->Regions = this->Deformation.IsField()
-      ? std::make_unique<RestRegions>(lattice, this->Deformation.GetField(key.Extrapolate))
-      : std::make_unique<RestRegions>(lattice, this->Deformation.GetRestPoints(),
+      ? std::make_unique<RestRegions>(voxelGrid, this->Deformation.GetField(key.Extrapolate))
+      : std::make_unique<RestRegions>(voxelGrid, this->Deformation.GetRestPoints(),
           this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
     this->KeyOfRegions = key;
   }

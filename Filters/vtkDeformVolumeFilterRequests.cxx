@@ -299,11 +299,11 @@ int vtkDeformVolumeFilter::RequestData(
   {
     return 1;
   }
-  deformvolume::Lattice lattice{ mapped.Part,
+  deformvolume::VoxelGrid voxelGrid{ mapped.Part,
     { { source.Scale.x, source.Scale.y, source.Scale.z } }, geometry.PointExtent };
   deformvolume::DeviceSession& device = this->Internals->Device;
   const std::vector<deformvolume::VolumeArray> described =
-    deformvolume::Describe(arrays, this->BackgroundValue);
+    deformvolume::MakeVolumeArrays(arrays, this->BackgroundValue);
   Extent whole;
   outInfo->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
   request.WholeOutputExtent = whole;
@@ -315,7 +315,7 @@ int vtkDeformVolumeFilter::RequestData(
     [&](const Extent& extent, deformvolume::Resampling method)
   {
     const bool isMapped = method != deformvolume::Resampling::MeshRasterization;
-    device.CheckMemory(lattice, described, extent, heldBytes, deformation,
+    device.CheckMemory(voxelGrid, described, extent, heldBytes, deformation,
       isMapped ? this->Internals->Mapping.GetRunBytes(deformation, mapped) : 0, method);
   };
   std::string form = "field";
@@ -354,7 +354,7 @@ int vtkDeformVolumeFilter::RequestData(
   const auto deform = [&]
   {
     checkMemory(request.OutputExtent, request.Method);
-    device.SetVolume(lattice, volume, arrays, this->BackgroundValue, request.Method);
+    device.SetVolume(voxelGrid, volume, arrays, this->BackgroundValue, request.Method);
     if (request.Method == deformvolume::Resampling::MeshRasterization)
     {
       device.SetRestMesh(deformation, mapped.Extrapolate);
@@ -385,7 +385,7 @@ int vtkDeformVolumeFilter::RequestData(
     report = device.Deform(request);
   };
   this->Internals->RunInTurn(ranks,
-    deformvolume::DescribeKernels(this->DeviceInUse, request, form, described), numberOfPoints > 0,
+    deformvolume::GetKernelKey(this->DeviceInUse, request, form, described), numberOfPoints > 0,
     deform);
   if (numberOfPoints > 0)
   {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLatticeTetrahedraSource.h"
 
+#include "AbortCheck.h"
 #include "FailureReport.h"
 #include "FiveTetrahedra.h"
 #include "PieceRequest.h"
-#include "VTKVersions/AbortCheck.h"
 
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"

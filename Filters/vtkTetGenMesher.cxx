@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkTetGenMesher.h"
 
+#include "AbortCheck.h"
 #include "ClosedSurface.h"
 #include "FailureReport.h"
 #include "MeshRefinement.h"
 #include "PieceRequest.h"
 #include "TetGenProcess.h"
-#include "VTKVersions/AbortCheck.h"
+#include "VTKThreads.h"
 #include "VolumeFrame.h"
 
 #include "vtkImageData.h"
@@ -123,6 +124,7 @@ std::vector<deformvolume::RefinementSphere> GetSpheres(
 
 vtkTetGenMesher::vtkTetGenMesher()
 {
+  deformvolume::UseVTKThreads();
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
 }

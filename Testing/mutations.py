@@ -4,7 +4,7 @@
 
     python3 Testing/mutations.py [NAME...]
 
-Without names all mutations are tried; --list prints them. The sources are copied to build/mutations, so that the
+Without names all mutations are tried; --list prints them, and --check says which texts are no longer there. The sources are copied to build/mutations, so that the
 working tree stays as it is. Each mutation replaces one text in one file; the tests of the kernels are built, and
 those named with the mutation are run. It prints a table of what was changed and the first test that failed, and
 returns 1 if a mutation was not noticed. Before that the tests must pass without a change. CONTRIBUTING.md tells
@@ -30,31 +30,31 @@ GRAPHICS = ("TestGraphicsDevice", "*")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
-    "filter-upright": ("Kernels/GroupResampling.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
-    "filter-bent": ("Kernels/GroupResampling.cl", "(FLOATS)(3.2e-5f)", "(FLOATS)(3.2e-7f)", [NARROW]),
-    "mask-reach": ("Kernels/IncrementalUpdate.cxx", "MaskReach = 1;", "MaskReach = 0;", [MASKS]),
-    "clip": ("Kernels/Resampling.cl", "CLIP_TOLERANCE (1.0f / 64.0f)", "CLIP_TOLERANCE 0.0f", [LARGE]),
-    "launch-end": ("Kernels/Resampling.cl", "z <= p.LayersEnd + 1", "z <= p.LayersEnd", [MEMORY]),
-    "failed-read": ("Kernels/HostMemory.cxx", "if (error != CL_SUCCESS)", "if (false)", [FAULTS]),
-    "memory-twice": ("Kernels/OpenCLContext.cxx", "std::min(device, system + held) : device;",
-                     "std::min(device, system + held) : device + held;", [GRAPHICS]),
-    "arrays-half-set": ("Kernels/VolumeDeformer.cxx",
+    "filter-upright": ("Kernels/Resampling/GroupResampling.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
+    "filter-bent": ("Kernels/Resampling/GroupResampling.cl", "(FLOATS)(3.2e-5f)", "(FLOATS)(3.2e-7f)", [NARROW]),
+    "mask-reach": ("Kernels/Resampling/IncrementalUpdate.cxx", "MaskReach = 1;", "MaskReach = 0;", [MASKS]),
+    "clip": ("Kernels/Resampling/Resampling.cl", "CLIP_TOLERANCE (1.0f / 64.0f)", "CLIP_TOLERANCE 0.0f", [LARGE]),
+    "launch-end": ("Kernels/Resampling/Resampling.cl", "z <= p.LayersEnd + 1", "z <= p.LayersEnd", [MEMORY]),
+    "failed-read": ("Kernels/OpenCL/HostMemory.cxx", "if (error != CL_SUCCESS)", "if (false)", [FAULTS]),
+    "memory-twice": ("Kernels/Deformer/VolumeDeformerInternals.cxx", "std::min(all, system) : all;",
+                     "std::min(all, system) : all + this->GetHeldMemory();", [GRAPHICS]),
+    "arrays-half-set": ("Kernels/Deformer/VolumeDeformer.cxx",
                         "this->Impl->Arrays.clear(); // there are none if this fails", "", [FAULTS]),
-    "links-half-set": ("Kernels/DeviceLattice.cxx", "this->WithLinks = false; // until all of them are there",
+    "links-half-set": ("Kernels/Mapping/DeviceVolume.cxx", "this->WithLinks = false; // until all of them are there",
                        "this->WithLinks = true;", [FAULTS]),
-    "far-output": ("Kernels/OutputSlab.cxx", "farthest = 1 << 22;", "farthest = 1 << 28;",
+    "far-output": ("Kernels/Resampling/OutputSlab.cxx", "farthest = 1 << 22;", "farthest = 1 << 28;",
                    [("TestUse", "Use.OutputsFarAway")]),
-    "null-group": ("Kernels/OutputSlab.cxx",
+    "null-group": ("Kernels/Resampling/OutputSlab.cxx",
                    "queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group)));",
                    "queue, kernel, cl::NDRange(items), cl::NullRange));", [GRAPHICS]),
-    "float-integers": ("Kernels/KernelProgram.cxx", "GetElementSize(arrays[i].Type) >= 4)",
+    "float-integers": ("Kernels/SamplingMesh/ArrayText.cxx", "GetElementSize(arrays[i].Type) >= 4)",
                        "GetElementSize(arrays[i].Type) >= 16)", [GRAPHICS]),
-    "local-memory": ("Kernels/KernelProgram.cxx", "return GetBrickMemory(context, 0) <=",
+    "local-memory": ("Kernels/Resampling/ResamplingProgram.cxx", "return GetBrickMemory(context, 0) <=",
                      "return true || GetBrickMemory(context, 0) <=", [FAULTS]),
-    "chunks-overlap": ("Kernels/DeviceLattice.cxx",
+    "chunks-overlap": ("Kernels/Mapping/DeviceVolume.cxx",
                        "this->ChunkInPlace->Arrays[i] = cl::Buffer();", "", [FAULTS]),
-    "field-overlaps": ("Kernels/DeviceLattice.cxx", "!field.Overlaps(array.Data, bytes) ||", "true ||", [FAULTS]),
-    "fused-field": ("Kernels/DeformationMapping.cl",
+    "field-overlaps": ("Kernels/Mapping/DeviceVolume.cxx", "!field.Overlaps(array.Data, bytes) ||", "true ||", [FAULTS]),
+    "fused-field": ("Kernels/Mapping/DeformationMapping.cl",
                     "#define MIX(a, b, t) MULTIPLY_ADD((float4)(t), (b) - (a), a)",
                     "#define MIX(a, b, t) ((a) + (t) * ((b) - (a)))", [("TestContraction", "*")]),
 }
@@ -111,14 +111,26 @@ def find_failure(tests):
     return None
 
 
+def find_stale():
+    """Mutations whose text does not stand once in its file, a line each."""
+    counts = {name: (SOURCE / file).read_text().count(old) for name, (file, old, _, _) in MUTATIONS.items()}
+    return [f"{name}: the text stands {count} times in {MUTATIONS[name][0]}."
+            for name, count in counts.items() if count != 1]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--list", action="store_true", help="print the names of the mutations")
+    parser.add_argument("--check", action="store_true", help="only look whether each text is there, once")
     arguments = parser.parse_args()
     if arguments.list:
         print("\n".join(MUTATIONS))
         return 0
+    stale = find_stale()
+    if stale or arguments.check:
+        print("\n".join(stale), file=sys.stderr)
+        return 1 if stale else 0
     names = arguments.names or list(MUTATIONS)
     unknown = [name for name in names if name not in MUTATIONS]
     if unknown:
@@ -138,9 +150,6 @@ def main():
     for name in names:
         file, old, new, its_tests = MUTATIONS[name]
         text = (SOURCE / file).read_text()
-        if text.count(old) != 1:
-            print(f"{name}: the text stands {text.count(old)} times in {file}.", file=sys.stderr)
-            return 1
         write(COPY / file, text.replace(old, new).encode())
         built = build(sorted({program for program, _ in its_tests}))
         caught = find_failure(its_tests) if built else "the compiler"

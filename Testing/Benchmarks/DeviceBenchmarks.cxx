@@ -69,7 +69,7 @@ void Copy(benchmark::State& state, const OpenCLDevice& device)
   }
   catch (const cl::Error& error)
   {
-    state.SkipWithError(deformvolume::Describe(error).c_str());
+    state.SkipWithError(deformvolume::GetMessage(error).c_str());
   }
 }
 }

@@ -25,17 +25,17 @@ namespace
 
 const float NotANumber = std::numeric_limits<float>::quiet_NaN();
 
-Lattice MakeVolume(const Extent& extent, const glm::dvec3& scale)
+VoxelGrid MakeVolume(const Extent& extent, const glm::dvec3& scale)
 {
-  Lattice lattice;
-  lattice.VertexExtent = extent;
-  lattice.Scale = { { scale.x, scale.y, scale.z } };
-  return lattice;
+  VoxelGrid voxelGrid;
+  voxelGrid.VertexExtent = extent;
+  voxelGrid.Scale = { { scale.x, scale.y, scale.z } };
+  return voxelGrid;
 }
 
-glm::dvec3 GetRatio(const Lattice& lattice)
+glm::dvec3 GetRatio(const VoxelGrid& voxelGrid)
 {
-  return glm::dvec3(lattice.Scale[0], lattice.Scale[1], lattice.Scale[2]);
+  return glm::dvec3(voxelGrid.Scale[0], voxelGrid.Scale[1], voxelGrid.Scale[2]);
 }
 
 std::vector<float> MakeVectors(std::size_t count, double size, std::mt19937& random)
@@ -74,7 +74,7 @@ bool Contains(const IndexBounds& outer, const IndexBounds& inner, double toleran
 
 // The corners of a tetrahedron within a box are found among the points where three of the ten
 // planes meet.
-void AddCorners(const Lattice& lattice, const Mesh& mesh, const Tetrahedron& nodes,
+void AddCorners(const VoxelGrid& voxelGrid, const Mesh& mesh, const Tetrahedron& nodes,
   const std::vector<float>& displacements, IndexBounds& bounds)
 {
   glm::dvec3 rest[4];
@@ -82,7 +82,7 @@ void AddCorners(const Lattice& lattice, const Mesh& mesh, const Tetrahedron& nod
   for (int node = 0; node < 4; ++node)
   {
     rest[node] = mesh.Points[nodes[node]];
-    moved[node] = GetRatio(lattice) * rest[node] + GetVector(displacements, nodes[node]);
+    moved[node] = GetRatio(voxelGrid) * rest[node] + GetVector(displacements, nodes[node]);
   }
   const glm::dmat3 sides(rest[1] - rest[0], rest[2] - rest[0], rest[3] - rest[0]);
   if (std::abs(glm::determinant(sides)) < 1e-9)
@@ -93,11 +93,11 @@ void AddCorners(const Lattice& lattice, const Mesh& mesh, const Tetrahedron& nod
   std::vector<glm::dvec4> planes;
   for (int axis = 0; axis < 3; ++axis)
   {
-    glm::dvec4 plane(0.0, 0.0, 0.0, lattice.VertexExtent[2 * axis]);
+    glm::dvec4 plane(0.0, 0.0, 0.0, voxelGrid.VertexExtent[2 * axis]);
     plane[axis] = 1.0;
     planes.push_back(plane);
     plane[axis] = -1.0;
-    plane.w = -lattice.VertexExtent[2 * axis + 1];
+    plane.w = -voxelGrid.VertexExtent[2 * axis + 1];
     planes.push_back(plane);
   }
   for (int node = 0; node < 4; ++node)
@@ -139,7 +139,7 @@ void AddCorners(const Lattice& lattice, const Mesh& mesh, const Tetrahedron& nod
 void TestMesh()
 {
   std::mt19937 random(11);
-  const Lattice lattice = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.0, 0.7, 2.5));
+  const VoxelGrid voxelGrid = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.0, 0.7, 2.5));
   const glm::dvec3 min(-4.0, 2.0, -20.0);
   const glm::dvec3 max(9.0, 14.0, -9.0);
   for (int trial = 0; trial < 20; ++trial)
@@ -154,16 +154,16 @@ void TestMesh()
       IndexBounds expected;
       for (const Tetrahedron& nodes : mesh.Tetrahedra)
       {
-        AddCorners(lattice, mesh, nodes, displacements, expected);
+        AddCorners(voxelGrid, mesh, nodes, displacements, expected);
       }
-      CHECK(
-        AreClose(ComputeDeformedBounds(lattice, mesh.Points, mesh.Tetrahedra, displacements.data()),
-          expected, 1e-6));
+      CHECK(AreClose(
+        ComputeDeformedBounds(voxelGrid, mesh.Points, mesh.Tetrahedra, displacements.data()),
+        expected, 1e-6));
     }
   }
 
   // Undeformed: where mesh and volume overlap, to the last bit.
-  const Lattice plain = MakeVolume(lattice.VertexExtent, glm::dvec3(1.0));
+  const VoxelGrid plain = MakeVolume(voxelGrid.VertexExtent, glm::dvec3(1.0));
   const Mesh mesh =
     MakeLattice({ 4, 4, 4 }, glm::dvec3(-1.0, 0.0, -30.0), glm::dvec3(20.0), 0.3, 0.0, random);
   std::vector<float> displacements(3 * mesh.Points.size(), 0.0F);
@@ -201,7 +201,7 @@ void TestMesh()
 void TestChanges()
 {
   std::mt19937 random(23);
-  const Lattice lattice = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.0, 0.7, 2.5));
+  const VoxelGrid voxelGrid = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.0, 0.7, 2.5));
   const glm::dvec3 min(-4.0, 2.0, -20.0);
   const glm::dvec3 max(9.0, 14.0, -9.0);
   // Of several blocks of nodes, the second one with many tetrahedra that are clipped.
@@ -210,7 +210,7 @@ void TestChanges()
   {
     std::vector<float> displacements = MakeVectors(mesh.Points.size(), 2.0, random);
     MeshBounds bounds;
-    bounds.SetMesh(lattice, mesh.Points, mesh.Tetrahedra);
+    bounds.SetMesh(voxelGrid, mesh.Points, mesh.Tetrahedra);
     const PointRanges none;
     int changes = 0;
     IndexBounds last;
@@ -232,7 +232,7 @@ void TestChanges()
       const IndexBounds found =
         bounds.Compute(mesh.Points, mesh.Tetrahedra, displacements.data(), &ranges);
       const IndexBounds expected =
-        ComputeDeformedBounds(lattice, mesh.Points, mesh.Tetrahedra, displacements.data());
+        ComputeDeformedBounds(voxelGrid, mesh.Points, mesh.Tetrahedra, displacements.data());
       CHECK(found.Min == expected.Min && found.Max == expected.Max);
       changes += found.Min != last.Min || found.Max != last.Max ? 1 : 0;
       last = found;
@@ -249,8 +249,8 @@ void TestChanges()
 void TestLinks()
 {
   std::mt19937 random(12);
-  const Lattice lattice = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.5, 0.7, 2.5));
-  const Extent& extent = lattice.VertexExtent;
+  const VoxelGrid voxelGrid = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.5, 0.7, 2.5));
+  const Extent& extent = voxelGrid.VertexExtent;
   const Mesh mesh = MakeLattice(
     { 3, 3, 3 }, glm::dvec3(0.0, 4.0, -18.0), glm::dvec3(5.0, 12.0, -11.0), 0.3, 0.0, random);
   const std::vector<float> displacements = MakeVectors(mesh.Points.size(), 5.0, random);
@@ -273,7 +273,7 @@ void TestLinks()
             const double a = link.Weights[0];
             const double b = link.Weights[1];
             const double c = link.Weights[2];
-            expected.Add(GetRatio(lattice) * glm::dvec3(x, y, z) +
+            expected.Add(GetRatio(voxelGrid) * glm::dvec3(x, y, z) +
               a * GetVector(displacements, nodes[0]) + b * GetVector(displacements, nodes[1]) +
               c * GetVector(displacements, nodes[2]) +
               (1.0 - a - b - c) * GetVector(displacements, nodes[3]));
@@ -281,20 +281,20 @@ void TestLinks()
         }
       }
     }
-    CHECK(
-      AreClose(ComputeDeformedBounds(lattice, mapping.Links, mesh.Tetrahedra, displacements.data()),
-        expected, 1e-9));
+    CHECK(AreClose(
+      ComputeDeformedBounds(voxelGrid, mapping.Links, mesh.Tetrahedra, displacements.data()),
+      expected, 1e-9));
   }
-  CHECK(ComputeDeformedBounds(lattice,
+  CHECK(ComputeDeformedBounds(voxelGrid,
     std::vector<VertexLink>(static_cast<std::size_t>(GetNumberOfPoints(extent))), mesh.Tetrahedra,
     displacements.data())
           .IsEmpty());
 }
 
 // All voxels, one by one.
-IndexBounds SearchVoxels(const Lattice& lattice, const DisplacementField& field)
+IndexBounds SearchVoxels(const VoxelGrid& voxelGrid, const DisplacementField& field)
 {
-  const Extent& extent = lattice.VertexExtent;
+  const Extent& extent = voxelGrid.VertexExtent;
   const auto& m = field.IndexToField;
   IndexBounds bounds;
   for (int z = extent[4]; z <= extent[5]; ++z)
@@ -339,7 +339,7 @@ IndexBounds SearchVoxels(const Lattice& lattice, const DisplacementField& field)
         }
         if ((inside || field.Extrapolate) && std::isfinite(sum.x + sum.y + sum.z))
         {
-          bounds.Add(GetRatio(lattice) * glm::dvec3(x, y, z) + sum);
+          bounds.Add(GetRatio(voxelGrid) * glm::dvec3(x, y, z) + sum);
         }
       }
     }
@@ -350,7 +350,7 @@ IndexBounds SearchVoxels(const Lattice& lattice, const DisplacementField& field)
 void TestField()
 {
   std::mt19937 random(13);
-  const Lattice lattice = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.0, 0.7, 2.5));
+  const VoxelGrid voxelGrid = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.0, 0.7, 2.5));
   const glm::dvec3 center(2.5, 8.0, -14.5);
   struct Case
   {
@@ -410,20 +410,20 @@ void TestField()
         vectors[i] = i % 3 == 0 ? 3.25F : (i % 3 == 1 ? -7.5F : 100.0F);
       }
       field.Vectors = vectors.data();
-      IndexBounds expected = SearchVoxels(lattice, field);
-      IndexBounds found = ComputeDeformedBounds(lattice, field);
+      IndexBounds expected = SearchVoxels(voxelGrid, field);
+      IndexBounds found = ComputeDeformedBounds(voxelGrid, field);
       CHECK(Contains(found, expected, 1e-9));
       CHECK(!(item.ExactIfConstant || extrapolate) || AreClose(found, expected, 1e-9));
       // The corners of what a turned field covers need not be voxels, but are within one of them.
       IndexBounds grown = expected;
-      grown.Min -= GetRatio(lattice);
-      grown.Max += GetRatio(lattice);
+      grown.Min -= GetRatio(voxelGrid);
+      grown.Max += GetRatio(voxelGrid);
       CHECK(expected.IsEmpty() || Contains(grown, found, 1e-9));
       // No larger than the volume.
       const glm::dvec3 shift(3.25, -7.5, 100.0);
       CHECK(found.IsEmpty() ||
-        Contains({ GetRatio(lattice) * glm::dvec3(-4.0, 2.0, -20.0) + shift,
-                   GetRatio(lattice) * glm::dvec3(9.0, 14.0, -9.0) + shift },
+        Contains({ GetRatio(voxelGrid) * glm::dvec3(-4.0, 2.0, -20.0) + shift,
+                   GetRatio(voxelGrid) * glm::dvec3(9.0, 14.0, -9.0) + shift },
           found, 1e-9));
 
       for (const bool broken : { false, true })
@@ -433,8 +433,8 @@ void TestField()
         vectors[vectors.size() - 1] =
           broken ? std::numeric_limits<float>::infinity() : vectors[vectors.size() - 1];
         field.Vectors = vectors.data();
-        expected = SearchVoxels(lattice, field);
-        found = ComputeDeformedBounds(lattice, field);
+        expected = SearchVoxels(voxelGrid, field);
+        found = ComputeDeformedBounds(voxelGrid, field);
         CHECK(Contains(found, expected, 1e-4));
         CHECK(!item.Exact || AreClose(found, expected, 1e-4));
         // Not absurdly large either: no further out than any vector takes a voxel.
@@ -446,25 +446,25 @@ void TestField()
             reach.Add(glm::dvec3(value));
           }
         }
-        reach.Min += GetRatio(lattice) * glm::dvec3(-4.0, 2.0, -20.0);
-        reach.Max += GetRatio(lattice) * glm::dvec3(9.0, 14.0, -9.0);
+        reach.Min += GetRatio(voxelGrid) * glm::dvec3(-4.0, 2.0, -20.0);
+        reach.Max += GetRatio(voxelGrid) * glm::dvec3(9.0, 14.0, -9.0);
         CHECK(found.IsEmpty() || Contains(reach, found, 1e-9));
       }
     }
   }
 
   DisplacementField empty;
-  CHECK(ComputeDeformedBounds(lattice, empty).IsEmpty());
+  CHECK(ComputeDeformedBounds(voxelGrid, empty).IsEmpty());
 }
 
 void TestThreads()
 {
   std::mt19937 random(14);
-  const Lattice lattice = MakeVolume({ { 0, 30, 0, 30, 0, 30 } }, glm::dvec3(1.0));
+  const VoxelGrid voxelGrid = MakeVolume({ { 0, 30, 0, 30, 0, 30 } }, glm::dvec3(1.0));
   const Mesh mesh = MakeLattice({ 9, 9, 9 }, glm::dvec3(-3.0), glm::dvec3(35.0), 0.3, 0.0, random);
   const std::vector<float> displacements = MakeVectors(mesh.Points.size(), 3.0, random);
   const auto compute = [&]()
-  { return ComputeDeformedBounds(lattice, mesh.Points, mesh.Tetrahedra, displacements.data()); };
+  { return ComputeDeformedBounds(voxelGrid, mesh.Points, mesh.Tetrahedra, displacements.data()); };
   IndexBounds one;
   IndexBounds two;
   vtkSMPTools::LocalScope(vtkSMPTools::Config{ 1 }, [&]() { one = compute(); });

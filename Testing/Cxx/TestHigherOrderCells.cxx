@@ -5,6 +5,8 @@
 #include "FilterTesting.h"
 #include "MeshCells.h"
 
+#include "Error.h"
+
 #include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>

@@ -196,9 +196,9 @@ void Compare(const Mesh& mesh, const Extent& voxels)
   CHECK(byRuns.NumberOfInnerVoxels == byLinks.NumberOfInnerVoxels);
   CHECK(byRuns.NumberOfFlatTetrahedra == byLinks.NumberOfFlatTetrahedra);
   const VertexRuns& runs = byRuns.Runs;
-  Lattice lattice;
-  lattice.VertexExtent = voxels;
-  CheckRuns(runs, lattice, mesh.Tetrahedra.size());
+  VoxelGrid voxelGrid;
+  voxelGrid.VertexExtent = voxels;
+  CheckRuns(runs, voxelGrid, mesh.Tetrahedra.size());
   const std::int64_t size = GetSize(voxels, 0);
   std::set<std::int32_t> used;
   for (std::size_t row = 0; row + 1 < runs.RowBegins.size(); ++row)

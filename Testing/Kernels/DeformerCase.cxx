@@ -40,13 +40,13 @@ void ForEachVoxel(const Extent& extent, Function&& function)
   }
 }
 
-reference::Position GetRestPosition(const Lattice& lattice, int x, int y, int z)
+reference::Position GetRestPosition(const VoxelGrid& voxelGrid, int x, int y, int z)
 {
   const std::array<int, 3> index{ { x, y, z } };
   reference::Position position{};
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double exact = 256.0 * lattice.Scale[axis] * index[axis];
+    const double exact = 256.0 * voxelGrid.Scale[axis] * index[axis];
     position[axis] = std::llround(exact);
     EXPECT_EQ(static_cast<double>(position[axis]), exact) << "a scale that makes the test inexact";
   }
@@ -206,8 +206,8 @@ DeformerCase MakeCase(const Extent& extent, const std::array<double, 3>& scale,
   const std::function<glm::dvec3(const glm::dvec3&)>& deformation, int margin)
 {
   DeformerCase made;
-  made.Lattice.VertexExtent = extent;
-  made.Lattice.Scale = scale;
+  made.VoxelGrid.VertexExtent = extent;
+  made.VoxelGrid.Scale = scale;
   made.Displacements.reserve(GetNumberOfPoints(extent));
   std::array<std::int64_t, 3> low{};
   std::array<std::int64_t, 3> high{};
@@ -217,7 +217,7 @@ DeformerCase MakeCase(const Extent& extent, const std::array<double, 3>& scale,
     [&](int x, int y, int z)
     {
       const glm::dvec3 moved = deformation(glm::dvec3(x, y, z));
-      const reference::Position rest = GetRestPosition(made.Lattice, x, y, z);
+      const reference::Position rest = GetRestPosition(made.VoxelGrid, x, y, z);
       reference::Position displacement{};
       for (int axis = 0; axis < 3; ++axis)
       {
@@ -239,13 +239,13 @@ DeformerCase MakeCase(const Extent& extent, const std::array<double, 3>& scale,
 reference::Result ResampleByReference(const DeformerCase& deformerCase)
 {
   reference::SamplingMesh mesh;
-  mesh.Voxels = deformerCase.Lattice.VertexExtent;
+  mesh.Voxels = deformerCase.VoxelGrid.VertexExtent;
   mesh.Active = deformerCase.Active;
   std::size_t voxel = 0;
   ForEachVoxel(mesh.Voxels,
     [&](int x, int y, int z)
     {
-      reference::Position position = GetRestPosition(deformerCase.Lattice, x, y, z);
+      reference::Position position = GetRestPosition(deformerCase.VoxelGrid, x, y, z);
       for (int axis = 0; axis < 3; ++axis)
       {
         position[axis] += deformerCase.Displacements[voxel][axis];
@@ -279,8 +279,8 @@ void MoveByField(VolumeDeformer& deformer, const DeformerCase& deformerCase)
   DisplacementField field;
   for (int axis = 0; axis < 3; ++axis)
   {
-    field.Dimensions[axis] = static_cast<int>(GetSize(deformerCase.Lattice.VertexExtent, axis));
-    field.IndexToField[4 * axis + 3] = -deformerCase.Lattice.VertexExtent[2 * axis];
+    field.Dimensions[axis] = static_cast<int>(GetSize(deformerCase.VoxelGrid.VertexExtent, axis));
+    field.IndexToField[4 * axis + 3] = -deformerCase.VoxelGrid.VertexExtent[2 * axis];
   }
   field.Vectors = displacements.data();
   deformer.SetDisplacementField(field);
@@ -291,7 +291,7 @@ void Load(VolumeDeformer& deformer, const DeformerCase& deformerCase,
 {
   const std::size_t size = deformerCase.GetNumberOfVoxels();
   deformer.SetDevice("");
-  deformer.SetLattice(deformerCase.Lattice);
+  deformer.SetVoxelGrid(deformerCase.VoxelGrid);
   deformer.SetArrays(arrays);
   deformer.SetBlanked(deformerCase.Blanked.empty() ? nullptr : deformerCase.Blanked.data());
   deformer.SetActiveTetrahedra(deformerCase.Active.empty() ? nullptr : deformerCase.Active.data());

@@ -34,7 +34,7 @@ enum class Route
 
 struct DeformerCase
 {
-  deformvolume::Lattice Lattice;
+  deformvolume::VoxelGrid VoxelGrid;
   /// In 1/256 output voxel, one a voxel.
   std::vector<reference::Position> Displacements;
   /// Empty: none are unlinked, none blanked, all active.
@@ -47,7 +47,7 @@ struct DeformerCase
   std::vector<float> GetDisplacements() const;
   std::int64_t GetNumberOfVoxels() const
   {
-    return deformvolume::GetNumberOfPoints(this->Lattice.VertexExtent);
+    return deformvolume::GetNumberOfPoints(this->VoxelGrid.VertexExtent);
   }
 };
 
@@ -68,7 +68,7 @@ inline int GetCorner(std::int64_t voxel)
 /// The runs of Route::Runs: each begins with the voxel whose tetrahedron it takes.
 deformvolume::VertexRuns MakeRuns(const DeformerCase& deformerCase);
 
-/// Sets the lattice, the arrays, the masks and the deformation.
+/// Sets the voxel grid, the arrays, the masks and the deformation.
 void Load(deformvolume::VolumeDeformer& deformer, const DeformerCase& deformerCase,
   const std::vector<deformvolume::VolumeArray>& arrays, Route route);
 

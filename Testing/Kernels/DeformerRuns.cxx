@@ -5,7 +5,7 @@ using namespace deformvolume;
 
 VertexRuns MakeRuns(const DeformerCase& deformerCase)
 {
-  const Extent& extent = deformerCase.Lattice.VertexExtent;
+  const Extent& extent = deformerCase.VoxelGrid.VertexExtent;
   const std::int64_t size = GetSize(extent, 0);
   VertexRuns runs;
   for (std::int64_t voxel = 0; voxel < deformerCase.GetNumberOfVoxels(); ++voxel)

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DeviceNeeds.h"
 
-#include "OpenCLContext.h"
+#include "Device.h"
 
 using namespace deformvolume;
 
 bool HasDoublePrecision()
 {
-  return FindDevice("").Description.HasDouble;
+  return GetDeviceAbilities("").DoublePrecision;
 }
 
 bool HasVectors()
 {
-  return FindDevice("").HasVectors;
+  return GetDeviceAbilities("").Vectors;
 }
 
 std::vector<Resampling> GetExactMethods()

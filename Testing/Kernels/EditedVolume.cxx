@@ -203,7 +203,7 @@ void EditedVolume::SendMasks(VolumeDeformer& deformer) const
 void EditedVolume::SendAll(VolumeDeformer& deformer, Route route) const
 {
   deformer.SetDevice("");
-  deformer.SetLattice(this->Shape);
+  deformer.SetVoxelGrid(this->Shape);
   deformer.SetArrays(this->GetArrays());
   this->SendMasks(deformer);
   if (route == Route::Mesh)

@@ -19,7 +19,7 @@ struct EditedVolume
 {
   static constexpr int Step = 8; // voxels between nodes
 
-  deformvolume::Lattice Shape;
+  deformvolume::VoxelGrid Shape;
   std::array<int, 3> Nodes;
   std::vector<deformvolume::Tetrahedron> Tetrahedra;
   std::vector<deformvolume::VertexLink> Links;

@@ -40,7 +40,7 @@ void ExpectValues(const RasterCase& c, const reference::RasterResult& reference,
     {
       continue;
     }
-    const auto weights = reference::GetWeights(c.Lattice.VertexExtent, expected.Rest, cubic);
+    const auto weights = reference::GetWeights(c.VoxelGrid.VertexExtent, expected.Rest, cubic);
     for (int component = 0; component < array.Components; ++component)
     {
       const T value = output[voxel * array.Components + component];
@@ -56,11 +56,11 @@ void ExpectValues(const RasterCase& c, const reference::RasterResult& reference,
             at[axis] =
               std::llround(expected.Rest[axis] + ((corner >> axis & 1) != 0 ? 1e-5L : -1e-5L));
             at[axis] = std::min(
-              std::max<std::int64_t>(at[axis], 0), GetSize(c.Lattice.VertexExtent, axis) - 1);
+              std::max<std::int64_t>(at[axis], 0), GetSize(c.VoxelGrid.VertexExtent, axis) - 1);
           }
           found |= std::memcmp(&value,
-                     &input[((at[2] * GetSize(c.Lattice.VertexExtent, 1) + at[1]) *
-                                GetSize(c.Lattice.VertexExtent, 0) +
+                     &input[((at[2] * GetSize(c.VoxelGrid.VertexExtent, 1) + at[1]) *
+                                GetSize(c.VoxelGrid.VertexExtent, 0) +
                               at[0]) *
                          array.Components +
                        component],
@@ -92,12 +92,12 @@ void ExpectValues(const RasterCase& c, const reference::RasterResult& reference,
 
 } // namespace
 
-RasterCase MakeRasterCase(const Lattice& lattice, const glm::dvec3& low, const glm::dvec3& high,
+RasterCase MakeRasterCase(const VoxelGrid& voxelGrid, const glm::dvec3& low, const glm::dvec3& high,
   int cells, const Map& deformation, int margin)
 {
   RasterCase made;
-  made.Lattice = lattice;
-  const glm::dvec3 scale(lattice.Scale[0], lattice.Scale[1], lattice.Scale[2]);
+  made.VoxelGrid = voxelGrid;
+  const glm::dvec3 scale(voxelGrid.Scale[0], voxelGrid.Scale[1], voxelGrid.Scale[2]);
   glm::dvec3 least(1e9);
   glm::dvec3 most(-1e9);
   const int nodes = cells + 1;
@@ -150,7 +150,7 @@ RasterCase MakeRasterCase(
 void Load(VolumeDeformer& deformer, const RasterCase& c, const std::vector<VolumeArray>& arrays)
 {
   deformer.SetDevice("");
-  deformer.SetLattice(c.Lattice);
+  deformer.SetVoxelGrid(c.VoxelGrid);
   deformer.SetArrays(arrays);
   deformer.SetBlanked(c.Blanked.empty() ? nullptr : c.Blanked.data());
   deformer.SetActiveTetrahedra(c.Active.empty() ? nullptr : c.Active.data());

@@ -8,7 +8,7 @@
 
 struct RasterCase
 {
-  deformvolume::Lattice Lattice;
+  deformvolume::VoxelGrid VoxelGrid;
   std::vector<deformvolume::Tetrahedron> Tetrahedra;
   /// Continuous indices of the volume, and displacements in output voxels.
   std::vector<glm::dvec3> RestNodes;
@@ -20,14 +20,14 @@ struct RasterCase
 
   std::int64_t GetNumberOfVoxels() const
   {
-    return deformvolume::GetNumberOfPoints(this->Lattice.VertexExtent);
+    return deformvolume::GetNumberOfPoints(this->VoxelGrid.VertexExtent);
   }
 };
 
 /// A mesh of cells x cells x cells cubes, six tetrahedra each, over a box of continuous indices.
 /// deformation takes an index of the volume to a continuous index of the output. The output holds
 /// the result and margin voxels more.
-RasterCase MakeRasterCase(const deformvolume::Lattice& lattice, const glm::dvec3& low,
+RasterCase MakeRasterCase(const deformvolume::VoxelGrid& voxelGrid, const glm::dvec3& low,
   const glm::dvec3& high, int cells,
   const std::function<glm::dvec3(const glm::dvec3&)>& deformation, int margin = 1);
 
@@ -36,7 +36,7 @@ RasterCase MakeRasterCase(const deformvolume::Extent& extent, int cells,
   const std::function<glm::dvec3(const glm::dvec3&)>& deformation,
   const std::array<double, 3>& scale = { { 1, 1, 1 } });
 
-/// Sets the lattice, the arrays, the masks and the mesh.
+/// Sets the voxel grid, the arrays, the masks and the mesh.
 void Load(deformvolume::VolumeDeformer& deformer, const RasterCase& rasterCase,
   const std::vector<deformvolume::VolumeArray>& arrays);
 

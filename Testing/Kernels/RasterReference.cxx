@@ -50,7 +50,7 @@ enum class Answer
 Answer IsBlanked(const RasterCase& c, const std::array<long double, 3>& rest, bool cubic)
 {
   Answer answer = Answer::No;
-  for (const auto& weight : GetWeights(c.Lattice.VertexExtent, rest, cubic))
+  for (const auto& weight : GetWeights(c.VoxelGrid.VertexExtent, rest, cubic))
   {
     if (c.Blanked[weight.first] != 0 && weight.second != 0.0L)
     {
@@ -69,7 +69,7 @@ Answer IsBlanked(const RasterCase& c, const std::array<long double, 3>& rest, bo
 // 010, and the central one the rest.
 Answer IsActive(const RasterCase& c, const std::array<long double, 3>& rest)
 {
-  const Extent& extent = c.Lattice.VertexExtent;
+  const Extent& extent = c.VoxelGrid.VertexExtent;
   const int corners[4][3] = { { 0, 0, 1 }, { 1, 1, 1 }, { 1, 0, 0 }, { 0, 1, 0 } };
   long double best = -1e9L; // the depth in an active tetrahedron
   for (std::int64_t z = 0; z < GetSize(extent, 2) - 1; ++z)
@@ -130,8 +130,8 @@ void Take(const RasterCase& c, int tetrahedron, const std::array<long double, 3>
   std::array<long double, 3> clamped = rest;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const long double most = static_cast<long double>(GetSize(c.Lattice.VertexExtent, axis) - 1);
-    const long double tolerance = 1.0L / 256.0L / c.Lattice.Scale[axis];
+    const long double most = static_cast<long double>(GetSize(c.VoxelGrid.VertexExtent, axis) - 1);
+    const long double tolerance = 1.0L / 256.0L / c.VoxelGrid.Scale[axis];
     const long double outside = std::max(-rest[axis], rest[axis] - most) - tolerance;
     if (outside > Unsure)
     {
@@ -172,7 +172,7 @@ RasterResult Rasterize(const RasterCase& c, bool cubic)
     for (int axis = 0; axis < 3; ++axis)
     {
       position[axis] = static_cast<std::int64_t>(std::nearbyint(256.0 *
-        (c.Lattice.Scale[axis] * c.RestNodes[node][axis] +
+        (c.VoxelGrid.Scale[axis] * c.RestNodes[node][axis] +
           double{ c.Displacements[3 * node + axis] })));
     }
     positions.push_back(position);
@@ -250,8 +250,8 @@ RasterResult Rasterize(const RasterCase& c, bool cubic)
               {
                 displacement += weights[k] * c.Displacements[3 * nodes[k] + axis];
               }
-              rest[axis] = (index[axis] - displacement) / c.Lattice.Scale[axis] -
-                c.Lattice.VertexExtent[2 * axis];
+              rest[axis] = (index[axis] - displacement) / c.VoxelGrid.Scale[axis] -
+                c.VoxelGrid.VertexExtent[2 * axis];
             }
             Take(c, static_cast<int>(t), rest, cubic, result.Voxels[voxel]);
           }

@@ -145,8 +145,8 @@ void AddTetrahedron(const std::array<Position, 4>& points, Containing candidate,
   }
 }
 
-/// Which simplices of the lattice have a tetrahedron that writes the voxels in them, by the fill
-/// rule for the undeformed lattice.
+/// Which simplices of the voxel grid have a tetrahedron that writes the voxels in them, by the fill
+/// rule for the undeformed voxel grid.
 class Ownership
 {
 public:
@@ -174,7 +174,7 @@ public:
         group.begin(), group.end(), [](const Containing* c) { return c->Generic; });
     }
     // Elsewhere on the border of the mesh one of the group is taken, whatever is missing.
-    return !regular || this->HasLatticeOwner(group);
+    return !regular || this->HasOwnerByIndex(group);
   }
 
 private:
@@ -239,7 +239,7 @@ private:
 
   /// On the border of the volume: the cell with the simplex on its low sides, or the last one on an
   /// axis; of its tetrahedra the first with that simplex, which must not be flat.
-  bool HasLatticeOwner(const std::vector<const Containing*>& group) const
+  bool HasOwnerByIndex(const std::vector<const Containing*>& group) const
   {
     const std::vector<std::int64_t> simplex = GetSimplex(*group.front());
     Position owner{};

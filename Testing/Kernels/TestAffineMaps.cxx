@@ -19,7 +19,7 @@ namespace
 /// An affine map of output indices and a linear function of the volume's indices.
 struct AffineCase
 {
-  Lattice SamplingMesh;
+  VoxelGrid SamplingMesh;
   glm::dmat3 Matrix{ 1.0 };
   glm::dvec3 Offset{ 0.0 };
   glm::dvec3 Gradient{ 0.0 };
@@ -237,7 +237,7 @@ void CheckAffine(const AffineCase& affine, void (*deform)(const AffineCase&, Vol
   const VolumeArray array = MakeArray(volume);
   VolumeDeformer deformer;
   deformer.SetDevice("");
-  deformer.SetLattice(affine.SamplingMesh);
+  deformer.SetVoxelGrid(affine.SamplingMesh);
   deformer.SetArrays({ array });
   deform(affine, deformer);
   DeformerCase shape;

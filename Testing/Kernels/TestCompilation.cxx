@@ -4,7 +4,9 @@
 #include "CompilationWatch.h"
 #include "DeformerCase.h"
 #include "Device.h"
-#include "KernelProgram.h"
+#include "KernelText.h"
+#include "RasterizationProgram.h"
+#include "ResamplingProgram.h"
 
 #include <gtest/gtest.h>
 
@@ -170,8 +172,8 @@ TEST(Compilation, NoWarnings)
   const std::vector<VolumeArray> linear = MakeArrays(GetAllTypes(), false);
   const std::vector<VolumeArray> labels = MakeArrays(GetAllTypes(), true);
   const std::vector<VolumeArray> one = MakeArrays({ ElementType::Int16 }, false);
-  Lattice lattice;
-  lattice.VertexExtent = { { 0, 9, 0, 9, 0, 9 } };
+  VoxelGrid voxelGrid;
+  voxelGrid.VertexExtent = { { 0, 9, 0, 9, 0, 9 } };
   for (const MappingForm form : { MappingForm::Links, MappingForm::Runs, MappingForm::Field })
   {
     SCOPED_TRACE(static_cast<int>(form));
@@ -196,7 +198,8 @@ TEST(Compilation, NoWarnings)
   EXPECT_EQ(GetLog(GetBinningProgram(context)), "");
   for (const Interpolation interpolation : { Interpolation::Linear, Interpolation::Cubic })
   {
-    EXPECT_EQ(GetLog(GetRasterizationProgram(context, linear, lattice, interpolation, false)), "");
+    EXPECT_EQ(
+      GetLog(GetRasterizationProgram(context, linear, voxelGrid, interpolation, false)), "");
   }
 }
 

@@ -120,7 +120,7 @@ void DeformByMesh(Results& results)
   {
     VolumeDeformer deformer;
     deformer.SetDevice("");
-    deformer.SetLattice(volume.Shape);
+    deformer.SetVoxelGrid(volume.Shape);
     deformer.SetArrays(values.GetArrays());
     if (route == Route::Mesh)
     {
@@ -141,10 +141,10 @@ void DeformByMesh(Results& results)
 /// A field that is coarser than the volume, one at its voxels, and one that is turned.
 void DeformByField(Results& results)
 {
-  Lattice lattice;
-  lattice.VertexExtent = { { -3, 70, 2, 45, 0, 40 } };
+  VoxelGrid voxelGrid;
+  voxelGrid.VertexExtent = { { -3, 70, 2, 45, 0, 40 } };
   const Extent output{ { -8, 100, -5, 80, -5, 80 } };
-  const Values values(static_cast<std::size_t>(GetNumberOfPoints(lattice.VertexExtent)));
+  const Values values(static_cast<std::size_t>(GetNumberOfPoints(voxelGrid.VertexExtent)));
   for (const bool coarse : { true, false })
   {
     DisplacementField field;
@@ -152,7 +152,7 @@ void DeformByField(Results& results)
     std::size_t points = 3;
     for (int axis = 0; axis < 3; ++axis)
     {
-      const auto size = static_cast<int>(GetSize(lattice.VertexExtent, axis));
+      const auto size = static_cast<int>(GetSize(voxelGrid.VertexExtent, axis));
       field.Dimensions[axis] = coarse ? size / 3 : size;
       points *= static_cast<std::size_t>(field.Dimensions[axis]);
       if (coarse)
@@ -161,7 +161,7 @@ void DeformByField(Results& results)
         field.IndexToField[4 * axis + (axis + 1) % 3] = 0.0113;
       }
       field.IndexToField[4 * axis + 3] =
-        -field.IndexToField[5 * axis] * lattice.VertexExtent[2 * axis];
+        -field.IndexToField[5 * axis] * voxelGrid.VertexExtent[2 * axis];
     }
     std::vector<float> vectors = MakeRandomValues<float>(points, 6);
     for (float& number : vectors)
@@ -181,7 +181,7 @@ void DeformByField(Results& results)
         field.Owner = owned ? std::make_shared<int>(0) : nullptr;
         VolumeDeformer deformer;
         deformer.SetDevice("");
-        deformer.SetLattice(lattice);
+        deformer.SetVoxelGrid(voxelGrid);
         deformer.SetArrays(values.GetArrays());
         deformer.SetDisplacementField(field);
         RunBoth(deformer, output, values.GetArrays(),

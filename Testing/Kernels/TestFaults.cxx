@@ -107,14 +107,14 @@ TEST_F(Faults, ArraysThatDoNotFit)
   this->ExpectRight();
 }
 
-// Links for which the lattice has made no room: there is no mesh then, and another deformation
+// Links for which the voxel grid has made no room: there is no mesh then, and another deformation
 // works.
 TEST_F(Faults, LinksThatDoNotFit)
 {
   const std::uint64_t plane = 22 * 19;
   this->Deformer.SetDevice("");
   this->Deformer.SetAllocationLimit(4 * plane * 30);
-  this->Deformer.SetLattice(this->Case.Lattice, 4, false);
+  this->Deformer.SetVoxelGrid(this->Case.VoxelGrid, 4, false);
   this->Deformer.SetArrays(this->Arrays);
   const std::vector<VertexLink> links(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()));
   const Tetrahedron tetrahedron{ { 0, 1, 2, 3 } };
@@ -195,8 +195,8 @@ TEST_F(Faults, FieldThatIsAnArray)
   DisplacementField field;
   for (int axis = 0; axis < 3; ++axis)
   {
-    field.Dimensions[axis] = static_cast<int>(GetSize(this->Case.Lattice.VertexExtent, axis));
-    field.IndexToField[4 * axis + 3] = -this->Case.Lattice.VertexExtent[2 * axis];
+    field.Dimensions[axis] = static_cast<int>(GetSize(this->Case.VoxelGrid.VertexExtent, axis));
+    field.IndexToField[4 * axis + 3] = -this->Case.VoxelGrid.VertexExtent[2 * axis];
   }
   field.Vectors = vectors->data();
   field.Owner = vectors;
@@ -208,7 +208,7 @@ TEST_F(Faults, FieldThatIsAnArray)
     {
       this->Deformer.SetDevice("");
       this->Deformer.SetAllocationLimit(32 * planes * plane);
-      this->Deformer.SetLattice(this->Case.Lattice, 32, false);
+      this->Deformer.SetVoxelGrid(this->Case.VoxelGrid, 32, false);
       if (fieldFirst)
       {
         this->Deformer.SetDisplacementField(field);

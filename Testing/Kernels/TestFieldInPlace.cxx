@@ -54,7 +54,7 @@ std::int64_t Deform(const EditedVolume& volume, const DisplacementField& field, 
 {
   VolumeDeformer deformer;
   deformer.SetDevice("");
-  deformer.SetLattice(volume.Shape);
+  deformer.SetVoxelGrid(volume.Shape);
   deformer.SetArrays(volume.GetArrays());
   volume.SendMasks(deformer);
   deformer.SetDisplacementField(field);

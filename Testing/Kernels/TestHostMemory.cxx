@@ -218,7 +218,7 @@ TEST_F(HostMemory, MaskedVolumesInChunks)
       MakeCase({ { 0, 12, 0, 11, 0, 22 } }, { { 1, 1, 1 } }, MakeJitter(9, amplitude));
     std::mt19937 random(8);
     masked.Blanked.resize(static_cast<std::size_t>(masked.GetNumberOfVoxels()));
-    masked.Active.resize(static_cast<std::size_t>(GetNumberOfCells(masked.Lattice.VertexExtent)));
+    masked.Active.resize(static_cast<std::size_t>(GetNumberOfCells(masked.VoxelGrid.VertexExtent)));
     std::generate(masked.Blanked.begin(), masked.Blanked.end(), [&] { return random() % 16 == 0; });
     std::generate(masked.Active.begin(), masked.Active.end(),
       [&] { return static_cast<unsigned char>(random() % 8 ? 31 : random() % 32); });

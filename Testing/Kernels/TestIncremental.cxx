@@ -450,7 +450,7 @@ TEST_F(IncrementalMasks, AMaskChangesBesideAPart)
 {
   std::vector<unsigned char> blanked(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()));
   std::vector<unsigned char> active(
-    static_cast<std::size_t>(GetNumberOfCells(this->Case.Lattice.VertexExtent)), 31);
+    static_cast<std::size_t>(GetNumberOfCells(this->Case.VoxelGrid.VertexExtent)), 31);
   this->Update(blanked, active);
   int changes = 0;
   for (const int y : { 0, 20 })

@@ -17,7 +17,7 @@ namespace
 
 struct InverseCase
 {
-  deformvolume::Lattice Lattice;
+  deformvolume::VoxelGrid VoxelGrid;
   DisplacementField Field;
   std::vector<float> Vectors;
   Extent Output;
@@ -27,7 +27,7 @@ InverseCase MakeCase(const Extent& volume, const std::array<int, 3>& points, flo
   const std::array<double, 3>& scale = { { 1, 1, 1 } })
 {
   InverseCase made;
-  made.Lattice = { volume, scale };
+  made.VoxelGrid = { volume, scale };
   made.Vectors = MakeRandomValues<float>(3L * points[0] * points[1] * points[2], 7);
   for (float& number : made.Vectors)
   {
@@ -53,7 +53,7 @@ Deformed RunCase(VolumeDeformer& deformer, InverseCase& c, const std::vector<Vol
   Interpolation interpolation = Interpolation::Linear)
 {
   c.Field.Vectors = c.Vectors.data();
-  deformer.SetLattice(c.Lattice, sizeof(float), false);
+  deformer.SetVoxelGrid(c.VoxelGrid, sizeof(float), false);
   deformer.SetArrays(arrays);
   deformer.SetInverseField(c.Field);
   DeformerCase output;
@@ -96,8 +96,8 @@ std::array<long double, 3> GetRest(
   std::array<long double, 3> rest{};
   for (int axis = 0; axis < 3; ++axis)
   {
-    const Extent& volume = c.Lattice.VertexExtent;
-    rest[axis] = (voxel[axis] + vector[axis]) / static_cast<long double>(c.Lattice.Scale[axis]) -
+    const Extent& volume = c.VoxelGrid.VertexExtent;
+    rest[axis] = (voxel[axis] + vector[axis]) / static_cast<long double>(c.VoxelGrid.Scale[axis]) -
       volume[2 * axis];
     margin = std::min(
       { margin, rest[axis], static_cast<long double>(GetSize(volume, axis) - 1) - rest[axis] });
@@ -135,7 +135,7 @@ void ExpectLookedUp(const InverseCase& c, const std::vector<float>& values,
         long double value = 0.0L;
         long double integer = 0.0L;
         for (const auto& [source, weight] :
-          reference::GetWeights(c.Lattice.VertexExtent, rest, cubic))
+          reference::GetWeights(c.VoxelGrid.VertexExtent, rest, cubic))
         {
           value += weight * static_cast<long double>(values[source]);
           integer += weight * integers[source];
@@ -149,7 +149,7 @@ void ExpectLookedUp(const InverseCase& c, const std::vector<float>& values,
   }
   EXPECT_EQ(wrong, 0);
   EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, covered);
-  EXPECT_GT(covered, GetNumberOfPoints(c.Lattice.VertexExtent) / 8);
+  EXPECT_GT(covered, GetNumberOfPoints(c.VoxelGrid.VertexExtent) / 8);
 }
 
 std::string GetError(const std::function<void()>& function)
@@ -177,7 +177,7 @@ TEST(InverseField, MisuseIsAnError)
   const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(integers) };
   VolumeDeformer deformer;
   deformer.SetDevice("");
-  deformer.SetLattice(c.Lattice);
+  deformer.SetVoxelGrid(c.VoxelGrid);
   deformer.SetArrays(arrays);
   EXPECT_NE(GetError([&] { deformer.SetInverseField({}); }).find("empty"), std::string::npos);
   c.Field.Vectors = c.Vectors.data();

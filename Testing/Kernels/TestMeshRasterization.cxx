@@ -50,7 +50,7 @@ TEST(MeshRasterization, MisuseIsAnErrorAndLeavesTheDeformerUsable)
   const std::vector<VolumeArray> arrays{ MakeArray(values) };
   VolumeDeformer deformer;
   deformer.SetDevice("");
-  deformer.SetLattice(good.Lattice);
+  deformer.SetVoxelGrid(good.VoxelGrid);
   deformer.SetArrays(arrays);
   EXPECT_NE(
     GetError([&] { Rasterize(deformer, good, arrays); }).find("SetRestMesh"), std::string::npos);
@@ -460,7 +460,7 @@ TEST(MeshRasterization, Tiny)
 {
   RasterCase tiny = MakeRasterCase({ { { 0, 6, -2, 3, 1, 5 } }, { { 1, 1, 1 } } },
     glm::dvec3(0.0, -2.0, 1.0), glm::dvec3(6.0, 3.0, 5.0), 1, MakeJitter(3, 2.0), 0);
-  tiny.Active.assign(GetNumberOfCells(tiny.Lattice.VertexExtent), 31);
+  tiny.Active.assign(GetNumberOfCells(tiny.VoxelGrid.VertexExtent), 31);
   tiny.Active[7] = 5;
   tiny.Blanked.assign(tiny.GetNumberOfVoxels(), 0);
   tiny.Blanked[50] = 1;

@@ -80,7 +80,7 @@ DeformerCase MakeCells(
   const std::array<int, 3>& count, int box, const std::function<Cell(int number, int mirror)>& make)
 {
   DeformerCase made;
-  Extent& extent = made.Lattice.VertexExtent;
+  Extent& extent = made.VoxelGrid.VertexExtent;
   for (int axis = 0; axis < 3; ++axis)
   {
     extent[2 * axis] = 0;

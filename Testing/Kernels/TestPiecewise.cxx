@@ -162,7 +162,7 @@ TEST(Piecewise, VerticesOnSamplesOfAJitteredMesh)
     }));
 }
 
-TEST(Piecewise, ScaledLattice)
+TEST(Piecewise, ScaledVoxelGrid)
 {
   // The rest position is Scale times the index: another output spacing than the volume's.
   for (const std::array<double, 3>& scale :
@@ -305,7 +305,7 @@ protected:
 
 TEST_P(Masks, InactiveTetrahedra)
 {
-  this->Case.Active.resize(GetNumberOfCells(this->Case.Lattice.VertexExtent));
+  this->Case.Active.resize(GetNumberOfCells(this->Case.VoxelGrid.VertexExtent));
   for (unsigned char& cell : this->Case.Active)
   {
     const int kind = this->Random() % 3;
@@ -341,7 +341,7 @@ TEST_P(Masks, AllOfThem)
     this->Case.Unlinked.push_back(this->Random() % 20 == 0);
     this->Case.Blanked.push_back(this->Random() % 20 == 0 ? 1 : 0);
   }
-  for (std::int64_t cell = 0; cell < GetNumberOfCells(this->Case.Lattice.VertexExtent); ++cell)
+  for (std::int64_t cell = 0; cell < GetNumberOfCells(this->Case.VoxelGrid.VertexExtent); ++cell)
   {
     this->Case.Active.push_back(this->Random() % 4 == 0 ? this->Random() % 256 : 31);
   }

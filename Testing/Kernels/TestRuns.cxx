@@ -2,9 +2,10 @@
 // The deformation mapping by runs: against links, and against displacements computed in long
 // double.
 #include "DeformerCase.h"
-#include "DeviceLattice.h"
 #include "DeviceNeeds.h"
-#include "KernelProgram.h"
+#include "DeviceVolume.h"
+#include "KernelText.h"
+#include "MappingProgram.h"
 #include "VertexRuns.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +26,7 @@ namespace
 // lengths. Many voxels lie outside their tetrahedron, which makes no difference to an affine map.
 struct RunCase
 {
-  Lattice Shape;
+  VoxelGrid Shape;
   std::vector<glm::dvec3> Points; // in local indices
   std::vector<Tetrahedron> Tetrahedra;
   VertexRuns Runs;
@@ -190,7 +191,7 @@ public:
     }
     const cl::Program program =
       GetMappingProgram(this->Context, byRuns ? MappingForm::Runs : MappingForm::Links);
-    const auto setMapping = [&](cl::Kernel& kernel, const LatticeChunk& chunk)
+    const auto setMapping = [&](cl::Kernel& kernel, const VolumeChunk& chunk)
     {
       kernel.setArg(0, byRuns ? chunk.Runs : chunk.Links);
       kernel.setArg(1, byRuns ? chunk.RowBegins : tetrahedra);
@@ -202,7 +203,7 @@ public:
     Mapped mapped;
     mapped.Positions.resize(this->Case.GetNumberOfVoxels(), { { 1, 2, 3 } });
     mapped.States.resize(this->Case.GetNumberOfVoxels(), 99);
-    for (const LatticeChunk& chunk : this->Mesh.GetChunks())
+    for (const VolumeChunk& chunk : this->Mesh.GetChunks())
     {
       cl::Kernel kernel(program, "MapPositions");
       this->MapChunk(kernel, setMapping(kernel, chunk), chunk, mapped);
@@ -220,7 +221,7 @@ private:
     return buffer;
   }
 
-  void MapChunk(cl::Kernel& kernel, cl_uint i, const LatticeChunk& chunk, Mapped& mapped)
+  void MapChunk(cl::Kernel& kernel, cl_uint i, const VolumeChunk& chunk, Mapped& mapped)
   {
     const KernelParameters p = this->Mesh.GetParameters(chunk);
     const std::size_t plane = static_cast<std::size_t>(p.Size[0]) * p.Size[1];
@@ -259,7 +260,7 @@ private:
   const RunCase& Case;
   OpenCLContext& Context;
   cl::CommandQueue Queue;
-  DeviceLattice Mesh;
+  DeviceVolume Mesh;
 };
 
 constexpr std::uint64_t NoLimit = std::uint64_t{ 1 } << 30;
@@ -558,7 +559,7 @@ TEST_F(RunsMisuse, FormsTakeTurns)
     ExpectEqualsReference(
       this->Case, reference, this->Arrays, RunDeformer(this->Deformer, this->Case, this->Arrays));
   }
-  // Without setting the lattice again.
+  // Without setting the voxel grid again.
   DisplacementField field;
   field.Dimensions = { { 1, 1, 1 } };
   const std::array<float, 3> vector{ { 0.0F, 0.0F, 0.0F } };
@@ -572,17 +573,17 @@ TEST_F(RunsMisuse, FormsTakeTurns)
 TEST_F(RunsMisuse, MemoryIsThatOfTheRuns)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
-  Lattice lattice;
-  lattice.VertexExtent = { { 0, 199, 0, 199, 0, 199 } };
+  VoxelGrid voxelGrid;
+  voxelGrid.VertexExtent = { { 0, 199, 0, 199, 0, 199 } };
   const std::uint64_t voxels = 8000000;
   const std::uint64_t runBytes = GetRunBytes(voxels / 10, 40000, 1000);
   // 4 bytes a voxel of the volume, 3 of state and masks, and 5 of the output where the device does
   // not work in place: 16 bytes a voxel more do not fit, runs do.
   this->Deformer.SetMemoryLimit(voxels * 22);
   EXPECT_NO_THROW(this->Deformer.CheckMemory(
-    lattice, this->Arrays, lattice.VertexExtent, 100, 200, false, runBytes));
+    voxelGrid, this->Arrays, voxelGrid.VertexExtent, 100, 200, false, runBytes));
   EXPECT_THROW(
-    this->Deformer.CheckMemory(lattice, this->Arrays, lattice.VertexExtent, 100, 200, false),
+    this->Deformer.CheckMemory(voxelGrid, this->Arrays, voxelGrid.VertexExtent, 100, 200, false),
     Error);
   this->Deformer.SetMemoryLimit(0);
   // The case itself: each run ends after one voxel here, so runs alone would save nothing.

@@ -3,18 +3,22 @@
 // as systems and containers set them, and threads whose work fails.
 #include "ControlGroups.h"
 #include "HostThreads.h"
+#include "ParallelFor.h"
 #include "Processors.h"
 #include "SystemMemory.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <sched.h>
 
@@ -194,9 +198,11 @@ TEST_F(SystemLimits, Share)
   EXPECT_EQ(GetProcessorShare(), all);
   SetProcessesHere(2);
   EXPECT_EQ(GetProcessorShare(), GetProcessorShare(2, ""));
-  EXPECT_EQ(static_cast<int>(GetNumberOfThreads()), GetProcessorShare(2, ""));
   SetProcessesHere(1000000);
   EXPECT_EQ(GetProcessorShare(), 1);
+  const std::thread::id here = std::this_thread::get_id();
+  ParallelFor(
+    0, 50, 1, [&](std::int64_t, std::int64_t) { EXPECT_EQ(std::this_thread::get_id(), here); });
   SetProcessesHere(1);
   EXPECT_EQ(GetProcessorShare(), all);
 }
@@ -224,6 +230,76 @@ TEST(HostThreads, Exceptions)
     EXPECT_LT(calls.load(), 100000);
   }
   const auto runAll = []
-  { RunOnParts(1000, 10, [](auto, auto) { throw std::runtime_error("x"); }); };
+  { ParallelForParts(1000, 10, [](auto, auto) { throw std::runtime_error("x"); }); };
   EXPECT_THROW(runAll(), std::runtime_error);
+}
+
+// Each item once, in parts as they were asked for.
+TEST(ParallelFor, Range)
+{
+  for (const std::int64_t grain : { 0, 1, 7, 1000 })
+  {
+    std::vector<std::atomic<int>> seen(150);
+    ParallelFor(20, 150, grain,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          ++seen[static_cast<std::size_t>(i)];
+        }
+      });
+    for (std::size_t i = 0; i < seen.size(); ++i)
+    {
+      EXPECT_EQ(seen[i].load(), i < 20 ? 0 : 1);
+    }
+  }
+  ParallelForParts(95, 10,
+    [](std::size_t begin, std::size_t end)
+    {
+      EXPECT_EQ(begin % 10, 0U);
+      EXPECT_EQ(end, std::min<std::size_t>(begin + 10, 95));
+    });
+  ParallelFor(5, 5, 0, [](std::int64_t, std::int64_t) { ADD_FAILURE(); });
+}
+
+// The loop of a program is used instead, and is not left by an exception.
+TEST(ParallelFor, Loop)
+{
+  static int calls = 0;
+  static bool left = false;
+  calls = 0;
+  SetParallelLoop(
+    [](std::int64_t first, std::int64_t last, std::int64_t grain, const ParallelBody& body)
+    {
+      ++calls;
+      try
+      {
+        for (std::int64_t begin = first; begin < last; begin += grain)
+        {
+          body(begin, std::min(last, begin + grain));
+        }
+      }
+      catch (...)
+      {
+        left = true;
+        throw;
+      }
+    });
+  std::int64_t sum = 0;
+  ParallelFor(1, 11, 3,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        sum += i;
+      }
+    });
+  EXPECT_EQ(sum, 55);
+  EXPECT_THROW(
+    ParallelFor(0, 10, 1, [](std::int64_t, std::int64_t) { throw std::runtime_error("x"); }),
+    std::runtime_error);
+  SetParallelLoop(nullptr);
+  ParallelFor(0, 10, 1, [](std::int64_t, std::int64_t) {});
+  EXPECT_EQ(calls, 2);
+  EXPECT_FALSE(left);
 }

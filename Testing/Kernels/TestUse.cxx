@@ -70,7 +70,7 @@ TEST_F(Use, DeformBeforeAnythingIsSet)
   GetError([&] { this->Deformer.Deform(this->MakeRequest()); });
   this->Deformer.SetDevice("");
   GetError([&] { this->Deformer.Deform(this->MakeRequest()); });
-  this->Deformer.SetLattice(this->Case.Lattice);
+  this->Deformer.SetVoxelGrid(this->Case.VoxelGrid);
   GetError([&] { this->Deformer.Deform(this->MakeRequest()); });
   this->Deformer.SetArrays(this->Arrays);
   GetError([&] { this->Deformer.Deform(this->MakeRequest()); });
@@ -111,10 +111,10 @@ TEST_F(Use, EmptyExtents)
   DeformRequest request = this->MakeRequest();
   request.OutputExtent = { { 0, -1, 0, 3, 0, 3 } };
   GetError([&] { this->Deformer.Deform(request); });
-  Lattice lattice;
-  GetError([&] { this->Deformer.SetLattice(lattice); });
-  lattice.VertexExtent = { { 0, 5, 0, 5, 3, 3 } };
-  GetError([&] { this->Deformer.SetLattice(lattice); });
+  VoxelGrid voxelGrid;
+  GetError([&] { this->Deformer.SetVoxelGrid(voxelGrid); });
+  voxelGrid.VertexExtent = { { 0, 5, 0, 5, 3, 3 } };
+  GetError([&] { this->Deformer.SetVoxelGrid(voxelGrid); });
   this->ExpectUsable();
 }
 
@@ -176,10 +176,12 @@ TEST_F(Use, NotEnoughMemory)
 {
   this->Deformer.SetDevice("");
   this->Deformer.SetMemoryLimit(12345);
-  Lattice lattice;
-  lattice.VertexExtent = { { 0, 99, 0, 99, 0, 99 } };
-  const std::string error = GetError([&]
-    { this->Deformer.CheckMemory(lattice, this->Arrays, lattice.VertexExtent, 100, 200, false); });
+  VoxelGrid voxelGrid;
+  voxelGrid.VertexExtent = { { 0, 99, 0, 99, 0, 99 } };
+  const std::string error = GetError(
+    [&] {
+      this->Deformer.CheckMemory(voxelGrid, this->Arrays, voxelGrid.VertexExtent, 100, 200, false);
+    });
   EXPECT_NE(error.find("12345"), std::string::npos) << error;
   // What is needed: at the least the volume of 4 bytes a voxel.
   std::size_t largest = 0;
@@ -210,7 +212,7 @@ TEST_F(Use, NotEnoughMemoryForAFold)
 {
   // So large an output that its winners do not fit into what is counted on, but not used.
   const DeformerCase folded =
-    MakeCase(this->Case.Lattice.VertexExtent, { { 1, 1, 1 } }, MakeJitter(3, 1.0), 10);
+    MakeCase(this->Case.VoxelGrid.VertexExtent, { { 1, 1, 1 } }, MakeJitter(3, 1.0), 10);
   const auto nodes = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
   std::uint64_t limit = 1000;
   for (bool enough = false; !enough; limit += enough ? 0 : 100)
@@ -218,7 +220,7 @@ TEST_F(Use, NotEnoughMemoryForAFold)
     this->Deformer.SetMemoryLimit(limit);
     try
     {
-      this->Deformer.CheckMemory(folded.Lattice, this->Arrays, folded.Output, nodes, 0, true);
+      this->Deformer.CheckMemory(folded.VoxelGrid, this->Arrays, folded.Output, nodes, 0, true);
       enough = true;
     }
     catch (const Error&)
@@ -315,7 +317,7 @@ TEST_F(Use, MasksComeAndGo)
   this->Case.Blanked.clear();
   this->Deformer.SetBlanked(nullptr);
   EXPECT_EQ(check(), all);
-  this->Case.Active.assign(GetNumberOfCells(this->Case.Lattice.VertexExtent), 31);
+  this->Case.Active.assign(GetNumberOfCells(this->Case.VoxelGrid.VertexExtent), 31);
   std::fill(this->Case.Active.begin(), this->Case.Active.begin() + 60, 0x12);
   this->Deformer.SetActiveTetrahedra(this->Case.Active.data());
   EXPECT_LT(check(), all);

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DeviceSession.h"
+
+#include "Device.h"
+
+#include "vtkImageData.h"
+
+#include <algorithm>
+
+namespace deformvolume
+{
+
+std::string GetKernelKey(const std::string& device, const DeformRequest& request,
+  const std::string& form, const std::vector<VolumeArray>& arrays)
+{
+  std::string kind = device + " " + std::to_string(static_cast<int>(request.Method)) + " " +
+    std::to_string(static_cast<int>(request.Interpolation)) + " " + form;
+  for (const VolumeArray& array : arrays)
+  {
+    kind += " " + std::to_string(static_cast<int>(array.Type)) + "/" +
+      std::to_string(array.Components) + (array.Categorical ? "c" : "");
+  }
+  return kind;
+}
+
+// Marks what the device has as unknown unless a transfer ends well.
+class DeviceSession::Transfer
+{
+public:
+  explicit Transfer(DeviceSession* session)
+    : Session(session)
+  {
+    session->Known = false;
+  }
+  void End() { this->Session->Known = true; }
+
+private:
+  DeviceSession* Session;
+};
+
+namespace
+{
+
+std::string Translate(const std::string& request)
+{
+  return request == BEST_DEVICE ? "" : request;
+}
+
+} // namespace
+
+void DeviceSession::CheckDevice(const std::string& request)
+{
+  ResolveDevice(Translate(request));
+}
+
+std::string DeviceSession::SetDevice(
+  const std::string& request, std::uint64_t memoryLimit, std::size_t workGroupSize)
+{
+  this->Deformer.SetMemoryLimit(memoryLimit);
+  this->Deformer.SetWorkGroupSize(workGroupSize);
+  const std::string device = this->Deformer.SetDevice(Translate(request));
+  if (device != this->Device)
+  {
+    this->Known = false;
+    this->Device = device;
+  }
+  return device;
+}
+
+void DeviceSession::CheckMemory(const VoxelGrid& voxelGrid, const std::vector<VolumeArray>& arrays,
+  const Extent& outputExtent, std::uint64_t heldBytes, const Deformation& deformation,
+  std::uint64_t runBytes, Resampling method) const
+{
+  const bool field = deformation.IsField();
+  std::size_t numberOfNodes = deformation.GetRestPoints().size();
+  if (field)
+  {
+    numberOfNodes = 1;
+    for (int size : deformation.GetField(false).Dimensions)
+    {
+      numberOfNodes *= static_cast<std::size_t>(size);
+    }
+  }
+  if (method == Resampling::MeshRasterization)
+  {
+    this->Deformer.CheckRasterizationMemory(voxelGrid, arrays, outputExtent, numberOfNodes,
+      field ? 0 : deformation.GetTetrahedra().size(), heldBytes);
+    return;
+  }
+  this->Deformer.CheckMemory(voxelGrid, arrays, outputExtent, numberOfNodes,
+    field ? 0 : deformation.GetTetrahedra().size(), field, runBytes, heldBytes);
+}
+
+void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
+  const std::vector<SourceArray>& arrays, double background, Resampling method)
+{
+  if (!this->Known)
+  {
+    this->Forget();
+  }
+  Transfer transfer(this);
+  const bool links = method != Resampling::MeshRasterization;
+  std::size_t widest = 0;
+  const std::vector<VolumeArray> described = MakeVolumeArrays(arrays, background);
+  for (const VolumeArray& array : described)
+  {
+    widest = std::max(widest, GetTupleSize(array));
+  }
+  if (this->SentGrid.VertexExtent != voxelGrid.VertexExtent ||
+    this->SentGrid.WholeExtent != voxelGrid.WholeExtent ||
+    this->SentGrid.Scale != voxelGrid.Scale || this->SentWidth < widest ||
+    this->SentForLinks != links)
+  {
+    this->Forget();
+    this->Deformer.SetVoxelGrid(voxelGrid, widest, links);
+    this->SentGrid = voxelGrid;
+    this->SentWidth = widest;
+    this->SentForLinks = links;
+  }
+
+  const Stamp stamp = GetStamp(arrays);
+  if (this->SentArrays != stamp)
+  {
+    std::vector<VolumeArray> sent = described;
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+    {
+      if (!sent[i].Data)
+      {
+        CopyIntoCommonLayout(arrays[i].Array, sent[i]);
+      }
+    }
+    this->Deformer.SetArrays(sent);
+    this->SentArrays = stamp;
+    ++this->NumberOfVolumeUploads;
+  }
+  this->Deformer.SetArrayOptions(described);
+
+  const Stamp masksStamp = GetMasksStamp(volume);
+  if (!this->MasksAreSet || this->SentMasks != masksStamp)
+  {
+    const VolumeMasks masks = ReadMasks(volume);
+    this->Deformer.SetBlanked(masks.Blanked.empty() ? nullptr : masks.Blanked.data());
+    this->Deformer.SetActiveTetrahedra(masks.Active.empty() ? nullptr : masks.Active.data());
+    this->SentMasks = masksStamp;
+    this->MasksAreSet = true;
+  }
+  transfer.End();
+}
+
+void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache& mapping,
+  const MappedVolume& volume, const std::function<bool(double)>& progress)
+{
+  const bool extrapolate = volume.Extrapolate;
+  const std::uint64_t vectors = deformation.GetVectorsVersion();
+  if (deformation.IsField())
+  {
+    if (!this->HasField || this->SentVectors != vectors || this->SentExtrapolate != extrapolate)
+    {
+      const PointRanges changes = deformation.GetChanges(this->SentVectors);
+      Transfer transfer(this);
+      this->Deformer.SetDisplacementField(
+        deformation.GetField(extrapolate), this->HasField ? &changes : nullptr);
+      transfer.End();
+    }
+    this->HasField = true;
+    this->HasMesh = this->HasRestMesh = this->HasInverseField = false;
+  }
+  else
+  {
+    const bool meshIsSent = this->HasMesh && this->SentMapping == mapping.GetVersion() &&
+      mapping.IsCurrent(deformation, volume);
+    if (!meshIsSent)
+    {
+      mapping.Update(deformation, volume, progress);
+      Transfer transfer(this);
+      const std::vector<Tetrahedron>& tetrahedra = deformation.GetTetrahedra();
+      const std::size_t nodes = deformation.GetRestPoints().size();
+      if (mapping.IsByRuns())
+      {
+        this->Deformer.SetMesh(tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetRuns());
+      }
+      else
+      {
+        this->Deformer.SetMesh(
+          tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetLinks().data());
+      }
+      transfer.End();
+      this->SentMapping = mapping.GetVersion();
+    }
+    if (!extrapolate)
+    {
+      // Only the bounds of an extrapolated deformation need them again.
+      mapping.ReleaseVoxels();
+    }
+    if (!meshIsSent || this->SentVectors != vectors)
+    {
+      const PointRanges changes = deformation.GetChanges(this->SentVectors);
+      Transfer transfer(this);
+      this->Deformer.SetNodeDisplacements(
+        deformation.GetNodeDisplacements(), meshIsSent ? &changes : nullptr);
+      transfer.End();
+    }
+    this->HasMesh = true;
+    this->HasField = this->HasRestMesh = this->HasInverseField = false;
+  }
+  this->SentVectors = vectors;
+  this->SentExtrapolate = extrapolate;
+}
+
+void DeviceSession::SetRestMesh(const Deformation& deformation, bool extrapolate)
+{
+  static_assert(sizeof(glm::dvec3) == 3 * sizeof(double), "as the deformer reads it");
+  if (deformation.IsInverseField())
+  {
+    const std::uint64_t version = deformation.GetVectorsVersion();
+    if (!this->HasInverseField || this->SentVectors != version ||
+      this->SentExtrapolate != extrapolate)
+    {
+      Transfer transfer(this);
+      this->Deformer.SetInverseField(deformation.GetField(extrapolate));
+      transfer.End();
+    }
+    this->HasInverseField = true;
+    this->HasMesh = this->HasField = this->HasRestMesh = false;
+    this->SentVectors = version;
+    this->SentExtrapolate = extrapolate;
+    return;
+  }
+  const bool meshIsSent = this->HasRestMesh && this->SentRest == deformation.GetRestVersion();
+  const std::uint64_t vectors = deformation.GetVectorsVersion();
+  Transfer transfer(this);
+  if (!meshIsSent)
+  {
+    const std::vector<Tetrahedron>& tetrahedra = deformation.GetTetrahedra();
+    this->Deformer.SetRestMesh(tetrahedra.data(), tetrahedra.size(),
+      deformation.GetRestPoints().size(), &deformation.GetRestPoints().front().x);
+  }
+  if (!meshIsSent || this->SentVectors != vectors)
+  {
+    this->Deformer.SetNodeDisplacements(deformation.GetNodeDisplacements());
+  }
+  transfer.End();
+  this->HasRestMesh = true;
+  this->HasMesh = this->HasField = this->HasInverseField = false;
+  this->SentRest = deformation.GetRestVersion();
+  this->SentVectors = vectors;
+}
+
+DeformReport DeviceSession::Deform(const DeformRequest& request)
+{
+  try
+  {
+    return this->Deformer.Deform(request);
+  }
+  catch (const Aborted&)
+  {
+    throw;
+  }
+  catch (...)
+  {
+    this->Known = false;
+    throw;
+  }
+}
+
+void DeviceSession::ReleaseMemory()
+{
+  this->Deformer.ReleaseMemory();
+  this->Known = false;
+}
+
+void DeviceSession::Forget()
+{
+  this->SentGrid = VoxelGrid();
+  this->SentWidth = 0;
+  this->SentArrays.clear();
+  this->SentMasks.clear();
+  this->MasksAreSet = false;
+  this->HasMesh = false;
+  this->HasField = false;
+  this->HasInverseField = false;
+  this->HasRestMesh = false;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MappingCache.h"
+
+#include "Error.h"
+#include "VertexRuns.h"
+
+#include <chrono>
+#include <utility>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+// Adds the seconds of its life to a sum.
+class Stopwatch
+{
+public:
+  explicit Stopwatch(double& sum)
+    : Sum(sum)
+  {
+  }
+  ~Stopwatch()
+  {
+    this->Sum +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+  double& Sum;
+  const std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
+};
+
+std::uint64_t EstimateRunBytes(const StaticMappingBuilder& builder, const MappedVolume& volume)
+{
+  const std::uint64_t bytes = builder.GetRunBytes();
+  if (bytes == 0 || volume.IsWhole())
+  {
+    return bytes;
+  }
+  const double share = static_cast<double>(GetNumberOfPoints(volume.Part)) /
+    static_cast<double>(GetNumberOfPoints(volume.Whole.PointExtent));
+  return 1 + static_cast<std::uint64_t>(share * static_cast<double>(bytes));
+}
+
+} // namespace
+
+bool MappingCache::IsCurrent(const Deformation& deformation, const MappedVolume& volume) const
+{
+  return this->MappingKey == Key{ &deformation, deformation.GetRestVersion(), volume };
+}
+
+StaticMappingBuilder& MappingCache::GetBuilder(const Deformation& deformation, const Key& key)
+{
+  Key wholeKey = key;
+  wholeKey.Volume.Part = key.Volume.Whole.PointExtent;
+  if (!this->Builder || !(this->BuilderKey == wholeKey))
+  {
+    this->Builder.reset();
+    const ImageGeometry& whole = key.Volume.Whole;
+    this->Builder = std::make_unique<StaticMappingBuilder>(whole.PointExtent, whole.Spacing,
+      deformation.GetRestPoints(), deformation.GetTetrahedra(), key.Volume.Extrapolate);
+    this->BuilderKey = wholeKey;
+  }
+  return *this->Builder;
+}
+
+std::uint64_t MappingCache::GetRunBytes(const Deformation& deformation, const MappedVolume& volume)
+{
+  if (deformation.IsField())
+  {
+    return 0;
+  }
+  if (this->IsCurrent(deformation, volume))
+  {
+    return this->RunBytes;
+  }
+  const Stopwatch stopwatch(this->Time);
+  return EstimateRunBytes(
+    this->GetBuilder(deformation, { &deformation, deformation.GetRestVersion(), volume }), volume);
+}
+
+void MappingCache::Update(const Deformation& deformation, const MappedVolume& volume,
+  const std::function<bool(double)>& progress)
+{
+  if (this->HasVoxels() && this->IsCurrent(deformation, volume))
+  {
+    return;
+  }
+  const Stopwatch stopwatch(this->Time);
+  const std::vector<Tetrahedron>& tetrahedra = deformation.GetTetrahedra();
+  if (progress && !progress(0.0))
+  {
+    throw Aborted();
+  }
+  // The old links go first, so that two sets never stand in memory.
+  this->Mapping = StaticMapping();
+  this->MappingKey = Key();
+  const Key key{ &deformation, deformation.GetRestVersion(), volume };
+  const StaticMappingBuilder& builder = this->GetBuilder(deformation, key);
+  StaticMapping mapping = builder.Build(volume.Part, progress);
+  const std::uint64_t runBytes = EstimateRunBytes(builder, volume);
+  // The same for any part that the volume is read in.
+  const bool holdsVoxels =
+    mapping.NumberOfInnerVoxels > 0 || (!volume.IsWhole() && builder.HoldsVoxels());
+  if (volume.IsWhole())
+  {
+    this->Builder.reset();
+  }
+  if (mapping.NumberOfFlatTetrahedra == static_cast<std::int64_t>(tetrahedra.size()))
+  {
+    throw Error("All " + std::to_string(tetrahedra.size()) +
+      " tetrahedra of the deformation mesh are flat at rest. Connect a mesh with volume.");
+  }
+  if (!holdsVoxels)
+  {
+    throw Error("The deformation mesh at rest holds no voxel of the volume. Check that both are "
+                "in the same world coordinates and overlap, and that input port 1 or, where it is "
+                "connected, port 2 has the rest configuration.");
+  }
+  this->Mapping = std::move(mapping);
+  this->RunBytes = runBytes;
+  this->MappingKey = key;
+  ++this->Version;
+  ++this->NumberOfBuilds;
+}
+
+void MappingCache::ReleaseVoxels()
+{
+  std::vector<VertexLink>().swap(this->Mapping.Links);
+  this->Mapping.Runs = VertexRuns();
+}
+
+double MappingCache::TakeTime()
+{
+  return std::exchange(this->Time, 0.0);
+}
+
+} // namespace deformvolume

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeResamplerChoice_h
+#define DeformVolumeResamplerChoice_h
+
+#include "DeformRequest.h"
+#include "Deformation.h"
+
+#include <functional>
+#include <optional>
+
+namespace deformvolume
+{
+
+/// What is asked for.
+struct ResamplerWish
+{
+  std::optional<Resampling> Method; // none: the choice is free
+  deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
+  bool Extrapolate = false;
+};
+
+/// The resampler for a deformation. fits tells whether the memory suffices for one. Throws an Error
+/// where what is asked for does not go together.
+///
+/// Where the choice is free: Exact, because its values are those of the deformed sampling mesh,
+/// except
+/// - where the interpolation is cubic, which MeshRasterization alone has;
+/// - where the memory does not suffice for Exact, whose sampling mesh takes some 20 bytes a voxel,
+/// but
+///   does for MeshRasterization, and that can do the deformation: a mesh, without extrapolation.
+Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deformation,
+  const std::function<bool(Resampling)>& fits);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VTKThreads.h"
+
+#include "ParallelFor.h"
+#include "Processors.h"
+
+#include <vtkSMPTools.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+namespace deformvolume
+{
+namespace
+{
+
+/// How many threads the user of VTK's threads has asked for: vtkSMPTools::Initialize() or the
+/// environment variable VTK_SMP_MAX_THREADS; 0 where the number is left open.
+int GetChosenThreads()
+{
+  const vtkSMPTools::Config config(vtk::detail::smp::vtkSMPToolsAPI::GetInstance());
+  const char* variable = std::getenv("VTK_SMP_MAX_THREADS");
+  return config.MaxNumberOfThreads > 0 ? config.MaxNumberOfThreads
+                                       : (variable ? std::max(0, std::atoi(variable)) : 0);
+}
+
+/// How many threads of our own to use instead of VTK's, 0: none. VTK's are set for the whole
+/// process, so that changing them for one filter would disturb all others. They do not serve where
+/// - VTK is sequential because it was built so, as ParaView's is, and nobody has chosen that with
+///   VTK_SMP_BACKEND_IN_USE;
+/// - they are more than this process's share of the processors, and nobody has chosen their number.
+int GetOwnThreads()
+{
+  const int chosen = GetChosenThreads();
+  const int share = GetProcessorShare();
+  if (std::string(vtkSMPTools::GetBackend()) == "Sequential")
+  {
+    const bool byDefault =
+      VTK_SMP_DEFAULT_IMPLEMENTATION_SEQUENTIAL && !std::getenv("VTK_SMP_BACKEND_IN_USE");
+    return byDefault ? (chosen > 0 ? chosen : share) : 0;
+  }
+  return chosen == 0 && vtkSMPTools::GetEstimatedNumberOfThreads() > share ? share : 0;
+}
+
+void RunLoop(std::int64_t first, std::int64_t last, std::int64_t grain, const ParallelBody& body)
+{
+  const int threads = GetOwnThreads();
+  if (threads > 0)
+  {
+    RunOnOwnThreads(first, last, grain, body, threads);
+    return;
+  }
+  vtkSMPTools::For(first, last, grain, [&](vtkIdType begin, vtkIdType end) { body(begin, end); });
+}
+
+} // namespace
+
+void UseVTKThreads()
+{
+  SetParallelLoop(RunLoop);
+}
+
+} // namespace deformvolume

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeDeformation_h
+#define DeformVolumeDeformation_h
+
+#include "DeformationMesh.h"
+#include "DisplacementField.h"
+#include "ImageGeometry.h"
+#include "IndexBounds.h"
+#include "MeshStamp.h"
+#include "Tetrahedron.h"
+#include "VectorArray.h"
+
+#include <glm/mat3x3.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+class vtkImageData;
+
+namespace deformvolume
+{
+
+/// Where a deformation comes from, and where it is wanted.
+struct DeformationSource
+{
+  /// What is connected to port 1, and to port 2 or null.
+  vtkDataObject* Shape = nullptr;
+  vtkDataObject* Rest = nullptr;
+  /// Whether a filter makes these, and they are not data that somebody holds (see MeshStamp).
+  bool ShapeIsMade = false;
+  bool RestIsMade = false;
+  /// Finds the displacements; Wanted names them in words, Choice tells two choices apart.
+  ArraySelector Selector;
+  std::string Wanted;
+  std::string Choice;
+  double DisplacementScale = 1.0;
+  /// Whether a field leads from the output to the volume at rest.
+  bool FieldIsInverse = false;
+  ImageGeometry Volume;
+  /// Output voxels per voxel of the volume, axis by axis.
+  glm::dvec3 Scale{ 1.0 };
+};
+
+/// Takes vectors, times a factor, to displacements in output voxels.
+glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor);
+
+/// The deformation in the units of the kernels. Keeps what it has read, and reads again only what
+/// changed; versions tell what did. Content decides: a mesh that is another object with the same
+/// cells and rest positions leaves the rest version as it is.
+class Deformation
+{
+public:
+  /// Throws an Error where the source cannot be used.
+  void Read(const DeformationSource& source);
+
+  bool IsField() const { return this->Field; }
+  /// Whether it is a field from the output to the volume at rest.
+  bool IsInverseField() const { return this->Field && this->VectorsSource.FieldIsInverse; }
+
+  ///@{
+  /// A mesh: its tetrahedra, its nodes at rest in continuous indices of the volume, and their
+  /// displacements in output voxels.
+  const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Tetrahedra; }
+  const std::vector<glm::dvec3>& GetRestPoints() const { return this->RestPoints; }
+  const float* GetNodeDisplacements() const { return this->Vectors.data(); }
+  ///@}
+
+  ///@{
+  /// A field (that of an inverse one takes indices of the output), and the bounds of the deformed
+  /// volume where they were found with it, else null. Large fields over the voxels themselves are
+  /// not copied (see DisplacementField::Owner).
+  DisplacementField GetField(bool extrapolate) const;
+  const IndexBounds* GetFieldBounds() const
+  {
+    return this->FieldInPlace.Owner ? &this->FieldBounds : nullptr;
+  }
+  ///@}
+
+  /// Changes with the tetrahedra and the rest positions.
+  std::uint64_t GetRestVersion() const { return this->RestVersion; }
+  /// Changes with the displacements and with the kind of the deformation.
+  std::uint64_t GetVectorsVersion() const { return this->VectorsVersion; }
+
+  /// What changed of the displacements after a version of them: blocks of points, some of which may
+  /// be as they were.
+  PointRanges GetChanges(std::uint64_t version) const;
+
+  /// Cells that were ignored, in words for a warning; "" without such.
+  const std::string& GetIgnoredCells() const { return this->IgnoredCells; }
+
+private:
+  void ReadMesh(const DeformationSource& source);
+  void ReadTetrahedra(
+    const MeshParts& shape, const MeshParts& rest, const DeformationSource& source);
+  /// Whether the cells of a mesh are those that were read last.
+  bool HasSameCells(
+    const MeshParts& parts, const MeshStamp& stamp, const MeshStamp& lastStamp) const;
+  /// False where the points at rest may not be those that were read last.
+  bool ReadRestPoints(const MeshParts& rest, const DeformationSource& source);
+  void ReadField(vtkImageData* image, const DeformationSource& source);
+  /// False where the field is not one that can be used in place.
+  bool UseFieldInPlace(vtkDataArray* array, const DeformationSource& source);
+  void RememberVectors(const Stamp& stamp, const DeformationSource& source, bool field);
+  bool VectorsAreCurrent(const Stamp& stamp, const DeformationSource& source, bool field) const;
+  /// Whether equal vectors are equal displacements, now and when they were read last.
+  bool HasSameUnits(const DeformationSource& source) const;
+  /// read: calls its argument for all displacements in world units, of which there are count.
+  void SetVectors(std::size_t count, const std::function<void(const VectorTaker&)>& read,
+    double factor, const DeformationSource& source);
+
+  bool Field = false;
+  std::vector<Tetrahedron> Tetrahedra;
+  std::vector<glm::dvec3> RestPoints;
+  std::vector<float> Vectors;
+  static constexpr std::size_t PointsPerBlock = 512;
+  std::vector<std::uint64_t> BlockVersions; // that with which each block of the vectors came
+  bool VectorsAreWhole = false;             // else the last reading of them failed
+  std::array<int, 3> FieldDimensions{ { 0, 0, 0 } };
+  std::array<double, 12> IndexToField{};
+  DisplacementField FieldInPlace; // with an owner, or there is none
+  IndexBounds FieldBounds;
+  std::string IgnoredCells;
+  std::uint64_t RestVersion = 0;
+  std::uint64_t VectorsVersion = 0;
+
+  // What the above was read from.
+  MeshStamp RestCells;
+  MeshStamp ShapeCells;
+  std::vector<vtkIdType> NodesOfParts;
+  MeshStamp RestStamp;
+  ImageGeometry RestVolume;
+  Stamp VectorsStamp;
+  DeformationSource VectorsSource;
+  std::vector<VectorMemory> Memories; // of each part of a mesh
+  bool MemoriesAreOfPoints = false;   // and not of vectors
+};
+
+} // namespace deformvolume
+
+#endif

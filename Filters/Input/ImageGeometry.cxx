@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ImageGeometry.h"
+
+#include "Error.h"
+
+#include "vtkDataObject.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationIntegerVectorKey.h"
+#include "vtkMatrix3x3.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <glm/common.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+// VTK stores matrices row by row, GLM column by column.
+glm::dmat3 MakeDirection(const double* rows)
+{
+  return glm::transpose(glm::make_mat3(rows));
+}
+
+} // namespace
+
+glm::dmat4 ImageGeometry::GetIndexToWorld() const
+{
+  glm::dmat4 transform(1.0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    transform[axis] = glm::dvec4(this->Direction[axis] * this->Spacing[axis], 0.0);
+  }
+  transform[3] = glm::dvec4(this->Origin, 1.0);
+  return transform;
+}
+
+glm::dmat4 ImageGeometry::GetWorldToIndex() const
+{
+  glm::dmat3 inverse = glm::inverse(this->Direction);
+  for (int column = 0; column < 3; ++column)
+  {
+    inverse[column] /= this->Spacing;
+  }
+  glm::dmat4 transform(inverse);
+  transform[3] = glm::dvec4(-(inverse * this->Origin), 1.0);
+  return transform;
+}
+
+bool ImageGeometry::operator==(const ImageGeometry& other) const
+{
+  return this->PointExtent == other.PointExtent && this->Origin == other.Origin &&
+    this->Spacing == other.Spacing && this->Direction == other.Direction;
+}
+
+bool AreSamePlaces(const ImageGeometry& first, const ImageGeometry& second, const Extent& extent)
+{
+  constexpr double tolerance = 1e-3; // far more than the rounding of floats, far less than a voxel
+  const glm::dmat4 transform = second.GetWorldToIndex() * first.GetIndexToWorld();
+  bool same = true;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec4 index(
+      extent[corner & 1], extent[2 + (corner >> 1 & 1)], extent[4 + (corner >> 2 & 1)], 1.0);
+    const glm::dvec4 distance = glm::abs(transform * index - index);
+    same = same && distance.x <= tolerance && distance.y <= tolerance && distance.z <= tolerance;
+  }
+  return same;
+}
+
+std::string DescribeTransform(const ImageGeometry& geometry)
+{
+  std::ostringstream text;
+  text << "origin " << geometry.Origin.x << ", " << geometry.Origin.y << ", " << geometry.Origin.z
+       << ", spacing " << geometry.Spacing.x << ", " << geometry.Spacing.y << ", "
+       << geometry.Spacing.z << " and direction";
+  for (int element = 0; element < 9; ++element)
+  {
+    text << (element == 0 ? " " : ", ") << geometry.Direction[element % 3][element / 3];
+  }
+  return text.str();
+}
+
+std::string DescribeExtent(const Extent& extent)
+{
+  std::string text;
+  for (int bound : extent)
+  {
+    text += (text.empty() ? "" : ", ") + std::to_string(bound);
+  }
+  return text;
+}
+
+bool Contains(const Extent& extent, const Extent& other)
+{
+  bool contains = true;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    contains = contains && extent[2 * axis] <= other[2 * axis] &&
+      extent[2 * axis + 1] >= other[2 * axis + 1];
+  }
+  return contains;
+}
+
+ImageGeometry GetGeometry(vtkImageData* image)
+{
+  ImageGeometry geometry;
+  std::copy_n(image->GetExtent(), 6, geometry.PointExtent.begin());
+  geometry.Origin = glm::make_vec3(image->GetOrigin());
+  geometry.Spacing = glm::make_vec3(image->GetSpacing());
+  geometry.Direction = MakeDirection(image->GetDirectionMatrix()->GetData());
+  return geometry;
+}
+
+ImageGeometry GetGeometry(vtkInformation* info)
+{
+  ImageGeometry geometry;
+  if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+  {
+    info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), geometry.PointExtent.data());
+  }
+  if (info->Has(vtkDataObject::ORIGIN()))
+  {
+    geometry.Origin = glm::make_vec3(info->Get(vtkDataObject::ORIGIN()));
+  }
+  if (info->Has(vtkDataObject::SPACING()))
+  {
+    geometry.Spacing = glm::make_vec3(info->Get(vtkDataObject::SPACING()));
+  }
+  if (info->Has(vtkDataObject::DIRECTION()))
+  {
+    geometry.Direction = MakeDirection(info->Get(vtkDataObject::DIRECTION()));
+  }
+  return geometry;
+}
+
+void CheckTransform(const ImageGeometry& geometry, const std::string& what)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (!std::isfinite(geometry.Origin[axis]))
+    {
+      throw Error("The origin of " + what + " is not finite. Set a finite one.");
+    }
+    if (!std::isfinite(geometry.Spacing[axis]) || geometry.Spacing[axis] == 0.0)
+    {
+      throw Error("The spacing of " + what + " on axis " + "xyz"[axis] + " is " +
+        std::to_string(geometry.Spacing[axis]) + ". Set one that is not 0.");
+    }
+  }
+  const double determinant = glm::determinant(geometry.Direction);
+  if (!std::isfinite(determinant) || std::abs(determinant) < 1e-12)
+  {
+    throw Error("The direction matrix of " + what +
+      " has no inverse. Set one of three independent directions.");
+  }
+}
+
+void CheckVolume(const ImageGeometry& volume)
+{
+  if (GetNumberOfPoints(volume.PointExtent) == 0)
+  {
+    throw Error("The volume on input port 0 is empty. Connect a vtkImageData with voxels.");
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (GetSize(volume.PointExtent, axis) < 2)
+    {
+      throw Error(std::string("The volume on input port 0 has one voxel only on axis ") +
+        "xyz"[axis] + ". Give a volume of at least two voxels on each axis.");
+    }
+  }
+  CheckTransform(volume, "the volume on input port 0");
+}
+
+} // namespace deformvolume

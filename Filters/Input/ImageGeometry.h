@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeImageGeometry_h
+#define DeformVolumeImageGeometry_h
+
+#include "Extent.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include <string>
+
+class vtkImageData;
+class vtkInformation;
+
+namespace deformvolume
+{
+
+/// Where the points of a vtkImageData lie. The transform goes between world coordinates and
+/// continuous structured indices: index (0, 0, 0) is at Origin, whether the extent holds it or
+/// not.
+struct ImageGeometry
+{
+  Extent PointExtent{ { 0, -1, 0, -1, 0, -1 } };
+  glm::dvec3 Origin{ 0.0 };
+  glm::dvec3 Spacing{ 1.0 };
+  glm::dmat3 Direction{ 1.0 };
+
+  glm::dmat4 GetIndexToWorld() const;
+  glm::dmat4 GetWorldToIndex() const;
+
+  bool operator==(const ImageGeometry& other) const;
+  bool operator!=(const ImageGeometry& other) const { return !(*this == other); }
+};
+
+/// Whether the points of an extent lie at the same places in the world, to a thousandth of the
+/// distance between them. The second geometry must have a transform that can be inverted.
+bool AreSamePlaces(const ImageGeometry& first, const ImageGeometry& second, const Extent& extent);
+
+/// Origin, spacing and direction, in words for an error.
+std::string DescribeTransform(const ImageGeometry& geometry);
+
+/// An extent in words for an error.
+std::string DescribeExtent(const Extent& extent);
+
+/// Whether an extent holds all of another one.
+bool Contains(const Extent& extent, const Extent& other);
+
+ImageGeometry GetGeometry(vtkImageData* image);
+
+/// The geometry that pipeline information announces, with the whole extent.
+ImageGeometry GetGeometry(vtkInformation* info);
+
+/// Throws an Error that speaks of the image as `what` where its transform cannot be inverted.
+void CheckTransform(const ImageGeometry& geometry, const std::string& what);
+
+/// Throws an Error unless the volume has two voxels or more on each axis and a transform that can
+/// be inverted.
+void CheckVolume(const ImageGeometry& volume);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VolumeArrays.h"
+
+#include "Error.h"
+#include "MaskArray.h"
+
+#include "vtkAOSDataArrayTemplate.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkLookupTable.h"
+#include "vtkPointData.h"
+
+#include <cstring>
+#include <memory>
+#include <type_traits>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+const char* const MASK = "vtkValidPointMask";
+const char* const ACTIVE = "ActiveTetrahedra";
+const char* const VOLUME = "volume"; // in errors
+
+// The element type of the same size and kind: VTK has several names for most of them.
+template <typename T>
+constexpr bool FindElementType(ElementType& type)
+{
+#define DEFORMVOLUME_MATCH(name, ctype, cl)                                                        \
+  if (sizeof(T) == sizeof(ctype) && std::is_signed<T>::value == std::is_signed<ctype>::value &&    \
+    std::is_floating_point<T>::value == std::is_floating_point<ctype>::value)                      \
+  {                                                                                                \
+    type = ElementType::name;                                                                      \
+    return true;                                                                                   \
+  }
+  DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_MATCH)
+#undef DEFORMVOLUME_MATCH
+  return false;
+}
+
+bool FindElementType(int vtkType, ElementType& type)
+{
+  switch (vtkType)
+  {
+    vtkTemplateMacro(return FindElementType<VTK_TT>(type));
+    default:
+      return false;
+  }
+}
+
+// The values of an array in VTK's common layout, else null.
+void* FindValues(vtkDataArray* array)
+{
+  switch (array->GetDataType())
+  {
+    vtkTemplateMacro({
+      const auto common = vtkAOSDataArrayTemplate<VTK_TT>::FastDownCast(array);
+      return common ? common->GetPointer(0) : nullptr;
+    });
+    default:
+      return nullptr;
+  }
+}
+
+std::shared_ptr<const void> MakeOwner(vtkDataArray* array)
+{
+  array->Register(nullptr);
+  return { array, [](vtkDataArray* owned) { owned->UnRegister(nullptr); } };
+}
+
+std::string GetLabel(vtkAbstractArray* array, int index)
+{
+  return array->GetName() ? std::string("\"") + array->GetName() + "\""
+                          : "number " + std::to_string(index);
+}
+
+bool HasName(vtkAbstractArray* array, const char* name)
+{
+  return array->GetName() && std::strcmp(array->GetName(), name) == 0;
+}
+
+} // namespace
+
+std::vector<SourceArray> SelectArrays(
+  vtkImageData* volume, const std::set<std::string>& categorical, std::vector<std::string>& leftOut)
+{
+  vtkPointData* pointData = volume->GetPointData();
+  // Ids are never mixed, whatever their arrays are called.
+  int roles[vtkDataSetAttributes::NUM_ATTRIBUTES];
+  pointData->GetAttributeIndices(roles);
+  std::vector<SourceArray> arrays;
+  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* abstract = pointData->GetAbstractArray(i);
+    if (HasName(abstract, MASK) || HasName(abstract, vtkDataSetAttributes::GhostArrayName()))
+    {
+      continue;
+    }
+    vtkDataArray* array = vtkDataArray::SafeDownCast(abstract);
+    ElementType type;
+    if (!array || !FindElementType(array->GetDataType(), type))
+    {
+      leftOut.push_back(GetLabel(abstract, i) + " (" + abstract->GetDataTypeAsString() + ")");
+      continue;
+    }
+    if (array->GetNumberOfTuples() != volume->GetNumberOfPoints())
+    {
+      throw Error("The point array " + GetLabel(array, i) + " of the volume has " +
+        std::to_string(array->GetNumberOfTuples()) + " tuples for " +
+        std::to_string(volume->GetNumberOfPoints()) +
+        " voxels. Remove the array, or give it one tuple for each voxel.");
+    }
+    if (array->GetNumberOfComponents() < 1)
+    {
+      continue;
+    }
+    const bool isId =
+      roles[vtkDataSetAttributes::GLOBALIDS] == i || roles[vtkDataSetAttributes::PEDIGREEIDS] == i;
+    arrays.push_back(
+      { array, i, isId || (array->GetName() && categorical.count(array->GetName()) > 0) });
+  }
+  if (arrays.empty())
+  {
+    throw Error("The volume on input port 0 has no numeric point array, so there is nothing to "
+                "deform. Connect a vtkImageData with point scalars.");
+  }
+  return arrays;
+}
+
+std::vector<VolumeArray> MakeVolumeArrays(const std::vector<SourceArray>& arrays, double background)
+{
+  std::vector<VolumeArray> described;
+  for (const SourceArray& source : arrays)
+  {
+    VolumeArray array;
+    FindElementType(source.Array->GetDataType(), array.Type);
+    if (const void* values = FindValues(source.Array))
+    {
+      array.Data = values;
+      array.Owner = MakeOwner(source.Array);
+    }
+    array.Components = source.Array->GetNumberOfComponents();
+    array.Categorical = source.Categorical;
+    array.Background = background;
+    described.push_back(array);
+  }
+  return described;
+}
+
+Stamp GetStamp(const std::vector<SourceArray>& arrays)
+{
+  Stamp stamp;
+  for (const SourceArray& source : arrays)
+  {
+    stamp.emplace_back(source.Array, source.Array->GetMTime());
+    // Values may be exchanged under an array that stays, as SetArray() does.
+    stamp.emplace_back(
+      FindValues(source.Array), static_cast<vtkMTimeType>(source.Array->GetNumberOfValues()));
+  }
+  return stamp;
+}
+
+void CopyIntoCommonLayout(vtkDataArray* array, VolumeArray& described)
+{
+  const auto copy =
+    vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
+  copy->DeepCopy(array);
+  described.Data = FindValues(copy);
+  described.Owner = MakeOwner(copy);
+}
+
+vtkSmartPointer<vtkDataArray> MakeLike(vtkDataArray* array, vtkIdType numberOfTuples)
+{
+  // A class of its own is kept, unless its layout is one that the kernels cannot write.
+  const auto made = vtkSmartPointer<vtkDataArray>::Take(
+    FindValues(array) ? array->NewInstance() : vtkDataArray::CreateDataArray(array->GetDataType()));
+  made->SetName(array->GetName());
+  made->SetNumberOfComponents(array->GetNumberOfComponents());
+  made->CopyComponentNames(array);
+  made->SetLookupTable(array->GetLookupTable());
+  if (array->HasInformation())
+  {
+    made->CopyInformation(array->GetInformation(), 1);
+  }
+  made->SetNumberOfTuples(numberOfTuples);
+  return made;
+}
+
+void* GetWritableValues(vtkDataArray* array)
+{
+  return FindValues(array);
+}
+
+void CopyRoles(
+  vtkDataSetAttributes* from, vtkDataSetAttributes* to, const std::vector<SourceArray>& sources)
+{
+  int roles[vtkDataSetAttributes::NUM_ATTRIBUTES];
+  from->GetAttributeIndices(roles);
+  for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role)
+  {
+    for (std::size_t i = 0; i < sources.size(); ++i)
+    {
+      if (roles[role] == sources[i].Index)
+      {
+        to->SetActiveAttribute(static_cast<int>(i), role);
+      }
+    }
+  }
+}
+
+VolumeMasks ReadMasks(vtkImageData* volume)
+{
+  const char* ghostName = vtkDataSetAttributes::GhostArrayName();
+  const vtkIdType numberOfPoints = volume->GetNumberOfPoints();
+  const vtkIdType numberOfCells = volume->GetNumberOfCells();
+  VolumeMasks masks;
+
+  if (const auto ghosts =
+        FindMask(volume->GetPointData(), ghostName, numberOfPoints, "point", VOLUME))
+  {
+    constexpr unsigned char blanked =
+      vtkDataSetAttributes::DUPLICATEPOINT | vtkDataSetAttributes::HIDDENPOINT;
+    const unsigned char* values = ghosts->GetPointer(0);
+    bool any = false;
+    for (vtkIdType i = 0; i < numberOfPoints && !any; ++i)
+    {
+      any = (values[i] & blanked) != 0;
+    }
+    if (any)
+    {
+      masks.Blanked.resize(static_cast<std::size_t>(numberOfPoints));
+      for (vtkIdType i = 0; i < numberOfPoints; ++i)
+      {
+        masks.Blanked[i] = values[i] & blanked;
+      }
+    }
+  }
+
+  if (const auto active = FindMask(volume->GetCellData(), ACTIVE, numberOfCells, "cell", VOLUME))
+  {
+    masks.Active.assign(active->GetPointer(0), active->GetPointer(0) + numberOfCells);
+  }
+  if (const auto ghosts = FindMask(volume->GetCellData(), ghostName, numberOfCells, "cell", VOLUME))
+  {
+    for (vtkIdType i = 0; i < numberOfCells; ++i)
+    {
+      if (ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENCELL)
+      {
+        if (masks.Active.empty())
+        {
+          masks.Active.assign(static_cast<std::size_t>(numberOfCells), 0x1F);
+        }
+        masks.Active[i] = 0;
+      }
+    }
+  }
+  return masks;
+}
+
+Stamp GetMasksStamp(vtkImageData* volume)
+{
+  const char* ghostName = vtkDataSetAttributes::GhostArrayName();
+  Stamp stamp;
+  for (vtkAbstractArray* array : { volume->GetPointData()->GetAbstractArray(ghostName),
+         volume->GetCellData()->GetAbstractArray(ghostName),
+         volume->GetCellData()->GetAbstractArray(ACTIVE) })
+  {
+    stamp.emplace_back(array, array ? array->GetMTime() : 0);
+    stamp.emplace_back(nullptr, array ? static_cast<vtkMTimeType>(array->GetNumberOfValues()) : 0);
+  }
+  return stamp;
+}
+
+std::vector<std::string> GetUnusedCellArrays(vtkImageData* volume)
+{
+  vtkCellData* cellData = volume->GetCellData();
+  std::vector<std::string> names;
+  for (int i = 0; i < cellData->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = cellData->GetAbstractArray(i);
+    if (!HasName(array, ACTIVE) && !HasName(array, vtkDataSetAttributes::GhostArrayName()))
+    {
+      names.push_back(GetLabel(array, i));
+    }
+  }
+  return names;
+}
+
+} // namespace deformvolume

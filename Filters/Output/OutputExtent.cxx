@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "OutputExtent.h"
+
+#include "Error.h"
+
+#include <cmath>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+double Snap(double index)
+{
+  return std::round(index * 256.0) / 256.0;
+}
+
+int ToIndex(double index)
+{
+  // Room is left for padding and for the sizes of extents.
+  constexpr double most = 1 << 29;
+  if (!(std::abs(index) <= most))
+  {
+    throw Error("The output would reach to the structured index " + std::to_string(index) +
+      ". Check the bounds, the output spacing, and that volume and deformation are in the same "
+      "world units.");
+  }
+  return static_cast<int>(index);
+}
+
+} // namespace
+
+Extent GetExtentInside(const IndexBounds& bounds)
+{
+  Extent extent;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    extent[2 * axis] = ToIndex(std::ceil(Snap(bounds.Min[axis])));
+    extent[2 * axis + 1] = ToIndex(std::floor(Snap(bounds.Max[axis])));
+    if (extent[2 * axis] > extent[2 * axis + 1])
+    {
+      throw Error(std::string("The deformed volume lies between two layers of output voxels on "
+                              "axis ") +
+        "xyz"[axis] + " and covers none. Check the deformation, or set a smaller output spacing.");
+    }
+  }
+  return extent;
+}
+
+Extent GetExtentAround(const IndexBounds& bounds)
+{
+  Extent extent;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    extent[2 * axis] = ToIndex(std::floor(Snap(bounds.Min[axis])));
+    extent[2 * axis + 1] = ToIndex(std::ceil(Snap(bounds.Max[axis])));
+  }
+  return extent;
+}
+
+IndexBounds GetVolumeBounds(const ImageGeometry& volume, const glm::dvec3& scale)
+{
+  IndexBounds bounds;
+  for (int end = 0; end < 2; ++end)
+  {
+    bounds.Add(scale *
+      glm::dvec3(
+        volume.PointExtent[end], volume.PointExtent[2 + end], volume.PointExtent[4 + end]));
+  }
+  return bounds;
+}
+
+IndexBounds GetWorldBoxBounds(const double* box, const ImageGeometry& image)
+{
+  const glm::dmat4 transform = image.GetWorldToIndex();
+  IndexBounds bounds;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const bool isBox = std::isfinite(box[2 * axis]) && std::isfinite(box[2 * axis + 1]) &&
+      box[2 * axis] <= box[2 * axis + 1];
+    if (!isBox)
+    {
+      throw Error(std::string("CustomBounds are no box on axis ") + "xyz"[axis] + ": " +
+        std::to_string(box[2 * axis]) + " to " + std::to_string(box[2 * axis + 1]) +
+        ". Set a minimum no greater than the maximum.");
+    }
+  }
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec4 point(
+      box[corner & 1], box[2 + (corner >> 1 & 1)], box[4 + (corner >> 2 & 1)], 1.0);
+    bounds.Add(glm::dvec3(transform * point));
+  }
+  return bounds;
+}
+
+Extent GetPadded(const Extent& extent, int padding)
+{
+  Extent padded;
+  double voxels = 1.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    padded[2 * axis] = extent[2 * axis] - padding;
+    padded[2 * axis + 1] = extent[2 * axis + 1] + padding;
+    voxels *= static_cast<double>(GetSize(padded, axis));
+  }
+  // Far below 2^63, so that no count of bytes can overflow.
+  if (voxels > 281474976710656.0)
+  {
+    throw Error(
+      "The output would have more than 2^48 voxels: " + std::to_string(GetSize(padded, 0)) + " x " +
+      std::to_string(GetSize(padded, 1)) + " x " + std::to_string(GetSize(padded, 2)) +
+      ". Check the bounds, the output spacing, and that volume and deformation are in the same "
+      "world units.");
+  }
+  return padded;
+}
+
+} // namespace deformvolume

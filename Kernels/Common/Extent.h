@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeExtent_h
+#define DeformVolumeExtent_h
+
+#include <array>
+#include <cstdint>
+
+namespace deformvolume
+{
+
+/// An extent in structured indices, both ends included: x min, x max, y min, y max, z min, z max.
+using Extent = std::array<int, 6>;
+
+/// Points of an extent along an axis, and altogether; 0 where it is empty.
+inline std::int64_t GetSize(const Extent& extent, int axis)
+{
+  const std::int64_t size = static_cast<std::int64_t>(extent[2 * axis + 1]) - extent[2 * axis] + 1;
+  return size > 0 ? size : 0;
+}
+inline std::int64_t GetNumberOfPoints(const Extent& extent)
+{
+  return GetSize(extent, 0) * GetSize(extent, 1) * GetSize(extent, 2);
+}
+inline std::int64_t GetNumberOfCells(const Extent& extent)
+{
+  std::int64_t cells = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    cells *= GetSize(extent, axis) > 1 ? GetSize(extent, axis) - 1 : 0;
+  }
+  return cells;
+}
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeVolumeDeformer_h
+#define DeformVolumeVolumeDeformer_h
+
+#include "DeformRequest.h"
+#include "DeformVolumeExport.h"
+#include "DisplacementField.h"
+#include "Error.h"
+#include "Tetrahedron.h"
+#include "VertexLink.h"
+#include "VertexRuns.h"
+#include "VolumeArray.h"
+#include "VoxelGrid.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// Deforms a volume on an OpenCL device: keeps the volume, its sampling mesh and the static
+/// mapping there, and maps and resamples whenever it is asked to.
+///
+/// Order of calls: SetDevice, SetVoxelGrid, SetArrays, then SetMesh or SetRestMesh and
+/// SetNodeDisplacements, or SetDisplacementField, then Deform, as often as wanted. SetBlanked and
+/// SetActiveTetrahedra are optional. SetVoxelGrid forgets everything that was set after it.
+/// Pointers are used during the call only, but for the data of arrays that have an owner. Every
+/// failure is an Error; the object can be used again afterwards.
+class DEFORMVOLUME_EXPORT VolumeDeformer
+{
+public:
+  VolumeDeformer();
+  ~VolumeDeformer();
+  VolumeDeformer(const VolumeDeformer&) = delete;
+  VolumeDeformer& operator=(const VolumeDeformer&) = delete;
+
+  /// Chooses the device (see ResolveDevice) and returns its name. A change of device forgets
+  /// all that was set. An update begins here: how much memory is free is measured once from this
+  /// call to the end of Deform.
+  std::string SetDevice(const std::string& request);
+
+  /// Bytes that may be used on the device; 0: what the device (and for a processor, the
+  /// system) has available.
+  void SetMemoryLimit(std::uint64_t bytes);
+
+  /// Bytes of one allocation on the device at most; 0: what the device allows. Volumes and outputs
+  /// over it are worked on in chunks; results do not depend on it.
+  void SetAllocationLimit(std::uint64_t bytes);
+
+  /// Work-items in a work-group along the rows of the volume; 0: chosen by device. Results do
+  /// not depend on it.
+  void SetWorkGroupSize(std::size_t size);
+
+  /// Checks that a voxel grid, arrays and an output of these sizes fit into the memory of the
+  /// device, before anything is allocated; throws an Error that names the bytes needed and
+  /// available. outputExtent is that of the output; the values of the arrays are not read. Counts
+  /// what the caller is about to allocate, too: the output, and the links or runs of a mesh.
+  /// runBytes: GetRunBytes (VertexRuns.h) where the mesh comes with runs, 0 where it comes with
+  /// links. heldBytes: how much memory for the output the caller has already.
+  void CheckMemory(const VoxelGrid& voxelGrid, const std::vector<VolumeArray>& arrays,
+    const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
+    bool field, std::uint64_t runBytes = 0, std::uint64_t heldBytes = 0) const;
+
+  /// The same for MeshRasterization, which needs neither links nor runs. With an inverse field
+  /// numberOfNodes are its points, and there are no tetrahedra.
+  void CheckRasterizationMemory(const VoxelGrid& voxelGrid, const std::vector<VolumeArray>& arrays,
+    const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
+    std::uint64_t heldBytes = 0) const;
+
+  /// bytesPerVoxel: a voxel's bytes in the widest array that will be set; it decides how a volume
+  /// over the allocation limit is split, and so does whether links may be set. MeshRasterization
+  /// needs the volume whole.
+  void SetVoxelGrid(
+    const VoxelGrid& voxelGrid, std::size_t bytesPerVoxel = 16, bool withLinks = true);
+  void SetArrays(const std::vector<VolumeArray>& arrays);
+
+  /// Changes which arrays are categorical and their background, and sends nothing: of arrays of the
+  /// types and components that were set.
+  void SetArrayOptions(const std::vector<VolumeArray>& arrays);
+
+  /// One byte a voxel: nonzero where the voxel is no source (blanked or a ghost). Null: all are.
+  void SetBlanked(const unsigned char* blanked);
+
+  /// One byte a cell, bit i = tetrahedron i is active. Null: all are.
+  void SetActiveTetrahedra(const unsigned char* active);
+
+  /// A tetrahedral deformation mesh, with a link for each voxel.
+  void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const VertexLink* links);
+  /// The same with runs of voxels. Displacements are as exact as by links but for rounding errors
+  /// of less than 1/1024 output voxel where they are under 8,192 voxels (VertexRuns.h has the
+  /// bound); equal displacements of all nodes move each voxel by exactly that.
+  void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const VertexRuns& runs);
+  /// The deformation mesh for MeshRasterization, in place of SetMesh. restNodes: three numbers a
+  /// node, continuous indices of the volume.
+  void SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const double* restNodes);
+  /// An inverse displacement field for MeshRasterization, in place of SetRestMesh: its vectors, in
+  /// output voxels, lead from a point of the output to the point of the volume at rest that is seen
+  /// there, and IndexToField takes an index of the output.
+  void SetInverseField(const DisplacementField& field);
+  /// Displacements of the nodes, three floats each, in output voxels. changes: all others are those
+  /// of the last call, and are not looked at, if there was one for this mesh and it did not fail.
+  /// Null: any may have changed.
+  void SetNodeDisplacements(const float* displacements, const PointRanges* changes = nullptr);
+
+  /// changes: as above, for fields of the same dimensions.
+  void SetDisplacementField(const DisplacementField& field, const PointRanges* changes = nullptr);
+
+  DeformReport Deform(const DeformRequest& request);
+
+  /// Bytes allocated on the device.
+  std::uint64_t GetDeviceMemory() const;
+
+  /// Frees all that is held on the device.
+  void ReleaseMemory();
+
+private:
+  DeformReport Execute(const DeformRequest& request);
+
+  /// Bytes on the device.
+  struct DeviceMemory
+  {
+    std::uint64_t Needed;
+    std::uint64_t Available;
+  };
+  /// The part of CheckMemory for the device. outputBytesPerVoxel: of the output there.
+  DeviceMemory CheckDeviceMemory(const VoxelGrid& voxelGrid, const std::vector<VolumeArray>& arrays,
+    const Extent& outputExtent, std::uint64_t outputBytesPerVoxel, std::size_t numberOfNodes,
+    std::size_t numberOfTetrahedra, std::uint64_t mappingBytes) const;
+  DeviceMemory CheckRasterizationDeviceMemory(const VoxelGrid& voxelGrid,
+    const std::vector<VolumeArray>& arrays, const Extent& outputExtent,
+    std::uint64_t outputBytesPerVoxel, std::size_t numberOfNodes,
+    std::size_t numberOfTetrahedra) const;
+
+  /// The part of both for the device, by a function that is given the bytes of a voxel of the
+  /// output there, and then the part for the system. mappingBytes: of links or runs that the caller
+  /// holds.
+  void CheckMemories(const std::vector<VolumeArray>& arrays, const Extent& outputExtent,
+    std::uint64_t mappingBytes, std::uint64_t heldBytes,
+    const std::function<DeviceMemory(std::uint64_t)>& checkDevice) const;
+
+  class DEFORMVOLUME_NO_EXPORT Internals;
+  std::unique_ptr<Internals> Impl;
+};
+
+} // namespace deformvolume
+
+#endif

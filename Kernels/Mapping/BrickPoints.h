@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeBrickPoints_h
+#define DeformVolumeBrickPoints_h
+
+#include "BrickGrid.h"
+#include "Extent.h"
+#include "KernelParameters.h"
+#include "Tetrahedron.h"
+#include "VertexLink.h"
+#include "VertexRuns.h"
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// How far a brick looks beyond its vertices: the fill rule asks the cells round a vertex.
+constexpr int BrickReach = 1;
+
+/// Which points of the deformation, nodes of the mesh or points of the field, move the vertices
+/// that a brick depends on.
+class BrickPoints
+{
+public:
+  BrickPoints() = default;
+  /// From links or runs. tetrahedra: as on the device (DEFORMVOLUME_NODE_PLACES).
+  static BrickPoints FromLinks(const BrickGrid& grid, const VertexLink* links,
+    const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
+  /// rest: 15 numbers a record, and owners: the tetrahedron of each (RunMapping.cl).
+  static BrickPoints FromRuns(const BrickGrid& grid, const VertexRun* runs,
+    const std::uint32_t* rowBegins, const double* rest, const std::int32_t* owners,
+    const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
+  static BrickPoints FromField(const BrickGrid& grid, const FieldParameters& field);
+  /// Of groups of bricks: the points that any of a group has. groups: the group of each brick. They
+  /// are for AnyOf and IsApart only.
+  BrickPoints Join(const std::vector<std::size_t>& groups, std::size_t numberOfGroups) const;
+
+  bool IsEmpty() const { return this->Begins.empty() && this->Boxes.empty(); }
+
+  /// Whether body(begin, end) was true for one of the ranges that a brick's points are; no more are
+  /// asked then.
+  template <typename Body>
+  bool AnyOf(std::size_t brick, Body&& body) const
+  {
+    if (this->Boxes.empty())
+    {
+      for (std::size_t i = this->Begins[brick]; i < this->Begins[brick + 1]; ++i)
+      {
+        const Range& range = this->Ranges[i];
+        if (body(static_cast<std::size_t>(range.Begin), static_cast<std::size_t>(range.End)))
+        {
+          return true;
+        }
+      }
+      return false;
+    }
+    const Extent& box = this->Boxes[brick];
+    for (std::int64_t z = box[4]; z <= box[5]; ++z)
+    {
+      for (std::int64_t y = box[2]; y <= box[3]; ++y)
+      {
+        const std::int64_t row = (z * this->FieldSize[1] + y) * this->FieldSize[0];
+        if (body(
+              static_cast<std::size_t>(row + box[0]), static_cast<std::size_t>(row + box[1] + 1)))
+        {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  /// Whether all of a brick's points lie before one, or from another one on.
+  bool IsApart(std::size_t brick, std::size_t begin, std::size_t end) const
+  {
+    if (!this->Boxes.empty())
+    {
+      const Extent& box = this->Boxes[brick];
+      const auto plane = static_cast<std::size_t>(this->FieldSize[0] * this->FieldSize[1]);
+      return plane * static_cast<std::size_t>(box[5] + 1) <= begin ||
+        plane * static_cast<std::size_t>(box[4]) >= end;
+    }
+    const std::size_t first = this->Begins[brick];
+    const std::size_t past = this->Begins[brick + 1];
+    return first == past || static_cast<std::size_t>(this->Ranges[past - 1].End) <= begin ||
+      static_cast<std::size_t>(this->Ranges[first].Begin) >= end;
+  }
+
+  /// The largest sum of the negative weights of one of the brick's vertices, as a positive number:
+  /// a vertex moves by no more than the greatest displacement of its points and so many times the
+  /// difference to the least.
+  double GetExcess(std::size_t brick) const
+  {
+    return this->Excess.empty() ? 0.0 : this->Excess[brick];
+  }
+
+private:
+  template <typename Visit>
+  void Collect(const BrickGrid& grid, const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, Visit&& visit);
+
+  // Points with numbers that follow each other: in meshes that are lattices they are many.
+  struct Range
+  {
+    std::int32_t Begin;
+    std::int32_t End;
+  };
+
+  std::vector<std::size_t> Begins; // the ranges of each brick, in Ranges
+  std::vector<Range> Ranges;
+  std::vector<double> Excess;
+  // Or, of a field, a box of points for each.
+  std::vector<Extent> Boxes;
+  std::array<std::int64_t, 3> FieldSize{ { 0, 0, 0 } };
+};
+
+} // namespace deformvolume
+
+#endif

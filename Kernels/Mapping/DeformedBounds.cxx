@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DeformedBounds.h"
+
+#include "BarycentricMap.h"
+#include "FiveTetrahedra.h"
+#include "ParallelFor.h"
+#include "TetrahedronClipping.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+// The bounds of what body(item, bounds) adds for each of a number of items, in parallel.
+template <typename Body>
+IndexBounds ComputeInParallel(std::int64_t count, Body&& body)
+{
+  const std::int64_t parts = std::min<std::int64_t>(count, 64);
+  std::vector<IndexBounds> bounds(parts);
+  ParallelFor(0, parts, 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t part = begin; part < end; ++part)
+      {
+        IndexBounds found;
+        for (std::int64_t i = count * part / parts; i < count * (part + 1) / parts; ++i)
+        {
+          body(i, found);
+        }
+        bounds[part] = found;
+      }
+    });
+  IndexBounds all;
+  for (const IndexBounds& part : bounds)
+  {
+    all.Add(part);
+  }
+  return all;
+}
+
+// How far outside the field, in its cells, a voxel may lie and still count: more than the device's
+// rounding.
+constexpr double FieldTolerance = 2e-3;
+// Positions this near to a voxel or to a point of the field are on it.
+constexpr double OnPoint = 1e-6;
+
+// Takes indices of the volume to continuous indices of a field, and back.
+class FieldGeometry
+{
+public:
+  explicit FieldGeometry(const DisplacementField& field)
+    : Last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1)
+  {
+    const auto& matrix = field.IndexToField;
+    for (int row = 0; row < 3; ++row)
+    {
+      for (int column = 0; column < 3; ++column)
+      {
+        this->Matrix[column][row] = matrix[4 * row + column];
+      }
+      this->Translation[row] = matrix[4 * row + 3];
+    }
+    this->Inverse = glm::inverse(this->Matrix);
+    this->Invertible =
+      IsFinite(this->Inverse[0]) && IsFinite(this->Inverse[1]) && IsFinite(this->Inverse[2]);
+  }
+
+  bool IsInvertible() const { return this->Invertible; }
+  /// Whether the voxels lie on the points of the field.
+  bool IsOnGrid() const
+  {
+    bool identity = true;
+    for (int column = 0; column < 3; ++column)
+    {
+      const double offset = this->Translation[column];
+      identity = identity && std::abs(offset - std::round(offset)) < OnPoint;
+      for (int row = 0; row < 3; ++row)
+      {
+        identity =
+          identity && std::abs(this->Matrix[column][row] - (row == column ? 1.0 : 0.0)) < 1e-9;
+      }
+    }
+    return identity;
+  }
+  glm::dvec3 ToField(const glm::dvec3& index) const
+  {
+    return this->Matrix * index + this->Translation;
+  }
+  glm::dvec3 ToIndex(const glm::dvec3& position) const
+  {
+    return this->Inverse * (position - this->Translation);
+  }
+  IndexBounds ToField(const IndexBounds& box) const
+  {
+    return Surround(
+      this->ToField(0.5 * (box.Min + box.Max)), this->Matrix, 0.5 * (box.Max - box.Min));
+  }
+  IndexBounds ToIndex(const IndexBounds& box) const
+  {
+    return Surround(
+      this->ToIndex(0.5 * (box.Min + box.Max)), this->Inverse, 0.5 * (box.Max - box.Min));
+  }
+
+  /// The field's last point.
+  const glm::dvec3 Last;
+
+private:
+  static IndexBounds Surround(
+    const glm::dvec3& center, const glm::dmat3& matrix, const glm::dvec3& half)
+  {
+    const glm::dvec3 reach =
+      glm::abs(matrix[0]) * half.x + glm::abs(matrix[1]) * half.y + glm::abs(matrix[2]) * half.z;
+    IndexBounds bounds;
+    bounds.Add(center - reach);
+    bounds.Add(center + reach);
+    return bounds;
+  }
+
+  glm::dmat3 Matrix{ 1.0 };
+  glm::dmat3 Inverse{ 1.0 };
+  glm::dvec3 Translation{ 0.0 };
+  bool Invertible = false;
+};
+
+// The voxels of a box, which may be none.
+bool ShrinkToVoxels(IndexBounds& box)
+{
+  box.Min = glm::ceil(box.Min - OnPoint);
+  box.Max = glm::floor(box.Max + OnPoint);
+  return box.Min.x <= box.Max.x && box.Min.y <= box.Max.y && box.Min.z <= box.Max.z;
+}
+
+// The bounds of the volume's part that the field covers, at rest.
+IndexBounds GetCoveredBox(
+  const DisplacementField& field, const FieldGeometry& geometry, const IndexBounds& box)
+{
+  if (field.Extrapolate || !geometry.IsInvertible())
+  {
+    return box;
+  }
+  static constexpr int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+  const glm::dvec3 last = geometry.Last;
+  std::vector<glm::dvec3> corners;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec3 upper(corner & 1, corner >> 2 & 1, corner >> 1 & 1);
+    corners.push_back(
+      geometry.ToIndex(upper * last + (2.0 * upper - 1.0) * glm::dvec3(FieldTolerance)));
+  }
+  IndexBounds bounds;
+  for (const auto& tetrahedron : split)
+  {
+    std::array<MovedPoint, 4> nodes;
+    for (int node = 0; node < 4; ++node)
+    {
+      nodes[node].Rest = corners[tetrahedron[node]];
+      nodes[node].Moved = nodes[node].Rest;
+    }
+    BarycentricMap map;
+    if (map.SetTetrahedron(
+          { { tetrahedron[0], tetrahedron[1], tetrahedron[2], tetrahedron[3] } }, corners))
+    {
+      AddClippedTetrahedron(nodes, map, box, bounds);
+    }
+  }
+  return bounds;
+}
+
+// The trilinear displacement at a place, whose border is that of the field.
+glm::dvec3 Interpolate(const DisplacementField& field, const glm::dvec3& position)
+{
+  std::int64_t low[3];
+  std::int64_t high[3];
+  glm::dvec3 t;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double last = field.Dimensions[axis] - 1;
+    const double place = std::min(std::max(position[axis], 0.0), last);
+    low[axis] = static_cast<std::int64_t>(place + OnPoint);
+    t[axis] = place - static_cast<double>(low[axis]);
+    if (t[axis] < OnPoint)
+    {
+      t[axis] = 0.0;
+    }
+    high[axis] = low[axis] + (t[axis] > 0.0 ? 1 : 0);
+  }
+  const auto at = [&](std::int64_t x, std::int64_t y, std::int64_t z)
+  { return GetVector(field, (z * field.Dimensions[1] + y) * field.Dimensions[0] + x); };
+  if (t == glm::dvec3(0.0))
+  {
+    return at(low[0], low[1], low[2]);
+  }
+  const auto row = [&](std::int64_t y, std::int64_t z)
+  { return glm::mix(at(low[0], y, z), at(high[0], y, z), t.x); };
+  return glm::mix(glm::mix(row(low[1], low[2]), row(high[1], low[2]), t.y),
+    glm::mix(row(low[1], high[2]), row(high[1], high[2]), t.y), t.z);
+}
+
+// Bounds of the voxels themselves, for fields that are no coarser than the volume.
+IndexBounds ComputeBoundsOfVoxels(
+  const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldGeometry& geometry)
+{
+  const Extent& extent = voxelGrid.VertexExtent;
+  const glm::dvec3 scale = GetScale(voxelGrid);
+  return ComputeInParallel(GetSize(extent, 1) * GetSize(extent, 2),
+    [&](std::int64_t row, IndexBounds& bounds)
+    {
+      glm::dvec3 index = GetBox(voxelGrid).Min;
+      index.y += static_cast<double>(row % GetSize(extent, 1));
+      index.z += static_cast<double>(row / GetSize(extent, 1));
+      for (std::int64_t x = 0; x < GetSize(extent, 0); ++x, index.x += 1.0)
+      {
+        const glm::dvec3 position = geometry.ToField(index);
+        if (!field.Extrapolate &&
+          (glm::any(glm::lessThan(position, glm::dvec3(-FieldTolerance))) ||
+            glm::any(glm::greaterThan(position, geometry.Last + FieldTolerance))))
+        {
+          continue;
+        }
+        const glm::dvec3 moved = scale * index + Interpolate(field, position);
+        if (IsFinite(moved))
+        {
+          bounds.Add(moved);
+        }
+      }
+    });
+}
+
+// Bounds from the cells of the field: a displacement in a cell lies between those of its corners.
+IndexBounds ComputeBoundsOfCells(
+  const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldGeometry& geometry)
+{
+  const IndexBounds box = GetBox(voxelGrid);
+  IndexBounds covered = GetCoveredBox(field, geometry, box);
+  if (covered.IsEmpty() || !ShrinkToVoxels(covered))
+  {
+    return IndexBounds();
+  }
+  // Cells at the field's border reach as far as it counts.
+  IndexBounds reach = geometry.ToField(box);
+  if (!field.Extrapolate)
+  {
+    reach.Min = glm::dvec3(0.0);
+    reach.Max = geometry.Last;
+  }
+  reach.Min = glm::min(reach.Min, glm::dvec3(0.0)) - FieldTolerance;
+  reach.Max = glm::max(reach.Max, geometry.Last) + FieldTolerance;
+
+  const glm::dvec3 scale = GetScale(voxelGrid);
+  std::int64_t cells[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    cells[axis] = std::max(1, field.Dimensions[axis] - 1);
+  }
+  return ComputeInParallel(cells[0] * cells[1] * cells[2],
+    [&](std::int64_t cell, IndexBounds& bounds)
+    {
+      const std::int64_t index[3] = { cell % cells[0], cell / cells[0] % cells[1],
+        cell / (cells[0] * cells[1]) };
+      IndexBounds rest = covered;
+      if (geometry.IsInvertible())
+      {
+        IndexBounds cellBox;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          const double low = static_cast<double>(index[axis]);
+          cellBox.Min[axis] = index[axis] == 0 ? reach.Min[axis] : low;
+          cellBox.Max[axis] = index[axis] == cells[axis] - 1 ? reach.Max[axis] : low + 1.0;
+        }
+        rest = geometry.ToIndex(cellBox);
+        rest.Min = glm::max(rest.Min, covered.Min);
+        rest.Max = glm::min(rest.Max, covered.Max);
+        if (!ShrinkToVoxels(rest))
+        {
+          return;
+        }
+      }
+      IndexBounds displacement;
+      for (int corner = 0; corner < 8; ++corner)
+      {
+        std::int64_t point[3];
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          point[axis] =
+            std::min<std::int64_t>(index[axis] + (corner >> axis & 1), field.Dimensions[axis] - 1);
+        }
+        const glm::dvec3 vector = GetVector(
+          field, (point[2] * field.Dimensions[1] + point[1]) * field.Dimensions[0] + point[0]);
+        if (IsFinite(vector))
+        {
+          displacement.Add(vector);
+        }
+      }
+      if (!displacement.IsEmpty())
+      {
+        bounds.Add(scale * rest.Min + displacement.Min);
+        bounds.Add(scale * rest.Max + displacement.Max);
+      }
+    });
+}
+
+} // namespace
+
+IndexBounds ComputeDeformedBounds(const VoxelGrid& voxelGrid, const std::vector<VertexLink>& links,
+  const std::vector<Tetrahedron>& tetrahedra, const float* displacements)
+{
+  const Extent& extent = voxelGrid.VertexExtent;
+  const std::int64_t size = GetSize(extent, 0);
+  const std::int64_t rows = size > 0 ? GetSize(extent, 1) * GetSize(extent, 2) : 0;
+  const glm::dvec3 scale = GetScale(voxelGrid);
+  return ComputeInParallel(rows,
+    [&](std::int64_t row, IndexBounds& bounds)
+    {
+      glm::dvec3 index(
+        0.0, extent[2] + row % GetSize(extent, 1), extent[4] + row / GetSize(extent, 1));
+      for (std::int64_t x = 0; x < size; ++x)
+      {
+        const VertexLink& link = links[row * size + x];
+        if (link.Tetrahedron < 0)
+        {
+          continue;
+        }
+        const Tetrahedron& nodes = tetrahedra[link.Tetrahedron];
+        glm::dvec3 sum(0.0);
+        double last = 1.0;
+        for (int node = 0; node < 3; ++node)
+        {
+          const double weight = link.Weights[node];
+          sum += weight * GetVector(displacements, nodes[node]);
+          last -= weight;
+        }
+        sum += last * GetVector(displacements, nodes[3]);
+        index.x = static_cast<double>(extent[0] + x);
+        const glm::dvec3 moved = scale * index + sum;
+        if (IsFinite(moved))
+        {
+          bounds.Add(moved);
+        }
+      }
+    });
+}
+
+IndexBounds ComputeDeformedBounds(const VoxelGrid& voxelGrid, const DisplacementField& field)
+{
+  std::int64_t points = 1;
+  for (const int dimension : field.Dimensions)
+  {
+    points *= std::max(0, dimension);
+  }
+  if (points == 0 || GetNumberOfPoints(voxelGrid.VertexExtent) == 0)
+  {
+    return IndexBounds();
+  }
+  const FieldGeometry geometry(field);
+  // A field over the volume's own grid may cover a part of it only, and then has fewer points.
+  const bool coLocated = geometry.IsOnGrid();
+  return coLocated || points >= GetNumberOfPoints(voxelGrid.VertexExtent)
+    ? ComputeBoundsOfVoxels(voxelGrid, field, geometry)
+    : ComputeBoundsOfCells(voxelGrid, field, geometry);
+}
+
+} // namespace deformvolume

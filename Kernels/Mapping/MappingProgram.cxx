@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MappingProgram.h"
+
+#include "KernelSources.h"
+#include "KernelText.h"
+
+namespace deformvolume
+{
+
+std::string GetSamplingMeshText()
+{
+  return std::string(FiveTetrahedra_h) + KernelParameters_h;
+}
+
+std::string GetMappingText(MappingForm mapping)
+{
+  switch (mapping)
+  {
+    case MappingForm::Links:
+      return std::string("#define MAPPING 0\n") + MultiplyAdd_cl + DeformationMapping_cl;
+    case MappingForm::Runs:
+      return std::string("#define MAPPING 1\n") + MultiplyAdd_cl + RunMapping_cl +
+        DeformationMapping_cl;
+    case MappingForm::FieldInPlace:
+      return std::string("#define MAPPING 3\n") + MultiplyAdd_cl + DeformationMapping_cl;
+    default:
+      return std::string("#define MAPPING 2\n") + MultiplyAdd_cl + DeformationMapping_cl;
+  }
+}
+
+cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping)
+{
+  const std::string evaluation = mapping == MappingForm::Runs ? RunEvaluation_cl : "";
+  return context.GetProgram(GetReal(context) + GetSamplingMeshText() +
+      "#define HAS_MAPPING_KERNEL 1\n" + GetMappingText(mapping) + VertexState_cl + evaluation,
+    KernelOptions);
+}
+
+} // namespace deformvolume

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeMappingProgram_h
+#define DeformVolumeMappingProgram_h
+
+#include "OpenCLContext.h"
+
+#include <string>
+
+namespace deformvolume
+{
+
+/// How the kernels find the displacement of a vertex: the names of MAPPING in
+/// DeformationMapping.cl.
+enum class MappingForm
+{
+  Links,
+  Runs,
+  Field,
+  /// A field whose vectors are read where they lie; for devices with double precision.
+  FieldInPlace
+};
+
+/// The deformation mapping (DeformationMapping.cl) and the state of vertices (VertexState.cl).
+cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping);
+
+/// The text of a form of the mapping (DeformationMapping.cl). It expects GetSamplingMeshText
+/// before.
+std::string GetMappingText(MappingForm mapping);
+
+/// The sampling mesh, and the parameters of launches over it.
+std::string GetSamplingMeshText();
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeMeshBounds_h
+#define DeformVolumeMeshBounds_h
+
+#include "DeformVolumeExport.h"
+#include "IndexBounds.h"
+#include "Tetrahedron.h"
+#include "VoxelGrid.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// Bounds of the part of the volume that lies inside a deformation mesh, after the deformation.
+/// Tight: tetrahedra that the surface of the volume cuts are clipped to it, since a tetrahedron's
+/// map is affine. Of a tetrahedron inside the volume the nodes tell the bounds.
+///
+/// Keeps the bounds of blocks of nodes and of clipped tetrahedra, so that only those are computed
+/// again that have changed.
+///
+/// voxelGrid: the volume's voxels and their output indices at rest. restPoints: the nodes at rest
+/// in continuous indices of the volume. displacements: of the nodes, three floats each, in output
+/// voxels.
+class DEFORMVOLUME_EXPORT MeshBounds
+{
+public:
+  void SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec3>& restPoints,
+    const std::vector<Tetrahedron>& tetrahedra);
+
+  /// restPoints and tetrahedra: those that were set. changes: all other displacements are those of
+  /// the last call for this mesh, if there was one; null: any may have changed.
+  IndexBounds Compute(const std::vector<glm::dvec3>& restPoints,
+    const std::vector<Tetrahedron>& tetrahedra, const float* displacements,
+    const PointRanges* changes = nullptr);
+
+private:
+  VoxelGrid Shape;
+  std::vector<std::int32_t> Nodes; // of tetrahedra inside the volume, in ascending order
+  std::vector<std::int32_t> ClippedTetrahedra;
+  std::vector<std::size_t> NodeBegins; // of each block of nodes, in Nodes
+  std::vector<IndexBounds> NodeBounds;
+  std::vector<IndexBounds> ClippedBounds; // of each block of clipped tetrahedra
+  bool IsComputed = false;
+};
+
+/// The same, at once.
+DEFORMVOLUME_EXPORT IndexBounds ComputeDeformedBounds(const VoxelGrid& voxelGrid,
+  const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
+  const float* displacements);
+
+} // namespace deformvolume
+
+#endif

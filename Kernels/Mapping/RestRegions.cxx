@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RestRegions.h"
+
+#include "BarycentricMap.h"
+#include "ParallelFor.h"
+
+#include <glm/common.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+// Voxels on an axis by which one may lie outside the tetrahedron that it is linked to: nodes are
+// rounded to 1/256 voxel before voxels are looked for.
+constexpr double LinkTolerance = 1.0 / 64.0;
+// Output voxels by which the kernels may round a position, with room to spare.
+constexpr double PositionTolerance = 1.0 / 32.0;
+
+constexpr std::int64_t MostRegions = std::int64_t{ 1 } << 17;
+
+} // namespace
+
+RestRegions::RestRegions(const VoxelGrid& voxelGrid)
+  : Volume(voxelGrid.VertexExtent)
+  , Scale(voxelGrid.Scale[0], voxelGrid.Scale[1], voxelGrid.Scale[2])
+{
+  for (;; this->Size *= 2)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const std::int64_t cells = std::max<std::int64_t>(1, GetSize(this->Volume, axis) - 1);
+      this->Count[axis] = static_cast<int>((cells + this->Size - 1) / this->Size);
+    }
+    if (this->GetNumberOfRegions() <= MostRegions)
+    {
+      break;
+    }
+  }
+  this->Bounds.resize(this->GetNumberOfRegions());
+}
+
+std::int64_t RestRegions::GetNumberOfRegions() const
+{
+  return static_cast<std::int64_t>(this->Count[0]) * this->Count[1] * this->Count[2];
+}
+
+Extent RestRegions::GetVoxels(const int* place) const
+{
+  Extent voxels;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    voxels[2 * axis] = this->Volume[2 * axis] + place[axis] * this->Size;
+    voxels[2 * axis + 1] = std::min(voxels[2 * axis] + this->Size, this->Volume[2 * axis + 1]);
+  }
+  return voxels;
+}
+
+RestRegions::RestRegions(const VoxelGrid& voxelGrid, const std::vector<glm::dvec3>& restPoints,
+  const std::vector<Tetrahedron>& tetrahedra, const float* displacements)
+  : RestRegions(voxelGrid)
+{
+  for (const Tetrahedron& tetrahedron : tetrahedra)
+  {
+    this->AddTetrahedron(tetrahedron, restPoints, displacements);
+  }
+}
+
+void RestRegions::AddTetrahedron(const Tetrahedron& tetrahedron,
+  const std::vector<glm::dvec3>& restPoints, const float* displacements)
+{
+  BarycentricMap map;
+  if (!map.SetTetrahedron(tetrahedron, restPoints))
+  {
+    return; // no voxel is linked to a flat one
+  }
+  IndexBounds rest;
+  IndexBounds moved;
+  glm::dvec3 nodes[4];
+  for (int node = 0; node < 4; ++node)
+  {
+    const glm::dvec3& point = restPoints[tetrahedron[node]];
+    nodes[node] = this->Scale * point + GetVector(displacements, tetrahedron[node]);
+    rest.Add(point);
+    moved.Add(nodes[node]);
+  }
+  // Voxels outside have negative weights, which lead out of the tetrahedron after the deformation,
+  // too. Columns: what a step along an axis of the volume moves.
+  double outside = 0.0;
+  glm::dmat3 steps(0.0);
+  for (int node = 0; node < 4; ++node)
+  {
+    const glm::dvec3 gradient = map.GetGradient(node);
+    outside += LinkTolerance * (std::abs(gradient.x) + std::abs(gradient.y) + std::abs(gradient.z));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      steps[axis] += gradient[axis] * nodes[node];
+    }
+  }
+  const glm::dvec3 reach = outside * (moved.Max - moved.Min);
+  moved.Min -= reach;
+  moved.Max += reach;
+  rest.Min -= LinkTolerance;
+  rest.Max += LinkTolerance;
+
+  int begin[3];
+  int end[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double first = this->Volume[2 * axis];
+    const double last = this->Volume[2 * axis + 1];
+    const double low = std::max(rest.Min[axis], first);
+    const double high = std::min(rest.Max[axis], last);
+    if (!(low <= high))
+    {
+      return;
+    }
+    // Regions share their ends.
+    begin[axis] = std::max(0, static_cast<int>(std::ceil((low - first) / this->Size)) - 1);
+    end[axis] =
+      std::min(this->Count[axis] - 1, static_cast<int>(std::floor((high - first) / this->Size)));
+  }
+  int place[3];
+  for (place[2] = begin[2]; place[2] <= end[2]; ++place[2])
+  {
+    for (place[1] = begin[1]; place[1] <= end[1]; ++place[1])
+    {
+      for (place[0] = begin[0]; place[0] <= end[0]; ++place[0])
+      {
+        const Extent voxels = this->GetVoxels(place);
+        IndexBounds box;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          box.Min[axis] = std::max<double>(voxels[2 * axis], rest.Min[axis]);
+          box.Max[axis] = std::min<double>(voxels[2 * axis + 1], rest.Max[axis]);
+        }
+        // The deformation is affine in the tetrahedron.
+        const glm::dvec3 center = 0.5 * (box.Min + box.Max);
+        const glm::dvec3 half = 0.5 * (box.Max - box.Min);
+        const glm::dvec4 weights = map.GetAllWeights(center);
+        glm::dvec3 position(0.0);
+        for (int node = 0; node < 4; ++node)
+        {
+          position += weights[node] * nodes[node];
+        }
+        const glm::dvec3 spread =
+          glm::abs(steps[0]) * half.x + glm::abs(steps[1]) * half.y + glm::abs(steps[2]) * half.z;
+        IndexBounds landing;
+        landing.Min = glm::max(position - spread, moved.Min);
+        landing.Max = glm::min(position + spread, moved.Max);
+        if (landing.Min.x <= landing.Max.x && landing.Min.y <= landing.Max.y &&
+          landing.Min.z <= landing.Max.z)
+        {
+          this
+            ->Bounds[(static_cast<std::int64_t>(place[2]) * this->Count[1] + place[1]) *
+                this->Count[0] +
+              place[0]]
+            .Add(landing);
+        }
+      }
+    }
+  }
+}
+
+RestRegions::RestRegions(const VoxelGrid& voxelGrid, const DisplacementField& field)
+  : RestRegions(voxelGrid)
+{
+  ParallelFor(0, this->GetNumberOfRegions(), 16,
+    [&](std::int64_t first, std::int64_t last)
+    {
+      for (std::int64_t region = first; region < last; ++region)
+      {
+        const int place[3] = { static_cast<int>(region % this->Count[0]),
+          static_cast<int>(region / this->Count[0] % this->Count[1]),
+          static_cast<int>(region / this->Count[0] / this->Count[1]) };
+        const Extent voxels = this->GetVoxels(place);
+        std::int64_t low[3];
+        std::int64_t high[3];
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          const double* row = &field.IndexToField[4 * axis];
+          double from = row[3];
+          double to = row[3];
+          for (int k = 0; k < 3; ++k)
+          {
+            from += std::min(row[k] * voxels[2 * k], row[k] * voxels[2 * k + 1]);
+            to += std::max(row[k] * voxels[2 * k], row[k] * voxels[2 * k + 1]);
+          }
+          // The device finds places with the precision of float, and far fewer than a quarter of a
+          // cell off.
+          constexpr double margin = 0.25;
+          const double end = field.Dimensions[axis] - 1;
+          low[axis] = static_cast<std::int64_t>(glm::clamp(std::floor(from - margin), 0.0, end));
+          high[axis] = static_cast<std::int64_t>(glm::clamp(std::ceil(to + margin), 0.0, end));
+        }
+        IndexBounds displacement;
+        for (std::int64_t z = low[2]; z <= high[2]; ++z)
+        {
+          for (std::int64_t y = low[1]; y <= high[1]; ++y)
+          {
+            for (std::int64_t x = low[0]; x <= high[0]; ++x)
+            {
+              displacement.Add(
+                GetVector(field, (z * field.Dimensions[1] + y) * field.Dimensions[0] + x));
+            }
+          }
+        }
+        IndexBounds& bounds = this->Bounds[region];
+        bounds.Add(this->Scale * glm::dvec3(voxels[0], voxels[2], voxels[4]) + displacement.Min);
+        bounds.Add(this->Scale * glm::dvec3(voxels[1], voxels[3], voxels[5]) + displacement.Max);
+      }
+    });
+}
+
+bool RestRegions::HasVoxels() const
+{
+  return std::any_of(this->Bounds.begin(), this->Bounds.end(),
+    [](const IndexBounds& bounds) { return !bounds.IsEmpty(); });
+}
+
+Extent RestRegions::Find(const Extent& part) const
+{
+  Extent found{ { 0, -1, 0, -1, 0, -1 } };
+  std::int64_t region = 0;
+  int place[3];
+  for (place[2] = 0; place[2] < this->Count[2]; ++place[2])
+  {
+    for (place[1] = 0; place[1] < this->Count[1]; ++place[1])
+    {
+      for (place[0] = 0; place[0] < this->Count[0]; ++place[0], ++region)
+      {
+        const IndexBounds& bounds = this->Bounds[region];
+        bool lands = !bounds.IsEmpty();
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          lands = lands && bounds.Min[axis] - PositionTolerance <= part[2 * axis + 1] &&
+            bounds.Max[axis] + PositionTolerance >= part[2 * axis];
+        }
+        if (!lands)
+        {
+          continue;
+        }
+        const Extent voxels = this->GetVoxels(place);
+        const bool first = GetNumberOfPoints(found) == 0;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          int* range = &found[2 * axis];
+          range[0] = first ? voxels[2 * axis] : std::min(range[0], voxels[2 * axis]);
+          range[1] = first ? voxels[2 * axis + 1] : std::max(range[1], voxels[2 * axis + 1]);
+        }
+      }
+    }
+  }
+  if (GetNumberOfPoints(found) == 0)
+  {
+    const int corner[3] = { 0, 0, 0 };
+    found = this->GetVoxels(corner);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      found[2 * axis + 1] = std::min(found[2 * axis + 1], found[2 * axis] + 1);
+    }
+  }
+  // What cells do depends on the state of their vertices, and that on the voxels round these.
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    found[2 * axis] = std::max(found[2 * axis] - 1, this->Volume[2 * axis]);
+    found[2 * axis + 1] = std::min(found[2 * axis + 1] + 1, this->Volume[2 * axis + 1]);
+  }
+  found[0] = this->Volume[0];
+  found[1] = this->Volume[1];
+  return found;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "StaticMapping.h"
+
+#include "BarycentricMap.h"
+#include "Error.h"
+#include "LinkExtrapolation.h"
+#include "ParallelFor.h"
+#include "RunBuilder.h"
+#include "VertexRuns.h"
+#include "VoxelLinker.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+// What has been done when the tetrahedra are sorted into tiles.
+constexpr double SortedFraction = 0.25;
+
+bool FitsRuns(const Extent& voxels)
+{
+  return std::max({ GetSize(voxels, 0), GetSize(voxels, 1), GetSize(voxels, 2) }) <= LargestRunSize;
+}
+
+} // namespace
+
+StaticMappingBuilder::StaticMappingBuilder(const Extent& voxels, const glm::dvec3& spacing,
+  const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
+  bool extrapolate, StaticMappingForm form)
+  : Voxels(voxels)
+  , Spacing(spacing)
+  , RestPoints(restPoints)
+  , Tetrahedra(tetrahedra)
+  , Extrapolate(extrapolate)
+{
+  if (form == StaticMappingForm::Runs && extrapolate)
+  {
+    throw Error("Voxels outside the mesh cannot be extrapolated by runs: make links.");
+  }
+  const std::int64_t size = GetNumberOfPoints(voxels);
+  if (size == 0)
+  {
+    return;
+  }
+  this->Linker = std::make_unique<VoxelLinker>(this->Voxels, restPoints, tetrahedra);
+  if (form == StaticMappingForm::Links || extrapolate || !FitsRuns(voxels))
+  {
+    return;
+  }
+  const RunBuilder::Estimate estimate =
+    RunBuilder(*this->Linker, this->Voxels, restPoints, tetrahedra).EstimateRuns();
+  const bool worthwhile = estimate.MeanLength >= LeastMeanRunLength &&
+    estimate.Bytes < static_cast<std::uint64_t>(size) * sizeof(VertexLink);
+  if (worthwhile || form == StaticMappingForm::Runs)
+  {
+    this->RunBytes = estimate.Bytes;
+  }
+}
+
+StaticMappingBuilder::~StaticMappingBuilder() = default;
+
+bool StaticMappingBuilder::HoldsVoxels() const
+{
+  if (!this->Linker)
+  {
+    return false;
+  }
+  BarycentricMap map;
+  glm::i64vec3 voxel;
+  for (std::size_t id = 0; id < this->Tetrahedra.size(); ++id)
+  {
+    if (map.SetTetrahedron(this->Tetrahedra[id], this->RestPoints) &&
+      this->Linker->FindVoxel(static_cast<std::int32_t>(id), voxel))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+StaticMapping StaticMappingBuilder::Build(
+  const Extent& part, const std::function<bool(double)>& progress) const
+{
+  const auto report = [&](double done)
+  {
+    if (progress && !progress(done))
+    {
+      throw Aborted();
+    }
+  };
+  StaticMapping mapping;
+  if (!this->Linker)
+  {
+    return mapping;
+  }
+  report(SortedFraction);
+  if (this->RunBytes > 0)
+  {
+    const RunBuilder builder(*this->Linker, this->Voxels, this->RestPoints, this->Tetrahedra);
+    mapping.Runs = builder.Build(part, mapping.NumberOfInnerVoxels,
+      [&](double done) { report(SortedFraction + (1.0 - SortedFraction) * done); });
+  }
+  else
+  {
+    this->BuildLinks(part, report, mapping);
+  }
+  mapping.NumberOfFlatTetrahedra = this->Linker->GetTiles().GetNumberOfFlatTetrahedra();
+  return mapping;
+}
+
+void StaticMappingBuilder::BuildLinks(
+  const Extent& part, const std::function<void(double)>& report, StaticMapping& mapping) const
+{
+  const double linkingDone = this->Extrapolate ? 0.6 : 1.0;
+  mapping.Links.resize(GetNumberOfPoints(part));
+  VoxelTarget<VertexLink> target;
+  target.Data = mapping.Links.data();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    target.First[axis] = part[2 * axis];
+  }
+  target.Size[0] = GetSize(part, 0);
+  target.Size[1] = GetSize(part, 1);
+  constexpr int steps = 16;
+  const TetrahedronTiles& all = this->Linker->GetTiles();
+  const TetrahedronTiles::Rectangle wanted = all.GetTiles(MakeVoxelBox(part));
+  const std::int64_t across = wanted.End[0] - wanted.Begin[0];
+  const std::int64_t tiles = across * (wanted.End[1] - wanted.Begin[1]);
+  std::atomic<std::int64_t> inner{ 0 };
+  for (int step = 0; step < steps; ++step)
+  {
+    ParallelFor(tiles * step / steps, tiles * (step + 1) / steps, 1,
+      [&](std::int64_t first, std::int64_t last)
+      {
+        for (std::int64_t i = first; i < last; ++i)
+        {
+          const std::int64_t tile =
+            (wanted.Begin[1] + i / across) * all.GetNumberOfTiles(0) + wanted.Begin[0] + i % across;
+          inner += this->Linker->LinkTile(
+            tile, Intersect(all.GetVoxels(tile), MakeVoxelBox(part)), target);
+        }
+      });
+    report(SortedFraction + (linkingDone - SortedFraction) * (step + 1) / steps);
+  }
+  mapping.NumberOfInnerVoxels = inner;
+  if (this->Extrapolate && inner > 0 && inner < GetNumberOfPoints(this->Voxels))
+  {
+    ExtrapolateLinks(this->Voxels, this->Spacing, this->RestPoints, this->Tetrahedra, mapping.Links,
+      [&](double done) { report(linkingDone + (1.0 - linkingDone) * done); });
+  }
+}
+
+StaticMapping BuildStaticMapping(const Extent& voxels, const glm::dvec3& spacing,
+  const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
+  bool extrapolate, StaticMappingForm form, const std::function<bool(double)>& progress)
+{
+  return StaticMappingBuilder(voxels, spacing, restPoints, tetrahedra, extrapolate, form)
+    .Build(progress);
+}
+
+} // namespace deformvolume

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Device.h"
+
+#include "OpenCLContext.h"
+#include "Processors.h"
+
+namespace deformvolume
+{
+
+std::vector<std::string> GetDeviceNames()
+{
+  std::vector<std::string> names;
+  for (const OpenCLDevice& device : FindDevices())
+  {
+    names.push_back(device.Name);
+  }
+  return names;
+}
+
+std::string ResolveDevice(const std::string& request)
+{
+  return FindDevice(request).Name;
+}
+
+DeviceAbilities GetDeviceAbilities(const std::string& request)
+{
+  const OpenCLDevice device = FindDevice(request);
+  return { device.Description.HasDouble, device.HasVectors };
+}
+
+void ShareProcessors(int processes)
+{
+  SetProcessesHere(processes);
+  LimitDeviceThreads();
+}
+
+} // namespace deformvolume

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "OpenCLContext.h"
+
+#include "CompilationWatch.h"
+#include "DeviceRank.h"
+#include "Error.h"
+#include "KernelCache.h"
+#include "Processors.h"
+#include "ProgramCache.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+
+namespace deformvolume
+{
+namespace
+{
+
+/// Some platforms end names with zeros or pad them with blanks.
+std::string Trim(const std::string& text)
+{
+  const char* blank = " \t\n";
+  const std::string whole = text.c_str();
+  const std::size_t begin = whole.find_first_not_of(blank);
+  return begin == std::string::npos
+    ? ""
+    : whole.substr(begin, whole.find_last_not_of(blank) - begin + 1);
+}
+
+DeviceDescription GetDescription(const cl::Device& device, const cl::Platform& platform)
+{
+  using Kind = DeviceDescription::Kind;
+  const cl_device_type type = device.getInfo<CL_DEVICE_TYPE>();
+  DeviceDescription description;
+  description.Type = type & CL_DEVICE_TYPE_GPU ? Kind::Graphics
+    : type & CL_DEVICE_TYPE_CPU                ? Kind::Processor
+                                               : Kind::Other;
+  description.Name = Trim(device.getInfo<CL_DEVICE_NAME>());
+  description.Platform = Trim(platform.getInfo<CL_PLATFORM_NAME>());
+  description.SharesMemory = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_FALSE;
+  description.HasDouble =
+    (" " + device.getInfo<CL_DEVICE_EXTENSIONS>() + " ").find(" cl_khr_fp64 ") != std::string::npos;
+  description.ComputeUnits = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  return description;
+}
+
+bool IsUsable(const cl::Device& device)
+{
+  return device.getInfo<CL_DEVICE_AVAILABLE>() && device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>();
+}
+
+bool IsPoCL(const OpenCLDevice& device)
+{
+  return device.Name.find("Portable Computing Language") != std::string::npos;
+}
+
+/// What the instructions of the processor are: drivers compile for the one that they run on, and a
+/// home directory may serve several.
+std::string GetProcessorText()
+{
+  std::ifstream file("/proc/cpuinfo");
+  std::string text;
+  for (std::string line; std::getline(file, line) && !line.empty();) // the first one
+  {
+    for (const char* key : { "vendor_id", "cpu family", "model", "stepping", "flags", "Features" })
+    {
+      if (line.rfind(key, 0) == 0)
+      {
+        text += line + "\n";
+      }
+    }
+  }
+  return text;
+}
+
+/// All that decides, besides source and options, what the driver makes of a program.
+std::string GetCompilerText(const OpenCLDevice& device)
+{
+  const cl::Platform platform(device.Device.getInfo<CL_DEVICE_PLATFORM>());
+  std::string text;
+  for (const std::string& part :
+    { platform.getInfo<CL_PLATFORM_NAME>(), platform.getInfo<CL_PLATFORM_VENDOR>(),
+      platform.getInfo<CL_PLATFORM_VERSION>(), device.Device.getInfo<CL_DEVICE_NAME>(),
+      device.Device.getInfo<CL_DEVICE_VENDOR>(), device.Device.getInfo<CL_DEVICE_VERSION>(),
+      device.Device.getInfo<CL_DRIVER_VERSION>(), device.Device.getInfo<CL_DEVICE_EXTENSIONS>() })
+  {
+    text += Trim(part) + "\n";
+  }
+  return text + GetProcessorText();
+}
+
+/// What the driver made of a program; empty where it does not give that.
+std::vector<unsigned char> GetBinary(const cl::Program& program)
+{
+  try
+  {
+    const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+    return binaries.empty() ? std::vector<unsigned char>() : binaries.front();
+  }
+  catch (const cl::Error&)
+  {
+    return {};
+  }
+}
+
+double GetSeconds(const cl::Event& event)
+{
+  return 1e-9 *
+    static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+      event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+}
+
+std::string ListNames(const std::vector<OpenCLDevice>& devices)
+{
+  std::string list;
+  for (const OpenCLDevice& device : devices)
+  {
+    list += (list.empty() ? "\"" : ", \"") + device.Name + "\"";
+  }
+  return list;
+}
+
+} // namespace
+
+std::vector<OpenCLDevice> FindDevices()
+{
+  PrepareKernelCache();
+  // Drivers start here, and not all of them bear that from two threads at once: PoCL then says that
+  // there is no device, or crashes.
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> lock(mutex);
+  LimitDeviceThreads();
+  const FloatingPointTrapGuard guard;
+  std::vector<OpenCLDevice> found;
+  std::vector<cl::Platform> platforms;
+  try
+  {
+    cl::Platform::get(&platforms);
+  }
+  catch (const cl::Error&)
+  {
+    return found; // the loader answers with an error where there is no platform
+  }
+  for (const cl::Platform& platform : platforms)
+  {
+    std::vector<cl::Device> devices;
+    try
+    {
+      platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+      for (const cl::Device& device : devices)
+      {
+        if (IsUsable(device))
+        {
+          OpenCLDevice one;
+          one.Device = device;
+          one.Description = GetDescription(device, platform);
+          one.Name = one.Description.Name + " (" + one.Description.Platform + ")";
+          one.IsProcessor = one.Description.Type == DeviceDescription::Kind::Processor;
+          one.HasVectors =
+            one.IsProcessor && device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>() > 1;
+          found.push_back(one);
+        }
+      }
+    }
+    catch (const cl::Error&)
+    {
+      continue; // a platform without devices must not hide the others
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+    [](const OpenCLDevice& a, const OpenCLDevice& b)
+    { return IsBetter(a.Description, b.Description); });
+  // Two cards of one kind have one name; the second and later ones get a number.
+  std::map<std::string, int> seen;
+  for (OpenCLDevice& device : found)
+  {
+    const int count = ++seen[device.Name];
+    if (count > 1)
+    {
+      device.Name += " #" + std::to_string(count);
+    }
+  }
+  return found;
+}
+
+OpenCLDevice FindDevice(const std::string& request)
+{
+  std::string words = request;
+  std::string origin = "device";
+  if (words.empty())
+  {
+    const char* variable = std::getenv("DEFORMVOLUME_DEVICE");
+    words = variable ? variable : "";
+    origin = "device of the environment variable DEFORMVOLUME_DEVICE";
+  }
+  const std::vector<OpenCLDevice> devices = FindDevices();
+  if (devices.empty())
+  {
+    CheckKernelCompiler(); // the likelier reason, where there is one
+    throw Error(
+      "There is no OpenCL device. Install an OpenCL driver (on Debian the package "
+      "pocl-opencl-icd runs on every processor), and check OCL_ICD_VENDORS if it is set.");
+  }
+  const std::string wanted = ToLower(words);
+  for (const OpenCLDevice& device : devices)
+  {
+    const bool graphics = device.Description.Type == DeviceDescription::Kind::Graphics;
+    if (wanted.empty() || (wanted == "cpu" && device.IsProcessor) ||
+      (wanted == "gpu" && graphics) ||
+      (wanted != "cpu" && wanted != "gpu" &&
+        ToLower(device.Name).find(wanted) != std::string::npos))
+    {
+      return device;
+    }
+  }
+  throw Error("There is no OpenCL " + origin + " \"" + words +
+    "\". Ask for \"\" (the best), \"cpu\", \"gpu\", or a part of one of these names: " +
+    ListNames(devices) + ".");
+}
+
+OpenCLContext& OpenCLContext::Get(const OpenCLDevice& device)
+{
+  static std::mutex mutex;
+  static auto* contexts = new std::map<cl_device_id, OpenCLContext*>;
+  const std::lock_guard<std::mutex> lock(mutex);
+  OpenCLContext*& context = (*contexts)[device.Device()];
+  if (!context)
+  {
+    context = new OpenCLContext(device);
+  }
+  return *context;
+}
+
+OpenCLContext::OpenCLContext(const OpenCLDevice& device)
+  : Device(device)
+  , NumberOfUnits(device.Device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>())
+{
+  if (IsPoCL(device))
+  {
+    CheckKernelCompiler();
+  }
+  const FloatingPointTrapGuard guard;
+  this->Context = cl::Context(device.Device);
+  this->Extensions = " " + device.Device.getInfo<CL_DEVICE_EXTENSIONS>() + " ";
+}
+
+bool OpenCLContext::HasExtension(const std::string& name) const
+{
+  return this->Extensions.find(" " + name + " ") != std::string::npos;
+}
+
+bool OpenCLContext::SharesHostMemory() const
+{
+  return IsPoCL(this->Device);
+}
+
+cl::Program OpenCLContext::GetProgram(const std::string& source, const std::string& options)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  cl::Program& program = this->Programs[options + "\n" + source];
+  if (!program())
+  {
+    const CompilationWatch::Compilation compilation;
+    program = this->Build(source, options);
+  }
+  return program;
+}
+
+cl::Program OpenCLContext::Build(const std::string& source, const std::string& options) const
+{
+  if (IsPoCL(this->Device))
+  {
+    // PoCL keeps what it compiles; asked for a binary, it would compile all kernels once more.
+    return this->BuildSource(source, options);
+  }
+  const ProgramCache cache(ProgramCache::GetDefaultDirectory());
+  const std::string key = GetCompilerText(this->Device) + options + "\n" + source;
+  const std::vector<unsigned char> binary = cache.Read(key);
+  if (!binary.empty())
+  {
+    try
+    {
+      cl::Program program(this->Context, { this->Device.Device }, { binary });
+      program.build({ this->Device.Device }, options.c_str());
+      return program;
+    }
+    catch (const cl::Error&)
+    {
+      // The driver does not take it any longer.
+    }
+  }
+  const cl::Program program = this->BuildSource(source, options);
+  cache.Write(key, GetBinary(program));
+  return program;
+}
+
+cl::Program OpenCLContext::BuildSource(const std::string& source, const std::string& options) const
+{
+  // On processors without AVX-512, clang warns that functions with vectors of 64 bytes would not
+  // fit those compiled for others, which there are none of; PoCL has it tell so on the terminal.
+  const std::string quiet = "#if defined(__clang__) && __clang_major__ >= 11\n"
+                            "#pragma clang diagnostic ignored \"-Wpsabi\"\n#endif\n";
+  cl::Program program(this->Context, quiet + source);
+  try
+  {
+    program.build({ this->Device.Device }, options.c_str());
+  }
+  catch (const cl::BuildError&)
+  {
+    throw Error("The OpenCL compiler of \"" + this->Device.Name +
+      "\" refuses the kernels. Its words: " +
+      program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(this->Device.Device));
+  }
+  return program;
+}
+
+bool OpenCLContext::IsNew(const cl::Kernel& kernel, const cl::NDRange& group)
+{
+  std::string name = kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
+  for (cl::size_type axis = 0; axis < group.dimensions(); ++axis)
+  {
+    name += " " + std::to_string(group[axis]);
+  }
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->Launched.insert({ kernel.getInfo<CL_KERNEL_PROGRAM>()(), name }).second;
+}
+
+cl::Event OpenCLContext::Launch(const cl::CommandQueue& queue, const cl::Kernel& kernel,
+  const cl::NDRange& items, const cl::NDRange& group)
+{
+  cl::Event event;
+  if (!this->IsNew(kernel, group))
+  {
+    queue.enqueueNDRangeKernel(kernel, cl::NullRange, items, group, nullptr, &event);
+    return event;
+  }
+  queue.finish(); // what is waited for is this launch alone
+  CompilationWatch::Compilation compilation;
+  queue.enqueueNDRangeKernel(kernel, cl::NullRange, items, group, nullptr, &event);
+  event.wait();
+  compilation.Exclude(GetSeconds(event));
+  return event;
+}
+
+void OpenCLContext::Prepare(
+  const cl::CommandQueue& queue, const cl::Kernel& kernel, const cl::NDRange& group)
+{
+  if (this->IsNew(kernel, group))
+  {
+    queue.finish();
+    const CompilationWatch::Compilation compilation;
+    queue.enqueueNDRangeKernel(kernel, cl::NullRange, group, group);
+    queue.finish();
+  }
+}
+
+std::string GetMessage(const cl::Error& error)
+{
+  const std::string call =
+    std::string(" (") + error.what() + ": " + std::to_string(error.err()) + ")";
+  switch (error.err())
+  {
+    case CL_MEM_OBJECT_ALLOCATION_FAILURE:
+    case CL_OUT_OF_RESOURCES:
+    case CL_OUT_OF_HOST_MEMORY:
+    case CL_INVALID_BUFFER_SIZE:
+      return "The OpenCL device is out of memory" + call +
+        ". Use a smaller volume or output, or another device.";
+    case CL_INVALID_COMMAND_QUEUE:
+    case CL_DEVICE_NOT_AVAILABLE:
+      return "The OpenCL device was lost" + call + ". Start the program again.";
+    default:
+      return std::string("The OpenCL call failed") + call + ".";
+  }
+}
+
+} // namespace deformvolume

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeOpenCLContext_h
+#define DeformVolumeOpenCLContext_h
+
+#define CL_HPP_ENABLE_EXCEPTIONS
+#define CL_HPP_TARGET_OPENCL_VERSION 120
+#define CL_HPP_MINIMUM_OPENCL_VERSION 120
+#include <CL/opencl.hpp>
+
+#include "DeviceRank.h"
+
+#include <cfenv>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace deformvolume
+{
+
+struct OpenCLDevice
+{
+  cl::Device Device;
+  std::string Name; // "device (platform)"
+  bool IsProcessor = false;
+  /// Whether a work-item has a thread of a processor, with its vector registers, for itself. Else
+  /// work-items share them, be it on a processor, and groups of one leave most of it idle.
+  bool HasVectors = false;
+  DeviceDescription Description;
+};
+
+/// The devices of this machine, the best first (IsBetter). Empty where there is no platform.
+std::vector<OpenCLDevice> FindDevices();
+
+/// The device for a request in the words of ResolveDevice; throws Error.
+OpenCLDevice FindDevice(const std::string& request);
+
+/// What the process shares of a device: its context and the programs built for it. Contexts live as
+/// long as the process: releasing OpenCL objects from static destructors crashes some platforms.
+class OpenCLContext
+{
+public:
+  /// The context of a device; made at the first request. Throws Error.
+  static OpenCLContext& Get(const OpenCLDevice& device);
+
+  const OpenCLDevice& GetDevice() const { return this->Device; }
+  const cl::Context& GetContext() const { return this->Context; }
+  bool HasExtension(const std::string& name) const;
+  cl_uint GetNumberOfUnits() const { return this->NumberOfUnits; }
+  /// Whether a buffer over memory of the host (CL_MEM_USE_HOST_PTR) is that memory, wherever it
+  /// lies. Other drivers may keep a copy, which has to be told of what the host writes there.
+  bool SharesHostMemory() const;
+
+  /// The program of this text and these options; built at the first request, or made of what an
+  /// earlier process has built (ProgramCache). Throws Error with the compiler's log.
+  cl::Program GetProgram(const std::string& source, const std::string& options);
+
+  /// Enqueues a kernel, in a queue that takes the times. Drivers may compile a kernel once more for
+  /// the size of its work-groups: the first launch of a kind is waited for, and what it takes
+  /// before the kernel runs counts as compilation.
+  cl::Event Launch(const cl::CommandQueue& queue, const cl::Kernel& kernel,
+    const cl::NDRange& items, const cl::NDRange& group);
+
+  /// Runs one work-group of a kernel where no kernel of this kind has been launched: some drivers
+  /// compile when the kernel already counts as running. For kernels that do no harm then.
+  void Prepare(const cl::CommandQueue& queue, const cl::Kernel& kernel, const cl::NDRange& group);
+
+private:
+  explicit OpenCLContext(const OpenCLDevice& device);
+
+  cl::Program Build(const std::string& source, const std::string& options) const;
+  cl::Program BuildSource(const std::string& source, const std::string& options) const;
+  /// Whether it is the first time that this is asked for such launches.
+  bool IsNew(const cl::Kernel& kernel, const cl::NDRange& group);
+
+  OpenCLDevice Device;
+  cl::Context Context;
+  std::string Extensions;
+  cl_uint NumberOfUnits;
+  std::mutex Mutex;
+  std::map<std::string, cl::Program> Programs;
+  std::set<std::pair<cl_program, std::string>> Launched;
+};
+
+/// What an error of the OpenCL layer means to the user.
+std::string GetMessage(const cl::Error& error);
+
+/// Some hosts trap floating-point exceptions, which OpenCL compilers and kernels may raise
+/// harmlessly: traps are off during the life of this object.
+class FloatingPointTrapGuard
+{
+public:
+  FloatingPointTrapGuard() { std::feholdexcept(&this->Environment); }
+  ~FloatingPointTrapGuard() { std::fesetenv(&this->Environment); }
+  FloatingPointTrapGuard(const FloatingPointTrapGuard&) = delete;
+  FloatingPointTrapGuard& operator=(const FloatingPointTrapGuard&) = delete;
+
+private:
+  std::fenv_t Environment;
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What MeshRasterizer does with an inverse displacement field.
+#include "MeshRasterizer.h"
+
+#include "DeviceVolume.h"
+#include "Error.h"
+#include "RasterizationProgram.h"
+
+#include <algorithm>
+
+namespace deformvolume
+{
+
+void MeshRasterizer::SetField(const Setting& setting, const DisplacementField& inverse)
+{
+  cl::Buffer last = this->FieldVectors;
+  this->Clear();
+  for (std::size_t i = 0; i < inverse.IndexToField.size(); ++i)
+  {
+    this->Field.OutputToField[i] = static_cast<float>(inverse.IndexToField[i]);
+    this->Field.OutputToFieldRest[i] =
+      static_cast<float>(inverse.IndexToField[i] - this->Field.OutputToField[i]);
+  }
+  std::copy_n(inverse.Dimensions.begin(), 3, this->Field.Dimensions);
+  this->Field.Extrapolate = inverse.Extrapolate;
+  std::uint64_t bytes = 3 * sizeof(float);
+  for (const int size : inverse.Dimensions)
+  {
+    bytes *= static_cast<std::uint64_t>(size);
+  }
+  if (bytes > setting.AllocationLimit)
+  {
+    throw Error("The displacement field needs " + std::to_string(bytes) +
+      " bytes in one piece, and the device gives no more than " +
+      std::to_string(setting.AllocationLimit) + ". Use a coarser field or another device.");
+  }
+  if (deformvolume::GetMemory(last) != bytes)
+  {
+    last = cl::Buffer(); // free the old one before the new one is made
+    last = cl::Buffer(setting.Context.GetContext(), CL_MEM_READ_ONLY, bytes);
+  }
+  setting.Queue.enqueueWriteBuffer(last, CL_TRUE, 0, bytes, inverse.Vectors);
+  this->FieldVectors = last;
+}
+
+cl::Kernel MeshRasterizer::MakeKernel(const Setting& setting, const DeviceVolume& volume,
+  const std::vector<VolumeArray>& arrays, Interpolation interpolation) const
+{
+  return cl::Kernel(GetRasterizationProgram(setting.Context, arrays, volume.GetVoxelGrid(),
+                      interpolation, this->HasField()),
+    this->HasField() ? "LookUpField" : "RasterizeMesh");
+}
+
+cl_uint MeshRasterizer::SetDeformationArguments(cl::Kernel& kernel) const
+{
+  cl_uint i = 0;
+  if (this->HasField())
+  {
+    kernel.setArg(i++, this->FieldVectors);
+    kernel.setArg(i++, this->Field);
+    return i;
+  }
+  for (const cl::Buffer* buffer :
+    { &this->Tetrahedra, &this->Positions, &this->Displacements, &this->ListBegins, &this->Lists })
+  {
+    kernel.setArg(i++, *buffer);
+  }
+  return i;
+}
+
+} // namespace deformvolume

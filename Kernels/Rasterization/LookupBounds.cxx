@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LookupBounds.h"
+
+#include "ParallelFor.h"
+#include "RasterParameters.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+/// Cells of the field on each axis that are looked at together.
+constexpr int BlockSize = 8;
+/// Points of the field: farther away than any output.
+constexpr double Infinity = 1e9;
+
+/// The look-up of output voxels in a volume.
+class Lookup
+{
+public:
+  Lookup(const VoxelGrid& voxelGrid, const DisplacementField& field)
+    : Field(field)
+    , Scale(GetScale(voxelGrid))
+    , Volume(GetBox(voxelGrid))
+  {
+    const auto& m = field.IndexToField;
+    for (int row = 0; row < 3; ++row)
+    {
+      for (int column = 0; column < 3; ++column)
+      {
+        this->ToField[column][row] = m[4 * row + column];
+      }
+      this->Offset[row] = m[4 * row + 3];
+      this->Last[row] = field.Dimensions[row] - 1;
+    }
+    this->FromField = glm::inverse(this->ToField);
+    // As in the kernel: half of the rounding of positions to 1/256 output voxel.
+    const glm::dvec3 tolerance = glm::min(glm::dvec3(1.0), 1.0 / (256.0 * this->Scale));
+    this->Volume.Min -= tolerance;
+    this->Volume.Max += tolerance;
+  }
+
+  glm::ivec3 GetNumberOfBlocks() const
+  {
+    return glm::max(glm::ivec3(1), (glm::ivec3(this->Last) + BlockSize - 1) / BlockSize);
+  }
+
+  /// Output voxels that a block of the field may lead into the volume.
+  IndexBounds GetCandidates(const glm::ivec3& block) const
+  {
+    const glm::ivec3 first = block * BlockSize;
+    const glm::ivec3 last = glm::min(first + BlockSize, glm::ivec3(this->Last));
+    IndexBounds vectors;
+    for (int z = first.z; z <= last.z; ++z)
+    {
+      for (int y = first.y; y <= last.y; ++y)
+      {
+        for (int x = first.x; x <= last.x; ++x)
+        {
+          vectors.Add(this->GetPoint(x, y, z));
+        }
+      }
+    }
+    IndexBounds box;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      glm::dvec3 point;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const bool upper = (corner >> axis & 1) != 0;
+        const int place = upper ? last[axis] : first[axis];
+        const bool isBorder = place == (upper ? static_cast<int>(this->Last[axis]) : 0);
+        const double reach =
+          isBorder ? (this->Field.Extrapolate ? Infinity : DEFORMVOLUME_LOOKUP_TOLERANCE) : 0.0;
+        point[axis] = place + (upper ? reach : -reach);
+      }
+      box.Add(this->FromField * (point - this->Offset));
+    }
+    constexpr double rounding = 1e-6;
+    box.Min = glm::max(box.Min, this->Scale * this->Volume.Min - vectors.Max);
+    box.Max = glm::min(box.Max, this->Scale * this->Volume.Max - vectors.Min);
+    box.Min = glm::ceil(box.Min - rounding);
+    box.Max = glm::floor(box.Max + rounding);
+    return box;
+  }
+
+  bool IsCovered(const glm::dvec3& voxel) const
+  {
+    const glm::dvec3 position = this->ToField * voxel + this->Offset;
+    if (!this->Field.Extrapolate &&
+      (glm::any(glm::lessThan(position, glm::dvec3(-DEFORMVOLUME_LOOKUP_TOLERANCE))) ||
+        glm::any(glm::greaterThan(position, this->Last + DEFORMVOLUME_LOOKUP_TOLERANCE))))
+    {
+      return false;
+    }
+    const glm::dvec3 rest = (voxel + this->Interpolate(position)) / this->Scale;
+    return glm::all(glm::greaterThanEqual(rest, this->Volume.Min)) &&
+      glm::all(glm::lessThanEqual(rest, this->Volume.Max));
+  }
+
+private:
+  glm::dvec3 GetPoint(int x, int y, int z) const
+  {
+    const auto& size = this->Field.Dimensions;
+    return GetVector(
+      this->Field.Vectors, (static_cast<std::int64_t>(z) * size[1] + y) * size[0] + x);
+  }
+
+  glm::dvec3 Interpolate(const glm::dvec3& position) const
+  {
+    const glm::dvec3 inside = glm::clamp(position, glm::dvec3(0.0), this->Last);
+    const glm::ivec3 low(inside);
+    const glm::ivec3 high = glm::min(low + 1, glm::ivec3(this->Last));
+    const glm::dvec3 t = inside - glm::dvec3(low);
+    glm::dvec3 vector(0.0);
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      double weight = 1.0;
+      glm::ivec3 point;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const bool upper = (corner >> axis & 1) != 0;
+        weight *= upper ? t[axis] : 1.0 - t[axis];
+        point[axis] = upper ? high[axis] : low[axis];
+      }
+      if (weight != 0.0)
+      {
+        vector += weight * this->GetPoint(point.x, point.y, point.z);
+      }
+    }
+    return vector;
+  }
+
+  const DisplacementField& Field;
+  glm::dvec3 Scale;
+  IndexBounds Volume; // what rest positions may be, in indices of the volume
+  glm::dmat3 ToField{ 1.0 };
+  glm::dmat3 FromField{ 1.0 };
+  glm::dvec3 Offset{ 0.0 };
+  glm::dvec3 Last{ 0.0 };
+};
+
+bool IsInside(const IndexBounds& bounds, const IndexBounds& box)
+{
+  return !bounds.IsEmpty() && glm::all(glm::greaterThanEqual(box.Min, bounds.Min)) &&
+    glm::all(glm::lessThanEqual(box.Max, bounds.Max));
+}
+
+/// Adds the covered voxels of a box to bounds; looks at those only that would widen them.
+void AddCovered(const Lookup& lookup, const IndexBounds& box, IndexBounds& bounds)
+{
+  for (double z = box.Min.z; z <= box.Max.z; z += 1.0)
+  {
+    for (double y = box.Min.y; y <= box.Max.y; y += 1.0)
+    {
+      const auto isKnown = [&](double x)
+      {
+        const glm::dvec3 voxel(x, y, z);
+        return IsInside(bounds, { voxel, voxel });
+      };
+      double low = box.Min.x;
+      while (low <= box.Max.x && !isKnown(low) && !lookup.IsCovered({ low, y, z }))
+      {
+        low += 1.0;
+      }
+      if (low > box.Max.x)
+      {
+        continue;
+      }
+      double high = box.Max.x;
+      while (high > low && !isKnown(high) && !lookup.IsCovered({ high, y, z }))
+      {
+        high -= 1.0;
+      }
+      bounds.Add({ low, y, z });
+      bounds.Add({ high, y, z });
+    }
+  }
+}
+
+} // namespace
+
+IndexBounds ComputeLookupBounds(const VoxelGrid& voxelGrid, const DisplacementField& field)
+{
+  const Lookup lookup(voxelGrid, field);
+  const glm::ivec3 blocks = lookup.GetNumberOfBlocks();
+  IndexBounds bounds;
+  std::mutex mutex;
+  ParallelFor(0, static_cast<std::int64_t>(blocks.y) * blocks.z, 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t row = begin; row < end; ++row)
+      {
+        IndexBounds known;
+        {
+          const std::lock_guard<std::mutex> lock(mutex);
+          known = bounds;
+        }
+        for (int x = 0; x < blocks.x; ++x)
+        {
+          const IndexBounds candidates = lookup.GetCandidates(
+            { x, static_cast<int>(row % blocks.y), static_cast<int>(row / blocks.y) });
+          if (glm::all(glm::lessThanEqual(candidates.Min, candidates.Max)) &&
+            !IsInside(known, candidates))
+          {
+            AddCovered(lookup, candidates, known);
+          }
+        }
+        const std::lock_guard<std::mutex> lock(mutex);
+        bounds.Add(known);
+      }
+    });
+  return bounds;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeRasterTarget_h
+#define DeformVolumeRasterTarget_h
+
+#include "DeformRequest.h"
+#include "Extent.h"
+#include "HostMemory.h"
+#include "OpenCLContext.h"
+#include "VolumeArray.h"
+
+namespace deformvolume
+{
+
+/// A slab of an output that a kernel writes wholly, background included. A processor writes the
+/// memory of the request itself, where that is aligned; another device a copy, which Read brings
+/// there.
+class RasterTarget
+{
+public:
+  /// The request must outlive the object.
+  RasterTarget(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
+    const DeformRequest& request, const Extent& slab);
+  RasterTarget(const RasterTarget&) = delete;
+  RasterTarget& operator=(const RasterTarget&) = delete;
+
+  const cl::Buffer& GetArray(std::size_t index) const { return this->Parts[index].Buffer; }
+  const cl::Buffer& GetCoverage() const { return this->Parts.back().Buffer; }
+  /// Eight bytes an array, the first of which are the background in the array's type.
+  const cl::Buffer& GetBackgrounds() const { return this->Backgrounds; }
+
+  /// Begins to copy the slab, which is done, in a queue of its own. The request has its voxels
+  /// after FinishReading, which throws cl::Error where that has failed.
+  void Read(const cl::CommandQueue& queue);
+  void FinishReading() { this->Reads.Check(); }
+
+private:
+  struct Part
+  {
+    cl::Buffer Buffer;
+    char* Memory;
+    std::uint64_t Bytes;
+  };
+  void AddPart(OpenCLContext& context, void* memory, std::uint64_t tuple, std::size_t elementSize);
+
+  std::uint64_t FirstVoxel; // of the slab in the output
+  std::uint64_t NumberOfVoxels;
+  std::vector<Part> Parts;
+  cl::Buffer Backgrounds;
+  PendingReads Reads; // last: they end before the buffers do
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeRasterizationProgram_h
+#define DeformVolumeRasterizationProgram_h
+
+#include "DeformRequest.h"
+#include "OpenCLContext.h"
+#include "VolumeArray.h"
+#include "VoxelGrid.h"
+
+#include <vector>
+
+namespace deformvolume
+{
+
+/// The binning of the tetrahedra of the deformation mesh (TetrahedronBinning.cl).
+cl::Program GetBinningProgram(OpenCLContext& context);
+
+/// The mesh rasterisation (MeshRasterization.cl, RestSampling.cl), or for a field the look-up
+/// through it (FieldLookup.cl), for arrays of these types. Throws Error where the device lacks what
+/// the arrays need.
+cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
+  const VoxelGrid& voxelGrid, Interpolation interpolation, bool field);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Looks the volume up at the rest coordinates that MeshRasterization.cl found for a tile of output
+// voxels, and writes the tile: values of all arrays and coverage where it is covered, background
+// where it is not.
+//
+// Rest coordinates are integers: the index from the volume's first voxel times 2^FractionBits.
+// Linear interpolation is over the eight voxels of the cell, cubic interpolation (Catmull-Rom) over
+// 64, which repeat those of the volume's border beyond it. Voxels without weight are not read into
+// the sum: a NaN stays within its cells, and a voxel's own place gives its bits.
+//
+// On processors arrays of one component, linear, and of float or integers of 8 or 16 bits go by lanes
+// (LaneSampling.cl). All else goes voxel by voxel in REAL.
+//
+// What the host puts in front of this text, besides that of LaneSampling.cl:
+//   REAL                  type of the interpolation: double where the device has it, else float
+//   CUBIC                 whether the interpolation is cubic
+//   STRETCH                 neighbouring voxels that a work-item takes: 32 on processors, else 1
+//   ARRAY_PARAMETERS      kernel parameters: source and target of each array
+//   TAP_ARRAYS(DO)        DO(index, type, components) for the others
+//   HAS_LANE_ARRAYS, HAS_TAP_ARRAYS  defined where there are such
+//   STORE_ARRAY_i         statement that stores array i at a sample
+
+__constant uchar Tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+
+#define TAPS_PER_AXIS (CUBIC ? 4 : 2)
+#define TAPS (CUBIC ? 64 : 8)
+
+// The voxels on an axis that a coordinate lies between, and their weights; those without weight are
+// left out.
+typedef struct
+{
+  int Voxels[TAPS_PER_AXIS];
+  REAL Weights[TAPS_PER_AXIS];
+  int Count;
+  int Nearest;
+} AxisTaps;
+
+static void AddTap(AxisTaps* taps, int voxel, REAL weight)
+{
+  if (weight != 0)
+  {
+    taps->Voxels[taps->Count] = voxel;
+    taps->Weights[taps->Count++] = weight;
+  }
+}
+
+static AxisTaps MakeAxisTaps(int rest, int bits, int size)
+{
+  const int voxel = min(rest >> bits, size - 2);
+  const int fraction = rest - (voxel << bits);
+  const int whole = 1 << bits;
+  const REAL f = (REAL)fraction / (REAL)whole;
+  AxisTaps taps;
+  taps.Count = 0;
+  taps.Nearest = voxel + (2 * (long)fraction > whole);
+#if CUBIC
+  if (fraction == 0 || fraction == whole)
+  {
+    AddTap(&taps, voxel + (fraction != 0), 1);
+    return taps;
+  }
+  AddTap(&taps, max(voxel - 1, 0), MULTIPLY_ADD_REAL(2 - f, f, (REAL)-1) * f / 2);
+  AddTap(
+    &taps, voxel, MULTIPLY_ADD_REAL(MULTIPLY_ADD_REAL((REAL)3, f, (REAL)-5) * f, f, (REAL)2) / 2);
+  AddTap(&taps, voxel + 1,
+    MULTIPLY_ADD_REAL(MULTIPLY_ADD_REAL((REAL)-3, f, (REAL)4), f, (REAL)1) * f / 2);
+  AddTap(&taps, min(voxel + 2, size - 1), (f - 1) * f * f / 2);
+#else
+  AddTap(&taps, voxel, 1 - f);
+  AddTap(&taps, voxel + 1, f);
+#endif
+  return taps;
+}
+
+// A voxel of the output.
+typedef struct
+{
+  size_t Target;
+  size_t Sources[TAPS]; // voxels of the volume
+  REAL Weights[TAPS];
+  int Count;
+  size_t Nearest;
+} Sample;
+
+static void MakeSample(const int* rest, Sample* s, const RasterParameters* p)
+{
+  const AxisTaps x = MakeAxisTaps(rest[0], p->FractionBits[0], p->Size[0]);
+  const AxisTaps y = MakeAxisTaps(rest[1], p->FractionBits[1], p->Size[1]);
+  const AxisTaps z = MakeAxisTaps(rest[2], p->FractionBits[2], p->Size[2]);
+  s->Count = 0;
+  for (int k = 0; k < z.Count; ++k)
+  {
+    for (int j = 0; j < y.Count; ++j)
+    {
+      const size_t row = ((size_t)z.Voxels[k] * p->Size[1] + y.Voxels[j]) * p->Size[0];
+      const REAL weight = z.Weights[k] * y.Weights[j];
+      for (int i = 0; i < x.Count; ++i)
+      {
+        s->Sources[s->Count] = row + x.Voxels[i];
+        s->Weights[s->Count++] = weight * x.Weights[i];
+      }
+    }
+  }
+  s->Nearest = ((size_t)z.Nearest * p->Size[1] + y.Nearest) * p->Size[0] + x.Nearest;
+}
+
+#define STORE_LINEAR(SOURCE, TARGET, COMPONENTS, CONVERT)                                          \
+  for (int c = 0; c < COMPONENTS; ++c)                                                             \
+  {                                                                                                \
+    if (s.Count == 1)                                                                              \
+    {                                                                                              \
+      TARGET[s.Target * COMPONENTS + c] = SOURCE[s.Sources[0] * COMPONENTS + c];                   \
+    }                                                                                              \
+    else                                                                                           \
+    {                                                                                              \
+      REAL sum = 0;                                                                                \
+      for (int k = 0; k < s.Count; ++k)                                                            \
+      {                                                                                            \
+        sum = MULTIPLY_ADD_REAL(                                                                   \
+          s.Weights[k], (REAL)SOURCE[s.Sources[k] * COMPONENTS + c], sum);                         \
+      }                                                                                            \
+      TARGET[s.Target * COMPONENTS + c] = CONVERT(sum);                                            \
+    }                                                                                              \
+  }
+
+// Integers of 64 bits do not fit into REAL: what is interpolated is the difference to the first
+// voxel, which is exact wherever the values are near to each other. A cubic sum may leave the range
+// of the type: it is added where no overflow is possible.
+#define STORE_LINEAR_64(SOURCE, TARGET, COMPONENTS, TYPE, CONVERT)                                 \
+  for (int c = 0; c < COMPONENTS; ++c)                                                             \
+  {                                                                                                \
+    const TYPE first = SOURCE[s.Sources[0] * COMPONENTS + c];                                      \
+    REAL sum = 0;                                                                                  \
+    REAL difference = 0;                                                                           \
+    int near = 1;                                                                                  \
+    for (int k = 0; k < s.Count; ++k)                                                              \
+    {                                                                                              \
+      const TYPE other = SOURCE[s.Sources[k] * COMPONENTS + c];                                    \
+      near &= abs_diff(other, first) < (1UL << 58);                                                \
+      difference = MULTIPLY_ADD_REAL(                                                              \
+        s.Weights[k], (REAL)(long)((ulong)other - (ulong)first), difference);                      \
+      sum = MULTIPLY_ADD_REAL(s.Weights[k], (REAL)other, sum);                                     \
+    }                                                                                              \
+    const TYPE step = (TYPE)abs(convert_long_rte(near ? difference : 0));                          \
+    TARGET[s.Target * COMPONENTS + c] = !near ? CONVERT(sum)                                       \
+      : difference < 0 ? sub_sat(first, step)                                                      \
+                       : add_sat(first, step);                                                     \
+  }
+
+#define STORE_NEAREST(SOURCE, TARGET, COMPONENTS)                                                  \
+  for (int c = 0; c < COMPONENTS; ++c)                                                             \
+  {                                                                                                \
+    TARGET[s.Target * COMPONENTS + c] = SOURCE[s.Nearest * COMPONENTS + c];                        \
+  }
+
+typedef struct
+{
+  __global const uchar* Active;  // a byte a cell of the volume, bit i = its tetrahedron i
+  __global const uchar* Blanked; // a byte a voxel
+} VolumeMasks;
+
+// Whether a point lies in a tetrahedron of a cell, or on its surface. point: in the cell, mirrored
+// as its parity asks for, from 0 to one.
+static int IsInTetrahedron(int t, Vector point, long one)
+{
+  int4 corners[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    const int v = Tetrahedra[t][k];
+    corners[k] = (int4)(v & 1, v >> 2, v >> 1 & 1, 0);
+  }
+  for (int k = 0; k < 4; ++k)
+  {
+    const int4 a = corners[(k + 1) & 3];
+    const Vector normal =
+      Cross(Difference(corners[(k + 2) & 3], a), Difference(corners[(k + 3) & 3], a));
+    const Vector r = { point.x - a.x * one, point.y - a.y * one, point.z - a.z * one };
+    const long side = Dot(normal, r);
+    const long inner = Dot(normal, Difference(corners[k], a));
+    if (inner > 0 ? side < 0 : side > 0)
+    {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+// Whether an active tetrahedron of the sampling mesh holds a rest coordinate: on faces, edges and
+// vertices that several share, one of them suffices.
+static int IsActive(__global const uchar* active, const int* rest, const RasterParameters* p)
+{
+  int cell[3];
+  int below[3];
+  long one = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    cell[axis] = min(rest[axis] >> p->FractionBits[axis], p->Size[axis] - 2);
+    below[axis] = cell[axis] > 0 && rest[axis] == cell[axis] << p->FractionBits[axis];
+    one = max(one, 1L << p->FractionBits[axis]);
+  }
+  for (int neighbour = 0; neighbour < 8; ++neighbour)
+  {
+    const int step[3] = { neighbour & 1, neighbour >> 1 & 1, neighbour >> 2 };
+    if (step[0] > below[0] || step[1] > below[1] || step[2] > below[2])
+    {
+      continue;
+    }
+    const int c[3] = { cell[0] - step[0], cell[1] - step[1], cell[2] - step[2] };
+    const int tetrahedra =
+      active[((size_t)c[2] * (p->Size[1] - 1) + c[1]) * (p->Size[0] - 1) + c[0]];
+    long point[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const long inCell = rest[axis] - ((long)c[axis] << p->FractionBits[axis]);
+      point[axis] = inCell * (one >> p->FractionBits[axis]);
+      point[axis] = (p->First[axis] + c[axis]) & 1 ? one - point[axis] : point[axis];
+    }
+    const Vector inCell = { point[0], point[1], point[2] };
+    for (int t = 0; t < 5; ++t)
+    {
+      if (tetrahedra >> t & 1 && IsInTetrahedron(t, inCell, one))
+      {
+        return 1;
+      }
+    }
+  }
+  return 0;
+}
+
+static int IsBlanked(__global const uchar* blanked, const int* rest, const RasterParameters* p)
+{
+  Sample s;
+  MakeSample(rest, &s, p);
+  for (int k = 0; k < s.Count; ++k)
+  {
+    if (blanked[s.Sources[k]])
+    {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+static void LoadRest(__local const int* rests, int x, int* rest)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    rest[axis] = rests[axis * DEFORMVOLUME_TILE_VOXELS + x];
+  }
+}
+
+// Of the voxels of a row those whose rest coordinates the masks let through.
+static uint SelectSources(
+  VolumeMasks masks, uint bits, __local const int* rests, const RasterParameters* p)
+{
+  for (int x = 0; x < 32; ++x)
+  {
+    if (bits >> x & 1)
+    {
+      int rest[3];
+      LoadRest(rests, x, rest);
+      if ((p->HasActive && !IsActive(masks.Active, rest, p)) ||
+        (p->HasBlanked && IsBlanked(masks.Blanked, rest, p)))
+      {
+        bits ^= 1u << x;
+      }
+    }
+  }
+  return bits;
+}
+
+#define BACKGROUND(NUMBER, TYPE) (*(__global const TYPE*)(backgrounds + NUMBER))
+
+// row: index of the row's voxel 0, which may lie before the output; from and to: voxels of the row
+// in the output.
+#define STORE_LANES(NUMBER, TYPE, BITS)                                                            \
+  {                                                                                                \
+    JOIN(TYPE, LANES) values = (TYPE)(BACKGROUND(NUMBER, TYPE));                                   \
+    if (bits)                                                                                      \
+    {                                                                                              \
+      values = SampleLanes##NUMBER(source##NUMBER, &cells, (float)BACKGROUND(NUMBER, TYPE));       \
+    }                                                                                              \
+    if (x >= from && x + LANES - 1 <= to)                                                          \
+    {                                                                                              \
+      JOIN(vstore, LANES)(values, 0, target##NUMBER + row + x);                                    \
+    }                                                                                              \
+    else                                                                                           \
+    {                                                                                              \
+      TYPE single[LANES];                                                                          \
+      JOIN(vstore, LANES)(values, 0, single);                                                      \
+      for (int i = max(from, x); i <= min(to, x + LANES - 1); ++i)                                 \
+      {                                                                                            \
+        target##NUMBER[row + i] = single[i - x];                                                   \
+      }                                                                                            \
+    }                                                                                              \
+  }
+
+#define STORE_BACKGROUND(NUMBER, TYPE, COMPONENTS)                                                 \
+  for (int c = 0; c < COMPONENTS; ++c)                                                             \
+  {                                                                                                \
+    target##NUMBER[s.Target * COMPONENTS + c] = BACKGROUND(NUMBER, TYPE);                          \
+  }
+#define STORE_VALUES(NUMBER, TYPE, COMPONENTS) STORE_ARRAY_##NUMBER
+
+// Always inlined: PoCL 3.1 to 6.0 lose what static functions write that are called with a local array of a kernel. (LLVM
+// puts the array's address into the function, and PoCL then replaces the array in the kernel alone.)
+static __attribute__((always_inline)) void SampleTile(VoxelBox tile, const int* origin,
+  __local const int* rests, __local const uint* covered, __global const ulong* backgrounds,
+  __global char* coverage, const RasterParameters* p ARRAY_PARAMETERS)
+{
+  for (int stretch = get_local_id(0); stretch < DEFORMVOLUME_TILE_VOXELS / STRETCH;
+       stretch += get_local_size(0))
+  {
+    const int first = stretch * STRETCH;
+    const int y = origin[1] +
+      (first >> DEFORMVOLUME_TILE_BITS_X & ((1 << DEFORMVOLUME_TILE_BITS_Y) - 1));
+    const int z = origin[2] + (first >> (DEFORMVOLUME_TILE_BITS_X + DEFORMVOLUME_TILE_BITS_Y));
+    const int inRow = first & 31;
+    const int from = max(inRow, tile.Low.x - origin[0]);
+    const int to = min(inRow + STRETCH - 1, tile.High.x - origin[0]);
+    if (y < tile.Low.y || y > tile.High.y || z < tile.Low.z || z > tile.High.z || from > to)
+    {
+      continue;
+    }
+    const long row = ((long)(z - p->OutputFirst[2]) * p->OutputSize[1] + y - p->OutputFirst[1]) *
+        p->OutputSize[0] +
+      origin[0] - p->OutputFirst[0];
+    const uint held = covered[first >> DEFORMVOLUME_TILE_BITS_X];
+    __local const int* rowRests = rests + first - inRow;
+    for (int x = from; x <= to; ++x)
+    {
+      coverage[row + x] = held >> x & 1;
+    }
+#ifdef HAS_LANE_ARRAYS
+    for (int x = from & -LANES; x <= to; x += LANES)
+    {
+      const uint bits = held >> x & LANE_MASK;
+      LaneCells cells;
+      if (bits)
+      {
+        MakeLaneCells(rowRests + x, bits, &cells, p);
+      }
+      LANE_ARRAYS(STORE_LANES)
+    }
+#endif
+#ifdef HAS_TAP_ARRAYS
+    for (int x = from; x <= to; ++x)
+    {
+      Sample s;
+      s.Target = row + x;
+      if (held >> x & 1)
+      {
+        int rest[3];
+        LoadRest(rowRests, x, rest);
+        MakeSample(rest, &s, p);
+        TAP_ARRAYS(STORE_VALUES)
+      }
+      else
+      {
+        TAP_ARRAYS(STORE_BACKGROUND)
+      }
+    }
+#endif
+  }
+}
+
+// Counts what a tile covers, and tells whether tetrahedra overlap there, in the counters of the tile.
+// By one work-item, when all rows are there.
+static inline void CountTile(
+  __local const uint* covered, uint overlaps, __global uint* tileCounters)
+{
+  uint sum = 0;
+  for (int row = 0; row < DEFORMVOLUME_TILE_ROWS; ++row)
+  {
+    sum += popcount(covered[row]);
+  }
+  tileCounters[DEFORMVOLUME_TILE_COVERED] = sum;
+  tileCounters[DEFORMVOLUME_TILE_OVERLAPS] = overlaps;
+}

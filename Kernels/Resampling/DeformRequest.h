@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeDeformRequest_h
+#define DeformVolumeDeformRequest_h
+
+#include "Extent.h"
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace deformvolume
+{
+
+enum class Resampling
+{
+  /// The exact fill rule: every covered voxel is written by exactly one tetrahedron. The kernel is
+  /// chosen by device and arrays.
+  Exact,
+  /// The same with the kernel that takes one cell after the other: any arrays, any device.
+  ExactByCell,
+  /// The same with the kernel for processors, several cells in the lanes of vector registers: any
+  /// arrays; an Error where the output is over 32,768 voxels on an axis, or 2^31 altogether, and on
+  /// devices whose work-items have no vector registers for themselves. Linear
+  /// arrays of one component, of float or integers of 8 or 16 bits, are interpolated in single
+  /// precision.
+  ExactByLanes,
+  /// The published kernel, kept as the yardstick of benchmarks: float tolerance, racing writes.
+  Published,
+  /// The tetrahedra of the deformation mesh themselves are rasterised, and the volume is looked up
+  /// at the interpolated rest coordinate (MeshRasterizer.h). Goes with SetRestMesh, and with
+  /// SetInverseField, where the field says the rest coordinate.
+  MeshRasterization
+};
+
+/// How a volume is interpolated at a rest coordinate.
+enum class Interpolation
+{
+  Linear,
+  /// Catmull-Rom, over four voxels on each axis, clamped to the range of integer types. Only with
+  /// MeshRasterization.
+  Cubic
+};
+
+struct DeformRequest
+{
+  Resampling Method = Resampling::Exact;
+  deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
+  /// Structured indices of the output voxels.
+  Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
+  /// The output that these are a part of; empty: they are all of it. What a voxel gets with the
+  /// methods Exact, ExactByCell and ExactByLanes depends on this one alone, to the last bit.
+  Extent WholeOutputExtent{ { 0, -1, 0, -1, 0, -1 } };
+  /// For each array of the volume, room for Components elements a voxel of OutputExtent. A device
+  /// that is a processor works there; after a failure the contents are undefined.
+  std::vector<void*> Outputs;
+  /// Room for one byte a voxel: 1 where the deformed volume covers it, else 0.
+  signed char* Coverage = nullptr;
+  /// Keeps what is needed to write only what changes until the next call. That call needs the
+  /// output of this one in LastOutputs and LastCoverage. Where that is not faster or not possible,
+  /// all is written; the result is the same to the last bit. For processors, volumes and outputs
+  /// within the allocation limit, and methods Exact and ExactByLanes.
+  bool Incremental = false;
+  /// What the last call wrote, unchanged: the same memory as Outputs and Coverage, or other memory,
+  /// from which it is copied. Empty and null where there is none.
+  std::vector<const void*> LastOutputs;
+  const signed char* LastCoverage = nullptr;
+  /// Called between launches with the fraction done, 0 to 1; returning false aborts the work.
+  std::function<bool(double)> Progress;
+  /// Called with true before kernels are compiled, which may take many seconds, and with false
+  /// after. In the thread that called Deform().
+  std::function<void(bool)> Compiling;
+};
+
+struct DeformReport
+{
+  std::int64_t NumberOfCoveredVoxels = 0;
+  /// Active tetrahedra of the sampling mesh that the deformation turns inside out; with
+  /// MeshRasterization tetrahedra of the deformation mesh.
+  std::int64_t NumberOfInvertedTetrahedra = 0;
+  /// Cells with a tetrahedron that is stretched over more than 4,000 output voxels; such tetrahedra
+  /// are skipped.
+  std::int64_t NumberOfOverstretchedCells = 0;
+  /// True where tetrahedra overlap, so that a winner had to be chosen: upright before inverted,
+  /// then the lowest cell and tetrahedron.
+  bool Overlapping = false;
+  /// Tetrahedra of the deformation mesh without volume at rest; counted by MeshRasterization only.
+  std::int64_t NumberOfFlatTetrahedra = 0;
+  /// Bricks of 192 x 16 x 16 cells of the volume, and how many of them were resampled: fewer only
+  /// in an incremental update. 0 for MeshRasterization.
+  std::int64_t NumberOfBricks = 0;
+  std::int64_t NumberOfResampledBricks = 0;
+  /// Seconds. The exact kernels map and resample in one: their MappingTime is 0. With
+  /// MeshRasterization the mapping is the listing of the tetrahedra of each part of the output.
+  double MappingTime = 0.0;
+  double ResamplingTime = 0.0;
+  double TransferTime = 0.0;
+  /// The compilation of kernels; it is part of no other time.
+  double CompilationTime = 0.0;
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The candidates of groups of cells: the samples in the box of each cell (BrickResampling.cl).
+//
+// Why they are found a group before this is looked at: how many rounds a group takes is no two times the same, and
+// the processor guesses it wrong. It finds that out at once where the numbers lie in memory, and only after all
+// that precedes if they have just been computed. And there is time to fetch the output. Not for all groups of a
+// row: what is known of these would take the innermost cache. Neighbours share vertices, so that the bounds of a
+// row's columns of vertices are found once.
+
+#define MAXIMUM_EXTENT 64.0f // voxels; WeighOrigin (GroupSamples.cl) counts on it
+#define MAXIMUM_CANDIDATES 4096 // of a cell
+#define EXACT_NORMALS_EXTENT 7.99f // voxels: the normals of larger cells are not exact in float
+#define INEXACT_NORMALS 1.35f // by how much more coordinates in these are off (GroupResampling.cl)
+#define ALMOST_ONE (255.0f / 256.0f) // ceil(v) = trunc(v + ALMOST_ONE) for multiples of 1/256
+
+typedef struct
+{
+  Group Cells;
+  uint There;       // cells that have a vertex with a position, and none beyond the volume, as bits
+  uint Fit;         // of these the small ones all of whose tetrahedra are active and have positions
+  uint Some;        // of these the ones that have candidates
+  FLOATS Extent;    // the longest edge of the box
+  FLOATS Reach;     // the extent times the sum of the box's three faces, and more where normals are not exact
+  INTS First[3];    // the first candidate, in voxels of the output
+  INTS Count[3];    // how many on each axis
+  INTS Place;       // of the first one in the output
+  INTS Number;      // how many in all, in cells that have some
+  INTS Box;         // cells that are boxes, if HasBoxes
+  int HasBoxes;
+  int Skip; // no cell touches a voxel to be won
+} GroupCandidates;
+
+// Bounds of vertices or of cells.
+typedef struct
+{
+  FLOATS LowX, LowY, LowZ;
+  FLOATS HighX, HighY, HighZ;
+} Bounds;
+
+// Functions that are inlined give no structures back: Oclgrind does not know what compilers make of that.
+
+// Bounds of the columns of four vertices at a place of the rows.
+static __attribute__((always_inline)) void BoundColumns(const LocalRow* rows, int place, Bounds* b)
+{
+#define BOUND_COLUMNS(C, slot)                                                                     \
+  {                                                                                                \
+    const FLOATS c0 = LOAD(rows[0] + place + (slot)*HALF_ROW);                                     \
+    const FLOATS c1 = LOAD(rows[1] + place + (slot)*HALF_ROW);                                     \
+    const FLOATS c2 = LOAD(rows[2] + place + (slot)*HALF_ROW);                                     \
+    const FLOATS c3 = LOAD(rows[3] + place + (slot)*HALF_ROW);                                     \
+    b->Low##C = Least(Least(c0, c1), Least(c2, c3));                                               \
+    b->High##C = Most(Most(c0, c1), Most(c2, c3));                                                 \
+  }
+  BOUND_COLUMNS(X, 0)
+  BOUND_COLUMNS(Y, 1)
+  BOUND_COLUMNS(Z, 2)
+}
+
+static __attribute__((always_inline)) void Join(const Bounds* a, const Bounds* b, Bounds* joined)
+{
+  joined->LowX = Least(a->LowX, b->LowX);
+  joined->LowY = Least(a->LowY, b->LowY);
+  joined->LowZ = Least(a->LowZ, b->LowZ);
+  joined->HighX = Most(a->HighX, b->HighX);
+  joined->HighY = Most(a->HighY, b->HighY);
+  joined->HighZ = Most(a->HighZ, b->HighZ);
+}
+
+// From the second lane on, and the first lane of what comes behind.
+static __attribute__((always_inline)) void Shift(const Bounds* a, const Bounds* behind, Bounds* b)
+{
+  b->LowX = NextLanes(a->LowX, behind->LowX);
+  b->LowY = NextLanes(a->LowY, behind->LowY);
+  b->LowZ = NextLanes(a->LowZ, behind->LowZ);
+  b->HighX = NextLanes(a->HighX, behind->HighX);
+  b->HighY = NextLanes(a->HighY, behind->HighY);
+  b->HighZ = NextLanes(a->HighZ, behind->HighZ);
+}
+
+// The cells, as bits, whose edge from vertex 0 to another one is parallel to an axis: two coordinates of its ends
+// are the same, and one is not.
+static __attribute__((always_inline)) uint FindAxialEdges(const Group* group, int to)
+{
+#define IS_SAME(slot) LaneBits(VERTEX(0, slot) == VERTEX(to, slot))
+  const uint x = IS_SAME(0), y = IS_SAME(1), z = IS_SAME(2);
+  return ((x & y) | ((x ^ y) & z)) & ~(x & y & z);
+}
+
+// Cells that are boxes, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume: each
+// coordinate varies along one axis of the voxel grid only. rises: those whose coordinates grow with the indices.
+static __attribute__((noinline)) INTS FindBoxes(const Group* group, int mirror, INTS* rises)
+{
+  LOAD_VERTICES
+#define SAME(C, a, b) (C##a == C##b)
+#define ALONG_X(C) (SAME(C, 0, 1) & SAME(C, 2, 3) & SAME(C, 4, 5) & SAME(C, 6, 7))
+#define ALONG_Z(C) (SAME(C, 0, 2) & SAME(C, 1, 3) & SAME(C, 4, 6) & SAME(C, 5, 7))
+#define ALONG_Y(C) (SAME(C, 0, 4) & SAME(C, 1, 5) & SAME(C, 2, 6) & SAME(C, 3, 7))
+#define ALIGNED(C)                                                                                 \
+  ((ALONG_X(C) & ALONG_Y(C)) | (ALONG_X(C) & ALONG_Z(C)) | (ALONG_Y(C) & ALONG_Z(C)))
+#define RISES(C, to) ((mirror & to) ? C##to < C##0 : C##to > C##0)
+  *rises = RISES(X, 1) & RISES(Z, 2) & RISES(Y, 4);
+  return ALIGNED(X) & ALIGNED(Y) & ALIGNED(Z);
+}
+
+// The first of the samples of the output that lie within bounds on an axis, and one past the last.
+// Of cells that are not there either may be anything.
+#define FIRST_OF(low) TO_INTS(Most(low, 0.0f) + ALMOST_ONE)
+#define END_OF(high, toEnd, size) TO_INTS(Least((high) + toEnd, (float)(size)))
+
+// Boxes do not look at their high sides, nor at whether they own a sample: all samples in them count as touched.
+static __attribute__((noinline)) void TouchBoxes(
+  INTS box, const Bounds* b, Output* output, const KernelParameters* p)
+{
+  const INTS firstX = FIRST_OF(b->LowX);
+  const INTS firstY = FIRST_OF(b->LowY);
+  const INTS firstZ = FIRST_OF(b->LowZ);
+  const INTS endX = END_OF(b->HighX, 1.0f, p->OutputSize[0]);
+  const INTS endY = END_OF(b->HighY, 1.0f, p->OutputSize[1]);
+  const INTS endZ = END_OF(b->HighZ, 1.0f, p->OutputSize[2]);
+  const INTS some = box & (firstX < endX) & (firstY < endY) & (firstZ < endZ);
+  if (!LaneBits(some))
+  {
+    return;
+  }
+  const int lastX = MostAmong(some, endX) - 1;
+  const int lastY = MostAmong(some, endY) - 1;
+  const int lastZ = MostAmong(some, endZ) - 1;
+  for (int z = LeastAmong(some, firstZ); z < lastZ + DEFORMVOLUME_PATCH; z += DEFORMVOLUME_PATCH)
+  {
+    for (int y = LeastAmong(some, firstY); y < lastY + DEFORMVOLUME_PATCH; y += DEFORMVOLUME_PATCH)
+    {
+      for (int x = LeastAmong(some, firstX); x < lastX + DEFORMVOLUME_PATCH;
+           x += DEFORMVOLUME_PATCH)
+      {
+        Touch(min(x, lastX), min(y, lastY), min(z, lastZ), output, p);
+      }
+    }
+  }
+}
+
+// Has the processor fetch the output where the candidates of some lanes of a group begin, long before it is written:
+// FetchFound reaches the caches in time, and memory only where this has begun.
+static __attribute__((always_inline)) void FetchOutput(
+  const GroupCandidates* c, const Output* output ARRAY_PARAMETERS)
+{
+  const uint* const places = (const uint*)&c->Place;
+#pragma unroll
+  for (int i = 0; i < 3; ++i)
+  {
+    const uint place = places[i * (LANES - 1) / 2];
+    LANE_ARRAYS(FETCH_OUTPUT)
+    PREFETCH_TO_WRITE(output->Coverage + place)
+  }
+}
+
+// b: the bounds of the cells.
+static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
+  const SamplingMesh* mesh, Output* output, GroupCandidates* c,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const Group* const group = &c->Cells;
+  const FLOATS sizeX = b->HighX - b->LowX, sizeY = b->HighY - b->LowY, sizeZ = b->HighZ - b->LowZ;
+  const FLOATS extent = Most(sizeX, Most(sizeY, sizeZ));
+  const uint there = LaneBits((b->LowX > 0.5f * NOT_THERE) & (b->LowX < 0.5f * NO_SOURCE));
+  c->There = there;
+  c->Extent = extent;
+  c->Reach = extent * fma(sizeX, sizeY, sizeZ * (sizeX + sizeY));
+  if (LaneBits(extent > EXACT_NORMALS_EXTENT) & there)
+  {
+    c->Reach *= extent > EXACT_NORMALS_EXTENT ? (FLOATS)(INEXACT_NORMALS) : (FLOATS)(1.0f);
+  }
+
+  // If two edges of no cell are parallel to axes, no need to look for boxes. Lanes that hold no cell hold anything,
+  // and must not decide.
+  const int border = group->Border;
+  INTS box = 0;
+  INTS rises = 0;
+  uint boxes = there & FindAxialEdges(group, 1);
+  if (boxes)
+  {
+    boxes &= FindAxialEdges(group, 2);
+  }
+  c->HasBoxes = boxes != 0;
+  if (c->HasBoxes)
+  {
+    box = FindBoxes(group, Mirror(group->X, group->Y, group->Z, p), &rises);
+    c->HasBoxes = (there & LaneBits(box)) != 0;
+  }
+
+  // Candidates are half-open inside the mesh: by the fill rule no sample on the upper side is taken.
+  uint whole = there;
+  FLOATS toEndX = ALMOST_ONE, toEndY = ALMOST_ONE, toEndZ = ALMOST_ONE;
+  if (border || p->Pass != DEFORMVOLUME_PASS_DIRECT)
+  {
+    toEndX = toEndY = toEndZ = 1.0f;
+  }
+  if (border)
+  {
+    // Without states all that is there is whole.
+    GroupState state;
+    if (p->HasState || c->HasBoxes)
+    {
+      StatesOfGroup(mesh, group->X, group->Y, group->Z, &state, p);
+      whole = there & LaneBits(state.Whole);
+    }
+    // Boxes on the border leave what is on their high sides to the next cells, if there are any. That the
+    // high sides are the upper ones is wanted for that.
+    if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && c->HasBoxes)
+    {
+      const INTS inner = state.Interior == 255;
+      box &= LanesOf(there) & (inner | ((state.Regular == 255) & rises));
+      output->Assumed |= LaneBits(box & ~inner) != 0;
+      const INTS isLastX = group->X + 2 * LANE_INDEX == p->Size[0] - 2;
+      toEndX = (box & ~isLastX) ? ALMOST_ONE : toEndX;
+      toEndY = (box & (INTS)(group->Y != p->Size[1] - 2 ? -1 : 0)) ? ALMOST_ONE : toEndY;
+      toEndZ = (box & (INTS)(group->Z != p->Size[2] - 2 ? -1 : 0)) ? ALMOST_ONE : toEndZ;
+    }
+  }
+  if (c->HasBoxes)
+  {
+    c->Box = box;
+    if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
+    {
+      if (!border)
+      {
+        toEndX = toEndY = toEndZ = box ? (FLOATS)(ALMOST_ONE) : (FLOATS)(1.0f);
+      }
+      TouchBoxes(LanesOf(there) & box, b, output, p);
+    }
+  }
+  INTS firstX = FIRST_OF(b->LowX);
+  INTS firstY = FIRST_OF(b->LowY);
+  INTS firstZ = FIRST_OF(b->LowZ);
+  INTS countX = END_OF(b->HighX, toEndX, p->OutputSize[0]) - firstX;
+  INTS countY = END_OF(b->HighY, toEndY, p->OutputSize[1]) - firstY;
+  INTS countZ = END_OF(b->HighZ, toEndZ, p->OutputSize[2]) - firstZ;
+  const uint some = there & LaneBits((countX > 0) & (countY > 0) & (countZ > 0));
+  c->Skip = 0;
+  if (DEFORMVOLUME_IS_CLOSED(p->Pass))
+  {
+    const INTS among = LanesOf(some);
+    const int first[3] = { LeastAmong(among, firstX), LeastAmong(among, firstY),
+      LeastAmong(among, firstZ) };
+    const int last[3] = { MostAmong(among, firstX + countX - 1),
+      MostAmong(among, firstY + countY - 1), MostAmong(among, firstZ + countZ - 1) };
+    c->Skip = !some || !AnyUnsettled(output->Patches, first, last, p);
+  }
+  if (p->IsPart)
+  {
+    // A cell that reaches beyond the part is looked at as in the whole: what becomes of it must not
+    // depend on where the part ends. It begins less than MAXIMUM_EXTENT before the part.
+#define WHOLE_FIRST(low, axis)                                                                     \
+  TO_INTS(Most(low, max((float)p->WholeFirst[axis], -MAXIMUM_EXTENT)) +                            \
+    (MAXIMUM_EXTENT + ALMOST_ONE)) - (int)MAXIMUM_EXTENT
+#define WHOLE_END(high, toEnd, axis)                                                               \
+  TO_INTS(Least((high) + toEnd,                                                                    \
+            min((float)p->WholeEnd[axis], p->OutputSize[axis] + MAXIMUM_EXTENT)) +                 \
+    MAXIMUM_EXTENT) - (int)MAXIMUM_EXTENT
+    firstX = WHOLE_FIRST(b->LowX, 0);
+    firstY = WHOLE_FIRST(b->LowY, 1);
+    firstZ = WHOLE_FIRST(b->LowZ, 2);
+    countX = WHOLE_END(b->HighX, toEndX, 0) - firstX;
+    countY = WHOLE_END(b->HighY, toEndY, 1) - firstY;
+    countZ = WHOLE_END(b->HighZ, toEndZ, 2) - firstZ;
+  }
+  c->First[0] = firstX;
+  c->First[1] = firstY;
+  c->First[2] = firstZ;
+  c->Count[0] = countX;
+  c->Count[1] = countY;
+  c->Count[2] = countZ;
+  c->Place = (firstZ * p->OutputSize[1] + firstY) * p->OutputSize[0] + firstX;
+  c->Number = countX * countY * countZ;
+  c->Fit = whole & LaneBits(extent < MAXIMUM_EXTENT) &
+    ~(some & LaneBits(c->Number > MAXIMUM_CANDIDATES));
+  c->Some = some & c->Fit;
+}
+
+// For the two groups at place k of a row of cells, for even and for odd x: cells of the second begin at the odd
+// vertices. even: the bounds of the columns of even x at this place, and then at the next one. output: of the
+// column of the brick.
+static __attribute__((noinline)) void FindPairCandidates(const RowOfCells* row, int k, Bounds* even,
+  const SamplingMesh* mesh, Output* output, GroupCandidates* candidates,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  Bounds odd, behind, cells;
+  BoundColumns(row->Rows, k + ODD, &odd);
+  BoundColumns(row->Rows, k + LANES, &behind);
+  MakeGroup(row, k, 0, &candidates[0].Cells);
+  Join(even, &odd, &cells);
+  FindGroupCandidates(&cells, mesh, output, candidates, p ARRAY_ARGUMENTS);
+  MakeGroup(row, k, 1, &candidates[1].Cells);
+  Shift(even, &behind, &cells);
+  Join(&cells, &odd, &cells);
+  FindGroupCandidates(&cells, mesh, output, candidates + 1, p ARRAY_ARGUMENTS);
+  *even = behind;
+}

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What IncrementalUpdate does when it is known what changed, and where all of it lies.
+#include "IncrementalUpdate.h"
+
+#include <algorithm>
+#include <bitset>
+#include <cmath>
+#include <numeric>
+
+namespace deformvolume
+{
+namespace
+{
+
+constexpr std::uint32_t AllColumns = (1U << DEFORMVOLUME_COLUMNS) - 1;
+
+// The bits of a brick's sections, and those of the columns between the lowest and the highest one.
+std::uint32_t JoinColumns(std::uint32_t bits)
+{
+  const std::uint32_t columns = bits & AllColumns;
+  std::uint32_t upToHighest = columns;
+  for (int shift = 1; shift < DEFORMVOLUME_COLUMNS; shift *= 2)
+  {
+    upToHighest |= upToHighest >> shift;
+  }
+  const std::uint32_t belowLowest = (columns & (~columns + 1)) - 1;
+  return bits | (columns ? upToHighest & ~belowLowest : 0);
+}
+
+// How many sections of a brick are run with these.
+std::size_t CountSections(std::uint32_t bits)
+{
+  const auto count = [](std::uint32_t v) { return std::bitset<32>(v).count(); };
+  const std::uint32_t halves = bits >> DEFORMVOLUME_COLUMNS;
+  return count(JoinColumns(bits) & AllColumns) * count(halves & 3) * count(halves >> 2);
+}
+
+} // namespace
+
+bool IncrementalUpdate::IsTooMuch(std::size_t some, std::size_t all)
+{
+  constexpr double largestPart = 0.6;
+  return static_cast<double>(some) > largestPart * static_cast<double>(all);
+}
+
+IncrementalUpdate::Patches IncrementalUpdate::GetPatches(const Box& box) const
+{
+  Patches patches;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    // The voxels inside, within the output.
+    const double size = static_cast<double>(GetSize(this->OutputExtent, axis));
+    const double low = std::max(std::ceil(box.Min[axis]), 0.0);
+    const double high = std::min(std::floor(box.Max[axis]), size - 1.0);
+    if (!(low <= high))
+    {
+      return { { 0, -1, 0, -1, 0, -1 } };
+    }
+    patches[2 * axis] = static_cast<int>(low) / DEFORMVOLUME_PATCH;
+    patches[2 * axis + 1] = static_cast<int>(high) / DEFORMVOLUME_PATCH;
+  }
+  return patches;
+}
+
+void IncrementalUpdate::MarkPatches(const Box& box, std::vector<unsigned char>& dirty) const
+{
+  const Patches patches = this->GetPatches(box);
+  for (int z = patches[4]; z <= patches[5]; ++z)
+  {
+    for (int y = patches[2]; y <= patches[3]; ++y)
+    {
+      const auto row = dirty.begin() +
+        (static_cast<std::ptrdiff_t>(z) * this->PatchCount[1] + y) * this->PatchCount[0];
+      std::fill(row + patches[0], row + patches[1] + 1, 1);
+    }
+  }
+}
+
+void IncrementalUpdate::PlanPatches(const std::vector<std::size_t>& changed,
+  std::vector<std::uint32_t>& run, std::vector<unsigned char>& dirty) const
+{
+  for (const std::size_t subBrick : changed)
+  {
+    this->MarkPatches(this->Boxes[subBrick], dirty);
+    if (this->Moved[subBrick])
+    {
+      this->MarkPatches(this->LastBoxes[subBrick], dirty);
+    }
+  }
+  const Box reach = this->GetReach();
+  for (std::size_t subBrick = 0; subBrick < this->Places.size(); ++subBrick)
+  {
+    const auto [brick, bits] = this->Places[subBrick];
+    if (this->Known[subBrick] && !IsApart(this->Boxes[subBrick], reach) &&
+      (run[brick] & bits) != bits && this->TouchesPatches(this->Boxes[subBrick], dirty))
+    {
+      run[brick] |= bits;
+    }
+  }
+}
+
+bool IncrementalUpdate::MakePlan(bool inside, Plan& plan)
+{
+  std::vector<std::uint32_t> run(this->Bricks.GetNumberOfBricks()); // sections of bricks
+  std::vector<std::size_t> changed;
+  for (std::size_t subBrick = 0; subBrick < this->Places.size(); ++subBrick)
+  {
+    if (this->IsChanged(subBrick))
+    {
+      changed.push_back(subBrick);
+      run[this->Places[subBrick].first] |= this->Places[subBrick].second;
+    }
+  }
+  if (changed.empty())
+  {
+    return true;
+  }
+  const auto isRunTooMuch = [&]
+  {
+    return IsTooMuch(
+      std::accumulate(run.begin(), run.end(), std::size_t{ 0 },
+        [](std::size_t sum, std::uint32_t bits) { return sum + CountSections(bits); }),
+      DEFORMVOLUME_SECTIONS * run.size());
+  };
+  if (isRunTooMuch())
+  {
+    return false;
+  }
+  if (!inside)
+  {
+    std::vector<unsigned char> dirty(static_cast<std::size_t>(this->PatchCount[0]) *
+      static_cast<std::size_t>(this->PatchCount[1]) *
+      static_cast<std::size_t>(this->PatchCount[2]));
+    this->PlanPatches(changed, run, dirty);
+    for (std::size_t patch = 0; patch < dirty.size(); ++patch)
+    {
+      if (dirty[patch])
+      {
+        plan.Patches.push_back(static_cast<std::uint32_t>(patch));
+      }
+    }
+    if (IsTooMuch(plan.Patches.size(), dirty.size()) || isRunTooMuch())
+    {
+      return false;
+    }
+  }
+  for (std::size_t brick = 0; brick < run.size(); ++brick)
+  {
+    if (run[brick])
+    {
+      plan.Bricks.push_back(
+        static_cast<std::uint32_t>(brick | JoinColumns(run[brick]) << DEFORMVOLUME_BRICK_BITS));
+    }
+  }
+  return true;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,456 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "IncrementalUpdate.h"
+
+#include "ParallelFor.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
+namespace deformvolume
+{
+namespace
+{
+
+// In output voxels: positions are rounded to 1/256, and displacements, of at most 2^14 voxels, are
+// summed up in floats, with errors of some 2^-10.
+constexpr double Margin = 1.0 / 16.0;
+
+// The kernels clamp displacements to 2^22 - 1 steps of 1/256 voxel.
+constexpr double LargestMove = 16384.0;
+
+// In voxels from a sub-brick. What a cell does depends on its own vertices, on their states and, on
+// the border of the mesh, on the cells that share vertices with it; the state of a vertex depends
+// on the vertices and the cells that share a cell with it. So a vertex or a cell that is masked
+// matters to cells that have one of their vertices in a cell with it, or in it: it lies at most one
+// voxel beyond their vertices.
+constexpr int MaskReach = 1;
+
+bool IsDifferent(const unsigned char* last, const unsigned char* next, unsigned char value,
+  std::int64_t begin, std::size_t size)
+{
+  if (last && next)
+  {
+    return std::memcmp(last + begin, next + begin, size) != 0;
+  }
+  const unsigned char* mask = last ? last : next;
+  return mask &&
+    std::any_of(mask + begin, mask + begin + size, [=](unsigned char v) { return v != value; });
+}
+
+// Whether there are cells between some vertices.
+bool HasCells(const Extent& vertices)
+{
+  return vertices[0] < vertices[1] && vertices[2] < vertices[3] && vertices[4] < vertices[5];
+}
+
+// Sub-bricks that a thread takes at a time.
+constexpr std::size_t PartStep = 256;
+
+} // namespace
+
+IncrementalUpdate::Bounds::Bounds()
+{
+  this->Least.fill(std::numeric_limits<float>::infinity());
+  this->Greatest.fill(-std::numeric_limits<float>::infinity());
+}
+
+void IncrementalUpdate::Bounds::Add(const float* displacements, std::size_t begin, std::size_t end)
+{
+#ifdef __SSE__
+  // Compilers do not find these by themselves, and there are millions of points.
+  __m128 least = _mm_load_ps(this->Least.data());
+  __m128 greatest = _mm_load_ps(this->Greatest.data());
+  for (std::size_t point = begin; point < end; ++point)
+  {
+    const __m128 next = _mm_loadu_ps(displacements + 4 * point);
+    least = _mm_min_ps(least, next);
+    greatest = _mm_max_ps(greatest, next);
+  }
+  _mm_store_ps(this->Least.data(), least);
+  _mm_store_ps(this->Greatest.data(), greatest);
+#else
+  for (std::size_t i = 4 * begin; i < 4 * end; ++i)
+  {
+    this->Least[i % 4] = std::min(this->Least[i % 4], displacements[i]);
+    this->Greatest[i % 4] = std::max(this->Greatest[i % 4], displacements[i]);
+  }
+#endif
+}
+
+void IncrementalUpdate::Bounds::Add(
+  const Displacements& displacements, std::size_t begin, std::size_t end)
+{
+  if (displacements.Padded)
+  {
+    this->Add(displacements.Padded, begin, end);
+    return;
+  }
+  for (std::size_t point = begin; point < end; ++point)
+  {
+    const std::array<float, 3> found =
+      GetDisplacement(*displacements.Field, static_cast<std::int64_t>(point));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Least[axis] = std::min(this->Least[axis], found[axis]);
+      this->Greatest[axis] = std::max(this->Greatest[axis], found[axis]);
+    }
+  }
+}
+
+void IncrementalUpdate::Bounds::Add(const Bounds& other)
+{
+  for (int c = 0; c < 4; ++c)
+  {
+    this->Least[c] = std::min(this->Least[c], other.Least[c]);
+    this->Greatest[c] = std::max(this->Greatest[c], other.Greatest[c]);
+  }
+}
+
+void IncrementalUpdate::Start(
+  const BrickGrid& bricks, const VoxelGrid& voxelGrid, const Extent& output)
+{
+  this->Bricks = bricks;
+  this->Grid = bricks.GetSubBricks();
+  const std::size_t subBricks = this->Grid.GetNumberOfBricks();
+  if (output != this->OutputExtent || this->Known.size() != subBricks)
+  {
+    this->Known.assign(subBricks, 0); // boxes are relative to the output
+    this->BoxesKnown = false;
+  }
+  if (this->Places.empty())
+  {
+    for (std::size_t subBrick = 0; subBrick < subBricks; ++subBrick)
+    {
+      this->Places.push_back(bricks.GetBrick(this->Grid, subBrick));
+    }
+  }
+  this->Shape = voxelGrid;
+  this->OutputExtent = output;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->PatchCount[axis] = static_cast<int>(DEFORMVOLUME_PATCHES(GetSize(output, axis)));
+  }
+  this->Boxes.resize(subBricks);
+  this->LastBoxes.resize(subBricks);
+  this->Finish();
+  this->Tracking = true;
+}
+
+void IncrementalUpdate::Finish()
+{
+  this->Moved.assign(this->Grid.GetNumberOfBricks(), 0);
+  this->Masked.assign(this->Grid.GetNumberOfBricks(), 0);
+}
+
+void IncrementalUpdate::MoveAll(const std::optional<Bounds>& after)
+{
+  this->Tracking = false;
+  this->Known.assign(this->Known.size(), 0);
+  this->BoxesKnown = false;
+  this->AllBounds = after;
+}
+
+void IncrementalUpdate::ForgetMapping()
+{
+  this->Tracking = false;
+  this->Points = this->PointsOfBricks = BrickPoints();
+  this->Known.clear();
+  this->BoxesKnown = false;
+  this->AllBounds.reset();
+}
+
+IncrementalUpdate::Bounds IncrementalUpdate::ComputeBounds(
+  std::size_t subBrick, const Displacements& displacements) const
+{
+  Bounds bounds;
+  this->Points.AnyOf(subBrick,
+    [&](std::size_t begin, std::size_t end)
+    {
+      bounds.Add(displacements, begin, end);
+      return false;
+    });
+  return bounds;
+}
+
+IncrementalUpdate::Bounds IncrementalUpdate::ComputeAllBounds(
+  const Displacements& displacements, std::size_t numberOfPoints) const
+{
+  constexpr std::size_t step = 65536;
+  std::vector<Bounds> parts((numberOfPoints + step - 1) / step);
+  ParallelForParts(numberOfPoints, step,
+    [&](std::size_t begin, std::size_t end)
+    { parts[begin / step].Add(displacements, begin, end); });
+  Bounds all;
+  for (const Bounds& part : parts)
+  {
+    all.Add(part);
+  }
+  return all;
+}
+
+IncrementalUpdate::Box IncrementalUpdate::MakeBox(std::size_t subBrick, const Bounds& bounds) const
+{
+  const Extent vertices = this->Grid.GetVertices(subBrick, 0);
+  const double excess = this->Points.GetExcess(subBrick);
+  constexpr Box nothing = { { { 1.0, 1.0, 1.0 } }, { { 0.0, 0.0, 0.0 } } };
+  if (!HasCells(vertices))
+  {
+    return nothing;
+  }
+  Box box;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const float least = bounds.Least[axis];
+    const float greatest = bounds.Greatest[axis];
+    if (!(least <= greatest)) // no vertex has a place
+    {
+      return nothing;
+    }
+    const double widening = excess * (double(greatest) - double(least)) + Margin;
+    const double low = std::min(least - widening, LargestMove);
+    const double high = std::max(greatest + widening, -LargestMove);
+    const double first = this->Shape.VertexExtent[2 * axis];
+    box.Min[axis] =
+      this->Shape.Scale[axis] * (first + vertices[2 * axis]) + low - this->OutputExtent[2 * axis];
+    box.Max[axis] = this->Shape.Scale[axis] * (first + vertices[2 * axis + 1]) + high -
+      this->OutputExtent[2 * axis];
+    if (!std::isfinite(box.Min[axis]) || !std::isfinite(box.Max[axis]))
+    {
+      // Infinite weights times nothing.
+      box.Min[axis] = 0.0;
+      box.Max[axis] = static_cast<double>(GetSize(this->OutputExtent, axis));
+    }
+  }
+  return box;
+}
+
+IncrementalUpdate::Box IncrementalUpdate::GetReach() const
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Box reach{ { { infinity, infinity, infinity } }, { { -infinity, -infinity, -infinity } } };
+  const auto add = [&](const Box& box)
+  {
+    for (int axis = 0; axis < 3 && box.Min[0] <= box.Max[0]; ++axis)
+    {
+      reach.Min[axis] = std::min(reach.Min[axis], box.Min[axis] - DEFORMVOLUME_PATCH);
+      reach.Max[axis] = std::max(reach.Max[axis], box.Max[axis] + DEFORMVOLUME_PATCH);
+    }
+  };
+  for (std::size_t subBrick = 0; subBrick < this->Moved.size(); ++subBrick)
+  {
+    if (this->IsChanged(subBrick))
+    {
+      add(this->Boxes[subBrick]);
+      if (this->Moved[subBrick])
+      {
+        add(this->LastBoxes[subBrick]);
+      }
+    }
+  }
+  return reach;
+}
+
+bool IncrementalUpdate::TouchesPatches(
+  const Box& box, const std::vector<unsigned char>& dirty) const
+{
+  const Patches patches = this->GetPatches(box);
+  for (int z = patches[4]; z <= patches[5]; ++z)
+  {
+    for (int y = patches[2]; y <= patches[3]; ++y)
+    {
+      const auto row = dirty.begin() +
+        (static_cast<std::ptrdiff_t>(z) * this->PatchCount[1] + y) * this->PatchCount[0];
+      if (std::find(row + patches[0], row + patches[1] + 1, 1) != row + patches[1] + 1)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+void IncrementalUpdate::SetPoints(BrickPoints&& points)
+{
+  this->Points = std::move(points);
+  std::vector<std::size_t> bricks(this->Places.size());
+  std::transform(this->Places.begin(), this->Places.end(), bricks.begin(),
+    [](const auto& place) { return place.first; });
+  this->PointsOfBricks = this->Points.Join(bricks, this->Bricks.GetNumberOfBricks());
+}
+
+void IncrementalUpdate::MovePoints(const PointSet& changed, const float* last)
+{
+  std::size_t first = 0;
+  std::size_t past = 0;
+  changed.GetEnds(first, past);
+  const auto hasMoved = [&](const BrickPoints& points, std::size_t brick)
+  {
+    return !points.IsApart(brick, first, past) &&
+      points.AnyOf(
+        brick, [&](std::size_t begin, std::size_t end) { return changed.HasAnyOf(begin, end); });
+  };
+  // Most bricks are nowhere near.
+  std::vector<unsigned char> near(this->Bricks.GetNumberOfBricks());
+  ParallelForParts(near.size(), PartStep,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t brick = begin; brick < end; ++brick)
+      {
+        near[brick] = hasMoved(this->PointsOfBricks, brick) ? 1 : 0;
+      }
+    });
+  const auto isMoved = [&](std::size_t subBrick)
+  { return near[this->Places[subBrick].first] && hasMoved(this->Points, subBrick); };
+  ParallelForParts(this->Grid.GetNumberOfBricks(), PartStep,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t subBrick = begin; subBrick < end; ++subBrick)
+      {
+        if (isMoved(subBrick))
+        {
+          if (!this->Moved[subBrick])
+          {
+            this->LastBoxes[subBrick] = this->Known[subBrick]
+              ? this->Boxes[subBrick]
+              : this->MakeBox(subBrick, this->ComputeBounds(subBrick, { last, nullptr }));
+            this->Moved[subBrick] = 1;
+          }
+          this->Known[subBrick] = 0;
+        }
+      }
+    });
+  this->BoxesKnown = false;
+}
+
+void IncrementalUpdate::AddMoved(const Bounds& after)
+{
+  if (this->AllBounds)
+  {
+    this->AllBounds->Add(after);
+  }
+}
+
+bool IncrementalUpdate::HasOnlyInterior(std::size_t subBrick, const unsigned char* state) const
+{
+  const Extent vertices = this->Grid.GetVertices(subBrick, 0);
+  const std::array<int, 3>& size = this->Grid.Size;
+  if (!HasCells(vertices))
+  {
+    return true;
+  }
+  if (!state)
+  {
+    bool interior = true;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      interior &= vertices[2 * axis] > 0 && vertices[2 * axis + 1] < size[axis] - 1;
+    }
+    return interior;
+  }
+  for (std::int64_t z = vertices[4]; z <= vertices[5]; ++z)
+  {
+    for (std::int64_t y = vertices[2]; y <= vertices[3]; ++y)
+    {
+      const unsigned char* row = state + (z * size[1] + y) * size[0];
+      if (!std::all_of(row + vertices[0], row + vertices[1] + 1,
+            [](unsigned char v) { return (v & DEFORMVOLUME_VERTEX_INTERIOR) != 0; }))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool IncrementalUpdate::IsInside(const unsigned char* state) const
+{
+  std::atomic<bool> inside{ true };
+  ParallelForParts(this->Grid.GetNumberOfBricks(), PartStep,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t subBrick = begin; subBrick < end && inside; ++subBrick)
+      {
+        if (this->Masked[subBrick] ||
+          (this->Moved[subBrick] && !this->HasOnlyInterior(subBrick, state)))
+        {
+          inside = false;
+        }
+      }
+    });
+  return inside;
+}
+
+void IncrementalUpdate::FindBoxes(const Displacements& displacements, std::size_t numberOfPoints)
+{
+  if (!this->AllBounds)
+  {
+    this->AllBounds = this->ComputeAllBounds(displacements, numberOfPoints);
+  }
+  const auto find = [&](const auto& isWanted)
+  {
+    ParallelForParts(this->Grid.GetNumberOfBricks(), PartStep,
+      [&](std::size_t begin, std::size_t end)
+      {
+        for (std::size_t subBrick = begin; subBrick < end; ++subBrick)
+        {
+          if (!this->Known[subBrick] && isWanted(subBrick))
+          {
+            this->Boxes[subBrick] =
+              this->MakeBox(subBrick, this->ComputeBounds(subBrick, displacements));
+            this->Known[subBrick] = 1;
+          }
+        }
+      });
+  };
+  find([&](std::size_t subBrick) { return this->IsChanged(subBrick); });
+  const Box reach = this->GetReach();
+  find([&](std::size_t subBrick)
+    { return !IsApart(this->MakeBox(subBrick, *this->AllBounds), reach); });
+  this->BoxesKnown = true;
+}
+
+void IncrementalUpdate::ChangeMask(
+  const unsigned char* last, const unsigned char* next, unsigned char value, bool ofCells)
+{
+  const int less = ofCells ? 1 : 0;
+  const std::int64_t size[2] = { this->Grid.Size[0] - less, this->Grid.Size[1] - less };
+  ParallelFor(0, static_cast<std::int64_t>(this->Grid.GetNumberOfBricks()), 1,
+    [&](std::int64_t firstPart, std::int64_t lastPart)
+    {
+      for (std::int64_t subBrick = firstPart; subBrick < lastPart; ++subBrick)
+      {
+        const Extent region = this->Grid.GetVertices(subBrick, MaskReach);
+        const std::int64_t row = region[1] - less - region[0] + 1;
+        for (std::int64_t z = region[4]; z <= region[5] - less && !this->Masked[subBrick]; ++z)
+        {
+          for (std::int64_t y = region[2]; y <= region[3] - less && !this->Masked[subBrick]; ++y)
+          {
+            const std::int64_t begin = (z * size[1] + y) * size[0] + region[0];
+            this->Masked[subBrick] =
+              row > 0 && IsDifferent(last, next, value, begin, static_cast<std::size_t>(row)) ? 1
+                                                                                              : 0;
+          }
+        }
+      }
+    });
+  this->BoxesKnown = false; // of sub-bricks that have changed now
+}
+
+bool IncrementalUpdate::IsApart(const Box& a, const Box& b)
+{
+  bool apart = false;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    apart |= a.Min[axis] > b.Max[axis] || a.Max[axis] < b.Min[axis];
+  }
+  return apart;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeIncrementalUpdate_h
+#define DeformVolumeIncrementalUpdate_h
+
+#include "BrickPoints.h"
+#include "DisplacementField.h"
+#include "Extent.h"
+#include "PointSet.h"
+#include "VoxelGrid.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// Finds out which part of an output has to be made anew after a change of the deformation or of
+/// the masks.
+///
+/// A sub-brick of cells changes when a point that moves its vertices does, or a mask near it.
+/// All that it wrote, and all that it will write, lies within a box: its box at rest, widened by
+/// the least and the greatest displacement of its points. Patches of the output that the boxes of
+/// changed sub-bricks touch, before or after the change, are cleared, and of all bricks with a
+/// sub-brick whose box touches such a patch the sections that these sub-bricks lie in are run: what
+/// they write outside these patches they wrote before, since nobody else writes there.
+///
+/// Where all vertices of the changed sub-bricks are inside the sampling mesh, nothing is cleared
+/// and only changed sub-bricks are run: their cells fill the same space as before, between cells
+/// that stay, so that together they own the same voxels, unless some are inverted, which the counts
+/// tell.
+class IncrementalUpdate
+{
+public:
+  /// What there is to do.
+  struct Plan
+  {
+    std::vector<std::uint32_t> Bricks;  // as DEFORMVOLUME_BRICK_BITS says
+    std::vector<std::uint32_t> Patches; // counted along x, then y, then z
+  };
+
+  /// Displacements of points, in output voxels, as they lie in memory.
+  struct Displacements
+  {
+    const float* Padded = nullptr; // four floats each, or else
+    const DisplacementField* Field = nullptr;
+  };
+
+  /// The least and the greatest displacement of some points.
+  struct Bounds
+  {
+    Bounds();
+    /// Points from begin to before end, of four floats each in the first form.
+    void Add(const float* displacements, std::size_t begin, std::size_t end);
+    void Add(const Displacements& displacements, std::size_t begin, std::size_t end);
+    void Add(const Bounds& other);
+    alignas(16) std::array<float, 4> Least;
+    alignas(16) std::array<float, 4> Greatest;
+  };
+
+  /// Whether the last output can serve, so that what changes has to be told.
+  bool IsTracking() const { return this->Tracking; }
+
+  /// An output of this extent was made, wholly, of what is set now.
+  void Start(const BrickGrid& bricks, const VoxelGrid& voxelGrid, const Extent& output);
+  /// The last output is of no use any more.
+  void Forget() { this->Tracking = false; }
+  /// All points change; the last output is of no use any more. after: of all of them, where it is
+  /// known.
+  void MoveAll(const std::optional<Bounds>& after = {});
+  /// The last output was brought up to date.
+  void Finish();
+
+  /// The points of sub-bricks; found when they are needed first, and forgotten with the
+  /// mapping.
+  bool HasPoints() const { return !this->Points.IsEmpty(); }
+  void SetPoints(BrickPoints&& points);
+  void ForgetMapping();
+
+  /// Points will change. last: four floats a point, the displacements before the change.
+  void MovePoints(const PointSet& changed, const float* last);
+  /// They have changed. after: of these points, or of more. (The bounds of all points only grow, as
+  /// long as not all change.)
+  void AddMoved(const Bounds& after);
+
+  /// Whether all that changed are sub-bricks of which points moved and all vertices are inside the
+  /// sampling mesh. state: of all vertices (VertexState.cl), null where all have a position and all
+  /// cells are active.
+  bool IsInside(const unsigned char* state) const;
+
+  /// Whether it is known where sub-bricks lie, as far as MakePlan wants it.
+  bool HasBoxes() const { return this->BoxesKnown; }
+  /// Finds that out. displacements: of so many points, after the change.
+  void FindBoxes(const Displacements& displacements, std::size_t numberOfPoints);
+
+  /// A mask will change: of vertices, one byte each, or of cells. Null stands for a mask that is
+  /// the given value everywhere.
+  void ChangeMask(
+    const unsigned char* last, const unsigned char* next, unsigned char value, bool ofCells);
+
+  /// False where it is better to make all anew. inside: see IsInside; boxes are not needed then.
+  bool MakePlan(bool inside, Plan& plan);
+
+  /// Whether so many of all points, sub-bricks or patches change that it is faster to make all
+  /// anew.
+  static bool IsTooMuch(std::size_t some, std::size_t all);
+
+  const Extent& GetOutputExtent() const { return this->OutputExtent; }
+
+private:
+  /// In output voxels, counted from the first one; empty where Min > Max.
+  struct Box
+  {
+    std::array<double, 3> Min;
+    std::array<double, 3> Max;
+  };
+  using Patches = std::array<int, 6>; // first and last patch on each axis
+
+  Bounds ComputeBounds(std::size_t subBrick, const Displacements& displacements) const;
+  Box MakeBox(std::size_t subBrick, const Bounds& bounds) const;
+  Bounds ComputeAllBounds(const Displacements& displacements, std::size_t numberOfPoints) const;
+  bool IsChanged(std::size_t subBrick) const
+  {
+    return this->Moved[subBrick] || this->Masked[subBrick];
+  }
+  /// A box round the patches that the boxes of changed sub-bricks touch, before or after the
+  /// change.
+  Box GetReach() const;
+  static bool IsApart(const Box& a, const Box& b);
+  bool HasOnlyInterior(std::size_t subBrick, const unsigned char* state) const;
+  Patches GetPatches(const Box& box) const;
+  void MarkPatches(const Box& box, std::vector<unsigned char>& dirty) const;
+  /// Finds the patches to clear, and adds the sub-bricks that touch them to the sections to run.
+  void PlanPatches(const std::vector<std::size_t>& changed, std::vector<std::uint32_t>& run,
+    std::vector<unsigned char>& dirty) const;
+  bool TouchesPatches(const Box& box, const std::vector<unsigned char>& dirty) const;
+
+  bool Tracking = false;
+  BrickGrid Bricks;
+  BrickGrid Grid; // of their sub-bricks, which all that follows is about
+  VoxelGrid Shape;
+  Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
+  std::array<int, 3> PatchCount{ { 0, 0, 0 } };
+  BrickPoints Points;
+  BrickPoints PointsOfBricks;
+  // The brick and the section of each sub-brick: see BrickGrid::GetBrick.
+  std::vector<std::pair<std::size_t, std::uint32_t>> Places;
+  std::vector<Box> Boxes; // as far as they are known
+  std::vector<unsigned char> Known;
+  bool BoxesKnown = false;         // all that changed, and all that may touch what these touch
+  std::optional<Bounds> AllBounds; // of all points, or wider
+  std::vector<Box> LastBoxes;      // of those that were moved
+  std::vector<unsigned char> Moved;
+  std::vector<unsigned char> Masked;
+};
+
+} // namespace deformvolume
+
+#endif

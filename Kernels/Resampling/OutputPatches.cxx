@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "OutputPatches.h"
+
+#include "Background.h"
+#include "KernelParameters.h"
+#include "ParallelFor.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <numeric>
+
+namespace deformvolume
+{
+namespace
+{
+
+// Patches that follow each other on x.
+struct PatchRow
+{
+  std::uint32_t First;
+  std::uint32_t Count;
+};
+
+// Calls body(voxel, voxels) for the rows of such patches along x: the number of the first voxel in
+// the output, and how many there are.
+template <typename Body>
+void ForRows(const Extent& output, const PatchRow& patches, Body&& body)
+{
+  std::int64_t first[3];
+  std::int64_t end[3];
+  std::int64_t number = patches.First;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::int64_t count = DEFORMVOLUME_PATCHES(GetSize(output, axis));
+    const std::int64_t size = DEFORMVOLUME_PATCH * std::int64_t{ axis == 0 ? patches.Count : 1 };
+    first[axis] = number % count * DEFORMVOLUME_PATCH;
+    end[axis] = std::min(first[axis] + size, GetSize(output, axis));
+    number /= count;
+  }
+  for (std::int64_t z = first[2]; z < end[2]; ++z)
+  {
+    for (std::int64_t y = first[1]; y < end[1]; ++y)
+    {
+      body((z * GetSize(output, 1) + y) * GetSize(output, 0) + first[0], end[0] - first[0]);
+    }
+  }
+}
+
+std::uint64_t CountCovered(const DeformRequest& request, const PatchRow& patches)
+{
+  std::uint64_t covered = 0;
+  ForRows(request.OutputExtent, patches,
+    [&](std::int64_t voxel, std::int64_t voxels)
+    {
+      const signed char* row = request.Coverage + voxel;
+      // Eight at once: the product adds up the bytes, which are 0 or 1, in its highest one.
+      for (; voxels >= 8; voxels -= 8, row += 8)
+      {
+        std::uint64_t eight;
+        std::memcpy(&eight, row, sizeof(eight));
+        covered += eight * 0x0101010101010101U >> 56;
+      }
+      covered = std::accumulate(row, row + voxels, covered);
+    });
+  return covered;
+}
+
+template <typename T>
+void Clear(
+  const DeformRequest& request, const PatchRow& patches, void* values, int components, T background)
+{
+  ForRows(request.OutputExtent, patches,
+    [&](std::int64_t voxel, std::int64_t voxels) {
+      std::fill_n(static_cast<T*>(values) + voxel * components, voxels * components, background);
+    });
+}
+
+void ClearArray(
+  const DeformRequest& request, const PatchRow& patches, void* values, const VolumeArray& array)
+{
+  switch (array.Type)
+  {
+#define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
+  case ElementType::name:                                                                          \
+    Clear(request, patches, values, array.Components, ClampTo<ctype>(array.Background));           \
+    break;
+    DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
+#undef DEFORMVOLUME_CASE
+  }
+}
+
+// patches: their numbers, in ascending order.
+std::vector<PatchRow> FindRows(const Extent& output, const std::vector<std::uint32_t>& patches)
+{
+  const auto width = static_cast<std::uint32_t>(DEFORMVOLUME_PATCHES(GetSize(output, 0)));
+  std::vector<PatchRow> rows;
+  for (const std::uint32_t patch : patches)
+  {
+    if (!rows.empty() && rows.back().First + rows.back().Count == patch && patch % width != 0)
+    {
+      ++rows.back().Count;
+    }
+    else
+    {
+      rows.push_back({ patch, 1 });
+    }
+  }
+  return rows;
+}
+
+// The sum of what body(row) returns for rows of patches.
+template <typename Body>
+std::uint64_t SumUp(
+  const DeformRequest& request, const std::vector<std::uint32_t>& patches, Body&& body)
+{
+  constexpr std::size_t step = 16;
+  const std::vector<PatchRow> rows = FindRows(request.OutputExtent, patches);
+  std::atomic<std::uint64_t> sum{ 0 };
+  ParallelForParts(rows.size(), step,
+    [&](std::size_t begin, std::size_t end)
+    {
+      std::uint64_t part = 0;
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        part += body(rows[i]);
+      }
+      sum += part;
+    });
+  return sum;
+}
+
+} // namespace
+
+std::uint64_t CountCoveredInPatches(
+  const DeformRequest& request, const std::vector<std::uint32_t>& patches)
+{
+  return SumUp(request, patches, [&](const PatchRow& row) { return CountCovered(request, row); });
+}
+
+std::uint64_t ClearPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+  const std::vector<std::uint32_t>& patches)
+{
+  return SumUp(request, patches,
+    [&](const PatchRow& row)
+    {
+      const std::uint64_t covered = CountCovered(request, row);
+      for (std::size_t i = 0; i < arrays.size(); ++i)
+      {
+        ClearArray(request, row, request.Outputs[i], arrays[i]);
+      }
+      Clear(request, row, request.Coverage, 1, std::int8_t{ 0 });
+      return covered;
+    });
+}
+
+} // namespace deformvolume

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeOutputSlab_h
+#define DeformVolumeOutputSlab_h
+
+#include "DeformRequest.h"
+#include "ElementType.h"
+#include "Extent.h"
+#include "HostMemory.h"
+#include "KernelParameters.h"
+#include "OpenCLContext.h"
+#include "VolumeArray.h"
+#include "VoxelGrid.h"
+
+namespace deformvolume
+{
+
+/// Bytes of a winner's key: four hold a cell of up to 2^30, and two bits, for inverted
+/// tetrahedra and for voxels that are still to be won.
+std::size_t GetWinnerSize(const VoxelGrid& voxelGrid);
+
+/// What the device holds of the output: a range of planes of all arrays, their coverage, the
+/// winners where tetrahedra overlap, and the counters of the bricks of cells.
+class OutputSlab
+{
+public:
+  struct Counts
+  {
+    std::uint64_t Writes = 0;
+    std::uint64_t Inverted = 0;
+    std::uint64_t Overstretched = 0;
+    std::uint64_t Large = 0; // cells
+    /// On the border of the mesh, tetrahedra that cover nothing, where the kernel took them to.
+    bool MissingWhereAssumed = false;
+
+    /// Every covered voxel was written once, unless tetrahedra overlap; where the mesh is folded,
+    /// voxels on the crease may also be missing.
+    bool NeedWinners(std::uint64_t covered) const
+    {
+      return this->Writes > covered || this->Inverted > 0 || this->Overstretched > 0 ||
+        this->MissingWhereAssumed;
+    }
+  };
+
+  /// Splits an output into slabs that the device can allocate. Throws Error where not even one
+  /// plane fits.
+  static std::vector<Extent> Split(const Extent& output, const std::vector<VolumeArray>& arrays,
+    const VoxelGrid& voxelGrid, std::uint64_t allocationLimit);
+
+  /// Bytes of a voxel of the request's output that need memory of the device: those of the arrays
+  /// and the coverage that are not worked on in place.
+  static std::uint64_t GetBytesPerVoxel(const OpenCLContext& context,
+    const std::vector<VolumeArray>& arrays, const DeformRequest& request);
+
+  /// Makes room for a slab of the request's output, or uses what is there, or the memory of the
+  /// request; fills it with the background. Events of launches are added to a list.
+  void Prepare(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
+    const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+    const VoxelGrid& voxelGrid, std::size_t numberOfBricks, std::vector<cl::Event>& events);
+
+  /// The same where the memory of the request, which is worked on in place, holds the last output,
+  /// as far as it is still wanted, and the counters are those of it that ReadCounts has read last:
+  /// clears the counters of some bricks.
+  void PrepareAgain(OpenCLContext& context, const cl::CommandQueue& queue,
+    const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+    const std::vector<cl_uint>& bricks);
+
+  /// Bytes that PrepareWinners will allocate.
+  std::uint64_t GetMissingWinnerMemory() const;
+  void PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events);
+  /// After the pass in which cells claim voxels, or without it where none is contested: finds those
+  /// to be won, and those that nobody has written. parameters: of the mesh.
+  void Settle(OpenCLContext& context, bool claimed, const KernelParameters& parameters,
+    std::vector<cl::Event>& events);
+
+  /// The list of large cells (DEFORMVOLUME_PIECE), as the launches of a pass leave it.
+  struct LargeCell
+  {
+    std::array<cl_int, 3> Cell; // local index
+    cl_int Pieces;
+  };
+  void ClearLargeCells() const;
+  std::vector<LargeCell> ReadLargeCells() const;
+
+  std::uint64_t CountCovered(OpenCLContext& context, std::vector<cl::Event>& events);
+  Counts ReadCounts();
+
+  /// Whether the kernel for processors, with positions in float and indices of 31 bits, can write
+  /// the slab.
+  bool FitsLanes() const;
+
+  /// The bricks with sections of which a counter is not 0, as DEFORMVOLUME_BRICK_BITS says.
+  std::vector<cl_uint> FindBricks(int counter);
+
+  /// Puts the output extent into the parameters of a launch.
+  void SetParameters(KernelParameters& parameters) const;
+
+  const cl::Buffer& GetArray(std::size_t index) const { return this->Arrays[index]; }
+  const cl::Buffer& GetCoverage() const { return this->Coverage; }
+  const cl::Buffer& GetWinners() const { return this->Winners() ? this->Winners : this->Coverage; }
+  const cl::Buffer& GetPatches() const
+  {
+    return this->PatchStates() ? this->PatchStates : this->Coverage;
+  }
+  const cl::Buffer& GetLargeCells() const { return this->LargeCells; }
+  const cl::Buffer& GetCounters() const { return this->Counters; }
+
+  /// Begins to copy the slab, which is done, to its place in the request's memory, in a queue of
+  /// its own.
+  void Read(const cl::CommandQueue& queue, const DeformRequest& request);
+  /// Waits until the slab is in the request's memory. Throws cl::Error where it did not get there.
+  void FinishReading() { this->Reads.Check(); }
+  /// Waits, whatever has happened, and lets go of the request's memory. Throws nothing.
+  void Finish();
+
+  std::uint64_t GetMemory() const;
+
+private:
+  void PlaceArrays(
+    OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays);
+  bool HasWinners() const;
+  std::uint64_t CountAllPatches() const;
+  const std::vector<cl_uint>& ReadCounters();
+  std::uint64_t GetOffset(const DeformRequest& request) const;
+  std::size_t CountItems() const;
+  void Clear(OpenCLContext& context, const cl::Buffer& buffer, double value, ElementType type,
+    std::uint64_t size, std::vector<cl::Event>& events) const;
+
+  cl::CommandQueue Queue;
+  Extent SlabExtent{ { 0, -1, 0, -1, 0, -1 } };
+  Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } }; // of the output
+  std::vector<cl::Buffer> Arrays;
+  std::vector<std::size_t> TupleSizes;
+  cl::Buffer Coverage;
+  cl::Buffer Winners;
+  cl::Buffer PatchStates; // a byte a patch of the output
+  cl::Buffer Counters;
+  cl::Buffer
+    LargeCells; // at most a megabyte, which GetMemory leaves out as it does all lists of work
+  std::size_t MostLargeCells = 0;
+  std::vector<cl_uint> LastCounters; // as they were read
+  std::size_t WinnerSize = 4;
+  std::size_t NumberOfSections = 0; // of bricks
+  std::uint64_t NumberOfVoxels = 0;
+  PendingReads Reads; // last: they end before the buffers do
+};
+
+} // namespace deformvolume
+
+#endif

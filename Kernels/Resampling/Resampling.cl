@@ -1,0 +1,536 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Resampling: rasterises the five tetrahedra of each cell of the sampling mesh into the output, by
+// the fill rule of CellCoverage.cl, for all arrays of the volume in one pass over the geometry.
+//
+// Data: what the mapping needs (DeformationMapping.cl), state 1 byte a vertex, active tetrahedra 1 byte a cell
+// (optional), the output (VoxelWinners.cl), and the arrays themselves in their own types (SampleStoring.cl).
+//
+// A work-group takes a cuboid of cells: it maps the cuboid's vertices into local memory, once each, and
+// then a work-item takes a cell, neighbours side by side. Almost all cells are convex enough that a sample
+// needs the central tetrahedron's edge functions and at most those of the corner behind a face; the others, and
+// those with many samples, take one tetrahedron after the other, row by row. Cells with very many samples are put off
+// (LargeCells.cl).
+
+// A cell of the sampling mesh.
+typedef struct
+{
+  int X, Y, Z;
+  int Tetrahedra; // those that are there and not flat, as bits
+  int Inverted;   // of these the inverted ones
+  CellState State;
+  Vector Vertices[8];
+  Vector Low; // bounds of the vertices that are there
+  Vector High;
+} Cell;
+
+static EdgeFunctions EdgeFunctionsOf(const Cell* cell, int t)
+{
+  return MakeEdgeFunctions(cell->Vertices[Tetrahedra[t][0]], cell->Vertices[Tetrahedra[t][1]],
+    cell->Vertices[Tetrahedra[t][2]], cell->Vertices[Tetrahedra[t][3]]);
+}
+
+static Vector SamplePosition(Vector voxel)
+{
+  const Vector r = { voxel.x * 256, voxel.y * 256, voxel.z * 256 };
+  return r;
+}
+
+// Whether a tetrahedron of the cell that comes before this one, and has the same key, writes a voxel, too.
+static __attribute__((noinline)) int IsWrittenBefore(
+  const SamplingMesh* mesh, const Cell* cell, int tetrahedron, Vector voxel, const KernelParameters* p)
+{
+  const int alike =
+    cell->Inverted >> tetrahedron & 1 ? cell->Inverted : cell->Tetrahedra & ~cell->Inverted;
+  for (int t = 4; t > tetrahedron; --t)
+  {
+    if (alike >> t & 1)
+    {
+      const EdgeFunctions f = EdgeFunctionsOf(cell, t);
+      long weights[4];
+      Evaluate(&f, SamplePosition(voxel), weights);
+      if (RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p) == OWNER)
+      {
+        return 1;
+      }
+    }
+  }
+  return 0;
+}
+
+// s: of the tetrahedron, as far as it is known.
+static void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long* weights, long volume,
+  Sample* s, Vector voxel, int role, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const int placeX = voxel.x - p->OutputFirst[0];
+  const int placeY = voxel.y - p->OutputFirst[1];
+  const int placeZ = voxel.z - p->OutputFirst[2];
+  if (role == HOLDER)
+  {
+    if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
+    {
+      Touch(placeX, placeY, placeZ, output, p);
+    }
+    return;
+  }
+  const size_t target =
+    ((size_t)placeZ * p->OutputSize[1] + placeY) * p->OutputSize[0] + placeX;
+  output->Writes++;
+  if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
+  {
+    const KEY key = MakeKey(cell->X, cell->Y, cell->Z, cell->Inverted >> t & 1, p);
+    // It may also be there because the cell is repeated (BrickResampling.cl).
+    if (p->Pass == DEFORMVOLUME_PASS_OWNERS && output->Winners[target] == key &&
+      IsWrittenBefore(mesh, cell, t, voxel, p))
+    {
+      Contest(output->Winners + target, key);
+    }
+    if (!TakesPlace(output, target, key, p))
+    {
+      return;
+    }
+  }
+  if (s->Volume == 0)
+  {
+    BeginSamples(s, cell->X, cell->Y, cell->Z, t, volume, p);
+  }
+  PlaceSample(s, weights, target);
+  output->Coverage[target] = 1;
+  StoreArrays(s ARRAY_ARGUMENTS);
+}
+
+// A box of output voxels, from the lowest to the highest on each axis.
+typedef struct
+{
+  Vector Low, High;
+} Candidates;
+
+static Candidates AllCandidates(const KernelParameters* p)
+{
+  const Vector low = { p->OutputFirst[0], p->OutputFirst[1], p->OutputFirst[2] };
+  const Vector high = { low.x + p->OutputSize[0] - 1, low.y + p->OutputSize[1] - 1,
+    low.z + p->OutputSize[2] - 1 };
+  const Candidates all = { low, high };
+  return all;
+}
+
+// Those of all that may lie within some bounds in 1/256 voxel. open: 1 where the high ones do not count, else 0.
+static Candidates FindCandidates(Vector low, Vector high, int open, const Candidates* all)
+{
+  Candidates c;
+  c.Low.x = max((low.x + 255) >> 8, all->Low.x);
+  c.Low.y = max((low.y + 255) >> 8, all->Low.y);
+  c.Low.z = max((low.z + 255) >> 8, all->Low.z);
+  c.High.x = min((high.x - open) >> 8, all->High.x);
+  c.High.y = min((high.y - open) >> 8, all->High.y);
+  c.High.z = min((high.z - open) >> 8, all->High.z);
+  return c;
+}
+
+static int IsEmpty(Candidates c)
+{
+  return c.Low.x > c.High.x || c.Low.y > c.High.y || c.Low.z > c.High.z;
+}
+
+static long CountCandidates(Candidates c)
+{
+  return (c.High.x - c.Low.x + 1) * (c.High.y - c.Low.y + 1) * (c.High.z - c.Low.z + 1);
+}
+
+#define FOR_EACH_CANDIDATE(voxel, c)                                                               \
+  for (voxel.z = c.Low.z; voxel.z <= c.High.z; ++voxel.z)                                          \
+    for (voxel.y = c.Low.y; voxel.y <= c.High.y; ++voxel.y)                                        \
+      for (voxel.x = c.Low.x; voxel.x <= c.High.x; ++voxel.x)
+
+// A cell whose tetrahedra are all there and upright: a sample behind no face of the central
+// tetrahedron is in it, and a corner tetrahedron holds only samples behind its face. Corner tetrahedra of a cell that
+// is much bent overlap. As in any cell, the lowest tetrahedron comes last, because the last one to write wins.
+static void ResampleUprightCell(const SamplingMesh* mesh, const Cell* cell, Candidates c,
+  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  // All that hold a sample write it in turn then.
+  const int closed = DEFORMVOLUME_IS_CLOSED(p->Pass);
+  const EdgeFunctions central = EdgeFunctionsOf(cell, 4);
+  Sample ofCentral;
+  ofCentral.Volume = 0;
+  Vector voxel;
+  FOR_EACH_CANDIDATE(voxel, c)
+  {
+    const Vector sample = SamplePosition(voxel);
+    long behind[4];
+    Evaluate(&central, sample, behind);
+    const int role = RoleOf(mesh, cell->X, cell->Y, cell->Z, 4, behind, &central, cell->State, p);
+    if (role != STRANGER)
+    {
+      Write(mesh, cell, 4, behind, central.Volume, &ofCentral, voxel, role, output,
+        p ARRAY_ARGUMENTS);
+    }
+    if (role == OWNER && !closed)
+    {
+      continue;
+    }
+    for (int t = 3; t >= 0; --t)
+    {
+      const long beyond = behind[CornerBehindFace[t]];
+      if (beyond > 0)
+      {
+        continue;
+      }
+      const EdgeFunctions corner = EdgeFunctionsOf(cell, t);
+      long weights[4];
+      Evaluate(&corner, sample, weights);
+      const int roleOfCorner =
+        RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &corner, cell->State, p);
+      if (roleOfCorner != STRANGER)
+      {
+        Sample s;
+        s.Volume = 0;
+        Write(mesh, cell, t, weights, corner.Volume, &s, voxel, roleOfCorner, output,
+          p ARRAY_ARGUMENTS);
+      }
+      if (roleOfCorner == OWNER && beyond == 0 && !closed)
+      {
+        break; // on the face: no other corner tetrahedron has the sample inside
+      }
+    }
+  }
+}
+
+// Rows of fewer samples are not worth clipping.
+#define LEAST_CLIPPED_ROW 6
+// By how many samples the ends of a clipped row may be off. They are found in single precision, with an error of less
+// than 2^-20 of their distance from the first sample; that is at most MAXIMUM_STRETCH.
+#define CLIP_TOLERANCE (1.0f / 64.0f)
+
+// The first and the last one of a row of samples that a tetrahedron may hold; none where the first comes later.
+// weights: at the first sample. steps: from a sample to the next one. zeros: 1 / -steps where these are not 0.
+static int2 ClipRow(const long* weights, const long* steps, const float* zeros, long samples)
+{
+  float first = 0.0f;
+  float last = samples - 1;
+  for (int k = 0; k < 4; ++k)
+  {
+    const float zero = (float)weights[k] * zeros[k];
+    first = steps[k] > 0 && zero - CLIP_TOLERANCE > first ? zero - CLIP_TOLERANCE : first;
+    last = steps[k] < 0 && zero + CLIP_TOLERANCE < last ? zero + CLIP_TOLERANCE : last;
+    last = steps[k] == 0 && weights[k] < 0 ? -1.0f : last;
+  }
+  return first > last ? (int2)(1, 0) : (int2)((int)ceil(first), (int)floor(last));
+}
+
+// The samples of a tetrahedron among candidates.
+static void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* cell, int t,
+  const Candidates* candidates, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const EdgeFunctions f = EdgeFunctionsOf(cell, t);
+  Sample s;
+  s.Volume = 0;
+  const long samples = candidates->High.x - candidates->Low.x + 1;
+  const int clipped = samples >= LEAST_CLIPPED_ROW;
+  long steps[4];
+  float zeros[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    steps[k] = 256 * f.Normals[k].x;
+    zeros[k] = clipped && steps[k] ? -1.0f / (float)steps[k] : 0.0f;
+  }
+  Vector voxel = candidates->Low;
+  for (voxel.z = candidates->Low.z; voxel.z <= candidates->High.z; ++voxel.z)
+  {
+    for (voxel.y = candidates->Low.y; voxel.y <= candidates->High.y; ++voxel.y)
+    {
+      voxel.x = candidates->Low.x;
+      long weights[4];
+      Evaluate(&f, SamplePosition(voxel), weights);
+      int2 row = (int2)(0, samples - 1);
+      if (clipped)
+      {
+        row = ClipRow(weights, steps, zeros, samples);
+        for (int k = 0; k < 4; ++k)
+        {
+          weights[k] += row.x * steps[k];
+        }
+      }
+      for (int i = row.x; i <= row.y; ++i)
+      {
+        const int role =
+          RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p);
+        if (role != STRANGER)
+        {
+          voxel.x = candidates->Low.x + i;
+          Write(mesh, cell, t, weights, f.Volume, &s, voxel, role, output, p ARRAY_ARGUMENTS);
+        }
+        for (int k = 0; k < 4; ++k)
+        {
+          weights[k] += steps[k];
+        }
+      }
+    }
+  }
+}
+
+// Any cell: each tetrahedron on its own. The lowest one last, because the last one to write wins.
+static void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* cell, const Candidates* all,
+  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  for (int t = 4; t >= 0; --t)
+  {
+    if (cell->Tetrahedra >> t & 1)
+    {
+      const Vector a = cell->Vertices[Tetrahedra[t][0]];
+      const Vector b = cell->Vertices[Tetrahedra[t][1]];
+      const Vector c = cell->Vertices[Tetrahedra[t][2]];
+      const Vector d = cell->Vertices[Tetrahedra[t][3]];
+      const Candidates candidates = FindCandidates(Minimum(Minimum(a, b), Minimum(c, d)),
+        Maximum(Maximum(a, b), Maximum(c, d)), 0, all);
+      if (!IsEmpty(candidates))
+      {
+        ResampleTetrahedron(mesh, cell, t, &candidates, output, p ARRAY_ARGUMENTS);
+      }
+    }
+  }
+}
+
+// Whether candidates lie in a patch of the output with voxels that are not settled.
+static int AreUnsettled(Candidates c, const Output* output, const KernelParameters* p)
+{
+  if (IsEmpty(c))
+  {
+    return 0;
+  }
+  const int first[3] = { c.Low.x - p->OutputFirst[0], c.Low.y - p->OutputFirst[1],
+    c.Low.z - p->OutputFirst[2] };
+  const int last[3] = { c.High.x - p->OutputFirst[0], c.High.y - p->OutputFirst[1],
+    c.High.z - p->OutputFirst[2] };
+  return AnyUnsettled(output->Patches, first, last, p);
+}
+
+// Of cells with more candidates it is faster to take the tetrahedra one after the other, whatever these are.
+#define MOST_ONE_BY_ONE 128
+
+// The samples of a cell, by whichever of the two ways is right for it. all: those that are wanted.
+static void ResampleSamples(const SamplingMesh* mesh, const Cell* cell, const Candidates* all,
+  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  if (cell->Tetrahedra == 31 && cell->Inverted == 0)
+  {
+    // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
+    const int open = cell->State.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT;
+    const Candidates c = FindCandidates(cell->Low, cell->High, open, all);
+    if (IsEmpty(c))
+    {
+      return;
+    }
+    if (CountCandidates(c) <= MOST_ONE_BY_ONE)
+    {
+      ResampleUprightCell(mesh, cell, c, output, p ARRAY_ARGUMENTS);
+      return;
+    }
+  }
+  ResampleTetrahedra(mesh, cell, all, output, p ARRAY_ARGUMENTS);
+}
+
+// What is known of a cell before its samples are, and is counted. Returns whether it may have some.
+static int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all, Cell* cell,
+  Output* output, const KernelParameters* p)
+{
+  Vector* const q = cell->Vertices;
+  const int present = LoadCell(mesh, x, y, z, p, q);
+  const int active = ActiveTetrahedra(mesh, x, y, z, p);
+  if (present == 0 || active == 0)
+  {
+    return 0;
+  }
+  const Vector none = { LONG_MAX, LONG_MAX, LONG_MAX };
+  cell->Low = none;
+  cell->High.x = cell->High.y = cell->High.z = LONG_MIN;
+  for (int v = 0; v < 8; ++v)
+  {
+    if (present >> v & 1)
+    {
+      cell->Low = Minimum(cell->Low, q[v]);
+      cell->High = Maximum(cell->High, q[v]);
+    }
+  }
+  if (DEFORMVOLUME_IS_CLOSED(p->Pass) &&
+    !AreUnsettled(FindCandidates(cell->Low, cell->High, 0, all), output, p))
+  {
+    return 0;
+  }
+  const int mirror = Mirror(x, y, z, p);
+  // Orientations, against the one that the parity of the cell asks for.
+  const int odd = (mirror ^ mirror >> 1 ^ mirror >> 2) & 1;
+  cell->X = x;
+  cell->Y = y;
+  cell->Z = z;
+  cell->State = CellStateOf(mesh, x, y, z, p);
+  cell->Tetrahedra = 0;
+  cell->Inverted = 0;
+  int missing = 0;
+  for (int t = 0; t < 5; ++t)
+  {
+    const int needed = VerticesOf(t);
+    if (!(active >> t & 1) || (present & needed) != needed)
+    {
+      continue;
+    }
+    const Vector a = q[Tetrahedra[t][0]];
+    const Vector b = q[Tetrahedra[t][1]];
+    const Vector c = q[Tetrahedra[t][2]];
+    const Vector d = q[Tetrahedra[t][3]];
+    if (IsOverstretched(a, b, c, d))
+    {
+      ++output->Overstretched;
+      missing = 1;
+      continue;
+    }
+    const long determinant = Determinant(a, b, c, d);
+    const int upright = odd != (t == 4) ? determinant < 0 : determinant > 0;
+    cell->Tetrahedra |= (determinant != 0) << t;
+    cell->Inverted |= (!upright && determinant != 0) << t;
+    missing |= determinant == 0;
+  }
+  output->Inverted += popcount(cell->Inverted);
+  output->Missing += missing && cell->State.Interior != 255;
+  output->Assumed |= (cell->State.Regular & ~cell->State.Interior) != 0;
+  return 1;
+}
+
+// A box in pieces of at most DEFORMVOLUME_PIECE samples, or of one row: so many rows of so many planes.
+typedef struct
+{
+  int Rows;
+  int Planes;
+  int InPlane; // pieces of a plane
+  int Count;
+} Pieces;
+
+static Pieces DivideBox(Candidates c)
+{
+  const long width = c.High.x - c.Low.x + 1;
+  const long height = c.High.y - c.Low.y + 1;
+  const long depth = c.High.z - c.Low.z + 1;
+  Pieces pieces;
+  pieces.Rows = clamp(DEFORMVOLUME_PIECE / width, 1L, height);
+  pieces.Planes = pieces.Rows < height ? 1 : clamp(DEFORMVOLUME_PIECE / (width * height), 1L, depth);
+  pieces.InPlane = (height + pieces.Rows - 1) / pieces.Rows;
+  pieces.Count = pieces.InPlane * ((depth + pieces.Planes - 1) / pieces.Planes);
+  return pieces;
+}
+
+static Candidates PieceOf(Candidates c, int piece)
+{
+  const Pieces pieces = DivideBox(c);
+  c.Low.y += piece % pieces.InPlane * pieces.Rows;
+  c.High.y = min(c.High.y, c.Low.y + pieces.Rows - 1);
+  c.Low.z += piece / pieces.InPlane * pieces.Planes;
+  c.High.z = min(c.High.z, c.Low.z + pieces.Planes - 1);
+  return c;
+}
+
+// Boxes that are smaller, in 1/256 voxel, have at most as many samples as a piece: 40 * 40 * 40.
+#define LEAST_LARGE_SIZE (39 * 256)
+
+// Whether the cell is large and has been put into the list of such.
+static int IsPutOff(
+  const Cell* cell, const Candidates* all, Output* output, const KernelParameters* p)
+{
+  const Vector size = Subtract(cell->High, cell->Low);
+  if (max(size.x, max(size.y, size.z)) < LEAST_LARGE_SIZE)
+  {
+    return 0;
+  }
+  const Candidates box = FindCandidates(cell->Low, cell->High, 0, all);
+  if (IsEmpty(box) || CountCandidates(box) <= DEFORMVOLUME_PIECE)
+  {
+    return 0;
+  }
+  const uint place = atomic_inc(output->LargeCells);
+  if (place >= p->MostLargeCells)
+  {
+    return 0;
+  }
+  const int4 large = { cell->X, cell->Y, cell->Z, DivideBox(box).Count };
+  ((__global int4*)output->LargeCells)[1 + place] = large;
+  output->Large++;
+  return 1;
+}
+
+// One cell. all: the samples that are wanted.
+static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all,
+  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  Cell cell;
+  if (MakeCell(mesh, x, y, z, all, &cell, output, p) && !IsPutOff(&cell, all, output, p))
+  {
+    ResampleSamples(mesh, &cell, all, output, p ARRAY_ARGUMENTS);
+  }
+}
+
+// Adds counts to those of a section of a brick.
+static void AddCounts(
+  const Output* output, size_t section, __global uint* counters, const KernelParameters* p)
+{
+  const uint counts[DEFORMVOLUME_COUNTERS] = { output->Writes, output->Inverted,
+    output->Overstretched, output->Missing, output->Assumed, output->Candidates,
+    output->Touched, output->Large };
+  for (int i = 0; i < DEFORMVOLUME_COUNTERS; ++i)
+  {
+    // The passes that come later count nothing again.
+    if (counts[i] && (i == DEFORMVOLUME_COUNT_CANDIDATES || !DEFORMVOLUME_IS_CLOSED(p->Pass)))
+    {
+      atomic_add(counters + section * DEFORMVOLUME_COUNTERS + i, counts[i]);
+    }
+  }
+}
+
+#if HAS_CELL_KERNEL
+// A work-group takes a cuboid of cells. positions: room for three ints a vertex of the cuboid.
+__kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
+  __global const uchar* active, __global char* coverage, __global KEY* winners,
+  __global char* patches, __global uint* largeCells, __global uint* counters,
+  __local int* positions,
+  const KernelParameters p ARRAY_PARAMETERS)
+{
+  const int first[3] = { get_group_id(0) * DEFORMVOLUME_CUBOID_X,
+    get_group_id(1) * DEFORMVOLUME_CUBOID_Y, p.LayersBegin + get_group_id(2) * DEFORMVOLUME_CUBOID_Z };
+  const SamplingMesh unmapped = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
+  const int width = DEFORMVOLUME_CUBOID_X + 1;
+  const int height = DEFORMVOLUME_CUBOID_Y + 1;
+  for (int i = get_local_id(0); i < DEFORMVOLUME_CUBOID_VERTICES; i += get_local_size(0))
+  {
+    const int x = first[0] + i % width;
+    const int y = first[1] + i / width % height;
+    const int z = first[2] + i / (width * height);
+    // Cells beyond the launch's last layer are looked at where samples lie on the border of the mesh.
+    const int4 q = x < p.Size[0] && y < p.Size[1] && z < p.Size[2] && z <= p.LayersEnd + 1
+      ? VertexPosition(&unmapped, x, y, z, &p)
+      : (int4)(INT_MIN, 0, 0, 0);
+    positions[3 * i] = q.x;
+    positions[3 * i + 1] = q.y;
+    positions[3 * i + 2] = q.z;
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, positions,
+    { first[0], first[1], first[2] } };
+  Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
+  const Candidates all = AllCandidates(&p);
+  for (int i = get_local_id(0);
+       i < DEFORMVOLUME_CUBOID_X * DEFORMVOLUME_CUBOID_Y * DEFORMVOLUME_CUBOID_Z;
+       i += get_local_size(0))
+  {
+    const int x = first[0] + i % DEFORMVOLUME_CUBOID_X;
+    const int y = first[1] + i / DEFORMVOLUME_CUBOID_X % DEFORMVOLUME_CUBOID_Y;
+    const int z = first[2] + i / (DEFORMVOLUME_CUBOID_X * DEFORMVOLUME_CUBOID_Y);
+    if (x < p.Size[0] - 1 && y < p.Size[1] - 1 && z < p.LayersEnd)
+    {
+      ResampleCell(&mesh, x, y, z, &all, &output, &p ARRAY_ARGUMENTS);
+    }
+  }
+  // The sums over all bricks are what counts here.
+  const uint brick = ((uint)(first[2] - p.BrickOrigin[2]) / DEFORMVOLUME_BRICK_Z * p.BrickCount[1] +
+                       (uint)(first[1] - p.BrickOrigin[1]) / DEFORMVOLUME_BRICK_Y) *
+    p.BrickCount[0];
+  AddCounts(&output, DEFORMVOLUME_SECTIONS * (size_t)brick, counters, &p);
+}
+#endif

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the launches of the kernels work on. Shared by the C++ code and the kernels: four-byte
+// numbers only, so that both sides lay it out alike.
+//
+// "Local" indices count from 0 at the voxel grid's first voxel. Vertex data of the volume lie in
+// chunks of whole planes of constant z, positions in slabs of such planes.
+#ifndef DeformVolumeKernelParameters_h
+#define DeformVolumeKernelParameters_h
+
+#ifndef __OPENCL_VERSION__
+namespace deformvolume
+{
+#endif
+
+typedef struct
+{
+  int Size[3];     // voxels on each axis
+  int First[3];    // structured index of the first voxel; its parity decides the 5T split
+  int ChunkFirst;  // local z of the first vertex plane, and of the first cell layer, in the chunk
+  int SlabFirst;   // local z of the first vertex plane in the positions
+  int PlanesBegin; // local z of the first vertex plane to work on
+  int PlanesEnd;   // and one past the last
+  int LayersBegin; // local z of the first layer of cells to work on
+  int LayersEnd;   // and one past the last
+  int OutputFirst[3]; // structured index of the first output voxel in the output buffers
+  int OutputSize[3];  // output voxels in the buffers on each axis
+  int WholeFirst[3];  // the output that these are a part of: its first voxel, and one past the last
+  int WholeEnd[3];    // one, counted from the first voxel in the buffers
+  int IsPart;         // whether there are voxels beyond those in the buffers
+  int Pass;           // one of the passes below
+  int HasActive;      // whether a mask of active tetrahedra is there; without one all are active
+  int HasState;       // whether the vertices have a state; without one all that could be is there
+  int BrickOrigin[3]; // local index of the first cell of the first brick; may lie before the volume
+  int BrickCount[3];  // bricks on each axis
+  int ListBegin; // place in the list, of bricks or of pieces of cells, of the first one to work on
+  int ListEnd;   // and one past the last
+  int Portion;   // bricks of the list that a work-item takes at once
+  int MostLargeCells; // room in the list of large cells
+} KernelParameters;
+
+// The undeformed position of the voxels with one index on an axis, in 1/256 output voxel: a whole
+// number and what misses to it.
+typedef struct
+{
+  int Whole;
+  float Fraction;
+} RestPosition;
+
+// A displacement field. IndexToField: row-major 3 x 4, from an index counted from the first voxel
+// of the whole volume to a continuous index of the field.
+typedef struct
+{
+  float IndexToField[12];
+  int First[3]; // of the voxel grid, counted so
+  int Dimensions[3];
+  int Extrapolate; // whether voxels outside the field follow its border
+  int SameGrid;    // whether voxels are points of the field, and all lie in it: the point of voxel
+  int Offset[3];   // (i, j, k) is (i, j, k) + Offset
+  int IsMapped;    // of vectors that are read where they lie: whether the matrix is to be applied
+  unsigned int ToDisplacement[18]; // row-major 3 x 3, of each double the lower four bytes first
+} FieldParameters;
+
+// The displacement in a tetrahedron of the deformation mesh, in output voxels; 64 bytes. That of
+// the voxel with the local index (x, y, z) is, in this order,
+//   Displacement +
+//     ((AlongY * (y - Origin[1]) + AlongZ * (z - Origin[2])) + AlongX * (x - Origin[0])).
+typedef struct
+{
+  float Displacement[3]; // at Origin
+  float AlongX[3];       // its derivatives
+  float AlongY[3];
+  float AlongZ[3];
+  float Origin[3]; // local index of a voxel in the tetrahedron
+  float Padding;
+} TetrahedronRecord;
+
+// Tetrahedra on the device name a node by its place in units of 8 bytes, of which it takes this
+// many: processors add eight times a number to an address at no cost, but not sixteen times.
+#define DEFORMVOLUME_NODE_PLACES 2
+
+// Passes of the exact resampling kernel. What comes after the first is for voxels that several
+// cells write, and for those on a crease, which none does. All others keep what the first pass gave
+// them: a voxel never depends on others, and so not on how the output is divided.
+#define DEFORMVOLUME_PASS_DIRECT 0 // write, and count the writes
+#define DEFORMVOLUME_PASS_OWNERS 1 // the same, and find voxels that several cells write: who wins
+#define DEFORMVOLUME_PASS_MARK 2   // find who wins of those that only hold a voxel not settled
+#define DEFORMVOLUME_PASS_WINNER 3 // write where this tetrahedron is the winner
+// Whether every tetrahedron that holds a voxel takes part, and not only the one that writes it.
+#define DEFORMVOLUME_IS_CLOSED(pass) ((pass) >= DEFORMVOLUME_PASS_MARK)
+// Whether values are written.
+#define DEFORMVOLUME_IS_WRITING(pass) ((pass) != DEFORMVOLUME_PASS_MARK)
+
+// Cells of a brick, which begins at even structured indices: the parity of a place in a brick is
+// that of the structured index. It is long on x, in whose direction memory is contiguous.
+#define DEFORMVOLUME_BRICK_X 192
+#define DEFORMVOLUME_BRICK_Y 16
+#define DEFORMVOLUME_BRICK_Z 16
+// Bricks begin at structured indices that are multiples of these numbers.
+#define DEFORMVOLUME_BRICK_STEPS                                                                   \
+  {                                                                                                \
+    2, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z                                                  \
+  }
+// What can be run of a brick by itself: columns of so many cells on x, and halves on y and z.
+#define DEFORMVOLUME_COLUMN 32
+#define DEFORMVOLUME_COLUMNS (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_COLUMN)
+#define DEFORMVOLUME_SECTIONS (4 * DEFORMVOLUME_COLUMNS)
+
+// What a work-item of the kernel ResampleBricks takes: the number of a brick, and above that a bit
+// for each column, all from the lowest one to the highest one being run, and for y and z a bit for
+// the lower half and one for the upper half.
+#define DEFORMVOLUME_BRICK_BITS 22
+#define DEFORMVOLUME_WHOLE_BRICK ((1 << (DEFORMVOLUME_COLUMNS + 4)) - 1)
+
+// Cells of a cuboid, whose vertices a work-group of the kernel Resample maps into local memory.
+#define DEFORMVOLUME_CUBOID_X 64
+#define DEFORMVOLUME_CUBOID_Y 4
+#define DEFORMVOLUME_CUBOID_Z 4
+// Vertices of a cuboid.
+#define DEFORMVOLUME_CUBOID_VERTICES                                                               \
+  ((DEFORMVOLUME_CUBOID_X + 1) * (DEFORMVOLUME_CUBOID_Y + 1) * (DEFORMVOLUME_CUBOID_Z + 1))
+
+// Counters of a section of a brick: number (brick * 4 + 2 (upper z) + (upper y)) * COLUMNS +
+// column.
+#define DEFORMVOLUME_COUNT_WRITES 0
+#define DEFORMVOLUME_COUNT_INVERTED 1
+#define DEFORMVOLUME_COUNT_OVERSTRETCHED 2
+#define DEFORMVOLUME_COUNT_MISSING 3    // cells on the border with flat tetrahedra or left-out ones
+#define DEFORMVOLUME_COUNT_ASSUMED 4    // nonzero where it was assumed that there are none such
+#define DEFORMVOLUME_COUNT_CANDIDATES 5 // voxels that cells may have won
+#define DEFORMVOLUME_COUNT_TOUCHED 6 // nonzero where cells hold samples that others write, or none
+#define DEFORMVOLUME_COUNT_LARGE 7   // cells that were put into the list of large ones
+#define DEFORMVOLUME_COUNTERS 8
+
+// Samples that a work-item tries of one cell. A cell whose box has more is large: it goes into a
+// list, and what that lists is resampled in pieces, by kernels that follow (LargeCells.cl).
+#define DEFORMVOLUME_PIECE 65536
+// Room in that list, for four integers a cell: local x, y and z, and in how many pieces. Cells that
+// find no room there are resampled where they are found.
+#define DEFORMVOLUME_MOST_LARGE_CELLS 65536
+// Pieces in a launch.
+#define DEFORMVOLUME_PIECES 1024
+
+// Output voxels that a work-item takes of the kernels that count or settle all that are
+// covered or not.
+#define DEFORMVOLUME_COUNTED_VOXELS 4096
+
+// Voxels of a patch of the output on each axis: what is cleared where a part is made anew and what
+// it covers may change, and what is looked at where voxels are not settled.
+#define DEFORMVOLUME_PATCH 8
+// Patches that so many voxels on an axis lie in.
+#define DEFORMVOLUME_PATCHES(voxels) (((voxels) + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH)
+// What is known of a patch.
+#define DEFORMVOLUME_PATCH_UNSETTLED 1 // voxels have to be won
+#define DEFORMVOLUME_PATCH_TOUCHED 2   // cells may hold voxels that others write, or none
+
+// Bytes that a work-item of the kernels Fill1 to Fill8 writes.
+#define DEFORMVOLUME_FILLED_BYTES 65536
+
+// State of a vertex of the sampling mesh.
+#define DEFORMVOLUME_VERTEX_SOURCE 1   // it has a deformed position and may be interpolated
+#define DEFORMVOLUME_VERTEX_INTERIOR 2 // all tetrahedra that it could belong to are there
+#define DEFORMVOLUME_CELL_WHOLE 4      // of the cell that begins at it, all tetrahedra are there
+#define DEFORMVOLUME_VERTEX_REGULAR 8  // interior, but that it may lie on the border of the volume
+
+#ifdef __OPENCL_VERSION__
+
+// Place of the x of a vertex's position; its y and z follow one and two rows later.
+static size_t PositionIndex(int x, int y, int z, const KernelParameters* p)
+{
+  return ((size_t)(z - p->SlabFirst) * p->Size[1] + y) * 3 * p->Size[0] + x;
+}
+
+// Patches of the output along x that hold the voxels with an y and a z: number of the first one.
+static size_t PatchRow(size_t y, size_t z, const KernelParameters* p)
+{
+  const size_t width = DEFORMVOLUME_PATCHES(p->OutputSize[0]);
+  const size_t height = DEFORMVOLUME_PATCHES(p->OutputSize[1]);
+  return (z / DEFORMVOLUME_PATCH * height + y / DEFORMVOLUME_PATCH) * width;
+}
+
+// The section of a brick that a cell lies in, as counters number them.
+static size_t SectionOf(int x, int y, int z, const KernelParameters* p)
+{
+  const int inBricks[3] = { x - p->BrickOrigin[0], y - p->BrickOrigin[1], z - p->BrickOrigin[2] };
+  const size_t brick = ((size_t)(inBricks[2] / DEFORMVOLUME_BRICK_Z) * p->BrickCount[1] +
+                         inBricks[1] / DEFORMVOLUME_BRICK_Y) *
+      p->BrickCount[0] +
+    inBricks[0] / DEFORMVOLUME_BRICK_X;
+  const int halves = inBricks[1] % DEFORMVOLUME_BRICK_Y / (DEFORMVOLUME_BRICK_Y / 2) +
+    inBricks[2] % DEFORMVOLUME_BRICK_Z / (DEFORMVOLUME_BRICK_Z / 2) * 2;
+  return DEFORMVOLUME_SECTIONS * brick + halves * DEFORMVOLUME_COLUMNS +
+    inBricks[0] / DEFORMVOLUME_COLUMN % DEFORMVOLUME_COLUMNS;
+}
+
+#else
+} // namespace deformvolume
+#endif
+
+#endif
