@@ -297,11 +297,7 @@ cl::Program OpenCLContext::Build(const std::string& source, const std::string& o
 
 cl::Program OpenCLContext::BuildSource(const std::string& source, const std::string& options) const
 {
-  // On processors without AVX-512, clang warns that functions with vectors of 64 bytes would not
-  // fit those compiled for others, which there are none of; PoCL has it tell so on the terminal.
-  const std::string quiet = "#if defined(__clang__) && __clang_major__ >= 11\n"
-                            "#pragma clang diagnostic ignored \"-Wpsabi\"\n#endif\n";
-  cl::Program program(this->Context, quiet + source);
+  cl::Program program(this->Context, source);
   try
   {
     program.build({ this->Device.Device }, options.c_str());

@@ -2,6 +2,7 @@
 // 200 random edits with Incremental on, each compared bit by bit with a filter with Incremental
 // off: nodes that move, masks, extents, spacings, arrays, backgrounds, aborts, outputs that others
 // hold. Before that, what is read of displacements against filters that have read nothing before.
+#include "DeviceNeeds.h"
 #include "FilterTesting.h"
 
 #include <vtkCallbackCommand.h>
@@ -63,7 +64,7 @@ public:
       }
     }
     std::cout << this->Parts << " of " << edits << " edits were made in part\n";
-    VERIFY(this->Parts > edits / 5);
+    VERIFY(this->Parts > edits / 5 || !HasVectors());
   }
 
 private:
