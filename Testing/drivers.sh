@@ -24,7 +24,7 @@ build=$(realpath "${DEFORMVOLUME_BUILD:-build/vtk}")
 output=$PWD/build/drivers
 tests=${DEFORMVOLUME_DRIVER_TESTS:-^(Kernels|Cxx)\.}
 # These choose a driver or a cache of their own, or need no driver.
-others='Oclgrind|Mutations|ProgramCacheOfDriver|TestEnvironment|TestTetGen|TestDeformHead|TestDeformLarge'
+others='Oclgrind|ProgramCacheOfDriver|TestEnvironment|TestTetGen|TestDeformHead|TestDeformLarge'
 library=$PWD/build/intel-opencl/lib
 
 icd() # the file of a driver in the system's folder, if any

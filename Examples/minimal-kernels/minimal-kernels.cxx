@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Deforms an array by a tetrahedral mesh, without VTK: a volume of 64 x 64 x 64 voxels is sheared,
 // by 16 voxels along x from its lowest slice to its highest one.
+#include <deformvolume/Kernels/FiveTetrahedra.h>
 #include <deformvolume/Kernels/StaticMapping.h>
 #include <deformvolume/Kernels/VolumeDeformer.h>
 
@@ -27,8 +28,7 @@ int main()
     corners.emplace_back(last * (corner & 1), last * (corner >> 1 & 1), last * (corner >> 2));
     displacements.insert(displacements.end(), { 16.0F * (corner >> 2), 0.0F, 0.0F });
   }
-  const std::vector<Tetrahedron> tetrahedra{ { 0, 2, 3, 6 }, { 6, 7, 3, 5 }, { 3, 1, 0, 5 },
-    { 0, 4, 6, 5 }, { 6, 3, 5, 0 } };
+  const std::vector<Tetrahedron> tetrahedra = DEFORMVOLUME_FIVE_TETRAHEDRA;
 
   DeformRequest request;
   request.OutputExtent = { 0, last + 16, 0, last, 0, last };

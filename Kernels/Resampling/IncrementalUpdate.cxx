@@ -421,22 +421,18 @@ void IncrementalUpdate::ChangeMask(
 {
   const int less = ofCells ? 1 : 0;
   const std::int64_t size[2] = { this->Grid.Size[0] - less, this->Grid.Size[1] - less };
-  ParallelFor(0, static_cast<std::int64_t>(this->Grid.GetNumberOfBricks()), 1,
-    [&](std::int64_t firstPart, std::int64_t lastPart)
+  ParallelForParts(this->Grid.GetNumberOfBricks(), 1,
+    [&](std::size_t subBrick, std::size_t)
     {
-      for (std::int64_t subBrick = firstPart; subBrick < lastPart; ++subBrick)
+      const Extent region = this->Grid.GetVertices(subBrick, MaskReach);
+      const std::int64_t row = region[1] - less - region[0] + 1;
+      for (std::int64_t z = region[4]; z <= region[5] - less && !this->Masked[subBrick]; ++z)
       {
-        const Extent region = this->Grid.GetVertices(subBrick, MaskReach);
-        const std::int64_t row = region[1] - less - region[0] + 1;
-        for (std::int64_t z = region[4]; z <= region[5] - less && !this->Masked[subBrick]; ++z)
+        for (std::int64_t y = region[2]; y <= region[3] - less && !this->Masked[subBrick]; ++y)
         {
-          for (std::int64_t y = region[2]; y <= region[3] - less && !this->Masked[subBrick]; ++y)
-          {
-            const std::int64_t begin = (z * size[1] + y) * size[0] + region[0];
-            this->Masked[subBrick] =
-              row > 0 && IsDifferent(last, next, value, begin, static_cast<std::size_t>(row)) ? 1
-                                                                                              : 0;
-          }
+          const std::int64_t begin = (z * size[1] + y) * size[0] + region[0];
+          this->Masked[subBrick] =
+            row > 0 && IsDifferent(last, next, value, begin, static_cast<std::size_t>(row)) ? 1 : 0;
         }
       }
     });
