@@ -7,6 +7,8 @@
 #       ch2better, the brain of an MRI at 301 x 370 x 316 voxels, pushed in from where the nose is
 #   build/demo/head-deformed.vti, head-before-after.png
 #       ch2, the whole head at 181 x 217 x 181 voxels, with its nose pushed in
+#   build/demo/cut-and-pull.png
+#       ch2better again, cut along a sheet and pulled open
 #
 # Can be run again; needs no network where nothing is missing.
 set -euo pipefail
@@ -15,7 +17,7 @@ cd "$(dirname "$0")/.."
 bash Testing/packages.sh library example
 # What only tests need is not asked for. A build directory that is there is taken as it is.
 [ -f build/vtk/build.ninja ] || cmake --preset vtk -DBUILD_TESTING=OFF
-cmake --build --preset vtk --target deform-volume
+cmake --build --preset vtk --target deform-volume cut-and-pull
 
 templates=/usr/share/mricron/templates
 mkdir -p build/demo/kernel-cache
@@ -38,3 +40,9 @@ deform $templates/ch2better.nii.gz deformed.vti before-after.png \
   --push 0,72,-5,0,-25,0,60
 deform $templates/ch2.nii.gz head-deformed.vti head-before-after.png \
   --push 0,90,-54,0,-20,0,45
+
+echo
+echo "$templates/ch2better.nii.gz, cut and pulled open"
+xvfb-run -a -s "-noreset -screen 0 1400x1024x24" build/vtk/bin/cut-and-pull \
+  $templates/ch2better.nii.gz build/demo/cut-and-pull.png
+echo "See build/demo/cut-and-pull.png"

@@ -160,14 +160,17 @@ std::string vtkDeformVolumeFilter::GetSummary()
 //------------------------------------------------------------------------------
 vtkTypeInt64 vtkDeformVolumeFilter::GetDeviceMemory()
 {
-  return static_cast<vtkTypeInt64>(this->Internals->Device.GetDeviceMemory());
+  return static_cast<vtkTypeInt64>(this->Internals->GetDeviceMemory());
 }
 
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::ReleaseDeviceMemory()
 {
-  this->Internals->Device.ReleaseMemory();
-  this->Internals->Outputs.Forget();
+  for (auto& state : this->Internals->States)
+  {
+    state.second.Device.ReleaseMemory();
+    state.second.Outputs.Forget();
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -219,9 +222,11 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   }
   os << "\n";
   os << indent << "Padding: " << this->Padding << "\n";
+  os << indent << "BoundsGranularity: " << this->BoundsGranularity << "\n";
   os << indent << "OutputSpacingMode: " << this->OutputSpacingMode << "\n";
   os << indent << "CustomSpacing: " << this->CustomSpacing[0] << " " << this->CustomSpacing[1]
      << " " << this->CustomSpacing[2] << "\n";
+  os << indent << "SamplingFactor: " << this->SamplingFactor << "\n";
   os << indent << "BackgroundValue: " << this->BackgroundValue << "\n";
   os << indent << "OutsideMode: " << this->OutsideMode << "\n";
   os << indent << "CategoricalArrays:";
@@ -233,6 +238,7 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Resampler: " << this->Resampler << "\n";
   os << indent << "Interpolation: " << this->Interpolation << "\n";
   os << indent << "ResamplerInUse: " << this->ResamplerInUse << "\n";
+  os << indent << "OpenSplits: " << (this->OpenSplits ? "on" : "off") << "\n";
   os << indent << "Incremental: " << (this->Incremental ? "on" : "off") << "\n";
   os << indent << "StreamInput: " << (this->StreamInput ? "on" : "off") << "\n";
   os << indent << "Device: \"" << this->Device << "\"\n";
@@ -248,6 +254,12 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfCoveredVoxels: " << this->NumberOfCoveredVoxels << "\n";
   os << indent << "NumberOfBricks: " << this->NumberOfBricks << "\n";
   os << indent << "NumberOfResampledBricks: " << this->NumberOfResampledBricks << "\n";
+  os << indent << "ChangedExtent:";
+  for (const int end : this->ChangedExtent)
+  {
+    os << " " << end;
+  }
+  os << "\n";
   os << indent << "NumberOfMappingBuilds: " << this->NumberOfMappingBuilds << "\n";
   os << indent << "NumberOfVolumeUploads: " << this->NumberOfVolumeUploads << "\n";
   os << indent << "DeviceInUse: \"" << this->DeviceInUse << "\"\n";

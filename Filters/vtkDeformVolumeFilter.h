@@ -177,6 +177,21 @@ public:
   vtkGetMacro(Padding, int);
   ///@}
 
+  ///@{
+  /**
+   * In the mode DEFORMED_BOUNDS the whole extent, Padding included, is rounded outwards to
+   * multiples of so many voxels (in structured indices of the output), so that it stays while the
+   * body moves a little: only an output of the same extent is updated in part (see Incremental),
+   * and viewers need no new texture. It is kept until the deformed body with its padding leaves it,
+   * or a side could be more than so many voxels nearer; then that side moves. What is kept starts
+   * anew with a change of the volume's geometry, of the settings that decide the bounds, or of the
+   * time steps. So the extent depends on the updates before; the voxels in it do not. 0 and 1: off.
+   * Default 0, at least 0.
+   */
+  vtkSetClampMacro(BoundsGranularity, int, 0, 1000);
+  vtkGetMacro(BoundsGranularity, int);
+  ///@}
+
   enum OutputSpacingModes
   {
     VOLUME_SPACING = 0,
@@ -201,6 +216,26 @@ public:
    */
   vtkSetVector3Macro(CustomSpacing, double);
   vtkGetVector3Macro(CustomSpacing, double);
+  ///@}
+
+  ///@{
+  /**
+   * With 2 or 4 the filter works on every second or fourth voxel of the volume on each axis, those
+   * whose structured indices are divisible by the factor, as if they were the volume. They lie
+   * where they lay; voxels beyond the last of them are left out. The output's spacing, the volume's
+   * or CustomSpacing, is so many times as large, and Padding and BoundsGranularity count such
+   * voxels. Voxels that stay keep their blanking; what is blanked between them does not matter. A
+   * cell has all its tetrahedra where all cells of the volume that it covers have all of theirs,
+   * and none otherwise, so that nothing shows that is cut off. No values are averaged.
+   *
+   * This is for the time in which something moves. What is kept from one update to the next (the
+   * static mapping, what the device holds, the output) is kept for each factor that has been used
+   * since the volume was connected: to change the factor and back builds nothing anew. Where the
+   * memory does not suffice, what is kept for other factors is freed first. Other values are an
+   * error. Default 1.
+   */
+  vtkSetMacro(SamplingFactor, int);
+  vtkGetMacro(SamplingFactor, int);
   ///@}
 
   ///@{
@@ -302,6 +337,21 @@ public:
   vtkGetMacro(Interpolation, int);
   void SetInterpolationToLinearInterpolation() { this->SetInterpolation(LINEAR_INTERPOLATION); }
   void SetInterpolationToCubicInterpolation() { this->SetInterpolation(CUBIC_INTERPOLATION); }
+  ///@}
+
+  ///@{
+  /**
+   * Whether a gap opens in the volume where the deformation mesh is split: where tetrahedra that
+   * have a place at rest in common name different nodes there, as after a cut. Tetrahedra of the
+   * sampling mesh with vertices on both sides are left out then, a layer as thick as a cell;
+   * otherwise they are stretched over the gap. Which sides there are is told by nodes with one rest
+   * position, so that a mesh of several parts opens between these, too. The deformation mesh should
+   * not be finer than the volume: a cell sees the split by the tetrahedra that its vertices lie in.
+   * MESH_RASTERIZATION leaves gaps by itself. Default: off.
+   */
+  vtkSetMacro(OpenSplits, bool);
+  vtkGetMacro(OpenSplits, bool);
+  vtkBooleanMacro(OpenSplits, bool);
   ///@}
 
   ///@{
@@ -419,13 +469,24 @@ public:
   vtkGetMacro(NumberOfResampledBricks, vtkIdType);
   ///@}
 
+  /**
+   * The smallest extent, in structured indices of the output, that is known to hold all voxels that
+   * the last execution may have changed, so that a viewer sends only these to the device that draws
+   * them. It is the extent of the output where all of it was made anew, and empty
+   * (0, -1, 0, -1, 0, -1) where nothing changed, before the first execution and after one that
+   * failed. Less than all of it is known after incremental executions only, see Incremental. It
+   * compares with the execution before: after an Update() that had nothing to execute it is what it
+   * was. Under MPI it is about the piece of the output on this rank.
+   */
+  vtkGetVector6Macro(ChangedExtent, int);
+
   ///@{
   /**
    * How often this filter has built a static mapping, and sent a volume to the device: a moved mesh
    * costs neither. MESH_RASTERIZATION needs no mapping; a change to it or from it sends the volume.
-   * The mapping is built anew after a change of the mesh at rest, of the volume's
-   * geometry, of the ratio of spacings, of OutsideMode or of the device, and after
-   * ReleaseDeviceMemory().
+   * The mapping is built anew after a change of the mesh at rest (tetrahedra that get other nodes
+   * in the same places are none, and nor are nodes that are added), of the volume's geometry, of
+   * the ratio of spacings, of OutsideMode or of the device, and after ReleaseDeviceMemory().
    */
   vtkGetMacro(NumberOfMappingBuilds, vtkIdType);
   vtkGetMacro(NumberOfVolumeUploads, vtkIdType);
@@ -478,12 +539,15 @@ private:
   int NumberOfTimeSamples = 11;
   double CustomBounds[6] = { -1.0, 1.0, -1.0, 1.0, -1.0, 1.0 };
   int Padding = 0;
+  int BoundsGranularity = 0;
   int OutputSpacingMode = VOLUME_SPACING;
   double CustomSpacing[3] = { 1.0, 1.0, 1.0 };
+  int SamplingFactor = 1;
   double BackgroundValue = 0.0;
   int OutsideMode = DISCARD;
   int Resampler = AUTOMATIC;
   int Interpolation = LINEAR_INTERPOLATION;
+  bool OpenSplits = false;
   bool Incremental = true;
   bool StreamInput = false;
   std::string Device;
@@ -500,6 +564,7 @@ private:
   vtkIdType NumberOfCoveredVoxels = 0;
   vtkIdType NumberOfBricks = 0;
   vtkIdType NumberOfResampledBricks = 0;
+  int ChangedExtent[6] = { 0, -1, 0, -1, 0, -1 };
   vtkIdType NumberOfMappingBuilds = 0;
   vtkIdType NumberOfVolumeUploads = 0;
   int ResamplerInUse = AUTOMATIC;

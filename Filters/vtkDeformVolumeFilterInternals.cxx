@@ -4,10 +4,8 @@
 #include "AbortCheck.h"
 #include "FieldFolds.h"
 #include "InputUpdate.h"
-#include "LookupBounds.h"
-#include "OutputExtent.h"
 #include "ResamplerChoice.h"
-#include "VectorArray.h"
+#include "VectorChoice.h"
 #include "VolumeArrays.h"
 
 #include "vtkDataObject.h"
@@ -19,13 +17,121 @@
 #include "vtkInformationIntegerVectorKey.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 
 using deformvolume::DeformationSource;
 using deformvolume::Error;
 using deformvolume::ImageGeometry;
-using deformvolume::IndexBounds;
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::SelectState()
+{
+  const int factor = this->Self->SamplingFactor;
+  if (factor != 1 && factor != 2 && factor != 4)
+  {
+    throw Error("SamplingFactor is " + std::to_string(factor) + ". Set 1, 2 or 4.");
+  }
+  this->State = &this->States[factor];
+}
+
+//------------------------------------------------------------------------------
+std::uint64_t vtkDeformVolumeFilter::vtkInternals::GetDeviceMemory() const
+{
+  std::uint64_t bytes = 0;
+  for (const auto& state : this->States)
+  {
+    bytes += state.second.Device.GetDeviceMemory();
+  }
+  return bytes;
+}
+
+//------------------------------------------------------------------------------
+bool vtkDeformVolumeFilter::vtkInternals::ReleaseOtherStates()
+{
+  bool released = false;
+  for (auto& state : this->States)
+  {
+    if (&state.second != this->State && state.second.HoldsMemory())
+    {
+      state.second.Release();
+      released = true;
+    }
+  }
+  return released;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkDeformVolumeFilter::vtkInternals::SelectDevice()
+{
+  auto limit = static_cast<std::uint64_t>(this->Self->MemoryLimit);
+  if (limit > 0)
+  {
+    const std::uint64_t others = this->GetDeviceMemory() - this->State->Device.GetDeviceMemory();
+    if (others < limit)
+    {
+      limit -= others;
+    }
+    else
+    {
+      this->ReleaseOtherStates();
+    }
+  }
+  return this->State->Device.SetDevice(
+    this->Self->Device, limit, static_cast<std::size_t>(this->Self->WorkGroupSize));
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::CheckWithRoom(const std::function<void()>& check)
+{
+  try
+  {
+    check();
+    return;
+  }
+  catch (const Error&)
+  {
+    if (!this->ReleaseOtherStates())
+    {
+      throw;
+    }
+  }
+  this->SelectDevice();
+  check();
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::ReleaseOldVolumes(
+  const std::vector<deformvolume::SourceArray>& arrays)
+{
+  std::vector<const void*> inUse;
+  for (const deformvolume::SourceArray& array : arrays)
+  {
+    inUse.push_back(array.Array);
+  }
+  const auto source = deformvolume::GetInputStamp(this->Self, 0);
+  for (auto& state : this->States)
+  {
+    // Arrays that were changed are still there, and so are those of other parts of a volume.
+    if (&state.second != this->State && state.second.ArraysInUse != inUse &&
+      state.second.SourceInUse != source)
+    {
+      state.second.Release();
+    }
+  }
+  this->State->ArraysInUse = inUse;
+  this->State->SourceInUse = source;
+}
+
+//------------------------------------------------------------------------------
+ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetCoarseGeometry(
+  const ImageGeometry& volume) const
+{
+  const ImageGeometry coarse = deformvolume::GetCoarse(volume, this->Self->SamplingFactor);
+  deformvolume::CheckCoarse(coarse, this->Self->SamplingFactor);
+  return coarse;
+}
 
 //------------------------------------------------------------------------------
 ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetOutputGeometry(
@@ -44,7 +150,8 @@ ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetOutputGeometry(
           "xyz"[axis] + ". Set a spacing greater than 0.");
       }
       // A volume with negative spacing keeps its sense.
-      output.Spacing[axis] = std::copysign(spacing, volume.Spacing[axis]);
+      output.Spacing[axis] =
+        std::copysign(this->Self->SamplingFactor * spacing, volume.Spacing[axis]);
     }
   }
   return output;
@@ -57,31 +164,11 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
   DeformationSource source;
   source.Shape = shape;
   source.Rest = rest;
-  vtkInformation* choice = this->Self->GetInputArrayInformation(0);
-  const char* name = choice->Get(vtkDataObject::FIELD_NAME());
-  const bool unnamed = name && !*name;
-  source.Selector = [this, unnamed](vtkDataSet* dataSet)
-  {
-    int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-    vtkDataArray* array = unnamed ? deformvolume::FindVectors(dataSet)
-                                  : this->Self->GetInputArrayToProcess(0, dataSet, association);
-    return association == vtkDataObject::FIELD_ASSOCIATION_POINTS ? array : nullptr;
-  };
-  if (name && *name)
-  {
-    source.Wanted = std::string("point array \"") + name + "\"";
-  }
-  else
-  {
-    const char* attribute = unnamed ? "Vectors"
-                                    : vtkDataSetAttributes::GetAttributeTypeAsString(
-                                        choice->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE()));
-    source.Wanted = std::string("active ") + (attribute ? attribute : "Vectors") + " of its points";
-  }
+  deformvolume::ChooseVectors(source, this->Self->GetInputArrayInformation(0),
+    [this](vtkDataSet* dataSet, int& association)
+    { return this->Self->GetInputArrayToProcess(0, dataSet, association); });
   source.FieldIsInverse = this->Self->FieldIsInverse;
-  source.Choice = source.Wanted + " " +
-    std::to_string(choice->Get(vtkDataObject::FIELD_ASSOCIATION())) +
-    (source.FieldIsInverse ? " inverse" : "");
+  source.Choice += source.FieldIsInverse ? " inverse" : "";
   source.DisplacementScale = this->Self->DisplacementScale;
   if (!std::isfinite(source.DisplacementScale))
   {
@@ -90,161 +177,6 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
   source.Volume = volume;
   source.Scale = volume.Spacing / this->GetOutputGeometry(volume).Spacing;
   return source;
-}
-
-//------------------------------------------------------------------------------
-IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(const deformvolume::Ranks& ranks,
-  const ImageGeometry& volume, vtkInformation* output, const double* time)
-{
-  vtkDataObject* shape = deformvolume::UpdateInput(this->Self, 1, output, time, ranks);
-  vtkDataObject* rest = deformvolume::UpdateInput(this->Self, 2, output, time, ranks);
-  const DeformationSource source = this->ReadDeformation(ranks, volume, shape, rest);
-  IndexBounds bounds;
-  ranks.Attempt([&] { bounds = this->ComputeBounds(volume, source); });
-  this->VersionsInBounds = this->GetVersions();
-  return bounds;
-}
-
-//------------------------------------------------------------------------------
-std::pair<std::uint64_t, std::uint64_t> vtkDeformVolumeFilter::vtkInternals::GetVersions() const
-{
-  return { this->Deformation.GetRestVersion(), this->Deformation.GetVectorsVersion() };
-}
-
-//------------------------------------------------------------------------------
-IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
-  const ImageGeometry& volume, const DeformationSource& source)
-{
-  const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent,
-    { { source.Scale.x, source.Scale.y, source.Scale.z } } };
-  const bool extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
-  if (this->Deformation.IsField())
-  {
-    const deformvolume::DisplacementField field = this->Deformation.GetField(extrapolate);
-    const IndexBounds* known = this->Deformation.GetFieldBounds();
-    const IndexBounds bounds = known       ? *known
-      : this->Deformation.IsInverseField() ? deformvolume::ComputeLookupBounds(voxelGrid, field)
-                                           : deformvolume::ComputeDeformedBounds(voxelGrid, field);
-    if (bounds.IsEmpty())
-    {
-      throw Error("The displacement field on input port 1 holds no voxel of the volume. Check "
-                  "that both are in the same world coordinates and overlap.");
-    }
-    return bounds;
-  }
-  if (extrapolate)
-  {
-    // The links are made before any output is asked for: what they need is checked here.
-    this->Device.SetDevice(this->Self->Device, static_cast<std::uint64_t>(this->Self->MemoryLimit),
-      static_cast<std::size_t>(this->Self->WorkGroupSize));
-    this->Device.CheckMemory(voxelGrid, {}, { { 0, -1, 0, -1, 0, -1 } }, 0, this->Deformation,
-      this->Mapping.GetRunBytes(this->Deformation, { volume, volume.PointExtent, true }));
-    this->Mapping.Update(this->Deformation, { volume, volume.PointExtent, true }, {});
-    return deformvolume::ComputeDeformedBounds(voxelGrid, this->Mapping.GetLinks(),
-      this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
-  }
-  const deformvolume::Deformation& mesh = this->Deformation;
-  if (this->BoundsRestVersion != mesh.GetRestVersion() ||
-    this->BoundsGrid.VertexExtent != voxelGrid.VertexExtent ||
-    this->BoundsGrid.Scale != voxelGrid.Scale)
-  {
-    this->BoundsRestVersion = 0; // nothing, if this fails
-    this->BoundsOfMesh.SetMesh(voxelGrid, mesh.GetRestPoints(), mesh.GetTetrahedra());
-    this->BoundsRestVersion = mesh.GetRestVersion();
-    this->BoundsGrid = voxelGrid;
-  }
-  const deformvolume::PointRanges changes = mesh.GetChanges(this->BoundsVectorsVersion);
-  const IndexBounds bounds = this->BoundsOfMesh.Compute(
-    mesh.GetRestPoints(), mesh.GetTetrahedra(), mesh.GetNodeDisplacements(), &changes);
-  this->BoundsVectorsVersion = mesh.GetVectorsVersion();
-  if (bounds.IsEmpty())
-  {
-    // Tells what is wrong.
-    this->Mapping.Update(this->Deformation, { volume, volume.PointExtent, false }, {});
-    throw Error("The deformed volume has no bounds. Check the deformation mesh.");
-  }
-  return bounds;
-}
-
-//------------------------------------------------------------------------------
-IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
-  const deformvolume::Ranks& ranks, const ImageGeometry& volume, vtkInformation* output)
-{
-  BoundsKey key;
-  std::set<double> times;
-  for (int port = 1; port < 3; ++port)
-  {
-    if (this->Self->GetNumberOfInputConnections(port) > 0)
-    {
-      const std::vector<double> inputTimes =
-        deformvolume::GetSampleTimes(this->Self, port, this->Self->NumberOfTimeSamples);
-      times.insert(inputTimes.begin(), inputTimes.end());
-    }
-    key.Inputs.push_back(deformvolume::GetInputStamp(this->Self, port));
-  }
-  key.Volume = volume;
-  const DeformationSource source = this->MakeSource(volume, nullptr, nullptr);
-  key.Scale = source.Scale;
-  key.DisplacementScale = source.DisplacementScale;
-  key.Choice = source.Choice;
-  key.OutsideMode = this->Self->OutsideMode;
-  key.NumberOfTimeSamples = this->Self->NumberOfTimeSamples;
-  if (!ranks.IsAny(!(key == this->Key)))
-  {
-    return this->Bounds;
-  }
-  if (!ranks.AreEqual(times.size()))
-  {
-    throw Error("The deformation has different time steps on different ranks. Connect a source "
-                "that announces the same on all.");
-  }
-
-  IndexBounds bounds;
-  if (times.empty())
-  {
-    bounds = this->ReadBounds(ranks, volume, output, nullptr);
-  }
-  // The first step comes last: it is what an input then holds where no time is asked for.
-  for (auto time = times.rbegin(); time != times.rend(); ++time)
-  {
-    const double step = *time;
-    bounds.Add(this->ReadBounds(ranks, volume, output, &step));
-  }
-  this->Key = key;
-  this->Bounds = bounds;
-  this->TimesInBounds = times;
-  return bounds;
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::KeepInBounds(const deformvolume::Ranks& ranks,
-  const ImageGeometry& volume, const DeformationSource& source, vtkInformation* output)
-{
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  if (this->Self->OutputBoundsMode != DEFORMED_BOUNDS || !output->Has(Pipeline::UPDATE_TIME_STEP()))
-  {
-    return;
-  }
-  const double time = output->Get(Pipeline::UPDATE_TIME_STEP());
-  if (!ranks.IsAny(
-        this->TimesInBounds.count(time) == 0 && this->VersionsInBounds != this->GetVersions()))
-  {
-    return;
-  }
-  IndexBounds bounds = this->Bounds;
-  ranks.Attempt([&] { bounds.Add(this->ComputeBounds(volume, source)); });
-  this->VersionsInBounds = this->GetVersions();
-  if (deformvolume::GetExtentInside(bounds) == deformvolume::GetExtentInside(this->Bounds))
-  {
-    return;
-  }
-  this->Bounds = bounds;
-  this->BoundsHaveGrown = true;
-  vtkWarningWithObjectMacro(this->Self,
-    << "The deformed volume at time " << time
-    << " leaves the extent of the output, which was found from other times, and is cut off there. "
-       "The next update has an extent that holds it. Set a greater NumberOfTimeSamples or Padding, "
-       "or CustomBounds.");
 }
 
 //------------------------------------------------------------------------------
@@ -271,19 +203,20 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
     wish.Interpolation = deformvolume::Interpolation::Cubic;
   }
   wish.Extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
-  const deformvolume::Resampling method = deformvolume::ChooseResampler(wish, this->Deformation,
-    [&](deformvolume::Resampling tried)
-    {
-      try
+  const deformvolume::Resampling method =
+    deformvolume::ChooseResampler(wish, this->State->Deformation,
+      [&](deformvolume::Resampling tried)
       {
-        checkMemory(tried);
-        return true;
-      }
-      catch (const Error&)
-      {
-        return false;
-      }
-    });
+        try
+        {
+          checkMemory(tried);
+          return true;
+        }
+        catch (const Error&)
+        {
+          return false;
+        }
+      });
   this->SetResamplerInUse(method);
   return method;
 }
@@ -301,23 +234,28 @@ void vtkDeformVolumeFilter::vtkInternals::SetResamplerInUse(deformvolume::Resamp
 void vtkDeformVolumeFilter::vtkInternals::TakeReport(
   const deformvolume::DeformReport& report, deformvolume::Resampling method)
 {
-  this->Self->PreprocessingTime = this->Mapping.TakeTime();
+  this->Self->PreprocessingTime = this->State->Mapping.TakeTime();
   this->Self->TransferTime = report.TransferTime;
   this->Self->MappingTime = report.MappingTime;
   this->Self->ResamplingTime = report.ResamplingTime;
   this->Self->CompilationTime = report.CompilationTime;
-  this->Self->NumberOfInvertedTetrahedra = this->Deformation.IsInverseField()
+  this->Self->NumberOfInvertedTetrahedra = this->State->Deformation.IsInverseField()
     ? this->GetNumberOfFolds()
     : report.NumberOfInvertedTetrahedra;
   this->Self->NumberOfFlatTetrahedra = method == deformvolume::Resampling::MeshRasterization
     ? report.NumberOfFlatTetrahedra
-    : this->Deformation.IsField() ? 0
-                                  : this->Mapping.GetNumberOfFlatTetrahedra();
+    : this->State->Deformation.IsField() ? 0
+                                         : this->State->Mapping.GetNumberOfFlatTetrahedra();
   this->Self->NumberOfCoveredVoxels = report.NumberOfCoveredVoxels;
   this->Self->NumberOfBricks = report.NumberOfBricks;
   this->Self->NumberOfResampledBricks = report.NumberOfResampledBricks;
-  this->Self->NumberOfMappingBuilds = this->Mapping.GetNumberOfBuilds();
-  this->Self->NumberOfVolumeUploads = this->Device.GetNumberOfVolumeUploads();
+  std::copy(report.ChangedExtent.begin(), report.ChangedExtent.end(), this->Self->ChangedExtent);
+  this->Self->NumberOfMappingBuilds = this->Self->NumberOfVolumeUploads = 0;
+  for (const auto& state : this->States)
+  {
+    this->Self->NumberOfMappingBuilds += state.second.Mapping.GetNumberOfBuilds();
+    this->Self->NumberOfVolumeUploads += state.second.Device.GetNumberOfVolumeUploads();
+  }
   if (report.NumberOfOverstretchedCells > 0)
   {
     vtkWarningWithObjectMacro(
@@ -331,13 +269,14 @@ void vtkDeformVolumeFilter::vtkInternals::TakeReport(
 //------------------------------------------------------------------------------
 vtkIdType vtkDeformVolumeFilter::vtkInternals::GetNumberOfFolds()
 {
-  const std::uint64_t version = this->Deformation.GetVectorsVersion();
-  if (this->FoldsVersion != version)
+  const std::uint64_t version = this->State->Deformation.GetVectorsVersion();
+  if (this->State->FoldsVersion != version)
   {
-    this->NumberOfFolds = deformvolume::CountInvertedTetrahedra(this->Deformation.GetField(false));
-    this->FoldsVersion = version;
+    this->State->NumberOfFolds =
+      deformvolume::CountInvertedTetrahedra(this->State->Deformation.GetField(false));
+    this->State->FoldsVersion = version;
   }
-  return static_cast<vtkIdType>(this->NumberOfFolds);
+  return static_cast<vtkIdType>(this->State->NumberOfFolds);
 }
 
 //------------------------------------------------------------------------------
@@ -392,10 +331,9 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
     warning += "Point arrays of the volume of a type that cannot be resampled are left out: " +
       list(leftOut) + ". ";
   }
-  const std::string& cells = this->Deformation.GetIgnoredCells().empty()
-    ? this->Gathering.GetIgnoredCells()
-    : this->Deformation.GetIgnoredCells();
-  if (!this->Deformation.IsField() && !cells.empty())
+  const std::string& ignored = this->State->Deformation.GetRestMesh().GetIgnoredCells();
+  const std::string& cells = ignored.empty() ? this->Gathering.GetIgnoredCells() : ignored;
+  if (!this->State->Deformation.IsField() && !cells.empty())
   {
     warning += "Cells of the deformation mesh that are not three-dimensional, or of a type that "
                "cannot be split into tetrahedra, are ignored: " +

@@ -2,16 +2,10 @@
 #ifndef vtkDeformVolumeFilterInternals_h
 #define vtkDeformVolumeFilterInternals_h
 
-#include "Deformation.h"
-#include "DeformedBounds.h"
-#include "DeviceSession.h"
+#include "ExecutionState.h"
 #include "ImageGeometry.h"
-#include "MappingCache.h"
-#include "MeshBounds.h"
 #include "MeshGathering.h"
-#include "OutputArrays.h"
 #include "Ranks.h"
-#include "RestRegions.h"
 
 #include "vtkDeformVolumeFilter.h"
 #include "vtkNew.h"
@@ -20,6 +14,7 @@
 #include "vtkTimeStamp.h"
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -35,9 +30,28 @@ class vtkDeformVolumeFilter::vtkInternals
 {
 public:
   explicit vtkInternals(vtkDeformVolumeFilter* self)
-    : Self(self)
+    : State(&this->States[1])
+    , Self(self)
   {
   }
+
+  /// Makes State that of SamplingFactor. Throws an Error where it is none.
+  void SelectState();
+
+  /// Chooses the device for State, with what the other states leave of the memory limit, and
+  /// returns its name.
+  std::string SelectDevice();
+
+  /// Calls a function that throws an Error where the memory does not suffice; then once more, after
+  /// what other states hold has been freed.
+  void CheckWithRoom(const std::function<void()>& check);
+
+  /// Frees what other states hold of volumes that are no longer connected. arrays: those of the
+  /// volume.
+  void ReleaseOldVolumes(const std::vector<deformvolume::SourceArray>& arrays);
+
+  /// Bytes that all states hold on the device.
+  std::uint64_t GetDeviceMemory() const;
 
   /// The output's spacing and whole extent, as far as settings and volume decide them.
   deformvolume::ImageGeometry GetOutputGeometry(const deformvolume::ImageGeometry& volume) const;
@@ -50,14 +64,20 @@ public:
   deformvolume::DeformationSource ReadDeformation(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest);
 
+  /// The whole volume as SamplingFactor leaves it. Throws an Error where too little is left.
+  deformvolume::ImageGeometry GetCoarseGeometry(const deformvolume::ImageGeometry& volume) const;
+
   /// Where the voxels of the whole volume lie: as its source announces it, and what it does not
   /// announce as its data have it. Collective.
   deformvolume::ImageGeometry GetVolumeGeometry(
     const deformvolume::Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output);
 
-  /// The bounds of the deformed volume, united over the time steps of the deformation. Collective.
-  deformvolume::IndexBounds GetDeformedBounds(const deformvolume::Ranks& ranks,
+  /// The whole extent of an output that is as large as the deformed volume, padded. It is that of
+  /// the last call as far as BoundsGranularity has it kept. Collective.
+  deformvolume::Extent GetDeformedExtent(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkInformation* output);
+  /// The next such extent depends on no other.
+  void ForgetDeformedExtent() { this->State->KeyOfExtent = {}; }
 
   /// Warns where the deformation at the time asked for leaves the bounds that decided the extent of
   /// the output, as can happen between the times that were looked at. These bounds then grow, and
@@ -70,8 +90,8 @@ public:
   deformvolume::Extent GetNeededExtent(
     const deformvolume::Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output);
 
-  /// The volume whose data are there, and what they are a part of. Throws an Error where they are
-  /// not what the source announced or was asked for.
+  /// The volume whose data are there, and what they are a part of, both as SamplingFactor leaves
+  /// them. Throws an Error where they are not what the source announced or was asked for.
   deformvolume::MappedVolume GetMappedVolume(vtkImageData* volume, vtkInformation* info) const;
 
   /// The volume without what is outside its whole extent, about which it warns.
@@ -119,10 +139,12 @@ public:
   std::set<std::string> CategoricalArrays;
   vtkNew<vtkStringArray> DeviceChoices;
   deformvolume::MeshGathering Gathering;
-  deformvolume::Deformation Deformation;
-  deformvolume::MappingCache Mapping;
-  deformvolume::DeviceSession Device;
-  deformvolume::OutputArrays Outputs;
+
+  // What is kept for each SamplingFactor, and for the one that is set.
+  std::map<int, deformvolume::ExecutionState> States;
+  deformvolume::ExecutionState* State;
+  // That of the output; 0: there is no output that an execution could be compared with.
+  int FactorOfOutput = 0;
 
   // What is wrong with a failed information pass is told when data are asked for.
   bool InformationFailed = false;
@@ -138,10 +160,19 @@ public:
   vtkTimeStamp AbortTime;
 
 private:
+  /// False where there was nothing to free.
+  bool ReleaseOtherStates();
+  /// The bounds of the deformed volume, united over the time steps of the deformation. Collective.
+  deformvolume::IndexBounds GetDeformedBounds(const deformvolume::Ranks& ranks,
+    const deformvolume::ImageGeometry& volume, vtkInformation* output);
   deformvolume::IndexBounds ReadBounds(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkInformation* output, const double* time);
+  /// The extent that BoundsGranularity, Padding and the extent before make of bounds.
+  deformvolume::Extent FindExtent(const deformvolume::IndexBounds& bounds) const;
   deformvolume::IndexBounds ComputeBounds(
     const deformvolume::ImageGeometry& volume, const deformvolume::DeformationSource& source);
+  /// Makes the bounds those of the mesh, whatever its displacements are.
+  void UpdateBoundsOfMesh(const deformvolume::VoxelGrid& voxelGrid);
   /// Of the deformation at rest and of its displacements.
   std::pair<std::uint64_t, std::uint64_t> GetVersions() const;
   bool WantsPart(vtkInformation* output) const;
@@ -158,80 +189,12 @@ private:
 
   vtkDeformVolumeFilter* Self;
 
-  // What the cached bounds were computed for.
-  struct BoundsKey
-  {
-    deformvolume::Stamp Inputs;
-    deformvolume::ImageGeometry Volume;
-    glm::dvec3 Scale{ 0.0 };
-    double DisplacementScale = 0.0;
-    std::string Choice;
-    int OutsideMode = -1;
-    int NumberOfTimeSamples = 0;
-    bool operator==(const BoundsKey& other) const
-    {
-      return this->Inputs == other.Inputs && this->Volume == other.Volume &&
-        this->Scale == other.Scale && this->DisplacementScale == other.DisplacementScale &&
-        this->Choice == other.Choice && this->OutsideMode == other.OutsideMode &&
-        this->NumberOfTimeSamples == other.NumberOfTimeSamples;
-    }
-  };
-  BoundsKey Key;
-  deformvolume::IndexBounds Bounds;
-  std::set<double> TimesInBounds;
-  // Of the deformation whose bounds were computed last.
-  std::pair<std::uint64_t, std::uint64_t> VersionsInBounds;
-
   // What the source of the volume announced, and of which state of it that is.
   deformvolume::ImageGeometry VolumeGeometry;
   std::pair<const void*, vtkMTimeType> VolumeStamp;
   // What is left of a volume beyond its whole extent, and of which volume.
   vtkSmartPointer<vtkImageData> CutVolume;
   std::pair<const void*, vtkMTimeType> CutStamp;
-
-  // Of the mesh, and which that is.
-  deformvolume::MeshBounds BoundsOfMesh;
-  std::uint64_t BoundsRestVersion = 0;
-  std::uint64_t BoundsVectorsVersion = 0;
-  deformvolume::VoxelGrid BoundsGrid;
-
-  // And what these are of.
-  struct RegionsKey
-  {
-    std::uint64_t RestVersion = 0;
-    std::uint64_t VectorsVersion = 0;
-    deformvolume::ImageGeometry Volume;
-    glm::dvec3 Scale{ 0.0 };
-    bool Extrapolate = false;
-    bool operator==(const RegionsKey& other) const
-    {
-      return this->RestVersion == other.RestVersion &&
-        this->VectorsVersion == other.VectorsVersion && this->Volume == other.Volume &&
-        this->Scale == other.Scale && this->Extrapolate == other.Extrapolate;
-    }
-  };
-  // What was needed last, and for which share of the output of which volume.
-  struct Share
-  {
-    deformvolume::Extent Asked{ { 0, -1, 0, -1, 0, -1 } }; // empty: all
-    int Piece = 0;
-    int Pieces = 0;
-    deformvolume::ImageGeometry Volume;
-    bool operator==(const Share& other) const
-    {
-      return this->Asked == other.Asked && this->Piece == other.Piece &&
-        this->Pieces == other.Pieces && this->Volume == other.Volume;
-    }
-  };
-  Share LastShare;
-  deformvolume::Extent LastNeeded{ { 0, -1, 0, -1, 0, -1 } };
-
-  RegionsKey KeyOfRegions;
-  std::unique_ptr<deformvolume::RestRegions> Regions;
-
-  // And for which displacements this was counted.
-  std::uint64_t FoldsVersion = 0;
-  std::int64_t NumberOfFolds = 0;
 
   std::string WarnedOf;
   // When what the last error was about had been changed.

@@ -30,7 +30,7 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::ReadDeformation(
   source.ShapeIsMade = !deformvolume::IsInMemory(this->Self, 1);
   source.RestIsMade = !deformvolume::IsInMemory(this->Self, 2);
   source = this->Gathering.Gather(ranks, source);
-  ranks.Attempt([&] { this->Deformation.Read(source); });
+  ranks.Attempt([&] { this->State->Deformation.Read(source); });
   return source;
 }
 
@@ -49,8 +49,8 @@ bool vtkDeformVolumeFilter::vtkInternals::CanTakePart() const
   // tetrahedron of a mesh, wherever it may be.
   const bool exact = this->Self->Resampler == EXACT ||
     (this->Self->Resampler == AUTOMATIC && this->Self->Interpolation == LINEAR_INTERPOLATION);
-  const bool local = this->Deformation.IsField() ? !this->Deformation.IsInverseField()
-                                                 : this->Self->OutsideMode == DISCARD;
+  const bool local = this->State->Deformation.IsField() ? !this->State->Deformation.IsInverseField()
+                                                        : this->Self->OutsideMode == DISCARD;
   // Data that are there already cost nothing.
   return exact && local && !deformvolume::IsInMemory(this->Self, 0) &&
     deformvolume::CanProduceParts(this->Self, 0);
@@ -60,19 +60,23 @@ bool vtkDeformVolumeFilter::vtkInternals::CanTakePart() const
 const RestRegions& vtkDeformVolumeFilter::vtkInternals::GetRegions(
   const ImageGeometry& volume, const DeformationSource& source)
 {
-  const RegionsKey key{ this->Deformation.GetRestVersion(), this->Deformation.GetVectorsVersion(),
-    volume, source.Scale, this->Self->OutsideMode == EXTRAPOLATE };
-  if (!this->Regions || !(this->KeyOfRegions == key))
+  const deformvolume::ExecutionState::RegionsKey key{
+    this->State->Deformation.GetRestMesh().GetShapeVersion(),
+    this->State->Deformation.GetVectorsVersion(), volume, source.Scale,
+    this->Self->OutsideMode == EXTRAPOLATE
+  };
+  if (!this->State->Regions || !(this->State->KeyOfRegions == key))
   {
     const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent,
       { { source.Scale.x, source.Scale.y, source.Scale.z } }, {} };
-    this->Regions = this->Deformation.IsField()
-      ? std::make_unique<RestRegions>(voxelGrid, this->Deformation.GetField(key.Extrapolate))
-      : std::make_unique<RestRegions>(voxelGrid, this->Deformation.GetRestPoints(),
-          this->Deformation.GetTetrahedra(), this->Deformation.GetNodeDisplacements());
-    this->KeyOfRegions = key;
+    this->State->Regions = this->State->Deformation.IsField()
+      ? std::make_unique<RestRegions>(voxelGrid, this->State->Deformation.GetField(key.Extrapolate))
+      : std::make_unique<RestRegions>(voxelGrid, this->State->Deformation.GetRestPoints(),
+          this->State->Deformation.GetTetrahedra(),
+          this->State->Deformation.GetNodeDisplacements());
+    this->State->KeyOfRegions = key;
   }
-  return *this->Regions;
+  return *this->State->Regions;
 }
 
 //------------------------------------------------------------------------------
@@ -80,7 +84,7 @@ Extent vtkDeformVolumeFilter::vtkInternals::KeepNeeded(
   const Extent& needed, const ImageGeometry& volume, vtkInformation* output)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  Share share;
+  deformvolume::ExecutionState::Share share;
   share.Volume = volume;
   share.Piece = output->Get(Pipeline::UPDATE_PIECE_NUMBER());
   share.Pieces = output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
@@ -93,16 +97,16 @@ Extent vtkDeformVolumeFilter::vtkInternals::KeepNeeded(
     share.Asked = asked;
   }
   Extent kept = needed;
-  if (share == this->LastShare)
+  if (share == this->State->LastShare)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      kept[2 * axis] = std::min(kept[2 * axis], this->LastNeeded[2 * axis]);
-      kept[2 * axis + 1] = std::max(kept[2 * axis + 1], this->LastNeeded[2 * axis + 1]);
+      kept[2 * axis] = std::min(kept[2 * axis], this->State->LastNeeded[2 * axis]);
+      kept[2 * axis + 1] = std::max(kept[2 * axis + 1], this->State->LastNeeded[2 * axis + 1]);
     }
   }
-  this->LastShare = share;
-  this->LastNeeded = kept;
+  this->State->LastShare = share;
+  this->State->LastNeeded = kept;
   return kept;
 }
 
@@ -110,12 +114,13 @@ Extent vtkDeformVolumeFilter::vtkInternals::KeepNeeded(
 Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
   const Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output)
 {
-  const ImageGeometry volume = this->GetVolumeGeometry(ranks, volumeInfo, output);
-  Extent needed = volume.PointExtent;
+  const ImageGeometry fine = this->GetVolumeGeometry(ranks, volumeInfo, output);
+  Extent needed = fine.PointExtent;
   if (!ranks.IsAny(this->WantsPart(output)))
   {
     return needed;
   }
+  const ImageGeometry volume = this->GetCoarseGeometry(fine);
   vtkDataObject* shape = deformvolume::UpdateInput(this->Self, 1, output, nullptr, ranks);
   vtkDataObject* rest = deformvolume::UpdateInput(this->Self, 2, output, nullptr, ranks);
   const DeformationSource source = this->ReadDeformation(ranks, volume, shape, rest);
@@ -131,8 +136,9 @@ Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
       {
         return; // the data pass tells what is wrong
       }
-      needed =
-        this->KeepNeeded(regions.Find(deformvolume::GetRequestedPart(output)), volume, output);
+      needed = deformvolume::GetFine(
+        this->KeepNeeded(regions.Find(deformvolume::GetRequestedPart(output)), volume, output),
+        this->Self->SamplingFactor);
     });
   return needed;
 }

@@ -21,6 +21,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 
+#include <algorithm>
 #include <initializer_list>
 
 using deformvolume::DeformationSource;
@@ -91,7 +92,8 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   {
     data->Initialize();
   }
-  this->Internals->Outputs.Forget();
+  this->Internals->State->Outputs.Forget();
+  this->Internals->FactorOfOutput = 0;
   if (message.empty())
   {
     return 1;
@@ -149,6 +151,7 @@ int vtkDeformVolumeFilter::RequestInformation(
   ranks.Attempt(
     [&]
     {
+      this->Internals->SelectState();
       if (this->GetNumberOfInputConnections(0) == 0)
       {
         throw Error("There is no volume. Connect a vtkImageData to input port 0.");
@@ -169,32 +172,26 @@ int vtkDeformVolumeFilter::RequestInformation(
     [&]
     {
       deformvolume::CheckVolume(volume);
+      volume = this->Internals->GetCoarseGeometry(volume);
       outputGeometry = this->Internals->GetOutputGeometry(volume);
       // Here, since ParaView's views complain, too, where data fail that were announced.
       deformvolume::DeviceSession::CheckDevice(this->Device);
     });
   deformvolume::MergeTimes(this, outInfo);
 
-  deformvolume::IndexBounds deformed;
+  Extent whole;
   if (this->OutputBoundsMode == DEFORMED_BOUNDS)
   {
-    deformed = this->Internals->GetDeformedBounds(ranks, volume, outInfo);
+    whole = this->Internals->GetDeformedExtent(ranks, volume, outInfo);
   }
-  Extent whole;
-  switch (this->OutputBoundsMode)
+  else
   {
-    case VOLUME_BOUNDS:
-      whole = deformvolume::GetExtentAround(
-        deformvolume::GetVolumeBounds(volume, volume.Spacing / outputGeometry.Spacing));
-      break;
-    case CUSTOM_BOUNDS:
-      whole = deformvolume::GetExtentAround(
-        deformvolume::GetWorldBoxBounds(this->CustomBounds, outputGeometry));
-      break;
-    default:
-      whole = deformvolume::GetExtentInside(deformed);
+    this->Internals->ForgetDeformedExtent();
+    const deformvolume::IndexBounds bounds = this->OutputBoundsMode == VOLUME_BOUNDS
+      ? deformvolume::GetVolumeBounds(volume, volume.Spacing / outputGeometry.Spacing)
+      : deformvolume::GetWorldBoxBounds(this->CustomBounds, outputGeometry);
+    whole = deformvolume::GetPadded(deformvolume::GetExtentAround(bounds), this->Padding);
   }
-  whole = deformvolume::GetPadded(whole, this->Padding);
 
   const glm::dmat3 rows = glm::transpose(outputGeometry.Direction);
   outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data(), 6);
@@ -224,6 +221,7 @@ int vtkDeformVolumeFilter::RequestUpdateExtent(
   {
     throw Error(this->Internals->PostponedError);
   }
+  this->Internals->SelectState();
   const deformvolume::Ranks ranks;
   for (int port = 1; port < this->GetNumberOfInputPorts(); ++port)
   {
@@ -257,12 +255,18 @@ int vtkDeformVolumeFilter::RequestData(
     vtkInternals::ForgetRequestedExtent(outInfo);
     return 0;
   }
+  this->Internals->SelectState();
+  deformvolume::ExecutionState& state = *this->Internals->State;
   // Nothing of an earlier execution is left standing beside a failure.
   image->Initialize();
+  const bool hasLast = this->Internals->FactorOfOutput == this->SamplingFactor;
+  this->Internals->FactorOfOutput = 0;
   this->PreprocessingTime = this->TransferTime = this->MappingTime = this->ResamplingTime = 0.0;
   this->CompilationTime = 0.0;
   this->NumberOfInvertedTetrahedra = this->NumberOfFlatTetrahedra = this->NumberOfCoveredVoxels = 0;
   this->NumberOfBricks = this->NumberOfResampledBricks = 0;
+  const Extent nothing{ { 0, -1, 0, -1, 0, -1 } };
+  std::copy(nothing.begin(), nothing.end(), this->ChangedExtent);
   const deformvolume::Ranks ranks;
   vtkImageData* volume = vtkImageData::GetData(input[0]);
   deformvolume::MappedVolume mapped;
@@ -280,9 +284,11 @@ int vtkDeformVolumeFilter::RequestData(
   const ImageGeometry& geometry = mapped.Whole;
   const DeformationSource source = this->Internals->ReadDeformation(
     ranks, geometry, vtkDataObject::GetData(input[1]), vtkDataObject::GetData(input[2]));
-  deformvolume::Deformation& deformation = this->Internals->Deformation;
+  deformvolume::Deformation& deformation = state.Deformation;
   this->Internals->KeepInBounds(ranks, geometry, source, outInfo);
 
+  // With the arrays and the masks that are worked on; all else is that of the volume.
+  vtkImageData* worked = nullptr;
   std::vector<deformvolume::SourceArray> arrays;
   ranks.Attempt(
     [&]
@@ -290,6 +296,8 @@ int vtkDeformVolumeFilter::RequestData(
       std::vector<std::string> leftOut;
       arrays = deformvolume::SelectArrays(volume, this->Internals->CategoricalArrays, leftOut);
       this->Internals->WarnOfIgnored(volume, leftOut);
+      this->Internals->ReleaseOldVolumes(arrays);
+      worked = state.Volume.Update(volume, this->SamplingFactor, arrays);
     });
 
   deformvolume::DeformRequest request;
@@ -301,7 +309,7 @@ int vtkDeformVolumeFilter::RequestData(
   }
   deformvolume::VoxelGrid voxelGrid{ mapped.Part,
     { { source.Scale.x, source.Scale.y, source.Scale.z } }, geometry.PointExtent };
-  deformvolume::DeviceSession& device = this->Internals->Device;
+  deformvolume::DeviceSession& device = state.Device;
   const std::vector<deformvolume::VolumeArray> described =
     deformvolume::MakeVolumeArrays(arrays, this->BackgroundValue);
   Extent whole;
@@ -315,8 +323,12 @@ int vtkDeformVolumeFilter::RequestData(
     [&](const Extent& extent, deformvolume::Resampling method)
   {
     const bool isMapped = method != deformvolume::Resampling::MeshRasterization;
-    device.CheckMemory(voxelGrid, described, extent, heldBytes, deformation,
-      isMapped ? this->Internals->Mapping.GetRunBytes(deformation, mapped) : 0, method);
+    this->Internals->CheckWithRoom(
+      [&]
+      {
+        device.CheckMemory(voxelGrid, described, extent, heldBytes, deformation,
+          isMapped ? state.Mapping.GetRunBytes(deformation, mapped) : 0, method);
+      });
   };
   std::string form = "field";
   ranks.Attempt(
@@ -326,10 +338,8 @@ int vtkDeformVolumeFilter::RequestData(
       {
         return;
       }
-      this->DeviceInUse =
-        device.SetDevice(this->Device, static_cast<std::uint64_t>(this->MemoryLimit),
-          static_cast<std::size_t>(this->WorkGroupSize));
-      heldBytes = this->Internals->Outputs.Prepare(arrays, numberOfPoints);
+      this->DeviceInUse = this->Internals->SelectDevice();
+      heldBytes = state.Outputs.Prepare(arrays, numberOfPoints);
       // The memory for the whole decides, so that all parts are made alike. A volume that is read
       // in parts need never fit.
       request.Method = this->Internals->ChooseResampler(
@@ -342,7 +352,7 @@ int vtkDeformVolumeFilter::RequestData(
         });
       if (!deformation.IsField() && request.Method != deformvolume::Resampling::MeshRasterization)
       {
-        form = this->Internals->Mapping.GetRunBytes(deformation, mapped) > 0 ? "runs" : "links";
+        form = state.Mapping.GetRunBytes(deformation, mapped) > 0 ? "runs" : "links";
       }
     });
   if (ranks.IsAny(request.Method == deformvolume::Resampling::MeshRasterization))
@@ -354,15 +364,15 @@ int vtkDeformVolumeFilter::RequestData(
   const auto deform = [&]
   {
     checkMemory(request.OutputExtent, request.Method);
-    device.SetVolume(voxelGrid, volume, arrays, this->BackgroundValue, request.Method);
+    device.SetVolume(voxelGrid, worked, arrays, this->BackgroundValue, request.Method);
     if (request.Method == deformvolume::Resampling::MeshRasterization)
     {
       device.SetRestMesh(deformation, mapped.Extrapolate);
     }
     else
     {
-      device.SetDeformation(
-        deformation, this->Internals->Mapping, mapped, this->Internals->GetProgress(0.0, 0.3));
+      device.SetDeformation(deformation, state.Mapping, mapped, this->OpenSplits,
+        this->Internals->GetProgress(0.0, 0.3));
     }
     request.Progress = this->Internals->GetProgress(0.3, 1.0);
     request.Compiling = this->Internals->GetCompilationReport();
@@ -372,13 +382,10 @@ int vtkDeformVolumeFilter::RequestData(
     }
 
     const ImageGeometry outputGeometry = this->Internals->GetOutputGeometry(geometry);
-    const glm::dmat3 rows = glm::transpose(outputGeometry.Direction);
     image->SetExtent(request.OutputExtent.data());
-    image->SetOrigin(glm::value_ptr(outputGeometry.Origin));
-    image->SetSpacing(glm::value_ptr(outputGeometry.Spacing));
-    image->SetDirectionMatrix(glm::value_ptr(rows));
+    deformvolume::SetTransform(image, outputGeometry);
     image->GetFieldData()->ShallowCopy(volume->GetFieldData());
-    this->Internals->Outputs.Make(arrays, image, request);
+    state.Outputs.Make(arrays, image, request);
     request.Incremental = this->Incremental;
     deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
 
@@ -398,12 +405,20 @@ int vtkDeformVolumeFilter::RequestData(
   }
   if (vtkInternals::IsReleased(outInfo))
   {
-    this->Internals->Outputs.Forget();
+    for (auto& other : this->Internals->States)
+    {
+      other.second.Outputs.Forget();
+    }
   }
   else
   {
-    this->Internals->Outputs.Keep();
+    state.Outputs.Keep(report.Revision);
   }
+  if (!hasLast)
+  {
+    std::copy(request.OutputExtent.begin(), request.OutputExtent.end(), this->ChangedExtent);
+  }
+  this->Internals->FactorOfOutput = this->SamplingFactor;
   if (report.NumberOfCoveredVoxels == 0 && whole == request.OutputExtent)
   {
     vtkWarningMacro("The deformed volume covers no voxel of the output: all of it is background. "

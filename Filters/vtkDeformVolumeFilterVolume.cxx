@@ -112,6 +112,8 @@ deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
       "vtkDataObject in the source's RequestInformation().");
   }
   deformvolume::CheckVolume(mapped.Whole);
+  mapped.Whole = this->GetCoarseGeometry(mapped.Whole);
+  mapped.Part = deformvolume::GetCoarse(mapped.Part, this->Self->SamplingFactor);
   return mapped;
 }
 

@@ -153,15 +153,7 @@ int vtkLatticeTetrahedraSource::RequestUpdateExtent(
   // All of the volume, so that nothing is read twice when another filter wants its voxels.
   if (vtkInformation* info = inputVector[0]->GetInformationObject(0))
   {
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-    if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-    {
-      int extent[6];
-      info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
-      info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent, 6);
-    }
+    deformvolume::AskForAll(info);
   }
   return 1;
 }

@@ -196,16 +196,7 @@ int vtkTetGenMesher::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
   // A part of a body is no closed surface: everybody asks for all of it.
-  vtkInformation* info = inputVector[0]->GetInformationObject(0);
-  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
-  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-  if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-  {
-    int extent[6];
-    info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent, 6);
-  }
+  deformvolume::AskForAll(inputVector[0]->GetInformationObject(0));
   return 1;
 }
 

@@ -31,7 +31,8 @@ void ObserveProxy(vtkSMProxy* proxy)
   fetch->SetCallback(Fetch);
   const char* name = proxy && proxy->IsA("vtkSMSourceProxy") ? proxy->GetVTKClassName() : nullptr;
   const std::string made = name ? name : "";
-  if ((made == "vtkDeformVolumeFilter" || made == "vtkTetGenMesher") &&
+  if ((made == "vtkDeformVolumeFilter" || made == "vtkTetGenMesher" || made == "vtkCutVolume" ||
+        made == "vtkCarveVolume" || made == "vtkChainMailDeformation") &&
     !proxy->HasObserver(vtkCommand::UpdateDataEvent, fetch))
   {
     proxy->AddObserver(vtkCommand::UpdateDataEvent, fetch);

@@ -27,19 +27,24 @@ MEMORY = ("TestHostMemory", "*")
 LARGE = ("TestLargeCells", "-*Time*")
 FAULTS = ("TestFaults", "*")
 GRAPHICS = ("TestGraphicsDevice", "*")
+CUTTING = ("TestCutting", "*")
+CARVING = ("TestCarving", "*")
+CHAINMAIL = ("TestChainMail", "*")
+RELAXATION = ("TestChainMailRelaxation", "*")
+SEQUENCES = ("TestChainMailSequences", "*")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
-    "filter-upright": ("Kernels/Resampling/GroupResampling.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
-    "filter-bent": ("Kernels/Resampling/GroupResampling.cl", "(FLOATS)(3.2e-5f)", "(FLOATS)(3.2e-7f)", [NARROW]),
+    "filter-upright": ("Kernels/Resampling/GroupWeights.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
+    "filter-bent": ("Kernels/Resampling/GroupWeights.cl", "(FLOATS)(3.2e-5f)", "(FLOATS)(3.2e-7f)", [NARROW]),
     "mask-reach": ("Kernels/Resampling/IncrementalUpdate.cxx", "MaskReach = 1;", "MaskReach = 0;", [MASKS]),
     "clip": ("Kernels/Resampling/Resampling.cl", "CLIP_TOLERANCE (1.0f / 64.0f)", "CLIP_TOLERANCE 0.0f", [LARGE]),
     "launch-end": ("Kernels/Resampling/Resampling.cl", "z <= p.LayersEnd + 1", "z <= p.LayersEnd", [MEMORY]),
     "failed-read": ("Kernels/OpenCL/HostMemory.cxx", "if (error != CL_SUCCESS)", "if (false)", [FAULTS]),
-    "memory-twice": ("Kernels/Deformer/VolumeDeformerInternals.cxx", "std::min(all, system) : all;",
-                     "std::min(all, system) : all + this->GetHeldMemory();", [GRAPHICS]),
-    "arrays-half-set": ("Kernels/Deformer/VolumeDeformer.cxx",
-                        "this->Impl->Arrays.clear(); // there are none if this fails", "", [FAULTS]),
+    "memory-twice": ("Kernels/OpenCL/MemoryBudget.cxx", "std::min(all, system) : all;",
+                     "std::min(all, system) : all + this->CountHeld();", [GRAPHICS]),
+    "arrays-half-set": ("Kernels/Mapping/DeviceVolume.cxx",
+                        "this->Arrays.clear(); // there are none if this fails", "", [FAULTS]),
     "links-half-set": ("Kernels/Mapping/DeviceVolume.cxx", "this->WithLinks = false; // until all of them are there",
                        "this->WithLinks = true;", [FAULTS]),
     "far-output": ("Kernels/Resampling/OutputSlab.cxx", "farthest = 1 << 22;", "farthest = 1 << 28;",
@@ -57,6 +62,31 @@ MUTATIONS = {
     "fused-field": ("Kernels/Mapping/DeformationMapping.cl",
                     "#define MIX(a, b, t) MULTIPLY_ADD((float4)(t), (b) - (a), a)",
                     "#define MIX(a, b, t) ((a) + (t) * ((b) - (a)))", [("TestContraction", "*")]),
+    "cut-above": ("Kernels/Cutting/TriangleCrossing.h", "return (sign != 0 ? sign : this->NormalSign) > 0;",
+                  "return sign > 0;", [CUTTING]),
+    "cut-face": ("Kernels/Cutting/TriangleCrossing.cxx", "sign != 0 ? sign : -movement;",
+                 "sign != 0 ? sign : movement;", [CUTTING]),
+    "cut-edge": ("Kernels/Cutting/TriangleCrossing.cxx", "sign != 0 ? sign : FindSign(Cross(along, b - a));",
+                 "sign != 0 ? sign : -FindSign(Cross(along, b - a));", [CUTTING]),
+    "cut-box": ("Kernels/Cutting/SheetCut.cxx", "p[axis] < box.Min[axis] ? 1U", "p[axis] <= box.Min[axis] ? 1U",
+                [CUTTING]),
+    "cut-length": ("Kernels/Cutting/Sheet.h", "std::int64_t{ 1 } << 17", "std::int64_t{ 1 } << 24", [CUTTING]),
+    "carve-ray": ("Kernels/Cutting/SurfaceInterior.cxx", "along.z != 0 ? -GetSign(along.z) : GetSign(along.y);",
+                  "along.z != 0 ? GetSign(along.z) : GetSign(along.y);", [CARVING]),
+    "carve-plane": ("Kernels/Cutting/SurfaceInterior.cxx", "return height == -GetSign(this->Normal.x);",
+                    "return height != GetSign(this->Normal.x);", [CARVING]),
+    "chainmail-way": ("Kernels/ChainMail/ChainMailPropagation.cl", "(face & 1) ^ up", "(face & 1)", [CHAINMAIL]),
+    "chainmail-pins": ("Kernels/ChainMail/ChainMailPropagation.cl", "DEFORMVOLUME_FIXED)) != 0) | pinned;",
+                       "DEFORMVOLUME_FIXED)) != 0);", [SEQUENCES]),
+    "chainmail-sweeps": ("Kernels/ChainMail/ChainMailSolver.cxx", "if (results[i] & DEFORMVOLUME_UNFINISHED)", "if (false)",
+                         [CHAINMAIL]),
+    "chainmail-saved": ("Kernels/ChainMail/ChainMailSolver.cxx", "if (results[i] & DEFORMVOLUME_SAVED)", "if (false)",
+                        [CHAINMAIL]),
+    "chainmail-relax": ("Kernels/ChainMail/ChainMailRelaxation.cl", "Limits(limits, c, axis, face & 1);",
+                        "Limits(limits, c, axis, ~face & 1);", [RELAXATION]),
+    "chainmail-copy": ("Kernels/ChainMail/ChainMailSolver.cxx",
+                       "this->State.ReadOutput(this->Blocks.Join(this->Displaced));", "",
+                       [("TestChainMailGraphics", "*Sequences*")]),
 }
 
 

@@ -129,7 +129,7 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
 }
 
 void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume,
-  const Deformation& deformation, const TimingTable& timings)
+  const Deformation& deformation, const std::vector<std::string>& tools, const TimingTable& timings)
 {
   vtkImageData* result = filter->GetOutput();
   vtkDataArray* scalars = volume.Image->GetPointData()->GetArray(0);
@@ -144,6 +144,14 @@ void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume,
   if (!deformation.Body.empty())
   {
     std::cout << "body       " << deformation.Body << "\n";
+  }
+  if (!deformation.Motion.empty())
+  {
+    std::cout << "moved      " << deformation.Motion << "\n";
+  }
+  for (const std::string& tool : tools)
+  {
+    std::cout << "cut        " << tool << "\n";
   }
   std::cout << "result     " << GetDimensionsText(result) << " voxels, "
             << filter->GetNumberOfCoveredVoxels() << " of them covered\n"
@@ -162,15 +170,24 @@ void DeformVolume(const Options& options, Messages& messages)
   Volume volume = ReadVolume(options.Volume, options.FileCoordinates, messages, !options.Quiet);
   timings.Add("read volume", reading.GetSeconds());
 
+  const Stopwatch cutting;
+  Volume cut = volume;
+  const std::vector<std::string> tools = CutAndCarve(options, cut, messages);
+  if (options.HasTools())
+  {
+    timings.Add("cut and carve", cutting.GetSeconds());
+  }
+
   const Stopwatch meshing;
-  const Deformation deformation = MakeDeformation(options, volume, messages);
+  const Deformation deformation = MakeDeformation(options, cut, messages);
   timings.Add(!options.Field.empty() ? "read field"
+      : !options.Model.empty()       ? "pull by ChainMail"
       : options.Mesh.empty()         ? "make mesh"
                                      : "read mesh",
     meshing.GetSeconds());
 
   vtkNew<vtkDeformVolumeFilter> filter;
-  SetUp(filter, options, volume.Image, deformation);
+  SetUp(filter, options, cut.Image, deformation);
   const Stopwatch deforming;
   {
     const ProgressBar bar(filter, "deforming", !options.Quiet);
@@ -214,7 +231,7 @@ void DeformVolume(const Options& options, Messages& messages)
   }
   if (!options.Quiet)
   {
-    PrintSummary(filter, volume, deformation, timings);
+    PrintSummary(filter, volume, deformation, tools, timings);
   }
 }
 }

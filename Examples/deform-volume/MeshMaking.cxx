@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshMaking.h"
 
+#include "ChainMail.h"
 #include "Failure.h"
 #include "FieldReading.h"
 #include "Messages.h"
 #include "ProgressBar.h"
 
+#include <vtkBoundingBox.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkDataSet.h>
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
 #include <vtkLatticeTetrahedraSource.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkTetGenMesher.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLGenericDataObjectReader.h>
@@ -120,6 +125,28 @@ void CheckEdges(
   }
 }
 
+// A displacement field of zeros that holds the volume.
+vtkSmartPointer<vtkImageData> MakeFieldAtRest(vtkImageData* volume)
+{
+  auto field = vtkSmartPointer<vtkImageData>::New();
+  field->SetDimensions(2, 2, 2);
+  vtkBoundingBox box(volume->GetBounds());
+  box.Inflate(0.01 * box.GetMaxLength()); // the outermost voxels lie within it, whatever is rounded
+  double corner[3];
+  double lengths[3];
+  box.GetMinPoint(corner[0], corner[1], corner[2]);
+  box.GetLengths(lengths);
+  field->SetOrigin(corner);
+  field->SetSpacing(lengths);
+  vtkNew<vtkFloatArray> vectors;
+  vectors->SetName(FieldArrayName);
+  vectors->SetNumberOfComponents(3);
+  vectors->SetNumberOfTuples(field->GetNumberOfPoints());
+  vectors->Fill(0.0);
+  field->GetPointData()->AddArray(vectors);
+  return field;
+}
+
 void WriteMesh(vtkUnstructuredGrid* mesh, const std::string& path, Messages& messages)
 {
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
@@ -149,6 +176,16 @@ Deformation MakeDeformation(const Options& options, const Volume& volume, Messag
     deformation.Data =
       ReadField(options.Field, volume, options.FieldIsInverse, messages, !options.Quiet);
     deformation.Displacement = IsVTKFile(options.Field) ? options.Displacement : FieldArrayName;
+  }
+  else if (!options.Model.empty())
+  {
+    PullByChainMail(options, volume, messages, deformation);
+  }
+  else if (!options.TetGen && !options.HasLattice())
+  {
+    // It is cut, and stays where it is.
+    deformation.Data = MakeFieldAtRest(volume.Image);
+    deformation.Displacement = FieldArrayName;
   }
   else
   {

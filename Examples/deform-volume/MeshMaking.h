@@ -25,6 +25,8 @@ struct Deformation
   std::string Displacement;
   /// The isovalue of the surface that was meshed.
   std::optional<double> Isovalue;
+  /// What a model has moved.
+  std::string Motion;
   /// What became of the voxels of the body that was meshed, and how long edges are where.
   std::string Body;
   std::vector<std::string> Edges;

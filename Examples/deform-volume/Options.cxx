@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <iostream>
@@ -50,11 +51,48 @@ Push ParsePush(const std::string& text)
   return push;
 }
 
+Pull ParsePull(const std::string& text)
+{
+  const bool hasRadius = std::count(text.begin(), text.end(), ',') == 6;
+  const auto numbers = ParseNumbers<double, 7>("--pull", hasRadius ? text : text + ",0",
+    "six or seven numbers X,Y,Z,DX,DY,DZ[,RADIUS] with commas between them");
+  Pull pull;
+  pull.Point = { { numbers[0], numbers[1], numbers[2] } };
+  pull.Displacement = { { numbers[3], numbers[4], numbers[5] } };
+  pull.Radius = numbers[6];
+  if (!(pull.Radius >= 0.0))
+  {
+    throw UsageError("--pull " + text + ": the radius must be at least 0");
+  }
+  return pull;
+}
+
+Carving ParseCarving(const std::string& text)
+{
+  const std::string shape = "sphere:";
+  if (text.compare(0, shape.size(), shape) != 0)
+  {
+    throw UsageError("--carve " + text + ": expected sphere:X,Y,Z,RADIUS");
+  }
+  const auto numbers = ParseNumbers<double, 4>("--carve", text.substr(shape.size()),
+    "sphere: and four numbers X,Y,Z,RADIUS with commas between them");
+  Carving carving;
+  carving.Center = { { numbers[0], numbers[1], numbers[2] } };
+  carving.Radius = numbers[3];
+  if (!(carving.Radius > 0.0))
+  {
+    throw UsageError("--carve " + text + ": the radius must be greater than 0");
+  }
+  return carving;
+}
+
 /// Options that need more than their own text to be right.
 struct RawOptions
 {
   std::string Lattice;
   std::vector<std::string> Pushes;
+  std::vector<std::string> Pulls;
+  std::vector<std::string> Carvings;
   std::string View;
   double Isovalue = 0.0;
   double Threshold = 0.0;
@@ -87,7 +125,9 @@ void CheckOverwriting(const Options& options)
   outputs.push_back(options.MeshOutput);
   for (const std::string& output : outputs)
   {
-    for (const std::string& input : { options.Volume, options.Mesh, options.Rest, options.Field })
+    std::vector<std::string> inputs{ options.Volume, options.Mesh, options.Rest, options.Field };
+    inputs.insert(inputs.end(), options.Cuts.begin(), options.Cuts.end());
+    for (const std::string& input : inputs)
     {
       if (!output.empty() && !input.empty() && vtksys::SystemTools::SameFile(output, input))
       {
@@ -97,16 +137,42 @@ void CheckOverwriting(const Options& options)
   }
 }
 
+/// ChainMail has one radius for all its handles.
+void CheckPulls(const Options& options)
+{
+  if (!options.Model.empty() && options.Pulls.empty())
+  {
+    throw UsageError("--model chainmail needs at least one --pull X,Y,Z,DX,DY,DZ[,RADIUS]");
+  }
+  for (const Pull& pull : options.Pulls)
+  {
+    if (pull.Radius != options.Pulls.front().Radius)
+    {
+      throw UsageError("all --pull need the same radius");
+    }
+  }
+}
+
 /// One thing deforms the volume, and its options go with it.
 void CheckDeformation(const Options& options)
 {
-  const int deformations =
-    !options.Mesh.empty() + !options.Field.empty() + options.TetGen + options.HasLattice();
+  const int deformations = !options.Mesh.empty() + !options.Field.empty() + options.TetGen +
+    options.HasLattice() + !options.Model.empty();
+  if (deformations == 0 && options.HasTools())
+  {
+    if (!options.Displacement.empty() || options.Scale != 1.0 || !options.Pushes.empty())
+    {
+      throw UsageError("--push, --displacement and --scale need a --mesh, --field, --tetgen or "
+                       "--lattice beside --cut and --carve");
+    }
+    return;
+  }
   if (deformations != 1)
   {
-    throw UsageError(
-      "exactly one of --mesh, --field, --tetgen and --lattice says what deforms the volume");
+    throw UsageError("exactly one of --mesh, --field, --tetgen, --lattice and --model says what "
+                     "deforms the volume");
   }
+  CheckPulls(options);
   if (!options.Mesh.empty())
   {
     if (options.Displacement.empty() == options.Rest.empty())
@@ -131,12 +197,16 @@ void CheckDeformation(const Options& options)
       throw UsageError("--push goes with --tetgen or --lattice; a --field brings its displacement");
     }
   }
+  else if (!options.Model.empty() && !options.Pushes.empty())
+  {
+    throw UsageError("--push goes with --tetgen or --lattice; give --pull to --model chainmail");
+  }
   else if (!options.Displacement.empty() || options.Scale != 1.0)
   {
     throw UsageError(std::string(options.Scale != 1.0 ? "--scale" : "--displacement") +
       " requires --mesh or --field");
   }
-  else if (options.Pushes.empty())
+  else if (options.Model.empty() && options.Pushes.empty())
   {
     throw UsageError("--tetgen and --lattice need at least one --push X,Y,Z,DX,DY,DZ,RADIUS");
   }
@@ -199,6 +269,14 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
   {
     options.Pushes.push_back(ParsePush(text));
   }
+  for (const std::string& text : raw.Pulls)
+  {
+    options.Pulls.push_back(ParsePull(text));
+  }
+  for (const std::string& text : raw.Carvings)
+  {
+    options.Carvings.push_back(ParseCarving(text));
+  }
   if (!raw.View.empty())
   {
     options.View = ParseNumbers<double, 3>("--view", raw.View, "three numbers X,Y,Z");
@@ -223,7 +301,8 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
 
 void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
 {
-  const char* group = "What deforms the volume (one of --mesh, --field, --tetgen, --lattice)";
+  const char* group =
+    "What deforms the volume (one of --mesh, --field, --tetgen, --lattice, --model)";
   program
     .add_option("--mesh", options.Mesh,
       "Tetrahedral mesh (.vtu, .vtm; other cells are split), or a displacement field (.vti)")
@@ -274,6 +353,39 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     ->take_all()
     ->expected(1)
     ->group(group);
+
+  program
+    .add_option("--model", options.Model,
+      "chainmail: each voxel is linked to its neighbours, which follow a --pull as far as their "
+      "links do not give way")
+    ->check(CLI::IsMember({ "chainmail" }))
+    ->type_name("NAME")
+    ->group(group);
+  program
+    .add_option("--pull", raw.Pulls,
+      "With --model: take the voxels within RADIUS of X,Y,Z (world coordinates; by default the "
+      "nearest one) and move them by DX,DY,DZ (world units). May be given several times")
+    ->type_name("X,Y,Z,DX,DY,DZ[,RADIUS]")
+    ->take_all()
+    ->expected(1)
+    ->group(group);
+
+  const char* tools = "What is cut before (alone, or with what deforms the volume)";
+  program
+    .add_option("--cut", options.Cuts,
+      "Cut the volume along a sheet of triangles (.vtp, world coordinates). May be given several "
+      "times")
+    ->type_name("FILE")
+    ->take_all()
+    ->expected(1)
+    ->group(tools);
+  program
+    .add_option("--carve", raw.Carvings,
+      "Carve a sphere out of the volume (world coordinates and units). May be given several times")
+    ->type_name("sphere:X,Y,Z,RADIUS")
+    ->take_all()
+    ->expected(1)
+    ->group(tools);
 
   const char* tetgen = "Mesh of --tetgen";
   program
@@ -326,11 +438,12 @@ void AddDependencies(CLI::App& program)
   needs("--field", { "--field-is-inverse" });
   needs("--tetgen",
     { "--isovalue", "--pieces", "--edge-length", "--radius-edge-ratio", "--tetgen-executable" });
+  needs("--model", { "--pull" });
   needs("--image", { "--threshold", "--view" });
   program.get_option("--scale")->excludes(program.get_option("--rest"));
   program.get_option("--field")->excludes(program.get_option("--file-coordinates"));
   program.get_option("--isovalue")->excludes(program.get_option("--labels"));
-  for (const char* option : { "--mesh", "--field" })
+  for (const char* option : { "--mesh", "--field", "--model" })
   {
     program.get_option("--write-mesh")->excludes(program.get_option(option));
   }

@@ -2,7 +2,9 @@
 #ifndef DeformVolumeOptions_h
 #define DeformVolumeOptions_h
 
+#include "ChainMail.h"
 #include "Push.h"
+#include "Tools.h"
 
 #include <array>
 #include <optional>
@@ -32,6 +34,11 @@ struct Options
   std::string TetGenExecutable;
   std::array<int, 3> Lattice{ { 0, 0, 0 } };
   std::vector<Push> Pushes;
+  std::string Model;
+  std::vector<Pull> Pulls;
+
+  std::vector<std::string> Cuts;
+  std::vector<Carving> Carvings;
 
   bool Extrapolate = false;
   bool VolumeBounds = false;
@@ -50,6 +57,7 @@ struct Options
   std::optional<std::array<double, 3>> View;
   bool Quiet = false;
 
+  bool HasTools() const { return !this->Cuts.empty() || !this->Carvings.empty(); }
   bool HasLattice() const { return this->Lattice[0] > 0; }
 };
 

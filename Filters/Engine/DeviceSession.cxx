@@ -138,9 +138,11 @@ void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
   const Stamp masksStamp = GetMasksStamp(volume);
   if (!this->MasksAreSet || this->SentMasks != masksStamp)
   {
-    const VolumeMasks masks = ReadMasks(volume);
-    this->Deformer.SetBlanked(masks.Blanked.empty() ? nullptr : masks.Blanked.data());
-    this->Deformer.SetActiveTetrahedra(masks.Active.empty() ? nullptr : masks.Active.data());
+    const VolumeMasks masks = ReadMasks(volume, this->MasksAreSet ? this->SentMasks : Stamp());
+    const auto written = [](const std::optional<PointRanges>& ranges)
+    { return ranges ? &*ranges : nullptr; };
+    this->Deformer.SetBlanked(masks.Blanked, masks.BlankedBits, written(masks.WrittenBlanked));
+    this->Deformer.SetActiveTetrahedra(masks.Active, written(masks.WrittenActive));
     this->SentMasks = masksStamp;
     this->MasksAreSet = true;
   }
@@ -148,7 +150,7 @@ void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
 }
 
 void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache& mapping,
-  const MappedVolume& volume, const std::function<bool(double)>& progress)
+  const MappedVolume& volume, bool openSplits, const std::function<bool(double)>& progress)
 {
   const bool extrapolate = volume.Extrapolate;
   const std::uint64_t vectors = deformation.GetVectorsVersion();
@@ -167,44 +169,75 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
   }
   else
   {
-    const bool meshIsSent = this->HasMesh && this->SentMapping == mapping.GetVersion() &&
-      mapping.IsCurrent(deformation, volume);
-    if (!meshIsSent)
-    {
-      mapping.Update(deformation, volume, progress);
-      Transfer transfer(this);
-      const std::vector<Tetrahedron>& tetrahedra = deformation.GetTetrahedra();
-      const std::size_t nodes = deformation.GetRestPoints().size();
-      if (mapping.IsByRuns())
-      {
-        this->Deformer.SetMesh(tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetRuns());
-      }
-      else
-      {
-        this->Deformer.SetMesh(
-          tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetLinks().data());
-      }
-      transfer.End();
-      this->SentMapping = mapping.GetVersion();
-    }
-    if (!extrapolate)
-    {
-      // Only the bounds of an extrapolated deformation need them again.
-      mapping.ReleaseVoxels();
-    }
-    if (!meshIsSent || this->SentVectors != vectors)
-    {
-      const PointRanges changes = deformation.GetChanges(this->SentVectors);
-      Transfer transfer(this);
-      this->Deformer.SetNodeDisplacements(
-        deformation.GetNodeDisplacements(), meshIsSent ? &changes : nullptr);
-      transfer.End();
-    }
+    this->SetMesh(deformation, mapping, volume, openSplits, progress);
     this->HasMesh = true;
     this->HasField = this->HasRestMesh = this->HasInverseField = false;
   }
   this->SentVectors = vectors;
   this->SentExtrapolate = extrapolate;
+}
+
+void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mapping,
+  const MappedVolume& volume, bool openSplits, const std::function<bool(double)>& progress)
+{
+  const RestMesh& mesh = deformation.GetRestMesh();
+  const std::vector<Tetrahedron>& tetrahedra = mesh.GetTetrahedra();
+  const std::size_t nodes = mesh.GetPoints().size();
+  const std::uint64_t connectivity = mesh.GetConnectivityVersion();
+  const bool meshIsSent = this->HasMesh && this->SentMapping == mapping.GetVersion() &&
+    mapping.IsCurrent(deformation, volume);
+  const bool hasSplit = meshIsSent && this->SentConnectivity != connectivity;
+  if (!meshIsSent)
+  {
+    mapping.Update(deformation, volume, progress);
+    Transfer transfer(this);
+    if (mapping.IsByRuns())
+    {
+      this->Deformer.SetMesh(tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetRuns());
+    }
+    else
+    {
+      this->Deformer.SetMesh(
+        tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetLinks().data());
+    }
+    transfer.End();
+    this->SentMapping = mapping.GetVersion();
+    this->PlacesAreSent = false;
+  }
+  else if (hasSplit)
+  {
+    const auto changes = mesh.GetChanges(this->SentConnectivity);
+    Transfer transfer(this);
+    this->Deformer.ChangeConnectivity(
+      tetrahedra.data(), tetrahedra.size(), nodes, changes ? &*changes : nullptr);
+    transfer.End();
+  }
+  this->SentConnectivity = connectivity;
+  if (!volume.Extrapolate)
+  {
+    // Only the bounds of an extrapolated deformation need them again.
+    mapping.ReleaseVoxels();
+  }
+  if (openSplits != this->PlacesAreSent || (openSplits && hasSplit))
+  {
+    if (openSplits)
+    {
+      this->Places.Update(mesh);
+    }
+    Transfer transfer(this);
+    this->Deformer.SetNodePlaces(
+      openSplits && !this->Places.Get().empty() ? this->Places.Get().data() : nullptr);
+    transfer.End();
+    this->PlacesAreSent = openSplits;
+  }
+  if (!meshIsSent || this->SentVectors != deformation.GetVectorsVersion())
+  {
+    const PointRanges changes = deformation.GetChanges(this->SentVectors);
+    Transfer transfer(this);
+    this->Deformer.SetNodeDisplacements(
+      deformation.GetNodeDisplacements(), meshIsSent ? &changes : nullptr);
+    transfer.End();
+  }
 }
 
 void DeviceSession::SetRestMesh(const Deformation& deformation, bool extrapolate)
@@ -226,7 +259,9 @@ void DeviceSession::SetRestMesh(const Deformation& deformation, bool extrapolate
     this->SentExtrapolate = extrapolate;
     return;
   }
-  const bool meshIsSent = this->HasRestMesh && this->SentRest == deformation.GetRestVersion();
+  // Which changes with the shape, too.
+  const std::uint64_t connectivity = deformation.GetRestMesh().GetConnectivityVersion();
+  const bool meshIsSent = this->HasRestMesh && this->SentConnectivity == connectivity;
   const std::uint64_t vectors = deformation.GetVectorsVersion();
   Transfer transfer(this);
   if (!meshIsSent)
@@ -242,7 +277,7 @@ void DeviceSession::SetRestMesh(const Deformation& deformation, bool extrapolate
   transfer.End();
   this->HasRestMesh = true;
   this->HasMesh = this->HasField = this->HasInverseField = false;
-  this->SentRest = deformation.GetRestVersion();
+  this->SentConnectivity = connectivity;
   this->SentVectors = vectors;
 }
 

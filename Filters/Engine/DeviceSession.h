@@ -4,6 +4,7 @@
 
 #include "Deformation.h"
 #include "MappingCache.h"
+#include "NodePlaces.h"
 #include "VolumeArrays.h"
 #include "VolumeDeformer.h"
 
@@ -45,9 +46,10 @@ public:
     const std::vector<SourceArray>& arrays, double background,
     Resampling method = Resampling::Exact);
 
-  /// Brings the mapping up to date, too, where it has to be sent.
+  /// Brings the mapping up to date, too, where it has to be sent. openSplits: whether gaps open
+  /// where the mesh is split.
   void SetDeformation(const Deformation& deformation, MappingCache& mapping,
-    const MappedVolume& volume, const std::function<bool(double)>& progress);
+    const MappedVolume& volume, bool openSplits, const std::function<bool(double)>& progress);
 
   /// A mesh, or an inverse field, for the method MeshRasterization: there is no mapping.
   void SetRestMesh(const Deformation& deformation, bool extrapolate = false);
@@ -63,6 +65,8 @@ private:
   class Transfer;
 
   void Forget();
+  void SetMesh(const Deformation& deformation, MappingCache& mapping, const MappedVolume& volume,
+    bool openSplits, const std::function<bool(double)>& progress);
 
   VolumeDeformer Deformer;
   std::string Device;
@@ -80,7 +84,9 @@ private:
   bool HasField = false;
   bool HasInverseField = false;
   bool HasRestMesh = false;
-  std::uint64_t SentRest = 0;
+  std::uint64_t SentConnectivity = 0;
+  NodePlaces Places;
+  bool PlacesAreSent = false;
   std::uint64_t SentMapping = 0;
   std::uint64_t SentVectors = 0;
   bool SentExtrapolate = false;

@@ -50,7 +50,8 @@ std::uint64_t EstimateRunBytes(const StaticMappingBuilder& builder, const Mapped
 
 bool MappingCache::IsCurrent(const Deformation& deformation, const MappedVolume& volume) const
 {
-  return this->MappingKey == Key{ &deformation, deformation.GetRestVersion(), volume };
+  return this->MappingKey ==
+    Key{ &deformation, deformation.GetRestMesh().GetShapeVersion(), volume };
 }
 
 StaticMappingBuilder& MappingCache::GetBuilder(const Deformation& deformation, const Key& key)
@@ -79,8 +80,9 @@ std::uint64_t MappingCache::GetRunBytes(const Deformation& deformation, const Ma
     return this->RunBytes;
   }
   const Stopwatch stopwatch(this->Time);
-  return EstimateRunBytes(
-    this->GetBuilder(deformation, { &deformation, deformation.GetRestVersion(), volume }), volume);
+  return EstimateRunBytes(this->GetBuilder(deformation,
+                            { &deformation, deformation.GetRestMesh().GetShapeVersion(), volume }),
+    volume);
 }
 
 void MappingCache::Update(const Deformation& deformation, const MappedVolume& volume,
@@ -99,7 +101,7 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
   // The old links go first, so that two sets never stand in memory.
   this->Mapping = StaticMapping();
   this->MappingKey = Key();
-  const Key key{ &deformation, deformation.GetRestVersion(), volume };
+  const Key key{ &deformation, deformation.GetRestMesh().GetShapeVersion(), volume };
   const StaticMappingBuilder& builder = this->GetBuilder(deformation, key);
   StaticMapping mapping = builder.Build(volume.Part, progress);
   const std::uint64_t runBytes = EstimateRunBytes(builder, volume);

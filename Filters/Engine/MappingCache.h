@@ -48,6 +48,7 @@ public:
   /// Whether the mapping is that of a volume and a mesh, with or without its links or runs.
   bool IsCurrent(const Deformation& deformation, const MappedVolume& volume) const;
 
+  const StaticMapping& GetMapping() const { return this->Mapping; }
   const std::vector<VertexLink>& GetLinks() const { return this->Mapping.Links; }
   const VertexRuns& GetRuns() const { return this->Mapping.Runs; }
   /// Whether it has runs, and not links.
@@ -72,11 +73,11 @@ private:
   struct Key
   {
     const Deformation* Source = nullptr;
-    std::uint64_t RestVersion = 0;
+    std::uint64_t ShapeVersion = 0;
     MappedVolume Volume;
     bool operator==(const Key& other) const
     {
-      return this->Source == other.Source && this->RestVersion == other.RestVersion &&
+      return this->Source == other.Source && this->ShapeVersion == other.ShapeVersion &&
         this->Volume == other.Volume;
     }
   };

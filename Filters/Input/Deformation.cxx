@@ -12,6 +12,8 @@
 #include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -24,15 +26,12 @@ namespace deformvolume
 namespace
 {
 
-const char* const MESH = "deformation mesh on input port 1";
-const char* const REST = "rest configuration on input port 2";
-
 // What is to be added to the points of one mesh to have those of another, part by part. memories:
 // of the last reading, from the same points.
 void ReadPointDifferences(const MeshParts& shape, const MeshParts& rest, const VectorTaker& take,
   std::vector<VectorMemory>& memories)
 {
-  const std::vector<glm::dvec3> starts = ReadPoints(rest, REST);
+  const std::vector<glm::dvec3> starts = ReadPoints(rest, REST_NAME);
   memories.resize(shape.size());
   vtkIdType next = 0;
   for (std::size_t part = 0; part < shape.size(); ++part)
@@ -56,26 +55,63 @@ void ReadPointDifferences(const MeshParts& shape, const MeshParts& rest, const V
           }
           take(next + first, moves.data(), some);
         },
-        "Point", MESH, &memories[part]);
+        "Point", MESH_NAME, &memories[part]);
     }
     next += count;
   }
 }
 
-// The mesh at rest is the one on port 1 where port 2 has none.
-bool IsRestMade(const DeformationSource& source)
+// Two ways to make displacements of vectors, three floats each. False where one is too large.
+// Without branches, as there are millions.
+bool TransformVectors(
+  const glm::dmat3& transform, const glm::dvec3* vectors, std::size_t count, float* displacements)
 {
-  return source.Rest ? source.RestIsMade : source.ShapeIsMade;
+  int near = 1;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const glm::dvec3 move = transform * vectors[i];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      // Not-a-number is not near either.
+      near &= std::abs(move[axis]) <= LargestDisplacement ? 1 : 0;
+      displacements[3 * i + axis] = static_cast<float>(move[axis]);
+    }
+  }
+  return near != 0;
 }
 
-std::vector<vtkIdType> GetNodesOfParts(const MeshParts& parts)
+// The same where axes stay axes. Finite numbers times finite ones are never not-a-number.
+bool ScaleVectors(
+  const glm::dvec3& scaling, const glm::dvec3* vectors, std::size_t count, float* displacements)
 {
-  std::vector<vtkIdType> nodes;
-  for (vtkUnstructuredGrid* grid : parts)
+  constexpr std::size_t lanes = 12; // a multiple of three, and of what registers hold
+  std::array<double, lanes> factors;
+  std::array<double, lanes> largest{};
+  for (std::size_t lane = 0; lane < lanes; ++lane)
   {
-    nodes.push_back(grid->GetNumberOfPoints());
+    factors[lane] = scaling[static_cast<int>(lane % 3)];
   }
-  return nodes;
+  const double* components = &vectors[0].x;
+  const auto scale = [&](std::size_t i, std::size_t lane)
+  {
+    const double move = factors[lane] * components[i];
+    const double distance = std::abs(move);
+    largest[lane] = distance > largest[lane] ? distance : largest[lane];
+    displacements[i] = static_cast<float>(move);
+  };
+  const std::size_t whole = 3 * count / lanes * lanes;
+  for (std::size_t i = 0; i < whole; i += lanes)
+  {
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+    {
+      scale(i + lane, lane);
+    }
+  }
+  for (std::size_t i = whole; i < 3 * count; ++i)
+  {
+    scale(i, i - whole);
+  }
+  return *std::max_element(largest.begin(), largest.end()) <= LargestDisplacement;
 }
 
 } // namespace
@@ -109,8 +145,8 @@ void Deformation::Read(const DeformationSource& source)
 
 void Deformation::ReadMesh(const DeformationSource& source)
 {
-  const MeshParts shape = GetMeshParts(source.Shape, MESH);
-  const MeshParts rest = source.Rest ? GetMeshParts(source.Rest, REST) : shape;
+  const MeshParts shape = GetMeshParts(source.Shape, MESH_NAME);
+  const MeshParts rest = source.Rest ? GetMeshParts(source.Rest, REST_NAME) : shape;
   if (GetNumberOfNodes(shape) != GetNumberOfNodes(rest))
   {
     throw Error("The deformation mesh on input port 1 has " +
@@ -118,8 +154,12 @@ void Deformation::ReadMesh(const DeformationSource& source)
       " points and the rest configuration on port 2 has " + std::to_string(GetNumberOfNodes(rest)) +
       ". Connect two configurations of one mesh.");
   }
-  this->ReadTetrahedra(shape, rest, source);
-  const bool sameRest = this->ReadRestPoints(rest, source);
+  this->Mesh.Read(shape, rest, source);
+  if (this->ConnectivityOfVectors != this->Mesh.GetConnectivityVersion())
+  {
+    this->ConnectivityOfVectors = this->Mesh.GetConnectivityVersion();
+    ++this->VectorsVersion;
+  }
 
   Stamp stamp = source.Rest ? GetPointsStamp(shape) : GetPointVectorsStamp(shape);
   if (source.Rest)
@@ -134,7 +174,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
   {
     return;
   }
-  if (this->MemoriesAreOfPoints != ofPoints || (ofPoints && !sameRest))
+  if (this->MemoriesAreOfPoints != ofPoints || (ofPoints && !this->Mesh.HasKeptPoints()))
   {
     this->Memories.clear();
   }
@@ -149,86 +189,11 @@ void Deformation::ReadMesh(const DeformationSource& source)
       }
       else
       {
-        ReadPointVectors(shape, source.Selector, source.Wanted, MESH, take, &this->Memories);
+        ReadPointVectors(shape, source.Selector, source.Wanted, MESH_NAME, take, &this->Memories);
       }
     },
     ofPoints ? 1.0 : source.DisplacementScale, source);
   this->RememberVectors(stamp, source, false);
-}
-
-bool Deformation::HasSameCells(
-  const MeshParts& parts, const MeshStamp& stamp, const MeshStamp& lastStamp) const
-{
-  if (stamp.IsThatOf(lastStamp))
-  {
-    return true;
-  }
-  return !this->Tetrahedra.empty() && this->IgnoredCells.empty() &&
-    GetNodesOfParts(parts) == this->NodesOfParts && HasCells(parts, this->Tetrahedra);
-}
-
-void Deformation::ReadTetrahedra(
-  const MeshParts& shape, const MeshParts& rest, const DeformationSource& source)
-{
-  const MeshStamp restCells = MeshStamp::OfCells(rest, IsRestMade(source));
-  const MeshStamp shapeCells = MeshStamp::OfCells(shape, source.ShapeIsMade);
-  const bool shared = shapeCells.HasArraysOf(restCells);
-  if (!this->HasSameCells(rest, restCells, this->RestCells) ||
-    !(shared || this->HasSameCells(shape, shapeCells, this->ShapeCells)))
-  {
-    this->RestCells = this->ShapeCells = MeshStamp(); // of nothing, where this fails
-    MeshCells cells = ReadCells(rest);
-    if (cells.Tetrahedra.empty())
-    {
-      throw Error("The deformation mesh has no tetrahedra" +
-        (cells.Ignored.empty() ? std::string() : ", but " + cells.Ignored) +
-        ". Connect a mesh of three-dimensional cells, for example from "
-        "vtkLatticeTetrahedraSource, vtkTetGenMesher or vtkDelaunay3D.");
-    }
-    if (!shared && ReadCells(shape).Tetrahedra != cells.Tetrahedra)
-    {
-      throw Error("The cells of the deformation mesh on input port 1 are not those of the rest "
-                  "configuration on port 2. Connect two configurations of one mesh.");
-    }
-    if (cells.Tetrahedra != this->Tetrahedra)
-    {
-      this->Tetrahedra = std::move(cells.Tetrahedra);
-      ++this->RestVersion;
-    }
-    this->IgnoredCells = cells.Ignored;
-    this->NodesOfParts = GetNodesOfParts(rest);
-  }
-  this->RestCells = restCells;
-  this->ShapeCells = shapeCells;
-}
-
-bool Deformation::ReadRestPoints(const MeshParts& rest, const DeformationSource& source)
-{
-  const char* const name = source.Rest ? REST : MESH;
-  const MeshStamp stamp = MeshStamp::OfPoints(rest, IsRestMade(source));
-  const bool same = stamp.IsThatOf(this->RestStamp) && source.Volume == this->RestVolume;
-  if (!same)
-  {
-    this->RestStamp = MeshStamp(); // of nothing, where this fails
-    const glm::dmat4 transform = source.Volume.GetWorldToIndex();
-    if (!HasPoints(rest, transform, this->RestPoints, name))
-    {
-      std::vector<glm::dvec3> points = ReadPoints(rest, name);
-      ParallelFor(0, static_cast<vtkIdType>(points.size()), 0,
-        [&](vtkIdType begin, vtkIdType end)
-        {
-          for (vtkIdType i = begin; i < end; ++i)
-          {
-            points[i] = glm::dvec3(transform * glm::dvec4(points[i], 1.0));
-          }
-        });
-      this->RestPoints = std::move(points);
-      ++this->RestVersion;
-    }
-  }
-  this->RestStamp = stamp;
-  this->RestVolume = source.Volume;
-  return same;
 }
 
 bool Deformation::VectorsAreCurrent(
@@ -248,6 +213,14 @@ bool Deformation::HasSameUnits(const DeformationSource& source) const
 PointRanges Deformation::GetChanges(std::uint64_t version) const
 {
   PointRanges changes;
+  if (this->FieldInPlace.Owner && version == this->VectorsVersion)
+  {
+    return changes;
+  }
+  if (this->FieldInPlace.Owner && version == this->VersionBeforeChanges)
+  {
+    return this->ChangesInPlace;
+  }
   if (this->FieldInPlace.Owner)
   {
     return { { { 0, static_cast<std::size_t>(GetNumberOfPoints(this->FieldInPlace)) } } };
@@ -277,24 +250,32 @@ void Deformation::SetVectors(std::size_t count, const std::function<void(const V
   this->FieldInPlace = DisplacementField();
   const std::uint64_t version = ++this->VectorsVersion;
   const std::size_t blocks = (count + PointsPerBlock - 1) / PointsPerBlock;
-  const bool comparable = this->VectorsAreWhole && this->Vectors.size() == 3 * count;
+  const bool comparable = this->VectorsAreWhole;
   if (!comparable)
   {
-    this->Vectors.resize(3 * count);
-    this->BlockVersions.assign(blocks, version);
+    this->BlockVersions.clear();
   }
+  if (this->Vectors.size() != 3 * count)
+  {
+    // Of a block that ends elsewhere now not all can be as it was.
+    const std::size_t same = std::min(this->Vectors.size() / 3, count) / PointsPerBlock;
+    this->BlockVersions.resize(std::min(this->BlockVersions.size(), same));
+    this->Vectors.resize(3 * count);
+  }
+  this->BlockVersions.resize(blocks, version);
   if (!comparable || !this->HasSameUnits(source))
   {
     this->Memories.clear();
   }
   this->VectorsAreWhole = false;
   const glm::dmat3 transform = GetToDisplacement(source, factor);
+  const glm::dvec3 scaling(transform[0][0], transform[1][1], transform[2][2]);
+  const bool isScaling = transform == glm::dmat3(glm::scale(glm::dmat4(1.0), scaling));
   std::vector<std::atomic<bool>> changed(blocks);
   std::atomic<bool> tooFar{ false };
   read(
     [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType number)
     {
-      std::array<glm::dvec3, PointsPerBlock> moves;
       std::array<float, 3 * PointsPerBlock> displacements;
       auto point = static_cast<std::size_t>(first);
       const std::size_t end = point + static_cast<std::size_t>(number);
@@ -302,27 +283,13 @@ void Deformation::SetVectors(std::size_t count, const std::function<void(const V
       {
         const std::size_t block = point / PointsPerBlock;
         const std::size_t some = std::min(end, (block + 1) * PointsPerBlock) - point;
-        int near = 1; // without branches: there are millions of points
-        for (std::size_t i = 0; i < some; ++i)
-        {
-          moves[i] = transform * vectors[i];
-          const glm::dvec3 distance = glm::abs(moves[i]);
-          // Not-a-number is not near either.
-          near &= (distance.x <= LargestDisplacement ? 1 : 0) &
-            (distance.y <= LargestDisplacement ? 1 : 0) &
-            (distance.z <= LargestDisplacement ? 1 : 0);
-        }
+        const bool near = isScaling
+          ? ScaleVectors(scaling, vectors, some, displacements.data())
+          : TransformVectors(transform, vectors, some, displacements.data());
         if (!near)
         {
           tooFar = true;
           return;
-        }
-        for (std::size_t i = 0; i < some; ++i)
-        {
-          for (int axis = 0; axis < 3; ++axis)
-          {
-            displacements[3 * i + axis] = static_cast<float>(moves[i][axis]);
-          }
         }
         float* last = this->Vectors.data() + 3 * point;
         if (std::memcmp(last, displacements.data(), 3 * some * sizeof(float)) != 0)

@@ -4,9 +4,10 @@
 
 #include "DeformationMesh.h"
 #include "DisplacementField.h"
+#include "FieldScan.h"
 #include "ImageGeometry.h"
 #include "IndexBounds.h"
-#include "MeshStamp.h"
+#include "RestMesh.h"
 #include "Tetrahedron.h"
 #include "VectorArray.h"
 
@@ -47,8 +48,7 @@ struct DeformationSource
 glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor);
 
 /// The deformation in the units of the kernels. Keeps what it has read, and reads again only what
-/// changed; versions tell what did. Content decides: a mesh that is another object with the same
-/// cells and rest positions leaves the rest version as it is.
+/// changed; versions tell what did.
 class Deformation
 {
 public:
@@ -62,8 +62,8 @@ public:
   ///@{
   /// A mesh: its tetrahedra, its nodes at rest in continuous indices of the volume, and their
   /// displacements in output voxels.
-  const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Tetrahedra; }
-  const std::vector<glm::dvec3>& GetRestPoints() const { return this->RestPoints; }
+  const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Mesh.GetTetrahedra(); }
+  const std::vector<glm::dvec3>& GetRestPoints() const { return this->Mesh.GetPoints(); }
   const float* GetNodeDisplacements() const { return this->Vectors.data(); }
   ///@}
 
@@ -78,27 +78,18 @@ public:
   }
   ///@}
 
-  /// Changes with the tetrahedra and the rest positions.
-  std::uint64_t GetRestVersion() const { return this->RestVersion; }
-  /// Changes with the displacements and with the kind of the deformation.
+  /// The mesh at rest, with its versions and what has changed between them.
+  const RestMesh& GetRestMesh() const { return this->Mesh; }
+  /// Changes with the displacements, with the connectivity of the mesh and with the kind of the
+  /// deformation.
   std::uint64_t GetVectorsVersion() const { return this->VectorsVersion; }
 
   /// What changed of the displacements after a version of them: blocks of points, some of which may
   /// be as they were.
   PointRanges GetChanges(std::uint64_t version) const;
 
-  /// Cells that were ignored, in words for a warning; "" without such.
-  const std::string& GetIgnoredCells() const { return this->IgnoredCells; }
-
 private:
   void ReadMesh(const DeformationSource& source);
-  void ReadTetrahedra(
-    const MeshParts& shape, const MeshParts& rest, const DeformationSource& source);
-  /// Whether the cells of a mesh are those that were read last.
-  bool HasSameCells(
-    const MeshParts& parts, const MeshStamp& stamp, const MeshStamp& lastStamp) const;
-  /// False where the points at rest may not be those that were read last.
-  bool ReadRestPoints(const MeshParts& rest, const DeformationSource& source);
   void ReadField(vtkImageData* image, const DeformationSource& source);
   /// False where the field is not one that can be used in place.
   bool UseFieldInPlace(vtkDataArray* array, const DeformationSource& source);
@@ -111,8 +102,7 @@ private:
     double factor, const DeformationSource& source);
 
   bool Field = false;
-  std::vector<Tetrahedron> Tetrahedra;
-  std::vector<glm::dvec3> RestPoints;
+  RestMesh Mesh;
   std::vector<float> Vectors;
   static constexpr std::size_t PointsPerBlock = 512;
   std::vector<std::uint64_t> BlockVersions; // that with which each block of the vectors came
@@ -121,17 +111,18 @@ private:
   std::array<double, 12> IndexToField{};
   DisplacementField FieldInPlace; // with an owner, or there is none
   IndexBounds FieldBounds;
-  std::string IgnoredCells;
-  std::uint64_t RestVersion = 0;
+  FieldScan ScanInPlace;
+  std::array<std::uint64_t, 4> FingerprintInPlace{};
+  const void* ArrayInPlace = nullptr;
+  vtkMTimeType TimeInPlace = 0; // of the array
+  PointRanges ChangesInPlace;   // those that led from one version of the vectors to this one
+  static constexpr std::uint64_t NoVersion = ~std::uint64_t{ 0 };
+  std::uint64_t VersionBeforeChanges = NoVersion;
   std::uint64_t VectorsVersion = 0;
 
   // What the above was read from.
-  MeshStamp RestCells;
-  MeshStamp ShapeCells;
-  std::vector<vtkIdType> NodesOfParts;
-  MeshStamp RestStamp;
-  ImageGeometry RestVolume;
   Stamp VectorsStamp;
+  std::uint64_t ConnectivityOfVectors = 0;
   DeformationSource VectorsSource;
   std::vector<VectorMemory> Memories; // of each part of a mesh
   bool MemoriesAreOfPoints = false;   // and not of vectors

@@ -2,9 +2,11 @@
 // What Deformation does with a displacement field.
 #include "Deformation.h"
 
+#include "CoarseVolume.h"
 #include "Error.h"
 #include "FieldScan.h"
 #include "VectorArray.h"
+#include "WrittenTuples.h"
 
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkDataArray.h"
@@ -12,6 +14,7 @@
 #include "vtkPointData.h"
 
 #include <cmath>
+#include <utility>
 
 namespace deformvolume
 {
@@ -38,6 +41,26 @@ const float* FindFloats(vtkDataArray* array)
 {
   auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(array);
   return floats ? floats->GetPointer(0) : nullptr;
+}
+
+// Where all voxels are points of a field and there are others between them, how many points they
+// are apart, the same on each axis; else 1. indexToField: see DisplacementField.
+int GetStep(const Extent& voxels, const std::array<double, 12>& indexToField,
+  const std::array<int, 3>& dimensions)
+{
+  const double step = indexToField[0];
+  bool found = step > 1.0 && step == std::floor(step) && step < dimensions[0];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double* row = &indexToField[4 * axis];
+    for (int k = 0; k < 3; ++k)
+    {
+      found = found && row[k] == (axis == k ? step : 0.0);
+    }
+    found = found && row[3] == std::floor(row[3]) && step * voxels[2 * axis] + row[3] >= 0.0 &&
+      step * voxels[2 * axis + 1] + row[3] < dimensions[axis];
+  }
+  return found ? static_cast<int>(step) : 1;
 }
 
 } // namespace
@@ -89,11 +112,32 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
       this->IndexToField[4 * row + column] = DropRoundingError(toField[column][row] - first);
     }
   }
+  const int step = source.FieldIsInverse
+    ? 1
+    : GetStep(source.Volume.PointExtent, this->IndexToField, this->FieldDimensions);
+  vtkSmartPointer<vtkDataArray> taken;
+  if (step > 1)
+  {
+    // The vectors between the voxels are never looked at.
+    const Extent& voxels = source.Volume.PointExtent;
+    Extent points;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      double& first = this->IndexToField[4 * axis + 3];
+      points[2 * axis] = -static_cast<int>(first);
+      points[2 * axis + 1] = points[2 * axis] + this->FieldDimensions[axis] - 1;
+      this->FieldDimensions[axis] = static_cast<int>(GetSize(voxels, axis));
+      this->IndexToField[4 * axis + axis] = 1.0;
+      first = -voxels[2 * axis];
+    }
+    taken = TakeTuples(array, points, voxels, step);
+    array = taken;
+  }
   this->Memories.clear();
   if (!this->UseFieldInPlace(array, source))
   {
     this->SetVectors(
-      static_cast<std::size_t>(image->GetNumberOfPoints()),
+      static_cast<std::size_t>(array->GetNumberOfTuples()),
       [&](const VectorTaker& take) { ReadVectors(array, take, "Vector", FIELD); },
       source.DisplacementScale, source);
   }
@@ -122,11 +166,24 @@ bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& 
   {
     return false;
   }
-  const FieldScan scan = ScanField(voxelGrid, field);
-  if (!scan.IsUsable)
+  const DisplacementField& last = this->FieldInPlace;
+  const bool isSame = last.Owner && this->ArrayInPlace == array && last.Vectors == field.Vectors &&
+    last.Dimensions == field.Dimensions && last.IndexToField == field.IndexToField &&
+    last.ToDisplacement == field.ToDisplacement && this->HasSameUnits(source);
+  std::optional<PointRanges> written =
+    isSame ? FindWritten(array, array, this->TimeInPlace) : std::nullopt;
+  const FieldState state = this->ScanInPlace.Look(voxelGrid, field, written ? &*written : nullptr);
+  if (!state.IsUsable)
   {
     return false; // to convert them tells what is wrong
   }
+  this->ArrayInPlace = array;
+  this->TimeInPlace = array->GetMTime();
+  if (isSame && this->FingerprintInPlace == state.Fingerprint)
+  {
+    return true; // it was marked as modified, and is not
+  }
+  this->FingerprintInPlace = state.Fingerprint;
   array->Register(nullptr);
   field.Owner =
     std::shared_ptr<const void>(array, [](vtkDataArray* owned) { owned->UnRegister(nullptr); });
@@ -135,7 +192,9 @@ bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& 
   std::vector<float>().swap(this->Vectors);
   this->BlockVersions.clear();
   this->FieldInPlace = field;
-  this->FieldBounds = scan.Bounds;
+  this->FieldBounds = state.Bounds;
+  this->VersionBeforeChanges = written ? this->VectorsVersion : NoVersion;
+  this->ChangesInPlace = written ? std::move(*written) : PointRanges();
   ++this->VectorsVersion;
   return true;
 }

@@ -121,6 +121,14 @@ ImageGeometry GetGeometry(vtkImageData* image)
   return geometry;
 }
 
+void SetTransform(vtkImageData* image, const ImageGeometry& geometry)
+{
+  const glm::dmat3 rows = glm::transpose(geometry.Direction);
+  image->SetOrigin(glm::value_ptr(geometry.Origin));
+  image->SetSpacing(glm::value_ptr(geometry.Spacing));
+  image->SetDirectionMatrix(glm::value_ptr(rows));
+}
+
 ImageGeometry GetGeometry(vtkInformation* info)
 {
   ImageGeometry geometry;

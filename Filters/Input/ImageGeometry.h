@@ -47,6 +47,8 @@ std::string DescribeExtent(const Extent& extent);
 bool Contains(const Extent& extent, const Extent& other);
 
 ImageGeometry GetGeometry(vtkImageData* image);
+/// Sets the origin, the spacing and the direction of an image.
+void SetTransform(vtkImageData* image, const ImageGeometry& geometry);
 
 /// The geometry that pipeline information announces, with the whole extent.
 ImageGeometry GetGeometry(vtkInformation* info);

@@ -17,6 +17,9 @@ namespace deformvolume
 /// are, too.
 using ByteArray = vtkAOSDataArrayTemplate<unsigned char>;
 
+/// The cell array that tells which tetrahedra are active.
+constexpr const char* ActiveTetrahedraName = "ActiveTetrahedra";
+
 /// An array of one byte for each of `size` points or cells, or null where there is none of the
 /// name. Throws an Error where the array is there, but of another type, shape or size. `what` and
 /// `owner` are its words: "cell" and "volume" for a cell array of the volume.

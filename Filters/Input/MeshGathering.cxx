@@ -25,9 +25,6 @@ namespace deformvolume
 namespace
 {
 
-const char* const MESH = "deformation mesh on input port 1";
-const char* const REST = "rest configuration on input port 2";
-
 Stamp GetPieceStamp(const DeformationSource& source)
 {
   Stamp stamp;
@@ -127,14 +124,14 @@ MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
   }
   piece.Tetrahedra = std::move(cells.Tetrahedra);
   piece.IgnoredCells = std::move(cells.Ignored);
-  piece.RestPoints = ReadPoints(rest, source.Rest ? REST : MESH);
+  piece.RestPoints = ReadPoints(rest, source.Rest ? REST_NAME : MESH_NAME);
   if (source.Rest)
   {
-    piece.Vectors = ReadPoints(shape, MESH);
+    piece.Vectors = ReadPoints(shape, MESH_NAME);
     return piece;
   }
   piece.Vectors.resize(nodes);
-  ReadPointVectors(shape, source.Selector, source.Wanted, MESH,
+  ReadPointVectors(shape, source.Selector, source.Wanted, MESH_NAME,
     [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
     { std::copy(vectors, vectors + count, piece.Vectors.begin() + first); });
   return piece;
@@ -210,7 +207,7 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
       }
       if (sum > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max()))
       {
-        throw Error("The " + std::string(MESH) +
+        throw Error("The " + std::string(MESH_NAME) +
           " has more than 2,147,483,647 points on all ranks. Connect a coarser one.");
       }
       for (Tetrahedron& tetrahedron : piece.Tetrahedra)
@@ -220,9 +217,9 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
           node += static_cast<std::int32_t>(first);
         }
       }
-      GatherVector(ranks, piece.Tetrahedra, MESH);
-      GatherVector(ranks, piece.RestPoints, MESH);
-      GatherVector(ranks, piece.Vectors, MESH);
+      GatherVector(ranks, piece.Tetrahedra, MESH_NAME);
+      GatherVector(ranks, piece.RestPoints, MESH_NAME);
+      GatherVector(ranks, piece.Vectors, MESH_NAME);
     }
     ranks.Attempt([&] { this->Make(piece, withRest); });
     this->PieceStamp = stamp;

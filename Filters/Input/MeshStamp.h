@@ -3,15 +3,15 @@
 #define DeformVolumeMeshStamp_h
 
 #include "DeformationMesh.h"
-#include "Tetrahedron.h"
-
-#include <glm/mat4x4.hpp>
-#include <glm/vec3.hpp>
 
 #include <vector>
 
 namespace deformvolume
 {
+
+/// What the cells of a grid are besides their connectivity: arrays with modification times and
+/// sizes.
+Stamp GetCellFormStamp(vtkUnstructuredGrid* grid);
 
 /// The arrays of the cells of a mesh: their places, modification times and sizes.
 Stamp GetCellArraysStamp(const MeshParts& parts);
@@ -45,15 +45,6 @@ private:
   Stamp Arrays;
   std::vector<Grid> Grids;
 };
-
-/// Whether the cells of a mesh, as they lie in memory, are these tetrahedra and nothing else; the
-/// nodes of these are within the mesh. False as well where that takes more than a comparison to
-/// say: ghosts, uncommon layouts.
-bool HasCells(const MeshParts& parts, const std::vector<Tetrahedron>& tetrahedra);
-
-/// Whether the points of a mesh are these, after a transformation.
-bool HasPoints(const MeshParts& parts, const glm::dmat4& transform,
-  const std::vector<glm::dvec3>& points, const std::string& name);
 
 } // namespace deformvolume
 

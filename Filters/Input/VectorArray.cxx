@@ -4,6 +4,7 @@
 #include "Error.h"
 #include "IndexBounds.h" // for IsFinite
 #include "ParallelFor.h"
+#include "WrittenTuples.h"
 
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkArrayDispatch.h"
@@ -51,17 +52,18 @@ public:
       return;
     }
     const std::size_t size = static_cast<std::size_t>(array->GetNumberOfTuples()) * this->TupleSize;
-    this->Known = memory->Type == array->GetDataType() && memory->Bytes.size() == size;
+    this->Known = memory->Type == array->GetDataType() ? memory->Bytes.size() : 0;
     memory->Bytes.resize(size);
     this->Last = memory->Bytes.data();
+    this->ReadLog(array, *memory);
   }
 
   bool IsSame(vtkIdType first, vtkIdType count) const
   {
     const std::size_t begin = static_cast<std::size_t>(first) * this->TupleSize;
-    return this->Known &&
-      std::memcmp(this->Values + begin, this->Last + begin,
-        static_cast<std::size_t>(count) * this->TupleSize) == 0;
+    const std::size_t size = static_cast<std::size_t>(count) * this->TupleSize;
+    return begin + size <= this->Known &&
+      (this->IsLeft(first) || std::memcmp(this->Values + begin, this->Last + begin, size) == 0);
   }
   void Remember(vtkIdType first, vtkIdType count) const
   {
@@ -74,47 +76,84 @@ public:
   }
 
 private:
+  void ReadLog(vtkDataArray* array, const VectorMemory& memory)
+  {
+    if (const auto ranges = FindWritten(array, memory.Array, memory.Time))
+    {
+      this->Written.resize(
+        (static_cast<std::size_t>(array->GetNumberOfTuples()) + BLOCK - 1) / BLOCK);
+      MarkBlocks(*ranges, BLOCK, this->Written);
+    }
+  }
+  /// Whether a log says that none of a block was written.
+  bool IsLeft(vtkIdType first) const
+  {
+    return !this->Written.empty() && !this->Written[static_cast<std::size_t>(first / BLOCK)];
+  }
+
   const unsigned char* Values;
   std::size_t TupleSize;
   unsigned char* Last = nullptr;
-  bool Known = false;
+  std::size_t Known = 0;              // bytes of the last reading
+  std::vector<unsigned char> Written; // blocks, where a log tells which; else empty
 };
+
+// Without branches, and in sums that do not wait for each other: there are millions.
+bool AreFinite(const double* values, vtkIdType count)
+{
+  constexpr vtkIdType lanes = 8;
+  std::array<double, lanes> sums{};
+  const vtkIdType whole = count / lanes * lanes;
+  for (vtkIdType i = 0; i < whole; i += lanes)
+  {
+    for (vtkIdType lane = 0; lane < lanes; ++lane)
+    {
+      sums[lane] += 0.0 * values[i + lane]; // not-a-number where a value is not finite
+    }
+  }
+  for (vtkIdType i = whole; i < count; ++i)
+  {
+    sums[i - whole] += 0.0 * values[i];
+  }
+  return std::all_of(sums.begin(), sums.end(), [](double sum) { return sum == 0.0; });
+}
 
 struct VectorReader
 {
   template <typename ArrayT>
   void operator()(ArrayT* array, const VectorTaker& take, VectorMemory* memory)
   {
-    const auto tuples = vtk::DataArrayTupleRange<3>(array);
+    const auto values = vtk::DataArrayValueRange<3>(array);
+    const vtkIdType tuples = array->GetNumberOfTuples();
     const BlockComparison comparison(array, GetBytes(array), memory);
     std::atomic<vtkIdType> bad{ NONE };
     const auto read = [&](vtkIdType first, vtkIdType count)
     {
       std::array<glm::dvec3, BLOCK> vectors;
-      for (vtkIdType i = 0; i < count; ++i)
+      double* components = &vectors[0].x;
+      for (vtkIdType i = 0; i < 3 * count; ++i)
       {
-        const auto tuple = tuples[first + i];
-        vectors[i] = glm::dvec3(static_cast<double>(tuple[0]), static_cast<double>(tuple[1]),
-          static_cast<double>(tuple[2]));
-        if (!IsFinite(vectors[i]))
+        components[i] = static_cast<double>(values[3 * first + i]);
+      }
+      if (!AreFinite(components, 3 * count))
+      {
+        const auto found = std::find_if_not(vectors.begin(), vectors.begin() + count, IsFinite);
+        const vtkIdType tuple = first + (found - vectors.begin());
+        vtkIdType least = bad;
+        while (tuple < least && !bad.compare_exchange_weak(least, tuple))
         {
-          vtkIdType least = bad;
-          while (first + i < least && !bad.compare_exchange_weak(least, first + i))
-          {
-          }
-          return;
         }
+        return;
       }
       take(first, vectors.data(), count);
       comparison.Remember(first, count);
     };
-    ParallelFor(0, (tuples.size() + BLOCK - 1) / BLOCK, 0,
+    ParallelFor(0, (tuples + BLOCK - 1) / BLOCK, 0,
       [&](vtkIdType begin, vtkIdType end)
       {
-        for (vtkIdType first = begin * BLOCK; first < std::min(end * BLOCK, tuples.size());
-             first += BLOCK)
+        for (vtkIdType first = begin * BLOCK; first < std::min(end * BLOCK, tuples); first += BLOCK)
         {
-          const vtkIdType count = std::min(BLOCK, tuples.size() - first);
+          const vtkIdType count = std::min(BLOCK, tuples - first);
           if (!comparison.IsSame(first, count))
           {
             read(first, count);
@@ -148,6 +187,8 @@ void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string
   if (memory)
   {
     memory->Type = reader.HasBytes && reader.FirstBad == NONE ? array->GetDataType() : VTK_VOID;
+    memory->Array = array;
+    memory->Time = array->GetMTime();
   }
   if (reader.FirstBad != NONE)
   {

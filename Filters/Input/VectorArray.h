@@ -26,12 +26,15 @@ struct VectorMemory
   int Type = 0; // of its elements, as VTK numbers them; VTK_VOID where nothing is known
   std::vector<unsigned char> Bytes;
   vtkIdType Place = 0; // what its first tuple counted as
+  const void* Array = nullptr;
+  vtkMTimeType Time = 0; // of the array
 };
 
 /// Reads the tuples of an array of three components, in parallel, some at a time. Throws an Error
 /// that names the first tuple that is not finite: "<kind> 5 of the <owner>".
-/// memory: of the last reading of this array or of one in its place. Blocks of tuples that are as
-/// they were then need not be taken again, and are left out. Null: all are taken.
+/// memory: of the last reading of this array or of one in its place, which may have had fewer or
+/// more tuples. Blocks of tuples that are as they were then need not be taken again, and are left
+/// out: a log of the array (vtkArrayChanges) tells them, or else a comparison. Null: all are taken.
 void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string& kind,
   const std::string& owner, VectorMemory* memory = nullptr);
 

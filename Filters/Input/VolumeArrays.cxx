@@ -2,7 +2,9 @@
 #include "VolumeArrays.h"
 
 #include "Error.h"
+#include "FiveTetrahedra.h"
 #include "MaskArray.h"
+#include "WrittenTuples.h"
 
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkCellData.h"
@@ -12,6 +14,8 @@
 #include "vtkLookupTable.h"
 #include "vtkPointData.h"
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <memory>
 #include <type_traits>
@@ -23,7 +27,6 @@ namespace
 {
 
 const char* const MASK = "vtkValidPointMask";
-const char* const ACTIVE = "ActiveTetrahedra";
 const char* const VOLUME = "volume"; // in errors
 
 // The element type of the same size and kind: VTK has several names for most of them.
@@ -76,6 +79,41 @@ std::string GetLabel(vtkAbstractArray* array, int index)
 {
   return array->GetName() ? std::string("\"") + array->GetName() + "\""
                           : "number " + std::to_string(index);
+}
+
+// The arrays that masks are made of; null where there is none. Two entries of a stamp each.
+enum Mask
+{
+  BlankedPoints,
+  HiddenCells,
+  ActiveCells,
+  NumberOfMasks
+};
+
+std::array<vtkAbstractArray*, NumberOfMasks> FindMasks(vtkImageData* volume)
+{
+  const char* ghostName = vtkDataSetAttributes::GhostArrayName();
+  return { { volume->GetPointData()->GetAbstractArray(ghostName),
+    volume->GetCellData()->GetAbstractArray(ghostName),
+    volume->GetCellData()->GetAbstractArray(ActiveTetrahedraName) } };
+}
+
+// Whether one of the masks is the same object as when a stamp was taken.
+bool HasSameMask(
+  const std::array<vtkAbstractArray*, NumberOfMasks>& arrays, Mask mask, const Stamp& last)
+{
+  return last.size() == 2 * NumberOfMasks && last[2 * mask].first == arrays[mask];
+}
+
+// What was written in one of the masks since a stamp was taken, where a log tells that.
+std::optional<PointRanges> FindWrittenMask(
+  const std::array<vtkAbstractArray*, NumberOfMasks>& arrays, Mask mask, const Stamp& last)
+{
+  if (!HasSameMask(arrays, mask, last))
+  {
+    return {};
+  }
+  return FindWritten(arrays[mask], last[2 * mask].first, last[2 * mask].second);
 }
 
 bool HasName(vtkAbstractArray* array, const char* name)
@@ -212,7 +250,7 @@ void CopyRoles(
   }
 }
 
-VolumeMasks ReadMasks(vtkImageData* volume)
+VolumeMasks ReadMasks(vtkImageData* volume, const Stamp& last)
 {
   const char* ghostName = vtkDataSetAttributes::GhostArrayName();
   const vtkIdType numberOfPoints = volume->GetNumberOfPoints();
@@ -222,52 +260,47 @@ VolumeMasks ReadMasks(vtkImageData* volume)
   if (const auto ghosts =
         FindMask(volume->GetPointData(), ghostName, numberOfPoints, "point", VOLUME))
   {
-    constexpr unsigned char blanked =
-      vtkDataSetAttributes::DUPLICATEPOINT | vtkDataSetAttributes::HIDDENPOINT;
-    const unsigned char* values = ghosts->GetPointer(0);
-    bool any = false;
-    for (vtkIdType i = 0; i < numberOfPoints && !any; ++i)
-    {
-      any = (values[i] & blanked) != 0;
-    }
-    if (any)
-    {
-      masks.Blanked.resize(static_cast<std::size_t>(numberOfPoints));
-      for (vtkIdType i = 0; i < numberOfPoints; ++i)
-      {
-        masks.Blanked[i] = values[i] & blanked;
-      }
-    }
+    masks.Blanked = ghosts->GetPointer(0);
+    masks.BlankedBits = vtkDataSetAttributes::DUPLICATEPOINT | vtkDataSetAttributes::HIDDENPOINT;
   }
 
-  if (const auto active = FindMask(volume->GetCellData(), ACTIVE, numberOfCells, "cell", VOLUME))
+  if (const auto active =
+        FindMask(volume->GetCellData(), ActiveTetrahedraName, numberOfCells, "cell", VOLUME))
   {
-    masks.Active.assign(active->GetPointer(0), active->GetPointer(0) + numberOfCells);
+    masks.Active = active->GetPointer(0);
   }
   if (const auto ghosts = FindMask(volume->GetCellData(), ghostName, numberOfCells, "cell", VOLUME))
   {
-    for (vtkIdType i = 0; i < numberOfCells; ++i)
+    const unsigned char* values = ghosts->GetPointer(0);
+    const auto isHidden = [](unsigned char value)
+    { return (value & vtkDataSetAttributes::HIDDENCELL) != 0; };
+    if (std::any_of(values, values + numberOfCells, isHidden))
     {
-      if (ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENCELL)
+      masks.Joined.assign(static_cast<std::size_t>(numberOfCells), DEFORMVOLUME_ALL_TETRAHEDRA);
+      if (masks.Active)
       {
-        if (masks.Active.empty())
-        {
-          masks.Active.assign(static_cast<std::size_t>(numberOfCells), 0x1F);
-        }
-        masks.Active[i] = 0;
+        std::copy_n(masks.Active, numberOfCells, masks.Joined.begin());
       }
+      for (vtkIdType i = 0; i < numberOfCells; ++i)
+      {
+        masks.Joined[i] = isHidden(values[i]) ? 0 : masks.Joined[i];
+      }
+      masks.Active = masks.Joined.data();
     }
+  }
+  const std::array<vtkAbstractArray*, NumberOfMasks> arrays = FindMasks(volume);
+  masks.WrittenBlanked = FindWrittenMask(arrays, BlankedPoints, last);
+  if (masks.Joined.empty() && !arrays[HiddenCells] && HasSameMask(arrays, HiddenCells, last))
+  {
+    masks.WrittenActive = FindWrittenMask(arrays, ActiveCells, last);
   }
   return masks;
 }
 
 Stamp GetMasksStamp(vtkImageData* volume)
 {
-  const char* ghostName = vtkDataSetAttributes::GhostArrayName();
   Stamp stamp;
-  for (vtkAbstractArray* array : { volume->GetPointData()->GetAbstractArray(ghostName),
-         volume->GetCellData()->GetAbstractArray(ghostName),
-         volume->GetCellData()->GetAbstractArray(ACTIVE) })
+  for (vtkAbstractArray* array : FindMasks(volume))
   {
     stamp.emplace_back(array, array ? array->GetMTime() : 0);
     stamp.emplace_back(nullptr, array ? static_cast<vtkMTimeType>(array->GetNumberOfValues()) : 0);
@@ -282,7 +315,8 @@ std::vector<std::string> GetUnusedCellArrays(vtkImageData* volume)
   for (int i = 0; i < cellData->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* array = cellData->GetAbstractArray(i);
-    if (!HasName(array, ACTIVE) && !HasName(array, vtkDataSetAttributes::GhostArrayName()))
+    if (!HasName(array, ActiveTetrahedraName) &&
+      !HasName(array, vtkDataSetAttributes::GhostArrayName()))
     {
       names.push_back(GetLabel(array, i));
     }

@@ -3,11 +3,13 @@
 #define DeformVolumeVolumeArrays_h
 
 #include "DeformationMesh.h" // for Stamp
+#include "PointRanges.h"
 #include "VolumeArray.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -55,16 +57,26 @@ void* GetWritableValues(vtkDataArray* array);
 void CopyRoles(
   vtkDataSetAttributes* from, vtkDataSetAttributes* to, const std::vector<SourceArray>& sources);
 
-/// What is no source, one byte a voxel, and the active tetrahedra, one byte a cell.
+/// What is no source, one byte a voxel, and the active tetrahedra, one byte a cell. In the memory
+/// of the volume where that serves as it is.
 struct VolumeMasks
 {
-  /// Empty where all voxels are sources.
-  std::vector<unsigned char> Blanked;
-  /// Empty where all tetrahedra are active.
-  std::vector<unsigned char> Active;
+  /// Null where there are no such voxels for certain.
+  const unsigned char* Blanked = nullptr;
+  unsigned char BlankedBits = 0; // of each byte that make it so
+  /// Null where all tetrahedra are active.
+  const unsigned char* Active = nullptr;
+  std::vector<unsigned char> Joined; // with what cells are hidden
+
+  ///@{
+  /// What was written since a stamp was taken (GetMasksStamp), where logs tell that.
+  std::optional<PointRanges> WrittenBlanked;
+  std::optional<PointRanges> WrittenActive;
+  ///@}
 };
 
-VolumeMasks ReadMasks(vtkImageData* volume);
+/// last: of the masks that were read last; empty: there are none.
+VolumeMasks ReadMasks(vtkImageData* volume, const Stamp& last);
 
 /// What ReadMasks depends on.
 Stamp GetMasksStamp(vtkImageData* volume);

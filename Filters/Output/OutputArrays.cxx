@@ -48,20 +48,11 @@ void SetSize(vtkDataArray* array, vtkIdType numberOfTuples)
   array->SetNumberOfTuples(numberOfTuples);
 }
 
-bool IsHeldByOthers(vtkDataArray* array)
+std::uint64_t CountBytes(vtkDataArray* array, vtkIdType numberOfTuples)
 {
-  return array->GetReferenceCount() > 1;
-}
-
-// What tells that arrays have their values still.
-Stamp GetStamp(const std::vector<vtkSmartPointer<vtkDataArray>>& arrays)
-{
-  Stamp stamp;
-  for (const auto& array : arrays)
-  {
-    stamp.emplace_back(GetWritableValues(array), array->GetMTime());
-  }
-  return stamp;
+  const vtkIdType values =
+    std::min(array->GetSize(), numberOfTuples * array->GetNumberOfComponents());
+  return static_cast<std::uint64_t>(values) * static_cast<std::uint64_t>(array->GetDataTypeSize());
 }
 
 // Names and the like; values are not touched.
@@ -82,34 +73,71 @@ void CopyDescription(vtkDataArray* array, vtkDataArray* wanted)
 
 } // namespace
 
+bool OutputArrays::Kept::IsAsKept(vtkIdType numberOfTuples) const
+{
+  return this->Array && this->Array->GetNumberOfTuples() == numberOfTuples &&
+    GetWritableValues(this->Array) == this->Values && this->Array->GetMTime() == this->Modified;
+}
+
+bool OutputArrays::Kept::IsHeldByOthers() const
+{
+  return this->Array && this->Array->GetReferenceCount() > 1;
+}
+
+OutputArrays::Kept& OutputArrays::GetServing(std::size_t array)
+{
+  return this->Last[array].IsHeldByOthers() ? this->Older[array] : this->Last[array];
+}
+
+std::uint64_t OutputArrays::GetServingRevision()
+{
+  std::uint64_t revision = 0;
+  for (std::size_t i = 0; i < this->Last.size(); ++i)
+  {
+    const Kept& serving = this->GetServing(i);
+    if (&serving == &this->Last[i])
+    {
+      continue; // the last output itself
+    }
+    if (!serving.IsAsKept(this->NumberOfTuples) || (revision && serving.Revision != revision))
+    {
+      return 0;
+    }
+    revision = serving.Revision;
+  }
+  return revision;
+}
+
 std::uint64_t OutputArrays::Prepare(
   const std::vector<SourceArray>& sources, vtkIdType numberOfTuples)
 {
   this->Made.clear();
   this->NumberOfTuples = numberOfTuples;
-  Arrays wanted;
+  std::vector<vtkSmartPointer<vtkDataArray>> wanted;
   for (const SourceArray& source : sources)
   {
     wanted.push_back(MakeLike(source.Array, 0));
   }
   wanted.push_back(MakeMask(0));
-  bool serve = this->Last.size() == wanted.size();
-  for (std::size_t i = 0; serve && i < wanted.size(); ++i)
-  {
-    serve = CanServe(this->Last[i], wanted[i], numberOfTuples);
-  }
+  const bool serve = std::equal(this->Last.begin(), this->Last.end(), wanted.begin(), wanted.end(),
+    [=](const Kept& last, const auto& array)
+    { return last.Array && CanServe(last.Array, array, numberOfTuples); });
   if (!serve)
   {
-    this->Last.clear();
+    this->Last.assign(wanted.size(), Kept());
   }
+  this->Older.resize(wanted.size());
   std::uint64_t bytes = 0;
-  for (const auto& array : this->Last)
+  for (std::size_t i = 0; i < wanted.size(); ++i)
   {
-    const vtkIdType values =
-      std::min(array->GetSize(), numberOfTuples * array->GetNumberOfComponents());
-    bytes += IsHeldByOthers(array)
-      ? 0
-      : static_cast<std::uint64_t>(values) * static_cast<std::uint64_t>(array->GetDataTypeSize());
+    Kept& older = this->Older[i];
+    if (!this->Last[i].IsHeldByOthers() || older.IsHeldByOthers() ||
+      (older.Array && !CanServe(older.Array, wanted[i], numberOfTuples)))
+    {
+      older = Kept();
+    }
+    const Kept& serving = this->GetServing(i);
+    bytes += serving.Array ? CountBytes(serving.Array, numberOfTuples) : 0;
   }
   return bytes;
 }
@@ -117,26 +145,27 @@ std::uint64_t OutputArrays::Prepare(
 void OutputArrays::Make(
   const std::vector<SourceArray>& sources, vtkImageData* image, DeformRequest& request)
 {
-  if (!this->Last.empty() && this->Last.back()->GetNumberOfTuples() == this->NumberOfTuples &&
-    GetStamp(this->Last) == this->LastStamp)
+  if (std::all_of(this->Last.begin(), this->Last.end(),
+        [this](const Kept& last) { return last.IsAsKept(this->NumberOfTuples); }))
   {
     for (std::size_t i = 0; i < sources.size(); ++i)
     {
-      request.LastOutputs.push_back(GetWritableValues(this->Last[i]));
+      request.LastOutputs.push_back(GetWritableValues(this->Last[i].Array));
     }
-    request.LastCoverage = static_cast<signed char*>(GetWritableValues(this->Last.back()));
+    request.LastCoverage = static_cast<signed char*>(GetWritableValues(this->Last.back().Array));
   }
+  request.OutputRevision = this->GetServingRevision();
   for (std::size_t i = 0; i <= sources.size(); ++i)
   {
     const bool isMask = i == sources.size();
-    vtkSmartPointer<vtkDataArray> made;
-    if (!this->Last.empty() && !IsHeldByOthers(this->Last[i]))
+    Kept& serving = this->GetServing(i);
+    vtkSmartPointer<vtkDataArray> made = serving.Array;
+    if (made)
     {
-      made = this->Last[i];
       if (made->GetNumberOfTuples() != this->NumberOfTuples)
       {
-        this->LastStamp.clear(); // it holds the last output no more
-        SetSize(made, this->NumberOfTuples);
+        SetSize(made, this->NumberOfTuples); // it holds that output no more
+        serving.Values = nullptr;
       }
       CopyDescription(made, isMask ? MakeMask(0) : MakeLike(sources[i].Array, 0));
     }
@@ -158,19 +187,28 @@ void OutputArrays::Make(
   }
 }
 
-void OutputArrays::Keep()
+void OutputArrays::Keep(std::uint64_t revision)
 {
-  this->Last = std::exchange(this->Made, Arrays());
-  for (const auto& array : this->Last)
+  for (std::size_t i = 0; i < this->Made.size(); ++i)
   {
-    array->Modified(); // ranges that were found of earlier values do not hold
+    if (this->Made[i] != this->Last[i].Array)
+    {
+      this->Older[i] = this->Last[i];
+    }
+    Kept& last = this->Last[i];
+    last.Array = std::exchange(this->Made[i], nullptr);
+    last.Array->Modified(); // ranges that were found of earlier values do not hold
+    last.Values = GetWritableValues(last.Array);
+    last.Modified = last.Array->GetMTime();
+    last.Revision = revision;
   }
-  this->LastStamp = GetStamp(this->Last);
+  this->Made.clear();
 }
 
 void OutputArrays::Forget()
 {
   this->Last.clear();
+  this->Older.clear();
   this->Made.clear();
 }
 

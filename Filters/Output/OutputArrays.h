@@ -17,7 +17,8 @@ namespace deformvolume
 {
 
 /// The arrays of a filter's output. Those of the last execution serve again where nobody else holds
-/// them: to write memory for the first time costs more than to deform a volume.
+/// them: to write memory for the first time costs more than to deform a volume. Where somebody
+/// does, as mappers do, two take turns: the one of the execution before the last one serves.
 class OutputArrays
 {
 public:
@@ -30,17 +31,34 @@ public:
   /// the same arguments.
   void Make(const std::vector<SourceArray>& sources, vtkImageData* image, DeformRequest& request);
 
-  /// Keeps what Make() made, now that it is written, for the next execution.
-  void Keep();
+  /// Keeps what Make() made, now that it is written, for the next execution. revision: of the
+  /// output (DeformReport).
+  void Keep(std::uint64_t revision);
   void Forget();
 
 private:
-  using Arrays = std::vector<vtkSmartPointer<vtkDataArray>>;
+  // An array of an output, as it was kept.
+  struct Kept
+  {
+    vtkSmartPointer<vtkDataArray> Array;
+    const void* Values = nullptr;
+    vtkMTimeType Modified = 0;
+    std::uint64_t Revision = 0;
+
+    /// Whether it is of so many tuples, and nobody has written to it.
+    bool IsAsKept(vtkIdType numberOfTuples) const;
+    bool IsHeldByOthers() const;
+  };
+
+  /// What serves for an array, or an empty one.
+  Kept& GetServing(std::size_t array);
+  /// The revision of what the arrays hold that serve in place of others, where that is one.
+  std::uint64_t GetServingRevision();
 
   vtkIdType NumberOfTuples = 0;
-  Arrays Last;
-  Stamp LastStamp;
-  Arrays Made;
+  std::vector<Kept> Last;
+  std::vector<Kept> Older; // of the execution before, those that serve in turn
+  std::vector<vtkSmartPointer<vtkDataArray>> Made;
 };
 
 } // namespace deformvolume

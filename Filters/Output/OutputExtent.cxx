@@ -95,6 +95,28 @@ IndexBounds GetWorldBoxBounds(const double* box, const ImageGeometry& image)
   return bounds;
 }
 
+Extent GetKept(const Extent& last, const Extent& needed, int granularity)
+{
+  const bool isFirst = GetNumberOfPoints(last) == 0;
+  const auto roundDown = [=](int index)
+  { return static_cast<int>(std::floor(static_cast<double>(index) / granularity)) * granularity; };
+  Extent kept;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int end = 0; end < 2; ++end)
+    {
+      // The upper ends are the lower ones of the mirrored extents.
+      const int sense = end == 0 ? 1 : -1;
+      const int least = sense * needed[2 * axis + end];
+      const int rounded = roundDown(least);
+      const int before = sense * last[2 * axis + end];
+      const bool serves = !isFirst && before <= least && rounded - before <= granularity;
+      kept[2 * axis + end] = sense * (serves ? before : rounded);
+    }
+  }
+  return GetPadded(kept, 0); // which checks its size
+}
+
 Extent GetPadded(const Extent& extent, int padding)
 {
   Extent padded;

@@ -22,6 +22,12 @@ IndexBounds GetVolumeBounds(const ImageGeometry& volume, const glm::dvec3& scale
 /// indices of an image. Throws an Error where the box is not one.
 IndexBounds GetWorldBoxBounds(const double* box, const ImageGeometry& image);
 
+/// An extent that holds another one, rounded outwards to multiples of so many voxels. Each end
+/// stays where it was last while what is needed lies within it and it could be no more than so many
+/// voxels nearer: an output whose needs vary little keeps its extent. last: empty where there is
+/// none.
+Extent GetKept(const Extent& last, const Extent& needed, int granularity);
+
 /// An extent with a border of so many voxels. Throws an Error where it counts more voxels than any
 /// machine can hold or stream.
 Extent GetPadded(const Extent& extent, int padding);

@@ -2,12 +2,15 @@
 #include "ParallelFor.h"
 
 #include "FirstException.h"
-#include "HostThreads.h"
 #include "Processors.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <new>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 namespace deformvolume
 {
@@ -15,6 +18,45 @@ namespace
 {
 
 std::atomic<ParallelLoop> CurrentLoop{ nullptr };
+
+// Calls body(turn) for each of so many turns, side by side on at most so many threads. What a call
+// throws first is thrown once all threads have ended; turns that had not begun are left out then.
+template <typename Body>
+void RunOnThreads(std::size_t turns, std::size_t limit, Body&& body)
+{
+  FirstException failure;
+  std::atomic<std::size_t> next{ 0 };
+  const auto work = [&]
+  {
+    for (std::size_t turn = next++; turn < turns; turn = next++)
+    {
+      failure.Run([&] { body(turn); });
+    }
+  };
+  std::vector<std::thread> threads;
+  try
+  {
+    const std::size_t wanted = std::min(turns, limit);
+    threads.reserve(wanted);
+    while (threads.size() + 1 < wanted)
+    {
+      threads.emplace_back(work);
+    }
+  }
+  catch (const std::system_error&)
+  {
+    // Those that there are do all.
+  }
+  catch (const std::bad_alloc&)
+  {
+  }
+  work();
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  failure.Rethrow();
+}
 
 } // namespace
 
@@ -26,15 +68,15 @@ void SetParallelLoop(ParallelLoop loop)
 void RunOnOwnThreads(
   std::int64_t first, std::int64_t last, std::int64_t grain, const ParallelBody& body, int threads)
 {
-  constexpr std::int64_t partsOfThread = 4;
+  constexpr std::int64_t turnsOfThread = 4;
   const std::int64_t size = std::max<std::int64_t>(0, last - first);
   const std::int64_t step =
-    grain > 0 ? grain : std::max<std::int64_t>(1, size / (threads * partsOfThread));
+    grain > 0 ? grain : std::max<std::int64_t>(1, size / (threads * turnsOfThread));
   RunOnThreads(static_cast<std::size_t>((size + step - 1) / step),
     static_cast<std::size_t>(threads),
-    [&](std::size_t part)
+    [&](std::size_t turn)
     {
-      const std::int64_t begin = first + static_cast<std::int64_t>(part) * step;
+      const std::int64_t begin = first + static_cast<std::int64_t>(turn) * step;
       body(begin, std::min(last, begin + step));
     });
 }

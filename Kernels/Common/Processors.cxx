@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -76,11 +75,6 @@ std::atomic<int> Processes{ 1 };
 
 } // namespace
 
-int GetNumberOfProcessors(const std::string& root)
-{
-  return GetProcessorShare(1, root);
-}
-
 int GetProcessorShare(int processes, const std::string& root)
 {
   const int share =
@@ -101,15 +95,6 @@ int GetProcessorShare()
 void SetProcessesHere(int processes)
 {
   Processes = std::max(1, processes);
-}
-
-void LimitDeviceThreads()
-{
-  const int share = GetProcessorShare();
-  if (share < GetMachineProcessors())
-  {
-    setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(share).c_str(), 0);
-  }
 }
 
 } // namespace deformvolume

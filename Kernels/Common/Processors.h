@@ -9,14 +9,11 @@
 namespace deformvolume
 {
 
-/// Processors that this process can use: those of the machine on which it may run (taskset, MPI's
-/// binding), and what the control groups that it is in are given of their time, rounded up. At
-/// least 1.
-/// root is put in front of the paths of the control groups, for tests.
-DEFORMVOLUME_EXPORT int GetNumberOfProcessors(const std::string& root = "");
-
 /// The processors that are for one of so many processes, which share the machine and a control
-/// group alike. At least 1. A process that is bound to some processors has these for itself.
+/// group alike: those of the machine on which it may run (taskset, MPI's binding), and what the
+/// control groups that it is in are given of their time, rounded up. At least 1. A process that is
+/// bound to some processors has these for itself.
+/// root is put in front of the paths of the control groups, for tests.
 DEFORMVOLUME_EXPORT int GetProcessorShare(int processes, const std::string& root);
 
 /// The share of this process: of as many as SetProcessesHere said last. Threads of the host and
@@ -25,10 +22,6 @@ DEFORMVOLUME_EXPORT int GetProcessorShare();
 
 /// So many processes share this machine. Default 1.
 DEFORMVOLUME_EXPORT void SetProcessesHere(int processes);
-
-/// Makes PoCL start no more threads than the share of this process, unless the environment variable
-/// POCL_MAX_PTHREAD_COUNT is set. To be called before there is a device.
-DEFORMVOLUME_EXPORT void LimitDeviceThreads();
 
 } // namespace deformvolume
 

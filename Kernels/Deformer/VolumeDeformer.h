@@ -6,6 +6,7 @@
 #include "DeformVolumeExport.h"
 #include "DisplacementField.h"
 #include "Error.h"
+#include "PointRanges.h"
 #include "Tetrahedron.h"
 #include "VertexLink.h"
 #include "VertexRuns.h"
@@ -14,7 +15,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -82,11 +82,19 @@ public:
   /// types and components that were set.
   void SetArrayOptions(const std::vector<VolumeArray>& arrays);
 
-  /// One byte a voxel: nonzero where the voxel is no source (blanked or a ghost). Null: all are.
-  void SetBlanked(const unsigned char* blanked);
+  ///@{
+  /// Masks; what differs from the last ones is found by comparing, at the speed of memory, and only
+  /// that is sent. written: places of the mask; all others are as in the last call that was given a
+  /// mask of this kind, if there was one for this voxel grid, and are not looked at. Null: any may
+  /// have been written.
 
+  /// One byte a voxel: nonzero, as far as some bits go, where the voxel is no source (blanked or a
+  /// ghost). Null: all are.
+  void SetBlanked(
+    const unsigned char* blanked, unsigned char bits = 255, const PointRanges* written = nullptr);
   /// One byte a cell, bit i = tetrahedron i is active. Null: all are.
-  void SetActiveTetrahedra(const unsigned char* active);
+  void SetActiveTetrahedra(const unsigned char* active, const PointRanges* written = nullptr);
+  ///@}
 
   /// A tetrahedral deformation mesh, with a link for each voxel.
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
@@ -96,6 +104,18 @@ public:
   /// bound); equal displacements of all nodes move each voxel by exactly that.
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const VertexRuns& runs);
+  /// The same mesh, of as many tetrahedra, where some have got other nodes, and there are more
+  /// nodes, or fewer: after SetMesh, whose links or runs stay, as the nodes lie at rest where the
+  /// others did. changes: what has changed since the last call, each tetrahedron once; null: that
+  /// is found by comparing. SetNodeDisplacements follows, for all nodes whose displacement was not
+  /// set.
+  void ChangeConnectivity(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const std::vector<TetrahedronChange>* changes = nullptr);
+  /// Opens a gap where the mesh is split: tetrahedra of the sampling mesh with vertices on both
+  /// sides are left out (BridgeMask.cl has the rule). places: for each node a number that all nodes
+  /// with one place at rest share. To be called again after SetMesh and ChangeConnectivity. Null:
+  /// no gaps open, the default.
+  void SetNodePlaces(const std::int32_t* places);
   /// The deformation mesh for MeshRasterization, in place of SetMesh. restNodes: three numbers a
   /// node, continuous indices of the volume.
   void SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
@@ -121,30 +141,6 @@ public:
   void ReleaseMemory();
 
 private:
-  DeformReport Execute(const DeformRequest& request);
-
-  /// Bytes on the device.
-  struct DeviceMemory
-  {
-    std::uint64_t Needed;
-    std::uint64_t Available;
-  };
-  /// The part of CheckMemory for the device. outputBytesPerVoxel: of the output there.
-  DeviceMemory CheckDeviceMemory(const VoxelGrid& voxelGrid, const std::vector<VolumeArray>& arrays,
-    const Extent& outputExtent, std::uint64_t outputBytesPerVoxel, std::size_t numberOfNodes,
-    std::size_t numberOfTetrahedra, std::uint64_t mappingBytes) const;
-  DeviceMemory CheckRasterizationDeviceMemory(const VoxelGrid& voxelGrid,
-    const std::vector<VolumeArray>& arrays, const Extent& outputExtent,
-    std::uint64_t outputBytesPerVoxel, std::size_t numberOfNodes,
-    std::size_t numberOfTetrahedra) const;
-
-  /// The part of both for the device, by a function that is given the bytes of a voxel of the
-  /// output there, and then the part for the system. mappingBytes: of links or runs that the caller
-  /// holds.
-  void CheckMemories(const std::vector<VolumeArray>& arrays, const Extent& outputExtent,
-    std::uint64_t mappingBytes, std::uint64_t heldBytes,
-    const std::function<DeviceMemory(std::uint64_t)>& checkDevice) const;
-
   class DEFORMVOLUME_NO_EXPORT Internals;
   std::unique_ptr<Internals> Impl;
 };

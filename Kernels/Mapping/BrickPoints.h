@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,17 @@ public:
 
   bool IsEmpty() const { return this->Begins.empty() && this->Boxes.empty(); }
 
+  /// The bricks that depend on one of some tetrahedra by the nodes that it had, of those that
+  /// isNear(brick) is true for; each with its tetrahedra, by their places in the list. The bricks
+  /// of other tetrahedra with the same nodes may be among them.
+  using ChangesOfBrick = std::pair<std::size_t, std::vector<std::size_t>>;
+  std::vector<ChangesOfBrick> FindBricks(const std::vector<TetrahedronChange>& changes,
+    const std::function<bool(std::size_t)>& isNear) const;
+  /// A brick depends on the nodes that its tetrahedra have got as well from now on.
+  void AddPoints(const ChangesOfBrick& brick, const std::vector<TetrahedronChange>& changes);
+  /// Whether so many were added that all are better found anew.
+  bool AreOverloaded() const { return this->NumberOfAdded > this->Ranges.size() / 2 + 4096; }
+
   /// Whether body(begin, end) was true for one of the ranges that a brick's points are; no more are
   /// asked then.
   template <typename Body>
@@ -53,6 +65,16 @@ public:
         if (body(static_cast<std::size_t>(range.Begin), static_cast<std::size_t>(range.End)))
         {
           return true;
+        }
+      }
+      if (!this->Added.empty())
+      {
+        for (const std::int32_t point : this->Added[brick])
+        {
+          if (body(static_cast<std::size_t>(point), static_cast<std::size_t>(point) + 1))
+          {
+            return true;
+          }
         }
       }
       return false;
@@ -73,7 +95,7 @@ public:
     return false;
   }
 
-  /// Whether all of a brick's points lie before one, or from another one on.
+  /// Whether all of a brick's points lie before one, or from another one on, for certain.
   bool IsApart(std::size_t brick, std::size_t begin, std::size_t end) const
   {
     if (!this->Boxes.empty())
@@ -85,6 +107,10 @@ public:
     }
     const std::size_t first = this->Begins[brick];
     const std::size_t past = this->Begins[brick + 1];
+    if (!this->Added.empty() && !this->Added[brick].empty())
+    {
+      return false;
+    }
     return first == past || static_cast<std::size_t>(this->Ranges[past - 1].End) <= begin ||
       static_cast<std::size_t>(this->Ranges[first].Begin) >= end;
   }
@@ -112,6 +138,8 @@ private:
   std::vector<std::size_t> Begins; // the ranges of each brick, in Ranges
   std::vector<Range> Ranges;
   std::vector<double> Excess;
+  std::vector<std::vector<std::int32_t>> Added; // of each brick, in no order; or none at all
+  std::size_t NumberOfAdded = 0;
   // Or, of a field, a box of points for each.
   std::vector<Extent> Boxes;
   std::array<std::int64_t, 3> FieldSize{ { 0, 0, 0 } };

@@ -25,25 +25,25 @@ namespace
 template <typename Body>
 IndexBounds ComputeInParallel(std::int64_t count, Body&& body)
 {
-  const std::int64_t parts = std::min<std::int64_t>(count, 64);
-  std::vector<IndexBounds> bounds(parts);
-  ParallelFor(0, parts, 1,
+  const std::int64_t blocks = std::min<std::int64_t>(count, 64);
+  std::vector<IndexBounds> bounds(blocks);
+  ParallelFor(0, blocks, 1,
     [&](std::int64_t begin, std::int64_t end)
     {
-      for (std::int64_t part = begin; part < end; ++part)
+      for (std::int64_t block = begin; block < end; ++block)
       {
         IndexBounds found;
-        for (std::int64_t i = count * part / parts; i < count * (part + 1) / parts; ++i)
+        for (std::int64_t i = count * block / blocks; i < count * (block + 1) / blocks; ++i)
         {
           body(i, found);
         }
-        bounds[part] = found;
+        bounds[block] = found;
       }
     });
   IndexBounds all;
-  for (const IndexBounds& part : bounds)
+  for (const IndexBounds& found : bounds)
   {
-    all.Add(part);
+    all.Add(found);
   }
   return all;
 }

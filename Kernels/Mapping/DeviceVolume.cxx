@@ -2,6 +2,7 @@
 #include "DeviceVolume.h"
 
 #include "Error.h"
+#include "FiveTetrahedra.h"
 #include "KernelText.h"
 #include "MappingProgram.h"
 #include "ParallelFor.h"
@@ -154,7 +155,7 @@ void DeviceVolume::SetArrays(const std::vector<VolumeArray>& arrays, const Buffe
   const QueueGuard guard(this->Queue);
   this->LeaveArrays();
   this->ArraysInPlace.assign(arrays.size(), BufferInPlace());
-  this->Owners.clear();
+  this->Arrays.clear(); // there are none if this fails
   const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
   const bool whole = this->Chunks.size() == 1;
   for (std::size_t i = 0; i < arrays.size(); ++i)
@@ -171,7 +172,6 @@ void DeviceVolume::SetArrays(const std::vector<VolumeArray>& arrays, const Buffe
     {
       this->ArraysInPlace[i].Data = array.Data;
       this->ArraysInPlace[i].Bytes = bytes;
-      this->Owners.push_back(array.Owner);
     }
   }
   for (VolumeChunk& chunk : this->Chunks)
@@ -194,6 +194,37 @@ void DeviceVolume::SetArrays(const std::vector<VolumeArray>& arrays, const Buffe
     }
     this->GetArrays(this->Chunks.front());
   }
+  this->Arrays = arrays;
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    if (!this->IsInPlace(i))
+    {
+      this->Arrays[i].Owner.reset(); // the data were copied
+    }
+  }
+}
+
+bool DeviceVolume::SetArrayOptions(const std::vector<VolumeArray>& arrays)
+{
+  const bool alike =
+    std::equal(arrays.begin(), arrays.end(), this->Arrays.begin(), this->Arrays.end(),
+      [](const VolumeArray& a, const VolumeArray& b)
+      { return a.Type == b.Type && a.Components == b.Components; });
+  if (!alike)
+  {
+    throw Error("The options are those of other arrays than are set: call SetArrays first.");
+  }
+  bool changed = false;
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    VolumeArray& set = this->Arrays[i];
+    // Not-a-number never counts as the same.
+    changed = changed || set.Categorical != arrays[i].Categorical ||
+      !(set.Background == arrays[i].Background);
+    set.Categorical = arrays[i].Categorical;
+    set.Background = arrays[i].Background;
+  }
+  return changed;
 }
 
 void DeviceVolume::ReadArraysAgain() const
@@ -275,12 +306,13 @@ void DeviceVolume::SendLinks(VolumeChunk& chunk, const VertexLink* links, const 
 
 void DeviceVolume::SetLinks(const VertexLink* links, const MeshOrder& order)
 {
+  this->SetNodePlaces({});
   const QueueGuard guard(this->Queue);
   this->ForgetRuns();
   this->WithLinks = false; // until all of them are there
   this->AllLinked = std::all_of(links, links + GetNumberOfPoints(this->Shape.VertexExtent),
     [](const VertexLink& link) { return link.Tetrahedron >= 0; });
-  this->StateChanged = true;
+  this->States.Forget();
   for (VolumeChunk& chunk : this->Chunks)
   {
     this->SendLinks(chunk, links, order);
@@ -303,13 +335,14 @@ void DeviceVolume::ForgetRuns()
 
 void DeviceVolume::ForgetMesh()
 {
+  this->SetNodePlaces({});
   this->ForgetRuns();
   for (VolumeChunk& chunk : this->Chunks)
   {
     chunk.Links = cl::Buffer();
   }
   this->WithLinks = false;
-  this->StateChanged = true;
+  this->States.Forget();
 }
 
 void DeviceVolume::SetRuns(const VertexRuns& runs, const MeshOrder& order)
@@ -394,33 +427,64 @@ cl::Event DeviceVolume::EvaluateTetrahedra(
   return this->Context.Launch(this->Queue, kernel, cl::NDRange(items), cl::NDRange(group));
 }
 
-void DeviceVolume::SetBlanked(const unsigned char* blanked)
+std::vector<Extent> DeviceVolume::SetBlanked(
+  const unsigned char* blanked, unsigned char bits, const PointRanges* written)
 {
-  const QueueGuard guard(this->Queue);
-  this->WithBlanked = blanked != nullptr;
-  this->StateChanged = true;
-  const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
-  for (VolumeChunk& chunk : this->Chunks)
+  std::vector<Extent> changes = this->Blanked.Set(
+    this->Context, this->Queue, this->Bricks.Size, this->Chunks, blanked, bits, written);
+  this->States.ChangeSources(changes);
+  return changes;
+}
+
+std::vector<Extent> DeviceVolume::SetActive(const unsigned char* active, const PointRanges* written)
+{
+  std::vector<Extent> changes = this->Active.Set(this->Context, this->Queue, this->Bricks.Size,
+    this->Chunks, active, DEFORMVOLUME_ALL_TETRAHEDRA, written);
+  if (this->Bridges.IsOn())
   {
-    chunk.Blanked = blanked
-      ? this->Send(blanked, 1, plane, chunk.PlanesBegin, chunk.PlanesEnd, chunk.Blanked)
-      : cl::Buffer();
+    this->Bridges.ChangeCells(changes);
+    return {};
+  }
+  this->States.ChangeCells(changes);
+  return changes;
+}
+
+void DeviceVolume::SetNodePlaces(const std::vector<std::int32_t>& places)
+{
+  this->Queue.finish(); // nothing uses what is let go
+  const bool wasOn = this->Bridges.IsOn();
+  this->Bridges.SetPlaces(this->Context, this->Queue, places);
+  if (wasOn != this->Bridges.IsOn())
+  {
+    this->States.Forget();
+    for (VolumeChunk& chunk : this->Chunks)
+    {
+      chunk.Joined = cl::Buffer();
+    }
   }
 }
 
-void DeviceVolume::SetActive(const unsigned char* active)
+std::vector<Extent> DeviceVolume::UpdateBridges(MappingForm mapping, const cl::Buffer& tetrahedra,
+  const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set)
 {
-  const QueueGuard guard(this->Queue);
-  this->WithActive = active != nullptr;
-  this->StateChanged = true;
-  const std::int64_t layer =
-    static_cast<std::int64_t>(this->GetSize(0) - 1) * (this->GetSize(1) - 1);
+  std::vector<Extent> changes;
+  if (this->Bridges.IsCurrent())
+  {
+    return changes;
+  }
+  const cl::Program program = GetBridgeProgram(this->Context, mapping);
   for (VolumeChunk& chunk : this->Chunks)
   {
-    chunk.Active = active
-      ? this->Send(active, 1, layer, chunk.PlanesBegin, chunk.PlanesEnd - 1, chunk.Active)
-      : cl::Buffer();
+    // Any buffer stands in for a missing one.
+    this->Bridges.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
+      { program, [&](cl::Kernel& kernel) { return set(kernel, chunk); },
+        this->HasRuns() ? this->RecordOwners : this->RestPositions, tetrahedra,
+        this->Active.HasBuffers() ? chunk.Active : this->RestPositions, this->Active.HasBuffers() },
+      changes);
   }
+  this->Bridges.Finish();
+  this->States.ChangeCells(changes);
+  return changes;
 }
 
 KernelParameters DeviceVolume::GetParameters(const VolumeChunk& chunk) const
@@ -439,7 +503,7 @@ KernelParameters DeviceVolume::GetParameters(const VolumeChunk& chunk) const
   p.PlanesEnd = chunk.PlanesEnd;
   p.LayersBegin = chunk.LayersBegin;
   p.LayersEnd = chunk.LayersEnd;
-  p.HasActive = this->WithActive;
+  p.HasActive = this->HasActive();
   p.HasState = this->WithState;
   return p;
 }
@@ -491,74 +555,27 @@ cl::NDRange DeviceVolume::GetVertexGroup() const
 void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,
   const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set)
 {
-  if (!this->StateChanged)
+  if (this->States.AreCurrent())
   {
     return;
   }
   this->WithState =
-    this->WithBlanked || this->WithActive || !(this->HasMesh() ? this->AllLinked : movesAll);
-  this->StateChanged = this->WithState;
+    this->HasBlanked() || this->HasActive() || !(this->HasMesh() ? this->AllLinked : movesAll);
   if (!this->WithState)
   {
-    for (VolumeChunk& chunk : this->Chunks)
-    {
-      chunk.State = cl::Buffer();
-    }
+    this->States.Release(this->Chunks);
     return;
   }
-  cl::Kernel sources(mapping, "MarkSources");
-  cl::Kernel vertices(mapping, "MarkVertices");
   for (VolumeChunk& chunk : this->Chunks)
   {
-    const std::uint64_t bytes = static_cast<std::uint64_t>(this->GetSize(0)) * this->GetSize(1) *
-      static_cast<std::uint64_t>(chunk.PlanesEnd - chunk.PlanesBegin);
-    if (deformvolume::GetMemory(chunk.State) != bytes)
-    {
-      chunk.State = cl::Buffer(this->Context.GetContext(), CL_MEM_READ_WRITE, bytes);
-    }
-    cl_uint i = set(sources, chunk);
-    // A null pointer is not something that all drivers take: any buffer stands in for a missing
-    // one.
-    sources.setArg(i++, this->WithBlanked ? chunk.Blanked : this->RestPositions);
-    sources.setArg(i++, cl_int{ this->WithBlanked });
-    vertices.setArg(1, this->WithActive ? chunk.Active : this->RestPositions);
-    vertices.setArg(2, chunk.State);
-    this->MarkChunk(sources, i, vertices, chunk);
+    this->States.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
+      { mapping, [&](cl::Kernel& kernel) { return set(kernel, chunk); },
+        // A null pointer is not something that all drivers take: any buffer stands in for a missing
+        // one.
+        this->HasBlanked() ? chunk.Blanked : this->RestPositions, this->HasBlanked(),
+        this->GetActive(chunk) });
   }
-  this->StateChanged = false;
-}
-
-// Some planes after the others: sources of a whole volume would be one more byte a voxel.
-void DeviceVolume::MarkChunk(
-  cl::Kernel& sources, cl_uint sourcesIndex, cl::Kernel& vertices, const VolumeChunk& chunk)
-{
-  constexpr int step = 64;
-  const int most = std::min(step + 2, chunk.PlanesEnd - chunk.PlanesBegin);
-  this->Marked = cl::Buffer(this->Context.GetContext(), CL_MEM_READ_WRITE,
-    static_cast<std::uint64_t>(this->GetSize(0)) * this->GetSize(1) *
-      static_cast<std::uint64_t>(most));
-  for (int begin = chunk.PlanesBegin; begin < chunk.PlanesEnd; begin += step)
-  {
-    KernelParameters p = this->GetParameters(chunk);
-    const int end = std::min(begin + step, chunk.PlanesEnd);
-    p.PlanesBegin = std::max(begin - 1, chunk.PlanesBegin);
-    p.PlanesEnd = std::min(end + 1, chunk.PlanesEnd);
-    p.SlabFirst = p.PlanesBegin;
-    const auto launch = [&](cl::Kernel& kernel, cl_uint markedIndex, cl_uint parametersIndex)
-    {
-      kernel.setArg(markedIndex, this->Marked);
-      kernel.setArg(parametersIndex, p);
-      this->Context.Launch(this->Queue, kernel, this->GetVertexRange(p.PlanesEnd - p.PlanesBegin),
-        this->GetVertexGroup());
-    };
-    launch(sources, sourcesIndex, sourcesIndex + 1);
-    p.PlanesBegin = begin;
-    p.PlanesEnd = end;
-    launch(vertices, 0, 3);
-  }
-  // A buffer must not be released while launches that use it are queued: PoCL 3.1 crashes.
-  this->Queue.finish();
-  this->Marked = cl::Buffer();
+  this->States.Finish();
 }
 
 std::uint64_t DeviceVolume::GetMemory() const
@@ -568,9 +585,10 @@ std::uint64_t DeviceVolume::GetMemory() const
     deformvolume::GetMemory(this->Records);
   for (const VolumeChunk& chunk : this->Chunks)
   {
-    bytes += deformvolume::GetMemory(chunk.Links) + deformvolume::GetMemory(chunk.Runs) +
-      deformvolume::GetMemory(chunk.RowBegins) + deformvolume::GetMemory(chunk.State) +
-      deformvolume::GetMemory(chunk.Blanked) + deformvolume::GetMemory(chunk.Active);
+    bytes += deformvolume::GetMemory(chunk.Joined) + deformvolume::GetMemory(chunk.Links) +
+      deformvolume::GetMemory(chunk.Runs) + deformvolume::GetMemory(chunk.RowBegins) +
+      deformvolume::GetMemory(chunk.State) + deformvolume::GetMemory(chunk.Blanked) +
+      deformvolume::GetMemory(chunk.Active);
     for (const cl::Buffer& array : chunk.Arrays)
     {
       bytes += deformvolume::GetMemory(array);

@@ -3,15 +3,20 @@
 #define DeformVolumeDeviceVolume_h
 
 #include "BrickPoints.h"
+#include "BridgeMask.h"
+#include "DeviceMask.h"
 #include "Extent.h"
 #include "HostMemory.h"
 #include "KernelParameters.h"
+#include "MappingProgram.h"
 #include "MeshOrder.h"
 #include "OpenCLContext.h"
 #include "Tetrahedron.h"
 #include "VertexLink.h"
 #include "VertexRuns.h"
+#include "VertexStates.h"
 #include "VolumeArray.h"
+#include "VolumeChunk.h"
 #include "VoxelGrid.h"
 
 #include <functional>
@@ -27,23 +32,6 @@ bool IsUsedInPlace(const OpenCLContext& context, const VolumeArray& array);
 std::vector<Tetrahedron> NameNodePlaces(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, const MeshOrder& order = {});
 
-/// A range of cell layers of the sampling mesh with the vertex planes that they and their
-/// neighbours need: a volume over the device's allocation limit is held in several.
-struct VolumeChunk
-{
-  int LayersBegin = 0; // cells, local z
-  int LayersEnd = 0;
-  int PlanesBegin = 0; // vertices, local z: one plane more than the cells have on each side
-  int PlanesEnd = 0;
-  cl::Buffer Links;     // one a voxel, or else runs
-  cl::Buffer Runs;      // those of the rows of the planes
-  cl::Buffer RowBegins; // 4 bytes a row, counted from the chunk's first run
-  cl::Buffer State;
-  cl::Buffer Blanked;
-  cl::Buffer Active;
-  std::vector<cl::Buffer> Arrays; // see DeviceVolume::GetArrays
-};
-
 /// What the device holds of the sampling mesh: per voxel the arrays and the state; the static links
 /// into the deformation mesh, or runs; per cell the active tetrahedra.
 class DeviceVolume
@@ -55,6 +43,12 @@ public:
   /// Arrays with an owner are used where they lie, if the device can, and their memory does not
   /// overlap that of others. field: where a displacement field lies that is used in place.
   void SetArrays(const std::vector<VolumeArray>& arrays, const BufferInPlace& field = {});
+  /// Those that were set; their Data is read only where they are used where they lie, and they have
+  /// an owner only there. None where SetArrays has failed.
+  const std::vector<VolumeArray>& GetVolumeArrays() const { return this->Arrays; }
+  /// Changes which are categorical, and their background: of arrays of the types and components
+  /// that were set. Returns whether any of that is another than it was.
+  bool SetArrayOptions(const std::vector<VolumeArray>& arrays);
   bool IsInPlace(std::size_t array) const { return this->ArraysInPlace[array].Bytes > 0; }
   /// What lies over memory that overlaps this, with its buffer where there is one chunk only.
   BufferInPlace FindOverlapping(const void* data, std::uint64_t bytes) const;
@@ -71,16 +65,45 @@ public:
   ///@}
   /// Frees the links or the runs.
   void ForgetMesh();
-  void SetBlanked(const unsigned char* blanked);
-  void SetActive(const unsigned char* active);
+  ///@{
+  /// Masks of the vertices and of the cells: what these had before is compared with, and what has
+  /// changed is sent, and returned (DeviceMask::Set). bits: those of a byte that blank a voxel.
+  /// Where tetrahedra that bridge gaps are left out, UpdateBridges() tells which cells have
+  /// changed.
+  std::vector<Extent> SetBlanked(
+    const unsigned char* blanked, unsigned char bits, const PointRanges* written);
+  std::vector<Extent> SetActive(const unsigned char* active, const PointRanges* written);
+  ///@}
+
+  ///@{
+  /// Tetrahedra that would bridge the gap where the mesh is split are left out. places: see
+  /// BridgeMask; empty: none are. vertices: those that lie in tetrahedra which have got other
+  /// nodes.
+  void SetNodePlaces(const std::vector<std::int32_t>& places);
+  bool LeavesOutBridges() const { return this->Bridges.IsOn(); }
+  void ForgetBridges() { this->Bridges.Forget(); }
+  void ChangeOwners(const std::vector<Extent>& vertices) { this->Bridges.ChangeVertices(vertices); }
+  /// Finds them, where anything changed that this depends on; returns the boxes of cells that have
+  /// other tetrahedra then. set: see UpdateState.
+  std::vector<Extent> UpdateBridges(MappingForm mapping, const cl::Buffer& tetrahedra,
+    const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set);
+  ///@}
 
   const VoxelGrid& GetVoxelGrid() const { return this->Shape; }
   int GetSize(int axis) const
   {
     return static_cast<int>(deformvolume::GetSize(this->Shape.VertexExtent, axis));
   }
-  bool HasActive() const { return this->WithActive; }
-  bool HasBlanked() const { return this->WithBlanked; }
+  /// Whether there is a mask of active tetrahedra, or one of those that bridge no gap.
+  bool HasActive() const { return this->Active.HasBuffers() || this->Bridges.IsOn(); }
+  /// That of a chunk, or any buffer that stands in for it.
+  const cl::Buffer& GetActive(const VolumeChunk& chunk) const
+  {
+    return this->Bridges.IsOn()   ? chunk.Joined
+      : this->Active.HasBuffers() ? chunk.Active
+                                  : this->RestPositions;
+  }
+  bool HasBlanked() const { return this->Blanked.HasBuffers(); }
   bool HasMesh() const { return this->WithLinks || this->RunBytes > 0; }
   bool HasRuns() const { return this->RunBytes > 0; }
   /// See GetRunBytes in VertexRuns.h; 0 without runs.
@@ -116,7 +139,7 @@ public:
   /// whether a field moves all voxels; links and runs tell by themselves.
   void UpdateState(const cl::Program& mapping, bool movesAll,
     const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set);
-  void ForgetState() { this->StateChanged = true; }
+  void ForgetState() { this->States.Forget(); }
   /// The state, or any buffer that stands in for it.
   const cl::Buffer& GetState(const VolumeChunk& chunk) const
   {
@@ -139,8 +162,6 @@ private:
   void ForgetRuns();
   void SendLinks(VolumeChunk& chunk, const VertexLink* links, const MeshOrder& order);
   void SendRecords(const std::vector<RestTetrahedron>& tetrahedra, const MeshOrder& order);
-  void MarkChunk(
-    cl::Kernel& sources, cl_uint sourcesIndex, cl::Kernel& vertices, const VolumeChunk& chunk);
   cl::Buffer MakeRestPositions() const;
 
   OpenCLContext& Context;
@@ -149,11 +170,10 @@ private:
   BrickGrid Bricks;
   std::uint64_t AllocationLimit;
   std::vector<VolumeChunk> Chunks;
+  std::vector<VolumeArray> Arrays;
   std::vector<BufferInPlace> ArraysInPlace; // one for each array, of no bytes where it was sent
-  std::vector<std::shared_ptr<const void>> Owners; // of these
-  VolumeChunk* ChunkInPlace = nullptr;             // the one that has buffers over them
+  VolumeChunk* ChunkInPlace = nullptr;      // the one that has buffers over them
   cl::Buffer RestPositions;
-  cl::Buffer Marked; // sources, while the state is brought up to date
   bool WithLinks = false;
   std::uint64_t RunBytes = 0;
   cl::Buffer RestTetrahedra; // of each record 15 reals, see RunMapping.cl
@@ -161,9 +181,10 @@ private:
   cl::Buffer Records;
   cl_uint NumberOfRecords = 0;
   bool RecordsChanged = true;
-  bool WithBlanked = false;
-  bool WithActive = false;
-  bool StateChanged = true;
+  DeviceMask Blanked{ DeviceMask::Kind::BlankedVertices };
+  DeviceMask Active{ DeviceMask::Kind::ActiveTetrahedra };
+  BridgeMask Bridges;
+  VertexStates States;
   bool WithState = true;
   bool AllLinked = false; // no link or run says that a voxel is outside
 };

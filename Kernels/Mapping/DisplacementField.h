@@ -26,8 +26,8 @@ struct DisplacementField
   /// has double precision, reads Vectors where they lie, at each Deform(), where each voxel is a
   /// point of the field, and holds the owner until it has another deformation. They are not
   /// checked then: tetrahedra with displacements that are not finite, or too large, are skipped.
-  /// Nor are they compared: all is made anew where they are set again. Else Vectors are checked,
-  /// converted and copied during the call. Null by default.
+  /// Nor are they compared: all is made anew where they are set again, unless it is said which have
+  /// changed. Else Vectors are checked, converted and copied during the call. Null by default.
   std::shared_ptr<const void> Owner;
   /// Row-major 3 x 4 matrix that takes a structured index of the volume to a continuous index of
   /// the field, 0 being the field's first point.

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FieldScan.h"
 
-#include "ParallelFor.h"
+#include "VectorComponents.h"
+
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <cstring>
 #include <vector>
-
-#ifdef __SSE__
-#include <xmmintrin.h>
-#endif
 
 namespace deformvolume
 {
@@ -19,91 +17,56 @@ namespace deformvolume
 namespace
 {
 
-constexpr double INFINITE = std::numeric_limits<double>::infinity();
+// A block has so many rows of one plane.
+constexpr int RowsOfBlock = 8;
 
-// What numbers lie between. Not-a-number never does.
-struct Range
+int CountBlocksOfPlane(const DisplacementField& field)
 {
-  double Least = INFINITE;
-  double Greatest = -INFINITE;
-  void Add(double value)
-  {
-    this->Least = std::min(this->Least, value);
-    this->Greatest = std::max(this->Greatest, value);
-  }
-};
-using Ranges = std::array<Range, 3>;
-
-// What the three components of some vectors lie between, and whether all are finite.
-struct Components
-{
-  std::array<float, 3> Least;
-  std::array<float, 3> Greatest;
-  bool AreFinite;
-};
-
-Components FindComponents(const float* values, int count)
-{
-  // Twelve numbers at a time, of four vectors, side by side.
-  constexpr int width = 12;
-  alignas(16) std::array<float, width> least;
-  alignas(16) std::array<float, width> greatest;
-  alignas(16) std::array<float, width> rest{}; // nothing, where all numbers are finite
-  least.fill(std::numeric_limits<float>::max());
-  greatest.fill(-std::numeric_limits<float>::max());
-  int i = 0;
-#ifdef __SSE__
-  // Compilers do not find these by themselves, and there are millions of points.
-  __m128 lows[3];
-  __m128 highs[3];
-  __m128 rests[3];
-  for (int k = 0; k < 3; ++k)
-  {
-    lows[k] = _mm_load_ps(&least[4 * k]);
-    highs[k] = _mm_load_ps(&greatest[4 * k]);
-    rests[k] = _mm_setzero_ps();
-  }
-  for (; i + width <= count; i += width)
-  {
-    for (int k = 0; k < 3; ++k)
-    {
-      const __m128 next = _mm_loadu_ps(values + i + 4 * k);
-      lows[k] = _mm_min_ps(next, lows[k]);
-      highs[k] = _mm_max_ps(next, highs[k]);
-      rests[k] = _mm_add_ps(rests[k], _mm_sub_ps(next, next));
-    }
-  }
-  for (int k = 0; k < 3; ++k)
-  {
-    _mm_store_ps(&least[4 * k], lows[k]);
-    _mm_store_ps(&greatest[4 * k], highs[k]);
-    _mm_store_ps(&rest[4 * k], rests[k]);
-  }
-#endif
-  for (; i < count; ++i)
-  {
-    const int k = i % width;
-    least[k] = std::min(least[k], values[i]);
-    greatest[k] = std::max(greatest[k], values[i]);
-    rest[k] += values[i] - values[i];
-  }
-  Components found;
-  found.AreFinite = std::all_of(rest.begin(), rest.end(), [](float r) { return r == 0.0F; });
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    found.Least[axis] =
-      std::min({ least[axis], least[axis + 3], least[axis + 6], least[axis + 9] });
-    found.Greatest[axis] =
-      std::max({ greatest[axis], greatest[axis + 3], greatest[axis + 6], greatest[axis + 9] });
-  }
-  return found;
+  return (field.Dimensions[1] + RowsOfBlock - 1) / RowsOfBlock;
 }
 
-// Looks through rows of a field, and keeps what it has found.
-class RowScanner
+// What tells rows of numbers apart. In four sums side by side, which keep up with the memory; each
+// is stirred so that what changes in the highest bits, such as the sign of a number, reaches all.
+std::array<std::uint64_t, 4> GetFingerprint(
+  const float* values, std::size_t count, std::uint64_t seed)
+{
+  constexpr std::uint64_t factor = 0x9E3779B97F4A7C15U;
+  constexpr std::size_t width = 8; // numbers in four words
+  std::array<std::uint64_t, 4> sums{ { seed, ~seed, seed + factor, seed ^ factor } };
+  const auto stir = [](std::uint64_t& sum, std::uint64_t word)
+  {
+    sum = (sum ^ word) * factor;
+    sum ^= sum >> 32;
+  };
+  std::size_t i = 0;
+  for (; i + width <= count; i += width)
+  {
+    std::array<std::uint64_t, 4> words;
+    std::memcpy(words.data(), values + i, sizeof(words));
+    for (std::size_t k = 0; k < words.size(); ++k)
+    {
+      stir(sums[k], words[k]);
+    }
+  }
+  for (; i < count; ++i)
+  {
+    std::uint32_t word = 0;
+    std::memcpy(&word, values + i, sizeof(word));
+    stir(sums[i % sums.size()], word);
+  }
+  for (std::uint64_t& sum : sums)
+  {
+    stir(sum, count);
+    stir(sum, seed);
+  }
+  return sums;
+}
+
+// Looks at blocks of a field.
+class BlockScanner
 {
 public:
-  RowScanner(const VoxelGrid& voxelGrid, const DisplacementField& field)
+  BlockScanner(const VoxelGrid& voxelGrid, const DisplacementField& field)
     : Field(field)
   {
     for (int axis = 0; axis < 3; ++axis)
@@ -118,45 +81,76 @@ public:
     }
   }
 
-  // Some of the voxels, so that most others lie within what is known.
-  void AddSome()
+  // Calls body(y, z) for the rows of a block.
+  template <typename Body>
+  void ForRows(std::size_t block, Body&& body) const
   {
-    constexpr int step = 8;
-    const auto next = [&](int i, int axis)
-    { return i + 1 < this->End[axis] ? std::min(i + step, this->End[axis] - 1) : i + 1; };
-    for (int z = this->Begin[2]; z < this->End[2]; z = next(z, 2))
+    const auto blocks = static_cast<std::size_t>(CountBlocksOfPlane(this->Field));
+    const int z = static_cast<int>(block / blocks);
+    const int first = static_cast<int>(block % blocks) * RowsOfBlock;
+    for (int y = first; y < std::min(first + RowsOfBlock, this->Field.Dimensions[1]); ++y)
     {
-      for (int y = this->Begin[1]; y < this->End[1]; y = next(y, 1))
+      body(y, z);
+    }
+  }
+
+  // A box that holds the deformed voxels of a block. usable: whether its vectors are.
+  IndexBounds FindBox(std::size_t block, bool& usable) const
+  {
+    IndexBounds box;
+    this->ForRows(block,
+      [&](int y, int z)
       {
-        for (int x = this->Begin[0]; x < this->End[0]; x = next(x, 0))
+        const bool hasVoxels = this->HasVoxels(y, z);
+        const std::array<int, 4> ends{ { 0, hasVoxels ? this->Begin[0] : 0,
+          hasVoxels ? this->End[0] : 0, this->Field.Dimensions[0] } };
+        for (int range = 0; range < 3; ++range)
         {
-          this->AddPoint(x, y, z, true);
+          for (int x = ends[range]; x < ends[range + 1]; x += Step)
+          {
+            const int end = std::min(x + Step, ends[range + 1]);
+            usable = this->AddSome(x, end, y, z, range == 1, box) && usable;
+          }
         }
-      }
-    }
+      });
+    return box;
   }
 
-  // y, z: counted from the field's first point.
-  void AddRow(int y, int z)
+  // The bounds of these voxels.
+  IndexBounds FindBounds(std::size_t block) const
   {
-    const bool inside =
-      y >= this->Begin[1] && y < this->End[1] && z >= this->Begin[2] && z < this->End[2];
-    const std::array<int, 4> ends{ { 0, inside ? this->Begin[0] : 0, inside ? this->End[0] : 0,
-      this->Field.Dimensions[0] } };
-    for (int part = 0; part < 3; ++part)
-    {
-      for (int x = ends[part]; x < ends[part + 1]; x += BLOCK)
+    IndexBounds bounds;
+    this->ForRows(block,
+      [&](int y, int z)
       {
-        this->AddBlock(x, std::min(x + BLOCK, ends[part + 1]), y, z, part == 1);
-      }
-    }
+        for (int x = this->Begin[0]; this->HasVoxels(y, z) && x < this->End[0]; ++x)
+        {
+          bounds.Add(this->GetPlace(x, y, z) + GetVector(this->Field, this->GetPoint(x, y, z)));
+        }
+      });
+    return bounds;
   }
 
-  bool IsUsable = true;
-  Ranges Positions; // of voxels
+  std::array<std::uint64_t, 4> FindFingerprint(std::size_t block) const
+  {
+    std::array<std::uint64_t, 4> sums{};
+    this->ForRows(block,
+      [&](int y, int z)
+      {
+        const std::int64_t first = this->GetPoint(0, y, z);
+        const std::array<std::uint64_t, 4> row = GetFingerprint(this->Field.Vectors + 3 * first,
+          3 * static_cast<std::size_t>(this->Field.Dimensions[0]),
+          static_cast<std::uint64_t>(first));
+        for (std::size_t k = 0; k < row.size(); ++k)
+        {
+          sums[k] += row[k]; // in any order
+        }
+      });
+    return sums;
+  }
 
 private:
-  static constexpr int BLOCK = 64;
+  static constexpr int Step = 64; // points of a row that are looked at together
 
   std::int64_t GetPoint(int x, int y, int z) const
   {
@@ -164,62 +158,48 @@ private:
       this->Field.Dimensions[0] +
       x;
   }
-
-  void AddPoint(int x, int y, int z, bool isVoxel)
+  glm::dvec3 GetPlace(int x, int y, int z) const
   {
-    const std::array<float, 3> displacement = GetDisplacement(this->Field, this->GetPoint(x, y, z));
-    const std::array<int, 3> place{ { x, y, z } };
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const auto moved = static_cast<double>(displacement[axis]);
-      this->IsUsable &= std::abs(moved) <= LargestDisplacement;
-      if (isVoxel)
-      {
-        this->Positions[axis].Add(this->Rest[axis][place[axis]] + moved);
-      }
-    }
+    return glm::dvec3(this->Rest[0][x], this->Rest[1][y], this->Rest[2][z]);
+  }
+  // Whether a row has voxels, and not only other points of the field.
+  bool HasVoxels(int y, int z) const
+  {
+    return y >= this->Begin[1] && y < this->End[1] && z >= this->Begin[2] && z < this->End[2];
   }
 
-  // Points of a row from x to end.
-  void AddBlock(int x, int end, int y, int z, bool areVoxels)
+  // Points of a row from x to end; those that are voxels are added to a box. Returns whether all
+  // are usable.
+  bool AddSome(int x, int end, int y, int z, bool areVoxels, IndexBounds& box) const
   {
-    const Components components =
-      FindComponents(this->Field.Vectors + 3 * this->GetPoint(x, y, z), 3 * (end - x));
+    const VectorComponents components = FindComponents(
+      this->Field.Vectors + 3 * this->GetPoint(x, y, z), 3 * static_cast<std::size_t>(end - x));
     if (!components.AreFinite)
     {
-      this->IsUsable = false;
-      return;
+      return false;
     }
-    const std::array<int, 3> first{ { x, y, z } };
-    const std::array<int, 3> last{ { end - 1, y, z } };
-    bool known = true;
+    const DisplacementRange range = GetRange(this->Field, components);
+    bool near = true;
     for (int axis = 0; axis < 3; ++axis)
     {
-      // Products and sums are rounded alike, so that no displacement leaves these bounds.
-      double low = 0.0;
-      double high = 0.0;
-      for (int k = 0; k < 3; ++k)
-      {
-        const double factor = GetFactor(this->Field, 3 * axis + k);
-        const double a = factor * static_cast<double>(components.Least[k]);
-        const double b = factor * static_cast<double>(components.Greatest[k]);
-        low += std::min(a, b);
-        high += std::max(a, b);
-      }
-      known = known && low >= -LargestDisplacement && high <= LargestDisplacement;
-      if (areVoxels && known)
-      {
-        const Range& range = this->Positions[axis];
-        known = this->Rest[axis][first[axis]] + static_cast<double>(static_cast<float>(low)) >=
-            range.Least &&
-          this->Rest[axis][last[axis]] + static_cast<double>(static_cast<float>(high)) <=
-            range.Greatest;
-      }
+      near = near && range.Least[axis] >= -LargestDisplacement &&
+        range.Greatest[axis] <= LargestDisplacement;
     }
-    for (int place = x; place < end && !known; ++place)
+    for (int place = x; !near && place < end; ++place)
     {
-      this->AddPoint(place, y, z, areVoxels);
+      const glm::dvec3 moved = glm::abs(GetVector(this->Field, this->GetPoint(place, y, z)));
+      if (!(std::max({ moved.x, moved.y, moved.z }) <= LargestDisplacement))
+      {
+        return false;
+      }
     }
+    if (areVoxels)
+    {
+      box.Add(this->GetPlace(x, y, z) + glm::dvec3(range.Least[0], range.Least[1], range.Least[2]));
+      box.Add(this->GetPlace(end - 1, y, z) +
+        glm::dvec3(range.Greatest[0], range.Greatest[1], range.Greatest[2]));
+    }
+    return true;
   }
 
   const DisplacementField& Field;
@@ -252,42 +232,59 @@ bool AreVoxelsPoints(const VoxelGrid& voxelGrid, const DisplacementField& field)
   return GetNumberOfPoints(voxelGrid.VertexExtent) > 0;
 }
 
-FieldScan ScanField(const VoxelGrid& voxelGrid, const DisplacementField& field)
+std::vector<unsigned char> FieldScan::FindChanged(
+  const DisplacementField& field, const PointRanges* changes) const
 {
-  const std::int64_t rows = static_cast<std::int64_t>(field.Dimensions[1]) * field.Dimensions[2];
-  const std::int64_t parts = std::min<std::int64_t>(rows, 64);
-  std::vector<FieldScan> scans(static_cast<std::size_t>(parts));
-  RowScanner some(voxelGrid, field);
-  some.AddSome();
-  ParallelFor(0, parts, 1,
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      for (std::int64_t part = begin; part < end; ++part)
-      {
-        RowScanner scanner = some;
-        for (std::int64_t row = rows * part / parts; row < rows * (part + 1) / parts; ++row)
-        {
-          scanner.AddRow(static_cast<int>(row % field.Dimensions[1]),
-            static_cast<int>(row / field.Dimensions[1]));
-        }
-        FieldScan& scan = scans[part];
-        scan.IsUsable = scanner.IsUsable;
-        const Ranges& found = scanner.Positions;
-        if (found[0].Least <= found[0].Greatest)
-        {
-          scan.Bounds.Add(glm::dvec3(found[0].Least, found[1].Least, found[2].Least));
-          scan.Bounds.Add(glm::dvec3(found[0].Greatest, found[1].Greatest, found[2].Greatest));
-        }
-      }
-    });
-  FieldScan all;
-  all.IsUsable = true;
-  for (const FieldScan& scan : scans)
+  const auto blocksOfPlane = static_cast<std::size_t>(CountBlocksOfPlane(field));
+  const std::size_t blocks = blocksOfPlane * static_cast<std::size_t>(field.Dimensions[2]);
+  if (!changes || this->AreUsable.size() != blocks)
   {
-    all.IsUsable = all.IsUsable && scan.IsUsable;
-    all.Bounds.Add(scan.Bounds);
+    return std::vector<unsigned char>(blocks, 1);
   }
-  return all;
+  std::vector<unsigned char> changed(blocks, 0);
+  const auto width = static_cast<std::size_t>(field.Dimensions[0]);
+  const auto height = static_cast<std::size_t>(field.Dimensions[1]);
+  const std::size_t rows = height * static_cast<std::size_t>(field.Dimensions[2]);
+  for (const auto& range : *changes)
+  {
+    for (std::size_t row = range[0] / width; row < rows && row * width < range[1]; ++row)
+    {
+      changed[row / height * blocksOfPlane + row % height / RowsOfBlock] = 1;
+    }
+  }
+  return changed;
+}
+
+FieldState FieldScan::Look(
+  const VoxelGrid& voxelGrid, const DisplacementField& field, const PointRanges* changes)
+{
+  const std::vector<unsigned char> changed = this->FindChanged(field, changes);
+  this->Bounds.Resize(changed.size());
+  this->AreUsable.resize(changed.size());
+  this->Fingerprints.resize(changed.size());
+  const BlockScanner scanner(voxelGrid, field);
+  FieldState state;
+  state.Bounds = this->Bounds.Compute(
+    changed,
+    [&](std::size_t block)
+    {
+      bool usable = true;
+      const IndexBounds box = scanner.FindBox(block, usable);
+      this->AreUsable[block] = usable ? 1 : 0;
+      this->Fingerprints[block] = scanner.FindFingerprint(block);
+      return usable ? box : IndexBounds();
+    },
+    [&](std::size_t block) { return scanner.FindBounds(block); });
+  state.IsUsable =
+    std::find(this->AreUsable.begin(), this->AreUsable.end(), 0) == this->AreUsable.end();
+  for (const Fingerprint& fingerprint : this->Fingerprints)
+  {
+    for (std::size_t k = 0; k < fingerprint.size(); ++k)
+    {
+      state.Fingerprint[k] += fingerprint[k];
+    }
+  }
+  return state;
 }
 
 } // namespace deformvolume

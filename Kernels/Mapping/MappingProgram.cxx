@@ -3,14 +3,10 @@
 
 #include "KernelSources.h"
 #include "KernelText.h"
+#include "SamplingMeshText.h"
 
 namespace deformvolume
 {
-
-std::string GetSamplingMeshText()
-{
-  return std::string(FiveTetrahedra_h) + KernelParameters_h;
-}
 
 std::string GetMappingText(MappingForm mapping)
 {
@@ -33,6 +29,13 @@ cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping)
   const std::string evaluation = mapping == MappingForm::Runs ? RunEvaluation_cl : "";
   return context.GetProgram(GetReal(context) + GetSamplingMeshText() +
       "#define HAS_MAPPING_KERNEL 1\n" + GetMappingText(mapping) + VertexState_cl + evaluation,
+    KernelOptions);
+}
+
+cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping)
+{
+  return context.GetProgram(GetReal(context) + GetSamplingMeshText() +
+      "#define HAS_MAPPING_KERNEL 0\n" + GetMappingText(mapping) + VertexState_cl + BridgeMask_cl,
     KernelOptions);
 }
 

@@ -23,12 +23,12 @@ enum class MappingForm
 /// The deformation mapping (DeformationMapping.cl) and the state of vertices (VertexState.cl).
 cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping);
 
+/// What leaves out tetrahedra that bridge a gap (BridgeMask.cl), for links or runs.
+cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping);
+
 /// The text of a form of the mapping (DeformationMapping.cl). It expects GetSamplingMeshText
 /// before.
 std::string GetMappingText(MappingForm mapping);
-
-/// The sampling mesh, and the parameters of launches over it.
-std::string GetSamplingMeshText();
 
 } // namespace deformvolume
 

@@ -4,12 +4,14 @@
 #include "BarycentricMap.h"
 #include "ParallelFor.h"
 #include "TetrahedronClipping.h"
+#include "VectorComponents.h"
 
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <limits>
 
 namespace deformvolume
 {
@@ -25,23 +27,42 @@ std::size_t CountBlocks(std::size_t size, std::size_t block)
   return (size + block - 1) / block;
 }
 
-// For each block of nodes whether one of them is in the ranges.
-std::vector<unsigned char> MarkBlocks(const PointRanges* ranges, std::size_t blocks)
+bool IsInside(
+  const Tetrahedron& nodes, const std::vector<glm::dvec3>& restPoints, const IndexBounds& box)
 {
-  if (!ranges)
-  {
-    return std::vector<unsigned char>(blocks, 1);
-  }
-  std::vector<unsigned char> marked(blocks, 0);
-  for (const auto& range : *ranges)
-  {
-    const std::size_t end = std::min(CountBlocks(range[1], NodeBlock), blocks);
-    for (std::size_t block = range[0] / NodeBlock; block < end; ++block)
+  return std::all_of(nodes.begin(), nodes.end(),
+    [&](std::int32_t node)
     {
-      marked[block] = 1;
-    }
+      return glm::all(glm::greaterThanEqual(restPoints[node], box.Min)) &&
+        glm::all(glm::lessThanEqual(restPoints[node], box.Max));
+    });
+}
+
+// What holds all points of a box that move by displacements from begin to before end, three floats
+// each.
+IndexBounds AddDisplacements(
+  const IndexBounds& box, const float* displacements, std::size_t begin, std::size_t end)
+{
+  if (box.IsEmpty())
+  {
+    return box;
   }
-  return marked;
+  const VectorComponents components = FindComponents(displacements + 3 * begin, 3 * (end - begin));
+  IndexBounds moved = box;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    // Where one is not finite nothing holds them, so that each is looked at.
+    constexpr double anywhere = std::numeric_limits<double>::infinity();
+    moved.Min[axis] += components.AreFinite ? double{ components.Least[axis] } : -anywhere;
+    moved.Max[axis] += components.AreFinite ? double{ components.Greatest[axis] } : anywhere;
+  }
+  return moved;
+}
+
+bool IsFlat(const Tetrahedron& nodes, const std::vector<glm::dvec3>& restPoints)
+{
+  BarycentricMap map;
+  return !map.SetTetrahedron(nodes, restPoints);
 }
 
 } // namespace
@@ -50,11 +71,6 @@ void MeshBounds::SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec
   const std::vector<Tetrahedron>& tetrahedra)
 {
   const IndexBounds box = GetBox(voxelGrid);
-  const auto isInside = [&](std::int32_t node)
-  {
-    return glm::all(glm::greaterThanEqual(restPoints[node], box.Min)) &&
-      glm::all(glm::lessThanEqual(restPoints[node], box.Max));
-  };
   // Bytes, which several threads may set to the same.
   std::vector<unsigned char> clipped(tetrahedra.size(), 0);
   std::vector<std::atomic<unsigned char>> wanted(restPoints.size());
@@ -64,13 +80,11 @@ void MeshBounds::SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec
       for (std::int64_t id = begin; id < end; ++id)
       {
         const Tetrahedron& nodes = tetrahedra[id];
-        if (!std::all_of(nodes.begin(), nodes.end(), isInside))
+        if (!IsInside(nodes, restPoints, box))
         {
           clipped[id] = 1;
-          continue;
         }
-        BarycentricMap map;
-        if (map.SetTetrahedron(nodes, restPoints)) // not flat
+        else if (!IsFlat(nodes, restPoints))
         {
           for (const std::int32_t node : nodes)
           {
@@ -88,46 +102,159 @@ void MeshBounds::SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec
       this->ClippedTetrahedra.push_back(static_cast<std::int32_t>(id));
     }
   }
-  for (std::size_t node = 0; node < wanted.size(); ++node)
+  this->Wanted.assign(wanted.begin(), wanted.end());
+  this->NodeBounds.Resize(CountBlocks(restPoints.size(), NodeBlock));
+  this->ClippedBounds.resize(CountBlocks(this->ClippedTetrahedra.size(), ClippedBlock));
+  this->StaleNodes.resize(this->NodeBounds.GetNumberOfBlocks(), 1);
+  this->StaleClipped.resize(this->ClippedBounds.size());
+  this->RestBounds.resize(this->NodeBounds.GetNumberOfBlocks());
+}
+
+void MeshBounds::CountUses(
+  const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra)
+{
+  const IndexBounds box = GetBox(this->Shape);
+  std::vector<std::atomic<std::uint32_t>> uses(restPoints.size());
+  ParallelFor(0, static_cast<std::int64_t>(tetrahedra.size()), 0,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t id = begin; id < end; ++id)
+      {
+        const Tetrahedron& nodes = tetrahedra[id];
+        if (IsInside(nodes, restPoints, box) && !IsFlat(nodes, restPoints))
+        {
+          for (const std::int32_t node : nodes)
+          {
+            uses[node].fetch_add(1, std::memory_order_relaxed);
+          }
+        }
+      }
+    });
+  this->Uses.assign(uses.begin(), uses.end());
+}
+
+void MeshBounds::ChangeConnectivity(const std::vector<glm::dvec3>& restPoints,
+  const std::vector<Tetrahedron>& tetrahedra, const std::vector<TetrahedronChange>& changes)
+{
+  const std::size_t nodes = restPoints.size();
+  const std::size_t least = std::min(this->Wanted.size(), nodes);
+  const bool isCounted = !this->Uses.empty();
+  if (!isCounted)
   {
-    if (node % NodeBlock == 0)
+    this->CountUses(restPoints, tetrahedra);
+  }
+  const IndexBounds box = GetBox(this->Shape);
+  this->Uses.resize(std::max(this->Uses.size(), nodes));
+  this->Wanted.resize(std::max(this->Wanted.size(), nodes));
+  this->NodeBounds.Resize(CountBlocks(nodes, NodeBlock));
+  this->StaleNodes.resize(this->NodeBounds.GetNumberOfBlocks());
+  this->RestBounds.resize(this->NodeBounds.GetNumberOfBlocks());
+  for (std::size_t block = least / NodeBlock; block < this->StaleNodes.size(); ++block)
+  {
+    this->StaleNodes[block] = 1;
+  }
+  const auto touch = [&](const Tetrahedron& changed, std::uint32_t uses)
+  {
+    for (const std::int32_t node : changed)
     {
-      this->NodeBegins.push_back(this->Nodes.size());
+      const auto place = static_cast<std::size_t>(node);
+      if (place >= this->Uses.size()) // it is gone
+      {
+        continue;
+      }
+      this->Uses[place] += uses;
+      this->Wanted[place] = this->Uses[place] > 0;
+      if (place < nodes)
+      {
+        this->StaleNodes[place / NodeBlock] = 1;
+      }
     }
-    if (wanted[node])
+  };
+  for (const TetrahedronChange& change : changes)
+  {
+    const auto found = std::lower_bound(
+      this->ClippedTetrahedra.begin(), this->ClippedTetrahedra.end(), change.Number);
+    if (found != this->ClippedTetrahedra.end() && *found == change.Number)
     {
-      this->Nodes.push_back(static_cast<std::int32_t>(node));
+      this->StaleClipped[static_cast<std::size_t>(found - this->ClippedTetrahedra.begin()) /
+        ClippedBlock] = 1;
+    }
+    else if (IsInside(change.After, restPoints, box) && !IsFlat(change.After, restPoints))
+    {
+      touch(change.Before, isCounted ? ~std::uint32_t{ 0 } : 0);
+      touch(change.After, isCounted ? 1 : 0);
     }
   }
-  this->NodeBounds.resize(this->NodeBegins.size());
-  this->NodeBegins.push_back(this->Nodes.size());
-  this->ClippedBounds.resize(CountBlocks(this->ClippedTetrahedra.size(), ClippedBlock));
+  this->Uses.resize(nodes);
+  this->Wanted.resize(nodes);
+}
+
+void MeshBounds::FindRestBounds(const std::vector<glm::dvec3>& restPoints, std::size_t block)
+{
+  const glm::dvec3 scale = GetScale(this->Shape);
+  IndexBounds bounds;
+  const std::size_t end = std::min((block + 1) * NodeBlock, this->Wanted.size());
+  for (std::size_t node = block * NodeBlock; node < end; ++node)
+  {
+    if (this->Wanted[node])
+    {
+      bounds.Add(scale * restPoints[node]);
+    }
+  }
+  this->RestBounds[block] = bounds;
+}
+
+IndexBounds MeshBounds::ComputeNodes(const std::vector<glm::dvec3>& restPoints,
+  const float* displacements, const std::vector<unsigned char>& changed)
+{
+  const auto getEnd = [&](std::size_t block)
+  { return std::min((block + 1) * NodeBlock, this->Wanted.size()); };
+  const glm::dvec3 scale = GetScale(this->Shape);
+  return this->NodeBounds.Compute(
+    changed,
+    [&](std::size_t block)
+    {
+      if (this->StaleNodes[block])
+      {
+        this->FindRestBounds(restPoints, block);
+      }
+      return AddDisplacements(
+        this->RestBounds[block], displacements, block * NodeBlock, getEnd(block));
+    },
+    [&](std::size_t block)
+    {
+      IndexBounds bounds;
+      for (std::size_t node = block * NodeBlock; node < getEnd(block); ++node)
+      {
+        const glm::dvec3 moved =
+          scale * restPoints[node] + GetVector(displacements, static_cast<std::int64_t>(node));
+        if (this->Wanted[node] && IsFinite(moved))
+        {
+          bounds.Add(moved);
+        }
+      }
+      return bounds;
+    });
 }
 
 IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
   const std::vector<Tetrahedron>& tetrahedra, const float* displacements,
   const PointRanges* changes)
 {
-  const std::vector<unsigned char> changed =
-    MarkBlocks(this->IsComputed ? changes : nullptr, this->NodeBounds.size());
+  std::vector<unsigned char> changed = this->StaleNodes;
+  if (this->IsComputed && changes)
+  {
+    MarkBlocks(*changes, NodeBlock, changed);
+  }
+  else
+  {
+    changed.assign(changed.size(), 1);
+  }
   this->IsComputed = false; // half done, if this ends early
   const IndexBounds box = GetBox(this->Shape);
   const glm::dvec3 scale = GetScale(this->Shape);
   const auto move = [&](std::int32_t node)
   { return scale * restPoints[node] + GetVector(displacements, node); };
-  const auto addNodes = [&](std::size_t block)
-  {
-    IndexBounds bounds;
-    for (std::size_t i = this->NodeBegins[block]; i < this->NodeBegins[block + 1]; ++i)
-    {
-      const glm::dvec3 moved = move(this->Nodes[i]);
-      if (IsFinite(moved))
-      {
-        bounds.Add(moved);
-      }
-    }
-    this->NodeBounds[block] = bounds;
-  };
   const auto addClipped = [&](const Tetrahedron& tetrahedron, IndexBounds& bounds)
   {
     std::array<MovedPoint, 4> nodes;
@@ -150,7 +277,7 @@ IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
   {
     const std::size_t begin = block * ClippedBlock;
     const std::size_t end = std::min(begin + ClippedBlock, this->ClippedTetrahedra.size());
-    bool isChanged = false;
+    bool isChanged = this->StaleClipped[block] != 0;
     for (std::size_t i = begin; i < end && !isChanged; ++i)
     {
       const Tetrahedron& nodes = tetrahedra[this->ClippedTetrahedra[i]];
@@ -168,30 +295,15 @@ IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
     }
     this->ClippedBounds[block] = bounds;
   };
-  const std::size_t blocks = this->NodeBounds.size();
-  ParallelFor(0, static_cast<std::int64_t>(blocks + this->ClippedBounds.size()), 0,
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-      {
-        if (i >= blocks)
-        {
-          clip(i - blocks);
-        }
-        else if (changed[i])
-        {
-          addNodes(i);
-        }
-      }
-    });
+  IndexBounds all = this->ComputeNodes(restPoints, displacements, changed);
+  ParallelForParts(
+    this->ClippedBounds.size(), 1, [&](std::size_t begin, std::size_t) { clip(begin); });
   this->IsComputed = true;
-  IndexBounds all;
-  for (const std::vector<IndexBounds>* parts : { &this->NodeBounds, &this->ClippedBounds })
+  this->StaleNodes.assign(this->StaleNodes.size(), 0);
+  this->StaleClipped.assign(this->StaleClipped.size(), 0);
+  for (const IndexBounds& bounds : this->ClippedBounds)
   {
-    for (const IndexBounds& bounds : *parts)
-    {
-      all.Add(bounds);
-    }
+    all.Add(bounds);
   }
   return all;
 }

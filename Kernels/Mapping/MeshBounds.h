@@ -2,6 +2,7 @@
 #ifndef DeformVolumeMeshBounds_h
 #define DeformVolumeMeshBounds_h
 
+#include "BlockBounds.h"
 #include "DeformVolumeExport.h"
 #include "IndexBounds.h"
 #include "Tetrahedron.h"
@@ -31,6 +32,11 @@ public:
   void SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra);
 
+  /// Some tetrahedra have got other nodes in the same places, and there may be more nodes, or
+  /// fewer. restPoints and tetrahedra: as they are now, after all changes that were not told.
+  void ChangeConnectivity(const std::vector<glm::dvec3>& restPoints,
+    const std::vector<Tetrahedron>& tetrahedra, const std::vector<TetrahedronChange>& changes);
+
   /// restPoints and tetrahedra: those that were set. changes: all other displacements are those of
   /// the last call for this mesh, if there was one; null: any may have changed.
   IndexBounds Compute(const std::vector<glm::dvec3>& restPoints,
@@ -38,12 +44,24 @@ public:
     const PointRanges* changes = nullptr);
 
 private:
+  void FindRestBounds(const std::vector<glm::dvec3>& restPoints, std::size_t block);
+  IndexBounds ComputeNodes(const std::vector<glm::dvec3>& restPoints, const float* displacements,
+    const std::vector<unsigned char>& changed);
+  void CountUses(
+    const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra);
+
   VoxelGrid Shape;
-  std::vector<std::int32_t> Nodes; // of tetrahedra inside the volume, in ascending order
-  std::vector<std::int32_t> ClippedTetrahedra;
-  std::vector<std::size_t> NodeBegins; // of each block of nodes, in Nodes
-  std::vector<IndexBounds> NodeBounds;
-  std::vector<IndexBounds> ClippedBounds; // of each block of clipped tetrahedra
+  std::vector<unsigned char> Wanted;           // nodes of tetrahedra inside the volume
+  std::vector<std::uint32_t> Uses;             // by how many of these, from the first change on
+  std::vector<std::int32_t> ClippedTetrahedra; // in ascending order
+  std::vector<IndexBounds> RestBounds;         // of each block of wanted nodes, scaled
+  BlockBounds NodeBounds;                      // of each block of nodes
+  std::vector<IndexBounds> ClippedBounds;      // of each block of clipped tetrahedra
+  ///@{
+  /// Blocks whose bounds are those of other tetrahedra.
+  std::vector<unsigned char> StaleNodes;
+  std::vector<unsigned char> StaleClipped;
+  ///@}
   bool IsComputed = false;
 };
 

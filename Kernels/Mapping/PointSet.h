@@ -36,6 +36,18 @@ public:
     this->AddWord(point / PointsPerWord, std::uint64_t{ 1 } << point % PointsPerWord);
   }
 
+  /// Points from begin to before end.
+  void AddRange(std::size_t begin, std::size_t end)
+  {
+    while (begin < end)
+    {
+      const std::size_t first = begin % PointsPerWord;
+      const std::size_t count = std::min(PointsPerWord - first, end - begin);
+      this->AddWord(begin / PointsPerWord, ~std::uint64_t{ 0 } >> (PointsPerWord - count) << first);
+      begin += count;
+    }
+  }
+
   /// The first one and one past the last, or a few points more; begin = end: there are none.
   void GetEnds(std::size_t& begin, std::size_t& end) const
   {
@@ -48,8 +60,10 @@ public:
       : PointsPerWord * static_cast<std::size_t>(last - this->Words.begin());
   }
 
+  /// Of points from begin to before end, some of which may be beyond those that it knows.
   bool HasAnyOf(std::size_t begin, std::size_t end) const
   {
+    end = std::min(end, PointsPerWord * this->Words.size());
     while (begin < end)
     {
       const std::size_t first = begin % PointsPerWord;

@@ -2,10 +2,10 @@
 #ifndef DeformVolumeTetrahedron_h
 #define DeformVolumeTetrahedron_h
 
+#include "PointRanges.h"
+
 #include <array>
-#include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace deformvolume
 {
@@ -13,8 +13,13 @@ namespace deformvolume
 /// The nodes of a tetrahedron of the deformation mesh.
 using Tetrahedron = std::array<std::int32_t, 4>;
 
-/// Points of a deformation: of each range the first one, and one past the last. In ascending order.
-using PointRanges = std::vector<std::array<std::size_t, 2>>;
+/// A tetrahedron that has got other nodes.
+struct TetrahedronChange
+{
+  std::int32_t Number = 0;
+  Tetrahedron Before{};
+  Tetrahedron After{};
+};
 
 } // namespace deformvolume
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Device.h"
 
+#include "DeviceThreads.h"
 #include "OpenCLContext.h"
 #include "Processors.h"
 

@@ -3,9 +3,9 @@
 
 #include "CompilationWatch.h"
 #include "DeviceRank.h"
+#include "DeviceThreads.h"
 #include "Error.h"
 #include "KernelCache.h"
-#include "Processors.h"
 #include "ProgramCache.h"
 
 #include <algorithm>

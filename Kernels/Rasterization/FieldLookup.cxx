@@ -5,13 +5,14 @@
 #include "DeviceVolume.h"
 #include "Error.h"
 #include "RasterizationProgram.h"
+#include "WorkDevice.h"
 
 #include <algorithm>
 
 namespace deformvolume
 {
 
-void MeshRasterizer::SetField(const Setting& setting, const DisplacementField& inverse)
+void MeshRasterizer::SetField(const DisplacementField& inverse)
 {
   cl::Buffer last = this->FieldVectors;
   this->Clear();
@@ -28,26 +29,33 @@ void MeshRasterizer::SetField(const Setting& setting, const DisplacementField& i
   {
     bytes *= static_cast<std::uint64_t>(size);
   }
-  if (bytes > setting.AllocationLimit)
+  const std::uint64_t limit = this->Device->GetAllocationLimit();
+  if (bytes > limit)
   {
     throw Error("The displacement field needs " + std::to_string(bytes) +
-      " bytes in one piece, and the device gives no more than " +
-      std::to_string(setting.AllocationLimit) + ". Use a coarser field or another device.");
+      " bytes in one piece, and the device gives no more than " + std::to_string(limit) +
+      ". Use a coarser field or another device.");
   }
   if (deformvolume::GetMemory(last) != bytes)
   {
     last = cl::Buffer(); // free the old one before the new one is made
-    last = cl::Buffer(setting.Context.GetContext(), CL_MEM_READ_ONLY, bytes);
   }
-  setting.Queue.enqueueWriteBuffer(last, CL_TRUE, 0, bytes, inverse.Vectors);
-  this->FieldVectors = last;
+  this->FieldVectors = this->Device->Send(inverse.Vectors, static_cast<std::size_t>(bytes), last);
 }
 
-cl::Kernel MeshRasterizer::MakeKernel(const Setting& setting, const DeviceVolume& volume,
-  const std::vector<VolumeArray>& arrays, Interpolation interpolation) const
+std::size_t MeshRasterizer::GetNumberOfNodes() const
 {
-  return cl::Kernel(GetRasterizationProgram(setting.Context, arrays, volume.GetVoxelGrid(),
-                      interpolation, this->HasField()),
+  return this->RestNodes.size() / 3 +
+    static_cast<std::size_t>(this->Field.Dimensions[0]) *
+    static_cast<std::size_t>(this->Field.Dimensions[1]) *
+    static_cast<std::size_t>(this->Field.Dimensions[2]);
+}
+
+cl::Kernel MeshRasterizer::MakeKernel(Interpolation interpolation) const
+{
+  return cl::Kernel(
+    GetRasterizationProgram(this->Device->GetContext(), this->Volume->GetVolumeArrays(),
+      this->Volume->GetVoxelGrid(), interpolation, this->HasField()),
     this->HasField() ? "LookUpField" : "RasterizeMesh");
 }
 
@@ -60,8 +68,8 @@ cl_uint MeshRasterizer::SetDeformationArguments(cl::Kernel& kernel) const
     kernel.setArg(i++, this->Field);
     return i;
   }
-  for (const cl::Buffer* buffer :
-    { &this->Tetrahedra, &this->Positions, &this->Displacements, &this->ListBegins, &this->Lists })
+  for (const cl::Buffer* buffer : { &this->Tetrahedra, &this->Positions, &this->Displacements,
+         &this->Lists.GetBegins(), &this->Lists.GetLists() })
   {
     kernel.setArg(i++, *buffer);
   }

@@ -4,9 +4,8 @@
 #include "CompilationWatch.h"
 #include "DeviceVolume.h"
 #include "Error.h"
-#include "OutputSlab.h"
 #include "RasterTarget.h"
-#include "RasterizationProgram.h"
+#include "WorkDevice.h"
 
 #include <algorithm>
 #include <array>
@@ -64,37 +63,20 @@ double GetRestVolume(const Tetrahedron& tetrahedron, const double* nodes)
     sides[0][2] * (sides[1][0] * sides[2][1] - sides[1][1] * sides[2][0]);
 }
 
-void Send(
-  const MeshRasterizer::Setting& setting, cl::Buffer& buffer, const void* data, std::uint64_t bytes)
+void Send(WorkDevice& device, cl::Buffer& buffer, const void* data, std::uint64_t bytes)
 {
-  if (bytes > setting.AllocationLimit)
+  const std::uint64_t limit = device.GetAllocationLimit();
+  if (bytes > limit)
   {
     throw Error("The deformation mesh needs " + std::to_string(bytes) +
-      " bytes in one piece, and the device gives no more than " +
-      std::to_string(setting.AllocationLimit) + ". Use a coarser mesh or another device.");
+      " bytes in one piece, and the device gives no more than " + std::to_string(limit) +
+      ". Use a coarser mesh or another device.");
   }
   if (GetMemory(buffer) != bytes)
   {
     buffer = cl::Buffer(); // free the old one before the new one is made
-    buffer = cl::Buffer(setting.Context.GetContext(), CL_MEM_READ_ONLY, bytes);
   }
-  setting.Queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data);
-}
-
-void Reserve(const MeshRasterizer::Setting& setting, cl::Buffer& buffer, std::uint64_t bytes)
-{
-  if (bytes > setting.AllocationLimit)
-  {
-    throw Error("The lists of the tetrahedra in each part of the output need " +
-      std::to_string(bytes) + " bytes in one piece, and the device gives no more than " +
-      std::to_string(setting.AllocationLimit) +
-      ". Use a coarser deformation mesh, the resampler Exact, or another device.");
-  }
-  if (GetMemory(buffer) < bytes)
-  {
-    buffer = cl::Buffer();
-    buffer = cl::Buffer(setting.Context.GetContext(), CL_MEM_READ_WRITE, bytes);
-  }
+  buffer = device.Send(data, static_cast<std::size_t>(bytes), buffer);
 }
 
 int FloorDivide(int value, int bits)
@@ -137,8 +119,8 @@ RasterParameters MakeParameters(
 
 } // namespace
 
-void MeshRasterizer::SetMesh(const Setting& setting, const Tetrahedron* tetrahedra,
-  std::size_t numberOfTetrahedra, const double* restNodes, std::size_t numberOfNodes)
+void MeshRasterizer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+  const double* restNodes, std::size_t numberOfNodes)
 {
   this->Clear();
   std::vector<Tetrahedron> oriented(tetrahedra, tetrahedra + numberOfTetrahedra);
@@ -155,14 +137,14 @@ void MeshRasterizer::SetMesh(const Setting& setting, const Tetrahedron* tetrahed
       ++this->NumberOfFlatTetrahedra;
     }
   }
-  Send(setting, this->Tetrahedra, oriented.data(), numberOfTetrahedra * sizeof(Tetrahedron));
+  Send(*this->Device, this->Tetrahedra, oriented.data(), numberOfTetrahedra * sizeof(Tetrahedron));
   this->NumberOfTetrahedra = numberOfTetrahedra;
   this->RestNodes.assign(restNodes, restNodes + 3 * numberOfNodes);
 }
 
-void MeshRasterizer::SetDisplacements(
-  const Setting& setting, const float* displacements, const std::array<double, 3>& scale)
+void MeshRasterizer::SetDisplacements(const float* displacements)
 {
+  const std::array<double, 3>& scale = this->Volume->GetVoxelGrid().Scale;
   const std::size_t count = this->RestNodes.size() / 3;
   std::vector<std::int32_t> positions(4 * count);
   std::vector<float> padded(4 * count);
@@ -187,8 +169,8 @@ void MeshRasterizer::SetDisplacements(
       padded[4 * node + axis] = displacement;
     }
   }
-  Send(setting, this->Positions, positions.data(), positions.size() * sizeof(std::int32_t));
-  Send(setting, this->Displacements, padded.data(), padded.size() * sizeof(float));
+  Send(*this->Device, this->Positions, positions.data(), positions.size() * sizeof(std::int32_t));
+  Send(*this->Device, this->Displacements, padded.data(), padded.size() * sizeof(float));
   this->DisplacementsSet = true;
 }
 
@@ -203,126 +185,48 @@ void MeshRasterizer::CheckPositions() const
   }
 }
 
-// Lists the tetrahedra of each tile.
-void MeshRasterizer::Bin(const Setting& setting, RasterParameters& p, DeformReport& report)
+cl_uint MeshRasterizer::SetArguments(
+  const RasterParameters& p, const RasterTarget& target, const cl::Buffer& counters)
 {
-  const std::uint64_t tiles =
-    static_cast<std::uint64_t>(p.TileCount[0]) * p.TileCount[1] * p.TileCount[2];
-  // More ranges keep more work-items busy, and cost two counters a tile each.
-  const cl::Device& device = setting.Context.GetDevice().Device;
-  const std::uint64_t most = std::max<std::uint64_t>(1, (std::uint64_t{ 64 } << 20) / (8 * tiles));
-  p.Ranges = static_cast<int>(std::min<std::uint64_t>(
-    { most, 4 * std::uint64_t{ device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>() }, 128,
-      std::uint64_t{ this->NumberOfTetrahedra } }));
-  const std::uint64_t ranges = static_cast<std::uint64_t>(p.Ranges);
-  Reserve(setting, this->Places, 2 * ranges * tiles * sizeof(cl_uint));
-  Reserve(setting, this->ListBegins, (tiles + 1) * sizeof(cl_uint));
-  const cl::Buffer counters(setting.Context.GetContext(), CL_MEM_WRITE_ONLY,
-    ranges * DEFORMVOLUME_BINNED_COUNTERS * sizeof(cl_uint));
-
-  const cl::Program program = GetBinningProgram(setting.Context);
-  cl::Kernel count(program, "CountTetrahedra");
-  count.setArg(0, this->Tetrahedra);
-  count.setArg(1, this->Positions);
-  count.setArg(2, this->Places);
-  count.setArg(3, counters);
-  count.setArg(4, p);
-  setting.Context.Launch(
-    setting.Queue, count, cl::NDRange(static_cast<std::size_t>(ranges)), cl::NDRange(1));
-  std::vector<cl_uint> counts(static_cast<std::size_t>(ranges) * DEFORMVOLUME_BINNED_COUNTERS);
-  setting.Queue.enqueueReadBuffer(
-    counters, CL_TRUE, 0, counts.size() * sizeof(cl_uint), counts.data());
-  report.NumberOfInvertedTetrahedra = 0;
-  std::uint64_t overstretched = 0;
-  for (std::size_t range = 0; range < ranges; ++range)
+  const VolumeChunk& chunk = this->Volume->GetChunks().front();
+  cl_uint i = this->SetDeformationArguments(this->Kernel);
+  // Any buffer stands in for a missing one: not all drivers take a null pointer.
+  this->Kernel.setArg(i++, p.HasActive ? chunk.Active : target.GetCoverage());
+  this->Kernel.setArg(i++, p.HasBlanked ? chunk.Blanked : target.GetCoverage());
+  this->Kernel.setArg(i++, target.GetBackgrounds());
+  this->Kernel.setArg(i++, target.GetCoverage());
+  this->Kernel.setArg(i++, counters);
+  const cl_uint parameters = i++;
+  for (std::size_t a = 0; a < chunk.Arrays.size(); ++a)
   {
-    const cl_uint* counter = counts.data() + range * DEFORMVOLUME_BINNED_COUNTERS;
-    report.NumberOfInvertedTetrahedra += counter[DEFORMVOLUME_BINNED_INVERTED];
-    overstretched += counter[DEFORMVOLUME_BINNED_OVERSTRETCHED];
+    this->Kernel.setArg(i++, chunk.Arrays[a]);
+    this->Kernel.setArg(i++, target.GetArray(a));
   }
-  if (overstretched > 0)
-  {
-    throw Error(std::to_string(overstretched) +
-      " tetrahedra of the deformation mesh span more than 5,000 output voxels, which the resampler "
-      "MeshRasterization cannot rasterise. Use the resampler Exact, a finer mesh or a greater "
-      "output spacing.");
-  }
-
-  // Places: sums over the ranges, tile by tile.
-  std::vector<cl_uint> begins(static_cast<std::size_t>(tiles) + 1);
-  const std::size_t bytes = static_cast<std::size_t>(2 * ranges * tiles) * sizeof(cl_uint);
-  cl_uint* places = static_cast<cl_uint*>(
-    setting.Queue.enqueueMapBuffer(this->Places, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes));
-  std::uint64_t place = 0;
-  for (std::size_t tile = 0; tile < tiles; ++tile)
-  {
-    begins[tile] = static_cast<cl_uint>(place);
-    for (std::size_t range = 0; range < 2 * ranges; ++range)
-    {
-      cl_uint& entry = places[range * tiles + tile];
-      const cl_uint number = entry;
-      entry = static_cast<cl_uint>(place);
-      place += number;
-    }
-  }
-  begins[tiles] = static_cast<cl_uint>(place);
-  setting.Queue.enqueueUnmapMemObject(this->Places, places);
-  if (place > std::numeric_limits<cl_uint>::max())
-  {
-    throw Error("The deformation mesh and the output are too large for the resampler "
-                "MeshRasterization: use the resampler Exact, or a coarser mesh.");
-  }
-  setting.Queue.enqueueWriteBuffer(
-    this->ListBegins, CL_TRUE, 0, begins.size() * sizeof(cl_uint), begins.data());
-  Reserve(setting, this->Lists, std::max<std::uint64_t>(place, 1) * sizeof(cl_int));
-  cl::Kernel list(program, "ListTetrahedra");
-  list.setArg(0, this->Tetrahedra);
-  list.setArg(1, this->Positions);
-  list.setArg(2, this->Places);
-  list.setArg(3, this->Lists);
-  list.setArg(4, p);
-  setting.Context.Launch(
-    setting.Queue, list, cl::NDRange(static_cast<std::size_t>(ranges)), cl::NDRange(1));
-  setting.Queue.finish();
+  return parameters;
 }
 
-void MeshRasterizer::RunTiles(const Setting& setting, cl::Kernel& kernel, const VolumeChunk& chunk,
-  RasterParameters p, const RasterTarget& target, const std::function<bool(double)>& progress,
-  DeformReport& report)
+void MeshRasterizer::RunTiles(RasterParameters p, const RasterTarget& target,
+  const std::function<bool(double)>& progress, DeformReport& report)
 {
   const std::size_t tiles = static_cast<std::size_t>(p.TileCount[0]) *
     static_cast<std::size_t>(p.TileCount[1]) * static_cast<std::size_t>(p.TileCount[2]);
   const std::size_t counterBytes = tiles * DEFORMVOLUME_TILE_COUNTERS * sizeof(cl_uint);
-  const cl::Buffer counters(setting.Context.GetContext(), CL_MEM_WRITE_ONLY, counterBytes);
-  const QueueGuard guard(setting.Queue);
-  cl_uint i = this->SetDeformationArguments(kernel);
-  // Any buffer stands in for a missing one: not all drivers take a null pointer.
-  kernel.setArg(i++, p.HasActive ? chunk.Active : target.GetCoverage());
-  kernel.setArg(i++, p.HasBlanked ? chunk.Blanked : target.GetCoverage());
-  kernel.setArg(i++, target.GetBackgrounds());
-  kernel.setArg(i++, target.GetCoverage());
-  kernel.setArg(i++, counters);
-  const cl_uint parameters = i++;
-  for (std::size_t a = 0; a < chunk.Arrays.size(); ++a)
-  {
-    kernel.setArg(i++, chunk.Arrays[a]);
-    kernel.setArg(i++, target.GetArray(a));
-  }
-  const OpenCLDevice& device = setting.Context.GetDevice();
-  const auto largest = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.Device);
-  const std::size_t wanted =
-    setting.WorkGroupSize ? setting.WorkGroupSize : (device.HasVectors ? 1 : 64);
-  const std::size_t group = std::min(wanted, largest);
+  OpenCLContext& context = this->Device->GetContext();
+  const cl::CommandQueue& queue = this->Device->GetQueue();
+  const cl::Buffer counters(context.GetContext(), CL_MEM_WRITE_ONLY, counterBytes);
+  const QueueGuard guard(queue);
+  const cl_uint parameters = this->SetArguments(p, target, counters);
+  const std::size_t group = this->Device->GetBusyGroupSize(this->Kernel);
   const std::size_t step = (tiles + LaunchesPerSlab - 1) / LaunchesPerSlab;
   cl::Event previous;
   for (std::size_t tile = 0; tile < tiles; tile += step)
   {
     p.TileBegin = static_cast<int>(tile);
-    kernel.setArg(parameters, p);
-    setting.Context.Prepare(setting.Queue, kernel, cl::NDRange(group)); // of the first tile
-    const cl::Event event = setting.Context.Launch(
-      setting.Queue, kernel, cl::NDRange(std::min(step, tiles - tile) * group), cl::NDRange(group));
-    setting.Queue.flush();
+    this->Kernel.setArg(parameters, p);
+    context.Prepare(queue, this->Kernel, cl::NDRange(group)); // of the first tile
+    const cl::Event event = context.Launch(
+      queue, this->Kernel, cl::NDRange(std::min(step, tiles - tile) * group), cl::NDRange(group));
+    queue.flush();
     // Wait for the launch before this one: the device always has work while we report.
     if (previous())
     {
@@ -335,7 +239,7 @@ void MeshRasterizer::RunTiles(const Setting& setting, cl::Kernel& kernel, const 
     }
   }
   std::vector<cl_uint> counts(tiles * DEFORMVOLUME_TILE_COUNTERS);
-  setting.Queue.enqueueReadBuffer(counters, CL_TRUE, 0, counterBytes, counts.data());
+  queue.enqueueReadBuffer(counters, CL_TRUE, 0, counterBytes, counts.data());
   for (std::size_t tile = 0; tile < tiles; ++tile)
   {
     const cl_uint* counter = counts.data() + tile * DEFORMVOLUME_TILE_COUNTERS;
@@ -344,82 +248,79 @@ void MeshRasterizer::RunTiles(const Setting& setting, cl::Kernel& kernel, const 
   }
 }
 
-DeformReport MeshRasterizer::Deform(const Setting& setting, const DeviceVolume& volume,
-  const std::vector<VolumeArray>& arrays, const DeformRequest& request, std::uint64_t spare)
+void MeshRasterizer::Begin(const DeformRequest& request, const SlabPlan&, DeformReport& report)
 {
   this->CheckPositions();
-  if (volume.GetChunks().size() > 1)
+  if (this->Volume->GetChunks().size() > 1)
   {
     throw Error("The volume has more bytes than the device gives in one piece, which the resampler "
                 "MeshRasterization needs. Use the resampler Exact, or another device.");
   }
-  cl::Kernel kernel = this->MakeKernel(setting, volume, arrays, request.Interpolation);
-  const std::vector<Extent> slabs =
-    OutputSlab::Split(request.OutputExtent, arrays, volume.GetVoxelGrid(), setting.AllocationLimit);
-  const std::uint64_t bytes = OutputSlab::GetBytesPerVoxel(setting.Context, arrays, request) *
-    static_cast<std::uint64_t>(GetNumberOfPoints(slabs.front()));
-  // As much again for lists of tetrahedra that are longer than was foreseen.
-  const bool overlapped = bytes > 0 && slabs.size() > 1 && spare >= 2 * bytes;
-  // One is made while the other is copied to the caller.
-  std::array<std::unique_ptr<RasterTarget>, 2> targets;
-  const QueueGuard reads(setting.ReadQueue);
-  DeformReport report;
+  this->Kernel = this->MakeKernel(request.Interpolation);
   report.NumberOfFlatTetrahedra = this->NumberOfFlatTetrahedra;
-  for (std::size_t s = 0; s < slabs.size(); ++s)
-  {
-    Stopwatch watch;
-    RasterParameters p = MakeParameters(volume, slabs[s], this->NumberOfTetrahedra);
-    DeformReport binned; // every slab sees all tetrahedra
-    if (!this->HasField())
-    {
-      this->Bin(setting, p, binned);
-    }
-    report.NumberOfInvertedTetrahedra = binned.NumberOfInvertedTetrahedra;
-    report.MappingTime += watch.GetSeconds();
+}
 
-    watch = Stopwatch();
-    std::unique_ptr<RasterTarget>& target = targets[overlapped ? s % 2 : 0];
+void MeshRasterizer::Make(
+  const DeformRequest& request, const SlabPlan& plan, std::size_t slab, DeformReport& report)
+{
+  Stopwatch watch;
+  RasterParameters p = MakeParameters(*this->Volume, plan.Slabs[slab], this->NumberOfTetrahedra);
+  if (!this->HasField())
+  {
+    // Every slab sees all tetrahedra.
+    report.NumberOfInvertedTetrahedra =
+      this->Lists.Make(*this->Device, this->Tetrahedra, this->Positions, p);
+  }
+  report.MappingTime += watch.GetSeconds();
+
+  watch = Stopwatch();
+  std::unique_ptr<RasterTarget>& target = this->Targets[plan.GetTarget(slab)];
+  if (target)
+  {
+    target->FinishReading();
+    target.reset();
+  }
+  report.TransferTime += watch.GetSeconds();
+
+  watch = Stopwatch();
+  target = std::make_unique<RasterTarget>(
+    this->Device->GetContext(), this->Volume->GetVolumeArrays(), request, plan.Slabs[slab]);
+  const auto slabs = static_cast<double>(plan.Slabs.size());
+  this->RunTiles(
+    p, *target,
+    [&](double done)
+    { return !request.Progress || request.Progress((static_cast<double>(slab) + done) / slabs); },
+    report);
+  report.ResamplingTime += watch.GetSeconds();
+}
+
+void MeshRasterizer::Read(const DeformRequest&, std::size_t target)
+{
+  this->Targets[target]->Read(this->Device->GetReadQueue());
+}
+
+void MeshRasterizer::FinishReading()
+{
+  for (const std::unique_ptr<RasterTarget>& target : this->Targets)
+  {
     if (target)
     {
       target->FinishReading();
-      target.reset();
     }
-    report.TransferTime += watch.GetSeconds();
-
-    watch = Stopwatch();
-    target = std::make_unique<RasterTarget>(setting.Context, arrays, request, slabs[s]);
-    this->RunTiles(
-      setting, kernel, volume.GetChunks().front(), p, *target,
-      [&](double done)
-      {
-        return !request.Progress ||
-          request.Progress((static_cast<double>(s) + done) / static_cast<double>(slabs.size()));
-      },
-      report);
-    report.ResamplingTime += watch.GetSeconds();
-
-    watch = Stopwatch();
-    target->Read(setting.ReadQueue);
-    if (!overlapped || s + 1 == slabs.size())
-    {
-      for (const std::unique_ptr<RasterTarget>& read : targets)
-      {
-        if (read)
-        {
-          read->FinishReading();
-        }
-      }
-    }
-    report.TransferTime += watch.GetSeconds();
   }
-  return report;
+}
+
+void MeshRasterizer::Finish() noexcept
+{
+  this->Targets = {};
+  this->Kernel = cl::Kernel();
 }
 
 std::uint64_t MeshRasterizer::GetMemory() const
 {
-  std::uint64_t bytes = 0;
-  for (const cl::Buffer* buffer : { &this->Tetrahedra, &this->Positions, &this->Displacements,
-         &this->Places, &this->ListBegins, &this->Lists, &this->FieldVectors })
+  std::uint64_t bytes = this->Lists.GetMemory();
+  for (const cl::Buffer* buffer :
+    { &this->Tetrahedra, &this->Positions, &this->Displacements, &this->FieldVectors })
   {
     bytes += deformvolume::GetMemory(*buffer);
   }

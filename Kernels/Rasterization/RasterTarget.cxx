@@ -18,7 +18,7 @@ RasterTarget::RasterTarget(OpenCLContext& context, const std::vector<VolumeArray
   std::vector<cl_ulong> backgrounds(arrays.size());
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
-    this->AddPart(
+    this->AddMemory(
       context, request.Outputs[i], GetTupleSize(arrays[i]), GetElementSize(arrays[i].Type));
     switch (arrays[i].Type)
     {
@@ -33,26 +33,26 @@ RasterTarget::RasterTarget(OpenCLContext& context, const std::vector<VolumeArray
 #undef DEFORMVOLUME_CASE
     }
   }
-  this->AddPart(context, request.Coverage, 1, 1);
+  this->AddMemory(context, request.Coverage, 1, 1);
   this->Backgrounds = cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
     backgrounds.size() * sizeof(cl_ulong), backgrounds.data());
 }
 
-void RasterTarget::AddPart(
-  OpenCLContext& context, void* memory, std::uint64_t tuple, std::size_t elementSize)
+void RasterTarget::AddMemory(
+  OpenCLContext& context, void* output, std::uint64_t tuple, std::size_t elementSize)
 {
-  Part part;
-  part.Memory = static_cast<char*>(memory) + this->FirstVoxel * tuple;
-  part.Bytes = this->NumberOfVoxels * tuple;
-  Place(context, part.Buffer, part.Memory, elementSize, part.Bytes);
-  this->Parts.push_back(part);
+  Memory memory;
+  memory.Host = static_cast<char*>(output) + this->FirstVoxel * tuple;
+  memory.Bytes = this->NumberOfVoxels * tuple;
+  Place(context, memory.Buffer, memory.Host, elementSize, memory.Bytes);
+  this->Memories.push_back(memory);
 }
 
 void RasterTarget::Read(const cl::CommandQueue& queue)
 {
-  for (const Part& part : this->Parts)
+  for (const Memory& memory : this->Memories)
   {
-    this->Reads.Add(BeginToRead(queue, part.Buffer, part.Bytes, part.Memory));
+    this->Reads.Add(BeginToRead(queue, memory.Buffer, memory.Bytes, memory.Host));
   }
   queue.flush();
 }

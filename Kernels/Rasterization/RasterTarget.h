@@ -23,8 +23,8 @@ public:
   RasterTarget(const RasterTarget&) = delete;
   RasterTarget& operator=(const RasterTarget&) = delete;
 
-  const cl::Buffer& GetArray(std::size_t index) const { return this->Parts[index].Buffer; }
-  const cl::Buffer& GetCoverage() const { return this->Parts.back().Buffer; }
+  const cl::Buffer& GetArray(std::size_t index) const { return this->Memories[index].Buffer; }
+  const cl::Buffer& GetCoverage() const { return this->Memories.back().Buffer; }
   /// Eight bytes an array, the first of which are the background in the array's type.
   const cl::Buffer& GetBackgrounds() const { return this->Backgrounds; }
 
@@ -34,17 +34,19 @@ public:
   void FinishReading() { this->Reads.Check(); }
 
 private:
-  struct Part
+  /// Of an array, or of the coverage: on the device, and of the request.
+  struct Memory
   {
     cl::Buffer Buffer;
-    char* Memory;
+    char* Host;
     std::uint64_t Bytes;
   };
-  void AddPart(OpenCLContext& context, void* memory, std::uint64_t tuple, std::size_t elementSize);
+  void AddMemory(
+    OpenCLContext& context, void* output, std::uint64_t tuple, std::size_t elementSize);
 
   std::uint64_t FirstVoxel; // of the slab in the output
   std::uint64_t NumberOfVoxels;
-  std::vector<Part> Parts;
+  std::vector<Memory> Memories;
   cl::Buffer Backgrounds;
   PendingReads Reads; // last: they end before the buffers do
 };

@@ -62,7 +62,9 @@ static __attribute__((always_inline)) void ResampleCells(const GroupCandidates* 
     const int cell = c->Cells.X + 2 * lane;
     if (cell >= beginX && cell < endX)
     {
-      ResampleCell(mesh, cell, c->Cells.Y, c->Cells.Z, &all, output, p ARRAY_ARGUMENTS);
+      Neighbours near;
+      const SamplingMesh keeping = KeepNeighbours(mesh, cell, c->Cells.Y, c->Cells.Z, &near);
+      ResampleCell(&keeping, cell, c->Cells.Y, c->Cells.Z, &all, output, p ARRAY_ARGUMENTS);
     }
   }
 }
@@ -108,14 +110,129 @@ static int EndIn(uint item, int halves, int cells)
   return item >> halves & 2 ? cells : cells / 2;
 }
 
-// A brick of cells, or some of its sections. item: which (DEFORMVOLUME_BRICK_BITS). isAbove: whether it is the
-// whole brick above the one before, so that its first plane of vertices is in the rows, with their flags (lists
-// hold no bricks without cells).
+// A brick, or some of its sections.
+typedef struct
+{
+  int X, Y, Z; // the brick's first place, which may lie before the volume
+  // Of the cells that are taken.
+  int BeginX, BeginY, BeginZ;
+  int EndX, EndY, EndZ;
+} BrickCells;
+
+// item: the brick and its sections (DEFORMVOLUME_BRICK_BITS).
+static void FindCells(uint item, BrickCells* cells, const KernelParameters* p)
+{
+  const uint brick = item & ((1u << DEFORMVOLUME_BRICK_BITS) - 1);
+  const int x = brick % p->BrickCount[0] * DEFORMVOLUME_BRICK_X + p->BrickOrigin[0];
+  const int y = brick / p->BrickCount[0] % p->BrickCount[1] * DEFORMVOLUME_BRICK_Y + p->BrickOrigin[1];
+  const int z = brick / p->BrickCount[0] / p->BrickCount[1] * DEFORMVOLUME_BRICK_Z + p->BrickOrigin[2];
+  const uint columns = item >> DEFORMVOLUME_BRICK_BITS & ((1u << DEFORMVOLUME_COLUMNS) - 1);
+  const int firstColumn = 31 - clz(columns & -columns);
+  const int endColumn = 32 - clz(columns);
+  const int halvesY = DEFORMVOLUME_BRICK_BITS + DEFORMVOLUME_COLUMNS;
+  const int halvesZ = halvesY + 2;
+  cells->X = x;
+  cells->Y = y;
+  cells->Z = z;
+  cells->BeginX = max(x + firstColumn * DEFORMVOLUME_COLUMN, 0);
+  cells->EndX = min(x + endColumn * DEFORMVOLUME_COLUMN, p->Size[0] - 1);
+  cells->BeginY = max(y + BeginIn(item, halvesY, DEFORMVOLUME_BRICK_Y), 0);
+  cells->EndY = min(y + EndIn(item, halvesY, DEFORMVOLUME_BRICK_Y), p->Size[1] - 1);
+  cells->BeginZ = max(z + BeginIn(item, halvesZ, DEFORMVOLUME_BRICK_Z), p->LayersBegin);
+  cells->EndZ = min(z + EndIn(item, halvesZ, DEFORMVOLUME_BRICK_Z), p->LayersEnd);
+}
+
+// Where a work-item has the rows of a brick.
+typedef struct
+{
+  // The undeformed x of the brick's vertices, in voxels: for even, then odd ones, whole steps relative to the
+  // output, and what misses.
+  ROW_MEMORY float* RestX;
+  ROW_MEMORY float* Displaced; // for BeginRow
+  ROW_MEMORY float* Planes; // two planes of vertices: the new one takes the place of the last but one
+  RowFlags (*Flags)[ROWS];  // of their rows
+} BrickMemory;
+
+// For a brick whose first place on x is this: the undeformed vertices, and none that is deformed.
+static void ClearBrick(
+  const SamplingMesh* mesh, int x, const BrickMemory* memory, const KernelParameters* p)
+{
+  for (int i = 0; i < 2 * HALF_ROW; ++i)
+  {
+    const int vertex = clamp(x + i, 0, p->Size[0] - 1);
+    ROW_MEMORY float* rest = memory->RestX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
+    rest[0] = (mesh->Map.Rest[vertex].Whole - p->OutputFirst[0] * 256) * STEP;
+    rest[HALF_ROW] = mesh->Map.Rest[vertex].Fraction * STEP;
+  }
+  for (int row = 0; row < 2 * ROWS; ++row)
+  {
+    for (int i = 0; i < HALF_ROW; ++i)
+    {
+      memory->Planes[row * ROW + i] = NOT_THERE;
+      memory->Planes[row * ROW + ODD + i] = NOT_THERE;
+    }
+  }
+}
+
+// Finds the vertices of a brick's cells in a plane.
+static void MapPlane(const SamplingMesh* mesh, const BrickCells* cells, int z,
+  const BrickMemory* memory, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const int plane = (p->First[2] + z) & 1;
+  for (int y = cells->BeginY; y <= cells->EndY; ++y)
+  {
+    const int row = y - cells->Y;
+    memory->Flags[plane][row] = MapRow(mesh, cells->BeginX, cells->EndX + 1,
+      cells->BeginX - cells->X, y, z, memory->Planes + (plane * ROWS + row) * ROW, memory->RestX,
+      memory->Displaced, p ARRAY_ARGUMENTS);
+  }
+}
+
+// The cells of a brick above a plane. outputs: of its sections.
+static void ResampleLayer(const SamplingMesh* mesh, const BrickCells* cells, int z,
+  const BrickMemory* memory, Output* outputs, Found* found,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const int begin = (cells->BeginX - cells->X) >> 1 & ~(LANES - 1);
+  const int end = (cells->EndX - cells->X + 1) >> 1;
+  // Rows of even and of odd structured y, and planes, lie by their parity.
+  for (int y = cells->BeginY; y < cells->EndY; ++y)
+  {
+    const int low = y - cells->Y;
+    const RowFlags* const f[4] = { memory->Flags[0] + low, memory->Flags[0] + low + 1,
+      memory->Flags[1] + low, memory->Flags[1] + low + 1 };
+    RowOfCells row;
+    for (int r = 0; r < 4; ++r)
+    {
+      const int vertexRow = r >> 1 ? low + 1 - (low & 1) : low + (low & 1);
+      row.Rows[r] = memory->Planes + ((r & 1) * ROWS + vertexRow) * ROW;
+    }
+    row.X = cells->X;
+    row.Y = y;
+    row.Z = z;
+    row.Odd = (p->First[1] + y + p->First[2] + z) & 1;
+    row.Borders = f[0]->Border | f[1]->Border | f[2]->Border | f[3]->Border;
+    const uint specials = f[0]->Special | f[1]->Special | f[2]->Special | f[3]->Special;
+    const int quarter =
+      (low >= DEFORMVOLUME_BRICK_Y / 2) + 2 * (z - cells->Z >= DEFORMVOLUME_BRICK_Z / 2);
+    ResampleRow(&row, begin, end, cells->BeginX, cells->EndX, specials, mesh,
+      outputs + quarter * DEFORMVOLUME_COLUMNS, found, p ARRAY_ARGUMENTS);
+  }
+}
+
+// A brick of cells, or some of its sections. item: as for FindCells. isAbove: whether it is the whole brick above the
+// one before, so that its first plane of vertices is in the memory, with their flags (lists hold no bricks without
+// cells).
 static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __global char* coverage,
   __global KEY* winners, __global char* patches, __global uint* largeCells,
-  __global uint* counters, ROW_MEMORY float* rows,
-  RowFlags (*flags)[ROWS], const KernelParameters* p ARRAY_PARAMETERS)
+  __global uint* counters, const BrickMemory* memory, const KernelParameters* p ARRAY_PARAMETERS)
 {
+  BrickCells cells;
+  FindCells(item, &cells, p);
+  if (cells.BeginX >= cells.EndX || cells.BeginY >= cells.EndY || cells.BeginZ >= cells.EndZ)
+  {
+    return;
+  }
   Output outputs[DEFORMVOLUME_SECTIONS];
   for (int section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
   {
@@ -124,90 +241,21 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
   }
   Found found;
   found.Count = 0;
-  const uint brick = item & ((1u << DEFORMVOLUME_BRICK_BITS) - 1);
-  // Cells of the brick, and the local x of its first place, which may lie before the volume.
-  const int bx = brick % p->BrickCount[0] * DEFORMVOLUME_BRICK_X + p->BrickOrigin[0];
-  const int by = brick / p->BrickCount[0] % p->BrickCount[1] * DEFORMVOLUME_BRICK_Y + p->BrickOrigin[1];
-  const int bz = brick / p->BrickCount[0] / p->BrickCount[1] * DEFORMVOLUME_BRICK_Z + p->BrickOrigin[2];
-  const uint columns = item >> DEFORMVOLUME_BRICK_BITS & ((1u << DEFORMVOLUME_COLUMNS) - 1);
-  const int firstColumn = 31 - clz(columns & -columns);
-  const int endColumn = 32 - clz(columns);
-  const int halvesY = DEFORMVOLUME_BRICK_BITS + DEFORMVOLUME_COLUMNS;
-  const int halvesZ = halvesY + 2;
-  const int beginX = max(bx + firstColumn * DEFORMVOLUME_COLUMN, 0);
-  const int endX = min(bx + endColumn * DEFORMVOLUME_COLUMN, p->Size[0] - 1);
-  const int beginY = max(by + BeginIn(item, halvesY, DEFORMVOLUME_BRICK_Y), 0);
-  const int endY = min(by + EndIn(item, halvesY, DEFORMVOLUME_BRICK_Y), p->Size[1] - 1);
-  const int beginZ = max(bz + BeginIn(item, halvesZ, DEFORMVOLUME_BRICK_Z), p->LayersBegin);
-  const int endZ = min(bz + EndIn(item, halvesZ, DEFORMVOLUME_BRICK_Z), p->LayersEnd);
-  if (beginX >= endX || beginY >= endY || beginZ >= endZ)
-  {
-    return;
-  }
-
-  // The undeformed x of the brick's vertices, in voxels: for even, then odd ones, whole steps relative to the
-  // output, and what misses.
-  ROW_MEMORY float* restX = rows;
-  ROW_MEMORY float* displaced = restX + 4 * HALF_ROW;
-  ROW_MEMORY float* ring = displaced + 3 * ROW_PLACES;
   if (!isAbove)
   {
-    for (int i = 0; i < 2 * HALF_ROW; ++i)
-    {
-      const int x = clamp(bx + i, 0, p->Size[0] - 1);
-      ROW_MEMORY float* rest = restX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
-      rest[0] = (mesh->Map.Rest[x].Whole - p->OutputFirst[0] * 256) * STEP;
-      rest[HALF_ROW] = mesh->Map.Rest[x].Fraction * STEP;
-    }
-    for (int row = 0; row < 2 * ROWS; ++row)
-    {
-      for (int i = 0; i < HALF_ROW; ++i)
-      {
-        ring[row * ROW + i] = NOT_THERE;
-        ring[row * ROW + ODD + i] = NOT_THERE;
-      }
-    }
+    ClearBrick(mesh, cells.X, memory, p);
   }
-
-  const int begin = (beginX - bx) >> 1 & ~(LANES - 1);
-  const int end = (endX - bx + 1) >> 1;
-  for (int z = isAbove ? beginZ + 1 : beginZ; z <= endZ; ++z)
+  // MapPlane is called in one place only: compilers inline it then, which saves one in a hundred instructions.
+  for (int z = isAbove ? cells.BeginZ + 1 : cells.BeginZ; z <= cells.EndZ; ++z)
   {
-    const int plane = (p->First[2] + z) & 1;
-    for (int y = beginY; y <= endY; ++y)
+    MapPlane(mesh, &cells, z, memory, p ARRAY_ARGUMENTS);
+    if (z > cells.BeginZ)
     {
-      flags[plane][y - by] = MapRow(mesh, beginX, endX + 1, beginX - bx, y, z,
-        ring + (plane * ROWS + (y - by)) * ROW, restX, displaced, p ARRAY_ARGUMENTS);
-    }
-    if (z == beginZ)
-    {
-      continue;
-    }
-    // The cells below it. Rows of even and of odd structured y, and planes, lie by their parity.
-    for (int y = beginY; y < endY; ++y)
-    {
-      const int low = y - by;
-      const RowFlags* const f[4] = { flags[0] + low, flags[0] + low + 1, flags[1] + low,
-        flags[1] + low + 1 };
-      RowOfCells row;
-      for (int r = 0; r < 4; ++r)
-      {
-        const int vertexRow = r >> 1 ? low + 1 - (low & 1) : low + (low & 1);
-        row.Rows[r] = ring + ((r & 1) * ROWS + vertexRow) * ROW;
-      }
-      row.X = bx;
-      row.Y = y;
-      row.Z = z - 1;
-      row.Odd = (p->First[1] + y + p->First[2] + z - 1) & 1;
-      row.Borders = f[0]->Border | f[1]->Border | f[2]->Border | f[3]->Border;
-      const uint specials = f[0]->Special | f[1]->Special | f[2]->Special | f[3]->Special;
-      const int quarter =
-        (low >= DEFORMVOLUME_BRICK_Y / 2) + 2 * (z - 1 - bz >= DEFORMVOLUME_BRICK_Z / 2);
-      ResampleRow(&row, begin, end, beginX, endX, specials, mesh,
-        outputs + quarter * DEFORMVOLUME_COLUMNS, &found, p ARRAY_ARGUMENTS);
+      ResampleLayer(mesh, &cells, z - 1, memory, outputs, &found, p ARRAY_ARGUMENTS);
     }
   }
   StoreFound(&found, 0, outputs, p ARRAY_ARGUMENTS);
+  const uint brick = item & ((1u << DEFORMVOLUME_BRICK_BITS) - 1);
   for (int section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
   {
     AddCounts(outputs + section, DEFORMVOLUME_SECTIONS * (size_t)brick + section, counters, p);
@@ -231,7 +279,9 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
   rows += get_global_id(0) * BRICK_FLOATS;
 #endif
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
-  RowFlags flags[2][ROWS]; // of the rows of vertices
+  RowFlags flags[2][ROWS];
+  ROW_MEMORY float* const displaced = rows + 4 * HALF_ROW;
+  const BrickMemory memory = { rows, displaced, displaced + 3 * ROW_PLACES, flags };
   for (uint begin = p.ListBegin + atomic_add(taken, p.Portion); begin < p.ListEnd;
        begin = p.ListBegin + atomic_add(taken, p.Portion))
   {
@@ -241,8 +291,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
       const uint above = i > begin ? bricks[i - 1] + p.BrickCount[0] * p.BrickCount[1] : 0;
       const int isAbove =
         bricks[i] == above && above >> DEFORMVOLUME_BRICK_BITS == DEFORMVOLUME_WHOLE_BRICK;
-      ResampleBrick(&mesh, bricks[i], isAbove, coverage, winners, patches, largeCells, counters, rows,
-        flags, &p ARRAY_ARGUMENTS);
+      ResampleBrick(&mesh, bricks[i], isAbove, coverage, winners, patches, largeCells, counters,
+        &memory, &p ARRAY_ARGUMENTS);
     }
   }
 }

@@ -109,6 +109,15 @@ static int ShiftsInside(Vector normal, int signs)
   return along > 0;
 }
 
+// Positions of the vertices of a cell and of the cells round it, as far as they have been asked for: on the border of
+// the mesh each is needed many times.
+typedef struct
+{
+  int First[3]; // local index of the first vertex
+  ulong Known;  // bits of the vertices, along x, then y, then z
+  int4 Positions[64];
+} Neighbours;
+
 // The sampling mesh round a launch's cells.
 typedef struct
 {
@@ -119,7 +128,20 @@ typedef struct
   // position. Null: none are.
   __local const int* Cuboid;
   int CuboidFirst[3]; // local index of the first cell
+  Neighbours* Near;   // of the cell that is worked on. Null: none are kept.
 } SamplingMesh;
+
+// A mesh that keeps the positions round a cell.
+static SamplingMesh KeepNeighbours(const SamplingMesh* mesh, int x, int y, int z, Neighbours* near)
+{
+  near->First[0] = x - 1;
+  near->First[1] = y - 1;
+  near->First[2] = z - 1;
+  near->Known = 0;
+  SamplingMesh keeping = *mesh;
+  keeping.Near = near;
+  return keeping;
+}
 
 // The place of a vertex in a cuboid, or -1 outside it.
 static int PlaceInCuboid(const SamplingMesh* mesh, int x, int y, int z)
@@ -132,25 +154,41 @@ static int PlaceInCuboid(const SamplingMesh* mesh, int x, int y, int z)
     : -1;
 }
 
-// The position of a vertex in 1/256 output voxel; INT_MIN in x where it has none.
-static int4 VertexPosition(
-  const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
+static int4 FindPosition(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
-  const int place = mesh->Cuboid ? PlaceInCuboid(mesh, x, y, z) : -1;
-  if (place >= 0)
-  {
-    return (int4)(mesh->Cuboid[3 * place], mesh->Cuboid[3 * place + 1], mesh->Cuboid[3 * place + 2], 0);
-  }
   return StateOf(mesh->State, x, y, z, p) & DEFORMVOLUME_VERTEX_SOURCE
     ? PositionOf(&mesh->Map, x, y, z, p)
     : (int4)(INT_MIN, 0, 0, 0);
 }
 
+// The position of a vertex in 1/256 output voxel; INT_MIN in x where it has none.
+static int4 VertexPosition(
+  const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
+{
+  if (mesh->Near)
+  {
+    const int place = ((z - mesh->Near->First[2]) * 4 + y - mesh->Near->First[1]) * 4 + x - mesh->Near->First[0];
+    if (!(mesh->Near->Known >> place & 1))
+    {
+      mesh->Near->Positions[place] = FindPosition(mesh, x, y, z, p);
+      mesh->Near->Known |= 1ul << place;
+    }
+    return mesh->Near->Positions[place];
+  }
+  const int place = mesh->Cuboid ? PlaceInCuboid(mesh, x, y, z) : -1;
+  if (place >= 0)
+  {
+    return (int4)(mesh->Cuboid[3 * place], mesh->Cuboid[3 * place + 1], mesh->Cuboid[3 * place + 2], 0);
+  }
+  return FindPosition(mesh, x, y, z, p);
+}
+
 static int ActiveTetrahedra(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
   return p->HasActive
-    ? mesh->Active[((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x] & 31
-    : 31;
+    ? mesh->Active[((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x] &
+      DEFORMVOLUME_ALL_TETRAHEDRA
+    : DEFORMVOLUME_ALL_TETRAHEDRA;
 }
 
 // Parity bits of a cell in the order of the bits of a vertex number: x, z, y.
@@ -212,7 +250,6 @@ static int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int te
   {
     return 1; // another one with that shift overlaps this one
   }
-  int later = 0; // whether the loops are past the tetrahedron itself
   // The simplex in the voxel grid: does it reach the low and the high side of the cell on each axis?
   const int mirror = Mirror(x, y, z, p);
   int low = 0;
@@ -225,11 +262,12 @@ static int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int te
       low |= ~(v ^ mirror) & 7;
     }
   }
-  for (int dz = -1; dz <= 1; ++dz)
+  // Inside the mesh the shift +++ leads to the high sides more often than not: what they have is found first.
+  for (int dz = 1; dz >= -1; --dz)
   {
-    for (int dy = -1; dy <= 1; ++dy)
+    for (int dy = 1; dy >= -1; --dy)
     {
-      for (int dx = -1; dx <= 1; ++dx)
+      for (int dx = 1; dx >= -1; --dx)
       {
         // A neighbour on the low side shares the simplex only if that does not reach the high side.
         const int needsLow = (dx < 0) | (dz < 0) << 1 | (dy < 0) << 2;
@@ -243,17 +281,18 @@ static int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int te
           continue;
         }
         const int active = ActiveTetrahedra(mesh, nx, ny, nz, p);
+        const int order = (dz * 3 + dy) * 3 + dx; // of the cell, 0 for the tetrahedron's own
         // The simplex in the numbers of the neighbour's vertices: on an axis that leads to the
         // neighbour sides are exchanged, and so is the mirroring, hence numbers do not change.
         Vector q[8];
         int present = -1;
         for (int t = 0; t < 5; ++t)
         {
-          if (dx == 0 && dy == 0 && dz == 0 && t == tetrahedron)
+          if (order == 0 && t == tetrahedron)
           {
-            later = 1;
             continue;
           }
+          const int later = order > 0 || (order == 0 && t > tetrahedron);
           const int needed = VerticesOf(t);
           if (!(active >> t & 1) || (simplex & needed) != simplex)
           {

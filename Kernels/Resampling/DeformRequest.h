@@ -64,6 +64,10 @@ struct DeformRequest
   /// from which it is copied. Empty and null where there is none.
   std::vector<const void*> LastOutputs;
   const signed char* LastCoverage = nullptr;
+  /// DeformReport::Revision of the output that Outputs and Coverage hold, where these are other
+  /// memory than that of the last output, and unchanged; 0: they hold nothing of use. Where it is
+  /// the output before the last one, as when two take turns, only what is different is copied.
+  std::uint64_t OutputRevision = 0;
   /// Called between launches with the fraction done, 0 to 1; returning false aborts the work.
   std::function<bool(double)> Progress;
   /// Called with true before kernels are compiled, which may take many seconds, and with false
@@ -89,6 +93,11 @@ struct DeformReport
   /// in an incremental update. 0 for MeshRasterization.
   std::int64_t NumberOfBricks = 0;
   std::int64_t NumberOfResampledBricks = 0;
+  /// What tells this output from others that this deformer has made; 0: nothing is kept of it.
+  std::uint64_t Revision = 0;
+  /// Holds all output voxels that may differ from the last output: OutputExtent where all was made,
+  /// less in an incremental update, empty where nothing changed.
+  Extent ChangedExtent{ { 0, -1, 0, -1, 0, -1 } };
   /// Seconds. The exact kernels map and resample in one: their MappingTime is 0. With
   /// MeshRasterization the mapping is the listing of the tetrahedra of each part of the output.
   double MappingTime = 0.0;

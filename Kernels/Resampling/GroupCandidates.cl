@@ -10,7 +10,7 @@
 #define MAXIMUM_EXTENT 64.0f // voxels; WeighOrigin (GroupSamples.cl) counts on it
 #define MAXIMUM_CANDIDATES 4096 // of a cell
 #define EXACT_NORMALS_EXTENT 7.99f // voxels: the normals of larger cells are not exact in float
-#define INEXACT_NORMALS 1.35f // by how much more coordinates in these are off (GroupResampling.cl)
+#define INEXACT_NORMALS 1.35f // by how much more coordinates in these are off (GroupWeights.cl)
 #define ALMOST_ONE (255.0f / 256.0f) // ceil(v) = trunc(v + ALMOST_ONE) for multiples of 1/256
 
 typedef struct
@@ -153,12 +153,9 @@ static __attribute__((always_inline)) void FetchOutput(
   }
 }
 
-// b: the bounds of the cells.
-static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
-  const SamplingMesh* mesh, Output* output, GroupCandidates* c,
-  const KernelParameters* p ARRAY_PARAMETERS)
+// How large cells with these bounds are.
+static __attribute__((always_inline)) void MeasureCells(const Bounds* b, GroupCandidates* c)
 {
-  const Group* const group = &c->Cells;
   const FLOATS sizeX = b->HighX - b->LowX, sizeY = b->HighY - b->LowY, sizeZ = b->HighZ - b->LowZ;
   const FLOATS extent = Most(sizeX, Most(sizeY, sizeZ));
   const uint there = LaneBits((b->LowX > 0.5f * NOT_THERE) & (b->LowX < 0.5f * NO_SOURCE));
@@ -169,13 +166,18 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   {
     c->Reach *= extent > EXACT_NORMALS_EXTENT ? (FLOATS)(INEXACT_NORMALS) : (FLOATS)(1.0f);
   }
+}
 
+// Whether cells are boxes, and which. rises: as for FindBoxes.
+static __attribute__((always_inline)) void LookForBoxes(
+  GroupCandidates* c, INTS* box, INTS* rises, const KernelParameters* p)
+{
+  const Group* const group = &c->Cells;
+  *box = 0;
+  *rises = 0;
   // If two edges of no cell are parallel to axes, no need to look for boxes. Lanes that hold no cell hold anything,
   // and must not decide.
-  const int border = group->Border;
-  INTS box = 0;
-  INTS rises = 0;
-  uint boxes = there & FindAxialEdges(group, 1);
+  uint boxes = c->There & FindAxialEdges(group, 1);
   if (boxes)
   {
     boxes &= FindAxialEdges(group, 2);
@@ -183,38 +185,113 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   c->HasBoxes = boxes != 0;
   if (c->HasBoxes)
   {
-    box = FindBoxes(group, Mirror(group->X, group->Y, group->Z, p), &rises);
-    c->HasBoxes = (there & LaneBits(box)) != 0;
+    *box = FindBoxes(group, Mirror(group->X, group->Y, group->Z, p), rises);
+    c->HasBoxes = (c->There & LaneBits(*box)) != 0;
   }
+}
+
+// What END_OF adds to the high sides of cells: 1 where samples on them are candidates, else ALMOST_ONE.
+typedef struct
+{
+  FLOATS X, Y, Z;
+} ToEnds;
+
+// For a group on the border: the whole cells, as bits, those that may be taken for boxes, and what is added to the
+// high sides of these.
+static __attribute__((always_inline)) void EndOnBorder(const GroupCandidates* c, INTS rises,
+  const SamplingMesh* mesh, uint* whole, INTS* box, ToEnds* toEnds, Output* output,
+  const KernelParameters* p)
+{
+  const Group* const group = &c->Cells;
+  // Without states all that is there is whole.
+  GroupState state;
+  if (p->HasState || c->HasBoxes)
+  {
+    StatesOfGroup(mesh, group->X, group->Y, group->Z, &state, p);
+    *whole = c->There & LaneBits(state.Whole);
+  }
+  // Boxes on the border leave what is on their high sides to the next cells, if there are any. That the
+  // high sides are the upper ones is wanted for that.
+  if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && c->HasBoxes)
+  {
+    const INTS inner = state.Interior == 255;
+    *box &= LanesOf(c->There) & (inner | ((state.Regular == 255) & rises));
+    output->Assumed |= LaneBits(*box & ~inner) != 0;
+    const INTS isLastX = group->X + 2 * LANE_INDEX == p->Size[0] - 2;
+    toEnds->X = (*box & ~isLastX) ? ALMOST_ONE : toEnds->X;
+    toEnds->Y = (*box & (INTS)(group->Y != p->Size[1] - 2 ? -1 : 0)) ? ALMOST_ONE : toEnds->Y;
+    toEnds->Z = (*box & (INTS)(group->Z != p->Size[2] - 2 ? -1 : 0)) ? ALMOST_ONE : toEnds->Z;
+  }
+}
+
+// The samples within the bounds of cells.
+typedef struct
+{
+  INTS FirstX, FirstY, FirstZ;
+  INTS CountX, CountY, CountZ;
+} SamplesInBounds;
+
+static __attribute__((always_inline)) void FindSamples(
+  const Bounds* b, const ToEnds* toEnds, SamplesInBounds* s, const KernelParameters* p)
+{
+  s->FirstX = FIRST_OF(b->LowX);
+  s->FirstY = FIRST_OF(b->LowY);
+  s->FirstZ = FIRST_OF(b->LowZ);
+  s->CountX = END_OF(b->HighX, toEnds->X, p->OutputSize[0]) - s->FirstX;
+  s->CountY = END_OF(b->HighY, toEnds->Y, p->OutputSize[1]) - s->FirstY;
+  s->CountZ = END_OF(b->HighZ, toEnds->Z, p->OutputSize[2]) - s->FirstZ;
+}
+
+// The same in the whole output, which this is a part of. A cell that reaches beyond the part is looked at as in the
+// whole: what becomes of it must not depend on where the part ends. It begins less than MAXIMUM_EXTENT before the
+// part.
+static __attribute__((always_inline)) void FindSamplesOfWhole(
+  const Bounds* b, const ToEnds* toEnds, SamplesInBounds* s, const KernelParameters* p)
+{
+#define WHOLE_FIRST(low, axis)                                                                     \
+  TO_INTS(Most(low, max((float)p->WholeFirst[axis], -MAXIMUM_EXTENT)) +                            \
+    (MAXIMUM_EXTENT + ALMOST_ONE)) - (int)MAXIMUM_EXTENT
+#define WHOLE_END(high, toEnd, axis)                                                               \
+  TO_INTS(Least((high) + toEnd,                                                                    \
+            min((float)p->WholeEnd[axis], p->OutputSize[axis] + MAXIMUM_EXTENT)) +                 \
+    MAXIMUM_EXTENT) - (int)MAXIMUM_EXTENT
+  s->FirstX = WHOLE_FIRST(b->LowX, 0);
+  s->FirstY = WHOLE_FIRST(b->LowY, 1);
+  s->FirstZ = WHOLE_FIRST(b->LowZ, 2);
+  s->CountX = WHOLE_END(b->HighX, toEnds->X, 0) - s->FirstX;
+  s->CountY = WHOLE_END(b->HighY, toEnds->Y, 1) - s->FirstY;
+  s->CountZ = WHOLE_END(b->HighZ, toEnds->Z, 2) - s->FirstZ;
+}
+
+// Whether some cells, as bits, touch no voxel to be won.
+static __attribute__((always_inline)) int IsSettled(
+  uint some, const SamplesInBounds* s, const Output* output, const KernelParameters* p)
+{
+  const INTS among = LanesOf(some);
+  const int first[3] = { LeastAmong(among, s->FirstX), LeastAmong(among, s->FirstY),
+    LeastAmong(among, s->FirstZ) };
+  const int last[3] = { MostAmong(among, s->FirstX + s->CountX - 1),
+    MostAmong(among, s->FirstY + s->CountY - 1), MostAmong(among, s->FirstZ + s->CountZ - 1) };
+  return !some || !AnyUnsettled(output->Patches, first, last, p);
+}
+
+// b: the bounds of the cells.
+static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
+  const SamplingMesh* mesh, Output* output, GroupCandidates* c,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  MeasureCells(b, c);
+  INTS box, rises;
+  LookForBoxes(c, &box, &rises, p);
 
   // Candidates are half-open inside the mesh: by the fill rule no sample on the upper side is taken.
-  uint whole = there;
-  FLOATS toEndX = ALMOST_ONE, toEndY = ALMOST_ONE, toEndZ = ALMOST_ONE;
-  if (border || p->Pass != DEFORMVOLUME_PASS_DIRECT)
-  {
-    toEndX = toEndY = toEndZ = 1.0f;
-  }
+  const int border = c->Cells.Border;
+  uint whole = c->There;
+  const FLOATS toEnd = border || p->Pass != DEFORMVOLUME_PASS_DIRECT ? 1.0f : ALMOST_ONE;
+  ToEnds toEnds = { toEnd, toEnd, toEnd };
   if (border)
   {
-    // Without states all that is there is whole.
-    GroupState state;
-    if (p->HasState || c->HasBoxes)
-    {
-      StatesOfGroup(mesh, group->X, group->Y, group->Z, &state, p);
-      whole = there & LaneBits(state.Whole);
-    }
-    // Boxes on the border leave what is on their high sides to the next cells, if there are any. That the
-    // high sides are the upper ones is wanted for that.
-    if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && c->HasBoxes)
-    {
-      const INTS inner = state.Interior == 255;
-      box &= LanesOf(there) & (inner | ((state.Regular == 255) & rises));
-      output->Assumed |= LaneBits(box & ~inner) != 0;
-      const INTS isLastX = group->X + 2 * LANE_INDEX == p->Size[0] - 2;
-      toEndX = (box & ~isLastX) ? ALMOST_ONE : toEndX;
-      toEndY = (box & (INTS)(group->Y != p->Size[1] - 2 ? -1 : 0)) ? ALMOST_ONE : toEndY;
-      toEndZ = (box & (INTS)(group->Z != p->Size[2] - 2 ? -1 : 0)) ? ALMOST_ONE : toEndZ;
-    }
+    EndOnBorder(c, rises, mesh, &whole, &box, &toEnds, output, p);
   }
   if (c->HasBoxes)
   {
@@ -223,55 +300,28 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
     {
       if (!border)
       {
-        toEndX = toEndY = toEndZ = box ? (FLOATS)(ALMOST_ONE) : (FLOATS)(1.0f);
+        toEnds.X = toEnds.Y = toEnds.Z = box ? (FLOATS)(ALMOST_ONE) : (FLOATS)(1.0f);
       }
-      TouchBoxes(LanesOf(there) & box, b, output, p);
+      TouchBoxes(LanesOf(c->There) & box, b, output, p);
     }
   }
-  INTS firstX = FIRST_OF(b->LowX);
-  INTS firstY = FIRST_OF(b->LowY);
-  INTS firstZ = FIRST_OF(b->LowZ);
-  INTS countX = END_OF(b->HighX, toEndX, p->OutputSize[0]) - firstX;
-  INTS countY = END_OF(b->HighY, toEndY, p->OutputSize[1]) - firstY;
-  INTS countZ = END_OF(b->HighZ, toEndZ, p->OutputSize[2]) - firstZ;
-  const uint some = there & LaneBits((countX > 0) & (countY > 0) & (countZ > 0));
-  c->Skip = 0;
-  if (DEFORMVOLUME_IS_CLOSED(p->Pass))
-  {
-    const INTS among = LanesOf(some);
-    const int first[3] = { LeastAmong(among, firstX), LeastAmong(among, firstY),
-      LeastAmong(among, firstZ) };
-    const int last[3] = { MostAmong(among, firstX + countX - 1),
-      MostAmong(among, firstY + countY - 1), MostAmong(among, firstZ + countZ - 1) };
-    c->Skip = !some || !AnyUnsettled(output->Patches, first, last, p);
-  }
+  SamplesInBounds s;
+  FindSamples(b, &toEnds, &s, p);
+  const uint some = c->There & LaneBits((s.CountX > 0) & (s.CountY > 0) & (s.CountZ > 0));
+  c->Skip = DEFORMVOLUME_IS_CLOSED(p->Pass) && IsSettled(some, &s, output, p);
   if (p->IsPart)
   {
-    // A cell that reaches beyond the part is looked at as in the whole: what becomes of it must not
-    // depend on where the part ends. It begins less than MAXIMUM_EXTENT before the part.
-#define WHOLE_FIRST(low, axis)                                                                     \
-  TO_INTS(Most(low, max((float)p->WholeFirst[axis], -MAXIMUM_EXTENT)) +                            \
-    (MAXIMUM_EXTENT + ALMOST_ONE)) - (int)MAXIMUM_EXTENT
-#define WHOLE_END(high, toEnd, axis)                                                               \
-  TO_INTS(Least((high) + toEnd,                                                                    \
-            min((float)p->WholeEnd[axis], p->OutputSize[axis] + MAXIMUM_EXTENT)) +                 \
-    MAXIMUM_EXTENT) - (int)MAXIMUM_EXTENT
-    firstX = WHOLE_FIRST(b->LowX, 0);
-    firstY = WHOLE_FIRST(b->LowY, 1);
-    firstZ = WHOLE_FIRST(b->LowZ, 2);
-    countX = WHOLE_END(b->HighX, toEndX, 0) - firstX;
-    countY = WHOLE_END(b->HighY, toEndY, 1) - firstY;
-    countZ = WHOLE_END(b->HighZ, toEndZ, 2) - firstZ;
+    FindSamplesOfWhole(b, &toEnds, &s, p);
   }
-  c->First[0] = firstX;
-  c->First[1] = firstY;
-  c->First[2] = firstZ;
-  c->Count[0] = countX;
-  c->Count[1] = countY;
-  c->Count[2] = countZ;
-  c->Place = (firstZ * p->OutputSize[1] + firstY) * p->OutputSize[0] + firstX;
-  c->Number = countX * countY * countZ;
-  c->Fit = whole & LaneBits(extent < MAXIMUM_EXTENT) &
+  c->First[0] = s.FirstX;
+  c->First[1] = s.FirstY;
+  c->First[2] = s.FirstZ;
+  c->Count[0] = s.CountX;
+  c->Count[1] = s.CountY;
+  c->Count[2] = s.CountZ;
+  c->Place = (s.FirstZ * p->OutputSize[1] + s.FirstY) * p->OutputSize[0] + s.FirstX;
+  c->Number = s.CountX * s.CountY * s.CountZ;
+  c->Fit = whole & LaneBits(c->Extent < MAXIMUM_EXTENT) &
     ~(some & LaneBits(c->Number > MAXIMUM_CANDIDATES));
   c->Some = some & c->Fit;
 }

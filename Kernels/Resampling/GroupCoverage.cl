@@ -114,6 +114,14 @@ static __attribute__((noinline)) INTS HoldSample(
   return held;
 }
 
+// The lanes whose sample lies in the output, as bits. x, y, z: in voxels of the output.
+static __attribute__((always_inline)) uint InOutput(
+  FLOATS x, FLOATS y, FLOATS z, const KernelParameters* p)
+{
+  return LaneBits((x >= 0.0f) & (x < (float)p->OutputSize[0]) & (y >= 0.0f) &
+    (y < (float)p->OutputSize[1]) & (z >= 0.0f) & (z < (float)p->OutputSize[2]));
+}
+
 // Marks the samples of some lanes, by bits, which hold these and do not own them. x, y, z: in voxels of the output.
 static __attribute__((noinline)) void TouchHeld(
   uint lanes, FLOATS x, FLOATS y, FLOATS z, Output* output, const KernelParameters* p)
@@ -123,11 +131,42 @@ static __attribute__((noinline)) void TouchHeld(
   place[1].Vector = TO_INTS(y);
   place[2].Vector = TO_INTS(z);
   // Part of a cell may lie beyond the output.
-  uint bits = lanes &
-    LaneBits((x >= 0.0f) & (x < (float)p->OutputSize[0]) & (y >= 0.0f) &
-      (y < (float)p->OutputSize[1]) & (z >= 0.0f) & (z < (float)p->OutputSize[2]));
+  uint bits = lanes & InOutput(x, y, z, p);
   FOR_EACH_LANE(lane, bits)
   {
     Touch(place[0].Lanes[lane], place[1].Lanes[lane], place[2].Lanes[lane], output, p);
   }
+}
+
+// Returns which of the undecided cells, as bits, own their sample. state: of the group, where it is on the border of
+// the mesh. onVertex: lanes whose sample is a vertex. ambiguous: cells for ResampleCell are added to it. All else is
+// as for HoldSample.
+static __attribute__((always_inline)) uint DecideByIntegers(const Group* group, uint undecided,
+  const FLOATS* sample, INTS inverted, const GroupState* state, INTS* onVertex, uint* ambiguous,
+  Output* output, const KernelParameters* p)
+{
+  INTS simplex;
+  INTS held = HoldSample(group, sample, group->Odd, inverted, &simplex);
+  if (group->Border)
+  {
+    // As RoleOf.
+    const int x = group->X, y = group->Y, z = group->Z;
+    const int mirror = Mirror(x, y, z, p);
+    const INTS outer = (simplex != 0) & ((simplex & state->Interior) == 0);
+    const INTS regular = (simplex & ~state->Regular) == 0;
+    const INTS isLastX = x + 2 * LANE_INDEX == p->Size[0] - 2;
+    const INTS first = (((simplex & LOW_SIDE(0, mirror)) != 0) | isLastX) &
+      (((simplex & LOW_SIDE(1, mirror)) != 0) | (INTS)(z == p->Size[2] - 2 ? -1 : 0)) &
+      (((simplex & LOW_SIDE(2, mirror)) != 0) | (INTS)(y == p->Size[1] - 2 ? -1 : 0));
+    held = outer ? first & regular : held;
+    *ambiguous |= undecided & LaneBits(outer & ~regular);
+    output->Assumed |= (undecided & LaneBits(outer)) != 0;
+  }
+  if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
+  {
+    TouchHeld(undecided & LaneBits(~held & (simplex != 0)), sample[0] + VERTEX(0, 0),
+      sample[1] + VERTEX(0, 1), sample[2] + VERTEX(0, 2), output, p);
+  }
+  *onVertex = LanesOf(undecided) & ((simplex & (simplex - 1)) == 0);
+  return undecided & LaneBits(held);
 }

@@ -1,61 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A group of cells, LANES of a row of equal parity (BrickResampling.cl), and the samples that have been found in
-// them: how these are interpolated, kept and stored.
-
-// A row of cells between two rows of vertices in each of two planes. Rows: of places of even x, by bit 0: odd z,
-// bit 1: odd y, as the vertices of a cell have their numbers by the parity of their structured indices
-// (CellCoverage.cl). Odd: the parity of y and z together.
-typedef struct
-{
-  LocalRow Rows[4];
-  int X; // of the brick's first place
-  int Y;
-  int Z;
-  int Odd;
-  uint Borders; // as RowFlags
-} RowOfCells;
-
-// Cells from X on, every second one. Side: 1 where these have vertices of even x behind those of odd x. Odd:
-// parity of x, y and z together. Border: whether a vertex may not be interior.
-typedef struct
-{
-  LocalRow Rows[4];
-  int Side;
-  int X;
-  int Y;
-  int Z;
-  int Odd;
-  int Border;
-} Group;
-
-// The flags of the vertices of a group's cells.
-#define GROUP_FLAGS(k) (((2u << (2 * LANES / 8)) - 1) << ((k) >> 2))
-
-// Where the groups at place k are counted.
-#define OUTPUT_OF_COLUMN(outputs, k) ((outputs) + 2 * (k) / DEFORMVOLUME_COLUMN)
-
-static __attribute__((always_inline)) void MakeGroup(
-  const RowOfCells* row, int k, int side, Group* group)
-{
-  const Group made = { { row->Rows[0] + k, row->Rows[1] + k, row->Rows[2] + k, row->Rows[3] + k },
-    side, row->X + 2 * k + side, row->Y, row->Z, row->Odd ^ side,
-    (row->Borders & GROUP_FLAGS(k)) != 0 };
-  *group = made;
-}
-
-#define VERTEX(v, slot)                                                                            \
-  LOAD(group->Rows[(v) >> 1] + ((v)&1 ? ODD : group->Side) + (slot)*HALF_ROW)
-#define LOAD_VERTEX(v)                                                                             \
-  const FLOATS X##v = VERTEX(v, 0), Y##v = VERTEX(v, 1), Z##v = VERTEX(v, 2);
-#define LOAD_VERTICES                                                                              \
-  LOAD_VERTEX(0)                                                                                   \
-  LOAD_VERTEX(1)                                                                                   \
-  LOAD_VERTEX(2)                                                                                   \
-  LOAD_VERTEX(3)                                                                                   \
-  LOAD_VERTEX(4)                                                                                   \
-  LOAD_VERTEX(5)                                                                                   \
-  LOAD_VERTEX(6)                                                                                   \
-  LOAD_VERTEX(7)
+// The samples that have been found in groups of cells (GroupVertices.cl): how they are interpolated, kept and
+// stored.
 
 #define LANE_RANGE_LOW_char -128.0f
 #define LANE_RANGE_HIGH_char 127.0f
@@ -70,25 +15,6 @@ static __attribute__((always_inline)) void MakeGroup(
 #define LANE_CONVERT_32(TYPE, bits) as_float(bits)
 #define LANE_CONVERT_16(TYPE, bits) ((TYPE)(bits))
 #define LANE_CONVERT_8(TYPE, bits) ((TYPE)(bits))
-
-// The interpolated values of an array, rounded where it holds integers.
-#define LANE_RESULTS(index, TYPE, BITS, SLOT)                                                      \
-  {                                                                                                \
-    FLOATS inner = t0 * VERTEX(0, 3 + SLOT);                                                       \
-    inner = fma(t3, VERTEX(3, 3 + SLOT), inner);                                                   \
-    inner = fma(t5, VERTEX(5, 3 + SLOT), inner);                                                   \
-    inner = fma(t6, VERTEX(6, 3 + SLOT), inner);                                                   \
-    FLOATS outer = u1 * VERTEX(1, 3 + SLOT);                                                       \
-    outer = fma(u2, VERTEX(2, 3 + SLOT), outer);                                                   \
-    outer = fma(u4, VERTEX(4, 3 + SLOT), outer);                                                   \
-    outer = fma(u7, VERTEX(7, 3 + SLOT), outer);                                                   \
-    FLOATS v = fma(inner, scale, outer);                                                           \
-    if (BITS != 32)                                                                                \
-    {                                                                                              \
-      v = Least(Most(v, LANE_RANGE_LOW_##TYPE), LANE_RANGE_HIGH_##TYPE) + ROUND_TO_INTEGER;        \
-    }                                                                                              \
-    Append(AS_INTS(v), bits, found->Values##index + kept);                                         \
-  }
 
 #define LANE_STORE(index, TYPE, BITS, SLOT)                                                        \
   target##index[place] = LANE_CONVERT_##BITS(TYPE, found->Values##index[i]);
@@ -194,6 +120,33 @@ typedef struct
   uint Count;
 } Found;
 
+// The weights of the cells' vertices at samples (GroupWeights.cl).
+typedef struct
+{
+  FLOATS T0, T3, T5, T6; // of the central tetrahedron, still to be multiplied by Scale
+  FLOATS U1, U2, U4, U7; // of the corners
+  FLOATS Scale;
+} SampleWeights;
+
+// The interpolated values of an array, rounded where it holds integers.
+#define LANE_RESULTS(index, TYPE, BITS, SLOT)                                                      \
+  {                                                                                                \
+    FLOATS inner = weights->T0 * VERTEX(0, 3 + SLOT);                                              \
+    inner = fma(weights->T3, VERTEX(3, 3 + SLOT), inner);                                          \
+    inner = fma(weights->T5, VERTEX(5, 3 + SLOT), inner);                                          \
+    inner = fma(weights->T6, VERTEX(6, 3 + SLOT), inner);                                          \
+    FLOATS outer = weights->U1 * VERTEX(1, 3 + SLOT);                                              \
+    outer = fma(weights->U2, VERTEX(2, 3 + SLOT), outer);                                          \
+    outer = fma(weights->U4, VERTEX(4, 3 + SLOT), outer);                                          \
+    outer = fma(weights->U7, VERTEX(7, 3 + SLOT), outer);                                          \
+    FLOATS v = fma(inner, weights->Scale, outer);                                                  \
+    if (BITS != 32)                                                                                \
+    {                                                                                              \
+      v = Least(Most(v, LANE_RANGE_LOW_##TYPE), LANE_RANGE_HIGH_##TYPE) + ROUND_TO_INTEGER;        \
+    }                                                                                              \
+    Append(AS_INTS(v), bits, found->Values##index + *kept);                                        \
+  }
+
 #define KEEP_VALUE(index, TYPE, BITS, SLOT) found->Values##index[kept] = found->Values##index[i];
 
 // An atomic operation waits for memory, and nothing that follows goes on meanwhile.
@@ -297,4 +250,34 @@ static void StoreFound(Found* found, const Group* group, Output* output,
 #endif
   }
   found->Count = 0;
+}
+
+// Keeps the samples of some cells, as bits. places: in the output. inverted: lanes whose tetrahedra are. kept: how
+// many are kept, in place of found->Count, which memory holds. All are stored where these are too many.
+static __attribute__((always_inline)) void KeepSamples(const Group* group, uint bits, INTS places,
+  INTS inverted, const SampleWeights* weights, Found* found, uint* kept, Output* output,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  if (DEFORMVOLUME_IS_WRITING(p->Pass))
+  {
+    LANE_ARRAYS(LANE_RESULTS)
+  }
+  Append(places, bits, found->Places + *kept);
+  if (KEEPS_KEYS && p->Pass != DEFORMVOLUME_PASS_DIRECT)
+  {
+    // The first cell of the row, as the first one of the group may lie before the volume.
+    const INTS keys = (int)MakeKey(0, group->Y, group->Z, 0, p) + (group->X + 2 * LANE_INDEX);
+    Append(keys | (inverted & (int)MakeKey(0, 0, 0, 1, p)), bits, found->Cells + *kept);
+  }
+  else if (HAS_OTHER_ARRAYS || p->Pass != DEFORMVOLUME_PASS_DIRECT)
+  {
+    Append(LANE_INDEX | (inverted & INVERTED_LANE), bits, found->Cells + *kept);
+  }
+  *kept += popcount(bits);
+  if (*kept > FOUND_CAPACITY)
+  {
+    found->Count = *kept;
+    *kept = 0;
+    StoreFound(found, group, output, p ARRAY_ARGUMENTS);
+  }
 }

@@ -35,31 +35,84 @@ std::size_t CountSections(std::uint32_t bits)
   return count(JoinColumns(bits) & AllColumns) * count(halves & 3) * count(halves >> 2);
 }
 
-} // namespace
-
-bool IncrementalUpdate::IsTooMuch(std::size_t some, std::size_t all)
+// How many of all points, sections or patches may change: where more do, it is faster to make all
+// anew.
+std::size_t GetMost(std::size_t all)
 {
-  constexpr double largestPart = 0.6;
-  return static_cast<double>(some) > largestPart * static_cast<double>(all);
+  constexpr double largestFraction = 0.6;
+  return static_cast<std::size_t>(largestFraction * static_cast<double>(all));
 }
 
-IncrementalUpdate::Patches IncrementalUpdate::GetPatches(const Box& box) const
+} // namespace
+
+std::size_t IncrementalUpdate::GetMostMoved(std::size_t numberOfPoints) const
 {
-  Patches patches;
+  return GetMost(numberOfPoints);
+}
+
+bool IncrementalUpdate::GetVoxels(const Box& box, Extent& voxels) const
+{
   for (int axis = 0; axis < 3; ++axis)
   {
-    // The voxels inside, within the output.
     const double size = static_cast<double>(GetSize(this->OutputExtent, axis));
     const double low = std::max(std::ceil(box.Min[axis]), 0.0);
     const double high = std::min(std::floor(box.Max[axis]), size - 1.0);
     if (!(low <= high))
     {
-      return { { 0, -1, 0, -1, 0, -1 } };
+      return false;
     }
-    patches[2 * axis] = static_cast<int>(low) / DEFORMVOLUME_PATCH;
-    patches[2 * axis + 1] = static_cast<int>(high) / DEFORMVOLUME_PATCH;
+    voxels[2 * axis] = static_cast<int>(low);
+    voxels[2 * axis + 1] = static_cast<int>(high);
   }
+  return true;
+}
+
+IncrementalUpdate::Patches IncrementalUpdate::GetPatches(const Box& box) const
+{
+  Extent voxels;
+  if (!this->GetVoxels(box, voxels))
+  {
+    return { { 0, -1, 0, -1, 0, -1 } };
+  }
+  Patches patches;
+  std::transform(voxels.begin(), voxels.end(), patches.begin(),
+    [](int voxel) { return voxel / DEFORMVOLUME_PATCH; });
   return patches;
+}
+
+Extent IncrementalUpdate::GetChangedExtent() const
+{
+  Extent changed{ { 0, -1, 0, -1, 0, -1 } };
+  const auto add = [&](const Box& box)
+  {
+    Extent voxels;
+    if (!this->GetVoxels(box, voxels))
+    {
+      return;
+    }
+    const bool isFirst = GetNumberOfPoints(changed) == 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int origin = this->OutputExtent[2 * axis];
+      int& low = changed[2 * axis];
+      int& high = changed[2 * axis + 1];
+      low = isFirst ? origin + voxels[2 * axis] : std::min(low, origin + voxels[2 * axis]);
+      high =
+        isFirst ? origin + voxels[2 * axis + 1] : std::max(high, origin + voxels[2 * axis + 1]);
+    }
+  };
+  for (std::size_t subBrick = 0; subBrick < this->Places.size(); ++subBrick)
+  {
+    if (this->IsChanged(subBrick))
+    {
+      add(this->Boxes[subBrick]);
+      if (this->Moved[subBrick])
+      {
+        add(this->LastBoxes[subBrick]);
+      }
+    }
+  }
+  return changed;
 }
 
 void IncrementalUpdate::MarkPatches(const Box& box, std::vector<unsigned char>& dirty) const
@@ -76,16 +129,54 @@ void IncrementalUpdate::MarkPatches(const Box& box, std::vector<unsigned char>& 
   }
 }
 
+void IncrementalUpdate::MarkChangedPatches(
+  std::size_t subBrick, std::vector<unsigned char>& dirty) const
+{
+  this->MarkPatches(this->Boxes[subBrick], dirty);
+  if (this->Moved[subBrick])
+  {
+    this->MarkPatches(this->LastBoxes[subBrick], dirty);
+  }
+}
+
+std::vector<unsigned char> IncrementalUpdate::MakeFlagsOfPatches() const
+{
+  return std::vector<unsigned char>(static_cast<std::size_t>(this->PatchCount[0]) *
+    static_cast<std::size_t>(this->PatchCount[1]) * static_cast<std::size_t>(this->PatchCount[2]));
+}
+
+std::vector<std::uint32_t> IncrementalUpdate::ListPatches(const std::vector<unsigned char>& dirty)
+{
+  std::vector<std::uint32_t> patches;
+  for (std::size_t patch = 0; patch < dirty.size(); ++patch)
+  {
+    if (dirty[patch])
+    {
+      patches.push_back(static_cast<std::uint32_t>(patch));
+    }
+  }
+  return patches;
+}
+
+std::vector<std::uint32_t> IncrementalUpdate::GetChangedPatches() const
+{
+  std::vector<unsigned char> dirty = this->MakeFlagsOfPatches();
+  for (std::size_t subBrick = 0; subBrick < this->Places.size(); ++subBrick)
+  {
+    if (this->IsChanged(subBrick))
+    {
+      this->MarkChangedPatches(subBrick, dirty);
+    }
+  }
+  return ListPatches(dirty);
+}
+
 void IncrementalUpdate::PlanPatches(const std::vector<std::size_t>& changed,
   std::vector<std::uint32_t>& run, std::vector<unsigned char>& dirty) const
 {
   for (const std::size_t subBrick : changed)
   {
-    this->MarkPatches(this->Boxes[subBrick], dirty);
-    if (this->Moved[subBrick])
-    {
-      this->MarkPatches(this->LastBoxes[subBrick], dirty);
-    }
+    this->MarkChangedPatches(subBrick, dirty);
   }
   const Box reach = this->GetReach();
   for (std::size_t subBrick = 0; subBrick < this->Places.size(); ++subBrick)
@@ -117,10 +208,9 @@ bool IncrementalUpdate::MakePlan(bool inside, Plan& plan)
   }
   const auto isRunTooMuch = [&]
   {
-    return IsTooMuch(
-      std::accumulate(run.begin(), run.end(), std::size_t{ 0 },
-        [](std::size_t sum, std::uint32_t bits) { return sum + CountSections(bits); }),
-      DEFORMVOLUME_SECTIONS * run.size());
+    const std::size_t sections = std::accumulate(run.begin(), run.end(), std::size_t{ 0 },
+      [](std::size_t sum, std::uint32_t bits) { return sum + CountSections(bits); });
+    return sections > GetMost(DEFORMVOLUME_SECTIONS * run.size());
   };
   if (isRunTooMuch())
   {
@@ -128,18 +218,10 @@ bool IncrementalUpdate::MakePlan(bool inside, Plan& plan)
   }
   if (!inside)
   {
-    std::vector<unsigned char> dirty(static_cast<std::size_t>(this->PatchCount[0]) *
-      static_cast<std::size_t>(this->PatchCount[1]) *
-      static_cast<std::size_t>(this->PatchCount[2]));
+    std::vector<unsigned char> dirty = this->MakeFlagsOfPatches();
     this->PlanPatches(changed, run, dirty);
-    for (std::size_t patch = 0; patch < dirty.size(); ++patch)
-    {
-      if (dirty[patch])
-      {
-        plan.Patches.push_back(static_cast<std::uint32_t>(patch));
-      }
-    }
-    if (IsTooMuch(plan.Patches.size(), dirty.size()) || isRunTooMuch())
+    plan.Patches = ListPatches(dirty);
+    if (plan.Patches.size() > GetMost(dirty.size()) || isRunTooMuch())
     {
       return false;
     }

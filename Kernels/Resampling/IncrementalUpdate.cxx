@@ -9,10 +9,6 @@
 #include <cstring>
 #include <limits>
 
-#ifdef __SSE__
-#include <xmmintrin.h>
-#endif
-
 namespace deformvolume
 {
 namespace
@@ -32,18 +28,6 @@ constexpr double LargestMove = 16384.0;
 // voxel beyond their vertices.
 constexpr int MaskReach = 1;
 
-bool IsDifferent(const unsigned char* last, const unsigned char* next, unsigned char value,
-  std::int64_t begin, std::size_t size)
-{
-  if (last && next)
-  {
-    return std::memcmp(last + begin, next + begin, size) != 0;
-  }
-  const unsigned char* mask = last ? last : next;
-  return mask &&
-    std::any_of(mask + begin, mask + begin + size, [=](unsigned char v) { return v != value; });
-}
-
 // Whether there are cells between some vertices.
 bool HasCells(const Extent& vertices)
 {
@@ -51,67 +35,9 @@ bool HasCells(const Extent& vertices)
 }
 
 // Sub-bricks that a thread takes at a time.
-constexpr std::size_t PartStep = 256;
+constexpr std::size_t StepSize = 256;
 
 } // namespace
-
-IncrementalUpdate::Bounds::Bounds()
-{
-  this->Least.fill(std::numeric_limits<float>::infinity());
-  this->Greatest.fill(-std::numeric_limits<float>::infinity());
-}
-
-void IncrementalUpdate::Bounds::Add(const float* displacements, std::size_t begin, std::size_t end)
-{
-#ifdef __SSE__
-  // Compilers do not find these by themselves, and there are millions of points.
-  __m128 least = _mm_load_ps(this->Least.data());
-  __m128 greatest = _mm_load_ps(this->Greatest.data());
-  for (std::size_t point = begin; point < end; ++point)
-  {
-    const __m128 next = _mm_loadu_ps(displacements + 4 * point);
-    least = _mm_min_ps(least, next);
-    greatest = _mm_max_ps(greatest, next);
-  }
-  _mm_store_ps(this->Least.data(), least);
-  _mm_store_ps(this->Greatest.data(), greatest);
-#else
-  for (std::size_t i = 4 * begin; i < 4 * end; ++i)
-  {
-    this->Least[i % 4] = std::min(this->Least[i % 4], displacements[i]);
-    this->Greatest[i % 4] = std::max(this->Greatest[i % 4], displacements[i]);
-  }
-#endif
-}
-
-void IncrementalUpdate::Bounds::Add(
-  const Displacements& displacements, std::size_t begin, std::size_t end)
-{
-  if (displacements.Padded)
-  {
-    this->Add(displacements.Padded, begin, end);
-    return;
-  }
-  for (std::size_t point = begin; point < end; ++point)
-  {
-    const std::array<float, 3> found =
-      GetDisplacement(*displacements.Field, static_cast<std::int64_t>(point));
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      this->Least[axis] = std::min(this->Least[axis], found[axis]);
-      this->Greatest[axis] = std::max(this->Greatest[axis], found[axis]);
-    }
-  }
-}
-
-void IncrementalUpdate::Bounds::Add(const Bounds& other)
-{
-  for (int c = 0; c < 4; ++c)
-  {
-    this->Least[c] = std::min(this->Least[c], other.Least[c]);
-    this->Greatest[c] = std::max(this->Greatest[c], other.Greatest[c]);
-  }
-}
 
 void IncrementalUpdate::Start(
   const BrickGrid& bricks, const VoxelGrid& voxelGrid, const Extent& output)
@@ -149,7 +75,7 @@ void IncrementalUpdate::Finish()
   this->Masked.assign(this->Grid.GetNumberOfBricks(), 0);
 }
 
-void IncrementalUpdate::MoveAll(const std::optional<Bounds>& after)
+void IncrementalUpdate::MoveAll(const std::optional<DisplacementBounds>& after)
 {
   this->Tracking = false;
   this->Known.assign(this->Known.size(), 0);
@@ -166,10 +92,10 @@ void IncrementalUpdate::ForgetMapping()
   this->AllBounds.reset();
 }
 
-IncrementalUpdate::Bounds IncrementalUpdate::ComputeBounds(
+DisplacementBounds IncrementalUpdate::ComputeBounds(
   std::size_t subBrick, const Displacements& displacements) const
 {
-  Bounds bounds;
+  DisplacementBounds bounds;
   this->Points.AnyOf(subBrick,
     [&](std::size_t begin, std::size_t end)
     {
@@ -179,23 +105,24 @@ IncrementalUpdate::Bounds IncrementalUpdate::ComputeBounds(
   return bounds;
 }
 
-IncrementalUpdate::Bounds IncrementalUpdate::ComputeAllBounds(
+DisplacementBounds IncrementalUpdate::ComputeAllBounds(
   const Displacements& displacements, std::size_t numberOfPoints) const
 {
   constexpr std::size_t step = 65536;
-  std::vector<Bounds> parts((numberOfPoints + step - 1) / step);
+  std::vector<DisplacementBounds> steps((numberOfPoints + step - 1) / step);
   ParallelForParts(numberOfPoints, step,
     [&](std::size_t begin, std::size_t end)
-    { parts[begin / step].Add(displacements, begin, end); });
-  Bounds all;
-  for (const Bounds& part : parts)
+    { steps[begin / step].Add(displacements, begin, end); });
+  DisplacementBounds all;
+  for (const DisplacementBounds& bounds : steps)
   {
-    all.Add(part);
+    all.Add(bounds);
   }
   return all;
 }
 
-IncrementalUpdate::Box IncrementalUpdate::MakeBox(std::size_t subBrick, const Bounds& bounds) const
+IncrementalUpdate::Box IncrementalUpdate::MakeBox(
+  std::size_t subBrick, const DisplacementBounds& bounds) const
 {
   const Extent vertices = this->Grid.GetVertices(subBrick, 0);
   const double excess = this->Points.GetExcess(subBrick);
@@ -298,7 +225,7 @@ void IncrementalUpdate::MovePoints(const PointSet& changed, const float* last)
   };
   // Most bricks are nowhere near.
   std::vector<unsigned char> near(this->Bricks.GetNumberOfBricks());
-  ParallelForParts(near.size(), PartStep,
+  ParallelForParts(near.size(), StepSize,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t brick = begin; brick < end; ++brick)
@@ -308,28 +235,64 @@ void IncrementalUpdate::MovePoints(const PointSet& changed, const float* last)
     });
   const auto isMoved = [&](std::size_t subBrick)
   { return near[this->Places[subBrick].first] && hasMoved(this->Points, subBrick); };
-  ParallelForParts(this->Grid.GetNumberOfBricks(), PartStep,
+  ParallelForParts(this->Grid.GetNumberOfBricks(), StepSize,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t subBrick = begin; subBrick < end; ++subBrick)
       {
         if (isMoved(subBrick))
         {
-          if (!this->Moved[subBrick])
-          {
-            this->LastBoxes[subBrick] = this->Known[subBrick]
-              ? this->Boxes[subBrick]
-              : this->MakeBox(subBrick, this->ComputeBounds(subBrick, { last, nullptr }));
-            this->Moved[subBrick] = 1;
-          }
-          this->Known[subBrick] = 0;
+          this->Move(subBrick, last);
         }
       }
     });
   this->BoxesKnown = false;
 }
 
-void IncrementalUpdate::AddMoved(const Bounds& after)
+void IncrementalUpdate::Move(std::size_t subBrick, const float* last)
+{
+  if (!this->Moved[subBrick])
+  {
+    this->LastBoxes[subBrick] = this->Known[subBrick]
+      ? this->Boxes[subBrick]
+      : this->MakeBox(subBrick, this->ComputeBounds(subBrick, { last, nullptr }));
+    this->Moved[subBrick] = 1;
+  }
+  this->Known[subBrick] = 0;
+}
+
+std::optional<std::vector<Extent>> IncrementalUpdate::ChangeTetrahedra(
+  const std::vector<TetrahedronChange>& changes, const float* last)
+{
+  if (!this->HasPoints() || this->Points.AreOverloaded())
+  {
+    this->ForgetMapping();
+    return {};
+  }
+  std::vector<unsigned char> near(this->Bricks.GetNumberOfBricks());
+  for (const BrickPoints::ChangesOfBrick& brick :
+    this->PointsOfBricks.FindBricks(changes, [](std::size_t) { return true; }))
+  {
+    near[brick.first] = 1;
+    this->PointsOfBricks.AddPoints(brick, changes);
+  }
+  std::vector<Extent> boxes;
+  for (const BrickPoints::ChangesOfBrick& subBrick : this->Points.FindBricks(
+         changes, [&](std::size_t number) { return near[this->Places[number].first] != 0; }))
+  {
+    boxes.push_back(this->Grid.GetVertices(subBrick.first, 0));
+    if (this->Tracking)
+    {
+      this->Move(subBrick.first, last); // by the nodes that it has had
+    }
+    this->Known[subBrick.first] = 0;
+    this->Points.AddPoints(subBrick, changes);
+  }
+  this->BoxesKnown = false;
+  return boxes;
+}
+
+void IncrementalUpdate::AddMoved(const DisplacementBounds& after)
 {
   if (this->AllBounds)
   {
@@ -372,7 +335,7 @@ bool IncrementalUpdate::HasOnlyInterior(std::size_t subBrick, const unsigned cha
 bool IncrementalUpdate::IsInside(const unsigned char* state) const
 {
   std::atomic<bool> inside{ true };
-  ParallelForParts(this->Grid.GetNumberOfBricks(), PartStep,
+  ParallelForParts(this->Grid.GetNumberOfBricks(), StepSize,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t subBrick = begin; subBrick < end && inside; ++subBrick)
@@ -387,56 +350,101 @@ bool IncrementalUpdate::IsInside(const unsigned char* state) const
   return inside;
 }
 
+template <typename IsWanted>
+void IncrementalUpdate::FindBoxesOf(const IsWanted& isWanted, const Displacements& displacements)
+{
+  ParallelForParts(this->Grid.GetNumberOfBricks(), StepSize,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t subBrick = begin; subBrick < end; ++subBrick)
+      {
+        if (!this->Known[subBrick] && isWanted(subBrick))
+        {
+          this->Boxes[subBrick] =
+            this->MakeBox(subBrick, this->ComputeBounds(subBrick, displacements));
+          this->Known[subBrick] = 1;
+        }
+      }
+    });
+}
+
+void IncrementalUpdate::FindChangedBoxes(const Displacements& displacements)
+{
+  this->FindBoxesOf([&](std::size_t subBrick) { return this->IsChanged(subBrick); }, displacements);
+}
+
+void IncrementalUpdate::FindAllBoxes(const Displacements& displacements)
+{
+  this->FindBoxesOf([](std::size_t) { return true; }, displacements);
+}
+
+bool IncrementalUpdate::KnowsAllBoxes() const
+{
+  return this->HasPoints() && !this->Known.empty() &&
+    std::find(this->Known.begin(), this->Known.end(), 0) == this->Known.end();
+}
+
 void IncrementalUpdate::FindBoxes(const Displacements& displacements, std::size_t numberOfPoints)
 {
   if (!this->AllBounds)
   {
     this->AllBounds = this->ComputeAllBounds(displacements, numberOfPoints);
   }
-  const auto find = [&](const auto& isWanted)
-  {
-    ParallelForParts(this->Grid.GetNumberOfBricks(), PartStep,
-      [&](std::size_t begin, std::size_t end)
-      {
-        for (std::size_t subBrick = begin; subBrick < end; ++subBrick)
-        {
-          if (!this->Known[subBrick] && isWanted(subBrick))
-          {
-            this->Boxes[subBrick] =
-              this->MakeBox(subBrick, this->ComputeBounds(subBrick, displacements));
-            this->Known[subBrick] = 1;
-          }
-        }
-      });
-  };
-  find([&](std::size_t subBrick) { return this->IsChanged(subBrick); });
+  this->FindChangedBoxes(displacements);
   const Box reach = this->GetReach();
-  find([&](std::size_t subBrick)
-    { return !IsApart(this->MakeBox(subBrick, *this->AllBounds), reach); });
+  this->FindBoxesOf([&](std::size_t subBrick)
+    { return !IsApart(this->MakeBox(subBrick, *this->AllBounds), reach); },
+    displacements);
   this->BoxesKnown = true;
 }
 
-void IncrementalUpdate::ChangeMask(
-  const unsigned char* last, const unsigned char* next, unsigned char value, bool ofCells)
+void IncrementalUpdate::ChangeMask(const std::vector<Extent>& changes, bool ofCells)
 {
-  const int less = ofCells ? 1 : 0;
-  const std::int64_t size[2] = { this->Grid.Size[0] - less, this->Grid.Size[1] - less };
-  ParallelForParts(this->Grid.GetNumberOfBricks(), 1,
-    [&](std::size_t subBrick, std::size_t)
+  if (!this->Tracking)
+  {
+    return;
+  }
+  const int more = ofCells ? 1 : 0; // a cell reaches to the next vertices
+  for (const Extent& box : changes)
+  {
+    std::array<int, 6> subBricks; // first and last one on each axis that may be near
+    for (int axis = 0; axis < 3; ++axis)
     {
-      const Extent region = this->Grid.GetVertices(subBrick, MaskReach);
-      const std::int64_t row = region[1] - less - region[0] + 1;
-      for (std::int64_t z = region[4]; z <= region[5] - less && !this->Masked[subBrick]; ++z)
+      const auto find = [&](int vertex)
       {
-        for (std::int64_t y = region[2]; y <= region[3] - less && !this->Masked[subBrick]; ++y)
+        const int place = (vertex - this->Grid.Origin[axis]) / this->Grid.Cells[axis];
+        return std::min(std::max(place, 0), this->Grid.Count[axis] - 1);
+      };
+      subBricks[2 * axis] = find(box[2 * axis] - MaskReach - 1);
+      subBricks[2 * axis + 1] = find(box[2 * axis + 1] + more + MaskReach);
+    }
+    for (int z = subBricks[4]; z <= subBricks[5]; ++z)
+    {
+      for (int y = subBricks[2]; y <= subBricks[3]; ++y)
+      {
+        for (int x = subBricks[0]; x <= subBricks[1]; ++x)
         {
-          const std::int64_t begin = (z * size[1] + y) * size[0] + region[0];
-          this->Masked[subBrick] =
-            row > 0 && IsDifferent(last, next, value, begin, static_cast<std::size_t>(row)) ? 1 : 0;
+          const std::size_t subBrick =
+            (static_cast<std::size_t>(z) * static_cast<std::size_t>(this->Grid.Count[1]) +
+              static_cast<std::size_t>(y)) *
+              static_cast<std::size_t>(this->Grid.Count[0]) +
+            static_cast<std::size_t>(x);
+          const Extent region = this->Grid.GetVertices(subBrick, MaskReach);
+          bool touches = true;
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            touches &=
+              box[2 * axis] <= region[2 * axis + 1] - more && box[2 * axis + 1] >= region[2 * axis];
+          }
+          this->Masked[subBrick] |= touches ? 1 : 0;
         }
       }
-    });
-  this->BoxesKnown = false; // of sub-bricks that have changed now
+    }
+  }
+  if (!changes.empty())
+  {
+    this->BoxesKnown = false; // of sub-bricks that have changed now
+  }
 }
 
 bool IncrementalUpdate::IsApart(const Box& a, const Box& b)

@@ -3,7 +3,8 @@
 #define DeformVolumeIncrementalUpdate_h
 
 #include "BrickPoints.h"
-#include "DisplacementField.h"
+#include "DisplacementBounds.h"
+#include "DisplacementObserver.h"
 #include "Extent.h"
 #include "PointSet.h"
 #include "VoxelGrid.h"
@@ -29,7 +30,7 @@ namespace deformvolume
 /// and only changed sub-bricks are run: their cells fill the same space as before, between cells
 /// that stay, so that together they own the same voxels, unless some are inverted, which the counts
 /// tell.
-class IncrementalUpdate
+class IncrementalUpdate : public DisplacementObserver
 {
 public:
   /// What there is to do.
@@ -39,49 +40,29 @@ public:
     std::vector<std::uint32_t> Patches; // counted along x, then y, then z
   };
 
-  /// Displacements of points, in output voxels, as they lie in memory.
-  struct Displacements
-  {
-    const float* Padded = nullptr; // four floats each, or else
-    const DisplacementField* Field = nullptr;
-  };
-
-  /// The least and the greatest displacement of some points.
-  struct Bounds
-  {
-    Bounds();
-    /// Points from begin to before end, of four floats each in the first form.
-    void Add(const float* displacements, std::size_t begin, std::size_t end);
-    void Add(const Displacements& displacements, std::size_t begin, std::size_t end);
-    void Add(const Bounds& other);
-    alignas(16) std::array<float, 4> Least;
-    alignas(16) std::array<float, 4> Greatest;
-  };
-
-  /// Whether the last output can serve, so that what changes has to be told.
-  bool IsTracking() const { return this->Tracking; }
-
   /// An output of this extent was made, wholly, of what is set now.
   void Start(const BrickGrid& bricks, const VoxelGrid& voxelGrid, const Extent& output);
   /// The last output is of no use any more.
   void Forget() { this->Tracking = false; }
-  /// All points change; the last output is of no use any more. after: of all of them, where it is
-  /// known.
-  void MoveAll(const std::optional<Bounds>& after = {});
   /// The last output was brought up to date.
   void Finish();
 
-  /// The points of sub-bricks; found when they are needed first, and forgotten with the
-  /// mapping.
-  bool HasPoints() const { return !this->Points.IsEmpty(); }
-  void SetPoints(BrickPoints&& points);
-  void ForgetMapping();
-
-  /// Points will change. last: four floats a point, the displacements before the change.
-  void MovePoints(const PointSet& changed, const float* last);
-  /// They have changed. after: of these points, or of more. (The bounds of all points only grow, as
-  /// long as not all change.)
-  void AddMoved(const Bounds& after);
+  ///@{
+  /// See DisplacementObserver. As long as the last output can serve it is tracked what changes;
+  /// where all points change it is of no use any more. The bounds of all points only grow as long
+  /// as not all change.
+  bool IsTracking() const override { return this->Tracking; }
+  std::size_t GetMostMoved(std::size_t numberOfPoints) const override;
+  bool HasPoints() const override { return !this->Points.IsEmpty(); }
+  void SetPoints(BrickPoints&& points) override;
+  void ForgetMapping() override;
+  bool KnowsAllBoxes() const override;
+  void MovePoints(const PointSet& changed, const float* last) override;
+  std::optional<std::vector<Extent>> ChangeTetrahedra(
+    const std::vector<TetrahedronChange>& changes, const float* last) override;
+  void AddMoved(const DisplacementBounds& after) override;
+  void MoveAll(const std::optional<DisplacementBounds>& after) override;
+  ///@}
 
   /// Whether all that changed are sub-bricks of which points moved and all vertices are inside the
   /// sampling mesh. state: of all vertices (VertexState.cl), null where all have a position and all
@@ -92,18 +73,22 @@ public:
   bool HasBoxes() const { return this->BoxesKnown; }
   /// Finds that out. displacements: of so many points, after the change.
   void FindBoxes(const Displacements& displacements, std::size_t numberOfPoints);
+  /// Finds out where all sub-bricks lie. displacements: as for the last output.
+  void FindAllBoxes(const Displacements& displacements);
+  /// Finds out where the changed sub-bricks lie, and no others.
+  void FindChangedBoxes(const Displacements& displacements);
 
-  /// A mask will change: of vertices, one byte each, or of cells. Null stands for a mask that is
-  /// the given value everywhere.
-  void ChangeMask(
-    const unsigned char* last, const unsigned char* next, unsigned char value, bool ofCells);
+  /// A mask of vertices, or of cells, changes in some boxes of these.
+  void ChangeMask(const std::vector<Extent>& changes, bool ofCells);
 
   /// False where it is better to make all anew. inside: see IsInside; boxes are not needed then.
   bool MakePlan(bool inside, Plan& plan);
 
-  /// Whether so many of all points, sub-bricks or patches change that it is faster to make all
-  /// anew.
-  static bool IsTooMuch(std::size_t some, std::size_t all);
+  /// The output voxels that may change, in structured indices: those in the boxes of changed
+  /// sub-bricks, before and after the change. These boxes must be known.
+  Extent GetChangedExtent() const;
+  /// The patches of the output that these voxels lie in.
+  std::vector<std::uint32_t> GetChangedPatches() const;
 
   const Extent& GetOutputExtent() const { return this->OutputExtent; }
 
@@ -116,9 +101,17 @@ private:
   };
   using Patches = std::array<int, 6>; // first and last patch on each axis
 
-  Bounds ComputeBounds(std::size_t subBrick, const Displacements& displacements) const;
-  Box MakeBox(std::size_t subBrick, const Bounds& bounds) const;
-  Bounds ComputeAllBounds(const Displacements& displacements, std::size_t numberOfPoints) const;
+  /// A sub-brick is about to change by its points.
+  void Move(std::size_t subBrick, const float* last);
+  DisplacementBounds ComputeBounds(std::size_t subBrick, const Displacements& displacements) const;
+  Box MakeBox(std::size_t subBrick, const DisplacementBounds& bounds) const;
+  DisplacementBounds ComputeAllBounds(
+    const Displacements& displacements, std::size_t numberOfPoints) const;
+  /// Finds the boxes of the sub-bricks that a function wants, where they are not known.
+  template <typename IsWanted>
+  void FindBoxesOf(const IsWanted& isWanted, const Displacements& displacements);
+  /// The voxels in a box, within the output and counted from its first one; false without such.
+  bool GetVoxels(const Box& box, Extent& voxels) const;
   bool IsChanged(std::size_t subBrick) const
   {
     return this->Moved[subBrick] || this->Masked[subBrick];
@@ -130,6 +123,10 @@ private:
   bool HasOnlyInterior(std::size_t subBrick, const unsigned char* state) const;
   Patches GetPatches(const Box& box) const;
   void MarkPatches(const Box& box, std::vector<unsigned char>& dirty) const;
+  std::vector<unsigned char> MakeFlagsOfPatches() const;
+  static std::vector<std::uint32_t> ListPatches(const std::vector<unsigned char>& dirty);
+  /// Marks those that a changed sub-brick touches, before or after the change.
+  void MarkChangedPatches(std::size_t subBrick, std::vector<unsigned char>& dirty) const;
   /// Finds the patches to clear, and adds the sub-bricks that touch them to the sections to run.
   void PlanPatches(const std::vector<std::size_t>& changed, std::vector<std::uint32_t>& run,
     std::vector<unsigned char>& dirty) const;
@@ -147,9 +144,9 @@ private:
   std::vector<std::pair<std::size_t, std::uint32_t>> Places;
   std::vector<Box> Boxes; // as far as they are known
   std::vector<unsigned char> Known;
-  bool BoxesKnown = false;         // all that changed, and all that may touch what these touch
-  std::optional<Bounds> AllBounds; // of all points, or wider
-  std::vector<Box> LastBoxes;      // of those that were moved
+  bool BoxesKnown = false; // all that changed, and all that may touch what these touch
+  std::optional<DisplacementBounds> AllBounds; // of all points, or wider
+  std::vector<Box> LastBoxes;                  // of those that were moved
   std::vector<unsigned char> Moved;
   std::vector<unsigned char> Masked;
 };

@@ -138,6 +138,35 @@ std::uint64_t CountCoveredInPatches(
   return SumUp(request, patches, [&](const PatchRow& row) { return CountCovered(request, row); });
 }
 
+void CopyPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+  const std::vector<std::uint32_t>& patches)
+{
+  const auto copy = [&](const PatchRow& row, void* to, const void* from, std::size_t size)
+  {
+    if (to == from)
+    {
+      return;
+    }
+    ForRows(request.OutputExtent, row,
+      [&](std::int64_t voxel, std::int64_t voxels)
+      {
+        const std::size_t offset = static_cast<std::size_t>(voxel) * size;
+        std::memcpy(static_cast<char*>(to) + offset, static_cast<const char*>(from) + offset,
+          static_cast<std::size_t>(voxels) * size);
+      });
+  };
+  SumUp(request, patches,
+    [&](const PatchRow& row)
+    {
+      for (std::size_t i = 0; i < arrays.size(); ++i)
+      {
+        copy(row, request.Outputs[i], request.LastOutputs[i], GetTupleSize(arrays[i]));
+      }
+      copy(row, request.Coverage, request.LastCoverage, 1);
+      return std::uint64_t{ 0 };
+    });
+}
+
 std::uint64_t ClearPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
   const std::vector<std::uint32_t>& patches)
 {

@@ -22,6 +22,10 @@ std::uint64_t CountCoveredInPatches(
 std::uint64_t ClearPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
   const std::vector<std::uint32_t>& patches);
 
+/// Copies patches of the last output to the request's memory, where that is another.
+void CopyPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+  const std::vector<std::uint32_t>& patches);
+
 } // namespace deformvolume
 
 #endif

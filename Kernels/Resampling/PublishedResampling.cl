@@ -81,7 +81,7 @@ __kernel void ResamplePublished(__global const int* positions, __global const uc
   }
   const int tetrahedra = p.HasActive
     ? active[((size_t)(z - p.ChunkFirst) * (p.Size[1] - 1) + y) * (p.Size[0] - 1) + x]
-    : 31;
+    : DEFORMVOLUME_ALL_TETRAHEDRA;
   const int3 last = (int3)(p.OutputSize[0], p.OutputSize[1], p.OutputSize[2]) - 1;
   for (int t = 0; t < 5; ++t)
   {

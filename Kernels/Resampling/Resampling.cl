@@ -311,7 +311,7 @@ static int AreUnsettled(Candidates c, const Output* output, const KernelParamete
 static void ResampleSamples(const SamplingMesh* mesh, const Cell* cell, const Candidates* all,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  if (cell->Tetrahedra == 31 && cell->Inverted == 0)
+  if (cell->Tetrahedra == DEFORMVOLUME_ALL_TETRAHEDRA && cell->Inverted == 0)
   {
     // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
     const int open = cell->State.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT;

@@ -6,6 +6,7 @@
 #include "KernelParameters.h"
 #include "KernelSources.h"
 #include "KernelText.h"
+#include "SamplingMeshText.h"
 
 #include <algorithm>
 #include <limits>
@@ -107,8 +108,9 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
   std::string text = Resampling_cl;
   if (form == ResamplingForm::Lanes)
   {
-    text += MakeLanePreamble(context, arrays) + LaneVectors_cl + BrickMapping_cl + GroupSamples_cl +
-      GroupCoverage_cl + GroupCandidates_cl + GroupResampling_cl + BrickResampling_cl;
+    text += MakeLanePreamble(context, arrays) + LaneVectors_cl + RowDisplacements_cl +
+      BrickMapping_cl + GroupVertices_cl + GroupSamples_cl + GroupCoverage_cl + GroupCandidates_cl +
+      GroupWeights_cl + GroupResampling_cl + BrickResampling_cl;
   }
   else if (form == ResamplingForm::LargeCells)
   {

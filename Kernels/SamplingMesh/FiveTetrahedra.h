@@ -24,6 +24,9 @@
     }                                                                                              \
   }
 
+// The bits of a cell in a mask of active tetrahedra where all of them are.
+#define DEFORMVOLUME_ALL_TETRAHEDRA 31
+
 // The corner tetrahedron that lies behind the face of the central tetrahedron opposite its
 // k-th vertex; and by the number of that tetrahedron, the vertex k.
 #define DEFORMVOLUME_CORNER_BEHIND_FACE                                                            \

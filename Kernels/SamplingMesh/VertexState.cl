@@ -1,120 +1,201 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The static state of the vertices of the sampling mesh, one byte a voxel. It comes after
-// DeformationMapping.cl. A work-item takes every global-size(0)-th vertex of one row; global size
-// (any, rows, planes).
+// DeformationMapping.cl. Vertices are worked on by cuboids of them, as many as such of cells have (KernelParameters.h),
+// which are numbered in each chunk along x, then y, then z. Global size (any, cuboids of a list): a work-item takes
+// every global-size(0)-th vertex of the rows of one.
 
-// The local index of the first vertex of a work-item.
-static int3 FirstVertex(const KernelParameters* p)
+// Local indices of the first vertex of a cuboid, and of one past the last.
+static int3 FirstVertex(uint cuboid, const KernelParameters* p)
 {
-  return (int3)(get_global_id(0), get_global_id(1), p->PlanesBegin + (int)get_global_id(2));
+  const uint countX = (p->Size[0] + DEFORMVOLUME_CUBOID_X - 1) / DEFORMVOLUME_CUBOID_X;
+  const uint countY = (p->Size[1] + DEFORMVOLUME_CUBOID_Y - 1) / DEFORMVOLUME_CUBOID_Y;
+  return (int3)(cuboid % countX * DEFORMVOLUME_CUBOID_X, cuboid / countX % countY * DEFORMVOLUME_CUBOID_Y,
+    p->PlanesBegin + cuboid / countX / countY * DEFORMVOLUME_CUBOID_Z);
 }
 
-// Sources lie in slabs of planes, as positions do.
-static size_t VertexInSlab(int x, int y, int z, const KernelParameters* p)
+static int3 EndOfVertices(int3 first, const KernelParameters* p)
 {
-  return ((size_t)(z - p->SlabFirst) * p->Size[1] + y) * p->Size[0] + x;
+  return min(first + (int3)(DEFORMVOLUME_CUBOID_X, DEFORMVOLUME_CUBOID_Y, DEFORMVOLUME_CUBOID_Z),
+    (int3)(p->Size[0], p->Size[1], p->PlanesEnd));
+}
+
+// Place of a vertex among those that MarkVertices has found the state of.
+static size_t PlaceInList(int3 first, int x, int y, int z)
+{
+  return ((get_global_id(1) * DEFORMVOLUME_CUBOID_Z + (z - first.z)) * DEFORMVOLUME_CUBOID_Y + (y - first.y)) *
+    DEFORMVOLUME_CUBOID_X + (x - first.x);
 }
 
 // State of the vertices, first pass: those are a source that the deformation moves and that are
-// not blanked.
+// not blanked. Their other bits are found after that.
 __kernel void MarkSources(MAPPING_PARAMETERS, __global const uchar* blanked, const int hasBlanked,
-  __global uchar* sources, const KernelParameters p)
+  __global uchar* state, __global const uint* cuboids, const KernelParameters p)
 {
   const Mapping m = MAPPING_ARGUMENTS;
-  for (int3 v = FirstVertex(&p); v.x < p.Size[0]; v.x += get_global_size(0))
+  const int3 first = FirstVertex(cuboids[get_global_id(1)], &p);
+  const int3 end = EndOfVertices(first, &p);
+  for (int z = first.z; z < end.z; ++z)
   {
-    const size_t i = VertexInChunk(v.x, v.y, v.z, &p);
-    const int source = IsMoved(&m, v.x, v.y, v.z, &p) && !(hasBlanked && blanked[i]);
-    sources[VertexInSlab(v.x, v.y, v.z, &p)] = source ? DEFORMVOLUME_VERTEX_SOURCE : 0;
+    for (int y = first.y; y < end.y; ++y)
+    {
+      for (int x = first.x + get_global_id(0); x < end.x; x += get_global_size(0))
+      {
+        const size_t i = VertexInChunk(x, y, z, &p);
+        const int source = IsMoved(&m, x, y, z, &p) && !(hasBlanked && blanked[i]);
+        state[i] = source ? DEFORMVOLUME_VERTEX_SOURCE : 0;
+      }
+    }
   }
 }
 
-static int IsActive(__global const uchar* active, int x, int y, int z, const KernelParameters* p)
+static int IsSource(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
 {
-  return !p->HasActive ||
-    (active[((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x] & 31) ==
-    31;
+  return state[VertexInChunk(x, y, z, p)] & DEFORMVOLUME_VERTEX_SOURCE;
 }
 
-// What vertices with one x have in common, those round (x, y, z) on y and z: bit 0 whether they are all
-// sources, as far as they lie in the volume, and bit 1 whether those of the cells from y and z on are.
-static int MarkColumn(
-  __global const uchar* sources, int x, int y, int z, const KernelParameters* p)
+static size_t CellInChunk(int x, int y, int z, const KernelParameters* p)
 {
-  if (x < 0 || x >= p->Size[0])
-  {
-    return 1;
-  }
+  return ((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x;
+}
+
+// Whether a cell has all of its tetrahedra.
+static int IsWhole(int active)
+{
+  return (active & DEFORMVOLUME_ALL_TETRAHEDRA) == DEFORMVOLUME_ALL_TETRAHEDRA;
+}
+
+// What is found of the vertices and cells with one x round a row at y and z, as far as they lie in the volume:
+#define ALL_SOURCES 1       // the nine vertices round (x, y, z) are sources
+#define CELL_OF_SOURCES 2   // the four of these that cells from y and z on have are sources
+#define ALL_ACTIVE 4        // the four cells from x on, round the row, have all their tetrahedra
+#define CELL_ACTIVE 8       // the one from y and z on has them
+
+static int MarkColumnAtBorder(__global const uchar* state, __global const uchar* active, int x, int y, int z,
+  const KernelParameters* p)
+{
   int round = 1;
   int cell = y < p->Size[1] - 1 && z < p->Size[2] - 1;
+  int activeRound = 1;
+  int activeHere = 1;
   for (int k = max(z - 1, 0); k <= min(z + 1, p->Size[2] - 1); ++k)
   {
     for (int j = max(y - 1, 0); j <= min(y + 1, p->Size[1] - 1); ++j)
     {
-      const int source = sources[VertexInSlab(x, j, k, p)];
+      const int source = IsSource(state, x, j, k, p);
       round &= source;
       cell &= source | (j < y) | (k < z);
+      if (p->HasActive && x < p->Size[0] - 1 && j <= y && k <= z && j < p->Size[1] - 1 && k < p->Size[2] - 1)
+      {
+        const int whole = IsWhole(active[CellInChunk(x, j, k, p)]);
+        activeRound &= whole;
+        activeHere &= whole | (j < y) | (k < z);
+      }
     }
   }
-  return round | cell << 1;
+  return round * ALL_SOURCES | cell * CELL_OF_SOURCES | activeRound * ALL_ACTIVE | activeHere * CELL_ACTIVE;
 }
 
-// Whether all tetrahedra of the cells round a vertex are active, as far as they lie in the volume.
-static int IsActiveRound(__global const uchar* active, int x, int y, int z, const KernelParameters* p)
+static int MarkColumn(__global const uchar* state, __global const uchar* active, int x, int y, int z,
+  const KernelParameters* p)
 {
-  for (int k = 0; p->HasActive && k < 8; ++k)
+  if (x < 0 || x >= p->Size[0])
   {
-    const int3 c = (int3)(x, y, z) - (int3)(k & 1, k >> 1 & 1, k >> 2);
-    if (all(c >= 0) && all(c < (int3)(p->Size[0], p->Size[1], p->Size[2]) - 1) &&
-      !IsActive(active, c.x, c.y, c.z, p))
-    {
-      return 0;
-    }
+    return ALL_SOURCES | ALL_ACTIVE;
   }
-  return 1;
+  if (y == 0 || z == 0 || y == p->Size[1] - 1 || z == p->Size[2] - 1)
+  {
+    return MarkColumnAtBorder(state, active, x, y, z, p);
+  }
+  __global const uchar* s = state + VertexInChunk(x, y, z, p);
+  const long row = p->Size[0];
+  const long plane = row * p->Size[1];
+  const int cell = s[0] & s[row] & s[plane] & s[plane + row];
+  const int round = cell & s[-row] & s[plane - row] & s[-plane - row] & s[-plane] & s[-plane + row];
+  int bits = ALL_ACTIVE | CELL_ACTIVE;
+  if (p->HasActive && x < p->Size[0] - 1)
+  {
+    __global const uchar* c = active + CellInChunk(x, y, z, p);
+    const long cellRow = row - 1;
+    const long cellPlane = cellRow * (p->Size[1] - 1);
+    const int here = c[0];
+    const int all = here & c[-cellRow] & c[-cellPlane] & c[-cellPlane - cellRow];
+    bits = IsWhole(all) * ALL_ACTIVE | IsWhole(here) * CELL_ACTIVE;
+  }
+  return bits | ((round & DEFORMVOLUME_VERTEX_SOURCE) != 0) * ALL_SOURCES |
+    ((cell & DEFORMVOLUME_VERTEX_SOURCE) != 0) * CELL_OF_SOURCES;
+}
+
+// The state of the vertices of a row of a cuboid that begins at first, into a place for that.
+static void MarkRow(__global const uchar* state, __global const uchar* active, int3 first, int endX, int y, int z,
+  __global uchar* marked, const KernelParameters* p)
+{
+  const int step = get_global_size(0);
+  const int begin = first.x + get_global_id(0);
+  // Vertices of the planes beyond the layers of this chunk serve only as neighbours.
+  if (z < p->LayersBegin || z > p->LayersEnd)
+  {
+    for (int x = begin; x < endX; x += step)
+    {
+      marked[PlaceInList(first, x, y, z)] = IsSource(state, x, y, z, p);
+    }
+    return;
+  }
+  int before = MarkColumn(state, active, begin - 1, y, z, p);
+  int here = MarkColumn(state, active, begin, y, z, p);
+  for (int x = begin; x < endX; x += step)
+  {
+    const int after = MarkColumn(state, active, x + 1, y, z, p);
+    int bits = IsSource(state, x, y, z, p);
+    if (bits)
+    {
+      if ((before & here & after & ALL_SOURCES) && (before & here & ALL_ACTIVE))
+      {
+        bits |= DEFORMVOLUME_VERTEX_REGULAR;
+        bits |= x > 0 && y > 0 && z > 0 && x < p->Size[0] - 1 && y < p->Size[1] - 1 && z < p->Size[2] - 1
+          ? DEFORMVOLUME_VERTEX_INTERIOR
+          : 0;
+      }
+      bits |= (here & after & CELL_OF_SOURCES) && x < p->Size[0] - 1 && z < p->LayersEnd && (here & CELL_ACTIVE)
+        ? DEFORMVOLUME_CELL_WHOLE
+        : 0;
+    }
+    marked[PlaceInList(first, x, y, z)] = bits;
+    before = step == 1 ? here : MarkColumn(state, active, x + step - 1, y, z, p);
+    here = step == 1 ? after : MarkColumn(state, active, x + step, y, z, p);
+  }
 }
 
 // Second pass: a vertex is interior when all vertices round it are sources and all tetrahedra of
 // the eight cells round it are active. Being wrong on the careful side costs time, not truth. A
-// cell is whole when its vertices are sources and its tetrahedra active.
-__kernel void MarkVertices(__global const uchar* sources, __global const uchar* active,
-  __global uchar* state, const KernelParameters p)
+// cell is whole when its vertices are sources and its tetrahedra active. Not into the states, where others
+// look for sources meanwhile.
+__kernel void MarkVertices(__global const uchar* state, __global const uchar* active,
+  __global uchar* marked, __global const uint* cuboids, const KernelParameters p)
 {
-  const int3 first = FirstVertex(&p);
-  const int y = first.y;
-  const int z = first.z;
-  const int step = get_global_size(0);
-  // Vertices of the planes beyond the layers of this chunk serve only as neighbours.
-  if (z < p.LayersBegin || z > p.LayersEnd)
+  const int3 first = FirstVertex(cuboids[get_global_id(1)], &p);
+  const int3 end = EndOfVertices(first, &p);
+  for (int z = first.z; z < end.z; ++z)
   {
-    for (int x = first.x; x < p.Size[0]; x += step)
+    for (int y = first.y; y < end.y; ++y)
     {
-      state[VertexInChunk(x, y, z, &p)] = sources[VertexInSlab(x, y, z, &p)];
+      MarkRow(state, active, first, end.x, y, z, marked, &p);
     }
-    return;
   }
-  int before = MarkColumn(sources, first.x - 1, y, z, &p);
-  int here = MarkColumn(sources, first.x, y, z, &p);
-  for (int x = first.x; x < p.Size[0]; x += step)
+}
+
+__kernel void StoreStates(__global const uchar* marked, __global uchar* state,
+  __global const uint* cuboids, const KernelParameters p)
+{
+  const int3 first = FirstVertex(cuboids[get_global_id(1)], &p);
+  const int3 end = EndOfVertices(first, &p);
+  for (int z = first.z; z < end.z; ++z)
   {
-    const int after = MarkColumn(sources, x + 1, y, z, &p);
-    int bits = sources[VertexInSlab(x, y, z, &p)];
-    if (bits)
+    for (int y = first.y; y < end.y; ++y)
     {
-      if ((before & here & after & 1) && IsActiveRound(active, x, y, z, &p))
+      for (int x = first.x + get_global_id(0); x < end.x; x += get_global_size(0))
       {
-        bits |= DEFORMVOLUME_VERTEX_REGULAR;
-        bits |= x > 0 && y > 0 && z > 0 && x < p.Size[0] - 1 && y < p.Size[1] - 1 && z < p.Size[2] - 1
-          ? DEFORMVOLUME_VERTEX_INTERIOR
-          : 0;
+        state[VertexInChunk(x, y, z, &p)] = marked[PlaceInList(first, x, y, z)];
       }
-      bits |= (here & after & 2) && x < p.Size[0] - 1 && z < p.LayersEnd &&
-          IsActive(active, x, y, z, &p)
-        ? DEFORMVOLUME_CELL_WHOLE
-        : 0;
     }
-    state[VertexInChunk(x, y, z, &p)] = bits;
-    before = step == 1 ? here : MarkColumn(sources, x + step - 1, y, z, &p);
-    here = step == 1 ? after : MarkColumn(sources, x + step, y, z, &p);
   }
 }

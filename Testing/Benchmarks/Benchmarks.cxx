@@ -26,6 +26,8 @@ int main(int argc, char* argv[])
   RegisterPreprocessing(size);
   RegisterGivenMeshes(size);
   RegisterIncremental(size);
+  RegisterLive(size);
+  RegisterEdits(size);
 
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv))

@@ -53,6 +53,8 @@ constexpr Limit TwoMeshes{ "512000 nodes: deformed and rest mesh, the former mod
 // Whole updates by their kernels.
 constexpr Limit Dense{ "a displacement at each voxel: update by mapping and resampling", 1.35 };
 constexpr Limit EditedAtSide{ "512000 nodes: edit on a side by all", 0.25 };
+// Whole updates.
+constexpr Limit Sampled{ "near identity: update with SamplingFactor 2 by 1", 0.2 };
 constexpr Limit BytesCoarse{ "2197 nodes: bytes of device memory per voxel", 6.0 };
 constexpr Limit BytesFine{ "512000 nodes: bytes of device memory per voxel", 20.0 };
 constexpr Limit Builds{ "static mappings built for moved meshes", 0.0 };
@@ -101,6 +103,8 @@ void CheckSpeedAndMemory()
 {
   const auto volume = MakeVolume(BenchmarkVolume);
   BenchmarkCase near(volume, CoarseNodes);
+  BenchmarkCase sampled(volume, CoarseNodes);
+  sampled.GetFilter()->SetSamplingFactor(2);
   BenchmarkCase general(volume, CoarseNodes);
   BenchmarkCase fine(volume, FineNodes);
   BenchmarkCase rotated(volume, CoarseNodes);
@@ -138,14 +142,15 @@ void CheckSpeedAndMemory()
 
   Ratios updateNear, updateGeneral, publishedNear, publishedGeneral, fineMesh, rotation, scaling,
     folding, slicing, editingInside, editingAtSide, numberingAlongZ, numberingAtRandom, sharing,
-    copying, withTwo, denseField;
+    copying, withTwo, denseField, sampling;
   const std::pair<const Limit&, Ratios&> measured[] = { { UpdateNear, updateNear },
     { UpdateGeneral, updateGeneral }, { PublishedNear, publishedNear },
     { PublishedGeneral, publishedGeneral }, { FineMesh, fineMesh },
     { NodesAlongZ, numberingAlongZ }, { NodesAtRandom, numberingAtRandom },
     { SharedArrays, sharing }, { EqualCopies, copying }, { TwoMeshes, withTwo },
-    { Dense, denseField }, { EditedInside, editingInside }, { EditedAtSide, editingAtSide },
-    { Rotated, rotation }, { Scaled, scaling }, { FoldedOver, folding }, { ThickSlices, slicing } };
+    { Dense, denseField }, { Sampled, sampling }, { EditedInside, editingInside },
+    { EditedAtSide, editingAtSide }, { Rotated, rotation }, { Scaled, scaling },
+    { FoldedOver, folding }, { ThickSlices, slicing } };
   const auto allMet = [&]()
   {
     return std::all_of(std::begin(measured), std::end(measured),
@@ -157,7 +162,7 @@ void CheckSpeedAndMemory()
   {
     builds = 0;
     uploads = 0;
-    for (BenchmarkCase* subject : { &near, &general, &fine, &rotated, &scaled, &folded,
+    for (BenchmarkCase* subject : { &near, &sampled, &general, &fine, &rotated, &scaled, &folded,
            &editedInside, &editedAtSide, &alongZ, &atRandom, &shared, &copied, &two, &dense })
     {
       builds += subject->GetFilter()->GetNumberOfMappingBuilds();
@@ -170,6 +175,7 @@ void CheckSpeedAndMemory()
   {
     const UpdateTimes nearTimes = update(near, Pose::NearIdentity);
     const double resliceNear = resliceLike(near);
+    const UpdateTimes sampledTimes = update(sampled, Pose::NearIdentity);
     const double publishedNearTime = update(published, Pose::NearIdentity).GetKernels();
     const UpdateTimes fineTimes = update(fine, Pose::NearIdentity);
     const double fineTime = fineTimes.GetKernels();
@@ -204,6 +210,7 @@ void CheckSpeedAndMemory()
     copying.Add(copiedTime / fineTimes.Update);
     withTwo.Add(twoTime / fineTimes.Update);
     denseField.Add(denseTimes.Update / denseTimes.GetKernels());
+    sampling.Add(sampledTimes.Update / nearTimes.Update);
     editingInside.Add(insideTime / fineTime);
     editingAtSide.Add(sideTime / fineTime);
     rotation.Add(rotatedTime / nearTimes.GetKernels());

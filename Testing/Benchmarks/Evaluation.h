@@ -55,6 +55,12 @@ void RegisterGivenMeshes(const EvaluationSize& size);
 /// Incremental/<whole or local>: a mesh that moves in one place only.
 void RegisterIncremental(const EvaluationSize& size);
 
+/// Live/<edit>: what moves, is split or switched off between two frames.
+void RegisterLive(const EvaluationSize& size);
+
+/// Edit/<edit>: cutting and carving.
+void RegisterEdits(const EvaluationSize& size);
+
 /// A resampler by its name in the results.
 struct NamedResampler
 {

@@ -55,6 +55,13 @@ def _resident_gigabytes(results):
     return None if resident is None else resident / 1e9
 
 
+def _host_part(results, name):
+    if results.median(name) is None:
+        return None
+    return results.median(name) - sum(
+        results.milliseconds(name, part) for part in ("kernels", "transfer"))
+
+
 def _preprocessing(results):
     return results.median("Preprocess/301x370x316/512000", "preprocessing")
 
@@ -96,6 +103,15 @@ DEMANDS = [
            lambda r: r.ratio("Incremental/local-edit-at-side", "Incremental/near", "kernels")),
     Demand("Update() after that one by a full one", 0.15,
            lambda r: r.ratio("Incremental/local-edit-at-side", "Incremental/near")),
+    Demand("Update() after 2,000 tetrahedra got 1,000 new nodes and masks changed in 2 x 30 x 30 "
+           "cells, both logged, by a full one, 512,000 nodes", 0.15,
+           lambda r: r.ratio("Live/split-and-masks-logged", "Live/all-move")),
+    Demand("Update() after 1 % of the nodes moved, logged, without kernels and transfers, 512,000 "
+           "nodes", 1.0, lambda r: _host_part(r, "Live/some-move-logged"), "ms"),
+    Demand("Update() after 1 % of the nodes moved, not logged, 20 of 285 bricks", 4.0,
+           lambda r: r.median("Live/some-move"), "ms"),
+    Demand("Update() by its mapping and resampling, 512,000 nodes that all move", 1.04,
+           lambda r: r.ratio_to_counter("Given/same-grid", "kernels")),
     Demand("mapping and resampling, 512,000 nodes numbered along z by along x", 1.1,
            lambda r: r.ratio("Given/along-z", "Given/same-grid", "kernels")),
     Demand("mapping and resampling, 512,000 nodes numbered at random by along x", 1.1,
@@ -107,8 +123,14 @@ DEMANDS = [
     Demand("Update() with a deformed mesh, modified, and one at rest, beyond that with one grid, "
            "512,000 nodes", 12.0, lambda r: r.difference("Given/two-meshes", "Given/same-grid"),
            "ms"),
-    Demand("Update() by its mapping and resampling, a displacement for each voxel", 1.35,
+    Demand("Update() by its mapping and resampling, a displacement for each voxel", 1.25,
            lambda r: r.ratio_to_counter("Given/dense-field", "kernels")),
+    Demand("a cut by a sheet of 200 triangles through 13.2 million voxels", 250.0,
+           lambda r: r.median("Edit/sheet"), "ms"),
+    Demand("a cut by a tool that touches 1 % of the bricks of 13.2 million voxels", 15.0,
+           lambda r: r.median("Edit/tool"), "ms"),
+    Demand("an update of a cut without anything new", 1.0,
+           lambda r: r.median("Edit/nothing"), "ms"),
     Demand("mapping and resampling of 13.2 million voxels, near identity", 1.0,
            lambda r: r.milliseconds("Deform/near/2197/exact", "kernels"), "ms", "gpu"),
 ]

@@ -9,6 +9,9 @@ PAPER_RESAMPLING = {"undeformed": 14.6, "rotated-45": 23.6, "scale-1.5": 51.2}  
 PAPER_RENDERING = {("700x700", "unshaded"): 7.4, ("700x700", "shaded"): 24.1,
                    ("1920x1080", "unshaded"): 40.3, ("1920x1080", "shaded"): 107.7}  # ms
 
+PAPER_CUT = 21.0  # ms, ChainMail
+PAPER_CARVING = 8.0
+
 POSES = {"near": "near identity", "general": "general pose"}
 # What they are called in tables and in plots.
 PEERS = {
@@ -227,6 +230,40 @@ def incremental(results, _folder, _kind):
         yield table(["what moves", "Update(), ms", "mapping + resampling, ms", "by all"], rows)
 
 
+def live(results, _folder, _kind):
+    rows = [[words, results.median(name), results.milliseconds(name, "kernels"),
+             results.ratio(name, "Live/all-move")]
+            for name, words in (
+                ("Live/all-move", "all nodes move"),
+                ("Live/some-move", "the nodes in a box of 1/100 of the volume move"),
+                ("Live/some-move-logged", "the same, logged"),
+                ("Live/nothing", "nothing, but that the mesh is marked as modified"),
+                ("Live/split", "2,000 tetrahedra get 1,000 new nodes"),
+                ("Live/split-logged", "the same, logged"),
+                ("Live/masks", "tetrahedra in 2 x 30 x 30 cells are switched off, others on"),
+                ("Live/masks-logged", "the same, logged"),
+                ("Live/split-and-masks", "both of these"),
+                ("Live/split-and-masks-logged", "both of these, logged"))
+            if name in results.runs]
+    if rows:
+        yield "## Live: what changes between two frames, 512,000 nodes, 189 x 305 x 229 voxels\n"
+        yield table(["what changes", "Update(), ms", "mapping + resampling, ms",
+                     "Update() by that where all move"], rows)
+
+
+def edits(results, _folder, _kind):
+    rows = [[words, results.median(name), paper]
+            for name, words, paper in (
+                ("Edit/sheet", "a cut by a sheet of 200 triangles through all of the volume", PAPER_CUT),
+                ("Edit/tool", "a cut by a step of a tool that touches 1 % of the bricks", None),
+                ("Edit/sphere", "a sphere of a radius of 20 voxels is carved out", PAPER_CARVING),
+                ("Edit/nothing", "nothing", None))
+            if name in results.runs]
+    if rows:
+        yield "## Cutting and carving, 189 x 305 x 229 voxels\n"
+        yield table(["edit", "Update(), ms", "published, at most, ms"], rows)
+
+
 def given(results, _folder, _kind):
     rows = [[words, results.median(name), results.milliseconds(name, "kernels"),
              results.difference(name, "Given/same-grid")]
@@ -266,5 +303,6 @@ def rendering(results, folder, kind):
     yield ""
 
 
-ALL = [device, comparison, poses, nodes, tetrahedra, voxels, preprocessing, memory, incremental, given,
+ALL = [device, comparison, poses, nodes, tetrahedra, voxels, preprocessing, memory, incremental, live,
+       edits, given,
        rendering]

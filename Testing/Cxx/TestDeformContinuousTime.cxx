@@ -145,6 +145,34 @@ void TestContinuousSource()
   VERIFY_EQUAL(GetExtent(finer.Filter->GetOutput()), GetExtent(volume));
 }
 
+// Within an extent that is kept nothing is cut off, and nothing is warned of.
+void TestKeptExtent()
+{
+  auto volume = MakeVolume();
+  vtkNew<TimedLattice> lattice;
+  lattice->Mesh = MakeMesh(volume);
+  lattice->Way = [](double time) {
+    return std::abs(time - 1.0) < 0.15 ? 5.0 : std::abs(time - 3.0) < 0.15 ? 10.0 : 0.0;
+  };
+  Deformed deformed;
+  deformed.Filter->SetInputData(volume);
+  deformed.Filter->SetDeformationConnection(lattice->GetOutputPort());
+  deformed.Filter->SetBoundsGranularity(16);
+  const auto check = [&](double time, int last)
+  {
+    deformed.Filter->UpdateTimeStep(time);
+    VERIFY(deformed.TakeWarning().empty());
+    VERIFY_EQUAL(GetExtent(deformed.Filter->GetOutput()), (Extent{ { 0, last, 0, 16, 0, 16 } }));
+    VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+  };
+  check(2.0, 16);
+  check(1.0, 16);
+  deformed.Filter->UpdateTimeStep(3.0);
+  VERIFY(deformed.TakeWarning().find("at time 3 leaves the extent") != std::string::npos);
+  check(3.0, 32);
+  check(0.0, 32);
+}
+
 // Steps, and a request between them that the source answers with something else.
 void TestTimesBetweenSteps()
 {
@@ -168,6 +196,7 @@ int TestDeformContinuousTime(int, char*[])
 {
   TestInterpolatedSeries();
   TestContinuousSource();
+  TestKeptExtent();
   TestTimesBetweenSteps();
   return GetExitCode();
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // 200 random edits with Incremental on, each compared bit by bit with a filter with Incremental
 // off: nodes that move, masks, extents, spacings, arrays, backgrounds, aborts, outputs that others
-// hold. Before that, what is read of displacements against filters that have read nothing before.
+// hold. What GetChangedExtent() leaves out is compared with the output before. Before that, what is
+// read of displacements against filters that have read nothing before.
 #include "DeviceNeeds.h"
 #include "FilterTesting.h"
 
@@ -22,6 +23,16 @@ namespace
 void AbortAtOnce(vtkObject* caller, unsigned long, void*, void*)
 {
   static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+}
+
+const Extent Nothing{ { 0, -1, 0, -1, 0, -1 } };
+
+Extent GetChangedExtent(const Deformed& deformed)
+{
+  Extent extent;
+  deformed.Filter->GetChangedExtent(extent.data());
+  VERIFY(std::equal(extent.begin(), extent.end(), deformed.Filter->GetChangedExtent()));
+  return extent;
 }
 
 class Edits
@@ -65,6 +76,7 @@ public:
     }
     std::cout << this->Parts << " of " << edits << " edits were made in part\n";
     VERIFY(this->Parts > edits / 5 || !HasVectors());
+    VERIFY(this->SmallChanges > edits / 10 || !HasVectors());
   }
 
 private:
@@ -186,6 +198,8 @@ private:
     this->Tested.Filter->RemoveObserver(observer);
     this->Tested.Filter->SetAbortExecute(0);
     VERIFY_EQUAL(this->Tested.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    VERIFY_EQUAL(GetChangedExtent(this->Tested), Nothing);
+    this->Shown = nullptr;
   }
 
   void Compare()
@@ -215,6 +229,7 @@ private:
     }
     vtkImageData* output = this->Tested.Update();
     VERIFY(AreEqual(output, this->Whole.Update()));
+    this->CheckChangedExtent(output);
     if (before->GetNumberOfPoints() > 0)
     {
       VERIFY(AreEqual(held, before));
@@ -232,12 +247,43 @@ private:
       : 0;
   }
 
+  // Whoever shows the output brings what changed up to date.
+  void CheckChangedExtent(vtkImageData* output)
+  {
+    const Extent changed = GetChangedExtent(this->Tested);
+    if (!this->Shown || GetExtent(this->Shown) != GetExtent(output) || changed == GetExtent(output))
+    {
+      VERIFY_EQUAL(changed, GetExtent(output));
+      this->Shown = vtkSmartPointer<vtkImageData>::New();
+      this->Shown->DeepCopy(output);
+      return;
+    }
+    for (int i = 0; i < this->Shown->GetPointData()->GetNumberOfArrays(); ++i)
+    {
+      vtkDataArray* from = output->GetPointData()->GetArray(i);
+      vtkDataArray* to = this->Shown->GetPointData()->GetArray(i);
+      for (int z = changed[4]; z <= changed[5]; ++z)
+      {
+        for (int y = changed[2]; y <= changed[3]; ++y)
+        {
+          int first[3] = { changed[0], y, z };
+          const vtkIdType begin = output->ComputePointId(first);
+          to->InsertTuples(begin, changed[1] - changed[0] + 1, begin, from);
+        }
+      }
+    }
+    VERIFY(AreEqual(this->Shown, output));
+    ++this->SmallChanges;
+  }
+
   std::mt19937 Random{ 5 };
   vtkSmartPointer<vtkImageData> Volume;
   vtkSmartPointer<vtkUnstructuredGrid> Mesh;
   Deformed Tested;
   Deformed Whole;
   int Parts = 0;
+  vtkSmartPointer<vtkImageData> Shown; // what was the output before
+  int SmallChanges = 0;
 };
 
 // What an array holds is found out again only where it changed: each time as by a filter that has
@@ -354,6 +400,59 @@ private:
   Deformed Tested;
 };
 
+// All of the output, nothing of it, and what lies round a node; nothing after an error.
+void TestChangedExtent()
+{
+  const auto volume = MakeVolume({ { -3, 130, 2, 90, 0, 80 } });
+  const auto mesh = MakeMesh(volume, 12, 3.0);
+  SetDisplacements(mesh, Shift(0.25, 0.0, 0.0));
+  Deformed deformed(volume, mesh);
+  VERIFY_EQUAL(GetChangedExtent(deformed), Nothing);
+  deformed.Filter->SetOutputBoundsModeToVolumeBounds();
+  const auto expect = [&](const Extent& expected)
+  {
+    deformed.Update();
+    VERIFY_EQUAL(GetChangedExtent(deformed), expected);
+  };
+  expect(GetExtent(volume));
+  expect(GetExtent(volume)); // nothing was executed
+  deformed.Filter->Modified();
+  expect(HasVectors() ? Nothing : GetExtent(volume));
+
+  vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+  const vtkIdType node = (6 * 12 + 6) * 12 + 6; // the lattice has 12 nodes on each axis
+  vectors->SetTuple3(node, 1.0, 0.5, 0.5);
+  vectors->Modified();
+  deformed.Update();
+  const Extent changed = GetChangedExtent(deformed);
+  const glm::dvec3 place = GetPoint(mesh, node);
+  const double step[3] = { 140.0 / 11.0, 94.0 / 11.0, 86.0 / 11.0 }; // between nodes
+  const int subBrick[3] = { 16, 8, 8 };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double middle = (&place.x)[axis];
+    // What moves is in it, and of the rest no more than parts of bricks that hold some of it.
+    VERIFY(changed[2 * axis] < middle && middle < changed[2 * axis + 1]);
+    VERIFY(changed[2 * axis] >= middle - step[axis] - subBrick[axis] - 1.0 || !HasVectors());
+    VERIFY(changed[2 * axis + 1] <= middle + step[axis] + subBrick[axis] + 2.0 || !HasVectors());
+  }
+
+  vectors->SetTuple3(node, std::nan(""), 0.0, 0.0);
+  vectors->Modified();
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeErrors(), 1);
+  VERIFY_EQUAL(GetChangedExtent(deformed), Nothing);
+  vectors->SetTuple3(node, 0.0, 0.0, 0.0);
+  vectors->Modified();
+  expect(GetExtent(volume));
+
+  deformed.Filter->SetResamplerToMeshRasterization();
+  expect(GetExtent(volume));
+  deformed.Filter->SetResamplerToExact();
+  deformed.Filter->SetPadding(2);
+  expect({ { -5, 132, 0, 92, -2, 82 } });
+}
+
 // What only some devices can do must not change what all others give.
 void TestProperty()
 {
@@ -371,6 +470,7 @@ void TestProperty()
 int TestDeformIncremental(int, char*[])
 {
   TestProperty();
+  TestChangedExtent();
   Readings().Run();
   Edits edits;
   edits.Run(200);

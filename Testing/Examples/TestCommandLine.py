@@ -33,7 +33,7 @@ def fails(code, expected, *arguments, environment=None):
 
 # Wrong usage.
 fails(2, "no VOLUME")
-fails(2, "exactly one of --mesh, --field, --tetgen and --lattice", path("in.vti"), "-o", path("o.vti"))
+fails(2, "exactly one of --mesh, --field, --tetgen, --lattice and --model", path("in.vti"), "-o", path("o.vti"))
 fails(2, "exactly one of", path("in.vti"), "--tetgen", *lattice, *push, "-o", path("o.vti"))
 fails(2, "at least one --push", path("in.vti"), *lattice, "-o", path("o.vti"))
 fails(2, "seven numbers", path("in.vti"), *lattice, "--push", "1,2,3", "-o", path("o.vti"))
@@ -125,6 +125,7 @@ assert not os.path.exists(path("o.png"))
 # What is asked for.
 output, _ = call(program, "--help")
 for option in ("--mesh", "--displacement", "--rest", "--tetgen", "--lattice", "--push", "--image",
+               "--cut", "--carve", "--model", "--pull",
                "--list-devices", "--device", "--categorical", "--background", "--resampler",
                "--interpolation",
                "world units", "Exit codes"):

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 using namespace deformvolume;
 
@@ -32,7 +33,8 @@ EditedVolume::EditedVolume(const Extent& extent, bool hasCorner)
   const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(this->Shape.VertexExtent));
   this->First = MakeRandomValues<std::uint16_t>(voxels, 1);
   this->Second = MakeRandomValues<double>(2 * voxels, 2);
-  this->Displacements.assign(3 * this->GetNumberOfNodes(), 0.0F);
+  this->Displacements.assign(
+    3 * static_cast<std::size_t>(this->Nodes[0]) * this->Nodes[1] * this->Nodes[2], 0.0F);
   this->Output = this->Shape.VertexExtent;
   this->MakeTetrahedra();
   this->MakeLinks(hasCorner);
@@ -40,7 +42,7 @@ EditedVolume::EditedVolume(const Extent& extent, bool hasCorner)
 
 std::size_t EditedVolume::GetNumberOfNodes() const
 {
-  return static_cast<std::size_t>(this->Nodes[0]) * this->Nodes[1] * this->Nodes[2];
+  return this->Displacements.size() / 3;
 }
 
 std::int32_t EditedVolume::GetNode(const std::array<int, 3>& place) const
@@ -238,6 +240,44 @@ void EditedVolume::MoveInside(std::mt19937& random, float amount)
     center[axis] = border + static_cast<int>(random() % (this->Nodes[axis] - 2 * border));
   }
   this->MoveRound(center, random, 0, amount);
+}
+
+std::vector<TetrahedronChange> EditedVolume::Split(std::mt19937& random, int reach)
+{
+  const int first = static_cast<int>(random() % this->Tetrahedra.size());
+  const int end = std::min(
+    first + 1 + static_cast<int>(random()) % reach, static_cast<int>(this->Tetrahedra.size()));
+  std::uniform_real_distribution<float> move(-0.2F, 0.2F); // so that hardly anything folds
+  std::map<std::int32_t, std::int32_t> twins;
+  std::vector<TetrahedronChange> changes;
+  for (int t = first; t < end; ++t)
+  {
+    TetrahedronChange change;
+    change.Number = t;
+    change.Before = change.After = this->Tetrahedra[t];
+    for (std::int32_t& node : change.After)
+    {
+      if (random() % 2)
+      {
+        const auto inserted =
+          twins.emplace(node, static_cast<std::int32_t>(this->GetNumberOfNodes()));
+        if (inserted.second)
+        {
+          for (int c = 0; c < 3; ++c)
+          {
+            this->Displacements.push_back(this->Displacements[3 * node + c] + move(random));
+          }
+        }
+        node = inserted.first->second;
+      }
+    }
+    this->Tetrahedra[t] = change.After;
+    if (change.After != change.Before)
+    {
+      changes.push_back(change);
+    }
+  }
+  return changes;
 }
 
 void EditedVolume::MoveRound(

@@ -6,10 +6,13 @@
 
 #include "DeformerCase.h"
 
+#include <gtest/gtest.h>
+
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <random>
+#include <string>
 #include <vector>
 
 /// A volume of several bricks, and a grid of nodes round it. Each cell of the grid is split into
@@ -36,6 +39,7 @@ struct EditedVolume
   explicit EditedVolume(
     const deformvolume::Extent& extent = { { -5, 140, 0, 50, 3, 40 } }, bool hasCorner = true);
 
+  /// Those of the grid, and copies of them.
   std::size_t GetNumberOfNodes() const;
   std::int32_t GetNode(const std::array<int, 3>& place) const;
   std::vector<deformvolume::VolumeArray> GetArrays() const;
@@ -53,6 +57,9 @@ struct EditedVolume
   /// Moves a node in the middle.
   void MoveInside(std::mt19937& random, float amount);
 
+  /// Gives tetrahedra near one new nodes in place of some of theirs, displaced otherwise.
+  std::vector<deformvolume::TetrahedronChange> Split(std::mt19937& random, int reach);
+
 private:
   void MakeTetrahedra();
   void MakeLinks(bool hasCorner);
@@ -60,6 +67,12 @@ private:
     std::int32_t& last);
   void MoveRound(const std::array<int, 3>& center, std::mt19937& random, int radius, float amount);
 };
+
+/// The name of a test's route.
+inline std::string GetRouteName(const testing::TestParamInfo<Route>& info)
+{
+  return info.param == Route::Mesh ? "Links" : info.param == Route::Runs ? "Runs" : "Field";
+}
 
 /// What becomes of an EditedVolume.
 struct EditedOutputs

@@ -185,6 +185,24 @@ extern "C" cl_int CL_API_CALL clEnqueueReadBuffer(cl_command_queue queue, cl_mem
   return clSetUserEventStatus(*done, error);
 }
 
+extern "C" cl_int CL_API_CALL clEnqueueReadBufferRect(cl_command_queue queue, cl_mem buffer,
+  cl_bool blocking, const std::size_t* origin, const std::size_t* hostOrigin,
+  const std::size_t* region, std::size_t row, std::size_t slice, std::size_t hostRow,
+  std::size_t hostSlice, void* memory, cl_uint number, const cl_event* events, cl_event* done)
+{
+  static auto* const real = Find<decltype(clEnqueueReadBufferRect)>("clEnqueueReadBufferRect");
+  const int error = FakeDriver::Get().ReadError;
+  if (!error || blocking || !done)
+  {
+    return real(queue, buffer, blocking, origin, hostOrigin, region, row, slice, hostRow, hostSlice,
+      memory, number, events, done);
+  }
+  cl_context context = nullptr;
+  clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof(context), &context, nullptr);
+  *done = clCreateUserEvent(context, nullptr);
+  return clSetUserEventStatus(*done, error);
+}
+
 extern "C" cl_int CL_API_CALL clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel,
   cl_uint dimensions, const std::size_t* offset, const std::size_t* global,
   const std::size_t* local, cl_uint number, const cl_event* events, cl_event* done)

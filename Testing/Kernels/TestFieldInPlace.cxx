@@ -105,6 +105,44 @@ TEST(FieldInPlace, EqualsACopy)
   }
 }
 
+// What has changed may be told in any order, and twice, of a field in place and of one that is
+// copied.
+TEST(FieldInPlace, ChangesInAnyOrder)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  const EditedVolume volume;
+  for (const bool isInPlace : { true, false })
+  {
+    SCOPED_TRACE(isInPlace ? "in place" : "copied");
+    Vectors vectors(volume, 0);
+    const DisplacementField field = isInPlace ? vectors.GetInPlace() : vectors.Field;
+    VolumeDeformer deformer;
+    deformer.SetDevice("");
+    deformer.SetVoxelGrid(volume.Shape);
+    deformer.SetArrays(volume.GetArrays());
+    volume.SendMasks(deformer);
+    deformer.SetDisplacementField(field);
+    EditedOutputs found(volume);
+    const DeformRequest request = found.MakeRequest(volume);
+    deformer.Deform(request);
+    const std::size_t points = vectors.Values->size() / 3;
+    const PointRanges changes{ { { points - 700, points - 300 } },
+      { { points / 2, points / 2 + 90 } }, { { 40, 900 } }, { { 60, 70 } } };
+    for (const auto& range : changes)
+    {
+      for (std::size_t i = range[0]; i < range[1]; ++i)
+      {
+        (*vectors.Values)[3 * i] += 0.75F;
+      }
+    }
+    deformer.SetDisplacementField(field, &changes);
+    const std::int64_t covered = deformer.Deform(request).NumberOfCoveredVoxels;
+    EditedOutputs expected(volume);
+    EXPECT_EQ(Deform(volume, vectors.Field, request.Method, expected), covered);
+    EXPECT_TRUE(found == expected);
+  }
+}
+
 // The matrix counts where fields are copied, too.
 TEST(FieldInPlace, MatrixIsThatOfScaledVectors)
 {

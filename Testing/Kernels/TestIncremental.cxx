@@ -98,6 +98,32 @@ void Change(EditedVolume& volume, Edit edit, std::mt19937& random)
   }
 }
 
+// Whether two outputs are the same outside an extent.
+bool AreSameOutside(const EditedOutputs& first, const EditedOutputs& second, const Extent& output,
+  const Extent& extent)
+{
+  std::size_t i = 0;
+  for (int z = output[4]; z <= output[5]; ++z)
+  {
+    for (int y = output[2]; y <= output[3]; ++y)
+    {
+      for (int x = output[0]; x <= output[1]; ++x, ++i)
+      {
+        const bool isInside = x >= extent[0] && x <= extent[1] && y >= extent[2] &&
+          y <= extent[3] && z >= extent[4] && z <= extent[5];
+        const bool isSame = first.First[i] == second.First[i] &&
+          std::memcmp(&first.Second[2 * i], &second.Second[2 * i], 2 * sizeof(double)) == 0 &&
+          first.Coverage[i] == second.Coverage[i];
+        if (!isInside && !isSame)
+        {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
 class Incremental : public testing::TestWithParam<Route>
 {
 };
@@ -182,8 +208,17 @@ TEST_P(Incremental, EqualsWholeUpdates)
       last = std::move(next);
     }
     ASSERT_TRUE(*last == expected);
-    hasLast = true;
     EXPECT_EQ(wanted.NumberOfResampledBricks, wanted.NumberOfBricks);
+    EXPECT_EQ(wanted.ChangedExtent, volume.Output);
+    if (!hasLast || edit == Edit::Extent || edit == Edit::Abort)
+    {
+      EXPECT_EQ(report.ChangedExtent, volume.Output);
+    }
+    else
+    {
+      EXPECT_TRUE(AreSameOutside(before, *last, volume.Output, report.ChangedExtent));
+    }
+    hasLast = true;
     if (report.NumberOfResampledBricks < report.NumberOfBricks)
     {
       ++parts;
@@ -360,6 +395,15 @@ TEST_P(Incremental, LocalEditsRunFewBricks)
   }
   EXPECT_GE(second.NumberOfResampledBricks, 1);
   EXPECT_LE(second.NumberOfResampledBricks, 1 * 2 * 2);
+  // It lies at (91, 48, 43), and moves what is less than 8 voxels away; parts of bricks are a few
+  // voxels more.
+  const Extent near{ { 91 - 8 - 16, 91 + 8 + 16, 48 - 8 - 8, 48 + 8 + 8, 43 - 8 - 8, 43 + 8 + 8 } };
+  for (int end = 0; end < 6; ++end)
+  {
+    const int beyond = second.ChangedExtent[end] - near[end];
+    EXPECT_GE(end % 2 ? -beyond : beyond, 0) << end;
+  }
+  EXPECT_GE(GetNumberOfPoints(second.ChangedExtent), 8 * 8 * 8);
   EXPECT_EQ(second.NumberOfCoveredVoxels, first.NumberOfCoveredVoxels);
   // One on the border of the mesh changes what is covered: neighbours may own what it leaves.
   volume.Displacements[3 * volume.GetNode({ { 12, 6, 0 } }) + 2] = 1.5F;
@@ -369,11 +413,14 @@ TEST_P(Incremental, LocalEditsRunFewBricks)
   EXPECT_LT(third.NumberOfCoveredVoxels, first.NumberOfCoveredVoxels);
   // Nothing changed.
   volume.SendDisplacements(deformer, GetParam());
-  EXPECT_EQ(deformer.Deform(request).NumberOfResampledBricks, 0);
+  const DeformReport same = deformer.Deform(request);
+  EXPECT_EQ(same.NumberOfResampledBricks, 0);
+  EXPECT_EQ(GetNumberOfPoints(same.ChangedExtent), 0);
   // Without being told where the last output is, all is made.
   request.LastOutputs.clear();
   const DeformReport last = deformer.Deform(request);
   EXPECT_EQ(last.NumberOfResampledBricks, last.NumberOfBricks);
+  EXPECT_EQ(last.ChangedExtent, request.OutputExtent);
 }
 
 namespace
@@ -473,16 +520,6 @@ TEST_F(IncrementalMasks, AMaskChangesBesideAPart)
   }
   EXPECT_TRUE(this->Parts == changes || this->Parts == 0) << this->Parts << " of " << changes;
 }
-
-namespace
-{
-
-std::string GetRouteName(const testing::TestParamInfo<Route>& info)
-{
-  return info.param == Route::Mesh ? "Links" : info.param == Route::Runs ? "Runs" : "Field";
-}
-
-} // namespace
 
 INSTANTIATE_TEST_SUITE_P(
   Routes, Incremental, testing::Values(Route::Mesh, Route::Runs, Route::Field), GetRouteName);

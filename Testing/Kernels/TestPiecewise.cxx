@@ -112,6 +112,30 @@ TEST(Piecewise, CoarseRandomField)
     }));
 }
 
+// Where nothing moves along an axis, or all by whole voxels, all samples lie in sides of cells.
+TEST(Piecewise, MovedAlongSomeAxes)
+{
+  const glm::dmat3 identity(1.0);
+  const glm::dmat3 turned(glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, -1));
+  const glm::dmat3 swapped(glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0));
+  int run = 0;
+  for (const glm::dmat3& pose : { identity, turned, swapped })
+  {
+    for (int axes = 1; axes < 7; ++axes) // those that move, as bits
+    {
+      SCOPED_TRACE(axes);
+      const glm::dvec3 moving(axes & 1, axes >> 1 & 1, axes >> 2 & 1);
+      const auto jitter = MakeJitter(++run, 0.17);
+      const auto move = [&](const glm::dvec3& index)
+      {
+        const glm::dvec3 still = index + glm::dvec3(3, -2, 5);
+        return pose * (still + moving * (jitter(index) - index));
+      };
+      Check(MakeCase({ { -4, 47, 0, 9, 3, 11 } }, NoScale, move));
+    }
+  }
+}
+
 // Poses that put faces, edges and vertices of many tetrahedra exactly on samples.
 TEST(Piecewise, PosesFullOfTies)
 {

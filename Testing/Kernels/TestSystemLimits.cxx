@@ -2,7 +2,6 @@
 // What a process may take of its machine: memory and processors under the limits of control groups,
 // as systems and containers set them, and threads whose work fails.
 #include "ControlGroups.h"
-#include "HostThreads.h"
 #include "ParallelFor.h"
 #include "Processors.h"
 #include "SystemMemory.h"
@@ -11,6 +10,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -153,31 +154,31 @@ TEST_F(SystemLimits, LegacyGroups)
 
 TEST_F(SystemLimits, Processors)
 {
-  const int all = GetNumberOfProcessors(this->Root);
+  const int all = GetProcessorShare(1, this->Root);
   EXPECT_GE(all, 1);
   this->MountUnified();
   this->Write("/proc/self/cgroup", "0::/app\n");
   this->Write("/sys/fs/cgroup/app/cpu.max", "max 100000\n");
-  EXPECT_EQ(GetNumberOfProcessors(this->Root), all);
+  EXPECT_EQ(GetProcessorShare(1, this->Root), all);
   this->Write("/sys/fs/cgroup/app/cpu.max", "150000 100000\n");
-  EXPECT_EQ(GetNumberOfProcessors(this->Root), std::min(all, 2));
+  EXPECT_EQ(GetProcessorShare(1, this->Root), std::min(all, 2));
   this->Write("/sys/fs/cgroup/app/cpu.max", "20000 100000\n");
-  EXPECT_EQ(GetNumberOfProcessors(this->Root), 1);
+  EXPECT_EQ(GetProcessorShare(1, this->Root), 1);
 
   this->MountLegacy("/");
   this->Write("/proc/self/cgroup", "5:cpu,cpuacct:/\n");
   this->Write("/sys/fs/cgroup/cpu,cpuacct/cpu.cfs_period_us", "100000\n");
   this->Write("/sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "-1\n");
-  EXPECT_EQ(GetNumberOfProcessors(this->Root), all);
+  EXPECT_EQ(GetProcessorShare(1, this->Root), all);
   this->Write("/sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "100000\n");
-  EXPECT_EQ(GetNumberOfProcessors(this->Root), 1);
+  EXPECT_EQ(GetProcessorShare(1, this->Root), 1);
 }
 
 TEST_F(SystemLimits, BoundProcess)
 {
   cpu_set_t all;
   ASSERT_EQ(sched_getaffinity(0, sizeof(all), &all), 0);
-  EXPECT_EQ(GetNumberOfProcessors(this->Root), CPU_COUNT(&all));
+  EXPECT_EQ(GetProcessorShare(1, this->Root), CPU_COUNT(&all));
   int first = 0;
   while (!CPU_ISSET(first, &all))
   {
@@ -187,14 +188,14 @@ TEST_F(SystemLimits, BoundProcess)
   CPU_ZERO(&one);
   CPU_SET(first, &one);
   ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);
-  EXPECT_EQ(GetNumberOfProcessors(this->Root), 1);
+  EXPECT_EQ(GetProcessorShare(1, this->Root), 1);
   EXPECT_EQ(sched_setaffinity(0, sizeof(all), &all), 0);
 }
 
 // Ranks of one machine share it.
 TEST_F(SystemLimits, Share)
 {
-  const int all = GetNumberOfProcessors("");
+  const int all = GetProcessorShare(1, "");
   EXPECT_EQ(GetProcessorShare(), all);
   SetProcessesHere(2);
   EXPECT_EQ(GetProcessorShare(), GetProcessorShare(2, ""));
@@ -207,23 +208,32 @@ TEST_F(SystemLimits, Share)
   EXPECT_EQ(GetProcessorShare(), all);
 }
 
-// What is thrown in a thread reaches the caller, once, and the rest is left out.
-TEST(HostThreads, Exceptions)
+// What is thrown in a thread reaches the caller, once, and the rest is left out. Later parts take a
+// millisecond each: the thread that throws may be kept from its processor for a while, and the
+// others must not have done everything by then.
+TEST(ParallelFor, Exceptions)
 {
-  for (const std::size_t threads : { std::size_t(1), std::size_t(4) })
+  constexpr std::int64_t quickParts = 1000;
+  for (const int threads : { 1, 4 })
   {
     std::atomic<int> calls{ 0 };
     const auto run = [&]
     {
-      RunOnThreads(100000, threads,
-        [&](std::size_t part)
+      RunOnOwnThreads(
+        0, 100000, 1,
+        [&](std::int64_t begin, std::int64_t)
         {
           ++calls;
-          if (part == 7)
+          if (begin == 7)
           {
             throw std::bad_alloc();
           }
-        });
+          if (begin >= quickParts)
+          {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+          }
+        },
+        threads);
     };
     EXPECT_THROW(run(), std::bad_alloc);
     EXPECT_GE(calls.load(), 8);

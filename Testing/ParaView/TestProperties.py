@@ -99,6 +99,8 @@ def check_defaults(volume):
     check(filter_.ResamplerInUse == "Exact", f"{filter_.ResamplerInUse}")
     check(filter_.InvertedTetrahedra == 0.0, f"{filter_.InvertedTetrahedra}")
     check(filter_.CoveredVoxels > 1000.0, f"{filter_.CoveredVoxels}")
+    extent = filter_.GetDataInformation().GetExtent()
+    check(list(filter_.ChangedExtent) == list(extent), f"{list(filter_.ChangedExtent)} changed")
     check(filter_.ResamplingTime > 0.0 and filter_.DeviceMemory > 0.0, "No time or no memory")
     check(filter_.CompilationTime >= 0.0, f"{filter_.CompilationTime}")
     filter_.ReleaseDeviceMemory()

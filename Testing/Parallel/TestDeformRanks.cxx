@@ -322,6 +322,37 @@ void TestSmallAndMoving(const Case& from)
   VERIFY(moving.Filter->GetNumberOfVolumeUploads() <= 2);
 }
 
+/// All ranks keep the same extent.
+void TestKeptExtent(const Case& from)
+{
+  Case kept = from;
+  kept.Set = [&](vtkDeformVolumeFilter* filter)
+  {
+    from.Set(filter);
+    filter->SetBoundsGranularity(8);
+  };
+  Parallel moving(kept);
+  Deformed whole(kept.Volume, kept.Deformation);
+  kept.Set(whole.Filter);
+  for (const double amount : { 0.4, 1.2, 0.4, 0.7 })
+  {
+    auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    mesh->ShallowCopy(from.Deformation);
+    SetDisplacements(mesh, Bend(from.Volume, amount));
+    moving.Filter->SetDeformationData(Distribute(mesh, Spread::Pieces));
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    if (GetRank() == 0)
+    {
+      vtkMultiProcessController::SetGlobalController(nullptr);
+      whole.Filter->SetDeformationData(mesh);
+      image->ShallowCopy(whole.Update());
+      vtkMultiProcessController::SetGlobalController(Controller);
+    }
+    Controller->Broadcast(image, 0);
+    Check(moving, image, "Kept extent");
+  }
+}
+
 void TestAll()
 {
   for (const Case& from : MakeCases())
@@ -338,6 +369,7 @@ void TestAll()
       TestSpread(from, whole);
       TestErrors(from, whole);
       TestSmallAndMoving(from);
+      TestKeptExtent(from);
     }
   }
 }

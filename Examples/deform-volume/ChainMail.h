@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeChainMail_h
+#define DeformVolumeChainMail_h
+
+#include <array>
+
+class Messages;
+class vtkImageData;
+struct Deformation;
+struct Options;
+struct Volume;
+
+/// Takes the voxels within Radius of a point, or the nearest one, and moves them. World units.
+struct Pull
+{
+  std::array<double, 3> Point{ { 0.0, 0.0, 0.0 } };
+  std::array<double, 3> Displacement{ { 0.0, 0.0, 0.0 } };
+  double Radius = 0.0;
+};
+
+/// The displacement field of the pulls of the options: voxels follow their neighbours, by
+/// ChainMail.
+void PullByChainMail(
+  const Options& options, const Volume& volume, Messages& messages, Deformation& deformation);
+
+#endif

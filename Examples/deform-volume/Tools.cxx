@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Tools.h"
+
+#include "Failure.h"
+#include "Messages.h"
+#include "Options.h"
+#include "ProgressBar.h"
+#include "Volume.h"
+
+#include <vtkCarveVolume.h>
+#include <vtkCutVolume.h>
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+#include <vtkSphere.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtksys/SystemTools.hxx>
+
+#include <sstream>
+
+namespace
+{
+vtkSmartPointer<vtkPolyData> ReadSheet(
+  const std::string& path, const Options& options, Messages& messages)
+{
+  if (!vtksys::SystemTools::FileExists(path, true))
+  {
+    throw Failure("cannot read " + path + ": there is no such file");
+  }
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(path.c_str());
+  const ProgressBar bar(reader, "reading sheet", !options.Quiet);
+  reader->Update();
+  messages.Check("cannot read " + path);
+  return reader->GetOutput();
+}
+
+std::string Describe(const std::string& tool, vtkIdType switchedOff)
+{
+  std::ostringstream text;
+  text << tool << ": " << switchedOff << " tetrahedra of the volume are off";
+  return text.str();
+}
+}
+
+std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Messages& messages)
+{
+  std::vector<std::string> done;
+  for (const std::string& path : options.Cuts)
+  {
+    vtkNew<vtkCutVolume> cut;
+    cut->SetInputData(volume.Image);
+    cut->SetSheetData(ReadSheet(path, options, messages));
+    const ProgressBar bar(cut, "cutting", !options.Quiet);
+    cut->Update();
+    messages.Check("cannot cut the volume with " + path);
+    volume.Image = cut->GetOutput();
+    const vtkIdType off = cut->GetNumberOfSwitchedOffTetrahedra();
+    if (off == 0)
+    {
+      messages.DisplayWarningText(
+        ("The sheet " + path + " crosses nothing of the volume. Is it in the world of the volume?")
+          .c_str());
+    }
+    done.push_back(Describe(path, off));
+  }
+  for (const Carving& carving : options.Carvings)
+  {
+    vtkNew<vtkSphere> sphere;
+    sphere->SetCenter(carving.Center[0], carving.Center[1], carving.Center[2]);
+    sphere->SetRadius(carving.Radius);
+    vtkNew<vtkCarveVolume> carve;
+    carve->SetInputData(volume.Image);
+    carve->SetImplicitFunction(sphere);
+    const ProgressBar bar(carve, "carving", !options.Quiet);
+    carve->Update();
+    messages.Check("cannot carve the volume");
+    volume.Image = carve->GetOutput();
+    const vtkIdType off = carve->GetNumberOfSwitchedOffTetrahedra();
+    if (off == 0)
+    {
+      messages.DisplayWarningText("A sphere of --carve holds nothing of the volume. Are the "
+                                  "coordinates those of the file?");
+    }
+    done.push_back(Describe("sphere", off));
+  }
+  return done;
+}

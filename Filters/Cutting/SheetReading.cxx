@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SheetReading.h"
+
+#include "Error.h"
+#include "IndexBounds.h"
+
+#include "vtkCellArray.h"
+#include "vtkNew.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkTriangleFilter.h"
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+namespace deformvolume
+{
+namespace
+{
+
+template <typename Function>
+void ForEachCell(vtkCellArray* cells, Function&& function)
+{
+  vtkIdType size = 0;
+  const vtkIdType* ids = nullptr;
+  for (cells->InitTraversal(); cells->GetNextCell(size, ids);)
+  {
+    function(size, ids);
+  }
+}
+
+void CheckPoints(vtkPolyData* data, const std::string& name)
+{
+  const vtkIdType points = data->GetNumberOfPoints();
+  for (vtkCellArray* cells : { data->GetPolys(), data->GetStrips(), data->GetLines() })
+  {
+    ForEachCell(cells,
+      [&](vtkIdType size, const vtkIdType* ids)
+      {
+        for (vtkIdType i = 0; i < size; ++i)
+        {
+          if (ids[i] < 0 || ids[i] >= points)
+          {
+            throw Error("A cell of the " + name + " has point " + std::to_string(ids[i]) +
+              ", but there are " + std::to_string(points) + " points. Correct the cell.");
+          }
+        }
+      });
+  }
+}
+
+bool HasTrianglesOnly(vtkPolyData* data)
+{
+  bool all = data->GetNumberOfStrips() == 0;
+  ForEachCell(data->GetPolys(), [&](vtkIdType size, const vtkIdType*) { all = all && size == 3; });
+  return all;
+}
+
+void AddLines(vtkPolyData* data, const glm::dvec3& sweepVector, WorldSheet& sheet)
+{
+  // Each point once more, so that neighbouring segments share what they sweep.
+  const std::size_t count = sheet.Points.size();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    sheet.Points.push_back(sheet.Points[i] + sweepVector);
+  }
+  const auto moved = static_cast<std::int64_t>(count);
+  ForEachCell(data->GetLines(),
+    [&](vtkIdType size, const vtkIdType* ids)
+    {
+      for (vtkIdType i = 1; i < size; ++i)
+      {
+        const std::int64_t a = ids[i - 1];
+        const std::int64_t b = ids[i];
+        sheet.Triangles.push_back({ { a, b, b + moved } });
+        sheet.Triangles.push_back({ { a, b + moved, a + moved } });
+      }
+    });
+}
+
+} // namespace
+
+void WorldSheet::AddSweep(
+  const glm::dvec3& fromA, const glm::dvec3& fromB, const glm::dvec3& toA, const glm::dvec3& toB)
+{
+  const auto first = static_cast<std::int64_t>(this->Points.size());
+  this->Points.insert(this->Points.end(), { fromA, fromB, toA, toB });
+  this->Triangles.push_back({ { first, first + 1, first + 3 } });
+  this->Triangles.push_back({ { first, first + 3, first + 2 } });
+}
+
+Sheet WorldSheet::GetSheet(const ImageGeometry& volume) const
+{
+  const glm::dmat4 toIndex = volume.GetWorldToIndex();
+  std::vector<glm::dvec3> indices;
+  indices.reserve(this->Points.size());
+  for (const glm::dvec3& point : this->Points)
+  {
+    indices.emplace_back(toIndex * glm::dvec4(point, 1.0));
+  }
+  return Sheet(indices, this->Triangles);
+}
+
+WorldSheet ReadSheet(vtkPolyData* data, const glm::dvec3& sweepVector, const std::string& name)
+{
+  WorldSheet sheet;
+  if (!IsFinite(sweepVector))
+  {
+    throw Error("SweepVector is not finite. Set a finite one.");
+  }
+  if (!data)
+  {
+    return sheet;
+  }
+  CheckPoints(data, name);
+  vtkSmartPointer<vtkPolyData> triangles = data;
+  if (!HasTrianglesOnly(data))
+  {
+    vtkNew<vtkPolyData> faces;
+    faces->SetPoints(data->GetPoints());
+    faces->SetPolys(data->GetPolys());
+    faces->SetStrips(data->GetStrips());
+    vtkNew<vtkTriangleFilter> triangulation;
+    triangulation->SetInputData(faces);
+    triangulation->Update();
+    triangles = triangulation->GetOutput();
+  }
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  {
+    glm::dvec3 point;
+    data->GetPoint(i, &point.x);
+    sheet.Points.push_back(point);
+  }
+  ForEachCell(triangles->GetPolys(),
+    [&](vtkIdType, const vtkIdType* ids) {
+      sheet.Triangles.push_back({ { ids[0], ids[1], ids[2] } });
+    });
+  if (data->GetNumberOfLines() == 0)
+  {
+    return sheet;
+  }
+  if (sweepVector != glm::dvec3(0.0))
+  {
+    AddLines(data, sweepVector, sheet);
+  }
+  else if (sheet.IsEmpty())
+  {
+    throw Error("The " + name +
+      " has lines and no triangles. Set SweepVector to the direction and "
+      "the distance in which the lines are to cut.");
+  }
+  return sheet;
+}
+
+} // namespace deformvolume

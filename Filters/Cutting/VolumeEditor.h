@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeVolumeEditor_h
+#define DeformVolumeVolumeEditor_h
+
+#include "CellBricks.h"
+#include "Deformation.h"
+#include "ImageGeometry.h"
+#include "MappingCache.h"
+#include "MaskEditor.h"
+#include "TetrahedronSet.h"
+#include "VertexPositions.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+class vtkImageData;
+class vtkInformation;
+class vtkUnsignedCharArray;
+
+namespace deformvolume
+{
+
+/// What the filters that edit the active tetrahedra of a volume have in common: the edits, where
+/// the vertices of the volume are, and the array of the output.
+class VolumeEditor
+{
+public:
+  /// Takes a volume with its own active tetrahedra, from which the edits are taken away. info: what
+  /// announces the volume that it may be a part of. Returns whether its voxels lie elsewhere than
+  /// before: then there are no edits any more. Throws Error, and leaves all as it was, where there
+  /// is no volume, or it cannot be used.
+  bool SetVolume(vtkImageData* volume, vtkInformation* info);
+  const ImageGeometry& GetGeometry() const { return this->Geometry; }
+  const CellBricks& GetBricks() const { return this->Mask->GetBricks(); }
+
+  /// Where the vertices of the volume are: at rest, or with a Shape where the deformation has moved
+  /// them. The source's volume is set here. Throws Error; ports have the numbers that they have in
+  /// the filters here, the deformation 2 and the rest configuration 3.
+  const VertexPositions& GetPositions(DeformationSource source, bool extrapolate);
+
+  /// Makes an edit in the place of another one, of which the number is known; 0: of none. keep: the
+  /// other one stays, too.
+  void Put(std::uint64_t& edit, TetrahedronSet&& set, bool keep);
+  /// Removes an edit.
+  void Drop(std::uint64_t& edit);
+
+  ///@{
+  /// False where there is nothing to be undone or redone.
+  bool Undo() { return this->Mask && this->Mask->Undo(); }
+  bool Redo() { return this->Mask && this->Mask->Redo(); }
+  ///@}
+  /// False where there were no edits.
+  bool Reset();
+
+  vtkIdType GetNumberOfSwitchedOffTetrahedra() const
+  {
+    return this->Mask ? static_cast<vtkIdType>(this->Mask->GetNumberOfSwitchedOffTetrahedra()) : 0;
+  }
+
+  /// Makes an output the volume with its arrays, and the active tetrahedra that are left.
+  void Write(vtkImageData* volume, vtkImageData* output);
+
+private:
+  void WriteChanges(unsigned char* bytes);
+
+  std::unique_ptr<MaskEditor> Mask; // null before there is a volume
+  ImageGeometry Geometry;
+  Extent Whole{ { 0, -1, 0, -1, 0, -1 } };
+  Stamp BaseStamp;
+  vtkSmartPointer<vtkUnsignedCharArray> Active; // that of the output
+
+  std::unique_ptr<RestPositions> Rest;
+  deformvolume::Deformation Deformation;
+  MappingCache Mapping;
+  std::unique_ptr<VertexPositions> Deformed;
+  // Of the deformation and the mapping that those are of, and whether it extrapolates.
+  std::array<std::uint64_t, 4> DeformedVersion{};
+};
+
+} // namespace deformvolume
+
+#endif

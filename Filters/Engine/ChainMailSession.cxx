@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ChainMailSession.h"
+
+#include "VectorArray.h"
+#include "VolumeArrays.h"
+
+#include "vtkArrayChanges.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+
+#include <glm/glm.hpp>
+
+#include <algorithm>
+#include <new>
+#include <optional>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+const char* const PINNED = "Pinned";
+const char* const REST = "RestPosition";
+
+Stamp GetStampOf(vtkDataArray* array)
+{
+  return { { array, array ? array->GetMTime() : 0 } };
+}
+
+void CheckShape(
+  vtkAbstractArray* array, int components, vtkIdType tuples, const char* what, const char* owner)
+{
+  if (!vtkDataArray::SafeDownCast(array) || array->GetNumberOfComponents() != components ||
+    array->GetNumberOfTuples() != tuples)
+  {
+    throw Error(std::string("The point array \"") + what + "\" of " + owner + " is " +
+      array->GetDataTypeAsString() + ", " + std::to_string(array->GetNumberOfTuples()) +
+      " tuples of " + std::to_string(array->GetNumberOfComponents()) +
+      " components. Give it a numeric type, " + std::to_string(components) +
+      (components == 1 ? " component" : " components") + " and " + std::to_string(tuples) +
+      " tuples.");
+  }
+}
+
+// Null where there is none of the name.
+vtkDataArray* FindVolumeArray(vtkImageData* volume, const char* name)
+{
+  vtkAbstractArray* array = volume->GetPointData()->GetAbstractArray(name);
+  if (array)
+  {
+    CheckShape(array, 1, volume->GetNumberOfPoints(), name, "the volume");
+  }
+  return vtkDataArray::SafeDownCast(array);
+}
+
+// Null where all voxels have the default material.
+vtkDataArray* FindMaterialArray(vtkImageData* volume, const ChainMailSettings& settings)
+{
+  if (!settings.ArrayName.empty())
+  {
+    vtkDataArray* array = FindVolumeArray(volume, settings.ArrayName.c_str());
+    if (!array)
+    {
+      throw Error("The volume has no point array \"" + settings.ArrayName +
+        "\", which MaterialArrayName names. Add the array, or set another name.");
+    }
+    return array;
+  }
+  vtkDataArray* scalars = settings.Ranges.empty() ? nullptr : volume->GetPointData()->GetScalars();
+  if (!settings.Ranges.empty() && !scalars)
+  {
+    throw Error("There are ranges of materials, but the volume has no active scalars. Set "
+                "MaterialArrayName, or remove the ranges.");
+  }
+  if (scalars)
+  {
+    CheckShape(scalars, 1, volume->GetNumberOfPoints(),
+      scalars->GetName() ? scalars->GetName() : "", "the volume");
+  }
+  return scalars;
+}
+
+void CheckMaterial(const ChainMailSettings& settings, int index, const char* who)
+{
+  if (!settings.Exists[static_cast<std::size_t>(index)])
+  {
+    throw Error(std::string(who) + " is the material " + std::to_string(index) +
+      ", which there is not. Set it with SetMaterial().");
+  }
+}
+
+std::vector<glm::dvec3> ReadPlaces(vtkDataArray* array, const char* kind)
+{
+  std::vector<glm::dvec3> places(static_cast<std::size_t>(array->GetNumberOfTuples()));
+  const auto taker = [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType number)
+  { std::copy_n(vectors, number, places.begin() + first); };
+  ReadVectors(array, taker, kind, "handles on input port 1");
+  return places;
+}
+
+std::vector<ChainMailHandle> ReadHandles(
+  vtkPointSet* handles, const ImageGeometry& geometry, double radius)
+{
+  std::vector<ChainMailHandle> read;
+  const vtkIdType count = handles ? handles->GetNumberOfPoints() : 0;
+  if (count == 0)
+  {
+    return read;
+  }
+  vtkAbstractArray* rest = handles->GetPointData()->GetAbstractArray(REST);
+  if (!rest)
+  {
+    throw Error(
+      "The handles on input port 1 have no point array \"RestPosition\". Add one of three "
+      "components: the place in the volume at rest that each handle holds.");
+  }
+  CheckShape(rest, 3, count, REST, "the handles on input port 1");
+  const glm::dmat4 toIndex = geometry.GetWorldToIndex();
+  read.resize(static_cast<std::size_t>(count));
+  const std::vector<glm::dvec3> places =
+    ReadPlaces(vtkDataArray::SafeDownCast(rest), "Rest position");
+  const std::vector<glm::dvec3> points = ReadPlaces(handles->GetPoints()->GetData(), "Point");
+  for (std::size_t i = 0; i < read.size(); ++i)
+  {
+    const glm::dvec3 index(toIndex * glm::dvec4(places[i], 1.0));
+    const glm::dvec3 displacement = glm::dmat3(toIndex) * (points[i] - places[i]);
+    read[i].Radius = radius;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      read[i].RestPosition[static_cast<std::size_t>(axis)] = index[axis];
+      read[i].Displacement[static_cast<std::size_t>(axis)] = displacement[axis];
+    }
+  }
+  return read;
+}
+
+} // namespace
+
+void ChainMailSettings::SetDefaultMaterials()
+{
+  const ChainMailMaterial defaults[] = { { 0.1, 2.0, 1.0 }, { 0.5, 1.5, 0.5 }, { 0.8, 1.2, 0.2 },
+    { 0.95, 1.05, 0.05 }, { 0.99, 1.01, 0.01 } };
+  for (std::size_t i = 0; i < std::size(defaults); ++i)
+  {
+    this->SetMaterial(i, defaults[i]);
+  }
+}
+
+bool ChainMailSettings::SetMaterial(std::size_t index, const ChainMailMaterial& material)
+{
+  ChainMailMaterial& last = this->Materials[index];
+  if (this->Exists[index] && last.MinimumStretch == material.MinimumStretch &&
+    last.MaximumStretch == material.MaximumStretch && last.Shear == material.Shear)
+  {
+    return false;
+  }
+  last = material;
+  this->Exists[index] = true;
+  return true;
+}
+
+void ChainMailSession::Forget()
+{
+  this->HasVolume = false;
+  this->KeyOfMaterials = MaterialsKey();
+  this->StampOfMasks.clear();
+  this->StampOfPins.clear();
+}
+
+void ChainMailSession::SetVolume(const ImageGeometry& geometry, const ChainMailSettings& settings)
+{
+  this->Model.SetMemoryLimit(static_cast<std::uint64_t>(settings.MemoryLimit));
+  const std::string device = this->Model.SetDevice(settings.Device);
+  if (this->HasVolume && this->Device == device && this->Geometry == geometry)
+  {
+    return;
+  }
+  this->Forget();
+  const glm::dmat4 toWorld = geometry.GetIndexToWorld();
+  std::array<double, 9> matrix;
+  for (int i = 0; i < 9; ++i)
+  {
+    matrix[static_cast<std::size_t>(i)] = toWorld[i % 3][i / 3];
+  }
+  this->Model.SetVoxelGrid(geometry.PointExtent, matrix);
+  this->Output = vtkSmartPointer<vtkFloatArray>::New();
+  this->Output->SetName("Displacement");
+  this->Output->SetNumberOfComponents(3);
+  if (!this->Output->Resize(GetNumberOfPoints(geometry.PointExtent)))
+  {
+    throw std::bad_alloc();
+  }
+  this->Output->SetNumberOfTuples(GetNumberOfPoints(geometry.PointExtent));
+  vtkNew<vtkArrayChanges> log; // which the array holds
+  log->SetArray(this->Output);
+  this->Model.SetOutput(this->Output->GetPointer(0));
+  this->Device = device;
+  this->Geometry = geometry;
+  this->HasVolume = true;
+}
+
+ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handles,
+  const ChainMailSettings& settings, ChainMailRequest request)
+{
+  // What can be wrong is looked at before anything is changed.
+  const ImageGeometry geometry = GetGeometry(volume);
+  CheckVolume(geometry);
+  vtkDataArray* materialArray = FindMaterialArray(volume, settings);
+  vtkDataArray* pins = FindVolumeArray(volume, PINNED);
+  const bool isNew = !this->HasVolume || this->Geometry != geometry;
+  const Stamp maskStamp = GetMasksStamp(volume);
+  std::optional<VolumeMasks> masks;
+  if (isNew || maskStamp != this->StampOfMasks)
+  {
+    masks = ReadMasks(volume, {});
+  }
+  request.Handles = ReadHandles(handles, geometry, settings.HandleRadius);
+  MaterialsKey key{ GetStampOf(materialArray), { 1.0 * settings.DefaultMaterial } };
+  std::vector<ChainMailMaterial> table;
+  for (std::size_t i = 0; i < settings.Exists.size(); ++i)
+  {
+    key.Numbers.push_back(settings.Exists[i] ? 1.0 : 0.0);
+    if (settings.Exists[i])
+    {
+      const ChainMailMaterial& material = settings.Materials[i];
+      table.resize(i + 1);
+      table[i] = material;
+      key.Numbers.insert(
+        key.Numbers.end(), { material.MinimumStretch, material.MaximumStretch, material.Shear });
+    }
+  }
+  for (const MaterialRange& range : settings.Ranges)
+  {
+    CheckMaterial(settings, range.Index, "Of a range");
+    key.Numbers.insert(key.Numbers.end(), { range.Minimum, range.Maximum, 1.0 * range.Index });
+  }
+  if (!materialArray || !settings.Ranges.empty())
+  {
+    CheckMaterial(settings, settings.DefaultMaterial, "The default");
+  }
+  const auto readMaterials = [&]
+  {
+    return materialArray
+      ? ReadMaterials(materialArray, settings.Ranges, settings.DefaultMaterial, settings.Exists)
+      : std::vector<unsigned char>(static_cast<std::size_t>(volume->GetNumberOfPoints()),
+          static_cast<unsigned char>(settings.DefaultMaterial));
+  };
+  std::vector<unsigned char> materials;
+  if (isNew || !(key == this->KeyOfMaterials))
+  {
+    ChainMailModel::CheckMaterials(table);
+    materials = readMaterials();
+  }
+  ChainMailModel::CheckRequest(geometry.PointExtent, request);
+  const Stamp pinStamp = GetStampOf(pins);
+  try
+  {
+    this->SetVolume(geometry, settings);
+    if (this->IsToReset)
+    {
+      this->Model.Reset();
+      this->IsToReset = false;
+    }
+    if (!(key == this->KeyOfMaterials))
+    {
+      if (materials.empty()) // the device has changed
+      {
+        materials = readMaterials();
+      }
+      this->Model.SetMaterials(table, materials.data());
+      this->KeyOfMaterials = key;
+    }
+    if (maskStamp != this->StampOfMasks)
+    {
+      if (!masks) // the device has changed
+      {
+        masks = ReadMasks(volume, {});
+      }
+      this->Model.SetActiveTetrahedra(masks->Active);
+      this->StampOfMasks = maskStamp;
+    }
+    if (pinStamp != this->StampOfPins)
+    {
+      const std::vector<unsigned char> flags =
+        pins ? ReadFlags(pins) : std::vector<unsigned char>();
+      this->Model.SetPinned(pins ? flags.data() : nullptr);
+      this->StampOfPins = pinStamp;
+    }
+    const ChainMailReport report = this->Model.Step(request);
+    this->LogChanges(report);
+    return report;
+  }
+  catch (const Error&)
+  {
+    if (this->Model.GetDeviceMemory() == 0)
+    {
+      this->Forget(); // the device has failed
+    }
+    throw;
+  }
+}
+
+void ChainMailSession::LogChanges(const ChainMailReport& report)
+{
+  // Where more rows were written, consumers look at all of the array as fast.
+  constexpr std::int64_t mostRows = 32768;
+  std::int64_t rows = 0;
+  for (const Extent& box : report.Changes)
+  {
+    rows += GetSize(box, 1) * GetSize(box, 2);
+  }
+  if (rows == 0)
+  {
+    return;
+  }
+  if (rows > mostRows)
+  {
+    this->Output->Modified();
+    return;
+  }
+  vtkArrayChanges* log = vtkArrayChanges::FindLog(this->Output);
+  const Extent& all = this->Geometry.PointExtent;
+  for (const Extent& box : report.Changes)
+  {
+    for (std::int64_t z = box[4]; z <= box[5]; ++z)
+    {
+      for (std::int64_t y = box[2]; y <= box[3]; ++y)
+      {
+        const std::int64_t row =
+          ((z - all[4]) * GetSize(all, 1) + y - all[2]) * GetSize(all, 0) - all[0];
+        log->AddTuples(row + box[0], row + box[1]);
+      }
+    }
+  }
+}
+
+void ChainMailSession::GiveOutput(vtkImageData* output) const
+{
+  const Extent& extent = this->Geometry.PointExtent;
+  output->SetExtent(extent[0], extent[1], extent[2], extent[3], extent[4], extent[5]);
+  SetTransform(output, this->Geometry);
+  output->GetPointData()->SetVectors(this->Output);
+}
+
+} // namespace deformvolume

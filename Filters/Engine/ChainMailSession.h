@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeChainMailSession_h
+#define DeformVolumeChainMailSession_h
+
+#include "ChainMailModel.h"
+#include "DeformationMesh.h" // for Stamp
+#include "ImageGeometry.h"
+#include "MaterialArray.h"
+
+#include "vtkFloatArray.h"
+#include "vtkSmartPointer.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+class vtkImageData;
+class vtkPointSet;
+
+namespace deformvolume
+{
+
+/// What vtkChainMailDeformation was told.
+struct ChainMailSettings
+{
+  std::array<ChainMailMaterial, 256> Materials;
+  std::array<bool, 256> Exists{};
+  std::vector<MaterialRange> Ranges;
+  std::string ArrayName;
+  int DefaultMaterial = 1;
+  double HandleRadius = 0.0;
+  std::string Device;
+  std::int64_t MemoryLimit = 0;
+
+  void SetDefaultMaterials();
+  /// Returns whether it was not so before.
+  bool SetMaterial(std::size_t index, const ChainMailMaterial& material);
+};
+
+/// A ChainMailModel with its output, and what it was given of VTK's data.
+class ChainMailSession
+{
+public:
+  /// handles: null where there are none. Throws Error and Aborted; the displacements are then as
+  /// before, but for errors of the device.
+  ChainMailReport Step(vtkImageData* volume, vtkPointSet* handles,
+    const ChainMailSettings& settings, ChainMailRequest request);
+
+  /// Gives an image the geometry and the array of the last step.
+  void GiveOutput(vtkImageData* output) const;
+
+  /// Puts all voxels to rest before the next step.
+  void Reset() { this->IsToReset = true; }
+
+  const std::string& GetDevice() const { return this->Device; }
+
+private:
+  /// What the materials were made of.
+  struct MaterialsKey
+  {
+    Stamp Array;
+    std::vector<double> Numbers;
+    bool operator==(const MaterialsKey& other) const
+    {
+      return this->Array == other.Array && this->Numbers == other.Numbers;
+    }
+  };
+
+  void SetVolume(const ImageGeometry& geometry, const ChainMailSettings& settings);
+  void Forget();
+  /// Says which displacements a step has written.
+  void LogChanges(const ChainMailReport& report);
+
+  ChainMailModel Model;
+  std::string Device;
+  bool HasVolume = false;
+  bool IsToReset = false;
+  ImageGeometry Geometry;
+  MaterialsKey KeyOfMaterials;
+  Stamp StampOfMasks;
+  Stamp StampOfPins;
+  vtkSmartPointer<vtkFloatArray> Output;
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MaterialArray.h"
+
+#include "Error.h"
+#include "ParallelFor.h"
+
+#include "vtkArrayDispatch.h"
+#include "vtkDataArray.h"
+#include "vtkDataArrayRange.h"
+
+#include <atomic>
+#include <limits>
+#include <sstream>
+#include <type_traits>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+constexpr vtkIdType NoTuple = std::numeric_limits<vtkIdType>::max();
+
+// Calls function(first, values) for parts of an array.
+struct TakeValues
+{
+  template <typename Array, typename Function>
+  void operator()(Array* array, const Function& function) const
+  {
+    ParallelFor(0, array->GetNumberOfTuples(), 0,
+      [&](std::int64_t first, std::int64_t last)
+      { function(first, vtk::DataArrayValueRange<1>(array, first, last)); });
+  }
+};
+
+template <typename Function>
+void ForValues(vtkDataArray* array, const Function& function)
+{
+  if (!vtkArrayDispatch::Dispatch::Execute(array, TakeValues{}, function))
+  {
+    TakeValues{}(array, function);
+  }
+}
+
+void Lower(std::atomic<vtkIdType>& least, vtkIdType value)
+{
+  vtkIdType before = least.load();
+  while (value < before && !least.compare_exchange_weak(before, value))
+  {
+  }
+}
+
+// -1 for values that are no index.
+template <typename T>
+int ToIndex(T value)
+{
+  const bool isIndex = value >= static_cast<T>(0) && static_cast<double>(value) <= 255.0 &&
+    static_cast<T>(static_cast<int>(value)) == value;
+  return isIndex ? static_cast<int>(value) : -1;
+}
+
+std::string GetText(vtkDataArray* array, vtkIdType tuple)
+{
+  std::ostringstream text;
+  text << "Voxel " << tuple << " has the value " << array->GetVariantValue(tuple).ToString()
+       << " in the array \"" << (array->GetName() ? array->GetName() : "") << "\"";
+  return text.str();
+}
+
+} // namespace
+
+std::vector<unsigned char> ReadMaterials(vtkDataArray* array,
+  const std::vector<MaterialRange>& ranges, int fallback, const std::array<bool, 256>& exists)
+{
+  std::vector<unsigned char> materials(static_cast<std::size_t>(array->GetNumberOfTuples()));
+  std::atomic<vtkIdType> firstWithout{ NoTuple };
+  ForValues(array,
+    [&](vtkIdType first, const auto& values)
+    {
+      using Value = typename std::decay_t<decltype(values)>::ValueType;
+      vtkIdType tuple = first;
+      for (const Value value : values)
+      {
+        int index = ranges.empty() ? ToIndex(value) : fallback;
+        for (const MaterialRange& range : ranges)
+        {
+          const auto number = static_cast<double>(value);
+          if (number >= range.Minimum && number < range.Maximum)
+          {
+            index = range.Index;
+            break;
+          }
+        }
+        if (index < 0 || !exists[static_cast<std::size_t>(index)])
+        {
+          Lower(firstWithout, tuple);
+        }
+        materials[static_cast<std::size_t>(tuple)] = static_cast<unsigned char>(index);
+        ++tuple;
+      }
+    });
+  if (firstWithout != NoTuple)
+  {
+    throw Error(GetText(array, firstWithout) +
+      ", for which there is no material. Set the material with SetMaterial(), or give the voxel "
+      "another value.");
+  }
+  return materials;
+}
+
+std::vector<unsigned char> ReadFlags(vtkDataArray* array)
+{
+  std::vector<unsigned char> flags(static_cast<std::size_t>(array->GetNumberOfTuples()));
+  ForValues(array,
+    [&](vtkIdType first, const auto& values)
+    {
+      using Value = typename std::decay_t<decltype(values)>::ValueType;
+      auto tuple = static_cast<std::size_t>(first);
+      for (const Value value : values)
+      {
+        flags[tuple++] = value != 0 ? 1 : 0;
+      }
+    });
+  return flags;
+}
+
+} // namespace deformvolume

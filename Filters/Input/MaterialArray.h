@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeMaterialArray_h
+#define DeformVolumeMaterialArray_h
+
+#include <array>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+
+namespace deformvolume
+{
+
+/// Values from Minimum on, less than Maximum, have a material.
+struct MaterialRange
+{
+  double Minimum;
+  double Maximum;
+  int Index;
+};
+
+/// The materials of the values of an array of one component: by ranges, and fallback where none
+/// holds a value, or, without ranges, the values themselves. exists: which of the 256 materials
+/// there are. Throws an Error that names a value without a material.
+std::vector<unsigned char> ReadMaterials(vtkDataArray* array,
+  const std::vector<MaterialRange>& ranges, int fallback, const std::array<bool, 256>& exists);
+
+/// 1 where a value of an array of one component is not 0, else 0.
+std::vector<unsigned char> ReadFlags(vtkDataArray* array);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumePieceRequest_h
+#define DeformVolumePieceRequest_h
+
+#include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
+#include "vtkInformationIntegerVectorKey.h"
+#include "vtkInformationVector.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+namespace deformvolume
+{
+
+/// Whether the first of several pieces is asked for, or all. A mesh that is made in one goes there,
+/// so that all pieces together have each cell once.
+inline bool IsFirstPiece(vtkInformationVector* output)
+{
+  vtkInformation* info = output->GetInformationObject(0);
+  vtkInformationIntegerKey* key = vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER();
+  return !info->Has(key) || info->Get(key) <= 0;
+}
+
+/// Asks for all of an input, in one piece.
+inline void AskForAll(vtkInformation* info)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  info->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+  info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  if (info->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
+  }
+}
+
+} // namespace deformvolume
+
+#endif

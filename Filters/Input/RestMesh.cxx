@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RestMesh.h"
+
+#include "CellComparison.h"
+#include "Deformation.h"
+#include "Error.h"
+#include "MeshCells.h"
+#include "ParallelFor.h"
+
+#include "vtkPoints.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+constexpr std::size_t MostInLog = 8; // one tetrahedron in so many
+
+// The mesh at rest is the one on port 1 where port 2 has none.
+bool IsRestMade(const DeformationSource& source)
+{
+  return source.Rest ? source.RestIsMade : source.ShapeIsMade;
+}
+
+bool AreEqual(
+  const std::vector<TetrahedronChange>& first, const std::vector<TetrahedronChange>& second)
+{
+  return std::equal(first.begin(), first.end(), second.begin(), second.end(),
+    [](const TetrahedronChange& a, const TetrahedronChange& b)
+    { return a.Number == b.Number && a.After == b.After; });
+}
+
+// Of as many tetrahedra those that have other nodes.
+std::optional<std::vector<TetrahedronChange>> FindDifferences(
+  const std::vector<Tetrahedron>& before, const std::vector<Tetrahedron>& after)
+{
+  if (before.size() != after.size())
+  {
+    return {};
+  }
+  std::vector<TetrahedronChange> changes;
+  for (std::size_t t = 0; t < before.size(); ++t)
+  {
+    if (before[t] != after[t])
+    {
+      changes.push_back({ static_cast<std::int32_t>(t), before[t], after[t] });
+    }
+  }
+  return changes;
+}
+
+// Whether all nodes of some tetrahedra are under a number.
+bool AreNodes(const std::vector<Tetrahedron>& tetrahedra, std::size_t count)
+{
+  constexpr std::size_t step = 65536;
+  std::atomic<bool> are{ true };
+  ParallelForParts(tetrahedra.size(), step,
+    [&](std::size_t begin, std::size_t end)
+    {
+      std::int32_t last = 0;
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        for (const std::int32_t node : tetrahedra[t])
+        {
+          last = std::max(last, node);
+        }
+      }
+      if (static_cast<std::size_t>(last) >= count)
+      {
+        are = false;
+      }
+    });
+  return are;
+}
+
+} // namespace
+
+void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const DeformationSource& source)
+{
+  const MeshStamp restCells = MeshStamp::OfCells(rest, IsRestMade(source));
+  const MeshStamp shapeCells = MeshStamp::OfCells(shape, source.ShapeIsMade);
+  CellReading cells = this->ReadCells(shape, rest, restCells, shapeCells);
+  std::vector<CellMemory> cellMemories = GetCellMemories(rest);
+  const std::size_t nodes = GetNumberOfNodes(rest);
+  const std::size_t nodesBefore = this->Points.size();
+  this->RestCells = this->ShapeCells = MeshStamp(); // of nothing, where this fails
+  this->RestCellMemories.clear();
+  this->ReadPoints(rest, source);
+  const bool isSameShape =
+    !this->ShapeIsOld && this->KeptPoints && cells.Changed && this->AreInPlace(*cells.Changed);
+  this->Points.resize(nodes);
+  if (!isSameShape)
+  {
+    this->SetShape(std::move(cells));
+  }
+  else if (!cells.Changed->empty() || nodes != nodesBefore)
+  {
+    this->SetConnectivity(std::move(*cells.Changed));
+  }
+  if (nodes < nodesBefore && !AreNodes(this->Tetrahedra, nodes))
+  {
+    this->ShapeIsOld = true;
+    deformvolume::ReadCells(rest); // which says what is wrong
+    throw Error("The deformation mesh has cells that use points that are not there. Mend the cells "
+                "of the mesh.");
+  }
+  this->ShapeIsOld = false;
+  this->RestCells = restCells;
+  this->ShapeCells = shapeCells;
+  this->RestCellMemories = std::move(cellMemories);
+}
+
+std::optional<RestMesh::Changes> RestMesh::CompareCells(
+  const MeshParts& shape, const MeshParts& rest, bool sameRest, bool sameShape) const
+{
+  if (!this->IgnoredCells.empty() || this->Tetrahedra.empty())
+  {
+    return {};
+  }
+  std::optional<Changes> changes =
+    sameRest ? Changes() : FindChanges(rest, this->Tetrahedra, this->RestCellMemories);
+  if (changes && !sameShape)
+  {
+    const std::optional<Changes> others = FindChanges(shape, this->Tetrahedra, {});
+    if (!others || !AreEqual(*changes, *others))
+    {
+      return {};
+    }
+  }
+  return changes;
+}
+
+RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshParts& rest,
+  const MeshStamp& restCells, const MeshStamp& shapeCells)
+{
+  const bool shared = shapeCells.HasArraysOf(restCells);
+  const bool sameRest = restCells.IsThatOf(this->RestCells);
+  const bool sameShape = shared || shapeCells.IsThatOf(this->ShapeCells);
+  CellReading reading;
+  reading.Ignored = this->IgnoredCells;
+  if (sameRest && sameShape)
+  {
+    reading.Changed = Changes();
+  }
+  else
+  {
+    // Where only one of two meshes has changed, both are looked at.
+    reading.Changed = this->CompareCells(shape, rest, sameRest && shared, shared);
+  }
+  if (!reading.Changed)
+  {
+    MeshCells cells = deformvolume::ReadCells(rest);
+    if (cells.Tetrahedra.empty())
+    {
+      throw Error("The deformation mesh has no tetrahedra" +
+        (cells.Ignored.empty() ? std::string() : ", but " + cells.Ignored) +
+        ". Connect a mesh of three-dimensional cells, for example from "
+        "vtkLatticeTetrahedraSource, vtkTetGenMesher or vtkDelaunay3D.");
+    }
+    if (!shared && deformvolume::ReadCells(shape).Tetrahedra != cells.Tetrahedra)
+    {
+      throw Error("The cells of the deformation mesh on input port 1 are not those of the rest "
+                  "configuration on port 2. Connect two configurations of one mesh.");
+    }
+    reading.Ignored = cells.Ignored;
+    reading.Changed = FindDifferences(this->Tetrahedra, cells.Tetrahedra);
+    reading.All = std::move(cells.Tetrahedra);
+  }
+  return reading;
+}
+
+void RestMesh::ReadPoints(const MeshParts& rest, const DeformationSource& source)
+{
+  this->KeptPoints = true;
+  const MeshStamp stamp = MeshStamp::OfPoints(rest, IsRestMade(source));
+  if (stamp.IsThatOf(this->PointsStamp) && source.Volume == this->Volume)
+  {
+    return;
+  }
+  this->PointsStamp = MeshStamp(); // of nothing, where this fails
+  if (!(source.Volume == this->Volume))
+  {
+    this->PointMemories.clear();
+  }
+  const std::size_t before = this->Points.size();
+  // Points that are gone are still those of tetrahedra as they were.
+  this->Points.resize(std::max(before, GetNumberOfNodes(rest)));
+  std::atomic<bool> kept{ true };
+  try
+  {
+    this->ReadMovedPoints(rest, source, before, kept);
+  }
+  catch (...)
+  {
+    this->ShapeIsOld |= !kept;
+    this->Points.resize(before);
+    this->PointMemories.clear();
+    throw;
+  }
+  this->KeptPoints = kept;
+  this->PointsStamp = stamp;
+  this->Volume = source.Volume;
+}
+
+void RestMesh::ReadMovedPoints(const MeshParts& rest, const DeformationSource& source,
+  std::size_t before, std::atomic<bool>& kept)
+{
+  const glm::dmat4 transform = source.Volume.GetWorldToIndex();
+  this->PointMemories.resize(rest.size());
+  vtkIdType first = 0;
+  for (std::size_t part = 0; part < rest.size(); ++part)
+  {
+    VectorMemory& memory = this->PointMemories[part];
+    const vtkIdType count = rest[part]->GetNumberOfPoints();
+    if (count == 0 || memory.Place != first)
+    {
+      memory = VectorMemory();
+      memory.Place = first;
+    }
+    if (count > 0)
+    {
+      ReadVectors(
+        rest[part]->GetPoints()->GetData(),
+        [&](vtkIdType begin, const glm::dvec3* points, vtkIdType some)
+        {
+          for (vtkIdType i = 0; i < some; ++i)
+          {
+            const auto node = static_cast<std::size_t>(first + begin + i);
+            const glm::dvec3 point(transform * glm::dvec4(points[i], 1.0));
+            if (node < before && point != this->Points[node])
+            {
+              kept.store(false, std::memory_order_relaxed);
+            }
+            this->Points[node] = point;
+          }
+        },
+        "Point", source.Rest ? REST_NAME : MESH_NAME, &memory);
+    }
+    first += count;
+  }
+}
+
+bool RestMesh::AreInPlace(const Changes& changes) const
+{
+  return std::all_of(changes.begin(), changes.end(),
+    [&](const TetrahedronChange& change)
+    {
+      bool inPlace = true;
+      for (int k = 0; k < 4; ++k)
+      {
+        inPlace &= this->Points[change.Before[k]] == this->Points[change.After[k]];
+      }
+      return inPlace;
+    });
+}
+
+void RestMesh::SetShape(CellReading&& cells)
+{
+  if (!cells.All.empty())
+  {
+    this->Tetrahedra = std::move(cells.All);
+  }
+  else
+  {
+    for (const TetrahedronChange& change : *cells.Changed)
+    {
+      this->Tetrahedra[change.Number] = change.After;
+    }
+  }
+  this->IgnoredCells = cells.Ignored;
+  ++this->ShapeVersion;
+  this->LogBegin = ++this->ConnectivityVersion;
+  this->Log.clear();
+}
+
+void RestMesh::SetConnectivity(Changes&& changes)
+{
+  for (const TetrahedronChange& change : changes)
+  {
+    this->Tetrahedra[change.Number] = change.After;
+  }
+  this->Log.emplace_back(++this->ConnectivityVersion, std::move(changes));
+  std::size_t size = 0;
+  for (const auto& entry : this->Log)
+  {
+    size += entry.second.size();
+  }
+  while (this->Log.size() > 1 && size > this->Tetrahedra.size() / MostInLog)
+  {
+    size -= this->Log.front().second.size();
+    this->LogBegin = this->Log.front().first;
+    this->Log.pop_front();
+  }
+}
+
+std::optional<std::vector<TetrahedronChange>> RestMesh::GetChanges(std::uint64_t version) const
+{
+  if (version < this->LogBegin)
+  {
+    return {};
+  }
+  if (!this->Log.empty() &&
+    (this->Log.size() == 1 ? this->LogBegin : this->Log[this->Log.size() - 2].first) <= version)
+  {
+    return version < this->Log.back().first ? this->Log.back().second : Changes();
+  }
+  std::map<std::int32_t, TetrahedronChange> joined;
+  for (const auto& [led, changes] : this->Log)
+  {
+    if (led <= version)
+    {
+      continue;
+    }
+    for (const TetrahedronChange& change : changes)
+    {
+      joined.emplace(change.Number, change).first->second.After = change.After;
+    }
+  }
+  Changes all;
+  for (const auto& entry : joined)
+  {
+    all.push_back(entry.second);
+  }
+  return all;
+}
+
+} // namespace deformvolume

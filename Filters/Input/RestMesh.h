@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeRestMesh_h
+#define DeformVolumeRestMesh_h
+
+#include "CellComparison.h"
+#include "DeformationMesh.h"
+#include "ImageGeometry.h"
+#include "MeshStamp.h"
+#include "Tetrahedron.h"
+#include "VectorArray.h"
+
+#include <glm/vec3.hpp>
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace deformvolume
+{
+
+struct DeformationSource;
+
+/// The tetrahedra of the deformation mesh, and its nodes at rest in continuous indices of the
+/// volume. Reads again only what is not as it was, and says what that is. Content decides: a mesh
+/// that is another object with the same cells and rest positions changes nothing.
+///
+/// What a tetrahedron is at rest, its shape, and which nodes it names, its connectivity, change by
+/// themselves: where a node is split, tetrahedra get other nodes in the places of the old ones.
+class RestMesh
+{
+public:
+  /// shape: what port 1 has; rest: what has the rest positions, the same unless there is a port 2.
+  /// Throws an Error where they cannot be used, or are not two configurations of one mesh.
+  void Read(const MeshParts& shape, const MeshParts& rest, const DeformationSource& source);
+
+  const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Tetrahedra; }
+  const std::vector<glm::dvec3>& GetPoints() const { return this->Points; }
+
+  /// Changes with the shape of the tetrahedra at rest, and with their number.
+  std::uint64_t GetShapeVersion() const { return this->ShapeVersion; }
+  /// Changes with the shape, and with the nodes of tetrahedra and the number of nodes.
+  std::uint64_t GetConnectivityVersion() const { return this->ConnectivityVersion; }
+  /// The tetrahedra that have got other nodes since a version of the connectivity, while the shape
+  /// was the same, each once. Nothing where that is not known any more.
+  std::optional<std::vector<TetrahedronChange>> GetChanges(std::uint64_t version) const;
+
+  /// Whether the last call of Read() found all nodes that there were before where they were.
+  bool HasKeptPoints() const { return this->KeptPoints; }
+
+  /// Cells that were ignored, in words for a warning; "" without such.
+  const std::string& GetIgnoredCells() const { return this->IgnoredCells; }
+
+private:
+  using Changes = std::vector<TetrahedronChange>;
+
+  /// What the cells are found to be: the tetrahedra, but for some changes, or other ones.
+  struct CellReading
+  {
+    std::optional<Changes> Changed;
+    std::vector<Tetrahedron> All; // where there is nothing in the former
+    std::string Ignored;
+  };
+
+  CellReading ReadCells(const MeshParts& shape, const MeshParts& rest, const MeshStamp& restCells,
+    const MeshStamp& shapeCells);
+  /// The tetrahedra that have got other nodes, where a comparison can tell that. sameRest,
+  /// sameShape: whether both are as they were.
+  std::optional<Changes> CompareCells(
+    const MeshParts& shape, const MeshParts& rest, bool sameRest, bool sameShape) const;
+  void ReadPoints(const MeshParts& rest, const DeformationSource& source);
+  /// before: how many nodes there were. kept: set to false where one of these is elsewhere now.
+  void ReadMovedPoints(const MeshParts& rest, const DeformationSource& source, std::size_t before,
+    std::atomic<bool>& kept);
+  /// Whether a change leaves the tetrahedra the shapes that they had.
+  bool AreInPlace(const Changes& changes) const;
+  void SetConnectivity(Changes&& changes);
+  void SetShape(CellReading&& cells);
+
+  std::vector<Tetrahedron> Tetrahedra;
+  std::vector<glm::dvec3> Points;
+  std::string IgnoredCells;
+  std::uint64_t ShapeVersion = 0;
+  std::uint64_t ConnectivityVersion = 0;
+  bool ShapeIsOld = false; // a reading that failed has left other points than that of the version
+  bool KeptPoints = false;
+
+  // The last changes of the connectivity, each with the version that it led to, and the version
+  // before the first one.
+  std::deque<std::pair<std::uint64_t, Changes>> Log;
+  std::uint64_t LogBegin = 0;
+
+  // What the above was read from.
+  MeshStamp RestCells;
+  MeshStamp ShapeCells;
+  std::vector<CellMemory> RestCellMemories; // of each part
+  MeshStamp PointsStamp;
+  ImageGeometry Volume;
+  std::vector<VectorMemory> PointMemories; // of each part
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkArrayChanges
+ * @brief   log of the tuples of an array that have been written
+ *
+ * A producer that writes a few tuples of a large array can log which. vtkDeformVolumeFilter then
+ * looks at these only. Without a log it compares the whole array with what it was. The result is
+ * the same.
+ *
+ * The filter uses the logs of these arrays:
+ * - the vectors and the points of the deformation mesh (ports 1 and 2), or the vectors of a
+ *   displacement field,
+ * - the connectivity of its cells (vtkCellArray::GetConnectivityArray(), one component: the tuples
+ *   4 c to 4 c + 3 are the tetrahedron c),
+ * - "ActiveTetrahedra" and vtkGhostType of the points of the volume (port 0).
+ *
+ * @code{.cpp}
+ * vtkNew<vtkArrayChanges> changes;
+ * changes->SetArray(displacements);
+ * // in each frame
+ * displacements->SetTypedTuple(node, moved);
+ * changes->AddTuples(node, node);
+ * @endcode
+ *
+ * From SetArray() on, all tuples that are written have to be logged. AddTuples() marks the array as
+ * modified. An array that is marked as modified by something else counts as changed in all tuples,
+ * so do not call its Modified() yourself. Tuples that are appended are no matter of the log: their
+ * number tells of them. A copy of an array has no log.
+ *
+ * Only the last changes are kept, about 65,000 ranges. A consumer that has seen none of them looks
+ * at the whole array.
+ */
+#ifndef vtkArrayChanges_h
+#define vtkArrayChanges_h
+
+#include "vtkDeformVolumeModule.h" // for export macro
+#include "vtkObject.h"
+#include "vtkWeakPointer.h" // for vtkWeakPointer
+
+#include <array>  // for std::array
+#include <deque>  // for std::deque
+#include <vector> // for std::vector
+
+class vtkAbstractArray;
+class vtkIdTypeArray;
+class vtkInformationObjectBaseKey;
+
+class VTKDEFORMVOLUME_EXPORT vtkArrayChanges : public vtkObject
+{
+public:
+  static vtkArrayChanges* New();
+  vtkTypeMacro(vtkArrayChanges, vtkObject);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * The key under which the information of an array holds its log.
+   */
+  static vtkInformationObjectBaseKey* LOG();
+
+  /**
+   * The log of an array; null where it has none.
+   */
+  static vtkArrayChanges* FindLog(vtkAbstractArray* array);
+
+  ///@{
+  /**
+   * The array that this is the log of, which holds a reference to it. An array has one log: it
+   * takes the place of another one. The log starts empty. Null: of none, the default.
+   */
+  void SetArray(vtkAbstractArray* array);
+  vtkAbstractArray* GetArray();
+  ///@}
+
+  /**
+   * Log that the tuples from first to last, both included, have been written, and mark the array as
+   * modified. Without an array, and where last is less than first, nothing happens.
+   */
+  void AddTuples(vtkIdType first, vtkIdType last);
+
+  /**
+   * Which tuples have been written since the modification time of the array had a value: first and
+   * last of each range, in the order of writing. Returns false, and no ranges, where that is not
+   * known. Then any tuple may have been.
+   */
+  bool GetTuplesSince(vtkMTimeType time, vtkIdTypeArray* ranges);
+
+#ifndef __VTK_WRAP__
+  /// The same, as pairs of the first tuple and the one after the last.
+  bool GetTuplesSince(vtkMTimeType time, std::vector<std::array<std::size_t, 2>>& ranges) const;
+#endif
+
+protected:
+  vtkArrayChanges();
+  ~vtkArrayChanges() override;
+
+private:
+  vtkArrayChanges(const vtkArrayChanges&) = delete;
+  void operator=(const vtkArrayChanges&) = delete;
+
+  struct Entry
+  {
+    vtkMTimeType Time; // of the array after it
+    vtkIdType First;
+    vtkIdType Last;
+  };
+
+  vtkWeakPointer<vtkAbstractArray> Array;
+  std::deque<Entry> Entries;
+  vtkMTimeType Begin = 0; // the time of the array before the first entry
+  vtkMTimeType End = 0;   // after the last one
+};
+
+#endif

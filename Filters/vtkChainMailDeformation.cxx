@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkChainMailDeformation.h"
+
+#include "AbortCheck.h"
+#include "ChainMailSession.h"
+#include "FailureReport.h"
+#include "PieceRequest.h"
+#include "VTKThreads.h"
+
+#include "vtkDataObject.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointSet.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <new>
+#include <sstream>
+
+vtkStandardNewMacro(vtkChainMailDeformation);
+
+namespace
+{
+
+bool IsIndex(double index)
+{
+  return index >= 0.0 && index <= 255.0 && index == std::floor(index);
+}
+
+} // namespace
+
+class vtkChainMailDeformation::vtkInternals
+{
+public:
+  deformvolume::ChainMailSession Session;
+  deformvolume::ChainMailSettings Settings;
+  bool Aborted = false;
+};
+
+vtkChainMailDeformation::vtkChainMailDeformation()
+  : Internals(new vtkInternals)
+{
+  deformvolume::UseVTKThreads();
+  this->SetNumberOfInputPorts(2);
+  this->Internals->Settings.SetDefaultMaterials();
+}
+
+vtkChainMailDeformation::~vtkChainMailDeformation() = default;
+
+void vtkChainMailDeformation::SetHandlesConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(1, output);
+}
+
+void vtkChainMailDeformation::SetHandlesData(vtkDataObject* data)
+{
+  this->SetInputDataObject(1, data);
+}
+
+void vtkChainMailDeformation::SetMaterial(
+  int index, double minimumStretch, double maximumStretch, double shear)
+{
+  if (index < 0 || index > 255)
+  {
+    vtkErrorMacro("There is no material " << index << ". Give it an index from 0 to 255.");
+    return;
+  }
+  const deformvolume::ChainMailMaterial material{ minimumStretch, maximumStretch, shear };
+  if (this->Internals->Settings.SetMaterial(static_cast<std::size_t>(index), material))
+  {
+    this->Modified();
+  }
+}
+
+void vtkChainMailDeformation::SetMaterial(
+  double index, double minimumStretch, double maximumStretch, double shear)
+{
+  if (IsIndex(index))
+  {
+    this->SetMaterial(static_cast<int>(index), minimumStretch, maximumStretch, shear);
+    return;
+  }
+  vtkErrorMacro("There is no material " << index << ". Give it a whole number from 0 to 255.");
+}
+
+bool vtkChainMailDeformation::GetMaterialLimits(int index, double limits[3])
+{
+  const deformvolume::ChainMailSettings& settings = this->Internals->Settings;
+  if (index < 0 || index > 255 || !settings.Exists[static_cast<std::size_t>(index)])
+  {
+    return false;
+  }
+  const deformvolume::ChainMailMaterial& material =
+    settings.Materials[static_cast<std::size_t>(index)];
+  limits[0] = material.MinimumStretch;
+  limits[1] = material.MaximumStretch;
+  limits[2] = material.Shear;
+  return true;
+}
+
+void vtkChainMailDeformation::ClearMaterials()
+{
+  if (this->GetNumberOfMaterials() > 0)
+  {
+    this->Internals->Settings.Exists.fill(false);
+    this->Modified();
+  }
+}
+
+int vtkChainMailDeformation::GetNumberOfMaterials()
+{
+  const auto& exists = this->Internals->Settings.Exists;
+  return static_cast<int>(std::count(exists.begin(), exists.end(), true));
+}
+
+void vtkChainMailDeformation::AddMaterialRange(double minimum, double maximum, double index)
+{
+  if (!IsIndex(index))
+  {
+    vtkErrorMacro("There is no material " << index << ". Give the range an index from 0 to 255.");
+    return;
+  }
+  this->Internals->Settings.Ranges.push_back({ minimum, maximum, static_cast<int>(index) });
+  this->Modified();
+}
+
+void vtkChainMailDeformation::ClearMaterialRanges()
+{
+  if (!this->Internals->Settings.Ranges.empty())
+  {
+    this->Internals->Settings.Ranges.clear();
+    this->Modified();
+  }
+}
+
+int vtkChainMailDeformation::GetNumberOfMaterialRanges()
+{
+  return static_cast<int>(this->Internals->Settings.Ranges.size());
+}
+
+void vtkChainMailDeformation::Reset()
+{
+  this->Internals->Session.Reset();
+  this->Modified();
+}
+
+int vtkChainMailDeformation::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkImageData" : "vtkPointSet");
+  if (port == 1)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+int vtkChainMailDeformation::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
+{
+  constexpr int components = 3;
+  vtkDataObject::SetPointDataActiveScalarInfo(
+    output->GetInformationObject(0), VTK_FLOAT, components);
+  return 1;
+}
+
+int vtkChainMailDeformation::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
+{
+  for (int port = 0; port < 2; ++port)
+  {
+    if (vtkInformation* info = input[port]->GetInformationObject(0))
+    {
+      deformvolume::AskForAll(info);
+    }
+  }
+  return 1;
+}
+
+int vtkChainMailDeformation::ComputePipelineMTime(vtkInformation* request,
+  vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
+  vtkMTimeType* mtime)
+{
+  // An aborted output is not up to date, but the executive takes it for that.
+  if (this->Internals->Aborted)
+  {
+    this->Internals->Aborted = false;
+    this->Modified();
+  }
+  return this->Superclass::ComputePipelineMTime(
+    request, input, output, requestFromOutputPort, mtime);
+}
+
+int vtkChainMailDeformation::RequestData(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* outputVector)
+{
+  vtkImageData* output = vtkImageData::GetData(outputVector);
+  output->Initialize();
+  deformvolume::ChainMailSettings settings = this->Internals->Settings;
+  settings.Device = this->Device;
+  settings.MemoryLimit = this->MemoryLimit;
+  settings.ArrayName = this->MaterialArrayName;
+  settings.DefaultMaterial = this->DefaultMaterial;
+  settings.HandleRadius = this->HandleRadius;
+  deformvolume::ChainMailRequest request;
+  request.RelaxationSweeps = this->RelaxationSweeps;
+  request.Elasticity = this->Elasticity;
+  request.PlasticityThreshold = this->PlasticityThreshold;
+  // Observers may draw: they are called now and then only.
+  auto next = std::chrono::steady_clock::now();
+  double progress = 0.0;
+  request.Progress = [&]
+  {
+    if (std::chrono::steady_clock::now() >= next)
+    {
+      progress += 0.1 * (1.0 - progress); // nobody knows how much there is to do
+      this->UpdateProgress(progress);
+      next = std::chrono::steady_clock::now() + std::chrono::milliseconds(20);
+    }
+    return !deformvolume::IsAborted(this);
+  };
+  std::fill_n(this->ChangedExtent, 6, -1);
+  this->ChangedExtent[0] = this->ChangedExtent[2] = this->ChangedExtent[4] = 0;
+  try
+  {
+    const deformvolume::ChainMailReport report = this->Internals->Session.Step(
+      vtkImageData::GetData(input[0]), vtkPointSet::GetData(input[1]), settings, request);
+    this->DeviceInUse = this->Internals->Session.GetDevice();
+    this->LargestViolation = report.LargestViolation;
+    this->NumberOfSweeps = report.NumberOfSweeps;
+    this->NumberOfMovedVoxels = report.NumberOfMovedVoxels;
+    std::copy(report.ChangedExtent.begin(), report.ChangedExtent.end(), this->ChangedExtent);
+    this->NumberOfReducedHandles = 0;
+    this->NumberOfReleasedHandles = 0;
+    for (const deformvolume::ChainMailHandleReport& handle : report.Handles)
+    {
+      const auto isReduced = [](double reduction) { return reduction != 0.0; };
+      this->NumberOfReleasedHandles += handle.IsHeld ? 0 : 1;
+      this->NumberOfReducedHandles +=
+        std::any_of(handle.Reduction.begin(), handle.Reduction.end(), isReduced) ? 1 : 0;
+    }
+    this->Internals->Session.GiveOutput(output);
+    return 1;
+  }
+  catch (const deformvolume::Aborted&)
+  {
+    this->Internals->Aborted = true;
+    return 1;
+  }
+  catch (const deformvolume::Error& error)
+  {
+    vtkErrorMacro(<< error.what());
+  }
+  catch (const std::bad_alloc&)
+  {
+    vtkErrorMacro("There is not enough memory for the displacements. Use a smaller volume, or free "
+                  "memory.");
+  }
+  return deformvolume::Fail(this);
+}
+
+std::string vtkChainMailDeformation::GetSummary()
+{
+  if (this->DeviceInUse.empty())
+  {
+    return std::string();
+  }
+  std::ostringstream text;
+  text << "Device: " << this->DeviceInUse << "\n"
+       << "Voxels moved: " << this->NumberOfMovedVoxels << "\n"
+       << "Sweeps: " << this->NumberOfSweeps << "\n"
+       << "Largest violation: " << this->LargestViolation << " of the spacing";
+  if (this->NumberOfReducedHandles > 0)
+  {
+    text << "\nHandles moved less than asked for, so that others stay: "
+         << this->NumberOfReducedHandles;
+  }
+  if (this->NumberOfReleasedHandles > 0)
+  {
+    text << "\nHandles released, since others hold their voxels apart: "
+         << this->NumberOfReleasedHandles;
+  }
+  return text.str();
+}
+
+void vtkChainMailDeformation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "HandleRadius: " << this->HandleRadius << "\n";
+  os << indent << "Materials:\n";
+  for (int i = 0; i < 256; ++i)
+  {
+    double limits[3];
+    if (this->GetMaterialLimits(i, limits))
+    {
+      os << indent.GetNextIndent() << i << ": " << limits[0] << " " << limits[1] << " " << limits[2]
+         << "\n";
+    }
+  }
+  os << indent << "MaterialRanges:\n";
+  for (const deformvolume::MaterialRange& range : this->Internals->Settings.Ranges)
+  {
+    os << indent.GetNextIndent() << range.Minimum << " to " << range.Maximum << ": " << range.Index
+       << "\n";
+  }
+  os << indent << "MaterialArrayName: " << this->MaterialArrayName << "\n";
+  os << indent << "DefaultMaterial: " << this->DefaultMaterial << "\n";
+  os << indent << "RelaxationSweeps: " << this->RelaxationSweeps << "\n";
+  os << indent << "Elasticity: " << this->Elasticity << "\n";
+  os << indent << "PlasticityThreshold: " << this->PlasticityThreshold << "\n";
+  os << indent << "Device: " << this->Device << "\n";
+  os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
+  os << indent << "LargestViolation: " << this->LargestViolation << "\n";
+  os << indent << "NumberOfSweeps: " << this->NumberOfSweeps << "\n";
+  os << indent << "NumberOfMovedVoxels: " << this->NumberOfMovedVoxels << "\n";
+  os << indent << "NumberOfReducedHandles: " << this->NumberOfReducedHandles << "\n";
+  os << indent << "NumberOfReleasedHandles: " << this->NumberOfReleasedHandles << "\n";
+  os << indent << "ChangedExtent:";
+  for (const int bound : this->ChangedExtent)
+  {
+    os << " " << bound;
+  }
+  os << "\n" << indent << "DeviceInUse: " << this->DeviceInUse << "\n";
+}

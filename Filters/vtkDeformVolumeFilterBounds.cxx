@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How vtkDeformVolumeFilter finds the extent that holds the deformed volume, and keeps it.
+#include "vtkDeformVolumeFilterInternals.h"
+
+#include "DeformedBounds.h"
+#include "InputUpdate.h"
+#include "LookupBounds.h"
+#include "OutputExtent.h"
+
+#include "vtkInformation.h"
+#include "vtkInformationDoubleKey.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+using deformvolume::DeformationSource;
+using deformvolume::Error;
+using deformvolume::ImageGeometry;
+using deformvolume::IndexBounds;
+
+//------------------------------------------------------------------------------
+IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(const deformvolume::Ranks& ranks,
+  const ImageGeometry& volume, vtkInformation* output, const double* time)
+{
+  vtkDataObject* shape = deformvolume::UpdateInput(this->Self, 1, output, time, ranks);
+  vtkDataObject* rest = deformvolume::UpdateInput(this->Self, 2, output, time, ranks);
+  const DeformationSource source = this->ReadDeformation(ranks, volume, shape, rest);
+  IndexBounds bounds;
+  ranks.Attempt([&] { bounds = this->ComputeBounds(volume, source); });
+  this->State->VersionsInBounds = this->GetVersions();
+  return bounds;
+}
+
+//------------------------------------------------------------------------------
+std::pair<std::uint64_t, std::uint64_t> vtkDeformVolumeFilter::vtkInternals::GetVersions() const
+{
+  return { this->State->Deformation.GetRestMesh().GetShapeVersion(),
+    this->State->Deformation.GetVectorsVersion() };
+}
+
+//------------------------------------------------------------------------------
+IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
+  const ImageGeometry& volume, const DeformationSource& source)
+{
+  const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent,
+    { { source.Scale.x, source.Scale.y, source.Scale.z } } };
+  const bool extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
+  if (this->State->Deformation.IsField())
+  {
+    const deformvolume::DisplacementField field = this->State->Deformation.GetField(extrapolate);
+    const IndexBounds* known = this->State->Deformation.GetFieldBounds();
+    const IndexBounds bounds = known ? *known
+      : this->State->Deformation.IsInverseField()
+      ? deformvolume::ComputeLookupBounds(voxelGrid, field)
+      : deformvolume::ComputeDeformedBounds(voxelGrid, field);
+    if (bounds.IsEmpty())
+    {
+      throw Error("The displacement field on input port 1 holds no voxel of the volume. Check "
+                  "that both are in the same world coordinates and overlap.");
+    }
+    return bounds;
+  }
+  if (extrapolate)
+  {
+    // The links are made before any output is asked for: what they need is checked here.
+    this->SelectDevice();
+    this->CheckWithRoom(
+      [&]
+      {
+        this->State->Device.CheckMemory(voxelGrid, {}, { { 0, -1, 0, -1, 0, -1 } }, 0,
+          this->State->Deformation,
+          this->State->Mapping.GetRunBytes(
+            this->State->Deformation, { volume, volume.PointExtent, true }));
+      });
+    this->State->Mapping.Update(this->State->Deformation, { volume, volume.PointExtent, true }, {});
+    return deformvolume::ComputeDeformedBounds(voxelGrid, this->State->Mapping.GetLinks(),
+      this->State->Deformation.GetTetrahedra(), this->State->Deformation.GetNodeDisplacements());
+  }
+  const deformvolume::Deformation& mesh = this->State->Deformation;
+  this->UpdateBoundsOfMesh(voxelGrid);
+  const deformvolume::PointRanges changes = mesh.GetChanges(this->State->BoundsVectorsVersion);
+  const IndexBounds bounds = this->State->BoundsOfMesh.Compute(
+    mesh.GetRestPoints(), mesh.GetTetrahedra(), mesh.GetNodeDisplacements(), &changes);
+  this->State->BoundsVectorsVersion = mesh.GetVectorsVersion();
+  if (bounds.IsEmpty())
+  {
+    // Tells what is wrong.
+    this->State->Mapping.Update(
+      this->State->Deformation, { volume, volume.PointExtent, false }, {});
+    throw Error("The deformed volume has no bounds. Check the deformation mesh.");
+  }
+  return bounds;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::UpdateBoundsOfMesh(
+  const deformvolume::VoxelGrid& voxelGrid)
+{
+  const deformvolume::RestMesh& mesh = this->State->Deformation.GetRestMesh();
+  std::optional<std::vector<deformvolume::TetrahedronChange>> changes;
+  if (this->State->BoundsShapeVersion == mesh.GetShapeVersion() &&
+    this->State->BoundsGrid.VertexExtent == voxelGrid.VertexExtent &&
+    this->State->BoundsGrid.Scale == voxelGrid.Scale)
+  {
+    if (this->State->BoundsConnectivityVersion == mesh.GetConnectivityVersion())
+    {
+      return;
+    }
+    changes = mesh.GetChanges(this->State->BoundsConnectivityVersion);
+  }
+  this->State->BoundsShapeVersion = 0; // nothing, if this fails
+  if (changes)
+  {
+    this->State->BoundsOfMesh.ChangeConnectivity(mesh.GetPoints(), mesh.GetTetrahedra(), *changes);
+  }
+  else
+  {
+    this->State->BoundsOfMesh.SetMesh(voxelGrid, mesh.GetPoints(), mesh.GetTetrahedra());
+  }
+  this->State->BoundsShapeVersion = mesh.GetShapeVersion();
+  this->State->BoundsConnectivityVersion = mesh.GetConnectivityVersion();
+  this->State->BoundsGrid = voxelGrid;
+}
+
+//------------------------------------------------------------------------------
+IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
+  const deformvolume::Ranks& ranks, const ImageGeometry& volume, vtkInformation* output)
+{
+  deformvolume::ExecutionState::BoundsKey key;
+  std::set<double> times;
+  for (int port = 1; port < 3; ++port)
+  {
+    if (this->Self->GetNumberOfInputConnections(port) > 0)
+    {
+      const std::vector<double> inputTimes =
+        deformvolume::GetSampleTimes(this->Self, port, this->Self->NumberOfTimeSamples);
+      times.insert(inputTimes.begin(), inputTimes.end());
+    }
+    key.Inputs.push_back(deformvolume::GetInputStamp(this->Self, port));
+  }
+  key.Volume = volume;
+  const DeformationSource source = this->MakeSource(volume, nullptr, nullptr);
+  key.Scale = source.Scale;
+  key.DisplacementScale = source.DisplacementScale;
+  key.Choice = source.Choice;
+  key.OutsideMode = this->Self->OutsideMode;
+  key.NumberOfTimeSamples = this->Self->NumberOfTimeSamples;
+  if (!ranks.IsAny(!(key == this->State->KeyOfBounds)))
+  {
+    return this->State->Bounds;
+  }
+  if (!ranks.AreEqual(times.size()))
+  {
+    throw Error("The deformation has different time steps on different ranks. Connect a source "
+                "that announces the same on all.");
+  }
+
+  IndexBounds bounds;
+  if (times.empty())
+  {
+    bounds = this->ReadBounds(ranks, volume, output, nullptr);
+  }
+  // The first step comes last: it is what an input then holds where no time is asked for.
+  for (auto time = times.rbegin(); time != times.rend(); ++time)
+  {
+    const double step = *time;
+    bounds.Add(this->ReadBounds(ranks, volume, output, &step));
+  }
+  this->State->KeyOfBounds = key;
+  this->State->Bounds = bounds;
+  this->State->TimesInBounds = times;
+  return bounds;
+}
+
+//------------------------------------------------------------------------------
+deformvolume::Extent vtkDeformVolumeFilter::vtkInternals::FindExtent(
+  const IndexBounds& bounds) const
+{
+  const deformvolume::Extent needed =
+    deformvolume::GetPadded(deformvolume::GetExtentInside(bounds), this->Self->Padding);
+  return this->Self->BoundsGranularity > 1
+    ? deformvolume::GetKept(this->State->LastExtent, needed, this->Self->BoundsGranularity)
+    : needed;
+}
+
+//------------------------------------------------------------------------------
+deformvolume::Extent vtkDeformVolumeFilter::vtkInternals::GetDeformedExtent(
+  const deformvolume::Ranks& ranks, const ImageGeometry& volume, vtkInformation* output)
+{
+  const IndexBounds bounds = this->GetDeformedBounds(ranks, volume, output);
+  if (this->Self->BoundsGranularity <= 1)
+  {
+    this->ForgetDeformedExtent();
+    return this->FindExtent(bounds);
+  }
+  deformvolume::ExecutionState::ExtentKey key{ this->State->KeyOfBounds, this->State->TimesInBounds,
+    this->Self->Padding, this->Self->BoundsGranularity };
+  key.Settings.Inputs.clear();
+  // Ranks keep what all of them have kept.
+  bool keep = !ranks.IsAny(!(key == this->State->KeyOfExtent));
+  for (const int end : this->State->LastExtent)
+  {
+    keep = ranks.AreEqual(static_cast<std::uint32_t>(end)) && keep;
+  }
+  if (!keep)
+  {
+    this->State->LastExtent = { { 0, -1, 0, -1, 0, -1 } };
+  }
+  deformvolume::Extent extent;
+  ranks.Attempt([&] { extent = this->FindExtent(bounds); });
+  this->State->KeyOfExtent = key;
+  this->State->LastExtent = extent;
+  return extent;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::KeepInBounds(const deformvolume::Ranks& ranks,
+  const ImageGeometry& volume, const DeformationSource& source, vtkInformation* output)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  if (this->Self->OutputBoundsMode != DEFORMED_BOUNDS || !output->Has(Pipeline::UPDATE_TIME_STEP()))
+  {
+    return;
+  }
+  const double time = output->Get(Pipeline::UPDATE_TIME_STEP());
+  if (!ranks.IsAny(this->State->TimesInBounds.count(time) == 0 &&
+        this->State->VersionsInBounds != this->GetVersions()))
+  {
+    return;
+  }
+  IndexBounds bounds = this->State->Bounds;
+  ranks.Attempt([&] { bounds.Add(this->ComputeBounds(volume, source)); });
+  this->State->VersionsInBounds = this->GetVersions();
+  if (this->FindExtent(bounds) == this->FindExtent(this->State->Bounds))
+  {
+    return;
+  }
+  this->State->Bounds = bounds;
+  this->BoundsHaveGrown = true;
+  vtkWarningWithObjectMacro(this->Self,
+    << "The deformed volume at time " << time
+    << " leaves the extent of the output, which was found from other times, and is cut off there. "
+       "The next update has an extent that holds it. Set a greater NumberOfTimeSamples or Padding, "
+       "or CustomBounds.");
+}

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkVolumeEditAlgorithm.h"
+
+#include "vtkVolumeEditAlgorithmInternals.h"
+
+#include "Error.h"
+#include "FailureReport.h"
+#include "ImageGeometry.h"
+#include "PieceRequest.h"
+#include "VTKThreads.h"
+#include "VectorChoice.h"
+
+#include "vtkDataObject.h"
+#include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationInformationVectorKey.h"
+#include "vtkInformationIntegerVectorKey.h"
+#include "vtkInformationVector.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <cmath>
+#include <exception>
+#include <new>
+
+namespace
+{
+
+// Such as the part of a rank without work, of a volume that has cells: there is nothing to be
+// edited.
+bool IsPartWithoutCells(vtkImageData* volume, vtkInformation* info)
+{
+  return volume &&
+    deformvolume::GetNumberOfCells(deformvolume::GetGeometry(volume).PointExtent) == 0 &&
+    deformvolume::GetNumberOfCells(deformvolume::GetGeometry(info).PointExtent) > 0;
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+bool vtkVolumeEditAlgorithm::vtkEdits::SetVolume(vtkInformationVector** input)
+{
+  const bool isNew =
+    this->Editor.SetVolume(vtkImageData::GetData(input[0]), input[0]->GetInformationObject(0));
+  if (isNew)
+  {
+    this->Tool.Restart();
+  }
+  return isNew;
+}
+
+//------------------------------------------------------------------------------
+const deformvolume::VertexPositions& vtkVolumeEditAlgorithm::vtkEdits::GetVertices(
+  vtkInformationVector** input)
+{
+  deformvolume::DeformationSource source;
+  source.Shape = vtkDataObject::GetData(input[2]);
+  source.Rest = vtkDataObject::GetData(input[3]);
+  deformvolume::ChooseVectors(source, this->Self->GetInputArrayInformation(0),
+    [this](vtkDataSet* dataSet, int& association)
+    { return this->Self->GetInputArrayToProcess(0, dataSet, association); });
+  source.DisplacementScale = this->Self->DisplacementScale;
+  return this->Editor.GetPositions(source, this->Self->OutsideMode == EXTRAPOLATE);
+}
+
+//------------------------------------------------------------------------------
+vtkVolumeEditAlgorithm::vtkVolumeEditAlgorithm()
+  : Edits(new vtkEdits(this))
+{
+  deformvolume::UseVTKThreads();
+  this->SetNumberOfInputPorts(4);
+  this->SetInputArrayToProcess(
+    0, 2, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::VECTORS);
+}
+
+//------------------------------------------------------------------------------
+vtkVolumeEditAlgorithm::~vtkVolumeEditAlgorithm() = default;
+
+//------------------------------------------------------------------------------
+void vtkVolumeEditAlgorithm::SetDeformationConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(2, output);
+}
+
+//------------------------------------------------------------------------------
+void vtkVolumeEditAlgorithm::SetDeformationData(vtkDataObject* data)
+{
+  this->SetInputDataInternal(2, data);
+}
+
+//------------------------------------------------------------------------------
+void vtkVolumeEditAlgorithm::SetRestConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(3, output);
+}
+
+//------------------------------------------------------------------------------
+void vtkVolumeEditAlgorithm::SetRestData(vtkDataObject* data)
+{
+  this->SetInputDataInternal(3, data);
+}
+
+//------------------------------------------------------------------------------
+void vtkVolumeEditAlgorithm::ClearToolPositions()
+{
+  if (this->Edits->Tool.GetNumberOfPositions() > 0)
+  {
+    this->Edits->Tool.Clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkVolumeEditAlgorithm::GetNumberOfToolPositions()
+{
+  return static_cast<int>(this->Edits->Tool.GetNumberOfPositions());
+}
+
+//------------------------------------------------------------------------------
+void vtkVolumeEditAlgorithm::Undo()
+{
+  if (this->Edits->Editor.Undo())
+  {
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkVolumeEditAlgorithm::Redo()
+{
+  if (this->Edits->Editor.Redo())
+  {
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkVolumeEditAlgorithm::Reset()
+{
+  if (this->Edits->Editor.Reset())
+  {
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkVolumeEditAlgorithm::GetNumberOfSwitchedOffTetrahedra()
+{
+  return this->Edits->Editor.GetNumberOfSwitchedOffTetrahedra();
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkVolumeEditAlgorithm::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+{
+  // vtkImageAlgorithm is not asked for information: it would crash where the array of displacements
+  // is chosen and there is no deformation.
+  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
+  {
+    return this->Superclass::ProcessRequest(request, input, output);
+  }
+  vtkInformation* outInfo = output->GetInformationObject(0);
+  if (vtkInformation* volume = input[0]->GetInformationObject(0))
+  {
+    outInfo->CopyEntry(volume, vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
+    outInfo->CopyEntry(volume, vtkDataObject::ORIGIN());
+    outInfo->CopyEntry(volume, vtkDataObject::SPACING());
+    outInfo->CopyEntry(volume, vtkDataObject::DIRECTION());
+    outInfo->CopyEntry(volume, vtkDataObject::POINT_DATA_VECTOR(), 1);
+    return 1;
+  }
+  const int empty[6] = { 0, -1, 0, -1, 0, -1 };
+  outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkVolumeEditAlgorithm::FillInputPortInformation(int port, vtkInformation* info)
+{
+  // The executive's message about a missing input would not say what to connect.
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  if (port < 2)
+  {
+    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkImageData" : "vtkPolyData");
+    return 1;
+  }
+  // Composite datasets come first, or the executive would iterate over their leaves.
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
+  if (port == 2)
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkVolumeEditAlgorithm::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkInformation* outInfo = output->GetInformationObject(0);
+  if (vtkInformation* volume = input[0]->GetInformationObject(0))
+  {
+    volume->Set(Pipeline::UPDATE_EXTENT(), outInfo->Get(Pipeline::UPDATE_EXTENT()), 6);
+  }
+  for (int port = 1; port < 4; ++port)
+  {
+    if (vtkInformation* info = input[port]->GetInformationObject(0))
+    {
+      deformvolume::AskForAll(info);
+    }
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkVolumeEditAlgorithm::RequestData(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  vtkImageData* volume = vtkImageData::GetData(input[0]);
+  vtkImageData* image = vtkImageData::GetData(output);
+  image->Initialize();
+  if (IsPartWithoutCells(volume, input[0]->GetInformationObject(0)))
+  {
+    image->ShallowCopy(volume);
+    return 1;
+  }
+  try
+  {
+    if (!std::isfinite(this->DisplacementScale))
+    {
+      throw deformvolume::Error("DisplacementScale is not finite. Set a finite one.");
+    }
+    this->UpdateEdits(input);
+    this->Edits->Tool.Finish();
+    this->Edits->Editor.Write(volume, image);
+    return 1;
+  }
+  catch (const std::bad_alloc&)
+  {
+    vtkErrorMacro(
+      "The memory of this machine does not suffice for the edits. Use a smaller volume.");
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+  }
+  return deformvolume::Fail(this);
+}
+
+//------------------------------------------------------------------------------
+void vtkVolumeEditAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Accumulate: " << (this->Accumulate ? "on" : "off") << "\n";
+  os << indent << "NumberOfToolPositions: " << this->GetNumberOfToolPositions() << "\n";
+  os << indent << "DisplacementScale: " << this->DisplacementScale << "\n";
+  os << indent << "OutsideMode: " << this->OutsideMode << "\n";
+  os << indent << "NumberOfSwitchedOffTetrahedra: " << this->GetNumberOfSwitchedOffTetrahedra()
+     << "\n";
+}

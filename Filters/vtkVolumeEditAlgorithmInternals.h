@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkVolumeEditAlgorithmInternals_h
+#define vtkVolumeEditAlgorithmInternals_h
+
+#include "ToolPath.h"
+#include "VertexPositions.h"
+#include "VolumeEditor.h"
+
+#include "vtkVolumeEditAlgorithm.h"
+
+/// What the subclasses keep from one execution to the next.
+class vtkVolumeEditAlgorithm::vtkEdits
+{
+public:
+  explicit vtkEdits(vtkVolumeEditAlgorithm* self)
+    : Self(self)
+  {
+  }
+
+  /// Takes the volume on port 0; see VolumeEditor::SetVolume().
+  bool SetVolume(vtkInformationVector** input);
+  /// Where its vertices are, by ports 2 and 3; see VolumeEditor::GetPositions().
+  const deformvolume::VertexPositions& GetVertices(vtkInformationVector** input);
+
+  deformvolume::VolumeEditor Editor;
+  deformvolume::ToolPath Tool;
+
+private:
+  vtkVolumeEditAlgorithm* Self;
+};
+
+#endif

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the ChainMail kernels share: blocks of voxels, their links, and their rows in the output.
+//
+// A work-group takes a block of the list; its work-items share the rows of eight voxels. On processors a work-group is
+// one work-item, and SERIAL is 1.
+//
+// displacements: of block b, 512 integers for each axis. flags, links, materials: of block b, 512 bytes.
+// limits: for component c and axis a of a link, ((3 c + a) * 2 + way) * 256 + material. Way 0: how much more the voxel
+// at the upper end may have than the one at the lower end. Way 1: how much less. Half of it counts for each voxel.
+// saved: three numbers a voxel of the volume. It is the output, which nobody needs during a step: of each block that
+// the step has changed, it then holds what the displacements were before.
+
+#define INLINE static inline __attribute__((always_inline))
+#define ROWS DEFORMVOLUME_BLOCK_ROWS
+#define VOXELS DEFORMVOLUME_BLOCK_VOXELS
+#define NO_LIMIT DEFORMVOLUME_NO_LIMIT
+
+#if SERIAL
+#define BARRIER()
+#define OR_INTO(place, bits) (*(place) |= (bits))
+#else
+#define BARRIER() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
+#define OR_INTO(place, bits) atomic_or(place, bits)
+#endif
+#define FOR_ROWS(r) for (int r = get_local_id(0); r < ROWS; r += get_local_size(0))
+
+// A neighbour of a block, and whether it is there.
+INLINE int HasNeighbour(uint block, int face, const ChainMailGrid* g)
+{
+  const int at[3] = { block % g->Blocks[0], block / g->Blocks[0] % g->Blocks[1],
+    block / (g->Blocks[0] * g->Blocks[1]) };
+  const int axis = face >> 1;
+  return face & 1 ? at[axis] + 1 < g->Blocks[axis] : at[axis] > 0;
+}
+INLINE uint NeighbourOf(uint block, int face, const ChainMailGrid* g)
+{
+  const uint steps[3] = { 1, g->Blocks[0], g->Blocks[0] * g->Blocks[1] };
+  return face & 1 ? block + steps[face >> 1] : block - steps[face >> 1];
+}
+
+INLINE __global const int* Limits(__global const int* limits, int component, int axis, int way)
+{
+  return limits + ((3 * component + axis) * 2 + way) * 256;
+}
+
+// Values of a table for eight materials, which most often are the same.
+INLINE int8 LookUp(__global const int* table, uchar8 m)
+{
+  const ulong all = as_ulong(m);
+  if (all == (all & 255) * 0x0101010101010101UL)
+  {
+    return (int8)(table[m.s0]);
+  }
+  return (int8)(table[m.s0], table[m.s1], table[m.s2], table[m.s3], table[m.s4], table[m.s5],
+    table[m.s6], table[m.s7]);
+}
+
+// Limits of eight links between voxels with these halves. links: of the voxels at the lower ends.
+INLINE int8 LinkLimits(int8 a, int8 b, uchar8 links, int axis)
+{
+  const int8 there = (convert_int8(links) & (1 << axis)) != 0;
+  return select((int8)(NO_LIMIT), (a + b) >> 1, there);
+}
+
+// Where the row on one side of row r, of faces -y to +z, begins in flags, links and materials.
+INLINE int FindRow(uint block, int r, int face, const ChainMailGrid* g, size_t* offset)
+{
+  const int steps[3] = { 0, 1, 8 };
+  const int place = face < 4 ? r & 7 : r >> 3;
+  const int step = steps[face >> 1];
+  if (face & 1 ? place < 7 : place > 0)
+  {
+    *offset = (size_t)block * VOXELS + 8 * (face & 1 ? r + step : r - step);
+    return 1;
+  }
+  const int has = HasNeighbour(block, face, g);
+  *offset = has
+    ? (size_t)NeighbourOf(block, face, g) * VOXELS + 8 * (face & 1 ? r - 7 * step : r + 7 * step)
+    : (size_t)block * VOXELS + 8 * r;
+  return has;
+}
+
+// Displacements beside those of a row, on an axis.
+INLINE __global const int* RowAt(__global const int* displacements, size_t offset, int component)
+{
+  return displacements + offset / VOXELS * 3 * VOXELS + component * VOXELS + offset % VOXELS;
+}
+
+// The neighbours of the voxels of a row on one side.
+typedef struct
+{
+  int8 Displacements[3];
+  uchar8 Links; // nonzero where there is a link to them
+  uchar8 Materials;
+} Neighbours;
+
+INLINE void FindNeighbours(Neighbours* n, __global const int* displacements,
+  __global const uchar* links, __global const uchar* materials, uint block, int r, int face,
+  const ChainMailGrid* g)
+{
+  const size_t own = (size_t)block * VOXELS + 8 * r;
+  if (face >= 2)
+  {
+    size_t offset;
+    const int has = FindRow(block, r, face, g, &offset);
+    const uchar8 lower = vload8(0, links + (face & 1 ? own : offset));
+    n->Links = has ? (lower >> (uchar8)(face >> 1)) & (uchar8)(1) : (uchar8)(0);
+    n->Materials = vload8(0, materials + offset);
+    for (int c = 0; c < 3; ++c)
+    {
+      n->Displacements[c] = vload8(0, RowAt(displacements, offset, c));
+    }
+    return;
+  }
+  const int has = HasNeighbour(block, face, g);
+  const size_t beside =
+    has ? (size_t)NeighbourOf(block, face, g) * VOXELS + 8 * r + (face ? 0 : 7) : own;
+  const uchar8 l = vload8(0, links + own);
+  const uchar8 m = vload8(0, materials + own);
+  const uchar linkBeside = has ? links[beside] : 0;
+  const uchar materialBeside = materials[beside];
+  n->Links = face ? l & (uchar8)(1) : (uchar8)(linkBeside, l.s0123, l.s456) & (uchar8)(1);
+  n->Links.s7 = face && !has ? 0 : n->Links.s7;
+  n->Materials =
+    face ? (uchar8)(m.s123, m.s4567, materialBeside) : (uchar8)(materialBeside, m.s0123, m.s456);
+  for (int c = 0; c < 3; ++c)
+  {
+    const int8 x = vload8(0, RowAt(displacements, own, c));
+    const int xBeside = *RowAt(displacements, beside, c);
+    n->Displacements[c] = face ? (int8)(x.s123, x.s4567, xBeside) : (int8)(xBeside, x.s0123, x.s456);
+  }
+}
+
+// Voxels of a row of a block that lie in the volume, and the place of the first one in the output.
+INLINE int FindOutputRow(uint block, int r, const ChainMailGrid* g, size_t* place)
+{
+  const int x = block % g->Blocks[0] * 8;
+  const int y = block / g->Blocks[0] % g->Blocks[1] * 8 + (r & 7);
+  const int z = block / (g->Blocks[0] * g->Blocks[1]) * 8 + (r >> 3);
+  *place = (((size_t)z * g->Size[1] + y) * g->Size[0] + x) * 3;
+  return y < g->Size[1] && z < g->Size[2] ? min(8, g->Size[0] - x) : 0;
+}
+
+INLINE void SaveBlock(
+  __global const int* displacements, __global int* saved, uint block, const ChainMailGrid* g)
+{
+  FOR_ROWS(r)
+  {
+    size_t place;
+    const int count = FindOutputRow(block, r, g, &place);
+    for (int c = 0; c < 3; ++c)
+    {
+      __global const int* row = displacements + ((size_t)block * 3 + c) * VOXELS + 8 * r;
+      for (int i = 0; i < count; ++i)
+      {
+        saved[place + c * count + i] = row[i];
+      }
+    }
+  }
+}
+
+__kernel void Save(__global const int* displacements, __global int* saved,
+  __global const uint* list, const ChainMailGrid g)
+{
+  SaveBlock(displacements, saved, list[2 * get_group_id(0)], &g);
+}
+
+__kernel void ClearFlags(__global uchar* flags, __global const uint* list)
+{
+  const uint block = list[2 * get_group_id(0)];
+  FOR_ROWS(r)
+  {
+    vstore8((uchar8)(0), 0, flags + (size_t)block * VOXELS + 8 * r);
+  }
+}
+
+__kernel void PutToRest(__global int* displacements, __global const uint* list)
+{
+  const uint block = list[2 * get_group_id(0)];
+  FOR_ROWS(r)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      vstore8((int8)(0), 0, displacements + ((size_t)block * 3 + c) * VOXELS + 8 * r);
+    }
+  }
+}
+
+// Handles take their voxels. voxels: place of a voxel in its block and all blocks before, and its handle. targets: of
+// a handle, a displacement and the flags of its voxels; without flags of systems the voxels stay where they are.
+__kernel void Hold(__global int* displacements, __global uchar* flags, __global const uchar* links,
+  __global const uint* voxels, __global const int* targets, __global uint* shared,
+  __global uint* counts, const uint end)
+{
+  const uint i = get_global_id(0);
+  if (i >= end)
+  {
+    return;
+  }
+  const uint voxel = voxels[2 * i];
+  const uint handle = voxels[2 * i + 1];
+  const uchar kind = links[voxel];
+  const uchar set = targets[4 * handle + 3];
+  if (!(kind & DEFORMVOLUME_ELEMENT) || (kind & DEFORMVOLUME_PINNED) || !set)
+  {
+    return;
+  }
+  atomic_inc(counts + handle);
+  flags[voxel] = set;
+  if (!(set & DEFORMVOLUME_ALL_SYSTEMS))
+  {
+    return;
+  }
+  uint needed = 0;
+  for (int c = 0; c < 3; ++c)
+  {
+    __global int* x =
+      displacements + (size_t)(voxel / VOXELS) * 3 * VOXELS + c * VOXELS + voxel % VOXELS;
+    const int target = targets[4 * handle + c];
+    needed |= target < *x ? 1u << c : target > *x ? 8u << c : 0;
+    *x = target;
+  }
+  if (needed)
+  {
+    atomic_or(shared + DEFORMVOLUME_NEEDED, needed);
+  }
+}

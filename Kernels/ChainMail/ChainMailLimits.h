@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeChainMailLimits_h
+#define DeformVolumeChainMailLimits_h
+
+#include "ChainMailTypes.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// A table of materials as the kernels have it.
+struct ChainMailLimits
+{
+  /// table: 1 to 256 materials; throws an Error where one is invalid. spacing: on each axis.
+  ChainMailLimits(
+    const std::vector<ChainMailMaterial>& table, const std::array<double, 3>& spacing);
+
+  std::vector<std::int32_t> Limits;
+  std::vector<unsigned char> Weights;
+  std::vector<float> Reciprocals;
+};
+
+} // namespace deformvolume
+
+#endif

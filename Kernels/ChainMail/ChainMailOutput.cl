@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The output of ChainMail, and whether displacements keep to the limits. It comes after ChainMailBlocks.cl.
+
+// Displacements of a row in world units. fma is rounded once, everywhere.
+INLINE void WriteRow(
+  const int8* x, __global int* output, size_t place, int count, const ChainMailGrid* g)
+{
+  float8 world[3];
+  for (int k = 0; k < 3; ++k)
+  {
+    const float scale = 1.0f / DEFORMVOLUME_CHAINMAIL_UNITS;
+    world[k] = fma((float8)(g->ToWorld[3 * k]), convert_float8(x[0]) * scale,
+      fma((float8)(g->ToWorld[3 * k + 1]), convert_float8(x[1]) * scale,
+        (float8)(g->ToWorld[3 * k + 2]) * (convert_float8(x[2]) * scale)));
+  }
+  int values[3][8];
+  for (int k = 0; k < 3; ++k)
+  {
+    vstore8(as_int8(world[k]), 0, values[k]);
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    output[place + 3 * i] = values[0][i];
+    output[place + 3 * i + 1] = values[1][i];
+    output[place + 3 * i + 2] = values[2][i];
+  }
+}
+
+// Blocks as they were before the step. isEnd: whether the step ends with it, and saved is the output again.
+__kernel void Restore(__global int* displacements, __global uchar* flags, __global int* saved,
+  __global const uint* list, const int isEnd, const ChainMailGrid g)
+{
+  const uint block = list[2 * get_group_id(0)];
+  FOR_ROWS(r)
+  {
+    size_t place;
+    const int count = FindOutputRow(block, r, &g, &place);
+    int8 x[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      __global int* row = displacements + ((size_t)block * 3 + c) * VOXELS + 8 * r;
+      for (int i = 0; i < count; ++i)
+      {
+        row[i] = saved[place + c * count + i];
+      }
+      x[c] = vload8(0, row);
+    }
+    vstore8((uchar8)(0), 0, flags + (size_t)block * VOXELS + 8 * r);
+    if (isEnd)
+    {
+      WriteRow(x, saved, place, count, &g);
+    }
+  }
+}
+
+// The largest violation of the limits of a row.
+INLINE int FindViolation(const int8* x, uchar8 m, __global const int* displacements,
+  __global const uchar* links, __global const uchar* materials, __global const int* limits,
+  uint block, int r, const ChainMailGrid* g)
+{
+  int8 largest = 0;
+  for (int face = 0; face < 6; ++face)
+  {
+    Neighbours n;
+    FindNeighbours(&n, displacements, links, materials, block, r, face, g);
+    const int8 there = convert_int8(n.Links) != 0;
+    const int axis = face >> 1;
+    for (int c = 0; c < 3; ++c)
+    {
+      const int8 difference =
+        face & 1 ? n.Displacements[c] - x[c] : x[c] - n.Displacements[c]; // upper end - lower end
+      __global const int* more = Limits(limits, c, axis, 0);
+      __global const int* less = Limits(limits, c, axis, 1);
+      const int8 over = difference - ((LookUp(more, m) + LookUp(more, n.Materials)) >> 1);
+      const int8 under = -difference - ((LookUp(less, m) + LookUp(less, n.Materials)) >> 1);
+      largest = max(largest, select((int8)(0), max(over, under), there));
+    }
+  }
+  const int4 four = max(largest.lo, largest.hi);
+  const int2 two = max(four.lo, four.hi);
+  return max(two.x, two.y);
+}
+
+// The largest violation in blocks.
+__kernel void Check(__global const int* displacements, __global const uchar* links,
+  __global const uchar* materials, __global const int* limits, __global uint* shared,
+  __global const uint* list, const ChainMailGrid g)
+{
+  const uint block = list[2 * get_group_id(0)];
+  FOR_ROWS(r)
+  {
+    int8 x[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      x[c] = vload8(r, displacements + ((size_t)block * 3 + c) * VOXELS);
+    }
+    const uchar8 m = vload8(r, materials + (size_t)block * VOXELS);
+    const int violation =
+      FindViolation(x, m, displacements, links, materials, limits, block, r, &g);
+    if (violation > 0)
+    {
+      atomic_max(shared + DEFORMVOLUME_VIOLATION, (uint)violation);
+    }
+  }
+}
+
+// The output of blocks.
+__kernel void Write(__global const int* displacements, __global int* output,
+  __global const uint* list, const ChainMailGrid g)
+{
+  const uint block = list[2 * get_group_id(0)];
+  FOR_ROWS(r)
+  {
+    size_t place;
+    const int count = FindOutputRow(block, r, &g, &place);
+    int8 x[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      x[c] = vload8(r, displacements + ((size_t)block * 3 + c) * VOXELS);
+    }
+    WriteRow(x, output, place, count, &g);
+  }
+}
+
+// The end of a step, for blocks that were saved: flags are cleared, moved voxels counted, limits checked, and the output
+// is written.
+__kernel void Finish(__global const int* displacements, __global uchar* flags,
+  __global const uchar* links, __global const uchar* materials, __global const int* limits,
+  __global int* output, __global uint* shared, __global const uint* list, __global uint* results,
+  const ChainMailGrid g)
+{
+  __local uint moved;
+  if (get_local_id(0) == 0)
+  {
+    moved = 0;
+  }
+  BARRIER();
+  const uint block = list[2 * get_group_id(0)];
+  uint movedRows = 0;
+  FOR_ROWS(r)
+  {
+    size_t place;
+    const int count = FindOutputRow(block, r, &g, &place);
+    int8 x[3];
+    int8 isMoved = 0;
+    for (int c = 0; c < 3; ++c)
+    {
+      x[c] = vload8(r, displacements + ((size_t)block * 3 + c) * VOXELS);
+      int before[8];
+      vstore8(x[c], 0, before);
+      for (int i = 0; i < count; ++i)
+      {
+        before[i] = output[place + c * count + i];
+      }
+      isMoved |= vload8(0, before) != x[c];
+    }
+    vstore8((uchar8)(0), r, flags + (size_t)block * VOXELS);
+    const uchar8 m = vload8(r, materials + (size_t)block * VOXELS);
+    const int4 four = isMoved.lo + isMoved.hi;
+    const int rowMoved = -(four.x + four.y + four.z + four.w);
+    if (rowMoved)
+    {
+      const int violation =
+        FindViolation(x, m, displacements, links, materials, limits, block, r, &g);
+      if (violation > 0)
+      {
+        atomic_max(shared + DEFORMVOLUME_VIOLATION, (uint)violation);
+      }
+      movedRows += rowMoved;
+    }
+    WriteRow(x, output, place, count, &g);
+  }
+#if SERIAL
+  moved = movedRows;
+#else
+  atomic_add(&moved, movedRows);
+#endif
+  BARRIER();
+  if (get_local_id(0) == 0)
+  {
+    results[get_group_id(0)] = moved;
+  }
+}

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Relaxation: a voxel moves towards the weighted mean of its neighbours' displacements, as far as its links allow. It
+// comes after ChainMailBlocks.cl.
+//
+// Neighbours of a voxel have another parity of x + y + z. A launch moves the voxels of one parity and reads the others:
+// no limit is violated then, and it does not matter which one comes first.
+//
+// weights: of a link between two materials, 65536 numbers for links along the component, then for all others.
+// reciprocals: of the sums of weights, as floats. A product of two floats is rounded the same everywhere.
+
+// Differences over this many units count as this: six of them, 255 times each, fit in an int.
+#define MOST_PULL (1 << 20)
+
+INLINE int8 WeightsOf(__global const uchar* weights, uchar8 a, uchar8 b)
+{
+  const ulong allA = as_ulong(a), allB = as_ulong(b), ones = 0x0101010101010101UL;
+  if (allA == (allA & 255) * ones && allB == (allB & 255) * ones)
+  {
+    return (int8)(weights[a.s0 * 256 + b.s0]);
+  }
+  const int8 place = convert_int8(a) * 256 + convert_int8(b);
+  return (int8)(weights[place.s0], weights[place.s1], weights[place.s2], weights[place.s3],
+    weights[place.s4], weights[place.s5], weights[place.s6], weights[place.s7]);
+}
+
+INLINE float8 ReciprocalsOf(__global const float* reciprocals, int8 s)
+{
+  return (float8)(reciprocals[s.s0], reciprocals[s.s1], reciprocals[s.s2], reciprocals[s.s3],
+    reciprocals[s.s4], reciprocals[s.s5], reciprocals[s.s6], reciprocals[s.s7]);
+}
+
+// results: 1 where a block has changed. threshold: in units; smaller moves are not made.
+__kernel void Relax(__global int* displacements, __global const uchar* flags,
+  __global const uchar* links, __global const uchar* materials, __global const int* limits,
+  __global const uchar* weights, __global const float* reciprocals, __global const uint* list,
+  __global uint* results, const int parity, const float elasticity, const int threshold,
+  const ChainMailGrid g)
+{
+  __local uint changed;
+  if (get_local_id(0) == 0)
+  {
+    changed = 0;
+  }
+  BARRIER();
+  const uint block = list[2 * get_group_id(0)];
+  const int8 odd = (int8)(0, 1, 0, 1, 0, 1, 0, 1);
+  FOR_ROWS(r)
+  {
+    const size_t own = (size_t)block * VOXELS + 8 * r;
+    const uchar8 m = vload8(0, materials + own);
+    const int8 kind = convert_int8(vload8(0, links + own));
+    const int8 held = (convert_int8(vload8(0, flags + own)) &
+                        (DEFORMVOLUME_HELD | DEFORMVOLUME_FIXED)) != 0;
+    const int8 mine = (((odd + ((r ^ r >> 3) & 1)) & 1) == parity) & ~held &
+      ((kind & (DEFORMVOLUME_ELEMENT | DEFORMVOLUME_PINNED)) == DEFORMVOLUME_ELEMENT);
+    int8 x[3], pull[3], sum[3], lowest[3], highest[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      x[c] = vload8(0, RowAt(displacements, own, c));
+      pull[c] = 0;
+      sum[c] = 0;
+      lowest[c] = -NO_LIMIT;
+      highest[c] = NO_LIMIT;
+    }
+    for (int face = 0; face < 6; ++face)
+    {
+      Neighbours n;
+      FindNeighbours(&n, displacements, links, materials, block, r, face, &g);
+      const int8 there = convert_int8(n.Links) != 0;
+      const int axis = face >> 1;
+      for (int c = 0; c < 3; ++c)
+      {
+        const int8 weight = select((int8)(0),
+          WeightsOf(weights + (axis == c ? 0 : 65536), m, n.Materials), there);
+        sum[c] += weight;
+        pull[c] += weight *
+          clamp(n.Displacements[c] - x[c], (int8)(-MOST_PULL), (int8)(MOST_PULL));
+        // How much more, and how much less, this voxel may have than its neighbour.
+        __global const int* more = Limits(limits, c, axis, face & 1);
+        __global const int* less = Limits(limits, c, axis, ~face & 1);
+        const int8 over = (LookUp(more, m) + LookUp(more, n.Materials)) >> 1;
+        const int8 under = (LookUp(less, m) + LookUp(less, n.Materials)) >> 1;
+        highest[c] =
+          min(highest[c], select((int8)(NO_LIMIT), n.Displacements[c] + over, there));
+        lowest[c] =
+          max(lowest[c], select((int8)(-NO_LIMIT), n.Displacements[c] - under, there));
+      }
+    }
+    int8 any = 0;
+    int after[3][8];
+    for (int c = 0; c < 3; ++c)
+    {
+      const int8 best =
+        convert_int8_rte(convert_float8(pull[c]) * ReciprocalsOf(reciprocals, sum[c]));
+      const int8 step = convert_int8_rte(convert_float8(best) * elasticity);
+      const int8 isFar = (best >= threshold) | (best <= -threshold);
+      const int8 next = clamp(x[c] + step, lowest[c], highest[c]);
+      const int8 moves = mine & isFar & (next != x[c]);
+      any |= moves;
+      vstore8(select(x[c], next, moves), 0, after[c]);
+    }
+    // Only voxels of this parity are written.
+    int isAny[8];
+    vstore8(any, 0, isAny);
+    uint rowChanged = 0;
+    for (int i = (parity ^ r ^ r >> 3) & 1; i < 8; i += 2)
+    {
+      if (isAny[i])
+      {
+        rowChanged = 1;
+        for (int c = 0; c < 3; ++c)
+        {
+          displacements[((size_t)block * 3 + c) * VOXELS + 8 * r + i] = after[c][i];
+        }
+      }
+    }
+    if (rowChanged)
+    {
+      OR_INTO(&changed, 1);
+    }
+  }
+  BARRIER();
+  if (get_local_id(0) == 0)
+  {
+    results[get_group_id(0)] |= changed;
+  }
+}

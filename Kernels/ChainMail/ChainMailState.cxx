@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ChainMailState.h"
+
+#include "Error.h"
+#include "HostMemory.h"
+#include "KernelSources.h"
+#include "KernelText.h"
+
+#include <algorithm>
+#include <string>
+
+namespace deformvolume
+{
+namespace
+{
+
+// Work-items of a work-group, which share the rows of a block.
+constexpr std::size_t MostItems = DEFORMVOLUME_BLOCK_ROWS;
+
+std::uint64_t CountVoxels(const ChainMailBlocks& blocks)
+{
+  return std::uint64_t{ blocks.GetNumberOfBlocks() } * DEFORMVOLUME_BLOCK_VOXELS;
+}
+
+} // namespace
+
+ChainMailState::ChainMailState(WorkDevice& device, const ChainMailBlocks& blocks,
+  const std::array<double, 9>& indexToWorld, std::size_t workGroupSize)
+  : Device(device)
+  , Blocks(blocks)
+  , WorkGroupSize(std::min(workGroupSize, MostItems))
+  , Serial(device.GetDevice().HasVectors && workGroupSize == 0)
+{
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    this->Grid.Size[axis] = blocks.GetSize()[axis];
+    this->Grid.Blocks[axis] = blocks.GetCounts()[axis];
+  }
+  std::transform(indexToWorld.begin(), indexToWorld.end(), this->Grid.ToWorld,
+    [](double value) { return static_cast<float>(value); });
+  OpenCLContext& context = device.GetContext();
+  this->Program =
+    context.GetProgram(std::string(this->Serial ? "#define SERIAL 1\n" : "#define SERIAL 0\n") +
+        ChainMailParameters_h + ChainMailBlocks_cl + ChainMailOutput_cl + ChainMailPropagation_cl +
+        ChainMailRelaxation_cl,
+      KernelOptions);
+  const std::uint64_t voxels = CountVoxels(blocks);
+  Reserve(context, this->Displacements, voxels * 3 * sizeof(cl_int));
+  Reserve(context, this->Flags, voxels);
+  Reserve(context, this->Links, voxels);
+  Reserve(context, this->Materials, voxels);
+  Reserve(context, this->List, AtOnce * sizeof(BlockTask));
+  Reserve(context, this->Results, AtOnce * sizeof(cl_uint));
+  Reserve(context, this->Shared, sizeof(SharedNumbers));
+  const cl::CommandQueue& queue = device.GetQueue();
+  queue.enqueueFillBuffer(this->Displacements, cl_int{ 0 }, 0, voxels * 3 * sizeof(cl_int));
+  for (const cl::Buffer* bytes : { &this->Flags, &this->Links, &this->Materials })
+  {
+    queue.enqueueFillBuffer(*bytes, cl_uchar{ 0 }, 0, voxels);
+  }
+  queue.enqueueFillBuffer(this->Shared, cl_uint{ 0 }, 0, sizeof(SharedNumbers));
+  queue.finish();
+}
+
+std::uint64_t ChainMailState::GetNeededMemory(const ChainMailBlocks& blocks)
+{
+  const auto output = static_cast<std::uint64_t>(GetNumberOfPoints(blocks.GetExtent()));
+  return CountVoxels(blocks) * (3 * sizeof(cl_int) + 3) + output * 3 * sizeof(float);
+}
+
+std::uint64_t ChainMailState::GetMemory() const
+{
+  std::uint64_t bytes = 0;
+  for (const cl::Buffer* buffer :
+    { &this->Displacements, &this->Flags, &this->Links, &this->Materials, &this->Limits,
+      &this->Weights, &this->Reciprocals, &this->List, &this->Results, &this->Shared })
+  {
+    bytes += deformvolume::GetMemory(*buffer);
+  }
+  return bytes;
+}
+
+void ChainMailState::Continue() const
+{
+  if (this->Progress && !this->Progress())
+  {
+    throw Aborted();
+  }
+}
+
+void ChainMailState::SetLimits(const ChainMailLimits& limits)
+{
+  this->Limits = this->Device.Send(
+    limits.Limits.data(), limits.Limits.size() * sizeof(std::int32_t), this->Limits);
+  this->Weights = this->Device.Send(limits.Weights.data(), limits.Weights.size(), this->Weights);
+  this->Reciprocals = this->Device.Send(
+    limits.Reciprocals.data(), limits.Reciprocals.size() * sizeof(float), this->Reciprocals);
+}
+
+void ChainMailState::ChangeBytes(
+  const cl::Buffer& buffer, const std::function<void(unsigned char*)>& change)
+{
+  const MappedBuffer<unsigned char> bytes(
+    this->Device.GetQueue(), buffer, CL_MAP_READ | CL_MAP_WRITE);
+  change(bytes.Get());
+}
+
+void ChainMailState::ChangeLinks(const std::function<void(unsigned char*)>& change)
+{
+  this->ChangeBytes(this->Links, change);
+}
+
+void ChainMailState::ChangeMaterials(const std::function<void(unsigned char*)>& change)
+{
+  this->ChangeBytes(this->Materials, change);
+}
+
+void ChainMailState::PlaceOutput(float* output)
+{
+  this->HostOutput = nullptr;
+  const std::uint64_t bytes =
+    static_cast<std::uint64_t>(GetNumberOfPoints(this->Blocks.GetExtent())) * 3 * sizeof(float);
+  Place(this->Device.GetContext(), this->Output, output, sizeof(float), bytes);
+  this->HostOutput = output;
+}
+
+void ChainMailState::ReadOutput(const std::vector<Extent>& changes)
+{
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  if (IsInPlace(this->Output))
+  {
+    if (!this->Device.GetContext().SharesHostMemory())
+    {
+      BeginToRead(queue, this->Output, this->Output.getInfo<CL_MEM_SIZE>(), this->HostOutput)
+        .wait();
+    }
+    return;
+  }
+  const std::size_t row = static_cast<std::size_t>(this->Grid.Size[0]) * 3 * sizeof(float);
+  const std::size_t plane = row * static_cast<std::size_t>(this->Grid.Size[1]);
+  const Extent& whole = this->Blocks.GetExtent();
+  PendingReads reads;
+  for (const Extent& box : changes)
+  {
+    const cl::array<cl::size_type, 3> origin{ static_cast<std::size_t>(box[0] - whole[0]) * 3 *
+        sizeof(float),
+      static_cast<std::size_t>(box[2] - whole[2]), static_cast<std::size_t>(box[4] - whole[4]) };
+    const cl::array<cl::size_type, 3> size{ static_cast<std::size_t>(GetSize(box, 0)) * 3 *
+        sizeof(float),
+      static_cast<std::size_t>(GetSize(box, 1)), static_cast<std::size_t>(GetSize(box, 2)) };
+    cl::Event done;
+    queue.enqueueReadBufferRect(this->Output, CL_FALSE, origin, origin, size, row, plane, row,
+      plane, this->HostOutput, nullptr, &done);
+    reads.Add(done);
+  }
+  reads.Check();
+}
+
+void ChainMailState::Launch(const cl::Kernel& kernel, std::size_t groups)
+{
+  std::size_t items = 1;
+  if (!this->Serial)
+  {
+    const auto largest =
+      kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(this->Device.GetDevice().Device);
+    items = std::min<std::size_t>(this->WorkGroupSize ? this->WorkGroupSize : MostItems, largest);
+  }
+  this->Device.GetContext().Launch(
+    this->Device.GetQueue(), kernel, cl::NDRange(groups * items), cl::NDRange(items));
+}
+
+void ChainMailState::ForParts(
+  const std::vector<BlockTask>& list, const Setter& launch, bool canStop)
+{
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  const QueueGuard guard(queue);
+  for (std::size_t begin = 0; begin < list.size(); begin += AtOnce)
+  {
+    const std::size_t count = std::min(AtOnce, list.size() - begin);
+    queue.enqueueWriteBuffer(
+      this->List, CL_FALSE, 0, count * sizeof(BlockTask), list.data() + begin);
+    launch(begin, count);
+    queue.finish();
+    if (canStop)
+    {
+      this->Continue();
+    }
+  }
+}
+
+void ChainMailState::ForParts(
+  const std::vector<std::uint32_t>& list, const Setter& launch, bool canStop)
+{
+  std::vector<BlockTask> tasks(list.size());
+  std::transform(list.begin(), list.end(), tasks.begin(),
+    [](std::uint32_t block) {
+      return BlockTask{ block, 0 };
+    });
+  this->ForParts(tasks, launch, canStop);
+}
+
+void ChainMailState::Run(
+  const cl::Kernel& kernel, const std::vector<std::uint32_t>& list, bool canStop)
+{
+  this->ForParts(
+    list, [&](std::size_t, std::size_t count) { this->Launch(kernel, count); }, canStop);
+}
+
+template <typename Task>
+void ChainMailState::RunAndRead(const cl::Kernel& kernel, const std::vector<Task>& list,
+  std::vector<std::uint32_t>& results, bool canStop)
+{
+  results.resize(list.size());
+  this->ForParts(
+    list,
+    [&](std::size_t begin, std::size_t count)
+    {
+      this->Launch(kernel, count);
+      this->Device.GetQueue().enqueueReadBuffer(
+        this->Results, CL_TRUE, 0, count * sizeof(cl_uint), results.data() + begin);
+    },
+    canStop);
+}
+
+void ChainMailState::Save(const std::vector<std::uint32_t>& list)
+{
+  constexpr bool canStop = false;
+  this->Run(this->MakeKernel("Save", this->Displacements, this->Output, this->List, this->Grid),
+    list, canStop);
+}
+
+void ChainMailState::Restore(const std::vector<std::uint32_t>& list, bool isEnd)
+{
+  this->Run(this->MakeKernel("Restore", this->Displacements, this->Flags, this->Output, this->List,
+              cl_int{ isEnd }, this->Grid),
+    list);
+}
+
+void ChainMailState::ClearFlags(const std::vector<std::uint32_t>& list)
+{
+  this->Run(this->MakeKernel("ClearFlags", this->Flags, this->List), list);
+}
+
+void ChainMailState::PutToRest(const std::vector<std::uint32_t>& list)
+{
+  this->Run(this->MakeKernel("PutToRest", this->Displacements, this->List), list);
+}
+
+void ChainMailState::WriteOutput(const std::vector<std::uint32_t>& list)
+{
+  this->Run(
+    this->MakeKernel("Write", this->Displacements, this->Output, this->List, this->Grid), list);
+}
+
+void ChainMailState::Check(const std::vector<std::uint32_t>& list)
+{
+  this->Run(this->MakeKernel("Check", this->Displacements, this->Links, this->Materials,
+              this->Limits, this->Shared, this->List, this->Grid),
+    list);
+}
+
+void ChainMailState::Propagate(
+  const std::vector<BlockTask>& list, std::vector<std::uint32_t>& results)
+{
+  constexpr bool canStop = false;
+  this->RunAndRead(
+    this->MakeKernel("Propagate", this->Displacements, this->Flags, this->Links, this->Materials,
+      this->Limits, this->Output, this->Shared, this->List, this->Results, this->Grid),
+    list, results, canStop);
+}
+
+void ChainMailState::Relax(const std::vector<std::uint32_t>& list, float elasticity, int threshold,
+  std::vector<std::uint32_t>& results)
+{
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  for (cl_int parity = 0; parity < 2; ++parity)
+  {
+    const cl::Kernel kernel = this->MakeKernel("Relax", this->Displacements, this->Flags,
+      this->Links, this->Materials, this->Limits, this->Weights, this->Reciprocals, this->List,
+      this->Results, parity, elasticity, cl_int{ threshold }, this->Grid);
+    this->ForParts(list,
+      [&](std::size_t begin, std::size_t count)
+      {
+        const std::size_t bytes = count * sizeof(cl_uint);
+        queue.enqueueWriteBuffer(this->Results, CL_FALSE, 0, bytes, results.data() + begin);
+        this->Launch(kernel, count);
+        queue.enqueueReadBuffer(this->Results, CL_TRUE, 0, bytes, results.data() + begin);
+      });
+  }
+}
+
+void ChainMailState::Finish(
+  const std::vector<std::uint32_t>& list, std::vector<std::uint32_t>& moved)
+{
+  this->RunAndRead(
+    this->MakeKernel("Finish", this->Displacements, this->Flags, this->Links, this->Materials,
+      this->Limits, this->Output, this->Shared, this->List, this->Results, this->Grid),
+    list, moved);
+}
+
+void ChainMailState::Hold(const std::vector<HeldVoxel>& voxels,
+  const std::vector<HandleTask>& handles, std::vector<std::uint32_t>& counts)
+{
+  OpenCLContext& context = this->Device.GetContext();
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  const std::size_t bytes = handles.size() * sizeof(cl_uint);
+  counts.assign(handles.size(), 0);
+  const cl::Buffer list(context.GetContext(), CL_MEM_READ_ONLY, voxels.size() * sizeof(HeldVoxel));
+  const cl::Buffer targets(
+    context.GetContext(), CL_MEM_READ_ONLY, handles.size() * sizeof(HandleTask));
+  const cl::Buffer found(context.GetContext(), CL_MEM_READ_WRITE, bytes);
+  const QueueGuard guard(queue);
+  queue.enqueueWriteBuffer(list, CL_FALSE, 0, voxels.size() * sizeof(HeldVoxel), voxels.data());
+  queue.enqueueWriteBuffer(
+    targets, CL_FALSE, 0, handles.size() * sizeof(HandleTask), handles.data());
+  queue.enqueueWriteBuffer(found, CL_FALSE, 0, bytes, counts.data());
+  const cl::Kernel kernel = this->MakeKernel("Hold", this->Displacements, this->Flags, this->Links,
+    list, targets, this->Shared, found, static_cast<cl_uint>(voxels.size()));
+  const std::size_t items = 64;
+  const auto largest =
+    kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(this->Device.GetDevice().Device);
+  const std::size_t group = std::min(items, largest);
+  context.Launch(
+    queue, kernel, cl::NDRange((voxels.size() + group - 1) / group * group), cl::NDRange(group));
+  queue.enqueueReadBuffer(found, CL_TRUE, 0, bytes, counts.data());
+}
+
+SharedNumbers ChainMailState::TakeShared()
+{
+  SharedNumbers numbers;
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  queue.enqueueReadBuffer(this->Shared, CL_TRUE, 0, sizeof(numbers), numbers.data());
+  if (std::any_of(numbers.begin(), numbers.end(), [](std::uint32_t n) { return n != 0; }))
+  {
+    const SharedNumbers none{};
+    queue.enqueueWriteBuffer(this->Shared, CL_TRUE, 0, sizeof(none), none.data());
+  }
+  return numbers;
+}
+
+} // namespace deformvolume

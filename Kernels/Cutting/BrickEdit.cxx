@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BrickEdit.h"
+
+#include "FiveTetrahedra.h"
+#include "ParallelFor.h"
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace deformvolume
+{
+
+void BrickEdit::Set(const CellBricks& bricks, std::size_t brick)
+{
+  this->Vertices = bricks.GetVertices(brick);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Size[axis] = static_cast<int>(GetSize(this->Vertices, axis)) - 1;
+  }
+  const auto width = static_cast<std::size_t>(this->Size[0]) + 1;
+  this->Steps = { { 1, width, width * (static_cast<std::size_t>(this->Size[1]) + 1) } };
+}
+
+void BrickEdit::Set(const VertexPositions& positions, std::size_t brick)
+{
+  this->Set(positions.GetBricks(), brick);
+  positions.Find(this->Vertices, this->Positions.data(), this->HasPositions.data());
+  // A vertex without position gets that of another one, so that all lie within the box of the
+  // brick: predicates would overflow elsewhere.
+  const auto end =
+    this->HasPositions.begin() + static_cast<std::ptrdiff_t>(this->GetNumberOfVertices());
+  const auto found = std::find(this->HasPositions.begin(), end, true);
+  for (std::size_t i = 0; found != end && i < this->GetNumberOfVertices(); ++i)
+  {
+    if (!this->HasPositions[i])
+    {
+      this->Positions[i] =
+        this->Positions[static_cast<std::size_t>(found - this->HasPositions.begin())];
+    }
+  }
+}
+
+BrickEdit::CellTetrahedra BrickEdit::GetTetrahedra(int x, int y, int z) const
+{
+  static constexpr int table[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+  // Of the structured index: pieces of a volume are split as the whole is.
+  const int oddX = (this->Vertices[0] + x) & 1;
+  const int oddY = (this->Vertices[2] + y) & 1;
+  const int oddZ = (this->Vertices[4] + z) & 1;
+  CellTetrahedra tetrahedra;
+  for (std::size_t t = 0; t < 5; ++t)
+  {
+    for (std::size_t k = 0; k < 4; ++k)
+    {
+      const int v = table[t][k];
+      tetrahedra[t][k] =
+        this->GetVertex(x + ((v & 1) ^ oddX), y + ((v >> 2 & 1) ^ oddY), z + ((v >> 1 & 1) ^ oddZ));
+    }
+  }
+  return tetrahedra;
+}
+
+TetrahedronSet BrickEdit::ForEachBrick(
+  std::size_t bricks, const std::function<void(std::size_t brick, BrickEdit& edit)>& function)
+{
+  constexpr std::size_t step = 64;
+  std::vector<std::pair<std::size_t, TetrahedronSet>> parts; // by their first bricks
+  std::mutex mutex;
+  ParallelForParts(bricks, step,
+    [&](std::size_t begin, std::size_t end)
+    {
+      const auto edit = std::make_unique<BrickEdit>();
+      TetrahedronSet part;
+      for (std::size_t brick = begin; brick < end; ++brick)
+      {
+        function(brick, *edit);
+        if (edit->HasHits)
+        {
+          part.Bricks.push_back(brick);
+          part.Blocks.push_back(edit->Hits);
+          edit->Hits.fill(0);
+          edit->HasHits = false;
+        }
+      }
+      if (!part.IsEmpty())
+      {
+        const std::lock_guard<std::mutex> lock(mutex);
+        parts.emplace_back(begin, std::move(part));
+      }
+    });
+  std::sort(
+    parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  TetrahedronSet whole;
+  for (const auto& [first, part] : parts)
+  {
+    whole.Bricks.insert(whole.Bricks.end(), part.Bricks.begin(), part.Bricks.end());
+    whole.Blocks.insert(whole.Blocks.end(), part.Blocks.begin(), part.Blocks.end());
+  }
+  return whole;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeBrickEdit_h
+#define DeformVolumeBrickEdit_h
+
+#include "CellBricks.h"
+#include "SnappedPoint.h"
+#include "TetrahedronSet.h"
+#include "VertexPositions.h"
+
+#include <array>
+#include <cstddef>
+#include <functional>
+
+namespace deformvolume
+{
+
+/// A brick of cells while it is found which of its tetrahedra an edit hits: where its vertices are,
+/// and what has been hit.
+class BrickEdit
+{
+public:
+  static constexpr std::size_t MaxVertices = 729;
+  /// Vertices of each tetrahedron of a cell, as places in the arrays of vertices.
+  using CellTetrahedra = std::array<std::array<std::size_t, 4>, 5>;
+
+  /// Makes the brick another one. Nothing of it is hit.
+  void Set(const CellBricks& bricks, std::size_t brick);
+  /// The same, with the positions of its vertices.
+  void Set(const VertexPositions& positions, std::size_t brick);
+
+  const Extent& GetVertices() const { return this->Vertices; }
+  std::size_t GetNumberOfVertices() const
+  {
+    return static_cast<std::size_t>(GetNumberOfPoints(this->Vertices));
+  }
+  const SnappedPoint& GetPosition(std::size_t vertex) const { return this->Positions[vertex]; }
+  /// Whether all vertices of a tetrahedron have positions.
+  bool IsPlaced(const std::array<std::size_t, 4>& vertices) const
+  {
+    return this->HasPositions[vertices[0]] && this->HasPositions[vertices[1]] &&
+      this->HasPositions[vertices[2]] && this->HasPositions[vertices[3]];
+  }
+
+  /// Calls function(x, y, z, place) for all cells of the brick: indices within the brick, and the
+  /// place of the cell in a block of bytes.
+  template <typename Function>
+  void ForEachCell(Function&& function) const
+  {
+    for (int z = 0; z < this->Size[2]; ++z)
+    {
+      for (int y = 0; y < this->Size[1]; ++y)
+      {
+        for (int x = 0; x < this->Size[0]; ++x)
+        {
+          function(x, y, z, TetrahedronSet::GetPlace(x, y, z));
+        }
+      }
+    }
+  }
+
+  /// The first vertex of a cell, and how far the others are from it on each axis.
+  std::size_t GetVertex(int x, int y, int z) const
+  {
+    return (static_cast<std::size_t>(z) * this->Steps[2]) +
+      static_cast<std::size_t>(y) * this->Steps[1] + static_cast<std::size_t>(x);
+  }
+  const std::array<std::size_t, 3>& GetSteps() const { return this->Steps; }
+  CellTetrahedra GetTetrahedra(int x, int y, int z) const;
+
+  unsigned char GetHits(std::size_t place) const { return this->Hits[place]; }
+  void Hit(std::size_t place, int tetrahedron)
+  {
+    this->Hits[place] = static_cast<unsigned char>(this->Hits[place] | 1U << tetrahedron);
+    this->HasHits = true;
+  }
+
+  /// Calls a function for some bricks, in parallel, and gathers what is hit.
+  static TetrahedronSet ForEachBrick(
+    std::size_t bricks, const std::function<void(std::size_t brick, BrickEdit& edit)>& function);
+
+private:
+  Extent Vertices{ { 0, -1, 0, -1, 0, -1 } };
+  std::array<int, 3> Size{ { 0, 0, 0 } };          // cells
+  std::array<std::size_t, 3> Steps{ { 0, 0, 0 } }; // from vertex to vertex
+  std::array<SnappedPoint, MaxVertices> Positions;
+  std::array<bool, MaxVertices> HasPositions;
+  TetrahedronSet::Block Hits{};
+  bool HasHits = false;
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Carving.h"
+
+#include "BrickEdit.h"
+#include "Error.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace deformvolume
+{
+namespace
+{
+
+glm::dvec3 GetIndex(const SnappedPoint& point)
+{
+  return glm::dvec3(point) / static_cast<double>(StepsPerVoxel);
+}
+
+bool AreSeparate(const SnappedBox& box, const IndexBounds& bounds)
+{
+  const glm::dvec3 low = GetIndex(box.Min);
+  const glm::dvec3 high = GetIndex(box.Max);
+  return low.x > bounds.Max.x || low.y > bounds.Max.y || low.z > bounds.Max.z ||
+    high.x < bounds.Min.x || high.y < bounds.Min.y || high.z < bounds.Min.z;
+}
+
+// By the values at the vertices.
+bool IsHit(const double* values, const std::array<std::size_t, 4>& v, CarvingRule rule)
+{
+  const int inside = (values[v[0]] < 0.0 ? 1 : 0) + (values[v[1]] < 0.0 ? 1 : 0) +
+    (values[v[2]] < 0.0 ? 1 : 0) + (values[v[3]] < 0.0 ? 1 : 0);
+  switch (rule)
+  {
+    case CarvingRule::Conservative:
+      return inside > 0;
+    case CarvingRule::Minimal:
+      return inside == 4;
+    default:
+      return values[v[0]] + values[v[1]] + values[v[2]] + values[v[3]] < 0.0;
+  }
+}
+
+void CarveByVertices(BrickEdit& edit, const double* values, CarvingRule rule)
+{
+  edit.ForEachCell(
+    [&](int x, int y, int z, std::size_t place)
+    {
+      const BrickEdit::CellTetrahedra tetrahedra = edit.GetTetrahedra(x, y, z);
+      for (int t = 0; t < 5; ++t)
+      {
+        const std::array<std::size_t, 4>& vertices = tetrahedra[static_cast<std::size_t>(t)];
+        if (edit.IsPlaced(vertices) && IsHit(values, vertices, rule))
+        {
+          edit.Hit(place, t);
+        }
+      }
+    });
+}
+
+void CarveByCentroids(BrickEdit& edit, const CarvingTool& tool)
+{
+  std::vector<glm::dvec3> centroids;
+  centroids.reserve(5 * CellBricks::Cells);
+  edit.ForEachCell(
+    [&](int x, int y, int z, std::size_t)
+    {
+      for (const std::array<std::size_t, 4>& v : edit.GetTetrahedra(x, y, z))
+      {
+        // A whole number of 1/1024 voxel, without rounding.
+        centroids.push_back(0.25 *
+          GetIndex(edit.GetPosition(v[0]) + edit.GetPosition(v[1]) + edit.GetPosition(v[2]) +
+            edit.GetPosition(v[3])));
+      }
+    });
+  std::vector<double> values(centroids.size());
+  tool.Function(centroids.data(), centroids.size(), values.data());
+  const double* value = values.data();
+  edit.ForEachCell(
+    [&](int x, int y, int z, std::size_t place)
+    {
+      const BrickEdit::CellTetrahedra tetrahedra = edit.GetTetrahedra(x, y, z);
+      for (int t = 0; t < 5; ++t)
+      {
+        if (*value++ < 0.0 && edit.IsPlaced(tetrahedra[static_cast<std::size_t>(t)]))
+        {
+          edit.Hit(place, t);
+        }
+      }
+    });
+}
+
+// The side of a plane that all of a box is on: -1 inside, 1 outside; 0 where it may be on both.
+int FindSide(const SnappedBox& box, const CarvingTool& tool)
+{
+  constexpr double rounding = 1e-9; // of the largest value
+  std::array<glm::dvec3, 8> corners;
+  for (std::size_t corner = 0; corner < corners.size(); ++corner)
+  {
+    corners[corner] = GetIndex(SnappedPoint(corner & 1U ? box.Max.x : box.Min.x,
+      corner & 2U ? box.Max.y : box.Min.y, corner & 4U ? box.Max.z : box.Min.z));
+  }
+  std::array<double, 8> values;
+  tool.Function(corners.data(), corners.size(), values.data());
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  const double near = rounding * std::max(std::abs(*least), std::abs(*most));
+  return *most < -near ? -1 : *least > near ? 1 : 0;
+}
+
+void CarveAll(BrickEdit& edit)
+{
+  edit.ForEachCell(
+    [&](int x, int y, int z, std::size_t place)
+    {
+      const BrickEdit::CellTetrahedra tetrahedra = edit.GetTetrahedra(x, y, z);
+      for (int t = 0; t < 5; ++t)
+      {
+        if (edit.IsPlaced(tetrahedra[static_cast<std::size_t>(t)]))
+        {
+          edit.Hit(place, t);
+        }
+      }
+    });
+}
+
+double GetSquaredDistance(const glm::dvec3& point, const glm::dvec3& from, const glm::dvec3& to)
+{
+  const glm::dvec3 along = to - from;
+  const double length = glm::dot(along, along);
+  const double share =
+    length > 0.0 ? std::clamp(glm::dot(point - from, along) / length, 0.0, 1.0) : 0.0;
+  const glm::dvec3 apart = point - (from + share * along);
+  return glm::dot(apart, apart);
+}
+
+} // namespace
+
+IndexBounds GetUnlimitedBounds()
+{
+  IndexBounds bounds;
+  bounds.Min = glm::dvec3(-std::numeric_limits<double>::infinity());
+  bounds.Max = glm::dvec3(std::numeric_limits<double>::infinity());
+  return bounds;
+}
+
+CarvingTool MakeSweptSphere(const std::vector<glm::dvec3>& centers, const glm::dvec3& radii)
+{
+  if (centers.empty())
+  {
+    throw Error("A tool that carves has no position. Give it one or more.");
+  }
+  if (!IsFinite(radii) || !(radii.x > 0.0 && radii.y > 0.0 && radii.z > 0.0))
+  {
+    throw Error("The radius of a tool that carves is not greater than 0, or not finite.");
+  }
+  CarvingTool tool;
+  std::vector<glm::dvec3> path; // in radii
+  for (const glm::dvec3& center : centers)
+  {
+    if (!IsFinite(center))
+    {
+      throw Error("A position of a tool that carves is not finite. Correct the position.");
+    }
+    tool.Bounds.Add(center - radii);
+    tool.Bounds.Add(center + radii);
+    path.push_back(center / radii);
+  }
+  tool.Function = [path, radii](const glm::dvec3* points, std::size_t count, double* values)
+  {
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const glm::dvec3 point = points[i] / radii;
+      double least = GetSquaredDistance(point, path.front(), path.front());
+      for (std::size_t k = 1; k < path.size(); ++k)
+      {
+        least = std::min(least, GetSquaredDistance(point, path[k - 1], path[k]));
+      }
+      values[i] = least - 1.0;
+    }
+  };
+  return tool;
+}
+
+TetrahedronSet FindCarvedTetrahedra(
+  const VertexPositions& positions, const CarvingTool& tool, CarvingRule rule)
+{
+  return BrickEdit::ForEachBrick(positions.GetBricks().GetNumberOfBricks(),
+    [&](std::size_t brick, BrickEdit& edit)
+    {
+      const SnappedBox box = positions.GetBox(brick);
+      if (box.IsEmpty() || AreSeparate(box, tool.Bounds))
+      {
+        return;
+      }
+      const int side = tool.IsLinear ? FindSide(box, tool) : 0;
+      if (side > 0)
+      {
+        return;
+      }
+      edit.Set(positions, brick);
+      if (side < 0)
+      {
+        CarveAll(edit);
+        return;
+      }
+      if (rule == CarvingRule::Centroid)
+      {
+        CarveByCentroids(edit, tool);
+        return;
+      }
+      const std::size_t count = edit.GetNumberOfVertices();
+      std::array<glm::dvec3, BrickEdit::MaxVertices> points;
+      std::array<double, BrickEdit::MaxVertices> values;
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        points[i] = GetIndex(edit.GetPosition(i));
+      }
+      tool.Function(points.data(), count, values.data());
+      CarveByVertices(edit, values.data(), rule);
+    });
+}
+
+TetrahedronSet FindCarvedTetrahedra(const CellBricks& bricks,
+  const std::function<void(const Extent& vertices, double* values)>& find, CarvingRule rule)
+{
+  const RestPositions positions(bricks.GetVertices());
+  return BrickEdit::ForEachBrick(bricks.GetNumberOfBricks(),
+    [&](std::size_t brick, BrickEdit& edit)
+    {
+      edit.Set(positions, brick);
+      std::array<double, BrickEdit::MaxVertices> values;
+      find(edit.GetVertices(), values.data());
+      CarveByVertices(edit, values.data(), rule);
+    });
+}
+
+} // namespace deformvolume

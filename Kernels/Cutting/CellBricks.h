@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeCellBricks_h
+#define DeformVolumeCellBricks_h
+
+#include "Extent.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace deformvolume
+{
+
+/// The bricks of 8 x 8 x 8 cells that edits of a mask work on: small, since most of what a sheet
+/// does not cross is left out by bricks. Their numbers grow with x, then y, then z.
+class CellBricks
+{
+public:
+  static constexpr int Length = 8;
+  static constexpr std::size_t Cells = 512; // of a brick that is whole
+
+  /// vertices: structured indices of the voxels of the volume.
+  explicit CellBricks(const Extent& vertices)
+    : Vertices(vertices)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const auto cells =
+        static_cast<int>(std::max<std::int64_t>(deformvolume::GetSize(vertices, axis) - 1, 0));
+      this->Size[axis] = cells;
+      this->Count[axis] = (cells + Length - 1) / Length;
+    }
+  }
+
+  const Extent& GetVertices() const { return this->Vertices; }
+  /// Cells on each axis.
+  const std::array<int, 3>& GetSize() const { return this->Size; }
+
+  std::size_t GetNumberOfCells() const { return Multiply(this->Size); }
+  std::size_t GetNumberOfBricks() const { return Multiply(this->Count); }
+
+  /// Local indices of the cells of a brick.
+  Extent GetCells(std::size_t brick) const
+  {
+    const std::array<std::size_t, 3> place{ { brick % this->Count[0],
+      brick / this->Count[0] % this->Count[1], brick / this->Count[0] / this->Count[1] } };
+    Extent cells;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      cells[2 * axis] = static_cast<int>(place[axis]) * Length;
+      cells[2 * axis + 1] = std::min(cells[2 * axis] + Length, this->Size[axis]) - 1;
+    }
+    return cells;
+  }
+
+  /// Structured indices of the vertices of a brick.
+  Extent GetVertices(std::size_t brick) const
+  {
+    Extent box = this->GetCells(brick);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      box[2 * axis] += this->Vertices[2 * axis];
+      box[2 * axis + 1] += this->Vertices[2 * axis] + 1;
+    }
+    return box;
+  }
+
+private:
+  static std::size_t Multiply(const std::array<int, 3>& numbers)
+  {
+    return static_cast<std::size_t>(numbers[0]) * static_cast<std::size_t>(numbers[1]) *
+      static_cast<std::size_t>(numbers[2]);
+  }
+
+  Extent Vertices;
+  std::array<int, 3> Size{ { 0, 0, 0 } };
+  std::array<int, 3> Count{ { 0, 0, 0 } };
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MaskEditor.h"
+
+#include "Error.h"
+#include "FiveTetrahedra.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <utility>
+
+namespace deformvolume
+{
+namespace
+{
+
+int CountBits(unsigned int byte)
+{
+  static constexpr int counts[16] = { 0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4 };
+  return counts[byte & 15U] + counts[byte >> 4U & 15U];
+}
+
+// Where a set has a brick, else null.
+const TetrahedronSet::Block* FindBlock(const TetrahedronSet& set, std::size_t brick)
+{
+  const auto place = std::lower_bound(set.Bricks.begin(), set.Bricks.end(), brick);
+  return place != set.Bricks.end() && *place == brick
+    ? &set.Blocks[static_cast<std::size_t>(place - set.Bricks.begin())]
+    : nullptr;
+}
+
+} // namespace
+
+MaskEditor::MaskEditor(const Extent& vertices)
+  : Bricks(vertices)
+  , Mask(this->Bricks.GetNumberOfCells(), DEFORMVOLUME_ALL_TETRAHEDRA)
+  , Changed(this->Bricks.GetNumberOfBricks(), true)
+{
+  if (this->Mask.empty())
+  {
+    throw Error("The volume has no cells. Give it two voxels or more on each axis.");
+  }
+}
+
+void MaskEditor::SetBase(const unsigned char* base)
+{
+  const std::size_t count = this->Mask.size();
+  if (base)
+  {
+    this->Base.assign(base, base + count);
+    this->Mask = this->Base;
+  }
+  else
+  {
+    this->Base = std::vector<unsigned char>();
+    this->Mask.assign(count, DEFORMVOLUME_ALL_TETRAHEDRA);
+  }
+  // What was counted goes with the old base.
+  this->NumberOfSwitchedOff = 0;
+  this->Update(this->Edits);
+  this->Changed.assign(this->Changed.size(), true);
+}
+
+std::uint64_t MaskEditor::Add(TetrahedronSet&& set)
+{
+  if (!set.IsEmpty() && set.Bricks.back() >= this->Bricks.GetNumberOfBricks())
+  {
+    throw Error("An edit has brick " + std::to_string(set.Bricks.back()) + ", but the mask has " +
+      std::to_string(this->Bricks.GetNumberOfBricks()) +
+      " bricks. Find tetrahedra in the volume that the mask is of.");
+  }
+  this->Undone.clear();
+  this->Edits.push_back({ ++this->LastNumber, std::move(set) });
+  this->Update(this->Edits.back().Set.Bricks);
+  return this->LastNumber;
+}
+
+bool MaskEditor::Remove(std::uint64_t edit)
+{
+  const auto isEdit = [edit](const Edit& other) { return other.Number == edit; };
+  const auto undone = std::find_if(this->Undone.begin(), this->Undone.end(), isEdit);
+  if (undone != this->Undone.end())
+  {
+    this->Undone.erase(undone);
+    return true;
+  }
+  const auto found = std::find_if(this->Edits.begin(), this->Edits.end(), isEdit);
+  if (found == this->Edits.end())
+  {
+    return false;
+  }
+  const std::vector<std::size_t> bricks = std::move(found->Set.Bricks);
+  this->Edits.erase(found);
+  this->Update(bricks);
+  return true;
+}
+
+bool MaskEditor::Undo()
+{
+  if (this->Edits.empty())
+  {
+    return false;
+  }
+  this->Undone.splice(this->Undone.end(), this->Edits, std::prev(this->Edits.end()));
+  this->Update(this->Undone.back().Set.Bricks);
+  return true;
+}
+
+bool MaskEditor::Redo()
+{
+  if (this->Undone.empty())
+  {
+    return false;
+  }
+  this->Edits.splice(this->Edits.end(), this->Undone, std::prev(this->Undone.end()));
+  this->Update(this->Edits.back().Set.Bricks);
+  return true;
+}
+
+void MaskEditor::Reset()
+{
+  std::list<Edit> edits;
+  edits.swap(this->Edits);
+  this->Undone.clear();
+  this->Update(edits);
+}
+
+std::vector<std::size_t> MaskEditor::TakeChangedBricks()
+{
+  std::vector<std::size_t> changed;
+  for (std::size_t brick = 0; brick < this->Changed.size(); ++brick)
+  {
+    if (this->Changed[brick])
+    {
+      changed.push_back(brick);
+      this->Changed[brick] = false;
+    }
+  }
+  return changed;
+}
+
+std::uint64_t MaskEditor::GetMemory() const
+{
+  std::uint64_t bytes = this->Mask.size() + this->Base.size();
+  for (const std::list<Edit>* edits : { &this->Edits, &this->Undone })
+  {
+    for (const Edit& edit : *edits)
+    {
+      bytes += edit.Set.Bricks.size() * (sizeof(std::size_t) + sizeof(TetrahedronSet::Block));
+    }
+  }
+  return bytes;
+}
+
+void MaskEditor::Update(const std::vector<std::size_t>& bricks)
+{
+  for (const std::size_t brick : bricks)
+  {
+    this->UpdateBrick(brick);
+    this->Changed[brick] = true;
+  }
+}
+
+void MaskEditor::Update(const std::list<Edit>& edits)
+{
+  std::vector<bool> isHit(this->Changed.size());
+  for (const Edit& edit : edits)
+  {
+    for (const std::size_t brick : edit.Set.Bricks)
+    {
+      isHit[brick] = true;
+    }
+  }
+  std::vector<std::size_t> bricks;
+  for (std::size_t brick = 0; brick < isHit.size(); ++brick)
+  {
+    if (isHit[brick])
+    {
+      bricks.push_back(brick);
+    }
+  }
+  this->Update(bricks);
+}
+
+void MaskEditor::UpdateBrick(std::size_t brick)
+{
+  std::vector<const TetrahedronSet::Block*> blocks;
+  for (const Edit& edit : this->Edits)
+  {
+    if (const TetrahedronSet::Block* block = FindBlock(edit.Set, brick))
+    {
+      blocks.push_back(block);
+    }
+  }
+  const Extent cells = this->Bricks.GetCells(brick);
+  const std::array<int, 3>& size = this->Bricks.GetSize();
+  for (int z = cells[4]; z <= cells[5]; ++z)
+  {
+    for (int y = cells[2]; y <= cells[3]; ++y)
+    {
+      const std::size_t row = (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) +
+                                static_cast<std::size_t>(y)) *
+        static_cast<std::size_t>(size[0]);
+      for (int x = cells[0]; x <= cells[1]; ++x)
+      {
+        const std::size_t place =
+          TetrahedronSet::GetPlace(x - cells[0], y - cells[2], z - cells[4]);
+        unsigned int hit = 0;
+        for (const TetrahedronSet::Block* block : blocks)
+        {
+          hit |= (*block)[place];
+        }
+        const std::size_t cell = row + static_cast<std::size_t>(x);
+        const unsigned int base =
+          this->Base.empty() ? DEFORMVOLUME_ALL_TETRAHEDRA : this->Base[cell];
+        const unsigned int next = base & ~(hit & DEFORMVOLUME_ALL_TETRAHEDRA);
+        this->NumberOfSwitchedOff += CountBits(base ^ next) - CountBits(base ^ this->Mask[cell]);
+        this->Mask[cell] = static_cast<unsigned char>(next);
+      }
+    }
+  }
+}
+
+} // namespace deformvolume

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeMaskEditor_h
+#define DeformVolumeMaskEditor_h
+
+#include "CellBricks.h"
+#include "DeformVolumeExport.h"
+#include "Extent.h"
+#include "TetrahedronSet.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// A mask of active tetrahedra, one byte a cell, with edits that switch tetrahedra off and can be
+/// undone and redone.
+///
+/// An edit is kept as the set of tetrahedra that it hits. The mask is the base, which is the mask
+/// before all edits, without what the edits hit. So the order of edits does not matter, one in the
+/// middle can be removed, and what is undone comes back bit for bit. Work is done only on the
+/// bricks that an edit hits. Of the bytes of the base, the bits above the fifth stay as they are.
+class DEFORMVOLUME_EXPORT MaskEditor
+{
+public:
+  /// vertices: structured indices of the voxels. All tetrahedra are active. Throws Error where
+  /// there are less than two voxels on an axis.
+  explicit MaskEditor(const Extent& vertices);
+
+  const CellBricks& GetBricks() const { return this->Bricks; }
+
+  /// Another mask before all edits, one byte a cell; null: all are active. The edits stay.
+  void SetBase(const unsigned char* base);
+
+  /// Adds an edit and returns its number. What was undone cannot be redone any more. A set without
+  /// tetrahedra is an edit as well. Throws Error where a brick is not one of this mask.
+  std::uint64_t Add(TetrahedronSet&& set);
+  /// Removes an edit, be it undone or not. False where it is not there any more.
+  bool Remove(std::uint64_t edit);
+
+  /// Switches the tetrahedra of the last edit on again, as far as no other edit hits them. False
+  /// where there is none.
+  bool Undo();
+  /// Takes the last Undo() back. False where there is none.
+  bool Redo();
+  /// Removes all edits: the mask is the base.
+  void Reset();
+
+  std::size_t GetNumberOfEdits() const { return this->Edits.size(); }
+  std::size_t GetNumberOfUndoneEdits() const { return this->Undone.size(); }
+
+  /// The mask, one byte a cell, x varying fastest.
+  const std::vector<unsigned char>& GetMask() const { return this->Mask; }
+  /// Tetrahedra that are active in the base and not in the mask.
+  std::int64_t GetNumberOfSwitchedOffTetrahedra() const { return this->NumberOfSwitchedOff; }
+  /// Bricks whose mask may have changed since the last call, in ascending order. At the first call
+  /// these are all bricks.
+  std::vector<std::size_t> TakeChangedBricks();
+
+  /// Bytes of memory that the mask, the base and the edits take.
+  std::uint64_t GetMemory() const;
+
+private:
+  struct Edit
+  {
+    std::uint64_t Number;
+    TetrahedronSet Set;
+  };
+
+  /// Makes the mask of some bricks anew.
+  void Update(const std::vector<std::size_t>& bricks);
+  void Update(const std::list<Edit>& edits);
+  void UpdateBrick(std::size_t brick);
+
+  CellBricks Bricks;
+  std::vector<unsigned char> Base; // empty: all active
+  std::vector<unsigned char> Mask;
+  std::list<Edit> Edits;
+  std::list<Edit> Undone; // the last one undone at the end
+  std::uint64_t LastNumber = 0;
+  std::int64_t NumberOfSwitchedOff = 0;
+  std::vector<bool> Changed; // of each brick
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Sheet.h"
+
+#include "Error.h"
+#include "ExactVectors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace deformvolume
+{
+namespace
+{
+
+constexpr double FarthestPoint = 2147483648.0; // voxels
+
+bool ComesFirst(const SnappedPoint& a, const SnappedPoint& b)
+{
+  return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
+
+std::int64_t GetLength(const SnappedPoint& a, const SnappedPoint& b)
+{
+  const SnappedPoint size = glm::abs(b - a);
+  return std::max(size.x, std::max(size.y, size.z));
+}
+
+// Depends on the edge alone, and not on which of its ends is named first. Division rounds towards
+// zero, so that differences of equal size are halved alike, whatever their signs.
+SnappedPoint GetMiddle(const SnappedPoint& a, const SnappedPoint& b)
+{
+  const SnappedPoint& first = ComesFirst(a, b) ? a : b;
+  const SnappedPoint& second = ComesFirst(a, b) ? b : a;
+  return first + (second - first) / std::int64_t{ 2 };
+}
+
+// The number of the longest edge: it begins at the point of this number.
+int FindLongestEdge(const SnappedTriangle& triangle)
+{
+  int longest = 0;
+  for (int k = 1; k < 3; ++k)
+  {
+    if (GetLength(triangle[k], triangle[(k + 1) % 3]) >
+      GetLength(triangle[longest], triangle[(longest + 1) % 3]))
+    {
+      longest = k;
+    }
+  }
+  return longest;
+}
+
+} // namespace
+
+Sheet::Sheet(const std::vector<glm::dvec3>& points, const std::vector<Triangle>& triangles)
+{
+  this->Triangles.reserve(triangles.size());
+  for (const Triangle& triangle : triangles)
+  {
+    SnappedTriangle snapped;
+    for (int k = 0; k < 3; ++k)
+    {
+      if (triangle[k] < 0 || triangle[k] >= static_cast<std::int64_t>(points.size()))
+      {
+        throw Error("A triangle of the sheet has point " + std::to_string(triangle[k]) +
+          ", but there are " + std::to_string(points.size()) + " points. Correct the triangle.");
+      }
+      const glm::dvec3& point = points[static_cast<std::size_t>(triangle[k])];
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        // Not-a-number is not near either.
+        if (!(std::abs(point[axis]) <= FarthestPoint))
+        {
+          throw Error("Point " + std::to_string(triangle[k]) +
+            " of the sheet is not finite, or more than 2^31 voxels away from index 0 of the "
+            "volume. Correct the point.");
+        }
+      }
+      snapped[k] = Snap(point);
+      this->Box.Add(snapped[k]);
+    }
+    this->Triangles.push_back(snapped);
+  }
+}
+
+bool Sheet::IsClosed() const
+{
+  std::vector<std::pair<SnappedPoint, SnappedPoint>> edges;
+  edges.reserve(3 * this->Triangles.size());
+  for (const SnappedTriangle& triangle : this->Triangles)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const SnappedPoint& a = triangle[k];
+      const SnappedPoint& b = triangle[(k + 1) % 3];
+      if (a != b)
+      {
+        edges.emplace_back(ComesFirst(a, b) ? a : b, ComesFirst(a, b) ? b : a);
+      }
+    }
+  }
+  std::sort(edges.begin(), edges.end(),
+    [](const auto& a, const auto& b)
+    { return a.first == b.first ? ComesFirst(a.second, b.second) : ComesFirst(a.first, b.first); });
+  for (std::size_t begin = 0; begin < edges.size();)
+  {
+    std::size_t end = begin;
+    while (end < edges.size() && edges[end] == edges[begin])
+    {
+      ++end;
+    }
+    if ((end - begin) % 2 != 0)
+    {
+      return false;
+    }
+    begin = end;
+  }
+  return true;
+}
+
+std::vector<SnappedTriangle> Sheet::Divide(const SnappedBox& within) const
+{
+  std::vector<SnappedTriangle> divided;
+  std::vector<SnappedTriangle> rest;
+  for (const SnappedTriangle& triangle : this->Triangles)
+  {
+    rest.push_back(triangle);
+    while (!rest.empty())
+    {
+      const SnappedTriangle next = rest.back();
+      rest.pop_back();
+      if (!deformvolume::GetBox(next).Overlaps(within))
+      {
+        continue;
+      }
+      const int edge = FindLongestEdge(next);
+      const SnappedPoint& a = next[edge];
+      const SnappedPoint& b = next[(edge + 1) % 3];
+      const SnappedPoint& c = next[(edge + 2) % 3];
+      if (GetLength(a, b) > LongestTriangle)
+      {
+        const SnappedPoint middle = GetMiddle(a, b);
+        rest.push_back({ { a, middle, c } });
+        rest.push_back({ { middle, b, c } });
+      }
+      else if (FindSign(Cross(b - a, c - a)) != 0)
+      {
+        divided.push_back(next);
+      }
+    }
+  }
+  return divided;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeSnappedPoint_h
+#define DeformVolumeSnappedPoint_h
+
+#include <glm/common.hpp>
+#include <glm/ext/vector_int3_sized.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace deformvolume
+{
+
+/// Cutting is decided in whole numbers: positions are rounded to 1/256 of a voxel.
+constexpr std::int64_t StepsPerVoxel = 256;
+
+/// A position in steps of 1/256 voxel, in structured indices of the volume.
+using SnappedPoint = glm::i64vec3;
+using SnappedTriangle = std::array<SnappedPoint, 3>;
+
+/// The nearest snapped point to a continuous index, which is finite.
+inline SnappedPoint Snap(const glm::dvec3& index)
+{
+  constexpr auto steps = static_cast<double>(StepsPerVoxel);
+  return SnappedPoint(
+    std::llround(index.x * steps), std::llround(index.y * steps), std::llround(index.z * steps));
+}
+
+/// A box with its faces; empty until something is added.
+struct SnappedBox
+{
+  SnappedPoint Min{ 1 };
+  SnappedPoint Max{ -1 };
+
+  bool IsEmpty() const { return this->Min.x > this->Max.x; }
+  void Add(const SnappedPoint& point)
+  {
+    const bool isEmpty = this->IsEmpty();
+    this->Min = isEmpty ? point : glm::min(this->Min, point);
+    this->Max = isEmpty ? point : glm::max(this->Max, point);
+  }
+  void Add(const SnappedBox& other)
+  {
+    if (!other.IsEmpty())
+    {
+      this->Add(other.Min);
+      this->Add(other.Max);
+    }
+  }
+  /// False where one of them is empty.
+  bool Overlaps(const SnappedBox& other) const
+  {
+    return !this->IsEmpty() && !other.IsEmpty() && this->Min.x <= other.Max.x &&
+      other.Min.x <= this->Max.x && this->Min.y <= other.Max.y && other.Min.y <= this->Max.y &&
+      this->Min.z <= other.Max.z && other.Min.z <= this->Max.z;
+  }
+  /// Of the longest edge.
+  std::int64_t GetLength() const
+  {
+    const SnappedPoint size = this->Max - this->Min;
+    return glm::max(size.x, glm::max(size.y, size.z));
+  }
+};
+
+inline SnappedBox GetBox(const SnappedTriangle& triangle)
+{
+  SnappedBox box;
+  for (const SnappedPoint& point : triangle)
+  {
+    box.Add(point);
+  }
+  return box;
+}
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SurfaceInterior.h"
+
+#include "BoxTree.h"
+#include "Error.h"
+#include "ExactVectors.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace deformvolume
+{
+namespace
+{
+
+// Points are whole numbers of a quarter of a step.
+constexpr std::int64_t PointsPerStep = 4;
+// Beyond all places that can be reached, and small enough to be added to.
+constexpr std::int64_t Beyond = std::int64_t{ 1 } << 60;
+
+// A triangle as seen by rays along x. Exact in 64 bits: differences on y and z are at most 2^19,
+// the length of a triangle (Sheet::LongestTriangle) in quarters of a step, and so are those on x,
+// since points before and behind the triangle are decided by its box.
+class RayTriangle
+{
+public:
+  explicit RayTriangle(const SnappedTriangle& triangle)
+    : Triangle{ { PointsPerStep * triangle[0], PointsPerStep * triangle[1],
+        PointsPerStep * triangle[2] } }
+    , Box(deformvolume::GetBox(this->Triangle))
+    , Normal(Cross(this->Triangle[1] - this->Triangle[0], this->Triangle[2] - this->Triangle[0]))
+  {
+  }
+
+  const SnappedBox& GetBox() const { return this->Box; }
+
+  // Whether the ray from a point towards greater x crosses the triangle.
+  bool IsCrossed(const SnappedPoint& point) const
+  {
+    if (this->Normal.x == 0 || point.x >= this->Box.Max.x || point.y < this->Box.Min.y ||
+      point.y >= this->Box.Max.y || point.z < this->Box.Min.z || point.z >= this->Box.Max.z)
+    {
+      return false;
+    }
+    const int side = this->GetSide(point, 0);
+    if (this->GetSide(point, 1) != side || this->GetSide(point, 2) != side)
+    {
+      return false;
+    }
+    // The point is above the plane, on the side of its normal, or below.
+    const int height = point.x < this->Box.Min.x
+      ? -GetSign(this->Normal.x)
+      : GetSign(Dot(this->Normal, point - this->Triangle[0]));
+    return height == -GetSign(this->Normal.x);
+  }
+
+private:
+  // On which side of an edge a point lies as seen along x. The point is moved by e^2 on y and e^3
+  // on z, so that the edge's own direction decides where it lies on the edge.
+  int GetSide(const SnappedPoint& point, int k) const
+  {
+    const SnappedPoint& a = this->Triangle[k];
+    const SnappedPoint along = this->Triangle[(k + 1) % 3] - a;
+    const SnappedPoint to = point - a;
+    const int sign = GetSign(along.y * to.z - along.z * to.y);
+    return sign != 0 ? sign : along.z != 0 ? -GetSign(along.z) : GetSign(along.y);
+  }
+
+  SnappedTriangle Triangle;
+  SnappedBox Box;
+  SnappedPoint Normal;
+};
+
+class Interior
+{
+public:
+  explicit Interior(std::vector<RayTriangle> triangles)
+    : Triangles(std::move(triangles))
+    , Tree(GetBoxes(this->Triangles))
+  {
+  }
+
+  void operator()(const glm::dvec3* points, std::size_t count, double* values) const
+  {
+    SnappedBox box;
+    std::vector<SnappedPoint> snapped(count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      snapped[i] = Snap(static_cast<double>(PointsPerStep) * points[i]);
+      box.Add(snapped[i]);
+    }
+    // Where no triangle reaches the points, all are on the side of the first.
+    SnappedBox wider = box;
+    wider.Min -= std::int64_t{ 1 };
+    wider.Max += std::int64_t{ 1 };
+    const bool isCrossed = this->Tree.Overlaps(wider);
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < (isCrossed ? count : std::min<std::size_t>(count, 1)); ++i)
+    {
+      values[i] = this->IsInside(snapped[i], near) ? -1.0 : 1.0;
+    }
+    if (!isCrossed && count > 0)
+    {
+      std::fill_n(values, count, values[0]);
+    }
+  }
+
+private:
+  static std::vector<SnappedBox> GetBoxes(const std::vector<RayTriangle>& triangles)
+  {
+    std::vector<SnappedBox> boxes(triangles.size());
+    std::transform(triangles.begin(), triangles.end(), boxes.begin(),
+      [](const RayTriangle& triangle) { return triangle.GetBox(); });
+    return boxes;
+  }
+
+  bool IsInside(const SnappedPoint& point, std::vector<std::size_t>& near) const
+  {
+    SnappedBox ray;
+    ray.Add(point);
+    ray.Add(SnappedPoint(Beyond, point.y, point.z));
+    near.clear();
+    this->Tree.Find(ray, near);
+    return std::count_if(near.begin(), near.end(),
+             [&](std::size_t triangle) { return this->Triangles[triangle].IsCrossed(point); }) %
+      2 !=
+      0;
+  }
+
+  std::vector<RayTriangle> Triangles;
+  BoxTree Tree;
+};
+
+} // namespace
+
+CarvingTool MakeSurfaceInterior(const Sheet& surface, const SnappedBox& within)
+{
+  if (!surface.IsClosed())
+  {
+    throw Error("The surface to carve with is open: an edge belongs to an odd number of triangles, "
+                "so that there is no inside. Close its holes, for example with vtkFillHolesFilter, "
+                "or cut with it as a sheet.");
+  }
+  // What rays from the box can cross.
+  SnappedBox reach = within;
+  reach.Max.x = Beyond;
+  std::vector<RayTriangle> triangles;
+  for (const SnappedTriangle& triangle : surface.Divide(reach))
+  {
+    triangles.emplace_back(triangle);
+  }
+  const auto interior = std::make_shared<const Interior>(std::move(triangles));
+  CarvingTool tool;
+  tool.Function = [interior](const glm::dvec3* points, std::size_t count, double* values)
+  { (*interior)(points, count, values); };
+  constexpr auto steps = static_cast<double>(StepsPerVoxel);
+  tool.Bounds.Min = glm::dvec3(surface.GetBox().Min) / steps;
+  tool.Bounds.Max = glm::dvec3(surface.GetBox().Max) / steps;
+  return tool;
+}
+
+} // namespace deformvolume

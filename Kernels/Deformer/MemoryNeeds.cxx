@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MemoryNeeds.h"
+
+#include "DeviceVolume.h"
+#include "MemoryBudget.h"
+#include "MeshRasterizer.h"
+#include "OutputSlab.h"
+#include "VertexLink.h"
+#include "WorkDevice.h"
+
+namespace deformvolume
+{
+namespace
+{
+
+// The output is worked on in slabs, one after the other in the same buffers.
+std::uint64_t CountVoxelsOfSlab(WorkDevice& device, const DeformationSize& size)
+{
+  if (GetNumberOfPoints(size.OutputExtent) == 0)
+  {
+    return 0;
+  }
+  const std::vector<Extent> slabs =
+    OutputSlab::Split(size.OutputExtent, size.Arrays, size.Grid, device.GetAllocationLimit());
+  return static_cast<std::uint64_t>(GetNumberOfPoints(slabs.front()));
+}
+
+std::uint64_t CountDeviceMemory(
+  WorkDevice& device, const DeformationSize& size, std::uint64_t outputBytesPerVoxel)
+{
+  std::uint64_t sent = 0;
+  for (const VolumeArray& array : size.Arrays)
+  {
+    sent += IsUsedInPlace(device.GetContext(), array) ? 0 : GetTupleSize(array);
+  }
+  const auto voxels = static_cast<std::uint64_t>(GetNumberOfPoints(size.Grid.VertexExtent));
+  const std::uint64_t outputVoxels = CountVoxelsOfSlab(device, size);
+  if (size.IsRasterized)
+  {
+    // Arrays and both masks.
+    return voxels * (sent + 2) +
+      MeshRasterizer::GetMemoryNeeded(
+        outputVoxels, outputBytesPerVoxel, size.NumberOfNodes, size.NumberOfTetrahedra);
+  }
+  // Arrays, state, active tetrahedra and blanking; links or runs of a mesh; arrays and coverage of
+  // the output; the deformation itself.
+  return voxels * (sent + 3) + size.MappingBytes + outputVoxels * outputBytesPerVoxel +
+    (size.NumberOfNodes + size.NumberOfTetrahedra) * 16;
+}
+
+} // namespace
+
+std::uint64_t GetMappingBytes(const VoxelGrid& grid, bool field, std::uint64_t runBytes)
+{
+  return field ? 0
+    : runBytes
+    ? runBytes
+    : static_cast<std::uint64_t>(GetNumberOfPoints(grid.VertexExtent)) * sizeof(VertexLink);
+}
+
+std::uint64_t CheckDeviceMemory(WorkDevice& device, MemoryBudget& budget,
+  const DeformationSize& size, std::uint64_t outputBytesPerVoxel)
+{
+  const std::uint64_t needed = CountDeviceMemory(device, size, outputBytesPerVoxel);
+  const std::uint64_t available = budget.GetUsable();
+  MemoryBudget::CheckBytes(needed, available, "on the device");
+  return available - needed;
+}
+
+void CheckMemory(
+  WorkDevice& device, MemoryBudget& budget, const DeformationSize& size, std::uint64_t heldBytes)
+{
+  std::uint64_t tuple = 0;
+  for (const VolumeArray& array : size.Arrays)
+  {
+    tuple += GetTupleSize(array);
+  }
+  // A processor works in the memory of the output.
+  const bool shared = device.GetDevice().IsProcessor;
+  const std::uint64_t outputBytesPerVoxel = shared ? 0 : tuple + 1;
+  CheckDeviceMemory(device, budget, size, outputBytesPerVoxel);
+  // What the caller holds, in the memory of the system, which a processor shares with its device.
+  const std::uint64_t system = budget.GetSystemMemory();
+  if (system > 0)
+  {
+    const std::uint64_t host = size.MappingBytes +
+      static_cast<std::uint64_t>(GetNumberOfPoints(size.OutputExtent)) * (tuple + 1);
+    const std::uint64_t onDevice =
+      shared ? CountDeviceMemory(device, size, outputBytesPerVoxel) : 0;
+    MemoryBudget::CheckBytes(host + onDevice, system + heldBytes, "in the system");
+  }
+}
+
+} // namespace deformvolume

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SlabLoop.h"
+
+#include "DeviceVolume.h"
+#include "HostMemory.h"
+#include "OutputSlab.h"
+#include "SlabResampler.h"
+#include "WorkDevice.h"
+
+#include <chrono>
+
+namespace deformvolume
+{
+
+void MakeSlabs(SlabResampler& resampler, WorkDevice& device, const DeviceVolume& volume,
+  const DeformRequest& request, std::uint64_t spare, DeformReport& report)
+{
+  using Clock = std::chrono::steady_clock;
+  const std::vector<VolumeArray>& arrays = volume.GetVolumeArrays();
+  SlabPlan plan;
+  plan.Slabs = OutputSlab::Split(
+    request.OutputExtent, arrays, volume.GetVoxelGrid(), device.GetAllocationLimit());
+  const std::uint64_t bytes = OutputSlab::GetBytesPerVoxel(device.GetContext(), arrays, request) *
+    static_cast<std::uint64_t>(GetNumberOfPoints(plan.Slabs.front()));
+  plan.Overlapped = bytes > 0 && plan.Slabs.size() > 1 && spare >= bytes;
+  // However this ends, the memory of the request is left alone afterwards.
+  const SlabResampler::FinishGuard finish(resampler);
+  const QueueGuard reads(device.GetReadQueue());
+  resampler.Begin(request, plan, report);
+  for (std::size_t slab = 0; slab < plan.Slabs.size(); ++slab)
+  {
+    resampler.Make(request, plan, slab, report);
+    const Clock::time_point begin = Clock::now();
+    resampler.Read(request, plan.GetTarget(slab));
+    if (!plan.Overlapped || slab + 1 == plan.Slabs.size())
+    {
+      resampler.FinishReading();
+    }
+    report.TransferTime += std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+}
+
+} // namespace deformvolume

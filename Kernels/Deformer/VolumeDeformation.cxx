@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VolumeDeformation.h"
+
+#include "Error.h"
+#include "FieldParameters.h"
+#include "MemoryBudget.h"
+#include "SlabLoop.h"
+#include "WorkDevice.h"
+
+#include <algorithm>
+
+namespace deformvolume
+{
+
+VolumeDeformation::VolumeDeformation(WorkDevice& device, MemoryBudget& budget,
+  const VoxelGrid& voxelGrid, std::size_t bytesPerVoxel, bool withLinks)
+  : Device(device)
+  , Budget(budget)
+  , Volume(device.GetContext(), device.GetQueue(), voxelGrid, bytesPerVoxel,
+      device.GetAllocationLimit(), withLinks)
+  , Incremental(device, this->Volume)
+  , Source(device, this->Volume, this->Incremental.GetObserver())
+  , Exact(device, budget, this->Volume, this->Source)
+  , Rasterizer(device, this->Volume)
+{
+}
+
+void VolumeDeformation::SetArrays(const std::vector<VolumeArray>& arrays)
+{
+  this->Incremental.Forget();
+  this->Volume.SetArrays(arrays, this->Source.GetFieldInPlace());
+}
+
+void VolumeDeformation::SetArrayOptions(const std::vector<VolumeArray>& arrays)
+{
+  if (this->Volume.SetArrayOptions(arrays))
+  {
+    this->Incremental.Forget();
+  }
+}
+
+void VolumeDeformation::SetBlanked(
+  const unsigned char* blanked, unsigned char bits, const PointRanges* written)
+{
+  this->Incremental.ChangeMask(this->Volume.SetBlanked(blanked, bits, written), false);
+}
+
+void VolumeDeformation::SetActiveTetrahedra(const unsigned char* active, const PointRanges* written)
+{
+  this->Incremental.ChangeMask(this->Volume.SetActive(active, written), true);
+}
+
+void VolumeDeformation::SetNodePlaces(const std::int32_t* places)
+{
+  const bool wasOn = this->Volume.LeavesOutBridges();
+  this->Source.SetNodePlaces(places);
+  if (wasOn != this->Volume.LeavesOutBridges())
+  {
+    this->Incremental.Forget();
+  }
+}
+
+void VolumeDeformation::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+  std::size_t numberOfNodes, const double* restNodes)
+{
+  this->Source.Forget();
+  this->Rasterizer.SetMesh(tetrahedra, numberOfTetrahedra, restNodes, numberOfNodes);
+}
+
+void VolumeDeformation::SetInverseField(const DisplacementField& field)
+{
+  CheckDisplacements(field.Vectors, CountPoints(field), "point", nullptr);
+  this->Source.Forget();
+  this->Rasterizer.SetField(field);
+}
+
+void VolumeDeformation::SetNodeDisplacements(const float* displacements, const PointRanges* changes)
+{
+  if (this->Rasterizer.HasMesh())
+  {
+    CheckDisplacements(displacements, this->Rasterizer.GetNumberOfNodes(), "node", nullptr);
+    this->Rasterizer.SetDisplacements(displacements);
+    return;
+  }
+  if (!this->Source.HasMesh())
+  {
+    throw Error("No deformation mesh is set: call SetMesh first.");
+  }
+  this->Source.SetNodeDisplacements(displacements, changes);
+}
+
+void VolumeDeformation::SetDisplacementField(
+  const DisplacementField& field, const PointRanges* changes)
+{
+  this->Rasterizer.Clear();
+  this->Source.SetField(field, changes);
+}
+
+void VolumeDeformation::CheckRequest(const DeformRequest& request) const
+{
+  const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
+  const bool rasterized = request.Method == Resampling::MeshRasterization;
+  if (arrays.empty())
+  {
+    throw Error("No arrays are set: call SetArrays first.");
+  }
+  if (!rasterized && request.Interpolation != Interpolation::Linear)
+  {
+    throw Error("Cubic interpolation is there only with the resampler MeshRasterization.");
+  }
+  if (rasterized && !this->Rasterizer.IsReady())
+  {
+    throw Error("The resampler MeshRasterization needs a deformation mesh with its rest positions: "
+                "call SetRestMesh and SetNodeDisplacements, or SetInverseField, first. For a "
+                "forward displacement field use the resampler Exact.");
+  }
+  if (!rasterized && !this->Source.IsReady())
+  {
+    throw Error("No deformation is set: call SetMesh and SetNodeDisplacements, or "
+                "SetDisplacementField, first.");
+  }
+  if (request.Outputs.size() != arrays.size() || !request.Coverage ||
+    std::count(request.Outputs.begin(), request.Outputs.end(), nullptr))
+  {
+    throw Error("The request must have room for each array of the volume and for the coverage.");
+  }
+}
+
+DeformationSize VolumeDeformation::GetSize(const DeformRequest& request) const
+{
+  const VoxelGrid& grid = this->Volume.GetVoxelGrid();
+  const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
+  if (request.Method == Resampling::MeshRasterization)
+  {
+    return { grid, arrays, request.OutputExtent, this->Rasterizer.GetNumberOfNodes(),
+      this->Rasterizer.GetNumberOfTetrahedra(), 0, true };
+  }
+  return { grid, arrays, request.OutputExtent, this->Source.GetNumberOfNodes(),
+    this->Source.GetNumberOfTetrahedra(),
+    GetMappingBytes(grid, !this->Volume.HasMesh(), this->Volume.GetRunBytes()), false };
+}
+
+DeformReport VolumeDeformation::Deform(const DeformRequest& request)
+{
+  this->Volume.ReadArraysAgain();
+  this->Source.ReadFieldAgain();
+  const std::uint64_t spare = CheckDeviceMemory(this->Device, this->Budget, this->GetSize(request),
+    OutputSlab::GetBytesPerVoxel(
+      this->Device.GetContext(), this->Volume.GetVolumeArrays(), request));
+  return request.Method == Resampling::MeshRasterization ? this->Rasterize(request, spare)
+                                                         : this->Resample(request, spare);
+}
+
+DeformReport VolumeDeformation::Resample(const DeformRequest& request, std::uint64_t spare)
+{
+  this->Exact.Start();
+  // Before anything is planned that depends on masks.
+  this->Incremental.ChangeMask(this->Source.UpdateBridges(), true);
+  DeformReport report;
+  report.NumberOfBricks = static_cast<std::int64_t>(this->Volume.GetBricks().GetNumberOfBricks());
+  if (!this->Incremental.Update(request, this->Source, this->Exact, report))
+  {
+    MakeSlabs(this->Exact, this->Device, this->Volume, request, spare, report);
+    report.NumberOfResampledBricks = report.NumberOfBricks;
+    report.ChangedExtent = request.OutputExtent;
+    if (request.Incremental && this->Exact.CanMakeAgain(request))
+    {
+      this->Incremental.Start(request, this->Source, report);
+    }
+  }
+  this->Exact.AddTimes(report);
+  return report;
+}
+
+DeformReport VolumeDeformation::Rasterize(const DeformRequest& request, std::uint64_t spare)
+{
+  this->Incremental.Forget();
+  DeformReport report;
+  // As much again for lists of tetrahedra that are longer than was foreseen.
+  MakeSlabs(this->Rasterizer, this->Device, this->Volume, request, spare / 2, report);
+  report.ChangedExtent = request.OutputExtent;
+  return report;
+}
+
+std::uint64_t VolumeDeformation::GetMemory() const
+{
+  return this->Volume.GetMemory() + this->Source.GetMemory() + this->Rasterizer.GetMemory() +
+    this->Exact.GetMemory();
+}
+
+} // namespace deformvolume

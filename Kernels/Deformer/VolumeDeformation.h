@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeVolumeDeformation_h
+#define DeformVolumeVolumeDeformation_h
+
+#include "DeformRequest.h"
+#include "DeviceVolume.h"
+#include "DisplacementSource.h"
+#include "ExactResampler.h"
+#include "IncrementalOutput.h"
+#include "MemoryNeeds.h"
+#include "MeshRasterizer.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+class MemoryBudget;
+class WorkDevice;
+
+/// A volume on the device with the deformation that is set, by the sampling mesh or by mesh
+/// rasterisation, and what makes outputs of both. What VolumeDeformer forgets with the voxel grid.
+/// See there for what the methods do; where cl::Error is thrown, what is on the device may be half
+/// done.
+class VolumeDeformation
+{
+public:
+  VolumeDeformation(WorkDevice& device, MemoryBudget& budget, const VoxelGrid& voxelGrid,
+    std::size_t bytesPerVoxel, bool withLinks);
+
+  void SetArrays(const std::vector<VolumeArray>& arrays);
+  void SetArrayOptions(const std::vector<VolumeArray>& arrays);
+  void SetBlanked(const unsigned char* blanked, unsigned char bits, const PointRanges* written);
+  void SetActiveTetrahedra(const unsigned char* active, const PointRanges* written);
+
+  ///@{
+  /// Meshes and fields that were checked (CheckMesh, CountPoints). Mapping: links or runs.
+  template <typename Mapping>
+  void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const Mapping& mapping)
+  {
+    this->Source.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, mapping);
+    this->Rasterizer.Clear();
+  }
+  void ChangeConnectivity(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const std::vector<TetrahedronChange>* changes)
+  {
+    this->Source.ChangeConnectivity(tetrahedra, numberOfTetrahedra, numberOfNodes, changes);
+  }
+  void SetNodePlaces(const std::int32_t* places);
+  void SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const double* restNodes);
+  void SetInverseField(const DisplacementField& field);
+  void SetNodeDisplacements(const float* displacements, const PointRanges* changes);
+  void SetDisplacementField(const DisplacementField& field, const PointRanges* changes);
+  ///@}
+
+  /// Throws an Error where something is not set that a request needs.
+  void CheckRequest(const DeformRequest& request) const;
+  DeformReport Deform(const DeformRequest& request);
+
+  /// Bytes on the device.
+  std::uint64_t GetMemory() const;
+
+private:
+  DeformationSize GetSize(const DeformRequest& request) const;
+  DeformReport Resample(const DeformRequest& request, std::uint64_t spare);
+  DeformReport Rasterize(const DeformRequest& request, std::uint64_t spare);
+
+  WorkDevice& Device;
+  MemoryBudget& Budget;
+  DeviceVolume Volume;
+  IncrementalOutput Incremental;
+  DisplacementSource Source;
+  ExactResampler Exact;
+  MeshRasterizer Rasterizer;
+};
+
+} // namespace deformvolume
+
+#endif

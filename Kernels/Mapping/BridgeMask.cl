@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which tetrahedra of the sampling mesh would bridge the gap where the deformation mesh has been split. It comes after
+// VertexState.cl.
+//
+// Where a node is split, tetrahedra on both sides of the split name different nodes in the same place at rest. A
+// tetrahedron of the sampling mesh with vertices in two such tetrahedra would be stretched over the gap that opens
+// between them. So would one whose vertices lie in tetrahedra that have no node in common, of which others of the
+// same cell show that they are on different sides: within a cell that a split goes through, tetrahedra belong together
+// if they share a node, one after the other, and none of the two has a node of its own where the other has another one.
+//
+// Data: tetrahedra int4, the places of nodes (DEFORMVOLUME_NODE_PLACES); placesAtRest: 4 bytes a node, a number that all
+// nodes with one place at rest share.
+
+#if MAPPING == MAPPING_RUNS
+#define TETRAHEDRON_OF(m, x, y, z, p) RunTetrahedronOf(m, owners, x, y, z, p)
+static int RunTetrahedronOf(
+  const Mapping* m, __global const int* owners, int x, int y, int z, const KernelParameters* p)
+{
+  const int record = RunOf(m, x, y, z, p).Tetrahedron;
+  return record < 0 ? -1 : owners[record];
+}
+#else
+#define TETRAHEDRON_OF(m, x, y, z, p) (m)->Links[VertexInChunk(x, y, z, p)].Tetrahedron
+#endif
+
+__constant uchar SamplingTetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+
+#define SHARES_NODE 1
+#define IS_SPLIT 2
+
+// What two tetrahedra, by their nodes, have to do with each other.
+static int Compare(int4 first, int4 second, __global const int* placesAtRest)
+{
+  const int a[4] = { first.x / DEFORMVOLUME_NODE_PLACES, first.y / DEFORMVOLUME_NODE_PLACES,
+    first.z / DEFORMVOLUME_NODE_PLACES, first.w / DEFORMVOLUME_NODE_PLACES };
+  const int b[4] = { second.x / DEFORMVOLUME_NODE_PLACES, second.y / DEFORMVOLUME_NODE_PLACES,
+    second.z / DEFORMVOLUME_NODE_PLACES, second.w / DEFORMVOLUME_NODE_PLACES };
+  int found = 0;
+  for (int i = 0; i < 4; ++i)
+  {
+    for (int j = 0; j < 4; ++j)
+    {
+      found |= a[i] == b[j] ? SHARES_NODE : placesAtRest[a[i]] == placesAtRest[b[j]] ? IS_SPLIT : 0;
+    }
+  }
+  return found;
+}
+
+// The tetrahedra of a cell that bridge a gap, as bits. owners: of its vertices, by their numbers.
+static int FindBridges(
+  const int* owners, __global const int4* tetrahedra, __global const int* placesAtRest)
+{
+  uchar split[8]; // of each vertex, the ones that are on another side, as bits
+  int group[8];   // the lowest vertex that each belongs together with
+  int any = 0;
+  for (int v = 0; v < 8; ++v)
+  {
+    split[v] = 0;
+    group[v] = v;
+  }
+  for (int v = 1; v < 8; ++v)
+  {
+    for (int w = 0; w < v; ++w)
+    {
+      if (owners[v] < 0 || owners[w] < 0)
+      {
+        continue;
+      }
+      const int found = owners[v] == owners[w]
+        ? SHARES_NODE
+        : Compare(tetrahedra[owners[v]], tetrahedra[owners[w]], placesAtRest);
+      if (found & IS_SPLIT)
+      {
+        split[v] |= 1 << w;
+        split[w] |= 1 << v;
+        any = 1;
+      }
+      else if (found)
+      {
+        const int low = min(group[v], group[w]);
+        const int high = max(group[v], group[w]);
+        for (int u = 0; u < 8; ++u)
+        {
+          group[u] = group[u] == high ? low : group[u];
+        }
+      }
+    }
+  }
+  int bridges = 0;
+  for (int t = 0; any && t < 5; ++t)
+  {
+    for (int i = 1; i < 4; ++i)
+    {
+      for (int j = 0; j < i; ++j)
+      {
+        const int v = SamplingTetrahedra[t][i], w = SamplingTetrahedra[t][j];
+        bridges |= (split[v] >> w & 1) || group[v] != group[w] ? 1 << t : 0;
+      }
+    }
+  }
+  return bridges;
+}
+
+// The active tetrahedra of the cells of a cuboid that bridge no gap. changed: 1 for each cuboid of the list with a cell
+// that has other ones than before.
+__kernel void LeaveOutBridges(MAPPING_PARAMETERS, __global const int* owners,
+  __global const int4* tetrahedraOfMesh, __global const int* placesAtRest, __global const uchar* active,
+  const int hasActive, __global uchar* joined, __global uint* changed, __global const uint* cuboids,
+  const KernelParameters p)
+{
+  const Mapping m = MAPPING_ARGUMENTS;
+  const int3 first = FirstVertex(cuboids[get_global_id(1)], &p);
+  const int3 end = min(EndOfVertices(first, &p), (int3)(p.Size[0], p.Size[1], p.PlanesEnd) - 1);
+  int isChanged = 0;
+  for (int z = first.z; z < end.z; ++z)
+  {
+    for (int y = first.y; y < end.y; ++y)
+    {
+      for (int x = first.x + get_global_id(0); x < end.x; x += get_global_size(0))
+      {
+        const int mirror =
+          ((p.First[0] + x) & 1) | ((p.First[2] + z) & 1) << 1 | ((p.First[1] + y) & 1) << 2;
+        int ownersOfCell[8];
+        int same = 1;
+        for (int v = 0; v < 8; ++v)
+        {
+          const int o = v ^ mirror;
+          ownersOfCell[v] = TETRAHEDRON_OF(&m, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), &p);
+          same &= ownersOfCell[v] == ownersOfCell[0];
+        }
+        const int bridges = same ? 0 : FindBridges(ownersOfCell, tetrahedraOfMesh, placesAtRest);
+        const size_t cell = CellInChunk(x, y, z, &p);
+        const int left = DEFORMVOLUME_ALL_TETRAHEDRA & (hasActive ? active[cell] : ~0) & ~bridges;
+        isChanged |= left != joined[cell];
+        joined[cell] = left;
+      }
+    }
+  }
+  if (isChanged)
+  {
+    atomic_or(changed + get_global_id(1), 1u);
+  }
+}

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BridgeMask.h"
+
+#include "FiveTetrahedra.h"
+#include "HostMemory.h"
+#include "VertexCuboids.h"
+
+#include <algorithm>
+
+namespace deformvolume
+{
+
+void BridgeMask::SetPlaces(
+  OpenCLContext& context, const cl::CommandQueue& queue, const std::vector<std::int32_t>& places)
+{
+  const bool wasOn = this->IsOn();
+  if (places.empty())
+  {
+    this->Places = cl::Buffer();
+    this->Current = true;
+    this->Known = false;
+    return;
+  }
+  const std::size_t bytes = places.size() * sizeof(std::int32_t);
+  if (GetMemory(this->Places) < bytes)
+  {
+    // More may follow soon.
+    this->Places = cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY, bytes + bytes / 8);
+  }
+  queue.enqueueWriteBuffer(this->Places, CL_TRUE, 0, bytes, places.data());
+  if (!wasOn)
+  {
+    this->Forget();
+  }
+}
+
+void BridgeMask::Forget()
+{
+  this->Current = !this->IsOn();
+  this->Known = false;
+}
+
+void BridgeMask::ChangeVertices(const std::vector<Extent>& vertices)
+{
+  this->Vertices.insert(this->Vertices.end(), vertices.begin(), vertices.end());
+  this->Current = this->Current && (vertices.empty() || !this->IsOn());
+}
+
+void BridgeMask::ChangeCells(const std::vector<Extent>& cells)
+{
+  this->Cells.insert(this->Cells.end(), cells.begin(), cells.end());
+  this->Current = this->Current && (cells.empty() || !this->IsOn());
+}
+
+void BridgeMask::Finish()
+{
+  this->Current = true;
+  this->Known = true;
+  this->Vertices.clear();
+  this->Cells.clear();
+}
+
+void BridgeMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
+  const KernelParameters& p, VolumeChunk& chunk, const Source& source, std::vector<Extent>& changes)
+{
+  const std::uint64_t bytes = static_cast<std::uint64_t>(p.Size[0] - 1) *
+    static_cast<std::uint64_t>(p.Size[1] - 1) *
+    static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin - 1);
+  const bool all = !this->Known || GetMemory(chunk.Joined) != bytes;
+  const VertexCuboids chunkCuboids(p);
+  // The cells of a vertex begin one before it.
+  const std::vector<cl_uint> cuboids = all
+    ? chunkCuboids.GetAll()
+    : JoinLists(chunkCuboids.Find(this->Vertices, 1), chunkCuboids.Find(this->Cells, 0));
+  if (all)
+  {
+    Reserve(context, chunk.Joined, bytes);
+    queue.enqueueFillBuffer(chunk.Joined, cl_uchar{ DEFORMVOLUME_ALL_TETRAHEDRA }, 0, bytes);
+  }
+  if (cuboids.empty())
+  {
+    return;
+  }
+  const std::size_t atOnce = std::min(VertexCuboids::AtOnce, cuboids.size());
+  const cl::Buffer list(context.GetContext(), CL_MEM_READ_ONLY, atOnce * sizeof(cl_uint));
+  const cl::Buffer changed(context.GetContext(), CL_MEM_READ_WRITE, atOnce * sizeof(cl_uint));
+  const QueueGuard guard(queue);
+  cl::Kernel kernel(source.Program, "LeaveOutBridges");
+  cl_uint i = source.SetMapping(kernel);
+  kernel.setArg(i++, source.Owners);
+  kernel.setArg(i++, source.Tetrahedra);
+  kernel.setArg(i++, this->Places);
+  kernel.setArg(i++, source.Active);
+  kernel.setArg(i++, cl_int{ source.HasActive });
+  kernel.setArg(i++, chunk.Joined);
+  kernel.setArg(i++, changed);
+  kernel.setArg(i++, list);
+  kernel.setArg(i++, p);
+  std::vector<cl_uint> flags;
+  VertexCuboids::ForAll(context, queue, cuboids, list,
+    [&](const VertexCuboids::Launch& launch, std::size_t begin, std::size_t count)
+    {
+      queue.enqueueFillBuffer(changed, cl_uint{ 0 }, 0, count * sizeof(cl_uint));
+      launch(kernel);
+      flags.resize(count);
+      queue.enqueueReadBuffer(changed, CL_TRUE, 0, count * sizeof(cl_uint), flags.data());
+      for (std::size_t k = 0; k < count; ++k)
+      {
+        const Extent cells = chunkCuboids.GetCells(cuboids[begin + k]);
+        if (flags[k] && GetNumberOfPoints(cells) > 0)
+        {
+          changes.push_back(cells);
+        }
+      }
+    });
+}
+
+} // namespace deformvolume

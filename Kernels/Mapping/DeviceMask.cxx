@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DeviceMask.h"
+
+#include "FiveTetrahedra.h"
+#include "HostMemory.h"
+#include "ParallelFor.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace deformvolume
+{
+
+cl::Buffer& DeviceMask::GetBuffer(VolumeChunk& chunk) const
+{
+  return this->MaskKind == Kind::BlankedVertices ? chunk.Blanked : chunk.Active;
+}
+
+MaskValues DeviceMask::MakeValues(const unsigned char* bytes, unsigned char bits) const
+{
+  constexpr unsigned char none = 0;
+  constexpr unsigned char all = DEFORMVOLUME_ALL_TETRAHEDRA;
+  return { bytes, bits, this->MaskKind == Kind::BlankedVertices ? none : all };
+}
+
+std::array<int, 2> DeviceMask::GetPlanes(const VolumeChunk& chunk) const
+{
+  const int cells = this->MaskKind == Kind::ActiveTetrahedra ? 1 : 0;
+  return { { chunk.PlanesBegin, chunk.PlanesEnd - 1 - cells } };
+}
+
+void DeviceMask::Allocate(
+  const OpenCLContext& context, const cl::CommandQueue& queue, std::vector<VolumeChunk>& chunks)
+{
+  const std::size_t plane =
+    static_cast<std::size_t>(this->Size[0]) * static_cast<std::size_t>(this->Size[1]);
+  const unsigned char usual = this->MakeValues(nullptr, 0).Usual;
+  for (VolumeChunk& chunk : chunks)
+  {
+    const std::array<int, 2> planes = this->GetPlanes(chunk);
+    const std::size_t bytes = plane * static_cast<std::size_t>(planes[1] - planes[0] + 1);
+    this->GetBuffer(chunk) = cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY, bytes);
+    queue.enqueueFillBuffer(this->GetBuffer(chunk), usual, 0, bytes);
+  }
+  queue.finish();
+  if (!context.GetDevice().IsProcessor || chunks.size() > 1)
+  {
+    this->Last.assign(plane * static_cast<std::size_t>(this->Size[2]), usual);
+  }
+  this->WithBuffers = true;
+}
+
+void DeviceMask::Release(std::vector<VolumeChunk>& chunks)
+{
+  this->WithBuffers = false;
+  for (VolumeChunk& chunk : chunks)
+  {
+    this->GetBuffer(chunk) = cl::Buffer();
+  }
+  std::vector<unsigned char>().swap(this->Last);
+}
+
+void DeviceMask::Write(const cl::CommandQueue& queue, VolumeChunk& chunk, const Extent& box) const
+{
+  const std::array<int, 2> planes = this->GetPlanes(chunk);
+  const int first = std::max(box[4], planes[0]);
+  const int last = std::min(box[5], planes[1]);
+  if (first > last)
+  {
+    return;
+  }
+  const auto count = [](int begin, int end) { return static_cast<std::size_t>(end - begin + 1); };
+  const auto row = static_cast<std::size_t>(this->Size[0]);
+  const std::size_t plane = row * static_cast<std::size_t>(this->Size[1]);
+  const auto x = static_cast<std::size_t>(box[0]);
+  const auto y = static_cast<std::size_t>(box[2]);
+  queue.enqueueWriteBufferRect(this->GetBuffer(chunk), CL_FALSE,
+    { x, y, static_cast<std::size_t>(first - planes[0]) },
+    { x, y, static_cast<std::size_t>(first) },
+    { count(box[0], box[1]), count(box[2], box[3]), count(first, last) }, row, plane, row, plane,
+    const_cast<unsigned char*>(this->Last.data()));
+}
+
+std::vector<Extent> DeviceMask::Set(const OpenCLContext& context, const cl::CommandQueue& queue,
+  const std::array<int, 3>& vertices, std::vector<VolumeChunk>& chunks, const unsigned char* next,
+  unsigned char bits, const PointRanges* written)
+{
+  const QueueGuard guard(queue);
+  const int less = this->MaskKind == Kind::ActiveTetrahedra ? 1 : 0;
+  this->Size = { { vertices[0] - less, vertices[1] - less, vertices[2] - less } };
+  const MaskValues wanted = this->MakeValues(next, bits);
+  std::vector<Extent> changes;
+  const auto copy = [&](unsigned char* last)
+  {
+    constexpr std::size_t step = 64;
+    ParallelForParts(changes.size(), step,
+      [&](std::size_t begin, std::size_t end)
+      {
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          CopyMask(this->Size, changes[i], wanted, last);
+        }
+      });
+  };
+  const PointRanges* news = this->WithBuffers && next ? written : nullptr;
+  if (!this->WithBuffers)
+  {
+    changes = FindMaskChanges(this->Size, this->MakeValues(nullptr, 0), wanted);
+    if (changes.empty())
+    {
+      return changes;
+    }
+    this->Allocate(context, queue, chunks);
+  }
+  if (!this->Last.empty())
+  {
+    changes = FindMaskChanges(this->Size, this->MakeValues(this->Last.data(), 255), wanted, news);
+    copy(this->Last.data());
+    for (VolumeChunk& chunk : chunks)
+    {
+      for (const Extent& box : changes)
+      {
+        this->Write(queue, chunk, box);
+      }
+    }
+    queue.finish();
+  }
+  else
+  {
+    const MappedBuffer<unsigned char> last(
+      queue, this->GetBuffer(chunks.front()), CL_MAP_READ | CL_MAP_WRITE);
+    changes = FindMaskChanges(this->Size, this->MakeValues(last.Get(), 255), wanted, news);
+    copy(last.Get());
+  }
+  if (!next)
+  {
+    this->Release(chunks);
+  }
+  return changes;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeDeviceMask_h
+#define DeformVolumeDeviceMask_h
+
+#include "Extent.h"
+#include "MaskChanges.h"
+#include "OpenCLContext.h"
+#include "VolumeChunk.h"
+
+#include <array>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// A mask of a volume on the device: of its vertices, which of them are blanked, or of its cells,
+/// which tetrahedra of them are active. Only what differs from what the device has is sent.
+class DeviceMask
+{
+public:
+  enum class Kind
+  {
+    BlankedVertices,
+    ActiveTetrahedra
+  };
+
+  explicit DeviceMask(Kind kind)
+    : MaskKind(kind)
+  {
+  }
+
+  /// Whether the chunks have a buffer of it. Else no vertex is blanked, or all tetrahedra are
+  /// active.
+  bool HasBuffers() const { return this->WithBuffers; }
+
+  /// next: one byte for each vertex, of so many on each axis, or cell; null: all are as usual.
+  /// bits: those that count. written: places elsewhere have been left alone since the last call;
+  /// null: any may have been written. Returns where the mask is not as it was: boxes of local
+  /// indices that do not overlap.
+  std::vector<Extent> Set(const OpenCLContext& context, const cl::CommandQueue& queue,
+    const std::array<int, 3>& vertices, std::vector<VolumeChunk>& chunks, const unsigned char* next,
+    unsigned char bits, const PointRanges* written);
+
+private:
+  cl::Buffer& GetBuffer(VolumeChunk& chunk) const;
+  MaskValues MakeValues(const unsigned char* bytes, unsigned char bits) const;
+  /// First and last plane of a chunk in the mask.
+  std::array<int, 2> GetPlanes(const VolumeChunk& chunk) const;
+  void Allocate(
+    const OpenCLContext& context, const cl::CommandQueue& queue, std::vector<VolumeChunk>& chunks);
+  void Release(std::vector<VolumeChunk>& chunks);
+  void Write(const cl::CommandQueue& queue, VolumeChunk& chunk, const Extent& box) const;
+
+  Kind MaskKind;
+  std::array<int, 3> Size{ { 0, 0, 0 } };
+  bool WithBuffers = false;
+  std::vector<unsigned char> Last; // what the device has, where the host cannot look into that
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DisplacementBounds.h"
+
+#include "DisplacementField.h"
+#include "VectorComponents.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace deformvolume
+{
+
+DisplacementBounds::DisplacementBounds()
+{
+  this->Least.fill(std::numeric_limits<float>::infinity());
+  this->Greatest.fill(-std::numeric_limits<float>::infinity());
+}
+
+void DisplacementBounds::Add(const Displacements& displacements, std::size_t begin, std::size_t end)
+{
+  if (displacements.Padded)
+  {
+    this->Add(displacements.Padded, begin, end);
+    return;
+  }
+  const VectorComponents components =
+    FindComponents(displacements.Field->Vectors + 3 * begin, 3 * (end - begin));
+  if (components.AreFinite)
+  {
+    const DisplacementRange range = GetRange(*displacements.Field, components);
+    for (int axis = 0; begin < end && axis < 3; ++axis)
+    {
+      this->Least[axis] = std::min(this->Least[axis], static_cast<float>(range.Least[axis]));
+      this->Greatest[axis] =
+        std::max(this->Greatest[axis], static_cast<float>(range.Greatest[axis]));
+    }
+    return;
+  }
+  for (std::size_t point = begin; point < end; ++point)
+  {
+    const std::array<float, 3> found =
+      GetDisplacement(*displacements.Field, static_cast<std::int64_t>(point));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Least[axis] = std::min(this->Least[axis], found[axis]);
+      this->Greatest[axis] = std::max(this->Greatest[axis], found[axis]);
+    }
+  }
+}
+
+void DisplacementBounds::Add(const DisplacementBounds& other)
+{
+  for (int c = 0; c < 4; ++c)
+  {
+    this->Least[c] = std::min(this->Least[c], other.Least[c]);
+    this->Greatest[c] = std::max(this->Greatest[c], other.Greatest[c]);
+  }
+}
+
+} // namespace deformvolume

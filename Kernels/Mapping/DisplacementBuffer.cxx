@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DisplacementBuffer.h"
+
+#include "BrickPoints.h"
+#include "DisplacementField.h"
+#include "DisplacementObserver.h"
+#include "Error.h"
+#include "HostMemory.h"
+#include "ParallelFor.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bitset>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+namespace deformvolume
+{
+namespace
+{
+
+// Vectors are worked on by words of a PointSet.
+constexpr std::size_t WordSize = PointSet::PointsPerWord;
+constexpr std::size_t WordStep = 65536 / WordSize; // that a thread takes at a time
+
+// Calls body(word, begin, end) for words and the vectors of each, of which there are count
+// altogether, side by side.
+template <typename Body>
+void ForWords(const std::vector<std::size_t>& words, std::size_t count, Body&& body)
+{
+  ParallelForParts(words.size(), WordStep,
+    [&](std::size_t first, std::size_t past)
+    {
+      for (std::size_t i = first; i < past; ++i)
+      {
+        const std::size_t begin = words[i] * WordSize;
+        body(words[i], begin, std::min(begin + WordSize, count));
+      }
+    });
+}
+
+// The words of all points, or of those that may have changed.
+std::vector<std::size_t> FindWords(const PointRanges* changes, std::size_t count)
+{
+  PointRanges ranges = changes ? *changes : PointRanges{ { { 0, count } } };
+  std::sort(ranges.begin(), ranges.end());
+  std::vector<std::size_t> words;
+  for (const auto& range : ranges)
+  {
+    std::size_t word = range[0] / WordSize;
+    if (!words.empty())
+    {
+      word = std::max(word, words.back() + 1);
+    }
+    for (; word * WordSize < std::min(range[1], count); ++word)
+    {
+      words.push_back(word);
+    }
+  }
+  return words;
+}
+
+// The first of the vectors that is not finite or too large; count where there is none.
+std::size_t FindBadVector(
+  const float* vectors, const std::vector<std::size_t>& words, std::size_t count)
+{
+  std::atomic<std::size_t> bad{ count };
+  ForWords(words, count,
+    [&](std::size_t, std::size_t begin, std::size_t end)
+    {
+      const auto isGood = [](float component)
+      { return std::abs(component) <= static_cast<float>(LargestDisplacement); };
+      // All at once, without an early end, is what compilers make vectors of.
+      int good = 1;
+      for (std::size_t i = 3 * begin; i < 3 * end; ++i)
+      {
+        good &= isGood(vectors[i]) ? 1 : 0;
+      }
+      if (!good)
+      {
+        const float* found = std::find_if_not(vectors + 3 * begin, vectors + 3 * end, isGood);
+        const auto vector = static_cast<std::size_t>(found - vectors) / 3;
+        std::size_t first = bad;
+        while (vector < first && !bad.compare_exchange_weak(first, vector))
+        {
+        }
+      }
+    });
+  return bad;
+}
+
+using Numbers = DisplacementBuffer::Numbers;
+
+// Marks, by the numbers of the device, the vectors that differ from those that it has, four floats
+// each; returns how many they are. Once they are more than the most, it leaves out the rest.
+std::size_t MarkChanges(const float* vectors, const float* last, const Numbers& numbers,
+  const std::vector<std::size_t>& words, std::size_t count, std::size_t most, PointSet& changed)
+{
+  std::atomic<std::size_t> number{ 0 };
+  ForWords(words, count,
+    [&](std::size_t word, std::size_t begin, std::size_t end)
+    {
+      if (number.load(std::memory_order_relaxed) > most)
+      {
+        return;
+      }
+      // Bit by bit: -0 is not 0, and what is not the same may not be taken for it.
+      const auto differs = [&](std::size_t i, std::size_t place)
+      { return std::memcmp(vectors + 3 * i, last + 4 * place, 3 * sizeof(float)) != 0; };
+      std::size_t found = 0;
+      if (numbers.empty())
+      {
+        std::uint64_t bits = 0;
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          bits |= std::uint64_t{ differs(i, i) } << (i - begin);
+        }
+        changed.AddWord(word, bits);
+        found = std::bitset<WordSize>(bits).count();
+      }
+      else
+      {
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          const auto place = static_cast<std::size_t>(numbers[i]);
+          if (differs(i, place))
+          {
+            changed.Add(place);
+            ++found;
+          }
+        }
+      }
+      number += found;
+    });
+  return number;
+}
+
+// Whether so many vectors differ that it is not worthwhile to find out which, by a sample of them.
+bool AreMostlyOther(const float* vectors, const float* last, const Numbers& numbers,
+  const std::vector<std::size_t>& words, std::size_t count, std::size_t most)
+{
+  constexpr std::size_t sampleSize = 512;
+  const std::size_t all = std::min(words.size() * WordSize, count);
+  if (all < 32 * sampleSize)
+  {
+    return false;
+  }
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < sampleSize; ++k)
+  {
+    // One in each of evenly spread words, and not always the same one.
+    const std::size_t word = words[k * words.size() / sampleSize];
+    const std::size_t i = std::min(word * WordSize + 37 * k % WordSize, count - 1);
+    const std::size_t place = numbers.empty() ? i : static_cast<std::size_t>(numbers[i]);
+    found += std::memcmp(vectors + 3 * i, last + 4 * place, 3 * sizeof(float)) != 0 ? 1 : 0;
+  }
+  return found * all > sampleSize * (most + (count - most) / 2);
+}
+
+// The three floats of a vector and a zero.
+std::array<float, 4> PadOne(const float* vector)
+{
+  return { { vector[0], vector[1], vector[2], 0.0F } };
+}
+
+// Pads some vectors that follow each other, all of which have a vector or another float behind
+// them, and stores each where it belongs.
+template <typename PlaceOf>
+void PadSome(const float* vectors, std::size_t begin, std::size_t end, const PlaceOf& placeOf,
+  float* padded, DisplacementBounds& bounds)
+{
+#ifdef __SSE2__
+  // Compilers do not find these by themselves, and there are millions of vectors.
+  const __m128 mask = _mm_castsi128_ps(_mm_set_epi32(0, -1, -1, -1));
+  __m128 least = _mm_load_ps(bounds.Least.data());
+  __m128 greatest = _mm_load_ps(bounds.Greatest.data());
+  for (std::size_t i = begin; i < end; ++i)
+  {
+    const __m128 next = _mm_and_ps(_mm_loadu_ps(vectors + 3 * i), mask);
+    least = _mm_min_ps(least, next);
+    greatest = _mm_max_ps(greatest, next);
+    _mm_storeu_ps(padded + 4 * placeOf(i), next);
+  }
+  _mm_store_ps(bounds.Least.data(), least);
+  _mm_store_ps(bounds.Greatest.data(), greatest);
+#else
+  for (std::size_t i = begin; i < end; ++i)
+  {
+    const std::array<float, 4> next = PadOne(vectors + 3 * i);
+    bounds.Add(next.data(), 0, 1);
+    std::copy(next.begin(), next.end(), padded + 4 * placeOf(i));
+  }
+#endif
+}
+
+// The three floats of each vector become the four that the device reads at once; returns what they
+// lie between.
+DisplacementBounds PadVectors(const float* vectors, const Numbers& numbers,
+  const std::vector<std::size_t>& words, std::size_t count, float* padded)
+{
+  DisplacementBounds all;
+  std::mutex mutex;
+  ParallelForParts(words.size(), WordStep,
+    [&](std::size_t first, std::size_t past)
+    {
+      DisplacementBounds bounds;
+      for (std::size_t word = first; word < past; ++word)
+      {
+        const std::size_t begin = words[word] * WordSize;
+        const std::size_t some = std::min(WordSize, count - begin);
+        const std::size_t end = begin + some;
+        const std::size_t followed = end == count ? end - 1 : end;
+        const auto pad = [&](const auto& placeOf)
+        {
+          PadSome(vectors, begin, followed, placeOf, padded, bounds);
+          for (std::size_t i = followed; i < end; ++i)
+          {
+            alignas(16) const std::array<float, 4> last = PadOne(vectors + 3 * i);
+            bounds.Add(last.data(), 0, 1);
+            std::copy(last.begin(), last.end(), padded + 4 * placeOf(i));
+          }
+        };
+        if (numbers.empty())
+        {
+          pad([](std::size_t i) { return i; });
+        }
+        else
+        {
+          pad([&](std::size_t i) { return static_cast<std::size_t>(numbers[i]); });
+        }
+      }
+      const std::lock_guard<std::mutex> lock(mutex);
+      all.Add(bounds);
+    });
+  return all;
+}
+
+} // namespace
+
+void CheckDisplacements(
+  const float* displacements, std::size_t count, const char* what, const PointRanges* changes)
+{
+  const std::size_t bad = FindBadVector(displacements, FindWords(changes, count), count);
+  if (bad < count)
+  {
+    throw Error(std::string("The displacement of ") + what + " " + std::to_string(bad) +
+      " is not finite, or over 16,383 output voxels. Check the scale of the displacements and "
+      "the output spacing.");
+  }
+}
+
+std::size_t DisplacementBuffer::GetNumberOfPoints() const
+{
+  return static_cast<std::size_t>(GetMemory(this->Buffer) / (4 * sizeof(float)));
+}
+
+void DisplacementBuffer::SendAll(
+  const float* displacements, std::size_t count, const Numbers& numbers)
+{
+  std::vector<float> padded(4 * std::max(count, numbers.size()));
+  PadVectors(displacements, numbers, FindWords(nullptr, count), count, padded.data());
+  this->Buffer = this->Device.Send(padded.data(), padded.size() * sizeof(float), this->Buffer);
+  this->Observer.MoveAll({});
+}
+
+void DisplacementBuffer::Reserve(std::size_t count)
+{
+  constexpr std::size_t bytes = 4 * sizeof(float);
+  const std::size_t had = this->GetNumberOfPoints();
+  if (count <= had)
+  {
+    return;
+  }
+  const std::size_t room = count + count / 8; // more may follow soon
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  const cl::Buffer buffer(this->Device.GetContext().GetContext(), CL_MEM_READ_ONLY, room * bytes);
+  queue.enqueueFillBuffer(buffer, cl_uchar{ 0 }, had * bytes, (room - had) * bytes);
+  if (had > 0)
+  {
+    queue.enqueueCopyBuffer(this->Buffer, buffer, 0, 0, had * bytes);
+  }
+  queue.finish();
+  this->Buffer = buffer;
+}
+
+void DisplacementBuffer::Send(const float* displacements, std::size_t count, const Numbers& numbers,
+  const PointRanges* changes, const std::function<BrickPoints()>& makePoints)
+{
+  if (!this->Device.GetDevice().IsProcessor)
+  {
+    this->SendAll(displacements, count, numbers);
+    return;
+  }
+  // Points with numbers may be fewer than there is room for.
+  const std::size_t room = this->GetNumberOfPoints();
+  if (numbers.empty() ? room != count : room < numbers.size())
+  {
+    this->Buffer = cl::Buffer(this->Device.GetContext().GetContext(), CL_MEM_READ_ONLY,
+      4 * std::max(count, numbers.size()) * sizeof(float));
+    this->Observer.MoveAll({});
+    changes = nullptr;
+  }
+  const std::vector<std::size_t> words = FindWords(changes, count);
+  const MappedBuffer<float> sent(this->Device.GetQueue(), this->Buffer, CL_MAP_READ | CL_MAP_WRITE);
+  bool partly = this->Observer.IsTracking();
+  if (partly)
+  {
+    const std::size_t most = this->Observer.GetMostMoved(count);
+    partly = !AreMostlyOther(displacements, sent.Get(), numbers, words, count, most);
+    if (partly)
+    {
+      this->Changed.Clear(std::max(count, numbers.size()));
+      const std::size_t number =
+        MarkChanges(displacements, sent.Get(), numbers, words, count, most, this->Changed);
+      if (number == 0)
+      {
+        return;
+      }
+      partly = number <= most;
+    }
+  }
+  if (partly)
+  {
+    if (!this->Observer.HasPoints())
+    {
+      this->Observer.SetPoints(makePoints());
+    }
+    this->Observer.MovePoints(this->Changed, sent.Get());
+    this->Observer.AddMoved(PadVectors(displacements, numbers, words, count, sent.Get()));
+  }
+  else
+  {
+    const DisplacementBounds bounds = PadVectors(displacements, numbers, words, count, sent.Get());
+    this->Observer.MoveAll(words.size() * WordSize >= count ? std::optional(bounds) : std::nullopt);
+  }
+}
+
+} // namespace deformvolume

@@ -1,0 +1,520 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DisplacementSource.h"
+
+#include "BrickPoints.h"
+#include "DeviceVolume.h"
+#include "DisplacementObserver.h"
+#include "Error.h"
+#include "FieldParameters.h"
+#include "KernelText.h"
+#include "MeshChecks.h"
+#include "MeshOrder.h"
+#include "WorkDevice.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace deformvolume
+{
+namespace
+{
+
+std::uint64_t GetBytes(const DisplacementField& field)
+{
+  return static_cast<std::uint64_t>(GetNumberOfPoints(field)) * 3 * sizeof(float);
+}
+
+bool HasSameDimensions(const FieldParameters& a, const FieldParameters& b)
+{
+  return std::equal(a.Dimensions, a.Dimensions + 3, b.Dimensions);
+}
+
+// Whether the points of a field move the same voxels, in the same way.
+bool IsSameMapping(const FieldParameters& a, const FieldParameters& b)
+{
+  return std::equal(a.IndexToField, a.IndexToField + 12, b.IndexToField) &&
+    HasSameDimensions(a, b) && a.Extrapolate == b.Extrapolate;
+}
+
+} // namespace
+
+DisplacementSource::DisplacementSource(
+  WorkDevice& device, DeviceVolume& volume, DisplacementObserver& observer)
+  : Device(device)
+  , Volume(volume)
+  , Observer(observer)
+  , Nodes(device, observer)
+  , FieldVectors(device, observer)
+{
+}
+
+void DisplacementSource::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+  std::size_t numberOfNodes, const VertexLink* links)
+{
+  CheckLinks(
+    links, GetNumberOfPoints(this->Volume.GetVoxelGrid().VertexExtent), numberOfTetrahedra);
+  MeshOrder order =
+    FindOrder(this->Volume.GetBricks(), links, tetrahedra, numberOfTetrahedra, numberOfNodes);
+  this->Volume.SetLinks(links, order);
+  this->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes, std::move(order));
+}
+
+void DisplacementSource::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+  std::size_t numberOfNodes, const VertexRuns& runs)
+{
+  CheckRuns(runs, this->Volume.GetVoxelGrid(), numberOfTetrahedra);
+  MeshOrder order = FindOrder(runs, tetrahedra, numberOfTetrahedra, numberOfNodes);
+  this->Volume.SetRuns(runs, order);
+  this->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes, std::move(order));
+}
+
+void DisplacementSource::SendTetrahedra(const Tetrahedron* tetrahedra,
+  std::size_t numberOfTetrahedra, std::size_t numberOfNodes, MeshOrder&& order)
+{
+  static_assert(DEFORMVOLUME_NODE_PLACES == 2, "as the message says");
+  if (numberOfNodes > std::size_t{ 1 } << 30)
+  {
+    throw Error("The deformation mesh has more than 2^30 nodes. Use a coarser mesh.");
+  }
+  this->NumberOfTetrahedra = numberOfTetrahedra;
+  const std::vector<Tetrahedron> places = NameNodePlaces(tetrahedra, numberOfTetrahedra, order);
+  this->Tetrahedra =
+    this->Device.Send(places.data(), numberOfTetrahedra * sizeof(Tetrahedron), this->Tetrahedra);
+  this->NumberOfNodes = numberOfNodes;
+  this->Order = std::move(order);
+  if (this->Nodes.GetNumberOfPoints() != numberOfNodes)
+  {
+    this->Nodes.Clear();
+  }
+  this->NodesSet = false;
+  this->LastSent = false;
+  this->ForgetField();
+  this->Observer.ForgetMapping();
+}
+
+bool DisplacementSource::HasMesh() const
+{
+  return this->Volume.HasMesh();
+}
+
+std::vector<TetrahedronChange> DisplacementSource::FindChanges(const Tetrahedron* tetrahedra) const
+{
+  std::vector<std::int32_t> nodes(this->Order.Nodes.size()); // by the numbers of the device
+  for (std::size_t node = 0; node < nodes.size(); ++node)
+  {
+    nodes[this->Order.Nodes[node]] = static_cast<std::int32_t>(node);
+  }
+  const MappedBuffer<const Tetrahedron> places(
+    this->Device.GetQueue(), this->Tetrahedra, CL_MAP_READ);
+  std::vector<TetrahedronChange> changes;
+  for (std::size_t t = 0; t < this->NumberOfTetrahedra; ++t)
+  {
+    TetrahedronChange change;
+    change.Number = static_cast<std::int32_t>(t);
+    const Tetrahedron& last = places.Get()[this->Order.Tetrahedra[t]];
+    std::transform(last.begin(), last.end(), change.Before.begin(),
+      [&](std::int32_t place) { return nodes[place / DEFORMVOLUME_NODE_PLACES]; });
+    change.After = tetrahedra[t];
+    if (change.After != change.Before)
+    {
+      changes.push_back(change);
+    }
+  }
+  return changes;
+}
+
+void DisplacementSource::CheckChanges(
+  const std::vector<TetrahedronChange>& changes, std::size_t numberOfNodes) const
+{
+  const auto areNodes = [](const Tetrahedron& tetrahedron, std::size_t count)
+  {
+    return std::all_of(tetrahedron.begin(), tetrahedron.end(),
+      [=](std::int32_t node) { return node >= 0 && static_cast<std::size_t>(node) < count; });
+  };
+  for (const TetrahedronChange& change : changes)
+  {
+    const std::string name = "The tetrahedron " + std::to_string(change.Number);
+    if (change.Number < 0 || static_cast<std::size_t>(change.Number) >= this->NumberOfTetrahedra)
+    {
+      throw Error(name + " is to have other nodes, but there are " +
+        std::to_string(this->NumberOfTetrahedra) + " tetrahedra.");
+    }
+    if (!areNodes(change.After, numberOfNodes) ||
+      !areNodes(change.Before, this->Order.Nodes.size()))
+    {
+      throw Error(name +
+        " is to have other nodes, and one of these, or of those that it had, is "
+        "none: there are " +
+        std::to_string(numberOfNodes) + " nodes now.");
+    }
+  }
+}
+
+void DisplacementSource::SendChanges(const std::vector<TetrahedronChange>& changes)
+{
+  const auto place = [](const Tetrahedron& nodes)
+  {
+    Tetrahedron places = nodes;
+    for (std::int32_t& node : places)
+    {
+      node *= DEFORMVOLUME_NODE_PLACES;
+    }
+    return places;
+  };
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  if (this->Device.GetDevice().IsProcessor)
+  {
+    const MappedBuffer<Tetrahedron> sent(queue, this->Tetrahedra, CL_MAP_READ | CL_MAP_WRITE);
+    for (const TetrahedronChange& change : changes)
+    {
+      sent.Get()[change.Number] = place(change.After);
+    }
+    return;
+  }
+  std::vector<Tetrahedron> places;
+  places.reserve(changes.size()); // they stay until they are sent
+  const QueueGuard guard(queue);
+  for (const TetrahedronChange& change : changes)
+  {
+    places.push_back(place(change.After));
+    queue.enqueueWriteBuffer(this->Tetrahedra, CL_FALSE,
+      static_cast<std::size_t>(change.Number) * sizeof(Tetrahedron), sizeof(Tetrahedron),
+      &places.back());
+  }
+}
+
+void DisplacementSource::ChangeConnectivity(const Tetrahedron* tetrahedra,
+  std::size_t numberOfTetrahedra, std::size_t numberOfNodes,
+  const std::vector<TetrahedronChange>* changes)
+{
+  if (!this->HasMesh() || numberOfTetrahedra != this->NumberOfTetrahedra || numberOfNodes == 0)
+  {
+    throw Error("The tetrahedra are not those of the mesh that was set: call SetMesh.");
+  }
+  std::vector<TetrahedronChange> numbered = changes ? *changes : this->FindChanges(tetrahedra);
+  this->CheckChanges(numbered, numberOfNodes);
+  for (std::size_t node = this->Order.Nodes.size(); node < numberOfNodes; ++node)
+  {
+    this->Order.Nodes.push_back(static_cast<std::int32_t>(node));
+  }
+  this->Nodes.Reserve(numberOfNodes);
+  if (this->Observer.IsTracking() && !this->Observer.HasPoints())
+  {
+    this->Observer.SetPoints(this->MakeBrickPoints());
+  }
+  for (TetrahedronChange& change : numbered)
+  {
+    change.Number = this->Order.Tetrahedra[change.Number];
+    for (Tetrahedron* nodes : { &change.Before, &change.After })
+    {
+      for (std::int32_t& node : *nodes)
+      {
+        node = this->Order.Nodes[node];
+      }
+    }
+  }
+  std::optional<std::vector<Extent>> boxes;
+  if (this->Observer.HasPoints())
+  {
+    const MappedBuffer<const float> last(this->Device.GetQueue(), this->Nodes.Get(), CL_MAP_READ);
+    boxes = this->Observer.ChangeTetrahedra(numbered, last.Get());
+  }
+  this->SendChanges(numbered);
+  if (boxes)
+  {
+    this->Volume.ChangeOwners(*boxes);
+  }
+  else
+  {
+    this->Volume.ForgetBridges();
+  }
+  this->NumberOfNodes = numberOfNodes;
+  this->Volume.ForgetRecords();
+}
+
+void DisplacementSource::SetNodePlaces(const std::int32_t* places)
+{
+  if (places && !this->HasMesh())
+  {
+    throw Error("No deformation mesh with links or runs is set: call SetMesh first.");
+  }
+  std::vector<std::int32_t> numbered;
+  if (places)
+  {
+    // Nodes that are there no more share no place with others.
+    numbered.assign(this->Order.Nodes.size(), -1);
+    for (std::size_t node = 0; node < this->NumberOfNodes; ++node)
+    {
+      numbered[this->Order.Nodes[node]] = places[node];
+    }
+  }
+  this->Volume.SetNodePlaces(numbered);
+}
+
+std::vector<Extent> DisplacementSource::UpdateBridges()
+{
+  return this->Volume.UpdateBridges(this->GetMappingForm(), this->Tetrahedra,
+    [this](cl::Kernel& kernel, const VolumeChunk& chunk)
+    { return this->SetMappingArguments(kernel, chunk); });
+}
+
+void DisplacementSource::SetNodeDisplacements(
+  const float* displacements, const PointRanges* changes)
+{
+  const PointRanges* news = this->NodesSet && this->LastSent ? changes : nullptr;
+  this->LastSent = false;
+  CheckDisplacements(displacements, this->NumberOfNodes, "node", news);
+  this->Nodes.Send(displacements, this->NumberOfNodes, this->Order.Nodes, news,
+    [this] { return this->MakeBrickPoints(); });
+  this->NodesSet = true;
+  this->LastSent = true;
+  this->Volume.ForgetRecords();
+}
+
+void DisplacementSource::SetField(const DisplacementField& field, const PointRanges* changes)
+{
+  const std::size_t points = CountPoints(field);
+  const FieldParameters parameters = MakeFieldParameters(field, this->Volume.GetVoxelGrid());
+  if (this->Volume.HasMesh())
+  {
+    this->Volume.ForgetMesh();
+  }
+  this->ForgetNodes();
+  this->NumberOfNodes = points;
+  if (!this->HasField() || !IsSameMapping(parameters, this->Field))
+  {
+    this->Observer.ForgetMapping();
+    this->Volume.ForgetState();
+  }
+  if (this->CanReadInPlace(field, parameters))
+  {
+    const DisplacementField& last = this->FieldInPlace;
+    const bool isSame = last.Owner && last.Vectors == field.Vectors &&
+      last.ToDisplacement == field.ToDisplacement && IsSameMapping(parameters, this->Field);
+    this->Field = parameters;
+    this->WrittenInPart = isSame && changes;
+    if (!this->WrittenInPart || !this->ChangeInPlace(field, *changes))
+    {
+      this->SetFieldInPlace(field);
+    }
+    return;
+  }
+  if (this->FieldInPlace.Owner)
+  {
+    this->ForgetField();
+  }
+  this->SendField(field, parameters, changes);
+}
+
+void DisplacementSource::SendField(
+  const DisplacementField& field, const FieldParameters& parameters, const PointRanges* changes)
+{
+  const std::size_t points = this->NumberOfNodes;
+  const PointRanges* news = this->LastSent && this->FieldVectors.GetNumberOfPoints() == points &&
+      HasSameDimensions(parameters, this->Field)
+    ? changes
+    : nullptr;
+  this->LastSent = false;
+  const std::vector<float> displacements =
+    parameters.IsMapped ? MapVectors(field) : std::vector<float>();
+  const float* vectors = parameters.IsMapped ? displacements.data() : field.Vectors;
+  CheckDisplacements(vectors, points, "point", news);
+  if (4 * points * sizeof(float) > this->Device.GetAllocationLimit())
+  {
+    throw Error("The displacement field is larger than the device can hold in one piece. Use a "
+                "coarser field or another device.");
+  }
+  this->Field = parameters;
+  this->FieldVectors.Send(vectors, points, {}, news, [this] { return this->MakeBrickPoints(); });
+  this->LastSent = true;
+}
+
+bool DisplacementSource::CanReadInPlace(
+  const DisplacementField& field, const FieldParameters& parameters) const
+{
+  const OpenCLContext& context = this->Device.GetContext();
+  if (!field.Owner || !parameters.SameGrid || !HasDouble(context) ||
+    !CanWorkInPlace(context, field.Vectors, sizeof(float)) ||
+    GetBytes(field) > this->Device.GetAllocationLimit())
+  {
+    return false;
+  }
+  // It may be an array of the volume, too, and lies in one piece.
+  const BufferInPlace array = this->Volume.FindOverlapping(field.Vectors, GetBytes(field));
+  return array.Bytes == 0 ||
+    (array.IsOver(field.Vectors, GetBytes(field)) && this->Volume.GetChunks().size() == 1);
+}
+
+bool DisplacementSource::ChangeInPlace(const DisplacementField& field, const PointRanges& changes)
+{
+  std::size_t count = 0;
+  for (const auto& range : changes)
+  {
+    count += std::min(range[1], this->NumberOfNodes) - std::min(range[0], this->NumberOfNodes);
+  }
+  if (count > this->Observer.GetMostMoved(this->NumberOfNodes))
+  {
+    this->WrittenInPart = false;
+    return false;
+  }
+  if (!this->Observer.IsTracking() || !this->Observer.KnowsAllBoxes())
+  {
+    return false;
+  }
+  PointSet changed;
+  changed.Clear(this->NumberOfNodes);
+  DisplacementBounds after;
+  for (const auto& range : changes)
+  {
+    const std::size_t end = std::min(range[1], this->NumberOfNodes);
+    changed.AddRange(range[0], end);
+    if (range[0] < end)
+    {
+      after.Add({ nullptr, &field }, range[0], end);
+    }
+  }
+  if (count > 0)
+  {
+    this->Observer.MovePoints(changed, nullptr);
+    this->Observer.AddMoved(after);
+  }
+  this->FieldInPlace = field;
+  return true;
+}
+
+void DisplacementSource::SetFieldInPlace(const DisplacementField& field)
+{
+  this->Observer.MoveAll({});
+  this->LastSent = false;
+  this->FieldVectors.Clear();
+  const BufferInPlace array = this->Volume.FindOverlapping(field.Vectors, GetBytes(field));
+  this->VectorsInPlace = array.Buffer; // that of before may lie over the same memory
+  if (!array.Buffer())
+  {
+    // The kernels only read them.
+    this->VectorsInPlace = MakeBufferOver(this->Device.GetContext(), CL_MEM_READ_ONLY,
+      const_cast<float*>(field.Vectors), GetBytes(field));
+  }
+  this->FieldInPlace = field; // only now no buffer lies over the memory of the last one
+}
+
+BufferInPlace DisplacementSource::GetFieldInPlace() const
+{
+  return this->FieldInPlace.Owner ? BufferInPlace{ this->FieldInPlace.Vectors,
+    GetBytes(this->FieldInPlace), this->VectorsInPlace }
+                                  : BufferInPlace();
+}
+
+void DisplacementSource::ReadFieldAgain() const
+{
+  TellOfWrites(this->Device.GetContext(), this->Device.GetQueue(), this->GetFieldInPlace());
+}
+
+void DisplacementSource::ForgetNodes()
+{
+  this->Tetrahedra = cl::Buffer();
+  this->Nodes.Clear();
+  this->Order = MeshOrder();
+  this->NumberOfTetrahedra = 0;
+  this->NumberOfNodes = 0;
+  this->NodesSet = false;
+}
+
+void DisplacementSource::ForgetField()
+{
+  this->FieldVectors.Clear();
+  this->VectorsInPlace = cl::Buffer();
+  this->FieldInPlace = DisplacementField();
+}
+
+void DisplacementSource::Forget()
+{
+  this->Volume.ForgetMesh();
+  this->ForgetNodes();
+  this->ForgetField();
+  this->Observer.ForgetMapping();
+}
+
+const cl::Buffer& DisplacementSource::GetFieldVectors() const
+{
+  return this->FieldInPlace.Owner ? this->VectorsInPlace : this->FieldVectors.Get();
+}
+
+bool DisplacementSource::IsReady() const
+{
+  return (this->Volume.HasMesh() && this->NodesSet) || this->HasField();
+}
+
+MappingForm DisplacementSource::GetMappingForm() const
+{
+  return this->Volume.HasRuns() ? MappingForm::Runs
+    : this->Volume.HasMesh()    ? MappingForm::Links
+    : this->FieldInPlace.Owner  ? MappingForm::FieldInPlace
+                                : MappingForm::Field;
+}
+
+cl_uint DisplacementSource::SetMappingArguments(cl::Kernel& kernel, const VolumeChunk& chunk) const
+{
+  cl_uint i = 0;
+  if (this->GetMappingForm() == MappingForm::Runs)
+  {
+    kernel.setArg(i++, chunk.Runs);
+    kernel.setArg(i++, chunk.RowBegins);
+    kernel.setArg(i++, this->Volume.GetRecords());
+  }
+  else if (this->GetMappingForm() == MappingForm::Links)
+  {
+    kernel.setArg(i++, chunk.Links);
+    kernel.setArg(i++, this->Tetrahedra);
+    kernel.setArg(i++, this->Nodes.Get());
+  }
+  else
+  {
+    kernel.setArg(i++, this->GetFieldVectors());
+    kernel.setArg(i++, this->Field);
+  }
+  kernel.setArg(i++, this->Volume.GetRestPositions());
+  return i;
+}
+
+void DisplacementSource::PrepareMapping(std::vector<cl::Event>& events)
+{
+  const cl::Program mapping = GetMappingProgram(this->Device.GetContext(), this->GetMappingForm());
+  if (this->Volume.HasRuns() && this->Volume.NeedsRecords())
+  {
+    events.push_back(this->Volume.EvaluateTetrahedra(mapping, this->Tetrahedra, this->Nodes.Get()));
+  }
+  this->Volume.UpdateState(mapping, this->Field.Extrapolate || this->Field.SameGrid,
+    [this](cl::Kernel& kernel, const VolumeChunk& chunk)
+    { return this->SetMappingArguments(kernel, chunk); });
+}
+
+BrickPoints DisplacementSource::MakeBrickPoints() const
+{
+  return this->Volume.HasMesh()
+    ? this->Volume.MakeBrickPoints(this->Tetrahedra, this->NumberOfTetrahedra, this->NumberOfNodes)
+    : BrickPoints::FromField(this->Volume.GetBricks().GetSubBricks(), this->Field);
+}
+
+void DisplacementSource::Visit(
+  const std::function<void(const Displacements&, std::size_t)>& visit) const
+{
+  if (this->GetMappingForm() == MappingForm::FieldInPlace)
+  {
+    visit({ nullptr, &this->FieldInPlace },
+      static_cast<std::size_t>(GetNumberOfPoints(this->FieldInPlace)));
+    return;
+  }
+  const DisplacementBuffer& buffer = this->Volume.HasMesh() ? this->Nodes : this->FieldVectors;
+  const MappedBuffer<const float> vectors(this->Device.GetQueue(), buffer.Get(), CL_MAP_READ);
+  visit({ vectors.Get(), nullptr }, buffer.GetNumberOfPoints());
+}
+
+std::uint64_t DisplacementSource::GetMemory() const
+{
+  return deformvolume::GetMemory(this->Tetrahedra) + deformvolume::GetMemory(this->Nodes.Get()) +
+    deformvolume::GetMemory(this->FieldVectors.Get());
+}
+
+} // namespace deformvolume

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeDisplacementSource_h
+#define DeformVolumeDisplacementSource_h
+
+#include "DisplacementBuffer.h"
+#include "DisplacementField.h"
+#include "HostMemory.h"
+#include "KernelParameters.h"
+#include "MappingProgram.h"
+#include "MeshOrder.h"
+#include "Tetrahedron.h"
+#include "VertexLink.h"
+#include "VertexRuns.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace deformvolume
+{
+
+class DeviceVolume;
+class DisplacementObserver;
+class WorkDevice;
+struct VolumeChunk;
+
+/// Where the displacements are that move a volume, on the device: those of the nodes of a
+/// deformation mesh, or of the points of a field, which may be read where it lies. It says by which
+/// form of the deformation mapping the kernels find the displacement of a vertex, and gives them
+/// the arguments of that.
+///
+/// Each call that fails leaves the deformation of before, or none.
+class DisplacementSource
+{
+public:
+  /// The volume gets the static mapping of the mesh. The observer is told what changes.
+  DisplacementSource(WorkDevice& device, DeviceVolume& volume, DisplacementObserver& observer);
+
+  ///@{
+  /// A deformation mesh that was checked (CheckMesh), with a link for each voxel or with runs. Its
+  /// nodes have no displacements yet.
+  void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const VertexLink* links);
+  void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const VertexRuns& runs);
+  ///@}
+  bool HasMesh() const;
+  /// See VolumeDeformer; the mesh is the one that was set.
+  void ChangeConnectivity(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const std::vector<TetrahedronChange>* changes);
+  void SetNodePlaces(const std::int32_t* places);
+  /// Three floats a node, in output voxels. changes: see VolumeDeformer::SetNodeDisplacements.
+  void SetNodeDisplacements(const float* displacements, const PointRanges* changes);
+
+  /// A field that is not empty (CountPoints). changes: see VolumeDeformer::SetDisplacementField.
+  void SetField(const DisplacementField& field, const PointRanges* changes);
+
+  /// There is no deformation any more.
+  void Forget();
+
+  /// Whether there are displacements for each vertex.
+  bool IsReady() const;
+
+  /// Nodes of the mesh, or points of the field.
+  std::size_t GetNumberOfNodes() const { return this->NumberOfNodes; }
+  std::size_t GetNumberOfTetrahedra() const { return this->NumberOfTetrahedra; }
+
+  /// Leaves out the tetrahedra of the sampling mesh that bridge a gap of the mesh, where that is
+  /// wanted; returns the boxes of cells that have other ones than before.
+  std::vector<Extent> UpdateBridges();
+  /// Brings up to date what follows from displacements and masks: the records of runs and the state
+  /// of the vertices. Events of launches are added to a list.
+  void PrepareMapping(std::vector<cl::Event>& events);
+  MappingForm GetMappingForm() const;
+  /// Sets a kernel's first arguments, those of the mapping, and returns how many they are.
+  cl_uint SetMappingArguments(cl::Kernel& kernel, const VolumeChunk& chunk) const;
+
+  /// Which points move the sub-bricks of the volume. On a processor, where that is one chunk.
+  BrickPoints MakeBrickPoints() const;
+  /// Calls a function with the displacements as they are now, and how many they are. On a
+  /// processor.
+  void Visit(const std::function<void(const Displacements&, std::size_t)>& visit) const;
+
+  /// Whether a field that the kernels read where it lies is written in part, and that is told.
+  bool IsWrittenInPart() const { return this->FieldInPlace.Owner && this->WrittenInPart; }
+  /// Memory of the host where the kernels read a field, of no bytes where they do not.
+  BufferInPlace GetFieldInPlace() const;
+  /// Has it be read as it is now.
+  void ReadFieldAgain() const;
+
+  /// Bytes on the device.
+  std::uint64_t GetMemory() const;
+
+private:
+  void SendTetrahedra(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, MeshOrder&& order);
+  /// The tetrahedra that are not as the device has them.
+  std::vector<TetrahedronChange> FindChanges(const Tetrahedron* tetrahedra) const;
+  void CheckChanges(const std::vector<TetrahedronChange>& changes, std::size_t numberOfNodes) const;
+  void SendChanges(const std::vector<TetrahedronChange>& changes);
+  void ForgetNodes();
+  void ForgetField();
+  bool HasField() const { return this->GetFieldVectors()() != nullptr; }
+  const cl::Buffer& GetFieldVectors() const;
+  bool CanReadInPlace(const DisplacementField& field, const FieldParameters& parameters) const;
+  /// Some points of the field that is read where it lies have changed. False where all of it is as
+  /// good as new.
+  bool ChangeInPlace(const DisplacementField& field, const PointRanges& changes);
+  void SetFieldInPlace(const DisplacementField& field);
+  void SendField(
+    const DisplacementField& field, const FieldParameters& parameters, const PointRanges* changes);
+
+  WorkDevice& Device;
+  DeviceVolume& Volume;
+  DisplacementObserver& Observer;
+
+  cl::Buffer Tetrahedra; // their nodes (DEFORMVOLUME_NODE_PLACES), in the order of the device
+  std::size_t NumberOfTetrahedra = 0;
+  std::size_t NumberOfNodes = 0;
+  MeshOrder Order; // of all nodes that there have been
+  DisplacementBuffer Nodes;
+  bool NodesSet = false;
+
+  FieldParameters Field = {};
+  DisplacementBuffer FieldVectors;
+  bool WrittenInPart = false;
+  DisplacementField FieldInPlace; // with an owner, where the kernels read the vectors of that
+  cl::Buffer VectorsInPlace;      // which lies over them
+
+  bool LastSent = false; // the last displacements that were given are on the device
+};
+
+} // namespace deformvolume
+
+#endif

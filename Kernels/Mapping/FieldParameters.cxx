@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FieldParameters.h"
+
+#include "Error.h"
+#include "Extent.h"
+#include "ParallelFor.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+namespace deformvolume
+{
+namespace
+{
+
+// Finds out whether the voxels are points of a field.
+void SetSameGrid(FieldParameters& field, const Extent& extent)
+{
+  field.SameGrid = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      field.SameGrid &= field.IndexToField[4 * axis + column] == (axis == column ? 1.0F : 0.0F);
+    }
+    const float offset = field.IndexToField[4 * axis + 3] + static_cast<float>(field.First[axis]);
+    field.SameGrid &= offset == std::floor(offset) && offset >= 0.0F &&
+      offset + static_cast<float>(GetSize(extent, axis)) <=
+        static_cast<float>(field.Dimensions[axis]);
+    field.Offset[axis] = field.SameGrid ? static_cast<int>(offset) : 0;
+  }
+}
+
+} // namespace
+
+std::size_t CountPoints(const DisplacementField& field)
+{
+  const auto points = static_cast<std::size_t>(GetNumberOfPoints(field));
+  if (points == 0 || !field.Vectors)
+  {
+    throw Error("The displacement field is empty.");
+  }
+  return points;
+}
+
+FieldParameters MakeFieldParameters(const DisplacementField& field, const VoxelGrid& voxelGrid)
+{
+  FieldParameters parameters = {};
+  std::transform(field.IndexToField.begin(), field.IndexToField.end(), parameters.IndexToField,
+    [](double element) { return static_cast<float>(element); });
+  // The kernels count from the first voxel of the whole volume: large structured indices do not fit
+  // into a float, and a part must round as the whole does.
+  const Extent& extent = voxelGrid.VertexExtent;
+  const Extent& whole =
+    GetNumberOfPoints(voxelGrid.WholeExtent) > 0 ? voxelGrid.WholeExtent : extent;
+  for (int row = 0; row < 3; ++row)
+  {
+    const double* m = &field.IndexToField[4 * row];
+    parameters.IndexToField[4 * row + 3] =
+      static_cast<float>(m[0] * whole[0] + m[1] * whole[2] + m[2] * whole[4] + m[3]);
+    parameters.First[row] = extent[2 * row] - whole[2 * row];
+  }
+  parameters.IsMapped = !HasDisplacements(field);
+  for (int i = 0; i < 9; ++i)
+  {
+    const double factor = GetFactor(field, i);
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &factor, sizeof(bits));
+    parameters.ToDisplacement[2 * i] = static_cast<unsigned int>(bits);
+    parameters.ToDisplacement[2 * i + 1] = static_cast<unsigned int>(bits >> 32);
+  }
+  std::copy_n(field.Dimensions.begin(), 3, parameters.Dimensions);
+  parameters.Extrapolate = field.Extrapolate;
+  SetSameGrid(parameters, extent);
+  return parameters;
+}
+
+std::vector<float> MapVectors(const DisplacementField& field)
+{
+  const auto points = static_cast<std::size_t>(GetNumberOfPoints(field));
+  std::vector<float> displacements(3 * points);
+  ParallelForParts(points, 1 << 16,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t point = begin; point < end; ++point)
+      {
+        const std::array<float, 3> displacement =
+          GetDisplacement(field, static_cast<std::int64_t>(point));
+        std::copy(displacement.begin(), displacement.end(), displacements.begin() + 3 * point);
+      }
+    });
+  return displacements;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeFieldParameters_h
+#define DeformVolumeFieldParameters_h
+
+#include "DisplacementField.h"
+#include "KernelParameters.h"
+#include "VoxelGrid.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// Points of a field. Throws an Error where it has none.
+std::size_t CountPoints(const DisplacementField& field);
+
+/// What the kernels are told of a field that moves the voxels of a grid.
+FieldParameters MakeFieldParameters(const DisplacementField& field, const VoxelGrid& voxelGrid);
+
+/// The displacements of a field, three floats a point.
+std::vector<float> MapVectors(const DisplacementField& field);
+
+} // namespace deformvolume
+
+#endif

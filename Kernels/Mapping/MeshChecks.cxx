@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshChecks.h"
+
+#include "Error.h"
+
+#include <string>
+
+namespace deformvolume
+{
+
+void CheckMesh(
+  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes)
+{
+  if (!numberOfTetrahedra || !numberOfNodes || !tetrahedra)
+  {
+    throw Error("The deformation mesh is empty.");
+  }
+  for (std::size_t t = 0; t < numberOfTetrahedra; ++t)
+  {
+    for (const std::int32_t node : tetrahedra[t])
+    {
+      if (node < 0 || static_cast<std::size_t>(node) >= numberOfNodes)
+      {
+        throw Error("Tetrahedron " + std::to_string(t) + " of the deformation mesh has the node " +
+          std::to_string(node) + ", but there are " + std::to_string(numberOfNodes) + ".");
+      }
+    }
+  }
+}
+
+void CheckLinks(const VertexLink* links, std::int64_t count, std::size_t numberOfTetrahedra)
+{
+  for (std::int64_t i = 0; i < count; ++i)
+  {
+    if (links[i].Tetrahedron >= 0 &&
+      static_cast<std::size_t>(links[i].Tetrahedron) >= numberOfTetrahedra)
+    {
+      throw Error("Voxel " + std::to_string(i) + " is linked to the tetrahedron " +
+        std::to_string(links[i].Tetrahedron) + ", but there are " +
+        std::to_string(numberOfTetrahedra) + ".");
+    }
+  }
+}
+
+} // namespace deformvolume

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeVectorComponents_h
+#define DeformVolumeVectorComponents_h
+
+#include <array>
+#include <cstddef>
+
+namespace deformvolume
+{
+
+struct DisplacementField;
+
+/// What the three components of some vectors lie between, and whether all are finite.
+struct VectorComponents
+{
+  std::array<float, 3> Least;
+  std::array<float, 3> Greatest;
+  bool AreFinite;
+};
+
+/// Of so many numbers, three a vector.
+VectorComponents FindComponents(const float* values, std::size_t count);
+
+/// What the displacements of a field lie between whose vectors lie between others, as they are
+/// rounded. No displacement of such a vector leaves these bounds.
+struct DisplacementRange
+{
+  std::array<double, 3> Least;
+  std::array<double, 3> Greatest;
+};
+DisplacementRange GetRange(const DisplacementField& field, const VectorComponents& components);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VertexStates.h"
+
+#include "HostMemory.h"
+#include "VertexCuboids.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace deformvolume
+{
+
+void VertexStates::Forget()
+{
+  this->Current = false;
+  this->Known = false;
+}
+
+void VertexStates::ChangeSources(const std::vector<Extent>& vertices)
+{
+  this->Sources.insert(this->Sources.end(), vertices.begin(), vertices.end());
+  this->Current = this->Current && vertices.empty();
+}
+
+void VertexStates::ChangeCells(const std::vector<Extent>& cells)
+{
+  this->Cells.insert(this->Cells.end(), cells.begin(), cells.end());
+  this->Current = this->Current && cells.empty();
+}
+
+void VertexStates::Finish()
+{
+  this->Current = true;
+  this->Known = true;
+  this->Sources.clear();
+  this->Cells.clear();
+}
+
+void VertexStates::Release(std::vector<VolumeChunk>& chunks)
+{
+  for (VolumeChunk& chunk : chunks)
+  {
+    chunk.State = cl::Buffer();
+  }
+  this->Finish();
+  this->Known = false;
+}
+
+void VertexStates::Update(OpenCLContext& context, const cl::CommandQueue& queue,
+  const KernelParameters& p, VolumeChunk& chunk, const Source& source)
+{
+  const std::uint64_t bytes = static_cast<std::uint64_t>(p.Size[0]) *
+    static_cast<std::uint64_t>(p.Size[1]) * static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin);
+  const bool all = !this->Known || GetMemory(chunk.State) != bytes;
+  Reserve(context, chunk.State, bytes);
+  const VertexCuboids cuboids(p);
+  const std::vector<cl_uint> sources = all ? cuboids.GetAll() : cuboids.Find(this->Sources, 0);
+  // A state depends on the vertices that share a cell with this one, and on these cells; the first
+  // of the vertices of a cell has the index of the cell.
+  const std::vector<cl_uint> vertices =
+    all ? sources : JoinLists(cuboids.Find(this->Sources, 1), cuboids.Find(this->Cells, 1));
+  if (vertices.empty())
+  {
+    return;
+  }
+  const std::size_t atOnce = std::min(VertexCuboids::AtOnce, vertices.size());
+  const cl::Buffer list(context.GetContext(), CL_MEM_READ_ONLY, atOnce * sizeof(cl_uint));
+  const cl::Buffer marked(
+    context.GetContext(), CL_MEM_READ_WRITE, atOnce * VertexCuboids::NumberOfVertices);
+  const QueueGuard guard(queue);
+  cl::Kernel mark(source.Mapping, "MarkSources");
+  cl_uint i = source.SetMapping(mark);
+  mark.setArg(i++, source.Blanked);
+  mark.setArg(i++, cl_int{ source.HasBlanked });
+  mark.setArg(i++, chunk.State);
+  mark.setArg(i++, list);
+  mark.setArg(i++, p);
+  VertexCuboids::ForAll(context, queue, sources, list,
+    [&](const VertexCuboids::Launch& launch, std::size_t, std::size_t) { launch(mark); });
+  cl::Kernel find(source.Mapping, "MarkVertices");
+  find.setArg(0, chunk.State);
+  find.setArg(1, source.Active);
+  find.setArg(2, marked);
+  find.setArg(3, list);
+  find.setArg(4, p);
+  cl::Kernel store(source.Mapping, "StoreStates");
+  store.setArg(0, marked);
+  store.setArg(1, chunk.State);
+  store.setArg(2, list);
+  store.setArg(3, p);
+  VertexCuboids::ForAll(context, queue, vertices, list,
+    [&](const VertexCuboids::Launch& launch, std::size_t, std::size_t)
+    {
+      launch(find);
+      launch(store);
+    });
+}
+
+} // namespace deformvolume

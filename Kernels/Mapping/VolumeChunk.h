@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeVolumeChunk_h
+#define DeformVolumeVolumeChunk_h
+
+#include "OpenCLContext.h"
+
+#include <vector>
+
+namespace deformvolume
+{
+
+/// A range of cell layers of the sampling mesh with the vertex planes that they and their
+/// neighbours need: a volume over the device's allocation limit is held in several.
+struct VolumeChunk
+{
+  int LayersBegin = 0; // cells, local z
+  int LayersEnd = 0;
+  int PlanesBegin = 0; // vertices, local z: one plane more than the cells have on each side
+  int PlanesEnd = 0;
+  cl::Buffer Links;     // one a voxel, or else runs
+  cl::Buffer Runs;      // those of the rows of the planes
+  cl::Buffer RowBegins; // 4 bytes a row, counted from the chunk's first run
+  cl::Buffer State;
+  cl::Buffer Blanked;
+  cl::Buffer Active;
+  cl::Buffer Joined;              // the active tetrahedra that bridge no gap (BridgeMask), or none
+  std::vector<cl::Buffer> Arrays; // see DeviceVolume::GetArrays
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MemoryBudget.h"
+
+#include "Error.h"
+#include "SystemMemory.h"
+#include "WorkDevice.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace deformvolume
+{
+
+MemoryBudget::MemoryBudget(WorkDevice& device, std::function<std::uint64_t()> held)
+  : Device(device)
+  , CountHeld(std::move(held))
+{
+}
+
+std::uint64_t MemoryBudget::GetUsable()
+{
+  if (this->Limit)
+  {
+    return this->Limit;
+  }
+  const OpenCLDevice& device = this->Device.GetDevice();
+  const std::uint64_t all = device.Device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+  const std::uint64_t system = device.IsProcessor ? this->GetSystemMemory() : 0;
+  return system ? std::min(all, system) : all;
+}
+
+std::uint64_t MemoryBudget::GetSystemMemory()
+{
+  if (!this->SystemMemory)
+  {
+    const std::uint64_t left = deformvolume::GetSystemMemory();
+    const bool shared = this->Device.GetDevice().IsProcessor;
+    this->SystemMemory = left + (left && shared ? this->CountHeld() : 0);
+  }
+  return *this->SystemMemory;
+}
+
+bool MemoryBudget::HasRoomFor(std::uint64_t bytes)
+{
+  this->ForgetSystemMemory(); // the output takes some of it by now
+  // Also where none is missing: the limit may be lower now.
+  return this->CountHeld() + bytes <= this->GetUsable();
+}
+
+void MemoryBudget::CheckRoomFor(std::uint64_t bytes, const char* where)
+{
+  this->ForgetSystemMemory();
+  CheckBytes(this->CountHeld() + bytes, this->GetUsable(), where);
+}
+
+void MemoryBudget::CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where)
+{
+  if (needed > available)
+  {
+    throw Error(std::string("Not enough memory ") + where + ": " + std::to_string(needed) +
+      " bytes are needed and " + std::to_string(available) +
+      " are available. Use a smaller volume, fewer arrays or smaller output bounds, raise the "
+      "memory limit if one is set, or choose another device.");
+  }
+}
+
+} // namespace deformvolume

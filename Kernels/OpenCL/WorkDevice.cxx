@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "WorkDevice.h"
+
+#include "HostMemory.h"
+
+#include <algorithm>
+
+namespace deformvolume
+{
+
+void WorkDevice::Use(OpenCLContext& context)
+{
+  this->Context = &context;
+  this->Queue =
+    cl::CommandQueue(context.GetContext(), context.GetDevice().Device, CL_QUEUE_PROFILING_ENABLE);
+  this->ReadQueue = cl::CommandQueue(context.GetContext(), context.GetDevice().Device);
+}
+
+OpenCLContext& WorkDevice::GetContext()
+{
+  if (!this->Context)
+  {
+    this->Use(OpenCLContext::Get(FindDevice("")));
+  }
+  return *this->Context;
+}
+
+const cl::CommandQueue& WorkDevice::GetQueue()
+{
+  this->GetContext();
+  return this->Queue;
+}
+
+const cl::CommandQueue& WorkDevice::GetReadQueue()
+{
+  this->GetContext();
+  return this->ReadQueue;
+}
+
+std::uint64_t WorkDevice::GetAllocationLimit()
+{
+  const std::uint64_t device = this->GetDevice().Device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+  return this->AllocationLimit ? std::min(device, this->AllocationLimit) : device;
+}
+
+std::size_t WorkDevice::GetGroupSize(const cl::Kernel& kernel)
+{
+  const auto largest = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(this->GetDevice().Device);
+  return std::min<std::size_t>(this->WorkGroupSize ? this->WorkGroupSize : 64, largest);
+}
+
+std::size_t WorkDevice::GetBusyGroupSize(const cl::Kernel& kernel)
+{
+  return this->GetDevice().HasVectors && !this->WorkGroupSize ? 1 : this->GetGroupSize(kernel);
+}
+
+cl::Buffer WorkDevice::Send(const void* data, std::size_t bytes, const cl::Buffer& previous)
+{
+  cl::Buffer buffer = previous;
+  if (GetMemory(buffer) != bytes)
+  {
+    buffer = cl::Buffer(this->GetContext().GetContext(), CL_MEM_READ_ONLY, bytes);
+  }
+  this->GetQueue().enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data);
+  return buffer;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ExactPasses.h"
+
+#include "BrickGrid.h"
+#include "DeviceVolume.h"
+#include "DisplacementSource.h"
+#include "Error.h"
+#include "HostMemory.h"
+#include "Launches.h"
+#include "OutputSlab.h"
+#include "WorkDevice.h"
+
+#include <algorithm>
+#include <array>
+
+namespace deformvolume
+{
+
+ExactPasses::ExactPasses(
+  WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches)
+  : Device(device)
+  , Volume(volume)
+  , Source(source)
+  , Launched(launches)
+{
+}
+
+bool ExactPasses::UseLanes(Resampling method, const OutputSlab& output)
+{
+  const bool fits = output.FitsLanes();
+  if (method == Resampling::ExactByLanes && !fits)
+  {
+    throw Error(
+      "The resampling by lanes takes only outputs under 2^31 voxels, and of at most 32,768 "
+      "on an axis, that begin within 2^22 voxels of index 0.");
+  }
+  const bool hasVectors = this->Device.GetDevice().HasVectors;
+  if (method == Resampling::ExactByLanes && !hasVectors)
+  {
+    throw Error("The resampling by lanes is for processors whose vector registers a work-item has "
+                "for itself, and the device \"" +
+      this->Device.GetDevice().Name + "\" is none.");
+  }
+  return fits && hasVectors && (method == Resampling::ExactByLanes || method == Resampling::Exact);
+}
+
+int ExactPasses::GetLayersPerLaunch() const
+{
+  constexpr std::int64_t cells = 1 << 23;
+  const std::int64_t layer = std::int64_t{ this->Volume.GetSize(0) } * this->Volume.GetSize(1);
+  constexpr std::int64_t turn = BrickGrid::BricksInTurn * DEFORMVOLUME_BRICK_Z;
+  const std::int64_t turns = (cells / layer + turn - 1) / turn;
+  const std::int64_t mostTurns = this->Volume.GetSize(2) / turn + 1;
+  return static_cast<int>(std::clamp<std::int64_t>(turns, 1, mostTurns) * turn);
+}
+
+std::size_t ExactPasses::GetNumberOfLaunches() const
+{
+  const int layers = this->GetLayersPerLaunch();
+  return static_cast<std::size_t>((this->Volume.GetSize(2) + layers - 1) / layers);
+}
+
+cl::Kernel ExactPasses::MakeKernel(ResamplingForm form)
+{
+  OpenCLContext& context = this->Device.GetContext();
+  const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
+  const bool lanes = form == ResamplingForm::Lanes;
+  if (lanes)
+  {
+    Reserve(context, this->TakenBricks, sizeof(cl_uint));
+  }
+  if (lanes && !HasLocalBricks(context))
+  {
+    Reserve(context, this->BrickRows,
+      std::uint64_t{ context.GetNumberOfUnits() } * GetBrickMemory(context, arrays));
+  }
+  return cl::Kernel(GetResamplingProgram(context, this->Source.GetMappingForm(), arrays,
+                      GetWinnerSize(this->Volume.GetVoxelGrid()) == 8, form),
+    lanes                             ? "ResampleBricks"
+      : form == ResamplingForm::Cells ? "Resample"
+                                      : "ResampleLargeCells");
+}
+
+void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
+  const OutputSlab& output, ResamplingForm form, const KernelParameters& p)
+{
+  cl_uint i = this->Source.SetMappingArguments(kernel, chunk);
+  kernel.setArg(i++, this->Volume.GetState(chunk));
+  kernel.setArg(i++, this->Volume.GetActive(chunk));
+  kernel.setArg(i++, output.GetCoverage());
+  kernel.setArg(i++, output.GetWinners());
+  kernel.setArg(i++, output.GetPatches());
+  kernel.setArg(i++, output.GetLargeCells());
+  kernel.setArg(i++, output.GetCounters());
+  if (form == ResamplingForm::Lanes)
+  {
+    kernel.setArg(i++, this->Bricks);
+    kernel.setArg(i++, this->TakenBricks);
+    if (HasLocalBricks(this->Device.GetContext()))
+    {
+      kernel.setArg(
+        i++, cl::Local(GetBrickMemory(this->Device.GetContext(), this->Volume.GetVolumeArrays())));
+    }
+    else
+    {
+      kernel.setArg(i++, this->BrickRows);
+    }
+  }
+  else if (form == ResamplingForm::Cells)
+  {
+    kernel.setArg(i++, cl::Local(3 * sizeof(cl_int) * DEFORMVOLUME_CUBOID_VERTICES));
+  }
+  else
+  {
+    kernel.setArg(i++, this->Pieces);
+  }
+  kernel.setArg(i++, p);
+  const std::vector<cl::Buffer>& arrays = this->Volume.GetArrays(chunk);
+  for (std::size_t a = 0; a < arrays.size(); ++a)
+  {
+    kernel.setArg(i++, arrays[a]);
+    kernel.setArg(i++, output.GetArray(a));
+  }
+}
+
+void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
+  const OutputSlab& output, ResamplingForm form, const KernelParameters& parameters)
+{
+  // One that has no brick and no layer of cells to work on.
+  KernelParameters p = parameters;
+  p.ListBegin = p.ListEnd = 0;
+  p.LayersEnd = p.LayersBegin;
+  this->SetArguments(kernel, chunk, output, form, p);
+  const std::size_t group = this->Device.GetBusyGroupSize(kernel);
+  this->Device.GetContext().Prepare(this->Device.GetQueue(), kernel,
+    form == ResamplingForm::Cells     ? cl::NDRange(group, 1, 1)
+      : form == ResamplingForm::Lanes ? cl::NDRange(1)
+                                      : cl::NDRange(group));
+}
+
+std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanLaunches(
+  const OutputSlab& output, int pass, std::vector<cl_uint>* bricks)
+{
+  // Several are too much at once where there are few bricks for each unit.
+  const int leastForTurns = 32 * static_cast<int>(this->Device.GetContext().GetNumberOfUnits());
+  std::vector<PlannedLaunch> launches;
+  for (const VolumeChunk& chunk : this->Volume.GetChunks())
+  {
+    for (int begin = chunk.LayersBegin; begin < chunk.LayersEnd;)
+    {
+      KernelParameters p = this->Volume.GetParameters(chunk);
+      // Launches end where bricks do.
+      const int step =
+        this->GetLayersPerLaunch() - (begin - p.BrickOrigin[2]) % DEFORMVOLUME_BRICK_Z;
+      p.LayersBegin = begin;
+      p.LayersEnd = std::min(begin + step, chunk.LayersEnd);
+      p.Pass = pass;
+      output.SetParameters(p);
+      if (bricks)
+      {
+        p.ListBegin = static_cast<int>(bricks->size());
+        this->Volume.GetBricks().AppendBricks(p.LayersBegin, p.LayersEnd, *bricks);
+        p.ListEnd = static_cast<int>(bricks->size());
+        p.Portion = p.ListEnd - p.ListBegin < leastForTurns ? 1 : BrickGrid::BricksInTurn;
+      }
+      launches.push_back({ chunk, p });
+      begin = p.LayersEnd;
+    }
+  }
+  return launches;
+}
+
+void ExactPasses::LaunchBricks(
+  const DeformRequest& request, cl::Kernel& kernel, const KernelParameters& p)
+{
+  this->Device.GetQueue().enqueueFillBuffer(this->TakenBricks, cl_uint{ 0 }, 0, sizeof(cl_uint));
+  this->Launched.Run(request, kernel,
+    cl::NDRange(std::min(
+      this->Device.GetContext().GetNumberOfUnits(), static_cast<cl_uint>(p.ListEnd - p.ListBegin))),
+    cl::NDRange(1));
+}
+
+void ExactPasses::LaunchCells(
+  const DeformRequest& request, cl::Kernel& kernel, const KernelParameters& p)
+{
+  const std::size_t group = this->Device.GetBusyGroupSize(kernel);
+  const auto count = [](int cells, int size)
+  { return static_cast<std::size_t>((cells + size - 1) / size); };
+  this->Launched.Run(request, kernel,
+    cl::NDRange(group * count(p.Size[0] - 1, DEFORMVOLUME_CUBOID_X),
+      count(p.Size[1] - 1, DEFORMVOLUME_CUBOID_Y),
+      count(p.LayersEnd - p.LayersBegin, DEFORMVOLUME_CUBOID_Z)),
+    cl::NDRange(group, 1, 1));
+}
+
+void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, int pass,
+  const std::vector<cl_uint>* bricks)
+{
+  output.ClearLargeCells();
+  if (bricks)
+  {
+    this->RunBricks(request, output, pass, *bricks);
+  }
+  else
+  {
+    this->RunAll(request, output, pass);
+  }
+}
+
+void ExactPasses::RunAll(const DeformRequest& request, const OutputSlab& output, int pass)
+{
+  const bool lanes = this->UseLanes(request.Method, output);
+  const ResamplingForm form = lanes ? ResamplingForm::Lanes : ResamplingForm::Cells;
+  cl::Kernel kernel = this->MakeKernel(form);
+  if (lanes && this->Volume.GetBricks().GetNumberOfBricks() >> DEFORMVOLUME_BRICK_BITS)
+  {
+    throw Error("The volume has more than 10^11 voxels. Use a smaller volume.");
+  }
+  std::vector<cl_uint> bricks;
+  const std::vector<PlannedLaunch> launches =
+    this->PlanLaunches(output, pass, lanes ? &bricks : nullptr);
+  if (lanes)
+  {
+    this->Bricks = this->Device.Send(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
+  }
+  this->PrepareKernel(kernel, launches.front().Chunk, output, form, launches.front().Parameters);
+  for (const auto& [chunk, p] : launches)
+  {
+    this->SetArguments(kernel, chunk, output, form, p);
+    if (lanes)
+    {
+      this->LaunchBricks(request, kernel, p);
+    }
+    else
+    {
+      this->LaunchCells(request, kernel, p);
+    }
+  }
+}
+
+void ExactPasses::RunBricks(const DeformRequest& request, const OutputSlab& output, int pass,
+  const std::vector<cl_uint>& bricks)
+{
+  if (bricks.empty())
+  {
+    return;
+  }
+  cl::Kernel kernel = this->MakeKernel(ResamplingForm::Lanes);
+  this->Bricks = this->Device.Send(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
+  const VolumeChunk& chunk = this->Volume.GetChunks().front();
+  KernelParameters p = this->Volume.GetParameters(chunk);
+  p.Pass = pass;
+  output.SetParameters(p);
+  this->PrepareKernel(kernel, chunk, output, ResamplingForm::Lanes, p);
+  // As many in a launch as there are when all are run.
+  const std::size_t step = static_cast<std::size_t>(p.BrickCount[0]) *
+    static_cast<std::size_t>(p.BrickCount[1]) *
+    static_cast<std::size_t>(this->GetLayersPerLaunch() / DEFORMVOLUME_BRICK_Z);
+  this->Launched.ExpectAtLeast((bricks.size() + step - 1) / step);
+  for (std::size_t begin = 0; begin < bricks.size(); begin += step)
+  {
+    p.ListBegin = static_cast<int>(begin);
+    p.ListEnd = static_cast<int>(std::min(begin + step, bricks.size()));
+    p.Portion = 1;
+    this->SetArguments(kernel, chunk, output, ResamplingForm::Lanes, p);
+    this->LaunchBricks(request, kernel, p);
+  }
+}
+
+void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& output, int pass)
+{
+  const std::vector<OutputSlab::LargeCell> cells = output.ReadLargeCells();
+  if (cells.empty())
+  {
+    return;
+  }
+  using Piece = std::array<cl_int, 4>;
+  std::vector<Piece> pieces;
+  pieces.reserve(DEFORMVOLUME_PIECES);
+  std::uint64_t left = 0;
+  for (const OutputSlab::LargeCell& cell : cells)
+  {
+    left += static_cast<std::uint64_t>(cell.Pieces);
+  }
+  this->Launched.Expect(left / DEFORMVOLUME_PIECES + 1);
+  cl::Kernel kernel = this->MakeKernel(ResamplingForm::LargeCells);
+  const std::size_t group = this->Device.GetBusyGroupSize(kernel);
+  Reserve(this->Device.GetContext(), this->Pieces, DEFORMVOLUME_PIECES * sizeof(Piece));
+  for (const VolumeChunk& chunk : this->Volume.GetChunks())
+  {
+    KernelParameters p = this->Volume.GetParameters(chunk);
+    p.Pass = pass;
+    output.SetParameters(p);
+    this->PrepareKernel(kernel, chunk, output, ResamplingForm::LargeCells, p);
+    const auto launch = [&]
+    {
+      this->Device.GetQueue().enqueueWriteBuffer(
+        this->Pieces, CL_TRUE, 0, pieces.size() * sizeof(Piece), pieces.data());
+      p.ListEnd = static_cast<int>(pieces.size());
+      this->SetArguments(kernel, chunk, output, ResamplingForm::LargeCells, p);
+      this->Launched.Run(request, kernel, cl::NDRange((pieces.size() + group - 1) / group * group),
+        cl::NDRange(group));
+      pieces.clear();
+    };
+    for (const auto& [cell, count] : cells)
+    {
+      const bool here = cell[2] >= chunk.LayersBegin && cell[2] < chunk.LayersEnd;
+      for (cl_int piece = 0; here && piece < count; ++piece)
+      {
+        pieces.push_back({ { cell[0], cell[1], cell[2], piece } });
+        if (pieces.size() == DEFORMVOLUME_PIECES)
+        {
+          launch();
+        }
+      }
+    }
+    if (!pieces.empty())
+    {
+      launch();
+    }
+  }
+}
+
+std::uint64_t ExactPasses::GetMemory() const
+{
+  return deformvolume::GetMemory(this->BrickRows);
+}
+
+} // namespace deformvolume

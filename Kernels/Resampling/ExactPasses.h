@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeExactPasses_h
+#define DeformVolumeExactPasses_h
+
+#include "DeformRequest.h"
+#include "KernelParameters.h"
+#include "OpenCLContext.h"
+#include "ResamplingProgram.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+class DeviceVolume;
+class DisplacementSource;
+class Launches;
+class OutputSlab;
+class WorkDevice;
+struct VolumeChunk;
+
+/// The passes of the exact resampling over the cells of the sampling mesh: which kernel does them,
+/// in which launches. What the passes are for is told by ExactResampler and KernelParameters.h.
+class ExactPasses
+{
+public:
+  ExactPasses(
+    WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches);
+
+  /// Whether cells are worked on by lanes, brick by brick. Throws an Error where the method demands
+  /// that and it cannot be.
+  bool UseLanes(Resampling method, const OutputSlab& output);
+
+  /// Runs a pass (DEFORMVOLUME_PASS_DIRECT and so on). bricks: those to run, by lanes, where the
+  /// volume is one chunk; null: all cells. The mapping is up to date
+  /// (DisplacementSource::PrepareMapping).
+  void Run(const DeformRequest& request, const OutputSlab& output, int pass,
+    const std::vector<cl_uint>* bricks = nullptr);
+  /// Runs the large cells that Run has put off.
+  void RunLargeCells(const DeformRequest& request, const OutputSlab& output, int pass);
+
+  /// Launches of Run over all cells, about.
+  std::size_t GetNumberOfLaunches() const;
+
+  /// Bytes on the device, but for lists of work.
+  std::uint64_t GetMemory() const;
+
+private:
+  struct PlannedLaunch
+  {
+    const VolumeChunk& Chunk;
+    KernelParameters Parameters;
+  };
+  /// The launches of a pass over all cells. bricks: where these go brick by brick, their list.
+  std::vector<PlannedLaunch> PlanLaunches(
+    const OutputSlab& output, int pass, std::vector<cl_uint>* bricks);
+  /// Cell layers in a launch, whole bricks of them: few enough that progress is reported, and
+  /// enough that processors are not kept waiting at its end.
+  int GetLayersPerLaunch() const;
+
+  void RunAll(const DeformRequest& request, const OutputSlab& output, int pass);
+  void RunBricks(const DeformRequest& request, const OutputSlab& output, int pass,
+    const std::vector<cl_uint>& bricks);
+  void LaunchBricks(const DeformRequest& request, cl::Kernel& kernel, const KernelParameters& p);
+  void LaunchCells(const DeformRequest& request, cl::Kernel& kernel, const KernelParameters& p);
+
+  cl::Kernel MakeKernel(ResamplingForm form);
+  /// Has a kernel compiled before it runs (OpenCLContext::Prepare).
+  void PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk, const OutputSlab& output,
+    ResamplingForm form, const KernelParameters& parameters);
+  void SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk, const OutputSlab& output,
+    ResamplingForm form, const KernelParameters& p);
+
+  WorkDevice& Device;
+  DeviceVolume& Volume;
+  const DisplacementSource& Source;
+  Launches& Launched;
+  cl::Buffer Bricks;      // the list of those to work on
+  cl::Buffer BrickRows;   // what these need, where local memory is too small
+  cl::Buffer TakenBricks; // how many of these the launch that runs has taken
+  cl::Buffer Pieces;      // of large cells, to work on
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ExactResampler.h"
+
+#include "DeviceVolume.h"
+#include "DisplacementSource.h"
+#include "MemoryBudget.h"
+#include "WorkDevice.h"
+
+namespace deformvolume
+{
+
+ExactResampler::ExactResampler(
+  WorkDevice& device, MemoryBudget& budget, DeviceVolume& volume, DisplacementSource& source)
+  : Device(device)
+  , Budget(budget)
+  , Volume(volume)
+  , Source(source)
+  , Launched(device)
+  , Exact(device, volume, source, this->Launched)
+  , Published(device, volume, source, this->Launched)
+{
+}
+
+void ExactResampler::Begin(const DeformRequest&, const SlabPlan& plan, DeformReport&)
+{
+  if (!plan.Overlapped)
+  {
+    this->Targets[1] = OutputSlab();
+  }
+  this->WasContested = this->IsContested;
+  this->IsContested = false;
+  this->IsPlain = plan.Slabs.size() == 1 && this->Volume.GetChunks().size() == 1;
+}
+
+void ExactResampler::Make(
+  const DeformRequest& request, const SlabPlan& plan, std::size_t slab, DeformReport& report)
+{
+  OutputSlab& target = this->Targets[plan.GetTarget(slab)];
+  this->Launched.Expect((plan.Slabs.size() - slab) * this->Exact.GetNumberOfLaunches());
+  target.Prepare(this->Device.GetContext(), this->Device.GetQueue(), plan.Slabs[slab], request,
+    this->Volume.GetVolumeArrays(), this->Volume.GetVoxelGrid(),
+    this->Volume.GetBricks().GetNumberOfBricks(), this->Launched.GetResamplingEvents());
+  if (request.Method == Resampling::Published)
+  {
+    this->MakePublished(request, target, report);
+    this->IsPlain = false;
+    return;
+  }
+  const bool settled = this->MakeExact(request, target, slab == 0, report);
+  this->IsPlain = this->IsPlain && settled;
+  this->IsContested = report.Overlapping;
+}
+
+void ExactResampler::MakePublished(
+  const DeformRequest& request, OutputSlab& output, DeformReport& report)
+{
+  this->Source.PrepareMapping(this->Launched.GetMappingEvents());
+  this->Published.Run(request, output);
+  report.NumberOfCoveredVoxels += static_cast<std::int64_t>(
+    output.CountCovered(this->Device.GetContext(), this->Launched.GetResamplingEvents()));
+}
+
+void ExactResampler::RunPass(const DeformRequest& request, const OutputSlab& output, int pass,
+  bool hasLargeCells, const std::vector<cl_uint>* bricks)
+{
+  this->Exact.Run(request, output, pass, bricks);
+  if (hasLargeCells)
+  {
+    this->Exact.RunLargeCells(request, output, pass);
+  }
+}
+
+ExactResampler::Outcome ExactResampler::RunFirstPass(
+  const DeformRequest& request, OutputSlab& output, int pass)
+{
+  Outcome outcome;
+  const auto count = [&]
+  {
+    outcome.Covered =
+      output.CountCovered(this->Device.GetContext(), this->Launched.GetResamplingEvents());
+    outcome.Counts = output.ReadCounts();
+  };
+  this->Source.PrepareMapping(this->Launched.GetMappingEvents());
+  this->RunPass(request, output, pass, false);
+  count();
+  outcome.HasLargeCells = outcome.Counts.Large > 0;
+  if (outcome.HasLargeCells)
+  {
+    this->Exact.RunLargeCells(request, output, pass);
+    count();
+  }
+  return outcome;
+}
+
+bool ExactResampler::MakeExact(
+  const DeformRequest& request, OutputSlab& output, bool isFirst, DeformReport& report)
+{
+  // What was folded last time probably still is: then one pass does for two.
+  const bool expected =
+    this->WasContested && this->Budget.HasRoomFor(output.GetMissingWinnerMemory());
+  if (expected)
+  {
+    output.PrepareWinners(this->Device.GetContext(), this->Launched.GetResamplingEvents());
+  }
+  const Outcome first = this->RunFirstPass(
+    request, output, expected ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT);
+  if (isFirst) // every slab sees all tetrahedra
+  {
+    report.NumberOfInvertedTetrahedra = static_cast<std::int64_t>(first.Counts.Inverted);
+    report.NumberOfOverstretchedCells = static_cast<std::int64_t>(first.Counts.Overstretched);
+  }
+  const bool settled = !first.Counts.NeedWinners(first.Covered);
+  std::uint64_t covered = first.Covered;
+  if (!settled)
+  {
+    report.Overlapping |= first.Counts.Writes > first.Covered;
+    this->ChooseWinners(request, output, first, expected);
+    covered = output.CountCovered(this->Device.GetContext(), this->Launched.GetResamplingEvents());
+  }
+  report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
+  return settled;
+}
+
+void ExactResampler::ChooseWinners(
+  const DeformRequest& request, OutputSlab& output, const Outcome& first, bool claimed)
+{
+  const bool contested = first.Counts.Writes > first.Covered;
+  this->Launched.ExpectMore((contested && !claimed ? 3 : 2) * this->Exact.GetNumberOfLaunches());
+  if (!claimed)
+  {
+    this->Budget.CheckRoomFor(output.GetMissingWinnerMemory(),
+      "on the device for a deformation that folds the volume over");
+    output.PrepareWinners(this->Device.GetContext(), this->Launched.GetResamplingEvents());
+    if (contested)
+    {
+      this->RunPass(request, output, DEFORMVOLUME_PASS_OWNERS, first.HasLargeCells);
+      claimed = true;
+    }
+  }
+  output.Settle(this->Device.GetContext(), claimed,
+    this->Volume.GetParameters(this->Volume.GetChunks().front()),
+    this->Launched.GetResamplingEvents());
+  const bool someBricks =
+    this->Exact.UseLanes(request.Method, output) && this->Volume.GetChunks().size() == 1;
+  const auto run = [&](int pass, bool all, int counter)
+  {
+    std::vector<cl_uint> bricks;
+    if (!all)
+    {
+      bricks = output.FindBricks(counter);
+    }
+    this->RunPass(request, output, pass, first.HasLargeCells, all ? nullptr : &bricks);
+  };
+  run(DEFORMVOLUME_PASS_MARK, !someBricks || !claimed, DEFORMVOLUME_COUNT_TOUCHED);
+  run(DEFORMVOLUME_PASS_WINNER, !someBricks, DEFORMVOLUME_COUNT_CANDIDATES);
+}
+
+void ExactResampler::Read(const DeformRequest& request, std::size_t target)
+{
+  this->Targets[target].Read(this->Device.GetReadQueue(), request);
+}
+
+void ExactResampler::FinishReading()
+{
+  for (OutputSlab& target : this->Targets)
+  {
+    target.FinishReading();
+  }
+}
+
+void ExactResampler::Finish() noexcept
+{
+  for (OutputSlab& target : this->Targets)
+  {
+    target.Finish();
+  }
+}
+
+bool ExactResampler::CanMakeAgain(const DeformRequest& request)
+{
+  // Only the kernel for processors works on bricks one by one.
+  return this->IsPlain && this->Device.GetDevice().HasVectors &&
+    this->Exact.UseLanes(request.Method, this->Targets[0]);
+}
+
+OutputSlab::Counts ExactResampler::MakeAgain(
+  const DeformRequest& request, const std::vector<cl_uint>& bricks)
+{
+  OutputSlab& output = this->Targets[0];
+  output.PrepareAgain(this->Device.GetContext(), this->Device.GetQueue(), request,
+    this->Volume.GetVolumeArrays(), bricks);
+  this->Source.PrepareMapping(this->Launched.GetMappingEvents());
+  this->RunPass(request, output, DEFORMVOLUME_PASS_DIRECT, false, &bricks);
+  OutputSlab::Counts counts = output.ReadCounts();
+  if (counts.Large > 0)
+  {
+    this->Exact.RunLargeCells(request, output, DEFORMVOLUME_PASS_DIRECT);
+    counts = output.ReadCounts();
+  }
+  return counts;
+}
+
+std::uint64_t ExactResampler::GetMemory() const
+{
+  return this->Exact.GetMemory() + this->Published.GetMemory() + this->Targets[0].GetMemory() +
+    this->Targets[1].GetMemory();
+}
+
+} // namespace deformvolume

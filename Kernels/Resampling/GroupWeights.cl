@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The weights of a cell's vertices at a sample, for a group of cells, and which samples these decide
+// (GroupResampling.cl). In floats.
+//
+// The method. The central tetrahedron has the vertices 0, 3, 5, 6 of the cell; l0, l3, l5, l6 are a
+// sample's barycentric coordinates in it. The corner tetrahedra replace one of them by the vertex
+// 1 (for 6), 2 (for 5), 4 (for 3) or 7 (for 0). In a cell that is not too bent a sample has at most
+// one negative coordinate li, and lies behind that face: in the corner's coordinates the corner
+// vertex c has the weight u = li / bi, where bi < 0 is the corner's own coordinate, and the others
+// have tj = lj - u bj. For samples of the central tetrahedron u is 0 and tj = lj. So
+//   u = min(li, 0) / bi for each corner,  tj = max(lj, 0) - sum of u bj
+// are the weights of all eight vertices without a branch, and the sample is in the cell where
+// no tj is negative. All coordinates of cells and of samples are left multiplied by the determinant D of the
+// central tetrahedron, and so are the tj, so that nothing waits for a division by it; where D is negative, the
+// normals are turned.
+//
+// The fill rule stays exact. Positions are exact in float (cells under 8 voxels, steps of 1/256), and so are the
+// normals. Let e = 2^-24, and k >= D the cell's extent times the largest 1-norm of the normals. The three
+// roundings of l3, l5, l6, of D and of the like bj are at most 3 e k, and the errors of l0 = (D - l3) - (l5 +
+// l6) and of the bj with j = 0 at most (4 * 3 + 2 + 2 + 4) e k. With M = max |bj / bi|, and where u is not over
+// 1, tj is off by the errors of lj and bj, M times those of li and bi, 7 M e k as u has six roundings that count
+// and divisions may be off by more than one, and three roundings of its own: at most (9 + 47 M) e k, when i is
+// 0. Up to two more li that are negative only by their error add M times that, 6 M e k, which makes (9 + 53 M) e
+// k. (Where u is over 1 the tj add up to D (1 - u), and the least of them is clearly negative as long as d < D /
+// 3, which cells that are not too flat keep by far.) As the bj are at least 1/64 and bi is at most -1/8, M is at
+// most (1 - bi) / -bi = 9; where the bj are at least 0.35 and bi is at most -0.42, as in cells that are hardly
+// bent, M is at most (0.3 - bi) / -bi < 1.72. So d = 3.2e-5 k, or 6.5e-6 k, which is more by 5 %. The 1-norm is
+// at most the sum of the areas of the box's three faces, as each component of a normal is twice the area of a
+// triangle in such a face. When three of the tj exceed d, the sample is inside; when one is under -d, outside.
+// What is in between is undecided.
+//
+// In cells over 8 voxels the normals have rounding errors, too: of a product, at most as large as the face of the
+// box, and of the difference. That adds 2 e k to each product with a normal, 5 e k instead of 3, and makes the
+// above 28 e k instead of 20, (13 + 73 M) e k instead of (9 + 53 M), and d more by a third (INEXACT_NORMALS).
+
+// Cells that are flatter are left out: d / D, which weights are off by at most, is 1.5e-3 or 7.4e-3 in others.
+#define MOST_REACH 4.35e-3f
+
+// The central tetrahedra of a group's cells.
+typedef struct
+{
+  // Vertex 0, to which samples are relative, and the opposite one.
+  FLOATS X0, Y0, Z0, X7, Y7, Z7;
+  // Normals: the gradients of l3, l5 and l6. They point inside.
+  FLOATS N3x, N3y, N3z, N5x, N5y, N5z, N6x, N6y, N6z;
+  FLOATS Determinant;
+  // Coordinates of the corners' vertices: Bcj is bj of vertex c.
+  FLOATS B13, B15, B16, B10, B23, B25, B26, B20, B43, B45, B46, B40, B73, B75, B76, B70;
+  FLOATS Bound;  // d: how far the weights may be off
+  INTS Inverted; // cells that are mirror images: all their tetrahedra are inverted
+  uint Turned;   // the same as bits, of cells that fit only
+  uint Nice;     // cells of which floats decide the samples
+} GroupFrame;
+
+// A group's normals and determinants, as if no cell were inverted.
+static __attribute__((always_inline)) void FindNormals(const Group* group, GroupFrame* f)
+{
+  LOAD_VERTEX(0)
+  LOAD_VERTEX(3)
+  LOAD_VERTEX(5)
+  LOAD_VERTEX(6)
+  f->X0 = X0;
+  f->Y0 = Y0;
+  f->Z0 = Z0;
+#define EDGE(a, v) const FLOATS a##x = X##v - X0, a##y = Y##v - Y0, a##z = Z##v - Z0;
+  EDGE(e3, 3)
+  EDGE(e5, 5)
+  EDGE(e6, 6)
+#define NORMAL(n, a, b)                                                                            \
+  f->n##x = fma(a##y, b##z, -(a##z * b##y));                                                       \
+  f->n##y = fma(a##z, b##x, -(a##x * b##z));                                                       \
+  f->n##z = fma(a##x, b##y, -(a##y * b##x));
+  if (group->Odd)
+  {
+    NORMAL(N3, e6, e5)
+    NORMAL(N5, e3, e6)
+    NORMAL(N6, e5, e3)
+  }
+  else
+  {
+    NORMAL(N3, e5, e6)
+    NORMAL(N5, e6, e3)
+    NORMAL(N6, e3, e5)
+  }
+  f->Determinant = fma(e3z, f->N3z, fma(e3y, f->N3y, e3x * f->N3x));
+}
+
+// Coordinates do not tell a cell from its mirror image, all of whose tetrahedra are inverted. Its normals are turned.
+// fit: the cells that count. Lanes without a cell hold anything.
+static __attribute__((always_inline)) void TurnInverted(uint fit, GroupFrame* f)
+{
+  f->Inverted = 0;
+  f->Turned = LaneBits(f->Determinant < 0.0f) & fit;
+  if (f->Turned)
+  {
+    const INTS inverted = f->Determinant < 0.0f;
+    f->Inverted = inverted;
+#define TURN(v) f->v = inverted ? -f->v : f->v;
+    TURN(N3x) TURN(N3y) TURN(N3z) TURN(N5x) TURN(N5y) TURN(N5z) TURN(N6x) TURN(N6y) TURN(N6z)
+    TURN(Determinant)
+  }
+}
+
+// The coordinates of the corners' vertices.
+static __attribute__((always_inline)) void FindCoordinates(const Group* group, GroupFrame* f)
+{
+  LOAD_VERTEX(1)
+  LOAD_VERTEX(2)
+  LOAD_VERTEX(4)
+  LOAD_VERTEX(7)
+  f->X7 = X7;
+  f->Y7 = Y7;
+  f->Z7 = Z7;
+#define COORDINATES(c)                                                                             \
+  {                                                                                                \
+    const FLOATS rx = X##c - f->X0;                                                                \
+    const FLOATS ry = Y##c - f->Y0;                                                                \
+    const FLOATS rz = Z##c - f->Z0;                                                                \
+    f->B##c##3 = fma(rx, f->N3x, fma(ry, f->N3y, rz * f->N3z));                                    \
+    f->B##c##5 = fma(rx, f->N5x, fma(ry, f->N5y, rz * f->N5z));                                    \
+    f->B##c##6 = fma(rx, f->N6x, fma(ry, f->N6y, rz * f->N6z));                                    \
+    f->B##c##0 = (f->Determinant - f->B##c##3) - (f->B##c##5 + f->B##c##6);                        \
+  }
+  COORDINATES(1)
+  COORDINATES(2)
+  COORDINATES(4)
+  COORDINATES(7)
+}
+
+// The bounds of the errors, and the cells that are not too bent for these, of those that fit.
+static __attribute__((always_inline)) void BoundErrors(
+  const GroupCandidates* c, uint fit, GroupFrame* f)
+{
+  const FLOATS leastOther = Least(Least(Least(Least(f->B13, f->B15), Least(f->B10, f->B45)),
+                                    Least(Least(f->B46, f->B40), Least(f->B23, f->B26))),
+    Least(Least(f->B20, f->B73), Least(f->B75, f->B76)));
+  const FLOATS mostOwn = Most(Most(f->B16, f->B43), Most(f->B25, f->B70));
+  const FLOATS leastOwn = Least(Least(f->B16, f->B43), Least(f->B25, f->B70));
+  const INTS tame =
+    (mostOwn <= f->Determinant * -0.42f) & (leastOther >= f->Determinant * 0.35f);
+  f->Bound = (tame ? (FLOATS)(6.5e-6f) : (FLOATS)(3.2e-5f)) * c->Reach;
+  f->Nice = fit &
+    LaneBits((leastOther >= f->Determinant * 0.015625f) & (mostOwn <= f->Determinant * -0.125f) &
+      (leastOwn >= f->Determinant * -2.0f) & (c->Reach * MOST_REACH < f->Determinant));
+}
+
+// fit: the cells that are small and complete, as bits.
+static __attribute__((always_inline)) void MakeGroupFrame(
+  const GroupCandidates* c, uint fit, GroupFrame* frame)
+{
+  FindNormals(&c->Cells, frame);
+  TurnInverted(fit, frame);
+  FindCoordinates(&c->Cells, frame);
+  BoundErrors(c, fit, frame);
+}
+
+// What coordinates are multiplied by to become weights.
+typedef struct
+{
+  FLOATS Corner1, Corner2, Corner4, Corner7; // 1 / bi of each corner
+  FLOATS Central;                            // 1 / D
+} GroupScales;
+
+static __attribute__((always_inline)) void FindScales(const GroupFrame* f, GroupScales* scales)
+{
+  scales->Central = 1.0f / f->Determinant;
+  // One division for four.
+  const FLOATS product12 = f->B16 * f->B25, product47 = f->B43 * f->B70;
+  const FLOATS inverses = 1.0f / (product12 * product47);
+  const FLOATS inverse12 = inverses * product47, inverse47 = inverses * product12;
+  scales->Corner1 = inverse12 * f->B25;
+  scales->Corner2 = inverse12 * f->B16;
+  scales->Corner4 = inverse47 * f->B70;
+  scales->Corner7 = inverse47 * f->B43;
+}
+
+// The weights at samples. rx, ry, rz: these, relative to vertex 0.
+static __attribute__((always_inline)) void WeighSamples(const GroupFrame* f,
+  const GroupScales* scales, FLOATS rx, FLOATS ry, FLOATS rz, SampleWeights* w)
+{
+  const FLOATS l3 = fma(rx, f->N3x, fma(ry, f->N3y, rz * f->N3z));
+  const FLOATS l5 = fma(rx, f->N5x, fma(ry, f->N5y, rz * f->N5z));
+  const FLOATS l6 = fma(rx, f->N6x, fma(ry, f->N6y, rz * f->N6z));
+  const FLOATS l0 = (f->Determinant - l3) - (l5 + l6);
+  const FLOATS u1 = Least(l6, 0.0f) * scales->Corner1;
+  const FLOATS u2 = Least(l5, 0.0f) * scales->Corner2;
+  const FLOATS u4 = Least(l3, 0.0f) * scales->Corner4;
+  const FLOATS u7 = Least(l0, 0.0f) * scales->Corner7;
+  w->T3 = fma(-u7, f->B73, fma(-u2, f->B23, fma(-u1, f->B13, Most(l3, 0.0f))));
+  w->T5 = fma(-u7, f->B75, fma(-u4, f->B45, fma(-u1, f->B15, Most(l5, 0.0f))));
+  w->T6 = fma(-u7, f->B76, fma(-u2, f->B26, fma(-u4, f->B46, Most(l6, 0.0f))));
+  w->T0 = fma(-u2, f->B20, fma(-u4, f->B40, fma(-u1, f->B10, Most(l0, 0.0f))));
+  w->U1 = u1;
+  w->U2 = u2;
+  w->U4 = u4;
+  w->U7 = u7;
+  w->Scale = scales->Central;
+}
+
+// Returns which of some cells, as bits, hold their sample. undecided: those that may hold it. A cell holds it where
+// three weights exceed decisive, and does not where one is under -bound.
+static __attribute__((always_inline)) uint DecideByFloats(
+  const SampleWeights* w, uint some, FLOATS decisive, FLOATS bound, uint* undecided)
+{
+  const FLOATS lowA = Least(w->T3, w->T5), highA = Most(w->T3, w->T5);
+  const FLOATS lowB = Least(w->T6, w->T0), highB = Most(w->T6, w->T0);
+  const uint maybe = LaneBits(Least(lowA, lowB) >= -bound) & some;
+  // The second smallest weight decides: that opposite the corner may be 0.
+  const FLOATS second = Least(Most(lowA, lowB), Least(highA, highB));
+  const uint held = maybe & LaneBits(second > decisive);
+  *undecided = maybe & ~held;
+  return held;
+}
+
+// Where a vertex lies on a sample its value is taken bit for bit: the weights, which rounding may have touched, are
+// made 0 and 1. All other lanes keep their bits, whatever their neighbours are.
+static __attribute__((always_inline)) void SnapWeights(
+  INTS onVertex, const GroupFrame* f, SampleWeights* w)
+{
+  const FLOATS middle = f->Determinant * 0.5f;
+#define SNAP(weight, least)                                                                        \
+  w->weight = onVertex ? (w->weight > (least) ? (FLOATS)(1.0f) : (FLOATS)(0.0f)) : w->weight;
+  SNAP(T0, middle) SNAP(T3, middle) SNAP(T5, middle) SNAP(T6, middle)
+  SNAP(U1, 0.5f) SNAP(U2, 0.5f) SNAP(U4, 0.5f) SNAP(U7, 0.5f)
+  w->Scale = onVertex ? (FLOATS)(1.0f) : w->Scale;
+}

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "IncrementalOutput.h"
+
+#include "DeviceVolume.h"
+#include "DisplacementSource.h"
+#include "ExactResampler.h"
+#include "HostMemory.h"
+#include "OutputPatches.h"
+#include "OutputSlab.h"
+#include "ParallelFor.h"
+#include "WorkDevice.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <utility>
+
+namespace deformvolume
+{
+namespace
+{
+
+using Clock = std::chrono::steady_clock;
+
+double GetSecondsSince(const Clock::time_point& begin)
+{
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// Different for all outputs of a process: other objects take the place of those that made them.
+std::uint64_t MakeRevision()
+{
+  static std::atomic<std::uint64_t> last{ 0 };
+  return ++last;
+}
+
+void CopyOnThreads(void* to, const void* from, std::uint64_t bytes)
+{
+  constexpr std::size_t step = std::size_t{ 1 } << 20;
+  ParallelForParts(static_cast<std::size_t>(bytes), step,
+    [&](std::size_t begin, std::size_t end)
+    {
+      std::memcpy(
+        static_cast<char*>(to) + begin, static_cast<const char*>(from) + begin, end - begin);
+    });
+}
+
+} // namespace
+
+IncrementalOutput::IncrementalOutput(WorkDevice& device, DeviceVolume& volume)
+  : Device(device)
+  , Volume(volume)
+{
+}
+
+void IncrementalOutput::Start(
+  const DeformRequest& request, const DisplacementSource& source, DeformReport& report)
+{
+  this->Changes.Start(this->Volume.GetBricks(), this->Volume.GetVoxelGrid(), request.OutputExtent);
+  this->LastMethod = request.Method;
+  this->LastWholeExtent = request.WholeOutputExtent;
+  this->LastCovered = static_cast<std::uint64_t>(report.NumberOfCoveredVoxels);
+  this->RevisionBefore = 0;
+  this->Revision = MakeRevision();
+  report.Revision = this->Revision;
+  if (source.IsWrittenInPart())
+  {
+    // Where its points were will not be known when they have moved.
+    const auto begin = Clock::now();
+    if (!this->Changes.HasPoints())
+    {
+      this->Changes.SetPoints(source.MakeBrickPoints());
+    }
+    source.Visit([this](const Displacements& displacements, std::size_t)
+      { this->Changes.FindAllBoxes(displacements); });
+    report.ResamplingTime += GetSecondsSince(begin);
+  }
+}
+
+bool IncrementalOutput::IsChangeInside() const
+{
+  const cl::Buffer& state = this->Volume.GetChunks().front().State;
+  if (!state())
+  {
+    return this->Changes.IsInside(nullptr);
+  }
+  // As it was for the last output: where a mask has changed, the change is not inside.
+  const MappedBuffer<const unsigned char> mapped(this->Device.GetQueue(), state, CL_MAP_READ);
+  return this->Changes.IsInside(mapped.Get());
+}
+
+bool IncrementalOutput::CanUpdate(const DeformRequest& request)
+{
+  return request.Incremental && this->Changes.IsTracking() &&
+    this->Changes.GetOutputExtent() == request.OutputExtent &&
+    this->LastWholeExtent == request.WholeOutputExtent && this->LastMethod == request.Method &&
+    request.LastCoverage && request.LastOutputs.size() == request.Outputs.size() &&
+    !std::count(request.LastOutputs.begin(), request.LastOutputs.end(), nullptr) &&
+    OutputSlab::GetBytesPerVoxel(
+      this->Device.GetContext(), this->Volume.GetVolumeArrays(), request) == 0;
+}
+
+void IncrementalOutput::CopyLastOutput(const DeformRequest& request) const
+{
+  const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
+  if (request.OutputRevision != 0 && request.OutputRevision == this->RevisionBefore)
+  {
+    CopyPatches(request, arrays, this->LastPatches);
+    return;
+  }
+  const auto voxels = static_cast<std::uint64_t>(GetNumberOfPoints(request.OutputExtent));
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    if (request.LastOutputs[i] != request.Outputs[i])
+    {
+      CopyOnThreads(request.Outputs[i], request.LastOutputs[i], voxels * GetTupleSize(arrays[i]));
+    }
+  }
+  if (request.LastCoverage != request.Coverage)
+  {
+    CopyOnThreads(request.Coverage, request.LastCoverage, voxels);
+  }
+}
+
+bool IncrementalOutput::Update(const DeformRequest& request, const DisplacementSource& source,
+  ExactResampler& resampler, DeformReport& report)
+{
+  try
+  {
+    if (this->CanUpdate(request) && this->TryUpdate(request, source, resampler, report))
+    {
+      return true;
+    }
+  }
+  catch (...)
+  {
+    this->Forget();
+    throw;
+  }
+  this->Forget();
+  return false;
+}
+
+bool IncrementalOutput::TryUpdate(const DeformRequest& request, const DisplacementSource& source,
+  ExactResampler& resampler, DeformReport& report)
+{
+  const auto begin = Clock::now();
+  if (!this->Changes.HasPoints())
+  {
+    this->Changes.SetPoints(source.MakeBrickPoints());
+  }
+  const bool inside = this->IsChangeInside();
+  if (!inside && !this->Changes.HasBoxes())
+  {
+    source.Visit([this](const Displacements& displacements, std::size_t count)
+      { this->Changes.FindBoxes(displacements, count); });
+  }
+  IncrementalUpdate::Plan plan;
+  if (!this->Changes.MakePlan(inside, plan))
+  {
+    return false;
+  }
+  if (inside && !plan.Bricks.empty())
+  {
+    source.Visit([this](const Displacements& displacements, std::size_t)
+      { this->Changes.FindChangedBoxes(displacements); });
+  }
+  // However this ends, the memory of the request is left alone afterwards.
+  const SlabResampler::FinishGuard finish(resampler);
+  const QueueGuard reads(this->Device.GetReadQueue());
+  this->CopyLastOutput(request);
+  // Before the memory becomes that of buffers, and after the device has given it back.
+  const std::uint64_t before = ClearPatches(request, this->Volume.GetVolumeArrays(), plan.Patches);
+  report.ResamplingTime += GetSecondsSince(begin);
+  const OutputSlab::Counts counts = resampler.MakeAgain(request, plan.Bricks);
+  const auto done = Clock::now();
+  resampler.Read(request, 0);
+  resampler.FinishReading();
+  report.TransferTime += GetSecondsSince(done);
+  const auto read = Clock::now();
+  const std::uint64_t covered =
+    this->LastCovered - before + CountCoveredInPatches(request, plan.Patches);
+  report.ResamplingTime += GetSecondsSince(read);
+  if (counts.NeedWinners(covered) || (inside && counts.Writes != covered))
+  {
+    return false;
+  }
+  this->LastCovered = covered;
+  report.ChangedExtent = this->Changes.GetChangedExtent();
+  this->LastPatches = inside ? this->Changes.GetChangedPatches() : std::move(plan.Patches);
+  this->RevisionBefore = std::exchange(this->Revision, MakeRevision());
+  report.Revision = this->Revision;
+  this->Changes.Finish();
+  report.NumberOfOverstretchedCells = static_cast<std::int64_t>(counts.Overstretched);
+  report.NumberOfCoveredVoxels = static_cast<std::int64_t>(covered);
+  report.NumberOfResampledBricks = static_cast<std::int64_t>(plan.Bricks.size());
+  return true;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Launches.h"
+
+#include "Error.h"
+#include "WorkDevice.h"
+
+#include <algorithm>
+
+namespace deformvolume
+{
+namespace
+{
+
+double GetSeconds(const std::vector<cl::Event>& events)
+{
+  double nanoseconds = 0.0;
+  for (const cl::Event& event : events)
+  {
+    nanoseconds += static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+      event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+  }
+  return nanoseconds * 1e-9;
+}
+
+} // namespace
+
+void Launches::Start()
+{
+  this->MappingEvents.clear();
+  this->ResamplingEvents.clear();
+  this->Last = cl::Event();
+  this->Done = 0;
+  this->Expected = 1;
+}
+
+void Launches::ExpectAtLeast(std::size_t launches)
+{
+  this->Expected = std::max(this->Expected, this->Done + launches);
+}
+
+void Launches::Run(const DeformRequest& request, const cl::Kernel& kernel, const cl::NDRange& items,
+  const cl::NDRange& group)
+{
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  this->ResamplingEvents.push_back(this->Device.GetContext().Launch(queue, kernel, items, group));
+  queue.flush();
+  if (this->Last())
+  {
+    this->Last.wait();
+  }
+  this->Last = this->ResamplingEvents.back();
+  ++this->Done;
+  if (request.Progress &&
+    !request.Progress(
+      std::min(1.0, static_cast<double>(this->Done) / static_cast<double>(this->Expected))))
+  {
+    queue.finish();
+    throw Aborted();
+  }
+}
+
+void Launches::AddTimes(DeformReport& report)
+{
+  report.MappingTime += GetSeconds(this->MappingEvents);
+  report.ResamplingTime += GetSeconds(this->ResamplingEvents);
+  this->Start();
+}
+
+} // namespace deformvolume

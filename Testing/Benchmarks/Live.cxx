@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What changes between two frames, and what that costs.
+#include "Evaluation.h"
+#include "LiveCase.h"
+
+namespace
+{
+const std::string LoggedSuffix = "-logged";
+constexpr double fractionOfEdges = 0.215; // 1 % of the nodes
+
+using LiveCases = std::map<std::string, std::unique_ptr<LiveCase>>;
+
+// An edit, which is not measured, and the update that follows.
+Contestant<LiveCases> MakeEdit(const std::string& name, const std::function<void(LiveCase&)>& edit)
+{
+  return { name,
+    [=](LiveCases& cases)
+    {
+      LiveCase& live = *cases.at(name);
+      edit(live);
+      Measurement measurement;
+      measurement.Seconds = live.Update();
+      vtkDeformVolumeFilter* filter = live.GetFilter();
+      measurement.Counters["kernels"] = filter->GetMappingTime() + filter->GetResamplingTime();
+      measurement.Counters["transfer"] = filter->GetTransferTime();
+      measurement.Counters["preprocessing"] = filter->GetPreprocessingTime();
+      measurement.Counters["bricks"] = static_cast<double>(filter->GetNumberOfResampledBricks());
+      return measurement;
+    } };
+}
+}
+
+void RegisterLive(const EvaluationSize& size)
+{
+  constexpr int splitTetrahedra = 2000;
+  constexpr int splitNodes = 1000;
+  const std::array<int, 3> maskCells{ { 2, 30, 30 } };
+  const std::pair<const char*, std::function<void(LiveCase&)>> kinds[] = {
+    { "all-move", [](LiveCase& live) { live.MoveAll(); } },
+    { "some-move", [](LiveCase& live) { live.MoveSome(fractionOfEdges); } },
+    { "nothing", [](LiveCase& live) { live.Touch(); } },
+    { "split", [](LiveCase& live) { live.Split(splitTetrahedra, splitNodes); } },
+    { "masks", [=](LiveCase& live) { live.ChangeMask(maskCells); } },
+    { "split-and-masks",
+      [=](LiveCase& live)
+      {
+        live.Split(splitTetrahedra, splitNodes);
+        live.ChangeMask(maskCells);
+      } },
+  };
+  std::vector<Contestant<LiveCases>> edits;
+  for (const auto& [name, edit] : kinds)
+  {
+    edits.push_back(MakeEdit(name, edit));
+  }
+  // The same, with logs of what is written.
+  for (const int kind : { 1, 3, 4, 5 })
+  {
+    edits.push_back(MakeEdit(kinds[kind].first + LoggedSuffix, kinds[kind].second));
+  }
+  RegisterRounds<LiveCases>(
+    "Live", size.GetRounds(),
+    [=]()
+    {
+      auto cases = std::make_shared<LiveCases>();
+      for (const Contestant<LiveCases>& edit : edits)
+      {
+        const bool logged = edit.Name.find(LoggedSuffix) != std::string::npos;
+        (*cases)[edit.Name] = std::make_unique<LiveCase>(BenchmarkVolume, FineNodes, logged);
+        (*cases)[edit.Name]->Update();
+      }
+      return cases;
+    },
+    edits);
+}

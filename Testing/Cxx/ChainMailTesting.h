@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the tests of vtkChainMailDeformation have in common.
+#ifndef ChainMailTesting_h
+#define ChainMailTesting_h
+
+#include "FilterTesting.h"
+#include "vtkChainMailDeformation.h"
+
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkPolyData.h>
+
+#include <vector>
+
+namespace chainMailTesting
+{
+
+struct Handle
+{
+  glm::dvec3 Rest;
+  glm::dvec3 Now;
+};
+
+inline vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Handle>& handles)
+{
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkDoubleArray> rest;
+  rest->SetName("RestPosition");
+  rest->SetNumberOfComponents(3);
+  for (const Handle& handle : handles)
+  {
+    points->InsertNextPoint(&handle.Now.x);
+    rest->InsertNextTuple(&handle.Rest.x);
+  }
+  data->SetPoints(points);
+  data->GetPointData()->AddArray(rest);
+  return data;
+}
+
+/// A filter on a volume, with its errors caught.
+struct Dragged
+{
+  explicit Dragged(vtkDataObject* volume)
+  {
+    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
+    {
+      this->Filter->AddObserver(event, this->Observer);
+      this->Filter->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
+    }
+    this->Filter->SetInputDataObject(volume);
+    this->Filter->SetRelaxationSweeps(0);
+  }
+
+  /// Updates, and gives the errors in words; "" where there is none.
+  std::string TryUpdate()
+  {
+    this->Filter->Modified();
+    this->Filter->Update();
+    std::string errors = this->Observer->GetErrorMessage();
+    VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
+    this->Observer->Clear();
+    this->ExecutiveObserver->Clear();
+    VERIFY(errors.empty() || this->Filter->GetOutput()->GetPointData()->GetNumberOfArrays() == 0);
+    return errors;
+  }
+  vtkFloatArray* Update()
+  {
+    VERIFY_EQUAL(this->TryUpdate(), std::string());
+    return vtkFloatArray::SafeDownCast(
+      this->Filter->GetOutput()->GetPointData()->GetArray("Displacement"));
+  }
+  vtkFloatArray* Drag(const std::vector<Handle>& handles)
+  {
+    this->Filter->SetHandlesData(MakeHandles(handles));
+    return this->Update();
+  }
+
+  vtkNew<vtkChainMailDeformation> Filter;
+  vtkNew<vtkTest::ErrorObserver> Observer;
+  vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
+};
+
+inline vtkSmartPointer<vtkFloatArray> Copy(vtkFloatArray* array)
+{
+  auto copy = vtkSmartPointer<vtkFloatArray>::New();
+  copy->DeepCopy(array);
+  return copy;
+}
+
+} // namespace chainMailTesting
+
+#endif

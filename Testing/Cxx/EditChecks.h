@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the tests of vtkCutVolume and vtkCarveVolume have in common.
+#ifndef EditChecks_h
+#define EditChecks_h
+
+#include "ArrayMaking.h"
+#include "FilterTesting.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkPolyData.h>
+#include <vtkShortArray.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace filterTesting
+{
+
+inline int CountActive(const std::vector<unsigned char>& mask)
+{
+  int count = 0;
+  for (const unsigned char byte : mask)
+  {
+    for (int t = 0; t < 5; ++t)
+    {
+      count += byte >> t & 1;
+    }
+  }
+  return count;
+}
+
+/// A sheet of points in continuous indices of a volume, every three of them a triangle.
+inline vtkSmartPointer<vtkPolyData> MakeSheet(
+  vtkImageData* volume, const std::vector<glm::dvec3>& indices)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  auto sheet = vtkSmartPointer<vtkPolyData>::New();
+  sheet->AllocateEstimate(static_cast<vtkIdType>(indices.size() / 3), 3);
+  for (std::size_t i = 0; i < indices.size(); ++i)
+  {
+    glm::dvec3 point;
+    volume->TransformContinuousIndexToPhysicalPoint(&indices[i].x, &point.x);
+    points->InsertNextPoint(&point.x);
+    if (i % 3 == 2)
+    {
+      const auto last = static_cast<vtkIdType>(i);
+      const vtkIdType ids[3] = { last - 2, last - 1, last };
+      sheet->InsertNextCell(VTK_TRIANGLE, 3, ids);
+    }
+  }
+  sheet->SetPoints(points);
+  return sheet;
+}
+
+/// A plane of a corner and two edges, in indices.
+inline vtkSmartPointer<vtkPolyData> MakePlane(
+  vtkImageData* volume, const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v)
+{
+  return MakeSheet(
+    volume, { corner, corner + u, corner + u + v, corner + u + v, corner, corner + v });
+}
+
+inline vtkSmartPointer<vtkPolyData> MakePlaneX(vtkImageData* volume, double x)
+{
+  return MakePlane(volume, glm::dvec3(x, -50, -50), glm::dvec3(0, 120, 0), glm::dvec3(0, 0, 120));
+}
+
+/// A filter that edits active tetrahedra, with its errors caught.
+template <typename FilterT>
+struct Edited
+{
+  Edited()
+  {
+    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
+    {
+      this->Filter->AddObserver(event, this->Observer);
+      this->Filter->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
+    }
+  }
+
+  /// Updates without an error and without a warning.
+  void Update()
+  {
+    this->Filter->Update();
+    VERIFY_EQUAL(this->Observer->GetErrorMessage(), std::string());
+    VERIFY_EQUAL(this->Observer->GetWarningMessage(), std::string());
+    this->Observer->Clear();
+    this->ExecutiveObserver->Clear();
+  }
+
+  /// Updates with one error that has these words, and an empty output.
+  void Fails(const std::string& words)
+  {
+    this->Filter->Modified();
+    this->Filter->Update();
+    const std::string message = this->Observer->GetErrorMessage();
+    const std::size_t first = message.find("ERROR: ");
+    if (message.find(words) == std::string::npos)
+    {
+      std::cerr << "\"" << words << "\" is not in: " << message << "\n";
+    }
+    VERIFY(message.find(words) != std::string::npos);
+    VERIFY(first != std::string::npos && message.find("ERROR: ", first + 1) == std::string::npos);
+    VERIFY_EQUAL(this->Filter->GetOutput()->GetNumberOfPoints(), 0);
+    this->Observer->Clear();
+    this->ExecutiveObserver->Clear();
+  }
+
+  std::vector<unsigned char> CopyMask()
+  {
+    this->Update();
+    auto* array = vtkUnsignedCharArray::SafeDownCast(
+      this->Filter->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra"));
+    VERIFY(array != nullptr);
+    std::vector<unsigned char> mask;
+    if (array)
+    {
+      mask.resize(static_cast<std::size_t>(array->GetNumberOfTuples()));
+      std::copy_n(array->GetPointer(0), mask.size(), mask.begin());
+    }
+    return mask;
+  }
+
+  /// Tetrahedra that are off in a volume where all were active.
+  int CountOff()
+  {
+    const std::vector<unsigned char> mask = this->CopyMask();
+    const int off = 5 * static_cast<int>(mask.size()) - CountActive(mask);
+    VERIFY_EQUAL(this->Filter->GetNumberOfSwitchedOffTetrahedra(), off);
+    return off;
+  }
+
+  vtkNew<FilterT> Filter;
+  vtkNew<vtkTest::ErrorObserver> Observer;
+  vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
+};
+
+} // namespace filterTesting
+
+#endif

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The log of an array: what it knows and when it knows nothing; and that vtkDeformVolumeFilter
+// looks at what it tells, and at nothing else. TestDeformTopology edits meshes at random with logs.
+#include "FilterTesting.h"
+#include "vtkArrayChanges.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkFloatArray.h>
+#include <vtkIdTypeArray.h>
+#include <vtkInformation.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <vector>
+
+using namespace filterTesting;
+
+namespace
+{
+
+// First and last of each range, in one list; -1 alone where nothing is known.
+std::vector<vtkIdType> GetTuples(vtkArrayChanges* log, vtkMTimeType time)
+{
+  vtkNew<vtkIdTypeArray> ranges;
+  if (!log->GetTuplesSince(time, ranges))
+  {
+    VERIFY_EQUAL(ranges->GetNumberOfTuples(), 0);
+    return { -1 };
+  }
+  return std::vector<vtkIdType>(
+    ranges->GetPointer(0), ranges->GetPointer(0) + ranges->GetNumberOfValues());
+}
+
+void TestMisuse()
+{
+  VERIFY(!vtkArrayChanges::FindLog(nullptr));
+  vtkNew<vtkFloatArray> array;
+  array->SetNumberOfTuples(10);
+  VERIFY(!vtkArrayChanges::FindLog(array));
+  VERIFY(!array->HasInformation());
+  vtkNew<vtkArrayChanges> log;
+  log->AddTuples(1, 2);
+  VERIFY(!log->GetArray());
+  VERIFY(GetTuples(log, 0) == std::vector<vtkIdType>{ -1 });
+
+  log->SetArray(array);
+  VERIFY(vtkArrayChanges::FindLog(array) == log.Get());
+  VERIFY(log->GetArray() == array.Get());
+  const vtkMTimeType begin = array->GetMTime();
+  log->AddTuples(5, 4);
+  VERIFY_EQUAL(array->GetMTime(), begin);
+  VERIFY(GetTuples(log, begin).empty());
+  VERIFY(GetTuples(log, begin - 1) == std::vector<vtkIdType>{ -1 });
+
+  // A copy is another array, and a log has one array, which has one log.
+  vtkNew<vtkFloatArray> copy;
+  copy->DeepCopy(array);
+  VERIFY(!vtkArrayChanges::FindLog(copy));
+  vtkNew<vtkArrayChanges> other;
+  other->SetArray(array);
+  VERIFY(vtkArrayChanges::FindLog(array) == other.Get());
+  log->SetArray(copy);
+  VERIFY(vtkArrayChanges::FindLog(array) == other.Get());
+  VERIFY(vtkArrayChanges::FindLog(copy) == log.Get());
+  other->SetArray(nullptr);
+  VERIFY(!vtkArrayChanges::FindLog(array));
+
+  // The array holds the log, and the log does not hold the array.
+  vtkSmartPointer<vtkFloatArray> shortLived = vtkSmartPointer<vtkFloatArray>::New();
+  log->SetArray(shortLived);
+  shortLived = nullptr;
+  VERIFY(!log->GetArray());
+  VERIFY(GetTuples(log, 0) == std::vector<vtkIdType>{ -1 });
+  {
+    vtkNew<vtkArrayChanges> held;
+    held->SetArray(array);
+  }
+  VERIFY(vtkArrayChanges::FindLog(array) != nullptr);
+}
+
+void TestLog()
+{
+  vtkNew<vtkFloatArray> array;
+  vtkNew<vtkArrayChanges> log;
+  log->SetArray(array);
+  const vtkMTimeType first = array->GetMTime();
+  log->AddTuples(3, 3);
+  const vtkMTimeType second = array->GetMTime();
+  VERIFY(second > first);
+  log->AddTuples(7, 9);
+  log->AddTuples(-5, 0);
+  VERIFY((GetTuples(log, first) == std::vector<vtkIdType>{ 3, 3, 7, 9, 0, 0 }));
+  VERIFY((GetTuples(log, second) == std::vector<vtkIdType>{ 7, 9, 0, 0 }));
+  VERIFY(GetTuples(log, array->GetMTime()).empty());
+
+  // What somebody else modifies may be anything, until all consumers have seen it.
+  const vtkMTimeType third = array->GetMTime();
+  array->Modified();
+  VERIFY(GetTuples(log, third) == std::vector<vtkIdType>{ -1 });
+  const vtkMTimeType seen = array->GetMTime();
+  log->AddTuples(4, 4);
+  VERIFY(GetTuples(log, third) == std::vector<vtkIdType>{ -1 });
+  VERIFY((GetTuples(log, seen) == std::vector<vtkIdType>{ 4, 4 }));
+
+  // Not all is kept.
+  constexpr vtkIdType many = 100000;
+  const vtkMTimeType before = array->GetMTime();
+  for (vtkIdType i = 0; i < many; ++i)
+  {
+    log->AddTuples(i, i);
+  }
+  VERIFY(GetTuples(log, before) == std::vector<vtkIdType>{ -1 });
+  const vtkMTimeType late = array->GetMTime();
+  log->AddTuples(1, 2);
+  VERIFY((GetTuples(log, late) == std::vector<vtkIdType>{ 1, 2 }));
+}
+
+// What is written and not logged is not seen: the filter takes the log's word. With the next
+// modification that nobody logs it is.
+void TestFilter()
+{
+  const auto volume = MakeImage({ { 0, 30, 0, 30, 0, 30 } });
+  AddScalars<short>(
+    volume, "value", [](const glm::dvec3& p) { return p.x + 40.0 * p.y + 9.0 * p.z; });
+  const auto mesh = MakeMesh(volume, 12, 1.0);
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  vtkNew<vtkUnsignedCharArray> active;
+  active->SetName("ActiveTetrahedra");
+  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  active->FillValue(31);
+  active->SetValue(0, 1); // a mask that is as without one is not kept
+  volume->GetCellData()->AddArray(active);
+  Deformed logged(volume, mesh);
+  logged.Filter->SetResamplerToExact();
+  logged.Filter->SetOutputBoundsModeToVolumeBounds();
+  vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+  vtkDataArray* connectivity = mesh->GetCells()->GetConnectivityArray();
+  vtkNew<vtkArrayChanges> vectorLog;
+  vectorLog->SetArray(vectors);
+  vtkNew<vtkArrayChanges> cellLog;
+  cellLog->SetArray(connectivity);
+  vtkNew<vtkArrayChanges> maskLog;
+  maskLog->SetArray(active);
+  const auto update = [&]()
+  {
+    vtkNew<vtkImageData> copy;
+    copy->DeepCopy(logged.Update());
+    return vtkSmartPointer<vtkImageData>(copy);
+  };
+  const auto fresh = [&]()
+  {
+    Deformed other(volume, mesh);
+    other.Filter->SetResamplerToExact();
+    other.Filter->SetOutputBoundsModeToVolumeBounds();
+    vtkNew<vtkImageData> copy;
+    copy->DeepCopy(other.Update());
+    return vtkSmartPointer<vtkImageData>(copy);
+  };
+  const auto start = update();
+  VERIFY(AreEqual(start, fresh()));
+
+  // Blocks of 512 nodes are looked at as a whole: these two are far apart.
+  const vtkIdType here = 12 * 12 * 2 + 12 * 5 + 5;
+  const vtkIdType there = 12 * 12 * 9 + 12 * 5 + 5;
+  vectors->SetTuple3(here, 0.75, 0.5, 0.0);
+  vectors->SetTuple3(there, 0.75, 0.5, 0.0);
+  vectorLog->AddTuples(here, here);
+  const auto half = update();
+  VERIFY(!AreEqual(half, start));
+  VERIFY(!AreEqual(half, fresh()));
+  vectorLog->AddTuples(there, there);
+  VERIFY(AreEqual(update(), fresh()));
+
+  const auto cutOff = [&](int z)
+  {
+    for (int i = 0; i < 12; ++i)
+    {
+      active->SetValue((z + i / 4) * 900 + (13 + i % 2) * 30 + 13 + i / 2 % 2, 0);
+    }
+  };
+  cutOff(4);
+  cutOff(23);
+  maskLog->AddTuples(4 * 900, 7 * 900 - 1);
+  const auto masked = update();
+  VERIFY(!AreEqual(masked, start));
+  VERIFY(!AreEqual(masked, fresh()));
+  active->Modified();
+  VERIFY(AreEqual(update(), fresh()));
+
+  // A node is split: a cell names another one, in the same place.
+  double point[3];
+  mesh->GetPoint(here, point);
+  const vtkIdType twin = mesh->GetPoints()->InsertNextPoint(point);
+  vectors->InsertNextTuple3(-0.5, 0.25, 0.25);
+  vtkIdType size = 0;
+  const vtkIdType* nodes = nullptr;
+  vtkIdType cell = 0;
+  std::vector<vtkIdType> changed;
+  for (; changed.empty(); ++cell)
+  {
+    mesh->GetCells()->GetCellAtId(cell, size, nodes);
+    for (vtkIdType k = 0; k < size && changed.empty(); ++k)
+    {
+      if (nodes[k] == here)
+      {
+        changed.assign(nodes, nodes + size);
+        changed[static_cast<std::size_t>(k)] = twin;
+      }
+    }
+  }
+  --cell;
+  mesh->GetCells()->ReplaceCellAtId(cell, size, changed.data());
+  cellLog->AddTuples(4 * cell, 4 * cell + 3);
+  mesh->GetPoints()->Modified();
+  mesh->Modified();
+  const vtkIdType builds = logged.Filter->GetNumberOfMappingBuilds();
+  VERIFY(AreEqual(update(), fresh()));
+  VERIFY_EQUAL(logged.Filter->GetNumberOfMappingBuilds(), builds);
+}
+
+} // namespace
+
+int TestArrayChanges(int, char*[])
+{
+  TestMisuse();
+  TestLog();
+  TestFilter();
+  return GetExitCode();
+}

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Carving by functions, surfaces, labels and a tool: misuse, numbers, undo and redo, and what a
+// deformation then shows.
+#include "EditChecks.h"
+
+#include "vtkCarveVolume.h"
+
+#include <vtkBox.h>
+#include <vtkCubeSource.h>
+#include <vtkImplicitBoolean.h>
+#include <vtkPlane.h>
+#include <vtkSphere.h>
+#include <vtkSphereSource.h>
+#include <vtkStringArray.h>
+#include <vtkTransform.h>
+
+#include <limits>
+
+using namespace filterTesting;
+
+namespace
+{
+
+const Extent Box{ { -2, 14, 0, 13, 1, 15 } };
+const double Nan = std::numeric_limits<double>::quiet_NaN();
+
+// The volume of what is switched off, in voxels.
+double GetVolume(const std::vector<unsigned char>& mask)
+{
+  double volume = 0.0;
+  for (const unsigned char byte : mask)
+  {
+    for (int t = 0; t < 5; ++t)
+    {
+      volume += (byte >> t & 1) != 0 ? 0.0 : t < 4 ? 1.0 / 6 : 1.0 / 3;
+    }
+  }
+  return volume;
+}
+
+void TestMisuse()
+{
+  Edited<vtkCarveVolume> carve;
+  carve.Fails("There is no volume");
+  auto volume = MakeVolume(Box);
+  volume->GetPointData()->AddArray(
+    MakeArray<vtkShortArray>("pairs", volume->GetNumberOfPoints(), 2));
+  volume->GetPointData()->AddArray(MakeArray<vtkShortArray>("short", 5));
+  vtkNew<vtkStringArray> words;
+  words->SetName("words");
+  words->SetNumberOfValues(volume->GetNumberOfPoints());
+  volume->GetPointData()->AddArray(words);
+  carve.Filter->SetInputData(volume);
+  VERIFY_EQUAL(carve.CountOff(), 0); // nothing to carve with
+  vtkNew<vtkSphere> sphere;
+  sphere->SetCenter(5, 5, 5);
+  sphere->SetRadius(3);
+  carve.Filter->SetImplicitFunction(sphere);
+  const auto before = carve.CopyMask();
+  VERIFY(CountActive(before) < 5 * volume->GetNumberOfCells());
+
+  vtkNew<vtkSphereSource> open;
+  open->SetEndTheta(200);
+  carve.Filter->SetSurfaceConnection(open->GetOutputPort());
+  carve.Fails("is open");
+  vtkNew<vtkSphereSource> closed;
+  closed->Update();
+  vtkNew<vtkPolyData> bad;
+  bad->DeepCopy(closed->GetOutput());
+  bad->GetPoints()->SetPoint(7, Nan, 0, 0);
+  carve.Filter->SetSurfaceData(bad);
+  carve.Fails("not finite");
+  carve.Filter->SetSurfaceData(nullptr);
+  for (const char* name : { "nothing", "pairs", "short", "words" })
+  {
+    carve.Filter->SetLabelArrayName(name);
+    carve.Fails("no point array");
+  }
+  carve.Filter->SetLabelArrayName("");
+  for (const double radius : { 0.0, -1.0, Nan })
+  {
+    carve.Filter->SetToolRadius(radius);
+    carve.Fails("ToolRadius");
+  }
+  carve.Filter->SetToolRadius(1.0);
+  carve.Filter->AddToolPosition(0, Nan, 0);
+  carve.Fails("not finite");
+  carve.Filter->ClearToolPositions();
+  auto wrong = MakeVolume(Box);
+  wrong->GetCellData()->AddArray(MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", 7));
+  carve.Filter->SetInputData(wrong);
+  carve.Fails("\"ActiveTetrahedra\"");
+  carve.Filter->SetInputData(volume);
+  VERIFY(carve.CopyMask() == before);
+
+  // A label that does not occur is a warning, once.
+  carve.Filter->SetLabelArrayName("value");
+  carve.Filter->SetLabel(-12345);
+  carve.Filter->Update();
+  VERIFY(carve.Observer->GetWarningMessage().find("No voxel has the label") != std::string::npos);
+  carve.Observer->Clear();
+  carve.Filter->Modified();
+  VERIFY(carve.CopyMask() == before);
+}
+
+// Functions of VTK, with and without bounds, in volumes of any geometry.
+void TestFunctions()
+{
+  for (int geometry = 0; geometry < 3; ++geometry)
+  {
+    auto volume = MakeVolume({ { 0, 48, 1, 49, -1, 47 } });
+    double voxel = 1.0;
+    if (geometry > 0)
+    {
+      volume->SetOrigin(3.0, -90.0, 12.0);
+      volume->SetSpacing(0.5, 0.5, 0.25);
+      voxel = 0.0625;
+    }
+    if (geometry == 2)
+    {
+      SetObliqueDirection(volume);
+    }
+    double middle[3];
+    volume->GetCenter(middle);
+    Edited<vtkCarveVolume> carve;
+    carve.Filter->SetInputData(volume);
+    vtkNew<vtkSphere> sphere;
+    sphere->SetCenter(middle);
+    const double radius = geometry == 0 ? 20.0 : 5.0;
+    sphere->SetRadius(radius);
+    carve.Filter->SetImplicitFunction(sphere);
+    const auto carved = carve.CopyMask();
+    const double expected = 4.0 / 3.0 * 3.14159265358979 * radius * radius * radius / voxel;
+    VERIFY(std::abs(GetVolume(carved) - expected) < 0.01 * expected);
+    // The same without bounds, and in one thread.
+    vtkNew<vtkImplicitBoolean> wrapped;
+    wrapped->AddFunction(sphere);
+    carve.Filter->SetImplicitFunction(wrapped);
+    VERIFY(carve.CopyMask() == carved);
+    carve.Filter->SetImplicitFunction(nullptr);
+    VERIFY_EQUAL(carve.CountOff(), 0);
+    // A tool in one place.
+    carve.Filter->SetToolRadius(radius);
+    carve.Filter->AddToolPosition(middle[0], middle[1], middle[2]);
+    VERIFY(carve.CopyMask() == carved);
+    carve.Filter->Undo();
+    carve.Filter->SetImplicitFunction(sphere);
+    double last = GetVolume(carved);
+    carve.Filter->SetRuleToMinimal();
+    VERIFY(GetVolume(carve.CopyMask()) < last);
+    carve.Filter->SetRuleToConservative();
+    VERIFY(GetVolume(carve.CopyMask()) > last);
+    // A change of the function is a change of the filter.
+    carve.Filter->SetRuleToCentroid();
+    sphere->SetRadius(0.5 * radius);
+    last = GetVolume(carve.CopyMask());
+    VERIFY(std::abs(last - expected / 8) < 0.03 * expected / 8);
+  }
+  // Whole cells, and half of a volume.
+  auto volume = MakeVolume(Box);
+  Edited<vtkCarveVolume> carve;
+  carve.Filter->SetInputData(volume);
+  vtkNew<vtkBox> box;
+  box->SetBounds(0, 4, 2, 5, 3, 10);
+  carve.Filter->SetImplicitFunction(box);
+  VERIFY_EQUAL(carve.CountOff(), 5 * 4 * 3 * 7);
+  vtkNew<vtkTransform> shift;
+  shift->Translate(-1, 0, 0);
+  box->SetTransform(shift);
+  const auto moved = carve.CopyMask();
+  VERIFY_EQUAL(5 * volume->GetNumberOfCells() - CountActive(moved), 5 * 4 * 3 * 7);
+  VERIFY_EQUAL(int(moved[static_cast<std::size_t>((2 * 13 + 2) * 16 + 6)]), 0); // x from 4 to 5
+  vtkNew<vtkPlane> plane;
+  plane->SetOrigin(6, 0, 0);
+  plane->SetNormal(1, 0, 0);
+  carve.Filter->SetImplicitFunction(plane);
+  VERIFY_EQUAL(carve.CountOff(), 5 * 8 * 13 * 14);
+}
+
+void TestSurfaces()
+{
+  auto volume = MakeVolume(Box);
+  Edited<vtkCarveVolume> carve;
+  carve.Filter->SetInputData(volume);
+  // A cube through voxels, of polygons whose points are not shared.
+  vtkNew<vtkCubeSource> cube;
+  cube->SetBounds(0, 4, 2, 5, 3, 10);
+  carve.Filter->SetSurfaceConnection(cube->GetOutputPort());
+  VERIFY_EQUAL(carve.CountOff(), 5 * 4 * 3 * 7);
+  const auto carved = carve.CopyMask();
+  cube->SetBounds(4, 9, 2, 5, 3, 10);
+  VERIFY_EQUAL(carve.CountOff(), 5 * 5 * 3 * 7);
+  carve.Filter->AccumulateOn();
+  cube->SetBounds(0, 4, 2, 5, 3, 10);
+  VERIFY_EQUAL(carve.CountOff(), 5 * 9 * 3 * 7);
+  carve.Filter->Undo();
+  carve.Filter->Undo();
+  VERIFY_EQUAL(carve.CountOff(), 0);
+  carve.Filter->Redo();
+  carve.Filter->Redo();
+  VERIFY_EQUAL(carve.CountOff(), 5 * 9 * 3 * 7);
+  carve.Filter->Reset();
+  VERIFY_EQUAL(carve.CountOff(), 0);
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetCenter(6.1, 6.3, 7.9);
+  sphere->SetRadius(5);
+  sphere->SetThetaResolution(80);
+  sphere->SetPhiResolution(80);
+  carve.Filter->SetSurfaceConnection(sphere->GetOutputPort());
+  const double expected = 4.0 / 3.0 * 3.14159265358979 * 125;
+  VERIFY(std::abs(GetVolume(carve.CopyMask()) - expected) < 0.02 * expected);
+}
+
+void TestLabels()
+{
+  auto volume = MakeVolume(Box);
+  auto labels = MakeArray<vtkShortArray>("label", volume->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+  {
+    labels->SetValue(id, GetPoint(volume, id).x > 5.5 ? 7 : 3);
+  }
+  volume->GetPointData()->AddArray(labels);
+  Edited<vtkCarveVolume> carve;
+  carve.Filter->SetInputData(volume);
+  carve.Filter->SetLabelArrayName("label");
+  carve.Filter->SetLabel(7);
+  carve.Filter->SetRuleToMinimal();
+  VERIFY_EQUAL(carve.CountOff(), 5 * 8 * 13 * 14);
+  carve.Filter->SetRuleToConservative();
+  VERIFY_EQUAL(carve.CountOff(), 5 * 9 * 13 * 14);
+  // In the layer between, of four corner tetrahedra two have three vertices on each side.
+  carve.Filter->SetRuleToCentroid();
+  VERIFY_EQUAL(carve.CountOff(), 5 * 8 * 13 * 14 + 2 * 13 * 14);
+  labels->Fill(3);
+  labels->SetValue(0, 7);
+  labels->Modified();
+  VERIFY_EQUAL(carve.CountOff(), 0);
+}
+
+// The tool, in steps and at once, and in a deformed volume.
+void TestTool()
+{
+  auto volume = MakeVolume(Box);
+  Edited<vtkCarveVolume> steps;
+  Edited<vtkCarveVolume> once;
+  const double path[4][3] = { { 1, 2, 3 }, { 4, 5, 6 }, { 9, 5, 6 }, { 9, 5, 12 } };
+  std::vector<std::vector<unsigned char>> masks;
+  for (Edited<vtkCarveVolume>* carve : { &steps, &once })
+  {
+    carve->Filter->SetInputData(volume);
+    carve->Filter->SetToolRadius(1.7);
+    for (const double* place : path)
+    {
+      carve->Filter->AddToolPosition(place[0], place[1], place[2]);
+      if (carve == &steps)
+      {
+        masks.push_back(carve->CopyMask());
+      }
+    }
+  }
+  VERIFY(once.CopyMask() == masks.back());
+  once.Filter->Undo();
+  VERIFY_EQUAL(once.CountOff(), 0);
+  for (int i = 3; i > 0; --i)
+  {
+    steps.Filter->Undo();
+    VERIFY(steps.CopyMask() == masks[static_cast<std::size_t>(i - 1)]);
+  }
+  // Where the deformation has moved it by whole voxels.
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(2, -1, 3));
+  Edited<vtkCarveVolume> deformed;
+  deformed.Filter->SetInputData(volume);
+  deformed.Filter->SetDeformationData(mesh);
+  deformed.Filter->SetToolRadius(1.7);
+  deformed.Filter->AddToolPosition(3, 1, 6);
+  VERIFY(deformed.CopyMask() == masks.front());
+
+  // What is carved out is a hole in the deformed volume.
+  Deformed filter;
+  filter.Filter->SetInputConnection(deformed.Filter->GetOutputPort());
+  filter.Filter->SetDeformationData(mesh);
+  filter.Update();
+  const vtkIdType holed = filter.Filter->GetNumberOfCoveredVoxels();
+  deformed.Filter->Reset();
+  filter.Update();
+  VERIFY(holed < filter.Filter->GetNumberOfCoveredVoxels());
+  VERIFY_EQUAL(filter.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+}
+
+} // namespace
+
+int TestCarveVolume(int, char*[])
+{
+  TestMisuse();
+  TestFunctions();
+  TestSurfaces();
+  TestLabels();
+  TestTool();
+  return GetExitCode();
+}

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vtkChainMailDeformation: closed forms in the world, materials, pins and cuts by arrays, what is
+// kept between executions, and vtkDeformVolumeFilter behind it.
+#include "ChainMailTesting.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkLongLongArray.h>
+#include <vtkShortArray.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <glm/glm.hpp>
+
+#include <algorithm>
+
+using namespace chainMailTesting;
+using namespace filterTesting;
+
+namespace
+{
+
+vtkIdType GetId(vtkImageData* volume, int i, int j, int k)
+{
+  const int ijk[3] = { i, j, k };
+  return volume->ComputePointId(const_cast<int*>(ijk));
+}
+
+glm::dvec3 GetTuple(vtkDataArray* array, vtkIdType id)
+{
+  glm::dvec3 tuple;
+  array->GetTuple(id, &tuple.x);
+  return tuple;
+}
+
+glm::dvec3 GetWorld(vtkImageData* volume, const glm::dvec3& index)
+{
+  glm::dvec3 world;
+  volume->TransformContinuousIndexToPhysicalPoint(&index.x, &world.x);
+  return world;
+}
+
+// Displacements fall off by half the world distance along the axes of the volume.
+void TestWorldForm()
+{
+  const auto volume = MakeImage({ { -4, 20, 3, 30, 0, 18 } }, { 0.5, 1.0, 2.0 }, { 10, -5, 2 });
+  SetObliqueDirection(volume);
+  Dragged dragged(volume);
+  const glm::dvec3 held(8, 16, 9);
+  const glm::dvec3 voxels(-3.5, 4, 1.25);
+  const glm::dvec3 rest = GetWorld(volume, held);
+  vtkFloatArray* found = dragged.Drag({ { rest, GetWorld(volume, held + voxels) } });
+  VERIFY_EQUAL(found->GetNumberOfTuples(), volume->GetNumberOfPoints());
+  vtkImageData* output = dragged.Filter->GetOutput();
+  VERIFY_EQUAL(GetExtent(output), GetExtent(volume));
+  VERIFY(output->GetPointData()->GetVectors() == found);
+  const glm::dvec3 origin = GetWorld(volume, glm::dvec3(0.0));
+  double largest = 0.0;
+  for (int k = 0; k <= 18; ++k)
+  {
+    for (int j = 3; j <= 30; ++j)
+    {
+      for (int i = -4; i <= 20; ++i)
+      {
+        const vtkIdType id = GetId(volume, i, j, k);
+        VERIFY(GetPoint(output, id) == GetPoint(volume, id));
+        const glm::dvec3 spacing(0.5, 1.0, 2.0);
+        const glm::dvec3 steps = glm::abs(glm::dvec3(i, j, k) - held) * spacing;
+        const double less = 0.5 * (steps.x + steps.y + steps.z);
+        const glm::dvec3 drag = voxels * spacing;
+        const glm::dvec3 length = glm::max(glm::abs(drag) - less, glm::dvec3(0.0));
+        const glm::dvec3 expected = GetWorld(volume, glm::sign(drag) * length / spacing) - origin;
+        const glm::dvec3 difference = glm::abs(GetTuple(found, id) - expected);
+        largest = std::max({ largest, difference.x, difference.y, difference.z });
+      }
+    }
+  }
+  // Half a unit of 1/65536 of 2, and floats of lengths under 8: three of them, and three sums.
+  VERIFY(largest <= 2.0 / 131072.0 + 8.0 * 6.0 / 16777216.0);
+  VERIFY_EQUAL(dragged.Filter->GetLargestViolation(), 0.0);
+  VERIFY(dragged.Filter->GetNumberOfSweeps() > 0);
+  VERIFY(!dragged.Filter->GetSummary().empty());
+}
+
+void TestKept()
+{
+  const auto volume = MakeVolume({ { 0, 40, 0, 24, 0, 24 } });
+  Dragged dragged(volume);
+  const glm::dvec3 rest(8, 12, 12);
+  vtkFloatArray* found = dragged.Drag({ { rest, rest + glm::dvec3(2, 0, 0) } });
+  const float* memory = found->GetPointer(0);
+  const vtkMTimeType time = found->GetMTime();
+  // 7 voxels along the three axes, and so on: an octahedron with half axes of 3 voxels.
+  VERIFY_EQUAL(dragged.Filter->GetNumberOfMovedVoxels(), vtkIdType{ 63 });
+  VERIFY_EQUAL(GetExtent(dragged.Filter->GetOutput()), GetExtent(volume));
+  const auto getChanges = [&]
+  {
+    Extent extent;
+    dragged.Filter->GetChangedExtent(extent.data());
+    return extent;
+  };
+  VERIFY_EQUAL(getChanges(), (Extent{ { 0, 15, 8, 15, 8, 15 } }));
+  // The same again: nothing changes.
+  VERIFY(dragged.Update() == found && found->GetMTime() == time);
+  VERIFY_EQUAL(dragged.Filter->GetNumberOfMovedVoxels(), vtkIdType{ 0 });
+  VERIFY_EQUAL(getChanges(), (Extent{ { 0, -1, 0, -1, 0, -1 } }));
+  // A drag elsewhere: what was moved stays.
+  const glm::dvec3 other(34, 12, 12);
+  VERIFY(dragged.Drag({ { other, other + glm::dvec3(0, -1, 0) } }) == found);
+  VERIFY(found->GetPointer(0) == memory && found->GetMTime() > time);
+  VERIFY(GetTuple(found, GetId(volume, 8, 12, 12)) == glm::dvec3(2, 0, 0));
+  VERIFY(GetTuple(found, GetId(volume, 34, 12, 12)) == glm::dvec3(0, -1, 0));
+  VERIFY_EQUAL(getChanges(), (Extent{ { 32, 39, 8, 15, 8, 15 } }));
+  // Relaxation: what is not held goes back.
+  dragged.Filter->SetHandlesData(nullptr);
+  dragged.Filter->SetRelaxationSweeps(50);
+  dragged.Update();
+  VERIFY(GetTuple(found, GetId(volume, 8, 12, 12)).x < 0.5);
+  VERIFY(dragged.Filter->GetNumberOfMovedVoxels() > 0);
+  dragged.Filter->SetRelaxationSweeps(0);
+  dragged.Filter->Reset();
+  dragged.Update();
+  double range[2];
+  found->GetRange(range, -1);
+  VERIFY_EQUAL(range[1], 0.0);
+  VERIFY_EQUAL(getChanges()[0], 0);
+  // Another lattice: other memory. The first stays as it was.
+  const auto larger = MakeVolume({ { 0, 41, 0, 24, 0, 24 } });
+  dragged.Filter->SetInputData(larger);
+  VERIFY(dragged.Update() != nullptr);
+  VERIFY_EQUAL(dragged.Filter->GetOutput()->GetNumberOfPoints(), larger->GetNumberOfPoints());
+}
+
+// A column of stiff voxels moves as a whole.
+template <typename Array>
+void TestLabels(bool byRanges)
+{
+  const auto volume = MakeImage({ { 0, 12, 0, 12, 0, 12 } });
+  const vtkSmartPointer<Array> labels = vtkSmartPointer<Array>::New();
+  labels->SetName("label");
+  labels->SetNumberOfTuples(volume->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < labels->GetNumberOfTuples(); ++id)
+  {
+    const bool isStiff = GetPoint(volume, id).x == 6 && GetPoint(volume, id).y == 6;
+    labels->SetTuple1(id, byRanges ? (isStiff ? 100 : 20) : isStiff ? 9 : 0);
+  }
+  volume->GetPointData()->SetScalars(labels);
+  Dragged dragged(volume);
+  dragged.Filter->SetMaterial(0, 0.5, 1.5, 0.5);
+  dragged.Filter->SetMaterial(9, 1.0, 1.0, 0.0);
+  if (byRanges)
+  {
+    dragged.Filter->SetDefaultMaterial(0);
+    dragged.Filter->AddMaterialRange(100, 101, 9);
+    dragged.Filter->AddMaterialRange(0, 1000, 0);
+  }
+  else
+  {
+    dragged.Filter->SetMaterialArrayName("label");
+  }
+  const glm::dvec3 rest(6, 6, 2);
+  vtkFloatArray* found = dragged.Drag({ { rest, rest + glm::dvec3(1, -2, 0.5) } });
+  for (int k = 0; k <= 12; ++k)
+  {
+    VERIFY(GetTuple(found, GetId(volume, 6, 6, k)) == glm::dvec3(1, -2, 0.5));
+  }
+  // A link between the two gives way half as much as one in soft tissue.
+  VERIFY(GetTuple(found, GetId(volume, 7, 6, 11)) == glm::dvec3(0.75, -1.75, 0.25));
+}
+
+void TestPinsAndCuts()
+{
+  const auto volume = MakeVolume({ { 0, 20, 0, 10, 0, 10 } });
+  vtkNew<vtkLongLongArray> pinned;
+  pinned->SetName("Pinned");
+  pinned->SetNumberOfTuples(volume->GetNumberOfPoints());
+  pinned->Fill(0);
+  pinned->SetValue(GetId(volume, 10, 5, 5), -3);
+  volume->GetPointData()->AddArray(pinned);
+  Dragged dragged(volume);
+  const glm::dvec3 rest(6, 5, 5);
+  const std::vector<Handle> handles{ { rest, rest + glm::dvec3(5, 0, 0) } };
+  vtkFloatArray* found = dragged.Drag(handles);
+  VERIFY_EQUAL(dragged.Filter->GetNumberOfReducedHandles(), 1);
+  VERIFY_EQUAL(dragged.Filter->GetNumberOfReleasedHandles(), 0);
+  VERIFY(GetTuple(found, GetId(volume, 6, 5, 5)) == glm::dvec3(2, 0, 0));
+  VERIFY(GetTuple(found, GetId(volume, 10, 5, 5)) == glm::dvec3(0, 0, 0));
+  // Cut between the two: the drag is possible, and nothing moves beyond the cut.
+  vtkNew<vtkUnsignedCharArray> active;
+  active->SetName("ActiveTetrahedra");
+  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  for (vtkIdType cell = 0; cell < active->GetNumberOfTuples(); ++cell)
+  {
+    active->SetValue(cell, cell % 20 == 8 ? 0 : 31);
+  }
+  volume->GetCellData()->AddArray(active);
+  VERIFY(dragged.Update() == found);
+  VERIFY_EQUAL(dragged.Filter->GetNumberOfReducedHandles(), 0);
+  VERIFY(GetTuple(found, GetId(volume, 6, 5, 5)) == glm::dvec3(5, 0, 0));
+  VERIFY(GetTuple(found, GetId(volume, 8, 5, 5)) == glm::dvec3(4, 0, 0));
+  VERIFY(GetTuple(found, GetId(volume, 9, 5, 5)).x < 1.0);
+  // Sewn together again, which the displacements do not allow: all is put to rest first.
+  active->Fill(31);
+  active->Modified();
+  dragged.Filter->SetHandlesData(nullptr);
+  dragged.Update();
+  double range[2];
+  found->GetRange(range, -1);
+  VERIFY_EQUAL(range[1], 0.0);
+}
+
+void TestAborted()
+{
+  const auto volume = MakeVolume({ { 0, 40, 0, 40, 0, 40 } });
+  Dragged dragged(volume);
+  const glm::dvec3 rest(20, 20, 20);
+  vtkFloatArray* found = dragged.Drag({ { rest, rest + glm::dvec3(3, 0, 0) } });
+  const vtkSmartPointer<vtkFloatArray> before = Copy(found);
+  struct Abort
+  {
+    static void Execute(vtkObject* filter, unsigned long, void*, void*)
+    {
+      static_cast<vtkAlgorithm*>(filter)->SetAbortExecute(1);
+    }
+  };
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback(Abort::Execute);
+  const unsigned long tag = dragged.Filter->AddObserver(vtkCommand::ProgressEvent, abort);
+  dragged.Filter->SetHandlesData(MakeHandles({ { rest, rest + glm::dvec3(9, 0, 0) } }));
+  dragged.Filter->Update();
+  VERIFY(HaveEqualBits(found, before));
+  dragged.Filter->RemoveObserver(tag);
+  dragged.Filter->SetAbortExecute(0);
+  dragged.Filter->Update(); // not up to date
+  VERIFY(GetTuple(found, GetId(volume, 20, 20, 20)) == glm::dvec3(9, 0, 0));
+}
+
+// The filter behind it has, step by step, what it makes of a copy of the displacements.
+void TestDeformed(const Extent& extent)
+{
+  const auto volume = MakeVolume(extent);
+  Dragged dragged(volume);
+  dragged.Filter->SetRelaxationSweeps(2);
+  dragged.Filter->SetHandleRadius(3.0);
+  Deformed chain;
+  chain.Filter->SetInputData(volume);
+  chain.Filter->SetDeformationConnection(dragged.Filter->GetOutputPort());
+  const glm::dvec3 rest(20, 16, 15);
+  for (int step = 1; step <= 3; ++step)
+  {
+    const glm::dvec3 drag(1.0 * step, -1.0, 2.0 - step);
+    dragged.Filter->SetHandlesData(MakeHandles({ { rest, rest + drag } }));
+    vtkImageData* found = chain.Update();
+    vtkNew<vtkImageData> copy;
+    copy->DeepCopy(dragged.Filter->GetOutput());
+    Deformed fresh(volume, copy);
+    VERIFY(AreEqual(found, fresh.Update()));
+    // Within the handle the volume is shifted by whole voxels.
+    for (int i = 19; i <= 21; ++i)
+    {
+      const auto to = glm::ivec3(glm::dvec3(i, 16, 15) + drag);
+      const double expected =
+        volume->GetPointData()->GetScalars()->GetTuple1(GetId(volume, i, 16, 15));
+      VERIFY_EQUAL(
+        found->GetPointData()->GetScalars()->GetTuple1(GetId(found, to.x, to.y, to.z)), expected);
+    }
+  }
+}
+
+} // namespace
+
+int TestChainMailDeformation(int, char*[])
+{
+  TestWorldForm();
+  TestKept();
+  TestLabels<vtkUnsignedCharArray>(false);
+  TestLabels<vtkLongLongArray>(false);
+  TestLabels<vtkFloatArray>(false);
+  TestLabels<vtkShortArray>(true);
+  TestLabels<vtkDoubleArray>(true);
+  TestPinsAndCuts();
+  TestAborted();
+  TestDeformed({ { 0, 40, 0, 30, 0, 30 } });
+  TestDeformed({ { 0, 70, 0, 70, 0, 70 } }); // read where it lies
+  return GetExitCode();
+}

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vtkChainMailDeformation: each misuse is one error in words, and the drag goes on afterwards.
+#include "ChainMailTesting.h"
+
+#include <vtkShortArray.h>
+#include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <limits>
+
+using namespace chainMailTesting;
+using namespace filterTesting;
+
+namespace
+{
+
+bool Holds(const std::string& text, const std::string& part)
+{
+  if (text.find(part) == std::string::npos)
+  {
+    std::cerr << "not in the error: " << part << "\nthe error: " << text << "\n";
+    return false;
+  }
+  return true;
+}
+
+template <typename Array>
+vtkSmartPointer<Array> MakeArray(const char* name, int components, vtkIdType tuples, int value = 0)
+{
+  auto array = vtkSmartPointer<Array>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(tuples);
+  for (vtkIdType i = 0; i < components * tuples; ++i)
+  {
+    array->SetVariantValue(i, vtkVariant(value));
+  }
+  return array;
+}
+
+void TestHandles(Dragged& dragged, const std::vector<Handle>& good)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto tryHandles = [&](const std::vector<Handle>& handles)
+  {
+    dragged.Filter->SetHandlesData(MakeHandles(handles));
+    return dragged.TryUpdate();
+  };
+  const glm::dvec3 inside(4, 4, 4);
+  VERIFY(Holds(tryHandles({ good[0], { glm::dvec3(4, 4, 50), inside } }), "Handle 1 lies outside"));
+  VERIFY(Holds(tryHandles({ { inside, glm::dvec3(5000, 4, 4) } }), "Move it less"));
+  VERIFY(Holds(tryHandles({ { inside, glm::dvec3(4, nan, 4) } }), "Point 0 of the handles"));
+  VERIFY(
+    Holds(tryHandles({ { glm::dvec3(4, nan, 4), inside } }), "Rest position 0 of the handles"));
+  const vtkSmartPointer<vtkPolyData> handles = MakeHandles(good);
+  vtkPointData* arrays = handles->GetPointData();
+  dragged.Filter->SetHandlesData(handles);
+  arrays->RemoveArray("RestPosition");
+  VERIFY(Holds(dragged.TryUpdate(), "no point array \"RestPosition\""));
+  arrays->AddArray(MakeArray<vtkDoubleArray>("RestPosition", 2, 1));
+  VERIFY(Holds(dragged.TryUpdate(), "3 components and 1 tuples"));
+  arrays->AddArray(MakeArray<vtkDoubleArray>("RestPosition", 3, 2));
+  VERIFY(Holds(dragged.TryUpdate(), "2 tuples of 3 components"));
+  arrays->AddArray(MakeArray<vtkStringArray>("RestPosition", 3, 1));
+  VERIFY(Holds(dragged.TryUpdate(), "numeric type"));
+  dragged.Filter->SetHandlesData(MakeHandles(good));
+}
+
+void TestVolumeArrays(Dragged& dragged, vtkImageData* volume)
+{
+  const vtkIdType points = volume->GetNumberOfPoints();
+  vtkPointData* pointData = volume->GetPointData();
+  vtkCellData* cellData = volume->GetCellData();
+  cellData->AddArray(MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", 1, points, 31));
+  VERIFY(Holds(dragged.TryUpdate(), "\"ActiveTetrahedra\""));
+  cellData->AddArray(
+    MakeArray<vtkFloatArray>("ActiveTetrahedra", 1, volume->GetNumberOfCells(), 31));
+  VERIFY(Holds(dragged.TryUpdate(), "type unsigned char"));
+  cellData->RemoveArray("ActiveTetrahedra");
+  pointData->AddArray(MakeArray<vtkUnsignedCharArray>("Pinned", 2, points));
+  VERIFY(Holds(dragged.TryUpdate(), "\"Pinned\""));
+  pointData->AddArray(MakeArray<vtkUnsignedCharArray>("Pinned", 1, points - 1));
+  VERIFY(Holds(dragged.TryUpdate(), "1 component and"));
+  pointData->RemoveArray("Pinned");
+
+  dragged.Filter->SetMaterialArrayName("labels");
+  VERIFY(Holds(dragged.TryUpdate(), "no point array \"labels\""));
+  pointData->AddArray(MakeArray<vtkShortArray>("labels", 3, points));
+  VERIFY(Holds(dragged.TryUpdate(), "\"labels\""));
+  for (const int label : { 5, 255, 256, -1 })
+  {
+    const vtkSmartPointer<vtkShortArray> labels = MakeArray<vtkShortArray>("labels", 1, points);
+    labels->SetValue(17, static_cast<short>(label));
+    pointData->AddArray(labels);
+    VERIFY(Holds(dragged.TryUpdate(), "Voxel 17 has the value " + std::to_string(label)));
+  }
+  const vtkSmartPointer<vtkDoubleArray> fractions =
+    MakeArray<vtkDoubleArray>("labels", 1, points, 1);
+  fractions->SetValue(3, 1.5);
+  pointData->AddArray(fractions);
+  VERIFY(Holds(dragged.TryUpdate(), "Voxel 3 has the value 1.5"));
+  pointData->RemoveArray("labels");
+  dragged.Filter->SetMaterialArrayName("");
+}
+
+void TestMaterials(Dragged& dragged)
+{
+  dragged.Filter->SetDefaultMaterial(9);
+  VERIFY(Holds(dragged.TryUpdate(), "material 9"));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double bad[][3] = { { 1.5, 2, 0.5 }, { 0.5, 0.9, 0.5 }, { -1, 2, 0.5 }, { 0.5, 2, -1 },
+    { nan, 2, 1 }, { 0.5, nan, 1 }, { 0.5, 2, nan } };
+  for (const auto& limits : bad)
+  {
+    dragged.Filter->SetMaterial(9, limits[0], limits[1], limits[2]);
+    VERIFY(Holds(dragged.TryUpdate(), "Material 9 has the"));
+  }
+  dragged.Filter->ClearMaterials();
+  dragged.Filter->SetDefaultMaterial(1);
+  VERIFY(Holds(dragged.TryUpdate(), "material"));
+  VERIFY_EQUAL(dragged.Filter->GetNumberOfMaterials(), 0);
+  dragged.Filter->SetMaterial(1, 0.5, 1.5, 0.5);
+  double limits[3];
+  VERIFY(dragged.Filter->GetMaterialLimits(1, limits) && limits[0] == 0.5 && limits[1] == 1.5);
+  VERIFY(!dragged.Filter->GetMaterialLimits(2, limits) &&
+    !dragged.Filter->GetMaterialLimits(-1, limits));
+  dragged.Filter->AddMaterialRange(0, 10, 7);
+  VERIFY(Holds(dragged.TryUpdate(), "material 7"));
+  dragged.Filter->ClearMaterialRanges();
+  dragged.Filter->SetMaterial(1.5, 0.5, 1.5, 0.5);
+  VERIFY(Holds(dragged.Observer->GetErrorMessage(), "whole number"));
+  dragged.Observer->Clear();
+  dragged.Filter->SetMaterial(3.0, 0.5, 1.5, 0.5);
+  VERIFY_EQUAL(dragged.Filter->GetNumberOfMaterials(), 2);
+  for (const int index : { -1, 256 })
+  {
+    dragged.Filter->SetMaterial(index, 0.5, 1.5, 0.5);
+    VERIFY(Holds(dragged.Observer->GetErrorMessage(), "from 0 to 255"));
+    dragged.Observer->Clear();
+    dragged.Filter->AddMaterialRange(0, 1, index);
+    VERIFY(Holds(dragged.Observer->GetErrorMessage(), "from 0 to 255"));
+    dragged.Observer->Clear();
+  }
+}
+
+void TestSettings(Dragged& dragged)
+{
+  dragged.Filter->SetDevice("no such device");
+  VERIFY(Holds(dragged.TryUpdate(), "no such device"));
+  dragged.Filter->SetDevice("");
+  const vtkSmartPointer<vtkImageData> large = MakeVolume({ { 0, 30, 0, 30, 0, 30 } });
+  vtkNew<vtkChainMailDeformation> other;
+  other->AddObserver(vtkCommand::ErrorEvent, dragged.Observer);
+  other->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, dragged.ExecutiveObserver);
+  other->SetInputData(large);
+  other->SetMemoryLimit(100000);
+  other->Update();
+  VERIFY(Holds(dragged.Observer->GetErrorMessage(), "Not enough memory"));
+  dragged.Observer->Clear();
+}
+
+} // namespace
+
+int TestChainMailMisuse(int, char*[])
+{
+  vtkNew<vtkImageData> none;
+  Dragged empty(none);
+  VERIFY(!empty.TryUpdate().empty());
+  Dragged flat(MakeVolume({ { 0, 5, 3, 3, 0, 5 } }));
+  VERIFY(!flat.TryUpdate().empty());
+
+  const vtkSmartPointer<vtkImageData> volume = MakeVolume({ { 0, 12, 0, 12, 0, 12 } });
+  const vtkSmartPointer<vtkImageData> other = MakeVolume({ { 0, 12, 0, 12, 0, 12 } });
+  Dragged dragged(volume);
+  Dragged undisturbed(other);
+  std::vector<Handle> handles{ { glm::dvec3(4, 6, 6), glm::dvec3(6, 6, 5) } };
+  VERIFY(HaveEqualBits(dragged.Drag(handles), undisturbed.Drag(handles)));
+  TestHandles(dragged, handles);
+  TestVolumeArrays(dragged, volume);
+  TestMaterials(dragged);
+  TestSettings(dragged);
+  // The tissue is where the first drag has left it.
+  handles = { { glm::dvec3(9, 6, 6), glm::dvec3(9.5, 9, 6) } };
+  VERIFY(HaveEqualBits(dragged.Drag(handles), undisturbed.Drag(handles)));
+  VERIFY(undisturbed.Update()->GetComponent(4 + 13 * (6 + 13 * 6), 0) == 2.0);
+  return GetExitCode();
+}

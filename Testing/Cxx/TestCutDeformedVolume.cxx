@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cuts in a chain of filters: one cut after another, cuts of a deformed volume, and what a
+// deformation shows of them.
+#include "EditChecks.h"
+
+#include "vtkCutVolume.h"
+
+#include <vtkRTAnalyticSource.h>
+
+using namespace filterTesting;
+
+namespace
+{
+
+const Extent Box{ { 0, 8, 0, 8, 0, 8 } };
+
+void TestChain()
+{
+  auto volume = MakeVolume(Box);
+  Edited<vtkCutVolume> first;
+  Edited<vtkCutVolume> second;
+  first.Filter->SetInputData(volume);
+  first.Filter->SetSheetData(MakePlaneX(volume, 2.5));
+  second.Filter->SetInputConnection(first.Filter->GetOutputPort());
+  second.Filter->SetSheetData(MakePlaneX(volume, 2.0));
+  second.Update();
+  VERIFY_EQUAL(second.Filter->GetNumberOfSwitchedOffTetrahedra(), 320);
+  second.Filter->SetSheetData(
+    MakePlane(volume, glm::dvec3(-5, 4.5, -5), glm::dvec3(30, 0, 0), glm::dvec3(0, 0, 30)));
+  std::vector<unsigned char> mask = second.CopyMask();
+  VERIFY_EQUAL(CountActive(mask), 5 * 512 - 320 - 320 + 40);
+  first.Filter->SetSheetData(nullptr);
+  mask = second.CopyMask();
+  VERIFY_EQUAL(CountActive(mask), 5 * 512 - 320);
+}
+
+// What is seen is cut, and stays cut.
+void TestDeformed()
+{
+  auto volume = MakeVolume(Box);
+  const double origin[3] = { 5.0, -3.0, 2.0 };
+  volume->SetOrigin(origin[0], origin[1], origin[2]);
+  volume->SetSpacing(0.5, 2.0, 1.5);
+  SetObliqueDirection(volume);
+  Edited<vtkCutVolume> rest;
+  rest.Filter->SetInputData(volume);
+  rest.Filter->SetSheetData(MakePlaneX(volume, 3.5));
+  const auto expected = rest.CopyMask();
+  // The volume moves by two voxels along its own x axis.
+  glm::dvec3 move;
+  glm::dvec3 zero;
+  const glm::dvec3 two(2.0, 0.0, 0.0);
+  const glm::dvec3 none(0.0);
+  volume->TransformContinuousIndexToPhysicalPoint(&two.x, &move.x);
+  volume->TransformContinuousIndexToPhysicalPoint(&none.x, &zero.x);
+  move -= zero;
+  auto mesh = MakeMesh(volume, 4);
+  auto restMesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  restMesh->DeepCopy(mesh);
+  SetDisplacements(mesh, Shift(move.x, move.y, move.z));
+  auto field = MakeImage({ { 0, 1, 0, 1, 0, 1 } }, glm::dvec3(60.0), glm::dvec3(-30.0));
+  SetDisplacements(field, Shift(move.x, move.y, move.z));
+  auto deformedMesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  deformedMesh->DeepCopy(restMesh);
+  for (vtkIdType i = 0; i < deformedMesh->GetNumberOfPoints(); ++i)
+  {
+    const glm::dvec3 point = GetPoint(restMesh, i) + move;
+    deformedMesh->GetPoints()->SetPoint(i, &point.x);
+  }
+  for (int kind = 0; kind < 3; ++kind)
+  {
+    Edited<vtkCutVolume> cut;
+    cut.Filter->SetInputData(volume);
+    cut.Filter->SetDeformationData(kind == 0 ? mesh.Get()
+        : kind == 1                          ? deformedMesh.Get()
+                                             : nullptr);
+    if (kind == 1)
+    {
+      cut.Filter->SetRestData(restMesh);
+    }
+    if (kind == 2)
+    {
+      cut.Filter->SetDeformationData(field);
+    }
+    cut.Filter->SetSheetData(MakePlaneX(volume, 5.5));
+    VERIFY(cut.CopyMask() == expected);
+    if (kind == 0)
+    {
+      // The deformation moves on: the cut stays in the tissue. A new sheet cuts where it is now.
+      cut.Filter->SetDisplacementScale(0.0);
+      VERIFY(cut.CopyMask() == expected);
+      cut.Filter->SetSheetData(MakePlaneX(volume, 3.5));
+      VERIFY(cut.CopyMask() == expected);
+    }
+  }
+}
+
+// Parts of a volume are cut as the whole is, at rest and in a deformation by links, runs and a
+// field.
+void TestParts()
+{
+  vtkNew<vtkRTAnalyticSource> source;
+  source->SetWholeExtent(-12, 19, 3, 30, -5, 22);
+  source->Update();
+  vtkImageData* volume = source->GetOutput();
+  const auto bend = [](const glm::dvec3& p)
+  { return p + glm::dvec3(0.02 * p.y * p.y, 0.3 * p.z, std::sin(0.3 * p.x)); };
+  auto field = MakeImage({ { -3, 5, 0, 8, -2, 6 } }, glm::dvec3(4.7));
+  SetDisplacements(field, bend);
+  const auto sheet =
+    MakeSheet(volume, { glm::dvec3(-30, 2, 9), glm::dvec3(52, -21, 13), glm::dvec3(5, 62, -14) });
+  const std::vector<Extent> parts{ { { -12, 19, 3, 30, -5, 22 } }, { { -12, 4, 3, 30, -5, 22 } },
+    { { 3, 19, 7, 20, 0, 9 } }, { { -1, 2, 3, 30, -5, 3 } } };
+  for (int kind = 0; kind < 4; ++kind)
+  {
+    auto mesh = MakeMesh(volume, kind == 1 ? 3 : 25, -1.3);
+    SetDisplacements(mesh, bend);
+    for (const bool extrapolate : { false, true })
+    {
+      // The first one is the whole.
+      vtkSmartPointer<vtkImageData> whole;
+      for (const Extent& part : parts)
+      {
+        vtkNew<vtkRTAnalyticSource> fresh;
+        fresh->SetWholeExtent(-12, 19, 3, 30, -5, 22);
+        vtkNew<vtkCutVolume> cut;
+        cut->SetInputConnection(fresh->GetOutputPort());
+        cut->SetSheetData(sheet);
+        cut->SetOutsideMode(extrapolate ? vtkCutVolume::EXTRAPOLATE : vtkCutVolume::DISCARD);
+        if (kind > 0)
+        {
+          cut->SetDeformationData(
+            kind == 3 ? static_cast<vtkDataObject*>(field.Get()) : mesh.Get());
+        }
+        cut->UpdateExtent(part.data());
+        VERIFY(cut->GetNumberOfSwitchedOffTetrahedra() > 0);
+        if (!whole)
+        {
+          whole = cut->GetOutput();
+          VERIFY(cut->GetNumberOfSwitchedOffTetrahedra() > 2000);
+          continue;
+        }
+        vtkDataArray* expected = whole->GetCellData()->GetArray("ActiveTetrahedra");
+        vtkImageData* output = cut->GetOutput();
+        VERIFY_EQUAL(GetExtent(output), part);
+        vtkDataArray* found = output->GetCellData()->GetArray("ActiveTetrahedra");
+        int wrong = 0;
+        vtkIdType cell = 0;
+        for (int z = part[4]; z < part[5]; ++z)
+        {
+          for (int y = part[2]; y < part[3]; ++y)
+          {
+            for (int x = part[0]; x < part[1]; ++x, ++cell)
+            {
+              int index[3] = { x, y, z };
+              const double value = expected->GetComponent(whole->ComputeCellId(index), 0);
+              wrong += found->GetComponent(cell, 0) != value ? 1 : 0;
+            }
+          }
+        }
+        VERIFY_EQUAL(wrong, 0);
+      }
+    }
+  }
+}
+
+// A rank may have a part without cells, or none.
+void TestPartsWithoutCells()
+{
+  for (const Extent& part : { Extent{ { 3, 3, 0, 9, 0, 9 } }, Extent{ { 0, -1, 0, -1, 0, -1 } } })
+  {
+    vtkNew<vtkRTAnalyticSource> source;
+    source->SetWholeExtent(0, 9, 0, 9, 0, 9);
+    Edited<vtkCutVolume> cut;
+    cut.Filter->SetInputConnection(source->GetOutputPort());
+    source->UpdateInformation();
+    cut.Filter->SetSheetData(MakePlaneX(MakeVolume(Box), 3.5));
+    cut.Filter->UpdateExtent(part.data());
+    VERIFY_EQUAL(cut.Observer->GetErrorMessage(), std::string());
+    VERIFY_EQUAL(cut.ExecutiveObserver->GetErrorMessage(), std::string());
+    VERIFY_EQUAL(cut.Filter->GetOutput()->GetNumberOfCells(), part[1] < 0 ? 0 : 81);
+    cut.Filter->UpdateWholeExtent();
+    VERIFY_EQUAL(cut.Filter->GetNumberOfSwitchedOffTetrahedra(), 5 * 81);
+  }
+}
+
+// Two halves that come apart leave an empty gap between them.
+void TestGap()
+{
+  const Extent extent{ { 0, 16, 0, 8, 0, 8 } };
+  auto volume = MakeVolume(extent);
+  Edited<vtkCutVolume> cut;
+  cut.Filter->SetInputData(volume);
+  cut.Filter->SetSheetData(MakePlaneX(volume, 7.5));
+  auto field = MakeImage(extent);
+  SetDisplacements(
+    field, [](const glm::dvec3& p) { return p + glm::dvec3(p.x > 7.5 ? 6.0 : 0.0, 0.0, 0.0); });
+  Deformed deformed;
+  deformed.Filter->SetInputConnection(cut.Filter->GetOutputPort());
+  deformed.Filter->SetDeformationData(field);
+  vtkImageData* output = deformed.Update();
+  int wrong = 0;
+  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 p = GetPoint(output, id);
+    const bool isThere = p.x <= 7.0 || p.x >= 14.0;
+    wrong += deformed.IsCovered(id) != isThere ? 1 : 0;
+    if (isThere)
+    {
+      int index[3] = { static_cast<int>(p.x) - (p.x >= 14.0 ? 6 : 0), static_cast<int>(p.y),
+        static_cast<int>(p.z) };
+      const vtkIdType voxel = volume->ComputePointId(index);
+      wrong += deformed.GetValues()->GetComponent(id, 0) !=
+          volume->GetPointData()->GetScalars()->GetComponent(voxel, 0)
+        ? 1
+        : 0;
+    }
+  }
+  VERIFY_EQUAL(GetExtent(output), (Extent{ { 0, 22, 0, 8, 0, 8 } }));
+  VERIFY_EQUAL(wrong, 0);
+  // Without the cut the voxels between are there.
+  cut.Filter->Undo();
+  deformed.Update();
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), output->GetNumberOfPoints());
+  cut.Filter->Redo();
+  deformed.Update();
+  VERIFY_EQUAL(
+    deformed.Filter->GetNumberOfCoveredVoxels(), output->GetNumberOfPoints() - 6 * 9 * 9);
+}
+
+} // namespace
+
+int TestCutDeformedVolume(int, char*[])
+{
+  TestChain();
+  TestDeformed();
+  TestParts();
+  TestPartsWithoutCells();
+  TestGap();
+  return GetExitCode();
+}

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cuts by sheets and by a tool: misuse, numbers in volumes of any geometry, undo and redo.
+#include "EditChecks.h"
+
+#include "vtkCutVolume.h"
+
+#include <vtkFieldData.h>
+#include <vtkPlaneSource.h>
+#include <vtkPolyData.h>
+#include <vtkTriangleFilter.h>
+
+#include <limits>
+
+using namespace filterTesting;
+
+namespace
+{
+
+const Extent Box{ { 0, 8, 0, 8, 0, 8 } };
+
+void TestMisuse()
+{
+  Edited<vtkCutVolume> cut;
+  cut.Fails("There is no volume");
+  auto volume = MakeVolume(Box);
+  cut.Filter->SetInputData(MakeImage({ { 0, 8, 0, 8, 3, 3 } }));
+  cut.Fails("two voxels");
+  cut.Filter->SetInputData(volume);
+  cut.Filter->SetSheetData(MakePlaneX(volume, 4.5));
+  VERIFY_EQUAL(cut.CountOff(), 320);
+  const auto before = cut.CopyMask();
+
+  // Each failure leaves the edits as they are.
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  auto bad = MakePlaneX(volume, 2.5);
+  bad->GetPoints()->SetPoint(2, 1.0, nan, 0.0);
+  cut.Filter->SetSheetData(bad);
+  cut.Fails("Point 2 of the sheet is not finite");
+  vtkNew<vtkPolyData> wrong;
+  wrong->SetPoints(bad->GetPoints());
+  wrong->AllocateEstimate(1, 3);
+  const vtkIdType ids[3] = { 0, 1, 99 };
+  wrong->InsertNextCell(VTK_TRIANGLE, 3, ids);
+  cut.Filter->SetSheetData(wrong);
+  cut.Fails("has point 99");
+  vtkNew<vtkPolyData> lines;
+  lines->SetPoints(MakePlaneX(volume, 2.5)->GetPoints());
+  lines->AllocateEstimate(1, 2);
+  lines->InsertNextCell(VTK_LINE, 2, ids);
+  cut.Filter->SetSheetData(lines);
+  cut.Fails("Set SweepVector");
+  cut.Filter->SetSweepVector(0.0, nan, 0.0);
+  cut.Fails("SweepVector is not finite");
+  cut.Filter->SetSweepVector(0.0, 0.0, 0.0);
+  cut.Filter->SetSheetData(MakePlaneX(volume, 4.5));
+  cut.Filter->AddToolPosition(0, 0, 0, 0, 9, 0);
+  cut.Filter->AddToolPosition(nan, 0, 0, 0, 9, 0);
+  cut.Fails("not finite");
+  cut.Filter->ClearToolPositions();
+  cut.Filter->SetDisplacementScale(nan);
+  cut.Fails("DisplacementScale");
+  cut.Filter->SetDisplacementScale(1.0);
+  for (const int tuples : { 511, 513 })
+  {
+    auto other = MakeVolume(Box);
+    other->GetCellData()->AddArray(MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", tuples));
+    cut.Filter->SetInputData(other);
+    cut.Fails("\"ActiveTetrahedra\"");
+  }
+  auto other = MakeVolume(Box);
+  other->GetCellData()->AddArray(MakeArray<vtkShortArray>("ActiveTetrahedra", 512));
+  cut.Filter->SetInputData(other);
+  cut.Fails("Give it type unsigned char");
+  cut.Filter->SetInputData(volume);
+  // The deformation and its rest configuration have the numbers of the ports here.
+  auto mesh = MakeMesh(volume);
+  cut.Filter->SetSheetData(MakePlaneX(volume, 2.5));
+  cut.Filter->SetDeformationData(mesh);
+  cut.Fails("input port 2");
+  SetDisplacements(mesh, Shift(0, 0, 0));
+  mesh->Modified();
+  cut.Filter->SetRestData(MakeMesh(volume, 4));
+  cut.Fails("port 3");
+  cut.Filter->SetRestData(nullptr);
+  cut.Filter->SetDeformationData(nullptr);
+  cut.Filter->SetSheetData(MakePlaneX(volume, 4.5));
+  VERIFY_EQUAL(cut.CountOff(), 320);
+  VERIFY(cut.CopyMask() == before);
+
+  // Nothing is cut by nothing.
+  cut.Filter->SetSheetData(MakePlaneX(volume, 44.5));
+  VERIFY_EQUAL(cut.CountOff(), 0);
+  cut.Filter->SetSheetData(vtkSmartPointer<vtkPolyData>::New());
+  VERIFY_EQUAL(cut.CountOff(), 0);
+  cut.Filter->SetSheetData(nullptr);
+  VERIFY_EQUAL(cut.CountOff(), 0);
+}
+
+// The same cuts in indices, wherever the volume is.
+void TestGeometry()
+{
+  for (int geometry = 0; geometry < 4; ++geometry)
+  {
+    auto volume = MakeVolume(Box);
+    if (geometry > 0)
+    {
+      volume->SetOrigin(-12.3, 7.0, 1e3);
+      volume->SetSpacing(0.37, geometry == 2 ? -2.0 : 2.0, 11.0);
+    }
+    if (geometry == 3)
+    {
+      SetObliqueDirection(volume);
+    }
+    Edited<vtkCutVolume> cut;
+    cut.Filter->SetInputData(volume);
+    for (const double x : { 4.5, 4.0 })
+    {
+      cut.Filter->SetSheetData(MakePlaneX(volume, x));
+      VERIFY_EQUAL(cut.CountOff(), 320);
+    }
+    const glm::dvec3 corner(-20, 28, -30);
+    cut.Filter->SetSheetData(
+      MakePlane(volume, corner, glm::dvec3(50, -50, 0), glm::dvec3(0, 0, 70)));
+    VERIFY_EQUAL(cut.CountOff(), 480);
+  }
+  // Parity is that of structured indices: a part of a volume is cut as the whole is.
+  auto whole = MakeVolume(Box);
+  auto part = MakeVolume({ { 3, 8, 1, 6, 0, 7 } });
+  Edited<vtkCutVolume> cutWhole;
+  Edited<vtkCutVolume> cutPart;
+  const auto sheet =
+    MakeSheet(whole, { glm::dvec3(-3, 2, 9), glm::dvec3(12, -1, 3), glm::dvec3(5, 12, -4) });
+  cutWhole.Filter->SetInputData(whole);
+  cutPart.Filter->SetInputData(part);
+  cutWhole.Filter->SetSheetData(sheet);
+  cutPart.Filter->SetSheetData(sheet);
+  const auto all = cutWhole.CopyMask();
+  const auto some = cutPart.CopyMask();
+  std::size_t place = 0;
+  int different = 0;
+  for (int z = 0; z < 7; ++z)
+  {
+    for (int y = 1; y < 6; ++y)
+    {
+      for (int x = 3; x < 8; ++x, ++place)
+      {
+        different += some[place] != all[static_cast<std::size_t>((z * 8 + y) * 8 + x)] ? 1 : 0;
+      }
+    }
+  }
+  VERIFY_EQUAL(different, 0);
+  VERIFY(cutPart.CountOff() > 100);
+}
+
+// Polygons, strips and swept lines are the triangles that they stand for.
+void TestSheets()
+{
+  auto volume = MakeVolume(Box);
+  Edited<vtkCutVolume> cut;
+  cut.Filter->SetInputData(volume);
+  vtkNew<vtkPlaneSource> plane;
+  plane->SetOrigin(4.5, -2, -2);
+  plane->SetPoint1(4.5, 11, -2);
+  plane->SetPoint2(4.5, -2, 11);
+  plane->SetResolution(3, 5);
+  cut.Filter->SetSheetConnection(plane->GetOutputPort());
+  VERIFY_EQUAL(cut.CountOff(), 320);
+  vtkNew<vtkPolyData> strip;
+  strip->SetPoints(MakePlaneX(volume, 4.0)->GetPoints());
+  strip->AllocateEstimate(1, 4);
+  const vtkIdType ids[4] = { 0, 1, 5, 2 };
+  strip->InsertNextCell(VTK_TRIANGLE_STRIP, 4, ids);
+  cut.Filter->SetSheetData(strip);
+  VERIFY_EQUAL(cut.CountOff(), 320);
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(4.5, -2, -2);
+  points->InsertNextPoint(4.5, 3.3, -2);
+  points->InsertNextPoint(4.5, 11, -2);
+  vtkNew<vtkPolyData> line;
+  line->SetPoints(points);
+  line->AllocateEstimate(1, 3);
+  const vtkIdType order[3] = { 0, 1, 2 };
+  line->InsertNextCell(VTK_POLY_LINE, 3, order);
+  cut.Filter->SetSheetData(line);
+  cut.Filter->SetSweepVector(0, 0, 13);
+  VERIFY_EQUAL(cut.CountOff(), 320);
+  cut.Filter->SetSweepVector(0, 0, 6);
+  VERIFY_EQUAL(cut.CountOff(), 160);
+}
+
+void TestEdits()
+{
+  auto volume = MakeVolume(Box);
+  auto base = MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", 512);
+  for (int i = 0; i < 512; ++i)
+  {
+    base->SetValue(i, static_cast<unsigned char>(i * 37 % 256));
+  }
+  volume->GetCellData()->AddArray(base);
+  Edited<vtkCutVolume> cut;
+  cut.Filter->SetInputData(volume);
+  const auto start = cut.CopyMask();
+  cut.Filter->Undo();
+  cut.Filter->Redo();
+  cut.Filter->Reset();
+  VERIFY(cut.CopyMask() == start);
+  for (int i = 0; i < 512; ++i)
+  {
+    VERIFY_EQUAL(int(start[static_cast<std::size_t>(i)]), i * 37 % 256);
+  }
+
+  // A tool that goes on: each update cuts what is new.
+  std::vector<std::vector<unsigned char>> masks{ start };
+  cut.Filter->AddToolPosition(1.5, -1, -1, 1.5, -1, 9);
+  VERIFY(cut.CopyMask() == start);
+  for (const double y : { 2.0, 4.0, 9.0 })
+  {
+    cut.Filter->AddToolPosition(1.5 + 0.1 * y, y, -1, 1.5 + 0.1 * y, y, 9);
+    masks.push_back(cut.CopyMask());
+    VERIFY(masks.back() != masks[masks.size() - 2]);
+  }
+  VERIFY_EQUAL(cut.Filter->GetNumberOfToolPositions(), 4);
+  // The same positions again, as an interface sends them, are nothing new.
+  cut.Filter->ClearToolPositions();
+  cut.Filter->AddToolPosition(1.5, -1, -1, 1.5, -1, 9);
+  for (const double y : { 2.0, 4.0, 9.0 })
+  {
+    cut.Filter->AddToolPosition(1.5 + 0.1 * y, y, -1, 1.5 + 0.1 * y, y, 9);
+  }
+  VERIFY(cut.CopyMask() == masks.back());
+  for (std::size_t i = masks.size() - 1; i > 0; --i)
+  {
+    cut.Filter->Undo();
+    VERIFY(cut.CopyMask() == masks[i - 1]);
+  }
+  VERIFY_EQUAL(cut.Filter->GetNumberOfSwitchedOffTetrahedra(), 0);
+  for (std::size_t i = 1; i < masks.size(); ++i)
+  {
+    cut.Filter->Redo();
+    VERIFY(cut.CopyMask() == masks[i]);
+  }
+  // All at once is the same cut.
+  Edited<vtkCutVolume> once;
+  once.Filter->SetInputData(volume);
+  once.Filter->AddToolPosition(1.5, -1, -1, 1.5, -1, 9);
+  for (const double y : { 2.0, 4.0, 9.0 })
+  {
+    once.Filter->AddToolPosition(1.5 + 0.1 * y, y, -1, 1.5 + 0.1 * y, y, 9);
+  }
+  VERIFY(once.CopyMask() == masks.back());
+
+  // A sheet beside it, which moves, with and without those before; the last edit is the sheet's.
+  cut.Filter->SetSheetData(MakePlaneX(volume, 4.5));
+  const auto withSheet = cut.CopyMask();
+  cut.Filter->SetSheetData(MakePlaneX(volume, 6.5));
+  cut.Filter->SetSheetData(MakePlaneX(volume, 4.5));
+  VERIFY(cut.CopyMask() == withSheet);
+  cut.Filter->AccumulateOn();
+  cut.Filter->SetSheetData(MakePlaneX(volume, 6.5));
+  const auto both = cut.CopyMask();
+  for (std::size_t i = 0; i < both.size(); ++i)
+  {
+    VERIFY((both[i] & ~withSheet[i]) == 0);
+  }
+  VERIFY(both != withSheet);
+  cut.Filter->Undo();
+  VERIFY(cut.CopyMask() == withSheet);
+  cut.Filter->Undo();
+  VERIFY(cut.CopyMask() == masks.back());
+  cut.Filter->Reset();
+  VERIFY(cut.CopyMask() == start);
+  cut.Filter->Redo();
+  VERIFY(cut.CopyMask() == start);
+}
+
+// What becomes of the arrays of the volume, and of the edits when it changes.
+void TestOutput()
+{
+  auto volume = MakeVolume(Box);
+  volume->GetFieldData()->AddArray(MakeArray<vtkShortArray>("kept", 3));
+  auto base = MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", 512);
+  volume->GetCellData()->AddArray(base);
+  Edited<vtkCutVolume> cut;
+  cut.Filter->SetInputData(volume);
+  cut.Filter->AddToolPosition(1.5, -1, -1, 1.5, -1, 9);
+  cut.Filter->AddToolPosition(1.7, 9, -1, 1.7, 9, 9);
+  cut.CopyMask();
+  cut.Filter->Reset();
+  cut.Filter->SetSheetData(MakePlaneX(volume, 3.5));
+  cut.CopyMask();
+  // Edits stay when the volume's own mask changes.
+  base->Fill(31);
+  base->Modified();
+  VERIFY_EQUAL(cut.CountOff(), 320);
+  // Arrays are shared, and nothing is done where nothing has changed.
+  vtkImageData* output = cut.Filter->GetOutput();
+  VERIFY(output->GetPointData()->GetArray("value") == volume->GetPointData()->GetArray("value"));
+  VERIFY(output->GetFieldData()->GetAbstractArray("kept") != nullptr);
+  vtkDataArray* array = output->GetCellData()->GetArray("ActiveTetrahedra");
+  const vtkMTimeType time = array->GetMTime();
+  cut.Filter->Modified();
+  cut.Update();
+  VERIFY(cut.Filter->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra") == array);
+  VERIFY(array->GetMTime() == time);
+  // An array that somebody holds is left as it is.
+  const vtkSmartPointer<vtkDataArray> held = array;
+  cut.Filter->SetSheetData(nullptr);
+  VERIFY_EQUAL(cut.CountOff(), 0);
+  VERIFY(cut.Filter->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra") != held);
+  VERIFY(held->GetComponent(3, 0) == 0.0);
+  // The volume's own array is not touched.
+  VERIFY_EQUAL(int(base->GetValue(3)), 31);
+  // Another geometry: the tool's positions cut anew.
+  volume->SetOrigin(1.0, 0.0, 0.0);
+  VERIFY(cut.CountOff() > 50);
+}
+
+} // namespace
+
+int TestCutVolume(int, char*[])
+{
+  TestMisuse();
+  TestGeometry();
+  TestSheets();
+  TestEdits();
+  TestOutput();
+  return GetExitCode();
+}

@@ -1,0 +1,540 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SamplingFactor: bit by bit the same as a filter whose volume somebody else has subsampled; what
+// is kept where the factor changes and changes back; and what is asked of a source that makes
+// parts.
+#include "DeviceNeeds.h"
+#include "DivisionCases.h"
+
+#include <vtkCellData.h>
+#include <vtkExtractVOI.h>
+#include <vtkSOADataArrayTemplate.h>
+
+#include <algorithm>
+
+using namespace divisionCases;
+
+namespace
+{
+
+int RoundUp(int number, int factor)
+{
+  while (number % factor != 0)
+  {
+    ++number;
+  }
+  return number;
+}
+
+/// Every second or fourth voxel: VTK takes the values; masks are looked up one by one.
+vtkSmartPointer<vtkImageData> Subsample(vtkImageData* volume, int factor)
+{
+  const Extent whole = GetExtent(volume);
+  Extent voi;  // in voxels of the volume
+  Extent left; // in those that are left
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    voi[2 * axis] = RoundUp(whole[2 * axis], factor);
+    voi[2 * axis + 1] = -RoundUp(-whole[2 * axis + 1], factor);
+    left[2 * axis] = voi[2 * axis] / factor;
+    left[2 * axis + 1] = voi[2 * axis + 1] / factor;
+  }
+  vtkNew<vtkImageData> values;
+  values->ShallowCopy(volume);
+  values->GetCellData()->Initialize();
+  vtkDataArray* ghosts = volume->GetPointGhostArray();
+  values->GetPointData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+  vtkNew<vtkExtractVOI> extract;
+  extract->SetInputData(values);
+  extract->SetVOI(voi.data());
+  extract->SetSampleRate(factor, factor, factor);
+  extract->Update();
+  auto made = vtkSmartPointer<vtkImageData>::New();
+  made->ShallowCopy(extract->GetOutput());
+  const glm::dvec3 first = GetPoint(made, 0);
+  // From another index the cells would be split otherwise.
+  made->SetExtent(left.data());
+  made->SetOrigin(volume->GetOrigin());
+  VERIFY(GetPoint(made, 0) == first);
+  VERIFY_EQUAL(made->GetNumberOfPoints(), extract->GetOutput()->GetNumberOfPoints());
+
+  if (ghosts)
+  {
+    vtkNew<vtkUnsignedCharArray> mask;
+    mask->SetName(vtkDataSetAttributes::GhostArrayName());
+    for (vtkIdType id = 0; id < made->GetNumberOfPoints(); ++id)
+    {
+      double place[3];
+      made->GetPoint(id, place);
+      mask->InsertNextValue(
+        static_cast<unsigned char>(ghosts->GetComponent(volume->FindPoint(place), 0)));
+    }
+    made->GetPointData()->AddArray(mask);
+  }
+  vtkDataArray* active = volume->GetCellData()->GetArray("ActiveTetrahedra");
+  vtkDataArray* cellGhosts = volume->GetCellGhostArray();
+  if (active || cellGhosts)
+  {
+    vtkNew<vtkUnsignedCharArray> mask;
+    mask->SetName("ActiveTetrahedra");
+    for (int z = voi[4]; z < voi[5]; z += factor)
+    {
+      for (int y = voi[2]; y < voi[3]; y += factor)
+      {
+        for (int x = voi[0]; x < voi[1]; x += factor)
+        {
+          bool all = true;
+          for (int i = 0; i < factor * factor * factor; ++i)
+          {
+            int cell[3] = { x + i % factor, y + i / factor % factor, z + i / factor / factor };
+            const vtkIdType id = volume->ComputeCellId(cell);
+            all = all && (!active || active->GetComponent(id, 0) == 31.0) &&
+              (!cellGhosts || cellGhosts->GetComponent(id, 0) == 0.0);
+          }
+          mask->InsertNextValue(all ? 31 : 0);
+        }
+      }
+    }
+    made->GetCellData()->AddArray(mask);
+  }
+  return made;
+}
+
+/// A filter of the volume that is subsampled by hand.
+vtkSmartPointer<vtkImageData> DeformByHand(const Case& from, int factor)
+{
+  Deformed deformed(Subsample(from.Volume, factor), from.Deformation);
+  from.Set(deformed.Filter);
+  double spacing[3];
+  deformed.Filter->GetCustomSpacing(spacing);
+  deformed.Filter->SetCustomSpacing(spacing[0] * factor, spacing[1] * factor, spacing[2] * factor);
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->ShallowCopy(deformed.Update());
+  return image;
+}
+
+void TestMisuse()
+{
+  auto volume = divisionCases::MakeVolume({ { 1, 9, 0, 9, -3, 9 } });
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.5, 0.0, 0.0));
+  Deformed deformed(volume, mesh);
+  VERIFY_EQUAL(deformed.Filter->GetSamplingFactor(), 1);
+  for (const int factor : { 0, -1, 3, 5, 8, 1 << 30 })
+  {
+    deformed.Filter->SetSamplingFactor(factor);
+    VERIFY_EQUAL(deformed.Filter->GetSamplingFactor(), factor);
+    deformed.Filter->Update();
+    VERIFY_EQUAL(deformed.TakeErrors(), 1);
+    VERIFY(deformed.LastError.find("Set 1, 2 or 4.") != std::string::npos);
+    VERIFY_EQUAL(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    deformed.Filter->SetSamplingFactor(1);
+    VERIFY(deformed.Update()->GetNumberOfPoints() > 0);
+  }
+  // 4 and 8 on x; 4 only.
+  deformed.Filter->SetSamplingFactor(4);
+  VERIFY(deformed.Update()->GetNumberOfPoints() > 0);
+  deformed.Filter->SetInputData(divisionCases::MakeVolume({ { 1, 7, 0, 9, -3, 9 } }));
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeErrors(), 1);
+  VERIFY(deformed.LastError.find("With SamplingFactor 4 fewer than two") != std::string::npos);
+  deformed.Filter->SetSamplingFactor(2);
+  VERIFY(deformed.Update()->GetNumberOfPoints() > 0);
+}
+
+// Some cells and voxels, few enough that most of the coarse cells are there.
+void MaskSome(vtkImageData* volume)
+{
+  vtkNew<vtkUnsignedCharArray> active;
+  active->SetName("ActiveTetrahedra");
+  vtkNew<vtkUnsignedCharArray> cellGhosts;
+  cellGhosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (vtkIdType id = 0; id < volume->GetNumberOfCells(); ++id)
+  {
+    active->InsertNextValue(Scatter(id) % 300 == 0 ? Scatter(id) >> 9 & 31 : 31);
+    cellGhosts->InsertNextValue(Scatter(id + 7) % 900 == 0 ? vtkDataSetAttributes::HIDDENCELL : 0);
+  }
+  volume->GetCellData()->AddArray(active);
+  volume->GetCellData()->AddArray(cellGhosts);
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+  {
+    ghosts->InsertNextValue(Scatter(id + 99) % 200 == 0 ? vtkDataSetAttributes::HIDDENPOINT : 0);
+  }
+  volume->GetPointData()->AddArray(ghosts);
+}
+
+void TestAgainstHand()
+{
+  std::vector<Case> cases = MakeCases();
+  {
+    Case few = cases[2];
+    few.Name = "A few masks";
+    few.Volume = divisionCases::MakeVolume(GetExtent(few.Volume));
+    MaskSome(few.Volume);
+    cases.push_back(few);
+
+    Case cubic = cases[2];
+    cubic.Name = "Cubic";
+    cubic.Set = [](vtkDeformVolumeFilter* filter)
+    { filter->SetInterpolationToCubicInterpolation(); };
+    cases.push_back(cubic);
+
+    // Arrays in other layouts and of other sizes; a spacing below 0 and another direction.
+    Case odd = cases[2];
+    odd.Name = "Odd";
+    odd.Volume = divisionCases::MakeVolume(GetExtent(odd.Volume));
+    vtkNew<vtkSOADataArrayTemplate<short>> vectors;
+    vectors->SetName("vectors");
+    vectors->SetNumberOfComponents(3);
+    vectors->SetNumberOfTuples(odd.Volume->GetNumberOfPoints());
+    vtkNew<vtkFloatArray> pairs;
+    pairs->SetName("pairs");
+    pairs->SetNumberOfComponents(2);
+    pairs->SetNumberOfTuples(odd.Volume->GetNumberOfPoints());
+    vtkNew<vtkUnsignedCharArray> colors;
+    colors->SetName("colors");
+    colors->SetNumberOfComponents(3);
+    colors->SetNumberOfTuples(odd.Volume->GetNumberOfPoints());
+    for (vtkIdType id = 0; id < odd.Volume->GetNumberOfPoints(); ++id)
+    {
+      for (int component = 0; component < 3; ++component)
+      {
+        vectors->SetComponent(id, component, Scatter(id + component) % 1000);
+        colors->SetComponent(id, component, Scatter(id + 10 * component) % 256);
+        pairs->SetComponent(id, component % 2, 0.1 * (Scatter(3 * id + component) % 1000));
+      }
+    }
+    odd.Volume->GetPointData()->SetVectors(vectors);
+    odd.Volume->GetPointData()->AddArray(pairs);
+    odd.Volume->GetPointData()->AddArray(colors);
+    odd.Volume->SetSpacing(1.0, -1.25, 0.75);
+    SetObliqueDirection(odd.Volume);
+    const auto mesh = MakeMesh(odd.Volume, 5, 1.0);
+    SetDisplacements(mesh, Shift(0.3, 1.6, -0.7));
+    odd.Deformation = mesh;
+    odd.Set = [](vtkDeformVolumeFilter*) {};
+    cases.push_back(odd);
+  }
+  for (const Case& from : cases)
+  {
+    Deformed deformed(from.Volume, from.Deformation);
+    from.Set(deformed.Filter);
+    for (const int factor : { 2, 4 })
+    {
+      const int failures = GetNumberOfFailures();
+      deformed.Filter->SetSamplingFactor(factor);
+      vtkImageData* output = deformed.Update();
+      const auto expected = DeformByHand(from, factor);
+      VERIFY(AreEqual(output, expected));
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        VERIFY_EQUAL(output->GetSpacing()[axis], expected->GetSpacing()[axis]);
+        VERIFY_EQUAL(output->GetOrigin()[axis], from.Volume->GetOrigin()[axis]);
+      }
+      // Where a quarter of the cells have a mask, hardly a coarse one is left.
+      const bool hasMasks = from.Name.find("asks") != std::string::npos;
+      VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 0 || hasMasks);
+      vtkDataArray* scalars = output->GetPointData()->GetScalars();
+      VERIFY(scalars && scalars->GetName() == std::string("float"));
+      if (GetNumberOfFailures() > failures)
+      {
+        std::cerr << "in the case " << from.Name << " with " << factor << '\n';
+      }
+    }
+  }
+}
+
+// A vector for each voxel, of which only those are read that count: by a field of these alone.
+void TestDenseField()
+{
+  const Extent extent{ { -9, 130, 3, 140, -15, 131 } }; // so large that it is read where it lies
+  const auto volume = divisionCases::MakeVolume(extent);
+  for (const Extent& ends : { extent, Extent{ { -11, 133, 2, 140, -15, 140 } } })
+  {
+    const auto field = MakeImage(ends, glm::dvec3(1.0), glm::dvec3(3.0, -2.0, 1.0));
+    SetDisplacements(field, Bend(volume));
+    Deformed deformed(volume, field);
+    deformed.Filter->SetSamplingFactor(2);
+    vtkDataArray* vectors = field->GetPointData()->GetVectors();
+    for (int step = 0; step < 2; ++step)
+    {
+      Deformed few(volume, Subsample(field, 2));
+      few.Filter->SetSamplingFactor(2);
+      VERIFY(AreEqual(deformed.Update(), few.Update()));
+      VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 1000);
+      const vtkIdType point = field->FindPoint(43.0, 42.0, 29.0);
+      vectors->SetTuple3(point, 1.0, 0.5, 0.0);
+      vectors->Modified();
+    }
+  }
+}
+
+// An undeformed volume gives the voxels that are left, where they lay.
+void TestIdentity()
+{
+  const auto volume = divisionCases::MakeVolume({ { -9, 62, 3, 29, -15, 18 } }, glm::dvec3(0.7));
+  const auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetSamplingFactor(2);
+  vtkImageData* output = deformed.Update();
+  VERIFY_EQUAL(GetExtent(output), (Extent{ { -4, 31, 2, 14, -7, 9 } }));
+  VERIFY_EQUAL(
+    deformed.Filter->GetNumberOfCoveredVoxels(), deformed.Filter->GetOutput()->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); id += 13)
+  {
+    double place[3];
+    output->GetPoint(id, place);
+    const vtkIdType from = volume->FindPoint(place);
+    VERIFY_EQUAL(output->GetPointData()->GetArray("double")->GetComponent(id, 0),
+      volume->GetPointData()->GetArray("double")->GetComponent(from, 0));
+  }
+}
+
+/// A filter whose factor changes, and what a new one makes at each step.
+class Switched
+{
+public:
+  Switched()
+    : Volume(divisionCases::MakeVolume({ { -9, 150, 3, 90, -15, 60 } }))
+    , Mesh(MakeMesh(Volume, 12, 3.0))
+    , Tested(Volume, Mesh)
+  {
+    SetDisplacements(this->Mesh, Shift(0.5, 0.0, 0.25));
+    this->SetUp(this->Tested.Filter);
+  }
+
+  void Run()
+  {
+    vtkDeformVolumeFilter* filter = this->Tested.Filter;
+    this->Update(1);
+    VERIFY_EQUAL(filter->GetNumberOfMappingBuilds(), 1);
+    VERIFY_EQUAL(filter->GetNumberOfVolumeUploads(), 1);
+    const vtkTypeInt64 bytes = filter->GetDeviceMemory();
+    this->Update(2);
+    VERIFY_EQUAL(filter->GetNumberOfMappingBuilds(), 2);
+    VERIFY_EQUAL(filter->GetNumberOfVolumeUploads(), 2);
+    VERIFY(filter->GetDeviceMemory() > bytes);
+    for (const int factor : { 1, 2, 1, 2 })
+    {
+      // Nothing is built, sent or made, though the output is another one.
+      this->Update(factor);
+      VERIFY_EQUAL(filter->GetPreprocessingTime(), 0.0);
+      this->ExpectParts(true);
+    }
+    // What moves at one factor has moved at the other.
+    for (const int factor : { 2, 2, 1, 1, 2, 1 })
+    {
+      this->MoveNode();
+      this->Update(factor);
+      this->ExpectParts(false);
+    }
+    VERIFY_EQUAL(filter->GetNumberOfMappingBuilds(), 2);
+    VERIFY_EQUAL(filter->GetNumberOfVolumeUploads(), 2);
+
+    // Values and masks that change in place.
+    for (const int factor : { 2, 1, 2, 1 })
+    {
+      vtkDataArray* values = this->Volume->GetPointData()->GetScalars();
+      values->SetComponent(this->Volume->FindPoint(43.0, 42.0, 29.0), 0, 1000.0 * factor);
+      values->Modified();
+      this->Update(factor);
+    }
+    VERIFY_EQUAL(filter->GetNumberOfVolumeUploads(), 6);
+    MaskSome(this->Volume);
+    for (const int factor : { 1, 2 })
+    {
+      vtkDataArray* active = this->Volume->GetCellData()->GetArray("ActiveTetrahedra");
+      active->SetComponent(active->GetNumberOfTuples() / 2, 0, 0.0);
+      active->Modified();
+      this->Update(factor);
+    }
+    VERIFY_EQUAL(filter->GetNumberOfMappingBuilds(), 2);
+    VERIFY_EQUAL(filter->GetNumberOfVolumeUploads(), 7); // the last value, at 2
+
+    // All is given back, and built anew.
+    filter->ReleaseDeviceMemory();
+    VERIFY_EQUAL(filter->GetDeviceMemory(), 0);
+    filter->Modified();
+    this->Update(1);
+    this->Update(2);
+    VERIFY_EQUAL(filter->GetNumberOfMappingBuilds(), 4);
+
+    // An error belongs to all factors.
+    vtkDataArray* vectors = this->Mesh->GetPointData()->GetVectors();
+    vectors->SetComponent(0, 0, std::nan(""));
+    vectors->Modified();
+    filter->Update();
+    VERIFY_EQUAL(this->Tested.TakeErrors(), 1);
+    vectors->SetComponent(0, 0, 0.0);
+    vectors->Modified();
+    this->Update(1);
+    this->Update(2);
+
+    // What is kept of a volume goes with it.
+    const vtkTypeInt64 both = filter->GetDeviceMemory();
+    const auto other = divisionCases::MakeVolume({ { -9, 150, 3, 90, -15, 60 } });
+    this->Volume = other;
+    filter->SetInputData(other);
+    this->Update(2);
+    VERIFY(filter->GetDeviceMemory() < both / 2);
+    this->Update(1);
+  }
+
+private:
+  static void SetUp(vtkDeformVolumeFilter* filter)
+  {
+    filter->SetResamplerToExact();
+    filter->SetOutputBoundsModeToVolumeBounds();
+    filter->AddCategoricalArray("label");
+  }
+
+  void MoveNode()
+  {
+    vtkDataArray* vectors = this->Mesh->GetPointData()->GetVectors();
+    const vtkIdType node = (6 * 12 + 5 + this->Moves % 3) * 12 + 5;
+    vectors->SetTuple3(node, 0.5, 0.5 + 0.125 * (++this->Moves % 5), 0.25);
+    vectors->Modified();
+  }
+
+  void Update(int factor)
+  {
+    this->Tested.Filter->SetSamplingFactor(factor);
+    vtkImageData* output = this->Tested.Update();
+    Deformed fresh(this->Volume, this->Mesh);
+    this->SetUp(fresh.Filter);
+    fresh.Filter->SetSamplingFactor(factor);
+    VERIFY(AreEqual(output, fresh.Update()));
+    VERIFY(fresh.Filter->GetNumberOfCoveredVoxels() > 0);
+    Extent changed;
+    this->Tested.Filter->GetChangedExtent(changed.data());
+    VERIFY(changed == GetExtent(output) || factor == this->LastFactor);
+    this->LastFactor = factor;
+  }
+
+  void ExpectParts(bool nothing)
+  {
+    const vtkIdType made = this->Tested.Filter->GetNumberOfResampledBricks();
+    const vtkIdType all = this->Tested.Filter->GetNumberOfBricks();
+    VERIFY(!HasVectors() || (nothing ? made == 0 : made < all));
+  }
+
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh;
+  Deformed Tested;
+  int Moves = 0;
+  int LastFactor = 0;
+};
+
+// Where the memory suffices for one factor only, the other goes.
+void TestMemory()
+{
+  const auto volume = divisionCases::MakeVolume({ { 0, 99, 0, 99, 0, 99 } });
+  const auto mesh = MakeMesh(volume, 40); // so many nodes that there are links
+  SetDisplacements(mesh, Shift(0.5, 0.0, 0.25));
+  vtkTypeInt64 limit = 1000000; // what one needs, to a tenth
+  {
+    Deformed deformed(volume, mesh);
+    deformed.Filter->SetResamplerToExact();
+    do
+    {
+      limit += limit / 10;
+      deformed.Filter->SetMemoryLimit(limit);
+      deformed.Filter->Update();
+    } while (deformed.TakeErrors() > 0 && limit < 1000000000);
+  }
+  Deformed deformed(volume, mesh);
+  vtkDeformVolumeFilter* filter = deformed.Filter;
+  filter->SetResamplerToExact();
+  filter->SetMemoryLimit(limit);
+  vtkIdType builds = 0;
+  for (const int factor : { 2, 1, 2, 1 })
+  {
+    filter->SetSamplingFactor(factor);
+    VERIFY(deformed.Update()->GetNumberOfPoints() > 0);
+    VERIFY(filter->GetDeviceMemory() <= limit);
+    builds = filter->GetNumberOfMappingBuilds();
+  }
+  VERIFY(builds > 2);
+  // With room for both they stay.
+  filter->SetMemoryLimit(2 * limit);
+  const auto update = [&](int factor)
+  {
+    filter->SetSamplingFactor(factor);
+    deformed.Update();
+    return filter->GetNumberOfMappingBuilds();
+  };
+  update(2);
+  builds = update(1);
+  VERIFY_EQUAL(update(2), builds);
+}
+
+// Of a source that makes parts, what the coarse voxels need.
+void TestParts()
+{
+  for (const Case& from : MakeCases())
+  {
+    if (from.Name != "Runs" && from.Name != "Links" && from.Name != "Masks" &&
+      from.Name != "Field" && from.Name != "Extrapolated mesh")
+    {
+      continue;
+    }
+    const int factor = 2;
+    const auto whole = DeformByHand(from, factor);
+    Deformed streamed;
+    vtkNew<PartSource> source;
+    source->SetVolume(from.Volume);
+    streamed.Filter->SetInputConnection(source->GetOutputPort());
+    streamed.Filter->SetDeformationData(from.Deformation);
+    from.Set(streamed.Filter);
+    streamed.Filter->SetSamplingFactor(factor);
+    constexpr int parts = 4;
+    for (int part = 0; part < parts; ++part)
+    {
+      streamed.Filter->UpdatePiece(part, parts, 0);
+      VERIFY_EQUAL(streamed.TakeErrors(), 0);
+      vtkNew<vtkImageData> cropped;
+      cropped->ShallowCopy(whole);
+      cropped->Crop(streamed.Filter->GetOutput()->GetExtent());
+      VERIFY(AreEqual(streamed.Filter->GetOutput(), cropped));
+    }
+    if (from.Name == "Extrapolated mesh") // which needs the whole
+    {
+      VERIFY_EQUAL(source->GetMost(), from.Volume->GetNumberOfPoints());
+      continue;
+    }
+    VERIFY(source->GetMost() < from.Volume->GetNumberOfPoints());
+    for (const Extent& made : source->Made)
+    {
+      VERIFY(std::all_of(made.begin(), made.end(), [](int end) { return end % 2 == 0; }));
+    }
+  }
+  // One that makes no parts is asked for the whole, as it is.
+  const Case from = MakeCases()[2];
+  Deformed whole;
+  vtkNew<PartSource> source;
+  source->SetVolume(from.Volume);
+  source->CanMakeParts = false;
+  whole.Filter->SetInputConnection(source->GetOutputPort());
+  whole.Filter->SetDeformationData(from.Deformation);
+  from.Set(whole.Filter);
+  whole.Filter->SetSamplingFactor(2);
+  whole.Filter->UpdatePiece(0, 2, 0);
+  VERIFY_EQUAL(whole.TakeErrors(), 0);
+  VERIFY_EQUAL(source->Made.size(), std::size_t{ 1 });
+}
+
+} // namespace
+
+int TestDeformSamplingFactor(int, char*[])
+{
+  TestMisuse();
+  TestIdentity();
+  TestAgainstHand();
+  TestDenseField();
+  Switched().Run();
+  TestMemory();
+  TestParts();
+  return GetExitCode();
+}

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A block whose mesh is cut in two: pulled apart it leaves an empty gap as wide as it was pulled,
+// where that is wanted, and otherwise none; with both resamplers, all at once and after the fact.
+#include "FilterTesting.h"
+
+#include <vtkCellArray.h>
+#include <vtkIdList.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+
+using namespace filterTesting;
+
+namespace
+{
+
+constexpr int Pull = 10; // voxels
+
+// A block with a lattice over it, which has a plane of nodes between two planes of voxels.
+class Block
+{
+public:
+  // voxelsPerEdge: how fine the lattice is.
+  Block(const std::array<int, 3>& dimensions, double voxelsPerEdge)
+    : Volume(MakeImage({ { 0, dimensions[0] - 1, 0, dimensions[1] - 1, 0, dimensions[2] - 1 } },
+        glm::dvec3(1.0, 0.5, 2.0)))
+    , Mesh(vtkSmartPointer<vtkUnstructuredGrid>::New())
+    , Middle(0.5 * dimensions[0] - 0.5)
+  {
+    AddScalars<short>(
+      this->Volume, "value", [](const glm::dvec3& p) { return 50.0 + 10.0 * p.x + p.y; });
+    vtkNew<vtkLatticeTetrahedraSource> source;
+    const int cells = 2 * static_cast<int>(0.5 * dimensions[0] / voxelsPerEdge + 1.0);
+    source->SetNumberOfNodes(cells + 1, 5, 4);
+    source->SetBounds(this->Middle - 0.5 * cells * voxelsPerEdge,
+      this->Middle + 0.5 * cells * voxelsPerEdge, -0.5, 0.5 * dimensions[1], -1.0,
+      2.0 * dimensions[2]);
+    source->Update();
+    this->Mesh->DeepCopy(source->GetOutput());
+    SetDisplacements(this->Mesh, Shift(0.0, 0.0, 0.0));
+  }
+
+  // Gives what is beyond the plane nodes of its own; as far as y goes, in the world.
+  void Cut(double highestY = 1e9)
+  {
+    std::map<vtkIdType, vtkIdType> twins;
+    vtkPoints* points = this->Mesh->GetPoints();
+    vtkDataArray* vectors = this->Mesh->GetPointData()->GetVectors();
+    for (vtkIdType cell = 0; cell < this->Mesh->GetNumberOfCells(); ++cell)
+    {
+      vtkNew<vtkIdList> ids;
+      this->Mesh->GetCellPoints(cell, ids);
+      std::array<vtkIdType, 4> nodes;
+      double x = 0.0;
+      for (int k = 0; k < 4; ++k)
+      {
+        nodes[k] = ids->GetId(k);
+        x += 0.25 * GetPoint(this->Mesh, nodes[k]).x;
+      }
+      for (vtkIdType& node : nodes)
+      {
+        const glm::dvec3 point = GetPoint(this->Mesh, node);
+        if (x > this->Middle && std::abs(point.x - this->Middle) < 1e-6 && point.y < highestY)
+        {
+          const auto twin = twins.emplace(node, points->GetNumberOfPoints());
+          if (twin.second)
+          {
+            points->InsertNextPoint(point.x, point.y, point.z);
+            vectors->InsertNextTuple3(0.0, 0.0, 0.0);
+          }
+          node = twin.first->second;
+        }
+      }
+      this->Mesh->GetCells()->ReplaceCellAtId(cell, 4, nodes.data());
+    }
+    this->FirstTwin = points->GetNumberOfPoints() - static_cast<vtkIdType>(twins.size());
+    this->Mesh->GetCells()->Modified();
+    points->Modified();
+    vectors->Modified();
+    this->Mesh->Modified();
+  }
+
+  void PullApart()
+  {
+    vtkDataArray* vectors = this->Mesh->GetPointData()->GetVectors();
+    for (vtkIdType node = 0; node < this->Mesh->GetNumberOfPoints(); ++node)
+    {
+      const double x = GetPoint(this->Mesh, node).x;
+      const bool beyond = x > this->Middle + 1e-6 || node >= this->FirstTwin;
+      vectors->SetTuple3(node, beyond ? Pull : 0.0, 0.0, 0.0);
+    }
+    vectors->Modified();
+  }
+
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh;
+  double Middle;
+  vtkIdType FirstTwin = 0;
+};
+
+// How many voxels of each row are not covered: the same in all, or -1.
+int CountGap(vtkImageData* output)
+{
+  vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
+  const Extent extent = GetExtent(output);
+  int gap = -2;
+  for (int z = extent[4]; z <= extent[5]; ++z)
+  {
+    for (int y = extent[2]; y <= extent[3]; ++y)
+    {
+      int empty = 0;
+      for (int x = extent[0]; x <= extent[1]; ++x)
+      {
+        int index[3] = { x, y, z };
+        empty += mask->GetComponent(output->ComputePointId(index), 0) == 0.0;
+      }
+      gap = gap == -2 || gap == empty ? empty : -1;
+    }
+  }
+  return gap;
+}
+
+void TestPulledApart(const std::array<int, 3>& dimensions, double voxelsPerEdge)
+{
+  for (const int resampler :
+    { vtkDeformVolumeFilter::EXACT, vtkDeformVolumeFilter::MESH_RASTERIZATION })
+  {
+    Block block(dimensions, voxelsPerEdge);
+    Deformed tested(block.Volume, block.Mesh);
+    tested.Filter->SetResampler(resampler);
+    tested.Filter->OpenSplitsOn();
+    const vtkIdType whole = block.Volume->GetNumberOfPoints();
+    VERIFY_EQUAL(CountGap(tested.Update()), 0);
+    block.Cut();
+    // A cut that is not opened takes away a layer of cells, and no voxel.
+    VERIFY_EQUAL(CountGap(tested.Update()), 0);
+    VERIFY_EQUAL(tested.Filter->GetNumberOfCoveredVoxels(), whole);
+    block.PullApart();
+    VERIFY_EQUAL(CountGap(tested.Update()), Pull);
+    VERIFY_EQUAL(tested.Filter->GetNumberOfCoveredVoxels(), whole);
+    // What is cut before the filter sees it.
+    Deformed fresh(block.Volume, block.Mesh);
+    fresh.Filter->SetResampler(resampler);
+    fresh.Filter->OpenSplitsOn();
+    VERIFY(AreEqual(tested.Filter->GetOutput(), fresh.Update()));
+    if (resampler == vtkDeformVolumeFilter::EXACT)
+    {
+      tested.Filter->OpenSplitsOff();
+      VERIFY_EQUAL(CountGap(tested.Update()), 0);
+      VERIFY_EQUAL(
+        tested.Filter->GetNumberOfCoveredVoxels(), whole + Pull * dimensions[1] * dimensions[2]);
+      tested.Filter->OpenSplitsOn();
+      VERIFY_EQUAL(CountGap(tested.Update()), Pull);
+    }
+  }
+}
+
+// A slit: at its end the volume is whole.
+void TestSlit()
+{
+  Block block({ { 48, 40, 12 } }, 4.0);
+  Deformed tested(block.Volume, block.Mesh);
+  tested.Filter->SetResamplerToExact();
+  tested.Filter->OpenSplitsOn();
+  tested.Update();
+  block.Cut(10.0);
+  block.PullApart();
+  vtkImageData* output = tested.Update();
+  Deformed fresh(block.Volume, block.Mesh);
+  fresh.Filter->SetResamplerToExact();
+  fresh.Filter->OpenSplitsOn();
+  VERIFY(AreEqual(output, fresh.Update()));
+  vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
+  const auto countEmpty = [&](int y)
+  {
+    int empty = 0;
+    for (int x = 0; x < 48 + Pull; ++x)
+    {
+      int index[3] = { x, y, 6 };
+      empty += mask->GetComponent(output->ComputePointId(index), 0) == 0.0;
+    }
+    return empty;
+  };
+  VERIFY_EQUAL(countEmpty(4), Pull);
+  VERIFY_EQUAL(countEmpty(38), 0);
+}
+
+void TestProperty()
+{
+  vtkNew<vtkDeformVolumeFilter> filter;
+  VERIFY(!filter->GetOpenSplits());
+  const vtkMTimeType time = filter->GetMTime();
+  filter->OpenSplitsOn();
+  VERIFY(filter->GetMTime() > time);
+}
+
+} // namespace
+
+int TestDeformSplits(int, char*[])
+{
+  TestProperty();
+  TestPulledApart({ { 40, 20, 10 } }, 4.0); // by runs
+  TestPulledApart({ { 40, 20, 10 } }, 1.5); // by links
+  TestSlit();
+  return GetExitCode();
+}

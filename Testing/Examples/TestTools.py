@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""deform-volume cuts, carves and pulls as the filters do it, and says what is wrong with its tools.
+Usage: TestTools.py PROGRAM FOLDER"""
+import os
+import sys
+
+import deformvolume
+import numpy
+from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData, vtkSphere
+from vtkmodules.vtkFiltersSources import vtkPlaneSource
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+program = sys.argv[1]
+folder = make_folder(sys.argv[2], "Tools")
+
+
+def path(name):
+    return os.path.join(folder, name)
+
+
+volume = make_ball()
+write_vti(volume, path("in.vti"))
+bounds = volume.GetBounds()
+middle = [0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]) for axis in range(3)]
+
+
+def write_sheet(name, x):
+    plane = vtkPlaneSource()
+    plane.SetOrigin(x, bounds[2] - 1, bounds[4] - 1)
+    plane.SetPoint1(x, bounds[3] + 1, bounds[4] - 1)
+    plane.SetPoint2(x, bounds[2] - 1, bounds[5] + 1)
+    plane.Update()
+    writer = vtkXMLPolyDataWriter()
+    writer.SetInputData(plane.GetOutput())
+    writer.SetDataModeToBinary()
+    writer.SetFileName(path(name))
+    assert writer.Write()
+    return plane.GetOutput()
+
+
+sheet = write_sheet("sheet.vtp", middle[0] + 0.3)
+cut = ("--cut", path("sheet.vtp"))
+carve = ("--carve", f"sphere:{middle[0] + 4},{middle[1]},{middle[2]},5")
+pull_text = f"{middle[0] - 6},{middle[1]},{middle[2]},3,1,-2,2.5"
+pull = ("--model", "chainmail", "--pull", pull_text)
+
+
+def fails(code, expected, *arguments):
+    output, errors = call(program, path("in.vti"), *arguments, "-o", path("o.vti"), code=code)
+    assert output == "", output
+    assert errors.startswith("deform-volume: "), errors
+    assert expected in errors, f"{expected} is not in {errors}"
+    assert not os.path.exists(path("o.vti"))
+
+
+# Misuse.
+fails(1, "no such file", "--cut", path("none.vtp"))
+with open(path("text.vtp"), "w", encoding="utf-8") as file:
+    file.write("no sheet")
+fails(1, "cannot read", "--cut", path("text.vtp"))
+fails(2, "sphere:X,Y,Z,RADIUS", "--carve", "cube:1,2,3,4")
+fails(2, "four numbers", "--carve", "sphere:1,2,3")
+fails(2, "radius", "--carve", "sphere:1,2,3,0")
+fails(2, "six or seven numbers", "--model", "chainmail", "--pull", "1,2,3,4,5")
+fails(2, "radius", "--model", "chainmail", "--pull", "1,2,3,4,5,6,-1")
+fails(2, "at least one --pull", "--model", "chainmail")
+fails(2, "--pull requires --model", *cut, "--pull", pull_text)
+fails(2, "same radius", *pull, "--pull", "1,2,3,4,5,6,7")
+fails(2, "--model", "--model", "jelly", "--pull", pull_text)
+fails(2, "exactly one of", *pull, "--lattice", "5,5,5", "--push", "1,2,3,4,5,6,7")
+fails(2, "--push", *cut, "--push", "1,2,3,4,5,6,7")
+
+
+def deform(image, field=None):
+    """What the filters make of it."""
+    if field is None:
+        field = vtkImageData()
+        field.SetDimensions(2, 2, 2)
+        field.SetOrigin(*(bounds[2 * axis] - 5 for axis in range(3)))
+        field.SetSpacing(*(bounds[2 * axis + 1] - bounds[2 * axis] + 10 for axis in range(3)))
+        zeros = numpy_to_vtk(numpy.zeros((8, 3), numpy.float32), deep=True)
+        zeros.SetName("Displacement")
+        field.GetPointData().AddArray(zeros)
+    result = deformvolume.vtkDeformVolumeFilter()
+    result.SetInputData(image)
+    result.SetDeformationData(field)
+    result.SetInputArrayToProcess(0, 1, 0, 0, "Displacement")
+    result.SetOutputBoundsModeToVolumeBounds()
+    result.SetBackgroundValue(-7)
+    result.Update()
+    return result.GetOutput()
+
+
+def check(name, expected, *arguments):
+    output, _ = call(program, path("in.vti"), *arguments, "-o", path(name), "--bounds", "volume",
+                     "--background", "-7")
+    made = read_vti(path(name))
+    for array in ("Values", "vtkValidPointMask"):
+        assert numpy.array_equal(get_values(made, array), get_values(expected, array)), array
+    return output, get_values(made, "vtkValidPointMask")
+
+
+# A cut alone leaves the volume where it is.
+cutter = deformvolume.vtkCutVolume()
+cutter.SetInputData(volume)
+cutter.SetSheetData(sheet)
+cutter.Update()
+output, covered = check("cut.vti", deform(cutter.GetOutput()), *cut)
+assert f"{cutter.GetNumberOfSwitchedOffTetrahedra()} tetrahedra of the volume are off" in output
+assert "cut and carve" in output
+assert numpy.array_equal(get_values(read_vti(path("cut.vti")), "Values")[covered == 1],
+                         get_values(volume)[covered == 1])
+
+# A sphere that is carved out.
+sphere = vtkSphere()
+sphere.SetCenter(middle[0] + 4, middle[1], middle[2])
+sphere.SetRadius(5)
+carver = deformvolume.vtkCarveVolume()
+carver.SetInputConnection(cutter.GetOutputPort())
+carver.SetImplicitFunction(sphere)
+carver.Update()
+_, covered = check("carved.vti", deform(carver.GetOutput()), *cut, *carve)
+assert 20 < (covered == 0).sum() < 1000
+
+# Both, and pulled by ChainMail.
+handles = vtkPolyData()
+points = vtkPoints()
+points.SetDataTypeToDouble()
+numbers = [float(number) for number in pull_text.split(",")]
+points.InsertNextPoint(*(numbers[axis] + numbers[3 + axis] for axis in range(3)))
+handles.SetPoints(points)
+rest = numpy_to_vtk(numpy.array([numbers[:3]]), deep=True)
+rest.SetName("RestPosition")
+handles.GetPointData().AddArray(rest)
+chain_mail = deformvolume.vtkChainMailDeformation()
+chain_mail.SetInputConnection(carver.GetOutputPort())
+chain_mail.SetHandlesData(handles)
+chain_mail.SetHandleRadius(numbers[6])
+chain_mail.Update()
+assert chain_mail.GetNumberOfMovedVoxels() > 50
+output, _ = check("pulled.vti", deform(carver.GetOutput(), chain_mail.GetOutput()), *cut, *carve,
+                  *pull)
+assert f"{chain_mail.GetNumberOfMovedVoxels()} voxels moved" in output
+
+# Tools beside the volume do nothing, and that is said.
+write_sheet("far.vtp", bounds[1] + 100)
+_, errors = call(program, path("in.vti"), "--cut", path("far.vtp"), "-o", path("far.vti"))
+assert "crosses nothing" in errors, errors
+_, errors = call(program, path("in.vti"), "--carve", "sphere:500,500,500,3", "-o", path("far.vti"))
+assert "holds nothing" in errors, errors
+
+# A mesh moves what has been cut.
+call(program, path("in.vti"), *cut, "--lattice", "9,9,9", "--push", "9,20,25,3,0,0,15", "-o",
+     path("pushed.vti"))

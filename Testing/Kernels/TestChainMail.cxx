@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// ChainMail: misuse, closed forms, and a slow reference.
+#include "ChainMailSubject.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace chainMailTesting;
+
+TEST(ChainMail, RefusesWhatMakesNoSense)
+{
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const Extent extent{ { 0, 8, 0, 8, 0, 8 } };
+  ChainMailModel empty;
+  EXPECT_THROW(empty.SetMaterials(Tissues), Error) << "no volume";
+  EXPECT_THROW(empty.SetOutput(nullptr), Error);
+  EXPECT_THROW(empty.SetPinned(nullptr), Error);
+  EXPECT_THROW(empty.SetActiveTetrahedra(nullptr), Error);
+  EXPECT_THROW(empty.Reset(), Error);
+  EXPECT_THROW(empty.Step({}), Error);
+  EXPECT_THROW(empty.SetVoxelGrid({ { 0, 8, 0, 8, 3, 3 } }), Error) << "flat";
+  EXPECT_THROW(empty.SetVoxelGrid(extent, { { 1, 0, 0, 0, 0, 0, 0, 0, 1 } }), Error);
+  empty.SetMemoryLimit(1000);
+  EXPECT_THROW(empty.SetVoxelGrid(extent), Error) << "no memory";
+  empty.SetMemoryLimit(0);
+  empty.SetVoxelGrid(extent);
+  EXPECT_THROW(empty.Step({}), Error) << "no output";
+
+  Subject subject(extent);
+  const ChainMailHandle good = MakeHandle({ { 4, 4, 4 } }, { { 2, 0, 0 } });
+  subject.Step({ good });
+  const std::vector<float> before = subject.Output;
+  for (const ChainMailMaterial& bad : std::vector<ChainMailMaterial>{ { 1.1, 1.5, 0.5 },
+         { -0.1, 1.5, 0.5 }, { 0.5, 0.9, 0.5 }, { 0.5, 1e4, 0.5 }, { 0.5, 1.5, -1.0 },
+         { nan, 1.5, 0.5 }, { 0.5, nan, 0.5 }, { 0.5, 1.5, nan } })
+  {
+    EXPECT_THROW(subject.Model.SetMaterials({ bad }), Error);
+  }
+  EXPECT_THROW(subject.Model.SetMaterials({}), Error);
+  EXPECT_THROW(subject.Model.SetMaterials(std::vector<ChainMailMaterial>(257)), Error);
+  std::vector<unsigned char> materials(729);
+  materials[700] = 1;
+  EXPECT_THROW(subject.Model.SetMaterials({ ChainMailMaterial() }, materials.data()), Error);
+  EXPECT_THROW(subject.Step({ MakeHandle({ { 9, 4, 4 } }, { { 1, 0, 0 } }) }), Error) << "outside";
+  EXPECT_THROW(subject.Step({ good, MakeHandle({ { 4, -1, 4 } }, { { 1, 0, 0 } }) }), Error);
+  EXPECT_THROW(subject.Step({ MakeHandle({ { 4, nan, 4 } }, { { 1, 0, 0 } }) }), Error);
+  EXPECT_THROW(subject.Step({ MakeHandle({ { 4, 4, 4 } }, { { 1, nan, 0 } }) }), Error);
+  EXPECT_THROW(subject.Step({ MakeHandle({ { 4, 4, 4 } }, { { 1, 4096, 0 } }) }), Error);
+  EXPECT_THROW(subject.Step({ MakeHandle({ { 4, 4, 4 } }, { { 1, 0, 0 } }, -1.0) }), Error);
+  ChainMailRequest request;
+  request.Elasticity = 1.5;
+  EXPECT_THROW(subject.Model.Step(request), Error);
+  request.Elasticity = 1.0;
+  request.PlasticityThreshold = -1.0;
+  EXPECT_THROW(subject.Model.Step(request), Error);
+  EXPECT_EQ(subject.Output, before);
+  // A drag that goes on is as one that was not interrupted.
+  Subject other(extent);
+  other.Step({ good });
+  const ChainMailHandle further = MakeHandle({ { 4, 4, 4 } }, { { -1, 3, 0 } });
+  subject.Step({ further });
+  other.Step({ further });
+  EXPECT_EQ(subject.Output, other.Output);
+}
+
+TEST(ChainMail, OfAChain)
+{
+  const Extent extent{ { 3, 60, 0, 1, -1, 0 } };
+  const std::vector<ChainMailMaterial> table{ { 0.75, 1.125, 0.5 } };
+  for (const double drag : { -5.5, 5.5 })
+  {
+    Subject subject(extent);
+    subject.Model.SetMaterials(table);
+    const ChainMailReport report =
+      subject.Step({ MakeHandle({ { 3, 0.5, -0.5 } }, { { drag, 0, 0 } }, 0.75) });
+    EXPECT_EQ(report.Handles.front().NumberOfVoxels, 4);
+    EXPECT_EQ(report.LargestViolation, 0.0);
+    std::int64_t moved = 0;
+    for (std::size_t i = 0; i < 58; ++i)
+    {
+      const double n = static_cast<double>(i);
+      // Pulled away, links get longer by an eighth at most; pushed, shorter by a quarter.
+      const double expected =
+        drag < 0 ? -std::max(0.0, 5.5 - n * 0.125) : std::max(0.0, 5.5 - n * 0.25);
+      for (std::size_t row = 0; row < 4; ++row)
+      {
+        EXPECT_EQ(subject.Get(i + 58 * row, 0), expected) << i;
+        EXPECT_EQ(subject.Get(i + 58 * row, 1), 0.0);
+        EXPECT_EQ(subject.Get(i + 58 * row, 2), 0.0);
+        moved += expected != 0.0;
+      }
+    }
+    EXPECT_EQ(report.NumberOfMovedVoxels, moved);
+  }
+}
+
+TEST(ChainMail, OfASoftCube)
+{
+  const int n = 48;
+  const Extent extent{ { 0, n - 1, 0, n - 1, 0, n - 1 } };
+  Subject subject(extent);
+  subject.Model.SetMaterials({ { 0.5, 1.5, 0.5 } });
+  const std::array<double, 3> drag{ { 6, 2, -3.25 } };
+  const ChainMailReport report = subject.Step({ MakeHandle({ { 24, 24, 24 } }, drag) });
+  std::int64_t moved = 0;
+  std::size_t voxel = 0;
+  for (int k = 0; k < n; ++k)
+  {
+    for (int j = 0; j < n; ++j)
+    {
+      for (int i = 0; i < n; ++i, ++voxel)
+      {
+        const double distance = std::abs(i - 24) + std::abs(j - 24) + std::abs(k - 24);
+        bool isMoved = false;
+        for (std::size_t c = 0; c < 3; ++c)
+        {
+          const double length = std::max(0.0, std::abs(drag[c]) - 0.5 * distance);
+          ASSERT_EQ(subject.Get(voxel, c), drag[c] < 0 ? -length : length);
+          isMoved = isMoved || length > 0.0;
+        }
+        moved += isMoved;
+      }
+    }
+  }
+  EXPECT_EQ(report.NumberOfMovedVoxels, moved);
+  EXPECT_EQ(report.LargestViolation, 0.0);
+  // Moved are those less than 12 links away, within blocks of eight.
+  EXPECT_EQ(report.ChangedExtent, (Extent{ { 8, 39, 8, 39, 8, 39 } }));
+}
+
+TEST(ChainMail, EqualsTheReferenceInAnyOrder)
+{
+  std::mt19937 random(5);
+  for (int round = 0; round < 12; ++round)
+  {
+    SCOPED_TRACE(round);
+    const Extent extent{ { -3, 15 + round, 1, 20, 0, 9 + round } };
+    const std::array<double, 3> spacing{ { 1.0, 0.5, 2.0 } };
+    ChainMailReference reference(extent, spacing);
+    MakeRandom(reference, random, round % 2 == 0);
+    const std::vector<ChainMailHandle> handles{ MakeRandomHandle(extent, random, 9.0) };
+    reference.Step(handles);
+    std::vector<float> first;
+    for (unsigned int run = 0; run < 4; ++run)
+    {
+      Subject subject(extent, spacing, run < 2 ? 0 : run == 2 ? 1 : 16, run % 2 ? 7 + run : 0);
+      subject.Set(reference);
+      const ChainMailReport report = subject.Step(handles);
+      subject.ExpectEqual(reference);
+      EXPECT_EQ(report.LargestViolation, 0.0);
+      first = run == 0 ? subject.Output : first;
+      EXPECT_EQ(subject.Output, first);
+    }
+    EXPECT_FALSE(reference.IsViolated());
+  }
+}
+
+TEST(ChainMail, SeparatedBodiesNeverInteract)
+{
+  std::mt19937 random(11);
+  const Extent extent{ { 1, 24, 0, 18, 0, 17 } };
+  ChainMailReference reference(extent, { { 1, 1, 1 } });
+  // All tetrahedra of the cells between two planes of voxels are switched off.
+  std::size_t cell = 0;
+  for (int k = 0; k < 17; ++k)
+  {
+    for (int j = 0; j < 18; ++j)
+    {
+      for (int i = 0; i < 23; ++i, ++cell)
+      {
+        reference.Active[cell] = i + j == 20 || i + j == 21 ? 0 : 31;
+      }
+    }
+  }
+  reference.FindLinks();
+  Subject subject(extent);
+  subject.Set(reference);
+  const std::vector<ChainMailHandle> handles{ MakeHandle({ { 3, 2, 5 } }, { { 40, -30, 20 } }) };
+  subject.Step(handles);
+  reference.Step(handles);
+  subject.ExpectEqual(reference);
+  std::size_t still = 0;
+  std::size_t voxel = 0;
+  for (int k = 0; k < 18; ++k)
+  {
+    for (int j = 0; j < 19; ++j)
+    {
+      for (int i = 0; i < 24; ++i, ++voxel)
+      {
+        const bool isMoved = subject.Get(voxel, 0) != 0.0;
+        // The cells with i + j = 19 are the last ones on this side.
+        EXPECT_EQ(isMoved, i + j <= 20 || (i + j == 21 && j > 0)) << i << ' ' << j << ' ' << k;
+        still += !isMoved;
+      }
+    }
+  }
+  EXPECT_GT(still, 1000U);
+}
+
+// A rigid path that turns at each voxel, so that a sweep over a block follows it by a step only: it
+// takes more sweeps than a visit has.
+TEST(ChainMail, ALongWayWithinABlock)
+{
+  const Extent extent{ { 0, 8, 0, 8, 0, 8 } };
+  ChainMailReference reference(extent, { { 1, 1, 1 } });
+  reference.Table = { { 0.0, 1000.0, 1000.0 }, { 1.0, 1.0, 0.0 } };
+  std::size_t length = 0;
+  const auto add = [&](int i, int j, int k)
+  {
+    unsigned char& material = reference.Materials[reference.GetVoxel(i, j, k)];
+    length += material == 0;
+    material = 1;
+  };
+  for (int i = 0; i < 8; i += 2)
+  {
+    for (int step = 0; step < 8; ++step)
+    {
+      add(i, step, 7 - step);
+      if (step < 7)
+      {
+        add(i, step + 1, 7 - step);
+      }
+    }
+    add(i + 1, i % 4 == 0 ? 7 : 0, i % 4 == 0 ? 0 : 7);
+  }
+  const std::vector<ChainMailHandle> handles{ MakeHandle({ { 0, 0, 7 } }, { { 0.25, 0, 0 } }) };
+  reference.Step(handles);
+  for (const std::size_t workGroupSize : { 0, 16 })
+  {
+    Subject subject(extent, { { 1, 1, 1 } }, workGroupSize);
+    subject.Set(reference);
+    // What is not rigid gives way by half a voxel and more.
+    EXPECT_EQ(subject.Step(handles).NumberOfMovedVoxels, static_cast<std::int64_t>(length));
+    subject.ExpectEqual(reference);
+  }
+}
+
+TEST(ChainMail, PinsStay)
+{
+  const Extent extent{ { 0, 29, 0, 8, 0, 8 } };
+  ChainMailReference reference(extent, { { 1, 1, 1 } });
+  for (int k = 0; k < 9; ++k)
+  {
+    for (int j = 0; j < 9; ++j)
+    {
+      reference.Pinned[reference.GetVoxel(20, j, k)] = 1;
+    }
+  }
+  Subject subject(extent);
+  subject.Set(reference);
+  const std::vector<ChainMailHandle> handles{ MakeHandle({ { 10, 4, 4 } }, { { 9, 1, -20 } }) };
+  const ChainMailReport report = subject.Step(handles);
+  // Ten links to the nearest pin give way half a voxel each.
+  EXPECT_EQ(report.Handles.front().Reduction, (std::array<double, 3>{ { 4, 0, -15 } }));
+  EXPECT_TRUE(report.Handles.front().IsHeld);
+  EXPECT_EQ(subject.Get(reference.GetVoxel(10, 4, 4), 0), 5.0);
+  EXPECT_EQ(subject.Get(reference.GetVoxel(20, 4, 4), 0), 0.0);
+  ExpectSame(report.Handles, reference.Step(handles));
+  subject.ExpectEqual(reference);
+  EXPECT_EQ(report.LargestViolation, 0.0);
+}
+
+TEST(ChainMail, HandlesThatContradictEachOther)
+{
+  const Extent extent{ { 0, 29, 0, 8, 0, 8 } };
+  ChainMailReference reference(extent, { { 1, 1, 1 } });
+  Subject subject(extent);
+  // Six links apart, and 8 voxels apart in what they want: the second yields by 5.
+  const std::vector<ChainMailHandle> handles{ MakeHandle({ { 10, 4, 4 } }, { { 4, 0, 0 } }),
+    MakeHandle({ { 16, 4, 4 } }, { { -4, 1, 0 } }) };
+  const ChainMailReport report = subject.Step(handles);
+  EXPECT_EQ(report.Handles[0].Reduction, (std::array<double, 3>{ { 0, 0, 0 } }));
+  EXPECT_EQ(report.Handles[1].Reduction, (std::array<double, 3>{ { -5, 0, 0 } }));
+  ExpectSame(report.Handles, reference.Step(handles));
+  subject.ExpectEqual(reference);
+  // Handles that move together do not hold each other back.
+  const std::vector<ChainMailHandle> together{ MakeHandle({ { 10, 4, 4 } }, { { 40, 0, 0 } }),
+    MakeHandle({ { 16, 4, 4 } }, { { 40, 0, 0 } }) };
+  ExpectSame(subject.Step(together).Handles, reference.Step(together));
+  subject.ExpectEqual(reference);
+  EXPECT_EQ(subject.Get(reference.GetVoxel(16, 4, 4), 0), 40.0);
+}
+
+TEST(ChainMail, AHandleThatCannotBeHeldIsReleased)
+{
+  const Extent extent{ { 0, 20, 0, 4, 0, 4 } };
+  ChainMailReference reference(extent, { { 1, 1, 1 } });
+  Subject subject(extent);
+  const std::vector<ChainMailHandle> apart{ MakeHandle({ { 5, 2, 2 } }, { { -3, 0, 0 } }),
+    MakeHandle({ { 15, 2, 2 } }, { { 2, 0, 0 } }) };
+  subject.Step(apart);
+  reference.Step(apart);
+  // Both are pinned where they are; ten links between them are as long as they can be.
+  reference.Pinned[reference.GetVoxel(5, 2, 2)] = 1;
+  reference.Pinned[reference.GetVoxel(15, 2, 2)] = 1;
+  subject.Model.SetPinned(reference.Pinned.data());
+  const std::vector<ChainMailHandle> rigid{ MakeHandle({ { 10, 2, 2 } }, { { 1, 0, 0 } }, 3.0) };
+  const std::vector<float> before = subject.Output;
+  const ChainMailReport report = subject.Step(rigid);
+  EXPECT_FALSE(report.Handles.front().IsHeld);
+  EXPECT_EQ(subject.Output, before);
+  EXPECT_EQ(report.NumberOfMovedVoxels, 0);
+  ExpectSame(report.Handles, reference.Step(rigid));
+  subject.ExpectEqual(reference);
+}

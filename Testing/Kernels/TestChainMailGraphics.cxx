@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All tests of ChainMail on a device that appears to be a graphics card, with memory of its own and
+// groups of work-items; and copies from it that fail.
+#include "ChainMailModel.h"
+#include "FakeDriver.h"
+
+#include <gtest/gtest.h>
+
+using namespace deformvolume;
+
+namespace
+{
+
+// Before there is a context.
+const bool IsSet = []
+{
+  FakeDriver::Get().IsGraphics = true;
+  FakeDriver::Get().HasDouble = false;
+  return true;
+}();
+
+} // namespace
+
+TEST(ChainMailFaults, CopiesThatFail)
+{
+  ASSERT_TRUE(IsSet);
+  const Extent extent{ { 0, 20, 0, 20, 0, 20 } };
+  ChainMailModel model;
+  std::vector<float> output(3 * 21 * 21 * 21);
+  ChainMailRequest request;
+  request.Handles.resize(1);
+  request.Handles[0].RestPosition = { { 10, 10, 10 } };
+  request.Handles[0].Displacement = { { 2, 0, 0 } };
+  model.SetVoxelGrid(extent);
+  model.SetOutput(output.data());
+  model.Step(request);
+  const std::vector<float> expected = output;
+  request.Handles[0].Displacement = { { 3, 0, 0 } };
+  FakeDriver::Get().ReadError = -5;
+  EXPECT_THROW(model.Step(request), Error);
+  FakeDriver::Get().ReadError = 0;
+  // What is on the device may be half done: it starts anew.
+  EXPECT_THROW(model.Step(request), Error);
+  EXPECT_EQ(model.GetDeviceMemory(), 0U);
+  model.SetVoxelGrid(extent);
+  model.SetOutput(output.data());
+  request.Handles[0].Displacement = { { 2, 0, 0 } };
+  model.Step(request);
+  EXPECT_EQ(output, expected);
+}

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Masks that are edited, undone and redone, against copies of whole masks.
+#include "CuttingReference.h"
+#include "Error.h"
+#include "MaskEditor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+using namespace deformvolume;
+
+namespace
+{
+
+struct Edit
+{
+  std::uint64_t Number;
+  reference::Mask Hits;
+};
+
+TetrahedronSet MakeSet(std::mt19937& random, const CellBricks& bricks)
+{
+  TetrahedronSet set;
+  for (std::size_t brick = 0; brick < bricks.GetNumberOfBricks(); ++brick)
+  {
+    if (random() % 3)
+    {
+      continue;
+    }
+    set.Bricks.push_back(brick);
+    set.Blocks.emplace_back();
+    for (unsigned char& byte : set.Blocks.back())
+    {
+      byte = static_cast<unsigned char>(random() % 4 ? 0 : random() % 32);
+    }
+  }
+  return set;
+}
+
+// The mask that edits leave, from scratch.
+reference::Mask Apply(const reference::Mask& base, const std::vector<Edit>& edits)
+{
+  reference::Mask mask = base;
+  for (const Edit& edit : edits)
+  {
+    for (std::size_t i = 0; i < mask.size(); ++i)
+    {
+      mask[i] = static_cast<unsigned char>(mask[i] & ~edit.Hits[i]);
+    }
+  }
+  return mask;
+}
+
+int CountActive(reference::Mask mask)
+{
+  for (unsigned char& byte : mask)
+  {
+    byte = byte & 31;
+  }
+  return reference::Count(mask);
+}
+
+} // namespace
+
+TEST(MaskEditor, RefusesWhatIsNoMask)
+{
+  EXPECT_THROW(MaskEditor(Extent{ { 0, 5, 0, 5, 3, 3 } }), Error);
+  EXPECT_THROW(MaskEditor(Extent{ { 0, -1, 0, -1, 0, -1 } }), Error);
+  MaskEditor editor(Extent{ { 0, 8, 0, 8, 0, 9 } });
+  EXPECT_FALSE(editor.Undo());
+  EXPECT_FALSE(editor.Redo());
+  EXPECT_FALSE(editor.Remove(1));
+  TetrahedronSet wrong;
+  wrong.Bricks = { 2 };
+  wrong.Blocks.resize(1);
+  EXPECT_THROW(editor.Add(std::move(wrong)), Error);
+  editor.Reset();
+  EXPECT_EQ(editor.GetMask(), reference::Mask(8 * 8 * 9, 31));
+  EXPECT_EQ(editor.GetNumberOfSwitchedOffTetrahedra(), 0);
+  // A set without tetrahedra is an edit as well.
+  editor.Add({});
+  EXPECT_TRUE(editor.Undo());
+  EXPECT_TRUE(editor.Redo());
+}
+
+TEST(MaskEditor, HistoriesEqualTheReference)
+{
+  std::mt19937 random(10);
+  for (int round = 0; round < 60; ++round)
+  {
+    const Extent vertices{ { -2, 15 + round % 7, 1, 18, 0, 4 + round % 9 } };
+    MaskEditor editor(vertices);
+    reference::Mask base(editor.GetMask().size(), 31);
+    std::vector<Edit> edits;
+    std::vector<Edit> undone;
+    reference::Mask copy;
+    EXPECT_EQ(editor.TakeChangedBricks().size(), editor.GetBricks().GetNumberOfBricks());
+    copy = editor.GetMask();
+    for (int step = 0; step < 200; ++step)
+    {
+      const unsigned int choice = random() % 16;
+      if (choice < 5)
+      {
+        TetrahedronSet set = MakeSet(random, editor.GetBricks());
+        reference::Mask hits = reference::GetMask(editor.GetBricks(), set);
+        edits.push_back({ editor.Add(std::move(set)), std::move(hits) });
+        undone.clear();
+      }
+      else if (choice < 9)
+      {
+        ASSERT_EQ(editor.Undo(), !edits.empty());
+        if (!edits.empty())
+        {
+          undone.push_back(edits.back());
+          edits.pop_back();
+        }
+      }
+      else if (choice < 12)
+      {
+        ASSERT_EQ(editor.Redo(), !undone.empty());
+        if (!undone.empty())
+        {
+          edits.push_back(undone.back());
+          undone.pop_back();
+        }
+      }
+      else if (choice < 14)
+      {
+        std::vector<Edit>& list = choice == 12 ? edits : undone;
+        if (!list.empty())
+        {
+          const auto edit = list.begin() + static_cast<std::ptrdiff_t>(random() % list.size());
+          ASSERT_TRUE(editor.Remove(edit->Number));
+          ASSERT_FALSE(editor.Remove(edit->Number));
+          list.erase(edit);
+        }
+      }
+      else if (choice == 14 && step % 5 == 0)
+      {
+        editor.Reset();
+        edits.clear();
+        undone.clear();
+      }
+      else if (choice == 15)
+      {
+        const bool isPlain = random() % 3 == 0;
+        std::generate(base.begin(), base.end(),
+          [&] { return static_cast<unsigned char>(isPlain ? 31 : random()); });
+        editor.SetBase(isPlain ? nullptr : base.data());
+      }
+      const reference::Mask expected = Apply(base, edits);
+      ASSERT_EQ(editor.GetMask(), expected) << "round " << round << ", step " << step;
+      ASSERT_EQ(
+        editor.GetNumberOfSwitchedOffTetrahedra(), CountActive(base) - CountActive(expected));
+      ASSERT_EQ(editor.GetNumberOfEdits(), edits.size());
+      ASSERT_EQ(editor.GetNumberOfUndoneEdits(), undone.size());
+      // What changes lies in the bricks that are told.
+      for (const std::size_t brick : editor.TakeChangedBricks())
+      {
+        const Extent cells = editor.GetBricks().GetCells(brick);
+        const auto& size = editor.GetBricks().GetSize();
+        for (int z = cells[4]; z <= cells[5]; ++z)
+        {
+          for (int y = cells[2]; y <= cells[3]; ++y)
+          {
+            for (int x = cells[0]; x <= cells[1]; ++x)
+            {
+              const auto cell = static_cast<std::size_t>((z * size[1] + y) * size[0] + x);
+              copy[cell] = editor.GetMask()[cell];
+            }
+          }
+        }
+      }
+      ASSERT_EQ(copy, expected);
+      ASSERT_TRUE(editor.TakeChangedBricks().empty());
+    }
+    // Back to the start, bit for bit.
+    while (editor.Undo())
+    {
+    }
+    EXPECT_EQ(editor.GetMask(), base);
+    EXPECT_EQ(editor.GetNumberOfSwitchedOffTetrahedra(), 0);
+  }
+}

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Cutting and carving in ParaView: by a sheet, by widgets' functions, by a surface and by a label, with
+undo and redo, and what Deform Volume makes of it."""
+
+from paraview import simple
+
+from PluginTesting import bent_lattice, check, check_silent, fetch, load_plugin, messages, wavelet
+
+
+def active(proxy):
+    """Active tetrahedra of the output, as a list of bytes."""
+    array = fetch(proxy).GetCellData().GetArray("ActiveTetrahedra")
+    return bytes(array.GetValue(i) for i in range(array.GetNumberOfTuples()))
+
+
+def off(mask):
+    return sum(5 - bin(byte & 31).count("1") for byte in mask)
+
+
+def check_cut(volume, cells):
+    plane = simple.Plane()
+    plane.Origin, plane.Point1, plane.Point2 = [0.5, -20, -20], [0.5, 20, -20], [0.5, -20, 20]
+    cut = simple.CutVolume(Volume=volume, Sheet=plane)
+    first = active(cut)
+    check(off(first) == 5 * cells * cells, f"a plane cuts {off(first)}")
+    count = cut.GetPropertyValue("SwitchedOffTetrahedra")
+    check(count == off(first), f"{count} are told")
+    cut.SMProxy.InvokeCommand("Undo")
+    check(off(active(cut)) == 0, "undo leaves a cut")
+    cut.SMProxy.InvokeCommand("Redo")
+    check(active(cut) == first, "redo is another cut")
+    line = simple.Line(Point1=[0.5, -20, -20], Point2=[0.5, 20, -20])
+    cut.Sheet = line
+    cut.SweepVector = [0, 0, 40]
+    check(active(cut) == first, "what a line sweeps is another cut")
+    cut.ToolPositions = [-20, 0.5, -20, -20, 0.5, 20, 20, 0.5, -20, 20, 0.5, 20]
+    both = active(cut)
+    check(off(both) == 2 * 5 * cells * cells - 5 * cells, f"the tool cuts to {off(both)}")
+    cut.SMProxy.InvokeCommand("Reset")
+    check(off(active(cut)) == 0, "reset leaves a cut")
+    return cut
+
+
+def check_carve(volume):
+    carve = simple.CarveVolume(Volume=volume)
+    carve.Body = "Sphere"
+    carve.Body.Center, carve.Body.Radius = [0, 0, 0], 3
+    small = off(active(carve))
+    carve.Body.Radius = 5
+    large = off(active(carve))
+    check(3 * small < large < 7 * small, f"spheres of radius 3 and 5 carve {small} and {large}")
+    for name in ("Box", "Cylinder", "Plane"):
+        carve.Body = name
+        check(off(active(carve)) > 0, f"{name} carves nothing")
+    surface = simple.Sphere(Radius=5, ThetaResolution=40, PhiResolution=40)
+    by_surface = off(active(simple.CarveVolumeWithSurface(Volume=volume, Surface=surface)))
+    check(0.9 * large < by_surface <= large, f"the surface carves {by_surface}, not {large}")
+    labels = simple.Calculator(Input=volume, ResultArrayName="label", Function="floor(coordsX/4)")
+    by_label = simple.CarveVolumeLabel(Volume=labels, Labels="label", Label=1)
+    check(off(active(by_label)) > 0, "the label carves nothing")
+    return carve
+
+
+def main():
+    load_plugin()
+    with messages() as texts:
+        volume = wavelet()
+        cut = check_cut(volume, 20)
+        carve = check_carve(volume)
+        carve.Volume = cut
+        carve.Body = "Sphere"
+        carve.Body.Center, carve.Body.Radius = [0, 0, 0], 3
+        deform = simple.DeformVolume(Volume=volume, Deformation=bent_lattice(volume))
+        whole = deform.GetPropertyValue("CoveredVoxels") if fetch(deform) else 0
+        deform.Volume = carve
+        check(fetch(deform).GetNumberOfPoints() > 0, "no output")
+        check(0 < deform.GetPropertyValue("CoveredVoxels") < whole, "there is no hole")
+    check_silent(texts)
+
+
+main()
