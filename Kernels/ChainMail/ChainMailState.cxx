@@ -40,7 +40,7 @@ ChainMailState::ChainMailState(WorkDevice& device, const ChainMailBlocks& blocks
     [](double value) { return static_cast<float>(value); });
   OpenCLContext& context = device.GetContext();
   this->Program =
-    context.GetProgram(std::string(this->Serial ? "#define SERIAL 1\n" : "#define SERIAL 0\n") +
+    context.GetProgram(ProgramText(this->Serial ? "#define SERIAL 1\n" : "#define SERIAL 0\n") +
         ChainMailParameters_h + ChainMailBlocks_cl + ChainMailOutput_cl + ChainMailPropagation_cl +
         ChainMailRelaxation_cl,
       KernelOptions);

@@ -2,9 +2,16 @@
 #include "ControlGroups.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <fstream>
 #include <sstream>
+#include <string_view>
+#include <system_error>
 #include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 namespace deformvolume
 {
@@ -64,6 +71,36 @@ bool ParseMount(const std::string& line, std::string& type, std::string& options
   mount.Group = Unescape(mount.Group);
   mount.Folder = Unescape(mount.Folder);
   return true;
+}
+
+constexpr const char* Blanks = " \t\n";
+
+// The whole of a small file of the system; empty where it cannot be read. Without a stream: these
+// files are read at each update.
+std::string ReadFile(const std::string& path)
+{
+  std::string text;
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0)
+  {
+    return text;
+  }
+  std::array<char, 4096> part;
+  for (ssize_t count = 0; (count = read(file, part.data(), part.size())) > 0;)
+  {
+    text.append(part.data(), static_cast<std::size_t>(count));
+  }
+  close(file);
+  return text;
+}
+
+// The number that a text begins with, after blanks.
+std::optional<std::int64_t> ParseNumber(std::string_view text)
+{
+  text.remove_prefix(std::min(text.find_first_not_of(Blanks), text.size()));
+  std::int64_t number = 0;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), number);
+  return result.ec == std::errc() ? std::optional<std::int64_t>(number) : std::nullopt;
 }
 
 // The folders from that of a group up to that of the mount. A group that is not below the group of
@@ -140,28 +177,28 @@ ControlGroups FindControlGroups(const std::string& controller, const std::string
 
 std::optional<std::int64_t> ReadNumber(const std::string& path)
 {
-  std::ifstream file(path);
-  std::int64_t number = 0;
-  return file >> number ? std::optional<std::int64_t>(number) : std::nullopt;
+  return ParseNumber(ReadFile(path));
 }
 
 std::optional<std::int64_t> ReadSum(const std::string& path, const std::vector<std::string>& keys)
 {
-  std::ifstream file(path);
+  const std::string text = ReadFile(path);
   std::optional<std::int64_t> sum;
   std::size_t missing = keys.size();
-  std::string name;
-  std::string line;
-  while (missing > 0 && file >> name)
+  for (std::string_view rest = text; missing > 0 && !rest.empty();)
   {
-    std::int64_t number = 0;
-    if (std::find(keys.begin(), keys.end(), name) != keys.end() && file >> number)
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    const std::size_t end = line.find_first_of(Blanks);
+    if (end != std::string_view::npos &&
+      std::find(keys.begin(), keys.end(), line.substr(0, end)) != keys.end())
     {
-      sum = sum.value_or(0) + number;
-      --missing;
+      if (const auto number = ParseNumber(line.substr(end)))
+      {
+        sum = sum.value_or(0) + *number;
+        --missing;
+      }
     }
-    file.clear();
-    std::getline(file, line);
   }
   return sum;
 }

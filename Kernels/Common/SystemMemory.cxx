@@ -25,17 +25,18 @@ struct Names
   std::vector<std::string> Reclaimable;
 };
 
-// What a group has left.
-std::int64_t GetLeft(const std::string& folder, const Names& names)
+// What a group has left. all: the memory of the system, which a group that may have as much does
+// not limit: its use is then no matter, and it takes the system time to find that.
+std::int64_t GetLeft(const std::string& folder, const Names& names, std::int64_t all)
 {
   std::int64_t limit = UNLIMITED;
   for (const char* name : names.Limits)
   {
     limit = std::min(limit, ReadNumber(folder + "/" + name).value_or(UNLIMITED));
   }
-  if (limit == UNLIMITED)
+  if (limit >= all)
   {
-    return limit;
+    return UNLIMITED;
   }
   const std::int64_t usage = ReadNumber(folder + "/" + names.Usage).value_or(0);
   const std::int64_t reclaimable = ReadSum(folder + "/memory.stat", names.Reclaimable).value_or(0);
@@ -48,25 +49,30 @@ std::uint64_t GetSystemMemory(const std::string& root)
 {
   constexpr std::int64_t kibibyte = 1024;
   std::int64_t left = UNLIMITED;
-  if (const auto available = ReadSum(root + "/proc/meminfo", { "MemAvailable:" }))
+  const std::string system = root + "/proc/meminfo";
+  if (const auto available = ReadSum(system, { "MemAvailable:" }))
   {
     left = *available * kibibyte;
   }
+  // The first line; it stays, but for tests.
+  static const auto ownTotal = ReadSum("/proc/meminfo", { "MemTotal:" });
+  const auto total = root.empty() ? ownTotal : ReadSum(system, { "MemTotal:" });
+  const std::int64_t all = total ? *total * kibibyte : UNLIMITED;
   // A process seldom changes its groups, and this is asked for at each update.
-  static const ControlGroups own = FindControlGroups("memory");
-  const ControlGroups groups = root.empty() ? own : FindControlGroups("memory", root);
+  static const ControlGroups ownGroups = FindControlGroups("memory");
+  const ControlGroups groups = root.empty() ? ownGroups : FindControlGroups("memory", root);
   const Names unified{ { "memory.max", "memory.high" }, "memory.current",
     { "inactive_file", "active_file", "slab_reclaimable" } };
   for (const std::string& folder : groups.Unified)
   {
-    left = std::min(left, GetLeft(folder, unified));
+    left = std::min(left, GetLeft(folder, unified, all));
   }
   // A group without a limit has one that is near the largest number.
   const Names legacy{ { "memory.limit_in_bytes" }, "memory.usage_in_bytes",
     { "total_inactive_file", "total_active_file" } };
   for (const std::string& folder : groups.Legacy)
   {
-    left = std::min(left, GetLeft(folder, legacy));
+    left = std::min(left, GetLeft(folder, legacy, all));
   }
   return left == UNLIMITED ? 0 : static_cast<std::uint64_t>(std::max<std::int64_t>(1, left));
 }

@@ -8,33 +8,33 @@
 namespace deformvolume
 {
 
-std::string GetMappingText(MappingForm mapping)
+ProgramText GetMappingText(MappingForm mapping)
 {
   switch (mapping)
   {
     case MappingForm::Links:
-      return std::string("#define MAPPING 0\n") + MultiplyAdd_cl + DeformationMapping_cl;
+      return ProgramText("#define MAPPING 0\n") + MultiplyAdd_cl + DeformationMapping_cl;
     case MappingForm::Runs:
-      return std::string("#define MAPPING 1\n") + MultiplyAdd_cl + RunMapping_cl +
+      return ProgramText("#define MAPPING 1\n") + MultiplyAdd_cl + RunMapping_cl +
         DeformationMapping_cl;
     case MappingForm::FieldInPlace:
-      return std::string("#define MAPPING 3\n") + MultiplyAdd_cl + DeformationMapping_cl;
+      return ProgramText("#define MAPPING 3\n") + MultiplyAdd_cl + DeformationMapping_cl;
     default:
-      return std::string("#define MAPPING 2\n") + MultiplyAdd_cl + DeformationMapping_cl;
+      return ProgramText("#define MAPPING 2\n") + MultiplyAdd_cl + DeformationMapping_cl;
   }
 }
 
 cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping)
 {
-  const std::string evaluation = mapping == MappingForm::Runs ? RunEvaluation_cl : "";
-  return context.GetProgram(GetReal(context) + GetSamplingMeshText() +
+  const char* const evaluation = mapping == MappingForm::Runs ? RunEvaluation_cl : "";
+  return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText() +
       "#define HAS_MAPPING_KERNEL 1\n" + GetMappingText(mapping) + VertexState_cl + evaluation,
     KernelOptions);
 }
 
 cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping)
 {
-  return context.GetProgram(GetReal(context) + GetSamplingMeshText() +
+  return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText() +
       "#define HAS_MAPPING_KERNEL 0\n" + GetMappingText(mapping) + VertexState_cl + BridgeMask_cl,
     KernelOptions);
 }

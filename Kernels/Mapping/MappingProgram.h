@@ -4,8 +4,6 @@
 
 #include "OpenCLContext.h"
 
-#include <string>
-
 namespace deformvolume
 {
 
@@ -28,7 +26,7 @@ cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping);
 
 /// The text of a form of the mapping (DeformationMapping.cl). It expects GetSamplingMeshText
 /// before.
-std::string GetMappingText(MappingForm mapping);
+ProgramText GetMappingText(MappingForm mapping);
 
 } // namespace deformvolume
 

@@ -111,26 +111,9 @@ double GetSeconds(const cl::Event& event)
       event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
 }
 
-std::string ListNames(const std::vector<OpenCLDevice>& devices)
+// Asks all drivers.
+std::vector<OpenCLDevice> ListDevices()
 {
-  std::string list;
-  for (const OpenCLDevice& device : devices)
-  {
-    list += (list.empty() ? "\"" : ", \"") + device.Name + "\"";
-  }
-  return list;
-}
-
-} // namespace
-
-std::vector<OpenCLDevice> FindDevices()
-{
-  PrepareKernelCache();
-  // Drivers start here, and not all of them bear that from two threads at once: PoCL then says that
-  // there is no device, or crashes.
-  static std::mutex mutex;
-  const std::lock_guard<std::mutex> lock(mutex);
-  LimitDeviceThreads();
   const FloatingPointTrapGuard guard;
   std::vector<OpenCLDevice> found;
   std::vector<cl::Platform> platforms;
@@ -182,6 +165,35 @@ std::vector<OpenCLDevice> FindDevices()
     }
   }
   return found;
+}
+
+std::string ListNames(const std::vector<OpenCLDevice>& devices)
+{
+  std::string list;
+  for (const OpenCLDevice& device : devices)
+  {
+    list += (list.empty() ? "\"" : ", \"") + device.Name + "\"";
+  }
+  return list;
+}
+
+} // namespace
+
+std::vector<OpenCLDevice> FindDevices()
+{
+  // Drivers start here, and not all of them bear that from two threads at once: PoCL then says that
+  // there is no device, or crashes. They keep their devices as long as the process lives; it leaves
+  // the list to the system in the end (destructors may call drivers that are gone).
+  static std::mutex mutex;
+  static auto* const devices = new std::vector<OpenCLDevice>;
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (devices->empty())
+  {
+    PrepareKernelCache();
+    LimitDeviceThreads();
+    *devices = ListDevices();
+  }
+  return *devices;
 }
 
 OpenCLDevice FindDevice(const std::string& request)
@@ -255,16 +267,22 @@ bool OpenCLContext::SharesHostMemory() const
   return IsPoCL(this->Device);
 }
 
-cl::Program OpenCLContext::GetProgram(const std::string& source, const std::string& options)
+cl::Program OpenCLContext::GetProgram(const ProgramText& source, const std::string& options)
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
-  cl::Program& program = this->Programs[options + "\n" + source];
-  if (!program())
+  cl::Program& requested = this->Requested[{ options, source }];
+  if (!requested())
   {
-    const CompilationWatch::Compilation compilation;
-    program = this->Build(source, options);
+    const std::string text = source.GetText();
+    cl::Program& program = this->Programs[options + "\n" + text];
+    if (!program())
+    {
+      const CompilationWatch::Compilation compilation;
+      program = this->Build(text, options);
+    }
+    requested = program;
   }
-  return program;
+  return requested;
 }
 
 cl::Program OpenCLContext::Build(const std::string& source, const std::string& options) const

@@ -8,6 +8,7 @@
 #include <CL/opencl.hpp>
 
 #include "DeviceRank.h"
+#include "ProgramText.h"
 
 #include <cfenv>
 #include <cstdint>
@@ -56,7 +57,7 @@ public:
 
   /// The program of this text and these options; built at the first request, or made of what an
   /// earlier process has built (ProgramCache). Throws Error with the compiler's log.
-  cl::Program GetProgram(const std::string& source, const std::string& options);
+  cl::Program GetProgram(const ProgramText& source, const std::string& options);
 
   /// Enqueues a kernel, in a queue that takes the times. Drivers may compile a kernel once more for
   /// the size of its work-groups: the first launch of a kind is waited for, and what it takes
@@ -81,6 +82,7 @@ private:
   std::string Extensions;
   cl_uint NumberOfUnits;
   std::mutex Mutex;
+  std::map<std::pair<std::string, ProgramText>, cl::Program> Requested; // by options and text
   std::map<std::string, cl::Program> Programs;
   std::set<std::pair<cl_program, std::string>> Launched;
 };

@@ -14,7 +14,7 @@ namespace deformvolume
 cl::Program GetBinningProgram(OpenCLContext& context)
 {
   return context.GetProgram(
-    std::string(RasterParameters_h) + IntegerVectors_cl + TetrahedronBinning_cl, KernelOptions);
+    ProgramText(RasterParameters_h) + IntegerVectors_cl + TetrahedronBinning_cl, KernelOptions);
 }
 
 cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
@@ -39,7 +39,7 @@ cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<Vo
     }
   }
   const bool wide = GetNumberOfPoints(voxelGrid.VertexExtent) > std::numeric_limits<cl_int>::max();
-  return context.GetProgram(std::string(FiveTetrahedra_h) + RasterParameters_h +
+  return context.GetProgram(ProgramText(FiveTetrahedra_h) + RasterParameters_h +
       MakeArrayText(context, arrays) + stores + "#define LANES " +
       std::to_string(processor ? GetLanes(context) : 4) + "\n#define CUBIC " +
       (interpolation == Interpolation::Cubic ? "1" : "0") + "\n#define STRETCH " +
@@ -49,8 +49,8 @@ cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<Vo
       laneArrays + "\n#define TAP_ARRAYS(DO)" + tapArrays + "\n" + MultiplyAdd_cl +
       IntegerVectors_cl + TetrahedronBinning_cl + LaneVectors_cl + LaneSampling_cl +
       RestSampling_cl +
-      (field ? std::string(FieldLookup_cl)
-             : std::string(RestCoordinates_cl) + MeshRasterization_cl),
+      (field ? ProgramText(FieldLookup_cl)
+             : ProgramText(RestCoordinates_cl) + MeshRasterization_cl),
     KernelOptions);
 }
 

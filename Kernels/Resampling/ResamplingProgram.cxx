@@ -90,7 +90,7 @@ cl::Program GetOutputProgram(OpenCLContext& context)
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
   const std::vector<VolumeArray>& arrays, bool wideKeys, ResamplingForm form)
 {
-  std::string key = "#define KEY uint\n#define ATOMIC_MIN atomic_min\n"
+  ProgramText key = "#define KEY uint\n#define ATOMIC_MIN atomic_min\n"
                     "#define ATOMIC_CMPXCHG atomic_cmpxchg\n";
   if (wideKeys)
   {
@@ -105,10 +105,10 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
         "a smaller volume or another device.");
     }
   }
-  std::string text = Resampling_cl;
+  ProgramText text = Resampling_cl;
   if (form == ResamplingForm::Lanes)
   {
-    text += MakeLanePreamble(context, arrays) + LaneVectors_cl + RowDisplacements_cl +
+    text += ProgramText(MakeLanePreamble(context, arrays)) + LaneVectors_cl + RowDisplacements_cl +
       BrickMapping_cl + GroupVertices_cl + GroupSamples_cl + GroupCoverage_cl + GroupCandidates_cl +
       GroupWeights_cl + GroupResampling_cl + BrickResampling_cl;
   }

@@ -6,9 +6,9 @@
 namespace deformvolume
 {
 
-std::string GetSamplingMeshText()
+ProgramText GetSamplingMeshText()
 {
-  return std::string(FiveTetrahedra_h) + KernelParameters_h;
+  return ProgramText(FiveTetrahedra_h) + KernelParameters_h;
 }
 
 } // namespace deformvolume

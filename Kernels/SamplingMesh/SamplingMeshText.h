@@ -2,14 +2,14 @@
 #ifndef DeformVolumeSamplingMeshText_h
 #define DeformVolumeSamplingMeshText_h
 
-#include <string>
+#include "ProgramText.h"
 
 namespace deformvolume
 {
 
 /// What kernels need of the sampling mesh (FiveTetrahedra.h), and the parameters of launches over
 /// it (KernelParameters.h).
-std::string GetSamplingMeshText();
+ProgramText GetSamplingMeshText();
 
 } // namespace deformvolume
 

@@ -134,6 +134,13 @@ void CheckSpeedAndMemory()
     subject.Move(pose, grid);
     return subject.Update();
   };
+  // The second of two in a row: the first one of a short update finds the caches full of what
+  // others left there, which is not so while a volume is worked with.
+  const auto updateAgain = [&](BenchmarkCase& subject, Pose pose)
+  {
+    update(subject, pose);
+    return update(subject, pose);
+  };
   const auto resliceLike = [&](BenchmarkCase& subject)
   {
     return reslice->Update(
@@ -175,7 +182,8 @@ void CheckSpeedAndMemory()
   {
     const UpdateTimes nearTimes = update(near, Pose::NearIdentity);
     const double resliceNear = resliceLike(near);
-    const UpdateTimes sampledTimes = update(sampled, Pose::NearIdentity);
+    const double sampledTime = updateAgain(sampled, Pose::NearIdentity).Update;
+    const double unsampledTime = updateAgain(near, Pose::NearIdentity).Update;
     const double publishedNearTime = update(published, Pose::NearIdentity).GetKernels();
     const UpdateTimes fineTimes = update(fine, Pose::NearIdentity);
     const double fineTime = fineTimes.GetKernels();
@@ -210,7 +218,7 @@ void CheckSpeedAndMemory()
     copying.Add(copiedTime / fineTimes.Update);
     withTwo.Add(twoTime / fineTimes.Update);
     denseField.Add(denseTimes.Update / denseTimes.GetKernels());
-    sampling.Add(sampledTimes.Update / nearTimes.Update);
+    sampling.Add(sampledTime / unsampledTime);
     editingInside.Add(insideTime / fineTime);
     editingAtSide.Add(sideTime / fineTime);
     rotation.Add(rotatedTime / nearTimes.GetKernels());

@@ -98,6 +98,14 @@ TEST_F(SystemLimits, UnifiedGroup)
 
   this->Write(app + "memory.max", InBytes(2000));
   EXPECT_EQ(this->GetMemory(), 1500U);
+  // May have all that the system has: what it uses is no matter.
+  this->Write(app + "memory.max", InBytes(16000));
+  this->Write(app + "memory.current", InBytes(15000));
+  EXPECT_EQ(this->GetMemory(), 8000U);
+  this->Write(app + "memory.max", InBytes(15999));
+  EXPECT_EQ(this->GetMemory(), 999U);
+  this->Write(app + "memory.max", InBytes(2000));
+  this->Write(app + "memory.current", InBytes(500));
   // Page cache gives way, memory of programs and of shared segments does not.
   this->Write(app + "memory.stat",
     "anon " + InBytes(150) + "file " + InBytes(350) + "shmem " + InBytes(50) + "inactive_file " +
