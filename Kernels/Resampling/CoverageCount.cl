@@ -47,7 +47,8 @@ static void MarkSection(ulong cell, CellRun* run, __global uint* counters, const
 // After a pass that finds the voxels that several cells write, as their keys say: marks patches with voxels that
 // are not settled, and the sections of bricks that hold winners so far. Where that pass was not made, as no voxel
 // is written twice, claimed is 0: those that are covered are settled then. words: uints of a key; patches: what is
-// known of them, in which voxels that are not covered can be won where cells touch them.
+// known of them, in which voxels that are not covered can be won where cells touch them, and then, of as many, which
+// have contested voxels. Patches that are kept are left out.
 __kernel void Settle(__global const char* coverage, __global uint* winners, const uint words,
   const int claimed, __global char* patches, __global uint* counters, const KernelParameters p)
 {
@@ -57,17 +58,25 @@ __kernel void Settle(__global const char* coverage, __global uint* winners, cons
   const size_t item = get_global_id(0);
   const size_t begin = item * DEFORMVOLUME_COUNTED_VOXELS;
   const size_t end = min(begin + DEFORMVOLUME_COUNTED_VOXELS, width * height * p.OutputSize[2]);
+  __global char* contestedPatches = patches + PatchRow(0, PatchedPlanes(&p), &p);
   CellRun run = { 0, 0 };
   for (size_t i = begin; i < end;)
   {
     const size_t row = i / width;
     const size_t first = i - row * width;
     const size_t last = min(width, first + end - i);
-    __global char* patchRow = patches + PatchRow(row % height, row / height, &p);
+    const size_t firstPatch = PatchRow(row % height, row / height, &p);
+    __global char* patchRow = patches + firstPatch;
     for (size_t x = first; x < last;)
     {
       const size_t patch = x / DEFORMVOLUME_PATCH;
       const size_t patchEnd = min((patch + 1) * DEFORMVOLUME_PATCH, last);
+      if (patchRow[patch] == DEFORMVOLUME_PATCH_KEPT)
+      {
+        i += patchEnd - x;
+        x = patchEnd;
+        continue;
+      }
       uint some = 0;
       uint none = 0;
       for (; x < patchEnd; ++x, ++i)
@@ -89,6 +98,10 @@ __kernel void Settle(__global const char* coverage, __global uint* winners, cons
           MarkSection(
             words == 1 ? part : (ulong)part << 32 | key[0], &run, counters, &p);
         }
+      }
+      if (some)
+      {
+        contestedPatches[firstPatch + patch] = 1;
       }
       const int touched = patchRow[patch] & DEFORMVOLUME_PATCH_TOUCHED;
       if (some || (none && touched))

@@ -29,7 +29,8 @@ void ExactResampler::Begin(const DeformRequest&, const SlabPlan& plan, DeformRep
   }
   this->WasContested = this->IsContested;
   this->IsContested = false;
-  this->IsPlain = plan.Slabs.size() == 1 && this->Volume.GetChunks().size() == 1;
+  this->Last = plan.Slabs.size() == 1 && this->Volume.GetChunks().size() == 1 ? LastOutput::Plain
+                                                                              : LastOutput::Unknown;
 }
 
 void ExactResampler::Make(
@@ -43,12 +44,10 @@ void ExactResampler::Make(
   if (request.Method == Resampling::Published)
   {
     this->MakePublished(request, target, report);
-    this->IsPlain = false;
+    this->Last = LastOutput::Unknown;
     return;
   }
-  const bool settled = this->MakeExact(request, target, slab == 0, report);
-  this->IsPlain = this->IsPlain && settled;
-  this->IsContested = report.Overlapping;
+  this->MakeExact(request, target, slab == 0, report);
 }
 
 void ExactResampler::MakePublished(
@@ -92,7 +91,14 @@ ExactResampler::Outcome ExactResampler::RunFirstPass(
   return outcome;
 }
 
-bool ExactResampler::MakeExact(
+bool ExactResampler::IsFolded(const OutputSlab::Counts& counts) const
+{
+  const auto tetrahedra =
+    5 * static_cast<std::uint64_t>(GetNumberOfCells(this->Volume.GetVoxelGrid().VertexExtent));
+  return counts.Inverted > 0 && counts.Inverted < tetrahedra / 2;
+}
+
+void ExactResampler::MakeExact(
   const DeformRequest& request, OutputSlab& output, bool isFirst, DeformReport& report)
 {
   // What was folded last time probably still is: then one pass does for two.
@@ -114,14 +120,19 @@ bool ExactResampler::MakeExact(
   if (!settled)
   {
     report.Overlapping |= first.Counts.Writes > first.Covered;
-    this->ChooseWinners(request, output, first, expected);
+    const bool claimed = this->ChooseWinners(request, output, first, expected);
+    if (this->Last != LastOutput::Unknown)
+    {
+      this->Last =
+        claimed && first.Counts.Overstretched == 0 ? LastOutput::Won : LastOutput::Unknown;
+    }
     covered = output.CountCovered(this->Device.GetContext(), this->Launched.GetResamplingEvents());
   }
   report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
-  return settled;
+  this->IsContested = report.Overlapping || this->IsFolded(first.Counts);
 }
 
-void ExactResampler::ChooseWinners(
+bool ExactResampler::ChooseWinners(
   const DeformRequest& request, OutputSlab& output, const Outcome& first, bool claimed)
 {
   const bool contested = first.Counts.Writes > first.Covered;
@@ -133,6 +144,7 @@ void ExactResampler::ChooseWinners(
     output.PrepareWinners(this->Device.GetContext(), this->Launched.GetResamplingEvents());
     if (contested)
     {
+      output.ClearCounters(this->Device.GetContext(), this->Launched.GetResamplingEvents());
       this->RunPass(request, output, DEFORMVOLUME_PASS_OWNERS, first.HasLargeCells);
       claimed = true;
     }
@@ -140,6 +152,13 @@ void ExactResampler::ChooseWinners(
   output.Settle(this->Device.GetContext(), claimed,
     this->Volume.GetParameters(this->Volume.GetChunks().front()),
     this->Launched.GetResamplingEvents());
+  this->WriteWinners(request, output, first.HasLargeCells, claimed);
+  return claimed;
+}
+
+void ExactResampler::WriteWinners(
+  const DeformRequest& request, OutputSlab& output, bool hasLargeCells, bool claimed)
+{
   const bool someBricks =
     this->Exact.UseLanes(request.Method, output) && this->Volume.GetChunks().size() == 1;
   const auto run = [&](int pass, bool all, int counter)
@@ -149,7 +168,7 @@ void ExactResampler::ChooseWinners(
     {
       bricks = output.FindBricks(counter);
     }
-    this->RunPass(request, output, pass, first.HasLargeCells, all ? nullptr : &bricks);
+    this->RunPass(request, output, pass, hasLargeCells, all ? nullptr : &bricks);
   };
   run(DEFORMVOLUME_PASS_MARK, !someBricks || !claimed, DEFORMVOLUME_COUNT_TOUCHED);
   run(DEFORMVOLUME_PASS_WINNER, !someBricks, DEFORMVOLUME_COUNT_CANDIDATES);
@@ -179,25 +198,54 @@ void ExactResampler::Finish() noexcept
 bool ExactResampler::CanMakeAgain(const DeformRequest& request)
 {
   // Only the kernel for processors works on bricks one by one.
-  return this->IsPlain && this->Device.GetDevice().HasVectors &&
+  return this->Last != LastOutput::Unknown && this->Device.GetDevice().HasVectors &&
     this->Exact.UseLanes(request.Method, this->Targets[0]);
 }
 
-OutputSlab::Counts ExactResampler::MakeAgain(
-  const DeformRequest& request, const std::vector<cl_uint>& bricks)
+std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformRequest& request,
+  const std::vector<cl_uint>& bricks, const std::vector<std::uint32_t>& patches)
 {
   OutputSlab& output = this->Targets[0];
+  const bool won = this->HasWinners();
+  const int pass = won ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT;
   output.PrepareAgain(this->Device.GetContext(), this->Device.GetQueue(), request,
     this->Volume.GetVolumeArrays(), bricks);
   this->Source.PrepareMapping(this->Launched.GetMappingEvents());
-  this->RunPass(request, output, DEFORMVOLUME_PASS_DIRECT, false, &bricks);
-  OutputSlab::Counts counts = output.ReadCounts();
-  if (counts.Large > 0)
+  if (won && !bricks.empty())
   {
-    this->Exact.RunLargeCells(request, output, DEFORMVOLUME_PASS_DIRECT);
-    counts = output.ReadCounts();
+    output.PrepareWinnersAgain(patches);
   }
-  return counts;
+  this->RunPass(request, output, pass, false, &bricks);
+  Again again;
+  again.Counts = output.ReadCounts();
+  const bool hasLargeCells = again.Counts.Large > 0;
+  if (hasLargeCells)
+  {
+    this->Exact.RunLargeCells(request, output, pass);
+    again.Counts = output.ReadCounts();
+  }
+  if (!won)
+  {
+    return again;
+  }
+  if (!bricks.empty())
+  {
+    output.Settle(this->Device.GetContext(), true,
+      this->Volume.GetParameters(this->Volume.GetChunks().front()),
+      this->Launched.GetResamplingEvents());
+  }
+  again.Overlapping = output.HasContested();
+  if (again.Counts.Overstretched > 0 ||
+    !(again.Overlapping || again.Counts.Inverted > 0 || again.Counts.MissingWhereAssumed))
+  {
+    return std::nullopt;
+  }
+  if (!bricks.empty())
+  {
+    this->WriteWinners(request, output, hasLargeCells, true);
+    this->Device.GetQueue().finish(); // it is read in another queue
+  }
+  return again;
 }
 
 std::uint64_t ExactResampler::GetMemory() const

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace deformvolume
@@ -43,11 +44,22 @@ public:
   void Finish() noexcept override;
 
   /// Whether MakeAgain can make some bricks of the last output, which was that of this request,
-  /// anew: it was made by lanes, in one slab, and no winners were chosen.
+  /// anew: it was made by lanes, in one slab.
   bool CanMakeAgain(const DeformRequest& request);
-  /// Makes some bricks of the last output anew, where the memory of the request holds it as far as
-  /// it is still wanted, in the target 0. Returns what was counted in all bricks.
-  OutputSlab::Counts MakeAgain(const DeformRequest& request, const std::vector<cl_uint>& bricks);
+  /// Whether winners were chosen in the last output.
+  bool HasWinners() const { return this->Last == LastOutput::Won; }
+  /// What came of MakeAgain.
+  struct Again
+  {
+    OutputSlab::Counts Counts; // of all bricks
+    bool Overlapping = false;  // only where winners were chosen
+  };
+  /// Makes some bricks of the last output anew, in the target 0, where the memory of the request
+  /// holds it as far as it is still wanted: all but some patches, which are cleared. Chooses
+  /// winners where they were chosen in the last output. Nothing where a whole output is needed, as
+  /// there are none any more.
+  std::optional<Again> MakeAgain(const DeformRequest& request, const std::vector<cl_uint>& bricks,
+    const std::vector<std::uint32_t>& patches);
 
   /// Bytes on the device.
   std::uint64_t GetMemory() const;
@@ -64,11 +76,16 @@ private:
   void RunPass(const DeformRequest& request, const OutputSlab& output, int pass, bool hasLargeCells,
     const std::vector<cl_uint>* bricks = nullptr);
   /// The passes that find winners and write what these have won. claimed: the first pass has found
-  /// the voxels that several cells write.
-  void ChooseWinners(
+  /// the voxels that several cells write. Returns whether that is known in the end.
+  bool ChooseWinners(
     const DeformRequest& request, OutputSlab& output, const Outcome& first, bool claimed);
-  /// False where winners had to be chosen.
-  bool MakeExact(
+  /// The last two of these: in all bricks, or in those that may have something to win. claimed:
+  /// whether it is known what cells hold beside what they own.
+  void WriteWinners(
+    const DeformRequest& request, OutputSlab& output, bool hasLargeCells, bool claimed);
+  /// Whether some tetrahedra are inverted, but not most of them, as they are in a mirror image.
+  bool IsFolded(const OutputSlab::Counts& counts) const;
+  void MakeExact(
     const DeformRequest& request, OutputSlab& output, bool isFirst, DeformReport& report);
   void MakePublished(const DeformRequest& request, OutputSlab& output, DeformReport& report);
 
@@ -80,9 +97,16 @@ private:
   ExactPasses Exact;
   PublishedPass Published;
   std::array<OutputSlab, 2> Targets;
-  bool WasContested = false; // whether cells of the last output overlapped
+  bool WasContested = false; // whether cells of the last output overlapped, or were folded
   bool IsContested = false;  // and of this one, as far as is known
-  bool IsPlain = false;      // whether it is one slab of one chunk, without winners
+  /// What is known of it.
+  enum class LastOutput
+  {
+    Unknown,
+    Plain, // one slab of one chunk, without winners
+    Won    // the same, and what wins each voxel, or has it alone
+  };
+  LastOutput Last = LastOutput::Unknown;
 };
 
 } // namespace deformvolume

@@ -14,6 +14,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 namespace deformvolume
@@ -150,7 +151,9 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   {
     this->Changes.SetPoints(source.MakeBrickPoints());
   }
-  const bool inside = this->IsChangeInside();
+  // Who owns a voxel where cells overlap, or beside such places, is not seen from the counts.
+  const bool won = resampler.HasWinners();
+  const bool inside = !won && this->IsChangeInside();
   if (!inside && !this->Changes.HasBoxes())
   {
     source.Visit([this](const Displacements& displacements, std::size_t count)
@@ -173,7 +176,13 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   // Before the memory becomes that of buffers, and after the device has given it back.
   const std::uint64_t before = ClearPatches(request, this->Volume.GetVolumeArrays(), plan.Patches);
   report.ResamplingTime += GetSecondsSince(begin);
-  const OutputSlab::Counts counts = resampler.MakeAgain(request, plan.Bricks);
+  const std::optional<ExactResampler::Again> again =
+    resampler.MakeAgain(request, plan.Bricks, plan.Patches);
+  if (!again)
+  {
+    return false;
+  }
+  const OutputSlab::Counts& counts = again->Counts;
   const auto done = Clock::now();
   resampler.Read(request, 0);
   resampler.FinishReading();
@@ -182,7 +191,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   const std::uint64_t covered =
     this->LastCovered - before + CountCoveredInPatches(request, plan.Patches);
   report.ResamplingTime += GetSecondsSince(read);
-  if (counts.NeedWinners(covered) || (inside && counts.Writes != covered))
+  if (!won && (counts.NeedWinners(covered) || (inside && counts.Writes != covered)))
   {
     return false;
   }
@@ -192,7 +201,9 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   this->RevisionBefore = std::exchange(this->Revision, MakeRevision());
   report.Revision = this->Revision;
   this->Changes.Finish();
+  report.NumberOfInvertedTetrahedra = static_cast<std::int64_t>(counts.Inverted);
   report.NumberOfOverstretchedCells = static_cast<std::int64_t>(counts.Overstretched);
+  report.Overlapping = again->Overlapping;
   report.NumberOfCoveredVoxels = static_cast<std::int64_t>(covered);
   report.NumberOfResampledBricks = static_cast<std::int64_t>(plan.Bricks.size());
   return true;

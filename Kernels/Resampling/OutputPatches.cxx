@@ -111,11 +111,10 @@ std::vector<PatchRow> FindRows(const Extent& output, const std::vector<std::uint
 
 // The sum of what body(row) returns for rows of patches.
 template <typename Body>
-std::uint64_t SumUp(
-  const DeformRequest& request, const std::vector<std::uint32_t>& patches, Body&& body)
+std::uint64_t SumUp(const Extent& output, const std::vector<std::uint32_t>& patches, Body&& body)
 {
   constexpr std::size_t step = 16;
-  const std::vector<PatchRow> rows = FindRows(request.OutputExtent, patches);
+  const std::vector<PatchRow> rows = FindRows(output, patches);
   std::atomic<std::uint64_t> sum{ 0 };
   ParallelForParts(rows.size(), step,
     [&](std::size_t begin, std::size_t end)
@@ -135,7 +134,8 @@ std::uint64_t SumUp(
 std::uint64_t CountCoveredInPatches(
   const DeformRequest& request, const std::vector<std::uint32_t>& patches)
 {
-  return SumUp(request, patches, [&](const PatchRow& row) { return CountCovered(request, row); });
+  return SumUp(
+    request.OutputExtent, patches, [&](const PatchRow& row) { return CountCovered(request, row); });
 }
 
 void CopyPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
@@ -155,7 +155,7 @@ void CopyPatches(const DeformRequest& request, const std::vector<VolumeArray>& a
           static_cast<std::size_t>(voxels) * size);
       });
   };
-  SumUp(request, patches,
+  SumUp(request.OutputExtent, patches,
     [&](const PatchRow& row)
     {
       for (std::size_t i = 0; i < arrays.size(); ++i)
@@ -170,7 +170,7 @@ void CopyPatches(const DeformRequest& request, const std::vector<VolumeArray>& a
 std::uint64_t ClearPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
   const std::vector<std::uint32_t>& patches)
 {
-  return SumUp(request, patches,
+  return SumUp(request.OutputExtent, patches,
     [&](const PatchRow& row)
     {
       const std::uint64_t covered = CountCovered(request, row);
@@ -180,6 +180,22 @@ std::uint64_t ClearPatches(const DeformRequest& request, const std::vector<Volum
       }
       Clear(request, row, request.Coverage, 1, std::int8_t{ 0 });
       return covered;
+    });
+}
+
+void FillPatches(const Extent& output, const std::vector<std::uint32_t>& patches, void* memory,
+  std::size_t bytesPerVoxel, unsigned char byte)
+{
+  SumUp(output, patches,
+    [&](const PatchRow& row)
+    {
+      ForRows(output, row,
+        [&](std::int64_t voxel, std::int64_t voxels)
+        {
+          std::memset(static_cast<char*>(memory) + static_cast<std::size_t>(voxel) * bytesPerVoxel,
+            byte, static_cast<std::size_t>(voxels) * bytesPerVoxel);
+        });
+      return std::uint64_t{ 0 };
     });
 }
 

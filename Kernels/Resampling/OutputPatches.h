@@ -26,6 +26,10 @@ std::uint64_t ClearPatches(const DeformRequest& request, const std::vector<Volum
 void CopyPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
   const std::vector<std::uint32_t>& patches);
 
+/// Fills patches of memory that has so many bytes for each voxel of an output.
+void FillPatches(const Extent& output, const std::vector<std::uint32_t>& patches, void* memory,
+  std::size_t bytesPerVoxel, unsigned char byte);
+
 } // namespace deformvolume
 
 #endif

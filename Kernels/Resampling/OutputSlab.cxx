@@ -4,6 +4,7 @@
 #include "Background.h"
 #include "BrickGrid.h"
 #include "Error.h"
+#include "OutputPatches.h"
 #include "ResamplingProgram.h"
 
 #include <algorithm>
@@ -212,6 +213,11 @@ void OutputSlab::PrepareAgain(OpenCLContext& context, const cl::CommandQueue& qu
   }
   if (!bricks.empty())
   {
+    for (std::size_t section = 0; section < this->NumberOfSections; ++section)
+    {
+      cl_uint* const counter = this->LastCounters.data() + section * DEFORMVOLUME_COUNTERS;
+      counter[DEFORMVOLUME_COUNT_CANDIDATES] = counter[DEFORMVOLUME_COUNT_TOUCHED] = 0;
+    }
     // Done when Finish() is, at the latest.
     queue.enqueueWriteBuffer(this->Counters, CL_FALSE, 0,
       this->LastCounters.size() * sizeof(cl_uint), this->LastCounters.data());
@@ -228,6 +234,7 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   this->SlabExtent = extent;
   this->WholeExtent = GetWholeOutput(request);
   this->WinnerSize = GetWinnerSize(voxelGrid);
+  this->KeepsPatches = false;
   this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(extent));
   if (!this->HasWinners())
   {
@@ -243,12 +250,18 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   }
   this->Clear(context, this->Coverage, 0.0, ElementType::Int8, this->NumberOfVoxels, events);
   this->NumberOfSections = DEFORMVOLUME_SECTIONS * numberOfBricks;
-  const std::uint64_t counters = this->NumberOfSections * DEFORMVOLUME_COUNTERS;
-  Reserve(context, this->Counters, counters * sizeof(cl_uint));
-  Fill(context, this->Queue, this->Counters, cl_uint{ 0 }, counters, events);
+  Reserve(
+    context, this->Counters, this->NumberOfSections * DEFORMVOLUME_COUNTERS * sizeof(cl_uint));
+  this->ClearCounters(context, events);
   this->MostLargeCells = static_cast<std::size_t>(std::min<std::int64_t>(
     GetNumberOfCells(voxelGrid.VertexExtent), DEFORMVOLUME_MOST_LARGE_CELLS));
   Reserve(context, this->LargeCells, (1 + this->MostLargeCells) * sizeof(LargeCell));
+}
+
+void OutputSlab::ClearCounters(OpenCLContext& context, std::vector<cl::Event>& events)
+{
+  Fill(context, this->Queue, this->Counters, cl_uint{ 0 },
+    this->NumberOfSections * DEFORMVOLUME_COUNTERS, events);
 }
 
 bool OutputSlab::HasWinners() const
@@ -258,12 +271,13 @@ bool OutputSlab::HasWinners() const
   const std::uint64_t needed = this->NumberOfVoxels * this->WinnerSize;
   const std::uint64_t held = deformvolume::GetMemory(this->Winners);
   return held >= needed && held - needed <= needed / 4 &&
-    deformvolume::GetMemory(this->PatchStates) >= this->CountAllPatches();
+    deformvolume::GetMemory(this->PatchStates) >= 2 * this->CountAllPatches();
 }
 
 std::uint64_t OutputSlab::GetMissingWinnerMemory() const
 {
-  return this->HasWinners() ? 0 : this->NumberOfVoxels * this->WinnerSize + this->CountAllPatches();
+  return this->HasWinners() ? 0
+                            : this->NumberOfVoxels * this->WinnerSize + 2 * this->CountAllPatches();
 }
 
 void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events)
@@ -271,11 +285,34 @@ void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& 
   if (!this->HasWinners())
   {
     Reserve(context, this->Winners, this->NumberOfVoxels * this->WinnerSize);
-    Reserve(context, this->PatchStates, this->CountAllPatches());
+    Reserve(context, this->PatchStates, 2 * this->CountAllPatches());
   }
   Fill(context, this->Queue, this->Winners, std::numeric_limits<cl_uint>::max(),
     this->NumberOfVoxels * this->WinnerSize / sizeof(cl_uint), events);
-  Fill(context, this->Queue, this->PatchStates, cl_uchar{ 0 }, this->CountAllPatches(), events);
+  Fill(context, this->Queue, this->PatchStates, cl_uchar{ 0 }, 2 * this->CountAllPatches(), events);
+}
+
+void OutputSlab::PrepareWinnersAgain(const std::vector<std::uint32_t>& patches)
+{
+  const MappedBuffer<unsigned char> winners(this->Queue, this->Winners, CL_MAP_WRITE);
+  FillPatches(this->SlabExtent, patches, winners.Get(), this->WinnerSize, 0xff);
+  const MappedBuffer<unsigned char> states(
+    this->Queue, this->PatchStates, CL_MAP_READ | CL_MAP_WRITE);
+  this->KeepsPatches = true;
+  const std::uint64_t all = this->CountAllPatches();
+  std::fill_n(states.Get(), all, static_cast<unsigned char>(DEFORMVOLUME_PATCH_KEPT));
+  for (const std::uint32_t patch : patches)
+  {
+    states.Get()[patch] = states.Get()[all + patch] = 0;
+  }
+}
+
+bool OutputSlab::HasContested() const
+{
+  const std::uint64_t all = this->CountAllPatches();
+  std::vector<unsigned char> contested(static_cast<std::size_t>(all));
+  this->Queue.enqueueReadBuffer(this->PatchStates, CL_TRUE, all, all, contested.data());
+  return std::find(contested.begin(), contested.end(), 1) != contested.end();
 }
 
 std::uint64_t OutputSlab::CountAllPatches() const
@@ -425,6 +462,7 @@ void OutputSlab::SetParameters(KernelParameters& parameters) const
     parameters.WholeEnd[axis] = this->WholeExtent[2 * axis + 1] + 1 - this->SlabExtent[2 * axis];
   }
   parameters.MostLargeCells = static_cast<int>(this->MostLargeCells);
+  parameters.KeepsPatches = this->KeepsPatches ? 1 : 0;
   parameters.IsPart = this->WholeExtent != this->SlabExtent ? 1 : 0;
 }
 

@@ -58,8 +58,9 @@ public:
     const VoxelGrid& voxelGrid, std::size_t numberOfBricks, std::vector<cl::Event>& events);
 
   /// The same where the memory of the request, which is worked on in place, holds the last output,
-  /// as far as it is still wanted, and the counters are those of it that ReadCounts has read last:
-  /// clears the counters of some bricks.
+  /// as far as it is still wanted, and the counters are those of it that ReadCounts or FindBricks
+  /// has read last: clears the counters of some bricks, and those of work for the passes that
+  /// choose winners.
   void PrepareAgain(OpenCLContext& context, const cl::CommandQueue& queue,
     const DeformRequest& request, const std::vector<VolumeArray>& arrays,
     const std::vector<cl_uint>& bricks);
@@ -67,10 +68,18 @@ public:
   /// Bytes that PrepareWinners will allocate.
   std::uint64_t GetMissingWinnerMemory() const;
   void PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events);
+  /// The same where the last output had winners, for some patches of it (see IncrementalUpdate).
+  /// All others are kept. For processors.
+  void PrepareWinnersAgain(const std::vector<std::uint32_t>& patches);
+  /// The counters are 0 again: a pass that counts is run once more.
+  void ClearCounters(OpenCLContext& context, std::vector<cl::Event>& events);
   /// After the pass in which cells claim voxels, or without it where none is contested: finds those
   /// to be won, and those that nobody has written. parameters: of the mesh.
   void Settle(OpenCLContext& context, bool claimed, const KernelParameters& parameters,
     std::vector<cl::Event>& events);
+  /// Whether Settle has found voxels that several tetrahedra write, now or in patches that are
+  /// kept.
+  bool HasContested() const;
 
   /// The list of large cells (DEFORMVOLUME_PIECE), as the launches of a pass leave it.
   struct LargeCell
@@ -139,6 +148,7 @@ private:
   std::size_t MostLargeCells = 0;
   std::vector<cl_uint> LastCounters; // as they were read
   std::size_t WinnerSize = 4;
+  bool KeepsPatches = false; // of the last output
   std::size_t NumberOfSections = 0; // of bricks
   std::uint64_t NumberOfVoxels = 0;
   PendingReads Reads; // last: they end before the buffers do

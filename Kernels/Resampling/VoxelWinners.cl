@@ -12,7 +12,7 @@ typedef struct
 {
   __global char* Coverage;
   __global KEY* Winners;
-  __global char* Patches; // what is known of them
+  __global char* Patches; // what is known of them; then for each 1 where cells have contested a voxel
   __global uint* LargeCells; // their number and three integers that are not used; then the list
   // Counts of this work-item.
   uint Writes;
@@ -41,24 +41,23 @@ static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
 }
 
 // A cell that writes a voxel leaves its key there: the first one, or the lowest, which has the voxel then
-// contested. Returns whether the voxel is the cell's so far.
+// contested. Returns whether the voxel is the cell's so far. What is contested is written by its winner, later: so
+// cells that write again what they wrote for the last output leave it alone.
 static int Claim(__global KEY* winner, KEY key)
 {
   const KEY none = (KEY)-1;
   KEY found = *winner;
   for (;;)
   {
-    const KEY lowest = found & ~CONTESTED;
-    const int wins = found == none || key <= lowest;
-    if (lowest == key || (!wins && lowest != found))
+    const KEY next = found == none || found == key ? key : CONTESTED | min(key, found & ~CONTESTED);
+    if (next == found)
     {
-      return wins;
+      return found == key;
     }
-    const KEY next = found == none ? key : CONTESTED | min(key, lowest);
     const KEY seen = ATOMIC_CMPXCHG(winner, found, next);
     if (seen == found)
     {
-      return wins;
+      return found == none;
     }
     found = seen;
   }
@@ -70,6 +69,16 @@ static void Contest(__global KEY* winner, KEY key)
   ATOMIC_CMPXCHG(winner, key, CONTESTED | key);
 }
 
+// Whether a voxel lies in a patch that stays as it is.
+static int IsKept(const Output* output, size_t target, const KernelParameters* p)
+{
+  const size_t row = target / p->OutputSize[0];
+  const size_t x = target - row * p->OutputSize[0];
+  const size_t z = row / p->OutputSize[1];
+  const size_t y = row - z * p->OutputSize[1];
+  return output->Patches[PatchRow(y, z, p) + x / DEFORMVOLUME_PATCH] == DEFORMVOLUME_PATCH_KEPT;
+}
+
 // What passes but the first do with a voxel that a cell writes. Returns whether values are to follow.
 static int TakesPlace(Output* output, size_t target, KEY key, const KernelParameters* p)
 {
@@ -77,7 +86,8 @@ static int TakesPlace(Output* output, size_t target, KEY key, const KernelParame
   const KEY found = *winner;
   if (p->Pass == DEFORMVOLUME_PASS_WINNER)
   {
-    return found == key;
+    // What has won a voxel that stays need not have all of its samples looked at in this pass.
+    return found == key && !(p->KeepsPatches && IsKept(output, target, p));
   }
   if (p->Pass == DEFORMVOLUME_PASS_MARK)
   {
@@ -118,6 +128,10 @@ static int AnyUnsettled(
 // A cell holds a voxel of the output that it does not own. If there turns out to be a winner, it may be this cell.
 static void Touch(int x, int y, int z, Output* output, const KernelParameters* p)
 {
-  output->Patches[PatchRow(y, z, p) + x / DEFORMVOLUME_PATCH] = DEFORMVOLUME_PATCH_TOUCHED;
-  output->Touched = 1;
+  __global char* patch = output->Patches + PatchRow(y, z, p) + x / DEFORMVOLUME_PATCH;
+  if (*patch != DEFORMVOLUME_PATCH_KEPT)
+  {
+    *patch = DEFORMVOLUME_PATCH_TOUCHED;
+    output->Touched = 1;
+  }
 }

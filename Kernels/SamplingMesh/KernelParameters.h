@@ -28,6 +28,7 @@ typedef struct
   int WholeEnd[3];    // one, counted from the first voxel in the buffers
   int IsPart;         // whether there are voxels beyond those in the buffers
   int Pass;           // one of the passes below
+  int KeepsPatches;   // whether some patches of the output stay as they are
   int HasActive;      // whether a mask of active tetrahedra is there; without one all are active
   int HasState;       // whether the vertices have a state; without one all that could be is there
   int BrickOrigin[3]; // local index of the first cell of the first brick; may lie before the volume
@@ -152,6 +153,7 @@ typedef struct
 // What is known of a patch.
 #define DEFORMVOLUME_PATCH_UNSETTLED 1 // voxels have to be won
 #define DEFORMVOLUME_PATCH_TOUCHED 2   // cells may hold voxels that others write, or none
+#define DEFORMVOLUME_PATCH_KEPT 4      // its voxels stay as they are
 
 // Bytes that a work-item of the kernels Fill1 to Fill8 writes.
 #define DEFORMVOLUME_FILLED_BYTES 65536
@@ -176,6 +178,12 @@ static size_t PatchRow(size_t y, size_t z, const KernelParameters* p)
   const size_t width = DEFORMVOLUME_PATCHES(p->OutputSize[0]);
   const size_t height = DEFORMVOLUME_PATCHES(p->OutputSize[1]);
   return (z / DEFORMVOLUME_PATCH * height + y / DEFORMVOLUME_PATCH) * width;
+}
+
+// The first plane of voxels behind all patches.
+static size_t PatchedPlanes(const KernelParameters* p)
+{
+  return (size_t)DEFORMVOLUME_PATCHES(p->OutputSize[2]) * DEFORMVOLUME_PATCH;
 }
 
 // The section of a brick that a cell lies in, as counters number them.

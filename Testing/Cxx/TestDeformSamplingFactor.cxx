@@ -25,6 +25,14 @@ int RoundUp(int number, int factor)
   return number;
 }
 
+/// The point of an image at a place. (Only the class above it has this without an array, in VTK
+/// 9.4.)
+vtkIdType FindPoint(vtkImageData* image, double x, double y, double z)
+{
+  double place[3] = { x, y, z };
+  return image->FindPoint(place);
+}
+
 /// Every second or fourth voxel: VTK takes the values; masks are looked up one by one.
 vtkSmartPointer<vtkImageData> Subsample(vtkImageData* volume, int factor)
 {
@@ -263,7 +271,7 @@ void TestDenseField()
       few.Filter->SetSamplingFactor(2);
       VERIFY(AreEqual(deformed.Update(), few.Update()));
       VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 1000);
-      const vtkIdType point = field->FindPoint(43.0, 42.0, 29.0);
+      const vtkIdType point = FindPoint(field, 43.0, 42.0, 29.0);
       vectors->SetTuple3(point, 1.0, 0.5, 0.0);
       vectors->Modified();
     }
@@ -337,7 +345,7 @@ public:
     for (const int factor : { 2, 1, 2, 1 })
     {
       vtkDataArray* values = this->Volume->GetPointData()->GetScalars();
-      values->SetComponent(this->Volume->FindPoint(43.0, 42.0, 29.0), 0, 1000.0 * factor);
+      values->SetComponent(FindPoint(this->Volume, 43.0, 42.0, 29.0), 0, 1000.0 * factor);
       values->Modified();
       this->Update(factor);
     }
