@@ -361,7 +361,8 @@ public:
    * those that overlap them in the output. The result is the same to the last bit. Needs the
    * resampler EXACT, a processor as device, and an output of the same extent as the last one; all
    * is resampled where that is not so, where more than 60 % would have to be, where the volume's
-   * arrays changed, where the volume is folded over, and after an abort or an error. Default: on.
+   * arrays changed, where the first fold of the volume comes or the last one goes, and after an
+   * abort or an error. Default: on.
    */
   vtkSetMacro(Incremental, bool);
   vtkGetMacro(Incremental, bool);

@@ -23,6 +23,7 @@ BUILD = WORK / "build"
 
 NARROW = ("TestNarrowDecisions", "*")
 MASKS = ("TestIncremental", "IncrementalMasks*")
+FOLDS = ("TestIncrementalFolds", "*")
 MEMORY = ("TestHostMemory", "*")
 LARGE = ("TestLargeCells", "-*Time*")
 FAULTS = ("TestFaults", "*")
@@ -38,6 +39,12 @@ MUTATIONS = {
     "filter-upright": ("Kernels/Resampling/GroupWeights.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
     "filter-bent": ("Kernels/Resampling/GroupWeights.cl", "(FLOATS)(3.2e-5f)", "(FLOATS)(3.2e-7f)", [NARROW]),
     "mask-reach": ("Kernels/Resampling/IncrementalUpdate.cxx", "MaskReach = 1;", "MaskReach = 0;", [MASKS]),
+    "old-winners": ("Kernels/Resampling/OutputSlab.cxx",
+                    "FillPatches(this->SlabExtent, patches, winners.Get(), this->WinnerSize, 0xff);", "", [FOLDS]),
+    "contested-twice": ("Kernels/Resampling/VoxelWinners.cl", "      return found == key;\n    }\n    const KEY seen",
+                        "      return key == (found & ~CONTESTED);\n    }\n    const KEY seen", [FOLDS]),
+    "winners-not-awaited": ("Kernels/Resampling/ExactResampler.cxx",
+                            "this->Device.GetQueue().finish(); // it is read in another queue", "", [FOLDS]),
     "clip": ("Kernels/Resampling/Resampling.cl", "CLIP_TOLERANCE (1.0f / 64.0f)", "CLIP_TOLERANCE 0.0f", [LARGE]),
     "launch-end": ("Kernels/Resampling/Resampling.cl", "z <= p.LayersEnd + 1", "z <= p.LayersEnd", [MEMORY]),
     "failed-read": ("Kernels/OpenCL/HostMemory.cxx", "if (error != CL_SUCCESS)", "if (false)", [FAULTS]),

@@ -24,7 +24,8 @@ namespace deformvolume
 /// the least and the greatest displacement of its points. Patches of the output that the boxes of
 /// changed sub-bricks touch, before or after the change, are cleared, and of all bricks with a
 /// sub-brick whose box touches such a patch the sections that these sub-bricks lie in are run: what
-/// they write outside these patches they wrote before, since nobody else writes there.
+/// they write outside these patches they wrote before, since nobody else writes there. (Where the
+/// volume is folded over, ExactResampler::MakeAgain keeps these patches as they are.)
 ///
 /// Where all vertices of the changed sub-bricks are inside the sampling mesh, nothing is cleared
 /// and only changed sub-bricks are run: their cells fill the same space as before, between cells
