@@ -4,6 +4,7 @@
 
 #include "FilterTesting.h"
 
+#include <vtkExtentTranslator.h>
 #include <vtkMPIController.h>
 
 /// A test on all ranks of MPI; the exit code, which counts the failures of all.
@@ -24,6 +25,38 @@ int RunOnRanks(int argc, char* argv[], Test&& test)
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
   return all == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+/// The extent that a rank has to make of a whole one.
+inline filterTesting::Extent GetPiece(
+  vtkMPIController* controller, filterTesting::Extent whole, int ghosts)
+{
+  filterTesting::Extent piece;
+  vtkNew<vtkExtentTranslator> translator;
+  translator->PieceToExtentThreadSafe(controller->GetLocalProcessId(),
+    controller->GetNumberOfProcesses(), ghosts, whole.data(), piece.data(),
+    vtkExtentTranslator::BLOCK_MODE, 0);
+  return piece;
+}
+
+/// Whether an image is a part of another one, bit by bit. Arrays are found by name: their order
+/// does not survive the way to other ranks.
+inline bool IsPartOf(vtkImageData* part, vtkImageData* whole)
+{
+  using namespace filterTesting;
+  vtkNew<vtkImageData> cropped;
+  cropped->ShallowCopy(whole);
+  cropped->Crop(part->GetExtent());
+  vtkPointData* expected = cropped->GetPointData();
+  bool equal = GetExtent(part) == GetExtent(cropped) &&
+    GetPoint(part, part->GetNumberOfPoints() - 1) ==
+      GetPoint(cropped, part->GetNumberOfPoints() - 1);
+  for (int i = 0; i < expected->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = expected->GetArray(i);
+    equal = equal && HaveEqualBits(array, part->GetPointData()->GetArray(array->GetName()));
+  }
+  return equal && expected->GetNumberOfArrays() > 1;
 }
 
 #endif

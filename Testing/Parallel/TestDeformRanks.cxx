@@ -5,7 +5,6 @@
 #include "DivisionCases.h"
 #include "RankTesting.h"
 
-#include <vtkExtentTranslator.h>
 #include <vtkIdList.h>
 #include <vtkIdTypeArray.h>
 #include <vtkTrivialProducer.h>
@@ -47,34 +46,6 @@ vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
   return image;
 }
 
-/// The extent that a rank has to make.
-Extent GetPiece(Extent whole, int ghosts)
-{
-  Extent piece;
-  vtkNew<vtkExtentTranslator> translator;
-  translator->PieceToExtentThreadSafe(
-    GetRank(), GetRanks(), ghosts, whole.data(), piece.data(), vtkExtentTranslator::BLOCK_MODE, 0);
-  return piece;
-}
-
-/// Arrays by name: their order does not survive the way to other ranks.
-bool IsPartOf(vtkImageData* part, vtkImageData* whole)
-{
-  vtkNew<vtkImageData> cropped;
-  cropped->ShallowCopy(whole);
-  cropped->Crop(part->GetExtent());
-  vtkPointData* expected = cropped->GetPointData();
-  bool equal = GetExtent(part) == GetExtent(cropped) &&
-    GetPoint(part, part->GetNumberOfPoints() - 1) ==
-      GetPoint(cropped, part->GetNumberOfPoints() - 1);
-  for (int i = 0; i < expected->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = expected->GetArray(i);
-    equal = equal && HaveEqualBits(array, part->GetPointData()->GetArray(array->GetName()));
-  }
-  return equal && expected->GetNumberOfArrays() > 1;
-}
-
 /// This rank's piece.
 void Check(Deformed& deformed, vtkImageData* whole, const std::string& name, int ghosts = 0)
 {
@@ -95,7 +66,7 @@ void Check(Deformed& deformed, vtkImageData* whole, const std::string& name, int
   vtkIdType all = 0;
   Controller->AllReduce(&mine, &all, 1, vtkCommunicator::SUM_OP);
   VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), all);
-  const Extent piece = GetPiece(GetExtent(whole), ghosts);
+  const Extent piece = GetPiece(Controller, GetExtent(whole), ghosts);
   if (piece[1] < piece[0])
   {
     VERIFY_EQUAL(output->GetNumberOfPoints(), vtkIdType{ 0 });

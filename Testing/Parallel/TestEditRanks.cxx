@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A volume that is cut, carved and dragged on several ranks: each makes its piece of the output,
+// and all pieces are those that one process makes, to the last bit, after each step of the drag,
+// after undo and redo, and where the volume is folded over.
+#include "ChainMailTesting.h"
+#include "DivisionCases.h"
+#include "EditChecks.h"
+#include "RankTesting.h"
+
+#include <vtkCarveVolume.h>
+#include <vtkCutVolume.h>
+#include <vtkSphere.h>
+
+#include <functional>
+
+using namespace chainMailTesting;
+using namespace filterTesting;
+
+namespace
+{
+
+vtkMPIController* Controller = nullptr;
+
+constexpr Extent Box{ { -3, 60, 2, 45, 0, 40 } };
+
+/// A volume, what edits it, and what deforms the result.
+struct Pipeline
+{
+  explicit Pipeline(vtkImageData* volume)
+    : Volume(volume)
+  {
+    this->Source->SetVolume(volume);
+    this->Cut->SetInputConnection(this->Source->GetOutputPort());
+    this->Cut->SetSheetData(MakePlane(volume, glm::dvec3(30.5, -2.0, -2.0),
+      glm::dvec3(0.0, 60.0, 0.0), glm::dvec3(0.0, 0.0, 25.0)));
+    const glm::dvec3 center = this->GetWorld(glm::dvec3(12.0, 20.0, 15.0));
+    vtkNew<vtkSphere> sphere;
+    sphere->SetCenter(center.x, center.y, center.z);
+    sphere->SetRadius(6.0);
+    this->Carve->SetInputConnection(this->Cut->GetOutputPort());
+    this->Carve->SetImplicitFunction(sphere);
+    this->ChainMail->SetInputConnection(this->Carve->GetOutputPort());
+    this->ChainMail->SetRelaxationSweeps(2);
+    this->Deform->SetInputConnection(this->Carve->GetOutputPort());
+    this->Deform->SetDeformationConnection(this->ChainMail->GetOutputPort());
+    this->Drag(0.0);
+  }
+
+  glm::dvec3 GetWorld(const glm::dvec3& index) const
+  {
+    glm::dvec3 world;
+    this->Volume->TransformContinuousIndexToPhysicalPoint(&index.x, &world.x);
+    return world;
+  }
+
+  /// One side of the cut by so many voxels.
+  void Drag(double voxels)
+  {
+    const glm::dvec3 held(36.0, 24.0, 20.0);
+    this->ChainMail->SetHandlesData(MakeHandles({ { this->GetWorld(held),
+      this->GetWorld(held + glm::dvec3(voxels, 0.3 * voxels, -0.4 * voxels)) } }));
+  }
+
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkNew<PartSource> Source;
+  vtkNew<vtkCutVolume> Cut;
+  vtkNew<vtkCarveVolume> Carve;
+  vtkNew<vtkChainMailDeformation> ChainMail;
+  vtkNew<vtkDeformVolumeFilter> Deform;
+};
+
+struct Step
+{
+  std::string Name;
+  std::function<void(Pipeline&)> Do;
+};
+
+/// The output of one process, on all ranks, and how many tetrahedra are switched off and inverted.
+vtkSmartPointer<vtkImageData> MakeWhole(Pipeline& whole, const Step& step, vtkIdType counts[2])
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  if (Controller->GetLocalProcessId() == 0)
+  {
+    vtkMultiProcessController::SetGlobalController(nullptr);
+    step.Do(whole);
+    whole.Deform->Update();
+    image->ShallowCopy(whole.Deform->GetOutput());
+    counts[0] = whole.Carve->GetNumberOfSwitchedOffTetrahedra();
+    counts[1] = whole.Deform->GetNumberOfInvertedTetrahedra();
+    vtkMultiProcessController::SetGlobalController(Controller);
+  }
+  Controller->Broadcast(image, 0);
+  image->SetDirectionMatrix(whole.Volume->GetDirectionMatrix()); // lost on the way
+  Controller->Broadcast(counts, 2, 0);
+  VERIFY(image->GetNumberOfPoints() > 0);
+  return image;
+}
+
+void TestSteps()
+{
+  auto volume = divisionCases::MakeVolume(Box, glm::dvec3(1.0, 1.5, 0.75));
+  SetObliqueDirection(volume);
+  const std::vector<Step> steps = {
+    { "At rest", [](Pipeline&) {} },
+    { "Begin", [](Pipeline& edited) { edited.Drag(4.0); } },
+    { "Further", [](Pipeline& edited) { edited.Drag(9.0); } },
+    { "Folded over", [](Pipeline& edited) { edited.Drag(22.0); } },
+    { "Folded over, moved", [](Pipeline& edited) { edited.Drag(23.0); } },
+    { "The hole is undone", [](Pipeline& edited) { edited.Carve->Undo(); } },
+    { "Without the cut", [](Pipeline& edited) { edited.Cut->Undo(); } },
+    { "Cut again",
+      [](Pipeline& edited)
+      {
+        edited.Cut->Redo();
+        edited.Carve->Redo();
+        edited.Drag(6.0);
+      } },
+    { "Start anew",
+      [](Pipeline& edited)
+      {
+        edited.ChainMail->Reset();
+        edited.Drag(3.0);
+      } },
+  };
+  Pipeline whole(volume);
+  Pipeline mine(volume);
+  const int rank = Controller->GetLocalProcessId();
+  const int ranks = Controller->GetNumberOfProcesses();
+  vtkIdType off = 0;
+  vtkIdType folded = 0;
+  for (const Step& step : steps)
+  {
+    vtkIdType counts[2] = { 0, 0 };
+    const auto expected = MakeWhole(whole, step, counts);
+    off = std::max(off, counts[0]);
+    folded += counts[1] > 0;
+    step.Do(mine);
+    mine.Deform->UpdatePiece(rank, ranks, 0);
+    VERIFY_EQUAL(mine.Carve->GetNumberOfSwitchedOffTetrahedra(), counts[0]);
+    vtkImageData* output = mine.Deform->GetOutput();
+    const Extent piece = GetPiece(Controller, GetExtent(expected), 0);
+    VERIFY_EQUAL(GetExtent(output), piece);
+    const bool equal = IsPartOf(output, expected);
+    VERIFY(equal);
+    if (!equal)
+    {
+      std::cerr << step.Name << " differs on rank " << rank << " of " << ranks << '\n';
+    }
+  }
+  VERIFY(off > 1000);
+  VERIFY(folded > 1);
+}
+
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  return RunOnRanks(argc, argv,
+    [](vtkMPIController* controller)
+    {
+      Controller = controller;
+      TestSteps();
+    });
+}
