@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Random cuts, carvings, drags, undo and redo in one pipeline, step by step against filters that
+// know nothing of what was before: masks are made anew from all edits, displacements by a second
+// model whose inputs are copies without logs, and outputs by a filter that makes them wholly. In
+// the end all is undone, bit by bit.
+//
+// Usage: TestEditSequences [NUMBER OF SEQUENCES] (1), each of 150 steps
+#include "ChainMailTesting.h"
+#include "EditChecks.h"
+
+#include <vtkCarveVolume.h>
+#include <vtkCutVolume.h>
+#include <vtkSphere.h>
+
+#include <glm/common.hpp>
+
+#include <cstdlib>
+#include <functional>
+#include <random>
+
+using namespace chainMailTesting;
+using namespace filterTesting;
+
+namespace
+{
+
+constexpr Extent Box{ { -2, 45, 1, 36, 0, 28 } };
+
+vtkUnsignedCharArray* GetMask(vtkImageData* volume)
+{
+  return vtkUnsignedCharArray::SafeDownCast(volume->GetCellData()->GetArray("ActiveTetrahedra"));
+}
+
+vtkSmartPointer<vtkImageData> Copy(vtkImageData* image)
+{
+  auto copy = vtkSmartPointer<vtkImageData>::New();
+  copy->DeepCopy(image);
+  return copy;
+}
+
+/// The edits of a filter that are made, and those that were undone.
+template <typename FilterT>
+class History
+{
+public:
+  using Edit = std::function<void(FilterT*)>;
+
+  explicit History(FilterT* filter)
+    : Filter(filter)
+  {
+    this->Filter->AccumulateOn();
+  }
+
+  /// The filter has to be updated after each of these.
+  void Do(const Edit& edit)
+  {
+    edit(this->Filter);
+    this->Done.push_back(edit);
+    this->Undone.clear();
+  }
+  void Undo() { this->Move(this->Done, this->Undone, &FilterT::Undo); }
+  void Redo() { this->Move(this->Undone, this->Done, &FilterT::Redo); }
+  bool HasDone() const { return !this->Done.empty(); }
+
+  /// What a new filter makes of the same edits.
+  vtkSmartPointer<vtkImageData> MakeAgain(vtkImageData* volume) const
+  {
+    Edited<FilterT> fresh;
+    fresh.Filter->AccumulateOn();
+    fresh.Filter->SetInputData(volume);
+    fresh.Update();
+    for (const Edit& edit : this->Done)
+    {
+      edit(fresh.Filter);
+      fresh.Update();
+    }
+    return fresh.Filter->GetOutput();
+  }
+
+private:
+  void Move(std::vector<Edit>& from, std::vector<Edit>& to, void (FilterT::*command)())
+  {
+    (this->Filter->*command)(); // also where there is nothing to be done
+    if (!from.empty())
+    {
+      to.push_back(from.back());
+      from.pop_back();
+    }
+  }
+
+  FilterT* Filter;
+  std::vector<Edit> Done;
+  std::vector<Edit> Undone;
+};
+
+class Sequence
+{
+public:
+  explicit Sequence(unsigned seed)
+    : Random(seed)
+  {
+    SetObliqueDirection(this->Volume);
+    this->Cut->SetInputData(this->Volume);
+    this->Carve->SetInputConnection(this->Cut->GetOutputPort());
+    this->ChainMail.Filter->SetInputConnection(this->Carve->GetOutputPort());
+    this->Output.Filter->SetInputConnection(this->Carve->GetOutputPort());
+    this->Output.Filter->SetDeformationConnection(this->ChainMail.Filter->GetOutputPort());
+    SetBounds(this->Output.Filter);
+    SetBounds(this->Wanted.Filter);
+    this->Wanted.Filter->IncrementalOff();
+    this->Drag();
+  }
+
+  void Step()
+  {
+    switch (this->Random() % 10)
+    {
+      case 0:
+        this->Cuts.Do(this->MakeSheetEdit());
+        break;
+      case 1:
+      case 2:
+        this->Carvings.Do(this->MakeSphereEdit());
+        break;
+      case 3:
+        this->Cuts.Undo();
+        break;
+      case 4:
+        this->Cuts.Redo();
+        break;
+      case 5:
+        this->Carvings.Undo();
+        break;
+      case 6:
+        this->Carvings.Redo();
+        break;
+      case 7:
+        this->Sweeps = static_cast<int>(this->Random() % 3);
+        break;
+      default:
+        this->Drag();
+    }
+    if (this->Random() % 40 == 0)
+    {
+      this->ChainMail.Filter->Reset();
+      this->Twin.Filter->Reset();
+    }
+    this->Compare();
+  }
+
+  void UndoAll()
+  {
+    while (this->Cuts.HasDone() || this->Carvings.HasDone())
+    {
+      this->Cuts.Undo();
+      this->Carvings.Undo();
+      this->Compare();
+    }
+    this->Handles.clear();
+    this->ChainMail.Filter->Reset();
+    this->Twin.Filter->Reset();
+    this->Compare();
+    vtkUnsignedCharArray* mask = GetMask(this->Carve->GetOutput());
+    VERIFY(std::all_of(mask->GetPointer(0), mask->GetPointer(0) + mask->GetNumberOfTuples(),
+      [](unsigned char byte) { return byte == 31; }));
+    // The volume as it was.
+    Deformed rest(this->Volume, this->Twin.Filter->GetOutput());
+    SetBounds(rest.Filter);
+    VERIFY(AreEqual(this->Output.Filter->GetOutput(), rest.Update()));
+    VERIFY_EQUAL(rest.Filter->GetNumberOfCoveredVoxels(), this->Volume->GetNumberOfPoints());
+  }
+
+  int Parts = 0;       // outputs that were updated in part
+  int FoldedParts = 0; // and of these, of a volume that was folded over
+
+private:
+  double GetNumber(double low, double high)
+  {
+    return std::uniform_real_distribution<double>(low, high)(this->Random);
+  }
+  // So that all outputs have one extent, and can be updated in part.
+  static void SetBounds(vtkDeformVolumeFilter* filter)
+  {
+    filter->SetOutputBoundsModeToVolumeBounds();
+    filter->SetPadding(6);
+  }
+  glm::dvec3 GetIndex(double margin)
+  {
+    return { this->GetNumber(Box[0] - margin, Box[1] + margin),
+      this->GetNumber(Box[2] - margin, Box[3] + margin),
+      this->GetNumber(Box[4] - margin, Box[5] + margin) };
+  }
+  glm::dvec3 GetWorld(const glm::dvec3& index) const
+  {
+    glm::dvec3 world;
+    this->Volume->TransformContinuousIndexToPhysicalPoint(&index.x, &world.x);
+    return world;
+  }
+
+  History<vtkCutVolume>::Edit MakeSheetEdit()
+  {
+    const auto sheet =
+      MakeSheet(this->Volume, { this->GetIndex(4.0), this->GetIndex(4.0), this->GetIndex(4.0) });
+    return [=](vtkCutVolume* cut) { cut->SetSheetData(sheet); };
+  }
+
+  History<vtkCarveVolume>::Edit MakeSphereEdit()
+  {
+    const auto sphere = vtkSmartPointer<vtkSphere>::New();
+    const glm::dvec3 center = this->GetWorld(this->GetIndex(0.0));
+    sphere->SetCenter(center.x, center.y, center.z);
+    sphere->SetRadius(this->GetNumber(0.5, 6.0));
+    const int rule = static_cast<int>(this->Random() % 3);
+    return [=](vtkCarveVolume* carve)
+    {
+      carve->SetImplicitFunction(sphere);
+      carve->SetRule(rule);
+    };
+  }
+
+  // One or two handles, some of them far enough to fold the volume over.
+  void Drag()
+  {
+    this->Handles.clear();
+    const double most = this->Random() % 4 == 0 ? 12.0 : 3.0;
+    for (unsigned i = 0; i < 1 + this->Random() % 2; ++i)
+    {
+      const glm::dvec3 held = glm::round(this->GetIndex(0.0));
+      const glm::dvec3 by(
+        this->GetNumber(-most, most), this->GetNumber(-most, most), this->GetNumber(-most, most));
+      this->Handles.push_back({ this->GetWorld(held), this->GetWorld(held + by) });
+    }
+  }
+
+  // Brings all up to date, and compares.
+  void Compare()
+  {
+    for (Dragged* one : { &this->ChainMail, &this->Twin })
+    {
+      one->Filter->SetHandlesData(MakeHandles(this->Handles));
+      one->Filter->SetRelaxationSweeps(this->Sweeps);
+    }
+    vtkImageData* output = this->Output.Update();
+    const bool isPart =
+      this->Output.Filter->GetNumberOfResampledBricks() < this->Output.Filter->GetNumberOfBricks();
+
+    const auto cut = this->Cuts.MakeAgain(this->Volume);
+    const auto edited = this->Carvings.MakeAgain(cut);
+    VERIFY(HaveEqualBits(GetMask(this->Cut->GetOutput()), GetMask(cut)));
+    VERIFY(HaveEqualBits(GetMask(this->Carve->GetOutput()), GetMask(edited)));
+
+    const auto copy = Copy(edited);
+    this->Twin.Filter->SetInputData(copy);
+    this->Twin.Filter->Update();
+    const auto field = Copy(this->Twin.Filter->GetOutput());
+    VERIFY(HaveEqualBits(this->ChainMail.Filter->GetOutput()->GetPointData()->GetVectors(),
+      field->GetPointData()->GetVectors()));
+
+    this->Wanted.Filter->SetInputData(copy);
+    this->Wanted.Filter->SetDeformationData(field);
+    VERIFY(AreEqual(output, this->Wanted.Update()));
+    const vtkIdType inverted = this->Wanted.Filter->GetNumberOfInvertedTetrahedra();
+    VERIFY_EQUAL(this->Output.Filter->GetNumberOfInvertedTetrahedra(), inverted);
+    VERIFY_EQUAL(this->Output.Filter->GetNumberOfCoveredVoxels(),
+      this->Wanted.Filter->GetNumberOfCoveredVoxels());
+    this->Parts += isPart;
+    this->FoldedParts += isPart && inverted > 0;
+  }
+
+  std::mt19937 Random;
+  vtkSmartPointer<vtkImageData> Volume = MakeVolume(Box);
+  vtkNew<vtkCutVolume> Cut;
+  vtkNew<vtkCarveVolume> Carve;
+  History<vtkCutVolume> Cuts{ this->Cut };
+  History<vtkCarveVolume> Carvings{ this->Carve };
+  std::vector<Handle> Handles;
+  int Sweeps = 0;
+  Dragged ChainMail{ nullptr };
+  Dragged Twin{ nullptr };
+  Deformed Output;
+  Deformed Wanted;
+};
+
+} // namespace
+
+int TestEditSequences(int argc, char* argv[])
+{
+  constexpr int steps = 150;
+  const int sequences = argc > 1 ? std::atoi(argv[1]) : 1;
+  int parts = 0;
+  int foldedParts = 0;
+  for (int seed = 0; seed < sequences && GetNumberOfFailures() == 0; ++seed)
+  {
+    Sequence sequence(3 + static_cast<unsigned>(seed));
+    int step = 0;
+    for (; step < steps && GetNumberOfFailures() == 0; ++step)
+    {
+      sequence.Step();
+    }
+    sequence.UndoAll();
+    if (GetNumberOfFailures() > 0)
+    {
+      std::cerr << "in sequence " << seed << ", after step " << step << "\n";
+    }
+    parts += sequence.Parts;
+    foldedParts += sequence.FoldedParts;
+  }
+  std::cout << parts << " outputs in part, " << foldedParts << " of them folded over\n";
+  VERIFY(parts == 0 || foldedParts > 10 * sequences); // 0: the device is no processor
+  return GetExitCode();
+}
