@@ -44,6 +44,12 @@ def main():
     assert made.GetNumberOfMaterialRanges() == 1
     assert drag.PointData["Displacement"].GetRange(0) == (0.0, 4.0)
     assert made.GetNumberOfMovedVoxels() > 2000, made.GetNumberOfMovedVoxels()
+    # The same handle by the source with widgets.
+    whole = drag.PointData["Displacement"].GetRange(-1), made.GetNumberOfMovedVoxels()
+    drag.Handles = simple.DeformationHandle(RestPosition=[0, 0, 0], Position=[4, 0, 0])
+    drag.Reset()
+    deformed.UpdatePipeline()
+    assert (drag.PointData["Displacement"].GetRange(-1), made.GetNumberOfMovedVoxels()) == whole
     # Nothing holds it any more, and all is put to rest.
     drag.Handles = None
     drag.Reset()

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Handles: misuse, what comes out, and that vtkChainMailDeformation takes them, one or several.
+#include "ChainMailTesting.h"
+#include "vtkDeformationHandleSource.h"
+
+#include <vtkAppendPolyData.h>
+
+#include <limits>
+
+using namespace chainMailTesting;
+using namespace filterTesting;
+
+namespace
+{
+
+void TestMisuse()
+{
+  vtkNew<vtkDeformationHandleSource> source;
+  vtkNew<vtkTest::ErrorObserver> observer;
+  vtkNew<vtkTest::ErrorObserver> executiveObserver;
+  source->AddObserver(vtkCommand::ErrorEvent, observer);
+  source->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, executiveObserver);
+  source->SetPosition(0.0, std::numeric_limits<double>::quiet_NaN(), 0.0);
+  source->Update();
+  VERIFY(observer->GetErrorMessage().find("not finite") != std::string::npos);
+  VERIFY_EQUAL(source->GetOutput()->GetNumberOfPoints(), 0);
+  observer->Clear();
+  source->SetPosition(0.0, 1.0, 0.0);
+  source->Update();
+  VERIFY(!observer->GetError());
+  VERIFY_EQUAL(source->GetOutput()->GetNumberOfPoints(), 1);
+}
+
+void TestOutput()
+{
+  vtkNew<vtkDeformationHandleSource> source;
+  source->SetRestPosition(0.1, 2.0, -3.0);
+  source->SetPosition(4.0, 5.3, 6.0);
+  source->Update();
+  vtkPolyData* output = source->GetOutput();
+  VERIFY_EQUAL(output->GetNumberOfPoints(), 1);
+  VERIFY_EQUAL(output->GetNumberOfVerts(), 1);
+  VERIFY(GetPoint(output, 0) == glm::dvec3(4.0, 5.3, 6.0));
+  double rest[3];
+  output->GetPointData()->GetArray("RestPosition")->GetTuple(0, rest);
+  VERIFY(glm::dvec3(rest[0], rest[1], rest[2]) == glm::dvec3(0.1, 2.0, -3.0));
+  source->UpdatePiece(1, 2, 0);
+  VERIFY_EQUAL(source->GetOutput()->GetNumberOfPoints(), 0);
+}
+
+void TestDrag()
+{
+  const auto volume = MakeVolume({ { 0, 20, 0, 16, 0, 12 } });
+  const std::vector<Handle> handles = { { { 5, 6, 4 }, { 7, 6.5, 4 } },
+    { { 14, 10, 8 }, { 14, 9, 10 } } };
+  vtkNew<vtkAppendPolyData> append;
+  for (const Handle& handle : handles)
+  {
+    vtkNew<vtkDeformationHandleSource> source;
+    source->SetRestPosition(handle.Rest.x, handle.Rest.y, handle.Rest.z);
+    source->SetPosition(handle.Now.x, handle.Now.y, handle.Now.z);
+    append->AddInputConnection(source->GetOutputPort());
+  }
+  Dragged wanted(volume);
+  wanted.Drag(handles);
+  Dragged dragged(volume);
+  dragged.Filter->SetHandlesConnection(append->GetOutputPort());
+  VERIFY(HaveEqualBits(
+    dragged.Update(), wanted.Filter->GetOutput()->GetPointData()->GetArray("Displacement")));
+  VERIFY(dragged.Filter->GetNumberOfMovedVoxels() > 20);
+}
+
+} // namespace
+
+int TestDeformationHandleSource(int, char*[])
+{
+  TestMisuse();
+  TestOutput();
+  TestDrag();
+  return GetExitCode();
+}
