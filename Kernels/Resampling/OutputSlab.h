@@ -148,7 +148,7 @@ private:
   std::size_t MostLargeCells = 0;
   std::vector<cl_uint> LastCounters; // as they were read
   std::size_t WinnerSize = 4;
-  bool KeepsPatches = false; // of the last output
+  bool KeepsPatches = false;        // of the last output
   std::size_t NumberOfSections = 0; // of bricks
   std::uint64_t NumberOfVoxels = 0;
   PendingReads Reads; // last: they end before the buffers do
