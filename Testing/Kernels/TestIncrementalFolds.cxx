@@ -41,7 +41,7 @@ TEST_P(IncrementalFolds, EqualWholeUpdates)
   edited.Blanked.resize(GetNumberOfPoints(edited.Shape.VertexExtent));
   edited.Active.resize(GetNumberOfCells(edited.Shape.VertexExtent), 31);
   this->Both.SendAll(edited, GetParam());
-  std::mt19937 random(7);
+  std::mt19937 random(19); // of some seeds, one at which the most of what could be wrong shows
   int parts = 0;
   int foldedParts = 0;
   int overlapping = 0;
