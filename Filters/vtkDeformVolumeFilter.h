@@ -19,8 +19,10 @@
  * so that label ids of 64 bits survive. Attributes keep their role, field data passes. Points that
  * vtkGhostType marks as hidden or duplicate are no source. A cell array "ActiveTetrahedra"
  * (unsigned char, one component; bit i stands for tetrahedron i of the cell) switches tetrahedra of
- * the sampling mesh off; hidden cells are off too. Other cell arrays are not resampled, and a
- * warning names them.
+ * the sampling mesh off; hidden cells are off too. A point array "BoundaryDistance" (numeric, one
+ * component, any unit) clips them: it is interpolated in each tetrahedron, and samples where it is
+ * negative are left out; NaN is not negative. Other cell arrays are not resampled, and a warning
+ * names them.
  *
  * @par Port 1, the deformation, one of:
  * - vtkUnstructuredGrid, or a composite dataset of such (they are joined): tetrahedra; other

@@ -33,6 +33,7 @@ std::uint64_t CountDeviceMemory(
   {
     sent += IsUsedInPlace(device.GetContext(), array) ? 0 : GetTupleSize(array);
   }
+  sent += size.HasDistances ? sizeof(float) : 0;
   const auto voxels = static_cast<std::uint64_t>(GetNumberOfPoints(size.Grid.VertexExtent));
   const std::uint64_t outputVoxels = CountVoxelsOfSlab(device, size);
   if (size.IsRasterized)

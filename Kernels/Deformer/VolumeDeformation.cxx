@@ -50,6 +50,11 @@ void VolumeDeformation::SetActiveTetrahedra(const unsigned char* active, const P
   this->Incremental.ChangeMask(this->Volume.SetActive(active, written), true);
 }
 
+void VolumeDeformation::SetBoundaryDistances(const float* distances, const PointRanges* written)
+{
+  this->Incremental.ChangeMask(this->Volume.SetBoundaryDistances(distances, written), false);
+}
+
 void VolumeDeformation::SetNodePlaces(const std::int32_t* places)
 {
   const bool wasOn = this->Volume.LeavesOutBridges();
@@ -104,6 +109,11 @@ void VolumeDeformation::CheckRequest(const DeformRequest& request) const
   {
     throw Error("No arrays are set: call SetArrays first.");
   }
+  if (request.Method == Resampling::Published && this->Volume.HasDistances())
+  {
+    throw Error("The published resampler knows no boundary distances. Use the resampler Exact or "
+                "MeshRasterization, or call SetBoundaryDistances with null.");
+  }
   if (!rasterized && request.Interpolation != Interpolation::Linear)
   {
     throw Error("Cubic interpolation is there only with the resampler MeshRasterization.");
@@ -133,11 +143,12 @@ DeformationSize VolumeDeformation::GetSize(const DeformRequest& request) const
   if (request.Method == Resampling::MeshRasterization)
   {
     return { grid, arrays, request.OutputExtent, this->Rasterizer.GetNumberOfNodes(),
-      this->Rasterizer.GetNumberOfTetrahedra(), 0, true };
+      this->Rasterizer.GetNumberOfTetrahedra(), 0, true, this->Volume.HasDistances() };
   }
   return { grid, arrays, request.OutputExtent, this->Source.GetNumberOfNodes(),
     this->Source.GetNumberOfTetrahedra(),
-    GetMappingBytes(grid, !this->Volume.HasMesh(), this->Volume.GetRunBytes()), false };
+    GetMappingBytes(grid, !this->Volume.HasMesh(), this->Volume.GetRunBytes()), false,
+    this->Volume.HasDistances() };
 }
 
 DeformReport VolumeDeformation::Deform(const DeformRequest& request)

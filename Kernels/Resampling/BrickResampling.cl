@@ -270,15 +270,15 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
 // Why items take one small portion after the other: drivers deal out work-groups in large portions, and wait at the
 // end for the thread that the system has let wait, or that has more to do.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
-  __global const uchar* state, __global const uchar* active, __global char* coverage,
-  __global KEY* winners, __global char* patches, __global uint* largeCells,
-  __global uint* counters, __global const uint* bricks, __global uint* taken, ROW_MEMORY float* rows,
+  __global const uchar* state, __global const uchar* active, __global const float* distances,
+  __global char* coverage, __global KEY* winners, __global char* patches,
+  __global uint* largeCells, __global uint* counters, __global const uint* bricks, __global uint* taken, ROW_MEMORY float* rows,
   const KernelParameters p ARRAY_PARAMETERS)
 {
 #if ROWS_ARE_GLOBAL
   rows += get_global_id(0) * BRICK_FLOATS;
 #endif
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances, 0, { 0, 0, 0 } };
   RowFlags flags[2][ROWS];
   ROW_MEMORY float* const displaced = rows + 4 * HALF_ROW;
   const BrickMemory memory = { rows, displaced, displaced + 3 * ROW_PLACES, flags };

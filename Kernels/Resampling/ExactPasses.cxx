@@ -87,6 +87,7 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   cl_uint i = this->Source.SetMappingArguments(kernel, chunk);
   kernel.setArg(i++, this->Volume.GetState(chunk));
   kernel.setArg(i++, this->Volume.GetActive(chunk));
+  kernel.setArg(i++, this->Volume.GetDistances(chunk));
   kernel.setArg(i++, output.GetCoverage());
   kernel.setArg(i++, output.GetWinners());
   kernel.setArg(i++, output.GetPatches());

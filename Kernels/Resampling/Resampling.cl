@@ -3,7 +3,7 @@
 // the fill rule of CellCoverage.cl, for all arrays of the volume in one pass over the geometry.
 //
 // Data: what the mapping needs (DeformationMapping.cl), state 1 byte a vertex, active tetrahedra 1 byte a cell
-// (optional), the output (VoxelWinners.cl), and the arrays themselves in their own types (SampleStoring.cl).
+// (optional), boundary distances 4 bytes a voxel (optional), the output (VoxelWinners.cl), and the arrays themselves in their own types (SampleStoring.cl).
 //
 // A work-group takes a cuboid of cells: it maps the cuboid's vertices into local memory, once each, and
 // then a work-item takes a cell, neighbours side by side. Almost all cells are convex enough that a sample
@@ -17,10 +17,12 @@ typedef struct
   int X, Y, Z;
   int Tetrahedra; // those that are there and not flat, as bits
   int Inverted;   // of these the inverted ones
+  int Clipped;    // of these the ones that the boundary passes through
   CellState State;
   Vector Vertices[8];
   Vector Low; // bounds of the vertices that are there
   Vector High;
+  float Distances[8]; // of the vertices to the boundary, where something is clipped
 } Cell;
 
 static EdgeFunctions EdgeFunctionsOf(const Cell* cell, int t)
@@ -33,6 +35,23 @@ static Vector SamplePosition(Vector voxel)
 {
   const Vector r = { voxel.x * 256, voxel.y * 256, voxel.z * 256 };
   return r;
+}
+
+// Whether a sample lies on the far side of the boundary, where the distance is negative: it is interpolated in the
+// tetrahedron, as values are. weights: those of the sample, as edge functions give them.
+static int IsClipped(const Cell* cell, int t, const long* weights)
+{
+  if (!(cell->Clipped >> t & 1))
+  {
+    return 0;
+  }
+  REAL sum = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const REAL distance = cell->Distances[Tetrahedra[t][k]];
+    sum = weights[k] ? MULTIPLY_ADD_REAL((REAL)weights[k], distance, sum) : sum;
+  }
+  return sum < 0;
 }
 
 // Whether a tetrahedron of the cell that comes before this one, and has the same key, writes a voxel, too.
@@ -48,7 +67,8 @@ static __attribute__((noinline)) int IsWrittenBefore(
       const EdgeFunctions f = EdgeFunctionsOf(cell, t);
       long weights[4];
       Evaluate(&f, SamplePosition(voxel), weights);
-      if (RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p) == OWNER)
+      if (RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p) == OWNER &&
+        !IsClipped(cell, t, weights))
       {
         return 1;
       }
@@ -61,6 +81,10 @@ static __attribute__((noinline)) int IsWrittenBefore(
 static void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long* weights, long volume,
   Sample* s, Vector voxel, int role, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
+  if (IsClipped(cell, t, weights))
+  {
+    return;
+  }
   const int placeX = voxel.x - p->OutputFirst[0];
   const int placeY = voxel.y - p->OutputFirst[1];
   const int placeZ = voxel.z - p->OutputFirst[2];
@@ -329,6 +353,26 @@ static void ResampleSamples(const SamplingMesh* mesh, const Cell* cell, const Ca
   ResampleTetrahedra(mesh, cell, all, output, p ARRAY_ARGUMENTS);
 }
 
+// The vertices of a cell that lie on the far side of the boundary, as bits; their distances are loaded where there are
+// some.
+static int ClippedVertices(const SamplingMesh* mesh, Cell* cell, const KernelParameters* p)
+{
+  if (!p->HasDistances)
+  {
+    return 0;
+  }
+  const int mirror = Mirror(cell->X, cell->Y, cell->Z, p);
+  int clipped = 0;
+  for (int v = 0; v < 8; ++v)
+  {
+    const int o = v ^ mirror;
+    const size_t i = VertexInChunk(cell->X + (o & 1), cell->Y + (o >> 2), cell->Z + (o >> 1 & 1), p);
+    cell->Distances[v] = mesh->Distances[i];
+    clipped |= (cell->Distances[v] < 0.0f) << v;
+  }
+  return clipped;
+}
+
 // What is known of a cell before its samples are, and is counted. Returns whether it may have some.
 static int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all, Cell* cell,
   Output* output, const KernelParameters* p)
@@ -365,14 +409,17 @@ static int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candida
   cell->State = CellStateOf(mesh, x, y, z, p);
   cell->Tetrahedra = 0;
   cell->Inverted = 0;
+  cell->Clipped = 0;
+  const int clipped = ClippedVertices(mesh, cell, p);
   int missing = 0;
   for (int t = 0; t < 5; ++t)
   {
     const int needed = VerticesOf(t);
-    if (!(active >> t & 1) || (present & needed) != needed)
+    if (!(active >> t & 1) || (present & needed) != needed || (clipped & needed) == needed)
     {
       continue;
     }
+    cell->Clipped |= ((clipped & needed) != 0) << t;
     const Vector a = q[Tetrahedra[t][0]];
     const Vector b = q[Tetrahedra[t][1]];
     const Vector c = q[Tetrahedra[t][2]];
@@ -486,14 +533,14 @@ static void AddCounts(
 #if HAS_CELL_KERNEL
 // A work-group takes a cuboid of cells. positions: room for three ints a vertex of the cuboid.
 __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
-  __global const uchar* active, __global char* coverage, __global KEY* winners,
-  __global char* patches, __global uint* largeCells, __global uint* counters,
-  __local int* positions,
+  __global const uchar* active, __global const float* distances, __global char* coverage,
+  __global KEY* winners, __global char* patches, __global uint* largeCells,
+  __global uint* counters, __local int* positions,
   const KernelParameters p ARRAY_PARAMETERS)
 {
   const int first[3] = { get_group_id(0) * DEFORMVOLUME_CUBOID_X,
     get_group_id(1) * DEFORMVOLUME_CUBOID_Y, p.LayersBegin + get_group_id(2) * DEFORMVOLUME_CUBOID_Z };
-  const SamplingMesh unmapped = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
+  const SamplingMesh unmapped = { MAPPING_ARGUMENTS, state, active, distances, 0, { 0, 0, 0 } };
   const int width = DEFORMVOLUME_CUBOID_X + 1;
   const int height = DEFORMVOLUME_CUBOID_Y + 1;
   for (int i = get_local_id(0); i < DEFORMVOLUME_CUBOID_VERTICES; i += get_local_size(0))
@@ -511,7 +558,7 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   }
   barrier(CLK_LOCAL_MEM_FENCE);
 
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, positions,
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances, positions,
     { first[0], first[1], first[2] } };
   Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
   const Candidates all = AllCandidates(&p);

@@ -30,6 +30,7 @@ typedef struct
   int Pass;           // one of the passes below
   int KeepsPatches;   // whether some patches of the output stay as they are
   int HasActive;      // whether a mask of active tetrahedra is there; without one all are active
+  int HasDistances;   // whether there are boundary distances; without them nothing is clipped
   int HasState;       // whether the vertices have a state; without one all that could be is there
   int BrickOrigin[3]; // local index of the first cell of the first brick; may lie before the volume
   int BrickCount[3];  // bricks on each axis
@@ -163,6 +164,7 @@ typedef struct
 #define DEFORMVOLUME_VERTEX_INTERIOR 2 // all tetrahedra that it could belong to are there
 #define DEFORMVOLUME_CELL_WHOLE 4      // of the cell that begins at it, all tetrahedra are there
 #define DEFORMVOLUME_VERTEX_REGULAR 8  // interior, but that it may lie on the border of the volume
+#define DEFORMVOLUME_VERTEX_UNCLIPPED 16 // a source, and not on the far side of the boundary
 
 #ifdef __OPENCL_VERSION__
 

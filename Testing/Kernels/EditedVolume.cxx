@@ -200,6 +200,7 @@ void EditedVolume::SendMasks(VolumeDeformer& deformer) const
 {
   deformer.SetBlanked(this->Blanked.empty() ? nullptr : this->Blanked.data());
   deformer.SetActiveTetrahedra(this->Active.empty() ? nullptr : this->Active.data());
+  deformer.SetBoundaryDistances(this->Distances.empty() ? nullptr : this->Distances.data());
 }
 
 void EditedVolume::SendAll(VolumeDeformer& deformer, Route route) const

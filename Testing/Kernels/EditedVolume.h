@@ -32,6 +32,7 @@ struct EditedVolume
   std::vector<double> Second;
   std::vector<unsigned char> Blanked;
   std::vector<unsigned char> Active;
+  std::vector<float> Distances;
   deformvolume::Extent Output;
   double Background = 3.0;
 

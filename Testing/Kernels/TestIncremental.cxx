@@ -30,6 +30,7 @@ enum class Edit
   Unfold,
   Blanked,
   Active,
+  Distances,
   NoMasks,
   Extent,
   Background,
@@ -74,9 +75,15 @@ void Change(EditedVolume& volume, Edit edit, std::mt19937& random)
       volume.Active.resize(GetNumberOfCells(volume.Shape.VertexExtent), 31);
       volume.Active[random() % volume.Active.size()] = random() % 32;
       break;
+    case Edit::Distances:
+      volume.Distances.resize(GetNumberOfPoints(volume.Shape.VertexExtent), 1.0F);
+      volume.Distances[random() % volume.Distances.size()] =
+        static_cast<float>(random() % 64) / 16.0F - 2.0F;
+      break;
     case Edit::NoMasks:
       volume.Blanked.clear();
       volume.Active.clear();
+      volume.Distances.clear();
       break;
     case Edit::Extent:
       for (int axis = 0; axis < 3; ++axis)

@@ -72,6 +72,15 @@ TEST(VolumeDeformer, TinyMasks)
   Check(tiny, Route::Mesh);
 }
 
+TEST(VolumeDeformer, TinyClipped)
+{
+  DeformerCase tiny = MakeCase({ { 0, 3, 0, 3, 0, 3 } }, NoScale, MakeJitter(4, 0.15));
+  tiny.Distances.assign(64, 1.0F);
+  tiny.Distances[21] = -0.5F;
+  tiny.Distances[22] = -1.5F;
+  Check(tiny, Route::Field);
+}
+
 TEST(VolumeDeformer, TinyByLanes)
 {
   SKIP_WITHOUT_VECTORS()
