@@ -12,6 +12,8 @@
 #include <vtkSphere.h>
 #include <vtkSphereSource.h>
 
+#include <glm/geometric.hpp>
+
 #include <cmath>
 #include <limits>
 #include <random>
