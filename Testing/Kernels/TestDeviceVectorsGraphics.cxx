@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All tests of vectors on a device, on one that appears to be a graphics card with memory of its
+// own; and what passes between it and the host.
+#include "DeformerCase.h"
+#include "DeviceVectors.h"
+#include "FakeDriver.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+using namespace deformvolume;
+
+namespace
+{
+
+// Before there is a context.
+const bool IsSet = []
+{
+  FakeDriver::Get().IsGraphics = true;
+  return true;
+}();
+
+// A few numbers that the host and the device tell each other.
+constexpr std::uint64_t Few = 256;
+
+class Transfers : public testing::Test
+{
+protected:
+  void SetUp() override { ASSERT_TRUE(IsSet); }
+
+  void Reset()
+  {
+    FakeDriver::Get().BytesRead = 0;
+    FakeDriver::Get().BytesWritten = 0;
+  }
+
+  DeformerCase Case = MakeCase({ { 0, 21, 0, 18, -1, 17 } }, { { 1, 1, 1 } }, MakeJitter(5, 0.15));
+  std::size_t Points = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
+  std::uint64_t Bytes = 12 * this->Points;
+  std::vector<float> Displacements = this->Case.GetDisplacements();
+  std::vector<std::uint16_t> Values = MakeRandomValues<std::uint16_t>(this->Points, 3);
+  std::vector<VolumeArray> Arrays{ MakeArray(this->Values) };
+  const std::array<double, 9> Half{ { 0.5, 0, 0, 0, 0.5, 0, 0, 0, 0.5 } };
+};
+
+} // namespace
+
+TEST_F(Transfers, WhatIsWrittenAndReadIsCopiedOnce)
+{
+  const auto vectors = std::make_shared<DeviceVectors>("", this->Points);
+  ASSERT_FALSE(vectors->AreInHostMemory());
+  this->Reset();
+  vectors->Write(this->Displacements.data());
+  EXPECT_EQ(FakeDriver::Get().BytesWritten, this->Bytes);
+  vectors->Write(this->Displacements.data(), { { { 100, 150 } } });
+  EXPECT_EQ(FakeDriver::Get().BytesWritten, this->Bytes + 50 * 12);
+  EXPECT_EQ(FakeDriver::Get().BytesRead, 0U) << "nobody has asked";
+  vectors->Read();
+  vectors->Read();
+  EXPECT_EQ(FakeDriver::Get().BytesRead, this->Bytes);
+  vectors->Write(this->Displacements.data(), { { { 200, 205 } }, { { 208, 210 } } });
+  vectors->Read();
+  EXPECT_EQ(FakeDriver::Get().BytesRead, this->Bytes + 10 * 12) << "what has changed";
+}
+
+// An image and its segmentation, of another spacing.
+TEST_F(Transfers, SeveralVolumesTakeOneUpload)
+{
+  VolumeDeformer deformers[2];
+  for (VolumeDeformer& deformer : deformers)
+  {
+    Load(deformer, this->Case, this->Arrays, Route::Mesh);
+    RunDeformer(deformer, this->Case, this->Arrays);
+  }
+  const auto vectors = std::make_shared<DeviceVectors>("", this->Points);
+  for (int frame = 0; frame < 3; ++frame)
+  {
+    this->Reset();
+    vectors->Write(this->Displacements.data());
+    deformers[0].SetNodeDisplacements(vectors);
+    deformers[1].SetNodeDisplacements(vectors, this->Half);
+    // At first the numbers by which a device knows the nodes, four bytes each.
+    const std::uint64_t numbers = frame == 0 ? 2 * 4 * this->Points : 0;
+    EXPECT_EQ(FakeDriver::Get().BytesWritten, this->Bytes + numbers);
+    EXPECT_LE(FakeDriver::Get().BytesRead, Few);
+  }
+  // On the host each of them is sent by itself.
+  this->Reset();
+  for (VolumeDeformer& deformer : deformers)
+  {
+    deformer.SetNodeDisplacements(this->Displacements.data());
+  }
+  EXPECT_GE(FakeDriver::Get().BytesWritten, 2 * this->Bytes);
+}
+
+TEST_F(Transfers, FieldsPassNothingThroughTheHost)
+{
+  VolumeDeformer deformer;
+  Load(deformer, this->Case, this->Arrays, Route::Field);
+  const auto vectors = std::make_shared<DeviceVectors>("", this->Points);
+  vectors->Write(this->Displacements.data());
+  DisplacementField field;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    field.Dimensions[axis] = static_cast<int>(GetSize(this->Case.VoxelGrid.VertexExtent, axis));
+    field.IndexToField[4 * axis + 3] = -this->Case.VoxelGrid.VertexExtent[2 * axis];
+  }
+  this->Reset();
+  deformer.SetDisplacementField(field, vectors);
+  field.ToDisplacement = this->Half;
+  deformer.SetDisplacementField(field, vectors);
+  EXPECT_LE(FakeDriver::Get().BytesWritten, Few);
+  EXPECT_LE(FakeDriver::Get().BytesRead, Few);
+}
