@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ChainMailSession.h"
 
+#include "ExtentRanges.h"
 #include "VectorArray.h"
 #include "VolumeArrays.h"
 
@@ -307,35 +308,16 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
 
 void ChainMailSession::LogChanges(const ChainMailReport& report)
 {
-  // Where more rows were written, consumers look at all of the array as fast.
-  constexpr std::int64_t mostRows = 32768;
-  std::int64_t rows = 0;
-  for (const Extent& box : report.Changes)
-  {
-    rows += GetSize(box, 1) * GetSize(box, 2);
-  }
-  if (rows == 0)
-  {
-    return;
-  }
-  if (rows > mostRows)
+  const auto rows = FindRows(report.Changes, this->Geometry.PointExtent);
+  if (!rows)
   {
     this->Output->Modified();
     return;
   }
   vtkArrayChanges* log = vtkArrayChanges::FindLog(this->Output);
-  const Extent& all = this->Geometry.PointExtent;
-  for (const Extent& box : report.Changes)
+  for (const auto& row : *rows)
   {
-    for (std::int64_t z = box[4]; z <= box[5]; ++z)
-    {
-      for (std::int64_t y = box[2]; y <= box[3]; ++y)
-      {
-        const std::int64_t row =
-          ((z - all[4]) * GetSize(all, 1) + y - all[2]) * GetSize(all, 0) - all[0];
-        log->AddTuples(row + box[0], row + box[1]);
-      }
-    }
+    log->AddTuples(static_cast<vtkIdType>(row[0]), static_cast<vtkIdType>(row[1]) - 1);
   }
 }
 

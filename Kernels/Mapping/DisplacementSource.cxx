@@ -311,6 +311,7 @@ void DisplacementSource::SetField(
   const std::optional<PointRanges> changes = this->Reading.Begin(vectors, field, points);
   if (!this->Reading.CanConvert())
   {
+    this->Reading.Check(changes, "point"); // what is read where it lies is not looked at again
     DisplacementField read = field;
     read.Vectors = vectors->Read();
     read.Owner = vectors;

@@ -7,7 +7,12 @@
 #include "HostMemory.h"
 #include "KernelText.h"
 #include "MappingProgram.h"
+#include "ParallelFor.h"
 
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
 #include <string>
 
 namespace deformvolume
@@ -22,22 +27,7 @@ constexpr cl_uint NoPoint = 0xFFFFFFFFU;
 std::optional<PointRanges> VectorReading::Begin(const std::shared_ptr<DeviceVectors>& vectors,
   const DisplacementField& field, std::size_t numberOfPoints)
 {
-  if (!vectors)
-  {
-    throw Error("There are no vectors on a device.");
-  }
-  if (vectors->GetNumberOfPoints() != numberOfPoints)
-  {
-    throw Error("There are " + std::to_string(vectors->GetNumberOfPoints()) +
-      " vectors on the device for " + std::to_string(numberOfPoints) +
-      " points. Give one for each point.");
-  }
-  if (!vectors->GetInternals().IsOn(this->Device.GetContext()))
-  {
-    throw Error("The vectors are on the device \"" + vectors->GetDevice() +
-      "\", and the volume is on \"" + this->Device.GetDevice().Name +
-      "\". Use one device for both, or read the vectors on the host.");
-  }
+  CheckVectors(vectors.get(), this->Device, numberOfPoints);
   const bool isSame =
     this->Vectors == vectors && this->Field.ToDisplacement == field.ToDisplacement;
   std::optional<PointRanges> changes = isSame ? vectors->GetChanges(this->Revision) : std::nullopt;
@@ -102,6 +92,42 @@ void VectorReading::Convert(
   queue.enqueueReadBuffer(firstBad, CL_TRUE, 0, sizeof(bad), &bad);
   if (bad != NoPoint)
   {
+    ThrowBadDisplacement(what, bad);
+  }
+}
+
+void VectorReading::Check(const std::optional<PointRanges>& changes, const char* what)
+{
+  DisplacementField field = this->Field;
+  field.Vectors = this->Vectors->Read();
+  const std::size_t count = this->Vectors->GetNumberOfPoints();
+  std::atomic<std::size_t> bad{ count };
+  for (const auto& range : changes ? *changes : PointRanges{ { { 0, count } } })
+  {
+    ParallelForParts(range[1] - range[0], 1 << 14,
+      [&](std::size_t begin, std::size_t end)
+      {
+        for (std::size_t point = range[0] + begin; point < range[0] + end; ++point)
+        {
+          const std::array<float, 3> moved =
+            GetDisplacement(field, static_cast<std::int64_t>(point));
+          const float largest =
+            std::max({ std::abs(moved[0]), std::abs(moved[1]), std::abs(moved[2]) });
+          const float sum = moved[0] + moved[1] + moved[2]; // not-a-number where one of them is
+          if (!(largest <= LargestDisplacement) || std::isnan(sum))
+          {
+            std::size_t first = bad;
+            while (point < first && !bad.compare_exchange_weak(first, point))
+            {
+            }
+            return;
+          }
+        }
+      });
+  }
+  if (bad < count)
+  {
+    this->Forget();
     ThrowBadDisplacement(what, bad);
   }
 }

@@ -42,6 +42,8 @@ public:
   void Convert(
     const cl::Buffer& displacements, const std::vector<std::int32_t>& numbers, const char* what);
 
+  /// Throws the same Error where they are read on the host. changes: what Begin() has returned.
+  void Check(const std::optional<PointRanges>& changes, const char* what);
   /// The displacements on the host, three floats a point. changes: what Begin() has returned.
   const float* GetDisplacements(const std::optional<PointRanges>& changes);
 

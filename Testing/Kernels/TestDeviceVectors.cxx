@@ -2,6 +2,7 @@
 // Vectors on a device: what they refuse, what they know of their changes, and that volumes which
 // are moved by them equal, to the last bit, those that get the displacements from the host.
 // TestDeviceVectorsGraphics runs these tests on a device with memory of its own.
+#include "ChainMailModel.h"
 #include "DeformerCase.h"
 #include "Device.h"
 #include "DeviceNeeds.h"
@@ -336,11 +337,6 @@ TEST_P(DeviceVectorsRoutes, WhatIsNotFinite)
   subject.LoadInto(deformer, GetParam());
   std::vector<float> vectors = MakeVectors(subject.Points, 1);
   const Vectors shared = MakeOnDevice(vectors);
-  if (GetParam() == Route::Field && shared->AreInHostMemory())
-  {
-    GTEST_SKIP()
-      << "A field that is read where it lies is not looked at (DisplacementField::Owner).";
-  }
   const std::string name = GetParam() == Route::Field ? "point 7 " : "node 7 ";
   for (const float bad :
     { std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity(), 40000.0F })
@@ -421,6 +417,74 @@ TEST(DeviceVectors, SeveralVolumes)
   other.SetNodeDisplacements(shared, half);
   EXPECT_EQ(fine.Run(one), fine.RunFresh(Route::Mesh, vectors, Identity));
   EXPECT_EQ(coarse.Run(other), coarse.RunFresh(Route::Mesh, vectors, half));
+}
+
+// A drag, whose displacements stay on the device, and one whose displacements go to the host.
+TEST(DeviceVectors, OutputOfChainMail)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  const Extent extent{ { 0, 21, 0, 18, -1, 17 } };
+  const std::array<double, 9> toWorld{ { 0.5, 0, 0, 0, 0.5, 0, 0, 0, 2 } };
+  const Matrix toIndex{ { 2, 0, 0, 0, 2, 0, 0, 0, 0.5 } };
+  const Subject subject(extent);
+  ChainMailModel models[2];
+  std::vector<float> host(3 * subject.Points);
+  const auto output = std::make_shared<DeviceVectors>("", subject.Points);
+  EXPECT_NE(GetError([&] { models[0].SetOutput(output); }), "") << "no volume";
+  for (ChainMailModel& model : models)
+  {
+    model.SetVoxelGrid(extent, toWorld);
+  }
+  EXPECT_NE(
+    GetError([&] { models[0].SetOutput(Vectors()); }).find("no vectors"), std::string::npos);
+  EXPECT_NE(GetError([&] { models[0].SetOutput(std::make_shared<DeviceVectors>("", 5)); }), "");
+  models[0].SetOutput(output);
+  models[1].SetOutput(host.data());
+  VolumeDeformer deformer;
+  subject.LoadInto(deformer, Route::Field);
+  const auto expectSame = [&]
+  {
+    ASSERT_EQ(std::memcmp(output->Read(), host.data(), 12 * subject.Points), 0);
+    subject.Move(deformer, Route::Field, output, toIndex);
+    EXPECT_EQ(subject.Run(deformer), subject.RunFresh(Route::Field, host, toIndex));
+  };
+  for (int step = 1; step <= 3; ++step)
+  {
+    ChainMailRequest request;
+    request.Handles.resize(1);
+    request.Handles[0].RestPosition = { { 10, 9, 8 } };
+    request.Handles[0].Displacement = { { 0.7 * step, -0.3 * step, 0.25 * step } };
+    request.RelaxationSweeps = 2;
+    const std::uint64_t before = output->GetRevision();
+    const ChainMailReport report = models[0].Step(request);
+    models[1].Step(request);
+    ASSERT_GT(report.NumberOfMovedVoxels, 0);
+    const std::optional<PointRanges> changes = output->GetChanges(before);
+    ASSERT_TRUE(changes);
+    std::size_t changed = 0;
+    for (const auto& range : *changes)
+    {
+      changed += range[1] - range[0];
+    }
+    EXPECT_GE(changed, static_cast<std::size_t>(report.NumberOfMovedVoxels));
+    EXPECT_LT(changed, subject.Points);
+    expectSame();
+  }
+  for (ChainMailModel& model : models)
+  {
+    model.Reset();
+  }
+  expectSame();
+  // The host has the output again.
+  ChainMailRequest request;
+  request.Handles.resize(1);
+  request.Handles[0].RestPosition = { { 10, 9, 8 } };
+  request.Handles[0].Displacement = { { 1, 0, 0 } };
+  models[1].Step(request);
+  std::vector<float> other(3 * subject.Points);
+  models[0].SetOutput(other.data());
+  models[0].Step(request);
+  EXPECT_EQ(other, host);
 }
 
 TEST(DeviceVectors, Tiny)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // All tests of vectors on a device, on one that appears to be a graphics card with memory of its
 // own; and what passes between it and the host.
+#include "ChainMailModel.h"
 #include "DeformerCase.h"
 #include "DeviceVectors.h"
 #include "FakeDriver.h"
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <iostream>
 #include <memory>
 #include <vector>
 
@@ -114,4 +116,45 @@ TEST_F(Transfers, FieldsPassNothingThroughTheHost)
   deformer.SetDisplacementField(field, vectors);
   EXPECT_LE(FakeDriver::Get().BytesWritten, Few);
   EXPECT_LE(FakeDriver::Get().BytesRead, Few);
+}
+
+// In a drag the displacements of the voxels neither come to the host nor go from it.
+TEST_F(Transfers, ChainMailPassesNothingThroughTheHost)
+{
+  const Extent extent{ { 0, 47, 0, 47, 0, 47 } };
+  const DeformerCase large =
+    MakeCase(extent, { { 1, 1, 1 } }, [](const glm::dvec3& index) { return index; });
+  const auto points = static_cast<std::size_t>(large.GetNumberOfVoxels());
+  const auto values = MakeRandomValues<std::uint16_t>(points, 3);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  VolumeDeformer deformer;
+  Load(deformer, large, arrays, Route::Field);
+  RunDeformer(deformer, large, arrays);
+  DisplacementField field;
+  field.Dimensions = { { 48, 48, 48 } };
+  field.ToDisplacement = this->Half;
+  ChainMailModel model;
+  model.SetVoxelGrid(extent, { { 2, 0, 0, 0, 2, 0, 0, 0, 2 } });
+  const auto vectors = std::make_shared<DeviceVectors>("", points);
+  model.SetOutput(vectors);
+  const std::uint64_t held = deformer.GetDeviceMemory();
+  for (int step = 1; step <= 3; ++step)
+  {
+    ChainMailRequest request;
+    request.Handles.resize(1);
+    request.Handles[0].RestPosition = { { 24, 24, 24 } };
+    request.Handles[0].Displacement = { { 4.0 * step, 0, 0 } };
+    this->Reset();
+    const ChainMailReport report = model.Step(request);
+    deformer.SetDisplacementField(field, vectors);
+    const std::uint64_t moved = 12 * static_cast<std::uint64_t>(report.NumberOfMovedVoxels);
+    ASSERT_GT(moved, 12U * 512U);
+    // Lists of blocks, and what the kernels tell of each, a few numbers a block of 512 voxels.
+    EXPECT_LT(FakeDriver::Get().BytesRead, moved / 16);
+    EXPECT_LT(FakeDriver::Get().BytesWritten, moved / 16);
+    std::cout << "Step " << step << ": " << moved << " bytes of displacements have changed, "
+              << FakeDriver::Get().BytesRead << " were read and " << FakeDriver::Get().BytesWritten
+              << " written\n";
+  }
+  EXPECT_EQ(deformer.GetDeviceMemory(), held);
 }

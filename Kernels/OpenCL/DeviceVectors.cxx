@@ -28,7 +28,7 @@ auto Guard(Function&& function)
   }
 }
 
-void CheckVectors(const float* vectors)
+void CheckSource(const float* vectors)
 {
   if (!vectors)
   {
@@ -135,6 +135,26 @@ const float* DeviceVectors::Internals::Read()
   return this->Host.data();
 }
 
+void CheckVectors(DeviceVectors* vectors, WorkDevice& device, std::size_t numberOfPoints)
+{
+  if (!vectors)
+  {
+    throw Error("There are no vectors on a device.");
+  }
+  if (vectors->GetNumberOfPoints() != numberOfPoints)
+  {
+    throw Error("There are " + std::to_string(vectors->GetNumberOfPoints()) +
+      " vectors on the device for " + std::to_string(numberOfPoints) +
+      " points. Give one for each point.");
+  }
+  if (!vectors->GetInternals().IsOn(device.GetContext()))
+  {
+    throw Error("The vectors are on the device \"" + vectors->GetDevice() +
+      "\", and the volume is on \"" + device.GetDevice().Name +
+      "\". Use one device for both, or read the vectors on the host.");
+  }
+}
+
 DeviceVectors::DeviceVectors(const std::string& device, std::size_t numberOfPoints)
 {
   if (numberOfPoints == 0)
@@ -174,13 +194,13 @@ std::uint64_t DeviceVectors::GetDeviceMemory() const
 
 void DeviceVectors::Write(const float* vectors)
 {
-  CheckVectors(vectors);
+  CheckSource(vectors);
   Guard([&] { this->Impl->Write(vectors); });
 }
 
 void DeviceVectors::Write(const float* vectors, const PointRanges& written)
 {
-  CheckVectors(vectors);
+  CheckSource(vectors);
   Guard([&] { this->Impl->Write(vectors, written); });
 }
 

@@ -47,6 +47,9 @@ private:
   RangeLog Log;
 };
 
+/// Throws an Error where they are null, or not so many vectors, or on another device.
+void CheckVectors(DeviceVectors* vectors, WorkDevice& device, std::size_t numberOfPoints);
+
 } // namespace deformvolume
 
 #endif
