@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ChainMailSession.h"
 
+#include "Device.h"
 #include "ExtentRanges.h"
 #include "VectorArray.h"
 #include "VolumeArrays.h"
 
 #include "vtkArrayChanges.h"
 #include "vtkDataArray.h"
+#include "vtkDeviceVectorArray.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -189,20 +192,50 @@ void ChainMailSession::SetVolume(const ImageGeometry& geometry, const ChainMailS
     matrix[static_cast<std::size_t>(i)] = toWorld[i % 3][i / 3];
   }
   this->Model.SetVoxelGrid(geometry.PointExtent, matrix);
-  this->Output = vtkSmartPointer<vtkFloatArray>::New();
-  this->Output->SetName("Displacement");
-  this->Output->SetNumberOfComponents(3);
-  if (!this->Output->Resize(GetNumberOfPoints(geometry.PointExtent)))
-  {
-    throw std::bad_alloc();
-  }
-  this->Output->SetNumberOfTuples(GetNumberOfPoints(geometry.PointExtent));
-  vtkNew<vtkArrayChanges> log; // which the array holds
-  log->SetArray(this->Output);
-  this->Model.SetOutput(this->Output->GetPointer(0));
   this->Device = device;
+  this->MakeOutput(GetNumberOfPoints(geometry.PointExtent));
   this->Geometry = geometry;
   this->HasVolume = true;
+}
+
+void ChainMailSession::MakeOutput(vtkIdType voxels)
+{
+  constexpr int components = 3;
+  this->Output = nullptr; // its memory goes first
+  this->Vectors.reset();
+  if (GetDeviceAbilities(this->Device).OwnMemory)
+  {
+    this->Vectors = std::make_shared<DeviceVectors>(this->Device, static_cast<std::size_t>(voxels));
+    this->Model.SetOutput(this->Vectors);
+    vtkNew<vtkDeviceVectorArray> array;
+    array->SetDevice(this->Device);
+    array->SetVectors(this->Vectors);
+    this->Output = array;
+  }
+  else
+  {
+    vtkNew<vtkFloatArray> array;
+    array->SetNumberOfComponents(components);
+    if (!array->Resize(voxels))
+    {
+      throw std::bad_alloc();
+    }
+    array->SetNumberOfTuples(voxels);
+    this->Model.SetOutput(array->GetPointer(0));
+    this->Output = array;
+  }
+  this->Output->SetName("Displacement");
+  vtkNew<vtkArrayChanges> log; // which the array holds
+  log->SetArray(this->Output);
+}
+
+void ChainMailSession::RestoreOutput()
+{
+  auto* const array = vtkDeviceVectorArray::SafeDownCast(this->Output);
+  if (array && !array->IsOf(this->Vectors))
+  {
+    array->SetVectors(this->Vectors);
+  }
 }
 
 ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handles,
@@ -294,6 +327,7 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
     }
     const ChainMailReport report = this->Model.Step(request);
     this->LogChanges(report);
+    this->RestoreOutput();
     return report;
   }
   catch (const Error&)
