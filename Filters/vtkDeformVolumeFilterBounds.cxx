@@ -43,6 +43,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent,
     { { source.Scale.x, source.Scale.y, source.Scale.z } } };
   const bool extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
+  this->State->Deformation.BringToHost();
   if (this->State->Deformation.IsField())
   {
     const deformvolume::DisplacementField field = this->State->Deformation.GetField(extrapolate);

@@ -30,6 +30,12 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::ReadDeformation(
   source.ShapeIsMade = !deformvolume::IsInMemory(this->Self, 1);
   source.RestIsMade = !deformvolume::IsInMemory(this->Self, 2);
   source = this->Gathering.Gather(ranks, source);
+  ranks.Attempt(
+    [&]
+    {
+      source.Device =
+        ranks.AreMany() ? "" : deformvolume::DeviceSession::FindOwnMemory(this->Self->Device);
+    });
   ranks.Attempt([&] { this->State->Deformation.Read(source); });
   return source;
 }
@@ -67,6 +73,7 @@ const RestRegions& vtkDeformVolumeFilter::vtkInternals::GetRegions(
   };
   if (!this->State->Regions || !(this->State->KeyOfRegions == key))
   {
+    this->State->Deformation.BringToHost();
     const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent,
       { { source.Scale.x, source.Scale.y, source.Scale.z } }, {} };
     this->State->Regions = this->State->Deformation.IsField()

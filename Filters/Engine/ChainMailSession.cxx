@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ChainMailSession.h"
 
+#include "Device.h"
+#include "ExtentRanges.h"
 #include "VectorArray.h"
 #include "VolumeArrays.h"
 
 #include "vtkArrayChanges.h"
 #include "vtkDataArray.h"
+#include "vtkDeviceVectorArray.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -188,20 +192,50 @@ void ChainMailSession::SetVolume(const ImageGeometry& geometry, const ChainMailS
     matrix[static_cast<std::size_t>(i)] = toWorld[i % 3][i / 3];
   }
   this->Model.SetVoxelGrid(geometry.PointExtent, matrix);
-  this->Output = vtkSmartPointer<vtkFloatArray>::New();
-  this->Output->SetName("Displacement");
-  this->Output->SetNumberOfComponents(3);
-  if (!this->Output->Resize(GetNumberOfPoints(geometry.PointExtent)))
-  {
-    throw std::bad_alloc();
-  }
-  this->Output->SetNumberOfTuples(GetNumberOfPoints(geometry.PointExtent));
-  vtkNew<vtkArrayChanges> log; // which the array holds
-  log->SetArray(this->Output);
-  this->Model.SetOutput(this->Output->GetPointer(0));
   this->Device = device;
+  this->MakeOutput(GetNumberOfPoints(geometry.PointExtent));
   this->Geometry = geometry;
   this->HasVolume = true;
+}
+
+void ChainMailSession::MakeOutput(vtkIdType voxels)
+{
+  constexpr int components = 3;
+  this->Output = nullptr; // its memory goes first
+  this->Vectors.reset();
+  if (GetDeviceAbilities(this->Device).OwnMemory)
+  {
+    this->Vectors = std::make_shared<DeviceVectors>(this->Device, static_cast<std::size_t>(voxels));
+    this->Model.SetOutput(this->Vectors);
+    vtkNew<vtkDeviceVectorArray> array;
+    array->SetDevice(this->Device);
+    array->SetVectors(this->Vectors);
+    this->Output = array;
+  }
+  else
+  {
+    vtkNew<vtkFloatArray> array;
+    array->SetNumberOfComponents(components);
+    if (!array->Resize(voxels))
+    {
+      throw std::bad_alloc();
+    }
+    array->SetNumberOfTuples(voxels);
+    this->Model.SetOutput(array->GetPointer(0));
+    this->Output = array;
+  }
+  this->Output->SetName("Displacement");
+  vtkNew<vtkArrayChanges> log; // which the array holds
+  log->SetArray(this->Output);
+}
+
+void ChainMailSession::RestoreOutput()
+{
+  auto* const array = vtkDeviceVectorArray::SafeDownCast(this->Output);
+  if (array && !array->IsOf(this->Vectors))
+  {
+    array->SetVectors(this->Vectors);
+  }
 }
 
 ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handles,
@@ -293,6 +327,7 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
     }
     const ChainMailReport report = this->Model.Step(request);
     this->LogChanges(report);
+    this->RestoreOutput();
     return report;
   }
   catch (const Error&)
@@ -307,35 +342,16 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
 
 void ChainMailSession::LogChanges(const ChainMailReport& report)
 {
-  // Where more rows were written, consumers look at all of the array as fast.
-  constexpr std::int64_t mostRows = 32768;
-  std::int64_t rows = 0;
-  for (const Extent& box : report.Changes)
-  {
-    rows += GetSize(box, 1) * GetSize(box, 2);
-  }
-  if (rows == 0)
-  {
-    return;
-  }
-  if (rows > mostRows)
+  const auto rows = FindRows(report.Changes, this->Geometry.PointExtent);
+  if (!rows)
   {
     this->Output->Modified();
     return;
   }
   vtkArrayChanges* log = vtkArrayChanges::FindLog(this->Output);
-  const Extent& all = this->Geometry.PointExtent;
-  for (const Extent& box : report.Changes)
+  for (const auto& row : *rows)
   {
-    for (std::int64_t z = box[4]; z <= box[5]; ++z)
-    {
-      for (std::int64_t y = box[2]; y <= box[3]; ++y)
-      {
-        const std::int64_t row =
-          ((z - all[4]) * GetSize(all, 1) + y - all[2]) * GetSize(all, 0) - all[0];
-        log->AddTuples(row + box[0], row + box[1]);
-      }
-    }
+    log->AddTuples(static_cast<vtkIdType>(row[0]), static_cast<vtkIdType>(row[1]) - 1);
   }
 }
 

@@ -7,11 +7,12 @@
 #include "ImageGeometry.h"
 #include "MaterialArray.h"
 
-#include "vtkFloatArray.h"
+#include "vtkDataArray.h"
 #include "vtkSmartPointer.h"
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -69,6 +70,10 @@ private:
 
   void SetVolume(const ImageGeometry& geometry, const ChainMailSettings& settings);
   void Forget();
+  /// Has the model write to an array, or where its values are on the device.
+  void MakeOutput(vtkIdType voxels);
+  /// Has the output hold what the device has, also where somebody has written to it.
+  void RestoreOutput();
   /// Says which displacements a step has written.
   void LogChanges(const ChainMailReport& report);
 
@@ -80,7 +85,9 @@ private:
   MaterialsKey KeyOfMaterials;
   Stamp StampOfMasks;
   Stamp StampOfPins;
-  vtkSmartPointer<vtkFloatArray> Output;
+  vtkSmartPointer<vtkDataArray> Output;
+  // On a device with memory of its own, where the output stays.
+  std::shared_ptr<DeviceVectors> Vectors;
 };
 
 } // namespace deformvolume

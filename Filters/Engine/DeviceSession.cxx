@@ -53,6 +53,12 @@ void DeviceSession::CheckDevice(const std::string& request)
   ResolveDevice(Translate(request));
 }
 
+std::string DeviceSession::FindOwnMemory(const std::string& request)
+{
+  const std::string wanted = Translate(request);
+  return GetDeviceAbilities(wanted).OwnMemory ? ResolveDevice(wanted) : "";
+}
+
 std::string DeviceSession::SetDevice(
   const std::string& request, std::uint64_t memoryLimit, std::size_t workGroupSize)
 {
@@ -161,8 +167,16 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
     {
       const PointRanges changes = deformation.GetChanges(this->SentVectors);
       Transfer transfer(this);
-      this->Deformer.SetDisplacementField(
-        deformation.GetField(extrapolate), this->HasField ? &changes : nullptr);
+      DisplacementField field = deformation.GetField(extrapolate);
+      if (deformation.GetDeviceVectors())
+      {
+        field.ToDisplacement = deformation.GetDeviceMatrix();
+        this->Deformer.SetDisplacementField(field, deformation.GetDeviceVectors());
+      }
+      else
+      {
+        this->Deformer.SetDisplacementField(field, this->HasField ? &changes : nullptr);
+      }
       transfer.End();
     }
     this->HasField = true;
@@ -176,6 +190,19 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
   }
   this->SentVectors = vectors;
   this->SentExtrapolate = extrapolate;
+}
+
+void DeviceSession::SetNodes(const Deformation& deformation, const PointRanges* changes)
+{
+  if (deformation.GetDeviceVectors())
+  {
+    this->Deformer.SetNodeDisplacements(
+      deformation.GetDeviceVectors(), deformation.GetDeviceMatrix());
+  }
+  else
+  {
+    this->Deformer.SetNodeDisplacements(deformation.GetNodeDisplacements(), changes);
+  }
 }
 
 void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mapping,
@@ -235,8 +262,7 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
   {
     const PointRanges changes = deformation.GetChanges(this->SentVectors);
     Transfer transfer(this);
-    this->Deformer.SetNodeDisplacements(
-      deformation.GetNodeDisplacements(), meshIsSent ? &changes : nullptr);
+    this->SetNodes(deformation, meshIsSent ? &changes : nullptr);
     transfer.End();
   }
 }
@@ -273,7 +299,7 @@ void DeviceSession::SetRestMesh(const Deformation& deformation, bool extrapolate
   }
   if (!meshIsSent || this->SentVectors != vectors)
   {
-    this->Deformer.SetNodeDisplacements(deformation.GetNodeDisplacements());
+    this->SetNodes(deformation, nullptr);
   }
   transfer.End();
   this->HasRestMesh = true;

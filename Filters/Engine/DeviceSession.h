@@ -32,6 +32,9 @@ public:
   /// Throws an Error where no device answers to a request.
   static void CheckDevice(const std::string& request);
 
+  /// The name of the device for a request where it has memory of its own, else nothing.
+  static std::string FindOwnMemory(const std::string& request);
+
   /// Chooses the device and returns its name.
   std::string SetDevice(
     const std::string& request, std::uint64_t memoryLimit, std::size_t workGroupSize);
@@ -65,6 +68,8 @@ private:
   class Transfer;
 
   void Forget();
+  /// Sends the displacements of nodes. changes: null, or others are as before.
+  void SetNodes(const Deformation& deformation, const PointRanges* changes);
   void SetMesh(const Deformation& deformation, MappingCache& mapping, const MappedVolume& volume,
     bool openSplits, const std::function<bool(double)>& progress);
 

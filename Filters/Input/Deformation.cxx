@@ -122,6 +122,10 @@ glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor)
   for (int column = 0; column < 3; ++column)
   {
     transform[column] *= source.Scale * factor;
+    for (int row = 0; row < 3; ++row)
+    {
+      transform[column][row] = RoundFactor(transform[column][row]);
+    }
   }
   return transform;
 }
@@ -174,6 +178,13 @@ void Deformation::ReadMesh(const DeformationSource& source)
   {
     return;
   }
+  vtkDataArray* only = !ofPoints && shape.size() == 1 ? source.Selector(shape.front()) : nullptr;
+  if (this->UseVectorsOnDevice(
+        only, shape.front()->GetNumberOfPoints(), source.DisplacementScale, source))
+  {
+    this->RememberVectors(stamp, source, false);
+    return;
+  }
   if (this->MemoriesAreOfPoints != ofPoints || (ofPoints && !this->Mesh.HasKeptPoints()))
   {
     this->Memories.clear();
@@ -200,7 +211,8 @@ bool Deformation::VectorsAreCurrent(
   const Stamp& stamp, const DeformationSource& source, bool field) const
 {
   return this->Field == field && stamp == this->VectorsStamp &&
-    source.Choice == this->VectorsSource.Choice && this->HasSameUnits(source);
+    source.Choice == this->VectorsSource.Choice && source.Device == this->VectorsSource.Device &&
+    this->HasSameUnits(source);
 }
 
 bool Deformation::HasSameUnits(const DeformationSource& source) const
@@ -245,10 +257,18 @@ PointRanges Deformation::GetChanges(std::uint64_t version) const
 void Deformation::SetVectors(std::size_t count, const std::function<void(const VectorTaker&)>& read,
   double factor, const DeformationSource& source)
 {
+  ++this->VectorsVersion;
+  this->ReplaceVectors(count, read, factor, source);
+}
+
+void Deformation::ReplaceVectors(std::size_t count,
+  const std::function<void(const VectorTaker&)>& read, double factor,
+  const DeformationSource& source)
+{
   // Whatever fails from here on, the vectors are not those of any source.
   this->VectorsStamp.clear();
   this->FieldInPlace = DisplacementField();
-  const std::uint64_t version = ++this->VectorsVersion;
+  const std::uint64_t version = this->VectorsVersion;
   const std::size_t blocks = (count + PointsPerBlock - 1) / PointsPerBlock;
   const bool comparable = this->VectorsAreWhole;
   if (!comparable)

@@ -3,6 +3,7 @@
 #define DeformVolumeDeformation_h
 
 #include "DeformationMesh.h"
+#include "DeviceVectors.h"
 #include "DisplacementField.h"
 #include "FieldScan.h"
 #include "ImageGeometry.h"
@@ -11,10 +12,14 @@
 #include "Tetrahedron.h"
 #include "VectorArray.h"
 
+#include "vtkSmartPointer.h"
+
 #include <glm/mat3x3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -40,11 +45,15 @@ struct DeformationSource
   /// Whether a field leads from the output to the volume at rest.
   bool FieldIsInverse = false;
   ImageGeometry Volume;
+  /// The whole name of a device with memory of its own that takes vectors where they lie there;
+  /// empty: there is none.
+  std::string Device;
   /// Output voxels per voxel of the volume, axis by axis.
   glm::dvec3 Scale{ 1.0 };
 };
 
-/// Takes vectors, times a factor, to displacements in output voxels.
+/// Takes vectors, times a factor, to displacements in output voxels. Its elements are rounded
+/// (RoundFactor), so that vectors become the same displacements wherever that is done.
 glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor);
 
 /// The deformation in the units of the kernels. Keeps what it has read, and reads again only what
@@ -78,6 +87,15 @@ public:
   }
   ///@}
 
+  ///@{
+  /// The vectors on the device, where they are read there, and the matrix that takes them to
+  /// displacements; else null. The displacements above are then those of before, or none, until
+  /// they are brought to the host.
+  const std::shared_ptr<DeviceVectors>& GetDeviceVectors() const { return this->OnDevice; }
+  const std::array<double, 9>& GetDeviceMatrix() const { return this->MatrixOnDevice; }
+  void BringToHost();
+  ///@}
+
   /// The mesh at rest, with its versions and what has changed between them.
   const RestMesh& GetRestMesh() const { return this->Mesh; }
   /// Changes with the displacements, with the connectivity of the mesh and with the kind of the
@@ -93,12 +111,19 @@ private:
   void ReadField(vtkImageData* image, const DeformationSource& source);
   /// False where the field is not one that can be used in place.
   bool UseFieldInPlace(vtkDataArray* array, const DeformationSource& source);
+  /// Has vectors be read where they lie on a device. False where an array has none there.
+  bool UseVectorsOnDevice(
+    vtkDataArray* array, vtkIdType points, double factor, const DeformationSource& source);
+  void ForgetVectorsOnDevice();
   void RememberVectors(const Stamp& stamp, const DeformationSource& source, bool field);
   bool VectorsAreCurrent(const Stamp& stamp, const DeformationSource& source, bool field) const;
   /// Whether equal vectors are equal displacements, now and when they were read last.
   bool HasSameUnits(const DeformationSource& source) const;
   /// read: calls its argument for all displacements in world units, of which there are count.
   void SetVectors(std::size_t count, const std::function<void(const VectorTaker&)>& read,
+    double factor, const DeformationSource& source);
+  /// The same without a new version.
+  void ReplaceVectors(std::size_t count, const std::function<void(const VectorTaker&)>& read,
     double factor, const DeformationSource& source);
 
   bool Field = false;
@@ -119,6 +144,12 @@ private:
   static constexpr std::uint64_t NoVersion = ~std::uint64_t{ 0 };
   std::uint64_t VersionBeforeChanges = NoVersion;
   std::uint64_t VectorsVersion = 0;
+
+  std::shared_ptr<DeviceVectors> OnDevice;
+  std::array<double, 9> MatrixOnDevice{};
+  vtkSmartPointer<vtkDataArray> ArrayOnDevice;
+  double FactorOnDevice = 1.0;
+  bool IsOnHost = true; // what the device has
 
   // What the above was read from.
   Stamp VectorsStamp;

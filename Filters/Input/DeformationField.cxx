@@ -10,6 +10,7 @@
 
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkDataArray.h"
+#include "vtkDeviceVectorArray.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 
@@ -36,9 +37,14 @@ double DropRoundingError(double value)
   return std::round(value * grain) / grain;
 }
 
-// The values of an array of floats that lies in memory tuple by tuple; null for others.
+// The values of an array of floats that lies in memory tuple by tuple; null for others, and where
+// they would have to come from a device.
 const float* FindFloats(vtkDataArray* array)
 {
+  if (auto* vectors = vtkDeviceVectorArray::SafeDownCast(array))
+  {
+    return vectors->IsOnDevice() ? nullptr : vectors->GetValues();
+  }
   auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(array);
   return floats ? floats->GetPointer(0) : nullptr;
 }
@@ -134,6 +140,12 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
     array = taken;
   }
   this->Memories.clear();
+  if (this->UseVectorsOnDevice(source.FieldIsInverse ? nullptr : array, image->GetNumberOfPoints(),
+        source.DisplacementScale, source))
+  {
+    this->RememberVectors(stamp, source, true);
+    return;
+  }
   if (!this->UseFieldInPlace(array, source))
   {
     this->SetVectors(

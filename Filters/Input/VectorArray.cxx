@@ -11,6 +11,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataArrayRange.h"
 #include "vtkDataSet.h"
+#include "vtkDeviceVectorArray.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
@@ -33,6 +34,10 @@ template <typename T>
 const void* GetBytes(vtkAOSDataArrayTemplate<T>* array)
 {
   return array->GetPointer(0);
+}
+const void* GetBytes(vtkDeviceVectorArray* array)
+{
+  return array->GetValues();
 }
 const void* GetBytes(vtkDataArray*)
 {
@@ -180,7 +185,11 @@ void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string
       std::to_string(array->GetNumberOfComponents()) + " components. Give each of them three.");
   }
   VectorReader reader;
-  if (!Dispatcher::Execute(array, reader, take, memory))
+  if (auto* const vectors = vtkDeviceVectorArray::SafeDownCast(array))
+  {
+    reader(vectors, take, memory);
+  }
+  else if (!Dispatcher::Execute(array, reader, take, memory))
   {
     reader(array, take, memory);
   }

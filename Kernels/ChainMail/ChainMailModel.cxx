@@ -4,6 +4,7 @@
 #include "ChainMailLinks.h"
 #include "ChainMailSolver.h"
 #include "ChainMailState.h"
+#include "DeviceVectorsInternals.h"
 #include "MemoryBudget.h"
 #include "ParallelFor.h"
 
@@ -295,6 +296,22 @@ void ChainMailModel::SetOutput(float* output)
       impl.State->PlaceOutput(output);
       impl.State->WriteOutput(GetAll(*impl.Blocks));
       impl.State->ReadOutput({ impl.Blocks->GetExtent() });
+    });
+}
+
+void ChainMailModel::SetOutput(const std::shared_ptr<DeviceVectors>& output)
+{
+  Internals& impl = *this->Impl;
+  impl.CheckIsSet();
+  CheckVectors(output.get(), impl.Device,
+    static_cast<std::size_t>(GetNumberOfPoints(impl.Blocks->GetExtent())));
+  impl.Guard(
+    [&]
+    {
+      impl.State->PlaceOutput(output);
+      impl.State->WriteOutput(GetAll(*impl.Blocks));
+      impl.State->ReadOutput({ impl.Blocks->GetExtent() });
+      impl.State->TellOfChanges({ impl.Blocks->GetExtent() });
     });
 }
 

@@ -4,6 +4,7 @@
 
 #include "ChainMailTypes.h"
 #include "DeformVolumeExport.h"
+#include "DeviceVectors.h"
 #include "Error.h"
 
 #include <array>
@@ -81,6 +82,11 @@ public:
   /// memory until SetOutput is called again. A step writes only what it changes; during a step the
   /// contents are undefined. All of it is written by the call.
   void SetOutput(float* output);
+
+  /// The same on the device of the model: a vector for each voxel, so that on a device with memory
+  /// of its own nothing passes through the host. The vectors know what each step has changed. Where
+  /// a step fails, and the voxel grid has to be set again, they are undefined.
+  void SetOutput(const std::shared_ptr<DeviceVectors>& output);
 
   /// What SetMaterials and Step would refuse of these: they throw the same.
   static void CheckMaterials(const std::vector<ChainMailMaterial>& table);

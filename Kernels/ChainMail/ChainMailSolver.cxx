@@ -81,7 +81,9 @@ void ChainMailSolver::PutToRest()
   if (this->State.HasOutput())
   {
     this->State.WriteOutput(this->Displaced);
-    this->State.ReadOutput(this->Blocks.Join(this->Displaced));
+    const std::vector<Extent> changes = this->Blocks.Join(this->Displaced);
+    this->State.ReadOutput(changes);
+    this->State.TellOfChanges(changes);
   }
   this->PutBack.insert(this->PutBack.end(), this->Displaced.begin(), this->Displaced.end());
   std::fill(this->IsDisplaced.begin(), this->IsDisplaced.end(), static_cast<unsigned char>(0));
@@ -353,6 +355,7 @@ void ChainMailSolver::Finish(ChainMailReport& report)
   }
   // Blocks that were saved and have not moved hold their displacements again, too.
   this->State.ReadOutput(this->Blocks.Join(this->Saved));
+  this->State.TellOfChanges(report.Changes);
   report.WasReset = this->WasReset;
   this->WasReset = false;
   this->PutBack.clear();

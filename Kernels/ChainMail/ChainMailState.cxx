@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ChainMailState.h"
 
+#include "DeviceVectorsInternals.h"
 #include "Error.h"
+#include "ExtentRanges.h"
 #include "HostMemory.h"
 #include "KernelSources.h"
 #include "KernelText.h"
@@ -117,6 +119,7 @@ void ChainMailState::ChangeMaterials(const std::function<void(unsigned char*)>& 
 
 void ChainMailState::PlaceOutput(float* output)
 {
+  this->VectorOutput.reset();
   this->HostOutput = nullptr;
   const std::uint64_t bytes =
     static_cast<std::uint64_t>(GetNumberOfPoints(this->Blocks.GetExtent())) * 3 * sizeof(float);
@@ -124,9 +127,46 @@ void ChainMailState::PlaceOutput(float* output)
   this->HostOutput = output;
 }
 
+void ChainMailState::PlaceOutput(const std::shared_ptr<DeviceVectors>& output)
+{
+  DeviceVectors::Internals& vectors = output->GetInternals();
+  if (vectors.AreInHostMemory())
+  {
+    this->PlaceOutput(vectors.GetHostMemory());
+  }
+  else
+  {
+    this->HostOutput = nullptr;
+    this->Output = vectors.GetBuffer();
+  }
+  this->VectorOutput = output;
+}
+
+void ChainMailState::TellOfChanges(const std::vector<Extent>& changes)
+{
+  if (!this->VectorOutput || changes.empty())
+  {
+    return;
+  }
+  DeviceVectors::Internals& vectors = this->VectorOutput->GetInternals();
+  if (const auto rows = FindRows(changes, this->Blocks.GetExtent()))
+  {
+    vectors.MarkWritten(*rows);
+  }
+  else
+  {
+    vectors.MarkAllWritten();
+  }
+}
+
 void ChainMailState::ReadOutput(const std::vector<Extent>& changes)
 {
   const cl::CommandQueue& queue = this->Device.GetQueue();
+  if (!this->HostOutput)
+  {
+    queue.finish();
+    return;
+  }
   if (IsInPlace(this->Output))
   {
     if (!this->Device.GetContext().SharesHostMemory())

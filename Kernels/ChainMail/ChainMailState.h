@@ -6,11 +6,13 @@
 #include "ChainMailHandles.h"
 #include "ChainMailLimits.h"
 #include "ChainMailParameters.h"
+#include "DeviceVectors.h"
 #include "WorkDevice.h"
 
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace deformvolume
@@ -58,10 +60,17 @@ public:
   void ChangeLinks(const std::function<void(unsigned char*)>& change);
   void ChangeMaterials(const std::function<void(unsigned char*)>& change);
 
+  ///@{
+  /// Where the output goes: memory of the host, or vectors on this device, one a voxel.
   void PlaceOutput(float* output);
-  bool HasOutput() const { return this->HostOutput != nullptr; }
-  /// Brings rows of blocks of the output, in structured indices, to the memory of the host.
+  void PlaceOutput(const std::shared_ptr<DeviceVectors>& output);
+  ///@}
+  bool HasOutput() const { return this->Output() != nullptr; }
+  /// Brings rows of blocks of the output, in structured indices, to where they are read. It waits
+  /// until they are written.
   void ReadOutput(const std::vector<Extent>& changes);
+  /// Tells vectors which rows of blocks are others than before.
+  void TellOfChanges(const std::vector<Extent>& changes);
 
   /// Each of these works on blocks.
   void Save(const std::vector<std::uint32_t>& list);
@@ -115,7 +124,8 @@ private:
   bool Serial;
   cl::Program Program;
   std::function<bool()> Progress;
-  float* HostOutput = nullptr;
+  float* HostOutput = nullptr; // null where it stays on the device
+  std::shared_ptr<DeviceVectors> VectorOutput;
   cl::Buffer Displacements, Flags, Links, Materials;
   cl::Buffer Limits, Weights, Reciprocals;
   cl::Buffer List, Results, Shared;

@@ -63,7 +63,7 @@ std::uint64_t CheckDeviceMemory(WorkDevice& device, MemoryBudget& budget,
   const DeformationSize& size, std::uint64_t outputBytesPerVoxel)
 {
   const std::uint64_t needed = CountDeviceMemory(device, size, outputBytesPerVoxel);
-  const std::uint64_t available = budget.GetUsable();
+  const std::uint64_t available = budget.GetUsable(needed);
   MemoryBudget::CheckBytes(needed, available, "on the device");
   return available - needed;
 }
@@ -81,13 +81,12 @@ void CheckMemory(
   const std::uint64_t outputBytesPerVoxel = shared ? 0 : tuple + 1;
   CheckDeviceMemory(device, budget, size, outputBytesPerVoxel);
   // What the caller holds, in the memory of the system, which a processor shares with its device.
-  const std::uint64_t system = budget.GetSystemMemory();
+  const std::uint64_t host = size.MappingBytes +
+    static_cast<std::uint64_t>(GetNumberOfPoints(size.OutputExtent)) * (tuple + 1);
+  const std::uint64_t onDevice = shared ? CountDeviceMemory(device, size, outputBytesPerVoxel) : 0;
+  const std::uint64_t system = budget.GetSystemMemory(host + onDevice);
   if (system > 0)
   {
-    const std::uint64_t host = size.MappingBytes +
-      static_cast<std::uint64_t>(GetNumberOfPoints(size.OutputExtent)) * (tuple + 1);
-    const std::uint64_t onDevice =
-      shared ? CountDeviceMemory(device, size, outputBytesPerVoxel) : 0;
     MemoryBudget::CheckBytes(host + onDevice, system + heldBytes, "in the system");
   }
 }

@@ -87,11 +87,40 @@ void VolumeDeformation::SetNodeDisplacements(const float* displacements, const P
     this->Rasterizer.SetDisplacements(displacements);
     return;
   }
+  this->CheckMesh();
+  this->Source.SetNodeDisplacements(displacements, changes);
+}
+
+void VolumeDeformation::SetNodeDisplacements(
+  const std::shared_ptr<DeviceVectors>& vectors, const std::array<double, 9>& toDisplacement)
+{
+  if (this->Rasterizer.HasMesh())
+  {
+    // Its nodes come from the host.
+    DisplacementField field;
+    field.ToDisplacement = toDisplacement;
+    VectorReading reading(this->Device);
+    reading.Begin(vectors, field, this->Rasterizer.GetNumberOfNodes());
+    this->SetNodeDisplacements(reading.GetDisplacements({}), nullptr);
+    return;
+  }
+  this->CheckMesh();
+  this->Source.SetNodeDisplacements(vectors, toDisplacement);
+}
+
+void VolumeDeformation::CheckMesh() const
+{
   if (!this->Source.HasMesh())
   {
     throw Error("No deformation mesh is set: call SetMesh first.");
   }
-  this->Source.SetNodeDisplacements(displacements, changes);
+}
+
+void VolumeDeformation::SetDisplacementField(
+  const DisplacementField& field, const std::shared_ptr<DeviceVectors>& vectors)
+{
+  this->Source.SetField(field, vectors);
+  this->Rasterizer.Clear();
 }
 
 void VolumeDeformation::SetDisplacementField(

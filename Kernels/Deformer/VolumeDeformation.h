@@ -10,8 +10,10 @@
 #include "MemoryNeeds.h"
 #include "MeshRasterizer.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace deformvolume
@@ -55,7 +57,11 @@ public:
     std::size_t numberOfNodes, const double* restNodes);
   void SetInverseField(const DisplacementField& field);
   void SetNodeDisplacements(const float* displacements, const PointRanges* changes);
+  void SetNodeDisplacements(
+    const std::shared_ptr<DeviceVectors>& vectors, const std::array<double, 9>& toDisplacement);
   void SetDisplacementField(const DisplacementField& field, const PointRanges* changes);
+  void SetDisplacementField(
+    const DisplacementField& field, const std::shared_ptr<DeviceVectors>& vectors);
   ///@}
 
   /// Throws an Error where something is not set that a request needs.
@@ -66,6 +72,8 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
+  /// Throws an Error where there is no deformation mesh.
+  void CheckMesh() const;
   DeformationSize GetSize(const DeformRequest& request) const;
   DeformReport Resample(const DeformRequest& request, std::uint64_t spare);
   DeformReport Rasterize(const DeformRequest& request, std::uint64_t spare);

@@ -194,6 +194,19 @@ void VolumeDeformer::SetDisplacementField(
   this->Impl->Send([&](VolumeDeformation& volume) { volume.SetDisplacementField(field, changes); });
 }
 
+void VolumeDeformer::SetNodeDisplacements(
+  const std::shared_ptr<DeviceVectors>& vectors, const std::array<double, 9>& toDisplacement)
+{
+  this->Impl->Send(
+    [&](VolumeDeformation& volume) { volume.SetNodeDisplacements(vectors, toDisplacement); });
+}
+
+void VolumeDeformer::SetDisplacementField(
+  const DisplacementField& field, const std::shared_ptr<DeviceVectors>& vectors)
+{
+  this->Impl->Send([&](VolumeDeformation& volume) { volume.SetDisplacementField(field, vectors); });
+}
+
 DeformReport VolumeDeformer::Deform(const DeformRequest& request)
 {
   if (GetNumberOfPoints(request.OutputExtent) == 0)

@@ -4,6 +4,7 @@
 
 #include "DeformRequest.h"
 #include "DeformVolumeExport.h"
+#include "DeviceVectors.h"
 #include "DisplacementField.h"
 #include "Error.h"
 #include "PointRanges.h"
@@ -13,6 +14,7 @@
 #include "VolumeArray.h"
 #include "VoxelGrid.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -39,8 +41,9 @@ public:
   VolumeDeformer& operator=(const VolumeDeformer&) = delete;
 
   /// Chooses the device (see ResolveDevice) and returns its name. A change of device forgets
-  /// all that was set. An update begins here: how much memory is free is measured once from this
-  /// call to the end of Deform.
+  /// all that was set. An update begins here: how much memory is free is measured at most once
+  /// from this call to the end of Deform; objects that ask for it one after the other, within a
+  /// tenth of a second, share a measurement as long as memory is plenty.
   std::string SetDevice(const std::string& request);
 
   /// Bytes that may be used on the device; 0: what the device (and for a processor, the
@@ -135,8 +138,21 @@ public:
   /// Null: any may have changed.
   void SetNodeDisplacements(const float* displacements, const PointRanges* changes = nullptr);
 
+  /// The same of vectors on the device of the volume, a vector for each node. toDisplacement takes
+  /// them to displacements, see DisplacementField. On a device with memory of its own nothing
+  /// passes through the host, but where there is no double precision and toDisplacement is not the
+  /// identity, and for MeshRasterization. What has changed since the last call with these vectors
+  /// is known by them.
+  void SetNodeDisplacements(const std::shared_ptr<DeviceVectors>& vectors,
+    const std::array<double, 9>& toDisplacement = DisplacementField().ToDisplacement);
+
   /// changes: as above, for fields of the same dimensions.
   void SetDisplacementField(const DisplacementField& field, const PointRanges* changes = nullptr);
+
+  /// A field of vectors on the device of the volume, as above. Vectors and Owner of field are not
+  /// used; on a processor the vectors are what Owner keeps.
+  void SetDisplacementField(
+    const DisplacementField& field, const std::shared_ptr<DeviceVectors>& vectors);
 
   DeformReport Deform(const DeformRequest& request);
 

@@ -251,10 +251,15 @@ void CheckDisplacements(
   const std::size_t bad = FindBadVector(displacements, FindWords(changes, count), count);
   if (bad < count)
   {
-    throw Error(std::string("The displacement of ") + what + " " + std::to_string(bad) +
-      " is not finite, or over 16,383 output voxels. Check the scale of the displacements and "
-      "the output spacing.");
+    ThrowBadDisplacement(what, bad);
   }
+}
+
+void ThrowBadDisplacement(const char* what, std::size_t point)
+{
+  throw Error(std::string("The displacement of ") + what + " " + std::to_string(point) +
+    " is not finite, or over 16,383 output voxels. Check the scale of the displacements and "
+    "the output spacing.");
 }
 
 std::size_t DisplacementBuffer::GetNumberOfPoints() const
@@ -269,6 +274,19 @@ void DisplacementBuffer::SendAll(
   PadVectors(displacements, numbers, FindWords(nullptr, count), count, padded.data());
   this->Buffer = this->Device.Send(padded.data(), padded.size() * sizeof(float), this->Buffer);
   this->Observer.MoveAll({});
+}
+
+const cl::Buffer& DisplacementBuffer::Place(std::size_t count)
+{
+  const bool isWritable =
+    this->Buffer() && this->Buffer.getInfo<CL_MEM_FLAGS>() & CL_MEM_READ_WRITE;
+  if (!isWritable || this->GetNumberOfPoints() < count)
+  {
+    this->Clear();
+    deformvolume::Reserve(this->Device.GetContext(), this->Buffer, 4 * count * sizeof(float));
+  }
+  this->Observer.MoveAll({});
+  return this->Buffer;
 }
 
 void DisplacementBuffer::Reserve(std::size_t count)

@@ -23,6 +23,9 @@ class DisplacementObserver;
 void CheckDisplacements(
   const float* displacements, std::size_t count, const char* what, const PointRanges* changes);
 
+/// Throws that Error.
+[[noreturn]] void ThrowBadDisplacement(const char* what, std::size_t point);
+
 /// Displacements of points on the device, four floats each. On a processor only those that change
 /// are written, and the observer is told which.
 class DisplacementBuffer
@@ -44,6 +47,10 @@ public:
 
   /// Makes room for points of so many numbers; those that are new have no displacement yet.
   void Reserve(std::size_t count);
+
+  /// Makes room for points of so many numbers that a kernel writes; what was there may be lost. All
+  /// points count as changed.
+  const cl::Buffer& Place(std::size_t count);
 
   const cl::Buffer& Get() const { return this->Buffer; }
   /// That there is room for.

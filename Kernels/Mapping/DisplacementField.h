@@ -54,18 +54,23 @@ inline bool HasDisplacements(const DisplacementField& field)
   return field.ToDisplacement == DisplacementField().ToDisplacement;
 }
 
-/// An element of the matrix of a field as it is applied: rounded to 29 bits, so that its product
-/// with a float is exact in double precision. Then it does not matter whether a compiler, of the
-/// host or of the device, fuses products with sums.
-inline double GetFactor(const DisplacementField& field, int element)
+/// A factor rounded to 29 bits, so that its product with a float is exact in double precision. Then
+/// it does not matter whether a compiler, of the host or of the device, fuses products with sums.
+inline double RoundFactor(double exact)
 {
   std::uint64_t bits = 0;
-  std::memcpy(&bits, &field.ToDisplacement[element], sizeof(bits));
+  std::memcpy(&bits, &exact, sizeof(bits));
   constexpr std::uint64_t unit = 1 << 24;
   bits = (bits + unit / 2) & ~(unit - 1);
   double factor = 0.0;
   std::memcpy(&factor, &bits, sizeof(factor));
   return factor;
+}
+
+/// An element of the matrix of a field as it is applied.
+inline double GetFactor(const DisplacementField& field, int element)
+{
+  return RoundFactor(field.ToDisplacement[element]);
 }
 
 /// The displacement of a point of a field, to the last bit as the kernels have it.

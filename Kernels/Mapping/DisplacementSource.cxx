@@ -46,6 +46,7 @@ DisplacementSource::DisplacementSource(
   , Observer(observer)
   , Nodes(device, observer)
   , FieldVectors(device, observer)
+  , Reading(device)
 {
 }
 
@@ -262,6 +263,31 @@ std::vector<Extent> DisplacementSource::UpdateBridges()
 void DisplacementSource::SetNodeDisplacements(
   const float* displacements, const PointRanges* changes)
 {
+  this->Reading.Forget();
+  this->SendNodes(displacements, changes);
+}
+
+void DisplacementSource::SetNodeDisplacements(
+  const std::shared_ptr<DeviceVectors>& vectors, const std::array<double, 9>& toDisplacement)
+{
+  DisplacementField field;
+  field.ToDisplacement = toDisplacement;
+  const std::optional<PointRanges> changes =
+    this->Reading.Begin(vectors, field, this->NumberOfNodes);
+  if (!this->Reading.CanConvert())
+  {
+    this->SendNodes(this->Reading.GetDisplacements(changes), changes ? &*changes : nullptr);
+    return;
+  }
+  this->NodesSet = false;
+  this->Reading.Convert(this->Nodes.Place(this->Order.Nodes.size()), this->Order.Nodes, "node");
+  this->NodesSet = true;
+  this->LastSent = true;
+  this->Volume.ForgetRecords();
+}
+
+void DisplacementSource::SendNodes(const float* displacements, const PointRanges* changes)
+{
   const PointRanges* news = this->NodesSet && this->LastSent ? changes : nullptr;
   this->LastSent = false;
   CheckDisplacements(displacements, this->NumberOfNodes, "node", news);
@@ -274,19 +300,64 @@ void DisplacementSource::SetNodeDisplacements(
 
 void DisplacementSource::SetField(const DisplacementField& field, const PointRanges* changes)
 {
-  const std::size_t points = CountPoints(field);
+  this->Reading.Forget();
+  this->UseField(field, changes);
+}
+
+void DisplacementSource::SetField(
+  const DisplacementField& field, const std::shared_ptr<DeviceVectors>& vectors)
+{
+  const auto points = static_cast<std::size_t>(GetNumberOfPoints(field));
+  const std::optional<PointRanges> changes = this->Reading.Begin(vectors, field, points);
+  if (!this->Reading.CanConvert())
+  {
+    this->Reading.Check(changes, "point"); // what is read where it lies is not looked at again
+    DisplacementField read = field;
+    read.Vectors = vectors->Read();
+    read.Owner = vectors;
+    this->UseField(read, changes ? &*changes : nullptr);
+    return;
+  }
+  const FieldParameters parameters = this->BeginField(field);
+  this->CheckFieldSize();
+  if (this->FieldInPlace.Owner || this->FieldVectors.GetNumberOfPoints() != points)
+  {
+    this->ForgetField();
+  }
+  this->Field = parameters;
+  this->LastSent = false;
+  try
+  {
+    this->Reading.Convert(this->FieldVectors.Place(points), {}, "point");
+  }
+  catch (...)
+  {
+    this->ForgetField();
+    throw;
+  }
+}
+
+FieldParameters DisplacementSource::BeginField(const DisplacementField& field)
+{
   const FieldParameters parameters = MakeFieldParameters(field, this->Volume.GetVoxelGrid());
   if (this->Volume.HasMesh())
   {
     this->Volume.ForgetMesh();
   }
   this->ForgetNodes();
-  this->NumberOfNodes = points;
+  this->NumberOfNodes = static_cast<std::size_t>(GetNumberOfPoints(field));
   if (!this->HasField() || !IsSameMapping(parameters, this->Field))
   {
     this->Observer.ForgetMapping();
     this->Volume.ForgetState();
   }
+  return parameters;
+}
+
+void DisplacementSource::UseField(const DisplacementField& field, const PointRanges* changes)
+{
+  CountPoints(field); // throws where there are none
+  const FieldParameters parameters = this->BeginField(field);
   if (this->CanReadInPlace(field, parameters))
   {
     const DisplacementField& last = this->FieldInPlace;
@@ -307,6 +378,15 @@ void DisplacementSource::SetField(const DisplacementField& field, const PointRan
   this->SendField(field, parameters, changes);
 }
 
+void DisplacementSource::CheckFieldSize() const
+{
+  if (4 * this->NumberOfNodes * sizeof(float) > this->Device.GetAllocationLimit())
+  {
+    throw Error("The displacement field is larger than the device can hold in one piece. Use a "
+                "coarser field or another device.");
+  }
+}
+
 void DisplacementSource::SendField(
   const DisplacementField& field, const FieldParameters& parameters, const PointRanges* changes)
 {
@@ -320,11 +400,7 @@ void DisplacementSource::SendField(
     parameters.IsMapped ? MapVectors(field) : std::vector<float>();
   const float* vectors = parameters.IsMapped ? displacements.data() : field.Vectors;
   CheckDisplacements(vectors, points, "point", news);
-  if (4 * points * sizeof(float) > this->Device.GetAllocationLimit())
-  {
-    throw Error("The displacement field is larger than the device can hold in one piece. Use a "
-                "coarser field or another device.");
-  }
+  this->CheckFieldSize();
   this->Field = parameters;
   this->FieldVectors.Send(vectors, points, {}, news, [this] { return this->MakeBrickPoints(); });
   this->LastSent = true;

@@ -9,6 +9,7 @@
 #include "MappingProgram.h"
 #include "MeshOrder.h"
 #include "Tetrahedron.h"
+#include "VectorReading.h"
 #include "VertexLink.h"
 #include "VertexRuns.h"
 
@@ -53,8 +54,14 @@ public:
   /// Three floats a node, in output voxels. changes: see VolumeDeformer::SetNodeDisplacements.
   void SetNodeDisplacements(const float* displacements, const PointRanges* changes);
 
+  /// The same of vectors on the device. toDisplacement: see DisplacementField.
+  void SetNodeDisplacements(
+    const std::shared_ptr<DeviceVectors>& vectors, const std::array<double, 9>& toDisplacement);
+
   /// A field that is not empty (CountPoints). changes: see VolumeDeformer::SetDisplacementField.
   void SetField(const DisplacementField& field, const PointRanges* changes);
+  /// A field that has its vectors on the device.
+  void SetField(const DisplacementField& field, const std::shared_ptr<DeviceVectors>& vectors);
 
   /// There is no deformation any more.
   void Forget();
@@ -99,15 +106,20 @@ private:
   std::vector<TetrahedronChange> FindChanges(const Tetrahedron* tetrahedra) const;
   void CheckChanges(const std::vector<TetrahedronChange>& changes, std::size_t numberOfNodes) const;
   void SendChanges(const std::vector<TetrahedronChange>& changes);
+  void SendNodes(const float* displacements, const PointRanges* changes);
   void ForgetNodes();
   void ForgetField();
   bool HasField() const { return this->GetFieldVectors()() != nullptr; }
   const cl::Buffer& GetFieldVectors() const;
+  /// What moves the voxels becomes a field, of which this returns what the kernels are told.
+  FieldParameters BeginField(const DisplacementField& field);
+  void UseField(const DisplacementField& field, const PointRanges* changes);
   bool CanReadInPlace(const DisplacementField& field, const FieldParameters& parameters) const;
   /// Some points of the field that is read where it lies have changed. False where all of it is as
   /// good as new.
   bool ChangeInPlace(const DisplacementField& field, const PointRanges& changes);
   void SetFieldInPlace(const DisplacementField& field);
+  void CheckFieldSize() const;
   void SendField(
     const DisplacementField& field, const FieldParameters& parameters, const PointRanges* changes);
 
@@ -128,6 +140,7 @@ private:
   DisplacementField FieldInPlace; // with an owner, where the kernels read the vectors of that
   cl::Buffer VectorsInPlace;      // which lies over them
 
+  VectorReading Reading;
   bool LastSent = false; // the last displacements that were given are on the device
 };
 

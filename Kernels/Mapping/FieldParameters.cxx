@@ -45,9 +45,24 @@ std::size_t CountPoints(const DisplacementField& field)
   return points;
 }
 
-FieldParameters MakeFieldParameters(const DisplacementField& field, const VoxelGrid& voxelGrid)
+FieldParameters MakeMatrixParameters(const DisplacementField& field)
 {
   FieldParameters parameters = {};
+  parameters.IsMapped = !HasDisplacements(field);
+  for (int i = 0; i < 9; ++i)
+  {
+    const double factor = GetFactor(field, i);
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &factor, sizeof(bits));
+    parameters.ToDisplacement[2 * i] = static_cast<unsigned int>(bits);
+    parameters.ToDisplacement[2 * i + 1] = static_cast<unsigned int>(bits >> 32);
+  }
+  return parameters;
+}
+
+FieldParameters MakeFieldParameters(const DisplacementField& field, const VoxelGrid& voxelGrid)
+{
+  FieldParameters parameters = MakeMatrixParameters(field);
   std::transform(field.IndexToField.begin(), field.IndexToField.end(), parameters.IndexToField,
     [](double element) { return static_cast<float>(element); });
   // The kernels count from the first voxel of the whole volume: large structured indices do not fit
@@ -62,35 +77,32 @@ FieldParameters MakeFieldParameters(const DisplacementField& field, const VoxelG
       static_cast<float>(m[0] * whole[0] + m[1] * whole[2] + m[2] * whole[4] + m[3]);
     parameters.First[row] = extent[2 * row] - whole[2 * row];
   }
-  parameters.IsMapped = !HasDisplacements(field);
-  for (int i = 0; i < 9; ++i)
-  {
-    const double factor = GetFactor(field, i);
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &factor, sizeof(bits));
-    parameters.ToDisplacement[2 * i] = static_cast<unsigned int>(bits);
-    parameters.ToDisplacement[2 * i + 1] = static_cast<unsigned int>(bits >> 32);
-  }
   std::copy_n(field.Dimensions.begin(), 3, parameters.Dimensions);
   parameters.Extrapolate = field.Extrapolate;
   SetSameGrid(parameters, extent);
   return parameters;
 }
 
+void MapVectors(
+  const DisplacementField& field, const std::array<std::size_t, 2>& range, float* displacements)
+{
+  ParallelForParts(range[1] - range[0], 1 << 16,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t point = range[0] + begin; point < range[0] + end; ++point)
+      {
+        const std::array<float, 3> displacement =
+          GetDisplacement(field, static_cast<std::int64_t>(point));
+        std::copy(displacement.begin(), displacement.end(), displacements + 3 * point);
+      }
+    });
+}
+
 std::vector<float> MapVectors(const DisplacementField& field)
 {
   const auto points = static_cast<std::size_t>(GetNumberOfPoints(field));
   std::vector<float> displacements(3 * points);
-  ParallelForParts(points, 1 << 16,
-    [&](std::size_t begin, std::size_t end)
-    {
-      for (std::size_t point = begin; point < end; ++point)
-      {
-        const std::array<float, 3> displacement =
-          GetDisplacement(field, static_cast<std::int64_t>(point));
-        std::copy(displacement.begin(), displacement.end(), displacements.begin() + 3 * point);
-      }
-    });
+  MapVectors(field, { { 0, points } }, displacements.data());
   return displacements;
 }
 

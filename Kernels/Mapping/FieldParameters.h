@@ -6,6 +6,7 @@
 #include "KernelParameters.h"
 #include "VoxelGrid.h"
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -18,8 +19,14 @@ std::size_t CountPoints(const DisplacementField& field);
 /// What the kernels are told of a field that moves the voxels of a grid.
 FieldParameters MakeFieldParameters(const DisplacementField& field, const VoxelGrid& voxelGrid);
 
+/// The same of what takes vectors to displacements only: the matrix of a field.
+FieldParameters MakeMatrixParameters(const DisplacementField& field);
+
 /// The displacements of a field, three floats a point.
 std::vector<float> MapVectors(const DisplacementField& field);
+/// Those of some points of it, from the first one to one past the last.
+void MapVectors(
+  const DisplacementField& field, const std::array<std::size_t, 2>& range, float* displacements);
 
 } // namespace deformvolume
 

@@ -39,4 +39,13 @@ cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping)
     KernelOptions);
 }
 
+cl::Program GetConversionProgram(OpenCLContext& context)
+{
+  const ProgramText products =
+    HasDouble(context) ? GetMappingText(MappingForm::FieldInPlace) : ProgramText("");
+  return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText() +
+      "#define HAS_MAPPING_KERNEL 0\n" + products + VectorConversion_cl,
+    KernelOptions);
+}
+
 } // namespace deformvolume

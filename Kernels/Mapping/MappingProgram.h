@@ -24,6 +24,9 @@ cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping);
 /// What leaves out tetrahedra that bridge a gap (BridgeMask.cl), for links or runs.
 cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping);
 
+/// What makes displacements of vectors (VectorConversion.cl).
+cl::Program GetConversionProgram(OpenCLContext& context);
+
 /// The text of a form of the mapping (DeformationMapping.cl). It expects GetSamplingMeshText
 /// before.
 ProgramText GetMappingText(MappingForm mapping);

@@ -26,7 +26,7 @@ std::string ResolveDevice(const std::string& request)
 DeviceAbilities GetDeviceAbilities(const std::string& request)
 {
   const OpenCLDevice device = FindDevice(request);
-  return { device.Description.HasDouble, device.HasVectors };
+  return { device.Description.HasDouble, device.HasVectors, !device.IsProcessor };
 }
 
 void ShareProcessors(int processes)

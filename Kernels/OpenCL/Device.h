@@ -38,6 +38,8 @@ struct DeviceAbilities
   /// Whether a work-item has the vector registers of a processor for itself, as the resampling by
   /// lanes and updates of a part of the output need.
   bool Vectors = false;
+  /// Whether it has memory apart from that of the host: all devices but processors count as such.
+  bool OwnMemory = false;
 };
 
 /// Of the device that a request resolves to. Throws Error as ResolveDevice does.

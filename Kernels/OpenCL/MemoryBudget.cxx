@@ -2,7 +2,7 @@
 #include "MemoryBudget.h"
 
 #include "Error.h"
-#include "SystemMemory.h"
+#include "FreeMemory.h"
 #include "WorkDevice.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ MemoryBudget::MemoryBudget(WorkDevice& device, std::function<std::uint64_t()> he
 {
 }
 
-std::uint64_t MemoryBudget::GetUsable()
+std::uint64_t MemoryBudget::GetUsable(std::uint64_t needed)
 {
   if (this->Limit)
   {
@@ -26,32 +26,50 @@ std::uint64_t MemoryBudget::GetUsable()
   }
   const OpenCLDevice& device = this->Device.GetDevice();
   const std::uint64_t all = device.Device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
-  const std::uint64_t system = device.IsProcessor ? this->GetSystemMemory() : 0;
+  const std::uint64_t system = device.IsProcessor ? this->GetSystemMemory(needed) : 0;
   return system ? std::min(all, system) : all;
 }
 
-std::uint64_t MemoryBudget::GetSystemMemory()
+std::uint64_t MemoryBudget::GetSystemMemory(std::uint64_t needed)
 {
-  if (!this->SystemMemory)
+  if (this->SystemMemory && (this->IsMeasured || needed <= this->Granted))
   {
-    const std::uint64_t left = deformvolume::GetSystemMemory();
-    const bool shared = this->Device.GetDevice().IsProcessor;
-    this->SystemMemory = left + (left && shared ? this->CountHeld() : 0);
+    return *this->SystemMemory;
+  }
+  if (const auto left = FreeMemory::Get().Grant(needed))
+  {
+    this->SystemMemory = left;
+    this->Granted = needed;
+    this->IsMeasured = false;
+  }
+  else
+  {
+    this->MeasureSystemMemory(needed);
   }
   return *this->SystemMemory;
 }
 
+void MemoryBudget::MeasureSystemMemory(std::uint64_t needed)
+{
+  const std::uint64_t left = FreeMemory::Get().Measure(needed);
+  const bool shared = this->Device.GetDevice().IsProcessor;
+  this->SystemMemory = left + (left && shared ? this->CountHeld() : 0);
+  this->IsMeasured = true;
+}
+
 bool MemoryBudget::HasRoomFor(std::uint64_t bytes)
 {
-  this->ForgetSystemMemory(); // the output takes some of it by now
+  this->MeasureSystemMemory(bytes); // the output takes some of it by now
   // Also where none is missing: the limit may be lower now.
-  return this->CountHeld() + bytes <= this->GetUsable();
+  const std::uint64_t needed = this->CountHeld() + bytes;
+  return needed <= this->GetUsable(needed);
 }
 
 void MemoryBudget::CheckRoomFor(std::uint64_t bytes, const char* where)
 {
-  this->ForgetSystemMemory();
-  CheckBytes(this->CountHeld() + bytes, this->GetUsable(), where);
+  this->MeasureSystemMemory(bytes);
+  const std::uint64_t needed = this->CountHeld() + bytes;
+  CheckBytes(needed, this->GetUsable(needed), where);
 }
 
 void MemoryBudget::CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where)

@@ -68,8 +68,14 @@ struct Dragged
   vtkFloatArray* Update()
   {
     VERIFY_EQUAL(this->TryUpdate(), std::string());
-    return vtkFloatArray::SafeDownCast(
-      this->Filter->GetOutput()->GetPointData()->GetArray("Displacement"));
+    vtkDataArray* array = this->Filter->GetOutput()->GetPointData()->GetArray("Displacement");
+    auto* const floats = vtkFloatArray::SafeDownCast(array);
+    if (array && !floats) // it is on a device
+    {
+      this->Copied->DeepCopy(array);
+      return this->Copied;
+    }
+    return floats;
   }
   vtkFloatArray* Drag(const std::vector<Handle>& handles)
   {
@@ -80,6 +86,7 @@ struct Dragged
   vtkNew<vtkChainMailDeformation> Filter;
   vtkNew<vtkTest::ErrorObserver> Observer;
   vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
+  vtkNew<vtkFloatArray> Copied;
 };
 
 inline vtkSmartPointer<vtkFloatArray> Copy(vtkFloatArray* array)

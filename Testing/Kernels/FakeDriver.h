@@ -27,6 +27,11 @@ struct FakeDriver
   /// Launches of more than one work-item that left the size of the groups to the driver.
   int LaunchesWithoutGroup = 0;
 
+  /// Bytes that calls of the host have brought from buffers and to them. A buffer that is mapped
+  /// counts as read and written as the access has it.
+  std::uint64_t BytesRead = 0;
+  std::uint64_t BytesWritten = 0;
+
   static FakeDriver& Get();
 };
 

@@ -2,6 +2,7 @@
 // What is different on a graphics card, on whatever device there is: memory of its own, no double
 // precision, and groups of work-items.
 #include "DeformerCase.h"
+#include "DeviceVectors.h"
 #include "FakeDriver.h"
 
 #include <gtest/gtest.h>
@@ -96,4 +97,26 @@ TEST_F(GraphicsDevice, WholeNumbersThatSinglePrecisionDoesNotHold)
   EXPECT_NE(this->GetError({ MakeArray(longs) }).find("double precision"), std::string::npos);
   EXPECT_EQ(this->GetError({ MakeArray(ints, 1, true), MakeArray(longs, 1, true) }), "");
   EXPECT_EQ(this->GetError({ MakeArray(this->Values) }), "");
+}
+
+// A matrix is applied in double precision: on the host, where the device has none.
+TEST_F(GraphicsDevice, VectorsOfTheDevice)
+{
+  const auto vectors =
+    std::make_shared<DeviceVectors>("", static_cast<std::size_t>(this->Case.GetNumberOfVoxels()));
+  std::vector<float> displacements = this->Case.GetDisplacements();
+  vectors->Write(displacements.data());
+  Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
+  const Deformed expected = RunDeformer(this->Deformer, this->Case, this->Arrays);
+  FakeDriver::Get().BytesRead = 0;
+  this->Deformer.SetNodeDisplacements(vectors);
+  EXPECT_LT(FakeDriver::Get().BytesRead, 256U) << "without a matrix nothing is read";
+  EXPECT_EQ(RunDeformer(this->Deformer, this->Case, this->Arrays).Outputs, expected.Outputs);
+  for (float& component : displacements)
+  {
+    component *= 4.0F; // exact
+  }
+  vectors->Write(displacements.data());
+  this->Deformer.SetNodeDisplacements(vectors, { { 0.25, 0, 0, 0, 0.25, 0, 0, 0, 0.25 } });
+  EXPECT_EQ(RunDeformer(this->Deformer, this->Case, this->Arrays).Outputs, expected.Outputs);
 }

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What Deformation does with vectors that lie on a device.
+#include "Deformation.h"
+
+#include "vtkDeviceVectorArray.h"
+
+#include <utility>
+
+namespace deformvolume
+{
+
+bool Deformation::UseVectorsOnDevice(
+  vtkDataArray* array, vtkIdType points, double factor, const DeformationSource& source)
+{
+  auto* const vectors = vtkDeviceVectorArray::SafeDownCast(array);
+  std::shared_ptr<DeviceVectors> there;
+  if (vectors && !source.Device.empty() && vectors->GetNumberOfTuples() == points)
+  {
+    there = vectors->GetVectors(source.Device);
+  }
+  this->ForgetVectorsOnDevice();
+  if (!there)
+  {
+    return false;
+  }
+  this->VectorsStamp.clear();
+  this->FieldInPlace = DisplacementField();
+  this->VectorsAreWhole = false; // those on the host are of another version
+  this->OnDevice = std::move(there);
+  this->ArrayOnDevice = vectors;
+  this->FactorOnDevice = factor;
+  this->IsOnHost = false;
+  const glm::dmat3 transform = deformvolume::GetToDisplacement(source, factor);
+  for (int i = 0; i < 9; ++i)
+  {
+    this->MatrixOnDevice[i] = transform[i % 3][i / 3];
+  }
+  ++this->VectorsVersion;
+  return true;
+}
+
+void Deformation::ForgetVectorsOnDevice()
+{
+  this->OnDevice.reset();
+  this->ArrayOnDevice = nullptr;
+  this->IsOnHost = true;
+}
+
+void Deformation::BringToHost()
+{
+  if (this->IsOnHost)
+  {
+    return;
+  }
+  Stamp stamp = this->VectorsStamp;
+  this->Memories.clear();
+  this->ReplaceVectors(
+    static_cast<std::size_t>(this->ArrayOnDevice->GetNumberOfTuples()),
+    [&](const VectorTaker& take)
+    {
+      ReadVectors(this->ArrayOnDevice, take, this->Field ? "Vector" : "Displacement",
+        this->Field ? "displacement field on input port 1" : MESH_NAME);
+    },
+    this->FactorOnDevice, this->VectorsSource);
+  this->VectorsStamp = std::move(stamp);
+  this->IsOnHost = true;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DeviceVectors.h"
+
+#include "DeviceVectorsInternals.h"
+#include "HostMemory.h"
+
+#include <algorithm>
+
+namespace deformvolume
+{
+namespace
+{
+
+constexpr std::size_t VectorSize = 3 * sizeof(float);
+
+// Runs a function, with floating-point traps off and OpenCL's errors put into words.
+template <typename Function>
+auto Guard(Function&& function)
+{
+  const FloatingPointTrapGuard guard;
+  try
+  {
+    return function();
+  }
+  catch (const cl::Error& error)
+  {
+    throw Error(GetMessage(error));
+  }
+}
+
+void CheckSource(const float* vectors)
+{
+  if (!vectors)
+  {
+    throw Error("There are no vectors to write.");
+  }
+}
+
+} // namespace
+
+DeviceVectors::Internals::Internals(OpenCLContext& context, std::size_t numberOfPoints)
+  : NumberOfPoints(numberOfPoints)
+{
+  this->Device.Use(context);
+  if (context.GetDevice().IsProcessor)
+  {
+    this->Host.resize(3 * numberOfPoints);
+    return;
+  }
+  const std::uint64_t bytes = std::uint64_t{ numberOfPoints } * VectorSize;
+  if (bytes > this->Device.GetAllocationLimit())
+  {
+    throw Error("The vectors are larger than the device can hold in one piece. Use fewer points or "
+                "another device.");
+  }
+  Reserve(context, this->Buffer, bytes);
+  this->Device.GetQueue().enqueueFillBuffer(this->Buffer, cl_float{ 0.0F }, 0, bytes);
+  this->Device.GetQueue().finish();
+}
+
+void DeviceVectors::Internals::Write(const float* vectors)
+{
+  if (this->AreInHostMemory())
+  {
+    std::copy_n(vectors, this->Host.size(), this->Host.begin());
+  }
+  else
+  {
+    this->Device.GetQueue().enqueueWriteBuffer(
+      this->Buffer, CL_TRUE, 0, this->NumberOfPoints * VectorSize, vectors);
+  }
+  this->MarkAllWritten();
+}
+
+void DeviceVectors::Internals::Write(const float* vectors, const PointRanges& written)
+{
+  PointRanges ranges;
+  for (const auto& range : written)
+  {
+    const std::size_t end = std::min(range[1], this->NumberOfPoints);
+    if (range[0] < end)
+    {
+      ranges.push_back({ { range[0], end } });
+    }
+  }
+  if (ranges.empty())
+  {
+    return;
+  }
+  this->MarkWritten(ranges);
+  if (this->AreInHostMemory())
+  {
+    for (const auto& range : ranges)
+    {
+      std::copy(vectors + 3 * range[0], vectors + 3 * range[1], this->Host.begin() + 3 * range[0]);
+    }
+    return;
+  }
+  const QueueGuard guard(this->Device.GetQueue());
+  for (const auto& range : ranges)
+  {
+    this->Device.GetQueue().enqueueWriteBuffer(this->Buffer, CL_FALSE, range[0] * VectorSize,
+      (range[1] - range[0]) * VectorSize, vectors + 3 * range[0]);
+  }
+}
+
+void DeviceVectors::Internals::CopyToHost(std::size_t begin, std::size_t end)
+{
+  this->Device.GetQueue().enqueueReadBuffer(this->Buffer, CL_TRUE, begin * VectorSize,
+    (end - begin) * VectorSize, this->Host.data() + 3 * begin);
+}
+
+const float* DeviceVectors::Internals::Read()
+{
+  const bool isNew = this->Host.empty();
+  if (this->AreInHostMemory() || (!isNew && this->HostRevision == this->Log.GetRevision()))
+  {
+    return this->Host.data();
+  }
+  const auto changes = isNew ? std::nullopt : this->Log.GetSince(this->HostRevision);
+  this->Host.resize(3 * this->NumberOfPoints);
+  std::size_t begin = changes ? this->NumberOfPoints : 0;
+  std::size_t end = changes ? 0 : this->NumberOfPoints;
+  // In one piece: to start a copy costs more than some thousand vectors.
+  for (const auto& range : changes ? *changes : PointRanges())
+  {
+    begin = std::min(begin, range[0]);
+    end = std::max(end, range[1]);
+  }
+  if (begin < end)
+  {
+    this->CopyToHost(begin, end);
+  }
+  this->HostRevision = this->Log.GetRevision();
+  return this->Host.data();
+}
+
+void CheckVectors(DeviceVectors* vectors, WorkDevice& device, std::size_t numberOfPoints)
+{
+  if (!vectors)
+  {
+    throw Error("There are no vectors on a device.");
+  }
+  if (vectors->GetNumberOfPoints() != numberOfPoints)
+  {
+    throw Error("There are " + std::to_string(vectors->GetNumberOfPoints()) +
+      " vectors on the device for " + std::to_string(numberOfPoints) +
+      " points. Give one for each point.");
+  }
+  if (!vectors->GetInternals().IsOn(device.GetContext()))
+  {
+    throw Error("The vectors are on the device \"" + vectors->GetDevice() +
+      "\", and the volume is on \"" + device.GetDevice().Name +
+      "\". Use one device for both, or read the vectors on the host.");
+  }
+}
+
+DeviceVectors::DeviceVectors(const std::string& device, std::size_t numberOfPoints)
+{
+  if (numberOfPoints == 0)
+  {
+    throw Error("Vectors on a device need at least one point.");
+  }
+  Guard(
+    [&]
+    {
+      this->Impl =
+        std::make_unique<Internals>(OpenCLContext::Get(FindDevice(device)), numberOfPoints);
+    });
+}
+
+DeviceVectors::~DeviceVectors() = default;
+
+const std::string& DeviceVectors::GetDevice() const
+{
+  return this->Impl->GetDevice();
+}
+
+bool DeviceVectors::AreInHostMemory() const
+{
+  return this->Impl->AreInHostMemory();
+}
+
+std::size_t DeviceVectors::GetNumberOfPoints() const
+{
+  return this->Impl->GetNumberOfPoints();
+}
+
+std::uint64_t DeviceVectors::GetDeviceMemory() const
+{
+  return this->AreInHostMemory() ? std::uint64_t{ this->GetNumberOfPoints() } * VectorSize
+                                 : GetMemory(this->Impl->GetBuffer());
+}
+
+void DeviceVectors::Write(const float* vectors)
+{
+  CheckSource(vectors);
+  Guard([&] { this->Impl->Write(vectors); });
+}
+
+void DeviceVectors::Write(const float* vectors, const PointRanges& written)
+{
+  CheckSource(vectors);
+  Guard([&] { this->Impl->Write(vectors, written); });
+}
+
+const float* DeviceVectors::Read()
+{
+  return Guard([&] { return this->Impl->Read(); });
+}
+
+std::uint64_t DeviceVectors::GetRevision() const
+{
+  return this->Impl->GetLog().GetRevision();
+}
+
+std::optional<PointRanges> DeviceVectors::GetChanges(std::uint64_t revision) const
+{
+  return this->Impl->GetLog().GetSince(revision);
+}
+
+} // namespace deformvolume

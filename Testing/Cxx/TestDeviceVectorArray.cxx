@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vtkDeviceVectorArray by VTK's interfaces, as an array of the host and with vectors of a device.
+#include "FilterTesting.h"
+#include "vtkArrayChanges.h"
+#include "vtkDeviceVectorArray.h"
+
+#include "Device.h"
+#include "DeviceVectors.h"
+
+#include <vtkArrayDispatch.h>
+#include <vtkArrayIteratorTemplate.h>
+#include <vtkIdList.h>
+#include <vtkVariant.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLImageDataWriter.h>
+
+#include <string>
+#include <vector>
+
+using namespace filterTesting;
+
+namespace
+{
+
+using Vectors = std::shared_ptr<deformvolume::DeviceVectors>;
+
+float GetNumber(vtkIdType value)
+{
+  return 0.25F * static_cast<float>(value) - 3.0F;
+}
+
+std::vector<float> MakeNumbers(std::size_t tuples)
+{
+  std::vector<float> numbers;
+  for (std::size_t i = 0; i < 3 * tuples; ++i)
+  {
+    numbers.push_back(GetNumber(static_cast<vtkIdType>(i)));
+  }
+  return numbers;
+}
+
+bool Has(vtkDataArray* array, const std::vector<float>& numbers)
+{
+  bool has = array->GetNumberOfValues() == static_cast<vtkIdType>(numbers.size());
+  for (vtkIdType tuple = 0; has && tuple < array->GetNumberOfTuples(); ++tuple)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      has =
+        has && array->GetComponent(tuple, c) == numbers[static_cast<std::size_t>(3 * tuple + c)];
+    }
+  }
+  return has;
+}
+
+// Made by inserting, as any array.
+vtkSmartPointer<vtkDeviceVectorArray> MakeByInserting(std::size_t tuples)
+{
+  auto array = vtkSmartPointer<vtkDeviceVectorArray>::New();
+  array->SetName("vectors");
+  array->SetNumberOfComponents(3);
+  const std::vector<float> numbers = MakeNumbers(tuples);
+  for (std::size_t i = 0; i < tuples; ++i)
+  {
+    array->InsertNextTuple(&numbers[3 * i]);
+  }
+  return array;
+}
+
+Vectors MakeVectors(std::size_t tuples)
+{
+  const auto vectors = std::make_shared<deformvolume::DeviceVectors>("", tuples);
+  vectors->Write(MakeNumbers(tuples).data());
+  return vectors;
+}
+
+void CheckReading(vtkDeviceVectorArray* array)
+{
+  constexpr vtkIdType tuples = 50;
+  VERIFY_EQUAL(array->GetNumberOfTuples(), tuples);
+  VERIFY_EQUAL(array->GetNumberOfComponents(), 3);
+  VERIFY_EQUAL(array->GetDataType(), VTK_FLOAT);
+  VERIFY(Has(array, MakeNumbers(50)));
+  VERIFY_EQUAL(array->GetTuple(7)[1], double{ GetNumber(22) });
+  VERIFY_EQUAL(array->GetValue(149), GetNumber(149));
+  float tuple[3];
+  array->GetTypedTuple(49, tuple);
+  VERIFY_EQUAL(tuple[2], GetNumber(149));
+  VERIFY_EQUAL(array->GetTypedComponent(3, 1), GetNumber(10));
+  VERIFY_EQUAL(array->GetVariantValue(5).ToFloat(), GetNumber(5));
+  VERIFY_EQUAL(array->LookupValue(vtkVariant(GetNumber(77))), 77);
+  double range[2];
+  array->GetRange(range, 1);
+  VERIFY_EQUAL(range[0], double{ GetNumber(1) });
+  VERIFY_EQUAL(range[1], double{ GetNumber(148) });
+  array->GetRange(range, -1);
+  VERIFY(range[1] > 50.0 && range[1] < 60.0);
+  // Copies into other arrays, and from them.
+  vtkNew<vtkFloatArray> floats;
+  floats->DeepCopy(array);
+  VERIFY(Has(floats, MakeNumbers(50)));
+  vtkNew<vtkDeviceVectorArray> copy;
+  copy->DeepCopy(floats);
+  VERIFY(Has(copy, MakeNumbers(50)));
+  vtkNew<vtkDeviceVectorArray> again;
+  again->DeepCopy(array);
+  VERIFY(Has(again, MakeNumbers(50)));
+  vtkNew<vtkIdList> ids;
+  ids->InsertNextId(4);
+  vtkNew<vtkFloatArray> some;
+  some->SetNumberOfComponents(3);
+  some->SetNumberOfTuples(1);
+  array->GetTuples(ids, some);
+  VERIFY_EQUAL(some->GetValue(1), GetNumber(13));
+  // As old interfaces have it.
+  VERIFY(array->HasStandardMemoryLayout());
+  VERIFY_EQUAL(static_cast<float*>(array->GetVoidPointer(11))[0], GetNumber(11));
+  vtkSmartPointer<vtkArrayIterator> iterator;
+  iterator.TakeReference(array->NewIterator());
+  auto* typed = static_cast<vtkArrayIteratorTemplate<float>*>(iterator.Get());
+  VERIFY_EQUAL(typed->GetNumberOfValues(), 150);
+  VERIFY_EQUAL(typed->GetValue(100), GetNumber(100));
+  const auto values = vtk::DataArrayValueRange<3>(array);
+  VERIFY_EQUAL(static_cast<float>(values[20]), GetNumber(20));
+  auto other = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
+  VERIFY(other->IsA("vtkDeviceVectorArray"));
+  VERIFY_EQUAL(other->GetNumberOfTuples(), 0);
+}
+
+void CheckWriting(vtkDeviceVectorArray* array)
+{
+  std::vector<float> numbers = MakeNumbers(50);
+  array->SetComponent(2, 1, 9.0);
+  numbers[7] = 9.0F;
+  array->SetValue(10, -4.0F);
+  numbers[10] = -4.0F;
+  const double tuple[3] = { 5.0, 6.0, 7.0 };
+  array->SetTuple(20, tuple);
+  std::copy(tuple, tuple + 3, numbers.begin() + 60);
+  array->InsertTuple(50, tuple);
+  numbers.insert(numbers.end(), tuple, tuple + 3);
+  VERIFY(Has(array, numbers));
+  VERIFY(!array->IsOnDevice());
+  array->Resize(51);
+  array->RemoveTuple(0);
+  numbers.erase(numbers.begin(), numbers.begin() + 3);
+  VERIFY(Has(array, numbers));
+  static_cast<float*>(array->WriteVoidPointer(150, 3))[1] = 8.0F;
+  VERIFY_EQUAL(array->GetNumberOfTuples(), 51);
+  VERIFY_EQUAL(array->GetComponent(50, 1), 8.0);
+  array->Squeeze();
+  VERIFY_EQUAL(array->GetComponent(49, 0), 5.0);
+  array->SetNumberOfComponents(1);
+  array->SetNumberOfTuples(4);
+  array->Fill(2.5);
+  VERIFY_EQUAL(array->GetComponent(3, 0), 2.5);
+  VERIFY(!array->GetVectors(deformvolume::ResolveDevice(""))); // they are none
+  array->Initialize();
+  VERIFY_EQUAL(array->GetNumberOfTuples(), 0);
+}
+
+void TestAsAnyArray()
+{
+  vtkNew<vtkDeviceVectorArray> empty;
+  VERIFY_EQUAL(empty->GetNumberOfTuples(), 0);
+  VERIFY(!empty->IsOnDevice());
+  VERIFY(!empty->GetVectors(deformvolume::ResolveDevice("")));
+  empty->Modified();
+  empty->SetVectors(nullptr);
+  const auto array = MakeByInserting(50);
+  CheckReading(array);
+  CheckWriting(array);
+  // Without vectors, and with other numbers of components.
+  VERIFY_EQUAL(array->GetNumberOfUploads(), 0);
+}
+
+void TestVectors()
+{
+  const Vectors vectors = MakeVectors(50);
+  const bool ownMemory = !vectors->AreInHostMemory();
+  vtkNew<vtkDeviceVectorArray> array;
+  array->SetVectors(vectors);
+  VERIFY(array->IsOf(vectors));
+  VERIFY_EQUAL(array->IsOnDevice(), ownMemory);
+  VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
+  CheckReading(array);
+  VERIFY_EQUAL(array->GetNumberOfDownloads(), ownMemory ? 1 : 0);
+  VERIFY_EQUAL(array->GetVectors(vectors->GetDevice()) == vectors, ownMemory);
+  VERIFY(!array->GetVectors("another device"));
+  // What the owner writes is seen when it says so.
+  std::vector<float> numbers = MakeNumbers(50);
+  numbers[31] = 100.0F;
+  vectors->Write(numbers.data(), { { { 10, 11 } } });
+  array->Modified();
+  VERIFY(array->IsOf(vectors));
+  VERIFY(Has(array, numbers));
+  double range[2];
+  array->GetRange(range, 1);
+  VERIFY_EQUAL(range[1], 100.0);
+  vtkNew<vtkArrayChanges> log;
+  log->SetArray(array);
+  numbers[31] = 200.0F;
+  vectors->Write(numbers.data(), { { { 10, 11 } } });
+  log->AddTuples(10, 10);
+  VERIFY(Has(array, numbers));
+  // Who writes has values of the host, and the owner's are as they were.
+  vectors->Write(MakeNumbers(50).data());
+  array->Modified();
+  CheckWriting(array);
+  VERIFY(!array->IsOf(vectors));
+  const std::vector<float> left(vectors->Read(), vectors->Read() + 150);
+  VERIFY(left == MakeNumbers(50));
+  array->SetVectors(vectors);
+  VERIFY(Has(array, left));
+  auto* written = static_cast<float*>(array->GetVoidPointer(0));
+  written[0] = 77.0F;
+  VERIFY(array->IsOf(vectors)); // nobody has said so
+  array->Modified();
+  VERIFY(!array->IsOf(vectors));
+  VERIFY_EQUAL(array->GetValue(0), 77.0F);
+  VERIFY_EQUAL(array->GetValue(1), GetNumber(1));
+  VERIFY_EQUAL(vectors->Read()[0], GetNumber(0));
+}
+
+void TestWriter(const std::string& folder)
+{
+  const auto image = MakeImage({ { 0, 4, 0, 4, 0, 1 } });
+  vtkNew<vtkDeviceVectorArray> array;
+  array->SetName("vectors");
+  array->SetVectors(MakeVectors(50));
+  image->GetPointData()->SetVectors(array);
+  const std::string name = folder + "/TestDeviceVectorArray.vti";
+  vtkNew<vtkXMLImageDataWriter> writer;
+  writer->SetInputData(image);
+  writer->SetFileName(name.c_str());
+  VERIFY(writer->Write() == 1);
+  vtkNew<vtkXMLImageDataReader> reader;
+  reader->SetFileName(name.c_str());
+  reader->Update();
+  vtkDataArray* read = reader->GetOutput()->GetPointData()->GetArray("vectors");
+  VERIFY(read && Has(read, MakeNumbers(50)));
+  vtkNew<vtkImageData> copy;
+  copy->DeepCopy(image);
+  VERIFY(Has(copy->GetPointData()->GetArray("vectors"), MakeNumbers(50)));
+}
+
+// The same deformation by an array of VTK's and by this one.
+void TestFilter(bool byField)
+{
+  const auto volume = MakeVolume({ { 0, 69, 0, 66, 0, 63 } }); // its field is read where it lies
+  const vtkSmartPointer<vtkDataSet> floats = byField
+    ? vtkSmartPointer<vtkDataSet>(MakeImage({ { 0, 69, 0, 66, 0, 63 } }))
+    : vtkSmartPointer<vtkDataSet>(MakeMesh(volume, 9));
+  SetDisplacements(floats,
+    [](const glm::dvec3& p)
+    { return p + glm::dvec3(1.3 * std::sin(0.1 * p.y), 0.7, 0.9 * std::cos(0.07 * p.x)); });
+  const auto vectors = vtkSmartPointer<vtkDataSet>::Take(floats->NewInstance());
+  vectors->ShallowCopy(floats);
+  vtkNew<vtkDeviceVectorArray> array;
+  array->SetName("displacement");
+  array->DeepCopy(floats->GetPointData()->GetVectors());
+  vectors->GetPointData()->SetVectors(array);
+  Deformed expected(volume, floats);
+  Deformed found(volume, vectors);
+  for (const int mode :
+    { vtkDeformVolumeFilter::DEFORMED_BOUNDS, vtkDeformVolumeFilter::VOLUME_BOUNDS })
+  {
+    expected.Filter->SetOutputBoundsMode(mode);
+    found.Filter->SetOutputBoundsMode(mode);
+    VERIFY(AreEqual(expected.Update(), found.Update()));
+  }
+  // Some tuples are written, in both arrays alike.
+  auto* changed = vtkFloatArray::SafeDownCast(floats->GetPointData()->GetVectors());
+  for (int frame = 0; frame < 3; ++frame)
+  {
+    for (vtkIdType id = 100; id < 110; ++id)
+    {
+      const float move[3] = { 0.5F * static_cast<float>(frame), 0.25F, -0.5F };
+      changed->SetTypedTuple(id, move);
+      array->SetTypedTuple(id, move);
+    }
+    changed->Modified();
+    array->Modified();
+    VERIFY(AreEqual(expected.Update(), found.Update()));
+    VERIFY_EQUAL(
+      found.Filter->GetNumberOfResampledBricks(), expected.Filter->GetNumberOfResampledBricks());
+  }
+  // Vectors of a device that somebody else writes.
+  const auto tuples = static_cast<std::size_t>(array->GetNumberOfTuples());
+  const auto shared = std::make_shared<deformvolume::DeviceVectors>("", tuples);
+  shared->Write(changed->GetPointer(0));
+  array->SetVectors(shared);
+  VERIFY(AreEqual(expected.Update(), found.Update()));
+  changed->SetComponent(120, 1, 0.75);
+  changed->Modified();
+  shared->Write(changed->GetPointer(0), { { { 120, 121 } } });
+  array->Modified();
+  VERIFY(AreEqual(expected.Update(), found.Update()));
+  array->SetComponent(130, 1, 0.75);
+  array->Modified();
+  changed->SetComponent(130, 1, 0.75);
+  changed->Modified();
+  VERIFY(AreEqual(expected.Update(), found.Update()));
+  // What is not finite is named.
+  array->SetComponent(131, 2, std::nan(""));
+  array->Modified();
+  found.Filter->Update();
+  VERIFY_EQUAL(found.TakeErrors(), 1);
+  VERIFY(found.LastError.find(" 131 ") != std::string::npos);
+  array->SetComponent(131, 2, changed->GetComponent(131, 2));
+  array->Modified();
+  VERIFY(AreEqual(expected.Update(), found.Update()));
+}
+
+} // namespace
+
+int TestDeviceVectorArray(int argc, char* argv[])
+{
+  std::string folder = ".";
+  for (int i = 1; i + 1 < argc; ++i)
+  {
+    folder = std::string(argv[i]) == "-T" ? argv[i + 1] : folder;
+  }
+  TestAsAnyArray();
+  TestVectors();
+  TestWriter(folder);
+  TestFilter(false);
+  TestFilter(true);
+  return GetExitCode();
+}

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pipelines on a device that appears to be a graphics card with memory of its own: vectors stay
+// there, several filters take one copy of them, and the host gets them where it asks.
+#include "ChainMailTesting.h"
+#include "FakeDriver.h"
+#include "FilterTesting.h"
+#include "vtkArrayChanges.h"
+#include "vtkDeviceVectorArray.h"
+
+#include "Device.h"
+#include "DeviceVectors.h"
+
+#include <vtkGenericDataArray.txx>
+
+#include <cstdint>
+#include <string>
+
+using namespace filterTesting;
+using chainMailTesting::MakeHandles;
+
+namespace
+{
+
+// A few numbers that the host and the device tell each other.
+constexpr std::uint64_t Few = 4096;
+
+// With what a filter counts of a brick: eight numbers in each of its 24 sections.
+std::uint64_t GetMostRead(const Deformed& deformed)
+{
+  return Few + 24 * 8 * 4 * static_cast<std::uint64_t>(deformed.Filter->GetNumberOfBricks());
+}
+
+void ResetCounts()
+{
+  FakeDriver::Get().BytesRead = 0;
+  FakeDriver::Get().BytesWritten = 0;
+}
+
+const WorldMap Bend = [](const glm::dvec3& p)
+{ return p + glm::dvec3(1.3 * std::sin(0.1 * p.y), 0.7, 0.9 * std::cos(0.07 * p.x)); };
+
+// A deformation whose vectors are those of another one, in a vtkDeviceVectorArray.
+template <typename DataSet>
+vtkSmartPointer<vtkDeviceVectorArray> AddArray(DataSet* deformation, vtkDataArray* vectors)
+{
+  auto array = vtkSmartPointer<vtkDeviceVectorArray>::New();
+  array->DeepCopy(vectors);
+  array->SetName("displacement");
+  deformation->GetPointData()->SetVectors(array);
+  return array;
+}
+
+void SetOutput(Deformed& deformed)
+{
+  // Far smaller than the deformation.
+  deformed.Filter->SetOutputBoundsModeToCustomBounds();
+  deformed.Filter->SetCustomBounds(20, 24, 20, 24, 20, 24);
+}
+
+// An image and its segmentation, of another spacing.
+void TestTwoVolumes()
+{
+  const auto image = MakeVolume({ { 0, 40, 0, 40, 0, 40 } });
+  const auto labels = MakeImage({ { 0, 27, 0, 27, 0, 27 } }, glm::dvec3(1.5, 1.5, 1.4));
+  AddScalars<unsigned char>(
+    labels, "label", [](const glm::dvec3& p) { return p.x + p.y > 40.0 ? 3.0 : 1.0; });
+  const auto floats = MakeMesh(image, 25);
+  SetDisplacements(floats, Bend);
+  vtkNew<vtkUnstructuredGrid> mesh;
+  mesh->ShallowCopy(floats);
+  const auto array = AddArray(mesh.Get(), floats->GetPointData()->GetVectors());
+  const std::uint64_t bytes = 12 * static_cast<std::uint64_t>(array->GetNumberOfTuples());
+  Deformed found[2] = { { image, mesh }, { labels, mesh } };
+  Deformed expected[2] = { { image, floats }, { labels, floats } };
+  vtkNew<vtkArrayChanges> log;
+  log->SetArray(array);
+  auto* moved = vtkFloatArray::SafeDownCast(floats->GetPointData()->GetVectors());
+  for (int frame = 0; frame < 5; ++frame)
+  {
+    const bool isLogged = frame >= 3;
+    const vtkIdType last = isLogged ? 1009 : array->GetNumberOfTuples() - 1;
+    for (vtkIdType id = isLogged ? 1000 : 0; id <= last; ++id)
+    {
+      const float x = 0.01F * static_cast<float>((id + 3 * frame) % 50);
+      moved->SetComponent(id, 0, x);
+      array->SetTypedComponent(id, 0, x);
+    }
+    moved->Modified();
+    if (isLogged)
+    {
+      log->AddTuples(1000, 1009);
+    }
+    else
+    {
+      array->Modified();
+    }
+    for (int i = 0; i < 2; ++i)
+    {
+      SetOutput(expected[i]);
+      SetOutput(found[i]);
+      expected[i].Update();
+    }
+    ResetCounts();
+    for (Deformed& one : found)
+    {
+      one.Update();
+    }
+    VERIFY_EQUAL(array->GetNumberOfUploads(), frame + 1);
+    if (frame > 0)
+    {
+      VERIFY(FakeDriver::Get().BytesWritten >= (isLogged ? 120 : bytes));
+      VERIFY(FakeDriver::Get().BytesWritten < (isLogged ? 120 : bytes) + Few);
+      VERIFY(FakeDriver::Get().BytesRead < GetMostRead(found[0]) + GetMostRead(found[1]));
+      std::cout << "Frame " << frame << ": " << FakeDriver::Get().BytesWritten
+                << " bytes written for two volumes, " << bytes << " in all vectors\n";
+    }
+    for (int i = 0; i < 2; ++i)
+    {
+      VERIFY(AreEqual(expected[i].Filter->GetOutput(), found[i].Filter->GetOutput()));
+    }
+  }
+  // The bounds are found on the host, which has the vectors.
+  for (int i = 0; i < 2; ++i)
+  {
+    expected[i].Filter->SetOutputBoundsModeToDeformedBounds();
+    found[i].Filter->SetOutputBoundsModeToDeformedBounds();
+    VERIFY(AreEqual(expected[i].Update(), found[i].Update()));
+    // The other resampler has them from there, too.
+    expected[i].Filter->SetResamplerToMeshRasterization();
+    found[i].Filter->SetResamplerToMeshRasterization();
+    VERIFY(AreEqual(expected[i].Update(), found[i].Update()));
+    expected[i].Filter->SetResamplerToExact();
+    found[i].Filter->SetResamplerToExact();
+    VERIFY(AreEqual(expected[i].Update(), found[i].Update()));
+  }
+  VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
+  // What is not finite is named, and the filters work again afterwards.
+  array->SetTypedComponent(1234, 2, static_cast<float>(std::nan("")));
+  array->Modified();
+  SetOutput(found[0]);
+  SetOutput(expected[0]);
+  found[0].Filter->Update();
+  VERIFY_EQUAL(found[0].TakeErrors(), 1);
+  VERIFY(found[0].LastError.find("node 1234 ") != std::string::npos);
+  array->SetTypedComponent(1234, 2, moved->GetTypedComponent(1234, 2));
+  array->Modified();
+  VERIFY(AreEqual(expected[0].Update(), found[0].Update()));
+  // An array of VTK's takes its place, and it that one's.
+  mesh->GetPointData()->SetVectors(moved);
+  moved->SetComponent(1234, 2, 0.5);
+  moved->Modified();
+  VERIFY(AreEqual(expected[0].Update(), found[0].Update()));
+  mesh->GetPointData()->SetVectors(array);
+  array->SetTypedComponent(1234, 2, 0.5F);
+  array->Modified();
+  VERIFY(AreEqual(expected[0].Update(), found[0].Update()));
+}
+
+// A field on the voxels, and one between them.
+void TestFields()
+{
+  const auto volume = MakeVolume({ { 0, 66, 0, 65, 0, 64 } });
+  for (const double spacing : { 1.0, 1.3 })
+  {
+    const auto floats = MakeImage({ { 0, 66, 0, 65, 0, 64 } }, glm::dvec3(spacing));
+    SetDisplacements(floats, Bend);
+    const auto field = MakeImage({ { 0, 66, 0, 65, 0, 64 } }, glm::dvec3(spacing));
+    const auto array = AddArray(field.Get(), floats->GetPointData()->GetVectors());
+    Deformed expected(volume, floats);
+    Deformed found(volume, field);
+    for (const double scale : { 1.0, 0.7 })
+    {
+      for (const int mode :
+        { vtkDeformVolumeFilter::VOLUME_BOUNDS, vtkDeformVolumeFilter::DEFORMED_BOUNDS })
+      {
+        for (Deformed* one : { &expected, &found })
+        {
+          one->Filter->SetDisplacementScale(scale);
+          one->Filter->SetOutputBoundsMode(mode);
+        }
+        VERIFY(AreEqual(expected.Update(), found.Update()));
+      }
+    }
+    VERIFY_EQUAL(array->GetNumberOfUploads(), 1);
+  }
+}
+
+// ChainMail moves a volume: what passes between host and device in a drag.
+void TestChainMail()
+{
+  const auto volume = MakeVolume({ { 0, 47, 0, 47, 0, 47 } });
+  vtkNew<vtkChainMailDeformation> chain;
+  chain->SetInputData(volume);
+  chain->SetRelaxationSweeps(0);
+  Deformed found;
+  found.Filter->SetInputData(volume);
+  found.Filter->SetDeformationConnection(chain->GetOutputPort());
+  SetOutput(found);
+  vtkDeviceVectorArray* array = nullptr;
+  for (int step = 1; step <= 4; ++step)
+  {
+    chain->SetHandlesData(
+      MakeHandles({ { glm::dvec3(24.0), glm::dvec3(24.0 + 5.0 + 2.5 * step, 24.0, 24.0) } }));
+    ResetCounts();
+    found.Update();
+    const std::uint64_t moved = 12 * static_cast<std::uint64_t>(chain->GetNumberOfMovedVoxels());
+    vtkDataArray* output = chain->GetOutput()->GetPointData()->GetArray("Displacement");
+    array = vtkDeviceVectorArray::SafeDownCast(output);
+    if (!array)
+    {
+      VERIFY(array != nullptr);
+      return;
+    }
+    VERIFY(array->IsOnDevice());
+    VERIFY_EQUAL(array->GetNumberOfUploads(), 0);
+    if (step > 1) // in the first the volume is sent
+    {
+      VERIFY(moved > 4 * GetMostRead(found));
+      VERIFY(FakeDriver::Get().BytesWritten < Few);
+      VERIFY(FakeDriver::Get().BytesRead < GetMostRead(found));
+      VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
+      std::cout << "Step " << step << ": " << moved << " bytes of displacements have changed, "
+                << FakeDriver::Get().BytesRead << " were read and "
+                << FakeDriver::Get().BytesWritten << " written\n";
+    }
+    if (step < 3)
+    {
+      continue;
+    }
+    // By a copy of the displacements on the host.
+    vtkNew<vtkImageData> copied;
+    copied->CopyStructure(chain->GetOutput());
+    vtkNew<vtkFloatArray> floats;
+    const auto vectors = array->GetVectors(deformvolume::ResolveDevice(""));
+    floats->SetNumberOfComponents(3);
+    floats->SetNumberOfTuples(array->GetNumberOfTuples());
+    std::copy_n(vectors->Read(), floats->GetNumberOfValues(), floats->GetPointer(0));
+    copied->GetPointData()->SetVectors(floats);
+    Deformed expected(volume, copied);
+    SetOutput(expected);
+    VERIFY(AreEqual(expected.Update(), found.Filter->GetOutput()));
+    if (step == 4)
+    {
+      // Somebody writes to the output: the filter takes that, and the next step restores it.
+      const double tuple[3] = { 0.5, 0.25, 0.0 };
+      floats->SetTuple(22 * 48 * 48 + 22 * 48 + 22, tuple);
+      array->SetTuple(22 * 48 * 48 + 22 * 48 + 22, tuple);
+      floats->Modified();
+      array->Modified();
+      VERIFY_EQUAL(array->GetNumberOfDownloads(), 1);
+      Deformed again(volume, chain->GetOutput());
+      SetOutput(again);
+      VERIFY(AreEqual(expected.Update(), again.Update()));
+      VERIFY_EQUAL(array->GetNumberOfUploads(), 1);
+    }
+  }
+  // A step after that starts from what the model has.
+  chain->SetHandlesData(MakeHandles({ { glm::dvec3(24.0), glm::dvec3(31.5, 24.0, 24.0) } }));
+  VERIFY(found.Update() != nullptr);
+  vtkNew<vtkChainMailDeformation> other;
+  other->SetInputData(volume);
+  other->SetRelaxationSweeps(0);
+  for (const double x : { 31.5, 34.0, 36.5, 39.0, 31.5 })
+  {
+    other->SetHandlesData(MakeHandles({ { glm::dvec3(24.0), glm::dvec3(x, 24.0, 24.0) } }));
+    other->Update();
+  }
+  VERIFY(AreEqual(other->GetOutput(), chain->GetOutput()));
+}
+
+} // namespace
+
+int main()
+{
+  FakeDriver::Get().IsGraphics = true; // before there is a context
+  if (!deformvolume::GetDeviceAbilities("").OwnMemory)
+  {
+    std::cerr << "The calls of the library do not go through the fake driver.\n";
+    return EXIT_FAILURE;
+  }
+  TestTwoVolumes();
+  TestFields();
+  TestChainMail();
+  return GetExitCode();
+}

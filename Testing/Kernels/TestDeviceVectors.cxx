@@ -1,0 +1,569 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Vectors on a device: what they refuse, what they know of their changes, and that volumes which
+// are moved by them equal, to the last bit, those that get the displacements from the host.
+// TestDeviceVectorsGraphics runs these tests on a device with memory of its own.
+#include "ChainMailModel.h"
+#include "DeformerCase.h"
+#include "Device.h"
+#include "DeviceNeeds.h"
+#include "DeviceVectors.h"
+#include "FreeMemory.h"
+#include "RangeLog.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace deformvolume;
+
+namespace
+{
+
+using Matrix = std::array<double, 9>;
+using Vectors = std::shared_ptr<DeviceVectors>;
+
+const Matrix Identity = DisplacementField().ToDisplacement;
+// Nothing about it is round.
+const Matrix Turned{ { 0.61, -0.23, 0.07, 0.19, 0.71, -0.11, -0.05, 0.13, 0.83 } };
+
+std::string GetError(const std::function<void()>& function)
+{
+  try
+  {
+    function();
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+// In world units; so small that the volume is not folded too much.
+std::vector<float> MakeVectors(std::size_t points, unsigned int seed)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> component(-0.4F, 0.4F);
+  std::vector<float> vectors(3 * points);
+  std::generate(vectors.begin(), vectors.end(), [&] { return component(random); });
+  return vectors;
+}
+
+std::vector<float> Map(const std::vector<float>& vectors, const Matrix& matrix)
+{
+  DisplacementField field;
+  field.ToDisplacement = matrix;
+  field.Vectors = vectors.data();
+  std::vector<float> displacements;
+  for (std::size_t point = 0; point < vectors.size() / 3; ++point)
+  {
+    const auto displacement = GetDisplacement(field, static_cast<std::int64_t>(point));
+    displacements.insert(displacements.end(), displacement.begin(), displacement.end());
+  }
+  return displacements;
+}
+
+// A volume with a node at each voxel.
+struct Subject
+{
+  explicit Subject(const Extent& extent = { { 0, 21, 0, 18, -1, 17 } },
+    const std::array<double, 3>& scale = { { 1, 1, 1 } })
+    : Case(MakeCase(extent, scale,
+        [&](const glm::dvec3& i) { return i * glm::dvec3(scale[0], scale[1], scale[2]); }))
+    , Points(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()))
+    , Values(MakeRandomValues<std::uint16_t>(this->Points, 3))
+    , Arrays{ MakeArray(this->Values) }
+  {
+  }
+
+  DisplacementField GetField() const
+  {
+    DisplacementField field;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      field.Dimensions[axis] = static_cast<int>(GetSize(this->Case.VoxelGrid.VertexExtent, axis));
+      field.IndexToField[4 * axis + 3] = -this->Case.VoxelGrid.VertexExtent[2 * axis];
+    }
+    return field;
+  }
+  void LoadInto(VolumeDeformer& deformer, Route route) const
+  {
+    Load(deformer, this->Case, this->Arrays, route);
+  }
+  std::vector<std::vector<unsigned char>> Run(VolumeDeformer& deformer) const
+  {
+    return RunDeformer(deformer, this->Case, this->Arrays).Outputs;
+  }
+  // By a deformer that has never seen vectors on a device.
+  std::vector<std::vector<unsigned char>> RunFresh(
+    Route route, const std::vector<float>& vectors, const Matrix& matrix) const
+  {
+    VolumeDeformer deformer;
+    this->LoadInto(deformer, route);
+    const std::vector<float> displacements = Map(vectors, matrix);
+    if (route == Route::Field)
+    {
+      DisplacementField field = this->GetField();
+      field.Vectors = displacements.data();
+      deformer.SetDisplacementField(field);
+    }
+    else
+    {
+      deformer.SetNodeDisplacements(displacements.data());
+    }
+    return this->Run(deformer);
+  }
+  void Move(
+    VolumeDeformer& deformer, Route route, const Vectors& vectors, const Matrix& matrix) const
+  {
+    if (route == Route::Field)
+    {
+      DisplacementField field = this->GetField();
+      field.ToDisplacement = matrix;
+      deformer.SetDisplacementField(field, vectors);
+    }
+    else
+    {
+      deformer.SetNodeDisplacements(vectors, matrix);
+    }
+  }
+
+  DeformerCase Case;
+  std::size_t Points;
+  std::vector<std::uint16_t> Values;
+  std::vector<VolumeArray> Arrays;
+};
+
+Vectors MakeOnDevice(const std::vector<float>& vectors)
+{
+  const auto made = std::make_shared<DeviceVectors>("", vectors.size() / 3);
+  made->Write(vectors.data());
+  return made;
+}
+
+} // namespace
+
+TEST(RangeLog, KnowsTheLastRanges)
+{
+  RangeLog log;
+  EXPECT_EQ(log.GetRevision(), 0U);
+  EXPECT_EQ(log.GetSince(0), PointRanges());
+  EXPECT_FALSE(log.GetSince(1)) << "of the future";
+  log.Add({ { { 3, 5 } }, { { 9, 10 } } });
+  const std::uint64_t first = log.GetRevision();
+  EXPECT_GT(first, 0U);
+  log.Add({ { { 1, 2 } } });
+  EXPECT_EQ(log.GetSince(0)->size(), 3U);
+  EXPECT_EQ(log.GetSince(first), (PointRanges{ { { 1, 2 } } }));
+  EXPECT_EQ(log.GetSince(log.GetRevision()), PointRanges());
+  for (std::size_t i = 0; i + 1 < RangeLog::MostEntries; ++i)
+  {
+    log.Add({ { { i, i + 1 } } });
+  }
+  EXPECT_FALSE(log.GetSince(0)) << "some of the first revision are gone";
+  EXPECT_EQ(log.GetSince(first)->size(), RangeLog::MostEntries);
+  const std::uint64_t before = log.GetRevision();
+  log.AddAll();
+  EXPECT_FALSE(log.GetSince(before));
+  EXPECT_EQ(log.GetSince(log.GetRevision()), PointRanges());
+  log.Add(PointRanges(RangeLog::MostEntries + 1, { { 0, 1 } }));
+  EXPECT_FALSE(log.GetSince(before + 1)) << "too many to be kept";
+}
+
+TEST(DeviceVectors, Misuse)
+{
+  EXPECT_NE(GetError([] { DeviceVectors("", 0); }).find("at least one point"), std::string::npos);
+  EXPECT_NE(
+    GetError([] { DeviceVectors("no such device", 3); }).find("no such device"), std::string::npos);
+  DeviceVectors three("", 3);
+  EXPECT_NE(GetError([&] { three.Write(nullptr); }), "");
+  EXPECT_NE(GetError([&] { three.Write(nullptr, { { { 0, 1 } } }); }), "");
+  EXPECT_EQ(three.GetRevision(), 0U);
+
+  const Subject subject(Extent{ { 0, 4, 0, 4, 0, 4 } });
+  const Vectors few = std::make_shared<DeviceVectors>("", subject.Points - 1);
+  VolumeDeformer deformer;
+  EXPECT_NE(GetError([&] { deformer.SetNodeDisplacements(few); }), "") << "no volume";
+  deformer.SetVoxelGrid(subject.Case.VoxelGrid);
+  EXPECT_NE(
+    GetError([&] { deformer.SetNodeDisplacements(few); }).find("SetMesh"), std::string::npos);
+  for (const Route route : { Route::Mesh, Route::Field })
+  {
+    subject.LoadInto(deformer, route);
+    const auto expected = subject.Run(deformer);
+    const auto getError = [&](const Vectors& vectors)
+    { return GetError([&] { subject.Move(deformer, route, vectors, Identity); }); };
+    EXPECT_NE(getError(nullptr).find("no vectors"), std::string::npos);
+    EXPECT_NE(getError(few).find(std::to_string(subject.Points - 1) +
+                " vectors on the device for " + std::to_string(subject.Points) + " points"),
+      std::string::npos);
+    EXPECT_EQ(subject.Run(deformer), expected) << "the deformation of before is gone";
+  }
+  DisplacementField empty;
+  EXPECT_NE(GetError([&] { deformer.SetDisplacementField(empty, few); }), "");
+}
+
+// There has to be more than one: Kernels.DeviceVectorsOnTwoDevices.
+TEST(DeviceVectors, AnotherDevice)
+{
+  const std::vector<std::string> names = GetDeviceNames();
+  if (names.size() < 2)
+  {
+    GTEST_SKIP() << "There is one device only.";
+  }
+  const Subject subject(Extent{ { 0, 4, 0, 4, 0, 4 } });
+  VolumeDeformer deformer;
+  subject.LoadInto(deformer, Route::Mesh); // on the first one
+  const Vectors there = std::make_shared<DeviceVectors>(names[1], subject.Points);
+  ASSERT_EQ(there->GetDevice(), names[1]);
+  const std::string error = GetError([&] { deformer.SetNodeDisplacements(there); });
+  for (const std::size_t device : { 0, 1 })
+  {
+    EXPECT_NE(error.find("\"" + names[device] + "\""), std::string::npos) << error;
+  }
+}
+
+TEST(DeviceVectors, ReadAndWritten)
+{
+  constexpr std::size_t points = 1000;
+  DeviceVectors vectors("", points);
+  EXPECT_EQ(vectors.GetNumberOfPoints(), points);
+  EXPECT_EQ(vectors.GetDevice(), ResolveDevice(""));
+  EXPECT_EQ(vectors.GetDeviceMemory(), 12 * points);
+  EXPECT_TRUE(std::all_of(
+    vectors.Read(), vectors.Read() + 3 * points, [](float value) { return value == 0.0F; }));
+  std::vector<float> expected = MakeVectors(points, 1);
+  vectors.Write(expected.data());
+  const std::uint64_t whole = vectors.GetRevision();
+  EXPECT_FALSE(vectors.GetChanges(0)) << "all of them";
+  EXPECT_EQ(std::memcmp(vectors.Read(), expected.data(), 12 * points), 0);
+  // Only what the ranges hold is read.
+  std::vector<float> others = MakeVectors(points, 2);
+  vectors.Write(others.data(), { { { 5, 9 } }, { { 998, 2000 } }, { { 7, 7 } } });
+  std::copy(others.begin() + 15, others.begin() + 27, expected.begin() + 15);
+  std::copy(others.begin() + 2994, others.end(), expected.begin() + 2994);
+  EXPECT_EQ(std::memcmp(vectors.Read(), expected.data(), 12 * points), 0);
+  PointRanges changes = vectors.GetChanges(whole).value();
+  std::sort(changes.begin(), changes.end());
+  EXPECT_EQ(changes, (PointRanges{ { { 5, 9 } }, { { 998, 1000 } } }));
+  const std::uint64_t revision = vectors.GetRevision();
+  vectors.Write(others.data(), { { { 1000, 1001 } } });
+  EXPECT_EQ(vectors.GetRevision(), revision) << "there are no such points";
+}
+
+class DeviceVectorsRoutes : public testing::TestWithParam<Route>
+{
+};
+
+TEST_P(DeviceVectorsRoutes, EqualsHost)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  const Subject subject;
+  VolumeDeformer deformer;
+  subject.LoadInto(deformer, GetParam());
+  const Vectors shared = std::make_shared<DeviceVectors>("", subject.Points);
+  std::vector<float> vectors = MakeVectors(subject.Points, 1);
+  for (const Matrix& matrix : { Identity, Turned })
+  {
+    shared->Write(vectors.data());
+    subject.Move(deformer, GetParam(), shared, matrix);
+    EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), vectors, matrix));
+    // Frames in which some points move.
+    for (std::size_t frame = 1; frame < 4; ++frame)
+    {
+      const std::size_t first = 700 * frame;
+      const std::size_t end = first + (frame == 2 ? 2000 : 5);
+      std::fill(vectors.begin() + 3 * static_cast<std::ptrdiff_t>(first),
+        vectors.begin() + 3 * static_cast<std::ptrdiff_t>(end), 0.125F * static_cast<float>(frame));
+      shared->Write(vectors.data(), { { { first, end } } });
+      subject.Move(deformer, GetParam(), shared, matrix);
+      EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), vectors, matrix)) << frame;
+    }
+    subject.Move(deformer, GetParam(), shared, matrix);
+    EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), vectors, matrix)) << "nothing";
+  }
+}
+
+// What is known of the changes of one is no matter after another one.
+TEST_P(DeviceVectorsRoutes, TakeTurnsWithHostAndOthers)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  const Subject subject;
+  VolumeDeformer deformer;
+  subject.LoadInto(deformer, GetParam());
+  std::vector<float> one = MakeVectors(subject.Points, 1);
+  const std::vector<float> two = MakeVectors(subject.Points, 2);
+  const std::vector<float> host = MakeVectors(subject.Points, 3);
+  const Vectors first = MakeOnDevice(one);
+  const Vectors second = MakeOnDevice(two);
+  for (int turn = 0; turn < 2; ++turn)
+  {
+    subject.Move(deformer, GetParam(), first, Turned);
+    EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), one, Turned));
+    subject.Move(deformer, GetParam(), second, Turned);
+    EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), two, Turned));
+    const std::vector<float> displacements = Map(host, Identity);
+    if (GetParam() == Route::Field)
+    {
+      DisplacementField field = subject.GetField();
+      field.Vectors = displacements.data();
+      deformer.SetDisplacementField(field);
+    }
+    else
+    {
+      deformer.SetNodeDisplacements(displacements.data());
+    }
+    EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), host, Identity));
+    one[30] = 0.25F;
+    first->Write(one.data(), { { { 10, 11 } } });
+  }
+  subject.LoadInto(deformer, Route::Mesh);
+  deformer.SetNodeDisplacements(first, Turned);
+  EXPECT_EQ(subject.Run(deformer), subject.RunFresh(Route::Mesh, one, Turned)) << "another mesh";
+}
+
+TEST_P(DeviceVectorsRoutes, WhatIsNotFinite)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  const Subject subject;
+  VolumeDeformer deformer;
+  subject.LoadInto(deformer, GetParam());
+  std::vector<float> vectors = MakeVectors(subject.Points, 1);
+  const Vectors shared = MakeOnDevice(vectors);
+  const std::string name = GetParam() == Route::Field ? "point 7 " : "node 7 ";
+  for (const float bad :
+    { std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity(), 40000.0F })
+  {
+    std::vector<float> wrong = vectors;
+    wrong[3 * 7 + 1] = wrong[3 * 2000] = bad;
+    shared->Write(wrong.data(), { { { 7, 8 } }, { { 2000, 2001 } } });
+    const std::string error = GetError([&] { subject.Move(deformer, GetParam(), shared, Turned); });
+    EXPECT_NE(error.find("displacement of " + name), std::string::npos) << error;
+    shared->Write(vectors.data(), { { { 7, 8 } }, { { 2000, 2001 } } });
+    subject.Move(deformer, GetParam(), shared, Turned);
+    EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), vectors, Turned));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+  All, DeviceVectorsRoutes, testing::Values(Route::Field, Route::Mesh, Route::Runs));
+
+// Voxels between the points of the field.
+TEST(DeviceVectors, FieldsOfAnotherGrid)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  const Subject subject;
+  DisplacementField field;
+  field.Dimensions = { { 9, 8, 7 } };
+  field.IndexToField = { { 0.3, 0, 0, 1, 0, 0.3, 0, 0.5, 0, 0, 0.3, 0.5 } };
+  field.ToDisplacement = Turned;
+  const std::vector<float> vectors = MakeVectors(9 * 8 * 7, 1);
+  VolumeDeformer deformer;
+  subject.LoadInto(deformer, Route::Field);
+  deformer.SetDisplacementField(field, MakeOnDevice(vectors));
+  const auto found = subject.Run(deformer);
+  field.Vectors = vectors.data();
+  VolumeDeformer fresh;
+  subject.LoadInto(fresh, Route::Field);
+  fresh.SetDisplacementField(field);
+  EXPECT_EQ(found, subject.Run(fresh));
+}
+
+// Nodes that are appended have numbers, too.
+TEST(DeviceVectors, ConnectivityChanges)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  const Subject subject;
+  VolumeDeformer deformer;
+  subject.LoadInto(deformer, Route::Mesh);
+  std::vector<float> vectors = MakeVectors(subject.Points, 1);
+  deformer.SetNodeDisplacements(MakeOnDevice(vectors), Turned);
+  subject.Run(deformer);
+  // Tetrahedron 4 holds the voxel 4, at its first node, which another one takes the place of.
+  const auto size = static_cast<std::int32_t>(subject.Points);
+  const Tetrahedron before{ { 4, 5, 6, 7 } };
+  const TetrahedronChange change{ 4, before, { { size + 1, 5, 6, 7 } } };
+  const std::vector<TetrahedronChange> changes{ change };
+  std::vector<Tetrahedron> unused(subject.Points);
+  deformer.ChangeConnectivity(unused.data(), subject.Points, subject.Points + 2, &changes);
+  std::vector<float> more = vectors;
+  more.insert(more.end(), { 0.0F, 0.0F, 0.0F, 0.375F, -0.25F, 0.125F });
+  deformer.SetNodeDisplacements(MakeOnDevice(more), Turned);
+  std::copy_n(more.end() - 3, 3, vectors.begin() + 12);
+  EXPECT_EQ(subject.Run(deformer), subject.RunFresh(Route::Mesh, vectors, Turned));
+}
+
+// One mesh moves volumes of different spacing.
+TEST(DeviceVectors, SeveralVolumes)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  const Subject fine;
+  const Subject coarse(Extent{ { 0, 21, 0, 18, -1, 17 } }, { { 0.5, 0.5, 1.0 } });
+  const Matrix half{ { 0.5, 0, 0, 0, 0.5, 0, 0, 0, 1 } };
+  const std::vector<float> vectors = MakeVectors(fine.Points, 4);
+  const Vectors shared = MakeOnDevice(vectors);
+  VolumeDeformer one;
+  VolumeDeformer other;
+  fine.LoadInto(one, Route::Mesh);
+  coarse.LoadInto(other, Route::Mesh);
+  one.SetNodeDisplacements(shared);
+  other.SetNodeDisplacements(shared, half);
+  EXPECT_EQ(fine.Run(one), fine.RunFresh(Route::Mesh, vectors, Identity));
+  EXPECT_EQ(coarse.Run(other), coarse.RunFresh(Route::Mesh, vectors, half));
+}
+
+// A drag, whose displacements stay on the device, and one whose displacements go to the host.
+TEST(DeviceVectors, OutputOfChainMail)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  const Extent extent{ { 0, 21, 0, 18, -1, 17 } };
+  const std::array<double, 9> toWorld{ { 0.5, 0, 0, 0, 0.5, 0, 0, 0, 2 } };
+  const Matrix toIndex{ { 2, 0, 0, 0, 2, 0, 0, 0, 0.5 } };
+  const Subject subject(extent);
+  ChainMailModel models[2];
+  std::vector<float> host(3 * subject.Points);
+  const auto output = std::make_shared<DeviceVectors>("", subject.Points);
+  EXPECT_NE(GetError([&] { models[0].SetOutput(output); }), "") << "no volume";
+  for (ChainMailModel& model : models)
+  {
+    model.SetVoxelGrid(extent, toWorld);
+  }
+  EXPECT_NE(
+    GetError([&] { models[0].SetOutput(Vectors()); }).find("no vectors"), std::string::npos);
+  EXPECT_NE(GetError([&] { models[0].SetOutput(std::make_shared<DeviceVectors>("", 5)); }), "");
+  models[0].SetOutput(output);
+  models[1].SetOutput(host.data());
+  VolumeDeformer deformer;
+  subject.LoadInto(deformer, Route::Field);
+  const auto expectSame = [&]
+  {
+    ASSERT_EQ(std::memcmp(output->Read(), host.data(), 12 * subject.Points), 0);
+    subject.Move(deformer, Route::Field, output, toIndex);
+    EXPECT_EQ(subject.Run(deformer), subject.RunFresh(Route::Field, host, toIndex));
+  };
+  for (int step = 1; step <= 3; ++step)
+  {
+    ChainMailRequest request;
+    request.Handles.resize(1);
+    request.Handles[0].RestPosition = { { 10, 9, 8 } };
+    request.Handles[0].Displacement = { { 0.7 * step, -0.3 * step, 0.25 * step } };
+    request.RelaxationSweeps = 2;
+    const std::uint64_t before = output->GetRevision();
+    const ChainMailReport report = models[0].Step(request);
+    models[1].Step(request);
+    ASSERT_GT(report.NumberOfMovedVoxels, 0);
+    const std::optional<PointRanges> changes = output->GetChanges(before);
+    ASSERT_TRUE(changes);
+    std::size_t changed = 0;
+    for (const auto& range : *changes)
+    {
+      changed += range[1] - range[0];
+    }
+    EXPECT_GE(changed, static_cast<std::size_t>(report.NumberOfMovedVoxels));
+    EXPECT_LT(changed, subject.Points);
+    expectSame();
+  }
+  for (ChainMailModel& model : models)
+  {
+    model.Reset();
+  }
+  expectSame();
+  // The host has the output again.
+  ChainMailRequest request;
+  request.Handles.resize(1);
+  request.Handles[0].RestPosition = { { 10, 9, 8 } };
+  request.Handles[0].Displacement = { { 1, 0, 0 } };
+  models[1].Step(request);
+  std::vector<float> other(3 * subject.Points);
+  models[0].SetOutput(other.data());
+  models[0].Step(request);
+  EXPECT_EQ(other, host);
+}
+
+TEST(DeviceVectors, Tiny)
+{
+  const Subject subject(Extent{ { 0, 3, 0, 3, 0, 3 } });
+  const std::vector<float> vectors = MakeVectors(subject.Points, 1);
+  const Vectors shared = MakeOnDevice(vectors);
+  for (const Route route : { Route::Field, Route::Mesh })
+  {
+    VolumeDeformer deformer;
+    subject.LoadInto(deformer, route);
+    for (const Matrix& matrix : { Identity, Turned })
+    {
+      subject.Move(deformer, route, shared, matrix);
+      EXPECT_EQ(subject.Run(deformer), subject.RunFresh(route, vectors, matrix));
+    }
+  }
+}
+
+TEST(FreeMemory, IsMeasuredOnceWhereThereIsPlenty)
+{
+  constexpr std::uint64_t mebibyte = 1024 * 1024;
+  std::uint64_t left = 8000 * mebibyte;
+  FreeMemory memory([&] { return left; });
+  EXPECT_FALSE(memory.Grant(1)) << "nothing has been measured";
+  EXPECT_EQ(memory.Measure(1000 * mebibyte), left);
+  EXPECT_FALSE(memory.Grant(3001 * mebibyte)) << "more than half of it";
+  EXPECT_EQ(memory.Grant(2000 * mebibyte), 7000 * mebibyte);
+  EXPECT_EQ(memory.Grant(1000 * mebibyte), 5000 * mebibyte);
+  EXPECT_FALSE(memory.Grant(1)) << "half of it is granted";
+  EXPECT_EQ(memory.GetNumberOfMeasurements(), 1U);
+  left = 100 * mebibyte;
+  EXPECT_EQ(memory.Measure(0), left);
+  EXPECT_EQ(memory.Grant(mebibyte), left);
+  const auto end = std::chrono::steady_clock::now() + FreeMemory::Validity;
+  while (std::chrono::steady_clock::now() <= end)
+  {
+  }
+  EXPECT_FALSE(memory.Grant(1)) << "too long ago";
+  left = 0;
+  EXPECT_EQ(memory.Measure(0), 0U);
+  EXPECT_FALSE(memory.Grant(0)) << "nothing is known";
+}
+
+// Whose updates follow each other.
+TEST(FreeMemory, TwoDeformersShareAMeasurement)
+{
+  const Subject subject(Extent{ { 0, 4, 0, 4, 0, 4 } });
+  VolumeDeformer deformers[2];
+  for (VolumeDeformer& deformer : deformers)
+  {
+    subject.LoadInto(deformer, Route::Mesh);
+    subject.Run(deformer);
+  }
+  std::vector<std::uint16_t> output(
+    static_cast<std::size_t>(GetNumberOfPoints(subject.Case.Output)));
+  std::vector<signed char> coverage(output.size());
+  DeformRequest request;
+  request.OutputExtent = subject.Case.Output;
+  request.Outputs = { output.data() };
+  request.Coverage = coverage.data();
+  for (int attempt = 0; attempt < 100; ++attempt)
+  {
+    const std::uint64_t before = FreeMemory::Get().GetNumberOfMeasurements();
+    const auto begin = std::chrono::steady_clock::now();
+    for (VolumeDeformer& deformer : deformers)
+    {
+      deformer.SetDevice("");
+      deformer.CheckMemory(subject.Case.VoxelGrid, subject.Arrays, subject.Case.Output,
+        subject.Points, subject.Points, false);
+      deformer.Deform(request);
+    }
+    const std::uint64_t measured = FreeMemory::Get().GetNumberOfMeasurements() - before;
+    ASSERT_LE(measured, 2U) << "once for each of them";
+    if (std::chrono::steady_clock::now() - begin < FreeMemory::Validity)
+    {
+      EXPECT_LE(measured, 1U);
+      return;
+    }
+  }
+  GTEST_SKIP() << "This machine is too busy: two updates take longer than a measurement holds.";
+}

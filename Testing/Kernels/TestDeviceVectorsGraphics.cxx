@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All tests of vectors on a device, on one that appears to be a graphics card with memory of its
+// own; and what passes between it and the host.
+#include "ChainMailModel.h"
+#include "DeformerCase.h"
+#include "DeviceVectors.h"
+#include "FakeDriver.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <iostream>
+#include <memory>
+#include <vector>
+
+using namespace deformvolume;
+
+namespace
+{
+
+// Before there is a context.
+const bool IsSet = []
+{
+  FakeDriver::Get().IsGraphics = true;
+  return true;
+}();
+
+// A few numbers that the host and the device tell each other.
+constexpr std::uint64_t Few = 256;
+
+class Transfers : public testing::Test
+{
+protected:
+  void SetUp() override { ASSERT_TRUE(IsSet); }
+
+  void Reset()
+  {
+    FakeDriver::Get().BytesRead = 0;
+    FakeDriver::Get().BytesWritten = 0;
+  }
+
+  DeformerCase Case = MakeCase({ { 0, 21, 0, 18, -1, 17 } }, { { 1, 1, 1 } }, MakeJitter(5, 0.15));
+  std::size_t Points = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
+  std::uint64_t Bytes = 12 * this->Points;
+  std::vector<float> Displacements = this->Case.GetDisplacements();
+  std::vector<std::uint16_t> Values = MakeRandomValues<std::uint16_t>(this->Points, 3);
+  std::vector<VolumeArray> Arrays{ MakeArray(this->Values) };
+  const std::array<double, 9> Half{ { 0.5, 0, 0, 0, 0.5, 0, 0, 0, 0.5 } };
+};
+
+} // namespace
+
+TEST_F(Transfers, WhatIsWrittenAndReadIsCopiedOnce)
+{
+  const auto vectors = std::make_shared<DeviceVectors>("", this->Points);
+  ASSERT_FALSE(vectors->AreInHostMemory());
+  this->Reset();
+  vectors->Write(this->Displacements.data());
+  EXPECT_EQ(FakeDriver::Get().BytesWritten, this->Bytes);
+  vectors->Write(this->Displacements.data(), { { { 100, 150 } } });
+  EXPECT_EQ(FakeDriver::Get().BytesWritten, this->Bytes + 50 * 12);
+  EXPECT_EQ(FakeDriver::Get().BytesRead, 0U) << "nobody has asked";
+  vectors->Read();
+  vectors->Read();
+  EXPECT_EQ(FakeDriver::Get().BytesRead, this->Bytes);
+  vectors->Write(this->Displacements.data(), { { { 200, 205 } }, { { 208, 210 } } });
+  vectors->Read();
+  EXPECT_EQ(FakeDriver::Get().BytesRead, this->Bytes + 10 * 12) << "what has changed";
+}
+
+// An image and its segmentation, of another spacing.
+TEST_F(Transfers, SeveralVolumesTakeOneUpload)
+{
+  VolumeDeformer deformers[2];
+  for (VolumeDeformer& deformer : deformers)
+  {
+    Load(deformer, this->Case, this->Arrays, Route::Mesh);
+    RunDeformer(deformer, this->Case, this->Arrays);
+  }
+  const auto vectors = std::make_shared<DeviceVectors>("", this->Points);
+  for (int frame = 0; frame < 3; ++frame)
+  {
+    this->Reset();
+    vectors->Write(this->Displacements.data());
+    deformers[0].SetNodeDisplacements(vectors);
+    deformers[1].SetNodeDisplacements(vectors, this->Half);
+    // At first the numbers by which a device knows the nodes, four bytes each.
+    const std::uint64_t numbers = frame == 0 ? 2 * 4 * this->Points : 0;
+    EXPECT_EQ(FakeDriver::Get().BytesWritten, this->Bytes + numbers);
+    EXPECT_LE(FakeDriver::Get().BytesRead, Few);
+  }
+  // On the host each of them is sent by itself.
+  this->Reset();
+  for (VolumeDeformer& deformer : deformers)
+  {
+    deformer.SetNodeDisplacements(this->Displacements.data());
+  }
+  EXPECT_GE(FakeDriver::Get().BytesWritten, 2 * this->Bytes);
+}
+
+TEST_F(Transfers, FieldsPassNothingThroughTheHost)
+{
+  VolumeDeformer deformer;
+  Load(deformer, this->Case, this->Arrays, Route::Field);
+  const auto vectors = std::make_shared<DeviceVectors>("", this->Points);
+  vectors->Write(this->Displacements.data());
+  DisplacementField field;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    field.Dimensions[axis] = static_cast<int>(GetSize(this->Case.VoxelGrid.VertexExtent, axis));
+    field.IndexToField[4 * axis + 3] = -this->Case.VoxelGrid.VertexExtent[2 * axis];
+  }
+  this->Reset();
+  deformer.SetDisplacementField(field, vectors);
+  field.ToDisplacement = this->Half;
+  deformer.SetDisplacementField(field, vectors);
+  EXPECT_LE(FakeDriver::Get().BytesWritten, Few);
+  EXPECT_LE(FakeDriver::Get().BytesRead, Few);
+}
+
+// In a drag the displacements of the voxels neither come to the host nor go from it.
+TEST_F(Transfers, ChainMailPassesNothingThroughTheHost)
+{
+  const Extent extent{ { 0, 47, 0, 47, 0, 47 } };
+  const DeformerCase large =
+    MakeCase(extent, { { 1, 1, 1 } }, [](const glm::dvec3& index) { return index; });
+  const auto points = static_cast<std::size_t>(large.GetNumberOfVoxels());
+  const auto values = MakeRandomValues<std::uint16_t>(points, 3);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  VolumeDeformer deformer;
+  Load(deformer, large, arrays, Route::Field);
+  RunDeformer(deformer, large, arrays);
+  DisplacementField field;
+  field.Dimensions = { { 48, 48, 48 } };
+  field.ToDisplacement = this->Half;
+  ChainMailModel model;
+  model.SetVoxelGrid(extent, { { 2, 0, 0, 0, 2, 0, 0, 0, 2 } });
+  const auto vectors = std::make_shared<DeviceVectors>("", points);
+  model.SetOutput(vectors);
+  const std::uint64_t held = deformer.GetDeviceMemory();
+  for (int step = 1; step <= 3; ++step)
+  {
+    ChainMailRequest request;
+    request.Handles.resize(1);
+    request.Handles[0].RestPosition = { { 24, 24, 24 } };
+    request.Handles[0].Displacement = { { 4.0 * step, 0, 0 } };
+    this->Reset();
+    const ChainMailReport report = model.Step(request);
+    deformer.SetDisplacementField(field, vectors);
+    const std::uint64_t moved = 12 * static_cast<std::uint64_t>(report.NumberOfMovedVoxels);
+    ASSERT_GT(moved, 12U * 512U);
+    // Lists of blocks, and what the kernels tell of each, a few numbers a block of 512 voxels.
+    EXPECT_LT(FakeDriver::Get().BytesRead, moved / 16);
+    EXPECT_LT(FakeDriver::Get().BytesWritten, moved / 16);
+    std::cout << "Step " << step << ": " << moved << " bytes of displacements have changed, "
+              << FakeDriver::Get().BytesRead << " were read and " << FakeDriver::Get().BytesWritten
+              << " written\n";
+  }
+  EXPECT_EQ(deformer.GetDeviceMemory(), held);
+}
