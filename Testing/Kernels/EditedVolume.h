@@ -13,6 +13,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 /// A volume of several bricks, and a grid of nodes round it. Each cell of the grid is split into
@@ -34,6 +35,7 @@ struct EditedVolume
   std::vector<unsigned char> Active;
   deformvolume::Extent Output;
   double Background = 3.0;
+  deformvolume::Resampling Method = deformvolume::Resampling::Exact;
 
   /// hasCorner: whether a corner of the volume is outside the mesh.
   explicit EditedVolume(
@@ -73,6 +75,27 @@ inline std::string GetRouteName(const testing::TestParamInfo<Route>& info)
 {
   return info.param == Route::Mesh ? "Links" : info.param == Route::Runs ? "Runs" : "Field";
 }
+
+/// A route, and the kernel: that of the device's choice, or the one by cell.
+using Way = std::tuple<Route, deformvolume::Resampling>;
+inline std::string GetWayName(const testing::TestParamInfo<Way>& info)
+{
+  return GetRouteName({ std::get<0>(info.param), info.index }) +
+    (std::get<1>(info.param) == deformvolume::Resampling::ExactByCell ? "ByCell" : "");
+}
+inline auto GetWays()
+{
+  return testing::Combine(testing::Values(Route::Mesh, Route::Runs, Route::Field),
+    testing::Values(deformvolume::Resampling::Exact, deformvolume::Resampling::ExactByCell));
+}
+
+/// A test of a way.
+class WayTest : public testing::TestWithParam<Way>
+{
+protected:
+  static Route GetRoute() { return std::get<0>(GetParam()); }
+  static deformvolume::Resampling GetMethod() { return std::get<1>(GetParam()); }
+};
 
 /// What becomes of an EditedVolume.
 struct EditedOutputs

@@ -175,6 +175,7 @@ extern "C" cl_int CL_API_CALL clEnqueueReadBuffer(cl_command_queue queue, cl_mem
 {
   static auto* const real = Find<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer");
   const int error = FakeDriver::Get().ReadError;
+  FakeDriver::Get().BytesRead += size;
   if (!error || blocking || !done)
   {
     return real(queue, buffer, blocking, offset, size, memory, number, events, done);
@@ -192,6 +193,7 @@ extern "C" cl_int CL_API_CALL clEnqueueReadBufferRect(cl_command_queue queue, cl
 {
   static auto* const real = Find<decltype(clEnqueueReadBufferRect)>("clEnqueueReadBufferRect");
   const int error = FakeDriver::Get().ReadError;
+  FakeDriver::Get().BytesRead += region[0] * region[1] * region[2];
   if (!error || blocking || !done)
   {
     return real(queue, buffer, blocking, origin, hostOrigin, region, row, slice, hostRow, hostSlice,
@@ -201,6 +203,25 @@ extern "C" cl_int CL_API_CALL clEnqueueReadBufferRect(cl_command_queue queue, cl
   clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof(context), &context, nullptr);
   *done = clCreateUserEvent(context, nullptr);
   return clSetUserEventStatus(*done, error);
+}
+
+extern "C" cl_int CL_API_CALL clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer,
+  cl_bool blocking, std::size_t offset, std::size_t size, const void* memory, cl_uint number,
+  const cl_event* events, cl_event* done)
+{
+  static auto* const real = Find<decltype(clEnqueueWriteBuffer)>("clEnqueueWriteBuffer");
+  FakeDriver::Get().BytesWritten += size;
+  return real(queue, buffer, blocking, offset, size, memory, number, events, done);
+}
+
+extern "C" void* CL_API_CALL clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer,
+  cl_bool blocking, cl_map_flags access, std::size_t offset, std::size_t size, cl_uint number,
+  const cl_event* events, cl_event* done, cl_int* error)
+{
+  static auto* const real = Find<decltype(clEnqueueMapBuffer)>("clEnqueueMapBuffer");
+  FakeDriver::Get().BytesRead += access & CL_MAP_READ ? size : 0;
+  FakeDriver::Get().BytesWritten += access & ~cl_map_flags{ CL_MAP_READ } ? size : 0;
+  return real(queue, buffer, blocking, access, offset, size, number, events, done, error);
 }
 
 extern "C" cl_int CL_API_CALL clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel,
