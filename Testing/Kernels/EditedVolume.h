@@ -5,6 +5,7 @@
 #define EditedVolume_h
 
 #include "DeformerCase.h"
+#include "DeviceNeeds.h"
 
 #include <gtest/gtest.h>
 
@@ -93,8 +94,20 @@ inline auto GetWays()
 class WayTest : public testing::TestWithParam<Way>
 {
 protected:
+  void SetUp() override
+  {
+    if (GetMethod() == deformvolume::Resampling::ExactByCell && !HasVectors())
+    {
+      GTEST_SKIP() << "the device chooses the kernel by cell itself";
+    }
+  }
   static Route GetRoute() { return std::get<0>(GetParam()); }
   static deformvolume::Resampling GetMethod() { return std::get<1>(GetParam()); }
+  /// How many edits there are time for, of some: fewer by cell.
+  static int GetNumberOf(int edits)
+  {
+    return GetMethod() == deformvolume::Resampling::Exact && HasVectors() ? edits : edits / 2;
+  }
 };
 
 /// What becomes of an EditedVolume.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Incremental updates against whole ones of another deformer, bit by bit, after random edits of the
 // deformation, the masks and the request.
-#include "DeviceNeeds.h"
 #include "EditedVolume.h"
 
 #include <gtest/gtest.h>
@@ -153,7 +152,8 @@ TEST_P(Incremental, EqualsWholeUpdates)
   bool hasLast = false;
   int parts = 0;
   std::int64_t fewest = 1000000;
-  for (int i = 0; i < 150; ++i)
+  const int edits = GetNumberOf(150);
+  for (int i = 0; i < edits; ++i)
   {
     // Small edits come more often: only they are worked on in part.
     static const Edit small[] = { Edit::Node, Edit::Inside, Edit::Region, Edit::Blanked,
@@ -234,7 +234,7 @@ TEST_P(Incremental, EqualsWholeUpdates)
       fewest = std::min(fewest, report.NumberOfResampledBricks);
     }
   }
-  EXPECT_GT(parts, 30);
+  EXPECT_GT(parts, edits / 5);
   EXPECT_EQ(fewest, 0) << "an edit of nothing";
 }
 
@@ -250,7 +250,8 @@ TEST_P(Incremental, EditsInsideEqualWholeUpdates)
   std::mt19937 random(29);
   int parts = 0;
   int folds = 0;
-  for (int i = 0; i < 50; ++i)
+  const int edits = GetNumberOf(50);
+  for (int i = 0; i < edits; ++i)
   {
     SCOPED_TRACE("edit " + std::to_string(i));
     const bool folding = i % 5 == 3;
@@ -266,8 +267,102 @@ TEST_P(Incremental, EditsInsideEqualWholeUpdates)
       ++parts;
     }
   }
-  EXPECT_GT(folds, 3);
-  EXPECT_GT(parts, 5);
+  EXPECT_GT(folds, edits / 15);
+  EXPECT_GT(parts, edits / 10);
+}
+
+// Two memories take turns, as a pipeline has them: only what is different is copied.
+TEST_P(Incremental, OutputsTakeTurns)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  EditedVolume volume = MakeVolume();
+  VolumeDeformer whole;
+  VolumeDeformer updated;
+  volume.SendAll(whole, GetRoute());
+  volume.SendAll(updated, GetRoute());
+  std::array<EditedOutputs, 2> outputs{ { EditedOutputs(volume), EditedOutputs(volume) } };
+  std::array<std::uint64_t, 2> revisions{ { 0, 0 } };
+  std::mt19937 random(5);
+  int parts = 0;
+  for (int i = 0; i < 20; ++i)
+  {
+    SCOPED_TRACE("edit " + std::to_string(i));
+    Change(volume, i % 7 == 6 ? Edit::All : i % 3 == 1 ? Edit::Inside : Edit::Node, random);
+    volume.SendDisplacements(whole, GetRoute());
+    volume.SendDisplacements(updated, GetRoute());
+    EditedOutputs expected(volume);
+    whole.Deform(expected.MakeRequest(volume));
+    // Now and then the same memory twice.
+    const int turn = i % 5 == 4 ? (i - 1) % 2 : i % 2;
+    const int last = i == 0 ? 1 : (i - 1) % 5 == 4 ? (i - 2) % 2 : (i - 1) % 2;
+    DeformRequest request = outputs[turn].MakeRequest(volume);
+    request.Incremental = true;
+    if (i > 0)
+    {
+      outputs[last].SetLast(request);
+    }
+    request.OutputRevision = turn != last ? revisions[turn] : 0;
+    const DeformReport report = updated.Deform(request);
+    revisions[turn] = report.Revision;
+    ASSERT_TRUE(outputs[turn] == expected);
+    parts += report.NumberOfResampledBricks < report.NumberOfBricks;
+  }
+  EXPECT_GT(parts, 10);
+}
+
+// A processor writes into the memory of an output only where that is aligned for its type. Where
+// what it holds itself is not the last output, it makes all.
+TEST_P(Incremental, OutputsThatAreNotAligned)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  EditedVolume volume = MakeVolume();
+  VolumeDeformer whole;
+  VolumeDeformer updated;
+  volume.SendAll(whole, GetRoute());
+  volume.SendAll(updated, GetRoute());
+  EditedOutputs aligned(volume);
+  const std::size_t bytes = aligned.First.size() * sizeof(std::uint16_t);
+  std::vector<char> shifted(bytes + 1);
+  std::mt19937 random(11);
+  int parts = 0;
+  bool wasAligned = false;
+  for (int i = 0; i < 20; ++i)
+  {
+    SCOPED_TRACE("edit " + std::to_string(i));
+    const Edit kind = i % 3 == 0 ? Edit::Blanked : i % 3 == 1 ? Edit::Inside : Edit::Fold;
+    Change(volume, kind, random);
+    const bool isAligned = i % 6 >= 4;
+    const DeformRequest last = aligned.MakeRequest(volume);
+    DeformRequest request = last;
+    for (VolumeDeformer* deformer : { &whole, &updated })
+    {
+      volume.SendMasks(*deformer);
+      volume.SendDisplacements(*deformer, GetRoute());
+    }
+    EditedOutputs expected(volume);
+    whole.Deform(expected.MakeRequest(volume));
+    request.Outputs[0] = isAligned ? last.Outputs[0] : shifted.data() + 1;
+    request.Incremental = true;
+    if (i > 0)
+    {
+      aligned.SetLast(request);
+      request.LastOutputs[0] = wasAligned ? last.Outputs[0] : shifted.data() + 1;
+    }
+    const DeformReport report = updated.Deform(request);
+    if (!isAligned)
+    {
+      std::memcpy(last.Outputs[0], shifted.data() + 1, bytes);
+    }
+    ASSERT_TRUE(aligned == expected);
+    const bool isPart = report.NumberOfResampledBricks < report.NumberOfBricks;
+    parts += isPart;
+    if (HasVectors() && wasAligned && !isAligned)
+    {
+      EXPECT_FALSE(isPart) << "it was in the memory of the host";
+    }
+    wasAligned = isAligned;
+  }
+  EXPECT_GT(parts, 8);
 }
 
 // Edits that change what is covered, but not how much of it, so that counts do not tell: of two
