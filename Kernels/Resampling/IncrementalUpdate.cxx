@@ -124,6 +124,10 @@ void IncrementalUpdate::MovePoints(const PointSet& changed, const float* last)
 
 void IncrementalUpdate::Move(std::size_t subBrick, const float* last)
 {
+  if (!this->HasCells(subBrick))
+  {
+    return;
+  }
   if (!this->Moved[subBrick])
   {
     this->LastBoxes[subBrick] = this->Known[subBrick]
@@ -178,10 +182,6 @@ bool IncrementalUpdate::HasOnlyInterior(
 {
   const Extent vertices = this->Grid.GetVertices(subBrick, 0);
   const std::array<int, 3>& size = this->Grid.Size;
-  if (GetNumberOfCells(vertices) == 0)
-  {
-    return true;
-  }
   if (!state)
   {
     bool interior = true;
@@ -214,11 +214,7 @@ Extent IncrementalUpdate::GetMovedVertices() const
   {
     if (this->Moved[subBrick])
     {
-      const Extent vertices = this->Grid.GetVertices(subBrick, 0);
-      if (GetNumberOfCells(vertices) > 0)
-      {
-        Include(box, vertices);
-      }
+      Include(box, this->Grid.GetVertices(subBrick, 0));
     }
   }
   return box;
@@ -274,7 +270,7 @@ void IncrementalUpdate::ChangeMask(const std::vector<Extent>& changes, bool ofCe
               static_cast<std::size_t>(this->Grid.Count[0]) +
             static_cast<std::size_t>(x);
           const Extent region = this->Grid.GetVertices(subBrick, MaskReach);
-          bool touches = true;
+          bool touches = this->HasCells(subBrick);
           for (int axis = 0; axis < 3; ++axis)
           {
             touches &=

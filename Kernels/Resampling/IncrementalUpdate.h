@@ -116,6 +116,11 @@ private:
   void FindBoxesOf(const IsWanted& isWanted, const Displacements& displacements);
   /// The voxels in a box, within the output and counted from its first one; false without such.
   bool GetVoxels(const Box& box, Extent& voxels) const;
+  /// Bricks may reach beyond the volume.
+  bool HasCells(std::size_t subBrick) const
+  {
+    return GetNumberOfCells(this->Grid.GetVertices(subBrick, 0)) > 0;
+  }
   bool IsChanged(std::size_t subBrick) const
   {
     return this->Moved[subBrick] || this->Masked[subBrick];
