@@ -360,10 +360,12 @@ public:
   /**
    * Whether an update resamples only the bricks of the volume (192 x 16 x 16 cells, or parts of
    * these) whose nodes moved or whose masks changed, and, unless all that moved is inside the mesh,
-   * those that overlap them in the output. The result is the same to the last bit. Needs the
-   * resampler EXACT, a processor as device, and an output of the same extent as the last one; all
-   * is resampled where that is not so, where more than 60 % would have to be, where the volume's
-   * arrays changed, where the first fold of the volume comes or the last one goes, and after an
+   * those that overlap them in the output. The result is the same to the last bit. A device with
+   * memory of its own keeps the last output there, and only what may have changed is copied from it
+   * (see GetChangedExtent). Needs the resampler EXACT, and an output of the same extent as the last
+   * one; all is resampled where that is not so, where the device works on the volume or the output
+   * in several parts, where more than 60 % would have to be resampled, where the volume's arrays
+   * changed, where the first fold of the volume comes or the last one goes, and after an
    * abort or an error. Default: on.
    */
   vtkSetMacro(Incremental, bool);

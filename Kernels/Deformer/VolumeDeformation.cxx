@@ -203,7 +203,7 @@ DeformReport VolumeDeformation::Resample(const DeformRequest& request, std::uint
     MakeSlabs(this->Exact, this->Device, this->Volume, request, spare, report);
     report.NumberOfResampledBricks = report.NumberOfBricks;
     report.ChangedExtent = request.OutputExtent;
-    if (request.Incremental && this->Exact.CanMakeAgain(request))
+    if (request.Incremental && this->Exact.CanMakeAgain())
     {
       this->Incremental.Start(request, this->Source, report);
     }

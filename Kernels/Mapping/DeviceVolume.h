@@ -134,8 +134,8 @@ public:
   cl::NDRange GetVertexGroup() const;
 
   const BrickGrid& GetBricks() const { return this->Bricks; }
-  /// Those of the sub-bricks, of a mesh, on a processor, where the voxel grid is one
-  /// chunk.
+  /// Those of the sub-bricks, of a mesh, where the voxel grid is one chunk. Devices with memory of
+  /// their own copy the static mapping to the host for that.
   BrickPoints MakeBrickPoints(
     const cl::Buffer& tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes) const;
 

@@ -122,10 +122,10 @@ typedef struct
 // item: the brick and its sections (DEFORMVOLUME_BRICK_BITS).
 static void FindCells(uint item, BrickCells* cells, const KernelParameters* p)
 {
-  const uint brick = item & ((1u << DEFORMVOLUME_BRICK_BITS) - 1);
-  const int x = brick % p->BrickCount[0] * DEFORMVOLUME_BRICK_X + p->BrickOrigin[0];
-  const int y = brick / p->BrickCount[0] % p->BrickCount[1] * DEFORMVOLUME_BRICK_Y + p->BrickOrigin[1];
-  const int z = brick / p->BrickCount[0] / p->BrickCount[1] * DEFORMVOLUME_BRICK_Z + p->BrickOrigin[2];
+  const int3 first = FirstOfBrick(item, p);
+  const int x = first.x;
+  const int y = first.y;
+  const int z = first.z;
   const uint columns = item >> DEFORMVOLUME_BRICK_BITS & ((1u << DEFORMVOLUME_COLUMNS) - 1);
   const int firstColumn = 31 - clz(columns & -columns);
   const int endColumn = 32 - clz(columns);

@@ -531,25 +531,50 @@ static void AddCounts(
 }
 
 #if HAS_CELL_KERNEL
-// A work-group takes a cuboid of cells. positions: room for three ints a vertex of the cuboid.
+#define CUBOIDS_X (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_CUBOID_X)
+#define COLUMNS_OF_CUBOID (DEFORMVOLUME_CUBOID_X / DEFORMVOLUME_COLUMN)
+
+// Whether there are cells of a launch in a cuboid with this first cell.
+static int HasCells(int3 first, const KernelParameters* p)
+{
+  return first.x + DEFORMVOLUME_CUBOID_X > 0 && first.x < p->Size[0] - 1 &&
+    first.y + DEFORMVOLUME_CUBOID_Y > 0 && first.y < p->Size[1] - 1 &&
+    first.z + DEFORMVOLUME_CUBOID_Z > p->LayersBegin && first.z < p->LayersEnd;
+}
+
+// Bricks of a list from p.ListBegin to p.ListEnd (DEFORMVOLUME_BRICK_BITS). A work-group takes a cuboid of cells of a
+// brick, column by column, since counts are those of sections. On x there are the groups of one brick after the other.
+// positions: room for three ints a vertex of the cuboid.
 __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   __global const uchar* active, __global const float* distances, __global char* coverage,
   __global KEY* winners, __global char* patches, __global uint* largeCells,
-  __global uint* counters, __local int* positions,
+  __global uint* counters, __global const uint* bricks, __local int* positions,
   const KernelParameters p ARRAY_PARAMETERS)
 {
-  const int first[3] = { get_group_id(0) * DEFORMVOLUME_CUBOID_X,
-    get_group_id(1) * DEFORMVOLUME_CUBOID_Y, p.LayersBegin + get_group_id(2) * DEFORMVOLUME_CUBOID_Z };
+  const int place = p.ListBegin + (int)(get_group_id(0) / CUBOIDS_X);
+  const uint brick = place < p.ListEnd ? bricks[place] : 0; // no section of it
+  const int3 first = FirstOfBrick(brick, &p) +
+    (int3)((int)get_group_id(0) % CUBOIDS_X * DEFORMVOLUME_CUBOID_X,
+      (int)get_group_id(1) * DEFORMVOLUME_CUBOID_Y, (int)get_group_id(2) * DEFORMVOLUME_CUBOID_Z);
+  // That of the first column; the next columns follow.
+  const size_t section = SectionOf(first.x, first.y, first.z, &p);
+  int columns = 0; // those that are run, as bits
+  for (int column = 0; column < COLUMNS_OF_CUBOID && HasCells(first, &p); ++column)
+  {
+    columns |= IsSectionRun(brick, section + column) << column;
+  }
   const SamplingMesh unmapped = { MAPPING_ARGUMENTS, state, active, distances, 0, { 0, 0, 0 } };
   const int width = DEFORMVOLUME_CUBOID_X + 1;
   const int height = DEFORMVOLUME_CUBOID_Y + 1;
-  for (int i = get_local_id(0); i < DEFORMVOLUME_CUBOID_VERTICES; i += get_local_size(0))
+  const int vertices = columns ? DEFORMVOLUME_CUBOID_VERTICES : 0;
+  for (int i = get_local_id(0); i < vertices; i += get_local_size(0))
   {
-    const int x = first[0] + i % width;
-    const int y = first[1] + i / width % height;
-    const int z = first[2] + i / (width * height);
-    // Cells beyond the launch's last layer are looked at where samples lie on the border of the mesh.
-    const int4 q = x < p.Size[0] && y < p.Size[1] && z < p.Size[2] && z <= p.LayersEnd + 1
+    const int x = first.x + i % width;
+    const int y = first.y + i / width % height;
+    const int z = first.z + i / (width * height);
+    // Cells beyond the launch's first and last layer are looked at where samples lie on the border of the mesh.
+    const int4 q = x >= 0 && y >= 0 && z >= max(p.LayersBegin - 1, 0) && x < p.Size[0] &&
+        y < p.Size[1] && z < p.Size[2] && z <= p.LayersEnd + 1
       ? VertexPosition(&unmapped, x, y, z, &p)
       : (int4)(INT_MIN, 0, 0, 0);
     positions[3 * i] = q.x;
@@ -559,25 +584,26 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   barrier(CLK_LOCAL_MEM_FENCE);
 
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances, positions,
-    { first[0], first[1], first[2] } };
-  Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
+    { first.x, first.y, first.z } };
   const Candidates all = AllCandidates(&p);
-  for (int i = get_local_id(0);
-       i < DEFORMVOLUME_CUBOID_X * DEFORMVOLUME_CUBOID_Y * DEFORMVOLUME_CUBOID_Z;
-       i += get_local_size(0))
+  for (int column = 0; column < COLUMNS_OF_CUBOID; ++column)
   {
-    const int x = first[0] + i % DEFORMVOLUME_CUBOID_X;
-    const int y = first[1] + i / DEFORMVOLUME_CUBOID_X % DEFORMVOLUME_CUBOID_Y;
-    const int z = first[2] + i / (DEFORMVOLUME_CUBOID_X * DEFORMVOLUME_CUBOID_Y);
-    if (x < p.Size[0] - 1 && y < p.Size[1] - 1 && z < p.LayersEnd)
+    const int cells = columns >> column & 1
+      ? DEFORMVOLUME_COLUMN * DEFORMVOLUME_CUBOID_Y * DEFORMVOLUME_CUBOID_Z
+      : 0;
+    Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
+    for (int i = get_local_id(0); i < cells; i += get_local_size(0))
     {
-      ResampleCell(&mesh, x, y, z, &all, &output, &p ARRAY_ARGUMENTS);
+      const int x = first.x + column * DEFORMVOLUME_COLUMN + i % DEFORMVOLUME_COLUMN;
+      const int y = first.y + i / DEFORMVOLUME_COLUMN % DEFORMVOLUME_CUBOID_Y;
+      const int z = first.z + i / (DEFORMVOLUME_COLUMN * DEFORMVOLUME_CUBOID_Y);
+      if (x >= 0 && y >= 0 && z >= p.LayersBegin && x < p.Size[0] - 1 && y < p.Size[1] - 1 &&
+        z < p.LayersEnd)
+      {
+        ResampleCell(&mesh, x, y, z, &all, &output, &p ARRAY_ARGUMENTS);
+      }
     }
+    AddCounts(&output, section + column, counters, &p);
   }
-  // The sums over all bricks are what counts here.
-  const uint brick = ((uint)(first[2] - p.BrickOrigin[2]) / DEFORMVOLUME_BRICK_Z * p.BrickCount[1] +
-                       (uint)(first[1] - p.BrickOrigin[1]) / DEFORMVOLUME_BRICK_Y) *
-    p.BrickCount[0];
-  AddCounts(&output, DEFORMVOLUME_SECTIONS * (size_t)brick, counters, &p);
 }
 #endif

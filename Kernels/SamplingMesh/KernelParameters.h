@@ -107,9 +107,9 @@ typedef struct
 #define DEFORMVOLUME_COLUMNS (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_COLUMN)
 #define DEFORMVOLUME_SECTIONS (4 * DEFORMVOLUME_COLUMNS)
 
-// What a work-item of the kernel ResampleBricks takes: the number of a brick, and above that a bit
-// for each column, all from the lowest one to the highest one being run, and for y and z a bit for
-// the lower half and one for the upper half.
+// What a work-item of the kernel ResampleBricks takes, and some work-groups of the kernel Resample:
+// the number of a brick, and above that a bit for each column, and for y and z a bit for the lower
+// half and one for the upper half. ResampleBricks takes all columns from the lowest to the highest.
 #define DEFORMVOLUME_BRICK_BITS 22
 #define DEFORMVOLUME_WHOLE_BRICK ((1 << (DEFORMVOLUME_COLUMNS + 4)) - 1)
 
@@ -186,6 +186,28 @@ static size_t PatchRow(size_t y, size_t z, const KernelParameters* p)
 static size_t PatchedPlanes(const KernelParameters* p)
 {
   return (size_t)DEFORMVOLUME_PATCHES(p->OutputSize[2]) * DEFORMVOLUME_PATCH;
+}
+
+// Local index of the first cell of a brick (DEFORMVOLUME_BRICK_BITS), which may lie before the
+// volume.
+static int3 FirstOfBrick(uint item, const KernelParameters* p)
+{
+  const int brick = item & ((1u << DEFORMVOLUME_BRICK_BITS) - 1);
+  return (int3)(brick % p->BrickCount[0] * DEFORMVOLUME_BRICK_X + p->BrickOrigin[0],
+    brick / p->BrickCount[0] % p->BrickCount[1] * DEFORMVOLUME_BRICK_Y + p->BrickOrigin[1],
+    brick / p->BrickCount[0] / p->BrickCount[1] * DEFORMVOLUME_BRICK_Z + p->BrickOrigin[2]);
+}
+
+// Whether a section of a brick is to be run. section: as counters number them.
+static int IsSectionRun(uint item, size_t section)
+{
+  const uint inBrick = section % DEFORMVOLUME_SECTIONS;
+  const uint halves = inBrick / DEFORMVOLUME_COLUMNS;
+  const uint columns = item >> DEFORMVOLUME_BRICK_BITS;
+  const uint halvesY = columns >> DEFORMVOLUME_COLUMNS;
+  const uint halvesZ = halvesY >> 2;
+  return columns >> inBrick % DEFORMVOLUME_COLUMNS & halvesY >> (halves & 1) &
+    halvesZ >> (halves >> 1) & 1;
 }
 
 // The section of a brick that a cell lies in, as counters number them.

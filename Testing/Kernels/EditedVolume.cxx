@@ -314,6 +314,7 @@ EditedOutputs::EditedOutputs(const EditedVolume& volume)
 DeformRequest EditedOutputs::MakeRequest(const EditedVolume& volume)
 {
   DeformRequest request;
+  request.Method = volume.Method;
   request.OutputExtent = volume.Output;
   request.Outputs = { this->First.data(), this->Second.data() };
   request.Coverage = this->Coverage.data();
