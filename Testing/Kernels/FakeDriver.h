@@ -24,9 +24,6 @@ struct FakeDriver
   bool RefusesOverlaps = false;
   /// Programs are compiled so that products are fused with sums wherever that is possible.
   bool FusesProducts = false;
-  /// Bytes that were read from buffers, or mapped to be read, and the same for what was written.
-  std::uint64_t BytesRead = 0;
-  std::uint64_t BytesWritten = 0;
   /// Launches of more than one work-item that left the size of the groups to the driver.
   int LaunchesWithoutGroup = 0;
 
