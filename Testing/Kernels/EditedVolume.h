@@ -107,7 +107,7 @@ protected:
   /// How many edits there are time for, of some: fewer by cell.
   static int GetNumberOf(int edits)
   {
-    return GetMethod() == deformvolume::Resampling::Exact && HasVectors() ? edits : edits / 2;
+    return GetMethod() == deformvolume::Resampling::Exact && HasVectors() ? edits : edits / 3;
   }
 };
 
