@@ -37,8 +37,6 @@ public:
   const RangeLog& GetLog() const { return this->Log; }
 
 private:
-  void CopyToHost(std::size_t begin, std::size_t end);
-
   WorkDevice Device;
   std::size_t NumberOfPoints;
   cl::Buffer Buffer;
