@@ -12,7 +12,7 @@
  *   displacement field,
  * - the connectivity of its cells (vtkCellArray::GetConnectivityArray(), one component: the tuples
  *   4 c to 4 c + 3 are the tetrahedron c),
- * - "ActiveTetrahedra" and vtkGhostType of the points of the volume (port 0).
+ * - "ActiveTetrahedra", "BoundaryDistance" and vtkGhostType of the points of the volume (port 0).
  *
  * @code{.cpp}
  * vtkNew<vtkArrayChanges> changes;

@@ -64,5 +64,6 @@ void vtkCarveVolume::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LabelArrayName: \"" << this->LabelArrayName << "\"\n";
   os << indent << "Label: " << this->Label << "\n";
   os << indent << "Rule: " << this->Rule << "\n";
+  os << indent << "SmoothBoundary: " << (this->SmoothBoundary ? "on" : "off") << "\n";
   os << indent << "ToolRadius: " << this->ToolRadius << "\n";
 }

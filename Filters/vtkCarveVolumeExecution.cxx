@@ -19,7 +19,7 @@
 #include <utility>
 
 using deformvolume::Error;
-using deformvolume::TetrahedronSet;
+using deformvolume::SmoothCarving;
 
 namespace
 {
@@ -77,7 +77,7 @@ vtkDataArray* vtkCarveVolume::vtkInternals::FindLabels(vtkImageData* volume) con
 }
 
 //------------------------------------------------------------------------------
-TetrahedronSet vtkCarveVolume::vtkInternals::CarveLabel(vtkDataArray* labels) const
+SmoothCarving vtkCarveVolume::vtkInternals::CarveLabel(vtkDataArray* labels) const
 {
   const auto values = vtk::DataArrayValueRange<1>(labels);
   const double label = this->Self->Label;
@@ -98,20 +98,41 @@ TetrahedronSet vtkCarveVolume::vtkInternals::CarveLabel(vtkDataArray* labels) co
       }
     }
   };
-  return deformvolume::FindCarvedTetrahedra(
-    this->Self->Edits->Editor.GetBricks(), find, this->GetRule());
+  const deformvolume::VolumeEditor& editor = this->Self->Edits->Editor;
+  if (this->Self->SmoothBoundary)
+  {
+    // The same for all voxels: the surface lies halfway between them.
+    const glm::dvec3& spacing = editor.GetGeometry().Spacing;
+    const double half =
+      0.5 * std::min({ std::abs(spacing.x), std::abs(spacing.y), std::abs(spacing.z) });
+    return deformvolume::FindSmoothCarving(editor.GetBricks(), find, half, editor.GetFarDistance());
+  }
+  return { deformvolume::FindCarvedTetrahedra(editor.GetBricks(), find, this->GetRule()), {} };
+}
+
+//------------------------------------------------------------------------------
+SmoothCarving vtkCarveVolume::vtkInternals::Carve(
+  vtkInformationVector** input, const deformvolume::CarvingTool& tool) const
+{
+  vtkEdits& edits = *this->Self->Edits;
+  const deformvolume::VertexPositions& vertices = edits.GetVertices(input);
+  if (this->Self->SmoothBoundary)
+  {
+    return deformvolume::FindSmoothCarving(vertices, tool, edits.Editor.GetFarDistance());
+  }
+  return { deformvolume::FindCarvedTetrahedra(vertices, tool, this->GetRule()), {} };
 }
 
 //------------------------------------------------------------------------------
 void vtkCarveVolume::vtkInternals::Find(Body& body, Body::Key&& next,
-  const std::function<TetrahedronSet()>& carve, std::vector<Change>& changes)
+  const std::function<SmoothCarving()>& carve, std::vector<Change>& changes)
 {
   if (next == body.Carved)
   {
     return;
   }
   const bool isThere = next != Body::Key();
-  changes.push_back({ &body, std::move(next), isThere ? carve() : TetrahedronSet() });
+  changes.push_back({ &body, std::move(next), isThere ? carve() : SmoothCarving() });
 }
 
 //------------------------------------------------------------------------------
@@ -128,25 +149,31 @@ void vtkCarveVolume::vtkInternals::Execute(vtkInformationVector** input)
     vtkPolyData::GetData(input[1]), glm::dvec3(0.0), "surface on input port 1");
   const deformvolume::ImageGeometry& geometry = edits.Editor.GetGeometry();
   const double sheetVersion = this->SheetVersion + (sheet == this->Sheet ? 0.0 : 1.0);
-  const double rule = this->Self->Rule;
-  const auto carveTool = [&](const deformvolume::CarvingTool& tool)
-  { return deformvolume::FindCarvedTetrahedra(edits.GetVertices(input), tool, this->GetRule()); };
+  constexpr double smooth = -1.0; // in place of a rule
+  const double rule = this->Self->SmoothBoundary ? smooth : this->Self->Rule;
 
   std::vector<Change> changes;
   vtkImplicitFunction* function = this->Self->ImplicitFunction;
   this->Find(
     this->Function,
     function ? Body::Key{ { { function, function->GetMTime() } }, { rule } } : Body::Key(),
-    [&] {
-      return carveTool(deformvolume::GetInIndices(deformvolume::MakeWorldTool(function), geometry));
+    [&]
+    {
+      return this->Carve(
+        input, deformvolume::GetInIndices(deformvolume::MakeWorldTool(function), geometry));
     },
     changes);
   this->Find(
     this->Surface, sheet.IsEmpty() ? Body::Key() : Body::Key{ {}, { rule, sheetVersion } },
     [&]
     {
-      return carveTool(deformvolume::MakeSurfaceInterior(
-        sheet.GetSheet(geometry), edits.GetVertices(input).GetBox()));
+      deformvolume::CarvingTool tool = deformvolume::MakeSurfaceInterior(
+        sheet.GetSheet(geometry), edits.GetVertices(input).GetBox());
+      if (this->Self->SmoothBoundary)
+      {
+        tool.Distance = deformvolume::MakeDistance(sheet, geometry);
+      }
+      return this->Carve(input, tool);
     },
     changes);
   const std::size_t beforeLabel = changes.size();
@@ -160,11 +187,12 @@ void vtkCarveVolume::vtkInternals::Execute(vtkInformationVector** input)
   {
     stroke.push_back(position[0]);
   }
-  TetrahedronSet byTool;
+  SmoothCarving byTool;
   if (!stroke.empty())
   {
-    byTool = carveTool(deformvolume::GetInIndices(
-      deformvolume::MakeSweptSphere(stroke, glm::dvec3(this->Self->ToolRadius)), geometry));
+    byTool = this->Carve(input,
+      deformvolume::GetInIndices(
+        deformvolume::MakeSweptSphere(stroke, glm::dvec3(this->Self->ToolRadius)), geometry));
   }
 
   if (labels && changes.size() > beforeLabel && !HasLabel(labels, this->Self->Label))

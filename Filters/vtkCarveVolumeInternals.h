@@ -4,7 +4,6 @@
 
 #include "Carving.h"
 #include "SheetReading.h"
-#include "TetrahedronSet.h"
 
 #include "vtkCarveVolume.h"
 #include "vtkVolumeEditAlgorithmInternals.h"
@@ -44,16 +43,19 @@ private:
   {
     Body* Changed;
     Body::Key Next; // empty: there is no body
-    deformvolume::TetrahedronSet Carved;
+    deformvolume::SmoothCarving Carved;
   };
 
   void Check() const;
   deformvolume::CarvingRule GetRule() const;
   vtkDataArray* FindLabels(vtkImageData* volume) const;
   /// Appends a change where a body is another one. carve: finds what it carves out.
-  void Find(Body& body, Body::Key&& next,
-    const std::function<deformvolume::TetrahedronSet()>& carve, std::vector<Change>& changes);
-  deformvolume::TetrahedronSet CarveLabel(vtkDataArray* labels) const;
+  void Find(Body& body, Body::Key&& next, const std::function<deformvolume::SmoothCarving()>& carve,
+    std::vector<Change>& changes);
+  /// What a tool carves out, by Rule or with a smooth boundary.
+  deformvolume::SmoothCarving Carve(
+    vtkInformationVector** input, const deformvolume::CarvingTool& tool) const;
+  deformvolume::SmoothCarving CarveLabel(vtkDataArray* labels) const;
 
   vtkCarveVolume* Self;
   Body Function;

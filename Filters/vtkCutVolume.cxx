@@ -90,7 +90,7 @@ void vtkCutVolume::UpdateEdits(vtkInformationVector** input)
 
   if (isNew && !sheet.IsEmpty())
   {
-    editor.Put(last.SheetEdit, std::move(bySheet), this->Accumulate);
+    editor.Put(last.SheetEdit, { std::move(bySheet), {} }, this->Accumulate);
   }
   else if (isNew && !this->Accumulate)
   {
@@ -100,7 +100,7 @@ void vtkCutVolume::UpdateEdits(vtkInformationVector** input)
   if (!stroke.IsEmpty())
   {
     std::uint64_t edit = 0;
-    editor.Put(edit, std::move(byTool), true);
+    editor.Put(edit, { std::move(byTool), {} }, true);
   }
 }
 

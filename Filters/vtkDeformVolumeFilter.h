@@ -19,8 +19,10 @@
  * so that label ids of 64 bits survive. Attributes keep their role, field data passes. Points that
  * vtkGhostType marks as hidden or duplicate are no source. A cell array "ActiveTetrahedra"
  * (unsigned char, one component; bit i stands for tetrahedron i of the cell) switches tetrahedra of
- * the sampling mesh off; hidden cells are off too. Other cell arrays are not resampled, and a
- * warning names them.
+ * the sampling mesh off; hidden cells are off too. A point array "BoundaryDistance" (numeric, one
+ * component, any unit) clips them: it is interpolated in each tetrahedron, and samples where it is
+ * negative are left out; NaN is not negative. Other cell arrays are not resampled, and a warning
+ * names them.
  *
  * @par Port 1, the deformation, one of:
  * - vtkUnstructuredGrid, or a composite dataset of such (they are joined): tetrahedra; other
@@ -358,10 +360,12 @@ public:
   /**
    * Whether an update resamples only the bricks of the volume (192 x 16 x 16 cells, or parts of
    * these) whose nodes moved or whose masks changed, and, unless all that moved is inside the mesh,
-   * those that overlap them in the output. The result is the same to the last bit. Needs the
-   * resampler EXACT, a processor as device, and an output of the same extent as the last one; all
-   * is resampled where that is not so, where more than 60 % would have to be, where the volume's
-   * arrays changed, where the first fold of the volume comes or the last one goes, and after an
+   * those that overlap them in the output. The result is the same to the last bit. A device with
+   * memory of its own keeps the last output there, and only what may have changed is copied from it
+   * (see GetChangedExtent). Needs the resampler EXACT, and an output of the same extent as the last
+   * one; all is resampled where that is not so, where the device works on the volume or the output
+   * in several parts, where more than 60 % would have to be resampled, where the volume's arrays
+   * changed, where the first fold of the volume comes or the last one goes, and after an
    * abort or an error. Default: on.
    */
   vtkSetMacro(Incremental, bool);

@@ -23,7 +23,10 @@ BUILD = WORK / "build"
 
 NARROW = ("TestNarrowDecisions", "*")
 MASKS = ("TestIncremental", "IncrementalMasks*")
-FOLDS = ("TestIncrementalFolds", "*")
+FOLDS = ("TestIncrementalFolds", "-*ByCell")
+BY_CELL = ("TestIncremental", "*Borders*ByCell")
+ALIGNED = ("TestIncremental", "*NotAligned*")
+OWN_MEMORY = ("TestIncrementalGraphics", "*IncrementalGraphics*")
 MEMORY = ("TestHostMemory", "*")
 LARGE = ("TestLargeCells", "-*Time*")
 FAULTS = ("TestFaults", "*")
@@ -41,14 +44,24 @@ MUTATIONS = {
     "filter-upright": ("Kernels/Resampling/GroupWeights.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
     "filter-bent": ("Kernels/Resampling/GroupWeights.cl", "(FLOATS)(3.2e-5f)", "(FLOATS)(3.2e-7f)", [NARROW]),
     "mask-reach": ("Kernels/Resampling/IncrementalUpdate.cxx", "MaskReach = 1;", "MaskReach = 0;", [MASKS]),
-    "old-winners": ("Kernels/Resampling/OutputSlab.cxx",
-                    "FillPatches(this->SlabExtent, patches, winners.Get(), this->WinnerSize, 0xff);", "", [FOLDS]),
+    "old-winners": ("Kernels/Resampling/OutputWinners.cxx",
+                    "    FillPatches(context, this->Queue, this->Keys,\n"
+                    "      ElementBytes::Of(std::numeric_limits<cl_uint>::max()), this->KeySize / sizeof(cl_uint), list,\n"
+                    "      patches.size(), parameters, events);\n", "", [FOLDS]),
+    "counts-of-cuboids": ("Kernels/Resampling/Resampling.cl", "AddCounts(&output, section + column,",
+                          "AddCounts(&output, section,", [BY_CELL]),
+    "output-elsewhere": ("Kernels/Resampling/OutputSlab.cxx",
+                         "deformvolume::GetMemory(buffer) == voxels * tupleSize;", "true;", [ALIGNED]),
+    "patches-left": ("Kernels/Resampling/OutputSlab.cxx", "if (!part.Patches.empty() && !onHost)", "if (false)",
+                     [OWN_MEMORY]),
     "contested-twice": ("Kernels/Resampling/VoxelWinners.cl", "      return found == key;\n    }\n    const KEY seen",
                         "      return key == (found & ~CONTESTED);\n    }\n    const KEY seen", [FOLDS]),
     "winners-not-awaited": ("Kernels/Resampling/ExactResampler.cxx",
                             "this->Device.GetQueue().finish(); // it is read in another queue", "", [FOLDS]),
     "clip": ("Kernels/Resampling/Resampling.cl", "CLIP_TOLERANCE (1.0f / 64.0f)", "CLIP_TOLERANCE 0.0f", [LARGE]),
     "launch-end": ("Kernels/Resampling/Resampling.cl", "z <= p.LayersEnd + 1", "z <= p.LayersEnd", [MEMORY]),
+    "launch-begin": ("Kernels/Resampling/Resampling.cl", "z >= max(p.LayersBegin - 1, 0)", "z >= p.LayersBegin",
+                     [MEMORY]),
     "failed-read": ("Kernels/OpenCL/HostMemory.cxx", "if (error != CL_SUCCESS)", "if (false)", [FAULTS]),
     "memory-twice": ("Kernels/OpenCL/MemoryBudget.cxx", "std::min(all, system) : all;",
                      "std::min(all, system) : all + this->CountHeld();", [GRAPHICS]),
@@ -58,7 +71,7 @@ MUTATIONS = {
                        "this->WithLinks = true;", [FAULTS]),
     "far-output": ("Kernels/Resampling/OutputSlab.cxx", "farthest = 1 << 22;", "farthest = 1 << 28;",
                    [("TestUse", "Use.OutputsFarAway")]),
-    "null-group": ("Kernels/Resampling/OutputSlab.cxx",
+    "null-group": ("Kernels/Resampling/OutputFilling.cxx",
                    "queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group)));",
                    "queue, kernel, cl::NDRange(items), cl::NullRange));", [GRAPHICS]),
     "float-integers": ("Kernels/SamplingMesh/ArrayText.cxx", "GetElementSize(arrays[i].Type) >= 4)",

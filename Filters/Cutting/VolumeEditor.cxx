@@ -7,9 +7,13 @@
 
 #include "vtkArrayChanges.h"
 #include "vtkCellData.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <string>
@@ -35,6 +39,66 @@ std::string RenamePorts(std::string text)
   return text;
 }
 
+float GetDiagonal(const Extent& extent, const glm::dvec3& spacing)
+{
+  glm::dvec3 size;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    size[axis] = static_cast<double>(GetSize(extent, axis)) * spacing[axis];
+  }
+  return static_cast<float>(glm::length(size));
+}
+
+// Makes an array of the output anew, with all values, where there is none, or somebody else holds
+// it and wants it as it is: the last output has let it go. Returns whether it has.
+template <typename ArrayT, typename T>
+bool MakeOutput(vtkSmartPointer<ArrayT>& array, const char* name, const std::vector<T>& values)
+{
+  if (array && array->GetReferenceCount() == 1)
+  {
+    return false;
+  }
+  array = vtkSmartPointer<ArrayT>::New();
+  array->SetName(name);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  vtkNew<vtkArrayChanges> log; // which the array holds
+  log->SetArray(array);
+  return true;
+}
+
+// Writes some bricks of values into an array of the output, and says so.
+template <typename ArrayT, typename T>
+void WriteBricks(ArrayT* array, const CellBricks& bricks, const std::vector<std::size_t>& changed,
+  const std::vector<T>& values)
+{
+  // Of so many bricks, consumers find the changes faster by a comparison.
+  constexpr std::size_t mostLogged = 512;
+  vtkArrayChanges* log = changed.size() <= mostLogged ? vtkArrayChanges::FindLog(array) : nullptr;
+  const std::array<int, 3>& size = bricks.GetSize();
+  for (const std::size_t brick : changed)
+  {
+    const Extent cells = bricks.GetCells(brick);
+    for (std::int64_t z = cells[4]; z <= cells[5]; ++z)
+    {
+      for (std::int64_t y = cells[2]; y <= cells[3]; ++y)
+      {
+        const std::int64_t row = (z * size[1] + y) * size[0];
+        const auto from = values.begin() + row + cells[0];
+        std::copy(from, from + (cells[1] - cells[0] + 1), array->GetPointer(row + cells[0]));
+        if (log)
+        {
+          log->AddTuples(row + cells[0], row + cells[1]);
+        }
+      }
+    }
+  }
+  if (!log && !changed.empty())
+  {
+    array->Modified();
+  }
+}
+
 } // namespace
 
 bool VolumeEditor::SetVolume(vtkImageData* volume, vtkInformation* info)
@@ -49,17 +113,27 @@ bool VolumeEditor::SetVolume(vtkImageData* volume, vtkInformation* info)
     volume->GetCellData(), ActiveTetrahedraName, volume->GetNumberOfCells(), "cell", "volume");
   const unsigned char* bytes = base ? base->GetPointer(0) : nullptr;
   const Stamp stamp{ { base, base ? base->GetMTime() : 0 }, { bytes, 0 } };
+  vtkAbstractArray* distances = volume->GetPointData()->GetAbstractArray(BoundaryDistanceName);
+  const Stamp distancesStamp{ { distances, distances ? distances->GetMTime() : 0 } };
   const bool isNew = !this->Mask || geometry != this->Geometry;
-  if (isNew)
+  if (distancesStamp != this->DistancesStamp)
   {
-    this->Mask = std::make_unique<MaskEditor>(geometry.PointExtent);
-    this->Rest = std::make_unique<RestPositions>(geometry.PointExtent);
-    this->Deformed.reset();
-    this->Active = nullptr;
-    this->Geometry = geometry;
+    FindBoundaryDistances(volume); // which throws where they cannot be used
   }
   const Extent whole = deformvolume::GetGeometry(info).PointExtent;
   this->Whole = Contains(whole, geometry.PointExtent) ? whole : geometry.PointExtent;
+  if (isNew)
+  {
+    this->Mask = std::make_unique<MaskEditor>(
+      geometry.PointExtent, GetDiagonal(this->Whole, geometry.Spacing));
+    this->Rest = std::make_unique<RestPositions>(geometry.PointExtent);
+    this->Deformed.reset();
+    this->Active = nullptr;
+    this->Distances = nullptr;
+    this->BaseDistancesStamp.clear();
+    this->Geometry = geometry;
+  }
+  this->DistancesStamp = distancesStamp;
   if (isNew || stamp != this->BaseStamp)
   {
     this->Mask->SetBase(bytes);
@@ -115,13 +189,13 @@ const VertexPositions& VolumeEditor::GetPositions(DeformationSource source, bool
   return *this->Deformed;
 }
 
-void VolumeEditor::Put(std::uint64_t& edit, TetrahedronSet&& set, bool keep)
+void VolumeEditor::Put(std::uint64_t& edit, SmoothCarving&& carving, bool keep)
 {
   if (!keep)
   {
     this->Mask->Remove(edit);
   }
-  edit = this->Mask->Add(std::move(set));
+  edit = this->Mask->Add(std::move(carving.Tetrahedra), std::move(carving.Distances));
 }
 
 void VolumeEditor::Drop(std::uint64_t& edit)
@@ -144,53 +218,43 @@ bool VolumeEditor::Reset()
 void VolumeEditor::Write(vtkImageData* volume, vtkImageData* output)
 {
   output->ShallowCopy(volume);
-  // The last output has let the array go. Who else holds it wants it as it is.
-  if (!this->Active || this->Active->GetReferenceCount() > 1)
+  this->WriteMask();
+  output->GetCellData()->AddArray(this->Active);
+  // Else those that the volume comes with are shared.
+  if (this->Mask->HasDistanceEdits())
   {
-    this->Active = vtkSmartPointer<vtkUnsignedCharArray>::New();
-    this->Active->SetName(ActiveTetrahedraName);
-    this->Active->SetNumberOfTuples(static_cast<vtkIdType>(this->Mask->GetMask().size()));
-    std::copy(
-      this->Mask->GetMask().begin(), this->Mask->GetMask().end(), this->Active->GetPointer(0));
-    this->Mask->TakeChangedBricks();
-    vtkNew<vtkArrayChanges> log; // which the array holds
-    log->SetArray(this->Active);
+    if (this->BaseDistancesStamp != this->DistancesStamp)
+    {
+      this->Mask->SetBaseDistances(FindBoundaryDistances(volume).Values);
+      this->BaseDistancesStamp = this->DistancesStamp;
+    }
+    this->WriteDistances();
+    output->GetPointData()->AddArray(this->Distances);
   }
   else
   {
-    this->WriteChanges(this->Active->GetPointer(0));
+    this->Distances = nullptr;
   }
-  output->GetCellData()->AddArray(this->Active);
 }
 
-void VolumeEditor::WriteChanges(unsigned char* bytes)
+void VolumeEditor::WriteMask()
 {
-  // Of so many bricks, consumers find the changes faster by a comparison.
-  constexpr std::size_t mostLogged = 512;
+  const bool isNew = MakeOutput(this->Active, ActiveTetrahedraName, this->Mask->GetMask());
   const std::vector<std::size_t> changed = this->Mask->TakeChangedBricks();
-  vtkArrayChanges* log =
-    changed.size() <= mostLogged ? vtkArrayChanges::FindLog(this->Active) : nullptr;
-  const std::array<int, 3>& size = this->Mask->GetBricks().GetSize();
-  for (const std::size_t brick : changed)
+  if (!isNew)
   {
-    const Extent cells = this->Mask->GetBricks().GetCells(brick);
-    for (std::int64_t z = cells[4]; z <= cells[5]; ++z)
-    {
-      for (std::int64_t y = cells[2]; y <= cells[3]; ++y)
-      {
-        const std::int64_t row = (z * size[1] + y) * size[0];
-        const auto from = this->Mask->GetMask().begin() + row + cells[0];
-        std::copy(from, from + (cells[1] - cells[0] + 1), bytes + row + cells[0]);
-        if (log)
-        {
-          log->AddTuples(row + cells[0], row + cells[1]);
-        }
-      }
-    }
+    WriteBricks(this->Active.Get(), this->Mask->GetBricks(), changed, this->Mask->GetMask());
   }
-  if (!log && !changed.empty())
+}
+
+void VolumeEditor::WriteDistances()
+{
+  const bool isNew = MakeOutput(this->Distances, BoundaryDistanceName, this->Mask->GetDistances());
+  const std::vector<std::size_t> changed = this->Mask->TakeChangedVertexBricks();
+  if (!isNew)
   {
-    this->Active->Modified();
+    WriteBricks(
+      this->Distances.Get(), this->Mask->GetVertexBricks(), changed, this->Mask->GetDistances());
   }
 }
 

@@ -2,12 +2,12 @@
 #ifndef DeformVolumeVolumeEditor_h
 #define DeformVolumeVolumeEditor_h
 
+#include "Carving.h"
 #include "CellBricks.h"
 #include "Deformation.h"
 #include "ImageGeometry.h"
 #include "MappingCache.h"
 #include "MaskEditor.h"
-#include "TetrahedronSet.h"
 #include "VertexPositions.h"
 
 #include "vtkSmartPointer.h"
@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <memory>
 
+class vtkFloatArray;
 class vtkImageData;
 class vtkInformation;
 class vtkUnsignedCharArray;
@@ -29,10 +30,11 @@ namespace deformvolume
 class VolumeEditor
 {
 public:
-  /// Takes a volume with its own active tetrahedra, from which the edits are taken away. info: what
-  /// announces the volume that it may be a part of. Returns whether its voxels lie elsewhere than
-  /// before: then there are no edits any more. Throws Error, and leaves all as it was, where there
-  /// is no volume, or it cannot be used.
+  /// Takes a volume with its own active tetrahedra, from which the edits are taken away, and with
+  /// its own boundary distances, which edits make smaller. info: what announces the volume that it
+  /// may be a part of. Returns whether its voxels lie elsewhere than before: then there are no
+  /// edits any more. Throws Error, and leaves all as it was, where there is no volume, or it cannot
+  /// be used.
   bool SetVolume(vtkImageData* volume, vtkInformation* info);
   const ImageGeometry& GetGeometry() const { return this->Geometry; }
   const CellBricks& GetBricks() const { return this->Mask->GetBricks(); }
@@ -44,7 +46,7 @@ public:
 
   /// Makes an edit in the place of another one, of which the number is known; 0: of none. keep: the
   /// other one stays, too.
-  void Put(std::uint64_t& edit, TetrahedronSet&& set, bool keep);
+  void Put(std::uint64_t& edit, SmoothCarving&& carving, bool keep);
   /// Removes an edit.
   void Drop(std::uint64_t& edit);
 
@@ -61,17 +63,27 @@ public:
     return this->Mask ? static_cast<vtkIdType>(this->Mask->GetNumberOfSwitchedOffTetrahedra()) : 0;
   }
 
-  /// Makes an output the volume with its arrays, and the active tetrahedra that are left.
+  /// The boundary distance of what is far from any boundary: the diagonal of the whole volume, in
+  /// world units.
+  float GetFarDistance() const { return this->Mask->GetFarDistance(); }
+
+  /// Makes an output the volume with its arrays, the active tetrahedra that are left, and the
+  /// boundary distances where there are some.
   void Write(vtkImageData* volume, vtkImageData* output);
 
 private:
-  void WriteChanges(unsigned char* bytes);
+  void WriteMask();
+  void WriteDistances();
 
   std::unique_ptr<MaskEditor> Mask; // null before there is a volume
   ImageGeometry Geometry;
   Extent Whole{ { 0, -1, 0, -1, 0, -1 } };
   Stamp BaseStamp;
-  vtkSmartPointer<vtkUnsignedCharArray> Active; // that of the output
+  Stamp DistancesStamp;     // of those that the volume comes with
+  Stamp BaseDistancesStamp; // and of those that edits are taken from
+  // Those of the output.
+  vtkSmartPointer<vtkUnsignedCharArray> Active;
+  vtkSmartPointer<vtkFloatArray> Distances;
 
   std::unique_ptr<RestPositions> Rest;
   deformvolume::Deformation Deformation;

@@ -2,14 +2,22 @@
 #include "WorldTool.h"
 
 #include "vtkBox.h"
+#include "vtkCellArray.h"
+#include "vtkGenericCell.h"
 #include "vtkImplicitFunction.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkSphere.h"
+#include "vtkStaticCellLocator.h"
 
+#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <memory>
@@ -63,6 +71,23 @@ IndexBounds FindBounds(vtkImplicitFunction* function)
   return bounds;
 }
 
+using PointFunction = decltype(CarvingTool::Function);
+
+// A function of points in world coordinates, called with indices.
+PointFunction CallInWorld(const PointFunction& function, const ImageGeometry& volume)
+{
+  return [function, toWorld = volume.GetIndexToWorld()](
+           const glm::dvec3* points, std::size_t count, double* values)
+  {
+    std::vector<glm::dvec3> world(count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      world[i] = glm::dvec3(toWorld * glm::dvec4(points[i], 1.0));
+    }
+    function(world.data(), count, values);
+  };
+}
+
 } // namespace
 
 CarvingTool MakeWorldTool(vtkImplicitFunction* function)
@@ -80,7 +105,58 @@ CarvingTool MakeWorldTool(vtkImplicitFunction* function)
       values[i] = held->FunctionValue(&points[i].x);
     }
   };
+  tool.Distance = [held, mutex](const glm::dvec3* points, std::size_t count, double* distances)
+  {
+    const auto lock = mutex ? std::unique_lock<std::mutex>(*mutex) : std::unique_lock<std::mutex>();
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      glm::dvec3 point = points[i];
+      glm::dvec3 gradient(0.0);
+      held->FunctionGradient(&point.x, &gradient.x);
+      const double slope = glm::length(gradient);
+      const double value = std::abs(held->FunctionValue(&point.x));
+      distances[i] = slope > 0.0 ? value / slope : value;
+    }
+  };
   return tool;
+}
+
+PointFunction MakeDistance(const WorldSheet& surface, const ImageGeometry& volume)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (const glm::dvec3& point : surface.Points)
+  {
+    points->InsertNextPoint(&point.x);
+  }
+  vtkNew<vtkCellArray> triangles;
+  for (const Sheet::Triangle& triangle : surface.Triangles)
+  {
+    const std::array<vtkIdType, 3> ids{ { triangle[0], triangle[1], triangle[2] } };
+    triangles->InsertNextCell(3, ids.data());
+  }
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  data->SetPolys(triangles);
+  const auto locator = vtkSmartPointer<vtkStaticCellLocator>::New();
+  locator->SetDataSet(data);
+  locator->BuildLocator();
+  data->GetCell(0); // builds what threads then read
+  return CallInWorld(
+    [locator](const glm::dvec3* places, std::size_t count, double* distances)
+    {
+      vtkNew<vtkGenericCell> cell;
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        glm::dvec3 nearest(0.0);
+        vtkIdType id = -1;
+        int part = 0;
+        double squared = 0.0;
+        locator->FindClosestPoint(&places[i].x, &nearest.x, cell, id, part, squared);
+        distances[i] = std::sqrt(squared);
+      }
+    },
+    volume);
 }
 
 CarvingTool GetInIndices(const CarvingTool& tool, const ImageGeometry& volume)
@@ -106,16 +182,11 @@ CarvingTool GetInIndices(const CarvingTool& tool, const ImageGeometry& volume)
     moved.Bounds.Min -= glm::dvec3(margin);
     moved.Bounds.Max += glm::dvec3(margin);
   }
-  moved.Function = [tool, toWorld = volume.GetIndexToWorld()](
-                     const glm::dvec3* points, std::size_t count, double* values)
+  moved.Function = CallInWorld(tool.Function, volume);
+  if (tool.Distance)
   {
-    std::vector<glm::dvec3> world(count);
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      world[i] = glm::dvec3(toWorld * glm::dvec4(points[i], 1.0));
-    }
-    tool.Function(world.data(), count, values);
-  };
+    moved.Distance = CallInWorld(tool.Distance, volume);
+  }
   return moved;
 }
 

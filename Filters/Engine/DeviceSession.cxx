@@ -149,6 +149,7 @@ void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
     { return ranges ? &*ranges : nullptr; };
     this->Deformer.SetBlanked(masks.Blanked, masks.BlankedBits, written(masks.WrittenBlanked));
     this->Deformer.SetActiveTetrahedra(masks.Active, written(masks.WrittenActive));
+    this->Deformer.SetBoundaryDistances(masks.Distances.Values, written(masks.WrittenDistances));
     this->SentMasks = masksStamp;
     this->MasksAreSet = true;
   }

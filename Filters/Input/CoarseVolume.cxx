@@ -9,6 +9,7 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
@@ -142,6 +143,22 @@ vtkSmartPointer<vtkImageData> MakeMasks(vtkImageData* volume, int factor)
         }
       });
     image->GetPointData()->AddArray(ghosts);
+  }
+  if (masks.Distances.Values)
+  {
+    const auto distances = vtkSmartPointer<vtkFloatArray>::New();
+    distances->SetName(BoundaryDistanceName);
+    distances->SetNumberOfTuples(GetNumberOfPoints(coarse));
+    float* values = distances->GetPointer(0);
+    ForRows(coarse, fine, factor,
+      [&](std::int64_t first, std::int64_t voxel)
+      {
+        for (std::int64_t i = 0; i < GetSize(coarse, 0); ++i)
+        {
+          values[first + i] = masks.Distances.Values[voxel + i * factor];
+        }
+      });
+    image->GetPointData()->AddArray(distances);
   }
   if (masks.Active)
   {

@@ -3,9 +3,12 @@
 
 #include "Error.h"
 
+#include "vtkDataArrayRange.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
+
+#include <algorithm>
 
 namespace deformvolume
 {
@@ -24,6 +27,37 @@ ByteArray* FindMask(vtkDataSetAttributes* attributes, const char* name, vtkIdTyp
       " tuples, one for each " + what + ".");
   }
   return mask;
+}
+
+DistanceValues FindBoundaryDistances(vtkImageData* volume)
+{
+  DistanceValues distances;
+  vtkAbstractArray* array = volume->GetPointData()->GetAbstractArray(BoundaryDistanceName);
+  if (!array)
+  {
+    return distances;
+  }
+  auto* numbers = vtkDataArray::SafeDownCast(array);
+  const vtkIdType size = volume->GetNumberOfPoints();
+  if (!numbers || numbers->GetNumberOfComponents() != 1 || numbers->GetNumberOfTuples() != size)
+  {
+    throw Error(std::string("The point array \"") + BoundaryDistanceName + "\" of the volume is " +
+      array->GetDataTypeAsString() + ", " + std::to_string(array->GetNumberOfTuples()) +
+      " tuples of " + std::to_string(array->GetNumberOfComponents()) +
+      " components. Give it a numeric type, one component and " + std::to_string(size) +
+      " tuples, one for each point.");
+  }
+  if (auto* floats = vtkArrayDownCast<vtkAOSDataArrayTemplate<float>>(numbers))
+  {
+    distances.Values = floats->GetPointer(0);
+    return distances;
+  }
+  const auto values = vtk::DataArrayValueRange<1>(numbers);
+  distances.Converted.resize(static_cast<std::size_t>(size));
+  std::transform(values.begin(), values.end(), distances.Converted.begin(),
+    [](double value) { return static_cast<float>(value); });
+  distances.Values = distances.Converted.data();
+  return distances;
 }
 
 const unsigned char* FindPointGhosts(vtkImageData* volume)

@@ -6,6 +6,7 @@
 #include "vtkType.h"
 
 #include <string>
+#include <vector>
 
 class vtkDataSetAttributes;
 class vtkImageData;
@@ -19,6 +20,20 @@ using ByteArray = vtkAOSDataArrayTemplate<unsigned char>;
 
 /// The cell array that tells which tetrahedra are active.
 constexpr const char* ActiveTetrahedraName = "ActiveTetrahedra";
+
+/// The point array of signed distances to the boundary of what has been carved out.
+constexpr const char* BoundaryDistanceName = "BoundaryDistance";
+
+/// Boundary distances of the points of a volume.
+struct DistanceValues
+{
+  const float* Values = nullptr; // null: there are none
+  std::vector<float> Converted;  // where they are not floats in memory, one after the other
+};
+
+/// Throws an Error where the array is there, but not numeric, of one component and as long as the
+/// volume has points.
+DistanceValues FindBoundaryDistances(vtkImageData* volume);
 
 /// An array of one byte for each of `size` points or cells, or null where there is none of the
 /// name. Throws an Error where the array is there, but of another type, shape or size. `what` and

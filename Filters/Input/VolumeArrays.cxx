@@ -87,6 +87,7 @@ enum Mask
   BlankedPoints,
   HiddenCells,
   ActiveCells,
+  Distances,
   NumberOfMasks
 };
 
@@ -95,7 +96,8 @@ std::array<vtkAbstractArray*, NumberOfMasks> FindMasks(vtkImageData* volume)
   const char* ghostName = vtkDataSetAttributes::GhostArrayName();
   return { { volume->GetPointData()->GetAbstractArray(ghostName),
     volume->GetCellData()->GetAbstractArray(ghostName),
-    volume->GetCellData()->GetAbstractArray(ActiveTetrahedraName) } };
+    volume->GetCellData()->GetAbstractArray(ActiveTetrahedraName),
+    volume->GetPointData()->GetAbstractArray(BoundaryDistanceName) } };
 }
 
 // Whether one of the masks is the same object as when a stamp was taken.
@@ -134,7 +136,8 @@ std::vector<SourceArray> SelectArrays(
   for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* abstract = pointData->GetAbstractArray(i);
-    if (HasName(abstract, MASK) || HasName(abstract, vtkDataSetAttributes::GhostArrayName()))
+    if (HasName(abstract, MASK) || HasName(abstract, vtkDataSetAttributes::GhostArrayName()) ||
+      HasName(abstract, BoundaryDistanceName))
     {
       continue;
     }
@@ -288,7 +291,9 @@ VolumeMasks ReadMasks(vtkImageData* volume, const Stamp& last)
       masks.Active = masks.Joined.data();
     }
   }
+  masks.Distances = FindBoundaryDistances(volume);
   const std::array<vtkAbstractArray*, NumberOfMasks> arrays = FindMasks(volume);
+  masks.WrittenDistances = FindWrittenMask(arrays, Distances, last);
   masks.WrittenBlanked = FindWrittenMask(arrays, BlankedPoints, last);
   if (masks.Joined.empty() && !arrays[HiddenCells] && HasSameMask(arrays, HiddenCells, last))
   {

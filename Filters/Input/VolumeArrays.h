@@ -3,6 +3,7 @@
 #define DeformVolumeVolumeArrays_h
 
 #include "DeformationMesh.h" // for Stamp
+#include "MaskArray.h"
 #include "PointRanges.h"
 #include "VolumeArray.h"
 
@@ -57,8 +58,9 @@ void* GetWritableValues(vtkDataArray* array);
 void CopyRoles(
   vtkDataSetAttributes* from, vtkDataSetAttributes* to, const std::vector<SourceArray>& sources);
 
-/// What is no source, one byte a voxel, and the active tetrahedra, one byte a cell. In the memory
-/// of the volume where that serves as it is.
+/// What is no source, one byte a voxel, the active tetrahedra, one byte a cell, and the distances
+/// to the boundary of what has been carved out, a float a voxel. In the memory of the volume where
+/// that serves as it is.
 struct VolumeMasks
 {
   /// Null where there are no such voxels for certain.
@@ -67,11 +69,13 @@ struct VolumeMasks
   /// Null where all tetrahedra are active.
   const unsigned char* Active = nullptr;
   std::vector<unsigned char> Joined; // with what cells are hidden
+  DistanceValues Distances;
 
   ///@{
   /// What was written since a stamp was taken (GetMasksStamp), where logs tell that.
   std::optional<PointRanges> WrittenBlanked;
   std::optional<PointRanges> WrittenActive;
+  std::optional<PointRanges> WrittenDistances;
   ///@}
 };
 

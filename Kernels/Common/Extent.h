@@ -31,6 +31,19 @@ inline std::int64_t GetNumberOfCells(const Extent& extent)
   return cells;
 }
 
+/// Widens an extent, which may be empty, to hold another one that is not.
+inline void Include(Extent& extent, const Extent& other)
+{
+  const bool isFirst = GetNumberOfPoints(extent) == 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    int& low = extent[2 * axis];
+    int& high = extent[2 * axis + 1];
+    low = isFirst || other[2 * axis] < low ? other[2 * axis] : low;
+    high = isFirst || other[2 * axis + 1] > high ? other[2 * axis + 1] : high;
+  }
+}
+
 } // namespace deformvolume
 
 #endif

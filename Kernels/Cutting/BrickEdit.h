@@ -34,6 +34,7 @@ public:
     return static_cast<std::size_t>(GetNumberOfPoints(this->Vertices));
   }
   const SnappedPoint& GetPosition(std::size_t vertex) const { return this->Positions[vertex]; }
+  bool IsPlaced(std::size_t vertex) const { return this->HasPositions[vertex]; }
   /// Whether all vertices of a tetrahedron have positions.
   bool IsPlaced(const std::array<std::size_t, 4>& vertices) const
   {

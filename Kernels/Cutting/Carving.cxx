@@ -2,6 +2,7 @@
 #include "Carving.h"
 
 #include "BrickEdit.h"
+#include "CarvingReach.h"
 #include "Error.h"
 
 #include <glm/geometric.hpp>
@@ -15,19 +16,6 @@ namespace deformvolume
 {
 namespace
 {
-
-glm::dvec3 GetIndex(const SnappedPoint& point)
-{
-  return glm::dvec3(point) / static_cast<double>(StepsPerVoxel);
-}
-
-bool AreSeparate(const SnappedBox& box, const IndexBounds& bounds)
-{
-  const glm::dvec3 low = GetIndex(box.Min);
-  const glm::dvec3 high = GetIndex(box.Max);
-  return low.x > bounds.Max.x || low.y > bounds.Max.y || low.z > bounds.Max.z ||
-    high.x < bounds.Min.x || high.y < bounds.Min.y || high.z < bounds.Min.z;
-}
 
 // By the values at the vertices.
 bool IsHit(const double* values, const std::array<std::size_t, 4>& v, CarvingRule rule)
@@ -92,23 +80,6 @@ void CarveByCentroids(BrickEdit& edit, const CarvingTool& tool)
         }
       }
     });
-}
-
-// The side of a plane that all of a box is on: -1 inside, 1 outside; 0 where it may be on both.
-int FindSide(const SnappedBox& box, const CarvingTool& tool)
-{
-  constexpr double rounding = 1e-9; // of the largest value
-  std::array<glm::dvec3, 8> corners;
-  for (std::size_t corner = 0; corner < corners.size(); ++corner)
-  {
-    corners[corner] = GetIndex(SnappedPoint(corner & 1U ? box.Max.x : box.Min.x,
-      corner & 2U ? box.Max.y : box.Min.y, corner & 4U ? box.Max.z : box.Min.z));
-  }
-  std::array<double, 8> values;
-  tool.Function(corners.data(), corners.size(), values.data());
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  const double near = rounding * std::max(std::abs(*least), std::abs(*most));
-  return *most < -near ? -1 : *least > near ? 1 : 0;
 }
 
 void CarveAll(BrickEdit& edit)
@@ -182,6 +153,19 @@ CarvingTool MakeSweptSphere(const std::vector<glm::dvec3>& centers, const glm::d
       values[i] = least - 1.0;
     }
   };
+  // To first order: the function by its gradient. Within half a radius of the path that is no
+  // distance, nor needed.
+  tool.Distance = [function = tool.Function, radii](
+                    const glm::dvec3* points, std::size_t count, double* distances)
+  {
+    const double radius = std::min({ radii.x, radii.y, radii.z });
+    function(points, count, distances);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const double squared = distances[i] + 1.0; // of the distance from the path, in radii
+      distances[i] = radius * std::abs(distances[i]) / (2.0 * std::max(std::sqrt(squared), 0.5));
+    }
+  };
   return tool;
 }
 
@@ -191,18 +175,13 @@ TetrahedronSet FindCarvedTetrahedra(
   return BrickEdit::ForEachBrick(positions.GetBricks().GetNumberOfBricks(),
     [&](std::size_t brick, BrickEdit& edit)
     {
-      const SnappedBox box = positions.GetBox(brick);
-      if (box.IsEmpty() || AreSeparate(box, tool.Bounds))
-      {
-        return;
-      }
-      const int side = tool.IsLinear ? FindSide(box, tool) : 0;
-      if (side > 0)
+      const CarvingReach reach = FindReach(positions.GetBox(brick), tool);
+      if (reach == CarvingReach::Nothing)
       {
         return;
       }
       edit.Set(positions, brick);
-      if (side < 0)
+      if (reach == CarvingReach::All)
       {
         CarveAll(edit);
         return;

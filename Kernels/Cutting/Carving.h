@@ -3,6 +3,7 @@
 #define DeformVolumeCarving_h
 
 #include "DeformVolumeExport.h"
+#include "DistanceSet.h"
 #include "Extent.h"
 #include "IndexBounds.h"
 #include "TetrahedronSet.h"
@@ -33,6 +34,9 @@ struct CarvingTool
   /// The values at so many points, in continuous structured indices of the volume. Called by many
   /// threads.
   std::function<void(const glm::dvec3* points, std::size_t count, double* values)> Function;
+  /// How far points are from the boundary of the body, not negative, in the unit of all edits: near
+  /// the boundary. Where there is no such function, the values above are taken, without their sign.
+  std::function<void(const glm::dvec3* points, std::size_t count, double* distances)> Distance;
   /// Nothing outside these bounds is inside the tool. Bricks that lie outside are not looked at.
   IndexBounds Bounds;
   /// Whether the function is linear, as that of a plane: of a brick whose corners are on one side
@@ -59,6 +63,26 @@ DEFORMVOLUME_EXPORT TetrahedronSet FindCarvedTetrahedra(
 /// vertices in a box of structured indices, x varying fastest; called by many threads.
 DEFORMVOLUME_EXPORT TetrahedronSet FindCarvedTetrahedra(const CellBricks& bricks,
   const std::function<void(const Extent& vertices, double* values)>& find, CarvingRule rule);
+
+/// What a tool carves out with a boundary between vertices.
+struct SmoothCarving
+{
+  /// Those with all vertices inside.
+  TetrahedronSet Tetrahedra;
+  /// Of the vertices of cells that the boundary passes through; other vertices are far inside, or
+  /// are not in the set.
+  DistanceSet Distances;
+};
+
+/// far: the distance that counts as far from the boundary.
+DEFORMVOLUME_EXPORT SmoothCarving FindSmoothCarving(
+  const VertexPositions& positions, const CarvingTool& tool, float far);
+
+/// The same where values at the vertices are known, as for FindCarvedTetrahedra; distance: of all
+/// vertices from the boundary.
+DEFORMVOLUME_EXPORT SmoothCarving FindSmoothCarving(const CellBricks& bricks,
+  const std::function<void(const Extent& vertices, double* values)>& find, double distance,
+  float far);
 
 } // namespace deformvolume
 

@@ -31,10 +31,11 @@ const TetrahedronSet::Block* FindBlock(const TetrahedronSet& set, std::size_t br
 
 } // namespace
 
-MaskEditor::MaskEditor(const Extent& vertices)
+MaskEditor::MaskEditor(const Extent& vertices, float far)
   : Bricks(vertices)
   , Mask(this->Bricks.GetNumberOfCells(), DEFORMVOLUME_ALL_TETRAHEDRA)
   , Changed(this->Bricks.GetNumberOfBricks(), true)
+  , Distances(vertices, far)
 {
   if (this->Mask.empty())
   {
@@ -61,17 +62,24 @@ void MaskEditor::SetBase(const unsigned char* base)
   this->Changed.assign(this->Changed.size(), true);
 }
 
-std::uint64_t MaskEditor::Add(TetrahedronSet&& set)
+void MaskEditor::SetBaseDistances(const float* base)
 {
-  if (!set.IsEmpty() && set.Bricks.back() >= this->Bricks.GetNumberOfBricks())
+  this->Distances.SetBase(base, this->GetDistanceSets());
+}
+
+std::uint64_t MaskEditor::Add(TetrahedronSet&& set, DistanceSet&& distances)
+{
+  if ((!set.IsEmpty() && set.Bricks.back() >= this->Bricks.GetNumberOfBricks()) ||
+    (!distances.IsEmpty() &&
+      distances.Bricks.back() >= this->Distances.GetBricks().GetNumberOfBricks()))
   {
-    throw Error("An edit has brick " + std::to_string(set.Bricks.back()) + ", but the mask has " +
+    throw Error("An edit has bricks beyond the " +
       std::to_string(this->Bricks.GetNumberOfBricks()) +
-      " bricks. Find tetrahedra in the volume that the mask is of.");
+      " bricks of the mask. Find tetrahedra in the volume that the mask is of.");
   }
   this->Undone.clear();
-  this->Edits.push_back({ ++this->LastNumber, std::move(set) });
-  this->Update(this->Edits.back().Set.Bricks);
+  this->Edits.push_back({ ++this->LastNumber, std::move(set), std::move(distances) });
+  this->Update(this->Edits.back());
   return this->LastNumber;
 }
 
@@ -89,9 +97,9 @@ bool MaskEditor::Remove(std::uint64_t edit)
   {
     return false;
   }
-  const std::vector<std::size_t> bricks = std::move(found->Set.Bricks);
-  this->Edits.erase(found);
-  this->Update(bricks);
+  std::list<Edit> removed;
+  removed.splice(removed.end(), this->Edits, found);
+  this->Update(removed.front());
   return true;
 }
 
@@ -102,7 +110,7 @@ bool MaskEditor::Undo()
     return false;
   }
   this->Undone.splice(this->Undone.end(), this->Edits, std::prev(this->Edits.end()));
-  this->Update(this->Undone.back().Set.Bricks);
+  this->Update(this->Undone.back());
   return true;
 }
 
@@ -113,7 +121,7 @@ bool MaskEditor::Redo()
     return false;
   }
   this->Edits.splice(this->Edits.end(), this->Undone, std::prev(this->Undone.end()));
-  this->Update(this->Edits.back().Set.Bricks);
+  this->Update(this->Edits.back());
   return true;
 }
 
@@ -123,6 +131,10 @@ void MaskEditor::Reset()
   edits.swap(this->Edits);
   this->Undone.clear();
   this->Update(edits);
+  for (const Edit& edit : edits)
+  {
+    this->Distances.Update(edit.Distances.Bricks, {});
+  }
 }
 
 std::vector<std::size_t> MaskEditor::TakeChangedBricks()
@@ -141,15 +153,41 @@ std::vector<std::size_t> MaskEditor::TakeChangedBricks()
 
 std::uint64_t MaskEditor::GetMemory() const
 {
-  std::uint64_t bytes = this->Mask.size() + this->Base.size();
+  std::uint64_t bytes = this->Mask.size() + this->Base.size() + this->Distances.GetMemory();
   for (const std::list<Edit>* edits : { &this->Edits, &this->Undone })
   {
     for (const Edit& edit : *edits)
     {
-      bytes += edit.Set.Bricks.size() * (sizeof(std::size_t) + sizeof(TetrahedronSet::Block));
+      bytes += edit.Set.Bricks.size() * (sizeof(std::size_t) + sizeof(TetrahedronSet::Block)) +
+        edit.Distances.Bricks.size() * (sizeof(std::size_t) + sizeof(DistanceSet::Block));
     }
   }
   return bytes;
+}
+
+bool MaskEditor::HasDistanceEdits() const
+{
+  return std::any_of(this->Edits.begin(), this->Edits.end(),
+    [](const Edit& edit) { return !edit.Distances.IsEmpty(); });
+}
+
+std::vector<const DistanceSet*> MaskEditor::GetDistanceSets() const
+{
+  std::vector<const DistanceSet*> sets;
+  for (const Edit& edit : this->Edits)
+  {
+    if (!edit.Distances.IsEmpty())
+    {
+      sets.push_back(&edit.Distances);
+    }
+  }
+  return sets;
+}
+
+void MaskEditor::Update(const Edit& edit)
+{
+  this->Update(edit.Set.Bricks);
+  this->Distances.Update(edit.Distances.Bricks, this->GetDistanceSets());
 }
 
 void MaskEditor::Update(const std::vector<std::size_t>& bricks)

@@ -2,13 +2,16 @@
 #ifndef DeformVolumeMaskEditor_h
 #define DeformVolumeMaskEditor_h
 
+#include "BoundaryDistances.h"
 #include "CellBricks.h"
 #include "DeformVolumeExport.h"
+#include "DistanceSet.h"
 #include "Extent.h"
 #include "TetrahedronSet.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <list>
 #include <vector>
 
@@ -22,21 +25,27 @@ namespace deformvolume
 /// before all edits, without what the edits hit. So the order of edits does not matter, one in the
 /// middle can be removed, and what is undone comes back bit for bit. Work is done only on the
 /// bricks that an edit hits. Of the bytes of the base, the bits above the fifth stay as they are.
+///
+/// An edit may have the distances of vertices to a smooth boundary besides, which passes through
+/// tetrahedra that stay active (BoundaryDistances).
 class DEFORMVOLUME_EXPORT MaskEditor
 {
 public:
-  /// vertices: structured indices of the voxels. All tetrahedra are active. Throws Error where
-  /// there are less than two voxels on an axis.
-  explicit MaskEditor(const Extent& vertices);
+  /// vertices: structured indices of the voxels. All tetrahedra are active. far: the boundary
+  /// distance where there is no boundary. Throws Error where there are less than two voxels on an
+  /// axis.
+  explicit MaskEditor(const Extent& vertices, float far = std::numeric_limits<float>::max());
 
   const CellBricks& GetBricks() const { return this->Bricks; }
 
   /// Another mask before all edits, one byte a cell; null: all are active. The edits stay.
   void SetBase(const unsigned char* base);
+  /// Other boundary distances before all edits, one a vertex; null: there are none.
+  void SetBaseDistances(const float* base);
 
   /// Adds an edit and returns its number. What was undone cannot be redone any more. A set without
   /// tetrahedra is an edit as well. Throws Error where a brick is not one of this mask.
-  std::uint64_t Add(TetrahedronSet&& set);
+  std::uint64_t Add(TetrahedronSet&& set, DistanceSet&& distances = {});
   /// Removes an edit, be it undone or not. False where it is not there any more.
   bool Remove(std::uint64_t edit);
 
@@ -59,6 +68,15 @@ public:
   /// these are all bricks.
   std::vector<std::size_t> TakeChangedBricks();
 
+  /// Whether an edit has boundary distances.
+  bool HasDistanceEdits() const;
+  float GetFarDistance() const { return this->Distances.GetFar(); }
+  const CellBricks& GetVertexBricks() const { return this->Distances.GetBricks(); }
+  /// The boundary distances, one a vertex, where there are some.
+  const std::vector<float>& GetDistances() const { return this->Distances.Get(); }
+  /// As TakeChangedBricks(), of their vertices.
+  std::vector<std::size_t> TakeChangedVertexBricks() { return this->Distances.TakeChangedBricks(); }
+
   /// Bytes of memory that the mask, the base and the edits take.
   std::uint64_t GetMemory() const;
 
@@ -67,10 +85,14 @@ private:
   {
     std::uint64_t Number;
     TetrahedronSet Set;
+    DistanceSet Distances;
   };
 
   /// Makes the mask of some bricks anew.
   void Update(const std::vector<std::size_t>& bricks);
+  /// Makes all anew that an edit hits.
+  void Update(const Edit& edit);
+  std::vector<const DistanceSet*> GetDistanceSets() const;
   void Update(const std::list<Edit>& edits);
   void UpdateBrick(std::size_t brick);
 
@@ -82,6 +104,7 @@ private:
   std::uint64_t LastNumber = 0;
   std::int64_t NumberOfSwitchedOff = 0;
   std::vector<bool> Changed; // of each brick
+  BoundaryDistances Distances;
 };
 
 } // namespace deformvolume

@@ -28,6 +28,12 @@ inline SnappedPoint Snap(const glm::dvec3& index)
     std::llround(index.x * steps), std::llround(index.y * steps), std::llround(index.z * steps));
 }
 
+/// A snapped point as a continuous index.
+inline glm::dvec3 GetIndex(const SnappedPoint& point)
+{
+  return glm::dvec3(point) / static_cast<double>(StepsPerVoxel);
+}
+
 /// A box with its faces; empty until something is added.
 struct SnappedBox
 {

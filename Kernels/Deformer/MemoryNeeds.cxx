@@ -33,6 +33,7 @@ std::uint64_t CountDeviceMemory(
   {
     sent += IsUsedInPlace(device.GetContext(), array) ? 0 : GetTupleSize(array);
   }
+  sent += size.HasDistances ? sizeof(float) : 0;
   const auto voxels = static_cast<std::uint64_t>(GetNumberOfPoints(size.Grid.VertexExtent));
   const std::uint64_t outputVoxels = CountVoxelsOfSlab(device, size);
   if (size.IsRasterized)
@@ -80,7 +81,9 @@ void CheckMemory(
   const std::uint64_t outputBytesPerVoxel = shared ? 0 : tuple + 1;
   CheckDeviceMemory(device, budget, size, outputBytesPerVoxel);
   // What the caller holds, in the memory of the system, which a processor shares with its device.
-  const std::uint64_t host = size.MappingBytes +
+  // Of displacements that are sent to another device there is a copy (DisplacementBuffer).
+  const std::uint64_t copied = shared || size.IsRasterized ? 0 : size.NumberOfNodes * 16;
+  const std::uint64_t host = size.MappingBytes + copied +
     static_cast<std::uint64_t>(GetNumberOfPoints(size.OutputExtent)) * (tuple + 1);
   const std::uint64_t onDevice = shared ? CountDeviceMemory(device, size, outputBytesPerVoxel) : 0;
   const std::uint64_t system = budget.GetSystemMemory(host + onDevice);

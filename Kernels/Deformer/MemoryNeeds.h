@@ -27,6 +27,7 @@ struct DeformationSize
   std::size_t NumberOfTetrahedra;
   std::uint64_t MappingBytes; // see GetMappingBytes
   bool IsRasterized;          // by MeshRasterization
+  bool HasDistances = false;  // to the boundary
 };
 
 /// Bytes of the static mapping: of runs where there are some, else of a link a voxel; a field has

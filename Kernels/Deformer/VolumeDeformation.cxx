@@ -50,6 +50,11 @@ void VolumeDeformation::SetActiveTetrahedra(const unsigned char* active, const P
   this->Incremental.ChangeMask(this->Volume.SetActive(active, written), true);
 }
 
+void VolumeDeformation::SetBoundaryDistances(const float* distances, const PointRanges* written)
+{
+  this->Incremental.ChangeMask(this->Volume.SetBoundaryDistances(distances, written), false);
+}
+
 void VolumeDeformation::SetNodePlaces(const std::int32_t* places)
 {
   const bool wasOn = this->Volume.LeavesOutBridges();
@@ -133,6 +138,11 @@ void VolumeDeformation::CheckRequest(const DeformRequest& request) const
   {
     throw Error("No arrays are set: call SetArrays first.");
   }
+  if (request.Method == Resampling::Published && this->Volume.HasDistances())
+  {
+    throw Error("The published resampler knows no boundary distances. Use the resampler Exact or "
+                "MeshRasterization, or call SetBoundaryDistances with null.");
+  }
   if (!rasterized && request.Interpolation != Interpolation::Linear)
   {
     throw Error("Cubic interpolation is there only with the resampler MeshRasterization.");
@@ -162,11 +172,12 @@ DeformationSize VolumeDeformation::GetSize(const DeformRequest& request) const
   if (request.Method == Resampling::MeshRasterization)
   {
     return { grid, arrays, request.OutputExtent, this->Rasterizer.GetNumberOfNodes(),
-      this->Rasterizer.GetNumberOfTetrahedra(), 0, true };
+      this->Rasterizer.GetNumberOfTetrahedra(), 0, true, this->Volume.HasDistances() };
   }
   return { grid, arrays, request.OutputExtent, this->Source.GetNumberOfNodes(),
     this->Source.GetNumberOfTetrahedra(),
-    GetMappingBytes(grid, !this->Volume.HasMesh(), this->Volume.GetRunBytes()), false };
+    GetMappingBytes(grid, !this->Volume.HasMesh(), this->Volume.GetRunBytes()), false,
+    this->Volume.HasDistances() };
 }
 
 DeformReport VolumeDeformation::Deform(const DeformRequest& request)
@@ -192,7 +203,7 @@ DeformReport VolumeDeformation::Resample(const DeformRequest& request, std::uint
     MakeSlabs(this->Exact, this->Device, this->Volume, request, spare, report);
     report.NumberOfResampledBricks = report.NumberOfBricks;
     report.ChangedExtent = request.OutputExtent;
-    if (request.Incremental && this->Exact.CanMakeAgain(request))
+    if (request.Incremental && this->Exact.CanMakeAgain())
     {
       this->Incremental.Start(request, this->Source, report);
     }

@@ -36,6 +36,7 @@ public:
   void SetArrayOptions(const std::vector<VolumeArray>& arrays);
   void SetBlanked(const unsigned char* blanked, unsigned char bits, const PointRanges* written);
   void SetActiveTetrahedra(const unsigned char* active, const PointRanges* written);
+  void SetBoundaryDistances(const float* distances, const PointRanges* written);
 
   ///@{
   /// Meshes and fields that were checked (CheckMesh, CountPoints). Mapping: links or runs.

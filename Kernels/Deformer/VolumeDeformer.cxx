@@ -132,6 +132,12 @@ void VolumeDeformer::SetActiveTetrahedra(const unsigned char* active, const Poin
   this->Impl->Send([&](VolumeDeformation& volume) { volume.SetActiveTetrahedra(active, written); });
 }
 
+void VolumeDeformer::SetBoundaryDistances(const float* distances, const PointRanges* written)
+{
+  this->Impl->Send(
+    [&](VolumeDeformation& volume) { volume.SetBoundaryDistances(distances, written); });
+}
+
 void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
   std::size_t numberOfNodes, const VertexLink* links)
 {

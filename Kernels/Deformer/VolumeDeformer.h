@@ -28,10 +28,10 @@ namespace deformvolume
 /// mapping there, and maps and resamples whenever it is asked to.
 ///
 /// Order of calls: SetDevice, SetVoxelGrid, SetArrays, then SetMesh or SetRestMesh and
-/// SetNodeDisplacements, or SetDisplacementField, then Deform, as often as wanted. SetBlanked and
-/// SetActiveTetrahedra are optional. SetVoxelGrid forgets everything that was set after it.
-/// Pointers are used during the call only, but for the data of arrays that have an owner. Every
-/// failure is an Error; the object can be used again afterwards.
+/// SetNodeDisplacements, or SetDisplacementField, then Deform, as often as wanted. SetBlanked,
+/// SetActiveTetrahedra and SetBoundaryDistances are optional. SetVoxelGrid forgets everything that
+/// was set after it. Pointers are used during the call only, but for the data of arrays that have
+/// an owner. Every failure is an Error; the object can be used again afterwards.
 class DEFORMVOLUME_EXPORT VolumeDeformer
 {
 public:
@@ -97,6 +97,12 @@ public:
     const unsigned char* blanked, unsigned char bits = 255, const PointRanges* written = nullptr);
   /// One byte a cell, bit i = tetrahedron i is active. Null: all are.
   void SetActiveTetrahedra(const unsigned char* active, const PointRanges* written = nullptr);
+  /// One float a voxel: its signed distance to the boundary of what has been carved out, in any
+  /// unit; negative there. It is interpolated in each tetrahedron as values are, and samples where
+  /// it is negative are left out: boundaries that lie between voxels. A distance that is no number
+  /// counts as not negative. Null: nothing is left out. The published method is an Error then.
+  /// Takes 4 bytes a voxel on the device where a distance is not 0.
+  void SetBoundaryDistances(const float* distances, const PointRanges* written = nullptr);
   ///@}
 
   /// A tetrahedral deformation mesh, with a link for each voxel.

@@ -322,15 +322,7 @@ BrickPoints BrickPoints::Join(
     joined.Boxes.resize(numberOfGroups, Extent{ { 0, -1, 0, -1, 0, -1 } });
     for (std::size_t brick = 0; brick < groups.size(); ++brick)
     {
-      Extent& box = joined.Boxes[groups[brick]];
-      const bool first = box[0] > box[1];
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const int low = this->Boxes[brick][2 * axis];
-        const int high = this->Boxes[brick][2 * axis + 1];
-        box[2 * axis] = first ? low : std::min(box[2 * axis], low);
-        box[2 * axis + 1] = first ? high : std::max(box[2 * axis + 1], high);
-      }
+      Include(joined.Boxes[groups[brick]], this->Boxes[brick]);
     }
     return joined;
   }

@@ -13,14 +13,27 @@ namespace deformvolume
 
 cl::Buffer& DeviceMask::GetBuffer(VolumeChunk& chunk) const
 {
-  return this->MaskKind == Kind::BlankedVertices ? chunk.Blanked : chunk.Active;
+  switch (this->MaskKind)
+  {
+    case Kind::BlankedVertices:
+      return chunk.Blanked;
+    case Kind::BoundaryDistances:
+      return chunk.Distances;
+    default:
+      return chunk.Active;
+  }
+}
+
+int DeviceMask::GetWidth() const
+{
+  return this->MaskKind == Kind::BoundaryDistances ? static_cast<int>(sizeof(float)) : 1;
 }
 
 MaskValues DeviceMask::MakeValues(const unsigned char* bytes, unsigned char bits) const
 {
   constexpr unsigned char none = 0;
   constexpr unsigned char all = DEFORMVOLUME_ALL_TETRAHEDRA;
-  return { bytes, bits, this->MaskKind == Kind::BlankedVertices ? none : all };
+  return { bytes, bits, this->MaskKind == Kind::ActiveTetrahedra ? all : none };
 }
 
 std::array<int, 2> DeviceMask::GetPlanes(const VolumeChunk& chunk) const
@@ -87,7 +100,8 @@ std::vector<Extent> DeviceMask::Set(const OpenCLContext& context, const cl::Comm
 {
   const QueueGuard guard(queue);
   const int less = this->MaskKind == Kind::ActiveTetrahedra ? 1 : 0;
-  this->Size = { { vertices[0] - less, vertices[1] - less, vertices[2] - less } };
+  const int width = this->GetWidth();
+  this->Size = { { width * (vertices[0] - less), vertices[1] - less, vertices[2] - less } };
   const MaskValues wanted = this->MakeValues(next, bits);
   std::vector<Extent> changes;
   const auto copy = [&](unsigned char* last)
@@ -102,7 +116,17 @@ std::vector<Extent> DeviceMask::Set(const OpenCLContext& context, const cl::Comm
         }
       });
   };
-  const PointRanges* news = this->WithBuffers && next ? written : nullptr;
+  PointRanges bytes;
+  if (written)
+  {
+    bytes = *written;
+    for (auto& range : bytes)
+    {
+      range = { { range[0] * static_cast<std::size_t>(width),
+        range[1] * static_cast<std::size_t>(width) } };
+    }
+  }
+  const PointRanges* news = this->WithBuffers && next && written ? &bytes : nullptr;
   if (!this->WithBuffers)
   {
     changes = FindMaskChanges(this->Size, this->MakeValues(nullptr, 0), wanted);
@@ -135,6 +159,11 @@ std::vector<Extent> DeviceMask::Set(const OpenCLContext& context, const cl::Comm
   if (!next)
   {
     this->Release(chunks);
+  }
+  for (Extent& box : changes)
+  {
+    box[0] /= width;
+    box[1] /= width;
   }
   return changes;
 }

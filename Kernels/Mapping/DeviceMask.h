@@ -13,15 +13,17 @@
 namespace deformvolume
 {
 
-/// A mask of a volume on the device: of its vertices, which of them are blanked, or of its cells,
-/// which tetrahedra of them are active. Only what differs from what the device has is sent.
+/// A mask of a volume on the device: of its vertices, which of them are blanked, or how far they
+/// are from the boundary; or of its cells, which tetrahedra of them are active. Only what differs
+/// from what the device has is sent.
 class DeviceMask
 {
 public:
   enum class Kind
   {
     BlankedVertices,
-    ActiveTetrahedra
+    ActiveTetrahedra,
+    BoundaryDistances // a float a vertex, 0 as usual
   };
 
   explicit DeviceMask(Kind kind)
@@ -29,20 +31,22 @@ public:
   {
   }
 
-  /// Whether the chunks have a buffer of it. Else no vertex is blanked, or all tetrahedra are
-  /// active.
+  /// Whether the chunks have a buffer of it. Else no vertex is blanked, all tetrahedra are active,
+  /// or no distance is negative.
   bool HasBuffers() const { return this->WithBuffers; }
 
-  /// next: one byte for each vertex, of so many on each axis, or cell; null: all are as usual.
-  /// bits: those that count. written: places elsewhere have been left alone since the last call;
-  /// null: any may have been written. Returns where the mask is not as it was: boxes of local
-  /// indices that do not overlap.
+  /// next: one byte for each vertex, of so many on each axis, or cell, or one float; null: all are
+  /// as usual. bits: those of a byte that count. written: vertices or cells elsewhere have been
+  /// left alone since the last call; null: any may have been written. Returns where the mask is not
+  /// as it was: boxes of local indices that do not overlap.
   std::vector<Extent> Set(const OpenCLContext& context, const cl::CommandQueue& queue,
     const std::array<int, 3>& vertices, std::vector<VolumeChunk>& chunks, const unsigned char* next,
     unsigned char bits, const PointRanges* written);
 
 private:
   cl::Buffer& GetBuffer(VolumeChunk& chunk) const;
+  /// Bytes of a vertex or a cell.
+  int GetWidth() const;
   MaskValues MakeValues(const unsigned char* bytes, unsigned char bits) const;
   /// First and last plane of a chunk in the mask.
   std::array<int, 2> GetPlanes(const VolumeChunk& chunk) const;
@@ -52,7 +56,7 @@ private:
   void Write(const cl::CommandQueue& queue, VolumeChunk& chunk, const Extent& box) const;
 
   Kind MaskKind;
-  std::array<int, 3> Size{ { 0, 0, 0 } };
+  std::array<int, 3> Size{ { 0, 0, 0 } }; // on x in bytes
   bool WithBuffers = false;
   std::vector<unsigned char> Last; // what the device has, where the host cannot look into that
 };

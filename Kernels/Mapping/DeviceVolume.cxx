@@ -449,6 +449,15 @@ std::vector<Extent> DeviceVolume::SetActive(const unsigned char* active, const P
   return changes;
 }
 
+std::vector<Extent> DeviceVolume::SetBoundaryDistances(
+  const float* distances, const PointRanges* written)
+{
+  std::vector<Extent> changes = this->Distances.Set(this->Context, this->Queue, this->Bricks.Size,
+    this->Chunks, reinterpret_cast<const unsigned char*>(distances), 255, written);
+  this->States.ChangeSources(changes);
+  return changes;
+}
+
 void DeviceVolume::SetNodePlaces(const std::vector<std::int32_t>& places)
 {
   this->Queue.finish(); // nothing uses what is let go
@@ -504,6 +513,7 @@ KernelParameters DeviceVolume::GetParameters(const VolumeChunk& chunk) const
   p.LayersBegin = chunk.LayersBegin;
   p.LayersEnd = chunk.LayersEnd;
   p.HasActive = this->HasActive();
+  p.HasDistances = this->HasDistances();
   p.HasState = this->WithState;
   return p;
 }
@@ -559,8 +569,8 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,
   {
     return;
   }
-  this->WithState =
-    this->HasBlanked() || this->HasActive() || !(this->HasMesh() ? this->AllLinked : movesAll);
+  this->WithState = this->HasBlanked() || this->HasActive() || this->HasDistances() ||
+    !(this->HasMesh() ? this->AllLinked : movesAll);
   if (!this->WithState)
   {
     this->States.Release(this->Chunks);
@@ -573,7 +583,7 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,
         // A null pointer is not something that all drivers take: any buffer stands in for a missing
         // one.
         this->HasBlanked() ? chunk.Blanked : this->RestPositions, this->HasBlanked(),
-        this->GetActive(chunk) });
+        this->GetActive(chunk), this->GetDistances(chunk) });
   }
   this->States.Finish();
 }
@@ -588,7 +598,7 @@ std::uint64_t DeviceVolume::GetMemory() const
     bytes += deformvolume::GetMemory(chunk.Joined) + deformvolume::GetMemory(chunk.Links) +
       deformvolume::GetMemory(chunk.Runs) + deformvolume::GetMemory(chunk.RowBegins) +
       deformvolume::GetMemory(chunk.State) + deformvolume::GetMemory(chunk.Blanked) +
-      deformvolume::GetMemory(chunk.Active);
+      deformvolume::GetMemory(chunk.Active) + deformvolume::GetMemory(chunk.Distances);
     for (const cl::Buffer& array : chunk.Arrays)
     {
       bytes += deformvolume::GetMemory(array);

@@ -73,6 +73,7 @@ public:
   std::vector<Extent> SetBlanked(
     const unsigned char* blanked, unsigned char bits, const PointRanges* written);
   std::vector<Extent> SetActive(const unsigned char* active, const PointRanges* written);
+  std::vector<Extent> SetBoundaryDistances(const float* distances, const PointRanges* written);
   ///@}
 
   ///@{
@@ -104,6 +105,12 @@ public:
                                   : this->RestPositions;
   }
   bool HasBlanked() const { return this->Blanked.HasBuffers(); }
+  bool HasDistances() const { return this->Distances.HasBuffers(); }
+  /// The boundary distances of a chunk, or any buffer that stands in for them.
+  const cl::Buffer& GetDistances(const VolumeChunk& chunk) const
+  {
+    return this->HasDistances() ? chunk.Distances : this->RestPositions;
+  }
   bool HasMesh() const { return this->WithLinks || this->RunBytes > 0; }
   bool HasRuns() const { return this->RunBytes > 0; }
   /// See GetRunBytes in VertexRuns.h; 0 without runs.
@@ -127,8 +134,8 @@ public:
   cl::NDRange GetVertexGroup() const;
 
   const BrickGrid& GetBricks() const { return this->Bricks; }
-  /// Those of the sub-bricks, of a mesh, on a processor, where the voxel grid is one
-  /// chunk.
+  /// Those of the sub-bricks, of a mesh, where the voxel grid is one chunk. Devices with memory of
+  /// their own copy the static mapping to the host for that.
   BrickPoints MakeBrickPoints(
     const cl::Buffer& tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes) const;
 
@@ -183,6 +190,7 @@ private:
   bool RecordsChanged = true;
   DeviceMask Blanked{ DeviceMask::Kind::BlankedVertices };
   DeviceMask Active{ DeviceMask::Kind::ActiveTetrahedra };
+  DeviceMask Distances{ DeviceMask::Kind::BoundaryDistances };
   BridgeMask Bridges;
   VertexStates States;
   bool WithState = true;

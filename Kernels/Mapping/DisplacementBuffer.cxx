@@ -267,13 +267,22 @@ std::size_t DisplacementBuffer::GetNumberOfPoints() const
   return static_cast<std::size_t>(GetMemory(this->Buffer) / (4 * sizeof(float)));
 }
 
-void DisplacementBuffer::SendAll(
-  const float* displacements, std::size_t count, const Numbers& numbers)
+void DisplacementBuffer::Clear()
 {
-  std::vector<float> padded(4 * std::max(count, numbers.size()));
-  PadVectors(displacements, numbers, FindWords(nullptr, count), count, padded.data());
-  this->Buffer = this->Device.Send(padded.data(), padded.size() * sizeof(float), this->Buffer);
-  this->Observer.MoveAll({});
+  this->Buffer = cl::Buffer();
+  std::vector<float>().swap(this->Copy);
+}
+
+void DisplacementBuffer::Visit(const std::function<void(const float*)>& visit) const
+{
+  if (!this->Device.GetDevice().IsProcessor && !this->Copy.empty())
+  {
+    visit(this->Copy.data());
+    return;
+  }
+  // Also what a kernel has written on a device with memory of its own.
+  const MappedBuffer<const float> mapped(this->Device.GetQueue(), this->Buffer, CL_MAP_READ);
+  visit(mapped.Get());
 }
 
 const cl::Buffer& DisplacementBuffer::Place(std::size_t count)
@@ -285,6 +294,7 @@ const cl::Buffer& DisplacementBuffer::Place(std::size_t count)
     this->Clear();
     deformvolume::Reserve(this->Device.GetContext(), this->Buffer, 4 * count * sizeof(float));
   }
+  std::vector<float>().swap(this->Copy);
   this->Observer.MoveAll({});
   return this->Buffer;
 }
@@ -307,58 +317,83 @@ void DisplacementBuffer::Reserve(std::size_t count)
   }
   queue.finish();
   this->Buffer = buffer;
+  if (!this->Copy.empty())
+  {
+    this->Copy.resize(4 * room, 0.0F);
+  }
 }
 
 void DisplacementBuffer::Send(const float* displacements, std::size_t count, const Numbers& numbers,
   const PointRanges* changes, const std::function<BrickPoints()>& makePoints)
 {
-  if (!this->Device.GetDevice().IsProcessor)
-  {
-    this->SendAll(displacements, count, numbers);
-    return;
-  }
   // Points with numbers may be fewer than there is room for.
   const std::size_t room = this->GetNumberOfPoints();
-  if (numbers.empty() ? room != count : room < numbers.size())
+  const bool isProcessor = this->Device.GetDevice().IsProcessor;
+  const bool hasCopy = isProcessor || this->Copy.size() == 4 * room;
+  if (!hasCopy || (numbers.empty() ? room != count : room < numbers.size()))
   {
-    this->Buffer = cl::Buffer(this->Device.GetContext().GetContext(), CL_MEM_READ_ONLY,
-      4 * std::max(count, numbers.size()) * sizeof(float));
+    const std::size_t floats = 4 * std::max(count, numbers.size());
+    this->Clear();
+    this->Buffer =
+      cl::Buffer(this->Device.GetContext().GetContext(), CL_MEM_READ_ONLY, floats * sizeof(float));
+    this->Copy.resize(isProcessor ? 0 : floats, 0.0F);
     this->Observer.MoveAll({});
     changes = nullptr;
   }
+  const News news{ displacements, count, numbers, changes, makePoints };
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  if (isProcessor)
+  {
+    const MappedBuffer<float> sent(queue, this->Buffer, CL_MAP_READ | CL_MAP_WRITE);
+    this->Write(news, sent.Get());
+    return;
+  }
+  const std::array<std::size_t, 2> changed = this->Write(news, this->Copy.data());
+  if (changed[0] < changed[1])
+  {
+    constexpr std::size_t bytes = 4 * sizeof(float);
+    queue.enqueueWriteBuffer(this->Buffer, CL_TRUE, changed[0] * bytes,
+      (changed[1] - changed[0]) * bytes, this->Copy.data() + 4 * changed[0]);
+  }
+}
+
+std::array<std::size_t, 2> DisplacementBuffer::Write(const News& news, float* sent)
+{
+  const auto& [displacements, count, numbers, changes, makePoints] = news;
+  const std::size_t all = std::max(count, numbers.size());
   const std::vector<std::size_t> words = FindWords(changes, count);
-  const MappedBuffer<float> sent(this->Device.GetQueue(), this->Buffer, CL_MAP_READ | CL_MAP_WRITE);
   bool partly = this->Observer.IsTracking();
   if (partly)
   {
     const std::size_t most = this->Observer.GetMostMoved(count);
-    partly = !AreMostlyOther(displacements, sent.Get(), numbers, words, count, most);
+    partly = !AreMostlyOther(displacements, sent, numbers, words, count, most);
     if (partly)
     {
-      this->Changed.Clear(std::max(count, numbers.size()));
+      this->Changed.Clear(all);
       const std::size_t number =
-        MarkChanges(displacements, sent.Get(), numbers, words, count, most, this->Changed);
+        MarkChanges(displacements, sent, numbers, words, count, most, this->Changed);
       if (number == 0)
       {
-        return;
+        return { { 0, 0 } };
       }
       partly = number <= most;
     }
   }
-  if (partly)
+  if (!partly)
   {
-    if (!this->Observer.HasPoints())
-    {
-      this->Observer.SetPoints(makePoints());
-    }
-    this->Observer.MovePoints(this->Changed, sent.Get());
-    this->Observer.AddMoved(PadVectors(displacements, numbers, words, count, sent.Get()));
-  }
-  else
-  {
-    const DisplacementBounds bounds = PadVectors(displacements, numbers, words, count, sent.Get());
+    const DisplacementBounds bounds = PadVectors(displacements, numbers, words, count, sent);
     this->Observer.MoveAll(words.size() * WordSize >= count ? std::optional(bounds) : std::nullopt);
+    return { { 0, all } };
   }
+  if (!this->Observer.HasPoints())
+  {
+    this->Observer.SetPoints(makePoints());
+  }
+  this->Observer.MovePoints(this->Changed, sent);
+  this->Observer.AddMoved(PadVectors(displacements, numbers, words, count, sent));
+  std::array<std::size_t, 2> changed;
+  this->Changed.GetEnds(changed[0], changed[1]);
+  return { { changed[0], std::min(changed[1], all) } };
 }
 
 } // namespace deformvolume

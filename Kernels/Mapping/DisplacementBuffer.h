@@ -7,6 +7,7 @@
 #include "Tetrahedron.h"
 #include "WorkDevice.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -26,8 +27,8 @@ void CheckDisplacements(
 /// Throws that Error.
 [[noreturn]] void ThrowBadDisplacement(const char* what, std::size_t point);
 
-/// Displacements of points on the device, four floats each. On a processor only those that change
-/// are written, and the observer is told which.
+/// Displacements of points on the device, four floats each. Only those that change are written, or
+/// sent together with some between them, and the observer is told which.
 class DisplacementBuffer
 {
 public:
@@ -53,16 +54,31 @@ public:
   const cl::Buffer& Place(std::size_t count);
 
   const cl::Buffer& Get() const { return this->Buffer; }
+  /// Calls a function with the displacements as the device has them.
+  void Visit(const std::function<void(const float*)>& visit) const;
   /// That there is room for.
   std::size_t GetNumberOfPoints() const;
-  void Clear() { this->Buffer = cl::Buffer(); }
+  void Clear();
 
 private:
-  void SendAll(const float* displacements, std::size_t count, const Numbers& numbers);
+  /// Displacements that are sent.
+  struct News
+  {
+    const float* Vectors;
+    std::size_t Count;
+    const Numbers& PointNumbers;
+    const PointRanges* Changes;
+    const std::function<BrickPoints()>& MakePoints;
+  };
+  /// Brings up to date what the device has, as the host sees it, and tells the observer. Returns
+  /// the numbers of the first point that has changed and one past the last, or of more points.
+  std::array<std::size_t, 2> Write(const News& news, float* sent);
 
   WorkDevice& Device;
   DisplacementObserver& Observer;
   cl::Buffer Buffer;
+  // What the device has, where the host cannot look into that; empty where a kernel has written it.
+  std::vector<float> Copy;
   PointSet Changed; // while they are sent
 };
 

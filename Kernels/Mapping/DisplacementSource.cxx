@@ -218,8 +218,8 @@ void DisplacementSource::ChangeConnectivity(const Tetrahedron* tetrahedra,
   std::optional<std::vector<Extent>> boxes;
   if (this->Observer.HasPoints())
   {
-    const MappedBuffer<const float> last(this->Device.GetQueue(), this->Nodes.Get(), CL_MAP_READ);
-    boxes = this->Observer.ChangeTetrahedra(numbered, last.Get());
+    this->Nodes.Visit(
+      [&](const float* last) { boxes = this->Observer.ChangeTetrahedra(numbered, last); });
   }
   this->SendChanges(numbered);
   if (boxes)
@@ -584,8 +584,10 @@ void DisplacementSource::Visit(
     return;
   }
   const DisplacementBuffer& buffer = this->Volume.HasMesh() ? this->Nodes : this->FieldVectors;
-  const MappedBuffer<const float> vectors(this->Device.GetQueue(), buffer.Get(), CL_MAP_READ);
-  visit({ vectors.Get(), nullptr }, buffer.GetNumberOfPoints());
+  buffer.Visit(
+    [&](const float* vectors) {
+      visit({ vectors, nullptr }, buffer.GetNumberOfPoints());
+    });
 }
 
 std::uint64_t DisplacementSource::GetMemory() const

@@ -83,10 +83,9 @@ public:
   /// Sets a kernel's first arguments, those of the mapping, and returns how many they are.
   cl_uint SetMappingArguments(cl::Kernel& kernel, const VolumeChunk& chunk) const;
 
-  /// Which points move the sub-bricks of the volume. On a processor, where that is one chunk.
+  /// Which points move the sub-bricks of the volume, where that is one chunk.
   BrickPoints MakeBrickPoints() const;
-  /// Calls a function with the displacements as they are now, and how many they are. On a
-  /// processor.
+  /// Calls a function with the displacements as they are now, and how many they are.
   void Visit(const std::function<void(const Displacements&, std::size_t)>& visit) const;
 
   /// Whether a field that the kernels read where it lies is written in part, and that is told.

@@ -72,6 +72,7 @@ void VertexStates::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   cl_uint i = source.SetMapping(mark);
   mark.setArg(i++, source.Blanked);
   mark.setArg(i++, cl_int{ source.HasBlanked });
+  mark.setArg(i++, source.Distances);
   mark.setArg(i++, chunk.State);
   mark.setArg(i++, list);
   mark.setArg(i++, p);

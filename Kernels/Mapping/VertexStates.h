@@ -26,7 +26,8 @@ public:
     std::function<cl_uint(cl::Kernel&)> SetMapping;
     cl::Buffer Blanked; // any buffer, if it has none
     bool HasBlanked;
-    cl::Buffer Active; // any buffer, if it has none
+    cl::Buffer Active;    // any buffer, if it has none
+    cl::Buffer Distances; // any buffer, if it has none
   };
 
   /// All vertices have to be looked at.

@@ -23,6 +23,7 @@ struct VolumeChunk
   cl::Buffer State;
   cl::Buffer Blanked;
   cl::Buffer Active;
+  cl::Buffer Distances;           // to the boundary, a float a voxel
   cl::Buffer Joined;              // the active tetrahedra that bridge no gap (BridgeMask), or none
   std::vector<cl::Buffer> Arrays; // see DeviceVolume::GetArrays
 };

@@ -36,7 +36,7 @@ struct DeviceAbilities
   /// all others are interpolated in single precision.
   bool DoublePrecision = false;
   /// Whether a work-item has the vector registers of a processor for itself, as the resampling by
-  /// lanes and updates of a part of the output need.
+  /// lanes needs.
   bool Vectors = false;
   /// Whether it has memory apart from that of the host: all devices but processors count as such.
   bool OwnMemory = false;

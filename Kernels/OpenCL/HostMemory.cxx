@@ -73,6 +73,31 @@ cl::Event BeginToRead(
   return done;
 }
 
+cl::Event BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  const Extent& whole, const Extent& part, std::size_t bytes, void* memory, const Extent& held)
+{
+  using Bytes = cl::array<cl::size_type, 3>;
+  const auto findOrigin = [&](const Extent& extent)
+  {
+    Bytes origin;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      origin[axis] =
+        (axis == 0 ? bytes : 1) * static_cast<std::size_t>(part[2 * axis] - extent[2 * axis]);
+    }
+    return origin;
+  };
+  const auto count = [](const Extent& extent, int axis)
+  { return static_cast<std::size_t>(GetSize(extent, axis)); };
+  const Bytes region{ { bytes * count(part, 0), count(part, 1), count(part, 2) } };
+  const std::size_t row = bytes * count(whole, 0);
+  const std::size_t heldRow = bytes * count(held, 0);
+  cl::Event done;
+  queue.enqueueReadBufferRect(buffer, CL_FALSE, findOrigin(whole), findOrigin(held), region, row,
+    row * count(whole, 1), heldRow, heldRow * count(held, 1), memory, nullptr, &done);
+  return done;
+}
+
 void PendingReads::Check()
 {
   cl_int error = CL_SUCCESS;

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeHostMemory_h
 #define DeformVolumeHostMemory_h
 
+#include "Extent.h"
 #include "OpenCLContext.h"
 
 #include <cstddef>
@@ -57,6 +58,11 @@ void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::
   std::uint64_t bytes);
 cl::Event BeginToRead(
   const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t bytes, void* memory);
+
+/// The same for a part of a buffer that is not over the memory of the host. bytes: of a voxel;
+/// whole: the voxels that are in the buffer; held: those that there is room for in the memory.
+cl::Event BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  const Extent& whole, const Extent& part, std::size_t bytes, void* memory, const Extent& held);
 
 /// Copies to memory of the caller that are under way.
 class PendingReads

@@ -132,15 +132,15 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
 }
 
 __kernel void LookUpField(__global const float* vectors, const LookupParameters f,
-  __global const uchar* active, __global const uchar* blanked, __global const ulong* backgrounds,
-  __global char* coverage, __global uint* counters, const RasterParameters p ARRAY_PARAMETERS)
+  __global const uchar* active, __global const uchar* blanked, __global const float* distances,
+  __global const ulong* backgrounds, __global char* coverage, __global uint* counters, const RasterParameters p ARRAY_PARAMETERS)
 {
   __local int rests[3 * DEFORMVOLUME_TILE_VOXELS];
   __local uint covered[DEFORMVOLUME_TILE_ROWS];
   const int index = p.TileBegin + (int)get_group_id(0);
   int origin[3];
   const VoxelBox tile = GetTile(index, origin, &p);
-  const VolumeMasks masks = { active, blanked };
+  const VolumeMasks masks = { active, blanked, distances };
   for (int row = get_local_id(0); row < DEFORMVOLUME_TILE_ROWS; row += get_local_size(0))
   {
     const int y = origin[1] + (row & ((1 << DEFORMVOLUME_TILE_BITS_Y) - 1));
@@ -156,7 +156,7 @@ __kernel void LookUpField(__global const float* vectors, const LookupParameters 
         found |= (uint)LookUpRest(vectors, &common, voxel, x, rowRests, &f, &p) << x;
       }
     }
-    if (found && (p.HasActive || p.HasBlanked))
+    if (found && HasMasks(&p))
     {
       found = SelectSources(masks, found, rowRests, &p);
     }

@@ -166,7 +166,7 @@ static int RasterizeRows(__global const int4* tetrahedra, __global const int4* p
           const int voxel[3] = { origin[0], y, z };
           found = FindRestsOneByOne(&t, &map, edges, voxel, wanted, rowRests, p);
         }
-        if (p->HasActive || p->HasBlanked)
+        if (HasMasks(p))
         {
           found = SelectSources(masks, found, rowRests, p);
         }
@@ -180,7 +180,8 @@ static int RasterizeRows(__global const int4* tetrahedra, __global const int4* p
 __kernel void RasterizeMesh(__global const int4* tetrahedra, __global const int4* positions,
   __global const float4* displacements, __global const uint* listBegins,
   __global const int* lists, __global const uchar* active, __global const uchar* blanked,
-  __global const ulong* backgrounds, __global char* coverage, __global uint* counters,
+  __global const float* distances, __global const ulong* backgrounds, __global char* coverage,
+  __global uint* counters,
   const RasterParameters p ARRAY_PARAMETERS)
 {
   __local int rests[3 * DEFORMVOLUME_TILE_VOXELS];
@@ -195,7 +196,7 @@ __kernel void RasterizeMesh(__global const int4* tetrahedra, __global const int4
     overlaps = 0;
   }
   barrier(CLK_LOCAL_MEM_FENCE);
-  const VolumeMasks masks = { active, blanked };
+  const VolumeMasks masks = { active, blanked, distances };
   if (RasterizeRows(tetrahedra, positions, displacements, lists + listBegins[index],
         listBegins[index + 1] - listBegins[index], masks, tile, origin, rests, covered, own, &p))
   {

@@ -114,6 +114,7 @@ RasterParameters MakeParameters(
   p.Tetrahedra = static_cast<int>(numberOfTetrahedra);
   p.HasActive = volume.HasActive();
   p.HasBlanked = volume.HasBlanked();
+  p.HasDistances = volume.HasDistances();
   return p;
 }
 
@@ -193,6 +194,7 @@ cl_uint MeshRasterizer::SetArguments(
   // Any buffer stands in for a missing one: not all drivers take a null pointer.
   this->Kernel.setArg(i++, p.HasActive ? chunk.Active : target.GetCoverage());
   this->Kernel.setArg(i++, p.HasBlanked ? chunk.Blanked : target.GetCoverage());
+  this->Kernel.setArg(i++, this->Volume->GetDistances(chunk));
   this->Kernel.setArg(i++, target.GetBackgrounds());
   this->Kernel.setArg(i++, target.GetCoverage());
   this->Kernel.setArg(i++, counters);

@@ -50,6 +50,7 @@ typedef struct
   int Tolerance[3];    // by which a rest coordinate may leave the volume, in its own unit
   int HasActive;       // whether a mask of active tetrahedra is there
   int HasBlanked;      // whether a mask of blanked voxels is there
+  int HasDistances;    // whether there are boundary distances
   // Voxels of the volume an output voxel, as a sum of two floats.
   float InverseScale[3];
   float InverseScaleRest[3];

@@ -157,11 +157,17 @@ typedef struct
 {
   __global const uchar* Active;  // a byte a cell of the volume, bit i = its tetrahedron i
   __global const uchar* Blanked; // a byte a voxel
+  __global const float* Distances; // to the boundary, a float a voxel
 } VolumeMasks;
 
+static int HasMasks(const RasterParameters* p)
+{
+  return p->HasActive || p->HasBlanked || p->HasDistances;
+}
+
 // Whether a point lies in a tetrahedron of a cell, or on its surface. point: in the cell, mirrored
-// as its parity asks for, from 0 to one.
-static int IsInTetrahedron(int t, Vector point, long one)
+// as its parity asks for, from 0 to one. weights: of the vertices then, all with one factor.
+static int IsInTetrahedron(int t, Vector point, long one, long* weights)
 {
   int4 corners[4];
   for (int k = 0; k < 4; ++k)
@@ -181,13 +187,29 @@ static int IsInTetrahedron(int t, Vector point, long one)
     {
       return 0;
     }
+    weights[k] = side < 0 ? -side : side;
   }
   return 1;
 }
 
-// Whether an active tetrahedron of the sampling mesh holds a rest coordinate: on faces, edges and
-// vertices that several share, one of them suffices.
-static int IsActive(__global const uchar* active, const int* rest, const RasterParameters* p)
+// Whether a point in a tetrahedron of a cell lies on the far side of the boundary. mirror: parity bits of the cell.
+static int IsBeyondBoundary(__global const float* distances, const int* cell, int mirror, int t,
+  const long* weights, const RasterParameters* p)
+{
+  REAL sum = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const int v = Tetrahedra[t][k] ^ mirror;
+    const size_t voxel =
+      ((size_t)(cell[2] + (v >> 1 & 1)) * p->Size[1] + cell[1] + (v >> 2)) * p->Size[0] + cell[0] + (v & 1);
+    sum = weights[k] ? MULTIPLY_ADD_REAL((REAL)weights[k], (REAL)distances[voxel], sum) : sum;
+  }
+  return sum < 0;
+}
+
+// Whether an active tetrahedron of the sampling mesh holds a rest coordinate, and on the near side of the boundary: on
+// faces, edges and vertices that several share, one of them suffices.
+static int IsThere(VolumeMasks masks, const int* rest, const RasterParameters* p)
 {
   int cell[3];
   int below[3];
@@ -206,8 +228,11 @@ static int IsActive(__global const uchar* active, const int* rest, const RasterP
       continue;
     }
     const int c[3] = { cell[0] - step[0], cell[1] - step[1], cell[2] - step[2] };
-    const int tetrahedra =
-      active[((size_t)c[2] * (p->Size[1] - 1) + c[1]) * (p->Size[0] - 1) + c[0]];
+    const int tetrahedra = p->HasActive
+      ? masks.Active[((size_t)c[2] * (p->Size[1] - 1) + c[1]) * (p->Size[0] - 1) + c[0]]
+      : DEFORMVOLUME_ALL_TETRAHEDRA;
+    const int mirror = ((p->First[0] + c[0]) & 1) | ((p->First[2] + c[2]) & 1) << 1 |
+      ((p->First[1] + c[1]) & 1) << 2;
     long point[3];
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -218,7 +243,9 @@ static int IsActive(__global const uchar* active, const int* rest, const RasterP
     const Vector inCell = { point[0], point[1], point[2] };
     for (int t = 0; t < 5; ++t)
     {
-      if (tetrahedra >> t & 1 && IsInTetrahedron(t, inCell, one))
+      long weights[4];
+      if (tetrahedra >> t & 1 && IsInTetrahedron(t, inCell, one, weights) &&
+        !(p->HasDistances && IsBeyondBoundary(masks.Distances, c, mirror, t, weights, p)))
       {
         return 1;
       }
@@ -259,7 +286,7 @@ static uint SelectSources(
     {
       int rest[3];
       LoadRest(rests, x, rest);
-      if ((p->HasActive && !IsActive(masks.Active, rest, p)) ||
+      if (((p->HasActive || p->HasDistances) && !IsThere(masks, rest, p)) ||
         (p->HasBlanked && IsBlanked(masks.Blanked, rest, p)))
       {
         bits ^= 1u << x;

@@ -122,10 +122,10 @@ typedef struct
 // item: the brick and its sections (DEFORMVOLUME_BRICK_BITS).
 static void FindCells(uint item, BrickCells* cells, const KernelParameters* p)
 {
-  const uint brick = item & ((1u << DEFORMVOLUME_BRICK_BITS) - 1);
-  const int x = brick % p->BrickCount[0] * DEFORMVOLUME_BRICK_X + p->BrickOrigin[0];
-  const int y = brick / p->BrickCount[0] % p->BrickCount[1] * DEFORMVOLUME_BRICK_Y + p->BrickOrigin[1];
-  const int z = brick / p->BrickCount[0] / p->BrickCount[1] * DEFORMVOLUME_BRICK_Z + p->BrickOrigin[2];
+  const int3 first = FirstOfBrick(item, p);
+  const int x = first.x;
+  const int y = first.y;
+  const int z = first.z;
   const uint columns = item >> DEFORMVOLUME_BRICK_BITS & ((1u << DEFORMVOLUME_COLUMNS) - 1);
   const int firstColumn = 31 - clz(columns & -columns);
   const int endColumn = 32 - clz(columns);
@@ -270,15 +270,15 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
 // Why items take one small portion after the other: drivers deal out work-groups in large portions, and wait at the
 // end for the thread that the system has let wait, or that has more to do.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
-  __global const uchar* state, __global const uchar* active, __global char* coverage,
-  __global KEY* winners, __global char* patches, __global uint* largeCells,
-  __global uint* counters, __global const uint* bricks, __global uint* taken, ROW_MEMORY float* rows,
+  __global const uchar* state, __global const uchar* active, __global const float* distances,
+  __global char* coverage, __global KEY* winners, __global char* patches,
+  __global uint* largeCells, __global uint* counters, __global const uint* bricks, __global uint* taken, ROW_MEMORY float* rows,
   const KernelParameters p ARRAY_PARAMETERS)
 {
 #if ROWS_ARE_GLOBAL
   rows += get_global_id(0) * BRICK_FLOATS;
 #endif
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances, 0, { 0, 0, 0 } };
   RowFlags flags[2][ROWS];
   ROW_MEMORY float* const displaced = rows + 4 * HALF_ROW;
   const BrickMemory memory = { rows, displaced, displaced + 3 * ROW_PLACES, flags };

@@ -124,6 +124,7 @@ typedef struct
   Mapping Map;
   __global const uchar* State;
   __global const uchar* Active;
+  __global const float* Distances; // to the boundary, of the vertices
   // Positions that are in local memory: of each vertex of a cuboid x, y and z, INT_MIN for a vertex without
   // position. Null: none are.
   __local const int* Cuboid;

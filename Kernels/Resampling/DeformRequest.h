@@ -57,11 +57,11 @@ struct DeformRequest
   signed char* Coverage = nullptr;
   /// Keeps what is needed to write only what changes until the next call. That call needs the
   /// output of this one in LastOutputs and LastCoverage. Where that is not faster or not possible,
-  /// all is written; the result is the same to the last bit. For processors, volumes and outputs
-  /// within the allocation limit, and methods Exact and ExactByLanes.
+  /// all is written; the result is the same to the last bit. For volumes and outputs within the
+  /// allocation limit, and methods Exact, ExactByCell and ExactByLanes.
   bool Incremental = false;
   /// What the last call wrote, unchanged: the same memory as Outputs and Coverage, or other memory,
-  /// from which it is copied. Empty and null where there is none.
+  /// from which it is copied, whatever the device. Empty and null where there is none.
   std::vector<const void*> LastOutputs;
   const signed char* LastCoverage = nullptr;
   /// DeformReport::Revision of the output that Outputs and Coverage hold, where these are other

@@ -16,6 +16,12 @@
 namespace deformvolume
 {
 
+static_assert(DEFORMVOLUME_CUBOID_X % DEFORMVOLUME_COLUMN == 0 &&
+    DEFORMVOLUME_BRICK_X % DEFORMVOLUME_CUBOID_X == 0 &&
+    DEFORMVOLUME_BRICK_Y / 2 % DEFORMVOLUME_CUBOID_Y == 0 &&
+    DEFORMVOLUME_BRICK_Z / 2 % DEFORMVOLUME_CUBOID_Z == 0,
+  "bricks are made of cuboids, and these of columns in one half of a brick on y and z");
+
 ExactPasses::ExactPasses(
   WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches)
   : Device(device)
@@ -87,14 +93,20 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   cl_uint i = this->Source.SetMappingArguments(kernel, chunk);
   kernel.setArg(i++, this->Volume.GetState(chunk));
   kernel.setArg(i++, this->Volume.GetActive(chunk));
+  kernel.setArg(i++, this->Volume.GetDistances(chunk));
   kernel.setArg(i++, output.GetCoverage());
-  kernel.setArg(i++, output.GetWinners());
-  kernel.setArg(i++, output.GetPatches());
+  // A null pointer is not something that all drivers take: any buffer stands in for a missing one.
+  const OutputWinners& winners = output.GetWinners();
+  kernel.setArg(i++, winners.GetKeys()() ? winners.GetKeys() : output.GetCoverage());
+  kernel.setArg(i++, winners.GetPatches()() ? winners.GetPatches() : output.GetCoverage());
   kernel.setArg(i++, output.GetLargeCells());
   kernel.setArg(i++, output.GetCounters());
-  if (form == ResamplingForm::Lanes)
+  if (form != ResamplingForm::LargeCells)
   {
     kernel.setArg(i++, this->Bricks);
+  }
+  if (form == ResamplingForm::Lanes)
+  {
     kernel.setArg(i++, this->TakenBricks);
     if (HasLocalBricks(this->Device.GetContext()))
     {
@@ -126,10 +138,9 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
 void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
   const OutputSlab& output, ResamplingForm form, const KernelParameters& parameters)
 {
-  // One that has no brick and no layer of cells to work on.
+  // One that has no brick to work on.
   KernelParameters p = parameters;
   p.ListBegin = p.ListEnd = 0;
-  p.LayersEnd = p.LayersBegin;
   this->SetArguments(kernel, chunk, output, form, p);
   const std::size_t group = this->Device.GetBusyGroupSize(kernel);
   this->Device.GetContext().Prepare(this->Device.GetQueue(), kernel,
@@ -138,9 +149,13 @@ void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
                                       : cl::NDRange(group));
 }
 
-std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanLaunches(
-  const OutputSlab& output, int pass, std::vector<cl_uint>* bricks)
+std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanAll(
+  const OutputSlab& output, int pass, std::vector<cl_uint>& bricks)
 {
+  if (this->Volume.GetBricks().GetNumberOfBricks() >> DEFORMVOLUME_BRICK_BITS)
+  {
+    throw Error("The volume has more than 10^11 voxels. Use a smaller volume.");
+  }
   // Several are too much at once where there are few bricks for each unit.
   const int leastForTurns = 32 * static_cast<int>(this->Device.GetContext().GetNumberOfUnits());
   std::vector<PlannedLaunch> launches;
@@ -156,13 +171,10 @@ std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanLaunches(
       p.LayersEnd = std::min(begin + step, chunk.LayersEnd);
       p.Pass = pass;
       output.SetParameters(p);
-      if (bricks)
-      {
-        p.ListBegin = static_cast<int>(bricks->size());
-        this->Volume.GetBricks().AppendBricks(p.LayersBegin, p.LayersEnd, *bricks);
-        p.ListEnd = static_cast<int>(bricks->size());
-        p.Portion = p.ListEnd - p.ListBegin < leastForTurns ? 1 : BrickGrid::BricksInTurn;
-      }
+      p.ListBegin = static_cast<int>(bricks.size());
+      this->Volume.GetBricks().AppendBricks(p.LayersBegin, p.LayersEnd, bricks);
+      p.ListEnd = static_cast<int>(bricks.size());
+      p.Portion = p.ListEnd - p.ListBegin < leastForTurns ? 1 : BrickGrid::BricksInTurn;
       launches.push_back({ chunk, p });
       begin = p.LayersEnd;
     }
@@ -170,26 +182,45 @@ std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanLaunches(
   return launches;
 }
 
-void ExactPasses::LaunchBricks(
-  const DeformRequest& request, cl::Kernel& kernel, const KernelParameters& p)
+std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanSome(
+  const OutputSlab& output, int pass, const std::vector<cl_uint>& bricks)
 {
-  this->Device.GetQueue().enqueueFillBuffer(this->TakenBricks, cl_uint{ 0 }, 0, sizeof(cl_uint));
-  this->Launched.Run(request, kernel,
-    cl::NDRange(std::min(
-      this->Device.GetContext().GetNumberOfUnits(), static_cast<cl_uint>(p.ListEnd - p.ListBegin))),
-    cl::NDRange(1));
+  const VolumeChunk& chunk = this->Volume.GetChunks().front();
+  KernelParameters p = this->Volume.GetParameters(chunk);
+  p.Pass = pass;
+  output.SetParameters(p);
+  p.Portion = 1;
+  // As many in a launch as there are when all are run.
+  const std::size_t step = static_cast<std::size_t>(p.BrickCount[0]) *
+    static_cast<std::size_t>(p.BrickCount[1]) *
+    static_cast<std::size_t>(this->GetLayersPerLaunch() / DEFORMVOLUME_BRICK_Z);
+  std::vector<PlannedLaunch> launches;
+  for (std::size_t begin = 0; begin < bricks.size(); begin += step)
+  {
+    p.ListBegin = static_cast<int>(begin);
+    p.ListEnd = static_cast<int>(std::min(begin + step, bricks.size()));
+    launches.push_back({ chunk, p });
+  }
+  this->Launched.ExpectAtLeast(launches.size());
+  return launches;
 }
 
-void ExactPasses::LaunchCells(
-  const DeformRequest& request, cl::Kernel& kernel, const KernelParameters& p)
+void ExactPasses::Launch(
+  const DeformRequest& request, cl::Kernel& kernel, ResamplingForm form, const KernelParameters& p)
 {
+  const auto bricks = static_cast<cl_uint>(p.ListEnd - p.ListBegin);
+  if (form == ResamplingForm::Lanes)
+  {
+    this->Device.GetQueue().enqueueFillBuffer(this->TakenBricks, cl_uint{ 0 }, 0, sizeof(cl_uint));
+    this->Launched.Run(request, kernel,
+      cl::NDRange(std::min(this->Device.GetContext().GetNumberOfUnits(), bricks)), cl::NDRange(1));
+    return;
+  }
   const std::size_t group = this->Device.GetBusyGroupSize(kernel);
-  const auto count = [](int cells, int size)
-  { return static_cast<std::size_t>((cells + size - 1) / size); };
+  constexpr std::size_t cuboids = DEFORMVOLUME_BRICK_X / DEFORMVOLUME_CUBOID_X;
   this->Launched.Run(request, kernel,
-    cl::NDRange(group * count(p.Size[0] - 1, DEFORMVOLUME_CUBOID_X),
-      count(p.Size[1] - 1, DEFORMVOLUME_CUBOID_Y),
-      count(p.LayersEnd - p.LayersBegin, DEFORMVOLUME_CUBOID_Z)),
+    cl::NDRange(group * cuboids * bricks, DEFORMVOLUME_BRICK_Y / DEFORMVOLUME_CUBOID_Y,
+      DEFORMVOLUME_BRICK_Z / DEFORMVOLUME_CUBOID_Z),
     cl::NDRange(group, 1, 1));
 }
 
@@ -197,73 +228,23 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
   const std::vector<cl_uint>* bricks)
 {
   output.ClearLargeCells();
-  if (bricks)
-  {
-    this->RunBricks(request, output, pass, *bricks);
-  }
-  else
-  {
-    this->RunAll(request, output, pass);
-  }
-}
-
-void ExactPasses::RunAll(const DeformRequest& request, const OutputSlab& output, int pass)
-{
-  const bool lanes = this->UseLanes(request.Method, output);
-  const ResamplingForm form = lanes ? ResamplingForm::Lanes : ResamplingForm::Cells;
-  cl::Kernel kernel = this->MakeKernel(form);
-  if (lanes && this->Volume.GetBricks().GetNumberOfBricks() >> DEFORMVOLUME_BRICK_BITS)
-  {
-    throw Error("The volume has more than 10^11 voxels. Use a smaller volume.");
-  }
-  std::vector<cl_uint> bricks;
+  std::vector<cl_uint> all;
   const std::vector<PlannedLaunch> launches =
-    this->PlanLaunches(output, pass, lanes ? &bricks : nullptr);
-  if (lanes)
+    bricks ? this->PlanSome(output, pass, *bricks) : this->PlanAll(output, pass, all);
+  if (launches.empty())
   {
-    this->Bricks = this->Device.Send(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
+    return;
   }
+  const std::vector<cl_uint>& list = bricks ? *bricks : all;
+  const ResamplingForm form =
+    this->UseLanes(request.Method, output) ? ResamplingForm::Lanes : ResamplingForm::Cells;
+  cl::Kernel kernel = this->MakeKernel(form);
+  this->Bricks = this->Device.Send(list.data(), list.size() * sizeof(cl_uint), this->Bricks);
   this->PrepareKernel(kernel, launches.front().Chunk, output, form, launches.front().Parameters);
   for (const auto& [chunk, p] : launches)
   {
     this->SetArguments(kernel, chunk, output, form, p);
-    if (lanes)
-    {
-      this->LaunchBricks(request, kernel, p);
-    }
-    else
-    {
-      this->LaunchCells(request, kernel, p);
-    }
-  }
-}
-
-void ExactPasses::RunBricks(const DeformRequest& request, const OutputSlab& output, int pass,
-  const std::vector<cl_uint>& bricks)
-{
-  if (bricks.empty())
-  {
-    return;
-  }
-  cl::Kernel kernel = this->MakeKernel(ResamplingForm::Lanes);
-  this->Bricks = this->Device.Send(bricks.data(), bricks.size() * sizeof(cl_uint), this->Bricks);
-  const VolumeChunk& chunk = this->Volume.GetChunks().front();
-  KernelParameters p = this->Volume.GetParameters(chunk);
-  p.Pass = pass;
-  output.SetParameters(p);
-  this->PrepareKernel(kernel, chunk, output, ResamplingForm::Lanes, p);
-  // As many in a launch as there are when all are run.
-  const std::size_t step = static_cast<std::size_t>(p.BrickCount[0]) *
-    static_cast<std::size_t>(p.BrickCount[1]) *
-    static_cast<std::size_t>(this->GetLayersPerLaunch() / DEFORMVOLUME_BRICK_Z);
-  this->Launched.ExpectAtLeast((bricks.size() + step - 1) / step);
-  for (std::size_t begin = 0; begin < bricks.size(); begin += step)
-  {
-    p.ListBegin = static_cast<int>(begin);
-    p.ListEnd = static_cast<int>(std::min(begin + step, bricks.size()));
-    p.Portion = 1;
-    this->SetArguments(kernel, chunk, output, ResamplingForm::Lanes, p);
-    this->LaunchBricks(request, kernel, p);
+    this->Launch(request, kernel, form, p);
   }
 }
 

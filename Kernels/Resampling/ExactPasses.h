@@ -33,8 +33,8 @@ public:
   /// that and it cannot be.
   bool UseLanes(Resampling method, const OutputSlab& output);
 
-  /// Runs a pass (DEFORMVOLUME_PASS_DIRECT and so on). bricks: those to run, by lanes, where the
-  /// volume is one chunk; null: all cells. The mapping is up to date
+  /// Runs a pass (DEFORMVOLUME_PASS_DIRECT and so on). bricks: those to run
+  /// (DEFORMVOLUME_BRICK_BITS), where the volume is one chunk; null: all. The mapping is up to date
   /// (DisplacementSource::PrepareMapping).
   void Run(const DeformRequest& request, const OutputSlab& output, int pass,
     const std::vector<cl_uint>* bricks = nullptr);
@@ -53,18 +53,19 @@ private:
     const VolumeChunk& Chunk;
     KernelParameters Parameters;
   };
-  /// The launches of a pass over all cells. bricks: where these go brick by brick, their list.
-  std::vector<PlannedLaunch> PlanLaunches(
-    const OutputSlab& output, int pass, std::vector<cl_uint>* bricks);
+  /// The launches of a pass over all bricks, which are put into a list.
+  std::vector<PlannedLaunch> PlanAll(
+    const OutputSlab& output, int pass, std::vector<cl_uint>& bricks);
+  /// Those of a pass over a list of some.
+  std::vector<PlannedLaunch> PlanSome(
+    const OutputSlab& output, int pass, const std::vector<cl_uint>& bricks);
   /// Cell layers in a launch, whole bricks of them: few enough that progress is reported, and
   /// enough that processors are not kept waiting at its end.
   int GetLayersPerLaunch() const;
 
-  void RunAll(const DeformRequest& request, const OutputSlab& output, int pass);
-  void RunBricks(const DeformRequest& request, const OutputSlab& output, int pass,
-    const std::vector<cl_uint>& bricks);
-  void LaunchBricks(const DeformRequest& request, cl::Kernel& kernel, const KernelParameters& p);
-  void LaunchCells(const DeformRequest& request, cl::Kernel& kernel, const KernelParameters& p);
+  /// Launches a kernel of a form over the bricks that the parameters have of the list.
+  void Launch(const DeformRequest& request, cl::Kernel& kernel, ResamplingForm form,
+    const KernelParameters& p);
 
   cl::Kernel MakeKernel(ResamplingForm form);
   /// Has a kernel compiled before it runs (OpenCLContext::Prepare).

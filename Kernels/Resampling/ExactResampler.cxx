@@ -103,10 +103,10 @@ void ExactResampler::MakeExact(
 {
   // What was folded last time probably still is: then one pass does for two.
   const bool expected =
-    this->WasContested && this->Budget.HasRoomFor(output.GetMissingWinnerMemory());
+    this->WasContested && this->Budget.HasRoomFor(output.GetWinners().GetMissingMemory());
   if (expected)
   {
-    output.PrepareWinners(this->Device.GetContext(), this->Launched.GetResamplingEvents());
+    output.GetWinners().Prepare(this->Device.GetContext(), this->Launched.GetResamplingEvents());
   }
   const Outcome first = this->RunFirstPass(
     request, output, expected ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT);
@@ -139,9 +139,9 @@ bool ExactResampler::ChooseWinners(
   this->Launched.ExpectMore((contested && !claimed ? 3 : 2) * this->Exact.GetNumberOfLaunches());
   if (!claimed)
   {
-    this->Budget.CheckRoomFor(output.GetMissingWinnerMemory(),
+    this->Budget.CheckRoomFor(output.GetWinners().GetMissingMemory(),
       "on the device for a deformation that folds the volume over");
-    output.PrepareWinners(this->Device.GetContext(), this->Launched.GetResamplingEvents());
+    output.GetWinners().Prepare(this->Device.GetContext(), this->Launched.GetResamplingEvents());
     if (contested)
     {
       output.ClearCounters(this->Device.GetContext(), this->Launched.GetResamplingEvents());
@@ -159,8 +159,7 @@ bool ExactResampler::ChooseWinners(
 void ExactResampler::WriteWinners(
   const DeformRequest& request, OutputSlab& output, bool hasLargeCells, bool claimed)
 {
-  const bool someBricks =
-    this->Exact.UseLanes(request.Method, output) && this->Volume.GetChunks().size() == 1;
+  const bool someBricks = this->Volume.GetChunks().size() == 1;
   const auto run = [&](int pass, bool all, int counter)
   {
     std::vector<cl_uint> bricks;
@@ -176,7 +175,13 @@ void ExactResampler::WriteWinners(
 
 void ExactResampler::Read(const DeformRequest& request, std::size_t target)
 {
-  this->Targets[target].Read(this->Device.GetReadQueue(), request);
+  this->Targets[target].Read(
+    this->Device.GetReadQueue(), request, this->Targets[target].GetExtent());
+}
+
+void ExactResampler::ReadPart(const DeformRequest& request, const Extent& part)
+{
+  this->Targets[0].Read(this->Device.GetReadQueue(), request, part);
 }
 
 void ExactResampler::FinishReading()
@@ -195,11 +200,11 @@ void ExactResampler::Finish() noexcept
   }
 }
 
-bool ExactResampler::CanMakeAgain(const DeformRequest& request)
+bool ExactResampler::HoldsLastOutput(const DeformRequest& request)
 {
-  // Only the kernel for processors works on bricks one by one.
-  return this->Last != LastOutput::Unknown && this->Device.GetDevice().HasVectors &&
-    this->Exact.UseLanes(request.Method, this->Targets[0]);
+  return this->CanMakeAgain() &&
+    this->Targets[0].HoldsLastOutput(
+      this->Device.GetContext(), request, this->Volume.GetVolumeArrays());
 }
 
 std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformRequest& request,
@@ -209,12 +214,8 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
   const bool won = this->HasWinners();
   const int pass = won ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT;
   output.PrepareAgain(this->Device.GetContext(), this->Device.GetQueue(), request,
-    this->Volume.GetVolumeArrays(), bricks);
+    this->Volume.GetVolumeArrays(), { bricks, patches, won }, this->Launched.GetResamplingEvents());
   this->Source.PrepareMapping(this->Launched.GetMappingEvents());
-  if (won && !bricks.empty())
-  {
-    output.PrepareWinnersAgain(patches);
-  }
   this->RunPass(request, output, pass, false, &bricks);
   Again again;
   again.Counts = output.ReadCounts();
@@ -234,7 +235,7 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
       this->Volume.GetParameters(this->Volume.GetChunks().front()),
       this->Launched.GetResamplingEvents());
   }
-  again.Overlapping = output.HasContested();
+  again.Overlapping = output.GetWinners().HasContested();
   if (again.Counts.Overstretched > 0 ||
     !(again.Overlapping || again.Counts.Inverted > 0 || again.Counts.MissingWhereAssumed))
   {

@@ -43,9 +43,11 @@ public:
   void FinishReading() override;
   void Finish() noexcept override;
 
-  /// Whether MakeAgain can make some bricks of the last output, which was that of this request,
-  /// anew: it was made by lanes, in one slab.
-  bool CanMakeAgain(const DeformRequest& request);
+  /// Whether the last output was made in one slab of one chunk, so that MakeAgain can make bricks
+  /// of it anew.
+  bool CanMakeAgain() const { return this->Last != LastOutput::Unknown; }
+  /// Whether the last output, of a request for the same extent and by the same method, is at hand.
+  bool HoldsLastOutput(const DeformRequest& request);
   /// Whether winners were chosen in the last output.
   bool HasWinners() const { return this->Last == LastOutput::Won; }
   /// What came of MakeAgain.
@@ -54,12 +56,14 @@ public:
     OutputSlab::Counts Counts; // of all bricks
     bool Overlapping = false;  // only where winners were chosen
   };
-  /// Makes some bricks of the last output anew, in the target 0, where the memory of the request
-  /// holds it as far as it is still wanted: all but some patches, which are cleared. Chooses
-  /// winners where they were chosen in the last output. Nothing where a whole output is needed, as
-  /// there are none any more.
+  /// Makes some bricks of the last output anew, in the target 0. The memory of the request holds
+  /// the last output. Some of its patches are cleared before, in that memory or on the device.
+  /// Chooses winners where they were chosen in the last output. Nothing where a whole output is
+  /// needed, as there are none any more.
   std::optional<Again> MakeAgain(const DeformRequest& request, const std::vector<cl_uint>& bricks,
     const std::vector<std::uint32_t>& patches);
+  /// Begins to copy a part of that to the memory of the request, as Read() does.
+  void ReadPart(const DeformRequest& request, const Extent& part);
 
   /// Bytes on the device.
   std::uint64_t GetMemory() const;

@@ -82,24 +82,33 @@ void IncrementalOutput::Start(
 bool IncrementalOutput::IsChangeInside() const
 {
   const cl::Buffer& state = this->Volume.GetChunks().front().State;
-  if (!state())
+  const Extent moved = this->Changes.GetMovedVertices();
+  if (!state() || GetNumberOfPoints(moved) == 0)
   {
-    return this->Changes.IsInside(nullptr);
+    return this->Changes.IsInside(nullptr, moved);
   }
   // As it was for the last output: where a mask has changed, the change is not inside.
-  const MappedBuffer<const unsigned char> mapped(this->Device.GetQueue(), state, CL_MAP_READ);
-  return this->Changes.IsInside(mapped.Get());
+  const std::array<int, 3>& size = this->Volume.GetBricks().Size;
+  const Extent all{ { 0, size[0] - 1, 0, size[1] - 1, 0, size[2] - 1 } };
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  if (this->Device.GetDevice().IsProcessor)
+  {
+    const MappedBuffer<const unsigned char> mapped(queue, state, CL_MAP_READ);
+    return this->Changes.IsInside(mapped.Get(), all);
+  }
+  std::vector<unsigned char> read(static_cast<std::size_t>(GetNumberOfPoints(moved)));
+  BeginToReadBox(queue, state, all, moved, 1, read.data(), moved).wait();
+  return this->Changes.IsInside(read.data(), moved);
 }
 
-bool IncrementalOutput::CanUpdate(const DeformRequest& request)
+bool IncrementalOutput::CanUpdate(const DeformRequest& request, ExactResampler& resampler)
 {
   return request.Incremental && this->Changes.IsTracking() &&
     this->Changes.GetOutputExtent() == request.OutputExtent &&
     this->LastWholeExtent == request.WholeOutputExtent && this->LastMethod == request.Method &&
     request.LastCoverage && request.LastOutputs.size() == request.Outputs.size() &&
     !std::count(request.LastOutputs.begin(), request.LastOutputs.end(), nullptr) &&
-    OutputSlab::GetBytesPerVoxel(
-      this->Device.GetContext(), this->Volume.GetVolumeArrays(), request) == 0;
+    resampler.HoldsLastOutput(request);
 }
 
 void IncrementalOutput::CopyLastOutput(const DeformRequest& request) const
@@ -129,7 +138,7 @@ bool IncrementalOutput::Update(const DeformRequest& request, const DisplacementS
 {
   try
   {
-    if (this->CanUpdate(request) && this->TryUpdate(request, source, resampler, report))
+    if (this->CanUpdate(request, resampler) && this->TryUpdate(request, source, resampler, report))
     {
       return true;
     }
@@ -173,8 +182,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   const SlabResampler::FinishGuard finish(resampler);
   const QueueGuard reads(this->Device.GetReadQueue());
   this->CopyLastOutput(request);
-  // Before the memory becomes that of buffers, and after the device has given it back.
-  const std::uint64_t before = ClearPatches(request, this->Volume.GetVolumeArrays(), plan.Patches);
+  const std::uint64_t before = CountCoveredInPatches(request, plan.Patches);
   report.ResamplingTime += GetSecondsSince(begin);
   const std::optional<ExactResampler::Again> again =
     resampler.MakeAgain(request, plan.Bricks, plan.Patches);
@@ -184,7 +192,8 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   }
   const OutputSlab::Counts& counts = again->Counts;
   const auto done = Clock::now();
-  resampler.Read(request, 0);
+  const Extent changed = this->Changes.GetChangedExtent();
+  resampler.ReadPart(request, changed);
   resampler.FinishReading();
   report.TransferTime += GetSecondsSince(done);
   const auto read = Clock::now();
@@ -196,7 +205,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
     return false;
   }
   this->LastCovered = covered;
-  report.ChangedExtent = this->Changes.GetChangedExtent();
+  report.ChangedExtent = changed;
   this->LastPatches = inside ? this->Changes.GetChangedPatches() : std::move(plan.Patches);
   this->RevisionBefore = std::exchange(this->Revision, MakeRevision());
   report.Revision = this->Revision;

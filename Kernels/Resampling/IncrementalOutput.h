@@ -44,7 +44,7 @@ public:
     ExactResampler& resampler, DeformReport& report);
 
 private:
-  bool CanUpdate(const DeformRequest& request);
+  bool CanUpdate(const DeformRequest& request, ExactResampler& resampler);
   /// The same as Update, but that after a failure it is not forgotten that there is a last output.
   bool TryUpdate(const DeformRequest& request, const DisplacementSource& source,
     ExactResampler& resampler, DeformReport& report);

@@ -90,16 +90,11 @@ Extent IncrementalUpdate::GetChangedExtent() const
     {
       return;
     }
-    const bool isFirst = GetNumberOfPoints(changed) == 0;
-    for (int axis = 0; axis < 3; ++axis)
+    for (int end = 0; end < 6; ++end)
     {
-      const int origin = this->OutputExtent[2 * axis];
-      int& low = changed[2 * axis];
-      int& high = changed[2 * axis + 1];
-      low = isFirst ? origin + voxels[2 * axis] : std::min(low, origin + voxels[2 * axis]);
-      high =
-        isFirst ? origin + voxels[2 * axis + 1] : std::max(high, origin + voxels[2 * axis + 1]);
+      voxels[end] += this->OutputExtent[end / 2 * 2];
     }
+    Include(changed, voxels);
   };
   for (std::size_t subBrick = 0; subBrick < this->Places.size(); ++subBrick)
   {

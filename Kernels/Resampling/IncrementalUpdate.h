@@ -65,10 +65,12 @@ public:
   void MoveAll(const std::optional<DisplacementBounds>& after) override;
   ///@}
 
+  /// A box round the vertices of the sub-bricks of which points moved, in local indices.
+  Extent GetMovedVertices() const;
   /// Whether all that changed are sub-bricks of which points moved and all vertices are inside the
-  /// sampling mesh. state: of all vertices (VertexState.cl), null where all have a position and all
-  /// cells are active.
-  bool IsInside(const unsigned char* state) const;
+  /// sampling mesh. state: of the vertices in a box that holds these (VertexState.cl), null where
+  /// all have a position and all cells are active.
+  bool IsInside(const unsigned char* state, const Extent& box) const;
 
   /// Whether it is known where sub-bricks lie, as far as MakePlan wants it.
   bool HasBoxes() const { return this->BoxesKnown; }
@@ -100,7 +102,8 @@ private:
     std::array<double, 3> Min;
     std::array<double, 3> Max;
   };
-  using Patches = std::array<int, 6>; // first and last patch on each axis
+  using Patches = std::array<int, 6>;          // first and last patch on each axis
+  static constexpr std::size_t StepSize = 256; // sub-bricks that a thread takes at a time
 
   /// A sub-brick is about to change by its points.
   void Move(std::size_t subBrick, const float* last);
@@ -113,6 +116,11 @@ private:
   void FindBoxesOf(const IsWanted& isWanted, const Displacements& displacements);
   /// The voxels in a box, within the output and counted from its first one; false without such.
   bool GetVoxels(const Box& box, Extent& voxels) const;
+  /// Bricks may reach beyond the volume.
+  bool HasCells(std::size_t subBrick) const
+  {
+    return GetNumberOfCells(this->Grid.GetVertices(subBrick, 0)) > 0;
+  }
   bool IsChanged(std::size_t subBrick) const
   {
     return this->Moved[subBrick] || this->Masked[subBrick];
@@ -121,7 +129,7 @@ private:
   /// change.
   Box GetReach() const;
   static bool IsApart(const Box& a, const Box& b);
-  bool HasOnlyInterior(std::size_t subBrick, const unsigned char* state) const;
+  bool HasOnlyInterior(std::size_t subBrick, const unsigned char* state, const Extent& box) const;
   Patches GetPatches(const Box& box) const;
   void MarkPatches(const Box& box, std::vector<unsigned char>& dirty) const;
   std::vector<unsigned char> MakeFlagsOfPatches() const;

@@ -6,7 +6,7 @@
 // p.ListBegin to p.ListEnd local x, y and z of a cell, and the number of a piece of it.
 
 __kernel void ResampleLargeCells(MAPPING_PARAMETERS, __global const uchar* state,
-  __global const uchar* active, __global char* coverage, __global KEY* winners,
+  __global const uchar* active, __global const float* distances, __global char* coverage, __global KEY* winners,
   __global char* patches, __global uint* largeCells, __global uint* counters,
   __global const int4* pieces, const KernelParameters p ARRAY_PARAMETERS)
 {
@@ -16,7 +16,7 @@ __kernel void ResampleLargeCells(MAPPING_PARAMETERS, __global const uchar* state
     return; // an item that only fills its group
   }
   const int4 piece = pieces[i];
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances, 0, { 0, 0, 0 } };
   Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
   const Candidates all = AllCandidates(&p);
   Cell cell;

@@ -109,24 +109,20 @@ std::vector<PatchRow> FindRows(const Extent& output, const std::vector<std::uint
   return rows;
 }
 
-// The sum of what body(row) returns for rows of patches.
+// Calls body(row) for rows of patches.
 template <typename Body>
-std::uint64_t SumUp(const Extent& output, const std::vector<std::uint32_t>& patches, Body&& body)
+void ForPatches(const Extent& output, const std::vector<std::uint32_t>& patches, Body&& body)
 {
   constexpr std::size_t step = 16;
   const std::vector<PatchRow> rows = FindRows(output, patches);
-  std::atomic<std::uint64_t> sum{ 0 };
   ParallelForParts(rows.size(), step,
     [&](std::size_t begin, std::size_t end)
     {
-      std::uint64_t part = 0;
       for (std::size_t i = begin; i < end; ++i)
       {
-        part += body(rows[i]);
+        body(rows[i]);
       }
-      sum += part;
     });
-  return sum;
 }
 
 } // namespace
@@ -134,8 +130,10 @@ std::uint64_t SumUp(const Extent& output, const std::vector<std::uint32_t>& patc
 std::uint64_t CountCoveredInPatches(
   const DeformRequest& request, const std::vector<std::uint32_t>& patches)
 {
-  return SumUp(
-    request.OutputExtent, patches, [&](const PatchRow& row) { return CountCovered(request, row); });
+  std::atomic<std::uint64_t> sum{ 0 };
+  ForPatches(
+    request.OutputExtent, patches, [&](const PatchRow& row) { sum += CountCovered(request, row); });
+  return sum;
 }
 
 void CopyPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
@@ -155,7 +153,7 @@ void CopyPatches(const DeformRequest& request, const std::vector<VolumeArray>& a
           static_cast<std::size_t>(voxels) * size);
       });
   };
-  SumUp(request.OutputExtent, patches,
+  ForPatches(request.OutputExtent, patches,
     [&](const PatchRow& row)
     {
       for (std::size_t i = 0; i < arrays.size(); ++i)
@@ -163,39 +161,20 @@ void CopyPatches(const DeformRequest& request, const std::vector<VolumeArray>& a
         copy(row, request.Outputs[i], request.LastOutputs[i], GetTupleSize(arrays[i]));
       }
       copy(row, request.Coverage, request.LastCoverage, 1);
-      return std::uint64_t{ 0 };
     });
 }
 
-std::uint64_t ClearPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+void ClearPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
   const std::vector<std::uint32_t>& patches)
 {
-  return SumUp(request.OutputExtent, patches,
+  ForPatches(request.OutputExtent, patches,
     [&](const PatchRow& row)
     {
-      const std::uint64_t covered = CountCovered(request, row);
       for (std::size_t i = 0; i < arrays.size(); ++i)
       {
         ClearArray(request, row, request.Outputs[i], arrays[i]);
       }
       Clear(request, row, request.Coverage, 1, std::int8_t{ 0 });
-      return covered;
-    });
-}
-
-void FillPatches(const Extent& output, const std::vector<std::uint32_t>& patches, void* memory,
-  std::size_t bytesPerVoxel, unsigned char byte)
-{
-  SumUp(output, patches,
-    [&](const PatchRow& row)
-    {
-      ForRows(output, row,
-        [&](std::int64_t voxel, std::int64_t voxels)
-        {
-          std::memset(static_cast<char*>(memory) + static_cast<std::size_t>(voxel) * bytesPerVoxel,
-            byte, static_cast<std::size_t>(voxels) * bytesPerVoxel);
-        });
-      return std::uint64_t{ 0 };
     });
 }
 

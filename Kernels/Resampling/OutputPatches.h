@@ -17,18 +17,14 @@ namespace deformvolume
 std::uint64_t CountCoveredInPatches(
   const DeformRequest& request, const std::vector<std::uint32_t>& patches);
 
-/// The same, and gives all voxels of the patches the arrays' background, and covers none. arrays:
-/// those of the volume.
-std::uint64_t ClearPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+/// Gives all voxels of the patches the arrays' background, and covers none, by the host as well.
+/// arrays: those of the volume.
+void ClearPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
   const std::vector<std::uint32_t>& patches);
 
 /// Copies patches of the last output to the request's memory, where that is another.
 void CopyPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
   const std::vector<std::uint32_t>& patches);
-
-/// Fills patches of memory that has so many bytes for each voxel of an output.
-void FillPatches(const Extent& output, const std::vector<std::uint32_t>& patches, void* memory,
-  std::size_t bytesPerVoxel, unsigned char byte);
 
 } // namespace deformvolume
 

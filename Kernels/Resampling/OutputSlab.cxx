@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OutputSlab.h"
 
-#include "Background.h"
 #include "BrickGrid.h"
 #include "Error.h"
+#include "OutputFilling.h"
 #include "OutputPatches.h"
 #include "ResamplingProgram.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <numeric>
-#include <type_traits>
 
 namespace deformvolume
 {
@@ -25,60 +23,6 @@ cl_uint GetSectionBits(std::size_t section)
   return MakeSectionBits(
            static_cast<cl_uint>(section % DEFORMVOLUME_COLUMNS), halves & 1, halves & 2)
     << DEFORMVOLUME_BRICK_BITS;
-}
-
-template <typename T>
-using BitsOf = std::conditional_t<sizeof(T) == 1, cl_uchar,
-  std::conditional_t<sizeof(T) == 2, cl_ushort,
-    std::conditional_t<sizeof(T) == 4, cl_uint, cl_ulong>>>;
-
-template <typename T>
-BitsOf<T> GetBits(T value)
-{
-  BitsOf<T> bits;
-  std::memcpy(&bits, &value, sizeof(T));
-  return bits;
-}
-
-/// Launches a kernel over so many items that have much to do. Groups run on one thread, and drivers
-/// for processors put many items into one. Elsewhere items may be more, which the kernel leaves
-/// out: of a prime number drivers would make groups of one item.
-void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
-  const cl::Kernel& kernel, std::size_t items, std::vector<cl::Event>& events)
-{
-  const std::size_t group = context.GetDevice().HasVectors ? 1 : 64;
-  events.push_back(context.Launch(
-    queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group)));
-}
-
-/// Fills a buffer of so many elements. Processors do that with a kernel: see OutputClearing.cl.
-template <typename T>
-void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer, T value,
-  std::uint64_t size, std::vector<cl::Event>& events)
-{
-  if constexpr (sizeof(T) > 1)
-  {
-    unsigned char bytes[sizeof(T)];
-    std::memcpy(bytes, &value, sizeof(T));
-    if (std::all_of(bytes, bytes + sizeof(T), [&](unsigned char byte) { return byte == bytes[0]; }))
-    {
-      Fill(context, queue, buffer, bytes[0], size * sizeof(T), events);
-      return;
-    }
-  }
-  if (!context.GetDevice().IsProcessor)
-  {
-    events.emplace_back();
-    queue.enqueueFillBuffer(buffer, value, 0, size * sizeof(T), nullptr, &events.back());
-    return;
-  }
-  cl::Kernel kernel(GetOutputProgram(context), ("Fill" + std::to_string(sizeof(T))).c_str());
-  kernel.setArg(0, buffer);
-  kernel.setArg(1, cl_ulong{ size });
-  kernel.setArg(2, GetBits(value));
-  constexpr std::uint64_t step = DEFORMVOLUME_FILLED_BYTES / sizeof(T);
-  LaunchBusyItems(
-    context, queue, kernel, static_cast<std::size_t>((size + step - 1) / step), events);
 }
 
 /// The sum of what a kernel writes for each of its work-items.
@@ -105,12 +49,6 @@ Extent GetWholeOutput(const DeformRequest& request)
 }
 
 } // namespace
-
-std::size_t GetWinnerSize(const VoxelGrid& voxelGrid)
-{
-  constexpr std::int64_t mostCells = (std::int64_t{ 1 } << 30) - 2;
-  return GetNumberOfCells(voxelGrid.VertexExtent) <= mostCells ? 4 : 8;
-}
 
 std::vector<Extent> OutputSlab::Split(const Extent& output, const std::vector<VolumeArray>& arrays,
   const VoxelGrid& voxelGrid, std::uint64_t allocationLimit)
@@ -156,20 +94,6 @@ std::uint64_t OutputSlab::GetBytesPerVoxel(const OpenCLContext& context,
   return bytes;
 }
 
-void OutputSlab::Clear(OpenCLContext& context, const cl::Buffer& buffer, double value,
-  ElementType type, std::uint64_t size, std::vector<cl::Event>& events) const
-{
-  switch (type)
-  {
-#define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
-  case ElementType::name:                                                                          \
-    Fill(context, this->Queue, buffer, ClampTo<ctype>(value), size, events);                       \
-    break;
-    DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
-#undef DEFORMVOLUME_CASE
-  }
-}
-
 void OutputSlab::PlaceArrays(
   OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays)
 {
@@ -186,16 +110,77 @@ void OutputSlab::PlaceArrays(
   Place(context, this->Coverage, request.Coverage + offset, 1, this->NumberOfVoxels);
 }
 
+bool OutputSlab::HoldsLastOutput(const OpenCLContext& context, const DeformRequest& request,
+  const std::vector<VolumeArray>& arrays) const
+{
+  const auto voxels = static_cast<std::uint64_t>(GetNumberOfPoints(request.OutputExtent));
+  // What lies in the memory of the host is there in any case.
+  const auto holds = [&](const cl::Buffer& buffer, const void* memory, std::size_t elementSize,
+                       std::size_t tupleSize)
+  {
+    return CanWorkInPlace(context, memory, elementSize) ||
+      deformvolume::GetMemory(buffer) == voxels * tupleSize;
+  };
+  bool all = this->SlabExtent == request.OutputExtent && this->Arrays.size() == arrays.size() &&
+    holds(this->Coverage, request.Coverage, 1, 1);
+  for (std::size_t i = 0; all && i < arrays.size(); ++i)
+  {
+    all = holds(
+      this->Arrays[i], request.Outputs[i], GetElementSize(arrays[i].Type), GetTupleSize(arrays[i]));
+  }
+  return all;
+}
+
 void OutputSlab::PrepareAgain(OpenCLContext& context, const cl::CommandQueue& queue,
-  const DeformRequest& request, const std::vector<VolumeArray>& arrays,
-  const std::vector<cl_uint>& bricks)
+  const DeformRequest& request, const std::vector<VolumeArray>& arrays, const PartToMake& part,
+  std::vector<cl::Event>& events)
 {
   this->Finish();
   this->Queue = queue;
-  this->SlabExtent = request.OutputExtent;
   this->WholeExtent = GetWholeOutput(request);
-  this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(request.OutputExtent));
+  const bool onHost = GetBytesPerVoxel(context, arrays, request) == 0;
+  if (onHost)
+  {
+    // Before the memory becomes that of buffers, and after the device has given it back.
+    ClearPatches(request, arrays, part.Patches);
+  }
   this->PlaceArrays(context, request, arrays);
+  const bool withWinners = part.WithWinners && !part.Bricks.empty();
+  if (!part.Patches.empty() && (!onHost || withWinners))
+  {
+    const std::uint64_t bytes = part.Patches.size() * sizeof(cl_uint);
+    Reserve(context, this->PatchList, bytes);
+    queue.enqueueWriteBuffer(this->PatchList, CL_TRUE, 0, bytes, part.Patches.data());
+  }
+  KernelParameters p = {};
+  this->SetParameters(p);
+  if (!part.Patches.empty() && !onHost)
+  {
+    const auto clear = [&](
+                         const cl::Buffer& buffer, const ElementBytes& value, std::size_t elements)
+    {
+      FillPatches(
+        context, queue, buffer, value, elements, this->PatchList, part.Patches.size(), p, events);
+    };
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+    {
+      clear(
+        this->Arrays[i], GetBackground(arrays[i]), static_cast<std::size_t>(arrays[i].Components));
+    }
+    clear(this->Coverage, ElementBytes::Of(cl_uchar{ 0 }), 1);
+  }
+  if (withWinners)
+  {
+    this->Winners.PrepareAgain(context, part.Patches, this->PatchList, p, events);
+  }
+  if (!part.Bricks.empty())
+  {
+    this->ClearSections(part.Bricks);
+  }
+}
+
+void OutputSlab::ClearSections(const std::vector<cl_uint>& bricks)
+{
   for (const cl_uint brick : bricks)
   {
     const std::size_t number = brick & ((1U << DEFORMVOLUME_BRICK_BITS) - 1);
@@ -211,17 +196,14 @@ void OutputSlab::PrepareAgain(OpenCLContext& context, const cl::CommandQueue& qu
       }
     }
   }
-  if (!bricks.empty())
+  for (std::size_t section = 0; section < this->NumberOfSections; ++section)
   {
-    for (std::size_t section = 0; section < this->NumberOfSections; ++section)
-    {
-      cl_uint* const counter = this->LastCounters.data() + section * DEFORMVOLUME_COUNTERS;
-      counter[DEFORMVOLUME_COUNT_CANDIDATES] = counter[DEFORMVOLUME_COUNT_TOUCHED] = 0;
-    }
-    // Done when Finish() is, at the latest.
-    queue.enqueueWriteBuffer(this->Counters, CL_FALSE, 0,
-      this->LastCounters.size() * sizeof(cl_uint), this->LastCounters.data());
+    cl_uint* const counter = this->LastCounters.data() + section * DEFORMVOLUME_COUNTERS;
+    counter[DEFORMVOLUME_COUNT_CANDIDATES] = counter[DEFORMVOLUME_COUNT_TOUCHED] = 0;
   }
+  // Done when Finish() is, at the latest.
+  this->Queue.enqueueWriteBuffer(this->Counters, CL_FALSE, 0,
+    this->LastCounters.size() * sizeof(cl_uint), this->LastCounters.data());
 }
 
 void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
@@ -233,22 +215,16 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   this->Queue = queue;
   this->SlabExtent = extent;
   this->WholeExtent = GetWholeOutput(request);
-  this->WinnerSize = GetWinnerSize(voxelGrid);
-  this->KeepsPatches = false;
   this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(extent));
-  if (!this->HasWinners())
-  {
-    this->Winners = cl::Buffer();
-    this->PatchStates = cl::Buffer();
-  }
+  this->Winners.Start(queue, extent, voxelGrid);
   this->PlaceArrays(context, request, arrays);
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
-    const VolumeArray& array = arrays[i];
-    this->Clear(context, this->Arrays[i], array.Background, array.Type,
-      this->NumberOfVoxels * static_cast<std::uint64_t>(array.Components), events);
+    Fill(context, queue, this->Arrays[i], GetBackground(arrays[i]),
+      this->NumberOfVoxels * static_cast<std::uint64_t>(arrays[i].Components), events);
   }
-  this->Clear(context, this->Coverage, 0.0, ElementType::Int8, this->NumberOfVoxels, events);
+  Fill(
+    context, queue, this->Coverage, ElementBytes::Of(cl_uchar{ 0 }), this->NumberOfVoxels, events);
   this->NumberOfSections = DEFORMVOLUME_SECTIONS * numberOfBricks;
   Reserve(
     context, this->Counters, this->NumberOfSections * DEFORMVOLUME_COUNTERS * sizeof(cl_uint));
@@ -260,98 +236,16 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
 
 void OutputSlab::ClearCounters(OpenCLContext& context, std::vector<cl::Event>& events)
 {
-  Fill(context, this->Queue, this->Counters, cl_uint{ 0 },
+  Fill(context, this->Queue, this->Counters, ElementBytes::Of(cl_uint{ 0 }),
     this->NumberOfSections * DEFORMVOLUME_COUNTERS, events);
-}
-
-bool OutputSlab::HasWinners() const
-{
-  // Those of a somewhat larger output serve as well: to touch fresh memory takes longer than to
-  // fill it.
-  const std::uint64_t needed = this->NumberOfVoxels * this->WinnerSize;
-  const std::uint64_t held = deformvolume::GetMemory(this->Winners);
-  return held >= needed && held - needed <= needed / 4 &&
-    deformvolume::GetMemory(this->PatchStates) >= 2 * this->CountAllPatches();
-}
-
-std::uint64_t OutputSlab::GetMissingWinnerMemory() const
-{
-  return this->HasWinners() ? 0
-                            : this->NumberOfVoxels * this->WinnerSize + 2 * this->CountAllPatches();
-}
-
-void OutputSlab::PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events)
-{
-  if (!this->HasWinners())
-  {
-    Reserve(context, this->Winners, this->NumberOfVoxels * this->WinnerSize);
-    Reserve(context, this->PatchStates, 2 * this->CountAllPatches());
-  }
-  Fill(context, this->Queue, this->Winners, std::numeric_limits<cl_uint>::max(),
-    this->NumberOfVoxels * this->WinnerSize / sizeof(cl_uint), events);
-  Fill(context, this->Queue, this->PatchStates, cl_uchar{ 0 }, 2 * this->CountAllPatches(), events);
-}
-
-void OutputSlab::PrepareWinnersAgain(const std::vector<std::uint32_t>& patches)
-{
-  const MappedBuffer<unsigned char> winners(this->Queue, this->Winners, CL_MAP_WRITE);
-  FillPatches(this->SlabExtent, patches, winners.Get(), this->WinnerSize, 0xff);
-  const MappedBuffer<unsigned char> states(
-    this->Queue, this->PatchStates, CL_MAP_READ | CL_MAP_WRITE);
-  this->KeepsPatches = true;
-  const std::uint64_t all = this->CountAllPatches();
-  std::fill_n(states.Get(), all, static_cast<unsigned char>(DEFORMVOLUME_PATCH_KEPT));
-  for (const std::uint32_t patch : patches)
-  {
-    states.Get()[patch] = states.Get()[all + patch] = 0;
-  }
-}
-
-bool OutputSlab::HasContested() const
-{
-  const std::uint64_t all = this->CountAllPatches();
-  std::vector<unsigned char> contested(static_cast<std::size_t>(all));
-  this->Queue.enqueueReadBuffer(this->PatchStates, CL_TRUE, all, all, contested.data());
-  return std::find(contested.begin(), contested.end(), 1) != contested.end();
-}
-
-std::uint64_t OutputSlab::CountAllPatches() const
-{
-  std::uint64_t patches = 1;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    patches *= static_cast<std::uint64_t>(DEFORMVOLUME_PATCHES(GetSize(this->SlabExtent, axis)));
-  }
-  return patches;
 }
 
 void OutputSlab::Settle(OpenCLContext& context, bool claimed, const KernelParameters& parameters,
   std::vector<cl::Event>& events)
 {
-  const std::size_t items = this->CountItems();
   KernelParameters p = parameters;
   this->SetParameters(p);
-  if (!claimed)
-  {
-    // Nor is it known what cells hold beside what they own.
-    Fill(context, this->Queue, this->PatchStates, cl_uchar{ DEFORMVOLUME_PATCH_TOUCHED },
-      this->CountAllPatches(), events);
-  }
-  cl::Kernel kernel(GetOutputProgram(context), "Settle");
-  kernel.setArg(0, this->Coverage);
-  kernel.setArg(1, this->Winners);
-  kernel.setArg(2, static_cast<cl_uint>(this->WinnerSize / sizeof(cl_uint)));
-  kernel.setArg(3, cl_int{ claimed });
-  kernel.setArg(4, this->PatchStates);
-  kernel.setArg(5, this->Counters);
-  kernel.setArg(6, p);
-  LaunchBusyItems(context, this->Queue, kernel, items, events);
-}
-
-std::size_t OutputSlab::CountItems() const
-{
-  return static_cast<std::size_t>(
-    (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS);
+  this->Winners.Settle(context, claimed, this->Coverage, this->Counters, p, events);
 }
 
 void OutputSlab::ClearLargeCells() const
@@ -374,7 +268,8 @@ std::vector<OutputSlab::LargeCell> OutputSlab::ReadLargeCells() const
 
 std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::Event>& events)
 {
-  const std::size_t items = this->CountItems();
+  const auto items = static_cast<std::size_t>(
+    (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS);
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, items * sizeof(cl_uint));
   cl::Kernel kernel(GetOutputProgram(context), "CountCovered");
   kernel.setArg(0, this->Coverage);
@@ -462,7 +357,7 @@ void OutputSlab::SetParameters(KernelParameters& parameters) const
     parameters.WholeEnd[axis] = this->WholeExtent[2 * axis + 1] + 1 - this->SlabExtent[2 * axis];
   }
   parameters.MostLargeCells = static_cast<int>(this->MostLargeCells);
-  parameters.KeepsPatches = this->KeepsPatches ? 1 : 0;
+  parameters.KeepsPatches = this->Winners.KeepsPatches() ? 1 : 0;
   parameters.IsPart = this->WholeExtent != this->SlabExtent ? 1 : 0;
 }
 
@@ -474,16 +369,28 @@ std::uint64_t OutputSlab::GetOffset(const DeformRequest& request) const
     static_cast<std::uint64_t>(std::int64_t{ this->SlabExtent[4] } - request.OutputExtent[4]);
 }
 
-void OutputSlab::Read(const cl::CommandQueue& queue, const DeformRequest& request)
+void OutputSlab::Read(
+  const cl::CommandQueue& queue, const DeformRequest& request, const Extent& part)
 {
   const std::uint64_t offset = this->GetOffset(request);
+  const auto read = [&](const cl::Buffer& buffer, std::size_t tupleSize, void* memory)
+  {
+    char* const first = static_cast<char*>(memory) + offset * tupleSize;
+    if (part == this->SlabExtent || IsInPlace(buffer))
+    {
+      this->Reads.Add(BeginToRead(queue, buffer, this->NumberOfVoxels * tupleSize, first));
+    }
+    else if (GetNumberOfPoints(part) > 0)
+    {
+      this->Reads.Add(
+        BeginToReadBox(queue, buffer, this->SlabExtent, part, tupleSize, first, this->SlabExtent));
+    }
+  };
   for (std::size_t i = 0; i < this->Arrays.size(); ++i)
   {
-    this->Reads.Add(BeginToRead(queue, this->Arrays[i], this->NumberOfVoxels * this->TupleSizes[i],
-      static_cast<char*>(request.Outputs[i]) + offset * this->TupleSizes[i]));
+    read(this->Arrays[i], this->TupleSizes[i], request.Outputs[i]);
   }
-  this->Reads.Add(
-    BeginToRead(queue, this->Coverage, this->NumberOfVoxels, request.Coverage + offset));
+  read(this->Coverage, 1, request.Coverage);
   queue.flush();
 }
 
@@ -503,8 +410,7 @@ void OutputSlab::Finish()
 
 std::uint64_t OutputSlab::GetMemory() const
 {
-  std::uint64_t bytes = deformvolume::GetMemory(this->Coverage) +
-    deformvolume::GetMemory(this->Winners) + deformvolume::GetMemory(this->PatchStates) +
+  std::uint64_t bytes = deformvolume::GetMemory(this->Coverage) + this->Winners.GetMemory() +
     deformvolume::GetMemory(this->Counters);
   for (const cl::Buffer& array : this->Arrays)
   {

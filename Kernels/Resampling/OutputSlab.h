@@ -3,20 +3,16 @@
 #define DeformVolumeOutputSlab_h
 
 #include "DeformRequest.h"
-#include "ElementType.h"
 #include "Extent.h"
 #include "HostMemory.h"
 #include "KernelParameters.h"
 #include "OpenCLContext.h"
+#include "OutputWinners.h"
 #include "VolumeArray.h"
 #include "VoxelGrid.h"
 
 namespace deformvolume
 {
-
-/// Bytes of a winner's key: four hold a cell of up to 2^30, and two bits, for inverted
-/// tetrahedra and for voxels that are still to be won.
-std::size_t GetWinnerSize(const VoxelGrid& voxelGrid);
 
 /// What the device holds of the output: a range of planes of all arrays, their coverage, the
 /// winners where tetrahedra overlap, and the counters of the bricks of cells.
@@ -57,29 +53,31 @@ public:
     const DeformRequest& request, const std::vector<VolumeArray>& arrays,
     const VoxelGrid& voxelGrid, std::size_t numberOfBricks, std::vector<cl::Event>& events);
 
-  /// The same where the memory of the request, which is worked on in place, holds the last output,
-  /// as far as it is still wanted, and the counters are those of it that ReadCounts or FindBricks
-  /// has read last: clears the counters of some bricks, and those of work for the passes that
-  /// choose winners.
+  /// Whether the last output, of a request for the same extent, is at hand: in the memory of this
+  /// request, as far as that is worked on in place, and on the device.
+  bool HoldsLastOutput(const OpenCLContext& context, const DeformRequest& request,
+    const std::vector<VolumeArray>& arrays) const;
+  /// What is made anew of an output (see IncrementalUpdate).
+  struct PartToMake
+  {
+    const std::vector<cl_uint>& Bricks;
+    const std::vector<std::uint32_t>& Patches;
+    bool WithWinners; // whether winners were chosen in the last output
+  };
+  /// The same as Prepare where the last output is at hand, and the counters are those of it that
+  /// ReadCounts or FindBricks has read last: clears the patches, the counters of the bricks, and
+  /// those of work for the passes that choose winners. Patches that are left keep their winners.
   void PrepareAgain(OpenCLContext& context, const cl::CommandQueue& queue,
-    const DeformRequest& request, const std::vector<VolumeArray>& arrays,
-    const std::vector<cl_uint>& bricks);
+    const DeformRequest& request, const std::vector<VolumeArray>& arrays, const PartToMake& part,
+    std::vector<cl::Event>& events);
 
-  /// Bytes that PrepareWinners will allocate.
-  std::uint64_t GetMissingWinnerMemory() const;
-  void PrepareWinners(OpenCLContext& context, std::vector<cl::Event>& events);
-  /// The same where the last output had winners, for some patches of it (see IncrementalUpdate).
-  /// All others are kept. For processors.
-  void PrepareWinnersAgain(const std::vector<std::uint32_t>& patches);
+  OutputWinners& GetWinners() { return this->Winners; }
+  const OutputWinners& GetWinners() const { return this->Winners; }
   /// The counters are 0 again: a pass that counts is run once more.
   void ClearCounters(OpenCLContext& context, std::vector<cl::Event>& events);
-  /// After the pass in which cells claim voxels, or without it where none is contested: finds those
-  /// to be won, and those that nobody has written. parameters: of the mesh.
+  /// See OutputWinners. parameters: of the mesh.
   void Settle(OpenCLContext& context, bool claimed, const KernelParameters& parameters,
     std::vector<cl::Event>& events);
-  /// Whether Settle has found voxels that several tetrahedra write, now or in patches that are
-  /// kept.
-  bool HasContested() const;
 
   /// The list of large cells (DEFORMVOLUME_PIECE), as the launches of a pass leave it.
   struct LargeCell
@@ -103,19 +101,15 @@ public:
   /// Puts the output extent into the parameters of a launch.
   void SetParameters(KernelParameters& parameters) const;
 
+  const Extent& GetExtent() const { return this->SlabExtent; }
   const cl::Buffer& GetArray(std::size_t index) const { return this->Arrays[index]; }
   const cl::Buffer& GetCoverage() const { return this->Coverage; }
-  const cl::Buffer& GetWinners() const { return this->Winners() ? this->Winners : this->Coverage; }
-  const cl::Buffer& GetPatches() const
-  {
-    return this->PatchStates() ? this->PatchStates : this->Coverage;
-  }
   const cl::Buffer& GetLargeCells() const { return this->LargeCells; }
   const cl::Buffer& GetCounters() const { return this->Counters; }
 
-  /// Begins to copy the slab, which is done, to its place in the request's memory, in a queue of
-  /// its own.
-  void Read(const cl::CommandQueue& queue, const DeformRequest& request);
+  /// Begins to copy a part of the slab, which is done, to its place in the request's memory, in a
+  /// queue of its own.
+  void Read(const cl::CommandQueue& queue, const DeformRequest& request, const Extent& part);
   /// Waits until the slab is in the request's memory. Throws cl::Error where it did not get there.
   void FinishReading() { this->Reads.Check(); }
   /// Waits, whatever has happened, and lets go of the request's memory. Throws nothing.
@@ -126,13 +120,9 @@ public:
 private:
   void PlaceArrays(
     OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays);
-  bool HasWinners() const;
-  std::uint64_t CountAllPatches() const;
+  void ClearSections(const std::vector<cl_uint>& bricks);
   const std::vector<cl_uint>& ReadCounters();
   std::uint64_t GetOffset(const DeformRequest& request) const;
-  std::size_t CountItems() const;
-  void Clear(OpenCLContext& context, const cl::Buffer& buffer, double value, ElementType type,
-    std::uint64_t size, std::vector<cl::Event>& events) const;
 
   cl::CommandQueue Queue;
   Extent SlabExtent{ { 0, -1, 0, -1, 0, -1 } };
@@ -140,16 +130,14 @@ private:
   std::vector<cl::Buffer> Arrays;
   std::vector<std::size_t> TupleSizes;
   cl::Buffer Coverage;
-  cl::Buffer Winners;
-  cl::Buffer PatchStates; // a byte a patch of the output
+  OutputWinners Winners;
+  cl::Buffer PatchList; // those that an update clears
   cl::Buffer Counters;
   cl::Buffer
     LargeCells; // at most a megabyte, which GetMemory leaves out as it does all lists of work
   std::size_t MostLargeCells = 0;
   std::vector<cl_uint> LastCounters; // as they were read
-  std::size_t WinnerSize = 4;
-  bool KeepsPatches = false;        // of the last output
-  std::size_t NumberOfSections = 0; // of bricks
+  std::size_t NumberOfSections = 0;  // of bricks
   std::uint64_t NumberOfVoxels = 0;
   PendingReads Reads; // last: they end before the buffers do
 };

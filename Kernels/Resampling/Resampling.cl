@@ -3,7 +3,7 @@
 // the fill rule of CellCoverage.cl, for all arrays of the volume in one pass over the geometry.
 //
 // Data: what the mapping needs (DeformationMapping.cl), state 1 byte a vertex, active tetrahedra 1 byte a cell
-// (optional), the output (VoxelWinners.cl), and the arrays themselves in their own types (SampleStoring.cl).
+// (optional), boundary distances 4 bytes a voxel (optional), the output (VoxelWinners.cl), and the arrays themselves in their own types (SampleStoring.cl).
 //
 // A work-group takes a cuboid of cells: it maps the cuboid's vertices into local memory, once each, and
 // then a work-item takes a cell, neighbours side by side. Almost all cells are convex enough that a sample
@@ -17,10 +17,12 @@ typedef struct
   int X, Y, Z;
   int Tetrahedra; // those that are there and not flat, as bits
   int Inverted;   // of these the inverted ones
+  int Clipped;    // of these the ones that the boundary passes through
   CellState State;
   Vector Vertices[8];
   Vector Low; // bounds of the vertices that are there
   Vector High;
+  float Distances[8]; // of the vertices to the boundary, where something is clipped
 } Cell;
 
 static EdgeFunctions EdgeFunctionsOf(const Cell* cell, int t)
@@ -33,6 +35,23 @@ static Vector SamplePosition(Vector voxel)
 {
   const Vector r = { voxel.x * 256, voxel.y * 256, voxel.z * 256 };
   return r;
+}
+
+// Whether a sample lies on the far side of the boundary, where the distance is negative: it is interpolated in the
+// tetrahedron, as values are. weights: those of the sample, as edge functions give them.
+static int IsClipped(const Cell* cell, int t, const long* weights)
+{
+  if (!(cell->Clipped >> t & 1))
+  {
+    return 0;
+  }
+  REAL sum = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const REAL distance = cell->Distances[Tetrahedra[t][k]];
+    sum = weights[k] ? MULTIPLY_ADD_REAL((REAL)weights[k], distance, sum) : sum;
+  }
+  return sum < 0;
 }
 
 // Whether a tetrahedron of the cell that comes before this one, and has the same key, writes a voxel, too.
@@ -48,7 +67,8 @@ static __attribute__((noinline)) int IsWrittenBefore(
       const EdgeFunctions f = EdgeFunctionsOf(cell, t);
       long weights[4];
       Evaluate(&f, SamplePosition(voxel), weights);
-      if (RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p) == OWNER)
+      if (RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p) == OWNER &&
+        !IsClipped(cell, t, weights))
       {
         return 1;
       }
@@ -61,6 +81,10 @@ static __attribute__((noinline)) int IsWrittenBefore(
 static void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long* weights, long volume,
   Sample* s, Vector voxel, int role, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
+  if (IsClipped(cell, t, weights))
+  {
+    return;
+  }
   const int placeX = voxel.x - p->OutputFirst[0];
   const int placeY = voxel.y - p->OutputFirst[1];
   const int placeZ = voxel.z - p->OutputFirst[2];
@@ -329,6 +353,26 @@ static void ResampleSamples(const SamplingMesh* mesh, const Cell* cell, const Ca
   ResampleTetrahedra(mesh, cell, all, output, p ARRAY_ARGUMENTS);
 }
 
+// The vertices of a cell that lie on the far side of the boundary, as bits; their distances are loaded where there are
+// some.
+static int ClippedVertices(const SamplingMesh* mesh, Cell* cell, const KernelParameters* p)
+{
+  if (!p->HasDistances)
+  {
+    return 0;
+  }
+  const int mirror = Mirror(cell->X, cell->Y, cell->Z, p);
+  int clipped = 0;
+  for (int v = 0; v < 8; ++v)
+  {
+    const int o = v ^ mirror;
+    const size_t i = VertexInChunk(cell->X + (o & 1), cell->Y + (o >> 2), cell->Z + (o >> 1 & 1), p);
+    cell->Distances[v] = mesh->Distances[i];
+    clipped |= (cell->Distances[v] < 0.0f) << v;
+  }
+  return clipped;
+}
+
 // What is known of a cell before its samples are, and is counted. Returns whether it may have some.
 static int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all, Cell* cell,
   Output* output, const KernelParameters* p)
@@ -365,14 +409,17 @@ static int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candida
   cell->State = CellStateOf(mesh, x, y, z, p);
   cell->Tetrahedra = 0;
   cell->Inverted = 0;
+  cell->Clipped = 0;
+  const int clipped = ClippedVertices(mesh, cell, p);
   int missing = 0;
   for (int t = 0; t < 5; ++t)
   {
     const int needed = VerticesOf(t);
-    if (!(active >> t & 1) || (present & needed) != needed)
+    if (!(active >> t & 1) || (present & needed) != needed || (clipped & needed) == needed)
     {
       continue;
     }
+    cell->Clipped |= ((clipped & needed) != 0) << t;
     const Vector a = q[Tetrahedra[t][0]];
     const Vector b = q[Tetrahedra[t][1]];
     const Vector c = q[Tetrahedra[t][2]];
@@ -484,25 +531,50 @@ static void AddCounts(
 }
 
 #if HAS_CELL_KERNEL
-// A work-group takes a cuboid of cells. positions: room for three ints a vertex of the cuboid.
+#define CUBOIDS_X (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_CUBOID_X)
+#define COLUMNS_OF_CUBOID (DEFORMVOLUME_CUBOID_X / DEFORMVOLUME_COLUMN)
+
+// Whether there are cells of a launch in a cuboid with this first cell.
+static int HasCells(int3 first, const KernelParameters* p)
+{
+  return first.x + DEFORMVOLUME_CUBOID_X > 0 && first.x < p->Size[0] - 1 &&
+    first.y + DEFORMVOLUME_CUBOID_Y > 0 && first.y < p->Size[1] - 1 &&
+    first.z + DEFORMVOLUME_CUBOID_Z > p->LayersBegin && first.z < p->LayersEnd;
+}
+
+// Bricks of a list from p.ListBegin to p.ListEnd (DEFORMVOLUME_BRICK_BITS). A work-group takes a cuboid of cells of a
+// brick, column by column, since counts are those of sections. On x there are the groups of one brick after the other.
+// positions: room for three ints a vertex of the cuboid.
 __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
-  __global const uchar* active, __global char* coverage, __global KEY* winners,
-  __global char* patches, __global uint* largeCells, __global uint* counters,
-  __local int* positions,
+  __global const uchar* active, __global const float* distances, __global char* coverage,
+  __global KEY* winners, __global char* patches, __global uint* largeCells,
+  __global uint* counters, __global const uint* bricks, __local int* positions,
   const KernelParameters p ARRAY_PARAMETERS)
 {
-  const int first[3] = { get_group_id(0) * DEFORMVOLUME_CUBOID_X,
-    get_group_id(1) * DEFORMVOLUME_CUBOID_Y, p.LayersBegin + get_group_id(2) * DEFORMVOLUME_CUBOID_Z };
-  const SamplingMesh unmapped = { MAPPING_ARGUMENTS, state, active, 0, { 0, 0, 0 } };
+  const int place = p.ListBegin + (int)(get_group_id(0) / CUBOIDS_X);
+  const uint brick = place < p.ListEnd ? bricks[place] : 0; // no section of it
+  const int3 first = FirstOfBrick(brick, &p) +
+    (int3)((int)get_group_id(0) % CUBOIDS_X * DEFORMVOLUME_CUBOID_X,
+      (int)get_group_id(1) * DEFORMVOLUME_CUBOID_Y, (int)get_group_id(2) * DEFORMVOLUME_CUBOID_Z);
+  // That of the first column; the next columns follow.
+  const size_t section = SectionOf(first.x, first.y, first.z, &p);
+  int columns = 0; // those that are run, as bits
+  for (int column = 0; column < COLUMNS_OF_CUBOID && HasCells(first, &p); ++column)
+  {
+    columns |= IsSectionRun(brick, section + column) << column;
+  }
+  const SamplingMesh unmapped = { MAPPING_ARGUMENTS, state, active, distances, 0, { 0, 0, 0 } };
   const int width = DEFORMVOLUME_CUBOID_X + 1;
   const int height = DEFORMVOLUME_CUBOID_Y + 1;
-  for (int i = get_local_id(0); i < DEFORMVOLUME_CUBOID_VERTICES; i += get_local_size(0))
+  const int vertices = columns ? DEFORMVOLUME_CUBOID_VERTICES : 0;
+  for (int i = get_local_id(0); i < vertices; i += get_local_size(0))
   {
-    const int x = first[0] + i % width;
-    const int y = first[1] + i / width % height;
-    const int z = first[2] + i / (width * height);
-    // Cells beyond the launch's last layer are looked at where samples lie on the border of the mesh.
-    const int4 q = x < p.Size[0] && y < p.Size[1] && z < p.Size[2] && z <= p.LayersEnd + 1
+    const int x = first.x + i % width;
+    const int y = first.y + i / width % height;
+    const int z = first.z + i / (width * height);
+    // Cells beyond the launch's first and last layer are looked at where samples lie on the border of the mesh.
+    const int4 q = x >= 0 && y >= 0 && z >= max(p.LayersBegin - 1, 0) && x < p.Size[0] &&
+        y < p.Size[1] && z < p.Size[2] && z <= p.LayersEnd + 1
       ? VertexPosition(&unmapped, x, y, z, &p)
       : (int4)(INT_MIN, 0, 0, 0);
     positions[3 * i] = q.x;
@@ -511,26 +583,27 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   }
   barrier(CLK_LOCAL_MEM_FENCE);
 
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, positions,
-    { first[0], first[1], first[2] } };
-  Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances, positions,
+    { first.x, first.y, first.z } };
   const Candidates all = AllCandidates(&p);
-  for (int i = get_local_id(0);
-       i < DEFORMVOLUME_CUBOID_X * DEFORMVOLUME_CUBOID_Y * DEFORMVOLUME_CUBOID_Z;
-       i += get_local_size(0))
+  for (int column = 0; column < COLUMNS_OF_CUBOID; ++column)
   {
-    const int x = first[0] + i % DEFORMVOLUME_CUBOID_X;
-    const int y = first[1] + i / DEFORMVOLUME_CUBOID_X % DEFORMVOLUME_CUBOID_Y;
-    const int z = first[2] + i / (DEFORMVOLUME_CUBOID_X * DEFORMVOLUME_CUBOID_Y);
-    if (x < p.Size[0] - 1 && y < p.Size[1] - 1 && z < p.LayersEnd)
+    const int cells = columns >> column & 1
+      ? DEFORMVOLUME_COLUMN * DEFORMVOLUME_CUBOID_Y * DEFORMVOLUME_CUBOID_Z
+      : 0;
+    Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
+    for (int i = get_local_id(0); i < cells; i += get_local_size(0))
     {
-      ResampleCell(&mesh, x, y, z, &all, &output, &p ARRAY_ARGUMENTS);
+      const int x = first.x + column * DEFORMVOLUME_COLUMN + i % DEFORMVOLUME_COLUMN;
+      const int y = first.y + i / DEFORMVOLUME_COLUMN % DEFORMVOLUME_CUBOID_Y;
+      const int z = first.z + i / (DEFORMVOLUME_COLUMN * DEFORMVOLUME_CUBOID_Y);
+      if (x >= 0 && y >= 0 && z >= p.LayersBegin && x < p.Size[0] - 1 && y < p.Size[1] - 1 &&
+        z < p.LayersEnd)
+      {
+        ResampleCell(&mesh, x, y, z, &all, &output, &p ARRAY_ARGUMENTS);
+      }
     }
+    AddCounts(&output, section + column, counters, &p);
   }
-  // The sums over all bricks are what counts here.
-  const uint brick = ((uint)(first[2] - p.BrickOrigin[2]) / DEFORMVOLUME_BRICK_Z * p.BrickCount[1] +
-                       (uint)(first[1] - p.BrickOrigin[1]) / DEFORMVOLUME_BRICK_Y) *
-    p.BrickCount[0];
-  AddCounts(&output, DEFORMVOLUME_SECTIONS * (size_t)brick, counters, &p);
 }
 #endif

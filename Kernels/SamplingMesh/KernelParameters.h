@@ -30,6 +30,7 @@ typedef struct
   int Pass;           // one of the passes below
   int KeepsPatches;   // whether some patches of the output stay as they are
   int HasActive;      // whether a mask of active tetrahedra is there; without one all are active
+  int HasDistances;   // whether there are boundary distances; without them nothing is clipped
   int HasState;       // whether the vertices have a state; without one all that could be is there
   int BrickOrigin[3]; // local index of the first cell of the first brick; may lie before the volume
   int BrickCount[3];  // bricks on each axis
@@ -106,9 +107,9 @@ typedef struct
 #define DEFORMVOLUME_COLUMNS (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_COLUMN)
 #define DEFORMVOLUME_SECTIONS (4 * DEFORMVOLUME_COLUMNS)
 
-// What a work-item of the kernel ResampleBricks takes: the number of a brick, and above that a bit
-// for each column, all from the lowest one to the highest one being run, and for y and z a bit for
-// the lower half and one for the upper half.
+// What a work-item of the kernel ResampleBricks takes, and some work-groups of the kernel Resample:
+// the number of a brick, and above that a bit for each column, and for y and z a bit for the lower
+// half and one for the upper half. ResampleBricks takes all columns from the lowest to the highest.
 #define DEFORMVOLUME_BRICK_BITS 22
 #define DEFORMVOLUME_WHOLE_BRICK ((1 << (DEFORMVOLUME_COLUMNS + 4)) - 1)
 
@@ -163,6 +164,7 @@ typedef struct
 #define DEFORMVOLUME_VERTEX_INTERIOR 2 // all tetrahedra that it could belong to are there
 #define DEFORMVOLUME_CELL_WHOLE 4      // of the cell that begins at it, all tetrahedra are there
 #define DEFORMVOLUME_VERTEX_REGULAR 8  // interior, but that it may lie on the border of the volume
+#define DEFORMVOLUME_VERTEX_UNCLIPPED 16 // a source, and not on the far side of the boundary
 
 #ifdef __OPENCL_VERSION__
 
@@ -184,6 +186,28 @@ static size_t PatchRow(size_t y, size_t z, const KernelParameters* p)
 static size_t PatchedPlanes(const KernelParameters* p)
 {
   return (size_t)DEFORMVOLUME_PATCHES(p->OutputSize[2]) * DEFORMVOLUME_PATCH;
+}
+
+// Local index of the first cell of a brick (DEFORMVOLUME_BRICK_BITS), which may lie before the
+// volume.
+static int3 FirstOfBrick(uint item, const KernelParameters* p)
+{
+  const int brick = item & ((1u << DEFORMVOLUME_BRICK_BITS) - 1);
+  return (int3)(brick % p->BrickCount[0] * DEFORMVOLUME_BRICK_X + p->BrickOrigin[0],
+    brick / p->BrickCount[0] % p->BrickCount[1] * DEFORMVOLUME_BRICK_Y + p->BrickOrigin[1],
+    brick / p->BrickCount[0] / p->BrickCount[1] * DEFORMVOLUME_BRICK_Z + p->BrickOrigin[2]);
+}
+
+// Whether a section of a brick is to be run. section: as counters number them.
+static int IsSectionRun(uint item, size_t section)
+{
+  const uint inBrick = section % DEFORMVOLUME_SECTIONS;
+  const uint halves = inBrick / DEFORMVOLUME_COLUMNS;
+  const uint columns = item >> DEFORMVOLUME_BRICK_BITS;
+  const uint halvesY = columns >> DEFORMVOLUME_COLUMNS;
+  const uint halvesZ = halvesY >> 2;
+  return columns >> inBrick % DEFORMVOLUME_COLUMNS & halvesY >> (halves & 1) &
+    halvesZ >> (halves >> 1) & 1;
 }
 
 // The section of a brick that a cell lies in, as counters number them.

@@ -27,9 +27,11 @@ static size_t PlaceInList(int3 first, int x, int y, int z)
 }
 
 // State of the vertices, first pass: those are a source that the deformation moves and that are
-// not blanked. Their other bits are found after that.
+// not blanked, and of these those unclipped whose boundary distance is not negative. Their other bits are found
+// after that.
 __kernel void MarkSources(MAPPING_PARAMETERS, __global const uchar* blanked, const int hasBlanked,
-  __global uchar* state, __global const uint* cuboids, const KernelParameters p)
+  __global const float* distances, __global uchar* state, __global const uint* cuboids,
+  const KernelParameters p)
 {
   const Mapping m = MAPPING_ARGUMENTS;
   const int3 first = FirstVertex(cuboids[get_global_id(1)], &p);
@@ -42,15 +44,24 @@ __kernel void MarkSources(MAPPING_PARAMETERS, __global const uchar* blanked, con
       {
         const size_t i = VertexInChunk(x, y, z, &p);
         const int source = IsMoved(&m, x, y, z, &p) && !(hasBlanked && blanked[i]);
-        state[i] = source ? DEFORMVOLUME_VERTEX_SOURCE : 0;
+        const int isClipped = p.HasDistances && distances[i] < 0.0f;
+        state[i] = source
+          ? DEFORMVOLUME_VERTEX_SOURCE | (isClipped ? 0 : DEFORMVOLUME_VERTEX_UNCLIPPED)
+          : 0;
       }
     }
   }
 }
 
-static int IsSource(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
+static int IsUnclipped(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
 {
-  return state[VertexInChunk(x, y, z, p)] & DEFORMVOLUME_VERTEX_SOURCE;
+  return (state[VertexInChunk(x, y, z, p)] & DEFORMVOLUME_VERTEX_UNCLIPPED) != 0;
+}
+
+// What the first pass has found.
+static int SourceBits(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
+{
+  return state[VertexInChunk(x, y, z, p)] & (DEFORMVOLUME_VERTEX_SOURCE | DEFORMVOLUME_VERTEX_UNCLIPPED);
 }
 
 static size_t CellInChunk(int x, int y, int z, const KernelParameters* p)
@@ -65,8 +76,8 @@ static int IsWhole(int active)
 }
 
 // What is found of the vertices and cells with one x round a row at y and z, as far as they lie in the volume:
-#define ALL_SOURCES 1       // the nine vertices round (x, y, z) are sources
-#define CELL_OF_SOURCES 2   // the four of these that cells from y and z on have are sources
+#define ALL_SOURCES 1       // the nine vertices round (x, y, z) are unclipped sources
+#define CELL_OF_SOURCES 2   // the four of these that cells from y and z on have are
 #define ALL_ACTIVE 4        // the four cells from x on, round the row, have all their tetrahedra
 #define CELL_ACTIVE 8       // the one from y and z on has them
 
@@ -81,7 +92,7 @@ static int MarkColumnAtBorder(__global const uchar* state, __global const uchar*
   {
     for (int j = max(y - 1, 0); j <= min(y + 1, p->Size[1] - 1); ++j)
     {
-      const int source = IsSource(state, x, j, k, p);
+      const int source = IsUnclipped(state, x, j, k, p);
       round &= source;
       cell &= source | (j < y) | (k < z);
       if (p->HasActive && x < p->Size[0] - 1 && j <= y && k <= z && j < p->Size[1] - 1 && k < p->Size[2] - 1)
@@ -121,8 +132,8 @@ static int MarkColumn(__global const uchar* state, __global const uchar* active,
     const int all = here & c[-cellRow] & c[-cellPlane] & c[-cellPlane - cellRow];
     bits = IsWhole(all) * ALL_ACTIVE | IsWhole(here) * CELL_ACTIVE;
   }
-  return bits | ((round & DEFORMVOLUME_VERTEX_SOURCE) != 0) * ALL_SOURCES |
-    ((cell & DEFORMVOLUME_VERTEX_SOURCE) != 0) * CELL_OF_SOURCES;
+  return bits | ((round & DEFORMVOLUME_VERTEX_UNCLIPPED) != 0) * ALL_SOURCES |
+    ((cell & DEFORMVOLUME_VERTEX_UNCLIPPED) != 0) * CELL_OF_SOURCES;
 }
 
 // The state of the vertices of a row of a cuboid that begins at first, into a place for that.
@@ -136,7 +147,7 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, i
   {
     for (int x = begin; x < endX; x += step)
     {
-      marked[PlaceInList(first, x, y, z)] = IsSource(state, x, y, z, p);
+      marked[PlaceInList(first, x, y, z)] = SourceBits(state, x, y, z, p);
     }
     return;
   }
@@ -145,7 +156,7 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, i
   for (int x = begin; x < endX; x += step)
   {
     const int after = MarkColumn(state, active, x + 1, y, z, p);
-    int bits = IsSource(state, x, y, z, p);
+    int bits = SourceBits(state, x, y, z, p);
     if (bits)
     {
       if ((before & here & after & ALL_SOURCES) && (before & here & ALL_ACTIVE))
@@ -165,9 +176,9 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, i
   }
 }
 
-// Second pass: a vertex is interior when all vertices round it are sources and all tetrahedra of
+// Second pass: a vertex is interior when all vertices round it are unclipped sources and all tetrahedra of
 // the eight cells round it are active. Being wrong on the careful side costs time, not truth. A
-// cell is whole when its vertices are sources and its tetrahedra active. Not into the states, where others
+// cell is whole when its vertices are unclipped sources and its tetrahedra active. Not into the states, where others
 // look for sources meanwhile.
 __kernel void MarkVertices(__global const uchar* state, __global const uchar* active,
   __global uchar* marked, __global const uint* cuboids, const KernelParameters p)

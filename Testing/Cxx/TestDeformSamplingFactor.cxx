@@ -2,7 +2,6 @@
 // SamplingFactor: bit by bit the same as a filter whose volume somebody else has subsampled; what
 // is kept where the factor changes and changes back; and what is asked of a source that makes
 // parts.
-#include "DeviceNeeds.h"
 #include "DivisionCases.h"
 
 #include <vtkCellData.h>
@@ -425,7 +424,7 @@ private:
   {
     const vtkIdType made = this->Tested.Filter->GetNumberOfResampledBricks();
     const vtkIdType all = this->Tested.Filter->GetNumberOfBricks();
-    VERIFY(!HasVectors() || (nothing ? made == 0 : made < all));
+    VERIFY(nothing ? made == 0 : made < all);
   }
 
   vtkSmartPointer<vtkImageData> Volume;

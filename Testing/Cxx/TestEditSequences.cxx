@@ -31,6 +31,11 @@ vtkUnsignedCharArray* GetMask(vtkImageData* volume)
   return vtkUnsignedCharArray::SafeDownCast(volume->GetCellData()->GetArray("ActiveTetrahedra"));
 }
 
+vtkDataArray* GetDistances(vtkImageData* volume)
+{
+  return volume->GetPointData()->GetArray("BoundaryDistance");
+}
+
 vtkSmartPointer<vtkImageData> Copy(vtkImageData* image)
 {
   auto copy = vtkSmartPointer<vtkImageData>::New();
@@ -163,6 +168,7 @@ public:
     vtkUnsignedCharArray* mask = GetMask(this->Carve->GetOutput());
     VERIFY(std::all_of(mask->GetPointer(0), mask->GetPointer(0) + mask->GetNumberOfTuples(),
       [](unsigned char byte) { return byte == 31; }));
+    VERIFY(GetDistances(this->Carve->GetOutput()) == nullptr);
     // The volume as it was.
     Deformed rest(this->Volume, this->Twin.Filter->GetOutput());
     SetBounds(rest.Filter);
@@ -211,10 +217,12 @@ private:
     sphere->SetCenter(center.x, center.y, center.z);
     sphere->SetRadius(this->GetNumber(0.5, 6.0));
     const int rule = static_cast<int>(this->Random() % 3);
+    const bool smooth = this->Random() % 2 == 0;
     return [=](vtkCarveVolume* carve)
     {
       carve->SetImplicitFunction(sphere);
       carve->SetRule(rule);
+      carve->SetSmoothBoundary(smooth);
     };
   }
 
@@ -248,6 +256,9 @@ private:
     const auto edited = this->Carvings.MakeAgain(cut);
     VERIFY(HaveEqualBits(GetMask(this->Cut->GetOutput()), GetMask(cut)));
     VERIFY(HaveEqualBits(GetMask(this->Carve->GetOutput()), GetMask(edited)));
+    vtkDataArray* distances = GetDistances(edited);
+    VERIFY(distances ? HaveEqualBits(GetDistances(this->Carve->GetOutput()), distances)
+                     : GetDistances(this->Carve->GetOutput()) == nullptr);
 
     const auto copy = Copy(edited);
     this->Twin.Filter->SetInputData(copy);

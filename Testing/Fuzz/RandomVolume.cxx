@@ -221,6 +221,30 @@ void Spoil(vtkImageData* volume, Random& random, std::ostream& log)
   }
 }
 
+// Multiples of 1/16, so that sums of their products with weights are exact.
+void EditDistances(vtkImageData* volume, int density, Random& random)
+{
+  const vtkIdType points = volume->GetNumberOfPoints();
+  vtkDataArray* distances = volume->GetPointData()->GetArray("BoundaryDistance");
+  if (!distances || distances->GetNumberOfTuples() != points)
+  {
+    vtkNew<vtkFloatArray> made;
+    made->SetName("BoundaryDistance");
+    made->SetNumberOfTuples(points);
+    made->Fill(1.0);
+    volume->GetPointData()->AddArray(made);
+    distances = made;
+  }
+  for (vtkIdType i = 0; i < points; ++i)
+  {
+    if (random.Int(0, density) == 0)
+    {
+      distances->SetComponent(i, 0, random.Int(-32, 32) / 16.0);
+    }
+  }
+  distances->Modified();
+}
+
 } // namespace
 
 void FillArrays(vtkImageData* volume, Random& random, std::ostream& log)
@@ -232,7 +256,9 @@ void FillArrays(vtkImageData* volume, Random& random, std::ostream& log)
   for (int i = pointData->GetNumberOfArrays() - 1; i >= 0; --i)
   {
     const char* name = pointData->GetAbstractArray(i)->GetName();
-    if (!name || std::string(name) != vtkDataSetAttributes::GhostArrayName())
+    if (!name ||
+      (std::string(name) != vtkDataSetAttributes::GhostArrayName() &&
+        std::string(name) != "BoundaryDistance"))
     {
       pointData->RemoveArray(i);
     }
@@ -262,7 +288,7 @@ void EditMasks(vtkImageData* volume, Random& random, std::ostream& log)
   {
     return;
   }
-  const int kind = random.Int(0, 3);
+  const int kind = random.Int(0, 4);
   log << " masks " << kind;
   vtkUnsignedCharArray* mask = nullptr;
   const int density = random.Pick({ 2, 10, 100 });
@@ -302,8 +328,12 @@ void EditMasks(vtkImageData* volume, Random& random, std::ostream& log)
         }
       }
       break;
+    case 3:
+      EditDistances(volume, density, random);
+      break;
     default:
       volume->GetPointData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+      volume->GetPointData()->RemoveArray("BoundaryDistance");
       volume->GetCellData()->Initialize();
       volume->Modified();
   }

@@ -29,7 +29,7 @@ vtkSmartPointer<vtkImageData> MakeVolume(Random& random, Geometry geometry, std:
 /// combination of types costs a compilation of kernels.
 void FillArrays(vtkImageData* volume, Random& random, std::ostream& log);
 
-/// Sets or changes vtkGhostType of points or cells, or ActiveTetrahedra.
+/// Sets or changes vtkGhostType of points or cells, ActiveTetrahedra or BoundaryDistance.
 void EditMasks(vtkImageData* volume, Random& random, std::ostream& log);
 
 /// Changes values, geometry, arrays or masks.

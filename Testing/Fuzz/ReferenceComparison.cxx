@@ -97,6 +97,13 @@ void FindMasks(vtkImageData* volume, reference::SamplingMesh& mesh)
           (vtkDataSetAttributes::HIDDENPOINT | vtkDataSetAttributes::DUPLICATEPOINT)) == 0;
     }
   }
+  if (vtkDataArray* distances = volume->GetPointData()->GetArray("BoundaryDistance"))
+  {
+    for (vtkIdType point = 0; point < volume->GetNumberOfPoints(); ++point)
+    {
+      mesh.Distances.push_back(static_cast<float>(distances->GetComponent(point, 0)));
+    }
+  }
   mesh.Active.assign(static_cast<std::size_t>(volume->GetNumberOfCells()), 31);
   vtkUnsignedCharArray* active = GetMask(volume->GetCellData(), "ActiveTetrahedra");
   vtkUnsignedCharArray* hidden = GetMask(volume->GetCellData(), ghosts);

@@ -241,6 +241,7 @@ reference::Result ResampleByReference(const DeformerCase& deformerCase)
   reference::SamplingMesh mesh;
   mesh.Voxels = deformerCase.VoxelGrid.VertexExtent;
   mesh.Active = deformerCase.Active;
+  mesh.Distances = deformerCase.Distances;
   std::size_t voxel = 0;
   ForEachVoxel(mesh.Voxels,
     [&](int x, int y, int z)
@@ -295,6 +296,8 @@ void Load(VolumeDeformer& deformer, const DeformerCase& deformerCase,
   deformer.SetArrays(arrays);
   deformer.SetBlanked(deformerCase.Blanked.empty() ? nullptr : deformerCase.Blanked.data());
   deformer.SetActiveTetrahedra(deformerCase.Active.empty() ? nullptr : deformerCase.Active.data());
+  deformer.SetBoundaryDistances(
+    deformerCase.Distances.empty() ? nullptr : deformerCase.Distances.data());
   if (route == Route::Field)
   {
     MoveByField(deformer, deformerCase);

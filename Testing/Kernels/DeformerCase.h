@@ -41,6 +41,7 @@ struct DeformerCase
   std::vector<bool> Unlinked;
   std::vector<unsigned char> Blanked;
   std::vector<unsigned char> Active;
+  std::vector<float> Distances; // to the boundary; empty: nothing is clipped
   deformvolume::Extent Output;
 
   /// In output voxels, x, y and z of each voxel.

@@ -13,7 +13,7 @@
 bool HasDoublePrecision();
 
 /// Whether a work-item has the vector registers of a processor for itself, as the resampling by
-/// lanes and updates of a part of the output need.
+/// lanes needs.
 bool HasVectors();
 
 /// The kernels of the exact resampling that the device can run, lanes first.

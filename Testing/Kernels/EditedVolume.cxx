@@ -200,6 +200,7 @@ void EditedVolume::SendMasks(VolumeDeformer& deformer) const
 {
   deformer.SetBlanked(this->Blanked.empty() ? nullptr : this->Blanked.data());
   deformer.SetActiveTetrahedra(this->Active.empty() ? nullptr : this->Active.data());
+  deformer.SetBoundaryDistances(this->Distances.empty() ? nullptr : this->Distances.data());
 }
 
 void EditedVolume::SendAll(VolumeDeformer& deformer, Route route) const
@@ -313,6 +314,7 @@ EditedOutputs::EditedOutputs(const EditedVolume& volume)
 DeformRequest EditedOutputs::MakeRequest(const EditedVolume& volume)
 {
   DeformRequest request;
+  request.Method = volume.Method;
   request.OutputExtent = volume.Output;
   request.Outputs = { this->First.data(), this->Second.data() };
   request.Coverage = this->Coverage.data();

@@ -5,6 +5,7 @@
 #define EditedVolume_h
 
 #include "DeformerCase.h"
+#include "DeviceNeeds.h"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +14,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 /// A volume of several bricks, and a grid of nodes round it. Each cell of the grid is split into
@@ -32,8 +34,10 @@ struct EditedVolume
   std::vector<double> Second;
   std::vector<unsigned char> Blanked;
   std::vector<unsigned char> Active;
+  std::vector<float> Distances;
   deformvolume::Extent Output;
   double Background = 3.0;
+  deformvolume::Resampling Method = deformvolume::Resampling::Exact;
 
   /// hasCorner: whether a corner of the volume is outside the mesh.
   explicit EditedVolume(
@@ -73,6 +77,39 @@ inline std::string GetRouteName(const testing::TestParamInfo<Route>& info)
 {
   return info.param == Route::Mesh ? "Links" : info.param == Route::Runs ? "Runs" : "Field";
 }
+
+/// A route, and the kernel: that of the device's choice, or the one by cell.
+using Way = std::tuple<Route, deformvolume::Resampling>;
+inline std::string GetWayName(const testing::TestParamInfo<Way>& info)
+{
+  return GetRouteName({ std::get<0>(info.param), info.index }) +
+    (std::get<1>(info.param) == deformvolume::Resampling::ExactByCell ? "ByCell" : "");
+}
+inline auto GetWays()
+{
+  return testing::Combine(testing::Values(Route::Mesh, Route::Runs, Route::Field),
+    testing::Values(deformvolume::Resampling::Exact, deformvolume::Resampling::ExactByCell));
+}
+
+/// A test of a way.
+class WayTest : public testing::TestWithParam<Way>
+{
+protected:
+  void SetUp() override
+  {
+    if (GetMethod() == deformvolume::Resampling::ExactByCell && !HasVectors())
+    {
+      GTEST_SKIP() << "the device chooses the kernel by cell itself";
+    }
+  }
+  static Route GetRoute() { return std::get<0>(GetParam()); }
+  static deformvolume::Resampling GetMethod() { return std::get<1>(GetParam()); }
+  /// How many edits there are time for, of some: fewer by cell.
+  static int GetNumberOf(int edits)
+  {
+    return GetMethod() == deformvolume::Resampling::Exact && HasVectors() ? edits : edits / 2;
+  }
+};
 
 /// What becomes of an EditedVolume.
 struct EditedOutputs

@@ -216,14 +216,13 @@ extern "C" cl_int CL_API_CALL clEnqueueWriteBuffer(cl_command_queue queue, cl_me
 }
 
 extern "C" void* CL_API_CALL clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer,
-  cl_bool blocking, cl_map_flags flags, std::size_t offset, std::size_t size, cl_uint number,
+  cl_bool blocking, cl_map_flags access, std::size_t offset, std::size_t size, cl_uint number,
   const cl_event* events, cl_event* done, cl_int* error)
 {
   static auto* const real = Find<decltype(clEnqueueMapBuffer)>("clEnqueueMapBuffer");
-  FakeDriver::Get().BytesRead += flags & CL_MAP_READ ? size : 0;
-  FakeDriver::Get().BytesWritten +=
-    flags & (CL_MAP_WRITE | CL_MAP_WRITE_INVALIDATE_REGION) ? size : 0;
-  return real(queue, buffer, blocking, flags, offset, size, number, events, done, error);
+  FakeDriver::Get().BytesRead += access & CL_MAP_READ ? size : 0;
+  FakeDriver::Get().BytesWritten += access & ~cl_map_flags{ CL_MAP_READ } ? size : 0;
+  return real(queue, buffer, blocking, access, offset, size, number, events, done, error);
 }
 
 extern "C" cl_int CL_API_CALL clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel,

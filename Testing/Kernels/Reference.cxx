@@ -107,8 +107,9 @@ std::int64_t CeilToVoxel(std::int64_t position)
   return position >= 0 ? (position + 255) / 256 : -((-position) / 256);
 }
 
+/// distances: of all vertices to the boundary, or none.
 void AddTetrahedron(const std::array<Position, 4>& points, Containing candidate, const Box& output,
-  std::int64_t sign, Result& result)
+  std::int64_t sign, const std::vector<float>& distances, Result& result)
 {
   std::array<std::int64_t, 3> low{};
   std::array<std::int64_t, 3> high{};
@@ -132,6 +133,10 @@ void AddTetrahedron(const std::array<Position, 4>& points, Containing candidate,
           candidate.Numerators[k] = sign * weights[k];
         }
         if (*std::min_element(candidate.Numerators.begin(), candidate.Numerators.end()) < 0)
+        {
+          continue;
+        }
+        if (!distances.empty() && candidate.Interpolate(distances.data(), 1, 0) < 0.0L)
         {
           continue;
         }
@@ -224,7 +229,9 @@ private:
       if (lower && x < size[0] && y < size[1] && z < size[2])
       {
         regular = regular &&
-          (this->Mesh.Present.empty() || this->Mesh.Present[(z * size[1] + y) * size[0] + x]);
+          (this->Mesh.Present.empty() || this->Mesh.Present[(z * size[1] + y) * size[0] + x]) &&
+          (this->Mesh.Distances.empty() ||
+            !(this->Mesh.Distances[(z * size[1] + y) * size[0] + x] < 0.0F));
       }
       const bool isCell = step % 3 < 2 && step / 3 % 3 < 2 && step / 9 < 2;
       if (isCell && lower && x < size[0] - 1 && y < size[1] - 1 && z < size[2] - 1)
@@ -370,6 +377,7 @@ Result Resample(const SamplingMesh& mesh, const Box& output)
         for (int t = 0; t < 5; ++t)
         {
           bool active = mesh.Active.empty() || (mesh.Active[cell] >> t & 1) != 0;
+          bool clipped = !mesh.Distances.empty();
           Containing candidate;
           candidate.Cell = cell;
           candidate.Tetrahedron = t;
@@ -384,9 +392,10 @@ Result Resample(const SamplingMesh& mesh, const Box& output)
               (rest[k][0] - box[0]);
             candidate.Vertices[k] = vertex;
             active = active && (mesh.Present.empty() || mesh.Present[vertex]);
+            clipped = clipped && mesh.Distances[vertex] < 0.0F;
             points[k] = mesh.Positions[vertex];
           }
-          if (!active)
+          if (!active || clipped)
           {
             continue;
           }
@@ -399,7 +408,7 @@ Result Resample(const SamplingMesh& mesh, const Box& output)
           candidate.Inverted = (volume > 0) != (GetVolume(rest) > 0);
           candidate.Denominator = std::abs(volume);
           result.NumberOfInvertedTetrahedra += candidate.Inverted ? 1 : 0;
-          AddTetrahedron(points, candidate, output, volume > 0 ? 1 : -1, result);
+          AddTetrahedron(points, candidate, output, volume > 0 ? 1 : -1, mesh.Distances, result);
         }
       }
     }

@@ -38,6 +38,8 @@ struct SamplingMesh
   std::vector<bool> Present;
   /// Bit t of a cell: its tetrahedron t is active; empty: all are.
   std::vector<unsigned char> Active;
+  /// Signed distance of each voxel to the boundary; empty: nothing is clipped.
+  std::vector<float> Distances;
 };
 
 /// A tetrahedron whose closed region contains an output voxel.

@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstring>
+
 using namespace deformvolume;
 
 namespace
@@ -23,6 +26,44 @@ void Check(const DeformerCase& tiny, Route route, bool embedding = true)
     ExpectEmbedding(reference);
   }
   ExpectEqualsReference(tiny, reference, arrays, LoadAndRun(tiny, arrays, route));
+}
+
+// Two voxels move by so much, one after the other. For the second one a part of the output is made
+// anew by cell, in memory of the device: that of the caller is not aligned.
+void CheckUpdate(double move)
+{
+  DeformerCase tiny = MakeCase({ { 0, 7, 0, 15, 0, 3 } }, NoScale, MakeJitter(8, 0.1), 3);
+  const auto values = MakeRandomValues<std::uint16_t>(tiny.GetNumberOfVoxels(), 2);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const auto size = static_cast<std::size_t>(GetNumberOfPoints(tiny.Output));
+  std::vector<char> output(2 * size + 1);
+  std::vector<signed char> coverage(size);
+  DeformRequest request;
+  request.Method = Resampling::ExactByCell;
+  request.OutputExtent = tiny.Output;
+  request.Outputs = { output.data() + 1 };
+  request.Coverage = coverage.data();
+  request.Incremental = true;
+  VolumeDeformer deformer;
+  tiny.Displacements[(16 + 2) * 8 + 3][0] += static_cast<std::int64_t>(256.0 * move);
+  Load(deformer, tiny, arrays, Route::Field);
+  deformer.Deform(request);
+  tiny.Displacements.back()[0] += static_cast<std::int64_t>(256.0 * move);
+  MoveByField(deformer, tiny);
+  request.LastOutputs = { output.data() + 1 };
+  request.LastCoverage = coverage.data();
+  const DeformReport report = deformer.Deform(request);
+  // Of the one brick some sections were run: what may have changed says that it was a part.
+  EXPECT_LT(GetNumberOfPoints(report.ChangedExtent), GetNumberOfPoints(tiny.Output));
+  VolumeDeformer fresh;
+  Load(fresh, tiny, arrays, Route::Field);
+  const Deformed wanted = RunDeformer(fresh, tiny, arrays, Resampling::ExactByCell);
+  EXPECT_EQ(report.NumberOfCoveredVoxels, wanted.Report.NumberOfCoveredVoxels);
+  EXPECT_EQ(report.Overlapping, move > 1.0);
+  EXPECT_EQ(report.Overlapping, wanted.Report.Overlapping);
+  EXPECT_EQ(report.NumberOfInvertedTetrahedra, wanted.Report.NumberOfInvertedTetrahedra);
+  EXPECT_TRUE(std::equal(coverage.begin(), coverage.end(), wanted.Coverage.begin()));
+  EXPECT_EQ(std::memcmp(output.data() + 1, wanted.GetOutput<char>(0), 2 * size), 0);
 }
 
 } // namespace
@@ -60,6 +101,16 @@ TEST(VolumeDeformer, TinyFolded)
   Check(MakeCase({ { 0, 3, 0, 3, 0, 3 } }, NoScale, MakeJitter(3, 1.0)), Route::Field, false);
 }
 
+TEST(VolumeDeformer, TinyUpdate)
+{
+  CheckUpdate(0.5);
+}
+
+TEST(VolumeDeformer, TinyFoldedUpdate)
+{
+  CheckUpdate(2.5);
+}
+
 TEST(VolumeDeformer, TinyMasks)
 {
   DeformerCase tiny = MakeCase({ { 0, 3, 0, 3, 0, 3 } }, NoScale, MakeJitter(4, 0.15));
@@ -70,6 +121,15 @@ TEST(VolumeDeformer, TinyMasks)
   tiny.Unlinked.assign(64, false);
   tiny.Unlinked[63] = true;
   Check(tiny, Route::Mesh);
+}
+
+TEST(VolumeDeformer, TinyClipped)
+{
+  DeformerCase tiny = MakeCase({ { 0, 3, 0, 3, 0, 3 } }, NoScale, MakeJitter(4, 0.15));
+  tiny.Distances.assign(64, 1.0F);
+  tiny.Distances[21] = -0.5F;
+  tiny.Distances[22] = -1.5F;
+  Check(tiny, Route::Field);
 }
 
 TEST(VolumeDeformer, TinyByLanes)

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CarvingReach.h"
+
+#include "Carving.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace deformvolume
+{
+namespace
+{
+
+bool AreSeparate(const SnappedBox& box, const IndexBounds& bounds)
+{
+  const glm::dvec3 low = GetIndex(box.Min);
+  const glm::dvec3 high = GetIndex(box.Max);
+  return low.x > bounds.Max.x || low.y > bounds.Max.y || low.z > bounds.Max.z ||
+    high.x < bounds.Min.x || high.y < bounds.Min.y || high.z < bounds.Min.z;
+}
+
+} // namespace
+
+CarvingReach FindReach(const SnappedBox& box, const CarvingTool& tool)
+{
+  if (box.IsEmpty() || AreSeparate(box, tool.Bounds))
+  {
+    return CarvingReach::Nothing;
+  }
+  if (!tool.IsLinear)
+  {
+    return CarvingReach::Some;
+  }
+  constexpr double rounding = 1e-9; // of the largest value
+  std::array<glm::dvec3, 8> corners;
+  for (std::size_t corner = 0; corner < corners.size(); ++corner)
+  {
+    corners[corner] = GetIndex(SnappedPoint(corner & 1U ? box.Max.x : box.Min.x,
+      corner & 2U ? box.Max.y : box.Min.y, corner & 4U ? box.Max.z : box.Min.z));
+  }
+  std::array<double, 8> values;
+  tool.Function(corners.data(), corners.size(), values.data());
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  const double near = rounding * std::max(std::abs(*least), std::abs(*most));
+  return *most < -near ? CarvingReach::All
+    : *least > near    ? CarvingReach::Nothing
+                       : CarvingReach::Some;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Carving with a boundary that passes through tetrahedra.
+#include "BrickEdit.h"
+#include "Carving.h"
+#include "CarvingReach.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace deformvolume
+{
+namespace
+{
+
+// Of the vertices of a brick of cells, of which neighbouring bricks have some in common.
+using BrickDistances = std::array<float, BrickEdit::MaxVertices>;
+
+/// Finds the distances of a brick's vertices.
+class BrickBoundary
+{
+public:
+  explicit BrickBoundary(float far)
+    : Far(far)
+  {
+  }
+
+  /// inside: whether each vertex is. Has the tetrahedra hit that have all vertices inside, and
+  /// marks the vertices of cells that the boundary passes through. False where no vertex is inside.
+  bool Mark(BrickEdit& edit, const std::array<bool, BrickEdit::MaxVertices>& inside)
+  {
+    this->Count = edit.GetNumberOfVertices();
+    if (std::none_of(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(this->Count),
+          [](bool is) { return is; }))
+    {
+      return false;
+    }
+    this->Inside = inside;
+    this->Marked.fill(false);
+    edit.ForEachCell(
+      [&](int x, int y, int z, std::size_t place) {
+        this->MarkCell(edit, edit.GetVertex(x, y, z), { { x, y, z } }, place);
+      });
+    return true;
+  }
+
+  /// Places of the vertices whose distances are wanted.
+  std::vector<std::size_t> GetMarked() const
+  {
+    std::vector<std::size_t> marked;
+    for (std::size_t i = 0; i < this->Count; ++i)
+    {
+      if (this->Marked[i])
+      {
+        marked.push_back(i);
+      }
+    }
+    return marked;
+  }
+
+  /// All distances. known: those of the marked vertices, without sign.
+  BrickDistances Join(const std::vector<std::size_t>& marked, const double* known) const
+  {
+    BrickDistances distances;
+    for (std::size_t i = 0; i < this->Count; ++i)
+    {
+      distances[i] = this->Inside[i] ? -this->Far : this->Far;
+    }
+    for (std::size_t k = 0; k < marked.size(); ++k)
+    {
+      // What is inside stays so, however near the boundary it is.
+      const float least = this->Inside[marked[k]] ? std::numeric_limits<float>::min() : 0.0F;
+      const double size = std::isnan(known[k]) ? this->Far : std::abs(known[k]);
+      const float distance =
+        std::max(static_cast<float>(std::min(size, static_cast<double>(this->Far))), least);
+      distances[marked[k]] = this->Inside[marked[k]] ? -distance : distance;
+    }
+    return distances;
+  }
+
+private:
+  void MarkCell(
+    BrickEdit& edit, std::size_t first, const std::array<int, 3>& cell, std::size_t place)
+  {
+    std::array<std::size_t, 8> vertices;
+    int insides = 0;
+    for (std::size_t v = 0; v < 8; ++v)
+    {
+      vertices[v] = first + (v & 1U ? edit.GetSteps()[0] : 0) + (v & 2U ? edit.GetSteps()[1] : 0) +
+        (v & 4U ? edit.GetSteps()[2] : 0);
+      insides += this->Inside[vertices[v]] ? 1 : 0;
+    }
+    if (insides == 0)
+    {
+      return;
+    }
+    if (insides < 8)
+    {
+      for (const std::size_t vertex : vertices)
+      {
+        this->Marked[vertex] = true;
+      }
+    }
+    const BrickEdit::CellTetrahedra tetrahedra = edit.GetTetrahedra(cell[0], cell[1], cell[2]);
+    for (int t = 0; t < 5; ++t)
+    {
+      const auto& of = tetrahedra[static_cast<std::size_t>(t)];
+      if (std::all_of(of.begin(), of.end(), [this](std::size_t v) { return this->Inside[v]; }))
+      {
+        edit.Hit(place, t);
+      }
+    }
+  }
+
+  float Far;
+  std::size_t Count = 0;
+  std::array<bool, BrickEdit::MaxVertices> Inside{};
+  std::array<bool, BrickEdit::MaxVertices> Marked{};
+};
+
+/// Gathers the distances of bricks of cells, found by several threads, into those of vertices.
+class DistanceGatherer
+{
+public:
+  DistanceGatherer(const Extent& vertices, float far)
+    : Vertices(vertices)
+    , Bricks(GetVertexBricks(vertices))
+    , Far(far)
+  {
+  }
+
+  void Add(const Extent& vertices, const BrickDistances& distances)
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    std::size_t i = 0;
+    for (int z = vertices[4]; z <= vertices[5]; ++z)
+    {
+      for (int y = vertices[2]; y <= vertices[3]; ++y)
+      {
+        for (int x = vertices[0]; x <= vertices[1]; ++x, ++i)
+        {
+          if (distances[i] != this->Far)
+          {
+            this->Put(
+              x - this->Vertices[0], y - this->Vertices[2], z - this->Vertices[4], distances[i]);
+          }
+        }
+      }
+    }
+  }
+
+  DistanceSet Take()
+  {
+    DistanceSet set;
+    for (auto& [brick, block] : this->Blocks)
+    {
+      set.Bricks.push_back(brick);
+      set.Blocks.push_back(block);
+    }
+    return set;
+  }
+
+private:
+  void Put(int x, int y, int z, float distance)
+  {
+    constexpr int length = CellBricks::Length;
+    const std::array<int, 3>& size = this->Bricks.GetSize();
+    const auto count = [&](int axis)
+    { return static_cast<std::size_t>((size[axis] + length - 1) / length); };
+    const std::size_t brick =
+      (static_cast<std::size_t>(z / length) * count(1) + static_cast<std::size_t>(y / length)) *
+        count(0) +
+      static_cast<std::size_t>(x / length);
+    const auto [found, isNew] = this->Blocks.try_emplace(brick);
+    if (isNew)
+    {
+      found->second.fill(this->Far);
+    }
+    // A vertex of several bricks may be near the boundary in one of them only.
+    float& last = found->second[TetrahedronSet::GetPlace(x % length, y % length, z % length)];
+    last = std::abs(distance) <= std::abs(last) ? distance : last;
+  }
+
+  Extent Vertices;
+  CellBricks Bricks;
+  float Far;
+  std::mutex Mutex;
+  std::map<std::size_t, DistanceSet::Block> Blocks;
+};
+
+} // namespace
+
+SmoothCarving FindSmoothCarving(
+  const VertexPositions& positions, const CarvingTool& tool, float far)
+{
+  DistanceGatherer gatherer(positions.GetBricks().GetVertices(), far);
+  SmoothCarving carving;
+  carving.Tetrahedra = BrickEdit::ForEachBrick(positions.GetBricks().GetNumberOfBricks(),
+    [&](std::size_t brick, BrickEdit& edit)
+    {
+      if (FindReach(positions.GetBox(brick), tool) == CarvingReach::Nothing)
+      {
+        return;
+      }
+      edit.Set(positions, brick);
+      const std::size_t count = edit.GetNumberOfVertices();
+      std::array<glm::dvec3, BrickEdit::MaxVertices> points;
+      std::array<double, BrickEdit::MaxVertices> values;
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        points[i] = GetIndex(edit.GetPosition(i));
+      }
+      tool.Function(points.data(), count, values.data());
+      std::array<bool, BrickEdit::MaxVertices> inside{};
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        inside[i] = edit.IsPlaced(i) && values[i] < 0.0;
+      }
+      BrickBoundary boundary(far);
+      if (!boundary.Mark(edit, inside))
+      {
+        return;
+      }
+      const std::vector<std::size_t> marked = boundary.GetMarked();
+      for (std::size_t k = 0; k < marked.size(); ++k)
+      {
+        points[k] = points[marked[k]];
+        values[k] = values[marked[k]];
+      }
+      if (tool.Distance)
+      {
+        tool.Distance(points.data(), marked.size(), values.data());
+      }
+      gatherer.Add(edit.GetVertices(), boundary.Join(marked, values.data()));
+    });
+  carving.Distances = gatherer.Take();
+  return carving;
+}
+
+SmoothCarving FindSmoothCarving(const CellBricks& bricks,
+  const std::function<void(const Extent& vertices, double* values)>& find, double distance,
+  float far)
+{
+  const RestPositions positions(bricks.GetVertices());
+  DistanceGatherer gatherer(bricks.GetVertices(), far);
+  SmoothCarving carving;
+  carving.Tetrahedra = BrickEdit::ForEachBrick(bricks.GetNumberOfBricks(),
+    [&](std::size_t brick, BrickEdit& edit)
+    {
+      edit.Set(positions, brick);
+      std::array<double, BrickEdit::MaxVertices> values;
+      find(edit.GetVertices(), values.data());
+      std::array<bool, BrickEdit::MaxVertices> inside{};
+      for (std::size_t i = 0; i < edit.GetNumberOfVertices(); ++i)
+      {
+        inside[i] = values[i] < 0.0;
+      }
+      BrickBoundary boundary(far);
+      if (boundary.Mark(edit, inside))
+      {
+        const std::vector<std::size_t> marked = boundary.GetMarked();
+        const std::vector<double> distances(marked.size(), distance);
+        gatherer.Add(edit.GetVertices(), boundary.Join(marked, distances.data()));
+      }
+    });
+  carving.Distances = gatherer.Take();
+  return carving;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where IncrementalUpdate finds that sub-bricks lie in the output.
+#include "IncrementalUpdate.h"
+
+#include "ParallelFor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace deformvolume
+{
+namespace
+{
+
+// In output voxels: positions are rounded to 1/256, and displacements, of at most 2^14 voxels, are
+// summed up in floats, with errors of some 2^-10.
+constexpr double Margin = 1.0 / 16.0;
+
+// The kernels clamp displacements to 2^22 - 1 steps of 1/256 voxel.
+constexpr double LargestMove = 16384.0;
+
+} // namespace
+
+DisplacementBounds IncrementalUpdate::ComputeBounds(
+  std::size_t subBrick, const Displacements& displacements) const
+{
+  DisplacementBounds bounds;
+  this->Points.AnyOf(subBrick,
+    [&](std::size_t begin, std::size_t end)
+    {
+      bounds.Add(displacements, begin, end);
+      return false;
+    });
+  return bounds;
+}
+
+DisplacementBounds IncrementalUpdate::ComputeAllBounds(
+  const Displacements& displacements, std::size_t numberOfPoints) const
+{
+  constexpr std::size_t step = 65536;
+  std::vector<DisplacementBounds> steps((numberOfPoints + step - 1) / step);
+  ParallelForParts(numberOfPoints, step,
+    [&](std::size_t begin, std::size_t end)
+    { steps[begin / step].Add(displacements, begin, end); });
+  DisplacementBounds all;
+  for (const DisplacementBounds& bounds : steps)
+  {
+    all.Add(bounds);
+  }
+  return all;
+}
+
+IncrementalUpdate::Box IncrementalUpdate::MakeBox(
+  std::size_t subBrick, const DisplacementBounds& bounds) const
+{
+  const Extent vertices = this->Grid.GetVertices(subBrick, 0);
+  const double excess = this->Points.GetExcess(subBrick);
+  constexpr Box nothing = { { { 1.0, 1.0, 1.0 } }, { { 0.0, 0.0, 0.0 } } };
+  if (GetNumberOfCells(vertices) == 0)
+  {
+    return nothing;
+  }
+  Box box;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const float least = bounds.Least[axis];
+    const float greatest = bounds.Greatest[axis];
+    if (!(least <= greatest)) // no vertex has a place
+    {
+      return nothing;
+    }
+    const double widening = excess * (double(greatest) - double(least)) + Margin;
+    const double low = std::min(least - widening, LargestMove);
+    const double high = std::max(greatest + widening, -LargestMove);
+    const double first = this->Shape.VertexExtent[2 * axis];
+    box.Min[axis] =
+      this->Shape.Scale[axis] * (first + vertices[2 * axis]) + low - this->OutputExtent[2 * axis];
+    box.Max[axis] = this->Shape.Scale[axis] * (first + vertices[2 * axis + 1]) + high -
+      this->OutputExtent[2 * axis];
+    if (!std::isfinite(box.Min[axis]) || !std::isfinite(box.Max[axis]))
+    {
+      // Infinite weights times nothing.
+      box.Min[axis] = 0.0;
+      box.Max[axis] = static_cast<double>(GetSize(this->OutputExtent, axis));
+    }
+  }
+  return box;
+}
+
+IncrementalUpdate::Box IncrementalUpdate::GetReach() const
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Box reach{ { { infinity, infinity, infinity } }, { { -infinity, -infinity, -infinity } } };
+  const auto add = [&](const Box& box)
+  {
+    for (int axis = 0; axis < 3 && box.Min[0] <= box.Max[0]; ++axis)
+    {
+      reach.Min[axis] = std::min(reach.Min[axis], box.Min[axis] - DEFORMVOLUME_PATCH);
+      reach.Max[axis] = std::max(reach.Max[axis], box.Max[axis] + DEFORMVOLUME_PATCH);
+    }
+  };
+  for (std::size_t subBrick = 0; subBrick < this->Moved.size(); ++subBrick)
+  {
+    if (this->IsChanged(subBrick))
+    {
+      add(this->Boxes[subBrick]);
+      if (this->Moved[subBrick])
+      {
+        add(this->LastBoxes[subBrick]);
+      }
+    }
+  }
+  return reach;
+}
+
+bool IncrementalUpdate::TouchesPatches(
+  const Box& box, const std::vector<unsigned char>& dirty) const
+{
+  const Patches patches = this->GetPatches(box);
+  for (int z = patches[4]; z <= patches[5]; ++z)
+  {
+    for (int y = patches[2]; y <= patches[3]; ++y)
+    {
+      const auto row = dirty.begin() +
+        (static_cast<std::ptrdiff_t>(z) * this->PatchCount[1] + y) * this->PatchCount[0];
+      if (std::find(row + patches[0], row + patches[1] + 1, 1) != row + patches[1] + 1)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+template <typename IsWanted>
+void IncrementalUpdate::FindBoxesOf(const IsWanted& isWanted, const Displacements& displacements)
+{
+  ParallelForParts(this->Grid.GetNumberOfBricks(), StepSize,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t subBrick = begin; subBrick < end; ++subBrick)
+      {
+        if (!this->Known[subBrick] && isWanted(subBrick))
+        {
+          this->Boxes[subBrick] =
+            this->MakeBox(subBrick, this->ComputeBounds(subBrick, displacements));
+          this->Known[subBrick] = 1;
+        }
+      }
+    });
+}
+
+void IncrementalUpdate::FindChangedBoxes(const Displacements& displacements)
+{
+  this->FindBoxesOf([&](std::size_t subBrick) { return this->IsChanged(subBrick); }, displacements);
+}
+
+void IncrementalUpdate::FindAllBoxes(const Displacements& displacements)
+{
+  this->FindBoxesOf([](std::size_t) { return true; }, displacements);
+}
+
+bool IncrementalUpdate::KnowsAllBoxes() const
+{
+  return this->HasPoints() && !this->Known.empty() &&
+    std::find(this->Known.begin(), this->Known.end(), 0) == this->Known.end();
+}
+
+void IncrementalUpdate::FindBoxes(const Displacements& displacements, std::size_t numberOfPoints)
+{
+  if (!this->AllBounds)
+  {
+    this->AllBounds = this->ComputeAllBounds(displacements, numberOfPoints);
+  }
+  this->FindChangedBoxes(displacements);
+  const Box reach = this->GetReach();
+  this->FindBoxesOf([&](std::size_t subBrick)
+    { return !IsApart(this->MakeBox(subBrick, *this->AllBounds), reach); },
+    displacements);
+  this->BoxesKnown = true;
+}
+
+bool IncrementalUpdate::IsApart(const Box& a, const Box& b)
+{
+  bool apart = false;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    apart |= a.Min[axis] > b.Max[axis] || a.Max[axis] < b.Min[axis];
+  }
+  return apart;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "OutputFilling.h"
+
+#include "Background.h"
+#include "ResamplingProgram.h"
+
+#include <algorithm>
+#include <string>
+
+namespace deformvolume
+{
+namespace
+{
+
+cl::Kernel MakeKernel(OpenCLContext& context, const std::string& name, const ElementBytes& value)
+{
+  return cl::Kernel(GetOutputProgram(context), (name + std::to_string(value.Size)).c_str());
+}
+
+} // namespace
+
+ElementBytes GetBackground(const VolumeArray& array)
+{
+  switch (array.Type)
+  {
+#define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
+  case ElementType::name:                                                                          \
+    return ElementBytes::Of(ClampTo<ctype>(array.Background));
+    DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
+#undef DEFORMVOLUME_CASE
+  }
+  return {};
+}
+
+void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
+  const cl::Kernel& kernel, std::size_t items, std::vector<cl::Event>& events)
+{
+  const std::size_t group = context.GetDevice().HasVectors ? 1 : 64;
+  events.push_back(context.Launch(
+    queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group)));
+}
+
+void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  const ElementBytes& value, std::uint64_t size, std::vector<cl::Event>& events)
+{
+  const unsigned char first = value.Bytes.front();
+  if (value.Size > 1 &&
+    std::all_of(value.Bytes.begin(), value.Bytes.begin() + static_cast<std::ptrdiff_t>(value.Size),
+      [&](unsigned char byte) { return byte == first; }))
+  {
+    Fill(context, queue, buffer, ElementBytes::Of(first), size * value.Size, events);
+    return;
+  }
+  if (!context.GetDevice().IsProcessor)
+  {
+    cl_event done = nullptr;
+    const cl_int error = clEnqueueFillBuffer(
+      queue(), buffer(), value.Bytes.data(), value.Size, 0, size * value.Size, 0, nullptr, &done);
+    if (error != CL_SUCCESS)
+    {
+      throw cl::Error(error, "clEnqueueFillBuffer");
+    }
+    events.emplace_back(done);
+    return;
+  }
+  cl::Kernel kernel = MakeKernel(context, "Fill", value);
+  kernel.setArg(0, buffer);
+  kernel.setArg(1, cl_ulong{ size });
+  kernel.setArg(2, value.Size, value.Bytes.data());
+  const std::uint64_t step = DEFORMVOLUME_FILLED_BYTES / value.Size;
+  LaunchBusyItems(
+    context, queue, kernel, static_cast<std::size_t>((size + step - 1) / step), events);
+}
+
+void FillPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  const ElementBytes& value, std::size_t elements, const cl::Buffer& patches, std::size_t count,
+  const KernelParameters& parameters, std::vector<cl::Event>& events)
+{
+  constexpr std::size_t group = DEFORMVOLUME_PATCH * DEFORMVOLUME_PATCH;
+  cl::Kernel kernel = MakeKernel(context, "FillPatches", value);
+  kernel.setArg(0, buffer);
+  kernel.setArg(1, static_cast<cl_uint>(elements));
+  kernel.setArg(2, value.Size, value.Bytes.data());
+  kernel.setArg(3, patches);
+  kernel.setArg(4, parameters);
+  events.push_back(context.Launch(queue, kernel, cl::NDRange(group * count), cl::NDRange(group)));
+}
+
+} // namespace deformvolume

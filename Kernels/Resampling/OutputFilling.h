@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeOutputFilling_h
+#define DeformVolumeOutputFilling_h
+
+#include "KernelParameters.h"
+#include "OpenCLContext.h"
+#include "VolumeArray.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// The bytes of an element that memory is filled with, whatever its type.
+struct ElementBytes
+{
+  std::array<unsigned char, 8> Bytes;
+  std::size_t Size;
+
+  template <typename T>
+  static ElementBytes Of(T value)
+  {
+    ElementBytes bytes{ {}, sizeof(T) };
+    std::memcpy(bytes.Bytes.data(), &value, sizeof(T));
+    return bytes;
+  }
+};
+
+/// What the voxels of an array hold that the deformed volume does not cover.
+ElementBytes GetBackground(const VolumeArray& array);
+
+/// Launches a kernel over so many items that have much to do. Groups run on one thread, and drivers
+/// for processors put many items into one. Elsewhere items may be more, which the kernel leaves
+/// out: of a prime number drivers would make groups of one item. The event is added to a list.
+void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
+  const cl::Kernel& kernel, std::size_t items, std::vector<cl::Event>& events);
+
+/// Fills a buffer of so many elements. Processors do that with a kernel: see OutputClearing.cl.
+void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  const ElementBytes& value, std::uint64_t size, std::vector<cl::Event>& events);
+
+/// Fills patches of a buffer over an output, with so many elements a voxel. patches: the numbers of
+/// count patches (see IncrementalUpdate::Plan). parameters: with the extent of the output.
+void FillPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  const ElementBytes& value, std::size_t elements, const cl::Buffer& patches, std::size_t count,
+  const KernelParameters& parameters, std::vector<cl::Event>& events);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "OutputWinners.h"
+
+#include "HostMemory.h"
+#include "OutputFilling.h"
+#include "ResamplingProgram.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace deformvolume
+{
+
+std::size_t GetWinnerSize(const VoxelGrid& voxelGrid)
+{
+  constexpr std::int64_t mostCells = (std::int64_t{ 1 } << 30) - 2;
+  return GetNumberOfCells(voxelGrid.VertexExtent) <= mostCells ? 4 : 8;
+}
+
+void OutputWinners::Start(
+  const cl::CommandQueue& queue, const Extent& output, const VoxelGrid& voxelGrid)
+{
+  this->Queue = queue;
+  this->Output = output;
+  this->KeySize = GetWinnerSize(voxelGrid);
+  this->KeyBytes = static_cast<std::uint64_t>(GetNumberOfPoints(output)) * this->KeySize;
+  this->IsAgain = false;
+  if (!this->HasBuffers())
+  {
+    this->Keys = cl::Buffer();
+    this->Patches = cl::Buffer();
+  }
+}
+
+std::uint64_t OutputWinners::CountPatches() const
+{
+  std::uint64_t patches = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    patches *= static_cast<std::uint64_t>(DEFORMVOLUME_PATCHES(GetSize(this->Output, axis)));
+  }
+  return patches;
+}
+
+bool OutputWinners::HasBuffers() const
+{
+  // Those of a somewhat larger output serve as well: to touch fresh memory takes longer than to
+  // fill it.
+  const std::uint64_t held = deformvolume::GetMemory(this->Keys);
+  return held >= this->KeyBytes && held - this->KeyBytes <= this->KeyBytes / 4 &&
+    deformvolume::GetMemory(this->Patches) >= 2 * this->CountPatches();
+}
+
+std::uint64_t OutputWinners::GetMissingMemory() const
+{
+  return this->HasBuffers() ? 0 : this->KeyBytes + 2 * this->CountPatches();
+}
+
+void OutputWinners::Prepare(OpenCLContext& context, std::vector<cl::Event>& events)
+{
+  const std::uint64_t patchBytes = 2 * this->CountPatches();
+  if (!this->HasBuffers())
+  {
+    Reserve(context, this->Keys, this->KeyBytes);
+    Reserve(context, this->Patches, patchBytes);
+  }
+  Fill(
+    context, this->Queue, this->Keys, ElementBytes::Of(cl_uchar{ 0xff }), this->KeyBytes, events);
+  Fill(context, this->Queue, this->Patches, ElementBytes::Of(cl_uchar{ 0 }), patchBytes, events);
+}
+
+void OutputWinners::PrepareAgain(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
+  const cl::Buffer& list, const KernelParameters& parameters, std::vector<cl::Event>& events)
+{
+  if (!patches.empty())
+  {
+    FillPatches(context, this->Queue, this->Keys,
+      ElementBytes::Of(std::numeric_limits<cl_uint>::max()), this->KeySize / sizeof(cl_uint), list,
+      patches.size(), parameters, events);
+  }
+  const MappedBuffer<unsigned char> known(this->Queue, this->Patches, CL_MAP_READ | CL_MAP_WRITE);
+  this->IsAgain = true;
+  const std::uint64_t all = this->CountPatches();
+  std::fill_n(known.Get(), all, static_cast<unsigned char>(DEFORMVOLUME_PATCH_KEPT));
+  for (const std::uint32_t patch : patches)
+  {
+    known.Get()[patch] = known.Get()[all + patch] = 0;
+  }
+}
+
+bool OutputWinners::HasContested() const
+{
+  const std::uint64_t all = this->CountPatches();
+  std::vector<unsigned char> contested(static_cast<std::size_t>(all));
+  this->Queue.enqueueReadBuffer(this->Patches, CL_TRUE, all, all, contested.data());
+  return std::find(contested.begin(), contested.end(), 1) != contested.end();
+}
+
+void OutputWinners::Settle(OpenCLContext& context, bool claimed, const cl::Buffer& coverage,
+  const cl::Buffer& counters, const KernelParameters& parameters, std::vector<cl::Event>& events)
+{
+  if (!claimed)
+  {
+    // Nor is it known what cells hold beside what they own.
+    Fill(context, this->Queue, this->Patches,
+      ElementBytes::Of(static_cast<cl_uchar>(DEFORMVOLUME_PATCH_TOUCHED)), this->CountPatches(),
+      events);
+  }
+  cl::Kernel kernel(GetOutputProgram(context), "Settle");
+  kernel.setArg(0, coverage);
+  kernel.setArg(1, this->Keys);
+  kernel.setArg(2, static_cast<cl_uint>(this->KeySize / sizeof(cl_uint)));
+  kernel.setArg(3, cl_int{ claimed });
+  kernel.setArg(4, this->Patches);
+  kernel.setArg(5, counters);
+  kernel.setArg(6, parameters);
+  const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(this->Output));
+  LaunchBusyItems(context, this->Queue, kernel,
+    (voxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS, events);
+}
+
+std::uint64_t OutputWinners::GetMemory() const
+{
+  return deformvolume::GetMemory(this->Keys) + deformvolume::GetMemory(this->Patches);
+}
+
+} // namespace deformvolume

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Carving with a boundary between voxels: misuse, volumes and planes in fine outputs, undo and
+// redo, chains, tools, labels and deformed volumes.
+#include "EditChecks.h"
+
+#include "vtkCarveVolume.h"
+#include "vtkCutVolume.h"
+
+#include <vtkDoubleArray.h>
+#include <vtkImplicitBoolean.h>
+#include <vtkPlane.h>
+#include <vtkSphere.h>
+#include <vtkSphereSource.h>
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+using namespace filterTesting;
+
+namespace
+{
+
+const char* const NAME = "BoundaryDistance";
+const Extent Box{ { -2, 14, 0, 13, 1, 15 } };
+constexpr double Pi = 3.14159265358979323846;
+
+vtkDataArray* GetDistances(vtkImageData* image)
+{
+  return image->GetPointData()->GetArray(NAME);
+}
+
+/// What is left of the volume of a filter, at rest, sampled so many times as fine.
+struct Fine
+{
+  Fine(vtkImageData* volume, vtkAlgorithmOutput* carved, int factor)
+    : Step(volume->GetSpacing()[0] / factor)
+  {
+    auto mesh = MakeMesh(volume, 2);
+    SetDisplacements(mesh, Shift(0, 0, 0));
+    this->Deformed.Filter->SetInputConnection(carved);
+    this->Deformed.Filter->SetDeformationData(mesh);
+    this->Deformed.Filter->SetOutputSpacingModeToCustomSpacing();
+    this->Deformed.Filter->SetCustomSpacing(volume->GetSpacing()[0] / factor,
+      volume->GetSpacing()[1] / factor, volume->GetSpacing()[2] / factor);
+  }
+
+  /// The world volume of what is missing. The samples stand for boxes of their spacing.
+  double GetMissing()
+  {
+    vtkImageData* image = this->Deformed.Update();
+    const double* spacing = image->GetSpacing();
+    const auto missing = static_cast<double>(
+      image->GetNumberOfPoints() - this->Deformed.Filter->GetNumberOfCoveredVoxels());
+    return missing * spacing[0] * spacing[1] * spacing[2];
+  }
+
+  double Step;
+  filterTesting::Deformed Deformed;
+};
+
+void TestMisuse()
+{
+  auto volume = MakeVolume(Box);
+  vtkNew<vtkSphere> sphere;
+  sphere->SetCenter(5, 5, 6);
+  sphere->SetRadius(3.3);
+  Edited<vtkCarveVolume> carve;
+  carve.Filter->SetInputData(volume);
+  carve.Filter->SetImplicitFunction(sphere);
+  VERIFY(!carve.Filter->GetSmoothBoundary());
+  carve.CopyMask();
+  VERIFY(GetDistances(carve.Filter->GetOutput()) == nullptr);
+  carve.Filter->SmoothBoundaryOn();
+  const auto mask = carve.CopyMask();
+  vtkNew<vtkFloatArray> before;
+  before->DeepCopy(GetDistances(carve.Filter->GetOutput()));
+  VERIFY_EQUAL(before->GetNumberOfTuples(), volume->GetNumberOfPoints());
+
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.25, 0, 0));
+  for (const int components : { 1, 2 })
+  {
+    auto wrong = MakeVolume(Box);
+    wrong->GetPointData()->AddArray(
+      MakeArray<vtkShortArray>(NAME, components == 1 ? 7 : wrong->GetNumberOfPoints(), components));
+    carve.Filter->SetInputData(wrong);
+    carve.Fails("\"BoundaryDistance\"");
+    filterTesting::Deformed deformed(wrong, mesh);
+    deformed.Filter->Update();
+    VERIFY_EQUAL(deformed.TakeErrors(), 1);
+    VERIFY(deformed.LastError.find("\"BoundaryDistance\"") != std::string::npos);
+  }
+  carve.Filter->SetInputData(volume);
+  VERIFY(carve.CopyMask() == mask);
+  VERIFY(HaveEqualBits(GetDistances(carve.Filter->GetOutput()), before));
+
+  // The published method knows no boundary.
+  filterTesting::Deformed published;
+  published.Filter->SetInputConnection(carve.Filter->GetOutputPort());
+  published.Filter->SetDeformationData(mesh);
+  published.Filter->SetResamplerToPublished();
+  published.Filter->Update();
+  VERIFY_EQUAL(published.TakeErrors(), 1);
+  VERIFY(published.LastError.find("boundary distances") != std::string::npos);
+  published.Filter->SetResamplerToExact();
+  published.Update();
+  // The array is no array of the output.
+  VERIFY(GetDistances(published.Filter->GetOutput()) == nullptr);
+}
+
+// Any numeric type is read, and a NaN is no boundary.
+void TestTypes()
+{
+  auto volume = MakeVolume(Box);
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.3, 0.2, -0.4));
+  vtkNew<vtkFloatArray> floats;
+  vtkNew<vtkDoubleArray> doubles;
+  for (vtkDataArray* array :
+    { static_cast<vtkDataArray*>(floats), static_cast<vtkDataArray*>(doubles) })
+  {
+    array->SetName(NAME);
+    array->SetNumberOfTuples(volume->GetNumberOfPoints());
+    for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+    {
+      const glm::dvec3 p = GetPoint(volume, id);
+      const double distance = 0.25 * std::floor(8.0 * std::sin(p.x + 2.0 * p.y) + p.z);
+      array->SetComponent(
+        id, 0, id % 50 == 0 ? std::numeric_limits<double>::quiet_NaN() : distance);
+    }
+  }
+  vtkNew<vtkImageData> other;
+  other->ShallowCopy(volume);
+  volume->GetPointData()->AddArray(floats);
+  other->GetPointData()->AddArray(doubles);
+  filterTesting::Deformed first(volume, mesh);
+  filterTesting::Deformed second(other, mesh);
+  VERIFY(AreEqual(first.Update(), second.Update()));
+  VERIFY(first.Filter->GetNumberOfCoveredVoxels() < volume->GetNumberOfPoints());
+  VERIFY(first.Filter->GetNumberOfCoveredVoxels() > 0);
+  // A change that is told and one that is not give the same.
+  floats->SetValue(333, -2.0F);
+  floats->Modified();
+  doubles->SetValue(333, -2.0);
+  doubles->Modified();
+  VERIFY(AreEqual(first.Update(), second.Update()));
+}
+
+// A sphere of a radius of 20 voxels to 0.1 %, wherever it lies and however the volume is turned.
+void TestVolumeOfSphere()
+{
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> anywhere(-0.5, 0.5);
+  for (int geometry = 0; geometry < 3; ++geometry)
+  {
+    auto volume = MakeVolume({ { 0, 46, 1, 47, -1, 45 } });
+    if (geometry > 0)
+    {
+      volume->SetOrigin(3.0, -90.0, 12.0);
+      volume->SetSpacing(0.5, 0.5, 0.5);
+    }
+    if (geometry == 2)
+    {
+      SetObliqueDirection(volume);
+    }
+    double center[3];
+    volume->GetCenter(center);
+    for (double& component : center)
+    {
+      component += anywhere(random) * volume->GetSpacing()[0];
+    }
+    const double radius = 20.0 * volume->GetSpacing()[0];
+    const double expected = 4.0 / 3.0 * Pi * radius * radius * radius;
+    vtkNew<vtkSphere> sphere;
+    sphere->SetCenter(center);
+    sphere->SetRadius(radius);
+    Edited<vtkCarveVolume> carve;
+    carve.Filter->SetInputData(volume);
+    carve.Filter->SmoothBoundaryOn();
+    carve.Filter->SetImplicitFunction(sphere);
+    Fine fine(volume, carve.Filter->GetOutputPort(), 3);
+    const double byFunction = fine.GetMissing();
+    std::cout << "sphere by function: " << byFunction / expected - 1.0 << "\n";
+    VERIFY(std::abs(byFunction - expected) < 0.001 * expected);
+
+    // The same by the tool, and by a surface, whose facets cut off a little.
+    carve.Filter->SetImplicitFunction(nullptr);
+    carve.Filter->SetToolRadius(radius);
+    carve.Filter->AddToolPosition(center[0], center[1], center[2]);
+    const double byTool = fine.GetMissing();
+    VERIFY(std::abs(byTool - expected) < 0.001 * expected);
+    carve.Filter->Undo();
+    if (geometry < 2)
+    {
+      vtkNew<vtkSphereSource> surface;
+      surface->SetCenter(center);
+      surface->SetRadius(radius);
+      surface->SetThetaResolution(240);
+      surface->SetPhiResolution(120);
+      carve.Filter->SetSurfaceConnection(surface->GetOutputPort());
+      const double bySurface = fine.GetMissing();
+      std::cout << "sphere by surface: " << bySurface / expected - 1.0 << "\n";
+      VERIFY(std::abs(bySurface - expected) < 0.002 * expected);
+    }
+  }
+}
+
+// Of a plane each sample is on the right side.
+void TestPlane()
+{
+  auto volume = MakeVolume(Box);
+  vtkNew<vtkPlane> plane;
+  plane->SetOrigin(4.3, 0, 0);
+  plane->SetNormal(1.0, 0.0, 0.0);
+  Edited<vtkCarveVolume> carve;
+  carve.Filter->SetInputData(volume);
+  carve.Filter->SmoothBoundaryOn();
+  carve.Filter->SetImplicitFunction(plane);
+  Fine fine(volume, carve.Filter->GetOutputPort(), 4);
+  const auto check = [&](const glm::dvec3& origin, const glm::dvec3& normal)
+  {
+    vtkImageData* image = fine.Deformed.Update();
+    int wrong = 0;
+    for (vtkIdType id = 0; id < image->GetNumberOfPoints(); ++id)
+    {
+      const double side = glm::dot(GetPoint(image, id) - origin, normal);
+      wrong += std::abs(side) > 1e-5 && fine.Deformed.IsCovered(id) != (side > 0.0) ? 1 : 0;
+    }
+    VERIFY_EQUAL(wrong, 0);
+  };
+  check(glm::dvec3(4.3, 0, 0), glm::dvec3(1, 0, 0));
+  plane->SetOrigin(5.1, 4.7, 6.2);
+  plane->SetNormal(0.48, 0.6, 0.64);
+  check(glm::dvec3(5.1, 4.7, 6.2), glm::dvec3(0.48, 0.6, 0.64));
+  // Wrapped, it has no bounds and is not known to be linear.
+  vtkNew<vtkImplicitBoolean> wrapped;
+  wrapped->AddFunction(plane);
+  carve.Filter->SetImplicitFunction(wrapped);
+  check(glm::dvec3(5.1, 4.7, 6.2), glm::dvec3(0.48, 0.6, 0.64));
+}
+
+// Labels end halfway between voxels.
+void TestLabels()
+{
+  auto volume = MakeVolume(Box);
+  auto labels = MakeArray<vtkShortArray>("label", volume->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+  {
+    labels->SetValue(id, GetPoint(volume, id).x > 5.5 ? 7 : 3);
+  }
+  volume->GetPointData()->AddArray(labels);
+  Edited<vtkCarveVolume> carve;
+  carve.Filter->SetInputData(volume);
+  carve.Filter->SetLabelArrayName("label");
+  carve.Filter->SetLabel(7);
+  carve.Filter->SmoothBoundaryOn();
+  VERIFY_EQUAL(carve.CountOff(), 5 * 8 * 13 * 14);
+  Fine fine(volume, carve.Filter->GetOutputPort(), 4);
+  vtkImageData* image = fine.Deformed.Update();
+  int wrong = 0;
+  for (vtkIdType id = 0; id < image->GetNumberOfPoints(); ++id)
+  {
+    wrong += fine.Deformed.IsCovered(id) != (GetPoint(image, id).x <= 5.5) ? 1 : 0;
+  }
+  VERIFY_EQUAL(wrong, 0);
+}
+
+// Edits of all kinds come and go, bit for bit; chains take the least distance.
+void TestEdits()
+{
+  auto volume = MakeVolume(Box);
+  Edited<vtkCarveVolume> carve;
+  carve.Filter->SetInputData(volume);
+  carve.Filter->SmoothBoundaryOn();
+  carve.Filter->SetToolRadius(2.2);
+  std::vector<vtkSmartPointer<vtkImageData>> states;
+  const auto copy = [&](vtkAlgorithm* filter)
+  {
+    filter->Update();
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    image->DeepCopy(filter->GetOutputDataObject(0));
+    return image;
+  };
+  states.push_back(copy(carve.Filter));
+  const double path[4][3] = { { 1, 2, 3 }, { 4, 5, 6.4 }, { 9.3, 5, 6 }, { 9, 5, 12 } };
+  for (const double* place : path)
+  {
+    carve.Filter->AddToolPosition(place[0], place[1], place[2]);
+    states.push_back(copy(carve.Filter));
+  }
+  const auto isState = [&](std::size_t state)
+  {
+    carve.Update();
+    vtkImageData* output = carve.Filter->GetOutput();
+    return AreEqual(output, states[state]) &&
+      HaveEqualBits(output->GetCellData()->GetArray("ActiveTetrahedra"),
+        states[state]->GetCellData()->GetArray("ActiveTetrahedra"));
+  };
+  for (const int change : { -1, -1, 1, -1, -1, -1, 1, 1, 1, 1, -1, -1, -1, -1 })
+  {
+    static std::size_t state = 4;
+    change < 0 ? carve.Filter->Undo() : carve.Filter->Redo();
+    state += static_cast<std::size_t>(change);
+    VERIFY(isState(state));
+  }
+  VERIFY(GetDistances(states[0]) == nullptr && GetDistances(states[1]) != nullptr);
+  for (int i = 0; i < 4; ++i)
+  {
+    carve.Filter->Redo();
+  }
+  carve.Filter->Reset();
+  VERIFY(isState(0));
+
+  // Two filters one after the other, against one with both bodies.
+  vtkNew<vtkSphere> first;
+  first->SetCenter(4, 5, 6);
+  first->SetRadius(3.4);
+  vtkNew<vtkSphere> second;
+  second->SetCenter(8.2, 6, 7);
+  second->SetRadius(2.9);
+  carve.Filter->ClearToolPositions();
+  carve.Filter->SetImplicitFunction(first);
+  Edited<vtkCarveVolume> next;
+  next.Filter->SetInputConnection(carve.Filter->GetOutputPort());
+  next.Filter->SmoothBoundaryOn();
+  next.Filter->SetImplicitFunction(second);
+  Edited<vtkCarveVolume> both;
+  both.Filter->SetInputData(volume);
+  both.Filter->SmoothBoundaryOn();
+  both.Filter->AccumulateOn();
+  both.Filter->SetImplicitFunction(first);
+  both.Update();
+  both.Filter->SetImplicitFunction(second);
+  both.Update();
+  VERIFY(AreEqual(copy(next.Filter), both.Filter->GetOutput()));
+  const auto joined = copy(next.Filter);
+  // A cut between the two leaves the distances alone.
+  Edited<vtkCutVolume> cut;
+  cut.Filter->SetInputConnection(carve.Filter->GetOutputPort());
+  cut.Filter->SetSheetData(MakePlaneX(volume, 12.5));
+  next.Filter->SetInputConnection(cut.Filter->GetOutputPort());
+  next.Update();
+  VERIFY(GetDistances(cut.Filter->GetOutput()) == GetDistances(carve.Filter->GetOutput()));
+  VERIFY(HaveEqualBits(GetDistances(next.Filter->GetOutput()), GetDistances(joined)));
+  // When the body before moves, the one behind stays.
+  first->SetRadius(2.0);
+  next.Update();
+  first->SetRadius(3.4);
+  next.Update();
+  VERIFY(HaveEqualBits(GetDistances(next.Filter->GetOutput()), GetDistances(joined)));
+}
+
+// An edit in a pipeline that goes on: in part, and as if made at once.
+void TestLive()
+{
+  auto volume = MakeVolume({ { 0, 60, 0, 50, 0, 40 } });
+  auto mesh = MakeMesh(volume, 4);
+  SetDisplacements(mesh,
+    [](const glm::dvec3& p)
+    { return p + 0.8 * glm::dvec3(std::sin(0.2 * p.y), 0.3, 0.1 * p.x / 9); });
+  Edited<vtkCarveVolume> carve;
+  carve.Filter->SetInputData(volume);
+  carve.Filter->SetDeformationData(mesh);
+  carve.Filter->SmoothBoundaryOn();
+  carve.Filter->SetToolRadius(3.7);
+  filterTesting::Deformed live;
+  live.Filter->SetInputConnection(carve.Filter->GetOutputPort());
+  live.Filter->SetDeformationData(mesh);
+  std::mt19937 random(5);
+  int inPart = 0;
+  for (int i = 0; i < 12; ++i)
+  {
+    if (i % 4 == 3)
+    {
+      carve.Filter->Undo();
+    }
+    else
+    {
+      carve.Filter->AddToolPosition(10 + random() % 40, 10 + random() % 30, 5 + random() % 30);
+    }
+    live.Update();
+    inPart += live.Filter->GetNumberOfResampledBricks() < live.Filter->GetNumberOfBricks() ? 1 : 0;
+    filterTesting::Deformed fresh(carve.Filter->GetOutput(), mesh);
+    VERIFY(AreEqual(live.Update(), fresh.Update()));
+    VERIFY(live.Filter->GetNumberOfCoveredVoxels() == fresh.Filter->GetNumberOfCoveredVoxels());
+  }
+  std::cout << inPart << " of 12 in part\n";
+  // Coarse, too, it has a hole.
+  live.Filter->SetSamplingFactor(2);
+  live.Update();
+  VERIFY(live.Filter->GetNumberOfCoveredVoxels() < live.Filter->GetOutput()->GetNumberOfPoints());
+}
+
+} // namespace
+
+int TestSmoothBoundary(int, char*[])
+{
+  TestMisuse();
+  TestTypes();
+  TestVolumeOfSphere();
+  TestPlane();
+  TestLabels();
+  TestEdits();
+  TestLive();
+  return GetExitCode();
+}

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Boundaries between voxels: samples whose interpolated boundary distance is negative are left out.
+// Distances are multiples of 1/16, and then both sides add up the same numbers without rounding.
+#include "DeformerCase.h"
+#include "DeviceNeeds.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+using namespace deformvolume;
+
+namespace
+{
+
+const std::array<double, 3> NoScale{ { 1, 1, 1 } };
+const Extent Volume{ { -3, 17, 0, 9, 1, 8 } };
+
+float MakeDistance(std::mt19937& random)
+{
+  return (static_cast<float>(random() % 65) - 32.0F) / 16.0F;
+}
+
+// Of all voxels, or of a few: most cells of the others go by lanes.
+std::vector<float> MakeDistances(std::size_t size, unsigned int seed, bool ofAll)
+{
+  std::mt19937 random(seed);
+  std::vector<float> distances(size, 1.5F);
+  for (float& distance : distances)
+  {
+    if (ofAll || random() % 60 == 0)
+    {
+      distance = MakeDistance(random);
+    }
+  }
+  return distances;
+}
+
+void Check(const DeformerCase& clipped, Route route = Route::Field)
+{
+  const std::size_t size = clipped.GetNumberOfVoxels();
+  const reference::Result reference = ResampleByReference(clipped);
+  const auto shorts = MakeRandomValues<std::int16_t>(size, 4);
+  const auto floats = MakeRandomValues<float>(size, 5);
+  const std::vector<VolumeArray> linear{ MakeArray(shorts), MakeArray(floats, 1, false, 2.0) };
+  ExpectEqualsReference(clipped, reference, linear, LoadAndRun(clipped, linear, route));
+  const auto labels = MakeRandomValues<std::uint16_t>(size * 2, 3);
+  const std::vector<VolumeArray> others{ MakeArray(labels, 2, true, 12.0) };
+  ExpectEqualsReference(clipped, reference, others, LoadAndRun(clipped, others, route));
+}
+
+// A plane through the undeformed volume at x = place, what is on its low side left out.
+std::vector<float> MakePlane(const Extent& extent, double place)
+{
+  std::vector<float> distances;
+  for (std::int64_t i = 0; i < GetNumberOfPoints(extent); ++i)
+  {
+    distances.push_back(
+      static_cast<float>(static_cast<double>(extent[0] + i % GetSize(extent, 0)) - place));
+  }
+  return distances;
+}
+
+Deformed RunWith(VolumeDeformer& deformer, const DeformerCase& deformerCase,
+  const std::vector<VolumeArray>& arrays, const std::vector<float>& distances)
+{
+  deformer.SetBoundaryDistances(distances.empty() ? nullptr : distances.data());
+  return RunDeformer(deformer, deformerCase, arrays);
+}
+
+} // namespace
+
+TEST(BoundaryDistances, MisuseIsAnError)
+{
+  VolumeDeformer deformer;
+  deformer.SetDevice("");
+  const std::vector<float> distances(GetNumberOfPoints(Volume), -1.0F);
+  EXPECT_THROW(deformer.SetBoundaryDistances(distances.data()), Error);
+  DeformerCase still = MakeCase(Volume, NoScale, [](const glm::dvec3& index) { return index; });
+  const auto values = MakeRandomValues<std::int16_t>(distances.size(), 1);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  still.Distances = distances;
+  Load(deformer, still, arrays, Route::Field);
+  EXPECT_THROW(RunDeformer(deformer, still, arrays, Resampling::Published), Error);
+  EXPECT_EQ(RunDeformer(deformer, still, arrays).Report.NumberOfCoveredVoxels, 0);
+  deformer.SetBoundaryDistances(nullptr);
+  EXPECT_EQ(
+    RunDeformer(deformer, still, arrays).Report.NumberOfCoveredVoxels, GetNumberOfPoints(Volume));
+  EXPECT_NO_THROW(RunDeformer(deformer, still, arrays, Resampling::Published));
+}
+
+TEST(BoundaryDistances, WhatIsNotNegativeStays)
+{
+  const DeformerCase moved =
+    MakeCase(Volume, NoScale, [](const glm::dvec3& index) { return index * 1.25; });
+  const auto values = MakeRandomValues<std::int16_t>(moved.GetNumberOfVoxels(), 1);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  VolumeDeformer deformer;
+  Load(deformer, moved, arrays, Route::Field);
+  const Deformed all = RunDeformer(deformer, moved, arrays);
+  for (const float distance :
+    { 0.0F, -0.0F, 1e-30F, 3.0F, std::numeric_limits<float>::infinity(), std::nanf("") })
+  {
+    SCOPED_TRACE(distance);
+    const Deformed kept =
+      RunWith(deformer, moved, arrays, std::vector<float>(moved.GetNumberOfVoxels(), distance));
+    EXPECT_EQ(kept.Outputs, all.Outputs);
+    EXPECT_EQ(kept.Coverage, all.Coverage);
+  }
+}
+
+TEST(BoundaryDistances, PlaneLiesBetweenVoxels)
+{
+  // Sixteen samples a voxel along x.
+  const Extent extent{ { -1, 6, 0, 4, 0, 3 } };
+  DeformerCase fine = MakeCase(
+    extent, { { 16, 2, 2 } }, [](const glm::dvec3& index) { return index * glm::dvec3(16, 2, 2); });
+  const auto values = MakeRandomValues<float>(fine.GetNumberOfVoxels(), 1);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  for (const double place : { 2.0, 2.3125, 3.5, 4.96875 })
+  {
+    SCOPED_TRACE(place);
+    fine.Distances = MakePlane(extent, place);
+    const Deformed deformed = LoadAndRun(fine, arrays);
+    std::size_t voxel = 0;
+    for (int z = fine.Output[4]; z <= fine.Output[5]; ++z)
+    {
+      for (int y = fine.Output[2]; y <= fine.Output[3]; ++y)
+      {
+        for (int x = fine.Output[0]; x <= fine.Output[1]; ++x, ++voxel)
+        {
+          const bool covered = x >= 16.0 * place && x <= 96 && y >= 0 && y <= 8 && z >= 0 && z <= 6;
+          ASSERT_EQ(deformed.Coverage[voxel] != 0, covered) << x << " " << y << " " << z;
+        }
+      }
+    }
+  }
+}
+
+TEST(BoundaryDistances, EqualTheReference)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  std::mt19937 random(3);
+  for (unsigned int seed = 0; seed < 6; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    const glm::dmat3 matrix = MakeRandomMatrix(random);
+    DeformerCase clipped =
+      MakeCase(Volume, NoScale, [&](const glm::dvec3& index) { return matrix * index; });
+    const std::size_t size = clipped.GetNumberOfVoxels();
+    clipped.Distances = MakeDistances(size, seed, seed % 2 == 0);
+    if (seed > 2)
+    {
+      clipped.Blanked.resize(size);
+      clipped.Active.resize(GetNumberOfCells(Volume), 31);
+      for (int i = 0; i < 20; ++i)
+      {
+        clipped.Blanked[random() % size] = 1;
+        clipped.Active[random() % clipped.Active.size()] =
+          static_cast<unsigned char>(random() % 32);
+      }
+    }
+    Check(clipped, seed % 3 == 0 ? Route::Field : seed % 3 == 1 ? Route::Mesh : Route::Runs);
+  }
+}
+
+TEST(BoundaryDistances, EqualTheReferenceAtRest)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  // All samples are vertices, or lie on faces and edges.
+  for (const double scale : { 1.0, 2.0 })
+  {
+    SCOPED_TRACE(scale);
+    DeformerCase clipped =
+      MakeCase(Volume, NoScale, [=](const glm::dvec3& index) { return index * scale; });
+    clipped.Distances = MakeDistances(clipped.GetNumberOfVoxels(), 9, true);
+    Check(clipped);
+  }
+}
+
+TEST(BoundaryDistances, EqualTheReferenceWhereTheVolumeIsFolded)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  for (unsigned int seed = 0; seed < 4; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    DeformerCase clipped = MakeCase(Volume, NoScale, MakeJitter(seed, 0.4 + 0.4 * seed));
+    clipped.Distances = MakeDistances(clipped.GetNumberOfVoxels(), seed, seed % 2 == 0);
+    Check(clipped);
+  }
+}
+
+TEST(BoundaryDistances, LargeCellsAreClipped)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  const Extent extent{ { 0, 2, 0, 2, 0, 2 } };
+  DeformerCase clipped = MakeCase(extent, NoScale,
+    [](const glm::dvec3& index) { return index * 40.0 + glm::dvec3(index.y, index.z, index.x); });
+  clipped.Distances = MakeDistances(clipped.GetNumberOfVoxels(), 5, true);
+  Check(clipped);
+}
+
+TEST(BoundaryDistances, ChunksAndPartsEqualTheWhole)
+{
+  const glm::dmat3 matrix(0.9, 0.2, 0.1, -0.1, 1.1, 0.2, 0.1, -0.2, 1.0);
+  DeformerCase clipped =
+    MakeCase(Volume, NoScale, [&](const glm::dvec3& index) { return matrix * index; });
+  clipped.Distances = MakeDistances(clipped.GetNumberOfVoxels(), 2, true);
+  const auto values = MakeRandomValues<std::int16_t>(clipped.GetNumberOfVoxels(), 1);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const Deformed whole = LoadAndRun(clipped, arrays);
+  VolumeDeformer chunked;
+  chunked.SetDevice("");
+  chunked.SetAllocationLimit(16384);
+  Load(chunked, clipped, arrays, Route::Mesh);
+  const Deformed inChunks = RunDeformer(chunked, clipped, arrays);
+  EXPECT_EQ(inChunks.Coverage, whole.Coverage);
+  EXPECT_EQ(inChunks.Outputs, whole.Outputs);
+}
+
+TEST(BoundaryDistances, MeshRasterizationLeavesOutTheSame)
+{
+  // One tetrahedron round the volume, shifted by whole voxels: rest coordinates are exact.
+  DeformerCase moved =
+    MakeCase(Volume, { { 4, 4, 4 } }, [](const glm::dvec3& index) { return 4.0 * index + 8.0; });
+  const std::size_t size = moved.GetNumberOfVoxels();
+  moved.Distances = MakeDistances(size, 8, true);
+  const auto values = MakeRandomValues<float>(size, 1);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const Deformed exact = LoadAndRun(moved, arrays);
+  const std::vector<double> nodes{ -100, -100, -100, 400, -100, -100, -100, 400, -100, -100, -100,
+    400 };
+  const std::vector<float> displacements(12, 8.0F);
+  const Tetrahedron tetrahedron{ { 0, 1, 2, 3 } };
+  VolumeDeformer deformer;
+  Load(deformer, moved, arrays, Route::Field);
+  deformer.SetRestMesh(&tetrahedron, 1, 4, nodes.data());
+  deformer.SetNodeDisplacements(displacements.data());
+  const Deformed rasterized = RunDeformer(deformer, moved, arrays, Resampling::MeshRasterization);
+  EXPECT_EQ(rasterized.Coverage, exact.Coverage);
+  EXPECT_GT(exact.Report.NumberOfCoveredVoxels, 1000);
+}

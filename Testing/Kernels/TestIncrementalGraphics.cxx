@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All tests of updates of a part of the output on a device that appears to be a graphics card, with
+// memory of its own and groups of work-items; what such a device sends; and copies from it that
+// fail.
+#include "EditedVolume.h"
+#include "FakeDriver.h"
+
+#include <gtest/gtest.h>
+
+using namespace deformvolume;
+
+namespace
+{
+
+// Before there is a context.
+const bool IsSet = []
+{
+  FakeDriver::Get().IsGraphics = true;
+  return true;
+}();
+
+class IncrementalGraphics : public testing::TestWithParam<Route>
+{
+protected:
+  void SetUp() override
+  {
+    ASSERT_TRUE(IsSet);
+    SKIP_WITHOUT_DOUBLE_PRECISION()
+    this->Edited.Blanked.resize(GetNumberOfPoints(this->Edited.Shape.VertexExtent));
+    this->Edited.SendAll(this->Deformer, GetParam());
+    this->Request.Incremental = true;
+    this->Deformer.Deform(this->Request);
+    this->Outputs.SetLast(this->Request);
+  }
+
+  /// After displacements and masks have changed.
+  DeformReport Update()
+  {
+    FakeDriver& driver = FakeDriver::Get();
+    driver.BytesRead = driver.BytesWritten = 0;
+    this->Edited.SendMasks(this->Deformer);
+    this->Edited.SendDisplacements(this->Deformer, GetParam());
+    return this->Deformer.Deform(this->Request);
+  }
+  /// The same of a small part, which equals that of a deformer without a past. Returns how many
+  /// bytes were read for one of the output.
+  double UpdatePart()
+  {
+    const DeformReport report = this->Update();
+    EXPECT_LT(report.NumberOfResampledBricks, report.NumberOfBricks);
+    const FakeDriver driver = FakeDriver::Get();
+    VolumeDeformer fresh;
+    this->Edited.SendAll(fresh, GetParam());
+    EditedOutputs expected(this->Edited);
+    ExpectSame(report, fresh.Deform(expected.MakeRequest(this->Edited)));
+    EXPECT_TRUE(this->Outputs == expected);
+    const double bytes = 19.0 * static_cast<double>(GetNumberOfPoints(this->Edited.Output));
+    EXPECT_LT(static_cast<double>(driver.BytesWritten), 0.02 * bytes);
+    return static_cast<double>(driver.BytesRead) / bytes;
+  }
+  float* At(int x, int y, int z)
+  {
+    return &this->Edited.Displacements[3 * this->Edited.GetNode({ { x, y, z } })];
+  }
+
+  EditedVolume Edited{ Extent{ { -5, 140, 0, 100, 3, 80 } } };
+  VolumeDeformer Deformer;
+  EditedOutputs Outputs{ this->Edited };
+  DeformRequest Request = this->Outputs.MakeRequest(this->Edited);
+};
+
+} // namespace
+
+TEST_P(IncrementalGraphics, LittleIsReadOfALocalEdit)
+{
+  this->At(12, 6, 5)[0] = 0.5F;
+  this->UpdatePart(); // and the static mapping is read, to know what nodes move
+  this->At(12, 6, 5)[0] = -0.5F;
+  EXPECT_LT(this->UpdatePart(), 0.05) << "inside";
+  EXPECT_EQ(this->Update().NumberOfResampledBricks, 0);
+  EXPECT_LT(FakeDriver::Get().BytesRead, 100000U) << "nothing";
+  this->At(12, 6, 0)[2] = 1.5F;
+  EXPECT_LT(this->UpdatePart(), 0.05) << "on a side";
+  this->Edited.Blanked[(40 * 101 + 50) * 146 + 70] = 1;
+  EXPECT_LT(this->UpdatePart(), 0.05) << "a mask";
+  // What comes first is a whole output.
+  this->At(4, 5, 5)[0] = 14.0F;
+  EXPECT_TRUE(this->Update().Overlapping);
+  this->At(14, 3, 3)[0] = 0.5F;
+  EXPECT_LT(this->UpdatePart(), 0.05) << "beside a fold";
+  this->At(4, 5, 5)[1] = 2.0F;
+  EXPECT_LT(this->UpdatePart(), 0.05) << "a fold";
+}
+
+TEST_P(IncrementalGraphics, CopiesThatFail)
+{
+  this->At(12, 6, 5)[0] = 0.5F;
+  this->UpdatePart();
+  this->At(12, 6, 5)[0] = 1.0F;
+  FakeDriver::Get().ReadError = -5;
+  EXPECT_THROW(this->Update(), Error);
+  FakeDriver::Get().ReadError = 0;
+  // What is on the device may be half done: it starts anew.
+  EXPECT_EQ(this->Deformer.GetDeviceMemory(), 0U);
+  this->Edited.SendAll(this->Deformer, GetParam());
+  const DeformReport report = this->Deformer.Deform(this->Request);
+  EXPECT_EQ(report.NumberOfResampledBricks, report.NumberOfBricks);
+  this->At(12, 6, 5)[0] = 1.5F;
+  this->UpdatePart();
+}
+
+INSTANTIATE_TEST_SUITE_P(Routes, IncrementalGraphics,
+  testing::Values(Route::Mesh, Route::Runs, Route::Field), GetRouteName);
