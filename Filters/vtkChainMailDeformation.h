@@ -33,10 +33,13 @@
  *
  * @par Output:
  * vtkImageData on the lattice of the volume, always whole, with the point array "Displacement"
- * (vtkFloatArray, three components, world units), which is also the active vectors. Displacements
- * are whole multiples of 1/65536 of the spacing, along the axes of the volume. The array is the
- * same object, in the same memory, in all executions on one lattice, and an execution writes only
- * what it changes (GetChangedExtent()): who needs it as it was makes a deep copy.
+ * (floats, three components, world units), which is also the active vectors: a vtkFloatArray on a
+ * processor, and on a device with memory of its own a vtkDeviceVectorArray, whose values stay there
+ * until somebody asks for them. Displacements are whole multiples of 1/65536 of the spacing, along
+ * the axes of the volume. The array is the same object, in the same memory, in all executions on
+ * one lattice, and an execution writes only what it changes (GetChangedExtent()): who needs it as
+ * it was makes a deep copy. What others write to a vtkDeviceVectorArray is gone after the next
+ * execution.
  *
  * @par What cannot be done:
  * The displacement of a handle is reduced, on each axis by itself, until no pinned voxel and no

@@ -6,6 +6,7 @@
 #include "InputUpdate.h"
 #include "LookupBounds.h"
 #include "OutputExtent.h"
+#include "VectorBounds.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
@@ -43,6 +44,17 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent,
     { { source.Scale.x, source.Scale.y, source.Scale.z } } };
   const bool extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
+  if (this->State->Deformation.IsField() && this->State->Deformation.GetDeviceVectors())
+  {
+    deformvolume::DisplacementField field = this->State->Deformation.GetField(extrapolate);
+    field.ToDisplacement = this->State->Deformation.GetDeviceMatrix();
+    const std::optional<IndexBounds> bounds = deformvolume::FindDeformedBounds(
+      voxelGrid, field, *this->State->Deformation.GetDeviceVectors());
+    if (bounds)
+    {
+      return *bounds;
+    }
+  }
   this->State->Deformation.BringToHost();
   if (this->State->Deformation.IsField())
   {

@@ -17,7 +17,7 @@
  *
  * A device that is a processor works in the memory of the host. There this array is as good as a
  * vtkFloatArray, and no better. A filter on another device than that of the array reads the values
- * on the host, and so does a filter that needs the bounds of the deformed volume
+ * on the host, and so does a filter that needs the bounds of a volume that a mesh deforms
  * (vtkDeformVolumeFilter::SetOutputBoundsMode()).
  *
  * Arrays of another number of components than three stay on the host.

@@ -36,6 +36,8 @@ CARVING = ("TestCarving", "*")
 CHAINMAIL = ("TestChainMail", "*")
 RELAXATION = ("TestChainMailRelaxation", "*")
 SEQUENCES = ("TestChainMailSequences", "*")
+VECTORS = ("TestDeviceVectors", "*")
+VECTORS_GRAPHICS = ("TestDeviceVectorsGraphics", "*")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
@@ -105,8 +107,20 @@ MUTATIONS = {
     "chainmail-relax": ("Kernels/ChainMail/ChainMailRelaxation.cl", "Limits(limits, c, axis, face & 1);",
                         "Limits(limits, c, axis, ~face & 1);", [RELAXATION]),
     "chainmail-copy": ("Kernels/ChainMail/ChainMailSolver.cxx",
-                       "this->State.ReadOutput(this->Blocks.Join(this->Displaced));", "",
+                       "this->State.ReadOutput(changes);", "",
                        [("TestChainMailGraphics", "*Sequences*")]),
+    "chainmail-told": ("Kernels/ChainMail/ChainMailSolver.cxx",
+                       "this->State.TellOfChanges(report.Changes);", "", [VECTORS]),
+    "memory-granted": ("Kernels/Common/FreeMemory.cxx", "this->Measured / 2;", "this->Measured;", [VECTORS]),
+    "log-begin": ("Kernels/Common/RangeLog.cxx", "this->Begin = this->Entries.front().Revision;", "", [VECTORS]),
+    "vectors-turns": ("Kernels/Mapping/DisplacementSource.cxx",
+                      "this->Reading.Forget();\n  this->SendNodes", "this->SendNodes", [VECTORS]),
+    "vectors-numbers": ("Kernels/Mapping/VectorReading.cxx", "if (this->Numbers != numbers)",
+                        "if (this->Numbers.empty())", [VECTORS_GRAPHICS]),
+    "vectors-good": ("Kernels/Mapping/VectorConversion.cl", "if (!all(fabs(moved) <= largest))",
+                     "if (any(fabs(moved) > largest))", [VECTORS_GRAPHICS]),
+    "vectors-factor": ("Kernels/Mapping/DisplacementField.h", "constexpr std::uint64_t unit = 1 << 24;",
+                       "constexpr std::uint64_t unit = 1 << 0;", [("TestContraction", "*")]),
 }
 
 

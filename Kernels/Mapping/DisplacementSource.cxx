@@ -280,7 +280,8 @@ void DisplacementSource::SetNodeDisplacements(
     return;
   }
   this->NodesSet = false;
-  this->Reading.Convert(this->Nodes.Place(this->Order.Nodes.size()), this->Order.Nodes, "node");
+  this->Reading.Convert(this->Nodes.Place(std::max(this->NumberOfNodes, this->Order.Nodes.size())),
+    this->Order.Nodes, "node");
   this->NodesSet = true;
   this->LastSent = true;
   this->Volume.ForgetRecords();

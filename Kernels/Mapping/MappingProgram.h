@@ -24,7 +24,8 @@ cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping);
 /// What leaves out tetrahedra that bridge a gap (BridgeMask.cl), for links or runs.
 cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping);
 
-/// What makes displacements of vectors (VectorConversion.cl).
+/// What makes displacements of vectors (VectorConversion.cl), and finds bounds by them
+/// (VectorBounds.cl).
 cl::Program GetConversionProgram(OpenCLContext& context);
 
 /// The text of a form of the mapping (DeformationMapping.cl). It expects GetSamplingMeshText

@@ -13,6 +13,27 @@ namespace
 
 constexpr std::size_t VectorSize = 3 * sizeof(float);
 
+// Ranges in order, and in one piece where only a few points lie between them: to start a copy costs
+// more than some thousand vectors.
+PointRanges Join(PointRanges ranges)
+{
+  constexpr std::size_t few = 4096;
+  std::sort(ranges.begin(), ranges.end());
+  PointRanges joined;
+  for (const auto& range : ranges)
+  {
+    if (joined.empty() || range[0] > joined.back()[1] + few)
+    {
+      joined.push_back(range);
+    }
+    else
+    {
+      joined.back()[1] = std::max(joined.back()[1], range[1]);
+    }
+  }
+  return joined;
+}
+
 // Runs a function, with floating-point traps off and OpenCL's errors put into words.
 template <typename Function>
 auto Guard(Function&& function)
@@ -104,12 +125,6 @@ void DeviceVectors::Internals::Write(const float* vectors, const PointRanges& wr
   }
 }
 
-void DeviceVectors::Internals::CopyToHost(std::size_t begin, std::size_t end)
-{
-  this->Device.GetQueue().enqueueReadBuffer(this->Buffer, CL_TRUE, begin * VectorSize,
-    (end - begin) * VectorSize, this->Host.data() + 3 * begin);
-}
-
 const float* DeviceVectors::Internals::Read()
 {
   const bool isNew = this->Host.empty();
@@ -119,18 +134,16 @@ const float* DeviceVectors::Internals::Read()
   }
   const auto changes = isNew ? std::nullopt : this->Log.GetSince(this->HostRevision);
   this->Host.resize(3 * this->NumberOfPoints);
-  std::size_t begin = changes ? this->NumberOfPoints : 0;
-  std::size_t end = changes ? 0 : this->NumberOfPoints;
-  // In one piece: to start a copy costs more than some thousand vectors.
-  for (const auto& range : changes ? *changes : PointRanges())
+  PendingReads reads;
+  for (const auto& range :
+    changes ? Join(*changes) : PointRanges{ { { 0, this->NumberOfPoints } } })
   {
-    begin = std::min(begin, range[0]);
-    end = std::max(end, range[1]);
+    cl::Event done;
+    this->Device.GetQueue().enqueueReadBuffer(this->Buffer, CL_FALSE, range[0] * VectorSize,
+      (range[1] - range[0]) * VectorSize, this->Host.data() + 3 * range[0], nullptr, &done);
+    reads.Add(done);
   }
-  if (begin < end)
-  {
-    this->CopyToHost(begin, end);
-  }
+  reads.Check();
   this->HostRevision = this->Log.GetRevision();
   return this->Host.data();
 }

@@ -46,9 +46,9 @@ public:
   /// Writes some of them. vectors: of all points; only those of the ranges are read.
   void Write(const float* vectors, const PointRanges& written);
 
-  /// The vectors in memory of the host, which holds until these vectors are gone. It is brought up
-  /// to date by this call; of what has been written on the device only what may have changed is
-  /// copied.
+  /// The vectors in memory of the host, which is there as long as this object is. This call brings
+  /// it up to date: of what has been written on the device it copies what may have changed, and at
+  /// the first time all.
   const float* Read();
 
   /// Grows with each change.

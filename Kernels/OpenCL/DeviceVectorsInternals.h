@@ -18,6 +18,7 @@ public:
   Internals(OpenCLContext& context, std::size_t numberOfPoints);
 
   bool IsOn(const OpenCLContext& context) const { return this->Device.Uses(context); }
+  WorkDevice& GetWorkDevice() { return this->Device; }
   const std::string& GetDevice() { return this->Device.GetDevice().Name; }
   std::size_t GetNumberOfPoints() const { return this->NumberOfPoints; }
   bool AreInHostMemory() const { return !this->Buffer(); }
@@ -37,8 +38,6 @@ public:
   const RangeLog& GetLog() const { return this->Log; }
 
 private:
-  void CopyToHost(std::size_t begin, std::size_t end);
-
   WorkDevice Device;
   std::size_t NumberOfPoints;
   cl::Buffer Buffer;

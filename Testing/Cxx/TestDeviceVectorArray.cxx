@@ -285,6 +285,22 @@ void TestFilter(bool byField)
     VERIFY_EQUAL(
       found.Filter->GetNumberOfResampledBricks(), expected.Filter->GetNumberOfResampledBricks());
   }
+  // A coarse volume, and vectors that are deformed themselves.
+  for (Deformed* one : { &expected, &found })
+  {
+    one->Filter->SetSamplingFactor(2);
+  }
+  VERIFY(AreEqual(expected.Update(), found.Update()));
+  for (Deformed* one : { &expected, &found })
+  {
+    one->Filter->SetSamplingFactor(1);
+  }
+  if (byField)
+  {
+    Deformed self(floats, floats);
+    Deformed sameSelf(vectors, vectors);
+    VERIFY(AreEqual(self.Update(), sameSelf.Update()));
+  }
   // Vectors of a device that somebody else writes.
   const auto tuples = static_cast<std::size_t>(array->GetNumberOfTuples());
   const auto shared = std::make_shared<deformvolume::DeviceVectors>("", tuples);

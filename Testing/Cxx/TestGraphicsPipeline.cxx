@@ -10,8 +10,6 @@
 #include "Device.h"
 #include "DeviceVectors.h"
 
-#include <vtkGenericDataArray.txx>
-
 #include <cstdint>
 #include <string>
 
@@ -182,6 +180,17 @@ void TestFields()
       }
     }
     VERIFY_EQUAL(array->GetNumberOfUploads(), 1);
+    // What is not finite is named, with each way to find the extent.
+    array->SetTypedComponent(5000, 2, static_cast<float>(std::nan("")));
+    array->Modified();
+    for (const int mode :
+      { vtkDeformVolumeFilter::DEFORMED_BOUNDS, vtkDeformVolumeFilter::VOLUME_BOUNDS })
+    {
+      found.Filter->SetOutputBoundsMode(mode);
+      found.Filter->Update();
+      VERIFY_EQUAL(found.TakeErrors(), 1);
+      VERIFY(found.LastError.find(" 5000 ") != std::string::npos);
+    }
   }
 }
 
@@ -223,6 +232,13 @@ void TestChainMail()
                 << FakeDriver::Get().BytesRead << " were read and "
                 << FakeDriver::Get().BytesWritten << " written\n";
     }
+    // Where the extent is that of the deformed volume, its bounds are found on the device.
+    found.Filter->SetOutputBoundsModeToDeformedBounds();
+    found.Update();
+    VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
+    const Extent extent = GetExtent(found.Filter->GetOutput());
+    SetOutput(found);
+    found.Update();
     if (step < 3)
     {
       continue;
@@ -239,6 +255,8 @@ void TestChainMail()
     Deformed expected(volume, copied);
     SetOutput(expected);
     VERIFY(AreEqual(expected.Update(), found.Filter->GetOutput()));
+    Deformed whole(volume, copied);
+    VERIFY_EQUAL(GetExtent(whole.Update()), extent);
     if (step == 4)
     {
       // Somebody writes to the output: the filter takes that, and the next step restores it.

@@ -3,12 +3,14 @@
 // are moved by them equal, to the last bit, those that get the displacements from the host.
 // TestDeviceVectorsGraphics runs these tests on a device with memory of its own.
 #include "ChainMailModel.h"
+#include "DeformedBounds.h"
 #include "DeformerCase.h"
 #include "Device.h"
 #include "DeviceNeeds.h"
 #include "DeviceVectors.h"
 #include "FreeMemory.h"
 #include "RangeLog.h"
+#include "VectorBounds.h"
 
 #include <gtest/gtest.h>
 
@@ -400,6 +402,48 @@ TEST(DeviceVectors, ConnectivityChanges)
   EXPECT_EQ(subject.Run(deformer), subject.RunFresh(Route::Mesh, vectors, Turned));
 }
 
+// Found where the vectors are, or not at all.
+TEST(DeviceVectors, Bounds)
+{
+  const Subject subject(Extent{ { 2, 21, -3, 18, -1, 17 } });
+  VoxelGrid grid = subject.Case.VoxelGrid;
+  grid.Scale = { { 0.3, 1.7, 0.6 } };
+  DisplacementField field = subject.GetField();
+  // Points beyond the voxels do not count.
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    field.Dimensions[axis] += 3;
+    field.IndexToField[4 * axis + 3] += 1;
+  }
+  const auto points = static_cast<std::size_t>(GetNumberOfPoints(field));
+  std::vector<float> vectors = MakeVectors(points, 1);
+  std::fill(vectors.begin(), vectors.begin() + 30, 3000.0F);
+  const Vectors shared = MakeOnDevice(vectors);
+  const bool isPossible = !shared->AreInHostMemory() && GetDeviceAbilities("").DoublePrecision;
+  for (const Matrix& matrix : { Identity, Turned })
+  {
+    field.ToDisplacement = matrix;
+    field.Vectors = vectors.data();
+    const IndexBounds expected = ComputeDeformedBounds(grid, field);
+    field.Vectors = nullptr;
+    const std::optional<IndexBounds> found = FindDeformedBounds(grid, field, *shared);
+    ASSERT_EQ(found.has_value(), isPossible);
+    if (found)
+    {
+      EXPECT_EQ(found->Min, expected.Min);
+      EXPECT_EQ(found->Max, expected.Max);
+    }
+  }
+  EXPECT_THROW(FindDeformedBounds(grid, subject.GetField(), *shared), Error) << "fewer points";
+  field.IndexToField[0] = 0.5;
+  EXPECT_FALSE(FindDeformedBounds(grid, field, *shared)) << "voxels between points";
+  field.IndexToField[0] = 1.0;
+  const std::size_t inside = points / 2 + 10 * 23 + 10; // not at an end of a row, or of a plane
+  vectors[3 * inside] = std::numeric_limits<float>::quiet_NaN();
+  shared->Write(vectors.data(), { { { inside, inside + 1 } } });
+  EXPECT_FALSE(FindDeformedBounds(grid, field, *shared)) << "not finite";
+}
+
 // One mesh moves volumes of different spacing.
 TEST(DeviceVectors, SeveralVolumes)
 {
@@ -502,6 +546,7 @@ TEST(DeviceVectors, Tiny)
       EXPECT_EQ(subject.Run(deformer), subject.RunFresh(route, vectors, matrix));
     }
   }
+  FindDeformedBounds(subject.Case.VoxelGrid, subject.GetField(), *shared);
 }
 
 TEST(FreeMemory, IsMeasuredOnceWhereThereIsPlenty)

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <cstring>
 #include <iostream>
 #include <memory>
 #include <vector>
@@ -66,6 +67,11 @@ TEST_F(Transfers, WhatIsWrittenAndReadIsCopiedOnce)
   vectors->Write(this->Displacements.data(), { { { 200, 205 } }, { { 208, 210 } } });
   vectors->Read();
   EXPECT_EQ(FakeDriver::Get().BytesRead, this->Bytes + 10 * 12) << "what has changed";
+  this->Reset();
+  vectors->Write(this->Displacements.data(), { { { 7000, 7005 } }, { { 208, 210 } } });
+  vectors->Read();
+  EXPECT_EQ(FakeDriver::Get().BytesRead, 7U * 12U) << "not what lies between";
+  EXPECT_EQ(std::memcmp(vectors->Read(), this->Displacements.data(), this->Bytes), 0);
 }
 
 // An image and its segmentation, of another spacing.

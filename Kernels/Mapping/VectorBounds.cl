@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The bounds of voxels that move by vectors on the device. It comes after VectorConversion.cl, and needs double precision.
+
+#if REAL_IS_DOUBLE
+
+#define BOUNDS 6 // the least x, y and z, and the greatest ones
+
+// rest: where the voxels lie for each index on x, then y, then z. Sums are all that is rounded. bounds: six numbers a
+// work-group. A group takes every so many-th row of voxels, and its items every so many-th voxel of these. Voxels whose
+// displacement is not finite, or larger than the largest, are counted.
+__kernel void FindBounds(__global const float* vectors, const FieldParameters field,
+  const KernelParameters p, __global const double* rest, const float largest, __local double* shared,
+  __global double* bounds, __global uint* bad)
+{
+  double least[3] = { INFINITY, INFINITY, INFINITY };
+  double greatest[3] = { -INFINITY, -INFINITY, -INFINITY };
+  const size_t width = field.Dimensions[0];
+  const size_t plane = width * field.Dimensions[1];
+  const size_t rows = (size_t)p.Size[1] * p.Size[2];
+  for (size_t row = get_group_id(0); row < rows; row += get_num_groups(0))
+  {
+    const int y = (int)(row % p.Size[1]);
+    const int z = (int)(row / p.Size[1]);
+    const size_t first = (z + field.Offset[2]) * plane + (y + field.Offset[1]) * width + field.Offset[0];
+    for (int x = get_local_id(0); x < p.Size[0]; x += get_local_size(0))
+    {
+      const float3 moved = ConvertVector(vload3(first + x, vectors), &field);
+      if (!all(fabs(moved) <= largest))
+      {
+        atomic_inc(bad);
+      }
+      const double place[3] = { rest[x] + convert_double(moved.x),
+        rest[p.Size[0] + y] + convert_double(moved.y),
+        rest[p.Size[0] + p.Size[1] + z] + convert_double(moved.z) };
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        least[axis] = fmin(least[axis], place[axis]);
+        greatest[axis] = fmax(greatest[axis], place[axis]);
+      }
+    }
+  }
+  __local double* own = shared + BOUNDS * get_local_id(0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    own[axis] = least[axis];
+    own[axis + 3] = greatest[axis];
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (int i = get_local_id(0); i < BOUNDS; i += get_local_size(0))
+  {
+    double found = shared[i];
+    for (int item = 1; item < (int)get_local_size(0); ++item)
+    {
+      const double next = shared[BOUNDS * item + i];
+      found = i < 3 ? fmin(found, next) : fmax(found, next);
+    }
+    bounds[BOUNDS * get_group_id(0) + i] = found;
+  }
+}
+
+#endif
