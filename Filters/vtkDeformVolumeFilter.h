@@ -490,7 +490,8 @@ public:
    * How often this filter has built a static mapping, and sent a volume to the device: a moved mesh
    * costs neither. MESH_RASTERIZATION needs no mapping; a change to it or from it sends the volume.
    * The mapping is built anew after a change of the mesh at rest (tetrahedra that get other nodes
-   * in the same places are none, and nor are nodes that are added), of the volume's geometry, of
+   * in the same places are none, and nor are nodes that are added; where some tetrahedra are
+   * replaced by others, only voxels near these are mapped anew), of the volume's geometry, of
    * the ratio of spacings, of OutsideMode or of the device, and after ReleaseDeviceMemory().
    */
   vtkGetMacro(NumberOfMappingBuilds, vtkIdType);

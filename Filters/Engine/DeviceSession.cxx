@@ -6,6 +6,7 @@
 #include "vtkImageData.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace deformvolume
 {
@@ -212,10 +213,25 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
   const std::vector<Tetrahedron>& tetrahedra = mesh.GetTetrahedra();
   const std::size_t nodes = mesh.GetPoints().size();
   const std::uint64_t connectivity = mesh.GetConnectivityVersion();
-  const bool meshIsSent = this->HasMesh && this->SentMapping == mapping.GetVersion() &&
-    mapping.IsCurrent(deformation, volume);
-  const bool hasSplit = meshIsSent && this->SentConnectivity != connectivity;
-  if (!meshIsSent)
+  const bool hasMapping = this->HasMesh && this->SentMapping == mapping.GetVersion();
+  const bool isCurrent = hasMapping && mapping.IsCurrent(deformation, volume);
+  const bool hasSplit = isCurrent && this->SentConnectivity != connectivity;
+  const MeshReplacement* replacement = mesh.GetReplacement();
+  std::optional<MappingUpdate> update;
+  if (hasMapping && !isCurrent && replacement &&
+    replacement->ConnectivityVersion == this->SentConnectivity)
+  {
+    update = mapping.UpdateInPart(deformation, volume);
+  }
+  const bool meshIsSent = isCurrent || update;
+  if (update)
+  {
+    Transfer transfer(this);
+    this->Deformer.ReplaceTetrahedra(tetrahedra.data(), tetrahedra.size(), nodes, *update);
+    transfer.End();
+    this->SentMapping = mapping.GetVersion();
+  }
+  else if (!meshIsSent)
   {
     mapping.Update(deformation, volume, progress);
     Transfer transfer(this);
@@ -246,7 +262,7 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
     // Only the bounds of an extrapolated deformation need them again.
     mapping.ReleaseVoxels();
   }
-  if (openSplits != this->PlacesAreSent || (openSplits && hasSplit))
+  if (openSplits != this->PlacesAreSent || (openSplits && (hasSplit || update)))
   {
     if (openSplits)
     {

@@ -6,6 +6,7 @@
 #include "Error.h"
 #include "MeshCells.h"
 #include "ParallelFor.h"
+#include "TetrahedronMatching.h"
 
 #include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
@@ -94,10 +95,13 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   this->ReadPoints(rest, source);
   const bool isSameShape =
     !this->ShapeIsOld && this->KeptPoints && cells.Changed && this->AreInPlace(*cells.Changed);
+  const bool mayFollow = !isSameShape && !this->ShapeIsOld && this->KeptPoints;
+  std::optional<TetrahedronReplacement> replacement =
+    mayFollow ? this->FindReplacement(cells) : std::nullopt;
   this->Points.resize(nodes);
   if (!isSameShape)
   {
-    this->SetShape(std::move(cells));
+    this->SetShape(std::move(cells), std::move(replacement));
   }
   else if (!cells.Changed->empty() || nodes != nodesBefore)
   {
@@ -260,8 +264,56 @@ bool RestMesh::AreInPlace(const Changes& changes) const
     });
 }
 
-void RestMesh::SetShape(CellReading&& cells)
+std::optional<TetrahedronReplacement> RestMesh::FindReplacement(const CellReading& cells) const
 {
+  TetrahedronReplacement replacement;
+  if (cells.All.empty())
+  {
+    std::int32_t next = 0;
+    const auto keep = [&](std::int32_t end)
+    {
+      if (next < end)
+      {
+        replacement.Kept.push_back({ next, next, end - next });
+      }
+      next = end + 1;
+    };
+    for (const TetrahedronChange& change : *cells.Changed)
+    {
+      keep(change.Number);
+    }
+    keep(static_cast<std::int32_t>(this->Tetrahedra.size()));
+  }
+  else
+  {
+    auto kept = MatchTetrahedra(this->Tetrahedra, cells.All);
+    if (!kept)
+    {
+      return {};
+    }
+    replacement.Kept = std::move(*kept);
+  }
+  ForEachReplaced(replacement.Kept, static_cast<std::int32_t>(this->Tetrahedra.size()), 0,
+    [&](std::int32_t begin, std::int32_t end, std::int32_t, std::int32_t)
+    {
+      for (std::int32_t t = begin; t < end; ++t)
+      {
+        const Tetrahedron& nodes = this->Tetrahedra[t];
+        replacement.Removed.push_back({ { this->Points[nodes[0]], this->Points[nodes[1]],
+          this->Points[nodes[2]], this->Points[nodes[3]] } });
+      }
+    });
+  return replacement;
+}
+
+void RestMesh::SetShape(CellReading&& cells, std::optional<TetrahedronReplacement>&& replacement)
+{
+  this->Replacement.reset();
+  if (replacement)
+  {
+    this->Replacement =
+      MeshReplacement{ this->ShapeVersion, this->ConnectivityVersion, std::move(*replacement) };
+  }
   if (!cells.All.empty())
   {
     this->Tetrahedra = std::move(cells.All);
@@ -275,7 +327,7 @@ void RestMesh::SetShape(CellReading&& cells)
   }
   this->IgnoredCells = cells.Ignored;
   ++this->ShapeVersion;
-  this->LogBegin = ++this->ConnectivityVersion;
+  this->LogBegin = this->VersionReplaced = ++this->ConnectivityVersion;
   this->Log.clear();
 }
 

@@ -5,6 +5,7 @@
 #include "CellComparison.h"
 #include "DeformationMesh.h"
 #include "ImageGeometry.h"
+#include "MappingUpdate.h"
 #include "MeshStamp.h"
 #include "Tetrahedron.h"
 #include "VectorArray.h"
@@ -23,6 +24,17 @@ namespace deformvolume
 {
 
 struct DeformationSource;
+
+/// How a mesh follows from another one, of which most tetrahedra are the same.
+struct MeshReplacement
+{
+  ///@{
+  /// Those of the other mesh.
+  std::uint64_t ShapeVersion = 0;
+  std::uint64_t ConnectivityVersion = 0;
+  ///@}
+  TetrahedronReplacement Tetrahedra;
+};
 
 /// The tetrahedra of the deformation mesh, and its nodes at rest in continuous indices of the
 /// volume. Reads again only what is not as it was, and says what that is. Content decides: a mesh
@@ -47,6 +59,16 @@ public:
   /// The tetrahedra that have got other nodes since a version of the connectivity, while the shape
   /// was the same, each once. Nothing where that is not known any more.
   std::optional<std::vector<TetrahedronChange>> GetChanges(std::uint64_t version) const;
+
+  /// How the last change of the shape came about, where the nodes that there were stayed in their
+  /// places, and most tetrahedra with the same nodes: null where that is not so, or the
+  /// connectivity has changed since.
+  const MeshReplacement* GetReplacement() const
+  {
+    return this->Replacement && this->VersionReplaced == this->ConnectivityVersion
+      ? &*this->Replacement
+      : nullptr;
+  }
 
   /// Whether the last call of Read() found all nodes that there were before where they were.
   bool HasKeptPoints() const { return this->KeptPoints; }
@@ -77,14 +99,19 @@ private:
     std::atomic<bool>& kept);
   /// Whether a change leaves the tetrahedra the shapes that they had.
   bool AreInPlace(const Changes& changes) const;
+  /// How the tetrahedra that were read follow from those that there are, while all points are still
+  /// there.
+  std::optional<TetrahedronReplacement> FindReplacement(const CellReading& cells) const;
   void SetConnectivity(Changes&& changes);
-  void SetShape(CellReading&& cells);
+  void SetShape(CellReading&& cells, std::optional<TetrahedronReplacement>&& replacement);
 
   std::vector<Tetrahedron> Tetrahedra;
   std::vector<glm::dvec3> Points;
   std::string IgnoredCells;
   std::uint64_t ShapeVersion = 0;
   std::uint64_t ConnectivityVersion = 0;
+  std::optional<MeshReplacement> Replacement;
+  std::uint64_t VersionReplaced = 0; // of the connectivity, that it led to
   bool ShapeIsOld = false; // a reading that failed has left other points than that of the version
   bool KeptPoints = false;
 

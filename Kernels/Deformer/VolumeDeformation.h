@@ -52,6 +52,13 @@ public:
   {
     this->Source.ChangeConnectivity(tetrahedra, numberOfTetrahedra, numberOfNodes, changes);
   }
+  void ReplaceTetrahedra(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    std::size_t numberOfNodes, const MappingUpdate& update)
+  {
+    // Voxels that have come into the mesh are sources now.
+    this->Incremental.ChangeMask(
+      this->Source.ReplaceTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes, update), false);
+  }
   void SetNodePlaces(const std::int32_t* places);
   void SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const double* restNodes);

@@ -2,23 +2,19 @@
 #include "BrickPoints.h"
 
 #include "ParallelFor.h"
-#include "PointSet.h"
 #include "Processors.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
-#include <mutex>
 
 namespace deformvolume
 {
-namespace
-{
 
 // What a brick's vertices are found to need.
-struct Needs
+struct BrickPoints::Needs
 {
+  std::vector<std::int32_t> Tetrahedra; // some of them several times; where they are listed
   std::vector<std::int32_t> Nodes;
   double Excess = 0.0;
 
@@ -36,75 +32,137 @@ struct Needs
   }
 };
 
-} // namespace
-
-// visit(vertices, needs, add): calls add(tetrahedron) for those that the vertices are linked to.
-template <typename Visit>
-void BrickPoints::Collect(const BrickGrid& grid, const Tetrahedron* tetrahedra,
-  std::size_t numberOfTetrahedra, std::size_t numberOfNodes, Visit&& visit)
+namespace
 {
-  const std::size_t bricks = grid.GetNumberOfBricks();
-  std::vector<Needs> needs(bricks);
-  const std::size_t parts = std::min(static_cast<std::size_t>(GetProcessorShare()), bricks);
-  // For each part the last brick, plus 1, that had a tetrahedron or a node.
-  std::vector<std::vector<std::uint32_t>> seenTetrahedra(
-    parts, std::vector<std::uint32_t>(numberOfTetrahedra));
-  std::vector<std::vector<std::uint32_t>> seenNodes(
-    parts, std::vector<std::uint32_t>(numberOfNodes));
-  for (std::size_t brick = 0; brick < bricks; ++brick)
+
+void SortOnce(std::vector<std::int32_t>& numbers)
+{
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+template <typename Use>
+void ForNodes(const Tetrahedron& places, Use&& use)
+{
+  for (const std::int32_t place : places)
   {
-    needs[brick].Nodes.reserve(64);
-  }
-  const auto collect = [&](std::size_t part)
-  {
-    for (std::size_t brick = part; brick < bricks; brick += parts)
-    {
-      const auto mark = static_cast<std::uint32_t>(brick + 1);
-      const auto add = [&](std::int32_t tetrahedron)
-      {
-        if (seenTetrahedra[part][tetrahedron] != mark)
-        {
-          seenTetrahedra[part][tetrahedron] = mark;
-          for (const std::int32_t place : tetrahedra[tetrahedron])
-          {
-            const std::int32_t node = place / DEFORMVOLUME_NODE_PLACES;
-            if (seenNodes[part][node] != mark)
-            {
-              seenNodes[part][node] = mark;
-              needs[brick].Nodes.push_back(node);
-            }
-          }
-        }
-      };
-      visit(grid.GetVertices(brick, BrickReach), needs[brick], add);
-    }
-  };
-  ParallelForParts(parts, 1, [&](std::size_t part, std::size_t) { collect(part); });
-  this->Begins.assign(1, 0);
-  for (Needs& need : needs)
-  {
-    std::sort(need.Nodes.begin(), need.Nodes.end());
-    for (const std::int32_t node : need.Nodes)
-    {
-      if (this->Ranges.size() > this->Begins.back() && this->Ranges.back().End == node)
-      {
-        ++this->Ranges.back().End;
-      }
-      else
-      {
-        this->Ranges.push_back({ node, node + 1 });
-      }
-    }
-    this->Begins.push_back(this->Ranges.size());
-    this->Excess.push_back(need.Excess);
+    use(place / DEFORMVOLUME_NODE_PLACES);
   }
 }
 
-BrickPoints BrickPoints::FromLinks(const BrickGrid& grid, const VertexLink* links,
-  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes)
+// Which of many things a brick has had: the last brick, plus 1, that had each.
+class Marks
+{
+public:
+  explicit Marks(std::size_t count)
+    : Last(count)
+  {
+  }
+  bool Add(std::int32_t thing, std::size_t brick)
+  {
+    std::uint32_t& last = this->Last[static_cast<std::size_t>(thing)];
+    const auto mark = static_cast<std::uint32_t>(brick + 1);
+    const bool isNew = last != mark;
+    last = mark;
+    return isNew;
+  }
+
+private:
+  std::vector<std::uint32_t> Last;
+};
+
+} // namespace
+
+void BrickPoints::Append(const Needs& needs)
+{
+  this->Begins.push_back(this->Ranges.size());
+  for (const std::int32_t node : needs.Nodes)
+  {
+    if (this->Ranges.size() > this->Begins.back() && this->Ranges.back().End == node)
+    {
+      ++this->Ranges.back().End;
+    }
+    else
+    {
+      this->Ranges.push_back({ node, node + 1 });
+    }
+  }
+  this->Ends.push_back(this->Ranges.size());
+  this->Excess.push_back(needs.Excess);
+}
+
+// visit(vertices, needs, add): calls add(tetrahedron) for those that the vertices are linked to.
+template <typename Visit>
+void BrickPoints::Collect(
+  const BrickGrid& grid, const Mesh& mesh, const std::vector<std::size_t>* wanted, Visit&& visit)
+{
+  const std::size_t bricks = wanted ? wanted->size() : grid.GetNumberOfBricks();
+  std::vector<Needs> needs(bricks);
+  const auto collectSome = [&](std::size_t i)
+  {
+    Needs& need = needs[i];
+    visit(grid.GetVertices((*wanted)[i], BrickReach), need,
+      [&](std::int32_t tetrahedron)
+      {
+        if (need.Tetrahedra.empty() || need.Tetrahedra.back() != tetrahedron)
+        {
+          need.Tetrahedra.push_back(tetrahedron);
+        }
+      });
+    SortOnce(need.Tetrahedra);
+    for (const std::int32_t tetrahedron : need.Tetrahedra)
+    {
+      ForNodes(
+        mesh.Tetrahedra[tetrahedron], [&](std::int32_t node) { need.Nodes.push_back(node); });
+    }
+    SortOnce(need.Nodes);
+  };
+  const std::size_t parts = std::min(static_cast<std::size_t>(GetProcessorShare()), bricks);
+  const auto collectAll = [&](std::size_t part)
+  {
+    Marks tetrahedra(mesh.NumberOfTetrahedra);
+    Marks nodes(mesh.NumberOfNodes);
+    for (std::size_t brick = part; brick < bricks; brick += parts)
+    {
+      Needs& need = needs[brick];
+      need.Nodes.reserve(64);
+      visit(grid.GetVertices(brick, BrickReach), need,
+        [&](std::int32_t tetrahedron)
+        {
+          if (tetrahedra.Add(tetrahedron, brick))
+          {
+            ForNodes(mesh.Tetrahedra[tetrahedron],
+              [&](std::int32_t node)
+              {
+                if (nodes.Add(node, brick))
+                {
+                  need.Nodes.push_back(node);
+                }
+              });
+          }
+        });
+      std::sort(need.Nodes.begin(), need.Nodes.end());
+    }
+  };
+  if (wanted)
+  {
+    ParallelForParts(bricks, 1, [&](std::size_t i, std::size_t) { collectSome(i); });
+  }
+  else
+  {
+    ParallelForParts(parts, 1, [&](std::size_t part, std::size_t) { collectAll(part); });
+  }
+  for (const Needs& need : needs)
+  {
+    this->Append(need);
+  }
+}
+
+BrickPoints BrickPoints::FromLinks(const BrickGrid& grid, const VertexLink* links, const Mesh& mesh,
+  const std::vector<std::size_t>* wanted)
 {
   BrickPoints points;
-  points.Collect(grid, tetrahedra, numberOfTetrahedra, numberOfNodes,
+  points.Collect(grid, mesh, wanted,
     [&](const Extent& vertices, Needs& needs, const auto& add)
     {
       for (std::int64_t z = vertices[4]; z <= vertices[5]; ++z)
@@ -126,31 +184,31 @@ BrickPoints BrickPoints::FromLinks(const BrickGrid& grid, const VertexLink* link
   return points;
 }
 
-BrickPoints BrickPoints::FromRuns(const BrickGrid& grid, const VertexRun* runs,
-  const std::uint32_t* rowBegins, const double* rest, const std::int32_t* owners,
-  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes)
+BrickPoints BrickPoints::FromRuns(
+  const BrickGrid& grid, const Runs& runs, const Mesh& mesh, const std::vector<std::size_t>* wanted)
 {
   BrickPoints points;
-  points.Collect(grid, tetrahedra, numberOfTetrahedra, numberOfNodes,
+  points.Collect(grid, mesh, wanted,
     [&](const Extent& vertices, Needs& needs, const auto& add)
     {
       for (std::int64_t z = vertices[4]; z <= vertices[5]; ++z)
       {
         for (std::int64_t y = vertices[2]; y <= vertices[3]; ++y)
         {
-          const std::int64_t row = z * grid.Size[1] + y;
-          for (std::uint32_t r = rowBegins[row]; r < rowBegins[row + 1]; ++r)
+          const std::uint32_t* const range = runs.RowRanges + 2 * (z * grid.Size[1] + y);
+          const VertexRun* const pastRun = runs.First + range[1];
+          for (const VertexRun* run = runs.First + range[0]; run != pastRun; ++run)
           {
-            const int end = r + 1 < rowBegins[row + 1] ? runs[r + 1].Begin - 1 : grid.Size[0] - 1;
-            const int first = std::max(runs[r].Begin, vertices[0]);
+            const int end = run + 1 != pastRun ? run[1].Begin - 1 : grid.Size[0] - 1;
+            const int first = std::max(run->Begin, vertices[0]);
             const int last = std::min(end, vertices[1]);
-            if (runs[r].Tetrahedron < 0 || first > last)
+            if (run->Tetrahedron < 0 || first > last)
             {
               continue;
             }
-            add(owners[runs[r].Tetrahedron]);
+            add(runs.Owners[run->Tetrahedron]);
             // Along a run weights are affine: the extremes are at its ends.
-            const double* record = rest + 15 * static_cast<std::size_t>(runs[r].Tetrahedron);
+            const double* record = runs.Rest + 15 * static_cast<std::size_t>(run->Tetrahedron);
             for (const int x : { first, last })
             {
               const double offset[3] = { x - record[0], double(y) - record[1],
@@ -201,157 +259,6 @@ BrickPoints BrickPoints::FromField(const BrickGrid& grid, const FieldParameters&
     points.Boxes.push_back(box);
   }
   return points;
-}
-
-std::vector<BrickPoints::ChangesOfBrick> BrickPoints::FindBricks(
-  const std::vector<TetrahedronChange>& changes,
-  const std::function<bool(std::size_t)>& isNear) const
-{
-  // Which of the changes each node had a part in, and how many nodes each change has.
-  std::vector<std::pair<std::int32_t, std::uint32_t>> users;
-  users.reserve(4 * changes.size());
-  for (std::size_t i = 0; i < changes.size(); ++i)
-  {
-    for (const std::int32_t node : changes[i].Before)
-    {
-      users.emplace_back(node, static_cast<std::uint32_t>(i));
-    }
-  }
-  std::sort(users.begin(), users.end());
-  users.erase(std::unique(users.begin(), users.end()), users.end());
-  std::vector<int> nodesOfChange(changes.size(), 0);
-  PointSet used;
-  used.Clear(users.empty() ? 0 : static_cast<std::size_t>(users.back().first) + 1);
-  for (const auto& user : users)
-  {
-    ++nodesOfChange[user.second];
-    used.Add(static_cast<std::size_t>(user.first));
-  }
-  const std::size_t bricks = this->Begins.size() - 1;
-  std::vector<ChangesOfBrick> found;
-  std::mutex mutex;
-  constexpr std::size_t step = 256;
-  ParallelForParts(bricks, step,
-    [&](std::size_t begin, std::size_t end)
-    {
-      std::vector<int> seen(changes.size(), 0);
-      for (std::size_t brick = begin; brick < end; ++brick)
-      {
-        if (!isNear(brick))
-        {
-          continue;
-        }
-        std::vector<std::size_t> touched;
-        std::vector<std::size_t> whole;
-        this->AnyOf(brick,
-          [&](std::size_t first, std::size_t past)
-          {
-            // Most ranges have none of these nodes.
-            if (!used.HasAnyOf(first, past))
-            {
-              return false;
-            }
-            for (auto user = std::lower_bound(users.begin(), users.end(),
-                   std::make_pair(static_cast<std::int32_t>(first), std::uint32_t{ 0 }));
-                 user != users.end() && static_cast<std::size_t>(user->first) < past; ++user)
-            {
-              touched.push_back(user->second);
-              if (++seen[user->second] == nodesOfChange[user->second])
-              {
-                whole.push_back(user->second);
-              }
-            }
-            return false;
-          });
-        for (const std::size_t change : touched)
-        {
-          seen[change] = 0;
-        }
-        if (!whole.empty())
-        {
-          const std::lock_guard<std::mutex> lock(mutex);
-          found.emplace_back(brick, std::move(whole));
-        }
-      }
-    });
-  return found;
-}
-
-void BrickPoints::AddPoints(
-  const ChangesOfBrick& brick, const std::vector<TetrahedronChange>& changes)
-{
-  std::vector<std::int32_t> nodes;
-  for (const std::size_t i : brick.second)
-  {
-    const TetrahedronChange& change = changes[i];
-    std::copy_if(change.After.begin(), change.After.end(), std::back_inserter(nodes),
-      [&](std::int32_t node) {
-        return std::find(change.Before.begin(), change.Before.end(), node) == change.Before.end();
-      });
-  }
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  this->Added.resize(this->Begins.size() - 1);
-  std::vector<std::int32_t>& added = this->Added[brick.first];
-  const auto first = this->Ranges.begin() + static_cast<std::ptrdiff_t>(this->Begins[brick.first]);
-  const auto past =
-    this->Ranges.begin() + static_cast<std::ptrdiff_t>(this->Begins[brick.first + 1]);
-  const std::size_t before = added.size();
-  for (const std::int32_t node : nodes)
-  {
-    const auto range = std::upper_bound(
-      first, past, node, [](std::int32_t point, const Range& other) { return point < other.End; });
-    const bool isThere = (range != past && range->Begin <= node) ||
-      std::find(added.begin(), added.begin() + static_cast<std::ptrdiff_t>(before), node) !=
-        added.begin() + static_cast<std::ptrdiff_t>(before);
-    if (!isThere)
-    {
-      added.push_back(node);
-      ++this->NumberOfAdded;
-    }
-  }
-}
-
-BrickPoints BrickPoints::Join(
-  const std::vector<std::size_t>& groups, std::size_t numberOfGroups) const
-{
-  BrickPoints joined;
-  if (!this->Boxes.empty())
-  {
-    joined.FieldSize = this->FieldSize;
-    joined.Boxes.resize(numberOfGroups, Extent{ { 0, -1, 0, -1, 0, -1 } });
-    for (std::size_t brick = 0; brick < groups.size(); ++brick)
-    {
-      Include(joined.Boxes[groups[brick]], this->Boxes[brick]);
-    }
-    return joined;
-  }
-  std::vector<std::vector<Range>> ranges(numberOfGroups);
-  for (std::size_t brick = 0; brick < groups.size(); ++brick)
-  {
-    std::vector<Range>& all = ranges[groups[brick]];
-    all.insert(all.end(), this->Ranges.begin() + static_cast<std::ptrdiff_t>(this->Begins[brick]),
-      this->Ranges.begin() + static_cast<std::ptrdiff_t>(this->Begins[brick + 1]));
-  }
-  joined.Begins.assign(1, 0);
-  for (std::vector<Range>& all : ranges)
-  {
-    std::sort(
-      all.begin(), all.end(), [](const Range& a, const Range& b) { return a.Begin < b.Begin; });
-    for (const Range& range : all)
-    {
-      if (joined.Ranges.size() > joined.Begins.back() && joined.Ranges.back().End >= range.Begin)
-      {
-        joined.Ranges.back().End = std::max(joined.Ranges.back().End, range.End);
-      }
-      else
-      {
-        joined.Ranges.push_back(range);
-      }
-    }
-    joined.Begins.push_back(joined.Ranges.size());
-  }
-  return joined;
 }
 
 } // namespace deformvolume

@@ -27,17 +27,34 @@ class BrickPoints
 {
 public:
   BrickPoints() = default;
-  /// From links or runs. tetrahedra: as on the device (DEFORMVOLUME_NODE_PLACES).
-  static BrickPoints FromLinks(const BrickGrid& grid, const VertexLink* links,
-    const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
-  /// rest: 15 numbers a record, and owners: the tetrahedron of each (RunMapping.cl).
-  static BrickPoints FromRuns(const BrickGrid& grid, const VertexRun* runs,
-    const std::uint32_t* rowBegins, const double* rest, const std::int32_t* owners,
-    const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
+  /// The tetrahedra of a mesh as on the device (DEFORMVOLUME_NODE_PLACES).
+  struct Mesh
+  {
+    const Tetrahedron* Tetrahedra;
+    std::size_t NumberOfTetrahedra;
+    std::size_t NumberOfNodes;
+  };
+  /// Runs as on the device, see RunMapping.cl and RunEvaluation.cl.
+  struct Runs
+  {
+    const VertexRun* First;
+    const std::uint32_t* RowRanges;
+    const double* Rest;
+    const std::int32_t* Owners;
+  };
+  ///@{
+  /// From links or runs. wanted: the bricks to look at, which are then counted in this order; null:
+  /// all of them.
+  static BrickPoints FromLinks(const BrickGrid& grid, const VertexLink* links, const Mesh& mesh,
+    const std::vector<std::size_t>* wanted = nullptr);
+  static BrickPoints FromRuns(const BrickGrid& grid, const Runs& runs, const Mesh& mesh,
+    const std::vector<std::size_t>* wanted = nullptr);
+  ///@}
   static BrickPoints FromField(const BrickGrid& grid, const FieldParameters& field);
-  /// Of groups of bricks: the points that any of a group has. groups: the group of each brick. They
-  /// are for AnyOf and IsApart only.
-  BrickPoints Join(const std::vector<std::size_t>& groups, std::size_t numberOfGroups) const;
+  /// Of groups of bricks: the points that any of a group has. They are for AnyOf and IsApart only.
+  BrickPoints Join(const std::vector<std::vector<std::size_t>>& groups) const;
+  /// Some bricks of a mesh have other points now: those that were made for them alone.
+  void Replace(const std::vector<std::size_t>& bricks, const BrickPoints& points);
 
   bool IsEmpty() const { return this->Begins.empty() && this->Boxes.empty(); }
 
@@ -49,8 +66,11 @@ public:
     const std::function<bool(std::size_t)>& isNear) const;
   /// A brick depends on the nodes that its tetrahedra have got as well from now on.
   void AddPoints(const ChangesOfBrick& brick, const std::vector<TetrahedronChange>& changes);
-  /// Whether so many were added that all are better found anew.
-  bool AreOverloaded() const { return this->NumberOfAdded > this->Ranges.size() / 2 + 4096; }
+  /// Whether so many were added, or are left over, that all are better found anew.
+  bool AreOverloaded() const
+  {
+    return this->NumberOfAdded + 2 * this->NumberOfUnused > this->Ranges.size() / 2 + 4096;
+  }
 
   /// Whether body(begin, end) was true for one of the ranges that a brick's points are; no more are
   /// asked then.
@@ -59,7 +79,7 @@ public:
   {
     if (this->Boxes.empty())
     {
-      for (std::size_t i = this->Begins[brick]; i < this->Begins[brick + 1]; ++i)
+      for (std::size_t i = this->Begins[brick]; i < this->Ends[brick]; ++i)
       {
         const Range& range = this->Ranges[i];
         if (body(static_cast<std::size_t>(range.Begin), static_cast<std::size_t>(range.End)))
@@ -106,7 +126,7 @@ public:
         plane * static_cast<std::size_t>(box[4]) >= end;
     }
     const std::size_t first = this->Begins[brick];
-    const std::size_t past = this->Begins[brick + 1];
+    const std::size_t past = this->Ends[brick];
     if (!this->Added.empty() && !this->Added[brick].empty())
     {
       return false;
@@ -124,9 +144,12 @@ public:
   }
 
 private:
+  struct Needs;
   template <typename Visit>
-  void Collect(const BrickGrid& grid, const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
-    std::size_t numberOfNodes, Visit&& visit);
+  void Collect(
+    const BrickGrid& grid, const Mesh& mesh, const std::vector<std::size_t>* wanted, Visit&& visit);
+  /// Takes the points of the next brick, in ascending order.
+  void Append(const Needs& needs);
 
   // Points with numbers that follow each other: in meshes that are lattices they are many.
   struct Range
@@ -135,8 +158,10 @@ private:
     std::int32_t End;
   };
 
-  std::vector<std::size_t> Begins; // the ranges of each brick, in Ranges
+  std::vector<std::size_t> Begins; // the ranges of each brick, in Ranges: the first one
+  std::vector<std::size_t> Ends;   // and one past the last
   std::vector<Range> Ranges;
+  std::size_t NumberOfUnused = 0; // ranges of no brick any more
   std::vector<double> Excess;
   std::vector<std::vector<std::int32_t>> Added; // of each brick, in no order; or none at all
   std::size_t NumberOfAdded = 0;

@@ -121,29 +121,29 @@ static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters
 #elif MAPPING == MAPPING_RUNS
 
 #define MAPPING_PARAMETERS                                                                         \
-  __global const VertexRun *restrict runs, __global const uint *restrict rowBegins,                \
+  __global const VertexRun *restrict runs, __global const uint *restrict rowRanges,                \
     __global const TetrahedronRecord *restrict records, __global const RestPosition *restrict rest
-#define MAPPING_ARGUMENTS { runs, rowBegins, records, rest }
+#define MAPPING_ARGUMENTS { runs, rowRanges, records, rest }
 
 typedef struct
 {
   __global const VertexRun* Runs;
-  __global const uint* RowBegins;
+  __global const uint* RowRanges;
   __global const TetrahedronRecord* Records;
   __global const RestPosition* Rest;
 } Mapping;
 
-// The place in RowBegins of a row.
-static size_t RowIndex(int y, int z, const KernelParameters* p)
+// The runs of a row: the first one, and one past the last.
+static uint2 RangeOf(const Mapping* m, int y, int z, const KernelParameters* p)
 {
-  return (size_t)(z - p->ChunkFirst) * p->Size[1] + y;
+  return vload2((size_t)(z - p->ChunkFirst) * p->Size[1] + y, m->RowRanges);
 }
 
 // The run of a vertex.
 static VertexRun RunOf(const Mapping* m, int x, int y, int z, const KernelParameters* p)
 {
-  const size_t row = RowIndex(y, z, p);
-  return m->Runs[FindRun(m->Runs, m->RowBegins[row], m->RowBegins[row + 1], x)];
+  const uint2 range = RangeOf(m, y, z, p);
+  return m->Runs[FindRun(m->Runs, range.x, range.y, x)];
 }
 
 static float4 Displacement(const Mapping* m, int x, int y, int z, const KernelParameters* p)

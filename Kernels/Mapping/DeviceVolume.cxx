@@ -45,6 +45,7 @@ DeviceVolume::DeviceVolume(OpenCLContext& context, const cl::CommandQueue& queue
   , Shape(voxelGrid)
   , Bricks(voxelGrid)
   , AllocationLimit(allocationLimit)
+  , Mapping(context, queue, this->Bricks.Size, allocationLimit)
 {
   const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
   const std::uint64_t planeBytes =
@@ -95,22 +96,12 @@ cl::Buffer DeviceVolume::MakeRestPositions() const
     positions.size() * sizeof(RestPosition), positions.data());
 }
 
-void DeviceVolume::CheckAllocation(std::uint64_t bytes) const
-{
-  if (bytes > this->AllocationLimit)
-  {
-    throw Error("An array of the volume needs " + std::to_string(bytes) +
-      " bytes in one piece, and the device gives no more than " +
-      std::to_string(this->AllocationLimit) + ".");
-  }
-}
-
 cl::Buffer DeviceVolume::Send(const void* data, std::size_t bytesPerElement,
   std::int64_t elementsPerLayer, std::int64_t begin, std::int64_t end, const cl::Buffer& previous)
 {
   const std::uint64_t layerBytes = static_cast<std::uint64_t>(elementsPerLayer) * bytesPerElement;
   const std::uint64_t bytes = layerBytes * static_cast<std::uint64_t>(end - begin);
-  this->CheckAllocation(bytes);
+  CheckAllocation(bytes, this->AllocationLimit);
   // No buffer is of no bytes.
   const std::uint64_t room = std::max<std::uint64_t>(bytes, bytesPerElement);
   cl::Buffer buffer = previous;
@@ -273,158 +264,41 @@ const std::vector<cl::Buffer>& DeviceVolume::GetArrays(const VolumeChunk& chunk)
   return chunk.Arrays;
 }
 
-void DeviceVolume::SendLinks(VolumeChunk& chunk, const VertexLink* links, const MeshOrder& order)
-{
-  const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
-  const auto bytesOf = [&](std::int64_t planes)
-  { return static_cast<std::uint64_t>(planes * plane) * sizeof(VertexLink); };
-  this->CheckAllocation(bytesOf(chunk.PlanesEnd - chunk.PlanesBegin));
-  Reserve(this->Context, chunk.Links, bytesOf(chunk.PlanesEnd - chunk.PlanesBegin));
-  // Some planes after the others: a device with its own memory needs room for them on the host.
-  constexpr std::int64_t linksAtOnce = 1 << 20;
-  const std::int64_t step = std::max<std::int64_t>(1, linksAtOnce / plane);
-  for (std::int64_t first = chunk.PlanesBegin; first < chunk.PlanesEnd; first += step)
-  {
-    const std::int64_t planes = std::min<std::int64_t>(step, chunk.PlanesEnd - first);
-    auto* const sent = static_cast<VertexLink*>(this->Queue.enqueueMapBuffer(chunk.Links, CL_TRUE,
-      CL_MAP_WRITE_INVALIDATE_REGION, bytesOf(first - chunk.PlanesBegin), bytesOf(planes)));
-    ParallelForParts(static_cast<std::size_t>(planes * plane), 1 << 16,
-      [&](std::size_t begin, std::size_t end)
-      {
-        for (std::size_t i = begin; i < end; ++i)
-        {
-          VertexLink link = links[first * plane + static_cast<std::int64_t>(i)];
-          link.Tetrahedron =
-            link.Tetrahedron < 0 ? -1 : MeshOrder::Get(order.Tetrahedra, link.Tetrahedron);
-          sent[i] = link;
-        }
-      });
-    this->Queue.enqueueUnmapMemObject(chunk.Links, sent);
-    this->Queue.finish();
-  }
-}
-
 void DeviceVolume::SetLinks(const VertexLink* links, const MeshOrder& order)
 {
   this->SetNodePlaces({});
   const QueueGuard guard(this->Queue);
-  this->ForgetRuns();
-  this->WithLinks = false; // until all of them are there
-  this->AllLinked = std::all_of(links, links + GetNumberOfPoints(this->Shape.VertexExtent),
-    [](const VertexLink& link) { return link.Tetrahedron >= 0; });
   this->States.Forget();
-  for (VolumeChunk& chunk : this->Chunks)
-  {
-    this->SendLinks(chunk, links, order);
-  }
-  this->WithLinks = true;
-}
-
-void DeviceVolume::ForgetRuns()
-{
-  for (VolumeChunk& chunk : this->Chunks)
-  {
-    chunk.Runs = cl::Buffer();
-    chunk.RowBegins = cl::Buffer();
-  }
-  this->RestTetrahedra = cl::Buffer();
-  this->RecordOwners = cl::Buffer();
-  this->Records = cl::Buffer();
-  this->RunBytes = 0;
+  this->Mapping.SetLinks(this->Chunks, links, order);
 }
 
 void DeviceVolume::ForgetMesh()
 {
   this->SetNodePlaces({});
-  this->ForgetRuns();
-  for (VolumeChunk& chunk : this->Chunks)
-  {
-    chunk.Links = cl::Buffer();
-  }
-  this->WithLinks = false;
+  this->Mapping.Forget(this->Chunks);
   this->States.Forget();
 }
 
 void DeviceVolume::SetRuns(const VertexRuns& runs, const MeshOrder& order)
 {
-  static_assert(
-    sizeof(VertexRun) == 8 && sizeof(TetrahedronRecord) == 64, "as the kernels have it");
   this->ForgetMesh();
-  this->AllLinked = std::all_of(
-    runs.Runs.begin(), runs.Runs.end(), [](const VertexRun& run) { return run.Tetrahedron >= 0; });
-  const std::int64_t rows = this->GetSize(1);
-  for (VolumeChunk& chunk : this->Chunks)
-  {
-    std::vector<std::uint32_t> begins;
-    const QueueGuard guard(this->Queue);
-    const auto first = runs.RowBegins.begin() + rows * chunk.PlanesBegin;
-    const auto last = runs.RowBegins.begin() + rows * chunk.PlanesEnd;
-    chunk.Runs = this->Send(runs.Runs.data(), sizeof(VertexRun), 1, *first, *last, chunk.Runs);
-    begins.assign(first, last + 1);
-    for (std::uint32_t& begin : begins)
-    {
-      begin -= *first;
-    }
-    chunk.RowBegins = this->Send(begins.data(), sizeof(std::uint32_t), 1, 0,
-      static_cast<std::int64_t>(begins.size()), chunk.RowBegins);
-  }
-  this->SendRecords(runs.Tetrahedra, order);
-  this->RunBytes = GetBytes(runs);
+  this->Mapping.SetRuns(this->Chunks, runs, order);
 }
 
-void DeviceVolume::SendRecords(
-  const std::vector<RestTetrahedron>& tetrahedra, const MeshOrder& order)
+std::vector<Extent> DeviceVolume::UpdateMapping(
+  const MappingUpdate& update, const MeshOrder& order, const std::vector<std::int32_t>& removed)
 {
-  std::vector<double> values;
-  std::vector<std::int32_t> owners;
-  values.reserve(15 * tetrahedra.size());
-  owners.reserve(tetrahedra.size());
-  for (const RestTetrahedron& tetrahedron : tetrahedra)
+  this->Queue.finish(); // nothing uses what is let go
+  const Extent& extent = this->Shape.VertexExtent;
+  const std::array<int, 3> first{ { extent[0], extent[2], extent[4] } };
+  const bool wereAllLinked = this->Mapping.AreAllLinked();
+  std::vector<Extent> changes = this->Mapping.Update(this->Chunks, update, first, order, removed);
+  if (wereAllLinked != this->Mapping.AreAllLinked())
   {
-    values.insert(values.end(), tetrahedron.Origin.begin(), tetrahedron.Origin.end());
-    values.insert(values.end(), tetrahedron.Weights.begin(), tetrahedron.Weights.end());
-    for (const auto& gradient : tetrahedron.Gradients)
-    {
-      values.insert(values.end(), gradient.begin(), gradient.end());
-    }
-    owners.push_back(MeshOrder::Get(order.Tetrahedra, tetrahedron.Tetrahedron));
+    this->States.Forget(); // there may be none
   }
-  const auto size = static_cast<std::int64_t>(tetrahedra.size());
-  std::vector<float> rounded;
-  const QueueGuard guard(this->Queue);
-  if (HasDouble(this->Context))
-  {
-    this->RestTetrahedra =
-      this->Send(values.data(), 15 * sizeof(double), 1, 0, size, this->RestTetrahedra);
-  }
-  else
-  {
-    rounded.assign(values.begin(), values.end());
-    this->RestTetrahedra =
-      this->Send(rounded.data(), 15 * sizeof(float), 1, 0, size, this->RestTetrahedra);
-  }
-  this->RecordOwners =
-    this->Send(owners.data(), sizeof(std::int32_t), 1, 0, size, this->RecordOwners);
-  this->Records = cl::Buffer(this->Context.GetContext(), CL_MEM_READ_WRITE,
-    (tetrahedra.size() + 1) * sizeof(TetrahedronRecord));
-  this->NumberOfRecords = static_cast<cl_uint>(size);
-  this->RecordsChanged = true;
-}
-
-cl::Event DeviceVolume::EvaluateTetrahedra(
-  const cl::Program& mapping, const cl::Buffer& tetrahedra, const cl::Buffer& nodes)
-{
-  cl::Kernel kernel(mapping, "EvaluateTetrahedra");
-  kernel.setArg(0, this->RestTetrahedra);
-  kernel.setArg(1, this->RecordOwners);
-  kernel.setArg(2, tetrahedra);
-  kernel.setArg(3, nodes);
-  kernel.setArg(4, this->Records);
-  kernel.setArg(5, this->NumberOfRecords);
-  constexpr std::size_t group = 64;
-  const std::size_t items = (this->NumberOfRecords + group) / group * group;
-  this->RecordsChanged = false;
-  return this->Context.Launch(this->Queue, kernel, cl::NDRange(items), cl::NDRange(group));
+  this->States.ChangeSources(changes);
+  return changes;
 }
 
 std::vector<Extent> DeviceVolume::SetBlanked(
@@ -487,7 +361,7 @@ std::vector<Extent> DeviceVolume::UpdateBridges(MappingForm mapping, const cl::B
     // Any buffer stands in for a missing one.
     this->Bridges.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
       { program, [&](cl::Kernel& kernel) { return set(kernel, chunk); },
-        this->HasRuns() ? this->RecordOwners : this->RestPositions, tetrahedra,
+        this->HasRuns() ? this->Mapping.GetRecords().GetOwners() : this->RestPositions, tetrahedra,
         this->Active.HasBuffers() ? chunk.Active : this->RestPositions, this->Active.HasBuffers() },
       changes);
   }
@@ -518,35 +392,6 @@ KernelParameters DeviceVolume::GetParameters(const VolumeChunk& chunk) const
   return p;
 }
 
-BrickPoints DeviceVolume::MakeBrickPoints(
-  const cl::Buffer& tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes) const
-{
-  const VolumeChunk& chunk = this->Chunks.front();
-  const MappedBuffer<const Tetrahedron> places(this->Queue, tetrahedra, CL_MAP_READ);
-  if (!this->HasRuns())
-  {
-    const MappedBuffer<const VertexLink> links(this->Queue, chunk.Links, CL_MAP_READ);
-    return BrickPoints::FromLinks(
-      this->Bricks.GetSubBricks(), links.Get(), places.Get(), numberOfTetrahedra, numberOfNodes);
-  }
-  const MappedBuffer<const VertexRun> runs(this->Queue, chunk.Runs, CL_MAP_READ);
-  const MappedBuffer<const std::uint32_t> begins(this->Queue, chunk.RowBegins, CL_MAP_READ);
-  const MappedBuffer<const std::int32_t> owners(this->Queue, this->RecordOwners, CL_MAP_READ);
-  std::vector<double> rest(15 * std::size_t{ this->NumberOfRecords });
-  if (HasDouble(this->Context))
-  {
-    const MappedBuffer<const double> records(this->Queue, this->RestTetrahedra, CL_MAP_READ);
-    std::copy_n(records.Get(), rest.size(), rest.begin());
-  }
-  else
-  {
-    const MappedBuffer<const float> records(this->Queue, this->RestTetrahedra, CL_MAP_READ);
-    std::copy_n(records.Get(), rest.size(), rest.begin());
-  }
-  return BrickPoints::FromRuns(this->Bricks.GetSubBricks(), runs.Get(), begins.Get(), rest.data(),
-    owners.Get(), places.Get(), numberOfTetrahedra, numberOfNodes);
-}
-
 cl::NDRange DeviceVolume::GetVertexRange(int planes) const
 {
   const std::size_t group = this->GetVertexGroup()[0];
@@ -570,7 +415,7 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,
     return;
   }
   this->WithState = this->HasBlanked() || this->HasActive() || this->HasDistances() ||
-    !(this->HasMesh() ? this->AllLinked : movesAll);
+    !(this->HasMesh() ? this->Mapping.AreAllLinked() : movesAll);
   if (!this->WithState)
   {
     this->States.Release(this->Chunks);
@@ -590,13 +435,12 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,
 
 std::uint64_t DeviceVolume::GetMemory() const
 {
-  std::uint64_t bytes = deformvolume::GetMemory(this->RestPositions) +
-    deformvolume::GetMemory(this->RestTetrahedra) + deformvolume::GetMemory(this->RecordOwners) +
-    deformvolume::GetMemory(this->Records);
+  std::uint64_t bytes =
+    deformvolume::GetMemory(this->RestPositions) + this->Mapping.GetRecords().GetMemory();
   for (const VolumeChunk& chunk : this->Chunks)
   {
     bytes += deformvolume::GetMemory(chunk.Joined) + deformvolume::GetMemory(chunk.Links) +
-      deformvolume::GetMemory(chunk.Runs) + deformvolume::GetMemory(chunk.RowBegins) +
+      deformvolume::GetMemory(chunk.Runs) + deformvolume::GetMemory(chunk.RowRanges) +
       deformvolume::GetMemory(chunk.State) + deformvolume::GetMemory(chunk.Blanked) +
       deformvolume::GetMemory(chunk.Active) + deformvolume::GetMemory(chunk.Distances);
     for (const cl::Buffer& array : chunk.Arrays)

@@ -4,6 +4,7 @@
 
 #include "BrickPoints.h"
 #include "BridgeMask.h"
+#include "DeviceMapping.h"
 #include "DeviceMask.h"
 #include "Extent.h"
 #include "HostMemory.h"
@@ -63,6 +64,9 @@ public:
   /// The runs were checked (CheckRuns).
   void SetRuns(const VertexRuns& runs, const MeshOrder& order = {});
   ///@}
+  /// Tetrahedra of the mesh were replaced by others: see DeviceMapping::Update.
+  std::vector<Extent> UpdateMapping(
+    const MappingUpdate& update, const MeshOrder& order, const std::vector<std::int32_t>& removed);
   /// Frees the links or the runs.
   void ForgetMesh();
   ///@{
@@ -111,23 +115,18 @@ public:
   {
     return this->HasDistances() ? chunk.Distances : this->RestPositions;
   }
-  bool HasMesh() const { return this->WithLinks || this->RunBytes > 0; }
-  bool HasRuns() const { return this->RunBytes > 0; }
+  bool HasMesh() const { return this->Mapping.HasLinks() || this->Mapping.HasRuns(); }
+  bool HasRuns() const { return this->Mapping.HasRuns(); }
   /// See GetRunBytes in VertexRuns.h; 0 without runs.
-  std::uint64_t GetRunBytes() const { return this->RunBytes; }
+  std::uint64_t GetRunBytes() const { return this->Mapping.GetRunBytes(); }
   const std::vector<VolumeChunk>& GetChunks() const { return this->Chunks; }
 
   /// For each index on x, then y, then z the undeformed position (RestPosition in
   /// DeformationMapping.cl).
   const cl::Buffer& GetRestPositions() const { return this->RestPositions; }
 
-  /// The record of each tetrahedron that the runs refer to (TetrahedronRecord), after
-  /// EvaluateTetrahedra, which is due after the nodes have moved.
-  const cl::Buffer& GetRecords() const { return this->Records; }
-  bool NeedsRecords() const { return this->RecordsChanged; }
-  void ForgetRecords() { this->RecordsChanged = true; }
-  cl::Event EvaluateTetrahedra(
-    const cl::Program& mapping, const cl::Buffer& tetrahedra, const cl::Buffer& nodes);
+  /// Those that the runs refer to.
+  TetrahedronRecords& GetRecords() { return this->Mapping.GetRecords(); }
 
   /// Global and work-group size of a launch over the vertices of so many planes.
   cl::NDRange GetVertexRange(int planes) const;
@@ -135,9 +134,13 @@ public:
 
   const BrickGrid& GetBricks() const { return this->Bricks; }
   /// Those of the sub-bricks, of a mesh, where the voxel grid is one chunk. Devices with memory of
-  /// their own copy the static mapping to the host for that.
-  BrickPoints MakeBrickPoints(
-    const cl::Buffer& tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes) const;
+  /// their own copy the static mapping to the host for that. See DeviceMapping.
+  BrickPoints MakeBrickPoints(const cl::Buffer& tetrahedra, std::size_t numberOfNodes,
+    const std::vector<std::size_t>* wanted = nullptr) const
+  {
+    return this->Mapping.MakeBrickPoints(
+      this->Chunks.front(), this->Bricks.GetSubBricks(), tetrahedra, numberOfNodes, wanted);
+  }
 
   /// Brings the state of the vertices up to date, where anything changed that it depends on.
   /// mapping: the program of the deformation mapping. set: sets a kernel's arguments of the mapping
@@ -159,16 +162,11 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
-  /// Throws an Error where a device gives no buffer of so many bytes.
-  void CheckAllocation(std::uint64_t bytes) const;
   /// Reads the data until the queue has finished.
   cl::Buffer Send(const void* data, std::size_t bytesPerElement, std::int64_t elementsPerLayer,
     std::int64_t begin, std::int64_t end, const cl::Buffer& previous);
   /// Lets go of the buffers over memory of the host.
   void LeaveArrays();
-  void ForgetRuns();
-  void SendLinks(VolumeChunk& chunk, const VertexLink* links, const MeshOrder& order);
-  void SendRecords(const std::vector<RestTetrahedron>& tetrahedra, const MeshOrder& order);
   cl::Buffer MakeRestPositions() const;
 
   OpenCLContext& Context;
@@ -181,20 +179,13 @@ private:
   std::vector<BufferInPlace> ArraysInPlace; // one for each array, of no bytes where it was sent
   VolumeChunk* ChunkInPlace = nullptr;      // the one that has buffers over them
   cl::Buffer RestPositions;
-  bool WithLinks = false;
-  std::uint64_t RunBytes = 0;
-  cl::Buffer RestTetrahedra; // of each record 15 reals, see RunMapping.cl
-  cl::Buffer RecordOwners;   // and its tetrahedron, 4 bytes
-  cl::Buffer Records;
-  cl_uint NumberOfRecords = 0;
-  bool RecordsChanged = true;
+  DeviceMapping Mapping;
   DeviceMask Blanked{ DeviceMask::Kind::BlankedVertices };
   DeviceMask Active{ DeviceMask::Kind::ActiveTetrahedra };
   DeviceMask Distances{ DeviceMask::Kind::BoundaryDistances };
   BridgeMask Bridges;
   VertexStates States;
   bool WithState = true;
-  bool AllLinked = false; // no link or run says that a voxel is outside
 };
 
 } // namespace deformvolume

@@ -12,7 +12,6 @@
 #include "WorkDevice.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 namespace deformvolume
@@ -84,6 +83,7 @@ void DisplacementSource::SendTetrahedra(const Tetrahedron* tetrahedra,
     this->Device.Send(places.data(), numberOfTetrahedra * sizeof(Tetrahedron), this->Tetrahedra);
   this->NumberOfNodes = numberOfNodes;
   this->Order = std::move(order);
+  this->FreeNumbers.clear();
   if (this->Nodes.GetNumberOfPoints() != numberOfNodes)
   {
     this->Nodes.Clear();
@@ -97,141 +97,6 @@ void DisplacementSource::SendTetrahedra(const Tetrahedron* tetrahedra,
 bool DisplacementSource::HasMesh() const
 {
   return this->Volume.HasMesh();
-}
-
-std::vector<TetrahedronChange> DisplacementSource::FindChanges(const Tetrahedron* tetrahedra) const
-{
-  std::vector<std::int32_t> nodes(this->Order.Nodes.size()); // by the numbers of the device
-  for (std::size_t node = 0; node < nodes.size(); ++node)
-  {
-    nodes[this->Order.Nodes[node]] = static_cast<std::int32_t>(node);
-  }
-  const MappedBuffer<const Tetrahedron> places(
-    this->Device.GetQueue(), this->Tetrahedra, CL_MAP_READ);
-  std::vector<TetrahedronChange> changes;
-  for (std::size_t t = 0; t < this->NumberOfTetrahedra; ++t)
-  {
-    TetrahedronChange change;
-    change.Number = static_cast<std::int32_t>(t);
-    const Tetrahedron& last = places.Get()[this->Order.Tetrahedra[t]];
-    std::transform(last.begin(), last.end(), change.Before.begin(),
-      [&](std::int32_t place) { return nodes[place / DEFORMVOLUME_NODE_PLACES]; });
-    change.After = tetrahedra[t];
-    if (change.After != change.Before)
-    {
-      changes.push_back(change);
-    }
-  }
-  return changes;
-}
-
-void DisplacementSource::CheckChanges(
-  const std::vector<TetrahedronChange>& changes, std::size_t numberOfNodes) const
-{
-  const auto areNodes = [](const Tetrahedron& tetrahedron, std::size_t count)
-  {
-    return std::all_of(tetrahedron.begin(), tetrahedron.end(),
-      [=](std::int32_t node) { return node >= 0 && static_cast<std::size_t>(node) < count; });
-  };
-  for (const TetrahedronChange& change : changes)
-  {
-    const std::string name = "The tetrahedron " + std::to_string(change.Number);
-    if (change.Number < 0 || static_cast<std::size_t>(change.Number) >= this->NumberOfTetrahedra)
-    {
-      throw Error(name + " is to have other nodes, but there are " +
-        std::to_string(this->NumberOfTetrahedra) + " tetrahedra.");
-    }
-    if (!areNodes(change.After, numberOfNodes) ||
-      !areNodes(change.Before, this->Order.Nodes.size()))
-    {
-      throw Error(name +
-        " is to have other nodes, and one of these, or of those that it had, is "
-        "none: there are " +
-        std::to_string(numberOfNodes) + " nodes now.");
-    }
-  }
-}
-
-void DisplacementSource::SendChanges(const std::vector<TetrahedronChange>& changes)
-{
-  const auto place = [](const Tetrahedron& nodes)
-  {
-    Tetrahedron places = nodes;
-    for (std::int32_t& node : places)
-    {
-      node *= DEFORMVOLUME_NODE_PLACES;
-    }
-    return places;
-  };
-  const cl::CommandQueue& queue = this->Device.GetQueue();
-  if (this->Device.GetDevice().IsProcessor)
-  {
-    const MappedBuffer<Tetrahedron> sent(queue, this->Tetrahedra, CL_MAP_READ | CL_MAP_WRITE);
-    for (const TetrahedronChange& change : changes)
-    {
-      sent.Get()[change.Number] = place(change.After);
-    }
-    return;
-  }
-  std::vector<Tetrahedron> places;
-  places.reserve(changes.size()); // they stay until they are sent
-  const QueueGuard guard(queue);
-  for (const TetrahedronChange& change : changes)
-  {
-    places.push_back(place(change.After));
-    queue.enqueueWriteBuffer(this->Tetrahedra, CL_FALSE,
-      static_cast<std::size_t>(change.Number) * sizeof(Tetrahedron), sizeof(Tetrahedron),
-      &places.back());
-  }
-}
-
-void DisplacementSource::ChangeConnectivity(const Tetrahedron* tetrahedra,
-  std::size_t numberOfTetrahedra, std::size_t numberOfNodes,
-  const std::vector<TetrahedronChange>* changes)
-{
-  if (!this->HasMesh() || numberOfTetrahedra != this->NumberOfTetrahedra || numberOfNodes == 0)
-  {
-    throw Error("The tetrahedra are not those of the mesh that was set: call SetMesh.");
-  }
-  std::vector<TetrahedronChange> numbered = changes ? *changes : this->FindChanges(tetrahedra);
-  this->CheckChanges(numbered, numberOfNodes);
-  for (std::size_t node = this->Order.Nodes.size(); node < numberOfNodes; ++node)
-  {
-    this->Order.Nodes.push_back(static_cast<std::int32_t>(node));
-  }
-  this->Nodes.Reserve(numberOfNodes);
-  if (this->Observer.IsTracking() && !this->Observer.HasPoints())
-  {
-    this->Observer.SetPoints(this->MakeBrickPoints());
-  }
-  for (TetrahedronChange& change : numbered)
-  {
-    change.Number = this->Order.Tetrahedra[change.Number];
-    for (Tetrahedron* nodes : { &change.Before, &change.After })
-    {
-      for (std::int32_t& node : *nodes)
-      {
-        node = this->Order.Nodes[node];
-      }
-    }
-  }
-  std::optional<std::vector<Extent>> boxes;
-  if (this->Observer.HasPoints())
-  {
-    this->Nodes.Visit(
-      [&](const float* last) { boxes = this->Observer.ChangeTetrahedra(numbered, last); });
-  }
-  this->SendChanges(numbered);
-  if (boxes)
-  {
-    this->Volume.ChangeOwners(*boxes);
-  }
-  else
-  {
-    this->Volume.ForgetBridges();
-  }
-  this->NumberOfNodes = numberOfNodes;
-  this->Volume.ForgetRecords();
 }
 
 void DisplacementSource::SetNodePlaces(const std::int32_t* places)
@@ -296,7 +161,7 @@ void DisplacementSource::SendNodes(const float* displacements, const PointRanges
     [this] { return this->MakeBrickPoints(); });
   this->NodesSet = true;
   this->LastSent = true;
-  this->Volume.ForgetRecords();
+  this->Volume.GetRecords().Forget();
 }
 
 void DisplacementSource::SetField(const DisplacementField& field, const PointRanges* changes)
@@ -537,8 +402,8 @@ cl_uint DisplacementSource::SetMappingArguments(cl::Kernel& kernel, const Volume
   if (this->GetMappingForm() == MappingForm::Runs)
   {
     kernel.setArg(i++, chunk.Runs);
-    kernel.setArg(i++, chunk.RowBegins);
-    kernel.setArg(i++, this->Volume.GetRecords());
+    kernel.setArg(i++, chunk.RowRanges);
+    kernel.setArg(i++, this->Volume.GetRecords().Get());
   }
   else if (this->GetMappingForm() == MappingForm::Links)
   {
@@ -558,9 +423,10 @@ cl_uint DisplacementSource::SetMappingArguments(cl::Kernel& kernel, const Volume
 void DisplacementSource::PrepareMapping(std::vector<cl::Event>& events)
 {
   const cl::Program mapping = GetMappingProgram(this->Device.GetContext(), this->GetMappingForm());
-  if (this->Volume.HasRuns() && this->Volume.NeedsRecords())
+  TetrahedronRecords& records = this->Volume.GetRecords();
+  if (this->Volume.HasRuns() && !records.AreCurrent())
   {
-    events.push_back(this->Volume.EvaluateTetrahedra(mapping, this->Tetrahedra, this->Nodes.Get()));
+    events.push_back(records.Evaluate(mapping, this->Tetrahedra, this->Nodes.Get()));
   }
   this->Volume.UpdateState(mapping, this->Field.Extrapolate || this->Field.SameGrid,
     [this](cl::Kernel& kernel, const VolumeChunk& chunk)
@@ -570,7 +436,7 @@ void DisplacementSource::PrepareMapping(std::vector<cl::Event>& events)
 BrickPoints DisplacementSource::MakeBrickPoints() const
 {
   return this->Volume.HasMesh()
-    ? this->Volume.MakeBrickPoints(this->Tetrahedra, this->NumberOfTetrahedra, this->NumberOfNodes)
+    ? this->Volume.MakeBrickPoints(this->Tetrahedra, this->Order.Nodes.size())
     : BrickPoints::FromField(this->Volume.GetBricks().GetSubBricks(), this->Field);
 }
 

@@ -7,6 +7,7 @@
 #include "HostMemory.h"
 #include "KernelParameters.h"
 #include "MappingProgram.h"
+#include "MappingUpdate.h"
 #include "MeshOrder.h"
 #include "Tetrahedron.h"
 #include "VectorReading.h"
@@ -50,6 +51,10 @@ public:
   /// See VolumeDeformer; the mesh is the one that was set.
   void ChangeConnectivity(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const std::vector<TetrahedronChange>* changes);
+  /// Returns boxes that hold all voxels which have come into the mesh, or have left it, in local
+  /// indices.
+  std::vector<Extent> ReplaceTetrahedra(const Tetrahedron* tetrahedra,
+    std::size_t numberOfTetrahedra, std::size_t numberOfNodes, const MappingUpdate& update);
   void SetNodePlaces(const std::int32_t* places);
   /// Three floats a node, in output voxels. changes: see VolumeDeformer::SetNodeDisplacements.
   void SetNodeDisplacements(const float* displacements, const PointRanges* changes);
@@ -106,6 +111,12 @@ private:
   void CheckChanges(const std::vector<TetrahedronChange>& changes, std::size_t numberOfNodes) const;
   void SendChanges(const std::vector<TetrahedronChange>& changes);
   void SendNodes(const float* displacements, const PointRanges* changes);
+  /// There are so many nodes now; those that are new get numbers of the device.
+  void SetNumberOfNodes(std::size_t numberOfNodes);
+  /// Gives the tetrahedra that are new numbers of the device; returns those that are not in use any
+  /// more. added: filled with the tetrahedra that are new, all by the numbers of the device.
+  std::vector<std::int32_t> Renumber(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+    const MappingUpdate& update, std::vector<TetrahedronChange>& added);
   void ForgetNodes();
   void ForgetField();
   bool HasField() const { return this->GetFieldVectors()() != nullptr; }
@@ -129,7 +140,8 @@ private:
   cl::Buffer Tetrahedra; // their nodes (DEFORMVOLUME_NODE_PLACES), in the order of the device
   std::size_t NumberOfTetrahedra = 0;
   std::size_t NumberOfNodes = 0;
-  MeshOrder Order; // of all nodes that there have been
+  MeshOrder Order;                       // of all nodes that there have been
+  std::vector<std::int32_t> FreeNumbers; // of the device, that no tetrahedron has any more
   DisplacementBuffer Nodes;
   bool NodesSet = false;
 

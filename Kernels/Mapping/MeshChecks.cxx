@@ -2,7 +2,9 @@
 #include "MeshChecks.h"
 
 #include "Error.h"
+#include "VertexRuns.h"
 
+#include <algorithm>
 #include <string>
 
 namespace deformvolume
@@ -40,6 +42,56 @@ void CheckLinks(const VertexLink* links, std::int64_t count, std::size_t numberO
         std::to_string(numberOfTetrahedra) + ".");
     }
   }
+}
+
+void CheckMappingUpdate(const MappingUpdate& update, const VoxelGrid& voxelGrid,
+  std::size_t numberBefore, std::size_t numberAfter, bool byRuns)
+{
+  ForEachReplaced(update.Kept, static_cast<std::int32_t>(numberBefore),
+    static_cast<std::int32_t>(numberAfter),
+    [&](std::int32_t begin, std::int32_t end, std::int32_t newBegin, std::int32_t newEnd)
+    {
+      if (begin > end || newBegin > newEnd)
+      {
+        throw Error("The tetrahedra that are kept do not ascend from one to the next, of " +
+          std::to_string(numberBefore) + " that there were and " + std::to_string(numberAfter) +
+          " that there are.");
+      }
+    });
+  const auto hasNone = [](const KeptTetrahedra& kept) { return kept.Count < 1; };
+  if (std::any_of(update.Kept.begin(), update.Kept.end(), hasNone))
+  {
+    throw Error("No tetrahedra are kept where some are said to be.");
+  }
+  const Extent& extent = voxelGrid.VertexExtent;
+  std::int64_t voxels = 0;
+  std::int64_t rows = 0;
+  for (const Extent& box : update.Boxes)
+  {
+    bool isInside = box[0] == extent[0] && box[1] == extent[1];
+    for (int axis = 1; axis < 3; ++axis)
+    {
+      isInside &= box[2 * axis] >= extent[2 * axis] && box[2 * axis] <= box[2 * axis + 1] &&
+        box[2 * axis + 1] <= extent[2 * axis + 1];
+    }
+    if (!isInside)
+    {
+      throw Error("Voxels are to be mapped anew that are no whole rows of the volume.");
+    }
+    voxels += GetNumberOfPoints(box);
+    rows += GetSize(box, 1) * GetSize(box, 2);
+  }
+  if (byRuns && (rows > 0 || !update.Runs.Runs.empty()))
+  {
+    CheckRuns(update.Runs, static_cast<std::size_t>(rows), GetSize(extent, 0), numberAfter);
+    return;
+  }
+  if (!byRuns && static_cast<std::int64_t>(update.Links.size()) != voxels)
+  {
+    throw Error("There are links of " + std::to_string(update.Links.size()) + " voxels for " +
+      std::to_string(voxels) + ". A mapping by links stays one.");
+  }
+  CheckLinks(update.Links.data(), byRuns ? 0 : voxels, numberAfter);
 }
 
 } // namespace deformvolume

@@ -26,6 +26,11 @@ struct MeshOrder
   {
     return numbers.empty() ? static_cast<std::int32_t>(i) : numbers[i];
   }
+  /// Of the tetrahedron of a link, which may be none.
+  std::int32_t GetLinked(std::int32_t tetrahedron) const
+  {
+    return tetrahedron < 0 ? -1 : Get(this->Tetrahedra, static_cast<std::size_t>(tetrahedron));
+  }
 };
 
 /// In the order in which bricks are worked on, each row by row.

@@ -147,10 +147,9 @@ RestTetrahedron RunBuilder::MakeRest(std::int32_t tetrahedron, const glm::i64vec
   return rest;
 }
 
-RunBuilder::Estimate RunBuilder::EstimateRuns() const
+std::vector<std::int64_t> RunBuilder::ChooseTiles(const TileGrid& tiles)
 {
   constexpr std::int64_t most = 16;
-  const TetrahedronTiles& tiles = this->Linker.GetTiles();
   const std::int64_t count[2] = { tiles.GetNumberOfTiles(0), tiles.GetNumberOfTiles(1) };
   const std::int64_t samples = std::min(most, tiles.GetNumberOfTiles());
   std::vector<std::int64_t> chosen(samples);
@@ -167,39 +166,28 @@ RunBuilder::Estimate RunBuilder::EstimateRuns() const
         static_cast<std::int64_t>(y * static_cast<double>(count[0]));
     }
   }
-  std::vector<TileRuns> made(samples);
-  std::vector<std::int64_t> ofSlivers(samples, 0);
-  ParallelFor(0, samples, 1,
+  return chosen;
+}
+
+std::vector<TileSample> RunBuilder::SampleTiles(const std::vector<std::int64_t>& tiles) const
+{
+  std::vector<TileSample> samples(tiles.size());
+  ParallelFor(0, static_cast<std::int64_t>(tiles.size()), 1,
     [&](std::int64_t begin, std::int64_t end)
     {
       for (std::int64_t i = begin; i < end; ++i)
       {
-        made[i] = this->MakeTileRuns(chosen[i], tiles.GetVoxels(chosen[i]));
-        for (const VertexRun& run : made[i].Runs)
-        {
-          ofSlivers[i] += run.Tetrahedron >= 0 && this->IsSliver(run.Tetrahedron) ? 1 : 0;
-        }
+        const TileRuns made =
+          this->MakeTileRuns(tiles[i], this->Linker.GetTiles().GetVoxels(tiles[i]));
+        samples[i].Tile = tiles[i];
+        samples[i].Runs = static_cast<std::int64_t>(made.Runs.size());
+        samples[i].Rows = static_cast<std::int64_t>(made.RunsOfRow.size());
+        samples[i].RunsOfSlivers = std::count_if(made.Runs.begin(), made.Runs.end(),
+          [&](const VertexRun& run)
+          { return run.Tetrahedron >= 0 && this->IsSliver(run.Tetrahedron); });
       }
     });
-  double runs = 0.0;
-  double slivers = 0.0;
-  double rows = 0.0;
-  for (std::int64_t i = 0; i < samples; ++i)
-  {
-    runs += static_cast<double>(made[i].Runs.size());
-    slivers += static_cast<double>(ofSlivers[i]);
-    rows += static_cast<double>(made[i].RunsOfRow.size());
-  }
-  const std::int64_t allRows = GetSize(this->Voxels, 1) * GetSize(this->Voxels, 2);
-  const double factor = static_cast<double>(allRows) / rows;
-  const std::int64_t records =
-    std::min(static_cast<std::int64_t>(this->Tetrahedra.size()), tiles.GetNumberOfEntries());
-  Estimate estimate;
-  estimate.MeanLength = rows * static_cast<double>(GetSize(this->Voxels, 0)) / runs;
-  estimate.Bytes =
-    GetRunBytes(static_cast<std::uint64_t>(factor * runs), static_cast<std::uint64_t>(allRows),
-      static_cast<std::uint64_t>(records) + static_cast<std::uint64_t>(factor * slivers));
-  return estimate;
+  return samples;
 }
 
 void RunBuilder::Append(const std::vector<TileRuns>& tiles, const VoxelBox& firstBox,
@@ -284,6 +272,25 @@ VertexRuns RunBuilder::Build(const Extent& part, std::int64_t& numberOfInnerVoxe
       }
     }
     progress(static_cast<double>(end) / static_cast<double>(layers));
+  }
+  runs.RowBegins.push_back(static_cast<std::uint32_t>(runs.Runs.size()));
+  return runs;
+}
+
+VertexRuns RunBuilder::BuildTiles(
+  const std::vector<std::int64_t>& tiles, std::int64_t& numberOfInnerVoxels) const
+{
+  std::vector<TileRuns> made(tiles.size());
+  const auto getBox = [&](std::size_t i) { return this->Linker.GetTiles().GetVoxels(tiles[i]); };
+  ParallelForParts(tiles.size(), 1,
+    [&](std::size_t i, std::size_t) { made[i] = this->MakeTileRuns(tiles[i], getBox(i)); });
+  VertexRuns runs;
+  Numbering numbering(*this, this->Voxels, runs.Tetrahedra);
+  numberOfInnerVoxels = 0;
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+  {
+    numberOfInnerVoxels += made[i].InnerVoxels;
+    this->Append({ made[i] }, getBox(i), numbering, runs);
   }
   runs.RowBegins.push_back(static_cast<std::uint32_t>(runs.Runs.size()));
   return runs;

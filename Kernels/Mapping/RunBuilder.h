@@ -3,6 +3,7 @@
 #define DeformVolumeRunBuilder_h
 
 #include "Extent.h"
+#include "MappingSurvey.h"
 #include "Tetrahedron.h"
 #include "VertexRuns.h"
 #include "VoxelLinker.h"
@@ -26,20 +27,19 @@ public:
   RunBuilder(const VoxelLinker& linker, const Extent& voxels,
     const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra);
 
-  /// Voxels by runs, and the bytes that the mapping will take (GetRunBytes in VertexRuns.h), about:
-  /// from a sample of tiles, always the same ones. Voxels outside the mesh form runs, too.
-  struct Estimate
-  {
-    double MeanLength = 0.0;
-    std::uint64_t Bytes = 0;
-  };
-  Estimate EstimateRuns() const;
+  /// The tiles by which it is estimated how many runs there will be, always the same ones.
+  static std::vector<std::int64_t> ChooseTiles(const TileGrid& tiles);
+  /// What some tiles are found to have. Voxels outside the mesh form runs, too.
+  std::vector<TileSample> SampleTiles(const std::vector<std::int64_t>& tiles) const;
 
   /// numberOfInnerVoxels: of voxels with a tetrahedron. progress gets the fraction done and may
   /// throw. Throws Error where there are more runs than 32 bits count.
   /// part: voxels of the volume, whole rows.
   VertexRuns Build(const Extent& part, std::int64_t& numberOfInnerVoxels,
     const std::function<void(double)>& progress) const;
+  /// The runs of the rows of some tiles, one after the other, and of no other rows.
+  VertexRuns BuildTiles(
+    const std::vector<std::int64_t>& tiles, std::int64_t& numberOfInnerVoxels) const;
 
 private:
   struct TileRuns

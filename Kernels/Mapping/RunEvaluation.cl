@@ -2,7 +2,7 @@
 // The records of the tetrahedra that RunMapping.cl reads.
 //
 // Data: rest: for each record 15 reals, the origin, the weights of the first three nodes there, and the
-// gradient of each of these weights, an index a unit; owners: the tetrahedron of each record; tetrahedra: the
+// gradient of each of these weights, an index a unit; owners: the tetrahedron of each record, or -1 for one that is not in use; tetrahedra: the
 // places of their nodes (DEFORMVOLUME_NODE_PLACES).
 //
 // REAL is double where the device has it: the gradients of a thin tetrahedron are large, and only
@@ -17,7 +17,7 @@ __kernel void EvaluateTetrahedra(__global const REAL* restrict rest,
   const uint count)
 {
   const size_t id = get_global_id(0);
-  if (id >= count)
+  if (id >= count || owners[id] < 0)
   {
     return;
   }

@@ -6,9 +6,9 @@
 // weights: for each Deform the affine function of each tetrahedron is put into a record of 64 bytes
 // (TetrahedronRecord, RunEvaluation.cl), and a voxel costs three products and three sums an axis.
 //
-// Data: runs 8 bytes each; rowBegins 4 bytes a row of vertices (row = plane * Size[1] + y, counted
-// from the chunk's first plane), one more than rows: the runs of row r are rowBegins[r] to
-// rowBegins[r + 1]; the first begins at 0, and each ends where the next begins.
+// Data: runs 8 bytes each; rowRanges 8 bytes a row of vertices (row = plane * Size[1] + y, counted
+// from the chunk's first plane): the first of its runs, and one past its last; the first begins at 0,
+// and each ends where the next begins.
 
 #pragma OPENCL FP_CONTRACT OFF
 

@@ -35,7 +35,6 @@ StaticMappingBuilder::StaticMappingBuilder(const Extent& voxels, const glm::dvec
   , Spacing(spacing)
   , RestPoints(restPoints)
   , Tetrahedra(tetrahedra)
-  , Extrapolate(extrapolate)
 {
   if (form == StaticMappingForm::Runs && extrapolate)
   {
@@ -47,18 +46,18 @@ StaticMappingBuilder::StaticMappingBuilder(const Extent& voxels, const glm::dvec
     return;
   }
   this->Linker = std::make_unique<VoxelLinker>(this->Voxels, restPoints, tetrahedra);
-  if (form == StaticMappingForm::Links || extrapolate || !FitsRuns(voxels))
+  const TetrahedronTiles& tiles = this->Linker->GetTiles();
+  this->Survey.Form = form;
+  this->Survey.IsExtrapolated = extrapolate;
+  this->Survey.NumberOfTetrahedra = static_cast<std::int64_t>(tetrahedra.size());
+  this->Survey.NumberOfFlatTetrahedra = tiles.GetNumberOfFlatTetrahedra();
+  this->Survey.NumberOfEntries = tiles.GetNumberOfEntries();
+  if (form != StaticMappingForm::Links && !extrapolate && FitsRuns(voxels))
   {
-    return;
+    this->Survey.Samples = RunBuilder(*this->Linker, this->Voxels, restPoints, tetrahedra)
+                             .SampleTiles(RunBuilder::ChooseTiles(tiles));
   }
-  const RunBuilder::Estimate estimate =
-    RunBuilder(*this->Linker, this->Voxels, restPoints, tetrahedra).EstimateRuns();
-  const bool worthwhile = estimate.MeanLength >= LeastMeanRunLength &&
-    estimate.Bytes < static_cast<std::uint64_t>(size) * sizeof(VertexLink);
-  if (worthwhile || form == StaticMappingForm::Runs)
-  {
-    this->RunBytes = estimate.Bytes;
-  }
+  this->RunBytes = this->Survey.GetRunBytes(voxels);
 }
 
 StaticMappingBuilder::~StaticMappingBuilder() = default;
@@ -108,14 +107,14 @@ StaticMapping StaticMappingBuilder::Build(
   {
     this->BuildLinks(part, report, mapping);
   }
-  mapping.NumberOfFlatTetrahedra = this->Linker->GetTiles().GetNumberOfFlatTetrahedra();
+  mapping.NumberOfFlatTetrahedra = this->Survey.NumberOfFlatTetrahedra;
   return mapping;
 }
 
 void StaticMappingBuilder::BuildLinks(
   const Extent& part, const std::function<void(double)>& report, StaticMapping& mapping) const
 {
-  const double linkingDone = this->Extrapolate ? 0.6 : 1.0;
+  const double linkingDone = this->Survey.IsExtrapolated ? 0.6 : 1.0;
   mapping.Links.resize(GetNumberOfPoints(part));
   VoxelTarget<VertexLink> target;
   target.Data = mapping.Links.data();
@@ -147,7 +146,7 @@ void StaticMappingBuilder::BuildLinks(
     report(SortedFraction + (linkingDone - SortedFraction) * (step + 1) / steps);
   }
   mapping.NumberOfInnerVoxels = inner;
-  if (this->Extrapolate && inner > 0 && inner < GetNumberOfPoints(this->Voxels))
+  if (this->Survey.IsExtrapolated && inner > 0 && inner < GetNumberOfPoints(this->Voxels))
   {
     ExtrapolateLinks(this->Voxels, this->Spacing, this->RestPoints, this->Tetrahedra, mapping.Links,
       [&](double done) { report(linkingDone + (1.0 - linkingDone) * done); });

@@ -4,6 +4,7 @@
 
 #include "DeformVolumeExport.h"
 #include "Extent.h"
+#include "MappingSurvey.h"
 #include "Tetrahedron.h"
 #include "VertexLink.h"
 #include "VertexRuns.h"
@@ -19,20 +20,6 @@ namespace deformvolume
 {
 
 class VoxelLinker;
-
-/// Runs are made where they are so long on average, in voxels: below, finding the run of a voxel
-/// costs what reading less memory gains.
-constexpr double LeastMeanRunLength = 3.0;
-
-enum class StaticMappingForm
-{
-  /// Runs where they are long enough (LeastMeanRunLength, by a sample of the volume that is always
-  /// the same) and need less memory than links, and voxels are not extrapolated; else links.
-  Automatic,
-  Links,
-  /// Not where voxels are extrapolated, which needs to see all of them at once.
-  Runs
-};
 
 /// The static part of the deformation mapping: where each voxel of the volume lies in the
 /// tetrahedra of the deformation mesh at rest. In one of two forms.
@@ -76,6 +63,8 @@ public:
 
   /// Bytes of the runs, about; 0 for links.
   std::uint64_t GetRunBytes() const { return this->RunBytes; }
+  /// What a StaticMappingUpdater needs to know of the mapping.
+  const MappingSurvey& GetSurvey() const { return this->Survey; }
 
   /// Whether any tetrahedron holds a voxel of the volume: at once where one of the first does.
   bool HoldsVoxels() const;
@@ -97,7 +86,7 @@ private:
   const glm::dvec3 Spacing;
   const std::vector<glm::dvec3>& RestPoints;
   const std::vector<Tetrahedron>& Tetrahedra;
-  const bool Extrapolate;
+  MappingSurvey Survey;
   std::uint64_t RunBytes = 0;
   std::unique_ptr<VoxelLinker> Linker; // null for a volume without voxels
 };

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
+#include <limits>
 
 namespace deformvolume
 {
@@ -15,75 +15,51 @@ namespace deformvolume
 namespace
 {
 
-// Nodes farther away (in voxels) would not fit the wide integers; their weights, being floats,
-// would mean nothing either.
-constexpr double LargestIndex = 2147483648.0;
-
-bool IsWithinLimit(const Tetrahedron& tetrahedron, const std::vector<glm::dvec3>& restPoints)
+// Parts of the tetrahedra that a thread takes at a time, in their order.
+std::int64_t CountChunks(std::int64_t size)
 {
-  return std::all_of(tetrahedron.begin(), tetrahedron.end(),
-    [&restPoints](std::int32_t node)
+  return std::min<std::int64_t>(64, size);
+}
+
+// Calls body(chunk, begin, end) for parts of so many.
+template <typename Body>
+void ForEachChunk(std::int64_t size, Body&& body)
+{
+  const std::int64_t chunks = CountChunks(size);
+  ParallelFor(0, chunks, 1,
+    [&](std::int64_t begin, std::int64_t end)
     {
-      const glm::dvec3& point = restPoints[node];
-      return std::abs(point.x) <= LargestIndex && std::abs(point.y) <= LargestIndex &&
-        std::abs(point.z) <= LargestIndex;
+      for (std::int64_t chunk = begin; chunk < end; ++chunk)
+      {
+        body(chunk, size * chunk / chunks, size * (chunk + 1) / chunks);
+      }
     });
 }
 
 } // namespace
 
-template <typename Body>
-void TetrahedronTiles::ForEachTile(const Range& range, Body&& body) const
-{
-  for (std::int64_t z = range.Min[1]; z <= range.Max[1]; ++z)
-  {
-    for (std::int64_t y = range.Min[0]; y <= range.Max[0]; ++y)
-    {
-      body(z * this->Count[0] + y);
-    }
-  }
-}
-
 TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
   const std::vector<Tetrahedron>& tetrahedra, double margin)
-  : Voxels(voxels)
+  : TileGrid(voxels)
 {
-  const std::int64_t size = static_cast<std::int64_t>(tetrahedra.size());
-  const std::int64_t chunks = std::min<std::int64_t>(64, size);
-  const auto forEachChunk = [&](auto&& body)
-  {
-    ParallelFor(0, chunks, 1,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t chunk = begin; chunk < end; ++chunk)
-        {
-          body(chunk, size * chunk / chunks, size * (chunk + 1) / chunks);
-        }
-      });
-  };
-
-  this->ChooseSize();
-  const std::int64_t tiles = this->GetNumberOfTiles();
   std::vector<Range> ranges(tetrahedra.size());
-  std::vector<std::vector<std::int64_t>> counts(chunks, std::vector<std::int64_t>(tiles, 0));
   std::atomic<std::int64_t> flat{ 0 };
   std::atomic<bool> beyondLimit{ false };
-  forEachChunk(
-    [&](std::int64_t chunk, std::int64_t begin, std::int64_t end)
+  ForEachChunk(static_cast<std::int64_t>(tetrahedra.size()),
+    [&](std::int64_t, std::int64_t begin, std::int64_t end)
     {
       std::int64_t flatInChunk = 0;
       for (std::int64_t id = begin; id < end; ++id)
       {
-        const Tetrahedron& tetrahedron = tetrahedra[id];
-        if (!IsWithinLimit(tetrahedron, restPoints))
+        const Places places = GetPlaces(tetrahedra[id], restPoints);
+        if (!IsWithinLimit(places))
         {
           beyondLimit = true;
           continue;
         }
         BarycentricMap map;
-        flatInChunk += map.SetTetrahedron(tetrahedron, restPoints) ? 0 : 1;
-        ranges[id] = this->FindRange(tetrahedron, restPoints, margin);
-        this->ForEachTile(ranges[id], [&](std::int64_t tile) { ++counts[chunk][tile]; });
+        flatInChunk += map.SetTetrahedron(tetrahedra[id], restPoints) ? 0 : 1;
+        ranges[id] = this->FindRange(places, margin);
       }
       flat += flatInChunk;
     });
@@ -93,7 +69,100 @@ TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::
                 "index 0. Check the units of the mesh and the spacing of the volume.");
   }
   this->FlatTetrahedra = flat;
+  this->MakeLists({}, ranges, {});
+}
 
+TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
+  const std::vector<Tetrahedron>& tetrahedra, double margin,
+  const std::vector<unsigned char>& wanted)
+  : TileGrid(voxels)
+{
+  // Most tetrahedra are nowhere near the tiles, which a look at two coordinates tells.
+  glm::dvec3 low(std::numeric_limits<double>::infinity());
+  glm::dvec3 high(-low);
+  for (std::int64_t tile = 0; tile < this->GetNumberOfTiles(); ++tile)
+  {
+    if (wanted[tile])
+    {
+      const VoxelBox box = this->GetVoxels(tile);
+      low = glm::min(low, glm::dvec3(box.Min[0], box.Min[1], box.Min[2]) - margin);
+      high = glm::max(high, glm::dvec3(box.Max[0], box.Max[1], box.Max[2]) + margin);
+    }
+  }
+  const auto isNear = [&](const Places& places)
+  {
+    bool near = true;
+    for (int axis = 1; axis < 3; ++axis)
+    {
+      near &= std::max({ places[0][axis], places[1][axis], places[2][axis], places[3][axis] }) >=
+          low[axis] &&
+        std::min({ places[0][axis], places[1][axis], places[2][axis], places[3][axis] }) <=
+          high[axis];
+    }
+    return near;
+  };
+  struct Found
+  {
+    std::vector<std::int32_t> Numbers;
+    std::vector<Range> Ranges;
+  };
+  const auto size = static_cast<std::int64_t>(tetrahedra.size());
+  std::vector<Found> found(CountChunks(size));
+  ForEachChunk(size,
+    [&](std::int64_t chunk, std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t id = begin; id < end; ++id)
+      {
+        const Places places = GetPlaces(tetrahedra[id], restPoints);
+        if (!isNear(places))
+        {
+          continue;
+        }
+        const Range range = this->FindRange(places, margin);
+        bool isWanted = false;
+        this->ForEachTile(range, [&](std::int64_t tile) { isWanted |= wanted[tile] != 0; });
+        if (isWanted)
+        {
+          found[chunk].Numbers.push_back(static_cast<std::int32_t>(id));
+          found[chunk].Ranges.push_back(range);
+        }
+      }
+    });
+  Found all;
+  for (const Found& some : found)
+  {
+    all.Numbers.insert(all.Numbers.end(), some.Numbers.begin(), some.Numbers.end());
+    all.Ranges.insert(all.Ranges.end(), some.Ranges.begin(), some.Ranges.end());
+  }
+  this->MakeLists(all.Numbers, all.Ranges, wanted);
+}
+
+void TetrahedronTiles::MakeLists(const std::vector<std::int32_t>& numbers,
+  const std::vector<Range>& ranges, const std::vector<unsigned char>& wanted)
+{
+  const std::int64_t tiles = this->GetNumberOfTiles();
+  const auto size = static_cast<std::int64_t>(ranges.size());
+  const auto forEachEntry = [&](auto&& body)
+  {
+    ForEachChunk(size,
+      [&](std::int64_t chunk, std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          this->ForEachTile(ranges[i],
+            [&](std::int64_t tile)
+            {
+              if (wanted.empty() || wanted[tile])
+              {
+                body(chunk, i, tile);
+              }
+            });
+        }
+      });
+  };
+  std::vector<std::vector<std::int64_t>> counts(
+    CountChunks(size), std::vector<std::int64_t>(tiles, 0));
+  forEachEntry([&](std::int64_t chunk, std::int64_t, std::int64_t tile) { ++counts[chunk][tile]; });
   this->Offsets.assign(tiles + 1, 0);
   std::int64_t offset = 0;
   for (std::int64_t tile = 0; tile < tiles; ++tile)
@@ -108,87 +177,12 @@ TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::
   }
   this->Offsets[tiles] = offset;
   this->Bins.resize(offset);
-  forEachChunk(
-    [&](std::int64_t chunk, std::int64_t begin, std::int64_t end)
+  forEachEntry(
+    [&](std::int64_t chunk, std::int64_t i, std::int64_t tile)
     {
-      for (std::int64_t id = begin; id < end; ++id)
-      {
-        this->ForEachTile(ranges[id],
-          [&](std::int64_t tile)
-          { this->Bins[counts[chunk][tile]++] = static_cast<std::int32_t>(id); });
-      }
+      this->Bins[counts[chunk][tile]++] =
+        numbers.empty() ? static_cast<std::int32_t>(i) : numbers[i];
     });
-}
-
-// Tiles of this size stay in the processor's caches. Larger volumes get larger tiles, as each
-// tile costs memory.
-void TetrahedronTiles::ChooseSize()
-{
-  constexpr std::int64_t most = 16384;
-  const std::int64_t points[2] = { GetSize(this->Voxels, 1), GetSize(this->Voxels, 2) };
-  while (true)
-  {
-    for (int axis = 0; axis < 2; ++axis)
-    {
-      this->Count[axis] = (points[axis] + this->Size[axis] - 1) / this->Size[axis];
-    }
-    if (this->GetNumberOfTiles() <= most)
-    {
-      return;
-    }
-    this->Size[this->Count[0] > this->Count[1] ? 0 : 1] *= 2;
-  }
-}
-
-TetrahedronTiles::Range TetrahedronTiles::FindRange(
-  const Tetrahedron& tetrahedron, const std::vector<glm::dvec3>& restPoints, double margin) const
-{
-  glm::dvec3 min = restPoints[tetrahedron[0]];
-  glm::dvec3 max = min;
-  for (int node = 1; node < 4; ++node)
-  {
-    min = glm::min(min, restPoints[tetrahedron[node]]);
-    max = glm::max(max, restPoints[tetrahedron[node]]);
-  }
-  Range range;
-  if (max.x < this->Voxels[0] - margin || min.x > this->Voxels[1] + margin)
-  {
-    return range;
-  }
-  Range found;
-  for (int axis = 0; axis < 2; ++axis)
-  {
-    const double first = static_cast<double>(this->Voxels[2 * axis + 2]);
-    const double last = static_cast<double>(this->Voxels[2 * axis + 3]);
-    const double low = std::max(min[axis + 1] - margin, first);
-    const double high = std::min(max[axis + 1] + margin, last);
-    // Voxels between low and high, counted from the first one.
-    const std::int64_t begin = static_cast<std::int64_t>(low - first);
-    const std::int64_t firstVoxel = begin + (static_cast<double>(begin) < low - first ? 1 : 0);
-    if (low > high || static_cast<double>(firstVoxel) > high - first)
-    {
-      return range;
-    }
-    const std::int64_t lastVoxel = static_cast<std::int64_t>(high - first);
-    found.Min[axis] = static_cast<std::int16_t>(firstVoxel / this->Size[axis]);
-    found.Max[axis] = static_cast<std::int16_t>(lastVoxel / this->Size[axis]);
-  }
-  return found;
-}
-
-VoxelBox TetrahedronTiles::GetVoxels(std::int64_t tile) const
-{
-  VoxelBox box;
-  box.Min[0] = this->Voxels[0];
-  box.Max[0] = this->Voxels[1];
-  const std::int64_t index[2] = { tile % this->Count[0], tile / this->Count[0] };
-  for (int axis = 0; axis < 2; ++axis)
-  {
-    box.Min[axis + 1] = this->Voxels[2 * axis + 2] + index[axis] * this->Size[axis];
-    box.Max[axis + 1] =
-      std::min<std::int64_t>(box.Min[axis + 1] + this->Size[axis] - 1, this->Voxels[2 * axis + 3]);
-  }
-  return box;
 }
 
 } // namespace deformvolume

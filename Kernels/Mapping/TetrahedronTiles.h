@@ -4,7 +4,7 @@
 
 #include "Extent.h"
 #include "Tetrahedron.h"
-#include "TetrahedronRaster.h" // for VoxelBox
+#include "TileGrid.h"
 
 #include <glm/vec3.hpp>
 
@@ -14,39 +14,20 @@
 namespace deformvolume
 {
 
-/// Splits a volume into tiles, each the rows of voxels in a rectangle of y and z, and lists the
-/// tetrahedra of each tile. One thread links all voxels of a tile, so that nothing has to be locked
-/// and the order of the tetrahedra decides.
-class TetrahedronTiles
+/// Lists the tetrahedra of each tile of a volume. One thread links all voxels of a tile, so that
+/// nothing has to be locked.
+class TetrahedronTiles : public TileGrid
 {
 public:
   /// A tetrahedron belongs to the tiles with voxels in its box, widened by a margin in voxels.
   /// Throws Error where a node is more than 2^31 voxels away.
   TetrahedronTiles(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, double margin);
-
-  std::int64_t GetNumberOfTiles() const { return this->Count[0] * this->Count[1]; }
-  /// Tiles on y (0) and z (1); tile = z * (tiles on y) + y.
-  std::int64_t GetNumberOfTiles(int axis) const { return this->Count[axis]; }
-  VoxelBox GetVoxels(std::int64_t tile) const;
-
-  /// The tiles that hold voxels of a box within the volume, on y (0) and z (1).
-  struct Rectangle
-  {
-    std::int64_t Begin[2];
-    std::int64_t End[2];
-  };
-  Rectangle GetTiles(const VoxelBox& box) const
-  {
-    Rectangle tiles;
-    for (int axis = 0; axis < 2; ++axis)
-    {
-      const std::int64_t first = this->Voxels[2 * axis + 2];
-      tiles.Begin[axis] = (box.Min[axis + 1] - first) / this->Size[axis];
-      tiles.End[axis] = (box.Max[axis + 1] - first) / this->Size[axis] + 1;
-    }
-    return tiles;
-  }
+  /// The same with lists of some tiles alone: those that are wanted, of all of them. Flat
+  /// tetrahedra are not counted, and those of the tiles are within the limit.
+  TetrahedronTiles(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
+    const std::vector<Tetrahedron>& tetrahedra, double margin,
+    const std::vector<unsigned char>& wanted);
 
   /// The tetrahedra of a tile in ascending order.
   struct List
@@ -68,22 +49,11 @@ public:
   std::int64_t GetNumberOfFlatTetrahedra() const { return this->FlatTetrahedra; }
 
 private:
-  // The tiles of a tetrahedron, both ends included; empty where it has no voxel.
-  struct Range
-  {
-    std::int16_t Min[2] = { 0, 0 };
-    std::int16_t Max[2] = { -1, -1 };
-  };
+  /// Lists the tetrahedra under some numbers, or all where these are none. ranges: the tiles of
+  /// each.
+  void MakeLists(const std::vector<std::int32_t>& numbers, const std::vector<Range>& ranges,
+    const std::vector<unsigned char>& wanted);
 
-  void ChooseSize();
-  Range FindRange(
-    const Tetrahedron& tetrahedron, const std::vector<glm::dvec3>& restPoints, double margin) const;
-  template <typename Body>
-  void ForEachTile(const Range& range, Body&& body) const;
-
-  const Extent Voxels;
-  std::int64_t Size[2] = { 16, 16 };
-  std::int64_t Count[2] = { 0, 0 };
   // The tetrahedra of tile i are Bins[Offsets[i]] to Bins[Offsets[i + 1]].
   std::vector<std::int64_t> Offsets;
   std::vector<std::int32_t> Bins;

@@ -58,7 +58,7 @@ void CheckRow(const VertexRuns& runs, std::size_t row, std::int64_t size)
 
 std::uint64_t GetRunBytes(std::uint64_t runs, std::uint64_t rows, std::uint64_t records)
 {
-  return runs * sizeof(VertexRun) + (rows + 1) * sizeof(std::uint32_t) +
+  return runs * sizeof(VertexRun) + 2 * rows * sizeof(std::uint32_t) +
     records * (sizeof(RestTetrahedron) + sizeof(TetrahedronRecord));
 }
 
@@ -81,6 +81,12 @@ void CheckRuns(const VertexRuns& runs, const VoxelGrid& voxelGrid, std::size_t n
                   "give a link for each voxel.");
     }
   }
+  CheckRuns(runs, rows, GetSize(extent, 0), numberOfTetrahedra);
+}
+
+void CheckRuns(
+  const VertexRuns& runs, std::size_t rows, std::int64_t rowSize, std::size_t numberOfTetrahedra)
+{
   if (runs.RowBegins.size() != rows + 1 || runs.RowBegins.front() != 0 ||
     runs.RowBegins.back() != runs.Runs.size())
   {
@@ -89,7 +95,7 @@ void CheckRuns(const VertexRuns& runs, const VoxelGrid& voxelGrid, std::size_t n
   CheckRecords(runs, numberOfTetrahedra);
   for (std::size_t row = 0; row < rows; ++row)
   {
-    CheckRow(runs, row, GetSize(extent, 0));
+    CheckRow(runs, row, rowSize);
   }
 }
 

@@ -77,6 +77,9 @@ DEFORMVOLUME_EXPORT std::uint64_t GetBytes(const VertexRuns& runs);
 /// the row, and runs and records name records and tetrahedra that are there.
 DEFORMVOLUME_EXPORT void CheckRuns(
   const VertexRuns& runs, const VoxelGrid& voxelGrid, std::size_t numberOfTetrahedra);
+/// The same of so many rows of so many voxels.
+void CheckRuns(
+  const VertexRuns& runs, std::size_t rows, std::int64_t rowSize, std::size_t numberOfTetrahedra);
 
 } // namespace deformvolume
 

@@ -19,7 +19,7 @@ struct VolumeChunk
   int PlanesEnd = 0;
   cl::Buffer Links;     // one a voxel, or else runs
   cl::Buffer Runs;      // those of the rows of the planes
-  cl::Buffer RowBegins; // 4 bytes a row, counted from the chunk's first run
+  cl::Buffer RowRanges; // of each row the first of its runs, and one past the last: 4 bytes each
   cl::Buffer State;
   cl::Buffer Blanked;
   cl::Buffer Active;

@@ -12,7 +12,7 @@ namespace
 
 // Rounding moves a node by up to 2^-9 voxel on each axis, and with it a voxel by this far out of
 // its tetrahedron, with room to spare.
-constexpr double RoundingDistance = 1.0 / 128.0;
+constexpr double RoundingDistance = VoxelLinker::Reach;
 // A tetrahedron this thin can be distorted by rounding until its weights leave 0 to 1 noticeably.
 constexpr double ThinHeight = 1.0 / 16.0;
 constexpr double LeastThinWeight = -1.0 / 8.0;
@@ -48,7 +48,16 @@ VoxelLinker::VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& re
   : RestPoints(restPoints)
   , Tetrahedra(tetrahedra)
   , Voxels(MakeVoxelBox(voxels))
-  , Tiles(voxels, restPoints, tetrahedra, RoundingDistance)
+  , Tiles(voxels, restPoints, tetrahedra, Reach)
+{
+}
+
+VoxelLinker::VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
+  const std::vector<Tetrahedron>& tetrahedra, const std::vector<unsigned char>& wanted)
+  : RestPoints(restPoints)
+  , Tetrahedra(tetrahedra)
+  , Voxels(MakeVoxelBox(voxels))
+  , Tiles(voxels, restPoints, tetrahedra, Reach, wanted)
 {
 }
 

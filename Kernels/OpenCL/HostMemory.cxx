@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HostMemory.h"
 
+#include "Error.h"
+
 namespace deformvolume
 {
 
@@ -30,6 +32,15 @@ void TellOfWrites(
   {
     // From the memory that the buffer was made over: OpenCL's way to say that it has changed.
     queue.enqueueWriteBuffer(place.Buffer, CL_TRUE, 0, place.Bytes, place.Data);
+  }
+}
+
+void CheckAllocation(std::uint64_t bytes, std::uint64_t limit)
+{
+  if (bytes > limit)
+  {
+    throw Error("An array of the volume needs " + std::to_string(bytes) +
+      " bytes in one piece, and the device gives no more than " + std::to_string(limit) + ".");
   }
 }
 

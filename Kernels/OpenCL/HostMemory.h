@@ -48,6 +48,9 @@ struct BufferInPlace
 void TellOfWrites(
   const OpenCLContext& context, const cl::CommandQueue& queue, const BufferInPlace& place);
 
+/// Throws an Error where a device gives no buffer of so many bytes.
+void CheckAllocation(std::uint64_t bytes, std::uint64_t limit);
+
 /// Makes a buffer of the device of so many bytes, where it is not one.
 void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t bytes);
 

@@ -61,6 +61,9 @@ public:
   void MovePoints(const PointSet& changed, const float* last) override;
   std::optional<std::vector<Extent>> ChangeTetrahedra(
     const std::vector<TetrahedronChange>& changes, const float* last) override;
+  std::vector<std::size_t> MoveVertices(
+    const std::vector<Extent>& vertices, const float* last) override;
+  void ReplacePoints(const std::vector<std::size_t>& subBricks, const BrickPoints& points) override;
   void AddMoved(const DisplacementBounds& after) override;
   void MoveAll(const std::optional<DisplacementBounds>& after) override;
   ///@}
@@ -105,6 +108,10 @@ private:
   using Patches = std::array<int, 6>;          // first and last patch on each axis
   static constexpr std::size_t StepSize = 256; // sub-bricks that a thread takes at a time
 
+  /// Calls body(sub-brick) for those that have vertices of a box, or with more = 1 of cells of it,
+  /// or so many voxels beyond.
+  template <typename Body>
+  void ForSubBricks(const Extent& box, int more, int reach, Body&& body) const;
   /// A sub-brick is about to change by its points.
   void Move(std::size_t subBrick, const float* last);
   DisplacementBounds ComputeBounds(std::size_t subBrick, const Displacements& displacements) const;

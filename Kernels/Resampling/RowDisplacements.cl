@@ -37,9 +37,9 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
 {
   const float16 steps = (float16)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f, 8.0f, 9.0f, 10.0f,
     11.0f, 12.0f, 13.0f, 14.0f, 15.0f);
-  const size_t row = RowIndex(y, z, p);
-  const uint first = m->RowBegins[row];
-  const uint last = m->RowBegins[row + 1] - 1;
+  const uint2 range = RangeOf(m, y, z, p);
+  const uint first = range.x;
+  const uint last = range.y - 1;
   __global const VertexRun* run =
     m->Runs + (x == 0 ? first : FindRun(m->Runs, first, last + 1, x));
   __global const VertexRun* const lastRun = m->Runs + last;

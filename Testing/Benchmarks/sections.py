@@ -243,7 +243,9 @@ def live(results, _folder, _kind):
                 ("Live/masks", "tetrahedra in 2 x 30 x 30 cells are switched off, others on"),
                 ("Live/masks-logged", "the same, logged"),
                 ("Live/split-and-masks", "both of these"),
-                ("Live/split-and-masks-logged", "both of these, logged"))
+                ("Live/split-and-masks-logged", "both of these, logged"),
+                ("Live/subdivide", "1,000 tetrahedra become four each"),
+                ("Live/another-mesh", "a node moves at rest: all is made anew"))
             if name in results.runs]
     if rows:
         yield "## Live: what changes between two frames, 512,000 nodes, 189 x 305 x 229 voxels\n"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A mesh whose tetrahedra get other nodes while the filter lives: 200 random edits (nodes that are
 // split, splits that are undone, moves, masks), each compared bit by bit with a fresh filter. The
-// static mapping is built once, as long as no tetrahedron changes its shape at rest.
+// static mapping is built once, as long as no node moves at rest.
 #include "FilterTesting.h"
 
 #include <vtkArrayChanges.h>
@@ -376,8 +376,9 @@ private:
     nodes[2] = others[1];
     this->SetNodes(100, nodes);
     this->Tell();
+    // That tetrahedron is another one, and no more of the mapping follows (TestDeformRefinement).
     this->Compare("a node elsewhere");
-    VERIFY_EQUAL(this->Tested.Filter->GetNumberOfMappingBuilds(), builds + 2);
+    VERIFY_EQUAL(this->Tested.Filter->GetNumberOfMappingBuilds(), builds + 1);
     this->ChangeToErrors();
   }
 

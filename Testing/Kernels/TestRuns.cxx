@@ -182,7 +182,7 @@ public:
     if (byRuns)
     {
       this->Mesh.SetRuns(this->Case.Runs);
-      this->Mesh.EvaluateTetrahedra(
+      this->Mesh.GetRecords().Evaluate(
         GetMappingProgram(this->Context, MappingForm::Runs), tetrahedra, nodes);
     }
     else
@@ -194,8 +194,8 @@ public:
     const auto setMapping = [&](cl::Kernel& kernel, const VolumeChunk& chunk)
     {
       kernel.setArg(0, byRuns ? chunk.Runs : chunk.Links);
-      kernel.setArg(1, byRuns ? chunk.RowBegins : tetrahedra);
-      kernel.setArg(2, byRuns ? this->Mesh.GetRecords() : nodes);
+      kernel.setArg(1, byRuns ? chunk.RowRanges : tetrahedra);
+      kernel.setArg(2, byRuns ? this->Mesh.GetRecords().Get() : nodes);
       kernel.setArg(3, this->Mesh.GetRestPositions());
       return cl_uint{ 4 };
     };

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How BrickPoints follow changes of the mesh, and what groups of bricks have.
+#include "BrickPoints.h"
+
+#include "ParallelFor.h"
+#include "PointSet.h"
+
+#include <algorithm>
+#include <iterator>
+#include <mutex>
+
+namespace deformvolume
+{
+
+std::vector<BrickPoints::ChangesOfBrick> BrickPoints::FindBricks(
+  const std::vector<TetrahedronChange>& changes,
+  const std::function<bool(std::size_t)>& isNear) const
+{
+  // Which of the changes each node had a part in, and how many nodes each change has.
+  std::vector<std::pair<std::int32_t, std::uint32_t>> users;
+  users.reserve(4 * changes.size());
+  for (std::size_t i = 0; i < changes.size(); ++i)
+  {
+    for (const std::int32_t node : changes[i].Before)
+    {
+      users.emplace_back(node, static_cast<std::uint32_t>(i));
+    }
+  }
+  std::sort(users.begin(), users.end());
+  users.erase(std::unique(users.begin(), users.end()), users.end());
+  std::vector<int> nodesOfChange(changes.size(), 0);
+  PointSet used;
+  used.Clear(users.empty() ? 0 : static_cast<std::size_t>(users.back().first) + 1);
+  for (const auto& user : users)
+  {
+    ++nodesOfChange[user.second];
+    used.Add(static_cast<std::size_t>(user.first));
+  }
+  const std::size_t bricks = this->Begins.size();
+  std::vector<ChangesOfBrick> found;
+  std::mutex mutex;
+  constexpr std::size_t step = 256;
+  ParallelForParts(bricks, step,
+    [&](std::size_t begin, std::size_t end)
+    {
+      std::vector<int> seen(changes.size(), 0);
+      for (std::size_t brick = begin; brick < end; ++brick)
+      {
+        if (!isNear(brick))
+        {
+          continue;
+        }
+        std::vector<std::size_t> touched;
+        std::vector<std::size_t> whole;
+        this->AnyOf(brick,
+          [&](std::size_t first, std::size_t past)
+          {
+            // Most ranges have none of these nodes.
+            if (!used.HasAnyOf(first, past))
+            {
+              return false;
+            }
+            for (auto user = std::lower_bound(users.begin(), users.end(),
+                   std::make_pair(static_cast<std::int32_t>(first), std::uint32_t{ 0 }));
+                 user != users.end() && static_cast<std::size_t>(user->first) < past; ++user)
+            {
+              touched.push_back(user->second);
+              if (++seen[user->second] == nodesOfChange[user->second])
+              {
+                whole.push_back(user->second);
+              }
+            }
+            return false;
+          });
+        for (const std::size_t change : touched)
+        {
+          seen[change] = 0;
+        }
+        if (!whole.empty())
+        {
+          const std::lock_guard<std::mutex> lock(mutex);
+          found.emplace_back(brick, std::move(whole));
+        }
+      }
+    });
+  return found;
+}
+
+void BrickPoints::AddPoints(
+  const ChangesOfBrick& brick, const std::vector<TetrahedronChange>& changes)
+{
+  std::vector<std::int32_t> nodes;
+  for (const std::size_t i : brick.second)
+  {
+    const TetrahedronChange& change = changes[i];
+    std::copy_if(change.After.begin(), change.After.end(), std::back_inserter(nodes),
+      [&](std::int32_t node) {
+        return std::find(change.Before.begin(), change.Before.end(), node) == change.Before.end();
+      });
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  this->Added.resize(this->Begins.size());
+  std::vector<std::int32_t>& added = this->Added[brick.first];
+  const auto first = this->Ranges.begin() + static_cast<std::ptrdiff_t>(this->Begins[brick.first]);
+  const auto past = this->Ranges.begin() + static_cast<std::ptrdiff_t>(this->Ends[brick.first]);
+  const std::size_t before = added.size();
+  for (const std::int32_t node : nodes)
+  {
+    const auto range = std::upper_bound(
+      first, past, node, [](std::int32_t point, const Range& other) { return point < other.End; });
+    const bool isThere = (range != past && range->Begin <= node) ||
+      std::find(added.begin(), added.begin() + static_cast<std::ptrdiff_t>(before), node) !=
+        added.begin() + static_cast<std::ptrdiff_t>(before);
+    if (!isThere)
+    {
+      added.push_back(node);
+      ++this->NumberOfAdded;
+    }
+  }
+}
+
+BrickPoints BrickPoints::Join(const std::vector<std::vector<std::size_t>>& groups) const
+{
+  BrickPoints joined;
+  if (!this->Boxes.empty())
+  {
+    joined.FieldSize = this->FieldSize;
+    for (const std::vector<std::size_t>& bricks : groups)
+    {
+      Extent all{ { 0, -1, 0, -1, 0, -1 } };
+      for (const std::size_t brick : bricks)
+      {
+        const Extent& box = this->Boxes[brick];
+        const bool first = all[0] > all[1];
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          all[2 * axis] = first ? box[2 * axis] : std::min(all[2 * axis], box[2 * axis]);
+          all[2 * axis + 1] =
+            first ? box[2 * axis + 1] : std::max(all[2 * axis + 1], box[2 * axis + 1]);
+        }
+      }
+      joined.Boxes.push_back(all);
+    }
+    return joined;
+  }
+  for (const std::vector<std::size_t>& bricks : groups)
+  {
+    std::vector<Range> all;
+    for (const std::size_t brick : bricks)
+    {
+      this->AnyOf(brick,
+        [&](std::size_t begin, std::size_t end)
+        {
+          all.push_back({ static_cast<std::int32_t>(begin), static_cast<std::int32_t>(end) });
+          return false;
+        });
+    }
+    std::sort(
+      all.begin(), all.end(), [](const Range& a, const Range& b) { return a.Begin < b.Begin; });
+    joined.Begins.push_back(joined.Ranges.size());
+    for (const Range& range : all)
+    {
+      if (joined.Ranges.size() > joined.Begins.back() && joined.Ranges.back().End >= range.Begin)
+      {
+        joined.Ranges.back().End = std::max(joined.Ranges.back().End, range.End);
+      }
+      else
+      {
+        joined.Ranges.push_back(range);
+      }
+    }
+    joined.Ends.push_back(joined.Ranges.size());
+  }
+  return joined;
+}
+
+void BrickPoints::Replace(const std::vector<std::size_t>& bricks, const BrickPoints& points)
+{
+  for (std::size_t i = 0; i < bricks.size(); ++i)
+  {
+    const std::size_t brick = bricks[i];
+    this->NumberOfUnused += this->Ends[brick] - this->Begins[brick];
+    this->Begins[brick] = this->Ranges.size();
+    const auto first = points.Ranges.begin();
+    this->Ranges.insert(this->Ranges.end(), first + static_cast<std::ptrdiff_t>(points.Begins[i]),
+      first + static_cast<std::ptrdiff_t>(points.Ends[i]));
+    this->Ends[brick] = this->Ranges.size();
+    if (!points.Excess.empty())
+    {
+      this->Excess[brick] = points.Excess[i];
+    }
+    if (!this->Added.empty())
+    {
+      this->NumberOfAdded -= this->Added[brick].size();
+      this->Added[brick].clear();
+    }
+  }
+}
+
+} // namespace deformvolume

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How DisplacementSource follows changes of the mesh: tetrahedra that get other nodes, or that are
+// replaced by others.
+#include "DisplacementSource.h"
+
+#include "DeviceVolume.h"
+#include "DisplacementObserver.h"
+#include "Error.h"
+#include "MeshChecks.h"
+#include "WorkDevice.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace deformvolume
+{
+
+std::vector<TetrahedronChange> DisplacementSource::FindChanges(const Tetrahedron* tetrahedra) const
+{
+  std::vector<std::int32_t> nodes(this->Order.Nodes.size()); // by the numbers of the device
+  for (std::size_t node = 0; node < nodes.size(); ++node)
+  {
+    nodes[this->Order.Nodes[node]] = static_cast<std::int32_t>(node);
+  }
+  const MappedBuffer<const Tetrahedron> places(
+    this->Device.GetQueue(), this->Tetrahedra, CL_MAP_READ);
+  std::vector<TetrahedronChange> changes;
+  for (std::size_t t = 0; t < this->NumberOfTetrahedra; ++t)
+  {
+    TetrahedronChange change;
+    change.Number = static_cast<std::int32_t>(t);
+    const Tetrahedron& last = places.Get()[this->Order.Tetrahedra[t]];
+    std::transform(last.begin(), last.end(), change.Before.begin(),
+      [&](std::int32_t place) { return nodes[place / DEFORMVOLUME_NODE_PLACES]; });
+    change.After = tetrahedra[t];
+    if (change.After != change.Before)
+    {
+      changes.push_back(change);
+    }
+  }
+  return changes;
+}
+
+void DisplacementSource::CheckChanges(
+  const std::vector<TetrahedronChange>& changes, std::size_t numberOfNodes) const
+{
+  const auto areNodes = [](const Tetrahedron& tetrahedron, std::size_t count)
+  {
+    return std::all_of(tetrahedron.begin(), tetrahedron.end(),
+      [=](std::int32_t node) { return node >= 0 && static_cast<std::size_t>(node) < count; });
+  };
+  for (const TetrahedronChange& change : changes)
+  {
+    const std::string name = "The tetrahedron " + std::to_string(change.Number);
+    if (change.Number < 0 || static_cast<std::size_t>(change.Number) >= this->NumberOfTetrahedra)
+    {
+      throw Error(name + " is to have other nodes, but there are " +
+        std::to_string(this->NumberOfTetrahedra) + " tetrahedra.");
+    }
+    if (!areNodes(change.After, numberOfNodes) ||
+      !areNodes(change.Before, this->Order.Nodes.size()))
+    {
+      throw Error(name +
+        " is to have other nodes, and one of these, or of those that it had, is "
+        "none: there are " +
+        std::to_string(numberOfNodes) + " nodes now.");
+    }
+  }
+}
+
+void DisplacementSource::SendChanges(const std::vector<TetrahedronChange>& changes)
+{
+  const auto place = [](const Tetrahedron& nodes)
+  {
+    Tetrahedron places = nodes;
+    for (std::int32_t& node : places)
+    {
+      node *= DEFORMVOLUME_NODE_PLACES;
+    }
+    return places;
+  };
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  if (this->Device.GetDevice().IsProcessor)
+  {
+    const MappedBuffer<Tetrahedron> sent(queue, this->Tetrahedra, CL_MAP_READ | CL_MAP_WRITE);
+    for (const TetrahedronChange& change : changes)
+    {
+      sent.Get()[change.Number] = place(change.After);
+    }
+    return;
+  }
+  std::vector<Tetrahedron> places;
+  places.reserve(changes.size()); // they stay until they are sent
+  const QueueGuard guard(queue);
+  for (const TetrahedronChange& change : changes)
+  {
+    places.push_back(place(change.After));
+    queue.enqueueWriteBuffer(this->Tetrahedra, CL_FALSE,
+      static_cast<std::size_t>(change.Number) * sizeof(Tetrahedron), sizeof(Tetrahedron),
+      &places.back());
+  }
+}
+
+void DisplacementSource::ChangeConnectivity(const Tetrahedron* tetrahedra,
+  std::size_t numberOfTetrahedra, std::size_t numberOfNodes,
+  const std::vector<TetrahedronChange>* changes)
+{
+  if (!this->HasMesh() || numberOfTetrahedra != this->NumberOfTetrahedra || numberOfNodes == 0)
+  {
+    throw Error("The tetrahedra are not those of the mesh that was set: call SetMesh.");
+  }
+  std::vector<TetrahedronChange> numbered = changes ? *changes : this->FindChanges(tetrahedra);
+  this->CheckChanges(numbered, numberOfNodes);
+  this->SetNumberOfNodes(numberOfNodes);
+  for (TetrahedronChange& change : numbered)
+  {
+    change.Number = this->Order.Tetrahedra[change.Number];
+    for (Tetrahedron* nodes : { &change.Before, &change.After })
+    {
+      for (std::int32_t& node : *nodes)
+      {
+        node = this->Order.Nodes[node];
+      }
+    }
+  }
+  std::optional<std::vector<Extent>> boxes;
+  if (this->Observer.HasPoints())
+  {
+    this->Nodes.Visit(
+      [&](const float* last) { boxes = this->Observer.ChangeTetrahedra(numbered, last); });
+  }
+  this->SendChanges(numbered);
+  if (boxes)
+  {
+    this->Volume.ChangeOwners(*boxes);
+  }
+  else
+  {
+    this->Volume.ForgetBridges();
+  }
+  this->Volume.GetRecords().Forget();
+}
+
+void DisplacementSource::SetNumberOfNodes(std::size_t numberOfNodes)
+{
+  for (std::size_t node = this->Order.Nodes.size(); node < numberOfNodes; ++node)
+  {
+    this->Order.Nodes.push_back(static_cast<std::int32_t>(node));
+  }
+  this->Nodes.Reserve(numberOfNodes);
+  if (this->Observer.IsTracking())
+  {
+    if (!this->Observer.HasPoints())
+    {
+      this->Observer.SetPoints(this->MakeBrickPoints());
+    }
+    // A node that is new may stay where it is by chance, so that nobody learns of it.
+    DisplacementBounds bounds;
+    this->Nodes.Visit(
+      [&](const float* last)
+      {
+        for (std::size_t node = this->NumberOfNodes; node < numberOfNodes; ++node)
+        {
+          const auto place = static_cast<std::size_t>(this->Order.Nodes[node]);
+          bounds.Add({ last, nullptr }, place, place + 1);
+        }
+      });
+    this->Observer.AddMoved(bounds);
+  }
+  this->NumberOfNodes = numberOfNodes;
+}
+
+std::vector<std::int32_t> DisplacementSource::Renumber(const Tetrahedron* tetrahedra,
+  std::size_t numberOfTetrahedra, const MappingUpdate& update,
+  std::vector<TetrahedronChange>& added)
+{
+  std::vector<std::int32_t> numbers(numberOfTetrahedra);
+  for (const KeptTetrahedra& kept : update.Kept)
+  {
+    std::copy_n(
+      this->Order.Tetrahedra.begin() + kept.Before, kept.Count, numbers.begin() + kept.After);
+  }
+  std::vector<std::int32_t> removed;
+  auto next = static_cast<std::int32_t>(this->NumberOfTetrahedra + this->FreeNumbers.size());
+  ForEachReplaced(update.Kept, static_cast<std::int32_t>(this->NumberOfTetrahedra),
+    static_cast<std::int32_t>(numberOfTetrahedra),
+    [&](std::int32_t begin, std::int32_t end, std::int32_t, std::int32_t)
+    {
+      removed.insert(removed.end(), this->Order.Tetrahedra.begin() + begin,
+        this->Order.Tetrahedra.begin() + end);
+    });
+  this->FreeNumbers.insert(this->FreeNumbers.end(), removed.begin(), removed.end());
+  ForEachReplaced(update.Kept, static_cast<std::int32_t>(this->NumberOfTetrahedra),
+    static_cast<std::int32_t>(numberOfTetrahedra),
+    [&](std::int32_t, std::int32_t, std::int32_t begin, std::int32_t end)
+    {
+      for (std::int32_t t = begin; t < end; ++t)
+      {
+        if (this->FreeNumbers.empty())
+        {
+          this->FreeNumbers.push_back(next++);
+        }
+        TetrahedronChange change;
+        change.Number = numbers[t] = this->FreeNumbers.back();
+        this->FreeNumbers.pop_back();
+        std::transform(tetrahedra[t].begin(), tetrahedra[t].end(), change.After.begin(),
+          [&](std::int32_t node) { return this->Order.Nodes[node]; });
+        added.push_back(change);
+      }
+    });
+  this->Order.Tetrahedra = std::move(numbers);
+  this->NumberOfTetrahedra = numberOfTetrahedra;
+  const std::uint64_t bytes = static_cast<std::uint64_t>(next) * sizeof(Tetrahedron);
+  if (deformvolume::GetMemory(this->Tetrahedra) < bytes)
+  {
+    const cl::Buffer larger(
+      this->Device.GetContext().GetContext(), CL_MEM_READ_ONLY, bytes + bytes / 8);
+    this->Device.GetQueue().enqueueCopyBuffer(
+      this->Tetrahedra, larger, 0, 0, deformvolume::GetMemory(this->Tetrahedra));
+    this->Device.GetQueue().finish();
+    this->Tetrahedra = larger;
+  }
+  return removed;
+}
+
+std::vector<Extent> DisplacementSource::ReplaceTetrahedra(const Tetrahedron* tetrahedra,
+  std::size_t numberOfTetrahedra, std::size_t numberOfNodes, const MappingUpdate& update)
+{
+  const VoxelGrid& grid = this->Volume.GetVoxelGrid();
+  if (!this->HasMesh())
+  {
+    throw Error("There is no mesh of which tetrahedra could be replaced: call SetMesh.");
+  }
+  CheckMappingUpdate(
+    update, grid, this->NumberOfTetrahedra, numberOfTetrahedra, this->Volume.HasRuns());
+  try
+  {
+    this->SetNumberOfNodes(numberOfNodes);
+    std::vector<Extent> changed = update.Changed;
+    for (Extent& box : changed)
+    {
+      for (int i = 0; i < 6; ++i)
+      {
+        box[i] -= grid.VertexExtent[i / 2 * 2];
+      }
+    }
+    const bool hasPoints = this->Observer.HasPoints();
+    std::vector<std::size_t> subBricks;
+    if (hasPoints)
+    {
+      this->Nodes.Visit(
+        [&](const float* last) { subBricks = this->Observer.MoveVertices(changed, last); });
+    }
+    std::vector<TetrahedronChange> added;
+    const std::vector<std::int32_t> removed =
+      this->Renumber(tetrahedra, numberOfTetrahedra, update, added);
+    this->SendChanges(added);
+    std::vector<Extent> sources = this->Volume.UpdateMapping(update, this->Order, removed);
+    if (hasPoints)
+    {
+      this->Observer.ReplacePoints(subBricks,
+        this->Volume.MakeBrickPoints(this->Tetrahedra, this->Order.Nodes.size(), &subBricks));
+    }
+    this->Volume.ChangeOwners(changed);
+    this->Volume.GetRecords().Forget();
+    return sources;
+  }
+  catch (...)
+  {
+    this->Forget();
+    throw;
+  }
+}
+
+} // namespace deformvolume

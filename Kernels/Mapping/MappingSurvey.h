@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeMappingSurvey_h
+#define DeformVolumeMappingSurvey_h
+
+#include "Extent.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+enum class StaticMappingForm
+{
+  /// Runs where they are long enough (LeastMeanRunLength, by a sample of the volume that is always
+  /// the same) and need less memory than links, and voxels are not extrapolated; else links.
+  Automatic,
+  Links,
+  /// Not where voxels are extrapolated, which needs to see all of them at once.
+  Runs
+};
+
+/// Runs are made where they are so long on average, in voxels: below, finding the run of a voxel
+/// costs what reading less memory gains.
+constexpr double LeastMeanRunLength = 3.0;
+
+/// What a tile of a volume, some rows of voxels, is found to have.
+struct TileSample
+{
+  std::int64_t Tile = 0;
+  std::int64_t Rows = 0;
+  std::int64_t Runs = 0;
+  std::int64_t RunsOfSlivers = 0; // see VertexRuns.h
+};
+
+/// What the choice between the forms of a static mapping follows from, and what is counted of a
+/// mesh. Where tetrahedra are replaced it is brought up to date, so that the choice stays that of a
+/// mapping that is made anew.
+struct MappingSurvey
+{
+  StaticMappingForm Form = StaticMappingForm::Automatic;
+  bool IsExtrapolated = false;
+  std::int64_t NumberOfTetrahedra = 0;
+  std::int64_t NumberOfFlatTetrahedra = 0;
+  /// Of all tiles; tetrahedra in several are counted several times.
+  std::int64_t NumberOfEntries = 0;
+  /// None where there is no choice.
+  std::vector<TileSample> Samples;
+
+  /// Bytes that runs will take (GetRunBytes in VertexRuns.h), about; 0 where links are made.
+  std::uint64_t GetRunBytes(const Extent& voxels) const;
+};
+
+} // namespace deformvolume
+
+#endif
