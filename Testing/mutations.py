@@ -38,12 +38,13 @@ RELAXATION = ("TestChainMailRelaxation", "*")
 SEQUENCES = ("TestChainMailSequences", "*")
 VECTORS = ("TestDeviceVectors", "*")
 VECTORS_GRAPHICS = ("TestDeviceVectorsGraphics", "*")
+REPLACEMENT = ("TestReplacement", "-*InChunks:*Refuses*")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
     "filter-upright": ("Kernels/Resampling/GroupWeights.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
     "filter-bent": ("Kernels/Resampling/GroupWeights.cl", "(FLOATS)(3.2e-5f)", "(FLOATS)(3.2e-7f)", [NARROW]),
-    "mask-reach": ("Kernels/Resampling/IncrementalUpdate.cxx", "MaskReach = 1;", "MaskReach = 0;", [MASKS]),
+    "mask-reach": ("Kernels/Resampling/IncrementalChanges.cxx", "MaskReach = 1;", "MaskReach = 0;", [MASKS]),
     "old-winners": ("Kernels/Resampling/OutputWinners.cxx",
                     "    FillPatches(context, this->Queue, this->Keys,\n"
                     "      ElementBytes::Of(std::numeric_limits<cl_uint>::max()), this->KeySize / sizeof(cl_uint), list,\n"
@@ -67,7 +68,7 @@ MUTATIONS = {
                      "std::min(all, system) : all + this->CountHeld();", [GRAPHICS]),
     "arrays-half-set": ("Kernels/Mapping/DeviceVolume.cxx",
                         "this->Arrays.clear(); // there are none if this fails", "", [FAULTS]),
-    "links-half-set": ("Kernels/Mapping/DeviceVolume.cxx", "this->WithLinks = false; // until all of them are there",
+    "links-half-set": ("Kernels/Mapping/DeviceMapping.cxx", "this->WithLinks = false; // until all of them are there",
                        "this->WithLinks = true;", [FAULTS]),
     "far-output": ("Kernels/Resampling/OutputSlab.cxx", "farthest = 1 << 22;", "farthest = 1 << 28;",
                    [("TestUse", "Use.OutputsFarAway")]),
@@ -84,6 +85,21 @@ MUTATIONS = {
     "fused-field": ("Kernels/Mapping/DeformationMapping.cl",
                     "#define MIX(a, b, t) MULTIPLY_ADD((float4)(t), (b) - (a), a)",
                     "#define MIX(a, b, t) ((a) + (t) * ((b) - (a)))", [("TestContraction", "*")]),
+    "replaced-boxes": ("Kernels/Mapping/StaticMappingUpdater.cxx", "grid.FindBox(places, 2.0 * VoxelLinker::Reach)",
+                       "grid.FindBox(places, -2.0)", [REPLACEMENT]),
+    "replaced-removed": ("Kernels/Mapping/StaticMappingUpdater.cxx", "    add(removed.Places, -1);", "", [REPLACEMENT]),
+    "replaced-form": ("Kernels/Mapping/StaticMappingUpdater.cxx",
+                      "(this->RunBytes > 0) == (before.GetRunBytes(voxels) > 0) &&", "", [REPLACEMENT]),
+    "replaced-records": ("Kernels/Mapping/TetrahedronRecords.cxx", "kinds[tetrahedron] = Removed;", "", [REPLACEMENT]),
+    "replaced-points": ("Kernels/Resampling/IncrementalChanges.cxx", "this->Points.Replace(subBricks, points);", "",
+                        [REPLACEMENT]),
+    "replaced-excess": ("Kernels/Mapping/BrickPointChanges.cxx", "this->Excess[brick] = points.Excess[i];", "",
+                        [REPLACEMENT]),
+    "replaced-states": ("Kernels/Mapping/DeviceVolume.cxx", "if (wereAllLinked != this->Mapping.AreAllLinked())",
+                        "if (false)", [REPLACEMENT]),
+    "replaced-sources": ("Kernels/Mapping/DeviceMapping.cxx",
+                         "if ((before[i].Tetrahedron < 0) != (after[i].Tetrahedron < 0))", "if (false)", [REPLACEMENT]),
+    "replaced-rows": ("Kernels/Mapping/DeviceMapping.cxx", "has.Rows[row] = end;", "", [REPLACEMENT]),
     "cut-above": ("Kernels/Cutting/TriangleCrossing.h", "return (sign != 0 ? sign : this->NormalSign) > 0;",
                   "return sign > 0;", [CUTTING]),
     "cut-face": ("Kernels/Cutting/TriangleCrossing.cxx", "sign != 0 ? sign : -movement;",

@@ -32,11 +32,13 @@ constexpr std::size_t MostChanges = 8; // one tetrahedron in so many
 struct ComparedPart
 {
   const Tetrahedron* Tetrahedra;
+  vtkIdType Count;   // how many these are
   std::size_t First; // its first tetrahedron, of all
   std::int32_t FirstNode;
   std::size_t Most;                   // changes that are worth to be listed
   std::vector<unsigned char> Written; // blocks, where a log tells which; else empty
   std::vector<TetrahedronChange> Changes;
+  std::vector<Tetrahedron> Appended;
 };
 
 // The cells of a part, in arrays of numbers of one size. Null: all have the type, or the number of
@@ -88,6 +90,22 @@ struct PartCells
     return differences == 0;
   }
 
+  // The nodes of a cell; false where one is none.
+  bool Read(vtkIdType cell, vtkIdType numberOfPoints, std::int32_t firstNode,
+    Tetrahedron& tetrahedron) const
+  {
+    for (int k = 0; k < 4; ++k)
+    {
+      const auto point = static_cast<vtkIdType>(this->Connectivity[4 * cell + k]);
+      if (point < 0 || point >= numberOfPoints)
+      {
+        return false;
+      }
+      tetrahedron[k] = firstNode + static_cast<std::int32_t>(point);
+    }
+    return true;
+  }
+
   // Those of some cells that do not have the nodes of their tetrahedra; false where a node is none.
   bool ListChanges(vtkIdType begin, vtkIdType end, vtkIdType numberOfPoints,
     const ComparedPart& part, std::vector<TetrahedronChange>& changes) const
@@ -96,14 +114,9 @@ struct PartCells
     {
       TetrahedronChange change;
       change.Before = part.Tetrahedra[cell];
-      for (int k = 0; k < 4; ++k)
+      if (!this->Read(cell, numberOfPoints, part.FirstNode, change.After))
       {
-        const auto point = static_cast<vtkIdType>(this->Connectivity[4 * cell + k]);
-        if (point < 0 || point >= numberOfPoints)
-        {
-          return false;
-        }
-        change.After[k] = part.FirstNode + static_cast<std::int32_t>(point);
+        return false;
       }
       if (change.After != change.Before)
       {
@@ -140,9 +153,9 @@ bool Compare(
           continue;
         }
         const vtkIdType begin = block * BLOCK;
-        const vtkIdType end = std::min(begin + BLOCK, count);
-        bool isUsable = cells.AreTetrahedra(begin, end);
-        if (isUsable &&
+        bool isUsable = cells.AreTetrahedra(begin, std::min(begin + BLOCK, count));
+        const vtkIdType end = std::min(begin + BLOCK, std::min(count, part.Count));
+        if (isUsable && begin < end &&
           !cells.HaveNodes(begin, end, part.Tetrahedra, static_cast<Integer>(part.FirstNode)))
         {
           std::vector<TetrahedronChange>& found = changes[static_cast<std::size_t>(block)];
@@ -158,6 +171,12 @@ bool Compare(
   for (const std::vector<TetrahedronChange>& some : changes)
   {
     part.Changes.insert(part.Changes.end(), some.begin(), some.end());
+  }
+  for (vtkIdType cell = part.Count; cell < count && usable; ++cell)
+  {
+    part.Appended.emplace_back();
+    usable = cells.Read(cell, grid->GetNumberOfPoints(), static_cast<std::int32_t>(part.FirstNode),
+      part.Appended.back());
   }
   return usable;
 }
@@ -250,10 +269,10 @@ std::vector<CellMemory> GetCellMemories(const MeshParts& parts)
   return memories;
 }
 
-std::optional<std::vector<TetrahedronChange>> FindChanges(const MeshParts& parts,
+std::optional<CellDifferences> FindDifferences(const MeshParts& parts,
   const std::vector<Tetrahedron>& tetrahedra, const std::vector<CellMemory>& memories)
 {
-  std::vector<TetrahedronChange> changes;
+  CellDifferences differences;
   const std::size_t most = tetrahedra.size() / MostChanges;
   std::size_t first = 0;
   std::int32_t firstNode = 0;
@@ -262,14 +281,17 @@ std::optional<std::vector<TetrahedronChange>> FindChanges(const MeshParts& parts
   for (vtkUnstructuredGrid* grid : parts)
   {
     const auto count = static_cast<std::size_t>(grid->GetNumberOfCells());
-    if (count > tetrahedra.size() - first)
+    const std::size_t before = parts.size() == 1 ? tetrahedra.size() : count;
+    const std::size_t more = std::max(count, before) - std::min(count, before);
+    if (before > tetrahedra.size() - first || more > most)
     {
       return {};
     }
     if (count > 0)
     {
-      ComparedPart part{ tetrahedra.data() + first, first, firstNode, most, {}, {} };
-      if (areKnown)
+      ComparedPart part{ tetrahedra.data() + first, static_cast<vtkIdType>(before), first,
+        firstNode, most, {}, {}, {} };
+      if (areKnown && more == 0)
       {
         part.Written = FindWrittenBlocks(grid, memories.front(), count);
       }
@@ -277,16 +299,19 @@ std::optional<std::vector<TetrahedronChange>> FindChanges(const MeshParts& parts
       {
         return {};
       }
-      changes.insert(changes.end(), part.Changes.begin(), part.Changes.end());
+      differences.Changed.insert(
+        differences.Changed.end(), part.Changes.begin(), part.Changes.end());
+      differences.Appended = std::move(part.Appended);
     }
-    first += count;
+    first += before;
+    differences.Count += count;
     firstNode += static_cast<std::int32_t>(grid->GetNumberOfPoints());
   }
   if (first != tetrahedra.size())
   {
     return {};
   }
-  return changes;
+  return differences;
 }
 
 } // namespace deformvolume

@@ -21,7 +21,8 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::size_t MostInLog = 8; // one tetrahedron in so many
+constexpr std::size_t MostInLog = 8;    // one tetrahedron in so many
+constexpr std::size_t FewChanged = 256; // the same
 
 // The mesh at rest is the one on port 1 where port 2 has none.
 bool IsRestMade(const DeformationSource& source)
@@ -29,31 +30,44 @@ bool IsRestMade(const DeformationSource& source)
   return source.Rest ? source.RestIsMade : source.ShapeIsMade;
 }
 
-bool AreEqual(
-  const std::vector<TetrahedronChange>& first, const std::vector<TetrahedronChange>& second)
+bool AreEqual(const CellDifferences& first, const CellDifferences& second)
 {
-  return std::equal(first.begin(), first.end(), second.begin(), second.end(),
-    [](const TetrahedronChange& a, const TetrahedronChange& b)
-    { return a.Number == b.Number && a.After == b.After; });
+  return first.Count == second.Count && first.Appended == second.Appended &&
+    std::equal(first.Changed.begin(), first.Changed.end(), second.Changed.begin(),
+      second.Changed.end(),
+      [](const TetrahedronChange& a, const TetrahedronChange& b)
+      { return a.Number == b.Number && a.After == b.After; });
 }
 
 // Of as many tetrahedra those that have other nodes.
-std::optional<std::vector<TetrahedronChange>> FindDifferences(
+std::optional<CellDifferences> FindDifferences(
   const std::vector<Tetrahedron>& before, const std::vector<Tetrahedron>& after)
 {
   if (before.size() != after.size())
   {
     return {};
   }
-  std::vector<TetrahedronChange> changes;
+  CellDifferences differences;
+  differences.Count = after.size();
   for (std::size_t t = 0; t < before.size(); ++t)
   {
     if (before[t] != after[t])
     {
-      changes.push_back({ static_cast<std::int32_t>(t), before[t], after[t] });
+      differences.Changed.push_back({ static_cast<std::int32_t>(t), before[t], after[t] });
     }
   }
-  return changes;
+  return differences;
+}
+
+void Apply(const CellDifferences& differences, std::vector<Tetrahedron>& tetrahedra)
+{
+  for (const TetrahedronChange& change : differences.Changed)
+  {
+    tetrahedra[change.Number] = change.After;
+  }
+  const std::vector<Tetrahedron>& appended = differences.Appended;
+  tetrahedra.resize(differences.Count - appended.size());
+  tetrahedra.insert(tetrahedra.end(), appended.begin(), appended.end());
 }
 
 // Whether all nodes of some tetrahedra are under a number.
@@ -93,8 +107,7 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   this->RestCells = this->ShapeCells = MeshStamp(); // of nothing, where this fails
   this->RestCellMemories.clear();
   this->ReadPoints(rest, source);
-  const bool isSameShape =
-    !this->ShapeIsOld && this->KeptPoints && cells.Changed && this->AreInPlace(*cells.Changed);
+  const bool isSameShape = !this->ShapeIsOld && this->KeptPoints && this->HaveSameShape(cells);
   const bool mayFollow = !isSameShape && !this->ShapeIsOld && this->KeptPoints;
   std::optional<TetrahedronReplacement> replacement =
     mayFollow ? this->FindReplacement(cells) : std::nullopt;
@@ -103,9 +116,9 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   {
     this->SetShape(std::move(cells), std::move(replacement));
   }
-  else if (!cells.Changed->empty() || nodes != nodesBefore)
+  else if (!cells.Differences->Changed.empty() || nodes != nodesBefore)
   {
-    this->SetConnectivity(std::move(*cells.Changed));
+    this->SetConnectivity(std::move(cells.Differences->Changed));
   }
   if (nodes < nodesBefore && !AreNodes(this->Tetrahedra, nodes))
   {
@@ -120,24 +133,27 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   this->RestCellMemories = std::move(cellMemories);
 }
 
-std::optional<RestMesh::Changes> RestMesh::CompareCells(
+std::optional<CellDifferences> RestMesh::CompareCells(
   const MeshParts& shape, const MeshParts& rest, bool sameRest, bool sameShape) const
 {
   if (!this->IgnoredCells.empty() || this->Tetrahedra.empty())
   {
     return {};
   }
-  std::optional<Changes> changes =
-    sameRest ? Changes() : FindChanges(rest, this->Tetrahedra, this->RestCellMemories);
-  if (changes && !sameShape)
+  CellDifferences none;
+  none.Count = this->Tetrahedra.size();
+  std::optional<CellDifferences> differences =
+    sameRest ? none : deformvolume::FindDifferences(rest, this->Tetrahedra, this->RestCellMemories);
+  if (differences && !sameShape)
   {
-    const std::optional<Changes> others = FindChanges(shape, this->Tetrahedra, {});
-    if (!others || !AreEqual(*changes, *others))
+    const std::optional<CellDifferences> others =
+      deformvolume::FindDifferences(shape, this->Tetrahedra, {});
+    if (!others || !AreEqual(*differences, *others))
     {
       return {};
     }
   }
-  return changes;
+  return differences;
 }
 
 RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshParts& rest,
@@ -150,14 +166,15 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
   reading.Ignored = this->IgnoredCells;
   if (sameRest && sameShape)
   {
-    reading.Changed = Changes();
+    reading.Differences = CellDifferences();
+    reading.Differences->Count = this->Tetrahedra.size();
   }
   else
   {
     // Where only one of two meshes has changed, both are looked at.
-    reading.Changed = this->CompareCells(shape, rest, sameRest && shared, shared);
+    reading.Differences = this->CompareCells(shape, rest, sameRest && shared, shared);
   }
-  if (!reading.Changed)
+  if (!reading.Differences)
   {
     MeshCells cells = deformvolume::ReadCells(rest);
     if (cells.Tetrahedra.empty())
@@ -173,7 +190,7 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
                   "configuration on port 2. Connect two configurations of one mesh.");
     }
     reading.Ignored = cells.Ignored;
-    reading.Changed = FindDifferences(this->Tetrahedra, cells.Tetrahedra);
+    reading.Differences = FindDifferences(this->Tetrahedra, cells.Tetrahedra);
     reading.All = std::move(cells.Tetrahedra);
   }
   return reading;
@@ -250,23 +267,30 @@ void RestMesh::ReadMovedPoints(const MeshParts& rest, const DeformationSource& s
   }
 }
 
-bool RestMesh::AreInPlace(const Changes& changes) const
+bool RestMesh::HaveSameShape(const CellReading& cells) const
 {
-  return std::all_of(changes.begin(), changes.end(),
-    [&](const TetrahedronChange& change)
-    {
-      bool inPlace = true;
-      for (int k = 0; k < 4; ++k)
+  return cells.Differences && cells.Differences->Count == this->Tetrahedra.size() &&
+    std::all_of(cells.Differences->Changed.begin(), cells.Differences->Changed.end(),
+      [&](const TetrahedronChange& change)
       {
-        inPlace &= this->Points[change.Before[k]] == this->Points[change.After[k]];
-      }
-      return inPlace;
-    });
+        bool inPlace = true;
+        for (int k = 0; k < 4; ++k)
+        {
+          inPlace &= this->Points[change.Before[k]] == this->Points[change.After[k]];
+        }
+        return inPlace;
+      });
 }
 
-std::optional<TetrahedronReplacement> RestMesh::FindReplacement(const CellReading& cells) const
+std::optional<TetrahedronReplacement> RestMesh::FindReplacement(CellReading& cells) const
 {
   TetrahedronReplacement replacement;
+  if (cells.All.empty() && cells.Differences->Changed.size() * FewChanged > this->Tetrahedra.size())
+  {
+    // They may have other numbers only.
+    cells.All = this->Tetrahedra;
+    Apply(*cells.Differences, cells.All);
+  }
   if (cells.All.empty())
   {
     std::int32_t next = 0;
@@ -278,11 +302,11 @@ std::optional<TetrahedronReplacement> RestMesh::FindReplacement(const CellReadin
       }
       next = end + 1;
     };
-    for (const TetrahedronChange& change : *cells.Changed)
+    for (const TetrahedronChange& change : cells.Differences->Changed)
     {
       keep(change.Number);
     }
-    keep(static_cast<std::int32_t>(this->Tetrahedra.size()));
+    keep(static_cast<std::int32_t>(std::min(this->Tetrahedra.size(), cells.Differences->Count)));
   }
   else
   {
@@ -299,8 +323,9 @@ std::optional<TetrahedronReplacement> RestMesh::FindReplacement(const CellReadin
       for (std::int32_t t = begin; t < end; ++t)
       {
         const Tetrahedron& nodes = this->Tetrahedra[t];
-        replacement.Removed.push_back({ { this->Points[nodes[0]], this->Points[nodes[1]],
-          this->Points[nodes[2]], this->Points[nodes[3]] } });
+        replacement.Removed.push_back({ nodes,
+          { { this->Points[nodes[0]], this->Points[nodes[1]], this->Points[nodes[2]],
+            this->Points[nodes[3]] } } });
       }
     });
   return replacement;
@@ -320,10 +345,7 @@ void RestMesh::SetShape(CellReading&& cells, std::optional<TetrahedronReplacemen
   }
   else
   {
-    for (const TetrahedronChange& change : *cells.Changed)
-    {
-      this->Tetrahedra[change.Number] = change.After;
-    }
+    Apply(*cells.Differences, this->Tetrahedra);
   }
   this->IgnoredCells = cells.Ignored;
   ++this->ShapeVersion;

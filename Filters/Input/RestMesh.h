@@ -79,29 +79,29 @@ public:
 private:
   using Changes = std::vector<TetrahedronChange>;
 
-  /// What the cells are found to be: the tetrahedra, but for some changes, or other ones.
+  /// What the cells are found to be: how they differ, or all of them.
   struct CellReading
   {
-    std::optional<Changes> Changed;
-    std::vector<Tetrahedron> All; // where there is nothing in the former
+    std::optional<CellDifferences> Differences;
+    std::vector<Tetrahedron> All; // where there is nothing in the former, or not that alone
     std::string Ignored;
   };
 
   CellReading ReadCells(const MeshParts& shape, const MeshParts& rest, const MeshStamp& restCells,
     const MeshStamp& shapeCells);
-  /// The tetrahedra that have got other nodes, where a comparison can tell that. sameRest,
-  /// sameShape: whether both are as they were.
-  std::optional<Changes> CompareCells(
+  /// How the cells differ, where a comparison can tell that. sameRest, sameShape: whether both are
+  /// as they were.
+  std::optional<CellDifferences> CompareCells(
     const MeshParts& shape, const MeshParts& rest, bool sameRest, bool sameShape) const;
+  /// Whether cells are as many tetrahedra as there are, in the places of these.
+  bool HaveSameShape(const CellReading& cells) const;
   void ReadPoints(const MeshParts& rest, const DeformationSource& source);
   /// before: how many nodes there were. kept: set to false where one of these is elsewhere now.
   void ReadMovedPoints(const MeshParts& rest, const DeformationSource& source, std::size_t before,
     std::atomic<bool>& kept);
-  /// Whether a change leaves the tetrahedra the shapes that they had.
-  bool AreInPlace(const Changes& changes) const;
   /// How the tetrahedra that were read follow from those that there are, while all points are still
   /// there.
-  std::optional<TetrahedronReplacement> FindReplacement(const CellReading& cells) const;
+  std::optional<TetrahedronReplacement> FindReplacement(CellReading& cells) const;
   void SetConnectivity(Changes&& changes);
   void SetShape(CellReading&& cells, std::optional<TetrahedronReplacement>&& replacement);
 

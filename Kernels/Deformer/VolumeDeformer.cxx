@@ -165,7 +165,6 @@ void VolumeDeformer::ChangeConnectivity(const Tetrahedron* tetrahedra,
 void VolumeDeformer::ReplaceTetrahedra(const Tetrahedron* tetrahedra,
   std::size_t numberOfTetrahedra, std::size_t numberOfNodes, const MappingUpdate& update)
 {
-  CheckMesh(tetrahedra, numberOfTetrahedra, numberOfNodes);
   this->Impl->Send([&](VolumeDeformation& volume)
     { volume.ReplaceTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes, update); });
 }

@@ -149,7 +149,7 @@ void DisplacementSource::SetNodeDisplacements(
     this->Order.Nodes, "node");
   this->NodesSet = true;
   this->LastSent = true;
-  this->Volume.ForgetRecords();
+  this->Volume.GetRecords().Forget();
 }
 
 void DisplacementSource::SendNodes(const float* displacements, const PointRanges* changes)

@@ -235,6 +235,17 @@ std::vector<Extent> DisplacementSource::ReplaceTetrahedra(const Tetrahedron* tet
   }
   CheckMappingUpdate(
     update, grid, this->NumberOfTetrahedra, numberOfTetrahedra, this->Volume.HasRuns());
+  if (numberOfNodes < this->NumberOfNodes || update.Kept.empty())
+  {
+    CheckMesh(tetrahedra, numberOfTetrahedra, numberOfNodes);
+  }
+  // Those that are kept have nodes that there were.
+  ForEachReplaced(update.Kept, 0, static_cast<std::int32_t>(numberOfTetrahedra),
+    [&](std::int32_t, std::int32_t, std::int32_t begin, std::int32_t end)
+    {
+      CheckTetrahedra(
+        tetrahedra, static_cast<std::size_t>(begin), static_cast<std::size_t>(end), numberOfNodes);
+    });
   try
   {
     this->SetNumberOfNodes(numberOfNodes);

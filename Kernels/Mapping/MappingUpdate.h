@@ -3,6 +3,7 @@
 #define DeformVolumeMappingUpdate_h
 
 #include "Extent.h"
+#include "Tetrahedron.h"
 #include "VertexLink.h"
 #include "VertexRuns.h"
 
@@ -24,13 +25,20 @@ struct KeptTetrahedra
   std::int32_t Count = 0;
 };
 
+/// A tetrahedron that is gone: its nodes, and where they lay at rest, in continuous indices of the
+/// volume.
+struct RemovedTetrahedron
+{
+  Tetrahedron Nodes{};
+  std::array<glm::dvec3, 4> Places{};
+};
+
 /// How the tetrahedra of a mesh follow from those that there were.
 struct TetrahedronReplacement
 {
   /// In ascending order, before and now. All others are gone, or new.
   std::vector<KeptTetrahedra> Kept;
-  /// Where the nodes of those that are gone lay at rest, in continuous indices of the volume.
-  std::vector<std::array<glm::dvec3, 4>> Removed;
+  std::vector<RemovedTetrahedron> Removed;
 };
 
 /// How the static mapping of a volume (StaticMapping.h) changes where tetrahedra are replaced by

@@ -133,43 +133,49 @@ void MeshBounds::CountUses(
   this->Uses.assign(uses.begin(), uses.end());
 }
 
-void MeshBounds::ChangeConnectivity(const std::vector<glm::dvec3>& restPoints,
-  const std::vector<Tetrahedron>& tetrahedra, const std::vector<TetrahedronChange>& changes)
+void MeshBounds::Resize(std::size_t numberOfNodes)
 {
-  const std::size_t nodes = restPoints.size();
-  const std::size_t least = std::min(this->Wanted.size(), nodes);
-  const bool isCounted = !this->Uses.empty();
-  if (!isCounted)
-  {
-    this->CountUses(restPoints, tetrahedra);
-  }
-  const IndexBounds box = GetBox(this->Shape);
-  this->Uses.resize(std::max(this->Uses.size(), nodes));
-  this->Wanted.resize(std::max(this->Wanted.size(), nodes));
-  this->NodeBounds.Resize(CountBlocks(nodes, NodeBlock));
+  const std::size_t least = std::min(this->Wanted.size(), numberOfNodes);
+  this->Uses.resize(std::max(this->Uses.size(), numberOfNodes));
+  this->Wanted.resize(std::max(this->Wanted.size(), numberOfNodes));
+  this->NodeBounds.Resize(CountBlocks(numberOfNodes, NodeBlock));
   this->StaleNodes.resize(this->NodeBounds.GetNumberOfBlocks());
   this->RestBounds.resize(this->NodeBounds.GetNumberOfBlocks());
   for (std::size_t block = least / NodeBlock; block < this->StaleNodes.size(); ++block)
   {
     this->StaleNodes[block] = 1;
   }
-  const auto touch = [&](const Tetrahedron& changed, std::uint32_t uses)
+}
+
+void MeshBounds::Use(const Tetrahedron& tetrahedron, std::uint32_t uses)
+{
+  for (const std::int32_t node : tetrahedron)
   {
-    for (const std::int32_t node : changed)
+    const auto place = static_cast<std::size_t>(node);
+    if (place >= this->Uses.size()) // it is gone
     {
-      const auto place = static_cast<std::size_t>(node);
-      if (place >= this->Uses.size()) // it is gone
-      {
-        continue;
-      }
-      this->Uses[place] += uses;
-      this->Wanted[place] = this->Uses[place] > 0;
-      if (place < nodes)
-      {
-        this->StaleNodes[place / NodeBlock] = 1;
-      }
+      continue;
     }
-  };
+    this->Uses[place] += uses;
+    this->Wanted[place] = this->Uses[place] > 0;
+    if (place / NodeBlock < this->StaleNodes.size())
+    {
+      this->StaleNodes[place / NodeBlock] = 1;
+    }
+  }
+}
+
+void MeshBounds::ChangeConnectivity(const std::vector<glm::dvec3>& restPoints,
+  const std::vector<Tetrahedron>& tetrahedra, const std::vector<TetrahedronChange>& changes)
+{
+  const std::size_t nodes = restPoints.size();
+  const bool isCounted = !this->Uses.empty();
+  if (!isCounted)
+  {
+    this->CountUses(restPoints, tetrahedra);
+  }
+  const IndexBounds box = GetBox(this->Shape);
+  this->Resize(nodes);
   for (const TetrahedronChange& change : changes)
   {
     const auto found = std::lower_bound(
@@ -181,12 +187,94 @@ void MeshBounds::ChangeConnectivity(const std::vector<glm::dvec3>& restPoints,
     }
     else if (IsInside(change.After, restPoints, box) && !IsFlat(change.After, restPoints))
     {
-      touch(change.Before, isCounted ? ~std::uint32_t{ 0 } : 0);
-      touch(change.After, isCounted ? 1 : 0);
+      this->Use(change.Before, isCounted ? ~std::uint32_t{ 0 } : 0);
+      this->Use(change.After, isCounted ? 1 : 0);
     }
   }
   this->Uses.resize(nodes);
   this->Wanted.resize(nodes);
+}
+
+void MeshBounds::ReplaceTetrahedra(const std::vector<glm::dvec3>& restPoints,
+  const std::vector<Tetrahedron>& tetrahedra, const TetrahedronReplacement& replacement)
+{
+  const std::size_t nodes = restPoints.size();
+  const bool isCounted = !this->Uses.empty();
+  if (!isCounted)
+  {
+    this->CountUses(restPoints, tetrahedra);
+  }
+  const IndexBounds box = GetBox(this->Shape);
+  this->Resize(nodes);
+  const Tetrahedron itself{ { 0, 1, 2, 3 } };
+  for (const RemovedTetrahedron& removed : replacement.Removed)
+  {
+    const std::vector<glm::dvec3> places(removed.Places.begin(), removed.Places.end());
+    if (IsInside(itself, places, box) && !IsFlat(itself, places))
+    {
+      this->Use(removed.Nodes, isCounted ? ~std::uint32_t{ 0 } : 0);
+    }
+  }
+  std::vector<std::int32_t> clipped;
+  ForEachReplaced(replacement.Kept, 0, static_cast<std::int32_t>(tetrahedra.size()),
+    [&](std::int32_t, std::int32_t, std::int32_t begin, std::int32_t end)
+    {
+      for (std::int32_t id = begin; id < end; ++id)
+      {
+        if (!IsInside(tetrahedra[id], restPoints, box))
+        {
+          clipped.push_back(id);
+        }
+        else if (!IsFlat(tetrahedra[id], restPoints))
+        {
+          this->Use(tetrahedra[id], isCounted ? 1 : 0);
+        }
+      }
+    });
+  this->ReplaceClipped(replacement.Kept, std::move(clipped));
+  this->Uses.resize(nodes);
+  this->Wanted.resize(nodes);
+}
+
+void MeshBounds::ReplaceClipped(
+  const std::vector<KeptTetrahedra>& kept, std::vector<std::int32_t>&& added)
+{
+  const std::vector<std::int32_t> before = std::move(this->ClippedTetrahedra);
+  std::vector<std::int32_t> after;
+  auto block = kept.begin();
+  std::size_t same = before.size(); // up to here all are in their places
+  for (std::size_t i = 0; i < before.size(); ++i)
+  {
+    while (block != kept.end() && block->Before + block->Count <= before[i])
+    {
+      ++block;
+    }
+    if (block != kept.end() && block->Before <= before[i])
+    {
+      after.push_back(before[i] - block->Before + block->After);
+    }
+    else
+    {
+      same = std::min(same, i);
+    }
+  }
+  this->ClippedTetrahedra.resize(after.size() + added.size());
+  std::merge(
+    after.begin(), after.end(), added.begin(), added.end(), this->ClippedTetrahedra.begin());
+  if (!added.empty())
+  {
+    const auto place = std::lower_bound(after.begin(), after.end(), added.front());
+    same = std::min(same, static_cast<std::size_t>(place - after.begin()));
+  }
+  this->ClippedBounds.resize(CountBlocks(this->ClippedTetrahedra.size(), ClippedBlock));
+  this->StaleClipped.resize(this->ClippedBounds.size());
+  if (same < before.size() || !added.empty())
+  {
+    for (std::size_t i = same / ClippedBlock; i < this->StaleClipped.size(); ++i)
+    {
+      this->StaleClipped[i] = 1;
+    }
+  }
 }
 
 void MeshBounds::FindRestBounds(const std::vector<glm::dvec3>& restPoints, std::size_t block)

@@ -17,7 +17,13 @@ void CheckMesh(
   {
     throw Error("The deformation mesh is empty.");
   }
-  for (std::size_t t = 0; t < numberOfTetrahedra; ++t)
+  CheckTetrahedra(tetrahedra, 0, numberOfTetrahedra, numberOfNodes);
+}
+
+void CheckTetrahedra(
+  const Tetrahedron* tetrahedra, std::size_t begin, std::size_t end, std::size_t numberOfNodes)
+{
+  for (std::size_t t = begin; t < end; ++t)
   {
     for (const std::int32_t node : tetrahedra[t])
     {

@@ -21,6 +21,10 @@ namespace deformvolume
 void CheckMesh(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
 
+/// The same for some tetrahedra, from one number to before another.
+void CheckTetrahedra(
+  const Tetrahedron* tetrahedra, std::size_t begin, std::size_t end, std::size_t numberOfNodes);
+
 /// Throws an Error where one of so many voxels is linked to a tetrahedron that is none.
 void CheckLinks(const VertexLink* links, std::int64_t count, std::size_t numberOfTetrahedra);
 

@@ -112,9 +112,9 @@ bool StaticMappingUpdater::FindTouched(
       this->Changed.push_back(MakeExtent(box));
     }
   };
-  for (const TileGrid::Places& places : replacement.Removed)
+  for (const RemovedTetrahedron& removed : replacement.Removed)
   {
-    add(places, -1);
+    add(removed.Places, -1);
   }
   bool areWithinLimit = true;
   ForEachReplaced(replacement.Kept, static_cast<std::int32_t>(this->Survey.NumberOfTetrahedra),

@@ -123,6 +123,4 @@ bool IncrementalUpdate::IsInside(const unsigned char* state, const Extent& box) 
   return inside;
 }
 
-}
-
 } // namespace deformvolume

@@ -213,7 +213,7 @@ TetrahedronReplacement RefinedMesh::TakeReplacement()
       std::array<glm::dvec3, 4> places;
       std::transform(this->Last.Tetrahedra[before].begin(), this->Last.Tetrahedra[before].end(),
         places.begin(), [&](std::int32_t node) { return this->Last.Points[node]; });
-      replacement.Removed.push_back(places);
+      replacement.Removed.push_back({ this->Last.Tetrahedra[before], places });
       continue;
     }
     while (!then.count(this->Names[after]))
