@@ -104,6 +104,13 @@ protected:
   }
   static Route GetRoute() { return std::get<0>(GetParam()); }
   static deformvolume::Resampling GetMethod() { return std::get<1>(GetParam()); }
+  template <typename... Arguments>
+  static EditedVolume MakeVolume(const Arguments&... arguments)
+  {
+    EditedVolume volume(arguments...);
+    volume.Method = GetMethod();
+    return volume;
+  }
   /// How many edits there are time for, of some: fewer by cell.
   static int GetNumberOf(int edits)
   {

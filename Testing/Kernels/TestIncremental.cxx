@@ -132,15 +132,6 @@ bool AreSameOutside(const EditedOutputs& first, const EditedOutputs& second, con
 
 class Incremental : public WayTest
 {
-protected:
-  // Of the kernel that the test is about.
-  template <typename... Arguments>
-  static EditedVolume MakeVolume(const Arguments&... arguments)
-  {
-    EditedVolume volume(arguments...);
-    volume.Method = GetMethod();
-    return volume;
-  }
 };
 
 } // namespace
@@ -276,100 +267,6 @@ TEST_P(Incremental, EditsInsideEqualWholeUpdates)
   }
   EXPECT_GT(folds, edits / 15);
   EXPECT_GT(parts, edits / 10);
-}
-
-// Two memories take turns, as a pipeline has them: only what is different is copied.
-TEST_P(Incremental, OutputsTakeTurns)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  EditedVolume volume = MakeVolume();
-  VolumeDeformer whole;
-  VolumeDeformer updated;
-  volume.SendAll(whole, GetRoute());
-  volume.SendAll(updated, GetRoute());
-  std::array<EditedOutputs, 2> outputs{ { EditedOutputs(volume), EditedOutputs(volume) } };
-  std::array<std::uint64_t, 2> revisions{ { 0, 0 } };
-  std::mt19937 random(5);
-  int parts = 0;
-  for (int i = 0; i < 20; ++i)
-  {
-    SCOPED_TRACE("edit " + std::to_string(i));
-    Change(volume, i % 7 == 6 ? Edit::All : i % 3 == 1 ? Edit::Inside : Edit::Node, random);
-    volume.SendDisplacements(whole, GetRoute());
-    volume.SendDisplacements(updated, GetRoute());
-    EditedOutputs expected(volume);
-    whole.Deform(expected.MakeRequest(volume));
-    // Now and then the same memory twice.
-    const int turn = i % 5 == 4 ? (i - 1) % 2 : i % 2;
-    const int last = i == 0 ? 1 : (i - 1) % 5 == 4 ? (i - 2) % 2 : (i - 1) % 2;
-    DeformRequest request = outputs[turn].MakeRequest(volume);
-    request.Incremental = true;
-    if (i > 0)
-    {
-      outputs[last].SetLast(request);
-    }
-    request.OutputRevision = turn != last ? revisions[turn] : 0;
-    const DeformReport report = updated.Deform(request);
-    revisions[turn] = report.Revision;
-    ASSERT_TRUE(outputs[turn] == expected);
-    parts += report.NumberOfResampledBricks < report.NumberOfBricks;
-  }
-  EXPECT_GT(parts, 10);
-}
-
-// A processor writes into the memory of an output only where that is aligned for its type. Where
-// what it holds itself is not the last output, it makes all.
-TEST_P(Incremental, OutputsThatAreNotAligned)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  EditedVolume volume = MakeVolume();
-  VolumeDeformer whole;
-  VolumeDeformer updated;
-  volume.SendAll(whole, GetRoute());
-  volume.SendAll(updated, GetRoute());
-  EditedOutputs aligned(volume);
-  const std::size_t bytes = aligned.First.size() * sizeof(std::uint16_t);
-  std::vector<char> shifted(bytes + 1);
-  std::mt19937 random(11);
-  int parts = 0;
-  bool wasAligned = false;
-  for (int i = 0; i < 20; ++i)
-  {
-    SCOPED_TRACE("edit " + std::to_string(i));
-    const Edit kind = i % 3 == 0 ? Edit::Blanked : i % 3 == 1 ? Edit::Inside : Edit::Fold;
-    Change(volume, kind, random);
-    const bool isAligned = i % 6 >= 4;
-    const DeformRequest last = aligned.MakeRequest(volume);
-    DeformRequest request = last;
-    for (VolumeDeformer* deformer : { &whole, &updated })
-    {
-      volume.SendMasks(*deformer);
-      volume.SendDisplacements(*deformer, GetRoute());
-    }
-    EditedOutputs expected(volume);
-    whole.Deform(expected.MakeRequest(volume));
-    request.Outputs[0] = isAligned ? last.Outputs[0] : shifted.data() + 1;
-    request.Incremental = true;
-    if (i > 0)
-    {
-      aligned.SetLast(request);
-      request.LastOutputs[0] = wasAligned ? last.Outputs[0] : shifted.data() + 1;
-    }
-    const DeformReport report = updated.Deform(request);
-    if (!isAligned)
-    {
-      std::memcpy(last.Outputs[0], shifted.data() + 1, bytes);
-    }
-    ASSERT_TRUE(aligned == expected);
-    const bool isPart = report.NumberOfResampledBricks < report.NumberOfBricks;
-    parts += isPart;
-    if (HasVectors() && wasAligned && !isAligned)
-    {
-      EXPECT_FALSE(isPart) << "it was in the memory of the host";
-    }
-    wasAligned = isAligned;
-  }
-  EXPECT_GT(parts, 8);
 }
 
 // Edits that change what is covered, but not how much of it, so that counts do not tell: of two
