@@ -33,7 +33,7 @@ CARVING = ("TestCarving", "*")
 CHAINMAIL = ("TestChainMail", "*")
 RELAXATION = ("TestChainMailRelaxation", "*")
 SEQUENCES = ("TestChainMailSequences", "*")
-REPLACEMENT = ("TestReplacement", "-*InChunks:*Refuses*")
+REPLACEMENT = ("TestReplacement", "*Knows*:*Equals*/*OfGrid:*Equals*/Links:*Equals*/Runs")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
