@@ -38,7 +38,7 @@ RELAXATION = ("TestChainMailRelaxation", "*")
 SEQUENCES = ("TestChainMailSequences", "*")
 VECTORS = ("TestDeviceVectors", "*")
 VECTORS_GRAPHICS = ("TestDeviceVectorsGraphics", "*")
-REPLACEMENT = ("TestReplacement", "-*InChunks:*Refuses*")
+REPLACEMENT = ("TestReplacement", "*Knows*:*Equals*/*OfGrid:*Equals*/Links:*Equals*/Runs")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {

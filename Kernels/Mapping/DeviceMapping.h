@@ -54,8 +54,8 @@ public:
   TetrahedronRecords& GetRecords() { return this->Records; }
   const TetrahedronRecords& GetRecords() const { return this->Records; }
 
-  /// Of a mapping in one chunk, on a processor. tetrahedra: as on the device, of which there are so
-  /// many. wanted: the bricks to look at, null: all.
+  /// Of a mapping in one chunk, on a processor. tetrahedra: as on the device. wanted: see
+  /// BrickPoints::FromLinks.
   BrickPoints MakeBrickPoints(const VolumeChunk& chunk, const BrickGrid& grid,
     const cl::Buffer& tetrahedra, std::size_t numberOfNodes,
     const std::vector<std::size_t>* wanted) const;
@@ -72,7 +72,7 @@ private:
   void SendLinks(VolumeChunk& chunk, const VertexLink* links, const MeshOrder& order);
   void UpdateLinks(const VolumeChunk& chunk, const Extent& box, const VertexLink* links,
     const MeshOrder& order, Changes& changes) const;
-  /// rows: for each row of a box the first of its runs.
+  /// boxes: those of the runs, in local indices. records: the numbers on the device of theirs.
   void UpdateRuns(VolumeChunk& chunk, ChunkRuns& has, const std::vector<Extent>& boxes,
     const VertexRuns& runs, const std::vector<std::int32_t>& records, Changes& changes);
   /// Makes room for so many runs behind the others, of which it leaves out those of no row.

@@ -235,7 +235,7 @@ std::vector<Extent> DisplacementSource::ReplaceTetrahedra(const Tetrahedron* tet
   }
   CheckMappingUpdate(
     update, grid, this->NumberOfTetrahedra, numberOfTetrahedra, this->Volume.HasRuns());
-  if (numberOfNodes < this->NumberOfNodes || update.Kept.empty())
+  if (!tetrahedra || numberOfNodes < this->NumberOfNodes || update.Kept.empty())
   {
     CheckMesh(tetrahedra, numberOfTetrahedra, numberOfNodes);
   }

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeMappingSurvey_h
 #define DeformVolumeMappingSurvey_h
 
+#include "DeformVolumeExport.h"
 #include "Extent.h"
 
 #include <cstddef>
@@ -49,7 +50,7 @@ struct MappingSurvey
   std::vector<TileSample> Samples;
 
   /// Bytes that runs will take (GetRunBytes in VertexRuns.h), about; 0 where links are made.
-  std::uint64_t GetRunBytes(const Extent& voxels) const;
+  DEFORMVOLUME_EXPORT std::uint64_t GetRunBytes(const Extent& voxels) const;
 };
 
 } // namespace deformvolume
