@@ -115,6 +115,9 @@ public:
     return false;
   }
 
+  /// Of a field: the box of points of each brick.
+  const std::vector<Extent>& GetBoxes() const { return this->Boxes; }
+
   /// Whether all of a brick's points lie before one, or from another one on, for certain.
   bool IsApart(std::size_t brick, std::size_t begin, std::size_t end) const
   {

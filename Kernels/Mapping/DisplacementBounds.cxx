@@ -57,4 +57,14 @@ void DisplacementBounds::Add(const DisplacementBounds& other)
   }
 }
 
+DisplacementBounds Join(const std::vector<DisplacementBounds>& bounds)
+{
+  DisplacementBounds all;
+  for (const DisplacementBounds& one : bounds)
+  {
+    all.Add(one);
+  }
+  return all;
+}
+
 } // namespace deformvolume

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #ifdef __SSE__
 #include <xmmintrin.h>
@@ -15,11 +16,15 @@ namespace deformvolume
 
 struct DisplacementField;
 
-/// Displacements of points, in output voxels, as they lie in memory.
+struct DisplacementBounds;
+
+/// Displacements of points, in output voxels, as they lie in memory, or as they are known.
 struct Displacements
 {
   const float* Padded = nullptr; // four floats each, or else
   const DisplacementField* Field = nullptr;
+  // Or, of displacements that are not on the host, their bounds in each sub-brick.
+  const std::vector<DisplacementBounds>* OfSubBricks = nullptr;
 };
 
 /// The least and the greatest displacement of some points.
@@ -34,6 +39,9 @@ struct DisplacementBounds
   alignas(16) std::array<float, 4> Least;
   alignas(16) std::array<float, 4> Greatest;
 };
+
+/// What holds all of some bounds.
+DisplacementBounds Join(const std::vector<DisplacementBounds>& bounds);
 
 inline void DisplacementBounds::Add(const float* displacements, std::size_t begin, std::size_t end)
 {

@@ -46,6 +46,7 @@ DisplacementSource::DisplacementSource(
   , Nodes(device, observer)
   , FieldVectors(device, observer)
   , Reading(device)
+  , Bounds(device)
 {
 }
 
@@ -144,6 +145,10 @@ void DisplacementSource::SetNodeDisplacements(
     this->SendNodes(this->Reading.GetDisplacements(changes), changes ? &*changes : nullptr);
     return;
   }
+  if (this->NodesSet && this->LastSent && changes && changes->empty())
+  {
+    return;
+  }
   this->NodesSet = false;
   this->Reading.Convert(this->Nodes.Place(std::max(this->NumberOfNodes, this->Order.Nodes.size())),
     this->Order.Nodes, "node");
@@ -186,6 +191,8 @@ void DisplacementSource::SetField(
   }
   const FieldParameters parameters = this->BeginField(field);
   this->CheckFieldSize();
+  const bool isSame = this->IsConverted && this->FieldVectors.GetNumberOfPoints() == points &&
+    IsSameMapping(parameters, this->Field);
   if (this->FieldInPlace.Owner || this->FieldVectors.GetNumberOfPoints() != points)
   {
     this->ForgetField();
@@ -194,13 +201,43 @@ void DisplacementSource::SetField(
   this->LastSent = false;
   try
   {
-    this->Reading.Convert(this->FieldVectors.Place(points), {}, "point");
+    this->ConvertField(isSame && changes ? &*changes : nullptr);
   }
   catch (...)
   {
     this->ForgetField();
+    this->Observer.MoveAll({});
     throw;
   }
+}
+
+void DisplacementSource::ConvertField(const PointRanges* changes)
+{
+  this->WrittenInPart = changes != nullptr;
+  this->BoundsOfSubBricks.clear();
+  if (changes)
+  {
+    this->Reading.Convert(this->FieldVectors.Get(), {}, "point");
+    if (!this->TellOfChanges(*changes, [this] { return Join(this->FindBoundsOfSubBricks()); }))
+    {
+      this->Observer.MoveAll({});
+    }
+    return;
+  }
+  this->Reading.Convert(this->FieldVectors.Place(this->NumberOfNodes), {}, "point");
+  this->IsConverted = true;
+}
+
+const std::vector<DisplacementBounds>& DisplacementSource::FindBoundsOfSubBricks() const
+{
+  if (this->BoundsOfSubBricks.empty())
+  {
+    const std::array<int, 3> size{ { this->Field.Dimensions[0], this->Field.Dimensions[1],
+      this->Field.Dimensions[2] } };
+    this->BoundsOfSubBricks =
+      this->Bounds.Find(this->FieldVectors.Get(), size, this->MakeBrickPoints().GetBoxes());
+  }
+  return this->BoundsOfSubBricks;
 }
 
 FieldParameters DisplacementSource::BeginField(const DisplacementField& field)
@@ -222,6 +259,7 @@ FieldParameters DisplacementSource::BeginField(const DisplacementField& field)
 
 void DisplacementSource::UseField(const DisplacementField& field, const PointRanges* changes)
 {
+  this->IsConverted = false;
   CountPoints(field); // throws where there are none
   const FieldParameters parameters = this->BeginField(field);
   if (this->CanReadInPlace(field, parameters))
@@ -290,6 +328,30 @@ bool DisplacementSource::CanReadInPlace(
 
 bool DisplacementSource::ChangeInPlace(const DisplacementField& field, const PointRanges& changes)
 {
+  const auto after = [&]
+  {
+    DisplacementBounds bounds;
+    for (const auto& range : changes)
+    {
+      const std::size_t end = std::min(range[1], this->NumberOfNodes);
+      if (range[0] < end)
+      {
+        bounds.Add({ nullptr, &field, nullptr }, range[0], end);
+      }
+    }
+    return bounds;
+  };
+  if (!this->TellOfChanges(changes, after))
+  {
+    return false;
+  }
+  this->FieldInPlace = field;
+  return true;
+}
+
+bool DisplacementSource::TellOfChanges(
+  const PointRanges& changes, const std::function<DisplacementBounds()>& after)
+{
   std::size_t count = 0;
   for (const auto& range : changes)
   {
@@ -304,24 +366,17 @@ bool DisplacementSource::ChangeInPlace(const DisplacementField& field, const Poi
   {
     return false;
   }
-  PointSet changed;
-  changed.Clear(this->NumberOfNodes);
-  DisplacementBounds after;
-  for (const auto& range : changes)
-  {
-    const std::size_t end = std::min(range[1], this->NumberOfNodes);
-    changed.AddRange(range[0], end);
-    if (range[0] < end)
-    {
-      after.Add({ nullptr, &field }, range[0], end);
-    }
-  }
   if (count > 0)
   {
+    PointSet changed;
+    changed.Clear(this->NumberOfNodes);
+    for (const auto& range : changes)
+    {
+      changed.AddRange(range[0], std::min(range[1], this->NumberOfNodes));
+    }
     this->Observer.MovePoints(changed, nullptr);
-    this->Observer.AddMoved(after);
+    this->Observer.AddMoved(after());
   }
-  this->FieldInPlace = field;
   return true;
 }
 
@@ -366,6 +421,9 @@ void DisplacementSource::ForgetNodes()
 void DisplacementSource::ForgetField()
 {
   this->FieldVectors.Clear();
+  this->IsConverted = false;
+  this->Bounds.Clear();
+  this->BoundsOfSubBricks.clear();
   this->VectorsInPlace = cl::Buffer();
   this->FieldInPlace = DisplacementField();
 }
@@ -445,14 +503,19 @@ void DisplacementSource::Visit(
 {
   if (this->GetMappingForm() == MappingForm::FieldInPlace)
   {
-    visit({ nullptr, &this->FieldInPlace },
+    visit({ nullptr, &this->FieldInPlace, nullptr },
       static_cast<std::size_t>(GetNumberOfPoints(this->FieldInPlace)));
+    return;
+  }
+  if (this->IsConverted)
+  {
+    visit({ nullptr, nullptr, &this->FindBoundsOfSubBricks() }, this->NumberOfNodes);
     return;
   }
   const DisplacementBuffer& buffer = this->Volume.HasMesh() ? this->Nodes : this->FieldVectors;
   buffer.Visit(
     [&](const float* vectors) {
-      visit({ vectors, nullptr }, buffer.GetNumberOfPoints());
+      visit({ vectors, nullptr, nullptr }, buffer.GetNumberOfPoints());
     });
 }
 

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeDisplacementSource_h
 #define DeformVolumeDisplacementSource_h
 
+#include "BoxBounds.h"
 #include "DisplacementBuffer.h"
 #include "DisplacementField.h"
 #include "HostMemory.h"
@@ -90,11 +91,16 @@ public:
 
   /// Which points move the sub-bricks of the volume, where that is one chunk.
   BrickPoints MakeBrickPoints() const;
-  /// Calls a function with the displacements as they are now, and how many they are.
+  /// Calls a function with the displacements as they are now, or with what is known of them, and
+  /// how many they are.
   void Visit(const std::function<void(const Displacements&, std::size_t)>& visit) const;
 
-  /// Whether a field that the kernels read where it lies is written in part, and that is told.
-  bool IsWrittenInPart() const { return this->FieldInPlace.Owner && this->WrittenInPart; }
+  /// Whether a field that the kernels read where it lies, or that a kernel has converted, is
+  /// written in part, and that is told.
+  bool IsWrittenInPart() const
+  {
+    return (this->FieldInPlace.Owner || this->IsConverted) && this->WrittenInPart;
+  }
   /// Memory of the host where the kernels read a field, of no bytes where they do not.
   BufferInPlace GetFieldInPlace() const;
   /// Has it be read as it is now.
@@ -130,6 +136,14 @@ private:
   bool ChangeInPlace(const DisplacementField& field, const PointRanges& changes);
   void SetFieldInPlace(const DisplacementField& field);
   void CheckFieldSize() const;
+  /// Has a kernel make the displacements of the field. changes: what may have changed of them, and
+  /// of no others; null: all.
+  void ConvertField(const PointRanges* changes);
+  const std::vector<DisplacementBounds>& FindBoundsOfSubBricks() const;
+  /// Points that have changed, so many of them: the observer is told, if that is worthwhile and
+  /// possible. after: finds what their displacements lie between now. False where all of the field
+  /// is as good as new.
+  bool TellOfChanges(const PointRanges& changes, const std::function<DisplacementBounds()>& after);
   void SendField(
     const DisplacementField& field, const FieldParameters& parameters, const PointRanges* changes);
 
@@ -152,6 +166,9 @@ private:
   cl::Buffer VectorsInPlace;      // which lies over them
 
   VectorReading Reading;
+  bool IsConverted = false; // the displacements of the field are made on the device
+  mutable BoxBounds Bounds;
+  mutable std::vector<DisplacementBounds> BoundsOfSubBricks; // of these; empty: not known
   bool LastSent = false; // the last displacements that were given are on the device
 };
 

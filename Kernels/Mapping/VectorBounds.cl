@@ -1,9 +1,57 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bounds of voxels that move by vectors on the device. It comes after VectorConversion.cl, and needs double precision.
-
-#if REAL_IS_DOUBLE
+// Bounds of displacements on the device, and of voxels that vectors there move. It comes after VectorConversion.cl.
 
 #define BOUNDS 6 // the least x, y and z, and the greatest ones
+
+// What the items of a work-group have found, joined by each item for one bound of six. All items call it.
+#define JOIN_BOUNDS(TYPE, shared, least, greatest, bounds)                                         \
+  {                                                                                                \
+    __local TYPE* own = shared + BOUNDS * get_local_id(0);                                         \
+    for (int axis = 0; axis < 3; ++axis)                                                           \
+    {                                                                                              \
+      own[axis] = least[axis];                                                                     \
+      own[axis + 3] = greatest[axis];                                                              \
+    }                                                                                              \
+    barrier(CLK_LOCAL_MEM_FENCE);                                                                  \
+    for (int i = get_local_id(0); i < BOUNDS; i += get_local_size(0))                              \
+    {                                                                                              \
+      TYPE found = shared[i];                                                                      \
+      for (int item = 1; item < (int)get_local_size(0); ++item)                                    \
+      {                                                                                            \
+        const TYPE next = shared[BOUNDS * item + i];                                               \
+        found = i < 3 ? fmin(found, next) : fmax(found, next);                                     \
+      }                                                                                            \
+      bounds[BOUNDS * get_group_id(0) + i] = found;                                                \
+    }                                                                                              \
+  }
+
+// What finite displacements lie between in boxes of points, six ends each; a work-group takes a box. width and height:
+// points on x and y.
+__kernel void FindBoxBounds(__global const float4* displacements, const int width, const int height,
+  __global const int* boxes, __local float* shared, __global float* bounds)
+{
+  __global const int* box = boxes + 6 * get_group_id(0);
+  float least[3] = { INFINITY, INFINITY, INFINITY };
+  float greatest[3] = { -INFINITY, -INFINITY, -INFINITY };
+  const int sizeX = box[1] - box[0] + 1;
+  const int sizeY = box[3] - box[2] + 1;
+  const int count = sizeX * sizeY * (box[5] - box[4] + 1);
+  for (int i = get_local_id(0); i < count; i += get_local_size(0))
+  {
+    const size_t z = box[4] + i / (sizeX * sizeY);
+    const size_t y = box[2] + i / sizeX % sizeY;
+    const float4 moved = displacements[(z * height + y) * width + box[0] + i % sizeX];
+    least[0] = fmin(least[0], moved.x);
+    least[1] = fmin(least[1], moved.y);
+    least[2] = fmin(least[2], moved.z);
+    greatest[0] = fmax(greatest[0], moved.x);
+    greatest[1] = fmax(greatest[1], moved.y);
+    greatest[2] = fmax(greatest[2], moved.z);
+  }
+  JOIN_BOUNDS(float, shared, least, greatest, bounds)
+}
+
+#if REAL_IS_DOUBLE
 
 // rest: where the voxels lie for each index on x, then y, then z. Sums are all that is rounded. bounds: six numbers a
 // work-group. A group takes every so many-th row of voxels, and its items every so many-th voxel of these. Voxels whose
@@ -39,23 +87,7 @@ __kernel void FindBounds(__global const float* vectors, const FieldParameters fi
       }
     }
   }
-  __local double* own = shared + BOUNDS * get_local_id(0);
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    own[axis] = least[axis];
-    own[axis + 3] = greatest[axis];
-  }
-  barrier(CLK_LOCAL_MEM_FENCE);
-  for (int i = get_local_id(0); i < BOUNDS; i += get_local_size(0))
-  {
-    double found = shared[i];
-    for (int item = 1; item < (int)get_local_size(0); ++item)
-    {
-      const double next = shared[BOUNDS * item + i];
-      found = i < 3 ? fmin(found, next) : fmax(found, next);
-    }
-    bounds[BOUNDS * get_group_id(0) + i] = found;
-  }
+  JOIN_BOUNDS(double, shared, least, greatest, bounds)
 }
 
 #endif

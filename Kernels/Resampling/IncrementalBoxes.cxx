@@ -25,6 +25,10 @@ constexpr double LargestMove = 16384.0;
 DisplacementBounds IncrementalUpdate::ComputeBounds(
   std::size_t subBrick, const Displacements& displacements) const
 {
+  if (displacements.OfSubBricks)
+  {
+    return (*displacements.OfSubBricks)[subBrick];
+  }
   DisplacementBounds bounds;
   this->Points.AnyOf(subBrick,
     [&](std::size_t begin, std::size_t end)
@@ -38,17 +42,16 @@ DisplacementBounds IncrementalUpdate::ComputeBounds(
 DisplacementBounds IncrementalUpdate::ComputeAllBounds(
   const Displacements& displacements, std::size_t numberOfPoints) const
 {
+  if (displacements.OfSubBricks)
+  {
+    return Join(*displacements.OfSubBricks);
+  }
   constexpr std::size_t step = 65536;
   std::vector<DisplacementBounds> steps((numberOfPoints + step - 1) / step);
   ParallelForParts(numberOfPoints, step,
     [&](std::size_t begin, std::size_t end)
     { steps[begin / step].Add(displacements, begin, end); });
-  DisplacementBounds all;
-  for (const DisplacementBounds& bounds : steps)
-  {
-    all.Add(bounds);
-  }
-  return all;
+  return Join(steps);
 }
 
 IncrementalUpdate::Box IncrementalUpdate::MakeBox(

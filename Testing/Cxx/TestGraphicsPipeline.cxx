@@ -22,10 +22,12 @@ namespace
 // A few numbers that the host and the device tell each other.
 constexpr std::uint64_t Few = 4096;
 
-// With what a filter counts of a brick: eight numbers in each of its 24 sections.
+// With what a filter counts of a brick: eight numbers in each of its 24 sections, which may be
+// followed by six numbers for each of its 48 sub-bricks.
 std::uint64_t GetMostRead(const Deformed& deformed)
 {
-  return Few + 24 * 8 * 4 * static_cast<std::uint64_t>(deformed.Filter->GetNumberOfBricks());
+  return Few +
+    (24 * 8 + 48 * 6) * 4 * static_cast<std::uint64_t>(deformed.Filter->GetNumberOfBricks());
 }
 
 void ResetCounts()
@@ -286,6 +288,41 @@ void TestChainMail()
   VERIFY(AreEqual(other->GetOutput(), chain->GetOutput()));
 }
 
+// A drag makes the parts of the output anew that it moves.
+void TestParts()
+{
+  const auto volume = MakeVolume({ { 0, 95, 0, 79, 0, 79 } });
+  vtkNew<vtkChainMailDeformation> chain;
+  chain->SetInputData(volume);
+  chain->SetRelaxationSweeps(0);
+  Deformed found;
+  found.Filter->SetInputData(volume);
+  found.Filter->SetDeformationConnection(chain->GetOutputPort());
+  found.Filter->SetOutputBoundsModeToVolumeBounds();
+  for (int step = 1; step <= 6; ++step)
+  {
+    chain->SetHandlesData(
+      MakeHandles({ { glm::dvec3(24.0), glm::dvec3(24.0 + 0.7 * step, 24.0, 24.0) } }));
+    found.Update();
+    VERIFY_EQUAL(
+      found.Filter->GetNumberOfResampledBricks() < found.Filter->GetNumberOfBricks(), step > 2);
+    vtkDataArray* output = chain->GetOutput()->GetPointData()->GetArray("Displacement");
+    auto* array = vtkDeviceVectorArray::SafeDownCast(output);
+    VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
+    vtkNew<vtkImageData> copied;
+    copied->CopyStructure(chain->GetOutput());
+    vtkNew<vtkFloatArray> floats;
+    floats->SetNumberOfComponents(3);
+    floats->SetNumberOfTuples(array->GetNumberOfTuples());
+    std::copy_n(array->GetVectors(deformvolume::ResolveDevice(""))->Read(),
+      floats->GetNumberOfValues(), floats->GetPointer(0));
+    copied->GetPointData()->SetVectors(floats);
+    Deformed expected(volume, copied);
+    expected.Filter->SetOutputBoundsModeToVolumeBounds();
+    VERIFY(AreEqual(expected.Update(), found.Filter->GetOutput()));
+  }
+}
+
 } // namespace
 
 int main()
@@ -299,5 +336,6 @@ int main()
   TestTwoVolumes();
   TestFields();
   TestChainMail();
+  TestParts();
   return GetExitCode();
 }

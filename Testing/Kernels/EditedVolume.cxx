@@ -165,6 +165,11 @@ void EditedVolume::SendDisplacements(
     deformer.SetNodeDisplacements(this->Displacements.data(), changes);
     return;
   }
+  deformer.SetDisplacementField(this->GetField(), changes);
+}
+
+DisplacementField EditedVolume::GetField() const
+{
   DisplacementField field;
   field.Dimensions = this->Nodes;
   field.Vectors = this->Displacements.data();
@@ -173,7 +178,7 @@ void EditedVolume::SendDisplacements(
     field.IndexToField[5 * axis] = 1.0 / Step;
     field.IndexToField[4 * axis + 3] = -double(this->Shape.VertexExtent[2 * axis]) / Step;
   }
-  deformer.SetDisplacementField(field, changes);
+  return field;
 }
 
 PointRanges EditedVolume::FindChanges(const std::vector<float>& last, std::mt19937& random) const

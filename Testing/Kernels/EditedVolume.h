@@ -48,6 +48,9 @@ struct EditedVolume
   std::int32_t GetNode(const std::array<int, 3>& place) const;
   std::vector<deformvolume::VolumeArray> GetArrays() const;
 
+  /// The displacements as a field.
+  deformvolume::DisplacementField GetField() const;
+
   void SendAll(deformvolume::VolumeDeformer& deformer, Route route) const;
   void SendMasks(deformvolume::VolumeDeformer& deformer) const;
   void SendDisplacements(deformvolume::VolumeDeformer& deformer, Route route,

@@ -2,6 +2,7 @@
 // Vectors on a device: what they refuse, what they know of their changes, and that volumes which
 // are moved by them equal, to the last bit, those that get the displacements from the host.
 // TestDeviceVectorsGraphics runs these tests on a device with memory of its own.
+#include "BoxBounds.h"
 #include "ChainMailModel.h"
 #include "DeformedBounds.h"
 #include "DeformerCase.h"
@@ -547,6 +548,45 @@ TEST(DeviceVectors, Tiny)
     }
   }
   FindDeformedBounds(subject.Case.VoxelGrid, subject.GetField(), *shared);
+}
+
+TEST(DeviceVectors, TinyBoxes)
+{
+  WorkDevice device;
+  const std::array<int, 3> size{ { 5, 4, 3 } };
+  const std::vector<float> vectors = MakeVectors(80, 1); // 60 of four floats
+  const cl::Buffer there = device.Send(vectors.data(), 60 * 4 * sizeof(float), cl::Buffer());
+  const std::vector<Extent> boxes{ { { 0, 4, 0, 3, 0, 2 } }, { { 4, 4, 3, 3, 2, 2 } },
+    { { 1, 3, 0, 1, 1, 2 } } };
+  BoxBounds finder(device);
+  EXPECT_TRUE(finder.Find(there, size, {}).empty());
+  for (int turn = 0; turn < 2; ++turn)
+  {
+    const std::vector<DisplacementBounds> found = finder.Find(there, size, boxes);
+    ASSERT_EQ(found.size(), boxes.size());
+    for (std::size_t box = 0; box < boxes.size(); ++box)
+    {
+      for (std::size_t axis = 0; axis < 3; ++axis)
+      {
+        float least = 1.0F;
+        float greatest = -1.0F;
+        for (int z = boxes[box][4]; z <= boxes[box][5]; ++z)
+        {
+          for (int y = boxes[box][2]; y <= boxes[box][3]; ++y)
+          {
+            for (int x = boxes[box][0]; x <= boxes[box][1]; ++x)
+            {
+              const float next = vectors[4 * static_cast<std::size_t>((z * 4 + y) * 5 + x) + axis];
+              least = std::min(least, next);
+              greatest = std::max(greatest, next);
+            }
+          }
+        }
+        EXPECT_EQ(found[box].Least[axis], least);
+        EXPECT_EQ(found[box].Greatest[axis], greatest);
+      }
+    }
+  }
 }
 
 TEST(FreeMemory, IsMeasuredOnceWhereThereIsPlenty)

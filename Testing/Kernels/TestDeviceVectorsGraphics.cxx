@@ -4,14 +4,17 @@
 #include "ChainMailModel.h"
 #include "DeformerCase.h"
 #include "DeviceVectors.h"
+#include "EditedVolume.h"
 #include "FakeDriver.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <iostream>
 #include <memory>
+#include <random>
 #include <vector>
 
 using namespace deformvolume;
@@ -163,4 +166,74 @@ TEST_F(Transfers, ChainMailPassesNothingThroughTheHost)
               << " written\n";
   }
   EXPECT_EQ(deformer.GetDeviceMemory(), held);
+}
+
+// Points that are known to have changed move a part of the output, and where they lie is found on
+// the device.
+TEST_F(Transfers, APartOfAFieldMovesAPartOfTheOutput)
+{
+  EditedVolume edited(Extent{ { -5, 140, 0, 100, 3, 80 } });
+  const DisplacementField field = edited.GetField();
+  const auto vectors = std::make_shared<DeviceVectors>("", edited.GetNumberOfNodes());
+  vectors->Write(edited.Displacements.data());
+  VolumeDeformer deformer;
+  edited.SendAll(deformer, Route::Field);
+  EditedOutputs outputs(edited);
+  DeformRequest request = outputs.MakeRequest(edited);
+  request.Incremental = true;
+  deformer.SetDisplacementField(field, vectors);
+  deformer.Deform(request);
+  outputs.SetLast(request);
+  std::mt19937 random(7);
+  int parts = 0;
+  for (int edit = 0; edit < 10; ++edit)
+  {
+    const std::vector<float> last = edited.Displacements;
+    edited.Move(random, edit % 3, 0.4F);
+    PointRanges changes;
+    for (std::size_t point = 0; point < edited.GetNumberOfNodes(); ++point)
+    {
+      if (!std::equal(last.begin() + 3 * point, last.begin() + 3 * point + 3,
+            edited.Displacements.begin() + 3 * point))
+      {
+        changes.push_back({ { point, point + 1 } });
+      }
+    }
+    vectors->Write(edited.Displacements.data(), changes);
+    this->Reset();
+    deformer.SetDisplacementField(field, vectors);
+    // Six numbers for each sub-brick of 16 x 8 x 8 cells, and where these are.
+    EXPECT_LE(FakeDriver::Get().BytesRead, 24U * 12 * 14 * 10 + Few);
+    EXPECT_LE(FakeDriver::Get().BytesWritten, 24U * 12 * 14 * 10 + Few);
+    const DeformReport report = deformer.Deform(request);
+    VolumeDeformer fresh;
+    edited.SendAll(fresh, Route::Field);
+    EditedOutputs expected(edited);
+    ExpectSame(report, fresh.Deform(expected.MakeRequest(edited)));
+    ASSERT_TRUE(outputs == expected) << edit;
+    parts += report.NumberOfResampledBricks < report.NumberOfBricks ? 1 : 0;
+  }
+  EXPECT_GE(parts, 7);
+  // What is not known to be the same is made anew.
+  edited.Displacements[30] += 0.25F;
+  vectors->Write(edited.Displacements.data());
+  deformer.SetDisplacementField(field, vectors);
+  deformer.Deform(request);
+  VolumeDeformer fresh;
+  edited.SendAll(fresh, Route::Field);
+  EditedOutputs expected(edited);
+  fresh.Deform(expected.MakeRequest(edited));
+  EXPECT_TRUE(outputs == expected);
+  // A part of other displacements, which the host has sent meanwhile.
+  edited.Displacements[33] += 0.25F;
+  edited.SendDisplacements(deformer, Route::Field);
+  deformer.Deform(request);
+  edited.Displacements[33] -= 0.25F;
+  edited.Displacements[36] += 0.25F;
+  vectors->Write(edited.Displacements.data(), { { { 12, 13 } } });
+  deformer.SetDisplacementField(field, vectors);
+  deformer.Deform(request);
+  edited.SendAll(fresh, Route::Field);
+  fresh.Deform(expected.MakeRequest(edited));
+  EXPECT_TRUE(outputs == expected);
 }

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BoxBounds.h"
+
+#include "HostMemory.h"
+#include "MappingProgram.h"
+
+#include <algorithm>
+
+namespace deformvolume
+{
+namespace
+{
+
+using Bounds = std::array<cl_float, 6>;
+
+} // namespace
+
+void BoxBounds::Clear()
+{
+  this->Boxes.clear();
+  this->BoxesThere = cl::Buffer();
+}
+
+std::vector<DisplacementBounds> BoxBounds::Find(
+  const cl::Buffer& displacements, const std::array<int, 3>& size, const std::vector<Extent>& boxes)
+{
+  static_assert(sizeof(Extent) == 6 * sizeof(cl_int), "as the kernel reads it");
+  if (boxes.empty())
+  {
+    return {};
+  }
+  if (boxes != this->Boxes)
+  {
+    this->Boxes.clear();
+    this->BoxesThere =
+      this->Device.Send(boxes.data(), boxes.size() * sizeof(Extent), this->BoxesThere);
+    this->Boxes = boxes;
+  }
+  OpenCLContext& context = this->Device.GetContext();
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  const std::size_t bytes = boxes.size() * sizeof(Bounds);
+  std::vector<Bounds> found(boxes.size());
+  const cl::Buffer bounds(context.GetContext(), CL_MEM_READ_WRITE, bytes);
+  const QueueGuard guard(queue);
+  cl::Kernel kernel(GetConversionProgram(context), "FindBoxBounds");
+  const std::size_t group = this->Device.GetGroupSize(kernel);
+  cl_uint i = 0;
+  kernel.setArg(i++, displacements);
+  kernel.setArg(i++, cl_int{ size[0] });
+  kernel.setArg(i++, cl_int{ size[1] });
+  kernel.setArg(i++, this->BoxesThere);
+  kernel.setArg(i++, cl::Local(group * sizeof(Bounds)));
+  kernel.setArg(i++, bounds);
+  context.Launch(queue, kernel, cl::NDRange(boxes.size() * group), cl::NDRange(group));
+  queue.enqueueReadBuffer(bounds, CL_TRUE, 0, bytes, found.data());
+  std::vector<DisplacementBounds> made(boxes.size());
+  for (std::size_t box = 0; box < boxes.size(); ++box)
+  {
+    std::copy_n(found[box].begin(), 3, made[box].Least.begin());
+    std::copy_n(found[box].begin() + 3, 3, made[box].Greatest.begin());
+  }
+  return made;
+}
+
+} // namespace deformvolume
