@@ -22,9 +22,10 @@ namespace
 // A few numbers that the host and the device tell each other.
 constexpr std::uint64_t Few = 4096;
 
-// With what a filter counts of a brick: eight numbers in each of its 24 sections, which may be
-// followed by six numbers for each of its 48 sub-bricks.
-std::uint64_t GetMostRead(const Deformed& deformed)
+// With what a filter counts of a brick, eight numbers in each of its 24 sections; and what it asks
+// of its 48 sub-bricks, where these are and what the displacements there lie between, six numbers
+// each.
+std::uint64_t GetMostTold(const Deformed& deformed)
 {
   return Few +
     (24 * 8 + 48 * 6) * 4 * static_cast<std::uint64_t>(deformed.Filter->GetNumberOfBricks());
@@ -110,7 +111,7 @@ void TestTwoVolumes()
     {
       VERIFY(FakeDriver::Get().BytesWritten >= (isLogged ? 120 : bytes));
       VERIFY(FakeDriver::Get().BytesWritten < (isLogged ? 120 : bytes) + Few);
-      VERIFY(FakeDriver::Get().BytesRead < GetMostRead(found[0]) + GetMostRead(found[1]));
+      VERIFY(FakeDriver::Get().BytesRead < GetMostTold(found[0]) + GetMostTold(found[1]));
       std::cout << "Frame " << frame << ": " << FakeDriver::Get().BytesWritten
                 << " bytes written for two volumes, " << bytes << " in all vectors\n";
     }
@@ -226,9 +227,9 @@ void TestChainMail()
     VERIFY_EQUAL(array->GetNumberOfUploads(), 0);
     if (step > 1) // in the first the volume is sent
     {
-      VERIFY(moved > 4 * GetMostRead(found));
-      VERIFY(FakeDriver::Get().BytesWritten < Few);
-      VERIFY(FakeDriver::Get().BytesRead < GetMostRead(found));
+      VERIFY(moved > 4 * GetMostTold(found));
+      VERIFY(FakeDriver::Get().BytesWritten < GetMostTold(found));
+      VERIFY(FakeDriver::Get().BytesRead < GetMostTold(found));
       VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
       std::cout << "Step " << step << ": " << moved << " bytes of displacements have changed, "
                 << FakeDriver::Get().BytesRead << " were read and "
