@@ -92,25 +92,25 @@ TEST_P(IncrementalGraphics, LittleIsReadOfALocalEdit)
   EXPECT_LT(this->UpdatePart(), 0.05) << "a fold";
 }
 
-// What the device does not give in one piece is made in slabs, all of it.
-TEST_P(IncrementalGraphics, OutputsInSlabs)
+// What the device does not give in one piece is made in chunks and slabs, all of it.
+TEST_P(IncrementalGraphics, VolumesAndOutputsInParts)
 {
-  this->At(12, 6, 5)[0] = 0.5F;
-  this->UpdatePart();
   // Room for the two doubles of some planes of voxels.
   this->Deformer.SetAllocationLimit(16 * 146 * 101 * 30);
-  for (int i = 0; i < 2; ++i)
+  this->Edited.SendAll(this->Deformer, GetParam());
+  for (int i = 0; i < 3; ++i)
   {
-    this->At(12, 6, 5)[0] -= 0.25F;
+    this->At(12, 6, 5)[0] += 0.25F;
     const DeformReport report = this->Update();
     EXPECT_EQ(report.NumberOfResampledBricks, report.NumberOfBricks);
-    EditedOutputs expected(this->Edited);
-    VolumeDeformer fresh;
-    this->Edited.SendAll(fresh, GetParam());
-    fresh.Deform(expected.MakeRequest(this->Edited));
-    EXPECT_TRUE(this->Outputs == expected);
   }
+  EditedOutputs expected(this->Edited);
+  VolumeDeformer fresh;
+  this->Edited.SendAll(fresh, GetParam());
+  fresh.Deform(expected.MakeRequest(this->Edited));
+  EXPECT_TRUE(this->Outputs == expected);
   this->Deformer.SetAllocationLimit(0);
+  this->Edited.SendAll(this->Deformer, GetParam());
   this->Update();
   this->At(12, 6, 5)[0] -= 0.25F;
   this->UpdatePart();
