@@ -114,10 +114,15 @@ protected:
     volume.Method = GetMethod();
     return volume;
   }
-  /// How many edits there are time for, of some: fewer by cell.
+  /// How many edits there are time for, of some: fewer by cell, and fewest on a graphics card,
+  /// where whole outputs are made by cell as well.
   static int GetNumberOf(int edits)
   {
-    return GetMethod() == deformvolume::Resampling::Exact && HasVectors() ? edits : edits / 3;
+    constexpr int byCell = 3;
+    constexpr int onGraphics = 8;
+    return !HasVectors()                               ? edits / onGraphics
+      : GetMethod() == deformvolume::Resampling::Exact ? edits
+                                                       : edits / byCell;
   }
 };
 
