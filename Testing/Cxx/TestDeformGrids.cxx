@@ -84,7 +84,8 @@ public:
     this->Tested.Filter->SetDeformationData(grid);
   }
 
-  // The same as a new filter, and so many static mappings built.
+  // The same as a new filter, and so many static mappings built: none where the tetrahedra at rest
+  // are those of before, but for a few.
   void Expect(const char* what, int builds)
   {
     const int failures = GetNumberOfFailures();
@@ -133,7 +134,7 @@ void TestOtherGrids()
   Grid changed = Copy(meshes.Mesh);
   Exchange(changed, changed->GetNumberOfCells() - 1);
   meshes.Give(changed);
-  meshes.Expect("a copy with another cell", 1);
+  meshes.Expect("a copy with another cell", 0);
   changed = Copy(meshes.Mesh);
   changed->GetPoints()->SetPoint(
     7, changed->GetPoint(7)[0], changed->GetPoint(7)[1] + 0.01, changed->GetPoint(7)[2]);
@@ -162,7 +163,7 @@ void TestOtherGrids()
   }
   smaller->SetCells(VTK_TETRA, fewer);
   meshes.Give(smaller);
-  meshes.Expect("a cell less", 1);
+  meshes.Expect("a cell less", 0);
 }
 
 void TestEditsInPlace()
@@ -172,26 +173,26 @@ void TestEditsInPlace()
   meshes.Expect("modified, and yet the same", 0);
   Exchange(meshes.Mesh, 11);
   meshes.Mesh->Modified();
-  meshes.Expect("a cell replaced, and only the grid modified", 1);
+  meshes.Expect("a cell replaced, and only the grid modified", 0);
   meshes.Mesh->GetPoints()->GetData()->SetComponent(3, 1, -0.75);
   meshes.Mesh->Modified();
   meshes.Expect("a point set, and only the grid modified", 1);
   const vtkIdType corners[4] = { 0, 7, 50, 100 };
   meshes.Mesh->InsertNextCell(VTK_TETRA, 4, corners);
   meshes.Mesh->Modified();
-  meshes.Expect("a cell more", 1);
+  meshes.Expect("a cell more", 0);
   vtkNew<vtkUnsignedCharArray> ghosts;
   ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
   ghosts->SetNumberOfTuples(meshes.Mesh->GetNumberOfCells());
   ghosts->Fill(0);
   ghosts->SetValue(4, vtkDataSetAttributes::HIDDENCELL);
   meshes.Mesh->GetCellData()->AddArray(ghosts);
-  meshes.Expect("a hidden cell", 1);
+  meshes.Expect("a hidden cell", 0);
   meshes.Give(ShareArrays(meshes.Mesh));
   meshes.Expect("shared with it", 0);
   meshes.Give(Copy(meshes.Mesh));
   meshes.Mesh->GetCellData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
-  meshes.Expect("and without it", 1);
+  meshes.Expect("and without it", 0);
 }
 
 void TestPipeline()
@@ -210,7 +211,7 @@ void TestPipeline()
   Exchange(meshes.Mesh, 5);
   meshes.Mesh->GetCells()->Modified();
   passer->Modified();
-  meshes.Expect("a cell replaced", 1);
+  meshes.Expect("a cell replaced", 0);
   meshes.Mesh->GetPoints()->SetPoint(3, -0.75, 1.0, 2.0);
   meshes.Mesh->GetPoints()->Modified();
   passer->Modified();
