@@ -5,6 +5,7 @@
 #include "ChainMailSolver.h"
 #include "ChainMailState.h"
 #include "DeviceVectorsInternals.h"
+#include "GuardedCall.h"
 #include "MemoryBudget.h"
 #include "ParallelFor.h"
 
@@ -63,17 +64,9 @@ public:
   template <typename Function>
   auto Guard(Function&& function)
   {
-    const FloatingPointTrapGuard guard;
     const MemoryBudget::UpdateGuard update(this->Budget);
-    try
-    {
-      return function();
-    }
-    catch (const cl::Error& error)
-    {
-      this->Forget(); // what is on the device may be half done
-      throw Error(GetMessage(error) + " Set the voxel grid again.");
-    }
+    return CallGuarded(
+      function, [this] { this->Forget(); }, " Set the voxel grid again.");
   }
 
   void CheckIsSet() const

@@ -43,6 +43,14 @@ void BrickEdit::Set(const VertexPositions& positions, std::size_t brick)
   }
 }
 
+void BrickEdit::CopyPoints(std::array<glm::dvec3, MaxVertices>& points) const
+{
+  for (std::size_t i = 0; i < this->GetNumberOfVertices(); ++i)
+  {
+    points[i] = GetIndex(this->Positions[i]);
+  }
+}
+
 BrickEdit::CellTetrahedra BrickEdit::GetTetrahedra(int x, int y, int z) const
 {
   static constexpr int table[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;

@@ -7,6 +7,8 @@
 #include "TetrahedronSet.h"
 #include "VertexPositions.h"
 
+#include <glm/vec3.hpp>
+
 #include <array>
 #include <cstddef>
 #include <functional>
@@ -34,6 +36,8 @@ public:
     return static_cast<std::size_t>(GetNumberOfPoints(this->Vertices));
   }
   const SnappedPoint& GetPosition(std::size_t vertex) const { return this->Positions[vertex]; }
+  /// Where all vertices are, in continuous structured indices.
+  void CopyPoints(std::array<glm::dvec3, MaxVertices>& points) const;
   bool IsPlaced(std::size_t vertex) const { return this->HasPositions[vertex]; }
   /// Whether all vertices of a tetrahedron have positions.
   bool IsPlaced(const std::array<std::size_t, 4>& vertices) const

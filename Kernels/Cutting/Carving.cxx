@@ -191,14 +191,10 @@ TetrahedronSet FindCarvedTetrahedra(
         CarveByCentroids(edit, tool);
         return;
       }
-      const std::size_t count = edit.GetNumberOfVertices();
       std::array<glm::dvec3, BrickEdit::MaxVertices> points;
+      edit.CopyPoints(points);
       std::array<double, BrickEdit::MaxVertices> values;
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        points[i] = GetIndex(edit.GetPosition(i));
-      }
-      tool.Function(points.data(), count, values.data());
+      tool.Function(points.data(), edit.GetNumberOfVertices(), values.data());
       CarveByVertices(edit, values.data(), rule);
     });
 }

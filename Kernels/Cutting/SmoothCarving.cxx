@@ -210,11 +210,8 @@ SmoothCarving FindSmoothCarving(
       edit.Set(positions, brick);
       const std::size_t count = edit.GetNumberOfVertices();
       std::array<glm::dvec3, BrickEdit::MaxVertices> points;
+      edit.CopyPoints(points);
       std::array<double, BrickEdit::MaxVertices> values;
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        points[i] = GetIndex(edit.GetPosition(i));
-      }
       tool.Function(points.data(), count, values.data());
       std::array<bool, BrickEdit::MaxVertices> inside{};
       for (std::size_t i = 0; i < count; ++i)

@@ -2,7 +2,7 @@
 #ifndef DeformVolumeVolumeDeformerInternals_h
 #define DeformVolumeVolumeDeformerInternals_h
 
-#include "Error.h"
+#include "GuardedCall.h"
 #include "MemoryBudget.h"
 #include "VolumeDeformation.h"
 #include "VolumeDeformer.h"
@@ -22,20 +22,11 @@ class VolumeDeformer::Internals
 public:
   Internals();
 
-  /// Runs a function, with floating-point traps off and OpenCL's errors put into words.
+  /// As CallGuarded does. After an error of OpenCL the volume is forgotten.
   template <typename Function>
   auto Guard(Function&& function)
   {
-    const FloatingPointTrapGuard guard;
-    try
-    {
-      return function();
-    }
-    catch (const cl::Error& error)
-    {
-      this->Forget(); // what is on the device may be half done
-      throw Error(GetMessage(error));
-    }
+    return CallGuarded(function, [this] { this->Forget(); });
   }
 
   /// Like Guard, for functions that send data to the volume: their time belongs to the next

@@ -4,6 +4,7 @@
 #include "DeviceVectorsInternals.h"
 #include "FieldParameters.h"
 #include "FieldScan.h"
+#include "GuardedCall.h"
 #include "HostMemory.h"
 #include "KernelText.h"
 #include "MappingProgram.h"
@@ -99,15 +100,7 @@ std::optional<IndexBounds> FindDeformedBounds(
   {
     return {};
   }
-  const FloatingPointTrapGuard guard;
-  try
-  {
-    return Find(voxelGrid, field, internals);
-  }
-  catch (const cl::Error& error)
-  {
-    throw Error(GetMessage(error));
-  }
+  return CallGuarded([&] { return Find(voxelGrid, field, internals); });
 }
 
 } // namespace deformvolume

@@ -2,6 +2,7 @@
 #include "DeviceVectors.h"
 
 #include "DeviceVectorsInternals.h"
+#include "GuardedCall.h"
 #include "HostMemory.h"
 
 #include <algorithm>
@@ -32,21 +33,6 @@ PointRanges Join(PointRanges ranges)
     }
   }
   return joined;
-}
-
-// Runs a function, with floating-point traps off and OpenCL's errors put into words.
-template <typename Function>
-auto Guard(Function&& function)
-{
-  const FloatingPointTrapGuard guard;
-  try
-  {
-    return function();
-  }
-  catch (const cl::Error& error)
-  {
-    throw Error(GetMessage(error));
-  }
 }
 
 void CheckSource(const float* vectors)
@@ -174,7 +160,7 @@ DeviceVectors::DeviceVectors(const std::string& device, std::size_t numberOfPoin
   {
     throw Error("Vectors on a device need at least one point.");
   }
-  Guard(
+  CallGuarded(
     [&]
     {
       this->Impl =
@@ -208,18 +194,18 @@ std::uint64_t DeviceVectors::GetDeviceMemory() const
 void DeviceVectors::Write(const float* vectors)
 {
   CheckSource(vectors);
-  Guard([&] { this->Impl->Write(vectors); });
+  CallGuarded([&] { this->Impl->Write(vectors); });
 }
 
 void DeviceVectors::Write(const float* vectors, const PointRanges& written)
 {
   CheckSource(vectors);
-  Guard([&] { this->Impl->Write(vectors, written); });
+  CallGuarded([&] { this->Impl->Write(vectors, written); });
 }
 
 const float* DeviceVectors::Read()
 {
-  return Guard([&] { return this->Impl->Read(); });
+  return CallGuarded([&] { return this->Impl->Read(); });
 }
 
 std::uint64_t DeviceVectors::GetRevision() const

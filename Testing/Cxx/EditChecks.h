@@ -69,6 +69,18 @@ inline vtkSmartPointer<vtkPolyData> MakePlaneX(vtkImageData* volume, double x)
   return MakePlane(volume, glm::dvec3(x, -50, -50), glm::dvec3(0, 120, 0), glm::dvec3(0, 0, 120));
 }
 
+/// Adds an array "label", and returns it: 7 where x is greater than 5.5, elsewhere 3.
+inline vtkSmartPointer<vtkShortArray> AddLabels(vtkImageData* volume)
+{
+  auto labels = MakeArray<vtkShortArray>("label", volume->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+  {
+    labels->SetValue(id, GetPoint(volume, id).x > 5.5 ? 7 : 3);
+  }
+  volume->GetPointData()->AddArray(labels);
+  return labels;
+}
+
 /// A filter that edits active tetrahedra, with its errors caught.
 template <typename FilterT>
 struct Edited

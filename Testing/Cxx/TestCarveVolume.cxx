@@ -214,12 +214,7 @@ void TestSurfaces()
 void TestLabels()
 {
   auto volume = MakeVolume(Box);
-  auto labels = MakeArray<vtkShortArray>("label", volume->GetNumberOfPoints());
-  for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
-  {
-    labels->SetValue(id, GetPoint(volume, id).x > 5.5 ? 7 : 3);
-  }
-  volume->GetPointData()->AddArray(labels);
+  auto labels = AddLabels(volume);
   Edited<vtkCarveVolume> carve;
   carve.Filter->SetInputData(volume);
   carve.Filter->SetLabelArrayName("label");

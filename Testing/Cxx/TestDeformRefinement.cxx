@@ -4,6 +4,7 @@
 // nodes that are split or move, and masks. Each time the output is compared bit by bit with that of
 // a fresh filter. The static mapping is built once, as long as nodes stay where they lie at rest.
 #include "FilterTesting.h"
+#include "UpdateChecks.h"
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -335,24 +336,7 @@ private:
     fresh.Filter->SetOpenSplits(this->Tested.Filter->GetOpenSplits());
     this->Connect(fresh.Filter, mesh);
     this->Connect(this->Tested.Filter, mesh);
-    const int failures = GetNumberOfFailures();
-    VERIFY(AreEqual(this->Tested.Update(), fresh.Update()));
-    const auto compare = [&](auto getter)
-    { VERIFY_EQUAL((this->Tested.Filter->*getter)(), (fresh.Filter->*getter)()); };
-    compare(&vtkDeformVolumeFilter::GetNumberOfCoveredVoxels);
-    compare(&vtkDeformVolumeFilter::GetNumberOfInvertedTetrahedra);
-    compare(&vtkDeformVolumeFilter::GetNumberOfFlatTetrahedra);
-    VERIFY(fresh.Filter->GetNumberOfCoveredVoxels() > 0);
-    this->Parts +=
-      this->Tested.Filter->GetNumberOfResampledBricks() < this->Tested.Filter->GetNumberOfBricks()
-      ? 1
-      : 0;
-    if (GetNumberOfFailures() > failures)
-    {
-      std::cerr << "after " << what << '\n';
-      return false;
-    }
-    return true;
+    return CompareWithFresh(this->Tested, fresh, what, this->Parts);
   }
 
   // What is more than a replacement: all is made anew. Errors leave nothing behind.

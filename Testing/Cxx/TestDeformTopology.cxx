@@ -3,6 +3,7 @@
 // split, splits that are undone, moves, masks), each compared bit by bit with a fresh filter. The
 // static mapping is built once, as long as no node moves at rest.
 #include "FilterTesting.h"
+#include "UpdateChecks.h"
 
 #include <vtkArrayChanges.h>
 #include <vtkCellArray.h>
@@ -341,23 +342,7 @@ private:
     fresh.Filter->SetOpenSplits(this->Tested.Filter->GetOpenSplits());
     this->Connect(fresh.Filter);
     this->Connect(this->Tested.Filter);
-    const int failures = GetNumberOfFailures();
-    VERIFY(AreEqual(this->Tested.Update(), fresh.Update()));
-    VERIFY_EQUAL(
-      this->Tested.Filter->GetNumberOfCoveredVoxels(), fresh.Filter->GetNumberOfCoveredVoxels());
-    VERIFY_EQUAL(this->Tested.Filter->GetNumberOfInvertedTetrahedra(),
-      fresh.Filter->GetNumberOfInvertedTetrahedra());
-    VERIFY(fresh.Filter->GetNumberOfCoveredVoxels() > 0);
-    this->Parts +=
-      this->Tested.Filter->GetNumberOfResampledBricks() < this->Tested.Filter->GetNumberOfBricks()
-      ? 1
-      : 0;
-    if (GetNumberOfFailures() > failures)
-    {
-      std::cerr << "after " << what << '\n';
-      return false;
-    }
-    return true;
+    return CompareWithFresh(this->Tested, fresh, what, this->Parts);
   }
 
   // Where a tetrahedron becomes another one the mapping has to follow.

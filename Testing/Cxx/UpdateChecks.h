@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the tests of updates of a mesh have in common.
+#ifndef UpdateChecks_h
+#define UpdateChecks_h
+
+#include "FilterTesting.h"
+
+#include <iostream>
+#include <string>
+
+namespace filterTesting
+{
+
+/// Whether a filter that has been edited makes the same as a fresh one of the same inputs. Adds to
+/// parts where only a part of the output was made anew. what: the edit, told where they differ.
+inline bool CompareWithFresh(Deformed& tested, Deformed& fresh, const std::string& what, int& parts)
+{
+  const int failures = GetNumberOfFailures();
+  VERIFY(AreEqual(tested.Update(), fresh.Update()));
+  const auto compare = [&](auto getter)
+  { VERIFY_EQUAL((tested.Filter->*getter)(), (fresh.Filter->*getter)()); };
+  compare(&vtkDeformVolumeFilter::GetNumberOfCoveredVoxels);
+  compare(&vtkDeformVolumeFilter::GetNumberOfInvertedTetrahedra);
+  compare(&vtkDeformVolumeFilter::GetNumberOfFlatTetrahedra);
+  VERIFY(fresh.Filter->GetNumberOfCoveredVoxels() > 0);
+  parts += tested.Filter->GetNumberOfResampledBricks() < tested.Filter->GetNumberOfBricks() ? 1 : 0;
+  if (GetNumberOfFailures() > failures)
+  {
+    std::cerr << "after " << what << '\n';
+    return false;
+  }
+  return true;
+}
+
+} // namespace filterTesting
+
+#endif
