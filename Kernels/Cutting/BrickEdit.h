@@ -72,6 +72,7 @@ public:
   const std::array<std::size_t, 3>& GetSteps() const { return this->Steps; }
   CellTetrahedra GetTetrahedra(int x, int y, int z) const;
 
+  bool IsHit() const { return this->HasHits; }
   unsigned char GetHits(std::size_t place) const { return this->Hits[place]; }
   void Hit(std::size_t place, int tetrahedron)
   {

@@ -39,6 +39,15 @@ public:
   std::size_t GetNumberOfCells() const { return Multiply(this->Size); }
   std::size_t GetNumberOfBricks() const { return Multiply(this->Count); }
 
+  /// The brick of a cell, by its local indices.
+  std::size_t FindBrick(const std::array<int, 3>& cell) const
+  {
+    return static_cast<std::size_t>(cell[0] / Length) +
+      static_cast<std::size_t>(this->Count[0]) *
+      (static_cast<std::size_t>(cell[1] / Length) +
+        static_cast<std::size_t>(this->Count[1]) * static_cast<std::size_t>(cell[2] / Length));
+  }
+
   /// Local indices of the cells of a brick.
   Extent GetCells(std::size_t brick) const
   {

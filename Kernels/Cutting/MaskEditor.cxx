@@ -36,6 +36,7 @@ MaskEditor::MaskEditor(const Extent& vertices, float far)
   , Mask(this->Bricks.GetNumberOfCells(), DEFORMVOLUME_ALL_TETRAHEDRA)
   , Changed(this->Bricks.GetNumberOfBricks(), true)
   , Distances(vertices, far)
+  , Crossings(vertices)
 {
   if (this->Mask.empty())
   {
@@ -59,6 +60,7 @@ void MaskEditor::SetBase(const unsigned char* base)
   // What was counted goes with the old base.
   this->NumberOfSwitchedOff = 0;
   this->Update(this->Edits);
+  this->UpdateSwitchedOff();
   this->Changed.assign(this->Changed.size(), true);
 }
 
@@ -67,9 +69,27 @@ void MaskEditor::SetBaseDistances(const float* base)
   this->Distances.SetBase(base, this->GetDistanceSets());
 }
 
-std::uint64_t MaskEditor::Add(TetrahedronSet&& set, DistanceSet&& distances)
+void MaskEditor::SetBaseCut(const unsigned char* crossed, const float* distances)
 {
-  if ((!set.IsEmpty() && set.Bricks.back() >= this->Bricks.GetNumberOfBricks()) ||
+  this->Crossings.SetBase(crossed, distances, this->GetCrossingSets());
+  this->UpdateSwitchedOff();
+}
+
+void MaskEditor::UpdateSwitchedOff()
+{
+  const bool isAny = !this->Crossings.GetSwitchedOff().empty();
+  for (std::size_t brick = 0; isAny && brick < this->Bricks.GetNumberOfBricks(); ++brick)
+  {
+    this->UpdateBrick(brick);
+    this->Changed[brick] = true;
+  }
+}
+
+std::uint64_t MaskEditor::Add(
+  TetrahedronSet&& set, DistanceSet&& distances, CrossingSet&& crossings)
+{
+  if ((!crossings.IsEmpty() && crossings.Bricks.back() >= this->Bricks.GetNumberOfBricks()) ||
+    (!set.IsEmpty() && set.Bricks.back() >= this->Bricks.GetNumberOfBricks()) ||
     (!distances.IsEmpty() &&
       distances.Bricks.back() >= this->Distances.GetBricks().GetNumberOfBricks()))
   {
@@ -78,7 +98,8 @@ std::uint64_t MaskEditor::Add(TetrahedronSet&& set, DistanceSet&& distances)
       " bricks of the mask. Find tetrahedra in the volume that the mask is of.");
   }
   this->Undone.clear();
-  this->Edits.push_back({ ++this->LastNumber, std::move(set), std::move(distances) });
+  this->Edits.push_back(
+    { ++this->LastNumber, std::move(set), std::move(distances), std::move(crossings) });
   this->Update(this->Edits.back());
   return this->LastNumber;
 }
@@ -134,6 +155,7 @@ void MaskEditor::Reset()
   for (const Edit& edit : edits)
   {
     this->Distances.Update(edit.Distances.Bricks, {});
+    this->Update(this->Crossings.Update(edit.Crossings, {}));
   }
 }
 
@@ -153,13 +175,16 @@ std::vector<std::size_t> MaskEditor::TakeChangedBricks()
 
 std::uint64_t MaskEditor::GetMemory() const
 {
-  std::uint64_t bytes = this->Mask.size() + this->Base.size() + this->Distances.GetMemory();
+  std::uint64_t bytes = this->Mask.size() + this->Base.size() + this->Distances.GetMemory() +
+    this->Crossings.GetMemory();
   for (const std::list<Edit>* edits : { &this->Edits, &this->Undone })
   {
     for (const Edit& edit : *edits)
     {
       bytes += edit.Set.Bricks.size() * (sizeof(std::size_t) + sizeof(TetrahedronSet::Block)) +
-        edit.Distances.Bricks.size() * (sizeof(std::size_t) + sizeof(DistanceSet::Block));
+        edit.Distances.Bricks.size() * (sizeof(std::size_t) + sizeof(DistanceSet::Block)) +
+        edit.Crossings.Bricks.size() * (sizeof(std::size_t) + sizeof(CrossingSet::Block)) +
+        edit.Crossings.Distances.Bricks.size() * (sizeof(std::size_t) + sizeof(DistanceSet::Block));
     }
   }
   return bytes;
@@ -169,6 +194,25 @@ bool MaskEditor::HasDistanceEdits() const
 {
   return std::any_of(this->Edits.begin(), this->Edits.end(),
     [](const Edit& edit) { return !edit.Distances.IsEmpty(); });
+}
+
+bool MaskEditor::HasSmoothCuts() const
+{
+  return std::any_of(this->Edits.begin(), this->Edits.end(),
+    [](const Edit& edit) { return !edit.Crossings.IsEmpty(); });
+}
+
+std::vector<const CrossingSet*> MaskEditor::GetCrossingSets() const
+{
+  std::vector<const CrossingSet*> sets;
+  for (const Edit& edit : this->Edits)
+  {
+    if (!edit.Crossings.IsEmpty())
+    {
+      sets.push_back(&edit.Crossings);
+    }
+  }
+  return sets;
 }
 
 std::vector<const DistanceSet*> MaskEditor::GetDistanceSets() const
@@ -188,6 +232,7 @@ void MaskEditor::Update(const Edit& edit)
 {
   this->Update(edit.Set.Bricks);
   this->Distances.Update(edit.Distances.Bricks, this->GetDistanceSets());
+  this->Update(this->Crossings.Update(edit.Crossings, this->GetCrossingSets()));
 }
 
 void MaskEditor::Update(const std::vector<std::size_t>& bricks)
@@ -230,6 +275,7 @@ void MaskEditor::UpdateBrick(std::size_t brick)
       blocks.push_back(block);
     }
   }
+  const std::vector<unsigned char>& off = this->Crossings.GetSwitchedOff();
   const Extent cells = this->Bricks.GetCells(brick);
   const std::array<int, 3>& size = this->Bricks.GetSize();
   for (int z = cells[4]; z <= cells[5]; ++z)
@@ -249,6 +295,7 @@ void MaskEditor::UpdateBrick(std::size_t brick)
           hit |= (*block)[place];
         }
         const std::size_t cell = row + static_cast<std::size_t>(x);
+        hit |= off.empty() ? 0U : off[cell];
         const unsigned int base =
           this->Base.empty() ? DEFORMVOLUME_ALL_TETRAHEDRA : this->Base[cell];
         const unsigned int next = base & ~(hit & DEFORMVOLUME_ALL_TETRAHEDRA);

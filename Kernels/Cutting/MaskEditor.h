@@ -4,9 +4,11 @@
 
 #include "BoundaryDistances.h"
 #include "CellBricks.h"
+#include "CrossingSet.h"
 #include "DeformVolumeExport.h"
 #include "DistanceSet.h"
 #include "Extent.h"
+#include "SmoothCrossings.h"
 #include "TetrahedronSet.h"
 
 #include <cstddef>
@@ -27,7 +29,8 @@ namespace deformvolume
 /// bricks that an edit hits. Of the bytes of the base, the bits above the fifth stay as they are.
 ///
 /// An edit may have the distances of vertices to a smooth boundary besides, which passes through
-/// tetrahedra that stay active (BoundaryDistances).
+/// tetrahedra that stay active (BoundaryDistances), and where a sheet crosses edges, which divides
+/// tetrahedra (SmoothCrossings).
 class DEFORMVOLUME_EXPORT MaskEditor
 {
 public:
@@ -43,9 +46,13 @@ public:
   /// Other boundary distances before all edits, one a vertex; null: there are none.
   void SetBaseDistances(const float* base);
 
+  /// Another smooth cut before all edits (SmoothCrossings::SetBase); null: there is none.
+  void SetBaseCut(const unsigned char* crossed, const float* distances);
+
   /// Adds an edit and returns its number. What was undone cannot be redone any more. A set without
   /// tetrahedra is an edit as well. Throws Error where a brick is not one of this mask.
-  std::uint64_t Add(TetrahedronSet&& set, DistanceSet&& distances = {});
+  std::uint64_t Add(
+    TetrahedronSet&& set, DistanceSet&& distances = {}, CrossingSet&& crossings = {});
   /// Removes an edit, be it undone or not. False where it is not there any more.
   bool Remove(std::uint64_t edit);
 
@@ -68,6 +75,11 @@ public:
   /// these are all bricks.
   std::vector<std::size_t> TakeChangedBricks();
 
+  /// Whether an edit divides tetrahedra.
+  bool HasSmoothCuts() const;
+  /// What is divided, where an edit or the cut before all edits does so.
+  SmoothCrossings& GetSmoothCrossings() { return this->Crossings; }
+
   /// Whether an edit has boundary distances.
   bool HasDistanceEdits() const;
   float GetFarDistance() const { return this->Distances.GetFar(); }
@@ -86,6 +98,7 @@ private:
     std::uint64_t Number;
     TetrahedronSet Set;
     DistanceSet Distances;
+    CrossingSet Crossings;
   };
 
   /// Makes the mask of some bricks anew.
@@ -93,7 +106,10 @@ private:
   /// Makes all anew that an edit hits.
   void Update(const Edit& edit);
   std::vector<const DistanceSet*> GetDistanceSets() const;
+  std::vector<const CrossingSet*> GetCrossingSets() const;
   void Update(const std::list<Edit>& edits);
+  /// Makes all anew where smooth cuts may have switched something off.
+  void UpdateSwitchedOff();
   void UpdateBrick(std::size_t brick);
 
   CellBricks Bricks;
@@ -105,6 +121,7 @@ private:
   std::int64_t NumberOfSwitchedOff = 0;
   std::vector<bool> Changed; // of each brick
   BoundaryDistances Distances;
+  SmoothCrossings Crossings;
 };
 
 } // namespace deformvolume

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -118,6 +119,73 @@ bool Sheet::IsClosed() const
     begin = end;
   }
   return true;
+}
+
+Sheet Sheet::Orient() const
+{
+  // A number for each place, and the triangles at each edge between two of them.
+  using Place = std::array<std::int64_t, 3>;
+  std::map<Place, int> numbers;
+  std::map<std::array<int, 2>, std::vector<std::size_t>> edges;
+  std::vector<std::array<int, 3>> corners;
+  for (const SnappedTriangle& triangle : this->Triangles)
+  {
+    std::array<int, 3> corner;
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+      const SnappedPoint& p = triangle[k];
+      corner[k] =
+        numbers.emplace(Place{ { p.x, p.y, p.z } }, static_cast<int>(numbers.size())).first->second;
+    }
+    corners.push_back(corner);
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+      const auto ends = std::minmax(corner[k], corner[(k + 1) % 3]);
+      edges[{ { ends.first, ends.second } }].push_back(corners.size() - 1);
+    }
+  }
+  const auto goesFrom = [&corners](std::size_t triangle, int a, int b)
+  {
+    const std::array<int, 3>& c = corners[triangle];
+    return (c[0] == a && c[1] == b) || (c[1] == a && c[2] == b) || (c[2] == a && c[0] == b);
+  };
+  Sheet oriented = *this;
+  std::vector<bool> isKnown(corners.size());
+  for (std::size_t first = 0; first < corners.size(); ++first)
+  {
+    std::vector<std::size_t> rest;
+    if (!isKnown[first])
+    {
+      rest.push_back(first);
+      isKnown[first] = true;
+    }
+    while (!rest.empty())
+    {
+      const std::size_t triangle = rest.back();
+      rest.pop_back();
+      const std::array<int, 3> c = corners[triangle];
+      for (std::size_t k = 0; k < 3; ++k)
+      {
+        const int a = c[k];
+        const int b = c[(k + 1) % 3];
+        const auto ends = std::minmax(a, b);
+        const std::vector<std::size_t>& both = edges[{ { ends.first, ends.second } }];
+        const std::size_t other = both.front() == triangle ? both.back() : both.front();
+        if (both.size() != 2 || isKnown[other])
+        {
+          continue;
+        }
+        isKnown[other] = true;
+        rest.push_back(other);
+        if (goesFrom(other, a, b))
+        {
+          std::swap(corners[other][1], corners[other][2]);
+          std::swap(oriented.Triangles[other][1], oriented.Triangles[other][2]);
+        }
+      }
+    }
+  }
+  return oriented;
 }
 
 std::vector<SnappedTriangle> Sheet::Divide(const SnappedBox& within) const

@@ -36,6 +36,10 @@ public:
   /// a surface has an inside and an outside.
   bool IsClosed() const;
 
+  /// The sheet with its triangles turned so that those which share an edge, two of them, are
+  /// oriented alike, as far as that can be; one of each piece stays as it is.
+  Sheet Orient() const;
+
   /// What the triangles are within a box: those with area, divided until none is longer than
   /// LongestTriangle on an axis. An edge is divided in the same place for all triangles that have
   /// it, so that no gaps arise; a point where an edge is divided lies at most half a step off it on

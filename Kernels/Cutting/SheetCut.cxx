@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -49,7 +52,14 @@ public:
   {
     return this->Crossings[triangle].MayReach(box);
   }
-  void Hit(std::size_t triangle, BrickEdit& edit) const;
+  // Calls function(place of a cell, tetrahedron, its vertices, which of them are above the plane of
+  // the triangle) for the tetrahedra of a brick that a triangle may cross.
+  template <typename Function>
+  void ForEachNear(std::size_t triangle, const BrickEdit& edit, Function&& function) const;
+  const TriangleCrossing& GetCrossing(std::size_t triangle) const
+  {
+    return this->Crossings[triangle];
+  }
 
 private:
   static std::vector<SnappedBox> GetBoxes(const std::vector<SnappedTriangle>& triangles)
@@ -82,7 +92,9 @@ unsigned char SheetTriangles::GetPlaces(
   return static_cast<unsigned char>(places);
 }
 
-void SheetTriangles::Hit(std::size_t triangle, BrickEdit& edit) const
+template <typename Function>
+void SheetTriangles::ForEachNear(
+  std::size_t triangle, const BrickEdit& edit, Function&& function) const
 {
   const TriangleCrossing& crossing = this->Crossings[triangle];
   const SnappedBox& box = this->Tree.GetBox(triangle);
@@ -112,24 +124,147 @@ void SheetTriangles::Hit(std::size_t triangle, BrickEdit& edit) const
       for (int t = 0; t < 5; ++t)
       {
         const std::array<std::size_t, 4>& v = tetrahedra[static_cast<std::size_t>(t)];
-        if ((edit.GetHits(place) >> t & 1) != 0 ||
-          (places[v[0]] & places[v[1]] & places[v[2]] & places[v[3]]) != 0 || !edit.IsPlaced(v))
+        if ((places[v[0]] & places[v[1]] & places[v[2]] & places[v[3]]) == 0 && edit.IsPlaced(v))
         {
-          continue;
-        }
-        TriangleCrossing::Tetrahedron vertices;
-        std::array<bool, 4> isAbove;
-        for (std::size_t k = 0; k < 4; ++k)
-        {
-          vertices[k] = edit.GetPosition(v[k]);
-          isAbove[k] = (places[v[k]] & Above) != 0;
-        }
-        if (crossing.Crosses(vertices, isAbove))
-        {
-          edit.Hit(place, t);
+          function(place, t, v,
+            std::array<bool, 4>{ { (places[v[0]] & Above) != 0, (places[v[1]] & Above) != 0,
+              (places[v[2]] & Above) != 0, (places[v[3]] & Above) != 0 } });
         }
       }
     });
+}
+
+// Sets a brick, and finds the triangles that may cross something of it; none where that is nothing.
+std::vector<std::size_t> FindNear(const SheetTriangles& triangles, const VertexPositions& positions,
+  std::size_t brick, BrickEdit& edit)
+{
+  const SnappedBox box = positions.GetBox(brick);
+  std::vector<std::size_t> near;
+  triangles.Find(box, near);
+  if (near.empty())
+  {
+    return near;
+  }
+  if (box.GetLength() > TriangleCrossing::LargestBox)
+  {
+    throw Error("The deformation draws a part of 8 cells of the volume that the sheet may "
+                "cross out to more than 2,048 voxels. Cut before it is deformed so far.");
+  }
+  near.erase(std::remove_if(near.begin(), near.end(),
+               [&](std::size_t triangle) { return !triangles.MayReach(triangle, box); }),
+    near.end());
+  if (!near.empty())
+  {
+    edit.Set(positions, brick);
+  }
+  return near;
+}
+
+using Vertices = std::array<std::size_t, 4>;
+
+void Hit(const SheetTriangles& triangles, std::size_t triangle, BrickEdit& edit)
+{
+  triangles.ForEachNear(triangle, edit,
+    [&](std::size_t place, int t, const Vertices& v, const std::array<bool, 4>& isAbove)
+    {
+      if ((edit.GetHits(place) >> t & 1) == 0 &&
+        triangles.GetCrossing(triangle).Crosses(
+          { { edit.GetPosition(v[0]), edit.GetPosition(v[1]), edit.GetPosition(v[2]),
+            edit.GetPosition(v[3]) } },
+          isAbove))
+      {
+        edit.Hit(place, t);
+      }
+    });
+}
+
+// What is crossed of a brick.
+struct BrickCrossings
+{
+  std::size_t Brick = 0;
+  CrossingSet::Block Cells{};
+  std::array<float, BrickEdit::MaxVertices> Distances; // as CrossingSet has them
+  Extent Vertices;                                     // structured indices
+};
+
+// A sheet through a vertex passes it at a distance that is not 0: it counts as moved.
+constexpr double LeastDistance = 1e-6;
+
+void Cross(
+  const SheetTriangles& triangles, std::size_t triangle, BrickEdit& edit, BrickCrossings& crossings)
+{
+  const TriangleCrossing& crossing = triangles.GetCrossing(triangle);
+  const auto reach = [&](std::size_t vertex, bool isAbove)
+  {
+    const auto far =
+      static_cast<float>(std::max(crossing.GetDistance(edit.GetPosition(vertex)), LeastDistance));
+    crossings.Distances[vertex] =
+      JoinSheetDistances(crossings.Distances[vertex], isAbove ? far : -far);
+  };
+  triangles.ForEachNear(triangle, edit,
+    [&](std::size_t place, int t, const Vertices& v, const std::array<bool, 4>& isAbove)
+    {
+      CrossingSet::Cell crossed;
+      for (unsigned int k = 0; k < 6; ++k)
+      {
+        const auto a = static_cast<std::size_t>(CrossingSet::Ends[k][0]);
+        const auto b = static_cast<std::size_t>(CrossingSet::Ends[k][1]);
+        if (isAbove[a] != isAbove[b] &&
+          crossing.CrossesEdge(edit.GetPosition(v[a]), edit.GetPosition(v[b])))
+        {
+          crossed.Edges |= 1U << (6U * static_cast<unsigned int>(t) + k);
+          reach(v[a], isAbove[a]);
+          reach(v[b], isAbove[b]);
+        }
+      }
+      if (crossed.Edges != 0)
+      {
+        crossings.Cells[place].Join(crossed);
+        edit.Hit(place, t);
+      }
+    });
+}
+
+// Puts the distances of bricks of cells into one set.
+DistanceSet GatherDistances(
+  const Extent& volume, const std::vector<std::unique_ptr<BrickCrossings>>& parts)
+{
+  const CellBricks bricks = GetVertexBricks(volume);
+  std::map<std::size_t, DistanceSet::Block> blocks;
+  for (const auto& part : parts)
+  {
+    std::size_t vertex = 0;
+    for (int z = part->Vertices[4] - volume[4]; z <= part->Vertices[5] - volume[4]; ++z)
+    {
+      for (int y = part->Vertices[2] - volume[2]; y <= part->Vertices[3] - volume[2]; ++y)
+      {
+        for (int x = part->Vertices[0] - volume[0]; x <= part->Vertices[1] - volume[0]; ++x)
+        {
+          const float distance = part->Distances[vertex++];
+          if (distance == FarFromSheets)
+          {
+            continue;
+          }
+          constexpr int length = CellBricks::Length;
+          const auto added = blocks.try_emplace(bricks.FindBrick({ { x, y, z } }));
+          if (added.second)
+          {
+            added.first->second.fill(FarFromSheets);
+          }
+          float& joined =
+            added.first->second[TetrahedronSet::GetPlace(x % length, y % length, z % length)];
+          joined = JoinSheetDistances(joined, distance);
+        }
+      }
+    }
+  }
+  DistanceSet set;
+  for (const auto& [brick, block] : blocks)
+  {
+    set.Bricks.push_back(brick);
+    set.Blocks.push_back(block);
+  }
+  return set;
 }
 
 } // namespace
@@ -140,31 +275,50 @@ TetrahedronSet FindCrossedTetrahedra(const VertexPositions& positions, const She
   return BrickEdit::ForEachBrick(positions.GetBricks().GetNumberOfBricks(),
     [&](std::size_t brick, BrickEdit& edit)
     {
-      const SnappedBox box = positions.GetBox(brick);
-      std::vector<std::size_t> near;
-      triangles.Find(box, near);
-      if (near.empty())
+      for (const std::size_t triangle : FindNear(triangles, positions, brick, edit))
       {
-        return;
-      }
-      if (box.GetLength() > TriangleCrossing::LargestBox)
-      {
-        throw Error("The deformation draws a part of 8 cells of the volume that the sheet may "
-                    "cross out to more than 2,048 voxels. Cut before it is deformed so far.");
-      }
-      near.erase(std::remove_if(near.begin(), near.end(),
-                   [&](std::size_t triangle) { return !triangles.MayReach(triangle, box); }),
-        near.end());
-      if (near.empty())
-      {
-        return;
-      }
-      edit.Set(positions, brick);
-      for (const std::size_t triangle : near)
-      {
-        triangles.Hit(triangle, edit);
+        Hit(triangles, triangle, edit);
       }
     });
+}
+
+CrossingSet FindSheetCrossings(const VertexPositions& positions, const Sheet& sheet)
+{
+  const SheetTriangles triangles(positions, sheet.Orient());
+  std::mutex mutex;
+  std::vector<std::unique_ptr<BrickCrossings>> parts;
+  BrickEdit::ForEachBrick(positions.GetBricks().GetNumberOfBricks(),
+    [&](std::size_t brick, BrickEdit& edit)
+    {
+      const std::vector<std::size_t> near = FindNear(triangles, positions, brick, edit);
+      if (near.empty())
+      {
+        return;
+      }
+      auto part = std::make_unique<BrickCrossings>();
+      part->Brick = brick;
+      part->Vertices = edit.GetVertices();
+      part->Distances.fill(FarFromSheets);
+      for (const std::size_t triangle : near)
+      {
+        Cross(triangles, triangle, edit, *part);
+      }
+      if (edit.IsHit())
+      {
+        const std::lock_guard<std::mutex> lock(mutex);
+        parts.push_back(std::move(part));
+      }
+    });
+  std::sort(
+    parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a->Brick < b->Brick; });
+  CrossingSet set;
+  for (const auto& part : parts)
+  {
+    set.Bricks.push_back(part->Brick);
+    set.Blocks.push_back(part->Cells);
+  }
+  set.Distances = GatherDistances(positions.GetBricks().GetVertices(), parts);
+  return set;
 }
 
 } // namespace deformvolume

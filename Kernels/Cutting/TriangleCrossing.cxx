@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TriangleCrossing.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
+#include <cmath>
 
 namespace deformvolume
 {
@@ -52,6 +55,12 @@ int TriangleCrossing::GetSide(const SnappedPoint& p, const SnappedPoint& q, int 
   return sign != 0 ? sign : FindSign(Cross(along, b - a));
 }
 
+double TriangleCrossing::GetDistance(const SnappedPoint& vertex) const
+{
+  return std::abs(static_cast<double>(Dot(this->Normal, vertex - this->Triangle[0]))) /
+    glm::length(glm::dvec3(this->Normal)) / static_cast<double>(StepsPerVoxel);
+}
+
 // Two faces of a convex body that meet have a point in common that is a vertex of what they share:
 // an edge of the tetrahedron in the triangle, an edge of the triangle in a face of the tetrahedron,
 // or a point of the triangle in the tetrahedron.
@@ -75,11 +84,7 @@ bool TriangleCrossing::HasEdgeThroughTriangle(
     {
       continue;
     }
-    // The edge crosses the plane, so it is parallel to no edge of the triangle: no side is 0.
-    const SnappedPoint& p = vertices[edge[0]];
-    const SnappedPoint& q = vertices[edge[1]];
-    const int side = this->GetSide(p, q, 0);
-    if (this->GetSide(p, q, 1) == side && this->GetSide(p, q, 2) == side)
+    if (this->CrossesEdge(vertices[edge[0]], vertices[edge[1]]))
     {
       return true;
     }

@@ -48,6 +48,18 @@ public:
     return (sign != 0 ? sign : this->NormalSign) > 0;
   }
 
+  /// Whether the edge between two vertices crosses the triangle, of which one lies above its plane
+  /// and one does not.
+  bool CrossesEdge(const SnappedPoint& p, const SnappedPoint& q) const
+  {
+    // The edge crosses the plane, so it is parallel to no edge of the triangle: no side is 0.
+    const int side = this->GetSide(p, q, 0);
+    return this->GetSide(p, q, 1) == side && this->GetSide(p, q, 2) == side;
+  }
+
+  /// How far a vertex is from the plane, in voxels, rounded.
+  double GetDistance(const SnappedPoint& vertex) const;
+
   using Tetrahedron = std::array<SnappedPoint, 4>;
 
   /// isAbove: IsAbove() of each vertex. The tetrahedron may be flat.

@@ -55,6 +55,14 @@ void VolumeDeformation::SetBoundaryDistances(const float* distances, const Point
   this->Incremental.ChangeMask(this->Volume.SetBoundaryDistances(distances, written), false);
 }
 
+void VolumeDeformation::SetCut(const unsigned char* crossed, const float* distances)
+{
+  if (!this->Volume.SetCut(crossed, distances).empty())
+  {
+    this->Incremental.Forget();
+  }
+}
+
 void VolumeDeformation::SetNodePlaces(const std::int32_t* places)
 {
   const bool wasOn = this->Volume.LeavesOutBridges();
@@ -143,6 +151,16 @@ void VolumeDeformation::CheckRequest(const DeformRequest& request) const
     throw Error("The published resampler knows no boundary distances. Use the resampler Exact or "
                 "MeshRasterization, or call SetBoundaryDistances with null.");
   }
+  if (request.Method == Resampling::Published && this->Volume.HasCut())
+  {
+    throw Error("The published resampler knows no smooth cuts. Use the resampler Exact, or call "
+                "SetCut with null.");
+  }
+  if (rasterized && this->Volume.HasCut())
+  {
+    throw Error("The resampler MeshRasterization knows no smooth cuts, since it looks at the "
+                "deformation mesh only. Use the resampler Exact, or call SetCut with null.");
+  }
   if (!rasterized && request.Interpolation != Interpolation::Linear)
   {
     throw Error("Cubic interpolation is there only with the resampler MeshRasterization.");
@@ -198,12 +216,18 @@ DeformReport VolumeDeformation::Resample(const DeformRequest& request, std::uint
   this->Incremental.ChangeMask(this->Source.UpdateBridges(), true);
   DeformReport report;
   report.NumberOfBricks = static_cast<std::int64_t>(this->Volume.GetBricks().GetNumberOfBricks());
+  // What a part depends on reaches further where a cut passes than IncrementalUpdate knows.
+  const bool incremental = request.Incremental && !this->Volume.HasCut();
+  if (!incremental)
+  {
+    this->Incremental.Forget();
+  }
   if (!this->Incremental.Update(request, this->Source, this->Exact, report))
   {
     MakeSlabs(this->Exact, this->Device, this->Volume, request, spare, report);
     report.NumberOfResampledBricks = report.NumberOfBricks;
     report.ChangedExtent = request.OutputExtent;
-    if (request.Incremental && this->Exact.CanMakeAgain())
+    if (incremental && this->Exact.CanMakeAgain())
     {
       this->Incremental.Start(request, this->Source, report);
     }

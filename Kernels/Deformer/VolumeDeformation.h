@@ -37,6 +37,7 @@ public:
   void SetBlanked(const unsigned char* blanked, unsigned char bits, const PointRanges* written);
   void SetActiveTetrahedra(const unsigned char* active, const PointRanges* written);
   void SetBoundaryDistances(const float* distances, const PointRanges* written);
+  void SetCut(const unsigned char* crossed, const float* distances);
 
   ///@{
   /// Meshes and fields that were checked (CheckMesh, CountPoints). Mapping: links or runs.

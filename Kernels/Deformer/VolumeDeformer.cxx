@@ -138,6 +138,15 @@ void VolumeDeformer::SetBoundaryDistances(const float* distances, const PointRan
     [&](VolumeDeformation& volume) { volume.SetBoundaryDistances(distances, written); });
 }
 
+void VolumeDeformer::SetCut(const unsigned char* crossed, const float* distances)
+{
+  if ((crossed != nullptr) != (distances != nullptr))
+  {
+    throw Error("A cut needs both the crossed tetrahedra and the distances of the voxels.");
+  }
+  this->Impl->Send([&](VolumeDeformation& volume) { volume.SetCut(crossed, distances); });
+}
+
 void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
   std::size_t numberOfNodes, const VertexLink* links)
 {

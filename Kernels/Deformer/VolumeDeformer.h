@@ -30,9 +30,9 @@ namespace deformvolume
 ///
 /// Order of calls: SetDevice, SetVoxelGrid, SetArrays, then SetMesh or SetRestMesh and
 /// SetNodeDisplacements, or SetDisplacementField, then Deform, as often as wanted. SetBlanked,
-/// SetActiveTetrahedra and SetBoundaryDistances are optional. SetVoxelGrid forgets everything that
-/// was set after it. Pointers are used during the call only, but for the data of arrays that have
-/// an owner. Every failure is an Error; the object can be used again afterwards.
+/// SetActiveTetrahedra, SetBoundaryDistances and SetCut are optional. SetVoxelGrid forgets
+/// everything that was set after it. Pointers are used during the call only, but for the data of
+/// arrays that have an owner. Every failure is an Error; the object can be used again afterwards.
 class DEFORMVOLUME_EXPORT VolumeDeformer
 {
 public:
@@ -105,6 +105,18 @@ public:
   /// Takes 4 bytes a voxel on the device where a distance is not 0.
   void SetBoundaryDistances(const float* distances, const PointRanges* written = nullptr);
   ///@}
+
+  /// A smooth cut: crossed tetrahedra, one byte a cell, bit i = tetrahedron i is crossed, and one
+  /// float a voxel, its signed distance from the sheet in any unit, of which those of the vertices
+  /// of crossed tetrahedra matter. An active crossed tetrahedron with vertices on both sides, where
+  /// the distance is negative and where it is not, is there twice: as the part on each side that
+  /// moves with the vertices of that side (CutPositions.cl has the rule). So the sides come apart
+  /// and no tissue is lost between them. They stay together where they are apart by less than 1/4
+  /// output voxel on each axis, and at the end of a cut, where tetrahedra that are not divided join
+  /// them. Null for both: there is no cut. The published method and MeshRasterization are an Error
+  /// then, and updates make the whole output. Takes 44 bytes on the device for each vertex of a
+  /// cell with crossed tetrahedra.
+  void SetCut(const unsigned char* crossed, const float* distances);
 
   /// A tetrahedral deformation mesh, with a link for each voxel.
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,

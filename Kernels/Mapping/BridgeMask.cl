@@ -8,6 +8,9 @@
 // same cell show that they are on different sides: within a cell that a split goes through, tetrahedra belong together
 // if they share a node, one after the other, and none of the two has a node of its own where the other has another one.
 //
+// A tetrahedron that a smooth cut crosses is there once for each side, and bridges a gap only between vertices of one
+// side.
+//
 // Data: tetrahedra int4, the places of nodes (DEFORMVOLUME_NODE_PLACES); placesAtRest: 4 bytes a node, a number that all
 // nodes with one place at rest share.
 
@@ -46,9 +49,28 @@ static int Compare(int4 first, int4 second, __global const int* placesAtRest)
   return found;
 }
 
-// The tetrahedra of a cell that bridge a gap, as bits. owners: of its vertices, by their numbers.
+// The crossed tetrahedra of a cell, as bits, and its vertices where the distance is negative.
+static int2 FindCut(__global const uint* cutRows, __global const CutVertex* cutVertices, int x, int y, int z,
+  int mirror, const KernelParameters* p)
+{
+  int2 cut = 0;
+#if HAS_CUT
+  const int first = FindCutVertex(cutRows, cutVertices, x, y, z, p);
+  cut.x = first < 0 ? 0 : cutVertices[first].Tetrahedra & DEFORMVOLUME_ALL_TETRAHEDRA;
+  for (int v = 0; v < 8 && cut.x; ++v)
+  {
+    const int o = v ^ mirror;
+    const int place =
+      FindCutVertex(cutRows, cutVertices, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+    cut.y |= (cutVertices[place].Distance < 0.0f) << v;
+  }
+#endif
+  return cut;
+}
+
+// The tetrahedra of a cell that bridge a gap, as bits. owners: of its vertices, by their numbers. cut: see FindCut.
 static int FindBridges(
-  const int* owners, __global const int4* tetrahedra, __global const int* placesAtRest)
+  const int* owners, int2 cut, __global const int4* tetrahedra, __global const int* placesAtRest)
 {
   uchar split[8]; // of each vertex, the ones that are on another side, as bits
   int group[8];   // the lowest vertex that each belongs together with
@@ -94,7 +116,8 @@ static int FindBridges(
       for (int j = 0; j < i; ++j)
       {
         const int v = SamplingTetrahedra[t][i], w = SamplingTetrahedra[t][j];
-        bridges |= (split[v] >> w & 1) || group[v] != group[w] ? 1 << t : 0;
+        const int isParted = (cut.x >> t & 1) && ((cut.y >> v ^ cut.y >> w) & 1);
+        bridges |= !isParted && ((split[v] >> w & 1) || group[v] != group[w]) ? 1 << t : 0;
       }
     }
   }
@@ -105,8 +128,8 @@ static int FindBridges(
 // that has other ones than before.
 __kernel void LeaveOutBridges(MAPPING_PARAMETERS, __global const int* owners,
   __global const int4* tetrahedraOfMesh, __global const int* placesAtRest, __global const uchar* active,
-  const int hasActive, __global uchar* joined, __global uint* changed, __global const uint* cuboids,
-  const KernelParameters p)
+  const int hasActive, __global const uint* cutRows, __global const CutVertex* cutVertices,
+  __global uchar* joined, __global uint* changed, __global const uint* cuboids, const KernelParameters p)
 {
   const Mapping m = MAPPING_ARGUMENTS;
   const int3 first = FirstVertex(cuboids[get_global_id(1)], &p);
@@ -128,7 +151,10 @@ __kernel void LeaveOutBridges(MAPPING_PARAMETERS, __global const int* owners,
           ownersOfCell[v] = TETRAHEDRON_OF(&m, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), &p);
           same &= ownersOfCell[v] == ownersOfCell[0];
         }
-        const int bridges = same ? 0 : FindBridges(ownersOfCell, tetrahedraOfMesh, placesAtRest);
+        const int bridges = same
+          ? 0
+          : FindBridges(ownersOfCell, FindCut(cutRows, cutVertices, x, y, z, mirror, &p),
+              tetrahedraOfMesh, placesAtRest);
         const size_t cell = CellInChunk(x, y, z, &p);
         const int left = DEFORMVOLUME_ALL_TETRAHEDRA & (hasActive ? active[cell] : ~0) & ~bridges;
         isChanged |= left != joined[cell];

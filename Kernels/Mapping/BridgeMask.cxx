@@ -92,6 +92,8 @@ void BridgeMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   kernel.setArg(i++, this->Places);
   kernel.setArg(i++, source.Active);
   kernel.setArg(i++, cl_int{ source.HasActive });
+  kernel.setArg(i++, source.CutRows);
+  kernel.setArg(i++, source.CutVertices);
   kernel.setArg(i++, chunk.Joined);
   kernel.setArg(i++, changed);
   kernel.setArg(i++, list);

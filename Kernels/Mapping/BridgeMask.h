@@ -30,6 +30,8 @@ public:
     cl::Buffer Tetrahedra;
     cl::Buffer Active; // any buffer, if there is none
     bool HasActive;
+    cl::Buffer CutRows; // any buffer, if there is no cut
+    cl::Buffer CutVertices;
   };
 
   /// places: for each node, as the device numbers them, a number that nodes with one place at rest
@@ -40,7 +42,8 @@ public:
 
   /// All cells have to be looked at.
   void Forget();
-  /// The tetrahedra that some vertices lie in have got other nodes.
+  /// The tetrahedra that some vertices lie in have got other nodes, or a smooth cut lists them
+  /// otherwise.
   void ChangeVertices(const std::vector<Extent>& vertices);
   /// Others of the active tetrahedra of some cells are active.
   void ChangeCells(const std::vector<Extent>& cells);

@@ -51,13 +51,17 @@ DeviceVolume::DeviceVolume(OpenCLContext& context, const cl::CommandQueue& queue
   const std::uint64_t planeBytes =
     static_cast<std::uint64_t>(plane) * std::max(bytesPerVoxel, withLinks ? sizeof(VertexLink) : 0);
   const std::uint64_t planes = allocationLimit / planeBytes;
-  const std::uint64_t neighbours = 3; // planes beyond the number of layers
+  // A smooth cut looks at the vertices up to two voxels away. Devices without room for that have no
+  // smooth cuts.
+  this->HasRoomForCuts = planes > 5;
+  const std::uint64_t neighbours = this->HasRoomForCuts ? 5 : 3; // planes beyond the layers
   if (planes <= neighbours)
   {
     throw Error("A slice of the volume needs " + std::to_string(planeBytes) +
       " bytes, and the device gives no more than " + std::to_string(allocationLimit) +
       " bytes at once for several slices. Use a smaller volume or another device.");
   }
+  const int beyond = this->HasRoomForCuts ? 2 : 1;
   const int layers = this->GetSize(2) - 1;
   const int step = static_cast<int>(
     std::min<std::uint64_t>(planes - neighbours, static_cast<std::uint64_t>(layers)));
@@ -66,8 +70,8 @@ DeviceVolume::DeviceVolume(OpenCLContext& context, const cl::CommandQueue& queue
     VolumeChunk chunk;
     chunk.LayersBegin = begin;
     chunk.LayersEnd = std::min(begin + step, layers);
-    chunk.PlanesBegin = std::max(begin - 1, 0);
-    chunk.PlanesEnd = std::min(chunk.LayersEnd + 2, this->GetSize(2));
+    chunk.PlanesBegin = std::max(begin - beyond, 0);
+    chunk.PlanesEnd = std::min(chunk.LayersEnd + 1 + beyond, this->GetSize(2));
     this->Chunks.push_back(chunk);
   }
   this->RestPositions = this->MakeRestPositions();
@@ -332,6 +336,29 @@ std::vector<Extent> DeviceVolume::SetBoundaryDistances(
   return changes;
 }
 
+std::vector<Extent> DeviceVolume::SetCut(const unsigned char* crossed, const float* distances)
+{
+  if (crossed && this->Chunks.size() > 1 && !this->HasRoomForCuts)
+  {
+    throw Error("A smooth cut needs room for more than five slices of the volume at once, and the "
+                "device gives no more than " +
+      std::to_string(this->AllocationLimit) + " bytes. Use a smaller volume or another device.");
+  }
+  std::vector<Extent> changes =
+    this->Cut.Set(this->Context, this->Queue, this->Shape, crossed, distances);
+  this->States.ChangeSources(changes);
+  this->Bridges.ChangeVertices(changes);
+  return changes;
+}
+
+cl_uint DeviceVolume::SetCutArguments(cl::Kernel& kernel, cl_uint argument) const
+{
+  kernel.setArg(argument++, this->Cut.GetRows());
+  kernel.setArg(argument++, this->Cut.GetVertices());
+  kernel.setArg(argument++, this->Cut.GetPositions());
+  return argument;
+}
+
 void DeviceVolume::SetNodePlaces(const std::vector<std::int32_t>& places)
 {
   this->Queue.finish(); // nothing uses what is let go
@@ -355,14 +382,16 @@ std::vector<Extent> DeviceVolume::UpdateBridges(MappingForm mapping, const cl::B
   {
     return changes;
   }
-  const cl::Program program = GetBridgeProgram(this->Context, mapping);
+  const cl::Program program = GetBridgeProgram(this->Context, mapping, this->HasCut());
   for (VolumeChunk& chunk : this->Chunks)
   {
     // Any buffer stands in for a missing one.
     this->Bridges.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
       { program, [&](cl::Kernel& kernel) { return set(kernel, chunk); },
         this->HasRuns() ? this->Mapping.GetRecords().GetOwners() : this->RestPositions, tetrahedra,
-        this->Active.HasBuffers() ? chunk.Active : this->RestPositions, this->Active.HasBuffers() },
+        this->Active.HasBuffers() ? chunk.Active : this->RestPositions, this->Active.HasBuffers(),
+        this->HasCut() ? this->Cut.GetRows() : this->RestPositions,
+        this->HasCut() ? this->Cut.GetVertices() : this->RestPositions },
       changes);
   }
   this->Bridges.Finish();
@@ -414,8 +443,9 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,
   {
     return;
   }
+  this->Cut.ForgetStencils();
   this->WithState = this->HasBlanked() || this->HasActive() || this->HasDistances() ||
-    !(this->HasMesh() ? this->Mapping.AreAllLinked() : movesAll);
+    this->HasCut() || !(this->HasMesh() ? this->Mapping.AreAllLinked() : movesAll);
   if (!this->WithState)
   {
     this->States.Release(this->Chunks);
@@ -428,15 +458,33 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,
         // A null pointer is not something that all drivers take: any buffer stands in for a missing
         // one.
         this->HasBlanked() ? chunk.Blanked : this->RestPositions, this->HasBlanked(),
-        this->GetActive(chunk), this->GetDistances(chunk) });
+        this->GetActive(chunk), this->GetDistances(chunk),
+        this->HasCut() ? this->Cut.GetRows() : this->RestPositions,
+        this->HasCut() ? this->Cut.GetVertices() : this->RestPositions });
   }
   this->States.Finish();
 }
 
+void DeviceVolume::UpdateCut(
+  const cl::Program& mapping, const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set)
+{
+  if (!this->HasCut())
+  {
+    return;
+  }
+  for (const VolumeChunk& chunk : this->Chunks)
+  {
+    this->Cut.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
+      { mapping, [&](cl::Kernel& kernel) { return set(kernel, chunk); }, this->GetState(chunk),
+        this->GetActive(chunk) });
+  }
+  this->Cut.Finish();
+}
+
 std::uint64_t DeviceVolume::GetMemory() const
 {
-  std::uint64_t bytes =
-    deformvolume::GetMemory(this->RestPositions) + this->Mapping.GetRecords().GetMemory();
+  std::uint64_t bytes = deformvolume::GetMemory(this->RestPositions) +
+    this->Mapping.GetRecords().GetMemory() + this->Cut.GetMemory();
   for (const VolumeChunk& chunk : this->Chunks)
   {
     bytes += deformvolume::GetMemory(chunk.Joined) + deformvolume::GetMemory(chunk.Links) +

@@ -4,6 +4,7 @@
 
 #include "BrickPoints.h"
 #include "BridgeMask.h"
+#include "DeviceCut.h"
 #include "DeviceMapping.h"
 #include "DeviceMask.h"
 #include "Extent.h"
@@ -79,6 +80,9 @@ public:
   std::vector<Extent> SetActive(const unsigned char* active, const PointRanges* written);
   std::vector<Extent> SetBoundaryDistances(const float* distances, const PointRanges* written);
   ///@}
+  /// A smooth cut (DeviceCut::Set); returns boxes of the vertices that it lists otherwise than
+  /// before.
+  std::vector<Extent> SetCut(const unsigned char* crossed, const float* distances);
 
   ///@{
   /// Tetrahedra that would bridge the gap where the mesh is split are left out. places: see
@@ -115,6 +119,10 @@ public:
   {
     return this->HasDistances() ? chunk.Distances : this->RestPositions;
   }
+  bool HasCut() const { return this->Cut.IsOn(); }
+  /// Sets what kernels are given of the cut (CUT_PARAMETERS), from an argument on; returns the
+  /// number of the next one.
+  cl_uint SetCutArguments(cl::Kernel& kernel, cl_uint argument) const;
   bool HasMesh() const { return this->Mapping.HasLinks() || this->Mapping.HasRuns(); }
   bool HasRuns() const { return this->Mapping.HasRuns(); }
   /// See GetRunBytes in VertexRuns.h; 0 without runs.
@@ -149,6 +157,10 @@ public:
   /// whether a field moves all voxels; links and runs tell by themselves.
   void UpdateState(const cl::Program& mapping, bool movesAll,
     const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set);
+  /// Finds where the vertices of a smooth cut would be on its other side: after UpdateState, each
+  /// time that the mapping has changed.
+  void UpdateCut(
+    const cl::Program& mapping, const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set);
   void ForgetState() { this->States.Forget(); }
   /// The state, or any buffer that stands in for it.
   const cl::Buffer& GetState(const VolumeChunk& chunk) const
@@ -174,6 +186,7 @@ private:
   VoxelGrid Shape;
   BrickGrid Bricks;
   std::uint64_t AllocationLimit;
+  bool HasRoomForCuts = true;
   std::vector<VolumeChunk> Chunks;
   std::vector<VolumeArray> Arrays;
   std::vector<BufferInPlace> ArraysInPlace; // one for each array, of no bytes where it was sent
@@ -183,6 +196,7 @@ private:
   DeviceMask Blanked{ DeviceMask::Kind::BlankedVertices };
   DeviceMask Active{ DeviceMask::Kind::ActiveTetrahedra };
   DeviceMask Distances{ DeviceMask::Kind::BoundaryDistances };
+  DeviceCut Cut;
   BridgeMask Bridges;
   VertexStates States;
   bool WithState = true;

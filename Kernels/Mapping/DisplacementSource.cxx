@@ -480,15 +480,17 @@ cl_uint DisplacementSource::SetMappingArguments(cl::Kernel& kernel, const Volume
 
 void DisplacementSource::PrepareMapping(std::vector<cl::Event>& events)
 {
-  const cl::Program mapping = GetMappingProgram(this->Device.GetContext(), this->GetMappingForm());
+  const cl::Program mapping =
+    GetMappingProgram(this->Device.GetContext(), this->GetMappingForm(), this->Volume.HasCut());
   TetrahedronRecords& records = this->Volume.GetRecords();
   if (this->Volume.HasRuns() && !records.AreCurrent())
   {
     events.push_back(records.Evaluate(mapping, this->Tetrahedra, this->Nodes.Get()));
   }
-  this->Volume.UpdateState(mapping, this->Field.Extrapolate || this->Field.SameGrid,
-    [this](cl::Kernel& kernel, const VolumeChunk& chunk)
-    { return this->SetMappingArguments(kernel, chunk); });
+  const auto set = [this](cl::Kernel& kernel, const VolumeChunk& chunk)
+  { return this->SetMappingArguments(kernel, chunk); };
+  this->Volume.UpdateState(mapping, this->Field.Extrapolate || this->Field.SameGrid, set);
+  this->Volume.UpdateCut(mapping, set);
 }
 
 BrickPoints DisplacementSource::MakeBrickPoints() const

@@ -24,17 +24,19 @@ ProgramText GetMappingText(MappingForm mapping)
   }
 }
 
-cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping)
+cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping, bool withCut)
 {
   const char* const evaluation = mapping == MappingForm::Runs ? RunEvaluation_cl : "";
-  return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText() +
-      "#define HAS_MAPPING_KERNEL 1\n" + GetMappingText(mapping) + VertexState_cl + evaluation,
+  const char* const positions = withCut ? CutPositions_cl : "";
+  return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText(withCut) +
+      "#define HAS_MAPPING_KERNEL 1\n" + GetMappingText(mapping) + VertexState_cl + positions +
+      evaluation,
     KernelOptions);
 }
 
-cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping)
+cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping, bool withCut)
 {
-  return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText() +
+  return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText(withCut) +
       "#define HAS_MAPPING_KERNEL 0\n" + GetMappingText(mapping) + VertexState_cl + BridgeMask_cl,
     KernelOptions);
 }

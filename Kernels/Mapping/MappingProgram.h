@@ -19,10 +19,11 @@ enum class MappingForm
 };
 
 /// The deformation mapping (DeformationMapping.cl) and the state of vertices (VertexState.cl).
-cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping);
+/// withCut: there is a smooth cut (CutPositions.cl).
+cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping, bool withCut = false);
 
 /// What leaves out tetrahedra that bridge a gap (BridgeMask.cl), for links or runs.
-cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping);
+cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping, bool withCut = false);
 
 /// What makes displacements of vectors (VectorConversion.cl), and finds bounds by them
 /// (VectorBounds.cl).

@@ -73,6 +73,8 @@ void VertexStates::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   mark.setArg(i++, source.Blanked);
   mark.setArg(i++, cl_int{ source.HasBlanked });
   mark.setArg(i++, source.Distances);
+  mark.setArg(i++, source.CutRows);
+  mark.setArg(i++, source.CutVertices);
   mark.setArg(i++, chunk.State);
   mark.setArg(i++, list);
   mark.setArg(i++, p);

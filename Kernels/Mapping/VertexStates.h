@@ -28,6 +28,8 @@ public:
     bool HasBlanked;
     cl::Buffer Active;    // any buffer, if it has none
     cl::Buffer Distances; // any buffer, if it has none
+    cl::Buffer CutRows;   // any buffer, if there is no cut
+    cl::Buffer CutVertices;
   };
 
   /// All vertices have to be looked at.

@@ -15,7 +15,7 @@ struct VolumeChunk
 {
   int LayersBegin = 0; // cells, local z
   int LayersEnd = 0;
-  int PlanesBegin = 0; // vertices, local z: one plane more than the cells have on each side
+  int PlanesBegin = 0; // vertices, local z: one or two planes more than the cells have on each side
   int PlanesEnd = 0;
   cl::Buffer Links;     // one a voxel, or else runs
   cl::Buffer Runs;      // those of the rows of the planes

@@ -272,13 +272,13 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
   __global const uchar* state, __global const uchar* active, __global const float* distances,
   __global char* coverage, __global KEY* winners, __global char* patches,
-  __global uint* largeCells, __global uint* counters, __global const uint* bricks, __global uint* taken, ROW_MEMORY float* rows,
-  const KernelParameters p ARRAY_PARAMETERS)
+  __global uint* largeCells, __global uint* counters CUT_PARAMETERS, __global const uint* bricks,
+  __global uint* taken, ROW_MEMORY float* rows, const KernelParameters p ARRAY_PARAMETERS)
 {
 #if ROWS_ARE_GLOBAL
   rows += get_global_id(0) * BRICK_FLOATS;
 #endif
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances, 0, { 0, 0, 0 } };
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, 0, { 0, 0, 0 } };
   RowFlags flags[2][ROWS];
   ROW_MEMORY float* const displaced = rows + 4 * HALF_ROW;
   const BrickMemory memory = { rows, displaced, displaced + 3 * ROW_PLACES, flags };

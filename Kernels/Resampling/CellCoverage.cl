@@ -24,9 +24,6 @@
 
 #define MAXIMUM_STRETCH (4000 * 256)
 
-__constant uchar Tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
-__constant uchar CornerBehindFace[4] = DEFORMVOLUME_CORNER_BEHIND_FACE;
-
 // Six times the signed volume.
 static long Determinant(Vector a, Vector b, Vector c, Vector d)
 {
@@ -109,119 +106,6 @@ static int ShiftsInside(Vector normal, int signs)
   return along > 0;
 }
 
-// Positions of the vertices of a cell and of the cells round it, as far as they have been asked for: on the border of
-// the mesh each is needed many times.
-typedef struct
-{
-  int First[3]; // local index of the first vertex
-  ulong Known;  // bits of the vertices, along x, then y, then z
-  int4 Positions[64];
-} Neighbours;
-
-// The sampling mesh round a launch's cells.
-typedef struct
-{
-  Mapping Map;
-  __global const uchar* State;
-  __global const uchar* Active;
-  __global const float* Distances; // to the boundary, of the vertices
-  // Positions that are in local memory: of each vertex of a cuboid x, y and z, INT_MIN for a vertex without
-  // position. Null: none are.
-  __local const int* Cuboid;
-  int CuboidFirst[3]; // local index of the first cell
-  Neighbours* Near;   // of the cell that is worked on. Null: none are kept.
-} SamplingMesh;
-
-// A mesh that keeps the positions round a cell.
-static SamplingMesh KeepNeighbours(const SamplingMesh* mesh, int x, int y, int z, Neighbours* near)
-{
-  near->First[0] = x - 1;
-  near->First[1] = y - 1;
-  near->First[2] = z - 1;
-  near->Known = 0;
-  SamplingMesh keeping = *mesh;
-  keeping.Near = near;
-  return keeping;
-}
-
-// The place of a vertex in a cuboid, or -1 outside it.
-static int PlaceInCuboid(const SamplingMesh* mesh, int x, int y, int z)
-{
-  const uint bx = x - mesh->CuboidFirst[0];
-  const uint by = y - mesh->CuboidFirst[1];
-  const uint bz = z - mesh->CuboidFirst[2];
-  return bx <= DEFORMVOLUME_CUBOID_X && by <= DEFORMVOLUME_CUBOID_Y && bz <= DEFORMVOLUME_CUBOID_Z
-    ? (int)((bz * (DEFORMVOLUME_CUBOID_Y + 1) + by) * (DEFORMVOLUME_CUBOID_X + 1) + bx)
-    : -1;
-}
-
-static int4 FindPosition(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
-{
-  return StateOf(mesh->State, x, y, z, p) & DEFORMVOLUME_VERTEX_SOURCE
-    ? PositionOf(&mesh->Map, x, y, z, p)
-    : (int4)(INT_MIN, 0, 0, 0);
-}
-
-// The position of a vertex in 1/256 output voxel; INT_MIN in x where it has none.
-static int4 VertexPosition(
-  const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
-{
-  if (mesh->Near)
-  {
-    const int place = ((z - mesh->Near->First[2]) * 4 + y - mesh->Near->First[1]) * 4 + x - mesh->Near->First[0];
-    if (!(mesh->Near->Known >> place & 1))
-    {
-      mesh->Near->Positions[place] = FindPosition(mesh, x, y, z, p);
-      mesh->Near->Known |= 1ul << place;
-    }
-    return mesh->Near->Positions[place];
-  }
-  const int place = mesh->Cuboid ? PlaceInCuboid(mesh, x, y, z) : -1;
-  if (place >= 0)
-  {
-    return (int4)(mesh->Cuboid[3 * place], mesh->Cuboid[3 * place + 1], mesh->Cuboid[3 * place + 2], 0);
-  }
-  return FindPosition(mesh, x, y, z, p);
-}
-
-static int ActiveTetrahedra(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
-{
-  return p->HasActive
-    ? mesh->Active[((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x] &
-      DEFORMVOLUME_ALL_TETRAHEDRA
-    : DEFORMVOLUME_ALL_TETRAHEDRA;
-}
-
-// Parity bits of a cell in the order of the bits of a vertex number: x, z, y.
-static int Mirror(int x, int y, int z, const KernelParameters* p)
-{
-  return ((p->First[0] + x) & 1) | ((p->First[2] + z) & 1) << 1 | ((p->First[1] + y) & 1) << 2;
-}
-
-// The eight vertices of a cell; returns the mask of those that have a position.
-static int LoadCell(
-  const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p, Vector* vertices)
-{
-  const int mirror = Mirror(x, y, z, p);
-  int present = 0;
-  for (int v = 0; v < 8; ++v)
-  {
-    const int o = v ^ mirror;
-    const int4 q = VertexPosition(mesh, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
-    vertices[v].x = q.x;
-    vertices[v].y = q.y;
-    vertices[v].z = q.z;
-    present |= (q.x != INT_MIN) << v;
-  }
-  return present;
-}
-
-static int VerticesOf(int tetrahedron)
-{
-  return 1 << Tetrahedra[tetrahedron][0] | 1 << Tetrahedra[tetrahedron][1] |
-    1 << Tetrahedra[tetrahedron][2] | 1 << Tetrahedra[tetrahedron][3];
-}
-
 // The first shift that leads from a simplex into the tetrahedron with these edge functions and
 // vertices (a mask over the cell's vertices for each), or 8 where none does.
 static int FirstShiftInside(const EdgeFunctions* f, int tetrahedron, int simplex)
@@ -242,9 +126,10 @@ static int FirstShiftInside(const EdgeFunctions* f, int tetrahedron, int simplex
 }
 
 // Whether of the tetrahedra that share the simplex with these vertices (a mask over the cell's vertices)
-// none comes before this one of the cell by the rule for the border of the mesh.
+// none comes before this one of the cell by the rule for the border of the mesh. side: of a smooth cut, from which they
+// are seen.
 static int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron,
-  int simplex, const EdgeFunctions* f, const KernelParameters* p)
+  int simplex, int side, const EdgeFunctions* f, const KernelParameters* p)
 {
   const int own = FirstShiftInside(f, tetrahedron, simplex);
   if (own == 0)
@@ -286,6 +171,9 @@ static int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int te
         // The simplex in the numbers of the neighbour's vertices: on an axis that leads to the
         // neighbour sides are exchanged, and so is the mirroring, hence numbers do not change.
         Vector q[8];
+#if HAS_CUT
+        CellCut cut;
+#endif
         int present = -1;
         for (int t = 0; t < 5; ++t)
         {
@@ -302,15 +190,21 @@ static int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int te
           if (present < 0)
           {
             present = LoadCell(mesh, nx, ny, nz, p, q);
+#if HAS_CUT
+            LoadCut(mesh, nx, ny, nz, active, p, &cut);
+#endif
           }
-          if ((present & needed) != needed ||
-            IsOverstretched(
-              q[Tetrahedra[t][0]], q[Tetrahedra[t][1]], q[Tetrahedra[t][2]], q[Tetrahedra[t][3]]))
+          Vector v[4] = { q[Tetrahedra[t][0]],
+            q[Tetrahedra[t][1]], q[Tetrahedra[t][2]], q[Tetrahedra[t][3]] };
+          int placed = (present & needed) == needed;
+#if HAS_CUT
+          placed = placed && ViewTetrahedron(mesh, &cut, t, side, v);
+#endif
+          if (!placed || IsOverstretched(v[0], v[1], v[2], v[3]))
           {
             continue;
           }
-          const EdgeFunctions other = MakeEdgeFunctions(
-            q[Tetrahedra[t][0]], q[Tetrahedra[t][1]], q[Tetrahedra[t][2]], q[Tetrahedra[t][3]]);
+          const EdgeFunctions other = MakeEdgeFunctions(v[0], v[1], v[2], v[3]);
           const int shift = FirstShiftInside(&other, t, simplex);
           if (other.Volume != 0 && (shift < own || (shift == own && later)))
           {
@@ -400,8 +294,13 @@ static int RoleOf(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron
   {
     return inside ? OWNER : HOLDER;
   }
+#if HAS_CUT
+  const int side = SideOfSample(mesh, x, y, z, tetrahedron, weights, p);
+#else
+  const int side = 0;
+#endif
   const int owner = (simplex & state.Regular) == simplex
     ? IsOwnerByIndex(x, y, z, tetrahedron, simplex, p)
-    : IsOwnerOnBorder(mesh, x, y, z, tetrahedron, simplex, f, p);
+    : IsOwnerOnBorder(mesh, x, y, z, tetrahedron, simplex, side, f, p);
   return owner ? OWNER : HOLDER;
 }

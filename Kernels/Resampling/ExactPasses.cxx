@@ -81,7 +81,7 @@ cl::Kernel ExactPasses::MakeKernel(ResamplingForm form)
       std::uint64_t{ context.GetNumberOfUnits() } * GetBrickMemory(context, arrays));
   }
   return cl::Kernel(GetResamplingProgram(context, this->Source.GetMappingForm(), arrays,
-                      GetWinnerSize(this->Volume.GetVoxelGrid()) == 8, form),
+                      GetWinnerSize(this->Volume.GetVoxelGrid()) == 8, form, this->Volume.HasCut()),
     lanes                             ? "ResampleBricks"
       : form == ResamplingForm::Cells ? "Resample"
                                       : "ResampleLargeCells");
@@ -101,6 +101,10 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   kernel.setArg(i++, winners.GetPatches()() ? winners.GetPatches() : output.GetCoverage());
   kernel.setArg(i++, output.GetLargeCells());
   kernel.setArg(i++, output.GetCounters());
+  if (this->Volume.HasCut())
+  {
+    i = this->Volume.SetCutArguments(kernel, i);
+  }
   if (form != ResamplingForm::LargeCells)
   {
     kernel.setArg(i++, this->Bricks);

@@ -256,8 +256,9 @@ static __attribute__((noinline)) void ResampleDoubts(const GroupCandidates* c, c
       if (!(begun >> lane & 1) || DEFORMVOLUME_IS_CLOSED(p->Pass))
       {
         keeping = KeepNeighbours(mesh, cell, c->Cells.Y, c->Cells.Z, near + lane);
+        // No whole cell is divided: there are no views of it.
         const int hasSamples = MakeCell(&keeping, cell, c->Cells.Y, c->Cells.Z,
-                                 DEFORMVOLUME_IS_CLOSED(p->Pass) ? &only : &all, cells + lane, output, p) &&
+                                 DEFORMVOLUME_IS_CLOSED(p->Pass) ? &only : &all, cells + lane, 0, output, p) &&
           !IsPutOff(cells + lane, &only, output, p);
         begun |= 1u << lane;
         made = (made & ~(1u << lane)) | (uint)hasSamples << lane;

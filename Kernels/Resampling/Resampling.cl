@@ -3,7 +3,8 @@
 // the fill rule of CellCoverage.cl, for all arrays of the volume in one pass over the geometry.
 //
 // Data: what the mapping needs (DeformationMapping.cl), state 1 byte a vertex, active tetrahedra 1 byte a cell
-// (optional), boundary distances 4 bytes a voxel (optional), the output (VoxelWinners.cl), and the arrays themselves in their own types (SampleStoring.cl).
+// (optional), boundary distances 4 bytes a voxel (optional), a smooth cut (CutCells.cl; optional), the output
+// (VoxelWinners.cl), and the arrays themselves in their own types (SampleStoring.cl).
 //
 // A work-group takes a cuboid of cells: it maps the cuboid's vertices into local memory, once each, and
 // then a work-item takes a cell, neighbours side by side. Almost all cells are convex enough that a sample
@@ -11,19 +12,49 @@
 // those with many samples, take one tetrahedron after the other, row by row. Cells with very many samples are put off
 // (LargeCells.cl).
 
-// A cell of the sampling mesh.
-typedef struct
+// A cell of the sampling mesh, with the tetrahedra of it that a smooth cut leaves whole; or, with a Side, the copies of
+// the others as they are seen from there.
+typedef struct ViewedCell
 {
   int X, Y, Z;
   int Tetrahedra; // those that are there and not flat, as bits
   int Inverted;   // of these the inverted ones
   int Clipped;    // of these the ones that the boundary passes through
+#if HAS_CUT
+  int Side; // -1 for the cell itself
+  CellCut Cut;
+  const struct ViewedCell* Whole; // the cell itself
+  const struct ViewedCell* Views; // from side 0 and 1, where tetrahedra are divided
+#endif
   CellState State;
   Vector Vertices[8];
   Vector Low; // bounds of the vertices that are there
   Vector High;
   float Distances[8]; // of the vertices to the boundary, where something is clipped
 } Cell;
+
+// A cell has one part, or three of which the last two are its views. They are drawn in the order of these numbers.
+// Without a cut there is only the cell itself.
+#if HAS_CUT
+static const Cell* WholeOf(const Cell* part)
+{
+  return part->Whole;
+}
+
+static int CountParts(const Cell* whole)
+{
+  return whole->Cut.Divided ? 3 : 1;
+}
+
+static const Cell* PartOf(const Cell* whole, int part)
+{
+  return part == 0 ? whole : whole->Views + (2 - part);
+}
+#else
+#define WholeOf(part) (part)
+#define CountParts(whole) 1
+#define PartOf(whole, part) (whole)
+#endif
 
 static EdgeFunctions EdgeFunctionsOf(const Cell* cell, int t)
 {
@@ -37,38 +68,43 @@ static Vector SamplePosition(Vector voxel)
   return r;
 }
 
-// Whether a sample lies on the far side of the boundary, where the distance is negative: it is interpolated in the
-// tetrahedron, as values are. weights: those of the sample, as edge functions give them.
-static int IsClipped(const Cell* cell, int t, const long* weights)
+// Whether a sample lies on the far side of the boundary, or on the other side of the cut, by its distance: that is
+// interpolated in the tetrahedron, as values are. weights: those of the sample, as edge functions give them.
+static int IsLeftOut(const Cell* cell, int t, const long* weights)
 {
-  if (!(cell->Clipped >> t & 1))
+#if HAS_CUT
+  if (cell->Side >= 0 && (WeighDistances(cell->Cut.Distances, t, weights) < 0) != cell->Side)
   {
-    return 0;
+    return 1;
   }
-  REAL sum = 0;
-  for (int k = 0; k < 4; ++k)
-  {
-    const REAL distance = cell->Distances[Tetrahedra[t][k]];
-    sum = weights[k] ? MULTIPLY_ADD_REAL((REAL)weights[k], distance, sum) : sum;
-  }
-  return sum < 0;
+#endif
+  return (cell->Clipped >> t & 1) && WeighDistances(cell->Distances, t, weights) < 0;
 }
 
 // Whether a tetrahedron of the cell that comes before this one, and has the same key, writes a voxel, too.
 static __attribute__((noinline)) int IsWrittenBefore(
   const SamplingMesh* mesh, const Cell* cell, int tetrahedron, Vector voxel, const KernelParameters* p)
 {
-  const int alike =
-    cell->Inverted >> tetrahedron & 1 ? cell->Inverted : cell->Tetrahedra & ~cell->Inverted;
-  for (int t = 4; t > tetrahedron; --t)
+  const int inverted = cell->Inverted >> tetrahedron & 1;
+  const int parts = CountParts(WholeOf(cell));
+  for (int t = 4; t >= tetrahedron; --t)
   {
-    if (alike >> t & 1)
+    for (int i = 0; i < parts; ++i)
     {
-      const EdgeFunctions f = EdgeFunctionsOf(cell, t);
+      const Cell* const part = PartOf(WholeOf(cell), i);
+      if (part == cell && t == tetrahedron)
+      {
+        return 0;
+      }
+      if (!(part->Tetrahedra >> t & 1) || (part->Inverted >> t & 1) != inverted)
+      {
+        continue;
+      }
+      const EdgeFunctions f = EdgeFunctionsOf(part, t);
       long weights[4];
       Evaluate(&f, SamplePosition(voxel), weights);
       if (RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p) == OWNER &&
-        !IsClipped(cell, t, weights))
+        !IsLeftOut(part, t, weights))
       {
         return 1;
       }
@@ -81,7 +117,7 @@ static __attribute__((noinline)) int IsWrittenBefore(
 static void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long* weights, long volume,
   Sample* s, Vector voxel, int role, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  if (IsClipped(cell, t, weights))
+  if (IsLeftOut(cell, t, weights))
   {
     return;
   }
@@ -296,19 +332,25 @@ static void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* cell, int 
 static void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* cell, const Candidates* all,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
+  const int parts = CountParts(cell);
   for (int t = 4; t >= 0; --t)
   {
-    if (cell->Tetrahedra >> t & 1)
+    for (int i = 0; i < parts; ++i)
     {
-      const Vector a = cell->Vertices[Tetrahedra[t][0]];
-      const Vector b = cell->Vertices[Tetrahedra[t][1]];
-      const Vector c = cell->Vertices[Tetrahedra[t][2]];
-      const Vector d = cell->Vertices[Tetrahedra[t][3]];
+      const Cell* const part = PartOf(cell, i);
+      if (!(part->Tetrahedra >> t & 1))
+      {
+        continue;
+      }
+      const Vector a = part->Vertices[Tetrahedra[t][0]];
+      const Vector b = part->Vertices[Tetrahedra[t][1]];
+      const Vector c = part->Vertices[Tetrahedra[t][2]];
+      const Vector d = part->Vertices[Tetrahedra[t][3]];
       const Candidates candidates = FindCandidates(Minimum(Minimum(a, b), Minimum(c, d)),
         Maximum(Maximum(a, b), Maximum(c, d)), 0, all);
       if (!IsEmpty(candidates))
       {
-        ResampleTetrahedron(mesh, cell, t, &candidates, output, p ARRAY_ARGUMENTS);
+        ResampleTetrahedron(mesh, part, t, &candidates, output, p ARRAY_ARGUMENTS);
       }
     }
   }
@@ -373,49 +415,19 @@ static int ClippedVertices(const SamplingMesh* mesh, Cell* cell, const KernelPar
   return clipped;
 }
 
-// What is known of a cell before its samples are, and is counted. Returns whether it may have some.
-static int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all, Cell* cell,
-  Output* output, const KernelParameters* p)
+// Makes some tetrahedra of a cell, given as bits, those of a cell or a view that has its vertices. present: vertices of
+// these that have a place. clipped: ones on the far side of the boundary. Returns whether one is flat, or left out.
+static int MakeTetrahedra(Cell* cell, int tetrahedra, int present, int clipped, int odd, Output* output)
 {
-  Vector* const q = cell->Vertices;
-  const int present = LoadCell(mesh, x, y, z, p, q);
-  const int active = ActiveTetrahedra(mesh, x, y, z, p);
-  if (present == 0 || active == 0)
-  {
-    return 0;
-  }
-  const Vector none = { LONG_MAX, LONG_MAX, LONG_MAX };
-  cell->Low = none;
-  cell->High.x = cell->High.y = cell->High.z = LONG_MIN;
-  for (int v = 0; v < 8; ++v)
-  {
-    if (present >> v & 1)
-    {
-      cell->Low = Minimum(cell->Low, q[v]);
-      cell->High = Maximum(cell->High, q[v]);
-    }
-  }
-  if (DEFORMVOLUME_IS_CLOSED(p->Pass) &&
-    !AreUnsettled(FindCandidates(cell->Low, cell->High, 0, all), output, p))
-  {
-    return 0;
-  }
-  const int mirror = Mirror(x, y, z, p);
-  // Orientations, against the one that the parity of the cell asks for.
-  const int odd = (mirror ^ mirror >> 1 ^ mirror >> 2) & 1;
-  cell->X = x;
-  cell->Y = y;
-  cell->Z = z;
-  cell->State = CellStateOf(mesh, x, y, z, p);
+  const Vector* const q = cell->Vertices;
   cell->Tetrahedra = 0;
   cell->Inverted = 0;
   cell->Clipped = 0;
-  const int clipped = ClippedVertices(mesh, cell, p);
   int missing = 0;
   for (int t = 0; t < 5; ++t)
   {
     const int needed = VerticesOf(t);
-    if (!(active >> t & 1) || (present & needed) != needed || (clipped & needed) == needed)
+    if (!(tetrahedra >> t & 1) || (present & needed) != needed || (clipped & needed) == needed)
     {
       continue;
     }
@@ -436,7 +448,122 @@ static int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candida
     cell->Inverted |= (!upright && determinant != 0) << t;
     missing |= determinant == 0;
   }
-  output->Inverted += popcount(cell->Inverted);
+  return missing;
+}
+
+static void AddToBounds(Cell* cell, int present, const Vector* q)
+{
+  for (int v = 0; v < 8; ++v)
+  {
+    if (present >> v & 1)
+    {
+      cell->Low = Minimum(cell->Low, q[v]);
+      cell->High = Maximum(cell->High, q[v]);
+    }
+  }
+}
+
+#if HAS_CUT
+// What is known of the vertices of a cell as they are seen from both sides. views: room for two. present: those of the
+// cell that have a place; after that those of each view.
+static __attribute__((noinline)) void BeginViews(const SamplingMesh* mesh, Cell* cell, Cell* views, int* present)
+{
+  int divided = 0;
+  for (int t = 0; t < 5; ++t)
+  {
+    divided |= cell->Cut.Divided >> t & 1 ? VerticesOf(t) : 0;
+  }
+  for (int side = 0; side < 2; ++side)
+  {
+    present[1 + side] = 0;
+    for (int v = 0; v < 8; ++v)
+    {
+      if (present[0] & divided & 1 << v)
+      {
+        views[side].Vertices[v] = ViewVertex(mesh, &cell->Cut, v, side, cell->Vertices[v]);
+        present[1 + side] |= (views[side].Vertices[v].x != INT_MIN) << v;
+      }
+    }
+    AddToBounds(cell, present[1 + side], views[side].Vertices);
+  }
+  cell->Views = views;
+}
+
+// What the cell has in common with its views; their tetrahedra. Returns whether one is flat, or left out.
+static __attribute__((noinline)) int FinishViews(
+  const Cell* cell, Cell* views, const int* present, int clipped, int odd, Output* output)
+{
+  int missing = 0;
+  for (int side = 0; side < 2; ++side)
+  {
+    Cell* const view = views + side;
+    view->X = cell->X;
+    view->Y = cell->Y;
+    view->Z = cell->Z;
+    view->Side = side;
+    view->Cut = cell->Cut;
+    view->Whole = cell;
+    view->State = cell->State;
+    for (int v = 0; v < 8; ++v)
+    {
+      view->Distances[v] = cell->Distances[v];
+    }
+    missing |= MakeTetrahedra(view, cell->Cut.Divided, present[1 + side], clipped, odd, output);
+  }
+  return missing;
+}
+#endif
+
+// What is known of a cell before its samples are, and is counted. views: room for two, where the cell may be divided.
+// Returns whether it may have some samples.
+static int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all, Cell* cell,
+  Cell* views, Output* output, const KernelParameters* p)
+{
+  const int found = LoadCell(mesh, x, y, z, p, cell->Vertices);
+  const int active = ActiveTetrahedra(mesh, x, y, z, p);
+  if (found == 0 || active == 0)
+  {
+    return 0;
+  }
+  const Vector none = { LONG_MAX, LONG_MAX, LONG_MAX };
+  cell->Low = none;
+  cell->High.x = cell->High.y = cell->High.z = LONG_MIN;
+  AddToBounds(cell, found, cell->Vertices);
+  int whole = active;
+#if HAS_CUT
+  int present[3] = { found };
+  LoadCut(mesh, x, y, z, active, p, &cell->Cut);
+  cell->Side = -1;
+  cell->Whole = cell;
+  if (cell->Cut.Divided)
+  {
+    BeginViews(mesh, cell, views, present);
+    whole &= ~cell->Cut.Divided;
+  }
+#endif
+  if (DEFORMVOLUME_IS_CLOSED(p->Pass) &&
+    !AreUnsettled(FindCandidates(cell->Low, cell->High, 0, all), output, p))
+  {
+    return 0;
+  }
+  const int mirror = Mirror(x, y, z, p);
+  // Orientations, against the one that the parity of the cell asks for.
+  const int odd = (mirror ^ mirror >> 1 ^ mirror >> 2) & 1;
+  cell->X = x;
+  cell->Y = y;
+  cell->Z = z;
+  cell->State = CellStateOf(mesh, x, y, z, p);
+  const int clipped = ClippedVertices(mesh, cell, p);
+  int missing = MakeTetrahedra(cell, whole, found, clipped, odd, output);
+  int inverted = cell->Inverted;
+#if HAS_CUT
+  if (cell->Cut.Divided)
+  {
+    missing |= FinishViews(cell, views, present, clipped, odd, output);
+    inverted |= views[0].Inverted | views[1].Inverted;
+  }
+#endif
+  output->Inverted += popcount(inverted);
   output->Missing += missing && cell->State.Interior != 255;
   output->Assumed |= (cell->State.Regular & ~cell->State.Interior) != 0;
   return 1;
@@ -506,8 +633,8 @@ static int IsPutOff(
 static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  Cell cell;
-  if (MakeCell(mesh, x, y, z, all, &cell, output, p) && !IsPutOff(&cell, all, output, p))
+  Cell cell, views[2];
+  if (MakeCell(mesh, x, y, z, all, &cell, views, output, p) && !IsPutOff(&cell, all, output, p))
   {
     ResampleSamples(mesh, &cell, all, output, p ARRAY_ARGUMENTS);
   }
@@ -548,7 +675,7 @@ static int HasCells(int3 first, const KernelParameters* p)
 __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   __global const uchar* active, __global const float* distances, __global char* coverage,
   __global KEY* winners, __global char* patches, __global uint* largeCells,
-  __global uint* counters, __global const uint* bricks, __local int* positions,
+  __global uint* counters CUT_PARAMETERS, __global const uint* bricks, __local int* positions,
   const KernelParameters p ARRAY_PARAMETERS)
 {
   const int place = p.ListBegin + (int)(get_group_id(0) / CUBOIDS_X);
@@ -563,7 +690,7 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   {
     columns |= IsSectionRun(brick, section + column) << column;
   }
-  const SamplingMesh unmapped = { MAPPING_ARGUMENTS, state, active, distances, 0, { 0, 0, 0 } };
+  const SamplingMesh unmapped = { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, 0, { 0, 0, 0 } };
   const int width = DEFORMVOLUME_CUBOID_X + 1;
   const int height = DEFORMVOLUME_CUBOID_Y + 1;
   const int vertices = columns ? DEFORMVOLUME_CUBOID_VERTICES : 0;
@@ -583,7 +710,7 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   }
   barrier(CLK_LOCAL_MEM_FENCE);
 
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances, positions,
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, positions,
     { first.x, first.y, first.z } };
   const Candidates all = AllCandidates(&p);
   for (int column = 0; column < COLUMNS_OF_CUBOID; ++column)

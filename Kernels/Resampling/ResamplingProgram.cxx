@@ -88,7 +88,7 @@ cl::Program GetOutputProgram(OpenCLContext& context)
 }
 
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
-  const std::vector<VolumeArray>& arrays, bool wideKeys, ResamplingForm form)
+  const std::vector<VolumeArray>& arrays, bool wideKeys, ResamplingForm form, bool withCut)
 {
   ProgramText key = "#define KEY uint\n#define ATOMIC_MIN atomic_min\n"
                     "#define ATOMIC_CMPXCHG atomic_cmpxchg\n";
@@ -116,10 +116,10 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
   {
     text += LargeCells_cl;
   }
-  return context.GetProgram(GetSamplingMeshText() + MakeArrayText(context, arrays) + key +
+  return context.GetProgram(GetSamplingMeshText(withCut) + MakeArrayText(context, arrays) + key +
       "#define HAS_MAPPING_KERNEL 0\n" + GetMappingText(mapping) + "#define HAS_CELL_KERNEL " +
-      (form == ResamplingForm::Cells ? "1\n" : "0\n") + IntegerVectors_cl + CellCoverage_cl +
-      SampleStoring_cl + VoxelWinners_cl + text,
+      (form == ResamplingForm::Cells ? "1\n" : "0\n") + IntegerVectors_cl + CellVertices_cl +
+      CutCells_cl + CellCoverage_cl + SampleStoring_cl + VoxelWinners_cl + text,
     KernelOptions);
 }
 

@@ -24,9 +24,10 @@ enum class ResamplingForm
 };
 
 /// The exact resampling for arrays of these types. wideKeys: cells are too many for the 30 bits of
-/// a narrow winner's key. Throws Error where the device lacks what the arrays need.
+/// a narrow winner's key. withCut: there is a smooth cut (CutCells.cl). Throws Error where the
+/// device lacks what the arrays need.
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
-  const std::vector<VolumeArray>& arrays, bool wideKeys, ResamplingForm form);
+  const std::vector<VolumeArray>& arrays, bool wideKeys, ResamplingForm form, bool withCut = false);
 
 /// Whether the kernel ResampleBricks works in local memory: where there is enough. Else it does so
 /// in a buffer, which has room for each work-item.

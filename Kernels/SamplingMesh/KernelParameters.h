@@ -40,6 +40,22 @@ typedef struct
   int MostLargeCells; // room in the list of large cells
 } KernelParameters;
 
+// A vertex of a cell with crossed tetrahedra: those that a smooth cut divides where their vertices
+// lie on both sides.
+typedef struct
+{
+  int X, Y, Z; // local index
+  unsigned int
+    Tetrahedra;   // the crossed ones of the cell that begins at it, as bits; and the bit below
+  float Distance; // signed, from the sheet; only its sign and its ratio to others matter
+} CutVertex;
+#define DEFORMVOLUME_CUT_CORNER 32 // the vertex belongs to a crossed tetrahedron
+
+// Copies of a vertex that are no further than this from it on each axis, in 1/256 output voxel, lie
+// where it does: extrapolation is right to second order only, and a cut that is not open must not
+// show.
+#define DEFORMVOLUME_CLOSED_GAP 64
+
 // The undeformed position of the voxels with one index on an axis, in 1/256 output voxel: a whole
 // number and what misses to it.
 typedef struct
@@ -164,7 +180,8 @@ typedef struct
 #define DEFORMVOLUME_VERTEX_INTERIOR 2 // all tetrahedra that it could belong to are there
 #define DEFORMVOLUME_CELL_WHOLE 4      // of the cell that begins at it, all tetrahedra are there
 #define DEFORMVOLUME_VERTEX_REGULAR 8  // interior, but that it may lie on the border of the volume
-#define DEFORMVOLUME_VERTEX_UNCLIPPED 16 // a source, and not on the far side of the boundary
+// a source, not on the far side of the boundary, and of no cell with crossed tetrahedra
+#define DEFORMVOLUME_VERTEX_UNCLIPPED 16
 
 #ifdef __OPENCL_VERSION__
 
@@ -173,6 +190,33 @@ static size_t PositionIndex(int x, int y, int z, const KernelParameters* p)
 {
   return ((size_t)(z - p->SlabFirst) * p->Size[1] + y) * 3 * p->Size[0] + x;
 }
+
+#if HAS_CUT // whether a program knows smooth cuts (CutVertex)
+// The place of a vertex in the list of cut vertices, which is in the order of rows along x, then y,
+// then z; -1 where it is not there. rows: where each row begins in the list, and where the last one
+// ends.
+static int FindCutVertex(__global const uint* rows, __global const CutVertex* vertices, int x,
+  int y, int z, const KernelParameters* p)
+{
+  const size_t row = (size_t)z * p->Size[1] + y;
+  const uint end = rows[row + 1];
+  uint low = rows[row];
+  uint high = end;
+  while (low < high)
+  {
+    const uint middle = low + (high - low) / 2;
+    if (vertices[middle].X < x)
+    {
+      low = middle + 1;
+    }
+    else
+    {
+      high = middle;
+    }
+  }
+  return low < end && vertices[low].X == x ? (int)low : -1;
+}
+#endif
 
 // Patches of the output along x that hold the voxels with an y and a z: number of the first one.
 static size_t PatchRow(size_t y, size_t z, const KernelParameters* p)

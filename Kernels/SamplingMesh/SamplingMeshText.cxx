@@ -6,9 +6,10 @@
 namespace deformvolume
 {
 
-ProgramText GetSamplingMeshText()
+ProgramText GetSamplingMeshText(bool withCut)
 {
-  return ProgramText(FiveTetrahedra_h) + KernelParameters_h;
+  return ProgramText(withCut ? "#define HAS_CUT 1\n" : "#define HAS_CUT 0\n") + FiveTetrahedra_h +
+    KernelParameters_h;
 }
 
 } // namespace deformvolume

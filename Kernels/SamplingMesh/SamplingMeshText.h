@@ -8,8 +8,9 @@ namespace deformvolume
 {
 
 /// What kernels need of the sampling mesh (FiveTetrahedra.h), and the parameters of launches over
-/// it (KernelParameters.h).
-ProgramText GetSamplingMeshText();
+/// it (KernelParameters.h). withCut: the program knows smooth cuts; without one it must not pay for
+/// them.
+ProgramText GetSamplingMeshText(bool withCut = false);
 
 } // namespace deformvolume
 

@@ -27,11 +27,11 @@ static size_t PlaceInList(int3 first, int x, int y, int z)
 }
 
 // State of the vertices, first pass: those are a source that the deformation moves and that are
-// not blanked, and of these those unclipped whose boundary distance is not negative. Their other bits are found
-// after that.
+// not blanked, and of these those unclipped whose boundary distance is not negative and that a smooth
+// cut does not list. Their other bits are found after that.
 __kernel void MarkSources(MAPPING_PARAMETERS, __global const uchar* blanked, const int hasBlanked,
-  __global const float* distances, __global uchar* state, __global const uint* cuboids,
-  const KernelParameters p)
+  __global const float* distances, __global const uint* cutRows, __global const CutVertex* cutVertices,
+  __global uchar* state, __global const uint* cuboids, const KernelParameters p)
 {
   const Mapping m = MAPPING_ARGUMENTS;
   const int3 first = FirstVertex(cuboids[get_global_id(1)], &p);
@@ -44,7 +44,10 @@ __kernel void MarkSources(MAPPING_PARAMETERS, __global const uchar* blanked, con
       {
         const size_t i = VertexInChunk(x, y, z, &p);
         const int source = IsMoved(&m, x, y, z, &p) && !(hasBlanked && blanked[i]);
-        const int isClipped = p.HasDistances && distances[i] < 0.0f;
+        int isClipped = p.HasDistances && distances[i] < 0.0f;
+#if HAS_CUT
+        isClipped |= FindCutVertex(cutRows, cutVertices, x, y, z, &p) >= 0;
+#endif
         state[i] = source
           ? DEFORMVOLUME_VERTEX_SOURCE | (isClipped ? 0 : DEFORMVOLUME_VERTEX_UNCLIPPED)
           : 0;

@@ -242,6 +242,9 @@ reference::Result ResampleByReference(const DeformerCase& deformerCase)
   mesh.Voxels = deformerCase.VoxelGrid.VertexExtent;
   mesh.Active = deformerCase.Active;
   mesh.Distances = deformerCase.Distances;
+  mesh.Crossed = deformerCase.Crossed;
+  mesh.CutDistances = deformerCase.CutDistances;
+  mesh.Displacements = deformerCase.Displacements;
   std::size_t voxel = 0;
   ForEachVoxel(mesh.Voxels,
     [&](int x, int y, int z)
@@ -298,6 +301,8 @@ void Load(VolumeDeformer& deformer, const DeformerCase& deformerCase,
   deformer.SetActiveTetrahedra(deformerCase.Active.empty() ? nullptr : deformerCase.Active.data());
   deformer.SetBoundaryDistances(
     deformerCase.Distances.empty() ? nullptr : deformerCase.Distances.data());
+  deformer.SetCut(deformerCase.Crossed.empty() ? nullptr : deformerCase.Crossed.data(),
+    deformerCase.Crossed.empty() ? nullptr : deformerCase.CutDistances.data());
   if (route == Route::Field)
   {
     MoveByField(deformer, deformerCase);

@@ -41,7 +41,9 @@ struct DeformerCase
   std::vector<bool> Unlinked;
   std::vector<unsigned char> Blanked;
   std::vector<unsigned char> Active;
-  std::vector<float> Distances; // to the boundary; empty: nothing is clipped
+  std::vector<float> Distances;       // to the boundary; empty: nothing is clipped
+  std::vector<unsigned char> Crossed; // by a smooth cut; empty: there is none
+  std::vector<float> CutDistances;
   deformvolume::Extent Output;
 
   /// In output voxels, x, y and z of each voxel.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Reference.h"
 
+#include "CutReference.h"
+
 #include <algorithm>
 #include <set>
 #include <stdexcept>
@@ -107,10 +109,12 @@ std::int64_t CeilToVoxel(std::int64_t position)
   return position >= 0 ? (position + 255) / 256 : -((-position) / 256);
 }
 
-/// distances: of all vertices to the boundary, or none.
-void AddTetrahedron(const std::array<Position, 4>& points, Containing candidate, const Box& output,
-  std::int64_t sign, const std::vector<float>& distances, Result& result)
+/// isDivided: whether only samples on the candidate's side of a smooth cut are its own.
+void AddTetrahedron(Containing candidate, bool isDivided, const SamplingMesh& mesh,
+  const Box& output, std::int64_t sign, Result& result)
 {
+  const std::array<Position, 4>& points = candidate.Points;
+  const std::vector<float>& distances = mesh.Distances;
   std::array<std::int64_t, 3> low{};
   std::array<std::int64_t, 3> high{};
   for (int axis = 0; axis < 3; ++axis)
@@ -137,6 +141,11 @@ void AddTetrahedron(const std::array<Position, 4>& points, Containing candidate,
           continue;
         }
         if (!distances.empty() && candidate.Interpolate(distances.data(), 1, 0) < 0.0L)
+        {
+          continue;
+        }
+        if (isDivided &&
+          (candidate.Interpolate(mesh.CutDistances.data(), 1, 0) < 0.0L) != (candidate.Side == 1))
         {
           continue;
         }
@@ -231,7 +240,8 @@ private:
         regular = regular &&
           (this->Mesh.Present.empty() || this->Mesh.Present[(z * size[1] + y) * size[0] + x]) &&
           (this->Mesh.Distances.empty() ||
-            !(this->Mesh.Distances[(z * size[1] + y) * size[0] + x] < 0.0F));
+            !(this->Mesh.Distances[(z * size[1] + y) * size[0] + x] < 0.0F)) &&
+          !this->IsOfCrossedCell(x, y, z);
       }
       const bool isCell = step % 3 < 2 && step / 3 % 3 < 2 && step / 9 < 2;
       if (isCell && lower && x < size[0] - 1 && y < size[1] - 1 && z < size[2] - 1)
@@ -242,6 +252,25 @@ private:
       }
     }
     return regular;
+  }
+
+  /// Whether a voxel is a vertex of a cell with a crossed tetrahedron.
+  bool IsOfCrossedCell(std::int64_t x, std::int64_t y, std::int64_t z) const
+  {
+    const std::int64_t cells[3] = { GetSize(this->Mesh.Voxels, 0) - 1,
+      GetSize(this->Mesh.Voxels, 1) - 1, GetSize(this->Mesh.Voxels, 2) - 1 };
+    bool found = false;
+    for (int corner = 0; corner < 8 && !this->Mesh.Crossed.empty(); ++corner)
+    {
+      const std::int64_t cx = x - (corner & 1);
+      const std::int64_t cy = y - (corner >> 1 & 1);
+      const std::int64_t cz = z - (corner >> 2);
+      const bool isCell =
+        cx >= 0 && cy >= 0 && cz >= 0 && cx < cells[0] && cy < cells[1] && cz < cells[2];
+      found =
+        found || (isCell && (this->Mesh.Crossed[(cz * cells[1] + cy) * cells[0] + cx] & 31) != 0);
+    }
+    return found;
   }
 
   /// On the border of the volume: the cell with the simplex on its low sides, or the last one on an
@@ -318,8 +347,8 @@ void PreferOwned(const Ownership& ownership, std::vector<Containing>& containing
 
 bool Containing::operator<(const Containing& other) const
 {
-  return std::make_tuple(this->Inverted, this->Cell, this->Tetrahedron) <
-    std::make_tuple(other.Inverted, other.Cell, other.Tetrahedron);
+  return std::make_tuple(this->Inverted, this->Cell, this->Tetrahedron, this->Side) <
+    std::make_tuple(other.Inverted, other.Cell, other.Tetrahedron, other.Side);
 }
 
 std::int64_t Containing::GetNearestVertex() const
@@ -338,17 +367,17 @@ std::int64_t Containing::GetNearestVertex() const
 
 bool Containing::SharesSimplex(const Containing& other) const
 {
-  std::set<std::int64_t> mine;
-  std::set<std::int64_t> others;
+  std::set<std::pair<std::int64_t, Position>> mine;
+  std::set<std::pair<std::int64_t, Position>> others;
   for (int k = 0; k < 4; ++k)
   {
     if (this->Numerators[k] > 0)
     {
-      mine.insert(this->Vertices[k]);
+      mine.insert({ this->Vertices[k], this->Points[k] });
     }
     if (other.Numerators[k] > 0)
     {
-      others.insert(other.Vertices[k]);
+      others.insert({ other.Vertices[k], other.Points[k] });
     }
   }
   return mine == others;
@@ -360,58 +389,102 @@ std::int64_t Containing::GetSingleVertex() const
   return std::count(this->Numerators.begin(), this->Numerators.end(), 0) == 3 ? nearest : -1;
 }
 
-Result Resample(const SamplingMesh& mesh, const Box& output)
+namespace
 {
-  Result result;
-  result.Voxels.resize(GetNumberOfVoxels(output));
+
+/// All tetrahedra of the mesh, cell by cell.
+std::vector<MeshTetrahedron> ListTetrahedra(const SamplingMesh& mesh)
+{
+  std::vector<MeshTetrahedron> tetrahedra;
   const Box& box = mesh.Voxels;
-  std::int64_t cell = -1;
+  std::int64_t cell = 0;
   for (int z = box[4]; z < box[5]; ++z)
   {
     for (int y = box[2]; y < box[3]; ++y)
     {
-      for (int x = box[0]; x < box[1]; ++x)
+      for (int x = box[0]; x < box[1]; ++x, ++cell)
       {
-        ++cell;
         const auto vertices = NumberVertices(x, y, z);
         for (int t = 0; t < 5; ++t)
         {
-          bool active = mesh.Active.empty() || (mesh.Active[cell] >> t & 1) != 0;
-          bool clipped = !mesh.Distances.empty();
-          Containing candidate;
-          candidate.Cell = cell;
-          candidate.Tetrahedron = t;
-          std::array<Position, 4> points{};
-          std::array<Position, 4> rest{};
+          MeshTetrahedron made;
+          made.Active = mesh.Active.empty() || (mesh.Active[cell] >> t & 1) != 0;
+          made.Crossed = !mesh.Crossed.empty() && (mesh.Crossed[cell] >> t & 1) != 0;
           for (int k = 0; k < 4; ++k)
           {
             const Offset& offset = vertices[NumbersOfTetrahedra[t][k]];
-            rest[k] = { { x + offset[0], y + offset[1], z + offset[2] } };
-            const std::int64_t vertex =
-              ((rest[k][2] - box[4]) * GetSize(box, 1) + (rest[k][1] - box[2])) * GetSize(box, 0) +
-              (rest[k][0] - box[0]);
-            candidate.Vertices[k] = vertex;
-            active = active && (mesh.Present.empty() || mesh.Present[vertex]);
-            clipped = clipped && mesh.Distances[vertex] < 0.0F;
-            points[k] = mesh.Positions[vertex];
+            made.Vertices[k] =
+              ((z + offset[2] - box[4]) * GetSize(box, 1) + y + offset[1] - box[2]) *
+                GetSize(box, 0) +
+              x + offset[0] - box[0];
           }
-          if (!active || clipped)
-          {
-            continue;
-          }
-          const std::int64_t volume = GetVolume(points);
-          if (volume == 0)
-          {
-            ++result.NumberOfFlatTetrahedra;
-            continue;
-          }
-          candidate.Inverted = (volume > 0) != (GetVolume(rest) > 0);
-          candidate.Denominator = std::abs(volume);
-          result.NumberOfInvertedTetrahedra += candidate.Inverted ? 1 : 0;
-          AddTetrahedron(points, candidate, output, volume > 0 ? 1 : -1, mesh.Distances, result);
+          tetrahedra.push_back(made);
         }
       }
     }
+  }
+  return tetrahedra;
+}
+
+/// Whether a tetrahedron has all its vertices, and one of them is not on the far side of the
+/// boundary.
+bool IsThere(const MeshTetrahedron& tetrahedron, const SamplingMesh& mesh)
+{
+  bool there = tetrahedron.Active;
+  bool clipped = !mesh.Distances.empty();
+  for (const std::int64_t vertex : tetrahedron.Vertices)
+  {
+    there = there && (mesh.Present.empty() || mesh.Present[vertex]);
+    clipped = clipped && mesh.Distances[vertex] < 0.0F;
+  }
+  return there && !clipped;
+}
+
+} // namespace
+
+Result Resample(const SamplingMesh& mesh, const Box& output)
+{
+  Result result;
+  result.Voxels.resize(GetNumberOfVoxels(output));
+  const std::vector<MeshTetrahedron> tetrahedra = ListTetrahedra(mesh);
+  const CutReference cut(mesh, tetrahedra);
+  const std::int64_t width = GetSize(mesh.Voxels, 0);
+  const std::int64_t height = GetSize(mesh.Voxels, 1);
+  for (std::size_t i = 0; i < tetrahedra.size(); ++i)
+  {
+    const MeshTetrahedron& tetrahedron = tetrahedra[i];
+    if (!IsThere(tetrahedron, mesh))
+    {
+      continue;
+    }
+    const bool isDivided = cut.IsDivided(tetrahedron);
+    bool inverted = false;
+    for (int side = 0; side < (isDivided ? 2 : 1); ++side)
+    {
+      Containing candidate;
+      candidate.Cell = static_cast<std::int64_t>(i / 5);
+      candidate.Tetrahedron = static_cast<int>(i % 5);
+      candidate.Side = side;
+      candidate.Vertices = tetrahedron.Vertices;
+      std::array<Position, 4> rest{};
+      for (int k = 0; k < 4; ++k)
+      {
+        const std::int64_t vertex = tetrahedron.Vertices[k];
+        rest[k] = { { vertex % width, vertex / width % height, vertex / (width * height) } };
+        candidate.Points[k] = isDivided ? cut.GetPosition(vertex, side) : mesh.Positions[vertex];
+      }
+      const std::int64_t volume = GetVolume(candidate.Points);
+      if (volume == 0)
+      {
+        ++result.NumberOfFlatTetrahedra;
+        continue;
+      }
+      candidate.Inverted = (volume > 0) != (GetVolume(rest) > 0);
+      candidate.Denominator = std::abs(volume);
+      inverted = inverted || candidate.Inverted;
+      AddTetrahedron(candidate, isDivided, mesh, output, volume > 0 ? 1 : -1, result);
+    }
+    result.NumberOfInvertedTetrahedra += inverted ? 1 : 0;
   }
   const Ownership ownership(mesh);
   for (auto& containing : result.Voxels)

@@ -40,6 +40,12 @@ struct SamplingMesh
   std::vector<unsigned char> Active;
   /// Signed distance of each voxel to the boundary; empty: nothing is clipped.
   std::vector<float> Distances;
+  /// Bit t of a cell: a smooth cut crosses its tetrahedron t; empty: there is none.
+  std::vector<unsigned char> Crossed;
+  /// Signed distance of each voxel from the sheet, and how far it is from where it rests; for
+  /// smooth cuts.
+  std::vector<float> CutDistances;
+  std::vector<Position> Displacements;
 };
 
 /// A tetrahedron whose closed region contains an output voxel.
@@ -48,14 +54,17 @@ struct Containing
   std::int64_t Cell = 0;
   int Tetrahedron = 0;
   bool Inverted = false;
+  /// Of a divided tetrahedron, on which side of the cut it is: 1 where distances are negative.
+  int Side = 0;
   /// Whether it contains the voxel also when that is moved by (e, e^2, e^3), e -> 0.
   bool Generic = false;
   /// Voxels of the volume, and their barycentric weights as Numerators / Denominator.
   std::array<std::int64_t, 4> Vertices{};
+  std::array<Position, 4> Points{};
   std::array<std::int64_t, 4> Numerators{};
   std::int64_t Denominator = 1;
 
-  /// Upright before inverted, then the lowest cell and tetrahedron.
+  /// Upright before inverted, then the lowest cell, tetrahedron and side.
   bool operator<(const Containing& other) const;
 
   template <typename T>

@@ -177,8 +177,13 @@ TEST(Compilation, NoWarnings)
   for (const MappingForm form : { MappingForm::Links, MappingForm::Runs, MappingForm::Field })
   {
     SCOPED_TRACE(static_cast<int>(form));
-    EXPECT_EQ(GetLog(GetMappingProgram(context, form)), "");
-    EXPECT_EQ(GetLog(GetResamplingProgram(context, form, one, false, ResamplingForm::Lanes)), "");
+    for (const bool withCut : { false, true })
+    {
+      EXPECT_EQ(GetLog(GetMappingProgram(context, form, withCut)), "");
+      EXPECT_EQ(
+        GetLog(GetResamplingProgram(context, form, one, false, ResamplingForm::Lanes, withCut)),
+        "");
+    }
   }
   for (const bool wide : { false, true })
   {
@@ -192,6 +197,8 @@ TEST(Compilation, NoWarnings)
     { ResamplingForm::Cells, ResamplingForm::Lanes, ResamplingForm::LargeCells })
   {
     EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, labels, false, form)), "");
+    EXPECT_EQ(
+      GetLog(GetResamplingProgram(context, MappingForm::Links, linear, false, form, true)), "");
   }
   EXPECT_EQ(GetLog(GetOutputProgram(context)), "");
   EXPECT_EQ(GetLog(GetPublishedProgram(context, linear)), "");

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SmoothCrossings.h"
+
+#include "FiveTetrahedra.h"
+#include "TetrahedronSet.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace deformvolume
+{
+namespace
+{
+
+constexpr int FiveTetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+
+// Where a list of bricks has one, else null.
+template <typename Block>
+const Block* FindBlock(
+  const std::vector<std::size_t>& bricks, const std::vector<Block>& blocks, std::size_t brick)
+{
+  const auto place = std::lower_bound(bricks.begin(), bricks.end(), brick);
+  return place != bricks.end() && *place == brick
+    ? &blocks[static_cast<std::size_t>(place - bricks.begin())]
+    : nullptr;
+}
+
+// The edges that are crossed where some vertices are on the negative side.
+unsigned int GetEdges(const std::array<bool, 4>& isNegative)
+{
+  unsigned int edges = 0;
+  for (unsigned int k = 0; k < 6; ++k)
+  {
+    const int* ends = CrossingSet::Ends[k];
+    edges |= (isNegative[static_cast<std::size_t>(ends[0])] !=
+                   isNegative[static_cast<std::size_t>(ends[1])]
+                 ? 1U
+                 : 0U)
+      << k;
+  }
+  return edges;
+}
+
+// Whether crossed edges part the vertices of a tetrahedron into two sides.
+bool IsDivision(unsigned int edges)
+{
+  bool found = false;
+  for (unsigned int sides = 1; sides < 8; ++sides)
+  {
+    found = found ||
+      edges == GetEdges({ { false, (sides & 1U) != 0, (sides & 2U) != 0, (sides & 4U) != 0 } });
+  }
+  return found;
+}
+
+void AppendVertex(DistanceSet& set, std::size_t brick)
+{
+  if (set.IsEmpty() || set.Bricks.back() != brick)
+  {
+    set.Bricks.push_back(brick);
+    set.Blocks.emplace_back();
+    set.Blocks.back().fill(FarFromSheets);
+  }
+}
+
+} // namespace
+
+SmoothCrossings::SmoothCrossings(const Extent& vertices)
+  : Bricks(vertices)
+  , VertexBricks(deformvolume::GetVertexBricks(vertices))
+  , Changed(this->Bricks.GetNumberOfBricks(), true)
+  , ChangedVertices(this->VertexBricks.GetNumberOfBricks(), true)
+{
+}
+
+void SmoothCrossings::Allocate()
+{
+  if (this->Crossed.empty())
+  {
+    this->Crossed.assign(this->Bricks.GetNumberOfCells(), 0);
+    this->SwitchedOff.assign(this->Bricks.GetNumberOfCells(), 0);
+    this->Distances.assign(this->VertexBricks.GetNumberOfCells(), 0.0F);
+  }
+}
+
+std::size_t SmoothCrossings::GetVertex(const std::array<int, 3>& cell, unsigned int offset) const
+{
+  const std::array<int, 3>& size = this->VertexBricks.GetSize();
+  return (static_cast<std::size_t>(cell[2] + static_cast<int>(offset >> 1U & 1U)) *
+             static_cast<std::size_t>(size[1]) +
+           static_cast<std::size_t>(cell[1] + static_cast<int>(offset >> 2U & 1U))) *
+    static_cast<std::size_t>(size[0]) +
+    static_cast<std::size_t>(cell[0] + static_cast<int>(offset & 1U));
+}
+
+namespace
+{
+
+// Calls function(local indices, place in a block, place in the volume) for the cells of a brick.
+template <typename Function>
+void ForEachCell(const CellBricks& bricks, std::size_t brick, Function&& function)
+{
+  const Extent cells = bricks.GetCells(brick);
+  const std::array<int, 3>& size = bricks.GetSize();
+  for (int z = cells[4]; z <= cells[5]; ++z)
+  {
+    for (int y = cells[2]; y <= cells[3]; ++y)
+    {
+      const std::size_t row = (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) +
+                                static_cast<std::size_t>(y)) *
+        static_cast<std::size_t>(size[0]);
+      for (int x = cells[0]; x <= cells[1]; ++x)
+      {
+        function(std::array<int, 3>{ { x, y, z } },
+          TetrahedronSet::GetPlace(x - cells[0], y - cells[2], z - cells[4]),
+          row + static_cast<std::size_t>(x));
+      }
+    }
+  }
+}
+
+// Which of the offsets of a cell the vertices of its tetrahedra are: numbers with these bits
+// exchanged (FiveTetrahedra.h).
+unsigned int GetMirror(const Extent& vertices, const std::array<int, 3>& cell)
+{
+  return (static_cast<unsigned int>(vertices[0] + cell[0]) & 1U) |
+    (static_cast<unsigned int>(vertices[4] + cell[2]) & 1U) << 1U |
+    (static_cast<unsigned int>(vertices[2] + cell[1]) & 1U) << 2U;
+}
+
+} // namespace
+
+void SmoothCrossings::SetBase(
+  const unsigned char* crossed, const float* distances, const std::vector<const CrossingSet*>& sets)
+{
+  this->Base = CrossingSet();
+  if (!crossed && sets.empty() && this->Crossed.empty())
+  {
+    return;
+  }
+  this->Allocate();
+  std::vector<bool> isCorner(this->Distances.size());
+  for (std::size_t brick = 0; crossed && brick < this->Bricks.GetNumberOfBricks(); ++brick)
+  {
+    CrossingSet::Block block{};
+    bool isHit = false;
+    ForEachCell(this->Bricks, brick,
+      [&](const std::array<int, 3>& cell, std::size_t place, std::size_t number)
+      {
+        const unsigned int hit = crossed[number] & DEFORMVOLUME_ALL_TETRAHEDRA;
+        const unsigned int mirror = GetMirror(this->Bricks.GetVertices(), cell);
+        for (unsigned int t = 0; hit != 0 && t < 5; ++t)
+        {
+          std::array<bool, 4> isNegative;
+          for (std::size_t k = 0; k < 4; ++k)
+          {
+            const std::size_t vertex =
+              this->GetVertex(cell, static_cast<unsigned int>(FiveTetrahedra[t][k]) ^ mirror);
+            isNegative[k] = distances[vertex] < 0.0F;
+            isCorner[vertex] = isCorner[vertex] || (hit >> t & 1U) != 0;
+          }
+          block[place].Edges |= (hit >> t & 1U) != 0 ? GetEdges(isNegative) << 6 * t : 0U;
+        }
+        isHit = isHit || block[place].Edges != 0;
+      });
+    if (isHit)
+    {
+      this->Base.Bricks.push_back(brick);
+      this->Base.Blocks.push_back(block);
+    }
+  }
+  for (std::size_t brick = 0; crossed && brick < this->VertexBricks.GetNumberOfBricks(); ++brick)
+  {
+    ForEachCell(this->VertexBricks, brick,
+      [&](const std::array<int, 3>&, std::size_t place, std::size_t vertex)
+      {
+        if (isCorner[vertex])
+        {
+          AppendVertex(this->Base.Distances, brick);
+          // 0 is on the side of positive numbers there.
+          const float distance = distances[vertex];
+          this->Base.Distances.Blocks.back()[place] =
+            distance < 0.0F || distance > 0.0F ? distance : std::numeric_limits<float>::min();
+        }
+      });
+  }
+  for (std::size_t brick = 0; brick < this->VertexBricks.GetNumberOfBricks(); ++brick)
+  {
+    this->UpdateDistances(brick, sets);
+  }
+  for (std::size_t brick = 0; brick < this->Bricks.GetNumberOfBricks(); ++brick)
+  {
+    this->UpdateCells(brick, sets);
+  }
+  this->Changed.assign(this->Changed.size(), true);
+  this->ChangedVertices.assign(this->ChangedVertices.size(), true);
+}
+
+std::vector<std::size_t> SmoothCrossings::FindNeighbours(
+  const std::vector<std::size_t>& bricks) const
+{
+  std::array<std::size_t, 3> count;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    count[axis] = static_cast<std::size_t>(
+      (this->Bricks.GetSize()[axis] + CellBricks::Length - 1) / CellBricks::Length);
+  }
+  std::vector<std::size_t> found;
+  for (const std::size_t brick : bricks)
+  {
+    const std::array<std::size_t, 3> at{ { brick % count[0], brick / count[0] % count[1],
+      brick / count[0] / count[1] } };
+    for (std::size_t z = at[2] > 0 ? at[2] - 1 : 0; z <= std::min(at[2] + 1, count[2] - 1); ++z)
+    {
+      for (std::size_t y = at[1] > 0 ? at[1] - 1 : 0; y <= std::min(at[1] + 1, count[1] - 1); ++y)
+      {
+        for (std::size_t x = at[0] > 0 ? at[0] - 1 : 0; x <= std::min(at[0] + 1, count[0] - 1); ++x)
+        {
+          found.push_back((z * count[1] + y) * count[0] + x);
+        }
+      }
+    }
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+std::vector<std::size_t> SmoothCrossings::Update(
+  const CrossingSet& edit, const std::vector<const CrossingSet*>& sets)
+{
+  if (edit.IsEmpty())
+  {
+    return {};
+  }
+  this->Allocate();
+  for (const std::size_t brick : edit.Distances.Bricks)
+  {
+    this->UpdateDistances(brick, sets);
+    this->ChangedVertices[brick] = true;
+  }
+  // Vertices on the sides of bricks belong to cells of several.
+  std::vector<std::size_t> bricks = this->FindNeighbours(edit.Bricks);
+  for (const std::size_t brick : bricks)
+  {
+    this->UpdateCells(brick, sets);
+    this->Changed[brick] = true;
+  }
+  return bricks;
+}
+
+void SmoothCrossings::UpdateDistances(
+  std::size_t brick, const std::vector<const CrossingSet*>& sets)
+{
+  std::vector<const DistanceSet::Block*> blocks;
+  const auto add = [&](const CrossingSet& set)
+  {
+    if (const auto* block = FindBlock(set.Distances.Bricks, set.Distances.Blocks, brick))
+    {
+      blocks.push_back(block);
+    }
+  };
+  add(this->Base);
+  std::for_each(sets.begin(), sets.end(), [&](const CrossingSet* set) { add(*set); });
+  ForEachCell(this->VertexBricks, brick,
+    [&](const std::array<int, 3>&, std::size_t place, std::size_t vertex)
+    {
+      float distance = FarFromSheets;
+      for (const DistanceSet::Block* block : blocks)
+      {
+        distance = JoinSheetDistances(distance, (*block)[place]);
+      }
+      this->Distances[vertex] = distance == FarFromSheets ? 0.0F : distance;
+    });
+}
+
+void SmoothCrossings::UpdateCells(std::size_t brick, const std::vector<const CrossingSet*>& sets)
+{
+  std::vector<const CrossingSet::Block*> blocks;
+  const auto add = [&](const CrossingSet& set)
+  {
+    if (const auto* block = FindBlock(set.Bricks, set.Blocks, brick))
+    {
+      blocks.push_back(block);
+    }
+  };
+  add(this->Base);
+  std::for_each(sets.begin(), sets.end(), [&](const CrossingSet* set) { add(*set); });
+  ForEachCell(this->Bricks, brick,
+    [&](const std::array<int, 3>& cell, std::size_t place, std::size_t number)
+    {
+      CrossingSet::Cell joined;
+      for (const CrossingSet::Block* block : blocks)
+      {
+        joined.Join((*block)[place]);
+      }
+      const unsigned int mirror = GetMirror(this->Bricks.GetVertices(), cell);
+      unsigned int crossed = 0;
+      unsigned int off = 0;
+      for (unsigned int t = 0; joined.Edges != 0 && t < 5; ++t)
+      {
+        const unsigned int edges = joined.Edges >> 6 * t & 63U;
+        if (edges == 0)
+        {
+          continue;
+        }
+        std::array<bool, 4> isNegative;
+        bool isClear = true;
+        for (std::size_t k = 0; k < 4; ++k)
+        {
+          const float distance = this->Distances[this->GetVertex(
+            cell, static_cast<unsigned int>(FiveTetrahedra[t][k]) ^ mirror)];
+          isNegative[k] = distance < 0.0F;
+          isClear = isClear && distance != 0.0F;
+        }
+        const bool isMultiple = (joined.IsMultiple >> t & 1U) != 0;
+        const bool isDivision = IsDivision(edges);
+        const bool isDivided =
+          !isMultiple && isDivision && isClear && GetEdges(isNegative) == edges;
+        crossed |= (isDivided ? 1U : 0U) << t;
+        off |= (!isDivided && (isMultiple || isDivision) ? 1U : 0U) << t;
+      }
+      this->Crossed[number] = static_cast<unsigned char>(crossed);
+      this->SwitchedOff[number] = static_cast<unsigned char>(off);
+    });
+}
+
+namespace
+{
+
+std::vector<std::size_t> Take(std::vector<bool>& changed)
+{
+  std::vector<std::size_t> taken;
+  for (std::size_t brick = 0; brick < changed.size(); ++brick)
+  {
+    if (changed[brick])
+    {
+      taken.push_back(brick);
+      changed[brick] = false;
+    }
+  }
+  return taken;
+}
+
+} // namespace
+
+std::vector<std::size_t> SmoothCrossings::TakeChangedBricks()
+{
+  return this->Crossed.empty() ? std::vector<std::size_t>() : Take(this->Changed);
+}
+
+std::vector<std::size_t> SmoothCrossings::TakeChangedVertexBricks()
+{
+  return this->Crossed.empty() ? std::vector<std::size_t>() : Take(this->ChangedVertices);
+}
+
+std::uint64_t SmoothCrossings::GetMemory() const
+{
+  return this->Crossed.size() + this->SwitchedOff.size() + this->Distances.size() * sizeof(float) +
+    this->Base.Bricks.size() * sizeof(CrossingSet::Block) +
+    this->Base.Distances.Bricks.size() * sizeof(DistanceSet::Block);
+}
+
+} // namespace deformvolume

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeSmoothCrossings_h
+#define DeformVolumeSmoothCrossings_h
+
+#include "CellBricks.h"
+#include "CrossingSet.h"
+#include "DeformVolumeExport.h"
+#include "Extent.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// The tetrahedra of a volume that smooth cuts divide, and the signed distance of each of their
+/// vertices from the sheet (VolumeDeformer::SetCut), by all edits together: what is undone comes
+/// back bit for bit, and the order of edits does not matter.
+///
+/// A tetrahedron is divided where the edges that are crossed, each of them once, part its vertices
+/// into two sides, and the sides that triangles see them on are the same. Where the sheet only
+/// enters it, and parts no vertices, as at the end of a cut, it stays whole. Where two sheets pass
+/// through an edge, or a vertex is on different sides of two sheets, it is switched off.
+class DEFORMVOLUME_EXPORT SmoothCrossings
+{
+public:
+  /// vertices: structured indices of the voxels.
+  explicit SmoothCrossings(const Extent& vertices);
+
+  const CellBricks& GetBricks() const { return this->Bricks; }
+  const CellBricks& GetVertexBricks() const { return this->VertexBricks; }
+
+  /// Another cut before all edits, as GetCrossed() and GetDistances() have it; null: there is none.
+  /// sets: of the edits.
+  void SetBase(const unsigned char* crossed, const float* distances,
+    const std::vector<const CrossingSet*>& sets);
+
+  /// An edit comes or goes. sets: of all that are left. Returns the bricks of cells that may have
+  /// changed.
+  std::vector<std::size_t> Update(
+    const CrossingSet& edit, const std::vector<const CrossingSet*>& sets);
+
+  ///@{
+  /// One a cell, x varying fastest: tetrahedra that are divided, as bits, and that are switched
+  /// off. One a vertex: its distance, 0 far from all sheets and on both sides of some. None before
+  /// there was a set.
+  const std::vector<unsigned char>& GetCrossed() const { return this->Crossed; }
+  const std::vector<unsigned char>& GetSwitchedOff() const { return this->SwitchedOff; }
+  const std::vector<float>& GetDistances() const { return this->Distances; }
+  ///@}
+
+  ///@{
+  /// Bricks, of cells and of vertices, that may have changed since the last call, in ascending
+  /// order. At the first call after there was a set these are all.
+  std::vector<std::size_t> TakeChangedBricks();
+  std::vector<std::size_t> TakeChangedVertexBricks();
+  ///@}
+
+  std::uint64_t GetMemory() const;
+
+private:
+  void Allocate();
+  std::vector<std::size_t> FindNeighbours(const std::vector<std::size_t>& bricks) const;
+  void UpdateDistances(std::size_t brick, const std::vector<const CrossingSet*>& sets);
+  void UpdateCells(std::size_t brick, const std::vector<const CrossingSet*>& sets);
+  std::size_t GetVertex(const std::array<int, 3>& cell, unsigned int offset) const;
+
+  CellBricks Bricks;
+  CellBricks VertexBricks;
+  CrossingSet Base;
+  std::vector<unsigned char> Crossed;
+  std::vector<unsigned char> SwitchedOff;
+  std::vector<float> Distances;
+  std::vector<bool> Changed; // of each brick
+  std::vector<bool> ChangedVertices;
+};
+
+} // namespace deformvolume
+
+#endif

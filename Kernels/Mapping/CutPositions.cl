@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the vertices of divided tetrahedra would be if they moved with the other side of a smooth cut (CutCells.cl has
+// what these are for). It comes after VertexState.cl.
+//
+// A vertex takes the mean of what its neighbours on the other side say, those that it shares an edge of a divided
+// tetrahedron with. A neighbour continues the displacement that it and the next vertex in the same direction have, so
+// that an affine deformation is continued as it is. Where no neighbour has such a vertex on its side, as in one layer of
+// cells beside the border of the volume, they take how the displacement changes in that direction from the vertex and
+// the one behind it; and where there is none, they say their own displacement. So neighbouring tetrahedra agree on their
+// vertices. All numbers are whole, and the order of neighbours does not matter.
+//
+// Data: the list of cut vertices (KernelParameters.h); of each a stencil, the neighbours that are heard, as bits
+// (NEIGHBOUR), and what they say; and its position as seen from the other side.
+
+#define NEIGHBOUR(dx, dy, dz) (1u << ((dz + 1) * 9 + (dy + 1) * 3 + dx + 1))
+// What neighbours say.
+#define CONTINUES 0  // their displacement, continued from the next vertex
+#define FOLLOWS 1    // theirs, with the change of the vertex itself
+#define IS_CONSTANT 2 // theirs
+#define IS_JOINED 3  // nothing: tetrahedra that are not divided join both sides
+
+__constant uchar TetrahedraOfCell[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+
+// The list, with the masks of the chunk.
+typedef struct
+{
+  __global const uint* Rows;
+  __global const CutVertex* Vertices;
+  __global const uchar* State;
+  __global const uchar* Active;
+} CutMesh;
+
+// Tetrahedra of a cell, none beyond the volume.
+static int ActiveOf(const CutMesh* mesh, int x, int y, int z, const KernelParameters* p)
+{
+  if (x < 0 || y < 0 || z < 0 || x >= p->Size[0] - 1 || y >= p->Size[1] - 1 || z >= p->Size[2] - 1)
+  {
+    return 0;
+  }
+  return DEFORMVOLUME_ALL_TETRAHEDRA & (p->HasActive ? mesh->Active[CellInChunk(x, y, z, p)] : ~0);
+}
+
+static int MirrorOf(int x, int y, int z, const KernelParameters* p)
+{
+  return ((p->First[0] + x) & 1) | ((p->First[2] + z) & 1) << 1 | ((p->First[1] + y) & 1) << 2;
+}
+
+static int IsInVolume(int x, int y, int z, const KernelParameters* p)
+{
+  return x >= 0 && y >= 0 && z >= 0 && x < p->Size[0] && y < p->Size[1] && z < p->Size[2];
+}
+
+static int IsPlaced(const CutMesh* mesh, int x, int y, int z, const KernelParameters* p)
+{
+  return IsInVolume(x, y, z, p) && (StateOf(mesh->State, x, y, z, p) & DEFORMVOLUME_VERTEX_SOURCE);
+}
+
+// Whether a vertex that belongs to crossed tetrahedra lies on side 1 (sign 1) or 0; -1 for all others.
+static int SideOf(const CutMesh* mesh, int x, int y, int z, const KernelParameters* p)
+{
+  const int place = FindCutVertex(mesh->Rows, mesh->Vertices, x, y, z, p);
+  return place < 0 || !(mesh->Vertices[place].Tetrahedra & DEFORMVOLUME_CUT_CORNER)
+    ? -1
+    : mesh->Vertices[place].Distance < 0.0f;
+}
+
+// Adds the neighbours of a vertex in one of its cells: apart those on the other side in a divided tetrahedron, joined all
+// those in others.
+static void AddNeighbours(const CutMesh* mesh, int3 vertex, int side, int3 cell, uint* apart, uint* joined,
+  const KernelParameters* p)
+{
+  const int active = ActiveOf(mesh, cell.x, cell.y, cell.z, p);
+  if (!active)
+  {
+    return;
+  }
+  const int first = FindCutVertex(mesh->Rows, mesh->Vertices, cell.x, cell.y, cell.z, p);
+  const int crossed = first < 0 ? 0 : mesh->Vertices[first].Tetrahedra;
+  const int mirror = MirrorOf(cell.x, cell.y, cell.z, p);
+  const int own = ((vertex.x - cell.x) | (vertex.z - cell.z) << 1 | (vertex.y - cell.y) << 2) ^ mirror;
+  for (int t = 0; t < 5; ++t)
+  {
+    int hasOwn = 0;
+    for (int k = 0; k < 4; ++k)
+    {
+      hasOwn |= TetrahedraOfCell[t][k] == own;
+    }
+    if (!hasOwn || !(active >> t & 1))
+    {
+      continue;
+    }
+    uint all = 0;
+    uint other = 0;
+    for (int k = 0; k < 4; ++k)
+    {
+      const int o = TetrahedraOfCell[t][k] ^ mirror;
+      const int3 at = cell + (int3)(o & 1, o >> 2, o >> 1 & 1);
+      const uint bit = NEIGHBOUR(at.x - vertex.x, at.y - vertex.y, at.z - vertex.z);
+      all |= bit;
+      if (crossed >> t & 1)
+      {
+        other |= SideOf(mesh, at.x, at.y, at.z, p) != side ? bit : 0;
+      }
+    }
+    *apart |= other;
+    *joined |= other ? 0 : all;
+  }
+}
+
+// Whether an active tetrahedron has two vertices that are neighbours.
+static int AreConnected(const CutMesh* mesh, int3 a, int3 b, const KernelParameters* p)
+{
+  const int3 low = min(a, b);
+  const int3 step = abs(a - b) == 0 ? (int3)(1) : (int3)(0); // cells on both sides, where a and b lie in one plane
+  for (int c = 0; c < 8; ++c)
+  {
+    const int3 back = (int3)(c & 1, c >> 1 & 1, c >> 2);
+    if (back.x > step.x || back.y > step.y || back.z > step.z)
+    {
+      continue;
+    }
+    const int3 cell = low - back;
+    const int active = ActiveOf(mesh, cell.x, cell.y, cell.z, p);
+    const int mirror = MirrorOf(cell.x, cell.y, cell.z, p);
+    const int numberA = ((a.x - cell.x) | (a.z - cell.z) << 1 | (a.y - cell.y) << 2) ^ mirror;
+    const int numberB = ((b.x - cell.x) | (b.z - cell.z) << 1 | (b.y - cell.y) << 2) ^ mirror;
+    for (int t = 0; t < 5; ++t)
+    {
+      int has = 0;
+      for (int k = 0; k < 4; ++k)
+      {
+        has += TetrahedraOfCell[t][k] == numberA || TetrahedraOfCell[t][k] == numberB;
+      }
+      if (has == 2 && (active >> t & 1))
+      {
+        return 1;
+      }
+    }
+  }
+  return 0;
+}
+
+// Whether a vertex on a side leads to a neighbour on that side, which can tell how the displacement changes there.
+static int Leads(const CutMesh* mesh, int3 from, int3 to, int side, const KernelParameters* p)
+{
+  return IsPlaced(mesh, to.x, to.y, to.z, p) && SideOf(mesh, to.x, to.y, to.z, p) != 1 - side &&
+    AreConnected(mesh, from, to, p);
+}
+
+// The stencils of the vertices of the list from begin to end.
+__kernel void FindCutStencils(__global const uchar* state, __global const uchar* active, __global const uint* rows,
+  __global const CutVertex* vertices, __global uint2* stencils, const uint begin, const uint end,
+  const KernelParameters p)
+{
+  const uint i = begin + get_global_id(0);
+  if (i >= end)
+  {
+    return;
+  }
+  const CutMesh mesh = { rows, vertices, state, active };
+  const int3 at = (int3)(vertices[i].X, vertices[i].Y, vertices[i].Z);
+  const int side = vertices[i].Distance < 0.0f;
+  uint apart = 0;
+  uint joined = 0;
+  for (int c = 0; c < 8; ++c)
+  {
+    AddNeighbours(&mesh, at, side, at - (int3)(c & 1, c >> 1 & 1, c >> 2), &apart, &joined, &p);
+  }
+  if (apart & joined)
+  {
+    stencils[i] = (uint2)(apart, IS_JOINED);
+    return;
+  }
+  uint heard[3] = { 0, 0, 0 };
+  for (int n = 0; n < 27; ++n)
+  {
+    const int3 step = (int3)(n % 3, n / 3 % 3, n / 9) - 1;
+    const int3 near = at + step;
+    if (!(apart >> n & 1) || !IsPlaced(&mesh, near.x, near.y, near.z, &p))
+    {
+      continue;
+    }
+    const int word = Leads(&mesh, near, near + step, 1 - side, &p) ? CONTINUES
+      : Leads(&mesh, at, at - step, side, &p)                      ? FOLLOWS
+                                                                   : IS_CONSTANT;
+    heard[word] |= 1u << n;
+  }
+  const int word = heard[CONTINUES] ? CONTINUES : heard[FOLLOWS] ? FOLLOWS : IS_CONSTANT;
+  stencils[i] = (uint2)(heard[word], word);
+}
+
+static int3 RestOf(const Mapping* m, int3 at, const KernelParameters* p)
+{
+  return (int3)(m->Rest[at.x].Whole, m->Rest[p->Size[0] + at.y].Whole, m->Rest[p->Size[0] + p->Size[1] + at.z].Whole);
+}
+
+// How far a vertex is from where it rests, in 1/256 output voxel.
+static int3 StepsOf(const Mapping* m, int3 at, const KernelParameters* p)
+{
+  return PositionOf(m, at.x, at.y, at.z, p).xyz - RestOf(m, at, p);
+}
+
+// To the nearest whole number, upwards in the middle.
+static int DivideRounded(int sum, int count)
+{
+  const int twice = 2 * sum + count;
+  return twice >= 0 ? twice / (2 * count) : -((2 * count - 1 - twice) / (2 * count));
+}
+
+// The positions, as seen from the other side, of the vertices of the list from begin to end.
+__kernel void FindCutPositions(MAPPING_PARAMETERS, __global const uchar* state, __global const CutVertex* vertices,
+  __global const uint2* stencils, __global int4* positions, const uint begin, const uint end, const KernelParameters p)
+{
+  const uint i = begin + get_global_id(0);
+  if (i >= end)
+  {
+    return;
+  }
+  const Mapping m = MAPPING_ARGUMENTS;
+  const uint2 stencil = stencils[i];
+  const int3 at = (int3)(vertices[i].X, vertices[i].Y, vertices[i].Z);
+  if (!stencil.x || !(StateOf(state, at.x, at.y, at.z, &p) & DEFORMVOLUME_VERTEX_SOURCE))
+  {
+    positions[i] = (int4)(INT_MIN, 0, 0, 0);
+    return;
+  }
+  const int4 own = PositionOf(&m, at.x, at.y, at.z, &p);
+  if (stencil.y == IS_JOINED)
+  {
+    positions[i] = own;
+    return;
+  }
+  int3 sum = 0;
+  for (int n = 0; n < 27; ++n)
+  {
+    if (stencil.x >> n & 1)
+    {
+      const int3 step = (int3)(n % 3, n / 3 % 3, n / 9) - 1;
+      const int3 moved = StepsOf(&m, at + step, &p);
+      sum += moved;
+      sum += stencil.y == CONTINUES ? moved - StepsOf(&m, at + 2 * step, &p) : (int3)(0);
+      sum += stencil.y == FOLLOWS ? StepsOf(&m, at - step, &p) - StepsOf(&m, at, &p) : (int3)(0);
+    }
+  }
+  const int count = popcount(stencil.x);
+  const int3 mean =
+    (int3)(DivideRounded(sum.x, count), DivideRounded(sum.y, count), DivideRounded(sum.z, count));
+  const int4 other = (int4)(RestOf(&m, at, &p) + mean, 0);
+  positions[i] = all(abs_diff(other, own) <= (uint4)(DEFORMVOLUME_CLOSED_GAP)) ? own : other;
+}

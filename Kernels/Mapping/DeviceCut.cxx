@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DeviceCut.h"
+
+#include "FiveTetrahedra.h"
+#include "HostMemory.h"
+#include "MaskChanges.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+
+namespace deformvolume
+{
+namespace
+{
+
+constexpr int FiveTetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+
+struct CrossedCell
+{
+  int X, Y;
+  unsigned int Tetrahedra;
+};
+
+// The cells with crossed tetrahedra, of each layer.
+std::vector<std::vector<CrossedCell>> FindCells(
+  const std::array<int, 3>& size, const unsigned char* crossed)
+{
+  std::vector<std::vector<CrossedCell>> layers(static_cast<std::size_t>(size[2]));
+  const MaskValues wanted{ crossed, DEFORMVOLUME_ALL_TETRAHEDRA, 0 };
+  for (const Extent& box : FindMaskChanges(size, {}, wanted))
+  {
+    for (int z = box[4]; z <= box[5]; ++z)
+    {
+      for (int y = box[2]; y <= box[3]; ++y)
+      {
+        for (int x = box[0]; x <= box[1]; ++x)
+        {
+          const std::size_t cell =
+            (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) +
+              static_cast<std::size_t>(y)) *
+              static_cast<std::size_t>(size[0]) +
+            static_cast<std::size_t>(x);
+          if (wanted.Get(cell) != 0)
+          {
+            layers[static_cast<std::size_t>(z)].push_back({ x, y, wanted.Get(cell) });
+          }
+        }
+      }
+    }
+  }
+  return layers;
+}
+
+// The list of cut vertices, plane by plane.
+class ListBuilder
+{
+public:
+  ListBuilder(const VoxelGrid& voxelGrid, const float* distances)
+    : Shape(voxelGrid)
+    , Distances(distances)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Size[axis] = static_cast<std::size_t>(GetSize(voxelGrid.VertexExtent, axis));
+    }
+    this->Plane.resize(this->Size[0] * this->Size[1]);
+  }
+
+  void Build(const std::vector<std::vector<CrossedCell>>& layers, std::vector<CutVertex>& list,
+    std::vector<std::uint32_t>& rows)
+  {
+    for (std::size_t z = 0; z < this->Size[2]; ++z)
+    {
+      std::fill(this->Plane.begin(), this->Plane.end(), Unlisted);
+      bool isEmpty = true;
+      for (std::size_t above = 0; above < 2; ++above)
+      {
+        // The layer below the plane, then the one above it.
+        const std::size_t layer = z - 1 + above;
+        if (layer < layers.size())
+        {
+          isEmpty = isEmpty && layers[layer].empty();
+          this->Mark(layers[layer], static_cast<int>(layer), above == 0 ? 1 : 0);
+        }
+      }
+      this->Append(z, isEmpty, list, rows);
+    }
+    rows.push_back(static_cast<std::uint32_t>(list.size()));
+  }
+
+private:
+  static constexpr unsigned char Unlisted = 255;
+
+  // Marks the vertices of cells of a layer that lie in its lower or upper plane.
+  void Mark(const std::vector<CrossedCell>& cells, int layer, int upper)
+  {
+    const Extent& extent = this->Shape.VertexExtent;
+    for (const CrossedCell& cell : cells)
+    {
+      const unsigned int mirror = (static_cast<unsigned int>(extent[0] + cell.X) & 1U) |
+        (static_cast<unsigned int>(extent[4] + layer) & 1U) << 1U |
+        (static_cast<unsigned int>(extent[2] + cell.Y) & 1U) << 2U;
+      unsigned int corners = 0; // of crossed tetrahedra, as bits of offsets
+      for (unsigned int t = 0; t < 5; ++t)
+      {
+        for (const int v : FiveTetrahedra[t])
+        {
+          corners |= (cell.Tetrahedra >> t & 1U) << (static_cast<unsigned int>(v) ^ mirror);
+        }
+      }
+      for (unsigned int offset = 0; offset < 8; ++offset)
+      {
+        if ((offset >> 1U & 1U) != static_cast<unsigned int>(upper))
+        {
+          continue;
+        }
+        unsigned char& place =
+          this->Plane[(static_cast<std::size_t>(cell.Y) + (offset >> 2U)) * this->Size[0] +
+            static_cast<std::size_t>(cell.X) + (offset & 1U)];
+        place = place == Unlisted ? 0 : place;
+        place |= static_cast<unsigned char>((corners >> offset & 1U) * DEFORMVOLUME_CUT_CORNER);
+        place |= static_cast<unsigned char>(offset == 0 ? cell.Tetrahedra : 0U);
+      }
+    }
+  }
+
+  void Append(
+    std::size_t z, bool isEmpty, std::vector<CutVertex>& list, std::vector<std::uint32_t>& rows)
+  {
+    for (std::size_t y = 0; y < this->Size[1]; ++y)
+    {
+      rows.push_back(static_cast<std::uint32_t>(list.size()));
+      for (std::size_t x = 0; !isEmpty && x < this->Size[0]; ++x)
+      {
+        const std::size_t vertex = y * this->Size[0] + x;
+        if (this->Plane[vertex] != Unlisted)
+        {
+          list.push_back({ static_cast<int>(x), static_cast<int>(y), static_cast<int>(z),
+            this->Plane[vertex], this->Distances[z * this->Plane.size() + vertex] });
+        }
+      }
+    }
+  }
+
+  const VoxelGrid& Shape;
+  const float* Distances;
+  std::array<std::size_t, 3> Size{};
+  std::vector<unsigned char> Plane;
+};
+
+bool ComesBefore(const CutVertex& a, const CutVertex& b)
+{
+  return std::array<int, 3>{ { a.Z, a.Y, a.X } } < std::array<int, 3>{ { b.Z, b.Y, b.X } };
+}
+
+// Boxes round the vertices of which two lists say different things, one for each block of the
+// volume at most.
+std::vector<Extent> FindChanges(const std::vector<CutVertex>& a, const std::vector<CutVertex>& b)
+{
+  constexpr int block = 16;
+  std::map<std::array<int, 3>, Extent> boxes;
+  const auto add = [&](const CutVertex& v)
+  {
+    Extent& box = boxes
+                    .try_emplace({ { v.Z / block, v.Y / block, v.X / block } },
+                      Extent{ { v.X, v.X, v.Y, v.Y, v.Z, v.Z } })
+                    .first->second;
+    const std::array<int, 3> at{ { v.X, v.Y, v.Z } };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      box[2 * axis] = std::min(box[2 * axis], at[axis]);
+      box[2 * axis + 1] = std::max(box[2 * axis + 1], at[axis]);
+    }
+  };
+  auto i = a.begin();
+  auto j = b.begin();
+  while (i != a.end() || j != b.end())
+  {
+    if (j == b.end() || (i != a.end() && ComesBefore(*i, *j)))
+    {
+      add(*i++);
+    }
+    else if (i == a.end() || ComesBefore(*j, *i))
+    {
+      add(*j++);
+    }
+    else
+    {
+      if (std::memcmp(&*i, &*j, sizeof(CutVertex)) != 0)
+      {
+        add(*i);
+      }
+      ++i;
+      ++j;
+    }
+  }
+  std::vector<Extent> changes;
+  for (const auto& box : boxes)
+  {
+    changes.push_back(box.second);
+  }
+  return changes;
+}
+
+} // namespace
+
+std::vector<Extent> DeviceCut::Set(const OpenCLContext& context, const cl::CommandQueue& queue,
+  const VoxelGrid& voxelGrid, const unsigned char* crossed, const float* distances)
+{
+  std::vector<CutVertex> list;
+  std::vector<std::uint32_t> rows;
+  if (crossed)
+  {
+    std::array<int, 3> cells;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      cells[axis] = static_cast<int>(GetSize(voxelGrid.VertexExtent, axis)) - 1;
+    }
+    ListBuilder(voxelGrid, distances).Build(FindCells(cells, crossed), list, rows);
+  }
+  std::vector<Extent> changes = FindChanges(this->List, list);
+  if (!changes.empty())
+  {
+    this->List = std::move(list);
+    this->RowBegins = std::move(rows);
+    this->StencilsCurrent = false;
+    this->Send(context, queue);
+  }
+  return changes;
+}
+
+void DeviceCut::Send(const OpenCLContext& context, const cl::CommandQueue& queue)
+{
+  queue.finish(); // nothing uses what is let go
+  this->Rows = this->Vertices = this->Stencils = this->Positions = cl::Buffer();
+  if (this->List.empty())
+  {
+    return;
+  }
+  const auto make = [&](std::size_t bytes)
+  { return cl::Buffer(context.GetContext(), CL_MEM_READ_WRITE, bytes); };
+  const std::size_t listBytes = this->List.size() * sizeof(CutVertex);
+  const std::size_t rowBytes = this->RowBegins.size() * sizeof(std::uint32_t);
+  this->Rows = make(rowBytes);
+  this->Vertices = make(listBytes);
+  this->Stencils = make(this->List.size() * sizeof(cl_uint2));
+  this->Positions = make(this->List.size() * sizeof(cl_int4));
+  queue.enqueueWriteBuffer(this->Rows, CL_TRUE, 0, rowBytes, this->RowBegins.data());
+  queue.enqueueWriteBuffer(this->Vertices, CL_TRUE, 0, listBytes, this->List.data());
+}
+
+void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
+  const KernelParameters& p, const VolumeChunk& chunk, const Source& source)
+{
+  // Each vertex is looked at in the first chunk whose cells have it; those of the last plane of a
+  // chunk belong to the next one.
+  const auto row = [&](int z)
+  { return this->RowBegins[static_cast<std::size_t>(z) * static_cast<std::size_t>(p.Size[1])]; };
+  const bool isLast = chunk.LayersEnd == p.Size[2] - 1;
+  const cl_uint begin = row(chunk.LayersBegin);
+  const cl_uint end = row(isLast ? p.Size[2] : chunk.LayersEnd);
+  if (begin == end)
+  {
+    return;
+  }
+  constexpr std::size_t group = 64;
+  const cl::NDRange items((end - begin + group - 1) / group * group);
+  if (!this->StencilsCurrent)
+  {
+    cl::Kernel find(source.Program, "FindCutStencils");
+    find.setArg(0, source.State);
+    find.setArg(1, source.Active);
+    find.setArg(2, this->Rows);
+    find.setArg(3, this->Vertices);
+    find.setArg(4, this->Stencils);
+    find.setArg(5, begin);
+    find.setArg(6, end);
+    find.setArg(7, p);
+    context.Launch(queue, find, items, cl::NDRange(group));
+  }
+  cl::Kernel kernel(source.Program, "FindCutPositions");
+  cl_uint i = source.SetMapping(kernel);
+  kernel.setArg(i++, source.State);
+  kernel.setArg(i++, this->Vertices);
+  kernel.setArg(i++, this->Stencils);
+  kernel.setArg(i++, this->Positions);
+  kernel.setArg(i++, begin);
+  kernel.setArg(i++, end);
+  kernel.setArg(i++, p);
+  context.Launch(queue, kernel, items, cl::NDRange(group));
+}
+
+std::uint64_t DeviceCut::GetMemory() const
+{
+  return deformvolume::GetMemory(this->Rows) + deformvolume::GetMemory(this->Vertices) +
+    deformvolume::GetMemory(this->Stencils) + deformvolume::GetMemory(this->Positions);
+}
+
+} // namespace deformvolume

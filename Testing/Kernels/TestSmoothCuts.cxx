@@ -1,0 +1,511 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Smooth cuts: crossed tetrahedra that are there twice, once for each side. Distances are multiples
+// of 1/16 where the reference is compared with, and then both sides add up the same numbers without
+// rounding.
+#include "DeformerCase.h"
+#include "DeviceNeeds.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+using namespace deformvolume;
+
+namespace
+{
+
+const std::array<double, 3> NoScale{ { 1, 1, 1 } };
+const Extent Volume{ { -3, 17, 0, 9, 1, 8 } };
+using Deformation = std::function<glm::dvec3(const glm::dvec3&)>;
+
+glm::dvec3 GetPoint(const Extent& extent, std::int64_t i)
+{
+  const std::int64_t x = GetSize(extent, 0);
+  const std::int64_t y = GetSize(extent, 1);
+  return glm::dvec3(extent[0] + i % x, extent[2] + i / x % y, extent[4] + i / (x * y));
+}
+
+// Distances of random sign; of the tetrahedra one in `every` is crossed.
+void CutAtRandom(DeformerCase& made, unsigned int seed, unsigned int every)
+{
+  std::mt19937 random(seed);
+  made.CutDistances.resize(made.GetNumberOfVoxels());
+  for (float& distance : made.CutDistances)
+  {
+    distance = (static_cast<float>(random() % 65) - 32.0F) / 16.0F;
+  }
+  made.Crossed.assign(GetNumberOfCells(made.VoxelGrid.VertexExtent), 0);
+  for (unsigned char& cell : made.Crossed)
+  {
+    cell = random() % every == 0 ? static_cast<unsigned char>(random() % 32) : 0;
+  }
+}
+
+// Cuts where a function of the index is 0, and crosses what has vertices on both sides of that, in
+// cells that are wanted.
+void CutAlong(
+  DeformerCase& made, const std::function<double(const glm::dvec3&)>& distance,
+  const std::function<bool(const glm::dvec3&)>& isWanted = [](const glm::dvec3&) { return true; })
+{
+  const Extent& extent = made.VoxelGrid.VertexExtent;
+  made.CutDistances.clear();
+  for (std::int64_t i = 0; i < made.GetNumberOfVoxels(); ++i)
+  {
+    made.CutDistances.push_back(static_cast<float>(distance(GetPoint(extent, i))));
+  }
+  Extent cells = extent;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    --cells[2 * axis + 1];
+  }
+  made.Crossed.clear();
+  for (std::int64_t i = 0; i < GetNumberOfPoints(cells); ++i)
+  {
+    const glm::dvec3 first = GetPoint(cells, i);
+    double low = 1e9;
+    double high = -1e9;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const double d = distance(first + glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2));
+      low = std::min(low, d);
+      high = std::max(high, d);
+    }
+    made.Crossed.push_back(low < 0.0 && high >= 0.0 && isWanted(first) ? 31 : 0);
+  }
+}
+
+void Check(const DeformerCase& cut, Route route = Route::Field)
+{
+  const std::size_t size = cut.GetNumberOfVoxels();
+  const reference::Result reference = ResampleByReference(cut);
+  const auto shorts = MakeRandomValues<std::int16_t>(size, 4);
+  const auto floats = MakeRandomValues<float>(size, 5);
+  const std::vector<VolumeArray> linear{ MakeArray(shorts), MakeArray(floats, 1, false, 2.0) };
+  ExpectEqualsReference(cut, reference, linear, LoadAndRun(cut, linear, route));
+  const auto labels = MakeRandomValues<std::uint16_t>(size * 2, 3);
+  const std::vector<VolumeArray> others{ MakeArray(labels, 2, true, 12.0) };
+  ExpectEqualsReference(cut, reference, others, LoadAndRun(cut, others, route));
+}
+
+// Moves what is on one side of a sheet away from the other.
+Deformation MoveApart(const std::function<double(const glm::dvec3&)>& distance,
+  const glm::dvec3& negative, const glm::dvec3& positive)
+{
+  return [=](const glm::dvec3& index)
+  { return index + (distance(index) < 0.0 ? negative : positive); };
+}
+
+// With the cut and without it.
+struct Pair
+{
+  Deformed Cut, Whole;
+};
+
+Pair RunBoth(const DeformerCase& cut, const std::vector<VolumeArray>& arrays)
+{
+  DeformerCase whole = cut;
+  whole.Crossed.clear();
+  return { LoadAndRun(cut, arrays), LoadAndRun(whole, arrays) };
+}
+
+void ExpectSame(const Deformed& a, const Deformed& b)
+{
+  EXPECT_EQ(a.Coverage, b.Coverage);
+  EXPECT_EQ(a.Outputs, b.Outputs);
+}
+
+} // namespace
+
+TEST(SmoothCuts, MisuseIsAnError)
+{
+  VolumeDeformer deformer;
+  deformer.SetDevice("");
+  DeformerCase still = MakeCase(Volume, NoScale, [](const glm::dvec3& index) { return index; });
+  CutAtRandom(still, 1, 2);
+  EXPECT_THROW(deformer.SetCut(still.Crossed.data(), still.CutDistances.data()), Error);
+  const auto values = MakeRandomValues<std::int16_t>(still.GetNumberOfVoxels(), 1);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  Load(deformer, still, arrays, Route::Field);
+  EXPECT_THROW(deformer.SetCut(still.Crossed.data(), nullptr), Error);
+  EXPECT_THROW(deformer.SetCut(nullptr, still.CutDistances.data()), Error);
+  EXPECT_THROW(RunDeformer(deformer, still, arrays, Resampling::Published), Error);
+  const std::vector<double> nodes{ -99, -99, -99, 99, -99, -99, -99, 99, -99, -99, -99, 99 };
+  const std::vector<float> none(12, 0.0F);
+  const Tetrahedron tetrahedron{ { 0, 1, 2, 3 } };
+  deformer.SetRestMesh(&tetrahedron, 1, 4, nodes.data());
+  deformer.SetNodeDisplacements(none.data());
+  EXPECT_THROW(RunDeformer(deformer, still, arrays, Resampling::MeshRasterization), Error);
+  deformer.SetCut(nullptr, nullptr);
+  EXPECT_NO_THROW(RunDeformer(deformer, still, arrays, Resampling::MeshRasterization));
+  MoveByField(deformer, still);
+  EXPECT_NO_THROW(RunDeformer(deformer, still, arrays, Resampling::Published));
+  // Room for four slices of links.
+  deformer.SetAllocationLimit(16384);
+  EXPECT_THROW(Load(deformer, still, arrays, Route::Mesh), Error);
+  still.Crossed.clear();
+  EXPECT_NO_THROW(Load(deformer, still, arrays, Route::Mesh));
+}
+
+TEST(SmoothCuts, AtRestNothingIsSeen)
+{
+  for (const double scale : { 1.0, 2.0, 0.5 })
+  {
+    SCOPED_TRACE(scale);
+    DeformerCase cut = MakeCase(
+      Volume, { { scale, scale, scale } }, [=](const glm::dvec3& index) { return index * scale; });
+    const auto shorts = MakeRandomValues<std::int16_t>(cut.GetNumberOfVoxels(), 4);
+    const auto floats = MakeRandomValues<float>(cut.GetNumberOfVoxels(), 5);
+    const std::vector<VolumeArray> arrays{ MakeArray(shorts), MakeArray(floats) };
+    for (unsigned int seed = 0; seed < 4; ++seed)
+    {
+      SCOPED_TRACE(seed);
+      CutAtRandom(cut, seed, 1 + seed);
+      const Pair both = RunBoth(cut, arrays);
+      EXPECT_EQ(both.Cut.Coverage, both.Whole.Coverage);
+      EXPECT_FALSE(both.Cut.Report.Overlapping);
+      EXPECT_EQ(both.Cut.Outputs[0], both.Whole.Outputs[0]);
+      if (scale == 1.0)
+      {
+        EXPECT_EQ(both.Cut.Outputs[1], both.Whole.Outputs[1]);
+      }
+      ExpectSame(*both.Cut.ByCell, both.Cut);
+    }
+  }
+}
+
+TEST(SmoothCuts, EqualTheReference)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  std::mt19937 random(3);
+  for (unsigned int seed = 0; seed < 8; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    const glm::dmat3 matrix = MakeRandomMatrix(random);
+    // A jump of one voxel or less for every vertex, so that most gaps open.
+    const Deformation jitter = MakeJitter(seed, 0.1 + 0.05 * seed);
+    DeformerCase cut =
+      MakeCase(Volume, NoScale, [&](const glm::dvec3& index) { return matrix * jitter(index); });
+    const std::size_t size = cut.GetNumberOfVoxels();
+    CutAtRandom(cut, seed, 1 + seed % 4);
+    if (seed > 2)
+    {
+      cut.Blanked.resize(size);
+      cut.Active.resize(GetNumberOfCells(Volume), 31);
+      for (int i = 0; i < 20; ++i)
+      {
+        cut.Blanked[random() % size] = 1;
+        cut.Active[random() % cut.Active.size()] = static_cast<unsigned char>(random() % 32);
+      }
+    }
+    if (seed > 4)
+    {
+      cut.Distances.assign(size, 1.0F);
+      for (int i = 0; i < 30; ++i)
+      {
+        cut.Distances[random() % size] = -0.5F;
+      }
+    }
+    Check(cut, seed % 3 == 0 ? Route::Field : seed % 3 == 1 ? Route::Mesh : Route::Runs);
+  }
+}
+
+TEST(SmoothCuts, EqualTheReferenceWhereSidesComeApart)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  std::mt19937 random(5);
+  for (unsigned int seed = 0; seed < 6; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    const auto sheet = [seed](const glm::dvec3& i)
+    { return i.x - 7.25 + 0.25 * std::floor(0.5 * seed * i.y) - 0.125 * i.z; };
+    const glm::dvec3 step(2.5 * (seed % 3), 0.75 * seed, -0.5);
+    DeformerCase cut = MakeCase(Volume, NoScale, MoveApart(sheet, -step, step));
+    CutAlong(cut, sheet, [seed](const glm::dvec3& cell) { return seed < 3 || cell.y < 5; });
+    Check(cut, seed % 2 == 0 ? Route::Field : Route::Mesh);
+    // Into each other.
+    cut = MakeCase(Volume, NoScale, MoveApart(sheet, step, -step));
+    CutAlong(cut, sheet, [seed](const glm::dvec3& cell) { return seed < 3 || cell.y < 5; });
+    Check(cut, seed % 2 == 0 ? Route::Runs : Route::Field);
+  }
+}
+
+TEST(SmoothCuts, EqualTheReferenceWhereTheVolumeIsFolded)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  for (unsigned int seed = 0; seed < 4; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    DeformerCase cut = MakeCase(Volume, NoScale, MakeJitter(seed, 0.4 + 0.4 * seed));
+    CutAtRandom(cut, seed, 1 + seed % 3);
+    Check(cut);
+  }
+}
+
+TEST(SmoothCuts, LargeCellsAreDivided)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  const Extent extent{ { 0, 2, 0, 2, 0, 2 } };
+  DeformerCase cut = MakeCase(extent, NoScale,
+    [](const glm::dvec3& index)
+    {
+      return index * 40.0 + glm::dvec3(index.y, index.z, index.x) +
+        glm::dvec3(index.x > 0.5 ? 11.0 : 0.0, 0.0, 0.0);
+    });
+  CutAtRandom(cut, 5, 1);
+  Check(cut);
+}
+
+TEST(SmoothCuts, ChunksEqualTheWhole)
+{
+  std::mt19937 random(8);
+  for (unsigned int seed = 0; seed < 4; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    const glm::dmat3 matrix = MakeRandomMatrix(random);
+    const Deformation jitter = MakeJitter(seed, 0.4);
+    const Extent extent{ { -3, 9, 0, 9, 1, 20 } };
+    DeformerCase cut =
+      MakeCase(extent, NoScale, [&](const glm::dvec3& index) { return matrix * jitter(index); });
+    CutAtRandom(cut, seed, 1 + seed);
+    const auto values = MakeRandomValues<std::int16_t>(cut.GetNumberOfVoxels(), 1);
+    const std::vector<VolumeArray> arrays{ MakeArray(values) };
+    const Deformed whole = LoadAndRun(cut, arrays, Route::Mesh);
+    VolumeDeformer chunked;
+    chunked.SetDevice("");
+    chunked.SetAllocationLimit(16384);
+    Load(chunked, cut, arrays, Route::Mesh);
+    ExpectSame(RunDeformer(chunked, cut, arrays), whole);
+  }
+}
+
+// The gap lies between the two moved planes: what is on each side of the plane is there, and
+// nothing else.
+TEST(SmoothCuts, NothingIsLostBetweenThePlanesOfAGap)
+{
+  const Extent extent{ { -1, 10, 0, 7, 0, 6 } };
+  const std::array<double, 3> scale{ { 16, 4, 4 } };
+  const glm::dvec3 factor(16, 4, 4);
+  struct Plane
+  {
+    glm::dvec3 Normal;
+    double Place;
+  };
+  const std::vector<Plane> planes{ { { 1, 0, 0 }, 4.3 }, { { 1, 0, 0 }, 4.0 },
+    { { 1, 0.25, 0 }, 5.125 }, { { 1, -0.5, 0.25 }, 3.5 }, { { 0.25, 1, 0.5 }, 5.0625 } };
+  for (const Plane& plane : planes)
+  {
+    SCOPED_TRACE(plane.Place);
+    const auto sheet = [&](const glm::dvec3& i) { return glm::dot(plane.Normal, i) - plane.Place; };
+    const glm::dvec3 apart(24, 3, 5); // more than the plane's own slope takes back
+    DeformerCase cut = MakeCase(extent, scale,
+      [&](const glm::dvec3& index)
+      { return index * factor + (sheet(index) < 0.0 ? -apart : apart); });
+    CutAlong(cut, sheet);
+    const auto values = MakeRandomValues<float>(cut.GetNumberOfVoxels(), 1);
+    const Deformed deformed = LoadAndRun(cut, { MakeArray(values) });
+    // Distances are floats: no sample is nearer to a plane than that but those on it.
+    constexpr double rounding = 1e-5;
+    std::size_t voxel = 0;
+    std::int64_t expected = 0;
+    for (int z = cut.Output[4]; z <= cut.Output[5]; ++z)
+    {
+      for (int y = cut.Output[2]; y <= cut.Output[3]; ++y)
+      {
+        for (int x = cut.Output[0]; x <= cut.Output[1]; ++x, ++voxel)
+        {
+          const auto isIn = [&](const glm::dvec3& at)
+          {
+            return at.x >= extent[0] && at.x <= extent[1] && at.y >= extent[2] &&
+              at.y <= extent[3] && at.z >= extent[4] && at.z <= extent[5];
+          };
+          const glm::dvec3 low = (glm::dvec3(x, y, z) + apart) / factor;
+          const glm::dvec3 high = (glm::dvec3(x, y, z) - apart) / factor;
+          const bool covered =
+            (isIn(low) && sheet(low) < -rounding) || (isIn(high) && sheet(high) >= -rounding);
+          expected += covered ? 1 : 0;
+          ASSERT_EQ(deformed.Coverage[voxel] != 0, covered) << x << " " << y << " " << z;
+        }
+      }
+    }
+    EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, expected);
+    EXPECT_FALSE(deformed.Report.Overlapping);
+    // With tetrahedra switched off the tissue round the plane is missing.
+    DeformerCase off = cut;
+    off.Active.assign(off.Crossed.size(), 31);
+    for (std::size_t i = 0; i < off.Active.size(); ++i)
+    {
+      off.Active[i] = off.Crossed[i] ? 0 : 31;
+    }
+    off.Crossed.clear();
+    const Deformed lossy = LoadAndRun(off, { MakeArray(values) });
+    EXPECT_LT(lossy.Report.NumberOfCoveredVoxels, 0.95 * static_cast<double>(expected));
+  }
+}
+
+// A cut that is not opened, by affine motions: coverage is that without a cut, and values are the
+// same but for the rounding of an interpolation, near the sheet; elsewhere bit for bit.
+TEST(SmoothCuts, AffineMotionsLeaveTheCutClosed)
+{
+  std::mt19937 random(21);
+  for (unsigned int seed = 0; seed < 8; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    const glm::dmat3 matrix = seed < 2 ? glm::dmat3(1.0) : MakeRandomMatrix(random, 0.4);
+    const glm::dvec3 shift(0.4 * seed, -0.3, 0.77);
+    const auto sheet = [](const glm::dvec3& i) { return i.x - 7.3 + 0.2 * i.y - 0.4 * i.z; };
+    DeformerCase cut =
+      MakeCase(Volume, NoScale, [&](const glm::dvec3& index) { return matrix * index + shift; });
+    CutAlong(cut, sheet, [seed](const glm::dvec3& cell) { return seed % 2 == 0 || cell.y < 5; });
+    const auto values = MakeRandomValues<float>(cut.GetNumberOfVoxels(), 1);
+    const Pair both = RunBoth(cut, { MakeArray(values) });
+    EXPECT_EQ(both.Cut.Coverage, both.Whole.Coverage);
+    EXPECT_FALSE(both.Cut.Report.Overlapping);
+    const glm::dmat3 inverse = glm::inverse(matrix);
+    const float* with = both.Cut.GetOutput<float>(0);
+    const float* without = both.Whole.GetOutput<float>(0);
+    std::size_t voxel = 0;
+    for (int z = cut.Output[4]; z <= cut.Output[5]; ++z)
+    {
+      for (int y = cut.Output[2]; y <= cut.Output[3]; ++y)
+      {
+        for (int x = cut.Output[0]; x <= cut.Output[1]; ++x, ++voxel)
+        {
+          const double distance = sheet(inverse * (glm::dvec3(x, y, z) - shift));
+          // The vertices of a crossed cell are within (1, 0.2, 0.4) . (1, 1, 1) of the sheet, and
+          // so far again reach the cells with one of these, whose values are added up in double
+          // instead of single precision: of at most 1000, by eight weights of at most 1. Samples on
+          // the surface of the cells beside those are decided in the same way.
+          const bool near = std::abs(distance) < 3 * 1.6 + 0.1;
+          if (near)
+          {
+            ASSERT_NEAR(with[voxel], without[voxel], 1000.0 * 32 * std::ldexp(1.0, -23));
+          }
+          else
+          {
+            ASSERT_EQ(with[voxel], without[voxel]);
+          }
+        }
+      }
+    }
+  }
+}
+
+// Motions that bend the volume, with cuts through all of it and some that end inside: no hole, no
+// double.
+TEST(SmoothCuts, SmoothMotionsLeaveTheCutClosed)
+{
+  const Extent extent{ { 0, 24, 0, 16, 0, 12 } };
+  for (unsigned int seed = 0; seed < 6; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    const auto sheet = [](const glm::dvec3& i)
+    { return i.x - 11.3 + 0.2 * i.y - 0.03 * i.z * i.z; };
+    // Second derivatives of less than 1/4 per voxel: what continues a displacement errs by less
+    // than that.
+    const double bend = 0.02 * (1 + seed % 3);
+    DeformerCase cut = MakeCase(extent, NoScale,
+      [&](const glm::dvec3& i) {
+        return i +
+          glm::dvec3(bend * i.y * i.y / 2, 2.0 * std::sin(0.25 * i.x), bend * i.x * i.y / 4);
+      });
+    CutAlong(cut, sheet,
+      [seed](const glm::dvec3& cell) { return seed < 3 || (cell.y < 9 && cell.z > 3); });
+    const auto values = MakeRandomValues<std::int16_t>(cut.GetNumberOfVoxels(), 1);
+    const Pair both = RunBoth(cut, { MakeArray(values) });
+    // One kernel interpolates both alike; by lanes cells away from the sheet have single precision.
+    ExpectSame(*both.Cut.ByCell, *both.Whole.ByCell);
+    EXPECT_EQ(both.Cut.Coverage, both.Whole.Coverage);
+    EXPECT_FALSE(both.Cut.Report.Overlapping);
+    for (std::size_t voxel = 0; voxel < both.Cut.Coverage.size(); ++voxel)
+    {
+      ASSERT_NEAR(both.Cut.GetOutput<std::int16_t>(0)[voxel],
+        both.Whole.GetOutput<std::int16_t>(0)[voxel], 1);
+    }
+  }
+}
+
+// A cut that ends inside is pulled open: there is a gap, no hole but that, and nothing is torn at
+// its end.
+TEST(SmoothCuts, NothingIsTornWhereACutEnds)
+{
+  const Extent extent{ { 0, 20, 0, 20, 0, 6 } };
+  const auto sheet = [](const glm::dvec3& i) { return i.x - 10.3; };
+  const auto isCut = [](const glm::dvec3& cell) { return cell.y < 10; };
+  // Opens towards y = 0, from where the cut ends.
+  const Deformation open = [&](const glm::dvec3& i)
+  {
+    const double width = std::max(0.0, 10.0 - i.y) * 0.4;
+    return i + glm::dvec3(sheet(i) < 0.0 ? -width : width, 0.0, 0.0);
+  };
+  DeformerCase cut = MakeCase(extent, NoScale, open);
+  CutAlong(cut, sheet, isCut);
+  const auto values = MakeRandomValues<std::int16_t>(cut.GetNumberOfVoxels(), 1);
+  const Deformed deformed = LoadAndRun(cut, { MakeArray(values) });
+  EXPECT_FALSE(deformed.Report.Overlapping);
+  EXPECT_EQ(deformed.Report.NumberOfInvertedTetrahedra, 0);
+  std::size_t voxel = 0;
+  for (int z = cut.Output[4]; z <= cut.Output[5]; ++z)
+  {
+    for (int y = cut.Output[2]; y <= cut.Output[3]; ++y)
+    {
+      for (int x = cut.Output[0]; x <= cut.Output[1]; ++x, ++voxel)
+      {
+        const double width = std::max(0.0, 10.0 - y) * 0.4;
+        const bool inVolume =
+          y >= 0 && y <= 20 && z >= 0 && z <= 6 && x >= -width && x <= 20 + width;
+        const bool inGap = x >= 10.3 - width && x < 10.3 + width;
+        // Round the end, where vertices are joined, tissue stretches over the gap of up to two
+        // cells.
+        if (!inVolume || !inGap)
+        {
+          ASSERT_EQ(deformed.Coverage[voxel] != 0, inVolume) << x << " " << y << " " << z;
+        }
+        else if (y < 8)
+        {
+          ASSERT_EQ(deformed.Coverage[voxel], 0) << x << " " << y << " " << z;
+        }
+      }
+    }
+  }
+}
+
+TEST(SmoothCuts, EditsEqualWhatIsMadeAnew)
+{
+  std::mt19937 random(17);
+  const Extent extent{ { -3, 60, 0, 30, 1, 28 } };
+  DeformerCase cut = MakeCase(extent, NoScale, MakeJitter(3, 0.3));
+  const auto values = MakeRandomValues<std::int16_t>(cut.GetNumberOfVoxels(), 1);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  VolumeDeformer deformer;
+  Load(deformer, cut, arrays, Route::Field);
+  for (unsigned int step = 0; step < 12; ++step)
+  {
+    SCOPED_TRACE(step);
+    switch (random() % 4)
+    {
+      case 0:
+        CutAtRandom(cut, step, 1 + random() % 50);
+        break;
+      case 1:
+        cut.Crossed.clear();
+        break;
+      case 2:
+        cut.Active.resize(GetNumberOfCells(extent), 31);
+        cut.Active[random() % cut.Active.size()] = static_cast<unsigned char>(random() % 32);
+        break;
+      default:
+        cut.Displacements[random() % cut.Displacements.size()][0] += 100;
+        break;
+    }
+    deformer.SetActiveTetrahedra(cut.Active.empty() ? nullptr : cut.Active.data());
+    deformer.SetCut(cut.Crossed.empty() ? nullptr : cut.Crossed.data(),
+      cut.Crossed.empty() ? nullptr : cut.CutDistances.data());
+    MoveByField(deformer, cut);
+    ExpectSame(RunDeformer(deformer, cut, arrays), LoadAndRun(cut, arrays));
+  }
+}
