@@ -22,8 +22,16 @@ vtkStandardNewMacro(vtkCutVolume);
 class vtkCutVolume::vtkInternals
 {
 public:
+  // What a sheet does, one or the other.
+  struct Cut
+  {
+    deformvolume::TetrahedronSet SwitchedOff;
+    deformvolume::CrossingSet Divided;
+  };
+
   deformvolume::WorldSheet Sheet; // that has cut
   std::uint64_t SheetEdit = 0;
+  bool IsSmooth = false; // whether it has divided what it crosses
 };
 
 //------------------------------------------------------------------------------
@@ -55,6 +63,12 @@ void vtkCutVolume::AddToolPosition(double x0, double y0, double z0, double x1, d
 }
 
 //------------------------------------------------------------------------------
+vtkIdType vtkCutVolume::GetNumberOfDividedTetrahedra()
+{
+  return this->Edits->Editor.GetNumberOfDividedTetrahedra();
+}
+
+//------------------------------------------------------------------------------
 void vtkCutVolume::UpdateEdits(vtkInformationVector** input)
 {
   vtkInternals& last = *this->Internals;
@@ -65,7 +79,8 @@ void vtkCutVolume::UpdateEdits(vtkInformationVector** input)
   }
   deformvolume::WorldSheet sheet = deformvolume::ReadSheet(
     vtkPolyData::GetData(input[1]), glm::make_vec3(this->SweepVector), "sheet on input port 1");
-  const bool isNew = !(sheet == last.Sheet);
+  const bool isNew =
+    !(sheet == last.Sheet) || (this->SmoothCut != last.IsSmooth && !sheet.IsEmpty());
   const std::vector<deformvolume::ToolPath::Position> positions = this->Edits->Tool.GetStroke();
   deformvolume::WorldSheet stroke;
   for (std::size_t i = 1; i < positions.size(); ++i)
@@ -74,11 +89,32 @@ void vtkCutVolume::UpdateEdits(vtkInformationVector** input)
   }
   const auto cut = [&](const deformvolume::WorldSheet& world)
   {
-    return deformvolume::FindCrossedTetrahedra(
-      this->Edits->GetVertices(input), world.GetSheet(editor.GetGeometry()));
+    const deformvolume::Sheet triangles = world.GetSheet(editor.GetGeometry());
+    const deformvolume::VertexPositions& vertices = this->Edits->GetVertices(input);
+    vtkInternals::Cut made;
+    if (this->SmoothCut)
+    {
+      made.Divided = deformvolume::FindSheetCrossings(vertices, triangles);
+    }
+    else
+    {
+      made.SwitchedOff = deformvolume::FindCrossedTetrahedra(vertices, triangles);
+    }
+    return made;
   };
-  deformvolume::TetrahedronSet bySheet;
-  deformvolume::TetrahedronSet byTool;
+  const auto put = [&](std::uint64_t& edit, vtkInternals::Cut&& made, bool keep)
+  {
+    if (this->SmoothCut)
+    {
+      editor.Put(edit, std::move(made.Divided), keep);
+    }
+    else
+    {
+      editor.Put(edit, { std::move(made.SwitchedOff), {} }, keep);
+    }
+  };
+  vtkInternals::Cut bySheet;
+  vtkInternals::Cut byTool;
   if (isNew && !sheet.IsEmpty())
   {
     bySheet = cut(sheet);
@@ -90,17 +126,18 @@ void vtkCutVolume::UpdateEdits(vtkInformationVector** input)
 
   if (isNew && !sheet.IsEmpty())
   {
-    editor.Put(last.SheetEdit, { std::move(bySheet), {} }, this->Accumulate);
+    put(last.SheetEdit, std::move(bySheet), this->Accumulate);
   }
   else if (isNew && !this->Accumulate)
   {
     editor.Drop(last.SheetEdit);
   }
   last.Sheet = std::move(sheet);
+  last.IsSmooth = this->SmoothCut;
   if (!stroke.IsEmpty())
   {
     std::uint64_t edit = 0;
-    editor.Put(edit, { std::move(byTool), {} }, true);
+    put(edit, std::move(byTool), true);
   }
 }
 
@@ -110,4 +147,6 @@ void vtkCutVolume::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "SweepVector: " << this->SweepVector[0] << " " << this->SweepVector[1] << " "
      << this->SweepVector[2] << "\n";
+  os << indent << "SmoothCut: " << (this->SmoothCut ? "on" : "off") << "\n";
+  os << indent << "NumberOfDividedTetrahedra: " << this->GetNumberOfDividedTetrahedra() << "\n";
 }

@@ -14,6 +14,9 @@
  * within the volume always separates: no two tetrahedra that are left on its two sides share a
  * face. The order and the orientation of triangles do not matter. A cut is about one cell thick.
  *
+ * With SmoothCut nothing is lost: what the sheet crosses is divided, and both sides keep their part
+ * of it.
+ *
  * @par Port 1, the sheet, optional:
  * vtkPolyData in world coordinates: triangles, polygons and triangle strips; polylines where
  * SweepVector is set. It may be open, fold and cross itself. A sheet that misses the volume cuts
@@ -70,6 +73,31 @@ public:
   vtkGetVector3Macro(SweepVector, double);
   ///@}
 
+  ///@{
+  /**
+   * Whether what is crossed is divided, in place of being switched off. On: the output gets the
+   * cell array "CutTetrahedra" (unsigned char, bit i stands for tetrahedron i of the cell) with the
+   * tetrahedra that the sheet parts into two sides, and the point array "CutDistance" (float): the
+   * signed distance of their vertices from the sheet, in voxels of what is cut, and 0 elsewhere.
+   * vtkDeformVolumeFilter draws each side of such a tetrahedron with the motion of that side, so
+   * that a cut which is not opened leaves the image as it was, and a gap lies exactly between the
+   * two moved sheets. Where the sheet ends inside a tetrahedron, that one stays whole. Where two
+   * sheets pass between two neighbouring vertices, and where a vertex lies on different sides of
+   * two sheets, tetrahedra are switched off as without SmoothCut. Sheets of one piece have one
+   * orientation; tool positions divide where they have gone on from each other. A smooth cut that
+   * the volume comes with is joined. It matters for edits that follow; another value has the sheet
+   * cut anew. Default: off.
+   */
+  vtkSetMacro(SmoothCut, bool);
+  vtkGetMacro(SmoothCut, bool);
+  vtkBooleanMacro(SmoothCut, bool);
+  ///@}
+
+  /**
+   * Tetrahedra that the edits have divided, and that the volume did not come with as divided ones.
+   */
+  vtkIdType GetNumberOfDividedTetrahedra();
+
   /**
    * Move a cutting tool, a straight edge with these two ends in world coordinates. From position to
    * position it cuts what it sweeps: two triangles. An update cuts only between positions that are
@@ -90,6 +118,7 @@ private:
   void operator=(const vtkCutVolume&) = delete;
 
   double SweepVector[3] = { 0.0, 0.0, 0.0 };
+  bool SmoothCut = false;
 
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

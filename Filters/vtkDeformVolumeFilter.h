@@ -21,7 +21,9 @@
  * (unsigned char, one component; bit i stands for tetrahedron i of the cell) switches tetrahedra of
  * the sampling mesh off; hidden cells are off too. A point array "BoundaryDistance" (numeric, one
  * component, any unit) clips them: it is interpolated in each tetrahedron, and samples where it is
- * negative are left out; NaN is not negative. Other cell arrays are not resampled, and a warning
+ * negative are left out; NaN is not negative. A cell array "CutTetrahedra" (unsigned char) and a
+ * point array "CutDistance" (numeric) are a smooth cut, which divides tetrahedra between its two
+ * sides (vtkCutVolume); resamplers other than EXACT do not know it: an error. Other cell arrays are not resampled, and a warning
  * names them.
  *
  * @par Port 1, the deformation, one of:

@@ -4,6 +4,7 @@
 #include "AbortCheck.h"
 #include "FieldFolds.h"
 #include "InputUpdate.h"
+#include "MaskArray.h"
 #include "ResamplerChoice.h"
 #include "VectorChoice.h"
 #include "VolumeArrays.h"
@@ -181,7 +182,7 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
 
 //------------------------------------------------------------------------------
 deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
-  const std::function<void(deformvolume::Resampling)>& checkMemory) const
+  vtkImageData* volume, const std::function<void(deformvolume::Resampling)>& checkMemory) const
 {
   deformvolume::ResamplerWish wish;
   switch (this->Self->Resampler)
@@ -203,6 +204,7 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
     wish.Interpolation = deformvolume::Interpolation::Cubic;
   }
   wish.Extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
+  wish.HasSmoothCut = deformvolume::HasCut(volume);
   const deformvolume::Resampling method =
     deformvolume::ChooseResampler(wish, this->State->Deformation,
       [&](deformvolume::Resampling tried)

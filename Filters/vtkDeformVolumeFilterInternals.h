@@ -103,10 +103,10 @@ public:
   void RunInTurn(const deformvolume::Ranks& ranks, const std::string& kind, bool hasWork,
     const std::function<void()>& function) const;
 
-  /// The resampler for the current deformation, which also becomes ResamplerInUse. checkMemory
-  /// throws an Error where the memory does not suffice for one.
+  /// The resampler for the current deformation of a volume, which also becomes ResamplerInUse.
+  /// checkMemory throws an Error where the memory does not suffice for one.
   deformvolume::Resampling ChooseResampler(
-    const std::function<void(deformvolume::Resampling)>& checkMemory) const;
+    vtkImageData* volume, const std::function<void(deformvolume::Resampling)>& checkMemory) const;
   void SetResamplerInUse(deformvolume::Resampling method) const;
 
   /// Sets what the filter tells of an execution.

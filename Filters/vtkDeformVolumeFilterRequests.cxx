@@ -6,6 +6,7 @@
 
 #include "FailureReport.h"
 #include "InputUpdate.h"
+#include "MaskArray.h"
 #include "OutputExtent.h"
 #include "VolumeArrays.h"
 
@@ -342,7 +343,7 @@ int vtkDeformVolumeFilter::RequestData(
       heldBytes = state.Outputs.Prepare(arrays, numberOfPoints);
       // The memory for the whole decides, so that all parts are made alike. A volume that is read
       // in parts need never fit.
-      request.Method = this->Internals->ChooseResampler(
+      request.Method = this->Internals->ChooseResampler(worked,
         [&](deformvolume::Resampling method)
         {
           if (mapped.IsWhole())
@@ -354,6 +355,7 @@ int vtkDeformVolumeFilter::RequestData(
       {
         form = state.Mapping.GetRunBytes(deformation, mapped) > 0 ? "runs" : "links";
       }
+      form += deformvolume::HasCut(worked) ? " cut" : "";
     });
   if (ranks.IsAny(request.Method == deformvolume::Resampling::MeshRasterization))
   {

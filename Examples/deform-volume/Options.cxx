@@ -380,6 +380,11 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     ->expected(1)
     ->group(tools);
   program
+    .add_flag("--smooth-cut", options.SmoothCut,
+      "With --cut: divide what a sheet crosses between its two sides, in place of leaving it out. "
+      "Needs the resampler exact or automatic")
+    ->group(tools);
+  program
     .add_option("--carve", raw.Carvings,
       "Carve a sphere out of the volume (world coordinates and units). May be given several times")
     ->type_name("sphere:X,Y,Z,RADIUS")
@@ -439,6 +444,7 @@ void AddDependencies(CLI::App& program)
   needs("--tetgen",
     { "--isovalue", "--pieces", "--edge-length", "--radius-edge-ratio", "--tetgen-executable" });
   needs("--model", { "--pull" });
+  needs("--cut", { "--smooth-cut" });
   needs("--image", { "--threshold", "--view" });
   program.get_option("--scale")->excludes(program.get_option("--rest"));
   program.get_option("--field")->excludes(program.get_option("--file-coordinates"));

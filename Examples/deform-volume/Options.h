@@ -39,6 +39,7 @@ struct Options
 
   std::vector<std::string> Cuts;
   std::vector<Carving> Carvings;
+  bool SmoothCut = false;
 
   bool Extrapolate = false;
   bool VolumeBounds = false;

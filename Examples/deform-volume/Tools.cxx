@@ -34,10 +34,14 @@ vtkSmartPointer<vtkPolyData> ReadSheet(
   return reader->GetOutput();
 }
 
-std::string Describe(const std::string& tool, vtkIdType switchedOff)
+std::string Describe(const std::string& tool, vtkIdType switchedOff, vtkIdType divided = 0)
 {
   std::ostringstream text;
   text << tool << ": " << switchedOff << " tetrahedra of the volume are off";
+  if (divided > 0)
+  {
+    text << ", " << divided << " divided";
+  }
   return text.str();
 }
 }
@@ -50,18 +54,20 @@ std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Mes
     vtkNew<vtkCutVolume> cut;
     cut->SetInputData(volume.Image);
     cut->SetSheetData(ReadSheet(path, options, messages));
+    cut->SetSmoothCut(options.SmoothCut);
     const ProgressBar bar(cut, "cutting", !options.Quiet);
     cut->Update();
     messages.Check("cannot cut the volume with " + path);
     volume.Image = cut->GetOutput();
     const vtkIdType off = cut->GetNumberOfSwitchedOffTetrahedra();
-    if (off == 0)
+    const vtkIdType divided = cut->GetNumberOfDividedTetrahedra();
+    if (off == 0 && divided == 0)
     {
       messages.DisplayWarningText(
         ("The sheet " + path + " crosses nothing of the volume. Is it in the world of the volume?")
           .c_str());
     }
-    done.push_back(Describe(path, off));
+    done.push_back(Describe(path, off, divided));
   }
   for (const Carving& carving : options.Carvings)
   {

@@ -99,6 +99,22 @@ void WriteBricks(ArrayT* array, const CellBricks& bricks, const std::vector<std:
   }
 }
 
+// Of the smooth cut that a volume comes with; empty where there is none.
+Stamp GetCutStamp(vtkImageData* volume)
+{
+  Stamp stamp;
+  vtkAbstractArray* const arrays[2] = { volume->GetCellData()->GetAbstractArray(CutTetrahedraName),
+    volume->GetPointData()->GetAbstractArray(CutDistanceName) };
+  for (vtkAbstractArray* array : arrays)
+  {
+    if (array)
+    {
+      stamp.emplace_back(array, array->GetMTime());
+    }
+  }
+  return stamp;
+}
+
 } // namespace
 
 bool VolumeEditor::SetVolume(vtkImageData* volume, vtkInformation* info)
@@ -120,6 +136,11 @@ bool VolumeEditor::SetVolume(vtkImageData* volume, vtkInformation* info)
   {
     FindBoundaryDistances(volume); // which throws where they cannot be used
   }
+  const Stamp cutStamp = GetCutStamp(volume);
+  if (cutStamp != this->CutStamp)
+  {
+    FindCut(volume); // which throws where it cannot be used
+  }
   const Extent whole = deformvolume::GetGeometry(info).PointExtent;
   this->Whole = Contains(whole, geometry.PointExtent) ? whole : geometry.PointExtent;
   if (isNew)
@@ -130,10 +151,14 @@ bool VolumeEditor::SetVolume(vtkImageData* volume, vtkInformation* info)
     this->Deformed.reset();
     this->Active = nullptr;
     this->Distances = nullptr;
+    this->CutTetrahedra = nullptr;
+    this->CutDistances = nullptr;
     this->BaseDistancesStamp.clear();
+    this->BaseCutStamp.clear();
     this->Geometry = geometry;
   }
   this->DistancesStamp = distancesStamp;
+  this->CutStamp = cutStamp;
   if (isNew || stamp != this->BaseStamp)
   {
     this->Mask->SetBase(bytes);
@@ -198,6 +223,15 @@ void VolumeEditor::Put(std::uint64_t& edit, SmoothCarving&& carving, bool keep)
   edit = this->Mask->Add(std::move(carving.Tetrahedra), std::move(carving.Distances));
 }
 
+void VolumeEditor::Put(std::uint64_t& edit, CrossingSet&& crossings, bool keep)
+{
+  if (!keep)
+  {
+    this->Mask->Remove(edit);
+  }
+  edit = this->Mask->Add({}, {}, std::move(crossings));
+}
+
 void VolumeEditor::Drop(std::uint64_t& edit)
 {
   this->Mask->Remove(edit);
@@ -218,6 +252,13 @@ bool VolumeEditor::Reset()
 void VolumeEditor::Write(vtkImageData* volume, vtkImageData* output)
 {
   output->ShallowCopy(volume);
+  const bool hasSmoothCuts = this->Mask->HasSmoothCuts();
+  if (hasSmoothCuts && this->BaseCutStamp != this->CutStamp)
+  {
+    const CutValues cut = FindCut(volume);
+    this->Mask->SetBaseCut(cut.Crossed, cut.Distances.Values);
+    this->BaseCutStamp = this->CutStamp;
+  }
   this->WriteMask();
   output->GetCellData()->AddArray(this->Active);
   // Else those that the volume comes with are shared.
@@ -235,6 +276,17 @@ void VolumeEditor::Write(vtkImageData* volume, vtkImageData* output)
   {
     this->Distances = nullptr;
   }
+  if (hasSmoothCuts)
+  {
+    this->WriteCut();
+    output->GetCellData()->AddArray(this->CutTetrahedra);
+    output->GetPointData()->AddArray(this->CutDistances);
+  }
+  else
+  {
+    this->CutTetrahedra = nullptr;
+    this->CutDistances = nullptr;
+  }
 }
 
 void VolumeEditor::WriteMask()
@@ -244,6 +296,23 @@ void VolumeEditor::WriteMask()
   if (!isNew)
   {
     WriteBricks(this->Active.Get(), this->Mask->GetBricks(), changed, this->Mask->GetMask());
+  }
+}
+
+void VolumeEditor::WriteCut()
+{
+  SmoothCrossings& cut = this->Mask->GetSmoothCrossings();
+  const bool areNewCells = MakeOutput(this->CutTetrahedra, CutTetrahedraName, cut.GetCrossed());
+  const bool areNewPoints = MakeOutput(this->CutDistances, CutDistanceName, cut.GetDistances());
+  const std::vector<std::size_t> cells = cut.TakeChangedBricks();
+  const std::vector<std::size_t> points = cut.TakeChangedVertexBricks();
+  if (!areNewCells)
+  {
+    WriteBricks(this->CutTetrahedra.Get(), cut.GetBricks(), cells, cut.GetCrossed());
+  }
+  if (!areNewPoints)
+  {
+    WriteBricks(this->CutDistances.Get(), cut.GetVertexBricks(), points, cut.GetDistances());
   }
 }
 

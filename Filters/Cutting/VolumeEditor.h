@@ -47,6 +47,8 @@ public:
   /// Makes an edit in the place of another one, of which the number is known; 0: of none. keep: the
   /// other one stays, too.
   void Put(std::uint64_t& edit, SmoothCarving&& carving, bool keep);
+  /// The same for an edit that divides tetrahedra.
+  void Put(std::uint64_t& edit, CrossingSet&& crossings, bool keep);
   /// Removes an edit.
   void Drop(std::uint64_t& edit);
 
@@ -63,17 +65,25 @@ public:
     return this->Mask ? static_cast<vtkIdType>(this->Mask->GetNumberOfSwitchedOffTetrahedra()) : 0;
   }
 
+  vtkIdType GetNumberOfDividedTetrahedra() const
+  {
+    return this->Mask
+      ? static_cast<vtkIdType>(this->Mask->GetSmoothCrossings().GetNumberOfDividedTetrahedra())
+      : 0;
+  }
+
   /// The boundary distance of what is far from any boundary: the diagonal of the whole volume, in
   /// world units.
   float GetFarDistance() const { return this->Mask->GetFarDistance(); }
 
   /// Makes an output the volume with its arrays, the active tetrahedra that are left, and the
-  /// boundary distances where there are some.
+  /// boundary distances and the smooth cut where there are some.
   void Write(vtkImageData* volume, vtkImageData* output);
 
 private:
   void WriteMask();
   void WriteDistances();
+  void WriteCut();
 
   std::unique_ptr<MaskEditor> Mask; // null before there is a volume
   ImageGeometry Geometry;
@@ -81,9 +91,13 @@ private:
   Stamp BaseStamp;
   Stamp DistancesStamp;     // of those that the volume comes with
   Stamp BaseDistancesStamp; // and of those that edits are taken from
+  Stamp CutStamp;           // of the smooth cut that the volume comes with
+  Stamp BaseCutStamp;       // and of that which edits are joined with
   // Those of the output.
   vtkSmartPointer<vtkUnsignedCharArray> Active;
   vtkSmartPointer<vtkFloatArray> Distances;
+  vtkSmartPointer<vtkUnsignedCharArray> CutTetrahedra;
+  vtkSmartPointer<vtkFloatArray> CutDistances;
 
   std::unique_ptr<RestPositions> Rest;
   deformvolume::Deformation Deformation;

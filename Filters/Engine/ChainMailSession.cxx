@@ -143,6 +143,14 @@ std::vector<ChainMailHandle> ReadHandles(
   return read;
 }
 
+// The masks as links see them: what a smooth cut crosses holds nothing together.
+VolumeMasks ReadLinkMasks(vtkImageData* volume)
+{
+  VolumeMasks masks = ReadMasks(volume, {});
+  SwitchOffCut(masks, static_cast<std::size_t>(volume->GetNumberOfCells()));
+  return masks;
+}
+
 } // namespace
 
 void ChainMailSettings::SetDefaultMaterials()
@@ -251,7 +259,7 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
   std::optional<VolumeMasks> masks;
   if (isNew || maskStamp != this->StampOfMasks)
   {
-    masks = ReadMasks(volume, {});
+    masks = ReadLinkMasks(volume);
   }
   request.Handles = ReadHandles(handles, geometry, settings.HandleRadius);
   MaterialsKey key{ GetStampOf(materialArray), { 1.0 * settings.DefaultMaterial } };
@@ -313,7 +321,7 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
     {
       if (!masks) // the device has changed
       {
-        masks = ReadMasks(volume, {});
+        masks = ReadLinkMasks(volume);
       }
       this->Model.SetActiveTetrahedra(masks->Active);
       this->StampOfMasks = maskStamp;

@@ -151,6 +151,7 @@ void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
     this->Deformer.SetBlanked(masks.Blanked, masks.BlankedBits, written(masks.WrittenBlanked));
     this->Deformer.SetActiveTetrahedra(masks.Active, written(masks.WrittenActive));
     this->Deformer.SetBoundaryDistances(masks.Distances.Values, written(masks.WrittenDistances));
+    this->Deformer.SetCut(masks.Cut.Crossed, masks.Cut.Distances.Values);
     this->SentMasks = masksStamp;
     this->MasksAreSet = true;
   }

@@ -21,6 +21,12 @@ Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deforma
         "is no sampling mesh to deform. Set Resampler to AUTOMATIC or "
         "MESH_RASTERIZATION.");
     }
+    if (wish.HasSmoothCut)
+    {
+      throw Error("An inverse displacement field cannot open smooth cuts, since it does not say "
+                  "where the two sides go. Set SmoothCut of vtkCutVolume to off, or take a mesh or "
+                  "a forward field.");
+    }
     return Resampling::MeshRasterization;
   }
   if (cubic && wish.Method && *wish.Method != Resampling::MeshRasterization)
@@ -31,13 +37,19 @@ Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deforma
   }
   const std::string obstacle = deformation.IsField()
     ? "forward displacement fields. Connect a tetrahedral mesh to input port 1"
-    : wish.Extrapolate ? "the outside mode EXTRAPOLATE. Set OutsideMode to DISCARD"
-                       : "";
+    : wish.Extrapolate  ? "the outside mode EXTRAPOLATE. Set OutsideMode to DISCARD"
+    : wish.HasSmoothCut ? "smooth cuts. Set SmoothCut of vtkCutVolume to off"
+                        : "";
   if (!obstacle.empty() && (cubic || (wish.Method == Resampling::MeshRasterization)))
   {
     throw Error("The resampler MESH_RASTERIZATION" +
       std::string(cubic ? ", which cubic interpolation needs," : "") + " cannot do " + obstacle +
       (cubic ? ", or Interpolation to LINEAR_INTERPOLATION." : ", or Resampler to EXACT."));
+  }
+  if (wish.Method == Resampling::Published && wish.HasSmoothCut)
+  {
+    throw Error("The resampler PUBLISHED cannot do smooth cuts. Set SmoothCut of vtkCutVolume to "
+                "off, or Resampler to EXACT.");
   }
   if (wish.Method)
   {

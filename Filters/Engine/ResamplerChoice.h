@@ -17,6 +17,7 @@ struct ResamplerWish
   std::optional<Resampling> Method; // none: the choice is free
   deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
   bool Extrapolate = false;
+  bool HasSmoothCut = false; // of the volume, which Exact alone knows
 };
 
 /// The resampler for a deformation. fits tells whether the memory suffices for one. Throws an Error
@@ -27,7 +28,8 @@ struct ResamplerWish
 /// - where the interpolation is cubic, which MeshRasterization alone has;
 /// - where the memory does not suffice for Exact, whose sampling mesh takes some 20 bytes a voxel,
 /// but
-///   does for MeshRasterization, and that can do the deformation: a mesh, without extrapolation.
+///   does for MeshRasterization, and that can do the deformation: a mesh, without extrapolation and
+///   without a smooth cut.
 Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deformation,
   const std::function<bool(Resampling)>& fits);
 

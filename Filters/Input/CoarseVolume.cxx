@@ -122,7 +122,9 @@ Extent GetCells(Extent points)
 // An image of the coarse voxels with their masks.
 vtkSmartPointer<vtkImageData> MakeMasks(vtkImageData* volume, int factor)
 {
-  const VolumeMasks masks = ReadMasks(volume, {});
+  // Coarse cells that a smooth cut passes through are left out: their vertices are others.
+  VolumeMasks masks = ReadMasks(volume, {});
+  SwitchOffCut(masks, static_cast<std::size_t>(volume->GetNumberOfCells()));
   Extent fine;
   volume->GetExtent(fine.data());
   Extent coarse = GetCoarse(fine, factor);

@@ -3,6 +3,7 @@
 
 #include "Error.h"
 
+#include "vtkCellData.h"
 #include "vtkDataArrayRange.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
@@ -29,10 +30,13 @@ ByteArray* FindMask(vtkDataSetAttributes* attributes, const char* name, vtkIdTyp
   return mask;
 }
 
-DistanceValues FindBoundaryDistances(vtkImageData* volume)
+namespace
+{
+
+DistanceValues FindDistances(vtkImageData* volume, const char* name)
 {
   DistanceValues distances;
-  vtkAbstractArray* array = volume->GetPointData()->GetAbstractArray(BoundaryDistanceName);
+  vtkAbstractArray* array = volume->GetPointData()->GetAbstractArray(name);
   if (!array)
   {
     return distances;
@@ -41,7 +45,7 @@ DistanceValues FindBoundaryDistances(vtkImageData* volume)
   const vtkIdType size = volume->GetNumberOfPoints();
   if (!numbers || numbers->GetNumberOfComponents() != 1 || numbers->GetNumberOfTuples() != size)
   {
-    throw Error(std::string("The point array \"") + BoundaryDistanceName + "\" of the volume is " +
+    throw Error(std::string("The point array \"") + name + "\" of the volume is " +
       array->GetDataTypeAsString() + ", " + std::to_string(array->GetNumberOfTuples()) +
       " tuples of " + std::to_string(array->GetNumberOfComponents()) +
       " components. Give it a numeric type, one component and " + std::to_string(size) +
@@ -58,6 +62,34 @@ DistanceValues FindBoundaryDistances(vtkImageData* volume)
     [](double value) { return static_cast<float>(value); });
   distances.Values = distances.Converted.data();
   return distances;
+}
+
+} // namespace
+
+DistanceValues FindBoundaryDistances(vtkImageData* volume)
+{
+  return FindDistances(volume, BoundaryDistanceName);
+}
+
+bool HasCut(vtkImageData* volume)
+{
+  return volume->GetCellData()->GetAbstractArray(CutTetrahedraName) != nullptr;
+}
+
+CutValues FindCut(vtkImageData* volume)
+{
+  CutValues cut;
+  ByteArray* crossed = FindMask(
+    volume->GetCellData(), CutTetrahedraName, volume->GetNumberOfCells(), "cell", "volume");
+  cut.Distances = FindDistances(volume, CutDistanceName);
+  if ((crossed != nullptr) != (cut.Distances.Values != nullptr))
+  {
+    throw Error(std::string("The volume has only one of the cell array \"") + CutTetrahedraName +
+      "\" and the point array \"" + CutDistanceName +
+      "\". A smooth cut needs both: pass both on, or remove both.");
+  }
+  cut.Crossed = crossed ? crossed->GetPointer(0) : nullptr;
+  return cut;
 }
 
 const unsigned char* FindPointGhosts(vtkImageData* volume)

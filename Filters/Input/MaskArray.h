@@ -24,7 +24,14 @@ constexpr const char* ActiveTetrahedraName = "ActiveTetrahedra";
 /// The point array of signed distances to the boundary of what has been carved out.
 constexpr const char* BoundaryDistanceName = "BoundaryDistance";
 
-/// Boundary distances of the points of a volume.
+///@{
+/// The cell array that tells which tetrahedra a smooth cut crosses, and the point array of signed
+/// distances to the sheet.
+constexpr const char* CutTetrahedraName = "CutTetrahedra";
+constexpr const char* CutDistanceName = "CutDistance";
+///@}
+
+/// Distances of the points of a volume.
 struct DistanceValues
 {
   const float* Values = nullptr; // null: there are none
@@ -34,6 +41,19 @@ struct DistanceValues
 /// Throws an Error where the array is there, but not numeric, of one component and as long as the
 /// volume has points.
 DistanceValues FindBoundaryDistances(vtkImageData* volume);
+
+/// A smooth cut of a volume.
+struct CutValues
+{
+  const unsigned char* Crossed = nullptr; // one a cell; null: there is no cut
+  DistanceValues Distances;
+};
+
+/// Whether a volume comes with a smooth cut.
+bool HasCut(vtkImageData* volume);
+/// Throws an Error where one of the arrays is there and not the other one, or of another type or
+/// size.
+CutValues FindCut(vtkImageData* volume);
 
 /// An array of one byte for each of `size` points or cells, or null where there is none of the
 /// name. Throws an Error where the array is there, but of another type, shape or size. `what` and

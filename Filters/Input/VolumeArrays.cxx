@@ -88,6 +88,8 @@ enum Mask
   HiddenCells,
   ActiveCells,
   Distances,
+  CutCells,
+  CutPoints,
   NumberOfMasks
 };
 
@@ -97,7 +99,9 @@ std::array<vtkAbstractArray*, NumberOfMasks> FindMasks(vtkImageData* volume)
   return { { volume->GetPointData()->GetAbstractArray(ghostName),
     volume->GetCellData()->GetAbstractArray(ghostName),
     volume->GetCellData()->GetAbstractArray(ActiveTetrahedraName),
-    volume->GetPointData()->GetAbstractArray(BoundaryDistanceName) } };
+    volume->GetPointData()->GetAbstractArray(BoundaryDistanceName),
+    volume->GetCellData()->GetAbstractArray(CutTetrahedraName),
+    volume->GetPointData()->GetAbstractArray(CutDistanceName) } };
 }
 
 // Whether one of the masks is the same object as when a stamp was taken.
@@ -137,7 +141,7 @@ std::vector<SourceArray> SelectArrays(
   {
     vtkAbstractArray* abstract = pointData->GetAbstractArray(i);
     if (HasName(abstract, MASK) || HasName(abstract, vtkDataSetAttributes::GhostArrayName()) ||
-      HasName(abstract, BoundaryDistanceName))
+      HasName(abstract, BoundaryDistanceName) || HasName(abstract, CutDistanceName))
     {
       continue;
     }
@@ -292,6 +296,7 @@ VolumeMasks ReadMasks(vtkImageData* volume, const Stamp& last)
     }
   }
   masks.Distances = FindBoundaryDistances(volume);
+  masks.Cut = FindCut(volume);
   const std::array<vtkAbstractArray*, NumberOfMasks> arrays = FindMasks(volume);
   masks.WrittenDistances = FindWrittenMask(arrays, Distances, last);
   masks.WrittenBlanked = FindWrittenMask(arrays, BlankedPoints, last);
@@ -300,6 +305,24 @@ VolumeMasks ReadMasks(vtkImageData* volume, const Stamp& last)
     masks.WrittenActive = FindWrittenMask(arrays, ActiveCells, last);
   }
   return masks;
+}
+
+void SwitchOffCut(VolumeMasks& masks, std::size_t numberOfCells)
+{
+  if (!masks.Cut.Crossed)
+  {
+    return;
+  }
+  std::vector<unsigned char> left(numberOfCells, DEFORMVOLUME_ALL_TETRAHEDRA);
+  for (std::size_t i = 0; i < numberOfCells; ++i)
+  {
+    left[i] = static_cast<unsigned char>(
+      (masks.Active ? masks.Active[i] : left[i]) & ~masks.Cut.Crossed[i]);
+  }
+  masks.Joined.swap(left);
+  masks.Active = masks.Joined.data();
+  masks.WrittenActive.reset();
+  masks.Cut = {};
 }
 
 Stamp GetMasksStamp(vtkImageData* volume)
@@ -320,7 +343,7 @@ std::vector<std::string> GetUnusedCellArrays(vtkImageData* volume)
   for (int i = 0; i < cellData->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* array = cellData->GetAbstractArray(i);
-    if (!HasName(array, ActiveTetrahedraName) &&
+    if (!HasName(array, ActiveTetrahedraName) && !HasName(array, CutTetrahedraName) &&
       !HasName(array, vtkDataSetAttributes::GhostArrayName()))
     {
       names.push_back(GetLabel(array, i));

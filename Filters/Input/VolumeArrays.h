@@ -58,9 +58,9 @@ void* GetWritableValues(vtkDataArray* array);
 void CopyRoles(
   vtkDataSetAttributes* from, vtkDataSetAttributes* to, const std::vector<SourceArray>& sources);
 
-/// What is no source, one byte a voxel, the active tetrahedra, one byte a cell, and the distances
-/// to the boundary of what has been carved out, a float a voxel. In the memory of the volume where
-/// that serves as it is.
+/// What is no source, one byte a voxel, the active tetrahedra, one byte a cell, the distances to
+/// the boundary of what has been carved out, a float a voxel, and what a smooth cut crosses. In the
+/// memory of the volume where that serves as it is.
 struct VolumeMasks
 {
   /// Null where there are no such voxels for certain.
@@ -70,6 +70,7 @@ struct VolumeMasks
   const unsigned char* Active = nullptr;
   std::vector<unsigned char> Joined; // with what cells are hidden
   DistanceValues Distances;
+  CutValues Cut;
 
   ///@{
   /// What was written since a stamp was taken (GetMasksStamp), where logs tell that.
@@ -81,6 +82,9 @@ struct VolumeMasks
 
 /// last: of the masks that were read last; empty: there are none.
 VolumeMasks ReadMasks(vtkImageData* volume, const Stamp& last);
+
+/// Switches off the tetrahedra that a smooth cut crosses, for what knows no such cuts.
+void SwitchOffCut(VolumeMasks& masks, std::size_t numberOfCells);
 
 /// What ReadMasks depends on.
 Stamp GetMasksStamp(vtkImageData* volume);

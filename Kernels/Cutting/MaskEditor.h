@@ -79,6 +79,7 @@ public:
   bool HasSmoothCuts() const;
   /// What is divided, where an edit or the cut before all edits does so.
   SmoothCrossings& GetSmoothCrossings() { return this->Crossings; }
+  const SmoothCrossings& GetSmoothCrossings() const { return this->Crossings; }
 
   /// Whether an edit has boundary distances.
   bool HasDistanceEdits() const;

@@ -5,6 +5,7 @@
 #include "TetrahedronSet.h"
 
 #include <algorithm>
+#include <bitset>
 #include <limits>
 
 namespace deformvolume
@@ -39,6 +40,11 @@ unsigned int GetEdges(const std::array<bool, 4>& isNegative)
       << k;
   }
   return edges;
+}
+
+int CountTetrahedra(unsigned int bits)
+{
+  return static_cast<int>(std::bitset<5>(bits).count());
 }
 
 // Whether crossed edges part the vertices of a tetrahedron into two sides.
@@ -139,6 +145,9 @@ void SmoothCrossings::SetBase(
     return;
   }
   this->Allocate();
+  // What was counted goes with the old cut.
+  std::fill(this->Crossed.begin(), this->Crossed.end(), static_cast<unsigned char>(0));
+  this->NumberOfDivided = 0;
   std::vector<bool> isCorner(this->Distances.size());
   for (std::size_t brick = 0; crossed && brick < this->Bricks.GetNumberOfBricks(); ++brick)
   {
@@ -285,6 +294,7 @@ void SmoothCrossings::UpdateCells(std::size_t brick, const std::vector<const Cro
     }
   };
   add(this->Base);
+  const CrossingSet::Block* const base = blocks.empty() ? nullptr : blocks.front();
   std::for_each(sets.begin(), sets.end(), [&](const CrossingSet* set) { add(*set); });
   ForEachCell(this->Bricks, brick,
     [&](const std::array<int, 3>& cell, std::size_t place, std::size_t number)
@@ -297,6 +307,7 @@ void SmoothCrossings::UpdateCells(std::size_t brick, const std::vector<const Cro
       const unsigned int mirror = GetMirror(this->Bricks.GetVertices(), cell);
       unsigned int crossed = 0;
       unsigned int off = 0;
+      unsigned int before = 0; // what the cut before all edits divides
       for (unsigned int t = 0; joined.Edges != 0 && t < 5; ++t)
       {
         const unsigned int edges = joined.Edges >> 6 * t & 63U;
@@ -304,6 +315,7 @@ void SmoothCrossings::UpdateCells(std::size_t brick, const std::vector<const Cro
         {
           continue;
         }
+        before |= (base && ((*base)[place].Edges >> 6 * t & 63U) != 0 ? 1U : 0U) << t;
         std::array<bool, 4> isNegative;
         bool isClear = true;
         for (std::size_t k = 0; k < 4; ++k)
@@ -320,6 +332,8 @@ void SmoothCrossings::UpdateCells(std::size_t brick, const std::vector<const Cro
         crossed |= (isDivided ? 1U : 0U) << t;
         off |= (!isDivided && (isMultiple || isDivision) ? 1U : 0U) << t;
       }
+      this->NumberOfDivided +=
+        CountTetrahedra(crossed & ~before) - CountTetrahedra(this->Crossed[number] & ~before);
       this->Crossed[number] = static_cast<unsigned char>(crossed);
       this->SwitchedOff[number] = static_cast<unsigned char>(off);
     });

@@ -50,6 +50,9 @@ public:
   const std::vector<float>& GetDistances() const { return this->Distances; }
   ///@}
 
+  /// Tetrahedra that are divided, and were not so in the cut before all edits.
+  std::int64_t GetNumberOfDividedTetrahedra() const { return this->NumberOfDivided; }
+
   ///@{
   /// Bricks, of cells and of vertices, that may have changed since the last call, in ascending
   /// order. At the first call after there was a set these are all.
@@ -72,6 +75,7 @@ private:
   std::vector<unsigned char> Crossed;
   std::vector<unsigned char> SwitchedOff;
   std::vector<float> Distances;
+  std::int64_t NumberOfDivided = 0;
   std::vector<bool> Changed; // of each brick
   std::vector<bool> ChangedVertices;
 };

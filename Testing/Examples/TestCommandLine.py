@@ -125,7 +125,7 @@ assert not os.path.exists(path("o.png"))
 # What is asked for.
 output, _ = call(program, "--help")
 for option in ("--mesh", "--displacement", "--rest", "--tetgen", "--lattice", "--push", "--image",
-               "--cut", "--carve", "--model", "--pull",
+               "--cut", "--smooth-cut", "--carve", "--model", "--pull",
                "--list-devices", "--device", "--categorical", "--background", "--resampler",
                "--interpolation",
                "world units", "Exit codes"):

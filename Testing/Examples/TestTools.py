@@ -64,6 +64,7 @@ fails(1, "cannot read", "--cut", path("text.vtp"))
 fails(2, "sphere:X,Y,Z,RADIUS", "--carve", "cube:1,2,3,4")
 fails(2, "four numbers", "--carve", "sphere:1,2,3")
 fails(2, "radius", "--carve", "sphere:1,2,3,0")
+fails(2, "--smooth-cut requires --cut", *carve, "--smooth-cut")
 fails(2, "six or seven numbers", "--model", "chainmail", "--pull", "1,2,3,4,5")
 fails(2, "radius", "--model", "chainmail", "--pull", "1,2,3,4,5,6,-1")
 fails(2, "at least one --pull", "--model", "chainmail")
@@ -113,6 +114,20 @@ assert f"{cutter.GetNumberOfSwitchedOffTetrahedra()} tetrahedra of the volume ar
 assert "cut and carve" in output
 assert numpy.array_equal(get_values(read_vti(path("cut.vti")), "Values")[covered == 1],
                          get_values(volume)[covered == 1])
+
+# A smooth one leaves all of it there.
+smooth_cutter = deformvolume.vtkCutVolume()
+smooth_cutter.SetInputData(volume)
+smooth_cutter.SetSheetData(sheet)
+smooth_cutter.SmoothCutOn()
+smooth_cutter.Update()
+assert smooth_cutter.GetNumberOfSwitchedOffTetrahedra() == 0
+divided = smooth_cutter.GetNumberOfDividedTetrahedra()
+assert divided == cutter.GetNumberOfSwitchedOffTetrahedra()
+output, covered = check("smooth.vti", deform(smooth_cutter.GetOutput()), *cut, "--smooth-cut")
+assert f"0 tetrahedra of the volume are off, {divided} divided" in output
+assert covered.all()
+assert numpy.array_equal(get_values(read_vti(path("smooth.vti")), "Values"), get_values(volume))
 
 # A sphere that is carved out.
 sphere = vtkSphere()

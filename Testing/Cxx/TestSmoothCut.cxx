@@ -1,0 +1,424 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cuts that divide what they cross: misuse, cuts that stay closed, gaps between two moved planes,
+// split meshes, undo and redo, chains, tools, deformed volumes, coarse volumes and ChainMail.
+#include "ChainMailTesting.h"
+#include "EditChecks.h"
+
+#include "vtkCutVolume.h"
+
+#include <vtkCellArray.h>
+#include <vtkFloatArray.h>
+
+#include <cmath>
+#include <map>
+
+using namespace chainMailTesting;
+using namespace filterTesting;
+
+namespace
+{
+
+const char* const CELLS = "CutTetrahedra";
+const char* const POINTS = "CutDistance";
+const Extent Box{ { -2, 13, 0, 10, 1, 9 } };
+
+// The arrays of a filter's output, or null.
+vtkUnsignedCharArray* GetCells(vtkImageData* image)
+{
+  return vtkUnsignedCharArray::SafeDownCast(image->GetCellData()->GetArray(CELLS));
+}
+vtkFloatArray* GetDistances(vtkImageData* image)
+{
+  return vtkFloatArray::SafeDownCast(image->GetPointData()->GetArray(POINTS));
+}
+
+struct Arrays
+{
+  std::vector<unsigned char> Mask, Cells;
+  std::vector<float> Points;
+
+  explicit Arrays(Edited<vtkCutVolume>& cut)
+    : Mask(cut.CopyMask())
+  {
+    if (vtkUnsignedCharArray* cells = GetCells(cut.Filter->GetOutput()))
+    {
+      this->Cells.assign(cells->GetPointer(0), cells->GetPointer(0) + cells->GetNumberOfTuples());
+    }
+    if (vtkFloatArray* points = GetDistances(cut.Filter->GetOutput()))
+    {
+      this->Points.assign(
+        points->GetPointer(0), points->GetPointer(0) + points->GetNumberOfTuples());
+    }
+  }
+  bool operator==(const Arrays& other) const
+  {
+    return this->Mask == other.Mask && this->Cells == other.Cells && this->Points == other.Points;
+  }
+};
+
+void SetUp(Edited<vtkCutVolume>& cut, vtkImageData* volume, double place)
+{
+  cut.Filter->SetInputData(volume);
+  cut.Filter->SetSheetData(MakePlaneX(volume, place));
+  cut.Filter->SmoothCutOn();
+}
+
+// A displacement field over the voxels that moves what is on the two sides of a plane of x apart,
+// in the world.
+vtkSmartPointer<vtkImageData> MakeField(
+  vtkImageData* volume, double place, const glm::dvec3& low, const glm::dvec3& high)
+{
+  auto field = vtkSmartPointer<vtkImageData>::New();
+  field->CopyStructure(volume);
+  SetDisplacements(
+    field, [=](const glm::dvec3& point) { return point + (point.x < place ? low : high); });
+  return field;
+}
+
+void TestMisuse()
+{
+  auto volume = MakeVolume(Box);
+  Edited<vtkCutVolume> cut;
+  VERIFY(!cut.Filter->GetSmoothCut());
+  SetUp(cut, volume, 4.3);
+  const Arrays whole(cut);
+  VERIFY_EQUAL(whole.Cells.size(), static_cast<std::size_t>(volume->GetNumberOfCells()));
+  VERIFY_EQUAL(whole.Points.size(), static_cast<std::size_t>(volume->GetNumberOfPoints()));
+  VERIFY_EQUAL(CountActive(whole.Cells), 5 * 10 * 8);
+  auto field = MakeField(volume, 4.3, glm::dvec3(0.0), glm::dvec3(0.0));
+
+  vtkImageData* output = cut.Filter->GetOutput();
+  for (const int wrong : { 0, 1, 2, 3 })
+  {
+    vtkNew<vtkImageData> bad;
+    bad->ShallowCopy(volume);
+    if (wrong != 0)
+    {
+      bad->GetPointData()->AddArray(wrong == 2 ? MakeArray<vtkShortArray>(POINTS, 7, 1).Get()
+                                               : output->GetPointData()->GetArray(POINTS));
+    }
+    if (wrong != 1)
+    {
+      bad->GetCellData()->AddArray(wrong == 3
+          ? MakeArray<vtkShortArray>(CELLS, bad->GetNumberOfCells(), 1).Get()
+          : output->GetCellData()->GetArray(CELLS));
+    }
+    const std::string words = wrong < 2 ? "needs both"
+      : wrong == 2                      ? "\"CutDistance\""
+                                        : "\"CutTetrahedra\"";
+    filterTesting::Deformed deformed(bad, field);
+    deformed.Filter->Update();
+    VERIFY_EQUAL(deformed.TakeErrors(), 1);
+    VERIFY(deformed.LastError.find(words) != std::string::npos);
+    Edited<vtkCutVolume> next;
+    SetUp(next, bad, 8.1);
+    next.Fails(words);
+  }
+
+  filterTesting::Deformed published;
+  published.Filter->SetInputConnection(cut.Filter->GetOutputPort());
+  published.Filter->SetDeformationData(field);
+  published.Filter->SetResamplerToPublished();
+  published.Filter->Update();
+  VERIFY_EQUAL(published.TakeErrors(), 1);
+  VERIFY(published.LastError.find("smooth cuts") != std::string::npos);
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.25, 0, 0));
+  published.Filter->SetDeformationData(mesh);
+  published.Filter->SetResamplerToMeshRasterization();
+  published.Filter->Update();
+  VERIFY_EQUAL(published.TakeErrors(), 1);
+  VERIFY(published.LastError.find("smooth cuts") != std::string::npos);
+  published.Filter->SetResamplerToExact();
+  published.Update();
+  VERIFY(!GetCells(published.Filter->GetOutput()) && !GetDistances(published.Filter->GetOutput()));
+}
+
+// What is not opened stays as it is.
+void TestClosed()
+{
+  auto volume = MakeVolume(Box);
+  Edited<vtkCutVolume> cut;
+  SetUp(cut, volume, 4.3);
+  VERIFY_EQUAL(cut.CountOff(), 0);
+  auto mesh = MakeMesh(volume, 4);
+  for (const double amount : { 0.0, 0.3 })
+  {
+    SetDisplacements(mesh,
+      [=](const glm::dvec3& p)
+      { return glm::dvec3(p.x + amount * std::sin(0.4 * p.y), p.y, p.z + 2.0 * amount); });
+    filterTesting::Deformed whole(volume, mesh);
+    filterTesting::Deformed closed;
+    closed.Filter->SetInputConnection(cut.Filter->GetOutputPort());
+    closed.Filter->SetDeformationData(mesh);
+    vtkImageData* expected = whole.Update();
+    vtkImageData* found = closed.Update();
+    VERIFY_EQUAL(GetExtent(found), GetExtent(expected));
+    VERIFY_EQUAL(
+      closed.Filter->GetNumberOfCoveredVoxels(), whole.Filter->GetNumberOfCoveredVoxels());
+    for (vtkIdType id = 0; id < expected->GetNumberOfPoints(); ++id)
+    {
+      VERIFY_EQUAL(closed.IsCovered(id), whole.IsCovered(id));
+      // Shorts are the nearest to what is interpolated in single or in double precision.
+      VERIFY(std::abs(closed.GetValues()->GetComponent(id, 0) -
+               whole.GetValues()->GetComponent(id, 0)) <= (amount == 0.0 ? 0.0 : 1.0));
+    }
+  }
+}
+
+// The gap between the two moved planes is empty, and all else is there, at four samples a voxel.
+void TestGap()
+{
+  auto volume = MakeVolume(Box);
+  const double place = 4.3;
+  Edited<vtkCutVolume> cut;
+  SetUp(cut, volume, place);
+  auto field = MakeField(volume, place, { -1.25, 0, 0.5 }, { 2.0, -0.75, 0 });
+  filterTesting::Deformed open;
+  open.Filter->SetInputConnection(cut.Filter->GetOutputPort());
+  open.Filter->SetDeformationData(field);
+  open.Filter->SetOutputSpacingModeToCustomSpacing();
+  open.Filter->SetCustomSpacing(0.25, 0.25, 0.25);
+  vtkImageData* output = open.Update();
+  vtkIdType covered = 0;
+  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+  {
+    const auto isIn = [&](const glm::dvec3& p)
+    {
+      return p.x >= Box[0] && p.x <= Box[1] && p.y >= Box[2] && p.y <= Box[3] && p.z >= Box[4] &&
+        p.z <= Box[5];
+    };
+    // No sample is nearer to a plane than 1/20, which is more than the rounding of the sheet and of
+    // positions.
+    const glm::dvec3 point = GetPoint(output, id);
+    const glm::dvec3 low = point - glm::dvec3(-1.25, 0, 0.5);
+    const glm::dvec3 high = point - glm::dvec3(2.0, -0.75, 0);
+    const bool expected = (isIn(low) && low.x < place) || (isIn(high) && high.x > place);
+    VERIFY_EQUAL(open.IsCovered(id), expected);
+    covered += expected ? 1 : 0;
+  }
+  // Without SmoothCut a layer of cells is lost.
+  cut.Filter->SmoothCutOff();
+  open.Update();
+  VERIFY_EQUAL(cut.CountOff(), 5 * 10 * 8);
+  VERIFY(!GetCells(cut.Filter->GetOutput()) && !GetDistances(cut.Filter->GetOutput()));
+  VERIFY(open.Filter->GetNumberOfCoveredVoxels() < 0.96 * static_cast<double>(covered));
+}
+
+// Two lattices side by side that meet at the cut, with nodes of their own there.
+void TestSplitMesh()
+{
+  auto volume = MakeVolume(Box);
+  const double place = 4.25;
+  vtkNew<vtkUnstructuredGrid> mesh;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  mesh->SetPoints(points);
+  for (const int side : { 0, 1 })
+  {
+    vtkNew<vtkLatticeTetrahedraSource> source;
+    source->SetNumberOfNodes(3, 3, 3);
+    source->SetBounds(side ? place : -3.0, side ? 14.0 : place, -1, 11, 0, 10);
+    source->Update();
+    vtkUnstructuredGrid* half = source->GetOutput();
+    const vtkIdType first = points->GetNumberOfPoints();
+    for (vtkIdType id = 0; id < half->GetNumberOfPoints(); ++id)
+    {
+      points->InsertNextPoint(half->GetPoint(id));
+    }
+    for (vtkIdType cell = 0; cell < half->GetNumberOfCells(); ++cell)
+    {
+      vtkNew<vtkIdList> ids;
+      half->GetCellPoints(cell, ids);
+      for (vtkIdType k = 0; k < 4; ++k)
+      {
+        ids->SetId(k, ids->GetId(k) + first);
+      }
+      mesh->InsertNextCell(VTK_TETRA, ids);
+    }
+  }
+  const vtkIdType half = points->GetNumberOfPoints() / 2;
+  vtkNew<vtkFloatArray> vectors;
+  vectors->SetName("displacement");
+  vectors->SetNumberOfComponents(3);
+  for (vtkIdType id = 0; id < 2 * half; ++id)
+  {
+    vectors->InsertNextTuple3(id < half ? -3.0 : 3.0, 0.0, 0.0);
+  }
+  mesh->GetPointData()->SetVectors(vectors);
+  Edited<vtkCutVolume> cut;
+  SetUp(cut, volume, place);
+  for (const bool open : { false, true })
+  {
+    filterTesting::Deformed deformed;
+    deformed.Filter->SetInputConnection(cut.Filter->GetOutputPort());
+    deformed.Filter->SetDeformationData(mesh);
+    deformed.Filter->SetOpenSplits(open);
+    vtkImageData* output = deformed.Update();
+    for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+    {
+      const glm::dvec3 p = GetPoint(output, id);
+      const bool expected =
+        (p.x >= Box[0] - 3 && p.x < place - 3) || (p.x > place + 3 && p.x <= Box[1] + 3);
+      VERIFY_EQUAL(deformed.IsCovered(id),
+        expected && p.y >= Box[2] && p.y <= Box[3] && p.z >= Box[4] && p.z <= Box[5]);
+    }
+  }
+}
+
+void TestEdits()
+{
+  auto volume = MakeVolume(Box);
+  Edited<vtkCutVolume> cut;
+  cut.Filter->SetInputData(volume);
+  cut.Filter->SmoothCutOn();
+  cut.Filter->AccumulateOn();
+  std::vector<Arrays> states{ Arrays(cut) };
+  VERIFY(states.front().Cells.empty());
+  for (const double place : { 4.3, 8.6, 8.75 })
+  {
+    cut.Filter->SetSheetData(MakePlaneX(volume, place));
+    states.emplace_back(cut);
+  }
+  VERIFY_EQUAL(CountActive(states[1].Cells), 400);
+  VERIFY_EQUAL(CountActive(states[2].Cells), 800);
+  // Two sheets between the same voxels: what both cross is off.
+  VERIFY_EQUAL(CountActive(states[3].Cells), 400);
+  VERIFY_EQUAL(cut.CountOff(), 400);
+  for (std::size_t i = states.size() - 1; i-- > 0;)
+  {
+    cut.Filter->Undo();
+    VERIFY(Arrays(cut) == states[i]);
+  }
+  for (std::size_t i = 1; i < states.size(); ++i)
+  {
+    cut.Filter->Redo();
+    VERIFY(Arrays(cut) == states[i]);
+  }
+  cut.Filter->Reset();
+  VERIFY(Arrays(cut) == states.front());
+
+  // A chain of two does the same, and both can be undone.
+  Edited<vtkCutVolume> first;
+  Edited<vtkCutVolume> second;
+  SetUp(first, volume, 4.3);
+  SetUp(second, volume, 8.6);
+  second.Filter->SetInputConnection(first.Filter->GetOutputPort());
+  VERIFY(Arrays(second) == states[2]);
+  first.Filter->Undo();
+  second.Filter->Undo();
+  VERIFY(Arrays(second).Cells.empty());
+  first.Filter->Redo();
+  VERIFY(Arrays(second).Cells == states[1].Cells);
+  second.Filter->Redo();
+  VERIFY(Arrays(second) == states[2]);
+  // A filter that cuts as before hands the smooth cut on.
+  second.Filter->SmoothCutOff();
+  const Arrays mixed(second);
+  VERIFY(mixed.Cells == states[1].Cells);
+  VERIFY_EQUAL(second.CountOff(), 400);
+
+  // Outputs follow edits, whatever was made before.
+  filterTesting::Deformed deformed;
+  deformed.Filter->SetInputConnection(first.Filter->GetOutputPort());
+  deformed.Filter->SetDeformationData(MakeField(volume, 4.3, { -2, 0, 0 }, { 2, 0, 0 }));
+  deformed.Update();
+  const vtkIdType open = deformed.Filter->GetNumberOfCoveredVoxels();
+  first.Filter->Undo();
+  deformed.Update();
+  VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > open);
+  first.Filter->Redo();
+  deformed.Update();
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), open);
+}
+
+// A tool that goes on from update to update divides as one sheet does.
+void TestTool()
+{
+  auto volume = MakeVolume(Box);
+  Edited<vtkCutVolume> sheet;
+  SetUp(sheet, volume, 4.3);
+  const Arrays expected(sheet);
+  Edited<vtkCutVolume> tool;
+  tool.Filter->SetInputData(volume);
+  tool.Filter->SmoothCutOn();
+  for (const double y : { -3.0, 1.7, 4.1, 4.2, 8.0, 13.0 })
+  {
+    tool.Filter->AddToolPosition(4.3, y, -5, 4.3, y, 15);
+    tool.Update();
+  }
+  const Arrays found(tool);
+  VERIFY(found.Cells == expected.Cells);
+  VERIFY(found.Mask == expected.Mask);
+  for (std::size_t i = 0; i < found.Points.size(); ++i)
+  {
+    VERIFY(std::abs(std::abs(found.Points[i]) - std::abs(expected.Points[i])) < 1e-5F);
+  }
+  // Half the way: the cut ends inside, and nothing is off.
+  tool.Filter->Undo();
+  tool.Filter->Undo();
+  const Arrays half(tool);
+  VERIFY(CountActive(half.Cells) > 100 && CountActive(half.Cells) < 200);
+  VERIFY_EQUAL(tool.CountOff(), 0);
+}
+
+// What is cut is what is seen: the volume moved by a voxel and a half.
+void TestDeformedVolume()
+{
+  auto volume = MakeVolume(Box);
+  Edited<vtkCutVolume> rest;
+  SetUp(rest, volume, 4.25);
+  const Arrays expected(rest);
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(1.5, 0, 0));
+  Edited<vtkCutVolume> seen;
+  SetUp(seen, volume, 5.75);
+  seen.Filter->SetDeformationData(mesh);
+  VERIFY(Arrays(seen) == expected);
+}
+
+void TestOthers()
+{
+  auto volume = MakeVolume(Box);
+  Edited<vtkCutVolume> smooth;
+  SetUp(smooth, volume, 4.3);
+  Edited<vtkCutVolume> hard;
+  SetUp(hard, volume, 4.3);
+  hard.Filter->SmoothCutOff();
+  smooth.Update();
+  hard.Update();
+  // Links see the same cut.
+  const std::vector<Handle> handles{ { { 8, 5, 5 }, { 11, 5, 5 } } };
+  Dragged bySmooth(smooth.Filter->GetOutput());
+  Dragged byHard(hard.Filter->GetOutput());
+  vtkNew<vtkFloatArray> expected;
+  expected->DeepCopy(byHard.Drag(handles));
+  VERIFY(HaveEqualBits(bySmooth.Drag(handles), expected));
+  // Coarse volumes leave out the cells that the cut passes through.
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.25, 0, 0));
+  vtkIdType covered[2];
+  for (const bool isSmooth : { false, true })
+  {
+    filterTesting::Deformed coarse((isSmooth ? smooth : hard).Filter->GetOutput(), mesh);
+    coarse.Filter->SetSamplingFactor(2);
+    coarse.Update();
+    covered[isSmooth ? 1 : 0] = coarse.Filter->GetNumberOfCoveredVoxels();
+  }
+  VERIFY_EQUAL(covered[0], covered[1]);
+}
+
+} // namespace
+
+int TestSmoothCut(int, char*[])
+{
+  TestMisuse();
+  TestClosed();
+  TestGap();
+  TestSplitMesh();
+  TestEdits();
+  TestTool();
+  TestDeformedVolume();
+  TestOthers();
+  return GetExitCode();
+}
