@@ -59,7 +59,8 @@ void VolumeDeformation::SetCut(const unsigned char* crossed, const float* distan
 {
   if (!this->Volume.SetCut(crossed, distances).empty())
   {
-    this->Incremental.Forget();
+    this->Source.ChangeReach();
+    this->Incremental.ChangeCut();
   }
 }
 
@@ -216,18 +217,12 @@ DeformReport VolumeDeformation::Resample(const DeformRequest& request, std::uint
   this->Incremental.ChangeMask(this->Source.UpdateBridges(), true);
   DeformReport report;
   report.NumberOfBricks = static_cast<std::int64_t>(this->Volume.GetBricks().GetNumberOfBricks());
-  // What a part depends on reaches further where a cut passes than IncrementalUpdate knows.
-  const bool incremental = request.Incremental && !this->Volume.HasCut();
-  if (!incremental)
-  {
-    this->Incremental.Forget();
-  }
   if (!this->Incremental.Update(request, this->Source, this->Exact, report))
   {
     MakeSlabs(this->Exact, this->Device, this->Volume, request, spare, report);
     report.NumberOfResampledBricks = report.NumberOfBricks;
     report.ChangedExtent = request.OutputExtent;
-    if (incremental && this->Exact.CanMakeAgain())
+    if (request.Incremental && this->Exact.CanMakeAgain())
     {
       this->Incremental.Start(request, this->Source, report);
     }

@@ -101,7 +101,7 @@ void BrickPoints::Collect(
   const auto collectSome = [&](std::size_t i)
   {
     Needs& need = needs[i];
-    visit(grid.GetVertices((*wanted)[i], BrickReach), need,
+    visit(grid.GetVertices((*wanted)[i], grid.Reach), need,
       [&](std::int32_t tetrahedron)
       {
         if (need.Tetrahedra.empty() || need.Tetrahedra.back() != tetrahedron)
@@ -126,7 +126,7 @@ void BrickPoints::Collect(
     {
       Needs& need = needs[brick];
       need.Nodes.reserve(64);
-      visit(grid.GetVertices(brick, BrickReach), need,
+      visit(grid.GetVertices(brick, grid.Reach), need,
         [&](std::int32_t tetrahedron)
         {
           if (tetrahedra.Add(tetrahedron, brick))
@@ -235,7 +235,7 @@ BrickPoints BrickPoints::FromField(const BrickGrid& grid, const FieldParameters&
   std::copy_n(field.Dimensions, 3, points.FieldSize.begin());
   for (std::size_t brick = 0; brick < grid.GetNumberOfBricks(); ++brick)
   {
-    const Extent vertices = grid.GetVertices(brick, BrickReach);
+    const Extent vertices = grid.GetVertices(brick, grid.Reach);
     Extent box;
     for (int axis = 0; axis < 3; ++axis)
     {

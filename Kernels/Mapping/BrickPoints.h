@@ -18,9 +18,6 @@
 namespace deformvolume
 {
 
-/// How far a brick looks beyond its vertices: the fill rule asks the cells round a vertex.
-constexpr int BrickReach = 1;
-
 /// Which points of the deformation, nodes of the mesh or points of the field, move the vertices
 /// that a brick depends on.
 class BrickPoints

@@ -28,6 +28,7 @@ public:
 
   /// Whether a cell has crossed tetrahedra.
   bool IsOn() const { return !this->List.empty(); }
+  const std::vector<CutVertex>& GetList() const { return this->List; }
   /// The stencils have to be found anew: states or active tetrahedra have changed.
   void ForgetStencils() { this->StencilsCurrent = false; }
 

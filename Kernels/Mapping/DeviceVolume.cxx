@@ -346,6 +346,7 @@ std::vector<Extent> DeviceVolume::SetCut(const unsigned char* crossed, const flo
   }
   std::vector<Extent> changes =
     this->Cut.Set(this->Context, this->Queue, this->Shape, crossed, distances);
+  this->Bricks.Reach = this->HasCut() ? BrickGrid::ReachOfCuts : BrickGrid::LeastReach;
   this->States.ChangeSources(changes);
   this->Bridges.ChangeVertices(changes);
   return changes;

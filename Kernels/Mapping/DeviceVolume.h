@@ -120,6 +120,7 @@ public:
     return this->HasDistances() ? chunk.Distances : this->RestPositions;
   }
   bool HasCut() const { return this->Cut.IsOn(); }
+  const std::vector<CutVertex>& GetCutVertices() const { return this->Cut.GetList(); }
   /// Sets what kernels are given of the cut (CUT_PARAMETERS), from an argument on; returns the
   /// number of the next one.
   cl_uint SetCutArguments(cl::Kernel& kernel, cl_uint argument) const;

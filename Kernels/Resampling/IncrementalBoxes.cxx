@@ -74,8 +74,15 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
       return nothing;
     }
     const double widening = excess * (double(greatest) - double(least)) + Margin;
-    const double low = std::min(least - widening, LargestMove);
-    const double high = std::max(greatest + widening, -LargestMove);
+    double low = std::min(least - widening, LargestMove);
+    double high = std::max(greatest + widening, -LargestMove);
+    if (!this->IsCut.empty() && this->IsCut[subBrick])
+    {
+      // One displacement and the difference of two others, at most (CutPositions.cl).
+      const double difference = high - low;
+      low -= difference;
+      high += difference;
+    }
     const double first = this->Shape.VertexExtent[2 * axis];
     box.Min[axis] =
       this->Shape.Scale[axis] * (first + vertices[2 * axis]) + low - this->OutputExtent[2 * axis];

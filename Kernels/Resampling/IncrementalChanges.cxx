@@ -21,6 +21,27 @@ constexpr int MaskReach = 1;
 
 } // namespace
 
+void IncrementalUpdate::SetReach(int reach)
+{
+  if (this->Grid.Reach != reach)
+  {
+    this->Bricks.Reach = this->Grid.Reach = reach;
+    this->ForgetMapping();
+  }
+}
+
+void IncrementalUpdate::SetCut(const std::vector<CutVertex>& vertices)
+{
+  this->IsCut.assign(vertices.empty() ? 0 : this->Grid.GetNumberOfBricks(), 0);
+  this->Known.assign(this->Known.size(), 0); // boxes are wider where it passes
+  this->BoxesKnown = false;
+  for (const CutVertex& v : vertices)
+  {
+    this->ForSubBricks({ { v.X, v.X, v.Y, v.Y, v.Z, v.Z } }, 0, 0,
+      [&](std::size_t subBrick) { this->IsCut[subBrick] = 1; });
+  }
+}
+
 void IncrementalUpdate::SetPoints(BrickPoints&& points)
 {
   this->Points = std::move(points);
@@ -171,7 +192,8 @@ std::vector<std::size_t> IncrementalUpdate::MoveVertices(
   std::vector<unsigned char> found(this->Grid.GetNumberOfBricks());
   for (const Extent& box : vertices)
   {
-    this->ForSubBricks(box, 0, BrickReach, [&](std::size_t subBrick) { found[subBrick] = 1; });
+    this->ForSubBricks(
+      box, 0, this->Grid.Reach, [&](std::size_t subBrick) { found[subBrick] = 1; });
   }
   std::vector<std::size_t> subBricks;
   for (std::size_t subBrick = 0; subBrick < found.size(); ++subBrick)
@@ -225,10 +247,12 @@ void IncrementalUpdate::ChangeMask(const std::vector<Extent>& changes, bool ofCe
   {
     return;
   }
+  // A smooth cut looks further at masks, too.
+  const int reach = MaskReach + this->Grid.Reach - BrickGrid::LeastReach;
   for (const Extent& box : changes)
   {
     // A cell reaches to the next vertices.
-    this->ForSubBricks(box, ofCells ? 1 : 0, MaskReach,
+    this->ForSubBricks(box, ofCells ? 1 : 0, reach,
       [&](std::size_t subBrick) { this->Masked[subBrick] |= this->HasCells(subBrick) ? 1 : 0; });
   }
   if (!changes.empty())

@@ -59,6 +59,11 @@ void IncrementalOutput::Start(
   const DeformRequest& request, const DisplacementSource& source, DeformReport& report)
 {
   this->Changes.Start(this->Volume.GetBricks(), this->Volume.GetVoxelGrid(), request.OutputExtent);
+  if (!this->CutIsKnown)
+  {
+    this->Changes.SetCut(this->Volume.GetCutVertices());
+    this->CutIsKnown = true;
+  }
   this->LastMethod = request.Method;
   this->LastWholeExtent = request.WholeOutputExtent;
   this->LastCovered = static_cast<std::uint64_t>(report.NumberOfCoveredVoxels);
@@ -77,6 +82,13 @@ void IncrementalOutput::Start(
       { this->Changes.FindAllBoxes(displacements); });
     report.ResamplingTime += GetSecondsSince(begin);
   }
+}
+
+void IncrementalOutput::ChangeCut()
+{
+  this->CutIsKnown = false;
+  this->Forget();
+  this->Changes.SetReach(this->Volume.GetBricks().Reach);
 }
 
 bool IncrementalOutput::IsChangeInside() const

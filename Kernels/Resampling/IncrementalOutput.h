@@ -31,6 +31,8 @@ public:
   {
     this->Changes.ChangeMask(boxes, ofCells);
   }
+  /// The smooth cut is another one.
+  void ChangeCut();
   /// The last output is of no use any more.
   void Forget() { this->Changes.Forget(); }
 
@@ -56,6 +58,7 @@ private:
   WorkDevice& Device;
   DeviceVolume& Volume;
   IncrementalUpdate Changes;
+  bool CutIsKnown = true; // where it passes
   Resampling LastMethod = Resampling::Exact;
   Extent LastWholeExtent{ { 0, -1, 0, -1, 0, -1 } };
   std::uint64_t LastCovered = 0;

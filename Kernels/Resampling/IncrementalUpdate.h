@@ -21,7 +21,8 @@ namespace deformvolume
 ///
 /// A sub-brick of cells changes when a point that moves its vertices does, or a mask near it.
 /// All that it wrote, and all that it will write, lies within a box: its box at rest, widened by
-/// the least and the greatest displacement of its points. Patches of the output that the boxes of
+/// the least and the greatest displacement of its points, and by their difference where a smooth
+/// cut continues displacements across the sheet. Patches of the output that the boxes of
 /// changed sub-bricks touch, before or after the change, are cleared, and of all bricks with a
 /// sub-brick whose box touches such a patch the sections that these sub-bricks lie in are run: what
 /// they write outside these patches they wrote before, since nobody else writes there. (Where the
@@ -43,6 +44,10 @@ public:
 
   /// An output of this extent was made, wholly, of what is set now.
   void Start(const BrickGrid& bricks, const VoxelGrid& voxelGrid, const Extent& output);
+  /// How far bricks look from now on (BrickGrid::Reach).
+  void SetReach(int reach);
+  /// The vertices of cells that a smooth cut crosses, since there is another one: after Start.
+  void SetCut(const std::vector<CutVertex>& vertices);
   /// The last output is of no use any more.
   void Forget() { this->Tracking = false; }
   /// The last output was brought up to date.
@@ -165,6 +170,7 @@ private:
   std::vector<Box> LastBoxes;                  // of those that were moved
   std::vector<unsigned char> Moved;
   std::vector<unsigned char> Masked;
+  std::vector<unsigned char> IsCut; // whether it has vertices of a smooth cut; empty: none has
 };
 
 } // namespace deformvolume

@@ -33,6 +33,11 @@ struct BrickGrid
   std::array<int, 3> Count{ { 0, 0, 0 } };  // bricks on each axis
   std::array<int, 3> Cells{ { DEFORMVOLUME_BRICK_X, DEFORMVOLUME_BRICK_Y,
     DEFORMVOLUME_BRICK_Z } }; // of a brick
+  /// How far a brick looks beyond its vertices: the fill rule asks the cells round a vertex.
+  static constexpr int LeastReach = 1;
+  /// Besides, a smooth cut moves vertices by others that are up to two voxels away.
+  static constexpr int ReachOfCuts = 3;
+  int Reach = LeastReach;
 
   std::size_t GetNumberOfBricks() const
   {

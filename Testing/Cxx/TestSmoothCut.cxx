@@ -4,10 +4,14 @@
 #include "ChainMailTesting.h"
 #include "EditChecks.h"
 
+#include "vtkCarveVolume.h"
 #include "vtkCutVolume.h"
 
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
+#include <vtkSphere.h>
+
+#include <glm/geometric.hpp>
 
 #include <cmath>
 #include <map>
@@ -129,6 +133,14 @@ void TestMisuse()
   published.Filter->Update();
   VERIFY_EQUAL(published.TakeErrors(), 1);
   VERIFY(published.LastError.find("smooth cuts") != std::string::npos);
+  published.Filter->SetResamplerToAutomatic();
+  published.Filter->SetInterpolationToCubicInterpolation();
+  published.Filter->Update();
+  VERIFY_EQUAL(published.TakeErrors(), 1);
+  VERIFY(published.LastError.find("smooth cuts") != std::string::npos);
+  published.Filter->SetInterpolationToLinearInterpolation();
+  published.Update();
+  VERIFY_EQUAL(published.Filter->GetResamplerInUse(), vtkDeformVolumeFilter::EXACT);
   published.Filter->SetResamplerToExact();
   published.Update();
   VERIFY(!GetCells(published.Filter->GetOutput()) && !GetDistances(published.Filter->GetOutput()));
@@ -203,6 +215,67 @@ void TestGap()
   VERIFY_EQUAL(cut.CountOff(), 5 * 10 * 8);
   VERIFY(!GetCells(cut.Filter->GetOutput()) && !GetDistances(cut.Filter->GetOutput()));
   VERIFY(open.Filter->GetNumberOfCoveredVoxels() < 0.96 * static_cast<double>(covered));
+}
+
+// On both sides labels and values are those of the volume at rest, sample by sample; a boundary
+// that is carved out smoothly ends where it did.
+void TestLabelsAndBoundary()
+{
+  auto volume = MakeVolume(Box);
+  AddLabels(volume); // another one from x = 6 on
+  const double place = 5.5;
+  Edited<vtkCutVolume> cut;
+  SetUp(cut, volume, place);
+  vtkNew<vtkSphere> sphere;
+  sphere->SetCenter(place, 5.0, 5.0);
+  const double radius = 2.3;
+  sphere->SetRadius(radius);
+  Edited<vtkCarveVolume> carve;
+  carve.Filter->SetInputConnection(cut.Filter->GetOutputPort());
+  carve.Filter->SetImplicitFunction(sphere);
+  carve.Filter->SmoothBoundaryOn();
+  const glm::dvec3 apart(2.0, 0, 0);
+  filterTesting::Deformed open;
+  open.Filter->SetInputConnection(carve.Filter->GetOutputPort());
+  open.Filter->SetDeformationData(MakeField(volume, place, -apart, apart));
+  filterTesting::Deformed still(volume, MakeField(volume, place, glm::dvec3(0), glm::dvec3(0)));
+  for (filterTesting::Deformed* one : { &open, &still })
+  {
+    one->Filter->AddCategoricalArray("label");
+    one->Filter->SetOutputSpacingModeToCustomSpacing();
+    one->Filter->SetCustomSpacing(0.25, 0.25, 0.25);
+  }
+  vtkImageData* output = open.Update();
+  vtkImageData* reference = still.Update();
+  auto* labels = output->GetPointData()->GetArray("label");
+  auto* expected = reference->GetPointData()->GetArray("label");
+  vtkIdType seen[2] = { 0, 0 };
+  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 point = GetPoint(output, id);
+    const bool isLow = point.x < place;
+    glm::dvec3 rest = isLow ? point + apart : point - apart;
+    // Of a function's distance in a cell what is curved is missing: less than 1/4 voxel.
+    const double out = glm::length(rest - glm::dvec3(place, 5.0, 5.0)) - radius;
+    const bool isInSide = isLow ? rest.x < place : rest.x > place;
+    if (rest.x == place || std::abs(out) < 0.25 || !isInSide)
+    {
+      VERIFY(isInSide || !open.IsCovered(id) || rest.x == place);
+      continue;
+    }
+    const bool isInVolume = rest.x >= Box[0] && rest.x <= Box[1];
+    VERIFY_EQUAL(open.IsCovered(id), isInVolume && out > 0.0);
+    if (open.IsCovered(id))
+    {
+      const vtkIdType there = reference->FindPoint(&rest.x);
+      VERIFY_EQUAL(labels->GetComponent(id, 0), expected->GetComponent(there, 0));
+      // The nearest shorts to what is interpolated in single or in double precision.
+      VERIFY(std::abs(open.GetValues()->GetComponent(id, 0) -
+               still.GetValues()->GetComponent(there, 0)) <= 1.0);
+      ++seen[isLow ? 0 : 1];
+    }
+  }
+  VERIFY(seen[0] > 1000 && seen[1] > 1000);
 }
 
 // Two lattices side by side that meet at the cut, with nodes of their own there.
@@ -282,6 +355,7 @@ void TestEdits()
   }
   VERIFY_EQUAL(CountActive(states[1].Cells), 400);
   VERIFY_EQUAL(CountActive(states[2].Cells), 800);
+  VERIFY_EQUAL(cut.Filter->GetNumberOfDividedTetrahedra(), 400);
   // Two sheets between the same voxels: what both cross is off.
   VERIFY_EQUAL(CountActive(states[3].Cells), 400);
   VERIFY_EQUAL(cut.CountOff(), 400);
@@ -297,6 +371,7 @@ void TestEdits()
   }
   cut.Filter->Reset();
   VERIFY(Arrays(cut) == states.front());
+  VERIFY_EQUAL(cut.Filter->GetNumberOfDividedTetrahedra(), 0);
 
   // A chain of two does the same, and both can be undone.
   Edited<vtkCutVolume> first;
@@ -305,6 +380,7 @@ void TestEdits()
   SetUp(second, volume, 8.6);
   second.Filter->SetInputConnection(first.Filter->GetOutputPort());
   VERIFY(Arrays(second) == states[2]);
+  VERIFY_EQUAL(second.Filter->GetNumberOfDividedTetrahedra(), 400); // and not those of the first
   first.Filter->Undo();
   second.Filter->Undo();
   VERIFY(Arrays(second).Cells.empty());
@@ -415,6 +491,7 @@ int TestSmoothCut(int, char*[])
   TestMisuse();
   TestClosed();
   TestGap();
+  TestLabelsAndBoundary();
   TestSplitMesh();
   TestEdits();
   TestTool();

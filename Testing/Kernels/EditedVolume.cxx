@@ -206,6 +206,8 @@ void EditedVolume::SendMasks(VolumeDeformer& deformer) const
   deformer.SetBlanked(this->Blanked.empty() ? nullptr : this->Blanked.data());
   deformer.SetActiveTetrahedra(this->Active.empty() ? nullptr : this->Active.data());
   deformer.SetBoundaryDistances(this->Distances.empty() ? nullptr : this->Distances.data());
+  deformer.SetCut(this->Crossed.empty() ? nullptr : this->Crossed.data(),
+    this->Crossed.empty() ? nullptr : this->CutDistances.data());
 }
 
 void EditedVolume::SendAll(VolumeDeformer& deformer, Route route) const

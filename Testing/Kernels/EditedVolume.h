@@ -35,6 +35,8 @@ struct EditedVolume
   std::vector<unsigned char> Blanked;
   std::vector<unsigned char> Active;
   std::vector<float> Distances;
+  std::vector<unsigned char> Crossed; // of a smooth cut
+  std::vector<float> CutDistances;
   deformvolume::Extent Output;
   double Background = 3.0;
   deformvolume::Resampling Method = deformvolume::Resampling::Exact;

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Updates of a part of the output where a smooth cut passes: they equal whole outputs, bit for bit.
+#include "EditedVolume.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <random>
+
+using namespace deformvolume;
+
+namespace
+{
+
+class IncrementalCuts : public WayTest
+{
+};
+
+// Cuts along a plane, through all of the volume or up to a y, counted from the first voxel.
+void Cut(EditedVolume& volume, double place, double slope, int end)
+{
+  const Extent& extent = volume.Shape.VertexExtent;
+  std::array<int, 3> size;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    size[axis] = static_cast<int>(GetSize(extent, axis));
+  }
+  const auto distance = [=](int x, int y, int z) { return x - place + slope * y - 0.125 * z; };
+  volume.CutDistances.clear();
+  for (int z = 0; z < size[2]; ++z)
+  {
+    for (int y = 0; y < size[1]; ++y)
+    {
+      for (int x = 0; x < size[0]; ++x)
+      {
+        volume.CutDistances.push_back(static_cast<float>(distance(x, y, z)));
+      }
+    }
+  }
+  volume.Crossed.clear();
+  for (int z = 0; z + 1 < size[2]; ++z)
+  {
+    for (int y = 0; y + 1 < size[1]; ++y)
+    {
+      for (int x = 0; x + 1 < size[0]; ++x)
+      {
+        // Those of which one side has no vertex are not divided, and may be among them.
+        const bool isNear = std::abs(distance(x, y, z)) < 2.0;
+        volume.Crossed.push_back(isNear && y < end ? 31 : 0);
+      }
+    }
+  }
+}
+
+// An edit of the mask, or of the boundary distances, beside the plane.
+void EditBeside(EditedVolume& volume, std::mt19937& random, int kind)
+{
+  const Extent& extent = volume.Shape.VertexExtent;
+  const std::size_t voxels = static_cast<std::size_t>(GetNumberOfPoints(extent));
+  const int x = 60 + static_cast<int>(random() % 20);
+  const int y = static_cast<int>(random() % 40);
+  const int z = static_cast<int>(random() % 30);
+  const auto sizeX = static_cast<std::size_t>(GetSize(extent, 0));
+  const auto sizeY = static_cast<std::size_t>(GetSize(extent, 1));
+  const std::size_t vertex = (static_cast<std::size_t>(z) * sizeY + y) * sizeX + x;
+  const std::size_t cell = (static_cast<std::size_t>(z) * (sizeY - 1) + y) * (sizeX - 1) + x;
+  if (kind == 0)
+  {
+    volume.Active.resize(volume.Crossed.size(), 31);
+    volume.Active[cell] = static_cast<unsigned char>(random() % 32);
+  }
+  else if (kind == 1)
+  {
+    volume.Blanked.resize(voxels);
+    volume.Blanked[vertex] ^= 1;
+  }
+  else
+  {
+    volume.Distances.resize(voxels, 1.0F);
+    volume.Distances[vertex] = static_cast<float>(random() % 3) - 1.5F;
+  }
+}
+
+} // namespace
+
+TEST_P(IncrementalCuts, EqualWholeOutputs)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  std::mt19937 random(7);
+  EditedVolume volume = MakeVolume();
+  Cut(volume, 68.3, 0.2, 30);
+  Twins twins;
+  twins.SendAll(volume, GetRoute());
+  twins.Deform(volume, GetRoute());
+  int parts = 0;
+  int foldedParts = 0;
+  constexpr int most = 30;
+  const int edits = GetNumberOf(most);
+  for (int edit = 0; edit < edits; ++edit)
+  {
+    SCOPED_TRACE(edit);
+    if (edit % 15 == 0)
+    {
+      std::fill(volume.Displacements.begin(), volume.Displacements.end(), 0.0F);
+    }
+    // Some open the cut, or fold its sides over each other.
+    const float amount = edit % 15 == 9 ? 9.0F : edit % 3 == 0 ? 0.3F : 2.5F;
+    if (edit % 2 == 0)
+    {
+      volume.MoveInside(random, amount);
+    }
+    else
+    {
+      volume.Move(random, 0, amount);
+    }
+    if (edit % 4 == 3)
+    {
+      EditBeside(volume, random, static_cast<int>(random() % 3));
+    }
+    bool isOther = false;
+    if (edit % 10 == 9)
+    {
+      isOther = true;
+      Cut(volume, 60.3 + edit % 3 * 4.0, 0.3, edit % 20 == 9 ? 99 : 20);
+    }
+    if (edit % 30 == 18)
+    {
+      isOther = true;
+      volume.Crossed.clear();
+    }
+    volume.SendMasks(twins.Whole);
+    volume.SendMasks(twins.Updated);
+    twins.Deform(volume, GetRoute());
+    ASSERT_FALSE(HasFailure());
+    EXPECT_FALSE(isOther && twins.IsPart());
+    parts += twins.IsPart() ? 1 : 0;
+    foldedParts += twins.IsPart() && twins.UpdatedReport.Overlapping ? 1 : 0;
+    if (volume.Crossed.empty())
+    {
+      Cut(volume, 70.0, 0.0, 99);
+      volume.SendMasks(twins.Whole);
+      volume.SendMasks(twins.Updated);
+      twins.Deform(volume, GetRoute());
+      ASSERT_FALSE(HasFailure());
+    }
+  }
+  std::cout << parts << " of " << edits << " outputs in part, " << foldedParts << " folded\n";
+  EXPECT_GT(parts, edits / 4);
+  if (edits == most)
+  {
+    EXPECT_GT(foldedParts, 0);
+  }
+}
+
+// Beside a cut that stands open what moves on one side moves the other side's copies.
+TEST_P(IncrementalCuts, NodesOfOneSideAreSplit)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  if (GetRoute() == Route::Field)
+  {
+    GTEST_SKIP() << "fields have no nodes to split";
+  }
+  std::mt19937 random(11);
+  EditedVolume volume = MakeVolume();
+  Cut(volume, 68.3, 0.2, 99);
+  Twins twins;
+  twins.SendAll(volume, GetRoute());
+  twins.Deform(volume, GetRoute());
+  int parts = 0;
+  const int edits = GetNumberOf(24);
+  for (int edit = 0; edit < edits; ++edit)
+  {
+    SCOPED_TRACE(edit);
+    const std::vector<TetrahedronChange> changes = volume.Split(random, 60);
+    for (VolumeDeformer* deformer : { &twins.Whole, &twins.Updated })
+    {
+      deformer->ChangeConnectivity(
+        volume.Tetrahedra.data(), volume.Tetrahedra.size(), volume.GetNumberOfNodes(), &changes);
+    }
+    volume.MoveInside(random, 0.5F);
+    twins.Deform(volume, GetRoute());
+    ASSERT_FALSE(HasFailure());
+    parts += twins.IsPart() ? 1 : 0;
+  }
+  EXPECT_GT(parts, edits / 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, IncrementalCuts, GetWays(), GetWayName);
