@@ -145,6 +145,8 @@ public:
   deformvolume::ExecutionState* State;
   // That of the output; 0: there is no output that an execution could be compared with.
   int FactorOfOutput = 0;
+  /// Whether the volume that was worked on last has a smooth cut.
+  bool HadCut = false;
 
   // What is wrong with a failed information pass is told when data are asked for.
   bool InformationFailed = false;
@@ -176,7 +178,7 @@ private:
   /// Of the deformation at rest and of its displacements.
   std::pair<std::uint64_t, std::uint64_t> GetVersions() const;
   bool WantsPart(vtkInformation* output) const;
-  bool CanTakePart() const;
+  bool CanTakePart(vtkInformation* volumeInfo) const;
   /// An extent that is needed, and what was needed before for the same share of the output: where
   /// the deformation moves to and fro, the volume is not read, sent and mapped at each step.
   deformvolume::Extent KeepNeeded(const deformvolume::Extent& needed,

@@ -4,6 +4,7 @@
 #include "vtkDeformVolumeFilterInternals.h"
 
 #include "InputUpdate.h"
+#include "MaskArray.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -49,8 +50,12 @@ bool vtkDeformVolumeFilter::vtkInternals::WantsPart(vtkInformation* output) cons
 }
 
 //------------------------------------------------------------------------------
-bool vtkDeformVolumeFilter::vtkInternals::CanTakePart() const
+bool vtkDeformVolumeFilter::vtkInternals::CanTakePart(vtkInformation* volumeInfo) const
 {
+  // Where a smooth cut leads the two sides is known with all of the volume only. Coarse volumes
+  // have none.
+  const bool isCut =
+    this->Self->SamplingFactor == 1 && (this->HadCut || deformvolume::IsCutAnnounced(volumeInfo));
   // The other resamplers want the volume whole, and so do voxels that follow the nearest
   // tetrahedron of a mesh, wherever it may be.
   const bool exact = this->Self->Resampler == EXACT ||
@@ -58,7 +63,7 @@ bool vtkDeformVolumeFilter::vtkInternals::CanTakePart() const
   const bool local = this->State->Deformation.IsField() ? !this->State->Deformation.IsInverseField()
                                                         : this->Self->OutsideMode == DISCARD;
   // Data that are there already cost nothing.
-  return exact && local && !deformvolume::IsInMemory(this->Self, 0) &&
+  return exact && local && !isCut && !deformvolume::IsInMemory(this->Self, 0) &&
     deformvolume::CanProduceParts(this->Self, 0);
 }
 
@@ -134,7 +139,7 @@ Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
   ranks.Attempt(
     [&]
     {
-      if (!this->CanTakePart())
+      if (!this->CanTakePart(volumeInfo))
       {
         return;
       }

@@ -299,6 +299,13 @@ int vtkDeformVolumeFilter::RequestData(
       this->Internals->WarnOfIgnored(volume, leftOut);
       this->Internals->ReleaseOldVolumes(arrays);
       worked = state.Volume.Update(volume, this->SamplingFactor, arrays);
+      this->Internals->HadCut = deformvolume::HasCut(worked);
+      if (this->Internals->HadCut && !mapped.IsWhole())
+      {
+        throw Error("The volume comes in parts, and has a smooth cut (the array "
+                    "\"CutTetrahedra\"), which needs all of it. From the next update on all of it "
+                    "is asked for.");
+      }
     });
 
   deformvolume::DeformRequest request;

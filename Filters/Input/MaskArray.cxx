@@ -7,6 +7,8 @@
 #include "vtkDataArrayRange.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
@@ -74,6 +76,20 @@ DistanceValues FindBoundaryDistances(vtkImageData* volume)
 bool HasCut(vtkImageData* volume)
 {
   return volume->GetCellData()->GetAbstractArray(CutTetrahedraName) != nullptr;
+}
+
+bool IsCutAnnounced(vtkInformation* volumeInfo)
+{
+  vtkInformationVector* arrays = volumeInfo->Get(vtkDataObject::CELL_DATA_VECTOR());
+  for (int i = 0; arrays && i < arrays->GetNumberOfInformationObjects(); ++i)
+  {
+    const char* name = arrays->GetInformationObject(i)->Get(vtkDataObject::FIELD_NAME());
+    if (name && std::string(name) == CutTetrahedraName)
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 CutValues FindCut(vtkImageData* volume)

@@ -10,6 +10,7 @@
 
 class vtkDataSetAttributes;
 class vtkImageData;
+class vtkInformation;
 
 namespace deformvolume
 {
@@ -51,6 +52,8 @@ struct CutValues
 
 /// Whether a volume comes with a smooth cut.
 bool HasCut(vtkImageData* volume);
+/// Whether a source says that its volume does, before it is there. Few do.
+bool IsCutAnnounced(vtkInformation* volumeInfo);
 /// Throws an Error where one of the arrays is there and not the other one, or of another type or
 /// size.
 CutValues FindCut(vtkImageData* volume);

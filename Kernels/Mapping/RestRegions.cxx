@@ -266,13 +266,11 @@ Extent RestRegions::Find(const Extent& part) const
       found[2 * axis + 1] = std::min(found[2 * axis + 1], found[2 * axis] + 1);
     }
   }
-  // What cells do depends on the state of their vertices, and that on the voxels round these; where
-  // a smooth cut passes, on where vertices up to three voxels away are.
-  constexpr int reach = 3;
+  // What cells do depends on the state of their vertices, and that on the voxels round these.
   for (int axis = 0; axis < 3; ++axis)
   {
-    found[2 * axis] = std::max(found[2 * axis] - reach, this->Volume[2 * axis]);
-    found[2 * axis + 1] = std::min(found[2 * axis + 1] + reach, this->Volume[2 * axis + 1]);
+    found[2 * axis] = std::max(found[2 * axis] - 1, this->Volume[2 * axis]);
+    found[2 * axis + 1] = std::min(found[2 * axis + 1] + 1, this->Volume[2 * axis + 1]);
   }
   found[0] = this->Volume[0];
   found[1] = this->Volume[1];

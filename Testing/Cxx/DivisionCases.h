@@ -16,6 +16,7 @@
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -33,6 +34,8 @@ public:
   }
   /// Whether it says that it can make parts, and does.
   bool CanMakeParts = true;
+  /// Whether it says which arrays there will be.
+  bool AnnouncesArrays = true;
   /// Gives another extent than it is asked for.
   bool GivesOtherParts = false;
 
@@ -70,6 +73,17 @@ protected:
     if (this->CanMakeParts)
     {
       info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+    }
+    if (this->AnnouncesArrays)
+    {
+      vtkNew<vtkInformationVector> arrays;
+      for (int i = 0; i < this->Volume->GetCellData()->GetNumberOfArrays(); ++i)
+      {
+        vtkNew<vtkInformation> array;
+        array->Set(vtkDataObject::FIELD_NAME(), this->Volume->GetCellData()->GetArrayName(i));
+        arrays->Append(array);
+      }
+      info->Set(vtkDataObject::CELL_DATA_VECTOR(), arrays);
     }
     return 1;
   }
@@ -293,6 +307,40 @@ inline std::vector<Case> MakeCases()
   {
     add("Masks", masked, deform(MakeMesh(masked, 4), Bend(masked)));
     add("Masks, half a voxel", masked, deform(MakeMesh(masked, 4), Shift(0.5, 1.0, -2.5)));
+  }
+  {
+    // A smooth cut, oblique to all divisions; each side moves as it is, and the gap opens.
+    const auto divided = MakeVolume(extent);
+    double center[3];
+    divided->GetCenter(center);
+    const auto distance = [=](const glm::dvec3& p)
+    { return 0.4 * (p.x - center[0]) - 0.3 * (p.y - center[1]) + (p.z - center[2]) + 0.15; };
+    const auto distances = vtkSmartPointer<vtkFloatArray>::New();
+    distances->SetName("CutDistance");
+    for (vtkIdType id = 0; id < divided->GetNumberOfPoints(); ++id)
+    {
+      distances->InsertNextValue(static_cast<float>(distance(GetPoint(divided, id))));
+    }
+    divided->GetPointData()->AddArray(distances);
+    const auto crossed = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    crossed->SetName("CutTetrahedra");
+    for (vtkIdType id = 0; id < divided->GetNumberOfCells(); ++id)
+    {
+      // All near the sheet but a few, whose vertices stay joined.
+      double bounds[6];
+      divided->GetCellBounds(id, bounds);
+      const bool isNear = std::abs(distance({ bounds[0], bounds[2], bounds[4] })) < 4.0;
+      crossed->InsertNextValue(isNear && Scatter(id) % 50 != 0 ? 31 : 0);
+    }
+    divided->GetCellData()->AddArray(crossed);
+    const auto open = [=](const glm::dvec3& p)
+    { return p + (distance(p) < 0.0 ? glm::dvec3(-0.5, 0.3, -3.7) : glm::dvec3(0.8, 0.0, 4.1)); };
+    const auto field = MakeImage(extent, glm::dvec3(1.0), glm::dvec3(3.0, -2.0, 1.0));
+    add("Smooth cut", divided, deform(field, open));
+    add("Smooth cut, sides over each other", divided,
+      deform(MakeImage(extent, glm::dvec3(1.0), glm::dvec3(3.0, -2.0, 1.0)),
+        [=](const glm::dvec3& p) { return 2.0 * p - open(p); }));
+    add("Smooth cut, mesh", divided, deform(MakeMesh(divided, 30), open));
   }
   add("Coarser output", volume, deform(MakeMesh(volume, 6), Bend(volume))).Set =
     [](vtkDeformVolumeFilter* filter)

@@ -79,7 +79,9 @@ vtkSmartPointer<vtkImageData> Subsample(vtkImageData* volume, int factor)
   }
   vtkDataArray* active = volume->GetCellData()->GetArray("ActiveTetrahedra");
   vtkDataArray* cellGhosts = volume->GetCellGhostArray();
-  if (active || cellGhosts)
+  vtkDataArray* crossed = volume->GetCellData()->GetArray("CutTetrahedra");
+  made->GetPointData()->RemoveArray("CutDistance"); // it has no meaning for other cells
+  if (active || cellGhosts || crossed)
   {
     vtkNew<vtkUnsignedCharArray> mask;
     mask->SetName("ActiveTetrahedra");
@@ -95,6 +97,7 @@ vtkSmartPointer<vtkImageData> Subsample(vtkImageData* volume, int factor)
             int cell[3] = { x + i % factor, y + i / factor % factor, z + i / factor / factor };
             const vtkIdType id = volume->ComputeCellId(cell);
             all = all && (!active || active->GetComponent(id, 0) == 31.0) &&
+              (!crossed || crossed->GetComponent(id, 0) == 0.0) &&
               (!cellGhosts || cellGhosts->GetComponent(id, 0) == 0.0);
           }
           mask->InsertNextValue(all ? 31 : 0);

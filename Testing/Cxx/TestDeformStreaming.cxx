@@ -133,6 +133,26 @@ void TestWrongParts(const Case& from)
   VERIFY(IsPartOf(streamed.Filter->GetOutput(), MakeWhole(from)));
 }
 
+// A smooth cut needs all of the volume. Where the source has not said that there is one, the first
+// part is an error.
+void TestCutInParts(const Case& from)
+{
+  Streamed streamed(from);
+  streamed.Source->AnnouncesArrays = false;
+  Extent part = streamed.GetWhole();
+  part[5] = part[4] + 3;
+  streamed.Filter->UpdateExtent(part.data());
+  VERIFY_EQUAL(streamed.TakeErrors(), 1);
+  VERIFY(streamed.LastError.find("smooth cut") != std::string::npos);
+  VERIFY_EQUAL(streamed.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
+  VERIFY(streamed.Source->GetMost() < from.Volume->GetNumberOfPoints());
+  streamed.Source->Modified();
+  streamed.Filter->UpdateExtent(part.data());
+  VERIFY_EQUAL(streamed.TakeErrors(), 0);
+  VERIFY_EQUAL(streamed.Source->GetMost(), from.Volume->GetNumberOfPoints());
+  VERIFY(IsPartOf(streamed.Filter->GetOutput(), MakeWhole(from)));
+}
+
 // What the source is asked for.
 void TestRequests(const Case& from)
 {
@@ -258,6 +278,10 @@ int TestDeformStreaming(int, char*[])
     TestPieces(from, whole, 3, vtkExtentTranslator::Y_SLAB_MODE);
     TestPieces(from, whole, 8, vtkExtentTranslator::BLOCK_MODE);
     TestStreamer(from, whole, 5);
+    if (from.Name == "Smooth cut")
+    {
+      TestCutInParts(from);
+    }
   }
   const auto whole = MakeWhole(cases[2]);
   for (const int divisions : { 1, 2, 32 })

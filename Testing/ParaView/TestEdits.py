@@ -41,6 +41,20 @@ def check_cut(volume, cells):
     return cut
 
 
+def check_smooth_cut(volume, cells):
+    plane = simple.Plane()
+    plane.Origin, plane.Point1, plane.Point2 = [0.5, -20, -20], [0.5, 20, -20], [0.5, -20, 20]
+    cut = simple.CutVolume(Volume=volume, Sheet=plane, SmoothCut=1)
+    check(off(active(cut)) == 0, "a smooth cut switches something off")
+    count = cut.GetPropertyValue("DividedTetrahedra")
+    check(count == 5 * cells * cells, f"{count} tetrahedra are divided")
+    deform = simple.DeformVolume(Volume=volume, Deformation=bent_lattice(volume))
+    whole = deform.GetPropertyValue("CoveredVoxels") if fetch(deform) else 0
+    deform.Volume = cut
+    closed = deform.GetPropertyValue("CoveredVoxels") if fetch(deform) else 0
+    check(0 < closed == whole, f"of {whole} voxels {closed} are left at a smooth cut that is closed")
+
+
 def check_carve(volume):
     carve = simple.CarveVolume(Volume=volume)
     carve.Body = "Sphere"
@@ -65,6 +79,7 @@ def main():
     load_plugin()
     with messages() as texts:
         volume = wavelet()
+        check_smooth_cut(volume, 20)
         cut = check_cut(volume, 20)
         carve = check_carve(volume)
         carve.Volume = cut

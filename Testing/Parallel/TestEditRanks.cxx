@@ -121,6 +121,15 @@ void TestSteps()
         edited.ChainMail->Reset();
         edited.Drag(3.0);
       } },
+    { "A smooth cut",
+      [](Pipeline& edited)
+      {
+        edited.Cut->SmoothCutOn();
+        edited.Drag(6.0);
+      } },
+    { "The smooth cut is opened further", [](Pipeline& edited) { edited.Drag(9.0); } },
+    { "Its sides are folded over", [](Pipeline& edited) { edited.Drag(-22.0); } },
+    { "Without the smooth cut", [](Pipeline& edited) { edited.Cut->Undo(); } },
   };
   Pipeline whole(volume);
   Pipeline mine(volume);
