@@ -32,6 +32,9 @@ LARGE = ("TestLargeCells", "-*Time*")
 FAULTS = ("TestFaults", "*")
 GRAPHICS = ("TestGraphicsDevice", "*")
 CUTTING = ("TestCutting", "*")
+SMOOTH = ("TestSmoothCuts", "*")
+CROSSINGS = ("TestSheetCrossings", "*")
+CUT_PARTS = ("TestIncrementalCuts", "IncrementalCuts.*")
 CARVING = ("TestCarving", "*")
 CHAINMAIL = ("TestChainMail", "*")
 RELAXATION = ("TestChainMailRelaxation", "*")
@@ -109,6 +112,17 @@ MUTATIONS = {
     "cut-box": ("Kernels/Cutting/SheetCut.cxx", "p[axis] < box.Min[axis] ? 1U", "p[axis] <= box.Min[axis] ? 1U",
                 [CUTTING]),
     "cut-length": ("Kernels/Cutting/Sheet.h", "std::int64_t{ 1 } << 17", "std::int64_t{ 1 } << 24", [CUTTING]),
+    "cut-side": ("Kernels/Resampling/Resampling.cl",
+                 "(WeighDistances(cell->Cut.Distances, t, weights) < 0) != cell->Side", "0", [SMOOTH]),
+    "cut-gap": ("Kernels/SamplingMesh/KernelParameters.h", "DEFORMVOLUME_CLOSED_GAP 64",
+                "DEFORMVOLUME_CLOSED_GAP 0", [SMOOTH]),
+    "cut-border": ("Kernels/Resampling/CellCoverage.cl",
+                   "placed = placed && ViewTetrahedron(mesh, &cut, t, side, v);", "", [SMOOTH]),
+    "cut-joined": ("Kernels/Mapping/CutPositions.cl", "if (apart & joined)", "if (false)", [SMOOTH]),
+    "cut-multiple": ("Kernels/Cutting/SmoothCrossings.cxx", "!isMultiple && isDivision && isClear",
+                     "isDivision && isClear", [CROSSINGS]),
+    "cut-copies": ("Kernels/Resampling/IncrementalBoxes.cxx", "      low -= difference;\n      high += difference;\n",
+                   "", [CUT_PARTS]),
     "carve-ray": ("Kernels/Cutting/SurfaceInterior.cxx", "along.z != 0 ? -GetSign(along.z) : GetSign(along.y);",
                   "along.z != 0 ? GetSign(along.z) : GetSign(along.y);", [CARVING]),
     "carve-plane": ("Kernels/Cutting/SurfaceInterior.cxx", "return height == -GetSign(this->Normal.x);",

@@ -7,14 +7,17 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <memory>
 #include <random>
+#include <utility>
+#include <vector>
 
 using namespace deformvolume;
 
 namespace
 {
 
-class IncrementalCuts : public WayTest
+class IncrementalCutWays : public WayTest
 {
 };
 
@@ -85,7 +88,7 @@ void EditBeside(EditedVolume& volume, std::mt19937& random, int kind)
 
 } // namespace
 
-TEST_P(IncrementalCuts, EqualWholeOutputs)
+TEST_P(IncrementalCutWays, EqualWholeOutputs)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   std::mt19937 random(7);
@@ -155,7 +158,7 @@ TEST_P(IncrementalCuts, EqualWholeOutputs)
 }
 
 // Beside a cut that stands open what moves on one side moves the other side's copies.
-TEST_P(IncrementalCuts, NodesOfOneSideAreSplit)
+TEST_P(IncrementalCutWays, NodesOfOneSideAreSplit)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   if (GetRoute() == Route::Field)
@@ -187,4 +190,141 @@ TEST_P(IncrementalCuts, NodesOfOneSideAreSplit)
   EXPECT_GT(parts, edits / 4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, IncrementalCuts, GetWays(), GetWayName);
+namespace
+{
+
+// A volume with a displacement for each voxel, and two deformers of it.
+struct VoxelField
+{
+  static constexpr int Size = 64;
+  EditedVolume Volume{ { { 0, Size - 1, 0, Size - 1, 0, Size - 1 } }, false };
+  std::vector<float> Vectors = std::vector<float>(3 * Size * Size * Size);
+  VolumeDeformer Whole, Updated;
+  std::unique_ptr<EditedOutputs> Last;
+
+  float* GetVector(int x, int y, int z)
+  {
+    return this->Vectors.data() + 3 * static_cast<std::size_t>((z * Size + y) * Size + x);
+  }
+  void SendField(VolumeDeformer& deformer) const
+  {
+    DisplacementField field;
+    field.Dimensions = { { Size, Size, Size } };
+    field.Vectors = this->Vectors.data();
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      field.IndexToField[5 * axis] = 1.0;
+    }
+    deformer.SetDisplacementField(field, nullptr);
+  }
+  void SendAll()
+  {
+    for (VolumeDeformer* deformer : { &this->Whole, &this->Updated })
+    {
+      deformer->SetDevice("");
+      deformer->SetVoxelGrid(this->Volume.Shape);
+      deformer->SetArrays(this->Volume.GetArrays());
+      this->Volume.SendMasks(*deformer);
+    }
+  }
+  // Expects the same of both deformers. Returns whether one made a part.
+  bool Deform()
+  {
+    this->SendField(this->Whole);
+    this->SendField(this->Updated);
+    EditedOutputs expected(this->Volume);
+    const DeformReport wanted = this->Whole.Deform(expected.MakeRequest(this->Volume));
+    const bool isFirst = !this->Last;
+    this->Last = isFirst ? std::make_unique<EditedOutputs>(this->Volume) : std::move(this->Last);
+    DeformRequest request = this->Last->MakeRequest(this->Volume);
+    request.Incremental = true;
+    if (!isFirst)
+    {
+      this->Last->SetLast(request);
+    }
+    const DeformReport report = this->Updated.Deform(request);
+    ExpectSame(report, wanted);
+    EXPECT_TRUE(*this->Last == expected);
+    return report.NumberOfResampledBricks < report.NumberOfBricks;
+  }
+};
+
+} // namespace
+
+// A side that is drawn out towards the sheet: its copies go on in that direction, and reach further
+// than any of its vertices. The other side is far away.
+TEST(IncrementalCuts, CopiesReachFurtherThanVertices)
+{
+  for (const Resampling method : GetExactMethods())
+  {
+    SCOPED_TRACE(static_cast<int>(method));
+    VoxelField made;
+    made.Volume.Method = method;
+    made.Volume.Output = { { 0, 90, 0, 170, 0, VoxelField::Size - 1 } };
+    for (int voxel = 0; voxel < VoxelField::Size * VoxelField::Size * VoxelField::Size; ++voxel)
+    {
+      // The cells that are divided are the last ones of a part of a brick.
+      const int x = voxel % VoxelField::Size;
+      made.Volume.CutDistances.push_back(static_cast<float>(x) - 15.9F);
+      made.Vectors[3 * static_cast<std::size_t>(voxel)] = x == 15 ? 20.0F : 0.0F;
+      made.Vectors[3 * static_cast<std::size_t>(voxel) + 1] = x > 15 ? 100.0F : 0.0F;
+    }
+    const int cells = VoxelField::Size - 1;
+    for (int cell = 0; cell < cells * cells * cells; ++cell)
+    {
+      made.Volume.Crossed.push_back(cell % cells == 15 ? 31 : 0);
+    }
+    made.SendAll();
+    made.Deform();
+    for (const float amount : { 10.0F, 30.0F, 20.0F })
+    {
+      for (int z = 8; z < 12; ++z)
+      {
+        for (int y = 8; y < 12; ++y)
+        {
+          *made.GetVector(15, y, z) = amount;
+        }
+      }
+      EXPECT_TRUE(made.Deform());
+    }
+  }
+}
+
+// What one voxel moves beside a sheet that divides at random.
+TEST(IncrementalCuts, VoxelsMoveCopiesUpToTwoVoxelsAway)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> jitter(-0.4F, 0.4F);
+  VoxelField made;
+  for (float& component : made.Vectors)
+  {
+    component = jitter(random);
+  }
+  for (int voxel = 0; voxel < VoxelField::Size * VoxelField::Size * VoxelField::Size; ++voxel)
+  {
+    made.Volume.CutDistances.push_back(static_cast<float>(random() % 33) / 16.0F - 1.0F);
+  }
+  const int cells = VoxelField::Size - 1;
+  for (int cell = 0; cell < cells * cells * cells; ++cell)
+  {
+    const int x = cell % cells;
+    made.Volume.Crossed.push_back(x > 28 && x < 36 ? 31 : 0);
+  }
+  made.SendAll();
+  made.Deform();
+  int parts = 0;
+  const int steps = HasVectors() ? 20 : 3;
+  for (int step = 0; step < steps; ++step)
+  {
+    SCOPED_TRACE(step);
+    float* vector = made.GetVector(26 + static_cast<int>(random() % 12),
+      static_cast<int>(random() % VoxelField::Size), static_cast<int>(random() % VoxelField::Size));
+    vector[step % 3] = jitter(random);
+    parts += made.Deform() ? 1 : 0;
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_EQ(parts, steps);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, IncrementalCutWays, GetWays(), GetWayName);
