@@ -23,8 +23,8 @@
  * component, any unit) clips them: it is interpolated in each tetrahedron, and samples where it is
  * negative are left out; NaN is not negative. A cell array "CutTetrahedra" (unsigned char) and a
  * point array "CutDistance" (numeric) are a smooth cut, which divides tetrahedra between its two
- * sides (vtkCutVolume); resamplers other than EXACT do not know it: an error. Other cell arrays are not resampled, and a warning
- * names them.
+ * sides (vtkCutVolume); resamplers other than EXACT do not know it: an error. Other cell arrays are
+ * not resampled, and a warning names them.
  *
  * @par Port 1, the deformation, one of:
  * - vtkUnstructuredGrid, or a composite dataset of such (they are joined): tetrahedra; other
