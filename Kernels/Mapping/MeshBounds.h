@@ -67,6 +67,8 @@ private:
   std::vector<std::uint32_t> Uses;             // by how many of these, from the first change on
   std::vector<std::int32_t> ClippedTetrahedra; // in ascending order
   std::vector<IndexBounds> RestBounds;         // of each block of wanted nodes, scaled
+  std::vector<unsigned char> AreAllWanted;     // whether all nodes of a block are
+  std::vector<unsigned char> AreAllFinite;     // whether their displacements were
   BlockBounds NodeBounds;                      // of each block of nodes
   std::vector<IndexBounds> ClippedBounds;      // of each block of clipped tetrahedra
   ///@{

@@ -19,6 +19,8 @@ class vtkUnstructuredGrid;
 
 /// The sizes that the demands on speed and memory are stated for.
 inline constexpr std::array<int, 3> BenchmarkVolume{ { 189, 305, 229 } };
+/// Half as many voxels.
+inline constexpr std::array<int, 3> HalfVolume{ { 150, 242, 182 } };
 inline constexpr std::array<int, 3> HeadVolume{ { 301, 370, 316 } };
 inline constexpr int CoarseNodes = 13; // on each axis: 2,197 nodes
 inline constexpr int FineNodes = 80;   // on each axis: 512,000 nodes

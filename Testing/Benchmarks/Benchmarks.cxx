@@ -28,6 +28,7 @@ int main(int argc, char* argv[])
   RegisterIncremental(size);
   RegisterLive(size);
   RegisterEdits(size);
+  RegisterChainMail(size);
 
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv))

@@ -143,7 +143,10 @@ void RegisterEdits(const EvaluationSize& size)
         return editing.Carve.Get();
       })
   };
-  RegisterRounds<Editing>(
-    "Edit", size.GetRounds(),
-    []() { return std::make_shared<Editing>(MakeVolume(BenchmarkVolume)); }, edits);
+  for (const auto& dimensions : { HalfVolume, BenchmarkVolume })
+  {
+    RegisterRounds<Editing>(
+      "Edit/" + GetName(dimensions), size.GetRounds(),
+      [dimensions]() { return std::make_shared<Editing>(MakeVolume(dimensions)); }, edits);
+  }
 }

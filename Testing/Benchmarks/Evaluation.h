@@ -58,8 +58,11 @@ void RegisterIncremental(const EvaluationSize& size);
 /// Live/<edit>: what moves, is split or switched off between two frames.
 void RegisterLive(const EvaluationSize& size);
 
-/// Edit/<edit>: cutting and carving.
+/// Edit/<dimensions>/<edit>: cutting and carving.
 void RegisterEdits(const EvaluationSize& size);
+
+/// ChainMail/<dimensions>/<part or whole>: frames of a drag, the volume updated in part or whole.
+void RegisterChainMail(const EvaluationSize& size);
 
 /// A resampler by its name in the results.
 struct NamedResampler

@@ -9,8 +9,13 @@ PAPER_RESAMPLING = {"undeformed": 14.6, "rotated-45": 23.6, "scale-1.5": 51.2}  
 PAPER_RENDERING = {("700x700", "unshaded"): 7.4, ("700x700", "shaded"): 24.1,
                    ("1920x1080", "unshaded"): 40.3, ("1920x1080", "shaded"): 107.7}  # ms
 
-PAPER_CUT = 21.0  # ms, ChainMail
+# Milliseconds: of ChainMail, mapping, resampling and a frame of them; of edits, which take less.
+PAPER_FRAMES = {"150x242x182": (None, None, None, 16.0), "189x305x229": (11.0, 0.5, 23.5, 35.0)}
+PAPER_CUT = 21.0
 PAPER_CARVING = 8.0
+
+# 6.6 and 13.2 million voxels.
+INTERACTIVE_SIZES = tuple(PAPER_FRAMES)
 
 POSES = {"near": "near identity", "general": "general pose"}
 # What they are called in tables and in plots.
@@ -253,17 +258,38 @@ def live(results, _folder, _kind):
                      "Update() by that where all move"], rows)
 
 
-def edits(results, _folder, _kind):
-    rows = [[words, results.median(name), paper]
-            for name, words, paper in (
-                ("Edit/sheet", "a cut by a sheet of 200 triangles through all of the volume", PAPER_CUT),
-                ("Edit/tool", "a cut by a step of a tool that touches 1 % of the bricks", None),
-                ("Edit/sphere", "a sphere of a radius of 20 voxels is carved out", PAPER_CARVING),
-                ("Edit/nothing", "nothing", None))
-            if name in results.runs]
+def chain_mail(results, _folder, _kind):
+    rows = []
+    for dimensions in INTERACTIVE_SIZES:
+        for part, words in (("part", "what has moved"), ("whole", "all of it")):
+            name = f"ChainMail/{dimensions}/{part}"
+            if name in results.runs:
+                rows.append([dimensions, f"{results.median(name, 'moved'):,.0f}",
+                             results.milliseconds(name, "step"), words,
+                             results.milliseconds(name, "mapping"),
+                             results.milliseconds(name, "resampling"), results.median(name)])
+        if rows and rows[-1][0] == dimensions:
+            step, mapping, resampling, frame = PAPER_FRAMES[dimensions]
+            rows.append([f"{dimensions}, published", None, step, "all of it", mapping, resampling,
+                         frame])
     if rows:
-        yield "## Cutting and carving, 189 x 305 x 229 voxels\n"
-        yield table(["edit", "Update(), ms", "published, at most, ms"], rows)
+        yield "## ChainMail: frames of a drag\n"
+        yield table(["voxels", "voxels moved", "step, ms", "deformed anew", "mapping, ms",
+                     "resampling, ms", "frame: step and Update(), ms"], rows)
+
+
+def edits(results, _folder, _kind):
+    rows = [[dimensions, words, results.median(f"Edit/{dimensions}/{name}"), paper]
+            for dimensions in INTERACTIVE_SIZES
+            for name, words, paper in (
+                ("sheet", "a cut by a sheet of 200 triangles through all of the volume", PAPER_CUT),
+                ("tool", "a cut by a step of a tool that touches 1 % of the bricks", None),
+                ("sphere", "a sphere of a radius of 20 voxels is carved out", PAPER_CARVING),
+                ("nothing", "nothing", None))
+            if f"Edit/{dimensions}/{name}" in results.runs]
+    if rows:
+        yield "## Cutting and carving\n"
+        yield table(["voxels", "edit", "Update(), ms", "published, at most, ms"], rows)
 
 
 def given(results, _folder, _kind):
@@ -306,5 +332,4 @@ def rendering(results, folder, kind):
 
 
 ALL = [device, comparison, poses, nodes, tetrahedra, voxels, preprocessing, memory, incremental, live,
-       edits, given,
-       rendering]
+       chain_mail, edits, given, rendering]

@@ -4,6 +4,7 @@
 // nodes that are split or move, and masks. Each time the output is compared bit by bit with that of
 // a fresh filter. The static mapping is built once, as long as nodes stay where they lie at rest.
 #include "FilterTesting.h"
+#include "TimeAllowance.h"
 #include "UpdateChecks.h"
 
 #include <vtkCellArray.h>
@@ -389,9 +390,9 @@ int TestDeformRefinement(int, char*[])
 {
   const glm::dvec3 uneven(1.0, 0.9, 1.25);
   // Runs, in cells of some voxels, and links, in smaller ones.
-  Refinement(uneven, false, 9, Configurations::One, false, 1).Run(100);
-  Refinement(uneven, true, 25, Configurations::One, false, 2).Run(60);
-  Refinement(uneven, true, 9, Configurations::Two, false, 3).Run(40);
-  Refinement(glm::dvec3(1.0), false, 9, Configurations::One, true, 4).Run(60);
+  Refinement(uneven, false, 9, Configurations::One, false, 1).Run(GetNumberOfCases(100));
+  Refinement(uneven, true, 25, Configurations::One, false, 2).Run(GetNumberOfCases(60));
+  Refinement(uneven, true, 9, Configurations::Two, false, 3).Run(GetNumberOfCases(40));
+  Refinement(glm::dvec3(1.0), false, 9, Configurations::One, true, 4).Run(GetNumberOfCases(60));
   return GetExitCode();
 }

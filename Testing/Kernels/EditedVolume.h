@@ -6,6 +6,7 @@
 
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
+#include "TimeAllowance.h"
 
 #include <gtest/gtest.h>
 
@@ -120,10 +121,10 @@ protected:
   /// where whole outputs are made by cell as well.
   static int GetNumberOf(int edits)
   {
-    constexpr int byCell = 3;
+    constexpr int byCell = 5;
     constexpr int onGraphics = 8;
     return !HasVectors()                               ? edits / onGraphics
-      : GetMethod() == deformvolume::Resampling::Exact ? edits
+      : GetMethod() == deformvolume::Resampling::Exact ? GetNumberOfCases(edits)
                                                        : edits / byCell;
   }
 };

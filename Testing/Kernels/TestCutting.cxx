@@ -5,6 +5,7 @@
 #include "Error.h"
 #include "Sheet.h"
 #include "SheetCut.h"
+#include "TimeAllowance.h"
 
 #include <gtest/gtest.h>
 
@@ -220,7 +221,7 @@ TEST(Cutting, EqualsTheReference)
 TEST(Cutting, CompleteSheetsSeparate)
 {
   std::mt19937 random(3);
-  for (int round = 0; round < 400; ++round)
+  for (int round = 0; round < GetNumberOfCases(400); ++round)
   {
     const Extent vertices{ { -1, 5, 2, 8, 0, 9 } };
     reference::FreePositions positions(vertices);
@@ -251,7 +252,7 @@ TEST(Cutting, ClosedSheetsSeparate)
 {
   std::mt19937 random(4);
   const Extent vertices{ { 0, 12, 0, 12, 0, 12 } };
-  for (int round = 0; round < 200; ++round)
+  for (int round = 0; round < GetNumberOfCases(200); ++round)
   {
     reference::FreePositions positions(vertices);
     if (round % 2)

@@ -6,6 +6,7 @@
 #include "RefinedMesh.h"
 #include "StaticMapping.h"
 #include "StaticMappingUpdater.h"
+#include "TimeAllowance.h"
 
 #include <gtest/gtest.h>
 
@@ -186,7 +187,7 @@ TEST_P(Replacement, EqualsWhatIsSentAnew)
   this->SendAll(changed);
   ASSERT_NO_FATAL_FAILURE(this->Compare(changed));
   std::mt19937 random(17);
-  const int edits = GetParam().AllocationLimit ? 20 : 60;
+  const int edits = GetNumberOfCases(GetParam().AllocationLimit ? 20 : 60);
   for (int edit = 0; edit < edits; ++edit)
   {
     std::string what = this->Mesh.Edit();

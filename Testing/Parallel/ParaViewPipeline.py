@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Deforms a volume in pvbatch and saves the result: data as <prefix>.pvti, a picture as <prefix>.png.
+What is cut, carved and dragged by ChainMail is saved as <prefix>-edited.pvti, and deformed by that as
+<prefix>-dragged.pvti.
 
 Arguments: the plugin, the prefix, the volume (.vti), the deformation mesh (.pvtu), the number of ranks
 that there should be.
@@ -24,6 +26,16 @@ deformed = DeformVolume(Volume=volume, Deformation=mesh)
 deformed.DisplacementArray = ["POINTS", "displacement"]
 deformed.UpdatePipeline()
 simple.SaveData(prefix + ".pvti", proxy=deformed, DataMode="Binary")
+
+sheet = simple.Plane(Origin=[0.3, -40, -40], Point1=[0.3, 40, -40], Point2=[0.3, -40, 40])
+carved = CarveVolume(Volume=CutVolume(Volume=volume, Sheet=sheet))
+carved.Body = "Sphere"
+carved.Body.Center, carved.Body.Radius = [9, 7, -5], 8
+simple.SaveData(prefix + "-edited.pvti", proxy=carved, DataMode="Binary")
+handle = DeformationHandle(RestPosition=[4, -6, 2], Position=[13, 2, 8])
+drag = ChainMailDeformation(Volume=carved, Handles=handle, RelaxationSweeps=3)
+dragged = DeformVolume(Volume=carved, Deformation=drag)
+simple.SaveData(prefix + "-dragged.pvti", proxy=dragged, DataMode="Binary")
 
 view = simple.CreateView("RenderView")
 view.ViewSize = [400, 400]

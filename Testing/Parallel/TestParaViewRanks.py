@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView's pvbatch with one, two and three ranks: equal data to the last bit, and nearly equal
-pictures of the volume.
+"""ParaView's pvbatch with one, two, three and eight ranks: equal data to the last bit, of a volume
+that is deformed, and of one that is cut, carved and dragged, and nearly equal pictures.
 
 Arguments: mpiexec, pvbatch, the plugin, the folder for output.
 """
@@ -70,38 +70,59 @@ mesh = os.path.join(output, "TestParaViewRanks.pvtu")
 write_mesh(3)
 
 
+def read(name):
+    """The extent of a volume in a file of pieces, and its arrays by their names."""
+    reader = vtkXMLPImageDataReader()
+    reader.SetFileName(name)
+    reader.Update()
+    volume = reader.GetOutput()
+    arrays = {}
+    for data in (volume.GetPointData(), volume.GetCellData()):
+        for i in range(data.GetNumberOfArrays()):
+            arrays[data.GetArrayName(i)] = vtk_to_numpy(data.GetArray(i))
+    return volume.GetExtent(), arrays
+
+
 def run(ranks):
     prefix = os.path.join(output, f"TestParaViewRanks{ranks}")
     command = [mpiexec, "-n", str(ranks), pvbatch, os.path.join(here, "ParaViewPipeline.py")]
     subprocess.run(command + [plugin, prefix, volume, mesh, str(ranks)], check=True, timeout=200)
-    reader = vtkXMLPImageDataReader()
-    reader.SetFileName(prefix + ".pvti")
-    reader.Update()
     picture = vtkPNGReader()
     picture.SetFileName(prefix + ".png")
     picture.Update()
     pixels = vtk_to_numpy(picture.GetOutput().GetPointData().GetScalars())
-    return reader.GetOutput(), pixels.astype(float)
+    volumes = {what: read(f"{prefix}{what}.pvti") for what in ("", "-edited", "-dragged")}
+    return volumes, pixels.astype(float)
 
 
 serial, serial_picture = run(1)
-names = [serial.GetPointData().GetArrayName(i) for i in range(2)]
-if sorted(names) != ["RTData", "vtkValidPointMask"]:
-    sys.exit(f"unexpected arrays {names}")
-mask = vtk_to_numpy(serial.GetPointData().GetArray("vtkValidPointMask"))
-if not 0.5 * mask.size < mask.sum() < mask.size:
-    sys.exit(f"{mask.sum()} of {mask.size} voxels are covered")
+deformed, edited, dragged = (serial[what][1] for what in ("", "-edited", "-dragged"))
+for arrays, names in ((deformed, ["RTData", "vtkValidPointMask"]),
+                      (edited, ["ActiveTetrahedra", "RTData"]),
+                      (dragged, ["RTData", "vtkValidPointMask"])):
+    if sorted(arrays) != names:
+        sys.exit(f"unexpected arrays {sorted(arrays)}")
+for mask in (deformed["vtkValidPointMask"], dragged["vtkValidPointMask"]):
+    if not 0.5 * mask.size < mask.sum() < mask.size:
+        sys.exit(f"{mask.sum()} of {mask.size} voxels are covered")
+# A plane and a ball, of which two layers of cells and a bit more than 2,100 are left.
+off = (edited["ActiveTetrahedra"] & 31 != 31).sum()
+if not 58 * 62 + 2000 < off < 58 * 62 + 3000:
+    sys.exit(f"{off} cells are cut")
+moved = (dragged["RTData"] != edited["RTData"]).sum()
+if not 8000 < moved < 0.5 * dragged["RTData"].size:
+    sys.exit(f"{moved} voxels differ after the drag")
 if serial_picture.std() < 10.0:
     sys.exit("the picture is empty")
-for ranks in (2, 3):
+for ranks in (2, 3, 8):
     parallel, picture = run(ranks)
-    if parallel.GetExtent() != serial.GetExtent():
-        sys.exit(f"{ranks} ranks: extent {parallel.GetExtent()} instead of {serial.GetExtent()}")
-    for name in names:
-        expected = vtk_to_numpy(serial.GetPointData().GetArray(name))
-        actual = vtk_to_numpy(parallel.GetPointData().GetArray(name))
-        if expected.tobytes() != actual.tobytes():
-            sys.exit(f"{ranks} ranks: {(expected != actual).sum()} values of {name} differ")
+    for what, (extent, arrays) in serial.items():
+        if parallel[what][0] != extent:
+            sys.exit(f"{ranks} ranks: extent {parallel[what][0]} instead of {extent}{what}")
+        for name, expected in arrays.items():
+            actual = parallel[what][1][name]
+            if expected.tobytes() != actual.tobytes():
+                sys.exit(f"{ranks} ranks: {(expected != actual).sum()} values of {name}{what} differ")
     # Ranks blend their parts of a ray in 8 bits, and a ray starts anew in each part.
     difference = numpy.abs(picture - serial_picture)
     print(f"{ranks} ranks: pixels differ by {difference.mean():.3f} on average, "

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a frame takes while tissue is dragged by ChainMail: a step of it, and the volume deformed.
+#include "Evaluation.h"
+#include "Timing.h"
+
+#include "vtkChainMailDeformation.h"
+
+#include <vtkDoubleArray.h>
+#include <vtkImageData.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace
+{
+
+constexpr double HandleRadius = 3.0; // voxels
+constexpr double DragLength = 15.0;  // voxels, so that some 100,000 move
+constexpr double StepAngle = 0.3;
+
+// A volume of soft tissue, in whose middle a handle goes round in a circle.
+struct DraggedVolume
+{
+  explicit DraggedVolume(vtkImageData* volume)
+    : Spacing(volume->GetSpacing()[0])
+  {
+    volume->GetCenter(this->Center);
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    points->InsertNextPoint(this->Center);
+    this->Handles->SetPoints(points);
+    vtkNew<vtkDoubleArray> rest;
+    rest->SetName("RestPosition");
+    rest->SetNumberOfComponents(3);
+    rest->InsertNextTuple(this->Center);
+    this->Handles->GetPointData()->AddArray(rest);
+    this->ChainMail->SetInputData(volume);
+    this->ChainMail->SetHandlesData(this->Handles);
+    this->ChainMail->SetHandleRadius(HandleRadius * this->Spacing);
+    this->Filter->SetInputData(volume);
+    this->Filter->SetDeformationConnection(this->ChainMail->GetOutputPort());
+  }
+
+  void MoveHandle()
+  {
+    const double angle = StepAngle * ++this->Step;
+    const double length = DragLength * this->Spacing;
+    this->Handles->GetPoints()->SetPoint(0, this->Center[0] + length * std::cos(angle),
+      this->Center[1] + length / 3.0, this->Center[2] + length * std::sin(angle));
+    this->Handles->GetPoints()->Modified();
+    this->Handles->Modified();
+  }
+
+  double Spacing;
+  double Center[3];
+  int Step = 0;
+  vtkNew<vtkPolyData> Handles;
+  vtkNew<vtkChainMailDeformation> ChainMail;
+  vtkNew<vtkDeformVolumeFilter> Filter;
+};
+
+// A step of the drag, and the volume brought up to date: the part of it that follows, or all of it.
+Measurement MeasureFrame(DraggedVolume& dragged, bool whole)
+{
+  dragged.MoveHandle();
+  dragged.Filter->SetIncremental(!whole);
+  Measurement measurement;
+  const double step = Time([&] { dragged.ChainMail->Update(); });
+  measurement.Seconds = step + Time([&] { dragged.Filter->Update(); });
+  if (dragged.Filter->GetNumberOfCoveredVoxels() == 0)
+  {
+    throw std::runtime_error("nothing was deformed");
+  }
+  measurement.Counters["step"] = step;
+  measurement.Counters["mapping"] = dragged.Filter->GetMappingTime();
+  measurement.Counters["resampling"] = dragged.Filter->GetResamplingTime();
+  measurement.Counters["moved"] = static_cast<double>(dragged.ChainMail->GetNumberOfMovedVoxels());
+  return measurement;
+}
+
+} // namespace
+
+void RegisterChainMail(const EvaluationSize& size)
+{
+  for (const auto& dimensions : { HalfVolume, BenchmarkVolume })
+  {
+    RegisterRounds<DraggedVolume>("ChainMail/" + GetName(dimensions), size.GetRounds(),
+      [dimensions]() { return std::make_shared<DraggedVolume>(MakeVolume(dimensions)); },
+      { { "part", [](DraggedVolume& dragged) { return MeasureFrame(dragged, false); } },
+        { "whole", [](DraggedVolume& dragged) { return MeasureFrame(dragged, true); } } });
+  }
+}
