@@ -308,7 +308,9 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   SamplesInBounds s;
   FindSamples(b, &toEnds, &s, p);
   const uint some = c->There & LaneBits((s.CountX > 0) & (s.CountY > 0) & (s.CountZ > 0));
-  c->Skip = DEFORMVOLUME_IS_CLOSED(p->Pass) && IsSettled(some, &s, output, p);
+  // Cells that a cut divides, none of which is whole, reach beyond the bounds of their vertices.
+  const int isDivided = HAS_CUT && (c->There & ~whole);
+  c->Skip = DEFORMVOLUME_IS_CLOSED(p->Pass) && !isDivided && IsSettled(some, &s, output, p);
   if (p->IsPart)
   {
     FindSamplesOfWhole(b, &toEnds, &s, p);
