@@ -3,6 +3,7 @@
 // split, splits that are undone, moves, masks), each compared bit by bit with a fresh filter. The
 // static mapping is built once, as long as no node moves at rest.
 #include "FilterTesting.h"
+#include "TimeAllowance.h"
 #include "UpdateChecks.h"
 
 #include <vtkArrayChanges.h>
@@ -424,10 +425,10 @@ private:
 
 int TestDeformTopology(int, char*[])
 {
-  Topology(Form::Displacements, false, false).Run(200);
-  Topology(Form::Displacements, true, false).Run(100);
-  Topology(Form::TwoConfigurations, false, false).Run(60);
-  Topology(Form::Displacements, false, true).Run(200);
-  Topology(Form::TwoConfigurations, true, true).Run(60);
+  Topology(Form::Displacements, false, false).Run(GetNumberOfCases(200));
+  Topology(Form::Displacements, true, false).Run(GetNumberOfCases(100));
+  Topology(Form::TwoConfigurations, false, false).Run(GetNumberOfCases(60));
+  Topology(Form::Displacements, false, true).Run(GetNumberOfCases(200));
+  Topology(Form::TwoConfigurations, true, true).Run(GetNumberOfCases(60));
   return GetExitCode();
 }
