@@ -19,7 +19,7 @@ namespace
 {
 
 constexpr double HandleRadius = 3.0; // voxels
-constexpr double DragLength = 15.0;  // voxels, so that some 100,000 move
+constexpr double DragLength = 14.5;  // voxels, so that some 100,000 move
 constexpr double StepAngle = 0.3;
 
 // A volume of soft tissue, in whose middle a handle goes round in a circle.
