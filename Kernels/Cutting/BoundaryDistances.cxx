@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BoundaryDistances.h"
 
+#include "BrickBlocks.h"
+
 #include <algorithm>
 
 namespace deformvolume
@@ -48,35 +50,21 @@ void BoundaryDistances::UpdateBrick(std::size_t brick, const std::vector<const D
   std::vector<const DistanceSet::Block*> blocks;
   for (const DistanceSet* set : sets)
   {
-    const auto place = std::lower_bound(set->Bricks.begin(), set->Bricks.end(), brick);
-    if (place != set->Bricks.end() && *place == brick)
+    if (const DistanceSet::Block* block = FindBlock(set->Bricks, set->Blocks, brick))
     {
-      blocks.push_back(&set->Blocks[static_cast<std::size_t>(place - set->Bricks.begin())]);
+      blocks.push_back(block);
     }
   }
-  const Extent vertices = this->Bricks.GetCells(brick);
-  const std::array<int, 3>& size = this->Bricks.GetSize();
-  for (int z = vertices[4]; z <= vertices[5]; ++z)
-  {
-    for (int y = vertices[2]; y <= vertices[3]; ++y)
+  ForEachCell(this->Bricks, brick,
+    [&](const std::array<int, 3>&, std::size_t place, std::size_t vertex)
     {
-      const std::size_t row = (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) +
-                                static_cast<std::size_t>(y)) *
-        static_cast<std::size_t>(size[0]);
-      for (int x = vertices[0]; x <= vertices[1]; ++x)
+      float least = this->Base.empty() ? this->Far : this->Base[vertex];
+      for (const DistanceSet::Block* block : blocks)
       {
-        const std::size_t place =
-          TetrahedronSet::GetPlace(x - vertices[0], y - vertices[2], z - vertices[4]);
-        const std::size_t vertex = row + static_cast<std::size_t>(x);
-        float least = this->Base.empty() ? this->Far : this->Base[vertex];
-        for (const DistanceSet::Block* block : blocks)
-        {
-          least = std::min(least, (*block)[place]);
-        }
-        this->Values[vertex] = least;
+        least = std::min(least, (*block)[place]);
       }
-    }
-  }
+      this->Values[vertex] = least;
+    });
 }
 
 std::vector<std::size_t> BoundaryDistances::TakeChangedBricks()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MaskEditor.h"
 
+#include "BrickBlocks.h"
 #include "Error.h"
 #include "FiveTetrahedra.h"
 
@@ -18,15 +19,6 @@ int CountBits(unsigned int byte)
 {
   static constexpr int counts[16] = { 0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4 };
   return counts[byte & 15U] + counts[byte >> 4U & 15U];
-}
-
-// Where a set has a brick, else null.
-const TetrahedronSet::Block* FindBlock(const TetrahedronSet& set, std::size_t brick)
-{
-  const auto place = std::lower_bound(set.Bricks.begin(), set.Bricks.end(), brick);
-  return place != set.Bricks.end() && *place == brick
-    ? &set.Blocks[static_cast<std::size_t>(place - set.Bricks.begin())]
-    : nullptr;
 }
 
 } // namespace
@@ -66,12 +58,12 @@ void MaskEditor::SetBase(const unsigned char* base)
 
 void MaskEditor::SetBaseDistances(const float* base)
 {
-  this->Distances.SetBase(base, this->GetDistanceSets());
+  this->Distances.SetBase(base, this->GetSets(&Edit::Distances));
 }
 
 void MaskEditor::SetBaseCut(const unsigned char* crossed, const float* distances)
 {
-  this->Crossings.SetBase(crossed, distances, this->GetCrossingSets());
+  this->Crossings.SetBase(crossed, distances, this->GetSets(&Edit::Crossings));
   this->UpdateSwitchedOff();
 }
 
@@ -202,27 +194,15 @@ bool MaskEditor::HasSmoothCuts() const
     [](const Edit& edit) { return !edit.Crossings.IsEmpty(); });
 }
 
-std::vector<const CrossingSet*> MaskEditor::GetCrossingSets() const
+template <typename Set>
+std::vector<const Set*> MaskEditor::GetSets(Set Edit::*set) const
 {
-  std::vector<const CrossingSet*> sets;
+  std::vector<const Set*> sets;
   for (const Edit& edit : this->Edits)
   {
-    if (!edit.Crossings.IsEmpty())
+    if (!(edit.*set).IsEmpty())
     {
-      sets.push_back(&edit.Crossings);
-    }
-  }
-  return sets;
-}
-
-std::vector<const DistanceSet*> MaskEditor::GetDistanceSets() const
-{
-  std::vector<const DistanceSet*> sets;
-  for (const Edit& edit : this->Edits)
-  {
-    if (!edit.Distances.IsEmpty())
-    {
-      sets.push_back(&edit.Distances);
+      sets.push_back(&(edit.*set));
     }
   }
   return sets;
@@ -231,8 +211,8 @@ std::vector<const DistanceSet*> MaskEditor::GetDistanceSets() const
 void MaskEditor::Update(const Edit& edit)
 {
   this->Update(edit.Set.Bricks);
-  this->Distances.Update(edit.Distances.Bricks, this->GetDistanceSets());
-  this->Update(this->Crossings.Update(edit.Crossings, this->GetCrossingSets()));
+  this->Distances.Update(edit.Distances.Bricks, this->GetSets(&Edit::Distances));
+  this->Update(this->Crossings.Update(edit.Crossings, this->GetSets(&Edit::Crossings)));
 }
 
 void MaskEditor::Update(const std::vector<std::size_t>& bricks)
@@ -270,40 +250,26 @@ void MaskEditor::UpdateBrick(std::size_t brick)
   std::vector<const TetrahedronSet::Block*> blocks;
   for (const Edit& edit : this->Edits)
   {
-    if (const TetrahedronSet::Block* block = FindBlock(edit.Set, brick))
+    if (const TetrahedronSet::Block* block = FindBlock(edit.Set.Bricks, edit.Set.Blocks, brick))
     {
       blocks.push_back(block);
     }
   }
   const std::vector<unsigned char>& off = this->Crossings.GetSwitchedOff();
-  const Extent cells = this->Bricks.GetCells(brick);
-  const std::array<int, 3>& size = this->Bricks.GetSize();
-  for (int z = cells[4]; z <= cells[5]; ++z)
-  {
-    for (int y = cells[2]; y <= cells[3]; ++y)
+  ForEachCell(this->Bricks, brick,
+    [&](const std::array<int, 3>&, std::size_t place, std::size_t cell)
     {
-      const std::size_t row = (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) +
-                                static_cast<std::size_t>(y)) *
-        static_cast<std::size_t>(size[0]);
-      for (int x = cells[0]; x <= cells[1]; ++x)
+      unsigned int hit = 0;
+      for (const TetrahedronSet::Block* block : blocks)
       {
-        const std::size_t place =
-          TetrahedronSet::GetPlace(x - cells[0], y - cells[2], z - cells[4]);
-        unsigned int hit = 0;
-        for (const TetrahedronSet::Block* block : blocks)
-        {
-          hit |= (*block)[place];
-        }
-        const std::size_t cell = row + static_cast<std::size_t>(x);
-        hit |= off.empty() ? 0U : off[cell];
-        const unsigned int base =
-          this->Base.empty() ? DEFORMVOLUME_ALL_TETRAHEDRA : this->Base[cell];
-        const unsigned int next = base & ~(hit & DEFORMVOLUME_ALL_TETRAHEDRA);
-        this->NumberOfSwitchedOff += CountBits(base ^ next) - CountBits(base ^ this->Mask[cell]);
-        this->Mask[cell] = static_cast<unsigned char>(next);
+        hit |= (*block)[place];
       }
-    }
-  }
+      hit |= off.empty() ? 0U : off[cell];
+      const unsigned int base = this->Base.empty() ? DEFORMVOLUME_ALL_TETRAHEDRA : this->Base[cell];
+      const unsigned int next = base & ~(hit & DEFORMVOLUME_ALL_TETRAHEDRA);
+      this->NumberOfSwitchedOff += CountBits(base ^ next) - CountBits(base ^ this->Mask[cell]);
+      this->Mask[cell] = static_cast<unsigned char>(next);
+    });
 }
 
 } // namespace deformvolume

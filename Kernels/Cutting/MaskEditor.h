@@ -106,8 +106,9 @@ private:
   void Update(const std::vector<std::size_t>& bricks);
   /// Makes all anew that an edit hits.
   void Update(const Edit& edit);
-  std::vector<const DistanceSet*> GetDistanceSets() const;
-  std::vector<const CrossingSet*> GetCrossingSets() const;
+  /// Those of all edits that are not empty.
+  template <typename Set>
+  std::vector<const Set*> GetSets(Set Edit::*set) const;
   void Update(const std::list<Edit>& edits);
   /// Makes all anew where smooth cuts may have switched something off.
   void UpdateSwitchedOff();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SmoothCrossings.h"
 
+#include "BrickBlocks.h"
 #include "FiveTetrahedra.h"
 #include "TetrahedronSet.h"
 
@@ -14,17 +15,6 @@ namespace
 {
 
 constexpr int FiveTetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
-
-// Where a list of bricks has one, else null.
-template <typename Block>
-const Block* FindBlock(
-  const std::vector<std::size_t>& bricks, const std::vector<Block>& blocks, std::size_t brick)
-{
-  const auto place = std::lower_bound(bricks.begin(), bricks.end(), brick);
-  return place != bricks.end() && *place == brick
-    ? &blocks[static_cast<std::size_t>(place - bricks.begin())]
-    : nullptr;
-}
 
 // The edges that are crossed where some vertices are on the negative side.
 unsigned int GetEdges(const std::array<bool, 4>& isNegative)
@@ -101,29 +91,6 @@ std::size_t SmoothCrossings::GetVertex(const std::array<int, 3>& cell, unsigned 
 
 namespace
 {
-
-// Calls function(local indices, place in a block, place in the volume) for the cells of a brick.
-template <typename Function>
-void ForEachCell(const CellBricks& bricks, std::size_t brick, Function&& function)
-{
-  const Extent cells = bricks.GetCells(brick);
-  const std::array<int, 3>& size = bricks.GetSize();
-  for (int z = cells[4]; z <= cells[5]; ++z)
-  {
-    for (int y = cells[2]; y <= cells[3]; ++y)
-    {
-      const std::size_t row = (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) +
-                                static_cast<std::size_t>(y)) *
-        static_cast<std::size_t>(size[0]);
-      for (int x = cells[0]; x <= cells[1]; ++x)
-      {
-        function(std::array<int, 3>{ { x, y, z } },
-          TetrahedronSet::GetPlace(x - cells[0], y - cells[2], z - cells[4]),
-          row + static_cast<std::size_t>(x));
-      }
-    }
-  }
-}
 
 // Which of the offsets of a cell the vertices of its tetrahedra are: numbers with these bits
 // exchanged (FiveTetrahedra.h).

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A block that is cut along a curved sheet and pulled apart: whole tetrahedra left out, and beside
 // it divided.
-#include "FilterTesting.h"
+#include "SmoothPictures.h"
 
 #include "vtkCutVolume.h"
 
-#include <vtkActor.h>
-#include <vtkCamera.h>
 #include <vtkCellArray.h>
-#include <vtkFlyingEdges3D.h>
 #include <vtkPolyData.h>
-#include <vtkPolyDataMapper.h>
-#include <vtkProperty.h>
-#include <vtkRegressionTestImage.h>
-#include <vtkRenderWindow.h>
-#include <vtkRenderWindowInteractor.h>
-#include <vtkRenderer.h>
 
 #include <cmath>
 
@@ -50,48 +41,12 @@ void Show(vtkRenderWindow* window, int column, bool smooth)
   field->CopyStructure(volume);
   SetDisplacements(field,
     [&](const glm::dvec3& p) { return p + glm::dvec3(p.x < sheet(p.y) ? -2.0 : 2.0, 0.0, 0.0); });
-  vtkNew<vtkDeformVolumeFilter> deform;
-  deform->SetInputConnection(cut->GetOutputPort());
-  deform->SetDeformationData(field);
-  deform->SetOutputSpacingModeToCustomSpacing();
-  deform->SetCustomSpacing(0.25, 0.25, 0.25);
-  deform->SetPadding(1);
-  vtkNew<vtkFlyingEdges3D> surface;
-  surface->SetInputConnection(deform->GetOutputPort());
-  surface->SetValue(0, 50.0);
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputConnection(surface->GetOutputPort());
-  mapper->ScalarVisibilityOff();
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(0.9, 0.75, 0.6);
-  vtkNew<vtkRenderer> renderer;
-  renderer->SetViewport(0.5 * column, 0.0, 0.5 * (column + 1), 1.0);
-  renderer->SetBackground(0.15, 0.2, 0.3);
-  renderer->AddViewProp(actor);
-  window->AddRenderer(renderer);
-  renderer->ResetCamera();
-  renderer->GetActiveCamera()->Elevation(-35.0);
-  renderer->GetActiveCamera()->Zoom(1.0);
+  smoothPictures::ShowSurface(window, column, cut->GetOutputPort(), field, 1.0);
 }
 
 } // namespace
 
 int TestSmoothCutPicture(int argc, char* argv[])
 {
-  vtkNew<vtkRenderWindow> window;
-  window->SetSize(500, 250);
-  window->SetMultiSamples(0);
-  Show(window, 0, false);
-  Show(window, 1, true);
-  vtkNew<vtkRenderWindowInteractor> interactor;
-  interactor->SetRenderWindow(window);
-  window->Render();
-  const int image = vtkRegressionTestImage(window);
-  if (image == vtkRegressionTester::DO_INTERACTOR)
-  {
-    interactor->Start();
-  }
-  VERIFY(image != vtkRegressionTester::FAILED);
-  return GetExitCode();
+  return smoothPictures::ComparePicture(argc, argv, Show);
 }

@@ -110,6 +110,9 @@ Deformed LoadAndRun(const DeformerCase& deformerCase,
 void ExpectEqualsReference(const DeformerCase& deformerCase, const reference::Result& reference,
   const std::vector<deformvolume::VolumeArray>& arrays, const Deformed& deformed);
 
+/// The same on a new deformer, with arrays that go by lanes, and with others.
+void ExpectEqualsReference(const DeformerCase& deformerCase, Route route = Route::Field);
+
 /// No hole and no voxel that more than one tetrahedron writes.
 void ExpectEmbedding(const reference::Result& reference);
 

@@ -46,3 +46,16 @@ VertexRuns MakeRuns(const DeformerCase& deformerCase)
   runs.RowBegins.push_back(static_cast<std::uint32_t>(runs.Runs.size()));
   return runs;
 }
+
+void ExpectEqualsReference(const DeformerCase& deformerCase, Route route)
+{
+  const std::size_t size = deformerCase.GetNumberOfVoxels();
+  const reference::Result reference = ResampleByReference(deformerCase);
+  const auto shorts = MakeRandomValues<std::int16_t>(size, 4);
+  const auto floats = MakeRandomValues<float>(size, 5);
+  const std::vector<VolumeArray> linear{ MakeArray(shorts), MakeArray(floats, 1, false, 2.0) };
+  ExpectEqualsReference(deformerCase, reference, linear, LoadAndRun(deformerCase, linear, route));
+  const auto labels = MakeRandomValues<std::uint16_t>(size * 2, 3);
+  const std::vector<VolumeArray> others{ MakeArray(labels, 2, true, 12.0) };
+  ExpectEqualsReference(deformerCase, reference, others, LoadAndRun(deformerCase, others, route));
+}

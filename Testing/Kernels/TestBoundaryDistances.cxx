@@ -40,19 +40,6 @@ std::vector<float> MakeDistances(std::size_t size, unsigned int seed, bool ofAll
   return distances;
 }
 
-void Check(const DeformerCase& clipped, Route route = Route::Field)
-{
-  const std::size_t size = clipped.GetNumberOfVoxels();
-  const reference::Result reference = ResampleByReference(clipped);
-  const auto shorts = MakeRandomValues<std::int16_t>(size, 4);
-  const auto floats = MakeRandomValues<float>(size, 5);
-  const std::vector<VolumeArray> linear{ MakeArray(shorts), MakeArray(floats, 1, false, 2.0) };
-  ExpectEqualsReference(clipped, reference, linear, LoadAndRun(clipped, linear, route));
-  const auto labels = MakeRandomValues<std::uint16_t>(size * 2, 3);
-  const std::vector<VolumeArray> others{ MakeArray(labels, 2, true, 12.0) };
-  ExpectEqualsReference(clipped, reference, others, LoadAndRun(clipped, others, route));
-}
-
 // A plane through the undeformed volume at x = place, what is on its low side left out.
 std::vector<float> MakePlane(const Extent& extent, double place)
 {
@@ -164,7 +151,10 @@ TEST(BoundaryDistances, EqualTheReference)
           static_cast<unsigned char>(random() % 32);
       }
     }
-    Check(clipped, seed % 3 == 0 ? Route::Field : seed % 3 == 1 ? Route::Mesh : Route::Runs);
+    ExpectEqualsReference(clipped,
+      seed % 3 == 0     ? Route::Field
+        : seed % 3 == 1 ? Route::Mesh
+                        : Route::Runs);
   }
 }
 
@@ -178,7 +168,7 @@ TEST(BoundaryDistances, EqualTheReferenceAtRest)
     DeformerCase clipped =
       MakeCase(Volume, NoScale, [=](const glm::dvec3& index) { return index * scale; });
     clipped.Distances = MakeDistances(clipped.GetNumberOfVoxels(), 9, true);
-    Check(clipped);
+    ExpectEqualsReference(clipped);
   }
 }
 
@@ -190,7 +180,7 @@ TEST(BoundaryDistances, EqualTheReferenceWhereTheVolumeIsFolded)
     SCOPED_TRACE(seed);
     DeformerCase clipped = MakeCase(Volume, NoScale, MakeJitter(seed, 0.4 + 0.4 * seed));
     clipped.Distances = MakeDistances(clipped.GetNumberOfVoxels(), seed, seed % 2 == 0);
-    Check(clipped);
+    ExpectEqualsReference(clipped);
   }
 }
 
@@ -201,7 +191,7 @@ TEST(BoundaryDistances, LargeCellsAreClipped)
   DeformerCase clipped = MakeCase(extent, NoScale,
     [](const glm::dvec3& index) { return index * 40.0 + glm::dvec3(index.y, index.z, index.x); });
   clipped.Distances = MakeDistances(clipped.GetNumberOfVoxels(), 5, true);
-  Check(clipped);
+  ExpectEqualsReference(clipped);
 }
 
 TEST(BoundaryDistances, ChunksAndPartsEqualTheWhole)

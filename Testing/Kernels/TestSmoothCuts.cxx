@@ -79,19 +79,6 @@ void CutAlong(
   }
 }
 
-void Check(const DeformerCase& cut, Route route = Route::Field)
-{
-  const std::size_t size = cut.GetNumberOfVoxels();
-  const reference::Result reference = ResampleByReference(cut);
-  const auto shorts = MakeRandomValues<std::int16_t>(size, 4);
-  const auto floats = MakeRandomValues<float>(size, 5);
-  const std::vector<VolumeArray> linear{ MakeArray(shorts), MakeArray(floats, 1, false, 2.0) };
-  ExpectEqualsReference(cut, reference, linear, LoadAndRun(cut, linear, route));
-  const auto labels = MakeRandomValues<std::uint16_t>(size * 2, 3);
-  const std::vector<VolumeArray> others{ MakeArray(labels, 2, true, 12.0) };
-  ExpectEqualsReference(cut, reference, others, LoadAndRun(cut, others, route));
-}
-
 // Moves what is on one side of a sheet away from the other.
 Deformation MoveApart(const std::function<double(const glm::dvec3&)>& distance,
   const glm::dvec3& negative, const glm::dvec3& positive)
@@ -210,7 +197,10 @@ TEST(SmoothCuts, EqualTheReference)
         cut.Distances[random() % size] = -0.5F;
       }
     }
-    Check(cut, seed % 3 == 0 ? Route::Field : seed % 3 == 1 ? Route::Mesh : Route::Runs);
+    ExpectEqualsReference(cut,
+      seed % 3 == 0     ? Route::Field
+        : seed % 3 == 1 ? Route::Mesh
+                        : Route::Runs);
   }
 }
 
@@ -226,11 +216,11 @@ TEST(SmoothCuts, EqualTheReferenceWhereSidesComeApart)
     const glm::dvec3 step(2.5 * (seed % 3), 0.75 * seed, -0.5);
     DeformerCase cut = MakeCase(Volume, NoScale, MoveApart(sheet, -step, step));
     CutAlong(cut, sheet, [seed](const glm::dvec3& cell) { return seed < 3 || cell.y < 5; });
-    Check(cut, seed % 2 == 0 ? Route::Field : Route::Mesh);
+    ExpectEqualsReference(cut, seed % 2 == 0 ? Route::Field : Route::Mesh);
     // Into each other.
     cut = MakeCase(Volume, NoScale, MoveApart(sheet, step, -step));
     CutAlong(cut, sheet, [seed](const glm::dvec3& cell) { return seed < 3 || cell.y < 5; });
-    Check(cut, seed % 2 == 0 ? Route::Runs : Route::Field);
+    ExpectEqualsReference(cut, seed % 2 == 0 ? Route::Runs : Route::Field);
   }
 }
 
@@ -242,7 +232,7 @@ TEST(SmoothCuts, EqualTheReferenceWhereTheVolumeIsFolded)
     SCOPED_TRACE(seed);
     DeformerCase cut = MakeCase(Volume, NoScale, MakeJitter(seed, 0.4 + 0.4 * seed));
     CutAtRandom(cut, seed, 1 + seed % 3);
-    Check(cut);
+    ExpectEqualsReference(cut);
   }
 }
 
@@ -257,7 +247,7 @@ TEST(SmoothCuts, LargeCellsAreDivided)
         glm::dvec3(index.x > 0.5 ? 11.0 : 0.0, 0.0, 0.0);
     });
   CutAtRandom(cut, 5, 1);
-  Check(cut);
+  ExpectEqualsReference(cut);
 }
 
 TEST(SmoothCuts, ChunksEqualTheWhole)

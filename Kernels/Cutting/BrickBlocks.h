@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeBrickBlocks_h
+#define DeformVolumeBrickBlocks_h
+
+#include "TetrahedronSet.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// The block of a brick, of bricks in ascending order that have one each; null where it is none of
+/// them.
+template <typename Block>
+const Block* FindBlock(
+  const std::vector<std::size_t>& bricks, const std::vector<Block>& blocks, std::size_t brick)
+{
+  const auto place = std::lower_bound(bricks.begin(), bricks.end(), brick);
+  return place != bricks.end() && *place == brick
+    ? &blocks[static_cast<std::size_t>(place - bricks.begin())]
+    : nullptr;
+}
+
+/// Calls function(local indices, place in a block, place in the volume) for the cells of a brick,
+/// or its vertices (GetVertexBricks).
+template <typename Function>
+void ForEachCell(const CellBricks& bricks, std::size_t brick, Function&& function)
+{
+  const Extent cells = bricks.GetCells(brick);
+  const std::array<int, 3>& size = bricks.GetSize();
+  for (int z = cells[4]; z <= cells[5]; ++z)
+  {
+    for (int y = cells[2]; y <= cells[3]; ++y)
+    {
+      const std::size_t row = (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) +
+                                static_cast<std::size_t>(y)) *
+        static_cast<std::size_t>(size[0]);
+      for (int x = cells[0]; x <= cells[1]; ++x)
+      {
+        function(std::array<int, 3>{ { x, y, z } },
+          TetrahedronSet::GetPlace(x - cells[0], y - cells[2], z - cells[4]),
+          row + static_cast<std::size_t>(x));
+      }
+    }
+  }
+}
+
+} // namespace deformvolume
+
+#endif
