@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeElasticBody_h
+#define DeformVolumeElasticBody_h
+
+#include "DeformVolumeExport.h"
+#include "Tetrahedron.h"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// An isotropic elastic material.
+struct ElasticMaterial
+{
+  /// In Pa, greater than 0.
+  double YoungModulus = 1e4;
+  /// 0 or more, less than LargestPoissonRatio.
+  double PoissonRatio = 0.3;
+  /// In kg/m^3, greater than 0.
+  double Density = 1000.0;
+
+  /// Linear tetrahedra do not deform any more where the ratio comes near 0.5.
+  static constexpr double LargestPoissonRatio = 0.495;
+
+  ///@{
+  /// The constants of Lame, in Pa.
+  double GetShearModulus() const { return this->YoungModulus / (2.0 * (1.0 + this->PoissonRatio)); }
+  double GetLambda() const
+  {
+    return this->YoungModulus * this->PoissonRatio /
+      ((1.0 + this->PoissonRatio) * (1.0 - 2.0 * this->PoissonRatio));
+  }
+  ///@}
+};
+
+/// A mesh of linear tetrahedra at rest, with what the physical models need to know of it.
+struct ElasticBody
+{
+  /// In metres.
+  std::vector<glm::dvec3> Points;
+  /// All with the fourth node on the side to which the normal of the first three points, or all on
+  /// the other side.
+  std::vector<Tetrahedron> Tetrahedra;
+  /// One for the whole body, or one a tetrahedron.
+  std::vector<ElasticMaterial> Materials{ ElasticMaterial() };
+  /// One byte a node, not 0 where it is held at rest; empty: no node is.
+  std::vector<unsigned char> Fixed;
+
+  const ElasticMaterial& GetMaterial(std::size_t tetrahedron) const
+  {
+    return this->Materials[this->Materials.size() == 1 ? 0 : tetrahedron];
+  }
+  bool IsFixed(std::size_t node) const { return !this->Fixed.empty() && this->Fixed[node] != 0; }
+};
+
+/// A node that is moved by a handle.
+struct HeldNode
+{
+  std::int32_t Node = 0;
+  /// Where it is displaced to, in metres.
+  glm::dvec3 Displacement{ 0.0 };
+};
+
+/// What acts on the nodes of a body.
+struct BodyLoads
+{
+  /// In m/s^2.
+  glm::dvec3 Gravity{ 0.0 };
+  /// Of each node, in N; empty: none.
+  std::vector<glm::dvec3> Forces;
+};
+
+/// Throws an Error where a body cannot be simulated: no tetrahedra, nodes that are not there,
+/// coordinates that are not finite, tetrahedra that are flat or turned inside out, a material out
+/// of its range, or arrays of another length.
+DEFORMVOLUME_EXPORT void CheckBody(const ElasticBody& body);
+
+/// Throws an Error where a load is not finite or not for this body.
+DEFORMVOLUME_EXPORT void CheckLoads(const ElasticBody& body, const BodyLoads& loads);
+
+/// Throws an Error where a held node is not there, is fixed or held twice, or its displacement is
+/// not finite.
+DEFORMVOLUME_EXPORT void CheckHeldNodes(const ElasticBody& body, const std::vector<HeldNode>& held);
+
+/// Volumes of the tetrahedra, in m^3, all of them greater than 0 whichever way the nodes go round.
+DEFORMVOLUME_EXPORT std::vector<double> GetVolumes(const ElasticBody& body);
+
+/// Mass of each node, in kg: a quarter of that of each of its tetrahedra. 0 for a node without any.
+DEFORMVOLUME_EXPORT std::vector<double> GetNodeMasses(
+  const ElasticBody& body, const std::vector<double>& volumes);
+
+/// The pieces of a body that have no node in common.
+struct BodyPieces
+{
+  /// Of each node the number of its piece; -1 for a node without a tetrahedron.
+  std::vector<std::int32_t> PieceOfNode;
+  std::int32_t NumberOfPieces = 0;
+};
+DEFORMVOLUME_EXPORT BodyPieces FindPieces(const ElasticBody& body);
+
+/// Of each piece whether the nodes that are not free, of which there is one byte a node, hold it:
+/// at least three of them that lie on no common line.
+DEFORMVOLUME_EXPORT std::vector<bool> FindHeldPieces(
+  const ElasticBody& body, const BodyPieces& pieces, const std::vector<unsigned char>& isNotFree);
+
+} // namespace deformvolume
+
+#endif
