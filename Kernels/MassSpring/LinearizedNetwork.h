@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeLinearizedNetwork_h
+#define DeformVolumeLinearizedNetwork_h
+
+#include "MassSpringNetwork.h"
+#include "MassSpringState.h"
+
+#include <vector>
+
+namespace deformvolume
+{
+
+/// The springs and volumes of a body near rest: forces are then linear in the displacements. It
+/// works with the displacements of a state, which are 0 afterwards.
+class LinearizedNetwork
+{
+public:
+  LinearizedNetwork(MassSpringState& state, const MassSpringNetwork& network)
+    : State(state)
+    , Network(network)
+  {
+  }
+
+  /// Which forces would hold displacements, three numbers a node in both.
+  std::vector<double> Apply(const std::vector<double>& displacements) const;
+
+  /// The largest angular frequency that the body vibrates with, in 1/s; 0 where no node moves.
+  double FindLargestFrequency() const;
+
+  /// The Young modulus of a bar of this mesh, of one material, divided by that of the material: 1
+  /// where the mesh is as stiff as the material in all ways.
+  double FindStiffness(const ElasticBody& body) const;
+
+private:
+  bool IsAsTheMaterial(const ElasticBody& body, const std::vector<double>& volumes) const;
+  double FindCompliance(
+    const ElasticBody& body, const std::vector<double>& volumes, int axis) const;
+
+  MassSpringState& State;
+  const MassSpringNetwork& Network;
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MassSpringModel.h"
+
+#include "DeviceVectorsInternals.h"
+#include "GuardedCall.h"
+#include "LinearizedNetwork.h"
+#include "MassSpringResults.h"
+#include "MassSpringState.h"
+#include "MemoryBudget.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace deformvolume
+{
+namespace
+{
+
+// Displacements beyond so many times the size of the body are none of a simulation.
+constexpr double LargestDisplacement = 1e4;
+// Steps are waited for when they have taken about so long, to see whether to go on.
+constexpr std::chrono::milliseconds Batch(20);
+
+// The same body of one material, the mean of what there is.
+ElasticBody MakeUniform(const ElasticBody& body)
+{
+  ElasticBody uniform = body;
+  ElasticMaterial mean;
+  mean.PoissonRatio =
+    std::accumulate(body.Materials.begin(), body.Materials.end(), 0.0,
+      [](double sum, const ElasticMaterial& material) { return sum + material.PoissonRatio; }) /
+    static_cast<double>(body.Materials.size());
+  // Springs cannot have less.
+  mean.PoissonRatio = std::max(mean.PoissonRatio, 0.25);
+  mean.YoungModulus = body.Materials.front().YoungModulus;
+  uniform.Materials = { mean };
+  return uniform;
+}
+
+void CheckTimes(const MassSpringRequest& request)
+{
+  const auto check = [](double value, const char* name)
+  {
+    if (!(value >= 0.0) || !std::isfinite(value))
+    {
+      throw Error(std::string("The ") + name + " is " + std::to_string(value) +
+        ". It must be a finite number, 0 or more.");
+    }
+  };
+  check(request.Duration, "duration");
+  check(request.TimeStep, "time step");
+  check(request.Damping, "damping");
+}
+
+} // namespace
+
+class MassSpringModel::Internals
+{
+public:
+  Internals()
+    : Budget(this->Device, [this] { return this->State ? this->State->GetMemory() : 0; })
+  {
+  }
+
+  template <typename Function>
+  auto Guard(Function&& function)
+  {
+    const MemoryBudget::UpdateGuard update(this->Budget);
+    return CallGuarded(
+      function, [this] { this->Forget(); }, " Set the body again.");
+  }
+
+  void CheckIsSet() const
+  {
+    if (!this->State)
+    {
+      throw Error("No body is set: call SetBody first.");
+    }
+  }
+
+  void Forget()
+  {
+    this->State.reset();
+    this->Network.reset();
+    this->Largest = -1.0;
+  }
+
+  void CheckMemory(const ElasticBody& body);
+  double Calibrate(const ElasticBody& body);
+  void Make(const ElasticBody& body, double scale);
+  double GetStableTimeStep();
+  void Hold(const std::vector<HeldNode>& held);
+  void Run(const MassSpringRequest& request, const MassSpringStep& step, std::int64_t steps);
+
+  WorkDevice Device;
+  MemoryBudget Budget;
+  std::size_t WorkGroupSize = 0;
+  ElasticBody Body;
+  double Scale = 1.0;
+  std::unique_ptr<MassSpringNetwork> Network;
+  std::unique_ptr<MassSpringState> State;
+  std::vector<std::int32_t> HeldBefore;
+  double Largest = -1.0; // angular frequency; less than 0: not known
+};
+
+void MassSpringModel::Internals::CheckMemory(const ElasticBody& body)
+{
+  constexpr std::size_t valuesOfTetrahedron = 12;
+  constexpr std::size_t mostLanes = 16;
+  if (body.Tetrahedra.size() >
+    std::numeric_limits<std::uint32_t>::max() / valuesOfTetrahedron - mostLanes)
+  {
+    throw Error("The mesh has too many tetrahedra for springs: at most 357,913,925. Use a coarser "
+                "mesh.");
+  }
+  const std::uint64_t allocation = body.Tetrahedra.size() * valuesOfTetrahedron * sizeof(float);
+  MemoryBudget::CheckBytes(allocation, this->Device.GetAllocationLimit(), "in one allocation");
+  this->Budget.CheckRoomFor(
+    MassSpringState::GetNeededMemory(body.Points.size(), body.Tetrahedra.size()), "on the device");
+}
+
+double MassSpringModel::Internals::Calibrate(const ElasticBody& body)
+{
+  const ElasticBody uniform = MakeUniform(body);
+  const MassSpringNetwork network(uniform, MassSpringState::GetLanes(this->Device), 1.0);
+  MassSpringState state(this->Device, network, this->WorkGroupSize);
+  const double stiffness = LinearizedNetwork(state, network).FindStiffness(uniform);
+  if (!(stiffness > 0.0) || !std::isfinite(stiffness))
+  {
+    throw Error("The mesh is too bad for springs: its tetrahedra are nearly flat. Make a better "
+                "mesh, with tetrahedra of about the same shape.");
+  }
+  return 1.0 / stiffness;
+}
+
+void MassSpringModel::Internals::Make(const ElasticBody& body, double scale)
+{
+  this->Body = body;
+  this->Scale = scale;
+  this->Network =
+    std::make_unique<MassSpringNetwork>(body, MassSpringState::GetLanes(this->Device), scale);
+  this->State =
+    std::make_unique<MassSpringState>(this->Device, *this->Network, this->WorkGroupSize);
+  this->HeldBefore.clear();
+  this->Largest = -1.0;
+}
+
+double MassSpringModel::Internals::GetStableTimeStep()
+{
+  if (this->Largest < 0.0)
+  {
+    const std::vector<float> displacements = this->State->GetDisplacements();
+    this->Largest = LinearizedNetwork(*this->State, *this->Network).FindLargestFrequency();
+    this->State->SetDisplacements(displacements);
+  }
+  if (!(this->Largest > 0.0))
+  {
+    throw Error("All nodes of the mesh are fixed: there is nothing to simulate.");
+  }
+  return 2.0 / this->Largest;
+}
+
+void MassSpringModel::Internals::Hold(const std::vector<HeldNode>& held)
+{
+  std::vector<std::int32_t> nodes(held.size());
+  std::transform(
+    held.begin(), held.end(), nodes.begin(), [](const HeldNode& node) { return node.Node; });
+  if (nodes != this->HeldBefore)
+  {
+    std::vector<float> mobilities = this->Network->Mobilities;
+    for (const std::int32_t node : nodes)
+    {
+      mobilities[static_cast<std::size_t>(node)] = 0.0F;
+    }
+    this->State->SetMobilities(mobilities);
+    this->HeldBefore = nodes;
+  }
+  std::vector<MassSpringHandle> handles(held.size());
+  const std::vector<float> now =
+    held.empty() ? std::vector<float>() : this->State->GetDisplacements();
+  for (std::size_t i = 0; i < held.size(); ++i)
+  {
+    handles[i].Node = held[i].Node;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      handles[i].Begin[axis] = now[3 * static_cast<std::size_t>(held[i].Node) + axis];
+      handles[i].End[axis] = static_cast<float>(held[i].Displacement[static_cast<int>(axis)]);
+    }
+  }
+  this->State->SetHandles(handles);
+}
+
+void MassSpringModel::Internals::Run(
+  const MassSpringRequest& request, const MassSpringStep& step, std::int64_t steps)
+{
+  std::int64_t batch = 1;
+  for (std::int64_t done = 0; done < steps;)
+  {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::int64_t end = std::min(steps, done + batch);
+    for (; done < end; ++done)
+    {
+      const double fraction = static_cast<double>(done + 1) / static_cast<double>(steps);
+      this->State->EnqueueStep(
+        step, static_cast<float>(fraction), static_cast<float>(1.0 / request.Duration));
+    }
+    this->State->Finish();
+    if (this->State->TakeDivergence())
+    {
+      throw Error("The simulation has diverged with a time step of " +
+        std::to_string(step.TimeStep * 1e3) +
+        " ms. The body is as it was before. Use a shorter "
+        "time step, move handles less at a time, or use smaller forces.");
+    }
+    const auto taken = std::chrono::steady_clock::now() - begin;
+    batch = taken * 2 < Batch ? batch * 2
+      : taken > Batch         ? std::max<std::int64_t>(batch / 2, 1)
+                              : batch;
+    if (request.Progress &&
+      !request.Progress(static_cast<double>(done) / static_cast<double>(steps)))
+    {
+      throw Aborted();
+    }
+  }
+}
+
+MassSpringModel::MassSpringModel()
+  : Impl(new Internals)
+{
+}
+
+MassSpringModel::~MassSpringModel() = default;
+
+std::string MassSpringModel::SetDevice(const std::string& request)
+{
+  return this->Impl->Guard(
+    [&]
+    {
+      OpenCLContext& context = OpenCLContext::Get(FindDevice(request));
+      if (!this->Impl->Device.Uses(context))
+      {
+        this->Impl->Forget();
+        this->Impl->Device.Use(context);
+      }
+      return this->Impl->Device.GetDevice().Name;
+    });
+}
+
+void MassSpringModel::SetMemoryLimit(std::uint64_t bytes)
+{
+  this->Impl->Budget.SetLimit(bytes);
+}
+
+void MassSpringModel::SetWorkGroupSize(std::size_t size)
+{
+  this->Impl->WorkGroupSize = size;
+}
+
+void MassSpringModel::SetBody(const ElasticBody& body)
+{
+  CheckBody(body);
+  Internals& impl = *this->Impl;
+  impl.Guard(
+    [&]
+    {
+      impl.Device.GetContext();
+      impl.Forget();
+      impl.CheckMemory(body);
+      impl.Make(body, impl.Calibrate(body));
+    });
+}
+
+void MassSpringModel::SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins)
+{
+  Internals& impl = *this->Impl;
+  impl.CheckIsSet();
+  CheckBody(body);
+  const std::size_t before = impl.Body.Points.size();
+  if (body.Tetrahedra.size() != impl.Body.Tetrahedra.size() ||
+    body.Points.size() != before + origins.size() ||
+    std::any_of(origins.begin(), origins.end(),
+      [&](std::int32_t node) { return node < 0 || static_cast<std::size_t>(node) >= before; }))
+  {
+    throw Error("Nodes can only be split where the tetrahedra stay, and where each appended node "
+                "is a copy of one there was.");
+  }
+  impl.Guard(
+    [&]
+    {
+      std::vector<float> displacements = impl.State->GetDisplacements();
+      std::vector<float> velocities = impl.State->GetVelocities();
+      for (const std::int32_t origin : origins)
+      {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+          displacements.push_back(displacements[3 * static_cast<std::size_t>(origin) + axis]);
+          velocities.push_back(velocities[3 * static_cast<std::size_t>(origin) + axis]);
+        }
+      }
+      impl.State.reset();
+      impl.Make(body, impl.Scale);
+      impl.State->SetDisplacements(displacements);
+      impl.State->SetVelocities(velocities);
+    });
+}
+
+void MassSpringModel::SetOutput(float* output, double factor)
+{
+  Internals& impl = *this->Impl;
+  impl.CheckIsSet();
+  if (!output)
+  {
+    throw Error("The output of the springs has no memory.");
+  }
+  impl.Guard(
+    [&]
+    {
+      impl.State->PlaceOutput(output, static_cast<float>(factor));
+      impl.State->WriteOutput();
+    });
+}
+
+void MassSpringModel::SetOutput(const std::shared_ptr<DeviceVectors>& output, double factor)
+{
+  Internals& impl = *this->Impl;
+  impl.CheckIsSet();
+  CheckVectors(output.get(), impl.Device, impl.State->GetNumberOfNodes());
+  impl.Guard(
+    [&]
+    {
+      impl.State->PlaceOutput(output, static_cast<float>(factor));
+      impl.State->WriteOutput();
+    });
+}
+
+double MassSpringModel::GetStableTimeStep()
+{
+  this->Impl->CheckIsSet();
+  return this->Impl->Guard([&] { return this->Impl->GetStableTimeStep(); });
+}
+
+MassSpringReport MassSpringModel::Advance(const MassSpringRequest& request)
+{
+  Internals& impl = *this->Impl;
+  impl.CheckIsSet();
+  CheckTimes(request);
+  CheckHeldNodes(impl.Body, request.Held);
+  CheckLoads(impl.Body, request.Loads);
+  return impl.Guard(
+    [&]
+    {
+      MassSpringReport report;
+      if (request.Duration > 0.0)
+      {
+        const double longest =
+          request.TimeStep > 0.0 ? request.TimeStep : 0.5 * impl.GetStableTimeStep();
+        // A hair more than a whole number of steps is that number.
+        constexpr double hair = 1e-9;
+        const double steps = std::max(1.0, std::ceil(request.Duration / longest * (1.0 - hair)));
+        report.NumberOfSteps = static_cast<std::int64_t>(steps);
+        report.TimeStep = request.Duration / steps;
+        MassSpringStep step{};
+        step.TimeStep = static_cast<float>(report.TimeStep);
+        step.Retained = static_cast<float>(std::exp(-request.Damping * report.TimeStep));
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          step.Gravity[axis] = static_cast<float>(request.Loads.Gravity[axis]);
+        }
+        step.Limit = static_cast<float>(LargestDisplacement * impl.Network->Size);
+        step.NumberOfNodes = static_cast<int>(impl.State->GetNumberOfNodes());
+        impl.State->SetLoads(request.Loads.Forces);
+        impl.Hold(request.Held);
+        impl.State->Save();
+        try
+        {
+          impl.Run(request, step, report.NumberOfSteps);
+        }
+        catch (const cl::Error&)
+        {
+          throw;
+        }
+        catch (...)
+        {
+          impl.State->Restore();
+          throw;
+        }
+      }
+      if (impl.State->HasOutput())
+      {
+        impl.State->WriteOutput();
+      }
+      return report;
+    });
+}
+
+void MassSpringModel::Reset()
+{
+  Internals& impl = *this->Impl;
+  impl.CheckIsSet();
+  impl.Guard(
+    [&]
+    {
+      const std::vector<float> zeros(impl.State->GetNumberOfNodes() * 3, 0.0F);
+      impl.State->SetDisplacements(zeros);
+      impl.State->SetVelocities(zeros);
+      if (impl.State->HasOutput())
+      {
+        impl.State->WriteOutput();
+      }
+    });
+}
+
+std::vector<float> MassSpringModel::GetDisplacements()
+{
+  this->Impl->CheckIsSet();
+  return this->Impl->Guard([&] { return this->Impl->State->GetDisplacements(); });
+}
+
+std::vector<float> MassSpringModel::GetVelocities()
+{
+  this->Impl->CheckIsSet();
+  return this->Impl->Guard([&] { return this->Impl->State->GetVelocities(); });
+}
+
+void MassSpringModel::SetState(
+  const std::vector<float>& displacements, const std::vector<float>& velocities)
+{
+  Internals& impl = *this->Impl;
+  impl.CheckIsSet();
+  const std::size_t values = impl.State->GetNumberOfNodes() * 3;
+  const auto isFinite = [](float value) { return std::isfinite(value); };
+  if (displacements.size() != values || velocities.size() != values ||
+    !std::all_of(displacements.begin(), displacements.end(), isFinite) ||
+    !std::all_of(velocities.begin(), velocities.end(), isFinite))
+  {
+    throw Error("The state of the springs needs three finite displacements and velocities for "
+                "each node.");
+  }
+  impl.Guard(
+    [&]
+    {
+      impl.State->SetDisplacements(displacements);
+      impl.State->SetVelocities(velocities);
+    });
+}
+
+std::vector<float> MassSpringModel::GetForces()
+{
+  this->Impl->CheckIsSet();
+  return this->Impl->Guard([&] { return this->Impl->State->ComputeForces(); });
+}
+
+std::vector<ElementResults> MassSpringModel::GetElementResults()
+{
+  const std::vector<float> displacements = this->GetDisplacements();
+  return ComputeMassSpringResults(this->Impl->Body, displacements, this->Impl->Scale);
+}
+
+double MassSpringModel::GetCalibration() const
+{
+  this->Impl->CheckIsSet();
+  return this->Impl->Scale;
+}
+
+std::uint64_t MassSpringModel::GetDeviceMemory() const
+{
+  return this->Impl->State ? this->Impl->State->GetMemory() : 0;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeMassSpringNetwork_h
+#define DeformVolumeMassSpringNetwork_h
+
+#include "ElasticBody.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// How stiff the springs and the volume of a tetrahedron are.
+struct SpringStiffness
+{
+  /// Of each edge, in N/m. An edge of several tetrahedra has the sum.
+  float Edge = 0.0F;
+  /// In Pa: the energy of the volume is half of this, times the volume at rest, times the square of
+  /// how much the volume has grown as a fraction.
+  float Volume = 0.0F;
+};
+
+/// The stiffness of a tetrahedron that makes a body of a material. On a lattice of cubes of five
+/// tetrahedra each, axes of length h then have springs of mu h and diagonals of 2 mu h, which is
+/// the only isotropic choice; their Poisson ratio is 1/4, and the volume makes the rest of it.
+/// Poisson ratios below 1/4 would need a volume that pushes outwards, which is unstable: they count
+/// as 1/4, with the same Young modulus.
+SpringStiffness GetSpringStiffness(
+  const ElasticMaterial& material, double restVolume, const std::array<glm::dvec3, 4>& corners);
+
+/// A body as the kernels have it. Tetrahedra lie in groups of so many lanes, the last one filled up
+/// with tetrahedra that no node knows; see MassSpringForces.cl and MassSpringMotion.cl.
+struct MassSpringNetwork
+{
+  /// scale: a factor of all stiffnesses.
+  MassSpringNetwork(const ElasticBody& body, int lanes, double scale);
+
+  int Lanes;
+  std::size_t NumberOfGroups;
+  std::vector<std::int32_t> Tetrahedra; // nodes, times 3
+  std::vector<float> Materials;
+  std::vector<float> RestPoints; // from the middle of the body
+  std::vector<std::uint32_t> Begins;
+  std::vector<std::uint32_t> Places;
+  std::vector<double> Masses; // in kg
+  std::vector<float> Mobilities;
+  double Size = 0.0;         // the diagonal of the body, in m
+  double ShortestEdge = 0.0; // in m
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MassSpringResults.h"
+
+#include "MassSpringNetwork.h"
+#include "ParallelFor.h"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+
+namespace deformvolume
+{
+namespace
+{
+
+constexpr std::size_t TetrahedraAtOnce = 1024;
+
+double GetSignedVolume(const std::array<glm::dvec3, 4>& corners)
+{
+  return glm::dot(
+           glm::cross(corners[1] - corners[0], corners[2] - corners[0]), corners[3] - corners[0]) /
+    6.0;
+}
+
+// The stress of springs is that of their forces times their lengths, over the volume.
+ElementResults FindResults(const std::array<glm::dvec3, 4>& rest,
+  const std::array<glm::dvec3, 4>& now, const ElasticMaterial& material, double scale)
+{
+  constexpr int components[6][2] = { { 0, 0 }, { 1, 1 }, { 2, 2 }, { 0, 1 }, { 1, 2 }, { 0, 2 } };
+  ElementResults results;
+  const double restVolume = GetSignedVolume(rest);
+  const double volume = GetSignedVolume(now);
+  results.Determinant = volume / restVolume;
+  const SpringStiffness stiffness = GetSpringStiffness(material, std::abs(restVolume), rest);
+  const double growth = results.Determinant - 1.0;
+  const double bulk = static_cast<double>(stiffness.Volume) * scale;
+  results.StrainEnergyDensity = 0.5 * bulk * growth * growth;
+  for (std::size_t i = 0; i < 3; ++i)
+  {
+    results.Stress[i] = bulk * growth;
+  }
+  for (std::size_t a = 0; a < 4; ++a)
+  {
+    for (std::size_t b = 0; b < a; ++b)
+    {
+      const glm::dvec3 edge = now[a] - now[b];
+      const double length = glm::length(edge);
+      const double lengthening = length - glm::distance(rest[a], rest[b]);
+      const double force = static_cast<double>(stiffness.Edge) * scale * lengthening;
+      results.StrainEnergyDensity += 0.5 * force * lengthening / std::abs(restVolume);
+      for (std::size_t i = 0; i < 6 && length > 0.0 && volume != 0.0; ++i)
+      {
+        results.Stress[i] +=
+          force * edge[components[i][0]] * edge[components[i][1]] / (length * std::abs(volume));
+      }
+    }
+  }
+  return results;
+}
+
+} // namespace
+
+std::vector<ElementResults> ComputeMassSpringResults(
+  const ElasticBody& body, const std::vector<float>& displacements, double scale)
+{
+  std::vector<ElementResults> results(body.Tetrahedra.size());
+  ParallelForParts(results.size(), TetrahedraAtOnce,
+    [&](std::size_t first, std::size_t last)
+    {
+      for (std::size_t t = first; t < last; ++t)
+      {
+        std::array<glm::dvec3, 4> rest;
+        std::array<glm::dvec3, 4> now;
+        for (std::size_t i = 0; i < 4; ++i)
+        {
+          const auto node = static_cast<std::size_t>(body.Tetrahedra[t][i]);
+          const float* displacement = displacements.data() + 3 * node;
+          rest[i] = body.Points[node];
+          now[i] = rest[i] + glm::dvec3(displacement[0], displacement[1], displacement[2]);
+        }
+        results[t] = FindResults(rest, now, body.GetMaterial(t), scale);
+      }
+    });
+  return results;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeMassSpringResults_h
+#define DeformVolumeMassSpringResults_h
+
+#include "ElasticBody.h"
+#include "ElementResults.h"
+
+#include <vector>
+
+namespace deformvolume
+{
+
+/// What the tetrahedra of a body of springs undergo. displacements: three floats a node, in m;
+/// scale: the factor of all stiffnesses.
+std::vector<ElementResults> ComputeMassSpringResults(
+  const ElasticBody& body, const std::vector<float>& displacements, double scale);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MassSpringState.h"
+
+#include "DeviceVectorsInternals.h"
+#include "HostMemory.h"
+#include "KernelSources.h"
+#include "KernelText.h"
+
+#include <algorithm>
+#include <string>
+
+namespace deformvolume
+{
+namespace
+{
+
+constexpr std::size_t ItemsOfGroup = 64;
+constexpr std::uint64_t BytesOfNode = 10 * sizeof(float) + sizeof(cl_uint);
+constexpr std::uint64_t BytesOfNodeSaved = 6 * sizeof(float);
+constexpr std::uint64_t BytesOfTetrahedron = (4 + 4) * sizeof(cl_int) + (2 + 4 * 3) * sizeof(float);
+
+template <typename... Arguments>
+cl::Kernel MakeKernel(const cl::Program& program, const char* name, const Arguments&... arguments)
+{
+  cl::Kernel kernel(program, name);
+  cl_uint i = 0;
+  (kernel.setArg(i++, arguments), ...);
+  return kernel;
+}
+
+} // namespace
+
+int MassSpringState::GetLanes(WorkDevice& device)
+{
+  return device.GetDevice().HasVectors ? deformvolume::GetLanes(device.GetContext()) : 1;
+}
+
+std::uint64_t MassSpringState::GetNeededMemory(std::size_t nodes, std::size_t tetrahedra)
+{
+  return nodes * (BytesOfNode + BytesOfNodeSaved) + tetrahedra * BytesOfTetrahedron;
+}
+
+std::uint64_t MassSpringState::GetMemory() const
+{
+  std::uint64_t bytes = 0;
+  for (const cl::Buffer* buffer : { &this->Tetrahedra, &this->Materials, &this->RestPoints,
+         &this->Begins, &this->Places, &this->Mobilities, &this->Forces, &this->Displacements,
+         &this->Velocities, &this->Loads, &this->Handles, &this->HasDiverged, &this->Sums,
+         &this->SavedDisplacements, &this->SavedVelocities })
+  {
+    bytes += deformvolume::GetMemory(*buffer);
+  }
+  return bytes;
+}
+
+MassSpringState::MassSpringState(
+  WorkDevice& device, const MassSpringNetwork& network, std::size_t workGroupSize)
+  : Device(device)
+  , NumberOfNodes(network.Masses.size())
+  , NumberOfGroups(network.NumberOfGroups)
+  , WorkGroupSize(workGroupSize ? workGroupSize : ItemsOfGroup)
+{
+  OpenCLContext& context = device.GetContext();
+  ProgramText text = "#define LANES " + std::to_string(network.Lanes) + "\n";
+  if (network.Lanes > 1)
+  {
+    text += LaneVectors_cl;
+  }
+  text += ProgramText(MassSpringParameters_h) + MassSpringForces_cl + MassSpringMotion_cl;
+  this->Program = context.GetProgram(text, KernelOptions);
+  const auto send = [&](const auto& values)
+  { return this->Fill(values.data(), values.size() * sizeof(values[0])); };
+  this->Tetrahedra = send(network.Tetrahedra);
+  this->Materials = send(network.Materials);
+  this->RestPoints = send(network.RestPoints);
+  this->Begins = send(network.Begins);
+  this->Places = send(network.Places);
+  this->Mobilities = send(network.Mobilities);
+  const std::vector<float> zeros(this->NumberOfNodes * 3, 0.0F);
+  this->Displacements = send(zeros);
+  this->Velocities = send(zeros);
+  const cl_int none = 0;
+  this->HasDiverged = this->Fill(&none, sizeof(none));
+  Reserve(context, this->Forces,
+    this->NumberOfGroups * 12 * static_cast<std::size_t>(network.Lanes) * sizeof(float));
+  const auto nodes = static_cast<cl_uint>(this->NumberOfNodes);
+  this->ComputeForcesKernel =
+    MakeKernel(this->Program, "ComputeForces", this->Tetrahedra, this->Materials, this->RestPoints,
+      this->Displacements, this->Forces, static_cast<cl_uint>(this->NumberOfGroups));
+  this->AddForcesKernel = MakeKernel(
+    this->Program, "AddForces", this->Begins, this->Places, this->Forces, this->Sums, nodes);
+  // What is set later stands for itself for now.
+  this->MoveNodesKernel = MakeKernel(this->Program, "MoveNodes", this->Begins, this->Places,
+    this->Forces, this->Mobilities, this->Velocities, this->Velocities, this->Displacements,
+    this->HasDiverged, MassSpringStep{}, cl_int{ 0 });
+  this->MoveHandlesKernel = cl::Kernel(this->Program, "MoveHandles");
+  this->MoveHandlesKernel.setArg(1, this->Velocities);
+  this->MoveHandlesKernel.setArg(2, this->Displacements);
+  this->WriteOutputKernel = cl::Kernel(this->Program, "WriteOutput");
+  this->WriteOutputKernel.setArg(0, this->Displacements);
+  this->WriteOutputKernel.setArg(3, nodes * 3);
+}
+
+cl::Buffer MassSpringState::Fill(const void* data, std::size_t bytes)
+{
+  cl::Buffer buffer;
+  Reserve(this->Device.GetContext(), buffer, bytes);
+  this->Write(buffer, data, bytes);
+  return buffer;
+}
+
+void MassSpringState::Write(const cl::Buffer& buffer, const void* data, std::size_t bytes)
+{
+  this->Device.GetQueue().enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data);
+}
+
+std::vector<float> MassSpringState::Read(const cl::Buffer& buffer)
+{
+  std::vector<float> values(this->NumberOfNodes * 3);
+  this->Device.GetQueue().enqueueReadBuffer(
+    buffer, CL_TRUE, 0, values.size() * sizeof(float), values.data());
+  return values;
+}
+
+void MassSpringState::SetMobilities(const std::vector<float>& mobilities)
+{
+  this->Write(this->Mobilities, mobilities.data(), mobilities.size() * sizeof(float));
+}
+
+void MassSpringState::SetLoads(const std::vector<glm::dvec3>& forces)
+{
+  this->HasLoads = !forces.empty();
+  if (this->HasLoads)
+  {
+    std::vector<float> values(this->NumberOfNodes * 3);
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      values[i] = static_cast<float>(forces[i / 3][static_cast<int>(i % 3)]);
+    }
+    this->Loads = this->Device.Send(values.data(), values.size() * sizeof(float), this->Loads);
+    this->MoveNodesKernel.setArg(4, this->Loads);
+  }
+  this->MoveNodesKernel.setArg(9, cl_int{ this->HasLoads });
+}
+
+void MassSpringState::SetHandles(const std::vector<MassSpringHandle>& handles)
+{
+  this->NumberOfHandles = handles.size();
+  if (!handles.empty())
+  {
+    this->Handles =
+      this->Device.Send(handles.data(), handles.size() * sizeof(MassSpringHandle), this->Handles);
+    this->MoveHandlesKernel.setArg(0, this->Handles);
+    this->MoveHandlesKernel.setArg(5, static_cast<cl_uint>(handles.size()));
+  }
+}
+
+void MassSpringState::SetDisplacements(const std::vector<float>& values)
+{
+  this->Write(this->Displacements, values.data(), values.size() * sizeof(float));
+}
+
+void MassSpringState::SetVelocities(const std::vector<float>& values)
+{
+  this->Write(this->Velocities, values.data(), values.size() * sizeof(float));
+}
+
+void MassSpringState::Launch(const cl::Kernel& kernel, std::size_t items)
+{
+  const auto largest =
+    kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(this->Device.GetDevice().Device);
+  const std::size_t group = std::min(this->WorkGroupSize, largest);
+  this->Device.GetContext().Launch(this->Device.GetQueue(), kernel,
+    cl::NDRange((items + group - 1) / group * group), cl::NDRange(group));
+}
+
+void MassSpringState::EnqueueForces()
+{
+  this->Launch(this->ComputeForcesKernel, this->NumberOfGroups);
+}
+
+std::vector<float> MassSpringState::ComputeForces()
+{
+  Reserve(this->Device.GetContext(), this->Sums, this->NumberOfNodes * 3 * sizeof(float));
+  this->AddForcesKernel.setArg(3, this->Sums);
+  this->EnqueueForces();
+  this->Launch(this->AddForcesKernel, this->NumberOfNodes);
+  return this->Read(this->Sums);
+}
+
+void MassSpringState::EnqueueStep(const MassSpringStep& step, float fraction, float rate)
+{
+  this->EnqueueForces();
+  this->MoveNodesKernel.setArg(8, step);
+  this->Launch(this->MoveNodesKernel, this->NumberOfNodes);
+  if (this->NumberOfHandles > 0)
+  {
+    this->MoveHandlesKernel.setArg(3, fraction);
+    this->MoveHandlesKernel.setArg(4, rate);
+    this->Launch(this->MoveHandlesKernel, this->NumberOfHandles);
+  }
+}
+
+bool MassSpringState::TakeDivergence()
+{
+  cl_int hasDiverged = 0;
+  this->Device.GetQueue().enqueueReadBuffer(
+    this->HasDiverged, CL_TRUE, 0, sizeof(hasDiverged), &hasDiverged);
+  if (hasDiverged != 0)
+  {
+    const cl_int none = 0;
+    this->Write(this->HasDiverged, &none, sizeof(none));
+  }
+  return hasDiverged != 0;
+}
+
+void MassSpringState::Save()
+{
+  const std::size_t bytes = this->NumberOfNodes * 3 * sizeof(float);
+  OpenCLContext& context = this->Device.GetContext();
+  Reserve(context, this->SavedDisplacements, bytes);
+  Reserve(context, this->SavedVelocities, bytes);
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  queue.enqueueCopyBuffer(this->Displacements, this->SavedDisplacements, 0, 0, bytes);
+  queue.enqueueCopyBuffer(this->Velocities, this->SavedVelocities, 0, 0, bytes);
+}
+
+void MassSpringState::Restore()
+{
+  const std::size_t bytes = this->NumberOfNodes * 3 * sizeof(float);
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  queue.enqueueCopyBuffer(this->SavedDisplacements, this->Displacements, 0, 0, bytes);
+  queue.enqueueCopyBuffer(this->SavedVelocities, this->Velocities, 0, 0, bytes);
+  queue.finish();
+}
+
+void MassSpringState::PlaceOutput(float* output, float factor)
+{
+  this->VectorOutput.reset();
+  this->HostOutput = nullptr;
+  Place(this->Device.GetContext(), this->Output, output, sizeof(float),
+    this->NumberOfNodes * 3 * sizeof(float));
+  this->HostOutput = output;
+  this->Factor = factor;
+}
+
+void MassSpringState::PlaceOutput(const std::shared_ptr<DeviceVectors>& output, float factor)
+{
+  DeviceVectors::Internals& vectors = output->GetInternals();
+  if (vectors.AreInHostMemory())
+  {
+    this->PlaceOutput(vectors.GetHostMemory(), factor);
+  }
+  else
+  {
+    this->HostOutput = nullptr;
+    this->Output = vectors.GetBuffer();
+    this->Factor = factor;
+  }
+  this->VectorOutput = output;
+}
+
+void MassSpringState::WriteOutput()
+{
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  this->WriteOutputKernel.setArg(1, this->Output);
+  this->WriteOutputKernel.setArg(2, this->Factor);
+  this->Launch(this->WriteOutputKernel, this->NumberOfNodes * 3);
+  if (this->HostOutput)
+  {
+    PendingReads reads;
+    reads.Add(
+      BeginToRead(queue, this->Output, this->NumberOfNodes * 3 * sizeof(float), this->HostOutput));
+    reads.Check();
+  }
+  queue.finish();
+  if (this->VectorOutput)
+  {
+    this->VectorOutput->GetInternals().MarkAllWritten();
+  }
+}
+
+} // namespace deformvolume

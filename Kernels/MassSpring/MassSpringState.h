@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeMassSpringState_h
+#define DeformVolumeMassSpringState_h
+
+#include "DeviceVectors.h"
+#include "ElasticBody.h"
+#include "MassSpringNetwork.h"
+#include "MassSpringParameters.h"
+#include "WorkDevice.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// The nodes and tetrahedra of a MassSpringModel on the device, and the launches of its kernels.
+class MassSpringState
+{
+public:
+  /// device: it stays where it is. workGroupSize: 0: chosen by device.
+  MassSpringState(WorkDevice& device, const MassSpringNetwork& network, std::size_t workGroupSize);
+
+  /// Tetrahedra that a work-item of a device has.
+  static int GetLanes(WorkDevice& device);
+  /// Bytes that such a body needs on the device, without an output.
+  static std::uint64_t GetNeededMemory(std::size_t nodes, std::size_t tetrahedra);
+  std::uint64_t GetMemory() const;
+
+  std::size_t GetNumberOfNodes() const { return this->NumberOfNodes; }
+
+  void SetMobilities(const std::vector<float>& mobilities);
+  void SetLoads(const std::vector<glm::dvec3>& forces);
+  void SetHandles(const std::vector<MassSpringHandle>& handles);
+
+  ///@{
+  /// Three floats a node.
+  std::vector<float> GetDisplacements() { return this->Read(this->Displacements); }
+  std::vector<float> GetVelocities() { return this->Read(this->Velocities); }
+  void SetDisplacements(const std::vector<float>& values);
+  void SetVelocities(const std::vector<float>& values);
+  ///@}
+
+  /// The forces of the tetrahedra on the nodes.
+  std::vector<float> ComputeForces();
+
+  /// Enqueues a step. fraction: of the way of the handles that is then behind them; rate: 1 / how
+  /// long that takes.
+  void EnqueueStep(const MassSpringStep& step, float fraction, float rate);
+  void Finish() { this->Device.GetQueue().finish(); }
+  /// Whether a step since the last call has diverged.
+  bool TakeDivergence();
+
+  ///@{
+  /// Keeps the displacements and velocities, and brings them back.
+  void Save();
+  void Restore();
+  ///@}
+
+  ///@{
+  /// Where the output goes, and what makes its values of displacements.
+  void PlaceOutput(float* output, float factor);
+  void PlaceOutput(const std::shared_ptr<DeviceVectors>& output, float factor);
+  ///@}
+  bool HasOutput() const { return this->Output() != nullptr; }
+  void WriteOutput();
+
+private:
+  std::vector<float> Read(const cl::Buffer& buffer);
+  void Write(const cl::Buffer& buffer, const void* data, std::size_t bytes);
+  cl::Buffer Fill(const void* data, std::size_t bytes);
+  void Launch(const cl::Kernel& kernel, std::size_t items);
+  void EnqueueForces();
+
+  WorkDevice& Device;
+  std::size_t NumberOfNodes;
+  std::size_t NumberOfGroups;
+  std::size_t WorkGroupSize;
+  cl::Program Program;
+  cl::Kernel ComputeForcesKernel, AddForcesKernel, MoveNodesKernel, MoveHandlesKernel,
+    WriteOutputKernel;
+  cl::Buffer Tetrahedra, Materials, RestPoints, Begins, Places, Mobilities;
+  cl::Buffer Forces, Displacements, Velocities, Loads, Handles, HasDiverged;
+  cl::Buffer Sums, SavedDisplacements, SavedVelocities;
+  std::size_t NumberOfHandles = 0;
+  bool HasLoads = false;
+  float* HostOutput = nullptr; // null where it stays on the device
+  float Factor = 1.0F;
+  std::shared_ptr<DeviceVectors> VectorOutput;
+  cl::Buffer Output;
+};
+
+} // namespace deformvolume
+
+#endif

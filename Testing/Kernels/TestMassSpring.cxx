@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mass-spring dynamics: misuse, and motions that have a closed form.
+#include "LatticeBody.h"
+#include "MassSpringModel.h"
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+using namespace deformvolume;
+using namespace physicsTesting;
+
+namespace
+{
+
+constexpr double Spacing = 2.5e-3;
+constexpr double Pi = 3.14159265358979323846;
+constexpr std::array<int, 3> SmallLattice{ { 5, 4, 3 } };
+
+ElasticBody MakeSmallBody(double poissonRatio = 0.4)
+{
+  ElasticMaterial material;
+  material.PoissonRatio = poissonRatio;
+  return MakeLatticeBody(SmallLattice, glm::dvec3(Spacing), material);
+}
+
+std::vector<double> GetMasses(const ElasticBody& body)
+{
+  return GetNodeMasses(body, GetVolumes(body));
+}
+
+double FindLargest(const std::vector<float>& values)
+{
+  double largest = 0.0;
+  for (const float value : values)
+  {
+    largest = std::max(largest, std::abs(static_cast<double>(value)));
+  }
+  return largest;
+}
+
+std::vector<float> MakeRandom(std::size_t size, double most)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-most, most);
+  std::vector<float> values(size);
+  std::generate(values.begin(), values.end(), [&] { return static_cast<float>(uniform(random)); });
+  return values;
+}
+
+MassSpringRequest For(double duration, double timeStep = 0.0, double damping = 0.0)
+{
+  MassSpringRequest request;
+  request.Duration = duration;
+  request.TimeStep = timeStep;
+  request.Damping = damping;
+  return request;
+}
+
+// One with three fixed nodes and a fourth that three springs hold, each along an axis.
+ElasticBody MakePendulum()
+{
+  ElasticBody body;
+  body.Points = { { 0, 0, 0 }, { Spacing, 0, 0 }, { 0, Spacing, 0 }, { 0, 0, Spacing } };
+  body.Tetrahedra = { { 0, 1, 2, 3 } };
+  body.Fixed = { 0, 1, 1, 1 };
+  body.Materials.front().PoissonRatio = 0.25;
+  return body;
+}
+
+// Of the first node along x, by linear interpolation between the steps where it passes 0 upwards.
+double MeasurePeriod(MassSpringModel& model, double timeStep, int periods)
+{
+  double first = -1.0;
+  double last = 0.0;
+  float before = 0.0F;
+  int passed = -1;
+  for (int i = 0; passed < periods; ++i)
+  {
+    model.Advance(For(timeStep, timeStep));
+    const float now = model.GetDisplacements().front();
+    if (before < 0.0F && now >= 0.0F)
+    {
+      last = timeStep * (i + 1 - static_cast<double>(now / (now - before)));
+      first = first < 0.0 ? last : first;
+      ++passed;
+    }
+    before = now;
+  }
+  return (last - first) / periods;
+}
+
+} // namespace
+
+TEST(MassSpring, RefusesBodiesThatMakeNoSense)
+{
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  MassSpringModel model;
+  EXPECT_THROW(model.Advance(For(1.0)), Error) << "no body";
+  EXPECT_THROW(model.GetStableTimeStep(), Error);
+  EXPECT_THROW(model.Reset(), Error);
+  EXPECT_THROW(model.SetBody({}), Error) << "no tetrahedra";
+  const auto refuses = [&](const auto& change)
+  {
+    ElasticBody body = MakeSmallBody();
+    change(body);
+    EXPECT_THROW(model.SetBody(body), Error);
+  };
+  refuses([&](ElasticBody& body) { body.Points[3].y = nan; });
+  refuses([](ElasticBody& body) { body.Tetrahedra[7][2] = 60; });
+  refuses([](ElasticBody& body) { body.Tetrahedra[7][2] = -1; });
+  refuses([](ElasticBody& body) { std::swap(body.Tetrahedra[7][2], body.Tetrahedra[7][1]); });
+  refuses([](ElasticBody& body) { body.Tetrahedra[7][2] = body.Tetrahedra[7][1]; });
+  refuses([](ElasticBody& body) { body.Fixed.assign(59, 0); });
+  refuses([](ElasticBody& body) { body.Materials.clear(); });
+  refuses([](ElasticBody& body) { body.Materials.resize(3); });
+  for (const ElasticMaterial& bad : std::vector<ElasticMaterial>{ { 0.0, 0.3, 1e3 },
+         { -1.0, 0.3, 1e3 }, { nan, 0.3, 1e3 }, { 1e4, -0.1, 1e3 }, { 1e4, 0.495, 1e3 },
+         { 1e4, nan, 1e3 }, { 1e4, 0.3, 0.0 }, { 1e4, 0.3, nan } })
+  {
+    refuses([&](ElasticBody& body) { body.Materials = { bad }; });
+    refuses(
+      [&](ElasticBody& body)
+      {
+        body.Materials.resize(body.Tetrahedra.size());
+        body.Materials.back() = bad;
+      });
+  }
+  model.SetMemoryLimit(1000);
+  EXPECT_THROW(model.SetBody(MakeSmallBody()), Error) << "no memory";
+  model.SetMemoryLimit(0);
+  ElasticBody fixed = MakeSmallBody();
+  FixNodes(fixed, [](const glm::dvec3&) { return true; });
+  model.SetBody(fixed);
+  EXPECT_THROW(model.Advance(For(1.0)), Error) << "nothing moves";
+}
+
+TEST(MassSpring, RefusesRequestsThatMakeNoSense)
+{
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  ElasticBody body = MakeSmallBody();
+  FixNodes(body, [](const glm::dvec3& point) { return point.x == 0.0; });
+  MassSpringModel model;
+  model.SetBody(body);
+  EXPECT_THROW(model.SetOutput(nullptr), Error);
+  MassSpringRequest pulled = For(0.01);
+  pulled.Held = { { 4, { 1e-3, 0, 0 } } };
+  model.Advance(pulled);
+  const std::vector<float> before = model.GetDisplacements();
+  const auto refuses = [&](const auto& change)
+  {
+    MassSpringRequest request = For(0.01);
+    change(request);
+    EXPECT_THROW(model.Advance(request), Error);
+  };
+  for (const double bad : { -1.0, nan, std::numeric_limits<double>::infinity() })
+  {
+    refuses([&](MassSpringRequest& request) { request.Duration = bad; });
+    refuses([&](MassSpringRequest& request) { request.TimeStep = bad; });
+    refuses([&](MassSpringRequest& request) { request.Damping = bad; });
+  }
+  refuses([](MassSpringRequest& request) { request.Held = { { 60, {} } }; });
+  refuses([](MassSpringRequest& request) { request.Held = { { -1, {} } }; });
+  refuses([](MassSpringRequest& request) { request.Held = { { 0, {} } }; });
+  refuses([](MassSpringRequest& request) { request.Held = { { 4, {} }, { 4, {} } }; });
+  refuses([&](MassSpringRequest& request) { request.Held = { { 4, { nan, 0, 0 } } }; });
+  refuses([&](MassSpringRequest& request) { request.Loads.Gravity.z = nan; });
+  refuses([](MassSpringRequest& request) { request.Loads.Forces.resize(59); });
+  refuses(
+    [&](MassSpringRequest& request)
+    {
+      request.Loads.Forces.resize(60);
+      request.Loads.Forces[9].x = nan;
+    });
+  EXPECT_THROW(model.SetState({}, {}), Error);
+  EXPECT_THROW(model.SplitNodes(body, { 1 }), Error);
+  EXPECT_EQ(model.GetDisplacements(), before);
+}
+
+TEST(MassSpring, NothingMovesAtRest)
+{
+  MassSpringModel model;
+  model.SetBody(MakeSmallBody());
+  EXPECT_EQ(FindLargest(model.GetForces()), 0.0);
+  model.Advance(For(0.1));
+  EXPECT_EQ(FindLargest(model.GetDisplacements()), 0.0);
+  EXPECT_EQ(FindLargest(model.GetVelocities()), 0.0);
+}
+
+TEST(MassSpring, FreeFall)
+{
+  const ElasticBody body = MakeSmallBody();
+  MassSpringModel model;
+  model.SetBody(body);
+  std::vector<float> output(body.Points.size() * 3);
+  model.SetOutput(output.data(), 1000.0);
+  MassSpringRequest request = For(0.1);
+  request.Loads.Gravity = { 0, 0, -9.81 };
+  const MassSpringReport report = model.Advance(request);
+  // The sum of the velocities of all steps.
+  const double fallen = 0.5 * 9.81 * 0.1 * (0.1 + report.TimeStep);
+  for (std::size_t i = 0; i < output.size(); ++i)
+  {
+    EXPECT_NEAR(output[i], i % 3 == 2 ? -1000.0 * fallen : 0.0, 1e-4 * 1000.0 * fallen);
+  }
+}
+
+TEST(MassSpring, DampingSlowsDown)
+{
+  const ElasticBody body = MakeSmallBody();
+  MassSpringModel model;
+  model.SetBody(body);
+  std::vector<float> velocities(body.Points.size() * 3, 0.0F);
+  for (std::size_t i = 0; i < velocities.size(); i += 3)
+  {
+    velocities[i] = 0.1F;
+  }
+  model.SetState(std::vector<float>(velocities.size(), 0.0F), velocities);
+  constexpr double duration = 0.5;
+  constexpr double damping = 2.0;
+  model.Advance(For(duration, 0.0, damping));
+  EXPECT_NEAR(model.GetVelocities().front(), 0.1 * std::exp(-damping * duration), 1e-5);
+}
+
+TEST(MassSpring, MomentumOfAFreeBody)
+{
+  const ElasticBody body = MakeSmallBody();
+  const std::vector<double> masses = GetMasses(body);
+  MassSpringModel model;
+  model.SetBody(body);
+  const std::size_t size = body.Points.size() * 3;
+  model.SetState(MakeRandom(size, 0.1 * Spacing), MakeRandom(size, 0.01));
+  const auto getMomentum = [&]
+  {
+    const std::vector<float> velocities = model.GetVelocities();
+    glm::dvec3 momentum(0.0);
+    double scale = 0.0;
+    for (std::size_t i = 0; i < velocities.size(); ++i)
+    {
+      momentum[static_cast<int>(i % 3)] += static_cast<double>(velocities[i]) * masses[i / 3];
+      scale += std::abs(static_cast<double>(velocities[i])) * masses[i / 3];
+    }
+    return std::make_pair(momentum, scale);
+  };
+  const std::vector<float> forces = model.GetForces();
+  const double largest = FindLargest(forces);
+  glm::dvec3 sum(0.0);
+  for (std::size_t i = 0; i < forces.size(); ++i)
+  {
+    sum[static_cast<int>(i % 3)] += static_cast<double>(forces[i]);
+  }
+  EXPECT_GT(largest, 0.0);
+  EXPECT_LT(glm::length(sum), 1e-5 * largest * std::sqrt(static_cast<double>(size) / 3.0));
+  const auto [before, scale] = getMomentum();
+  model.Advance(For(1000 * 0.4 * model.GetStableTimeStep(), 0.4 * model.GetStableTimeStep()));
+  EXPECT_LT(glm::length(getMomentum().first - before), 1e-4 * scale);
+}
+
+TEST(MassSpring, PeriodOfASpring)
+{
+  const ElasticBody body = MakePendulum();
+  MassSpringModel model;
+  model.SetBody(body);
+  // A quarter of a cube's volume; springs of a quarter of those of the lattice, calibrated.
+  const double mass = GetMasses(body).front();
+  const double stiffness =
+    model.GetCalibration() * body.Materials.front().GetShearModulus() * Spacing / 4.0;
+  const double period = 2.0 * Pi * std::sqrt(mass / stiffness);
+  EXPECT_NEAR(model.GetStableTimeStep(), period / Pi, 2e-4 * period);
+  std::vector<float> moved(12, 0.0F);
+  moved[0] = static_cast<float>(1e-3 * Spacing);
+  model.SetState(moved, std::vector<float>(12, 0.0F));
+  EXPECT_NEAR(MeasurePeriod(model, period / 200.0, 10), period, 1e-3 * period);
+}
+
+TEST(MassSpring, HandlesArriveAndLetGo)
+{
+  ElasticBody body = MakeSmallBody();
+  FixNodes(body, [](const glm::dvec3& point) { return point.x == 0.0; });
+  MassSpringModel model;
+  model.SetBody(body);
+  const std::size_t held = GetNode(SmallLattice, 4, 1, 1);
+  MassSpringRequest request = For(0.02, 0.0, 20.0);
+  const glm::dvec3 wanted(0.1 * Spacing, 0.5 * Spacing, 0.0);
+  request.Held = { { static_cast<std::int32_t>(held), wanted } };
+  model.Advance(request);
+  for (int i = 0; i < 50; ++i)
+  {
+    model.Advance(request);
+  }
+  std::vector<float> now = model.GetDisplacements();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    EXPECT_EQ(now[3 * held + axis], static_cast<float>(wanted[static_cast<int>(axis)]));
+    EXPECT_EQ(now[axis], 0.0F) << "fixed";
+  }
+  const std::size_t beside = GetNode(SmallLattice, 3, 1, 1);
+  EXPECT_GT(now[3 * beside + 1], 0.1F * static_cast<float>(Spacing));
+  request.Held.clear();
+  for (int i = 0; i < 50; ++i)
+  {
+    model.Advance(request);
+  }
+  EXPECT_LT(FindLargest(model.GetDisplacements()), 1e-3 * Spacing);
+  model.Reset();
+  EXPECT_EQ(FindLargest(model.GetDisplacements()), 0.0);
+  EXPECT_EQ(FindLargest(model.GetVelocities()), 0.0);
+}
+
+TEST(MassSpring, StableTimeStepIsTheLimit)
+{
+  const ElasticBody body = MakeSmallBody();
+  MassSpringModel model;
+  model.SetBody(body);
+  const double stable = model.GetStableTimeStep();
+  const std::size_t size = body.Points.size() * 3;
+  const std::vector<float> at(size, 0.0F);
+  const std::vector<float> velocities = MakeRandom(size, 1e-4);
+  model.SetState(at, velocities);
+  constexpr int steps = 10000;
+  model.Advance(For(steps * 0.98 * stable, 0.98 * stable));
+  EXPECT_LT(FindLargest(model.GetVelocities()), 1e-3);
+  model.SetState(at, velocities);
+  std::string words;
+  try
+  {
+    model.Advance(For(steps * 1.05 * stable, 1.05 * stable));
+  }
+  catch (const Error& error)
+  {
+    words = error.what();
+  }
+  EXPECT_NE(words.find("diverged"), std::string::npos) << words;
+  EXPECT_EQ(model.GetDisplacements(), at) << "the last good state";
+  EXPECT_EQ(model.GetVelocities(), velocities);
+}
+
+TEST(MassSpring, ResultsDoNotDependOnWorkGroups)
+{
+  std::vector<float> expected;
+  for (const std::size_t size : { 0, 1, 7, 64 })
+  {
+    MassSpringModel model;
+    model.SetWorkGroupSize(size);
+    ElasticBody body = MakeSmallBody();
+    FixNodes(body, [](const glm::dvec3& point) { return point.z == 0.0; });
+    model.SetBody(body);
+    MassSpringRequest request = For(0.02, 2e-4, 2.0);
+    request.Held = { { 55, { 1e-3, 0, 1e-3 } } };
+    request.Loads.Gravity = { 0, -9.81, 0 };
+    request.Loads.Forces.assign(body.Points.size(), { 1e-6, 0, 0 });
+    model.Advance(request);
+    const std::vector<float> found = model.GetDisplacements();
+    expected = expected.empty() ? found : expected;
+    EXPECT_EQ(found, expected) << size;
+  }
+}
+
+TEST(MassSpring, AbortLeavesTheBodyAsItWas)
+{
+  MassSpringModel model;
+  model.SetBody(MakeSmallBody());
+  MassSpringRequest request = For(0.01);
+  request.Loads.Gravity = { 0, 0, -9.81 };
+  model.Advance(request);
+  const std::vector<float> before = model.GetDisplacements();
+  const std::vector<float> velocities = model.GetVelocities();
+  int calls = 0;
+  request.Duration = 10.0;
+  request.Progress = [&](double fraction)
+  {
+    EXPECT_GT(fraction, 0.0);
+    EXPECT_LT(fraction, 1.0);
+    return ++calls < 3;
+  };
+  EXPECT_THROW(model.Advance(request), Aborted);
+  EXPECT_EQ(calls, 3);
+  EXPECT_EQ(model.GetDisplacements(), before);
+  EXPECT_EQ(model.GetVelocities(), velocities);
+}
+
+TEST(MassSpring, SplitNodesGoOnWhereTheyWere)
+{
+  // Two tetrahedra that share a face, and then share nothing.
+  ElasticBody body;
+  body.Points = { { 0, 0, 0 }, { Spacing, 0, 0 }, { 0, Spacing, 0 }, { 0, 0, Spacing },
+    { Spacing, Spacing, Spacing } };
+  body.Tetrahedra = { { 0, 1, 2, 3 }, { 1, 4, 2, 3 } };
+  ElasticBody apart = body;
+  apart.Tetrahedra[1] = { 5, 4, 6, 7 };
+  for (const std::size_t origin : { 1, 2, 3 })
+  {
+    apart.Points.push_back(body.Points[origin]);
+  }
+  MassSpringModel model;
+  model.SetBody(body);
+  std::vector<float> displacements = MakeRandom(15, 0.05 * Spacing);
+  std::vector<float> velocities = MakeRandom(15, 0.01);
+  model.SetState(displacements, velocities);
+  model.SplitNodes(apart, { 1, 2, 3 });
+  for (std::vector<float>* values : { &displacements, &velocities })
+  {
+    values->insert(values->end(), values->begin() + 3, values->begin() + 12);
+  }
+  EXPECT_EQ(model.GetDisplacements(), displacements);
+  EXPECT_EQ(model.GetVelocities(), velocities);
+  // Each goes its own way now, as if the other had never been there.
+  const double step = 0.5 * model.GetStableTimeStep();
+  model.Advance(For(100 * step, step));
+  ElasticBody alone = body;
+  alone.Tetrahedra.pop_back();
+  MassSpringModel other;
+  other.SetBody(alone);
+  if (model.GetCalibration() == other.GetCalibration())
+  {
+    other.SetState({ displacements.begin(), displacements.begin() + 15 },
+      { velocities.begin(), velocities.begin() + 15 });
+    other.Advance(For(100 * step, step));
+    const std::vector<float> together = model.GetDisplacements();
+    const std::vector<float> expected = other.GetDisplacements();
+    EXPECT_TRUE(std::equal(expected.begin(), expected.begin() + 12, together.begin()));
+  }
+  EXPECT_THROW(model.SplitNodes(body, {}), Error) << "nodes are gone";
+}

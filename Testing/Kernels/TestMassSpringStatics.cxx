@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The elastic constants that springs give: of lattices, of other meshes, and in use.
+#include "LatticeBody.h"
+#include "MassSpringModel.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+using namespace deformvolume;
+using namespace physicsTesting;
+
+namespace
+{
+
+constexpr double Spacing = 2.5e-3;
+constexpr double Strain = 1e-3;
+
+ElasticMaterial MakeMaterial(double poissonRatio)
+{
+  ElasticMaterial material;
+  material.PoissonRatio = poissonRatio;
+  return material;
+}
+
+struct Constants
+{
+  double YoungModulus;
+  double PoissonRatio;
+};
+
+// Pulls a box along x: both ends keep their planes and slide in them. The equilibrium is found by
+// conjugate gradients on the forces of the model.
+class BarTest
+{
+public:
+  BarTest(MassSpringModel& model, const ElasticBody& body)
+    : Model(model)
+    , Body(body)
+  {
+    this->Low = this->High = body.Points.front();
+    for (const glm::dvec3& point : body.Points)
+    {
+      this->Low = glm::min(this->Low, point);
+      this->High = glm::max(this->High, point);
+    }
+  }
+
+  Constants Measure()
+  {
+    const std::size_t size = this->Body.Points.size() * 3;
+    std::vector<double> x(size, 0.0);
+    for (std::size_t i = 0; i < size; i += 3)
+    {
+      x[i] = Strain * (this->Body.Points[i / 3].x - this->Low.x);
+    }
+    std::vector<double> residual = this->Project(this->Force(x));
+    std::vector<double> direction = residual;
+    double squared = Dot(residual, residual);
+    const double wanted = 1e-12 * Dot(this->Force(x), this->Force(x));
+    for (int i = 0; i < 1000 && squared > wanted; ++i)
+    {
+      // Forces of a body near rest are linear; the sign is that of what resists.
+      std::vector<double> product = this->Project(this->Force(direction));
+      const double length = -squared / Dot(direction, product);
+      for (std::size_t j = 0; j < size; ++j)
+      {
+        x[j] += length * direction[j];
+        residual[j] += length * product[j];
+      }
+      const double before = squared;
+      squared = Dot(residual, residual);
+      for (std::size_t j = 0; j < size; ++j)
+      {
+        direction[j] = residual[j] + squared / before * direction[j];
+      }
+    }
+    return this->Evaluate(x);
+  }
+
+private:
+  static double Dot(const std::vector<double>& a, const std::vector<double>& b)
+  {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+  }
+
+  bool IsAtEnd(std::size_t node) const
+  {
+    const double x = this->Body.Points[node].x;
+    return x == this->Low.x || x == this->High.x;
+  }
+
+  std::vector<double> Project(std::vector<double> force) const
+  {
+    for (std::size_t i = 0; i < force.size(); i += 3)
+    {
+      force[i] = this->IsAtEnd(i / 3) ? 0.0 : force[i];
+    }
+    return force;
+  }
+
+  // Of displacements of any size, as of small ones.
+  std::vector<double> Force(const std::vector<double>& x) const
+  {
+    double largest = 1e-300;
+    for (const double value : x)
+    {
+      largest = std::max(largest, std::abs(value));
+    }
+    const double factor = 1e-4 * Spacing / largest;
+    std::vector<float> small(x.size());
+    std::transform(x.begin(), x.end(), small.begin(),
+      [&](double value) { return static_cast<float>(factor * value); });
+    this->Model.SetState(small, std::vector<float>(x.size(), 0.0F));
+    const std::vector<float> forces = this->Model.GetForces();
+    std::vector<double> result(x.size());
+    std::transform(forces.begin(), forces.end(), result.begin(),
+      [&](float force) { return static_cast<double>(force) / factor; });
+    return result;
+  }
+
+  Constants Evaluate(const std::vector<double>& x) const
+  {
+    const glm::dvec3 size = this->High - this->Low;
+    const std::vector<double> force = this->Force(x);
+    double pulled = 0.0;
+    for (std::size_t node = 0; node < this->Body.Points.size(); ++node)
+    {
+      pulled -= this->Body.Points[node].x == this->High.x ? force[3 * node] : 0.0;
+    }
+    // By least squares. Springs without an energy of the volume leave every other node of a free
+    // surface behind, which is no property of the material: the surface is left out.
+    const glm::dvec3 middle = 0.5 * (this->Low + this->High);
+    const glm::dvec3 half = this->High - middle - glm::dvec3(0.5 * Spacing);
+    double narrowing = 0.0;
+    double width = 0.0;
+    for (std::size_t node = 0; node < this->Body.Points.size(); ++node)
+    {
+      const glm::dvec3 place = this->Body.Points[node] - middle;
+      if (std::abs(place.y) < half.y && std::abs(place.z) < half.z)
+      {
+        narrowing -= x[3 * node + 1] * place.y + x[3 * node + 2] * place.z;
+        width += place.y * place.y + place.z * place.z;
+      }
+    }
+    Constants constants{};
+    constants.YoungModulus = pulled / (size.y * size.z * Strain);
+    constants.PoissonRatio = narrowing / (width * Strain);
+    return constants;
+  }
+
+  MassSpringModel& Model;
+  const ElasticBody& Body;
+  glm::dvec3 Low, High;
+};
+
+// A lattice of cubes of six tetrahedra each, all round the same diagonal.
+ElasticBody MakeSixTetrahedra(const std::array<int, 3>& nodes, const ElasticMaterial& material)
+{
+  ElasticBody body = MakeLatticeBody(nodes, glm::dvec3(Spacing), material);
+  body.Tetrahedra.clear();
+  std::array<int, 3> axes{ { 0, 1, 2 } };
+  do
+  {
+    const bool isEven = (axes[1] - axes[0] + 3) % 3 == 1;
+    for (int z = 0; z + 1 < nodes[2]; ++z)
+    {
+      for (int y = 0; y + 1 < nodes[1]; ++y)
+      {
+        for (int x = 0; x + 1 < nodes[0]; ++x)
+        {
+          std::array<int, 3> at{ { x, y, z } };
+          Tetrahedron tetrahedron;
+          tetrahedron[0] = static_cast<std::int32_t>(GetNode(nodes, at[0], at[1], at[2]));
+          for (std::size_t i = 0; i < 3; ++i)
+          {
+            ++at[static_cast<std::size_t>(axes[i])];
+            tetrahedron[i + 1] = static_cast<std::int32_t>(GetNode(nodes, at[0], at[1], at[2]));
+          }
+          if (!isEven)
+          {
+            std::swap(tetrahedron[2], tetrahedron[3]);
+          }
+          body.Tetrahedra.push_back(tetrahedron);
+        }
+      }
+    }
+  } while (std::next_permutation(axes.begin(), axes.end()));
+  return body;
+}
+
+// Moves the nodes inside.
+void Shake(ElasticBody& body, double most)
+{
+  glm::dvec3 low = body.Points.front();
+  glm::dvec3 high = body.Points.back();
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-most, most);
+  for (glm::dvec3& point : body.Points)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (point[axis] != low[axis] && point[axis] != high[axis])
+      {
+        point[axis] += uniform(random);
+      }
+    }
+  }
+}
+
+} // namespace
+
+TEST(MassSpringStatics, LatticesAreIsotropic)
+{
+  struct Row
+  {
+    double PoissonRatio;
+    double StableTimeStep; // by the speed of sound and the spacing
+  };
+  for (const Row& row : { Row{ 0.25, 0.94 }, Row{ 0.4, 0.79 }, Row{ 0.45, 0.71 } })
+  {
+    const ElasticMaterial material = MakeMaterial(row.PoissonRatio);
+    const ElasticBody body = MakeLatticeBody({ { 9, 9, 9 } }, glm::dvec3(Spacing), material);
+    MassSpringModel model;
+    model.SetBody(body);
+    EXPECT_EQ(model.GetCalibration(), 1.0);
+    const double speed =
+      std::sqrt((material.GetLambda() + 2.0 * material.GetShearModulus()) / material.Density);
+    EXPECT_NEAR(
+      model.GetStableTimeStep() * speed / Spacing, row.StableTimeStep, 0.01 * row.StableTimeStep);
+    const Constants constants = BarTest(model, body).Measure();
+    EXPECT_NEAR(constants.YoungModulus, material.YoungModulus, 0.02 * material.YoungModulus);
+    EXPECT_NEAR(constants.PoissonRatio, row.PoissonRatio, 0.02 * row.PoissonRatio);
+  }
+}
+
+TEST(MassSpringStatics, OtherMeshesAreCalibrated)
+{
+  for (const double poissonRatio : { 0.25, 0.4, 0.45 })
+  {
+    const ElasticMaterial material = MakeMaterial(poissonRatio);
+    const std::array<int, 3> nodes{ { 9, 9, 9 } };
+    ElasticBody six = MakeSixTetrahedra(nodes, material);
+    ElasticBody sixShaken = six;
+    Shake(sixShaken, 0.15 * Spacing);
+    ElasticBody shaken = MakeLatticeBody(nodes, glm::dvec3(Spacing), material);
+    Shake(shaken, 0.2 * Spacing);
+    for (ElasticBody* body : { &six, &sixShaken, &shaken })
+    {
+      MassSpringModel model;
+      model.SetBody(*body);
+      EXPECT_GT(model.GetCalibration(), 1.05);
+      // Springs alone, on a small mesh that is not regular, differ from axis to axis.
+      const double tolerance = poissonRatio == 0.25 ? 0.04 : 0.01;
+      EXPECT_NEAR(BarTest(model, *body).Measure().YoungModulus, material.YoungModulus,
+        tolerance * material.YoungModulus);
+    }
+  }
+}
+
+TEST(MassSpringStatics, HangingBar)
+{
+  ElasticMaterial material = MakeMaterial(0.4);
+  const std::array<int, 3> nodes{ { 5, 5, 21 } };
+  ElasticBody body = MakeLatticeBody(nodes, glm::dvec3(Spacing), material);
+  FixNodes(body, [](const glm::dvec3& point) { return point.z == 0.0; });
+  MassSpringModel model;
+  model.SetBody(body);
+  MassSpringRequest request;
+  request.Duration = 4.0;
+  request.Damping = 20.0;
+  request.Loads.Gravity = { 0, 0, 1.0 };
+  model.Advance(request);
+  const double length = 20.0 * Spacing;
+  const double expected =
+    material.Density * request.Loads.Gravity.z * length * length / (2.0 * material.YoungModulus);
+  const std::vector<float> displacements = model.GetDisplacements();
+  const double found = displacements[3 * GetNode(nodes, 2, 2, 20) + 2];
+  // The end that is held cannot narrow, which makes a bar of this length a little stiffer.
+  EXPECT_NEAR(found, expected, 0.04 * expected);
+  EXPECT_LT(found, expected);
+  // Drift to a side: less than a thousandth of the length.
+  EXPECT_LT(std::abs(displacements[3 * GetNode(nodes, 2, 2, 20)]), 1e-3 * length);
+}
+
+TEST(MassSpringStatics, StressOfAStrain)
+{
+  const ElasticMaterial material = MakeMaterial(0.4);
+  const ElasticBody body = MakeLatticeBody({ { 5, 5, 5 } }, glm::dvec3(Spacing), material);
+  MassSpringModel model;
+  model.SetBody(body);
+  std::vector<float> displacements;
+  for (const glm::dvec3& point : body.Points)
+  {
+    displacements.push_back(static_cast<float>(Strain * point.x));
+    displacements.push_back(static_cast<float>(-0.4 * Strain * point.y));
+    displacements.push_back(static_cast<float>(-0.4 * Strain * point.z));
+  }
+  model.SetState(displacements, std::vector<float>(displacements.size(), 0.0F));
+  const std::vector<ElementResults> results = model.GetElementResults();
+  const std::vector<double> volumes = GetVolumes(body);
+  std::array<double, 6> mean{};
+  double energy = 0.0;
+  double volume = 0.0;
+  for (std::size_t t = 0; t < results.size(); ++t)
+  {
+    for (std::size_t i = 0; i < 6; ++i)
+    {
+      mean[i] += volumes[t] * results[t].Stress[i];
+    }
+    energy += volumes[t] * results[t].StrainEnergyDensity;
+    volume += volumes[t];
+    EXPECT_NEAR(results[t].Determinant, 1.0 + 0.2 * Strain, 2e-3 * Strain);
+  }
+  const double stress = material.YoungModulus * Strain;
+  EXPECT_NEAR(mean[0] / volume, stress, 0.01 * stress);
+  for (std::size_t i = 1; i < 6; ++i)
+  {
+    EXPECT_NEAR(mean[i] / volume, 0.0, 0.01 * stress);
+  }
+  EXPECT_NEAR(energy / volume, 0.5 * stress * Strain, 0.01 * 0.5 * stress * Strain);
+}
