@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ChainMailSession.h"
 
-#include "Device.h"
 #include "ExtentRanges.h"
 #include "VectorArray.h"
 #include "VolumeArrays.h"
 
 #include "vtkArrayChanges.h"
 #include "vtkDataArray.h"
-#include "vtkDeviceVectorArray.h"
-#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -19,7 +16,6 @@
 #include <glm/glm.hpp>
 
 #include <algorithm>
-#include <new>
 #include <optional>
 
 namespace deformvolume
@@ -208,42 +204,9 @@ void ChainMailSession::SetVolume(const ImageGeometry& geometry, const ChainMailS
 
 void ChainMailSession::MakeOutput(vtkIdType voxels)
 {
-  constexpr int components = 3;
-  this->Output = nullptr; // its memory goes first
-  this->Vectors.reset();
-  if (GetDeviceAbilities(this->Device).OwnMemory)
-  {
-    this->Vectors = std::make_shared<DeviceVectors>(this->Device, static_cast<std::size_t>(voxels));
-    this->Model.SetOutput(this->Vectors);
-    vtkNew<vtkDeviceVectorArray> array;
-    array->SetDevice(this->Device);
-    array->SetVectors(this->Vectors);
-    this->Output = array;
-  }
-  else
-  {
-    vtkNew<vtkFloatArray> array;
-    array->SetNumberOfComponents(components);
-    if (!array->Resize(voxels))
-    {
-      throw std::bad_alloc();
-    }
-    array->SetNumberOfTuples(voxels);
-    this->Model.SetOutput(array->GetPointer(0));
-    this->Output = array;
-  }
-  this->Output->SetName("Displacement");
+  this->Output.Make(this->Model, this->Device, voxels);
   vtkNew<vtkArrayChanges> log; // which the array holds
-  log->SetArray(this->Output);
-}
-
-void ChainMailSession::RestoreOutput()
-{
-  auto* const array = vtkDeviceVectorArray::SafeDownCast(this->Output);
-  if (array && !array->IsOf(this->Vectors))
-  {
-    array->SetVectors(this->Vectors);
-  }
+  log->SetArray(this->Output.GetArray());
 }
 
 ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handles,
@@ -335,7 +298,7 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
     }
     const ChainMailReport report = this->Model.Step(request);
     this->LogChanges(report);
-    this->RestoreOutput();
+    this->Output.Restore();
     return report;
   }
   catch (const Error&)
@@ -353,10 +316,10 @@ void ChainMailSession::LogChanges(const ChainMailReport& report)
   const auto rows = FindRows(report.Changes, this->Geometry.PointExtent);
   if (!rows)
   {
-    this->Output->Modified();
+    this->Output.GetArray()->Modified();
     return;
   }
-  vtkArrayChanges* log = vtkArrayChanges::FindLog(this->Output);
+  vtkArrayChanges* log = vtkArrayChanges::FindLog(this->Output.GetArray());
   for (const auto& row : *rows)
   {
     log->AddTuples(static_cast<vtkIdType>(row[0]), static_cast<vtkIdType>(row[1]) - 1);
@@ -368,7 +331,7 @@ void ChainMailSession::GiveOutput(vtkImageData* output) const
   const Extent& extent = this->Geometry.PointExtent;
   output->SetExtent(extent[0], extent[1], extent[2], extent[3], extent[4], extent[5]);
   SetTransform(output, this->Geometry);
-  output->GetPointData()->SetVectors(this->Output);
+  output->GetPointData()->SetVectors(this->Output.GetArray());
 }
 
 } // namespace deformvolume

@@ -6,13 +6,10 @@
 #include "DeformationMesh.h" // for Stamp
 #include "ImageGeometry.h"
 #include "MaterialArray.h"
-
-#include "vtkDataArray.h"
-#include "vtkSmartPointer.h"
+#include "VectorOutput.h"
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -70,10 +67,7 @@ private:
 
   void SetVolume(const ImageGeometry& geometry, const ChainMailSettings& settings);
   void Forget();
-  /// Has the model write to an array, or where its values are on the device.
   void MakeOutput(vtkIdType voxels);
-  /// Has the output hold what the device has, also where somebody has written to it.
-  void RestoreOutput();
   /// Says which displacements a step has written.
   void LogChanges(const ChainMailReport& report);
 
@@ -85,9 +79,7 @@ private:
   MaterialsKey KeyOfMaterials;
   Stamp StampOfMasks;
   Stamp StampOfPins;
-  vtkSmartPointer<vtkDataArray> Output;
-  // On a device with memory of its own, where the output stays.
-  std::shared_ptr<DeviceVectors> Vectors;
+  VectorOutput Output;
 };
 
 } // namespace deformvolume

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VectorOutput.h"
+
+#include "Device.h"
+
+#include "vtkDeviceVectorArray.h"
+#include "vtkFloatArray.h"
+#include "vtkNew.h"
+
+#include <new>
+
+namespace deformvolume
+{
+
+bool VectorOutput::Allocate(const std::string& device, vtkIdType tuples)
+{
+  constexpr int components = 3;
+  this->Array = nullptr; // its memory goes first
+  this->Vectors.reset();
+  const bool isOnDevice = GetDeviceAbilities(device).OwnMemory;
+  if (isOnDevice)
+  {
+    this->Vectors = std::make_shared<DeviceVectors>(device, static_cast<std::size_t>(tuples));
+    vtkNew<vtkDeviceVectorArray> array;
+    array->SetDevice(device);
+    array->SetVectors(this->Vectors);
+    this->Array = array;
+  }
+  else
+  {
+    vtkNew<vtkFloatArray> array;
+    array->SetNumberOfComponents(components);
+    if (!array->Resize(tuples))
+    {
+      throw std::bad_alloc();
+    }
+    array->SetNumberOfTuples(tuples);
+    this->Memory = array->GetPointer(0);
+    this->Array = array;
+  }
+  this->Array->SetName("Displacement");
+  return isOnDevice;
+}
+
+void VectorOutput::Restore()
+{
+  auto* const array = vtkDeviceVectorArray::SafeDownCast(this->Array);
+  if (array && !array->IsOf(this->Vectors))
+  {
+    array->SetVectors(this->Vectors);
+  }
+}
+
+} // namespace deformvolume

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BodyReading.h"
+
+#include "CellTypes.h"
+#include "Error.h"
+#include "VectorArray.h"
+
+#include "vtkCell.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCellType.h"
+#include "vtkDataArray.h"
+#include "vtkGenericCell.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkSmartPointer.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <string>
+
+namespace deformvolume
+{
+namespace
+{
+
+constexpr const char* YOUNG_MODULUS = "YoungModulus";
+constexpr const char* POISSON_RATIO = "PoissonRatio";
+constexpr const char* DENSITY = "Density";
+constexpr const char* FIXED = "Fixed";
+constexpr const char* FORCE = "Force";
+constexpr const char* REST_POSITION = "RestPosition";
+constexpr const char* MESH = "rest mesh on input port 0";
+constexpr const char* HANDLES = "handles on input port 1";
+
+// Null where there is none of the name.
+vtkDataArray* FindArray(vtkDataSetAttributes* attributes, const char* name, int components,
+  vtkIdType tuples, const char* owner)
+{
+  vtkAbstractArray* array = attributes->GetAbstractArray(name);
+  if (!array)
+  {
+    return nullptr;
+  }
+  if (!vtkDataArray::SafeDownCast(array) || array->GetNumberOfComponents() != components ||
+    array->GetNumberOfTuples() != tuples)
+  {
+    throw Error(std::string("The array \"") + name + "\" of the " + owner + " is " +
+      array->GetDataTypeAsString() + ", " + std::to_string(array->GetNumberOfTuples()) +
+      " tuples of " + std::to_string(array->GetNumberOfComponents()) +
+      " components. Give it a numeric type, " + std::to_string(components) +
+      (components == 1 ? " component" : " components") + " and " + std::to_string(tuples) +
+      " tuples.");
+  }
+  return vtkDataArray::SafeDownCast(array);
+}
+
+std::vector<glm::dvec3> ReadAll(
+  vtkDataArray* array, double factor, const char* kind, const char* owner)
+{
+  std::vector<glm::dvec3> vectors(static_cast<std::size_t>(array->GetNumberOfTuples()));
+  ReadVectors(
+    array,
+    [&](vtkIdType first, const glm::dvec3* read, vtkIdType number)
+    {
+      std::transform(read, read + number, vectors.begin() + first,
+        [&](const glm::dvec3& vector) { return vector * factor; });
+    },
+    kind, owner);
+  return vectors;
+}
+
+int GetCellDimension(int type)
+{
+  const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+  return cell ? cell->GetCellDimension() : 3;
+}
+
+void ReadTetrahedra(vtkUnstructuredGrid* grid, BodyMesh& mesh)
+{
+  vtkDataArray* types = GetCellTypes(grid);
+  const vtkIdType count = grid->GetNumberOfCells();
+  if (count > 0 && (!types || types->GetNumberOfTuples() < count || !grid->GetCells()->IsValid()))
+  {
+    throw Error(std::string("The cells of the ") + MESH + " are incomplete.");
+  }
+  std::map<int, vtkIdType> others;
+  for (vtkIdType cell = 0; cell < count; ++cell)
+  {
+    const int type = grid->GetCellType(cell);
+    if (type != VTK_TETRA)
+    {
+      ++others[type];
+      continue;
+    }
+    vtkIdType size = 0;
+    const vtkIdType* points = nullptr;
+    grid->GetCells()->GetCellAtId(cell, size, points);
+    Tetrahedron tetrahedron{};
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+      if (size != 4 || points[i] < 0 || points[i] >= grid->GetNumberOfPoints())
+      {
+        throw Error("Cell " + std::to_string(cell) + " of the " + MESH +
+          " is a tetrahedron without four points of the mesh.");
+      }
+      tetrahedron[i] = static_cast<std::int32_t>(points[i]);
+    }
+    mesh.Body.Tetrahedra.push_back(tetrahedron);
+    mesh.Cells.push_back(cell);
+  }
+  for (const auto& [type, number] : others)
+  {
+    if (GetCellDimension(type) == 3)
+    {
+      throw Error("The " + std::string(MESH) + " has " + std::to_string(number) +
+        " cells that are " + GetCellClassName(type) +
+        ". Split them into tetrahedra first, for example with vtkDataSetTriangleFilter.");
+    }
+  }
+}
+
+void ReadMaterials(vtkUnstructuredGrid* grid, const BodySettings& settings, BodyMesh& mesh)
+{
+  const auto find = [&](const char* name)
+  { return FindArray(grid->GetCellData(), name, 1, grid->GetNumberOfCells(), MESH); };
+  vtkDataArray* youngModulus = find(YOUNG_MODULUS);
+  vtkDataArray* poissonRatio = find(POISSON_RATIO);
+  vtkDataArray* density = find(DENSITY);
+  mesh.Body.Materials = { settings.Material };
+  if (!youngModulus && !poissonRatio && !density)
+  {
+    return;
+  }
+  mesh.Body.Materials.assign(mesh.Cells.size(), settings.Material);
+  for (std::size_t t = 0; t < mesh.Cells.size(); ++t)
+  {
+    ElasticMaterial& material = mesh.Body.Materials[t];
+    const auto read = [&](vtkDataArray* array, double& value)
+    {
+      if (array)
+      {
+        value = array->GetComponent(mesh.Cells[t], 0);
+      }
+    };
+    read(youngModulus, material.YoungModulus);
+    read(poissonRatio, material.PoissonRatio);
+    read(density, material.Density);
+  }
+}
+
+// Adds the nodes that a place holds.
+void Hold(const glm::dvec3& place, double radius, const glm::dvec3& displacement,
+  const ElasticBody& body, std::vector<unsigned char>& isTaken, std::vector<HeldNode>& held)
+{
+  const std::size_t before = held.size();
+  const auto add = [&](std::size_t node)
+  {
+    if (isTaken[node] == 0 && !body.IsFixed(node))
+    {
+      isTaken[node] = 1;
+      held.push_back({ static_cast<std::int32_t>(node), displacement });
+    }
+  };
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t nearest = 0;
+  for (std::size_t node = 0; node < body.Points.size(); ++node)
+  {
+    const double distance = glm::distance(body.Points[node], place);
+    if (distance < least)
+    {
+      least = distance;
+      nearest = node;
+    }
+    if (radius > 0.0 && distance <= radius)
+    {
+      add(node);
+    }
+  }
+  if (radius == 0.0)
+  {
+    add(nearest);
+  }
+  if (held.size() == before)
+  {
+    throw Error(radius > 0.0
+        ? "A handle holds no node that could move: within HandleRadius of its RestPosition there "
+          "is "
+          "none, or all of them are fixed or held by another handle. Use a larger radius, or "
+          "another rest position."
+        : "A handle holds no node that could move: the one that is nearest to its RestPosition is "
+          "fixed, or held by another handle. Use another rest position, or a HandleRadius.");
+  }
+}
+
+} // namespace
+
+Stamp GetBodyStamp(vtkUnstructuredGrid* grid)
+{
+  Stamp stamp;
+  const auto add = [&](vtkObject* object)
+  { stamp.emplace_back(object, object ? object->GetMTime() : 0); };
+  add(grid->GetPoints());
+  add(grid->GetCells());
+  add(GetCellTypes(grid));
+  for (const char* name : { YOUNG_MODULUS, POISSON_RATIO, DENSITY })
+  {
+    add(grid->GetCellData()->GetAbstractArray(name));
+  }
+  for (const char* name : { FIXED, FORCE })
+  {
+    add(grid->GetPointData()->GetAbstractArray(name));
+  }
+  return stamp;
+}
+
+BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings)
+{
+  BodyMesh mesh;
+  const vtkIdType points = grid->GetNumberOfPoints();
+  if (points > std::numeric_limits<std::int32_t>::max())
+  {
+    throw Error(std::string("The ") + MESH + " has more than 2,147,483,647 points.");
+  }
+  if (points > 0)
+  {
+    mesh.Body.Points = ReadAll(grid->GetPoints()->GetData(), settings.UnitLength, "Point", MESH);
+  }
+  ReadTetrahedra(grid, mesh);
+  ReadMaterials(grid, settings, mesh);
+  if (vtkDataArray* fixed = FindArray(grid->GetPointData(), FIXED, 1, points, MESH))
+  {
+    mesh.Body.Fixed.resize(mesh.Body.Points.size());
+    for (vtkIdType i = 0; i < points; ++i)
+    {
+      mesh.Body.Fixed[static_cast<std::size_t>(i)] = fixed->GetComponent(i, 0) != 0.0 ? 1 : 0;
+    }
+  }
+  if (vtkDataArray* force = FindArray(grid->GetPointData(), FORCE, 3, points, MESH))
+  {
+    mesh.Forces = ReadAll(force, 1.0, FORCE, MESH);
+  }
+  CheckBody(mesh.Body);
+  return mesh;
+}
+
+std::vector<HeldNode> ReadHandles(
+  vtkPointSet* handles, double radius, const ElasticBody& body, const BodySettings& settings)
+{
+  std::vector<HeldNode> held;
+  const vtkIdType count = handles ? handles->GetNumberOfPoints() : 0;
+  if (count == 0)
+  {
+    return held;
+  }
+  vtkDataArray* rest = FindArray(handles->GetPointData(), REST_POSITION, 3, count, HANDLES);
+  if (!rest)
+  {
+    throw Error(std::string("The ") + HANDLES +
+      " have no point array \"RestPosition\". Add one of three components: the place in the mesh "
+      "at rest that each handle holds.");
+  }
+  const std::vector<glm::dvec3> places = ReadAll(rest, settings.UnitLength, REST_POSITION, HANDLES);
+  const std::vector<glm::dvec3> points =
+    ReadAll(handles->GetPoints()->GetData(), settings.UnitLength, "Point", HANDLES);
+  std::vector<unsigned char> isTaken(body.Points.size(), 0);
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    Hold(places[i], radius * settings.UnitLength, points[i] - places[i], body, isTaken, held);
+  }
+  return held;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeElasticSimulation_h
+#define DeformVolumeElasticSimulation_h
+
+#include "ElasticBody.h"
+#include "ElementResults.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+
+namespace deformvolume
+{
+
+/// What makes a body move, behind the interface that vtkElasticDeformation has to it. Throws Error
+/// and Aborted; what was simulated is then as it was.
+class ElasticSimulation
+{
+public:
+  virtual ~ElasticSimulation() = default;
+
+  /// Where the body goes in a frame.
+  struct Frame
+  {
+    double Duration = 0.0; // in s
+    std::vector<HeldNode> Held;
+    BodyLoads Loads;
+    std::function<bool(double)> Progress; // from 0 to 1; false: it is to end
+  };
+
+  /// A body: at rest, or with the displacements of the last one, which had the same mesh.
+  virtual void SetBody(const ElasticBody& body, bool keepsState) = 0;
+  /// Nodes of the body have been copied, see MassSpringModel::SplitNodes.
+  virtual void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins) = 0;
+  virtual void Advance(const Frame& frame) = 0;
+  virtual void Reset() = 0;
+  /// False at first, and where a device has failed.
+  virtual bool HasBody() const = 0;
+  /// In m.
+  virtual std::vector<glm::dvec3> GetDisplacements() = 0;
+  virtual std::vector<ElementResults> GetElementResults() = 0;
+  /// The displacements, times a factor, in the array that is always the same for a number of nodes.
+  virtual vtkDataArray* WriteOutput(double factor) = 0;
+};
+
+} // namespace deformvolume
+
+#endif

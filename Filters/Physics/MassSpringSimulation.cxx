@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MassSpringSimulation.h"
+
+#include <algorithm>
+
+namespace deformvolume
+{
+
+void MassSpringSimulation::SetDevice(const std::string& device, std::uint64_t memoryLimit)
+{
+  this->Model.SetMemoryLimit(memoryLimit);
+  this->Device = this->Model.SetDevice(device);
+}
+
+double MassSpringSimulation::GetStableTimeStep()
+{
+  return this->HasBody() ? this->Model.GetStableTimeStep() : 0.0;
+}
+
+void MassSpringSimulation::SetBody(const ElasticBody& body, bool keepsState)
+{
+  std::vector<float> displacements;
+  std::vector<float> velocities;
+  if (keepsState)
+  {
+    displacements = this->Model.GetDisplacements();
+    velocities = this->Model.GetVelocities();
+  }
+  this->Factor = 0.0;
+  this->Model.SetBody(body);
+  this->NumberOfNodes = body.Points.size();
+  if (keepsState)
+  {
+    this->Model.SetState(displacements, velocities);
+  }
+}
+
+void MassSpringSimulation::SplitNodes(
+  const ElasticBody& body, const std::vector<std::int32_t>& origins)
+{
+  this->Factor = 0.0;
+  this->Model.SplitNodes(body, origins);
+  this->NumberOfNodes = body.Points.size();
+}
+
+void MassSpringSimulation::Advance(const Frame& frame)
+{
+  if (this->TimeStep > 0.0 && this->TimeStep > this->Model.GetStableTimeStep())
+  {
+    throw Error("The time step of " + std::to_string(this->TimeStep * 1e3) +
+      " ms is longer than the longest stable one of " +
+      std::to_string(this->Model.GetStableTimeStep() * 1e3) +
+      " ms. Set a shorter one, or 0 to have it chosen.");
+  }
+  MassSpringRequest request;
+  request.Duration = frame.Duration;
+  request.TimeStep = this->TimeStep;
+  request.Damping = this->Damping;
+  request.Held = frame.Held;
+  request.Loads = frame.Loads;
+  request.Progress = frame.Progress;
+  this->Report = this->Model.Advance(request);
+}
+
+std::vector<glm::dvec3> MassSpringSimulation::GetDisplacements()
+{
+  const std::vector<float> values = this->Model.GetDisplacements();
+  std::vector<glm::dvec3> displacements(values.size() / 3);
+  for (std::size_t i = 0; i < displacements.size(); ++i)
+  {
+    displacements[i] = glm::dvec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+  }
+  return displacements;
+}
+
+vtkDataArray* MassSpringSimulation::WriteOutput(double factor)
+{
+  if (factor != this->Factor)
+  {
+    this->Factor = 0.0;
+    this->Output.Make(
+      this->Model, this->Device, static_cast<vtkIdType>(this->NumberOfNodes), factor);
+    this->Factor = factor;
+  }
+  // The model has written it at the end of its last frame.
+  this->Output.Restore();
+  return this->Output.GetArray();
+}
+
+} // namespace deformvolume

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkElasticDeformation
+ * @brief   common part of the filters that deform an elastic body by a simulation
+ *
+ * vtkElasticDeformation reads an elastic body, what holds it, and what acts on it, and gives the
+ * mesh at rest with the displacements that a simulation finds. vtkDeformVolumeFilter takes that as
+ * its deformation (SetDeformationConnection). Subclasses are the simulations. What is simulated is
+ * kept from one execution to the next.
+ *
+ * @par Port 0, the rest mesh:
+ * vtkUnstructuredGrid of vtkTetra cells, all of them with the fourth point on the same side of the
+ * first three. Cells of fewer than three dimensions are left out. These arrays are used, all of
+ * them optional:
+ * - the point array "Fixed", one component: nodes where it is not 0 stay where they are;
+ * - the point array "Force", three components: a force on each node, in N;
+ * - the cell arrays "YoungModulus" (Pa), "PoissonRatio" and "Density" (kg/m^3), one component: the
+ *   material of each tetrahedron, in place of the properties of these names.
+ *
+ * @par Port 1, optional, the handles:
+ * vtkPointSet. A point is where a handle is now. A point array "RestPosition" of three components
+ * says which place of the mesh at rest it holds: the nodes within HandleRadius of it, or the
+ * nearest node where that is 0. Where several handles hold a node the first one counts, and nodes
+ * that are fixed stay.
+ *
+ * @par Output:
+ * The mesh at rest, with the point array "Displacement" (floats, three components, in the units of
+ * the points), which is also the active vectors: a vtkFloatArray on a processor, and on a device
+ * with memory of its own a vtkDeviceVectorArray. It is the same object, in the same memory, in all
+ * executions for one mesh: who needs it as it was makes a deep copy. With ElementResults there are
+ * cell arrays besides. The first piece is the whole mesh, all others are empty.
+ *
+ * @par Time:
+ * Where a time is asked for (UpdateTimeStep(), ParaView's play button), the simulation goes on to
+ * it in frames of FrameTime. Where it is earlier than the last one, the simulation starts anew and
+ * goes on to it with the handles and loads of now. Handles go straight to where they are wanted in
+ * the first frame. Where no time is asked for, see the subclasses. The output has the time range
+ * from 0 to EndTime, unless the inputs have times.
+ *
+ * @par Changes:
+ * Where the rest mesh gets other points or cells, the simulation starts anew, with a warning. With
+ * other materials or fixed nodes it goes on.
+ *
+ * @par Errors:
+ * Each is one vtkErrorMacro that says what is wrong and what to do, the output is then empty, and
+ * what was simulated is kept: no tetrahedra or other three-dimensional cells; tetrahedra that are
+ * flat, or some of them inside out; coordinates and numbers that are not finite; a Young modulus or
+ * a density of 0 or less, a Poisson ratio of less than 0 or of 0.495 and more; arrays of another
+ * shape; a handle that holds no node.
+ *
+ * @sa vtkMassSpringDeformation vtkCorotationalDeformation vtkDeformVolumeFilter
+ */
+#ifndef vtkElasticDeformation_h
+#define vtkElasticDeformation_h
+
+#include "vtkDeformVolumeModule.h" // for export macro
+#include "vtkUnstructuredGridAlgorithm.h"
+
+#include <memory> // for std::unique_ptr
+#include <string> // for std::string
+
+namespace deformvolume
+{
+class ElasticSimulation;
+}
+
+class VTKDEFORMVOLUME_EXPORT vtkElasticDeformation : public vtkUnstructuredGridAlgorithm
+{
+public:
+  vtkTypeMacro(vtkElasticDeformation, vtkUnstructuredGridAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Connect the handles (port 1, optional).
+   */
+  void SetHandlesConnection(vtkAlgorithmOutput* output);
+  void SetHandlesData(vtkDataObject* data);
+  ///@}
+
+  ///@{
+  /**
+   * How far round its rest position a handle holds nodes, in the units of the mesh, at least 0.
+   * Default 0: the nearest node.
+   */
+  vtkSetClampMacro(HandleRadius, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(HandleRadius, double);
+  ///@}
+
+  ///@{
+  /**
+   * The acceleration of gravity, in m/s^2, along the axes of the world. Default 0, 0, 0.
+   */
+  vtkSetVector3Macro(Gravity, double);
+  vtkGetVector3Macro(Gravity, double);
+  ///@}
+
+  ///@{
+  /**
+   * The Young modulus, in Pa, of tetrahedra that no cell array says one for; greater than 0.
+   * Default 10000, a soft tissue.
+   */
+  vtkSetMacro(YoungModulus, double);
+  vtkGetMacro(YoungModulus, double);
+  ///@}
+
+  ///@{
+  /**
+   * The Poisson ratio of these, 0 or more and less than 0.495. Default 0.3.
+   */
+  vtkSetMacro(PoissonRatio, double);
+  vtkGetMacro(PoissonRatio, double);
+  ///@}
+
+  ///@{
+  /**
+   * The density of these, in kg/m^3, greater than 0. Default 1000.
+   */
+  vtkSetMacro(Density, double);
+  vtkGetMacro(Density, double);
+  ///@}
+
+  /**
+   * The units of points.
+   */
+  enum LengthUnitType
+  {
+    METRE,
+    MILLIMETRE
+  };
+
+  ///@{
+  /**
+   * The unit of the mesh, the handles and the displacements: METRE (default) or MILLIMETRE. Medical
+   * images are in millimetres as a rule.
+   */
+  vtkSetClampMacro(LengthUnit, int, METRE, MILLIMETRE);
+  vtkGetMacro(LengthUnit, int);
+  void SetLengthUnitToMetre() { this->SetLengthUnit(METRE); }
+  void SetLengthUnitToMillimetre() { this->SetLengthUnit(MILLIMETRE); }
+  ///@}
+
+  ///@{
+  /**
+   * How long a frame is, in s, at least 1e-6. Default 1/60.
+   */
+  vtkSetClampMacro(FrameTime, double, 1e-6, VTK_DOUBLE_MAX);
+  vtkGetMacro(FrameTime, double);
+  ///@}
+
+  ///@{
+  /**
+   * The end of the time range of the output, in s, where the inputs have no times; 0: it has none.
+   * Default 1.
+   */
+  vtkSetClampMacro(EndTime, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(EndTime, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the output has cell arrays of doubles with what each tetrahedron undergoes: "Stress"
+   * (Cauchy, in Pa, the components xx yy zz xy yz xz), "StrainEnergyDensity" (J/m^3 of the volume
+   * at rest) and "DeformationGradientDeterminant" (how many times its volume at rest it has).
+   * Default: off.
+   */
+  vtkSetMacro(ElementResults, bool);
+  vtkGetMacro(ElementResults, bool);
+  vtkBooleanMacro(ElementResults, bool);
+  ///@}
+
+  /**
+   * The body is put to rest before the next execution, and its time to 0.
+   */
+  void Reset();
+
+  /**
+   * The time that the simulation has come to, in s.
+   */
+  double GetTime();
+
+  /**
+   * Nodes that handles held in the last execution.
+   */
+  vtkGetMacro(NumberOfHeldNodes, vtkIdType);
+
+  /**
+   * What the last execution did, in a few lines of words, for people to read; "" before the first.
+   */
+  virtual std::string GetSummary();
+
+protected:
+  vtkElasticDeformation();
+  ~vtkElasticDeformation() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** input,
+    vtkInformationVector* output, int requestFromOutputPort, vtkMTimeType* mtime) override;
+
+#ifndef __VTK_WRAP__
+  ///@{
+  /// What subclasses do: give the simulation what it needs besides, and say how far it goes without
+  /// a time, in s. They throw deformvolume::Error.
+  virtual deformvolume::ElasticSimulation& PrepareSimulation() = 0;
+  virtual double GetFreeDuration() = 0;
+  ///@}
+#endif
+
+private:
+  vtkElasticDeformation(const vtkElasticDeformation&) = delete;
+  void operator=(const vtkElasticDeformation&) = delete;
+
+  void Execute(vtkInformationVector** input, vtkInformationVector* output);
+
+  double HandleRadius = 0.0;
+  double Gravity[3] = { 0.0, 0.0, 0.0 };
+  double YoungModulus = 1e4;
+  double PoissonRatio = 0.3;
+  double Density = 1000.0;
+  int LengthUnit = METRE;
+  double FrameTime = 1.0 / 60.0;
+  double EndTime = 1.0;
+  bool ElementResults = false;
+  vtkIdType NumberOfHeldNodes = 0;
+
+  class vtkInternals;
+  std::unique_ptr<vtkInternals> Internals;
+};
+
+#endif

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkMassSpringDeformation.h"
+
+#include "MassSpringSimulation.h"
+
+#include "vtkObjectFactory.h"
+
+#include <sstream>
+
+vtkStandardNewMacro(vtkMassSpringDeformation);
+
+class vtkMassSpringDeformation::vtkInternals
+{
+public:
+  // A change of device loses what was simulated: another one is made.
+  std::unique_ptr<deformvolume::MassSpringSimulation> Simulation;
+};
+
+vtkMassSpringDeformation::vtkMassSpringDeformation()
+  : Internals(new vtkInternals)
+{
+}
+
+vtkMassSpringDeformation::~vtkMassSpringDeformation() = default;
+
+deformvolume::ElasticSimulation& vtkMassSpringDeformation::PrepareSimulation()
+{
+  auto& simulation = this->Internals->Simulation;
+  if (!simulation)
+  {
+    simulation = std::make_unique<deformvolume::MassSpringSimulation>();
+  }
+  const std::string before = simulation->GetDevice();
+  simulation->SetDevice(this->Device, static_cast<std::uint64_t>(this->MemoryLimit));
+  if (!before.empty() && simulation->GetDevice() != before)
+  {
+    auto other = std::make_unique<deformvolume::MassSpringSimulation>();
+    other->SetDevice(this->Device, static_cast<std::uint64_t>(this->MemoryLimit));
+    simulation.swap(other);
+  }
+  simulation->TimeStep = this->TimeStep;
+  simulation->Damping = this->Damping;
+  return *simulation;
+}
+
+double vtkMassSpringDeformation::GetStableTimeStep()
+{
+  try
+  {
+    return this->Internals->Simulation ? this->Internals->Simulation->GetStableTimeStep() : 0.0;
+  }
+  catch (const deformvolume::Error&)
+  {
+    return 0.0;
+  }
+}
+
+vtkIdType vtkMassSpringDeformation::GetNumberOfSteps()
+{
+  return this->Internals->Simulation ? this->Internals->Simulation->Report.NumberOfSteps : 0;
+}
+
+double vtkMassSpringDeformation::GetTimeStepInUse()
+{
+  return this->Internals->Simulation ? this->Internals->Simulation->Report.TimeStep : 0.0;
+}
+
+std::string vtkMassSpringDeformation::GetDeviceInUse()
+{
+  return this->Internals->Simulation ? this->Internals->Simulation->GetDevice() : std::string();
+}
+
+std::string vtkMassSpringDeformation::GetSummary()
+{
+  std::string text = this->Superclass::GetSummary();
+  if (!text.empty())
+  {
+    std::ostringstream more;
+    more << "\nDevice: " << this->GetDeviceInUse() << "\n"
+         << "Steps of a frame: " << this->GetNumberOfSteps() << "\n"
+         << "Time step: " << this->GetTimeStepInUse() * 1e3 << " ms\n"
+         << "Longest stable time step: " << this->GetStableTimeStep() * 1e3 << " ms";
+    text += more.str();
+  }
+  return text;
+}
+
+void vtkMassSpringDeformation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "TimeStep: " << this->TimeStep << "\n";
+  os << indent << "Damping: " << this->Damping << "\n";
+  os << indent << "Device: " << this->Device << "\n";
+  os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
+  os << indent << "DeviceInUse: " << this->GetDeviceInUse() << "\n";
+  os << indent << "NumberOfSteps: " << this->GetNumberOfSteps() << "\n";
+  os << indent << "TimeStepInUse: " << this->GetTimeStepInUse() << "\n";
+  os << indent << "StableTimeStep: " << this->GetStableTimeStep() << "\n";
+}

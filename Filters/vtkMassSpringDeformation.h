@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkMassSpringDeformation
+ * @brief   deform an elastic body by mass-spring dynamics
+ *
+ * vtkMassSpringDeformation moves the nodes of a mesh by Newton's law: the edges of its tetrahedra
+ * are springs, and their volumes resist change. It works on an OpenCL device. Ports, arrays, units
+ * and times are those of vtkElasticDeformation.
+ *
+ * Where no time is asked for, an execution goes on by FrameTime; call Modified() where nothing else
+ * has changed.
+ *
+ * @par Materials:
+ * The stiffness of springs is derived from the Young modulus and the Poisson ratio. It is right for
+ * lattices of cubes of five tetrahedra each (vtkLatticeTetrahedraSource with equal spacing). For
+ * other meshes it is calibrated so that a bar of the mesh has the Young modulus. Springs have a
+ * Poisson ratio of 0.25 by themselves, and the volumes make what is more. Less than that counts as
+ * 0.25, with a warning.
+ *
+ * @par Errors:
+ * Those of vtkElasticDeformation; a time step that is longer than the stable one; a simulation that
+ * diverges, after which the body is as it was; all nodes fixed; too little memory on the device.
+ *
+ * Sources: Rodriguez, Leon, Martin and Otaduy, "A parallel resampling method for interactive
+ * deformation of volumetric models"; Teschner et al. 2004 for the energy of volumes;
+ * Documents/physics.md.
+ *
+ * @sa vtkElasticDeformation vtkCorotationalDeformation vtkDeformVolumeFilter
+ */
+#ifndef vtkMassSpringDeformation_h
+#define vtkMassSpringDeformation_h
+
+#include "vtkDeformVolumeModule.h" // for export macro
+#include "vtkElasticDeformation.h"
+
+#include <memory> // for std::unique_ptr
+#include <string> // for std::string
+
+class VTKDEFORMVOLUME_EXPORT vtkMassSpringDeformation : public vtkElasticDeformation
+{
+public:
+  static vtkMassSpringDeformation* New();
+  vtkTypeMacro(vtkMassSpringDeformation, vtkElasticDeformation);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The longest time step, in s; 0: half of the stable one. A frame has as many equal steps as it
+   * needs. Default 0, at least 0.
+   */
+  vtkSetClampMacro(TimeStep, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeStep, double);
+  ///@}
+
+  ///@{
+  /**
+   * How fast velocities die away, in 1/s: after that time they are 1/e of what they were. Default
+   * 2, at least 0.
+   */
+  vtkSetClampMacro(Damping, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(Damping, double);
+  ///@}
+
+  ///@{
+  /**
+   * The OpenCL device, in the words of vtkDeformVolumeFilter::SetDevice(). A change of device puts
+   * the body to rest. Default "": the best there is.
+   */
+  vtkSetMacro(Device, std::string);
+  vtkGetMacro(Device, std::string);
+  ///@}
+
+  ///@{
+  /**
+   * Bytes of device memory that may be used; 0 is what the device has available. A mesh that needs
+   * more is an error before anything is allocated. Default 0.
+   */
+  vtkSetClampMacro(MemoryLimit, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
+  vtkGetMacro(MemoryLimit, vtkTypeInt64);
+  ///@}
+
+  /**
+   * The longest time step, in s, with which the body is stable near rest; 0 before the first
+   * execution, and where it cannot be found.
+   */
+  double GetStableTimeStep();
+
+  ///@{
+  /**
+   * Of the last frame: how many steps it took, and how long each was, in s.
+   */
+  vtkIdType GetNumberOfSteps();
+  double GetTimeStepInUse();
+  ///@}
+
+  /**
+   * Name of the device of the last execution; "" before the first.
+   */
+  std::string GetDeviceInUse();
+
+  std::string GetSummary() override;
+
+protected:
+  vtkMassSpringDeformation();
+  ~vtkMassSpringDeformation() override;
+
+#ifndef __VTK_WRAP__
+  deformvolume::ElasticSimulation& PrepareSimulation() override;
+  double GetFreeDuration() override
+  {
+    return this->GetFrameTime();
+  }
+#endif
+
+private:
+  vtkMassSpringDeformation(const vtkMassSpringDeformation&) = delete;
+  void operator=(const vtkMassSpringDeformation&) = delete;
+
+  double TimeStep = 0.0;
+  double Damping = 2.0;
+  std::string Device;
+  vtkTypeInt64 MemoryLimit = 0;
+
+  class vtkInternals;
+  std::unique_ptr<vtkInternals> Internals;
+};
+
+#endif
