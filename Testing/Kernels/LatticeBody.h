@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeLatticeBody_h
+#define DeformVolumeLatticeBody_h
+
+#include "ElasticBody.h"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+
+/// A lattice of nodes from the origin on, and five tetrahedra in each of its cells, mirrored from
+/// cell to cell as those of the sampling mesh are. Every tetrahedron has a volume greater than 0.
+struct LatticeBody
+{
+  using Place = std::array<std::int32_t, 3>;
+
+  LatticeBody(const Place& nodes, double spacing, const deformvolume::ElasticMaterial& material);
+
+  std::int32_t GetNode(const Place& place) const
+  {
+    return (place[2] * this->Nodes[1] + place[1]) * this->Nodes[0] + place[0];
+  }
+
+  /// Holds the nodes at rest for which this is true.
+  void Fix(const std::function<bool(const Place&)>& isFixed);
+
+  /// Calls this for all nodes.
+  void ForNodes(const std::function<void(const Place&, std::int32_t node)>& visit) const;
+
+  Place Nodes;
+  double Spacing;
+  deformvolume::ElasticBody Body;
+};
+
+#endif
