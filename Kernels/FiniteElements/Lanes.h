@@ -28,7 +28,10 @@ namespace deformvolume
 
 /// Numbers of elements that are worked on side by side.
 constexpr int NumberOfLanes = 4;
-using Lanes = double __attribute__((vector_size(NumberOfLanes * sizeof(double))));
+// Code for AVX2 takes this alignment for granted, which is not that of the type for other
+// processors.
+using Lanes = double __attribute__((
+  vector_size(NumberOfLanes * sizeof(double)), aligned(NumberOfLanes * sizeof(double))));
 
 /// Whether the processor has AVX2, and code for it may be used.
 inline bool HasWideLanes()
