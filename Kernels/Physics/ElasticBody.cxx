@@ -153,15 +153,20 @@ void CheckBody(const ElasticBody& body)
   CheckPoints(body);
   CheckNodes(body);
   CheckShapes(body);
-  if (body.Materials.size() == 1)
+  CheckMaterials(body, body.Materials);
+}
+
+void CheckMaterials(const ElasticBody& body, const std::vector<ElasticMaterial>& materials)
+{
+  if (materials.size() == 1)
   {
-    CheckMaterial(body.Materials.front(), "");
+    CheckMaterial(materials.front(), "");
     return;
   }
-  CheckLength(body.Materials.size(), body.Tetrahedra.size(), "materials");
-  for (std::size_t t = 0; t < body.Materials.size(); ++t)
+  CheckLength(materials.size(), body.Tetrahedra.size(), "materials");
+  for (std::size_t t = 0; t < materials.size(); ++t)
   {
-    CheckMaterial(body.Materials[t], " of tetrahedron " + std::to_string(t));
+    CheckMaterial(materials[t], " of tetrahedron " + std::to_string(t));
   }
 }
 

@@ -81,6 +81,10 @@ struct BodyLoads
 /// of its range, or arrays of another length.
 DEFORMVOLUME_EXPORT void CheckBody(const ElasticBody& body);
 
+/// Throws an Error where other materials are not for this body, or out of their range.
+DEFORMVOLUME_EXPORT void CheckMaterials(
+  const ElasticBody& body, const std::vector<ElasticMaterial>& materials);
+
 /// Throws an Error where a load is not finite or not for this body.
 DEFORMVOLUME_EXPORT void CheckLoads(const ElasticBody& body, const BodyLoads& loads);
 

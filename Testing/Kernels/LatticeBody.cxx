@@ -4,52 +4,85 @@
 #include "FiveTetrahedra.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
-
-namespace physicsTesting
-{
 
 using namespace deformvolume;
 
-ElasticBody MakeLatticeBody(
-  const std::array<int, 3>& nodes, const glm::dvec3& spacing, const ElasticMaterial& material)
+LatticeBody::LatticeBody(const Place& nodes, double spacing, const ElasticMaterial& material)
+  : Nodes(nodes)
+  , Spacing(spacing)
 {
-  constexpr int table[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
-  ElasticBody body;
-  body.Materials = { material };
-  for (int z = 0; z < nodes[2]; ++z)
+  this->Body.Materials = { material };
+  this->ForNodes([&](const Place& place, std::int32_t)
+    { this->Body.Points.push_back(glm::dvec3(place[0], place[1], place[2]) * spacing); });
+  constexpr std::int32_t table[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+  LatticeBody::Place cell;
+  for (cell[2] = 0; cell[2] + 1 < nodes[2]; ++cell[2])
   {
-    for (int y = 0; y < nodes[1]; ++y)
+    for (cell[1] = 0; cell[1] + 1 < nodes[1]; ++cell[1])
     {
-      for (int x = 0; x < nodes[0]; ++x)
+      for (cell[0] = 0; cell[0] + 1 < nodes[0]; ++cell[0])
       {
-        body.Points.push_back(spacing * glm::dvec3(x, y, z));
-      }
-    }
-  }
-  for (int z = 0; z + 1 < nodes[2]; ++z)
-  {
-    for (int y = 0; y + 1 < nodes[1]; ++y)
-    {
-      for (int x = 0; x + 1 < nodes[0]; ++x)
-      {
-        for (std::size_t t = 0; t < 5; ++t)
+        const bool isOdd = (cell[0] + cell[1] + cell[2]) % 2 != 0;
+        for (int number = 0; number < 5; ++number)
         {
           Tetrahedron tetrahedron;
           for (std::size_t i = 0; i < 4; ++i)
           {
-            const int vertex = table[t][i];
-            tetrahedron[i] = static_cast<std::int32_t>(GetNode(nodes, x + ((vertex & 1) ^ (x & 1)),
-              y + ((vertex >> 2 & 1) ^ (y & 1)), z + ((vertex >> 1 & 1) ^ (z & 1))));
+            const std::int32_t vertex = table[number][i];
+            const std::int32_t offsets[3] = { vertex & 1, vertex >> 2 & 1, vertex >> 1 & 1 };
+            Place place;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+              place[axis] = cell[axis] + (cell[axis] % 2 != 0 ? 1 - offsets[axis] : offsets[axis]);
+            }
+            tetrahedron[i] = this->GetNode(place);
           }
-          if (((x + y + z) % 2 != 0) != (t == 4))
+          // The fifth has the other sign, and so have all of a mirrored cell.
+          if ((number == 4) != isOdd)
           {
             std::swap(tetrahedron[2], tetrahedron[3]);
           }
-          body.Tetrahedra.push_back(tetrahedron);
+          this->Body.Tetrahedra.push_back(tetrahedron);
         }
       }
     }
+  }
+}
+
+void LatticeBody::Fix(const std::function<bool(const Place&)>& isFixed)
+{
+  this->Body.Fixed.resize(this->Body.Points.size(), 0);
+  this->ForNodes([&](const Place& place, std::int32_t node)
+    { this->Body.Fixed[static_cast<std::size_t>(node)] = isFixed(place) ? 1 : 0; });
+}
+
+void LatticeBody::ForNodes(const std::function<void(const Place&, std::int32_t node)>& visit) const
+{
+  Place place;
+  for (place[2] = 0; place[2] < this->Nodes[2]; ++place[2])
+  {
+    for (place[1] = 0; place[1] < this->Nodes[1]; ++place[1])
+    {
+      for (place[0] = 0; place[0] < this->Nodes[0]; ++place[0])
+      {
+        visit(place, this->GetNode(place));
+      }
+    }
+  }
+}
+
+namespace physicsTesting
+{
+
+ElasticBody MakeLatticeBody(
+  const LatticeBody::Place& nodes, const glm::dvec3& spacing, const ElasticMaterial& material)
+{
+  ElasticBody body = LatticeBody(nodes, 1.0, material).Body;
+  for (glm::dvec3& point : body.Points)
+  {
+    point *= spacing;
   }
   return body;
 }

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BlockMatrix.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace deformvolume
+{
+namespace
+{
+
+struct ProductArguments
+{
+  const std::int32_t* Rows;
+  const std::int32_t* Columns;
+  const double* Values;
+  const unsigned char* IsFree;
+  const double* Vector;
+  double* Product;
+};
+
+DEFORMVOLUME_ALWAYS_INLINE Lanes LoadColumn(const double* column)
+{
+  // The fourth lane is not used.
+  Lanes lanes;
+  std::memcpy(&lanes, column, sizeof(lanes));
+  return lanes;
+}
+
+DEFORMVOLUME_ALWAYS_INLINE void MultiplyRows(
+  const ProductArguments& arguments, std::size_t begin, std::size_t end)
+{
+  for (std::size_t row = begin; row < end; ++row)
+  {
+    double* const product = arguments.Product + 3 * row;
+    Lanes sum = MakeLanes(0.0);
+    if (arguments.IsFree[row] != 0)
+    {
+      const std::int32_t last = arguments.Rows[row + 1];
+      for (std::int32_t block = arguments.Rows[row]; block < last; ++block)
+      {
+        const double* const vector =
+          arguments.Vector + 3 * static_cast<std::size_t>(arguments.Columns[block]);
+        const double* const values =
+          arguments.Values + BlockMatrix::BlockSize * static_cast<std::size_t>(block);
+        sum = sum + LoadColumn(values) * vector[0] + LoadColumn(values + 3) * vector[1] +
+          LoadColumn(values + 6) * vector[2];
+      }
+    }
+    product[0] = sum[0];
+    product[1] = sum[1];
+    product[2] = sum[2];
+  }
+}
+
+#if DEFORMVOLUME_HAS_AVX2_CODE
+DEFORMVOLUME_FOR_AVX2 void MultiplyRowsWide(
+  const ProductArguments& arguments, std::size_t begin, std::size_t end)
+{
+  MultiplyRows(arguments, begin, end);
+}
+#endif
+
+} // namespace
+
+BlockPattern MakeNodePattern(const ElasticBody& body)
+{
+  const std::size_t nodes = body.Points.size();
+  std::vector<std::size_t> starts(nodes + 1, 0);
+  for (const Tetrahedron& tetrahedron : body.Tetrahedra)
+  {
+    for (const std::int32_t node : tetrahedron)
+    {
+      ++starts[static_cast<std::size_t>(node) + 1];
+    }
+  }
+  for (std::size_t node = 0; node < nodes; ++node)
+  {
+    starts[node + 1] += starts[node];
+  }
+  std::vector<std::size_t> next(starts.begin(), starts.end() - 1);
+  std::vector<std::int32_t> tetrahedra(starts.back());
+  for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
+  {
+    for (const std::int32_t node : body.Tetrahedra[t])
+    {
+      tetrahedra[next[static_cast<std::size_t>(node)]++] = static_cast<std::int32_t>(t);
+    }
+  }
+
+  BlockPattern pattern;
+  pattern.Rows.assign(nodes + 1, 0);
+  pattern.Diagonal.resize(nodes);
+  std::vector<std::int32_t> columns;
+  for (std::size_t node = 0; node < nodes; ++node)
+  {
+    columns.assign(1, static_cast<std::int32_t>(node));
+    for (std::size_t i = starts[node]; i < starts[node + 1]; ++i)
+    {
+      const Tetrahedron& tetrahedron = body.Tetrahedra[static_cast<std::size_t>(tetrahedra[i])];
+      columns.insert(columns.end(), tetrahedron.begin(), tetrahedron.end());
+    }
+    std::sort(columns.begin(), columns.end());
+    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+    const auto own =
+      std::lower_bound(columns.begin(), columns.end(), static_cast<std::int32_t>(node));
+    pattern.Diagonal[node] = pattern.Rows[node] + static_cast<std::int32_t>(own - columns.begin());
+    pattern.Columns.insert(pattern.Columns.end(), columns.begin(), columns.end());
+    pattern.Rows[node + 1] = static_cast<std::int32_t>(pattern.Columns.size());
+  }
+
+  // The rows of a column are met in rising order, as its blocks on the other side are.
+  pattern.Mirrored.resize(pattern.Columns.size());
+  std::vector<std::int32_t> nextOfRow(pattern.Rows.begin(), pattern.Rows.end() - 1);
+  for (std::size_t block = 0; block < pattern.Columns.size(); ++block)
+  {
+    pattern.Mirrored[block] = nextOfRow[static_cast<std::size_t>(pattern.Columns[block])]++;
+  }
+  return pattern;
+}
+
+std::vector<BatchPositions> FindPositions(
+  const ElementBatches& batches, const BlockPattern& pattern)
+{
+  constexpr int pairs[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
+  std::vector<BatchPositions> positions(batches.Batches.size());
+  for (std::size_t batch = 0; batch < positions.size(); ++batch)
+  {
+    for (int pair = 0; pair < 6; ++pair)
+    {
+      for (int lane = 0; lane < NumberOfLanes; ++lane)
+      {
+        const auto& nodes = batches.Batches[batch].Nodes;
+        const auto row = static_cast<std::size_t>(nodes[pairs[pair][0]][lane]);
+        const auto begin = pattern.Columns.begin() + pattern.Rows[row];
+        const auto end = pattern.Columns.begin() + pattern.Rows[row + 1];
+        positions[batch].Blocks[pair][lane] = static_cast<std::int32_t>(
+          std::lower_bound(begin, end, nodes[pairs[pair][1]][lane]) - pattern.Columns.begin());
+      }
+    }
+  }
+  return positions;
+}
+
+void BlockMatrix::SetPattern(BlockPattern pattern)
+{
+  this->Pattern = std::move(pattern);
+  // One more, for the lane that LoadColumn reads and does not use.
+  this->Values.assign(this->Pattern.GetNumberOfBlocks() * BlockSize + 1, 0.0);
+}
+
+void BlockMatrix::PutToZero(Watch& watch)
+{
+  constexpr std::size_t size = std::size_t(1) << 16;
+  ForParts(watch, (this->Values.size() + size - 1) / size, 256,
+    [&](std::size_t part)
+    {
+      const std::size_t begin = part * size;
+      const std::size_t end = std::min(this->Values.size(), begin + size);
+      std::fill(this->Values.begin() + static_cast<std::ptrdiff_t>(begin),
+        this->Values.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
+    });
+}
+
+void BlockMatrix::Mirror(Watch& watch)
+{
+  const std::size_t rows = this->Pattern.GetNumberOfRows();
+  ForParts(watch, (rows + RowsOfPart - 1) / RowsOfPart, PartsAtOnce,
+    [&](std::size_t part)
+    {
+      const std::size_t end = std::min(rows, (part + 1) * RowsOfPart);
+      for (std::size_t row = part * RowsOfPart; row < end; ++row)
+      {
+        for (std::int32_t block = this->Pattern.Rows[row]; block < this->Pattern.Diagonal[row];
+             ++block)
+        {
+          const double* source =
+            this->GetBlock(this->Pattern.Mirrored[static_cast<std::size_t>(block)]);
+          double* target = this->GetBlock(block);
+          for (int i = 0; i < 3; ++i)
+          {
+            for (int j = 0; j < 3; ++j)
+            {
+              target[3 * i + j] = source[3 * j + i];
+            }
+          }
+        }
+      }
+    });
+}
+
+void BlockMatrix::Multiply(std::size_t begin, std::size_t end, const unsigned char* isFree,
+  const glm::dvec3* vector, glm::dvec3* product) const
+{
+  const ProductArguments arguments = { this->Pattern.Rows.data(), this->Pattern.Columns.data(),
+    this->Values.data(), isFree, &vector->x, &product->x };
+#if DEFORMVOLUME_HAS_AVX2_CODE
+  if (HasWideLanes())
+  {
+    MultiplyRowsWide(arguments, begin, end);
+    return;
+  }
+#endif
+  MultiplyRows(arguments, begin, end);
+}
+
+} // namespace deformvolume

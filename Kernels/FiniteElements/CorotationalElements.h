@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeCorotationalElements_h
+#define DeformVolumeCorotationalElements_h
+
+#include "BlockMatrix.h"
+#include "CorotationalTypes.h"
+#include "ElementBatches.h"
+#include "Watch.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// The sums over all tetrahedra, which do not depend on the number of threads, to the last bit.
+class CorotationalElements
+{
+public:
+  explicit CorotationalElements(const ElasticBody& body)
+    : Batches(MakeElementBatches(body))
+  {
+  }
+
+  void SetMaterials(const ElasticBody& body) { deformvolume::SetMaterials(this->Batches, body); }
+
+  /// What is needed to assemble matrices of this pattern.
+  void SetPattern(const BlockPattern& pattern)
+  {
+    this->Positions = FindPositions(this->Batches, pattern);
+  }
+
+  struct Sums
+  {
+    double Energy = 0.0;
+    std::int64_t Inverted = 0;
+  };
+
+  /// The strain energy and its derivatives by the displacements of the nodes.
+  Sums FindForces(Watch& watch, const std::vector<glm::dvec3>& displacements,
+    std::vector<glm::dvec3>& forces) const;
+
+  /// The second derivatives; see FindTangent.
+  void AssembleTangent(
+    Watch& watch, const std::vector<glm::dvec3>& displacements, BlockMatrix& matrix) const;
+
+  std::vector<ElementResults> GetResults(const std::vector<glm::dvec3>& displacements) const;
+
+private:
+  ElementBatches Batches;
+  std::vector<BatchPositions> Positions;
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeCorotationalModel_h
+#define DeformVolumeCorotationalModel_h
+
+#include "CorotationalTypes.h"
+#include "DeformVolumeExport.h"
+#include "ElasticBody.h"
+#include "Error.h"
+
+#include <glm/vec3.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// Equilibrium of an elastic body by corotational linear tetrahedra: linear elasticity in the frame
+/// that turns with each tetrahedron, so that large rotations cost nothing and cause no force. The
+/// strain energy of a tetrahedron is mu |F - R|^2 + lambda / 2 tr(S - I)^2 for a deformation
+/// gradient F = R S, of which R is a rotation even where the tetrahedron is inside out.
+///
+/// Linear tetrahedra are too stiff in bending: a body that is to bend needs four or more of them
+/// across its thickness.
+///
+/// Order of calls: SetBody, then Solve, as often as wanted. Solve begins with the last
+/// displacements. Every failure is an Error; the displacements are then as before the call.
+/// Results do not depend on the number of threads, to the last bit.
+class DEFORMVOLUME_EXPORT CorotationalModel
+{
+public:
+  CorotationalModel();
+  ~CorotationalModel();
+  CorotationalModel(const CorotationalModel&) = delete;
+  CorotationalModel& operator=(const CorotationalModel&) = delete;
+
+  /// The body, at rest. An Error where CheckBody finds one; the last body stays then.
+  void SetBody(const ElasticBody& body);
+
+  /// One material for the body that is set, or one a tetrahedron. Displacements stay.
+  void SetMaterials(const std::vector<ElasticMaterial>& materials);
+
+  /// Moves the held nodes to where they are to be, and the others towards equilibrium. An Error
+  /// where CheckLoads or CheckHeldNodes find one, where no piece of the body is held, and where the
+  /// forces are no numbers any more.
+  CorotationalReport Solve(const CorotationalRequest& request);
+
+  /// Puts all displacements to 0, and forgets what the last calls of Solve have left for the next.
+  void Reset();
+
+  /// Of each node, in metres.
+  const std::vector<glm::dvec3>& GetDisplacements() const;
+
+  /// Where the next call of Solve begins, such as a state that was saved.
+  void SetDisplacements(const std::vector<glm::dvec3>& displacements);
+
+  /// The force with which each node resists its displacement, in N: for a free node that of the
+  /// loads when in equilibrium, for a held one its reaction to them as well.
+  std::vector<glm::dvec3> GetForces() const;
+
+  /// Of each tetrahedron.
+  std::vector<ElementResults> GetElementResults() const;
+
+private:
+  class DEFORMVOLUME_NO_EXPORT Internals;
+  std::unique_ptr<Internals> Impl;
+};
+
+} // namespace deformvolume
+
+#endif

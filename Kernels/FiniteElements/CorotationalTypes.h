@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeCorotationalTypes_h
+#define DeformVolumeCorotationalTypes_h
+
+#include "ElasticBody.h"
+#include "ElementResults.h"
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace deformvolume
+{
+
+enum class CorotationalMode
+{
+  /// A frame of an animation: few steps, each as far as the next one needs it. What is left is
+  /// reported, and the next call goes on from there.
+  Interactive,
+  /// Equilibrium, as far as the limits below say.
+  Converged
+};
+
+/// When to stop. What is 0 is chosen by the mode.
+struct CorotationalLimits
+{
+  /// Steps of Newton's method; 0: 2 when interactive, else 200.
+  int NewtonSteps = 0;
+  /// Iterations of conjugate gradients in each step; 0: 500 when interactive, else 5000.
+  int LinearIterations = 0;
+  /// By how much these make the residual of the linear system smaller; 0: 1e-2 when interactive,
+  /// else 1e-6.
+  double LinearTolerance = 0.0;
+  /// A body is in equilibrium where no component of a force on a free node is larger than this part
+  /// of the largest force that is applied or that holds a node; 0: 1e-3 when interactive, else
+  /// 1e-6.
+  double RelativeTolerance = 0.0;
+  /// Or than this part of E h^2, the force that a stress as large as the Young modulus exerts on a
+  /// tetrahedron of mean size; 0: 1e-6 when interactive, else 1e-11.
+  double AbsoluteTolerance = 0.0;
+};
+
+struct CorotationalRequest
+{
+  /// Nodes that are moved, besides those of the body that are fixed at rest.
+  std::vector<HeldNode> Held;
+  BodyLoads Loads;
+  CorotationalMode Mode = CorotationalMode::Interactive;
+  CorotationalLimits Limits;
+  /// Called every few milliseconds, in the thread that called; returning false aborts.
+  std::function<bool()> Progress;
+};
+
+struct CorotationalReport
+{
+  /// Whether the residual is within the tolerances.
+  bool IsConverged = false;
+  /// Linear systems that were solved.
+  int NewtonSteps = 0;
+  /// Iterations of conjugate gradients in all of them.
+  int LinearIterations = 0;
+  /// The largest component of what is left of the force on a free node, in N.
+  double Residual = 0.0;
+  /// The same as a part of the largest force that is applied or holds a node; 0 without forces.
+  double RelativeResidual = 0.0;
+  /// The strain energy, in J.
+  double StrainEnergy = 0.0;
+  /// Pieces of the body that are not held by three nodes that lie on no common line. They have
+  /// stayed where they were.
+  std::int32_t NumberOfFrozenPieces = 0;
+  /// Tetrahedra that are inside out now.
+  std::int64_t NumberOfInvertedTetrahedra = 0;
+};
+
+} // namespace deformvolume
+
+#endif

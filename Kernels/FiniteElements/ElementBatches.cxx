@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ElementBatches.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace deformvolume
+{
+namespace
+{
+
+// The bits of a number, each followed by two zeros.
+std::uint64_t SpreadBits(std::uint64_t value)
+{
+  std::uint64_t spread = 0;
+  for (int bit = 0; bit < 21; ++bit)
+  {
+    spread |= (value >> bit & 1) << (3 * bit);
+  }
+  return spread;
+}
+
+// Tetrahedra along a curve that fills space, so that those of a chunk are near each other.
+std::vector<std::int32_t> OrderTetrahedra(const ElasticBody& body)
+{
+  glm::dvec3 lower(std::numeric_limits<double>::max());
+  glm::dvec3 upper(-std::numeric_limits<double>::max());
+  for (const glm::dvec3& point : body.Points)
+  {
+    lower = glm::min(lower, point);
+    upper = glm::max(upper, point);
+  }
+  const glm::dvec3 size = upper - lower;
+  const double scale = ((1 << 20) - 1) / std::max({ size.x, size.y, size.z });
+  std::vector<std::pair<std::uint64_t, std::int32_t>> codes(body.Tetrahedra.size());
+  for (std::size_t t = 0; t < codes.size(); ++t)
+  {
+    glm::dvec3 center(0.0);
+    for (const std::int32_t node : body.Tetrahedra[t])
+    {
+      center += 0.25 * (body.Points[static_cast<std::size_t>(node)] - lower);
+    }
+    const auto code = [&](double value)
+    { return SpreadBits(static_cast<std::uint64_t>(std::max(0.0, value * scale))); };
+    codes[t] = { code(center.x) | code(center.y) << 1 | code(center.z) << 2,
+      static_cast<std::int32_t>(t) };
+  }
+  std::sort(codes.begin(), codes.end());
+  std::vector<std::int32_t> order(codes.size());
+  std::transform(codes.begin(), codes.end(), order.begin(),
+    [](const std::pair<std::uint64_t, std::int32_t>& code) { return code.second; });
+  return order;
+}
+
+void SetLane(
+  ElementBatch& batch, int lane, const ElasticBody& body, std::int32_t number, bool hasVolume)
+{
+  Tetrahedron nodes = body.Tetrahedra[static_cast<std::size_t>(number)];
+  std::sort(nodes.begin(), nodes.end());
+  const auto point = [&](std::size_t i) { return body.Points[static_cast<std::size_t>(nodes[i])]; };
+  const glm::dvec3 edges[3] = { point(1) - point(0), point(2) - point(0), point(3) - point(0) };
+  const double determinant = glm::dot(glm::cross(edges[0], edges[1]), edges[2]);
+  for (int i = 0; i < 3; ++i)
+  {
+    const glm::dvec3 gradient = glm::cross(edges[(i + 1) % 3], edges[(i + 2) % 3]) / determinant;
+    batch.Gradients[i].X[lane] = gradient.x;
+    batch.Gradients[i].Y[lane] = gradient.y;
+    batch.Gradients[i].Z[lane] = gradient.z;
+  }
+  for (std::size_t i = 0; i < 4; ++i)
+  {
+    batch.Nodes[i][lane] = nodes[i];
+  }
+  batch.Volume[lane] = hasVolume ? std::abs(determinant) / 6.0 : 0.0;
+}
+
+// Gives each chunk the first color that no chunk has with which it has a node in common.
+std::vector<std::vector<std::uint32_t>> ColorChunks(
+  const ElementBatches& batches, std::size_t nodes)
+{
+  constexpr std::size_t largestNumber = 64;
+  std::vector<std::uint64_t> colorsOfNode(nodes, 0);
+  std::vector<std::vector<std::uint32_t>> colors;
+  std::vector<std::uint32_t> others;
+  for (std::size_t chunk = 0; chunk < batches.GetNumberOfChunks(); ++chunk)
+  {
+    const std::size_t begin = chunk * ElementBatches::ChunkSize;
+    const std::size_t end = std::min(batches.Batches.size(), begin + ElementBatches::ChunkSize);
+    const auto forNodes = [&](auto&& body)
+    {
+      for (std::size_t batch = begin; batch < end; ++batch)
+      {
+        for (const auto& lanes : batches.Batches[batch].Nodes)
+        {
+          for (const std::int32_t node : lanes)
+          {
+            body(colorsOfNode[static_cast<std::size_t>(node)]);
+          }
+        }
+      }
+    };
+    std::uint64_t taken = 0;
+    forNodes([&](std::uint64_t& mask) { taken |= mask; });
+    std::size_t color = 0;
+    while (color < largestNumber && (taken >> color & 1) != 0)
+    {
+      ++color;
+    }
+    if (color == largestNumber)
+    {
+      others.push_back(static_cast<std::uint32_t>(chunk));
+      continue;
+    }
+    forNodes([&](std::uint64_t& mask) { mask |= std::uint64_t(1) << color; });
+    colors.resize(std::max(colors.size(), color + 1));
+    colors[color].push_back(static_cast<std::uint32_t>(chunk));
+  }
+  for (const std::uint32_t chunk : others)
+  {
+    colors.push_back({ chunk });
+  }
+  return colors;
+}
+
+} // namespace
+
+ElementBatches MakeElementBatches(const ElasticBody& body)
+{
+  ElementBatches result;
+  const std::vector<std::int32_t> order = OrderTetrahedra(body);
+  const std::size_t number = (order.size() + NumberOfLanes - 1) / NumberOfLanes;
+  result.Batches.resize(number);
+  result.Tetrahedra.assign(number * NumberOfLanes, -1);
+  std::copy(order.begin(), order.end(), result.Tetrahedra.begin());
+  for (std::size_t i = 0; i < result.Tetrahedra.size(); ++i)
+  {
+    const bool isThere = result.Tetrahedra[i] >= 0;
+    SetLane(result.Batches[i / NumberOfLanes], static_cast<int>(i % NumberOfLanes), body,
+      isThere ? result.Tetrahedra[i] : order.back(), isThere);
+  }
+  SetMaterials(result, body);
+  result.Colors = ColorChunks(result, body.Points.size());
+  return result;
+}
+
+void SetMaterials(ElementBatches& batches, const ElasticBody& body)
+{
+  for (std::size_t i = 0; i < batches.Tetrahedra.size(); ++i)
+  {
+    const std::int32_t tetrahedron = batches.Tetrahedra[i];
+    const ElasticMaterial& material =
+      body.GetMaterial(tetrahedron < 0 ? 0 : static_cast<std::size_t>(tetrahedron));
+    ElementBatch& batch = batches.Batches[i / NumberOfLanes];
+    const auto lane = static_cast<int>(i % NumberOfLanes);
+    batch.Mu[lane] = material.GetShearModulus();
+    batch.Lambda[lane] = material.GetLambda();
+  }
+}
+
+} // namespace deformvolume

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeLanes_h
+#define DeformVolumeLanes_h
+
+#include <cmath>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+// Functions of lanes have to become part of the function that is compiled for a processor: each of
+// them exists for the least one and, on x86, for those with AVX2. Neither fuses products with sums,
+// so that both give the same bits.
+// None of them is ever called, so that it does not matter how lanes would be passed.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+#define DEFORMVOLUME_ALWAYS_INLINE inline __attribute__((always_inline))
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+#define DEFORMVOLUME_HAS_AVX2_CODE 1
+#define DEFORMVOLUME_FOR_AVX2 __attribute__((target("avx2")))
+#else
+#define DEFORMVOLUME_HAS_AVX2_CODE 0
+#endif
+
+namespace deformvolume
+{
+
+/// Numbers of elements that are worked on side by side.
+constexpr int NumberOfLanes = 4;
+// Code for AVX2 takes this alignment for granted, which is not that of the type for other
+// processors.
+using Lanes = double __attribute__((
+  vector_size(NumberOfLanes * sizeof(double)), aligned(NumberOfLanes * sizeof(double))));
+
+/// Whether the processor has AVX2, and code for it may be used.
+inline bool HasWideLanes()
+{
+#if DEFORMVOLUME_HAS_AVX2_CODE
+  static const bool has = __builtin_cpu_supports("avx2");
+  return has;
+#else
+  return false;
+#endif
+}
+
+DEFORMVOLUME_ALWAYS_INLINE Lanes MakeLanes(double value)
+{
+  return Lanes{ value, value, value, value };
+}
+
+DEFORMVOLUME_ALWAYS_INLINE Lanes SquareRoot(const Lanes& a)
+{
+#if defined(__SSE2__)
+  const __m128d low = _mm_sqrt_pd(_mm_set_pd(a[1], a[0]));
+  const __m128d high = _mm_sqrt_pd(_mm_set_pd(a[3], a[2]));
+  return Lanes{ low[0], low[1], high[0], high[1] };
+#else
+  return Lanes{ std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3]) };
+#endif
+}
+
+DEFORMVOLUME_ALWAYS_INLINE Lanes Absolute(const Lanes& a)
+{
+  return a < 0.0 ? -a : a;
+}
+
+DEFORMVOLUME_ALWAYS_INLINE Lanes Largest(const Lanes& a, const Lanes& b)
+{
+  return a < b ? b : a;
+}
+
+DEFORMVOLUME_ALWAYS_INLINE double SumOfLanes(const Lanes& a)
+{
+  return (a[0] + a[1]) + (a[2] + a[3]);
+}
+
+/// A vector of three, in each lane.
+struct LaneVector
+{
+  Lanes X;
+  Lanes Y;
+  Lanes Z;
+};
+
+DEFORMVOLUME_ALWAYS_INLINE Lanes Dot(const LaneVector& a, const LaneVector& b)
+{
+  return a.X * b.X + a.Y * b.Y + a.Z * b.Z;
+}
+
+DEFORMVOLUME_ALWAYS_INLINE LaneVector Cross(const LaneVector& a, const LaneVector& b)
+{
+  return { a.Y * b.Z - a.Z * b.Y, a.Z * b.X - a.X * b.Z, a.X * b.Y - a.Y * b.X };
+}
+
+DEFORMVOLUME_ALWAYS_INLINE LaneVector Scale(const LaneVector& a, const Lanes& factor)
+{
+  return { a.X * factor, a.Y * factor, a.Z * factor };
+}
+
+DEFORMVOLUME_ALWAYS_INLINE LaneVector Add(const LaneVector& a, const LaneVector& b)
+{
+  return { a.X + b.X, a.Y + b.Y, a.Z + b.Z };
+}
+
+DEFORMVOLUME_ALWAYS_INLINE LaneVector Subtract(const LaneVector& a, const LaneVector& b)
+{
+  return { a.X - b.X, a.Y - b.Y, a.Z - b.Z };
+}
+
+/// A matrix of 3 x 3 in each lane, by its columns.
+struct LaneMatrix
+{
+  LaneVector Columns[3];
+};
+
+DEFORMVOLUME_ALWAYS_INLINE LaneVector Multiply(const LaneMatrix& a, const LaneVector& b)
+{
+  return Add(Add(Scale(a.Columns[0], b.X), Scale(a.Columns[1], b.Y)), Scale(a.Columns[2], b.Z));
+}
+
+/// The transposed matrix times a vector.
+DEFORMVOLUME_ALWAYS_INLINE LaneVector MultiplyTransposed(const LaneMatrix& a, const LaneVector& b)
+{
+  return { Dot(a.Columns[0], b), Dot(a.Columns[1], b), Dot(a.Columns[2], b) };
+}
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Preconditioner.h"
+
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace deformvolume
+{
+
+void BlockJacobi::Build(
+  Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree)
+{
+  const std::size_t rows = isFree.size();
+  this->Inverses.resize(rows);
+  constexpr std::size_t size = BlockMatrix::RowsOfPart;
+  ForParts(watch, (rows + size - 1) / size, BlockMatrix::PartsAtOnce,
+    [&](std::size_t part)
+    {
+      for (std::size_t row = part * size; row < std::min(rows, (part + 1) * size); ++row)
+      {
+        this->Inverses[row] = isFree[row] != 0
+          ? glm::inverse(glm::make_mat3(matrix.GetDiagonal(row)))
+          : glm::dmat3(0.0);
+      }
+    });
+}
+
+void BlockJacobi::Apply(
+  Watch& watch, const std::vector<glm::dvec3>& vector, std::vector<glm::dvec3>& result)
+{
+  const std::size_t rows = vector.size();
+  constexpr std::size_t size = BlockMatrix::RowsOfPart;
+  ForParts(watch, (rows + size - 1) / size, BlockMatrix::PartsAtOnce,
+    [&](std::size_t part)
+    {
+      for (std::size_t row = part * size; row < std::min(rows, (part + 1) * size); ++row)
+      {
+        result[row] = this->Inverses[row] * vector[row];
+      }
+    });
+}
+
+} // namespace deformvolume

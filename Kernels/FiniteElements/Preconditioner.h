@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumePreconditioner_h
+#define DeformVolumePreconditioner_h
+
+#include "BlockMatrix.h"
+#include "Watch.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include <vector>
+
+namespace deformvolume
+{
+
+/// A symmetric approximation of the inverse of the free rows and columns of a matrix. Vectors are 0
+/// at nodes that are not free.
+class Preconditioner
+{
+public:
+  virtual ~Preconditioner() = default;
+  virtual void Apply(
+    Watch& watch, const std::vector<glm::dvec3>& vector, std::vector<glm::dvec3>& result) = 0;
+};
+
+/// The inverses of the blocks on the diagonal.
+class BlockJacobi : public Preconditioner
+{
+public:
+  void Build(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree);
+  void Apply(
+    Watch& watch, const std::vector<glm::dvec3>& vector, std::vector<glm::dvec3>& result) override;
+
+private:
+  std::vector<glm::dmat3> Inverses;
+};
+
+} // namespace deformvolume
+
+#endif
