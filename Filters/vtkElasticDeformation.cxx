@@ -316,12 +316,13 @@ void vtkElasticDeformation::Execute(
     end += this->GetFreeDuration();
   }
   const double duration = std::max(0.0, end - internals.Time);
-  const double frames = std::max(1.0, std::ceil((duration - roundOff) / this->FrameTime));
+  const double longest = simulation.HasFrames() ? this->FrameTime : std::max(duration, 1.0);
+  const double frames = std::max(1.0, std::ceil((duration - roundOff) / longest));
   // Observers may draw: they are called now and then only.
   auto next = std::chrono::steady_clock::now();
   for (double done = 0.0; done < frames; done += 1.0)
   {
-    frame.Duration = std::min(this->FrameTime, std::max(0.0, end - internals.Time));
+    frame.Duration = std::min(longest, std::max(0.0, end - internals.Time));
     frame.Progress = [&](double fraction)
     {
       if (std::chrono::steady_clock::now() >= next)

@@ -35,6 +35,8 @@ public:
   /// Nodes of the body have been copied, see MassSpringModel::SplitNodes.
   virtual void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins) = 0;
   virtual void Advance(const Frame& frame) = 0;
+  /// Whether a longer time takes several frames.
+  virtual bool HasFrames() const { return true; }
   virtual void Reset() = 0;
   /// False at first, and where a device has failed.
   virtual bool HasBody() const = 0;

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeCorotationalSimulation_h
+#define DeformVolumeCorotationalSimulation_h
+
+#include "CorotationalModel.h"
+#include "ElasticSimulation.h"
+
+#include "vtkFloatArray.h"
+#include "vtkSmartPointer.h"
+
+namespace deformvolume
+{
+
+/// A CorotationalModel with its output.
+class CorotationalSimulation : public ElasticSimulation
+{
+public:
+  CorotationalMode Mode = CorotationalMode::Interactive;
+  /// Of the last frame.
+  CorotationalReport Report;
+
+  void SetBody(const ElasticBody& body, bool keepsState) override;
+  void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins) override;
+  void Advance(const Frame& frame) override;
+  bool HasFrames() const override { return false; }
+  void Reset() override { this->Model.Reset(); }
+  bool HasBody() const override { return !this->Model.GetDisplacements().empty(); }
+  std::vector<glm::dvec3> GetDisplacements() override { return this->Model.GetDisplacements(); }
+  std::vector<ElementResults> GetElementResults() override
+  {
+    return this->Model.GetElementResults();
+  }
+  vtkDataArray* WriteOutput(double factor) override;
+
+private:
+  CorotationalModel Model;
+  vtkSmartPointer<vtkFloatArray> Output;
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkCorotationalDeformation
+ * @brief   deform an elastic body to equilibrium by corotational finite elements
+ *
+ * vtkCorotationalDeformation finds where the nodes of a mesh come to rest under what holds and
+ * loads them: linear elasticity in a frame that turns with each tetrahedron, so that large
+ * rotations are right. There is no inertia: what comes out depends on the handles and loads of now,
+ * and on where the body was where there are several equilibria. It works on the processor, in
+ * double precision. Ports, arrays, units and times are those of vtkElasticDeformation.
+ *
+ * Every execution solves once, and begins where the last one has ended; times only say when.
+ *
+ * Linear tetrahedra are too stiff in bending. Use four or more of them across what is to bend:
+ * Documents/physics.md has numbers.
+ *
+ * @par Pieces:
+ * A piece of the mesh that shares no node with others is held by three nodes that lie on no common
+ * line, fixed or held by handles. Pieces that are not held stay where they were, with a warning
+ * (GetNumberOfFrozenPieces()). Where no piece is held there is an error.
+ *
+ * @par Errors:
+ * Those of vtkElasticDeformation; no piece that is held; forces that are no numbers any more. The
+ * body is then as it was.
+ *
+ * Sources: Mueller and Gross 2004 for corotational elements; Smith, de Goes and Kim 2019 for the
+ * stiffness that is never negative; Documents/physics.md.
+ *
+ * @sa vtkElasticDeformation vtkMassSpringDeformation vtkDeformVolumeFilter
+ */
+#ifndef vtkCorotationalDeformation_h
+#define vtkCorotationalDeformation_h
+
+#include "vtkDeformVolumeModule.h" // for export macro
+#include "vtkElasticDeformation.h"
+
+#include <memory> // for std::unique_ptr
+#include <string> // for std::string
+
+class VTKDEFORMVOLUME_EXPORT vtkCorotationalDeformation : public vtkElasticDeformation
+{
+public:
+  static vtkCorotationalDeformation* New();
+  vtkTypeMacro(vtkCorotationalDeformation, vtkElasticDeformation);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * How far an execution goes.
+   */
+  enum ModeType
+  {
+    INTERACTIVE,
+    CONVERGED
+  };
+
+  ///@{
+  /**
+   * INTERACTIVE (default): a few steps towards equilibrium, for a body that is moved live; what is
+   * left is in GetRelativeResidual(), and the next execution goes on from there. CONVERGED:
+   * equilibrium.
+   */
+  vtkSetClampMacro(Mode, int, INTERACTIVE, CONVERGED);
+  vtkGetMacro(Mode, int);
+  void SetModeToInteractive() { this->SetMode(INTERACTIVE); }
+  void SetModeToConverged() { this->SetMode(CONVERGED); }
+  ///@}
+
+  ///@{
+  /**
+   * Of the last execution. Whether the body is in equilibrium; steps of Newton's method, and
+   * iterations of conjugate gradients in all of them; the largest component of a force on a node
+   * that is left, in N, and as a part of the largest force that is applied or that holds a node;
+   * the strain energy, in J; pieces of the mesh that nothing holds; tetrahedra that are inside out.
+   */
+  bool GetIsConverged();
+  int GetNumberOfNewtonSteps();
+  int GetNumberOfLinearIterations();
+  double GetResidual();
+  double GetRelativeResidual();
+  double GetStrainEnergy();
+  vtkIdType GetNumberOfFrozenPieces();
+  vtkIdType GetNumberOfInvertedTetrahedra();
+  ///@}
+
+  std::string GetSummary() override;
+
+protected:
+  vtkCorotationalDeformation();
+  ~vtkCorotationalDeformation() override;
+
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+
+#ifndef __VTK_WRAP__
+  deformvolume::ElasticSimulation& PrepareSimulation() override;
+  double GetFreeDuration() override
+  {
+    return 0.0;
+  }
+#endif
+
+private:
+  vtkCorotationalDeformation(const vtkCorotationalDeformation&) = delete;
+  void operator=(const vtkCorotationalDeformation&) = delete;
+
+  int Mode = INTERACTIVE;
+
+  class vtkInternals;
+  std::unique_ptr<vtkInternals> Internals;
+};
+
+#endif
