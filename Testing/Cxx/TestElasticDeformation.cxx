@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vtkMassSpringDeformation and vtkCorotationalDeformation in a pipeline: misuse, closed forms in
+// both units, times, what is kept, and the volume that they deform.
+#include "ChainMailTesting.h"
+
+#include "vtkCorotationalDeformation.h"
+#include "vtkLatticeTetrahedraSource.h"
+#include "vtkMassSpringDeformation.h"
+
+#include <vtkCellArray.h>
+#include <vtkInformation.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace chainMailTesting;
+using namespace filterTesting;
+
+namespace
+{
+
+// A bar of 4 x 4 x 12 cells, held at z = 0. Lengths are in units of so many metres.
+vtkSmartPointer<vtkUnstructuredGrid> MakeBar(double unit)
+{
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetNumberOfNodes(5, 5, 13);
+  const double width = 0.01 / unit;
+  lattice->SetBounds(0.0, width, 0.0, width, 0.0, 3.0 * width);
+  lattice->Update();
+  auto bar = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  bar->DeepCopy(lattice->GetOutput());
+  vtkNew<vtkUnsignedCharArray> fixed;
+  fixed->SetName("Fixed");
+  fixed->SetNumberOfTuples(bar->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < bar->GetNumberOfPoints(); ++i)
+  {
+    fixed->SetValue(i, bar->GetPoint(i)[2] == 0.0 ? 1 : 0);
+  }
+  bar->GetPointData()->AddArray(fixed);
+  return bar;
+}
+
+template <typename Filter>
+struct Simulated
+{
+  explicit Simulated(vtkDataObject* mesh)
+  {
+    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
+    {
+      this->Object->AddObserver(event, this->Observer);
+      this->Object->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
+    }
+    this->Object->SetInputDataObject(mesh);
+  }
+
+  // The errors of an update in words; "" where there is none.
+  std::string TryUpdate()
+  {
+    this->Object->Modified();
+    this->Object->Update();
+    const std::string errors = this->Observer->GetErrorMessage();
+    VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
+    VERIFY(errors.empty() || this->Object->GetOutput()->GetNumberOfPoints() == 0);
+    this->Observer->Clear();
+    this->ExecutiveObserver->Clear();
+    return errors;
+  }
+
+  // The displacements at a time.
+  vtkSmartPointer<vtkFloatArray> At(double time)
+  {
+    this->Object->UpdateTimeStep(time);
+    return this->Copy();
+  }
+
+  vtkSmartPointer<vtkFloatArray> Copy()
+  {
+    auto copy = vtkSmartPointer<vtkFloatArray>::New();
+    copy->DeepCopy(this->Object->GetOutput()->GetPointData()->GetArray("Displacement"));
+    return copy;
+  }
+
+  vtkNew<Filter> Object;
+  vtkNew<vtkTest::ErrorObserver> Observer;
+  vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
+};
+
+bool Holds(const std::string& text, const std::string& part)
+{
+  if (text.find(part) == std::string::npos)
+  {
+    std::cerr << "not in the error: " << part << "\nthe error: " << text << "\n";
+    return false;
+  }
+  return true;
+}
+
+bool AreEqual(vtkFloatArray* a, vtkFloatArray* b)
+{
+  return a->GetNumberOfValues() == b->GetNumberOfValues() &&
+    std::equal(a->GetPointer(0), a->GetPointer(a->GetNumberOfValues()), b->GetPointer(0));
+}
+
+template <typename Filter>
+void TestMisuse()
+{
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
+  Simulated<Filter> simulated(bar);
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  const auto tryMesh = [&](const auto& change)
+  {
+    vtkSmartPointer<vtkUnstructuredGrid> mesh = MakeBar(1.0);
+    change(mesh.Get());
+    simulated.Object->SetInputData(mesh);
+    const std::string errors = simulated.TryUpdate();
+    simulated.Object->SetInputData(bar);
+    return errors;
+  };
+  VERIFY(Holds(tryMesh([](vtkUnstructuredGrid* mesh) { mesh->Initialize(); }), "no tetrahedra"));
+  VERIFY(
+    Holds(tryMesh([&](vtkUnstructuredGrid* mesh) { mesh->GetPoints()->SetPoint(7, nan, 0, 0); }),
+      "Point 7"));
+  VERIFY(Holds(tryMesh(
+                 [](vtkUnstructuredGrid* mesh)
+                 {
+                   const vtkIdType points[8] = { 0, 1, 6, 5, 25, 26, 31, 30 };
+                   mesh->InsertNextCell(VTK_HEXAHEDRON, 8, points);
+                 }),
+    "vtkHexahedron"));
+  VERIFY(Holds(tryMesh(
+                 [](vtkUnstructuredGrid* mesh)
+                 {
+                   const vtkIdType points[4] = { 0, 1, 25, 5 };
+                   mesh->InsertNextCell(VTK_TETRA, 4, points);
+                 }),
+    "inside out"));
+  VERIFY(Holds(tryMesh(
+                 [](vtkUnstructuredGrid* mesh)
+                 {
+                   const vtkIdType points[4] = { 0, 1, 5, 6 };
+                   mesh->InsertNextCell(VTK_TETRA, 4, points);
+                 }),
+    "flat"));
+  VERIFY(Holds(tryMesh([](vtkUnstructuredGrid* mesh)
+                 { mesh->GetPointData()->GetArray("Fixed")->SetNumberOfTuples(3); }),
+    "\"Fixed\""));
+  for (const char* name : { "YoungModulus", "PoissonRatio", "Density" })
+  {
+    const auto add = [&](vtkUnstructuredGrid* mesh, double value, int components)
+    {
+      vtkNew<vtkDoubleArray> array;
+      array->SetName(name);
+      array->SetNumberOfComponents(components);
+      array->SetNumberOfTuples(mesh->GetNumberOfCells());
+      array->Fill(value);
+      mesh->GetCellData()->AddArray(array);
+    };
+    VERIFY(Holds(tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, 1.0, 2); }), name));
+    VERIFY(Holds(tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, -1.0, 1); }), "tetrahedron 0"));
+    VERIFY(Holds(tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, nan, 1); }), "tetrahedron 0"));
+  }
+  simulated.Object->SetYoungModulus(0.0);
+  VERIFY(Holds(simulated.TryUpdate(), "Young modulus"));
+  simulated.Object->SetYoungModulus(1e4);
+  simulated.Object->SetPoissonRatio(0.495);
+  VERIFY(Holds(simulated.TryUpdate(), "Poisson ratio"));
+  simulated.Object->SetPoissonRatio(0.3);
+  simulated.Object->SetDensity(0.0);
+  VERIFY(Holds(simulated.TryUpdate(), "density"));
+  simulated.Object->SetDensity(1000.0);
+  simulated.Object->SetGravity(0.0, nan, 0.0);
+  VERIFY(Holds(simulated.TryUpdate(), "gravity"));
+  simulated.Object->SetGravity(0.0, 0.0, 0.0);
+
+  vtkSmartPointer<vtkPolyData> handles =
+    MakeHandles({ { glm::dvec3(0.005, 0.005, 0.03), glm::dvec3(0.005, 0.005, 0.031) } });
+  simulated.Object->SetHandlesData(handles);
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  VERIFY_EQUAL(simulated.Object->GetNumberOfHeldNodes(), 1);
+  handles->GetPointData()->RemoveArray("RestPosition");
+  VERIFY(Holds(simulated.TryUpdate(), "no point array \"RestPosition\""));
+  simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(0.0), glm::dvec3(0.001) } }));
+  VERIFY(Holds(simulated.TryUpdate(), "holds no node that could move"));
+  simulated.Object->SetHandleRadius(0.001);
+  simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(1.0), glm::dvec3(1.0) } }));
+  VERIFY(Holds(simulated.TryUpdate(), "holds no node that could move"));
+  simulated.Object->SetHandlesData(
+    MakeHandles({ { glm::dvec3(0.01, 0.01, 0.03), glm::dvec3(nan) } }));
+  VERIFY(Holds(simulated.TryUpdate(), "Point 0 of the handles"));
+  simulated.Object->SetHandlesData(nullptr);
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+}
+
+void TestErrorsOfTheirOwn()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
+  Simulated<vtkMassSpringDeformation> springs(bar);
+  VERIFY_EQUAL(springs.Object->GetStableTimeStep(), 0.0);
+  VERIFY_EQUAL(springs.TryUpdate(), std::string());
+  const double stable = springs.Object->GetStableTimeStep();
+  VERIFY(stable > 1e-5 && stable < 1e-2);
+  springs.Object->SetTimeStep(1.05 * stable);
+  VERIFY(Holds(springs.TryUpdate(), "longer than the longest stable one"));
+  springs.Object->SetTimeStep(0.9 * stable);
+  VERIFY_EQUAL(springs.TryUpdate(), std::string());
+  VERIFY(springs.Object->GetTimeStepInUse() <= 0.9 * stable);
+  // A handle that is torn away in a frame.
+  springs.Object->SetHandlesData(
+    MakeHandles({ { glm::dvec3(0.0, 0.0, 0.03), glm::dvec3(1e30, 0.0, 0.0) } }));
+  VERIFY(Holds(springs.TryUpdate(), "diverged"));
+  springs.Object->SetHandlesData(nullptr);
+  VERIFY_EQUAL(springs.TryUpdate(), std::string());
+  VERIFY_EQUAL(springs.Copy()->GetRange(-1)[1], 0.0);
+
+  Simulated<vtkCorotationalDeformation> elements(bar);
+  bar->GetPointData()->RemoveArray("Fixed");
+  VERIFY(Holds(elements.TryUpdate(), "nothing holds the body"));
+}
+
+// A bar that hangs by its own weight is longer by rho g L^2 / 2 E.
+template <typename Filter, typename Settle>
+void TestHangingBar(const Settle& settle)
+{
+  for (const bool isMillimetre : { false, true })
+  {
+    const double unit = isMillimetre ? 1e-3 : 1.0;
+    Simulated<Filter> simulated(MakeBar(unit));
+    simulated.Object->SetLengthUnit(isMillimetre ? Filter::MILLIMETRE : Filter::METRE);
+    simulated.Object->SetGravity(0.0, 0.0, 2.0);
+    simulated.Object->ElementResultsOn();
+    settle(simulated);
+    const double expected = 1000.0 * 2.0 * 0.03 * 0.03 / (2.0 * 1e4) / unit;
+    const double found = simulated.Copy()->GetComponent(12 * 25 + 12, 2);
+    // The end that is held cannot narrow.
+    VERIFY(found > 0.94 * expected && found < expected);
+    vtkCellData* cells = simulated.Object->GetOutput()->GetCellData();
+    // At the fixed end the stress is the weight on its area: the mean of the lowest cells.
+    double stress = 0.0;
+    double energy = 0.0;
+    constexpr int lowest = 4 * 4 * 5;
+    for (vtkIdType cell = 0; cell < lowest; ++cell)
+    {
+      const double volume = cell % 5 == 4 ? 1.0 / 3.0 : 1.0 / 6.0;
+      stress += volume * cells->GetArray("Stress")->GetComponent(cell, 2) / 16.0;
+      energy += cells->GetArray("StrainEnergyDensity")->GetComponent(cell, 0);
+      VERIFY(cells->GetArray("DeformationGradientDeterminant")->GetComponent(cell, 0) > 0.99);
+    }
+    const double weight = 1000.0 * 2.0 * (0.03 - 0.5 * 0.0025);
+    VERIFY(std::abs(stress - weight) < 0.05 * weight);
+    VERIFY(energy > 0.0);
+  }
+}
+
+void TestTimes()
+{
+  Simulated<vtkMassSpringDeformation> simulated(MakeBar(1.0));
+  simulated.Object->SetGravity(3.0, 0.0, 0.0);
+  simulated.Object->UpdateInformation();
+  const double* range =
+    simulated.Object->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::TIME_RANGE());
+  VERIFY(range && range[0] == 0.0 && range[1] == 1.0);
+  const auto start = simulated.At(0.0);
+  VERIFY_EQUAL(start->GetRange(-1)[1], 0.0);
+  const auto half = simulated.At(0.05);
+  VERIFY_EQUAL(simulated.Object->GetTime(), 0.05);
+  VERIFY_EQUAL(
+    simulated.Object->GetOutput()->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), 0.05);
+  const auto whole = simulated.At(0.1);
+  VERIFY(!AreEqual(half, whole));
+  // Back, at once and in the same way: the same to the last bit.
+  VERIFY(AreEqual(simulated.At(0.05), half));
+  VERIFY(AreEqual(simulated.At(0.1), whole));
+  VERIFY_EQUAL(simulated.At(0.0)->GetRange(-1)[1], 0.0);
+  // Whole numbers of frames need no stops.
+  VERIFY(AreEqual(simulated.At(0.1), whole));
+  simulated.Object->Reset();
+  VERIFY_EQUAL(simulated.Object->GetTime(), 0.0);
+  VERIFY(AreEqual(simulated.At(0.05), half));
+
+  // Without times an update is a frame.
+  Simulated<vtkMassSpringDeformation> free(MakeBar(1.0));
+  free.Object->SetGravity(3.0, 0.0, 0.0);
+  free.Object->SetFrameTime(0.05);
+  VERIFY_EQUAL(free.TryUpdate(), std::string());
+  VERIFY_EQUAL(free.Object->GetTime(), 0.05);
+  free.Object->Update();
+  VERIFY_EQUAL(free.Object->GetTime(), 0.05); // nothing has changed
+  VERIFY_EQUAL(free.TryUpdate(), std::string());
+  VERIFY_EQUAL(free.Object->GetTime(), 0.1);
+}
+
+// What was simulated goes on with other materials, and begins anew with another mesh.
+template <typename Filter>
+void TestWhatIsKept()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
+  Simulated<Filter> simulated(bar);
+  simulated.Object->SetGravity(0.0, 0.0, 2.0);
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  vtkDataArray* array = simulated.Object->GetOutput()->GetPointData()->GetVectors();
+  VERIFY_EQUAL(std::string(array->GetName()), std::string("Displacement"));
+  // Shared, not copied.
+  VERIFY(simulated.Object->GetOutput()->GetPoints() == bar->GetPoints());
+  VERIFY(simulated.Object->GetOutput()->GetPointData()->GetArray("Fixed") ==
+    bar->GetPointData()->GetArray("Fixed"));
+  const double before = simulated.Copy()->GetRange(-1)[1];
+  VERIFY(before > 0.0);
+  simulated.Object->SetGravity(0.0, 0.0, 0.0);
+  simulated.Object->SetYoungModulus(2e4);
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  VERIFY(simulated.Object->GetOutput()->GetPointData()->GetVectors() == array);
+  // An equal mesh is the same one.
+  vtkNew<vtkUnstructuredGrid> equal;
+  equal->DeepCopy(bar);
+  simulated.Object->SetInputData(equal);
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  vtkSmartPointer<vtkUnstructuredGrid> other = MakeBar(0.5);
+  simulated.Object->SetInputData(other);
+  const std::string warning = [&]
+  {
+    simulated.Object->Modified();
+    simulated.Object->Update();
+    const std::string words = simulated.Observer->GetWarningMessage();
+    simulated.Observer->Clear();
+    return words;
+  }();
+  VERIFY(Holds(warning, "starts anew"));
+  VERIFY_EQUAL(simulated.Copy()->GetRange(-1)[1], 0.0);
+  VERIFY(Holds(simulated.Object->GetSummary(), "Nodes: 325"));
+}
+
+// Both models agree where deformations are small, and deform a volume.
+void TestDeformedVolume()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
+  Simulated<vtkCorotationalDeformation> elements(bar);
+  Simulated<vtkMassSpringDeformation> springs(bar);
+  const vtkSmartPointer<vtkPolyData> handles =
+    MakeHandles({ { glm::dvec3(5.0, 5.0, 30.0), glm::dvec3(5.5, 5.0, 32.0) } });
+  const auto prepare = [&](vtkElasticDeformation* filter)
+  {
+    filter->SetLengthUnitToMillimetre();
+    filter->SetPoissonRatio(0.4);
+    filter->SetHandlesData(handles);
+    filter->SetHandleRadius(6.0);
+  };
+  prepare(elements.Object);
+  prepare(springs.Object);
+  elements.Object->SetModeToConverged();
+  springs.Object->SetDamping(30.0);
+  VERIFY_EQUAL(elements.TryUpdate(), std::string());
+  VERIFY(elements.Object->GetIsConverged());
+  const auto settled = springs.At(2.0);
+  const auto equilibrium = elements.Copy();
+  double largest = 0.0;
+  for (vtkIdType i = 0; i < settled->GetNumberOfValues(); ++i)
+  {
+    largest = std::max(
+      largest, std::abs(static_cast<double>(settled->GetValue(i) - equilibrium->GetValue(i))));
+  }
+  std::cout << "springs and elements differ by " << largest << " mm at most\n";
+  VERIFY(largest < 0.15);
+
+  vtkNew<vtkImageData> volume;
+  volume->SetDimensions(11, 11, 31);
+  volume->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  volume->GetPointData()->GetScalars()->Fill(100.0);
+  vtkNew<vtkDeformVolumeFilter> deform;
+  deform->SetInputData(volume);
+  deform->SetDeformationConnection(elements.Object->GetOutputPort());
+  deform->Update();
+  VERIFY_EQUAL(deform->GetOutput()->GetDimensions()[2], 33);
+}
+
+} // namespace
+
+int TestElasticDeformation(int, char*[])
+{
+  TestMisuse<vtkMassSpringDeformation>();
+  TestMisuse<vtkCorotationalDeformation>();
+  TestErrorsOfTheirOwn();
+  TestHangingBar<vtkMassSpringDeformation>(
+    [](Simulated<vtkMassSpringDeformation>& simulated)
+    {
+      simulated.Object->SetDamping(30.0);
+      simulated.Object->SetPoissonRatio(0.4);
+      simulated.At(2.0);
+    });
+  TestHangingBar<vtkCorotationalDeformation>(
+    [](Simulated<vtkCorotationalDeformation>& simulated)
+    {
+      simulated.Object->SetModeToConverged();
+      simulated.Object->Update();
+    });
+  TestTimes();
+  TestWhatIsKept<vtkMassSpringDeformation>();
+  TestWhatIsKept<vtkCorotationalDeformation>();
+  TestDeformedVolume();
+  return EXIT_SUCCESS;
+}
