@@ -32,7 +32,8 @@ void ObserveProxy(vtkSMProxy* proxy)
   const char* name = proxy && proxy->IsA("vtkSMSourceProxy") ? proxy->GetVTKClassName() : nullptr;
   const std::string made = name ? name : "";
   if ((made == "vtkDeformVolumeFilter" || made == "vtkTetGenMesher" || made == "vtkCutVolume" ||
-        made == "vtkCarveVolume" || made == "vtkChainMailDeformation") &&
+        made == "vtkCarveVolume" || made == "vtkChainMailDeformation" ||
+        made == "vtkMassSpringDeformation" || made == "vtkCorotationalDeformation") &&
     !proxy->HasObserver(vtkCommand::UpdateDataEvent, fetch))
   {
     proxy->AddObserver(vtkCommand::UpdateDataEvent, fetch);
