@@ -21,7 +21,7 @@ SnappedBox GetMeshBox()
 {
   SnappedBox box;
   box.Add(SnappedPoint(0));
-  box.Add(SnappedPoint(TriangleCrossing::LargestBox));
+  box.Add(SnappedPoint(MeshSteps::Length));
   return box;
 }
 
@@ -36,7 +36,7 @@ std::vector<SnappedTriangle> SnapSheet(const MeshSteps& steps,
   std::transform(points.begin(), points.end(), indices.begin(),
     [&](const glm::dvec3& point) { return steps.Get(point) / static_cast<double>(StepsPerVoxel); });
   constexpr double meshLength =
-    static_cast<double>(TriangleCrossing::LargestBox) / static_cast<double>(StepsPerVoxel);
+    static_cast<double>(MeshSteps::Length) / static_cast<double>(StepsPerVoxel);
   for (const Sheet::Triangle& triangle : triangles)
   {
     for (const std::int64_t point : triangle)
@@ -74,7 +74,7 @@ MeshSteps::MeshSteps(const glm::dvec3& low, const glm::dvec3& high)
 {
   const glm::dvec3 size = high - low;
   const double longest = std::max(size.x, std::max(size.y, size.z));
-  const double scale = static_cast<double>(TriangleCrossing::LargestBox) / longest;
+  const double scale = static_cast<double>(MeshSteps::Length) / longest;
   if (longest > 0.0 && std::isfinite(scale))
   {
     this->Scale = scale;
@@ -85,8 +85,13 @@ SheetCrossings::SheetCrossings(const MeshSteps& steps, const std::vector<glm::dv
   const std::vector<Sheet::Triangle>& triangles, int depth)
   : Tree({})
   , Cells(std::int64_t{ 1 } << depth)
-  , CellSize(TriangleCrossing::LargestBox >> depth)
+  , CellSize(MeshSteps::Length >> depth)
+  , CellShift(0)
 {
+  while (std::int64_t{ 1 } << this->CellShift < this->CellSize)
+  {
+    ++this->CellShift;
+  }
   const std::vector<SnappedTriangle> divided = SnapSheet(steps, points, triangles);
   if (divided.empty())
   {
@@ -152,10 +157,13 @@ void SheetCrossings::SumCells()
 
 bool SheetCrossings::HasMarkedCells(const SnappedBox& box) const
 {
-  const SnappedPoint last(this->Cells - 1);
-  const SnappedPoint low = glm::min(last, glm::max(SnappedPoint(0), box.Min) / this->CellSize);
-  const SnappedPoint high =
-    glm::min(last, glm::max(SnappedPoint(0), box.Max) / this->CellSize) + std::int64_t{ 1 };
+  SnappedPoint low;
+  SnappedPoint high;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    low[axis] = this->GetCell(box.Min[axis]);
+    high[axis] = this->GetCell(box.Max[axis]) + 1;
+  }
   const auto below = [&](std::int64_t x, std::int64_t y, std::int64_t z)
   { return this->Sums[this->GetPlace(x, y, z)]; };
   const auto ofLayers = [&](std::int64_t z)
@@ -168,19 +176,14 @@ bool SheetCrossings::HasMarkedCells(const SnappedBox& box) const
 
 bool SheetCrossings::MayReach(const SnappedBox& box, std::vector<std::size_t>& scratch) const
 {
-  // Within the mesh, for the limits of the predicates.
-  SnappedBox within;
-  const SnappedBox mesh = GetMeshBox();
-  within.Add(glm::clamp(box.Min, mesh.Min, mesh.Max));
-  within.Add(glm::clamp(box.Max, mesh.Min, mesh.Max));
-  if (!this->HasMarkedCells(within))
+  if (!this->HasMarkedCells(box))
   {
     return false;
   }
   scratch.clear();
-  this->Tree.Find(within, scratch);
+  this->Tree.Find(box, scratch);
   return std::any_of(scratch.begin(), scratch.end(),
-    [&](std::size_t number) { return this->Crossings[number].MayReach(within); });
+    [&](std::size_t number) { return this->Crossings[number].MayReach(box); });
 }
 
 bool SheetCrossings::IsCrossedOddly(

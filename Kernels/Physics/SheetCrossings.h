@@ -9,6 +9,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -16,11 +17,13 @@
 namespace deformvolume
 {
 
-/// Where a mesh lies, in numbers that cutting can be decided with exactly: its longest side has
-/// TriangleCrossing::LargestBox steps, so that predicates are exact for all that lies within it.
+/// Where a mesh lies, in numbers that cutting can be decided with exactly.
 class MeshSteps
 {
 public:
+  /// How many steps its longest side has: predicates are exact for all that lies within the mesh.
+  static constexpr std::int64_t Length = TriangleCrossing::LargestBox;
+
   /// The corners of a box, which is not empty, around the mesh.
   MeshSteps(const glm::dvec3& low, const glm::dvec3& high);
 
@@ -47,8 +50,8 @@ public:
   /// No triangle is near the mesh.
   bool IsEmpty() const { return this->Crossings.empty(); }
 
-  /// False only where the sheet does not reach the part of a box that lies within the mesh's. For
-  /// an empty SheetCrossings it may not be called, as the next one.
+  /// False only where the sheet does not reach a box, which lies within that of the mesh. This and
+  /// the next one may not be called where IsEmpty().
   bool MayReach(const SnappedBox& box, std::vector<std::size_t>& scratch) const;
 
   /// Whether the sheet crosses the segment between two points of the mesh an odd number of times.
@@ -62,6 +65,11 @@ private:
   void MarkCells(const SnappedPoint& firstCell, int level, const std::vector<std::size_t>& numbers);
   void SumCells();
   bool HasMarkedCells(const SnappedBox& box) const;
+  /// The cell that a coordinate of the mesh lies in; at the upper end it is the last one.
+  std::int64_t GetCell(std::int64_t steps) const
+  {
+    return std::min(this->Cells - 1, steps >> this->CellShift);
+  }
   std::size_t GetPlace(std::int64_t x, std::int64_t y, std::int64_t z) const
   {
     return static_cast<std::size_t>((z * (this->Cells + 1) + y) * (this->Cells + 1) + x);
@@ -71,6 +79,7 @@ private:
   BoxTree Tree;
   std::int64_t Cells;    // an axis
   std::int64_t CellSize; // steps
+  int CellShift;         // its logarithm: divisions would take most of the time
   /// Of each corner of a cell: how many marked cells there are below it on all axes.
   std::vector<std::int32_t> Sums;
 };

@@ -6,7 +6,6 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace deformvolume
@@ -15,20 +14,6 @@ namespace
 {
 
 constexpr std::size_t TetrahedraOfPart = 16384;
-
-using Corners = std::array<glm::dvec3, 4>;
-
-// In steps, not rounded.
-Corners GetCorners(
-  const std::vector<glm::dvec3>& positions, const Tetrahedron& tetrahedron, const MeshSteps& steps)
-{
-  Corners corners;
-  for (std::size_t i = 0; i < 4; ++i)
-  {
-    corners[i] = steps.Get(positions[static_cast<std::size_t>(tetrahedron[i])]);
-  }
-  return corners;
-}
 
 SnappedPoint Round(const glm::dvec3& point)
 {
@@ -40,19 +25,22 @@ SnappedPoint Round(const glm::dvec3& point)
 // g + t (a - g) / 4, which lies in the first tetrahedron, and (1 - t) (b - g) / 4 away from there.
 // So it lies in the box of the tetrahedron where a is farther from g than b, made wider by a
 // quarter of its longest side. The steps are for what is rounded.
-SnappedBox GetReach(const Corners& corners)
+SnappedBox GetReach(
+  const std::vector<glm::dvec3>& positions, const Tetrahedron& tetrahedron, const MeshSteps& steps)
 {
   constexpr double rounding = 2.0;
+  const auto corner = [&](std::size_t i) -> const glm::dvec3&
+  { return positions[static_cast<std::size_t>(tetrahedron[i])]; };
   const glm::dvec3 low =
-    glm::min(glm::min(corners[0], corners[1]), glm::min(corners[2], corners[3]));
+    steps.Get(glm::min(glm::min(corner(0), corner(1)), glm::min(corner(2), corner(3))));
   const glm::dvec3 high =
-    glm::max(glm::max(corners[0], corners[1]), glm::max(corners[2], corners[3]));
+    steps.Get(glm::max(glm::max(corner(0), corner(1)), glm::max(corner(2), corner(3))));
   const glm::dvec3 size = high - low;
   const double margin = 0.25 * std::max(size.x, std::max(size.y, size.z)) + rounding;
+  // All points of the segment lie within the mesh.
   SnappedBox box;
-  // No position is less than 0: what is cut off behind the point lies within the rounding.
-  box.Add(SnappedPoint(low - margin));
-  box.Add(SnappedPoint(high + margin));
+  box.Min = SnappedPoint(glm::max(low - margin, 0.0));
+  box.Max = SnappedPoint(glm::min(high + margin, static_cast<double>(MeshSteps::Length)));
   return box;
 }
 
@@ -91,9 +79,8 @@ SplitRegion::SplitRegion(const std::vector<glm::dvec3>& positions,
   const std::vector<std::size_t> near = Choose(tetrahedra.size(),
     [&]
     {
-      return [&, scratch = std::vector<std::size_t>()](std::size_t t) mutable {
-        return crossings.MayReach(GetReach(GetCorners(positions, tetrahedra[t], steps)), scratch);
-      };
+      return [&, scratch = std::vector<std::size_t>()](std::size_t t) mutable
+      { return crossings.MayReach(GetReach(positions, tetrahedra[t], steps), scratch); };
     });
   std::vector<unsigned char> isNodeOfNear(positions.size(), 0);
   for (const std::size_t t : near)
@@ -120,9 +107,14 @@ SplitRegion::SplitRegion(const std::vector<glm::dvec3>& positions,
   }
   this->NumberNodes(tetrahedra, positions.size());
   this->Near.assign(this->Numbers.size(), 0);
-  for (const std::size_t t : near)
+  auto next = near.begin();
+  for (std::size_t t = 0; t < this->Numbers.size() && next != near.end(); ++t)
   {
-    this->Near[this->Find(t)] = 1;
+    if (this->Numbers[t] == *next)
+    {
+      this->Near[t] = 1;
+      ++next;
+    }
   }
   this->Centroids.resize(this->Numbers.size());
   ParallelForParts(this->Numbers.size(), TetrahedraOfPart,
@@ -130,8 +122,12 @@ SplitRegion::SplitRegion(const std::vector<glm::dvec3>& positions,
     {
       for (std::size_t t = begin; t < end; ++t)
       {
-        const Corners corners = GetCorners(positions, tetrahedra[this->Numbers[t]], steps);
-        this->Centroids[t] = Round(0.25 * (corners[0] + corners[1] + corners[2] + corners[3]));
+        glm::dvec3 sum(0.0);
+        for (const std::int32_t node : tetrahedra[this->Numbers[t]])
+        {
+          sum += steps.Get(positions[static_cast<std::size_t>(node)]);
+        }
+        this->Centroids[t] = Round(0.25 * sum);
       }
     });
 }
