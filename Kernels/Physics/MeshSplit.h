@@ -52,9 +52,10 @@ struct MeshSplit
 /// hold them together there before, part as well: otherwise they could hold both sides of a cut
 /// together. Other nodes remain as they are.
 ///
-/// A face that has no node that has parted is listed in Unparted. Give that list to the next cut,
-/// so that a cut which goes on where another ended, however short both are, opens such faces too.
-/// As positions are rounded anew for each cut, sheets of cuts that go on should overlap a little.
+/// A split face of which the two tetrahedra still have all three nodes in common is listed in
+/// Unparted. Give that list to the next cut, so that a cut which goes on where another ended,
+/// however short both are, opens such faces too. As positions are rounded anew for each cut, sheets
+/// of cuts that go on should overlap a little.
 ///
 /// positions: of all nodes, where the sheet is, for example the deformed ones. sheetTriangles:
 /// three numbers of points each; those without area split nothing. unparted: of earlier cuts of

@@ -1,166 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cuts of a deformation mesh along its faces.
+// Cuts of a deformation mesh along its faces: which pieces they leave.
 #include "Error.h"
-#include "LatticeBody.h"
-#include "MeshSplit.h"
-#include "MeshSplitReference.h"
-#include "ParallelFor.h"
+#include "MeshSplitCase.h"
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <map>
-#include <random>
-#include <set>
+#include <string>
 
 using namespace deformvolume;
 using namespace physicsTesting;
 
 namespace
 {
-
-constexpr std::array<int, 3> Nodes{ { 9, 9, 9 } };
-
-struct SheetSurface
-{
-  std::vector<glm::dvec3> Points;
-  SheetTriangles Triangles;
-
-  void Add(const SheetSurface& other)
-  {
-    const auto first = static_cast<std::int64_t>(this->Points.size());
-    this->Points.insert(this->Points.end(), other.Points.begin(), other.Points.end());
-    for (const auto& t : other.Triangles)
-    {
-      this->Triangles.push_back({ { first + t[0], first + t[1], first + t[2] } });
-    }
-  }
-};
-
-// A parallelogram.
-SheetSurface MakeSheet(const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v)
-{
-  return { { corner, corner + u, corner + u + v, corner + v },
-    { { { 0, 1, 2 } }, { { 0, 2, 3 } } } };
-}
-
-// Across a lattice of 9^3 nodes.
-SheetSurface MakePlaneX(double x)
-{
-  return MakeSheet({ x, -1.0, -1.0 }, { 0.0, 10.0, 0.0 }, { 0.0, 0.0, 10.0 });
-}
-SheetSurface MakePlaneY(double y)
-{
-  return MakeSheet({ -1.0, y, -1.0 }, { 10.0, 0.0, 0.0 }, { 0.0, 0.0, 10.0 });
-}
-
-MeshSplit Split(const ElasticBody& body, const SheetSurface& sheet,
-  const std::vector<TetrahedronPair>& unparted = {})
-{
-  return SplitMesh(body.Points, body.Tetrahedra, sheet.Points, sheet.Triangles, unparted);
-}
-
-// The body after a cut: copies lie where their nodes do.
-ElasticBody Apply(ElasticBody body, const MeshSplit& split)
-{
-  body.Tetrahedra = split.Tetrahedra;
-  for (const std::int32_t origin : split.Origins)
-  {
-    body.Points.push_back(body.Points[static_cast<std::size_t>(origin)]);
-  }
-  return body;
-}
-
-void ExpectSame(const MeshSplit& a, const MeshSplit& b)
-{
-  EXPECT_EQ(a.Tetrahedra, b.Tetrahedra);
-  EXPECT_EQ(a.Origins, b.Origins);
-  EXPECT_EQ(a.Changed, b.Changed);
-  EXPECT_EQ(a.NumberOfFaces, b.NumberOfFaces);
-  EXPECT_EQ(a.Unparted, b.Unparted);
-}
-
-void ExpectNothing(const ElasticBody& body, const MeshSplit& split)
-{
-  MeshSplit nothing;
-  nothing.Tetrahedra = body.Tetrahedra;
-  ExpectSame(split, nothing);
-}
-
-// What holds for every cut, whatever the sheet.
-void ExpectSound(const ElasticBody& body, const MeshSplit& split)
-{
-  const auto before = static_cast<std::int32_t>(body.Points.size());
-  ASSERT_EQ(split.Tetrahedra.size(), body.Tetrahedra.size());
-  std::vector<std::size_t> changed;
-  std::set<std::int32_t> used;
-  for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
-  {
-    for (std::size_t k = 0; k < 4; ++k)
-    {
-      const std::int32_t node = split.Tetrahedra[t][k];
-      used.insert(node);
-      ASSERT_LT(node, before + static_cast<std::int32_t>(split.Origins.size()));
-      EXPECT_EQ(body.Tetrahedra[t][k],
-        node < before ? node : split.Origins[static_cast<std::size_t>(node - before)]);
-    }
-    if (split.Tetrahedra[t] != body.Tetrahedra[t])
-    {
-      changed.push_back(t);
-    }
-  }
-  EXPECT_EQ(split.Changed, changed);
-  EXPECT_TRUE(std::is_sorted(split.Origins.begin(), split.Origins.end()));
-  for (std::size_t copy = 0; copy < split.Origins.size(); ++copy)
-  {
-    EXPECT_EQ(used.count(before + static_cast<std::int32_t>(copy)), 1U);
-    EXPECT_EQ(used.count(split.Origins[copy]), 1U);
-  }
-}
-
-std::size_t CountComponents(const std::vector<std::int32_t>& components)
-{
-  return components.empty()
-    ? 0
-    : static_cast<std::size_t>(*std::max_element(components.begin(), components.end())) + 1;
-}
-
-// Expects pieces that have no node in common. Returns their volumes.
-std::vector<double> ExpectPieces(const ElasticBody& body, std::size_t count)
-{
-  const std::vector<std::int32_t> components = FindFaceComponents(body.Tetrahedra);
-  EXPECT_EQ(CountComponents(components), count);
-  EXPECT_EQ(FindPieces(body).NumberOfPieces, static_cast<std::int32_t>(count));
-  std::vector<double> volumes(count, 0.0);
-  const std::vector<double> all = GetVolumes(body);
-  for (std::size_t t = 0; t < all.size(); ++t)
-  {
-    const auto component = static_cast<std::size_t>(components[t]);
-    if (component < count)
-    {
-      volumes[component] += all[t];
-    }
-  }
-  return volumes;
-}
-
-ElasticBody MakeLattice()
-{
-  return MakeLatticeBody(Nodes, glm::dvec3(1.0));
-}
-
-ElasticBody MakePair()
-{
-  ElasticBody body;
-  body.Points = { { 0.0, 0.0, -1.0 }, { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { -1.0, -1.0, 0.0 },
-    { 0.0, 0.0, 1.0 } };
-  body.Tetrahedra = { { { 0, 1, 2, 3 } }, { { 4, 1, 3, 2 } } };
-  return body;
-}
 
 template <typename Function>
 void ExpectError(Function&& function, const std::string& words)
@@ -309,7 +162,6 @@ TEST(MeshSplit, Planes)
   EXPECT_NEAR(volumes[0], 281.6, 10.0);
 }
 
-// Where a sheet is closed, what is inside comes out whole.
 TEST(MeshSplit, ClosedSheet)
 {
   const ElasticBody body = MakeLattice();
@@ -353,7 +205,6 @@ TEST(MeshSplit, EndInside)
   EXPECT_NEAR(volumes[0], 256.0, 1e-9);
 }
 
-// Cuts that are shorter than the tetrahedra: each on its own opens nothing.
 TEST(MeshSplit, ManyShortCuts)
 {
   ElasticBody body = MakeLattice();
@@ -401,70 +252,6 @@ TEST(MeshSplit, CrossingCuts)
   ExpectPieces(third, 8);
 }
 
-TEST(MeshSplit, EvenCrossings)
-{
-  const ElasticBody body = MakeLattice();
-  SheetSurface twice = MakePlaneX(4.0);
-  twice.Add(MakePlaneX(4.0));
-  ExpectNothing(body, Split(body, twice));
-  // A fold between two layers of centroids.
-  SheetSurface fold = MakePlaneX(3.95);
-  fold.Add(MakePlaneX(4.05));
-  fold.Add(MakeSheet({ 3.95, 9.0, -1.0 }, { 0.1, 0.0, 0.0 }, { 0.0, 0.0, 10.0 }));
-  ExpectNothing(body, Split(body, fold));
-  SheetSurface thrice = twice;
-  thrice.Add(MakePlaneX(4.0));
-  ExpectSame(Split(body, thrice), Split(body, MakePlaneX(4.0)));
-  // Segments through the line where a sheet crosses itself lead from above it to below it, and hold
-  // these together; two cuts have all four sides apart.
-  const SheetSurface up = MakeSheet({ -1.0, -1.0, 2.1 }, { 10.0, 0.0, 4.0 }, { 0.0, 10.0, 0.0 });
-  const SheetSurface down = MakeSheet({ -1.0, -1.0, 6.1 }, { 10.0, 0.0, -4.0 }, { 0.0, 10.0, 0.0 });
-  SheetSurface crossing = up;
-  crossing.Add(down);
-  const MeshSplit split = Split(body, crossing);
-  ExpectSound(body, split);
-  ExpectPieces(Apply(body, split), 3);
-  const ElasticBody first = Apply(body, Split(body, up));
-  ExpectPieces(Apply(first, Split(first, down)), 4);
-}
-
-// Neither does it matter where in space, and how large, the mesh is.
-TEST(MeshSplit, OrderAndOrientation)
-{
-  const ElasticBody body = MakeLattice();
-  SheetSurface sheet = MakeSheet({ -1.0, -1.0, 4.5 }, { 10.0, 0.0, 1.5 }, { 0.0, 10.0, -1.5 });
-  sheet.Add(MakePlaneX(4.5));
-  const MeshSplit expected = Split(body, sheet);
-  EXPECT_GT(expected.NumberOfFaces, 128);
-  std::mt19937 random(1);
-  for (int i = 0; i < 10; ++i)
-  {
-    std::shuffle(sheet.Triangles.begin(), sheet.Triangles.end(), random);
-    for (auto& triangle : sheet.Triangles)
-    {
-      std::shuffle(triangle.begin(), triangle.end(), random);
-    }
-    ExpectSame(Split(body, sheet), expected);
-  }
-  ElasticBody moved = body;
-  SheetSurface movedSheet = sheet;
-  for (std::vector<glm::dvec3>* points : { &moved.Points, &movedSheet.Points })
-  {
-    for (glm::dvec3& point : *points)
-    {
-      point = point / 1024.0 + glm::dvec3(-16.0, 2.0, 0.5);
-    }
-  }
-  ExpectSame(Split(moved, movedSheet), expected);
-  SetParallelLoop(
-    [](std::int64_t first, std::int64_t last, std::int64_t grain, const ParallelBody& loopBody)
-    { RunOnOwnThreads(first, last, grain, loopBody, 1); });
-  const MeshSplit alone = Split(body, sheet);
-  SetParallelLoop(nullptr);
-  ExpectSame(alone, expected);
-}
-
-// A sheet is where the mesh is now.
 TEST(MeshSplit, DeformedPositions)
 {
   const ElasticBody rest = MakeLattice();
@@ -481,7 +268,6 @@ TEST(MeshSplit, DeformedPositions)
   ExpectSame(Split(bent, sheet), Split(rest, MakePlaneX(4.0)));
 }
 
-// Tetrahedra that touch at an edge only.
 TEST(MeshSplit, ContactsPart)
 {
   ElasticBody body = MakePair();
@@ -503,89 +289,4 @@ TEST(MeshSplit, ContactsPart)
   EXPECT_EQ(split.Tetrahedra[2], (Tetrahedron{ { 11, 13, 5, 6 } }));
   EXPECT_EQ(split.Tetrahedra[3], body.Tetrahedra[3]);
   EXPECT_EQ(FindFaceComponents(split.Tetrahedra), (std::vector<std::int32_t>{ 0, 1, 2, 3 }));
-}
-
-// Three tetrahedra at one face, and one that is there twice: no mesh, but no reason to fail.
-TEST(MeshSplit, FacesOfMany)
-{
-  ElasticBody body = MakePair();
-  body.Points.emplace_back(0.1, 0.1, 2.0);
-  body.Tetrahedra.push_back({ { 5, 1, 3, 2 } });
-  body.Tetrahedra.push_back(body.Tetrahedra[2]);
-  const SheetSurface sheet = MakeSheet({ -2.0, -2.0, 0.1 }, { 4.0, 0.0, 0.0 }, { 0.0, 4.0, 0.0 });
-  ExpectNothing(body, Split(body, sheet));
-  body.Tetrahedra.push_back({ { 4, 4, 3, 2 } });
-  ExpectNothing(body, Split(body, sheet));
-  EXPECT_EQ(CountComponents(FindFaceComponents(body.Tetrahedra)), 1U);
-}
-
-// Lattices without some of their tetrahedra, shaken; triangles at random and strips, twice.
-TEST(MeshSplit, Random)
-{
-  constexpr std::array<int, 3> nodes{ { 4, 5, 4 } };
-  int compared = 0;
-  int copies = 0;
-  int unparted = 0;
-  for (unsigned int seed = 1; seed <= 300; ++seed)
-  {
-    SCOPED_TRACE(seed);
-    std::mt19937 random(seed);
-    const auto draw = [&](double low, double high, double step)
-    { return std::floor(std::uniform_real_distribution<>(low, high)(random) / step) * step; };
-    ElasticBody body = MakeLatticeBody(nodes, glm::dvec3(2.0));
-    const auto last = static_cast<std::int32_t>(body.Points.size() - 1);
-    // Multiples of 2^-14, as centroids are of 2^-16. The longest side remains 8.
-    for (glm::dvec3& point : body.Points)
-    {
-      const glm::dvec3 offset(
-        draw(-0.6, 0.6, 0x1p-14), draw(-0.6, 0.6, 0x1p-14), draw(-0.6, 0.6, 0x1p-14));
-      const bool isEnd = point.y == 0.0 || point.y == 8.0;
-      point += isEnd ? offset * glm::dvec3(1.0, 0.0, 1.0) : offset;
-    }
-    const double kept = draw(0.6, 1.05, 0.01);
-    body.Tetrahedra.erase(std::remove_if(body.Tetrahedra.begin(), body.Tetrahedra.end(),
-                            [&](const Tetrahedron& t)
-                            {
-                              return *std::min_element(t.begin(), t.end()) != 0 &&
-                                *std::max_element(t.begin(), t.end()) != last &&
-                                draw(0.0, 1.0, 0.001) > kept;
-                            }),
-      body.Tetrahedra.end());
-    std::shuffle(body.Tetrahedra.begin(), body.Tetrahedra.end(), random);
-    std::vector<TetrahedronPair> pairs;
-    for (int cut = 0; cut < 2; ++cut)
-    {
-      // Multiples of 2^-9: where a triangle is divided, it is divided exactly.
-      SheetSurface sheet;
-      for (int i = 0; i < 8; ++i)
-      {
-        sheet.Points.emplace_back(
-          draw(-2.0, 8.0, 0x1p-9), draw(-2.0, 10.0, 0x1p-9), draw(-2.0, 8.0, 0x1p-9));
-      }
-      for (std::int64_t i = 0; i < 6; ++i)
-      {
-        const auto at = [&](std::int64_t k)
-        { return seed % 2 == 0 ? i + k : static_cast<std::int64_t>(random() % 8); };
-        sheet.Triangles.push_back({ { at(0), at(1), at(2) } });
-      }
-      sheet.Triangles.resize(1 + random() % 6);
-      const auto expected =
-        SplitMeshSlowly(body.Points, body.Tetrahedra, sheet.Points, sheet.Triangles, pairs);
-      if (!expected)
-      {
-        break;
-      }
-      const MeshSplit split = Split(body, sheet, pairs);
-      ExpectSame(split, *expected);
-      ++compared;
-      copies += static_cast<int>(split.Origins.size());
-      unparted += static_cast<int>(split.Unparted.size());
-      pairs = split.Unparted;
-      body = Apply(body, split);
-    }
-  }
-  // Few have triangles that are segments, and edges that meet.
-  EXPECT_GT(compared, 400);
-  EXPECT_GT(copies, 4000);
-  EXPECT_GT(unparted, 100);
 }
