@@ -33,6 +33,8 @@ FAULTS = ("TestFaults", "*")
 GRAPHICS = ("TestGraphicsDevice", "*")
 CUTTING = ("TestCutting", "*")
 SMOOTH = ("TestSmoothCuts", "*")
+SPLIT = ("TestMeshSplit", "*")
+SPLIT_FACES = ("TestSplitFaces", "*")
 CROSSINGS = ("TestSheetCrossings", "*")
 CUT_PARTS = ("TestIncrementalCuts", "IncrementalCuts.*")
 CARVING = ("TestCarving", "*")
@@ -123,6 +125,10 @@ MUTATIONS = {
                      "isDivision && isClear", [CROSSINGS]),
     "cut-copies": ("Kernels/Resampling/IncrementalBoxes.cxx", "      low -= difference;\n      high += difference;\n",
                    "", [CUT_PARTS]),
+    "split-reach": ("Kernels/Physics/SplitRegion.cxx", "0.25 * std::max(", "0.0 * std::max(", [SPLIT_FACES]),
+    "split-near": ("Kernels/Physics/MeshSplit.cxx", "(region.IsNear(face / 4) || ", "(region.IsNear(face / 4) && ",
+                   [SPLIT_FACES]),
+    "split-before": ("Kernels/Physics/MeshSplit.cxx", "states[face] = states[next] = SplitBefore;", "", [SPLIT]),
     "carve-ray": ("Kernels/Cutting/SurfaceInterior.cxx", "along.z != 0 ? -GetSign(along.z) : GetSign(along.y);",
                   "along.z != 0 ? GetSign(along.z) : GetSign(along.y);", [CARVING]),
     "carve-plane": ("Kernels/Cutting/SurfaceInterior.cxx", "return height == -GetSign(this->Normal.x);",

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FaceNeighbours.h"
+
+#include "ParallelFor.h"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+namespace deformvolume
+{
+namespace
+{
+
+// A face in the list of those that have the same lowest node.
+struct Entry
+{
+  std::int32_t Middle;
+  std::int32_t Highest;
+  std::uint32_t Face;
+
+  bool operator<(const Entry& other) const
+  {
+    return std::tie(this->Middle, this->Highest, this->Face) <
+      std::tie(other.Middle, other.Highest, other.Face);
+  }
+};
+
+constexpr std::size_t NodesOfPart = 2048;
+
+std::array<std::int32_t, 3> GetSortedNodes(const Tetrahedron& tetrahedron, std::size_t k)
+{
+  std::int32_t a = tetrahedron[k == 0 ? 1 : 0];
+  std::int32_t b = tetrahedron[k <= 1 ? 2 : 1];
+  std::int32_t c = tetrahedron[k <= 2 ? 3 : 2];
+  std::tie(a, b) = std::minmax({ a, b });
+  std::tie(b, c) = std::minmax({ b, c });
+  std::tie(a, b) = std::minmax({ a, b });
+  return { { a, b, c } };
+}
+
+} // namespace
+
+FaceNeighbours::FaceNeighbours(
+  const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes)
+  : Next(4 * tetrahedra.size())
+{
+  // The lists one after another: that of a node has few entries, so that it is sorted at once.
+  std::vector<std::size_t> ends(numberOfNodes + 1, 0);
+  for (const Tetrahedron& tetrahedron : tetrahedra)
+  {
+    for (std::size_t k = 0; k < 4; ++k)
+    {
+      ++ends[static_cast<std::size_t>(GetSortedNodes(tetrahedron, k)[0]) + 1];
+    }
+  }
+  for (std::size_t node = 0; node < numberOfNodes; ++node)
+  {
+    ends[node + 1] += ends[node];
+  }
+  std::vector<Entry> entries(this->Next.size());
+  // Each end is that of the list before until its entries have come.
+  for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+  {
+    for (std::size_t k = 0; k < 4; ++k)
+    {
+      const std::array<std::int32_t, 3> nodes = GetSortedNodes(tetrahedra[t], k);
+      entries[ends[static_cast<std::size_t>(nodes[0])]++] = { nodes[1], nodes[2],
+        static_cast<std::uint32_t>(4 * t + k) };
+    }
+  }
+  ParallelForParts(numberOfNodes, NodesOfPart,
+    [&](std::size_t first, std::size_t last)
+    {
+      for (std::size_t node = first; node < last; ++node)
+      {
+        const std::size_t end = ends[node];
+        std::size_t begin = node == 0 ? 0 : ends[node - 1];
+        std::sort(entries.begin() + static_cast<std::ptrdiff_t>(begin),
+          entries.begin() + static_cast<std::ptrdiff_t>(end));
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          const bool isLast = i + 1 == end || entries[i + 1].Middle != entries[i].Middle ||
+            entries[i + 1].Highest != entries[i].Highest;
+          this->Next[entries[i].Face] = entries[isLast ? begin : i + 1].Face;
+          begin = isLast ? i + 1 : begin;
+        }
+      }
+    });
+}
+
+} // namespace deformvolume

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "NodeParts.h"
+
+#include "ParallelFor.h"
+
+#include <algorithm>
+
+namespace deformvolume
+{
+namespace
+{
+
+constexpr std::size_t NodesOfPart = 1024;
+
+// Lists of corners, one for each wanted node, ascending.
+struct CornerLists
+{
+  std::vector<std::size_t> Ends; // that of list n; it begins where the one before ends
+  std::vector<std::size_t> Corners;
+
+  CornerLists(
+    const std::vector<Tetrahedron>& tetrahedra, const std::vector<unsigned char>& isWanted)
+    : Ends(isWanted.size() + 1, 0)
+  {
+    const auto forEachCorner = [&](auto&& function)
+    {
+      for (std::size_t corner = 0; corner < 4 * tetrahedra.size(); ++corner)
+      {
+        const auto node = static_cast<std::size_t>(tetrahedra[corner / 4][corner % 4]);
+        if (isWanted[node] != 0)
+        {
+          function(corner, node);
+        }
+      }
+    };
+    forEachCorner([&](std::size_t, std::size_t node) { ++this->Ends[node + 1]; });
+    for (std::size_t node = 0; node < isWanted.size(); ++node)
+    {
+      this->Ends[node + 1] += this->Ends[node];
+    }
+    this->Corners.resize(this->Ends.back());
+    // Each end is that of the list before until its corners have come.
+    forEachCorner(
+      [&](std::size_t corner, std::size_t node) { this->Corners[this->Ends[node]++] = corner; });
+  }
+};
+
+// Finds the parts of one node after another.
+class PartFinder
+{
+public:
+  PartFinder(const std::vector<Tetrahedron>& tetrahedra, const FaceNeighbours& neighbours,
+    const std::vector<unsigned char>& isSplit)
+    : Tetrahedra(tetrahedra)
+    , Neighbours(neighbours)
+    , IsSplit(isSplit)
+  {
+  }
+
+  // Sets the part of each corner, from begin to before end, of a node. Returns the number of parts.
+  std::int32_t Find(const std::size_t* begin, const std::size_t* end, std::int32_t* partOfCorner)
+  {
+    const auto count = static_cast<std::size_t>(end - begin);
+    this->Parents.resize(count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      this->Parents[i] = i;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      this->JoinNeighbours(begin, end, i);
+    }
+    // Each root is the lowest of its part, and so comes first.
+    std::int32_t parts = 0;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const std::size_t root = this->FindRoot(i);
+      partOfCorner[begin[i]] = root == i ? parts++ : partOfCorner[begin[root]];
+    }
+    return parts;
+  }
+
+private:
+  void JoinNeighbours(const std::size_t* begin, const std::size_t* end, std::size_t i)
+  {
+    const std::size_t t = begin[i] / 4;
+    const std::int32_t node = this->Tetrahedra[t][begin[i] % 4];
+    for (std::size_t k = 0; k < 4; ++k)
+    {
+      const std::size_t face = 4 * t + k;
+      const std::size_t next = this->Neighbours.GetNext(face);
+      if (this->Tetrahedra[t][k] == node || next == face || this->IsSplit[face] != 0)
+      {
+        continue;
+      }
+      const std::size_t* other = std::lower_bound(begin, end, next / 4 * 4);
+      std::size_t a = this->FindRoot(i);
+      std::size_t b = this->FindRoot(static_cast<std::size_t>(other - begin));
+      this->Parents[std::max(a, b)] = std::min(a, b);
+    }
+  }
+
+  std::size_t FindRoot(std::size_t i)
+  {
+    while (this->Parents[i] != i)
+    {
+      this->Parents[i] = this->Parents[this->Parents[i]];
+      i = this->Parents[i];
+    }
+    return i;
+  }
+
+  const std::vector<Tetrahedron>& Tetrahedra;
+  const FaceNeighbours& Neighbours;
+  const std::vector<unsigned char>& IsSplit;
+  std::vector<std::size_t> Parents;
+};
+
+} // namespace
+
+NodeParts FindNodeParts(const std::vector<Tetrahedron>& tetrahedra,
+  const FaceNeighbours& neighbours, const std::vector<unsigned char>& isSplit,
+  const std::vector<unsigned char>& isWanted)
+{
+  const CornerLists lists(tetrahedra, isWanted);
+  NodeParts parts;
+  parts.PartOfCorner.assign(4 * tetrahedra.size(), 0);
+  parts.NumberOfCopies.assign(isWanted.size(), 0);
+  ParallelForParts(isWanted.size(), NodesOfPart,
+    [&](std::size_t first, std::size_t last)
+    {
+      PartFinder finder(tetrahedra, neighbours, isSplit);
+      for (std::size_t node = first; node < last; ++node)
+      {
+        if (isWanted[node] != 0)
+        {
+          const std::size_t begin = node == 0 ? 0 : lists.Ends[node - 1];
+          parts.NumberOfCopies[node] =
+            finder.Find(lists.Corners.data() + begin, lists.Corners.data() + lists.Ends[node],
+              parts.PartOfCorner.data()) -
+            1;
+        }
+      }
+    });
+  return parts;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SplitRegion.h"
+
+#include "ParallelFor.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace deformvolume
+{
+namespace
+{
+
+constexpr std::size_t TetrahedraOfPart = 16384;
+
+SnappedPoint Round(const glm::dvec3& point)
+{
+  return SnappedPoint(std::llround(point.x), std::llround(point.y), std::llround(point.z));
+}
+
+// Let g be the centroid of a face, and a and b the nodes opposite to it of its two tetrahedra.
+// Their centroids are g + (a - g) / 4 and g + (b - g) / 4. A point of the segment between these is
+// g + t (a - g) / 4, which lies in the first tetrahedron, and (1 - t) (b - g) / 4 away from there.
+// So it lies in the box of the tetrahedron where a is farther from g than b, made wider by a
+// quarter of its longest side. The steps are for what is rounded.
+SnappedBox GetReach(
+  const std::vector<glm::dvec3>& positions, const Tetrahedron& tetrahedron, const MeshSteps& steps)
+{
+  constexpr double rounding = 2.0;
+  const auto corner = [&](std::size_t i) -> const glm::dvec3&
+  { return positions[static_cast<std::size_t>(tetrahedron[i])]; };
+  const glm::dvec3 low =
+    steps.Get(glm::min(glm::min(corner(0), corner(1)), glm::min(corner(2), corner(3))));
+  const glm::dvec3 high =
+    steps.Get(glm::max(glm::max(corner(0), corner(1)), glm::max(corner(2), corner(3))));
+  const glm::dvec3 size = high - low;
+  const double margin = 0.25 * std::max(size.x, std::max(size.y, size.z)) + rounding;
+  // All points of the segment lie within the mesh.
+  SnappedBox box;
+  box.Min = SnappedPoint(glm::max(low - margin, 0.0));
+  box.Max = SnappedPoint(glm::min(high + margin, static_cast<double>(MeshSteps::Length)));
+  return box;
+}
+
+// The numbers of tetrahedra that a function chooses, ascending. start(): a function for one thread.
+template <typename Start>
+std::vector<std::size_t> Choose(std::size_t count, Start&& start)
+{
+  std::vector<std::vector<std::size_t>> parts((count + TetrahedraOfPart - 1) / TetrahedraOfPart);
+  ParallelForParts(count, TetrahedraOfPart,
+    [&](std::size_t begin, std::size_t end)
+    {
+      auto isChosen = start();
+      std::vector<std::size_t>& chosen = parts[begin / TetrahedraOfPart];
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        if (isChosen(t))
+        {
+          chosen.push_back(t);
+        }
+      }
+    });
+  std::vector<std::size_t> all;
+  for (const std::vector<std::size_t>& part : parts)
+  {
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
+} // namespace
+
+SplitRegion::SplitRegion(const std::vector<glm::dvec3>& positions,
+  const std::vector<Tetrahedron>& tetrahedra, const MeshSteps& steps,
+  const SheetCrossings& crossings)
+{
+  const std::vector<std::size_t> near = Choose(tetrahedra.size(),
+    [&]
+    {
+      return [&, scratch = std::vector<std::size_t>()](std::size_t t) mutable
+      { return crossings.MayReach(GetReach(positions, tetrahedra[t], steps), scratch); };
+    });
+  std::vector<unsigned char> isNodeOfNear(positions.size(), 0);
+  for (const std::size_t t : near)
+  {
+    for (const std::int32_t node : tetrahedra[t])
+    {
+      isNodeOfNear[static_cast<std::size_t>(node)] = 1;
+    }
+  }
+  if (!near.empty())
+  {
+    const auto hasNode = [&](std::int32_t node)
+    { return isNodeOfNear[static_cast<std::size_t>(node)]; };
+    this->Numbers = Choose(tetrahedra.size(),
+      [&]
+      {
+        return [&](std::size_t t)
+        {
+          const Tetrahedron& nodes = tetrahedra[t];
+          return (hasNode(nodes[0]) | hasNode(nodes[1]) | hasNode(nodes[2]) | hasNode(nodes[3])) !=
+            0;
+        };
+      });
+  }
+  this->NumberNodes(tetrahedra, positions.size());
+  this->Near.assign(this->Numbers.size(), 0);
+  auto next = near.begin();
+  for (std::size_t t = 0; t < this->Numbers.size() && next != near.end(); ++t)
+  {
+    if (this->Numbers[t] == *next)
+    {
+      this->Near[t] = 1;
+      ++next;
+    }
+  }
+  this->Centroids.resize(this->Numbers.size());
+  ParallelForParts(this->Numbers.size(), TetrahedraOfPart,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        glm::dvec3 sum(0.0);
+        for (const std::int32_t node : tetrahedra[this->Numbers[t]])
+        {
+          sum += steps.Get(positions[static_cast<std::size_t>(node)]);
+        }
+        this->Centroids[t] = Round(0.25 * sum);
+      }
+    });
+}
+
+std::size_t SplitRegion::Find(std::size_t number) const
+{
+  const auto found = std::lower_bound(this->Numbers.begin(), this->Numbers.end(), number);
+  return found != this->Numbers.end() && *found == number
+    ? static_cast<std::size_t>(found - this->Numbers.begin())
+    : this->Numbers.size();
+}
+
+void SplitRegion::NumberNodes(const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes)
+{
+  constexpr std::int32_t absent = -1;
+  std::vector<std::int32_t> numbers(numberOfNodes, absent);
+  for (const std::size_t t : this->Numbers)
+  {
+    for (const std::int32_t node : tetrahedra[t])
+    {
+      numbers[static_cast<std::size_t>(node)] = 0;
+    }
+  }
+  for (std::size_t node = 0; node < numberOfNodes; ++node)
+  {
+    if (numbers[node] != absent)
+    {
+      numbers[node] = static_cast<std::int32_t>(this->Nodes.size());
+      this->Nodes.push_back(static_cast<std::int32_t>(node));
+    }
+  }
+  this->Tetrahedra.reserve(this->Numbers.size());
+  for (const std::size_t t : this->Numbers)
+  {
+    Tetrahedron local = tetrahedra[t];
+    for (std::int32_t& node : local)
+    {
+      node = numbers[static_cast<std::size_t>(node)];
+    }
+    this->Tetrahedra.push_back(local);
+  }
+}
+
+} // namespace deformvolume
