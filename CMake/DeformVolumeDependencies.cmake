@@ -63,6 +63,7 @@ find_package(VTK 9.1 REQUIRED
   ${deformvolume_optional_vtk_components})
 
 find_package(glm REQUIRED)
+find_package(Eigen3 3.3 REQUIRED NO_MODULE)
 
 find_program(DEFORMVOLUME_TETGEN_EXECUTABLE tetgen
   DOC "The TetGen program that vtkTetGenMesher runs by default")

@@ -9,11 +9,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 
 namespace deformvolume
 {
 namespace
 {
+
+// With fewer free nodes the inverses of the diagonal are enough.
+constexpr std::ptrdiff_t LeastNumberForLevels = 1000;
 
 double LargestComponent(const glm::dvec3& vector)
 {
@@ -82,11 +86,13 @@ void CorotationalSolver::SetMaterials(const std::vector<ElasticMaterial>& materi
   this->Body.Materials = materials;
   this->Elements.SetMaterials(this->Body);
   this->UpdateScale();
+  this->IsFreeInLevels.clear();
 }
 
 void CorotationalSolver::SetDisplacements(const std::vector<glm::dvec3>& displacements)
 {
   this->Displacements = displacements;
+  this->IsFreeInLevels.clear();
 }
 
 std::vector<glm::dvec3> CorotationalSolver::GetForces() const
@@ -189,6 +195,29 @@ CorotationalSolver::Residuals CorotationalSolver::FindResidual(
   return residuals;
 }
 
+Preconditioner& CorotationalSolver::Precondition(
+  Watch& watch, const Problem& problem, const State& state)
+{
+  const auto number = std::count(problem.IsFree.begin(), problem.IsFree.end(), 1);
+  if (number < LeastNumberForLevels)
+  {
+    this->Jacobi.Build(watch, this->Matrix, problem.IsFree);
+    return this->Jacobi;
+  }
+  if (this->IsFreeInLevels != problem.IsFree)
+  {
+    this->IsFreeInLevels.clear();
+    std::vector<glm::dvec3> positions = this->Body.Points;
+    for (std::size_t node = 0; node < positions.size(); ++node)
+    {
+      positions[node] += state.Displacements[node];
+    }
+    this->Levels.Build(watch, this->Matrix, problem.IsFree, positions);
+    this->IsFreeInLevels = problem.IsFree;
+  }
+  return this->Levels;
+}
+
 void CorotationalSolver::SolveLinear(Watch& watch, const Problem& problem,
   const CorotationalLimits& limits, const State& state, CorotationalReport& report)
 {
@@ -199,10 +228,9 @@ void CorotationalSolver::SolveLinear(Watch& watch, const Problem& problem,
       ? this->RightHandSide[node] + problem.Loads[node] - state.Forces[node]
       : glm::dvec3(0.0);
   }
-  this->Jacobi.Build(watch, this->Matrix, problem.IsFree);
-  report.LinearIterations +=
-    this->Gradients.Solve(watch, this->Matrix, problem.IsFree, this->Jacobi, this->RightHandSide,
-      { limits.LinearIterations, limits.LinearTolerance }, this->Direction);
+  report.LinearIterations += this->Gradients.Solve(watch, this->Matrix, problem.IsFree,
+    this->Precondition(watch, problem, state), this->RightHandSide,
+    { limits.LinearIterations, limits.LinearTolerance }, this->Direction);
   ++report.NewtonSteps;
 }
 

@@ -5,6 +5,7 @@
 #include "ConjugateGradients.h"
 #include "CorotationalElements.h"
 #include "CorotationalTypes.h"
+#include "Multigrid.h"
 #include "Watch.h"
 
 #include <glm/vec3.hpp>
@@ -62,6 +63,7 @@ private:
   // Moves the held nodes to their targets, and the others as the tangent says.
   void MoveHeldNodes(Watch& watch, const Problem& problem, const CorotationalLimits& limits,
     State& state, CorotationalReport& report);
+  Preconditioner& Precondition(Watch& watch, const Problem& problem, const State& state);
   void SolveLinear(Watch& watch, const Problem& problem, const CorotationalLimits& limits,
     const State& state, CorotationalReport& report);
   // False where no step makes the energy less.
@@ -76,6 +78,9 @@ private:
   CorotationalElements Elements;
   BlockMatrix Matrix;
   BlockJacobi Jacobi;
+  Multigrid Levels;
+  // What these are for; empty: they are to be built.
+  std::vector<unsigned char> IsFreeInLevels;
   ConjugateGradients Gradients;
   std::vector<glm::dvec3> RightHandSide;
   std::vector<glm::dvec3> Direction;
