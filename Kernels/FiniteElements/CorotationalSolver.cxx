@@ -204,17 +204,18 @@ Preconditioner& CorotationalSolver::Precondition(
     this->Jacobi.Build(watch, this->Matrix, problem.IsFree);
     return this->Jacobi;
   }
+  std::vector<glm::dvec3> positions = this->Body.Points;
+  for (std::size_t node = 0; node < positions.size(); ++node)
+  {
+    positions[node] += state.Displacements[node];
+  }
   if (this->IsFreeInLevels != problem.IsFree)
   {
     this->IsFreeInLevels.clear();
-    std::vector<glm::dvec3> positions = this->Body.Points;
-    for (std::size_t node = 0; node < positions.size(); ++node)
-    {
-      positions[node] += state.Displacements[node];
-    }
     this->Levels.Build(watch, this->Matrix, problem.IsFree, positions);
     this->IsFreeInLevels = problem.IsFree;
   }
+  this->Levels.SetPositions(watch, this->Matrix.GetPattern(), positions);
   return this->Levels;
 }
 

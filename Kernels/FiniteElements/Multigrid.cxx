@@ -2,6 +2,7 @@
 #include "Multigrid.h"
 
 #include "Aggregation.h"
+#include "NodeRotations.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -193,6 +194,7 @@ void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
 {
   this->FreeNodes.clear();
   this->Coarse.clear();
+  this->Positions = positions;
   for (std::size_t node = 0; node < isFree.size(); ++node)
   {
     if (isFree[node] != 0)
@@ -217,6 +219,12 @@ void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
   const std::size_t length = static_cast<std::size_t>(coarse.GetNumberOfRows()) * PaddedSize<6>;
   this->Coarse.back().Right.assign(length, 0.0f);
   this->Coarse.back().Solution.assign(length, 0.0f);
+}
+
+void Multigrid::SetPositions(
+  Watch& watch, const BlockPattern& pattern, const std::vector<glm::dvec3>& positions)
+{
+  FindNodeRotations(watch, pattern, this->FreeNodes, this->Positions, positions, this->Rotations);
 }
 
 void Multigrid::SolveCoarsest(
@@ -285,7 +293,10 @@ void Multigrid::Apply(
     {
       for (std::size_t row = begin; row < end; ++row)
       {
-        const glm::vec3 value(scale * vector[static_cast<std::size_t>(this->FreeNodes[row])]);
+        // A vector times a matrix is the transposed matrix times the vector.
+        const glm::vec3 value =
+          glm::vec3(scale * vector[static_cast<std::size_t>(this->FreeNodes[row])]) *
+          this->Rotations[row];
         float* const right = &this->Fine.Right[row * PaddedSize<3>];
         right[0] = value.x;
         right[1] = value.y;
@@ -302,8 +313,8 @@ void Multigrid::Apply(
       for (std::size_t row = begin; row < end; ++row)
       {
         const float* const solution = &this->Fine.Solution[row * PaddedSize<3>];
-        result[static_cast<std::size_t>(this->FreeNodes[row])] =
-          size * glm::dvec3(solution[0], solution[1], solution[2]);
+        result[static_cast<std::size_t>(this->FreeNodes[row])] = size *
+          glm::dvec3(this->Rotations[row] * glm::vec3(solution[0], solution[1], solution[2]));
       }
     });
 }

@@ -7,6 +7,7 @@
 #include "Preconditioner.h"
 #include "Watch.h"
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstddef>
@@ -31,10 +32,15 @@ struct MultigridLevel
 };
 
 /// A cycle of the multigrid method over groups of nodes that move like rigid bodies, smoothed.
-/// It is built from a matrix once and used for others like it.
+/// It is built from a matrix once and used for others of the same body: the stiffness at a node is
+/// about what it was, turned with what is around the node.
 class Multigrid : public Preconditioner
 {
 public:
+  /// Where the nodes are now: what was built is turned with them.
+  void SetPositions(
+    Watch& watch, const BlockPattern& pattern, const std::vector<glm::dvec3>& positions);
+
   /// positions: of the nodes, as they are deformed now.
   void Build(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
     const std::vector<glm::dvec3>& positions);
@@ -46,6 +52,9 @@ private:
   void SolveCoarsest(Watch& watch, const std::vector<float>& right, std::vector<float>& solution);
 
   std::vector<std::int32_t> FreeNodes;
+  // Where the nodes were when the levels were built, and how they have turned since.
+  std::vector<glm::dvec3> Positions;
+  std::vector<glm::mat3> Rotations;
   MultigridLevel<3> Fine;
   std::vector<MultigridLevel<6>> Coarse;
   // The inverse of the coarsest matrix, by rows.
