@@ -54,8 +54,8 @@ CorotationalSolver::CorotationalSolver(const ElasticBody& body)
   : Body(body)
   , Pieces(FindPieces(body))
   , Elements(body)
-  , Displacements(body.Points.size(), glm::dvec3(0.0))
 {
+  this->Last.Displacements.assign(body.Points.size(), glm::dvec3(0.0));
   this->Matrix.SetPattern(MakeNodePattern(body));
   this->Elements.SetPattern(this->Matrix.GetPattern());
   this->UpdateScale();
@@ -86,12 +86,14 @@ void CorotationalSolver::SetMaterials(const std::vector<ElasticMaterial>& materi
   this->Body.Materials = materials;
   this->Elements.SetMaterials(this->Body);
   this->UpdateScale();
+  this->HasForces = false;
   this->IsFreeInLevels.clear();
 }
 
 void CorotationalSolver::SetDisplacements(const std::vector<glm::dvec3>& displacements)
 {
-  this->Displacements = displacements;
+  this->Last.Displacements = displacements;
+  this->HasForces = false;
   this->IsFreeInLevels.clear();
 }
 
@@ -99,13 +101,13 @@ std::vector<glm::dvec3> CorotationalSolver::GetForces() const
 {
   std::vector<glm::dvec3> forces;
   Watch watch(nullptr);
-  this->Elements.FindForces(watch, this->Displacements, forces);
+  this->Elements.FindForces(watch, this->Last.Displacements, forces);
   return forces;
 }
 
 std::vector<ElementResults> CorotationalSolver::GetElementResults() const
 {
-  return this->Elements.GetResults(this->Displacements);
+  return this->Elements.GetResults(this->Last.Displacements);
 }
 
 CorotationalSolver::Problem CorotationalSolver::MakeProblem(
@@ -160,6 +162,11 @@ CorotationalSolver::Problem CorotationalSolver::MakeProblem(
 void CorotationalSolver::Evaluate(Watch& watch, const Problem& problem, State& state) const
 {
   state.Sums = this->Elements.FindForces(watch, state.Displacements, state.Forces);
+  this->FindPotential(watch, problem, state);
+}
+
+void CorotationalSolver::FindPotential(Watch& watch, const Problem& problem, State& state) const
+{
   state.Potential = state.Sums.Energy -
     SumOfParts(watch, problem.Loads.size(),
       [&](std::size_t begin, std::size_t end)
@@ -213,10 +220,27 @@ Preconditioner& CorotationalSolver::Precondition(
   {
     this->IsFreeInLevels.clear();
     this->Levels.Build(watch, this->Matrix, problem.IsFree, positions);
+    this->CostOfLevels = 0.0;
     this->IsFreeInLevels = problem.IsFree;
   }
   this->Levels.SetPositions(watch, this->Matrix.GetPattern(), positions);
   return this->Levels;
+}
+
+void CorotationalSolver::JudgeLevels(int iterations, const CorotationalLimits& limits)
+{
+  // It takes about as long to build them as some tens of iterations.
+  constexpr int fewIterations = 30;
+  constexpr double manyTimes = 2.5;
+  const double cost = iterations / std::max(0.1, -std::log10(limits.LinearTolerance));
+  if (this->CostOfLevels == 0.0)
+  {
+    this->CostOfLevels = std::max(1.0, cost);
+  }
+  else if (iterations > fewIterations && cost > manyTimes * this->CostOfLevels)
+  {
+    this->IsFreeInLevels.clear();
+  }
 }
 
 void CorotationalSolver::SolveLinear(Watch& watch, const Problem& problem,
@@ -229,9 +253,11 @@ void CorotationalSolver::SolveLinear(Watch& watch, const Problem& problem,
       ? this->RightHandSide[node] + problem.Loads[node] - state.Forces[node]
       : glm::dvec3(0.0);
   }
-  report.LinearIterations += this->Gradients.Solve(watch, this->Matrix, problem.IsFree,
+  const int iterations = this->Gradients.Solve(watch, this->Matrix, problem.IsFree,
     this->Precondition(watch, problem, state), this->RightHandSide,
     { limits.LinearIterations, limits.LinearTolerance }, this->Direction);
+  this->JudgeLevels(iterations, limits);
+  report.LinearIterations += iterations;
   ++report.NewtonSteps;
 }
 
@@ -343,9 +369,15 @@ CorotationalReport CorotationalSolver::Solve(const CorotationalRequest& request)
   CorotationalReport report;
   report.NumberOfFrozenPieces = problem.FrozenPieces;
   this->RightHandSide.resize(problem.IsFree.size());
-  State state;
-  state.Displacements = this->Displacements;
-  this->Evaluate(watch, problem, state);
+  State state = this->Last;
+  if (this->HasForces)
+  {
+    this->FindPotential(watch, problem, state);
+  }
+  else
+  {
+    this->Evaluate(watch, problem, state);
+  }
   this->MoveHeldNodes(watch, problem, limits, state, report);
   for (;;)
   {
@@ -369,7 +401,8 @@ CorotationalReport CorotationalSolver::Solve(const CorotationalRequest& request)
   }
   report.StrainEnergy = state.Sums.Energy;
   report.NumberOfInvertedTetrahedra = state.Sums.Inverted;
-  this->Displacements.swap(state.Displacements);
+  std::swap(this->Last, state);
+  this->HasForces = true;
   return report;
 }
 
