@@ -317,7 +317,8 @@ TEST(Corotational, Materials)
   EXPECT_LT(LargestDifference(model.GetDisplacements(), other.GetDisplacements()), 1e-6);
 }
 
-// Nodes anywhere within 0.6 of the length from where they were: nearly half of the tetrahedra are inside out.
+// Nodes anywhere within 0.6 of the length from where they were: nearly half of the tetrahedra are
+// inside out.
 TEST(Corotational, Scramble)
 {
   const LatticeBody lattice = MakeBlock({ 5, 5, 5 });
