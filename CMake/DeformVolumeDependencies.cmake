@@ -63,6 +63,7 @@ find_package(VTK 9.1 REQUIRED
   ${deformvolume_optional_vtk_components})
 
 find_package(glm REQUIRED)
+find_package(Eigen3 3.3 REQUIRED NO_MODULE)
 
 # In sources only: who uses the installed library does not need it.
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)

@@ -40,14 +40,13 @@ int ConjugateGradients::Solve(Watch& watch, const BlockMatrix& matrix,
   this->Preconditioned.resize(rows);
   this->Direction.assign(rows, glm::dvec3(0.0));
   this->Product.resize(rows);
-  const double wanted =
-    limits.Tolerance * limits.Tolerance * SumOfProducts(watch, this->Residual, this->Residual);
+  double squared = SumOfProducts(watch, this->Residual, this->Residual);
+  const double wanted = limits.Tolerance * limits.Tolerance * squared;
   double last = 0.0;
   int iteration = 0;
-  for (double squared = wanted + 1.0; squared > wanted && iteration < limits.Iterations;
-       ++iteration)
+  for (; squared > wanted && iteration < limits.Iterations; ++iteration)
   {
-    preconditioner.Apply(watch, this->Residual, this->Preconditioned);
+    preconditioner.Apply(watch, this->Residual, std::sqrt(squared), this->Preconditioned);
     const double product = SumOfProducts(watch, this->Residual, this->Preconditioned);
     if (!(product > 0.0))
     {

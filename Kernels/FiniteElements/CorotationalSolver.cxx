@@ -9,11 +9,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 
 namespace deformvolume
 {
 namespace
 {
+
+// With fewer free nodes the inverses of the diagonal are enough.
+constexpr std::ptrdiff_t LeastNumberForLevels = 1000;
 
 double LargestComponent(const glm::dvec3& vector)
 {
@@ -50,8 +54,8 @@ CorotationalSolver::CorotationalSolver(const ElasticBody& body)
   : Body(body)
   , Pieces(FindPieces(body))
   , Elements(body)
-  , Displacements(body.Points.size(), glm::dvec3(0.0))
 {
+  this->Last.Displacements.assign(body.Points.size(), glm::dvec3(0.0));
   this->Matrix.SetPattern(MakeNodePattern(body));
   this->Elements.SetPattern(this->Matrix.GetPattern());
   this->UpdateScale();
@@ -82,24 +86,28 @@ void CorotationalSolver::SetMaterials(const std::vector<ElasticMaterial>& materi
   this->Body.Materials = materials;
   this->Elements.SetMaterials(this->Body);
   this->UpdateScale();
+  this->HasForces = false;
+  this->IsFreeInLevels.clear();
 }
 
 void CorotationalSolver::SetDisplacements(const std::vector<glm::dvec3>& displacements)
 {
-  this->Displacements = displacements;
+  this->Last.Displacements = displacements;
+  this->HasForces = false;
+  this->IsFreeInLevels.clear();
 }
 
 std::vector<glm::dvec3> CorotationalSolver::GetForces() const
 {
   std::vector<glm::dvec3> forces;
   Watch watch(nullptr);
-  this->Elements.FindForces(watch, this->Displacements, forces);
+  this->Elements.FindForces(watch, this->Last.Displacements, forces);
   return forces;
 }
 
 std::vector<ElementResults> CorotationalSolver::GetElementResults() const
 {
-  return this->Elements.GetResults(this->Displacements);
+  return this->Elements.GetResults(this->Last.Displacements);
 }
 
 CorotationalSolver::Problem CorotationalSolver::MakeProblem(
@@ -154,6 +162,11 @@ CorotationalSolver::Problem CorotationalSolver::MakeProblem(
 void CorotationalSolver::Evaluate(Watch& watch, const Problem& problem, State& state) const
 {
   state.Sums = this->Elements.FindForces(watch, state.Displacements, state.Forces);
+  this->FindPotential(watch, problem, state);
+}
+
+void CorotationalSolver::FindPotential(Watch& watch, const Problem& problem, State& state) const
+{
   state.Potential = state.Sums.Energy -
     SumOfParts(watch, problem.Loads.size(),
       [&](std::size_t begin, std::size_t end)
@@ -189,6 +202,47 @@ CorotationalSolver::Residuals CorotationalSolver::FindResidual(
   return residuals;
 }
 
+Preconditioner& CorotationalSolver::Precondition(
+  Watch& watch, const Problem& problem, const State& state)
+{
+  const auto number = std::count(problem.IsFree.begin(), problem.IsFree.end(), 1);
+  if (number < LeastNumberForLevels)
+  {
+    this->Jacobi.Build(watch, this->Matrix, problem.IsFree);
+    return this->Jacobi;
+  }
+  std::vector<glm::dvec3> positions = this->Body.Points;
+  for (std::size_t node = 0; node < positions.size(); ++node)
+  {
+    positions[node] += state.Displacements[node];
+  }
+  if (this->IsFreeInLevels != problem.IsFree)
+  {
+    this->IsFreeInLevels.clear();
+    this->Levels.Build(watch, this->Matrix, problem.IsFree, positions);
+    this->CostOfLevels = 0.0;
+    this->IsFreeInLevels = problem.IsFree;
+  }
+  this->Levels.SetPositions(watch, this->Matrix.GetPattern(), positions);
+  return this->Levels;
+}
+
+void CorotationalSolver::JudgeLevels(int iterations, const CorotationalLimits& limits)
+{
+  // It takes about as long to build them as some tens of iterations.
+  constexpr int fewIterations = 30;
+  constexpr double manyTimes = 2.5;
+  const double cost = iterations / std::max(0.1, -std::log10(limits.LinearTolerance));
+  if (this->CostOfLevels == 0.0)
+  {
+    this->CostOfLevels = std::max(1.0, cost);
+  }
+  else if (iterations > fewIterations && cost > manyTimes * this->CostOfLevels)
+  {
+    this->IsFreeInLevels.clear();
+  }
+}
+
 void CorotationalSolver::SolveLinear(Watch& watch, const Problem& problem,
   const CorotationalLimits& limits, const State& state, CorotationalReport& report)
 {
@@ -199,10 +253,11 @@ void CorotationalSolver::SolveLinear(Watch& watch, const Problem& problem,
       ? this->RightHandSide[node] + problem.Loads[node] - state.Forces[node]
       : glm::dvec3(0.0);
   }
-  this->Jacobi.Build(watch, this->Matrix, problem.IsFree);
-  report.LinearIterations +=
-    this->Gradients.Solve(watch, this->Matrix, problem.IsFree, this->Jacobi, this->RightHandSide,
-      { limits.LinearIterations, limits.LinearTolerance }, this->Direction);
+  const int iterations = this->Gradients.Solve(watch, this->Matrix, problem.IsFree,
+    this->Precondition(watch, problem, state), this->RightHandSide,
+    { limits.LinearIterations, limits.LinearTolerance }, this->Direction);
+  this->JudgeLevels(iterations, limits);
+  report.LinearIterations += iterations;
   ++report.NewtonSteps;
 }
 
@@ -314,9 +369,15 @@ CorotationalReport CorotationalSolver::Solve(const CorotationalRequest& request)
   CorotationalReport report;
   report.NumberOfFrozenPieces = problem.FrozenPieces;
   this->RightHandSide.resize(problem.IsFree.size());
-  State state;
-  state.Displacements = this->Displacements;
-  this->Evaluate(watch, problem, state);
+  State state = this->Last;
+  if (this->HasForces)
+  {
+    this->FindPotential(watch, problem, state);
+  }
+  else
+  {
+    this->Evaluate(watch, problem, state);
+  }
   this->MoveHeldNodes(watch, problem, limits, state, report);
   for (;;)
   {
@@ -340,7 +401,8 @@ CorotationalReport CorotationalSolver::Solve(const CorotationalRequest& request)
   }
   report.StrainEnergy = state.Sums.Energy;
   report.NumberOfInvertedTetrahedra = state.Sums.Inverted;
-  this->Displacements.swap(state.Displacements);
+  std::swap(this->Last, state);
+  this->HasForces = true;
   return report;
 }
 

@@ -5,6 +5,7 @@
 #include "ConjugateGradients.h"
 #include "CorotationalElements.h"
 #include "CorotationalTypes.h"
+#include "Multigrid.h"
 #include "Watch.h"
 
 #include <glm/vec3.hpp>
@@ -24,7 +25,7 @@ public:
   CorotationalReport Solve(const CorotationalRequest& request);
 
   const ElasticBody& GetBody() const { return this->Body; }
-  const std::vector<glm::dvec3>& GetDisplacements() const { return this->Displacements; }
+  const std::vector<glm::dvec3>& GetDisplacements() const { return this->Last.Displacements; }
   void SetDisplacements(const std::vector<glm::dvec3>& displacements);
   std::vector<glm::dvec3> GetForces() const;
   std::vector<ElementResults> GetElementResults() const;
@@ -58,10 +59,14 @@ private:
   void UpdateScale();
   Problem MakeProblem(const CorotationalRequest& request) const;
   void Evaluate(Watch& watch, const Problem& problem, State& state) const;
+  void FindPotential(Watch& watch, const Problem& problem, State& state) const;
   Residuals FindResidual(const Problem& problem, const State& state) const;
   // Moves the held nodes to their targets, and the others as the tangent says.
   void MoveHeldNodes(Watch& watch, const Problem& problem, const CorotationalLimits& limits,
     State& state, CorotationalReport& report);
+  Preconditioner& Precondition(Watch& watch, const Problem& problem, const State& state);
+  // Has the levels built anew where they have become unlike the matrix.
+  void JudgeLevels(int iterations, const CorotationalLimits& limits);
   void SolveLinear(Watch& watch, const Problem& problem, const CorotationalLimits& limits,
     const State& state, CorotationalReport& report);
   // False where no step makes the energy less.
@@ -76,11 +81,19 @@ private:
   CorotationalElements Elements;
   BlockMatrix Matrix;
   BlockJacobi Jacobi;
+  Multigrid Levels;
+  // What these are for; empty: they are to be built.
+  std::vector<unsigned char> IsFreeInLevels;
+  // Iterations for each digit, when they were new.
+  double CostOfLevels = 0.0;
   ConjugateGradients Gradients;
   std::vector<glm::dvec3> RightHandSide;
   std::vector<glm::dvec3> Direction;
   State Trial;
-  std::vector<glm::dvec3> Displacements;
+  // Where the last call has left the body. Its forces need not be found again, unless something has
+  // been changed since.
+  State Last;
+  bool HasForces = false;
 };
 
 } // namespace deformvolume

@@ -29,7 +29,7 @@ void BlockJacobi::Build(
 }
 
 void BlockJacobi::Apply(
-  Watch& watch, const std::vector<glm::dvec3>& vector, std::vector<glm::dvec3>& result)
+  Watch& watch, const std::vector<glm::dvec3>& vector, double, std::vector<glm::dvec3>& result)
 {
   const std::size_t rows = vector.size();
   constexpr std::size_t size = BlockMatrix::RowsOfPart;

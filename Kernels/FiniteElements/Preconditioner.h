@@ -19,8 +19,9 @@ class Preconditioner
 {
 public:
   virtual ~Preconditioner() = default;
-  virtual void Apply(
-    Watch& watch, const std::vector<glm::dvec3>& vector, std::vector<glm::dvec3>& result) = 0;
+  /// size: about how large the vector is.
+  virtual void Apply(Watch& watch, const std::vector<glm::dvec3>& vector, double size,
+    std::vector<glm::dvec3>& result) = 0;
 };
 
 /// The inverses of the blocks on the diagonal.
@@ -28,8 +29,8 @@ class BlockJacobi : public Preconditioner
 {
 public:
   void Build(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree);
-  void Apply(
-    Watch& watch, const std::vector<glm::dvec3>& vector, std::vector<glm::dvec3>& result) override;
+  void Apply(Watch& watch, const std::vector<glm::dvec3>& vector, double size,
+    std::vector<glm::dvec3>& result) override;
 
 private:
   std::vector<glm::dmat3> Inverses;

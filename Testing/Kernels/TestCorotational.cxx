@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Corotational finite elements: misuse, then what has a closed form.
-#include "CorotationalModel.h"
-#include "LatticeBody.h"
-
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/mat4x4.hpp>
+// Corotational finite elements: misuse, and what stays of a call.
+#include "CorotationalCase.h"
+#include "ParallelFor.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <random>
-#include <string>
-#include <vector>
 
 using namespace deformvolume;
 
@@ -26,120 +17,335 @@ namespace
 
 using Place = LatticeBody::Place;
 
-ElasticMaterial MakeMaterial(double youngModulus, double poissonRatio)
+constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
+
+// A block that is held at one end, of so many nodes.
+LatticeBody MakeBlock(const Place& nodes, double poissonRatio = 0.3)
 {
-  ElasticMaterial material;
-  material.YoungModulus = youngModulus;
-  material.PoissonRatio = poissonRatio;
-  return material;
+  LatticeBody lattice(nodes, 0.01, MakeMaterial(1e4, poissonRatio));
+  lattice.Fix([](const Place& place) { return place[2] == 0; });
+  return lattice;
 }
 
-double LargestOf(const glm::dvec3& vector)
+// Handles at the other end.
+std::vector<HeldNode> PullEnd(const LatticeBody& lattice, const glm::dvec3& displacement)
 {
-  const glm::dvec3 sizes = glm::abs(vector);
-  return std::max({ sizes.x, sizes.y, sizes.z });
+  std::vector<HeldNode> held;
+  lattice.ForNodes(
+    [&](const Place& place, std::int32_t node)
+    {
+      if (place[2] == lattice.Nodes[2] - 1 && place[0] < 3 && place[1] < 3)
+      {
+        held.push_back({ node, displacement });
+      }
+    });
+  return held;
 }
 
-double LargestOf(const std::vector<glm::dvec3>& vectors)
+// Two blocks of 3 x 3 x 3 nodes that touch nowhere, of which the first is held.
+LatticeBody MakeTwoPieces()
 {
-  double largest = 0.0;
-  for (const glm::dvec3& vector : vectors)
+  LatticeBody lattice = MakeBlock({ 3, 3, 3 });
+  ElasticBody& body = lattice.Body;
+  const std::size_t nodes = body.Points.size();
+  const std::size_t tetrahedra = body.Tetrahedra.size();
+  for (std::size_t node = 0; node < nodes; ++node)
   {
-    largest = std::max(largest, LargestOf(vector));
+    body.Points.push_back(body.Points[node] + glm::dvec3(1.0, 0.0, 0.0));
+    body.Fixed.push_back(0);
   }
-  return largest;
-}
-
-// What a call throws.
-template <typename Call>
-std::string GetError(Call&& call)
-{
-  try
+  for (std::size_t t = 0; t < tetrahedra; ++t)
   {
-    call();
+    Tetrahedron tetrahedron = body.Tetrahedra[t];
+    for (std::int32_t& node : tetrahedron)
+    {
+      node += static_cast<std::int32_t>(nodes);
+    }
+    body.Tetrahedra.push_back(tetrahedron);
   }
-  catch (const Error& error)
-  {
-    return error.what();
-  }
-  return "";
-}
-
-glm::dmat3 MakeRotation(double angle, const glm::dvec3& axis)
-{
-  return glm::dmat3(glm::rotate(glm::dmat4(1.0), angle, glm::normalize(axis)));
-}
-
-std::vector<glm::dvec3> MapPoints(
-  const ElasticBody& body, const glm::dmat3& matrix, const glm::dvec3& offset)
-{
-  std::vector<glm::dvec3> displacements;
-  for (const glm::dvec3& point : body.Points)
-  {
-    displacements.push_back(matrix * point + offset - point);
-  }
-  return displacements;
-}
-
-CorotationalRequest MakeConverged()
-{
-  CorotationalRequest request;
-  request.Mode = CorotationalMode::Converged;
-  return request;
+  return lattice;
 }
 
 } // namespace
 
-TEST(Corotational, RigidRotation)
+TEST(Corotational, Misuse)
 {
-  // A stiffness of E h^2 = 2800 N.
-  LatticeBody lattice({ 5, 5, 5 }, 0.1, MakeMaterial(2.8e5, 0.3));
   CorotationalModel model;
+  EXPECT_EQ(GetError([&] { model.Solve({}); }), "There is no body. Call SetBody first.");
+  EXPECT_EQ(GetError([&] { model.Reset(); }), "There is no body. Call SetBody first.");
+  EXPECT_EQ(GetError([&] { model.SetBody({}); }), "The rest mesh has no tetrahedra.");
+  const LatticeBody lattice = MakeBlock({ 3, 3, 3 });
+  ElasticBody bad = lattice.Body;
+  bad.Materials[0].PoissonRatio = 0.495;
+  EXPECT_NE(GetError([&] { model.SetBody(bad); }).find("Poisson"), std::string::npos);
+  ElasticBody loose = lattice.Body;
+  loose.Fixed.clear();
+  model.SetBody(loose);
+  EXPECT_NE(GetError([&] { model.Solve({}); }).find("No constraints"), std::string::npos);
+  // Two nodes, and three on a line, do not hold it either.
+  for (const int number : { 1, 2, 3 })
+  {
+    CorotationalRequest request;
+    for (int i = 0; i < number; ++i)
+    {
+      request.Held.push_back({ i, glm::dvec3(0.0) });
+    }
+    EXPECT_NE(GetError([&] { model.Solve(request); }).find("No constraints"), std::string::npos);
+  }
   model.SetBody(lattice.Body);
-  model.SetDisplacements(
-    MapPoints(lattice.Body, MakeRotation(2.0, { 1.0, 2.0, -0.5 }), glm::dvec3(0.7, -0.3, 1.1)));
-  EXPECT_LT(LargestOf(model.GetForces()), 2e-11 * 10);
-  printf("rigid %g\n", LargestOf(model.GetForces()));
+  CorotationalRequest request;
+  request.Held = { { 26, glm::dvec3(NoNumber, 0.0, 0.0) } };
+  EXPECT_EQ(GetError([&] { model.Solve(request); }), "The displacement of a handle is not finite.");
+  request.Held = { { 27, glm::dvec3(0.0) } };
+  EXPECT_NE(GetError([&] { model.Solve(request); }).find("27"), std::string::npos);
+  request.Held = { { 0, glm::dvec3(0.0) } };
+  EXPECT_NE(GetError([&] { model.Solve(request); }).find("fixed"), std::string::npos);
+  request.Held.clear();
+  request.Loads.Gravity.y = NoNumber;
+  EXPECT_EQ(GetError([&] { model.Solve(request); }), "The gravity is not finite.");
+  request.Loads = {};
+  request.Loads.Forces.resize(3);
+  EXPECT_NE(GetError([&] { model.Solve(request); }).find("27 are needed"), std::string::npos);
+  request.Loads = {};
+  request.Limits.LinearTolerance = -1.0;
+  EXPECT_NE(GetError([&] { model.Solve(request); }).find("limit"), std::string::npos);
+  EXPECT_NE(GetError([&] { model.SetMaterials({}); }).find("materials"), std::string::npos);
+  EXPECT_NE(GetError([&] { model.SetDisplacements({}); }).find("27"), std::string::npos);
+  std::vector<glm::dvec3> displacements(27, glm::dvec3(0.0));
+  displacements[5].z = NoNumber;
+  EXPECT_EQ(
+    GetError([&] { model.SetDisplacements(displacements); }), "A displacement is not finite.");
+  EXPECT_EQ(LargestOf(model.GetDisplacements()), 0.0);
 }
 
-TEST(Corotational, Patch)
+TEST(Corotational, AtRest)
 {
-  LatticeBody lattice({ 5, 5, 5 }, 0.25, MakeMaterial(1e4, 0.3));
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> jitter(-0.04, 0.04);
-  const auto isOutside = [](const Place& place)
-  { return std::any_of(place.begin(), place.end(), [](std::int32_t i) { return i % 4 == 0; }); };
-  lattice.ForNodes(
-    [&](const Place& place, std::int32_t node)
-    {
-      if (!isOutside(place))
-      {
-        lattice.Body.Points[static_cast<std::size_t>(node)] +=
-          glm::dvec3(jitter(random), jitter(random), jitter(random));
-      }
-    });
-  const glm::dmat3 stretch(1.2, 0.05, 0.0, 0.1, 0.9, 0.03, -0.04, 0.02, 1.1);
-  const std::vector<glm::dvec3> wanted = MapPoints(
-    lattice.Body, MakeRotation(1.0, { 1.0, -1.0, 0.3 }) * stretch, glm::dvec3(0.2, 0.1, -0.3));
-  CorotationalRequest request = MakeConverged();
-  lattice.ForNodes(
-    [&](const Place& place, std::int32_t node)
-    {
-      if (isOutside(place))
-      {
-        request.Held.push_back({ node, wanted[static_cast<std::size_t>(node)] });
-      }
-    });
+  const LatticeBody lattice = MakeBlock({ 3, 3, 3 });
   CorotationalModel model;
   model.SetBody(lattice.Body);
+  const CorotationalReport report = model.Solve({});
+  EXPECT_TRUE(report.IsConverged);
+  EXPECT_EQ(report.NewtonSteps, 0);
+  EXPECT_EQ(report.NumberOfFrozenPieces, 0);
+  EXPECT_EQ(LargestOf(model.GetDisplacements()), 0.0);
+}
+
+TEST(Corotational, FrozenPiece)
+{
+  const LatticeBody lattice = MakeTwoPieces();
+  CorotationalModel model;
+  model.SetBody(lattice.Body);
+  std::vector<glm::dvec3> displacements(lattice.Body.Points.size(), glm::dvec3(0.0));
+  for (std::size_t node = 27; node < 54; ++node)
+  {
+    displacements[node] = glm::dvec3(0.001 * static_cast<double>(node), 0.0, 0.0);
+  }
+  model.SetDisplacements(displacements);
+  CorotationalRequest request = MakeConverged();
+  request.Loads.Gravity = glm::dvec3(0.0, -9.81, 0.0);
   const CorotationalReport report = model.Solve(request);
   EXPECT_TRUE(report.IsConverged);
-  double error = 0.0;
-  for (std::size_t node = 0; node < wanted.size(); ++node)
+  EXPECT_EQ(report.NumberOfFrozenPieces, 1);
+  EXPECT_LT(model.GetDisplacements()[26].y, 0.0);
+  for (std::size_t node = 27; node < 54; ++node)
   {
-    error = std::max(error, LargestOf(model.GetDisplacements()[node] - wanted[node]));
+    EXPECT_EQ(model.GetDisplacements()[node], displacements[node]);
   }
-  EXPECT_LT(error, 1e-12);
-  printf("patch error %g newton %d cg %d residual %g\n", error, report.NewtonSteps,
-    report.LinearIterations, report.Residual);
+  // Held by three nodes it moves.
+  for (const std::int32_t node : { 27, 28, 30 })
+  {
+    request.Held.push_back({ node, glm::dvec3(0.0) });
+  }
+  EXPECT_EQ(model.Solve(request).NumberOfFrozenPieces, 0);
+  EXPECT_LT(LargestOf(model.GetDisplacements()), 0.01);
+}
+
+TEST(Corotational, Divergence)
+{
+  const LatticeBody lattice = MakeBlock({ 4, 4, 4 });
+  CorotationalModel model;
+  model.SetBody(lattice.Body);
+  CorotationalRequest request;
+  request.Held = PullEnd(lattice, glm::dvec3(0.005, 0.0, 0.0));
+  model.Solve(request);
+  const std::vector<glm::dvec3> before = model.GetDisplacements();
+  request.Held = PullEnd(lattice, glm::dvec3(1e200, 0.0, 0.0));
+  EXPECT_NE(GetError([&] { model.Solve(request); }).find("no numbers"), std::string::npos);
+  EXPECT_EQ(model.GetDisplacements(), before);
+  // It goes on from there.
+  request.Held = PullEnd(lattice, glm::dvec3(0.006, 0.0, 0.0));
+  EXPECT_TRUE(model.Solve(request).IsConverged);
+}
+
+TEST(Corotational, Abort)
+{
+  const LatticeBody lattice = MakeBlock({ 16, 16, 31 });
+  CorotationalModel model;
+  model.SetBody(lattice.Body);
+  CorotationalRequest request = MakeConverged();
+  request.Loads.Gravity = glm::dvec3(0.0, -0.5, 0.0);
+  for (const int allowed : { 0, 1, 3, 10 })
+  {
+    int calls = 0;
+    request.Progress = [&] { return calls++ < allowed; };
+    EXPECT_THROW(model.Solve(request), Aborted);
+    EXPECT_EQ(LargestOf(model.GetDisplacements()), 0.0);
+  }
+  // Asked every few milliseconds; the median, since machines do other things, too.
+  using Clock = std::chrono::steady_clock;
+  std::vector<double> pauses;
+  Clock::time_point last = Clock::now();
+  request.Progress = [&]
+  {
+    const Clock::time_point now = Clock::now();
+    pauses.push_back(std::chrono::duration<double>(now - last).count());
+    last = now;
+    return true;
+  };
+  request.Limits.NewtonSteps = 3;
+  model.Solve(request);
+  std::sort(pauses.begin(), pauses.end());
+  EXPECT_GT(pauses.size(), 10u);
+  EXPECT_LT(pauses[pauses.size() / 2], 0.05);
+  request.Progress = nullptr;
+  const std::vector<glm::dvec3> wanted = model.GetDisplacements();
+  model.Reset();
+  model.Solve(request);
+  EXPECT_EQ(model.GetDisplacements(), wanted);
+}
+
+namespace
+{
+
+// Loops of so many threads, and one that goes backwards.
+template <int Threads>
+void RunOnThreads(
+  std::int64_t first, std::int64_t last, std::int64_t grain, const ParallelBody& body)
+{
+  RunOnOwnThreads(first, last, grain, body, Threads);
+}
+
+void RunBackwards(
+  std::int64_t first, std::int64_t last, std::int64_t grain, const ParallelBody& body)
+{
+  const std::int64_t step = std::max<std::int64_t>(1, grain);
+  for (std::int64_t end = last; end > first; end -= step)
+  {
+    body(std::max(first, end - step), end);
+  }
+}
+
+std::vector<glm::dvec3> RunFrames(const LatticeBody& lattice, ParallelLoop loop)
+{
+  SetParallelLoop(loop);
+  CorotationalModel model;
+  model.SetBody(lattice.Body);
+  CorotationalRequest request;
+  for (int frame = 1; frame <= 3; ++frame)
+  {
+    request.Held = PullEnd(lattice, glm::dvec3(0.002 * frame, 0.001 * frame, 0.0));
+    request.Loads.Gravity = glm::dvec3(0.0, -frame, 0.0);
+    model.Solve(request);
+  }
+  SetParallelLoop(nullptr);
+  return model.GetDisplacements();
+}
+
+} // namespace
+
+TEST(Corotational, Threads)
+{
+  // The second one is large enough for several levels.
+  for (const Place& nodes : { Place{ 5, 5, 5 }, Place{ 12, 13, 14 } })
+  {
+    const LatticeBody lattice = MakeBlock(nodes, 0.45);
+    const std::vector<glm::dvec3> wanted = RunFrames(lattice, RunOnThreads<1>);
+    EXPECT_EQ(RunFrames(lattice, RunOnThreads<2>), wanted);
+    EXPECT_EQ(RunFrames(lattice, RunOnThreads<3>), wanted);
+    EXPECT_EQ(RunFrames(lattice, RunBackwards), wanted);
+    EXPECT_EQ(RunFrames(lattice, nullptr), wanted);
+  }
+}
+
+TEST(Corotational, WarmFramesReachWhatAColdSolveFinds)
+{
+  for (const Place& nodes : { Place{ 5, 5, 9 }, Place{ 10, 10, 14 } })
+  {
+    const LatticeBody lattice = MakeBlock(nodes);
+    const double length = 0.01 * (nodes[2] - 1);
+    CorotationalModel warm;
+    warm.SetBody(lattice.Body);
+    CorotationalRequest request;
+    for (int frame = 1; frame <= 20; ++frame)
+    {
+      request.Held = PullEnd(lattice, glm::dvec3(0.01 * length * frame, 0.0, 0.0));
+      const CorotationalReport report = warm.Solve(request);
+      EXPECT_LT(report.RelativeResidual, 1e-2);
+      EXPECT_LE(report.NewtonSteps, 2);
+    }
+    request.Mode = CorotationalMode::Converged;
+    CorotationalModel cold;
+    cold.SetBody(lattice.Body);
+    EXPECT_TRUE(cold.Solve(request).IsConverged);
+    // The frames leave a thousandth of the force.
+    EXPECT_LT(LargestDifference(warm.GetDisplacements(), cold.GetDisplacements()), 2e-3 * length);
+    EXPECT_TRUE(warm.Solve(request).IsConverged);
+    EXPECT_LT(LargestDifference(warm.GetDisplacements(), cold.GetDisplacements()), 1e-5 * length);
+  }
+}
+
+TEST(Corotational, Materials)
+{
+  LatticeBody lattice = MakeBlock({ 5, 5, 9 });
+  CorotationalRequest request = MakeConverged();
+  request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
+  CorotationalModel model;
+  model.SetBody(lattice.Body);
+  model.Solve(request);
+  // A stiff half, and then one body of it from the beginning.
+  std::vector<ElasticMaterial> materials(lattice.Body.Tetrahedra.size(), MakeMaterial(1e4, 0.4));
+  for (std::size_t t = 0; t < materials.size() / 2; ++t)
+  {
+    materials[t] = MakeMaterial(1e6, 0.2);
+  }
+  model.SetMaterials(materials);
+  EXPECT_TRUE(model.Solve(request).IsConverged);
+  lattice.Body.Materials = materials;
+  CorotationalModel other;
+  other.SetBody(lattice.Body);
+  EXPECT_TRUE(other.Solve(request).IsConverged);
+  EXPECT_LT(LargestDifference(model.GetDisplacements(), other.GetDisplacements()), 1e-6);
+}
+
+// Nodes anywhere within 0.6 of the length from where they were: nearly half of the tetrahedra are
+// inside out.
+TEST(Corotational, Scramble)
+{
+  const LatticeBody lattice = MakeBlock({ 5, 5, 5 });
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> noise(-0.024, 0.024);
+  std::vector<glm::dvec3> displacements(lattice.Body.Points.size(), glm::dvec3(0.0));
+  for (std::size_t node = 0; node < displacements.size(); ++node)
+  {
+    if (lattice.Body.Fixed[node] == 0)
+    {
+      displacements[node] = glm::dvec3(noise(random), noise(random), noise(random));
+    }
+  }
+  CorotationalModel model;
+  model.SetBody(lattice.Body);
+  model.SetDisplacements(displacements);
+  std::int64_t inverted = 0;
+  for (const ElementResults& result : model.GetElementResults())
+  {
+    inverted += result.Determinant < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(inverted, 100);
+  const CorotationalReport report = model.Solve(MakeConverged());
+  std::printf("%lld inverted, %d steps, error %g\n", static_cast<long long>(inverted),
+    report.NewtonSteps, LargestOf(model.GetDisplacements()) / 0.04);
+  EXPECT_TRUE(report.IsConverged);
+  EXPECT_LE(report.NewtonSteps, 20);
+  EXPECT_EQ(report.NumberOfInvertedTetrahedra, 0);
+  EXPECT_LT(LargestOf(model.GetDisplacements()), 1e-8 * 0.04);
 }

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Aggregation.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace deformvolume
+{
+
+Aggregates MakeAggregates(
+  const std::vector<std::int32_t>& starts, const std::vector<std::int32_t>& columns)
+{
+  const std::size_t rows = starts.size() - 1;
+  Aggregates result;
+  std::vector<std::int32_t>& groups = result.GroupOfRow;
+  groups.assign(rows, -1);
+  const auto forNeighbors = [&](std::size_t row, auto&& visit)
+  {
+    for (auto i = static_cast<std::size_t>(starts[row]);
+         i < static_cast<std::size_t>(starts[row + 1]); ++i)
+    {
+      visit(static_cast<std::size_t>(columns[i]));
+    }
+  };
+  // Those all of whose neighbors are free make a group with them.
+  for (std::size_t row = 0; row < rows; ++row)
+  {
+    bool isAlone = true;
+    forNeighbors(row, [&](std::size_t other) { isAlone = isAlone && groups[other] < 0; });
+    if (isAlone)
+    {
+      const std::int32_t group = result.NumberOfGroups++;
+      groups[row] = group;
+      forNeighbors(row, [&](std::size_t other) { groups[other] = group; });
+    }
+  }
+  // The others join the smallest group beside them.
+  std::vector<std::int32_t> sizes(static_cast<std::size_t>(result.NumberOfGroups), 0);
+  for (const std::int32_t group : groups)
+  {
+    if (group >= 0)
+    {
+      ++sizes[static_cast<std::size_t>(group)];
+    }
+  }
+  const std::vector<std::int32_t> first = groups;
+  for (std::size_t row = 0; row < rows; ++row)
+  {
+    if (first[row] >= 0)
+    {
+      continue;
+    }
+    std::int32_t best = -1;
+    forNeighbors(row,
+      [&](std::size_t other)
+      {
+        const std::int32_t group = first[other];
+        if (group >= 0 &&
+          (best < 0 ||
+            sizes[static_cast<std::size_t>(group)] < sizes[static_cast<std::size_t>(best)]))
+        {
+          best = group;
+        }
+      });
+    // A row without neighbors in the first groups cannot be: it would be in one.
+    groups[row] = best;
+    ++sizes[static_cast<std::size_t>(best)];
+  }
+  return result;
+}
+
+template <int Size>
+std::vector<Eigen::Matrix<double, Size, Size>> InvertDiagonal(
+  const SparseBlocks<Size, Size>& matrix)
+{
+  std::vector<Eigen::Matrix<double, Size, Size>> inverses(
+    static_cast<std::size_t>(matrix.GetNumberOfRows()));
+  for (std::int32_t row = 0; row < matrix.GetNumberOfRows(); ++row)
+  {
+    for (std::size_t block = matrix.GetStart(row); block < matrix.GetEnd(row); ++block)
+    {
+      if (matrix.ColumnOfBlock[block] == row)
+      {
+        inverses[static_cast<std::size_t>(row)] =
+          matrix.Blocks[block].llt().solve(Eigen::Matrix<double, Size, Size>::Identity());
+      }
+    }
+  }
+  return inverses;
+}
+
+template <int Size>
+double FindLargestEigenvalue(Watch& watch, const SparseBlocks<Size, Size>& matrix,
+  const std::vector<Eigen::Matrix<double, Size, Size>>& inverses)
+{
+  constexpr int iterations = 12;
+  // What the method may be short of after so many of them.
+  constexpr double margin = 1.1;
+  using Vector = Eigen::Matrix<double, Size, 1>;
+  const std::int32_t rows = matrix.GetNumberOfRows();
+  std::vector<Vector> vector(static_cast<std::size_t>(rows));
+  std::vector<Vector> product(vector.size());
+  // As rough as can be, and without a pattern.
+  unsigned int random = 1;
+  for (Vector& value : vector)
+  {
+    for (int i = 0; i < Size; ++i)
+    {
+      random = random * 1664525u + 1013904223u;
+      value[i] = static_cast<double>(random >> 8) / (1 << 24) - 0.5;
+    }
+  }
+  double length = 1.0;
+  for (int iteration = 0; iteration < iterations; ++iteration)
+  {
+    ForParts(watch, (vector.size() + 511) / 512, 64,
+      [&](std::size_t part)
+      {
+        for (std::size_t row = part * 512; row < std::min(vector.size(), (part + 1) * 512); ++row)
+        {
+          Vector sum = Vector::Zero();
+          const auto r = static_cast<std::int32_t>(row);
+          for (std::size_t block = matrix.GetStart(r); block < matrix.GetEnd(r); ++block)
+          {
+            sum +=
+              matrix.Blocks[block] * vector[static_cast<std::size_t>(matrix.ColumnOfBlock[block])];
+          }
+          product[row] = inverses[row] * sum;
+        }
+      });
+    double squared = 0.0;
+    for (const Vector& value : product)
+    {
+      squared += value.squaredNorm();
+    }
+    double before = 0.0;
+    for (const Vector& value : vector)
+    {
+      before += value.squaredNorm();
+    }
+    length = std::sqrt(squared / before);
+    for (std::size_t row = 0; row < vector.size(); ++row)
+    {
+      vector[row] = product[row] / std::sqrt(squared);
+    }
+  }
+  return margin * length;
+}
+
+namespace
+{
+
+// What a group moves as its six unknowns say: the near null space, made orthogonal in each group.
+// Motions that a group of few rows does not have stay 0. What they were made of becomes the near
+// null space of the groups.
+template <int Size>
+void Orthogonalize(const Aggregates& aggregates, const NearNullSpace<Size>& modes,
+  SparseBlocks<Size, RigidModes>& prolongation, NearNullSpace<RigidModes>& coarse)
+{
+  constexpr double least = 1e-7;
+  prolongation.NumberOfColumns = aggregates.NumberOfGroups;
+  prolongation.ColumnOfBlock = aggregates.GroupOfRow;
+  prolongation.Blocks = modes;
+  prolongation.Starts.resize(modes.size() + 1);
+  for (std::size_t row = 0; row <= modes.size(); ++row)
+  {
+    prolongation.Starts[row] = static_cast<std::int32_t>(row);
+  }
+  std::vector<std::vector<std::int32_t>> rowsOfGroup(
+    static_cast<std::size_t>(aggregates.NumberOfGroups));
+  for (std::size_t row = 0; row < modes.size(); ++row)
+  {
+    rowsOfGroup[static_cast<std::size_t>(aggregates.GroupOfRow[row])].push_back(
+      static_cast<std::int32_t>(row));
+  }
+  coarse.assign(rowsOfGroup.size(), Eigen::Matrix<double, RigidModes, RigidModes>::Zero());
+  for (std::size_t group = 0; group < rowsOfGroup.size(); ++group)
+  {
+    const auto dot = [&](int i, int j)
+    {
+      double sum = 0.0;
+      for (const std::int32_t row : rowsOfGroup[group])
+      {
+        const auto& block = prolongation.Blocks[static_cast<std::size_t>(row)];
+        sum += block.col(i).dot(block.col(j));
+      }
+      return sum;
+    };
+    for (int j = 0; j < RigidModes; ++j)
+    {
+      const double before = std::sqrt(dot(j, j));
+      // Twice is enough against rounding.
+      for (int i = 0; i < 2 * j; ++i)
+      {
+        const double part = dot(i % j, j);
+        coarse[group](i % j, j) += part;
+        for (const std::int32_t row : rowsOfGroup[group])
+        {
+          auto& block = prolongation.Blocks[static_cast<std::size_t>(row)];
+          block.col(j) -= part * block.col(i % j);
+        }
+      }
+      const double length = std::sqrt(dot(j, j));
+      const bool isThere = length > least * before;
+      coarse[group](j, j) = isThere ? length : 0.0;
+      for (const std::int32_t row : rowsOfGroup[group])
+      {
+        auto column = prolongation.Blocks[static_cast<std::size_t>(row)].col(j);
+        column *= isThere ? 1.0 / length : 0.0;
+      }
+    }
+  }
+}
+
+} // namespace
+
+template <int Size>
+Coarsening<Size> Coarsen(Watch& watch, const SparseBlocks<Size, Size>& matrix,
+  const std::vector<Eigen::Matrix<double, Size, Size>>& inverses, double largestEigenvalue,
+  const NearNullSpace<Size>& modes)
+{
+  Coarsening<Size> result;
+  const Aggregates aggregates = MakeAggregates(matrix.Starts, matrix.ColumnOfBlock);
+  SparseBlocks<Size, RigidModes> tentative;
+  Orthogonalize(aggregates, modes, tentative, result.Modes);
+  const double damping = 4.0 / (3.0 * largestEigenvalue);
+  result.Prolongation = Multiply(watch, matrix, tentative);
+  for (std::int32_t row = 0; row < matrix.GetNumberOfRows(); ++row)
+  {
+    const auto r = static_cast<std::size_t>(row);
+    for (std::size_t block = result.Prolongation.GetStart(row);
+         block < result.Prolongation.GetEnd(row); ++block)
+    {
+      auto& value = result.Prolongation.Blocks[block];
+      value = -damping * inverses[r] * value;
+      if (result.Prolongation.ColumnOfBlock[block] == aggregates.GroupOfRow[r])
+      {
+        value += tentative.Blocks[r];
+      }
+    }
+  }
+  result.Matrix =
+    Multiply(watch, Transpose(result.Prolongation), Multiply(watch, matrix, result.Prolongation));
+  // Unknowns that move nothing would make it singular.
+  for (std::int32_t row = 0; row < result.Matrix.GetNumberOfRows(); ++row)
+  {
+    for (std::size_t block = result.Matrix.GetStart(row); block < result.Matrix.GetEnd(row);
+         ++block)
+    {
+      if (result.Matrix.ColumnOfBlock[block] == row)
+      {
+        for (int i = 0; i < RigidModes; ++i)
+        {
+          if (result.Modes[static_cast<std::size_t>(row)](i, i) == 0.0)
+          {
+            result.Matrix.Blocks[block](i, i) = 1.0;
+          }
+        }
+      }
+    }
+  }
+  return result;
+}
+
+template std::vector<Eigen::Matrix<double, 3, 3>> InvertDiagonal<3>(const SparseBlocks<3, 3>&);
+template std::vector<Eigen::Matrix<double, 6, 6>> InvertDiagonal<6>(const SparseBlocks<6, 6>&);
+template double FindLargestEigenvalue<3>(
+  Watch&, const SparseBlocks<3, 3>&, const std::vector<Eigen::Matrix<double, 3, 3>>&);
+template double FindLargestEigenvalue<6>(
+  Watch&, const SparseBlocks<6, 6>&, const std::vector<Eigen::Matrix<double, 6, 6>>&);
+template Coarsening<3> Coarsen<3>(Watch&, const SparseBlocks<3, 3>&,
+  const std::vector<Eigen::Matrix<double, 3, 3>>&, double, const NearNullSpace<3>&);
+template Coarsening<6> Coarsen<6>(Watch&, const SparseBlocks<6, 6>&,
+  const std::vector<Eigen::Matrix<double, 6, 6>>&, double, const NearNullSpace<6>&);
+
+} // namespace deformvolume

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FloatBlocks.h"
+
+#include "Lanes.h"
+
+#include <cstring>
+
+namespace deformvolume
+{
+namespace
+{
+
+// GCC takes no size of a vector that depends on the argument of a template.
+template <std::size_t Size>
+struct FloatLanes;
+template <>
+struct FloatLanes<4>
+{
+  using Type = float __attribute__((vector_size(16), aligned(16)));
+};
+template <>
+struct FloatLanes<8>
+{
+  using Type = float __attribute__((vector_size(32), aligned(32)));
+};
+
+struct ProductArguments
+{
+  std::size_t Begin;
+  std::size_t End;
+  const std::int32_t* Starts;
+  const std::int32_t* Columns;
+  const float* Values;
+  const float* Vector;
+  const float* Right;
+  float* Result;
+};
+
+template <int Rows, int Columns, bool IsSubtracted>
+DEFORMVOLUME_ALWAYS_INLINE void MultiplyRows(const ProductArguments& arguments)
+{
+  constexpr std::size_t padded = PaddedSize<Rows>;
+  constexpr std::size_t paddedColumns = PaddedSize<Columns>;
+  using Lane = typename FloatLanes<padded>::Type;
+  for (std::size_t row = arguments.Begin; row < arguments.End; ++row)
+  {
+    Lane sums[2] = { Lane{}, Lane{} };
+    for (auto block = static_cast<std::size_t>(arguments.Starts[row]);
+         block < static_cast<std::size_t>(arguments.Starts[row + 1]); ++block)
+    {
+      const float* const vector =
+        arguments.Vector + paddedColumns * static_cast<std::size_t>(arguments.Columns[block]);
+      const float* const values = arguments.Values + block * (Rows * Columns);
+      for (int j = 0; j < Columns; ++j)
+      {
+        // Lanes behind the last row are not used.
+        Lane column;
+        std::memcpy(&column, values + j * Rows, sizeof(column));
+        sums[j % 2] = sums[j % 2] + column * vector[j];
+      }
+    }
+    Lane sum = sums[0] + sums[1];
+    float* const result = arguments.Result + row * padded;
+    Lane before;
+    std::memcpy(
+      &before, (IsSubtracted ? arguments.Right : arguments.Result) + row * padded, sizeof(before));
+    sum = IsSubtracted ? before - sum : before + sum;
+    std::memcpy(result, &sum, sizeof(sum));
+  }
+}
+
+#if DEFORMVOLUME_HAS_AVX2_CODE
+template <int Rows, int Columns, bool IsSubtracted>
+DEFORMVOLUME_FOR_AVX2 void MultiplyRowsWide(const ProductArguments& arguments)
+{
+  MultiplyRows<Rows, Columns, IsSubtracted>(arguments);
+}
+#endif
+
+template <int Rows, int Columns, bool IsSubtracted>
+void Run(const ProductArguments& arguments)
+{
+#if DEFORMVOLUME_HAS_AVX2_CODE
+  if (HasWideLanes())
+  {
+    MultiplyRowsWide<Rows, Columns, IsSubtracted>(arguments);
+    return;
+  }
+#endif
+  MultiplyRows<Rows, Columns, IsSubtracted>(arguments);
+}
+
+} // namespace
+
+template <int Rows, int Columns>
+FloatBlocks<Rows, Columns>::FloatBlocks(const SparseBlocks<Rows, Columns>& matrix)
+  : Starts(matrix.Starts)
+  , ColumnOfBlock(matrix.ColumnOfBlock)
+{
+  constexpr std::size_t size = Rows * Columns;
+  // The last column is read as if it had as many rows as there are lanes.
+  this->Values.resize(matrix.Blocks.size() * size + PaddedSize<Rows>, 0.0f);
+  for (std::size_t block = 0; block < matrix.Blocks.size(); ++block)
+  {
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      this->Values[block * size + i] = static_cast<float>(matrix.Blocks[block].data()[i]);
+    }
+  }
+}
+
+template <int Rows, int Columns>
+void FloatBlocks<Rows, Columns>::Subtract(
+  std::size_t begin, std::size_t end, const float* right, const float* vector, float* result) const
+{
+  Run<Rows, Columns, true>({ begin, end, this->Starts.data(), this->ColumnOfBlock.data(),
+    this->Values.data(), vector, right, result });
+}
+
+template <int Rows, int Columns>
+void FloatBlocks<Rows, Columns>::Add(
+  std::size_t begin, std::size_t end, const float* vector, float* result) const
+{
+  Run<Rows, Columns, false>({ begin, end, this->Starts.data(), this->ColumnOfBlock.data(),
+    this->Values.data(), vector, nullptr, result });
+}
+
+template class FloatBlocks<3, 3>;
+template class FloatBlocks<3, 6>;
+template class FloatBlocks<6, 3>;
+template class FloatBlocks<6, 6>;
+
+} // namespace deformvolume

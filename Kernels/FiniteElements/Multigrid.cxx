@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Multigrid.h"
+
+#include "Aggregation.h"
+#include "NodeRotations.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace deformvolume
+{
+namespace
+{
+
+constexpr std::size_t RowsOfPart = 512;
+constexpr std::size_t PartsAtOnce = 512;
+// Groups of the coarsest level, which is solved exactly.
+constexpr std::int32_t CoarsestGroups = 100;
+
+template <typename Body>
+void ForRows(Watch& watch, std::size_t rows, Body&& body)
+{
+  ForParts(watch, (rows + RowsOfPart - 1) / RowsOfPart, PartsAtOnce,
+    [&](std::size_t part) { body(part * RowsOfPart, std::min(rows, (part + 1) * RowsOfPart)); });
+}
+
+// The rows and columns of free nodes.
+SparseBlocks<3, 3> ExtractFree(const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
+  const std::vector<std::int32_t>& freeNodes)
+{
+  const BlockPattern& pattern = matrix.GetPattern();
+  std::vector<std::int32_t> numbers(isFree.size(), -1);
+  for (std::size_t i = 0; i < freeNodes.size(); ++i)
+  {
+    numbers[static_cast<std::size_t>(freeNodes[i])] = static_cast<std::int32_t>(i);
+  }
+  SparseBlocks<3, 3> result;
+  result.NumberOfColumns = static_cast<std::int32_t>(freeNodes.size());
+  result.Starts.reserve(freeNodes.size() + 1);
+  result.ColumnOfBlock.reserve(pattern.Columns.size());
+  result.Blocks.reserve(pattern.Columns.size());
+  for (const std::int32_t node : freeNodes)
+  {
+    const auto row = static_cast<std::size_t>(node);
+    for (std::int32_t block = pattern.Rows[row]; block < pattern.Rows[row + 1]; ++block)
+    {
+      const std::int32_t column =
+        numbers[static_cast<std::size_t>(pattern.Columns[static_cast<std::size_t>(block)])];
+      if (column >= 0)
+      {
+        result.ColumnOfBlock.push_back(column);
+        result.Blocks.emplace_back(Eigen::Map<const Eigen::Matrix3d>(matrix.GetBlock(block)));
+      }
+    }
+    result.Starts.push_back(static_cast<std::int32_t>(result.Blocks.size()));
+  }
+  return result;
+}
+
+NearNullSpace<3> MakeRigidModes(
+  const std::vector<glm::dvec3>& positions, const std::vector<std::int32_t>& nodes)
+{
+  glm::dvec3 center(0.0);
+  for (const std::int32_t node : nodes)
+  {
+    center += positions[static_cast<std::size_t>(node)];
+  }
+  center /= static_cast<double>(nodes.size());
+  NearNullSpace<3> modes(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+  {
+    const glm::dvec3 arm = positions[static_cast<std::size_t>(nodes[i])] - center;
+    modes[i] << 1, 0, 0, 0, arm.z, -arm.y, //
+      0, 1, 0, -arm.z, 0, arm.x,           //
+      0, 0, 1, arm.y, -arm.x, 0;
+  }
+  return modes;
+}
+
+template <int Size>
+SparseBlocks<Size, Size> MakeSmoother(
+  const std::vector<Eigen::Matrix<double, Size, Size>>& inverses, double damping)
+{
+  SparseBlocks<Size, Size> result;
+  result.NumberOfColumns = static_cast<std::int32_t>(inverses.size());
+  for (const auto& inverse : inverses)
+  {
+    result.ColumnOfBlock.push_back(static_cast<std::int32_t>(result.Blocks.size()));
+    result.Blocks.emplace_back(damping * inverse);
+    result.Starts.push_back(static_cast<std::int32_t>(result.Blocks.size()));
+  }
+  return result;
+}
+
+// Makes a level of a matrix, and returns what is coarser.
+template <int Size>
+Coarsening<Size> MakeLevel(Watch& watch, const SparseBlocks<Size, Size>& matrix,
+  const NearNullSpace<Size>& modes, MultigridLevel<Size>& level)
+{
+  const auto inverses = InvertDiagonal(matrix);
+  const double largest = FindLargestEigenvalue(watch, matrix, inverses);
+  Coarsening<Size> coarsening = Coarsen(watch, matrix, inverses, largest, modes);
+  level.Matrix = FloatBlocks<Size, Size>(matrix);
+  level.Smoother = FloatBlocks<Size, Size>(MakeSmoother(inverses, 4.0 / (3.0 * largest)));
+  level.Prolongation = FloatBlocks<Size, 6>(coarsening.Prolongation);
+  level.Restriction = FloatBlocks<6, Size>(Transpose(coarsening.Prolongation));
+  const std::size_t length = inverses.size() * PaddedSize<Size>;
+  level.Right.assign(length, 0.0f);
+  level.Solution.assign(length, 0.0f);
+  level.Work.assign(length, 0.0f);
+  return coarsening;
+}
+
+// A step of the smoother from 0, and what is left of the right-hand side.
+template <int Size>
+void SmoothFirst(Watch& watch, MultigridLevel<Size>& level)
+{
+  const std::size_t rows = level.Matrix.GetNumberOfRows();
+  ForRows(watch, rows,
+    [&](std::size_t begin, std::size_t end)
+    {
+      std::fill(level.Solution.begin() + static_cast<std::ptrdiff_t>(begin * PaddedSize<Size>),
+        level.Solution.begin() + static_cast<std::ptrdiff_t>(end * PaddedSize<Size>), 0.0f);
+      level.Smoother.Add(begin, end, level.Right.data(), level.Solution.data());
+    });
+  ForRows(watch, rows,
+    [&](std::size_t begin, std::size_t end)
+    {
+      level.Matrix.Subtract(
+        begin, end, level.Right.data(), level.Solution.data(), level.Work.data());
+    });
+}
+
+// What the coarser level has found, and another step of the smoother.
+template <int Size>
+void SmoothLast(Watch& watch, MultigridLevel<Size>& level, const std::vector<float>& coarse)
+{
+  const std::size_t rows = level.Matrix.GetNumberOfRows();
+  ForRows(watch, rows,
+    [&](std::size_t begin, std::size_t end)
+    { level.Prolongation.Add(begin, end, coarse.data(), level.Solution.data()); });
+  ForRows(watch, rows,
+    [&](std::size_t begin, std::size_t end)
+    {
+      level.Matrix.Subtract(
+        begin, end, level.Right.data(), level.Solution.data(), level.Work.data());
+    });
+  ForRows(watch, rows,
+    [&](std::size_t begin, std::size_t end)
+    { level.Smoother.Add(begin, end, level.Work.data(), level.Solution.data()); });
+}
+
+// The right-hand side of the coarser level.
+template <int Size>
+void Restrict(Watch& watch, const MultigridLevel<Size>& level, std::vector<float>& coarse)
+{
+  ForRows(watch, level.Restriction.GetNumberOfRows(),
+    [&](std::size_t begin, std::size_t end)
+    {
+      std::fill(coarse.begin() + static_cast<std::ptrdiff_t>(begin * PaddedSize<6>),
+        coarse.begin() + static_cast<std::ptrdiff_t>(end * PaddedSize<6>), 0.0f);
+      level.Restriction.Add(begin, end, level.Work.data(), coarse.data());
+    });
+}
+
+// The inverse of a matrix, by rows.
+std::vector<float> Invert(const SparseBlocks<6, 6>& matrix)
+{
+  const Eigen::Index size = 6 * static_cast<Eigen::Index>(matrix.GetNumberOfRows());
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
+  for (std::int32_t row = 0; row < matrix.GetNumberOfRows(); ++row)
+  {
+    for (std::size_t block = matrix.GetStart(row); block < matrix.GetEnd(row); ++block)
+    {
+      dense.block<6, 6>(6 * row, 6 * matrix.ColumnOfBlock[block]) = matrix.Blocks[block];
+    }
+  }
+  const Eigen::MatrixXd inverse = dense.llt().solve(Eigen::MatrixXd::Identity(size, size));
+  std::vector<float> result(static_cast<std::size_t>(size * size));
+  for (Eigen::Index i = 0; i < size * size; ++i)
+  {
+    result[static_cast<std::size_t>(i)] = static_cast<float>(inverse.data()[i]);
+  }
+  return result;
+}
+
+} // namespace
+
+void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
+  const std::vector<unsigned char>& isFree, const std::vector<glm::dvec3>& positions)
+{
+  this->FreeNodes.clear();
+  this->Coarse.clear();
+  this->Positions = positions;
+  for (std::size_t node = 0; node < isFree.size(); ++node)
+  {
+    if (isFree[node] != 0)
+    {
+      this->FreeNodes.push_back(static_cast<std::int32_t>(node));
+    }
+  }
+  Coarsening<3> first = MakeLevel(watch, ExtractFree(matrix, isFree, this->FreeNodes),
+    MakeRigidModes(positions, this->FreeNodes), this->Fine);
+  SparseBlocks<6, 6> coarse = std::move(first.Matrix);
+  NearNullSpace<6> modes = std::move(first.Modes);
+  while (coarse.GetNumberOfRows() > CoarsestGroups)
+  {
+    this->Coarse.emplace_back();
+    Coarsening<6> next = MakeLevel(watch, coarse, modes, this->Coarse.back());
+    coarse = std::move(next.Matrix);
+    modes = std::move(next.Modes);
+  }
+  this->Inverse = Invert(coarse);
+  // The coarsest level has vectors only.
+  this->Coarse.emplace_back();
+  const std::size_t length = static_cast<std::size_t>(coarse.GetNumberOfRows()) * PaddedSize<6>;
+  this->Coarse.back().Right.assign(length, 0.0f);
+  this->Coarse.back().Solution.assign(length, 0.0f);
+}
+
+void Multigrid::SetPositions(
+  Watch& watch, const BlockPattern& pattern, const std::vector<glm::dvec3>& positions)
+{
+  FindNodeRotations(watch, pattern, this->FreeNodes, this->Positions, positions, this->Rotations);
+}
+
+void Multigrid::SolveCoarsest(
+  Watch& watch, const std::vector<float>& right, std::vector<float>& solution)
+{
+  const std::size_t groups = right.size() / PaddedSize<6>;
+  const std::size_t size = 6 * groups;
+  std::vector<float> packed(size);
+  for (std::size_t i = 0; i < size; ++i)
+  {
+    packed[i] = right[i / 6 * PaddedSize<6> + i % 6];
+  }
+  ForParts(watch, (groups + 31) / 32, PartsAtOnce,
+    [&](std::size_t part)
+    {
+      for (std::size_t i = part * 192; i < std::min(size, (part + 1) * 192); ++i)
+      {
+        const float* const row = &this->Inverse[i * size];
+        constexpr std::size_t lanes = 8;
+        float sums[lanes] = {};
+        std::size_t j = 0;
+        for (; j + lanes <= size; j += lanes)
+        {
+          for (std::size_t lane = 0; lane < lanes; ++lane)
+          {
+            sums[lane] += row[j + lane] * packed[j + lane];
+          }
+        }
+        float sum = 0.0f;
+        for (; j < size; ++j)
+        {
+          sum += row[j] * packed[j];
+        }
+        for (const float value : sums)
+        {
+          sum += value;
+        }
+        solution[i / 6 * PaddedSize<6> + i % 6] = sum;
+      }
+    });
+}
+
+void Multigrid::SolveCoarse(Watch& watch, std::size_t level)
+{
+  MultigridLevel<6>& coarse = this->Coarse[level];
+  if (level + 1 == this->Coarse.size())
+  {
+    this->SolveCoarsest(watch, coarse.Right, coarse.Solution);
+    return;
+  }
+  SmoothFirst(watch, coarse);
+  Restrict(watch, coarse, this->Coarse[level + 1].Right);
+  this->SolveCoarse(watch, level + 1);
+  SmoothLast(watch, coarse, this->Coarse[level + 1].Solution);
+}
+
+void Multigrid::Apply(
+  Watch& watch, const std::vector<glm::dvec3>& vector, double size, std::vector<glm::dvec3>& result)
+{
+  // Single precision knows no numbers that are as small as residuals become.
+  const double scale = 1.0 / size;
+  std::fill(result.begin(), result.end(), glm::dvec3(0.0));
+  const std::size_t rows = this->FreeNodes.size();
+  ForRows(watch, rows,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t row = begin; row < end; ++row)
+      {
+        // A vector times a matrix is the transposed matrix times the vector.
+        const glm::vec3 value =
+          glm::vec3(scale * vector[static_cast<std::size_t>(this->FreeNodes[row])]) *
+          this->Rotations[row];
+        float* const right = &this->Fine.Right[row * PaddedSize<3>];
+        right[0] = value.x;
+        right[1] = value.y;
+        right[2] = value.z;
+      }
+    });
+  SmoothFirst(watch, this->Fine);
+  Restrict(watch, this->Fine, this->Coarse.front().Right);
+  this->SolveCoarse(watch, 0);
+  SmoothLast(watch, this->Fine, this->Coarse.front().Solution);
+  ForRows(watch, rows,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t row = begin; row < end; ++row)
+      {
+        const float* const solution = &this->Fine.Solution[row * PaddedSize<3>];
+        result[static_cast<std::size_t>(this->FreeNodes[row])] = size *
+          glm::dvec3(this->Rotations[row] * glm::vec3(solution[0], solution[1], solution[2]));
+      }
+    });
+}
+
+} // namespace deformvolume

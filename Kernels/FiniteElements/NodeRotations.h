@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeNodeRotations_h
+#define DeformVolumeNodeRotations_h
+
+#include "BlockMatrix.h"
+#include "Watch.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// The rotation of what is around each of some nodes, from one state of a body to another: the one
+/// that turns the edges at the node best.
+void FindNodeRotations(Watch& watch, const BlockPattern& pattern,
+  const std::vector<std::int32_t>& nodes, const std::vector<glm::dvec3>& before,
+  const std::vector<glm::dvec3>& now, std::vector<glm::mat3>& rotations);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeSparseBlocks_h
+#define DeformVolumeSparseBlocks_h
+
+#include "Watch.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// A sparse matrix of blocks of so many rows and columns, by rows.
+template <int Rows, int Columns>
+struct SparseBlocks
+{
+  using Block = Eigen::Matrix<double, Rows, Columns>;
+
+  /// Of each row the first block; one more than there are rows.
+  std::vector<std::int32_t> Starts{ 0 };
+  std::vector<std::int32_t> ColumnOfBlock;
+  std::vector<Block> Blocks;
+  std::int32_t NumberOfColumns = 0;
+
+  std::int32_t GetNumberOfRows() const
+  {
+    return static_cast<std::int32_t>(this->Starts.size()) - 1;
+  }
+  std::size_t GetStart(std::int32_t row) const
+  {
+    return static_cast<std::size_t>(this->Starts[static_cast<std::size_t>(row)]);
+  }
+  std::size_t GetEnd(std::int32_t row) const { return this->GetStart(row + 1); }
+};
+
+template <int Rows, int Columns>
+SparseBlocks<Columns, Rows> Transpose(const SparseBlocks<Rows, Columns>& matrix)
+{
+  SparseBlocks<Columns, Rows> result;
+  result.NumberOfColumns = matrix.GetNumberOfRows();
+  result.Starts.assign(static_cast<std::size_t>(matrix.NumberOfColumns) + 1, 0);
+  for (const std::int32_t column : matrix.ColumnOfBlock)
+  {
+    ++result.Starts[static_cast<std::size_t>(column) + 1];
+  }
+  for (std::size_t i = 1; i < result.Starts.size(); ++i)
+  {
+    result.Starts[i] += result.Starts[i - 1];
+  }
+  std::vector<std::int32_t> next(result.Starts.begin(), result.Starts.end() - 1);
+  result.ColumnOfBlock.resize(matrix.Blocks.size());
+  result.Blocks.resize(matrix.Blocks.size());
+  for (std::int32_t row = 0; row < matrix.GetNumberOfRows(); ++row)
+  {
+    for (std::size_t block = matrix.GetStart(row); block < matrix.GetEnd(row); ++block)
+    {
+      const auto place =
+        static_cast<std::size_t>(next[static_cast<std::size_t>(matrix.ColumnOfBlock[block])]++);
+      result.ColumnOfBlock[place] = row;
+      result.Blocks[place] = matrix.Blocks[block].transpose();
+    }
+  }
+  return result;
+}
+
+/// The product of two matrices. The columns of each row rise.
+template <int Rows, int Inner, int Columns>
+SparseBlocks<Rows, Columns> Multiply(
+  Watch& watch, const SparseBlocks<Rows, Inner>& a, const SparseBlocks<Inner, Columns>& b)
+{
+  constexpr std::int32_t rowsOfPart = 256;
+  using Result = SparseBlocks<Rows, Columns>;
+  const std::int32_t rows = a.GetNumberOfRows();
+  std::vector<Result> parts(static_cast<std::size_t>((rows + rowsOfPart - 1) / rowsOfPart));
+  ForParts(watch, parts.size(), 32,
+    [&](std::size_t part)
+    {
+      Result& result = parts[part];
+      std::vector<std::int32_t> places(static_cast<std::size_t>(b.NumberOfColumns), -1);
+      const auto first = static_cast<std::int32_t>(part) * rowsOfPart;
+      std::vector<std::int32_t> columns;
+      for (std::int32_t row = first; row < std::min(rows, first + rowsOfPart); ++row)
+      {
+        columns.clear();
+        for (std::size_t i = a.GetStart(row); i < a.GetEnd(row); ++i)
+        {
+          for (std::size_t j = b.GetStart(a.ColumnOfBlock[i]); j < b.GetEnd(a.ColumnOfBlock[i]);
+               ++j)
+          {
+            std::int32_t& place = places[static_cast<std::size_t>(b.ColumnOfBlock[j])];
+            if (place < 0)
+            {
+              place = 0;
+              columns.push_back(b.ColumnOfBlock[j]);
+            }
+          }
+        }
+        std::sort(columns.begin(), columns.end());
+        for (const std::int32_t column : columns)
+        {
+          places[static_cast<std::size_t>(column)] =
+            static_cast<std::int32_t>(result.Blocks.size());
+          result.ColumnOfBlock.push_back(column);
+          result.Blocks.push_back(Result::Block::Zero());
+        }
+        for (std::size_t i = a.GetStart(row); i < a.GetEnd(row); ++i)
+        {
+          for (std::size_t j = b.GetStart(a.ColumnOfBlock[i]); j < b.GetEnd(a.ColumnOfBlock[i]);
+               ++j)
+          {
+            const auto place =
+              static_cast<std::size_t>(places[static_cast<std::size_t>(b.ColumnOfBlock[j])]);
+            result.Blocks[place].noalias() += a.Blocks[i].lazyProduct(b.Blocks[j]);
+          }
+        }
+        for (const std::int32_t column : columns)
+        {
+          places[static_cast<std::size_t>(column)] = -1;
+        }
+        result.Starts.push_back(static_cast<std::int32_t>(result.Blocks.size()));
+      }
+    });
+  Result result;
+  result.NumberOfColumns = b.NumberOfColumns;
+  for (const Result& part : parts)
+  {
+    const std::int32_t offset = result.Starts.back();
+    for (std::size_t i = 1; i < part.Starts.size(); ++i)
+    {
+      result.Starts.push_back(offset + part.Starts[i]);
+    }
+    result.ColumnOfBlock.insert(
+      result.ColumnOfBlock.end(), part.ColumnOfBlock.begin(), part.ColumnOfBlock.end());
+    result.Blocks.insert(result.Blocks.end(), part.Blocks.begin(), part.Blocks.end());
+  }
+  return result;
+}
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Warm frames of corotational finite elements: what they take, and what force they leave.
+//
+// Usage: CorotationalFrames [FRAMES [NEWTON [ITERATIONS]]]. Times are in milliseconds. The body is
+// a block that is fixed at its lower end; in the middle of the other end a handle of 3 x 3 nodes
+// goes sideways, by 0.005 of the length in each frame, or the body bends under its weight.
+#include "CorotationalModel.h"
+#include "LatticeBody.h"
+#include "Timing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <exception>
+#include <vector>
+
+using namespace deformvolume;
+
+namespace
+{
+
+struct Scene
+{
+  LatticeBody::Place Nodes;
+  double PoissonRatio;
+  bool HasHandle;
+};
+
+double GetMedian(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+void RunScene(const Scene& scene, int frames, const CorotationalLimits& limits)
+{
+  ElasticMaterial material;
+  material.PoissonRatio = scene.PoissonRatio;
+  const double spacing = 0.01;
+  LatticeBody lattice(scene.Nodes, spacing, material);
+  lattice.Fix([](const LatticeBody::Place& place) { return place[2] == 0; });
+  CorotationalModel model;
+  const double setTime = 1e3 * Time([&] { model.SetBody(lattice.Body); });
+  const double length = spacing * (scene.Nodes[2] - 1);
+  CorotationalRequest request;
+  request.Limits = limits;
+  std::vector<double> times;
+  std::vector<double> processorTimes;
+  double firstTime = 0.0;
+  int newton = 0;
+  int iterations = 0;
+  double residual = 0.0;
+  CorotationalReport report;
+  for (int frame = 0; frame <= frames; ++frame)
+  {
+    request.Held.clear();
+    if (scene.HasHandle)
+    {
+      for (int j = -1; j <= 1; ++j)
+      {
+        for (int i = -1; i <= 1; ++i)
+        {
+          request.Held.push_back({ lattice.GetNode({ scene.Nodes[0] / 2 + i, scene.Nodes[1] / 2 + j,
+                                     scene.Nodes[2] - 1 }),
+            glm::dvec3(0.005 * length * (frame + 1), 0.0, 0.0) });
+        }
+      }
+    }
+    else
+    {
+      // A light that swings, so that no frame is the last one's.
+      const double angle = 0.05 * frame;
+      request.Loads.Gravity = 0.2 * glm::dvec3(std::sin(angle), std::cos(angle), 0.0);
+    }
+    const std::clock_t before = std::clock();
+    const double time = 1e3 * Time([&] { report = model.Solve(request); });
+    const double processor = 1e3 * double(std::clock() - before) / CLOCKS_PER_SEC;
+    if (frame == 0)
+    {
+      firstTime = time;
+      std::printf("| first: %d Newton, %d iterations, residual %.1e ", report.NewtonSteps,
+        report.LinearIterations, report.RelativeResidual);
+      continue;
+    }
+    times.push_back(time);
+    processorTimes.push_back(processor);
+    newton += report.NewtonSteps;
+    iterations += report.LinearIterations;
+    residual = std::max(residual, report.RelativeResidual);
+  }
+  std::printf("| %zu nodes %zu tetrahedra %s | set %.1f | first %.1f | frame %.2f (least %.2f, of "
+              "processors %.2f) | "
+              "%.2f Newton %.1f iterations | residual at most %.1e | inverted %lld |\n",
+    lattice.Body.Points.size(), lattice.Body.Tetrahedra.size(),
+    scene.HasHandle ? "handle" : "weight", setTime, firstTime, GetMedian(times),
+    *std::min_element(times.begin(), times.end()), GetMedian(processorTimes),
+    double(newton) / frames, double(iterations) / frames, residual,
+    static_cast<long long>(report.NumberOfInvertedTetrahedra));
+}
+
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  try
+  {
+    const int frames = argc > 1 ? std::atoi(argv[1]) : 20;
+    CorotationalLimits limits;
+    limits.NewtonSteps = argc > 2 ? std::atoi(argv[2]) : 0;
+    limits.LinearIterations = argc > 3 ? std::atoi(argv[3]) : 0;
+    for (const Scene& scene : { Scene{ { 5, 5, 5 }, 0.45, true },
+           Scene{ { 10, 16, 20 }, 0.45, true }, Scene{ { 10, 16, 20 }, 0.45, false },
+           Scene{ { 16, 16, 76 }, 0.3, true }, Scene{ { 16, 16, 76 }, 0.3, false } })
+    {
+      RunScene(scene, frames, limits);
+    }
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Corotational tetrahedra: rotations, forces and stiffness.
+#include "BlockMatrix.h"
+#include "CorotationalCase.h"
+#include "CorotationalElements.h"
+#include "SingularValues.h"
+
+#include <glm/gtc/matrix_access.hpp>
+#include <glm/matrix.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace deformvolume;
+
+namespace
+{
+
+glm::dmat3 GetMatrix(const LaneMatrix& matrix, int lane)
+{
+  glm::dmat3 result;
+  for (int j = 0; j < 3; ++j)
+  {
+    result[j] =
+      glm::dvec3(matrix.Columns[j].X[lane], matrix.Columns[j].Y[lane], matrix.Columns[j].Z[lane]);
+  }
+  return result;
+}
+
+LaneMatrix MakeLaneMatrix(const glm::dmat3& matrix)
+{
+  LaneMatrix result;
+  for (int j = 0; j < 3; ++j)
+  {
+    result.Columns[j] = { MakeLanes(matrix[j].x), MakeLanes(matrix[j].y), MakeLanes(matrix[j].z) };
+  }
+  return result;
+}
+
+double LargestOfMatrix(const glm::dmat3& matrix)
+{
+  return std::max({ LargestOf(matrix[0]), LargestOf(matrix[1]), LargestOf(matrix[2]) });
+}
+
+struct Decomposition
+{
+  glm::dmat3 U;
+  glm::dmat3 V;
+  glm::dvec3 Values;
+};
+
+Decomposition Decompose(const glm::dmat3& matrix)
+{
+  const LaneMatrix lanes = MakeLaneMatrix(matrix);
+  const SingularValues values = FindSingularValues(lanes);
+  return { GetMatrix(values.U, 1), GetMatrix(values.V, 1),
+    { values.Values[0][1], values.Values[1][1], values.Values[2][1] } };
+}
+
+void CheckDecomposition(const glm::dmat3& matrix)
+{
+  const Decomposition d = Decompose(matrix);
+  glm::dmat3 scaled = d.U;
+  for (int i = 0; i < 3; ++i)
+  {
+    scaled[i] *= d.Values[i];
+  }
+  const double size = std::max(1e-300, LargestOfMatrix(matrix));
+  // Some tens of operations, each of which rounds.
+  constexpr double rounding = 1e-14;
+  EXPECT_LT(LargestOfMatrix(scaled * glm::transpose(d.V) - matrix), rounding * size);
+  EXPECT_LT(LargestOfMatrix(glm::transpose(d.U) * d.U - glm::dmat3(1.0)), rounding);
+  EXPECT_LT(LargestOfMatrix(glm::transpose(d.V) * d.V - glm::dmat3(1.0)), rounding);
+  EXPECT_NEAR(glm::determinant(d.U), 1.0, rounding);
+  EXPECT_NEAR(glm::determinant(d.V), 1.0, rounding);
+  EXPECT_GE(d.Values[0], d.Values[1]);
+  EXPECT_GE(d.Values[1], std::abs(d.Values[2]) - rounding * size);
+}
+
+// A body in a state of stretch, turned, in which no eigenvalue has to be cut off.
+struct Stretched
+{
+  Stretched()
+    : Lattice({ 4, 3, 3 }, 0.1, MakeMaterial(1e4, 0.3))
+  {
+    this->Displacements = MapPoints(this->Lattice.Body,
+      MakeRotation(1.2, { 0.3, 1.0, -0.4 }) * glm::dmat3(1.3, 0, 0, 0, 1.25, 0, 0, 0, 1.2),
+      glm::dvec3(0.1, 0.2, 0.3));
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> jitter(-0.003, 0.003);
+    for (glm::dvec3& displacement : this->Displacements)
+    {
+      displacement += glm::dvec3(jitter(random), jitter(random), jitter(random));
+    }
+  }
+
+  LatticeBody Lattice;
+  std::vector<glm::dvec3> Displacements;
+};
+
+} // namespace
+
+TEST(CorotationalElements, SingularValues)
+{
+  CheckDecomposition(glm::dmat3(1.0));
+  CheckDecomposition(glm::dmat3(0.0));
+  CheckDecomposition(glm::dmat3(2.0, 0, 0, 0, 0, 0, 0, 0, 0));
+  CheckDecomposition(glm::dmat3(0, 0, 0, 0, 0, 0, 0, 0, -3.0));
+  CheckDecomposition(glm::outerProduct(glm::dvec3(1, 2, 3), glm::dvec3(-2, 1, 0.5)));
+  CheckDecomposition(glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, 1e-9));
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 2000; ++i)
+  {
+    glm::dmat3 matrix;
+    for (int j = 0; j < 3; ++j)
+    {
+      matrix[j] = glm::dvec3(normal(random), normal(random), normal(random));
+    }
+    CheckDecomposition(matrix);
+    // Nearly a rotation, and flat.
+    CheckDecomposition(MakeRotation(normal(random), matrix[0]) + 1e-8 * matrix);
+    matrix[2] = matrix[0] + 1e-7 * matrix[1];
+    CheckDecomposition(matrix);
+  }
+}
+
+TEST(CorotationalElements, RotationOfInverted)
+{
+  const Decomposition d = Decompose(glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, -0.5));
+  EXPECT_LT(LargestOfMatrix(d.U * glm::transpose(d.V) - glm::dmat3(1.0)), 1e-15);
+  EXPECT_EQ(d.Values[2], -0.5);
+}
+
+TEST(CorotationalElements, ForcesAreThoseOfTheEnergy)
+{
+  Stretched stretched;
+  CorotationalModel model;
+  model.SetBody(stretched.Lattice.Body);
+  model.SetDisplacements(stretched.Displacements);
+  const std::vector<glm::dvec3> forces = model.GetForces();
+  const std::vector<double> volumes = GetVolumes(stretched.Lattice.Body);
+  const auto getEnergy = [&](const std::vector<glm::dvec3>& displacements)
+  {
+    model.SetDisplacements(displacements);
+    const std::vector<ElementResults> results = model.GetElementResults();
+    double energy = 0.0;
+    for (std::size_t t = 0; t < results.size(); ++t)
+    {
+      energy += volumes[t] * results[t].StrainEnergyDensity;
+    }
+    return energy;
+  };
+  constexpr double step = 1e-6;
+  for (std::size_t node = 0; node < forces.size(); ++node)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      std::vector<glm::dvec3> moved = stretched.Displacements;
+      moved[node][axis] += step;
+      const double more = getEnergy(moved);
+      moved[node][axis] -= 2.0 * step;
+      const double difference = (more - getEnergy(moved)) / (2.0 * step);
+      // An energy of 2 J is rounded to 1e-15 of it, a millionth of a metre apart.
+      EXPECT_NEAR(difference, forces[node][axis], 1e-7 * LargestOf(forces));
+    }
+  }
+}
+
+TEST(CorotationalElements, TangentIsThatOfTheForces)
+{
+  Stretched stretched;
+  const ElasticBody& body = stretched.Lattice.Body;
+  CorotationalElements elements(body);
+  BlockMatrix matrix;
+  matrix.SetPattern(MakeNodePattern(body));
+  elements.SetPattern(matrix.GetPattern());
+  Watch watch(nullptr);
+  elements.AssembleTangent(watch, stretched.Displacements, matrix);
+  const std::size_t nodes = body.Points.size();
+  const std::vector<unsigned char> isFree(nodes, 1);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  constexpr double step = 1e-6;
+  for (int turn = 0; turn < 5; ++turn)
+  {
+    std::vector<glm::dvec3> direction(nodes);
+    std::vector<glm::dvec3> product(nodes);
+    std::vector<glm::dvec3> more = stretched.Displacements;
+    std::vector<glm::dvec3> less = stretched.Displacements;
+    for (std::size_t node = 0; node < nodes; ++node)
+    {
+      direction[node] = glm::dvec3(uniform(random), uniform(random), uniform(random));
+      more[node] += step * direction[node];
+      less[node] -= step * direction[node];
+    }
+    matrix.Multiply(0, nodes, isFree.data(), direction.data(), product.data());
+    std::vector<glm::dvec3> forcesMore;
+    std::vector<glm::dvec3> forcesLess;
+    elements.FindForces(watch, more, forcesMore);
+    elements.FindForces(watch, less, forcesLess);
+    for (std::size_t node = 0; node < nodes; ++node)
+    {
+      const glm::dvec3 difference = (forcesMore[node] - forcesLess[node]) / (2.0 * step);
+      // What a central difference leaves out is the square of the step, 1e-5 of an edge.
+      EXPECT_LT(LargestOf(difference - product[node]), 1e-8 * LargestOf(product));
+    }
+  }
+}
+
+TEST(CorotationalElements, TangentIsNeverNegative)
+{
+  LatticeBody lattice({ 3, 3, 3 }, 0.1, MakeMaterial(1e4, 0.45));
+  CorotationalElements elements(lattice.Body);
+  BlockMatrix matrix;
+  matrix.SetPattern(MakeNodePattern(lattice.Body));
+  elements.SetPattern(matrix.GetPattern());
+  Watch watch(nullptr);
+  const std::size_t nodes = lattice.Body.Points.size();
+  const std::vector<unsigned char> isFree(nodes, 1);
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  for (int turn = 0; turn < 50; ++turn)
+  {
+    std::vector<glm::dvec3> displacements(nodes);
+    std::vector<glm::dvec3> direction(nodes);
+    std::vector<glm::dvec3> product(nodes);
+    for (std::size_t node = 0; node < nodes; ++node)
+    {
+      displacements[node] = 0.1 * glm::dvec3(normal(random), normal(random), normal(random));
+      direction[node] = glm::dvec3(normal(random), normal(random), normal(random));
+    }
+    elements.AssembleTangent(watch, displacements, matrix);
+    // Towards the least eigenvalue: minus the product of the last direction.
+    for (int i = 0; i < 20; ++i)
+    {
+      matrix.Multiply(0, nodes, isFree.data(), direction.data(), product.data());
+      double curvature = 0.0;
+      double length = 0.0;
+      for (std::size_t node = 0; node < nodes; ++node)
+      {
+        curvature += glm::dot(direction[node], product[node]);
+        length += glm::dot(direction[node], direction[node]);
+      }
+      EXPECT_GT(curvature, -1e-10 * length);
+      for (std::size_t node = 0; node < nodes; ++node)
+      {
+        direction[node] -= product[node] / 3e4;
+      }
+    }
+  }
+}
