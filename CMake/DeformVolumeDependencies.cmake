@@ -65,9 +65,6 @@ find_package(VTK 9.1 REQUIRED
 find_package(glm REQUIRED)
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)
 
-# In sources only: who uses the installed library does not need it.
-find_package(Eigen3 3.3 REQUIRED NO_MODULE)
-
 find_program(DEFORMVOLUME_TETGEN_EXECUTABLE tetgen
   DOC "The TetGen program that vtkTetGenMesher runs by default")
 

@@ -3,10 +3,12 @@
 
 #include "AbortCheck.h"
 #include "BodyReading.h"
+#include "ElasticSession.h"
 #include "ElasticSimulation.h"
 #include "Error.h"
 #include "FailureReport.h"
 #include "PieceRequest.h"
+#include "SheetReading.h"
 #include "VTKThreads.h"
 
 #include "vtkCellData.h"
@@ -19,12 +21,14 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <sstream>
 #include <vector>
@@ -35,24 +39,6 @@ using deformvolume::ElasticSimulation;
 
 namespace
 {
-
-bool IsSame(const deformvolume::ElasticMaterial& a, const deformvolume::ElasticMaterial& b)
-{
-  return a.YoungModulus == b.YoungModulus && a.PoissonRatio == b.PoissonRatio &&
-    a.Density == b.Density;
-}
-
-bool HasSameMesh(const deformvolume::ElasticBody& a, const deformvolume::ElasticBody& b)
-{
-  return a.Points == b.Points && a.Tetrahedra == b.Tetrahedra;
-}
-
-bool IsSame(const deformvolume::ElasticBody& a, const deformvolume::ElasticBody& b)
-{
-  return HasSameMesh(a, b) && a.Fixed == b.Fixed &&
-    std::equal(a.Materials.begin(), a.Materials.end(), b.Materials.begin(), b.Materials.end(),
-      [](const auto& one, const auto& other) { return IsSame(one, other); });
-}
 
 // The times that an input has, if any.
 bool HasTimes(vtkInformation* info)
@@ -91,67 +77,17 @@ void AddElementResults(vtkUnstructuredGrid* output, const BodyMesh& mesh,
 class vtkElasticDeformation::vtkInternals
 {
 public:
-  /// Brings the body up to date. Returns whether something that was simulated is lost by that.
-  bool Update(ElasticSimulation& simulation, vtkUnstructuredGrid* grid,
-    const deformvolume::BodySettings& settings)
-  {
-    const deformvolume::Stamp stamp = deformvolume::GetBodyStamp(grid);
-    this->HasBody = this->HasBody && &simulation == this->Simulation && simulation.HasBody();
-    const bool isKnown = this->HasBody && stamp == this->BodyStamp &&
-      IsSame(settings.Material, this->Settings.Material) &&
-      settings.UnitLength == this->Settings.UnitLength;
-    if (isKnown)
-    {
-      return false;
-    }
-    BodyMesh mesh = deformvolume::ReadBody(grid, settings);
-    const bool keepsState =
-      this->HasBody && &simulation == this->Simulation && HasSameMesh(mesh.Body, this->Mesh.Body);
-    const bool isLost = this->HasBody && !keepsState && this->HasMoved;
-    if (!keepsState || !IsSame(mesh.Body, this->Mesh.Body))
-    {
-      this->HasBody = false;
-      simulation.SetBody(mesh.Body, keepsState);
-    }
-    if (!keepsState)
-    {
-      this->Time = 0.0;
-      this->HasMoved = false;
-    }
-    this->Mesh = std::move(mesh);
-    this->BodyStamp = stamp;
-    this->Settings = settings;
-    this->Simulation = &simulation;
-    this->HasBody = true;
-    return isLost;
-  }
-
-  void ResetBody()
-  {
-    if (this->HasBody)
-    {
-      this->Simulation->Reset();
-    }
-    this->Time = 0.0;
-    this->HasMoved = false;
-  }
-
-  bool HasBody = false;
-  bool HasMoved = false;
+  deformvolume::ElasticSession Session;
   bool IsToReset = false;
+  std::size_t CutsToUndo = 0;
   bool Aborted = false;
-  BodyMesh Mesh;
-  deformvolume::Stamp BodyStamp;
-  deformvolume::BodySettings Settings;
-  ElasticSimulation* Simulation = nullptr; // that the body was given to
-  double Time = 0.0;
 };
 
 vtkElasticDeformation::vtkElasticDeformation()
   : Internals(new vtkInternals)
 {
   deformvolume::UseVTKThreads();
-  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfInputPorts(3);
 }
 
 vtkElasticDeformation::~vtkElasticDeformation() = default;
@@ -166,6 +102,39 @@ void vtkElasticDeformation::SetHandlesData(vtkDataObject* data)
   this->SetInputDataObject(1, data);
 }
 
+void vtkElasticDeformation::SetSheetConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(2, output);
+}
+
+void vtkElasticDeformation::SetSheetData(vtkDataObject* data)
+{
+  this->SetInputDataObject(2, data);
+}
+
+void vtkElasticDeformation::UndoCut()
+{
+  std::size_t& cuts = this->Internals->CutsToUndo;
+  cuts = std::max(cuts, cuts + 1); // all stay all
+  this->Modified();
+}
+
+void vtkElasticDeformation::ClearCuts()
+{
+  this->Internals->CutsToUndo = std::numeric_limits<std::size_t>::max();
+  this->Modified();
+}
+
+vtkIdType vtkElasticDeformation::GetNumberOfCuts()
+{
+  return static_cast<vtkIdType>(this->Internals->Session.GetNumberOfCuts());
+}
+
+vtkIdType vtkElasticDeformation::GetNumberOfSplitFaces()
+{
+  return static_cast<vtkIdType>(this->Internals->Session.GetNumberOfSplitFaces());
+}
+
 void vtkElasticDeformation::Reset()
 {
   this->Internals->IsToReset = true;
@@ -174,14 +143,14 @@ void vtkElasticDeformation::Reset()
 
 double vtkElasticDeformation::GetTime()
 {
-  return this->Internals->IsToReset ? 0.0 : this->Internals->Time;
+  return this->Internals->IsToReset ? 0.0 : this->Internals->Session.Time;
 }
 
 int vtkElasticDeformation::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(
-    vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkUnstructuredGrid" : "vtkPointSet");
-  if (port == 1)
+  constexpr const char* types[3] = { "vtkUnstructuredGrid", "vtkPointSet", "vtkPolyData" };
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), types[port]);
+  if (port > 0)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
@@ -218,7 +187,7 @@ int vtkElasticDeformation::RequestInformation(
 int vtkElasticDeformation::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
 {
-  for (int port = 0; port < 2; ++port)
+  for (int port = 0; port < 3; ++port)
   {
     if (vtkInformation* info = input[port]->GetInformationObject(0))
     {
@@ -279,24 +248,26 @@ void vtkElasticDeformation::Execute(
     return;
   }
   vtkInternals& internals = *this->Internals;
+  deformvolume::ElasticSession& session = internals.Session;
   deformvolume::BodySettings settings;
   settings.Material = { this->YoungModulus, this->PoissonRatio, this->Density };
   settings.UnitLength = this->LengthUnit == MILLIMETRE ? 1e-3 : 1.0;
   ElasticSimulation& simulation = this->PrepareSimulation();
-  if (internals.Update(simulation, grid, settings))
+  if (session.Update(simulation, grid, settings))
   {
     vtkWarningMacro("The rest mesh has got other points or cells: the simulation starts anew.");
   }
+  this->UpdateCuts(vtkPolyData::GetData(input[2]));
   ElasticSimulation::Frame frame;
   frame.Held = deformvolume::ReadHandles(
-    vtkPointSet::GetData(input[1]), this->HandleRadius, internals.Mesh.Body, settings);
+    vtkPointSet::GetData(input[1]), this->HandleRadius, session.GetMesh().Body, settings);
   frame.Loads.Gravity = { this->Gravity[0], this->Gravity[1], this->Gravity[2] };
-  frame.Loads.Forces = internals.Mesh.Forces;
+  frame.Loads.Forces = session.GetMesh().Forces;
 
-  double end = internals.Time;
+  double end = session.Time;
   if (internals.IsToReset)
   {
-    internals.ResetBody();
+    session.Reset();
     internals.IsToReset = false;
     end = 0.0;
   }
@@ -305,9 +276,9 @@ void vtkElasticDeformation::Execute(
   if (info->Has(Pipeline::UPDATE_TIME_STEP()))
   {
     end = info->Get(Pipeline::UPDATE_TIME_STEP());
-    if (end < internals.Time - roundOff)
+    if (end < session.Time - roundOff)
     {
-      internals.ResetBody();
+      session.Reset();
     }
     output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), end);
   }
@@ -315,14 +286,14 @@ void vtkElasticDeformation::Execute(
   {
     end += this->GetFreeDuration();
   }
-  const double duration = std::max(0.0, end - internals.Time);
+  const double duration = std::max(0.0, end - session.Time);
   const double longest = simulation.HasFrames() ? this->FrameTime : std::max(duration, 1.0);
   const double frames = std::max(1.0, std::ceil((duration - roundOff) / longest));
   // Observers may draw: they are called now and then only.
   auto next = std::chrono::steady_clock::now();
   for (double done = 0.0; done < frames; done += 1.0)
   {
-    frame.Duration = std::min(longest, std::max(0.0, end - internals.Time));
+    frame.Duration = std::min(longest, std::max(0.0, end - session.Time));
     frame.Progress = [&](double fraction)
     {
       if (std::chrono::steady_clock::now() >= next)
@@ -333,18 +304,18 @@ void vtkElasticDeformation::Execute(
       return !deformvolume::IsAborted(this);
     };
     simulation.Advance(frame);
-    internals.HasMoved = true;
-    internals.Time = done + 1.0 == frames ? end : internals.Time + frame.Duration;
+    session.HasMoved = true;
+    session.Time = done + 1.0 == frames ? end : session.Time + frame.Duration;
   }
   this->NumberOfHeldNodes = static_cast<vtkIdType>(frame.Held.size());
 
-  output->ShallowCopy(grid);
+  output->ShallowCopy(session.GetGrid(grid));
   vtkDataArray* displacements = simulation.WriteOutput(1.0 / settings.UnitLength);
   displacements->Modified();
   output->GetPointData()->SetVectors(displacements);
   if (this->ElementResults)
   {
-    AddElementResults(output, internals.Mesh, simulation.GetElementResults());
+    AddElementResults(output, session.GetMesh(), simulation.GetElementResults());
   }
   if (info->Has(Pipeline::UPDATE_TIME_STEP()))
   {
@@ -352,17 +323,29 @@ void vtkElasticDeformation::Execute(
   }
 }
 
+void vtkElasticDeformation::UpdateCuts(vtkPolyData* sheet)
+{
+  deformvolume::ElasticSession& session = this->Internals->Session;
+  const deformvolume::WorldSheet read = deformvolume::ReadSheet(sheet,
+    { this->SweepVector[0], this->SweepVector[1], this->SweepVector[2] }, "sheet on input port 2");
+  const std::size_t undone = std::min(this->Internals->CutsToUndo, session.GetNumberOfCuts());
+  session.RemoveCuts(session.GetNumberOfCuts() - undone);
+  this->Internals->CutsToUndo = 0;
+  session.Cut(read);
+}
+
 std::string vtkElasticDeformation::GetSummary()
 {
-  const vtkInternals& internals = *this->Internals;
-  if (!internals.HasBody)
+  const deformvolume::ElasticSession& session = this->Internals->Session;
+  if (!session.HasBody())
   {
     return std::string();
   }
   std::ostringstream text;
-  text << "Nodes: " << internals.Mesh.Body.Points.size() << "\n"
-       << "Tetrahedra: " << internals.Mesh.Body.Tetrahedra.size() << "\n"
+  text << "Nodes: " << session.GetMesh().Body.Points.size() << "\n"
+       << "Tetrahedra: " << session.GetMesh().Body.Tetrahedra.size() << "\n"
        << "Nodes that handles hold: " << this->NumberOfHeldNodes << "\n"
+       << "Cuts: " << this->GetNumberOfCuts() << "\n"
        << "Time: " << this->GetTime() << " s";
   return text.str();
 }
@@ -377,6 +360,10 @@ void vtkElasticDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "PoissonRatio: " << this->PoissonRatio << "\n";
   os << indent << "Density: " << this->Density << "\n";
   os << indent << "LengthUnit: " << (this->LengthUnit == METRE ? "METRE" : "MILLIMETRE") << "\n";
+  os << indent << "SweepVector: " << this->SweepVector[0] << " " << this->SweepVector[1] << " "
+     << this->SweepVector[2] << "\n";
+  os << indent << "NumberOfCuts: " << this->GetNumberOfCuts() << "\n";
+  os << indent << "NumberOfSplitFaces: " << this->GetNumberOfSplitFaces() << "\n";
   os << indent << "FrameTime: " << this->FrameTime << "\n";
   os << indent << "EndTime: " << this->EndTime << "\n";
   os << indent << "ElementResults: " << (this->ElementResults ? "on" : "off") << "\n";

@@ -23,6 +23,13 @@
  * nearest node where that is 0. Where several handles hold a node the first one counts, and nodes
  * that are fixed stay.
  *
+ * @par Port 2, optional, the sheet:
+ * vtkPolyData in world coordinates: triangles, polygons and triangle strips; polylines where
+ * SweepVector is set. It cuts the mesh where it is now, along the faces of its tetrahedra that are
+ * nearest. What is on both sides of a cut parts: nodes get copies, which are appended. A cut is
+ * made when the sheet is new, and cuts add up. Have vtkDeformVolumeFilter open the volume there
+ * with OpenSplitsOn().
+ *
  * @par Output:
  * The mesh at rest, with the point array "Displacement" (floats, three components, in the units of
  * the points), which is also the active vectors: a vtkFloatArray on a processor, and on a device
@@ -46,7 +53,7 @@
  * what was simulated is kept: no tetrahedra or other three-dimensional cells; tetrahedra that are
  * flat, or some of them inside out; coordinates and numbers that are not finite; a Young modulus or
  * a density of 0 or less, a Poisson ratio of less than 0 or of 0.495 and more; arrays of another
- * shape; a handle that holds no node.
+ * shape; a handle that holds no node; a sheet that vtkCutVolume would refuse.
  *
  * @sa vtkMassSpringDeformation vtkCorotationalDeformation vtkDeformVolumeFilter
  */
@@ -63,6 +70,7 @@ namespace deformvolume
 {
 class ElasticSimulation;
 }
+class vtkPolyData;
 
 class VTKDEFORMVOLUME_EXPORT vtkElasticDeformation : public vtkUnstructuredGridAlgorithm
 {
@@ -76,6 +84,41 @@ public:
    */
   void SetHandlesConnection(vtkAlgorithmOutput* output);
   void SetHandlesData(vtkDataObject* data);
+  ///@}
+
+  ///@{
+  /**
+   * Connect the sheet that cuts (port 2, optional).
+   */
+  void SetSheetConnection(vtkAlgorithmOutput* output);
+  void SetSheetData(vtkDataObject* data);
+  ///@}
+
+  ///@{
+  /**
+   * Polylines of the sheet cut along this vector: each segment becomes the parallelogram that it
+   * sweeps. World units; 0, 0, 0: polylines do not cut. Default 0, 0, 0.
+   */
+  vtkSetVector3Macro(SweepVector, double);
+  vtkGetVector3Macro(SweepVector, double);
+  ///@}
+
+  ///@{
+  /**
+   * Before the next execution the last cut is taken back, or all are. Copies of nodes are gone
+   * then, and the nodes that they were copies of stay where they are. The sheet cuts again when it
+   * is another one.
+   */
+  void UndoCut();
+  void ClearCuts();
+  ///@}
+
+  ///@{
+  /**
+   * Cuts that have split something, and the faces of tetrahedra that they have split.
+   */
+  vtkIdType GetNumberOfCuts();
+  vtkIdType GetNumberOfSplitFaces();
   ///@}
 
   ///@{
@@ -150,8 +193,8 @@ public:
 
   ///@{
   /**
-   * The end of the time range of the output, in s, where the inputs have no times; 0: it has none.
-   * Default 1.
+   * The end of the time range of the output, in s, where the inputs have no times. A filter behind
+   * then asks for a time in each update. Default 0: there is no time range. In ParaView it is 1.
    */
   vtkSetClampMacro(EndTime, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(EndTime, double);
@@ -217,15 +260,17 @@ private:
   void operator=(const vtkElasticDeformation&) = delete;
 
   void Execute(vtkInformationVector** input, vtkInformationVector* output);
+  void UpdateCuts(vtkPolyData* sheet);
 
   double HandleRadius = 0.0;
   double Gravity[3] = { 0.0, 0.0, 0.0 };
   double YoungModulus = 1e4;
   double PoissonRatio = 0.3;
   double Density = 1000.0;
+  double SweepVector[3] = { 0.0, 0.0, 0.0 };
   int LengthUnit = METRE;
   double FrameTime = 1.0 / 60.0;
-  double EndTime = 1.0;
+  double EndTime = 0.0;
   bool ElementResults = false;
   vtkIdType NumberOfHeldNodes = 0;
 

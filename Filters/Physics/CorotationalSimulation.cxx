@@ -29,6 +29,12 @@ void CorotationalSimulation::SplitNodes(
   this->Model.SetDisplacements(displacements);
 }
 
+void CorotationalSimulation::Return(const ElasticBody& body, const State& state)
+{
+  this->Model.SetBody(body);
+  this->Model.SetDisplacements(state.Displacements);
+}
+
 void CorotationalSimulation::Advance(const Frame& frame)
 {
   constexpr double someProgress = 0.5; // nobody knows how much there is to do

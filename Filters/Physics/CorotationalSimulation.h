@@ -21,11 +21,12 @@ public:
 
   void SetBody(const ElasticBody& body, bool keepsState) override;
   void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins) override;
+  State GetState() override { return { this->Model.GetDisplacements(), {} }; }
+  void Return(const ElasticBody& body, const State& state) override;
   void Advance(const Frame& frame) override;
   bool HasFrames() const override { return false; }
   void Reset() override { this->Model.Reset(); }
   bool HasBody() const override { return !this->Model.GetDisplacements().empty(); }
-  std::vector<glm::dvec3> GetDisplacements() override { return this->Model.GetDisplacements(); }
   std::vector<ElementResults> GetElementResults() override
   {
     return this->Model.GetElementResults();

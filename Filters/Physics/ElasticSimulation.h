@@ -34,14 +34,21 @@ public:
   virtual void SetBody(const ElasticBody& body, bool keepsState) = 0;
   /// Nodes of the body have been copied, see MassSpringModel::SplitNodes.
   virtual void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins) = 0;
+  /// Where the nodes are, in m, and how fast, in m/s, where there are velocities.
+  struct State
+  {
+    std::vector<glm::dvec3> Displacements;
+    std::vector<glm::dvec3> Velocities;
+  };
+  virtual State GetState() = 0;
+  /// A body as it was before nodes were split.
+  virtual void Return(const ElasticBody& body, const State& state) = 0;
   virtual void Advance(const Frame& frame) = 0;
   /// Whether a longer time takes several frames.
   virtual bool HasFrames() const { return true; }
   virtual void Reset() = 0;
   /// False at first, and where a device has failed.
   virtual bool HasBody() const = 0;
-  /// In m.
-  virtual std::vector<glm::dvec3> GetDisplacements() = 0;
   virtual std::vector<ElementResults> GetElementResults() = 0;
   /// The displacements, times a factor, in the array that is always the same for a number of nodes.
   virtual vtkDataArray* WriteOutput(double factor) = 0;

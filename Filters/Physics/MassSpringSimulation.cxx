@@ -1,10 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MassSpringSimulation.h"
 
-#include <algorithm>
-
 namespace deformvolume
 {
+namespace
+{
+
+std::vector<glm::dvec3> ToVectors(const std::vector<float>& values)
+{
+  std::vector<glm::dvec3> vectors(values.size() / 3);
+  for (std::size_t i = 0; i < vectors.size(); ++i)
+  {
+    vectors[i] = glm::dvec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+  }
+  return vectors;
+}
+
+std::vector<float> ToFloats(const std::vector<glm::dvec3>& vectors)
+{
+  std::vector<float> values;
+  values.reserve(vectors.size() * 3);
+  for (const glm::dvec3& vector : vectors)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      values.push_back(static_cast<float>(vector[axis]));
+    }
+  }
+  return values;
+}
+
+} // namespace
 
 void MassSpringSimulation::SetDevice(const std::string& device, std::uint64_t memoryLimit)
 {
@@ -62,15 +88,15 @@ void MassSpringSimulation::Advance(const Frame& frame)
   this->Report = this->Model.Advance(request);
 }
 
-std::vector<glm::dvec3> MassSpringSimulation::GetDisplacements()
+ElasticSimulation::State MassSpringSimulation::GetState()
 {
-  const std::vector<float> values = this->Model.GetDisplacements();
-  std::vector<glm::dvec3> displacements(values.size() / 3);
-  for (std::size_t i = 0; i < displacements.size(); ++i)
-  {
-    displacements[i] = glm::dvec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
-  }
-  return displacements;
+  return { ToVectors(this->Model.GetDisplacements()), ToVectors(this->Model.GetVelocities()) };
+}
+
+void MassSpringSimulation::Return(const ElasticBody& body, const State& state)
+{
+  this->SplitNodes(body, {});
+  this->Model.SetState(ToFloats(state.Displacements), ToFloats(state.Velocities));
 }
 
 vtkDataArray* MassSpringSimulation::WriteOutput(double factor)

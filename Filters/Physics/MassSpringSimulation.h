@@ -28,10 +28,11 @@ public:
 
   void SetBody(const ElasticBody& body, bool keepsState) override;
   void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins) override;
+  State GetState() override;
+  void Return(const ElasticBody& body, const State& state) override;
   void Advance(const Frame& frame) override;
   void Reset() override { this->Model.Reset(); }
   bool HasBody() const override { return this->Model.GetDeviceMemory() > 0; }
-  std::vector<glm::dvec3> GetDisplacements() override;
   std::vector<ElementResults> GetElementResults() override
   {
     return this->Model.GetElementResults();

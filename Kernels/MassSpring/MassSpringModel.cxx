@@ -280,7 +280,8 @@ void MassSpringModel::SplitNodes(const ElasticBody& body, const std::vector<std:
   CheckBody(body);
   const std::size_t before = impl.Body.Points.size();
   if (body.Tetrahedra.size() != impl.Body.Tetrahedra.size() ||
-    body.Points.size() != before + origins.size() ||
+    body.Points.size() > before + origins.size() ||
+    (!origins.empty() && body.Points.size() < before + origins.size()) ||
     std::any_of(origins.begin(), origins.end(),
       [&](std::int32_t node) { return node < 0 || static_cast<std::size_t>(node) >= before; }))
   {
@@ -300,6 +301,8 @@ void MassSpringModel::SplitNodes(const ElasticBody& body, const std::vector<std:
           velocities.push_back(velocities[3 * static_cast<std::size_t>(origin) + axis]);
         }
       }
+      displacements.resize(body.Points.size() * 3);
+      velocities.resize(body.Points.size() * 3);
       impl.State.reset();
       impl.Make(body, impl.Scale);
       impl.State->SetDisplacements(displacements);

@@ -77,6 +77,7 @@ public:
 
   /// The same body with other nodes in some tetrahedra: nodes have been appended, each a copy of
   /// one there was. origins: of each appended node. They are where their origins are, and as fast.
+  /// Without origins the last nodes may be gone, as where a split is undone.
   void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins);
 
   /// Where the displacements go, three floats a node, times a factor; written by each Advance.

@@ -48,7 +48,7 @@ struct ElasticBody
   /// the other side.
   std::vector<Tetrahedron> Tetrahedra;
   /// One for the whole body, or one a tetrahedron.
-  std::vector<ElasticMaterial> Materials{ ElasticMaterial() };
+  std::vector<ElasticMaterial> Materials = std::vector<ElasticMaterial>(1);
   /// One byte a node, not 0 where it is held at rest; empty: no node is.
   std::vector<unsigned char> Fixed;
 

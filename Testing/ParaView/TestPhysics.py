@@ -64,6 +64,15 @@ def check_springs(mesh, handle):
     assert springs.PointData["Displacement"].GetRange(-1)[1] == 0.0
     springs.UpdatePipeline(0.1)
     assert springs.PointData["Displacement"].GetRange(-1) == moved
+    # A cut, and without it.
+    springs.Sheet = simple.Plane(Origin=[0.1, -50, -50], Point1=[0.1, 50, -50], Point2=[0.1, -50, 50])
+    springs.UpdatePipeline(0.1)
+    made = springs.GetClientSideObject()
+    assert made.GetNumberOfCuts() == 1
+    assert springs.GetDataInformation().GetNumberOfPoints() == 125 + 25
+    springs.UndoCut()
+    springs.UpdatePipeline(0.1)
+    assert springs.GetDataInformation().GetNumberOfPoints() == 125
     simple.Delete(springs)
 
 

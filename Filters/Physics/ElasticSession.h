@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeElasticSession_h
+#define DeformVolumeElasticSession_h
+
+#include "BodyReading.h"
+#include "DeformationMesh.h" // for Stamp
+#include "ElasticSimulation.h"
+#include "MeshSplit.h"
+#include "SheetReading.h"
+
+#include "vtkSmartPointer.h"
+
+#include <vector>
+
+class vtkUnstructuredGrid;
+
+namespace deformvolume
+{
+
+/// The body that a simulation was given, with the cuts in it, and the time that it has come to.
+class ElasticSession
+{
+public:
+  /// Brings the body up to date. Returns whether something that was simulated is lost by that.
+  bool Update(
+    ElasticSimulation& simulation, vtkUnstructuredGrid* grid, const BodySettings& settings);
+
+  /// Cuts the body where it is now along a sheet in its units, where that is another one than the
+  /// last time.
+  void Cut(const WorldSheet& sheet);
+  /// Takes back the last cuts, but for so many: the body is as it was before, its time is not.
+  void RemoveCuts(std::size_t left);
+  std::size_t GetNumberOfCuts() const { return this->Cuts.size(); }
+  std::int64_t GetNumberOfSplitFaces() const;
+
+  /// Puts the body to rest.
+  void Reset();
+
+  bool HasBody() const { return this->Exists; }
+  /// As it is cut.
+  const BodyMesh& GetMesh() const { return this->Mesh; }
+  const BodySettings& GetSettings() const { return this->Settings; }
+
+  /// The grid as it is cut: the grid itself where it is not.
+  vtkUnstructuredGrid* GetGrid(vtkUnstructuredGrid* grid);
+
+  double Time = 0.0;     // in s
+  bool HasMoved = false; // whether there is something to lose
+
+private:
+  struct AppliedCut
+  {
+    std::vector<Tetrahedron> Tetrahedra;
+    std::vector<std::int32_t> Origins; // of all appended nodes
+    std::vector<TetrahedronPair> Unparted;
+    std::int64_t NumberOfFaces = 0;
+    ElasticSimulation::State Before;
+  };
+
+  /// The body with the cuts that there are.
+  void Apply();
+
+  bool Exists = false;
+  ElasticSimulation* Simulation = nullptr; // that the body was given to
+  Stamp BodyStamp;
+  BodySettings Settings;
+  BodyMesh Whole;
+  BodyMesh Mesh;
+  std::vector<AppliedCut> Cuts;
+  WorldSheet Sheet; // the last one
+  vtkSmartPointer<vtkUnstructuredGrid> CutGrid;
+  Stamp CutGridStamp;
+  std::size_t CutsOfGrid = 0;
+};
+
+} // namespace deformvolume
+
+#endif
