@@ -12,30 +12,34 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
-#include <vtkPolyData.h>
 
 #include <sstream>
 
-void PullByChainMail(
-  const Options& options, const Volume& volume, Messages& messages, Deformation& deformation)
+vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Pull>& pulls)
 {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   vtkNew<vtkDoubleArray> rest;
   rest->SetName("RestPosition");
   rest->SetNumberOfComponents(3);
-  for (const Pull& pull : options.Pulls)
+  for (const Pull& pull : pulls)
   {
     points->InsertNextPoint(pull.Point[0] + pull.Displacement[0],
       pull.Point[1] + pull.Displacement[1], pull.Point[2] + pull.Displacement[2]);
     rest->InsertNextTuple(pull.Point.data());
   }
-  vtkNew<vtkPolyData> handles;
+  auto handles = vtkSmartPointer<vtkPolyData>::New();
   handles->SetPoints(points);
   handles->GetPointData()->AddArray(rest);
+  return handles;
+}
+
+void PullByChainMail(
+  const Options& options, const Volume& volume, Messages& messages, Deformation& deformation)
+{
   vtkNew<vtkChainMailDeformation> chainMail;
   chainMail->SetInputData(volume.Image);
-  chainMail->SetHandlesData(handles);
+  chainMail->SetHandlesData(MakeHandles(options.Pulls));
   chainMail->SetHandleRadius(options.Pulls.front().Radius);
   const ProgressBar bar(chainMail, "pulling", !options.Quiet);
   chainMail->Update();

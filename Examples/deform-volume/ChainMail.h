@@ -2,10 +2,13 @@
 #ifndef DeformVolumeChainMail_h
 #define DeformVolumeChainMail_h
 
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+
 #include <array>
+#include <vector>
 
 class Messages;
-class vtkImageData;
 struct Deformation;
 struct Options;
 struct Volume;
@@ -17,6 +20,9 @@ struct Pull
   std::array<double, 3> Displacement{ { 0.0, 0.0, 0.0 } };
   double Radius = 0.0;
 };
+
+/// The handles that pulls are, as vtkChainMailDeformation and vtkElasticDeformation take them.
+vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Pull>& pulls);
 
 /// The displacement field of the pulls of the options: voxels follow their neighbours, by
 /// ChainMail.

@@ -181,6 +181,7 @@ void DeformVolume(const Options& options, Messages& messages)
   const Stopwatch meshing;
   const Deformation deformation = MakeDeformation(options, cut, messages);
   timings.Add(!options.Field.empty() ? "read field"
+      : options.HasElasticModel()    ? "simulate"
       : !options.Model.empty()       ? "pull by ChainMail"
       : options.Mesh.empty()         ? "make mesh"
                                      : "read mesh",

@@ -2,6 +2,7 @@
 #include "MeshMaking.h"
 
 #include "ChainMail.h"
+#include "ElasticModel.h"
 #include "Failure.h"
 #include "FieldReading.h"
 #include "Messages.h"
@@ -84,6 +85,14 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
     mesher->AddRefinementSphere(
       push.Center[0], push.Center[1], push.Center[2], push.Radius, push.GetEdgeLength());
   }
+  for (const Pull& pull : options.Pulls)
+  {
+    if (pull.Radius > 0.0)
+    {
+      mesher->AddRefinementSphere(pull.Point[0], pull.Point[1], pull.Point[2], pull.Radius,
+        Push{ {}, {}, pull.Radius }.GetEdgeLength());
+    }
+  }
   mesher->SetRadiusEdgeRatio(options.RadiusEdgeRatio);
   mesher->SetTetGenExecutable(options.TetGenExecutable);
   const ProgressBar bar(mesher, "meshing", !options.Quiet);
@@ -123,6 +132,27 @@ void CheckEdges(
             << "--lattice more nodes, or use --tetgen.";
     messages.DisplayWarningText(warning.str().c_str());
   }
+}
+
+// Moves the nodes of a mesh by the pushes.
+void PushNodes(const Options& options, const vtkSmartPointer<vtkUnstructuredGrid>& mesh,
+  Messages& messages, Deformation& deformation)
+{
+  for (const Push& push : options.Pushes)
+  {
+    if (push.Folds())
+    {
+      messages.DisplayWarningText("A push is too strong for its radius: the volume folds over.");
+    }
+    CheckEdges(push, mesh, messages, deformation);
+  }
+  if (ApplyPushes(options.Pushes, mesh) == 0)
+  {
+    messages.DisplayWarningText("No node of the mesh lies within the radius of a push, so that "
+                                "nothing moves. Are the coordinates those of the file?");
+  }
+  deformation.Data = mesh;
+  deformation.Displacement = PushArrayName;
 }
 
 // A displacement field of zeros that holds the volume.
@@ -177,7 +207,7 @@ Deformation MakeDeformation(const Options& options, const Volume& volume, Messag
       ReadField(options.Field, volume, options.FieldIsInverse, messages, !options.Quiet);
     deformation.Displacement = IsVTKFile(options.Field) ? options.Displacement : FieldArrayName;
   }
-  else if (!options.Model.empty())
+  else if (options.Model == "chainmail")
   {
     PullByChainMail(options, volume, messages, deformation);
   }
@@ -191,25 +221,18 @@ Deformation MakeDeformation(const Options& options, const Volume& volume, Messag
   {
     const vtkSmartPointer<vtkUnstructuredGrid> mesh =
       Mesh(options, volume.Image, messages, deformation);
-    for (const Push& push : options.Pushes)
+    if (options.HasElasticModel())
     {
-      if (push.Folds())
-      {
-        messages.DisplayWarningText("A push is too strong for its radius: the volume folds over.");
-      }
-      CheckEdges(push, mesh, messages, deformation);
+      DeformByElasticModel(options, volume, mesh, messages, deformation);
     }
-    if (ApplyPushes(options.Pushes, mesh) == 0)
+    else
     {
-      messages.DisplayWarningText("No node of the mesh lies within the radius of a push, so that "
-                                  "nothing moves. Are the coordinates those of the file?");
+      PushNodes(options, mesh, messages, deformation);
     }
     if (!options.MeshOutput.empty())
     {
-      WriteMesh(mesh, options.MeshOutput, messages);
+      WriteMesh(vtkUnstructuredGrid::SafeDownCast(deformation.Data), options.MeshOutput, messages);
     }
-    deformation.Data = mesh;
-    deformation.Displacement = PushArrayName;
   }
   deformation.NumberOfNodes = deformation.Data->GetNumberOfElements(vtkDataObject::POINT);
   deformation.NumberOfCells = deformation.Data->GetNumberOfElements(vtkDataObject::CELL);

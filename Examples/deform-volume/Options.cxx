@@ -67,6 +67,31 @@ Pull ParsePull(const std::string& text)
   return pull;
 }
 
+Fixation ParseFixation(const std::string& text)
+{
+  Fixation fixation;
+  fixation.Text = text;
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  const std::string kind = text.substr(0, colon);
+  const std::string rest = text.substr(std::min(colon + 1, text.size()));
+  if (kind == "box")
+  {
+    fixation.Which = Fixation::Kind::Box;
+    fixation.Bounds = ParseNumbers<double, 6>(
+      "--fix", rest, "box: and six numbers X0,X1,Y0,Y1,Z0,Z1 with commas between them");
+  }
+  else if (kind == "below" || kind == "label")
+  {
+    fixation.Which = kind == "below" ? Fixation::Kind::Below : Fixation::Kind::Label;
+    fixation.Value = ParseNumbers<double, 1>("--fix", rest, kind + ": and a number")[0];
+  }
+  else
+  {
+    throw UsageError("--fix " + text + ": expected box:X0,X1,Y0,Y1,Z0,Z1, below:Z or label:N");
+  }
+  return fixation;
+}
+
 Carving ParseCarving(const std::string& text)
 {
   const std::string shape = "sphere:";
@@ -92,6 +117,8 @@ struct RawOptions
   std::string Lattice;
   std::vector<std::string> Pushes;
   std::vector<std::string> Pulls;
+  std::vector<std::string> Fixations;
+  std::string Gravity = "0,0,0";
   std::vector<std::string> Carvings;
   std::string View;
   double Isovalue = 0.0;
@@ -106,8 +133,9 @@ void CheckNumbers(const Options& options)
 {
   const std::pair<const char*, double> numbers[] = { { "--scale", options.Scale },
     { "--isovalue", options.Isovalue.value_or(0.0) }, { "--edge-length", options.EdgeLength },
-    { "--radius-edge-ratio", options.RadiusEdgeRatio },
-    { "--threshold", options.Threshold.value_or(0.0) } };
+    { "--radius-edge-ratio", options.RadiusEdgeRatio }, { "--young", options.YoungModulus },
+    { "--poisson", options.PoissonRatio }, { "--density", options.Density },
+    { "--duration", options.Duration }, { "--threshold", options.Threshold.value_or(0.0) } };
   for (const auto& [option, number] : numbers)
   {
     if (!std::isfinite(number))
@@ -137,10 +165,32 @@ void CheckOverwriting(const Options& options)
   }
 }
 
-/// ChainMail has one radius for all its handles.
-void CheckPulls(const Options& options)
+/// A model has one radius for all its handles.
+void CheckModel(const Options& options)
 {
-  if (!options.Model.empty() && options.Pulls.empty())
+  if (options.HasElasticModel())
+  {
+    if (!options.TetGen && !options.HasLattice())
+    {
+      throw UsageError("--model " + options.Model +
+        " needs --tetgen or --lattice, the mesh that it "
+        "moves");
+    }
+    if (!options.Pushes.empty())
+    {
+      throw UsageError(
+        "--push moves nodes without a model; give --pull to --model " + options.Model);
+    }
+  }
+  else if (!options.Fixations.empty())
+  {
+    throw UsageError("--fix requires --model fem or --model mass-spring");
+  }
+  if (options.Model == "chainmail" && !options.MeshOutput.empty())
+  {
+    throw UsageError("--write-mesh goes with --tetgen or --lattice; ChainMail has no mesh");
+  }
+  if (options.Model == "chainmail" && options.Pulls.empty())
   {
     throw UsageError("--model chainmail needs at least one --pull X,Y,Z,DX,DY,DZ[,RADIUS]");
   }
@@ -156,8 +206,9 @@ void CheckPulls(const Options& options)
 /// One thing deforms the volume, and its options go with it.
 void CheckDeformation(const Options& options)
 {
+  CheckModel(options);
   const int deformations = !options.Mesh.empty() + !options.Field.empty() + options.TetGen +
-    options.HasLattice() + !options.Model.empty();
+    options.HasLattice() + (options.Model == "chainmail");
   if (deformations == 0 && options.HasTools())
   {
     if (!options.Displacement.empty() || options.Scale != 1.0 || !options.Pushes.empty())
@@ -169,10 +220,10 @@ void CheckDeformation(const Options& options)
   }
   if (deformations != 1)
   {
-    throw UsageError("exactly one of --mesh, --field, --tetgen, --lattice and --model says what "
-                     "deforms the volume");
+    throw UsageError(
+      "exactly one of --mesh, --field, --tetgen, --lattice and --model chainmail says "
+      "what deforms the volume");
   }
-  CheckPulls(options);
   if (!options.Mesh.empty())
   {
     if (options.Displacement.empty() == options.Rest.empty())
@@ -197,7 +248,7 @@ void CheckDeformation(const Options& options)
       throw UsageError("--push goes with --tetgen or --lattice; a --field brings its displacement");
     }
   }
-  else if (!options.Model.empty() && !options.Pushes.empty())
+  else if (options.Model == "chainmail" && !options.Pushes.empty())
   {
     throw UsageError("--push goes with --tetgen or --lattice; give --pull to --model chainmail");
   }
@@ -208,7 +259,8 @@ void CheckDeformation(const Options& options)
   }
   else if (options.Model.empty() && options.Pushes.empty())
   {
-    throw UsageError("--tetgen and --lattice need at least one --push X,Y,Z,DX,DY,DZ,RADIUS");
+    throw UsageError("--tetgen and --lattice need at least one --push X,Y,Z,DX,DY,DZ,RADIUS, or "
+                     "--model");
   }
 }
 
@@ -273,6 +325,12 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
   {
     options.Pulls.push_back(ParsePull(text));
   }
+  for (const std::string& text : raw.Fixations)
+  {
+    options.Fixations.push_back(ParseFixation(text));
+  }
+  options.Gravity = ParseNumbers<double, 3>(
+    "--gravity", raw.Gravity, "three numbers X,Y,Z with commas between them");
   for (const std::string& text : raw.Carvings)
   {
     options.Carvings.push_back(ParseCarving(text));
@@ -297,6 +355,31 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
   options.VolumeBounds = raw.Bounds == "volume";
   options.Cubic = raw.Interpolation == "cubic";
   Check(options);
+}
+
+void AddElasticModel(CLI::App& program, Options& options, RawOptions& raw)
+{
+  const char* group = "With --model fem or mass-spring";
+  program
+    .add_option("--fix", raw.Fixations,
+      "Nodes that stay where they are: those in a box, those with a z of at most Z, or those in "
+      "voxels of the value N. May be given several times")
+    ->type_name("box:X0,X1,Y0,Y1,Z0,Z1|below:Z|label:N")
+    ->take_all()
+    ->expected(1)
+    ->group(group);
+  program.add_option("--gravity", raw.Gravity, "The acceleration of gravity, in m/s^2")
+    ->capture_default_str()
+    ->type_name("X,Y,Z")
+    ->group(group);
+  const auto addNumber = [&](const char* name, double& value, const char* help)
+  {
+    program.add_option(name, value, help)->capture_default_str()->type_name("NUMBER")->group(group);
+  };
+  addNumber("--young", options.YoungModulus, "Young modulus, in Pa");
+  addNumber("--poisson", options.PoissonRatio, "Poisson ratio, from 0 to less than 0.495");
+  addNumber("--density", options.Density, "Density, in kg/m^3");
+  addNumber("--duration", options.Duration, "With mass-spring: how long it moves, in s");
 }
 
 void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
@@ -357,18 +440,21 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
   program
     .add_option("--model", options.Model,
       "chainmail: each voxel is linked to its neighbours, which follow a --pull as far as their "
-      "links do not give way")
-    ->check(CLI::IsMember({ "chainmail" }))
+      "links do not give way. fem, with --tetgen or --lattice: the mesh comes to equilibrium, by "
+      "finite elements. mass-spring, with these, too: it moves for some time. Units are mm")
+    ->check(CLI::IsMember({ "chainmail", "fem", "mass-spring" }))
     ->type_name("NAME")
     ->group(group);
   program
     .add_option("--pull", raw.Pulls,
-      "With --model: take the voxels within RADIUS of X,Y,Z (world coordinates; by default the "
-      "nearest one) and move them by DX,DY,DZ (world units). May be given several times")
+      "With --model: take the voxels or nodes within RADIUS of X,Y,Z (world coordinates; by "
+      "default "
+      "the nearest one) and move them by DX,DY,DZ (world units). May be given several times")
     ->type_name("X,Y,Z,DX,DY,DZ[,RADIUS]")
     ->take_all()
     ->expected(1)
     ->group(group);
+  AddElasticModel(program, options, raw);
 
   const char* tools = "What is cut before (alone, or with what deforms the volume)";
   program
@@ -443,13 +529,14 @@ void AddDependencies(CLI::App& program)
   needs("--field", { "--field-is-inverse" });
   needs("--tetgen",
     { "--isovalue", "--pieces", "--edge-length", "--radius-edge-ratio", "--tetgen-executable" });
-  needs("--model", { "--pull" });
+  needs("--model",
+    { "--pull", "--fix", "--gravity", "--young", "--poisson", "--density", "--duration" });
   needs("--cut", { "--smooth-cut" });
   needs("--image", { "--threshold", "--view" });
   program.get_option("--scale")->excludes(program.get_option("--rest"));
   program.get_option("--field")->excludes(program.get_option("--file-coordinates"));
   program.get_option("--isovalue")->excludes(program.get_option("--labels"));
-  for (const char* option : { "--mesh", "--field", "--model" })
+  for (const char* option : { "--mesh", "--field" })
   {
     program.get_option("--write-mesh")->excludes(program.get_option(option));
   }

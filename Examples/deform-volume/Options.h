@@ -3,6 +3,7 @@
 #define DeformVolumeOptions_h
 
 #include "ChainMail.h"
+#include "ElasticModel.h"
 #include "Push.h"
 #include "Tools.h"
 
@@ -36,6 +37,12 @@ struct Options
   std::vector<Push> Pushes;
   std::string Model;
   std::vector<Pull> Pulls;
+  std::vector<Fixation> Fixations;
+  std::array<double, 3> Gravity{ { 0.0, 0.0, 0.0 } };
+  double YoungModulus = 1e4;
+  double PoissonRatio = 0.3;
+  double Density = 1000.0;
+  double Duration = 1.0;
 
   std::vector<std::string> Cuts;
   std::vector<Carving> Carvings;
@@ -60,6 +67,8 @@ struct Options
 
   bool HasTools() const { return !this->Cuts.empty() || !this->Carvings.empty(); }
   bool HasLattice() const { return this->Lattice[0] > 0; }
+  /// Whether a model moves the nodes of a mesh.
+  bool HasElasticModel() const { return this->Model == "fem" || this->Model == "mass-spring"; }
 };
 
 /// Reads the command line. Returns the exit code where the program has nothing more to do: 0 after

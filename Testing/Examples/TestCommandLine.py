@@ -125,7 +125,8 @@ assert not os.path.exists(path("o.png"))
 # What is asked for.
 output, _ = call(program, "--help")
 for option in ("--mesh", "--displacement", "--rest", "--tetgen", "--lattice", "--push", "--image",
-               "--cut", "--smooth-cut", "--carve", "--model", "--pull",
+               "--cut", "--smooth-cut", "--carve", "--model", "--pull", "--fix", "--gravity",
+               "--young", "--poisson", "--duration",
                "--list-devices", "--device", "--categorical", "--background", "--resampler",
                "--interpolation",
                "world units", "Exit codes"):

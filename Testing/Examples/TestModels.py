@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""deform-volume moves meshes by finite elements and by springs as the filters do it, and says what is
+wrong with its options. Usage: TestModels.py PROGRAM FOLDER"""
+import os
+import sys
+
+import deformvolume
+import numpy
+from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
+
+program = sys.argv[1]
+folder = make_folder(sys.argv[2], "Models")
+
+
+def path(name):
+    return os.path.join(folder, name)
+
+
+volume = make_ball()
+write_vti(volume, path("in.vti"))
+bounds = volume.GetBounds()
+middle = [0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]) for axis in range(3)]
+height = bounds[4] + 2.0
+pull_text = f"{middle[0]},{middle[1]},{bounds[5]},3,1,2,4"
+lattice = ("--lattice", "7,7,7")
+fix = ("--fix", f"below:{height}")
+pull = ("--pull", pull_text)
+
+
+def fails(code, expected, *arguments):
+    output, errors = call(program, path("in.vti"), *arguments, "-o", path("o.vti"), code=code)
+    assert output == "", output
+    assert errors.startswith("deform-volume: "), errors
+    assert expected in errors, f"{expected} is not in {errors}"
+    assert not os.path.exists(path("o.vti"))
+
+
+# Misuse.
+for model in ("fem", "mass-spring"):
+    fails(2, "needs --tetgen or --lattice", "--model", model, *fix, *pull)
+    fails(2, "give --pull", "--model", model, *lattice, *fix, "--push", "1,2,3,4,5,6,7")
+    fails(2, "expected box:", "--model", model, *lattice, "--fix", "above:3")
+    fails(2, "six numbers", "--model", model, *lattice, "--fix", "box:1,2,3")
+    fails(2, "a number", "--model", model, *lattice, "--fix", "below:")
+    fails(2, "three numbers", "--model", model, *lattice, *fix, "--gravity", "1,2")
+    fails(2, "--young", "--model", model, *lattice, *fix, "--young", "nan")
+    fails(1, "fixes no node", "--model", model, *lattice, "--fix", "below:-1e6")
+    fails(1, "Poisson ratio", "--model", model, *lattice, *fix, "--poisson", "0.5")
+fails(1, "No constraints", "--model", "fem", *lattice, "--gravity", "0,0,-9.81")
+fails(2, "--fix requires", "--model", "chainmail", *fix, *pull)
+fails(2, "--young requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--young", "5")
+fails(2, "ChainMail has no mesh", "--model", "chainmail", *pull, "--write-mesh", path("m.vtu"))
+
+# The same by the filters.
+source = deformvolume.vtkLatticeTetrahedraSource()
+source.SetInputData(volume)
+source.SetNumberOfNodes(7, 7, 7)
+source.Update()
+mesh = vtkUnstructuredGrid()
+mesh.DeepCopy(source.GetOutput())
+heights = vtk_to_numpy(mesh.GetPoints().GetData())[:, 2]
+fixed = numpy_to_vtk((heights <= height).astype(numpy.uint8), deep=True)
+fixed.SetName("Fixed")
+mesh.GetPointData().AddArray(fixed)
+numbers = [float(number) for number in pull_text.split(",")]
+handles = vtkPolyData()
+points = vtkPoints()
+points.SetDataTypeToDouble()
+points.InsertNextPoint(*(numbers[axis] + numbers[3 + axis] for axis in range(3)))
+handles.SetPoints(points)
+rest = numpy_to_vtk(numpy.array([numbers[:3]]), deep=True)
+rest.SetName("RestPosition")
+handles.GetPointData().AddArray(rest)
+
+
+def check(name, model, words, *arguments):
+    model.SetInputData(mesh)
+    model.SetHandlesData(handles)
+    model.SetHandleRadius(numbers[6])
+    model.SetLengthUnitToMillimetre()
+    model.SetYoungModulus(5000)
+    model.SetPoissonRatio(0.4)
+    model.SetGravity(0, 0, -2)
+    if name == "fem":
+        model.SetModeToConverged()
+        model.Update()
+    else:
+        model.UpdateTimeStep(0.1)
+    deform = deformvolume.vtkDeformVolumeFilter()
+    deform.SetInputData(volume)
+    deform.SetDeformationData(model.GetOutput())
+    deform.Update()
+    output, _ = call(program, path("in.vti"), "--model", name, *lattice, *fix, *pull, "--gravity",
+                     "0,0,-2", "--young", "5000", "--poisson", "0.4", *arguments, "-o",
+                     path(f"{name}.vti"), "--write-mesh", path(f"{name}.vtu"))
+    assert words in output, output
+    numpy.testing.assert_array_equal(get_values(read_vti(path(f"{name}.vti"))),
+                                     get_values(deform.GetOutput()))
+    assert os.path.exists(path(f"{name}.vtu"))
+
+
+check("fem", deformvolume.vtkCorotationalDeformation(), "to equilibrium, strain energy")
+check("mass-spring", deformvolume.vtkMassSpringDeformation(), "0.1 s, in steps of", "--duration",
+      "0.1")
