@@ -28,7 +28,7 @@ def check_elements(volume, mesh, handle):
     fem.YoungModulus = 5000
     fem.ElementResults = 1
     assert abs(largest(fem) - 4.0) < 1e-6
-    assert fem.IsConverged == 1, fem.Summary
+    assert fem.InEquilibrium == 1, fem.Summary
     assert fem.CellData["Stress"].GetNumberOfComponents() == 6
     assert "in equilibrium" in fem.Summary, fem.Summary
     made = fem.GetClientSideObject()
@@ -49,6 +49,7 @@ def check_springs(mesh, handle):
     springs = simple.MassSpringDeformation(RestMesh=mesh, Handles=handle)
     springs.LengthUnit = "Millimetre"
     springs.EndTime = 0.2
+    springs.UpdatePipelineInformation()
     scene = simple.GetAnimationScene()
     scene.UpdateAnimationUsingDataTimeSteps()
     assert scene.EndTime == 0.2, scene.EndTime
