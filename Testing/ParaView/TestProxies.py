@@ -198,7 +198,7 @@ def check_made(cls, group, proxy):
         check(present, f"{name}: ParaView has no {prop.get('name')}")
     fresh = cls()
     for prop in properties_of(proxy):
-        command = prop.get("command")
+        command = prop.get("command", "")
         getter = "Get" + command[3:]
         if not command.startswith("Set") or getter not in own_names(cls) or command == "SetDevice":
             continue
