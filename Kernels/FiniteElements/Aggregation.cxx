@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 namespace deformvolume
@@ -27,8 +28,14 @@ Aggregates MakeAggregates(
       visit(static_cast<std::size_t>(columns[i]));
     }
   };
-  // Those all of whose neighbors are free make a group with them.
-  for (std::size_t row = 0; row < rows; ++row)
+  // Those all of whose neighbors are free make a group with them: the more there are, the earlier,
+  // since large groups make a small coarse level.
+  std::vector<std::size_t> order(rows);
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::stable_sort(order.begin(), order.end(),
+    [&](std::size_t a, std::size_t b)
+    { return starts[a + 1] - starts[a] > starts[b + 1] - starts[b]; });
+  for (const std::size_t row : order)
   {
     bool isAlone = true;
     forNeighbors(row, [&](std::size_t other) { isAlone = isAlone && groups[other] < 0; });

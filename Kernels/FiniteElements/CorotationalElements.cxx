@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 
 namespace deformvolume
 {
@@ -81,13 +82,42 @@ struct TangentArguments
   BlockMatrix* Matrix;
 };
 
-DEFORMVOLUME_ALWAYS_INLINE void AddBlock(double* block, const LaneMatrix& matrix, int lane)
+// Four numbers of each lane, lane by lane.
+DEFORMVOLUME_ALWAYS_INLINE void TransposeLanes(
+  const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d, Lanes (&result)[NumberOfLanes])
 {
-  for (int j = 0; j < 3; ++j)
+  const Lanes lowAB = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  const Lanes highAB = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Lanes lowCD = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+  const Lanes highCD = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  result[0] = __builtin_shufflevector(lowAB, lowCD, 0, 1, 4, 5);
+  result[1] = __builtin_shufflevector(highAB, highCD, 0, 1, 4, 5);
+  result[2] = __builtin_shufflevector(lowAB, lowCD, 2, 3, 6, 7);
+  result[3] = __builtin_shufflevector(highAB, highCD, 2, 3, 6, 7);
+}
+
+DEFORMVOLUME_ALWAYS_INLINE void AddLanes(double* sums, const Lanes& lanes)
+{
+  Lanes sum;
+  std::memcpy(&sum, sums, sizeof(sum));
+  sum = sum + lanes;
+  std::memcpy(sums, &sum, sizeof(sum));
+}
+
+// Adds the matrix of each lane to its block. Blocks of two lanes may be the same.
+DEFORMVOLUME_ALWAYS_INLINE void AddBlocks(
+  double* const (&blocks)[NumberOfLanes], const LaneMatrix& matrix)
+{
+  const LaneVector* const columns = matrix.Columns;
+  Lanes first[NumberOfLanes];
+  Lanes second[NumberOfLanes];
+  TransposeLanes(columns[0].X, columns[0].Y, columns[0].Z, columns[1].X, first);
+  TransposeLanes(columns[1].Y, columns[1].Z, columns[2].X, columns[2].Y, second);
+  for (int lane = 0; lane < NumberOfLanes; ++lane)
   {
-    block[3 * j] += matrix.Columns[j].X[lane];
-    block[3 * j + 1] += matrix.Columns[j].Y[lane];
-    block[3 * j + 2] += matrix.Columns[j].Z[lane];
+    AddLanes(blocks[lane], first[lane]);
+    AddLanes(blocks[lane] + 4, second[lane]);
+    blocks[lane][8] += columns[2].Z[lane];
   }
 }
 
@@ -100,18 +130,22 @@ DEFORMVOLUME_ALWAYS_INLINE void AddTangentsOfChunk(const TangentArguments& argum
     const LaneMatrix F = FindDeformationGradient(batch, arguments.Displacements);
     LaneTangent tangent;
     FindTangent(batch, FindSingularValues(F), tangent);
-    for (int lane = 0; lane < NumberOfLanes; ++lane)
+    for (int pair = 0; pair < 6; ++pair)
     {
-      for (int pair = 0; pair < 6; ++pair)
+      const std::int32_t* const p = positions.Blocks[pair];
+      BlockMatrix& matrix = *arguments.Matrix;
+      AddBlocks({ matrix.GetBlock(p[0]), matrix.GetBlock(p[1]), matrix.GetBlock(p[2]),
+                  matrix.GetBlock(p[3]) },
+        tangent.Mixed[pair]);
+    }
+    for (int node = 0; node < 4; ++node)
+    {
+      const std::int32_t* const n = batch.Nodes[node];
+      const auto block = [&](int lane) __attribute__((always_inline))
       {
-        AddBlock(
-          arguments.Matrix->GetBlock(positions.Blocks[pair][lane]), tangent.Mixed[pair], lane);
-      }
-      for (int node = 0; node < 4; ++node)
-      {
-        AddBlock(arguments.Matrix->GetBlock(arguments.Diagonal[batch.Nodes[node][lane]]),
-          tangent.Own[node], lane);
-      }
+        return arguments.Matrix->GetBlock(arguments.Diagonal[n[lane]]);
+      };
+      AddBlocks({ block(0), block(1), block(2), block(3) }, tangent.Own[node]);
     }
   }
 }

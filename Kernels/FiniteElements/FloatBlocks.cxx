@@ -34,9 +34,17 @@ struct ProductArguments
   const float* Vector;
   const float* Right;
   float* Result;
+  const float* Diagonal;
 };
 
-template <int Rows, int Columns, bool IsSubtracted>
+enum class Product
+{
+  Added,
+  Subtracted,
+  Smoothed
+};
+
+template <int Rows, int Columns, Product Kind>
 DEFORMVOLUME_ALWAYS_INLINE void MultiplyRows(const ProductArguments& arguments)
 {
   constexpr std::size_t padded = PaddedSize<Rows>;
@@ -62,32 +70,45 @@ DEFORMVOLUME_ALWAYS_INLINE void MultiplyRows(const ProductArguments& arguments)
     Lane sum = sums[0] + sums[1];
     float* const result = arguments.Result + row * padded;
     Lane before;
-    std::memcpy(
-      &before, (IsSubtracted ? arguments.Right : arguments.Result) + row * padded, sizeof(before));
-    sum = IsSubtracted ? before - sum : before + sum;
+    std::memcpy(&before,
+      (Kind == Product::Added ? arguments.Result : arguments.Right) + row * padded, sizeof(before));
+    sum = Kind == Product::Added ? before + sum : before - sum;
+    if (Kind == Product::Smoothed)
+    {
+      const float* const diagonal = arguments.Diagonal + row * (Rows * Rows);
+      Lane smoothed;
+      std::memcpy(&smoothed, arguments.Vector + row * padded, sizeof(smoothed));
+      for (int j = 0; j < Rows; ++j)
+      {
+        Lane column;
+        std::memcpy(&column, diagonal + j * Rows, sizeof(column));
+        smoothed = smoothed + column * sum[j];
+      }
+      sum = smoothed;
+    }
     std::memcpy(result, &sum, sizeof(sum));
   }
 }
 
 #if DEFORMVOLUME_HAS_AVX2_CODE
-template <int Rows, int Columns, bool IsSubtracted>
+template <int Rows, int Columns, Product Kind>
 DEFORMVOLUME_FOR_AVX2 void MultiplyRowsWide(const ProductArguments& arguments)
 {
-  MultiplyRows<Rows, Columns, IsSubtracted>(arguments);
+  MultiplyRows<Rows, Columns, Kind>(arguments);
 }
 #endif
 
-template <int Rows, int Columns, bool IsSubtracted>
+template <int Rows, int Columns, Product Kind>
 void Run(const ProductArguments& arguments)
 {
 #if DEFORMVOLUME_HAS_AVX2_CODE
   if (HasWideLanes())
   {
-    MultiplyRowsWide<Rows, Columns, IsSubtracted>(arguments);
+    MultiplyRowsWide<Rows, Columns, Kind>(arguments);
     return;
   }
 #endif
-  MultiplyRows<Rows, Columns, IsSubtracted>(arguments);
+  MultiplyRows<Rows, Columns, Kind>(arguments);
 }
 
 } // namespace
@@ -113,16 +134,24 @@ template <int Rows, int Columns>
 void FloatBlocks<Rows, Columns>::Subtract(
   std::size_t begin, std::size_t end, const float* right, const float* vector, float* result) const
 {
-  Run<Rows, Columns, true>({ begin, end, this->Starts.data(), this->ColumnOfBlock.data(),
-    this->Values.data(), vector, right, result });
+  Run<Rows, Columns, Product::Subtracted>({ begin, end, this->Starts.data(),
+    this->ColumnOfBlock.data(), this->Values.data(), vector, right, result, nullptr });
+}
+
+template <int Rows, int Columns>
+void FloatBlocks<Rows, Columns>::Smooth(std::size_t begin, std::size_t end,
+  const std::vector<float>& diagonal, const float* right, const float* vector, float* result) const
+{
+  Run<Rows, Columns, Product::Smoothed>({ begin, end, this->Starts.data(),
+    this->ColumnOfBlock.data(), this->Values.data(), vector, right, result, diagonal.data() });
 }
 
 template <int Rows, int Columns>
 void FloatBlocks<Rows, Columns>::Add(
   std::size_t begin, std::size_t end, const float* vector, float* result) const
 {
-  Run<Rows, Columns, false>({ begin, end, this->Starts.data(), this->ColumnOfBlock.data(),
-    this->Values.data(), vector, nullptr, result });
+  Run<Rows, Columns, Product::Added>({ begin, end, this->Starts.data(), this->ColumnOfBlock.data(),
+    this->Values.data(), vector, nullptr, result, nullptr });
 }
 
 template class FloatBlocks<3, 3>;

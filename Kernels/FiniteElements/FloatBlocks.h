@@ -32,6 +32,11 @@ public:
   void Subtract(std::size_t begin, std::size_t end, const float* right, const float* vector,
     float* result) const;
 
+  /// result = vector + diagonal * (right - matrix * vector), of which the diagonal has a block for
+  /// each row.
+  void Smooth(std::size_t begin, std::size_t end, const std::vector<float>& diagonal,
+    const float* right, const float* vector, float* result) const;
+
   /// result = result + matrix * vector.
   void Add(std::size_t begin, std::size_t end, const float* vector, float* result) const;
 

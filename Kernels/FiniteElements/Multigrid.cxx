@@ -81,16 +81,18 @@ NearNullSpace<3> MakeRigidModes(
 }
 
 template <int Size>
-SparseBlocks<Size, Size> MakeSmoother(
+std::vector<float> MakeSmoother(
   const std::vector<Eigen::Matrix<double, Size, Size>>& inverses, double damping)
 {
-  SparseBlocks<Size, Size> result;
-  result.NumberOfColumns = static_cast<std::int32_t>(inverses.size());
-  for (const auto& inverse : inverses)
+  constexpr std::size_t size = Size * Size;
+  // The last column is read as if it had as many rows as there are lanes.
+  std::vector<float> result(inverses.size() * size + PaddedSize<Size>, 0.0f);
+  for (std::size_t row = 0; row < inverses.size(); ++row)
   {
-    result.ColumnOfBlock.push_back(static_cast<std::int32_t>(result.Blocks.size()));
-    result.Blocks.emplace_back(damping * inverse);
-    result.Starts.push_back(static_cast<std::int32_t>(result.Blocks.size()));
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      result[row * size + i] = static_cast<float>(damping * inverses[row].data()[i]);
+    }
   }
   return result;
 }
@@ -104,7 +106,7 @@ Coarsening<Size> MakeLevel(Watch& watch, const SparseBlocks<Size, Size>& matrix,
   const double largest = FindLargestEigenvalue(watch, matrix, inverses);
   Coarsening<Size> coarsening = Coarsen(watch, matrix, inverses, largest, modes);
   level.Matrix = FloatBlocks<Size, Size>(matrix);
-  level.Smoother = FloatBlocks<Size, Size>(MakeSmoother(inverses, 4.0 / (3.0 * largest)));
+  level.Smoother = MakeSmoother(inverses, 4.0 / (3.0 * largest));
   level.Prolongation = FloatBlocks<Size, 6>(coarsening.Prolongation);
   level.Restriction = FloatBlocks<6, Size>(Transpose(coarsening.Prolongation));
   const std::size_t length = inverses.size() * PaddedSize<Size>;
@@ -122,9 +124,21 @@ void SmoothFirst(Watch& watch, MultigridLevel<Size>& level)
   ForRows(watch, rows,
     [&](std::size_t begin, std::size_t end)
     {
-      std::fill(level.Solution.begin() + static_cast<std::ptrdiff_t>(begin * PaddedSize<Size>),
-        level.Solution.begin() + static_cast<std::ptrdiff_t>(end * PaddedSize<Size>), 0.0f);
-      level.Smoother.Add(begin, end, level.Right.data(), level.Solution.data());
+      for (std::size_t row = begin; row < end; ++row)
+      {
+        const float* const right = &level.Right[row * PaddedSize<Size>];
+        float* const solution = &level.Solution[row * PaddedSize<Size>];
+        const float* const smoother = &level.Smoother[row * (Size * Size)];
+        for (int i = 0; i < Size; ++i)
+        {
+          float sum = 0.0f;
+          for (int j = 0; j < Size; ++j)
+          {
+            sum += smoother[j * Size + i] * right[j];
+          }
+          solution[i] = sum;
+        }
+      }
     });
   ForRows(watch, rows,
     [&](std::size_t begin, std::size_t end)
@@ -145,12 +159,10 @@ void SmoothLast(Watch& watch, MultigridLevel<Size>& level, const std::vector<flo
   ForRows(watch, rows,
     [&](std::size_t begin, std::size_t end)
     {
-      level.Matrix.Subtract(
-        begin, end, level.Right.data(), level.Solution.data(), level.Work.data());
+      level.Matrix.Smooth(
+        begin, end, level.Smoother, level.Right.data(), level.Solution.data(), level.Work.data());
     });
-  ForRows(watch, rows,
-    [&](std::size_t begin, std::size_t end)
-    { level.Smoother.Add(begin, end, level.Work.data(), level.Solution.data()); });
+  level.Solution.swap(level.Work);
 }
 
 // The right-hand side of the coarser level.

@@ -23,7 +23,7 @@ struct MultigridLevel
 {
   FloatBlocks<Size, Size> Matrix;
   /// Damped inverses of the blocks on the diagonal.
-  FloatBlocks<Size, Size> Smoother;
+  std::vector<float> Smoother;
   FloatBlocks<Size, 6> Prolongation;
   FloatBlocks<6, Size> Restriction;
   std::vector<float> Right;

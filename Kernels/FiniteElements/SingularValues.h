@@ -73,8 +73,9 @@ DEFORMVOLUME_ALWAYS_INLINE void SortColumns(
 DEFORMVOLUME_ALWAYS_INLINE SingularValues FindSingularValues(const LaneMatrix& matrix)
 {
   // Jacobi's method turns off-diagonal elements to 0 ever faster: after four sweeps they are less
-  // than rounding, whatever they were.
+  // than rounding, whatever they were, and mostly earlier.
   constexpr int sweeps = 4;
+  constexpr double rounding = 1e-33;
   SingularValues result;
   const Lanes zero = MakeLanes(0.0);
   const Lanes one = MakeLanes(1.0);
@@ -89,6 +90,13 @@ DEFORMVOLUME_ALWAYS_INLINE SingularValues FindSingularValues(const LaneMatrix& m
     RotateColumns(s.XX, s.YY, s.XY, s.XZ, s.YZ, V.Columns[0], V.Columns[1]);
     RotateColumns(s.YY, s.ZZ, s.YZ, s.XY, s.XZ, V.Columns[1], V.Columns[2]);
     RotateColumns(s.XX, s.ZZ, s.XZ, s.XY, s.YZ, V.Columns[0], V.Columns[2]);
+    const Lanes rest = s.XY * s.XY + s.YZ * s.YZ + s.XZ * s.XZ;
+    const Lanes trace = s.XX + s.YY + s.ZZ;
+    const Lanes limit = rounding * trace * trace;
+    if (rest[0] <= limit[0] && rest[1] <= limit[1] && rest[2] <= limit[2] && rest[3] <= limit[3])
+    {
+      break;
+    }
   }
   LaneVector b[3] = { Multiply(matrix, V.Columns[0]), Multiply(matrix, V.Columns[1]),
     Multiply(matrix, V.Columns[2]) };
