@@ -224,10 +224,10 @@ __kernel void FindCutPositions(MAPPING_PARAMETERS, __global const uchar* state, 
     positions[i] = (int4)(INT_MIN, 0, 0, 0);
     return;
   }
-  const int4 own = PositionOf(&m, at.x, at.y, at.z, &p);
+  const int3 own = PositionOf(&m, at.x, at.y, at.z, &p).xyz; // the last component may be anything
   if (stencil.y == IS_JOINED)
   {
-    positions[i] = own;
+    positions[i] = (int4)(own, 0);
     return;
   }
   int3 sum = 0;
@@ -245,6 +245,7 @@ __kernel void FindCutPositions(MAPPING_PARAMETERS, __global const uchar* state, 
   const int count = popcount(stencil.x);
   const int3 mean =
     (int3)(DivideRounded(sum.x, count), DivideRounded(sum.y, count), DivideRounded(sum.z, count));
-  const int4 other = (int4)(RestOf(&m, at, &p) + mean, 0);
-  positions[i] = all(abs_diff(other, own) <= (uint4)(DEFORMVOLUME_CLOSED_GAP)) ? own : other;
+  const int3 other = RestOf(&m, at, &p) + mean;
+  const int isNear = all(abs_diff(other, own) <= (uint3)(DEFORMVOLUME_CLOSED_GAP));
+  positions[i] = (int4)(isNear ? own : other, 0);
 }

@@ -293,6 +293,12 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   {
     EndOnBorder(c, rises, mesh, &whole, &box, &toEnds, output, p);
   }
+  else if (HAS_CUT && c->Cells.Crossed)
+  {
+    GroupState state;
+    StatesOfGroup(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, &state, p);
+    whole &= LaneBits(state.Whole);
+  }
   if (c->HasBoxes)
   {
     c->Box = box;
