@@ -10,7 +10,8 @@
 // vertices. All numbers are whole, and the order of neighbours does not matter.
 //
 // Data: the list of cut vertices (KernelParameters.h); of each a stencil, the neighbours that are heard, as bits
-// (NEIGHBOUR), and what they say; and its position as seen from the other side.
+// (NEIGHBOUR), and what they say; and its position as seen from the other side, with 0 in the last component where it lies
+// where it does itself, so that tetrahedra with only such vertices need no copies.
 
 #define NEIGHBOUR(dx, dy, dz) (1u << ((dz + 1) * 9 + (dy + 1) * 3 + dx + 1))
 // What neighbours say.
@@ -221,7 +222,7 @@ __kernel void FindCutPositions(MAPPING_PARAMETERS, __global const uchar* state, 
   const int3 at = (int3)(vertices[i].X, vertices[i].Y, vertices[i].Z);
   if (!stencil.x || !(StateOf(state, at.x, at.y, at.z, &p) & DEFORMVOLUME_VERTEX_SOURCE))
   {
-    positions[i] = (int4)(INT_MIN, 0, 0, 0);
+    positions[i] = (int4)(INT_MIN, 0, 0, 1);
     return;
   }
   const int3 own = PositionOf(&m, at.x, at.y, at.z, &p).xyz; // the last component may be anything
@@ -247,5 +248,5 @@ __kernel void FindCutPositions(MAPPING_PARAMETERS, __global const uchar* state, 
     (int3)(DivideRounded(sum.x, count), DivideRounded(sum.y, count), DivideRounded(sum.z, count));
   const int3 other = RestOf(&m, at, &p) + mean;
   const int isNear = all(abs_diff(other, own) <= (uint3)(DEFORMVOLUME_CLOSED_GAP));
-  positions[i] = (int4)(isNear ? own : other, 0);
+  positions[i] = isNear ? (int4)(own, 0) : (int4)(other, 1);
 }

@@ -293,12 +293,12 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   {
     EndOnBorder(c, rises, mesh, &whole, &box, &toEnds, output, p);
   }
-  else if (HAS_CUT && c->Cells.Crossed)
+#if HAS_CUT
+  if (c->Cells.Crossed)
   {
-    GroupState state;
-    StatesOfGroup(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, &state, p);
-    whole &= LaneBits(state.Whole);
+    whole &= ~FindDivided(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, whole, p);
   }
+#endif
   if (c->HasBoxes)
   {
     c->Box = box;

@@ -7,7 +7,7 @@
 // What lies round the cells of a group on the border of the mesh.
 typedef struct
 {
-  INTS Whole;    // all five tetrahedra are active and have positions
+  INTS Whole;    // all five tetrahedra are active and have positions, and no copies elsewhere
   INTS Interior; // as CellState
   INTS Regular;
 } GroupState;
@@ -59,6 +59,26 @@ static void StatesOfLanes(
   states->Interior = interior.Vector;
   states->Regular = regular.Vector;
 }
+
+#if HAS_CUT
+// The cells of a group, as bits, of those that are wanted, that a smooth cut divides.
+static __attribute__((noinline)) uint FindDivided(
+  const SamplingMesh* mesh, int x, int y, int z, uint wanted, const KernelParameters* p)
+{
+  uint divided = 0;
+  FOR_EACH_LANE(lane, wanted)
+  {
+    const int cell = x + 2 * lane;
+    if (!(mesh->State[VertexInChunk(cell, y, z, p)] & DEFORMVOLUME_CELL_UNCROSSED))
+    {
+      CellCut cut;
+      LoadCut(mesh, cell, y, z, DEFORMVOLUME_ALL_TETRAHEDRA, p, &cut);
+      divided |= (cut.Divided != 0) << lane;
+    }
+  }
+  return divided;
+}
+#endif
 
 static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, int x, int y, int z,
   GroupState* states, const KernelParameters* p)

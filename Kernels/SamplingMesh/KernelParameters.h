@@ -178,10 +178,10 @@ typedef struct
 // State of a vertex of the sampling mesh.
 #define DEFORMVOLUME_VERTEX_SOURCE 1   // it has a deformed position and may be interpolated
 #define DEFORMVOLUME_VERTEX_INTERIOR 2 // all tetrahedra that it could belong to are there
-#define DEFORMVOLUME_CELL_WHOLE 4      // of the cell that begins at it, all tetrahedra are there once
+#define DEFORMVOLUME_CELL_WHOLE 4      // of the cell that begins at it, all tetrahedra are there
 #define DEFORMVOLUME_VERTEX_REGULAR 8  // interior, but that it may lie on the border of the volume
 #define DEFORMVOLUME_VERTEX_UNCLIPPED 16 // a source, not on the far side of the boundary
-#define DEFORMVOLUME_CELL_UNCROSSED 32 // no tetrahedron of the cell that begins at it is crossed
+#define DEFORMVOLUME_CELL_UNCROSSED 32   // a smooth cut crosses no tetrahedron of that cell
 
 #ifdef __OPENCL_VERSION__
 

@@ -178,12 +178,10 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, _
           ? DEFORMVOLUME_VERTEX_INTERIOR
           : 0;
       }
-      const int crossed = IsCrossed(cutRows, cutVertices, x, y, z, p);
-      bits |= crossed ? 0 : DEFORMVOLUME_CELL_UNCROSSED;
-      bits |=
-        (here & after & CELL_OF_SOURCES) && x < p->Size[0] - 1 && z < p->LayersEnd && (here & CELL_ACTIVE) && !crossed
+      bits |= (here & after & CELL_OF_SOURCES) && x < p->Size[0] - 1 && z < p->LayersEnd && (here & CELL_ACTIVE)
         ? DEFORMVOLUME_CELL_WHOLE
         : 0;
+      bits |= IsCrossed(cutRows, cutVertices, x, y, z, p) ? 0 : DEFORMVOLUME_CELL_UNCROSSED;
     }
     marked[PlaceInList(first, x, y, z)] = bits;
     before = step == 1 ? here : MarkColumn(state, active, x + step - 1, y, z, p);
@@ -194,8 +192,7 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, _
 // Second pass: a vertex is interior when all vertices round it are unclipped sources and all tetrahedra of
 // the eight cells round it are active: those that a smooth cut divides are all there as each side sees
 // them (CutCells.cl). Being wrong on the careful side costs time, not truth. A cell is whole when its vertices are
-// unclipped sources and its tetrahedra active and not crossed. Not into the states, where others look for sources
-// meanwhile.
+// unclipped sources and its tetrahedra active. Not into the states, where others look for sources meanwhile.
 __kernel void MarkVertices(__global const uchar* state, __global const uchar* active,
   __global const uint* cutRows, __global const CutVertex* cutVertices, __global uchar* marked, __global const uint* cuboids, const KernelParameters p)
 {
