@@ -252,15 +252,14 @@ void DeviceCut::Send(const OpenCLContext& context, const cl::CommandQueue& queue
 }
 
 void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
-  const KernelParameters& p, const VolumeChunk& chunk, const Source& source)
+  const KernelParameters& p, const VolumeChunk& chunk, const Source& source,
+  const std::vector<unsigned char>& wanted)
 {
-  // Each vertex is looked at in the first chunk whose cells have it; those of the last plane of a
-  // chunk belong to the next one.
+  // Chunks have states of their own: vertices between two of them are looked at in both.
   const auto row = [&](int z)
   { return this->RowBegins[static_cast<std::size_t>(z) * static_cast<std::size_t>(p.Size[1])]; };
-  const bool isLast = chunk.LayersEnd == p.Size[2] - 1;
   const cl_uint begin = row(chunk.LayersBegin);
-  const cl_uint end = row(isLast ? p.Size[2] : chunk.LayersEnd);
+  const cl_uint end = row(chunk.LayersEnd + 1);
   if (begin == end)
   {
     return;
@@ -280,12 +279,21 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
     find.setArg(7, p);
     context.Launch(queue, find, items, cl::NDRange(group));
   }
+  const bool some = this->StencilsCurrent && !wanted.empty();
+  if (some)
+  {
+    Reserve(context, this->Wanted, wanted.size());
+    queue.enqueueWriteBuffer(this->Wanted, CL_TRUE, 0, wanted.size(), wanted.data());
+  }
   cl::Kernel kernel(source.Program, "FindCutPositions");
   cl_uint i = source.SetMapping(kernel);
   kernel.setArg(i++, source.State);
   kernel.setArg(i++, this->Vertices);
   kernel.setArg(i++, this->Stencils);
   kernel.setArg(i++, this->Positions);
+  // Any buffer stands in for a missing one.
+  kernel.setArg(i++, some ? this->Wanted : this->Stencils);
+  kernel.setArg(i++, cl_int{ some });
   kernel.setArg(i++, begin);
   kernel.setArg(i++, end);
   kernel.setArg(i++, p);
@@ -295,7 +303,8 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
 std::uint64_t DeviceCut::GetMemory() const
 {
   return deformvolume::GetMemory(this->Rows) + deformvolume::GetMemory(this->Vertices) +
-    deformvolume::GetMemory(this->Stencils) + deformvolume::GetMemory(this->Positions);
+    deformvolume::GetMemory(this->Stencils) + deformvolume::GetMemory(this->Positions) +
+    deformvolume::GetMemory(this->Wanted);
 }
 
 } // namespace deformvolume

@@ -466,18 +466,28 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,
   this->States.Finish();
 }
 
-void DeviceVolume::UpdateCut(
-  const cl::Program& mapping, const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set)
+void DeviceVolume::UpdateCut(const cl::Program& mapping, const std::vector<cl_uint>* bricks,
+  const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set)
 {
   if (!this->HasCut())
   {
     return;
   }
+  std::vector<unsigned char> wanted;
+  if (bricks)
+  {
+    wanted.resize(this->Bricks.GetNumberOfBricks());
+    for (const cl_uint brick : *bricks)
+    {
+      wanted[brick & ((1U << DEFORMVOLUME_BRICK_BITS) - 1)] = 1;
+    }
+  }
   for (const VolumeChunk& chunk : this->Chunks)
   {
     this->Cut.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
       { mapping, [&](cl::Kernel& kernel) { return set(kernel, chunk); }, this->GetState(chunk),
-        this->GetActive(chunk) });
+        this->GetActive(chunk) },
+      wanted);
   }
   this->Cut.Finish();
 }

@@ -27,13 +27,13 @@ typedef struct
   uint Border;  // one is not interior
   uint Special; // one has a value that sums of products do not give back bit for bit
 #if HAS_CUT
-  uint Crossed; // a cell that begins at one has tetrahedra that a smooth cut crosses
+  uint Apart; // one lies elsewhere as seen from the other side of a smooth cut
 #endif
 } RowFlags;
 
 #define SOURCES 0x0101010101010101UL
 #define INTERIORS 0x0202020202020202UL
-#define UNCROSSED 0x2020202020202020UL
+#define TOGETHER 0x4040404040404040UL
 
 // The bits that both eights of sixteen vertices of a row have; rowInside: whether the row is not on the border
 // of the volume.
@@ -45,7 +45,7 @@ static ulong StatesOf(
     const ulong2 states = as_ulong2(vload16(0, rowState + x));
     return states.x & states.y;
   }
-  return SOURCES | UNCROSSED | (rowInside && x > 0 && x + 16 < p->Size[0] ? INTERIORS : 0);
+  return SOURCES | TOGETHER | (rowInside && x > 0 && x + 16 < p->Size[0] ? INTERIORS : 0);
 }
 
 #define STORE_EIGHT(v, place) *(ROW_MEMORY PlacedFloat8*)(place) = v;
@@ -119,9 +119,9 @@ static __attribute__((always_inline)) void MapOne(const MappedRow* row, int x, i
     flags->Border |= 1u << (i >> 3);
   }
 #if HAS_CUT
-  if (!(state & DEFORMVOLUME_CELL_UNCROSSED))
+  if (!(state & DEFORMVOLUME_VERTEX_TOGETHER))
   {
-    flags->Crossed |= 1u << (i >> 3);
+    flags->Apart |= 1u << (i >> 3);
   }
 #endif
   LANE_ARRAYS(PUT_VALUE)
@@ -154,9 +154,9 @@ static __attribute__((always_inline)) void MapSixteen(const MappedRow* row, int 
     flags->Border |= FLAGS_TOGETHER << (i >> 3);
   }
 #if HAS_CUT
-  if ((states & UNCROSSED) != UNCROSSED)
+  if ((states & TOGETHER) != TOGETHER)
   {
-    flags->Crossed |= FLAGS_TOGETHER << (i >> 3);
+    flags->Apart |= FLAGS_TOGETHER << (i >> 3);
   }
 #endif
   LANE_ARRAYS(PUT_VALUES_TOGETHER)

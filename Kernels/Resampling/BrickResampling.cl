@@ -213,9 +213,9 @@ static void ResampleLayer(const SamplingMesh* mesh, const BrickCells* cells, int
     row.Odd = (p->First[1] + y + p->First[2] + z) & 1;
     row.Borders = f[0]->Border | f[1]->Border | f[2]->Border | f[3]->Border;
 #if HAS_CUT
-    row.Crossed = memory->Flags[(p->First[2] + z) & 1][low].Crossed;
+    row.Apart = f[0]->Apart | f[1]->Apart | f[2]->Apart | f[3]->Apart;
 #else
-    row.Crossed = 0;
+    row.Apart = 0;
 #endif
     const uint specials = f[0]->Special | f[1]->Special | f[2]->Special | f[3]->Special;
     const int quarter =

@@ -7,7 +7,7 @@
 // What lies round the cells of a group on the border of the mesh.
 typedef struct
 {
-  INTS Whole;    // all five tetrahedra are active and have positions, and no copies elsewhere
+  INTS Whole;    // all five tetrahedra are active and have positions
   INTS Interior; // as CellState
   INTS Regular;
 } GroupState;
@@ -23,6 +23,18 @@ static INTS LoadStates(__global const uchar* row)
 #else
   return convert_int4(as_ushort4(vload8(0, row)));
 #endif
+}
+
+// Where the states of a group's vertices begin; null where some would lie beyond all states. Those of cells beyond the
+// volume are others' then.
+static __global const uchar* BeginStates(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
+{
+  const long row = p->Size[0];
+  const long plane = row * p->Size[1];
+  const long first = (z - p->ChunkFirst) * plane + y * row + x;
+  return first < 0 || first + plane + row + 2 * LANES > (p->PlanesEnd - p->PlanesBegin) * plane
+    ? 0
+    : mesh->State + first;
 }
 
 // Adds the vertices of a row to masks as CellState has them. o: the number of the lower one where nothing is mirrored.
@@ -60,26 +72,6 @@ static void StatesOfLanes(
   states->Regular = regular.Vector;
 }
 
-#if HAS_CUT
-// The cells of a group, as bits, of those that are wanted, that a smooth cut divides.
-static __attribute__((noinline)) uint FindDivided(
-  const SamplingMesh* mesh, int x, int y, int z, uint wanted, const KernelParameters* p)
-{
-  uint divided = 0;
-  FOR_EACH_LANE(lane, wanted)
-  {
-    const int cell = x + 2 * lane;
-    if (!(mesh->State[VertexInChunk(cell, y, z, p)] & DEFORMVOLUME_CELL_UNCROSSED))
-    {
-      CellCut cut;
-      LoadCut(mesh, cell, y, z, DEFORMVOLUME_ALL_TETRAHEDRA, p, &cut);
-      divided |= (cut.Divided != 0) << lane;
-    }
-  }
-  return divided;
-}
-#endif
-
 static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, int x, int y, int z,
   GroupState* states, const KernelParameters* p)
 {
@@ -98,16 +90,15 @@ static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, in
       ~(outer | ((cellX == 0) & lowX) | ((cellX == p->Size[0] - 2) & (255 ^ lowX))) & 255;
     return;
   }
-  const long row = p->Size[0];
-  const long plane = row * p->Size[1];
-  const long first = (z - p->ChunkFirst) * plane + y * row + x;
-  if (first < 0 || first + plane + row + 2 * LANES > (p->PlanesEnd - p->PlanesBegin) * plane)
+  __global const uchar* const state = BeginStates(mesh, x, y, z, p);
+  if (!state)
   {
     StatesOfLanes(mesh, x, y, z, inVolume, states, p);
     return;
   }
   const int mirror = Mirror(x, y, z, p);
-  __global const uchar* const state = mesh->State + first;
+  const long row = p->Size[0];
+  const long plane = row * p->Size[1];
   const INTS here = LoadStates(state);
   states->Interior = 0;
   states->Regular = 0;
@@ -119,6 +110,26 @@ static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, in
   states->Interior &= inVolume;
   states->Regular &= inVolume;
 }
+
+#if HAS_CUT
+// The cells of a group, as bits, that a smooth cut may divide (CutCells.cl): one that it crosses, with a vertex that lies
+// elsewhere as seen from the other side.
+static __attribute__((noinline)) uint FindDivided(
+  const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
+{
+  __global const uchar* const state = BeginStates(mesh, x, y, z, p);
+  if (!state)
+  {
+    return (1u << LANES) - 1;
+  }
+  const long row = p->Size[0];
+  const long plane = row * p->Size[1];
+  const INTS here = LoadStates(state);
+  const INTS all = here & LoadStates(state + row) & LoadStates(state + plane) & LoadStates(state + plane + row);
+  const INTS together = (INTS)(DEFORMVOLUME_VERTEX_TOGETHER * 257); // both vertices of a row
+  return LaneBits(((here & DEFORMVOLUME_CELL_UNCROSSED) == 0) & ((all & together) != together));
+}
+#endif
 
 // Which lanes own a sample by the fill rule, by edge functions in integers of 32 bits, for cells of less than
 // MAXIMUM_EXACT_EXTENT, all of whose tetrahedra are upright, or all inverted: these are at most

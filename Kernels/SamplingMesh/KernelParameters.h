@@ -182,6 +182,7 @@ typedef struct
 #define DEFORMVOLUME_VERTEX_REGULAR 8  // interior, but that it may lie on the border of the volume
 #define DEFORMVOLUME_VERTEX_UNCLIPPED 16 // a source, not on the far side of the boundary
 #define DEFORMVOLUME_CELL_UNCROSSED 32   // a smooth cut crosses no tetrahedron of that cell
+#define DEFORMVOLUME_VERTEX_TOGETHER 64  // both sides of the cut see it where it is
 
 #ifdef __OPENCL_VERSION__
 

@@ -171,6 +171,7 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, _
     int bits = SourceBits(state, x, y, z, p);
     if (bits)
     {
+      bits |= DEFORMVOLUME_VERTEX_TOGETHER; // until its copy is found (CutPositions.cl)
       if ((before & here & after & ALL_SOURCES) && (before & here & ALL_ACTIVE))
       {
         bits |= DEFORMVOLUME_VERTEX_REGULAR;
