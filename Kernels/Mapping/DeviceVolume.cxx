@@ -346,7 +346,10 @@ std::vector<Extent> DeviceVolume::SetCut(const unsigned char* crossed, const flo
   }
   std::vector<Extent> changes =
     this->Cut.Set(this->Context, this->Queue, this->Shape, crossed, distances);
-  this->Bricks.Reach = this->HasCut() ? BrickGrid::ReachOfCuts : BrickGrid::LeastReach;
+  if (this->HasCut())
+  {
+    this->Bricks.Reach = BrickGrid::ReachOfCuts; // from now on, as another cut may follow
+  }
   this->States.ChangeSources(changes);
   this->Bridges.ChangeVertices(changes);
   return changes;
