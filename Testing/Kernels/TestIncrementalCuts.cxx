@@ -176,6 +176,39 @@ TEST_P(IncrementalCutWays, EqualWholeOutputs)
   }
 }
 
+// By tetrahedra over many voxels an affine motion is continued across the sheet, and all is as
+// without a cut.
+TEST_P(IncrementalCutWays, AffineMotionsShowNoCut)
+{
+  EditedVolume volume = MakeVolume();
+  volume.Output = { { -20, 170, -20, 70, -20, 60 } };
+  std::size_t component = 0;
+  for (int z = 0; z < volume.Nodes[2]; ++z)
+  {
+    for (int y = 0; y < volume.Nodes[1]; ++y)
+    {
+      for (int x = 0; x < volume.Nodes[0]; ++x)
+      {
+        volume.Displacements[component++] = 0.5F * x + 2.0F * y;
+        volume.Displacements[component++] = 1.25F * x - 0.75F * z;
+        volume.Displacements[component++] = 0.5F * y + 0.75F * x;
+      }
+    }
+  }
+  const auto deform = [&](EditedOutputs& outputs)
+  {
+    VolumeDeformer deformer;
+    volume.SendAll(deformer, GetRoute());
+    EXPECT_FALSE(deformer.Deform(outputs.MakeRequest(volume)).Overlapping);
+  };
+  EditedOutputs whole(volume);
+  deform(whole);
+  Cut(volume, 64.3, 0.2, 99);
+  EditedOutputs cut(volume);
+  deform(cut);
+  EXPECT_TRUE(cut == whole);
+}
+
 // A cut that is made, goes on, is moved and is taken back, bit by bit: all of it in part. Nodes
 // move meanwhile.
 TEST_P(IncrementalCutWays, EditsOfTheCutAreMadeInPart)

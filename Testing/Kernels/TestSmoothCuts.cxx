@@ -247,6 +247,42 @@ TEST(SmoothCuts, EqualTheReferenceWhereTheVolumeIsFolded)
   }
 }
 
+// A copy overlaps other tissue where no vertex of a cell of its group is near: it wins all the
+// same. One side has been drawn back across the other and away, so that the copies of the other
+// side, which go on beyond all of these vertices, lie in patches of the output of their own. There
+// other cells, turned inside out, come first and lose. No cell is a box, and no sample lies on a
+// face: else patches are looked at for that.
+TEST(SmoothCuts, CopiesAreSettledBeyondTheVerticesOfTheirCells)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  const Extent extent{ { 0, 4, 0, 8, 0, 3 } };
+  const double step = 8; // output voxels from voxel to voxel on x: as many as a patch has
+  DeformerCase cut = MakeCase(extent, { { step, 1, 1 } },
+    [=](const glm::dvec3& index)
+    {
+      if (index.y < 3)
+      {
+        return glm::dvec3(22.25 - 1.5 * index.x, 4.625 + 1.25 * index.y, index.z + 0.3125);
+      }
+      return glm::dvec3(step * index.x - 0.75, index.y + 0.25, index.z + 0.375 + 0.125 * index.x) +
+        (index.x > 2 ? glm::dvec3(-2 * step, 20, 0) : glm::dvec3(0.0));
+    });
+  cut.Output = { { 0, 39, 0, 39, 0, 7 } };
+  CutAlong(
+    cut, [](const glm::dvec3& index) { return index.x - 2.875; },
+    [](const glm::dvec3& cell) { return cell.y >= 4; });
+  cut.Active.clear();
+  for (std::int64_t i = 0; i < static_cast<std::int64_t>(cut.Crossed.size()); ++i)
+  {
+    const std::int64_t y = i / 4 % 8;
+    cut.Active.push_back(y == 2 || y == 3 ? 0 : 31);
+  }
+  const reference::Result reference = ResampleByReference(cut);
+  EXPECT_GT(reference.NumberOfOverlappedVoxels, 0);
+  EXPECT_GT(reference.NumberOfInvertedTetrahedra, 0);
+  ExpectEqualsReference(cut);
+}
+
 TEST(SmoothCuts, LargeCellsAreDivided)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
