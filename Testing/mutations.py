@@ -120,6 +120,8 @@ MUTATIONS = {
                 "DEFORMVOLUME_CLOSED_GAP 0", [SMOOTH]),
     "cut-border": ("Kernels/Resampling/CellCoverage.cl",
                    "placed = placed && ViewTetrahedron(mesh, &cut, t, side, v);", "", [SMOOTH]),
+    "cut-settled": ("Kernels/Resampling/GroupCandidates.cl", "!isDivided && IsSettled(", "IsSettled(",
+                    [("TestSmoothCuts", "*AreSettled*")]),
     "cut-joined": ("Kernels/Mapping/CutPositions.cl", "if (apart & joined)", "if (false)", [SMOOTH]),
     "cut-multiple": ("Kernels/Cutting/SmoothCrossings.cxx", "!isMultiple && isDivision && isClear",
                      "isDivision && isClear", [CROSSINGS]),

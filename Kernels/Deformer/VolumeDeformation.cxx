@@ -57,11 +57,13 @@ void VolumeDeformation::SetBoundaryDistances(const float* distances, const Point
 
 void VolumeDeformation::SetCut(const unsigned char* crossed, const float* distances)
 {
-  if (!this->Volume.SetCut(crossed, distances).empty())
+  const int reach = this->Volume.GetBricks().Reach;
+  const std::vector<Extent> changes = this->Volume.SetCut(crossed, distances);
+  if (reach != this->Volume.GetBricks().Reach)
   {
     this->Source.ChangeReach();
-    this->Incremental.ChangeCut();
   }
+  this->Incremental.ChangeCut(changes);
 }
 
 void VolumeDeformation::SetNodePlaces(const std::int32_t* places)

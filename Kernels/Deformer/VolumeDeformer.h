@@ -114,8 +114,7 @@ public:
   /// and no tissue is lost between them. They stay together where they are apart by less than 1/4
   /// output voxel on each axis, and at the end of a cut, where tetrahedra that are not divided join
   /// them. Null for both: there is no cut. The published method and MeshRasterization are an Error
-  /// then, and what follows another cut is the whole output. Takes 44 bytes on the device for each
-  /// vertex of a cell with crossed tetrahedra.
+  /// then. Takes 44 bytes on the device for each vertex of a cell with crossed tetrahedra.
   void SetCut(const unsigned char* crossed, const float* distances);
 
   /// A tetrahedral deformation mesh, with a link for each voxel.

@@ -10,7 +10,8 @@
 // vertices. All numbers are whole, and the order of neighbours does not matter.
 //
 // Data: the list of cut vertices (KernelParameters.h); of each a stencil, the neighbours that are heard, as bits
-// (NEIGHBOUR), and what they say; and its position as seen from the other side.
+// (NEIGHBOUR), and what they say; and its position as seen from the other side, with 0 in the last component where it lies
+// where it does itself, so that tetrahedra with only such vertices need no copies; states tell that, too.
 
 #define NEIGHBOUR(dx, dy, dz) (1u << ((dz + 1) * 9 + (dy + 1) * 3 + dx + 1))
 // What neighbours say.
@@ -207,44 +208,87 @@ static int DivideRounded(int sum, int count)
   return twice >= 0 ? twice / (2 * count) : -((2 * count - 1 - twice) / (2 * count));
 }
 
-// The positions, as seen from the other side, of the vertices of the list from begin to end.
-__kernel void FindCutPositions(MAPPING_PARAMETERS, __global const uchar* state, __global const CutVertex* vertices,
-  __global const uint2* stencils, __global int4* positions, const uint begin, const uint end, const KernelParameters p)
+// Whether some of the bricks are wanted that have cells at a vertex. wanted: a byte for each brick.
+static int IsInBricks(__global const uchar* wanted, int3 at, const KernelParameters* p)
+{
+  const int3 cells = (int3)(DEFORMVOLUME_BRICK_X, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z);
+  const int3 count = (int3)(p->BrickCount[0], p->BrickCount[1], p->BrickCount[2]);
+  const int3 place = at - (int3)(p->BrickOrigin[0], p->BrickOrigin[1], p->BrickOrigin[2]);
+  const int3 low = max(place - 1, 0) / cells;
+  const int3 high = min(place / cells, count - 1);
+  for (int z = low.z; z <= high.z; ++z)
+  {
+    for (int y = low.y; y <= high.y; ++y)
+    {
+      for (int x = low.x; x <= high.x; ++x)
+      {
+        if (wanted[(z * count.y + y) * count.x + x])
+        {
+          return 1;
+        }
+      }
+    }
+  }
+  return 0;
+}
+
+// The position of a vertex as seen from the other side. own: where it is.
+static int4 OtherPosition(const Mapping* m, int3 at, uint2 stencil, int3 own, const KernelParameters* p)
+{
+  if (stencil.y == IS_JOINED)
+  {
+    return (int4)(own, 0);
+  }
+  int3 sum = 0;
+  for (uint left = stencil.x; left; left &= left - 1)
+  {
+    const int n = 31 - clz(left & -left);
+    const int3 step = (int3)(n % 3, n / 3 % 3, n / 9) - 1;
+    const int3 moved = StepsOf(m, at + step, p);
+    sum += moved;
+    if (stencil.y == CONTINUES)
+    {
+      sum += moved - StepsOf(m, at + 2 * step, p);
+    }
+    else if (stencil.y == FOLLOWS)
+    {
+      sum += StepsOf(m, at - step, p) - StepsOf(m, at, p);
+    }
+  }
+  const int count = popcount(stencil.x);
+  const int3 mean =
+    (int3)(DivideRounded(sum.x, count), DivideRounded(sum.y, count), DivideRounded(sum.z, count));
+  const int3 other = RestOf(m, at, p) + mean;
+  const int isNear = all(abs_diff(other, own) <= (uint3)(DEFORMVOLUME_CLOSED_GAP));
+  return isNear ? (int4)(own, 0) : (int4)(other, 1);
+}
+
+// The positions, as seen from the other side, of the vertices of the list from begin to end, in the bricks that are
+// wanted, or in all where this is not some.
+__kernel void FindCutPositions(MAPPING_PARAMETERS, __global uchar* state, __global const CutVertex* vertices,
+  __global const uint2* stencils, __global int4* positions, __global const uchar* wanted, const int some,
+  const uint begin, const uint end, const KernelParameters p)
 {
   const uint i = begin + get_global_id(0);
   if (i >= end)
   {
     return;
   }
+  const int3 at = (int3)(vertices[i].X, vertices[i].Y, vertices[i].Z);
+  if (some && !IsInBricks(wanted, at, &p))
+  {
+    return;
+  }
   const Mapping m = MAPPING_ARGUMENTS;
   const uint2 stencil = stencils[i];
-  const int3 at = (int3)(vertices[i].X, vertices[i].Y, vertices[i].Z);
-  if (!stencil.x || !(StateOf(state, at.x, at.y, at.z, &p) & DEFORMVOLUME_VERTEX_SOURCE))
+  const size_t vertex = VertexInChunk(at.x, at.y, at.z, &p);
+  if (!stencil.x || !(state[vertex] & DEFORMVOLUME_VERTEX_SOURCE))
   {
-    positions[i] = (int4)(INT_MIN, 0, 0, 0);
+    positions[i] = (int4)(INT_MIN, 0, 0, 1);
     return;
   }
-  const int4 own = PositionOf(&m, at.x, at.y, at.z, &p);
-  if (stencil.y == IS_JOINED)
-  {
-    positions[i] = own;
-    return;
-  }
-  int3 sum = 0;
-  for (int n = 0; n < 27; ++n)
-  {
-    if (stencil.x >> n & 1)
-    {
-      const int3 step = (int3)(n % 3, n / 3 % 3, n / 9) - 1;
-      const int3 moved = StepsOf(&m, at + step, &p);
-      sum += moved;
-      sum += stencil.y == CONTINUES ? moved - StepsOf(&m, at + 2 * step, &p) : (int3)(0);
-      sum += stencil.y == FOLLOWS ? StepsOf(&m, at - step, &p) - StepsOf(&m, at, &p) : (int3)(0);
-    }
-  }
-  const int count = popcount(stencil.x);
-  const int3 mean =
-    (int3)(DivideRounded(sum.x, count), DivideRounded(sum.y, count), DivideRounded(sum.z, count));
-  const int4 other = (int4)(RestOf(&m, at, &p) + mean, 0);
-  positions[i] = all(abs_diff(other, own) <= (uint4)(DEFORMVOLUME_CLOSED_GAP)) ? own : other;
+  const int3 own = PositionOf(&m, at.x, at.y, at.z, &p).xyz; // the last component may be anything
+  const int4 other = OtherPosition(&m, at, stencil, own, &p);
+  positions[i] = other;
+  state[vertex] = other.w ? state[vertex] & ~DEFORMVOLUME_VERTEX_TOGETHER : state[vertex] | DEFORMVOLUME_VERTEX_TOGETHER;
 }

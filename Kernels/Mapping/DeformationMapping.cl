@@ -65,7 +65,8 @@ static int StateOf(__global const uchar* state, int x, int y, int z, const Kerne
   }
   const int3 v = (int3)(x, y, z);
   const int3 last = (int3)(p->Size[0], p->Size[1], p->Size[2]) - 1;
-  return DEFORMVOLUME_VERTEX_SOURCE | DEFORMVOLUME_VERTEX_REGULAR |
+  return DEFORMVOLUME_VERTEX_SOURCE | DEFORMVOLUME_VERTEX_REGULAR | DEFORMVOLUME_CELL_UNCROSSED |
+    DEFORMVOLUME_VERTEX_TOGETHER |
     (all(v > 0) && all(v < last) ? DEFORMVOLUME_VERTEX_INTERIOR : 0) |
     (all(v < last) ? DEFORMVOLUME_CELL_WHOLE : 0);
 }

@@ -65,7 +65,8 @@ public:
     {
       this->Size[axis] = static_cast<std::size_t>(GetSize(voxelGrid.VertexExtent, axis));
     }
-    this->Plane.resize(this->Size[0] * this->Size[1]);
+    this->Plane.resize(this->Size[0] * this->Size[1], Unlisted);
+    this->HasListed.resize(this->Size[1]);
   }
 
   void Build(const std::vector<std::vector<CrossedCell>>& layers, std::vector<CutVertex>& list,
@@ -73,19 +74,16 @@ public:
   {
     for (std::size_t z = 0; z < this->Size[2]; ++z)
     {
-      std::fill(this->Plane.begin(), this->Plane.end(), Unlisted);
-      bool isEmpty = true;
       for (std::size_t above = 0; above < 2; ++above)
       {
         // The layer below the plane, then the one above it.
         const std::size_t layer = z - 1 + above;
         if (layer < layers.size())
         {
-          isEmpty = isEmpty && layers[layer].empty();
           this->Mark(layers[layer], static_cast<int>(layer), above == 0 ? 1 : 0);
         }
       }
-      this->Append(z, isEmpty, list, rows);
+      this->Append(z, list, rows);
     }
     rows.push_back(static_cast<std::uint32_t>(list.size()));
   }
@@ -120,27 +118,31 @@ private:
           this->Plane[(static_cast<std::size_t>(cell.Y) + (offset >> 2U)) * this->Size[0] +
             static_cast<std::size_t>(cell.X) + (offset & 1U)];
         place = place == Unlisted ? 0 : place;
+        this->HasListed[static_cast<std::size_t>(cell.Y) + (offset >> 2U)] = 1;
         place |= static_cast<unsigned char>((corners >> offset & 1U) * DEFORMVOLUME_CUT_CORNER);
         place |= static_cast<unsigned char>(offset == 0 ? cell.Tetrahedra : 0U);
       }
     }
   }
 
-  void Append(
-    std::size_t z, bool isEmpty, std::vector<CutVertex>& list, std::vector<std::uint32_t>& rows)
+  // Takes what is marked into the list.
+  void Append(std::size_t z, std::vector<CutVertex>& list, std::vector<std::uint32_t>& rows)
   {
     for (std::size_t y = 0; y < this->Size[1]; ++y)
     {
       rows.push_back(static_cast<std::uint32_t>(list.size()));
-      for (std::size_t x = 0; !isEmpty && x < this->Size[0]; ++x)
+      for (std::size_t x = 0; this->HasListed[y] && x < this->Size[0]; ++x)
       {
         const std::size_t vertex = y * this->Size[0] + x;
-        if (this->Plane[vertex] != Unlisted)
+        unsigned char& place = this->Plane[vertex];
+        if (place != Unlisted)
         {
-          list.push_back({ static_cast<int>(x), static_cast<int>(y), static_cast<int>(z),
-            this->Plane[vertex], this->Distances[z * this->Plane.size() + vertex] });
+          list.push_back({ static_cast<int>(x), static_cast<int>(y), static_cast<int>(z), place,
+            this->Distances[z * this->Plane.size() + vertex] });
+          place = Unlisted;
         }
       }
+      this->HasListed[y] = 0;
     }
   }
 
@@ -148,6 +150,7 @@ private:
   const float* Distances;
   std::array<std::size_t, 3> Size{};
   std::vector<unsigned char> Plane;
+  std::vector<unsigned char> HasListed; // of its rows
 };
 
 bool ComesBefore(const CutVertex& a, const CutVertex& b)
@@ -252,15 +255,14 @@ void DeviceCut::Send(const OpenCLContext& context, const cl::CommandQueue& queue
 }
 
 void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
-  const KernelParameters& p, const VolumeChunk& chunk, const Source& source)
+  const KernelParameters& p, const VolumeChunk& chunk, const Source& source,
+  const std::vector<unsigned char>& wanted)
 {
-  // Each vertex is looked at in the first chunk whose cells have it; those of the last plane of a
-  // chunk belong to the next one.
+  // Chunks have states of their own: vertices between two of them are looked at in both.
   const auto row = [&](int z)
   { return this->RowBegins[static_cast<std::size_t>(z) * static_cast<std::size_t>(p.Size[1])]; };
-  const bool isLast = chunk.LayersEnd == p.Size[2] - 1;
   const cl_uint begin = row(chunk.LayersBegin);
-  const cl_uint end = row(isLast ? p.Size[2] : chunk.LayersEnd);
+  const cl_uint end = row(chunk.LayersEnd + 1);
   if (begin == end)
   {
     return;
@@ -280,12 +282,21 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
     find.setArg(7, p);
     context.Launch(queue, find, items, cl::NDRange(group));
   }
+  const bool some = this->StencilsCurrent && !wanted.empty();
+  if (some)
+  {
+    Reserve(context, this->Wanted, wanted.size());
+    queue.enqueueWriteBuffer(this->Wanted, CL_TRUE, 0, wanted.size(), wanted.data());
+  }
   cl::Kernel kernel(source.Program, "FindCutPositions");
   cl_uint i = source.SetMapping(kernel);
   kernel.setArg(i++, source.State);
   kernel.setArg(i++, this->Vertices);
   kernel.setArg(i++, this->Stencils);
   kernel.setArg(i++, this->Positions);
+  // Any buffer stands in for a missing one.
+  kernel.setArg(i++, some ? this->Wanted : this->Stencils);
+  kernel.setArg(i++, cl_int{ some });
   kernel.setArg(i++, begin);
   kernel.setArg(i++, end);
   kernel.setArg(i++, p);
@@ -295,7 +306,8 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
 std::uint64_t DeviceCut::GetMemory() const
 {
   return deformvolume::GetMemory(this->Rows) + deformvolume::GetMemory(this->Vertices) +
-    deformvolume::GetMemory(this->Stencils) + deformvolume::GetMemory(this->Positions);
+    deformvolume::GetMemory(this->Stencils) + deformvolume::GetMemory(this->Positions) +
+    deformvolume::GetMemory(this->Wanted);
 }
 
 } // namespace deformvolume

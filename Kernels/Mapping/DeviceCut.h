@@ -41,9 +41,11 @@ public:
     cl::Buffer State;
     cl::Buffer Active;
   };
-  /// Finds them. p: the parameters of the chunk. Finish() follows after all chunks.
+  /// Finds them. p: the parameters of the chunk. wanted: of each brick whether its vertices may
+  /// have other positions than before; empty: all may, as where stencils are found anew. Finish()
+  /// follows after all chunks.
   void Update(OpenCLContext& context, const cl::CommandQueue& queue, const KernelParameters& p,
-    const VolumeChunk& chunk, const Source& source);
+    const VolumeChunk& chunk, const Source& source, const std::vector<unsigned char>& wanted);
   void Finish() { this->StencilsCurrent = true; }
 
   ///@{
@@ -64,6 +66,7 @@ private:
   cl::Buffer Vertices;
   cl::Buffer Stencils;
   cl::Buffer Positions;
+  cl::Buffer Wanted; // bricks
   bool StencilsCurrent = false;
 };
 

@@ -346,7 +346,10 @@ std::vector<Extent> DeviceVolume::SetCut(const unsigned char* crossed, const flo
   }
   std::vector<Extent> changes =
     this->Cut.Set(this->Context, this->Queue, this->Shape, crossed, distances);
-  this->Bricks.Reach = this->HasCut() ? BrickGrid::ReachOfCuts : BrickGrid::LeastReach;
+  if (this->HasCut())
+  {
+    this->Bricks.Reach = BrickGrid::ReachOfCuts; // from now on, as another cut may follow
+  }
   this->States.ChangeSources(changes);
   this->Bridges.ChangeVertices(changes);
   return changes;
@@ -466,18 +469,28 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,
   this->States.Finish();
 }
 
-void DeviceVolume::UpdateCut(
-  const cl::Program& mapping, const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set)
+void DeviceVolume::UpdateCut(const cl::Program& mapping, const std::vector<cl_uint>* bricks,
+  const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set)
 {
   if (!this->HasCut())
   {
     return;
   }
+  std::vector<unsigned char> wanted;
+  if (bricks)
+  {
+    wanted.resize(this->Bricks.GetNumberOfBricks());
+    for (const cl_uint brick : *bricks)
+    {
+      wanted[brick & ((1U << DEFORMVOLUME_BRICK_BITS) - 1)] = 1;
+    }
+  }
   for (const VolumeChunk& chunk : this->Chunks)
   {
     this->Cut.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
       { mapping, [&](cl::Kernel& kernel) { return set(kernel, chunk); }, this->GetState(chunk),
-        this->GetActive(chunk) });
+        this->GetActive(chunk) },
+      wanted);
   }
   this->Cut.Finish();
 }

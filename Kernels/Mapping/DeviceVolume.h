@@ -159,9 +159,10 @@ public:
   void UpdateState(const cl::Program& mapping, bool movesAll,
     const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set);
   /// Finds where the vertices of a smooth cut would be on its other side: after UpdateState, each
-  /// time that the mapping has changed.
-  void UpdateCut(
-    const cl::Program& mapping, const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set);
+  /// time that the mapping has changed. bricks: as DEFORMVOLUME_BRICK_BITS says, if only those of
+  /// some bricks have changed; else null.
+  void UpdateCut(const cl::Program& mapping, const std::vector<cl_uint>* bricks,
+    const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set);
   void ForgetState() { this->States.Forget(); }
   /// The state, or any buffer that stands in for it.
   const cl::Buffer& GetState(const VolumeChunk& chunk) const

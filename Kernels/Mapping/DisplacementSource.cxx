@@ -478,7 +478,8 @@ cl_uint DisplacementSource::SetMappingArguments(cl::Kernel& kernel, const Volume
   return i;
 }
 
-void DisplacementSource::PrepareMapping(std::vector<cl::Event>& events)
+void DisplacementSource::PrepareMapping(
+  std::vector<cl::Event>& events, const std::vector<cl_uint>* bricks)
 {
   const cl::Program mapping =
     GetMappingProgram(this->Device.GetContext(), this->GetMappingForm(), this->Volume.HasCut());
@@ -490,7 +491,7 @@ void DisplacementSource::PrepareMapping(std::vector<cl::Event>& events)
   const auto set = [this](cl::Kernel& kernel, const VolumeChunk& chunk)
   { return this->SetMappingArguments(kernel, chunk); };
   this->Volume.UpdateState(mapping, this->Field.Extrapolate || this->Field.SameGrid, set);
-  this->Volume.UpdateCut(mapping, set);
+  this->Volume.UpdateCut(mapping, bricks, set);
 }
 
 BrickPoints DisplacementSource::MakeBrickPoints() const

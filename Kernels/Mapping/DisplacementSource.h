@@ -83,8 +83,9 @@ public:
   /// wanted; returns the boxes of cells that have other ones than before.
   std::vector<Extent> UpdateBridges();
   /// Brings up to date what follows from displacements and masks: the records of runs and the state
-  /// of the vertices. Events of launches are added to a list.
-  void PrepareMapping(std::vector<cl::Event>& events);
+  /// of the vertices. Events of launches are added to a list. bricks: the ones that are to be made
+  /// (DEFORMVOLUME_BRICK_BITS), if all else stays as it is; null: all.
+  void PrepareMapping(std::vector<cl::Event>& events, const std::vector<cl_uint>* bricks = nullptr);
   MappingForm GetMappingForm() const;
   /// Sets a kernel's first arguments, those of the mapping, and returns how many they are.
   cl_uint SetMappingArguments(cl::Kernel& kernel, const VolumeChunk& chunk) const;

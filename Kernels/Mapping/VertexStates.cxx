@@ -73,8 +73,6 @@ void VertexStates::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   mark.setArg(i++, source.Blanked);
   mark.setArg(i++, cl_int{ source.HasBlanked });
   mark.setArg(i++, source.Distances);
-  mark.setArg(i++, source.CutRows);
-  mark.setArg(i++, source.CutVertices);
   mark.setArg(i++, chunk.State);
   mark.setArg(i++, list);
   mark.setArg(i++, p);
@@ -83,9 +81,11 @@ void VertexStates::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   cl::Kernel find(source.Mapping, "MarkVertices");
   find.setArg(0, chunk.State);
   find.setArg(1, source.Active);
-  find.setArg(2, marked);
-  find.setArg(3, list);
-  find.setArg(4, p);
+  find.setArg(2, source.CutRows);
+  find.setArg(3, source.CutVertices);
+  find.setArg(4, marked);
+  find.setArg(5, list);
+  find.setArg(6, p);
   cl::Kernel store(source.Mapping, "StoreStates");
   store.setArg(0, marked);
   store.setArg(1, chunk.State);

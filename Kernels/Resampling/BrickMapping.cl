@@ -26,10 +26,14 @@ typedef struct
 {
   uint Border;  // one is not interior
   uint Special; // one has a value that sums of products do not give back bit for bit
+#if HAS_CUT
+  uint Apart; // one lies elsewhere as seen from the other side of a smooth cut
+#endif
 } RowFlags;
 
 #define SOURCES 0x0101010101010101UL
 #define INTERIORS 0x0202020202020202UL
+#define TOGETHER 0x4040404040404040UL
 
 // The bits that both eights of sixteen vertices of a row have; rowInside: whether the row is not on the border
 // of the volume.
@@ -41,7 +45,7 @@ static ulong StatesOf(
     const ulong2 states = as_ulong2(vload16(0, rowState + x));
     return states.x & states.y;
   }
-  return SOURCES | (rowInside && x > 0 && x + 16 < p->Size[0] ? INTERIORS : 0);
+  return SOURCES | TOGETHER | (rowInside && x > 0 && x + 16 < p->Size[0] ? INTERIORS : 0);
 }
 
 #define STORE_EIGHT(v, place) *(ROW_MEMORY PlacedFloat8*)(place) = v;
@@ -114,6 +118,12 @@ static __attribute__((always_inline)) void MapOne(const MappedRow* row, int x, i
   {
     flags->Border |= 1u << (i >> 3);
   }
+#if HAS_CUT
+  if (!(state & DEFORMVOLUME_VERTEX_TOGETHER))
+  {
+    flags->Apart |= 1u << (i >> 3);
+  }
+#endif
   LANE_ARRAYS(PUT_VALUE)
 }
 
@@ -143,6 +153,12 @@ static __attribute__((always_inline)) void MapSixteen(const MappedRow* row, int 
   {
     flags->Border |= FLAGS_TOGETHER << (i >> 3);
   }
+#if HAS_CUT
+  if ((states & TOGETHER) != TOGETHER)
+  {
+    flags->Apart |= FLAGS_TOGETHER << (i >> 3);
+  }
+#endif
   LANE_ARRAYS(PUT_VALUES_TOGETHER)
 }
 
@@ -178,7 +194,7 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
   row.Places = places;
   BeginRow(&row.Displaced, x, end, i, displaced, p);
   LANE_ARRAYS(FETCH_NEXT_ROW)
-  RowFlags flags = { 0, 0 };
+  RowFlags flags = { 0 };
   const int begin = x;
   const int rowInside = y > 0 && y < p->Size[1] - 1 && z > 0 && z < p->Size[2] - 1;
   __global const uchar* const rowState = mesh->State + row.Chunk;

@@ -212,6 +212,11 @@ static void ResampleLayer(const SamplingMesh* mesh, const BrickCells* cells, int
     row.Z = z;
     row.Odd = (p->First[1] + y + p->First[2] + z) & 1;
     row.Borders = f[0]->Border | f[1]->Border | f[2]->Border | f[3]->Border;
+#if HAS_CUT
+    row.Apart = f[0]->Apart | f[1]->Apart | f[2]->Apart | f[3]->Apart;
+#else
+    row.Apart = 0;
+#endif
     const uint specials = f[0]->Special | f[1]->Special | f[2]->Special | f[3]->Special;
     const int quarter =
       (low >= DEFORMVOLUME_BRICK_Y / 2) + 2 * (z - cells->Z >= DEFORMVOLUME_BRICK_Z / 2);

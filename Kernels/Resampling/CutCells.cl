@@ -2,6 +2,7 @@
 // Cells that a smooth cut divides. A tetrahedron that is crossed, and has vertices on both sides of the sheet, is there
 // twice: the copy of a side has the vertices of that side where they are, and the others where they would be if they
 // moved with that side (CutPositions.cl). A sample belongs to the copy on whose side its interpolated distance lies.
+// Where both copies lie in one place they need not be told apart, and the tetrahedron is as any other.
 //
 // As seen from one side the sampling mesh is a mesh as any other: of each divided tetrahedron it has the copy of that
 // side, and all others as they are. The copies agree on the faces that they share, and with tetrahedra that are not
@@ -26,7 +27,7 @@ static REAL WeighDistances(const float* distances, int t, const long* weights)
 // The sides: 0 where the distance is not negative, 1 where it is.
 typedef struct
 {
-  int Divided;  // tetrahedra of a cell that are there twice, as bits
+  int Divided;  // tetrahedra of a cell that are there twice, in different places, as bits
   int Negative; // vertices of the cell on side 1, as bits; as the rest, only where tetrahedra are divided
   float Distances[8];
   int Places[8]; // of the vertices, in the list of cut vertices
@@ -45,6 +46,7 @@ static void LoadCut(
   }
   const int mirror = Mirror(x, y, z, p);
   cut->Negative = 0;
+  int open = 0; // vertices that lie elsewhere as seen from the other side
   for (int v = 0; v < 8; ++v)
   {
     const int o = v ^ mirror;
@@ -53,12 +55,13 @@ static void LoadCut(
       mesh->Cut.Rows, mesh->Cut.Vertices, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
     cut->Distances[v] = mesh->Cut.Vertices[cut->Places[v]].Distance;
     cut->Negative |= (cut->Distances[v] < 0.0f) << v;
+    open |= (mesh->Cut.Positions[cut->Places[v]].w != 0) << v;
   }
   for (int t = 0; t < 5; ++t)
   {
     const int needed = VerticesOf(t);
     const int negative = needed & cut->Negative;
-    cut->Divided |= ((crossed >> t & 1) && negative && negative != needed) << t;
+    cut->Divided |= ((crossed >> t & 1) && negative && negative != needed && (needed & open)) << t;
   }
 }
 

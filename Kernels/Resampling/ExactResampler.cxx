@@ -215,7 +215,7 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
   const int pass = won ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT;
   output.PrepareAgain(this->Device.GetContext(), this->Device.GetQueue(), request,
     this->Volume.GetVolumeArrays(), { bricks, patches, won }, this->Launched.GetResamplingEvents());
-  this->Source.PrepareMapping(this->Launched.GetMappingEvents());
+  this->Source.PrepareMapping(this->Launched.GetMappingEvents(), &bricks);
   this->RunPass(request, output, pass, false, &bricks);
   Again again;
   again.Counts = output.ReadCounts();

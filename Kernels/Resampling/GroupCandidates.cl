@@ -293,6 +293,12 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   {
     EndOnBorder(c, rises, mesh, &whole, &box, &toEnds, output, p);
   }
+#if HAS_CUT
+  if (c->Cells.Apart)
+  {
+    whole &= ~FindDivided(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, p);
+  }
+#endif
   if (c->HasBoxes)
   {
     c->Box = box;

@@ -12,24 +12,46 @@ typedef struct
   INTS Regular;
 } GroupState;
 
-static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, int x, int y, int z,
-  GroupState* states, const KernelParameters* p)
+// The states of the vertices of a row that a group's cells have: of the lower x in the lowest byte, of the upper one in
+// the next.
+static INTS LoadStates(__global const uchar* row)
 {
-  const INTS cellX = x + 2 * LANE_INDEX;
-  const INTS inVolume = (cellX >= 0) & (cellX < p->Size[0] - 1);
-  if (!p->HasState)
-  {
-    // What is not on the border of the volume is interior.
-    const int mirror = Mirror(x, y, z, p);
-    const int lowX = LOW_SIDE(0, mirror), lowZ = LOW_SIDE(1, mirror), lowY = LOW_SIDE(2, mirror);
-    const int outer = (y == 0 ? lowY : 0) | (y == p->Size[1] - 2 ? 255 ^ lowY : 0) |
-      (z == 0 ? lowZ : 0) | (z == p->Size[2] - 2 ? 255 ^ lowZ : 0);
-    states->Whole = inVolume;
-    states->Regular = 255;
-    states->Interior =
-      ~(outer | ((cellX == 0) & lowX) | ((cellX == p->Size[0] - 2) & (255 ^ lowX))) & 255;
-    return;
-  }
+#if LANES == 16
+  return convert_int16((ushort16)(as_ushort8(vload16(0, row)), as_ushort8(vload16(1, row))));
+#elif LANES == 8
+  return convert_int8(as_ushort8(vload16(0, row)));
+#else
+  return convert_int4(as_ushort4(vload8(0, row)));
+#endif
+}
+
+// Where the states of a group's vertices begin; null where some would lie beyond all states. Those of cells beyond the
+// volume are others' then.
+static __global const uchar* BeginStates(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
+{
+  const long row = p->Size[0];
+  const long plane = row * p->Size[1];
+  const long first = (z - p->ChunkFirst) * plane + y * row + x;
+  return first < 0 || first + plane + row + 2 * LANES > (p->PlanesEnd - p->PlanesBegin) * plane
+    ? 0
+    : mesh->State + first;
+}
+
+// Adds the vertices of a row to masks as CellState has them. o: the number of the lower one where nothing is mirrored.
+static void AddStates(INTS row, int o, int mirror, GroupState* states)
+{
+  const int low = 1 << (o ^ mirror);
+  const int high = 1 << ((o | 1) ^ mirror);
+  states->Interior |= (((row & DEFORMVOLUME_VERTEX_INTERIOR) != 0) & low) |
+    (((row & DEFORMVOLUME_VERTEX_INTERIOR << 8) != 0) & high);
+  states->Regular |= (((row & DEFORMVOLUME_VERTEX_REGULAR) != 0) & low) |
+    (((row & DEFORMVOLUME_VERTEX_REGULAR << 8) != 0) & high);
+}
+
+// The same vertex by vertex: what lies beyond the states must not be read.
+static void StatesOfLanes(
+  const SamplingMesh* mesh, int x, int y, int z, INTS inVolume, GroupState* states, const KernelParameters* p)
+{
   Lanes whole, interior, regular;
   whole.Vector = inVolume;
   for (int lane = 0; lane < LANES; ++lane)
@@ -49,6 +71,65 @@ static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, in
   states->Interior = interior.Vector;
   states->Regular = regular.Vector;
 }
+
+static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, int x, int y, int z,
+  GroupState* states, const KernelParameters* p)
+{
+  const INTS cellX = x + 2 * LANE_INDEX;
+  const INTS inVolume = (cellX >= 0) & (cellX < p->Size[0] - 1);
+  if (!p->HasState)
+  {
+    // What is not on the border of the volume is interior.
+    const int mirror = Mirror(x, y, z, p);
+    const int lowX = LOW_SIDE(0, mirror), lowZ = LOW_SIDE(1, mirror), lowY = LOW_SIDE(2, mirror);
+    const int outer = (y == 0 ? lowY : 0) | (y == p->Size[1] - 2 ? 255 ^ lowY : 0) |
+      (z == 0 ? lowZ : 0) | (z == p->Size[2] - 2 ? 255 ^ lowZ : 0);
+    states->Whole = inVolume;
+    states->Regular = 255;
+    states->Interior =
+      ~(outer | ((cellX == 0) & lowX) | ((cellX == p->Size[0] - 2) & (255 ^ lowX))) & 255;
+    return;
+  }
+  __global const uchar* const state = BeginStates(mesh, x, y, z, p);
+  if (!state)
+  {
+    StatesOfLanes(mesh, x, y, z, inVolume, states, p);
+    return;
+  }
+  const int mirror = Mirror(x, y, z, p);
+  const long row = p->Size[0];
+  const long plane = row * p->Size[1];
+  const INTS here = LoadStates(state);
+  states->Interior = 0;
+  states->Regular = 0;
+  AddStates(here, 0, mirror, states);
+  AddStates(LoadStates(state + plane), 2, mirror, states);
+  AddStates(LoadStates(state + row), 4, mirror, states);
+  AddStates(LoadStates(state + plane + row), 6, mirror, states);
+  states->Whole = inVolume & ((here & DEFORMVOLUME_CELL_WHOLE) != 0);
+  states->Interior &= inVolume;
+  states->Regular &= inVolume;
+}
+
+#if HAS_CUT
+// The cells of a group, as bits, that a smooth cut may divide (CutCells.cl): one that it crosses, with a vertex that lies
+// elsewhere as seen from the other side.
+static __attribute__((noinline)) uint FindDivided(
+  const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
+{
+  __global const uchar* const state = BeginStates(mesh, x, y, z, p);
+  if (!state)
+  {
+    return (1u << LANES) - 1;
+  }
+  const long row = p->Size[0];
+  const long plane = row * p->Size[1];
+  const INTS here = LoadStates(state);
+  const INTS all = here & LoadStates(state + row) & LoadStates(state + plane) & LoadStates(state + plane + row);
+  const INTS together = (INTS)(DEFORMVOLUME_VERTEX_TOGETHER * 257); // both vertices of a row
+  return LaneBits(((here & DEFORMVOLUME_CELL_UNCROSSED) == 0) & ((all & together) != together));
+}
+#endif
 
 // Which lanes own a sample by the fill rule, by edge functions in integers of 32 bits, for cells of less than
 // MAXIMUM_EXACT_EXTENT, all of whose tetrahedra are upright, or all inverted: these are at most

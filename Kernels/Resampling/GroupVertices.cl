@@ -12,10 +12,12 @@ typedef struct
   int Z;
   int Odd;
   uint Borders; // as RowFlags
+  uint Apart;
 } RowOfCells;
 
 // Cells from X on, every second one. Side: 1 where these have vertices of even x behind those of odd x. Odd:
-// parity of x, y and z together. Border: whether a vertex may not be interior.
+// parity of x, y and z together. Border: whether a vertex may not be interior. Apart: whether a vertex may
+// lie elsewhere as seen from the other side of a smooth cut.
 typedef struct
 {
   LocalRow Rows[4];
@@ -25,6 +27,7 @@ typedef struct
   int Z;
   int Odd;
   int Border;
+  int Apart;
 } Group;
 
 // The flags of the vertices of a group's cells.
@@ -38,7 +41,7 @@ static __attribute__((always_inline)) void MakeGroup(
 {
   const Group made = { { row->Rows[0] + k, row->Rows[1] + k, row->Rows[2] + k, row->Rows[3] + k },
     side, row->X + 2 * k + side, row->Y, row->Z, row->Odd ^ side,
-    (row->Borders & GROUP_FLAGS(k)) != 0 };
+    (row->Borders & GROUP_FLAGS(k)) != 0, (row->Apart & GROUP_FLAGS(k)) != 0 };
   *group = made;
 }
 

@@ -26,20 +26,41 @@ void IncrementalUpdate::SetReach(int reach)
   if (this->Grid.Reach != reach)
   {
     this->Bricks.Reach = this->Grid.Reach = reach;
-    this->ForgetMapping();
+    this->Points = this->PointsOfBricks = BrickPoints(); // there may be more of them
   }
+}
+
+std::vector<unsigned char> IncrementalUpdate::FindCutBricks(
+  const std::vector<CutVertex>& vertices) const
+{
+  std::vector<unsigned char> found(vertices.empty() ? 0 : this->Grid.GetNumberOfBricks());
+  for (const CutVertex& v : vertices)
+  {
+    this->ForSubBricks({ { v.X, v.X, v.Y, v.Y, v.Z, v.Z } }, 0, 0,
+      [&](std::size_t subBrick) { found[subBrick] = 1; });
+  }
+  return found;
+}
+
+std::vector<unsigned char> IncrementalUpdate::AddCut(const std::vector<CutVertex>& vertices)
+{
+  std::vector<unsigned char> found = this->FindCutBricks(vertices);
+  this->IsCut.resize(this->Grid.GetNumberOfBricks());
+  for (std::size_t subBrick = 0; subBrick < found.size(); ++subBrick)
+  {
+    if (found[subBrick] && !this->IsCut[subBrick])
+    {
+      this->IsCut[subBrick] = 1;
+      this->Known[subBrick] = 0; // the box is wider
+    }
+  }
+  this->BoxesKnown = false;
+  return found;
 }
 
 void IncrementalUpdate::SetCut(const std::vector<CutVertex>& vertices)
 {
-  this->IsCut.assign(vertices.empty() ? 0 : this->Grid.GetNumberOfBricks(), 0);
-  this->Known.assign(this->Known.size(), 0); // boxes are wider where it passes
-  this->BoxesKnown = false;
-  for (const CutVertex& v : vertices)
-  {
-    this->ForSubBricks({ { v.X, v.X, v.Y, v.Y, v.Z, v.Z } }, 0, 0,
-      [&](std::size_t subBrick) { this->IsCut[subBrick] = 1; });
-  }
+  this->IsCut = this->AddCut(vertices); // boxes of others may be wider than they need be
 }
 
 void IncrementalUpdate::SetPoints(BrickPoints&& points)

@@ -59,11 +59,7 @@ void IncrementalOutput::Start(
   const DeformRequest& request, const DisplacementSource& source, DeformReport& report)
 {
   this->Changes.Start(this->Volume.GetBricks(), this->Volume.GetVoxelGrid(), request.OutputExtent);
-  if (!this->CutIsKnown)
-  {
-    this->Changes.SetCut(this->Volume.GetCutVertices());
-    this->CutIsKnown = true;
-  }
+  this->FindCut();
   this->LastMethod = request.Method;
   this->LastWholeExtent = request.WholeOutputExtent;
   this->LastCovered = static_cast<std::uint64_t>(report.NumberOfCoveredVoxels);
@@ -84,11 +80,28 @@ void IncrementalOutput::Start(
   }
 }
 
-void IncrementalOutput::ChangeCut()
+void IncrementalOutput::ChangeCut(const std::vector<Extent>& boxes)
 {
+  if (boxes.empty())
+  {
+    return;
+  }
   this->CutIsKnown = false;
-  this->Forget();
   this->Changes.SetReach(this->Volume.GetBricks().Reach);
+  if (this->Changes.IsTracking())
+  {
+    this->Changes.AddCut(this->Volume.GetCutVertices());
+    this->Changes.ChangeMask(boxes, false);
+  }
+}
+
+void IncrementalOutput::FindCut()
+{
+  if (!this->CutIsKnown)
+  {
+    this->Changes.SetCut(this->Volume.GetCutVertices());
+    this->CutIsKnown = true;
+  }
 }
 
 bool IncrementalOutput::IsChangeInside() const
@@ -222,6 +235,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   this->RevisionBefore = std::exchange(this->Revision, MakeRevision());
   report.Revision = this->Revision;
   this->Changes.Finish();
+  this->FindCut();
   report.NumberOfInvertedTetrahedra = static_cast<std::int64_t>(counts.Inverted);
   report.NumberOfOverstretchedCells = static_cast<std::int64_t>(counts.Overstretched);
   report.Overlapping = again->Overlapping;

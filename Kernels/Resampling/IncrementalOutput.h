@@ -31,8 +31,8 @@ public:
   {
     this->Changes.ChangeMask(boxes, ofCells);
   }
-  /// The smooth cut is another one.
-  void ChangeCut();
+  /// The smooth cut is another one round vertices in some boxes.
+  void ChangeCut(const std::vector<Extent>& boxes);
   /// The last output is of no use any more.
   void Forget() { this->Changes.Forget(); }
 
@@ -52,13 +52,15 @@ private:
     ExactResampler& resampler, DeformReport& report);
   /// See IncrementalUpdate::IsInside.
   bool IsChangeInside() const;
+  /// Finds out where the smooth cut passes, once the last output is that with it.
+  void FindCut();
   /// Makes the request's memory that of the last output.
   void CopyLastOutput(const DeformRequest& request) const;
 
   WorkDevice& Device;
   DeviceVolume& Volume;
   IncrementalUpdate Changes;
-  bool CutIsKnown = true; // where it passes
+  bool CutIsKnown = true; // where it passes, and nowhere else
   Resampling LastMethod = Resampling::Exact;
   Extent LastWholeExtent{ { 0, -1, 0, -1, 0, -1 } };
   std::uint64_t LastCovered = 0;

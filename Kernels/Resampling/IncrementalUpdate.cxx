@@ -67,6 +67,10 @@ bool IncrementalUpdate::HasOnlyInterior(
 {
   const Extent vertices = this->Grid.GetVertices(subBrick, 0);
   const std::array<int, 3>& size = this->Grid.Size;
+  if (!this->IsCut.empty() && this->IsCut[subBrick])
+  {
+    return false; // sides come apart
+  }
   if (!state)
   {
     bool interior = true;

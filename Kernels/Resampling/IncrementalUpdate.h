@@ -48,6 +48,9 @@ public:
   void SetReach(int reach);
   /// The vertices of cells that a smooth cut crosses, since there is another one: after Start.
   void SetCut(const std::vector<CutVertex>& vertices);
+  /// The same while it is tracked what changes: the last output still is that with the cut before.
+  /// Returns whether sub-bricks have vertices of the cut now; empty: none has.
+  std::vector<unsigned char> AddCut(const std::vector<CutVertex>& vertices);
   /// The last output is of no use any more.
   void Forget() { this->Tracking = false; }
   /// The last output was brought up to date.
@@ -128,6 +131,8 @@ private:
   void FindBoxesOf(const IsWanted& isWanted, const Displacements& displacements);
   /// The voxels in a box, within the output and counted from its first one; false without such.
   bool GetVoxels(const Box& box, Extent& voxels) const;
+  /// Whether sub-bricks have vertices of a cut; empty: none has.
+  std::vector<unsigned char> FindCutBricks(const std::vector<CutVertex>& vertices) const;
   /// Bricks may reach beyond the volume.
   bool HasCells(std::size_t subBrick) const
   {
@@ -170,7 +175,7 @@ private:
   std::vector<Box> LastBoxes;                  // of those that were moved
   std::vector<unsigned char> Moved;
   std::vector<unsigned char> Masked;
-  std::vector<unsigned char> IsCut; // whether it has vertices of a smooth cut; empty: none has
+  std::vector<unsigned char> IsCut; // by the cut now, or that of the last output; see FindCutBricks
 };
 
 } // namespace deformvolume

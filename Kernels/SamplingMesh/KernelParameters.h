@@ -180,8 +180,9 @@ typedef struct
 #define DEFORMVOLUME_VERTEX_INTERIOR 2 // all tetrahedra that it could belong to are there
 #define DEFORMVOLUME_CELL_WHOLE 4      // of the cell that begins at it, all tetrahedra are there
 #define DEFORMVOLUME_VERTEX_REGULAR 8  // interior, but that it may lie on the border of the volume
-// a source, not on the far side of the boundary, and of no cell with crossed tetrahedra
-#define DEFORMVOLUME_VERTEX_UNCLIPPED 16
+#define DEFORMVOLUME_VERTEX_UNCLIPPED 16 // a source, not on the far side of the boundary
+#define DEFORMVOLUME_CELL_UNCROSSED 32   // a smooth cut crosses no tetrahedron of that cell
+#define DEFORMVOLUME_VERTEX_TOGETHER 64  // both sides of the cut see it where it is
 
 #ifdef __OPENCL_VERSION__
 

@@ -27,11 +27,10 @@ static size_t PlaceInList(int3 first, int x, int y, int z)
 }
 
 // State of the vertices, first pass: those are a source that the deformation moves and that are
-// not blanked, and of these those unclipped whose boundary distance is not negative and that a smooth
-// cut does not list. Their other bits are found after that.
+// not blanked, and of these those unclipped whose boundary distance is not negative. Their other bits
+// are found after that.
 __kernel void MarkSources(MAPPING_PARAMETERS, __global const uchar* blanked, const int hasBlanked,
-  __global const float* distances, __global const uint* cutRows, __global const CutVertex* cutVertices,
-  __global uchar* state, __global const uint* cuboids, const KernelParameters p)
+  __global const float* distances, __global uchar* state, __global const uint* cuboids, const KernelParameters p)
 {
   const Mapping m = MAPPING_ARGUMENTS;
   const int3 first = FirstVertex(cuboids[get_global_id(1)], &p);
@@ -44,10 +43,7 @@ __kernel void MarkSources(MAPPING_PARAMETERS, __global const uchar* blanked, con
       {
         const size_t i = VertexInChunk(x, y, z, &p);
         const int source = IsMoved(&m, x, y, z, &p) && !(hasBlanked && blanked[i]);
-        int isClipped = p.HasDistances && distances[i] < 0.0f;
-#if HAS_CUT
-        isClipped |= FindCutVertex(cutRows, cutVertices, x, y, z, &p) >= 0;
-#endif
+        const int isClipped = p.HasDistances && distances[i] < 0.0f;
         state[i] = source
           ? DEFORMVOLUME_VERTEX_SOURCE | (isClipped ? 0 : DEFORMVOLUME_VERTEX_UNCLIPPED)
           : 0;
@@ -139,9 +135,22 @@ static int MarkColumn(__global const uchar* state, __global const uchar* active,
     ((cell & DEFORMVOLUME_VERTEX_UNCLIPPED) != 0) * CELL_OF_SOURCES;
 }
 
+// Whether a smooth cut crosses tetrahedra of a cell.
+static int IsCrossed(
+  __global const uint* cutRows, __global const CutVertex* cutVertices, int x, int y, int z, const KernelParameters* p)
+{
+#if HAS_CUT
+  const int place = FindCutVertex(cutRows, cutVertices, x, y, z, p);
+  return place >= 0 && (cutVertices[place].Tetrahedra & DEFORMVOLUME_ALL_TETRAHEDRA);
+#else
+  return 0;
+#endif
+}
+
 // The state of the vertices of a row of a cuboid that begins at first, into a place for that.
-static void MarkRow(__global const uchar* state, __global const uchar* active, int3 first, int endX, int y, int z,
-  __global uchar* marked, const KernelParameters* p)
+static void MarkRow(__global const uchar* state, __global const uchar* active, __global const uint* cutRows,
+  __global const CutVertex* cutVertices, int3 first, int endX, int y, int z, __global uchar* marked,
+  const KernelParameters* p)
 {
   const int step = get_global_size(0);
   const int begin = first.x + get_global_id(0);
@@ -162,6 +171,7 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, i
     int bits = SourceBits(state, x, y, z, p);
     if (bits)
     {
+      bits |= DEFORMVOLUME_VERTEX_TOGETHER; // until its copy is found (CutPositions.cl)
       if ((before & here & after & ALL_SOURCES) && (before & here & ALL_ACTIVE))
       {
         bits |= DEFORMVOLUME_VERTEX_REGULAR;
@@ -172,6 +182,7 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, i
       bits |= (here & after & CELL_OF_SOURCES) && x < p->Size[0] - 1 && z < p->LayersEnd && (here & CELL_ACTIVE)
         ? DEFORMVOLUME_CELL_WHOLE
         : 0;
+      bits |= IsCrossed(cutRows, cutVertices, x, y, z, p) ? 0 : DEFORMVOLUME_CELL_UNCROSSED;
     }
     marked[PlaceInList(first, x, y, z)] = bits;
     before = step == 1 ? here : MarkColumn(state, active, x + step - 1, y, z, p);
@@ -180,11 +191,11 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, i
 }
 
 // Second pass: a vertex is interior when all vertices round it are unclipped sources and all tetrahedra of
-// the eight cells round it are active. Being wrong on the careful side costs time, not truth. A
-// cell is whole when its vertices are unclipped sources and its tetrahedra active. Not into the states, where others
-// look for sources meanwhile.
+// the eight cells round it are active: those that a smooth cut divides are all there as each side sees
+// them (CutCells.cl). Being wrong on the careful side costs time, not truth. A cell is whole when its vertices are
+// unclipped sources and its tetrahedra active. Not into the states, where others look for sources meanwhile.
 __kernel void MarkVertices(__global const uchar* state, __global const uchar* active,
-  __global uchar* marked, __global const uint* cuboids, const KernelParameters p)
+  __global const uint* cutRows, __global const CutVertex* cutVertices, __global uchar* marked, __global const uint* cuboids, const KernelParameters p)
 {
   const int3 first = FirstVertex(cuboids[get_global_id(1)], &p);
   const int3 end = EndOfVertices(first, &p);
@@ -192,7 +203,7 @@ __kernel void MarkVertices(__global const uchar* state, __global const uchar* ac
   {
     for (int y = first.y; y < end.y; ++y)
     {
-      MarkRow(state, active, first, end.x, y, z, marked, &p);
+      MarkRow(state, active, cutRows, cutVertices, first, end.x, y, z, marked, &p);
     }
   }
 }

@@ -4,7 +4,7 @@
 // model whose inputs are copies without logs, and outputs by a filter that makes them wholly. In
 // the end all is undone, bit by bit.
 //
-// Usage: TestEditSequences [NUMBER OF SEQUENCES] (1), each of 150 steps
+// Usage: TestEditSequences [NUMBER OF SEQUENCES] (1) [FIRST SEED] (0), each of 150 steps
 #include "ChainMailTesting.h"
 #include "EditChecks.h"
 
@@ -316,9 +316,10 @@ int TestEditSequences(int argc, char* argv[])
   constexpr int steps = 150;
   // The test driver has options of its own.
   const int sequences = argc > 1 ? std::max(std::atoi(argv[1]), 1) : 1;
+  const int first = argc > 2 ? std::max(std::atoi(argv[2]), 0) : 0;
   int parts = 0;
   int foldedParts = 0;
-  for (int seed = 0; seed < sequences && GetNumberOfFailures() == 0; ++seed)
+  for (int seed = first; seed < first + sequences && GetNumberOfFailures() == 0; ++seed)
   {
     Sequence sequence(3 + static_cast<unsigned>(seed));
     int step = 0;

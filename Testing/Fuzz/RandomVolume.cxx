@@ -245,6 +245,50 @@ void EditDistances(vtkImageData* volume, int density, Random& random)
   distances->Modified();
 }
 
+// A smooth cut, of cells at random or along a plane, by distances that are multiples of 1/16 as
+// well. Now and then one of its arrays is left behind.
+void EditCut(vtkImageData* volume, int density, Random& random)
+{
+  const vtkIdType points = volume->GetNumberOfPoints();
+  const bool isPlane = random.Chance(0.5);
+  const int normal[3] = { random.Int(-16, 16), random.Int(-16, 16), random.Int(-16, 16) };
+  int extent[6];
+  volume->GetExtent(extent);
+  const int width = extent[1] - extent[0] + 1;
+  const int height = extent[3] - extent[2] + 1;
+  int place = 0; // of the plane, in the middle of the volume or beside it
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    place += normal[axis] * ((extent[2 * axis + 1] - extent[2 * axis]) / 2);
+  }
+  vtkNew<vtkFloatArray> distances;
+  distances->SetName("CutDistance");
+  distances->SetNumberOfTuples(points);
+  for (vtkIdType i = 0; i < points; ++i)
+  {
+    const int at[3] = { static_cast<int>(i) % width, static_cast<int>(i) / width % height,
+      static_cast<int>(i) / (width * height) };
+    const int distance = isPlane ? normal[0] * at[0] + normal[1] * at[1] + normal[2] * at[2] - place
+                                 : random.Int(-32, 32);
+    distances->SetComponent(i, 0, distance / 16.0);
+  }
+  volume->GetPointData()->AddArray(distances);
+  vtkUnsignedCharArray* crossed =
+    GetMask(volume->GetCellData(), "CutTetrahedra", volume->GetNumberOfCells(), 0);
+  for (vtkIdType i = 0; i < volume->GetNumberOfCells(); ++i)
+  {
+    if (isPlane || random.Int(0, density) == 0)
+    {
+      crossed->SetValue(i, static_cast<unsigned char>(isPlane ? 31 : random.Int(0, 31)));
+    }
+  }
+  crossed->Modified();
+  if (random.Chance(0.03))
+  {
+    volume->GetPointData()->RemoveArray("CutDistance");
+  }
+}
+
 } // namespace
 
 void FillArrays(vtkImageData* volume, Random& random, std::ostream& log)
@@ -258,7 +302,7 @@ void FillArrays(vtkImageData* volume, Random& random, std::ostream& log)
     const char* name = pointData->GetAbstractArray(i)->GetName();
     if (!name ||
       (std::string(name) != vtkDataSetAttributes::GhostArrayName() &&
-        std::string(name) != "BoundaryDistance"))
+        std::string(name) != "BoundaryDistance" && std::string(name) != "CutDistance"))
     {
       pointData->RemoveArray(i);
     }
@@ -288,7 +332,7 @@ void EditMasks(vtkImageData* volume, Random& random, std::ostream& log)
   {
     return;
   }
-  const int kind = random.Int(0, 4);
+  const int kind = random.Int(0, 5);
   log << " masks " << kind;
   vtkUnsignedCharArray* mask = nullptr;
   const int density = random.Pick({ 2, 10, 100 });
@@ -331,9 +375,13 @@ void EditMasks(vtkImageData* volume, Random& random, std::ostream& log)
     case 3:
       EditDistances(volume, density, random);
       break;
+    case 4:
+      EditCut(volume, density, random);
+      break;
     default:
       volume->GetPointData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
       volume->GetPointData()->RemoveArray("BoundaryDistance");
+      volume->GetPointData()->RemoveArray("CutDistance");
       volume->GetCellData()->Initialize();
       volume->Modified();
   }

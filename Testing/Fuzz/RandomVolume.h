@@ -29,7 +29,8 @@ vtkSmartPointer<vtkImageData> MakeVolume(Random& random, Geometry geometry, std:
 /// combination of types costs a compilation of kernels.
 void FillArrays(vtkImageData* volume, Random& random, std::ostream& log);
 
-/// Sets or changes vtkGhostType of points or cells, ActiveTetrahedra or BoundaryDistance.
+/// Sets or changes vtkGhostType of points or cells, ActiveTetrahedra, BoundaryDistance or a
+/// smooth cut.
 void EditMasks(vtkImageData* volume, Random& random, std::ostream& log);
 
 /// Changes values, geometry, arrays or masks.

@@ -64,6 +64,7 @@ bool FindPositions(vtkImageData* output, vtkImageData* volume, vtkDataSet* defor
     volume->GetPoint(point, rest);
     deformation->GetPoint(point, node);
     reference::Position position;
+    reference::Position displacement;
     const std::int64_t size[3] = { reference::GetSize(mesh.Voxels, 0),
       reference::GetSize(mesh.Voxels, 1), reference::GetSize(mesh.Voxels, 2) };
     const std::int64_t place[3] = { point % size[0], point / size[0] % size[1],
@@ -78,8 +79,11 @@ bool FindPositions(vtkImageData* output, vtkImageData* volume, vtkDataSet* defor
         return false;
       }
       position[axis] = static_cast<std::int64_t>(exact);
+      displacement[axis] =
+        position[axis] - static_cast<std::int64_t>(std::floor(256.0 * index * scale[axis]));
     }
     mesh.Positions.push_back(position);
+    mesh.Displacements.push_back(displacement);
   }
   return true;
 }
@@ -102,6 +106,16 @@ void FindMasks(vtkImageData* volume, reference::SamplingMesh& mesh)
     for (vtkIdType point = 0; point < volume->GetNumberOfPoints(); ++point)
     {
       mesh.Distances.push_back(static_cast<float>(distances->GetComponent(point, 0)));
+    }
+  }
+  vtkUnsignedCharArray* crossed = GetMask(volume->GetCellData(), "CutTetrahedra");
+  if (vtkDataArray* distances = volume->GetPointData()->GetArray("CutDistance"))
+  {
+    mesh.Crossed.assign(
+      crossed->GetPointer(0), crossed->GetPointer(0) + volume->GetNumberOfCells());
+    for (vtkIdType point = 0; point < volume->GetNumberOfPoints(); ++point)
+    {
+      mesh.CutDistances.push_back(static_cast<float>(distances->GetComponent(point, 0)));
     }
   }
   mesh.Active.assign(static_cast<std::size_t>(volume->GetNumberOfCells()), 31);

@@ -240,8 +240,7 @@ private:
         regular = regular &&
           (this->Mesh.Present.empty() || this->Mesh.Present[(z * size[1] + y) * size[0] + x]) &&
           (this->Mesh.Distances.empty() ||
-            !(this->Mesh.Distances[(z * size[1] + y) * size[0] + x] < 0.0F)) &&
-          !this->IsOfCrossedCell(x, y, z);
+            !(this->Mesh.Distances[(z * size[1] + y) * size[0] + x] < 0.0F));
       }
       const bool isCell = step % 3 < 2 && step / 3 % 3 < 2 && step / 9 < 2;
       if (isCell && lower && x < size[0] - 1 && y < size[1] - 1 && z < size[2] - 1)
@@ -252,25 +251,6 @@ private:
       }
     }
     return regular;
-  }
-
-  /// Whether a voxel is a vertex of a cell with a crossed tetrahedron.
-  bool IsOfCrossedCell(std::int64_t x, std::int64_t y, std::int64_t z) const
-  {
-    const std::int64_t cells[3] = { GetSize(this->Mesh.Voxels, 0) - 1,
-      GetSize(this->Mesh.Voxels, 1) - 1, GetSize(this->Mesh.Voxels, 2) - 1 };
-    bool found = false;
-    for (int corner = 0; corner < 8 && !this->Mesh.Crossed.empty(); ++corner)
-    {
-      const std::int64_t cx = x - (corner & 1);
-      const std::int64_t cy = y - (corner >> 1 & 1);
-      const std::int64_t cz = z - (corner >> 2);
-      const bool isCell =
-        cx >= 0 && cy >= 0 && cz >= 0 && cx < cells[0] && cy < cells[1] && cz < cells[2];
-      found =
-        found || (isCell && (this->Mesh.Crossed[(cz * cells[1] + cy) * cells[0] + cx] & 31) != 0);
-    }
-    return found;
   }
 
   /// On the border of the volume: the cell with the simplex on its low sides, or the last one on an
