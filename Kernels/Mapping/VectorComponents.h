@@ -21,6 +21,10 @@ struct VectorComponents
 /// Of so many numbers, three a vector.
 VectorComponents FindComponents(const float* values, std::size_t count);
 
+/// The matrix of a field as it is applied (GetFactor).
+using DisplacementFactors = std::array<double, 9>;
+DisplacementFactors GetFactors(const DisplacementField& field);
+
 /// What the displacements of a field lie between whose vectors lie between others, as they are
 /// rounded. No displacement of such a vector leaves these bounds.
 struct DisplacementRange
@@ -28,7 +32,7 @@ struct DisplacementRange
   std::array<double, 3> Least;
   std::array<double, 3> Greatest;
 };
-DisplacementRange GetRange(const DisplacementField& field, const VectorComponents& components);
+DisplacementRange GetRange(const DisplacementFactors& factors, const VectorComponents& components);
 
 } // namespace deformvolume
 
