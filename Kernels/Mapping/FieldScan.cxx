@@ -11,10 +11,6 @@
 #include <cstring>
 #include <vector>
 
-#ifdef __SSE__
-#include <xmmintrin.h>
-#endif
-
 namespace deformvolume
 {
 
@@ -99,19 +95,6 @@ private:
   std::uint64_t Count = 0;
 };
 
-// Asks for the numbers from begin to end, which are wanted soon: the processor by itself does not
-// look beyond a page of memory.
-void Prefetch([[maybe_unused]] const float* begin, [[maybe_unused]] const float* end)
-{
-#ifdef __SSE__
-  constexpr std::ptrdiff_t line = 16; // numbers
-  for (const float* next = begin; next < end; next += line)
-  {
-    _mm_prefetch(reinterpret_cast<const char*>(next), _MM_HINT_T0);
-  }
-#endif
-}
-
 // Looks at blocks of a field.
 class BlockScanner
 {
@@ -162,7 +145,6 @@ public:
           for (int x = ends[range]; x < ends[range + 1]; x += Step)
           {
             const int end = std::min(x + Step, ends[range + 1]);
-            this->PrefetchBehind(x, end, y, z);
             usable = this->AddSome(x, end, y, z, range == 1, box) && usable;
             row.Add(this->Field.Vectors + 3 * this->GetPoint(x, y, z),
               3 * static_cast<std::size_t>(end - x));
@@ -200,14 +182,6 @@ private:
   glm::dvec3 GetPlace(int x, int y, int z) const
   {
     return glm::dvec3(this->Rest[0][x], this->Rest[1][y], this->Rest[2][z]);
-  }
-  // Asks for as many points as there are from x to end, some steps farther on.
-  void PrefetchBehind(int x, int end, int y, int z) const
-  {
-    constexpr std::int64_t distance = 4 * Step;
-    const std::int64_t all = GetNumberOfPoints(this->Field);
-    Prefetch(this->Field.Vectors + 3 * std::min(this->GetPoint(x, y, z) + distance, all),
-      this->Field.Vectors + 3 * std::min(this->GetPoint(end, y, z) + distance, all));
   }
   // Whether a row has voxels, and not only other points of the field.
   bool HasVoxels(int y, int z) const
