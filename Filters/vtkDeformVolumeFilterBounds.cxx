@@ -90,8 +90,8 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   const deformvolume::Deformation& mesh = this->State->Deformation;
   this->UpdateBoundsOfMesh(voxelGrid);
   const deformvolume::PointRanges changes = mesh.GetChanges(this->State->BoundsVectorsVersion);
-  const IndexBounds bounds = this->State->BoundsOfMesh.Compute(
-    mesh.GetRestPoints(), mesh.GetTetrahedra(), mesh.GetNodeDisplacements(), &changes);
+  const IndexBounds bounds = this->State->BoundsOfMesh.Compute(mesh.GetRestPoints(),
+    mesh.GetTetrahedra(), mesh.GetNodeDisplacements(), &changes, mesh.GetBlockComponents());
   this->State->BoundsVectorsVersion = mesh.GetVectorsVersion();
   if (bounds.IsEmpty())
   {

@@ -203,7 +203,7 @@ void DeviceSession::SetNodes(const Deformation& deformation, const PointRanges* 
   }
   else
   {
-    this->Deformer.SetNodeDisplacements(deformation.GetNodeDisplacements(), changes);
+    this->Deformer.SetNodeDisplacements(deformation.GetNodeDisplacements(), changes, true);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "RestMesh.h"
 #include "Tetrahedron.h"
 #include "VectorArray.h"
+#include "VectorComponents.h"
 
 #include "vtkSmartPointer.h"
 
@@ -70,10 +71,13 @@ public:
 
   ///@{
   /// A mesh: its tetrahedra, its nodes at rest in continuous indices of the volume, and their
-  /// displacements in output voxels.
+  /// displacements in output voxels, none of which is over LargestDisplacement.
   const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Mesh.GetTetrahedra(); }
   const std::vector<glm::dvec3>& GetRestPoints() const { return this->Mesh.GetPoints(); }
   const float* GetNodeDisplacements() const { return this->Vectors.data(); }
+  /// What each block of so many displacements lies between; not finite where that is not known.
+  const VectorComponents* GetBlockComponents() const { return this->BlockComponents.data(); }
+  static constexpr std::size_t PointsPerBlock = VectorComponents::BlockSize;
   ///@}
 
   ///@{
@@ -129,9 +133,9 @@ private:
   bool Field = false;
   RestMesh Mesh;
   std::vector<float> Vectors;
-  static constexpr std::size_t PointsPerBlock = 512;
   std::vector<std::uint64_t> BlockVersions; // that with which each block of the vectors came
-  bool VectorsAreWhole = false;             // else the last reading of them failed
+  std::vector<VectorComponents> BlockComponents;
+  bool VectorsAreWhole = false; // else the last reading of them failed
   std::array<int, 3> FieldDimensions{ { 0, 0, 0 } };
   std::array<double, 12> IndexToField{};
   DisplacementField FieldInPlace; // with an owner, or there is none

@@ -56,19 +56,29 @@ public:
     {
       return;
     }
-    const std::size_t size = static_cast<std::size_t>(array->GetNumberOfTuples()) * this->TupleSize;
-    this->Known = memory->Type == array->GetDataType() ? memory->Bytes.size() : 0;
-    memory->Bytes.resize(size);
-    this->Last = memory->Bytes.data();
+    this->Known = memory->Type == array->GetDataType() ? memory->Count : 0;
     this->ReadLog(array, *memory);
+    const bool areKept = !memory->Bytes.empty();
+    if (!memory->KeepsBytes)
+    {
+      memory->Bytes.clear();
+    }
+    else if (areKept || this->Known == 0 || this->Written.empty())
+    {
+      // Where they are kept from now on, all are read.
+      this->Known = areKept ? this->Known : 0;
+      memory->Bytes.resize(static_cast<std::size_t>(array->GetNumberOfTuples()) * this->TupleSize);
+      this->Last = memory->Bytes.data();
+    }
   }
 
   bool IsSame(vtkIdType first, vtkIdType count) const
   {
     const std::size_t begin = static_cast<std::size_t>(first) * this->TupleSize;
     const std::size_t size = static_cast<std::size_t>(count) * this->TupleSize;
-    return begin + size <= this->Known &&
-      (this->IsLeft(first) || std::memcmp(this->Values + begin, this->Last + begin, size) == 0);
+    return first + count <= this->Known &&
+      (this->IsLeft(first) ||
+        (this->Last && std::memcmp(this->Values + begin, this->Last + begin, size) == 0));
   }
   void Remember(vtkIdType first, vtkIdType count) const
   {
@@ -99,7 +109,7 @@ private:
   const unsigned char* Values;
   std::size_t TupleSize;
   unsigned char* Last = nullptr;
-  std::size_t Known = 0;              // bytes of the last reading
+  vtkIdType Known = 0;                // tuples of the last reading
   std::vector<unsigned char> Written; // blocks, where a log tells which; else empty
 };
 
@@ -196,6 +206,7 @@ void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string
   if (memory)
   {
     memory->Type = reader.HasBytes && reader.FirstBad == NONE ? array->GetDataType() : VTK_VOID;
+    memory->Count = array->GetNumberOfTuples();
     memory->Array = array;
     memory->Time = array->GetMTime();
   }

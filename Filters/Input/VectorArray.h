@@ -20,12 +20,16 @@ namespace deformvolume
 using VectorTaker =
   std::function<void(vtkIdType first, const glm::dvec3* vectors, vtkIdType count)>;
 
-/// What an array held when it was read last, as it lay in memory.
+/// What an array held when it was read last.
 struct VectorMemory
 {
-  int Type = 0; // of its elements, as VTK numbers them; VTK_VOID where nothing is known
-  std::vector<unsigned char> Bytes;
-  vtkIdType Place = 0; // what its first tuple counted as
+  int Type = 0;        // of its elements, as VTK numbers them; VTK_VOID where nothing is known
+  vtkIdType Count = 0; // of its tuples
+  /// Whether their bytes are kept, and compared: else all are taken that no log leaves out, which
+  /// is faster where most have changed.
+  bool KeepsBytes = true;
+  std::vector<unsigned char> Bytes; // empty: none are kept yet
+  vtkIdType Place = 0;              // what its first tuple counted as
   const void* Array = nullptr;
   vtkMTimeType Time = 0; // of the array
 };
@@ -34,7 +38,8 @@ struct VectorMemory
 /// that names the first tuple that is not finite: "<kind> 5 of the <owner>".
 /// memory: of the last reading of this array or of one in its place, which may have had fewer or
 /// more tuples. Blocks of tuples that are as they were then need not be taken again, and are left
-/// out: a log of the array (vtkArrayChanges) tells them, or else a comparison. Null: all are taken.
+/// out: a log of the array (vtkArrayChanges) tells them, or else a comparison where bytes are kept.
+/// Null: all are taken.
 void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string& kind,
   const std::string& owner, VectorMemory* memory = nullptr);
 

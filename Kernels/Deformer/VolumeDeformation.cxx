@@ -90,16 +90,20 @@ void VolumeDeformation::SetInverseField(const DisplacementField& field)
   this->Rasterizer.SetField(field);
 }
 
-void VolumeDeformation::SetNodeDisplacements(const float* displacements, const PointRanges* changes)
+void VolumeDeformation::SetNodeDisplacements(
+  const float* displacements, const PointRanges* changes, bool areChecked)
 {
   if (this->Rasterizer.HasMesh())
   {
-    CheckDisplacements(displacements, this->Rasterizer.GetNumberOfNodes(), "node", nullptr);
+    if (!areChecked)
+    {
+      CheckDisplacements(displacements, this->Rasterizer.GetNumberOfNodes(), "node", nullptr);
+    }
     this->Rasterizer.SetDisplacements(displacements);
     return;
   }
   this->CheckMesh();
-  this->Source.SetNodeDisplacements(displacements, changes);
+  this->Source.SetNodeDisplacements(displacements, changes, areChecked);
 }
 
 void VolumeDeformation::SetNodeDisplacements(
@@ -112,7 +116,7 @@ void VolumeDeformation::SetNodeDisplacements(
     field.ToDisplacement = toDisplacement;
     VectorReading reading(this->Device);
     reading.Begin(vectors, field, this->Rasterizer.GetNumberOfNodes());
-    this->SetNodeDisplacements(reading.GetDisplacements({}), nullptr);
+    this->SetNodeDisplacements(reading.GetDisplacements({}), nullptr, false);
     return;
   }
   this->CheckMesh();

@@ -64,7 +64,8 @@ public:
   void SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const double* restNodes);
   void SetInverseField(const DisplacementField& field);
-  void SetNodeDisplacements(const float* displacements, const PointRanges* changes);
+  void SetNodeDisplacements(
+    const float* displacements, const PointRanges* changes, bool areChecked);
   void SetNodeDisplacements(
     const std::shared_ptr<DeviceVectors>& vectors, const std::array<double, 9>& toDisplacement);
   void SetDisplacementField(const DisplacementField& field, const PointRanges* changes);

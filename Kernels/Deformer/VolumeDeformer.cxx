@@ -197,10 +197,11 @@ void VolumeDeformer::SetInverseField(const DisplacementField& field)
   this->Impl->Send([&](VolumeDeformation& volume) { volume.SetInverseField(field); });
 }
 
-void VolumeDeformer::SetNodeDisplacements(const float* displacements, const PointRanges* changes)
+void VolumeDeformer::SetNodeDisplacements(
+  const float* displacements, const PointRanges* changes, bool areChecked)
 {
-  this->Impl->Send(
-    [&](VolumeDeformation& volume) { volume.SetNodeDisplacements(displacements, changes); });
+  this->Impl->Send([&](VolumeDeformation& volume)
+    { volume.SetNodeDisplacements(displacements, changes, areChecked); });
 }
 
 void VolumeDeformer::SetDisplacementField(

@@ -154,8 +154,10 @@ public:
   void SetInverseField(const DisplacementField& field);
   /// Displacements of the nodes, three floats each, in output voxels. changes: all others are those
   /// of the last call, and are not looked at, if there was one for this mesh and it did not fail.
-  /// Null: any may have changed.
-  void SetNodeDisplacements(const float* displacements, const PointRanges* changes = nullptr);
+  /// Null: any may have changed. areChecked: they are known to be finite, and none is over
+  /// LargestDisplacement; else that is looked at.
+  void SetNodeDisplacements(
+    const float* displacements, const PointRanges* changes = nullptr, bool areChecked = false);
 
   /// The same of vectors on the device of the volume, a vector for each node. toDisplacement takes
   /// them to displacements, see DisplacementField. On a device with memory of its own nothing

@@ -34,17 +34,23 @@ public:
   IndexBounds Compute(
     const std::vector<unsigned char>& changed, FindBox&& findBox, FindBounds&& findBounds)
   {
-    ParallelFor(0, static_cast<std::int64_t>(this->Bounds.size()), 0,
-      [&](std::int64_t begin, std::int64_t end)
+    std::vector<std::size_t> other;
+    for (std::size_t block = 0; block < this->Bounds.size(); ++block)
+    {
+      if (changed[block])
       {
-        for (auto block = static_cast<std::size_t>(begin); block < static_cast<std::size_t>(end);
-             ++block)
+        other.push_back(block);
+      }
+    }
+    constexpr std::size_t step = 16;
+    ParallelForParts(other.size(), step,
+      [&](std::size_t begin, std::size_t end)
+      {
+        for (std::size_t i = begin; i < end; ++i)
         {
-          if (changed[block])
-          {
-            this->Bounds[block] = findBox(block);
-            this->IsExact[block] = this->Bounds[block].IsEmpty() ? 1 : 0;
-          }
+          const std::size_t block = other[i];
+          this->Bounds[block] = findBox(block);
+          this->IsExact[block] = this->Bounds[block].IsEmpty() ? 1 : 0;
         }
       });
     const auto compute = [&](std::size_t block)

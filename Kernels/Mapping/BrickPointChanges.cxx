@@ -3,47 +3,48 @@
 #include "BrickPoints.h"
 
 #include "ParallelFor.h"
-#include "PointSet.h"
 
 #include <algorithm>
+#include <atomic>
 #include <iterator>
 #include <mutex>
 
 namespace deformvolume
 {
 
-std::vector<BrickPoints::ChangesOfBrick> BrickPoints::FindBricks(
-  const std::vector<TetrahedronChange>& changes,
-  const std::function<bool(std::size_t)>& isNear) const
+BrickPoints::NodesBefore::NodesBefore(const std::vector<TetrahedronChange>& changes)
 {
-  // Which of the changes each node had a part in, and how many nodes each change has.
-  std::vector<std::pair<std::int32_t, std::uint32_t>> users;
-  users.reserve(4 * changes.size());
+  this->Users.reserve(4 * changes.size());
   for (std::size_t i = 0; i < changes.size(); ++i)
   {
     for (const std::int32_t node : changes[i].Before)
     {
-      users.emplace_back(node, static_cast<std::uint32_t>(i));
+      this->Users.emplace_back(node, static_cast<std::uint32_t>(i));
     }
   }
-  std::sort(users.begin(), users.end());
-  users.erase(std::unique(users.begin(), users.end()), users.end());
-  std::vector<int> nodesOfChange(changes.size(), 0);
-  PointSet used;
-  used.Clear(users.empty() ? 0 : static_cast<std::size_t>(users.back().first) + 1);
-  for (const auto& user : users)
+  std::sort(this->Users.begin(), this->Users.end());
+  this->Users.erase(std::unique(this->Users.begin(), this->Users.end()), this->Users.end());
+  this->NumbersOfNodes.resize(changes.size());
+  this->Used.Clear(
+    this->Users.empty() ? 0 : static_cast<std::size_t>(this->Users.back().first) + 1);
+  for (const auto& user : this->Users)
   {
-    ++nodesOfChange[user.second];
-    used.Add(static_cast<std::size_t>(user.first));
+    ++this->NumbersOfNodes[user.second];
+    this->Used.Add(static_cast<std::size_t>(user.first));
   }
+}
+
+std::vector<BrickPoints::ChangesOfBrick> BrickPoints::FindBricks(
+  const NodesBefore& nodes, const std::function<bool(std::size_t)>& isNear) const
+{
   const std::size_t bricks = this->Begins.size();
   std::vector<ChangesOfBrick> found;
   std::mutex mutex;
-  constexpr std::size_t step = 256;
+  constexpr std::size_t step = 64;
   ParallelForParts(bricks, step,
     [&](std::size_t begin, std::size_t end)
     {
-      std::vector<int> seen(changes.size(), 0);
+      std::vector<int> seen(nodes.NumbersOfNodes.size(), 0);
       for (std::size_t brick = begin; brick < end; ++brick)
       {
         if (!isNear(brick))
@@ -56,16 +57,16 @@ std::vector<BrickPoints::ChangesOfBrick> BrickPoints::FindBricks(
           [&](std::size_t first, std::size_t past)
           {
             // Most ranges have none of these nodes.
-            if (!used.HasAnyOf(first, past))
+            if (!nodes.Used.HasAnyOf(first, past))
             {
               return false;
             }
-            for (auto user = std::lower_bound(users.begin(), users.end(),
+            for (auto user = std::lower_bound(nodes.Users.begin(), nodes.Users.end(),
                    std::make_pair(static_cast<std::int32_t>(first), std::uint32_t{ 0 }));
-                 user != users.end() && static_cast<std::size_t>(user->first) < past; ++user)
+                 user != nodes.Users.end() && static_cast<std::size_t>(user->first) < past; ++user)
             {
               touched.push_back(user->second);
-              if (++seen[user->second] == nodesOfChange[user->second])
+              if (++seen[user->second] == nodes.NumbersOfNodes[user->second])
               {
                 whole.push_back(user->second);
               }
@@ -87,6 +88,16 @@ std::vector<BrickPoints::ChangesOfBrick> BrickPoints::FindBricks(
 }
 
 void BrickPoints::AddPoints(
+  const std::vector<ChangesOfBrick>& bricks, const std::vector<TetrahedronChange>& changes)
+{
+  this->Added.resize(this->Begins.size());
+  std::atomic<std::size_t> number{ 0 };
+  ParallelForParts(bricks.size(), 1,
+    [&](std::size_t i, std::size_t) { number += this->AddPoints(bricks[i], changes); });
+  this->NumberOfAdded += number;
+}
+
+std::size_t BrickPoints::AddPoints(
   const ChangesOfBrick& brick, const std::vector<TetrahedronChange>& changes)
 {
   std::vector<std::int32_t> nodes;
@@ -100,7 +111,6 @@ void BrickPoints::AddPoints(
   }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  this->Added.resize(this->Begins.size());
   std::vector<std::int32_t>& added = this->Added[brick.first];
   const auto first = this->Ranges.begin() + static_cast<std::ptrdiff_t>(this->Begins[brick.first]);
   const auto past = this->Ranges.begin() + static_cast<std::ptrdiff_t>(this->Ends[brick.first]);
@@ -115,9 +125,9 @@ void BrickPoints::AddPoints(
     if (!isThere)
     {
       added.push_back(node);
-      ++this->NumberOfAdded;
     }
   }
+  return added.size() - before;
 }
 
 BrickPoints BrickPoints::Join(const std::vector<std::vector<std::size_t>>& groups) const

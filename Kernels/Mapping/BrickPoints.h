@@ -5,6 +5,7 @@
 #include "BrickGrid.h"
 #include "Extent.h"
 #include "KernelParameters.h"
+#include "PointSet.h"
 #include "Tetrahedron.h"
 #include "VertexLink.h"
 #include "VertexRuns.h"
@@ -55,14 +56,24 @@ public:
 
   bool IsEmpty() const { return this->Begins.empty() && this->Boxes.empty(); }
 
+  /// Which of some changes each node had a part in, and how many nodes each change has.
+  struct NodesBefore
+  {
+    explicit NodesBefore(const std::vector<TetrahedronChange>& changes);
+    std::vector<std::pair<std::int32_t, std::uint32_t>> Users; // nodes and changes, sorted
+    std::vector<int> NumbersOfNodes;                           // of each change
+    PointSet Used;
+  };
   /// The bricks that depend on one of some tetrahedra by the nodes that it had, of those that
   /// isNear(brick) is true for; each with its tetrahedra, by their places in the list. The bricks
   /// of other tetrahedra with the same nodes may be among them.
   using ChangesOfBrick = std::pair<std::size_t, std::vector<std::size_t>>;
-  std::vector<ChangesOfBrick> FindBricks(const std::vector<TetrahedronChange>& changes,
-    const std::function<bool(std::size_t)>& isNear) const;
-  /// A brick depends on the nodes that its tetrahedra have got as well from now on.
-  void AddPoints(const ChangesOfBrick& brick, const std::vector<TetrahedronChange>& changes);
+  std::vector<ChangesOfBrick> FindBricks(
+    const NodesBefore& nodes, const std::function<bool(std::size_t)>& isNear) const;
+  /// Bricks, none of them twice, depend on the nodes that their tetrahedra have got as well from
+  /// now on.
+  void AddPoints(
+    const std::vector<ChangesOfBrick>& bricks, const std::vector<TetrahedronChange>& changes);
   /// Whether so many were added, or are left over, that all are better found anew.
   bool AreOverloaded() const
   {
@@ -150,6 +161,8 @@ private:
     const BrickGrid& grid, const Mesh& mesh, const std::vector<std::size_t>* wanted, Visit&& visit);
   /// Takes the points of the next brick, in ascending order.
   void Append(const Needs& needs);
+  /// Returns how many nodes are new to the brick.
+  std::size_t AddPoints(const ChangesOfBrick& brick, const std::vector<TetrahedronChange>& changes);
 
   // Points with numbers that follow each other: in meshes that are lattices they are many.
   struct Range

@@ -27,7 +27,7 @@ void DisplacementBounds::Add(const Displacements& displacements, std::size_t beg
     FindComponents(displacements.Field->Vectors + 3 * begin, 3 * (end - begin));
   if (components.AreFinite)
   {
-    const DisplacementRange range = GetRange(*displacements.Field, components);
+    const DisplacementRange range = GetRange(GetFactors(*displacements.Field), components);
     for (int axis = 0; begin < end && axis < 3; ++axis)
     {
       this->Least[axis] = std::min(this->Least[axis], static_cast<float>(range.Least[axis]));

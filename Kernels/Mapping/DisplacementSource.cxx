@@ -127,10 +127,10 @@ std::vector<Extent> DisplacementSource::UpdateBridges()
 }
 
 void DisplacementSource::SetNodeDisplacements(
-  const float* displacements, const PointRanges* changes)
+  const float* displacements, const PointRanges* changes, bool areChecked)
 {
   this->Reading.Forget();
-  this->SendNodes(displacements, changes);
+  this->SendNodes(displacements, changes, areChecked);
 }
 
 void DisplacementSource::SetNodeDisplacements(
@@ -142,7 +142,7 @@ void DisplacementSource::SetNodeDisplacements(
     this->Reading.Begin(vectors, field, this->NumberOfNodes);
   if (!this->Reading.CanConvert())
   {
-    this->SendNodes(this->Reading.GetDisplacements(changes), changes ? &*changes : nullptr);
+    this->SendNodes(this->Reading.GetDisplacements(changes), changes ? &*changes : nullptr, false);
     return;
   }
   if (this->NodesSet && this->LastSent && changes && changes->empty())
@@ -157,11 +157,15 @@ void DisplacementSource::SetNodeDisplacements(
   this->Volume.GetRecords().Forget();
 }
 
-void DisplacementSource::SendNodes(const float* displacements, const PointRanges* changes)
+void DisplacementSource::SendNodes(
+  const float* displacements, const PointRanges* changes, bool areChecked)
 {
   const PointRanges* news = this->NodesSet && this->LastSent ? changes : nullptr;
   this->LastSent = false;
-  CheckDisplacements(displacements, this->NumberOfNodes, "node", news);
+  if (!areChecked)
+  {
+    CheckDisplacements(displacements, this->NumberOfNodes, "node", news);
+  }
   this->Nodes.Send(displacements, this->NumberOfNodes, this->Order.Nodes, news,
     [this] { return this->MakeBrickPoints(); });
   this->NodesSet = true;

@@ -57,8 +57,10 @@ public:
   std::vector<Extent> ReplaceTetrahedra(const Tetrahedron* tetrahedra,
     std::size_t numberOfTetrahedra, std::size_t numberOfNodes, const MappingUpdate& update);
   void SetNodePlaces(const std::int32_t* places);
-  /// Three floats a node, in output voxels. changes: see VolumeDeformer::SetNodeDisplacements.
-  void SetNodeDisplacements(const float* displacements, const PointRanges* changes);
+  /// Three floats a node, in output voxels. changes, areChecked: see
+  /// VolumeDeformer::SetNodeDisplacements.
+  void SetNodeDisplacements(
+    const float* displacements, const PointRanges* changes, bool areChecked);
 
   /// The same of vectors on the device. toDisplacement: see DisplacementField.
   void SetNodeDisplacements(
@@ -119,7 +121,7 @@ private:
   std::vector<TetrahedronChange> FindChanges(const Tetrahedron* tetrahedra) const;
   void CheckChanges(const std::vector<TetrahedronChange>& changes, std::size_t numberOfNodes) const;
   void SendChanges(const std::vector<TetrahedronChange>& changes);
-  void SendNodes(const float* displacements, const PointRanges* changes);
+  void SendNodes(const float* displacements, const PointRanges* changes, bool areChecked);
   /// There are so many nodes now; those that are new get numbers of the device.
   void SetNumberOfNodes(std::size_t numberOfNodes);
   /// Gives the tetrahedra that are new numbers of the device; returns those that are not in use any

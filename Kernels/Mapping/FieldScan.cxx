@@ -25,42 +25,75 @@ int CountBlocksOfPlane(const DisplacementField& field)
   return (field.Dimensions[1] + RowsOfBlock - 1) / RowsOfBlock;
 }
 
-// What tells rows of numbers apart. In four sums side by side, which keep up with the memory; each
-// is stirred so that what changes in the highest bits, such as the sign of a number, reaches all.
-std::array<std::uint64_t, 4> GetFingerprint(
-  const float* values, std::size_t count, std::uint64_t seed)
+// What tells rows of numbers apart. In eight sums side by side, which keep up with the memory. Each
+// is stirred so that what changes in the highest bits, such as the sign of a number, reaches others
+// before the next word: else that could undo it.
+class RowFingerprint
 {
-  constexpr std::uint64_t factor = 0x9E3779B97F4A7C15U;
-  constexpr std::size_t width = 8; // numbers in four words
-  std::array<std::uint64_t, 4> sums{ { seed, ~seed, seed + factor, seed ^ factor } };
-  const auto stir = [](std::uint64_t& sum, std::uint64_t word)
+public:
+  explicit RowFingerprint(std::uint64_t seed)
+    : Seed(seed)
   {
-    sum = (sum ^ word) * factor;
-    sum ^= sum >> 32;
-  };
-  std::size_t i = 0;
-  for (; i + width <= count; i += width)
-  {
-    std::array<std::uint64_t, 4> words;
-    std::memcpy(words.data(), values + i, sizeof(words));
-    for (std::size_t k = 0; k < words.size(); ++k)
+    for (std::uint64_t& sum : this->Sums)
     {
-      stir(sums[k], words[k]);
+      sum = seed;
+      seed += Factor;
     }
   }
-  for (; i < count; ++i)
+
+  // The next numbers of the row.
+  void Add(const float* values, std::size_t count)
   {
-    std::uint32_t word = 0;
-    std::memcpy(&word, values + i, sizeof(word));
-    stir(sums[i % sums.size()], word);
+    constexpr std::size_t width = 2 * Lanes; // numbers in as many words
+    std::array<std::uint64_t, Lanes> sums = this->Sums;
+    std::size_t i = 0;
+    for (; i + width <= count; i += width)
+    {
+      std::array<std::uint64_t, Lanes> words;
+      std::memcpy(words.data(), values + i, sizeof(words));
+      for (std::size_t k = 0; k < Lanes; ++k)
+      {
+        Stir(sums[k], words[k]);
+      }
+    }
+    for (; i < count; ++i)
+    {
+      std::uint32_t word = 0;
+      std::memcpy(&word, values + i, sizeof(word));
+      Stir(sums[i % Lanes], word);
+    }
+    this->Sums = sums;
+    this->Count += count;
   }
-  for (std::uint64_t& sum : sums)
+
+  // Adds what was found to that of other rows, which come in any order.
+  void AddTo(std::array<std::uint64_t, 4>& all) const
   {
-    stir(sum, count);
-    stir(sum, seed);
+    for (std::size_t k = 0; k < all.size(); ++k)
+    {
+      std::uint64_t sum = this->Sums[k];
+      for (const std::uint64_t word : { this->Sums[k + all.size()], this->Count, this->Seed })
+      {
+        Stir(sum, word);
+      }
+      all[k] += sum;
+    }
   }
-  return sums;
-}
+
+private:
+  static constexpr std::size_t Lanes = 8;
+  static constexpr std::uint64_t Factor = 0x9E3779B97F4A7C15U;
+
+  static void Stir(std::uint64_t& sum, std::uint64_t word)
+  {
+    sum ^= word;
+    sum = (sum ^ (sum >> 32)) * Factor;
+  }
+
+  std::uint64_t Seed;
+  std::array<std::uint64_t, Lanes> Sums;
+  std::uint64_t Count = 0;
+};
 
 // Looks at blocks of a field.
 class BlockScanner
@@ -68,6 +101,7 @@ class BlockScanner
 public:
   BlockScanner(const VoxelGrid& voxelGrid, const DisplacementField& field)
     : Field(field)
+    , Factors(GetFactors(field))
   {
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -94,8 +128,9 @@ public:
     }
   }
 
-  // A box that holds the deformed voxels of a block. usable: whether its vectors are.
-  IndexBounds FindBox(std::size_t block, bool& usable) const
+  // A box that holds the deformed voxels of a block. usable: whether its vectors are. fingerprint:
+  // of its rows. Both are found at once, piece by piece, so that the memory never rests.
+  IndexBounds Scan(std::size_t block, bool& usable, std::array<std::uint64_t, 4>& fingerprint) const
   {
     IndexBounds box;
     this->ForRows(block,
@@ -104,14 +139,18 @@ public:
         const bool hasVoxels = this->HasVoxels(y, z);
         const std::array<int, 4> ends{ { 0, hasVoxels ? this->Begin[0] : 0,
           hasVoxels ? this->End[0] : 0, this->Field.Dimensions[0] } };
+        RowFingerprint row(static_cast<std::uint64_t>(this->GetPoint(0, y, z)));
         for (int range = 0; range < 3; ++range)
         {
           for (int x = ends[range]; x < ends[range + 1]; x += Step)
           {
             const int end = std::min(x + Step, ends[range + 1]);
             usable = this->AddSome(x, end, y, z, range == 1, box) && usable;
+            row.Add(this->Field.Vectors + 3 * this->GetPoint(x, y, z),
+              3 * static_cast<std::size_t>(end - x));
           }
         }
+        row.AddTo(fingerprint);
       });
     return box;
   }
@@ -129,24 +168,6 @@ public:
         }
       });
     return bounds;
-  }
-
-  std::array<std::uint64_t, 4> FindFingerprint(std::size_t block) const
-  {
-    std::array<std::uint64_t, 4> sums{};
-    this->ForRows(block,
-      [&](int y, int z)
-      {
-        const std::int64_t first = this->GetPoint(0, y, z);
-        const std::array<std::uint64_t, 4> row = GetFingerprint(this->Field.Vectors + 3 * first,
-          3 * static_cast<std::size_t>(this->Field.Dimensions[0]),
-          static_cast<std::uint64_t>(first));
-        for (std::size_t k = 0; k < row.size(); ++k)
-        {
-          sums[k] += row[k]; // in any order
-        }
-      });
-    return sums;
   }
 
 private:
@@ -178,7 +199,7 @@ private:
     {
       return false;
     }
-    const DisplacementRange range = GetRange(this->Field, components);
+    const DisplacementRange range = GetRange(this->Factors, components);
     bool near = true;
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -203,6 +224,7 @@ private:
   }
 
   const DisplacementField& Field;
+  DisplacementFactors Factors;
   // The voxels, counted from the field's first point.
   std::array<int, 3> Begin;
   std::array<int, 3> End;
@@ -269,9 +291,9 @@ FieldState FieldScan::Look(
     [&](std::size_t block)
     {
       bool usable = true;
-      const IndexBounds box = scanner.FindBox(block, usable);
+      this->Fingerprints[block].fill(0);
+      const IndexBounds box = scanner.Scan(block, usable, this->Fingerprints[block]);
       this->AreUsable[block] = usable ? 1 : 0;
-      this->Fingerprints[block] = scanner.FindFingerprint(block);
       return usable ? box : IndexBounds();
     },
     [&](std::size_t block) { return scanner.FindBounds(block); });

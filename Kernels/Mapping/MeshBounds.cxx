@@ -23,7 +23,7 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::size_t NodeBlock = 512;
+constexpr std::size_t NodeBlock = VectorComponents::BlockSize;
 constexpr std::size_t ClippedBlock = 64; // to clip a tetrahedron takes some hundred times as long
 
 std::size_t CountBlocks(std::size_t size, std::size_t block)
@@ -362,7 +362,8 @@ void MeshBounds::FindRestBounds(const std::vector<glm::dvec3>& restPoints, std::
 }
 
 IndexBounds MeshBounds::ComputeNodes(const std::vector<glm::dvec3>& restPoints,
-  const float* displacements, const std::vector<unsigned char>& changed)
+  const float* displacements, const VectorComponents* known,
+  const std::vector<unsigned char>& changed)
 {
   const auto getEnd = [&](std::size_t block)
   { return std::min((block + 1) * NodeBlock, this->Wanted.size()); };
@@ -380,8 +381,9 @@ IndexBounds MeshBounds::ComputeNodes(const std::vector<glm::dvec3>& restPoints,
         return this->RestBounds[block];
       }
       const std::size_t begin = block * NodeBlock;
-      const VectorComponents components =
-        FindComponents(displacements + 3 * begin, 3 * (getEnd(block) - begin));
+      const VectorComponents components = known && known[block].AreFinite
+        ? known[block]
+        : FindComponents(displacements + 3 * begin, 3 * (getEnd(block) - begin));
       this->AreAllFinite[block] = components.AreFinite ? 1 : 0;
       return AddDisplacements(this->RestBounds[block], components);
     },
@@ -407,7 +409,7 @@ IndexBounds MeshBounds::ComputeNodes(const std::vector<glm::dvec3>& restPoints,
 
 IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
   const std::vector<Tetrahedron>& tetrahedra, const float* displacements,
-  const PointRanges* changes)
+  const PointRanges* changes, const VectorComponents* known)
 {
   std::vector<unsigned char> changed = this->StaleNodes;
   if (this->IsComputed && changes)
@@ -463,7 +465,7 @@ IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
     }
     this->ClippedBounds[block] = bounds;
   };
-  IndexBounds all = this->ComputeNodes(restPoints, displacements, changed);
+  IndexBounds all = this->ComputeNodes(restPoints, displacements, known, changed);
   ParallelForParts(
     this->ClippedBounds.size(), 1, [&](std::size_t begin, std::size_t) { clip(begin); });
   this->IsComputed = true;

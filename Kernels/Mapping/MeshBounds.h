@@ -7,6 +7,7 @@
 #include "IndexBounds.h"
 #include "MappingUpdate.h"
 #include "Tetrahedron.h"
+#include "VectorComponents.h"
 #include "VoxelGrid.h"
 
 #include <glm/vec3.hpp>
@@ -44,15 +45,16 @@ public:
     const std::vector<Tetrahedron>& tetrahedra, const TetrahedronReplacement& replacement);
 
   /// restPoints and tetrahedra: those that were set. changes: all other displacements are those of
-  /// the last call for this mesh, if there was one; null: any may have changed.
+  /// the last call for this mesh, if there was one; null: any may have changed. known: of each
+  /// block of displacements what they lie between, where it is finite; null: of none.
   IndexBounds Compute(const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, const float* displacements,
-    const PointRanges* changes = nullptr);
+    const PointRanges* changes = nullptr, const VectorComponents* known = nullptr);
 
 private:
   void FindRestBounds(const std::vector<glm::dvec3>& restPoints, std::size_t block);
   IndexBounds ComputeNodes(const std::vector<glm::dvec3>& restPoints, const float* displacements,
-    const std::vector<unsigned char>& changed);
+    const VectorComponents* known, const std::vector<unsigned char>& changed);
   /// There are so many nodes now, or have been.
   void Resize(std::size_t numberOfNodes);
   /// A tetrahedron inside the volume has come, or has gone: so many more uses of its nodes.

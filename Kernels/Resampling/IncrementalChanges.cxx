@@ -135,16 +135,19 @@ std::optional<std::vector<Extent>> IncrementalUpdate::ChangeTetrahedra(
     this->ForgetMapping();
     return {};
   }
+  const BrickPoints::NodesBefore nodes(changes);
   std::vector<unsigned char> near(this->Bricks.GetNumberOfBricks());
-  for (const BrickPoints::ChangesOfBrick& brick :
-    this->PointsOfBricks.FindBricks(changes, [](std::size_t) { return true; }))
+  const std::vector<BrickPoints::ChangesOfBrick> bricks =
+    this->PointsOfBricks.FindBricks(nodes, [](std::size_t) { return true; });
+  for (const BrickPoints::ChangesOfBrick& brick : bricks)
   {
     near[brick.first] = 1;
-    this->PointsOfBricks.AddPoints(brick, changes);
   }
+  this->PointsOfBricks.AddPoints(bricks, changes);
+  const std::vector<BrickPoints::ChangesOfBrick> subBricks = this->Points.FindBricks(
+    nodes, [&](std::size_t number) { return near[this->Places[number].first] != 0; });
   std::vector<Extent> boxes;
-  for (const BrickPoints::ChangesOfBrick& subBrick : this->Points.FindBricks(
-         changes, [&](std::size_t number) { return near[this->Places[number].first] != 0; }))
+  for (const BrickPoints::ChangesOfBrick& subBrick : subBricks)
   {
     boxes.push_back(this->Grid.GetVertices(subBrick.first, 0));
     if (this->Tracking)
@@ -152,8 +155,8 @@ std::optional<std::vector<Extent>> IncrementalUpdate::ChangeTetrahedra(
       this->Move(subBrick.first, last); // by the nodes that it has had
     }
     this->Known[subBrick.first] = 0;
-    this->Points.AddPoints(subBrick, changes);
   }
+  this->Points.AddPoints(subBricks, changes);
   this->BoxesKnown = false;
   return boxes;
 }
