@@ -116,30 +116,34 @@ Coarsening<Size> MakeLevel(Watch& watch, const SparseBlocks<Size, Size>& matrix,
   return coarsening;
 }
 
-// A step of the smoother from 0, and what is left of the right-hand side.
+// A step of the smoother from 0.
+template <int Size>
+void ApplySmoother(MultigridLevel<Size>& level, std::size_t begin, std::size_t end)
+{
+  for (std::size_t row = begin; row < end; ++row)
+  {
+    const float* const right = &level.Right[row * PaddedSize<Size>];
+    float* const solution = &level.Solution[row * PaddedSize<Size>];
+    const float* const smoother = &level.Smoother[row * (Size * Size)];
+    for (int i = 0; i < Size; ++i)
+    {
+      float sum = 0.0f;
+      for (int j = 0; j < Size; ++j)
+      {
+        sum += smoother[j * Size + i] * right[j];
+      }
+      solution[i] = sum;
+    }
+  }
+}
+
+// The same, and what is left of the right-hand side.
 template <int Size>
 void SmoothFirst(Watch& watch, MultigridLevel<Size>& level)
 {
   const std::size_t rows = level.Matrix.GetNumberOfRows();
-  ForRows(watch, rows,
-    [&](std::size_t begin, std::size_t end)
-    {
-      for (std::size_t row = begin; row < end; ++row)
-      {
-        const float* const right = &level.Right[row * PaddedSize<Size>];
-        float* const solution = &level.Solution[row * PaddedSize<Size>];
-        const float* const smoother = &level.Smoother[row * (Size * Size)];
-        for (int i = 0; i < Size; ++i)
-        {
-          float sum = 0.0f;
-          for (int j = 0; j < Size; ++j)
-          {
-            sum += smoother[j * Size + i] * right[j];
-          }
-          solution[i] = sum;
-        }
-      }
-    });
+  ForRows(
+    watch, rows, [&](std::size_t begin, std::size_t end) { ApplySmoother(level, begin, end); });
   ForRows(watch, rows,
     [&](std::size_t begin, std::size_t end)
     {
@@ -222,13 +226,24 @@ void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
   {
     this->Coarse.emplace_back();
     Coarsening<6> next = MakeLevel(watch, coarse, modes, this->Coarse.back());
+    if (next.Matrix.GetNumberOfRows() == coarse.GetNumberOfRows())
+    {
+      // As many pieces of the body, of which each has become a group.
+      this->Coarse.pop_back();
+      break;
+    }
     coarse = std::move(next.Matrix);
     modes = std::move(next.Modes);
   }
-  this->Inverse = Invert(coarse);
+  const bool isSmall = coarse.GetNumberOfRows() <= CoarsestGroups;
+  this->Inverse = isSmall ? Invert(coarse) : std::vector<float>();
   // The coarsest level has vectors only.
   this->Coarse.emplace_back();
   const std::size_t length = static_cast<std::size_t>(coarse.GetNumberOfRows()) * PaddedSize<6>;
+  if (!isSmall)
+  {
+    this->Coarse.back().Smoother = MakeSmoother(InvertDiagonal(coarse), 1.0);
+  }
   this->Coarse.back().Right.assign(length, 0.0f);
   this->Coarse.back().Solution.assign(length, 0.0f);
 }
@@ -284,6 +299,12 @@ void Multigrid::SolveCoarse(Watch& watch, std::size_t level)
   MultigridLevel<6>& coarse = this->Coarse[level];
   if (level + 1 == this->Coarse.size())
   {
+    if (this->Inverse.empty())
+    {
+      ForRows(watch, coarse.Right.size() / PaddedSize<6>,
+        [&](std::size_t begin, std::size_t end) { ApplySmoother(coarse, begin, end); });
+      return;
+    }
     this->SolveCoarsest(watch, coarse.Right, coarse.Solution);
     return;
   }

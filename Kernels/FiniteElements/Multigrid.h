@@ -57,7 +57,7 @@ private:
   std::vector<glm::mat3> Rotations;
   MultigridLevel<3> Fine;
   std::vector<MultigridLevel<6>> Coarse;
-  // The inverse of the coarsest matrix, by rows.
+  // The inverse of the coarsest matrix, by rows; empty where that is the one of its diagonal.
   std::vector<float> Inverse;
 };
 

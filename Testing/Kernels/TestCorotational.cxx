@@ -160,6 +160,45 @@ TEST(Corotational, FrozenPiece)
   EXPECT_LT(LargestOf(model.GetDisplacements()), 0.01);
 }
 
+// More pieces than the coarsest level has groups, held by the nodes of one side each.
+TEST(Corotational, ManyPieces)
+{
+  LatticeBody lattice = MakeBlock({ 3, 3, 3 });
+  ElasticBody body = lattice.Body;
+  constexpr std::size_t pieces = 120;
+  const std::size_t nodes = lattice.Body.Points.size();
+  for (std::size_t piece = 1; piece < pieces; ++piece)
+  {
+    for (std::size_t node = 0; node < nodes; ++node)
+    {
+      body.Points.push_back(
+        lattice.Body.Points[node] + glm::dvec3(static_cast<double>(piece), 0.0, 0.0));
+      body.Fixed.push_back(lattice.Body.Fixed[node]);
+    }
+    for (Tetrahedron tetrahedron : lattice.Body.Tetrahedra)
+    {
+      for (std::int32_t& node : tetrahedron)
+      {
+        node += static_cast<std::int32_t>(piece * nodes);
+      }
+      body.Tetrahedra.push_back(tetrahedron);
+    }
+  }
+  CorotationalRequest request = MakeConverged();
+  request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
+  CorotationalModel model;
+  model.SetBody(body);
+  EXPECT_TRUE(model.Solve(request).IsConverged);
+  CorotationalModel single;
+  single.SetBody(lattice.Body);
+  EXPECT_TRUE(single.Solve(request).IsConverged);
+  for (std::size_t node = 0; node < body.Points.size(); ++node)
+  {
+    EXPECT_LT(
+      LargestOf(model.GetDisplacements()[node] - single.GetDisplacements()[node % nodes]), 1e-8);
+  }
+}
+
 TEST(Corotational, Divergence)
 {
   const LatticeBody lattice = MakeBlock({ 4, 4, 4 });
