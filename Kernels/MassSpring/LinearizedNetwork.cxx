@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LinearizedNetwork.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -85,18 +86,56 @@ std::vector<double> Strain(const std::vector<float>& points, const glm::dmat3& s
   return displacements;
 }
 
-// The strain of a bar that is pulled along a direction.
-glm::dmat3 GetBarStrain(const glm::dvec3& direction, double poissonRatio)
+// The strain of which one component is 1: xx yy zz xy yz xz.
+glm::dmat3 GetUnitStrain(std::size_t component)
 {
-  const glm::dvec3 unit = glm::normalize(direction);
-  return glm::dmat3(-poissonRatio) + (1.0 + poissonRatio) * glm::outerProduct(unit, unit);
+  constexpr int axes[6][2] = { { 0, 0 }, { 1, 1 }, { 2, 2 }, { 0, 1 }, { 1, 2 }, { 0, 2 } };
+  const int i = axes[component][0];
+  const int j = axes[component][1];
+  glm::dmat3 strain(0.0);
+  strain[i][j] += 0.5;
+  strain[j][i] += 0.5;
+  return strain;
 }
 
-glm::dvec3 GetAxis(int axis)
+// What single precision finds of lattices that are as their material.
+constexpr double RoundOff = 1e-3;
+
+// Whether a stiffness is that of a material.
+bool IsOf(const ElasticMaterial& material, const std::array<std::array<double, 6>, 6>& stiffness)
 {
-  glm::dvec3 direction(0.0);
-  direction[axis] = 1.0;
-  return direction;
+  const double lambda = material.GetLambda();
+  const double mu = material.GetShearModulus();
+  for (std::size_t i = 0; i < 6; ++i)
+  {
+    for (std::size_t j = 0; j < 6; ++j)
+    {
+      double wanted = i < 3 && j < 3 ? lambda : 0.0;
+      wanted += i != j ? 0.0 : i < 3 ? 2.0 * mu : mu;
+      if (!(std::abs(stiffness[i][j] - wanted) < RoundOff * (lambda + 2.0 * mu)))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+// Whether the forces of nodes inside a body are 0.
+bool AreAtTheSurface(const std::vector<double>& forces, const ElasticBody& body)
+{
+  const std::vector<double> surface = GetStressForces(body, glm::dmat3(1.0));
+  const double size = std::sqrt(Dot(surface, surface));
+  double inside = 0.0;
+  for (std::size_t i = 0; i < forces.size(); i += 3)
+  {
+    if (glm::length(glm::dvec3(surface[i], surface[i + 1], surface[i + 2])) < 1e-9 * size)
+    {
+      inside +=
+        forces[i] * forces[i] + forces[i + 1] * forces[i + 1] + forces[i + 2] * forces[i + 2];
+    }
+  }
+  return inside < RoundOff * RoundOff * Dot(forces, forces);
 }
 
 } // namespace
@@ -178,65 +217,55 @@ double LinearizedNetwork::FindLargestFrequency() const
   return std::sqrt(std::max(largest, 0.0));
 }
 
-bool LinearizedNetwork::IsAsTheMaterial(
-  const ElasticBody& body, const std::vector<double>& volumes) const
+LinearizedNetwork::AffineResponse LinearizedNetwork::FindAffineResponse(double volume) const
 {
-  // What single precision finds of a lattice that is.
-  constexpr double roundOff = 1e-3;
-  const ElasticMaterial& material = body.Materials.front();
-  const double volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
-  const auto isRight = [&](const glm::dvec3& direction)
+  AffineResponse response;
+  for (std::size_t i = 0; i < 6; ++i)
   {
-    const std::vector<double> displacements =
-      Strain(this->Network.RestPoints, GetBarStrain(direction, material.PoissonRatio));
-    const double energy = 0.5 * Dot(displacements, this->Apply(displacements));
-    const double wanted = 0.5 * material.YoungModulus * volume;
-    return std::abs(energy - wanted) < roundOff * wanted;
-  };
-  for (const glm::dvec3& direction :
-    { glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 1, 1),
-      glm::dvec3(-1, 1, 1), glm::dvec3(1, -1, 1), glm::dvec3(1, 1, -1) })
+    response.Displacements[i] = Strain(this->Network.RestPoints, GetUnitStrain(i));
+    response.Forces[i] = this->Apply(response.Displacements[i]);
+  }
+  for (std::size_t i = 0; i < 6; ++i)
   {
-    if (!isRight(direction))
+    for (std::size_t j = 0; j < 6; ++j)
     {
-      return false;
+      response.Stiffness[i][j] = Dot(response.Displacements[i], response.Forces[j]) / volume;
     }
   }
-  // Nodes inside are in equilibrium where the body is strained.
-  const glm::dmat3 strain = GetBarStrain(GetAxis(0), material.PoissonRatio);
-  const std::vector<double> forces = this->Apply(Strain(this->Network.RestPoints, strain));
-  const std::vector<double> surface = GetStressForces(body, glm::dmat3(1.0));
-  const double size = std::sqrt(Dot(surface, surface));
-  double inside = 0.0;
-  for (std::size_t i = 0; i < forces.size(); i += 3)
-  {
-    const glm::dvec3 area(surface[i], surface[i + 1], surface[i + 2]);
-    if (glm::length(area) < 1e-9 * size)
-    {
-      inside +=
-        forces[i] * forces[i] + forces[i + 1] * forces[i + 1] + forces[i + 2] * forces[i + 2];
-    }
-  }
-  return inside < roundOff * roundOff * Dot(forces, forces);
+  return response;
 }
 
 double LinearizedNetwork::FindCompliance(
-  const ElasticBody& body, const std::vector<double>& volumes, int axis) const
+  const ElasticBody& body, const AffineResponse& response, double volume, int axis) const
 {
-  // A stress on the surface, and what it does; conjugate gradients.
-  constexpr int mostSteps = 500;
-  constexpr double precision = 3e-3;
-  const glm::dmat3 stress = glm::outerProduct(GetAxis(axis), GetAxis(axis));
-  const ElasticMaterial& material = body.Materials.front();
-  const std::vector<double> forces = GetStressForces(body, stress);
-  std::vector<double> displacements = Strain(this->Network.RestPoints,
-    GetBarStrain(GetAxis(axis), material.PoissonRatio) / material.YoungModulus);
+  // A stress on the surface, and what it does, beginning with the strain that fits best; conjugate
+  // gradients. How far the body yields grows with each step, and settles long before the last node
+  // is in equilibrium.
+  constexpr int mostSteps = 300;
+  constexpr int stepsBetweenLooks = 10;
+  constexpr double precision = 1e-3;
+  Eigen::Matrix<double, 6, 6> stiffness;
+  for (int i = 0; i < 36; ++i)
+  {
+    stiffness(i / 6, i % 6) =
+      response.Stiffness[static_cast<std::size_t>(i / 6)][static_cast<std::size_t>(i % 6)];
+  }
+  const Eigen::Matrix<double, 6, 1> strain =
+    stiffness.ldlt().solve(Eigen::Matrix<double, 6, 1>::Unit(axis));
+  const std::vector<double> forces =
+    GetStressForces(body, GetUnitStrain(static_cast<std::size_t>(axis)));
+  std::vector<double> displacements(forces.size(), 0.0);
   std::vector<double> residual = forces;
-  Add(residual, -1.0, this->Apply(displacements));
+  for (std::size_t i = 0; i < 6; ++i)
+  {
+    Add(displacements, strain[static_cast<Eigen::Index>(i)], response.Displacements[i]);
+    Add(residual, -strain[static_cast<Eigen::Index>(i)], response.Forces[i]);
+  }
   std::vector<double> direction = residual;
   double squared = Dot(residual, residual);
   const double wanted = precision * precision * Dot(forces, forces);
-  for (int step = 0; step < mostSteps && squared > wanted; ++step)
+  double yield = Dot(forces, displacements);
+  for (int step = 1; step <= mostSteps && squared > wanted; ++step)
   {
     const std::vector<double> product = this->Apply(direction);
     const double length = squared / Dot(direction, product);
@@ -246,21 +275,33 @@ double LinearizedNetwork::FindCompliance(
     squared = Dot(residual, residual);
     Scale(direction, squared / before);
     Add(direction, 1.0, residual);
+    if (step % stepsBetweenLooks == 0)
+    {
+      const double last = yield;
+      yield = Dot(forces, displacements);
+      if (std::abs(yield - last) < precision * std::abs(yield))
+      {
+        break;
+      }
+    }
   }
-  return Dot(forces, displacements) / std::accumulate(volumes.begin(), volumes.end(), 0.0);
+  return Dot(forces, displacements) / volume;
 }
 
 double LinearizedNetwork::FindStiffness(const ElasticBody& body) const
 {
   const std::vector<double> volumes = GetVolumes(body);
-  if (this->IsAsTheMaterial(body, volumes))
+  const double volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
+  const AffineResponse response = this->FindAffineResponse(volume);
+  if (IsOf(body.Materials.front(), response.Stiffness) &&
+    AreAtTheSurface(response.Forces.front(), body))
   {
     return 1.0;
   }
   double sum = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    sum += this->FindCompliance(body, volumes, axis);
+    sum += this->FindCompliance(body, response, volume, axis);
   }
   return 3.0 / (sum * body.Materials.front().YoungModulus);
 }

@@ -5,6 +5,7 @@
 #include "MassSpringNetwork.h"
 #include "MassSpringState.h"
 
+#include <array>
 #include <vector>
 
 namespace deformvolume
@@ -32,9 +33,17 @@ public:
   double FindStiffness(const ElasticBody& body) const;
 
 private:
-  bool IsAsTheMaterial(const ElasticBody& body, const std::vector<double>& volumes) const;
+  /// What a body does where it is strained everywhere alike, by the six components of strain.
+  struct AffineResponse
+  {
+    std::array<std::vector<double>, 6> Displacements;
+    std::array<std::vector<double>, 6> Forces;
+    std::array<std::array<double, 6>, 6> Stiffness; // per volume
+  };
+
+  AffineResponse FindAffineResponse(double volume) const;
   double FindCompliance(
-    const ElasticBody& body, const std::vector<double>& volumes, int axis) const;
+    const ElasticBody& body, const AffineResponse& response, double volume, int axis) const;
 
   MassSpringState& State;
   const MassSpringNetwork& Network;

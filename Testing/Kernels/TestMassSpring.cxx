@@ -420,9 +420,14 @@ TEST(MassSpring, SplitNodesGoOnWhereTheyWere)
     other.SetState({ displacements.begin(), displacements.begin() + 15 },
       { velocities.begin(), velocities.begin() + 15 });
     other.Advance(For(100 * step, step));
-    const std::vector<float> together = model.GetDisplacements();
+    const std::vector<float> parted = model.GetDisplacements();
     const std::vector<float> expected = other.GetDisplacements();
-    EXPECT_TRUE(std::equal(expected.begin(), expected.begin() + 12, together.begin()));
+    EXPECT_TRUE(std::equal(expected.begin(), expected.begin() + 12, parted.begin()));
   }
-  EXPECT_THROW(model.SplitNodes(body, {}), Error) << "nodes are gone";
+  // The copies are gone again, as where a split is undone.
+  const std::vector<float> together = model.GetDisplacements();
+  EXPECT_THROW(model.SplitNodes(body, { 1 }), Error) << "too few nodes";
+  EXPECT_EQ(model.GetDisplacements(), together);
+  model.SplitNodes(body, {});
+  EXPECT_EQ(model.GetDisplacements(), std::vector<float>(together.begin(), together.begin() + 15));
 }
