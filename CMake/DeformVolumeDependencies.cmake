@@ -63,7 +63,12 @@ find_package(VTK 9.1 REQUIRED
   ${deformvolume_optional_vtk_components})
 
 find_package(glm REQUIRED)
-find_package(Eigen3 3.3 REQUIRED NO_MODULE)
+
+# Version 5 says that it is not compatible with a request for version 3, though it is for this project.
+find_package(Eigen3 REQUIRED NO_MODULE)
+if (Eigen3_VERSION VERSION_LESS 3.3)
+  message(FATAL_ERROR "Eigen ${Eigen3_VERSION} is too old: 3.3 or later is needed.")
+endif ()
 
 find_program(DEFORMVOLUME_TETGEN_EXECUTABLE tetgen
   DOC "The TetGen program that vtkTetGenMesher runs by default")
