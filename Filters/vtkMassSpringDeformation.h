@@ -15,7 +15,7 @@
  * lattices of cubes of five tetrahedra each (vtkLatticeTetrahedraSource with equal spacing). For
  * other meshes it is calibrated so that a bar of the mesh has the Young modulus. Springs have a
  * Poisson ratio of 0.25 by themselves, and the volumes make what is more. Less than that counts as
- * 0.25, with a warning.
+ * 0.25.
  *
  * @par Errors:
  * Those of vtkElasticDeformation; a time step that is longer than the stable one; a simulation that
