@@ -3,12 +3,12 @@
 
 #include "Failure.h"
 #include "FieldReading.h"
+#include "OptionTexts.h"
 #include "VolumeWriting.h"
 
 #include <CLI/CLI.hpp>
 #include <vtksys/SystemTools.hxx>
 
-#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <iostream>
@@ -17,100 +17,6 @@
 
 namespace
 {
-template <typename Number, std::size_t Count>
-std::array<Number, Count> ParseNumbers(
-  const std::string& option, const std::string& text, const std::string& shape)
-{
-  std::array<Number, Count> numbers;
-  std::istringstream stream(text);
-  bool valid = true;
-  for (std::size_t i = 0; i < Count && valid; ++i)
-  {
-    char comma = ',';
-    valid = (i == 0 || stream >> comma) && comma == ',' && static_cast<bool>(stream >> numbers[i]);
-  }
-  if (!valid || !(stream >> std::ws).eof())
-  {
-    throw UsageError(option + " " + text + ": expected " + shape);
-  }
-  return numbers;
-}
-
-Push ParsePush(const std::string& text)
-{
-  const auto numbers = ParseNumbers<double, 7>(
-    "--push", text, "seven numbers X,Y,Z,DX,DY,DZ,RADIUS with commas between them");
-  Push push;
-  push.Center = { { numbers[0], numbers[1], numbers[2] } };
-  push.Displacement = { { numbers[3], numbers[4], numbers[5] } };
-  push.Radius = numbers[6];
-  if (!(push.Radius > 0.0))
-  {
-    throw UsageError("--push " + text + ": the radius must be greater than 0");
-  }
-  return push;
-}
-
-Pull ParsePull(const std::string& text)
-{
-  const bool hasRadius = std::count(text.begin(), text.end(), ',') == 6;
-  const auto numbers = ParseNumbers<double, 7>("--pull", hasRadius ? text : text + ",0",
-    "six or seven numbers X,Y,Z,DX,DY,DZ[,RADIUS] with commas between them");
-  Pull pull;
-  pull.Point = { { numbers[0], numbers[1], numbers[2] } };
-  pull.Displacement = { { numbers[3], numbers[4], numbers[5] } };
-  pull.Radius = numbers[6];
-  if (!(pull.Radius >= 0.0))
-  {
-    throw UsageError("--pull " + text + ": the radius must be at least 0");
-  }
-  return pull;
-}
-
-Fixation ParseFixation(const std::string& text)
-{
-  Fixation fixation;
-  fixation.Text = text;
-  const std::size_t colon = std::min(text.find(':'), text.size());
-  const std::string kind = text.substr(0, colon);
-  const std::string rest = text.substr(std::min(colon + 1, text.size()));
-  if (kind == "box")
-  {
-    fixation.Which = Fixation::Kind::Box;
-    fixation.Bounds = ParseNumbers<double, 6>(
-      "--fix", rest, "box: and six numbers X0,X1,Y0,Y1,Z0,Z1 with commas between them");
-  }
-  else if (kind == "below" || kind == "label")
-  {
-    fixation.Which = kind == "below" ? Fixation::Kind::Below : Fixation::Kind::Label;
-    fixation.Value = ParseNumbers<double, 1>("--fix", rest, kind + ": and a number")[0];
-  }
-  else
-  {
-    throw UsageError("--fix " + text + ": expected box:X0,X1,Y0,Y1,Z0,Z1, below:Z or label:N");
-  }
-  return fixation;
-}
-
-Carving ParseCarving(const std::string& text)
-{
-  const std::string shape = "sphere:";
-  if (text.compare(0, shape.size(), shape) != 0)
-  {
-    throw UsageError("--carve " + text + ": expected sphere:X,Y,Z,RADIUS");
-  }
-  const auto numbers = ParseNumbers<double, 4>("--carve", text.substr(shape.size()),
-    "sphere: and four numbers X,Y,Z,RADIUS with commas between them");
-  Carving carving;
-  carving.Center = { { numbers[0], numbers[1], numbers[2] } };
-  carving.Radius = numbers[3];
-  if (!(carving.Radius > 0.0))
-  {
-    throw UsageError("--carve " + text + ": the radius must be greater than 0");
-  }
-  return carving;
-}
-
 /// Options that need more than their own text to be right.
 struct RawOptions
 {

@@ -2,7 +2,8 @@
 #include "ChainMailSession.h"
 
 #include "ExtentRanges.h"
-#include "VectorArray.h"
+#include "HandlePlaces.h"
+#include "ShapedArray.h"
 #include "VolumeArrays.h"
 
 #include "vtkArrayChanges.h"
@@ -10,8 +11,6 @@
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
-#include "vtkPointSet.h"
-#include "vtkPoints.h"
 
 #include <glm/glm.hpp>
 
@@ -25,37 +24,17 @@ namespace
 {
 
 const char* const PINNED = "Pinned";
-const char* const REST = "RestPosition";
 
 Stamp GetStampOf(vtkDataArray* array)
 {
   return { { array, array ? array->GetMTime() : 0 } };
 }
 
-void CheckShape(
-  vtkAbstractArray* array, int components, vtkIdType tuples, const char* what, const char* owner)
-{
-  if (!vtkDataArray::SafeDownCast(array) || array->GetNumberOfComponents() != components ||
-    array->GetNumberOfTuples() != tuples)
-  {
-    throw Error(std::string("The point array \"") + what + "\" of " + owner + " is " +
-      array->GetDataTypeAsString() + ", " + std::to_string(array->GetNumberOfTuples()) +
-      " tuples of " + std::to_string(array->GetNumberOfComponents()) +
-      " components. Give it a numeric type, " + std::to_string(components) +
-      (components == 1 ? " component" : " components") + " and " + std::to_string(tuples) +
-      " tuples.");
-  }
-}
-
 // Null where there is none of the name.
 vtkDataArray* FindVolumeArray(vtkImageData* volume, const char* name)
 {
-  vtkAbstractArray* array = volume->GetPointData()->GetAbstractArray(name);
-  if (array)
-  {
-    CheckShape(array, 1, volume->GetNumberOfPoints(), name, "the volume");
-  }
-  return vtkDataArray::SafeDownCast(array);
+  return FindShapedArray(
+    volume->GetPointData(), name, 1, volume->GetNumberOfPoints(), "point array", "the volume");
 }
 
 // Null where all voxels have the default material.
@@ -80,7 +59,8 @@ vtkDataArray* FindMaterialArray(vtkImageData* volume, const ChainMailSettings& s
   if (scalars)
   {
     CheckShape(scalars, 1, volume->GetNumberOfPoints(),
-      scalars->GetName() ? scalars->GetName() : "", "the volume");
+      std::string("The point array \"") + (scalars->GetName() ? scalars->GetName() : "") +
+        "\" of the volume");
   }
   return scalars;
 }
@@ -94,41 +74,16 @@ void CheckMaterial(const ChainMailSettings& settings, int index, const char* who
   }
 }
 
-std::vector<glm::dvec3> ReadPlaces(vtkDataArray* array, const char* kind)
-{
-  std::vector<glm::dvec3> places(static_cast<std::size_t>(array->GetNumberOfTuples()));
-  const auto taker = [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType number)
-  { std::copy_n(vectors, number, places.begin() + first); };
-  ReadVectors(array, taker, kind, "handles on input port 1");
-  return places;
-}
-
 std::vector<ChainMailHandle> ReadHandles(
   vtkPointSet* handles, const ImageGeometry& geometry, double radius)
 {
-  std::vector<ChainMailHandle> read;
-  const vtkIdType count = handles ? handles->GetNumberOfPoints() : 0;
-  if (count == 0)
-  {
-    return read;
-  }
-  vtkAbstractArray* rest = handles->GetPointData()->GetAbstractArray(REST);
-  if (!rest)
-  {
-    throw Error(
-      "The handles on input port 1 have no point array \"RestPosition\". Add one of three "
-      "components: the place in the volume at rest that each handle holds.");
-  }
-  CheckShape(rest, 3, count, REST, "the handles on input port 1");
+  const HandlePlaces places = ReadHandlePlaces(handles, "volume");
   const glm::dmat4 toIndex = geometry.GetWorldToIndex();
-  read.resize(static_cast<std::size_t>(count));
-  const std::vector<glm::dvec3> places =
-    ReadPlaces(vtkDataArray::SafeDownCast(rest), "Rest position");
-  const std::vector<glm::dvec3> points = ReadPlaces(handles->GetPoints()->GetData(), "Point");
+  std::vector<ChainMailHandle> read(places.Rest.size());
   for (std::size_t i = 0; i < read.size(); ++i)
   {
-    const glm::dvec3 index(toIndex * glm::dvec4(places[i], 1.0));
-    const glm::dvec3 displacement = glm::dmat3(toIndex) * (points[i] - places[i]);
+    const glm::dvec3 index(toIndex * glm::dvec4(places.Rest[i], 1.0));
+    const glm::dvec3 displacement = glm::dmat3(toIndex) * (places.Now[i] - places.Rest[i]);
     read[i].Radius = radius;
     for (int axis = 0; axis < 3; ++axis)
     {

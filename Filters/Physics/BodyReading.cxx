@@ -3,6 +3,8 @@
 
 #include "CellTypes.h"
 #include "Error.h"
+#include "HandlePlaces.h"
+#include "ShapedArray.h"
 #include "VectorArray.h"
 
 #include "vtkCell.h"
@@ -12,7 +14,6 @@
 #include "vtkDataArray.h"
 #include "vtkGenericCell.h"
 #include "vtkPointData.h"
-#include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
 #include "vtkUnstructuredGrid.h"
@@ -34,34 +35,15 @@ constexpr const char* POISSON_RATIO = "PoissonRatio";
 constexpr const char* DENSITY = "Density";
 constexpr const char* FIXED = "Fixed";
 constexpr const char* FORCE = "Force";
-constexpr const char* REST_POSITION = "RestPosition";
 constexpr const char* MESH = "rest mesh on input port 0";
-constexpr const char* HANDLES = "handles on input port 1";
 
-// Null where there is none of the name.
-vtkDataArray* FindArray(vtkDataSetAttributes* attributes, const char* name, int components,
-  vtkIdType tuples, const char* owner)
+vtkDataArray* FindMeshArray(
+  vtkDataSetAttributes* attributes, const char* name, int components, vtkIdType tuples)
 {
-  vtkAbstractArray* array = attributes->GetAbstractArray(name);
-  if (!array)
-  {
-    return nullptr;
-  }
-  if (!vtkDataArray::SafeDownCast(array) || array->GetNumberOfComponents() != components ||
-    array->GetNumberOfTuples() != tuples)
-  {
-    throw Error(std::string("The array \"") + name + "\" of the " + owner + " is " +
-      array->GetDataTypeAsString() + ", " + std::to_string(array->GetNumberOfTuples()) +
-      " tuples of " + std::to_string(array->GetNumberOfComponents()) +
-      " components. Give it a numeric type, " + std::to_string(components) +
-      (components == 1 ? " component" : " components") + " and " + std::to_string(tuples) +
-      " tuples.");
-  }
-  return vtkDataArray::SafeDownCast(array);
+  return FindShapedArray(attributes, name, components, tuples, "array", std::string("the ") + MESH);
 }
 
-std::vector<glm::dvec3> ReadAll(
-  vtkDataArray* array, double factor, const char* kind, const char* owner)
+std::vector<glm::dvec3> ReadAll(vtkDataArray* array, double factor, const char* kind)
 {
   std::vector<glm::dvec3> vectors(static_cast<std::size_t>(array->GetNumberOfTuples()));
   ReadVectors(
@@ -71,7 +53,7 @@ std::vector<glm::dvec3> ReadAll(
       std::transform(read, read + number, vectors.begin() + first,
         [&](const glm::dvec3& vector) { return vector * factor; });
     },
-    kind, owner);
+    kind, MESH);
   return vectors;
 }
 
@@ -128,7 +110,7 @@ void ReadTetrahedra(vtkUnstructuredGrid* grid, BodyMesh& mesh)
 void ReadMaterials(vtkUnstructuredGrid* grid, const BodySettings& settings, BodyMesh& mesh)
 {
   const auto find = [&](const char* name)
-  { return FindArray(grid->GetCellData(), name, 1, grid->GetNumberOfCells(), MESH); };
+  { return FindMeshArray(grid->GetCellData(), name, 1, grid->GetNumberOfCells()); };
   vtkDataArray* youngModulus = find(YOUNG_MODULUS);
   vtkDataArray* poissonRatio = find(POISSON_RATIO);
   vtkDataArray* density = find(DENSITY);
@@ -229,11 +211,11 @@ BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings)
   }
   if (points > 0)
   {
-    mesh.Body.Points = ReadAll(grid->GetPoints()->GetData(), settings.UnitLength, "Point", MESH);
+    mesh.Body.Points = ReadAll(grid->GetPoints()->GetData(), settings.UnitLength, "Point");
   }
   ReadTetrahedra(grid, mesh);
   ReadMaterials(grid, settings, mesh);
-  if (vtkDataArray* fixed = FindArray(grid->GetPointData(), FIXED, 1, points, MESH))
+  if (vtkDataArray* fixed = FindMeshArray(grid->GetPointData(), FIXED, 1, points))
   {
     mesh.Body.Fixed.resize(mesh.Body.Points.size());
     for (vtkIdType i = 0; i < points; ++i)
@@ -241,9 +223,9 @@ BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings)
       mesh.Body.Fixed[static_cast<std::size_t>(i)] = fixed->GetComponent(i, 0) != 0.0 ? 1 : 0;
     }
   }
-  if (vtkDataArray* force = FindArray(grid->GetPointData(), FORCE, 3, points, MESH))
+  if (vtkDataArray* force = FindMeshArray(grid->GetPointData(), FORCE, 3, points))
   {
-    mesh.Forces = ReadAll(force, 1.0, FORCE, MESH);
+    mesh.Forces = ReadAll(force, 1.0, FORCE);
   }
   CheckBody(mesh.Body);
   return mesh;
@@ -253,25 +235,13 @@ std::vector<HeldNode> ReadHandles(
   vtkPointSet* handles, double radius, const ElasticBody& body, const BodySettings& settings)
 {
   std::vector<HeldNode> held;
-  const vtkIdType count = handles ? handles->GetNumberOfPoints() : 0;
-  if (count == 0)
-  {
-    return held;
-  }
-  vtkDataArray* rest = FindArray(handles->GetPointData(), REST_POSITION, 3, count, HANDLES);
-  if (!rest)
-  {
-    throw Error(std::string("The ") + HANDLES +
-      " have no point array \"RestPosition\". Add one of three components: the place in the mesh "
-      "at rest that each handle holds.");
-  }
-  const std::vector<glm::dvec3> places = ReadAll(rest, settings.UnitLength, REST_POSITION, HANDLES);
-  const std::vector<glm::dvec3> points =
-    ReadAll(handles->GetPoints()->GetData(), settings.UnitLength, "Point", HANDLES);
+  const HandlePlaces places = ReadHandlePlaces(handles, "mesh");
   std::vector<unsigned char> isTaken(body.Points.size(), 0);
-  for (std::size_t i = 0; i < places.size(); ++i)
+  for (std::size_t i = 0; i < places.Rest.size(); ++i)
   {
-    Hold(places[i], radius * settings.UnitLength, points[i] - places[i], body, isTaken, held);
+    const glm::dvec3 rest = places.Rest[i] * settings.UnitLength;
+    const glm::dvec3 now = places.Now[i] * settings.UnitLength;
+    Hold(rest, radius * settings.UnitLength, now - rest, body, isTaken, held);
   }
   return held;
 }

@@ -5,6 +5,7 @@
 #include "Error.h"
 #include "ExtentRanges.h"
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "KernelSources.h"
 #include "KernelText.h"
 
@@ -119,60 +120,47 @@ void ChainMailState::ChangeMaterials(const std::function<void(unsigned char*)>& 
 
 void ChainMailState::PlaceOutput(float* output)
 {
-  this->VectorOutput.reset();
-  this->HostOutput = nullptr;
-  const std::uint64_t bytes =
-    static_cast<std::uint64_t>(GetNumberOfPoints(this->Blocks.GetExtent())) * 3 * sizeof(float);
-  Place(this->Device.GetContext(), this->Output, output, sizeof(float), bytes);
-  this->HostOutput = output;
+  this->Output.Place(this->Device.GetContext(), output,
+    static_cast<std::size_t>(GetNumberOfPoints(this->Blocks.GetExtent())));
 }
 
 void ChainMailState::PlaceOutput(const std::shared_ptr<DeviceVectors>& output)
 {
-  DeviceVectors::Internals& vectors = output->GetInternals();
-  if (vectors.AreInHostMemory())
-  {
-    this->PlaceOutput(vectors.GetHostMemory());
-  }
-  else
-  {
-    this->HostOutput = nullptr;
-    this->Output = vectors.GetBuffer();
-  }
-  this->VectorOutput = output;
+  this->Output.Place(this->Device.GetContext(), output);
 }
 
 void ChainMailState::TellOfChanges(const std::vector<Extent>& changes)
 {
-  if (!this->VectorOutput || changes.empty())
+  DeviceVectors::Internals* const vectors = this->Output.GetVectors();
+  if (!vectors || changes.empty())
   {
     return;
   }
-  DeviceVectors::Internals& vectors = this->VectorOutput->GetInternals();
   if (const auto rows = FindRows(changes, this->Blocks.GetExtent()))
   {
-    vectors.MarkWritten(*rows);
+    vectors->MarkWritten(*rows);
   }
   else
   {
-    vectors.MarkAllWritten();
+    vectors->MarkAllWritten();
   }
 }
 
 void ChainMailState::ReadOutput(const std::vector<Extent>& changes)
 {
   const cl::CommandQueue& queue = this->Device.GetQueue();
-  if (!this->HostOutput)
+  const cl::Buffer& output = this->Output.GetBuffer();
+  float* const memory = this->Output.GetHostMemory();
+  if (!memory)
   {
     queue.finish();
     return;
   }
-  if (IsInPlace(this->Output))
+  if (IsInPlace(output))
   {
     if (!this->Device.GetContext().SharesHostMemory())
     {
-      BeginToRead(queue, this->Output, this->Output.getInfo<CL_MEM_SIZE>(), this->HostOutput)
-        .wait();
+      BeginToRead(queue, output, output.getInfo<CL_MEM_SIZE>(), memory).wait();
     }
     return;
   }
@@ -189,8 +177,8 @@ void ChainMailState::ReadOutput(const std::vector<Extent>& changes)
         sizeof(float),
       static_cast<std::size_t>(GetSize(box, 1)), static_cast<std::size_t>(GetSize(box, 2)) };
     cl::Event done;
-    queue.enqueueReadBufferRect(this->Output, CL_FALSE, origin, origin, size, row, plane, row,
-      plane, this->HostOutput, nullptr, &done);
+    queue.enqueueReadBufferRect(
+      output, CL_FALSE, origin, origin, size, row, plane, row, plane, memory, nullptr, &done);
     reads.Add(done);
   }
   reads.Check();
@@ -265,36 +253,38 @@ void ChainMailState::RunAndRead(const cl::Kernel& kernel, const std::vector<Task
 void ChainMailState::Save(const std::vector<std::uint32_t>& list)
 {
   constexpr bool canStop = false;
-  this->Run(this->MakeKernel("Save", this->Displacements, this->Output, this->List, this->Grid),
+  this->Run(MakeKernel(this->Program, "Save", this->Displacements, this->Output.GetBuffer(),
+              this->List, this->Grid),
     list, canStop);
 }
 
 void ChainMailState::Restore(const std::vector<std::uint32_t>& list, bool isEnd)
 {
-  this->Run(this->MakeKernel("Restore", this->Displacements, this->Flags, this->Output, this->List,
-              cl_int{ isEnd }, this->Grid),
+  this->Run(MakeKernel(this->Program, "Restore", this->Displacements, this->Flags,
+              this->Output.GetBuffer(), this->List, cl_int{ isEnd }, this->Grid),
     list);
 }
 
 void ChainMailState::ClearFlags(const std::vector<std::uint32_t>& list)
 {
-  this->Run(this->MakeKernel("ClearFlags", this->Flags, this->List), list);
+  this->Run(MakeKernel(this->Program, "ClearFlags", this->Flags, this->List), list);
 }
 
 void ChainMailState::PutToRest(const std::vector<std::uint32_t>& list)
 {
-  this->Run(this->MakeKernel("PutToRest", this->Displacements, this->List), list);
+  this->Run(MakeKernel(this->Program, "PutToRest", this->Displacements, this->List), list);
 }
 
 void ChainMailState::WriteOutput(const std::vector<std::uint32_t>& list)
 {
-  this->Run(
-    this->MakeKernel("Write", this->Displacements, this->Output, this->List, this->Grid), list);
+  this->Run(MakeKernel(this->Program, "Write", this->Displacements, this->Output.GetBuffer(),
+              this->List, this->Grid),
+    list);
 }
 
 void ChainMailState::Check(const std::vector<std::uint32_t>& list)
 {
-  this->Run(this->MakeKernel("Check", this->Displacements, this->Links, this->Materials,
+  this->Run(MakeKernel(this->Program, "Check", this->Displacements, this->Links, this->Materials,
               this->Limits, this->Shared, this->List, this->Grid),
     list);
 }
@@ -303,9 +293,9 @@ void ChainMailState::Propagate(
   const std::vector<BlockTask>& list, std::vector<std::uint32_t>& results)
 {
   constexpr bool canStop = false;
-  this->RunAndRead(
-    this->MakeKernel("Propagate", this->Displacements, this->Flags, this->Links, this->Materials,
-      this->Limits, this->Output, this->Shared, this->List, this->Results, this->Grid),
+  this->RunAndRead(MakeKernel(this->Program, "Propagate", this->Displacements, this->Flags,
+                     this->Links, this->Materials, this->Limits, this->Output.GetBuffer(),
+                     this->Shared, this->List, this->Results, this->Grid),
     list, results, canStop);
 }
 
@@ -315,7 +305,7 @@ void ChainMailState::Relax(const std::vector<std::uint32_t>& list, float elastic
   const cl::CommandQueue& queue = this->Device.GetQueue();
   for (cl_int parity = 0; parity < 2; ++parity)
   {
-    const cl::Kernel kernel = this->MakeKernel("Relax", this->Displacements, this->Flags,
+    const cl::Kernel kernel = MakeKernel(this->Program, "Relax", this->Displacements, this->Flags,
       this->Links, this->Materials, this->Limits, this->Weights, this->Reciprocals, this->List,
       this->Results, parity, elasticity, cl_int{ threshold }, this->Grid);
     this->ForParts(list,
@@ -332,9 +322,9 @@ void ChainMailState::Relax(const std::vector<std::uint32_t>& list, float elastic
 void ChainMailState::Finish(
   const std::vector<std::uint32_t>& list, std::vector<std::uint32_t>& moved)
 {
-  this->RunAndRead(
-    this->MakeKernel("Finish", this->Displacements, this->Flags, this->Links, this->Materials,
-      this->Limits, this->Output, this->Shared, this->List, this->Results, this->Grid),
+  this->RunAndRead(MakeKernel(this->Program, "Finish", this->Displacements, this->Flags,
+                     this->Links, this->Materials, this->Limits, this->Output.GetBuffer(),
+                     this->Shared, this->List, this->Results, this->Grid),
     list, moved);
 }
 
@@ -354,8 +344,8 @@ void ChainMailState::Hold(const std::vector<HeldVoxel>& voxels,
   queue.enqueueWriteBuffer(
     targets, CL_FALSE, 0, handles.size() * sizeof(HandleTask), handles.data());
   queue.enqueueWriteBuffer(found, CL_FALSE, 0, bytes, counts.data());
-  const cl::Kernel kernel = this->MakeKernel("Hold", this->Displacements, this->Flags, this->Links,
-    list, targets, this->Shared, found, static_cast<cl_uint>(voxels.size()));
+  const cl::Kernel kernel = MakeKernel(this->Program, "Hold", this->Displacements, this->Flags,
+    this->Links, list, targets, this->Shared, found, static_cast<cl_uint>(voxels.size()));
   const std::size_t items = 64;
   const auto largest =
     kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(this->Device.GetDevice().Device);

@@ -7,6 +7,7 @@
 #include "ChainMailLimits.h"
 #include "ChainMailParameters.h"
 #include "DeviceVectors.h"
+#include "OutputVectors.h"
 #include "WorkDevice.h"
 
 #include <array>
@@ -65,7 +66,7 @@ public:
   void PlaceOutput(float* output);
   void PlaceOutput(const std::shared_ptr<DeviceVectors>& output);
   ///@}
-  bool HasOutput() const { return this->Output() != nullptr; }
+  bool HasOutput() const { return this->Output.IsPlaced(); }
   /// Brings rows of blocks of the output, in structured indices, to where they are read. It waits
   /// until they are written.
   void ReadOutput(const std::vector<Extent>& changes);
@@ -98,15 +99,6 @@ public:
 private:
   using Setter = std::function<void(std::size_t begin, std::size_t count)>;
 
-  /// A kernel with all of its arguments.
-  template <typename... Arguments>
-  cl::Kernel MakeKernel(const char* name, const Arguments&... arguments) const
-  {
-    cl::Kernel kernel(this->Program, name);
-    cl_uint i = 0;
-    (kernel.setArg(i++, arguments), ...);
-    return kernel;
-  }
   void Launch(const cl::Kernel& kernel, std::size_t groups);
   void ForParts(const std::vector<BlockTask>& list, const Setter& launch, bool canStop);
   void ForParts(const std::vector<std::uint32_t>& list, const Setter& launch, bool canStop = true);
@@ -124,12 +116,10 @@ private:
   bool Serial;
   cl::Program Program;
   std::function<bool()> Progress;
-  float* HostOutput = nullptr; // null where it stays on the device
-  std::shared_ptr<DeviceVectors> VectorOutput;
   cl::Buffer Displacements, Flags, Links, Materials;
   cl::Buffer Limits, Weights, Reciprocals;
   cl::Buffer List, Results, Shared;
-  cl::Buffer Output;
+  OutputVectors Output;
 };
 
 } // namespace deformvolume

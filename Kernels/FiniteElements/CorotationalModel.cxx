@@ -2,9 +2,9 @@
 #include "CorotationalModel.h"
 
 #include "CorotationalSolver.h"
+#include "IndexBounds.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 namespace deformvolume
@@ -72,7 +72,7 @@ void CorotationalModel::SetDisplacements(const std::vector<glm::dvec3>& displace
   }
   for (const glm::dvec3& vector : displacements)
   {
-    if (!std::isfinite(vector.x) || !std::isfinite(vector.y) || !std::isfinite(vector.z))
+    if (!IsFinite(vector))
     {
       throw Error("A displacement is not finite.");
     }

@@ -293,8 +293,8 @@ double LinearizedNetwork::FindStiffness(const ElasticBody& body) const
   const std::vector<double> volumes = GetVolumes(body);
   const double volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   const AffineResponse response = this->FindAffineResponse(volume);
-  if (IsOf(body.Materials.front(), response.Stiffness) &&
-    AreAtTheSurface(response.Forces.front(), body))
+  const ElasticMaterial material = GetSpringMaterial(body.Materials.front());
+  if (IsOf(material, response.Stiffness) && AreAtTheSurface(response.Forces.front(), body))
   {
     return 1.0;
   }
@@ -303,7 +303,7 @@ double LinearizedNetwork::FindStiffness(const ElasticBody& body) const
   {
     sum += this->FindCompliance(body, response, volume, axis);
   }
-  return 3.0 / (sum * body.Materials.front().YoungModulus);
+  return 3.0 / (sum * material.YoungModulus);
 }
 
 } // namespace deformvolume

@@ -24,18 +24,15 @@ constexpr double LargestDisplacement = 1e4;
 // Steps are waited for when they have taken about so long, to see whether to go on.
 constexpr std::chrono::milliseconds Batch(20);
 
-// The same body of one material, the mean of what there is.
+// The same body of one material, with the mean Poisson ratio of what there is.
 ElasticBody MakeUniform(const ElasticBody& body)
 {
   ElasticBody uniform = body;
-  ElasticMaterial mean;
+  ElasticMaterial mean = body.Materials.front();
   mean.PoissonRatio =
     std::accumulate(body.Materials.begin(), body.Materials.end(), 0.0,
       [](double sum, const ElasticMaterial& material) { return sum + material.PoissonRatio; }) /
     static_cast<double>(body.Materials.size());
-  // Springs cannot have less.
-  mean.PoissonRatio = std::max(mean.PoissonRatio, 0.25);
-  mean.YoungModulus = body.Materials.front().YoungModulus;
   uniform.Materials = { mean };
   return uniform;
 }
@@ -89,7 +86,7 @@ public:
   }
 
   void CheckMemory(const ElasticBody& body);
-  double Calibrate(const ElasticBody& body);
+  double Calibrate(const ElasticBody& uniform);
   void Make(const ElasticBody& body, double scale);
   double GetStableTimeStep();
   void Hold(const std::vector<HeldNode>& held);
@@ -122,14 +119,14 @@ void MassSpringModel::Internals::CheckMemory(const ElasticBody& body)
     MassSpringState::GetNeededMemory(body.Points.size(), body.Tetrahedra.size()), "on the device");
 }
 
-double MassSpringModel::Internals::Calibrate(const ElasticBody& body)
+// Leaves the body made, with a factor of 1.
+double MassSpringModel::Internals::Calibrate(const ElasticBody& uniform)
 {
-  const ElasticBody uniform = MakeUniform(body);
-  const MassSpringNetwork network(uniform, MassSpringState::GetLanes(this->Device), 1.0);
-  MassSpringState state(this->Device, network, this->WorkGroupSize);
-  const double stiffness = LinearizedNetwork(state, network).FindStiffness(uniform);
+  this->Make(uniform, 1.0);
+  const double stiffness = LinearizedNetwork(*this->State, *this->Network).FindStiffness(uniform);
   if (!(stiffness > 0.0) || !std::isfinite(stiffness))
   {
+    this->Forget();
     throw Error("The mesh is too bad for springs: its tetrahedra are nearly flat. Make a better "
                 "mesh, with tetrahedra of about the same shape.");
   }
@@ -138,6 +135,7 @@ double MassSpringModel::Internals::Calibrate(const ElasticBody& body)
 
 void MassSpringModel::Internals::Make(const ElasticBody& body, double scale)
 {
+  this->State.reset(); // its memory goes first
   this->Body = body;
   this->Scale = scale;
   this->Network =
@@ -269,7 +267,12 @@ void MassSpringModel::SetBody(const ElasticBody& body)
       impl.Device.GetContext();
       impl.Forget();
       impl.CheckMemory(body);
-      impl.Make(body, impl.Calibrate(body));
+      const bool isUniform = body.Materials.size() == 1;
+      const double scale = impl.Calibrate(isUniform ? body : MakeUniform(body));
+      if (!isUniform || scale != 1.0)
+      {
+        impl.Make(body, scale);
+      }
     });
 }
 
@@ -303,7 +306,6 @@ void MassSpringModel::SplitNodes(const ElasticBody& body, const std::vector<std:
       }
       displacements.resize(body.Points.size() * 3);
       velocities.resize(body.Points.size() * 3);
-      impl.State.reset();
       impl.Make(body, impl.Scale);
       impl.State->SetDisplacements(displacements);
       impl.State->SetVelocities(velocities);

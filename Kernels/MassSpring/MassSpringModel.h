@@ -49,7 +49,7 @@ struct MassSpringReport
 /// everything that was set after it. Every failure is an Error; the body is then as it was, but for
 /// failures of the device, after which SetBody has to be called again.
 ///
-/// Memory on the device: 68 bytes a node and 88 a tetrahedron.
+/// Memory on the device: 80 bytes a node and 88 a tetrahedron.
 ///
 /// Sources: Teschner et al. 2004 for the energy of the volume; Georgii and Westermann 2005 for
 /// gathering by nodes; Documents/physics.md for the stiffness of springs.

@@ -16,7 +16,6 @@ namespace deformvolume
 namespace
 {
 
-constexpr double RatioOfSprings = 0.25;
 constexpr std::size_t TetrahedraAtOnce = 4096;
 
 std::array<glm::dvec3, 4> GetCorners(const ElasticBody& body, const Tetrahedron& tetrahedron)
@@ -59,11 +58,18 @@ double FindShortestEdge(const ElasticBody& body)
 
 } // namespace
 
+ElasticMaterial GetSpringMaterial(const ElasticMaterial& material)
+{
+  constexpr double ratioOfSprings = 0.25;
+  ElasticMaterial possible = material;
+  possible.PoissonRatio = std::max(material.PoissonRatio, ratioOfSprings);
+  return possible;
+}
+
 SpringStiffness GetSpringStiffness(
   const ElasticMaterial& material, double restVolume, const std::array<glm::dvec3, 4>& corners)
 {
-  ElasticMaterial possible = material;
-  possible.PoissonRatio = std::max(material.PoissonRatio, RatioOfSprings);
+  const ElasticMaterial possible = GetSpringMaterial(material);
   const double mu = possible.GetShearModulus();
   // A rule for all shapes: 3/2 mu h^4 / V, where h^-2 is the sum of the squared inverse heights.
   // For the two shapes of a cube's tetrahedra it gives the springs of the isotropic lattice, and

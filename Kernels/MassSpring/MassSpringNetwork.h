@@ -20,11 +20,14 @@ struct SpringStiffness
   float Volume = 0.0F;
 };
 
-/// The stiffness of a tetrahedron that makes a body of a material. On a lattice of cubes of five
-/// tetrahedra each, axes of length h then have springs of mu h and diagonals of 2 mu h, which is
-/// the only isotropic choice; their Poisson ratio is 1/4, and the volume makes the rest of it.
-/// Poisson ratios below 1/4 would need a volume that pushes outwards, which is unstable: they count
-/// as 1/4, with the same Young modulus.
+/// The material that springs can be of: Poisson ratios below 1/4 would need a volume that pushes
+/// outwards, which is unstable. They count as 1/4, with the same Young modulus.
+ElasticMaterial GetSpringMaterial(const ElasticMaterial& material);
+
+/// The stiffness of a tetrahedron that makes a body of a material (GetSpringMaterial). On a lattice
+/// of cubes of five tetrahedra each, axes of length h then have springs of mu h and diagonals of 2
+/// mu h, which is the only isotropic choice; their Poisson ratio is 1/4, and the volume makes the
+/// rest of it.
 SpringStiffness GetSpringStiffness(
   const ElasticMaterial& material, double restVolume, const std::array<glm::dvec3, 4>& corners);
 

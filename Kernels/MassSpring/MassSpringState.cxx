@@ -3,6 +3,7 @@
 
 #include "DeviceVectorsInternals.h"
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "KernelSources.h"
 #include "KernelText.h"
 
@@ -16,17 +17,8 @@ namespace
 
 constexpr std::size_t ItemsOfGroup = 64;
 constexpr std::uint64_t BytesOfNode = 10 * sizeof(float) + sizeof(cl_uint);
-constexpr std::uint64_t BytesOfNodeSaved = 6 * sizeof(float);
+constexpr std::uint64_t BytesOfNodeSaved = 9 * sizeof(float); // with sums of forces
 constexpr std::uint64_t BytesOfTetrahedron = (4 + 4) * sizeof(cl_int) + (2 + 4 * 3) * sizeof(float);
-
-template <typename... Arguments>
-cl::Kernel MakeKernel(const cl::Program& program, const char* name, const Arguments&... arguments)
-{
-  cl::Kernel kernel(program, name);
-  cl_uint i = 0;
-  (kernel.setArg(i++, arguments), ...);
-  return kernel;
-}
 
 } // namespace
 
@@ -236,47 +228,33 @@ void MassSpringState::Restore()
 
 void MassSpringState::PlaceOutput(float* output, float factor)
 {
-  this->VectorOutput.reset();
-  this->HostOutput = nullptr;
-  Place(this->Device.GetContext(), this->Output, output, sizeof(float),
-    this->NumberOfNodes * 3 * sizeof(float));
-  this->HostOutput = output;
+  this->Output.Place(this->Device.GetContext(), output, this->NumberOfNodes);
   this->Factor = factor;
 }
 
 void MassSpringState::PlaceOutput(const std::shared_ptr<DeviceVectors>& output, float factor)
 {
-  DeviceVectors::Internals& vectors = output->GetInternals();
-  if (vectors.AreInHostMemory())
-  {
-    this->PlaceOutput(vectors.GetHostMemory(), factor);
-  }
-  else
-  {
-    this->HostOutput = nullptr;
-    this->Output = vectors.GetBuffer();
-    this->Factor = factor;
-  }
-  this->VectorOutput = output;
+  this->Output.Place(this->Device.GetContext(), output);
+  this->Factor = factor;
 }
 
 void MassSpringState::WriteOutput()
 {
   const cl::CommandQueue& queue = this->Device.GetQueue();
-  this->WriteOutputKernel.setArg(1, this->Output);
+  this->WriteOutputKernel.setArg(1, this->Output.GetBuffer());
   this->WriteOutputKernel.setArg(2, this->Factor);
   this->Launch(this->WriteOutputKernel, this->NumberOfNodes * 3);
-  if (this->HostOutput)
+  if (float* const memory = this->Output.GetHostMemory())
   {
     PendingReads reads;
-    reads.Add(
-      BeginToRead(queue, this->Output, this->NumberOfNodes * 3 * sizeof(float), this->HostOutput));
+    reads.Add(BeginToRead(
+      queue, this->Output.GetBuffer(), this->NumberOfNodes * 3 * sizeof(float), memory));
     reads.Check();
   }
   queue.finish();
-  if (this->VectorOutput)
+  if (DeviceVectors::Internals* const vectors = this->Output.GetVectors())
   {
-    this->VectorOutput->GetInternals().MarkAllWritten();
+    vectors->MarkAllWritten();
   }
 }
 

@@ -6,6 +6,7 @@
 #include "ElasticBody.h"
 #include "MassSpringNetwork.h"
 #include "MassSpringParameters.h"
+#include "OutputVectors.h"
 #include "WorkDevice.h"
 
 #include <cstdint>
@@ -63,7 +64,7 @@ public:
   void PlaceOutput(float* output, float factor);
   void PlaceOutput(const std::shared_ptr<DeviceVectors>& output, float factor);
   ///@}
-  bool HasOutput() const { return this->Output() != nullptr; }
+  bool HasOutput() const { return this->Output.IsPlaced(); }
   void WriteOutput();
 
 private:
@@ -85,10 +86,8 @@ private:
   cl::Buffer Sums, SavedDisplacements, SavedVelocities;
   std::size_t NumberOfHandles = 0;
   bool HasLoads = false;
-  float* HostOutput = nullptr; // null where it stays on the device
+  OutputVectors Output;
   float Factor = 1.0F;
-  std::shared_ptr<DeviceVectors> VectorOutput;
-  cl::Buffer Output;
 };
 
 } // namespace deformvolume

@@ -2,6 +2,7 @@
 #include "ElasticBody.h"
 
 #include "Error.h"
+#include "IndexBounds.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -18,11 +19,6 @@ namespace
 
 // A tetrahedron is flat where its height is less than this part of its longest edge.
 constexpr double LeastHeight = 1e-6;
-
-bool IsFinite(const glm::dvec3& vector)
-{
-  return std::isfinite(vector.x) && std::isfinite(vector.y) && std::isfinite(vector.z);
-}
 
 std::array<glm::dvec3, 3> GetEdges(const ElasticBody& body, const Tetrahedron& tetrahedron)
 {

@@ -3,6 +3,7 @@
 
 #include "Error.h"
 #include "FaceNeighbours.h"
+#include "IndexBounds.h"
 #include "MeshChecks.h"
 #include "NodeParts.h"
 #include "ParallelFor.h"
@@ -24,11 +25,6 @@ namespace
 
 constexpr std::size_t TetrahedraOfPart = 65536;
 constexpr std::size_t FacesOfPart = 8192;
-
-bool IsFinite(const glm::dvec3& vector)
-{
-  return std::isfinite(vector.x) && std::isfinite(vector.y) && std::isfinite(vector.z);
-}
 
 void CheckSheet(
   const std::vector<glm::dvec3>& points, const std::vector<Sheet::Triangle>& triangles)

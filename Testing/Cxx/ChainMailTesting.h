@@ -39,6 +39,17 @@ inline vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Handle>& handl
   return data;
 }
 
+/// Whether an error has these words; else both are printed.
+inline bool Holds(const std::string& text, const std::string& part)
+{
+  if (text.find(part) == std::string::npos)
+  {
+    std::cerr << "not in the error: " << part << "\nthe error: " << text << "\n";
+    return false;
+  }
+  return true;
+}
+
 /// A filter on a volume, with its errors caught.
 struct Dragged
 {

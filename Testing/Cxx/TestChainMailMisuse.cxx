@@ -14,16 +14,6 @@ using namespace filterTesting;
 namespace
 {
 
-bool Holds(const std::string& text, const std::string& part)
-{
-  if (text.find(part) == std::string::npos)
-  {
-    std::cerr << "not in the error: " << part << "\nthe error: " << text << "\n";
-    return false;
-  }
-  return true;
-}
-
 template <typename Array>
 vtkSmartPointer<Array> MakeArray(const char* name, int components, vtkIdType tuples, int value = 0)
 {

@@ -89,16 +89,6 @@ struct Simulated
   vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
 };
 
-bool Holds(const std::string& text, const std::string& part)
-{
-  if (text.find(part) == std::string::npos)
-  {
-    std::cerr << "not in the error: " << part << "\nthe error: " << text << "\n";
-    return false;
-  }
-  return true;
-}
-
 bool AreEqual(vtkFloatArray* a, vtkFloatArray* b)
 {
   return a->GetNumberOfValues() == b->GetNumberOfValues() &&

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeOptionTexts_h
+#define DeformVolumeOptionTexts_h
+
+#include "ChainMail.h"
+#include "ElasticModel.h"
+#include "Failure.h"
+#include "Push.h"
+#include "Tools.h"
+
+#include <array>
+#include <cstddef>
+#include <sstream>
+#include <string>
+
+/// Reads numbers with commas between them. shape: what was expected, in words. This and all below
+/// throw a UsageError that names the option.
+template <typename Number, std::size_t Count>
+std::array<Number, Count> ParseNumbers(
+  const std::string& option, const std::string& text, const std::string& shape)
+{
+  std::array<Number, Count> numbers;
+  std::istringstream stream(text);
+  bool valid = true;
+  for (std::size_t i = 0; i < Count && valid; ++i)
+  {
+    char comma = ',';
+    valid = (i == 0 || stream >> comma) && comma == ',' && static_cast<bool>(stream >> numbers[i]);
+  }
+  if (!valid || !(stream >> std::ws).eof())
+  {
+    throw UsageError(option + " " + text + ": expected " + shape);
+  }
+  return numbers;
+}
+
+///@{
+/// Read the text behind the option of the name.
+Push ParsePush(const std::string& text);
+Pull ParsePull(const std::string& text);
+Fixation ParseFixation(const std::string& text);
+Carving ParseCarving(const std::string& text);
+///@}
+
+#endif
