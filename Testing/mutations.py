@@ -127,6 +127,7 @@ MUTATIONS = {
                      "isDivision && isClear", [CROSSINGS]),
     "cut-copies": ("Kernels/Resampling/IncrementalBoxes.cxx", "      low -= difference;\n      high += difference;\n",
                    "", [CUT_PARTS]),
+    "cut-reach": ("Kernels/SamplingMesh/BrickGrid.h", "ReachOfCuts = 2;", "ReachOfCuts = 1;", [CUT_PARTS]),
     "split-reach": ("Kernels/Physics/SplitRegion.cxx", "0.25 * std::max(", "0.0 * std::max(", [SPLIT_FACES]),
     "split-near": ("Kernels/Physics/MeshSplit.cxx", "(region.IsNear(face / 4) || ", "(region.IsNear(face / 4) && ",
                    [SPLIT_FACES]),

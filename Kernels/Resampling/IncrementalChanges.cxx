@@ -271,8 +271,9 @@ void IncrementalUpdate::ChangeMask(const std::vector<Extent>& changes, bool ofCe
   {
     return;
   }
-  // A smooth cut looks further at masks, too.
-  const int reach = MaskReach + this->Grid.Reach - BrickGrid::LeastReach;
+  // A smooth cut looks at the states of the vertices that it moves others by.
+  const bool hasCuts = this->Grid.Reach != BrickGrid::LeastReach;
+  const int reach = MaskReach + (hasCuts ? BrickGrid::ReachOfCuts : 0);
   for (const Extent& box : changes)
   {
     // A cell reaches to the next vertices.

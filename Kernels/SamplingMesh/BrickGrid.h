@@ -35,8 +35,10 @@ struct BrickGrid
     DEFORMVOLUME_BRICK_Z } }; // of a brick
   /// How far a brick looks beyond its vertices: the fill rule asks the cells round a vertex.
   static constexpr int LeastReach = 1;
-  /// Besides, a smooth cut moves vertices by others that are up to two voxels away.
-  static constexpr int ReachOfCuts = 3;
+  /// Or where there is a smooth cut: it moves vertices by others that are so many voxels away
+  /// (CutPositions.cl). The cells round a vertex add nothing: what a cut changes of those that are
+  /// in another brick, that brick has changed, and the vertex lies in both.
+  static constexpr int ReachOfCuts = 2;
   int Reach = LeastReach;
 
   std::size_t GetNumberOfBricks() const

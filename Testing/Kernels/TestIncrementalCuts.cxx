@@ -289,6 +289,9 @@ namespace
 struct VoxelField
 {
   static constexpr int Size = 64;
+  // The displacements are those of nodes, of which each moves its voxel only: with a field, bricks
+  // look one voxel further.
+  bool IsMesh = false;
   EditedVolume Volume{ { { 0, Size - 1, 0, Size - 1, 0, Size - 1 } }, false };
   std::vector<float> Vectors = std::vector<float>(3 * Size * Size * Size);
   VolumeDeformer Whole, Updated;
@@ -298,8 +301,13 @@ struct VoxelField
   {
     return this->Vectors.data() + 3 * static_cast<std::size_t>((z * Size + y) * Size + x);
   }
-  void SendField(VolumeDeformer& deformer) const
+  void SendDisplacements(VolumeDeformer& deformer) const
   {
+    if (this->IsMesh)
+    {
+      deformer.SetNodeDisplacements(this->Vectors.data(), nullptr);
+      return;
+    }
     DisplacementField field;
     field.Dimensions = { { Size, Size, Size } };
     field.Vectors = this->Vectors.data();
@@ -317,13 +325,32 @@ struct VoxelField
       deformer->SetVoxelGrid(this->Volume.Shape);
       deformer->SetArrays(this->Volume.GetArrays());
       this->Volume.SendMasks(*deformer);
+      if (this->IsMesh)
+      {
+        this->SendMesh(*deformer);
+      }
     }
+  }
+  void SendMesh(VolumeDeformer& deformer)
+  {
+    // The last three nodes belong to all tetrahedra, without weight.
+    const auto nodes = static_cast<std::int32_t>(this->Vectors.size() / 3) - 3;
+    std::vector<Tetrahedron> tetrahedra;
+    std::vector<VertexLink> links(static_cast<std::size_t>(nodes));
+    for (std::int32_t node = 0; node < nodes; ++node)
+    {
+      tetrahedra.push_back({ { node, nodes, nodes + 1, nodes + 2 } });
+      VertexLink& link = links[static_cast<std::size_t>(node)];
+      link.Tetrahedron = node;
+      link.Weights[0] = 1.0F;
+    }
+    deformer.SetMesh(tetrahedra.data(), tetrahedra.size(), this->Vectors.size() / 3, links.data());
   }
   // Expects the same of both deformers. Returns whether one made a part.
   bool Deform()
   {
-    this->SendField(this->Whole);
-    this->SendField(this->Updated);
+    this->SendDisplacements(this->Whole);
+    this->SendDisplacements(this->Updated);
     EditedOutputs expected(this->Volume);
     const DeformReport wanted = this->Whole.Deform(expected.MakeRequest(this->Volume));
     const bool isFirst = !this->Last;
@@ -417,6 +444,51 @@ TEST(IncrementalCuts, VoxelsMoveCopiesUpToTwoVoxelsAway)
     ASSERT_FALSE(HasFailure());
   }
   EXPECT_EQ(parts, steps);
+}
+
+// What moves lies two voxels beside a part of a brick, of which it moves copies: they belong to
+// tetrahedra whose other copies are far away, beyond all that the brick of the voxel reaches.
+TEST(IncrementalCuts, CopiesOfTheNextBrickMove)
+{
+  for (const Resampling method : GetExactMethods())
+  {
+    SCOPED_TRACE(static_cast<int>(method));
+    VoxelField made;
+    made.Volume.Method = method;
+    made.Volume.Output = { { 0, 90, 0, 170, 0, VoxelField::Size - 1 } };
+    for (int voxel = 0; voxel < VoxelField::Size * VoxelField::Size * VoxelField::Size; ++voxel)
+    {
+      // A part of a brick begins at 16. Two planes of vertices there are another side, but for some
+      // vertices, so that there are tetrahedra with copies in both.
+      const int x = voxel % VoxelField::Size;
+      const int y = voxel / VoxelField::Size % VoxelField::Size;
+      const bool isOther = x == 16 || (x == 17 && y % 4 != 0);
+      made.Volume.CutDistances.push_back(isOther ? -1.0F : 1.0F);
+      // Copies in the second plane go on away from the plane behind the next one.
+      made.Vectors[3 * static_cast<std::size_t>(voxel) + 1] = x == 19 ? -60.0F : 0.0F;
+    }
+    const int cells = VoxelField::Size - 1;
+    for (int cell = 0; cell < cells * cells * cells; ++cell)
+    {
+      const int x = cell % cells;
+      made.Volume.Crossed.push_back(x >= 15 && x < 18 ? 31 : 0);
+    }
+    made.IsMesh = true;
+    made.Vectors.resize(made.Vectors.size() + 9);
+    made.SendAll();
+    made.Deform();
+    for (const float amount : { 10.0F, -5.0F, 0.0F })
+    {
+      for (int z = 8; z < 12; ++z)
+      {
+        for (int y = 8; y < 12; ++y)
+        {
+          *made.GetVector(14, y, z) = amount;
+        }
+      }
+      EXPECT_TRUE(made.Deform());
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, IncrementalCutWays, GetWays(), GetWayName);
