@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkChainMailDeformation.h"
 
-#include "AbortCheck.h"
 #include "ChainMailSession.h"
 #include "FailureReport.h"
 #include "PieceRequest.h"
+#include "ProgressReport.h"
 #include "VTKThreads.h"
 
 #include "vtkDataObject.h"
@@ -15,7 +15,6 @@
 #include "vtkPointSet.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <new>
 #include <sstream>
@@ -208,19 +207,8 @@ int vtkChainMailDeformation::RequestData(
   request.RelaxationSweeps = this->RelaxationSweeps;
   request.Elasticity = this->Elasticity;
   request.PlasticityThreshold = this->PlasticityThreshold;
-  // Observers may draw: they are called now and then only.
-  auto next = std::chrono::steady_clock::now();
-  double progress = 0.0;
-  request.Progress = [&]
-  {
-    if (std::chrono::steady_clock::now() >= next)
-    {
-      progress += 0.1 * (1.0 - progress); // nobody knows how much there is to do
-      this->UpdateProgress(progress);
-      next = std::chrono::steady_clock::now() + std::chrono::milliseconds(20);
-    }
-    return !deformvolume::IsAborted(this);
-  };
+  deformvolume::ProgressReport progress(this);
+  request.Progress = [&] { return progress.Tell(); };
   std::fill_n(this->ChangedExtent, 6, -1);
   this->ChangedExtent[0] = this->ChangedExtent[2] = this->ChangedExtent[4] = 0;
   try

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkElasticDeformation.h"
 
-#include "AbortCheck.h"
 #include "BodyReading.h"
 #include "ElasticSession.h"
 #include "ElasticSimulation.h"
 #include "Error.h"
 #include "FailureReport.h"
 #include "PieceRequest.h"
+#include "ProgressReport.h"
 #include "SheetReading.h"
 #include "VTKThreads.h"
 
@@ -26,7 +26,6 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -289,20 +288,11 @@ void vtkElasticDeformation::Execute(
   const double duration = std::max(0.0, end - session.Time);
   const double longest = simulation.HasFrames() ? this->FrameTime : std::max(duration, 1.0);
   const double frames = std::max(1.0, std::ceil((duration - roundOff) / longest));
-  // Observers may draw: they are called now and then only.
-  auto next = std::chrono::steady_clock::now();
+  deformvolume::ProgressReport progress(this);
   for (double done = 0.0; done < frames; done += 1.0)
   {
     frame.Duration = std::min(longest, std::max(0.0, end - session.Time));
-    frame.Progress = [&](double fraction)
-    {
-      if (std::chrono::steady_clock::now() >= next)
-      {
-        this->UpdateProgress((done + fraction) / frames);
-        next = std::chrono::steady_clock::now() + std::chrono::milliseconds(20);
-      }
-      return !deformvolume::IsAborted(this);
-    };
+    frame.Progress = [&](double fraction) { return progress.Tell((done + fraction) / frames); };
     simulation.Advance(frame);
     session.HasMoved = true;
     session.Time = done + 1.0 == frames ? end : session.Time + frame.Duration;

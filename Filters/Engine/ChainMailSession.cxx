@@ -37,34 +37,6 @@ vtkDataArray* FindVolumeArray(vtkImageData* volume, const char* name)
     volume->GetPointData(), name, 1, volume->GetNumberOfPoints(), "point array", "the volume");
 }
 
-// Null where all voxels have the default material.
-vtkDataArray* FindMaterialArray(vtkImageData* volume, const ChainMailSettings& settings)
-{
-  if (!settings.ArrayName.empty())
-  {
-    vtkDataArray* array = FindVolumeArray(volume, settings.ArrayName.c_str());
-    if (!array)
-    {
-      throw Error("The volume has no point array \"" + settings.ArrayName +
-        "\", which MaterialArrayName names. Add the array, or set another name.");
-    }
-    return array;
-  }
-  vtkDataArray* scalars = settings.Ranges.empty() ? nullptr : volume->GetPointData()->GetScalars();
-  if (!settings.Ranges.empty() && !scalars)
-  {
-    throw Error("There are ranges of materials, but the volume has no active scalars. Set "
-                "MaterialArrayName, or remove the ranges.");
-  }
-  if (scalars)
-  {
-    CheckShape(scalars, 1, volume->GetNumberOfPoints(),
-      std::string("The point array \"") + (scalars->GetName() ? scalars->GetName() : "") +
-        "\" of the volume");
-  }
-  return scalars;
-}
-
 void CheckMaterial(const ChainMailSettings& settings, int index, const char* who)
 {
   if (!settings.Exists[static_cast<std::size_t>(index)])
@@ -170,7 +142,7 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
   // What can be wrong is looked at before anything is changed.
   const ImageGeometry geometry = GetGeometry(volume);
   CheckVolume(geometry);
-  vtkDataArray* materialArray = FindMaterialArray(volume, settings);
+  vtkDataArray* materialArray = FindMaterialArray(volume, settings.ArrayName, !settings.Ranges.empty());
   vtkDataArray* pins = FindVolumeArray(volume, PINNED);
   const bool isNew = !this->HasVolume || this->Geometry != geometry;
   const Stamp maskStamp = GetMasksStamp(volume);

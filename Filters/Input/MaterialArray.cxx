@@ -3,10 +3,13 @@
 
 #include "Error.h"
 #include "ParallelFor.h"
+#include "ShapedArray.h"
 
 #include "vtkArrayDispatch.h"
 #include "vtkDataArray.h"
 #include "vtkDataArrayRange.h"
+#include "vtkImageData.h"
+#include "vtkPointData.h"
 
 #include <atomic>
 #include <limits>
@@ -68,6 +71,36 @@ std::string GetText(vtkDataArray* array, vtkIdType tuple)
 }
 
 } // namespace
+
+vtkDataArray* FindMaterialArray(vtkImageData* volume, const std::string& name, bool hasRanges)
+{
+  const vtkIdType voxels = volume->GetNumberOfPoints();
+  vtkPointData* pointData = volume->GetPointData();
+  if (!name.empty())
+  {
+    vtkDataArray* array =
+      FindShapedArray(pointData, name.c_str(), 1, voxels, "point array", "the volume");
+    if (!array)
+    {
+      throw Error("The volume has no point array \"" + name +
+        "\", which MaterialArrayName names. Add the array, or set another name.");
+    }
+    return array;
+  }
+  vtkDataArray* scalars = hasRanges ? pointData->GetScalars() : nullptr;
+  if (hasRanges && !scalars)
+  {
+    throw Error("There are ranges of materials, but the volume has no active scalars. Set "
+                "MaterialArrayName, or remove the ranges.");
+  }
+  if (scalars)
+  {
+    CheckShape(scalars, 1, voxels,
+      std::string("The point array \"") + (scalars->GetName() ? scalars->GetName() : "") +
+        "\" of the volume");
+  }
+  return scalars;
+}
 
 std::vector<unsigned char> ReadMaterials(vtkDataArray* array,
   const std::vector<MaterialRange>& ranges, int fallback, const std::array<bool, 256>& exists)

@@ -7,6 +7,7 @@
 #include <vector>
 
 class vtkDataArray;
+class vtkImageData;
 
 namespace deformvolume
 {
@@ -18,6 +19,11 @@ struct MaterialRange
   double Maximum;
   int Index;
 };
+
+/// The point array of a volume that tells materials: the one of a name, or, where that is "" and
+/// there are ranges, the active scalars; else null. Throws an Error where it is not there, or has
+/// several components.
+vtkDataArray* FindMaterialArray(vtkImageData* volume, const std::string& name, bool hasRanges);
 
 /// The materials of the values of an array of one component: by ranges, and fallback where none
 /// holds a value, or, without ranges, the values themselves. exists: which of the 256 materials

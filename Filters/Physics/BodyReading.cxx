@@ -24,15 +24,13 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace deformvolume
 {
 namespace
 {
 
-constexpr const char* YOUNG_MODULUS = "YoungModulus";
-constexpr const char* POISSON_RATIO = "PoissonRatio";
-constexpr const char* DENSITY = "Density";
 constexpr const char* FIXED = "Fixed";
 constexpr const char* FORCE = "Force";
 constexpr const char* MESH = "rest mesh on input port 0";
@@ -63,57 +61,13 @@ int GetCellDimension(int type)
   return cell ? cell->GetCellDimension() : 3;
 }
 
-void ReadTetrahedra(vtkUnstructuredGrid* grid, BodyMesh& mesh)
-{
-  vtkDataArray* types = GetCellTypes(grid);
-  const vtkIdType count = grid->GetNumberOfCells();
-  if (count > 0 && (!types || types->GetNumberOfTuples() < count || !grid->GetCells()->IsValid()))
-  {
-    throw Error(std::string("The cells of the ") + MESH + " are incomplete.");
-  }
-  std::map<int, vtkIdType> others;
-  for (vtkIdType cell = 0; cell < count; ++cell)
-  {
-    const int type = grid->GetCellType(cell);
-    if (type != VTK_TETRA)
-    {
-      ++others[type];
-      continue;
-    }
-    vtkIdType size = 0;
-    const vtkIdType* points = nullptr;
-    grid->GetCells()->GetCellAtId(cell, size, points);
-    Tetrahedron tetrahedron{};
-    for (std::size_t i = 0; i < 4; ++i)
-    {
-      if (size != 4 || points[i] < 0 || points[i] >= grid->GetNumberOfPoints())
-      {
-        throw Error("Cell " + std::to_string(cell) + " of the " + MESH +
-          " is a tetrahedron without four points of the mesh.");
-      }
-      tetrahedron[i] = static_cast<std::int32_t>(points[i]);
-    }
-    mesh.Body.Tetrahedra.push_back(tetrahedron);
-    mesh.Cells.push_back(cell);
-  }
-  for (const auto& [type, number] : others)
-  {
-    if (GetCellDimension(type) == 3)
-    {
-      throw Error("The " + std::string(MESH) + " has " + std::to_string(number) +
-        " cells that are " + GetCellClassName(type) +
-        ". Split them into tetrahedra first, for example with vtkDataSetTriangleFilter.");
-    }
-  }
-}
-
 void ReadMaterials(vtkUnstructuredGrid* grid, const BodySettings& settings, BodyMesh& mesh)
 {
   const auto find = [&](const char* name)
   { return FindMeshArray(grid->GetCellData(), name, 1, grid->GetNumberOfCells()); };
-  vtkDataArray* youngModulus = find(YOUNG_MODULUS);
-  vtkDataArray* poissonRatio = find(POISSON_RATIO);
-  vtkDataArray* density = find(DENSITY);
+  vtkDataArray* youngModulus = find(YoungModulusName);
+  vtkDataArray* poissonRatio = find(PoissonRatioName);
+  vtkDataArray* density = find(DensityName);
   mesh.Body.Materials = { settings.Material };
   if (!youngModulus && !poissonRatio && !density)
   {
@@ -190,7 +144,7 @@ Stamp GetBodyStamp(vtkUnstructuredGrid* grid)
   add(grid->GetPoints());
   add(grid->GetCells());
   add(GetCellTypes(grid));
-  for (const char* name : { YOUNG_MODULUS, POISSON_RATIO, DENSITY })
+  for (const char* name : { YoungModulusName, PoissonRatioName, DensityName })
   {
     add(grid->GetCellData()->GetAbstractArray(name));
   }
@@ -199,6 +153,52 @@ Stamp GetBodyStamp(vtkUnstructuredGrid* grid)
     add(grid->GetPointData()->GetAbstractArray(name));
   }
   return stamp;
+}
+
+GridTetrahedra ReadTetrahedra(vtkUnstructuredGrid* grid)
+{
+  GridTetrahedra read;
+  vtkDataArray* types = GetCellTypes(grid);
+  const vtkIdType count = grid->GetNumberOfCells();
+  if (count > 0 && (!types || types->GetNumberOfTuples() < count || !grid->GetCells()->IsValid()))
+  {
+    throw Error(std::string("The cells of the ") + MESH + " are incomplete.");
+  }
+  std::map<int, vtkIdType> others;
+  for (vtkIdType cell = 0; cell < count; ++cell)
+  {
+    const int type = grid->GetCellType(cell);
+    if (type != VTK_TETRA)
+    {
+      ++others[type];
+      continue;
+    }
+    vtkIdType size = 0;
+    const vtkIdType* points = nullptr;
+    grid->GetCells()->GetCellAtId(cell, size, points);
+    Tetrahedron tetrahedron{};
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+      if (size != 4 || points[i] < 0 || points[i] >= grid->GetNumberOfPoints())
+      {
+        throw Error("Cell " + std::to_string(cell) + " of the " + MESH +
+          " is a tetrahedron without four points of the mesh.");
+      }
+      tetrahedron[i] = static_cast<std::int32_t>(points[i]);
+    }
+    read.Tetrahedra.push_back(tetrahedron);
+    read.Cells.push_back(cell);
+  }
+  for (const auto& [type, number] : others)
+  {
+    if (GetCellDimension(type) == 3)
+    {
+      throw Error("The " + std::string(MESH) + " has " + std::to_string(number) +
+        " cells that are " + GetCellClassName(type) +
+        ". Split them into tetrahedra first, for example with vtkDataSetTriangleFilter.");
+    }
+  }
+  return read;
 }
 
 BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings)
@@ -213,7 +213,9 @@ BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings)
   {
     mesh.Body.Points = ReadAll(grid->GetPoints()->GetData(), settings.UnitLength, "Point");
   }
-  ReadTetrahedra(grid, mesh);
+  GridTetrahedra read = ReadTetrahedra(grid);
+  mesh.Body.Tetrahedra = std::move(read.Tetrahedra);
+  mesh.Cells = std::move(read.Cells);
   ReadMaterials(grid, settings, mesh);
   if (vtkDataArray* fixed = FindMeshArray(grid->GetPointData(), FIXED, 1, points))
   {

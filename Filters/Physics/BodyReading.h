@@ -15,6 +15,24 @@ class vtkUnstructuredGrid;
 namespace deformvolume
 {
 
+///@{
+/// Cell arrays with the material of each tetrahedron.
+constexpr const char* YoungModulusName = "YoungModulus";
+constexpr const char* PoissonRatioName = "PoissonRatio";
+constexpr const char* DensityName = "Density";
+///@}
+
+/// The tetrahedra of a grid, and the cell that each of them is.
+struct GridTetrahedra
+{
+  std::vector<Tetrahedron> Tetrahedra;
+  std::vector<vtkIdType> Cells;
+};
+
+/// Cells of fewer than three dimensions are left out. Throws an Error for other cells, and for
+/// tetrahedra without four points of the grid.
+GridTetrahedra ReadTetrahedra(vtkUnstructuredGrid* grid);
+
 /// What says how a body is read.
 struct BodySettings
 {

@@ -93,26 +93,6 @@ void CheckShapes(const ElasticBody& body)
   }
 }
 
-void CheckMaterial(const ElasticMaterial& material, const std::string& where)
-{
-  if (!(material.YoungModulus > 0.0) || !std::isfinite(material.YoungModulus))
-  {
-    throw Error("The Young modulus" + where + " is " + std::to_string(material.YoungModulus) +
-      " Pa. It must be greater than 0.");
-  }
-  if (!(material.PoissonRatio >= 0.0 &&
-        material.PoissonRatio < ElasticMaterial::LargestPoissonRatio))
-  {
-    throw Error("The Poisson ratio" + where + " is " + std::to_string(material.PoissonRatio) +
-      ". It must be 0 or more, and less than 0.495.");
-  }
-  if (!(material.Density > 0.0) || !std::isfinite(material.Density))
-  {
-    throw Error("The density" + where + " is " + std::to_string(material.Density) +
-      " kg/m^3. It must be greater than 0.");
-  }
-}
-
 void CheckLength(std::size_t length, std::size_t wanted, const std::string& what)
 {
   if (length != wanted)
@@ -150,6 +130,26 @@ void CheckBody(const ElasticBody& body)
   CheckNodes(body);
   CheckShapes(body);
   CheckMaterials(body, body.Materials);
+}
+
+void CheckMaterial(const ElasticMaterial& material, const std::string& where)
+{
+  if (!(material.YoungModulus > 0.0) || !std::isfinite(material.YoungModulus))
+  {
+    throw Error("The Young modulus" + where + " is " + std::to_string(material.YoungModulus) +
+      " Pa. It must be greater than 0.");
+  }
+  if (!(material.PoissonRatio >= 0.0 &&
+        material.PoissonRatio < ElasticMaterial::LargestPoissonRatio))
+  {
+    throw Error("The Poisson ratio" + where + " is " + std::to_string(material.PoissonRatio) +
+      ". It must be 0 or more, and less than 0.495.");
+  }
+  if (!(material.Density > 0.0) || !std::isfinite(material.Density))
+  {
+    throw Error("The density" + where + " is " + std::to_string(material.Density) +
+      " kg/m^3. It must be greater than 0.");
+  }
 }
 
 void CheckMaterials(const ElasticBody& body, const std::vector<ElasticMaterial>& materials)

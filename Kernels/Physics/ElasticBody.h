@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace deformvolume
@@ -80,6 +81,9 @@ struct BodyLoads
 /// coordinates that are not finite, tetrahedra that are flat or turned inside out, a material out
 /// of its range, or arrays of another length.
 DEFORMVOLUME_EXPORT void CheckBody(const ElasticBody& body);
+
+/// Throws an Error where a number of a material is out of its range; where: of which, in words.
+DEFORMVOLUME_EXPORT void CheckMaterial(const ElasticMaterial& material, const std::string& where);
 
 /// Throws an Error where other materials are not for this body, or out of their range.
 DEFORMVOLUME_EXPORT void CheckMaterials(

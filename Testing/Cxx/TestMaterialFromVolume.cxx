@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vtkMaterialFromVolume: misuse, means against a search over all voxels, what stays shared, and a
+// simulation that bends where the volume is soft.
+#include "ChainMailTesting.h"
+
+#include "vtkCorotationalDeformation.h"
+#include "vtkMaterialFromVolume.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkSMPTools.h>
+#include <vtkShortArray.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <limits>
+#include <random>
+
+using namespace chainMailTesting;
+using namespace filterTesting;
+
+namespace
+{
+
+constexpr const char* Names[3] = { "YoungModulus", "PoissonRatio", "Density" };
+
+// An oblique volume of random labels 0 to 4, as shorts.
+vtkSmartPointer<vtkImageData> MakeVolume()
+{
+  auto volume = vtkSmartPointer<vtkImageData>::New();
+  volume->SetExtent(-2, 17, 3, 20, -1, 13);
+  volume->SetOrigin(10.0, -4.0, 2.0);
+  volume->SetSpacing(1.0, 0.75, 1.5);
+  volume->SetDirectionMatrix(0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0);
+  vtkNew<vtkShortArray> labels;
+  labels->SetName("labels");
+  labels->SetNumberOfTuples(volume->GetNumberOfPoints());
+  std::mt19937 random(3);
+  for (vtkIdType i = 0; i < labels->GetNumberOfTuples(); ++i)
+  {
+    labels->SetValue(i, static_cast<short>(random() % 5));
+  }
+  volume->GetPointData()->SetScalars(labels);
+  return volume;
+}
+
+// A mesh of tetrahedra in general position that holds most of the volume, and reaches beyond it.
+vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(vtkImageData* volume, int nodes)
+{
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetInputData(volume);
+  lattice->SetNumberOfNodes(nodes, nodes, nodes);
+  lattice->Update();
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  mesh->DeepCopy(lattice->GetOutput());
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> jitter(-0.3, 0.3);
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    glm::dvec3 point;
+    mesh->GetPoint(i, &point.x);
+    point.z += 3.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      point[axis] += jitter(random);
+    }
+    mesh->GetPoints()->SetPoint(i, &point.x);
+  }
+  return mesh;
+}
+
+struct Tested
+{
+  explicit Tested(vtkDataObject* mesh, vtkDataObject* volume)
+  {
+    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
+    {
+      this->Filter->AddObserver(event, this->Observer);
+      this->Filter->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
+    }
+    this->Filter->SetInputDataObject(mesh);
+    this->Filter->SetVolumeData(volume);
+    this->Filter->SetMaterialArrayName("labels");
+  }
+  // The errors in words; "" where there is none.
+  std::string TryUpdate()
+  {
+    this->Filter->Modified();
+    this->Filter->Update();
+    const std::string errors = this->Observer->GetErrorMessage();
+    VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
+    VERIFY(errors.empty() || this->Filter->GetOutput()->GetNumberOfPoints() == 0);
+    this->Observer->Clear();
+    this->ExecutiveObserver->Clear();
+    return errors;
+  }
+  double Get(int name, vtkIdType cell)
+  {
+    return this->Filter->GetOutput()->GetCellData()->GetArray(Names[name])->GetComponent(cell, 0);
+  }
+
+  vtkNew<vtkMaterialFromVolume> Filter;
+  vtkNew<vtkTest::ErrorObserver> Observer;
+  vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
+};
+
+void TestMisuse()
+{
+  vtkSmartPointer<vtkImageData> volume = MakeVolume();
+  vtkSmartPointer<vtkUnstructuredGrid> mesh = MakeMesh(volume, 4);
+  Tested tested(mesh, volume);
+  VERIFY_EQUAL(tested.TryUpdate(), std::string());
+
+  tested.Filter->SetMaterialArrayName("none");
+  VERIFY(Holds(tested.TryUpdate(), "no point array \"none\""));
+  tested.Filter->SetMaterialArrayName("");
+  VERIFY_EQUAL(tested.TryUpdate(), std::string()); // all of the default material
+  VERIFY_EQUAL(tested.Get(0, 0), 1e4);
+  tested.Filter->SetMaterialArrayName("labels");
+
+  const auto tryMaterial = [&](double youngModulus, double poissonRatio, double density)
+  {
+    tested.Filter->SetMaterial(2, youngModulus, poissonRatio, density);
+    const std::string errors = tested.TryUpdate();
+    tested.Filter->SetMaterial(2, 5e4, 0.4, 1060.0);
+    return errors;
+  };
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  VERIFY(Holds(tryMaterial(0.0, 0.3, 1.0), "Young modulus of material 2"));
+  VERIFY(Holds(tryMaterial(nan, 0.3, 1.0), "Young modulus of material 2"));
+  VERIFY(Holds(tryMaterial(1.0, 0.495, 1.0), "Poisson ratio of material 2"));
+  VERIFY(Holds(tryMaterial(1.0, 0.3, -1.0), "density of material 2"));
+  VERIFY_EQUAL(tested.TryUpdate(), std::string());
+
+  tested.Filter->SetMaterial(256, 1.0, 0.0, 1.0);
+  VERIFY(Holds(tested.Observer->GetErrorMessage(), "no material 256"));
+  tested.Observer->Clear();
+  tested.Filter->SetMaterial(1.5, 1.0, 0.0, 1.0);
+  VERIFY(Holds(tested.Observer->GetErrorMessage(), "no material 1.5"));
+  tested.Observer->Clear();
+  tested.Filter->AddMaterialRange(0.0, 1.0, -1.0);
+  VERIFY(Holds(tested.Observer->GetErrorMessage(), "no material -1"));
+  tested.Observer->Clear();
+  VERIFY_EQUAL(tested.Filter->GetNumberOfMaterialRanges(), 0);
+
+  vtkShortArray::SafeDownCast(volume->GetPointData()->GetScalars())->SetValue(11, 5);
+  VERIFY(Holds(tested.TryUpdate(), "Voxel 11 has the value 5"));
+  vtkShortArray::SafeDownCast(volume->GetPointData()->GetScalars())->SetValue(11, 1);
+  tested.Filter->ClearMaterials();
+  VERIFY_EQUAL(tested.Filter->GetNumberOfMaterials(), 0);
+  VERIFY(Holds(tested.TryUpdate(), "DefaultMaterial is the material 1"));
+  tested.Filter->SetMaterial(1, 1e4, 0.3, 1000.0);
+  VERIFY(Holds(tested.TryUpdate(), "for which there is no material"));
+
+  vtkNew<vtkImageData> flat;
+  flat->SetDimensions(5, 5, 1);
+  Tested onFlat(mesh, flat);
+  VERIFY(Holds(onFlat.TryUpdate(), "two voxels"));
+  vtkNew<vtkUnstructuredGrid> hexahedron;
+  vtkNew<vtkPoints> points;
+  points->SetNumberOfPoints(8);
+  const vtkIdType ids[8] = { 0, 1, 2, 3, 4, 5, 6, 7 };
+  hexahedron->SetPoints(points);
+  hexahedron->InsertNextCell(VTK_HEXAHEDRON, 8, ids);
+  VERIFY(Holds(Tested(hexahedron, volume).TryUpdate(), "vtkHexahedron"));
+  mesh->GetPoints()->SetPoint(3, nan, 0.0, 0.0);
+  VERIFY(Holds(Tested(mesh, volume).TryUpdate(), "Point 3"));
+  vtkNew<vtkUnstructuredGrid> empty;
+  VERIFY_EQUAL(Tested(empty, volume).TryUpdate(), std::string());
+}
+
+// Against a search over all voxels. Nodes are rounded to 1/256 voxel: tetrahedra with a voxel that
+// is so near to a face are left out.
+void TestMeans(bool hides)
+{
+  vtkSmartPointer<vtkImageData> volume = MakeVolume();
+  vtkSmartPointer<vtkUnstructuredGrid> mesh = MakeMesh(volume, 12);
+  vtkNew<vtkFloatArray> other;
+  other->SetName("other");
+  other->SetNumberOfTuples(mesh->GetNumberOfCells());
+  mesh->GetCellData()->AddArray(other);
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  if (hides)
+  {
+    ghosts->SetName("vtkGhostType");
+    ghosts->SetNumberOfTuples(volume->GetNumberOfPoints());
+    for (vtkIdType i = 0; i < ghosts->GetNumberOfTuples(); ++i)
+    {
+      ghosts->SetValue(i, i % 3 == 0 ? vtkDataSetAttributes::HIDDENPOINT : 0);
+    }
+    volume->GetPointData()->AddArray(ghosts);
+  }
+  Tested tested(mesh, volume);
+  VERIFY_EQUAL(tested.TryUpdate(), std::string());
+  vtkUnstructuredGrid* output = tested.Filter->GetOutput();
+  VERIFY(output->GetPoints() == mesh->GetPoints());
+  VERIFY(output->GetCellData()->GetArray("other") == other);
+
+  vtkIdType held = 0;
+  vtkIdType nearest = 0;
+  vtkIdType outside = 0;
+  vtkIdType doubtful = 0;
+  double worst = 0.0;
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    const vtkIdType* ids = nullptr;
+    vtkIdType size = 0;
+    mesh->GetCells()->GetCellAtId(cell, size, ids);
+    glm::dvec3 p[4];
+    for (int k = 0; k < 4; ++k)
+    {
+      mesh->GetPoint(ids[k], &p[k].x);
+    }
+    const glm::dmat3 inverse = glm::inverse(glm::dmat3(p[1] - p[0], p[2] - p[0], p[3] - p[0]));
+    double sums[3] = { 0.0, 0.0, 0.0 };
+    int voxels = 0;
+    bool isDoubtful = false;
+    const auto add = [&](vtkIdType voxel)
+    {
+      double values[3];
+      const int label =
+        static_cast<int>(volume->GetPointData()->GetScalars()->GetComponent(voxel, 0));
+      VERIFY(tested.Filter->GetMaterialValues(label, values));
+      for (int k = 0; k < 3; ++k)
+      {
+        sums[k] += values[k];
+      }
+      ++voxels;
+    };
+    for (vtkIdType voxel = 0; voxel < volume->GetNumberOfPoints(); ++voxel)
+    {
+      glm::dvec3 place;
+      volume->GetPoint(voxel, &place.x);
+      const glm::dvec3 w = inverse * (place - p[0]);
+      constexpr double margin = 0.02;
+      const double least = std::min({ w.x, w.y, w.z, 1.0 - w.x - w.y - w.z });
+      isDoubtful |= std::abs(least) < margin;
+      if (least >= 0.0 && !(hides && voxel % 3 == 0))
+      {
+        add(voxel);
+      }
+    }
+    if (isDoubtful)
+    {
+      ++doubtful;
+      continue;
+    }
+    held += voxels > 0 ? 1 : 0;
+    if (voxels == 0)
+    {
+      const glm::dvec3 centroid = 0.25 * (p[0] + p[1] + p[2] + p[3]);
+      double index[3];
+      volume->TransformPhysicalPointToContinuousIndex(&centroid.x, index);
+      int ijk[3];
+      const int* extent = volume->GetExtent();
+      bool isInside = true;
+      for (int k = 0; k < 3; ++k)
+      {
+        ijk[k] = static_cast<int>(std::lround(index[k]));
+        isInside &= ijk[k] >= extent[2 * k] && ijk[k] <= extent[2 * k + 1];
+      }
+      const vtkIdType voxel = isInside ? volume->ComputePointId(ijk) : -1;
+      if (voxel >= 0 && !(hides && voxel % 3 == 0))
+      {
+        add(voxel);
+        ++nearest;
+      }
+      else
+      {
+        sums[0] = 1e4;
+        sums[1] = 0.3;
+        sums[2] = 1000.0;
+        voxels = 1;
+        ++outside;
+      }
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      const double wanted = sums[k] / voxels;
+      worst = std::max(worst, std::abs(tested.Get(k, cell) - wanted) / (wanted + 1e-3));
+    }
+  }
+  std::cout << held << " tetrahedra hold voxels, " << nearest << " have the nearest, " << outside
+            << " none, " << doubtful << " are left out; largest relative error " << worst << "\n";
+  VERIFY(worst < 1e-12);
+  VERIFY(held > 1000 && nearest > 100 && outside > 100);
+  VERIFY(doubtful < mesh->GetNumberOfCells() / 4);
+  const auto differs = [&](vtkIdType count, vtkIdType wanted)
+  { return count < wanted || count > wanted + doubtful; };
+  VERIFY(!differs(tested.Filter->GetNumberOfTetrahedraWithoutVoxels(), nearest));
+  VERIFY(!differs(tested.Filter->GetNumberOfTetrahedraOutside(), outside));
+
+  // The number of threads changes nothing.
+  vtkNew<vtkUnstructuredGrid> before;
+  before->DeepCopy(output);
+  vtkSMPTools::LocalScope(
+    vtkSMPTools::Config{ 1 }, [&] { VERIFY_EQUAL(tested.TryUpdate(), std::string()); });
+  for (const char* name : Names)
+  {
+    vtkDataArray* a = before->GetCellData()->GetArray(name);
+    vtkDataArray* b = tested.Filter->GetOutput()->GetCellData()->GetArray(name);
+    VERIFY(std::equal(static_cast<double*>(a->GetVoidPointer(0)),
+      static_cast<double*>(a->GetVoidPointer(0)) + a->GetNumberOfTuples(),
+      static_cast<double*>(b->GetVoidPointer(0))));
+  }
+}
+
+// Ranges of values in place of labels; the first that holds a value counts.
+void TestRanges()
+{
+  vtkSmartPointer<vtkImageData> volume = MakeVolume();
+  vtkSmartPointer<vtkUnstructuredGrid> mesh = MakeMesh(volume, 3);
+  Tested byLabels(mesh, volume);
+  VERIFY_EQUAL(byLabels.TryUpdate(), std::string());
+  Tested byRanges(mesh, volume);
+  byRanges.Filter->SetMaterialArrayName("");
+  byRanges.Filter->AddMaterialRange(-5.0, 1.0, 0);
+  byRanges.Filter->AddMaterialRange(2.0, 3.0, 2);
+  byRanges.Filter->AddMaterialRange(3.0, 3.5, 3);
+  byRanges.Filter->AddMaterialRange(2.5, 10.0, 4);
+  VERIFY_EQUAL(byRanges.TryUpdate(), std::string());
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      VERIFY_EQUAL(byRanges.Get(k, cell), byLabels.Get(k, cell));
+    }
+  }
+}
+
+void TestAbort()
+{
+  vtkSmartPointer<vtkImageData> volume = MakeVolume();
+  Tested tested(MakeMesh(volume, 4), volume);
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
+  const unsigned long tag = tested.Filter->AddObserver(vtkCommand::ProgressEvent, abort);
+  VERIFY_EQUAL(tested.TryUpdate(), std::string());
+  VERIFY_EQUAL(tested.Filter->GetOutput()->GetNumberOfPoints(), 0);
+  tested.Filter->RemoveObserver(tag);
+  tested.Filter->SetAbortExecute(0);
+  tested.Filter->Update();
+  VERIFY(tested.Filter->GetOutput()->GetNumberOfPoints() > 0);
+}
+
+// A bar, of which the volume says that one half is a hundred times as stiff: pulled, the other
+// half becomes longer.
+void TestInSimulation()
+{
+  vtkNew<vtkImageData> volume;
+  volume->SetDimensions(9, 9, 41);
+  volume->AllocateScalars(VTK_FLOAT, 1);
+  for (int z = 0; z < 41; ++z)
+  {
+    for (int i = 0; i < 81; ++i)
+    {
+      volume->GetPointData()->GetScalars()->SetTuple1(z * 81 + i, z < 20 ? 0.5 : 7.0);
+    }
+  }
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetInputData(volume);
+  lattice->SetNumberOfNodes(3, 3, 11);
+  lattice->Update();
+  vtkNew<vtkUnstructuredGrid> bar;
+  bar->ShallowCopy(lattice->GetOutput());
+  vtkNew<vtkUnsignedCharArray> fixed;
+  fixed->SetName("Fixed");
+  std::vector<Handle> handles;
+  for (vtkIdType i = 0; i < bar->GetNumberOfPoints(); ++i)
+  {
+    glm::dvec3 place;
+    bar->GetPoint(i, &place.x);
+    fixed->InsertNextValue(place.z == 0.0 ? 1 : 0);
+    if (place.z == 40.0)
+    {
+      handles.push_back({ place, place + glm::dvec3(0.0, 0.0, 4.0) });
+    }
+  }
+  bar->GetPointData()->AddArray(fixed);
+  Tested tested(bar, volume);
+  tested.Filter->SetMaterialArrayName("");
+  tested.Filter->ClearMaterials();
+  tested.Filter->SetMaterial(1, 1e6, 0.0, 1000.0);
+  tested.Filter->SetMaterial(7, 1e4, 0.0, 1000.0);
+  tested.Filter->AddMaterialRange(5.0, 10.0, 7);
+  vtkNew<vtkCorotationalDeformation> body;
+  body->SetModeToConverged();
+  body->SetInputConnection(tested.Filter->GetOutputPort());
+  body->SetHandlesData(MakeHandles(handles));
+  body->Update();
+  // Stresses are the same everywhere: strains are 1 : 100, over 20 and 20, but for the tetrahedra
+  // that hold voxels of both.
+  double moved[2] = { 0.0, 0.0 };
+  for (vtkIdType i = 0; i < bar->GetNumberOfPoints(); ++i)
+  {
+    const double z = bar->GetPoint(i)[2];
+    const double displacement =
+      body->GetOutput()->GetPointData()->GetArray("Displacement")->GetComponent(i, 2);
+    moved[0] += z == 16.0 ? displacement / 9.0 : 0.0;
+    moved[1] += z == 24.0 ? displacement / 9.0 : 0.0;
+  }
+  std::cout << "displacements at 16 and 24: " << moved[0] << " " << moved[1] << "\n";
+  constexpr double unit = 4.0 / (20.0 + 100.0 * 20.0);
+  VERIFY(std::abs(moved[0] - 16.0 * unit) < 0.02 * 16.0 * unit);
+  VERIFY(std::abs(moved[1] - 420.0 * unit) < 0.02 * 420.0 * unit);
+}
+
+} // namespace
+
+int TestMaterialFromVolume(int, char*[])
+{
+  TestMisuse();
+  TestMeans(false);
+  TestMeans(true);
+  TestRanges();
+  TestAbort();
+  TestInSimulation();
+  return GetExitCode();
+}
