@@ -45,6 +45,9 @@ VECTORS = ("TestDeviceVectors", "*")
 VECTORS_GRAPHICS = ("TestDeviceVectorsGraphics", "*")
 REPLACEMENT = ("TestReplacement", "*Knows*:*Equals*/*OfGrid:*Equals*/Links:*Equals*/Runs")
 
+COROTATIONAL = ("TestCorotational", "*")
+SOLUTIONS = ("TestSolutionHistory", "*")
+
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
     "filter-upright": ("Kernels/Resampling/GroupWeights.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
@@ -128,6 +131,13 @@ MUTATIONS = {
     "cut-copies": ("Kernels/Resampling/IncrementalBoxes.cxx", "      low -= difference;\n      high += difference;\n",
                    "", [CUT_PARTS]),
     "cut-reach": ("Kernels/SamplingMesh/BrickGrid.h", "ReachOfCuts = 2;", "ReachOfCuts = 1;", [CUT_PARTS]),
+    "fem-history": ("Kernels/FiniteElements/TangentSolver.h", "    this->History.ForgetProducts();\n", "",
+                    [COROTATIONAL]),
+    "fem-dependent": ("Kernels/FiniteElements/SolutionHistory.cxx",
+                      "system[i][i] > least * sizes[i];", "system[i][i] != 0.0;", [SOLUTIONS]),
+    "fem-tangent": ("Kernels/FiniteElements/CorotationalSolver.cxx",
+                    "if (before > 0.0 && residuals.Largest > leastGain * before)",
+                    "if (before > 1e300 && residuals.Largest > leastGain * before)", [COROTATIONAL]),
     "split-reach": ("Kernels/Physics/SplitRegion.cxx", "0.25 * std::max(", "0.0 * std::max(", [SPLIT_FACES]),
     "split-near": ("Kernels/Physics/MeshSplit.cxx", "(region.IsNear(face / 4) || ", "(region.IsNear(face / 4) && ",
                    [SPLIT_FACES]),

@@ -3,6 +3,7 @@
 
 #include "Aggregation.h"
 #include "NodeRotations.h"
+#include "RowParts.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -15,17 +16,9 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::size_t RowsOfPart = 512;
-constexpr std::size_t PartsAtOnce = 512;
+constexpr std::size_t PartsAtOnce = BlockMatrix::PartsAtOnce;
 // Groups of the coarsest level, which is solved exactly.
 constexpr std::int32_t CoarsestGroups = 100;
-
-template <typename Body>
-void ForRows(Watch& watch, std::size_t rows, Body&& body)
-{
-  ForParts(watch, (rows + RowsOfPart - 1) / RowsOfPart, PartsAtOnce,
-    [&](std::size_t part) { body(part * RowsOfPart, std::min(rows, (part + 1) * RowsOfPart)); });
-}
 
 // The rows and columns of free nodes.
 SparseBlocks<3, 3> ExtractFree(const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
