@@ -46,7 +46,6 @@ VECTORS_GRAPHICS = ("TestDeviceVectorsGraphics", "*")
 REPLACEMENT = ("TestReplacement", "*Knows*:*Equals*/*OfGrid:*Equals*/Links:*Equals*/Runs")
 
 COROTATIONAL = ("TestCorotational", "*")
-SOLUTIONS = ("TestSolutionHistory", "*")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
@@ -133,8 +132,6 @@ MUTATIONS = {
     "cut-reach": ("Kernels/SamplingMesh/BrickGrid.h", "ReachOfCuts = 2;", "ReachOfCuts = 1;", [CUT_PARTS]),
     "fem-history": ("Kernels/FiniteElements/TangentSolver.h", "    this->History.ForgetProducts();\n", "",
                     [COROTATIONAL]),
-    "fem-dependent": ("Kernels/FiniteElements/SolutionHistory.cxx",
-                      "system[i][i] > least * sizes[i];", "system[i][i] != 0.0;", [SOLUTIONS]),
     "fem-tangent": ("Kernels/FiniteElements/CorotationalSolver.cxx",
                     "if (before > 0.0 && residuals.Largest > leastGain * before)",
                     "if (before > 1e300 && residuals.Largest > leastGain * before)", [COROTATIONAL]),

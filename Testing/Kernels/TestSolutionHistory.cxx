@@ -145,7 +145,7 @@ TEST(SolutionHistory, LeavesOutWhatIsNothingNew)
   history.Guess(system.Time, system.Matrix, system.IsFree, right, guess, residual);
   const double factor = SumOfProducts(system.Time, solution, right) /
     SumOfProducts(system.Time, solution, system.Multiply(solution));
-  EXPECT_LT(Length(Combine(1.0, guess, -factor, solution)), 1e-9 * Length(guess));
+  EXPECT_LT(Length(Combine(1.0, guess, -factor, solution)), 1e-8 * Length(guess));
   EXPECT_LT(Length(Combine(1.0, Combine(1.0, right, -1.0, residual), -1.0, system.Multiply(guess))),
     1e-12 * Length(right));
 }
