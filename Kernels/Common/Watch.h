@@ -98,6 +98,23 @@ void ForParts(Watch& watch, std::size_t parts, std::size_t atOnce, Body&& body)
   }
 }
 
+/// Calls body(item) for so many items in parallel, and asks now and then. They take a microsecond or
+/// so each.
+template <typename Body>
+void ForItemsInParallel(Watch& watch, std::size_t items, Body&& body)
+{
+  constexpr std::size_t size = 1024;
+  constexpr std::size_t partsAtOnce = 8;
+  ForParts(watch, (items + size - 1) / size, partsAtOnce,
+    [&](std::size_t part)
+    {
+      for (std::size_t item = part * size; item < std::min(items, (part + 1) * size); ++item)
+      {
+        body(item);
+      }
+    });
+}
+
 } // namespace deformvolume
 
 #endif

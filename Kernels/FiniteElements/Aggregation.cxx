@@ -90,7 +90,7 @@ std::vector<Eigen::Matrix<double, Size, Size>> InvertDiagonal(
 {
   std::vector<Eigen::Matrix<double, Size, Size>> inverses(
     static_cast<std::size_t>(matrix.GetNumberOfRows()));
-  ForItems(watch, inverses.size(),
+  ForItemsInParallel(watch, inverses.size(),
     [&](std::size_t item)
     {
       const auto row = static_cast<std::int32_t>(item);
@@ -243,7 +243,7 @@ Coarsening<Size> Coarsen(Watch& watch, const SparseBlocks<Size, Size>& matrix,
   Orthogonalize(watch, aggregates, modes, tentative, result.Modes);
   const double damping = 4.0 / (3.0 * largestEigenvalue);
   result.Prolongation = Multiply(watch, matrix, tentative);
-  ForItems(watch, tentative.Blocks.size(),
+  ForItemsInParallel(watch, tentative.Blocks.size(),
     [&](std::size_t r)
     {
       const auto row = static_cast<std::int32_t>(r);

@@ -129,7 +129,7 @@ std::vector<BatchPositions> FindPositions(
   constexpr int pairs[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
   std::vector<BatchPositions> positions;
   Grow(watch, positions, batches.Batches.size());
-  ForItems(watch, positions.size(),
+  ForItemsInParallel(watch, positions.size(),
     [&](std::size_t batch)
     {
       for (int pair = 0; pair < 6; ++pair)

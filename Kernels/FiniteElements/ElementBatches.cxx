@@ -62,7 +62,7 @@ std::vector<std::int32_t> OrderTetrahedra(Watch& watch, const ElasticBody& body)
   const glm::dvec3 size = upper - lower;
   const double scale = ((1 << 20) - 1) / std::max({ size.x, size.y, size.z });
   std::vector<CurvePlace> codes(body.Tetrahedra.size());
-  ForItems(watch, codes.size(),
+  ForItemsInParallel(watch, codes.size(),
     [&](std::size_t t)
     {
       glm::dvec3 center(0.0);
@@ -163,7 +163,7 @@ ElementBatches MakeElementBatches(Watch& watch, const ElasticBody& body)
   Grow(watch, result.Batches, number);
   result.Tetrahedra.assign(number * NumberOfLanes, -1);
   std::copy(order.begin(), order.end(), result.Tetrahedra.begin());
-  ForItems(watch, result.Tetrahedra.size(),
+  ForItemsInParallel(watch, result.Tetrahedra.size(),
     [&](std::size_t i)
     {
       const bool isThere = result.Tetrahedra[i] >= 0;

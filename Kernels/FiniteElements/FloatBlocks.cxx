@@ -121,7 +121,7 @@ FloatBlocks<Rows, Columns>::FloatBlocks(Watch& watch, const SparseBlocks<Rows, C
   constexpr std::size_t size = Rows * Columns;
   // The last column is read as if it had as many rows as there are lanes.
   this->Values.resize(matrix.Blocks.size() * size + PaddedSize<Rows>, 0.0f);
-  ForItems(watch, matrix.Blocks.size(),
+  ForItemsInParallel(watch, matrix.Blocks.size(),
     [&](std::size_t block)
     {
       for (std::size_t i = 0; i < size; ++i)

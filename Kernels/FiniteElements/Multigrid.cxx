@@ -82,7 +82,7 @@ std::vector<float> MakeSmoother(
   constexpr std::size_t size = Size * Size;
   // The last column is read as if it had as many rows as there are lanes.
   std::vector<float> result(inverses.size() * size + PaddedSize<Size>, 0.0f);
-  ForItems(watch, inverses.size(),
+  ForItemsInParallel(watch, inverses.size(),
     [&](std::size_t row)
     {
       for (std::size_t i = 0; i < size; ++i)
