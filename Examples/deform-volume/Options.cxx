@@ -3,6 +3,7 @@
 
 #include "Failure.h"
 #include "FieldReading.h"
+#include "Movie.h"
 #include "OptionTexts.h"
 #include "VolumeWriting.h"
 
@@ -24,6 +25,7 @@ struct RawOptions
   std::vector<std::string> Pushes;
   std::vector<std::string> Pulls;
   std::vector<std::string> Fixations;
+  std::vector<std::string> Materials;
   std::string Gravity = "0,0,0";
   std::vector<std::string> Carvings;
   std::string View;
@@ -56,6 +58,7 @@ void CheckOverwriting(const Options& options)
 {
   std::vector<std::string> outputs = options.Outputs;
   outputs.push_back(options.Image);
+  outputs.push_back(options.Movie);
   outputs.push_back(options.MeshOutput);
   for (const std::string& output : outputs)
   {
@@ -88,9 +91,15 @@ void CheckModel(const Options& options)
         "--push moves nodes without a model; give --pull to --model " + options.Model);
     }
   }
-  else if (!options.Fixations.empty())
+  else if (!options.Fixations.empty() || !options.Materials.empty())
   {
-    throw UsageError("--fix requires --model fem or --model mass-spring");
+    throw UsageError(std::string(options.Fixations.empty() ? "--material" : "--fix") +
+      " requires --model fem or --model mass-spring");
+  }
+  if (options.CutsMesh() && options.SmoothCut)
+  {
+    throw UsageError(
+      "--smooth-cut divides voxels; with --model " + options.Model + " a --cut parts the mesh");
   }
   if (options.Model == "chainmail" && !options.MeshOutput.empty())
   {
@@ -181,9 +190,14 @@ void Check(const Options& options)
     throw UsageError("no VOLUME is given; deform-volume --help tells how to call the program");
   }
   CheckDeformation(options);
-  if (options.Outputs.empty() && options.Image.empty())
+  if (options.Outputs.empty() && options.Image.empty() && options.Movie.empty())
   {
-    throw UsageError("nothing to write: give --output or --image");
+    throw UsageError("nothing to write: give --output, --image or --movie");
+  }
+  if (!options.Movie.empty() && !CanWriteMovie(options.Movie))
+  {
+    throw UsageError("--movie " + options.Movie +
+      ": the name must end in .png, or in .ogv where VTK has Ogg Theora");
   }
   for (const std::string& output : options.Outputs)
   {
@@ -204,6 +218,11 @@ void Check(const Options& options)
   if (!endsIn(options.MeshOutput, ".vtu"))
   {
     throw UsageError("--write-mesh " + options.MeshOutput + ": the name must end in .vtu");
+  }
+  if (options.Image.empty() && options.Movie.empty() && (options.Threshold || options.View))
+  {
+    throw UsageError(
+      std::string(options.View ? "--view" : "--threshold") + " requires --image or --movie");
   }
   CheckNumbers(options);
   CheckOverwriting(options);
@@ -234,6 +253,10 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
   for (const std::string& text : raw.Fixations)
   {
     options.Fixations.push_back(ParseFixation(text));
+  }
+  for (const std::string& text : raw.Materials)
+  {
+    options.Materials.push_back(ParseMaterial(text));
   }
   options.Gravity = ParseNumbers<double, 3>(
     "--gravity", raw.Gravity, "three numbers X,Y,Z with commas between them");
@@ -282,6 +305,17 @@ void AddElasticModel(CLI::App& program, Options& options, RawOptions& raw)
   {
     program.add_option(name, value, help)->capture_default_str()->type_name("NUMBER")->group(group);
   };
+  program
+    .add_option("--material", raw.Materials,
+      "Voxels with values from MINIMUM on, less than MAXIMUM, have the Young modulus E (Pa), the "
+      "Poisson ratio NU and the DENSITY, and each tetrahedron has the mean of its voxels. The "
+      "first "
+      "range that holds a value counts; what none holds has --young, --poisson and --density. May "
+      "be given several times")
+    ->type_name("MINIMUM:MAXIMUM=E[,NU[,DENSITY]]")
+    ->take_all()
+    ->expected(1)
+    ->group(group);
   addNumber("--young", options.YoungModulus, "Young modulus, in Pa");
   addNumber("--poisson", options.PoissonRatio, "Poisson ratio, from 0 to less than 0.495");
   addNumber("--density", options.Density, "Density, in kg/m^3");
@@ -365,7 +399,8 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
   const char* tools = "What is cut before (alone, or with what deforms the volume)";
   program
     .add_option("--cut", options.Cuts,
-      "Cut the volume along a sheet of triangles (.vtp, world coordinates). May be given several "
+      "Cut the volume along a sheet of triangles (.vtp, world coordinates); with --model fem or "
+      "mass-spring the mesh, before it moves, and the volume opens there. May be given several "
       "times")
     ->type_name("FILE")
     ->take_all()
@@ -436,9 +471,11 @@ void AddDependencies(CLI::App& program)
   needs("--tetgen",
     { "--isovalue", "--pieces", "--edge-length", "--radius-edge-ratio", "--tetgen-executable" });
   needs("--model",
-    { "--pull", "--fix", "--gravity", "--young", "--poisson", "--density", "--duration" });
+    { "--pull", "--fix", "--gravity", "--material", "--young", "--poisson", "--density",
+      "--duration", "--frames", "--movie" });
+  needs("--movie", { "--frames" });
+  needs("--frames", { "--movie" });
   needs("--cut", { "--smooth-cut" });
-  needs("--image", { "--threshold", "--view" });
   program.get_option("--scale")->excludes(program.get_option("--rest"));
   program.get_option("--field")->excludes(program.get_option("--file-coordinates"));
   program.get_option("--isovalue")->excludes(program.get_option("--labels"));
@@ -527,6 +564,19 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
     .add_option("--image", options.Image,
       "Picture of the volume before and after, 700 x 700 pixels each, side by side (.png)")
     ->type_name("FILE")
+    ->group(group);
+  program
+    .add_option("--movie", options.Movie,
+      "Pictures like that of --image of the way there, which --model goes in --frames steps: a "
+      "file "
+      "for each frame (.png: movie.png makes movie0001.png), or a video in Ogg Theora (.ogv)")
+    ->type_name("FILE")
+    ->group(group);
+  program
+    .add_option("--frames", options.Frames,
+      "How many: handles go as many steps, and mass-spring takes as many parts of --duration")
+    ->check(CLI::Range(1, 9999))
+    ->type_name("NUMBER")
     ->group(group);
   program
     .add_option("--threshold", raw.Threshold,
