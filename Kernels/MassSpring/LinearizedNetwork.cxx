@@ -45,29 +45,31 @@ void Scale(std::vector<double>& a, double factor)
 
 // The forces on the nodes of a body that is under the same stress everywhere, which are 0 inside.
 // stress: its columns.
-std::vector<double> GetStressForces(const ElasticBody& body, const glm::dmat3& stress)
+std::vector<double> GetStressForces(Watch& watch, const ElasticBody& body, const glm::dmat3& stress)
 {
   std::vector<double> forces(body.Points.size() * 3, 0.0);
-  for (const Tetrahedron& tetrahedron : body.Tetrahedra)
-  {
-    const auto point = [&](std::size_t i) -> const glm::dvec3&
-    { return body.Points[static_cast<std::size_t>(tetrahedron[i])]; };
-    for (std::size_t i = 0; i < 4; ++i)
+  ForItems(watch, body.Tetrahedra.size(),
+    [&](std::size_t t)
     {
-      // A third of the area of the other nodes' face acts on each of them, and so all of it, turned
-      // round, on this one.
-      const glm::dvec3& a = point((i + 1) % 4);
-      const glm::dvec3 area =
-        0.5 * glm::cross(point((i + 2) % 4) - a, point((i + 3) % 4) - a) / 3.0;
-      const double side = glm::dot(area, point(i) - a) > 0.0 ? 1.0 : -1.0;
-      const glm::dvec3 force = stress * (side * area);
-      for (int axis = 0; axis < 3; ++axis)
+      const Tetrahedron& tetrahedron = body.Tetrahedra[t];
+      const auto point = [&](std::size_t i) -> const glm::dvec3&
+      { return body.Points[static_cast<std::size_t>(tetrahedron[i])]; };
+      for (std::size_t i = 0; i < 4; ++i)
       {
-        forces[3 * static_cast<std::size_t>(tetrahedron[i]) + static_cast<std::size_t>(axis)] +=
-          force[axis];
+        // A third of the area of the other nodes' face acts on each of them, and so all of it,
+        // turned round, on this one.
+        const glm::dvec3& a = point((i + 1) % 4);
+        const glm::dvec3 area =
+          0.5 * glm::cross(point((i + 2) % 4) - a, point((i + 3) % 4) - a) / 3.0;
+        const double side = glm::dot(area, point(i) - a) > 0.0 ? 1.0 : -1.0;
+        const glm::dvec3 force = stress * (side * area);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          forces[3 * static_cast<std::size_t>(tetrahedron[i]) + static_cast<std::size_t>(axis)] +=
+            force[axis];
+        }
       }
-    }
-  }
+    });
   return forces;
 }
 
@@ -122,9 +124,9 @@ bool IsOf(const ElasticMaterial& material, const std::array<std::array<double, 6
 }
 
 // Whether the forces of nodes inside a body are 0.
-bool AreAtTheSurface(const std::vector<double>& forces, const ElasticBody& body)
+bool AreAtTheSurface(Watch& watch, const std::vector<double>& forces, const ElasticBody& body)
 {
-  const std::vector<double> surface = GetStressForces(body, glm::dmat3(1.0));
+  const std::vector<double> surface = GetStressForces(watch, body, glm::dmat3(1.0));
   const double size = std::sqrt(Dot(surface, surface));
   double inside = 0.0;
   for (std::size_t i = 0; i < forces.size(); i += 3)
@@ -156,8 +158,10 @@ std::vector<double> LinearizedNetwork::Apply(const std::vector<double>& displace
   std::vector<float> small(displacements.size());
   std::transform(displacements.begin(), displacements.end(), small.begin(),
     [&](double value) { return static_cast<float>(value * factor); });
+  this->Asked.Ask();
   this->State.SetDisplacements(small);
   const std::vector<float> forces = this->State.ComputeForces();
+  this->Asked.Ask();
   std::transform(forces.begin(), forces.end(), result.begin(),
     [&](float force) { return -static_cast<double>(force) / factor; });
   std::fill(small.begin(), small.end(), 0.0F);
@@ -188,6 +192,7 @@ double LinearizedNetwork::FindLargestFrequency() const
   double largest = 0.0;
   while (length > 0.0 && diagonal.size() < mostSteps)
   {
+    this->Asked.Ask();
     Scale(current, 1.0 / length);
     std::vector<double> next(size);
     std::transform(current.begin(), current.end(), roots.begin(), next.begin(),
@@ -230,6 +235,7 @@ LinearizedNetwork::AffineResponse LinearizedNetwork::FindAffineResponse(double v
   {
     for (std::size_t j = 0; j < 6; ++j)
     {
+      this->Asked.Ask();
       response.Stiffness[i][j] = Dot(response.Displacements[i], response.Forces[j]) / volume;
     }
   }
@@ -254,11 +260,12 @@ double LinearizedNetwork::FindCompliance(
   const Eigen::Matrix<double, 6, 1> strain =
     stiffness.ldlt().solve(Eigen::Matrix<double, 6, 1>::Unit(axis));
   const std::vector<double> forces =
-    GetStressForces(body, GetUnitStrain(static_cast<std::size_t>(axis)));
+    GetStressForces(this->Asked, body, GetUnitStrain(static_cast<std::size_t>(axis)));
   std::vector<double> displacements(forces.size(), 0.0);
   std::vector<double> residual = forces;
   for (std::size_t i = 0; i < 6; ++i)
   {
+    this->Asked.Ask();
     Add(displacements, strain[static_cast<Eigen::Index>(i)], response.Displacements[i]);
     Add(residual, -strain[static_cast<Eigen::Index>(i)], response.Forces[i]);
   }
@@ -269,6 +276,7 @@ double LinearizedNetwork::FindCompliance(
   for (int step = 1; step <= mostSteps && squared > wanted; ++step)
   {
     const std::vector<double> product = this->Apply(direction);
+    this->Asked.Ask();
     const double length = squared / Dot(direction, product);
     Add(displacements, length, direction);
     Add(residual, -length, product);
@@ -291,11 +299,14 @@ double LinearizedNetwork::FindCompliance(
 
 double LinearizedNetwork::FindStiffness(const ElasticBody& body) const
 {
+  this->Asked.Ask();
   const std::vector<double> volumes = GetVolumes(body);
+  this->Asked.Ask();
   const double volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   const AffineResponse response = this->FindAffineResponse(volume);
   const ElasticMaterial material = GetSpringMaterial(body.Materials.front());
-  if (IsOf(material, response.Stiffness) && AreAtTheSurface(response.Forces.front(), body))
+  if (IsOf(material, response.Stiffness) &&
+    AreAtTheSurface(this->Asked, response.Forces.front(), body))
   {
     return 1.0;
   }

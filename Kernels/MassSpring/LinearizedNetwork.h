@@ -13,8 +13,8 @@ namespace deformvolume
 {
 
 /// The springs and volumes of a body near rest: forces are then linear in the displacements. It
-/// works with the displacements of a state, which are 0 afterwards. The watch is asked each time
-/// that the device has found forces.
+/// works with the displacements of a state, which are 0 afterwards. Aborted
+/// leaves some of them.
 class LinearizedNetwork
 {
 public:

@@ -138,13 +138,15 @@ double MassSpringModel::Internals::Calibrate(Watch& watch, const ElasticBody& un
 void MassSpringModel::Internals::Make(Watch& watch, const ElasticBody& body, double scale)
 {
   this->State.reset(); // its memory goes first
+  watch.Ask();
   this->Body = body;
+  watch.Ask();
   this->Scale = scale;
   this->Network = std::make_unique<MassSpringNetwork>(
     watch, body, MassSpringState::GetLanes(this->Device), scale);
   watch.Ask();
   this->State =
-    std::make_unique<MassSpringState>(this->Device, *this->Network, this->WorkGroupSize);
+    std::make_unique<MassSpringState>(watch, this->Device, *this->Network, this->WorkGroupSize);
   this->HeldBefore.clear();
   this->Largest = -1.0;
 }

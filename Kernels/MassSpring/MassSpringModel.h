@@ -75,7 +75,7 @@ public:
   /// A body at rest. The stiffness of its springs is calibrated so that a bar of this mesh has the
   /// Young modulus that it should; on a lattice of cubes they are right as they are. progress:
   /// called every few milliseconds, in the thread that called; returning false aborts. Then there
-  /// is no body any more.
+  /// is still the last body, or none.
   void SetBody(const ElasticBody& body, const std::function<bool()>& progress = nullptr);
 
   /// The same body with other nodes in some tetrahedra: nodes have been appended, each a copy of

@@ -93,7 +93,9 @@ MassSpringNetwork::MassSpringNetwork(Watch& watch, const ElasticBody& body, int 
   , Mobilities(body.Points.size(), 0.0F)
 {
   const auto width = static_cast<std::size_t>(lanes);
+  watch.Ask();
   const std::vector<double> volumes = GetVolumes(body);
+  watch.Ask();
   this->Masses = GetNodeMasses(body, volumes);
   this->ShortestEdge = FindShortestEdge(watch, body);
   glm::dvec3 least = body.Points.front();

@@ -93,7 +93,7 @@ TEST(ElasticAborts, CorotationalBodies)
     Questions questions;
     model.SetBody(body, [&] { return questions.Ask(); });
     EXPECT_LT(questions.GetLongestPause(), LongestPause);
-    EXPECT_GT(questions.Number, 10);
+    EXPECT_GT(questions.Number, 5);
   }
   // The first linear system builds the levels.
   CorotationalRequest request = MakeConverged();
@@ -105,7 +105,7 @@ TEST(ElasticAborts, CorotationalBodies)
     request.Progress = [&] { return questions.Ask(); };
     model.Solve(request);
     EXPECT_LT(questions.GetLongestPause(), LongestPause);
-    EXPECT_GT(questions.Number, 20);
+    EXPECT_GT(questions.Number, 10);
   }
 }
 
@@ -178,28 +178,30 @@ TEST(ElasticAborts, SpringsAreCalibrated)
   const ElasticBody body = MakeBody({ 20, 20, 40 });
   MassSpringModel model;
   model.SetBody(MakeBody({ 3, 3, 3 })); // the kernels may have to be compiled
+  int all = 0;
   {
     Questions questions;
     model.SetBody(body, [&] { return questions.Ask(); });
     EXPECT_LT(questions.GetLongestPause(), LongestPause);
-    EXPECT_GT(questions.Number, 10);
+    all = questions.Number;
   }
+  EXPECT_GT(all, 4);
   const double calibration = model.GetCalibration();
   EXPECT_GT(std::abs(calibration - 1.0), 1e-3);
-  for (const int allowed : { 0, 1, 5, 10 })
+  for (const int allowed : { 0, 1, all / 4, all / 3 })
   {
     Questions questions;
     questions.Allowed = allowed;
     EXPECT_THROW(model.SetBody(body, [&] { return questions.Ask(); }), Aborted);
     EXPECT_EQ(questions.Number, allowed + 1);
-    if (allowed > 0)
+    // Early the last body stays, later there is none: never one that is half done.
+    if (model.GetDeviceMemory() == 0)
     {
-      EXPECT_EQ(model.GetDeviceMemory(), 0u);
       EXPECT_EQ(GetError([&] { model.Reset(); }), "No body is set: call SetBody first.");
+      model.SetBody(body);
     }
+    EXPECT_EQ(model.GetCalibration(), calibration);
   }
-  model.SetBody(body);
-  EXPECT_EQ(model.GetCalibration(), calibration);
 }
 
 // The first frame looks for the stable time step.
@@ -214,7 +216,7 @@ TEST(ElasticAborts, StableTimeStep)
   model.SetState(displacements, velocities);
   MassSpringRequest request;
   request.Duration = 1e-3;
-  for (const int allowed : { 0, 3 })
+  for (const int allowed : { 0, 1 })
   {
     Questions questions;
     questions.Allowed = allowed;
