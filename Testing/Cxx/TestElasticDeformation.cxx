@@ -378,7 +378,8 @@ void TestAborted()
   VERIFY(AreEqual(simulated.Copy(), wanted.Copy()));
 }
 
-// A body of springs is lost where an abort comes late.
+// A body of springs is lost where an abort comes late, as this one mostly does: never without a
+// warning.
 void TestLostBody()
 {
   vtkNew<vtkLatticeTetrahedraSource> lattice;
@@ -389,7 +390,10 @@ void TestLostBody()
   simulated.Object->SetGravity(0.0, 0.0, 2.0);
   VERIFY_EQUAL(simulated.TryUpdate(), std::string());
   simulated.Object->SetPoissonRatio(0.4);
-  VERIFY(Holds(Abort(simulated, 3), "starts anew"));
+  const std::string warning = Abort(simulated, 3);
+  const bool isLost = simulated.Object->GetTime() < 1.5 * simulated.Object->GetFrameTime();
+  VERIFY_EQUAL(Holds(warning, "starts anew"), isLost);
+  VERIFY(isLost || warning.empty());
   VERIFY_EQUAL(simulated.TryUpdate(), std::string());
 }
 
