@@ -43,6 +43,10 @@ RELAXATION = ("TestChainMailRelaxation", "*")
 SEQUENCES = ("TestChainMailSequences", "*")
 VECTORS = ("TestDeviceVectors", "*")
 VECTORS_GRAPHICS = ("TestDeviceVectorsGraphics", "*")
+ELEMENTS = ("TestCorotationalElements", "*")
+SPRINGS = ("TestMassSpring", "*")
+SPRINGS_AT_REST = ("TestMassSpringStatics", "*")
+ABORTS = ("TestElasticAborts", "*")
 REPLACEMENT = ("TestReplacement", "*Knows*:*Equals*/*OfGrid:*Equals*/Links:*Equals*/Runs")
 
 COROTATIONAL = ("TestCorotational", "*")
@@ -167,6 +171,35 @@ MUTATIONS = {
                      "if (any(fabs(moved) > largest))", [VECTORS_GRAPHICS]),
     "vectors-factor": ("Kernels/Mapping/DisplacementField.h", "constexpr std::uint64_t unit = 1 << 24;",
                        "constexpr std::uint64_t unit = 1 << 0;", [("TestContraction", "*")]),
+    "fem-sweeps": ("Kernels/FiniteElements/SingularValues.h", "sweeps = 4;", "sweeps = 2;", [ELEMENTS]),
+    "fem-inverted": ("Kernels/FiniteElements/SingularValues.h", "result.Values[2] = Dot(U.Columns[2], b[2]);",
+                     "result.Values[2] = Absolute(Dot(U.Columns[2], b[2]));", [ELEMENTS]),
+    "fem-twists": ("Kernels/FiniteElements/ElementMechanics.h",
+                   "Largest(MakeLanes(0.0), twiceMu + pull * (2.0 / sum))", "twiceMu + pull * (2.0 / sum)", [ELEMENTS]),
+    "fem-flat": ("Kernels/FiniteElements/CorotationalElements.cxx", "if (!IsFlat(result.Determinant))", "if (true)",
+                 [ELEMENTS]),
+    "fem-colors": ("Kernels/FiniteElements/ElementBatches.cxx",
+                   "forNodes([&](std::uint64_t& mask) { mask |= std::uint64_t(1) << color; });", "",
+                   [("TestCorotational", "*Threads")]),
+    "fem-fused": ("Kernels/FiniteElements/Lanes.h", '__attribute__((target("avx2")))',
+                  '__attribute__((target("avx2,fma"), optimize("fp-contract=fast")))', [("TestCorotationalLanes", "*")]),
+    "fem-singular": ("Kernels/FiniteElements/Aggregation.cxx", "result.Matrix.Blocks[block](i, i) = 1.0;", "",
+                     [COROTATIONAL]),
+    "springs-near": ("Kernels/MassSpring/MassSpringForces.cl",
+                     "Dot(displacement, Plus(Plus(rest, rest), displacement)) / (length + restLength)",
+                     "length - restLength", [SPRINGS, SPRINGS_AT_REST]),
+    "springs-volume": ("Kernels/MassSpring/MassSpringForces.cl",
+                       "copysign(materials[2 * group + 1] * (1.0f / 6.0f), restDeterminant)",
+                       "materials[2 * group + 1] * (1.0f / 6.0f)", [SPRINGS, SPRINGS_AT_REST]),
+    "springs-restored": ("Kernels/MassSpring/MassSpringModel.cxx", "impl.State->Restore();", "", [SPRINGS]),
+    "springs-limit": ("Kernels/MassSpring/MassSpringModel.cxx", "return 2.0 / this->Largest;",
+                      "return 2.2 / this->Largest;", [SPRINGS]),
+    "springs-flat": ("Kernels/MassSpring/MassSpringResults.cxx", "hasStress = !IsFlat(results.Determinant);",
+                     "hasStress = true;", [SPRINGS_AT_REST]),
+    "springs-given-up": ("Kernels/MassSpring/MassSpringModel.cxx", "        impl.Forget();\n        throw;",
+                         "        throw;", [ABORTS]),
+    "springs-moved": ("Kernels/MassSpring/MassSpringModel.cxx",
+                      "      this->State->SetDisplacements(displacements);\n      throw;", "      throw;", [ABORTS]),
 }
 
 

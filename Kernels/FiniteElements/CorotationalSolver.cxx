@@ -12,20 +12,22 @@
 
 namespace deformvolume
 {
-CorotationalSolver::CorotationalSolver(const ElasticBody& body)
+CorotationalSolver::CorotationalSolver(Watch& watch, const ElasticBody& body)
   : Body(body)
-  , Pieces(FindPieces(body))
-  , Elements(body)
+  , Pieces(FindPieces(body, &watch))
+  , Elements(watch, body)
 {
   this->Last.Displacements.assign(body.Points.size(), glm::dvec3(0.0));
-  this->Tangent.SetPattern(MakeNodePattern(body));
-  this->Elements.SetPattern(this->Tangent.GetMatrix().GetPattern());
-  this->UpdateScale();
+  this->Tangent.SetPattern(watch, MakeNodePattern(watch, body));
+  this->Elements.SetPattern(watch, this->Tangent.GetMatrix().GetPattern());
+  this->UpdateScale(watch);
 }
 
-void CorotationalSolver::UpdateScale()
+void CorotationalSolver::UpdateScale(Watch& watch)
 {
+  watch.Ask();
   const std::vector<double> volumes = GetVolumes(this->Body);
+  watch.Ask();
   this->Masses = GetNodeMasses(this->Body, volumes);
   double total = 0.0;
   for (const double volume : volumes)
@@ -47,7 +49,8 @@ void CorotationalSolver::SetMaterials(const std::vector<ElasticMaterial>& materi
 {
   this->Body.Materials = materials;
   this->Elements.SetMaterials(this->Body);
-  this->UpdateScale();
+  Watch watch(nullptr);
+  this->UpdateScale(watch);
   this->HasForces = false;
   this->HasTangent = false;
   this->Tangent.Forget();

@@ -19,7 +19,7 @@ namespace deformvolume
 class CorotationalSolver
 {
 public:
-  explicit CorotationalSolver(const ElasticBody& body);
+  CorotationalSolver(Watch& watch, const ElasticBody& body);
 
   void SetMaterials(const std::vector<ElasticMaterial>& materials);
   CorotationalReport Solve(const CorotationalRequest& request);
@@ -39,7 +39,7 @@ private:
     CorotationalElements::Sums Sums;
     double Potential = 0.0;
   };
-  void UpdateScale();
+  void UpdateScale(Watch& watch);
   void Evaluate(Watch& watch, const CorotationalProblem& problem, State& state) const;
   void FindPotential(Watch& watch, const CorotationalProblem& problem, State& state) const;
   // Finds the tangent of a state, unless the one that there is may serve.

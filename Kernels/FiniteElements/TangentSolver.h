@@ -29,7 +29,10 @@ public:
     double Tolerance = 1e-2;
   };
 
-  void SetPattern(BlockPattern pattern) { this->Matrix.SetPattern(std::move(pattern)); }
+  void SetPattern(Watch& watch, BlockPattern pattern)
+  {
+    this->Matrix.SetPattern(watch, std::move(pattern));
+  }
   const BlockMatrix& GetMatrix() const { return this->Matrix; }
 
   /// Gives the matrix to assemble(matrix), for nodes that are at positions.

@@ -201,6 +201,41 @@ TEST(Corotational, ManyPieces)
   }
 }
 
+// Free nodes that are connected with none: each is a group that cannot turn.
+TEST(Corotational, FreeNodesOfTheirOwn)
+{
+  ElasticBody body;
+  constexpr int pieces = 1100;
+  for (std::int32_t piece = 0; piece < pieces; ++piece)
+  {
+    const glm::dvec3 origin(0.1 * piece, 0.0, 0.0);
+    for (const glm::dvec3& corner : { glm::dvec3(0.0), glm::dvec3(0.01, 0.0, 0.0),
+           glm::dvec3(0.0, 0.01, 0.0), glm::dvec3(0.0, 0.0, 0.01) })
+    {
+      body.Points.push_back(origin + corner);
+      body.Fixed.push_back(corner.z > 0.0 ? 0 : 1);
+    }
+    body.Tetrahedra.push_back({ 4 * piece, 4 * piece + 1, 4 * piece + 2, 4 * piece + 3 });
+  }
+  CorotationalRequest request = MakeConverged();
+  request.Loads.Gravity = glm::dvec3(0.0, -10.0, 0.0);
+  CorotationalModel model;
+  model.SetBody(body);
+  EXPECT_TRUE(model.Solve(request).IsConverged);
+  body.Points.resize(4);
+  body.Fixed.resize(4);
+  body.Tetrahedra.resize(1);
+  CorotationalModel single;
+  single.SetBody(body);
+  EXPECT_TRUE(single.Solve(request).IsConverged);
+  EXPECT_LT(single.GetDisplacements()[3].y, 0.0);
+  for (std::size_t piece = 0; piece < pieces; ++piece)
+  {
+    EXPECT_LT(LargestOf(model.GetDisplacements()[4 * piece + 3] - single.GetDisplacements()[3]),
+      1e-6 * LargestOf(single.GetDisplacements()[3]));
+  }
+}
+
 TEST(Corotational, Divergence)
 {
   const LatticeBody lattice = MakeBlock({ 4, 4, 4 });

@@ -390,6 +390,41 @@ TEST(MassSpring, AbortLeavesTheBodyAsItWas)
   EXPECT_EQ(model.GetVelocities(), velocities);
 }
 
+TEST(MassSpring, NodesMayGoRoundTheOtherWay)
+{
+  const ElasticBody body = MakeSmallBody();
+  ElasticBody turned = body;
+  for (Tetrahedron& tetrahedron : turned.Tetrahedra)
+  {
+    std::swap(tetrahedron[1], tetrahedron[2]);
+  }
+  const std::vector<float> displacements = MakeRandom(body.Points.size() * 3, 0.2 * Spacing);
+  const std::vector<float> velocities(displacements.size(), 0.0F);
+  MassSpringModel model;
+  model.SetBody(body);
+  model.SetState(displacements, velocities);
+  const std::vector<float> wanted = model.GetForces();
+  const std::vector<ElementResults> results = model.GetElementResults();
+  model.SetBody(turned);
+  model.SetState(displacements, velocities);
+  const std::vector<float> found = model.GetForces();
+  for (std::size_t i = 0; i < found.size(); ++i)
+  {
+    // Sums of some tens of terms in single precision, in another order.
+    EXPECT_NEAR(found[i], wanted[i], 1e-5 * FindLargest(wanted));
+  }
+  const std::vector<ElementResults> resultsOfTurned = model.GetElementResults();
+  for (std::size_t t = 0; t < results.size(); ++t)
+  {
+    EXPECT_NEAR(resultsOfTurned[t].Determinant, results[t].Determinant, 1e-12);
+    for (std::size_t i = 0; i < 6; ++i)
+    {
+      EXPECT_NEAR(resultsOfTurned[t].Stress[i], results[t].Stress[i],
+        1e-6 * std::abs(results[t].Stress[i]) + 1e-6 * body.Materials.front().YoungModulus);
+    }
+  }
+}
+
 TEST(MassSpring, SplitNodesGoOnWhereTheyWere)
 {
   // Two tetrahedra that share a face, and then share nothing.

@@ -337,3 +337,50 @@ TEST(MassSpringStatics, StressOfAStrain)
   }
   EXPECT_NEAR(energy / volume, 0.5 * stress * Strain, 0.01 * 0.5 * stress * Strain);
 }
+
+// The stress of a tetrahedron is what its nodes pull at, by its volume: the forces by the
+// positions. A flat one has none.
+TEST(MassSpringStatics, StressIsThatOfTheForces)
+{
+  constexpr double edge = 1.0 / 256.0; // single precision holds multiples of it
+  ElasticBody body;
+  body.Points = { { 0, 0, 0 }, { edge, 0, 0 }, { 0, edge, 0 }, { 0, 0, edge } };
+  body.Tetrahedra = { { 0, 1, 2, 3 } };
+  body.Materials.front().PoissonRatio = 0.4;
+  const double volume = GetVolumes(body).front();
+  MassSpringModel model;
+  model.SetBody(body);
+  // Larger, smaller, flat and inside out.
+  for (const float height : { 1.5F, 0.5F, 0.0F, -0.5F })
+  {
+    std::vector<float> displacements(12, 0.0F);
+    displacements[7] = 0.25F * static_cast<float>(edge);
+    displacements[11] = (height - 1.0F) * static_cast<float>(edge);
+    model.SetState(displacements, std::vector<float>(12, 0.0F));
+    const std::vector<float> forces = model.GetForces();
+    const ElementResults results = model.GetElementResults().front();
+    EXPECT_NEAR(results.Determinant, 1.25 * static_cast<double>(height), 1e-6);
+    EXPECT_GT(results.StrainEnergyDensity, 0.0);
+    constexpr std::size_t axes[6][2] = { { 0, 0 }, { 1, 1 }, { 2, 2 }, { 0, 1 }, { 1, 2 },
+      { 0, 2 } };
+    std::array<double, 6> wanted{};
+    double largest = 0.0;
+    for (std::size_t i = 0; i < 6 && height != 0.0F; ++i)
+    {
+      for (std::size_t node = 0; node < 4; ++node)
+      {
+        const std::size_t place = 3 * node + axes[i][1];
+        // The forces are those of the body on its nodes.
+        wanted[i] -= static_cast<double>(forces[3 * node + axes[i][0]]) *
+          (body.Points[node][static_cast<int>(axes[i][1])] +
+            static_cast<double>(displacements[place])) /
+          (volume * results.Determinant);
+      }
+      largest = std::max(largest, std::abs(wanted[i]));
+    }
+    for (std::size_t i = 0; i < 6; ++i)
+    {
+      EXPECT_NEAR(results.Stress[i], wanted[i], 1e-5 * largest) << height;
+    }
+  }
+}

@@ -23,10 +23,10 @@ struct System
 {
   explicit System(double modulus = 1e4)
     : Lattice({ 4, 4, 5 }, 0.01, ElasticMaterial{ modulus, 0.3, 1000.0 })
-    , Elements(this->Lattice.Body)
+    , Elements(this->Time, this->Lattice.Body)
   {
-    this->Matrix.SetPattern(MakeNodePattern(this->Lattice.Body));
-    this->Elements.SetPattern(this->Matrix.GetPattern());
+    this->Matrix.SetPattern(this->Time, MakeNodePattern(this->Time, this->Lattice.Body));
+    this->Elements.SetPattern(this->Time, this->Matrix.GetPattern());
     const std::size_t nodes = this->Lattice.Body.Points.size();
     this->Elements.AssembleTangent(this->Time, Vectors(nodes, glm::dvec3(0.0)), this->Matrix);
     for (const glm::dvec3& point : this->Lattice.Body.Points)
