@@ -212,6 +212,10 @@ def copy_sources():
     for name in names:
         if (SOURCE / name).is_file():
             write(COPY / name, (SOURCE / name).read_bytes())
+    # A header that has moved would still be found where it was.
+    for path in COPY.rglob("*"):
+        if path.is_file() and not (SOURCE / path.relative_to(COPY)).is_file():
+            path.unlink()
 
 
 def write(path, content):
