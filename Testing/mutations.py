@@ -154,8 +154,9 @@ MUTATIONS = {
                          [CHAINMAIL]),
     "chainmail-saved": ("Kernels/ChainMail/ChainMailSolver.cxx", "if (results[i] & DEFORMVOLUME_SAVED)", "if (false)",
                         [CHAINMAIL]),
-    "chainmail-relax": ("Kernels/ChainMail/ChainMailRelaxation.cl", "Limits(limits, c, axis, face & 1);",
-                        "Limits(limits, c, axis, ~face & 1);", [RELAXATION]),
+    "chainmail-relax": ("Kernels/ChainMail/ChainMailRelaxation.cl",
+                        "FindLimitsBeside(limits, m, n.Materials, face, over, under);",
+                        "FindLimitsBeside(limits, m, n.Materials, face, under, over);", [RELAXATION]),
     "chainmail-copy": ("Kernels/ChainMail/ChainMailSolver.cxx",
                        "this->State.ReadOutput(changes);", "",
                        [("TestChainMailGraphics", "*Sequences*")]),
@@ -211,6 +212,10 @@ def copy_sources():
     for name in names:
         if (SOURCE / name).is_file():
             write(COPY / name, (SOURCE / name).read_bytes())
+    # A header that has moved would still be found where it was.
+    for path in COPY.rglob("*"):
+        if path.is_file() and not (SOURCE / path.relative_to(COPY)).is_file():
+            path.unlink()
 
 
 def write(path, content):

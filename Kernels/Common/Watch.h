@@ -98,8 +98,8 @@ void ForParts(Watch& watch, std::size_t parts, std::size_t atOnce, Body&& body)
   }
 }
 
-/// Calls body(item) for so many items in parallel, and asks now and then. They take a microsecond or
-/// so each.
+/// Calls body(item) for so many items in parallel, and asks now and then. They take a microsecond
+/// or so each.
 template <typename Body>
 void ForItemsInParallel(Watch& watch, std::size_t items, Body&& body)
 {
