@@ -50,8 +50,9 @@
  *
  * @par Abort:
  * An execution that is aborted ends within some 50 ms, with an empty output; what was simulated is
- * kept. Only a body of springs whose materials or fixed nodes are being changed may be lost: the next
- * execution then starts anew, with a warning. Reading the mesh and cutting it are not interrupted.
+ * kept. Only a body of springs whose materials or fixed nodes are being changed may be lost: the
+ * next execution then starts anew, with a warning. Reading the mesh and cutting it are not
+ * interrupted.
  *
  * @par Errors:
  * Each is one vtkErrorMacro that says what is wrong and what to do, the output is then empty, and
