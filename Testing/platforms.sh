@@ -58,16 +58,23 @@ make_system() # suite, folder
 }
 
 # The system's own /proc, and nothing of this system's environment. What is mounted for it goes with
-# the namespace.
+# the namespace. Its root is that of the namespace, as the kernel gives a changed root (chroot) no
+# further namespaces, which a test of the installation wants.
 inside() # folder, command...
 {
   # shellcheck disable=SC2016 # the inner shell expands these
   unshare --mount bash -c '
+    set -e
     root=$0
+    mount --bind "$root" "$root"
     mount -t proc proc "$root/proc"
     mount --rbind /dev "$root/dev"
     mount --bind /sys "$root/sys"
-    exec chroot "$root" env -i HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
+    cd "$root"
+    pivot_root . .
+    umount --lazy .
+    cd /
+    exec /usr/bin/env -i HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
       PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin "$@"' "$@" </dev/null
 }
 
