@@ -35,6 +35,7 @@ if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
     ImagingSources
     InteractionStyle
     IOImage
+    IOMovie
     IOXML
     RenderingContextOpenGL2
     RenderingCore
@@ -56,8 +57,14 @@ if (DEFORMVOLUME_USE_PARAVIEW)
   find_package(ParaView 5.11 REQUIRED COMPONENTS RemotingCore RemotingServerManager)
 endif ()
 set(deformvolume_optional_vtk_components "")
+if (DEFORMVOLUME_BUILD_EXAMPLES)
+  list(APPEND deformvolume_optional_vtk_components IOOggTheora)
+endif ()
 if (BUILD_TESTING AND NOT DEFORMVOLUME_SANITIZE)
-  set(deformvolume_optional_vtk_components OPTIONAL_COMPONENTS ParallelMPI)
+  list(APPEND deformvolume_optional_vtk_components ParallelMPI)
+endif ()
+if (deformvolume_optional_vtk_components)
+  list(PREPEND deformvolume_optional_vtk_components OPTIONAL_COMPONENTS)
 endif ()
 find_package(VTK 9.1 REQUIRED
   COMPONENTS ${deformvolume_vtk_components}

@@ -55,9 +55,9 @@ public:
 
   ///@{
   /**
-   * INTERACTIVE (default): a few steps towards equilibrium, for a body that is moved live; what is
-   * left is in GetRelativeResidual(), and the next execution goes on from there. CONVERGED:
-   * equilibrium.
+   * INTERACTIVE (default): one or two steps towards equilibrium, for a body that is moved live,
+   * until GetRelativeResidual() is at most 0.01 where handles have moved, else 0.001; the next
+   * execution goes on from what is left. CONVERGED: equilibrium, to 1e-6.
    */
   vtkSetClampMacro(Mode, int, INTERACTIVE, CONVERGED);
   vtkGetMacro(Mode, int);

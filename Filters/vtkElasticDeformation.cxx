@@ -252,9 +252,12 @@ void vtkElasticDeformation::Execute(
   settings.Material = { this->YoungModulus, this->PoissonRatio, this->Density };
   settings.UnitLength = this->LengthUnit == MILLIMETRE ? 1e-3 : 1.0;
   ElasticSimulation& simulation = this->PrepareSimulation();
-  if (session.Update(simulation, grid, settings))
+  deformvolume::ProgressReport progress(this);
+  if (session.Update(simulation, grid, settings, [&] { return progress.Tell(0.0); }))
   {
-    vtkWarningMacro("The rest mesh has got other points or cells: the simulation starts anew.");
+    vtkWarningMacro(
+      "The simulation starts anew: the rest mesh has got other points or cells, or the "
+      "body was lost in an update that was aborted or failed.");
   }
   this->UpdateCuts(vtkPolyData::GetData(input[2]));
   ElasticSimulation::Frame frame;
@@ -288,7 +291,6 @@ void vtkElasticDeformation::Execute(
   const double duration = std::max(0.0, end - session.Time);
   const double longest = simulation.HasFrames() ? this->FrameTime : std::max(duration, 1.0);
   const double frames = std::max(1.0, std::ceil((duration - roundOff) / longest));
-  deformvolume::ProgressReport progress(this);
   for (double done = 0.0; done < frames; done += 1.0)
   {
     frame.Duration = std::min(longest, std::max(0.0, end - session.Time));

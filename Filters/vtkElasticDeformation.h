@@ -48,6 +48,11 @@
  * Where the rest mesh gets other points or cells, the simulation starts anew, with a warning. With
  * other materials or fixed nodes it goes on.
  *
+ * @par Abort:
+ * An execution that is aborted ends within some 50 ms, with an empty output; what was simulated is
+ * kept. Only a body of springs whose materials or fixed nodes are being changed is lost: the next
+ * execution starts anew, with a warning. Reading the mesh and cutting it are not interrupted.
+ *
  * @par Errors:
  * Each is one vtkErrorMacro that says what is wrong and what to do, the output is then empty, and
  * what was simulated is kept: no tetrahedra or other three-dimensional cells; tetrahedra that are
@@ -204,8 +209,9 @@ public:
   /**
    * Whether the output has cell arrays of doubles with what each tetrahedron undergoes: "Stress"
    * (Cauchy, in Pa, the components xx yy zz xy yz xz), "StrainEnergyDensity" (J/m^3 of the volume
-   * at rest) and "DeformationGradientDeterminant" (how many times its volume at rest it has).
-   * Default: off.
+   * at rest) and "DeformationGradientDeterminant" (how many times its volume at rest it has; less
+   * than 0 where it is inside out). A flat tetrahedron, of a determinant within 1e-12 of 0, has no
+   * volume for a stress: its "Stress" is 0. Default: off.
    */
   vtkSetMacro(ElementResults, bool);
   vtkGetMacro(ElementResults, bool);

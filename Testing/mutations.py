@@ -43,7 +43,13 @@ RELAXATION = ("TestChainMailRelaxation", "*")
 SEQUENCES = ("TestChainMailSequences", "*")
 VECTORS = ("TestDeviceVectors", "*")
 VECTORS_GRAPHICS = ("TestDeviceVectorsGraphics", "*")
+ELEMENTS = ("TestCorotationalElements", "*")
+SPRINGS = ("TestMassSpring", "*")
+SPRINGS_AT_REST = ("TestMassSpringStatics", "*")
+ABORTS = ("TestElasticAborts", "*")
 REPLACEMENT = ("TestReplacement", "*Knows*:*Equals*/*OfGrid:*Equals*/Links:*Equals*/Runs")
+
+COROTATIONAL = ("TestCorotational", "*")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
@@ -128,6 +134,11 @@ MUTATIONS = {
     "cut-copies": ("Kernels/Resampling/IncrementalBoxes.cxx", "      low -= difference;\n      high += difference;\n",
                    "", [CUT_PARTS]),
     "cut-reach": ("Kernels/SamplingMesh/BrickGrid.h", "ReachOfCuts = 2;", "ReachOfCuts = 1;", [CUT_PARTS]),
+    "fem-history": ("Kernels/FiniteElements/TangentSolver.h", "    this->History.ForgetProducts();\n", "",
+                    [COROTATIONAL]),
+    "fem-tangent": ("Kernels/FiniteElements/CorotationalSolver.cxx",
+                    "if (before > 0.0 && residuals.Largest > leastGain * before)",
+                    "if (before > 1e300 && residuals.Largest > leastGain * before)", [COROTATIONAL]),
     "split-reach": ("Kernels/Physics/SplitRegion.cxx", "0.25 * std::max(", "0.0 * std::max(", [SPLIT_FACES]),
     "split-near": ("Kernels/Physics/MeshSplit.cxx", "(region.IsNear(face / 4) || ", "(region.IsNear(face / 4) && ",
                    [SPLIT_FACES]),
@@ -143,8 +154,9 @@ MUTATIONS = {
                          [CHAINMAIL]),
     "chainmail-saved": ("Kernels/ChainMail/ChainMailSolver.cxx", "if (results[i] & DEFORMVOLUME_SAVED)", "if (false)",
                         [CHAINMAIL]),
-    "chainmail-relax": ("Kernels/ChainMail/ChainMailRelaxation.cl", "Limits(limits, c, axis, face & 1);",
-                        "Limits(limits, c, axis, ~face & 1);", [RELAXATION]),
+    "chainmail-relax": ("Kernels/ChainMail/ChainMailRelaxation.cl",
+                        "FindLimitsBeside(limits, m, n.Materials, face, over, under);",
+                        "FindLimitsBeside(limits, m, n.Materials, face, under, over);", [RELAXATION]),
     "chainmail-copy": ("Kernels/ChainMail/ChainMailSolver.cxx",
                        "this->State.ReadOutput(changes);", "",
                        [("TestChainMailGraphics", "*Sequences*")]),
@@ -160,6 +172,35 @@ MUTATIONS = {
                      "if (any(fabs(moved) > largest))", [VECTORS_GRAPHICS]),
     "vectors-factor": ("Kernels/Mapping/DisplacementField.h", "constexpr std::uint64_t unit = 1 << 24;",
                        "constexpr std::uint64_t unit = 1 << 0;", [("TestContraction", "*")]),
+    "fem-sweeps": ("Kernels/FiniteElements/SingularValues.h", "sweeps = 4;", "sweeps = 2;", [ELEMENTS]),
+    "fem-inverted": ("Kernels/FiniteElements/SingularValues.h", "result.Values[2] = Dot(U.Columns[2], b[2]);",
+                     "result.Values[2] = Absolute(Dot(U.Columns[2], b[2]));", [ELEMENTS]),
+    "fem-twists": ("Kernels/FiniteElements/ElementMechanics.h",
+                   "Largest(MakeLanes(0.0), twiceMu + pull * (2.0 / sum))", "twiceMu + pull * (2.0 / sum)", [ELEMENTS]),
+    "fem-flat": ("Kernels/FiniteElements/CorotationalElements.cxx", "if (!IsFlat(result.Determinant))", "if (true)",
+                 [ELEMENTS]),
+    "fem-colors": ("Kernels/FiniteElements/ElementBatches.cxx",
+                   "forNodes([&](std::uint64_t& mask) { mask |= std::uint64_t(1) << color; });", "",
+                   [("TestCorotational", "*Threads")]),
+    "fem-fused": ("Kernels/FiniteElements/Lanes.h", '__attribute__((target("avx2")))',
+                  '__attribute__((target("avx2,fma"), optimize("fp-contract=fast")))', [("TestCorotationalLanes", "*")]),
+    "fem-singular": ("Kernels/FiniteElements/Aggregation.cxx", "result.Matrix.Blocks[block](i, i) = 1.0;", "",
+                     [COROTATIONAL]),
+    "springs-near": ("Kernels/MassSpring/MassSpringForces.cl",
+                     "Dot(displacement, Plus(Plus(rest, rest), displacement)) / (length + restLength)",
+                     "length - restLength", [SPRINGS, SPRINGS_AT_REST]),
+    "springs-volume": ("Kernels/MassSpring/MassSpringForces.cl",
+                       "copysign(materials[2 * group + 1] * (1.0f / 6.0f), restDeterminant)",
+                       "materials[2 * group + 1] * (1.0f / 6.0f)", [SPRINGS, SPRINGS_AT_REST]),
+    "springs-restored": ("Kernels/MassSpring/MassSpringModel.cxx", "impl.State->Restore();", "", [SPRINGS]),
+    "springs-limit": ("Kernels/MassSpring/MassSpringModel.cxx", "return 2.0 / this->Largest;",
+                      "return 2.2 / this->Largest;", [SPRINGS]),
+    "springs-flat": ("Kernels/MassSpring/MassSpringResults.cxx", "hasStress = !IsFlat(results.Determinant);",
+                     "hasStress = true;", [SPRINGS_AT_REST]),
+    "springs-given-up": ("Kernels/MassSpring/MassSpringModel.cxx", "        impl.Forget();\n        throw;",
+                         "        throw;", [ABORTS]),
+    "springs-moved": ("Kernels/MassSpring/MassSpringModel.cxx",
+                      "      this->State->SetDisplacements(displacements);\n      throw;", "      throw;", [ABORTS]),
 }
 
 
@@ -171,6 +212,10 @@ def copy_sources():
     for name in names:
         if (SOURCE / name).is_file():
             write(COPY / name, (SOURCE / name).read_bytes())
+    # A header that has moved would still be found where it was.
+    for path in COPY.rglob("*"):
+        if path.is_file() and not (SOURCE / path.relative_to(COPY)).is_file():
+            path.unlink()
 
 
 def write(path, content):

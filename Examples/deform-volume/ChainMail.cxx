@@ -13,9 +13,10 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 
+#include <algorithm>
 #include <sstream>
 
-vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Pull>& pulls)
+vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Pull>& pulls, double part)
 {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -24,8 +25,8 @@ vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Pull>& pulls)
   rest->SetNumberOfComponents(3);
   for (const Pull& pull : pulls)
   {
-    points->InsertNextPoint(pull.Point[0] + pull.Displacement[0],
-      pull.Point[1] + pull.Displacement[1], pull.Point[2] + pull.Displacement[2]);
+    points->InsertNextPoint(pull.Point[0] + part * pull.Displacement[0],
+      pull.Point[1] + part * pull.Displacement[1], pull.Point[2] + part * pull.Displacement[2]);
     rest->InsertNextTuple(pull.Point.data());
   }
   auto handles = vtkSmartPointer<vtkPolyData>::New();
@@ -34,18 +35,25 @@ vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Pull>& pulls)
   return handles;
 }
 
-void PullByChainMail(
-  const Options& options, const Volume& volume, Messages& messages, Deformation& deformation)
+void PullByChainMail(const Options& options, const Volume& volume, Messages& messages,
+  Deformation& deformation, const FrameTaker& takeFrame)
 {
   vtkNew<vtkChainMailDeformation> chainMail;
   chainMail->SetInputData(volume.Image);
-  chainMail->SetHandlesData(MakeHandles(options.Pulls));
   chainMail->SetHandleRadius(options.Pulls.front().Radius);
-  const ProgressBar bar(chainMail, "pulling", !options.Quiet);
-  chainMail->Update();
-  messages.Check("cannot pull the volume");
-  deformation.Data = chainMail->GetOutput();
-  deformation.Displacement = "Displacement";
+  const int frames = std::max(options.Frames, 1);
+  for (int frame = 1; frame <= frames; ++frame)
+  {
+    chainMail->SetHandlesData(MakeHandles(options.Pulls, double(frame) / frames));
+    {
+      const ProgressBar bar(chainMail, "pulling", !options.Quiet);
+      chainMail->Update();
+    }
+    messages.Check("cannot pull the volume");
+    deformation.Data = chainMail->GetOutput();
+    deformation.Displacement = "Displacement";
+    takeFrame(deformation);
+  }
   std::ostringstream text;
   text << chainMail->GetNumberOfMovedVoxels() << " voxels moved in "
        << chainMail->GetNumberOfSweeps() << " sweeps";

@@ -2,6 +2,8 @@
 #ifndef DeformVolumeChainMail_h
 #define DeformVolumeChainMail_h
 
+#include "FrameTaker.h"
+
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
@@ -21,12 +23,13 @@ struct Pull
   double Radius = 0.0;
 };
 
-/// The handles that pulls are, as vtkChainMailDeformation and vtkElasticDeformation take them.
-vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Pull>& pulls);
+/// The handles that pulls are when they have gone a part of their way, as vtkChainMailDeformation
+/// and vtkElasticDeformation take them.
+vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Pull>& pulls, double part = 1.0);
 
 /// The displacement field of the pulls of the options: voxels follow their neighbours, by
-/// ChainMail.
-void PullByChainMail(
-  const Options& options, const Volume& volume, Messages& messages, Deformation& deformation);
+/// ChainMail. takeFrame is called for each frame with the field that it has led to.
+void PullByChainMail(const Options& options, const Volume& volume, Messages& messages,
+  Deformation& deformation, const FrameTaker& takeFrame);
 
 #endif

@@ -7,15 +7,19 @@
 #include "Messages.h"
 #include "Options.h"
 #include "ProgressBar.h"
+#include "Tools.h"
 #include "Volume.h"
 
+#include <vtkAppendPolyData.h>
 #include <vtkCorotationalDeformation.h>
 #include <vtkMassSpringDeformation.h>
+#include <vtkMaterialFromVolume.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <algorithm>
 #include <sstream>
 
 namespace
@@ -68,10 +72,57 @@ void AddFixedNodes(const Options& options, vtkImageData* volume, vtkUnstructured
   mesh->GetPointData()->AddArray(fixed);
 }
 
+// The stiffness of the voxels in each tetrahedron, as --material says.
+void AddMaterials(
+  const Options& options, vtkImageData* volume, vtkUnstructuredGrid* mesh, Messages& messages)
+{
+  if (options.Materials.empty())
+  {
+    return;
+  }
+  constexpr int defaultMaterial = 255;
+  vtkNew<vtkMaterialFromVolume> filter;
+  filter->SetInputData(mesh);
+  filter->SetVolumeData(volume);
+  filter->ClearMaterials();
+  filter->SetMaterial(defaultMaterial, options.YoungModulus, options.PoissonRatio, options.Density);
+  filter->SetDefaultMaterial(defaultMaterial);
+  const char* name = volume->GetPointData()->GetArray(0)->GetName();
+  filter->SetMaterialArrayName(name ? name : "");
+  int index = 0;
+  for (const MaterialOfValues& material : options.Materials)
+  {
+    filter->SetMaterial(index, material.YoungModulus,
+      material.PoissonRatio.value_or(options.PoissonRatio),
+      material.Density.value_or(options.Density));
+    filter->AddMaterialRange(material.Minimum, material.Maximum, index);
+    ++index;
+  }
+  const ProgressBar bar(filter, "materials", !options.Quiet);
+  filter->Update();
+  messages.Check("cannot find the materials of the mesh");
+  mesh->ShallowCopy(filter->GetOutput());
+}
+
+// All sheets as one, which cuts the mesh before it moves.
+void AddSheets(const Options& options, vtkElasticDeformation* model, Messages& messages)
+{
+  if (options.Cuts.empty())
+  {
+    return;
+  }
+  vtkNew<vtkAppendPolyData> sheets;
+  for (const std::string& path : options.Cuts)
+  {
+    sheets->AddInputData(ReadSheet(path, options, messages));
+  }
+  sheets->Update();
+  model->SetSheetData(sheets->GetOutput());
+}
+
 void SetUp(vtkElasticDeformation* model, const Options& options, vtkUnstructuredGrid* mesh)
 {
   model->SetInputData(mesh);
-  model->SetHandlesData(MakeHandles(options.Pulls));
   model->SetHandleRadius(options.Pulls.empty() ? 0.0 : options.Pulls.front().Radius);
   model->SetGravity(options.Gravity.data());
   model->SetYoungModulus(options.YoungModulus);
@@ -82,26 +133,49 @@ void SetUp(vtkElasticDeformation* model, const Options& options, vtkUnstructured
 }
 
 void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstructuredGrid* mesh,
-  Messages& messages, Deformation& deformation)
+  Messages& messages, Deformation& deformation, const FrameTaker& takeFrame)
 {
   AddFixedNodes(options, volume.Image, mesh);
+  AddMaterials(options, volume.Image, mesh, messages);
+  // update: brings the model to a part of the way, or of the time.
   const auto run = [&](vtkElasticDeformation* model, const auto& update)
   {
     SetUp(model, options, mesh);
+    AddSheets(options, model, messages);
+    const int frames = std::max(options.Frames, 1);
+    for (int frame = 1; frame <= frames; ++frame)
     {
-      const ProgressBar bar(model, "simulating", !options.Quiet);
-      update();
+      {
+        const ProgressBar bar(model, "simulating", !options.Quiet);
+        update(double(frame) / frames);
+      }
+      messages.Check("cannot simulate the body");
+      deformation.Data = model->GetOutput();
+      deformation.Displacement = "Displacement";
+      takeFrame(deformation);
     }
-    messages.Check("cannot simulate the body");
-    deformation.Data = model->GetOutput();
-    deformation.Displacement = "Displacement";
+    if (!options.Cuts.empty())
+    {
+      deformation.Cut =
+        std::to_string(model->GetNumberOfSplitFaces()) + " faces of tetrahedra of the mesh split";
+      if (model->GetNumberOfSplitFaces() == 0)
+      {
+        messages.DisplayWarningText(
+          "--cut crosses nothing of the mesh. Is it in the world of the volume?");
+      }
+    }
   };
   std::ostringstream text;
   if (options.Model == "fem")
   {
     vtkNew<vtkCorotationalDeformation> model;
     model->SetModeToConverged();
-    run(model, [&] { model->Update(); });
+    run(model,
+      [&](double part)
+      {
+        model->SetHandlesData(MakeHandles(options.Pulls, part));
+        model->Update();
+      });
     text << model->GetNumberOfNewtonSteps() << " steps to "
          << (model->GetIsConverged() ? "equilibrium" : "a state that is not yet in equilibrium")
          << ", strain energy " << model->GetStrainEnergy() << " J";
@@ -110,7 +184,8 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
   {
     vtkNew<vtkMassSpringDeformation> model;
     model->SetDevice(options.Device);
-    run(model, [&] { model->UpdateTimeStep(options.Duration); });
+    model->SetHandlesData(MakeHandles(options.Pulls));
+    run(model, [&](double part) { model->UpdateTimeStep(part * options.Duration); });
     text << options.Duration << " s, in steps of " << 1e3 * model->GetTimeStepInUse() << " ms";
   }
   deformation.Motion = text.str();

@@ -2,7 +2,10 @@
 #ifndef DeformVolumeElasticModel_h
 #define DeformVolumeElasticModel_h
 
+#include "FrameTaker.h"
+
 #include <array>
+#include <optional>
 #include <string>
 
 class Messages;
@@ -26,9 +29,20 @@ struct Fixation
   std::string Text; // as it was given
 };
 
+/// The material of the voxels with values from Minimum on, less than Maximum.
+struct MaterialOfValues
+{
+  double Minimum = 0.0;
+  double Maximum = 0.0;
+  double YoungModulus = 0.0;
+  std::optional<double> PoissonRatio; // without them those of the options
+  std::optional<double> Density;
+};
+
 /// Deforms a mesh by the pulls, fixations and gravity of the options: to equilibrium by finite
-/// elements, or for some time by springs.
+/// elements, or for some time by springs. The sheets of the options cut it first, at rest.
+/// takeFrame is called for each frame with the deformation that it has led to.
 void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstructuredGrid* mesh,
-  Messages& messages, Deformation& deformation);
+  Messages& messages, Deformation& deformation, const FrameTaker& takeFrame);
 
 #endif

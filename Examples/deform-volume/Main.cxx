@@ -3,6 +3,7 @@
 #include "Failure.h"
 #include "MeshMaking.h"
 #include "Messages.h"
+#include "Movie.h"
 #include "Options.h"
 #include "Picture.h"
 #include "ProgressBar.h"
@@ -20,6 +21,7 @@
 
 #include <iostream>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <unistd.h>
 
@@ -53,6 +55,7 @@ void CheckOutputs(const Options& options)
 {
   std::vector<std::string> paths = options.Outputs;
   paths.push_back(options.Image);
+  paths.push_back(options.Movie);
   paths.push_back(options.MeshOutput);
   for (const std::string& path : paths)
   {
@@ -72,7 +75,7 @@ void CheckOutputs(const Options& options)
       throw Failure("cannot write " + path + ": " + place + " may not be written to");
     }
   }
-  if (!options.Image.empty())
+  if (!options.Image.empty() || !options.Movie.empty())
   {
     CheckDisplay();
   }
@@ -83,6 +86,7 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
 {
   filter->SetInputData(volume);
   filter->SetDeformationData(deformation.Data);
+  filter->SetOpenSplits(options.CutsMesh());
   if (deformation.Rest)
   {
     filter->SetRestData(deformation.Rest);
@@ -128,6 +132,17 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
   }
 }
 
+PictureOptions GetPictureOptions(
+  const Options& options, const Volume& volume, const Deformation& deformation)
+{
+  PictureOptions picture;
+  picture.Threshold = options.Threshold ? *options.Threshold
+    : deformation.Isovalue              ? *deformation.Isovalue
+                                        : FindThreshold(volume.Image);
+  picture.View = options.View ? *options.View : GetFaceView(volume.Axes);
+  return picture;
+}
+
 void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume,
   const Deformation& deformation, const std::vector<std::string>& tools, const TimingTable& timings)
 {
@@ -148,6 +163,10 @@ void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume,
   if (!deformation.Motion.empty())
   {
     std::cout << "moved      " << deformation.Motion << "\n";
+  }
+  if (!deformation.Cut.empty())
+  {
+    std::cout << "cut        " << deformation.Cut << "\n";
   }
   for (const std::string& tool : tools)
   {
@@ -178,23 +197,50 @@ void DeformVolume(const Options& options, Messages& messages)
     timings.Add("cut and carve", cutting.GetSeconds());
   }
 
+  vtkNew<vtkDeformVolumeFilter> filter;
+  const auto deform = [&](const Deformation& deformation)
+  {
+    if (!filter->GetInput())
+    {
+      SetUp(filter, options, cut.Image, deformation);
+    }
+    filter->SetDeformationData(deformation.Data);
+    const ProgressBar bar(filter, "deforming", !options.Quiet);
+    filter->Update();
+    messages.Check("cannot deform the volume");
+  };
+  std::optional<Movie> movie;
+  double movieTime = 0.0;
+  const auto takeFrame = [&](const Deformation& deformation)
+  {
+    if (!options.Movie.empty())
+    {
+      const Stopwatch drawing;
+      if (!movie)
+      {
+        movie.emplace(volume.Image, GetPictureOptions(options, volume, deformation), options.Movie);
+      }
+      deform(deformation);
+      movie->Add(filter->GetOutput(), messages);
+      movieTime += drawing.GetSeconds();
+    }
+  };
   const Stopwatch meshing;
-  const Deformation deformation = MakeDeformation(options, cut, messages);
+  const Deformation deformation = MakeDeformation(options, cut, messages, takeFrame);
+  if (movie)
+  {
+    movie->Finish(messages);
+    timings.Add("deform and draw frames", movieTime);
+  }
   timings.Add(!options.Field.empty() ? "read field"
       : options.HasElasticModel()    ? "simulate"
       : !options.Model.empty()       ? "pull by ChainMail"
       : options.Mesh.empty()         ? "make mesh"
                                      : "read mesh",
-    meshing.GetSeconds());
+    meshing.GetSeconds() - movieTime);
 
-  vtkNew<vtkDeformVolumeFilter> filter;
-  SetUp(filter, options, cut.Image, deformation);
   const Stopwatch deforming;
-  {
-    const ProgressBar bar(filter, "deforming", !options.Quiet);
-    filter->Update();
-  }
-  messages.Check("cannot deform the volume");
+  deform(deformation);
   if (options.FieldIsInverse && filter->GetNumberOfInvertedTetrahedra() > 0)
   {
     messages.DisplayWarningText(
@@ -222,12 +268,8 @@ void DeformVolume(const Options& options, Messages& messages)
   if (!options.Image.empty())
   {
     const Stopwatch drawing;
-    PictureOptions picture;
-    picture.Threshold = options.Threshold ? *options.Threshold
-      : deformation.Isovalue              ? *deformation.Isovalue
-                                          : FindThreshold(volume.Image);
-    picture.View = options.View ? *options.View : GetFaceView(volume.Axes);
-    WritePicture(volume.Image, result.Image, picture, options.Image, messages);
+    Picture picture(volume.Image, GetPictureOptions(options, volume, deformation));
+    WritePNG(picture.Draw(result.Image, Picture::Aim::Tight, messages), options.Image, messages);
     timings.Add("draw picture", drawing.GetSeconds());
   }
   if (!options.Quiet)

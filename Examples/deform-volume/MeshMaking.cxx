@@ -189,7 +189,8 @@ void WriteMesh(vtkUnstructuredGrid* mesh, const std::string& path, Messages& mes
 }
 }
 
-Deformation MakeDeformation(const Options& options, const Volume& volume, Messages& messages)
+Deformation MakeDeformation(
+  const Options& options, const Volume& volume, Messages& messages, const FrameTaker& takeFrame)
 {
   Deformation deformation;
   if (!options.Mesh.empty())
@@ -209,7 +210,7 @@ Deformation MakeDeformation(const Options& options, const Volume& volume, Messag
   }
   else if (options.Model == "chainmail")
   {
-    PullByChainMail(options, volume, messages, deformation);
+    PullByChainMail(options, volume, messages, deformation, takeFrame);
   }
   else if (!options.TetGen && !options.HasLattice())
   {
@@ -223,7 +224,7 @@ Deformation MakeDeformation(const Options& options, const Volume& volume, Messag
       Mesh(options, volume.Image, messages, deformation);
     if (options.HasElasticModel())
     {
-      DeformByElasticModel(options, volume, mesh, messages, deformation);
+      DeformByElasticModel(options, volume, mesh, messages, deformation, takeFrame);
     }
     else
     {

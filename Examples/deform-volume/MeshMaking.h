@@ -25,8 +25,9 @@ struct Deformation
   std::string Displacement;
   /// The isovalue of the surface that was meshed.
   std::optional<double> Isovalue;
-  /// What a model has moved.
+  /// What a model has moved, and what has been cut of its mesh.
   std::string Motion;
+  std::string Cut;
   /// What became of the voxels of the body that was meshed, and how long edges are where.
   std::string Body;
   std::vector<std::string> Edges;
@@ -34,7 +35,9 @@ struct Deformation
   long long NumberOfCells = 0;
 };
 
-/// Reads or makes what the options ask for. Throws a Failure where that is impossible.
-Deformation MakeDeformation(const Options& options, const Volume& volume, Messages& messages);
+/// Reads or makes what the options ask for. takeFrame is called with each frame of a model, the
+/// last one included. Throws a Failure where it is impossible.
+Deformation MakeDeformation(
+  const Options& options, const Volume& volume, Messages& messages, const FrameTaker& takeFrame);
 
 #endif

@@ -77,3 +77,40 @@ Carving ParseCarving(const std::string& text)
   }
   return carving;
 }
+
+MaterialOfValues ParseMaterial(const std::string& text)
+{
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  const std::size_t equals = std::min(text.find('=', colon), text.size());
+  const std::string shape = "MINIMUM:MAXIMUM=E[,NU[,DENSITY]]";
+  if (equals == text.size())
+  {
+    throw UsageError("--material " + text + ": expected " + shape);
+  }
+  const auto number = [&](const std::string& part)
+  { return ParseNumbers<double, 1>("--material", part, "a number in " + shape)[0]; };
+  MaterialOfValues material;
+  material.Minimum = number(text.substr(0, colon));
+  material.Maximum = number(text.substr(colon + 1, equals - colon - 1));
+  if (!(material.Minimum < material.Maximum))
+  {
+    throw UsageError("--material " + text + ": the minimum must be less than the maximum");
+  }
+  std::istringstream values(text.substr(equals + 1));
+  std::string part;
+  std::getline(values, part, ',');
+  material.YoungModulus = number(part);
+  if (std::getline(values, part, ','))
+  {
+    material.PoissonRatio = number(part);
+  }
+  if (std::getline(values, part, ','))
+  {
+    material.Density = number(part);
+  }
+  if (!values.eof() || text.back() == ',')
+  {
+    throw UsageError("--material " + text + ": expected " + shape);
+  }
+  return material;
+}

@@ -40,6 +40,7 @@ Push ParsePush(const std::string& text);
 Pull ParsePull(const std::string& text);
 Fixation ParseFixation(const std::string& text);
 Carving ParseCarving(const std::string& text);
+MaterialOfValues ParseMaterial(const std::string& text);
 ///@}
 
 #endif

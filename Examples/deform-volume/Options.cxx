@@ -2,18 +2,13 @@
 #include "Options.h"
 
 #include "Failure.h"
-#include "FieldReading.h"
+#include "OptionChecks.h"
 #include "OptionTexts.h"
-#include "VolumeWriting.h"
 
 #include <CLI/CLI.hpp>
-#include <vtksys/SystemTools.hxx>
 
-#include <cmath>
 #include <initializer_list>
 #include <iostream>
-#include <sstream>
-#include <utility>
 
 namespace
 {
@@ -24,6 +19,7 @@ struct RawOptions
   std::vector<std::string> Pushes;
   std::vector<std::string> Pulls;
   std::vector<std::string> Fixations;
+  std::vector<std::string> Materials;
   std::string Gravity = "0,0,0";
   std::vector<std::string> Carvings;
   std::string View;
@@ -33,181 +29,6 @@ struct RawOptions
   std::string Bounds = "deformed";
   std::string Interpolation = "linear";
 };
-
-/// NaN passes all comparisons of a range, and no length or value is infinite.
-void CheckNumbers(const Options& options)
-{
-  const std::pair<const char*, double> numbers[] = { { "--scale", options.Scale },
-    { "--isovalue", options.Isovalue.value_or(0.0) }, { "--edge-length", options.EdgeLength },
-    { "--radius-edge-ratio", options.RadiusEdgeRatio }, { "--young", options.YoungModulus },
-    { "--poisson", options.PoissonRatio }, { "--density", options.Density },
-    { "--duration", options.Duration }, { "--threshold", options.Threshold.value_or(0.0) } };
-  for (const auto& [option, number] : numbers)
-  {
-    if (!std::isfinite(number))
-    {
-      throw UsageError(std::string(option) + " must be a finite number");
-    }
-  }
-}
-
-/// The result never takes the place of what it is made from.
-void CheckOverwriting(const Options& options)
-{
-  std::vector<std::string> outputs = options.Outputs;
-  outputs.push_back(options.Image);
-  outputs.push_back(options.MeshOutput);
-  for (const std::string& output : outputs)
-  {
-    std::vector<std::string> inputs{ options.Volume, options.Mesh, options.Rest, options.Field };
-    inputs.insert(inputs.end(), options.Cuts.begin(), options.Cuts.end());
-    for (const std::string& input : inputs)
-    {
-      if (!output.empty() && !input.empty() && vtksys::SystemTools::SameFile(output, input))
-      {
-        throw UsageError(output + " is read and would be overwritten: give another name");
-      }
-    }
-  }
-}
-
-/// A model has one radius for all its handles.
-void CheckModel(const Options& options)
-{
-  if (options.HasElasticModel())
-  {
-    if (!options.TetGen && !options.HasLattice())
-    {
-      throw UsageError("--model " + options.Model +
-        " needs --tetgen or --lattice, the mesh that it "
-        "moves");
-    }
-    if (!options.Pushes.empty())
-    {
-      throw UsageError(
-        "--push moves nodes without a model; give --pull to --model " + options.Model);
-    }
-  }
-  else if (!options.Fixations.empty())
-  {
-    throw UsageError("--fix requires --model fem or --model mass-spring");
-  }
-  if (options.Model == "chainmail" && !options.MeshOutput.empty())
-  {
-    throw UsageError("--write-mesh goes with --tetgen or --lattice; ChainMail has no mesh");
-  }
-  if (options.Model == "chainmail" && options.Pulls.empty())
-  {
-    throw UsageError("--model chainmail needs at least one --pull X,Y,Z,DX,DY,DZ[,RADIUS]");
-  }
-  for (const Pull& pull : options.Pulls)
-  {
-    if (pull.Radius != options.Pulls.front().Radius)
-    {
-      throw UsageError("all --pull need the same radius");
-    }
-  }
-}
-
-/// One thing deforms the volume, and its options go with it.
-void CheckDeformation(const Options& options)
-{
-  CheckModel(options);
-  const int deformations = !options.Mesh.empty() + !options.Field.empty() + options.TetGen +
-    options.HasLattice() + (options.Model == "chainmail");
-  if (deformations == 0 && options.HasTools())
-  {
-    if (!options.Displacement.empty() || options.Scale != 1.0 || !options.Pushes.empty())
-    {
-      throw UsageError("--push, --displacement and --scale need a --mesh, --field, --tetgen or "
-                       "--lattice beside --cut and --carve");
-    }
-    return;
-  }
-  if (deformations != 1)
-  {
-    throw UsageError(
-      "exactly one of --mesh, --field, --tetgen, --lattice and --model chainmail says "
-      "what deforms the volume");
-  }
-  if (!options.Mesh.empty())
-  {
-    if (options.Displacement.empty() == options.Rest.empty())
-    {
-      throw UsageError("--mesh needs either --displacement (the name of an array of vectors) or "
-                       "--rest (the mesh at rest)");
-    }
-    if (!options.Pushes.empty())
-    {
-      throw UsageError("--push goes with --tetgen or --lattice; a --mesh brings its displacement");
-    }
-  }
-  else if (!options.Field.empty())
-  {
-    if (!options.Displacement.empty() && !IsVTKFile(options.Field))
-    {
-      throw UsageError("--displacement names an array of a .vti file; " + options.Field +
-        " has one set of vectors only");
-    }
-    if (!options.Pushes.empty())
-    {
-      throw UsageError("--push goes with --tetgen or --lattice; a --field brings its displacement");
-    }
-  }
-  else if (options.Model == "chainmail" && !options.Pushes.empty())
-  {
-    throw UsageError("--push goes with --tetgen or --lattice; give --pull to --model chainmail");
-  }
-  else if (!options.Displacement.empty() || options.Scale != 1.0)
-  {
-    throw UsageError(std::string(options.Scale != 1.0 ? "--scale" : "--displacement") +
-      " requires --mesh or --field");
-  }
-  else if (options.Model.empty() && options.Pushes.empty())
-  {
-    throw UsageError("--tetgen and --lattice need at least one --push X,Y,Z,DX,DY,DZ,RADIUS, or "
-                     "--model");
-  }
-}
-
-void Check(const Options& options)
-{
-  if (options.ListDevices)
-  {
-    return;
-  }
-  if (options.Volume.empty())
-  {
-    throw UsageError("no VOLUME is given; deform-volume --help tells how to call the program");
-  }
-  CheckDeformation(options);
-  if (options.Outputs.empty() && options.Image.empty())
-  {
-    throw UsageError("nothing to write: give --output or --image");
-  }
-  for (const std::string& output : options.Outputs)
-  {
-    if (!CanWriteVolume(output))
-    {
-      throw UsageError("--output " + output + ": the name must end in .vti, .mhd, .nii or .nii.gz");
-    }
-  }
-  const auto endsIn = [](const std::string& path, const char* suffix)
-  {
-    return path.empty() ||
-      vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(path), suffix);
-  };
-  if (!endsIn(options.Image, ".png"))
-  {
-    throw UsageError("--image " + options.Image + ": the name must end in .png");
-  }
-  if (!endsIn(options.MeshOutput, ".vtu"))
-  {
-    throw UsageError("--write-mesh " + options.MeshOutput + ": the name must end in .vtu");
-  }
-  CheckNumbers(options);
-  CheckOverwriting(options);
-}
 
 void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
 {
@@ -235,6 +56,10 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
   {
     options.Fixations.push_back(ParseFixation(text));
   }
+  for (const std::string& text : raw.Materials)
+  {
+    options.Materials.push_back(ParseMaterial(text));
+  }
   options.Gravity = ParseNumbers<double, 3>(
     "--gravity", raw.Gravity, "three numbers X,Y,Z with commas between them");
   for (const std::string& text : raw.Carvings)
@@ -260,7 +85,7 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
   options.Extrapolate = raw.Outside == "extrapolate";
   options.VolumeBounds = raw.Bounds == "volume";
   options.Cubic = raw.Interpolation == "cubic";
-  Check(options);
+  CheckOptions(options);
 }
 
 void AddElasticModel(CLI::App& program, Options& options, RawOptions& raw)
@@ -282,6 +107,17 @@ void AddElasticModel(CLI::App& program, Options& options, RawOptions& raw)
   {
     program.add_option(name, value, help)->capture_default_str()->type_name("NUMBER")->group(group);
   };
+  program
+    .add_option("--material", raw.Materials,
+      "Voxels with values from MINIMUM on, less than MAXIMUM, have the Young modulus E (Pa), the "
+      "Poisson ratio NU and the DENSITY, and each tetrahedron has the mean of its voxels. The "
+      "first "
+      "range that holds a value counts; what none holds has --young, --poisson and --density. May "
+      "be given several times")
+    ->type_name("MINIMUM:MAXIMUM=E[,NU[,DENSITY]]")
+    ->take_all()
+    ->expected(1)
+    ->group(group);
   addNumber("--young", options.YoungModulus, "Young modulus, in Pa");
   addNumber("--poisson", options.PoissonRatio, "Poisson ratio, from 0 to less than 0.495");
   addNumber("--density", options.Density, "Density, in kg/m^3");
@@ -365,7 +201,8 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
   const char* tools = "What is cut before (alone, or with what deforms the volume)";
   program
     .add_option("--cut", options.Cuts,
-      "Cut the volume along a sheet of triangles (.vtp, world coordinates). May be given several "
+      "Cut the volume along a sheet of triangles (.vtp, world coordinates); with --model fem or "
+      "mass-spring the mesh, before it moves, and the volume opens there. May be given several "
       "times")
     ->type_name("FILE")
     ->take_all()
@@ -436,9 +273,11 @@ void AddDependencies(CLI::App& program)
   needs("--tetgen",
     { "--isovalue", "--pieces", "--edge-length", "--radius-edge-ratio", "--tetgen-executable" });
   needs("--model",
-    { "--pull", "--fix", "--gravity", "--young", "--poisson", "--density", "--duration" });
+    { "--pull", "--fix", "--gravity", "--material", "--young", "--poisson", "--density",
+      "--duration", "--frames", "--movie" });
+  needs("--movie", { "--frames" });
+  needs("--frames", { "--movie" });
   needs("--cut", { "--smooth-cut" });
-  needs("--image", { "--threshold", "--view" });
   program.get_option("--scale")->excludes(program.get_option("--rest"));
   program.get_option("--field")->excludes(program.get_option("--file-coordinates"));
   program.get_option("--isovalue")->excludes(program.get_option("--labels"));
@@ -527,6 +366,19 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
     .add_option("--image", options.Image,
       "Picture of the volume before and after, 700 x 700 pixels each, side by side (.png)")
     ->type_name("FILE")
+    ->group(group);
+  program
+    .add_option("--movie", options.Movie,
+      "Pictures like that of --image of the way there, which --model goes in --frames steps: a "
+      "file "
+      "for each frame (.png: movie.png makes movie0001.png), or a video in Ogg Theora (.ogv)")
+    ->type_name("FILE")
+    ->group(group);
+  program
+    .add_option("--frames", options.Frames,
+      "How many: handles go as many steps, and mass-spring takes as many parts of --duration")
+    ->check(CLI::Range(1, 9999))
+    ->type_name("NUMBER")
     ->group(group);
   program
     .add_option("--threshold", raw.Threshold,

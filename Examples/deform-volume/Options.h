@@ -43,6 +43,7 @@ struct Options
   double PoissonRatio = 0.3;
   double Density = 1000.0;
   double Duration = 1.0;
+  std::vector<MaterialOfValues> Materials;
 
   std::vector<std::string> Cuts;
   std::vector<Carving> Carvings;
@@ -61,11 +62,15 @@ struct Options
   std::vector<std::string> Outputs;
   std::string MeshOutput;
   std::string Image;
+  int Frames = 0;
+  std::string Movie;
   std::optional<double> Threshold;
   std::optional<std::array<double, 3>> View;
   bool Quiet = false;
 
   bool HasTools() const { return !this->Cuts.empty() || !this->Carvings.empty(); }
+  /// Whether --cut cuts the mesh of a model, where the volume opens, and not the volume.
+  bool CutsMesh() const { return !this->Cuts.empty() && this->HasElasticModel(); }
   bool HasLattice() const { return this->Lattice[0] > 0; }
   /// Whether a model moves the nodes of a mesh.
   bool HasElasticModel() const { return this->Model == "fem" || this->Model == "mass-spring"; }

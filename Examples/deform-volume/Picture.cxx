@@ -262,48 +262,73 @@ void CheckDisplay()
 #endif
 }
 
-void WritePicture(vtkImageData* before, vtkImageData* after, const PictureOptions& options,
-  const std::string& path, Messages& messages)
+Picture::Picture(vtkImageData* before, const PictureOptions& options)
+  : Options(options)
+  , Before(before)
+  , Window(vtkSmartPointer<vtkRenderWindow>::New())
+  , Grab(vtkSmartPointer<vtkWindowToImageFilter>::New())
 {
   double range[2];
   GetShownArray(before)->GetFiniteRange(range, 0);
   const double* spacing = before->GetSpacing();
-  const auto property =
+  this->Property =
     MakeProperty(options.Threshold, range[1], std::min({ spacing[0], spacing[1], spacing[2] }));
+  this->Left = MakeRenderer(before, this->Property, "before");
+  this->Left->SetViewport(0.0, 0.0, 0.5, 1.0);
+  this->Window->SetOffScreenRendering(1);
+  this->Window->SetMultiSamples(0);
+  this->Window->SetSize(2 * PictureSize, PictureSize);
+  this->Window->AddRenderer(this->Left);
+  this->Grab->SetInput(this->Window);
+  this->Grab->ReadFrontBufferOff();
+  this->Grab->SetInputBufferTypeToRGB();
+}
 
-  const auto left = MakeRenderer(before, property, "before");
-  const auto right = MakeRenderer(after, property, "after");
-  left->SetViewport(0.0, 0.0, 0.5, 1.0);
-  right->SetViewport(0.5, 0.0, 1.0, 1.0);
+vtkImageData* Picture::Draw(vtkImageData* after, Aim aim, Messages& messages)
+{
+  const bool isFirst = !this->Right;
+  if (!isFirst)
+  {
+    this->Window->RemoveRenderer(this->Right);
+  }
+  this->Right = MakeRenderer(after, this->Property, "after");
+  this->Right->SetViewport(0.5, 0.0, 1.0, 1.0);
+  this->Window->AddRenderer(this->Right);
 
-  vtkNew<vtkRenderWindow> window;
-  window->SetOffScreenRendering(1);
-  window->SetMultiSamples(0);
-  window->SetSize(2 * PictureSize, PictureSize);
-  window->AddRenderer(left);
-  window->AddRenderer(right);
-
-  std::vector<std::array<double, 3>> points;
-  AddShownPoints(before, options.Threshold, points);
-  AddShownPoints(after, options.Threshold, points);
-  AimCamera(left->GetActiveCamera(), options.View, points);
-  right->SetActiveCamera(left->GetActiveCamera());
-  left->ResetCameraClippingRange();
+  vtkCamera* camera = this->Left->GetActiveCamera();
+  if (isFirst || aim == Aim::Tight)
+  {
+    std::vector<std::array<double, 3>> points;
+    AddShownPoints(this->Before, this->Options.Threshold, points);
+    if (aim == Aim::Tight)
+    {
+      AddShownPoints(after, this->Options.Threshold, points);
+    }
+    AimCamera(camera, this->Options.View, points);
+    if (aim == Aim::Fixed)
+    {
+      constexpr double room = 0.8;
+      camera->Dolly(room);
+    }
+  }
+  this->Right->SetActiveCamera(camera);
+  this->Left->ResetCameraClippingRange();
   double clipping[2];
-  left->GetActiveCamera()->GetClippingRange(clipping);
-  right->ResetCameraClippingRange();
-  const double* other = left->GetActiveCamera()->GetClippingRange();
-  left->GetActiveCamera()->SetClippingRange(
-    std::min(clipping[0], other[0]), std::max(clipping[1], other[1]));
-  window->Render();
+  camera->GetClippingRange(clipping);
+  this->Right->ResetCameraClippingRange();
+  const double* other = camera->GetClippingRange();
+  camera->SetClippingRange(std::min(clipping[0], other[0]), std::max(clipping[1], other[1]));
+  this->Window->Render();
   messages.Check("cannot draw the picture");
+  this->Grab->Modified();
+  this->Grab->Update();
+  return this->Grab->GetOutput();
+}
 
-  vtkNew<vtkWindowToImageFilter> grab;
-  grab->SetInput(window);
-  grab->ReadFrontBufferOff();
-  grab->SetInputBufferTypeToRGB();
+void WritePNG(vtkImageData* image, const std::string& path, Messages& messages)
+{
   vtkNew<vtkPNGWriter> writer;
-  writer->SetInputConnection(grab->GetOutputPort());
+  writer->SetInputData(image);
   writer->SetFileName(path.c_str());
   writer->Write();
   messages.Check("cannot write " + path);

@@ -4,10 +4,16 @@
 
 #include "Volume.h"
 
+#include <vtkSmartPointer.h>
+
 #include <array>
 #include <string>
 
 class Messages;
+class vtkRenderWindow;
+class vtkRenderer;
+class vtkVolumeProperty;
+class vtkWindowToImageFilter;
 
 struct PictureOptions
 {
@@ -28,9 +34,32 @@ std::array<double, 3> GetFaceView(WorldAxes axes);
 /// Throws a Failure where there is no display to draw on. VTK would end the program.
 void CheckDisplay();
 
-/// Writes a PNG file, 1400 by 700 pixels: the volume before the deformation on the left and after
-/// it on the right, volume rendered with gradient shading, with the same camera and colours.
-void WritePicture(vtkImageData* before, vtkImageData* after, const PictureOptions& options,
-  const std::string& path, Messages& messages);
+/// 1400 by 700 pixels: a volume before a deformation on the left and after it on the right, volume
+/// rendered with gradient shading, with the same camera and colours.
+class Picture
+{
+public:
+  Picture(vtkImageData* before, const PictureOptions& options);
+
+  enum class Aim
+  {
+    Tight, // all that both show is seen, as near as possible
+    Fixed  // the view stays, with room round the volume before
+  };
+  /// Draws both. The image lives until the next call.
+  vtkImageData* Draw(vtkImageData* after, Aim aim, Messages& messages);
+
+private:
+  PictureOptions Options;
+  vtkSmartPointer<vtkImageData> Before;
+  vtkSmartPointer<vtkVolumeProperty> Property;
+  vtkSmartPointer<vtkRenderer> Left;
+  vtkSmartPointer<vtkRenderer> Right;
+  vtkSmartPointer<vtkRenderWindow> Window;
+  vtkSmartPointer<vtkWindowToImageFilter> Grab;
+};
+
+/// Writes an image to a PNG file.
+void WritePNG(vtkImageData* image, const std::string& path, Messages& messages);
 
 #endif

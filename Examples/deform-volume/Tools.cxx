@@ -19,6 +19,18 @@
 
 namespace
 {
+std::string Describe(const std::string& tool, vtkIdType switchedOff, vtkIdType divided = 0)
+{
+  std::ostringstream text;
+  text << tool << ": " << switchedOff << " tetrahedra of the volume are off";
+  if (divided > 0)
+  {
+    text << ", " << divided << " divided";
+  }
+  return text.str();
+}
+}
+
 vtkSmartPointer<vtkPolyData> ReadSheet(
   const std::string& path, const Options& options, Messages& messages)
 {
@@ -34,22 +46,10 @@ vtkSmartPointer<vtkPolyData> ReadSheet(
   return reader->GetOutput();
 }
 
-std::string Describe(const std::string& tool, vtkIdType switchedOff, vtkIdType divided = 0)
-{
-  std::ostringstream text;
-  text << tool << ": " << switchedOff << " tetrahedra of the volume are off";
-  if (divided > 0)
-  {
-    text << ", " << divided << " divided";
-  }
-  return text.str();
-}
-}
-
 std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Messages& messages)
 {
   std::vector<std::string> done;
-  for (const std::string& path : options.Cuts)
+  for (const std::string& path : options.CutsMesh() ? std::vector<std::string>() : options.Cuts)
   {
     vtkNew<vtkCutVolume> cut;
     cut->SetInputData(volume.Image);

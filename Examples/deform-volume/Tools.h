@@ -2,6 +2,9 @@
 #ifndef DeformVolumeTools_h
 #define DeformVolumeTools_h
 
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+
 #include <array>
 #include <string>
 #include <vector>
@@ -17,9 +20,13 @@ struct Carving
   double Radius = 1.0;
 };
 
-/// Switches off the tetrahedra of the volume that the sheets of the options cross and the spheres
-/// hold: the volume gets the cell array "ActiveTetrahedra". Returns what was done, in words, a line
-/// each. Throws a Failure where a sheet cannot be read.
+/// The sheet of a file. Throws a Failure where it cannot be read.
+vtkSmartPointer<vtkPolyData> ReadSheet(
+  const std::string& path, const Options& options, Messages& messages);
+
+/// Switches off the tetrahedra of the volume that the sheets of the options cross, unless these cut
+/// a mesh, and that the spheres hold: the volume gets the cell array "ActiveTetrahedra". Returns
+/// what was done, in words, a line each. Throws a Failure where a sheet cannot be read.
 std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Messages& messages);
 
 #endif

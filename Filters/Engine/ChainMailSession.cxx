@@ -142,7 +142,8 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
   // What can be wrong is looked at before anything is changed.
   const ImageGeometry geometry = GetGeometry(volume);
   CheckVolume(geometry);
-  vtkDataArray* materialArray = FindMaterialArray(volume, settings.ArrayName, !settings.Ranges.empty());
+  vtkDataArray* materialArray =
+    FindMaterialArray(volume, settings.ArrayName, !settings.Ranges.empty());
   vtkDataArray* pins = FindVolumeArray(volume, PINNED);
   const bool isNew = !this->HasVolume || this->Geometry != geometry;
   const Stamp maskStamp = GetMasksStamp(volume);

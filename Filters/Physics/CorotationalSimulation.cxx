@@ -6,11 +6,12 @@
 namespace deformvolume
 {
 
-void CorotationalSimulation::SetBody(const ElasticBody& body, bool keepsState)
+void CorotationalSimulation::SetBody(
+  const ElasticBody& body, bool keepsState, const std::function<bool()>& progress)
 {
   const std::vector<glm::dvec3> displacements =
     keepsState ? this->Model.GetDisplacements() : std::vector<glm::dvec3>();
-  this->Model.SetBody(body);
+  this->Model.SetBody(body, progress);
   if (keepsState)
   {
     this->Model.SetDisplacements(displacements);

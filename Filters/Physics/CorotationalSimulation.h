@@ -19,7 +19,8 @@ public:
   /// Of the last frame.
   CorotationalReport Report;
 
-  void SetBody(const ElasticBody& body, bool keepsState) override;
+  void SetBody(
+    const ElasticBody& body, bool keepsState, const std::function<bool()>& progress) override;
   void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins) override;
   State GetState() override { return { this->Model.GetDisplacements(), {} }; }
   void Return(const ElasticBody& body, const State& state) override;

@@ -59,8 +59,8 @@ Stamp GetDataStamp(vtkUnstructuredGrid* grid)
 
 } // namespace
 
-bool ElasticSession::Update(
-  ElasticSimulation& simulation, vtkUnstructuredGrid* grid, const BodySettings& settings)
+bool ElasticSession::Update(ElasticSimulation& simulation, vtkUnstructuredGrid* grid,
+  const BodySettings& settings, const std::function<bool()>& progress)
 {
   const Stamp stamp = GetBodyStamp(grid);
   this->Exists = this->Exists && &simulation == this->Simulation && simulation.HasBody();
@@ -72,8 +72,21 @@ bool ElasticSession::Update(
   }
   BodyMesh read = ReadBody(grid, settings);
   const bool keepsState = this->Exists && HasSameMesh(read.Body, this->Whole.Body);
-  const bool isLost = this->Exists && !keepsState && this->HasMoved;
-  const bool isNew = !keepsState || !IsSame(read.Body, this->Whole.Body);
+  const bool isLost = this->WasLost || (this->Exists && !keepsState && this->HasMoved);
+  BodyMesh mesh = keepsState ? this->WithCuts(read) : read;
+  if (!keepsState || !IsSame(read.Body, this->Whole.Body))
+  {
+    try
+    {
+      simulation.SetBody(mesh.Body, keepsState, progress);
+    }
+    catch (...)
+    {
+      // All is as it was, unless the last body has gone.
+      this->WasLost = this->WasLost || (this->Exists && this->HasMoved && !simulation.HasBody());
+      throw;
+    }
+  }
   if (!keepsState)
   {
     this->Cuts.clear();
@@ -82,30 +95,27 @@ bool ElasticSession::Update(
     this->HasMoved = false;
   }
   this->Whole = std::move(read);
-  this->Apply();
-  if (isNew)
-  {
-    this->Exists = false;
-    simulation.SetBody(this->Mesh.Body, keepsState);
-  }
+  this->Mesh = std::move(mesh);
   this->BodyStamp = stamp;
   this->Settings = settings;
   this->Simulation = &simulation;
   this->Exists = true;
+  this->WasLost = false;
   return isLost;
 }
 
-void ElasticSession::Apply()
+BodyMesh ElasticSession::WithCuts(const BodyMesh& whole) const
 {
-  this->Mesh = this->Whole;
+  BodyMesh mesh = whole;
   if (!this->Cuts.empty())
   {
     const AppliedCut& cut = this->Cuts.back();
-    this->Mesh.Body.Tetrahedra = cut.Tetrahedra;
-    AppendCopies(this->Mesh.Body.Points, cut.Origins);
-    AppendCopies(this->Mesh.Body.Fixed, cut.Origins);
-    AppendCopies(this->Mesh.Forces, cut.Origins);
+    mesh.Body.Tetrahedra = cut.Tetrahedra;
+    AppendCopies(mesh.Body.Points, cut.Origins);
+    AppendCopies(mesh.Body.Fixed, cut.Origins);
+    AppendCopies(mesh.Forces, cut.Origins);
   }
+  return mesh;
 }
 
 void ElasticSession::Cut(const WorldSheet& sheet)
@@ -139,7 +149,7 @@ void ElasticSession::Cut(const WorldSheet& sheet)
       cut.NumberOfFaces = split.NumberOfFaces;
       cut.Before = std::move(before);
       this->Cuts.push_back(std::move(cut));
-      this->Apply();
+      this->Mesh = this->WithCuts(this->Whole);
       this->Simulation->SplitNodes(this->Mesh.Body, appended);
     }
   }
@@ -152,7 +162,7 @@ void ElasticSession::RemoveCuts(std::size_t left)
   {
     const ElasticSimulation::State before = std::move(this->Cuts[left].Before);
     this->Cuts.resize(left);
-    this->Apply();
+    this->Mesh = this->WithCuts(this->Whole);
     this->Simulation->Return(this->Mesh.Body, before);
   }
 }

@@ -10,6 +10,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <functional>
 #include <vector>
 
 class vtkUnstructuredGrid;
@@ -21,9 +22,11 @@ namespace deformvolume
 class ElasticSession
 {
 public:
-  /// Brings the body up to date. Returns whether something that was simulated is lost by that.
-  bool Update(
-    ElasticSimulation& simulation, vtkUnstructuredGrid* grid, const BodySettings& settings);
+  /// Brings the body up to date. Returns whether something that was simulated is lost by that, or
+  /// has been by calls before that failed or were given up. progress: see
+  /// ElasticSimulation::SetBody.
+  bool Update(ElasticSimulation& simulation, vtkUnstructuredGrid* grid,
+    const BodySettings& settings, const std::function<bool()>& progress);
 
   /// Cuts the body where it is now along a sheet in its units, where that is another one than the
   /// last time.
@@ -57,10 +60,11 @@ private:
     ElasticSimulation::State Before;
   };
 
-  /// The body with the cuts that there are.
-  void Apply();
+  /// A body with the cuts that there are.
+  BodyMesh WithCuts(const BodyMesh& whole) const;
 
   bool Exists = false;
+  bool WasLost = false;                    // what was simulated, in a call that has failed
   ElasticSimulation* Simulation = nullptr; // that the body was given to
   Stamp BodyStamp;
   BodySettings Settings;

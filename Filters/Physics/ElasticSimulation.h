@@ -30,8 +30,10 @@ public:
     std::function<bool(double)> Progress; // from 0 to 1; false: it is to end
   };
 
-  /// A body: at rest, or with the displacements of the last one, which had the same mesh.
-  virtual void SetBody(const ElasticBody& body, bool keepsState) = 0;
+  /// A body: at rest, or with the displacements of the last one, which had the same mesh. progress:
+  /// false: it is to end. Then there is the last body, or none (HasBody).
+  virtual void SetBody(
+    const ElasticBody& body, bool keepsState, const std::function<bool()>& progress) = 0;
   /// Nodes of the body have been copied, see MassSpringModel::SplitNodes.
   virtual void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins) = 0;
   /// Where the nodes are, in m, and how fast, in m/s, where there are velocities.

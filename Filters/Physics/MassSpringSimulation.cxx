@@ -43,7 +43,8 @@ double MassSpringSimulation::GetStableTimeStep()
   return this->HasBody() ? this->Model.GetStableTimeStep() : 0.0;
 }
 
-void MassSpringSimulation::SetBody(const ElasticBody& body, bool keepsState)
+void MassSpringSimulation::SetBody(
+  const ElasticBody& body, bool keepsState, const std::function<bool()>& progress)
 {
   std::vector<float> displacements;
   std::vector<float> velocities;
@@ -53,7 +54,7 @@ void MassSpringSimulation::SetBody(const ElasticBody& body, bool keepsState)
     velocities = this->Model.GetVelocities();
   }
   this->Factor = 0.0;
-  this->Model.SetBody(body);
+  this->Model.SetBody(body, progress);
   this->NumberOfNodes = body.Points.size();
   if (keepsState)
   {

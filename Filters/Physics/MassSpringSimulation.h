@@ -26,7 +26,8 @@ public:
   /// Of the last frame.
   MassSpringReport Report;
 
-  void SetBody(const ElasticBody& body, bool keepsState) override;
+  void SetBody(
+    const ElasticBody& body, bool keepsState, const std::function<bool()>& progress) override;
   void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins) override;
   State GetState() override;
   void Return(const ElasticBody& body, const State& state) override;

@@ -14,6 +14,8 @@
 #define ROWS DEFORMVOLUME_BLOCK_ROWS
 #define VOXELS DEFORMVOLUME_BLOCK_VOXELS
 #define NO_LIMIT DEFORMVOLUME_NO_LIMIT
+// So that arrays of vectors stay in registers.
+#define UNROLL _Pragma("unroll")
 
 #if SERIAL
 #define BARRIER()
@@ -60,6 +62,37 @@ INLINE int8 LookUp(__global const int* table, uchar8 m)
   }
   return (int8)(table[m.s0], table[m.s1], table[m.s2], table[m.s3], table[m.s4], table[m.s5],
     table[m.s6], table[m.s7]);
+}
+
+// Whether all of eight materials, and all of eight others, are the same.
+INLINE int AreAlike(uchar8 a, uchar8 b)
+{
+  const ulong all = as_ulong(a);
+  return all == as_ulong(b) && all == (all & 255) * 0x0101010101010101UL;
+}
+
+// How much more, and how much less, voxels may have than their neighbours on a face, of each component.
+INLINE void FindLimitsBeside(
+  __global const int* limits, uchar8 m, uchar8 beside, int face, int8* over, int8* under)
+{
+  const int axis = face >> 1;
+  const int areAlike = AreAlike(m, beside);
+  UNROLL
+  for (int c = 0; c < 3; ++c)
+  {
+    __global const int* more = Limits(limits, c, axis, face & 1);
+    __global const int* less = Limits(limits, c, axis, ~face & 1);
+    if (areAlike)
+    {
+      over[c] = (int8)(more[m.s0]);
+      under[c] = (int8)(less[m.s0]);
+    }
+    else
+    {
+      over[c] = (LookUp(more, m) + LookUp(more, beside)) >> 1;
+      under[c] = (LookUp(less, m) + LookUp(less, beside)) >> 1;
+    }
+  }
 }
 
 // Limits of eight links between voxels with these halves. links: of the voxels at the lower ends.
@@ -113,6 +146,7 @@ INLINE void FindNeighbours(Neighbours* n, __global const int* displacements,
     const uchar8 lower = vload8(0, links + (face & 1 ? own : offset));
     n->Links = has ? (lower >> (uchar8)(face >> 1)) & (uchar8)(1) : (uchar8)(0);
     n->Materials = vload8(0, materials + offset);
+    UNROLL
     for (int c = 0; c < 3; ++c)
     {
       n->Displacements[c] = vload8(0, RowAt(displacements, offset, c));
@@ -130,6 +164,7 @@ INLINE void FindNeighbours(Neighbours* n, __global const int* displacements,
   n->Links.s7 = face && !has ? 0 : n->Links.s7;
   n->Materials =
     face ? (uchar8)(m.s123, m.s4567, materialBeside) : (uchar8)(materialBeside, m.s0123, m.s456);
+  UNROLL
   for (int c = 0; c < 3; ++c)
   {
     const int8 x = vload8(0, RowAt(displacements, own, c));

@@ -59,21 +59,20 @@ INLINE int FindViolation(const int8* x, uchar8 m, __global const int* displaceme
   uint block, int r, const ChainMailGrid* g)
 {
   int8 largest = 0;
+  UNROLL
   for (int face = 0; face < 6; ++face)
   {
     Neighbours n;
     FindNeighbours(&n, displacements, links, materials, block, r, face, g);
     const int8 there = convert_int8(n.Links) != 0;
-    const int axis = face >> 1;
+    int8 over[3], under[3];
+    FindLimitsBeside(limits, m, n.Materials, face, over, under);
+    UNROLL
     for (int c = 0; c < 3; ++c)
     {
-      const int8 difference =
-        face & 1 ? n.Displacements[c] - x[c] : x[c] - n.Displacements[c]; // upper end - lower end
-      __global const int* more = Limits(limits, c, axis, 0);
-      __global const int* less = Limits(limits, c, axis, 1);
-      const int8 over = difference - ((LookUp(more, m) + LookUp(more, n.Materials)) >> 1);
-      const int8 under = -difference - ((LookUp(less, m) + LookUp(less, n.Materials)) >> 1);
-      largest = max(largest, select((int8)(0), max(over, under), there));
+      const int8 difference = x[c] - n.Displacements[c];
+      largest = max(
+        largest, select((int8)(0), max(difference - over[c], -difference - under[c]), there));
     }
   }
   const int4 four = max(largest.lo, largest.hi);

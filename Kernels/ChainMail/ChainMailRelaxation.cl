@@ -13,8 +13,7 @@
 
 INLINE int8 WeightsOf(__global const uchar* weights, uchar8 a, uchar8 b)
 {
-  const ulong allA = as_ulong(a), allB = as_ulong(b), ones = 0x0101010101010101UL;
-  if (allA == (allA & 255) * ones && allB == (allB & 255) * ones)
+  if (AreAlike(a, b))
   {
     return (int8)(weights[a.s0 * 256 + b.s0]);
   }
@@ -54,6 +53,7 @@ __kernel void Relax(__global int* displacements, __global const uchar* flags,
     const int8 mine = (((odd + ((r ^ r >> 3) & 1)) & 1) == parity) & ~held &
       ((kind & (DEFORMVOLUME_ELEMENT | DEFORMVOLUME_PINNED)) == DEFORMVOLUME_ELEMENT);
     int8 x[3], pull[3], sum[3], lowest[3], highest[3];
+    UNROLL
     for (int c = 0; c < 3; ++c)
     {
       x[c] = vload8(0, RowAt(displacements, own, c));
@@ -62,32 +62,33 @@ __kernel void Relax(__global int* displacements, __global const uchar* flags,
       lowest[c] = -NO_LIMIT;
       highest[c] = NO_LIMIT;
     }
+    UNROLL
     for (int face = 0; face < 6; ++face)
     {
       Neighbours n;
       FindNeighbours(&n, displacements, links, materials, block, r, face, &g);
       const int8 there = convert_int8(n.Links) != 0;
       const int axis = face >> 1;
+      const int8 along = select((int8)(0), WeightsOf(weights, m, n.Materials), there);
+      const int8 across = select((int8)(0), WeightsOf(weights + 65536, m, n.Materials), there);
+      int8 over[3], under[3];
+      FindLimitsBeside(limits, m, n.Materials, face, over, under);
+      UNROLL
       for (int c = 0; c < 3; ++c)
       {
-        const int8 weight = select((int8)(0),
-          WeightsOf(weights + (axis == c ? 0 : 65536), m, n.Materials), there);
+        const int8 weight = axis == c ? along : across;
         sum[c] += weight;
         pull[c] += weight *
           clamp(n.Displacements[c] - x[c], (int8)(-MOST_PULL), (int8)(MOST_PULL));
-        // How much more, and how much less, this voxel may have than its neighbour.
-        __global const int* more = Limits(limits, c, axis, face & 1);
-        __global const int* less = Limits(limits, c, axis, ~face & 1);
-        const int8 over = (LookUp(more, m) + LookUp(more, n.Materials)) >> 1;
-        const int8 under = (LookUp(less, m) + LookUp(less, n.Materials)) >> 1;
         highest[c] =
-          min(highest[c], select((int8)(NO_LIMIT), n.Displacements[c] + over, there));
+          min(highest[c], select((int8)(NO_LIMIT), n.Displacements[c] + over[c], there));
         lowest[c] =
-          max(lowest[c], select((int8)(-NO_LIMIT), n.Displacements[c] - under, there));
+          max(lowest[c], select((int8)(-NO_LIMIT), n.Displacements[c] - under[c], there));
       }
     }
     int8 any = 0;
     int after[3][8];
+    UNROLL
     for (int c = 0; c < 3; ++c)
     {
       const int8 best =

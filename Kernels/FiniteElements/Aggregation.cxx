@@ -14,7 +14,7 @@ namespace deformvolume
 {
 
 Aggregates MakeAggregates(
-  const std::vector<std::int32_t>& starts, const std::vector<std::int32_t>& columns)
+  Watch& watch, const std::vector<std::int32_t>& starts, const std::vector<std::int32_t>& columns)
 {
   const std::size_t rows = starts.size() - 1;
   Aggregates result;
@@ -35,17 +35,19 @@ Aggregates MakeAggregates(
   std::stable_sort(order.begin(), order.end(),
     [&](std::size_t a, std::size_t b)
     { return starts[a + 1] - starts[a] > starts[b + 1] - starts[b]; });
-  for (const std::size_t row : order)
-  {
-    bool isAlone = true;
-    forNeighbors(row, [&](std::size_t other) { isAlone = isAlone && groups[other] < 0; });
-    if (isAlone)
+  ForItems(watch, rows,
+    [&](std::size_t item)
     {
-      const std::int32_t group = result.NumberOfGroups++;
-      groups[row] = group;
-      forNeighbors(row, [&](std::size_t other) { groups[other] = group; });
-    }
-  }
+      const std::size_t row = order[item];
+      bool isAlone = true;
+      forNeighbors(row, [&](std::size_t other) { isAlone = isAlone && groups[other] < 0; });
+      if (isAlone)
+      {
+        const std::int32_t group = result.NumberOfGroups++;
+        groups[row] = group;
+        forNeighbors(row, [&](std::size_t other) { groups[other] = group; });
+      }
+    });
   // The others join the smallest group beside them.
   std::vector<std::int32_t> sizes(static_cast<std::size_t>(result.NumberOfGroups), 0);
   for (const std::int32_t group : groups)
@@ -56,48 +58,51 @@ Aggregates MakeAggregates(
     }
   }
   const std::vector<std::int32_t> first = groups;
-  for (std::size_t row = 0; row < rows; ++row)
-  {
-    if (first[row] >= 0)
+  ForItems(watch, rows,
+    [&](std::size_t row)
     {
-      continue;
-    }
-    std::int32_t best = -1;
-    forNeighbors(row,
-      [&](std::size_t other)
+      if (first[row] >= 0)
       {
-        const std::int32_t group = first[other];
-        if (group >= 0 &&
-          (best < 0 ||
-            sizes[static_cast<std::size_t>(group)] < sizes[static_cast<std::size_t>(best)]))
+        return;
+      }
+      std::int32_t best = -1;
+      forNeighbors(row,
+        [&](std::size_t other)
         {
-          best = group;
-        }
-      });
-    // A row without neighbors in the first groups cannot be: it would be in one.
-    groups[row] = best;
-    ++sizes[static_cast<std::size_t>(best)];
-  }
+          const std::int32_t group = first[other];
+          if (group >= 0 &&
+            (best < 0 ||
+              sizes[static_cast<std::size_t>(group)] < sizes[static_cast<std::size_t>(best)]))
+          {
+            best = group;
+          }
+        });
+      // A row without neighbors in the first groups cannot be: it would be in one.
+      groups[row] = best;
+      ++sizes[static_cast<std::size_t>(best)];
+    });
   return result;
 }
 
 template <int Size>
 std::vector<Eigen::Matrix<double, Size, Size>> InvertDiagonal(
-  const SparseBlocks<Size, Size>& matrix)
+  Watch& watch, const SparseBlocks<Size, Size>& matrix)
 {
   std::vector<Eigen::Matrix<double, Size, Size>> inverses(
     static_cast<std::size_t>(matrix.GetNumberOfRows()));
-  for (std::int32_t row = 0; row < matrix.GetNumberOfRows(); ++row)
-  {
-    for (std::size_t block = matrix.GetStart(row); block < matrix.GetEnd(row); ++block)
+  ForItemsInParallel(watch, inverses.size(),
+    [&](std::size_t item)
     {
-      if (matrix.ColumnOfBlock[block] == row)
+      const auto row = static_cast<std::int32_t>(item);
+      for (std::size_t block = matrix.GetStart(row); block < matrix.GetEnd(row); ++block)
       {
-        inverses[static_cast<std::size_t>(row)] =
-          matrix.Blocks[block].llt().solve(Eigen::Matrix<double, Size, Size>::Identity());
+        if (matrix.ColumnOfBlock[block] == row)
+        {
+          inverses[item] =
+            matrix.Blocks[block].llt().solve(Eigen::Matrix<double, Size, Size>::Identity());
+        }
       }
-    }
-  }
+    });
   return inverses;
 }
 
@@ -166,7 +171,7 @@ namespace
 // Motions that a group of few rows does not have stay 0. What they were made of becomes the near
 // null space of the groups.
 template <int Size>
-void Orthogonalize(const Aggregates& aggregates, const NearNullSpace<Size>& modes,
+void Orthogonalize(Watch& watch, const Aggregates& aggregates, const NearNullSpace<Size>& modes,
   SparseBlocks<Size, RigidModes>& prolongation, NearNullSpace<RigidModes>& coarse)
 {
   constexpr double least = 1e-7;
@@ -188,6 +193,7 @@ void Orthogonalize(const Aggregates& aggregates, const NearNullSpace<Size>& mode
   coarse.assign(rowsOfGroup.size(), Eigen::Matrix<double, RigidModes, RigidModes>::Zero());
   for (std::size_t group = 0; group < rowsOfGroup.size(); ++group)
   {
+    watch.Ask();
     const auto dot = [&](int i, int j)
     {
       double sum = 0.0;
@@ -232,50 +238,54 @@ Coarsening<Size> Coarsen(Watch& watch, const SparseBlocks<Size, Size>& matrix,
   const NearNullSpace<Size>& modes)
 {
   Coarsening<Size> result;
-  const Aggregates aggregates = MakeAggregates(matrix.Starts, matrix.ColumnOfBlock);
+  const Aggregates aggregates = MakeAggregates(watch, matrix.Starts, matrix.ColumnOfBlock);
   SparseBlocks<Size, RigidModes> tentative;
-  Orthogonalize(aggregates, modes, tentative, result.Modes);
+  Orthogonalize(watch, aggregates, modes, tentative, result.Modes);
   const double damping = 4.0 / (3.0 * largestEigenvalue);
   result.Prolongation = Multiply(watch, matrix, tentative);
-  for (std::int32_t row = 0; row < matrix.GetNumberOfRows(); ++row)
-  {
-    const auto r = static_cast<std::size_t>(row);
-    for (std::size_t block = result.Prolongation.GetStart(row);
-         block < result.Prolongation.GetEnd(row); ++block)
+  ForItemsInParallel(watch, tentative.Blocks.size(),
+    [&](std::size_t r)
     {
-      auto& value = result.Prolongation.Blocks[block];
-      value = -damping * inverses[r] * value;
-      if (result.Prolongation.ColumnOfBlock[block] == aggregates.GroupOfRow[r])
+      const auto row = static_cast<std::int32_t>(r);
+      for (std::size_t block = result.Prolongation.GetStart(row);
+           block < result.Prolongation.GetEnd(row); ++block)
       {
-        value += tentative.Blocks[r];
-      }
-    }
-  }
-  result.Matrix =
-    Multiply(watch, Transpose(result.Prolongation), Multiply(watch, matrix, result.Prolongation));
-  // Unknowns that move nothing would make it singular.
-  for (std::int32_t row = 0; row < result.Matrix.GetNumberOfRows(); ++row)
-  {
-    for (std::size_t block = result.Matrix.GetStart(row); block < result.Matrix.GetEnd(row);
-         ++block)
-    {
-      if (result.Matrix.ColumnOfBlock[block] == row)
-      {
-        for (int i = 0; i < RigidModes; ++i)
+        auto& value = result.Prolongation.Blocks[block];
+        value = -damping * inverses[r] * value;
+        if (result.Prolongation.ColumnOfBlock[block] == aggregates.GroupOfRow[r])
         {
-          if (result.Modes[static_cast<std::size_t>(row)](i, i) == 0.0)
+          value += tentative.Blocks[r];
+        }
+      }
+    });
+  auto product = Multiply(watch, matrix, result.Prolongation);
+  const auto restriction = Transpose(watch, result.Prolongation);
+  result.Matrix = Multiply(watch, restriction, product);
+  product = {};
+  // Unknowns that move nothing would make it singular.
+  ForItems(watch, result.Modes.size(),
+    [&](std::size_t item)
+    {
+      const auto row = static_cast<std::int32_t>(item);
+      for (std::size_t block = result.Matrix.GetStart(row); block < result.Matrix.GetEnd(row);
+           ++block)
+      {
+        for (int i = 0; i < RigidModes && result.Matrix.ColumnOfBlock[block] == row; ++i)
+        {
+          if (result.Modes[item](i, i) == 0.0)
           {
             result.Matrix.Blocks[block](i, i) = 1.0;
           }
         }
       }
-    }
-  }
+    });
   return result;
 }
 
-template std::vector<Eigen::Matrix<double, 3, 3>> InvertDiagonal<3>(const SparseBlocks<3, 3>&);
-template std::vector<Eigen::Matrix<double, 6, 6>> InvertDiagonal<6>(const SparseBlocks<6, 6>&);
+template std::vector<Eigen::Matrix<double, 3, 3>> InvertDiagonal<3>(
+  Watch&, const SparseBlocks<3, 3>&);
+template std::vector<Eigen::Matrix<double, 6, 6>> InvertDiagonal<6>(
+  Watch&, const SparseBlocks<6, 6>&);
 template double FindLargestEigenvalue<3>(
   Watch&, const SparseBlocks<3, 3>&, const std::vector<Eigen::Matrix<double, 3, 3>>&);
 template double FindLargestEigenvalue<6>(

@@ -26,7 +26,7 @@ struct Aggregates
   std::int32_t NumberOfGroups = 0;
 };
 Aggregates MakeAggregates(
-  const std::vector<std::int32_t>& starts, const std::vector<std::int32_t>& columns);
+  Watch& watch, const std::vector<std::int32_t>& starts, const std::vector<std::int32_t>& columns);
 
 /// The next coarser level of a matrix: six unknowns for each group of rows, which move the group as
 /// the near null space says.
@@ -48,7 +48,7 @@ double FindLargestEigenvalue(Watch& watch, const SparseBlocks<Size, Size>& matri
 /// Inverses of the blocks on the diagonal.
 template <int Size>
 std::vector<Eigen::Matrix<double, Size, Size>> InvertDiagonal(
-  const SparseBlocks<Size, Size>& matrix);
+  Watch& watch, const SparseBlocks<Size, Size>& matrix);
 
 template <int Size>
 Coarsening<Size> Coarsen(Watch& watch, const SparseBlocks<Size, Size>& matrix,

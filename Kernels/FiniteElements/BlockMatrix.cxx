@@ -64,90 +64,96 @@ DEFORMVOLUME_FOR_AVX2 void MultiplyRowsWide(
 
 } // namespace
 
-BlockPattern MakeNodePattern(const ElasticBody& body)
+BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body)
 {
   const std::size_t nodes = body.Points.size();
   std::vector<std::size_t> starts(nodes + 1, 0);
-  for (const Tetrahedron& tetrahedron : body.Tetrahedra)
-  {
-    for (const std::int32_t node : tetrahedron)
+  ForItems(watch, body.Tetrahedra.size(),
+    [&](std::size_t t)
     {
-      ++starts[static_cast<std::size_t>(node) + 1];
-    }
-  }
+      for (const std::int32_t node : body.Tetrahedra[t])
+      {
+        ++starts[static_cast<std::size_t>(node) + 1];
+      }
+    });
   for (std::size_t node = 0; node < nodes; ++node)
   {
     starts[node + 1] += starts[node];
   }
   std::vector<std::size_t> next(starts.begin(), starts.end() - 1);
   std::vector<std::int32_t> tetrahedra(starts.back());
-  for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
-  {
-    for (const std::int32_t node : body.Tetrahedra[t])
+  ForItems(watch, body.Tetrahedra.size(),
+    [&](std::size_t t)
     {
-      tetrahedra[next[static_cast<std::size_t>(node)]++] = static_cast<std::int32_t>(t);
-    }
-  }
+      for (const std::int32_t node : body.Tetrahedra[t])
+      {
+        tetrahedra[next[static_cast<std::size_t>(node)]++] = static_cast<std::int32_t>(t);
+      }
+    });
 
   BlockPattern pattern;
   pattern.Rows.assign(nodes + 1, 0);
   pattern.Diagonal.resize(nodes);
   std::vector<std::int32_t> columns;
-  for (std::size_t node = 0; node < nodes; ++node)
-  {
-    columns.assign(1, static_cast<std::int32_t>(node));
-    for (std::size_t i = starts[node]; i < starts[node + 1]; ++i)
+  ForItems(watch, nodes,
+    [&](std::size_t node)
     {
-      const Tetrahedron& tetrahedron = body.Tetrahedra[static_cast<std::size_t>(tetrahedra[i])];
-      columns.insert(columns.end(), tetrahedron.begin(), tetrahedron.end());
-    }
-    std::sort(columns.begin(), columns.end());
-    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
-    const auto own =
-      std::lower_bound(columns.begin(), columns.end(), static_cast<std::int32_t>(node));
-    pattern.Diagonal[node] = pattern.Rows[node] + static_cast<std::int32_t>(own - columns.begin());
-    pattern.Columns.insert(pattern.Columns.end(), columns.begin(), columns.end());
-    pattern.Rows[node + 1] = static_cast<std::int32_t>(pattern.Columns.size());
-  }
+      columns.assign(1, static_cast<std::int32_t>(node));
+      for (std::size_t i = starts[node]; i < starts[node + 1]; ++i)
+      {
+        const Tetrahedron& tetrahedron = body.Tetrahedra[static_cast<std::size_t>(tetrahedra[i])];
+        columns.insert(columns.end(), tetrahedron.begin(), tetrahedron.end());
+      }
+      std::sort(columns.begin(), columns.end());
+      columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+      const auto own =
+        std::lower_bound(columns.begin(), columns.end(), static_cast<std::int32_t>(node));
+      pattern.Diagonal[node] =
+        pattern.Rows[node] + static_cast<std::int32_t>(own - columns.begin());
+      pattern.Columns.insert(pattern.Columns.end(), columns.begin(), columns.end());
+      pattern.Rows[node + 1] = static_cast<std::int32_t>(pattern.Columns.size());
+    });
 
   // The rows of a column are met in rising order, as its blocks on the other side are.
   pattern.Mirrored.resize(pattern.Columns.size());
   std::vector<std::int32_t> nextOfRow(pattern.Rows.begin(), pattern.Rows.end() - 1);
-  for (std::size_t block = 0; block < pattern.Columns.size(); ++block)
-  {
-    pattern.Mirrored[block] = nextOfRow[static_cast<std::size_t>(pattern.Columns[block])]++;
-  }
+  ForItems(watch, pattern.Columns.size(),
+    [&](std::size_t block)
+    { pattern.Mirrored[block] = nextOfRow[static_cast<std::size_t>(pattern.Columns[block])]++; });
   return pattern;
 }
 
 std::vector<BatchPositions> FindPositions(
-  const ElementBatches& batches, const BlockPattern& pattern)
+  Watch& watch, const ElementBatches& batches, const BlockPattern& pattern)
 {
   constexpr int pairs[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
-  std::vector<BatchPositions> positions(batches.Batches.size());
-  for (std::size_t batch = 0; batch < positions.size(); ++batch)
-  {
-    for (int pair = 0; pair < 6; ++pair)
+  std::vector<BatchPositions> positions;
+  Grow(watch, positions, batches.Batches.size());
+  ForItemsInParallel(watch, positions.size(),
+    [&](std::size_t batch)
     {
-      for (int lane = 0; lane < NumberOfLanes; ++lane)
+      for (int pair = 0; pair < 6; ++pair)
       {
-        const auto& nodes = batches.Batches[batch].Nodes;
-        const auto row = static_cast<std::size_t>(nodes[pairs[pair][0]][lane]);
-        const auto begin = pattern.Columns.begin() + pattern.Rows[row];
-        const auto end = pattern.Columns.begin() + pattern.Rows[row + 1];
-        positions[batch].Blocks[pair][lane] = static_cast<std::int32_t>(
-          std::lower_bound(begin, end, nodes[pairs[pair][1]][lane]) - pattern.Columns.begin());
+        for (int lane = 0; lane < NumberOfLanes; ++lane)
+        {
+          const auto& nodes = batches.Batches[batch].Nodes;
+          const auto row = static_cast<std::size_t>(nodes[pairs[pair][0]][lane]);
+          const auto begin = pattern.Columns.begin() + pattern.Rows[row];
+          const auto end = pattern.Columns.begin() + pattern.Rows[row + 1];
+          positions[batch].Blocks[pair][lane] = static_cast<std::int32_t>(
+            std::lower_bound(begin, end, nodes[pairs[pair][1]][lane]) - pattern.Columns.begin());
+        }
       }
-    }
-  }
+    });
   return positions;
 }
 
-void BlockMatrix::SetPattern(BlockPattern pattern)
+void BlockMatrix::SetPattern(Watch& watch, BlockPattern pattern)
 {
   this->Pattern = std::move(pattern);
   // One more, for the lane that LoadColumn reads and does not use.
-  this->Values.assign(this->Pattern.GetNumberOfBlocks() * BlockSize + 1, 0.0);
+  this->Values.clear();
+  Grow(watch, this->Values, this->Pattern.GetNumberOfBlocks() * BlockSize + 1);
 }
 
 void BlockMatrix::PutToZero(Watch& watch)

@@ -32,7 +32,7 @@ struct BlockPattern
 };
 
 /// The pattern in which nodes that have a tetrahedron in common are connected.
-BlockPattern MakeNodePattern(const ElasticBody& body);
+BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body);
 
 /// Where six blocks above the diagonal of each tetrahedron lie: those of nodes 0 1, 0 2, 0 3, 1 2,
 /// 1 3, 2 3 of a batch.
@@ -41,7 +41,7 @@ struct BatchPositions
   std::int32_t Blocks[6][NumberOfLanes];
 };
 std::vector<BatchPositions> FindPositions(
-  const ElementBatches& batches, const BlockPattern& pattern);
+  Watch& watch, const ElementBatches& batches, const BlockPattern& pattern);
 
 /// A symmetric matrix of blocks of 3 x 3, each by its columns.
 class BlockMatrix
@@ -52,7 +52,7 @@ public:
   static constexpr std::size_t RowsOfPart = 512;
   static constexpr std::size_t PartsAtOnce = 512;
 
-  void SetPattern(BlockPattern pattern);
+  void SetPattern(Watch& watch, BlockPattern pattern);
   const BlockPattern& GetPattern() const { return this->Pattern; }
 
   double* GetBlock(std::int32_t block)

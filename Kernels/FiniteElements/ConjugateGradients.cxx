@@ -1,53 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ConjugateGradients.h"
 
+#include "RowParts.h"
+
 #include <glm/geometric.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 namespace deformvolume
 {
-namespace
-{
-
-double SumOfProducts(
-  Watch& watch, const std::vector<glm::dvec3>& a, const std::vector<glm::dvec3>& b)
-{
-  return SumOfParts(watch, a.size(),
-    [&](std::size_t begin, std::size_t end)
-    {
-      double sum = 0.0;
-      for (std::size_t row = begin; row < end; ++row)
-      {
-        sum += glm::dot(a[row], b[row]);
-      }
-      return sum;
-    });
-}
-
-} // namespace
-
 int ConjugateGradients::Solve(Watch& watch, const BlockMatrix& matrix,
-  const std::vector<unsigned char>& isFree, Preconditioner& preconditioner,
-  const std::vector<glm::dvec3>& rightHandSide, const Limits& limits,
-  std::vector<glm::dvec3>& solution)
+  const std::vector<unsigned char>& isFree, Preconditioner& preconditioner, const Limits& limits,
+  std::vector<glm::dvec3>& solution, std::vector<glm::dvec3>& residual)
 {
-  const std::size_t rows = rightHandSide.size();
-  solution.assign(rows, glm::dvec3(0.0));
-  this->Residual = rightHandSide;
+  const std::size_t rows = residual.size();
   this->Preconditioned.resize(rows);
   this->Direction.assign(rows, glm::dvec3(0.0));
   this->Product.resize(rows);
-  double squared = SumOfProducts(watch, this->Residual, this->Residual);
-  const double wanted = limits.Tolerance * limits.Tolerance * squared;
+  double squared = SumOfProducts(watch, residual, residual);
   double last = 0.0;
   int iteration = 0;
-  for (; squared > wanted && iteration < limits.Iterations; ++iteration)
+  for (; squared > limits.SquaredResidual && iteration < limits.Iterations; ++iteration)
   {
-    preconditioner.Apply(watch, this->Residual, std::sqrt(squared), this->Preconditioned);
-    const double product = SumOfProducts(watch, this->Residual, this->Preconditioned);
+    preconditioner.Apply(watch, residual, std::sqrt(squared), this->Preconditioned);
+    const double product = SumOfProducts(watch, residual, this->Preconditioned);
     if (!(product > 0.0))
     {
       break;
@@ -55,14 +32,13 @@ int ConjugateGradients::Solve(Watch& watch, const BlockMatrix& matrix,
     const double ratio = iteration == 0 ? 0.0 : product / last;
     last = product;
     // Each part reads directions of others: all of them are there before the first product.
-    SumOfParts(watch, rows,
+    ForRows(watch, rows,
       [&](std::size_t begin, std::size_t end)
       {
         for (std::size_t row = begin; row < end; ++row)
         {
           this->Direction[row] = this->Preconditioned[row] + ratio * this->Direction[row];
         }
-        return 0.0;
       });
     const double curvature = SumOfParts(watch, rows,
       [&](std::size_t begin, std::size_t end)
@@ -88,8 +64,8 @@ int ConjugateGradients::Solve(Watch& watch, const BlockMatrix& matrix,
         for (std::size_t row = begin; row < end; ++row)
         {
           solution[row] += length * this->Direction[row];
-          this->Residual[row] -= length * this->Product[row];
-          sum += glm::dot(this->Residual[row], this->Residual[row]);
+          residual[row] -= length * this->Product[row];
+          sum += glm::dot(residual[row], residual[row]);
         }
         return sum;
       });

@@ -21,37 +21,21 @@ public:
   struct Limits
   {
     int Iterations = 500;
-    /// By how much the length of the residual is made smaller.
-    double Tolerance = 1e-2;
+    /// The square of the length that the residual is to have at most.
+    double SquaredResidual = 0.0;
   };
 
-  /// The right-hand side is 0 where nodes are not free. Returns the number of iterations.
+  /// Makes a solution better whose residual is given, which is 0 where nodes are not free. Returns
+  /// the number of iterations.
   int Solve(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
-    Preconditioner& preconditioner, const std::vector<glm::dvec3>& rightHandSide,
-    const Limits& limits, std::vector<glm::dvec3>& solution);
+    Preconditioner& preconditioner, const Limits& limits, std::vector<glm::dvec3>& solution,
+    std::vector<glm::dvec3>& residual);
 
 private:
-  std::vector<glm::dvec3> Residual;
   std::vector<glm::dvec3> Preconditioned;
   std::vector<glm::dvec3> Direction;
   std::vector<glm::dvec3> Product;
 };
-
-/// The sum of what body(begin, end) returns for parts of the rows, which are added in their order.
-template <typename Body>
-double SumOfParts(Watch& watch, std::size_t rows, Body&& body)
-{
-  constexpr std::size_t size = BlockMatrix::RowsOfPart;
-  std::vector<double> sums((rows + size - 1) / size);
-  ForParts(watch, sums.size(), BlockMatrix::PartsAtOnce,
-    [&](std::size_t part) { sums[part] = body(part * size, std::min(rows, (part + 1) * size)); });
-  double total = 0.0;
-  for (const double sum : sums)
-  {
-    total += sum;
-  }
-  return total;
-}
 
 } // namespace deformvolume
 

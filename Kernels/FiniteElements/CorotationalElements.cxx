@@ -285,7 +285,10 @@ std::vector<ElementResults> CorotationalElements::GetResults(
           const Lanes* s = values.Values;
           result.Determinant = s[0][lane] * s[1][lane] * s[2][lane];
           result.StrainEnergyDensity = stress.EnergyDensity[lane];
-          result.Stress = GetCauchyStress(stress.Piola, F, lane, result.Determinant);
+          if (!IsFlat(result.Determinant))
+          {
+            result.Stress = GetCauchyStress(stress.Piola, F, lane, result.Determinant);
+          }
         }
       }
     });

@@ -19,17 +19,17 @@ namespace deformvolume
 class CorotationalElements
 {
 public:
-  explicit CorotationalElements(const ElasticBody& body)
-    : Batches(MakeElementBatches(body))
+  CorotationalElements(Watch& watch, const ElasticBody& body)
+    : Batches(MakeElementBatches(watch, body))
   {
   }
 
   void SetMaterials(const ElasticBody& body) { deformvolume::SetMaterials(this->Batches, body); }
 
   /// What is needed to assemble matrices of this pattern.
-  void SetPattern(const BlockPattern& pattern)
+  void SetPattern(Watch& watch, const BlockPattern& pattern)
   {
-    this->Positions = FindPositions(this->Batches, pattern);
+    this->Positions = FindPositions(watch, this->Batches, pattern);
   }
 
   struct Sums

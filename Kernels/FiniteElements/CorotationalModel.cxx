@@ -32,10 +32,12 @@ CorotationalModel::CorotationalModel()
 
 CorotationalModel::~CorotationalModel() = default;
 
-void CorotationalModel::SetBody(const ElasticBody& body)
+void CorotationalModel::SetBody(const ElasticBody& body, const std::function<bool()>& progress)
 {
-  CheckBody(body);
-  this->Impl->Solver = std::make_unique<CorotationalSolver>(body);
+  Watch watch(progress);
+  watch.Ask();
+  CheckBody(body, &watch);
+  this->Impl->Solver = std::make_unique<CorotationalSolver>(watch, body);
 }
 
 void CorotationalModel::SetMaterials(const std::vector<ElasticMaterial>& materials)

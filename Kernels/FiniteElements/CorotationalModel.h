@@ -9,6 +9,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -34,8 +35,10 @@ public:
   CorotationalModel(const CorotationalModel&) = delete;
   CorotationalModel& operator=(const CorotationalModel&) = delete;
 
-  /// The body, at rest. An Error where CheckBody finds one; the last body stays then.
-  void SetBody(const ElasticBody& body);
+  /// The body, at rest. An Error where CheckBody finds one; the last body stays then. progress:
+  /// called every few milliseconds, in the thread that called; returning false aborts, and the last
+  /// body stays, too.
+  void SetBody(const ElasticBody& body, const std::function<bool()>& progress = nullptr);
 
   /// One material for the body that is set, or one a tetrahedron. Displacements stay.
   void SetMaterials(const std::vector<ElasticMaterial>& materials);

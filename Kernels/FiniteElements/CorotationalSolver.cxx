@@ -2,68 +2,32 @@
 #include "CorotationalSolver.h"
 
 #include "Error.h"
+#include "RowParts.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 
 namespace deformvolume
 {
-namespace
-{
-
-// With fewer free nodes the inverses of the diagonal are enough.
-constexpr std::ptrdiff_t LeastNumberForLevels = 1000;
-
-double LargestComponent(const glm::dvec3& vector)
-{
-  const glm::dvec3 sizes = glm::abs(vector);
-  return std::max({ sizes.x, sizes.y, sizes.z });
-}
-
-// What is 0 in the limits of a request is chosen by the mode.
-CorotationalLimits ChooseLimits(const CorotationalRequest& request)
-{
-  CorotationalLimits limits = request.Limits;
-  const auto choose = [&](auto& value, auto interactive, auto converged)
-  {
-    if (!(value >= 0 && std::isfinite(static_cast<double>(value))))
-    {
-      throw Error("A limit of the solver is less than 0 or not finite.");
-    }
-    if (value == 0)
-    {
-      value = request.Mode == CorotationalMode::Interactive ? interactive : converged;
-    }
-  };
-  choose(limits.NewtonSteps, 2, 200);
-  choose(limits.LinearIterations, 500, 5000);
-  choose(limits.LinearTolerance, 1e-2, 1e-6);
-  choose(limits.RelativeTolerance, 1e-3, 1e-6);
-  choose(limits.AbsoluteTolerance, 1e-6, 1e-11);
-  return limits;
-}
-
-} // namespace
-
-CorotationalSolver::CorotationalSolver(const ElasticBody& body)
+CorotationalSolver::CorotationalSolver(Watch& watch, const ElasticBody& body)
   : Body(body)
-  , Pieces(FindPieces(body))
-  , Elements(body)
+  , Pieces(FindPieces(body, &watch))
+  , Elements(watch, body)
 {
   this->Last.Displacements.assign(body.Points.size(), glm::dvec3(0.0));
-  this->Matrix.SetPattern(MakeNodePattern(body));
-  this->Elements.SetPattern(this->Matrix.GetPattern());
-  this->UpdateScale();
+  this->Tangent.SetPattern(watch, MakeNodePattern(watch, body));
+  this->Elements.SetPattern(watch, this->Tangent.GetMatrix().GetPattern());
+  this->UpdateScale(watch);
 }
 
-void CorotationalSolver::UpdateScale()
+void CorotationalSolver::UpdateScale(Watch& watch)
 {
+  watch.Ask();
   const std::vector<double> volumes = GetVolumes(this->Body);
+  watch.Ask();
   this->Masses = GetNodeMasses(this->Body, volumes);
   double total = 0.0;
   for (const double volume : volumes)
@@ -85,16 +49,19 @@ void CorotationalSolver::SetMaterials(const std::vector<ElasticMaterial>& materi
 {
   this->Body.Materials = materials;
   this->Elements.SetMaterials(this->Body);
-  this->UpdateScale();
+  Watch watch(nullptr);
+  this->UpdateScale(watch);
   this->HasForces = false;
-  this->IsFreeInLevels.clear();
+  this->HasTangent = false;
+  this->Tangent.Forget();
 }
 
 void CorotationalSolver::SetDisplacements(const std::vector<glm::dvec3>& displacements)
 {
   this->Last.Displacements = displacements;
   this->HasForces = false;
-  this->IsFreeInLevels.clear();
+  this->HasTangent = false;
+  this->Tangent.Forget();
 }
 
 std::vector<glm::dvec3> CorotationalSolver::GetForces() const
@@ -110,62 +77,15 @@ std::vector<ElementResults> CorotationalSolver::GetElementResults() const
   return this->Elements.GetResults(this->Last.Displacements);
 }
 
-CorotationalSolver::Problem CorotationalSolver::MakeProblem(
-  const CorotationalRequest& request) const
-{
-  CheckLoads(this->Body, request.Loads);
-  CheckHeldNodes(this->Body, request.Held);
-  const std::size_t nodes = this->Body.Points.size();
-  std::vector<unsigned char> isNotFree(this->Body.Fixed);
-  isNotFree.resize(nodes, 0);
-  std::vector<glm::dvec3> targets(nodes, glm::dvec3(0.0));
-  for (const HeldNode& held : request.Held)
-  {
-    isNotFree[static_cast<std::size_t>(held.Node)] = 1;
-    targets[static_cast<std::size_t>(held.Node)] = held.Displacement;
-  }
-  const std::vector<bool> isHeld = FindHeldPieces(this->Body, this->Pieces, isNotFree);
-  Problem problem;
-  problem.FrozenPieces = static_cast<std::int32_t>(std::count(isHeld.begin(), isHeld.end(), false));
-  if (problem.FrozenPieces == this->Pieces.NumberOfPieces)
-  {
-    throw Error("No constraints: nothing holds the body. Fix or hold at least three of its nodes "
-                "that do not lie on a line.");
-  }
-  problem.IsFree.assign(nodes, 0);
-  problem.Loads.assign(nodes, glm::dvec3(0.0));
-  for (std::size_t node = 0; node < nodes; ++node)
-  {
-    const std::int32_t piece = this->Pieces.PieceOfNode[node];
-    if (piece < 0 || !isHeld[static_cast<std::size_t>(piece)])
-    {
-      continue;
-    }
-    problem.Loads[node] = request.Loads.Gravity * this->Masses[node];
-    if (!request.Loads.Forces.empty())
-    {
-      problem.Loads[node] += request.Loads.Forces[node];
-    }
-    if (isNotFree[node] != 0)
-    {
-      problem.HeldNodes.push_back(static_cast<std::int32_t>(node));
-      problem.Targets.push_back(targets[node]);
-    }
-    else
-    {
-      problem.IsFree[node] = 1;
-    }
-  }
-  return problem;
-}
-
-void CorotationalSolver::Evaluate(Watch& watch, const Problem& problem, State& state) const
+void CorotationalSolver::Evaluate(
+  Watch& watch, const CorotationalProblem& problem, State& state) const
 {
   state.Sums = this->Elements.FindForces(watch, state.Displacements, state.Forces);
   this->FindPotential(watch, problem, state);
 }
 
-void CorotationalSolver::FindPotential(Watch& watch, const Problem& problem, State& state) const
+void CorotationalSolver::FindPotential(
+  Watch& watch, const CorotationalProblem& problem, State& state) const
 {
   state.Potential = state.Sums.Energy -
     SumOfParts(watch, problem.Loads.size(),
@@ -180,71 +100,35 @@ void CorotationalSolver::FindPotential(Watch& watch, const Problem& problem, Sta
       });
 }
 
-CorotationalSolver::Residuals CorotationalSolver::FindResidual(
-  const Problem& problem, const State& state) const
+void CorotationalSolver::UpdateTangent(
+  Watch& watch, const CorotationalProblem& problem, const State& state)
 {
-  Residuals residuals;
-  for (std::size_t node = 0; node < problem.IsFree.size(); ++node)
+  if (this->HasTangent && problem.IsInteractive)
   {
-    if (problem.IsFree[node] != 0)
-    {
-      residuals.Largest =
-        std::max(residuals.Largest, LargestComponent(problem.Loads[node] - state.Forces[node]));
-      residuals.Reference = std::max(residuals.Reference, LargestComponent(problem.Loads[node]));
-    }
+    return;
   }
-  for (const std::int32_t node : problem.HeldNodes)
-  {
-    const auto i = static_cast<std::size_t>(node);
-    residuals.Reference =
-      std::max(residuals.Reference, LargestComponent(problem.Loads[i] - state.Forces[i]));
-  }
-  return residuals;
-}
-
-Preconditioner& CorotationalSolver::Precondition(
-  Watch& watch, const Problem& problem, const State& state)
-{
-  const auto number = std::count(problem.IsFree.begin(), problem.IsFree.end(), 1);
-  if (number < LeastNumberForLevels)
-  {
-    this->Jacobi.Build(watch, this->Matrix, problem.IsFree);
-    return this->Jacobi;
-  }
+  this->HasTangent = false;
   std::vector<glm::dvec3> positions = this->Body.Points;
   for (std::size_t node = 0; node < positions.size(); ++node)
   {
     positions[node] += state.Displacements[node];
   }
-  if (this->IsFreeInLevels != problem.IsFree)
-  {
-    this->IsFreeInLevels.clear();
-    this->Levels.Build(watch, this->Matrix, problem.IsFree, positions);
-    this->CostOfLevels = 0.0;
-    this->IsFreeInLevels = problem.IsFree;
-  }
-  this->Levels.SetPositions(watch, this->Matrix.GetPattern(), positions);
-  return this->Levels;
+  this->Tangent.Update(std::move(positions),
+    [&](BlockMatrix& matrix)
+    { this->Elements.AssembleTangent(watch, state.Displacements, matrix); });
+  this->HasTangent = true;
+  this->IsTangentOld = false;
 }
 
-void CorotationalSolver::JudgeLevels(int iterations, const CorotationalLimits& limits)
+double CorotationalSolver::ChooseTolerance(const CorotationalProblem& problem, double wanted)
 {
-  // It takes about as long to build them as some tens of iterations.
-  constexpr int fewIterations = 30;
-  constexpr double manyTimes = 2.5;
-  const double cost = iterations / std::max(0.1, -std::log10(limits.LinearTolerance));
-  if (this->CostOfLevels == 0.0)
-  {
-    this->CostOfLevels = std::max(1.0, cost);
-  }
-  else if (iterations > fewIterations && cost > manyTimes * this->CostOfLevels)
-  {
-    this->IsFreeInLevels.clear();
-  }
+  constexpr double share = 0.3;
+  return problem.IsInteractive ? std::clamp(share * wanted, problem.Limits.LinearTolerance, share)
+                               : problem.Limits.LinearTolerance;
 }
 
-void CorotationalSolver::SolveLinear(Watch& watch, const Problem& problem,
-  const CorotationalLimits& limits, const State& state, CorotationalReport& report)
+void CorotationalSolver::SolveLinear(Watch& watch, const CorotationalProblem& problem,
+  const State& state, double tolerance, CorotationalReport& report)
 {
   for (std::size_t node = 0; node < problem.IsFree.size(); ++node)
   {
@@ -253,16 +137,13 @@ void CorotationalSolver::SolveLinear(Watch& watch, const Problem& problem,
       ? this->RightHandSide[node] + problem.Loads[node] - state.Forces[node]
       : glm::dvec3(0.0);
   }
-  const int iterations = this->Gradients.Solve(watch, this->Matrix, problem.IsFree,
-    this->Precondition(watch, problem, state), this->RightHandSide,
-    { limits.LinearIterations, limits.LinearTolerance }, this->Direction);
-  this->JudgeLevels(iterations, limits);
-  report.LinearIterations += iterations;
+  report.LinearIterations += this->Tangent.Solve(watch, problem.IsFree, this->RightHandSide,
+    { problem.Limits.LinearIterations, tolerance }, report.NewtonSteps == 0, this->Direction);
   ++report.NewtonSteps;
 }
 
-void CorotationalSolver::MoveHeldNodes(Watch& watch, const Problem& problem,
-  const CorotationalLimits& limits, State& state, CorotationalReport& report)
+bool CorotationalSolver::MoveHeldNodes(
+  Watch& watch, const CorotationalProblem& problem, State& state, CorotationalReport& report)
 {
   const std::size_t nodes = problem.IsFree.size();
   std::vector<glm::dvec3> moves(nodes, glm::dvec3(0.0));
@@ -275,21 +156,20 @@ void CorotationalSolver::MoveHeldNodes(Watch& watch, const Problem& problem,
   }
   if (!isMoved)
   {
-    return;
+    return false;
   }
-  this->Elements.AssembleTangent(watch, state.Displacements, this->Matrix);
-  SumOfParts(watch, nodes,
+  this->UpdateTangent(watch, problem, state);
+  ForRows(watch, nodes,
     [&](std::size_t begin, std::size_t end)
     {
-      this->Matrix.Multiply(
+      this->Tangent.GetMatrix().Multiply(
         begin, end, problem.IsFree.data(), moves.data(), this->RightHandSide.data());
       for (std::size_t node = begin; node < end; ++node)
       {
         this->RightHandSide[node] = -this->RightHandSide[node];
       }
-      return 0.0;
     });
-  this->SolveLinear(watch, problem, limits, state, report);
+  this->SolveLinear(watch, problem, state, problem.Limits.LinearTolerance, report);
   State guess;
   guess.Displacements = state.Displacements;
   for (std::size_t node = 0; node < nodes; ++node)
@@ -312,30 +192,32 @@ void CorotationalSolver::MoveHeldNodes(Watch& watch, const Problem& problem,
     this->Evaluate(watch, problem, state);
     if (state.Potential <= guess.Potential || !std::isfinite(guess.Potential))
     {
-      return;
+      this->HasTangent = false;
+      return true;
     }
   }
   std::swap(state, guess);
+  return true;
 }
 
-bool CorotationalSolver::Step(Watch& watch, const Problem& problem,
-  const CorotationalLimits& limits, State& state, CorotationalReport& report)
+bool CorotationalSolver::Step(Watch& watch, const CorotationalProblem& problem, double tolerance,
+  State& state, CorotationalReport& report)
 {
   constexpr int halvings = 30;
   constexpr double leastFall = 1e-4;
   // What rounding does to the sums of energies.
   constexpr double rounding = 1e-13;
   const std::size_t nodes = problem.IsFree.size();
-  this->Elements.AssembleTangent(watch, state.Displacements, this->Matrix);
+  this->UpdateTangent(watch, problem, state);
   this->RightHandSide.assign(nodes, glm::dvec3(0.0));
-  this->SolveLinear(watch, problem, limits, state, report);
+  this->SolveLinear(watch, problem, state, tolerance, report);
   double slope = 0.0;
   for (std::size_t node = 0; node < nodes; ++node)
   {
     slope -= glm::dot(this->RightHandSide[node], this->Direction[node]);
   }
   const double slack = rounding * (state.Sums.Energy + std::abs(state.Potential));
-  const double residual = this->FindResidual(problem, state).Largest;
+  const double residual = FindResiduals(problem, state.Forces).Largest;
   double length = 1.0;
   for (int halving = 0; halving < halvings; ++halving, length *= 0.5)
   {
@@ -350,7 +232,8 @@ bool CorotationalSolver::Step(Watch& watch, const Problem& problem,
       continue;
     }
     // Where rounding hides whether the energy falls, the forces tell.
-    if (-slope * length <= slack && !(this->FindResidual(problem, this->Trial).Largest < residual))
+    if (-slope * length <= slack &&
+      !(FindResiduals(problem, this->Trial.Forces).Largest < residual))
     {
       return false;
     }
@@ -362,8 +245,8 @@ bool CorotationalSolver::Step(Watch& watch, const Problem& problem,
 
 CorotationalReport CorotationalSolver::Solve(const CorotationalRequest& request)
 {
-  const CorotationalLimits limits = ChooseLimits(request);
-  const Problem problem = this->MakeProblem(request);
+  const CorotationalProblem problem = MakeProblem(request, this->Body, this->Pieces, this->Masses);
+  const CorotationalLimits& limits = problem.Limits;
   Watch watch(request.Progress);
   watch.Ask();
   CorotationalReport report;
@@ -378,10 +261,17 @@ CorotationalReport CorotationalSolver::Solve(const CorotationalRequest& request)
   {
     this->Evaluate(watch, problem, state);
   }
-  this->MoveHeldNodes(watch, problem, limits, state, report);
+  const bool isMoved = this->MoveHeldNodes(watch, problem, state, report);
+  // What is moved live is nearer to equilibrium in the frames that follow.
+  constexpr double toleranceOfFrames = 1e-2;
+  const double tolerance =
+    problem.IsInteractive && isMoved && request.Limits.RelativeTolerance == 0.0
+    ? toleranceOfFrames
+    : limits.RelativeTolerance;
+  double before = 0.0;
   for (;;)
   {
-    const Residuals residuals = this->FindResidual(problem, state);
+    const Residuals residuals = FindResiduals(problem, state.Forces);
     if (!std::isfinite(residuals.Largest) || !std::isfinite(state.Potential))
     {
       throw Error("The forces in the body are no numbers any more: a load or the displacement of a "
@@ -390,15 +280,29 @@ CorotationalReport CorotationalSolver::Solve(const CorotationalRequest& request)
     report.Residual = residuals.Largest;
     report.RelativeResidual =
       residuals.Reference > 0.0 ? residuals.Largest / residuals.Reference : 0.0;
-    report.IsConverged =
-      residuals.Largest <= std::max(limits.RelativeTolerance * residuals.Reference,
-                             limits.AbsoluteTolerance * this->ForceScale);
+    const double wanted =
+      std::max(tolerance * residuals.Reference, limits.AbsoluteTolerance * this->ForceScale);
+    report.IsConverged = residuals.Largest <= wanted;
+    // A tangent of another state serves as long as it makes forces much less.
+    constexpr double leastGain = 0.2;
+    if (before > 0.0 && residuals.Largest > leastGain * before)
+    {
+      this->HasTangent = false;
+    }
+    before = residuals.Largest;
     if (report.IsConverged || report.NewtonSteps >= limits.NewtonSteps ||
-      !this->Step(watch, problem, limits, state, report))
+      !this->Step(
+        watch, problem, ChooseTolerance(problem, wanted / residuals.Largest), state, report))
     {
       break;
     }
   }
+  if (report.NewtonSteps > 1 && this->IsTangentOld)
+  {
+    // It costs more to do without another one.
+    this->HasTangent = false;
+  }
+  this->IsTangentOld = true;
   report.StrainEnergy = state.Sums.Energy;
   report.NumberOfInvertedTetrahedra = state.Sums.Inverted;
   std::swap(this->Last, state);

@@ -2,10 +2,10 @@
 #ifndef DeformVolumeCorotationalSolver_h
 #define DeformVolumeCorotationalSolver_h
 
-#include "ConjugateGradients.h"
 #include "CorotationalElements.h"
+#include "CorotationalProblem.h"
 #include "CorotationalTypes.h"
-#include "Multigrid.h"
+#include "TangentSolver.h"
 #include "Watch.h"
 
 #include <glm/vec3.hpp>
@@ -19,7 +19,7 @@ namespace deformvolume
 class CorotationalSolver
 {
 public:
-  explicit CorotationalSolver(const ElasticBody& body);
+  CorotationalSolver(Watch& watch, const ElasticBody& body);
 
   void SetMaterials(const std::vector<ElasticMaterial>& materials);
   CorotationalReport Solve(const CorotationalRequest& request);
@@ -31,17 +31,6 @@ public:
   std::vector<ElementResults> GetElementResults() const;
 
 private:
-  // What does not change during a call of Solve.
-  struct Problem
-  {
-    std::vector<unsigned char> IsFree;
-    // Nodes that a piece holds which is not frozen, but that are not free.
-    std::vector<std::int32_t> HeldNodes;
-    // Where these are to be.
-    std::vector<glm::dvec3> Targets;
-    std::vector<glm::dvec3> Loads;
-    std::int32_t FrozenPieces = 0;
-  };
   // Displacements, and what they cause.
   struct State
   {
@@ -50,27 +39,22 @@ private:
     CorotationalElements::Sums Sums;
     double Potential = 0.0;
   };
-  struct Residuals
-  {
-    double Largest = 0.0;
-    double Reference = 0.0;
-  };
-
-  void UpdateScale();
-  Problem MakeProblem(const CorotationalRequest& request) const;
-  void Evaluate(Watch& watch, const Problem& problem, State& state) const;
-  void FindPotential(Watch& watch, const Problem& problem, State& state) const;
-  Residuals FindResidual(const Problem& problem, const State& state) const;
-  // Moves the held nodes to their targets, and the others as the tangent says.
-  void MoveHeldNodes(Watch& watch, const Problem& problem, const CorotationalLimits& limits,
-    State& state, CorotationalReport& report);
-  Preconditioner& Precondition(Watch& watch, const Problem& problem, const State& state);
-  // Has the levels built anew where they have become unlike the matrix.
-  void JudgeLevels(int iterations, const CorotationalLimits& limits);
-  void SolveLinear(Watch& watch, const Problem& problem, const CorotationalLimits& limits,
-    const State& state, CorotationalReport& report);
+  void UpdateScale(Watch& watch);
+  void Evaluate(Watch& watch, const CorotationalProblem& problem, State& state) const;
+  void FindPotential(Watch& watch, const CorotationalProblem& problem, State& state) const;
+  // Finds the tangent of a state, unless the one that there is may serve.
+  void UpdateTangent(Watch& watch, const CorotationalProblem& problem, const State& state);
+  // Moves the held nodes to their targets, and the others as the tangent says. Returns whether they
+  // were elsewhere.
+  bool MoveHeldNodes(
+    Watch& watch, const CorotationalProblem& problem, State& state, CorotationalReport& report);
+  // How well a linear system is to be solved where the residual is to become so much smaller.
+  static double ChooseTolerance(const CorotationalProblem& problem, double wanted);
+  // Solves for what the right-hand side and the forces that are left say.
+  void SolveLinear(Watch& watch, const CorotationalProblem& problem, const State& state,
+    double tolerance, CorotationalReport& report);
   // False where no step makes the energy less.
-  bool Step(Watch& watch, const Problem& problem, const CorotationalLimits& limits, State& state,
+  bool Step(Watch& watch, const CorotationalProblem& problem, double tolerance, State& state,
     CorotationalReport& report);
 
   ElasticBody Body;
@@ -79,14 +63,10 @@ private:
   // E h^2, in N.
   double ForceScale = 0.0;
   CorotationalElements Elements;
-  BlockMatrix Matrix;
-  BlockJacobi Jacobi;
-  Multigrid Levels;
-  // What these are for; empty: they are to be built.
-  std::vector<unsigned char> IsFreeInLevels;
-  // Iterations for each digit, when they were new.
-  double CostOfLevels = 0.0;
-  ConjugateGradients Gradients;
+  TangentSolver Tangent;
+  // Whether there is a tangent that may serve, and whether it is that of another call.
+  bool HasTangent = false;
+  bool IsTangentOld = false;
   std::vector<glm::dvec3> RightHandSide;
   std::vector<glm::dvec3> Direction;
   State Trial;

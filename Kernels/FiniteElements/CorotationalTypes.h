@@ -28,12 +28,12 @@ struct CorotationalLimits
   int NewtonSteps = 0;
   /// Iterations of conjugate gradients in each step; 0: 500 when interactive, else 5000.
   int LinearIterations = 0;
-  /// By how much these make the residual of the linear system smaller; 0: 1e-2 when interactive,
-  /// else 1e-6.
+  /// By how much these make the residual of the linear system smaller; 0: at least 3e-3 when
+  /// interactive, and no more than the tolerances need, else 1e-6.
   double LinearTolerance = 0.0;
   /// A body is in equilibrium where no component of a force on a free node is larger than this part
-  /// of the largest force that is applied or that holds a node; 0: 1e-3 when interactive, else
-  /// 1e-6.
+  /// of the largest force that is applied or that holds a node; 0: 1e-3 when interactive, and 1e-2
+  /// where held nodes have moved, else 1e-6.
   double RelativeTolerance = 0.0;
   /// Or than this part of E h^2, the force that a stress as large as the Young modulus exerts on a
   /// tetrahedron of mean size; 0: 1e-6 when interactive, else 1e-11.

@@ -26,8 +26,31 @@ std::uint64_t SpreadBits(std::uint64_t value)
   return spread;
 }
 
+// Where a tetrahedron lies on a curve that fills space, and its number.
+using CurvePlace = std::pair<std::uint64_t, std::int32_t>;
+
+// Sorts parts, and merges two and two of them: one sort would be too long for the watch.
+void Sort(Watch& watch, std::vector<CurvePlace>& places)
+{
+  constexpr std::size_t partsAtOnce = 16;
+  const auto at = [&](std::size_t place)
+  { return places.begin() + static_cast<std::ptrdiff_t>(std::min(place, places.size())); };
+  std::size_t size = std::size_t(1) << 14;
+  ForParts(watch, (places.size() + size - 1) / size, partsAtOnce,
+    [&](std::size_t part) { std::sort(at(part * size), at((part + 1) * size)); });
+  for (; size < places.size(); size *= 2)
+  {
+    ForParts(watch, (places.size() + 2 * size - 1) / (2 * size), partsAtOnce,
+      [&](std::size_t part)
+      {
+        const std::size_t begin = 2 * part * size;
+        std::inplace_merge(at(begin), at(begin + size), at(begin + 2 * size));
+      });
+  }
+}
+
 // Tetrahedra along a curve that fills space, so that those of a chunk are near each other.
-std::vector<std::int32_t> OrderTetrahedra(const ElasticBody& body)
+std::vector<std::int32_t> OrderTetrahedra(Watch& watch, const ElasticBody& body)
 {
   glm::dvec3 lower(std::numeric_limits<double>::max());
   glm::dvec3 upper(-std::numeric_limits<double>::max());
@@ -38,23 +61,24 @@ std::vector<std::int32_t> OrderTetrahedra(const ElasticBody& body)
   }
   const glm::dvec3 size = upper - lower;
   const double scale = ((1 << 20) - 1) / std::max({ size.x, size.y, size.z });
-  std::vector<std::pair<std::uint64_t, std::int32_t>> codes(body.Tetrahedra.size());
-  for (std::size_t t = 0; t < codes.size(); ++t)
-  {
-    glm::dvec3 center(0.0);
-    for (const std::int32_t node : body.Tetrahedra[t])
+  std::vector<CurvePlace> codes(body.Tetrahedra.size());
+  ForItemsInParallel(watch, codes.size(),
+    [&](std::size_t t)
     {
-      center += 0.25 * (body.Points[static_cast<std::size_t>(node)] - lower);
-    }
-    const auto code = [&](double value)
-    { return SpreadBits(static_cast<std::uint64_t>(std::max(0.0, value * scale))); };
-    codes[t] = { code(center.x) | code(center.y) << 1 | code(center.z) << 2,
-      static_cast<std::int32_t>(t) };
-  }
-  std::sort(codes.begin(), codes.end());
+      glm::dvec3 center(0.0);
+      for (const std::int32_t node : body.Tetrahedra[t])
+      {
+        center += 0.25 * (body.Points[static_cast<std::size_t>(node)] - lower);
+      }
+      const auto code = [&](double value)
+      { return SpreadBits(static_cast<std::uint64_t>(std::max(0.0, value * scale))); };
+      codes[t] = { code(center.x) | code(center.y) << 1 | code(center.z) << 2,
+        static_cast<std::int32_t>(t) };
+    });
+  Sort(watch, codes);
   std::vector<std::int32_t> order(codes.size());
-  std::transform(codes.begin(), codes.end(), order.begin(),
-    [](const std::pair<std::uint64_t, std::int32_t>& code) { return code.second; });
+  std::transform(
+    codes.begin(), codes.end(), order.begin(), [](const CurvePlace& code) { return code.second; });
   return order;
 }
 
@@ -82,7 +106,7 @@ void SetLane(
 
 // Gives each chunk the first color that no chunk has with which it has a node in common.
 std::vector<std::vector<std::uint32_t>> ColorChunks(
-  const ElementBatches& batches, std::size_t nodes)
+  Watch& watch, const ElementBatches& batches, std::size_t nodes)
 {
   constexpr std::size_t largestNumber = 64;
   std::vector<std::uint64_t> colorsOfNode(nodes, 0);
@@ -90,6 +114,7 @@ std::vector<std::vector<std::uint32_t>> ColorChunks(
   std::vector<std::uint32_t> others;
   for (std::size_t chunk = 0; chunk < batches.GetNumberOfChunks(); ++chunk)
   {
+    watch.Ask();
     const std::size_t begin = chunk * ElementBatches::ChunkSize;
     const std::size_t end = std::min(batches.Batches.size(), begin + ElementBatches::ChunkSize);
     const auto forNodes = [&](auto&& body)
@@ -130,22 +155,23 @@ std::vector<std::vector<std::uint32_t>> ColorChunks(
 
 } // namespace
 
-ElementBatches MakeElementBatches(const ElasticBody& body)
+ElementBatches MakeElementBatches(Watch& watch, const ElasticBody& body)
 {
   ElementBatches result;
-  const std::vector<std::int32_t> order = OrderTetrahedra(body);
+  const std::vector<std::int32_t> order = OrderTetrahedra(watch, body);
   const std::size_t number = (order.size() + NumberOfLanes - 1) / NumberOfLanes;
-  result.Batches.resize(number);
+  Grow(watch, result.Batches, number);
   result.Tetrahedra.assign(number * NumberOfLanes, -1);
   std::copy(order.begin(), order.end(), result.Tetrahedra.begin());
-  for (std::size_t i = 0; i < result.Tetrahedra.size(); ++i)
-  {
-    const bool isThere = result.Tetrahedra[i] >= 0;
-    SetLane(result.Batches[i / NumberOfLanes], static_cast<int>(i % NumberOfLanes), body,
-      isThere ? result.Tetrahedra[i] : order.back(), isThere);
-  }
+  ForItemsInParallel(watch, result.Tetrahedra.size(),
+    [&](std::size_t i)
+    {
+      const bool isThere = result.Tetrahedra[i] >= 0;
+      SetLane(result.Batches[i / NumberOfLanes], static_cast<int>(i % NumberOfLanes), body,
+        isThere ? result.Tetrahedra[i] : order.back(), isThere);
+    });
   SetMaterials(result, body);
-  result.Colors = ColorChunks(result, body.Points.size());
+  result.Colors = ColorChunks(watch, result, body.Points.size());
   return result;
 }
 

@@ -4,6 +4,7 @@
 
 #include "ElasticBody.h"
 #include "Lanes.h"
+#include "Watch.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -48,7 +49,7 @@ struct ElementBatches
   }
 };
 
-ElementBatches MakeElementBatches(const ElasticBody& body);
+ElementBatches MakeElementBatches(Watch& watch, const ElasticBody& body);
 
 /// Takes over the materials of a body.
 void SetMaterials(ElementBatches& batches, const ElasticBody& body);

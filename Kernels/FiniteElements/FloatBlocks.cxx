@@ -114,20 +114,21 @@ void Run(const ProductArguments& arguments)
 } // namespace
 
 template <int Rows, int Columns>
-FloatBlocks<Rows, Columns>::FloatBlocks(const SparseBlocks<Rows, Columns>& matrix)
+FloatBlocks<Rows, Columns>::FloatBlocks(Watch& watch, const SparseBlocks<Rows, Columns>& matrix)
   : Starts(matrix.Starts)
   , ColumnOfBlock(matrix.ColumnOfBlock)
 {
   constexpr std::size_t size = Rows * Columns;
   // The last column is read as if it had as many rows as there are lanes.
   this->Values.resize(matrix.Blocks.size() * size + PaddedSize<Rows>, 0.0f);
-  for (std::size_t block = 0; block < matrix.Blocks.size(); ++block)
-  {
-    for (std::size_t i = 0; i < size; ++i)
+  ForItemsInParallel(watch, matrix.Blocks.size(),
+    [&](std::size_t block)
     {
-      this->Values[block * size + i] = static_cast<float>(matrix.Blocks[block].data()[i]);
-    }
-  }
+      for (std::size_t i = 0; i < size; ++i)
+      {
+        this->Values[block * size + i] = static_cast<float>(matrix.Blocks[block].data()[i]);
+      }
+    });
 }
 
 template <int Rows, int Columns>

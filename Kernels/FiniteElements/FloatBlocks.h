@@ -23,7 +23,7 @@ class FloatBlocks
 {
 public:
   FloatBlocks() = default;
-  explicit FloatBlocks(const SparseBlocks<Rows, Columns>& matrix);
+  FloatBlocks(Watch& watch, const SparseBlocks<Rows, Columns>& matrix);
 
   std::size_t GetNumberOfRows() const { return this->Starts.size() - 1; }
 

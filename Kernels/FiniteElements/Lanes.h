@@ -33,16 +33,11 @@ constexpr int NumberOfLanes = 4;
 using Lanes = double __attribute__((
   vector_size(NumberOfLanes * sizeof(double)), aligned(NumberOfLanes * sizeof(double))));
 
-/// Whether the processor has AVX2, and code for it may be used.
-inline bool HasWideLanes()
-{
-#if DEFORMVOLUME_HAS_AVX2_CODE
-  static const bool has = __builtin_cpu_supports("avx2");
-  return has;
-#else
-  return false;
-#endif
-}
+/// Whether the processor has AVX2, and code for it is used.
+bool HasWideLanes();
+
+/// Whether such code is used where the processor has it, from now on: so by default. For tests.
+void UseWideLanes(bool areUsed);
 
 DEFORMVOLUME_ALWAYS_INLINE Lanes MakeLanes(double value)
 {

@@ -3,6 +3,7 @@
 
 #include "Aggregation.h"
 #include "NodeRotations.h"
+#include "RowParts.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -15,21 +16,14 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::size_t RowsOfPart = 512;
-constexpr std::size_t PartsAtOnce = 512;
+constexpr std::size_t PartsAtOnce = BlockMatrix::PartsAtOnce;
 // Groups of the coarsest level, which is solved exactly.
 constexpr std::int32_t CoarsestGroups = 100;
-
-template <typename Body>
-void ForRows(Watch& watch, std::size_t rows, Body&& body)
-{
-  ForParts(watch, (rows + RowsOfPart - 1) / RowsOfPart, PartsAtOnce,
-    [&](std::size_t part) { body(part * RowsOfPart, std::min(rows, (part + 1) * RowsOfPart)); });
-}
+constexpr Eigen::Index ColumnsAtOnce = 48;
 
 // The rows and columns of free nodes.
-SparseBlocks<3, 3> ExtractFree(const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
-  const std::vector<std::int32_t>& freeNodes)
+SparseBlocks<3, 3> ExtractFree(Watch& watch, const BlockMatrix& matrix,
+  const std::vector<unsigned char>& isFree, const std::vector<std::int32_t>& freeNodes)
 {
   const BlockPattern& pattern = matrix.GetPattern();
   std::vector<std::int32_t> numbers(isFree.size(), -1);
@@ -42,21 +36,22 @@ SparseBlocks<3, 3> ExtractFree(const BlockMatrix& matrix, const std::vector<unsi
   result.Starts.reserve(freeNodes.size() + 1);
   result.ColumnOfBlock.reserve(pattern.Columns.size());
   result.Blocks.reserve(pattern.Columns.size());
-  for (const std::int32_t node : freeNodes)
-  {
-    const auto row = static_cast<std::size_t>(node);
-    for (std::int32_t block = pattern.Rows[row]; block < pattern.Rows[row + 1]; ++block)
+  ForItems(watch, freeNodes.size(),
+    [&](std::size_t i)
     {
-      const std::int32_t column =
-        numbers[static_cast<std::size_t>(pattern.Columns[static_cast<std::size_t>(block)])];
-      if (column >= 0)
+      const auto row = static_cast<std::size_t>(freeNodes[i]);
+      for (std::int32_t block = pattern.Rows[row]; block < pattern.Rows[row + 1]; ++block)
       {
-        result.ColumnOfBlock.push_back(column);
-        result.Blocks.emplace_back(Eigen::Map<const Eigen::Matrix3d>(matrix.GetBlock(block)));
+        const std::int32_t column =
+          numbers[static_cast<std::size_t>(pattern.Columns[static_cast<std::size_t>(block)])];
+        if (column >= 0)
+        {
+          result.ColumnOfBlock.push_back(column);
+          result.Blocks.emplace_back(Eigen::Map<const Eigen::Matrix3d>(matrix.GetBlock(block)));
+        }
       }
-    }
-    result.Starts.push_back(static_cast<std::int32_t>(result.Blocks.size()));
-  }
+      result.Starts.push_back(static_cast<std::int32_t>(result.Blocks.size()));
+    });
   return result;
 }
 
@@ -82,18 +77,19 @@ NearNullSpace<3> MakeRigidModes(
 
 template <int Size>
 std::vector<float> MakeSmoother(
-  const std::vector<Eigen::Matrix<double, Size, Size>>& inverses, double damping)
+  Watch& watch, const std::vector<Eigen::Matrix<double, Size, Size>>& inverses, double damping)
 {
   constexpr std::size_t size = Size * Size;
   // The last column is read as if it had as many rows as there are lanes.
   std::vector<float> result(inverses.size() * size + PaddedSize<Size>, 0.0f);
-  for (std::size_t row = 0; row < inverses.size(); ++row)
-  {
-    for (std::size_t i = 0; i < size; ++i)
+  ForItemsInParallel(watch, inverses.size(),
+    [&](std::size_t row)
     {
-      result[row * size + i] = static_cast<float>(damping * inverses[row].data()[i]);
-    }
-  }
+      for (std::size_t i = 0; i < size; ++i)
+      {
+        result[row * size + i] = static_cast<float>(damping * inverses[row].data()[i]);
+      }
+    });
   return result;
 }
 
@@ -102,13 +98,13 @@ template <int Size>
 Coarsening<Size> MakeLevel(Watch& watch, const SparseBlocks<Size, Size>& matrix,
   const NearNullSpace<Size>& modes, MultigridLevel<Size>& level)
 {
-  const auto inverses = InvertDiagonal(matrix);
+  const auto inverses = InvertDiagonal(watch, matrix);
   const double largest = FindLargestEigenvalue(watch, matrix, inverses);
   Coarsening<Size> coarsening = Coarsen(watch, matrix, inverses, largest, modes);
-  level.Matrix = FloatBlocks<Size, Size>(matrix);
-  level.Smoother = MakeSmoother(inverses, 4.0 / (3.0 * largest));
-  level.Prolongation = FloatBlocks<Size, 6>(coarsening.Prolongation);
-  level.Restriction = FloatBlocks<6, Size>(Transpose(coarsening.Prolongation));
+  level.Matrix = FloatBlocks<Size, Size>(watch, matrix);
+  level.Smoother = MakeSmoother(watch, inverses, 4.0 / (3.0 * largest));
+  level.Prolongation = FloatBlocks<Size, 6>(watch, coarsening.Prolongation);
+  level.Restriction = FloatBlocks<6, Size>(watch, Transpose(watch, coarsening.Prolongation));
   const std::size_t length = inverses.size() * PaddedSize<Size>;
   level.Right.assign(length, 0.0f);
   level.Solution.assign(length, 0.0f);
@@ -182,8 +178,26 @@ void Restrict(Watch& watch, const MultigridLevel<Size>& level, std::vector<float
     });
 }
 
+// The method of Cholesky, by columns that take some milliseconds together: below the diagonal.
+void Factorize(Watch& watch, Eigen::MatrixXd& matrix)
+{
+  const Eigen::Index size = matrix.rows();
+  for (Eigen::Index begin = 0; begin < size; begin += ColumnsAtOnce)
+  {
+    watch.Ask();
+    const Eigen::Index columns = std::min(ColumnsAtOnce, size - begin);
+    const Eigen::Index rest = size - begin - columns;
+    auto own = matrix.block(begin, begin, columns, columns);
+    auto below = matrix.block(begin + columns, begin, rest, columns);
+    const Eigen::LLT<Eigen::MatrixXd> factor(own);
+    own = factor.matrixL();
+    factor.matrixU().solveInPlace<Eigen::OnTheRight>(below);
+    matrix.bottomRightCorner(rest, rest).selfadjointView<Eigen::Lower>().rankUpdate(below, -1.0);
+  }
+}
+
 // The inverse of a matrix, by rows.
-std::vector<float> Invert(const SparseBlocks<6, 6>& matrix)
+std::vector<float> Invert(Watch& watch, const SparseBlocks<6, 6>& matrix)
 {
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(matrix.GetNumberOfRows());
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
@@ -194,11 +208,19 @@ std::vector<float> Invert(const SparseBlocks<6, 6>& matrix)
       dense.block<6, 6>(6 * row, 6 * matrix.ColumnOfBlock[block]) = matrix.Blocks[block];
     }
   }
-  const Eigen::MatrixXd inverse = dense.llt().solve(Eigen::MatrixXd::Identity(size, size));
+  Factorize(watch, dense);
   std::vector<float> result(static_cast<std::size_t>(size * size));
-  for (Eigen::Index i = 0; i < size * size; ++i)
+  for (Eigen::Index begin = 0; begin < size; begin += ColumnsAtOnce)
   {
-    result[static_cast<std::size_t>(i)] = static_cast<float>(inverse.data()[i]);
+    watch.Ask();
+    const Eigen::Index columns = std::min(ColumnsAtOnce, size - begin);
+    Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(size, size).middleCols(begin, columns);
+    dense.triangularView<Eigen::Lower>().solveInPlace(inverse);
+    dense.triangularView<Eigen::Lower>().transpose().solveInPlace(inverse);
+    for (Eigen::Index i = 0; i < size * columns; ++i)
+    {
+      result[static_cast<std::size_t>(size * begin + i)] = static_cast<float>(inverse.data()[i]);
+    }
   }
   return result;
 }
@@ -218,7 +240,7 @@ void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
       this->FreeNodes.push_back(static_cast<std::int32_t>(node));
     }
   }
-  Coarsening<3> first = MakeLevel(watch, ExtractFree(matrix, isFree, this->FreeNodes),
+  Coarsening<3> first = MakeLevel(watch, ExtractFree(watch, matrix, isFree, this->FreeNodes),
     MakeRigidModes(positions, this->FreeNodes), this->Fine);
   SparseBlocks<6, 6> coarse = std::move(first.Matrix);
   NearNullSpace<6> modes = std::move(first.Modes);
@@ -236,13 +258,13 @@ void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
     modes = std::move(next.Modes);
   }
   const bool isSmall = coarse.GetNumberOfRows() <= CoarsestGroups;
-  this->Inverse = isSmall ? Invert(coarse) : std::vector<float>();
+  this->Inverse = isSmall ? Invert(watch, coarse) : std::vector<float>();
   // The coarsest level has vectors only.
   this->Coarse.emplace_back();
   const std::size_t length = static_cast<std::size_t>(coarse.GetNumberOfRows()) * PaddedSize<6>;
   if (!isSmall)
   {
-    this->Coarse.back().Smoother = MakeSmoother(InvertDiagonal(coarse), 1.0);
+    this->Coarse.back().Smoother = MakeSmoother(watch, InvertDiagonal(watch, coarse), 1.0);
   }
   this->Coarse.back().Right.assign(length, 0.0f);
   this->Coarse.back().Solution.assign(length, 0.0f);

@@ -38,15 +38,14 @@ struct SparseBlocks
 };
 
 template <int Rows, int Columns>
-SparseBlocks<Columns, Rows> Transpose(const SparseBlocks<Rows, Columns>& matrix)
+SparseBlocks<Columns, Rows> Transpose(Watch& watch, const SparseBlocks<Rows, Columns>& matrix)
 {
   SparseBlocks<Columns, Rows> result;
   result.NumberOfColumns = matrix.GetNumberOfRows();
   result.Starts.assign(static_cast<std::size_t>(matrix.NumberOfColumns) + 1, 0);
-  for (const std::int32_t column : matrix.ColumnOfBlock)
-  {
-    ++result.Starts[static_cast<std::size_t>(column) + 1];
-  }
+  ForItems(watch, matrix.ColumnOfBlock.size(),
+    [&](std::size_t block)
+    { ++result.Starts[static_cast<std::size_t>(matrix.ColumnOfBlock[block]) + 1]; });
   for (std::size_t i = 1; i < result.Starts.size(); ++i)
   {
     result.Starts[i] += result.Starts[i - 1];
@@ -54,16 +53,18 @@ SparseBlocks<Columns, Rows> Transpose(const SparseBlocks<Rows, Columns>& matrix)
   std::vector<std::int32_t> next(result.Starts.begin(), result.Starts.end() - 1);
   result.ColumnOfBlock.resize(matrix.Blocks.size());
   result.Blocks.resize(matrix.Blocks.size());
-  for (std::int32_t row = 0; row < matrix.GetNumberOfRows(); ++row)
-  {
-    for (std::size_t block = matrix.GetStart(row); block < matrix.GetEnd(row); ++block)
+  ForItems(watch, static_cast<std::size_t>(matrix.GetNumberOfRows()),
+    [&](std::size_t item)
     {
-      const auto place =
-        static_cast<std::size_t>(next[static_cast<std::size_t>(matrix.ColumnOfBlock[block])]++);
-      result.ColumnOfBlock[place] = row;
-      result.Blocks[place] = matrix.Blocks[block].transpose();
-    }
-  }
+      const auto row = static_cast<std::int32_t>(item);
+      for (std::size_t block = matrix.GetStart(row); block < matrix.GetEnd(row); ++block)
+      {
+        const auto place =
+          static_cast<std::size_t>(next[static_cast<std::size_t>(matrix.ColumnOfBlock[block])]++);
+        result.ColumnOfBlock[place] = row;
+        result.Blocks[place] = matrix.Blocks[block].transpose();
+      }
+    });
   return result;
 }
 
@@ -72,11 +73,13 @@ template <int Rows, int Inner, int Columns>
 SparseBlocks<Rows, Columns> Multiply(
   Watch& watch, const SparseBlocks<Rows, Inner>& a, const SparseBlocks<Inner, Columns>& b)
 {
-  constexpr std::int32_t rowsOfPart = 256;
+  // Rows of coarse levels have far more to do: of nodes and of what they are connected with.
+  constexpr std::int32_t rowsOfPart = Rows > 3 ? 32 : 256;
+  constexpr std::size_t partsAtOnce = 16;
   using Result = SparseBlocks<Rows, Columns>;
   const std::int32_t rows = a.GetNumberOfRows();
   std::vector<Result> parts(static_cast<std::size_t>((rows + rowsOfPart - 1) / rowsOfPart));
-  ForParts(watch, parts.size(), 32,
+  ForParts(watch, parts.size(), partsAtOnce,
     [&](std::size_t part)
     {
       Result& result = parts[part];
@@ -126,8 +129,16 @@ SparseBlocks<Rows, Columns> Multiply(
     });
   Result result;
   result.NumberOfColumns = b.NumberOfColumns;
+  std::size_t blocks = 0;
   for (const Result& part : parts)
   {
+    blocks += part.Blocks.size();
+  }
+  result.ColumnOfBlock.reserve(blocks);
+  result.Blocks.reserve(blocks);
+  for (Result& part : parts)
+  {
+    watch.Ask();
     const std::int32_t offset = result.Starts.back();
     for (std::size_t i = 1; i < part.Starts.size(); ++i)
     {
@@ -136,6 +147,7 @@ SparseBlocks<Rows, Columns> Multiply(
     result.ColumnOfBlock.insert(
       result.ColumnOfBlock.end(), part.ColumnOfBlock.begin(), part.ColumnOfBlock.end());
     result.Blocks.insert(result.Blocks.end(), part.Blocks.begin(), part.Blocks.end());
+    part = Result(); // to give back all memory at once takes long
   }
   return result;
 }

@@ -162,6 +162,7 @@ std::vector<double> LinearizedNetwork::Apply(const std::vector<double>& displace
     [&](float force) { return -static_cast<double>(force) / factor; });
   std::fill(small.begin(), small.end(), 0.0F);
   this->State.SetDisplacements(small);
+  this->Asked.Ask();
   return result;
 }
 

@@ -4,6 +4,7 @@
 
 #include "MassSpringNetwork.h"
 #include "MassSpringState.h"
+#include "Watch.h"
 
 #include <array>
 #include <vector>
@@ -12,12 +13,14 @@ namespace deformvolume
 {
 
 /// The springs and volumes of a body near rest: forces are then linear in the displacements. It
-/// works with the displacements of a state, which are 0 afterwards.
+/// works with the displacements of a state, which are 0 afterwards. The watch is asked each time
+/// that the device has found forces.
 class LinearizedNetwork
 {
 public:
-  LinearizedNetwork(MassSpringState& state, const MassSpringNetwork& network)
-    : State(state)
+  LinearizedNetwork(Watch& watch, MassSpringState& state, const MassSpringNetwork& network)
+    : Asked(watch)
+    , State(state)
     , Network(network)
   {
   }
@@ -45,6 +48,7 @@ private:
   double FindCompliance(
     const ElasticBody& body, const AffineResponse& response, double volume, int axis) const;
 
+  Watch& Asked;
   MassSpringState& State;
   const MassSpringNetwork& Network;
 };

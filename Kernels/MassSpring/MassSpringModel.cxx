@@ -7,6 +7,7 @@
 #include "MassSpringResults.h"
 #include "MassSpringState.h"
 #include "MemoryBudget.h"
+#include "Watch.h"
 
 #include <algorithm>
 #include <chrono>
@@ -86,9 +87,9 @@ public:
   }
 
   void CheckMemory(const ElasticBody& body);
-  double Calibrate(const ElasticBody& uniform);
-  void Make(const ElasticBody& body, double scale);
-  double GetStableTimeStep();
+  double Calibrate(Watch& watch, const ElasticBody& uniform);
+  void Make(Watch& watch, const ElasticBody& body, double scale);
+  double GetStableTimeStep(Watch& watch);
   void Hold(const std::vector<HeldNode>& held);
   void Run(const MassSpringRequest& request, const MassSpringStep& step, std::int64_t steps);
 
@@ -120,10 +121,11 @@ void MassSpringModel::Internals::CheckMemory(const ElasticBody& body)
 }
 
 // Leaves the body made, with a factor of 1.
-double MassSpringModel::Internals::Calibrate(const ElasticBody& uniform)
+double MassSpringModel::Internals::Calibrate(Watch& watch, const ElasticBody& uniform)
 {
-  this->Make(uniform, 1.0);
-  const double stiffness = LinearizedNetwork(*this->State, *this->Network).FindStiffness(uniform);
+  this->Make(watch, uniform, 1.0);
+  const double stiffness =
+    LinearizedNetwork(watch, *this->State, *this->Network).FindStiffness(uniform);
   if (!(stiffness > 0.0) || !std::isfinite(stiffness))
   {
     this->Forget();
@@ -133,25 +135,34 @@ double MassSpringModel::Internals::Calibrate(const ElasticBody& uniform)
   return 1.0 / stiffness;
 }
 
-void MassSpringModel::Internals::Make(const ElasticBody& body, double scale)
+void MassSpringModel::Internals::Make(Watch& watch, const ElasticBody& body, double scale)
 {
   this->State.reset(); // its memory goes first
   this->Body = body;
   this->Scale = scale;
-  this->Network =
-    std::make_unique<MassSpringNetwork>(body, MassSpringState::GetLanes(this->Device), scale);
+  this->Network = std::make_unique<MassSpringNetwork>(
+    watch, body, MassSpringState::GetLanes(this->Device), scale);
+  watch.Ask();
   this->State =
     std::make_unique<MassSpringState>(this->Device, *this->Network, this->WorkGroupSize);
   this->HeldBefore.clear();
   this->Largest = -1.0;
 }
 
-double MassSpringModel::Internals::GetStableTimeStep()
+double MassSpringModel::Internals::GetStableTimeStep(Watch& watch)
 {
   if (this->Largest < 0.0)
   {
     const std::vector<float> displacements = this->State->GetDisplacements();
-    this->Largest = LinearizedNetwork(*this->State, *this->Network).FindLargestFrequency();
+    try
+    {
+      this->Largest = LinearizedNetwork(watch, *this->State, *this->Network).FindLargestFrequency();
+    }
+    catch (const Aborted&)
+    {
+      this->State->SetDisplacements(displacements);
+      throw;
+    }
     this->State->SetDisplacements(displacements);
   }
   if (!(this->Largest > 0.0))
@@ -257,9 +268,11 @@ void MassSpringModel::SetWorkGroupSize(std::size_t size)
   this->Impl->WorkGroupSize = size;
 }
 
-void MassSpringModel::SetBody(const ElasticBody& body)
+void MassSpringModel::SetBody(const ElasticBody& body, const std::function<bool()>& progress)
 {
-  CheckBody(body);
+  Watch watch(progress);
+  watch.Ask();
+  CheckBody(body, &watch);
   Internals& impl = *this->Impl;
   impl.Guard(
     [&]
@@ -268,10 +281,18 @@ void MassSpringModel::SetBody(const ElasticBody& body)
       impl.Forget();
       impl.CheckMemory(body);
       const bool isUniform = body.Materials.size() == 1;
-      const double scale = impl.Calibrate(isUniform ? body : MakeUniform(body));
-      if (!isUniform || scale != 1.0)
+      try
       {
-        impl.Make(body, scale);
+        const double scale = impl.Calibrate(watch, isUniform ? body : MakeUniform(body));
+        if (!isUniform || scale != 1.0)
+        {
+          impl.Make(watch, body, scale);
+        }
+      }
+      catch (const Aborted&)
+      {
+        impl.Forget();
+        throw;
       }
     });
 }
@@ -306,7 +327,8 @@ void MassSpringModel::SplitNodes(const ElasticBody& body, const std::vector<std:
       }
       displacements.resize(body.Points.size() * 3);
       velocities.resize(body.Points.size() * 3);
-      impl.Make(body, impl.Scale);
+      Watch watch(nullptr);
+      impl.Make(watch, body, impl.Scale);
       impl.State->SetDisplacements(displacements);
       impl.State->SetVelocities(velocities);
     });
@@ -344,7 +366,8 @@ void MassSpringModel::SetOutput(const std::shared_ptr<DeviceVectors>& output, do
 double MassSpringModel::GetStableTimeStep()
 {
   this->Impl->CheckIsSet();
-  return this->Impl->Guard([&] { return this->Impl->GetStableTimeStep(); });
+  Watch watch(nullptr);
+  return this->Impl->Guard([&] { return this->Impl->GetStableTimeStep(watch); });
 }
 
 MassSpringReport MassSpringModel::Advance(const MassSpringRequest& request)
@@ -360,8 +383,10 @@ MassSpringReport MassSpringModel::Advance(const MassSpringRequest& request)
       MassSpringReport report;
       if (request.Duration > 0.0)
       {
+        Watch watch(
+          request.Progress ? [&] { return request.Progress(0.0); } : std::function<bool()>());
         const double longest =
-          request.TimeStep > 0.0 ? request.TimeStep : 0.5 * impl.GetStableTimeStep();
+          request.TimeStep > 0.0 ? request.TimeStep : 0.5 * impl.GetStableTimeStep(watch);
         // A hair more than a whole number of steps is that number.
         constexpr double hair = 1e-9;
         const double steps = std::max(1.0, std::ceil(request.Duration / longest * (1.0 - hair)));

@@ -30,7 +30,8 @@ struct MassSpringRequest
   /// duration.
   std::vector<HeldNode> Held;
   BodyLoads Loads;
-  /// Called now and then with how much of the duration is behind, 0 to 1; returning false aborts.
+  /// Called now and then with how much of the duration is behind, 0 to 1, and with 0 while the
+  /// stable time step is looked for; returning false aborts.
   std::function<bool(double)> Progress;
 };
 
@@ -72,8 +73,10 @@ public:
   void SetWorkGroupSize(std::size_t size);
 
   /// A body at rest. The stiffness of its springs is calibrated so that a bar of this mesh has the
-  /// Young modulus that it should; on a lattice of cubes they are right as they are.
-  void SetBody(const ElasticBody& body);
+  /// Young modulus that it should; on a lattice of cubes they are right as they are. progress:
+  /// called every few milliseconds, in the thread that called; returning false aborts. Then there
+  /// is no body any more.
+  void SetBody(const ElasticBody& body, const std::function<bool()>& progress = nullptr);
 
   /// The same body with other nodes in some tetrahedra: nodes have been appended, each a copy of
   /// one there was. origins: of each appended node. They are where their origins are, and as fast.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MassSpringNetwork.h"
 
-#include "ParallelFor.h"
-
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -16,7 +14,8 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::size_t TetrahedraAtOnce = 4096;
+constexpr std::size_t TetrahedraOfPart = 4096;
+constexpr std::size_t PartsAtOnce = 8;
 
 std::array<glm::dvec3, 4> GetCorners(const ElasticBody& body, const Tetrahedron& tetrahedron)
 {
@@ -39,20 +38,21 @@ double GetSquaredAreas(const std::array<glm::dvec3, 4>& corners)
   return sum;
 }
 
-double FindShortestEdge(const ElasticBody& body)
+double FindShortestEdge(Watch& watch, const ElasticBody& body)
 {
   double shortest = std::numeric_limits<double>::infinity();
-  for (const Tetrahedron& tetrahedron : body.Tetrahedra)
-  {
-    const std::array<glm::dvec3, 4> corners = GetCorners(body, tetrahedron);
-    for (std::size_t i = 0; i < 4; ++i)
+  ForItems(watch, body.Tetrahedra.size(),
+    [&](std::size_t t)
     {
-      for (std::size_t j = 0; j < i; ++j)
+      const std::array<glm::dvec3, 4> corners = GetCorners(body, body.Tetrahedra[t]);
+      for (std::size_t i = 0; i < 4; ++i)
       {
-        shortest = std::min(shortest, glm::distance(corners[i], corners[j]));
+        for (std::size_t j = 0; j < i; ++j)
+        {
+          shortest = std::min(shortest, glm::distance(corners[i], corners[j]));
+        }
       }
-    }
-  }
+    });
   return shortest;
 }
 
@@ -81,7 +81,7 @@ SpringStiffness GetSpringStiffness(
   return stiffness;
 }
 
-MassSpringNetwork::MassSpringNetwork(const ElasticBody& body, int lanes, double scale)
+MassSpringNetwork::MassSpringNetwork(Watch& watch, const ElasticBody& body, int lanes, double scale)
   : Lanes(lanes)
   , NumberOfGroups((body.Tetrahedra.size() + static_cast<std::size_t>(lanes) - 1) /
       static_cast<std::size_t>(lanes))
@@ -95,7 +95,7 @@ MassSpringNetwork::MassSpringNetwork(const ElasticBody& body, int lanes, double 
   const auto width = static_cast<std::size_t>(lanes);
   const std::vector<double> volumes = GetVolumes(body);
   this->Masses = GetNodeMasses(body, volumes);
-  this->ShortestEdge = FindShortestEdge(body);
+  this->ShortestEdge = FindShortestEdge(watch, body);
   glm::dvec3 least = body.Points.front();
   glm::dvec3 most = least;
   for (const glm::dvec3& point : body.Points)
@@ -117,10 +117,12 @@ MassSpringNetwork::MassSpringNetwork(const ElasticBody& body, int lanes, double 
       this->Mobilities[node] = static_cast<float>(1.0 / this->Masses[node]);
     }
   }
-  ParallelForParts(body.Tetrahedra.size(), TetrahedraAtOnce,
-    [&](std::size_t first, std::size_t last)
+  const std::size_t tetrahedra = body.Tetrahedra.size();
+  ForParts(watch, (tetrahedra + TetrahedraOfPart - 1) / TetrahedraOfPart, PartsAtOnce,
+    [&](std::size_t part)
     {
-      for (std::size_t t = first; t < last; ++t)
+      const std::size_t last = std::min(tetrahedra, (part + 1) * TetrahedraOfPart);
+      for (std::size_t t = part * TetrahedraOfPart; t < last; ++t)
       {
         const SpringStiffness stiffness =
           GetSpringStiffness(body.GetMaterial(t), volumes[t], GetCorners(body, body.Tetrahedra[t]));
@@ -135,24 +137,26 @@ MassSpringNetwork::MassSpringNetwork(const ElasticBody& body, int lanes, double 
         }
       }
     });
-  for (const Tetrahedron& tetrahedron : body.Tetrahedra)
-  {
-    for (const std::int32_t node : tetrahedron)
+  ForItems(watch, tetrahedra,
+    [&](std::size_t t)
     {
-      ++this->Begins[static_cast<std::size_t>(node) + 1];
-    }
-  }
+      for (const std::int32_t node : body.Tetrahedra[t])
+      {
+        ++this->Begins[static_cast<std::size_t>(node) + 1];
+      }
+    });
   std::partial_sum(this->Begins.begin(), this->Begins.end(), this->Begins.begin());
   std::vector<std::uint32_t> next(this->Begins.begin(), this->Begins.end() - 1);
-  for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
-  {
-    for (std::size_t i = 0; i < 4; ++i)
+  ForItems(watch, tetrahedra,
+    [&](std::size_t t)
     {
-      const auto node = static_cast<std::size_t>(body.Tetrahedra[t][i]);
-      this->Places[next[node]++] =
-        static_cast<std::uint32_t>(((t / width * 4 + i) * 3) * width + t % width);
-    }
-  }
+      for (std::size_t i = 0; i < 4; ++i)
+      {
+        const auto node = static_cast<std::size_t>(body.Tetrahedra[t][i]);
+        this->Places[next[node]++] =
+          static_cast<std::uint32_t>(((t / width * 4 + i) * 3) * width + t % width);
+      }
+    });
 }
 
 } // namespace deformvolume

@@ -3,6 +3,7 @@
 #define DeformVolumeMassSpringNetwork_h
 
 #include "ElasticBody.h"
+#include "Watch.h"
 
 #include <cstdint>
 #include <vector>
@@ -36,7 +37,7 @@ SpringStiffness GetSpringStiffness(
 struct MassSpringNetwork
 {
   /// scale: a factor of all stiffnesses.
-  MassSpringNetwork(const ElasticBody& body, int lanes, double scale);
+  MassSpringNetwork(Watch& watch, const ElasticBody& body, int lanes, double scale);
 
   int Lanes;
   std::size_t NumberOfGroups;

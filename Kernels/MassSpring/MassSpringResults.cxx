@@ -29,13 +29,13 @@ ElementResults FindResults(const std::array<glm::dvec3, 4>& rest,
   constexpr int components[6][2] = { { 0, 0 }, { 1, 1 }, { 2, 2 }, { 0, 1 }, { 1, 2 }, { 0, 2 } };
   ElementResults results;
   const double restVolume = GetSignedVolume(rest);
-  const double volume = GetSignedVolume(now);
-  results.Determinant = volume / restVolume;
+  results.Determinant = GetSignedVolume(now) / restVolume;
   const SpringStiffness stiffness = GetSpringStiffness(material, std::abs(restVolume), rest);
   const double growth = results.Determinant - 1.0;
   const double bulk = static_cast<double>(stiffness.Volume) * scale;
   results.StrainEnergyDensity = 0.5 * bulk * growth * growth;
-  for (std::size_t i = 0; i < 3; ++i)
+  const bool hasStress = !IsFlat(results.Determinant);
+  for (std::size_t i = 0; i < 3 && hasStress; ++i)
   {
     results.Stress[i] = bulk * growth;
   }
@@ -48,10 +48,10 @@ ElementResults FindResults(const std::array<glm::dvec3, 4>& rest,
       const double lengthening = length - glm::distance(rest[a], rest[b]);
       const double force = static_cast<double>(stiffness.Edge) * scale * lengthening;
       results.StrainEnergyDensity += 0.5 * force * lengthening / std::abs(restVolume);
-      for (std::size_t i = 0; i < 6 && length > 0.0 && volume != 0.0; ++i)
+      for (std::size_t i = 0; i < 6 && length > 0.0 && hasStress; ++i)
       {
-        results.Stress[i] +=
-          force * edge[components[i][0]] * edge[components[i][1]] / (length * std::abs(volume));
+        results.Stress[i] += force * edge[components[i][0]] * edge[components[i][1]] /
+          (length * results.Determinant * std::abs(restVolume));
       }
     }
   }

@@ -3,6 +3,7 @@
 
 #include "Error.h"
 #include "IndexBounds.h"
+#include "Watch.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -43,46 +44,48 @@ void CheckPoints(const ElasticBody& body)
   }
 }
 
-void CheckNodes(const ElasticBody& body)
+void CheckNodes(Watch& watch, const ElasticBody& body)
 {
-  for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
-  {
-    for (const std::int32_t node : body.Tetrahedra[t])
+  ForItems(watch, body.Tetrahedra.size(),
+    [&](std::size_t t)
     {
-      if (node < 0 || static_cast<std::size_t>(node) >= body.Points.size())
+      for (const std::int32_t node : body.Tetrahedra[t])
       {
-        throw Error("Tetrahedron " + std::to_string(t) + " has the node " + std::to_string(node) +
-          ", but the mesh has " + std::to_string(body.Points.size()) + " nodes.");
+        if (node < 0 || static_cast<std::size_t>(node) >= body.Points.size())
+        {
+          throw Error("Tetrahedron " + std::to_string(t) + " has the node " + std::to_string(node) +
+            ", but the mesh has " + std::to_string(body.Points.size()) + " nodes.");
+        }
       }
-    }
-  }
+    });
 }
 
-void CheckShapes(const ElasticBody& body)
+void CheckShapes(Watch& watch, const ElasticBody& body)
 {
   std::size_t inverted = 0;
   std::size_t firstInverted = 0;
-  for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
-  {
-    const std::array<glm::dvec3, 3> edges = GetEdges(body, body.Tetrahedra[t]);
-    const double determinant = GetDeterminant(edges);
-    double longest = 0.0;
-    for (const glm::dvec3& edge : { edges[0], edges[1], edges[2], edges[1] - edges[0],
-           edges[2] - edges[0], edges[2] - edges[1] })
+  ForItems(watch, body.Tetrahedra.size(),
+    [&](std::size_t t)
     {
-      longest = std::max(longest, glm::length(edge));
-    }
-    if (!(std::abs(determinant) > LeastHeight * longest * longest * longest))
-    {
-      throw Error("Tetrahedron " + std::to_string(t) +
-        " of the rest mesh is flat. Remove such cells, or make a better mesh.");
-    }
-    if (determinant < 0.0)
-    {
-      firstInverted = inverted == 0 ? t : firstInverted;
-      ++inverted;
-    }
-  }
+      const std::array<glm::dvec3, 3> edges = GetEdges(body, body.Tetrahedra[t]);
+      const double determinant = GetDeterminant(edges);
+      double longest = 0.0;
+      for (const glm::dvec3& edge : { edges[0], edges[1], edges[2], edges[1] - edges[0],
+             edges[2] - edges[0], edges[2] - edges[1] })
+      {
+        longest = std::max(longest, glm::length(edge));
+      }
+      if (!(std::abs(determinant) > LeastHeight * longest * longest * longest))
+      {
+        throw Error("Tetrahedron " + std::to_string(t) +
+          " of the rest mesh is flat. Remove such cells, or make a better mesh.");
+      }
+      if (determinant < 0.0)
+      {
+        firstInverted = inverted == 0 ? t : firstInverted;
+        ++inverted;
+      }
+    });
   if (inverted > 0 && inverted < body.Tetrahedra.size())
   {
     throw Error(std::to_string(inverted) + " of " + std::to_string(body.Tetrahedra.size()) +
@@ -116,8 +119,10 @@ std::int32_t FindRoot(std::vector<std::int32_t>& parents, std::int32_t node)
 
 } // namespace
 
-void CheckBody(const ElasticBody& body)
+void CheckBody(const ElasticBody& body, Watch* watch)
 {
+  Watch none(nullptr);
+  Watch& asked = watch ? *watch : none;
   if (body.Tetrahedra.empty())
   {
     throw Error("The rest mesh has no tetrahedra.");
@@ -127,8 +132,8 @@ void CheckBody(const ElasticBody& body)
     CheckLength(body.Fixed.size(), body.Points.size(), "marks of fixed nodes");
   }
   CheckPoints(body);
-  CheckNodes(body);
-  CheckShapes(body);
+  CheckNodes(asked, body);
+  CheckShapes(asked, body);
   CheckMaterials(body, body.Materials);
 }
 
@@ -232,20 +237,23 @@ std::vector<double> GetNodeMasses(const ElasticBody& body, const std::vector<dou
   return masses;
 }
 
-BodyPieces FindPieces(const ElasticBody& body)
+BodyPieces FindPieces(const ElasticBody& body, Watch* watch)
 {
+  Watch none(nullptr);
+  Watch& asked = watch ? *watch : none;
   std::vector<std::int32_t> parents(body.Points.size());
   std::iota(parents.begin(), parents.end(), 0);
   std::vector<unsigned char> isUsed(body.Points.size(), 0);
-  for (const Tetrahedron& tetrahedron : body.Tetrahedra)
-  {
-    const std::int32_t root = FindRoot(parents, tetrahedron[0]);
-    for (const std::int32_t node : tetrahedron)
+  ForItems(asked, body.Tetrahedra.size(),
+    [&](std::size_t t)
     {
-      isUsed[static_cast<std::size_t>(node)] = 1;
-      parents[static_cast<std::size_t>(FindRoot(parents, node))] = root;
-    }
-  }
+      const std::int32_t root = FindRoot(parents, body.Tetrahedra[t][0]);
+      for (const std::int32_t node : body.Tetrahedra[t])
+      {
+        isUsed[static_cast<std::size_t>(node)] = 1;
+        parents[static_cast<std::size_t>(FindRoot(parents, node))] = root;
+      }
+    });
   BodyPieces pieces;
   pieces.PieceOfNode.assign(body.Points.size(), -1);
   for (std::size_t node = 0; node < body.Points.size(); ++node)

@@ -16,6 +16,8 @@
 namespace deformvolume
 {
 
+class Watch;
+
 /// An isotropic elastic material.
 struct ElasticMaterial
 {
@@ -79,8 +81,8 @@ struct BodyLoads
 
 /// Throws an Error where a body cannot be simulated: no tetrahedra, nodes that are not there,
 /// coordinates that are not finite, tetrahedra that are flat or turned inside out, a material out
-/// of its range, or arrays of another length.
-DEFORMVOLUME_EXPORT void CheckBody(const ElasticBody& body);
+/// of its range, or arrays of another length. watch: of the engine; asked now and then.
+DEFORMVOLUME_EXPORT void CheckBody(const ElasticBody& body, Watch* watch = nullptr);
 
 /// Throws an Error where a number of a material is out of its range; where: of which, in words.
 DEFORMVOLUME_EXPORT void CheckMaterial(const ElasticMaterial& material, const std::string& where);
@@ -110,7 +112,8 @@ struct BodyPieces
   std::vector<std::int32_t> PieceOfNode;
   std::int32_t NumberOfPieces = 0;
 };
-DEFORMVOLUME_EXPORT BodyPieces FindPieces(const ElasticBody& body);
+/// watch: of the engine; asked now and then.
+DEFORMVOLUME_EXPORT BodyPieces FindPieces(const ElasticBody& body, Watch* watch = nullptr);
 
 /// Of each piece whether the nodes that are not free, of which there is one byte a node, hold it:
 /// at least three of them that lie on no common line.

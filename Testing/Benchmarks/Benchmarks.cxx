@@ -29,6 +29,7 @@ int main(int argc, char* argv[])
   RegisterLive(size);
   RegisterEdits(size);
   RegisterChainMail(size);
+  RegisterPhysics(size);
 
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv))

@@ -3,7 +3,8 @@
 //
 // Usage: CorotationalFrames [FRAMES [NEWTON [ITERATIONS [SCENE]]]]. Times are in milliseconds. The
 // body is a block that is fixed at its lower end; in the middle of the other end a handle of 3 x 3
-// nodes goes sideways, by 0.005 of the length in each frame, or the body bends under its weight.
+// nodes goes along a circle, by 0.005 of the length in each frame, or the body bends under its
+// weight.
 #include "CorotationalModel.h"
 #include "LatticeBody.h"
 #include "Timing.h"
@@ -27,6 +28,14 @@ struct Scene
   double PoissonRatio;
   bool HasHandle;
 };
+
+// By the length of the body: along a circle, by 0.005 in each frame.
+glm::dvec3 GetHandlePlace(int frame)
+{
+  constexpr double radius = 0.1;
+  const double angle = 0.005 / radius * (frame + 1);
+  return radius * glm::dvec3(std::sin(angle), 1.0 - std::cos(angle), 0.0);
+}
 
 double GetMedian(std::vector<double> values)
 {
@@ -64,7 +73,7 @@ void RunScene(const Scene& scene, int frames, const CorotationalLimits& limits)
         {
           request.Held.push_back({ lattice.GetNode({ scene.Nodes[0] / 2 + i, scene.Nodes[1] / 2 + j,
                                      scene.Nodes[2] - 1 }),
-            glm::dvec3(0.005 * length * (frame + 1), 0.0, 0.0) });
+            length * GetHandlePlace(frame) });
         }
       }
     }

@@ -64,6 +64,9 @@ void RegisterEdits(const EvaluationSize& size);
 /// ChainMail/<dimensions>/<part or whole>: frames of a drag, the volume updated in part or whole.
 void RegisterChainMail(const EvaluationSize& size);
 
+/// Physics/<body>/frame: frames of springs and of finite elements.
+void RegisterPhysics(const EvaluationSize& size);
+
 /// A resampler by its name in the results.
 struct NamedResampler
 {

@@ -11,8 +11,14 @@ PAPER_RENDERING = {("700x700", "unshaded"): 7.4, ("700x700", "shaded"): 24.1,
 
 # Milliseconds: of ChainMail, mapping, resampling and a frame of them; of edits, which take less.
 PAPER_FRAMES = {"150x242x182": (None, None, None, 16.0), "189x305x229": (11.0, 0.5, 23.5, 35.0)}
+# Simulation, mapping and resampling of a mass-spring network of 2.5 million tetrahedra.
+PAPER_SPRINGS = (19.0, 5.3, 21.4)
 PAPER_CUT = 21.0
 PAPER_CARVING = 8.0
+
+# Frames a second that SOFA's developers measured on a processor of a laptop, its rendering
+# included: springs of 4,000 nodes, and tetrahedral elements of 19,456.
+SOFA_RATES = {"springs-4096": 108.0, "elements-19456": 9.2}
 
 # 6.6 and 13.2 million voxels.
 INTERACTIVE_SIZES = tuple(PAPER_FRAMES)
@@ -278,6 +284,46 @@ def chain_mail(results, _folder, _kind):
                      "resampling, ms", "frame: step and Update(), ms"], rows)
 
 
+PHYSICS = (
+    ("springs-2431", "springs, a step"), ("springs-507584", "springs, a step"),
+    ("springs-2197-60Hz", "springs, all steps of 1/60 s"),
+    ("springs-2197-60Hz-half", "the same, SamplingFactor 2"),
+    ("elements-125", "finite elements"), ("elements-3200", "finite elements"),
+    ("elements-19456", "finite elements"))
+
+
+def physics(results, _folder, _kind):
+    rows = []
+    for body, words in PHYSICS:
+        name = f"Physics/{body}/frame"
+        if name not in results.runs:
+            continue
+        frame = results.median(name)
+        rows.append([words, f"{results.median(name, 'nodes') or 0:,.0f}",
+                     f"{results.median(name, 'tetrahedra') or 0:,.0f}",
+                     *(results.milliseconds(name, part)
+                       for part in ("simulation", "mapping", "resampling")),
+                     frame, frame and 1000.0 / frame,
+                     (results.median(name, "device_bytes") or 0.0) / 2**20])
+        if body == "springs-507584":
+            rows.append(["springs, published", "512,000", "2.5 million", *PAPER_SPRINGS,
+                         sum(PAPER_SPRINGS), 1000.0 / sum(PAPER_SPRINGS), None])
+    if rows:
+        yield "## Physics: frames of simulated bodies\n"
+        yield table(["simulation", "nodes", "tetrahedra", "simulation, ms", "mapping, ms",
+                     "resampling, ms", "frame: step and Update(), ms", "frames a second",
+                     "device memory of the filter, MiB"], rows)
+    rows = [[words, f"{results.median(name, 'nodes') or 0:,.0f}",
+             1.0 / results.median(name, "simulation"), SOFA_RATES[body],
+             1.0 / results.median(name, "simulation") / SOFA_RATES[body]]
+            for body, words in (("springs-4096", "springs"), ("elements-19456", "finite elements"))
+            for name in (f"Physics/{body}/frame",)
+            if results.median(name, "simulation")]
+    if rows:
+        yield "Simulations by themselves:\n"
+        yield table(["simulation", "nodes", "steps a second", "SOFA's, published", "by that"], rows)
+
+
 def edits(results, _folder, _kind):
     rows = [[dimensions, words, results.median(f"Edit/{dimensions}/{name}"), paper]
             for dimensions in INTERACTIVE_SIZES
@@ -332,4 +378,4 @@ def rendering(results, folder, kind):
 
 
 ALL = [device, comparison, poses, nodes, tetrahedra, voxels, preprocessing, memory, incremental, live,
-       chain_mail, edits, given, rendering]
+       chain_mail, physics, edits, given, rendering]

@@ -7,6 +7,7 @@
 #include "vtkLatticeTetrahedraSource.h"
 #include "vtkMassSpringDeformation.h"
 
+#include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkInformation.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
@@ -325,6 +326,73 @@ void TestWhatIsKept()
   VERIFY(Holds(simulated.Object->GetSummary(), "Nodes: 325"));
 }
 
+// Updates with an abort at so many events of progress. Returns the words of a warning of the next
+// update, which is not aborted.
+template <typename Filter>
+std::string Abort(Simulated<Filter>& simulated, int event)
+{
+  struct AbortAt
+  {
+    static void Execute(vtkObject* caller, unsigned long, void* left, void*)
+    {
+      if (--*static_cast<int*>(left) == 0)
+      {
+        static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+      }
+    }
+  };
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback(AbortAt::Execute);
+  abort->SetClientData(&event);
+  const unsigned long tag = simulated.Object->AddObserver(vtkCommand::ProgressEvent, abort);
+  simulated.Object->Modified();
+  simulated.Object->Update();
+  VERIFY(event <= 0);
+  VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(), 0);
+  VERIFY_EQUAL(simulated.Observer->GetErrorMessage(), std::string());
+  simulated.Object->RemoveObserver(tag);
+  simulated.Object->SetAbortExecute(0);
+  simulated.Observer->Clear();
+  simulated.Object->Update();
+  VERIFY_EQUAL(simulated.Observer->GetErrorMessage(), std::string());
+  const std::string warning = simulated.Observer->GetWarningMessage();
+  simulated.Observer->Clear();
+  return warning;
+}
+
+// An abort while another material is taken over.
+template <typename Filter>
+void TestAborted()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
+  Simulated<Filter> simulated(bar);
+  Simulated<Filter> wanted(bar);
+  for (Simulated<Filter>* one : { &simulated, &wanted })
+  {
+    one->Object->SetGravity(0.0, 0.0, 2.0);
+    VERIFY_EQUAL(one->TryUpdate(), std::string());
+    one->Object->SetYoungModulus(2e4);
+  }
+  VERIFY_EQUAL(Abort(simulated, 1), std::string());
+  VERIFY_EQUAL(wanted.TryUpdate(), std::string());
+  VERIFY(AreEqual(simulated.Copy(), wanted.Copy()));
+}
+
+// A body of springs is lost where an abort comes late.
+void TestLostBody()
+{
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetNumberOfNodes(17, 17, 33);
+  lattice->SetBounds(0.0, 1.1, 0.0, 1.0, 0.0, 2.0);
+  lattice->Update();
+  Simulated<vtkMassSpringDeformation> simulated(lattice->GetOutput());
+  simulated.Object->SetGravity(0.0, 0.0, 2.0);
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  simulated.Object->SetPoissonRatio(0.4);
+  VERIFY(Holds(Abort(simulated, 3), "starts anew"));
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+}
+
 // Both models agree where deformations are small, and deform a volume.
 void TestDeformedVolume()
 {
@@ -509,6 +577,9 @@ int TestElasticDeformation(int, char*[])
   TestTimes();
   TestWhatIsKept<vtkMassSpringDeformation>();
   TestWhatIsKept<vtkCorotationalDeformation>();
+  TestAborted<vtkMassSpringDeformation>();
+  TestAborted<vtkCorotationalDeformation>();
+  TestLostBody();
   TestDeformedVolume();
   TestCut<vtkMassSpringDeformation>(
     [](Simulated<vtkMassSpringDeformation>& simulated)

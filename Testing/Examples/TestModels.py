@@ -10,6 +10,8 @@ from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vt
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersSources import vtkPlaneSource
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 program = sys.argv[1]
 folder = make_folder(sys.argv[2], "Models")
@@ -52,6 +54,22 @@ for model in ("fem", "mass-spring"):
 fails(1, "No constraints", "--model", "fem", *lattice, "--gravity", "0,0,-9.81")
 fails(2, "--fix requires", "--model", "chainmail", *fix, *pull)
 fails(2, "--young requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--young", "5")
+for text in ("5=1", "1:2", "1:2=", "1:2=3,", "1:2=3,0.3,1,4", "2:1=3", "a:2=3"):
+    fails(2, f"--material {text}" if text[0] in "25" else "--material", "--model", "fem", *lattice, *fix,
+          "--material", text)
+fails(1, "Young modulus of material 0", "--model", "fem", *lattice, *fix, "--material", "0:9=-1")
+fails(2, "--material requires", "--model", "chainmail", *pull, "--material", "0:9=1")
+fails(1, "no such file", "--model", "fem", *lattice, *fix, "--cut", path("none.vtp"))
+fails(2, "--smooth-cut divides voxels", "--model", "fem", *lattice, *fix, "--cut", "x.vtp",
+      "--smooth-cut")
+fails(2, "--movie requires --frames", "--model", "fem", *lattice, *fix, "--movie", "x.png")
+fails(2, "--frames requires --movie", "--model", "fem", *lattice, *fix, "--frames", "3")
+fails(2, "must end in .png", "--model", "fem", *lattice, *fix, "--movie", "x.mp4", "--frames", "3")
+fails(2, "--frames", "--model", "fem", *lattice, *fix, "--movie", "x.png", "--frames", "0")
+fails(2, "--movie requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--movie", "x.png",
+      "--frames", "3")
+fails(1, "there is no folder", "--model", "fem", *lattice, *fix, "--movie",
+      path("none/x.png"), "--frames", "3")
 fails(2, "ChainMail has no mesh", "--model", "chainmail", *pull, "--write-mesh", path("m.vtu"))
 
 # The same by the filters.
@@ -102,6 +120,47 @@ def check(name, model, words, *arguments):
     assert os.path.exists(path(f"{name}.vtu"))
 
 
+def check_materials_and_cut():
+    """The upper half is stiffer, and a plane parts the mesh."""
+    plane = vtkPlaneSource()
+    plane.SetOrigin(middle[0] + 0.3, bounds[2] - 9, middle[2])
+    plane.SetPoint1(middle[0] + 0.3, bounds[3] + 9, middle[2])
+    plane.SetPoint2(middle[0] + 0.3, bounds[2] - 9, bounds[5] + 9)
+    writer = vtkXMLPolyDataWriter()
+    writer.SetDataModeToBinary()
+    writer.SetInputConnection(plane.GetOutputPort())
+    writer.SetFileName(path("sheet.vtp"))
+    writer.Write()
+    low, high = volume.GetPointData().GetScalars().GetRange()
+    limit = 0.5 * (low + high)
+    materials = deformvolume.vtkMaterialFromVolume()
+    materials.SetInputData(mesh)
+    materials.SetVolumeData(volume)
+    materials.SetMaterial(0, 2e4, 0.2, 900)
+    materials.SetMaterial(1, 5000, 0.4, 1000)
+    materials.AddMaterialRange(limit, 1e9, 0)
+    model = deformvolume.vtkCorotationalDeformation()
+    model.SetInputConnection(materials.GetOutputPort())
+    model.SetModeToConverged()
+    model.SetHandlesData(handles)
+    model.SetHandleRadius(numbers[6])
+    model.SetLengthUnitToMillimetre()
+    model.SetSheetConnection(plane.GetOutputPort())
+    deform = deformvolume.vtkDeformVolumeFilter()
+    deform.SetInputData(volume)
+    deform.SetDeformationConnection(model.GetOutputPort())
+    deform.OpenSplitsOn()
+    deform.Update()
+    output, _ = call(program, path("in.vti"), "--model", "fem", *lattice, *fix, *pull, "--young",
+                     "5000", "--poisson", "0.4", "--material", f"{limit}:1e9=2e4,0.2,900", "--cut",
+                     path("sheet.vtp"), "-o", path("cut.vti"))
+    assert f"{model.GetNumberOfSplitFaces()} faces of tetrahedra of the mesh split" in output, output
+    assert model.GetNumberOfSplitFaces() > 20
+    numpy.testing.assert_array_equal(get_values(read_vti(path("cut.vti"))),
+                                     get_values(deform.GetOutput()))
+
+
+check_materials_and_cut()
 check("fem", deformvolume.vtkCorotationalDeformation(), "to equilibrium, strain energy")
 check("mass-spring", deformvolume.vtkMassSpringDeformation(), "0.1 s, in steps of", "--duration",
       "0.1")

@@ -121,8 +121,8 @@ protected:
   /// where whole outputs are made by cell as well.
   static int GetNumberOf(int edits)
   {
-    constexpr int byCell = 5;
-    constexpr int onGraphics = 8;
+    constexpr int byCell = 7;
+    constexpr int onGraphics = 10;
     return !HasVectors()                               ? edits / onGraphics
       : GetMethod() == deformvolume::Resampling::Exact ? GetNumberOfCases(edits)
                                                        : edits / byCell;

@@ -143,7 +143,7 @@ TEST_P(Connectivity, GapsAndMasksOfASmallVolume)
   std::mt19937 random(7);
   EditedOutputs last(volume);
   bool hasGap = false;
-  for (int edit = 0; edit < 3; ++edit)
+  for (int edit = 0; edit < 2; ++edit)
   {
     SCOPED_TRACE("edit " + std::to_string(edit));
     const std::vector<TetrahedronChange> changes = volume.Split(random, 6);

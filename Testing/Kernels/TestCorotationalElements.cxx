@@ -173,11 +173,11 @@ TEST(CorotationalElements, TangentIsThatOfTheForces)
 {
   Stretched stretched;
   const ElasticBody& body = stretched.Lattice.Body;
-  CorotationalElements elements(body);
-  BlockMatrix matrix;
-  matrix.SetPattern(MakeNodePattern(body));
-  elements.SetPattern(matrix.GetPattern());
   Watch watch(nullptr);
+  CorotationalElements elements(watch, body);
+  BlockMatrix matrix;
+  matrix.SetPattern(watch, MakeNodePattern(watch, body));
+  elements.SetPattern(watch, matrix.GetPattern());
   elements.AssembleTangent(watch, stretched.Displacements, matrix);
   const std::size_t nodes = body.Points.size();
   const std::vector<unsigned char> isFree(nodes, 1);
@@ -213,11 +213,11 @@ TEST(CorotationalElements, TangentIsThatOfTheForces)
 TEST(CorotationalElements, TangentIsNeverNegative)
 {
   LatticeBody lattice({ 3, 3, 3 }, 0.1, MakeMaterial(1e4, 0.45));
-  CorotationalElements elements(lattice.Body);
-  BlockMatrix matrix;
-  matrix.SetPattern(MakeNodePattern(lattice.Body));
-  elements.SetPattern(matrix.GetPattern());
   Watch watch(nullptr);
+  CorotationalElements elements(watch, lattice.Body);
+  BlockMatrix matrix;
+  matrix.SetPattern(watch, MakeNodePattern(watch, lattice.Body));
+  elements.SetPattern(watch, matrix.GetPattern());
   const std::size_t nodes = lattice.Body.Points.size();
   const std::vector<unsigned char> isFree(nodes, 1);
   std::mt19937 random(7);
@@ -250,5 +250,60 @@ TEST(CorotationalElements, TangentIsNeverNegative)
         direction[node] -= product[node] / 3e4;
       }
     }
+  }
+}
+
+// The stress of a tetrahedron is what its nodes pull at, by its volume: the forces by the
+// positions.
+TEST(CorotationalElements, StressIsThatOfTheForces)
+{
+  ElasticBody body;
+  body.Points = { { 0, 0, 0 }, { 0.1, 0, 0 }, { 0.02, 0.1, 0 }, { 0.03, 0.01, 0.1 } };
+  body.Tetrahedra = { { 0, 1, 2, 3 } };
+  body.Materials = { MakeMaterial(1e4, 0.3) };
+  const double volume = GetVolumes(body).front();
+  CorotationalModel model;
+  model.SetBody(body);
+  const glm::dmat3 rotation = MakeRotation(0.7, { 1.0, 2.0, -0.5 });
+  // Larger, smaller and inside out.
+  for (const double height : { 1.4, 1.0, 0.3, 1e-3, -1e-3, -0.8 })
+  {
+    const std::vector<glm::dvec3> displacements = MapPoints(
+      body, rotation * glm::dmat3(1.1, 0, 0, 0.2, 0.9, 0, 0, 0.1, height), glm::dvec3(0.5));
+    model.SetDisplacements(displacements);
+    const std::vector<glm::dvec3> forces = model.GetForces();
+    glm::dmat3 wanted(0.0);
+    for (std::size_t node = 0; node < 4; ++node)
+    {
+      wanted += glm::outerProduct(forces[node], body.Points[node] + displacements[node]);
+    }
+    const ElementResults results = model.GetElementResults().front();
+    EXPECT_NEAR(results.Determinant, 1.1 * 0.9 * height, 1e-14);
+    wanted /= volume * results.Determinant;
+    const std::array<double, 6>& s = results.Stress;
+    const glm::dmat3 stress(s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]);
+    EXPECT_LT(LargestOfMatrix(stress - wanted), 1e-9 * LargestOfMatrix(wanted)) << height;
+  }
+}
+
+TEST(CorotationalElements, FlatTetrahedraHaveNoStress)
+{
+  const LatticeBody lattice({ 3, 3, 3 }, 0.1, MakeMaterial(1e4, 0.3));
+  CorotationalModel model;
+  model.SetBody(lattice.Body);
+  const glm::dmat3 rotation = MakeRotation(0.7, { 1.0, 2.0, -0.5 });
+  // Exactly, and but for rounding; to a plane, a line and a point.
+  for (const glm::dmat3& matrix :
+    { glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, 0), rotation * glm::dmat3(1.2, 0, 0, 0, 0.9, 0, 0, 0, 0),
+      glm::dmat3(1, 0, 0, 0, 0, 0, 0, 0, 0), glm::dmat3(0.0) })
+  {
+    model.SetDisplacements(MapPoints(lattice.Body, matrix, glm::dvec3(0.0)));
+    for (const ElementResults& results : model.GetElementResults())
+    {
+      EXPECT_NEAR(results.Determinant, 0.0, 1e-14);
+      EXPECT_EQ(results.Stress, (std::array<double, 6>{}));
+      EXPECT_GT(results.StrainEnergyDensity, 1e3);
+    }
+    EXPECT_GT(LargestOf(model.GetForces()), 1.0);
   }
 }

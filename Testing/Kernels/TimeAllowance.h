@@ -15,7 +15,7 @@
 constexpr int GetNumberOfCases(int cases)
 {
 #ifdef DEFORMVOLUME_TEST_SANITIZED
-  return cases / 4;
+  return cases / 8;
 #else
   return cases;
 #endif

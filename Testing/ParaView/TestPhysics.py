@@ -45,6 +45,22 @@ def check_elements(volume, mesh, handle):
     simple.Delete(fem)
 
 
+def check_materials(volume, mesh):
+    """Values from 37 to 277; the largest are in the middle."""
+    materials = simple.MaterialFromVolume(Mesh=mesh, Volume=volume)
+    materials.DefaultMaterial = 1
+    materials.Materials = [1, 2000, 0.2, 900, 9, 8000, 0.4, 1100]
+    materials.MaterialRanges = [150, 1000, 9]
+    materials.UpdatePipeline()
+    young = materials.CellData["YoungModulus"].GetRange()
+    assert 2000 <= young[0] < 2500 and 7000 < young[1] <= 8000, young
+    density = materials.CellData["Density"].GetRange()
+    assert 900 <= density[0] < density[1] <= 1100, density
+    assert materials.TetrahedraWithoutVoxels == 0
+    assert materials.TetrahedraOutside == 0
+    simple.Delete(materials)
+
+
 def check_springs(mesh, handle):
     springs = simple.MassSpringDeformation(RestMesh=mesh, Handles=handle)
     springs.LengthUnit = "Millimetre"
@@ -86,6 +102,7 @@ def main():
     mesh.Script = FIX
     handle = simple.DeformationHandle(RestPosition=[0, 0, 10], Position=[0, 0, 14])
     check_elements(volume, mesh, handle)
+    check_materials(volume, mesh)
     check_springs(mesh, handle)
 
 

@@ -33,7 +33,9 @@ WITHOUT_PROPERTY = {
     "GetRefinementSphere",
     "GetDeviceNames",
     "SetHandlesData",
+    "SetVolumeData",
     "GetMaterialLimits",
+    "GetMaterialValues",
     "GetNumberOfMaterials",
     "GetNumberOfMaterialRanges",
 }

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <utility>
+#include <vector>
 
 namespace deformvolume
 {
@@ -46,6 +47,36 @@ private:
   bool IsFirst = true;
 };
 
+/// Calls body(item) for so many items, one after the other, and asks now and then. They take a
+/// microsecond or so each.
+template <typename Body>
+void ForItems(Watch& watch, std::size_t items, Body&& body)
+{
+  constexpr std::size_t atOnce = 4096;
+  for (std::size_t begin = 0; begin < items; begin += atOnce)
+  {
+    watch.Ask();
+    for (std::size_t item = begin; item < std::min(items, begin + atOnce); ++item)
+    {
+      body(item);
+    }
+  }
+}
+
+/// Appends values to a vector until there are so many, and asks now and then: the memory of a large
+/// one is slow when it is touched first.
+template <typename Value>
+void Grow(Watch& watch, std::vector<Value>& values, std::size_t size)
+{
+  constexpr std::size_t atOnce = (std::size_t(1) << 24) / sizeof(Value);
+  values.reserve(size);
+  while (values.size() < size)
+  {
+    watch.Ask();
+    values.resize(std::min(size, values.size() + atOnce));
+  }
+}
+
 /// Calls body(part) for so many parts in parallel, and asks after so many of them: all together
 /// should take some ten milliseconds at most.
 template <typename Body>
@@ -65,6 +96,23 @@ void ForParts(Watch& watch, std::size_t parts, std::size_t atOnce, Body&& body)
         }
       });
   }
+}
+
+/// Calls body(item) for so many items in parallel, and asks now and then. They take a microsecond
+/// or so each.
+template <typename Body>
+void ForItemsInParallel(Watch& watch, std::size_t items, Body&& body)
+{
+  constexpr std::size_t size = 1024;
+  constexpr std::size_t partsAtOnce = 8;
+  ForParts(watch, (items + size - 1) / size, partsAtOnce,
+    [&](std::size_t part)
+    {
+      for (std::size_t item = part * size; item < std::min(items, (part + 1) * size); ++item)
+      {
+        body(item);
+      }
+    });
 }
 
 } // namespace deformvolume

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Movie.h"
+
+#include "Messages.h"
+
+#include <vtksys/SystemTools.hxx>
+
+#ifdef DEFORMVOLUME_HAVE_THEORA
+#include <vtkOggTheoraWriter.h>
+#endif
+
+#include <iomanip>
+#include <sstream>
+
+namespace
+{
+bool IsVideo(const std::string& path)
+{
+  return vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(path), ".ogv");
+}
+
+#ifdef DEFORMVOLUME_HAVE_THEORA
+vtkSmartPointer<vtkGenericMovieWriter> MakeWriter(const std::string& path)
+{
+  constexpr int framesPerSecond = 25;
+  constexpr int best = 2;
+  vtkNew<vtkOggTheoraWriter> writer;
+  writer->SetFileName(path.c_str());
+  writer->SetRate(framesPerSecond);
+  writer->SetQuality(best);
+  return writer;
+}
+#else
+vtkSmartPointer<vtkGenericMovieWriter> MakeWriter(const std::string&)
+{
+  return nullptr;
+}
+#endif
+}
+
+bool CanWriteMovie(const std::string& path)
+{
+#ifdef DEFORMVOLUME_HAVE_THEORA
+  if (IsVideo(path))
+  {
+    return true;
+  }
+#endif
+  return vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(path), ".png");
+}
+
+std::string GetFramePath(const std::string& path, int frame)
+{
+  const std::size_t suffix = path.size() - std::string(".png").size();
+  std::ostringstream text;
+  text << path.substr(0, suffix) << std::setw(4) << std::setfill('0') << frame
+       << path.substr(suffix);
+  return text.str();
+}
+
+Movie::Movie(vtkImageData* before, const PictureOptions& options, const std::string& path)
+  : Frames(before, options)
+  , Path(path)
+  , Writer(IsVideo(path) ? MakeWriter(path) : nullptr)
+{
+}
+
+void Movie::Add(vtkImageData* after, Messages& messages)
+{
+  vtkImageData* frame = this->Frames.Draw(after, Picture::Aim::Fixed, messages);
+  ++this->Number;
+  if (!this->Writer)
+  {
+    WritePNG(frame, GetFramePath(this->Path, this->Number), messages);
+    return;
+  }
+  this->Writer->SetInputData(frame);
+  if (this->Number == 1)
+  {
+    this->Writer->Start();
+  }
+  this->Writer->Write();
+  messages.Check("cannot write " + this->Path, this->Writer->GetError() == 0);
+}
+
+void Movie::Finish(Messages& messages)
+{
+  if (this->Writer && this->Number > 0)
+  {
+    this->Writer->End();
+    messages.Check("cannot write " + this->Path, this->Writer->GetError() == 0);
+  }
+}

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "OptionChecks.h"
+
+#include "Failure.h"
+#include "FieldReading.h"
+#include "Movie.h"
+#include "Options.h"
+#include "VolumeWriting.h"
+
+#include <vtksys/SystemTools.hxx>
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace
+{
+/// NaN passes all comparisons of a range, and no length or value is infinite.
+void CheckNumbers(const Options& options)
+{
+  const std::pair<const char*, double> numbers[] = { { "--scale", options.Scale },
+    { "--isovalue", options.Isovalue.value_or(0.0) }, { "--edge-length", options.EdgeLength },
+    { "--radius-edge-ratio", options.RadiusEdgeRatio }, { "--young", options.YoungModulus },
+    { "--poisson", options.PoissonRatio }, { "--density", options.Density },
+    { "--duration", options.Duration }, { "--threshold", options.Threshold.value_or(0.0) } };
+  for (const auto& [option, number] : numbers)
+  {
+    if (!std::isfinite(number))
+    {
+      throw UsageError(std::string(option) + " must be a finite number");
+    }
+  }
+}
+
+/// The result never takes the place of what it is made from.
+void CheckOverwriting(const Options& options)
+{
+  std::vector<std::string> outputs = options.Outputs;
+  outputs.push_back(options.Image);
+  outputs.push_back(options.Movie);
+  outputs.push_back(options.MeshOutput);
+  for (const std::string& output : outputs)
+  {
+    std::vector<std::string> inputs{ options.Volume, options.Mesh, options.Rest, options.Field };
+    inputs.insert(inputs.end(), options.Cuts.begin(), options.Cuts.end());
+    for (const std::string& input : inputs)
+    {
+      if (!output.empty() && !input.empty() && vtksys::SystemTools::SameFile(output, input))
+      {
+        throw UsageError(output + " is read and would be overwritten: give another name");
+      }
+    }
+  }
+}
+
+/// A model has one radius for all its handles.
+void CheckModel(const Options& options)
+{
+  if (options.HasElasticModel())
+  {
+    if (!options.TetGen && !options.HasLattice())
+    {
+      throw UsageError("--model " + options.Model +
+        " needs --tetgen or --lattice, the mesh that it "
+        "moves");
+    }
+    if (!options.Pushes.empty())
+    {
+      throw UsageError(
+        "--push moves nodes without a model; give --pull to --model " + options.Model);
+    }
+  }
+  else if (!options.Fixations.empty() || !options.Materials.empty())
+  {
+    throw UsageError(std::string(options.Fixations.empty() ? "--material" : "--fix") +
+      " requires --model fem or --model mass-spring");
+  }
+  if (options.CutsMesh() && options.SmoothCut)
+  {
+    throw UsageError(
+      "--smooth-cut divides voxels; with --model " + options.Model + " a --cut parts the mesh");
+  }
+  if (options.Model == "chainmail" && !options.MeshOutput.empty())
+  {
+    throw UsageError("--write-mesh goes with --tetgen or --lattice; ChainMail has no mesh");
+  }
+  if (options.Model == "chainmail" && options.Pulls.empty())
+  {
+    throw UsageError("--model chainmail needs at least one --pull X,Y,Z,DX,DY,DZ[,RADIUS]");
+  }
+  for (const Pull& pull : options.Pulls)
+  {
+    if (pull.Radius != options.Pulls.front().Radius)
+    {
+      throw UsageError("all --pull need the same radius");
+    }
+  }
+}
+
+/// One thing deforms the volume, and its options go with it.
+void CheckDeformation(const Options& options)
+{
+  CheckModel(options);
+  const int deformations = !options.Mesh.empty() + !options.Field.empty() + options.TetGen +
+    options.HasLattice() + (options.Model == "chainmail");
+  if (deformations == 0 && options.HasTools())
+  {
+    if (!options.Displacement.empty() || options.Scale != 1.0 || !options.Pushes.empty())
+    {
+      throw UsageError("--push, --displacement and --scale need a --mesh, --field, --tetgen or "
+                       "--lattice beside --cut and --carve");
+    }
+    return;
+  }
+  if (deformations != 1)
+  {
+    throw UsageError(
+      "exactly one of --mesh, --field, --tetgen, --lattice and --model chainmail says "
+      "what deforms the volume");
+  }
+  if (!options.Mesh.empty())
+  {
+    if (options.Displacement.empty() == options.Rest.empty())
+    {
+      throw UsageError("--mesh needs either --displacement (the name of an array of vectors) or "
+                       "--rest (the mesh at rest)");
+    }
+    if (!options.Pushes.empty())
+    {
+      throw UsageError("--push goes with --tetgen or --lattice; a --mesh brings its displacement");
+    }
+  }
+  else if (!options.Field.empty())
+  {
+    if (!options.Displacement.empty() && !IsVTKFile(options.Field))
+    {
+      throw UsageError("--displacement names an array of a .vti file; " + options.Field +
+        " has one set of vectors only");
+    }
+    if (!options.Pushes.empty())
+    {
+      throw UsageError("--push goes with --tetgen or --lattice; a --field brings its displacement");
+    }
+  }
+  else if (options.Model == "chainmail" && !options.Pushes.empty())
+  {
+    throw UsageError("--push goes with --tetgen or --lattice; give --pull to --model chainmail");
+  }
+  else if (!options.Displacement.empty() || options.Scale != 1.0)
+  {
+    throw UsageError(std::string(options.Scale != 1.0 ? "--scale" : "--displacement") +
+      " requires --mesh or --field");
+  }
+  else if (options.Model.empty() && options.Pushes.empty())
+  {
+    throw UsageError("--tetgen and --lattice need at least one --push X,Y,Z,DX,DY,DZ,RADIUS, or "
+                     "--model");
+  }
+}
+}
+
+void CheckOptions(const Options& options)
+{
+  if (options.ListDevices)
+  {
+    return;
+  }
+  if (options.Volume.empty())
+  {
+    throw UsageError("no VOLUME is given; deform-volume --help tells how to call the program");
+  }
+  CheckDeformation(options);
+  if (options.Outputs.empty() && options.Image.empty() && options.Movie.empty())
+  {
+    throw UsageError("nothing to write: give --output, --image or --movie");
+  }
+  if (!options.Movie.empty() && !CanWriteMovie(options.Movie))
+  {
+    throw UsageError("--movie " + options.Movie +
+      ": the name must end in .png, or in .ogv where VTK has Ogg Theora");
+  }
+  for (const std::string& output : options.Outputs)
+  {
+    if (!CanWriteVolume(output))
+    {
+      throw UsageError("--output " + output + ": the name must end in .vti, .mhd, .nii or .nii.gz");
+    }
+  }
+  const auto endsIn = [](const std::string& path, const char* suffix)
+  {
+    return path.empty() ||
+      vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(path), suffix);
+  };
+  if (!endsIn(options.Image, ".png"))
+  {
+    throw UsageError("--image " + options.Image + ": the name must end in .png");
+  }
+  if (!endsIn(options.MeshOutput, ".vtu"))
+  {
+    throw UsageError("--write-mesh " + options.MeshOutput + ": the name must end in .vtu");
+  }
+  if (options.Image.empty() && options.Movie.empty() && (options.Threshold || options.View))
+  {
+    throw UsageError(
+      std::string(options.View ? "--view" : "--threshold") + " requires --image or --movie");
+  }
+  CheckNumbers(options);
+  CheckOverwriting(options);
+}

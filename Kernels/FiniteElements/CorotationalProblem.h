@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeCorotationalProblem_h
+#define DeformVolumeCorotationalProblem_h
+
+#include "CorotationalTypes.h"
+#include "ElasticBody.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// What does not change during a call of Solve.
+struct CorotationalProblem
+{
+  std::vector<unsigned char> IsFree;
+  /// Nodes that a piece holds which is not frozen, but that are not free.
+  std::vector<std::int32_t> HeldNodes;
+  /// Where these are to be.
+  std::vector<glm::dvec3> Targets;
+  std::vector<glm::dvec3> Loads;
+  std::int32_t FrozenPieces = 0;
+  /// None of them 0.
+  CorotationalLimits Limits;
+  bool IsInteractive = false;
+};
+
+/// Throws an Error where nothing holds the body, and where limits or loads make no sense.
+CorotationalProblem MakeProblem(const CorotationalRequest& request, const ElasticBody& body,
+  const BodyPieces& pieces, const std::vector<double>& masses);
+
+/// Components of forces: the largest of those that are left on free nodes, and of those that are
+/// applied or hold a node.
+struct Residuals
+{
+  double Largest = 0.0;
+  double Reference = 0.0;
+};
+
+/// forces: what the strains exert on nodes.
+Residuals FindResiduals(const CorotationalProblem& problem, const std::vector<glm::dvec3>& forces);
+
+/// The absolute value of the largest component.
+double LargestComponent(const glm::dvec3& vector);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Work on the rows of vectors, part by part, and sums that do not depend on the number of threads.
+#ifndef DeformVolumeRowParts_h
+#define DeformVolumeRowParts_h
+
+#include "BlockMatrix.h"
+#include "Watch.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// Calls body(begin, end) for parts of the rows in parallel.
+template <typename Body>
+void ForRows(Watch& watch, std::size_t rows, Body&& body)
+{
+  constexpr std::size_t size = BlockMatrix::RowsOfPart;
+  ForParts(watch, (rows + size - 1) / size, BlockMatrix::PartsAtOnce,
+    [&](std::size_t part) { body(part * size, std::min(rows, (part + 1) * size)); });
+}
+
+/// The sum of what body(begin, end) returns for parts of the rows, which are added in their order.
+template <typename Body>
+double SumOfParts(Watch& watch, std::size_t rows, Body&& body)
+{
+  constexpr std::size_t size = BlockMatrix::RowsOfPart;
+  std::vector<double> sums((rows + size - 1) / size);
+  ForRows(watch, rows,
+    [&](std::size_t begin, std::size_t end) { sums[begin / size] = body(begin, end); });
+  double total = 0.0;
+  for (const double sum : sums)
+  {
+    total += sum;
+  }
+  return total;
+}
+
+inline double SumOfProducts(
+  Watch& watch, const std::vector<glm::dvec3>& a, const std::vector<glm::dvec3>& b)
+{
+  return SumOfParts(watch, a.size(),
+    [&](std::size_t begin, std::size_t end)
+    {
+      double sum = 0.0;
+      for (std::size_t row = begin; row < end; ++row)
+      {
+        sum += glm::dot(a[row], b[row]);
+      }
+      return sum;
+    });
+}
+
+} // namespace deformvolume
+
+#endif

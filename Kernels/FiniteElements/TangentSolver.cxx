@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TangentSolver.h"
+
+#include "RowParts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace deformvolume
+{
+namespace
+{
+
+// With fewer free nodes the inverses of the diagonal are enough.
+constexpr std::ptrdiff_t LeastNumberForLevels = 1000;
+
+} // namespace
+
+void TangentSolver::Forget()
+{
+  this->IsFree.clear();
+  this->History.Clear();
+}
+
+Preconditioner& TangentSolver::Precondition(Watch& watch, const std::vector<unsigned char>& isFree)
+{
+  const bool isNew = this->IsFree != isFree;
+  this->HasLevels = std::count(isFree.begin(), isFree.end(), 1) >= LeastNumberForLevels;
+  if (!this->HasLevels)
+  {
+    if (isNew || !this->IsPreconditioned)
+    {
+      this->Jacobi.Build(watch, this->Matrix, isFree);
+    }
+  }
+  else
+  {
+    if (isNew)
+    {
+      this->IsFree.clear();
+      this->Levels.Build(watch, this->Matrix, isFree, this->Positions);
+      this->CostOfLevels = 0.0;
+    }
+    if (isNew || !this->IsPreconditioned)
+    {
+      this->Levels.SetPositions(watch, this->Matrix.GetPattern(), this->Positions);
+    }
+  }
+  this->IsFree = isFree;
+  this->IsPreconditioned = true;
+  return this->HasLevels ? static_cast<Preconditioner&>(this->Levels) : this->Jacobi;
+}
+
+void TangentSolver::JudgeLevels(int iterations, double digits)
+{
+  // It takes about as long to build them as some tens of iterations.
+  constexpr int fewIterations = 30;
+  constexpr double manyTimes = 2.5;
+  const double cost = iterations / std::max(0.1, digits);
+  if (!this->HasLevels)
+  {
+    return;
+  }
+  if (this->CostOfLevels == 0.0)
+  {
+    this->CostOfLevels = std::max(1.0, cost);
+  }
+  else if (iterations > fewIterations && cost > manyTimes * this->CostOfLevels)
+  {
+    this->IsFree.clear();
+  }
+}
+
+int TangentSolver::Solve(Watch& watch, const std::vector<unsigned char>& isFree,
+  const std::vector<glm::dvec3>& rightHandSide, const Limits& limits, bool repeats,
+  std::vector<glm::dvec3>& solution)
+{
+  const double squared = SumOfProducts(watch, rightHandSide, rightHandSide);
+  const double wanted = limits.Tolerance * limits.Tolerance * squared;
+  if (this->IsFree != isFree)
+  {
+    this->History.Clear(); // of other nodes
+  }
+  Preconditioner& preconditioner = this->Precondition(watch, isFree);
+  double begin = squared;
+  if (repeats)
+  {
+    this->History.Guess(watch, this->Matrix, isFree, rightHandSide, solution, this->Residual);
+    begin = SumOfProducts(watch, this->Residual, this->Residual);
+  }
+  if (!repeats || !(begin < squared))
+  {
+    solution.assign(rightHandSide.size(), glm::dvec3(0.0));
+    this->Residual = rightHandSide;
+    begin = squared;
+  }
+  const int iterations = this->Gradients.Solve(watch, this->Matrix, isFree, preconditioner,
+    { limits.Iterations, wanted }, solution, this->Residual);
+  if (repeats)
+  {
+    this->History.Add(solution, rightHandSide, this->Residual);
+  }
+  this->JudgeLevels(
+    iterations, begin > 0.0 && wanted > 0.0 ? 0.5 * std::log10(begin / wanted) : 0.0);
+  return iterations;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeTangentSolver_h
+#define DeformVolumeTangentSolver_h
+
+#include "BlockMatrix.h"
+#include "ConjugateGradients.h"
+#include "Multigrid.h"
+#include "Preconditioner.h"
+#include "SolutionHistory.h"
+#include "Watch.h"
+
+#include <glm/vec3.hpp>
+
+#include <utility>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// The tangent of a body, and what solves linear systems with it: conjugate gradients, with the
+/// inverses of the diagonal for few nodes, and levels for many, which are kept while they serve.
+class TangentSolver
+{
+public:
+  struct Limits
+  {
+    int Iterations = 500;
+    /// By how much the length of the residual is made smaller, from that of the right-hand side.
+    double Tolerance = 1e-2;
+  };
+
+  void SetPattern(Watch& watch, BlockPattern pattern)
+  {
+    this->Matrix.SetPattern(watch, std::move(pattern));
+  }
+  const BlockMatrix& GetMatrix() const { return this->Matrix; }
+
+  /// Gives the matrix to assemble(matrix), for nodes that are at positions.
+  template <typename Assemble>
+  void Update(std::vector<glm::dvec3>&& positions, Assemble&& assemble)
+  {
+    assemble(this->Matrix);
+    this->Positions = std::move(positions);
+    this->IsPreconditioned = false;
+    this->History.ForgetProducts();
+  }
+
+  /// Nothing of what was solved before has to do with what follows.
+  void Forget();
+
+  /// Solves for the free nodes; the right-hand side is 0 elsewhere. repeats: it is much like one of
+  /// those before that were said to repeat. Returns the number of iterations.
+  int Solve(Watch& watch, const std::vector<unsigned char>& isFree,
+    const std::vector<glm::dvec3>& rightHandSide, const Limits& limits, bool repeats,
+    std::vector<glm::dvec3>& solution);
+
+private:
+  Preconditioner& Precondition(Watch& watch, const std::vector<unsigned char>& isFree);
+  // Has the levels built anew where they have become unlike the matrix.
+  void JudgeLevels(int iterations, double digits);
+
+  BlockMatrix Matrix;
+  // Of all nodes, for which the matrix was made.
+  std::vector<glm::dvec3> Positions;
+  ConjugateGradients Gradients;
+  std::vector<glm::dvec3> Residual;
+  SolutionHistory History;
+  BlockJacobi Jacobi;
+  Multigrid Levels;
+  // The nodes that the preconditioner is for; empty: it is to be built.
+  std::vector<unsigned char> IsFree;
+  // Whether it is for this matrix.
+  bool IsPreconditioned = false;
+  // Whether that is the levels.
+  bool HasLevels = false;
+  // Iterations for each digit, when the levels were new.
+  double CostOfLevels = 0.0;
+};
+
+} // namespace deformvolume
+
+#endif

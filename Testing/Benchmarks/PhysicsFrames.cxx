@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a frame takes while a body is simulated: a step of the simulation, and the volume deformed
+// with it.
+#include "Evaluation.h"
+#include "Timing.h"
+
+#include "vtkCorotationalDeformation.h"
+#include "vtkLatticeTetrahedraSource.h"
+#include "vtkMassSpringDeformation.h"
+
+#include <vtkDoubleArray.h>
+#include <vtkImageData.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace
+{
+
+// How far a handle goes in a frame, by the height of the body: in one step of springs less, as that
+// is some 1/50 of a frame.
+constexpr double FrameLength = 0.005;
+constexpr double StepLength = 0.0001;
+constexpr double FrameTime = 1.0 / 60.0;
+
+// A body of cubes, or nearly, over a volume: held at its lower end, with a handle in the middle of
+// the upper end that goes to and fro.
+struct Body
+{
+  Body(vtkImageData* volume, const std::array<int, 3>& nodes)
+  {
+    double bounds[6];
+    volume->GetBounds(bounds);
+    // Springs are isotropic in cubes alone.
+    double edge = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      edge = std::max(edge, (bounds[2 * axis + 1] - bounds[2 * axis]) / (nodes[axis] - 1));
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      bounds[2 * axis + 1] = bounds[2 * axis] + edge * (nodes[axis] - 1);
+    }
+    this->Height = bounds[5] - bounds[4];
+    vtkNew<vtkLatticeTetrahedraSource> lattice;
+    lattice->SetNumberOfNodes(nodes.data());
+    lattice->SetBounds(bounds);
+    lattice->Update();
+    this->Mesh->ShallowCopy(lattice->GetOutput());
+    vtkNew<vtkUnsignedCharArray> fixed;
+    fixed->SetName("Fixed");
+    for (vtkIdType i = 0; i < this->Mesh->GetNumberOfPoints(); ++i)
+    {
+      fixed->InsertNextValue(this->Mesh->GetPoint(i)[2] == bounds[4] ? 1 : 0);
+    }
+    this->Mesh->GetPointData()->AddArray(fixed);
+    this->Rest[0] = 0.5 * (bounds[0] + bounds[1]);
+    this->Rest[1] = 0.5 * (bounds[2] + bounds[3]);
+    this->Rest[2] = bounds[5];
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    points->InsertNextPoint(this->Rest);
+    this->Handles->SetPoints(points);
+    vtkNew<vtkDoubleArray> rest;
+    rest->SetName("RestPosition");
+    rest->SetNumberOfComponents(3);
+    rest->InsertNextTuple(this->Rest);
+    this->Handles->GetPointData()->AddArray(rest);
+    this->Radius = 1.5 * edge;
+  }
+
+  void MoveHandle()
+  {
+    constexpr int turn = 20; // frames before it goes back
+    const int step = ++this->Step % (2 * turn);
+    const double length = this->Length * this->Height * std::min(step, 2 * turn - step);
+    this->Handles->GetPoints()->SetPoint(0, this->Rest[0] + length, this->Rest[1], this->Rest[2]);
+    this->Handles->GetPoints()->Modified();
+    this->Handles->Modified();
+  }
+
+  vtkNew<vtkUnstructuredGrid> Mesh;
+  vtkNew<vtkPolyData> Handles;
+  double Rest[3];
+  double Height;
+  double Radius;
+  double Length = FrameLength;
+  int Step = 0;
+};
+
+// A simulation of a body, and the volume behind it.
+template <typename Simulation>
+struct SimulatedVolume
+{
+  SimulatedVolume(vtkImageData* volume, const std::array<int, 3>& nodes, int samplingFactor)
+    : Simulated(volume, nodes)
+  {
+    this->Filter->SetInputData(volume);
+    this->Filter->SetSamplingFactor(samplingFactor);
+    this->Filter->IncrementalOff(); // all is deformed anew, as published
+    this->Model->SetInputData(this->Simulated.Mesh);
+    this->Model->SetHandlesData(this->Simulated.Handles);
+    this->Model->SetHandleRadius(this->Simulated.Radius);
+    this->Model->SetLengthUnitToMillimetre();
+    this->Filter->SetDeformationConnection(this->Model->GetOutputPort());
+    this->Model->Update();
+  }
+
+  Measurement MeasureFrame()
+  {
+    this->Simulated.MoveHandle();
+    Measurement measurement;
+    const double simulation = Time([&] { this->Model->Update(); });
+    measurement.Seconds = simulation + Time([&] { this->Filter->Update(); });
+    if (this->Filter->GetNumberOfCoveredVoxels() == 0)
+    {
+      throw std::runtime_error("nothing was deformed");
+    }
+    measurement.Counters["simulation"] = simulation;
+    measurement.Counters["mapping"] = this->Filter->GetMappingTime();
+    measurement.Counters["resampling"] = this->Filter->GetResamplingTime();
+    measurement.Counters["nodes"] = static_cast<double>(this->Simulated.Mesh->GetNumberOfPoints());
+    measurement.Counters["tetrahedra"] =
+      static_cast<double>(this->Simulated.Mesh->GetNumberOfCells());
+    measurement.Counters["device_bytes"] = static_cast<double>(this->Filter->GetDeviceMemory());
+    return measurement;
+  }
+
+  Body Simulated;
+  vtkNew<Simulation> Model;
+  vtkNew<vtkDeformVolumeFilter> Filter;
+};
+
+using Springs = SimulatedVolume<vtkMassSpringDeformation>;
+using Elements = SimulatedVolume<vtkCorotationalDeformation>;
+
+struct SpringFrames
+{
+  std::string Name;
+  std::array<int, 3> Volume;
+  std::array<int, 3> Nodes;
+  bool IsRealTime; // all the steps of a frame of 1/60 s; else one
+  int SamplingFactor;
+};
+
+void RegisterSprings(const SpringFrames& frames, int rounds)
+{
+  RegisterRounds<Springs>("Physics/" + frames.Name, rounds,
+    [frames]()
+    {
+      auto springs =
+        std::make_shared<Springs>(MakeVolume(frames.Volume), frames.Nodes, frames.SamplingFactor);
+      springs->Simulated.Length = frames.IsRealTime ? FrameLength : StepLength;
+      springs->Model->SetFrameTime(
+        frames.IsRealTime ? FrameTime : springs->Model->GetTimeStepInUse());
+      return springs;
+    },
+    { { "frame",
+      [](Springs& springs)
+      {
+        Measurement measurement = springs.MeasureFrame();
+        measurement.Counters["steps"] = static_cast<double>(springs.Model->GetNumberOfSteps());
+        return measurement;
+      } } });
+}
+
+void RegisterElements(const std::string& name, const std::array<int, 3>& nodes, int rounds)
+{
+  RegisterRounds<Elements>("Physics/" + name, rounds,
+    [nodes]() { return std::make_shared<Elements>(MakeVolume(BenchmarkVolume), nodes, 1); },
+    { { "frame",
+      [](Elements& elements)
+      {
+        Measurement measurement = elements.MeasureFrame();
+        measurement.Counters["residual"] = elements.Model->GetRelativeResidual();
+        return measurement;
+      } } });
+}
+
+} // namespace
+
+void RegisterPhysics(const EvaluationSize& size)
+{
+  constexpr std::array<int, 3> head{ { 181, 217, 181 } }; // as ch2
+  const int rounds = size.GetRounds();
+  // As near to 2,197 and 512,000 nodes as cubes over these volumes allow.
+  for (const SpringFrames& frames :
+    { SpringFrames{ "springs-2431", BenchmarkVolume, { { 11, 17, 13 } }, false, 1 },
+      SpringFrames{ "springs-507584", BenchmarkVolume, { { 64, 103, 77 } }, false, 1 },
+      SpringFrames{ "springs-2197-60Hz", head, { { 13, 13, 13 } }, true, 1 },
+      SpringFrames{ "springs-2197-60Hz-half", head, { { 13, 13, 13 } }, true, 2 },
+      // The size of a scene that SOFA is measured with, and its volume made small.
+      SpringFrames{ "springs-4096", { { 16, 16, 16 } }, { { 16, 16, 16 } }, false, 1 } })
+  {
+    RegisterSprings(frames, rounds);
+  }
+  RegisterElements("elements-125", { { 5, 5, 5 } }, rounds);
+  RegisterElements("elements-3200", { { 10, 20, 16 } }, rounds);
+  RegisterElements("elements-19456", { { 16, 76, 16 } }, rounds);
+}

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""deform-volume draws the frames of a model: files of their own, and a video where VTK has Ogg Theora.
+Usage: TestMovie.py PROGRAM FOLDER"""
+import os
+import sys
+
+import numpy
+from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+program = sys.argv[1]
+folder = make_folder(sys.argv[2], "Movie")
+
+
+def path(name):
+    return os.path.join(folder, name)
+
+
+ball = make_ball(dimensions=(25, 22, 19), spacing=(1.0, 1.0, 1.0))
+write_vti(ball, path("in.vti"))
+bounds = ball.GetBounds()
+pull = f"{0.5 * (bounds[0] + bounds[1])},{0.5 * (bounds[2] + bounds[3])},{bounds[5] - 3},6,0,2,3"
+common = ("--lattice", "5,5,5", "--fix", f"below:{bounds[4] + 2}", "--pull", pull)
+
+
+def read(name):
+    reader = vtkPNGReader()
+    reader.SetFileName(path(name))
+    reader.Update()
+    assert reader.GetOutput().GetDimensions() == (1400, 700, 1)
+    picture = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+    return picture.reshape(700, 1400, -1).astype(int)
+
+
+call(program, path("in.vti"), "--model", "fem", *common, "--movie", path("m.png"), "--frames", "2", "-o",
+     path("o.vti"), "--quiet")
+frames = [read(f"m{i:04}.png") for i in (1, 2)]
+assert not os.path.exists(path("m0003.png")) and not os.path.exists(path("m.png"))
+# The camera stays: what was before does not change, and what follows goes on.
+assert (frames[0][:, :700] == frames[1][:, :700]).all()
+moved = [(numpy.abs(frame[60:, :700] - frame[60:, 700:]).max(axis=2) > 24).mean() for frame in frames]
+assert 0.002 < moved[0] < 0.8 * moved[1] < 0.3, moved
+# Outputs are those of the last frame: of the pull as a whole.
+call(program, path("in.vti"), "--model", "fem", *common, "-o", path("whole.vti"), "--quiet")
+difference = numpy.abs(get_values(read_vti(path("o.vti"))).astype(float) -
+                       get_values(read_vti(path("whole.vti"))))
+assert difference.max() <= 1, difference.max()
+
+output, errors = call(program, path("in.vti"), "--model", "mass-spring", *common, "--duration", "0.05",
+                      "--movie", path("m.ogv"), "--frames", "1", code=None)
+if "Ogg Theora" in errors:
+    print("this VTK writes no Ogg Theora")
+else:
+    assert errors == "" and "deform and draw frames" in output, errors + output
+    with open(path("m.ogv"), "rb") as file:
+        assert file.read(4) == b"OggS"
+    assert os.path.getsize(path("m.ogv")) > 1000

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Code for processors with AVX2 finds what code for the least processor finds, to the last bit.
+#include "BlockMatrix.h"
+#include "CorotationalCase.h"
+#include "CorotationalElements.h"
+#include "Lanes.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+using namespace deformvolume;
+
+namespace
+{
+
+using Place = LatticeBody::Place;
+
+// Switches the code for AVX2 off, and on again.
+class WideLanes : public ::testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    if (!HasWideLanes())
+    {
+      GTEST_SKIP() << "The processor has no AVX2, or there is no code for it.";
+    }
+  }
+  void TearDown() override { UseWideLanes(true); }
+
+  template <typename Call>
+  static auto CallPlain(Call&& call)
+  {
+    UseWideLanes(false);
+    EXPECT_FALSE(HasWideLanes());
+    auto result = call();
+    UseWideLanes(true);
+    EXPECT_TRUE(HasWideLanes());
+    return result;
+  }
+};
+
+// Bits rather than values: zeros of both signs are equal.
+template <typename Value>
+bool HasSameBits(const std::vector<Value>& a, const std::vector<Value>& b)
+{
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Value)) == 0;
+}
+
+LatticeBody MakeBar(const Place& nodes)
+{
+  LatticeBody lattice(nodes, 0.01, MakeMaterial(1e4, 0.4));
+  lattice.Fix([](const Place& place) { return place[2] == 0; });
+  return lattice;
+}
+
+// So large that some tetrahedra are inside out: all ways through the singular values are gone.
+std::vector<glm::dvec3> MakeNoise(std::size_t nodes, double size)
+{
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(-size, size);
+  std::vector<glm::dvec3> result(nodes);
+  for (glm::dvec3& vector : result)
+  {
+    vector = glm::dvec3(uniform(random), uniform(random), uniform(random));
+  }
+  return result;
+}
+
+// What elements and matrices find.
+struct Sums
+{
+  std::vector<glm::dvec3> Forces;
+  std::vector<double> Energy;
+  std::vector<glm::dvec3> Product;
+};
+
+Sums FindSums(const LatticeBody& lattice, const std::vector<glm::dvec3>& displacements)
+{
+  Watch watch(nullptr);
+  CorotationalElements elements(watch, lattice.Body);
+  BlockMatrix matrix;
+  matrix.SetPattern(watch, MakeNodePattern(watch, lattice.Body));
+  elements.SetPattern(watch, matrix.GetPattern());
+  Sums sums;
+  sums.Energy.push_back(elements.FindForces(watch, displacements, sums.Forces).Energy);
+  elements.AssembleTangent(watch, displacements, matrix);
+  const std::size_t nodes = displacements.size();
+  const std::vector<unsigned char> isFree(nodes, 1);
+  sums.Product.resize(nodes);
+  matrix.Multiply(0, nodes, isFree.data(), displacements.data(), sums.Product.data());
+  return sums;
+}
+
+std::vector<glm::dvec3> SolveFrames(const LatticeBody& lattice, CorotationalMode mode)
+{
+  CorotationalModel model;
+  model.SetBody(lattice.Body);
+  CorotationalRequest request;
+  request.Mode = mode;
+  for (int frame = 1; frame <= 3; ++frame)
+  {
+    request.Held.clear();
+    lattice.ForNodes(
+      [&](const Place& place, std::int32_t node)
+      {
+        if (place[2] == lattice.Nodes[2] - 1)
+        {
+          request.Held.push_back({ node, glm::dvec3(0.004 * frame, 0.002, -0.001 * frame) });
+        }
+      });
+    request.Loads.Gravity = glm::dvec3(0.0, -frame, 0.0);
+    model.Solve(request);
+  }
+  return model.GetDisplacements();
+}
+
+} // namespace
+
+TEST_F(WideLanes, ElementsAndProducts)
+{
+  const LatticeBody lattice = MakeBar({ 5, 4, 7 });
+  for (const double size : { 0.0, 1e-9, 1e-3, 6e-3 })
+  {
+    const std::vector<glm::dvec3> displacements = MakeNoise(lattice.Body.Points.size(), size);
+    const Sums wide = FindSums(lattice, displacements);
+    const Sums plain = CallPlain([&] { return FindSums(lattice, displacements); });
+    EXPECT_TRUE(HasSameBits(wide.Forces, plain.Forces)) << size;
+    EXPECT_TRUE(HasSameBits(wide.Energy, plain.Energy)) << size;
+    EXPECT_TRUE(HasSameBits(wide.Product, plain.Product)) << size;
+  }
+}
+
+// With the inverses of the diagonal, and with several levels in single precision.
+TEST_F(WideLanes, Solutions)
+{
+  for (const Place& nodes : { Place{ 5, 5, 9 }, Place{ 12, 13, 14 } })
+  {
+    const LatticeBody lattice = MakeBar(nodes);
+    for (const CorotationalMode mode :
+      { CorotationalMode::Interactive, CorotationalMode::Converged })
+    {
+      const std::vector<glm::dvec3> wide = SolveFrames(lattice, mode);
+      EXPECT_GT(LargestOf(wide), 1e-3);
+      EXPECT_TRUE(HasSameBits(CallPlain([&] { return SolveFrames(lattice, mode); }), wide));
+    }
+  }
+}

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bodies that are given up while they are taken over: soon, and with nothing half done.
+#include "CorotationalCase.h"
+#include "MassSpringModel.h"
+#include "ParallelFor.h"
+#include "TimeAllowance.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <random>
+
+using namespace deformvolume;
+
+namespace
+{
+
+using Place = LatticeBody::Place;
+
+// No lattice of cubes, so that springs have to be calibrated; held at one end.
+ElasticBody MakeBody(const Place& nodes)
+{
+  LatticeBody lattice(nodes, 0.01, MakeMaterial(1e4, 0.4));
+  lattice.Fix([](const Place& place) { return place[2] == 0; });
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> jitter(-0.001, 0.001);
+  for (glm::dvec3& point : lattice.Body.Points)
+  {
+    point += glm::dvec3(jitter(random), jitter(random), jitter(random));
+  }
+  return lattice.Body;
+}
+
+void RunOnOneThread(
+  std::int64_t first, std::int64_t last, std::int64_t grain, const ParallelBody& body)
+{
+  RunOnOwnThreads(first, last, grain, body, 1);
+}
+
+// How often progress is asked for, and the longest time between two questions in which the
+// processor worked: what other programs do meanwhile does not count. On one thread, as the times of
+// all threads are added.
+class Questions
+{
+public:
+  Questions() { SetParallelLoop(RunOnOneThread); }
+  ~Questions() { SetParallelLoop(nullptr); }
+
+  bool Ask()
+  {
+    this->Look();
+    return ++this->Number <= this->Allowed;
+  }
+  /// Counts what has come after the last question, too.
+  double GetLongestPause()
+  {
+    this->Look();
+    return this->Longest;
+  }
+
+  int Allowed = std::numeric_limits<int>::max();
+  int Number = 0;
+
+private:
+  void Look()
+  {
+    const std::clock_t now = std::clock();
+    this->Longest = std::max(this->Longest, static_cast<double>(now - this->Last) / CLOCKS_PER_SEC);
+    this->Last = now;
+  }
+
+  std::clock_t Last = std::clock();
+  double Longest = 0.0;
+};
+
+// In s; with the address sanitizer all code is several times slower.
+#ifdef DEFORMVOLUME_TEST_SANITIZED
+constexpr double LongestPause = 0.5;
+#else
+constexpr double LongestPause = 0.05;
+#endif
+
+} // namespace
+
+TEST(ElasticAborts, CorotationalBodies)
+{
+  const ElasticBody body = MakeBody({ 30, 30, 60 });
+  CorotationalModel model;
+  {
+    Questions questions;
+    model.SetBody(body, [&] { return questions.Ask(); });
+    EXPECT_LT(questions.GetLongestPause(), LongestPause);
+    EXPECT_GT(questions.Number, 10);
+  }
+  // The first linear system builds the levels.
+  CorotationalRequest request = MakeConverged();
+  request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
+  request.Limits.NewtonSteps = 1;
+  request.Limits.LinearIterations = 1;
+  {
+    Questions questions;
+    request.Progress = [&] { return questions.Ask(); };
+    model.Solve(request);
+    EXPECT_LT(questions.GetLongestPause(), LongestPause);
+    EXPECT_GT(questions.Number, 20);
+  }
+}
+
+TEST(ElasticAborts, TheLastCorotationalBodyStays)
+{
+  const ElasticBody body = MakeBody({ 12, 12, 12 });
+  const ElasticBody other = MakeBody({ 30, 30, 30 });
+  CorotationalModel model;
+  CorotationalRequest request;
+  request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
+  EXPECT_THROW(model.SetBody(body, [] { return false; }), Aborted);
+  EXPECT_EQ(GetError([&] { model.Solve(request); }), "There is no body. Call SetBody first.");
+  model.SetBody(body);
+  model.Solve(request);
+  const std::vector<glm::dvec3> before = model.GetDisplacements();
+  EXPECT_GT(LargestOf(before), 0.0);
+  for (const int allowed : { 0, 1 })
+  {
+    Questions questions;
+    questions.Allowed = allowed;
+    EXPECT_THROW(model.SetBody(other, [&] { return questions.Ask(); }), Aborted);
+    EXPECT_EQ(questions.Number, allowed + 1);
+    EXPECT_EQ(model.GetDisplacements(), before);
+  }
+  // The next solution is the one that there would have been.
+  CorotationalModel fresh;
+  fresh.SetBody(body);
+  fresh.Solve(request);
+  fresh.Solve(request);
+  model.Solve(request);
+  EXPECT_EQ(model.GetDisplacements(), fresh.GetDisplacements());
+}
+
+// Levels that were given up are built anew.
+TEST(ElasticAborts, Levels)
+{
+  const ElasticBody body = MakeBody({ 14, 14, 20 });
+  CorotationalRequest request = MakeConverged();
+  request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
+  CorotationalModel fresh;
+  fresh.SetBody(body);
+  fresh.Solve(request);
+  CorotationalModel model;
+  model.SetBody(body);
+  bool isAborted = true;
+  int aborts = 0;
+  for (int allowed = 0; isAborted; allowed += 1)
+  {
+    Questions questions;
+    questions.Allowed = allowed;
+    request.Progress = [&] { return questions.Ask(); };
+    try
+    {
+      model.Solve(request);
+      isAborted = false;
+    }
+    catch (const Aborted&)
+    {
+      ++aborts;
+      EXPECT_EQ(LargestOf(model.GetDisplacements()), 0.0);
+    }
+  }
+  EXPECT_GT(aborts, 2);
+  // A call that was given up has left motions to begin with.
+  EXPECT_LT(LargestDifference(model.GetDisplacements(), fresh.GetDisplacements()), 1e-7);
+}
+
+TEST(ElasticAborts, SpringsAreCalibrated)
+{
+  const ElasticBody body = MakeBody({ 20, 20, 40 });
+  MassSpringModel model;
+  model.SetBody(MakeBody({ 3, 3, 3 })); // the kernels may have to be compiled
+  {
+    Questions questions;
+    model.SetBody(body, [&] { return questions.Ask(); });
+    EXPECT_LT(questions.GetLongestPause(), LongestPause);
+    EXPECT_GT(questions.Number, 10);
+  }
+  const double calibration = model.GetCalibration();
+  EXPECT_GT(std::abs(calibration - 1.0), 1e-3);
+  for (const int allowed : { 0, 1, 5, 10 })
+  {
+    Questions questions;
+    questions.Allowed = allowed;
+    EXPECT_THROW(model.SetBody(body, [&] { return questions.Ask(); }), Aborted);
+    EXPECT_EQ(questions.Number, allowed + 1);
+    if (allowed > 0)
+    {
+      EXPECT_EQ(model.GetDeviceMemory(), 0u);
+      EXPECT_EQ(GetError([&] { model.Reset(); }), "No body is set: call SetBody first.");
+    }
+  }
+  model.SetBody(body);
+  EXPECT_EQ(model.GetCalibration(), calibration);
+}
+
+// The first frame looks for the stable time step.
+TEST(ElasticAborts, StableTimeStep)
+{
+  const ElasticBody body = MakeBody({ 20, 20, 40 });
+  MassSpringModel model;
+  model.SetBody(body);
+  std::vector<float> displacements(body.Points.size() * 3, 0.0F);
+  displacements.back() = 1e-4F;
+  const std::vector<float> velocities(displacements.size(), 1e-2F);
+  model.SetState(displacements, velocities);
+  MassSpringRequest request;
+  request.Duration = 1e-3;
+  for (const int allowed : { 0, 3 })
+  {
+    Questions questions;
+    questions.Allowed = allowed;
+    request.Progress = [&](double fraction)
+    {
+      EXPECT_EQ(fraction, 0.0);
+      return questions.Ask();
+    };
+    EXPECT_THROW(model.Advance(request), Aborted);
+    EXPECT_EQ(questions.Number, allowed + 1);
+    EXPECT_EQ(model.GetDisplacements(), displacements);
+    EXPECT_EQ(model.GetVelocities(), velocities);
+  }
+}
