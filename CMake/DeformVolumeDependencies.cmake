@@ -31,6 +31,7 @@ if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
     FiltersSources
     ImagingGeneral
     ImagingMath
+    ImagingMorphological
     ImagingSources
     InteractionStyle
     IOImage

@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""cut-and-pull draws what one of its baselines shows, and so does its twin in Python. As with VTK's own regression tests
-the others are called BASELINE_1.png and so on: VTK 9.6 shades volumes otherwise.
+"""cut-and-pull draws what one of its baselines shows, and so does its twin in Python.
 Usage: TestCutAndPull.py PROGRAM SCRIPT BASELINE FOLDER"""
-import glob
 import os
 import sys
 
 import numpy
+from Baselines import find_difference, read_baselines
 from Volumes import call, make_folder
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOImage import vtkPNGReader
 
 VOLUME = "/usr/share/mricron/templates/ch2better.nii.gz"
 SIZE = 200
@@ -21,20 +18,10 @@ if not os.path.exists(VOLUME):
     print(f"skipped: {VOLUME} is missing, install the package mricron-data")
     sys.exit(125)
 
-
-def read(path):
-    reader = vtkPNGReader()
-    reader.SetFileName(path)
-    reader.Update()
-    image = reader.GetOutput()
-    width, height, _ = image.GetDimensions()
-    return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, 3).astype(float)
-
-
 call(program, code=2)
 call(program, VOLUME, os.path.join(folder, "x.png"), "none", code=2)
 call(sys.executable, script, code=1)
-baselines = [read(path) for path in [baseline, *glob.glob(baseline.replace(".png", "_*.png"))]]
+baselines = read_baselines(baseline)
 for expected in baselines:
     assert expected.shape == (SIZE, 3 * SIZE, 3)
     before, cut, opened = (expected[:, SIZE * k:SIZE * (k + 1)] for k in range(3))
@@ -47,8 +34,4 @@ for name, command in (("cxx.png", [program]), ("python.png", [sys.executable, sc
     assert words in (None, output)
     words = output
     assert " 0 tetrahedra inverted" in output
-    drawn = read(path)
-    assert drawn.shape == baselines[0].shape
-    difference = min(numpy.abs(drawn - expected).mean() for expected in baselines)
-    print(f"{path} differs from the baseline by {difference}")
-    assert difference < LIMIT
+    assert find_difference(path, baselines) < LIMIT

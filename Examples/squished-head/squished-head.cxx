@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A head is pulled by its nose: squished-head VOLUME.nii.gz PICTURE.png [SIZE]
+// draws it at rest, in equilibrium by finite elements, and after half a second by springs: three
+// pictures of SIZE x SIZE pixels (700) side by side. Bone is stiff and the rest is soft, as the
+// volume shows them. Made for ch2.nii.gz of the package mricron-data, in mm from the first voxel:
+// x to the right, y to the front, z upwards.
+#include <vtkCamera.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkConnectivityFilter.h>
+#include <vtkCorotationalDeformation.h>
+#include <vtkDeformVolumeFilter.h>
+#include <vtkDoubleArray.h>
+#include <vtkImageContinuousDilate3D.h>
+#include <vtkLatticeTetrahedraSource.h>
+#include <vtkMassSpringDeformation.h>
+#include <vtkMaterialFromVolume.h>
+#include <vtkMath.h>
+#include <vtkNIFTIImageReader.h>
+#include <vtkNew.h>
+#include <vtkPNGWriter.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+#include <vtkSmartVolumeMapper.h>
+#include <vtkThreshold.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkVolume.h>
+#include <vtkVolumeProperty.h>
+#include <vtkWindowToImageFilter.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+
+namespace
+{
+constexpr double Nose[3] = { 90.0, 207.0, 32.0 };
+constexpr double NoseRadius = 18.0;
+constexpr double Pull[3] = { 0.0, 30.0, 8.0 };
+constexpr int NumberOfFrames = 30;
+
+// A mesh of cubes of 9 mm, each of five tetrahedra, as stiff as the voxels in them. Tetrahedra of
+// air alone are left out, and a speck of noise in a corner.
+vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(vtkAlgorithmOutput* volume)
+{
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetInputConnection(volume);
+  lattice->SetNumberOfNodes(21, 25, 21);
+  // Bone is as dark as the outermost voxels of the skin, but thicker: these get the value of a
+  // neighbour.
+  vtkNew<vtkImageContinuousDilate3D> brighter;
+  brighter->SetInputConnection(volume);
+  brighter->SetKernelSize(3, 3, 3);
+  enum
+  {
+    AIR,
+    SOFT,
+    BONE
+  };
+  constexpr double airDensity = 100.0;
+  vtkNew<vtkMaterialFromVolume> material;
+  material->SetInputConnection(lattice->GetOutputPort());
+  material->SetVolumeConnection(brighter->GetOutputPort());
+  material->ClearMaterials();
+  material->SetMaterial(AIR, 100.0, 0.0, airDensity); // in Pa and kg/m^3
+  material->SetMaterial(SOFT, 1e4, 0.3, 1000.0);
+  material->SetMaterial(BONE, 1e6, 0.3, 1900.0);
+  material->AddMaterialRange(0.0, 1.0, AIR);
+  material->AddMaterialRange(1.0, 30.0, BONE);
+  material->AddMaterialRange(30.0, 256.0, SOFT);
+  vtkNew<vtkThreshold> body;
+  body->SetInputConnection(material->GetOutputPort());
+  body->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Density");
+  body->SetThresholdFunction(vtkThreshold::THRESHOLD_UPPER);
+  body->SetUpperThreshold(1.01 * airDensity);
+  vtkNew<vtkConnectivityFilter> largest;
+  largest->SetInputConnection(body->GetOutputPort());
+  largest->SetExtractionModeToLargestRegion();
+  largest->Update();
+
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  mesh->ShallowCopy(largest->GetOutput());
+  vtkNew<vtkUnsignedCharArray> fixed;
+  fixed->SetName("Fixed");
+  for (vtkIdType node = 0; node < mesh->GetNumberOfPoints(); ++node)
+  {
+    // The lowest plane of the volume goes through the neck.
+    fixed->InsertNextValue(mesh->GetPoint(node)[2] < 1.0 ? 1 : 0);
+  }
+  mesh->GetPointData()->AddArray(fixed);
+  return mesh;
+}
+
+// A hook in the nose, which goes some of its way; part: 0 to 1.
+vtkSmartPointer<vtkPolyData> MakeHook(double part)
+{
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(
+    Nose[0] + part * Pull[0], Nose[1] + part * Pull[1], Nose[2] + part * Pull[2]);
+  vtkNew<vtkDoubleArray> rest;
+  rest->SetName("RestPosition");
+  rest->SetNumberOfComponents(3);
+  rest->InsertNextTuple(Nose);
+  auto hook = vtkSmartPointer<vtkPolyData>::New();
+  hook->SetPoints(points);
+  hook->GetPointData()->AddArray(rest);
+  return hook;
+}
+
+void Hold(vtkElasticDeformation* body, vtkUnstructuredGrid* mesh)
+{
+  body->SetInputData(mesh);
+  body->SetHandleRadius(NoseRadius);
+  body->SetLengthUnitToMillimetre();
+}
+
+vtkSmartPointer<vtkRenderer> MakeRenderer(vtkAlgorithmOutput* volume, int column)
+{
+  vtkNew<vtkSmartVolumeMapper> mapper;
+  mapper->SetInputConnection(volume);
+  mapper->AutoAdjustSampleDistancesOff(); // a picture is the same however long it takes
+  mapper->SetSampleDistance(0.5);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(25.0, 0.0);
+  opacity->AddPoint(55.0, 1.0);
+  vtkNew<vtkColorTransferFunction> colour;
+  colour->AddRGBPoint(25.0, 0.87, 0.62, 0.51);
+  colour->AddRGBPoint(110.0, 0.96, 0.82, 0.72);
+  colour->AddRGBPoint(200.0, 1.0, 1.0, 0.98);
+  vtkNew<vtkVolume> actor;
+  actor->SetMapper(mapper);
+  vtkVolumeProperty* property = actor->GetProperty();
+  property->SetScalarOpacity(opacity);
+  property->SetColor(colour);
+  property->SetScalarOpacityUnitDistance(1.0);
+  property->SetInterpolationTypeToLinear();
+  property->ShadeOn();
+  property->SetAmbient(0.15);
+  property->SetDiffuse(0.8);
+  property->SetSpecular(0.0); // versions of VTK differ in highlights
+  auto renderer = vtkSmartPointer<vtkRenderer>::New();
+  renderer->SetViewport(column / 3.0, 0.0, (column + 1) / 3.0, 1.0);
+  renderer->SetBackground(0.10, 0.12, 0.15);
+  renderer->AddVolume(actor);
+  return renderer;
+}
+
+// Seen from the right and the front.
+void AimCamera(vtkCamera* camera)
+{
+  camera->SetFocalPoint(90.0, 133.0, 83.0);
+  camera->SetPosition(472.0, 420.0, 121.0);
+  camera->SetViewUp(0.0, 0.0, 1.0);
+  camera->SetViewAngle(28.0);
+}
+
+// How far the results of two models are apart, in mm, at the node where they are most.
+double FindLargestDifference(vtkUnstructuredGrid* first, vtkUnstructuredGrid* second)
+{
+  double largest = 0.0;
+  for (vtkIdType node = 0; node < first->GetNumberOfPoints(); ++node)
+  {
+    double a[3];
+    double b[3];
+    first->GetPointData()->GetArray("Displacement")->GetTuple(node, a);
+    second->GetPointData()->GetArray("Displacement")->GetTuple(node, b);
+    largest = std::max(largest, vtkMath::Distance2BetweenPoints(a, b));
+  }
+  return std::sqrt(largest);
+}
+}
+
+int main(int argc, char* argv[])
+{
+  const int size = argc > 3 ? std::atoi(argv[3]) : 700;
+  if (argc < 3 || argc > 4 || size < 1)
+  {
+    std::cerr << "usage: squished-head VOLUME.nii.gz PICTURE.png [SIZE]\n";
+    return 2;
+  }
+  vtkNew<vtkNIFTIImageReader> reader;
+  reader->SetFileName(argv[1]);
+  const auto mesh = MakeMesh(reader->GetOutputPort());
+
+  vtkNew<vtkCorotationalDeformation> elements;
+  Hold(elements, mesh);
+  elements->SetModeToConverged();
+  elements->SetHandlesData(MakeHook(1.0));
+  elements->Update();
+
+  vtkNew<vtkMassSpringDeformation> springs;
+  Hold(springs, mesh);
+  for (int frame = 1; frame <= NumberOfFrames; ++frame)
+  {
+    // The hook arrives when half of the time is over.
+    springs->SetHandlesData(MakeHook(std::min(1.0, 2.0 * frame / NumberOfFrames)));
+    springs->Update();
+  }
+
+  vtkNew<vtkDeformVolumeFilter> atRest;
+  vtkNew<vtkDeformVolumeFilter> byElements;
+  vtkNew<vtkDeformVolumeFilter> bySprings;
+  atRest->SetDeformationConnection(elements->GetOutputPort());
+  atRest->SetDisplacementScale(0.0);
+  byElements->SetDeformationConnection(elements->GetOutputPort());
+  bySprings->SetDeformationConnection(springs->GetOutputPort());
+
+  vtkNew<vtkRenderWindow> window;
+  window->SetOffScreenRendering(1);
+  window->SetMultiSamples(0);
+  window->SetSize(3 * size, size);
+  int column = 0;
+  vtkNew<vtkCamera> camera;
+  AimCamera(camera);
+  for (vtkDeformVolumeFilter* deform : { atRest.Get(), byElements.Get(), bySprings.Get() })
+  {
+    deform->SetInputConnection(reader->GetOutputPort());
+    deform->SetInputArrayToProcess(
+      0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Displacement");
+    deform->SetPadding(2); // the skin ends before the volume does
+    const auto renderer = MakeRenderer(deform->GetOutputPort(), column++);
+    renderer->SetActiveCamera(camera);
+    renderer->ResetCameraClippingRange();
+    window->AddRenderer(renderer);
+  }
+  vtkNew<vtkWindowToImageFilter> picture;
+  picture->SetInput(window);
+  vtkNew<vtkPNGWriter> writer;
+  writer->SetInputConnection(picture->GetOutputPort());
+  writer->SetFileName(argv[2]);
+  writer->Write();
+
+  std::cout << mesh->GetNumberOfCells() << " tetrahedra in equilibrium after "
+            << elements->GetNumberOfNewtonSteps() << " steps, the springs at most "
+            << 0.1 *
+      std::round(10.0 * FindLargestDifference(elements->GetOutput(), springs->GetOutput()))
+            << " mm from there, "
+            << byElements->GetNumberOfInvertedTetrahedra() +
+      bySprings->GetNumberOfInvertedTetrahedra()
+            << " tetrahedra inverted\n";
+  return writer->GetErrorCode() == 0 && elements->GetIsConverged() ? 0 : 1;
+}

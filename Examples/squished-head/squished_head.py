@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A head is pulled by its nose: squished_head.py VOLUME.nii.gz PICTURE.png [SIZE]
+draws it at rest, in equilibrium by finite elements, and after half a second by springs: three
+pictures of SIZE x SIZE pixels (700) side by side. Bone is stiff and the rest is soft, as the volume
+shows them. Made for ch2.nii.gz of the package mricron-data, in mm from the first voxel: x to the
+right, y to the front, z upwards."""
+import sys
+
+import deformvolume
+import numpy
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (what draws)
+import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersCore import vtkConnectivityFilter, vtkThreshold
+from vtkmodules.vtkImagingMorphological import vtkImageContinuousDilate3D
+from vtkmodules.vtkIOImage import vtkNIFTIImageReader, vtkPNGWriter
+from vtkmodules.vtkRenderingCore import (
+    vtkCamera,
+    vtkColorTransferFunction,
+    vtkRenderer,
+    vtkRenderWindow,
+    vtkVolume,
+    vtkWindowToImageFilter,
+)
+from vtkmodules.vtkRenderingVolumeOpenGL2 import vtkSmartVolumeMapper
+
+NOSE = numpy.array((90.0, 207.0, 32.0))
+NOSE_RADIUS = 18.0
+PULL = numpy.array((0.0, 30.0, 8.0))
+FRAMES = 30
+AIR, SOFT, BONE = range(3)
+AIR_DENSITY = 100.0
+
+
+def make_mesh(volume):
+    """Cubes of 9 mm, each of five tetrahedra, as stiff as the voxels in them. Tetrahedra of air
+    alone are left out, and a speck of noise in a corner."""
+    lattice = deformvolume.vtkLatticeTetrahedraSource()
+    lattice.SetInputConnection(volume)
+    lattice.SetNumberOfNodes(21, 25, 21)
+    # Bone is as dark as the outermost voxels of the skin, but thicker: these get the value of a
+    # neighbour.
+    brighter = vtkImageContinuousDilate3D()
+    brighter.SetInputConnection(volume)
+    brighter.SetKernelSize(3, 3, 3)
+    material = deformvolume.vtkMaterialFromVolume()
+    material.SetInputConnection(lattice.GetOutputPort())
+    material.SetVolumeConnection(brighter.GetOutputPort())
+    material.ClearMaterials()
+    material.SetMaterial(AIR, 100.0, 0.0, AIR_DENSITY)  # in Pa and kg/m^3
+    material.SetMaterial(SOFT, 1e4, 0.3, 1000.0)
+    material.SetMaterial(BONE, 1e6, 0.3, 1900.0)
+    material.AddMaterialRange(0.0, 1.0, AIR)
+    material.AddMaterialRange(1.0, 30.0, BONE)
+    material.AddMaterialRange(30.0, 256.0, SOFT)
+    body = vtkThreshold()
+    body.SetInputConnection(material.GetOutputPort())
+    body.SetInputArrayToProcess(0, 0, 0, 1, "Density")
+    body.SetThresholdFunction(vtkThreshold.THRESHOLD_UPPER)
+    body.SetUpperThreshold(1.01 * AIR_DENSITY)
+    largest = vtkConnectivityFilter()
+    largest.SetInputConnection(body.GetOutputPort())
+    largest.SetExtractionModeToLargestRegion()
+    largest.Update()
+    mesh = vtkUnstructuredGrid()
+    mesh.ShallowCopy(largest.GetOutput())
+    # The lowest plane of the volume goes through the neck.
+    heights = vtk_to_numpy(mesh.GetPoints().GetData())[:, 2]
+    fixed = numpy_to_vtk((heights < 1.0).astype(numpy.uint8), deep=True)
+    fixed.SetName("Fixed")
+    mesh.GetPointData().AddArray(fixed)
+    return mesh
+
+
+def make_hook(part):
+    """A hook in the nose, which goes some of its way; part: 0 to 1."""
+    points = vtkPoints()
+    points.InsertNextPoint(*(NOSE + part * PULL))
+    rest = numpy_to_vtk(NOSE.reshape(1, 3), deep=True)
+    rest.SetName("RestPosition")
+    hook = vtkPolyData()
+    hook.SetPoints(points)
+    hook.GetPointData().AddArray(rest)
+    return hook
+
+
+def hold(body, mesh):
+    body.SetInputData(mesh)
+    body.SetHandleRadius(NOSE_RADIUS)
+    body.SetLengthUnitToMillimetre()
+
+
+def deform(volume, body, scale):
+    deformed = deformvolume.vtkDeformVolumeFilter()
+    deformed.SetInputConnection(volume)
+    deformed.SetDeformationConnection(body.GetOutputPort())
+    deformed.SetInputArrayToProcess(0, 1, 0, 0, "Displacement")
+    deformed.SetDisplacementScale(scale)
+    deformed.SetPadding(2)  # the skin ends before the volume does
+    return deformed
+
+
+def make_renderer(volume, column):
+    mapper = vtkSmartVolumeMapper()
+    mapper.SetInputConnection(volume.GetOutputPort())
+    mapper.AutoAdjustSampleDistancesOff()  # a picture is the same however long it takes
+    mapper.SetSampleDistance(0.5)
+    opacity = vtkPiecewiseFunction()
+    opacity.AddPoint(25.0, 0.0)
+    opacity.AddPoint(55.0, 1.0)
+    colour = vtkColorTransferFunction()
+    colour.AddRGBPoint(25.0, 0.87, 0.62, 0.51)
+    colour.AddRGBPoint(110.0, 0.96, 0.82, 0.72)
+    colour.AddRGBPoint(200.0, 1.0, 1.0, 0.98)
+    actor = vtkVolume()
+    actor.SetMapper(mapper)
+    look = actor.GetProperty()
+    look.SetScalarOpacity(opacity)
+    look.SetColor(colour)
+    look.SetScalarOpacityUnitDistance(1.0)
+    look.SetInterpolationTypeToLinear()
+    look.ShadeOn()
+    look.SetAmbient(0.15)
+    look.SetDiffuse(0.8)
+    look.SetSpecular(0.0)  # versions of VTK differ in highlights
+    renderer = vtkRenderer()
+    renderer.SetViewport(column / 3.0, 0.0, (column + 1) / 3.0, 1.0)
+    renderer.SetBackground(0.10, 0.12, 0.15)
+    renderer.AddVolume(actor)
+    return renderer
+
+
+def find_largest_difference(first, second):
+    """How far the results of two models are apart, in mm, at the node where they are most."""
+    places = [vtk_to_numpy(body.GetOutput().GetPointData().GetArray("Displacement")).astype(float)
+              for body in (first, second)]
+    return numpy.linalg.norm(places[0] - places[1], axis=1).max()
+
+
+if len(sys.argv) not in (3, 4):
+    sys.exit("usage: squished_head.py VOLUME.nii.gz PICTURE.png [SIZE]")
+size = int(sys.argv[3]) if len(sys.argv) > 3 else 700
+
+reader = vtkNIFTIImageReader()
+reader.SetFileName(sys.argv[1])
+mesh = make_mesh(reader.GetOutputPort())
+elements = deformvolume.vtkCorotationalDeformation()
+hold(elements, mesh)
+elements.SetModeToConverged()
+elements.SetHandlesData(make_hook(1.0))
+elements.Update()
+springs = deformvolume.vtkMassSpringDeformation()
+hold(springs, mesh)
+for frame in range(1, FRAMES + 1):
+    # The hook arrives when half of the time is over.
+    springs.SetHandlesData(make_hook(min(1.0, 2.0 * frame / FRAMES)))
+    springs.Update()
+at_rest = deform(reader.GetOutputPort(), elements, 0.0)
+by_elements = deform(reader.GetOutputPort(), elements, 1.0)
+by_springs = deform(reader.GetOutputPort(), springs, 1.0)
+
+camera = vtkCamera()  # from the right and the front
+camera.SetFocalPoint(90.0, 133.0, 83.0)
+camera.SetPosition(472.0, 420.0, 121.0)
+camera.SetViewUp(0.0, 0.0, 1.0)
+camera.SetViewAngle(28.0)
+window = vtkRenderWindow()
+window.SetOffScreenRendering(1)
+window.SetMultiSamples(0)
+window.SetSize(3 * size, size)
+for column, shown in enumerate((at_rest, by_elements, by_springs)):
+    renderer = make_renderer(shown, column)
+    renderer.SetActiveCamera(camera)
+    renderer.ResetCameraClippingRange()
+    window.AddRenderer(renderer)
+picture = vtkWindowToImageFilter()
+picture.SetInput(window)
+writer = vtkPNGWriter()
+writer.SetInputConnection(picture.GetOutputPort())
+writer.SetFileName(sys.argv[2])
+writer.Write()
+inverted = (by_elements.GetNumberOfInvertedTetrahedra() +
+            by_springs.GetNumberOfInvertedTetrahedra())
+print(f"{mesh.GetNumberOfCells()} tetrahedra in equilibrium after "
+      f"{elements.GetNumberOfNewtonSteps()} steps, the springs at most "
+      f"{find_largest_difference(elements, springs):.1f} mm from there, "
+      f"{inverted} tetrahedra inverted")

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures and their baselines. As with VTK's own regression tests there may be several, of which a picture shows one:
+the others are called BASELINE_1.png and so on. VTK 9.6 shades volumes otherwise."""
+import glob
+
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+
+def read_picture(path):
+    reader = vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    image = reader.GetOutput()
+    width, height, _ = image.GetDimensions()
+    return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, 3).astype(float)
+
+
+def read_baselines(path):
+    return [read_picture(each) for each in [path, *glob.glob(path.replace(".png", "_*.png"))]]
+
+
+def find_difference(path, baselines):
+    """From the nearest baseline: the mean over all colours, of 255."""
+    drawn = read_picture(path)
+    assert drawn.shape == baselines[0].shape
+    difference = min(numpy.abs(drawn - expected).mean() for expected in baselines)
+    print(f"{path} differs from the baseline by {difference}")
+    return difference
