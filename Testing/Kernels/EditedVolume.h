@@ -122,7 +122,7 @@ protected:
   static int GetNumberOf(int edits)
   {
     constexpr int byCell = 7;
-    constexpr int onGraphics = 10;
+    constexpr int onGraphics = 8;
     return !HasVectors()                               ? edits / onGraphics
       : GetMethod() == deformvolume::Resampling::Exact ? GetNumberOfCases(edits)
                                                        : edits / byCell;
