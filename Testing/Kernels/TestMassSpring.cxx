@@ -149,7 +149,7 @@ TEST(MassSpring, RefusesRequestsThatMakeNoSense)
   model.SetBody(body);
   EXPECT_THROW(model.SetOutput(nullptr), Error);
   MassSpringRequest pulled = For(0.01);
-  pulled.Held = { { 4, { 1e-3, 0, 0 } } };
+  pulled.Held.push_back({ 4, { 1e-3, 0, 0 } });
   model.Advance(pulled);
   const std::vector<float> before = model.GetDisplacements();
   const auto refuses = [&](const auto& change)
@@ -164,11 +164,11 @@ TEST(MassSpring, RefusesRequestsThatMakeNoSense)
     refuses([&](MassSpringRequest& request) { request.TimeStep = bad; });
     refuses([&](MassSpringRequest& request) { request.Damping = bad; });
   }
-  refuses([](MassSpringRequest& request) { request.Held = { { 60, {} } }; });
-  refuses([](MassSpringRequest& request) { request.Held = { { -1, {} } }; });
-  refuses([](MassSpringRequest& request) { request.Held = { { 0, {} } }; });
-  refuses([](MassSpringRequest& request) { request.Held = { { 4, {} }, { 4, {} } }; });
-  refuses([&](MassSpringRequest& request) { request.Held = { { 4, { nan, 0, 0 } } }; });
+  refuses([](MassSpringRequest& request) { request.Held.assign(1, HeldNode{ 60, {} }); });
+  refuses([](MassSpringRequest& request) { request.Held.assign(1, HeldNode{ -1, {} }); });
+  refuses([](MassSpringRequest& request) { request.Held.assign(1, HeldNode{ 0, {} }); });
+  refuses([](MassSpringRequest& request) { request.Held.assign(2, HeldNode{ 4, {} }); });
+  refuses([&](MassSpringRequest& request) { request.Held.assign(1, HeldNode{ 4, { nan, 0, 0 } }); });
   refuses([&](MassSpringRequest& request) { request.Loads.Gravity.z = nan; });
   refuses([](MassSpringRequest& request) { request.Loads.Forces.resize(59); });
   refuses(
@@ -293,7 +293,7 @@ TEST(MassSpring, HandlesArriveAndLetGo)
   const std::size_t held = GetNode(SmallLattice, 4, 1, 1);
   MassSpringRequest request = For(0.02, 0.0, 20.0);
   const glm::dvec3 wanted(0.1 * Spacing, 0.5 * Spacing, 0.0);
-  request.Held = { { static_cast<std::int32_t>(held), wanted } };
+  request.Held.push_back({ static_cast<std::int32_t>(held), wanted });
   model.Advance(request);
   for (int i = 0; i < 50; ++i)
   {
@@ -357,7 +357,7 @@ TEST(MassSpring, ResultsDoNotDependOnWorkGroups)
     FixNodes(body, [](const glm::dvec3& point) { return point.z == 0.0; });
     model.SetBody(body);
     MassSpringRequest request = For(0.02, 2e-4, 2.0);
-    request.Held = { { 55, { 1e-3, 0, 1e-3 } } };
+    request.Held.assign(1, HeldNode{ 55, { 1e-3, 0, 1e-3 } });
     request.Loads.Gravity = { 0, -9.81, 0 };
     request.Loads.Forces.assign(body.Points.size(), { 1e-6, 0, 0 });
     model.Advance(request);
