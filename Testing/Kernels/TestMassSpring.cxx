@@ -168,7 +168,10 @@ TEST(MassSpring, RefusesRequestsThatMakeNoSense)
   refuses([](MassSpringRequest& request) { request.Held.assign(1, HeldNode{ -1, {} }); });
   refuses([](MassSpringRequest& request) { request.Held.assign(1, HeldNode{ 0, {} }); });
   refuses([](MassSpringRequest& request) { request.Held.assign(2, HeldNode{ 4, {} }); });
-  refuses([&](MassSpringRequest& request) { request.Held.assign(1, HeldNode{ 4, { nan, 0, 0 } }); });
+  refuses(
+    [&](MassSpringRequest& request) {
+      request.Held.assign(1, HeldNode{ 4, { nan, 0, 0 } });
+    });
   refuses([&](MassSpringRequest& request) { request.Loads.Gravity.z = nan; });
   refuses([](MassSpringRequest& request) { request.Loads.Forces.resize(59); });
   refuses(
