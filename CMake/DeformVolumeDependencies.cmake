@@ -31,7 +31,6 @@ if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
     FiltersSources
     ImagingGeneral
     ImagingMath
-    ImagingMorphological
     ImagingSources
     InteractionStyle
     IOImage
@@ -58,7 +57,8 @@ if (DEFORMVOLUME_USE_PARAVIEW)
 endif ()
 set(deformvolume_optional_vtk_components "")
 if (DEFORMVOLUME_BUILD_EXAMPLES)
-  list(APPEND deformvolume_optional_vtk_components IOOggTheora)
+  # ParaView's VTK has no ImagingMorphological.
+  list(APPEND deformvolume_optional_vtk_components ImagingMorphological IOOggTheora)
 endif ()
 if (BUILD_TESTING AND NOT DEFORMVOLUME_SANITIZE)
   list(APPEND deformvolume_optional_vtk_components ParallelMPI)
