@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <iostream>
 #include <limits>
 #include <random>
 
@@ -58,6 +59,7 @@ public:
   double GetLongestPause()
   {
     this->Look();
+    std::cout << 1e3 * this->Longest << " ms without a question\n";
     return this->Longest;
   }
 
