@@ -2,8 +2,8 @@
 #include "vtkChainMailDeformation.h"
 
 #include "ChainMailSession.h"
-#include "FailureReport.h"
 #include "PieceRequest.h"
+#include "PipelineExecution.h"
 #include "ProgressReport.h"
 #include "VTKThreads.h"
 
@@ -16,27 +16,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 #include <sstream>
 
 vtkStandardNewMacro(vtkChainMailDeformation);
-
-namespace
-{
-
-bool IsIndex(double index)
-{
-  return index >= 0.0 && index <= 255.0 && index == std::floor(index);
-}
-
-} // namespace
 
 class vtkChainMailDeformation::vtkInternals
 {
 public:
   deformvolume::ChainMailSession Session;
   deformvolume::ChainMailSettings Settings;
-  bool Aborted = false;
+  deformvolume::PipelineExecution Execution;
 };
 
 vtkChainMailDeformation::vtkChainMailDeformation()
@@ -68,7 +57,7 @@ void vtkChainMailDeformation::SetMaterial(
     return;
   }
   const deformvolume::ChainMailMaterial material{ minimumStretch, maximumStretch, shear };
-  if (this->Internals->Settings.SetMaterial(static_cast<std::size_t>(index), material))
+  if (this->Internals->Settings.Table.Set(static_cast<std::size_t>(index), material))
   {
     this->Modified();
   }
@@ -77,7 +66,7 @@ void vtkChainMailDeformation::SetMaterial(
 void vtkChainMailDeformation::SetMaterial(
   double index, double minimumStretch, double maximumStretch, double shear)
 {
-  if (IsIndex(index))
+  if (deformvolume::IsMaterialIndex(index))
   {
     this->SetMaterial(static_cast<int>(index), minimumStretch, maximumStretch, shear);
     return;
@@ -87,16 +76,14 @@ void vtkChainMailDeformation::SetMaterial(
 
 bool vtkChainMailDeformation::GetMaterialLimits(int index, double limits[3])
 {
-  const deformvolume::ChainMailSettings& settings = this->Internals->Settings;
-  if (index < 0 || index > 255 || !settings.Exists[static_cast<std::size_t>(index)])
+  const deformvolume::ChainMailMaterial* material = this->Internals->Settings.Table.Find(index);
+  if (!material)
   {
     return false;
   }
-  const deformvolume::ChainMailMaterial& material =
-    settings.Materials[static_cast<std::size_t>(index)];
-  limits[0] = material.MinimumStretch;
-  limits[1] = material.MaximumStretch;
-  limits[2] = material.Shear;
+  limits[0] = material->MinimumStretch;
+  limits[1] = material->MaximumStretch;
+  limits[2] = material->Shear;
   return true;
 }
 
@@ -104,40 +91,39 @@ void vtkChainMailDeformation::ClearMaterials()
 {
   if (this->GetNumberOfMaterials() > 0)
   {
-    this->Internals->Settings.Exists.fill(false);
+    this->Internals->Settings.Table.Exists.fill(false);
     this->Modified();
   }
 }
 
 int vtkChainMailDeformation::GetNumberOfMaterials()
 {
-  const auto& exists = this->Internals->Settings.Exists;
-  return static_cast<int>(std::count(exists.begin(), exists.end(), true));
+  return this->Internals->Settings.Table.GetNumber();
 }
 
 void vtkChainMailDeformation::AddMaterialRange(double minimum, double maximum, double index)
 {
-  if (!IsIndex(index))
+  if (!deformvolume::IsMaterialIndex(index))
   {
     vtkErrorMacro("There is no material " << index << ". Give the range an index from 0 to 255.");
     return;
   }
-  this->Internals->Settings.Ranges.push_back({ minimum, maximum, static_cast<int>(index) });
+  this->Internals->Settings.Table.Ranges.push_back({ minimum, maximum, static_cast<int>(index) });
   this->Modified();
 }
 
 void vtkChainMailDeformation::ClearMaterialRanges()
 {
-  if (!this->Internals->Settings.Ranges.empty())
+  if (!this->Internals->Settings.Table.Ranges.empty())
   {
-    this->Internals->Settings.Ranges.clear();
+    this->Internals->Settings.Table.Ranges.clear();
     this->Modified();
   }
 }
 
 int vtkChainMailDeformation::GetNumberOfMaterialRanges()
 {
-  return static_cast<int>(this->Internals->Settings.Ranges.size());
+  return static_cast<int>(this->Internals->Settings.Table.Ranges.size());
 }
 
 void vtkChainMailDeformation::Reset()
@@ -182,12 +168,7 @@ int vtkChainMailDeformation::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  // An aborted output is not up to date, but the executive takes it for that.
-  if (this->Internals->Aborted)
-  {
-    this->Internals->Aborted = false;
-    this->Modified();
-  }
+  this->Internals->Execution.RenewAborted(this);
   return this->Superclass::ComputePipelineMTime(
     request, input, output, requestFromOutputPort, mtime);
 }
@@ -211,42 +192,29 @@ int vtkChainMailDeformation::RequestData(
   request.Progress = [&] { return progress.Tell(); };
   std::fill_n(this->ChangedExtent, 6, -1);
   this->ChangedExtent[0] = this->ChangedExtent[2] = this->ChangedExtent[4] = 0;
-  try
-  {
-    const deformvolume::ChainMailReport report = this->Internals->Session.Step(
-      vtkImageData::GetData(input[0]), vtkPointSet::GetData(input[1]), settings, request);
-    this->DeviceInUse = this->Internals->Session.GetDevice();
-    this->LargestViolation = report.LargestViolation;
-    this->NumberOfSweeps = report.NumberOfSweeps;
-    this->NumberOfMovedVoxels = report.NumberOfMovedVoxels;
-    std::copy(report.ChangedExtent.begin(), report.ChangedExtent.end(), this->ChangedExtent);
-    this->NumberOfReducedHandles = 0;
-    this->NumberOfReleasedHandles = 0;
-    for (const deformvolume::ChainMailHandleReport& handle : report.Handles)
+  return this->Internals->Execution.Run(this,
+    "There is not enough memory for the displacements. Use a smaller volume, or free "
+    "memory.",
+    [&]
     {
-      const auto isReduced = [](double reduction) { return reduction != 0.0; };
-      this->NumberOfReleasedHandles += handle.IsHeld ? 0 : 1;
-      this->NumberOfReducedHandles +=
-        std::any_of(handle.Reduction.begin(), handle.Reduction.end(), isReduced) ? 1 : 0;
-    }
-    this->Internals->Session.GiveOutput(output);
-    return 1;
-  }
-  catch (const deformvolume::Aborted&)
-  {
-    this->Internals->Aborted = true;
-    return 1;
-  }
-  catch (const deformvolume::Error& error)
-  {
-    vtkErrorMacro(<< error.what());
-  }
-  catch (const std::bad_alloc&)
-  {
-    vtkErrorMacro("There is not enough memory for the displacements. Use a smaller volume, or free "
-                  "memory.");
-  }
-  return deformvolume::Fail(this);
+      const deformvolume::ChainMailReport report = this->Internals->Session.Step(
+        vtkImageData::GetData(input[0]), vtkPointSet::GetData(input[1]), settings, request);
+      this->DeviceInUse = this->Internals->Session.GetDevice();
+      this->LargestViolation = report.LargestViolation;
+      this->NumberOfSweeps = report.NumberOfSweeps;
+      this->NumberOfMovedVoxels = report.NumberOfMovedVoxels;
+      std::copy(report.ChangedExtent.begin(), report.ChangedExtent.end(), this->ChangedExtent);
+      this->NumberOfReducedHandles = 0;
+      this->NumberOfReleasedHandles = 0;
+      for (const deformvolume::ChainMailHandleReport& handle : report.Handles)
+      {
+        const auto isReduced = [](double reduction) { return reduction != 0.0; };
+        this->NumberOfReleasedHandles += handle.IsHeld ? 0 : 1;
+        this->NumberOfReducedHandles +=
+          std::any_of(handle.Reduction.begin(), handle.Reduction.end(), isReduced) ? 1 : 0;
+      }
+      this->Internals->Session.GiveOutput(output);
+    });
 }
 
 std::string vtkChainMailDeformation::GetSummary()
@@ -288,7 +256,7 @@ void vtkChainMailDeformation::PrintSelf(ostream& os, vtkIndent indent)
     }
   }
   os << indent << "MaterialRanges:\n";
-  for (const deformvolume::MaterialRange& range : this->Internals->Settings.Ranges)
+  for (const deformvolume::MaterialRange& range : this->Internals->Settings.Table.Ranges)
   {
     os << indent.GetNextIndent() << range.Minimum << " to " << range.Maximum << ": " << range.Index
        << "\n";

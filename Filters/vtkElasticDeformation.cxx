@@ -5,8 +5,8 @@
 #include "ElasticSession.h"
 #include "ElasticSimulation.h"
 #include "Error.h"
-#include "FailureReport.h"
 #include "PieceRequest.h"
+#include "PipelineExecution.h"
 #include "ProgressReport.h"
 #include "SheetReading.h"
 #include "VTKThreads.h"
@@ -28,7 +28,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <new>
 #include <sstream>
 #include <vector>
 
@@ -79,7 +78,7 @@ public:
   deformvolume::ElasticSession Session;
   bool IsToReset = false;
   std::size_t CutsToUndo = 0;
-  bool Aborted = false;
+  deformvolume::PipelineExecution Execution;
 };
 
 vtkElasticDeformation::vtkElasticDeformation()
@@ -200,12 +199,7 @@ int vtkElasticDeformation::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  // An aborted output is not up to date, but the executive takes it for that.
-  if (this->Internals->Aborted)
-  {
-    this->Internals->Aborted = false;
-    this->Modified();
-  }
+  this->Internals->Execution.RenewAborted(this);
   return this->Superclass::ComputePipelineMTime(
     request, input, output, requestFromOutputPort, mtime);
 }
@@ -214,26 +208,10 @@ int vtkElasticDeformation::RequestData(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   vtkUnstructuredGrid::GetData(output)->Initialize();
-  try
-  {
-    this->Execute(input, output);
-    return 1;
-  }
-  catch (const deformvolume::Aborted&)
-  {
-    this->Internals->Aborted = true;
-    return 1;
-  }
-  catch (const deformvolume::Error& error)
-  {
-    vtkErrorMacro(<< error.what());
-  }
-  catch (const std::bad_alloc&)
-  {
-    vtkErrorMacro("There is not enough memory for the simulation. Use a coarser mesh, or free "
-                  "memory.");
-  }
-  return deformvolume::Fail(this);
+  return this->Internals->Execution.Run(this,
+    "There is not enough memory for the simulation. Use a coarser mesh, or free "
+    "memory.",
+    [&] { this->Execute(input, output); });
 }
 
 void vtkElasticDeformation::Execute(

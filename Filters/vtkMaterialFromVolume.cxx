@@ -4,15 +4,15 @@
 #include "BodyReading.h"
 #include "DeformationMesh.h"
 #include "Error.h"
-#include "FailureReport.h"
-#include "MaterialArray.h"
+#include "MaskArray.h"
+#include "MaterialTable.h"
 #include "PieceRequest.h"
+#include "PipelineExecution.h"
 #include "ProgressReport.h"
 #include "VTKThreads.h"
 #include "VolumeMaterials.h"
 
 #include "vtkCellData.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -20,30 +20,14 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <new>
+#include <iterator>
 #include <vector>
 
 vtkStandardNewMacro(vtkMaterialFromVolume);
 
 using deformvolume::ElasticMaterial;
-
-namespace
-{
-
-constexpr int NumberOfIndices = 256;
-
-bool IsIndex(double index)
-{
-  return index >= 0.0 && index < NumberOfIndices && index == std::floor(index);
-}
-
-} // namespace
 
 class vtkMaterialFromVolume::vtkInternals
 {
@@ -52,14 +36,14 @@ public:
   {
     constexpr ElasticMaterial materials[] = { { 100.0, 0.0, 100.0 }, { 1e4, 0.3, 1000.0 },
       { 5e4, 0.4, 1060.0 }, { 1e6, 0.4, 1100.0 }, { 1e7, 0.3, 1900.0 } };
-    std::copy(std::begin(materials), std::end(materials), this->Materials.begin());
-    std::fill_n(this->Exists.begin(), std::size(materials), true);
+    for (std::size_t i = 0; i < std::size(materials); ++i)
+    {
+      this->Table.Set(i, materials[i]);
+    }
   }
 
-  std::array<ElasticMaterial, NumberOfIndices> Materials;
-  std::array<bool, NumberOfIndices> Exists{};
-  std::vector<deformvolume::MaterialRange> Ranges;
-  bool Aborted = false;
+  deformvolume::MaterialTable<ElasticMaterial> Table;
+  deformvolume::PipelineExecution Execution;
 };
 
 vtkMaterialFromVolume::vtkMaterialFromVolume()
@@ -90,32 +74,28 @@ void vtkMaterialFromVolume::SetMaterial(
 void vtkMaterialFromVolume::SetMaterial(
   double index, double youngModulus, double poissonRatio, double density)
 {
-  if (!IsIndex(index))
+  if (!deformvolume::IsMaterialIndex(index))
   {
     vtkErrorMacro("There is no material " << index << ". Give it a whole number from 0 to 255.");
     return;
   }
-  const auto place = static_cast<std::size_t>(index);
-  const ElasticMaterial& before = this->Internals->Materials[place];
-  if (!this->Internals->Exists[place] || before.YoungModulus != youngModulus ||
-    before.PoissonRatio != poissonRatio || before.Density != density)
+  const ElasticMaterial material{ youngModulus, poissonRatio, density };
+  if (this->Internals->Table.Set(static_cast<std::size_t>(index), material))
   {
-    this->Internals->Materials[place] = { youngModulus, poissonRatio, density };
-    this->Internals->Exists[place] = true;
     this->Modified();
   }
 }
 
 bool vtkMaterialFromVolume::GetMaterialValues(int index, double values[3])
 {
-  if (!IsIndex(index) || !this->Internals->Exists[static_cast<std::size_t>(index)])
+  const ElasticMaterial* material = this->Internals->Table.Find(index);
+  if (!material)
   {
     return false;
   }
-  const ElasticMaterial& material = this->Internals->Materials[static_cast<std::size_t>(index)];
-  values[0] = material.YoungModulus;
-  values[1] = material.PoissonRatio;
-  values[2] = material.Density;
+  values[0] = material->YoungModulus;
+  values[1] = material->PoissonRatio;
+  values[2] = material->Density;
   return true;
 }
 
@@ -123,40 +103,39 @@ void vtkMaterialFromVolume::ClearMaterials()
 {
   if (this->GetNumberOfMaterials() > 0)
   {
-    this->Internals->Exists.fill(false);
+    this->Internals->Table.Exists.fill(false);
     this->Modified();
   }
 }
 
 int vtkMaterialFromVolume::GetNumberOfMaterials()
 {
-  const auto& exists = this->Internals->Exists;
-  return static_cast<int>(std::count(exists.begin(), exists.end(), true));
+  return this->Internals->Table.GetNumber();
 }
 
 void vtkMaterialFromVolume::AddMaterialRange(double minimum, double maximum, double index)
 {
-  if (!IsIndex(index))
+  if (!deformvolume::IsMaterialIndex(index))
   {
     vtkErrorMacro("There is no material " << index << ". Give the range an index from 0 to 255.");
     return;
   }
-  this->Internals->Ranges.push_back({ minimum, maximum, static_cast<int>(index) });
+  this->Internals->Table.Ranges.push_back({ minimum, maximum, static_cast<int>(index) });
   this->Modified();
 }
 
 void vtkMaterialFromVolume::ClearMaterialRanges()
 {
-  if (!this->Internals->Ranges.empty())
+  if (!this->Internals->Table.Ranges.empty())
   {
-    this->Internals->Ranges.clear();
+    this->Internals->Table.Ranges.clear();
     this->Modified();
   }
 }
 
 int vtkMaterialFromVolume::GetNumberOfMaterialRanges()
 {
-  return static_cast<int>(this->Internals->Ranges.size());
+  return static_cast<int>(this->Internals->Table.Ranges.size());
 }
 
 int vtkMaterialFromVolume::FillInputPortInformation(int port, vtkInformation* info)
@@ -177,12 +156,7 @@ int vtkMaterialFromVolume::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  // An aborted output is not up to date, but the executive takes it for that.
-  if (this->Internals->Aborted)
-  {
-    this->Internals->Aborted = false;
-    this->Modified();
-  }
+  this->Internals->Execution.RenewAborted(this);
   return this->Superclass::ComputePipelineMTime(
     request, input, output, requestFromOutputPort, mtime);
 }
@@ -191,26 +165,10 @@ int vtkMaterialFromVolume::RequestData(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   vtkUnstructuredGrid::GetData(output)->Initialize();
-  try
-  {
-    this->Execute(input, output);
-    return 1;
-  }
-  catch (const deformvolume::Aborted&)
-  {
-    this->Internals->Aborted = true;
-    return 1;
-  }
-  catch (const deformvolume::Error& error)
-  {
-    vtkErrorMacro(<< error.what());
-  }
-  catch (const std::bad_alloc&)
-  {
-    vtkErrorMacro("There is not enough memory for the materials of the voxels. Use a smaller "
-                  "volume, or free memory.");
-  }
-  return deformvolume::Fail(this);
+  return this->Internals->Execution.Run(this,
+    "There is not enough memory for the materials of the voxels. Use a smaller "
+    "volume, or free memory.",
+    [&] { this->Execute(input, output); });
 }
 
 void vtkMaterialFromVolume::Execute(
@@ -218,36 +176,30 @@ void vtkMaterialFromVolume::Execute(
 {
   vtkUnstructuredGrid* mesh = vtkUnstructuredGrid::GetData(input[0]);
   vtkImageData* image = vtkImageData::GetData(input[1]);
-  const vtkInternals& internals = *this->Internals;
-  const auto defaultMaterial = static_cast<std::size_t>(this->DefaultMaterial);
-  if (!internals.Exists[defaultMaterial])
+  const deformvolume::MaterialTable<ElasticMaterial>& table = this->Internals->Table;
+  const ElasticMaterial* defaultMaterial = table.Find(this->DefaultMaterial);
+  if (!defaultMaterial)
   {
     throw deformvolume::Error("DefaultMaterial is the material " +
       std::to_string(this->DefaultMaterial) + ", which there is not. Set it with SetMaterial().");
   }
-  for (std::size_t i = 0; i < internals.Materials.size(); ++i)
+  for (int i = 0; i < static_cast<int>(table.Materials.size()); ++i)
   {
-    if (internals.Exists[i])
+    if (const ElasticMaterial* material = table.Find(i))
     {
-      deformvolume::CheckMaterial(internals.Materials[i], " of material " + std::to_string(i));
+      deformvolume::CheckMaterial(*material, " of material " + std::to_string(i));
     }
   }
   deformvolume::VolumeMaterials volume;
   volume.Volume = deformvolume::GetGeometry(image);
   deformvolume::CheckVolume(volume.Volume);
-  volume.Table.assign(internals.Materials.begin(), internals.Materials.end());
-  volume.Default = internals.Materials[defaultMaterial];
+  volume.Table.assign(table.Materials.begin(), table.Materials.end());
+  volume.Default = *defaultMaterial;
   vtkDataArray* array =
-    deformvolume::FindMaterialArray(image, this->MaterialArrayName, !internals.Ranges.empty());
-  volume.Indices = array
-    ? deformvolume::ReadMaterials(array, internals.Ranges, this->DefaultMaterial, internals.Exists)
-    : std::vector<unsigned char>(static_cast<std::size_t>(image->GetNumberOfPoints()),
-        static_cast<unsigned char>(this->DefaultMaterial));
-  if (vtkUnsignedCharArray* ghosts = image->GetPointGhostArray())
-  {
-    volume.Ghosts = ghosts->GetPointer(0);
-    volume.HiddenBits = vtkDataSetAttributes::DUPLICATEPOINT | vtkDataSetAttributes::HIDDENPOINT;
-  }
+    deformvolume::FindMaterialArray(image, this->MaterialArrayName, !table.Ranges.empty());
+  volume.Indices = deformvolume::ReadMaterials(
+    array, image->GetNumberOfPoints(), table.Ranges, this->DefaultMaterial, table.Exists);
+  volume.Ghosts = deformvolume::FindPointGhosts(image);
 
   const deformvolume::GridTetrahedra read = deformvolume::ReadTetrahedra(mesh);
   const std::vector<glm::dvec3> points = mesh->GetNumberOfPoints() > 0
@@ -284,7 +236,7 @@ void vtkMaterialFromVolume::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaterialArrayName: " << this->MaterialArrayName << "\n";
   os << indent << "DefaultMaterial: " << this->DefaultMaterial << "\n";
   os << indent << "Materials:\n";
-  for (int i = 0; i < NumberOfIndices; ++i)
+  for (int i = 0; i < static_cast<int>(this->Internals->Table.Materials.size()); ++i)
   {
     double values[3];
     if (this->GetMaterialValues(i, values))
@@ -294,7 +246,7 @@ void vtkMaterialFromVolume::PrintSelf(ostream& os, vtkIndent indent)
     }
   }
   os << indent << "MaterialRanges:\n";
-  for (const deformvolume::MaterialRange& range : this->Internals->Ranges)
+  for (const deformvolume::MaterialRange& range : this->Internals->Table.Ranges)
   {
     os << indent.GetNextIndent() << range.Minimum << " to " << range.Maximum << ": " << range.Index
        << "\n";

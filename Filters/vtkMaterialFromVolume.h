@@ -30,9 +30,9 @@
  * @par Errors:
  * Each is one vtkErrorMacro that says what is wrong and what to do, and the output is then empty: a
  * volume that is flat or has no valid spacing; an array that is not there or has several
- * components; a value that has no material; a Young modulus or a density of 0 or less, or a Poisson
- * ratio of less than 0 or of 0.495 and more; cells that are not tetrahedra; coordinates that are
- * not finite.
+ * components; a "vtkGhostType" of another type or size; a value that has no material; a Young
+ * modulus or a density of 0 or less, or a Poisson ratio of less than 0 or of 0.495 and more; cells
+ * that are not tetrahedra; coordinates that are not finite.
  *
  * @sa vtkCorotationalDeformation vtkMassSpringDeformation vtkChainMailDeformation
  */

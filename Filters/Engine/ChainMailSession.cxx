@@ -39,7 +39,7 @@ vtkDataArray* FindVolumeArray(vtkImageData* volume, const char* name)
 
 void CheckMaterial(const ChainMailSettings& settings, int index, const char* who)
 {
-  if (!settings.Exists[static_cast<std::size_t>(index)])
+  if (!settings.Table.Find(index))
   {
     throw Error(std::string(who) + " is the material " + std::to_string(index) +
       ", which there is not. Set it with SetMaterial().");
@@ -82,21 +82,8 @@ void ChainMailSettings::SetDefaultMaterials()
     { 0.95, 1.05, 0.05 }, { 0.99, 1.01, 0.01 } };
   for (std::size_t i = 0; i < std::size(defaults); ++i)
   {
-    this->SetMaterial(i, defaults[i]);
+    this->Table.Set(i, defaults[i]);
   }
-}
-
-bool ChainMailSettings::SetMaterial(std::size_t index, const ChainMailMaterial& material)
-{
-  ChainMailMaterial& last = this->Materials[index];
-  if (this->Exists[index] && last.MinimumStretch == material.MinimumStretch &&
-    last.MaximumStretch == material.MaximumStretch && last.Shear == material.Shear)
-  {
-    return false;
-  }
-  last = material;
-  this->Exists[index] = true;
-  return true;
 }
 
 void ChainMailSession::Forget()
@@ -143,7 +130,7 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
   const ImageGeometry geometry = GetGeometry(volume);
   CheckVolume(geometry);
   vtkDataArray* materialArray =
-    FindMaterialArray(volume, settings.ArrayName, !settings.Ranges.empty());
+    FindMaterialArray(volume, settings.ArrayName, !settings.Table.Ranges.empty());
   vtkDataArray* pins = FindVolumeArray(volume, PINNED);
   const bool isNew = !this->HasVolume || this->Geometry != geometry;
   const Stamp maskStamp = GetMasksStamp(volume);
@@ -155,33 +142,31 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
   request.Handles = ReadHandles(handles, geometry, settings.HandleRadius);
   MaterialsKey key{ GetStampOf(materialArray), { 1.0 * settings.DefaultMaterial } };
   std::vector<ChainMailMaterial> table;
-  for (std::size_t i = 0; i < settings.Exists.size(); ++i)
+  for (std::size_t i = 0; i < settings.Table.Exists.size(); ++i)
   {
-    key.Numbers.push_back(settings.Exists[i] ? 1.0 : 0.0);
-    if (settings.Exists[i])
+    key.Numbers.push_back(settings.Table.Exists[i] ? 1.0 : 0.0);
+    if (settings.Table.Exists[i])
     {
-      const ChainMailMaterial& material = settings.Materials[i];
+      const ChainMailMaterial& material = settings.Table.Materials[i];
       table.resize(i + 1);
       table[i] = material;
       key.Numbers.insert(
         key.Numbers.end(), { material.MinimumStretch, material.MaximumStretch, material.Shear });
     }
   }
-  for (const MaterialRange& range : settings.Ranges)
+  for (const MaterialRange& range : settings.Table.Ranges)
   {
     CheckMaterial(settings, range.Index, "Of a range");
     key.Numbers.insert(key.Numbers.end(), { range.Minimum, range.Maximum, 1.0 * range.Index });
   }
-  if (!materialArray || !settings.Ranges.empty())
+  if (!materialArray || !settings.Table.Ranges.empty())
   {
     CheckMaterial(settings, settings.DefaultMaterial, "The default");
   }
   const auto readMaterials = [&]
   {
-    return materialArray
-      ? ReadMaterials(materialArray, settings.Ranges, settings.DefaultMaterial, settings.Exists)
-      : std::vector<unsigned char>(static_cast<std::size_t>(volume->GetNumberOfPoints()),
-          static_cast<unsigned char>(settings.DefaultMaterial));
+    return ReadMaterials(materialArray, volume->GetNumberOfPoints(), settings.Table.Ranges,
+      settings.DefaultMaterial, settings.Table.Exists);
   };
   std::vector<unsigned char> materials;
   if (isNew || !(key == this->KeyOfMaterials))

@@ -5,7 +5,7 @@
 #include "ChainMailModel.h"
 #include "DeformationMesh.h" // for Stamp
 #include "ImageGeometry.h"
-#include "MaterialArray.h"
+#include "MaterialTable.h"
 #include "VectorOutput.h"
 
 #include <array>
@@ -22,9 +22,7 @@ namespace deformvolume
 /// What vtkChainMailDeformation was told.
 struct ChainMailSettings
 {
-  std::array<ChainMailMaterial, 256> Materials;
-  std::array<bool, 256> Exists{};
-  std::vector<MaterialRange> Ranges;
+  MaterialTable<ChainMailMaterial> Table;
   std::string ArrayName;
   int DefaultMaterial = 1;
   double HandleRadius = 0.0;
@@ -32,8 +30,6 @@ struct ChainMailSettings
   std::int64_t MemoryLimit = 0;
 
   void SetDefaultMaterials();
-  /// Returns whether it was not so before.
-  bool SetMaterial(std::size_t index, const ChainMailMaterial& material);
 };
 
 /// A ChainMailModel with its output, and what it was given of VTK's data.

@@ -102,10 +102,15 @@ vtkDataArray* FindMaterialArray(vtkImageData* volume, const std::string& name, b
   return scalars;
 }
 
-std::vector<unsigned char> ReadMaterials(vtkDataArray* array,
+std::vector<unsigned char> ReadMaterials(vtkDataArray* array, vtkIdType voxels,
   const std::vector<MaterialRange>& ranges, int fallback, const std::array<bool, 256>& exists)
 {
-  std::vector<unsigned char> materials(static_cast<std::size_t>(array->GetNumberOfTuples()));
+  std::vector<unsigned char> materials(
+    static_cast<std::size_t>(voxels), static_cast<unsigned char>(fallback));
+  if (!array)
+  {
+    return materials;
+  }
   std::atomic<vtkIdType> firstWithout{ NoTuple };
   ForValues(array,
     [&](vtkIdType first, const auto& values)

@@ -2,6 +2,8 @@
 #ifndef DeformVolumeMaterialArray_h
 #define DeformVolumeMaterialArray_h
 
+#include "vtkType.h"
+
 #include <array>
 #include <string>
 #include <vector>
@@ -25,10 +27,11 @@ struct MaterialRange
 /// several components.
 vtkDataArray* FindMaterialArray(vtkImageData* volume, const std::string& name, bool hasRanges);
 
-/// The materials of the values of an array of one component: by ranges, and fallback where none
-/// holds a value, or, without ranges, the values themselves. exists: which of the 256 materials
-/// there are. Throws an Error that names a value without a material.
-std::vector<unsigned char> ReadMaterials(vtkDataArray* array,
+/// The materials of so many voxels, by an array of one component: by ranges, and fallback where
+/// none holds a value, or, without ranges, the values themselves. Without an array all are
+/// fallback. exists: which of the 256 materials there are. Throws an Error that names a value
+/// without a material.
+std::vector<unsigned char> ReadMaterials(vtkDataArray* array, vtkIdType voxels,
   const std::vector<MaterialRange>& ranges, int fallback, const std::array<bool, 256>& exists);
 
 /// 1 where a value of an array of one component is not 0, else 0.

@@ -3,6 +3,8 @@
 
 #include "StaticMapping.h"
 
+#include "vtkDataSetAttributes.h"
+
 #include <glm/vec4.hpp>
 
 #include <algorithm>
@@ -83,7 +85,9 @@ public:
 private:
   bool IsHidden(std::size_t voxel) const
   {
-    return this->Volume.Ghosts && (this->Volume.Ghosts[voxel] & this->Volume.HiddenBits) != 0;
+    constexpr unsigned char hidden =
+      vtkDataSetAttributes::DUPLICATEPOINT | vtkDataSetAttributes::HIDDENPOINT;
+    return this->Volume.Ghosts && (this->Volume.Ghosts[voxel] & hidden) != 0;
   }
 
   // Of voxels one after the other, as sums of doubles depend on the order.

@@ -22,9 +22,8 @@ struct VolumeMaterials
   /// Of each voxel, x varying fastest, an index into the table.
   std::vector<unsigned char> Indices;
   std::vector<ElasticMaterial> Table;
-  /// A byte a voxel; where it has one of the bits the voxel does not count. Null: all count.
+  /// The ghosts of voxels (FindPointGhosts): those that are hidden or duplicate do not count.
   const unsigned char* Ghosts = nullptr;
-  unsigned char HiddenBits = 0;
   /// Of tetrahedra that no voxel says anything of.
   ElasticMaterial Default;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NodeRotations.h"
 
+#include "RowParts.h"
 #include "SingularValues.h"
 
 #include <glm/gtc/type_ptr.hpp>
@@ -93,13 +94,12 @@ void FindNodeRotations(Watch& watch, const BlockPattern& pattern,
   const std::vector<std::int32_t>& nodes, const std::vector<glm::dvec3>& before,
   const std::vector<glm::dvec3>& now, std::vector<glm::mat3>& rotations)
 {
-  constexpr std::size_t size = BlockMatrix::RowsOfPart;
   rotations.resize(nodes.size());
-  ForParts(watch, (nodes.size() + size - 1) / size, BlockMatrix::PartsAtOnce,
-    [&](std::size_t part)
+  ForRows(watch, nodes.size(),
+    [&](std::size_t begin, std::size_t end)
     {
-      const RotationArguments arguments = { &pattern, nodes.data(), part * size,
-        std::min(nodes.size(), (part + 1) * size), before.data(), now.data(), rotations.data() };
+      const RotationArguments arguments = { &pattern, nodes.data(), begin, end, before.data(),
+        now.data(), rotations.data() };
 #if DEFORMVOLUME_HAS_AVX2_CODE
       if (HasWideLanes())
       {

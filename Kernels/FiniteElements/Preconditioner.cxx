@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Preconditioner.h"
 
+#include "RowParts.h"
+
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 
-#include <algorithm>
 #include <cstddef>
 
 namespace deformvolume
@@ -15,11 +16,10 @@ void BlockJacobi::Build(
 {
   const std::size_t rows = isFree.size();
   this->Inverses.resize(rows);
-  constexpr std::size_t size = BlockMatrix::RowsOfPart;
-  ForParts(watch, (rows + size - 1) / size, BlockMatrix::PartsAtOnce,
-    [&](std::size_t part)
+  ForRows(watch, rows,
+    [&](std::size_t begin, std::size_t end)
     {
-      for (std::size_t row = part * size; row < std::min(rows, (part + 1) * size); ++row)
+      for (std::size_t row = begin; row < end; ++row)
       {
         this->Inverses[row] = isFree[row] != 0
           ? glm::inverse(glm::make_mat3(matrix.GetDiagonal(row)))
@@ -32,11 +32,10 @@ void BlockJacobi::Apply(
   Watch& watch, const std::vector<glm::dvec3>& vector, double, std::vector<glm::dvec3>& result)
 {
   const std::size_t rows = vector.size();
-  constexpr std::size_t size = BlockMatrix::RowsOfPart;
-  ForParts(watch, (rows + size - 1) / size, BlockMatrix::PartsAtOnce,
-    [&](std::size_t part)
+  ForRows(watch, rows,
+    [&](std::size_t begin, std::size_t end)
     {
-      for (std::size_t row = part * size; row < std::min(rows, (part + 1) * size); ++row)
+      for (std::size_t row = begin; row < end; ++row)
       {
         result[row] = this->Inverses[row] * vector[row];
       }

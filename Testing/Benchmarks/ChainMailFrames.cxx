@@ -4,12 +4,9 @@
 #include "Timing.h"
 
 #include "vtkChainMailDeformation.h"
+#include "vtkDeformationHandleSource.h"
 
-#include <vtkDoubleArray.h>
 #include <vtkImageData.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,17 +26,10 @@ struct DraggedVolume
     : Spacing(volume->GetSpacing()[0])
   {
     volume->GetCenter(this->Center);
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    points->InsertNextPoint(this->Center);
-    this->Handles->SetPoints(points);
-    vtkNew<vtkDoubleArray> rest;
-    rest->SetName("RestPosition");
-    rest->SetNumberOfComponents(3);
-    rest->InsertNextTuple(this->Center);
-    this->Handles->GetPointData()->AddArray(rest);
+    this->Handle->SetRestPosition(this->Center);
+    this->Handle->SetPosition(this->Center);
     this->ChainMail->SetInputData(volume);
-    this->ChainMail->SetHandlesData(this->Handles);
+    this->ChainMail->SetHandlesConnection(this->Handle->GetOutputPort());
     this->ChainMail->SetHandleRadius(HandleRadius * this->Spacing);
     this->Filter->SetInputData(volume);
     this->Filter->SetDeformationConnection(this->ChainMail->GetOutputPort());
@@ -49,16 +39,14 @@ struct DraggedVolume
   {
     const double angle = StepAngle * ++this->Step;
     const double length = DragLength * this->Spacing;
-    this->Handles->GetPoints()->SetPoint(0, this->Center[0] + length * std::cos(angle),
+    this->Handle->SetPosition(this->Center[0] + length * std::cos(angle),
       this->Center[1] + length / 3.0, this->Center[2] + length * std::sin(angle));
-    this->Handles->GetPoints()->Modified();
-    this->Handles->Modified();
   }
 
   double Spacing;
   double Center[3];
   int Step = 0;
-  vtkNew<vtkPolyData> Handles;
+  vtkNew<vtkDeformationHandleSource> Handle;
   vtkNew<vtkChainMailDeformation> ChainMail;
   vtkNew<vtkDeformVolumeFilter> Filter;
 };

@@ -5,14 +5,12 @@
 #include "Timing.h"
 
 #include "vtkCorotationalDeformation.h"
+#include "vtkDeformationHandleSource.h"
 #include "vtkLatticeTetrahedraSource.h"
 #include "vtkMassSpringDeformation.h"
 
-#include <vtkDoubleArray.h>
 #include <vtkImageData.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
@@ -66,15 +64,8 @@ struct Body
     this->Rest[0] = 0.5 * (bounds[0] + bounds[1]);
     this->Rest[1] = 0.5 * (bounds[2] + bounds[3]);
     this->Rest[2] = bounds[5];
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    points->InsertNextPoint(this->Rest);
-    this->Handles->SetPoints(points);
-    vtkNew<vtkDoubleArray> rest;
-    rest->SetName("RestPosition");
-    rest->SetNumberOfComponents(3);
-    rest->InsertNextTuple(this->Rest);
-    this->Handles->GetPointData()->AddArray(rest);
+    this->Handle->SetRestPosition(this->Rest);
+    this->Handle->SetPosition(this->Rest);
     this->Radius = 1.5 * edge;
   }
 
@@ -83,13 +74,11 @@ struct Body
     constexpr int turn = 20; // frames before it goes back
     const int step = ++this->Step % (2 * turn);
     const double length = this->Length * this->Height * std::min(step, 2 * turn - step);
-    this->Handles->GetPoints()->SetPoint(0, this->Rest[0] + length, this->Rest[1], this->Rest[2]);
-    this->Handles->GetPoints()->Modified();
-    this->Handles->Modified();
+    this->Handle->SetPosition(this->Rest[0] + length, this->Rest[1], this->Rest[2]);
   }
 
   vtkNew<vtkUnstructuredGrid> Mesh;
-  vtkNew<vtkPolyData> Handles;
+  vtkNew<vtkDeformationHandleSource> Handle;
   double Rest[3];
   double Height;
   double Radius;
@@ -108,7 +97,7 @@ struct SimulatedVolume
     this->Filter->SetSamplingFactor(samplingFactor);
     this->Filter->IncrementalOff(); // all is deformed anew, as published
     this->Model->SetInputData(this->Simulated.Mesh);
-    this->Model->SetHandlesData(this->Simulated.Handles);
+    this->Model->SetHandlesConnection(this->Simulated.Handle->GetOutputPort());
     this->Model->SetHandleRadius(this->Simulated.Radius);
     this->Model->SetLengthUnitToMillimetre();
     this->Filter->SetDeformationConnection(this->Model->GetOutputPort());

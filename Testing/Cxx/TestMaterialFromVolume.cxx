@@ -155,6 +155,21 @@ void TestMisuse()
   tested.Filter->SetMaterial(1, 1e4, 0.3, 1000.0);
   VERIFY(Holds(tested.TryUpdate(), "for which there is no material"));
 
+  // Ghosts that do not reach to the last voxel.
+  tested.Filter->SetMaterial(0, 100.0, 0.0, 100.0);
+  for (int index = 2; index < 5; ++index)
+  {
+    tested.Filter->SetMaterial(index, 1e4, 0.3, 1000.0);
+  }
+  VERIFY_EQUAL(tested.TryUpdate(), std::string());
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName("vtkGhostType");
+  ghosts->SetNumberOfTuples(7);
+  ghosts->Fill(0);
+  volume->GetPointData()->AddArray(ghosts);
+  VERIFY(Holds(tested.TryUpdate(), "vtkGhostType"));
+  volume->GetPointData()->RemoveArray("vtkGhostType");
+
   vtkNew<vtkImageData> flat;
   flat->SetDimensions(5, 5, 1);
   Tested onFlat(mesh, flat);

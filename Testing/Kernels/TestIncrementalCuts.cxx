@@ -346,6 +346,17 @@ struct VoxelField
     }
     deformer.SetMesh(tetrahedra.data(), tetrahedra.size(), this->Vectors.size() / 3, links.data());
   }
+  // Moves 4 x 4 voxels of a plane, by the first component.
+  void MoveSquare(int x, float amount)
+  {
+    for (int z = 8; z < 12; ++z)
+    {
+      for (int y = 8; y < 12; ++y)
+      {
+        *this->GetVector(x, y, z) = amount;
+      }
+    }
+  }
   // Expects the same of both deformers. Returns whether one made a part.
   bool Deform()
   {
@@ -397,13 +408,7 @@ TEST(IncrementalCuts, CopiesReachFurtherThanVertices)
     made.Deform();
     for (const float amount : { 10.0F, 30.0F, 20.0F })
     {
-      for (int z = 8; z < 12; ++z)
-      {
-        for (int y = 8; y < 12; ++y)
-        {
-          *made.GetVector(15, y, z) = amount;
-        }
-      }
+      made.MoveSquare(15, amount);
       EXPECT_TRUE(made.Deform());
     }
   }
@@ -479,13 +484,7 @@ TEST(IncrementalCuts, CopiesOfTheNextBrickMove)
     made.Deform();
     for (const float amount : { 10.0F, -5.0F, 0.0F })
     {
-      for (int z = 8; z < 12; ++z)
-      {
-        for (int y = 8; y < 12; ++y)
-        {
-          *made.GetVector(14, y, z) = amount;
-        }
-      }
+      made.MoveSquare(14, amount);
       EXPECT_TRUE(made.Deform());
     }
   }
