@@ -9,7 +9,7 @@
 #include <vtkConnectivityFilter.h>
 #include <vtkCorotationalDeformation.h>
 #include <vtkDeformVolumeFilter.h>
-#include <vtkDoubleArray.h>
+#include <vtkDeformationHandleSource.h>
 #include <vtkImageContinuousDilate3D.h>
 #include <vtkLatticeTetrahedraSource.h>
 #include <vtkMassSpringDeformation.h>
@@ -20,8 +20,6 @@
 #include <vtkPNGWriter.h>
 #include <vtkPiecewiseFunction.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
@@ -98,19 +96,10 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(vtkAlgorithmOutput* volume)
 }
 
 // A hook in the nose, which goes some of its way; part: 0 to 1.
-vtkSmartPointer<vtkPolyData> MakeHook(double part)
+void MoveHook(vtkDeformationHandleSource* hook, double part)
 {
-  vtkNew<vtkPoints> points;
-  points->InsertNextPoint(
-    Nose[0] + part * Pull[0], Nose[1] + part * Pull[1], Nose[2] + part * Pull[2]);
-  vtkNew<vtkDoubleArray> rest;
-  rest->SetName("RestPosition");
-  rest->SetNumberOfComponents(3);
-  rest->InsertNextTuple(Nose);
-  auto hook = vtkSmartPointer<vtkPolyData>::New();
-  hook->SetPoints(points);
-  hook->GetPointData()->AddArray(rest);
-  return hook;
+  hook->SetRestPosition(Nose[0], Nose[1], Nose[2]);
+  hook->SetPosition(Nose[0] + part * Pull[0], Nose[1] + part * Pull[1], Nose[2] + part * Pull[2]);
 }
 
 void Hold(vtkElasticDeformation* body, vtkUnstructuredGrid* mesh)
@@ -191,15 +180,20 @@ int main(int argc, char* argv[])
   vtkNew<vtkCorotationalDeformation> elements;
   Hold(elements, mesh);
   elements->SetModeToConverged();
-  elements->SetHandlesData(MakeHook(1.0));
+  vtkNew<vtkDeformationHandleSource> hook;
+  MoveHook(hook, 1.0);
+  elements->SetHandlesConnection(hook->GetOutputPort());
   elements->Update();
 
   vtkNew<vtkMassSpringDeformation> springs;
   Hold(springs, mesh);
+  vtkNew<vtkDeformationHandleSource> slowHook;
+  springs->SetHandlesConnection(slowHook->GetOutputPort());
   for (int frame = 1; frame <= NumberOfFrames; ++frame)
   {
     // The hook arrives when half of the time is over.
-    springs->SetHandlesData(MakeHook(std::min(1.0, 2.0 * frame / NumberOfFrames)));
+    MoveHook(slowHook, std::min(1.0, 2.0 * frame / NumberOfFrames));
+    springs->Modified(); // time goes on while the hook rests
     springs->Update();
   }
 

@@ -11,8 +11,7 @@ import numpy
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (what draws)
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkConnectivityFilter, vtkThreshold
 from vtkmodules.vtkImagingMorphological import vtkImageContinuousDilate3D
 from vtkmodules.vtkIOImage import vtkNIFTIImageReader, vtkPNGWriter
@@ -74,16 +73,10 @@ def make_mesh(volume):
     return mesh
 
 
-def make_hook(part):
+def move_hook(hook, part):
     """A hook in the nose, which goes some of its way; part: 0 to 1."""
-    points = vtkPoints()
-    points.InsertNextPoint(*(NOSE + part * PULL))
-    rest = numpy_to_vtk(NOSE.reshape(1, 3), deep=True)
-    rest.SetName("RestPosition")
-    hook = vtkPolyData()
-    hook.SetPoints(points)
-    hook.GetPointData().AddArray(rest)
-    return hook
+    hook.SetRestPosition(*NOSE)
+    hook.SetPosition(*(NOSE + part * PULL))
 
 
 def hold(body, mesh):
@@ -149,13 +142,18 @@ mesh = make_mesh(reader.GetOutputPort())
 elements = deformvolume.vtkCorotationalDeformation()
 hold(elements, mesh)
 elements.SetModeToConverged()
-elements.SetHandlesData(make_hook(1.0))
+hook = deformvolume.vtkDeformationHandleSource()
+move_hook(hook, 1.0)
+elements.SetHandlesConnection(hook.GetOutputPort())
 elements.Update()
 springs = deformvolume.vtkMassSpringDeformation()
 hold(springs, mesh)
+slow_hook = deformvolume.vtkDeformationHandleSource()
+springs.SetHandlesConnection(slow_hook.GetOutputPort())
 for frame in range(1, FRAMES + 1):
     # The hook arrives when half of the time is over.
-    springs.SetHandlesData(make_hook(min(1.0, 2.0 * frame / FRAMES)))
+    move_hook(slow_hook, min(1.0, 2.0 * frame / FRAMES))
+    springs.Modified()  # time goes on while the hook rests
     springs.Update()
 at_rest = deform(reader.GetOutputPort(), elements, 0.0)
 by_elements = deform(reader.GetOutputPort(), elements, 1.0)

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tests of an example that draws three pictures side by side and has a twin in Python."""
+import os
+import sys
+
+from Baselines import find_difference, read_baselines
+from Volumes import call, make_folder
+
+SIZE = 200  # of a picture
+LIMIT = 0.05  # of 255, the mean of all colours
+FOLDER = "/usr/share/mricron/templates"
+
+
+def check_twins(name, volume, check_panels, check_words=None):
+    """Both are misused, and draw a volume of the package mricron-data. check_panels is called with the
+    three pictures of each baseline, and check_words with what is printed, which is the same of both.
+    The arguments of the test are PROGRAM SCRIPT BASELINE FOLDER."""
+    program, script, baseline = sys.argv[1:4]
+    folder = make_folder(sys.argv[4], name)
+    volume = os.path.join(FOLDER, volume)
+    if not os.path.exists(volume):
+        print(f"skipped: {volume} is missing, install the package mricron-data")
+        sys.exit(125)
+    call(program, code=2)
+    call(program, volume, os.path.join(folder, "x.png"), "none", code=2)
+    call(sys.executable, script, code=1)
+    baselines = read_baselines(baseline)
+    for expected in baselines:
+        assert expected.shape == (SIZE, 3 * SIZE, 3)
+        check_panels(*(expected[:, SIZE * k:SIZE * (k + 1)] for k in range(3)))
+    words = None
+    for file, command in (("cxx.png", [program]), ("python.png", [sys.executable, script])):
+        path = os.path.join(folder, file)
+        output, _ = call(*command, volume, path, SIZE)
+        assert words in (None, output), (words, output)
+        words = output
+        assert " 0 tetrahedra inverted" in output
+        if check_words:
+            check_words(output)
+        assert find_difference(path, baselines) < LIMIT
