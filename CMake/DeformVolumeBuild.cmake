@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds the module, wraps it for Python, and installs both with a CMake package.
 
+set(deformvolume_module_files "${CMAKE_CURRENT_SOURCE_DIR}/vtk.module")
+set(deformvolume_requested_modules DeformVolume::Filters)
+if (NOT DEFORMVOLUME_USE_PARAVIEW)
+  # ParaView has an interaction of its own.
+  list(APPEND deformvolume_module_files "${CMAKE_CURRENT_SOURCE_DIR}/Interaction/vtk.module")
+  list(APPEND deformvolume_requested_modules DeformVolume::Interaction)
+endif ()
 vtk_module_scan(
-  MODULE_FILES "${CMAKE_CURRENT_SOURCE_DIR}/vtk.module"
-  REQUEST_MODULES DeformVolume::Filters
+  MODULE_FILES ${deformvolume_module_files}
+  REQUEST_MODULES ${deformvolume_requested_modules}
   PROVIDES_MODULES deformvolume_modules
   ENABLE_TESTS OFF)
 
@@ -36,12 +43,16 @@ if (DEFORMVOLUME_WRAP_PYTHON)
     CMAKE_DESTINATION "${deformvolume_package_directory}"
     INSTALL_HEADERS OFF
     BUILD_STATIC OFF)
+  set(deformvolume_python_imports "from .vtkDeformVolume import *")
+  if (TARGET DeformVolume::Interaction)
+    string(APPEND deformvolume_python_imports "\nfrom .vtkDeformVolumeInteraction import *")
+  endif ()
+  set(deformvolume_python_package
+    "${CMAKE_BINARY_DIR}/${DEFORMVOLUME_PYTHON_DIRECTORY}/deformvolume/__init__.py")
   configure_file(
-    "${CMAKE_CURRENT_SOURCE_DIR}/Python/__init__.py"
-    "${CMAKE_BINARY_DIR}/${DEFORMVOLUME_PYTHON_DIRECTORY}/deformvolume/__init__.py"
-    COPYONLY)
+    "${CMAKE_CURRENT_SOURCE_DIR}/Python/__init__.py.in" "${deformvolume_python_package}" @ONLY)
   install(
-    FILES "${CMAKE_CURRENT_SOURCE_DIR}/Python/__init__.py"
+    FILES "${deformvolume_python_package}"
     DESTINATION "${DEFORMVOLUME_PYTHON_DIRECTORY}/deformvolume")
 endif ()
 

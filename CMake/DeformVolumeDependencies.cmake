@@ -16,6 +16,9 @@ set(deformvolume_vtk_components
   ImagingCore
   ParallelCore
   vtksys)
+if (NOT DEFORMVOLUME_USE_PARAVIEW)
+  list(APPEND deformvolume_vtk_components IOXML IOXMLParser) # of the module in Interaction
+endif ()
 # Those that an installed DeformVolume needs.
 set(deformvolume_package_components ${deformvolume_vtk_components})
 if (DEFORMVOLUME_WRAP_PYTHON)

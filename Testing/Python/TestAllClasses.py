@@ -17,7 +17,10 @@ from vtkmodules.vtkCommonDataModel import (
 )
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
-FILTERS = os.path.join(os.path.dirname(__file__), "..", "..", "Filters")
+FOLDERS = ["Filters"]
+if hasattr(deformvolume, "vtkDeformVolumeSession"):  # not where VTK is ParaView's
+    FOLDERS.append("Interaction")
+ROOT = os.path.join(os.path.dirname(__file__), "..", "..")
 
 failures = []
 
@@ -172,7 +175,12 @@ def check_empty_input(cls):
 
 
 def check_header(name):
-    with open(os.path.join(FILTERS, name + ".h"), encoding="ascii") as file:
+    path = next(
+        path
+        for path in (os.path.join(ROOT, folder, name + ".h") for folder in FOLDERS)
+        if os.path.exists(path)
+    )
+    with open(path, encoding="ascii") as file:
         header = file.read()
     for pattern, what in (
         (rf"vtk(Abstract)?TypeMacro\({name}, \w+\);", "vtkTypeMacro"),
@@ -199,11 +207,12 @@ def main():
     classes = own_classes()
     headers = sorted(
         name[:-2]
-        for name in os.listdir(FILTERS)
+        for folder in FOLDERS
+        for name in os.listdir(os.path.join(ROOT, folder))
         if re.fullmatch(r"vtk\w+\.h", name) and not name.endswith("Internals.h")
     )
     names = [cls.__name__ for cls in classes]
-    check(names == headers, f"The package has {names}, Filters has {headers}")
+    check(names == headers, f"The package has {names}, {FOLDERS} have {headers}")
     for cls in classes:
         check_header(cls.__name__)
         if is_abstract(cls):

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SessionEvents.h"
+
+#include "vtkCellArray.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+
+namespace
+{
+
+using deformvolume::SessionEvent;
+
+struct EventForm
+{
+  const char* Name;
+  std::size_t Numbers; // of a cut it is the least
+};
+
+// In the order of SessionEvent::KindType.
+constexpr std::array<EventForm, SessionEvent::STEP + 1> Forms = { { { "BeginGrab", 4 },
+  { "MoveGrab", 4 }, { "EndGrab", 1 }, { "Hold", 1 }, { "Release", 1 }, { "Cut", 13 },
+  { "Carve", 5 }, { "Undo", 0 }, { "Redo", 0 }, { "Reset", 0 }, { "Model", 1 },
+  { "HandleRadius", 1 }, { "RelaxationSweeps", 1 }, { "NumberOfNodes", 1 }, { "Step", 0 } } };
+
+bool IsCut(const std::vector<double>& numbers)
+{
+  const double points = numbers[0];
+  if (!(points >= 3.0) || points > static_cast<double>(numbers.size()) ||
+    points != std::floor(points))
+  {
+    return false;
+  }
+  const std::size_t first = 1 + 3 * static_cast<std::size_t>(points);
+  if (numbers.size() <= first || (numbers.size() - first) % 3 != 0)
+  {
+    return false;
+  }
+  for (std::size_t i = first; i < numbers.size(); ++i)
+  {
+    if (!(numbers[i] >= 0.0) || numbers[i] >= points || numbers[i] != std::floor(numbers[i]))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool IsComplete(const SessionEvent& event)
+{
+  return event.Kind == SessionEvent::CUT
+    ? event.Numbers.size() >= Forms[event.Kind].Numbers && IsCut(event.Numbers)
+    : event.Numbers.size() == Forms[event.Kind].Numbers;
+}
+
+} // namespace
+
+std::string deformvolume::FormatEvent(const SessionEvent& event)
+{
+  std::string text = Forms[event.Kind].Name;
+  for (const double number : event.Numbers)
+  {
+    char digits[32];
+    std::snprintf(digits, sizeof(digits), " %.17g", number);
+    text += digits;
+  }
+  return text;
+}
+
+SessionEvent deformvolume::ParseEvent(const std::string& text)
+{
+  const std::string name = text.substr(0, text.find(' '));
+  SessionEvent event;
+  std::size_t kind = 0;
+  while (kind < Forms.size() && name != Forms[kind].Name)
+  {
+    ++kind;
+  }
+  if (kind == Forms.size())
+  {
+    throw std::runtime_error("there is no event \"" + name + "\"");
+  }
+  event.Kind = static_cast<SessionEvent::KindType>(kind);
+  for (const char* at = text.c_str() + name.size(); *at != '\0';)
+  {
+    char* end = nullptr;
+    const double number = std::strtod(at, &end);
+    if (end == at || !std::isfinite(number))
+    {
+      throw std::runtime_error("\"" + name + "\" has something that is no finite number");
+    }
+    event.Numbers.push_back(number);
+    at = end;
+  }
+  if (!IsComplete(event))
+  {
+    throw std::runtime_error("\"" + name + "\" has other numbers than it needs");
+  }
+  return event;
+}
+
+SessionEvent deformvolume::MakeCutEvent(vtkPolyData* sheet)
+{
+  if (!sheet || !sheet->GetPoints() || sheet->GetNumberOfPolys() == 0)
+  {
+    throw std::runtime_error("The sheet has no triangles. Give a vtkPolyData of triangles.");
+  }
+  SessionEvent event;
+  event.Kind = SessionEvent::CUT;
+  event.Numbers.push_back(static_cast<double>(sheet->GetNumberOfPoints()));
+  for (vtkIdType id = 0; id < sheet->GetNumberOfPoints(); ++id)
+  {
+    double point[3];
+    sheet->GetPoint(id, point);
+    for (const double coordinate : point)
+    {
+      if (!std::isfinite(coordinate))
+      {
+        throw std::runtime_error("A point of the sheet is not finite. Set finite ones.");
+      }
+      event.Numbers.push_back(coordinate);
+    }
+  }
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < sheet->GetNumberOfPolys(); ++cell)
+  {
+    sheet->GetPolys()->GetCellAtId(cell, ids);
+    if (ids->GetNumberOfIds() != 3)
+    {
+      throw std::runtime_error("The sheet has cells that are no triangles. Use vtkTriangleFilter.");
+    }
+    for (vtkIdType i = 0; i < 3; ++i)
+    {
+      event.Numbers.push_back(static_cast<double>(ids->GetId(i)));
+    }
+  }
+  if (!IsComplete(event))
+  {
+    throw std::runtime_error("The sheet has cells with points that it does not have.");
+  }
+  return event;
+}
+
+vtkSmartPointer<vtkPolyData> deformvolume::MakeSheet(const SessionEvent& cut)
+{
+  const std::vector<double>& numbers = cut.Numbers;
+  const std::size_t count = static_cast<std::size_t>(numbers[0]);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    points->InsertNextPoint(&numbers[1 + 3 * i]);
+  }
+  vtkNew<vtkCellArray> triangles;
+  for (std::size_t i = 1 + 3 * count; i < numbers.size(); i += 3)
+  {
+    const vtkIdType ids[3] = { static_cast<vtkIdType>(numbers[i]),
+      static_cast<vtkIdType>(numbers[i + 1]), static_cast<vtkIdType>(numbers[i + 2]) };
+    triangles->InsertNextCell(3, ids);
+  }
+  auto sheet = vtkSmartPointer<vtkPolyData>::New();
+  sheet->SetPoints(points);
+  sheet->SetPolys(triangles);
+  return sheet;
+}

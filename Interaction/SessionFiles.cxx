@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SessionEvents.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkMatrix3x3.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkUnstructuredGrid.h"
+#include "vtkXMLDataElement.h"
+#include "vtkXMLDataParser.h"
+
+#include <vtksys/FStream.hxx>
+#include <vtksys/MD5.h>
+#include <vtksys/SystemTools.hxx>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <sstream>
+#include <stdexcept>
+
+namespace
+{
+
+constexpr const char* RootName = "DeformVolumeSession";
+constexpr const char* Version = "1";
+
+class Hash
+{
+public:
+  Hash() { vtksysMD5_Initialize(this->State); }
+  ~Hash() { vtksysMD5_Delete(this->State); }
+  Hash(const Hash&) = delete;
+  void operator=(const Hash&) = delete;
+
+  void Add(const void* data, std::size_t size)
+  {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    constexpr std::size_t most = 1 << 30; // lengths are ints
+    for (; size > 0;)
+    {
+      const std::size_t part = size < most ? size : most;
+      vtksysMD5_Append(this->State, bytes, static_cast<int>(part));
+      bytes += part;
+      size -= part;
+    }
+  }
+  void Add(vtkDataArray* array)
+  {
+    const int shape[2] = { array->GetDataType(), array->GetNumberOfComponents() };
+    this->Add(shape, sizeof(shape));
+    this->Add(array->GetVoidPointer(0),
+      static_cast<std::size_t>(array->GetNumberOfValues()) *
+        static_cast<std::size_t>(array->GetDataTypeSize()));
+  }
+  std::string Finish()
+  {
+    char digits[33] = {};
+    vtksysMD5_FinalizeHex(this->State, digits);
+    return digits;
+  }
+
+private:
+  vtksysMD5* State = vtksysMD5_New();
+};
+
+std::string HashEvents(const deformvolume::SessionEvents& events)
+{
+  Hash hash;
+  for (const deformvolume::SessionEvent& event : events)
+  {
+    const std::string text = deformvolume::FormatEvent(event) + '\n';
+    hash.Add(text.data(), text.size());
+  }
+  return hash.Finish();
+}
+
+std::string GetReason()
+{
+  return errno != 0 ? std::string(": ") + std::strerror(errno) : std::string();
+}
+
+std::string GetAttribute(vtkXMLDataElement* element, const char* name)
+{
+  const char* value = element->GetAttribute(name);
+  return value ? value : "";
+}
+
+} // namespace
+
+std::string deformvolume::HashInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
+{
+  Hash hash;
+  hash.Add(volume->GetExtent(), 6 * sizeof(int));
+  hash.Add(volume->GetOrigin(), 3 * sizeof(double));
+  hash.Add(volume->GetSpacing(), 3 * sizeof(double));
+  hash.Add(volume->GetDirectionMatrix()->GetData(), 9 * sizeof(double));
+  for (int i = 0; i < volume->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    if (vtkDataArray* array = volume->GetPointData()->GetArray(i))
+    {
+      hash.Add(array);
+    }
+  }
+  if (mesh && mesh->GetPoints() && mesh->GetCells())
+  {
+    hash.Add(mesh->GetPoints()->GetData());
+    hash.Add(mesh->GetCells()->GetConnectivityArray());
+  }
+  return hash.Finish();
+}
+
+void deformvolume::WriteEvents(
+  const std::string& fileName, const std::string& inputHash, const SessionEvents& events)
+{
+  WriteAndRename(fileName,
+    [&](const std::string& name)
+    {
+      errno = 0;
+      vtksys::ofstream file(name.c_str(), std::ios::binary);
+      file << "<?xml version=\"1.0\"?>\n<" << RootName << " version=\"" << Version << "\" inputs=\""
+           << inputHash << "\" checksum=\"" << HashEvents(events) << "\">\n";
+      for (const SessionEvent& event : events)
+      {
+        file << "  <Event do=\"" << FormatEvent(event) << "\"/>\n";
+      }
+      file << "</" << RootName << ">\n";
+      file.close();
+      if (!file)
+      {
+        throw std::runtime_error("The session cannot be written to " + fileName + GetReason() +
+          ". Choose a folder that can be written and has space.");
+      }
+    });
+}
+
+deformvolume::SessionEvents deformvolume::ReadEvents(
+  const std::string& fileName, const std::string& inputHash)
+{
+  errno = 0;
+  vtksys::ifstream file(fileName.c_str(), std::ios::binary);
+  std::ostringstream text;
+  if (!(text << file.rdbuf()))
+  {
+    throw std::runtime_error("The session " + fileName + " cannot be read" + GetReason() + ".");
+  }
+  std::istringstream content(text.str());
+  vtkNew<vtkXMLDataParser> parser;
+  vtkNew<vtkCallbackCommand> silence; // what is wrong is reported below
+  parser->AddObserver(vtkCommand::ErrorEvent, silence);
+  parser->SetStream(&content);
+  const bool isParsed = parser->Parse() != 0;
+  vtkXMLDataElement* root = isParsed ? parser->GetRootElement() : nullptr;
+  if (!root || !root->GetName() || std::strcmp(root->GetName(), RootName) != 0)
+  {
+    throw std::runtime_error(fileName + " is no session, or it is damaged.");
+  }
+  if (GetAttribute(root, "version") != Version)
+  {
+    throw std::runtime_error("The session " + fileName + " has version " +
+      GetAttribute(root, "version") + ", and only version " + Version + " can be read.");
+  }
+  SessionEvents events;
+  for (int i = 0; i < root->GetNumberOfNestedElements(); ++i)
+  {
+    try
+    {
+      events.push_back(ParseEvent(GetAttribute(root->GetNestedElement(i), "do")));
+    }
+    catch (const std::runtime_error& error)
+    {
+      throw std::runtime_error("The session " + fileName + " is damaged: " + error.what() + ".");
+    }
+  }
+  if (GetAttribute(root, "checksum") != HashEvents(events))
+  {
+    throw std::runtime_error(
+      "The session " + fileName + " is damaged: its events do not have its checksum.");
+  }
+  if (GetAttribute(root, "inputs") != inputHash)
+  {
+    throw std::runtime_error("The session " + fileName +
+      " is of another volume or mesh. Open the volume that it was made with.");
+  }
+  return events;
+}
+
+void deformvolume::RenameFile(const std::string& from, const std::string& to)
+{
+  errno = 0;
+  if (std::rename(from.c_str(), to.c_str()) != 0)
+  {
+    throw std::runtime_error("The file " + to + " cannot be written" + GetReason() + ".");
+  }
+}
+
+void deformvolume::RemoveFile(const std::string& fileName)
+{
+  vtksys::SystemTools::RemoveFile(fileName);
+}

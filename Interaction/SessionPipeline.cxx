@@ -1,0 +1,751 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SessionPipeline.h"
+
+#include "SessionPlaces.h"
+#include "vtkDeformVolumeSession.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCarveVolume.h"
+#include "vtkChainMailDeformation.h"
+#include "vtkCorotationalDeformation.h"
+#include "vtkCutVolume.h"
+#include "vtkDeformVolumeFilter.h"
+#include "vtkDoubleArray.h"
+#include "vtkExecutive.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkLatticeTetrahedraSource.h"
+#include "vtkMassSpringDeformation.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace
+{
+
+using deformvolume::SessionEvent;
+using Session = vtkDeformVolumeSession;
+
+// VTK puts the file, the line and the object before what it says.
+void TakeMessage(vtkObject*, unsigned long, void* target, void* text)
+{
+  auto& message = *static_cast<std::string*>(target);
+  if (!message.empty())
+  {
+    return; // others follow from the first
+  }
+  message = static_cast<const char*>(text);
+  const std::size_t end = message.find("): ");
+  message = end == std::string::npos ? message : message.substr(end + 3);
+  message.erase(message.find_last_not_of(" \n") + 1);
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> MakeLattice(vtkImageData* volume, int nodes)
+{
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  source->SetInputData(volume);
+  source->SetNumberOfNodes(nodes, nodes, nodes);
+  source->Update();
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  mesh->ShallowCopy(source->GetOutput());
+  return mesh;
+}
+
+// Nodes of the first layer of a lattice.
+void FixFirstLayer(vtkUnstructuredGrid* lattice, int nodes)
+{
+  vtkNew<vtkUnsignedCharArray> fixed;
+  fixed->SetName("Fixed");
+  fixed->SetNumberOfTuples(lattice->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < lattice->GetNumberOfPoints(); ++id)
+  {
+    fixed->SetValue(id, id < static_cast<vtkIdType>(nodes) * nodes ? 1 : 0);
+  }
+  lattice->GetPointData()->AddArray(fixed);
+}
+
+glm::dvec3 GetPlace(const SessionEvent& event, std::size_t first)
+{
+  return { event.Numbers[first], event.Numbers[first + 1], event.Numbers[first + 2] };
+}
+
+int GetWhole(const SessionEvent& event, int least, int most, const char* name)
+{
+  const double number = event.Numbers[0];
+  if (!(number >= least) || number > most || number != std::floor(number))
+  {
+    std::ostringstream text;
+    text << name << " is " << number << ", and must be a whole number from " << least << " to "
+         << most << ".";
+    throw std::runtime_error(text.str());
+  }
+  return static_cast<int>(number);
+}
+
+} // namespace
+
+namespace deformvolume
+{
+
+SessionPipeline::SessionPipeline()
+{
+  this->Observer->SetCallback(TakeMessage);
+  this->Observer->SetClientData(&this->Message);
+  for (vtkAlgorithm* filter :
+    { static_cast<vtkAlgorithm*>(this->CutFilter), static_cast<vtkAlgorithm*>(this->CarveFilter),
+      static_cast<vtkAlgorithm*>(this->ChainMail), static_cast<vtkAlgorithm*>(this->MassSpring),
+      static_cast<vtkAlgorithm*>(this->Corotational), static_cast<vtkAlgorithm*>(this->Resampler) })
+  {
+    filter->AddObserver(vtkCommand::ErrorEvent, this->Observer);
+    filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this->Observer);
+  }
+  this->CutFilter->AccumulateOn();
+  this->CarveFilter->AccumulateOn();
+  this->CarveFilter->SetInputConnection(this->CutFilter->GetOutputPort());
+  this->ChainMail->SetInputConnection(this->CarveFilter->GetOutputPort());
+  this->Resampler->SetInputConnection(this->CarveFilter->GetOutputPort());
+  // So that the extent is always the same one, and outputs are updated in part.
+  this->Resampler->SetOutputBoundsModeToVolumeBounds();
+  for (vtkElasticDeformation* elastic : { static_cast<vtkElasticDeformation*>(this->MassSpring),
+         static_cast<vtkElasticDeformation*>(this->Corotational) })
+  {
+    elastic->SetLengthUnitToMillimetre();
+  }
+}
+
+SessionPipeline::~SessionPipeline() = default;
+
+void SessionPipeline::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
+{
+  this->Volume = vtkSmartPointer<vtkImageData>::New();
+  this->Volume->ShallowCopy(volume);
+  this->Mesh = nullptr;
+  if (mesh)
+  {
+    this->Mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    this->Mesh->DeepCopy(mesh);
+  }
+  this->Still = MakeLattice(this->Volume, 2);
+  vtkNew<vtkFloatArray> none;
+  none->SetName("Displacement");
+  none->SetNumberOfComponents(3);
+  none->SetNumberOfTuples(this->Still->GetNumberOfPoints());
+  none->Fill(0.0);
+  this->Still->GetPointData()->SetVectors(none);
+  this->TakeRestMesh();
+
+  this->Done.clear();
+  this->Undone.clear();
+  this->IsStroke = false;
+  this->CutFilter->SetInputData(this->Volume);
+  this->CutFilter->SetSheetData(nullptr);
+  this->CutFilter->SetDeformationData(nullptr);
+  this->CarveFilter->SetDeformationData(nullptr);
+  this->CarveFilter->ClearToolPositions();
+  this->CutFilter->Reset();
+  this->CarveFilter->Reset();
+  this->Model = Session::NONE;
+  this->Rebuild();
+}
+
+void SessionPipeline::TakeRestMesh()
+{
+  if (this->Mesh)
+  {
+    this->RestMesh = this->Mesh;
+  }
+  else
+  {
+    this->RestMesh = MakeLattice(this->Volume, this->NumberOfNodes);
+    FixFirstLayer(this->RestMesh, this->NumberOfNodes);
+  }
+  this->MassSpring->SetInputData(this->RestMesh);
+  this->Corotational->SetInputData(this->RestMesh);
+}
+
+SessionEvents SessionPipeline::GetSettings() const
+{
+  return { { SessionEvent::HANDLE_RADIUS, { this->HandleRadius } },
+    { SessionEvent::RELAXATION, { static_cast<double>(this->RelaxationSweeps) } },
+    { SessionEvent::LATTICE, { static_cast<double>(this->NumberOfNodes) } } };
+}
+
+vtkElasticDeformation* SessionPipeline::GetElastic()
+{
+  switch (this->Model)
+  {
+    case Session::MASS_SPRING:
+      return this->MassSpring;
+    case Session::COROTATIONAL:
+      return this->Corotational;
+    default:
+      return nullptr;
+  }
+}
+
+vtkAlgorithm* SessionPipeline::GetModelFilter()
+{
+  return this->Model == Session::CHAIN_MAIL ? static_cast<vtkAlgorithm*>(this->ChainMail)
+                                            : static_cast<vtkAlgorithm*>(this->GetElastic());
+}
+
+vtkDataSet* SessionPipeline::GetDeformation()
+{
+  vtkAlgorithm* filter = this->GetModelFilter();
+  return filter ? vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0)) : this->Still.Get();
+}
+
+void SessionPipeline::Update(vtkAlgorithm* filter)
+{
+  this->Message.clear();
+  filter->Update();
+  if (!this->Message.empty())
+  {
+    throw std::runtime_error(this->Message);
+  }
+}
+
+void SessionPipeline::Apply(const SessionEvent& event)
+{
+  this->IsStroke = this->IsStroke && event.Kind == SessionEvent::CARVE;
+  switch (event.Kind)
+  {
+    case SessionEvent::BEGIN_GRAB:
+      return this->BeginGrab(event.Numbers[0], GetPlace(event, 1));
+    case SessionEvent::MOVE_GRAB:
+      this->FindHandle(event.Numbers[0], true).Now = GetPlace(event, 1);
+      return;
+    case SessionEvent::END_GRAB:
+    {
+      Action& drag = this->FindHandle(event.Numbers[0], true);
+      drag.IsGrabbed = drag.IsHeld = false;
+      return;
+    }
+    case SessionEvent::HOLD:
+      this->FindHandle(event.Numbers[0], true).IsGrabbed = false;
+      return;
+    case SessionEvent::RELEASE:
+      return this->Release(event.Numbers[0]);
+    case SessionEvent::CUT:
+      return this->Cut(event);
+    case SessionEvent::CARVE:
+      return this->Carve(event);
+    case SessionEvent::UNDO:
+      this->EndGrabs();
+      if (this->Undo())
+      {
+        this->Rebuild();
+      }
+      return;
+    case SessionEvent::REDO:
+      this->EndGrabs();
+      if (this->Redo())
+      {
+        this->Rebuild();
+      }
+      return;
+    case SessionEvent::RESET:
+      return this->Reset();
+    case SessionEvent::MODEL:
+      return this->SetModel(GetWhole(event, Session::NONE, Session::COROTATIONAL, "The model"));
+    case SessionEvent::HANDLE_RADIUS:
+      if (!(event.Numbers[0] >= 0.0))
+      {
+        throw std::runtime_error("The radius of handles is less than 0. Set 0 or more.");
+      }
+      this->HandleRadius = event.Numbers[0];
+      return;
+    case SessionEvent::RELAXATION:
+      this->RelaxationSweeps = GetWhole(event, 0, 10000, "The number of relaxation sweeps");
+      return;
+    case SessionEvent::LATTICE:
+      return this->SetLattice(GetWhole(event, 2, 100, "The number of nodes on an axis"));
+    case SessionEvent::STEP:
+      this->Step();
+  }
+}
+
+void SessionPipeline::Do(const Action& action)
+{
+  this->Done.push_back(action);
+  this->Undone.clear();
+}
+
+void SessionPipeline::BeginGrab(double handle, const glm::dvec3& place)
+{
+  for (const Action& action : this->Done)
+  {
+    if (action.Kind == Action::DRAG && action.Handle == handle)
+    {
+      throw std::runtime_error("There is a handle of this number already. Take another one.");
+    }
+  }
+  Action drag;
+  drag.Handle = handle;
+  drag.Rest = FindRestPlace(this->GetDeformation(), place);
+  // The point of the body that is nearest stays where it is until the handle is moved.
+  drag.Now = drag.LastPossible = FindDeformedPlace(this->GetDeformation(), drag.Rest);
+  drag.IsGrabbed = drag.IsHeld = true;
+  double bounds[6];
+  this->Volume->GetBounds(bounds);
+  const glm::dvec3 low(bounds[0], bounds[2], bounds[4]);
+  const glm::dvec3 high(bounds[1], bounds[3], bounds[5]);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double most = 1e-6 * (high[axis] - low[axis]);
+    if (!(drag.Rest[axis] >= low[axis] - most && drag.Rest[axis] <= high[axis] + most))
+    {
+      throw std::runtime_error(
+        "There is nothing of the volume where it was grabbed. Grab a place within the volume.");
+    }
+  }
+  const Actions undone = this->Undone;
+  this->Do(drag);
+  if (this->GetElastic())
+  {
+    // Whether there is a node to hold is known only to the filter.
+    try
+    {
+      this->UpdateModel(this->GetHeld(this->Done.end()));
+    }
+    catch (...)
+    {
+      this->Done.pop_back();
+      this->Undone = undone;
+      throw;
+    }
+  }
+}
+
+SessionPipeline::Action& SessionPipeline::FindHandle(double handle, bool isGrabbed)
+{
+  for (Action& action : this->Done)
+  {
+    if (action.Kind == Action::DRAG && action.Handle == handle && action.IsHeld &&
+      (action.IsGrabbed || !isGrabbed))
+    {
+      return action;
+    }
+  }
+  std::ostringstream text;
+  text << "Handle " << handle << (isGrabbed ? " is not grabbed" : " holds nothing")
+       << ". Call BeginGrab() first, and take the number that it returns.";
+  throw std::runtime_error(text.str());
+}
+
+void SessionPipeline::Release(double handle)
+{
+  this->FindHandle(handle, false).IsGrabbed = false;
+  const Actions held = this->GetHeld(this->Done.end());
+  if (std::none_of(
+        held.begin(), held.end(), [=](const Action& one) { return one.Handle == handle; }))
+  {
+    throw std::runtime_error("The handle is released already.");
+  }
+  Action release;
+  release.Kind = Action::RELEASE;
+  release.Handle = handle;
+  this->Do(release);
+}
+
+void SessionPipeline::Cut(const SessionEvent& event)
+{
+  const auto sheet = MakeSheet(event);
+  Action cut;
+  cut.Kind = Action::CUT;
+  cut.RestSheet = MakeSheet(event);
+  vtkPoints* points = cut.RestSheet->GetPoints();
+  for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
+  {
+    double place[3];
+    points->GetPoint(id, place);
+    const glm::dvec3 rest = FindRestPlace(this->GetDeformation(), { place[0], place[1], place[2] });
+    points->SetPoint(id, rest.x, rest.y, rest.z);
+  }
+  if (this->Model != Session::NONE)
+  {
+    this->CutFilter->SetDeformationData(this->GetDeformation());
+  }
+  this->CutFilter->SetSheetData(sheet);
+  try
+  {
+    this->Update(this->CutFilter);
+  }
+  catch (...)
+  {
+    this->CutFilter->SetDeformationData(nullptr);
+    this->CutFilter->SetSheetData(nullptr);
+    throw;
+  }
+  this->CutFilter->SetDeformationData(nullptr);
+  this->Do(cut);
+  this->CutMesh(sheet);
+}
+
+void SessionPipeline::CutMesh(vtkPolyData* sheet)
+{
+  if (vtkElasticDeformation* elastic = this->GetElastic())
+  {
+    elastic->SetSheetData(sheet);
+  }
+}
+
+void SessionPipeline::Carve(const SessionEvent& event)
+{
+  const glm::dvec3 place = GetPlace(event, 1);
+  if (!(event.Numbers[4] > 0.0))
+  {
+    throw std::runtime_error("The radius to carve with is not greater than 0.");
+  }
+  const bool isNew = event.Numbers[0] != 0.0 || !this->IsStroke;
+  if (isNew)
+  {
+    this->CarveFilter->ClearToolPositions();
+  }
+  if (this->Model != Session::NONE)
+  {
+    this->CarveFilter->SetDeformationData(this->GetDeformation());
+  }
+  this->CarveFilter->SetToolRadius(event.Numbers[4]);
+  this->CarveFilter->AddToolPosition(place.x, place.y, place.z);
+  try
+  {
+    this->Update(this->CarveFilter);
+  }
+  catch (...)
+  {
+    this->CarveFilter->ClearToolPositions();
+    this->CarveFilter->SetDeformationData(nullptr);
+    throw;
+  }
+  this->CarveFilter->SetDeformationData(nullptr);
+  if (isNew)
+  {
+    Action carving;
+    carving.Kind = Action::CARVE;
+    this->Do(carving);
+  }
+  else
+  {
+    ++this->Done.back().NumberOfEdits;
+  }
+  this->IsStroke = true;
+}
+
+void SessionPipeline::SetModel(int model)
+{
+  if (model == this->Model)
+  {
+    return;
+  }
+  const Actions done = this->Done;
+  const Actions undone = this->Undone;
+  this->EndGrabs();
+  Action change;
+  change.Kind = Action::MODEL;
+  change.Model = model;
+  change.FormerModel = this->Model;
+  this->Do(change);
+  this->Model = model;
+  try
+  {
+    this->Rebuild();
+  }
+  catch (...)
+  {
+    this->Done = done;
+    this->Undone = undone;
+    this->Model = change.FormerModel;
+    this->Rebuild();
+    throw;
+  }
+}
+
+void SessionPipeline::SetLattice(int nodes)
+{
+  if (nodes == this->NumberOfNodes)
+  {
+    return;
+  }
+  const int former = this->NumberOfNodes;
+  this->NumberOfNodes = nodes;
+  this->TakeRestMesh();
+  try
+  {
+    if (this->GetElastic())
+    {
+      this->Rebuild();
+    }
+  }
+  catch (...) // the handles hold no nodes of this lattice
+  {
+    this->NumberOfNodes = former;
+    this->TakeRestMesh();
+    this->Rebuild();
+    throw;
+  }
+}
+
+void SessionPipeline::EndGrabs()
+{
+  for (Action& action : this->Done)
+  {
+    if (action.IsGrabbed)
+    {
+      action.IsGrabbed = action.IsHeld = false;
+    }
+  }
+}
+
+bool SessionPipeline::Undo()
+{
+  if (this->Done.empty())
+  {
+    return false;
+  }
+  const Action action = this->Done.back();
+  this->Done.pop_back();
+  this->Undone.push_back(action);
+  switch (action.Kind)
+  {
+    case Action::CUT:
+      this->CutFilter->Undo();
+      this->Update(this->CutFilter);
+      return this->GetElastic() != nullptr;
+    case Action::CARVE:
+      this->CarveFilter->ClearToolPositions();
+      for (int i = 0; i < action.NumberOfEdits; ++i)
+      {
+        this->CarveFilter->Undo();
+        this->Update(this->CarveFilter);
+      }
+      return false;
+    case Action::MODEL:
+      this->Model = action.FormerModel;
+      return true;
+    default:
+      return true;
+  }
+}
+
+bool SessionPipeline::Redo()
+{
+  if (this->Undone.empty())
+  {
+    return false;
+  }
+  const Action action = this->Undone.back();
+  this->Undone.pop_back();
+  this->Done.push_back(action);
+  switch (action.Kind)
+  {
+    case Action::CUT:
+      this->CutFilter->Redo();
+      this->Update(this->CutFilter);
+      return this->GetElastic() != nullptr;
+    case Action::CARVE:
+      for (int i = 0; i < action.NumberOfEdits; ++i)
+      {
+        this->CarveFilter->Redo();
+        this->Update(this->CarveFilter);
+      }
+      return false;
+    case Action::MODEL:
+      this->Model = action.Model;
+      return true;
+    default:
+      return true;
+  }
+}
+
+void SessionPipeline::Reset()
+{
+  this->EndGrabs();
+  while (!this->Done.empty())
+  {
+    this->Undo();
+  }
+  this->Rebuild();
+}
+
+// The actions that hold something after those before the end.
+SessionPipeline::Actions SessionPipeline::GetHeld(Actions::const_iterator end) const
+{
+  Actions held;
+  for (auto action = this->Done.begin(); action != end; ++action)
+  {
+    if (action->Kind == Action::DRAG && action->IsHeld)
+    {
+      held.push_back(*action);
+    }
+    else if (action->Kind == Action::RELEASE)
+    {
+      held.erase(std::remove_if(held.begin(), held.end(),
+                   [&](const Action& one) { return one.Handle == action->Handle; }),
+        held.end());
+    }
+  }
+  return held;
+}
+
+void SessionPipeline::Connect()
+{
+  vtkElasticDeformation* elastic = this->GetElastic();
+  this->Resampler->SetOpenSplits(elastic != nullptr);
+  if (vtkAlgorithm* filter = this->GetModelFilter())
+  {
+    this->Resampler->SetDeformationConnection(filter->GetOutputPort());
+  }
+  else
+  {
+    this->Resampler->SetDeformationData(this->Still);
+  }
+}
+
+void SessionPipeline::Rebuild()
+{
+  this->Connect();
+  this->LastVectors.clear();
+  this->QuietSteps = 0;
+  if (this->Model == Session::CHAIN_MAIL)
+  {
+    this->ChainMail->Reset();
+    this->UpdateModel({});
+    this->RunDrags(this->Done.end());
+  }
+  else if (vtkElasticDeformation* elastic = this->GetElastic())
+  {
+    elastic->Reset();
+    elastic->ClearCuts();
+    elastic->SetSheetData(nullptr);
+    this->UpdateModel({});
+    for (const Action& action : this->Done)
+    {
+      if (action.Kind == Action::CUT)
+      {
+        elastic->SetSheetData(action.RestSheet);
+        this->UpdateModel({});
+      }
+    }
+    elastic->Reset();
+    this->UpdateModel(this->GetHeld(this->Done.end()));
+  }
+  else
+  {
+    this->Update(this->CarveFilter);
+  }
+}
+
+// Tissue stays where a handle has left it: so each drag is made again, in one step.
+void SessionPipeline::RunDrags(Actions::const_iterator end)
+{
+  for (auto action = this->Done.cbegin(); action != end; ++action)
+  {
+    if (action->Kind == Action::DRAG)
+    {
+      Actions held = this->GetHeld(action);
+      held.push_back(*action);
+      this->UpdateModel(held);
+    }
+  }
+  this->UpdateModel(this->GetHeld(end));
+}
+
+void SessionPipeline::UpdateModel(const Actions& held)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkDoubleArray> rest;
+  rest->SetName("RestPosition");
+  rest->SetNumberOfComponents(3);
+  for (const Action& action : held)
+  {
+    points->InsertNextPoint(action.Now.x, action.Now.y, action.Now.z);
+    rest->InsertNextTuple3(action.Rest.x, action.Rest.y, action.Rest.z);
+  }
+  vtkNew<vtkPolyData> handles;
+  handles->SetPoints(points);
+  handles->GetPointData()->AddArray(rest);
+  if (this->Model == Session::CHAIN_MAIL)
+  {
+    this->ChainMail->SetHandleRadius(this->HandleRadius);
+    this->ChainMail->SetRelaxationSweeps(this->RelaxationSweeps);
+    this->ChainMail->SetHandlesData(handles);
+    this->ChainMail->Modified();
+    this->Update(this->ChainMail);
+  }
+  else if (vtkElasticDeformation* elastic = this->GetElastic())
+  {
+    elastic->SetHandleRadius(this->HandleRadius);
+    elastic->SetHandlesData(handles);
+    elastic->Modified();
+    this->Update(elastic);
+  }
+}
+
+bool SessionPipeline::Step()
+{
+  if (this->Model == Session::NONE)
+  {
+    return false;
+  }
+  try
+  {
+    this->UpdateModel(this->GetHeld(this->Done.end()));
+  }
+  catch (...)
+  {
+    for (Action& action : this->Done)
+    {
+      action.Now = action.LastPossible;
+    }
+    this->UpdateModel(this->GetHeld(this->Done.end()));
+    throw;
+  }
+  for (Action& action : this->Done)
+  {
+    action.LastPossible = action.Now;
+  }
+  return this->FindMotion();
+}
+
+// A body with inertia stands still for a moment where it turns round.
+bool SessionPipeline::FindMotion()
+{
+  if (this->Model == Session::CHAIN_MAIL)
+  {
+    const int* changed = this->ChainMail->GetChangedExtent();
+    return changed[0] <= changed[1];
+  }
+  vtkDataArray* vectors = this->GetDeformation()->GetPointData()->GetVectors();
+  std::vector<double> now(static_cast<std::size_t>(vectors->GetNumberOfValues()));
+  for (vtkIdType id = 0; id < vectors->GetNumberOfTuples(); ++id)
+  {
+    vectors->GetTuple(id, &now[3 * static_cast<std::size_t>(id)]);
+  }
+  const double* spacing = this->Volume->GetSpacing();
+  const double most = 1e-3 * std::min({ spacing[0], spacing[1], spacing[2] });
+  const bool isQuiet = now.size() == this->LastVectors.size() &&
+    std::equal(now.begin(), now.end(), this->LastVectors.begin(),
+      [=](double one, double other) { return std::abs(one - other) <= most; });
+  this->LastVectors = now;
+  this->QuietSteps = isQuiet ? this->QuietSteps + 1 : 0;
+  return this->QuietSteps < (this->Model == Session::MASS_SPRING ? 10 : 1);
+}
+
+vtkImageData* SessionPipeline::Resample(int samplingFactor, int padding)
+{
+  this->Resampler->SetSamplingFactor(samplingFactor);
+  this->Resampler->SetPadding(padding);
+  this->Update(this->Resampler);
+  return this->Resampler->GetOutput();
+}
+
+} // namespace deformvolume

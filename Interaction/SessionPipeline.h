@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeSessionPipeline_h
+#define DeformVolumeSessionPipeline_h
+
+#include "SessionEvents.h"
+
+#include "vtkNew.h"
+#include "vtkSmartPointer.h"
+
+#include <glm/vec3.hpp>
+
+#include <string>
+#include <vector>
+
+class vtkAlgorithm;
+class vtkCallbackCommand;
+class vtkCarveVolume;
+class vtkChainMailDeformation;
+class vtkCorotationalDeformation;
+class vtkCutVolume;
+class vtkDataSet;
+class vtkDeformVolumeFilter;
+class vtkElasticDeformation;
+class vtkImageData;
+class vtkLatticeTetrahedraSource;
+class vtkMassSpringDeformation;
+class vtkPolyData;
+class vtkUnstructuredGrid;
+
+namespace deformvolume
+{
+
+/// The filters of a session, and what has been done to them. One thread at a time may use it.
+///
+/// What is done is a list of actions. After an undo the body comes from rest to where the actions
+/// that are left hold it, so that it depends on them and on nothing else.
+class SessionPipeline
+{
+public:
+  SessionPipeline();
+  ~SessionPipeline();
+  SessionPipeline(const SessionPipeline&) = delete;
+  void operator=(const SessionPipeline&) = delete;
+
+  /// Forgets everything. Without a mesh there is a lattice.
+  void SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh);
+
+  /// Throws std::runtime_error. Actions are then as they were; where the model or the lattice
+  /// cannot be changed, the body comes from rest again.
+  void Apply(const SessionEvent& event);
+
+  /// One step of the simulation. Where a handle cannot be where it is wanted, handles go back to
+  /// where they were, and std::runtime_error is thrown. Returns whether the body still moves.
+  bool Step();
+
+  /// Throws std::runtime_error.
+  vtkImageData* Resample(int samplingFactor, int padding);
+
+  vtkImageData* GetVolume() { return this->Volume; }
+  vtkDataSet* GetDeformation();
+  vtkDeformVolumeFilter* GetResampler() { return this->Resampler; }
+  int GetModel() const { return this->Model; }
+  std::size_t GetNumberOfActions() const { return this->Done.size(); }
+  std::size_t GetNumberOfUndoneActions() const { return this->Undone.size(); }
+  /// The settings, as events that make them.
+  SessionEvents GetSettings() const;
+
+private:
+  struct Action
+  {
+    enum KindType
+    {
+      DRAG,
+      RELEASE,
+      CUT,
+      CARVE,
+      MODEL
+    };
+    KindType Kind = DRAG;
+    double Handle = 0.0;
+    glm::dvec3 Rest{ 0.0 };
+    glm::dvec3 Now{ 0.0 };
+    glm::dvec3 LastPossible{ 0.0 };
+    bool IsGrabbed = false;
+    bool IsHeld = false;
+    vtkSmartPointer<vtkPolyData> RestSheet;
+    int NumberOfEdits = 1;
+    int Model = 0;
+    int FormerModel = 0;
+  };
+  using Actions = std::vector<Action>;
+
+  void BeginGrab(double handle, const glm::dvec3& place);
+  Action& FindHandle(double handle, bool isGrabbed);
+  void Release(double handle);
+  void Cut(const SessionEvent& event);
+  void Carve(const SessionEvent& event);
+  void SetModel(int model);
+  void SetLattice(int nodes);
+  void Do(const Action& action);
+  bool Undo();
+  bool Redo();
+  void Reset();
+  void EndGrabs();
+
+  void Rebuild();
+  void RunDrags(Actions::const_iterator end);
+  Actions GetHeld(Actions::const_iterator end) const;
+  void UpdateModel(const Actions& held);
+  void Update(vtkAlgorithm* filter);
+  void Connect();
+  void CutMesh(vtkPolyData* sheet);
+  void TakeRestMesh();
+  bool FindMotion();
+  vtkAlgorithm* GetModelFilter();
+  vtkElasticDeformation* GetElastic();
+
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh; // that was given, or null
+  vtkSmartPointer<vtkUnstructuredGrid> RestMesh;
+  vtkSmartPointer<vtkUnstructuredGrid> Still; // the deformation that does not deform
+  vtkNew<vtkCutVolume> CutFilter;
+  vtkNew<vtkCarveVolume> CarveFilter;
+  vtkNew<vtkChainMailDeformation> ChainMail;
+  vtkNew<vtkMassSpringDeformation> MassSpring;
+  vtkNew<vtkCorotationalDeformation> Corotational;
+  vtkNew<vtkDeformVolumeFilter> Resampler;
+  vtkNew<vtkCallbackCommand> Observer;
+  std::string Message; // of the filters, since it was taken
+
+  int Model = 0;
+  int NumberOfNodes = 7;
+  double HandleRadius = 0.0;
+  int RelaxationSweeps = 5;
+  bool IsStroke = false; // whether a carving may go on
+  Actions Done;
+  Actions Undone;
+  std::vector<double> LastVectors; // of a mesh
+  int QuietSteps = 0;
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SessionPlaces.h"
+
+#include "vtkDataArray.h"
+#include "vtkIdList.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace
+{
+
+glm::dvec3 GetVector(vtkDataArray* vectors, vtkIdType id)
+{
+  double tuple[3];
+  vectors->GetTuple(id, tuple);
+  return { tuple[0], tuple[1], tuple[2] };
+}
+
+glm::dvec3 GetPlace(vtkDataSet* dataSet, vtkIdType id)
+{
+  double place[3];
+  dataSet->GetPoint(id, place);
+  return { place[0], place[1], place[2] };
+}
+
+// Trilinear, and constant outside.
+glm::dvec3 Interpolate(vtkImageData* field, const glm::dvec3& place)
+{
+  vtkDataArray* vectors = field->GetPointData()->GetVectors();
+  const int* extent = field->GetExtent();
+  const double world[3] = { place.x, place.y, place.z };
+  double index[3];
+  field->TransformPhysicalPointToContinuousIndex(world, index);
+  int low[3];
+  double part[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double first = extent[2 * axis];
+    const double last = extent[2 * axis + 1];
+    const double inside = std::clamp(index[axis], first, last);
+    low[axis] = static_cast<int>(std::min(std::floor(inside), last - 1.0));
+    part[axis] = inside - low[axis];
+  }
+  glm::dvec3 sum(0.0);
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    int at[3];
+    double weight = 1.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int step = (corner >> axis) & 1;
+      at[axis] = low[axis] + step;
+      weight *= step == 1 ? part[axis] : 1.0 - part[axis];
+    }
+    if (weight > 0.0)
+    {
+      sum += weight * GetVector(vectors, field->ComputePointId(at));
+    }
+  }
+  return sum;
+}
+
+// The voxel that has come nearest.
+glm::dvec3 FindNearestVoxel(vtkImageData* field, const glm::dvec3& deformed)
+{
+  vtkDataArray* vectors = field->GetPointData()->GetVectors();
+  double least = std::numeric_limits<double>::infinity();
+  glm::dvec3 nearest(0.0);
+  for (vtkIdType id = 0; id < field->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 rest = GetPlace(field, id);
+    const glm::dvec3 distance = rest + GetVector(vectors, id) - deformed;
+    const double square = glm::dot(distance, distance);
+    if (square < least)
+    {
+      least = square;
+      nearest = rest;
+    }
+  }
+  return nearest;
+}
+
+glm::dvec3 FindInField(vtkImageData* field, const glm::dvec3& deformed)
+{
+  const double* spacing = field->GetSpacing();
+  const double tolerance = 1e-3 * std::min({ spacing[0], spacing[1], spacing[2] });
+  // Half of the way each time, as the field may change by as much as the place.
+  glm::dvec3 rest = deformed;
+  for (int i = 0; i < 60; ++i)
+  {
+    const glm::dvec3 left = deformed - rest - Interpolate(field, rest);
+    if (glm::length(left) <= tolerance)
+    {
+      return rest;
+    }
+    rest += 0.5 * left;
+  }
+  // Where the body is folded or torn the iteration need not end.
+  return FindNearestVoxel(field, deformed);
+}
+
+struct Tetrahedron
+{
+  std::array<glm::dvec3, 4> Rest;
+  std::array<glm::dvec3, 4> Deformed;
+};
+
+using Corners = std::array<glm::dvec3, 4>;
+
+// The tetrahedron that holds a place, or is nearest by its least barycentric coordinate.
+glm::dvec3 MapInMesh(
+  vtkDataSet* mesh, const glm::dvec3& place, Corners Tetrahedron::*from, Corners Tetrahedron::*to)
+{
+  vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+  double best = -std::numeric_limits<double>::infinity();
+  glm::dvec3 found = place;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells() && best < 0.0; ++cell)
+  {
+    mesh->GetCellPoints(cell, ids);
+    if (ids->GetNumberOfIds() != 4)
+    {
+      continue;
+    }
+    Tetrahedron tetrahedron;
+    for (int i = 0; i < 4; ++i)
+    {
+      tetrahedron.Rest[i] = GetPlace(mesh, ids->GetId(i));
+      tetrahedron.Deformed[i] = tetrahedron.Rest[i] + GetVector(vectors, ids->GetId(i));
+    }
+    const Corners& source = tetrahedron.*from;
+    const Corners& target = tetrahedron.*to;
+    const glm::dmat3 edges(source[1] - source[0], source[2] - source[0], source[3] - source[0]);
+    const glm::dvec3 weights = glm::inverse(edges) * (place - source[0]);
+    const double least =
+      std::min({ weights.x, weights.y, weights.z, 1.0 - weights.x - weights.y - weights.z });
+    if (least > best) // not where the tetrahedron is flat
+    {
+      best = least;
+      found = target[0] + weights.x * (target[1] - target[0]) +
+        weights.y * (target[2] - target[0]) + weights.z * (target[3] - target[0]);
+    }
+  }
+  return found;
+}
+
+} // namespace
+
+glm::dvec3 deformvolume::FindRestPlace(vtkDataSet* deformation, const glm::dvec3& deformed)
+{
+  if (auto* field = vtkImageData::SafeDownCast(deformation))
+  {
+    return FindInField(field, deformed);
+  }
+  return MapInMesh(deformation, deformed, &Tetrahedron::Deformed, &Tetrahedron::Rest);
+}
+
+glm::dvec3 deformvolume::FindDeformedPlace(vtkDataSet* deformation, const glm::dvec3& rest)
+{
+  if (auto* field = vtkImageData::SafeDownCast(deformation))
+  {
+    return rest + Interpolate(field, rest);
+  }
+  return MapInMesh(deformation, rest, &Tetrahedron::Rest, &Tetrahedron::Deformed);
+}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeSessionPlaces_h
+#define DeformVolumeSessionPlaces_h
+
+#include <glm/vec3.hpp>
+
+class vtkDataSet;
+class vtkImageData;
+class vtkUnstructuredGrid;
+
+namespace deformvolume
+{
+
+/// Where a place of the deformed body is at rest, and back. The displacements are the active
+/// vectors of the points: of a field, on the lattice of the volume, or of a mesh of tetrahedra.
+/// Places outside go with what is nearest.
+///@{
+glm::dvec3 FindRestPlace(vtkDataSet* deformation, const glm::dvec3& deformed);
+glm::dvec3 FindDeformedPlace(vtkDataSet* deformation, const glm::dvec3& rest);
+///@}
+
+} // namespace deformvolume
+
+#endif

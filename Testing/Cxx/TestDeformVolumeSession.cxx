@@ -1,0 +1,504 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vtkDeformVolumeSession: misuse, a drag against filters that know no session, random sessions that
+// are undone to the start, files, and the thread.
+//
+// Usage: TestDeformVolumeSession [NUMBER OF RANDOM EVENTS] (300) [SEED] (1)
+#include "ChainMailTesting.h"
+
+#include "vtkDeformVolumeSession.h"
+
+#include <vtkPlaneSource.h>
+#include <vtkSmartPointer.h>
+#include <vtkTriangleFilter.h>
+#include <vtksys/SystemTools.hxx>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <random>
+#include <sstream>
+#include <thread>
+
+using namespace chainMailTesting;
+using namespace filterTesting;
+using Session = vtkDeformVolumeSession;
+
+namespace
+{
+
+constexpr Extent Box{ { -2, 25, 1, 24, 0, 18 } };
+
+struct Tested
+{
+  explicit Tested(vtkImageData* volume)
+    : Volume(volume)
+  {
+    this->Object->AddObserver(vtkCommand::ErrorEvent, this->Observer);
+    VERIFY(this->Object->SetInputs(volume));
+  }
+
+  std::string TakeError()
+  {
+    const std::string error = this->Observer->GetErrorMessage();
+    this->Observer->Clear();
+    return error;
+  }
+
+  // All that waits, until the body rests.
+  vtkSmartPointer<vtkImageData> Finish(int steps = 300)
+  {
+    for (int i = 0; i < steps && this->Object->Update(); ++i)
+    {
+    }
+    VERIFY_EQUAL(this->TakeError(), std::string());
+    return vtkSmartPointer<vtkImageData>::Take(this->Object->TakeOutput());
+  }
+  vtkSmartPointer<vtkImageData> Step()
+  {
+    this->Object->Update();
+    return vtkSmartPointer<vtkImageData>::Take(this->Object->TakeOutput());
+  }
+  void ExpectError(const std::string& words)
+  {
+    this->Object->Update();
+    VERIFY(Holds(this->TakeError(), words));
+  }
+
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkNew<vtkTest::ErrorObserver> Observer;
+  vtkNew<vtkDeformVolumeSession> Object;
+};
+
+vtkSmartPointer<vtkPolyData> MakePlane(
+  const glm::dvec3& middle, const glm::dvec3& a, const glm::dvec3& b, bool isTriangles = true)
+{
+  vtkNew<vtkPlaneSource> plane;
+  const glm::dvec3 origin = middle - 0.5 * (a + b);
+  plane->SetOrigin(origin.x, origin.y, origin.z);
+  plane->SetPoint1(origin.x + a.x, origin.y + a.y, origin.z + a.z);
+  plane->SetPoint2(origin.x + b.x, origin.y + b.y, origin.z + b.z);
+  plane->SetResolution(2, 2);
+  vtkNew<vtkTriangleFilter> triangles;
+  triangles->SetInputConnection(plane->GetOutputPort());
+  triangles->Update();
+  plane->Update();
+  return isTriangles ? triangles->GetOutput() : plane->GetOutput();
+}
+
+std::string ReadText(const std::string& fileName)
+{
+  std::ifstream file(fileName);
+  return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
+}
+
+void TestMisuse(vtkImageData* volume)
+{
+  Tested empty(volume);
+  vtkNew<vtkDeformVolumeSession> none;
+  vtkNew<vtkTest::ErrorObserver> observer;
+  none->AddObserver(vtkCommand::ErrorEvent, observer);
+  VERIFY_EQUAL(none->BeginGrab(0, 0, 0), -1);
+  VERIFY(Holds(observer->GetErrorMessage(), "Call SetInputs() first"));
+  VERIFY(!none->SetInputs(nullptr) && !none->Update() && !none->SaveSession("nothing"));
+  none->Start();
+  VERIFY(!none->GetIsRunning());
+  VERIFY(!none->TakeOutput());
+
+  Tested one(volume);
+  one.Finish();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  VERIFY_EQUAL(one.Object->BeginGrab(nan, 0, 0), -1);
+  VERIFY(Holds(one.TakeError(), "not finite"));
+  one.Object->MoveGrab(3, 1, 1, 1);
+  one.ExpectError("Handle 3 is not grabbed");
+  one.Object->Release(2);
+  one.ExpectError("Handle 2 holds nothing");
+  one.Object->BeginGrab(-40, 0, 0);
+  one.ExpectError("nothing of the volume");
+  one.Object->Cut(nullptr);
+  VERIFY(Holds(one.TakeError(), "no triangles"));
+  one.Object->Cut(MakePlane({ 8, 8, 8 }, { 9, 0, 0 }, { 0, 9, 0 }, false));
+  VERIFY(Holds(one.TakeError(), "no triangles"));
+  one.Object->CarveSphere(8, 8, 8, 0.0);
+  one.ExpectError("radius");
+  one.Object->ChangeModel(9);
+  one.ExpectError("The model is 9");
+  one.Object->ChangeNumberOfNodes(1);
+  one.ExpectError("from 2 to 100");
+  one.Object->ChangeRelaxationSweeps(-1);
+  one.ExpectError("sweeps");
+  one.Object->ChangeHandleRadius(-1.0);
+  one.ExpectError("less than 0");
+  one.Object->SetMovingSamplingFactor(3);
+  one.ExpectError("MovingSamplingFactor");
+  one.Object->SetMovingSamplingFactor(1);
+  VERIFY_EQUAL(one.Object->GetNumberOfActions(), vtkIdType(0));
+  VERIFY(!one.Object->SaveMesh("nothing"));
+  VERIFY(Holds(one.TakeError(), "no mesh"));
+  one.Object->Undo();
+  one.Object->Redo();
+  one.Finish();
+
+  // A handle that goes too far stays where it was, and so does the body.
+  one.Object->ChangeModel(Session::CHAIN_MAIL);
+  const int handle = one.Object->BeginGrab(10, 10, 10);
+  one.Object->MoveGrab(handle, 12, 10, 10);
+  const auto before = one.Step();
+  one.Object->ChangeRelaxationSweeps(0);
+  const auto still = one.Step();
+  one.Object->MoveGrab(handle, 1e6, 10, 10);
+  one.ExpectError("");
+  VERIFY(!one.Object->GetErrorMessage().empty());
+  const auto after = one.Step();
+  VERIFY(before && still && after && AreEqual(still, after));
+
+  one.Object->Start();
+  VERIFY(one.Object->GetIsRunning());
+  VERIFY(!one.Object->Update());
+  VERIFY(Holds(one.TakeError(), "Call Stop()"));
+}
+
+// The volume at rest is where the volume was, and covers nothing else.
+void VerifyRest(vtkImageData* output, vtkImageData* volume)
+{
+  VERIFY(output);
+  vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
+  vtkIdType covered = 0;
+  bool isEqual = true;
+  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+  {
+    covered += mask->GetComponent(id, 0) != 0.0;
+  }
+  for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 place = GetPoint(volume, id);
+    const vtkIdType at = output->FindPoint(place.x, place.y, place.z);
+    isEqual = isEqual && at >= 0 &&
+      output->GetPointData()->GetScalars()->GetComponent(at, 0) ==
+        volume->GetPointData()->GetScalars()->GetComponent(id, 0);
+  }
+  VERIFY(isEqual);
+  VERIFY_EQUAL(covered, volume->GetNumberOfPoints());
+}
+
+// The same with filters alone.
+void TestDrag(vtkImageData* volume)
+{
+  Tested one(volume);
+  VerifyRest(one.Finish(), volume);
+  one.Object->ChangeModel(Session::CHAIN_MAIL);
+  const int handle = one.Object->BeginGrab(10, 11, 9);
+  one.Object->MoveGrab(handle, 14, 11, 8);
+  const auto output = one.Step();
+
+  Dragged model(volume);
+  model.Filter->SetRelaxationSweeps(5);
+  model.Update(); // the model was chosen
+  model.Drag({ { { 10, 11, 9 }, { 14, 11, 8 } } });
+  Deformed wanted(volume, model.Filter->GetOutput());
+  wanted.Filter->SetOutputBoundsModeToVolumeBounds();
+  wanted.Filter->SetPadding(8);
+  VERIFY(AreEqual(output, wanted.Update()));
+
+  VERIFY(one.Object->Probe(14, 11, 8));
+  const double* rest = one.Object->GetProbedRestPosition();
+  VERIFY(std::abs(rest[0] - 10) < 0.01 && std::abs(rest[1] - 11) < 0.01);
+  vtkDataArray* values = volume->GetPointData()->GetScalars();
+  VERIFY_EQUAL(one.Object->GetProbedValue(), values->GetComponent(volume->FindPoint(10, 11, 9), 0));
+  VERIFY(!one.Object->Probe(-9, 2, 2));
+  VERIFY(one.Object->GetSimulationTime() > 0.0 && one.Object->GetResamplingTime() > 0.0 &&
+    one.Object->GetCopyTime() > 0.0);
+}
+
+class RandomSession
+{
+public:
+  RandomSession(vtkImageData* volume, unsigned seed)
+    : Random(seed)
+    , One(volume)
+  {
+  }
+
+  void MakeEvent()
+  {
+    Session* session = this->One.Object;
+    const glm::dvec3 place = this->GetPlace();
+    switch (this->Random() % 16)
+    {
+      case 0:
+        session->ChangeModel(static_cast<int>(this->Random() % 4));
+        break;
+      case 1:
+        session->Cut(MakePlane(place, { 0, this->GetNumber(3, 20), 2 }, { 1, 0, 9 }));
+        break;
+      case 2:
+        session->CarveSphere(place.x, place.y, place.z, this->GetNumber(0.5, 3));
+        break;
+      case 3:
+        session->CarveTo(place.x, place.y, place.z, this->GetNumber(0.5, 3));
+        break;
+      case 4:
+      case 5:
+        session->Undo();
+        break;
+      case 6:
+        session->Redo();
+        break;
+      case 7:
+        this->Handle = session->BeginGrab(place.x, place.y, place.z);
+        break;
+      case 8:
+        session->EndGrab(this->Handle);
+        break;
+      case 9:
+        session->HoldGrab(this->Handle);
+        break;
+      case 10:
+        session->Release(this->Handle);
+        break;
+      case 11:
+        session->Pin(place.x, place.y, place.z);
+        break;
+      default:
+        session->MoveGrab(this->Handle, place.x, place.y, place.z);
+    }
+    if (this->Random() % 2 == 0)
+    {
+      this->One.Step();
+      // Handles that are gone may be moved, and two may want one node; nothing else may go wrong.
+      const std::string error = this->One.TakeError();
+      if (!error.empty() && error.find("is not grabbed") == std::string::npos &&
+        error.find("holds nothing") == std::string::npos &&
+        error.find("holds no node") == std::string::npos &&
+        error.find("released already") == std::string::npos &&
+        error.find("nothing of the volume") == std::string::npos)
+      {
+        VERIFY_EQUAL(error, std::string());
+      }
+    }
+  }
+
+  double GetNumber(double low, double high)
+  {
+    return std::uniform_real_distribution<double>(low, high)(this->Random);
+  }
+  glm::dvec3 GetPlace()
+  {
+    return { this->GetNumber(Box[0], Box[1]), this->GetNumber(Box[2], Box[3]),
+      this->GetNumber(Box[4], Box[5]) };
+  }
+
+  std::mt19937 Random;
+  Tested One;
+  int Handle = 0;
+};
+
+void TestRandom(vtkImageData* volume, int events, unsigned seed, const std::string& fileName)
+{
+  RandomSession random(volume, seed);
+  Tested& one = random.One;
+  const auto first = one.Finish();
+  for (int i = 0; i < events && GetNumberOfFailures() == 0; ++i)
+  {
+    random.MakeEvent();
+  }
+  one.Step();
+  one.TakeError();
+  VERIFY(one.Object->GetNumberOfActions() > 0);
+
+  // A file brings the same arrays, and all that can be undone.
+  VERIFY(one.Object->SaveSession(fileName));
+  Tested other(volume);
+  other.Object->Pin(3, 3, 3);
+  other.Step();
+  VERIFY(other.Object->LoadSession(fileName));
+  const auto saved = one.Step();
+  const auto loaded = other.Step();
+  VERIFY(AreEqual(saved, loaded));
+  VERIFY_EQUAL(other.TakeError(), std::string());
+  VERIFY_EQUAL(other.Object->GetModel(), one.Object->GetModel());
+  VERIFY_EQUAL(other.Object->GetNumberOfActions(), one.Object->GetNumberOfActions());
+  VERIFY_EQUAL(other.Object->GetNumberOfUndoneActions(), one.Object->GetNumberOfUndoneActions());
+
+  // The one action by action, the other at once, and then all is made again.
+  const vtkIdType actions = one.Object->GetNumberOfActions();
+  for (vtkIdType i = 0; i < actions; ++i)
+  {
+    one.Object->Undo();
+  }
+  const auto undone = one.Step();
+  VERIFY_EQUAL(one.TakeError(), std::string());
+  VERIFY(AreEqual(first, undone));
+  VERIFY_EQUAL(one.Object->GetNumberOfActions(), vtkIdType(0));
+  other.Object->Reset();
+  const auto reset = other.Step();
+  VERIFY(AreEqual(first, reset));
+  VerifyRest(reset, volume);
+  VERIFY_EQUAL(other.Object->GetNumberOfUndoneActions(), one.Object->GetNumberOfUndoneActions());
+  for (vtkIdType i = 0; i < actions; ++i)
+  {
+    one.Object->Redo();
+    other.Object->Redo();
+  }
+  const auto redone = one.Step();
+  VERIFY(AreEqual(redone, other.Step()));
+  VERIFY_EQUAL(one.Object->GetNumberOfActions(), actions);
+}
+
+void WriteText(const std::string& fileName, const std::string& text)
+{
+  std::ofstream(fileName) << text;
+}
+
+std::string Replace(std::string text, const std::string& from, const std::string& to)
+{
+  const std::size_t at = text.find(from);
+  VERIFY(at != std::string::npos);
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+void TestFiles(vtkImageData* volume, const std::string& fileName)
+{
+  Tested one(volume);
+  one.Object->ChangeModel(Session::COROTATIONAL);
+  const int handle = one.Object->BeginGrab(10, 10, 17);
+  one.Object->MoveGrab(handle, 13, 10, 17);
+  one.Finish();
+  const auto before = one.Step();
+  VERIFY(one.Object->SaveSession(fileName));
+  VERIFY(one.Object->SaveVolume(fileName + ".vti") && one.Object->SaveMesh(fileName + ".vtu"));
+  const std::string text = ReadText(fileName);
+
+  const std::string damaged = fileName + ".damaged";
+  const struct
+  {
+    std::string Text;
+    const char* Words;
+  } cases[] = {
+    { "", "damaged" },
+    { "no session", "damaged" },
+    { text.substr(0, text.size() / 2), "damaged" },
+    { Replace(text, "version=\"1\" inputs", "version=\"2\" inputs"), "has version 2" },
+    { Replace(text, "MoveGrab 0 13 ", "MoveGrab 0 12 "), "checksum" },
+    { Replace(text, "MoveGrab", "Move"), "there is no event" },
+    { Replace(text, "MoveGrab 0 13 ", "MoveGrab 0 "), "other numbers" },
+    { Replace(text, "MoveGrab 0 13 ", "MoveGrab 0 nan "), "finite" },
+  };
+  for (const auto& wrong : cases)
+  {
+    WriteText(damaged, wrong.Text);
+    VERIFY(!one.Object->LoadSession(damaged));
+    VERIFY(Holds(one.TakeError(), wrong.Words));
+  }
+  VERIFY(!one.Object->LoadSession(fileName + ".missing"));
+  VERIFY(Holds(one.TakeError(), "cannot be read"));
+  VERIFY(AreEqual(before, one.Step()));
+
+  Tested foreign(MakeVolume({ { 0, 9, 0, 8, 0, 7 } }));
+  VERIFY(!foreign.Object->LoadSession(fileName));
+  VERIFY(Holds(foreign.TakeError(), "another volume"));
+
+  // A folder that is not there, and a disk that is full: the old file stays.
+  VERIFY(!one.Object->SaveSession("/dev/null/session"));
+  VERIFY(Holds(one.TakeError(), "cannot be written"));
+  VERIFY(!one.Object->SaveVolume("/dev/null/volume.vti"));
+  VERIFY(Holds(one.TakeError(), "cannot be written"));
+  struct rlimit limit;
+  getrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, SIG_IGN);
+  const struct rlimit small
+  {
+    100, limit.rlim_max
+  };
+  setrlimit(RLIMIT_FSIZE, &small);
+  const bool isSaved = one.Object->SaveSession(fileName);
+  const bool isVolumeSaved = one.Object->SaveVolume(fileName + ".vti");
+  setrlimit(RLIMIT_FSIZE, &limit);
+  VERIFY(!isSaved && !isVolumeSaved);
+  VERIFY(Holds(one.TakeError(), "cannot be written"));
+  VERIFY_EQUAL(ReadText(fileName), text);
+  VERIFY(!vtksys::SystemTools::FileExists(fileName + ".part"));
+  VERIFY(one.Object->LoadSession(fileName));
+  VERIFY(AreEqual(before, one.Step()));
+}
+
+void TestThread(vtkImageData* volume, const std::string& fileName)
+{
+  Tested one(volume);
+  one.Object->ChangeModel(Session::MASS_SPRING);
+  one.Object->Start();
+  const int handle = one.Object->BeginGrab(10, 10, 17);
+  vtkSmartPointer<vtkImageData> last;
+  int outputs = 0;
+  for (int i = 0; i < 60; ++i)
+  {
+    one.Object->MoveGrab(handle, 10 + 0.1 * i, 10, 17);
+    one.Object->Probe(5, 5, 5);
+    auto output = vtkSmartPointer<vtkImageData>::Take(one.Object->TakeOutput());
+    outputs += output != nullptr;
+    last = output ? output : last;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  one.Object->Stop();
+  VERIFY(!one.Object->GetIsRunning());
+  VERIFY(outputs > 1);
+  const auto stopped = one.Step();
+  VERIFY(one.Object->SaveSession(fileName));
+  VERIFY_EQUAL(one.TakeError(), std::string());
+
+  // What the thread has done is replayed without one.
+  Tested other(volume);
+  VERIFY(other.Object->LoadSession(fileName));
+  VERIFY(AreEqual(one.Step(), other.Step()));
+
+  // It ends with the session, in the middle of a motion.
+  for (int i = 0; i < 5; ++i)
+  {
+    Tested closed(volume);
+    closed.Object->ChangeModel(Session::MASS_SPRING);
+    closed.Object->Start();
+    const int held = closed.Object->BeginGrab(10, 10, 17);
+    closed.Object->MoveGrab(held, 15, 10, 17);
+    std::this_thread::sleep_for(std::chrono::milliseconds(7 * i));
+    VERIFY(closed.Object->GetIsBusy());
+  }
+
+  // ChainMail comes to rest by itself.
+  Tested resting(volume);
+  resting.Object->ChangeModel(Session::CHAIN_MAIL);
+  resting.Object->CarveSphere(4, 4, 4, 2.0);
+  resting.Object->Start();
+  for (int i = 0; i < 3000 && resting.Object->GetIsBusy(); ++i)
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  VERIFY(!resting.Object->GetIsBusy());
+  VERIFY_EQUAL(resting.TakeError(), std::string());
+}
+
+} // namespace
+
+int TestDeformVolumeSession(int argc, char* argv[])
+{
+  // The test driver has options of its own.
+  const int events = argc > 1 && std::atoi(argv[1]) > 0 ? std::atoi(argv[1]) : 300;
+  const int seed = argc > 2 ? std::max(std::atoi(argv[2]), 1) : 1;
+  std::string folder = ".";
+  for (int i = 1; i + 1 < argc; ++i)
+  {
+    folder = std::string(argv[i]) == "-T" ? argv[i + 1] : folder;
+  }
+  const std::string fileName = folder + "/TestDeformVolumeSession.xml";
+  const auto volume = MakeVolume(Box);
+  TestMisuse(volume);
+  TestDrag(volume);
+  TestFiles(volume, fileName);
+  TestThread(volume, fileName);
+  TestRandom(volume, events, static_cast<unsigned>(seed), fileName);
+  return GetExitCode();
+}
