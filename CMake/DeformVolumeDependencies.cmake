@@ -47,6 +47,9 @@ if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
     RenderingVolume
     RenderingVolumeOpenGL2
     zlib)
+  if (NOT DEFORMVOLUME_USE_PARAVIEW)
+    list(APPEND deformvolume_vtk_components RenderingImage) # of deform-interactive
+  endif ()
 endif ()
 if (BUILD_TESTING)
   list(APPEND deformvolume_vtk_components
