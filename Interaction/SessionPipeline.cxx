@@ -22,8 +22,11 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -34,17 +37,24 @@ using deformvolume::SessionEvent;
 using Session = vtkDeformVolumeSession;
 
 // VTK puts the file, the line and the object before what it says.
-void TakeMessage(vtkObject*, unsigned long, void* target, void* text)
+std::string StripMessage(const void* text)
 {
-  auto& message = *static_cast<std::string*>(target);
-  if (!message.empty())
-  {
-    return; // others follow from the first
-  }
-  message = static_cast<const char*>(text);
+  std::string message = static_cast<const char*>(text);
   const std::size_t end = message.find("): ");
   message = end == std::string::npos ? message : message.substr(end + 3);
   message.erase(message.find_last_not_of(" \n") + 1);
+  return message;
+}
+
+void TakeError(vtkObject*, unsigned long, void* target, void* text)
+{
+  auto& message = *static_cast<std::string*>(target);
+  message = message.empty() ? StripMessage(text) : message; // others follow from the first
+}
+
+void TakeWarning(vtkObject*, unsigned long, void* target, void* text)
+{
+  static_cast<std::vector<std::string>*>(target)->push_back(StripMessage(text));
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> MakeLattice(vtkImageData* volume, int nodes)
@@ -96,19 +106,21 @@ namespace deformvolume
 
 SessionPipeline::SessionPipeline()
 {
-  this->Observer->SetCallback(TakeMessage);
-  this->Observer->SetClientData(&this->Message);
+  this->ErrorObserver->SetCallback(TakeError);
+  this->ErrorObserver->SetClientData(&this->Message);
+  this->WarningObserver->SetCallback(TakeWarning);
+  this->WarningObserver->SetClientData(&this->Warnings);
   for (vtkAlgorithm* filter :
     { static_cast<vtkAlgorithm*>(this->CutFilter), static_cast<vtkAlgorithm*>(this->CarveFilter),
       static_cast<vtkAlgorithm*>(this->ChainMail), static_cast<vtkAlgorithm*>(this->MassSpring),
       static_cast<vtkAlgorithm*>(this->Corotational), static_cast<vtkAlgorithm*>(this->Resampler) })
   {
-    filter->AddObserver(vtkCommand::ErrorEvent, this->Observer);
-    filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this->Observer);
+    filter->AddObserver(vtkCommand::ErrorEvent, this->ErrorObserver);
+    filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this->ErrorObserver);
+    filter->AddObserver(vtkCommand::WarningEvent, this->WarningObserver);
   }
   this->CutFilter->AccumulateOn();
   this->CarveFilter->AccumulateOn();
-  this->CarveFilter->SetInputConnection(this->CutFilter->GetOutputPort());
   this->ChainMail->SetInputConnection(this->CarveFilter->GetOutputPort());
   this->Resampler->SetInputConnection(this->CarveFilter->GetOutputPort());
   // So that the extent is always the same one, and outputs are updated in part.
@@ -369,29 +381,31 @@ void SessionPipeline::Cut(const SessionEvent& event)
     const glm::dvec3 rest = FindRestPlace(this->GetDeformation(), { place[0], place[1], place[2] });
     points->SetPoint(id, rest.x, rest.y, rest.z);
   }
-  if (this->Model != Session::NONE)
+  vtkElasticDeformation* elastic = this->GetElastic();
+  if (this->Model == Session::CHAIN_MAIL)
   {
     this->CutFilter->SetDeformationData(this->GetDeformation());
   }
-  this->CutFilter->SetSheetData(sheet);
+  this->CutFilter->SetSheetData(elastic ? cut.RestSheet : sheet);
+  const auto disconnect = [this]
+  {
+    this->CutFilter->SetDeformationData(nullptr);
+    // The same sheet may cut again.
+    this->CutFilter->SetSheetData(nullptr);
+  };
   try
   {
     this->Update(this->CutFilter);
   }
   catch (...)
   {
-    this->CutFilter->SetDeformationData(nullptr);
-    this->CutFilter->SetSheetData(nullptr);
+    disconnect();
     throw;
   }
-  this->CutFilter->SetDeformationData(nullptr);
+  disconnect();
+  this->Update(this->CutFilter);
   this->Do(cut);
-  this->CutMesh(sheet);
-}
-
-void SessionPipeline::CutMesh(vtkPolyData* sheet)
-{
-  if (vtkElasticDeformation* elastic = this->GetElastic())
+  if (elastic)
   {
     elastic->SetSheetData(sheet);
   }
@@ -599,6 +613,16 @@ void SessionPipeline::Connect()
 {
   vtkElasticDeformation* elastic = this->GetElastic();
   this->Resampler->SetOpenSplits(elastic != nullptr);
+  // A body that is a mesh opens where the mesh is split. The mask of a cut would be a second gap
+  // beside that, along the sheet.
+  if (elastic)
+  {
+    this->CarveFilter->SetInputData(this->Volume);
+  }
+  else
+  {
+    this->CarveFilter->SetInputConnection(this->CutFilter->GetOutputPort());
+  }
   if (vtkAlgorithm* filter = this->GetModelFilter())
   {
     this->Resampler->SetDeformationConnection(filter->GetOutputPort());
@@ -658,6 +682,32 @@ void SessionPipeline::RunDrags(Actions::const_iterator end)
   this->UpdateModel(this->GetHeld(end));
 }
 
+// From a place to the nearest node of a mesh that can move, where none lies within the radius of
+// handles: who grabs something coarse gets hold of it nevertheless.
+glm::dvec3 SessionPipeline::FindShift(const glm::dvec3& rest)
+{
+  if (!this->GetElastic())
+  {
+    return glm::dvec3(0.0);
+  }
+  vtkDataArray* fixed = this->RestMesh->GetPointData()->GetArray("Fixed");
+  glm::dvec3 shift(0.0);
+  double least = std::numeric_limits<double>::infinity();
+  for (vtkIdType id = 0; id < this->RestMesh->GetNumberOfPoints(); ++id)
+  {
+    double place[3];
+    this->RestMesh->GetPoint(id, place);
+    const glm::dvec3 way = glm::dvec3(place[0], place[1], place[2]) - rest;
+    const double square = glm::dot(way, way);
+    if (square < least && !(fixed && fixed->GetComponent(id, 0) != 0.0))
+    {
+      least = square;
+      shift = way;
+    }
+  }
+  return std::isfinite(least) && std::sqrt(least) > this->HandleRadius ? shift : glm::dvec3(0.0);
+}
+
 void SessionPipeline::UpdateModel(const Actions& held)
 {
   vtkNew<vtkPoints> points;
@@ -667,8 +717,10 @@ void SessionPipeline::UpdateModel(const Actions& held)
   rest->SetNumberOfComponents(3);
   for (const Action& action : held)
   {
-    points->InsertNextPoint(action.Now.x, action.Now.y, action.Now.z);
-    rest->InsertNextTuple3(action.Rest.x, action.Rest.y, action.Rest.z);
+    const glm::dvec3 shift = this->FindShift(action.Rest);
+    points->InsertNextPoint(action.Now.x + shift.x, action.Now.y + shift.y, action.Now.z + shift.z);
+    rest->InsertNextTuple3(
+      action.Rest.x + shift.x, action.Rest.y + shift.y, action.Rest.z + shift.z);
   }
   vtkNew<vtkPolyData> handles;
   handles->SetPoints(points);

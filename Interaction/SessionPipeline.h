@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkAlgorithm;
@@ -62,6 +63,8 @@ public:
   int GetModel() const { return this->Model; }
   std::size_t GetNumberOfActions() const { return this->Done.size(); }
   std::size_t GetNumberOfUndoneActions() const { return this->Undone.size(); }
+  /// What the filters have warned of since the last call.
+  std::vector<std::string> TakeWarnings() { return std::exchange(this->Warnings, {}); }
   /// The settings, as events that make them.
   SessionEvents GetSettings() const;
 
@@ -107,9 +110,9 @@ private:
   void RunDrags(Actions::const_iterator end);
   Actions GetHeld(Actions::const_iterator end) const;
   void UpdateModel(const Actions& held);
+  glm::dvec3 FindShift(const glm::dvec3& rest);
   void Update(vtkAlgorithm* filter);
   void Connect();
-  void CutMesh(vtkPolyData* sheet);
   void TakeRestMesh();
   bool FindMotion();
   vtkAlgorithm* GetModelFilter();
@@ -125,8 +128,10 @@ private:
   vtkNew<vtkMassSpringDeformation> MassSpring;
   vtkNew<vtkCorotationalDeformation> Corotational;
   vtkNew<vtkDeformVolumeFilter> Resampler;
-  vtkNew<vtkCallbackCommand> Observer;
-  std::string Message; // of the filters, since it was taken
+  vtkNew<vtkCallbackCommand> ErrorObserver;
+  vtkNew<vtkCallbackCommand> WarningObserver;
+  std::string Message; // the first error of the filters, since it was taken
+  std::vector<std::string> Warnings;
 
   int Model = 0;
   int NumberOfNodes = 7;

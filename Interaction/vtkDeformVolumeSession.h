@@ -32,7 +32,8 @@
  *
  * @par Output:
  * vtkImageData as vtkDeformVolumeFilter makes it, with the bounds of the volume at rest and
- * Padding. Each output is an object of its own, which the session never changes.
+ * Padding. Each output is an object of its own, which the session never changes as long as somebody
+ * holds it; memory that is let go serves again.
  *
  * @par Files:
  * A session is saved as the record of its events, in XML with a version, a checksum, and a hash of
@@ -159,11 +160,11 @@ public:
 
   ///@{
   /**
-   * SamplingFactor of vtkDeformVolumeFilter while something moves: 1, 2 or 4. The output is at full
-   * resolution again when the body rests. Default 1.
+   * SamplingFactor of vtkDeformVolumeFilter while something moves: 1, 2 or 4; others are errors.
+   * The output is at full resolution again when the body rests. Default 1.
    */
-  vtkSetMacro(MovingSamplingFactor, int);
-  vtkGetMacro(MovingSamplingFactor, int);
+  void SetMovingSamplingFactor(int factor);
+  int GetMovingSamplingFactor();
   ///@}
 
   ///@{
@@ -171,8 +172,8 @@ public:
    * Voxels of the output beyond the volume at rest on each side, for tissue that is pulled out.
    * Default 8, 0 to 1000.
    */
-  vtkSetClampMacro(Padding, int, 0, 1000);
-  vtkGetMacro(Padding, int);
+  void SetPadding(int voxels);
+  int GetPadding();
   ///@}
 
   /**
@@ -233,12 +234,11 @@ public:
 
   ///@{
   /**
-   * Seconds that the last update took: for the events and the step, for the resampling, and for the
-   * copy of the output. How many steps there were since SetInputs().
+   * Seconds that the last update took: for the events and the step, and for the resampling. How
+   * many steps there were since SetInputs().
    */
   double GetSimulationTime();
   double GetResamplingTime();
-  double GetCopyTime();
   vtkIdType GetNumberOfSteps();
   ///@}
 
@@ -260,8 +260,6 @@ private:
   bool CheckPlace(double x, double y, double z);
   bool Save(const std::string& fileName, bool isMesh);
 
-  int MovingSamplingFactor = 1;
-  int Padding = 8;
   double ProbedValue = 0.0;
   double ProbedRestPosition[3] = { 0.0, 0.0, 0.0 };
   std::string ErrorMessage;

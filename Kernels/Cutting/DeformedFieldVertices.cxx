@@ -19,6 +19,58 @@ namespace
 
 constexpr double FieldTolerance = 1e-3; // of a field cell, as in DeformationMapping.cl
 
+// What the components of vectors in short rows, all of one length, lie between. Each place of a row
+// has limits of its own, so that compilers compare several at a time.
+class ComponentsOfRows
+{
+public:
+  void Add(const float* values, std::size_t count)
+  {
+    for (std::size_t begin = 0; begin < count; begin += Most)
+    {
+      const std::size_t some = std::min(Most, count - begin);
+      const float* next = values + begin;
+      for (std::size_t i = 0; i < some; ++i)
+      {
+        // Not-a-number is not less and not greater.
+        this->Least[i] = next[i] < this->Least[i] ? next[i] : this->Least[i];
+        this->Greatest[i] = next[i] > this->Greatest[i] ? next[i] : this->Greatest[i];
+        this->Nothing[i] += 0.0F * next[i]; // unless it is not finite
+      }
+    }
+  }
+
+  VectorComponents Get() const
+  {
+    VectorComponents all;
+    all.AreFinite = true;
+    all.Least.fill(Largest);
+    all.Greatest.fill(-Largest);
+    for (std::size_t i = 0; i < Most; ++i)
+    {
+      all.Least[i % 3] = std::min(all.Least[i % 3], this->Least[i]);
+      all.Greatest[i % 3] = std::max(all.Greatest[i % 3], this->Greatest[i]);
+      all.AreFinite = all.AreFinite && this->Nothing[i] == 0.0F;
+    }
+    return all;
+  }
+
+private:
+  static constexpr std::size_t Most = 27; // those of the vertices of a brick
+  static constexpr float Largest = std::numeric_limits<float>::max();
+
+  static std::array<float, Most> Fill(float value)
+  {
+    std::array<float, Most> filled;
+    filled.fill(value);
+    return filled;
+  }
+
+  std::array<float, Most> Least = Fill(Largest);
+  std::array<float, Most> Greatest = Fill(-Largest);
+  std::array<float, Most> Nothing = Fill(0.0F);
+};
+
 } // namespace
 
 bool DeformedFieldVertices::Find(const glm::dvec3& vertex, glm::dvec3& displacement) const
@@ -93,10 +145,7 @@ DisplacementLimits DeformedFieldVertices::GetLimits(std::size_t brick) const
     points[2 * axis] = static_cast<std::int64_t>(std::clamp(low, 0.0, last));
     points[2 * axis + 1] = static_cast<std::int64_t>(std::ceil(std::clamp(high, 0.0, last)));
   }
-  VectorComponents all;
-  all.AreFinite = true;
-  all.Least.fill(std::numeric_limits<float>::max());
-  all.Greatest.fill(std::numeric_limits<float>::lowest());
+  ComponentsOfRows rows;
   const auto count = static_cast<std::size_t>(3 * (points[1] - points[0] + 1));
   for (std::int64_t z = points[4]; z <= points[5]; ++z)
   {
@@ -104,15 +153,10 @@ DisplacementLimits DeformedFieldVertices::GetLimits(std::size_t brick) const
     {
       const std::int64_t first =
         (z * this->Field.Dimensions[1] + y) * this->Field.Dimensions[0] + points[0];
-      const VectorComponents row = FindComponents(this->Field.Vectors + 3 * first, count);
-      all.AreFinite = all.AreFinite && row.AreFinite;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-      {
-        all.Least[axis] = std::min(all.Least[axis], row.Least[axis]);
-        all.Greatest[axis] = std::max(all.Greatest[axis], row.Greatest[axis]);
-      }
+      rows.Add(this->Field.Vectors + 3 * first, count);
     }
   }
+  const VectorComponents all = rows.Get();
   limits.AreKnown = all.AreFinite;
   const DisplacementRange range = GetRange(GetFactors(this->Field), all);
   for (int axis = 0; axis < 3; ++axis)
