@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <unordered_set>
 
 namespace deformvolume
 {
@@ -116,6 +117,57 @@ void ChainMailSession::SetVolume(const ImageGeometry& geometry, const ChainMailS
   this->HasVolume = true;
 }
 
+std::int64_t ChainMailSession::SaveState()
+{
+  std::shared_ptr<const ChainMailSnapshot> state = this->ToRestore;
+  if (!state && !this->IsToReset && this->HasVolume)
+  {
+    const auto last = this->States.empty() ? nullptr : this->States.rbegin()->second;
+    state = this->Model.TakeSnapshot(last);
+  }
+  this->States[++this->LastState] =
+    state ? state : std::make_shared<ChainMailSnapshot>(); // at rest
+  return this->LastState;
+}
+
+bool ChainMailSession::RestoreState(std::int64_t number)
+{
+  const auto found = this->States.find(number);
+  if (found == this->States.end())
+  {
+    return false;
+  }
+  const ChainMailSnapshot& state = *found->second;
+  if (state.Numbers.empty())
+  {
+    this->Reset();
+    return true;
+  }
+  if (!this->HasVolume || state.Voxels != this->Geometry.PointExtent)
+  {
+    return false;
+  }
+  this->IsToReset = false;
+  this->ToRestore = found->second;
+  return true;
+}
+
+std::uint64_t ChainMailSession::GetStateMemory() const
+{
+  std::unordered_set<const ChainMailSnapshot::Block*> blocks; // which states share
+  std::uint64_t bytes = 0;
+  for (const auto& [number, state] : this->States)
+  {
+    bytes += state->Numbers.size() *
+      (sizeof(std::uint32_t) + sizeof(std::shared_ptr<const ChainMailSnapshot::Block>));
+    for (const auto& block : state->Blocks)
+    {
+      blocks.insert(block.get());
+    }
+  }
+  return bytes + blocks.size() * sizeof(ChainMailSnapshot::Block);
+}
+
 void ChainMailSession::MakeOutput(vtkIdType voxels)
 {
   this->Output.Make(this->Model, this->Device, voxels);
@@ -184,6 +236,11 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
       this->Model.Reset();
       this->IsToReset = false;
     }
+    if (this->ToRestore && this->ToRestore->Voxels == geometry.PointExtent)
+    {
+      this->Model.Restore(*this->ToRestore); // before links return, which then hold what they held
+    }
+    this->ToRestore = nullptr;
     if (!(key == this->KeyOfMaterials))
     {
       if (materials.empty()) // the device has changed
