@@ -21,6 +21,7 @@
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
+#include "vtkVolumeEditAlgorithm.h"
 
 #include <glm/geometric.hpp>
 
@@ -226,6 +227,12 @@ void SessionPipeline::Update(vtkAlgorithm* filter)
 
 void SessionPipeline::Apply(const SessionEvent& event)
 {
+  const bool isOfHistory = event.Kind == SessionEvent::UNDO || event.Kind == SessionEvent::REDO ||
+    event.Kind == SessionEvent::RESET;
+  if (this->IsToRebuild && !isOfHistory) // of several undone at once the body comes from rest once
+  {
+    this->Rebuild();
+  }
   this->IsStroke = this->IsStroke && event.Kind == SessionEvent::CARVE;
   switch (event.Kind)
   {
@@ -251,17 +258,11 @@ void SessionPipeline::Apply(const SessionEvent& event)
       return this->Carve(event);
     case SessionEvent::UNDO:
       this->EndGrabs();
-      if (this->Undo())
-      {
-        this->Rebuild();
-      }
+      this->Undo();
       return;
     case SessionEvent::REDO:
       this->EndGrabs();
-      if (this->Redo())
-      {
-        this->Rebuild();
-      }
+      this->Redo();
       return;
     case SessionEvent::RESET:
       return this->Reset();
@@ -284,10 +285,50 @@ void SessionPipeline::Apply(const SessionEvent& event)
   }
 }
 
-void SessionPipeline::Do(const Action& action)
+// To be called before anything of the action is seen by the model.
+void SessionPipeline::Do(Action action)
 {
-  this->Done.push_back(action);
+  for (Action& undone : this->Undone)
+  {
+    this->ForgetStates(undone);
+  }
   this->Undone.clear();
+  action.Before = this->SaveState();
+  this->Done.push_back(std::move(action));
+  this->LimitStates();
+}
+
+vtkIdType SessionPipeline::SaveState()
+{
+  return this->Model == Session::CHAIN_MAIL && !this->IsToRebuild ? this->ChainMail->SaveState()
+                                                                  : -1;
+}
+
+// To where all voxels were, or from rest to where handles are where that is not known.
+void SessionPipeline::RestoreState(vtkIdType state)
+{
+  this->Connect();
+  this->IsToRebuild = this->Model != Session::CHAIN_MAIL || !this->ChainMail->RestoreState(state);
+}
+
+void SessionPipeline::ForgetStates(Action& action)
+{
+  for (vtkIdType* state : { &action.Before, &action.After })
+  {
+    this->ChainMail->RemoveState(*state);
+    *state = -1;
+  }
+}
+
+// The oldest go first.
+void SessionPipeline::LimitStates()
+{
+  constexpr vtkTypeInt64 most = vtkTypeInt64{ 1 } << 30; // bytes
+  for (auto action = this->Done.begin();
+       action != this->Done.end() && this->ChainMail->GetStateMemory() > most; ++action)
+  {
+    this->ForgetStates(*action);
+  }
 }
 
 void SessionPipeline::BeginGrab(double handle, const glm::dvec3& place)
@@ -325,7 +366,7 @@ void SessionPipeline::BeginGrab(double handle, const glm::dvec3& place)
     // Whether there is a node to hold is known only to the filter.
     try
     {
-      this->UpdateModel(this->GetHeld(this->Done.end()));
+      this->UpdateModel(this->GetHeld());
     }
     catch (...)
     {
@@ -355,7 +396,7 @@ SessionPipeline::Action& SessionPipeline::FindHandle(double handle, bool isGrabb
 void SessionPipeline::Release(double handle)
 {
   this->FindHandle(handle, false).IsGrabbed = false;
-  const Actions held = this->GetHeld(this->Done.end());
+  const Actions held = this->GetHeld();
   if (std::none_of(
         held.begin(), held.end(), [=](const Action& one) { return one.Handle == handle; }))
   {
@@ -405,10 +446,32 @@ void SessionPipeline::Cut(const SessionEvent& event)
   disconnect();
   this->Update(this->CutFilter);
   this->Do(cut);
-  if (elastic)
+  if (!elastic)
   {
-    elastic->SetSheetData(sheet);
+    return;
   }
+  try
+  {
+    this->CutMesh(elastic, sheet, this->GetHeld(), this->Done.back());
+  }
+  catch (...)
+  {
+    elastic->SetSheetData(nullptr);
+    this->Done.pop_back();
+    this->UndoEdits(this->CutFilter, 1);
+    throw;
+  }
+}
+
+void SessionPipeline::CutMesh(
+  vtkElasticDeformation* elastic, vtkPolyData* sheet, const Actions& held, Action& cut)
+{
+  const vtkIdType before = elastic->GetNumberOfCuts();
+  elastic->SetSheetData(sheet);
+  this->UpdateModel(held);
+  cut.HasSplit = elastic->GetNumberOfCuts() > before;
+  // The same sheet may cut again.
+  elastic->SetSheetData(nullptr);
 }
 
 void SessionPipeline::Carve(const SessionEvent& event)
@@ -474,10 +537,10 @@ void SessionPipeline::SetModel(int model)
   }
   catch (...)
   {
+    this->Model = change.FormerModel;
+    this->RestoreState(this->Done.back().Before);
     this->Done = done;
     this->Undone = undone;
-    this->Model = change.FormerModel;
-    this->Rebuild();
     throw;
   }
 }
@@ -518,42 +581,68 @@ void SessionPipeline::EndGrabs()
   }
 }
 
-bool SessionPipeline::Undo()
+void SessionPipeline::UndoEdits(vtkVolumeEditAlgorithm* filter, int edits)
+{
+  for (int i = 0; i < edits; ++i)
+  {
+    filter->Undo();
+  }
+  this->Update(filter);
+}
+
+void SessionPipeline::RedoEdits(vtkVolumeEditAlgorithm* filter, int edits)
+{
+  for (int i = 0; i < edits; ++i)
+  {
+    filter->Redo();
+  }
+  this->Update(filter);
+}
+
+void SessionPipeline::Undo()
 {
   if (this->Done.empty())
   {
-    return false;
+    return;
   }
-  const Action action = this->Done.back();
+  Action action = this->Done.back();
   this->Done.pop_back();
+  action.After = action.After < 0 ? this->SaveState() : action.After;
   this->Undone.push_back(action);
+  vtkElasticDeformation* elastic = this->GetElastic();
   switch (action.Kind)
   {
     case Action::CUT:
-      this->CutFilter->Undo();
-      this->Update(this->CutFilter);
-      return this->GetElastic() != nullptr;
+      this->UndoEdits(this->CutFilter, 1);
+      if (elastic && action.HasSplit && !this->IsToRebuild)
+      {
+        elastic->UndoCut();
+        this->UpdateModel(this->GetHeld());
+      }
+      break;
     case Action::CARVE:
       this->CarveFilter->ClearToolPositions();
-      for (int i = 0; i < action.NumberOfEdits; ++i)
-      {
-        this->CarveFilter->Undo();
-        this->Update(this->CarveFilter);
-      }
-      return false;
+      this->UndoEdits(this->CarveFilter, action.NumberOfEdits);
+      break;
     case Action::MODEL:
       this->Model = action.FormerModel;
-      return true;
+      this->RestoreState(action.Before);
+      return;
     default:
-      return true;
+      break;
+  }
+  // Meshes go to where they are held now by themselves.
+  if (!elastic)
+  {
+    this->RestoreState(action.Before);
   }
 }
 
-bool SessionPipeline::Redo()
+void SessionPipeline::Redo()
 {
   if (this->Undone.empty())
   {
-    return false;
+    return;
   }
   const Action action = this->Undone.back();
   this->Undone.pop_back();
@@ -561,21 +650,21 @@ bool SessionPipeline::Redo()
   switch (action.Kind)
   {
     case Action::CUT:
-      this->CutFilter->Redo();
-      this->Update(this->CutFilter);
-      return this->GetElastic() != nullptr;
+      this->RedoEdits(this->CutFilter, 1);
+      break;
     case Action::CARVE:
-      for (int i = 0; i < action.NumberOfEdits; ++i)
-      {
-        this->CarveFilter->Redo();
-        this->Update(this->CarveFilter);
-      }
-      return false;
+      this->RedoEdits(this->CarveFilter, action.NumberOfEdits);
+      break;
     case Action::MODEL:
       this->Model = action.Model;
-      return true;
+      break;
     default:
-      return true;
+      break;
+  }
+  // A cut splits a mesh at rest.
+  if (!this->GetElastic() || action.Kind == Action::CUT || action.Kind == Action::MODEL)
+  {
+    this->RestoreState(action.After);
   }
 }
 
@@ -586,23 +675,21 @@ void SessionPipeline::Reset()
   {
     this->Undo();
   }
-  this->Rebuild();
 }
 
-// The actions that hold something after those before the end.
-SessionPipeline::Actions SessionPipeline::GetHeld(Actions::const_iterator end) const
+SessionPipeline::Actions SessionPipeline::GetHeld() const
 {
   Actions held;
-  for (auto action = this->Done.begin(); action != end; ++action)
+  for (const Action& action : this->Done)
   {
-    if (action->Kind == Action::DRAG && action->IsHeld)
+    if (action.Kind == Action::DRAG && action.IsHeld)
     {
-      held.push_back(*action);
+      held.push_back(action);
     }
-    else if (action->Kind == Action::RELEASE)
+    else if (action.Kind == Action::RELEASE)
     {
       held.erase(std::remove_if(held.begin(), held.end(),
-                   [&](const Action& one) { return one.Handle == action->Handle; }),
+                   [&](const Action& one) { return one.Handle == action.Handle; }),
         held.end());
     }
   }
@@ -635,14 +722,14 @@ void SessionPipeline::Connect()
 
 void SessionPipeline::Rebuild()
 {
+  this->IsToRebuild = false;
   this->Connect();
   this->LastVectors.clear();
   this->QuietSteps = 0;
   if (this->Model == Session::CHAIN_MAIL)
   {
     this->ChainMail->Reset();
-    this->UpdateModel({});
-    this->RunDrags(this->Done.end());
+    this->UpdateModel(this->GetHeld());
   }
   else if (vtkElasticDeformation* elastic = this->GetElastic())
   {
@@ -650,36 +737,20 @@ void SessionPipeline::Rebuild()
     elastic->ClearCuts();
     elastic->SetSheetData(nullptr);
     this->UpdateModel({});
-    for (const Action& action : this->Done)
+    for (Action& action : this->Done)
     {
       if (action.Kind == Action::CUT)
       {
-        elastic->SetSheetData(action.RestSheet);
-        this->UpdateModel({});
+        this->CutMesh(elastic, action.RestSheet, {}, action);
       }
     }
     elastic->Reset();
-    this->UpdateModel(this->GetHeld(this->Done.end()));
+    this->UpdateModel(this->GetHeld());
   }
   else
   {
     this->Update(this->CarveFilter);
   }
-}
-
-// Tissue stays where a handle has left it: so each drag is made again, in one step.
-void SessionPipeline::RunDrags(Actions::const_iterator end)
-{
-  for (auto action = this->Done.cbegin(); action != end; ++action)
-  {
-    if (action->Kind == Action::DRAG)
-    {
-      Actions held = this->GetHeld(action);
-      held.push_back(*action);
-      this->UpdateModel(held);
-    }
-  }
-  this->UpdateModel(this->GetHeld(end));
 }
 
 // From a place to the nearest node of a mesh that can move, where none lies within the radius of
@@ -744,13 +815,17 @@ void SessionPipeline::UpdateModel(const Actions& held)
 
 bool SessionPipeline::Step()
 {
+  if (this->IsToRebuild)
+  {
+    this->Rebuild();
+  }
   if (this->Model == Session::NONE)
   {
     return false;
   }
   try
   {
-    this->UpdateModel(this->GetHeld(this->Done.end()));
+    this->UpdateModel(this->GetHeld());
   }
   catch (...)
   {
@@ -758,7 +833,7 @@ bool SessionPipeline::Step()
     {
       action.Now = action.LastPossible;
     }
-    this->UpdateModel(this->GetHeld(this->Done.end()));
+    this->UpdateModel(this->GetHeld());
     throw;
   }
   for (Action& action : this->Done)

@@ -27,14 +27,14 @@ class vtkLatticeTetrahedraSource;
 class vtkMassSpringDeformation;
 class vtkPolyData;
 class vtkUnstructuredGrid;
+class vtkVolumeEditAlgorithm;
 
 namespace deformvolume
 {
 
 /// The filters of a session, and what has been done to them. One thread at a time may use it.
 ///
-/// What is done is a list of actions. After an undo the body comes from rest to where the actions
-/// that are left hold it, so that it depends on them and on nothing else.
+/// What is done is a list of actions.
 class SessionPipeline
 {
 public:
@@ -88,8 +88,12 @@ private:
     bool IsHeld = false;
     vtkSmartPointer<vtkPolyData> RestSheet;
     int NumberOfEdits = 1;
+    bool HasSplit = false; // whether a cut has split the mesh
     int Model = 0;
     int FormerModel = 0;
+    // Where ChainMail had all voxels before the action, and when it was undone; -1: not known.
+    vtkIdType Before = -1;
+    vtkIdType After = -1;
   };
   using Actions = std::vector<Action>;
 
@@ -100,15 +104,22 @@ private:
   void Carve(const SessionEvent& event);
   void SetModel(int model);
   void SetLattice(int nodes);
-  void Do(const Action& action);
-  bool Undo();
-  bool Redo();
+  void Do(Action action);
+  void Undo();
+  void Redo();
+  void UndoEdits(vtkVolumeEditAlgorithm* filter, int edits);
+  void RedoEdits(vtkVolumeEditAlgorithm* filter, int edits);
+  void CutMesh(
+    vtkElasticDeformation* elastic, vtkPolyData* sheet, const Actions& held, Action& cut);
   void Reset();
   void EndGrabs();
 
+  vtkIdType SaveState();
+  void RestoreState(vtkIdType state);
+  void ForgetStates(Action& action);
+  void LimitStates();
   void Rebuild();
-  void RunDrags(Actions::const_iterator end);
-  Actions GetHeld(Actions::const_iterator end) const;
+  Actions GetHeld() const;
   void UpdateModel(const Actions& held);
   glm::dvec3 FindShift(const glm::dvec3& rest);
   void Update(vtkAlgorithm* filter);
@@ -142,6 +153,7 @@ private:
   Actions Undone;
   std::vector<double> LastVectors; // of a mesh
   int QuietSteps = 0;
+  bool IsToRebuild = false; // whether the body has to come from rest before it is used
 };
 
 } // namespace deformvolume

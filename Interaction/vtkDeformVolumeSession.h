@@ -18,9 +18,11 @@
  *
  * @par Undo:
  * Each drag, cut, stroke of carving, release of a handle, and change of the model is an action that
- * can be undone. Undo takes masks back to the last bit. Where a drag or a cut of a mesh is undone,
- * the body comes from rest to where the remaining actions hold it, in one step for each drag. When
- * all actions are undone, the output is the volume at rest, to the last bit.
+ * can be undone. Undo takes masks back to the last bit, and with ChainMail all voxels to where they
+ * were before the action (where over 1 GiB of that is kept, for the last actions; else the body
+ * comes from rest to where handles hold it). A mesh moves by itself to where the remaining actions
+ * hold it. When all actions are undone, the output is the volume at rest, to the last bit. Redo
+ * takes ChainMail to where it was before the undo; a mesh that is cut again comes from rest.
  *
  * @par Models:
  * NONE does not deform. CHAIN_MAIL is vtkChainMailDeformation: tissue stays where a handle leaves

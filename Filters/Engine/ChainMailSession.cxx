@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <unordered_set>
 
 namespace deformvolume
 {
@@ -75,6 +74,13 @@ VolumeMasks ReadLinkMasks(vtkImageData* volume)
   return masks;
 }
 
+// Bytes of a snapshot without its blocks.
+std::uint64_t GetIndexMemory(const ChainMailSnapshot& snapshot)
+{
+  return snapshot.Numbers.size() *
+    (sizeof(std::uint32_t) + sizeof(std::shared_ptr<const ChainMailSnapshot::Block>));
+}
+
 } // namespace
 
 void ChainMailSettings::SetDefaultMaterials()
@@ -125,8 +131,13 @@ std::int64_t ChainMailSession::SaveState()
     const auto last = this->States.empty() ? nullptr : this->States.rbegin()->second;
     state = this->Model.TakeSnapshot(last);
   }
-  this->States[++this->LastState] =
-    state ? state : std::make_shared<ChainMailSnapshot>(); // at rest
+  state = state ? state : std::make_shared<ChainMailSnapshot>(); // at rest
+  this->States[++this->LastState] = state;
+  this->StateMemory += GetIndexMemory(*state);
+  for (const auto& block : state->Blocks)
+  {
+    this->StateMemory += this->Owners[block.get()]++ == 0 ? sizeof(ChainMailSnapshot::Block) : 0;
+  }
   return this->LastState;
 }
 
@@ -152,20 +163,26 @@ bool ChainMailSession::RestoreState(std::int64_t number)
   return true;
 }
 
-std::uint64_t ChainMailSession::GetStateMemory() const
+bool ChainMailSession::RemoveState(std::int64_t number)
 {
-  std::unordered_set<const ChainMailSnapshot::Block*> blocks; // which states share
-  std::uint64_t bytes = 0;
-  for (const auto& [number, state] : this->States)
+  const auto found = this->States.find(number);
+  if (found == this->States.end())
   {
-    bytes += state->Numbers.size() *
-      (sizeof(std::uint32_t) + sizeof(std::shared_ptr<const ChainMailSnapshot::Block>));
-    for (const auto& block : state->Blocks)
+    return false;
+  }
+  const auto state = found->second;
+  this->States.erase(found);
+  this->StateMemory -= GetIndexMemory(*state);
+  for (const auto& block : state->Blocks)
+  {
+    const auto owners = this->Owners.find(block.get());
+    if (--owners->second == 0)
     {
-      blocks.insert(block.get());
+      this->Owners.erase(owners);
+      this->StateMemory -= sizeof(ChainMailSnapshot::Block);
     }
   }
-  return bytes + blocks.size() * sizeof(ChainMailSnapshot::Block);
+  return true;
 }
 
 void ChainMailSession::MakeOutput(vtkIdType voxels)

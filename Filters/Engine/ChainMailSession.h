@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 class vtkImageData;
@@ -58,10 +59,10 @@ public:
   /// the next step. False where there is no such state, or it is one of another volume.
   std::int64_t SaveState();
   bool RestoreState(std::int64_t number);
-  bool RemoveState(std::int64_t number) { return this->States.erase(number) > 0; }
+  bool RemoveState(std::int64_t number);
   std::size_t GetNumberOfStates() const { return this->States.size(); }
   /// Bytes that they take.
-  std::uint64_t GetStateMemory() const;
+  std::uint64_t GetStateMemory() const { return this->StateMemory; }
   ///@}
 
   const std::string& GetDevice() const { return this->Device; }
@@ -91,6 +92,9 @@ private:
   std::shared_ptr<const ChainMailSnapshot> ToRestore; // null: nothing
   std::map<std::int64_t, std::shared_ptr<const ChainMailSnapshot>> States;
   std::int64_t LastState = -1;
+  // How many states have each of their blocks.
+  std::unordered_map<const ChainMailSnapshot::Block*, std::size_t> Owners;
+  std::uint64_t StateMemory = 0;
   ImageGeometry Geometry;
   MaterialsKey KeyOfMaterials;
   Stamp StampOfMasks;
