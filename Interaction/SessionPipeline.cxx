@@ -187,7 +187,8 @@ SessionEvents SessionPipeline::GetSettings() const
 {
   return { { SessionEvent::HANDLE_RADIUS, { this->HandleRadius } },
     { SessionEvent::RELAXATION, { static_cast<double>(this->RelaxationSweeps) } },
-    { SessionEvent::LATTICE, { static_cast<double>(this->NumberOfNodes) } } };
+    { SessionEvent::LATTICE, { static_cast<double>(this->NumberOfNodes) } },
+    { SessionEvent::UNDO_MEMORY, { this->UndoMemory } } };
 }
 
 vtkElasticDeformation* SessionPipeline::GetElastic()
@@ -280,6 +281,14 @@ void SessionPipeline::Apply(const SessionEvent& event)
       return;
     case SessionEvent::LATTICE:
       return this->SetLattice(GetWhole(event, 2, 100, "The number of nodes on an axis"));
+    case SessionEvent::UNDO_MEMORY:
+      if (!(event.Numbers[0] >= 0.0))
+      {
+        throw std::runtime_error("The memory for undo is less than 0. Set 0 or more bytes.");
+      }
+      this->UndoMemory = event.Numbers[0];
+      this->LimitStates();
+      return;
     case SessionEvent::STEP:
       this->Step();
   }
@@ -323,9 +332,9 @@ void SessionPipeline::ForgetStates(Action& action)
 // The oldest go first.
 void SessionPipeline::LimitStates()
 {
-  constexpr vtkTypeInt64 most = vtkTypeInt64{ 1 } << 30; // bytes
-  for (auto action = this->Done.begin();
-       action != this->Done.end() && this->ChainMail->GetStateMemory() > most; ++action)
+  for (auto action = this->Done.begin(); action != this->Done.end() &&
+       static_cast<double>(this->ChainMail->GetStateMemory()) > this->UndoMemory;
+       ++action)
   {
     this->ForgetStates(*action);
   }

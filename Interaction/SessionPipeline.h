@@ -148,6 +148,7 @@ private:
   int NumberOfNodes = 7;
   double HandleRadius = 0.0;
   int RelaxationSweeps = 5;
+  double UndoMemory = 1073741824.0;
   bool IsStroke = false; // whether a carving may go on
   Actions Done;
   Actions Undone;

@@ -527,6 +527,14 @@ int vtkDeformVolumeSession::GetPadding()
   return this->Internals->Padding;
 }
 
+void vtkDeformVolumeSession::ChangeUndoMemory(double bytes)
+{
+  if (this->CheckPlace(bytes, 0.0, 0.0))
+  {
+    this->Internals->Enqueue(SessionEvent::UNDO_MEMORY, { bytes });
+  }
+}
+
 bool vtkDeformVolumeSession::Update()
 {
   if (!this->CheckPlace(0.0, 0.0, 0.0))

@@ -19,7 +19,7 @@
  * @par Undo:
  * Each drag, cut, stroke of carving, release of a handle, and change of the model is an action that
  * can be undone. Undo takes masks back to the last bit, and with ChainMail all voxels to where they
- * were before the action (where over 1 GiB of that is kept, for the last actions; else the body
+ * were before the action (as far as ChangeUndoMemory() lets that be kept; else the body
  * comes from rest to where handles hold it). A mesh moves by itself to where the remaining actions
  * hold it. When all actions are undone, the output is the volume at rest, to the last bit. Redo
  * takes ChainMail to where it was before the undo; a mesh that is cut again comes from rest.
@@ -151,13 +151,15 @@ public:
 
   ///@{
   /**
-   * Settings of the models, which are events but cannot be undone: how far round its place a handle
-   * holds voxels or nodes, in world units (initially 0); sweeps of relaxation in a step of
-   * ChainMail, 0 to 10000 (initially 5); nodes of the lattice on each axis, 2 to 100 (initially 7).
+   * Settings, which are events but cannot be undone: how far round its place a handle holds voxels
+   * or nodes, in world units (initially 0); sweeps of relaxation in a step of ChainMail, 0 to 10000
+   * (initially 5); nodes of the lattice on each axis, 2 to 100 (initially 7); bytes that may be
+   * kept of where ChainMail had voxels before actions (initially 1 GiB).
    */
   void ChangeHandleRadius(double radius);
   void ChangeRelaxationSweeps(int sweeps);
   void ChangeNumberOfNodes(int nodes);
+  void ChangeUndoMemory(double bytes);
   ///@}
 
   ///@{

@@ -132,6 +132,8 @@ void TestMisuse(vtkImageData* volume)
   one.ExpectError("from 2 to 100");
   one.Object->ChangeRelaxationSweeps(-1);
   one.ExpectError("sweeps");
+  one.Object->ChangeUndoMemory(-1.0);
+  one.ExpectError("less than 0");
   one.Object->ChangeHandleRadius(-1.0);
   one.ExpectError("less than 0");
   one.Object->SetMovingSamplingFactor(3);
@@ -297,15 +299,36 @@ public:
   int Handle = 0;
 };
 
+// Resident memory in KiB.
+double GetMemory()
+{
+  std::ifstream file("/proc/self/status");
+  std::string word;
+  while (file >> word && word != "VmRSS:")
+  {
+  }
+  double memory = 0.0;
+  file >> memory;
+  return memory;
+}
+
 void TestRandom(vtkImageData* volume, int events, unsigned seed, const std::string& fileName)
 {
   RandomSession random(volume, seed);
   Tested& one = random.One;
   const auto first = one.Finish();
+  // Less than random actions take, so that some are undone without what is kept.
+  one.Object->ChangeUndoMemory(4e6);
+  double memory = 0.0;
   for (int i = 0; i < events && GetNumberOfFailures() == 0; ++i)
   {
     random.MakeEvent();
+    memory = i == events / 5 ? GetMemory() : memory;
   }
+  constexpr int fewEvents = 2000; // with which memory is still warming up
+  const double growth = GetMemory() / memory - 1.0;
+  std::cout << "Memory grows by " << 100.0 * growth << " % of " << memory / 1024.0 << " MiB\n";
+  VERIFY(events < fewEvents || growth < 0.05);
   one.Step();
   one.TakeError();
   VERIFY(one.Object->GetNumberOfActions() > 0);
