@@ -154,8 +154,12 @@ void SessionPipeline::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
   this->Still->GetPointData()->SetVectors(none);
   this->TakeRestMesh();
 
-  this->Done.clear();
-  this->Undone.clear();
+  for (Actions* actions : { &this->Done, &this->Undone })
+  {
+    std::for_each(
+      actions->begin(), actions->end(), [this](Action& action) { this->ForgetStates(action); });
+    actions->clear();
+  }
   this->IsStroke = false;
   this->CutFilter->SetInputData(this->Volume);
   this->CutFilter->SetSheetData(nullptr);
@@ -329,14 +333,17 @@ void SessionPipeline::ForgetStates(Action& action)
   }
 }
 
-// The oldest go first.
+// Those go first that are the most steps of undo or redo away.
 void SessionPipeline::LimitStates()
 {
-  for (auto action = this->Done.begin(); action != this->Done.end() &&
-       static_cast<double>(this->ChainMail->GetStateMemory()) > this->UndoMemory;
-       ++action)
+  for (Actions* actions : { &this->Done, &this->Undone })
   {
-    this->ForgetStates(*action);
+    for (auto action = actions->begin(); action != actions->end() &&
+         static_cast<double>(this->ChainMail->GetStateMemory()) > this->UndoMemory;
+         ++action)
+    {
+      this->ForgetStates(*action);
+    }
   }
 }
 
@@ -428,7 +435,9 @@ void SessionPipeline::Cut(const SessionEvent& event)
   {
     double place[3];
     points->GetPoint(id, place);
-    const glm::dvec3 rest = FindRestPlace(this->GetDeformation(), { place[0], place[1], place[2] });
+    // A sheet ends where there is no tissue, and there any place will do.
+    const glm::dvec3 rest =
+      EstimateRestPlace(this->GetDeformation(), { place[0], place[1], place[2] });
     points->SetPoint(id, rest.x, rest.y, rest.z);
   }
   vtkElasticDeformation* elastic = this->GetElastic();
@@ -493,7 +502,9 @@ void SessionPipeline::Carve(const SessionEvent& event)
   const bool isNew = event.Numbers[0] != 0.0 || !this->IsStroke;
   if (isNew)
   {
+    // A tool that was nowhere carves again where it has carved last.
     this->CarveFilter->ClearToolPositions();
+    this->Update(this->CarveFilter);
   }
   if (this->Model != Session::NONE)
   {
@@ -618,6 +629,7 @@ void SessionPipeline::Undo()
   this->Done.pop_back();
   action.After = action.After < 0 ? this->SaveState() : action.After;
   this->Undone.push_back(action);
+  this->LimitStates();
   vtkElasticDeformation* elastic = this->GetElastic();
   switch (action.Kind)
   {

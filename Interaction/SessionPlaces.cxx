@@ -121,23 +121,23 @@ glm::dvec3 FindNearestVoxel(vtkImageData* field, const glm::dvec3& deformed)
   return GetPlace(field, best.Id);
 }
 
-glm::dvec3 FindInField(vtkImageData* field, const glm::dvec3& deformed)
+// Whether the iteration came to an end; where the body is folded or torn it need not.
+bool SearchField(vtkImageData* field, const glm::dvec3& deformed, glm::dvec3& rest)
 {
   const double* spacing = field->GetSpacing();
   const double tolerance = 1e-3 * std::min({ spacing[0], spacing[1], spacing[2] });
+  rest = deformed;
   // Half of the way each time, as the field may change by as much as the place.
-  glm::dvec3 rest = deformed;
   for (int i = 0; i < 60; ++i)
   {
     const glm::dvec3 left = deformed - rest - Interpolate(field, rest);
     if (glm::length(left) <= tolerance)
     {
-      return rest;
+      return true;
     }
     rest += 0.5 * left;
   }
-  // Where the body is folded or torn the iteration need not end.
-  return FindNearestVoxel(field, deformed);
+  return false;
 }
 
 struct Tetrahedron
@@ -187,13 +187,26 @@ glm::dvec3 MapInMesh(
 
 } // namespace
 
-glm::dvec3 deformvolume::FindRestPlace(vtkDataSet* deformation, const glm::dvec3& deformed)
+glm::dvec3 deformvolume::EstimateRestPlace(vtkDataSet* deformation, const glm::dvec3& deformed)
 {
   if (auto* field = vtkImageData::SafeDownCast(deformation))
   {
-    return FindInField(field, deformed);
+    glm::dvec3 rest;
+    SearchField(field, deformed, rest);
+    return rest;
   }
   return MapInMesh(deformation, deformed, &Tetrahedron::Deformed, &Tetrahedron::Rest);
+}
+
+glm::dvec3 deformvolume::FindRestPlace(vtkDataSet* deformation, const glm::dvec3& deformed)
+{
+  auto* field = vtkImageData::SafeDownCast(deformation);
+  if (!field)
+  {
+    return EstimateRestPlace(deformation, deformed);
+  }
+  glm::dvec3 rest;
+  return SearchField(field, deformed, rest) ? rest : FindNearestVoxel(field, deformed);
 }
 
 glm::dvec3 deformvolume::FindDeformedPlace(vtkDataSet* deformation, const glm::dvec3& rest)

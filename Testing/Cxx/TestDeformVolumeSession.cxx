@@ -216,6 +216,57 @@ void TestDrag(vtkImageData* volume)
   VERIFY(one.Object->GetSimulationTime() > 0.0 && one.Object->GetResamplingTime() > 0.0);
 }
 
+// What is done twice is undone twice, with a body that is pulled apart, so that cuts are seen.
+void TestTwice(vtkImageData* volume)
+{
+  Tested one(volume);
+  one.Object->ChangeModel(Session::CHAIN_MAIL);
+  one.Object->ChangeRelaxationSweeps(0); // which goes on for a while
+  const auto rest = one.Step();
+  const auto sheet = MakePlane({ 8.3, 10.4, 8.6 }, { 0, 40, 2 }, { 1, 0, 40 });
+  one.Object->Cut(sheet);
+  one.Object->Cut(sheet);
+  const int handle = one.Object->BeginGrab(20, 10, 9);
+  one.Object->MoveGrab(handle, 24, 10, 9);
+  one.Object->EndGrab(handle);
+  const auto whole = one.Step(); // the drag was over before the step
+  VERIFY(AreEqual(whole, rest));
+  const int other = one.Object->BeginGrab(20, 10, 9);
+  one.Object->MoveGrab(other, 24, 10, 9);
+  const auto apart = one.Step();
+  one.Object->EndGrab(other);
+  for (int i = 0; i < 3; ++i)
+  {
+    one.Object->CarveSphere(14, 14, 9, 2.0 + i);
+    one.Object->CarveTo(14, 14, 9, 2.5 + i);
+  }
+  const auto carved = one.Step();
+  VERIFY(!AreEqual(whole, apart) && !AreEqual(apart, carved));
+  for (int i = 0; i < 2; ++i)
+  {
+    one.Object->Undo();
+  }
+  const auto carvedOnce = one.Step();
+  VERIFY(!AreEqual(carvedOnce, apart) && !AreEqual(carvedOnce, carved));
+  one.Object->Undo();
+  VERIFY(AreEqual(one.Step(), apart));
+  VERIFY_EQUAL(one.Object->GetNumberOfActions(), vtkIdType(5));
+  for (int i = 0; i < 4; ++i)
+  {
+    one.Object->Undo();
+  }
+  VERIFY(AreEqual(one.Step(), rest));
+  for (int i = 0; i < 5; ++i)
+  {
+    one.Object->Redo();
+  }
+  VERIFY(AreEqual(one.Step(), carvedOnce));
+  one.Object->Redo();
+  one.Object->Redo();
+  VERIFY(AreEqual(one.Step(), carved));
+  VERIFY_EQUAL(one.TakeError(), std::string());
+}
+
 class RandomSession
 {
 public:
@@ -229,6 +280,12 @@ public:
   {
     Session* session = this->One.Object;
     const glm::dvec3 place = this->GetPlace();
+    // Actions that can be undone take memory, which is to be flat.
+    constexpr vtkIdType mostActions = 150;
+    if (session->GetNumberOfActions() > mostActions)
+    {
+      session->Reset();
+    }
     switch (this->Random() % 16)
     {
       case 0:
@@ -519,6 +576,7 @@ int TestDeformVolumeSession(int argc, char* argv[])
   const auto volume = MakeVolume(Box);
   TestMisuse(volume);
   TestDrag(volume);
+  TestTwice(volume);
   TestFiles(volume, fileName);
   TestThread(volume, fileName);
   TestRandom(volume, events, static_cast<unsigned>(seed), fileName);
