@@ -220,6 +220,11 @@ vtkDataSet* SessionPipeline::GetDeformation()
   return filter ? vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0)) : this->Still.Get();
 }
 
+vtkIdType SessionPipeline::GetNumberOfMovedVoxels()
+{
+  return this->Model == Session::CHAIN_MAIL ? this->ChainMail->GetNumberOfMovedVoxels() : 0;
+}
+
 void SessionPipeline::Update(vtkAlgorithm* filter)
 {
   this->Message.clear();

@@ -61,6 +61,8 @@ public:
   vtkDataSet* GetDeformation();
   vtkDeformVolumeFilter* GetResampler() { return this->Resampler; }
   int GetModel() const { return this->Model; }
+  /// By ChainMail, in the last step.
+  vtkIdType GetNumberOfMovedVoxels();
   std::size_t GetNumberOfActions() const { return this->Done.size(); }
   std::size_t GetNumberOfUndoneActions() const { return this->Undone.size(); }
   /// What the filters have warned of since the last call.

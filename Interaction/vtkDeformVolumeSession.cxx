@@ -50,6 +50,7 @@ struct PublishedState
   std::size_t Actions = 0;
   std::size_t UndoneActions = 0;
   vtkIdType Steps = 0;
+  vtkIdType MovedVoxels = 0;
   double SimulationTime = 0.0;
   double ResamplingTime = 0.0;
 };
@@ -147,6 +148,7 @@ public:
     state.Actions = this->Pipeline.GetNumberOfActions();
     state.UndoneActions = this->Pipeline.GetNumberOfUndoneActions();
     state.Steps = this->Steps;
+    state.MovedVoxels = this->Pipeline.GetNumberOfMovedVoxels();
     const std::lock_guard<std::mutex> lock(this->QueueMutex);
     this->Errors.insert(this->Errors.end(), errors.begin(), errors.end());
     const std::vector<std::string> warnings = this->Pipeline.TakeWarnings();
@@ -801,6 +803,7 @@ GET_STATE(int, Model, Model)
 GET_STATE(vtkIdType, NumberOfActions, Actions)
 GET_STATE(vtkIdType, NumberOfUndoneActions, UndoneActions)
 GET_STATE(vtkIdType, NumberOfSteps, Steps)
+GET_STATE(vtkIdType, NumberOfMovedVoxels, MovedVoxels)
 GET_STATE(double, SimulationTime, SimulationTime)
 GET_STATE(double, ResamplingTime, ResamplingTime)
 #undef GET_STATE

@@ -247,6 +247,11 @@ public:
   ///@}
 
   /**
+   * Voxels that ChainMail has moved in the last step; 0 with other models.
+   */
+  vtkIdType GetNumberOfMovedVoxels();
+
+  /**
    * The last error in words; "" where there was none.
    */
   vtkGetMacro(ErrorMessage, std::string);
