@@ -540,7 +540,7 @@ void TestTools(int model, const std::string& fileName)
   for (const Event& event : made)
   {
     const bool isSetting = event.Name == "HandleRadius" || event.Name == "RelaxationSweeps" ||
-      event.Name == "NumberOfNodes" || event.Name == "Step";
+      event.Name == "NumberOfNodes" || event.Name == "UndoMemory" || event.Name == "Step";
     if (!isSetting)
     {
       VERIFY(at < wanted.size() && IsWanted(event, wanted[at]));
