@@ -20,8 +20,9 @@
 namespace
 {
 
-void SetUpText(vtkTextActor* actor, bool isTop)
+vtkSmartPointer<vtkTextActor> MakeText(bool isTop)
 {
+  auto actor = vtkSmartPointer<vtkTextActor>::New();
   actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   actor->SetPosition(0.01, isTop ? 0.99 : 0.01);
   vtkTextProperty* property = actor->GetTextProperty();
@@ -36,6 +37,7 @@ void SetUpText(vtkTextActor* actor, bool isTop)
     property->SetVerticalJustificationToTop();
   }
   actor->VisibilityOff();
+  return actor;
 }
 
 bool SetText(vtkTextActor* actor, const std::string& text)
@@ -64,8 +66,6 @@ StyleOverlay::StyleOverlay()
   this->MarkActor->SetMapper(mapper);
   this->MarkActor->GetProperty()->SetPointSize(9.0F);
   this->MarkActor->GetProperty()->SetLineWidth(2.0F);
-  SetUpText(this->Status, false);
-  SetUpText(this->Help, true);
   this->PutMarks();
 }
 
@@ -79,6 +79,11 @@ void StyleOverlay::SetRenderer(vtkRenderer* renderer)
   if (this->Renderer == renderer)
   {
     return;
+  }
+  if (!this->Status)
+  {
+    this->Status = MakeText(false);
+    this->Help = MakeText(true);
   }
   for (vtkActor2D* actor : { this->MarkActor.Get(), static_cast<vtkActor2D*>(this->Status),
          static_cast<vtkActor2D*>(this->Help) })

@@ -42,7 +42,8 @@ public:
   ///@}
 
   ///@{
-  /// At the lower and at the upper left; "" for none. Returns whether it is another one.
+  /// Once there is a renderer. At the lower and at the upper left; "" for none. Returns whether it
+  /// is another one.
   bool SetStatus(const std::string& text);
   bool SetHelp(const std::string& text);
   ///@}
@@ -62,8 +63,9 @@ private:
   std::vector<Mark> Marks;
   vtkNew<vtkPolyData> Drawn;
   vtkNew<vtkActor2D> MarkActor;
-  vtkNew<vtkTextActor> Status;
-  vtkNew<vtkTextActor> Help;
+  // Made with the first renderer: VTK needs its module RenderingFreeType for them.
+  vtkSmartPointer<vtkTextActor> Status;
+  vtkSmartPointer<vtkTextActor> Help;
 };
 
 } // namespace deformvolume

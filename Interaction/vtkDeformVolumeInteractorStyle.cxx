@@ -725,6 +725,7 @@ void vtkDeformVolumeInteractorStyle::OnLeftButtonDown()
   else if (this->CheckSession())
   {
     this->GrabFocus(this->EventCallbackCommand);
+    this->InvokeEvent(vtkCommand::StartInteractionEvent);
     this->BeginTool();
   }
 }
@@ -738,6 +739,7 @@ void vtkDeformVolumeInteractorStyle::OnLeftButtonUp()
   if (this->State == VTKIS_NONE)
   {
     this->EndTool(this->Interactor->GetShiftKey() != 0);
+    this->InvokeEvent(vtkCommand::EndInteractionEvent);
     this->ReleaseFocus();
   }
   else

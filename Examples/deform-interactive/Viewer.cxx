@@ -102,6 +102,8 @@ Viewer::Viewer(const Arguments& arguments, Messages& messages)
   this->Interactor->AddObserver(vtkCommand::DropFilesEvent, this, &Viewer::OnDrop);
   this->Interactor->AddObserver(vtkCommand::TimerEvent, this, &Viewer::OnTimer, -BeforeStyle);
   this->Style->AddObserver(vtkCommand::UpdateDataEvent, this, &Viewer::OnOutput);
+  this->Style->AddObserver(vtkCommand::StartInteractionEvent, this, &Viewer::OnInteraction);
+  this->Style->AddObserver(vtkCommand::EndInteractionEvent, this, &Viewer::OnInteraction);
   this->Renderer->AddObserver(vtkCommand::StartEvent, this, &Viewer::OnFrame);
   this->Window->AddObserver(vtkCommand::EndEvent, this, &Viewer::OnFrame);
 }
@@ -276,6 +278,7 @@ std::string Viewer::TrySave(const std::string& path)
   }
   else if (ending == ".png")
   {
+    this->Interactor->Render();
     this->SavePicture(path);
     isSaved = true;
   }
@@ -306,6 +309,7 @@ void Viewer::SavePicture(const std::string& path)
   grab->SetInput(this->Window);
   grab->SetInputBufferTypeToRGB();
   grab->ReadFrontBufferOff();
+  grab->ShouldRerenderOff();
   grab->Update();
   WritePNG(grab->GetOutput(), path, this->Reports);
 }
@@ -483,6 +487,13 @@ void Viewer::OnOutput(vtkObject*, unsigned long, void*)
   this->UploadTime = this->View.Update(this->Renderer);
 }
 
+// Turns of the camera, too.
+void Viewer::OnInteraction(vtkObject*, unsigned long event, void*)
+{
+  this->IsInteracting = event == vtkCommand::StartInteractionEvent;
+  this->IsChanged = true;
+}
+
 void Viewer::OnTimer(vtkObject*, unsigned long, void*)
 {
   if (this->IsChanged)
@@ -505,7 +516,7 @@ void Viewer::OnFrame(vtkObject* caller, unsigned long, void*)
   {
     this->FrameBegin = now;
     this->IsChanged = false;
-    this->View.SetCoarse(this->Session->GetIsBusy() || this->Style->GetState() != 0);
+    this->View.SetCoarse(this->Session->GetIsBusy() || this->IsInteracting);
     if (now - this->LastTexts > std::chrono::milliseconds(250))
     {
       this->LastTexts = now;

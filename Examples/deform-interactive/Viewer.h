@@ -50,6 +50,7 @@ private:
   bool OnMouseMove(vtkObject*, unsigned long, void*);
   void OnOutput(vtkObject*, unsigned long, void*);
   void OnFrame(vtkObject*, unsigned long event, void*);
+  void OnInteraction(vtkObject*, unsigned long event, void*);
   void OnTimer(vtkObject*, unsigned long, void*);
   void OnDrop(vtkObject*, unsigned long, void* files);
 
@@ -62,6 +63,7 @@ private:
   void ToggleRecording();
   void StartRecording(const std::string& path);
   void Replay(const std::string& path);
+  /// Of what was drawn last.
   void SavePicture(const std::string& path);
   void AimCamera(const double view[3]);
   void ChoosePreset(Transfer::Preset preset);
@@ -92,7 +94,8 @@ private:
   bool ShowNumbers = true;
   bool IsChanged = false; // since it was drawn
   bool IsReplaying = false;
-  bool IsEditing = false; // the plot is dragged
+  bool IsInteracting = false; // a button is pressed
+  bool IsEditing = false;     // the plot is dragged
   int Frame = 0;
 
   double UploadTime = 0.0;

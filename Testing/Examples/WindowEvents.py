@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Events of a window, in the form in which vtkInteractorEventRecorder reads them."""
 
-TIMER = "TimerEvent 0 0 0 0 0 0\n"
-
 
 class WindowEvents:
     """Each event but keys is followed by a timer event: a step of the session."""
 
     def __init__(self):
-        self.text = "# StreamVersion 1.1\n" + TIMER
+        self.place = (0, 0)  # of the cursor
+        self.text = "# StreamVersion 1.1\n"
+        self.wait(1)
 
     def mouse(self, name, place, shift=False):
-        self.text += f"{name} {place[0]:.0f} {place[1]:.0f} {int(shift)} 0 0 0\n" + TIMER
-        return self
+        self.place = place
+        self.text += f"{name} {place[0]:.0f} {place[1]:.0f} {int(shift)} 0 0 0\n"
+        return self.wait(1)
 
     def stroke(self, *places, steps=4, shift=False):
         """From place to place with the left button."""
@@ -30,13 +31,14 @@ class WindowEvents:
             self.mouse("MouseMoveEvent", [a + (b - a) * step / steps for a, b in zip(begin, end)])
         return self.mouse("RightButtonReleaseEvent", end)
 
-    def keys(self, text, place=(0, 0)):
+    def keys(self, text, place=None):
+        self.place = place or self.place
         for key in text:
-            self.text += f"CharEvent {place[0]:.0f} {place[1]:.0f} 0 {ord(key)} 0 0\n"
+            self.text += f"CharEvent {self.place[0]:.0f} {self.place[1]:.0f} 0 {ord(key)} 0 0\n"
         return self
 
     def wait(self, steps):
-        self.text += steps * TIMER
+        self.text += steps * f"TimerEvent {self.place[0]:.0f} {self.place[1]:.0f} 0 0 0 0\n"
         return self
 
     def write(self, path):
