@@ -203,9 +203,7 @@ void Viewer::OpenVolume(const std::string& path)
   this->Renderer->ResetCamera(bounds);
   this->Renderer->GetActiveCamera()->Zoom(1.15);
   this->Style->ShowMessage("2 chooses ChainMail, g grabs, h shows all keys");
-  this->Style->Poll();
-  this->ShowTransfer();
-  this->Interactor->Render();
+  this->Style->Poll(); // draws it
 }
 
 void Viewer::AimCamera(const double view[3])
