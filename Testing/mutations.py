@@ -50,6 +50,7 @@ ABORTS = ("TestElasticAborts", "*")
 REPLACEMENT = ("TestReplacement", "*Knows*:*Equals*/*OfGrid:*Equals*/Links:*Equals*/Runs")
 
 COROTATIONAL = ("TestCorotational", "*")
+DEFORMED_CUTTING = ("TestDeformedCutting", "*")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
@@ -172,6 +173,8 @@ MUTATIONS = {
                      "if (any(fabs(moved) > largest))", [VECTORS_GRAPHICS]),
     "vectors-factor": ("Kernels/Mapping/DisplacementField.h", "constexpr std::uint64_t unit = 1 << 24;",
                        "constexpr std::uint64_t unit = 1 << 0;", [("TestContraction", "*")]),
+    "fem-untangle": ("Kernels/FiniteElements/CorotationalSolver.cxx", "if (state.Sums.Inverted > inverted)",
+                     "if (false)", [COROTATIONAL]),
     "fem-sweeps": ("Kernels/FiniteElements/SingularValues.h", "sweeps = 4;", "sweeps = 2;", [ELEMENTS]),
     "fem-inverted": ("Kernels/FiniteElements/SingularValues.h", "result.Values[2] = Dot(U.Columns[2], b[2]);",
                      "result.Values[2] = Absolute(Dot(U.Columns[2], b[2]));", [ELEMENTS]),
@@ -201,6 +204,10 @@ MUTATIONS = {
                          "        throw;", [ABORTS]),
     "springs-moved": ("Kernels/MassSpring/MassSpringModel.cxx",
                       "      this->State->SetDisplacements(displacements);\n      throw;", "      throw;", [ABORTS]),
+    "box-overshoot": ("Kernels/Cutting/DeformedMeshVertices.cxx", "(most * (1.0 + rounding) + rounding)", "(rounding)",
+                      [DEFORMED_CUTTING]),
+    "box-changes": ("Kernels/Cutting/DeformedFieldVertices.cxx", " - first - 1, 0)", " - first, 0)",
+                    [DEFORMED_CUTTING]),
 }
 
 
