@@ -2,7 +2,6 @@
 #include "VectorConversion.h"
 
 #include "DisplacementField.h" // for LargestDisplacement
-#include "VectorComponents.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
