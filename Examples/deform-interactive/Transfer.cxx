@@ -94,7 +94,8 @@ double Histogram::FindThreshold() const
   double below = 0.0;
   double sumBelow = 0.0;
   double most = -1.0;
-  int threshold = 0;
+  int first = 0;
+  int last = 0; // of all that are best
   for (int bin = 0; bin + 1 < NumberOfBins; ++bin)
   {
     below += this->Counts[static_cast<std::size_t>(bin)];
@@ -107,11 +108,12 @@ double Histogram::FindThreshold() const
       if (variance > most)
       {
         most = variance;
-        threshold = bin + 1;
+        first = bin + 1;
       }
+      last = variance == most ? bin + 1 : last;
     }
   }
-  return this->GetValue(threshold);
+  return this->GetValue(0.5 * (first + last));
 }
 
 double Histogram::FindPercentile(double least, double part) const
@@ -157,8 +159,8 @@ Transfer::Transfer(Preset preset, const Histogram& histogram)
       break;
     }
     default:
-      this->Level = 0.5 * (histogram.Range[0] + threshold);
-      this->Width = threshold - histogram.Range[0];
+      this->Width = 0.5 * (threshold - histogram.Range[0]);
+      this->Level = threshold - 0.5 * this->Width;
   }
   this->Width = std::max(this->Width, 1e-3 * (histogram.Range[1] - histogram.Range[0]));
 }

@@ -438,6 +438,7 @@ bool Viewer::OnChar(vtkObject*, unsigned long, void*)
     default:
       return false;
   }
+  this->ShowTexts();
   this->IsChanged = true;
   return true;
 }

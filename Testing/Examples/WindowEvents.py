@@ -14,7 +14,7 @@ class WindowEvents:
         self.text += f"{name} {place[0]:.0f} {place[1]:.0f} {int(shift)} 0 0 0\n" + TIMER
         return self
 
-    def stroke(self, *places, steps=8, shift=False):
+    def stroke(self, *places, steps=4, shift=False):
         """From place to place with the left button."""
         self.mouse("LeftButtonPressEvent", places[0])
         for begin, end in zip(places, places[1:]):
@@ -23,7 +23,7 @@ class WindowEvents:
                            [a + (b - a) * step / steps for a, b in zip(begin, end)])
         return self.mouse("LeftButtonReleaseEvent", places[-1], shift)
 
-    def turn(self, begin, end, steps=8):
+    def turn(self, begin, end, steps=4):
         """The camera, with the right button."""
         self.mouse("RightButtonPressEvent", begin)
         for step in range(1, steps + 1):
