@@ -173,6 +173,8 @@ MUTATIONS = {
                      "if (any(fabs(moved) > largest))", [VECTORS_GRAPHICS]),
     "vectors-factor": ("Kernels/Mapping/DisplacementField.h", "constexpr std::uint64_t unit = 1 << 24;",
                        "constexpr std::uint64_t unit = 1 << 0;", [("TestContraction", "*")]),
+    "fem-untangle": ("Kernels/FiniteElements/CorotationalSolver.cxx", "if (state.Sums.Inverted > inverted)",
+                     "if (false)", [COROTATIONAL]),
     "fem-sweeps": ("Kernels/FiniteElements/SingularValues.h", "sweeps = 4;", "sweeps = 2;", [ELEMENTS]),
     "fem-inverted": ("Kernels/FiniteElements/SingularValues.h", "result.Values[2] = Dot(U.Columns[2], b[2]);",
                      "result.Values[2] = Absolute(Dot(U.Columns[2], b[2]));", [ELEMENTS]),

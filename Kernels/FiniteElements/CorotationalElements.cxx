@@ -242,6 +242,30 @@ CorotationalElements::Sums CorotationalElements::FindForces(
   return total;
 }
 
+void CorotationalElements::FindInvertedNodes(Watch& watch,
+  const std::vector<glm::dvec3>& displacements, std::vector<unsigned char>& isInverted) const
+{
+  isInverted.assign(displacements.size(), 0);
+  ForChunks(watch, this->Batches,
+    [&](std::size_t chunk)
+    {
+      const ChunkRange range = GetRange(this->Batches, chunk);
+      for (std::size_t i = range.Begin; i < range.End; ++i)
+      {
+        const ElementBatch& batch = this->Batches.Batches[i];
+        const LaneMatrix F = FindDeformationGradient(batch, &displacements.front().x);
+        const Lanes determinant = Dot(F.Columns[0], Cross(F.Columns[1], F.Columns[2]));
+        for (int lane = 0; lane < NumberOfLanes; ++lane)
+        {
+          for (int node = 0; node < 4 && determinant[lane] < 0.0; ++node)
+          {
+            isInverted[static_cast<std::size_t>(batch.Nodes[node][lane])] = 1;
+          }
+        }
+      }
+    });
+}
+
 void CorotationalElements::AssembleTangent(
   Watch& watch, const std::vector<glm::dvec3>& displacements, BlockMatrix& matrix) const
 {

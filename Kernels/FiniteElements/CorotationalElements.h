@@ -42,6 +42,10 @@ public:
   Sums FindForces(Watch& watch, const std::vector<glm::dvec3>& displacements,
     std::vector<glm::dvec3>& forces) const;
 
+  /// Which nodes belong to tetrahedra that are inside out.
+  void FindInvertedNodes(Watch& watch, const std::vector<glm::dvec3>& displacements,
+    std::vector<unsigned char>& isInverted) const;
+
   /// The second derivatives; see FindTangent.
   void AssembleTangent(
     Watch& watch, const std::vector<glm::dvec3>& displacements, BlockMatrix& matrix) const;

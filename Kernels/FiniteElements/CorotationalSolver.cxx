@@ -120,6 +120,46 @@ void CorotationalSolver::UpdateTangent(
   this->IsTangentOld = false;
 }
 
+void CorotationalSolver::Untangle(Watch& watch, const CorotationalProblem& problem, State& state)
+{
+  // The least fall of the energy, as a part of the strain energy, for which it goes on.
+  constexpr double leastFall = 0.01;
+  const BlockPattern& pattern = this->Tangent.GetMatrix().GetPattern();
+  std::vector<unsigned char> isInverted;
+  while (state.Sums.Inverted > 0)
+  {
+    this->Elements.FindInvertedNodes(watch, state.Displacements, isInverted);
+    this->Trial.Displacements = state.Displacements;
+    ForRows(watch, isInverted.size(),
+      [&](std::size_t begin, std::size_t end)
+      {
+        for (std::size_t node = begin; node < end; ++node)
+        {
+          if (isInverted[node] == 0 || problem.IsFree[node] == 0)
+          {
+            continue;
+          }
+          glm::dvec3 sum(0.0);
+          for (std::int32_t block = pattern.Rows[node]; block < pattern.Rows[node + 1]; ++block)
+          {
+            sum += state.Displacements[static_cast<std::size_t>(
+              pattern.Columns[static_cast<std::size_t>(block)])];
+          }
+          // Of the others in the row.
+          const double neighbours = pattern.Rows[node + 1] - pattern.Rows[node] - 1;
+          this->Trial.Displacements[node] = (sum - state.Displacements[node]) / neighbours;
+        }
+      });
+    this->Evaluate(watch, problem, this->Trial);
+    if (!(this->Trial.Potential < state.Potential - leastFall * state.Sums.Energy))
+    {
+      return;
+    }
+    std::swap(state, this->Trial);
+    this->HasTangent = false;
+  }
+}
+
 double CorotationalSolver::ChooseTolerance(const CorotationalProblem& problem, double wanted)
 {
   constexpr double share = 0.3;
@@ -261,7 +301,13 @@ CorotationalReport CorotationalSolver::Solve(const CorotationalRequest& request)
   {
     this->Evaluate(watch, problem, state);
   }
+  // What the last call has left so has had its turn.
+  const std::int64_t inverted = this->HasForces ? state.Sums.Inverted : 0;
   const bool isMoved = this->MoveHeldNodes(watch, problem, state, report);
+  if (state.Sums.Inverted > inverted)
+  {
+    this->Untangle(watch, problem, state);
+  }
   // What is moved live is nearer to equilibrium in the frames that follow.
   constexpr double toleranceOfFrames = 1e-2;
   const double tolerance =

@@ -48,6 +48,10 @@ private:
   // were elsewhere.
   bool MoveHeldNodes(
     Watch& watch, const CorotationalProblem& problem, State& state, CorotationalReport& report);
+  // Moves the free nodes of tetrahedra that are inside out to the mean of their neighbours, as long
+  // as the energy falls. Newton's method takes many steps to turn such tetrahedra: each in its own
+  // way, which is rarely that of its neighbours.
+  void Untangle(Watch& watch, const CorotationalProblem& problem, State& state);
   // How well a linear system is to be solved where the residual is to become so much smaller.
   static double ChooseTolerance(const CorotationalProblem& problem, double wanted);
   // Solves for what the right-hand side and the forces that are left say.
