@@ -364,8 +364,6 @@ void SessionPipeline::BeginGrab(double handle, const glm::dvec3& place)
   Action drag;
   drag.Handle = handle;
   drag.Rest = FindRestPlace(this->GetDeformation(), place);
-  // The point of the body that is nearest stays where it is until the handle is moved.
-  drag.Now = drag.LastPossible = FindDeformedPlace(this->GetDeformation(), drag.Rest);
   drag.IsGrabbed = drag.IsHeld = true;
   double bounds[6];
   this->Volume->GetBounds(bounds);
@@ -373,13 +371,17 @@ void SessionPipeline::BeginGrab(double handle, const glm::dvec3& place)
   const glm::dvec3 high(bounds[1], bounds[3], bounds[5]);
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double most = 1e-6 * (high[axis] - low[axis]);
+    // What is seen of the border may lie beyond it by a part of a voxel.
+    const double most = this->Volume->GetSpacing()[axis];
     if (!(drag.Rest[axis] >= low[axis] - most && drag.Rest[axis] <= high[axis] + most))
     {
       throw std::runtime_error(
         "There is nothing of the volume where it was grabbed. Grab a place within the volume.");
     }
+    drag.Rest[axis] = std::clamp(drag.Rest[axis], low[axis], high[axis]);
   }
+  // The point of the body that is nearest stays where it is until the handle is moved.
+  drag.Now = drag.LastPossible = FindDeformedPlace(this->GetDeformation(), drag.Rest);
   const Actions undone = this->Undone;
   this->Do(drag);
   if (this->GetElastic())

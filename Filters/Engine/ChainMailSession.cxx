@@ -248,16 +248,6 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
   try
   {
     this->SetVolume(geometry, settings);
-    if (this->IsToReset)
-    {
-      this->Model.Reset();
-      this->IsToReset = false;
-    }
-    if (this->ToRestore && this->ToRestore->Voxels == geometry.PointExtent)
-    {
-      this->Model.Restore(*this->ToRestore); // before links return, which then hold what they held
-    }
-    this->ToRestore = nullptr;
     if (!(key == this->KeyOfMaterials))
     {
       if (materials.empty()) // the device has changed
@@ -283,6 +273,17 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
       this->Model.SetPinned(pins ? flags.data() : nullptr);
       this->StampOfPins = pinStamp;
     }
+    // After all that frees or holds voxels, so that nothing is touched by it and begins to relax.
+    if (this->IsToReset)
+    {
+      this->Model.Reset();
+      this->IsToReset = false;
+    }
+    if (this->ToRestore && this->ToRestore->Voxels == geometry.PointExtent)
+    {
+      this->Model.Restore(*this->ToRestore);
+    }
+    this->ToRestore = nullptr;
     const ChainMailReport report = this->Model.Step(request);
     this->LogChanges(report);
     this->Output.Restore();

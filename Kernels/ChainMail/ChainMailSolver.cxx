@@ -147,6 +147,7 @@ void ChainMailSolver::Restore(const ChainMailSnapshot& snapshot)
     this->IsDisplaced[block] = 1;
   }
   this->Recent.clear();
+  this->WasReset = false;
   this->IsToCheck = true;
 }
 
