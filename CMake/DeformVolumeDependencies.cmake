@@ -17,7 +17,8 @@ set(deformvolume_vtk_components
   ParallelCore
   vtksys)
 if (NOT DEFORMVOLUME_USE_PARAVIEW)
-  list(APPEND deformvolume_vtk_components IOXML IOXMLParser) # of the module in Interaction
+  # Of the module in Interaction.
+  list(APPEND deformvolume_vtk_components InteractionStyle IOXML IOXMLParser RenderingCore)
 endif ()
 # Those that an installed DeformVolume needs.
 set(deformvolume_package_components ${deformvolume_vtk_components})
@@ -46,6 +47,9 @@ if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
     RenderingVolume
     RenderingVolumeOpenGL2
     zlib)
+  if (NOT DEFORMVOLUME_USE_PARAVIEW)
+    list(APPEND deformvolume_vtk_components RenderingImage) # of deform-interactive
+  endif ()
 endif ()
 if (BUILD_TESTING)
   list(APPEND deformvolume_vtk_components

@@ -19,7 +19,7 @@ cd "$(dirname "$0")/.."
 bash Testing/packages.sh library example
 # What only tests need is not asked for. A build directory that is there is taken as it is.
 [ -f build/vtk/build.ninja ] || cmake --preset vtk -DBUILD_TESTING=OFF
-cmake --build --preset vtk --target deform-volume cut-and-pull squished-head
+cmake --build --preset vtk --target deform-volume cut-and-pull squished-head deform-interactive
 
 templates=/usr/share/mricron/templates
 mkdir -p build/demo/kernel-cache
@@ -54,3 +54,6 @@ echo "$templates/ch2.nii.gz, pulled by its nose"
 xvfb-run -a -s "-noreset -screen 0 1400x1024x24" build/vtk/bin/squished-head \
   $templates/ch2.nii.gz build/demo/squished-head.png 400
 echo "See build/demo/squished-head.png"
+
+echo
+echo "build/vtk/bin/deform-interactive drags, cuts and carves the head in a window"

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <sstream>
 
 vtkStandardNewMacro(vtkChainMailDeformation);
@@ -126,6 +127,49 @@ int vtkChainMailDeformation::GetNumberOfMaterialRanges()
   return static_cast<int>(this->Internals->Settings.Table.Ranges.size());
 }
 
+vtkIdType vtkChainMailDeformation::SaveState()
+{
+  try
+  {
+    return static_cast<vtkIdType>(this->Internals->Session.SaveState());
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< "The state cannot be saved: " << error.what());
+    return -1;
+  }
+}
+
+//------------------------------------------------------------------------------
+bool vtkChainMailDeformation::RestoreState(vtkIdType state)
+{
+  if (!this->Internals->Session.RestoreState(state))
+  {
+    return false;
+  }
+  this->Modified();
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool vtkChainMailDeformation::RemoveState(vtkIdType state)
+{
+  return this->Internals->Session.RemoveState(state);
+}
+
+//------------------------------------------------------------------------------
+int vtkChainMailDeformation::GetNumberOfStates()
+{
+  return static_cast<int>(this->Internals->Session.GetNumberOfStates());
+}
+
+//------------------------------------------------------------------------------
+vtkTypeInt64 vtkChainMailDeformation::GetStateMemory()
+{
+  return static_cast<vtkTypeInt64>(this->Internals->Session.GetStateMemory());
+}
+
+//------------------------------------------------------------------------------
 void vtkChainMailDeformation::Reset()
 {
   this->Internals->Session.Reset();

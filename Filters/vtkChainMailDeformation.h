@@ -190,6 +190,26 @@ public:
 
   ///@{
   /**
+   * Keep where all voxels are now, and take them back to that before the next step, to the last
+   * bit: an undo. SaveState() returns the number of the state, -1 after an error; each takes 6 KiB
+   * for each block of 8 x 8 x 8 voxels that has moved since the state before. RestoreState() and
+   * RemoveState() return false where there is no such state, the former as well where the volume
+   * has other voxels now. Where a state that comes back violates the limits of now, all voxels are
+   * put to rest.
+   */
+  vtkIdType SaveState();
+  bool RestoreState(vtkIdType state);
+  bool RemoveState(vtkIdType state);
+  int GetNumberOfStates();
+  ///@}
+
+  /**
+   * Bytes of host memory that the states take.
+   */
+  vtkTypeInt64 GetStateMemory();
+
+  ///@{
+  /**
    * The OpenCL device, in the words of vtkDeformVolumeFilter::SetDevice(). Displacements are the
    * same on all of them, to the last bit. A change of device puts all voxels to rest. Default "":
    * the best there is.

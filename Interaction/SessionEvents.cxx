@@ -28,7 +28,8 @@ struct EventForm
 constexpr std::array<EventForm, SessionEvent::STEP + 1> Forms = { { { "BeginGrab", 4 },
   { "MoveGrab", 4 }, { "EndGrab", 1 }, { "Hold", 1 }, { "Release", 1 }, { "Cut", 13 },
   { "Carve", 5 }, { "Undo", 0 }, { "Redo", 0 }, { "Reset", 0 }, { "Model", 1 },
-  { "HandleRadius", 1 }, { "RelaxationSweeps", 1 }, { "NumberOfNodes", 1 }, { "Step", 0 } } };
+  { "HandleRadius", 1 }, { "RelaxationSweeps", 1 }, { "NumberOfNodes", 1 }, { "UndoMemory", 1 },
+  { "Step", 0 } } };
 
 bool IsCut(const std::vector<double>& numbers)
 {

@@ -34,6 +34,7 @@ struct SessionEvent
     HANDLE_RADIUS, // world units
     RELAXATION,    // sweeps
     LATTICE,       // nodes on each axis
+    UNDO_MEMORY,   // bytes
     STEP           // one step of the simulation
   };
   KindType Kind = STEP;

@@ -21,9 +21,13 @@
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
+#include "vtkVolumeEditAlgorithm.h"
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -34,17 +38,24 @@ using deformvolume::SessionEvent;
 using Session = vtkDeformVolumeSession;
 
 // VTK puts the file, the line and the object before what it says.
-void TakeMessage(vtkObject*, unsigned long, void* target, void* text)
+std::string StripMessage(const void* text)
 {
-  auto& message = *static_cast<std::string*>(target);
-  if (!message.empty())
-  {
-    return; // others follow from the first
-  }
-  message = static_cast<const char*>(text);
+  std::string message = static_cast<const char*>(text);
   const std::size_t end = message.find("): ");
   message = end == std::string::npos ? message : message.substr(end + 3);
   message.erase(message.find_last_not_of(" \n") + 1);
+  return message;
+}
+
+void TakeError(vtkObject*, unsigned long, void* target, void* text)
+{
+  auto& message = *static_cast<std::string*>(target);
+  message = message.empty() ? StripMessage(text) : message; // others follow from the first
+}
+
+void TakeWarning(vtkObject*, unsigned long, void* target, void* text)
+{
+  static_cast<std::vector<std::string>*>(target)->push_back(StripMessage(text));
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> MakeLattice(vtkImageData* volume, int nodes)
@@ -96,19 +107,21 @@ namespace deformvolume
 
 SessionPipeline::SessionPipeline()
 {
-  this->Observer->SetCallback(TakeMessage);
-  this->Observer->SetClientData(&this->Message);
+  this->ErrorObserver->SetCallback(TakeError);
+  this->ErrorObserver->SetClientData(&this->Message);
+  this->WarningObserver->SetCallback(TakeWarning);
+  this->WarningObserver->SetClientData(&this->Warnings);
   for (vtkAlgorithm* filter :
     { static_cast<vtkAlgorithm*>(this->CutFilter), static_cast<vtkAlgorithm*>(this->CarveFilter),
       static_cast<vtkAlgorithm*>(this->ChainMail), static_cast<vtkAlgorithm*>(this->MassSpring),
       static_cast<vtkAlgorithm*>(this->Corotational), static_cast<vtkAlgorithm*>(this->Resampler) })
   {
-    filter->AddObserver(vtkCommand::ErrorEvent, this->Observer);
-    filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this->Observer);
+    filter->AddObserver(vtkCommand::ErrorEvent, this->ErrorObserver);
+    filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this->ErrorObserver);
+    filter->AddObserver(vtkCommand::WarningEvent, this->WarningObserver);
   }
   this->CutFilter->AccumulateOn();
   this->CarveFilter->AccumulateOn();
-  this->CarveFilter->SetInputConnection(this->CutFilter->GetOutputPort());
   this->ChainMail->SetInputConnection(this->CarveFilter->GetOutputPort());
   this->Resampler->SetInputConnection(this->CarveFilter->GetOutputPort());
   // So that the extent is always the same one, and outputs are updated in part.
@@ -141,8 +154,12 @@ void SessionPipeline::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
   this->Still->GetPointData()->SetVectors(none);
   this->TakeRestMesh();
 
-  this->Done.clear();
-  this->Undone.clear();
+  for (Actions* actions : { &this->Done, &this->Undone })
+  {
+    std::for_each(
+      actions->begin(), actions->end(), [this](Action& action) { this->ForgetStates(action); });
+    actions->clear();
+  }
   this->IsStroke = false;
   this->CutFilter->SetInputData(this->Volume);
   this->CutFilter->SetSheetData(nullptr);
@@ -174,7 +191,8 @@ SessionEvents SessionPipeline::GetSettings() const
 {
   return { { SessionEvent::HANDLE_RADIUS, { this->HandleRadius } },
     { SessionEvent::RELAXATION, { static_cast<double>(this->RelaxationSweeps) } },
-    { SessionEvent::LATTICE, { static_cast<double>(this->NumberOfNodes) } } };
+    { SessionEvent::LATTICE, { static_cast<double>(this->NumberOfNodes) } },
+    { SessionEvent::UNDO_MEMORY, { this->UndoMemory } } };
 }
 
 vtkElasticDeformation* SessionPipeline::GetElastic()
@@ -202,6 +220,11 @@ vtkDataSet* SessionPipeline::GetDeformation()
   return filter ? vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0)) : this->Still.Get();
 }
 
+vtkIdType SessionPipeline::GetNumberOfMovedVoxels()
+{
+  return this->Model == Session::CHAIN_MAIL ? this->ChainMail->GetNumberOfMovedVoxels() : 0;
+}
+
 void SessionPipeline::Update(vtkAlgorithm* filter)
 {
   this->Message.clear();
@@ -214,6 +237,12 @@ void SessionPipeline::Update(vtkAlgorithm* filter)
 
 void SessionPipeline::Apply(const SessionEvent& event)
 {
+  const bool isOfHistory = event.Kind == SessionEvent::UNDO || event.Kind == SessionEvent::REDO ||
+    event.Kind == SessionEvent::RESET;
+  if (this->IsToRebuild && !isOfHistory) // of several undone at once the body comes from rest once
+  {
+    this->Rebuild();
+  }
   this->IsStroke = this->IsStroke && event.Kind == SessionEvent::CARVE;
   switch (event.Kind)
   {
@@ -239,17 +268,11 @@ void SessionPipeline::Apply(const SessionEvent& event)
       return this->Carve(event);
     case SessionEvent::UNDO:
       this->EndGrabs();
-      if (this->Undo())
-      {
-        this->Rebuild();
-      }
+      this->Undo();
       return;
     case SessionEvent::REDO:
       this->EndGrabs();
-      if (this->Redo())
-      {
-        this->Rebuild();
-      }
+      this->Redo();
       return;
     case SessionEvent::RESET:
       return this->Reset();
@@ -267,15 +290,66 @@ void SessionPipeline::Apply(const SessionEvent& event)
       return;
     case SessionEvent::LATTICE:
       return this->SetLattice(GetWhole(event, 2, 100, "The number of nodes on an axis"));
+    case SessionEvent::UNDO_MEMORY:
+      if (!(event.Numbers[0] >= 0.0))
+      {
+        throw std::runtime_error("The memory for undo is less than 0. Set 0 or more bytes.");
+      }
+      this->UndoMemory = event.Numbers[0];
+      this->LimitStates();
+      return;
     case SessionEvent::STEP:
       this->Step();
   }
 }
 
-void SessionPipeline::Do(const Action& action)
+// To be called before anything of the action is seen by the model.
+void SessionPipeline::Do(Action action)
 {
-  this->Done.push_back(action);
+  for (Action& undone : this->Undone)
+  {
+    this->ForgetStates(undone);
+  }
   this->Undone.clear();
+  action.Before = this->SaveState();
+  this->Done.push_back(std::move(action));
+  this->LimitStates();
+}
+
+vtkIdType SessionPipeline::SaveState()
+{
+  return this->Model == Session::CHAIN_MAIL && !this->IsToRebuild ? this->ChainMail->SaveState()
+                                                                  : -1;
+}
+
+// To where all voxels were, or from rest to where handles are where that is not known.
+void SessionPipeline::RestoreState(vtkIdType state)
+{
+  this->Connect();
+  this->IsToRebuild = this->Model != Session::CHAIN_MAIL || !this->ChainMail->RestoreState(state);
+}
+
+void SessionPipeline::ForgetStates(Action& action)
+{
+  for (vtkIdType* state : { &action.Before, &action.After })
+  {
+    this->ChainMail->RemoveState(*state);
+    *state = -1;
+  }
+}
+
+// Those go first that are the most steps of undo or redo away.
+void SessionPipeline::LimitStates()
+{
+  for (Actions* actions : { &this->Done, &this->Undone })
+  {
+    for (auto action = actions->begin(); action != actions->end() &&
+         static_cast<double>(this->ChainMail->GetStateMemory()) > this->UndoMemory;
+         ++action)
+    {
+      this->ForgetStates(*action);
+    }
+  }
 }
 
 void SessionPipeline::BeginGrab(double handle, const glm::dvec3& place)
@@ -313,7 +387,7 @@ void SessionPipeline::BeginGrab(double handle, const glm::dvec3& place)
     // Whether there is a node to hold is known only to the filter.
     try
     {
-      this->UpdateModel(this->GetHeld(this->Done.end()));
+      this->UpdateModel(this->GetHeld());
     }
     catch (...)
     {
@@ -343,7 +417,7 @@ SessionPipeline::Action& SessionPipeline::FindHandle(double handle, bool isGrabb
 void SessionPipeline::Release(double handle)
 {
   this->FindHandle(handle, false).IsGrabbed = false;
-  const Actions held = this->GetHeld(this->Done.end());
+  const Actions held = this->GetHeld();
   if (std::none_of(
         held.begin(), held.end(), [=](const Action& one) { return one.Handle == handle; }))
   {
@@ -366,35 +440,61 @@ void SessionPipeline::Cut(const SessionEvent& event)
   {
     double place[3];
     points->GetPoint(id, place);
-    const glm::dvec3 rest = FindRestPlace(this->GetDeformation(), { place[0], place[1], place[2] });
+    // A sheet ends where there is no tissue, and there any place will do.
+    const glm::dvec3 rest =
+      EstimateRestPlace(this->GetDeformation(), { place[0], place[1], place[2] });
     points->SetPoint(id, rest.x, rest.y, rest.z);
   }
-  if (this->Model != Session::NONE)
+  vtkElasticDeformation* elastic = this->GetElastic();
+  if (this->Model == Session::CHAIN_MAIL)
   {
     this->CutFilter->SetDeformationData(this->GetDeformation());
   }
-  this->CutFilter->SetSheetData(sheet);
+  this->CutFilter->SetSheetData(elastic ? cut.RestSheet : sheet);
+  const auto disconnect = [this]
+  {
+    this->CutFilter->SetDeformationData(nullptr);
+    // The same sheet may cut again.
+    this->CutFilter->SetSheetData(nullptr);
+  };
   try
   {
     this->Update(this->CutFilter);
   }
   catch (...)
   {
-    this->CutFilter->SetDeformationData(nullptr);
-    this->CutFilter->SetSheetData(nullptr);
+    disconnect();
     throw;
   }
-  this->CutFilter->SetDeformationData(nullptr);
+  disconnect();
+  this->Update(this->CutFilter);
   this->Do(cut);
-  this->CutMesh(sheet);
+  if (!elastic)
+  {
+    return;
+  }
+  try
+  {
+    this->CutMesh(elastic, sheet, this->GetHeld(), this->Done.back());
+  }
+  catch (...)
+  {
+    elastic->SetSheetData(nullptr);
+    this->Done.pop_back();
+    this->UndoEdits(this->CutFilter, 1);
+    throw;
+  }
 }
 
-void SessionPipeline::CutMesh(vtkPolyData* sheet)
+void SessionPipeline::CutMesh(
+  vtkElasticDeformation* elastic, vtkPolyData* sheet, const Actions& held, Action& cut)
 {
-  if (vtkElasticDeformation* elastic = this->GetElastic())
-  {
-    elastic->SetSheetData(sheet);
-  }
+  const vtkIdType before = elastic->GetNumberOfCuts();
+  elastic->SetSheetData(sheet);
+  this->UpdateModel(held);
+  cut.HasSplit = elastic->GetNumberOfCuts() > before;
+  // The same sheet may cut again.
+  elastic->SetSheetData(nullptr);
 }
 
 void SessionPipeline::Carve(const SessionEvent& event)
@@ -407,7 +507,9 @@ void SessionPipeline::Carve(const SessionEvent& event)
   const bool isNew = event.Numbers[0] != 0.0 || !this->IsStroke;
   if (isNew)
   {
+    // A tool that was nowhere carves again where it has carved last.
     this->CarveFilter->ClearToolPositions();
+    this->Update(this->CarveFilter);
   }
   if (this->Model != Session::NONE)
   {
@@ -460,10 +562,10 @@ void SessionPipeline::SetModel(int model)
   }
   catch (...)
   {
+    this->Model = change.FormerModel;
+    this->RestoreState(this->Done.back().Before);
     this->Done = done;
     this->Undone = undone;
-    this->Model = change.FormerModel;
-    this->Rebuild();
     throw;
   }
 }
@@ -504,42 +606,69 @@ void SessionPipeline::EndGrabs()
   }
 }
 
-bool SessionPipeline::Undo()
+void SessionPipeline::UndoEdits(vtkVolumeEditAlgorithm* filter, int edits)
+{
+  for (int i = 0; i < edits; ++i)
+  {
+    filter->Undo();
+  }
+  this->Update(filter);
+}
+
+void SessionPipeline::RedoEdits(vtkVolumeEditAlgorithm* filter, int edits)
+{
+  for (int i = 0; i < edits; ++i)
+  {
+    filter->Redo();
+  }
+  this->Update(filter);
+}
+
+void SessionPipeline::Undo()
 {
   if (this->Done.empty())
   {
-    return false;
+    return;
   }
-  const Action action = this->Done.back();
+  Action action = this->Done.back();
   this->Done.pop_back();
+  action.After = action.After < 0 ? this->SaveState() : action.After;
   this->Undone.push_back(action);
+  this->LimitStates();
+  vtkElasticDeformation* elastic = this->GetElastic();
   switch (action.Kind)
   {
     case Action::CUT:
-      this->CutFilter->Undo();
-      this->Update(this->CutFilter);
-      return this->GetElastic() != nullptr;
+      this->UndoEdits(this->CutFilter, 1);
+      if (elastic && action.HasSplit && !this->IsToRebuild)
+      {
+        elastic->UndoCut();
+        this->UpdateModel(this->GetHeld());
+      }
+      break;
     case Action::CARVE:
       this->CarveFilter->ClearToolPositions();
-      for (int i = 0; i < action.NumberOfEdits; ++i)
-      {
-        this->CarveFilter->Undo();
-        this->Update(this->CarveFilter);
-      }
-      return false;
+      this->UndoEdits(this->CarveFilter, action.NumberOfEdits);
+      break;
     case Action::MODEL:
       this->Model = action.FormerModel;
-      return true;
+      this->RestoreState(action.Before);
+      return;
     default:
-      return true;
+      break;
+  }
+  // Meshes go to where they are held now by themselves.
+  if (!elastic)
+  {
+    this->RestoreState(action.Before);
   }
 }
 
-bool SessionPipeline::Redo()
+void SessionPipeline::Redo()
 {
   if (this->Undone.empty())
   {
-    return false;
+    return;
   }
   const Action action = this->Undone.back();
   this->Undone.pop_back();
@@ -547,21 +676,21 @@ bool SessionPipeline::Redo()
   switch (action.Kind)
   {
     case Action::CUT:
-      this->CutFilter->Redo();
-      this->Update(this->CutFilter);
-      return this->GetElastic() != nullptr;
+      this->RedoEdits(this->CutFilter, 1);
+      break;
     case Action::CARVE:
-      for (int i = 0; i < action.NumberOfEdits; ++i)
-      {
-        this->CarveFilter->Redo();
-        this->Update(this->CarveFilter);
-      }
-      return false;
+      this->RedoEdits(this->CarveFilter, action.NumberOfEdits);
+      break;
     case Action::MODEL:
       this->Model = action.Model;
-      return true;
+      break;
     default:
-      return true;
+      break;
+  }
+  // A cut splits a mesh at rest.
+  if (!this->GetElastic() || action.Kind == Action::CUT || action.Kind == Action::MODEL)
+  {
+    this->RestoreState(action.After);
   }
 }
 
@@ -572,23 +701,21 @@ void SessionPipeline::Reset()
   {
     this->Undo();
   }
-  this->Rebuild();
 }
 
-// The actions that hold something after those before the end.
-SessionPipeline::Actions SessionPipeline::GetHeld(Actions::const_iterator end) const
+SessionPipeline::Actions SessionPipeline::GetHeld() const
 {
   Actions held;
-  for (auto action = this->Done.begin(); action != end; ++action)
+  for (const Action& action : this->Done)
   {
-    if (action->Kind == Action::DRAG && action->IsHeld)
+    if (action.Kind == Action::DRAG && action.IsHeld)
     {
-      held.push_back(*action);
+      held.push_back(action);
     }
-    else if (action->Kind == Action::RELEASE)
+    else if (action.Kind == Action::RELEASE)
     {
       held.erase(std::remove_if(held.begin(), held.end(),
-                   [&](const Action& one) { return one.Handle == action->Handle; }),
+                   [&](const Action& one) { return one.Handle == action.Handle; }),
         held.end());
     }
   }
@@ -599,6 +726,16 @@ void SessionPipeline::Connect()
 {
   vtkElasticDeformation* elastic = this->GetElastic();
   this->Resampler->SetOpenSplits(elastic != nullptr);
+  // A body that is a mesh opens where the mesh is split. The mask of a cut would be a second gap
+  // beside that, along the sheet.
+  if (elastic)
+  {
+    this->CarveFilter->SetInputData(this->Volume);
+  }
+  else
+  {
+    this->CarveFilter->SetInputConnection(this->CutFilter->GetOutputPort());
+  }
   if (vtkAlgorithm* filter = this->GetModelFilter())
   {
     this->Resampler->SetDeformationConnection(filter->GetOutputPort());
@@ -611,14 +748,14 @@ void SessionPipeline::Connect()
 
 void SessionPipeline::Rebuild()
 {
+  this->IsToRebuild = false;
   this->Connect();
   this->LastVectors.clear();
   this->QuietSteps = 0;
   if (this->Model == Session::CHAIN_MAIL)
   {
     this->ChainMail->Reset();
-    this->UpdateModel({});
-    this->RunDrags(this->Done.end());
+    this->UpdateModel(this->GetHeld());
   }
   else if (vtkElasticDeformation* elastic = this->GetElastic())
   {
@@ -626,16 +763,15 @@ void SessionPipeline::Rebuild()
     elastic->ClearCuts();
     elastic->SetSheetData(nullptr);
     this->UpdateModel({});
-    for (const Action& action : this->Done)
+    for (Action& action : this->Done)
     {
       if (action.Kind == Action::CUT)
       {
-        elastic->SetSheetData(action.RestSheet);
-        this->UpdateModel({});
+        this->CutMesh(elastic, action.RestSheet, {}, action);
       }
     }
     elastic->Reset();
-    this->UpdateModel(this->GetHeld(this->Done.end()));
+    this->UpdateModel(this->GetHeld());
   }
   else
   {
@@ -643,19 +779,30 @@ void SessionPipeline::Rebuild()
   }
 }
 
-// Tissue stays where a handle has left it: so each drag is made again, in one step.
-void SessionPipeline::RunDrags(Actions::const_iterator end)
+// From a place to the nearest node of a mesh that can move, where none lies within the radius of
+// handles: who grabs something coarse gets hold of it nevertheless.
+glm::dvec3 SessionPipeline::FindShift(const glm::dvec3& rest)
 {
-  for (auto action = this->Done.cbegin(); action != end; ++action)
+  if (!this->GetElastic())
   {
-    if (action->Kind == Action::DRAG)
+    return glm::dvec3(0.0);
+  }
+  vtkDataArray* fixed = this->RestMesh->GetPointData()->GetArray("Fixed");
+  glm::dvec3 shift(0.0);
+  double least = std::numeric_limits<double>::infinity();
+  for (vtkIdType id = 0; id < this->RestMesh->GetNumberOfPoints(); ++id)
+  {
+    double place[3];
+    this->RestMesh->GetPoint(id, place);
+    const glm::dvec3 way = glm::dvec3(place[0], place[1], place[2]) - rest;
+    const double square = glm::dot(way, way);
+    if (square < least && !(fixed && fixed->GetComponent(id, 0) != 0.0))
     {
-      Actions held = this->GetHeld(action);
-      held.push_back(*action);
-      this->UpdateModel(held);
+      least = square;
+      shift = way;
     }
   }
-  this->UpdateModel(this->GetHeld(end));
+  return std::isfinite(least) && std::sqrt(least) > this->HandleRadius ? shift : glm::dvec3(0.0);
 }
 
 void SessionPipeline::UpdateModel(const Actions& held)
@@ -667,8 +814,10 @@ void SessionPipeline::UpdateModel(const Actions& held)
   rest->SetNumberOfComponents(3);
   for (const Action& action : held)
   {
-    points->InsertNextPoint(action.Now.x, action.Now.y, action.Now.z);
-    rest->InsertNextTuple3(action.Rest.x, action.Rest.y, action.Rest.z);
+    const glm::dvec3 shift = this->FindShift(action.Rest);
+    points->InsertNextPoint(action.Now.x + shift.x, action.Now.y + shift.y, action.Now.z + shift.z);
+    rest->InsertNextTuple3(
+      action.Rest.x + shift.x, action.Rest.y + shift.y, action.Rest.z + shift.z);
   }
   vtkNew<vtkPolyData> handles;
   handles->SetPoints(points);
@@ -692,13 +841,17 @@ void SessionPipeline::UpdateModel(const Actions& held)
 
 bool SessionPipeline::Step()
 {
+  if (this->IsToRebuild)
+  {
+    this->Rebuild();
+  }
   if (this->Model == Session::NONE)
   {
     return false;
   }
   try
   {
-    this->UpdateModel(this->GetHeld(this->Done.end()));
+    this->UpdateModel(this->GetHeld());
   }
   catch (...)
   {
@@ -706,7 +859,7 @@ bool SessionPipeline::Step()
     {
       action.Now = action.LastPossible;
     }
-    this->UpdateModel(this->GetHeld(this->Done.end()));
+    this->UpdateModel(this->GetHeld());
     throw;
   }
   for (Action& action : this->Done)

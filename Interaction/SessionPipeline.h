@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkAlgorithm;
@@ -26,14 +27,14 @@ class vtkLatticeTetrahedraSource;
 class vtkMassSpringDeformation;
 class vtkPolyData;
 class vtkUnstructuredGrid;
+class vtkVolumeEditAlgorithm;
 
 namespace deformvolume
 {
 
 /// The filters of a session, and what has been done to them. One thread at a time may use it.
 ///
-/// What is done is a list of actions. After an undo the body comes from rest to where the actions
-/// that are left hold it, so that it depends on them and on nothing else.
+/// What is done is a list of actions.
 class SessionPipeline
 {
 public:
@@ -60,8 +61,12 @@ public:
   vtkDataSet* GetDeformation();
   vtkDeformVolumeFilter* GetResampler() { return this->Resampler; }
   int GetModel() const { return this->Model; }
+  /// By ChainMail, in the last step.
+  vtkIdType GetNumberOfMovedVoxels();
   std::size_t GetNumberOfActions() const { return this->Done.size(); }
   std::size_t GetNumberOfUndoneActions() const { return this->Undone.size(); }
+  /// What the filters have warned of since the last call.
+  std::vector<std::string> TakeWarnings() { return std::exchange(this->Warnings, {}); }
   /// The settings, as events that make them.
   SessionEvents GetSettings() const;
 
@@ -85,8 +90,12 @@ private:
     bool IsHeld = false;
     vtkSmartPointer<vtkPolyData> RestSheet;
     int NumberOfEdits = 1;
+    bool HasSplit = false; // whether a cut has split the mesh
     int Model = 0;
     int FormerModel = 0;
+    // Where ChainMail had all voxels before the action, and when it was undone; -1: not known.
+    vtkIdType Before = -1;
+    vtkIdType After = -1;
   };
   using Actions = std::vector<Action>;
 
@@ -97,19 +106,26 @@ private:
   void Carve(const SessionEvent& event);
   void SetModel(int model);
   void SetLattice(int nodes);
-  void Do(const Action& action);
-  bool Undo();
-  bool Redo();
+  void Do(Action action);
+  void Undo();
+  void Redo();
+  void UndoEdits(vtkVolumeEditAlgorithm* filter, int edits);
+  void RedoEdits(vtkVolumeEditAlgorithm* filter, int edits);
+  void CutMesh(
+    vtkElasticDeformation* elastic, vtkPolyData* sheet, const Actions& held, Action& cut);
   void Reset();
   void EndGrabs();
 
+  vtkIdType SaveState();
+  void RestoreState(vtkIdType state);
+  void ForgetStates(Action& action);
+  void LimitStates();
   void Rebuild();
-  void RunDrags(Actions::const_iterator end);
-  Actions GetHeld(Actions::const_iterator end) const;
+  Actions GetHeld() const;
   void UpdateModel(const Actions& held);
+  glm::dvec3 FindShift(const glm::dvec3& rest);
   void Update(vtkAlgorithm* filter);
   void Connect();
-  void CutMesh(vtkPolyData* sheet);
   void TakeRestMesh();
   bool FindMotion();
   vtkAlgorithm* GetModelFilter();
@@ -125,18 +141,22 @@ private:
   vtkNew<vtkMassSpringDeformation> MassSpring;
   vtkNew<vtkCorotationalDeformation> Corotational;
   vtkNew<vtkDeformVolumeFilter> Resampler;
-  vtkNew<vtkCallbackCommand> Observer;
-  std::string Message; // of the filters, since it was taken
+  vtkNew<vtkCallbackCommand> ErrorObserver;
+  vtkNew<vtkCallbackCommand> WarningObserver;
+  std::string Message; // the first error of the filters, since it was taken
+  std::vector<std::string> Warnings;
 
   int Model = 0;
   int NumberOfNodes = 7;
   double HandleRadius = 0.0;
   int RelaxationSweeps = 5;
+  double UndoMemory = 1073741824.0;
   bool IsStroke = false; // whether a carving may go on
   Actions Done;
   Actions Undone;
   std::vector<double> LastVectors; // of a mesh
   int QuietSteps = 0;
+  bool IsToRebuild = false; // whether the body has to come from rest before it is used
 };
 
 } // namespace deformvolume

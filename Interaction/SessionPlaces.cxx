@@ -6,6 +6,8 @@
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkSMPThreadLocal.h"
+#include "vtkSMPTools.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <glm/geometric.hpp>
@@ -71,43 +73,71 @@ glm::dvec3 Interpolate(vtkImageData* field, const glm::dvec3& place)
   return sum;
 }
 
-// The voxel that has come nearest.
+struct NearestVoxel
+{
+  double Square = std::numeric_limits<double>::infinity(); // of the distance
+  vtkIdType Id = 0;
+
+  bool IsBetterThan(const NearestVoxel& other) const
+  {
+    return this->Square < other.Square || (this->Square == other.Square && this->Id < other.Id);
+  }
+};
+
+// The voxel that has come nearest; of equals the first one, whatever the number of threads.
 glm::dvec3 FindNearestVoxel(vtkImageData* field, const glm::dvec3& deformed)
 {
   vtkDataArray* vectors = field->GetPointData()->GetVectors();
-  double least = std::numeric_limits<double>::infinity();
-  glm::dvec3 nearest(0.0);
-  for (vtkIdType id = 0; id < field->GetNumberOfPoints(); ++id)
-  {
-    const glm::dvec3 rest = GetPlace(field, id);
-    const glm::dvec3 distance = rest + GetVector(vectors, id) - deformed;
-    const double square = glm::dot(distance, distance);
-    if (square < least)
+  const bool areFloats = vectors->GetDataType() == VTK_FLOAT && vectors->HasStandardMemoryLayout();
+  const float* floats = areFloats ? static_cast<float*>(vectors->GetVoidPointer(0)) : nullptr;
+  const int* extent = field->GetExtent();
+  const vtkIdType width = extent[1] - extent[0] + 1;
+  const glm::dvec3 along = GetPlace(field, 1) - GetPlace(field, 0);
+  vtkSMPThreadLocal<NearestVoxel> locals;
+  vtkSMPTools::For(0, field->GetNumberOfPoints() / width,
+    [&](vtkIdType begin, vtkIdType end)
     {
-      least = square;
-      nearest = rest;
-    }
+      NearestVoxel& nearest = locals.Local();
+      for (vtkIdType row = begin; row < end; ++row)
+      {
+        const glm::dvec3 first = GetPlace(field, row * width) - deformed;
+        for (vtkIdType x = 0; x < width; ++x)
+        {
+          const vtkIdType id = row * width + x;
+          const glm::dvec3 vector = floats
+            ? glm::dvec3(floats[3 * id], floats[3 * id + 1], floats[3 * id + 2])
+            : GetVector(vectors, id);
+          const glm::dvec3 distance = first + static_cast<double>(x) * along + vector;
+          const NearestVoxel found{ glm::dot(distance, distance), id };
+          nearest = found.IsBetterThan(nearest) ? found : nearest;
+        }
+      }
+    });
+  NearestVoxel best;
+  for (const NearestVoxel& nearest : locals)
+  {
+    best = nearest.IsBetterThan(best) ? nearest : best;
   }
-  return nearest;
+  return GetPlace(field, best.Id);
 }
 
-glm::dvec3 FindInField(vtkImageData* field, const glm::dvec3& deformed)
+// Whether the iteration came to an end; where the body is folded or torn it need not.
+bool SearchField(vtkImageData* field, const glm::dvec3& deformed, glm::dvec3& rest)
 {
   const double* spacing = field->GetSpacing();
   const double tolerance = 1e-3 * std::min({ spacing[0], spacing[1], spacing[2] });
+  rest = deformed;
   // Half of the way each time, as the field may change by as much as the place.
-  glm::dvec3 rest = deformed;
   for (int i = 0; i < 60; ++i)
   {
     const glm::dvec3 left = deformed - rest - Interpolate(field, rest);
     if (glm::length(left) <= tolerance)
     {
-      return rest;
+      return true;
     }
     rest += 0.5 * left;
   }
-  // Where the body is folded or torn the iteration need not end.
-  return FindNearestVoxel(field, deformed);
+  return false;
 }
 
 struct Tetrahedron
@@ -157,13 +187,26 @@ glm::dvec3 MapInMesh(
 
 } // namespace
 
-glm::dvec3 deformvolume::FindRestPlace(vtkDataSet* deformation, const glm::dvec3& deformed)
+glm::dvec3 deformvolume::EstimateRestPlace(vtkDataSet* deformation, const glm::dvec3& deformed)
 {
   if (auto* field = vtkImageData::SafeDownCast(deformation))
   {
-    return FindInField(field, deformed);
+    glm::dvec3 rest;
+    SearchField(field, deformed, rest);
+    return rest;
   }
   return MapInMesh(deformation, deformed, &Tetrahedron::Deformed, &Tetrahedron::Rest);
+}
+
+glm::dvec3 deformvolume::FindRestPlace(vtkDataSet* deformation, const glm::dvec3& deformed)
+{
+  auto* field = vtkImageData::SafeDownCast(deformation);
+  if (!field)
+  {
+    return EstimateRestPlace(deformation, deformed);
+  }
+  glm::dvec3 rest;
+  return SearchField(field, deformed, rest) ? rest : FindNearestVoxel(field, deformed);
 }
 
 glm::dvec3 deformvolume::FindDeformedPlace(vtkDataSet* deformation, const glm::dvec3& rest)

@@ -50,9 +50,9 @@ struct PublishedState
   std::size_t Actions = 0;
   std::size_t UndoneActions = 0;
   vtkIdType Steps = 0;
+  vtkIdType MovedVoxels = 0;
   double SimulationTime = 0.0;
   double ResamplingTime = 0.0;
-  double CopyTime = 0.0;
 };
 
 } // namespace
@@ -74,6 +74,7 @@ public:
   std::condition_variable Wake;
   SessionEvents Queue;
   std::vector<std::string> Errors;
+  std::vector<std::string> Warnings;
   vtkSmartPointer<vtkImageData> NewOutput;
   PublishedState State;
   bool IsBusy = false; // something moves, or events are being made
@@ -121,6 +122,11 @@ public:
       this->Make(std::move(event), errors);
     }
     this->Make({ SessionEvent::STEP, {} }, errors);
+    if (factor != 1 && factor != 2 && factor != 4)
+    {
+      errors.emplace_back("MovingSamplingFactor is not 1, 2 or 4. Set one of these.");
+      factor = 1;
+    }
     state.SimulationTime = GetSeconds() - begin;
 
     vtkSmartPointer<vtkImageData> output;
@@ -129,10 +135,9 @@ public:
       begin = GetSeconds();
       vtkImageData* resampled = this->Pipeline.Resample(this->IsMoving ? factor : 1, padding);
       state.ResamplingTime = GetSeconds() - begin;
-      begin = GetSeconds();
+      // The filter writes to no array that somebody else holds.
       output = vtkSmartPointer<vtkImageData>::New();
-      output->DeepCopy(resampled);
-      state.CopyTime = GetSeconds() - begin;
+      output->ShallowCopy(resampled);
     }
     catch (const std::exception& error)
     {
@@ -143,8 +148,11 @@ public:
     state.Actions = this->Pipeline.GetNumberOfActions();
     state.UndoneActions = this->Pipeline.GetNumberOfUndoneActions();
     state.Steps = this->Steps;
+    state.MovedVoxels = this->Pipeline.GetNumberOfMovedVoxels();
     const std::lock_guard<std::mutex> lock(this->QueueMutex);
     this->Errors.insert(this->Errors.end(), errors.begin(), errors.end());
+    const std::vector<std::string> warnings = this->Pipeline.TakeWarnings();
+    this->Warnings.insert(this->Warnings.end(), warnings.begin(), warnings.end());
     this->NewOutput = output ? output : this->NewOutput;
     this->State = state;
     this->IsBusy = this->IsMoving;
@@ -267,9 +275,15 @@ void vtkDeformVolumeSession::Report(const std::string& message)
 void vtkDeformVolumeSession::ReportErrors()
 {
   std::vector<std::string> errors;
+  std::vector<std::string> warnings;
   {
     const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
     errors.swap(this->Internals->Errors);
+    warnings.swap(this->Internals->Warnings);
+  }
+  for (const std::string& warning : warnings)
+  {
+    vtkWarningMacro(<< warning);
   }
   for (const std::string& error : errors)
   {
@@ -481,6 +495,48 @@ void vtkDeformVolumeSession::ChangeNumberOfNodes(int nodes)
   }
 }
 
+void vtkDeformVolumeSession::SetMovingSamplingFactor(int factor)
+{
+  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
+  if (factor != this->Internals->Factor)
+  {
+    this->Internals->Factor = factor;
+    this->Modified();
+  }
+}
+
+int vtkDeformVolumeSession::GetMovingSamplingFactor()
+{
+  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
+  return this->Internals->Factor;
+}
+
+void vtkDeformVolumeSession::SetPadding(int voxels)
+{
+  constexpr int most = 1000;
+  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
+  const int padding = std::clamp(voxels, 0, most);
+  if (padding != this->Internals->Padding)
+  {
+    this->Internals->Padding = padding;
+    this->Modified();
+  }
+}
+
+int vtkDeformVolumeSession::GetPadding()
+{
+  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
+  return this->Internals->Padding;
+}
+
+void vtkDeformVolumeSession::ChangeUndoMemory(double bytes)
+{
+  if (this->CheckPlace(bytes, 0.0, 0.0))
+  {
+    this->Internals->Enqueue(SessionEvent::UNDO_MEMORY, { bytes });
+  }
+}
+
 bool vtkDeformVolumeSession::Update()
 {
   if (!this->CheckPlace(0.0, 0.0, 0.0))
@@ -492,15 +548,6 @@ bool vtkDeformVolumeSession::Update()
     this->Report("The thread of the session runs. Call Stop() before Update().");
     return false;
   }
-  const bool isFactor = this->MovingSamplingFactor == 1 || this->MovingSamplingFactor == 2 ||
-    this->MovingSamplingFactor == 4;
-  if (!isFactor)
-  {
-    this->Report("MovingSamplingFactor is not 1, 2 or 4. Set one of these.");
-    return false;
-  }
-  this->Internals->Factor = this->MovingSamplingFactor;
-  this->Internals->Padding = this->Padding;
   bool isMoving = false;
   {
     const vtkInternals::Access access(*this->Internals);
@@ -518,8 +565,6 @@ void vtkDeformVolumeSession::Start()
   }
   vtkInternals& internals = *this->Internals;
   internals.IsToStop = false;
-  internals.Factor = this->MovingSamplingFactor;
-  internals.Padding = this->Padding;
   internals.Worker = std::thread([&internals] { internals.Work(); });
 }
 
@@ -573,7 +618,7 @@ bool vtkDeformVolumeSession::Probe(double x, double y, double z)
   try
   {
     deformvolume::SessionPipeline& pipeline = this->Internals->Pipeline;
-    vtkImageData* output = pipeline.Resample(1, this->Padding);
+    vtkImageData* output = pipeline.Resample(1, this->GetPadding());
     const vtkIdType voxel = output->FindPoint(x, y, z);
     vtkDataArray* covered = output->GetPointData()->GetArray("vtkValidPointMask");
     if (voxel < 0 || !covered || covered->GetComponent(voxel, 0) == 0.0)
@@ -708,7 +753,7 @@ bool vtkDeformVolumeSession::Save(const std::string& fileName, bool isMesh)
     deformvolume::SessionPipeline& pipeline = this->Internals->Pipeline;
     if (!isMesh)
     {
-      WriteData<vtkXMLImageDataWriter>(pipeline.Resample(1, this->Padding), fileName);
+      WriteData<vtkXMLImageDataWriter>(pipeline.Resample(1, this->GetPadding()), fileName);
       return true;
     }
     auto* mesh = vtkUnstructuredGrid::SafeDownCast(pipeline.GetDeformation());
@@ -758,9 +803,9 @@ GET_STATE(int, Model, Model)
 GET_STATE(vtkIdType, NumberOfActions, Actions)
 GET_STATE(vtkIdType, NumberOfUndoneActions, UndoneActions)
 GET_STATE(vtkIdType, NumberOfSteps, Steps)
+GET_STATE(vtkIdType, NumberOfMovedVoxels, MovedVoxels)
 GET_STATE(double, SimulationTime, SimulationTime)
 GET_STATE(double, ResamplingTime, ResamplingTime)
-GET_STATE(double, CopyTime, CopyTime)
 #undef GET_STATE
 
 void vtkDeformVolumeSession::PrintSelf(ostream& os, vtkIndent indent)
@@ -769,8 +814,8 @@ void vtkDeformVolumeSession::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Model: " << this->GetModel() << "\n"
      << indent << "Actions: " << this->GetNumberOfActions() << "\n"
      << indent << "Undone Actions: " << this->GetNumberOfUndoneActions() << "\n"
-     << indent << "MovingSamplingFactor: " << this->MovingSamplingFactor << "\n"
-     << indent << "Padding: " << this->Padding << "\n"
+     << indent << "MovingSamplingFactor: " << this->GetMovingSamplingFactor() << "\n"
+     << indent << "Padding: " << this->GetPadding() << "\n"
      << indent << "Running: " << (this->GetIsRunning() ? "on" : "off") << "\n"
      << indent << "Error Message: " << this->ErrorMessage << "\n";
 }

@@ -18,9 +18,11 @@
  *
  * @par Undo:
  * Each drag, cut, stroke of carving, release of a handle, and change of the model is an action that
- * can be undone. Undo takes masks back to the last bit. Where a drag or a cut of a mesh is undone,
- * the body comes from rest to where the remaining actions hold it, in one step for each drag. When
- * all actions are undone, the output is the volume at rest, to the last bit.
+ * can be undone. Undo takes masks back to the last bit, and with ChainMail all voxels to where they
+ * were before the action (as far as ChangeUndoMemory() lets that be kept; else the body
+ * comes from rest to where handles hold it). A mesh moves by itself to where the remaining actions
+ * hold it. When all actions are undone, the output is the volume at rest, to the last bit. Redo
+ * takes ChainMail to where it was before the undo; a mesh that is cut again comes from rest.
  *
  * @par Models:
  * NONE does not deform. CHAIN_MAIL is vtkChainMailDeformation: tissue stays where a handle leaves
@@ -32,7 +34,8 @@
  *
  * @par Output:
  * vtkImageData as vtkDeformVolumeFilter makes it, with the bounds of the volume at rest and
- * Padding. Each output is an object of its own, which the session never changes.
+ * Padding. Each output is an object of its own, which the session never changes as long as somebody
+ * holds it; memory that is let go serves again.
  *
  * @par Files:
  * A session is saved as the record of its events, in XML with a version, a checksum, and a hash of
@@ -148,22 +151,24 @@ public:
 
   ///@{
   /**
-   * Settings of the models, which are events but cannot be undone: how far round its place a handle
-   * holds voxels or nodes, in world units (initially 0); sweeps of relaxation in a step of
-   * ChainMail, 0 to 10000 (initially 5); nodes of the lattice on each axis, 2 to 100 (initially 7).
+   * Settings, which are events but cannot be undone: how far round its place a handle holds voxels
+   * or nodes, in world units (initially 0); sweeps of relaxation in a step of ChainMail, 0 to 10000
+   * (initially 5); nodes of the lattice on each axis, 2 to 100 (initially 7); bytes that may be
+   * kept of where ChainMail had voxels before actions (initially 1 GiB).
    */
   void ChangeHandleRadius(double radius);
   void ChangeRelaxationSweeps(int sweeps);
   void ChangeNumberOfNodes(int nodes);
+  void ChangeUndoMemory(double bytes);
   ///@}
 
   ///@{
   /**
-   * SamplingFactor of vtkDeformVolumeFilter while something moves: 1, 2 or 4. The output is at full
-   * resolution again when the body rests. Default 1.
+   * SamplingFactor of vtkDeformVolumeFilter while something moves: 1, 2 or 4; others are errors.
+   * The output is at full resolution again when the body rests. Default 1.
    */
-  vtkSetMacro(MovingSamplingFactor, int);
-  vtkGetMacro(MovingSamplingFactor, int);
+  void SetMovingSamplingFactor(int factor);
+  int GetMovingSamplingFactor();
   ///@}
 
   ///@{
@@ -171,8 +176,8 @@ public:
    * Voxels of the output beyond the volume at rest on each side, for tissue that is pulled out.
    * Default 8, 0 to 1000.
    */
-  vtkSetClampMacro(Padding, int, 0, 1000);
-  vtkGetMacro(Padding, int);
+  void SetPadding(int voxels);
+  int GetPadding();
   ///@}
 
   /**
@@ -233,14 +238,18 @@ public:
 
   ///@{
   /**
-   * Seconds that the last update took: for the events and the step, for the resampling, and for the
-   * copy of the output. How many steps there were since SetInputs().
+   * Seconds that the last update took: for the events and the step, and for the resampling. How
+   * many steps there were since SetInputs().
    */
   double GetSimulationTime();
   double GetResamplingTime();
-  double GetCopyTime();
   vtkIdType GetNumberOfSteps();
   ///@}
+
+  /**
+   * Voxels that ChainMail has moved in the last step; 0 with other models.
+   */
+  vtkIdType GetNumberOfMovedVoxels();
 
   /**
    * The last error in words; "" where there was none.
@@ -260,8 +269,6 @@ private:
   bool CheckPlace(double x, double y, double z);
   bool Save(const std::string& fileName, bool isMesh);
 
-  int MovingSamplingFactor = 1;
-  int Padding = 8;
   double ProbedValue = 0.0;
   double ProbedRestPosition[3] = { 0.0, 0.0, 0.0 };
   std::string ErrorMessage;

@@ -50,6 +50,7 @@ ABORTS = ("TestElasticAborts", "*")
 REPLACEMENT = ("TestReplacement", "*Knows*:*Equals*/*OfGrid:*Equals*/Links:*Equals*/Runs")
 
 COROTATIONAL = ("TestCorotational", "*")
+DEFORMED_CUTTING = ("TestDeformedCutting", "*")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
@@ -203,6 +204,10 @@ MUTATIONS = {
                          "        throw;", [ABORTS]),
     "springs-moved": ("Kernels/MassSpring/MassSpringModel.cxx",
                       "      this->State->SetDisplacements(displacements);\n      throw;", "      throw;", [ABORTS]),
+    "box-overshoot": ("Kernels/Cutting/DeformedMeshVertices.cxx", "(most * (1.0 + rounding) + rounding)", "(rounding)",
+                      [DEFORMED_CUTTING]),
+    "box-changes": ("Kernels/Cutting/DeformedFieldVertices.cxx", " - first - 1, 0)", " - first, 0)",
+                    [DEFORMED_CUTTING]),
 }
 
 

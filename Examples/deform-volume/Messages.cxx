@@ -42,7 +42,7 @@ void Messages::DisplayErrorText(const char* text)
 void Messages::DisplayWarningText(const char* text)
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
-  std::cerr << "deform-volume: warning: " << StripPlace(text) << "\n";
+  std::cerr << this->Program << ": warning: " << StripPlace(text) << "\n";
 }
 
 void Messages::DisplayGenericWarningText(const char* text)

@@ -15,6 +15,9 @@ public:
   static Messages* New();
   vtkTypeMacro(Messages, vtkOutputWindow);
 
+  /// What warnings begin with.
+  void SetProgram(const std::string& name) { this->Program = name; }
+
   void DisplayText(const char* text) override;
   void DisplayErrorText(const char* text) override;
   void DisplayWarningText(const char* text) override;
@@ -35,6 +38,7 @@ private:
 
   std::mutex Mutex;
   std::string FirstError;
+  std::string Program = "deform-volume";
 };
 
 #endif

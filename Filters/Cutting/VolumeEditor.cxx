@@ -188,24 +188,36 @@ const VertexPositions& VolumeEditor::GetPositions(DeformationSource source, bool
     {
       this->Mapping.Update(this->Deformation, mapped, {});
     }
-    const std::array<std::uint64_t, 4> version{ { this->Deformation.GetVectorsVersion(),
-      isField ? 0 : this->Mapping.GetVersion(), isField ? 1U : 0U, extrapolate ? 1U : 0U } };
-    if (!this->Deformed || version != this->DeformedVersion)
+    const std::array<std::uint64_t, 3> mapping{ { isField ? 0 : this->Mapping.GetVersion(),
+      isField ? 1U : 0U, extrapolate ? 1U : 0U } };
+    const std::uint64_t vectors = this->Deformation.GetVectorsVersion();
+    if (this->Deformed && mapping == this->DeformedMapping && vectors == this->DeformedVectors)
+    {
+      return *this->Deformed;
+    }
+    if (this->Deformed && mapping == this->DeformedMapping && !isField)
+    {
+      this->Deformed->SetDisplacements(this->Deformation.GetNodeDisplacements());
+    }
+    else if (this->Deformed && mapping == this->DeformedMapping)
+    {
+      const PointRanges changes = this->Deformation.GetChanges(this->DeformedVectors);
+      this->Deformed->SetField(this->Deformation.GetField(extrapolate), &changes);
+    }
+    else if (isField)
+    {
+      this->Deformed = std::make_unique<DeformedPositions>(
+        this->Geometry.PointExtent, this->Deformation.GetField(extrapolate));
+    }
+    else
     {
       this->Deformed.reset();
-      if (isField)
-      {
-        this->Deformed = std::make_unique<DeformedPositions>(
-          this->Geometry.PointExtent, this->Deformation.GetField(extrapolate));
-      }
-      else
-      {
-        this->Deformed = std::make_unique<DeformedPositions>(this->Geometry.PointExtent,
-          mapped.Part, this->Mapping.GetMapping(), this->Deformation.GetTetrahedra(),
-          this->Deformation.GetNodeDisplacements());
-      }
-      this->DeformedVersion = version;
+      this->Deformed = std::make_unique<DeformedPositions>(this->Geometry.PointExtent, mapped.Part,
+        this->Mapping.GetMapping(), this->Deformation.GetTetrahedra(),
+        this->Deformation.GetNodeDisplacements());
     }
+    this->DeformedMapping = mapping;
+    this->DeformedVectors = vectors;
   }
   catch (const Error& error)
   {

@@ -5,6 +5,7 @@
 #include "Carving.h"
 #include "CellBricks.h"
 #include "Deformation.h"
+#include "DeformedPositions.h"
 #include "ImageGeometry.h"
 #include "MappingCache.h"
 #include "MaskEditor.h"
@@ -102,9 +103,10 @@ private:
   std::unique_ptr<RestPositions> Rest;
   deformvolume::Deformation Deformation;
   MappingCache Mapping;
-  std::unique_ptr<VertexPositions> Deformed;
-  // Of the deformation and the mapping that those are of, and whether it extrapolates.
-  std::array<std::uint64_t, 4> DeformedVersion{};
+  std::unique_ptr<DeformedPositions> Deformed;
+  // What those are of: the version of the mapping, whether it is a field, whether it extrapolates.
+  std::array<std::uint64_t, 3> DeformedMapping{};
+  std::uint64_t DeformedVectors = 0; // a version
 };
 
 } // namespace deformvolume

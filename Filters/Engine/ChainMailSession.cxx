@@ -74,6 +74,13 @@ VolumeMasks ReadLinkMasks(vtkImageData* volume)
   return masks;
 }
 
+// Bytes of a snapshot without its blocks.
+std::uint64_t GetIndexMemory(const ChainMailSnapshot& snapshot)
+{
+  return snapshot.Numbers.size() *
+    (sizeof(std::uint32_t) + sizeof(std::shared_ptr<const ChainMailSnapshot::Block>));
+}
+
 } // namespace
 
 void ChainMailSettings::SetDefaultMaterials()
@@ -114,6 +121,68 @@ void ChainMailSession::SetVolume(const ImageGeometry& geometry, const ChainMailS
   this->MakeOutput(GetNumberOfPoints(geometry.PointExtent));
   this->Geometry = geometry;
   this->HasVolume = true;
+}
+
+std::int64_t ChainMailSession::SaveState()
+{
+  std::shared_ptr<const ChainMailSnapshot> state = this->ToRestore;
+  if (!state && !this->IsToReset && this->HasVolume)
+  {
+    const auto last = this->States.empty() ? nullptr : this->States.rbegin()->second;
+    state = this->Model.TakeSnapshot(last);
+  }
+  state = state ? state : std::make_shared<ChainMailSnapshot>(); // at rest
+  this->States[++this->LastState] = state;
+  this->StateMemory += GetIndexMemory(*state);
+  for (const auto& block : state->Blocks)
+  {
+    this->StateMemory += this->Owners[block.get()]++ == 0 ? sizeof(ChainMailSnapshot::Block) : 0;
+  }
+  return this->LastState;
+}
+
+bool ChainMailSession::RestoreState(std::int64_t number)
+{
+  const auto found = this->States.find(number);
+  if (found == this->States.end())
+  {
+    return false;
+  }
+  const ChainMailSnapshot& state = *found->second;
+  if (state.Numbers.empty())
+  {
+    this->Reset();
+    return true;
+  }
+  if (!this->HasVolume || state.Voxels != this->Geometry.PointExtent)
+  {
+    return false;
+  }
+  this->IsToReset = false;
+  this->ToRestore = found->second;
+  return true;
+}
+
+bool ChainMailSession::RemoveState(std::int64_t number)
+{
+  const auto found = this->States.find(number);
+  if (found == this->States.end())
+  {
+    return false;
+  }
+  const auto state = found->second;
+  this->States.erase(found);
+  this->StateMemory -= GetIndexMemory(*state);
+  for (const auto& block : state->Blocks)
+  {
+    const auto owners = this->Owners.find(block.get());
+    if (--owners->second == 0)
+    {
+      this->Owners.erase(owners);
+      this->StateMemory -= sizeof(ChainMailSnapshot::Block);
+    }
+  }
+  return true;
 }
 
 void ChainMailSession::MakeOutput(vtkIdType voxels)
@@ -184,6 +253,11 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
       this->Model.Reset();
       this->IsToReset = false;
     }
+    if (this->ToRestore && this->ToRestore->Voxels == geometry.PointExtent)
+    {
+      this->Model.Restore(*this->ToRestore); // before links return, which then hold what they held
+    }
+    this->ToRestore = nullptr;
     if (!(key == this->KeyOfMaterials))
     {
       if (materials.empty()) // the device has changed

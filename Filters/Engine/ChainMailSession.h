@@ -10,7 +10,10 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 class vtkImageData;
@@ -45,7 +48,22 @@ public:
   void GiveOutput(vtkImageData* output) const;
 
   /// Puts all voxels to rest before the next step.
-  void Reset() { this->IsToReset = true; }
+  void Reset()
+  {
+    this->IsToReset = true;
+    this->ToRestore = nullptr;
+  }
+
+  ///@{
+  /// The displacements as they are before the next step, under a number, and back to them before
+  /// the next step. False where there is no such state, or it is one of another volume.
+  std::int64_t SaveState();
+  bool RestoreState(std::int64_t number);
+  bool RemoveState(std::int64_t number);
+  std::size_t GetNumberOfStates() const { return this->States.size(); }
+  /// Bytes that they take.
+  std::uint64_t GetStateMemory() const { return this->StateMemory; }
+  ///@}
 
   const std::string& GetDevice() const { return this->Device; }
 
@@ -71,6 +89,12 @@ private:
   std::string Device;
   bool HasVolume = false;
   bool IsToReset = false;
+  std::shared_ptr<const ChainMailSnapshot> ToRestore; // null: nothing
+  std::map<std::int64_t, std::shared_ptr<const ChainMailSnapshot>> States;
+  std::int64_t LastState = -1;
+  // How many states have each of their blocks.
+  std::unordered_map<const ChainMailSnapshot::Block*, std::size_t> Owners;
+  std::uint64_t StateMemory = 0;
   ImageGeometry Geometry;
   MaterialsKey KeyOfMaterials;
   Stamp StampOfMasks;

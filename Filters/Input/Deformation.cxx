@@ -2,132 +2,22 @@
 #include "Deformation.h"
 
 #include "Error.h"
-#include "MeshCells.h"
-#include "ParallelFor.h"
+#include "PointDifferences.h"
 #include "VectorArray.h"
 #include "VectorComponents.h"
+#include "VectorConversion.h"
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
-#include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
-
-#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstring>
 #include <utility>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
-
 namespace deformvolume
 {
-
-namespace
-{
-
-// What is to be added to the points of one mesh to have those of another, part by part. memories:
-// of the last reading, from the same points.
-void ReadPointDifferences(const MeshParts& shape, const MeshParts& rest, const VectorTaker& take,
-  std::vector<VectorMemory>& memories)
-{
-  const std::vector<glm::dvec3> starts = ReadPoints(rest, REST_NAME);
-  memories.resize(shape.size());
-  vtkIdType next = 0;
-  for (std::size_t part = 0; part < shape.size(); ++part)
-  {
-    const vtkIdType count = shape[part]->GetNumberOfPoints();
-    if (count == 0 || memories[part].Place != next)
-    {
-      memories[part] = VectorMemory();
-      memories[part].Place = next;
-    }
-    if (count > 0)
-    {
-      ReadVectors(
-        shape[part]->GetPoints()->GetData(),
-        [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType some)
-        {
-          std::vector<glm::dvec3> moves(vectors, vectors + some);
-          for (vtkIdType i = 0; i < some; ++i)
-          {
-            moves[i] -= starts[next + first + i];
-          }
-          take(next + first, moves.data(), some);
-        },
-        "Point", MESH_NAME, &memories[part]);
-    }
-    next += count;
-  }
-}
-
-// Two ways to make displacements of vectors, three floats each. False where one is too large.
-// Without branches, as there are millions.
-bool TransformVectors(
-  const glm::dmat3& transform, const glm::dvec3* vectors, std::size_t count, float* displacements)
-{
-  int near = 1;
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const glm::dvec3 move = transform * vectors[i];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      // Not-a-number is not near either.
-      near &= std::abs(move[axis]) <= LargestDisplacement ? 1 : 0;
-      displacements[3 * i + axis] = static_cast<float>(move[axis]);
-    }
-  }
-  return near != 0;
-}
-
-// The same where axes stay axes. Finite numbers times finite ones are never not-a-number.
-bool ScaleVectors(
-  const glm::dvec3& scaling, const glm::dvec3* vectors, std::size_t count, float* displacements)
-{
-  const double* components = &vectors[0].x;
-  double largest = 0.0;
-  std::size_t i = 0;
-#ifdef __SSE2__
-  // Compilers do not find these by themselves. Twelve numbers at a time, of four vectors: every
-  // third pair is of the same axes.
-  static_assert(sizeof(glm::dvec3) == 3 * sizeof(double), "vectors lie side by side");
-  constexpr std::size_t width = 12;
-  const __m128d factors[3] = { _mm_set_pd(scaling.y, scaling.x), _mm_set_pd(scaling.x, scaling.z),
-    _mm_set_pd(scaling.z, scaling.y) };
-  const __m128d sign = _mm_set1_pd(-0.0);
-  __m128d farthest = _mm_setzero_pd();
-  for (; i + width <= 3 * count; i += width)
-  {
-    for (std::size_t pair = 0; pair < width / 2; pair += 2)
-    {
-      const double* next = components + i + 2 * pair;
-      const __m128d first = _mm_mul_pd(factors[pair % 3], _mm_loadu_pd(next));
-      const __m128d second = _mm_mul_pd(factors[(pair + 1) % 3], _mm_loadu_pd(next + 2));
-      farthest =
-        _mm_max_pd(farthest, _mm_max_pd(_mm_andnot_pd(sign, first), _mm_andnot_pd(sign, second)));
-      _mm_storeu_ps(
-        displacements + i + 2 * pair, _mm_movelh_ps(_mm_cvtpd_ps(first), _mm_cvtpd_ps(second)));
-    }
-  }
-  std::array<double, 2> distances;
-  _mm_storeu_pd(distances.data(), farthest);
-  largest = std::max(distances[0], distances[1]);
-#endif
-  for (; i < 3 * count; ++i)
-  {
-    const double move = scaling[static_cast<int>(i % 3)] * components[i];
-    largest = std::max(largest, std::abs(move));
-    displacements[i] = static_cast<float>(move);
-  }
-  return largest <= LargestDisplacement;
-}
-
-} // namespace
 
 glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor)
 {
@@ -205,7 +95,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
   this->MemoriesAreOfPoints = ofPoints;
   this->SetVectors(
     GetNumberOfNodes(shape),
-    [&](const VectorTaker& take)
+    [&](const VectorTaker& take, const FloatTaker& takeFloats)
     {
       if (ofPoints)
       {
@@ -213,7 +103,8 @@ void Deformation::ReadMesh(const DeformationSource& source)
       }
       else
       {
-        ReadPointVectors(shape, source.Selector, source.Wanted, MESH_NAME, take, &this->Memories);
+        ReadPointVectors(
+          shape, source.Selector, source.Wanted, MESH_NAME, take, &this->Memories, takeFloats);
       }
     },
     ofPoints ? 1.0 : source.DisplacementScale, source);
@@ -267,24 +158,16 @@ PointRanges Deformation::GetChanges(std::uint64_t version) const
   return changes;
 }
 
-void Deformation::SetVectors(std::size_t count, const std::function<void(const VectorTaker&)>& read,
-  double factor, const DeformationSource& source)
+void Deformation::SetVectors(
+  std::size_t count, const VectorSource& read, double factor, const DeformationSource& source)
 {
   ++this->VectorsVersion;
   this->ReplaceVectors(count, read, factor, source);
 }
 
-void Deformation::ReplaceVectors(std::size_t count,
-  const std::function<void(const VectorTaker&)>& read, double factor,
-  const DeformationSource& source)
+void Deformation::ResizeVectors(std::size_t count, std::size_t blocks)
 {
-  // Whatever fails from here on, the vectors are not those of any source.
-  this->VectorsStamp.clear();
-  this->FieldInPlace = DisplacementField();
-  const std::uint64_t version = this->VectorsVersion;
-  const std::size_t blocks = (count + PointsPerBlock - 1) / PointsPerBlock;
-  const bool comparable = this->VectorsAreWhole;
-  if (!comparable)
+  if (!this->VectorsAreWhole)
   {
     this->BlockVersions.clear();
   }
@@ -296,57 +179,73 @@ void Deformation::ReplaceVectors(std::size_t count,
     this->BlockComponents.resize(std::min(this->BlockComponents.size(), same));
     this->Vectors.resize(3 * count);
   }
-  this->BlockVersions.resize(blocks, version);
-  if (!comparable || !this->HasSameUnits(source))
+  this->BlockVersions.resize(blocks, this->VectorsVersion);
+  this->BlockComponents.resize(blocks);
+}
+
+void Deformation::ReplaceVectors(
+  std::size_t count, const VectorSource& read, double factor, const DeformationSource& source)
+{
+  // Whatever fails from here on, the vectors are not those of any source.
+  this->VectorsStamp.clear();
+  this->FieldInPlace = DisplacementField();
+  const std::uint64_t version = this->VectorsVersion;
+  const std::size_t blocks = (count + PointsPerBlock - 1) / PointsPerBlock;
+  if (!this->VectorsAreWhole || !this->HasSameUnits(source))
   {
     this->Memories.clear();
   }
   const bool isFollowing = !this->Memories.empty();
-  this->BlockComponents.resize(blocks);
+  this->ResizeVectors(count, blocks);
   this->VectorsAreWhole = false;
-  const glm::dmat3 transform = GetToDisplacement(source, factor);
-  const glm::dvec3 scaling(transform[0][0], transform[1][1], transform[2][2]);
-  const bool isScaling = transform == glm::dmat3(glm::scale(glm::dmat4(1.0), scaling));
+  const VectorConversion conversion(GetToDisplacement(source, factor));
   std::vector<std::atomic<bool>> changed(blocks);
   std::vector<std::atomic<bool>> inPieces(blocks);
   std::atomic<bool> tooFar{ false };
+  // Returns false where a vector is not finite, or a displacement too large.
+  const auto takeVectors = [&](vtkIdType first, const auto* vectors, vtkIdType number, int width)
+  {
+    std::array<float, 3 * PointsPerBlock> displacements;
+    auto point = static_cast<std::size_t>(first);
+    const std::size_t end = point + static_cast<std::size_t>(number);
+    while (point < end)
+    {
+      const std::size_t block = point / PointsPerBlock;
+      const std::size_t some = std::min(end, (block + 1) * PointsPerBlock) - point;
+      if (!conversion.Convert(vectors, some, displacements.data()))
+      {
+        return false;
+      }
+      float* last = this->Vectors.data() + 3 * point;
+      if (std::memcmp(last, displacements.data(), 3 * some * sizeof(float)) != 0)
+      {
+        std::copy_n(displacements.begin(), 3 * some, last);
+        changed[block].store(true, std::memory_order_relaxed);
+      }
+      if (some == std::min(PointsPerBlock, count - block * PointsPerBlock))
+      {
+        // While the caches hold them.
+        this->BlockComponents[block] = FindComponents(displacements.data(), 3 * some);
+      }
+      else
+      {
+        inPieces[block].store(true, std::memory_order_relaxed);
+      }
+      vectors += width * some;
+      point += some;
+    }
+    return true;
+  };
   read(
     [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType number)
     {
-      std::array<float, 3 * PointsPerBlock> displacements;
-      auto point = static_cast<std::size_t>(first);
-      const std::size_t end = point + static_cast<std::size_t>(number);
-      while (point < end)
+      if (!takeVectors(first, vectors, number, 1))
       {
-        const std::size_t block = point / PointsPerBlock;
-        const std::size_t some = std::min(end, (block + 1) * PointsPerBlock) - point;
-        const bool near = isScaling
-          ? ScaleVectors(scaling, vectors, some, displacements.data())
-          : TransformVectors(transform, vectors, some, displacements.data());
-        if (!near)
-        {
-          tooFar = true;
-          return;
-        }
-        float* last = this->Vectors.data() + 3 * point;
-        if (std::memcmp(last, displacements.data(), 3 * some * sizeof(float)) != 0)
-        {
-          std::copy_n(displacements.begin(), 3 * some, last);
-          changed[block].store(true, std::memory_order_relaxed);
-        }
-        if (some == std::min(PointsPerBlock, count - block * PointsPerBlock))
-        {
-          // While the caches hold them.
-          this->BlockComponents[block] = FindComponents(displacements.data(), 3 * some);
-        }
-        else
-        {
-          inPieces[block].store(true, std::memory_order_relaxed);
-        }
-        vectors += some;
-        point += some;
+        tooFar = true;
       }
-    });
+    },
+    [&](vtkIdType first, const float* vectors, vtkIdType number)
+    { return takeVectors(first, vectors, number, 3); });
   if (tooFar)
   {
     throw Error("The deformation moves the volume by more than 16,383 output voxels. Check "

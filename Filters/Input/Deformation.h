@@ -123,12 +123,17 @@ private:
   bool VectorsAreCurrent(const Stamp& stamp, const DeformationSource& source, bool field) const;
   /// Whether equal vectors are equal displacements, now and when they were read last.
   bool HasSameUnits(const DeformationSource& source) const;
-  /// read: calls its argument for all displacements in world units, of which there are count.
-  void SetVectors(std::size_t count, const std::function<void(const VectorTaker&)>& read,
-    double factor, const DeformationSource& source);
+  /// Calls one of its arguments for all displacements in world units.
+  using VectorSource = std::function<void(const VectorTaker&, const FloatTaker&)>;
+  /// read: of so many displacements.
+  void SetVectors(
+    std::size_t count, const VectorSource& read, double factor, const DeformationSource& source);
   /// The same without a new version.
-  void ReplaceVectors(std::size_t count, const std::function<void(const VectorTaker&)>& read,
-    double factor, const DeformationSource& source);
+  void ReplaceVectors(
+    std::size_t count, const VectorSource& read, double factor, const DeformationSource& source);
+
+  /// There are so many vectors now, in so many blocks.
+  void ResizeVectors(std::size_t count, std::size_t blocks);
 
   bool Field = false;
   RestMesh Mesh;

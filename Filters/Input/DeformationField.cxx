@@ -150,7 +150,8 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   {
     this->SetVectors(
       static_cast<std::size_t>(array->GetNumberOfTuples()),
-      [&](const VectorTaker& take) { ReadVectors(array, take, "Vector", FIELD); },
+      [&](const VectorTaker& take, const FloatTaker& takeFloats)
+      { ReadVectors(array, take, "Vector", FIELD, nullptr, takeFloats); },
       source.DisplacementScale, source);
   }
   this->RememberVectors(stamp, source, true);

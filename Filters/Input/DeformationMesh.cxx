@@ -123,7 +123,7 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
 
 void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
   const std::string& wanted, const std::string& name, const VectorTaker& take,
-  std::vector<VectorMemory>* memories)
+  std::vector<VectorMemory>* memories, const FloatTaker& takeFloats)
 {
   std::vector<VectorMemory> none;
   std::vector<VectorMemory>& last = memories ? *memories : none;
@@ -144,7 +144,10 @@ void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
         FindVectors(grid, selector, wanted, name),
         [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
         { take(next + first, vectors, count); },
-        "Displacement", name, memories ? &last[part] : nullptr);
+        "Displacement", name, memories ? &last[part] : nullptr,
+        takeFloats ? [&](vtkIdType first, const float* vectors, vtkIdType count)
+          { return takeFloats(next + first, vectors, count); }
+                   : FloatTaker());
     }
     next += points;
   }

@@ -52,11 +52,11 @@ using ArraySelector = std::function<vtkDataArray*(vtkDataSet*)>;
 vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
   const std::string& wanted, const std::string& name);
 
-/// Vectors of all points, one part's after the other's. memories: of the last reading (see
-/// ReadVectors), where they were taken to the same places; null: all are taken.
+/// Vectors of all points, one part's after the other's. memories: of the last reading, where they
+/// were taken to the same places; null: all are taken. memories, takeFloats: see ReadVectors.
 void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
   const std::string& wanted, const std::string& name, const VectorTaker& take,
-  std::vector<VectorMemory>* memories = nullptr);
+  std::vector<VectorMemory>* memories = nullptr, const FloatTaker& takeFloats = {});
 
 ///@{
 /// What the functions above depend on.

@@ -56,10 +56,10 @@ void Deformation::BringToHost()
   this->Memories.clear();
   this->ReplaceVectors(
     static_cast<std::size_t>(this->ArrayOnDevice->GetNumberOfTuples()),
-    [&](const VectorTaker& take)
+    [&](const VectorTaker& take, const FloatTaker& takeFloats)
     {
       ReadVectors(this->ArrayOnDevice, take, this->Field ? "Vector" : "Displacement",
-        this->Field ? "displacement field on input port 1" : MESH_NAME);
+        this->Field ? "displacement field on input port 1" : MESH_NAME, nullptr, takeFloats);
     },
     this->FactorOnDevice, this->VectorsSource);
   this->VectorsStamp = std::move(stamp);

@@ -134,7 +134,7 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
 }
 
 std::optional<CellDifferences> RestMesh::CompareCells(
-  const MeshParts& shape, const MeshParts& rest, bool sameRest, bool sameShape) const
+  const MeshParts& shape, const MeshParts& rest, bool sameRest, bool sameShape, bool shared) const
 {
   if (!this->IgnoredCells.empty() || this->Tetrahedra.empty())
   {
@@ -144,10 +144,11 @@ std::optional<CellDifferences> RestMesh::CompareCells(
   none.Count = this->Tetrahedra.size();
   std::optional<CellDifferences> differences =
     sameRest ? none : deformvolume::FindDifferences(rest, this->Tetrahedra, this->RestCellMemories);
-  if (differences && !sameShape)
+  if (differences && !shared)
   {
+    // Both had these tetrahedra.
     const std::optional<CellDifferences> others =
-      deformvolume::FindDifferences(shape, this->Tetrahedra, {});
+      sameShape ? none : deformvolume::FindDifferences(shape, this->Tetrahedra, {});
     if (!others || !AreEqual(*differences, *others))
     {
       return {};
@@ -161,18 +162,17 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
 {
   const bool shared = shapeCells.HasArraysOf(restCells);
   const bool sameRest = restCells.IsThatOf(this->RestCells);
-  const bool sameShape = shared || shapeCells.IsThatOf(this->ShapeCells);
+  const bool sameShape = shapeCells.IsThatOf(this->ShapeCells);
   CellReading reading;
   reading.Ignored = this->IgnoredCells;
-  if (sameRest && sameShape)
+  if (sameRest && (sameShape || shared))
   {
     reading.Differences = CellDifferences();
     reading.Differences->Count = this->Tetrahedra.size();
   }
   else
   {
-    // Where only one of two meshes has changed, both are looked at.
-    reading.Differences = this->CompareCells(shape, rest, sameRest && shared, shared);
+    reading.Differences = this->CompareCells(shape, rest, sameRest, sameShape, shared);
   }
   if (!reading.Differences)
   {

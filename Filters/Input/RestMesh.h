@@ -90,9 +90,9 @@ private:
   CellReading ReadCells(const MeshParts& shape, const MeshParts& rest, const MeshStamp& restCells,
     const MeshStamp& shapeCells);
   /// How the cells differ, where a comparison can tell that. sameRest, sameShape: whether both are
-  /// as they were.
-  std::optional<CellDifferences> CompareCells(
-    const MeshParts& shape, const MeshParts& rest, bool sameRest, bool sameShape) const;
+  /// as they were; shared: whether both are the same.
+  std::optional<CellDifferences> CompareCells(const MeshParts& shape, const MeshParts& rest,
+    bool sameRest, bool sameShape, bool shared) const;
   /// Whether cells are as many tetrahedra as there are, in the places of these.
   bool HaveSameShape(const CellReading& cells) const;
   void ReadPoints(const MeshParts& rest, const DeformationSource& source);

@@ -133,24 +133,70 @@ bool AreFinite(const double* values, vtkIdType count)
   return std::all_of(sums.begin(), sums.end(), [](double sum) { return sum == 0.0; });
 }
 
+// The values of an array of floats that lies in memory tuple by tuple; null for others.
+const float* GetFloats(vtkAOSDataArrayTemplate<float>* array)
+{
+  return array->GetPointer(0);
+}
+const float* GetFloats(vtkDataArray*)
+{
+  return nullptr;
+}
+
+// Reads tuples of an array. Memory is read by its address, which compilers make vectors of.
+template <typename T>
+void CopyTuples(
+  vtkAOSDataArrayTemplate<T>* array, vtkIdType first, vtkIdType count, glm::dvec3* vectors)
+{
+  const T* const values = array->GetPointer(3 * first);
+  std::copy_n(values, 3 * count, &vectors->x);
+}
+template <typename ArrayT>
+void CopyTuples(ArrayT* array, vtkIdType first, vtkIdType count, glm::dvec3* vectors)
+{
+  const auto values = vtk::DataArrayValueRange<3>(array);
+  double* components = &vectors->x;
+  for (vtkIdType i = 0; i < 3 * count; ++i)
+  {
+    components[i] = static_cast<double>(values[3 * first + i]);
+  }
+}
+
+// Calls body(array) with the class of an array of real numbers, or as it is.
+template <typename Body>
+void VisitVectors(vtkDataArray* array, Body&& body)
+{
+  using Dispatcher = vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>;
+  if (auto* const vectors = vtkDeviceVectorArray::SafeDownCast(array))
+  {
+    body(vectors);
+  }
+  else if (!Dispatcher::Execute(array, body))
+  {
+    body(array);
+  }
+}
+
 struct VectorReader
 {
   template <typename ArrayT>
-  void operator()(ArrayT* array, const VectorTaker& take, VectorMemory* memory)
+  void operator()(
+    ArrayT* array, const VectorTaker& take, VectorMemory* memory, const FloatTaker& takeFloats)
   {
-    const auto values = vtk::DataArrayValueRange<3>(array);
     const vtkIdType tuples = array->GetNumberOfTuples();
     const BlockComparison comparison(array, GetBytes(array), memory);
+    const float* const floats = takeFloats ? GetFloats(array) : nullptr;
     std::atomic<vtkIdType> bad{ NONE };
     const auto read = [&](vtkIdType first, vtkIdType count)
     {
-      std::array<glm::dvec3, BLOCK> vectors;
-      double* components = &vectors[0].x;
-      for (vtkIdType i = 0; i < 3 * count; ++i)
+      if (floats && takeFloats(first, floats + 3 * first, count))
       {
-        components[i] = static_cast<double>(values[3 * first + i]);
+        comparison.Remember(first, count);
+        return;
       }
-      if (!AreFinite(components, 3 * count))
+      std::array<glm::dvec3, BLOCK> vectors;
+      CopyTuples(array, first, count, vectors.data());
+      if (!AreFinite(&vectors[0].x, 3 * count))
       {
         const auto found = std::find_if_not(vectors.begin(), vectors.begin() + count, IsFinite);
         const vtkIdType tuple = first + (found - vectors.begin());
@@ -186,23 +232,15 @@ struct VectorReader
 } // namespace
 
 void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string& kind,
-  const std::string& owner, VectorMemory* memory)
+  const std::string& owner, VectorMemory* memory, const FloatTaker& takeFloats)
 {
-  using Dispatcher = vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>;
   if (array->GetNumberOfComponents() != 3)
   {
     throw Error(kind + "s of the " + owner + " have " +
       std::to_string(array->GetNumberOfComponents()) + " components. Give each of them three.");
   }
   VectorReader reader;
-  if (auto* const vectors = vtkDeviceVectorArray::SafeDownCast(array))
-  {
-    reader(vectors, take, memory);
-  }
-  else if (!Dispatcher::Execute(array, reader, take, memory))
-  {
-    reader(array, take, memory);
-  }
+  VisitVectors(array, [&](auto* typed) { reader(typed, take, memory, takeFloats); });
   if (memory)
   {
     memory->Type = reader.HasBytes && reader.FirstBad == NONE ? array->GetDataType() : VTK_VOID;
@@ -215,6 +253,19 @@ void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string
     throw Error(kind + " " + std::to_string(reader.FirstBad) + " of the " + owner +
       " is not finite. Remove NaN and infinity from it.");
   }
+}
+
+VectorCopier MakeVectorCopier(vtkDataArray* array)
+{
+  VectorCopier copier;
+  VisitVectors(array,
+    [&](auto* typed)
+    {
+      GetBytes(typed); // brings them to the host, now and not in many threads
+      copier = [typed](vtkIdType first, vtkIdType count, glm::dvec3* vectors)
+      { CopyTuples(typed, first, count, vectors); };
+    });
+  return copier;
 }
 
 vtkDataArray* FindVectors(vtkDataSet* dataSet)

@@ -20,6 +20,10 @@ namespace deformvolume
 using VectorTaker =
   std::function<void(vtkIdType first, const glm::dvec3* vectors, vtkIdType count)>;
 
+/// The same of vectors as they lie in memory, three floats each, before anybody has looked at them.
+/// Returns false where it has not taken them, as one is not finite: they go to the VectorTaker.
+using FloatTaker = std::function<bool(vtkIdType first, const float* vectors, vtkIdType count)>;
+
 /// What an array held when it was read last.
 struct VectorMemory
 {
@@ -40,8 +44,14 @@ struct VectorMemory
 /// more tuples. Blocks of tuples that are as they were then need not be taken again, and are left
 /// out: a log of the array (vtkArrayChanges) tells them, or else a comparison where bytes are kept.
 /// Null: all are taken.
+/// takeFloats: offered vectors that lie in memory as floats, where it is not empty.
 void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string& kind,
-  const std::string& owner, VectorMemory* memory = nullptr);
+  const std::string& owner, VectorMemory* memory = nullptr, const FloatTaker& takeFloats = {});
+
+/// Copies tuples of an array of three components, from the one with number first on; may be called
+/// by several threads.
+using VectorCopier = std::function<void(vtkIdType first, vtkIdType count, glm::dvec3* vectors)>;
+VectorCopier MakeVectorCopier(vtkDataArray* array);
 
 /// The vectors of a dataset's points where nobody chose: the active ones, or else the only array of
 /// three components; null where there is no such array.

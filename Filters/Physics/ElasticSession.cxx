@@ -90,6 +90,7 @@ bool ElasticSession::Update(ElasticSimulation& simulation, vtkUnstructuredGrid* 
   if (!keepsState)
   {
     this->Cuts.clear();
+    ++this->CutsVersion;
     this->Sheet = WorldSheet();
     this->Time = 0.0;
     this->HasMoved = false;
@@ -149,6 +150,7 @@ void ElasticSession::Cut(const WorldSheet& sheet)
       cut.NumberOfFaces = split.NumberOfFaces;
       cut.Before = std::move(before);
       this->Cuts.push_back(std::move(cut));
+      ++this->CutsVersion;
       this->Mesh = this->WithCuts(this->Whole);
       this->Simulation->SplitNodes(this->Mesh.Body, appended);
     }
@@ -162,6 +164,7 @@ void ElasticSession::RemoveCuts(std::size_t left)
   {
     const ElasticSimulation::State before = std::move(this->Cuts[left].Before);
     this->Cuts.resize(left);
+    ++this->CutsVersion;
     this->Mesh = this->WithCuts(this->Whole);
     this->Simulation->Return(this->Mesh.Body, before);
   }
@@ -191,7 +194,7 @@ vtkUnstructuredGrid* ElasticSession::GetGrid(vtkUnstructuredGrid* grid)
     return grid;
   }
   const Stamp stamp = GetDataStamp(grid);
-  if (this->CutGrid && stamp == this->CutGridStamp && this->CutsOfGrid == this->Cuts.size())
+  if (this->CutGrid && stamp == this->CutGridStamp && this->CutsOfGrid == this->CutsVersion)
   {
     return this->CutGrid;
   }
@@ -200,7 +203,13 @@ vtkUnstructuredGrid* ElasticSession::GetGrid(vtkUnstructuredGrid* grid)
   const vtkIdType before = grid->GetNumberOfPoints();
   const auto after = before + static_cast<vtkIdType>(origins.size());
   const auto getOrigin = [&](vtkIdType node)
-  { return node < before ? node : vtkIdType{ origins[static_cast<std::size_t>(node - before)] }; };
+  {
+    while (node >= before) // a copy, perhaps of one that an earlier cut has made
+    {
+      node = origins[static_cast<std::size_t>(node - before)];
+    }
+    return node;
+  };
   auto made = vtkSmartPointer<vtkUnstructuredGrid>::New();
   vtkNew<vtkPoints> points;
   points->SetDataType(grid->GetPoints()->GetDataType());
@@ -235,7 +244,7 @@ vtkUnstructuredGrid* ElasticSession::GetGrid(vtkUnstructuredGrid* grid)
   made->GetFieldData()->ShallowCopy(grid->GetFieldData());
   this->CutGrid = made;
   this->CutGridStamp = stamp;
-  this->CutsOfGrid = this->Cuts.size();
+  this->CutsOfGrid = this->CutsVersion;
   return made;
 }
 

@@ -10,6 +10,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -74,7 +75,8 @@ private:
   WorldSheet Sheet; // the last one
   vtkSmartPointer<vtkUnstructuredGrid> CutGrid;
   Stamp CutGridStamp;
-  std::size_t CutsOfGrid = 0;
+  std::uint64_t CutsVersion = 0; // changes with them
+  std::uint64_t CutsOfGrid = 0;  // a version
 };
 
 } // namespace deformvolume

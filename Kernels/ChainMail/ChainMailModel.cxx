@@ -345,6 +345,23 @@ void ChainMailModel::Reset()
   this->Impl->Guard([&] { this->Impl->Solver->PutToRest(); });
 }
 
+std::shared_ptr<const ChainMailSnapshot> ChainMailModel::TakeSnapshot(
+  const std::shared_ptr<const ChainMailSnapshot>& last)
+{
+  this->Impl->CheckIsSet();
+  return this->Impl->Guard([&] { return this->Impl->Solver->TakeSnapshot(last.get()); });
+}
+
+void ChainMailModel::Restore(const ChainMailSnapshot& snapshot)
+{
+  this->Impl->CheckIsSet();
+  if (snapshot.Voxels != this->Impl->Blocks->GetExtent())
+  {
+    throw Error("The snapshot is one of other voxels. Take one of this volume.");
+  }
+  this->Impl->Guard([&] { this->Impl->Solver->Restore(snapshot); });
+}
+
 std::uint64_t ChainMailModel::GetDeviceMemory() const
 {
   return this->Impl->GetMemory();

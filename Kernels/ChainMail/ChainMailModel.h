@@ -2,6 +2,7 @@
 #ifndef DeformVolumeChainMailModel_h
 #define DeformVolumeChainMailModel_h
 
+#include "ChainMailSnapshot.h"
 #include "ChainMailTypes.h"
 #include "DeformVolumeExport.h"
 #include "DeviceVectors.h"
@@ -97,6 +98,15 @@ public:
 
   /// Puts all displacements to 0.
   void Reset();
+
+  /// The displacements as they are. last: null, or another snapshot, which is shared where nothing
+  /// has changed.
+  std::shared_ptr<const ChainMailSnapshot> TakeSnapshot(
+    const std::shared_ptr<const ChainMailSnapshot>& last = {});
+  /// Takes the displacements back to what they were, to the last bit; what was relaxing then rests
+  /// until it is touched. Where they violate a limit or a link of now, the next step puts them to 0
+  /// first. An Error where the snapshot is one of other voxels.
+  void Restore(const ChainMailSnapshot& snapshot);
 
   /// Bytes allocated on the device, without the output.
   std::uint64_t GetDeviceMemory() const;

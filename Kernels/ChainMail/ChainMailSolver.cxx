@@ -78,19 +78,76 @@ void ChainMailSolver::PutToRest()
 {
   std::sort(this->Displaced.begin(), this->Displaced.end());
   this->State.PutToRest(this->Displaced);
-  if (this->State.HasOutput())
-  {
-    this->State.WriteOutput(this->Displaced);
-    const std::vector<Extent> changes = this->Blocks.Join(this->Displaced);
-    this->State.ReadOutput(changes);
-    this->State.TellOfChanges(changes);
-  }
-  this->PutBack.insert(this->PutBack.end(), this->Displaced.begin(), this->Displaced.end());
+  this->PublishChanges(this->Displaced);
   std::fill(this->IsDisplaced.begin(), this->IsDisplaced.end(), static_cast<unsigned char>(0));
   std::fill(this->IsRecent.begin(), this->IsRecent.end(), static_cast<unsigned char>(0));
   this->Displaced.clear();
   this->Recent.clear();
   this->WasReset = true;
+}
+
+// Of blocks, ascending, between two steps.
+void ChainMailSolver::PublishChanges(const std::vector<std::uint32_t>& blocks)
+{
+  if (this->State.HasOutput())
+  {
+    this->State.WriteOutput(blocks);
+    const std::vector<Extent> changes = this->Blocks.Join(blocks);
+    this->State.ReadOutput(changes);
+    this->State.TellOfChanges(changes);
+  }
+  this->PutBack.insert(this->PutBack.end(), blocks.begin(), blocks.end());
+}
+
+std::shared_ptr<const ChainMailSnapshot> ChainMailSolver::TakeSnapshot(
+  const ChainMailSnapshot* last)
+{
+  using Block = ChainMailSnapshot::Block;
+  auto snapshot = std::make_shared<ChainMailSnapshot>();
+  snapshot->Voxels = this->Blocks.GetExtent();
+  std::sort(this->Displaced.begin(), this->Displaced.end());
+  std::vector<Block> values(this->Displaced.size());
+  this->State.ReadBlocks(this->Displaced, values);
+  std::size_t next = 0; // of the last snapshot
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    const std::uint32_t block = this->Displaced[i];
+    if (std::all_of(
+          values[i].begin(), values[i].end(), [](std::int32_t value) { return value == 0; }))
+    {
+      continue;
+    }
+    while (last && next < last->Numbers.size() && last->Numbers[next] < block)
+    {
+      ++next;
+    }
+    const bool isKnown = last && last->Voxels == snapshot->Voxels && next < last->Numbers.size() &&
+      last->Numbers[next] == block && *last->Blocks[next] == values[i];
+    snapshot->Numbers.push_back(block);
+    snapshot->Blocks.push_back(
+      isKnown ? last->Blocks[next] : std::make_shared<const Block>(values[i]));
+  }
+  return snapshot;
+}
+
+void ChainMailSolver::Restore(const ChainMailSnapshot& snapshot)
+{
+  std::vector<std::uint32_t> blocks = this->Displaced;
+  blocks.insert(blocks.end(), snapshot.Numbers.begin(), snapshot.Numbers.end());
+  std::sort(blocks.begin(), blocks.end());
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  this->State.PutToRest(blocks);
+  this->State.WriteBlocks(snapshot.Numbers, snapshot.Blocks);
+  this->PublishChanges(blocks);
+  std::fill(this->IsDisplaced.begin(), this->IsDisplaced.end(), static_cast<unsigned char>(0));
+  std::fill(this->IsRecent.begin(), this->IsRecent.end(), static_cast<unsigned char>(0));
+  this->Displaced = snapshot.Numbers;
+  for (const std::uint32_t block : this->Displaced)
+  {
+    this->IsDisplaced[block] = 1;
+  }
+  this->Recent.clear();
+  this->IsToCheck = true;
 }
 
 void ChainMailSolver::CheckDisplacements(const std::vector<std::uint32_t>& blocks)
@@ -383,6 +440,11 @@ ChainMailReport ChainMailSolver::Advance(
 ChainMailReport ChainMailSolver::Step(
   const ChainMailHandles& handles, const ChainMailRequest& request)
 {
+  if (this->IsToCheck)
+  {
+    this->CheckDisplacements();
+    this->IsToCheck = false;
+  }
   this->State.SetProgress(request.Progress);
   try
   {

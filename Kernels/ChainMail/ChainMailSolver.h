@@ -5,10 +5,12 @@
 #include "ActiveBlocks.h"
 #include "ChainMailBlocks.h"
 #include "ChainMailHandles.h"
+#include "ChainMailSnapshot.h"
 #include "ChainMailState.h"
 #include "ChainMailTypes.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace deformvolume
@@ -33,6 +35,11 @@ public:
   void CheckDisplacements(const std::vector<std::uint32_t>& blocks);
   void CheckDisplacements() { this->CheckDisplacements(this->Displaced); }
 
+  /// The displacements as they are, and as they are in another snapshot, or null, where that is so.
+  std::shared_ptr<const ChainMailSnapshot> TakeSnapshot(const ChainMailSnapshot* last);
+  /// Takes them back. The next step checks them.
+  void Restore(const ChainMailSnapshot& snapshot);
+
 private:
   ChainMailReport Advance(const ChainMailHandles& handles, const ChainMailRequest& request);
   void Resolve(const ChainMailHandles& handles, ChainMailReport& report);
@@ -46,6 +53,7 @@ private:
   void MarkSaved(std::uint32_t block);
   void ForgetSaved();
   void Finish(ChainMailReport& report);
+  void PublishChanges(const std::vector<std::uint32_t>& blocks);
 
   ChainMailState& State;
   ChainMailBlocks Blocks;
@@ -57,6 +65,7 @@ private:
   std::int64_t NumberOfSteps = 0;
   bool HasMoved = false;
   bool WasReset = false;
+  bool IsToCheck = false; // whether displacements may violate a limit
 };
 
 } // namespace deformvolume

@@ -20,6 +20,9 @@ namespace
 // Work-items of a work-group, which share the rows of a block.
 constexpr std::size_t MostItems = DEFORMVOLUME_BLOCK_ROWS;
 
+static_assert(ChainMailSnapshot::VoxelsPerBlock == DEFORMVOLUME_BLOCK_VOXELS,
+  "snapshots have the blocks of the kernels");
+
 std::uint64_t CountVoxels(const ChainMailBlocks& blocks)
 {
   return std::uint64_t{ blocks.GetNumberOfBlocks() } * DEFORMVOLUME_BLOCK_VOXELS;
@@ -280,6 +283,42 @@ void ChainMailState::WriteOutput(const std::vector<std::uint32_t>& list)
   this->Run(MakeKernel(this->Program, "Write", this->Displacements, this->Output.GetBuffer(),
               this->List, this->Grid),
     list);
+}
+
+void ChainMailState::ReadBlocks(
+  const std::vector<std::uint32_t>& list, std::vector<ChainMailSnapshot::Block>& values)
+{
+  constexpr std::size_t bytes = sizeof(ChainMailSnapshot::Block);
+  PendingReads reads;
+  for (std::size_t begin = 0; begin < list.size();)
+  {
+    // Those that lie side by side at once.
+    std::size_t end = begin + 1;
+    while (end < list.size() && list[end] == list[end - 1] + 1)
+    {
+      ++end;
+    }
+    cl::Event done;
+    this->Device.GetQueue().enqueueReadBuffer(this->Displacements, CL_FALSE, list[begin] * bytes,
+      (end - begin) * bytes, values[begin].data(), nullptr, &done);
+    reads.Add(done);
+    begin = end;
+  }
+  reads.Check();
+}
+
+void ChainMailState::WriteBlocks(const std::vector<std::uint32_t>& list,
+  const std::vector<std::shared_ptr<const ChainMailSnapshot::Block>>& values)
+{
+  constexpr std::size_t bytes = sizeof(ChainMailSnapshot::Block);
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  const QueueGuard guard(queue);
+  for (std::size_t i = 0; i < list.size(); ++i)
+  {
+    queue.enqueueWriteBuffer(
+      this->Displacements, CL_FALSE, list[i] * bytes, bytes, values[i]->data());
+  }
+  queue.finish();
 }
 
 void ChainMailState::Check(const std::vector<std::uint32_t>& list)

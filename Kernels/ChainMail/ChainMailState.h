@@ -6,6 +6,7 @@
 #include "ChainMailHandles.h"
 #include "ChainMailLimits.h"
 #include "ChainMailParameters.h"
+#include "ChainMailSnapshot.h"
 #include "DeviceVectors.h"
 #include "OutputVectors.h"
 #include "WorkDevice.h"
@@ -81,6 +82,13 @@ public:
   void PutToRest(const std::vector<std::uint32_t>& list);
   void WriteOutput(const std::vector<std::uint32_t>& list);
   void Check(const std::vector<std::uint32_t>& list);
+  ///@{
+  /// The displacements of blocks, ascending.
+  void ReadBlocks(
+    const std::vector<std::uint32_t>& list, std::vector<ChainMailSnapshot::Block>& values);
+  void WriteBlocks(const std::vector<std::uint32_t>& list,
+    const std::vector<std::shared_ptr<const ChainMailSnapshot::Block>>& values);
+  ///@}
   /// No two of them share a face. results: of each, what the kernel reports.
   void Propagate(const std::vector<BlockTask>& list, std::vector<std::uint32_t>& results);
   /// One sweep. Sets those of results to 1 whose block has changed.

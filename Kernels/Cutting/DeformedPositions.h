@@ -4,20 +4,23 @@
 
 #include "DeformVolumeExport.h"
 #include "DisplacementField.h"
+#include "PointRanges.h"
 #include "StaticMapping.h"
 #include "Tetrahedron.h"
 #include "VertexPositions.h"
 
-#include <glm/vec3.hpp>
-
-#include <functional>
+#include <memory>
 #include <vector>
 
 namespace deformvolume
 {
 
-/// Where the vertices of a volume are in a deformation. All of them are looked at once, for the
-/// boxes of the bricks; after that only those of bricks that matter.
+class DeformedFieldVertices;
+class DeformedMeshVertices;
+class DeformedVertices;
+
+/// Where the vertices of a volume are in a deformation. Of all bricks only limits are found; their
+/// vertices are looked at where a brick matters.
 class DEFORMVOLUME_EXPORT DeformedPositions : public VertexPositions
 {
 public:
@@ -31,18 +34,26 @@ public:
   DeformedPositions(const Extent& vertices, const DisplacementField& field);
   ~DeformedPositions() override;
 
+  /// Other displacements of the same mesh, or other nodes of its tetrahedra. Not for a field.
+  void SetDisplacements(const float* displacements);
+  /// Another displacement field. changed: ranges of its points outside of which the field is as the
+  /// last one was; null: that is not known. Not for a mesh.
+  void SetField(const DisplacementField& field, const PointRanges* changed);
+
   SnappedBox GetBox(std::size_t brick) const override { return this->Boxes[brick]; }
   SnappedBox GetBox() const override { return this->Box; }
   void Find(const Extent& vertices, SnappedPoint* positions, bool* hasPosition) const override;
 
 private:
-  /// The displacements of the vertices of a row from x on, and whether they have any.
-  using RowFinder = std::function<void(
-    int x, int y, int z, int count, glm::dvec3* displacements, bool* hasPosition)>;
+  /// Of the bricks that are marked, one byte each; of all where there are no marks.
+  void FindBoxes(const std::vector<unsigned char>& marked);
+  SnappedBox FindBox(std::size_t brick) const;
+  SnappedBox FindExactBox(std::size_t brick) const;
 
-  void FindBoxes();
-
-  RowFinder FindRow;
+  std::unique_ptr<DeformedVertices> Vertices;
+  // Those above; one of these is null.
+  DeformedMeshVertices* OfMesh = nullptr;
+  DeformedFieldVertices* OfField = nullptr;
   std::vector<SnappedBox> Boxes;
   SnappedBox Box;
 };

@@ -7,6 +7,7 @@
 
 #include <glm/vector_relational.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -60,25 +61,23 @@ public:
     };
     IndexBounds all = this->GetExact();
     // Those that reach farthest first: they leave few others.
-    for (int direction = 0; direction < 6; ++direction)
+    std::vector<std::size_t> left = this->FindBeyond(all);
+    for (int direction = 0; direction < 6 && !left.empty(); ++direction)
     {
-      const std::size_t farthest = this->FindFarthest(direction / 2, direction % 2 != 0);
-      if (farthest < this->Bounds.size() && !Holds(all, this->Bounds[farthest]))
+      const std::size_t farthest = this->FindFarthest(left, direction / 2, direction % 2 != 0);
+      if (!this->IsExact[farthest] && !Holds(all, this->Bounds[farthest]))
       {
         compute(farthest);
         all.Add(this->Bounds[farthest]);
       }
     }
-    std::vector<std::size_t> left;
-    for (std::size_t block = 0; block < this->Bounds.size(); ++block)
-    {
-      if (!this->IsExact[block] && !Holds(all, this->Bounds[block]))
-      {
-        left.push_back(block);
-      }
-    }
+    left = this->FindBeyond(all, left);
     ParallelForParts(left.size(), 1, [&](std::size_t begin, std::size_t) { compute(left[begin]); });
-    return this->GetExact();
+    for (const std::size_t block : left)
+    {
+      all.Add(this->Bounds[block]);
+    }
+    return all;
   }
 
 private:
@@ -103,21 +102,46 @@ private:
     return all;
   }
 
-  /// The block, of those whose bounds are not known, whose box reaches farthest on an axis.
-  std::size_t FindFarthest(int axis, bool upwards) const
+  /// Those whose bounds are not known, and whose boxes a box does not hold; in the second form of
+  /// some blocks.
+  std::vector<std::size_t> FindBeyond(const IndexBounds& box) const
   {
-    const auto isFarther = [&](const IndexBounds& a, const IndexBounds& b)
-    { return upwards ? a.Max[axis] > b.Max[axis] : a.Min[axis] < b.Min[axis]; };
-    std::size_t farthest = this->Bounds.size();
+    std::vector<std::size_t> beyond;
     for (std::size_t block = 0; block < this->Bounds.size(); ++block)
     {
-      if (!this->IsExact[block] &&
-        (farthest == this->Bounds.size() || isFarther(this->Bounds[block], this->Bounds[farthest])))
-      {
-        farthest = block;
-      }
+      this->AddIfBeyond(box, block, beyond);
     }
-    return farthest;
+    return beyond;
+  }
+  std::vector<std::size_t> FindBeyond(
+    const IndexBounds& box, const std::vector<std::size_t>& blocks) const
+  {
+    std::vector<std::size_t> beyond;
+    for (const std::size_t block : blocks)
+    {
+      this->AddIfBeyond(box, block, beyond);
+    }
+    return beyond;
+  }
+  void AddIfBeyond(
+    const IndexBounds& box, std::size_t block, std::vector<std::size_t>& beyond) const
+  {
+    if (!this->IsExact[block] && !Holds(box, this->Bounds[block]))
+    {
+      beyond.push_back(block);
+    }
+  }
+
+  /// The one of some blocks that reaches farthest on an axis.
+  std::size_t FindFarthest(const std::vector<std::size_t>& blocks, int axis, bool upwards) const
+  {
+    const auto isNearer = [&](std::size_t a, std::size_t b)
+    {
+      const IndexBounds& first = this->Bounds[a];
+      const IndexBounds& second = this->Bounds[b];
+      return upwards ? first.Max[axis] < second.Max[axis] : first.Min[axis] > second.Min[axis];
+    };
+    return *std::max_element(blocks.begin(), blocks.end(), isNearer);
   }
 
   std::vector<IndexBounds> Bounds;

@@ -49,14 +49,27 @@ inline void DisplacementBounds::Add(const float* displacements, std::size_t begi
   // Compilers do not find these by themselves, and there are millions of points.
   __m128 least = _mm_load_ps(this->Least.data());
   __m128 greatest = _mm_load_ps(this->Greatest.data());
-  for (std::size_t point = begin; point < end; ++point)
+  // Two points at a time, which do not wait for each other.
+  __m128 otherLeast = least;
+  __m128 otherGreatest = greatest;
+  std::size_t point = begin;
+  for (; point + 2 <= end; point += 2)
+  {
+    const __m128 next = _mm_loadu_ps(displacements + 4 * point);
+    const __m128 other = _mm_loadu_ps(displacements + 4 * point + 4);
+    least = _mm_min_ps(least, next);
+    greatest = _mm_max_ps(greatest, next);
+    otherLeast = _mm_min_ps(otherLeast, other);
+    otherGreatest = _mm_max_ps(otherGreatest, other);
+  }
+  if (point < end)
   {
     const __m128 next = _mm_loadu_ps(displacements + 4 * point);
     least = _mm_min_ps(least, next);
     greatest = _mm_max_ps(greatest, next);
   }
-  _mm_store_ps(this->Least.data(), least);
-  _mm_store_ps(this->Greatest.data(), greatest);
+  _mm_store_ps(this->Least.data(), _mm_min_ps(least, otherLeast));
+  _mm_store_ps(this->Greatest.data(), _mm_max_ps(greatest, otherGreatest));
 #else
   for (std::size_t i = 4 * begin; i < 4 * end; ++i)
   {

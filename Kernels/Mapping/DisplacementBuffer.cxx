@@ -201,6 +201,56 @@ void PadSome(const float* vectors, std::size_t begin, std::size_t end, const Pla
 #endif
 }
 
+// Pads the vectors with some numbers of the device. Not all numbers need have one.
+void PadInOrder(const float* vectors, const Numbers& points, std::size_t count,
+  const std::array<std::size_t, 2>& places, float* padded, DisplacementBounds& bounds)
+{
+  const auto padOne = [&](std::size_t place, std::size_t point)
+  {
+    alignas(16) const std::array<float, 4> next = PadOne(vectors + 3 * point);
+    bounds.Add(next.data(), 0, 1);
+    std::copy(next.begin(), next.end(), padded + 4 * place);
+  };
+  std::size_t place = places[0];
+#ifdef __SSE2__
+  const __m128 mask = _mm_castsi128_ps(_mm_set_epi32(0, -1, -1, -1));
+  const bool isAligned = reinterpret_cast<std::uintptr_t>(padded) % sizeof(__m128) == 0;
+  __m128 least = _mm_load_ps(bounds.Least.data());
+  __m128 greatest = _mm_load_ps(bounds.Greatest.data());
+  std::size_t left = places[1]; // the number of the last vector, which has no float behind it
+  for (; isAligned && place < places[1]; ++place)
+  {
+    const auto point = static_cast<std::size_t>(points[place]);
+    if (point + 1 < count)
+    {
+      const __m128 next = _mm_and_ps(_mm_loadu_ps(vectors + 3 * point), mask);
+      least = _mm_min_ps(least, next);
+      greatest = _mm_max_ps(greatest, next);
+      _mm_stream_ps(padded + 4 * place, next);
+    }
+    else if (point + 1 == count)
+    {
+      left = place;
+    }
+  }
+  _mm_sfence();
+  _mm_store_ps(bounds.Least.data(), least);
+  _mm_store_ps(bounds.Greatest.data(), greatest);
+  if (left < places[1])
+  {
+    padOne(left, count - 1);
+  }
+#endif
+  for (; place < places[1]; ++place)
+  {
+    const auto point = static_cast<std::size_t>(points[place]);
+    if (point < count)
+    {
+      padOne(place, point);
+    }
+  }
+}
+
 // The three floats of each vector become the four that the device reads at once; returns what they
 // lie between.
 DisplacementBounds PadVectors(const float* vectors, const Numbers& numbers,
@@ -237,6 +287,25 @@ DisplacementBounds PadVectors(const float* vectors, const Numbers& numbers,
           pad([&](std::size_t i) { return static_cast<std::size_t>(numbers[i]); });
         }
       }
+      const std::lock_guard<std::mutex> lock(mutex);
+      all.Add(bounds);
+    });
+  return all;
+}
+
+// The same for all vectors, of which there are count, in the order that the device has them in:
+// what it has is not read, and goes to memory past the caches, which hold little of it.
+DisplacementBounds PadAll(
+  const float* vectors, const Numbers& points, std::size_t count, float* padded)
+{
+  DisplacementBounds all;
+  std::mutex mutex;
+  constexpr std::size_t step = 16384;
+  ParallelForParts(points.size(), step,
+    [&](std::size_t first, std::size_t past)
+    {
+      DisplacementBounds bounds;
+      PadInOrder(vectors, points, count, { { first, past } }, padded, bounds);
       const std::lock_guard<std::mutex> lock(mutex);
       all.Add(bounds);
     });
@@ -323,9 +392,11 @@ void DisplacementBuffer::Reserve(std::size_t count)
   }
 }
 
-void DisplacementBuffer::Send(const float* displacements, std::size_t count, const Numbers& numbers,
-  const PointRanges* changes, const std::function<BrickPoints()>& makePoints)
+void DisplacementBuffer::Send(const float* displacements, std::size_t count,
+  const Numbering& numbering, const PointRanges* changes,
+  const std::function<BrickPoints()>& makePoints)
 {
+  const Numbers& numbers = numbering.OfPoints;
   // Points with numbers may be fewer than there is room for.
   const std::size_t room = this->GetNumberOfPoints();
   const bool isProcessor = this->Device.GetDevice().IsProcessor;
@@ -340,7 +411,7 @@ void DisplacementBuffer::Send(const float* displacements, std::size_t count, con
     this->Observer.MoveAll({});
     changes = nullptr;
   }
-  const News news{ displacements, count, numbers, changes, makePoints };
+  const News news{ displacements, count, numbering, changes, makePoints };
   const cl::CommandQueue& queue = this->Device.GetQueue();
   if (isProcessor)
   {
@@ -359,7 +430,8 @@ void DisplacementBuffer::Send(const float* displacements, std::size_t count, con
 
 std::array<std::size_t, 2> DisplacementBuffer::Write(const News& news, float* sent)
 {
-  const auto& [displacements, count, numbers, changes, makePoints] = news;
+  const auto& [displacements, count, numbering, changes, makePoints] = news;
+  const Numbers& numbers = numbering.OfPoints;
   const std::size_t all = std::max(count, numbers.size());
   const std::vector<std::size_t> words = FindWords(changes, count);
   bool partly = this->Observer.IsTracking();
@@ -381,8 +453,11 @@ std::array<std::size_t, 2> DisplacementBuffer::Write(const News& news, float* se
   }
   if (!partly)
   {
-    const DisplacementBounds bounds = PadVectors(displacements, numbers, words, count, sent);
-    this->Observer.MoveAll(words.size() * WordSize >= count ? std::optional(bounds) : std::nullopt);
+    const bool areAll = words.size() * WordSize >= count;
+    const DisplacementBounds bounds = areAll && !numbers.empty()
+      ? PadAll(displacements, numbering.Points, count, sent)
+      : PadVectors(displacements, numbers, words, count, sent);
+    this->Observer.MoveAll(areAll ? std::optional(bounds) : std::nullopt);
     return { { 0, all } };
   }
   if (!this->Observer.HasPoints())

@@ -38,12 +38,17 @@ public:
   {
   }
 
-  /// What the device calls each point; empty: as it comes.
+  /// What the device calls each point, and the points by these numbers; empty: as it comes.
   using Numbers = std::vector<std::int32_t>;
+  struct Numbering
+  {
+    const Numbers& OfPoints;
+    const Numbers& Points;
+  };
   /// displacements: three floats a point, checked. changes: those that may have changed since the
   /// last call; null: all. makePoints: makes what the observer wants to know
   /// (DisplacementObserver::SetPoints).
-  void Send(const float* displacements, std::size_t count, const Numbers& numbers,
+  void Send(const float* displacements, std::size_t count, const Numbering& numbering,
     const PointRanges* changes, const std::function<BrickPoints()>& makePoints);
 
   /// Makes room for points of so many numbers; those that are new have no displacement yet.
@@ -66,7 +71,7 @@ private:
   {
     const float* Vectors;
     std::size_t Count;
-    const Numbers& PointNumbers;
+    const Numbering& PointNumbers;
     const PointRanges* Changes;
     const std::function<BrickPoints()>& MakePoints;
   };

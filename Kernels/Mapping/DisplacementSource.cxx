@@ -84,6 +84,11 @@ void DisplacementSource::SendTetrahedra(const Tetrahedron* tetrahedra,
     this->Device.Send(places.data(), numberOfTetrahedra * sizeof(Tetrahedron), this->Tetrahedra);
   this->NumberOfNodes = numberOfNodes;
   this->Order = std::move(order);
+  this->NodesByNumber.resize(this->Order.Nodes.size());
+  for (std::size_t node = 0; node < this->Order.Nodes.size(); ++node)
+  {
+    this->NodesByNumber[this->Order.Nodes[node]] = static_cast<std::int32_t>(node);
+  }
   this->FreeNumbers.clear();
   if (this->Nodes.GetNumberOfPoints() != numberOfNodes)
   {
@@ -166,8 +171,8 @@ void DisplacementSource::SendNodes(
   {
     CheckDisplacements(displacements, this->NumberOfNodes, "node", news);
   }
-  this->Nodes.Send(displacements, this->NumberOfNodes, this->Order.Nodes, news,
-    [this] { return this->MakeBrickPoints(); });
+  this->Nodes.Send(displacements, this->NumberOfNodes, { this->Order.Nodes, this->NodesByNumber },
+    news, [this] { return this->MakeBrickPoints(); });
   this->NodesSet = true;
   this->LastSent = true;
   this->Volume.GetRecords().Forget();
@@ -310,7 +315,9 @@ void DisplacementSource::SendField(
   CheckDisplacements(vectors, points, "point", news);
   this->CheckFieldSize();
   this->Field = parameters;
-  this->FieldVectors.Send(vectors, points, {}, news, [this] { return this->MakeBrickPoints(); });
+  const DisplacementBuffer::Numbers none;
+  this->FieldVectors.Send(
+    vectors, points, { none, none }, news, [this] { return this->MakeBrickPoints(); });
   this->LastSent = true;
 }
 
@@ -417,6 +424,7 @@ void DisplacementSource::ForgetNodes()
   this->Tetrahedra = cl::Buffer();
   this->Nodes.Clear();
   this->Order = MeshOrder();
+  this->NodesByNumber.clear();
   this->NumberOfTetrahedra = 0;
   this->NumberOfNodes = 0;
   this->NodesSet = false;

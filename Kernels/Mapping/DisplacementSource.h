@@ -159,8 +159,9 @@ private:
   cl::Buffer Tetrahedra; // their nodes (DEFORMVOLUME_NODE_PLACES), in the order of the device
   std::size_t NumberOfTetrahedra = 0;
   std::size_t NumberOfNodes = 0;
-  MeshOrder Order;                       // of all nodes that there have been
-  std::vector<std::int32_t> FreeNumbers; // of the device, that no tetrahedron has any more
+  MeshOrder Order;                         // of all nodes that there have been
+  std::vector<std::int32_t> NodesByNumber; // these by the numbers of the device
+  std::vector<std::int32_t> FreeNumbers;   // of the device, that no tetrahedron has any more
   DisplacementBuffer Nodes;
   bool NodesSet = false;
 

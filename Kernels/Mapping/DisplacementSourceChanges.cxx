@@ -19,11 +19,6 @@ namespace deformvolume
 
 std::vector<TetrahedronChange> DisplacementSource::FindChanges(const Tetrahedron* tetrahedra) const
 {
-  std::vector<std::int32_t> nodes(this->Order.Nodes.size()); // by the numbers of the device
-  for (std::size_t node = 0; node < nodes.size(); ++node)
-  {
-    nodes[this->Order.Nodes[node]] = static_cast<std::int32_t>(node);
-  }
   const MappedBuffer<const Tetrahedron> places(
     this->Device.GetQueue(), this->Tetrahedra, CL_MAP_READ);
   std::vector<TetrahedronChange> changes;
@@ -33,7 +28,7 @@ std::vector<TetrahedronChange> DisplacementSource::FindChanges(const Tetrahedron
     change.Number = static_cast<std::int32_t>(t);
     const Tetrahedron& last = places.Get()[this->Order.Tetrahedra[t]];
     std::transform(last.begin(), last.end(), change.Before.begin(),
-      [&](std::int32_t place) { return nodes[place / DEFORMVOLUME_NODE_PLACES]; });
+      [&](std::int32_t place) { return this->NodesByNumber[place / DEFORMVOLUME_NODE_PLACES]; });
     change.After = tetrahedra[t];
     if (change.After != change.Before)
     {
@@ -148,6 +143,7 @@ void DisplacementSource::SetNumberOfNodes(std::size_t numberOfNodes)
   for (std::size_t node = this->Order.Nodes.size(); node < numberOfNodes; ++node)
   {
     this->Order.Nodes.push_back(static_cast<std::int32_t>(node));
+    this->NodesByNumber.push_back(static_cast<std::int32_t>(node));
   }
   this->Nodes.Reserve(numberOfNodes);
   if (this->Observer.IsTracking())

@@ -228,6 +228,17 @@ void ExactPasses::Launch(
     cl::NDRange(group, 1, 1));
 }
 
+void ExactPasses::SendBricks(const std::vector<cl_uint>& list)
+{
+  if (list == this->SentBricks)
+  {
+    return; // to send them again would wait for all that is enqueued
+  }
+  this->SentBricks.clear(); // it is unknown what the device has, if this fails
+  this->Bricks = this->Device.Send(list.data(), list.size() * sizeof(cl_uint), this->Bricks);
+  this->SentBricks = list;
+}
+
 void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, int pass,
   const std::vector<cl_uint>* bricks)
 {
@@ -243,7 +254,7 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
   const ResamplingForm form =
     this->UseLanes(request.Method, output) ? ResamplingForm::Lanes : ResamplingForm::Cells;
   cl::Kernel kernel = this->MakeKernel(form);
-  this->Bricks = this->Device.Send(list.data(), list.size() * sizeof(cl_uint), this->Bricks);
+  this->SendBricks(list);
   this->PrepareKernel(kernel, launches.front().Chunk, output, form, launches.front().Parameters);
   for (const auto& [chunk, p] : launches)
   {

@@ -67,6 +67,8 @@ private:
   void Launch(const DeformRequest& request, cl::Kernel& kernel, ResamplingForm form,
     const KernelParameters& p);
 
+  /// Makes a list, which is not empty, the one that the device has.
+  void SendBricks(const std::vector<cl_uint>& list);
   cl::Kernel MakeKernel(ResamplingForm form);
   /// Has a kernel compiled before it runs (OpenCLContext::Prepare).
   void PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk, const OutputSlab& output,
@@ -78,10 +80,11 @@ private:
   DeviceVolume& Volume;
   const DisplacementSource& Source;
   Launches& Launched;
-  cl::Buffer Bricks;      // the list of those to work on
-  cl::Buffer BrickRows;   // what these need, where local memory is too small
-  cl::Buffer TakenBricks; // how many of these the launch that runs has taken
-  cl::Buffer Pieces;      // of large cells, to work on
+  cl::Buffer Bricks;               // the list of those to work on
+  std::vector<cl_uint> SentBricks; // what it has
+  cl::Buffer BrickRows;            // what these need, where local memory is too small
+  cl::Buffer TakenBricks;          // how many of these the launch that runs has taken
+  cl::Buffer Pieces;               // of large cells, to work on
 };
 
 } // namespace deformvolume

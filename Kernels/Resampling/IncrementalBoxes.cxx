@@ -30,12 +30,23 @@ DisplacementBounds IncrementalUpdate::ComputeBounds(
     return (*displacements.OfSubBricks)[subBrick];
   }
   DisplacementBounds bounds;
-  this->Points.AnyOf(subBrick,
-    [&](std::size_t begin, std::size_t end)
-    {
-      bounds.Add(displacements, begin, end);
-      return false;
-    });
+  const auto add = [&](const auto& from)
+  {
+    this->Points.AnyOf(subBrick,
+      [&](std::size_t begin, std::size_t end)
+      {
+        bounds.Add(from, begin, end);
+        return false;
+      });
+  };
+  if (displacements.Padded)
+  {
+    add(displacements.Padded);
+  }
+  else
+  {
+    add(displacements);
+  }
   return bounds;
 }
 

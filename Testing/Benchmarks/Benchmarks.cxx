@@ -30,6 +30,9 @@ int main(int argc, char* argv[])
   RegisterEdits(size);
   RegisterChainMail(size);
   RegisterPhysics(size);
+#ifdef DEFORMVOLUME_HAS_INTERACTION
+  RegisterSession(size);
+#endif
 
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv))

@@ -67,6 +67,10 @@ void RegisterChainMail(const EvaluationSize& size);
 /// Physics/<body>/frame: frames of springs and of finite elements.
 void RegisterPhysics(const EvaluationSize& size);
 
+/// Session/<body>/<drag, cut or carve>: a live session, from an event to the output. Not there with
+/// ParaView's VTK.
+void RegisterSession(const EvaluationSize& size);
+
 /// A resampler by its name in the results.
 struct NamedResampler
 {

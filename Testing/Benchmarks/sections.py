@@ -324,6 +324,23 @@ def physics(results, _folder, _kind):
         yield table(["simulation", "nodes", "steps a second", "SOFA's, published", "by that"], rows)
 
 
+SESSIONS = (
+    ("at-rest", "at rest"), ("chain-mail", "ChainMail"), ("springs-343", "springs, 343 nodes"),
+    ("elements-125", "finite elements, 125 nodes"), ("elements-729", "finite elements, 729 nodes"))
+
+
+def session(results, _folder, _kind):
+    rows = [[words, event, results.median(f"Session/{body}/{event}", "moved") or None,
+             *(results.milliseconds(f"Session/{body}/{event}", part)
+               for part in ("simulation", "resampling")), results.median(f"Session/{body}/{event}")]
+            for body, words in SESSIONS for event in ("drag", "cut", "carve")
+            if f"Session/{body}/{event}" in results.runs]
+    if rows:
+        yield "## Sessions: from an event to the output, 181 x 217 x 181 voxels\n"
+        yield table(["body", "event", "voxels moved by ChainMail", "event and step, ms", "resampling, ms",
+                     "in all, ms"], rows)
+
+
 def edits(results, _folder, _kind):
     rows = [[dimensions, words, results.median(f"Edit/{dimensions}/{name}"), paper]
             for dimensions in INTERACTIVE_SIZES
@@ -378,4 +395,4 @@ def rendering(results, folder, kind):
 
 
 ALL = [device, comparison, poses, nodes, tetrahedra, voxels, preprocessing, memory, incremental, live,
-       chain_mail, physics, edits, given, rendering]
+       chain_mail, physics, session, edits, given, rendering]

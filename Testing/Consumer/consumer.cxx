@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shifts a small volume by whole voxels along x, y and z, and compares every voxel.
 #include <vtkDeformVolumeFilter.h>
+#ifdef HAS_INTERACTION
+#include <vtkDeformVolumeSession.h>
+#endif
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkLatticeTetrahedraSource.h>
@@ -86,6 +89,10 @@ int main()
       }
     }
   }
+#ifdef HAS_INTERACTION
+  vtkNew<vtkDeformVolumeSession> session;
+  wrong += session->SetInputs(volume) ? 0 : 1;
+#endif
   std::cout << wrong << " of " << volume->GetNumberOfPoints() << " voxels are wrong.\n";
   return wrong == 0 ? 0 : 1;
 }

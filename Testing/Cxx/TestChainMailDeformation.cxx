@@ -265,6 +265,71 @@ void TestDeformed(const Extent& extent)
   }
 }
 
+bool IsSame(vtkFloatArray* one, vtkFloatArray* other)
+{
+  return one->GetNumberOfValues() == other->GetNumberOfValues() &&
+    std::equal(one->Begin(), one->End(), other->Begin());
+}
+
+// An undo of drags, and of a cut that has freed something.
+void TestStates()
+{
+  const auto volume = MakeVolume({ { 0, 30, 0, 20, 0, 20 } });
+  Dragged dragged(volume);
+  VERIFY(!dragged.Filter->RestoreState(0) && !dragged.Filter->RemoveState(0));
+  const vtkIdType rest = dragged.Filter->SaveState(); // before there is anything
+  const auto first = Copy(dragged.Drag({ { { 10, 10, 10 }, { 15, 10, 10 } } }));
+  const vtkIdType one = dragged.Filter->SaveState();
+  const auto second = Copy(dragged.Drag({ { { 20, 10, 10 }, { 20, 14, 12 } } }));
+  VERIFY(rest != one && !IsSame(first, second));
+  dragged.Filter->SetHandlesData(nullptr);
+  VERIFY(dragged.Filter->RestoreState(one));
+  const vtkIdType again = dragged.Filter->SaveState(); // what comes back is the state already
+  VERIFY(IsSame(dragged.Update(), first));
+  VERIFY(dragged.Filter->GetChangedExtent()[0] <= dragged.Filter->GetChangedExtent()[1]);
+  VERIFY(dragged.Filter->RestoreState(rest));
+  dragged.Update();
+  VERIFY_EQUAL(dragged.Filter->GetOutput()->GetPointData()->GetArray(0)->GetMaxNorm(), 0.0);
+  VERIFY(dragged.Filter->RestoreState(again));
+  VERIFY(IsSame(dragged.Update(), first));
+  VERIFY_EQUAL(dragged.Filter->GetNumberOfStates(), 3);
+  const vtkTypeInt64 memory = dragged.Filter->GetStateMemory();
+  VERIFY(memory > 6144 && memory < 2 * 60 * 6200); // blocks are shared
+  VERIFY(dragged.Filter->RemoveState(again) && !dragged.Filter->RestoreState(again));
+  VERIFY(dragged.Filter->RemoveState(one));
+  VERIFY(dragged.Filter->GetStateMemory() < 100);
+
+  const vtkIdType whole = dragged.Filter->SaveState();
+  vtkNew<vtkImageData> cut;
+  cut->ShallowCopy(volume);
+  vtkNew<vtkUnsignedCharArray> active;
+  active->SetName("ActiveTetrahedra");
+  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  for (vtkIdType cell = 0; cell < volume->GetNumberOfCells(); ++cell)
+  {
+    active->SetValue(cell, cell % 30 == 12 ? 0 : 31);
+  }
+  cut->GetCellData()->AddArray(active);
+  dragged.Filter->SetInputData(cut);
+  dragged.Drag({ { { 25, 10, 10 }, { 29, 10, 10 } } });
+  const vtkIdType apart = dragged.Filter->SaveState();
+  const auto parted = Copy(dragged.Update());
+  dragged.Filter->SetHandlesData(nullptr);
+  // The volume is whole again before the state comes back that violates it, and after.
+  dragged.Filter->SetInputData(volume);
+  VERIFY(dragged.Filter->RestoreState(whole));
+  VERIFY(IsSame(dragged.Update(), first));
+  dragged.Filter->SetInputData(cut);
+  VERIFY(dragged.Filter->RestoreState(apart));
+  VERIFY(IsSame(dragged.Update(), parted));
+
+  // Another volume has other states.
+  dragged.Filter->SetInputData(MakeVolume({ { 0, 20, 0, 20, 0, 20 } }));
+  dragged.Update();
+  VERIFY(!dragged.Filter->RestoreState(apart));
+  VERIFY(dragged.Filter->RestoreState(rest));
+}
+
 } // namespace
 
 int TestChainMailDeformation(int, char*[])
@@ -278,6 +343,7 @@ int TestChainMailDeformation(int, char*[])
   TestLabels<vtkDoubleArray>(true);
   TestPinsAndCuts();
   TestAborted();
+  TestStates();
   TestDeformed({ { 0, 40, 0, 30, 0, 30 } });
   TestDeformed({ { 0, 70, 0, 70, 0, 70 } }); // read where it lies
   return GetExitCode();

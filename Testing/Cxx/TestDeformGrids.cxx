@@ -7,13 +7,17 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
+#include <vtkDoubleArray.h>
 #include <vtkIdList.h>
+#include <vtkMultiBlockDataSet.h>
 #include <vtkObjectFactory.h>
 #include <vtkTrivialProducer.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGridAlgorithm.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -299,12 +303,130 @@ void TestTwoMeshes()
   Exchange(shape, 3);
   shape->Modified();
   meshes.Expect("the cells put right", 0);
+  Exchange(meshes.Rest, 5);
+  meshes.Rest->Modified();
+  meshes.Tested.Filter->Update();
+  VERIFY_EQUAL(meshes.Tested.TakeErrors(), 1);
+  Exchange(shape, 5);
+  shape->Modified();
+  meshes.Expect("the same cell replaced in both", 0);
+  shape->GetPoints()->GetData()->SetComponent(30, 2, std::nan(""));
+  shape->Modified();
+  meshes.Tested.Filter->Update();
+  VERIFY_EQUAL(meshes.Tested.TakeErrors(), 1);
+  VERIFY(meshes.Tested.LastError.find("Point 30") != std::string::npos);
+  shape->GetPoints()->GetData()->SetComponent(30, 2, 5.0);
+  shape->Modified();
+  meshes.Expect("the point put right", 0);
   // What displacements hold is told from what points hold.
   meshes.Rest = nullptr;
   meshes.Give(Copy(shape));
   meshes.Tested.Filter->SetRestData(nullptr);
   meshes.Move();
   meshes.Expect("displacements again", 1);
+}
+
+// A deformed mesh in one grid, and the one at rest in two.
+void TestOtherParts()
+{
+  const auto volume = MakeVolume({ { 0, 30, 0, 25, 2, 27 } });
+  vtkNew<vtkMultiBlockDataSet> parts;
+  const auto whole = Grid::New();
+  vtkNew<vtkPoints> points;
+  whole->SetPoints(points);
+  for (const int part : { 0, 1 })
+  {
+    const auto half = MakeImage(part == 0 ? std::array<int, 6>{ { 0, 30, 0, 25, 2, 14 } }
+                                          : std::array<int, 6>{ { 0, 30, 0, 25, 16, 27 } });
+    const Grid mesh = MakeMesh(half, part == 0 ? 9 : 11);
+    parts->SetBlock(static_cast<unsigned int>(part), mesh);
+    const vtkIdType first = points->GetNumberOfPoints();
+    for (vtkIdType node = 0; node < mesh->GetNumberOfPoints(); ++node)
+    {
+      points->InsertNextPoint(mesh->GetPoint(node));
+    }
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+    {
+      mesh->GetCellPoints(cell, ids);
+      for (vtkIdType& id : *ids)
+      {
+        id += first;
+      }
+      whole->InsertNextCell(VTK_TETRA, ids);
+    }
+  }
+  const Grid shape = Copy(whole);
+  for (vtkIdType node = 0; node < shape->GetNumberOfPoints(); ++node)
+  {
+    const glm::dvec3 p = GetPoint(whole, node);
+    shape->GetPoints()->SetPoint(
+      node, p.x + std::sin(0.2 * p.y), p.y + 0.03 * p.x, p.z + std::cos(0.3 * p.x));
+  }
+  Deformed inParts(volume, shape);
+  inParts.Filter->SetRestData(parts);
+  Deformed inOne(volume, shape);
+  inOne.Filter->SetRestData(whole);
+  VERIFY(AreEqual(inParts.Update(), inOne.Update()));
+}
+
+// Floats are read by a way of their own: they become the same displacements as equal doubles, and
+// what is wrong with one is told, wherever it stands.
+void TestFloats()
+{
+  for (const bool isOblique : { false, true })
+  {
+    const auto volume = MakeVolume({ { 0, 30, 0, 25, 2, 27 } });
+    volume->SetSpacing(0.8, 1.1, 1.3);
+    if (isOblique)
+    {
+      SetObliqueDirection(volume);
+    }
+    const Grid mesh = MakeMesh(volume, 11, 3.0);
+    SetDisplacements(mesh,
+      [](const glm::dvec3& p)
+      { return p + glm::dvec3(std::sin(0.2 * p.y), 0.03 * p.x, std::cos(0.3 * p.x)); });
+    auto* const floats = vtkFloatArray::SafeDownCast(mesh->GetPointData()->GetVectors());
+    vtkNew<vtkDoubleArray> doubles;
+    const Grid other = ShareArrays(mesh);
+    Deformed first(volume, mesh);
+    Deformed second(volume, other);
+    for (const double scale : { 1.0, 0.7, -0.3, 0.0 })
+    {
+      floats->SetComponent(77, 1, 0.5 + scale);
+      floats->Modified();
+      doubles->DeepCopy(floats);
+      other->GetPointData()->SetVectors(doubles);
+      first.Filter->SetDisplacementScale(scale);
+      second.Filter->SetDisplacementScale(scale);
+      VERIFY(AreEqual(first.Update(), second.Update()));
+    }
+    first.Filter->SetDisplacementScale(1.0);
+    const float infinity = std::numeric_limits<float>::infinity();
+    const vtkIdType last = mesh->GetNumberOfPoints() - 1;
+    for (const vtkIdType node : { vtkIdType{ 0 }, vtkIdType{ 513 }, vtkIdType{ 1023 }, last })
+    {
+      for (const float wrong : { std::nanf(""), infinity, -infinity, 1e6F })
+      {
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          const double right = floats->GetComponent(node, axis);
+          floats->SetComponent(node, axis, wrong);
+          floats->Modified();
+          first.Filter->Update();
+          VERIFY_EQUAL(first.TakeErrors(), 1);
+          const std::string expected = std::isfinite(wrong)
+            ? "more than 16,383 output voxels"
+            : "Displacement " + std::to_string(node) + " of";
+          VERIFY(first.LastError.find(expected) != std::string::npos);
+          floats->SetComponent(node, axis, right);
+          floats->Modified();
+        }
+      }
+    }
+    second.Filter->SetDisplacementScale(1.0);
+    VERIFY(AreEqual(first.Update(), second.Update()));
+  }
 }
 
 // Nodes and cells at random, and a mesh whose nodes lie on voxels, which many tetrahedra share.
@@ -381,6 +503,8 @@ int TestDeformGrids(int, char*[])
   TestPipeline();
   TestDegrees();
   TestTwoMeshes();
+  TestOtherParts();
+  TestFloats();
   TestNumbers();
   return GetExitCode();
 }

@@ -132,6 +132,8 @@ void TestMisuse(vtkImageData* volume)
   one.ExpectError("from 2 to 100");
   one.Object->ChangeRelaxationSweeps(-1);
   one.ExpectError("sweeps");
+  one.Object->ChangeUndoMemory(-1.0);
+  one.ExpectError("less than 0");
   one.Object->ChangeHandleRadius(-1.0);
   one.ExpectError("less than 0");
   one.Object->SetMovingSamplingFactor(3);
@@ -211,8 +213,58 @@ void TestDrag(vtkImageData* volume)
   vtkDataArray* values = volume->GetPointData()->GetScalars();
   VERIFY_EQUAL(one.Object->GetProbedValue(), values->GetComponent(volume->FindPoint(10, 11, 9), 0));
   VERIFY(!one.Object->Probe(-9, 2, 2));
-  VERIFY(one.Object->GetSimulationTime() > 0.0 && one.Object->GetResamplingTime() > 0.0 &&
-    one.Object->GetCopyTime() > 0.0);
+  VERIFY(one.Object->GetSimulationTime() > 0.0 && one.Object->GetResamplingTime() > 0.0);
+}
+
+// What is done twice is undone twice, with a body that is pulled apart, so that cuts are seen.
+void TestTwice(vtkImageData* volume)
+{
+  Tested one(volume);
+  one.Object->ChangeModel(Session::CHAIN_MAIL);
+  one.Object->ChangeRelaxationSweeps(0); // which goes on for a while
+  const auto rest = one.Step();
+  const auto sheet = MakePlane({ 8.3, 10.4, 8.6 }, { 0, 40, 2 }, { 1, 0, 40 });
+  one.Object->Cut(sheet);
+  one.Object->Cut(sheet);
+  const int handle = one.Object->BeginGrab(20, 10, 9);
+  one.Object->MoveGrab(handle, 24, 10, 9);
+  one.Object->EndGrab(handle);
+  const auto whole = one.Step(); // the drag was over before the step
+  VERIFY(AreEqual(whole, rest));
+  const int other = one.Object->BeginGrab(20, 10, 9);
+  one.Object->MoveGrab(other, 24, 10, 9);
+  const auto apart = one.Step();
+  one.Object->EndGrab(other);
+  for (int i = 0; i < 3; ++i)
+  {
+    one.Object->CarveSphere(14, 14, 9, 2.0 + i);
+    one.Object->CarveTo(14, 14, 9, 2.5 + i);
+  }
+  const auto carved = one.Step();
+  VERIFY(!AreEqual(whole, apart) && !AreEqual(apart, carved));
+  for (int i = 0; i < 2; ++i)
+  {
+    one.Object->Undo();
+  }
+  const auto carvedOnce = one.Step();
+  VERIFY(!AreEqual(carvedOnce, apart) && !AreEqual(carvedOnce, carved));
+  one.Object->Undo();
+  VERIFY(AreEqual(one.Step(), apart));
+  VERIFY_EQUAL(one.Object->GetNumberOfActions(), vtkIdType(5));
+  for (int i = 0; i < 4; ++i)
+  {
+    one.Object->Undo();
+  }
+  VERIFY(AreEqual(one.Step(), rest));
+  for (int i = 0; i < 5; ++i)
+  {
+    one.Object->Redo();
+  }
+  VERIFY(AreEqual(one.Step(), carvedOnce));
+  one.Object->Redo();
+  one.Object->Redo();
+  VERIFY(AreEqual(one.Step(), carved));
+  VERIFY_EQUAL(one.TakeError(), std::string());
 }
 
 class RandomSession
@@ -228,6 +280,12 @@ public:
   {
     Session* session = this->One.Object;
     const glm::dvec3 place = this->GetPlace();
+    // Actions that can be undone take memory, which is to be flat.
+    constexpr vtkIdType mostActions = 150;
+    if (session->GetNumberOfActions() > mostActions)
+    {
+      session->Reset();
+    }
     switch (this->Random() % 16)
     {
       case 0:
@@ -298,15 +356,36 @@ public:
   int Handle = 0;
 };
 
+// Resident memory in KiB.
+double GetMemory()
+{
+  std::ifstream file("/proc/self/status");
+  std::string word;
+  while (file >> word && word != "VmRSS:")
+  {
+  }
+  double memory = 0.0;
+  file >> memory;
+  return memory;
+}
+
 void TestRandom(vtkImageData* volume, int events, unsigned seed, const std::string& fileName)
 {
   RandomSession random(volume, seed);
   Tested& one = random.One;
   const auto first = one.Finish();
+  // Less than random actions take, so that some are undone without what is kept.
+  one.Object->ChangeUndoMemory(4e6);
+  double memory = 0.0;
   for (int i = 0; i < events && GetNumberOfFailures() == 0; ++i)
   {
     random.MakeEvent();
+    memory = i == events / 5 ? GetMemory() : memory;
   }
+  constexpr int fewEvents = 2000; // with which memory is still warming up
+  const double growth = GetMemory() / memory - 1.0;
+  std::cout << "Memory grows by " << 100.0 * growth << " % of " << memory / 1024.0 << " MiB\n";
+  VERIFY(events < fewEvents || growth < 0.05);
   one.Step();
   one.TakeError();
   VERIFY(one.Object->GetNumberOfActions() > 0);
@@ -497,6 +576,7 @@ int TestDeformVolumeSession(int argc, char* argv[])
   const auto volume = MakeVolume(Box);
   TestMisuse(volume);
   TestDrag(volume);
+  TestTwice(volume);
   TestFiles(volume, fileName);
   TestThread(volume, fileName);
   TestRandom(volume, events, static_cast<unsigned>(seed), fileName);

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkMassSpringDeformation and vtkCorotationalDeformation in a pipeline: misuse, closed forms in
 // both units, times, what is kept, and the volume that they deform.
-#include "ChainMailTesting.h"
-
-#include "vtkCorotationalDeformation.h"
-#include "vtkLatticeTetrahedraSource.h"
-#include "vtkMassSpringDeformation.h"
+#include "ElasticTesting.h"
 
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
@@ -18,77 +14,12 @@
 #include <functional>
 #include <limits>
 
+using namespace elasticTesting;
 using namespace chainMailTesting;
 using namespace filterTesting;
 
 namespace
 {
-
-// A bar of 4 x 4 x 12 cells, held at z = 0. Lengths are in units of so many metres.
-vtkSmartPointer<vtkUnstructuredGrid> MakeBar(double unit)
-{
-  vtkNew<vtkLatticeTetrahedraSource> lattice;
-  lattice->SetNumberOfNodes(5, 5, 13);
-  const double width = 0.01 / unit;
-  lattice->SetBounds(0.0, width, 0.0, width, 0.0, 3.0 * width);
-  lattice->Update();
-  auto bar = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  bar->DeepCopy(lattice->GetOutput());
-  vtkNew<vtkUnsignedCharArray> fixed;
-  fixed->SetName("Fixed");
-  fixed->SetNumberOfTuples(bar->GetNumberOfPoints());
-  for (vtkIdType i = 0; i < bar->GetNumberOfPoints(); ++i)
-  {
-    fixed->SetValue(i, bar->GetPoint(i)[2] == 0.0 ? 1 : 0);
-  }
-  bar->GetPointData()->AddArray(fixed);
-  return bar;
-}
-
-template <typename Filter>
-struct Simulated
-{
-  explicit Simulated(vtkDataObject* mesh)
-  {
-    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
-    {
-      this->Object->AddObserver(event, this->Observer);
-      this->Object->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
-    }
-    this->Object->SetInputDataObject(mesh);
-  }
-
-  // The errors of an update in words; "" where there is none.
-  std::string TryUpdate()
-  {
-    this->Object->Modified();
-    this->Object->Update();
-    const std::string errors = this->Observer->GetErrorMessage();
-    VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
-    VERIFY(errors.empty() || this->Object->GetOutput()->GetNumberOfPoints() == 0);
-    this->Observer->Clear();
-    this->ExecutiveObserver->Clear();
-    return errors;
-  }
-
-  // The displacements at a time.
-  vtkSmartPointer<vtkFloatArray> At(double time)
-  {
-    this->Object->UpdateTimeStep(time);
-    return this->Copy();
-  }
-
-  vtkSmartPointer<vtkFloatArray> Copy()
-  {
-    auto copy = vtkSmartPointer<vtkFloatArray>::New();
-    copy->DeepCopy(this->Object->GetOutput()->GetPointData()->GetArray("Displacement"));
-    return copy;
-  }
-
-  vtkNew<Filter> Object;
-  vtkNew<vtkTest::ErrorObserver> Observer;
-  vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
-};
 
 bool AreEqual(vtkFloatArray* a, vtkFloatArray* b)
 {
@@ -440,124 +371,6 @@ void TestDeformedVolume()
   VERIFY_EQUAL(deform->GetOutput()->GetDimensions()[2], 33);
 }
 
-// A sheet across the bar: the plane x = where, from a height on.
-vtkSmartPointer<vtkPolyData> MakeSheet(double x, double from)
-{
-  auto sheet = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  points->InsertNextPoint(x, -100.0, from);
-  points->InsertNextPoint(x, 100.0, from);
-  points->InsertNextPoint(x, 100.0, 100.0);
-  points->InsertNextPoint(x, -100.0, 100.0);
-  vtkNew<vtkCellArray> polygons;
-  polygons->InsertNextCell({ 0, 1, 2, 3 });
-  sheet->SetPoints(points);
-  sheet->SetPolys(polygons);
-  return sheet;
-}
-
-// A cut from the top to the middle; its sides are pulled apart, and the volume opens.
-template <typename Filter>
-void TestCut(const std::function<void(Simulated<Filter>&)>& settle)
-{
-  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
-  Simulated<Filter> simulated(bar);
-  simulated.Object->SetLengthUnitToMillimetre();
-  simulated.Object->SetPoissonRatio(0.4);
-  settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
-  simulated.Object->SetSheetData(MakeSheet(50.0, 0.0)); // misses
-  settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
-  VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(), 325);
-  simulated.Object->SetSheetData(MakeSheet(5.0, 15.0));
-  simulated.Object->SetHandlesData(
-    MakeHandles({ { glm::dvec3(0.0, 5.0, 30.0), glm::dvec3(-4.0, 5.0, 30.0) },
-      { glm::dvec3(10.0, 5.0, 30.0), glm::dvec3(14.0, 5.0, 30.0) } }));
-  simulated.Object->SetHandleRadius(2.6);
-  settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 1);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfSplitFaces(), 48);
-  vtkUnstructuredGrid* output = simulated.Object->GetOutput();
-  const vtkIdType appended = output->GetNumberOfPoints() - 325;
-  VERIFY(appended >= 6 * 5 && appended <= 14 * 5);
-  VERIFY_EQUAL(output->GetNumberOfCells(), bar->GetNumberOfCells());
-  VERIFY_EQUAL(
-    output->GetPointData()->GetArray("Fixed")->GetNumberOfTuples(), output->GetNumberOfPoints());
-
-  vtkNew<vtkImageData> volume;
-  volume->SetDimensions(41, 41, 121);
-  volume->SetSpacing(0.25, 0.25, 0.25);
-  volume->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
-  volume->GetPointData()->GetScalars()->Fill(100.0);
-  vtkNew<vtkDeformVolumeFilter> deform;
-  deform->SetInputData(volume);
-  deform->SetDeformationConnection(simulated.Object->GetOutputPort());
-  deform->OpenSplitsOn();
-  deform->Update();
-  // The gap where the sides have been pulled apart is empty, and below the cut nothing is.
-  vtkImageData* deformed = deform->GetOutput();
-  const auto getValue = [&](double x, double y, double z)
-  {
-    double place[3] = { x, y, z };
-    const vtkIdType voxel = deformed->FindPoint(place);
-    return deformed->GetPointData()->GetScalars()->GetComponent(voxel, 0);
-  };
-  VERIFY_EQUAL(getValue(5.0, 5.0, 28.0), 0.0);
-  VERIFY_EQUAL(getValue(0.0, 5.0, 28.0), 100.0);
-  VERIFY_EQUAL(getValue(10.0, 5.0, 28.0), 100.0);
-  VERIFY_EQUAL(getValue(5.0, 5.0, 5.0), 100.0);
-
-  // Other materials leave the cut. It is undone, and done again by another sheet.
-  simulated.Object->SetYoungModulus(2e4);
-  settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(), 325 + appended);
-  simulated.Object->UndoCut();
-  settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
-  VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(), 325);
-  simulated.Object->Reset();
-  simulated.Object->SetHandlesData(nullptr);
-  simulated.Object->SetSheetData(MakeSheet(5.0, 15.5));
-  settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 1);
-  VERIFY(simulated.Copy()->GetRange(-1)[1] < 1e-4);
-  simulated.Object->ClearCuts();
-  settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
-}
-
-// What a cut has separated falls, or stays where it is, with a warning.
-void TestPieces()
-{
-  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
-  vtkNew<vtkPolyData> sheet;
-  vtkNew<vtkPoints> points;
-  points->InsertNextPoint(-1.0, -1.0, 0.0151);
-  points->InsertNextPoint(1.0, -1.0, 0.0151);
-  points->InsertNextPoint(0.0, 2.0, 0.0151);
-  vtkNew<vtkCellArray> triangles;
-  triangles->InsertNextCell({ 0, 1, 2 });
-  sheet->SetPoints(points);
-  sheet->SetPolys(triangles);
-  Simulated<vtkMassSpringDeformation> springs(bar);
-  springs.Object->SetSheetData(sheet);
-  springs.Object->SetGravity(0.0, 0.0, 9.81);
-  springs.Object->SetDamping(0.0);
-  const auto fallen = springs.At(0.1);
-  const double top = fallen->GetComponent(324, 2);
-  VERIFY(std::abs(top - 0.5 * 9.81 * 0.01) < 0.01 * top);
-  Simulated<vtkCorotationalDeformation> elements(bar);
-  elements.Object->SetSheetData(sheet);
-  elements.Object->SetGravity(0.0, 0.0, 9.81);
-  elements.Object->Update();
-  VERIFY(Holds(elements.Observer->GetWarningMessage(), "1 pieces of the mesh are not held"));
-  elements.Observer->Clear();
-  VERIFY_EQUAL(elements.Object->GetNumberOfFrozenPieces(), 1);
-  VERIFY_EQUAL(elements.Copy()->GetComponent(324, 2), 0.0F);
-  VERIFY(elements.Copy()->GetRange(-1)[1] > 0.0);
-}
-
 } // namespace
 
 int TestElasticDeformation(int, char*[])
@@ -585,19 +398,5 @@ int TestElasticDeformation(int, char*[])
   TestAborted<vtkCorotationalDeformation>();
   TestLostBody();
   TestDeformedVolume();
-  TestCut<vtkMassSpringDeformation>(
-    [](Simulated<vtkMassSpringDeformation>& simulated)
-    {
-      simulated.Object->SetDamping(30.0);
-      simulated.Object->SetFrameTime(0.5);
-      VERIFY_EQUAL(simulated.TryUpdate(), std::string());
-    });
-  TestCut<vtkCorotationalDeformation>(
-    [](Simulated<vtkCorotationalDeformation>& simulated)
-    {
-      simulated.Object->SetModeToConverged();
-      VERIFY_EQUAL(simulated.TryUpdate(), std::string());
-    });
-  TestPieces();
-  return EXIT_SUCCESS;
+  return GetExitCode();
 }

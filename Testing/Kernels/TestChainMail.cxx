@@ -304,3 +304,109 @@ TEST(ChainMail, AHandleThatCannotBeHeldIsReleased)
   ExpectSame(report.Handles, reference.Step(rigid));
   subject.ExpectEqual(reference);
 }
+
+// A model that goes back is as one that has never gone on.
+TEST(ChainMail, SnapshotsComeBack)
+{
+  const Extent extent{ { -3, 30, 2, 21, 0, 18 } };
+  std::mt19937 random(11);
+  ChainMailReference reference(extent, { { 1, 1, 1 } });
+  MakeRandom(reference, random, false);
+  Subject subject(extent);
+  subject.Set(reference);
+  const std::vector<float> rest = subject.Output;
+  const auto atRest = subject.Model.TakeSnapshot();
+  EXPECT_TRUE(atRest->Numbers.empty());
+  std::vector<std::shared_ptr<const ChainMailSnapshot>> snapshots{ atRest };
+  std::vector<std::vector<float>> outputs{ rest };
+  for (int step = 0; step < 6; ++step)
+  {
+    // At the ends of the volume in turn, so that not all blocks move in a step.
+    ChainMailHandle handle = MakeRandomHandle(extent, random, 1.5);
+    handle.RestPosition[0] = step % 2 ? -3.0 : 30.0;
+    subject.Step({ handle }, 3);
+    snapshots.push_back(subject.Model.TakeSnapshot(snapshots.back()));
+    outputs.push_back(subject.Output);
+    ASSERT_NE(outputs[outputs.size() - 2], outputs.back());
+    for (std::size_t i = 0; i < snapshots.back()->Blocks.size(); ++i)
+    {
+      EXPECT_TRUE(std::any_of(snapshots.back()->Blocks[i]->begin(),
+        snapshots.back()->Blocks[i]->end(), [](std::int32_t value) { return value != 0; }));
+    }
+  }
+  for (const std::size_t number : { 3U, 6U, 0U, 2U, 5U, 1U, 4U })
+  {
+    subject.Model.Restore(*snapshots[number]);
+    EXPECT_EQ(subject.Output, outputs[number]);
+    const ChainMailReport report = subject.Step({});
+    EXPECT_EQ(report.NumberOfMovedVoxels, 0U);
+    EXPECT_FALSE(report.WasReset);
+    EXPECT_LE(report.ChangedExtent[0], report.ChangedExtent[1]); // of going back
+    EXPECT_EQ(subject.Output, outputs[number]);
+  }
+  // It goes on as from the first time.
+  Subject fresh(extent);
+  fresh.Set(reference);
+  subject.Model.Restore(*atRest);
+  const ChainMailHandle handle = MakeHandle({ { 10, 10, 10 } }, { { 2.5, -1, 1 } });
+  subject.Step({ handle }, 4);
+  fresh.Step({ handle }, 4);
+  EXPECT_EQ(subject.Output, fresh.Output);
+
+  // What has not changed is not copied.
+  const auto one = subject.Model.TakeSnapshot();
+  const auto same = subject.Model.TakeSnapshot(one);
+  EXPECT_EQ(one->Blocks, same->Blocks);
+  subject.Step({ MakeHandle({ { -3, 10, 10 } }, { { 0.5, 0, 0 } }) });
+  const auto other = subject.Model.TakeSnapshot(one);
+  std::size_t shared = 0;
+  for (std::size_t i = 0; i < other->Numbers.size(); ++i)
+  {
+    const auto found = std::find(one->Blocks.begin(), one->Blocks.end(), other->Blocks[i]);
+    shared += found != one->Blocks.end() ? 1U : 0U;
+  }
+  EXPECT_GT(shared, 0U);
+  EXPECT_LT(shared, other->Numbers.size());
+
+  Subject smaller(Extent{ { 0, 30, 0, 21, 0, 18 } });
+  EXPECT_THROW(smaller.Model.Restore(*one), Error);
+  EXPECT_THROW(ChainMailModel().TakeSnapshot(), Error);
+}
+
+// Links that are cut free what they held. A state from then may violate them when they are there
+// again.
+TEST(ChainMail, SnapshotsThatViolateLinks)
+{
+  const Extent extent{ { 0, 20, 0, 9, 0, 9 } };
+  Subject subject(extent);
+  std::vector<unsigned char> cut(std::size_t{ 20 } * 9 * 9, 31);
+  for (std::size_t cell = 10; cell < cut.size(); cell += 20)
+  {
+    cut[cell] = 0;
+  }
+  subject.Model.SetActiveTetrahedra(cut.data());
+  subject.Step({ MakeHandle({ { 20, 4, 4 } }, { { 9, 0, 0 } }) });
+  const auto apart = subject.Model.TakeSnapshot();
+  const std::vector<float> before = subject.Output;
+  subject.Model.Reset();
+  subject.Step({});
+  subject.Model.Restore(*apart);
+  EXPECT_FALSE(subject.Step({}).WasReset);
+  EXPECT_EQ(subject.Output, before);
+  // Back first, and then the links: all is put to rest. And the other way round.
+  for (const bool linksFirst : { false, true })
+  {
+    subject.Model.SetActiveTetrahedra(cut.data());
+    subject.Model.Reset();
+    subject.Step({});
+    if (linksFirst)
+    {
+      subject.Model.SetActiveTetrahedra(nullptr);
+    }
+    subject.Model.Restore(*apart);
+    EXPECT_EQ(subject.Output, before);
+    subject.Model.SetActiveTetrahedra(nullptr);
+    EXPECT_TRUE(subject.Step({}).WasReset);
+    EXPECT_EQ(subject.Output, std::vector<float>(before.size(), 0.0F));
+  }
+}

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <random>
 #include <vector>
@@ -35,6 +37,53 @@ Sheet MakeSheet(unsigned int seed, const glm::dvec3& move)
     points.push_back(move + glm::dvec3(place(random), place(random), place(random)) / 256.0);
   }
   return Sheet(points, { { { 0, 1, 2 } }, { { 3, 4, 5 } }, { { 6, 7, 8 } } });
+}
+
+struct BrickPositions
+{
+  std::vector<SnappedPoint> Points;
+  std::vector<char> HasPosition;
+};
+
+BrickPositions FindPositions(const DeformedPositions& positions, std::size_t brick)
+{
+  const Extent vertices = positions.GetBricks().GetVertices(brick);
+  const auto count = static_cast<std::size_t>(GetNumberOfPoints(vertices));
+  BrickPositions found;
+  found.Points.resize(count);
+  std::unique_ptr<bool[]> has(new bool[count]);
+  positions.Find(vertices, found.Points.data(), has.get());
+  found.HasPosition.assign(has.get(), has.get() + count);
+  return found;
+}
+
+// A box holds all vertices of its brick, and the box of all holds it. Returns how much longer boxes
+// are than they would have to be, at most, in steps.
+std::int64_t CheckBoxes(const DeformedPositions& positions)
+{
+  std::int64_t most = 0;
+  for (std::size_t brick = 0; brick < positions.GetBricks().GetNumberOfBricks(); ++brick)
+  {
+    const BrickPositions found = FindPositions(positions, brick);
+    SnappedBox exact;
+    for (std::size_t i = 0; i < found.Points.size(); ++i)
+    {
+      if (found.HasPosition[i] != 0)
+      {
+        exact.Add(found.Points[i]);
+      }
+    }
+    const SnappedBox box = positions.GetBox(brick);
+    for (int axis = 0; axis < 3 && !exact.IsEmpty(); ++axis)
+    {
+      EXPECT_LE(box.Min[axis], exact.Min[axis]);
+      EXPECT_GE(box.Max[axis], exact.Max[axis]);
+      EXPECT_LE(positions.GetBox().Min[axis], box.Min[axis]);
+      EXPECT_GE(positions.GetBox().Max[axis], box.Max[axis]);
+      most = std::max({ most, exact.Min[axis] - box.Min[axis], box.Max[axis] - exact.Max[axis] });
+    }
+  }
+  return most;
 }
 
 } // namespace
@@ -133,37 +182,173 @@ TEST(DeformedCutting, FindsDeformedPositions)
       ? std::make_unique<DeformedPositions>(vertices, field)
       : std::make_unique<DeformedPositions>(
           vertices, vertices, mapping, tetrahedra, displacements.data());
-    SnappedBox all;
     for (std::size_t brick = 0; brick < positions->GetBricks().GetNumberOfBricks(); ++brick)
     {
       const Extent box = positions->GetBricks().GetVertices(brick);
-      std::vector<SnappedPoint> points(729);
-      bool has[729];
-      positions->Find(box, points.data(), has);
+      const BrickPositions found = FindPositions(*positions, brick);
       std::size_t i = 0;
-      SnappedBox found;
       for (int z = box[4]; z <= box[5]; ++z)
       {
         for (int y = box[2]; y <= box[3]; ++y)
         {
           for (int x = box[0]; x <= box[1]; ++x, ++i)
           {
-            ASSERT_TRUE(has[i]);
+            ASSERT_TRUE(found.HasPosition[i]);
             const glm::dvec3 p(x, y, z);
             // Rounding moves by half a step, and floats of weights and displacements, which are
             // exact to 2^-20 of at most 32 voxels, by less than a hundredth.
-            const glm::dvec3 error = 256.0 * (p + move(p)) - glm::dvec3(points[i]);
+            const glm::dvec3 error = 256.0 * (p + move(p)) - glm::dvec3(found.Points[i]);
             ASSERT_LT(
               glm::max(glm::abs(error.x), glm::max(glm::abs(error.y), glm::abs(error.z))), 0.51);
-            found.Add(points[i]);
           }
         }
       }
-      EXPECT_EQ(positions->GetBox(brick).Min, found.Min);
-      EXPECT_EQ(positions->GetBox(brick).Max, found.Max);
-      all.Add(found);
     }
-    EXPECT_EQ(positions->GetBox().Min, all.Min);
-    EXPECT_EQ(positions->GetBox().Max, all.Max);
+    // A brick of 8 voxels in tetrahedra of 40: boxes leave room for all of these.
+    EXPECT_LE(CheckBoxes(*positions), 256 * 40);
+  }
+}
+
+// Random moves of a mesh of which many vertices are extrapolated, or lie outside it.
+TEST(DeformedCutting, BoxesHoldTheirVertices)
+{
+  const Extent vertices{ { -3, 30, 2, 23, 1, 20 } };
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> jitter(-2.0, 2.0);
+  std::uniform_real_distribution<float> move(-20.0F, 20.0F);
+  for (int round = 0; round < 30; ++round)
+  {
+    std::vector<glm::dvec3> nodes;
+    std::vector<float> displacements;
+    for (int i = 0; i < 8; ++i)
+    {
+      nodes.emplace_back(glm::dvec3(i & 1 ? 21 : 2, i & 2 ? 21 : 5, i & 4 ? 17 : 4) +
+        glm::dvec3(jitter(random), jitter(random), jitter(random)));
+      displacements.insert(displacements.end(), { move(random), move(random), move(random) });
+    }
+    const std::vector<Tetrahedron> tetrahedra{ { { 0, 1, 3, 5 } }, { { 0, 3, 2, 6 } },
+      { { 0, 5, 4, 6 } }, { { 3, 5, 6, 7 } }, { { 0, 3, 5, 6 } } };
+    const bool extrapolate = round % 3 == 0;
+    const StaticMapping mapping = BuildStaticMapping(vertices, glm::dvec3(1.0), nodes, tetrahedra,
+      extrapolate, round % 3 == 1 ? StaticMappingForm::Runs : StaticMappingForm::Links);
+    DeformedPositions positions(vertices, vertices, mapping, tetrahedra, displacements.data());
+    CheckBoxes(positions);
+
+    // Moved again it is as one made anew.
+    std::vector<float> others;
+    for (std::size_t i = 0; i < displacements.size(); ++i)
+    {
+      others.push_back(move(random));
+    }
+    positions.SetDisplacements(others.data());
+    CheckBoxes(positions);
+    const DeformedPositions anew(vertices, vertices, mapping, tetrahedra, others.data());
+    for (std::size_t brick = 0; brick < anew.GetBricks().GetNumberOfBricks(); ++brick)
+    {
+      EXPECT_EQ(FindPositions(positions, brick).Points, FindPositions(anew, brick).Points);
+      EXPECT_EQ(positions.GetBox(brick).Min, anew.GetBox(brick).Min);
+      EXPECT_EQ(positions.GetBox(brick).Max, anew.GetBox(brick).Max);
+    }
+  }
+}
+
+// Fields with points beside and between the voxels, turned, too, that end within the volume and
+// hold what is no number, or far too large.
+TEST(DeformedCutting, BoxesOfFieldsHoldTheirVertices)
+{
+  const Extent vertices{ { -3, 30, 2, 23, 1, 20 } };
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> move(-20.0F, 20.0F);
+  const std::vector<std::array<double, 12>> matrices{
+    { { 1, 0, 0, 3, 0, 1, 0, -2, 0, 0, 1, -1 } },
+    { { 0.3, 0, 0, 1.1, 0, 0.3, 0, -0.4, 0, 0, 0.4, 0 } },
+    { { 0.4, 0.3, 0, 1, -0.3, 0.4, 0.1, 7, 0, -0.2, 1.2, 1 } },
+  };
+  for (int round = 0; round < 30; ++round)
+  {
+    DisplacementField field;
+    field.Dimensions = { { 34, 22, 20 } };
+    std::vector<float> vectors;
+    for (std::int64_t i = 0; i < 3 * GetNumberOfPoints(field); ++i)
+    {
+      vectors.push_back(move(random));
+    }
+    if (round % 4 == 1)
+    {
+      vectors[3 * 2000 + 1] = std::numeric_limits<float>::quiet_NaN();
+      vectors[3 * 5000] = std::numeric_limits<float>::infinity();
+    }
+    if (round % 4 == 2)
+    {
+      vectors[3 * 2000 + 1] = 1e30F;
+      vectors[3 * 5000] = -20000.0F;
+    }
+    field.Vectors = vectors.data();
+    field.IndexToField = matrices[static_cast<std::size_t>(round % 3)];
+    field.ToDisplacement = { { 0.5, 0.25, 0, -0.125, 1, 0, 0, 0, 2 } };
+    field.Extrapolate = round % 2 == 0;
+    CheckBoxes(DeformedPositions(vertices, field));
+  }
+}
+
+// What is far from where a field moves something has a box as at rest.
+TEST(DeformedCutting, BoxesAreTight)
+{
+  const Extent vertices{ { 0, 32, 0, 32, 0, 32 } };
+  DisplacementField field;
+  field.Dimensions = { { 33, 33, 33 } };
+  std::vector<float> vectors(static_cast<std::size_t>(3 * GetNumberOfPoints(field)), 0.0F);
+  for (std::size_t i = 0; i < 3; ++i)
+  {
+    vectors[3 * (33 * (33 * 4 + 4) + 4) + i] = 7.0F;
+  }
+  field.Vectors = vectors.data();
+  const DeformedPositions positions(vertices, field);
+  const RestPositions rest(vertices);
+  EXPECT_LE(CheckBoxes(positions), 256 * 7);
+  EXPECT_GE(positions.GetBox(0).Max.x, 256 * 11);
+  for (std::size_t brick = 1; brick < 64; ++brick)
+  {
+    EXPECT_EQ(positions.GetBox(brick).Min, rest.GetBox(brick).Min - SnappedPoint(1));
+    EXPECT_EQ(positions.GetBox(brick).Max, rest.GetBox(brick).Max + SnappedPoint(1));
+  }
+}
+
+// A field that changes at some points, which are told: bricks with a vertex there, or on a face
+// there, and no others.
+TEST(DeformedCutting, BoxesFollowChanges)
+{
+  const Extent vertices{ { 3, 30, 2, 23, -4, 20 } };
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> move(-20.0F, 20.0F);
+  DisplacementField field;
+  field.Dimensions = { { 31, 25, 28 } };
+  field.IndexToField = { { 1, 0, 0, -2, 0, 1, 0, 1, 0, 0, 1, 5 } };
+  std::vector<float> vectors(static_cast<std::size_t>(3 * GetNumberOfPoints(field)), 0.0F);
+  field.Vectors = vectors.data();
+  DeformedPositions positions(vertices, field);
+  for (int round = 0; round < 60; ++round)
+  {
+    PointRanges changes;
+    const std::size_t points = vectors.size() / 3;
+    std::size_t begin = random() % points;
+    for (int i = 0; i < 3 && begin < points; ++i)
+    {
+      const std::size_t end = std::min(begin + 1 + random() % (round % 5 == 0 ? 2000 : 3), points);
+      changes.push_back({ { begin, end } });
+      for (std::size_t value = 3 * begin; value < 3 * end; ++value)
+      {
+        vectors[value] = move(random);
+      }
+      begin = end + random() % 5000;
+    }
+    positions.SetField(field, round % 20 == 19 ? nullptr : &changes);
+    const DeformedPositions anew(vertices, field);
+    for (std::size_t brick = 0; brick < anew.GetBricks().GetNumberOfBricks(); ++brick)
+    {
+      ASSERT_EQ(positions.GetBox(brick).Min, anew.GetBox(brick).Min);
+      ASSERT_EQ(positions.GetBox(brick).Max, anew.GetBox(brick).Max);
+    }
+    ASSERT_EQ(positions.GetBox().Min, anew.GetBox().Min);
   }
 }

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// deform-interactive: drags, cuts and carves a volume live, in a window.
+#include "Arguments.h"
+#include "Failure.h"
+#include "Messages.h"
+#include "Picture.h"
+#include "Viewer.h"
+
+#include <vtkLogger.h>
+#include <vtkNew.h>
+#include <vtkOutputWindow.h>
+
+#include <iostream>
+
+int main(int argc, char* argv[])
+{
+  Arguments arguments;
+  try
+  {
+    arguments = ParseArguments(argc, argv);
+  }
+  catch (const UsageError& error)
+  {
+    std::cerr << "deform-interactive: " << error.what() << "\n";
+    return 2;
+  }
+  if (arguments.WantsHelp)
+  {
+    std::cout << UsageText;
+    return 0;
+  }
+  // VTK writes its errors to a log, too; once is enough.
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  const vtkNew<Messages> messages;
+  messages->SetProgram("deform-interactive");
+  vtkOutputWindow::SetInstance(messages);
+  int code = 0;
+  try
+  {
+    CheckDisplay();
+    Viewer viewer(arguments, *messages);
+    viewer.Run();
+    messages->Check("the program ended with an error");
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << "deform-interactive: " << error.what() << "\n";
+    code = 1;
+  }
+  vtkOutputWindow::SetInstance(nullptr);
+  return code;
+}

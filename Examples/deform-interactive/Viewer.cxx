@@ -1,0 +1,583 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Viewer.h"
+
+#include "Failure.h"
+#include "Messages.h"
+#include "Picture.h"
+#include "VolumeReading.h"
+
+#include <vtkCamera.h>
+#include <vtkCommand.h>
+#include <vtkDataArray.h>
+#include <vtkDeformVolumeInteractorStyle.h>
+#include <vtkDeformVolumeSession.h>
+#include <vtkInteractorEventRecorder.h>
+#include <vtkPointData.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+#include <vtkStringArray.h>
+#include <vtkTextActor.h>
+#include <vtkTextProperty.h>
+#include <vtkWindowToImageFilter.h>
+#include <vtksys/SystemTools.hxx>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+namespace
+{
+const char* const HeadPath = "/usr/share/mricron/templates/ch2.nii.gz";
+const char* const RecordPath = "deform-interactive.log";
+
+constexpr float BeforeStyle = 10.0F;     // priority of observers
+constexpr float BeforeObservers = 20.0F; // the recorder misses nothing
+constexpr vtkIdType ManyVoxels = 1000000;
+
+constexpr const char* ProgramKeys =
+  "d volume, isosurface, slices    PageUp PageDown move the slice\n"
+  "f functions: automatic, CT bone, CT soft tissue, MR\n"
+  "arrows: level and width, or drag the plot at the lower right\n"
+  "o open a volume, session .xml or recording .log (or drop one)\n"
+  "s save: volume .vti, mesh .vtu, session .xml, picture .png\n"
+  "j record events, or stop     i numbers and plot\n"
+  ", . how far round its place a handle holds tissue";
+
+void SetUpText(vtkTextActor* actor, double x, double y, bool isRight)
+{
+  actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+  actor->SetPosition(x, y);
+  vtkTextProperty* property = actor->GetTextProperty();
+  property->SetFontFamilyToCourier();
+  property->SetFontSize(14);
+  property->SetBold(1);
+  property->SetShadow(1);
+  property->SetColor(0.8, 0.9, 1.0);
+  if (isRight)
+  {
+    property->SetJustificationToRight();
+    property->SetVerticalJustificationToTop();
+  }
+}
+
+std::string GetEnding(const std::string& path)
+{
+  return vtksys::SystemTools::LowerCase(vtksys::SystemTools::GetFilenameLastExtension(path));
+}
+}
+
+Viewer::Viewer(const Arguments& arguments, Messages& messages)
+  : Asked(arguments)
+  , Reports(messages)
+  , View(this->Style)
+{
+  this->Window->SetMultiSamples(0);
+  this->Window->SetSize(arguments.Size[0], arguments.Size[1]);
+  this->Window->SetWindowName("deform-interactive");
+  this->Window->AddRenderer(this->Renderer);
+  this->Renderer->SetBackground(0.10, 0.12, 0.15);
+  this->Interactor->SetRenderWindow(this->Window);
+  this->Interactor->SetInteractorStyle(this->Style);
+  this->Interactor->SetDesiredUpdateRate(15.0);
+  this->Style->SetSession(this->Session);
+  this->Style->SetAdditionalHelp(ProgramKeys);
+  this->View.AddTo(this->Renderer);
+  this->Plot.AddTo(this->Renderer);
+  this->Plot.SetVisible(false);
+  SetUpText(this->Numbers, 0.99, 0.99, true);
+  SetUpText(this->PromptLine, 0.01, 0.13, false);
+  this->PromptLine->GetTextProperty()->SetColor(1.0, 0.85, 0.4);
+  this->Renderer->AddViewProp(this->Numbers);
+  this->Renderer->AddViewProp(this->PromptLine);
+
+  this->Interactor->AddObserver(vtkCommand::KeyPressEvent, this, &Viewer::OnKeyPress, BeforeStyle);
+  this->Interactor->AddObserver(vtkCommand::CharEvent, this, &Viewer::OnChar, BeforeStyle);
+  this->Interactor->AddObserver(
+    vtkCommand::LeftButtonPressEvent, this, &Viewer::OnLeftButton, BeforeStyle);
+  this->Interactor->AddObserver(
+    vtkCommand::LeftButtonReleaseEvent, this, &Viewer::OnLeftButton, BeforeStyle);
+  this->Interactor->AddObserver(
+    vtkCommand::MouseMoveEvent, this, &Viewer::OnMouseMove, BeforeStyle);
+  this->Interactor->AddObserver(vtkCommand::DropFilesEvent, this, &Viewer::OnDrop);
+  this->Interactor->AddObserver(vtkCommand::TimerEvent, this, &Viewer::OnTimer, -BeforeStyle);
+  this->Style->AddObserver(vtkCommand::UpdateDataEvent, this, &Viewer::OnOutput);
+  this->Style->AddObserver(vtkCommand::StartInteractionEvent, this, &Viewer::OnInteraction);
+  this->Style->AddObserver(vtkCommand::EndInteractionEvent, this, &Viewer::OnInteraction);
+  this->Renderer->AddObserver(vtkCommand::StartEvent, this, &Viewer::OnFrame);
+  this->Window->AddObserver(vtkCommand::EndEvent, this, &Viewer::OnFrame);
+}
+
+Viewer::~Viewer()
+{
+  this->Style->StopSession();
+  this->Interactor->SetInteractorStyle(nullptr);
+}
+
+void Viewer::Run()
+{
+  this->Interactor->Initialize();
+  const std::string path = this->Asked.Volume.empty() ? HeadPath : this->Asked.Volume;
+  if (this->Asked.Volume.empty() && !vtksys::SystemTools::FileExists(path))
+  {
+    this->Announce(
+      "Drop a volume here, or press o to open one. (Install mricron-data for the MRI of a head.)");
+  }
+  else
+  {
+    this->OpenVolume(path);
+  }
+  if (!this->Asked.Session.empty())
+  {
+    if (!this->Session->LoadSession(this->Asked.Session))
+    {
+      throw Failure(this->Session->GetErrorMessage());
+    }
+    this->Style->Forget();
+  }
+  if (!this->Asked.Replay.empty())
+  {
+    this->Replay(this->Asked.Replay);
+    for (const std::string& output : this->Asked.Outputs)
+    {
+      const std::string error = this->TrySave(output);
+      if (!error.empty())
+      {
+        throw Failure(error);
+      }
+    }
+    if (!this->Asked.Screenshot.empty())
+    {
+      this->SavePicture(this->Asked.Screenshot);
+    }
+    return;
+  }
+  if (!this->Asked.Record.empty())
+  {
+    this->StartRecording(this->Asked.Record);
+  }
+  if (this->Values)
+  {
+    this->Style->StartSession();
+  }
+  constexpr int milliseconds = 30;
+  this->Interactor->CreateRepeatingTimer(milliseconds); // also without a volume
+  this->Interactor->Start();
+  if (this->Recorder)
+  {
+    this->ToggleRecording();
+  }
+}
+
+void Viewer::Announce(const std::string& message)
+{
+  this->Style->ShowMessage(message);
+  this->Style->Poll();
+  this->Interactor->Render();
+}
+
+void Viewer::OpenVolume(const std::string& path)
+{
+  this->Announce("Reading " + path);
+  const Volume volume = ReadVolume(path, false, this->Reports, true);
+  vtkPointData* arrays = volume.Image->GetPointData();
+  if (!arrays->GetScalars() && arrays->GetNumberOfArrays() > 0)
+  {
+    arrays->SetActiveScalars(arrays->GetArrayName(0));
+  }
+  this->Style->StopSession();
+  if (!this->Session->SetInputs(volume.Image))
+  {
+    throw Failure(this->Session->GetErrorMessage());
+  }
+  this->Session->SetMovingSamplingFactor(volume.Image->GetNumberOfPoints() > ManyVoxels ? 2 : 1);
+  this->Style->Forget();
+  this->Values = std::make_unique<Histogram>(volume.Image);
+  this->FileName = vtksys::SystemTools::GetFilenameWithoutExtension(path) + "-deformed";
+  this->ChoosePreset(Transfer::AUTOMATIC);
+  double bounds[6];
+  volume.Image->GetBounds(bounds);
+  this->Diagonal = volume.Image->GetLength();
+  this->Session->ChangeHandleRadius(this->HandleRadiusPart * this->Diagonal);
+  this->AimCamera(GetFaceView(volume.Axes).data());
+  this->Renderer->ResetCamera(bounds);
+  this->Renderer->GetActiveCamera()->Zoom(1.15);
+  this->Style->ShowMessage("2 chooses ChainMail, g grabs, h shows all keys");
+  this->Style->Poll(); // draws it
+}
+
+void Viewer::AimCamera(const double view[3])
+{
+  vtkCamera* camera = this->Renderer->GetActiveCamera();
+  camera->SetFocalPoint(0.0, 0.0, 0.0);
+  camera->SetPosition(view);
+  camera->SetViewUp(0.0, 0.0, 1.0);
+}
+
+void Viewer::LoadSession(const std::string& path)
+{
+  this->Announce("Replaying " + path);
+  if (this->Session->LoadSession(path))
+  {
+    this->Style->Forget();
+    this->Style->ShowMessage("The session " + path + " is loaded.");
+  }
+}
+
+// What can go wrong here is shown, and what was open stays.
+void Viewer::Open(const std::string& path)
+{
+  try
+  {
+    const std::string ending = GetEnding(path);
+    if (ending == ".xml")
+    {
+      this->LoadSession(path);
+    }
+    else if (ending == ".log")
+    {
+      this->Replay(path);
+    }
+    else
+    {
+      this->OpenVolume(path);
+    }
+    this->Reports.Check("cannot open " + path);
+  }
+  catch (const Failure& failure)
+  {
+    this->Style->ShowMessage(failure.what());
+  }
+  if (this->Values && !this->IsReplaying)
+  {
+    this->Style->StartSession();
+  }
+}
+
+std::string Viewer::TrySave(const std::string& path)
+{
+  const std::string ending = GetEnding(path);
+  if (!this->Values)
+  {
+    return "There is no volume. Open one first.";
+  }
+  bool isSaved = false;
+  if (ending == ".vti")
+  {
+    isSaved = this->Session->SaveVolume(path);
+  }
+  else if (ending == ".vtu")
+  {
+    isSaved = this->Session->SaveMesh(path);
+  }
+  else if (ending == ".xml")
+  {
+    isSaved = this->Session->SaveSession(path);
+  }
+  else if (ending == ".png")
+  {
+    this->Interactor->Render();
+    this->SavePicture(path);
+    isSaved = true;
+  }
+  else
+  {
+    return "The name " + path + " ends in none of .vti, .vtu, .xml and .png.";
+  }
+  return isSaved ? "" : this->Session->GetErrorMessage();
+}
+
+void Viewer::Save(const std::string& path)
+{
+  try
+  {
+    this->Announce("Saving " + path);
+    const std::string error = this->TrySave(path);
+    this->Style->ShowMessage(error.empty() ? path + " is saved." : error);
+  }
+  catch (const Failure& failure)
+  {
+    this->Style->ShowMessage(failure.what());
+  }
+}
+
+void Viewer::SavePicture(const std::string& path)
+{
+  vtkNew<vtkWindowToImageFilter> grab;
+  grab->SetInput(this->Window);
+  grab->SetInputBufferTypeToRGB();
+  grab->ReadFrontBufferOff();
+  grab->ShouldRerenderOff();
+  grab->Update();
+  WritePNG(grab->GetOutput(), path, this->Reports);
+}
+
+void Viewer::StartRecording(const std::string& path)
+{
+  this->Recorder = vtkSmartPointer<vtkInteractorEventRecorder>::New();
+  this->Recorder->SetPriority(BeforeObservers);
+  this->Recorder->SetKeyPressActivation(0);
+  this->Recorder->SetInteractor(this->Interactor);
+  this->Recorder->SetFileName(path.c_str());
+  this->Recorder->EnabledOn();
+  this->Recorder->Record();
+  this->Style->ShowMessage("Events are recorded to " + path + ", j stops it");
+}
+
+void Viewer::ToggleRecording()
+{
+  if (!this->Recorder)
+  {
+    this->StartRecording(RecordPath);
+    return;
+  }
+  this->Recorder->Stop();
+  this->Recorder->EnabledOff();
+  this->Style->ShowMessage(
+    std::string("Recorded: ") + this->Recorder->GetFileName() + ", open it to replay it");
+  this->Recorder = nullptr;
+}
+
+// Without the thread of the session: each timer event of the recording is one step, so that the
+// same recording gives the same volume.
+void Viewer::Replay(const std::string& path)
+{
+  if (!vtksys::SystemTools::FileExists(path, true))
+  {
+    throw Failure("cannot replay " + path + ": there is no such file");
+  }
+  if (this->IsReplaying)
+  {
+    return;
+  }
+  this->Style->StopSession();
+  this->IsReplaying = true;
+  vtkNew<vtkInteractorEventRecorder> recorder;
+  recorder->SetKeyPressActivation(0);
+  recorder->SetInteractor(this->Interactor);
+  recorder->SetFileName(path.c_str());
+  recorder->EnabledOn();
+  recorder->Play();
+  recorder->EnabledOff();
+  this->IsReplaying = false;
+  this->Interactor->Render();
+}
+
+bool Viewer::OnKeyPress(vtkObject*, unsigned long, void*)
+{
+  if (this->Prompt.IsActive())
+  {
+    return true;
+  }
+  const char* symbol = this->Interactor->GetKeySym();
+  if (!symbol || !this->Values)
+  {
+    return false;
+  }
+  const double step = 0.01 * (this->Values->Range[1] - this->Values->Range[0]);
+  const std::string key = symbol;
+  if (key == "Left" || key == "Right")
+  {
+    this->Shown.Level += key == "Left" ? -step : step;
+  }
+  else if (key == "Up" || key == "Down")
+  {
+    this->Shown.Width = std::max(step, this->Shown.Width * (key == "Up" ? 1.1 : 1.0 / 1.1));
+  }
+  else if (key == "Prior" || key == "Next")
+  {
+    this->View.MoveSlice(this->Renderer, key == "Prior" ? 0.01 : -0.01);
+    this->IsChanged = true;
+    return false;
+  }
+  else
+  {
+    return false;
+  }
+  this->ShowTransfer();
+  return false;
+}
+
+bool Viewer::OnChar(vtkObject*, unsigned long, void*)
+{
+  const char key = this->Interactor->GetKeyCode();
+  if (this->Prompt.IsActive())
+  {
+    this->Prompt.Type(key);
+    this->IsChanged = true;
+    return true;
+  }
+  switch (key)
+  {
+    case 'd':
+      this->View.SetDisplay(static_cast<VolumeView::Display>(
+        (this->View.GetDisplay() + 1) % VolumeView::NUMBER_OF_DISPLAYS));
+      break;
+    case 'f':
+      this->ChoosePreset(
+        static_cast<Transfer::Preset>((this->Shown.Chosen + 1) % Transfer::NUMBER_OF_PRESETS));
+      break;
+    case 'i':
+      this->ShowNumbers = !this->ShowNumbers;
+      break;
+    case 'o':
+      this->Prompt.Begin("Open", "", [this](const std::string& path) { this->Open(path); });
+      break;
+    case 's':
+      this->Prompt.Begin("Save .vti .vtu .xml .png", this->FileName + ".vti",
+        [this](const std::string& path) { this->Save(path); });
+      break;
+    case ',':
+    case '.':
+      this->ChangeHandleRadius(key == '.' ? 1 : -1);
+      break;
+    case 'j':
+      if (!this->IsReplaying)
+      {
+        this->ToggleRecording();
+      }
+      break;
+    default:
+      return false;
+  }
+  this->ShowTexts();
+  this->IsChanged = true;
+  return true;
+}
+
+bool Viewer::OnLeftButton(vtkObject*, unsigned long event, void*)
+{
+  const bool wasEditing = this->IsEditing;
+  const int* position = this->Interactor->GetEventPosition();
+  this->IsEditing = event == vtkCommand::LeftButtonPressEvent && this->Values &&
+    this->Plot.Contains(this->Renderer, position[0], position[1]);
+  return this->IsEditing || wasEditing;
+}
+
+bool Viewer::OnMouseMove(vtkObject*, unsigned long, void*)
+{
+  if (!this->IsEditing)
+  {
+    return false;
+  }
+  const int* position = this->Interactor->GetEventPosition();
+  const int* last = this->Interactor->GetLastEventPosition();
+  const double range = this->Values->Range[1] - this->Values->Range[0];
+  this->Shown.Level += range * (position[0] - last[0]) / TransferPlot::Width;
+  this->Shown.Width =
+    std::clamp(this->Shown.Width + range * (position[1] - last[1]) / TransferPlot::Height,
+      1e-3 * range, 2.0 * range);
+  this->ShowTransfer();
+  return true;
+}
+
+void Viewer::OnDrop(vtkObject*, unsigned long, void* files)
+{
+  auto* const paths = static_cast<vtkStringArray*>(files);
+  if (paths && paths->GetNumberOfValues() > 0)
+  {
+    this->Open(paths->GetValue(0));
+  }
+}
+
+void Viewer::OnOutput(vtkObject*, unsigned long, void*)
+{
+  this->UploadTime = this->View.Update(this->Renderer);
+}
+
+// Turns of the camera, too.
+void Viewer::OnInteraction(vtkObject*, unsigned long event, void*)
+{
+  this->IsInteracting = event == vtkCommand::StartInteractionEvent;
+  this->IsChanged = true;
+}
+
+void Viewer::OnTimer(vtkObject*, unsigned long, void*)
+{
+  if (this->IsChanged)
+  {
+    this->ShowTexts();
+    this->Interactor->Render();
+  }
+  if (this->IsReplaying && !this->Asked.Frames.empty())
+  {
+    char name[32];
+    std::snprintf(name, sizeof(name), "/frame%04d.png", this->Frame++);
+    this->SavePicture(this->Asked.Frames + name);
+  }
+}
+
+void Viewer::OnFrame(vtkObject* caller, unsigned long, void*)
+{
+  const auto now = Clock::now();
+  if (caller == this->Renderer.Get())
+  {
+    this->FrameBegin = now;
+    this->IsChanged = false;
+    this->View.SetCoarse(this->Session->GetIsBusy() || this->IsInteracting);
+    if (now - this->LastTexts > std::chrono::milliseconds(250))
+    {
+      this->LastTexts = now;
+      this->ShowTexts();
+    }
+    if (this->Values && this->ShowNumbers)
+    {
+      this->Plot.Draw(this->Renderer, *this->Values, this->Shown); // where the window ends now
+    }
+    return;
+  }
+  this->RenderTime = std::chrono::duration<double>(now - this->FrameBegin).count();
+  this->Frames.push_back(now);
+  while (now - this->Frames.front() > std::chrono::seconds(1))
+  {
+    this->Frames.pop_front();
+  }
+}
+
+void Viewer::ChoosePreset(Transfer::Preset preset)
+{
+  if (this->Values)
+  {
+    this->Shown = Transfer(preset, *this->Values);
+    this->ShowTransfer();
+    this->Style->ShowMessage("functions: " + this->Shown.GetName());
+  }
+}
+
+void Viewer::ChangeHandleRadius(int steps)
+{
+  if (!this->Values)
+  {
+    return;
+  }
+  constexpr double most = 0.05; // of the diagonal
+  const double step = 0.01;
+  this->HandleRadiusPart = std::clamp(this->HandleRadiusPart + steps * step, 0.0, most);
+  this->Session->ChangeHandleRadius(this->HandleRadiusPart * this->Diagonal);
+}
+
+void Viewer::ShowTransfer()
+{
+  this->View.SetTransfer(this->Shown, this->Values->Range);
+  this->IsChanged = true;
+}
+
+void Viewer::ShowTexts()
+{
+  constexpr double milliseconds = 1000.0;
+  char text[256];
+  std::snprintf(text, sizeof(text),
+    "%zu frames/s\nsimulation %.0f ms\nresampling %.0f ms\nupload %.0f ms\nrendering %.0f ms\n"
+    "level %.4g width %.4g\n%s\nhandle radius %.3g",
+    this->Frames.size(), milliseconds * this->Session->GetSimulationTime(),
+    milliseconds * this->Session->GetResamplingTime(), milliseconds * this->UploadTime,
+    milliseconds * this->RenderTime, this->Shown.Level, this->Shown.Width,
+    this->Shown.GetName().c_str(), this->HandleRadiusPart * this->Diagonal);
+  const bool isShown = this->ShowNumbers && this->Values;
+  this->Numbers->SetInput(text);
+  this->Numbers->SetVisibility(isShown ? 1 : 0);
+  this->Plot.SetVisible(isShown);
+  const std::string line = this->Prompt.GetLine();
+  this->PromptLine->SetInput(line.c_str());
+  this->PromptLine->SetVisibility(line.empty() ? 0 : 1);
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformInteractiveVolumeView_h
+#define DeformInteractiveVolumeView_h
+
+#include "Transfer.h"
+
+#include <vtkNew.h>
+
+#include <array>
+
+class vtkActor;
+class vtkDeformVolumeInteractorStyle;
+class vtkFlyingEdges3D;
+class vtkImageData;
+class vtkImageSlice;
+class vtkImageSliceMapper;
+class vtkOpenGLGPUVolumeRayCastMapper;
+class vtkRenderer;
+class vtkVolume;
+
+/// Shows the outputs of a style: rendered as a volume, as an isosurface, or on three slice planes.
+class VolumeView
+{
+public:
+  explicit VolumeView(vtkDeformVolumeInteractorStyle* style);
+  ~VolumeView();
+  VolumeView(const VolumeView&) = delete;
+  void operator=(const VolumeView&) = delete;
+
+  void AddTo(vtkRenderer* renderer);
+
+  enum Display
+  {
+    VOLUME,
+    SURFACE,
+    SLICES,
+    NUMBER_OF_DISPLAYS
+  };
+  void SetDisplay(Display display);
+  Display GetDisplay() const { return this->Chosen; }
+
+  void SetTransfer(const Transfer& transfer, const double range[2]);
+
+  /// After each output of the style. Returns the seconds that the copy to the graphics device took,
+  /// where that is known before it is drawn.
+  double Update(vtkRenderer* renderer);
+
+  /// Fewer rays with fewer samples, while something moves.
+  void SetCoarse(bool isCoarse);
+
+  /// Moves the slice that faces the viewer most.
+  void MoveSlice(vtkRenderer* renderer, double part);
+
+private:
+  void Choose();
+
+  vtkDeformVolumeInteractorStyle* Style;
+  Display Chosen = VOLUME;
+  double Isovalue = 0.0;
+  std::array<double, 3> SliceParts{ { 0.5, 0.5, 0.5 } }; // of the extent
+  bool IsDrawn = false;
+  vtkNew<vtkVolume> Volume;
+  vtkNew<vtkOpenGLGPUVolumeRayCastMapper> Mapper;
+  vtkNew<vtkFlyingEdges3D> Surface;
+  vtkNew<vtkActor> SurfaceActor;
+  std::array<vtkNew<vtkImageSlice>, 3> Slices;
+  std::array<vtkNew<vtkImageSliceMapper>, 3> SliceMappers;
+};
+
+#endif

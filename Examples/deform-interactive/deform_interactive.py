@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Drags, cuts and carves a volume live: deform_interactive.py VOLUME.nii.gz [EVENTS.log SESSION.xml]
+Press 2 for ChainMail, g to grab, and h for all keys. With EVENTS.log, which vtkInteractorEventRecorder
+has recorded, these events are replayed, and the session is saved."""
+import sys
+
+import deformvolume
+import vtkmodules.vtkRenderingFreeType  # noqa: F401 (draws texts)
+import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401 (draws volumes)
+from vtkmodules import vtkIOImage, vtkRenderingCore, vtkRenderingVolume
+
+reader = vtkIOImage.vtkNIFTIImageReader()
+reader.SetFileName(sys.argv[1])
+reader.Update()
+volume = vtkRenderingCore.vtkVolume()
+volume.SetMapper(vtkRenderingVolume.vtkGPUVolumeRayCastMapper())
+volume.GetProperty().GetScalarOpacity().AddPoint(25.0, 0.0)
+volume.GetProperty().GetScalarOpacity().AddPoint(55.0, 0.9)
+volume.GetProperty().GetRGBTransferFunction().AddRGBPoint(25.0, 0.9, 0.7, 0.6)
+volume.GetProperty().ShadeOn()
+renderer = vtkRenderingCore.vtkRenderer()
+renderer.AddVolume(volume)
+window = vtkRenderingCore.vtkRenderWindow()
+window.SetSize(800, 600)
+window.AddRenderer(renderer)
+interactor = vtkRenderingCore.vtkRenderWindowInteractor()
+interactor.SetRenderWindow(window)
+
+session = deformvolume.vtkDeformVolumeSession()
+session.SetInputs(reader.GetOutput())
+style = deformvolume.vtkDeformVolumeInteractorStyle()
+style.SetSession(session)
+style.SetVolume(volume)
+interactor.SetInteractorStyle(style)
+interactor.Initialize()
+style.Poll()  # the volume at rest
+renderer.ResetCamera()
+if len(sys.argv) < 4:
+    style.StartSession()
+    interactor.Start()
+    style.StopSession()
+else:
+    recorder = vtkRenderingCore.vtkInteractorEventRecorder()
+    recorder.SetInteractor(interactor)
+    recorder.SetFileName(sys.argv[2])
+    recorder.EnabledOn()
+    recorder.Play()
+    recorder.EnabledOff()
+    sys.exit(0 if session.SaveSession(sys.argv[3]) else 1)

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DeformedVertices.h"
+
+#include "FieldScan.h"   // for AreVoxelsPoints
+#include "IndexBounds.h" // for GetVector
+#include "VectorComponents.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+namespace deformvolume
+{
+namespace
+{
+
+constexpr double FieldTolerance = 1e-3; // of a field cell, as in DeformationMapping.cl
+
+// What the components of vectors in short rows, all of one length, lie between. Each place of a row
+// has limits of its own, so that compilers compare several at a time.
+class ComponentsOfRows
+{
+public:
+  void Add(const float* values, std::size_t count)
+  {
+    for (std::size_t begin = 0; begin < count; begin += Most)
+    {
+      const std::size_t some = std::min(Most, count - begin);
+      const float* next = values + begin;
+      for (std::size_t i = 0; i < some; ++i)
+      {
+        // Not-a-number is not less and not greater.
+        this->Least[i] = next[i] < this->Least[i] ? next[i] : this->Least[i];
+        this->Greatest[i] = next[i] > this->Greatest[i] ? next[i] : this->Greatest[i];
+        this->Nothing[i] += 0.0F * next[i]; // unless it is not finite
+      }
+    }
+  }
+
+  VectorComponents Get() const
+  {
+    VectorComponents all;
+    all.AreFinite = true;
+    all.Least.fill(Largest);
+    all.Greatest.fill(-Largest);
+    for (std::size_t i = 0; i < Most; ++i)
+    {
+      all.Least[i % 3] = std::min(all.Least[i % 3], this->Least[i]);
+      all.Greatest[i % 3] = std::max(all.Greatest[i % 3], this->Greatest[i]);
+      all.AreFinite = all.AreFinite && this->Nothing[i] == 0.0F;
+    }
+    return all;
+  }
+
+private:
+  static constexpr std::size_t Most = 27; // those of the vertices of a brick
+  static constexpr float Largest = std::numeric_limits<float>::max();
+
+  static std::array<float, Most> Fill(float value)
+  {
+    std::array<float, Most> filled;
+    filled.fill(value);
+    return filled;
+  }
+
+  std::array<float, Most> Least = Fill(Largest);
+  std::array<float, Most> Greatest = Fill(-Largest);
+  std::array<float, Most> Nothing = Fill(0.0F);
+};
+
+} // namespace
+
+bool DeformedFieldVertices::Find(const glm::dvec3& vertex, glm::dvec3& displacement) const
+{
+  std::array<std::int64_t, 3> low;
+  std::array<double, 3> fraction;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double* row = &this->Field.IndexToField[4 * axis];
+    const double place = row[0] * vertex.x + row[1] * vertex.y + row[2] * vertex.z + row[3];
+    const double last = this->Field.Dimensions[axis] - 1;
+    if (!this->Field.Extrapolate && !(place >= -FieldTolerance && place <= last + FieldTolerance))
+    {
+      return false;
+    }
+    const double inside = std::min(std::max(place, 0.0), last);
+    low[axis] = static_cast<std::int64_t>(inside);
+    fraction[axis] = inside - static_cast<double>(low[axis]);
+  }
+  displacement = glm::dvec3(0.0);
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    double weight = 1.0;
+    std::int64_t point = 0;
+    for (int axis = 2; axis >= 0; --axis)
+    {
+      const int upper = corner >> axis & 1;
+      weight *= upper ? fraction[axis] : 1.0 - fraction[axis];
+      point = point * this->Field.Dimensions[axis] + low[axis] + upper;
+    }
+    if (weight != 0.0) // else the point may be none
+    {
+      displacement += weight * GetVector(this->Field, point);
+    }
+  }
+  return true;
+}
+
+void DeformedFieldVertices::FindRow(
+  int x, int y, int z, int count, glm::dvec3* displacements, bool* hasPosition) const
+{
+  for (int i = 0; i < count; ++i)
+  {
+    hasPosition[i] = this->Find(glm::dvec3(x + i, y, z), displacements[i]);
+  }
+}
+
+// Those of all points of the field between which a vertex may lie: weights are 0 to 1, and sum up
+// to 1. By rounding a point may be missed whose weight is next to nothing.
+DisplacementLimits DeformedFieldVertices::GetLimits(std::size_t brick) const
+{
+  const Extent vertices = this->Bricks.GetVertices(brick);
+  DisplacementLimits limits;
+  std::array<std::int64_t, 6> points;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double* row = &this->Field.IndexToField[4 * axis];
+    double low = row[3];
+    double high = row[3];
+    for (int k = 0; k < 3; ++k)
+    {
+      const double a = row[k] * vertices[2 * k];
+      const double b = row[k] * vertices[2 * k + 1];
+      low += std::min(a, b);
+      high += std::max(a, b);
+    }
+    const double last = this->Field.Dimensions[axis] - 1;
+    if (!this->Field.Extrapolate && !(high >= -FieldTolerance && low <= last + FieldTolerance))
+    {
+      return limits;
+    }
+    points[2 * axis] = static_cast<std::int64_t>(std::clamp(low, 0.0, last));
+    points[2 * axis + 1] = static_cast<std::int64_t>(std::ceil(std::clamp(high, 0.0, last)));
+  }
+  ComponentsOfRows rows;
+  const auto count = static_cast<std::size_t>(3 * (points[1] - points[0] + 1));
+  for (std::int64_t z = points[4]; z <= points[5]; ++z)
+  {
+    for (std::int64_t y = points[2]; y <= points[3]; ++y)
+    {
+      const std::int64_t first =
+        (z * this->Field.Dimensions[1] + y) * this->Field.Dimensions[0] + points[0];
+      rows.Add(this->Field.Vectors + 3 * first, count);
+    }
+  }
+  const VectorComponents all = rows.Get();
+  limits.AreKnown = all.AreFinite;
+  const DisplacementRange range = GetRange(GetFactors(this->Field), all);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    limits.Min[axis] = range.Least[static_cast<std::size_t>(axis)];
+    limits.Max[axis] = range.Greatest[static_cast<std::size_t>(axis)];
+  }
+  return limits;
+}
+
+std::vector<unsigned char> DeformedFieldVertices::SetField(
+  const DisplacementField& field, const PointRanges* changed)
+{
+  const DisplacementField last = std::exchange(this->Field, field);
+  // Where points are voxels it is simple to say which vertices have one.
+  const VoxelGrid vertices{ this->Bricks.GetVertices(), {}, {} };
+  if (!changed || last.Dimensions != field.Dimensions || last.IndexToField != field.IndexToField ||
+    last.ToDisplacement != field.ToDisplacement || last.Extrapolate != field.Extrapolate ||
+    !AreVoxelsPoints(vertices, field))
+  {
+    return {};
+  }
+  std::vector<unsigned char> marked(this->Bricks.GetNumberOfBricks(), 0);
+  const std::int64_t width = field.Dimensions[0];
+  for (const auto& [begin, end] : *changed)
+  {
+    for (auto point = static_cast<std::int64_t>(begin); point < static_cast<std::int64_t>(end);)
+    {
+      const std::int64_t row = point / width;
+      const std::int64_t next = std::min(static_cast<std::int64_t>(end), (row + 1) * width);
+      const auto y = static_cast<int>(row % field.Dimensions[1]);
+      const auto z = static_cast<int>(row / field.Dimensions[1]);
+      this->MarkRow({ { static_cast<int>(point - row * width),
+                      static_cast<int>(next - 1 - row * width), y, y, z, z } },
+        marked);
+      point = next;
+    }
+  }
+  return marked;
+}
+
+// The bricks with a vertex among points of the field; one on their faces belongs to both.
+void DeformedFieldVertices::MarkRow(const Extent& points, std::vector<unsigned char>& bricks) const
+{
+  Extent cells;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    const int first = this->Bricks.GetVertices()[2 * axis] +
+      static_cast<int>(this->Field.IndexToField[4 * axis + 3]); // the point of the first vertex
+    cells[2 * axis] = std::max(points[2 * axis] - first - 1, 0);
+    cells[2 * axis + 1] = std::min(points[2 * axis + 1] - first, this->Bricks.GetSize()[axis] - 1);
+    if (cells[2 * axis] > cells[2 * axis + 1])
+    {
+      return;
+    }
+  }
+  constexpr int length = CellBricks::Length;
+  for (int z = cells[4] / length; z <= cells[5] / length; ++z)
+  {
+    for (int y = cells[2] / length; y <= cells[3] / length; ++y)
+    {
+      for (int x = cells[0] / length; x <= cells[1] / length; ++x)
+      {
+        bricks[this->Bricks.FindBrick({ { x * length, y * length, z * length } })] = 1;
+      }
+    }
+  }
+}
+
+} // namespace deformvolume

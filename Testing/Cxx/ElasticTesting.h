@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the tests of vtkElasticDeformation have in common.
+#ifndef ElasticTesting_h
+#define ElasticTesting_h
+
+#include "ChainMailTesting.h"
+
+#include "vtkCorotationalDeformation.h"
+#include "vtkLatticeTetrahedraSource.h"
+#include "vtkMassSpringDeformation.h"
+
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+
+namespace elasticTesting
+{
+
+using namespace chainMailTesting;
+using namespace filterTesting;
+
+// A bar of 4 x 4 x 12 cells, held at z = 0. Lengths are in units of so many metres.
+inline vtkSmartPointer<vtkUnstructuredGrid> MakeBar(double unit)
+{
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetNumberOfNodes(5, 5, 13);
+  const double width = 0.01 / unit;
+  lattice->SetBounds(0.0, width, 0.0, width, 0.0, 3.0 * width);
+  lattice->Update();
+  auto bar = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  bar->DeepCopy(lattice->GetOutput());
+  vtkNew<vtkUnsignedCharArray> fixed;
+  fixed->SetName("Fixed");
+  fixed->SetNumberOfTuples(bar->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < bar->GetNumberOfPoints(); ++i)
+  {
+    fixed->SetValue(i, bar->GetPoint(i)[2] == 0.0 ? 1 : 0);
+  }
+  bar->GetPointData()->AddArray(fixed);
+  return bar;
+}
+
+template <typename Filter>
+struct Simulated
+{
+  explicit Simulated(vtkDataObject* mesh)
+  {
+    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
+    {
+      this->Object->AddObserver(event, this->Observer);
+      this->Object->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
+    }
+    this->Object->SetInputDataObject(mesh);
+  }
+
+  // The errors of an update in words; "" where there is none.
+  std::string TryUpdate()
+  {
+    this->Object->Modified();
+    this->Object->Update();
+    const std::string errors = this->Observer->GetErrorMessage();
+    VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
+    VERIFY(errors.empty() || this->Object->GetOutput()->GetNumberOfPoints() == 0);
+    this->Observer->Clear();
+    this->ExecutiveObserver->Clear();
+    return errors;
+  }
+
+  // The displacements at a time.
+  vtkSmartPointer<vtkFloatArray> At(double time)
+  {
+    this->Object->UpdateTimeStep(time);
+    return this->Copy();
+  }
+
+  vtkSmartPointer<vtkFloatArray> Copy()
+  {
+    auto copy = vtkSmartPointer<vtkFloatArray>::New();
+    copy->DeepCopy(this->Object->GetOutput()->GetPointData()->GetArray("Displacement"));
+    return copy;
+  }
+
+  vtkNew<Filter> Object;
+  vtkNew<vtkTest::ErrorObserver> Observer;
+  vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
+};
+
+} // namespace elasticTesting
+
+#endif

@@ -1,0 +1,824 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vtkDeformVolumeInteractorStyle: misuse, what is visible against what is known of it, recorded
+// input against the same calls of a session, the thread, and a picture.
+#include "FilterTesting.h"
+
+#include "vtkDeformVolumeInteractorStyle.h"
+#include "vtkDeformVolumeSession.h"
+
+#include <vtkCamera.h>
+#include <vtkCellArray.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkGPUVolumeRayCastMapper.h>
+#include <vtkInteractorEventRecorder.h>
+#include <vtkMatrix4x4.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkPolyData.h>
+#include <vtkRegressionTestImage.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+#include <vtkVolume.h>
+#include <vtkVolumeProperty.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+using namespace filterTesting;
+using Session = vtkDeformVolumeSession;
+using Style = vtkDeformVolumeInteractorStyle;
+
+namespace
+{
+
+constexpr Extent Box{ { -3, 28, 1, 26, 0, 18 } };
+constexpr int WindowSize = 400;
+constexpr double PixelsPerUnit = 10.0;
+constexpr double Middle[3] = { 12.5, 13.5, 9.0 };
+
+bool Holds(const std::string& text, const std::string& part)
+{
+  const bool isThere = text.find(part) != std::string::npos;
+  if (!isThere)
+  {
+    std::cerr << "not there: " << part << "\nthe text: " << text << "\n";
+  }
+  return isThere;
+}
+
+// 10, with a ball of 100 in its middle, and 0 at the border.
+vtkSmartPointer<vtkImageData> MakeBall()
+{
+  auto volume = MakeImage(Box);
+  AddScalars<short>(volume, "value",
+    [](const glm::dvec3& p)
+    {
+      const bool isBorder = p.x < Box[0] + 0.5 || p.x > Box[1] - 0.5 || p.y < Box[2] + 0.5 ||
+        p.y > Box[3] - 0.5 || p.z < Box[4] + 0.5 || p.z > Box[5] - 0.5;
+      const glm::dvec3 middle(Middle[0], Middle[1], Middle[2]);
+      return isBorder ? 0.0 : glm::length(p - middle) <= 6.0 ? 100.0 : 10.0;
+    });
+  return volume;
+}
+
+// A window that looks from above: ten pixels are one unit, and the middle of both is the same.
+struct Viewer
+{
+  Viewer()
+  {
+    this->Window->SetOffScreenRendering(1);
+    this->Window->SetMultiSamples(0);
+    this->Window->SetSize(WindowSize, WindowSize);
+    this->Interactor->SetRenderWindow(this->Window);
+    this->Interactor->SetInteractorStyle(this->Object);
+    this->Object->AddObserver(vtkCommand::ErrorEvent, this->Errors);
+    this->SessionObject->AddObserver(vtkCommand::ErrorEvent, this->SessionErrors);
+  }
+  explicit Viewer(vtkImageData* volume)
+    : Viewer()
+  {
+    this->AddRenderer();
+    this->Object->SetSession(this->SessionObject);
+    this->Opacity->AddPoint(5.0, 0.0);
+    this->Opacity->AddPoint(9.0, 1.0);
+    this->VolumeObject->SetMapper(this->Mapper);
+    this->VolumeObject->GetProperty()->SetScalarOpacity(this->Opacity);
+    this->Object->SetVolume(this->VolumeObject);
+    VERIFY(this->SessionObject->SetInputs(volume));
+    this->Replay(Timer());
+  }
+
+  void AddRenderer()
+  {
+    this->Window->AddRenderer(this->Renderer);
+    vtkCamera* camera = this->Renderer->GetActiveCamera();
+    camera->ParallelProjectionOn();
+    camera->SetParallelScale(0.5 * WindowSize / PixelsPerUnit);
+    camera->SetFocalPoint(Middle);
+    camera->SetPosition(Middle[0], Middle[1], Middle[2] + 100.0);
+    camera->SetViewUp(0.0, 1.0, 0.0);
+    camera->SetClippingRange(10.0, 200.0);
+  }
+
+  // Events in the words of vtkInteractorEventRecorder.
+  static std::string Mouse(const char* name, double x, double y, bool isShifted = false)
+  {
+    std::ostringstream text;
+    text << name << ' ' << std::lround(0.5 * WindowSize + PixelsPerUnit * (x - Middle[0])) << ' '
+         << std::lround(0.5 * WindowSize + PixelsPerUnit * (y - Middle[1])) << ' '
+         << (isShifted ? 1 : 0) << " 0 0 0\n";
+    return text.str();
+  }
+  static std::string Key(char key, double x = Middle[0], double y = Middle[1])
+  {
+    std::string text = Mouse("CharEvent", x, y);
+    text.erase(text.size() - 6);
+    return text + std::to_string(static_cast<int>(key)) + " 0 0\n";
+  }
+  static std::string Timer() { return "TimerEvent 0 0 0 0 0 0\n"; }
+
+  void Replay(const std::string& events)
+  {
+    const std::string text = "# StreamVersion 1.1\n" + events;
+    vtkNew<vtkInteractorEventRecorder> recorder;
+    recorder->SetInteractor(this->Interactor);
+    recorder->ReadFromInputStringOn();
+    recorder->SetInputString(text.c_str());
+    recorder->EnabledOn();
+    recorder->Play();
+    recorder->EnabledOff();
+  }
+
+  std::string TakeError()
+  {
+    const std::string error = this->Errors->GetErrorMessage();
+    this->Errors->Clear();
+    return error;
+  }
+
+  vtkNew<vtkRenderWindow> Window;
+  vtkNew<vtkRenderer> Renderer;
+  vtkNew<vtkRenderWindowInteractor> Interactor;
+  vtkNew<vtkDeformVolumeSession> SessionObject;
+  vtkNew<vtkDeformVolumeInteractorStyle> Object;
+  vtkNew<vtkVolume> VolumeObject;
+  vtkNew<vtkGPUVolumeRayCastMapper> Mapper;
+  vtkNew<vtkPiecewiseFunction> Opacity;
+  vtkNew<vtkTest::ErrorObserver> Errors;
+  vtkNew<vtkTest::ErrorObserver> SessionErrors;
+};
+
+void TestMisuse()
+{
+  vtkNew<vtkDeformVolumeInteractorStyle> style;
+  vtkNew<vtkTest::ErrorObserver> errors;
+  style->AddObserver(vtkCommand::ErrorEvent, errors);
+  double place[3];
+  const auto expect = [&](const char* words)
+  {
+    VERIFY(Holds(errors->GetErrorMessage(), words));
+    errors->Clear();
+  };
+  style->OnLeftButtonDown();
+  expect("no interactor");
+  style->OnRightButtonDown();
+  expect("no interactor");
+  style->OnMouseWheelForward();
+  expect("no interactor");
+  style->OnChar();
+  expect("no interactor");
+  style->StartSession();
+  expect("no interactor");
+  VERIFY(!style->FindPlace(0, 0, place));
+  expect("no interactor");
+  style->OnMouseMove();
+  style->OnLeftButtonUp();
+  style->OnRightButtonUp();
+  VERIFY(!style->Poll());
+  style->StopSession();
+  vtkNew<vtkRenderWindowInteractor> noWindow;
+  style->SetInteractor(noWindow);
+  style->OnLeftButtonDown();
+  expect("no interactor with a window");
+  VERIFY(!style->Poll() && !errors->GetError());
+  style->SetInteractor(nullptr);
+
+  Viewer viewer;
+  viewer.Replay(Viewer::Mouse("LeftButtonPressEvent", 0, 0));
+  VERIFY(Holds(viewer.TakeError(), "no renderer"));
+  viewer.AddRenderer();
+  viewer.Object->SetTool(Style::GRAB);
+  viewer.Replay(Viewer::Mouse("LeftButtonPressEvent", 0, 0));
+  VERIFY(Holds(viewer.TakeError(), "Call SetSession() first"));
+  viewer.Replay(Viewer::Key('u'));
+  VERIFY(Holds(viewer.TakeError(), "Call SetSession() first"));
+  viewer.Object->StartSession();
+  VERIFY(Holds(viewer.TakeError(), "Call SetSession() first"));
+  viewer.Replay(Viewer::Key('k') + Viewer::Timer()); // no key, and no session
+  VERIFY(!viewer.Errors->GetError());
+
+  // A session without a volume: its errors are messages.
+  viewer.Object->SetSession(viewer.SessionObject);
+  viewer.Replay(Viewer::Timer() + Viewer::Mouse("LeftButtonPressEvent", 0, 0));
+  VERIFY(Holds(viewer.Object->GetMessage(), "no volume yet"));
+  viewer.Replay(Viewer::Key('2'));
+  VERIFY(Holds(viewer.Object->GetMessage(), "Call SetInputs() first"));
+  viewer.SessionErrors->Clear();
+  VERIFY(!viewer.Object->FindPlace(200, 200, place));
+  VERIFY(!viewer.Errors->GetError());
+
+  viewer.SessionObject->SetInputs(MakeBall());
+  vtkNew<vtkVolume> volume;
+  viewer.Object->SetVolume(volume);
+  viewer.Replay(Viewer::Timer());
+  VERIFY(Holds(viewer.Object->GetMessage(), "no vtkVolumeMapper"));
+  viewer.Object->SetVolume(nullptr);
+  for (const char* key : { "g", "v", "m", "p" })
+  {
+    viewer.Replay(Viewer::Key(*key, -5, -5) + Viewer::Mouse("LeftButtonPressEvent", -5, -5) +
+      Viewer::Mouse("LeftButtonReleaseEvent", -5, -5));
+    VERIFY(Holds(viewer.Object->GetMessage(), "nothing here"));
+  }
+  viewer.Replay(Viewer::Key('c') + Viewer::Mouse("LeftButtonPressEvent", -5, -5) +
+    Viewer::Mouse("MouseMoveEvent", -5, 20) + Viewer::Mouse("LeftButtonReleaseEvent", -5, 20));
+  VERIFY(Holds(viewer.Object->GetMessage(), "misses the body"));
+  viewer.Replay(Viewer::Key('x'));
+  VERIFY(Holds(viewer.Object->GetMessage(), "no handle"));
+  viewer.Replay(Viewer::Key('g') + Viewer::Mouse("LeftButtonPressEvent", 10, 10) +
+    Viewer::Mouse("LeftButtonReleaseEvent", 10, 10));
+  VERIFY(Holds(viewer.Object->GetMessage(), "Press 2, 3 or 4"));
+  viewer.Object->SetTool(99);
+  VERIFY_EQUAL(viewer.Object->GetTool(), int(Style::MEASURE));
+  viewer.Object->SetCutDepth(-1.0);
+  VERIFY_EQUAL(viewer.Object->GetCutDepth(), 0.0);
+  VERIFY(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+}
+
+// What is visible along the axis of the view, at a place of the volume; -1 where nothing is.
+double FindHeight(Viewer& viewer, double x, double y)
+{
+  double place[3] = { 0.0, 0.0, 0.0 };
+  const double pixels[2] = { 0.5 * WindowSize + PixelsPerUnit * (x - Middle[0]),
+    0.5 * WindowSize + PixelsPerUnit * (y - Middle[1]) };
+  if (!viewer.Object->FindPlace(
+        static_cast<int>(std::lround(pixels[0])), static_cast<int>(std::lround(pixels[1])), place))
+  {
+    return -1.0;
+  }
+  VERIFY(std::abs(place[0] - x) < 1e-9 && std::abs(place[1] - y) < 1e-9);
+  return place[2];
+}
+
+void TestVisible()
+{
+  Viewer viewer(MakeBall());
+  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), 17.0);
+  viewer.Object->SetVolume(nullptr);
+  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), 18.0);
+  VERIFY_EQUAL(FindHeight(viewer, -5.0, 4.0), -1.0);
+
+  vtkPiecewiseFunction* opacity = viewer.Opacity;
+  opacity->RemoveAllPoints();
+  opacity->AddPoint(50.0, 0.0);
+  opacity->AddPoint(60.0, 1.0);
+  viewer.Object->SetVolume(viewer.VolumeObject);
+  // The ball reaches up to 9 + sqrt(36 - 2.5^2 - 0.5^2), which is 14.4.
+  VERIFY_EQUAL(FindHeight(viewer, 15.0, 13.0), 14.0);
+  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
+  viewer.Object->SetPickMode(Style::ISOSURFACE);
+  viewer.Object->SetIsovalue(100.0);
+  VERIFY_EQUAL(FindHeight(viewer, 15.0, 13.0), 14.0);
+  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
+  viewer.Object->SetPickMode(Style::SLICES);
+  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
+  viewer.Object->AddSlicePlane(0.0, 0.0, 2.0, 0.0, 0.0, 1.0);
+  viewer.Object->AddSlicePlane(0.0, 0.0, 5.25, 0.0, 0.0, -2.0);
+  viewer.Object->AddSlicePlane(0.0, 0.0, 40.0, 0.0, 0.0, 1.0); // beyond the body
+  viewer.Object->AddSlicePlane(3.0, 0.0, 0.0, 1.0, 0.0, 0.0);  // along the view
+  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), 5.0);
+  viewer.Object->ClearSlicePlanes();
+  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
+
+  // Light that is absorbed slowly: half of what 19 voxels absorb.
+  viewer.Object->SetPickMode(Style::OPACITY);
+  for (const double part : { 0.02, 0.2 })
+  {
+    opacity->RemoveAllPoints();
+    opacity->AddPoint(0.0, part);
+    opacity->AddPoint(20.0, part);
+    viewer.VolumeObject->GetProperty()->SetScalarOpacityUnitDistance(2.0);
+    const double all = 1.0 - std::pow(1.0 - part, 19.0 / 2.0);
+    const double depth = 2.0 * std::log(1.0 - std::min(0.5, 0.5 * all)) / std::log(1.0 - part);
+    VERIFY(std::abs(FindHeight(viewer, 3.0, 4.0) - (18.5 - depth)) <= 1.0); // a step and a voxel
+  }
+  opacity->RemoveAllPoints();
+  opacity->AddPoint(0.0, 0.001);
+  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
+
+  // An oblique volume: what is found is a voxel of the border, and the mapper has a grid along
+  // the axes where the output is.
+  auto oblique = MakeBall();
+  SetObliqueDirection(oblique);
+  Viewer other(oblique);
+  other.Opacity->AddPoint(0.0, 1.0);
+  double middle[3];
+  oblique->GetCenter(middle);
+  double place[3] = { 0.0, 0.0, 0.0 };
+  other.Renderer->GetActiveCamera()->SetFocalPoint(middle);
+  other.Renderer->GetActiveCamera()->SetPosition(middle[0], middle[1], middle[2] + 100.0);
+  VERIFY(other.Object->FindPlace(WindowSize / 2, WindowSize / 2, place));
+  double index[3];
+  oblique->TransformPhysicalPointToContinuousIndex(place, index);
+  double outside = -10.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    outside = std::max({ outside, Box[2 * axis] - index[axis], index[axis] - Box[2 * axis + 1] });
+  }
+  VERIFY(std::abs(outside) < 1e-9);
+  vtkImageData* shown = other.Object->GetShownImage();
+  VERIFY(shown && other.Mapper->GetInput() == shown);
+  const vtkIdType last = shown->GetNumberOfPoints() - 1;
+  double point[4] = { 0.0, 0.0, 0.0, 1.0 };
+  shown->GetPoint(last, point);
+  other.VolumeObject->GetUserMatrix()->MultiplyPoint(point, point);
+  VERIFY(glm::length(glm::dvec3(point[0], point[1], point[2]) -
+           GetPoint(other.Object->GetOutput(), last)) < 1e-9);
+
+  // Air is negative, and so is what the body does not cover.
+  auto negative = MakeImage(Box);
+  AddScalars<short>(negative, "value", [](const glm::dvec3& p) { return -1000.0 + p.x; });
+  Viewer third(negative);
+  vtkDataArray* values = third.Object->GetShownImage()->GetPointData()->GetScalars();
+  VERIFY_EQUAL(values->GetComponent(0, 0), -1003.0);
+  VERIFY_EQUAL(values->GetRange(0)[1], -972.0);
+  VERIFY_EQUAL(third.Object->GetOutput()->GetPointData()->GetScalars()->GetComponent(0, 0), 0.0);
+}
+
+struct Event
+{
+  std::string Name;
+  std::vector<double> Numbers;
+};
+
+// The record of a session.
+std::vector<Event> ReadEvents(const std::string& fileName)
+{
+  std::ifstream file(fileName);
+  const std::string text{ std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
+  std::vector<Event> events;
+  const std::string begin = "do=\"";
+  for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at + 1))
+  {
+    const std::size_t first = at + begin.size();
+    std::istringstream words(text.substr(first, text.find('"', first) - first));
+    Event event;
+    words >> event.Name;
+    for (double number = 0.0; words >> number;)
+    {
+      event.Numbers.push_back(number);
+    }
+    events.push_back(event);
+  }
+  return events;
+}
+
+void Cut(Session* session, const std::vector<double>& numbers)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  const std::size_t first = 1 + 3 * static_cast<std::size_t>(numbers[0]);
+  for (std::size_t i = 1; i < first; i += 3)
+  {
+    points->InsertNextPoint(&numbers[i]);
+  }
+  vtkNew<vtkCellArray> triangles;
+  for (std::size_t i = first; i < numbers.size(); i += 3)
+  {
+    const vtkIdType ids[3] = { static_cast<vtkIdType>(numbers[i]),
+      static_cast<vtkIdType>(numbers[i + 1]), static_cast<vtkIdType>(numbers[i + 2]) };
+    triangles->InsertNextCell(3, ids);
+  }
+  vtkNew<vtkPolyData> sheet;
+  sheet->SetPoints(points);
+  sheet->SetPolys(triangles);
+  session->Cut(sheet);
+}
+
+// The same by calls of a session.
+vtkSmartPointer<vtkImageData> MakeDirectly(vtkImageData* volume, const std::vector<Event>& events)
+{
+  vtkNew<vtkDeformVolumeSession> session;
+  session->SetInputs(volume);
+  vtkSmartPointer<vtkImageData> output;
+  for (const Event& event : events)
+  {
+    const std::vector<double>& n = event.Numbers;
+    if (event.Name == "Step")
+    {
+      session->Update();
+      output = vtkSmartPointer<vtkImageData>::Take(session->TakeOutput());
+    }
+    else if (event.Name == "BeginGrab")
+    {
+      VERIFY_EQUAL(session->BeginGrab(n[1], n[2], n[3]), static_cast<int>(n[0]));
+    }
+    else if (event.Name == "MoveGrab")
+    {
+      session->MoveGrab(static_cast<int>(n[0]), n[1], n[2], n[3]);
+    }
+    else if (event.Name == "EndGrab")
+    {
+      session->EndGrab(static_cast<int>(n[0]));
+    }
+    else if (event.Name == "Hold")
+    {
+      session->HoldGrab(static_cast<int>(n[0]));
+    }
+    else if (event.Name == "Release")
+    {
+      session->Release(static_cast<int>(n[0]));
+    }
+    else if (event.Name == "Cut")
+    {
+      Cut(session, n);
+    }
+    else if (event.Name == "Carve")
+    {
+      if (n[0] != 0.0)
+      {
+        session->CarveSphere(n[1], n[2], n[3], n[4]);
+      }
+      else
+      {
+        session->CarveTo(n[1], n[2], n[3], n[4]);
+      }
+    }
+    else if (event.Name == "Model")
+    {
+      session->ChangeModel(static_cast<int>(n[0]));
+    }
+    else if (event.Name == "Undo")
+    {
+      session->Undo();
+    }
+    else if (event.Name == "Redo")
+    {
+      session->Redo();
+    }
+    else if (event.Name == "Reset")
+    {
+      session->Reset();
+    }
+  }
+  return output;
+}
+
+// An event of the record that has these numbers, each with a margin.
+struct Wanted
+{
+  const char* Name;
+  std::vector<double> Numbers;
+};
+
+bool IsWanted(const Event& event, const Wanted& wanted)
+{
+  bool isEqual = event.Name == wanted.Name && event.Numbers.size() >= wanted.Numbers.size();
+  for (std::size_t i = 0; isEqual && i < wanted.Numbers.size(); ++i)
+  {
+    isEqual = std::abs(event.Numbers[i] - wanted.Numbers[i]) < 1e-7;
+  }
+  if (!isEqual)
+  {
+    std::cerr << event.Name;
+    for (const double number : event.Numbers)
+    {
+      std::cerr << ' ' << number;
+    }
+    std::cerr << " is not " << wanted.Name << '\n';
+  }
+  return isEqual;
+}
+
+void TestTools(int model, const std::string& fileName)
+{
+  constexpr double top = 17.0;
+  const auto volume = MakeBall();
+  Viewer viewer(volume);
+  double length = viewer.Object->GetOutput()->GetLength();
+  const std::string timer = Viewer::Timer();
+  std::string events = Viewer::Key(static_cast<char>('1' + model)) + timer;
+  const auto mouse = [&](const char* name, double x, double y, bool isShifted = false)
+  { events += Viewer::Mouse(name, x, y, isShifted) + timer; };
+
+  // A handle that is dragged with the wheel between, and left; a pin; a drag that is let go.
+  events += Viewer::Key('g');
+  mouse("LeftButtonPressEvent", 10.0, 12.0);
+  mouse("MouseMoveEvent", 11.0, 13.0);
+  mouse("MouseWheelForwardEvent", 11.0, 13.0);
+  mouse("MouseWheelForwardEvent", 11.0, 13.0);
+  mouse("MouseWheelBackwardEvent", 11.0, 13.0);
+  mouse("MouseMoveEvent", 12.5, 14.0);
+  mouse("LeftButtonReleaseEvent", 12.5, 14.0, true);
+  events += Viewer::Key('p', 4.0, 20.0) + timer;
+  mouse("LeftButtonPressEvent", 22.0, 8.0);
+  mouse("MouseMoveEvent", 21.0, 9.0);
+  mouse("LeftButtonReleaseEvent", 21.0, 9.0);
+  // All again: the body is at rest, so that places are known.
+  events += Viewer::Key('z') + timer + Viewer::Key('y') + Viewer::Key('1') + timer;
+  viewer.Replay(events);
+  VERIFY(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+  VERIFY(viewer.SessionObject->SaveSession(fileName));
+  std::vector<Event> made = ReadEvents(fileName);
+  const double deep = top - 0.01 * length;
+  const std::vector<Wanted> wanted = {
+    { "Model", { static_cast<double>(model) } },
+    { "BeginGrab", { 0, 10.0, 12.0, top } },
+    { "MoveGrab", { 0, 11.0, 13.0, top } },
+    { "MoveGrab", { 0, 11.0, 13.0, deep } },
+    { "MoveGrab", { 0, 11.0, 13.0, deep - 0.01 * length } },
+    { "MoveGrab", { 0, 11.0, 13.0, deep } },
+    { "MoveGrab", { 0, 12.5, 14.0, deep } },
+    { "Hold", { 0 } },
+    { "BeginGrab", { 1, 4.0, 20.0 } },
+    { "Hold", { 1 } },
+    { "BeginGrab", { 2, 22.0, 8.0 } },
+    { "MoveGrab", { 2, 21.0, 9.0 } },
+    { "EndGrab", { 2 } },
+    { "Reset", {} },
+    { "Redo", {} },
+    { "Model", { 0 } },
+  };
+  std::size_t at = 0;
+  for (const Event& event : made)
+  {
+    const bool isSetting = event.Name == "HandleRadius" || event.Name == "RelaxationSweeps" ||
+      event.Name == "NumberOfNodes" || event.Name == "UndoMemory" || event.Name == "Step";
+    if (!isSetting)
+    {
+      VERIFY(at < wanted.size() && IsWanted(event, wanted[at]));
+      ++at;
+    }
+  }
+  VERIFY_EQUAL(at, wanted.size());
+  VERIFY(AreEqual(viewer.Object->GetOutput(), MakeDirectly(volume, made)));
+
+  // At rest: a cut that begins beside the body, and a carving.
+  events = Viewer::Key('c') + Viewer::Key('+');
+  mouse("LeftButtonPressEvent", -6.0, 6.0);
+  for (double x = -5.0; x <= 14.0; x += 0.5)
+  {
+    mouse("MouseMoveEvent", x, 6.0);
+  }
+  mouse("LeftButtonReleaseEvent", 14.0, 6.0);
+  events += Viewer::Key('v') + Viewer::Key('-');
+  for (int i = 0; i < 11; ++i)
+  {
+    events += Viewer::Key('+');
+  }
+  mouse("LeftButtonPressEvent", 20.0, 20.0);
+  mouse("MouseMoveEvent", 22.0, 22.0);
+  mouse("MouseMoveEvent", 23.0, 22.0); // too near to be an event before the button is released
+  mouse("LeftButtonReleaseEvent", 23.0, 22.0);
+  viewer.Replay(events);
+  VERIFY(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+  VERIFY(viewer.SessionObject->SaveSession(fileName));
+  const std::size_t before = made.size();
+  made = ReadEvents(fileName);
+  made.erase(std::remove_if(made.begin() + static_cast<std::ptrdiff_t>(before), made.end(),
+               [](const Event& event) { return event.Name == "Step"; }),
+    made.end());
+  VERIFY_EQUAL(made.size(), before + 4);
+  const std::vector<double>& sheet = made[before].Numbers;
+  VERIFY_EQUAL(made[before].Name, std::string("Cut"));
+  VERIFY_EQUAL(sheet[0], 2.0 * 40);
+  for (std::size_t i = 0; i < 40; ++i)
+  {
+    const double x = i == 0 ? -6.0 : -5.0 + 0.5 * static_cast<double>(i - 1);
+    const double* upper = &sheet[1 + 6 * i];
+    VERIFY(std::abs(upper[0] - x) < 1e-7 && std::abs(upper[1] - 6.0) < 1e-7);
+    VERIFY(std::abs(upper[3] - x) < 1e-7 && std::abs(upper[4] - 6.0) < 1e-7);
+    VERIFY(std::abs(upper[2] - top - 2.0) < 1e-7);
+    VERIFY(std::abs(upper[5] - (top - 0.11 * length)) < 1e-7);
+  }
+  const double radius = 0.025 * length * std::pow(1.1, 10.0);
+  VERIFY(IsWanted(made[before + 1], { "Carve", { 1, 20.0, 20.0, top, radius } }));
+  VERIFY(IsWanted(made[before + 2], { "Carve", { 0, 22.0, 22.0, top, radius } }));
+  VERIFY(IsWanted(made[before + 3], { "Carve", { 0, 23.0, 22.0, top, radius } }));
+
+  // The cut and carved body again by the model, and what was undone; until it rests.
+  events = Viewer::Key(static_cast<char>('1' + model)) + timer + Viewer::Key('g');
+  mouse("LeftButtonPressEvent", 10.0, 8.0);
+  mouse("MouseMoveEvent", 10.0, 11.0);
+  mouse("LeftButtonReleaseEvent", 10.0, 11.0);
+  events += Viewer::Key('p', 4.0, 20.0) + timer + Viewer::Key('u') + timer + Viewer::Key('u') +
+    timer + Viewer::Key('y');
+  for (int i = 0; i < 20; ++i)
+  {
+    events += timer;
+  }
+  viewer.Replay(events);
+  VERIFY(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+  VERIFY(viewer.SessionObject->SaveSession(fileName));
+  VERIFY(AreEqual(viewer.Object->GetOutput(), MakeDirectly(volume, ReadEvents(fileName))));
+  VERIFY_EQUAL(viewer.SessionObject->GetModel(), model);
+}
+
+// Which handles there are after undo and after events that fail.
+void TestHandles()
+{
+  Viewer viewer(MakeBall());
+  const std::string timer = Viewer::Timer();
+  const auto release = [&](double x, double y)
+  {
+    viewer.Replay(Viewer::Key('x', x, y) + timer);
+    return viewer.Object->GetMessage().empty();
+  };
+  viewer.Replay(Viewer::Key('2') + Viewer::Key('p', 5, 5) + Viewer::Key('p', 20, 5) + timer);
+  VERIFY(!release(10, 5));
+  VERIFY(release(21.5, 5.5));
+  VERIFY(!release(20, 5));
+  viewer.Replay(Viewer::Key('u') + timer); // the release
+  VERIFY(release(20, 5));
+  viewer.Replay(Viewer::Key('u') + Viewer::Key('u') + timer); // and the pin
+  VERIFY(!release(20, 5));
+  viewer.Replay(Viewer::Key('y') + timer);
+  VERIFY(release(20, 5));
+  VERIFY(release(5, 5));
+  VERIFY(!release(5, 5));
+  viewer.Replay(Viewer::Key('z') + timer);
+  VERIFY(!release(5, 5) && !release(20, 5));
+
+  // Others may use the session, too.
+  viewer.SessionObject->CarveSphere(5, 20, 18, -1.0); // fails
+  viewer.SessionObject->CarveSphere(5, 20, 18, 1.0);
+  viewer.Replay(timer);
+  VERIFY(Holds(viewer.Object->GetMessage(), "radius"));
+  viewer.SessionErrors->Clear();
+  viewer.Replay(Viewer::Key('p', 5, 5) + timer + Viewer::Key('u') + timer);
+  VERIFY(!release(5, 5));
+  VERIFY_EQUAL(viewer.SessionObject->GetNumberOfActions(), vtkIdType(1));
+
+  // A drag that is undone while the button is pressed ends there.
+  viewer.Replay(Viewer::Key('2') + timer + Viewer::Key('g') +
+    Viewer::Mouse("LeftButtonPressEvent", 8, 8) + Viewer::Mouse("MouseMoveEvent", 9, 8) + timer +
+    Viewer::Key('u') + Viewer::Mouse("MouseMoveEvent", 10, 8) +
+    Viewer::Mouse("LeftButtonReleaseEvent", 10, 8, true) + timer);
+  VERIFY(!release(9, 8));
+  VERIFY(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
+}
+
+void TestProbeAndMeasure()
+{
+  Viewer viewer(MakeBall());
+  const std::string timer = Viewer::Timer();
+  viewer.Replay(Viewer::Key('m') + Viewer::Mouse("LeftButtonPressEvent", 5.0, 6.0) +
+    Viewer::Mouse("LeftButtonReleaseEvent", 5.0, 6.0));
+  VERIFY_EQUAL(viewer.Object->GetMeasuredDistance(), 0.0);
+  viewer.Replay(Viewer::Mouse("LeftButtonPressEvent", 8.0, 10.0) +
+    Viewer::Mouse("LeftButtonReleaseEvent", 8.0, 10.0));
+  VERIFY(std::abs(viewer.Object->GetMeasuredDistance() - 5.0) < 1e-9);
+  VERIFY_EQUAL(viewer.Object->GetMessage(), std::string("distance 5"));
+
+  viewer.Replay(Viewer::Key('b') + Viewer::Mouse("MouseMoveEvent", 5.0, 6.0));
+  VERIFY(Holds(viewer.Object->GetMessage(), "value 10 at (5, 6, 17), at rest (5, 6, 17)"));
+  viewer.Replay(Viewer::Mouse("MouseMoveEvent", -6.0, 6.0));
+  VERIFY_EQUAL(viewer.Object->GetMessage(), std::string("There is nothing here."));
+  // Where it was dragged to, and while events wait.
+  viewer.Replay(Viewer::Key('2') + Viewer::Key('g') +
+    Viewer::Mouse("LeftButtonPressEvent", 5.0, 6.0) + timer +
+    Viewer::Mouse("MouseMoveEvent", 8.0, 6.0) + timer + Viewer::Key('b') + Viewer::Key('u') +
+    Viewer::Mouse("MouseMoveEvent", 8.0, 6.0));
+  VERIFY(Holds(viewer.Object->GetMessage(), "moving"));
+  std::string timers;
+  for (int i = 0; i < 300; ++i)
+  {
+    timers += Viewer::Mouse("TimerEvent", 8.0, 6.0);
+  }
+  viewer.Replay(timers);
+  VERIFY(Holds(viewer.Object->GetMessage(), "value 10"));
+  VERIFY(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
+}
+
+// The camera: what the right button, the wheel and r do, whatever the tool is.
+void TestCamera()
+{
+  Viewer viewer(MakeBall());
+  viewer.Object->SetTool(Style::GRAB);
+  vtkCamera* camera = viewer.Renderer->GetActiveCamera();
+  const auto press = [&](const std::string& button)
+  {
+    const glm::dvec3 before(
+      camera->GetPosition()[0], camera->GetPosition()[1], camera->GetPosition()[2]);
+    viewer.Replay(Viewer::Mouse((button + "ButtonPressEvent").c_str(), 5, 5) +
+      Viewer::Mouse("MouseMoveEvent", 9, 5) +
+      Viewer::Mouse((button + "ButtonReleaseEvent").c_str(), 9, 5));
+    return glm::length(before -
+      glm::dvec3(camera->GetPosition()[0], camera->GetPosition()[1], camera->GetPosition()[2]));
+  };
+  VERIFY(press("Right") > 1.0);
+  VERIFY(press("Middle") > 1.0);
+  VERIFY_EQUAL(press("Left"), 0.0);
+  viewer.Object->SetTool(Style::TURN);
+  VERIFY(press("Left") > 1.0);
+  const double scale = camera->GetParallelScale();
+  viewer.Replay(Viewer::Mouse("MouseWheelForwardEvent", 5, 5));
+  VERIFY(camera->GetParallelScale() < scale);
+  viewer.Replay(Viewer::Key('h') + Viewer::Timer());
+  VERIFY(viewer.Object->GetShowHelp());
+  VERIFY_EQUAL(viewer.SessionObject->GetNumberOfActions(), vtkIdType(1)); // the drag of nothing
+}
+
+void TestThread()
+{
+  Viewer viewer(MakeBall());
+  viewer.Object->StartSession();
+  VERIFY(viewer.SessionObject->GetIsRunning());
+  viewer.Replay(
+    Viewer::Key('4') + Viewer::Key('g') + Viewer::Mouse("LeftButtonPressEvent", 10.0, 12.0));
+  int outputs = 0;
+  vtkImageData* last = viewer.Object->GetOutput();
+  const auto poll = [&]()
+  {
+    viewer.Object->Poll();
+    outputs += viewer.Object->GetOutput() != last ? 1 : 0;
+    last = viewer.Object->GetOutput();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  };
+  for (int i = 0; i < 40; ++i)
+  {
+    viewer.Replay(Viewer::Mouse("MouseMoveEvent", 10.0 + 0.1 * i, 12.0));
+    poll();
+  }
+  viewer.Replay(Viewer::Mouse("LeftButtonReleaseEvent", 14.0, 12.0));
+  for (int i = 0; i < 3000 && (viewer.SessionObject->GetIsBusy() || i < 2); ++i)
+  {
+    poll();
+  }
+  VERIFY(outputs > 1);
+  VERIFY(!viewer.SessionObject->GetIsBusy());
+  viewer.Object->StopSession();
+  VERIFY(!viewer.SessionObject->GetIsRunning());
+  VERIFY(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
+}
+
+// A ball in a block, dragged, cut and carved, with handles, a measure and the sphere that carves.
+int ComparePicture(int argc, char* argv[])
+{
+  Viewer viewer(MakeBall());
+  viewer.Mapper->SetUseJittering(0);
+  viewer.Mapper->SetAutoAdjustSampleDistances(0);
+  viewer.Mapper->SetSampleDistance(0.25);
+  viewer.Opacity->RemoveAllPoints();
+  viewer.Opacity->AddPoint(2.0, 0.0);
+  viewer.Opacity->AddPoint(8.0, 0.1);
+  viewer.Opacity->AddPoint(30.0, 0.1);
+  viewer.Opacity->AddPoint(60.0, 0.9);
+  vtkNew<vtkColorTransferFunction> colour;
+  colour->AddRGBPoint(10.0, 0.45, 0.6, 0.75);
+  colour->AddRGBPoint(100.0, 1.0, 0.75, 0.5);
+  viewer.VolumeObject->GetProperty()->SetColor(colour);
+  viewer.VolumeObject->GetProperty()->SetInterpolationTypeToLinear();
+  viewer.Renderer->AddVolume(viewer.VolumeObject);
+  viewer.Renderer->SetBackground(0.1, 0.1, 0.2);
+  viewer.Object->ShowStatusOff(); // fonts differ
+  vtkCamera* camera = viewer.Renderer->GetActiveCamera();
+  camera->SetPosition(Middle[0] + 30.0, Middle[1] - 60.0, Middle[2] + 70.0);
+  camera->SetParallelScale(18.0);
+  viewer.Renderer->ResetCameraClippingRange(-11.0, 36.0, -7.0, 34.0, -8.0, 26.0);
+  const std::string timer = Viewer::Timer();
+  std::string events = Viewer::Key('2') + timer + Viewer::Key('v') + Viewer::Key('+') +
+    Viewer::Key('+') + Viewer::Key('+') + Viewer::Key('+') +
+    Viewer::Mouse("LeftButtonPressEvent", 20, 6) + timer + Viewer::Mouse("MouseMoveEvent", 23, 9) +
+    timer + Viewer::Mouse("LeftButtonReleaseEvent", 23, 9) + timer + Viewer::Key('c') +
+    Viewer::Mouse("LeftButtonPressEvent", 4, 4);
+  for (int i = 0; i < 20; ++i)
+  {
+    events += Viewer::Mouse("MouseMoveEvent", 4 + 0.5 * i, 4 + 0.7 * i);
+  }
+  events += Viewer::Mouse("LeftButtonReleaseEvent", 14, 18) + timer + Viewer::Key('g') +
+    Viewer::Mouse("LeftButtonPressEvent", 8, 14) + timer + Viewer::Mouse("MouseMoveEvent", 3, 16) +
+    timer + Viewer::Mouse("LeftButtonReleaseEvent", 3, 16, true) + timer + Viewer::Key('p', 14, 8) +
+    timer + Viewer::Key('m') + Viewer::Mouse("LeftButtonPressEvent", 16, 22) +
+    Viewer::Mouse("LeftButtonReleaseEvent", 16, 22) + Viewer::Mouse("LeftButtonPressEvent", 22, 8) +
+    Viewer::Mouse("LeftButtonReleaseEvent", 22, 8) + Viewer::Key('v') +
+    Viewer::Mouse("MouseMoveEvent", 22, 18);
+  for (int i = 0; i < 100; ++i)
+  {
+    events += timer;
+  }
+  viewer.Replay(events);
+  VERIFY(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+  VERIFY_EQUAL(viewer.SessionObject->GetNumberOfActions(), vtkIdType(5));
+  viewer.Window->Render();
+  return vtkRegressionTestImage(viewer.Window);
+}
+
+} // namespace
+
+int TestDeformVolumeInteractorStyle(int argc, char* argv[])
+{
+  std::string folder = ".";
+  for (int i = 1; i + 1 < argc; ++i)
+  {
+    folder = std::string(argv[i]) == "-T" ? argv[i + 1] : folder;
+  }
+  const std::string fileName = folder + "/TestDeformVolumeInteractorStyle.xml";
+  TestMisuse();
+  TestVisible();
+  TestTools(Session::CHAIN_MAIL, fileName);
+  TestTools(Session::COROTATIONAL, fileName);
+  TestHandles();
+  TestProbeAndMeasure();
+  TestCamera();
+  TestThread();
+  VERIFY(ComparePicture(argc, argv) != vtkRegressionTester::FAILED);
+  return GetExitCode();
+}

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cuts of the meshes of vtkMassSpringDeformation and vtkCorotationalDeformation.
+#include "ElasticTesting.h"
+
+#include <vtkCellArray.h>
+
+#include <functional>
+
+using namespace elasticTesting;
+
+namespace
+{
+
+// A sheet across the bar: the plane x = where, from a height on.
+vtkSmartPointer<vtkPolyData> MakeSheet(double x, double from)
+{
+  auto sheet = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(x, -100.0, from);
+  points->InsertNextPoint(x, 100.0, from);
+  points->InsertNextPoint(x, 100.0, 100.0);
+  points->InsertNextPoint(x, -100.0, 100.0);
+  vtkNew<vtkCellArray> polygons;
+  polygons->InsertNextCell({ 0, 1, 2, 3 });
+  sheet->SetPoints(points);
+  sheet->SetPolys(polygons);
+  return sheet;
+}
+
+// A cut from the top to the middle; its sides are pulled apart, and the volume opens.
+template <typename Filter>
+void TestCut(const std::function<void(Simulated<Filter>&)>& settle)
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
+  Simulated<Filter> simulated(bar);
+  simulated.Object->SetLengthUnitToMillimetre();
+  simulated.Object->SetPoissonRatio(0.4);
+  settle(simulated);
+  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
+  simulated.Object->SetSheetData(MakeSheet(50.0, 0.0)); // misses
+  settle(simulated);
+  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
+  VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(), 325);
+  simulated.Object->SetSheetData(MakeSheet(5.0, 15.0));
+  simulated.Object->SetHandlesData(
+    MakeHandles({ { glm::dvec3(0.0, 5.0, 30.0), glm::dvec3(-4.0, 5.0, 30.0) },
+      { glm::dvec3(10.0, 5.0, 30.0), glm::dvec3(14.0, 5.0, 30.0) } }));
+  simulated.Object->SetHandleRadius(2.6);
+  settle(simulated);
+  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 1);
+  VERIFY_EQUAL(simulated.Object->GetNumberOfSplitFaces(), 48);
+  vtkUnstructuredGrid* output = simulated.Object->GetOutput();
+  const vtkIdType appended = output->GetNumberOfPoints() - 325;
+  VERIFY(appended >= 6 * 5 && appended <= 14 * 5);
+  VERIFY_EQUAL(output->GetNumberOfCells(), bar->GetNumberOfCells());
+  VERIFY_EQUAL(
+    output->GetPointData()->GetArray("Fixed")->GetNumberOfTuples(), output->GetNumberOfPoints());
+
+  vtkNew<vtkImageData> volume;
+  volume->SetDimensions(41, 41, 121);
+  volume->SetSpacing(0.25, 0.25, 0.25);
+  volume->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  volume->GetPointData()->GetScalars()->Fill(100.0);
+  vtkNew<vtkDeformVolumeFilter> deform;
+  deform->SetInputData(volume);
+  deform->SetDeformationConnection(simulated.Object->GetOutputPort());
+  deform->OpenSplitsOn();
+  deform->Update();
+  // The gap where the sides have been pulled apart is empty, and below the cut nothing is.
+  vtkImageData* deformed = deform->GetOutput();
+  const auto getValue = [&](double x, double y, double z)
+  {
+    double place[3] = { x, y, z };
+    const vtkIdType voxel = deformed->FindPoint(place);
+    return deformed->GetPointData()->GetScalars()->GetComponent(voxel, 0);
+  };
+  VERIFY_EQUAL(getValue(5.0, 5.0, 28.0), 0.0);
+  VERIFY_EQUAL(getValue(0.0, 5.0, 28.0), 100.0);
+  VERIFY_EQUAL(getValue(10.0, 5.0, 28.0), 100.0);
+  VERIFY_EQUAL(getValue(5.0, 5.0, 5.0), 100.0);
+
+  // Other materials leave the cut. It is undone, and done again by another sheet.
+  simulated.Object->SetYoungModulus(2e4);
+  settle(simulated);
+  VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(), 325 + appended);
+  simulated.Object->UndoCut();
+  settle(simulated);
+  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
+  VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(), 325);
+  simulated.Object->Reset();
+  simulated.Object->SetHandlesData(nullptr);
+  simulated.Object->SetSheetData(MakeSheet(5.0, 15.5));
+  settle(simulated);
+  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 1);
+  VERIFY(simulated.Copy()->GetRange(-1)[1] < 1e-4);
+  simulated.Object->ClearCuts();
+  settle(simulated);
+  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
+}
+
+// What a cut has separated falls, or stays where it is, with a warning.
+void TestPieces()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
+  vtkNew<vtkPolyData> sheet;
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(-1.0, -1.0, 0.0151);
+  points->InsertNextPoint(1.0, -1.0, 0.0151);
+  points->InsertNextPoint(0.0, 2.0, 0.0151);
+  vtkNew<vtkCellArray> triangles;
+  triangles->InsertNextCell({ 0, 1, 2 });
+  sheet->SetPoints(points);
+  sheet->SetPolys(triangles);
+  Simulated<vtkMassSpringDeformation> springs(bar);
+  springs.Object->SetSheetData(sheet);
+  springs.Object->SetGravity(0.0, 0.0, 9.81);
+  springs.Object->SetDamping(0.0);
+  const auto fallen = springs.At(0.1);
+  const double top = fallen->GetComponent(324, 2);
+  VERIFY(std::abs(top - 0.5 * 9.81 * 0.01) < 0.01 * top);
+  Simulated<vtkCorotationalDeformation> elements(bar);
+  elements.Object->SetSheetData(sheet);
+  elements.Object->SetGravity(0.0, 0.0, 9.81);
+  elements.Object->Update();
+  VERIFY(Holds(elements.Observer->GetWarningMessage(), "1 pieces of the mesh are not held"));
+  elements.Observer->Clear();
+  VERIFY_EQUAL(elements.Object->GetNumberOfFrozenPieces(), 1);
+  VERIFY_EQUAL(elements.Copy()->GetComponent(324, 2), 0.0F);
+  VERIFY(elements.Copy()->GetRange(-1)[1] > 0.0);
+}
+
+// The tetrahedra of a mesh that has been cut lie where they lay at rest, and what nodes have goes
+// with them.
+void VerifyRestMesh(vtkUnstructuredGrid* cut, vtkUnstructuredGrid* whole)
+{
+  VERIFY_EQUAL(cut->GetNumberOfCells(), whole->GetNumberOfCells());
+  vtkDataArray* fixed = cut->GetPointData()->GetArray("Fixed");
+  vtkNew<vtkIdList> ids;
+  vtkNew<vtkIdList> wholeIds;
+  int different = 0;
+  for (vtkIdType cell = 0; cell < whole->GetNumberOfCells(); ++cell)
+  {
+    cut->GetCellPoints(cell, ids);
+    whole->GetCellPoints(cell, wholeIds);
+    for (vtkIdType i = 0; i < 4; ++i)
+    {
+      different += GetPoint(cut, ids->GetId(i)) != GetPoint(whole, wholeIds->GetId(i));
+      different += fixed->GetComponent(ids->GetId(i), 0) !=
+        whole->GetPointData()->GetArray("Fixed")->GetComponent(wholeIds->GetId(i), 0);
+    }
+  }
+  VERIFY_EQUAL(different, 0);
+}
+
+// Cuts through what was cut, which copy copies of nodes; and one in the place of another one.
+template <typename Filter>
+void TestCutsOfCuts()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
+  Simulated<Filter> simulated(bar);
+  simulated.Object->SetLengthUnitToMillimetre();
+  const auto cut = [&](double x, double from, bool isTurned)
+  {
+    const auto sheet = MakeSheet(x, from);
+    for (vtkIdType id = 0; isTurned && id < sheet->GetNumberOfPoints(); ++id)
+    {
+      const glm::dvec3 point = GetPoint(sheet, id);
+      sheet->GetPoints()->SetPoint(id, point.y, point.x, point.z);
+    }
+    simulated.Object->SetSheetData(sheet);
+    VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+    VerifyRestMesh(simulated.Object->GetOutput(), bar);
+    return simulated.Object->GetOutput()->GetNumberOfPoints();
+  };
+  const vtkIdType once = cut(5.0, 15.0, false);
+  const vtkIdType twice = cut(5.0, 15.0, true);
+  const vtkIdType thrice = cut(2.6, 15.0, true);
+  VERIFY(once > 325 && twice > once && thrice > twice);
+  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 3);
+
+  // The last one is undone and another one made in one update: as many cuts as before.
+  simulated.Object->UndoCut();
+  const vtkIdType other = cut(2.6, 22.5, true);
+  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 3);
+  VERIFY(other > twice && other < thrice);
+}
+
+} // namespace
+
+int TestElasticCuts(int, char*[])
+{
+  TestCut<vtkMassSpringDeformation>(
+    [](Simulated<vtkMassSpringDeformation>& simulated)
+    {
+      simulated.Object->SetDamping(30.0);
+      simulated.Object->SetFrameTime(0.5);
+      VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+    });
+  TestCut<vtkCorotationalDeformation>(
+    [](Simulated<vtkCorotationalDeformation>& simulated)
+    {
+      simulated.Object->SetModeToConverged();
+      VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+    });
+  TestPieces();
+  TestCutsOfCuts<vtkMassSpringDeformation>();
+  TestCutsOfCuts<vtkCorotationalDeformation>();
+  return GetExitCode();
+}

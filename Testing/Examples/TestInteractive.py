@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""deform-interactive and its twin in Python: misuse, and recorded events, which give the arrays that
+the saved session gives.
+Usage: TestInteractive.py PROGRAM SCRIPT FOLDER"""
+import collections
+import os
+import re
+import sys
+
+import deformvolume
+import numpy
+from Baselines import read_picture
+from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from WindowEvents import WindowEvents
+from vtkmodules.vtkIOImage import vtkNIFTIImageWriter
+
+program, script = sys.argv[1:3]
+folder = make_folder(sys.argv[3], "Interactive")
+
+
+def path(name):
+    return os.path.join(folder, name)
+
+
+ball = make_ball(dimensions=(31, 28, 25), spacing=(1.0, 1.0, 1.0))
+write_vti(ball, path("ball.vti"))
+
+# Misuse.
+for code, words, arguments in (
+    (2, "there is no option", ["--none"]),
+    (2, "more than one volume", ["a.vti", "b.vti"]),
+    (2, "needs a value", ["--replay"]),
+    (2, "two numbers", ["--size", "10"]),
+    (2, "need --replay", ["--screenshot", path("x.png")]),
+    (2, "cannot be used together", ["--record", "a.log", "--replay", "b.log"]),
+    (1, "no such file", [path("missing.vti"), "--replay", path("missing.log")]),
+    (1, "no such file", [path("ball.vti"), "--replay", path("missing.log")]),
+    (1, "is no session", [path("ball.vti"), "--session", path("ball.vti"), "--replay", "x.log"]),
+):
+    _, errors = call(program, *arguments, code=code, quiet=True)
+    assert errors.startswith("deform-interactive: ") and words in errors, errors
+output, _ = call(program, "--help")
+assert "--screenshot" in output
+
+# Nothing happens.
+middle = (100, 100)
+WindowEvents().keys("i").wait(2).write(path("rest.log"))
+
+
+def replay(name, *arguments):
+    outputs = []
+    for ending in (".vti", ".xml"):
+        outputs += ["--output", path(name + ending)]
+    _, errors = call(program, path("ball.vti"), "--size", "200,200", "--replay", path(name + ".log"),
+                     *outputs, "--screenshot", path(name + ".png"), *arguments)
+    assert not errors, errors
+    return read_vti(path(name + ".vti"))
+
+
+def are_equal(one, other):
+    return all(numpy.array_equal(get_values(one, name), get_values(other, name))
+               for name in (None, "vtkValidPointMask"))
+
+
+def count_events(name):
+    with open(path(name), encoding="ascii") as file:
+        return collections.Counter(re.findall('do="([A-Za-z]+)', file.read()))
+
+
+rest = replay("rest")
+assert rest.GetExtent() == (-8, 38, -8, 35, -8, 32)
+covered = get_values(rest, "vtkValidPointMask") != 0
+assert numpy.array_equal(get_values(rest)[covered], get_values(ball).ravel())
+
+# All tools; then displays and presets, and words that are typed.
+events = WindowEvents().keys("i2").wait(1).keys("g").stroke(middle, (120, 110), shift=True)
+events.keys("p", (90, 90)).wait(1).keys("c").stroke((30, 95), (150, 95)).keys("v-")
+events.stroke((95, 115), (108, 118)).keys("b").mouse("MouseMoveEvent", middle)
+events.keys("m").stroke(middle).stroke((90, 95)).keys("d").wait(1).keys("d").wait(1).keys("d,.f")
+events.turn(middle, (120, 100)).keys("fff,oabc" + chr(27) + "hh").wait(1)
+events.keys("s" + 60 * chr(8) + path("saved.xml") + "\r").wait(1).write(path("all.log"))
+made = replay("all")
+session = deformvolume.vtkDeformVolumeSession()
+assert session.SetInputs(read_vti(path("ball.vti")))
+assert session.LoadSession(path("all.xml"))
+assert session.SaveVolume(path("loaded.vti"))
+session.Update()
+assert session.GetNumberOfActions() == 5  # the model, a drag, a pin, a cut, a carving
+assert are_equal(made, read_vti(path("loaded.vti"))) and not are_equal(made, rest)
+counts = count_events("all.xml")
+for name, count in (("BeginGrab", 2), ("Hold", 2), ("Cut", 1), ("Model", 1)):
+    assert counts[name] == count, counts
+before, after = read_picture(path("rest.png")), read_picture(path("all.png"))
+assert before.shape == after.shape == (200, 200, 3)
+is_ball = before[..., 0] > before[..., 2] + 15
+assert 0.05 < is_ball.mean() < 0.8
+assert (numpy.abs(after - before).max(axis=2) > 30).mean() > 0.02
+
+# The session that was saved in the window is opened there, and by an option; all of it is undone.
+WindowEvents().keys("io" + path("saved.xml") + "\r").wait(2).write(path("opened.log"))
+WindowEvents().keys("i").wait(1).write(path("given.log"))
+opened, given = replay("opened"), replay("given", "--session", path("saved.xml"))
+assert are_equal(opened, given) and not are_equal(opened, rest)
+WindowEvents().keys("iz").wait(1).write(path("undone.log"))
+assert are_equal(replay("undone", "--session", path("saved.xml")), rest)
+
+# The same volume in Python: the style asks for the same.
+writer = vtkNIFTIImageWriter()
+writer.SetInputData(ball)
+writer.SetFileName(path("ball.nii"))
+writer.Write()
+events = WindowEvents().keys("2g").stroke((400, 300), (430, 310), shift=True).wait(1)
+events.keys("c").stroke((300, 280), (500, 280)).wait(1)
+events.write(path("python.log"))
+call(sys.executable, script, path("ball.nii"), path("python.log"), path("python.xml"))
+counts = count_events("python.xml")
+for name in ("Model", "BeginGrab", "Hold", "Cut"):
+    assert counts[name] == 1, counts
