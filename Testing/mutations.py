@@ -135,7 +135,7 @@ MUTATIONS = {
     "cut-copies": ("Kernels/Resampling/IncrementalBoxes.cxx", "      low -= difference;\n      high += difference;\n",
                    "", [CUT_PARTS]),
     "cut-reach": ("Kernels/SamplingMesh/BrickGrid.h", "ReachOfCuts = 2;", "ReachOfCuts = 1;", [CUT_PARTS]),
-    "fem-history": ("Kernels/FiniteElements/TangentSolver.h", "    this->History.ForgetProducts();\n", "",
+    "fem-history": ("Kernels/FiniteElements/TangentSolver.cxx", "  this->History.ForgetProducts();\n", "",
                     [COROTATIONAL]),
     "fem-tangent": ("Kernels/FiniteElements/CorotationalSolver.cxx",
                     "if (before > 0.0 && residuals.Largest > leastGain * before)",

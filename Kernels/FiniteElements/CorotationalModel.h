@@ -25,7 +25,8 @@ namespace deformvolume
 /// across its thickness.
 ///
 /// Order of calls: SetBody, then Solve, as often as wanted. Solve begins with the last
-/// displacements. Every failure is an Error; the displacements are then as before the call.
+/// displacements. Every failure is an Error; the model is then as before the call, and what follows
+/// is to the last bit as if there had been none.
 /// Results do not depend on the number of threads, to the last bit.
 class DEFORMVOLUME_EXPORT CorotationalModel
 {

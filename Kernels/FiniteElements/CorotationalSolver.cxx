@@ -16,6 +16,7 @@ CorotationalSolver::CorotationalSolver(Watch& watch, const ElasticBody& body)
   : Body(body)
   , Pieces(FindPieces(body, &watch))
   , Elements(watch, body)
+  , Tangent(this->Body.Points, this->Elements)
 {
   this->Last.Displacements.assign(body.Points.size(), glm::dvec3(0.0));
   this->Tangent.SetPattern(watch, MakeNodePattern(watch, body));
@@ -107,15 +108,7 @@ void CorotationalSolver::UpdateTangent(
   {
     return;
   }
-  this->HasTangent = false;
-  std::vector<glm::dvec3> positions = this->Body.Points;
-  for (std::size_t node = 0; node < positions.size(); ++node)
-  {
-    positions[node] += state.Displacements[node];
-  }
-  this->Tangent.Update(std::move(positions),
-    [&](BlockMatrix& matrix)
-    { this->Elements.AssembleTangent(watch, state.Displacements, matrix); });
+  this->Tangent.Update(watch, state.Displacements);
   this->HasTangent = true;
   this->IsTangentOld = false;
 }
@@ -286,9 +279,30 @@ bool CorotationalSolver::Step(Watch& watch, const CorotationalProblem& problem, 
 CorotationalReport CorotationalSolver::Solve(const CorotationalRequest& request)
 {
   const CorotationalProblem problem = MakeProblem(request, this->Body, this->Pieces, this->Masses);
-  const CorotationalLimits& limits = problem.Limits;
   Watch watch(request.Progress);
   watch.Ask();
+  const bool hadTangent = this->HasTangent;
+  const bool wasTangentOld = this->IsTangentOld;
+  this->Tangent.Begin();
+  try
+  {
+    return this->FindEquilibrium(watch, request, problem);
+  }
+  catch (...)
+  {
+    // The next call is as if there had not been this one.
+    this->Tangent.Undo();
+    this->HasTangent = hadTangent;
+    this->IsTangentOld = wasTangentOld;
+    throw;
+  }
+}
+
+CorotationalReport CorotationalSolver::FindEquilibrium(
+  Watch& watch, const CorotationalRequest& request, const CorotationalProblem& problem)
+{
+  const CorotationalLimits& limits = problem.Limits;
+  this->Tangent.Restore(watch, problem.IsFree, this->HasTangent && problem.IsInteractive);
   CorotationalReport report;
   report.NumberOfFrozenPieces = problem.FrozenPieces;
   this->RightHandSide.resize(problem.IsFree.size());

@@ -40,6 +40,8 @@ private:
     double Potential = 0.0;
   };
   void UpdateScale(Watch& watch);
+  CorotationalReport FindEquilibrium(
+    Watch& watch, const CorotationalRequest& request, const CorotationalProblem& problem);
   void Evaluate(Watch& watch, const CorotationalProblem& problem, State& state) const;
   void FindPotential(Watch& watch, const CorotationalProblem& problem, State& state) const;
   // Finds the tangent of a state, unless the one that there is may serve.

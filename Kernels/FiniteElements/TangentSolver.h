@@ -4,6 +4,7 @@
 
 #include "BlockMatrix.h"
 #include "ConjugateGradients.h"
+#include "CorotationalElements.h"
 #include "Multigrid.h"
 #include "Preconditioner.h"
 #include "SolutionHistory.h"
@@ -11,6 +12,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -19,9 +21,20 @@ namespace deformvolume
 
 /// The tangent of a body, and what solves linear systems with it: conjugate gradients, with the
 /// inverses of the diagonal for few nodes, and levels for many, which are kept while they serve.
+///
+/// What it does can be undone. It remembers which displacements the matrix and the levels belong
+/// to, and makes them anew where they have been replaced meanwhile: to keep two of each would take
+/// twice the memory.
 class TangentSolver
 {
 public:
+  /// points: of the body, at rest. Both have to stay.
+  TangentSolver(const std::vector<glm::dvec3>& points, const CorotationalElements& elements)
+    : Points(points)
+    , Elements(elements)
+  {
+  }
+
   struct Limits
   {
     int Iterations = 500;
@@ -35,15 +48,15 @@ public:
   }
   const BlockMatrix& GetMatrix() const { return this->Matrix; }
 
-  /// Gives the matrix to assemble(matrix), for nodes that are at positions.
-  template <typename Assemble>
-  void Update(std::vector<glm::dvec3>&& positions, Assemble&& assemble)
-  {
-    assemble(this->Matrix);
-    this->Positions = std::move(positions);
-    this->IsPreconditioned = false;
-    this->History.ForgetProducts();
-  }
+  /// Makes the matrix for displacements.
+  void Update(Watch& watch, const std::vector<glm::dvec3>& displacements);
+
+  /// What follows, of which one solution repeats, can be undone.
+  void Begin();
+  void Undo();
+  /// Makes what was replaced before it was undone: the levels, where they are for these free nodes,
+  /// and the matrix, where that is used on.
+  void Restore(Watch& watch, const std::vector<unsigned char>& isFree, bool usesMatrix);
 
   /// Nothing of what was solved before has to do with what follows.
   void Forget();
@@ -55,26 +68,49 @@ public:
     std::vector<glm::dvec3>& solution);
 
 private:
+  using Displacements = std::shared_ptr<const std::vector<glm::dvec3>>;
+  using FreeNodes = std::shared_ptr<const std::vector<unsigned char>>;
+  // What levels are built from.
+  struct LevelsSource
+  {
+    Displacements Shape;
+    FreeNodes IsFree;
+  };
+  struct State
+  {
+    // Those of the matrix.
+    Displacements Shape;
+    // The nodes that the preconditioner is for; none: it is to be built.
+    FreeNodes IsFree;
+    std::shared_ptr<const LevelsSource> Levels;
+    // Iterations for each digit, when the levels were new.
+    double CostOfLevels = 0.0;
+  };
+
+  void Assemble(Watch& watch, const Displacements& displacements);
+  void BuildLevels(Watch& watch, const std::shared_ptr<const LevelsSource>& source);
+  std::vector<glm::dvec3> FindPositions(const std::vector<glm::dvec3>& displacements) const;
   Preconditioner& Precondition(Watch& watch, const std::vector<unsigned char>& isFree);
   // Has the levels built anew where they have become unlike the matrix.
   void JudgeLevels(int iterations, double digits);
 
+  const std::vector<glm::dvec3>& Points;
+  const CorotationalElements& Elements;
+  State Now;
+  State Before;
   BlockMatrix Matrix;
-  // Of all nodes, for which the matrix was made.
-  std::vector<glm::dvec3> Positions;
-  ConjugateGradients Gradients;
-  std::vector<glm::dvec3> Residual;
-  SolutionHistory History;
   BlockJacobi Jacobi;
   Multigrid Levels;
-  // The nodes that the preconditioner is for; empty: it is to be built.
-  std::vector<unsigned char> IsFree;
-  // Whether it is for this matrix.
+  // What the matrix and the levels are of, which may be of a call that was undone.
+  Displacements ShapeOfMatrix;
+  std::shared_ptr<const LevelsSource> SourceOfLevels;
+  // Whether the preconditioner is for this matrix.
   bool IsPreconditioned = false;
   // Whether that is the levels.
   bool HasLevels = false;
-  // Iterations for each digit, when the levels were new.
-  double CostOfLevels = 0.0;
+  ConjugateGradients Gradients;
+  std::vector<glm::dvec3> Residual;
+  SolutionHistory History;
 };
 
 } // namespace deformvolume

@@ -249,8 +249,17 @@ TEST(Corotational, Divergence)
   request.Held = PullEnd(lattice, glm::dvec3(1e200, 0.0, 0.0));
   EXPECT_NE(GetError([&] { model.Solve(request); }).find("no numbers"), std::string::npos);
   EXPECT_EQ(model.GetDisplacements(), before);
-  // It goes on from there.
+  // It goes on from there, as a body does that has not been pulled too far.
+  CorotationalModel other;
+  other.SetBody(lattice.Body);
+  request.Held = PullEnd(lattice, glm::dvec3(0.005, 0.0, 0.0));
+  other.Solve(request);
   request.Held = PullEnd(lattice, glm::dvec3(0.006, 0.0, 0.0));
+  const CorotationalReport report = model.Solve(request);
+  const CorotationalReport wanted = other.Solve(request);
+  EXPECT_EQ(report.NewtonSteps, wanted.NewtonSteps);
+  EXPECT_EQ(report.LinearIterations, wanted.LinearIterations);
+  EXPECT_EQ(model.GetDisplacements(), other.GetDisplacements());
   EXPECT_TRUE(model.Solve(request).IsConverged);
 }
 
