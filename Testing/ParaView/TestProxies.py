@@ -17,7 +17,8 @@ from PluginTesting import load_plugin, messages
 PLUGIN_SOURCE = os.path.join(os.path.dirname(__file__), "..", "..", "Plugin")
 
 # Methods that need no property: data instead of a connection, what a command with clean_command
-# makes superfluous, and what is there for lists in C++.
+# makes superfluous, and what is there for lists in C++, or for programs that keep the numbers that they
+# are given.
 WITHOUT_PROPERTY = {
     "SetDeformationData",
     "SetRestData",
@@ -38,6 +39,11 @@ WITHOUT_PROPERTY = {
     "GetMaterialValues",
     "GetNumberOfMaterials",
     "GetNumberOfMaterialRanges",
+    "SaveState",
+    "RestoreState",
+    "RemoveState",
+    "GetNumberOfStates",
+    "GetStateMemory",
 }
 
 failures = []
