@@ -137,14 +137,8 @@ SessionPipeline::~SessionPipeline() = default;
 
 void SessionPipeline::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
 {
-  this->Volume = vtkSmartPointer<vtkImageData>::New();
-  this->Volume->ShallowCopy(volume);
-  this->Mesh = nullptr;
-  if (mesh)
-  {
-    this->Mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
-    this->Mesh->DeepCopy(mesh);
-  }
+  this->Volume = volume;
+  this->Mesh = mesh;
   this->Still = MakeLattice(this->Volume, 2);
   vtkNew<vtkFloatArray> none;
   none->SetName("Displacement");

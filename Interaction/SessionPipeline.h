@@ -43,7 +43,7 @@ public:
   SessionPipeline(const SessionPipeline&) = delete;
   void operator=(const SessionPipeline&) = delete;
 
-  /// Forgets everything. Without a mesh there is a lattice.
+  /// Forgets everything. Without a mesh there is a lattice. Both must stay as they are.
   void SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh);
 
   /// Throws std::runtime_error. Actions are then as they were; where the model or the lattice

@@ -66,7 +66,7 @@ public:
   SessionEvents Record;
   bool IsMoving = false;
   bool HasInputs = false;
-  std::string InputHash;
+  std::string InputHash; // "" until it is wanted
   vtkIdType Steps = 0;
 
   // The rest: for moments only. It is locked after PipelineMutex where both are.
@@ -85,7 +85,17 @@ public:
   std::thread Worker;
   int LastHandle = -1;
 
-  void Enqueue(SessionEvent::KindType kind, std::vector<double> numbers = {})
+  // For files only: all of the volume is read.
+  const std::string& GetInputHash()
+  {
+    if (this->InputHash.empty())
+    {
+      this->InputHash = deformvolume::HashInputs(this->Inputs.first, this->Inputs.second);
+    }
+    return this->InputHash;
+  }
+
+  void Enqueue(SessionEvent::KindType kind, std::vector<double> numbers)
   {
     const std::lock_guard<std::mutex> lock(this->QueueMutex);
     // A handle goes to where it was moved last; what lies between is not seen.
@@ -315,7 +325,7 @@ bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid
   {
     internals.Begin(inputs.first, inputs.second);
     internals.Inputs = inputs;
-    internals.InputHash = deformvolume::HashInputs(inputs.first, inputs.second);
+    internals.InputHash.clear();
     internals.HasInputs = true;
     isDone = true;
     const std::lock_guard<std::mutex> lock(internals.QueueMutex);
@@ -338,70 +348,72 @@ bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid
   return isDone;
 }
 
-bool vtkDeformVolumeSession::CheckPlace(double x, double y, double z)
+bool vtkDeformVolumeSession::CheckInputs()
 {
   if (!this->Internals->HasInputs)
   {
     this->Report("There is no volume. Call SetInputs() first.");
     return false;
   }
-  if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
+  return true;
+}
+
+bool vtkDeformVolumeSession::CheckFinite(const std::vector<double>& numbers)
+{
+  const bool areFinite = std::all_of(
+    numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
+  if (!areFinite)
   {
     this->Report("A number is not finite. Set finite ones.");
+  }
+  return areFinite;
+}
+
+// kind: of a SessionEvent.
+bool vtkDeformVolumeSession::Enqueue(int kind, const std::vector<double>& numbers)
+{
+  if (!this->CheckInputs() || !this->CheckFinite(numbers))
+  {
     return false;
   }
+  this->Internals->Enqueue(static_cast<SessionEvent::KindType>(kind), numbers);
   return true;
 }
 
 void vtkDeformVolumeSession::ChangeModel(int model)
 {
-  if (this->CheckPlace(0.0, 0.0, 0.0))
-  {
-    this->Internals->Enqueue(SessionEvent::MODEL, { static_cast<double>(model) });
-  }
+  this->Enqueue(SessionEvent::MODEL, { static_cast<double>(model) });
 }
 
 int vtkDeformVolumeSession::BeginGrab(double x, double y, double z)
 {
-  if (!this->CheckPlace(x, y, z))
+  const int handle = this->Internals->LastHandle + 1;
+  if (!this->Enqueue(SessionEvent::BEGIN_GRAB, { static_cast<double>(handle), x, y, z }))
   {
     return -1;
   }
-  const int handle = ++this->Internals->LastHandle;
-  this->Internals->Enqueue(SessionEvent::BEGIN_GRAB, { static_cast<double>(handle), x, y, z });
+  this->Internals->LastHandle = handle;
   return handle;
 }
 
 void vtkDeformVolumeSession::MoveGrab(int handle, double x, double y, double z)
 {
-  if (this->CheckPlace(x, y, z))
-  {
-    this->Internals->Enqueue(SessionEvent::MOVE_GRAB, { static_cast<double>(handle), x, y, z });
-  }
+  this->Enqueue(SessionEvent::MOVE_GRAB, { static_cast<double>(handle), x, y, z });
 }
 
 void vtkDeformVolumeSession::EndGrab(int handle)
 {
-  if (this->CheckPlace(0.0, 0.0, 0.0))
-  {
-    this->Internals->Enqueue(SessionEvent::END_GRAB, { static_cast<double>(handle) });
-  }
+  this->Enqueue(SessionEvent::END_GRAB, { static_cast<double>(handle) });
 }
 
 void vtkDeformVolumeSession::HoldGrab(int handle)
 {
-  if (this->CheckPlace(0.0, 0.0, 0.0))
-  {
-    this->Internals->Enqueue(SessionEvent::HOLD, { static_cast<double>(handle) });
-  }
+  this->Enqueue(SessionEvent::HOLD, { static_cast<double>(handle) });
 }
 
 void vtkDeformVolumeSession::Release(int handle)
 {
-  if (this->CheckPlace(0.0, 0.0, 0.0))
-  {
-    this->Internals->Enqueue(SessionEvent::RELEASE, { static_cast<double>(handle) });
-  }
+  this->Enqueue(SessionEvent::RELEASE, { static_cast<double>(handle) });
 }
 
 int vtkDeformVolumeSession::Pin(double x, double y, double z)
@@ -416,14 +428,14 @@ int vtkDeformVolumeSession::Pin(double x, double y, double z)
 
 void vtkDeformVolumeSession::Cut(vtkPolyData* sheet)
 {
-  if (!this->CheckPlace(0.0, 0.0, 0.0))
+  if (!this->CheckInputs())
   {
     return;
   }
   try
   {
-    SessionEvent event = deformvolume::MakeCutEvent(sheet);
-    this->Internals->Enqueue(event.Kind, std::move(event.Numbers));
+    const SessionEvent event = deformvolume::MakeCutEvent(sheet);
+    this->Enqueue(event.Kind, event.Numbers);
   }
   catch (const std::exception& error)
   {
@@ -433,66 +445,47 @@ void vtkDeformVolumeSession::Cut(vtkPolyData* sheet)
 
 void vtkDeformVolumeSession::CarveSphere(double x, double y, double z, double radius)
 {
-  if (this->CheckPlace(x, y, z) && this->CheckPlace(radius, 0.0, 0.0))
-  {
-    this->Internals->Enqueue(SessionEvent::CARVE, { 1.0, x, y, z, radius });
-  }
+  this->Enqueue(SessionEvent::CARVE, { 1.0, x, y, z, radius });
 }
 
 void vtkDeformVolumeSession::CarveTo(double x, double y, double z, double radius)
 {
-  if (this->CheckPlace(x, y, z) && this->CheckPlace(radius, 0.0, 0.0))
-  {
-    this->Internals->Enqueue(SessionEvent::CARVE, { 0.0, x, y, z, radius });
-  }
+  this->Enqueue(SessionEvent::CARVE, { 0.0, x, y, z, radius });
 }
 
 void vtkDeformVolumeSession::Undo()
 {
-  if (this->CheckPlace(0.0, 0.0, 0.0))
-  {
-    this->Internals->Enqueue(SessionEvent::UNDO);
-  }
+  this->Enqueue(SessionEvent::UNDO);
 }
 
 void vtkDeformVolumeSession::Redo()
 {
-  if (this->CheckPlace(0.0, 0.0, 0.0))
-  {
-    this->Internals->Enqueue(SessionEvent::REDO);
-  }
+  this->Enqueue(SessionEvent::REDO);
 }
 
 void vtkDeformVolumeSession::Reset()
 {
-  if (this->CheckPlace(0.0, 0.0, 0.0))
-  {
-    this->Internals->Enqueue(SessionEvent::RESET);
-  }
+  this->Enqueue(SessionEvent::RESET);
 }
 
 void vtkDeformVolumeSession::ChangeHandleRadius(double radius)
 {
-  if (this->CheckPlace(radius, 0.0, 0.0))
-  {
-    this->Internals->Enqueue(SessionEvent::HANDLE_RADIUS, { radius });
-  }
+  this->Enqueue(SessionEvent::HANDLE_RADIUS, { radius });
 }
 
 void vtkDeformVolumeSession::ChangeRelaxationSweeps(int sweeps)
 {
-  if (this->CheckPlace(0.0, 0.0, 0.0))
-  {
-    this->Internals->Enqueue(SessionEvent::RELAXATION, { static_cast<double>(sweeps) });
-  }
+  this->Enqueue(SessionEvent::RELAXATION, { static_cast<double>(sweeps) });
 }
 
 void vtkDeformVolumeSession::ChangeNumberOfNodes(int nodes)
 {
-  if (this->CheckPlace(0.0, 0.0, 0.0))
-  {
-    this->Internals->Enqueue(SessionEvent::LATTICE, { static_cast<double>(nodes) });
-  }
+  this->Enqueue(SessionEvent::LATTICE, { static_cast<double>(nodes) });
+}
+
+void vtkDeformVolumeSession::ChangeUndoMemory(double bytes)
+{
+  this->Enqueue(SessionEvent::UNDO_MEMORY, { bytes });
 }
 
 void vtkDeformVolumeSession::SetMovingSamplingFactor(int factor)
@@ -529,17 +522,9 @@ int vtkDeformVolumeSession::GetPadding()
   return this->Internals->Padding;
 }
 
-void vtkDeformVolumeSession::ChangeUndoMemory(double bytes)
-{
-  if (this->CheckPlace(bytes, 0.0, 0.0))
-  {
-    this->Internals->Enqueue(SessionEvent::UNDO_MEMORY, { bytes });
-  }
-}
-
 bool vtkDeformVolumeSession::Update()
 {
-  if (!this->CheckPlace(0.0, 0.0, 0.0))
+  if (!this->CheckInputs())
   {
     return false;
   }
@@ -559,7 +544,7 @@ bool vtkDeformVolumeSession::Update()
 
 void vtkDeformVolumeSession::Start()
 {
-  if (!this->CheckPlace(0.0, 0.0, 0.0) || this->GetIsRunning())
+  if (!this->CheckInputs() || this->GetIsRunning())
   {
     return;
   }
@@ -610,7 +595,7 @@ vtkImageData* vtkDeformVolumeSession::TakeOutput()
 
 bool vtkDeformVolumeSession::Probe(double x, double y, double z)
 {
-  if (!this->CheckPlace(x, y, z))
+  if (!this->CheckInputs() || !this->CheckFinite({ x, y, z }))
   {
     return false;
   }
@@ -640,7 +625,7 @@ bool vtkDeformVolumeSession::Probe(double x, double y, double z)
 
 bool vtkDeformVolumeSession::SaveSession(const std::string& fileName)
 {
-  if (!this->CheckPlace(0.0, 0.0, 0.0))
+  if (!this->CheckInputs())
   {
     return false;
   }
@@ -651,7 +636,7 @@ bool vtkDeformVolumeSession::SaveSession(const std::string& fileName)
     {
       this->Internals->RunOnce();
     }
-    deformvolume::WriteEvents(fileName, this->Internals->InputHash, this->Internals->Record);
+    deformvolume::WriteEvents(fileName, this->Internals->GetInputHash(), this->Internals->Record);
     return true;
   }
   catch (const std::exception& error)
@@ -663,7 +648,7 @@ bool vtkDeformVolumeSession::SaveSession(const std::string& fileName)
 
 bool vtkDeformVolumeSession::LoadSession(const std::string& fileName)
 {
-  if (!this->CheckPlace(0.0, 0.0, 0.0))
+  if (!this->CheckInputs())
   {
     return false;
   }
@@ -671,7 +656,7 @@ bool vtkDeformVolumeSession::LoadSession(const std::string& fileName)
   SessionEvents events;
   try
   {
-    events = deformvolume::ReadEvents(fileName, internals.InputHash);
+    events = deformvolume::ReadEvents(fileName, internals.GetInputHash());
   }
   catch (const std::exception& error)
   {
@@ -743,7 +728,7 @@ void WriteData(vtkDataObject* data, const std::string& fileName)
 
 bool vtkDeformVolumeSession::Save(const std::string& fileName, bool isMesh)
 {
-  if (!this->CheckPlace(0.0, 0.0, 0.0))
+  if (!this->CheckInputs())
   {
     return false;
   }

@@ -63,6 +63,7 @@
 
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
+#include <vector> // for std::vector
 
 class vtkImageData;
 class vtkPolyData;
@@ -266,7 +267,9 @@ private:
 
   void Report(const std::string& message);
   void ReportErrors();
-  bool CheckPlace(double x, double y, double z);
+  bool CheckInputs();
+  bool CheckFinite(const std::vector<double>& numbers);
+  bool Enqueue(int kind, const std::vector<double>& numbers = {});
   bool Save(const std::string& fileName, bool isMesh);
 
   double ProbedValue = 0.0;
