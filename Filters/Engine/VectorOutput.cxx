@@ -15,9 +15,16 @@ namespace deformvolume
 bool VectorOutput::Allocate(const std::string& device, vtkIdType tuples)
 {
   constexpr int components = 3;
+  const bool isOnDevice = GetDeviceAbilities(device).OwnMemory;
+  if (this->Array && this->Device == device && this->Array->GetNumberOfTuples() == tuples &&
+    (isOnDevice || this->Array->GetVoidPointer(0) == this->Memory))
+  {
+    // Who compares arrays to find what has changed sees the one it knows.
+    return isOnDevice;
+  }
   this->Array = nullptr; // its memory goes first
   this->Vectors.reset();
-  const bool isOnDevice = GetDeviceAbilities(device).OwnMemory;
+  this->Device = device;
   if (isOnDevice)
   {
     this->Vectors = std::make_shared<DeviceVectors>(device, static_cast<std::size_t>(tuples));

@@ -18,8 +18,9 @@ namespace deformvolume
 class VectorOutput
 {
 public:
-  /// Makes another array, for a model that has a function SetOutput for memory of the host and for
-  /// vectors. arguments: what else that takes.
+  /// Gives the array to a model, which has a function SetOutput for memory of the host and for
+  /// vectors; makes another one where device or number have changed. arguments: what else that
+  /// takes.
   template <typename Model, typename... Arguments>
   void Make(
     Model& model, const std::string& device, vtkIdType tuples, const Arguments&... arguments)
@@ -44,6 +45,7 @@ private:
   bool Allocate(const std::string& device, vtkIdType tuples);
 
   vtkSmartPointer<vtkDataArray> Array;
+  std::string Device; // of the array
   float* Memory = nullptr;
   std::shared_ptr<DeviceVectors> Vectors;
 };
