@@ -3,7 +3,8 @@
 # Runs the two commands of README.md in pristine Debian systems, each made for it in
 # build/platforms, and prints a table of what they found. As root, on Debian; packages come from the
 # archive that this system uses. The logs stay in build/platforms, and so do the pictures that
-# Examples/run.sh draws: look at them.
+# Examples/run.sh draws: look at them. What ccache keeps of a system is kept for the next run, in
+# ~/.cache/deformvolume-platforms: a system whose compiler and sources are the same compiles less.
 #
 # Usage: platforms.sh [--keep] [--quick] [SUITE]...    (default: bookworm trixie forky)
 #   --keep  leaves the systems with what was built in them, to look into a failure
@@ -51,6 +52,7 @@ make_system() # suite, folder
   } >"$root/etc/apt/sources.list"
   # A copy of the archive may be older than its date of expiry.
   echo 'Acquire::Check-Valid-Until "false";' >"$root/etc/apt/apt.conf.d/99platforms"
+  mkdir -p "$HOME/.cache/deformvolume-platforms/$suite" "$root/root/.cache/ccache"
   inside "$root" apt-get update -qq
   inside "$root" apt-get -y -qq upgrade
   mkdir "$root/src"
@@ -67,6 +69,8 @@ inside() # folder, command...
     set -e
     root=$0
     mount --bind "$root" "$root"
+    kept=$HOME/.cache/deformvolume-platforms/${root##*/}
+    [ ! -d "$kept" ] || mount --bind "$kept" "$root/root/.cache/ccache"
     mount -t proc proc "$root/proc"
     mount --rbind /dev "$root/dev"
     mount --bind /sys "$root/sys"
