@@ -23,6 +23,7 @@ BUILD = WORK / "build"
 
 NARROW = ("TestNarrowDecisions", "*")
 MASKS = ("TestIncremental", "IncrementalMasks*")
+MISSING = ("TestPiecewise", "*Masks*")
 FOLDS = ("TestIncrementalFolds", "-*ByCell")
 BY_CELL = ("TestIncremental", "*Borders*ByCell")
 ALIGNED = ("TestIncrementalOutputs", "*NotAligned*")
@@ -55,6 +56,15 @@ DEFORMED_CUTTING = ("TestDeformedCutting", "*")
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
     "filter-upright": ("Kernels/Resampling/GroupWeights.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
+    "vertex-shift": ("Kernels/Resampling/GroupCoverage.cl",
+                     "const int shift = (high & 1) | (high >> 2 & 1) << 1 | (high >> 1 & 1) << 2;",
+                     "const int shift = (high & 1) | (high >> 1 & 1) << 1 | (high >> 2 & 1) << 2;",
+                     [MISSING]),
+    "vertex-edge": ("Kernels/Resampling/GroupCoverage.cl", "1 << (vertex ^ 1)", "1 << (vertex ^ 2)",
+                    [MISSING]),
+    "base-counts": ("Kernels/Cutting/MaskEditor.cxx",
+                    "this->NumberOfSwitchedOff -= CountBits(this->Base[cell] ^ this->Mask[cell]);", "",
+                    [("TestMaskEditor", "*")]),
     "filter-bent": ("Kernels/Resampling/GroupWeights.cl", "(FLOATS)(3.2e-5f)", "(FLOATS)(3.2e-7f)", [NARROW]),
     "mask-reach": ("Kernels/Resampling/IncrementalChanges.cxx", "MaskReach = 1;", "MaskReach = 0;", [MASKS]),
     "old-winners": ("Kernels/Resampling/OutputWinners.cxx",

@@ -161,7 +161,13 @@ bool VolumeEditor::SetVolume(vtkImageData* volume, vtkInformation* info)
   this->CutStamp = cutStamp;
   if (isNew || stamp != this->BaseStamp)
   {
-    this->Mask->SetBase(bytes);
+    // The array itself may know what has been written since.
+    const vtkArrayChanges* log = base ? vtkArrayChanges::FindLog(base) : nullptr;
+    MaskEditor::Ranges changes;
+    const bool areKnown = log && this->BaseStamp.size() == stamp.size() &&
+      this->BaseStamp[0].first == stamp[0].first && this->BaseStamp[1] == stamp[1] &&
+      log->GetTuplesSince(this->BaseStamp[0].second, changes);
+    this->Mask->SetBase(bytes, areKnown ? &changes : nullptr);
     this->BaseStamp = stamp;
   }
   return isNew;

@@ -6,6 +6,7 @@
 #include "FiveTetrahedra.h"
 
 #include <algorithm>
+#include <cstring>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -36,9 +37,65 @@ MaskEditor::MaskEditor(const Extent& vertices, float far)
   }
 }
 
-void MaskEditor::SetBase(const unsigned char* base)
+std::vector<std::size_t> MaskEditor::CompareBase(
+  const unsigned char* base, const Ranges& changes) const
+{
+  const auto differs = [&](std::size_t first, std::size_t end)
+  { return std::memcmp(base + first, this->Base.data() + first, end - first) != 0; };
+  const auto width = static_cast<std::size_t>(this->Bricks.GetSize()[0]);
+  const auto height = static_cast<std::size_t>(this->Bricks.GetSize()[1]);
+  std::vector<bool> isChanged(this->Changed.size());
+  for (const std::array<std::size_t, 2>& range : changes)
+  {
+    // Row by row, and of rows that differ what lies in one brick at once.
+    const std::size_t rangeEnd = std::min(range[1], this->Mask.size());
+    for (std::size_t row = range[0] / width; range[0] < rangeEnd && row * width < rangeEnd; ++row)
+    {
+      const std::size_t begin = std::max(row * width, range[0]);
+      const std::size_t end = std::min((row + 1) * width, rangeEnd);
+      for (std::size_t first = begin; first < end && differs(first, end);)
+      {
+        const std::size_t x = first - row * width;
+        const std::size_t next = std::min(end, first - x % CellBricks::Length + CellBricks::Length);
+        if (differs(first, next))
+        {
+          isChanged[this->Bricks.FindBrick({ { static_cast<int>(x), static_cast<int>(row % height),
+            static_cast<int>(row / height) } })] = true;
+        }
+        first = next;
+      }
+    }
+  }
+  std::vector<std::size_t> bricks;
+  for (std::size_t brick = 0; brick < isChanged.size(); ++brick)
+  {
+    if (isChanged[brick])
+    {
+      bricks.push_back(brick);
+    }
+  }
+  return bricks;
+}
+
+void MaskEditor::SetBase(const unsigned char* base, const Ranges* changes)
 {
   const std::size_t count = this->Mask.size();
+  if (base && !this->Base.empty())
+  {
+    const std::vector<std::size_t> bricks =
+      this->CompareBase(base, changes ? *changes : Ranges{ { { 0, count } } });
+    for (const std::size_t brick : bricks)
+    {
+      ForEachCell(this->Bricks, brick,
+        [&](const std::array<int, 3>&, std::size_t, std::size_t cell)
+        {
+          this->NumberOfSwitchedOff -= CountBits(this->Base[cell] ^ this->Mask[cell]);
+          this->Base[cell] = this->Mask[cell] = base[cell];
+        });
+    }
+    this->Update(bricks);
+    return;
+  }
   if (base)
   {
     this->Base.assign(base, base + count);

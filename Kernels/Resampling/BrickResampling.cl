@@ -39,7 +39,7 @@ static __attribute__((always_inline)) void ResampleCells(const GroupCandidates* 
       return;
     }
     Doubts doubts;
-    const Outcome outcome = ResampleByFloats(c, output, found, &doubts, p ARRAY_ARGUMENTS);
+    const Outcome outcome = ResampleByFloats(c, mesh, output, found, &doubts, p ARRAY_ARGUMENTS);
     again = outcome.Unsure;
     if (outcome.Doubtful)
     {

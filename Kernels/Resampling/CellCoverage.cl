@@ -126,12 +126,11 @@ static int FirstShiftInside(const EdgeFunctions* f, int tetrahedron, int simplex
 }
 
 // Whether of the tetrahedra that share the simplex with these vertices (a mask over the cell's vertices)
-// none comes before this one of the cell by the rule for the border of the mesh. side: of a smooth cut, from which they
-// are seen.
+// none comes before this one of the cell by the rule for the border of the mesh. own: the first shift into it. side: of
+// a smooth cut, from which they are seen.
 static int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron,
-  int simplex, int side, const EdgeFunctions* f, const KernelParameters* p)
+  int simplex, int own, int side, const KernelParameters* p)
 {
-  const int own = FirstShiftInside(f, tetrahedron, simplex);
   if (own == 0)
   {
     return 1; // another one with that shift overlaps this one
@@ -301,6 +300,7 @@ static int RoleOf(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron
 #endif
   const int owner = (simplex & state.Regular) == simplex
     ? IsOwnerByIndex(x, y, z, tetrahedron, simplex, p)
-    : IsOwnerOnBorder(mesh, x, y, z, tetrahedron, simplex, side, f, p);
+    : IsOwnerOnBorder(mesh, x, y, z, tetrahedron, simplex,
+        FirstShiftInside(f, tetrahedron, simplex), side, p);
   return owner ? OWNER : HOLDER;
 }

@@ -26,7 +26,10 @@ typedef struct
   INTS Place;       // of the first one in the output
   INTS Number;      // how many in all, in cells that have some
   INTS Box;         // cells that are boxes, if HasBoxes
+  INTS Beside;      // boxes where something is missing round a vertex (DecideOnVertices), if HasBeside
+  GroupState State; // if HasBeside
   int HasBoxes;
+  int HasBeside;
   int Skip; // no cell touches a voxel to be won
 } GroupCandidates;
 
@@ -197,25 +200,28 @@ typedef struct
 } ToEnds;
 
 // For a group on the border: the whole cells, as bits, those that may be taken for boxes, and what is added to the
-// high sides of these.
-static __attribute__((always_inline)) void EndOnBorder(const GroupCandidates* c, INTS rises,
+// high sides of these; boxes beside what is missing.
+static __attribute__((always_inline)) void EndOnBorder(GroupCandidates* c, INTS rises,
   const SamplingMesh* mesh, uint* whole, INTS* box, ToEnds* toEnds, Output* output,
   const KernelParameters* p)
 {
   const Group* const group = &c->Cells;
+  GroupState* const state = &c->State;
   // Without states all that is there is whole.
-  GroupState state;
   if (p->HasState || c->HasBoxes)
   {
-    StatesOfGroup(mesh, group->X, group->Y, group->Z, &state, p);
-    *whole = c->There & LaneBits(state.Whole);
+    StatesOfGroup(mesh, group->X, group->Y, group->Z, state, p);
+    *whole = c->There & LaneBits(state->Whole);
   }
   // Boxes on the border leave what is on their high sides to the next cells, if there are any. That the
   // high sides are the upper ones is wanted for that.
   if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && c->HasBoxes)
   {
-    const INTS inner = state.Interior == 255;
-    *box &= LanesOf(c->There) & (inner | ((state.Regular == 255) & rises));
+    const INTS inner = state->Interior == 255;
+    const INTS all = *box & LanesOf(c->There);
+    *box = all & (inner | ((state->Regular == 255) & rises));
+    c->Beside = all & ~*box & rises;
+    c->HasBeside = LaneBits(c->Beside) != 0;
     output->Assumed |= LaneBits(*box & ~inner) != 0;
     const INTS isLastX = group->X + 2 * LANE_INDEX == p->Size[0] - 2;
     toEnds->X = (*box & ~isLastX) ? ALMOST_ONE : toEnds->X;
@@ -287,6 +293,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   // Candidates are half-open inside the mesh: by the fill rule no sample on the upper side is taken.
   const int border = c->Cells.Border;
   uint whole = c->There;
+  c->HasBeside = 0;
   const FLOATS toEnd = border || p->Pass != DEFORMVOLUME_PASS_DIRECT ? 1.0f : ALMOST_ONE;
   ToEnds toEnds = { toEnd, toEnd, toEnd };
   if (border)

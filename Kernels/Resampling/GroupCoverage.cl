@@ -219,6 +219,18 @@ static __attribute__((noinline)) void TouchHeld(
   }
 }
 
+// The lanes whose cell owns a simplex on the border of the volume, where all cells are there, as IsOwnerByIndex.
+static __attribute__((always_inline)) INTS OwnByIndex(
+  const Group* group, INTS simplex, int mirror, const KernelParameters* p)
+{
+  const INTS isLastX = group->X + 2 * LANE_INDEX == p->Size[0] - 2;
+  const INTS isLastY = group->Y == p->Size[1] - 2 ? -1 : 0;
+  const INTS isLastZ = group->Z == p->Size[2] - 2 ? -1 : 0;
+  return (((simplex & LOW_SIDE(0, mirror)) != 0) | isLastX) &
+    (((simplex & LOW_SIDE(1, mirror)) != 0) | isLastZ) &
+    (((simplex & LOW_SIDE(2, mirror)) != 0) | isLastY);
+}
+
 // Returns which of the undecided cells, as bits, own their sample. state: of the group, where it is on the border of
 // the mesh. onVertex: lanes whose sample is a vertex. ambiguous: cells for ResampleCell are added to it. All else is
 // as for HoldSample.
@@ -231,15 +243,10 @@ static __attribute__((always_inline)) uint DecideByIntegers(const Group* group, 
   if (group->Border)
   {
     // As RoleOf.
-    const int x = group->X, y = group->Y, z = group->Z;
-    const int mirror = Mirror(x, y, z, p);
     const INTS outer = (simplex != 0) & ((simplex & state->Interior) == 0);
     const INTS regular = (simplex & ~state->Regular) == 0;
-    const INTS isLastX = x + 2 * LANE_INDEX == p->Size[0] - 2;
-    const INTS first = (((simplex & LOW_SIDE(0, mirror)) != 0) | isLastX) &
-      (((simplex & LOW_SIDE(1, mirror)) != 0) | (INTS)(z == p->Size[2] - 2 ? -1 : 0)) &
-      (((simplex & LOW_SIDE(2, mirror)) != 0) | (INTS)(y == p->Size[1] - 2 ? -1 : 0));
-    held = outer ? first & regular : held;
+    held = outer ? OwnByIndex(group, simplex, Mirror(group->X, group->Y, group->Z, p), p) & regular
+                 : held;
     *ambiguous |= undecided & LaneBits(outer & ~regular);
     output->Assumed |= (undecided & LaneBits(outer)) != 0;
   }
@@ -250,4 +257,61 @@ static __attribute__((always_inline)) uint DecideByIntegers(const Group* group, 
   }
   *onVertex = LanesOf(undecided) & ((simplex & (simplex - 1)) == 0);
   return undecided & LaneBits(held);
+}
+
+// Whether a box that has all its tetrahedra, and whose coordinates grow with the indices, owns a sample on one of its
+// vertices, which is on the border of the mesh. Of its tetrahedra that share the vertex it is the one at the edge along
+// x that a shift away from the vertex leads into.
+static __attribute__((noinline)) int OwnsVertex(
+  const SamplingMesh* mesh, int x, int y, int z, int vertex, const KernelParameters* p)
+{
+  const int edge = 1 << vertex | 1 << (vertex ^ 1);
+  int tetrahedron = 0;
+  while ((VerticesOf(tetrahedron) & edge) != edge)
+  {
+    ++tetrahedron;
+  }
+#if HAS_CUT
+  long weights[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    weights[k] = Tetrahedra[tetrahedron][k] == vertex;
+  }
+  const int side = SideOfSample(mesh, x, y, z, tetrahedron, weights, p);
+#else
+  const int side = 0;
+#endif
+  const int high = vertex ^ Mirror(x, y, z, p); // the axes on whose high side the vertex is
+  const int shift = (high & 1) | (high >> 2 & 1) << 1 | (high >> 1 & 1) << 2;
+  Neighbours near;
+  const SamplingMesh keeping = KeepNeighbours(mesh, x, y, z, &near);
+  return IsOwnerOnBorder(&keeping, x, y, z, tetrahedron, 1 << vertex, shift, side, p);
+}
+
+// Returns which of some cells, as bits, own their sample. The cells are as for OwnsVertex. simplex: the vertex that
+// the sample is, as a mask. x, y, z: the sample, in voxels of the output.
+static __attribute__((noinline)) uint DecideOnVertices(const Group* group, uint some, INTS simplex,
+  const GroupState* state, FLOATS x, FLOATS y, FLOATS z, const SamplingMesh* mesh, Output* output,
+  const KernelParameters* p)
+{
+  const int mirror = Mirror(group->X, group->Y, group->Z, p);
+  const INTS lowest = simplex == 1 << mirror;
+  const INTS outer = (simplex & state->Interior) == 0;
+  const INTS regular = (simplex & state->Regular) != 0;
+  // The shift +++ leads from its lowest vertex into a cell.
+  uint held = some & LaneBits((outer & regular) ? OwnByIndex(group, simplex, mirror, p) : lowest);
+  output->Assumed |= (some & LaneBits(outer)) != 0;
+  uint open = some & LaneBits(outer & ~regular & ~lowest);
+  Lanes vertices;
+  vertices.Vector = simplex;
+  FOR_EACH_LANE(lane, open)
+  {
+    const int vertex = 31 - clz((uint)vertices.Lanes[lane]);
+    held |= (uint)OwnsVertex(mesh, group->X + 2 * lane, group->Y, group->Z, vertex, p) << lane;
+  }
+  if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
+  {
+    TouchHeld(some & ~held, x, y, z, output, p);
+  }
+  return held;
 }

@@ -68,6 +68,14 @@ static __attribute__((always_inline)) INTS IsOnVertex(const GroupFrame* f, const
     ((z == f->Z0) | (z == f->Z7));
 }
 
+// The vertices of their cells that samples are, where IsOnVertex, as masks.
+static __attribute__((always_inline)) INTS VerticesAt(const GroupFrame* f, const Walk* at)
+{
+  INTS vertices = at->X + f->X0 == f->X7 ? (INTS)(2) : (INTS)(1);
+  vertices = at->Z + f->Z0 == f->Z7 ? vertices << 2 : vertices;
+  return at->Y + f->Y0 == f->Y7 ? vertices << 4 : vertices;
+}
+
 // What became of a group's candidates. In a round each lane takes one of its own.
 typedef struct
 {
@@ -80,8 +88,8 @@ typedef struct
 // Takes the candidates of some cells, as bits. hits: of each round the cells that it has found a sample in. All else
 // is as for ResampleGroup.
 static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
-  const GroupFrame* frame, uint some, const GroupState* state, Output* output, Found* found,
-  Doubts* doubts, ushort* hits, Rounds* rounds, const KernelParameters* p ARRAY_PARAMETERS)
+  const GroupFrame* frame, uint some, const GroupState* state, const SamplingMesh* mesh, Output* output,
+  Found* found, Doubts* doubts, ushort* hits, Rounds* rounds, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Group* const group = &c->Cells;
   // Boxes take all their candidates, whatever the second smallest weight is, from which it is told that a sample is
@@ -106,6 +114,19 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
     uint undecided;
     uint held = DecideByFloats(&weights, some, decisive, frame->Bound, &undecided);
     INTS onVertex = 0;
+    if (c->HasBeside && !state)
+    {
+      const INTS beside = LanesOf(some) & c->Beside & IsOnVertex(frame, &at);
+      const uint decided = LaneBits(beside);
+      if (decided)
+      {
+        undecided &= ~decided;
+        held = (held & ~decided) |
+          DecideOnVertices(group, decided, VerticesAt(frame, &at), &c->State, at.X + frame->X0,
+            at.Y + frame->Y0, at.Z + frame->Z0, mesh, output, p);
+        onVertex = beside;
+      }
+    }
     if (undecided && state)
     {
       const FLOATS sample[3] = { at.X, at.Y, at.Z };
@@ -147,12 +168,13 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
   }
 }
 
-// The samples of a group of cells. state: where the group is on the border, if samples that floats do not decide
+// The samples of a group of cells. mesh: where state is null. state: where the group is on the border, if samples that floats do not decide
 // are to be decided by integers: those of the cells in only, as bits. Else null, and doubts takes these samples.
 // What cells that must be repeated have written is not counted.
 static __attribute__((always_inline)) void ResampleGroup(
-  const GroupCandidates* c, uint only, const GroupState* state, Output* output, Found* found,
-  Doubts* doubts, Outcome* outcome, const KernelParameters* p ARRAY_PARAMETERS)
+  const GroupCandidates* c, uint only, const GroupState* state, const SamplingMesh* mesh,
+  Output* output, Found* found, Doubts* doubts, Outcome* outcome,
+  const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int exact = state != 0;
   const uint there = exact ? c->There & only : c->There;
@@ -165,7 +187,7 @@ static __attribute__((always_inline)) void ResampleGroup(
   if (some)
   {
     TakeRounds(
-      c, &frame, some, state, output, found, doubts, hits, &rounds, p ARRAY_ARGUMENTS);
+      c, &frame, some, state, mesh, output, found, doubts, hits, &rounds, p ARRAY_ARGUMENTS);
   }
   uint ambiguous = rounds.Ambiguous;
   outcome->Doubtful = 0;
@@ -192,11 +214,11 @@ static __attribute__((always_inline)) void ResampleGroup(
 }
 
 static __attribute__((noinline)) Outcome ResampleByFloats(
-  const GroupCandidates* c, Output* output, Found* found, Doubts* doubts,
+  const GroupCandidates* c, const SamplingMesh* mesh, Output* output, Found* found, Doubts* doubts,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Outcome outcome;
-  ResampleGroup(c, 0, 0, output, found, doubts, &outcome, p ARRAY_ARGUMENTS);
+  ResampleGroup(c, 0, 0, mesh, output, found, doubts, &outcome, p ARRAY_ARGUMENTS);
   return outcome;
 }
 
@@ -211,7 +233,7 @@ static __attribute__((noinline)) uint ResampleByIntegers(
     StatesOfGroup(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, &state, p);
   }
   Outcome outcome;
-  ResampleGroup(c, only, &state, output, found, 0, &outcome, p ARRAY_ARGUMENTS);
+  ResampleGroup(c, only, &state, 0, output, found, 0, &outcome, p ARRAY_ARGUMENTS);
   return outcome.Unsure;
 }
 

@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
+#include <set>
 #include <vector>
 
 using namespace deformvolume;
@@ -54,6 +56,40 @@ reference::Mask Apply(const reference::Mask& base, const std::vector<Edit>& edit
   return mask;
 }
 
+// Changes some ranges of a mask, and tells which.
+MaskEditor::Ranges ChangeSome(std::mt19937& random, reference::Mask& mask)
+{
+  MaskEditor::Ranges ranges(random() % 4);
+  for (std::array<std::size_t, 2>& range : ranges)
+  {
+    range[0] = random() % mask.size();
+    range[1] = std::min(mask.size(), range[0] + random() % 60);
+    std::for_each(mask.begin() + static_cast<std::ptrdiff_t>(range[0]),
+      mask.begin() + static_cast<std::ptrdiff_t>(range[1]),
+      [&](unsigned char& byte)
+      { byte = random() % 3 ? byte : static_cast<unsigned char>(random()); });
+  }
+  return ranges;
+}
+
+// The bricks in which two masks are not the same.
+std::vector<std::size_t> FindDifferent(
+  const CellBricks& bricks, const reference::Mask& a, const reference::Mask& b)
+{
+  const std::array<int, 3>& size = bricks.GetSize();
+  std::set<std::size_t> found;
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    if (a[i] != b[i])
+    {
+      const int cell = static_cast<int>(i);
+      found.insert(bricks.FindBrick(
+        { { cell % size[0], cell / size[0] % size[1], cell / size[0] / size[1] } }));
+    }
+  }
+  return { found.begin(), found.end() };
+}
+
 int CountActive(reference::Mask mask)
 {
   for (unsigned char& byte : mask)
@@ -97,11 +133,14 @@ TEST(MaskEditor, HistoriesEqualTheReference)
     std::vector<Edit> edits;
     std::vector<Edit> undone;
     reference::Mask copy;
+    bool hasBase = false;
     EXPECT_EQ(editor.TakeChangedBricks().size(), editor.GetBricks().GetNumberOfBricks());
     copy = editor.GetMask();
     for (int step = 0; step < 200; ++step)
     {
-      const unsigned int choice = random() % 16;
+      const unsigned int choice = random() % 18;
+      const reference::Mask before = base;
+      std::vector<std::size_t> changed; // that the step has asked for itself
       if (choice < 5)
       {
         TetrahedronSet set = MakeSet(random, editor.GetBricks());
@@ -150,6 +189,16 @@ TEST(MaskEditor, HistoriesEqualTheReference)
         std::generate(base.begin(), base.end(),
           [&] { return static_cast<unsigned char>(isPlain ? 31 : random()); });
         editor.SetBase(isPlain ? nullptr : base.data());
+        hasBase = !isPlain;
+      }
+      else if (hasBase)
+      {
+        const bool isTold = random() % 2 == 0;
+        const MaskEditor::Ranges ranges = ChangeSome(random, base);
+        const std::vector<std::size_t> expected = FindDifferent(editor.GetBricks(), base, before);
+        editor.SetBase(base.data(), isTold ? &ranges : nullptr);
+        changed = editor.TakeChangedBricks();
+        ASSERT_EQ(changed, expected) << "round " << round << ", step " << step;
       }
       const reference::Mask expected = Apply(base, edits);
       ASSERT_EQ(editor.GetMask(), expected) << "round " << round << ", step " << step;
@@ -158,7 +207,9 @@ TEST(MaskEditor, HistoriesEqualTheReference)
       ASSERT_EQ(editor.GetNumberOfEdits(), edits.size());
       ASSERT_EQ(editor.GetNumberOfUndoneEdits(), undone.size());
       // What changes lies in the bricks that are told.
-      for (const std::size_t brick : editor.TakeChangedBricks())
+      const std::vector<std::size_t> others = editor.TakeChangedBricks();
+      changed.insert(changed.end(), others.begin(), others.end());
+      for (const std::size_t brick : changed)
       {
         const Extent cells = editor.GetBricks().GetCells(brick);
         const auto& size = editor.GetBricks().GetSize();

@@ -9,6 +9,7 @@
 #include <glm/mat4x4.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <thread>
 #include <tuple>
 
@@ -320,12 +321,33 @@ TEST(Piecewise, LargeTetrahedra)
 class Masks : public testing::TestWithParam<int>
 {
 protected:
+  // Jittered, scaled, at rest, and at rest beside what is not.
+  glm::dvec3 Move(const glm::dvec3& index)
+  {
+    const int pose = GetParam() % 4;
+    const glm::dvec3 jittered = this->Jitter(index);
+    return pose == 0               ? jittered
+      : pose == 1                  ? 1.5 * index
+      : pose == 2 || index.x < 2.0 ? index
+                                   : jittered;
+  }
+
   std::mt19937 Random{ static_cast<unsigned int>(GetParam()) };
-  DeformerCase Case = GetParam() % 2 == 0
-    ? MakeCase({ { -4, 7, 1, 9, 0, 10 } }, NoScale, MakeJitter(GetParam(), 0.15))
-    : MakeCase(
-        { { -4, 7, 1, 9, 0, 10 } }, NoScale, [](const glm::dvec3& index) { return 1.5 * index; });
+  std::function<glm::dvec3(const glm::dvec3&)> Jitter = MakeJitter(GetParam(), 0.15);
+  DeformerCase Case = MakeCase({ { -4, 7, 1, 9, 0, 10 } }, NoScale,
+    [this](const glm::dvec3& index) { return this->Move(index); });
 };
+
+TEST_P(Masks, FewTetrahedra)
+{
+  // Most cells have all of theirs, and lie beside some that have not.
+  this->Case.Active.resize(GetNumberOfCells(this->Case.VoxelGrid.VertexExtent));
+  for (unsigned char& cell : this->Case.Active)
+  {
+    cell = this->Random() % 12 ? 31 : static_cast<unsigned char>(this->Random());
+  }
+  Check(this->Case);
+}
 
 TEST_P(Masks, InactiveTetrahedra)
 {
@@ -373,4 +395,4 @@ TEST_P(Masks, AllOfThem)
   Check(this->Case, Route::Runs);
 }
 
-INSTANTIATE_TEST_SUITE_P(Piecewise, Masks, testing::Range(0, 4));
+INSTANTIATE_TEST_SUITE_P(Piecewise, Masks, testing::Range(0, 6));
