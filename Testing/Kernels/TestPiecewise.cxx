@@ -395,4 +395,4 @@ TEST_P(Masks, AllOfThem)
   Check(this->Case, Route::Runs);
 }
 
-INSTANTIATE_TEST_SUITE_P(Piecewise, Masks, testing::Range(0, 6));
+INSTANTIATE_TEST_SUITE_P(Piecewise, Masks, testing::Range(0, 12));
