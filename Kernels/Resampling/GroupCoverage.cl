@@ -133,62 +133,76 @@ static __attribute__((noinline)) uint FindDivided(
 
 // Which lanes own a sample by the fill rule, by edge functions in integers of 32 bits, for cells of less than
 // MAXIMUM_EXACT_EXTENT, all of whose tetrahedra are upright, or all inverted: these are at most
-// 2 (256 extent)^3. sample: in voxels relative to vertex 0 of the cell. inverted: lanes whose tetrahedra are.
+// 2 (256 extent)^3. Normals, of at most 2 (256 extent)^2 each and three times that together, are exact in float, whose
+// products cost less. sample: in voxels relative to vertex 0 of the cell. inverted: lanes whose tetrahedra are.
 // simplex: the vertices of the simplex that the sample lies in, 0 where that is not in the cell.
 static __attribute__((noinline)) INTS HoldSample(
   const Group* group, const FLOATS* sample, int odd, INTS inverted, INTS* simplex)
 {
-  INTS q[8][3];
+  FLOATS q[8][3];
   for (int v = 0; v < 8; ++v)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      q[v][axis] = TO_INTS((VERTEX(v, axis) - VERTEX(0, axis)) * 256.0f);
+      q[v][axis] = VERTEX(v, axis) - VERTEX(0, axis);
     }
   }
   INTS held = 0;
   *simplex = 0;
   for (int t = 0; t < 5; ++t)
   {
-    INTS e[3][3]; // edges from the first vertex, and the normals of the faces opposite the others
-    INTS n[4][3];
-    INTS r[3];
+    FLOATS e[3][3]; // edges from the first vertex, and the normals of the faces opposite the others
+    FLOATS n[4][3];
+    INTS r[3]; // the sample, in 1/256 voxel
     for (int axis = 0; axis < 3; ++axis)
     {
-      const INTS first = q[Tetrahedra[t][0]][axis];
-      r[axis] = TO_INTS(sample[axis] * 256.0f) - first;
+      const FLOATS first = q[Tetrahedra[t][0]][axis];
+      r[axis] = TO_INTS((sample[axis] - first) * 256.0f);
       for (int k = 0; k < 3; ++k)
       {
         e[k][axis] = q[Tetrahedra[t][k + 1]][axis] - first;
       }
     }
-    // The orientation that the parity of the cell asks for: normals point inside. Negated by -1, not by 0.
+    // The orientation that the parity of the cell asks for: normals point inside.
     const INTS negative = odd != (t == 4) ? ~inverted : inverted;
-#define NEGATED(v) (((v) ^ negative) - negative)
+#define NORMAL_OF(k, u, v)                                                                         \
+  {                                                                                                \
+    const FLOATS normal = fma(e[u][a], e[v][b], -(e[u][b] * e[v][a]));                             \
+    n[k][axis] = negative ? -normal : normal;                                                      \
+  }
     for (int axis = 0; axis < 3; ++axis)
     {
       const int a = (axis + 1) % 3;
       const int b = (axis + 2) % 3;
-      n[1][axis] = NEGATED(e[1][a] * e[2][b] - e[1][b] * e[2][a]);
-      n[2][axis] = NEGATED(e[2][a] * e[0][b] - e[2][b] * e[0][a]);
-      n[3][axis] = NEGATED(e[0][a] * e[1][b] - e[0][b] * e[1][a]);
+      NORMAL_OF(1, 1, 2)
+      NORMAL_OF(2, 2, 0)
+      NORMAL_OF(3, 0, 1)
       n[0][axis] = -(n[1][axis] + n[2][axis] + n[3][axis]);
     }
-    INTS first = e[0][0] * n[1][0] + e[0][1] * n[1][1] + e[0][2] * n[1][2];
+#undef NORMAL_OF
+    // In 1/65536 square voxel.
+#define PRODUCT(k, v) (TO_INTS(n[k][0] * 65536.0f) * (v)[0] + TO_INTS(n[k][1] * 65536.0f) * (v)[1] + \
+  TO_INTS(n[k][2] * 65536.0f) * (v)[2])
+    const INTS edge[3] = { TO_INTS(e[0][0] * 256.0f), TO_INTS(e[0][1] * 256.0f),
+      TO_INTS(e[0][2] * 256.0f) };
+    INTS first = PRODUCT(1, edge);
     INTS inside = -1;
     INTS closed = -1;
     INTS vertices = 0;
     for (int k = 3; k >= 0; --k)
     {
-      const INTS f = k ? n[k][0] * r[0] + n[k][1] * r[1] + n[k][2] * r[2] : first;
+      const INTS f = k ? PRODUCT(k, r) : first;
       first -= f;
       // As ShiftsInside.
       inside &= (f > 0) |
         ((f == 0) &
-          ((n[k][0] > 0) | ((n[k][0] == 0) & ((n[k][1] > 0) | ((n[k][1] == 0) & (n[k][2] > 0))))));
+          ((n[k][0] > 0.0f) |
+            ((n[k][0] == 0.0f) &
+              ((n[k][1] > 0.0f) | ((n[k][1] == 0.0f) & (n[k][2] > 0.0f))))));
       closed &= f >= 0;
       vertices |= (f > 0) & (1 << Tetrahedra[t][k]);
     }
+#undef PRODUCT
     held |= inside;
     *simplex |= closed & vertices;
   }
