@@ -179,6 +179,13 @@ void SessionPipeline::TakeRestMesh()
   }
   this->MassSpring->SetInputData(this->RestMesh);
   this->Corotational->SetInputData(this->RestMesh);
+  for (Actions* actions : { &this->Done, &this->Undone })
+  {
+    for (Action& action : *actions)
+    {
+      action.ToNode = this->FindWayToNode(action.Rest);
+    }
+  }
 }
 
 SessionEvents SessionPipeline::GetSettings() const
@@ -374,6 +381,7 @@ void SessionPipeline::BeginGrab(double handle, const glm::dvec3& place)
     }
     drag.Rest[axis] = std::clamp(drag.Rest[axis], low[axis], high[axis]);
   }
+  drag.ToNode = this->FindWayToNode(drag.Rest);
   // The point of the body that is nearest stays where it is until the handle is moved.
   drag.Now = drag.LastPossible = FindDeformedPlace(this->GetDeformation(), drag.Rest);
   const Actions undone = this->Undone;
@@ -718,6 +726,17 @@ SessionPipeline::Actions SessionPipeline::GetHeld() const
   return held;
 }
 
+std::vector<SessionPipeline::Handle> SessionPipeline::GetHandles() const
+{
+  std::vector<Handle> handles;
+  for (const Action& action : this->GetHeld())
+  {
+    handles.push_back(
+      { static_cast<int>(action.Handle), action.Rest, action.Now, action.IsGrabbed });
+  }
+  return handles;
+}
+
 void SessionPipeline::Connect()
 {
   vtkElasticDeformation* elastic = this->GetElastic();
@@ -775,16 +794,10 @@ void SessionPipeline::Rebuild()
   }
 }
 
-// From a place to the nearest node of a mesh that can move, where none lies within the radius of
-// handles: who grabs something coarse gets hold of it nevertheless.
-glm::dvec3 SessionPipeline::FindShift(const glm::dvec3& rest)
+glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
 {
-  if (!this->GetElastic())
-  {
-    return glm::dvec3(0.0);
-  }
   vtkDataArray* fixed = this->RestMesh->GetPointData()->GetArray("Fixed");
-  glm::dvec3 shift(0.0);
+  glm::dvec3 nearest(0.0); // no way where no node can move
   double least = std::numeric_limits<double>::infinity();
   for (vtkIdType id = 0; id < this->RestMesh->GetNumberOfPoints(); ++id)
   {
@@ -795,10 +808,18 @@ glm::dvec3 SessionPipeline::FindShift(const glm::dvec3& rest)
     if (square < least && !(fixed && fixed->GetComponent(id, 0) != 0.0))
     {
       least = square;
-      shift = way;
+      nearest = way;
     }
   }
-  return std::isfinite(least) && std::sqrt(least) > this->HandleRadius ? shift : glm::dvec3(0.0);
+  return nearest;
+}
+
+// To the nearest node of a mesh, where none lies within the radius of handles: who grabs something
+// coarse gets hold of it nevertheless.
+glm::dvec3 SessionPipeline::GetShift(const Action& drag)
+{
+  return this->GetElastic() && glm::length(drag.ToNode) > this->HandleRadius ? drag.ToNode
+                                                                             : glm::dvec3(0.0);
 }
 
 void SessionPipeline::UpdateModel(const Actions& held)
@@ -810,7 +831,7 @@ void SessionPipeline::UpdateModel(const Actions& held)
   rest->SetNumberOfComponents(3);
   for (const Action& action : held)
   {
-    const glm::dvec3 shift = this->FindShift(action.Rest);
+    const glm::dvec3 shift = this->GetShift(action);
     points->InsertNextPoint(action.Now.x + shift.x, action.Now.y + shift.y, action.Now.z + shift.z);
     rest->InsertNextTuple3(
       action.Rest.x + shift.x, action.Rest.y + shift.y, action.Rest.z + shift.z);

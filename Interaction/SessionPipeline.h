@@ -67,6 +67,15 @@ public:
   std::size_t GetNumberOfUndoneActions() const { return this->Undone.size(); }
   /// What the filters have warned of since the last call.
   std::vector<std::string> TakeWarnings() { return std::exchange(this->Warnings, {}); }
+  struct Handle
+  {
+    int Number;
+    glm::dvec3 Rest;
+    glm::dvec3 Now;
+    bool IsGrabbed;
+  };
+  /// Those that hold something, in the order in which they were grabbed.
+  std::vector<Handle> GetHandles() const;
   /// The settings, as events that make them.
   SessionEvents GetSettings() const;
 
@@ -86,6 +95,7 @@ private:
     glm::dvec3 Rest{ 0.0 };
     glm::dvec3 Now{ 0.0 };
     glm::dvec3 LastPossible{ 0.0 };
+    glm::dvec3 ToNode{ 0.0 }; // from Rest to the nearest node of the mesh that can move
     bool IsGrabbed = false;
     bool IsHeld = false;
     vtkSmartPointer<vtkPolyData> RestSheet;
@@ -123,7 +133,8 @@ private:
   void Rebuild();
   Actions GetHeld() const;
   void UpdateModel(const Actions& held);
-  glm::dvec3 FindShift(const glm::dvec3& rest);
+  glm::dvec3 FindWayToNode(const glm::dvec3& rest);
+  glm::dvec3 GetShift(const Action& drag);
   void Update(vtkAlgorithm* filter);
   void Connect();
   void TakeRestMesh();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDeformVolumeInteractorStyle.h"
 
-#include "StyleActions.h"
 #include "StyleOverlay.h"
 #include "VisiblePlaces.h"
 #include "vtkDeformVolumeSession.h"
@@ -240,7 +239,6 @@ public:
   double Least = 0.0; // value of the first output
   std::vector<deformvolume::SlicePlane> Planes;
   StyleOverlay Overlay;
-  deformvolume::StyleActions Actions;
   int TimerId = -1;
   bool IsChanged = true; // since it was drawn
   bool WasBusy = false;
@@ -263,13 +261,28 @@ public:
     return this->WantedModel >= 0 ? this->WantedModel : this->Session->GetModel();
   }
 
-  // What the session does with handles that are grabbed.
+  // Numbers and places of all handles but the one that is dragged.
+  std::vector<std::pair<int, glm::dvec3>> FindOtherHandles() const
+  {
+    std::vector<std::pair<int, glm::dvec3>> found;
+    vtkNew<vtkPolyData> handles;
+    this->Session->GetHandles(handles);
+    vtkDataArray* numbers = handles->GetPointData()->GetArray("Handle");
+    for (vtkIdType id = 0; id < handles->GetNumberOfPoints(); ++id)
+    {
+      const int number = static_cast<int>(numbers->GetComponent(id, 0));
+      glm::dvec3 place(0.0);
+      handles->GetPoint(id, &place.x);
+      if (number != this->Handle)
+      {
+        found.emplace_back(number, place);
+      }
+    }
+    return found;
+  }
+
   void EndPress()
   {
-    if (this->Handle >= 0)
-    {
-      this->Actions.EndDrag(this->Handle, false);
-    }
     this->Handle = -1;
     this->Stroke.clear();
     this->CarvedImage = nullptr;
@@ -494,7 +507,6 @@ void vtkDeformVolumeInteractorStyle::Forget()
 {
   vtkInternals& internals = *this->Internals;
   internals.EndPress();
-  internals.Actions.Clear();
   internals.Output = nullptr;
   internals.Shown = nullptr;
   internals.HasLeast = false;
@@ -555,8 +567,6 @@ bool vtkDeformVolumeInteractorStyle::Poll()
   if (!isBusy)
   {
     internals.WantedModel = -1;
-    internals.Actions.Compare(static_cast<std::size_t>(session->GetNumberOfActions()),
-      static_cast<std::size_t>(session->GetNumberOfUndoneActions()));
   }
   if (isBusy != internals.WasBusy)
   {
@@ -645,9 +655,13 @@ void vtkDeformVolumeInteractorStyle::UpdateOverlay()
   }
 
   overlay.ClearMarks();
-  for (const auto& handle : internals.Actions.GetHeld())
+  for (const auto& handle : internals.FindOtherHandles())
   {
-    overlay.AddPoint(handle.Place, handle.Number == internals.Handle ? GrabbedColour : HeldColour);
+    overlay.AddPoint(handle.second, HeldColour);
+  }
+  if (internals.Handle >= 0)
+  {
+    overlay.AddPoint(internals.Held, GrabbedColour); // which the session does not have there yet
   }
   std::vector<glm::dvec3> stroke;
   for (const auto& point : internals.Stroke)
@@ -832,7 +846,6 @@ void vtkDeformVolumeInteractorStyle::Turn(int notches)
     internals.Held += 0.01 * notches * this->GetDiagonal() * away;
     internals.Session->MoveGrab(
       internals.Handle, internals.Held.x, internals.Held.y, internals.Held.z);
-    internals.Actions.MoveDrag(internals.Handle, internals.Held);
     internals.IsChanged = true;
   }
   else if (notches > 0)
@@ -927,10 +940,6 @@ void vtkDeformVolumeInteractorStyle::OnChar()
   internals.EndPress();
   if (model >= 0)
   {
-    if (model != internals.GetModel())
-    {
-      internals.Actions.DoOther();
-    }
     internals.Session->ChangeModel(model);
     internals.WantedModel = model;
     return;
@@ -940,15 +949,12 @@ void vtkDeformVolumeInteractorStyle::OnChar()
   {
     case 'u':
       internals.Session->Undo();
-      internals.Actions.Undo();
       break;
     case 'y':
       internals.Session->Redo();
-      internals.Actions.Redo();
       break;
     default:
       internals.Session->Reset();
-      internals.Actions.Reset();
   }
 }
 
@@ -985,7 +991,6 @@ void vtkDeformVolumeInteractorStyle::BeginTool()
         internals.IsPressed = true;
         internals.Held = place;
         internals.Cursor = { { x, y } };
-        internals.Actions.BeginDrag(internals.Handle, place);
         if (internals.GetModel() == Session::NONE)
         {
           this->ShowMessage("Nothing follows without a model. Press 2, 3 or 4 for one.");
@@ -997,7 +1002,6 @@ void vtkDeformVolumeInteractorStyle::BeginTool()
       internals.CarvedImage = internals.Output;
       internals.Carved = place;
       internals.Session->CarveSphere(place.x, place.y, place.z, this->GetUsedCarveRadius());
-      internals.Actions.DoOther();
       break;
     case PROBE:
       this->ProbeAt(x, y);
@@ -1042,7 +1046,6 @@ void vtkDeformVolumeInteractorStyle::DragTo(int x, int y)
   internals.Cursor = { { x, y } };
   internals.Session->MoveGrab(
     internals.Handle, internals.Held.x, internals.Held.y, internals.Held.z);
-  internals.Actions.MoveDrag(internals.Handle, internals.Held);
 }
 
 // Each event of a carving looks at the whole sphere: those that are near the last one wait.
@@ -1077,7 +1080,6 @@ void vtkDeformVolumeInteractorStyle::EndTool(bool isHeld)
   {
     const int handle = internals.Handle;
     internals.EndPress();
-    internals.Actions.EndDrag(handle, isHeld);
     if (isHeld)
     {
       internals.Session->HoldGrab(handle);
@@ -1139,7 +1141,6 @@ void vtkDeformVolumeInteractorStyle::FinishCut()
     lower.push_back(place + this->GetUsedCutDepth() * away);
   }
   internals.Session->Cut(MakeStrip(upper, lower));
-  internals.Actions.DoOther();
 }
 
 // The session is asked only where it need not be waited for.
@@ -1195,11 +1196,7 @@ void vtkDeformVolumeInteractorStyle::PinAt(int x, int y)
     this->ShowMessage("There is nothing here. Pin a place on the body.");
     return;
   }
-  const int handle = internals.Session->Pin(place.x, place.y, place.z);
-  if (handle >= 0)
-  {
-    internals.Actions.BeginDrag(handle, place);
-  }
+  internals.Session->Pin(place.x, place.y, place.z);
 }
 
 void vtkDeformVolumeInteractorStyle::ReleaseAt(int x, int y)
@@ -1211,14 +1208,14 @@ void vtkDeformVolumeInteractorStyle::ReleaseAt(int x, int y)
   vtkInternals& internals = *this->Internals;
   int nearest = -1;
   double least = PixelsOfHandle;
-  for (const auto& handle : internals.Actions.GetHeld())
+  for (const auto& handle : internals.FindOtherHandles())
   {
-    const glm::dvec3 at = GetDisplay(this->CurrentRenderer, handle.Place);
+    const glm::dvec3 at = GetDisplay(this->CurrentRenderer, handle.second);
     const double distance = std::hypot(at.x - x, at.y - y);
-    if (handle.Number != internals.Handle && distance <= least)
+    if (distance <= least)
     {
       least = distance;
-      nearest = handle.Number;
+      nearest = handle.first;
     }
   }
   if (nearest < 0)
@@ -1227,7 +1224,6 @@ void vtkDeformVolumeInteractorStyle::ReleaseAt(int x, int y)
     return;
   }
   internals.Session->Release(nearest);
-  internals.Actions.Release(nearest);
 }
 
 void vtkDeformVolumeInteractorStyle::PrintSelf(ostream& os, vtkIndent indent)

@@ -8,13 +8,16 @@
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
 #include "vtkImageData.h"
+#include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 #include "vtkXMLImageDataWriter.h"
 #include "vtkXMLUnstructuredGridWriter.h"
@@ -53,6 +56,7 @@ struct PublishedState
   vtkIdType MovedVoxels = 0;
   double SimulationTime = 0.0;
   double ResamplingTime = 0.0;
+  std::vector<deformvolume::SessionPipeline::Handle> Handles;
 };
 
 } // namespace
@@ -159,6 +163,7 @@ public:
     state.UndoneActions = this->Pipeline.GetNumberOfUndoneActions();
     state.Steps = this->Steps;
     state.MovedVoxels = this->Pipeline.GetNumberOfMovedVoxels();
+    state.Handles = this->Pipeline.GetHandles();
     const std::lock_guard<std::mutex> lock(this->QueueMutex);
     this->Errors.insert(this->Errors.end(), errors.begin(), errors.end());
     const std::vector<std::string> warnings = this->Pipeline.TakeWarnings();
@@ -331,6 +336,7 @@ bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid
     const std::lock_guard<std::mutex> lock(internals.QueueMutex);
     internals.Queue.clear();
     internals.NewOutput = nullptr;
+    internals.State = PublishedState();
     internals.IsBusy = true; // for the first output
   }
   catch (const std::exception& error)
@@ -776,6 +782,34 @@ bool vtkDeformVolumeSession::SaveVolume(const std::string& fileName)
 bool vtkDeformVolumeSession::SaveMesh(const std::string& fileName)
 {
   return this->Save(fileName, true);
+}
+
+void vtkDeformVolumeSession::GetHandles(vtkPolyData* handles)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkIntArray> numbers;
+  numbers->SetName("Handle");
+  vtkNew<vtkDoubleArray> rest;
+  rest->SetName("RestPosition");
+  rest->SetNumberOfComponents(3);
+  vtkNew<vtkUnsignedCharArray> grabbed;
+  grabbed->SetName("Grabbed");
+  {
+    const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
+    for (const auto& handle : this->Internals->State.Handles)
+    {
+      points->InsertNextPoint(&handle.Now.x);
+      numbers->InsertNextValue(handle.Number);
+      rest->InsertNextTuple(&handle.Rest.x);
+      grabbed->InsertNextValue(handle.IsGrabbed ? 1 : 0);
+    }
+  }
+  handles->Initialize();
+  handles->SetPoints(points);
+  handles->GetPointData()->AddArray(numbers);
+  handles->GetPointData()->AddArray(rest);
+  handles->GetPointData()->AddArray(grabbed);
 }
 
 #define GET_STATE(Type, Name, Member)                                                              \

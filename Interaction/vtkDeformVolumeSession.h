@@ -142,6 +142,14 @@ public:
   void Reset();
   ///@}
 
+  /**
+   * The handles that hold something after the last update: a point where each of them is, with the
+   * point arrays "Handle" (its number), "RestPosition" (3 components, the place at rest that it
+   * holds) and "Grabbed" (0 once it is left where it is). vtkChainMailDeformation and
+   * vtkElasticDeformation read handles in this form. What handles held is replaced.
+   */
+  void GetHandles(vtkPolyData* handles);
+
   ///@{
   /**
    * Actions that can be undone and redone after the last update.

@@ -612,7 +612,7 @@ void TestTools(int model, const std::string& fileName)
 }
 
 // Which handles there are after undo and after events that fail.
-void TestHandles()
+void TestHandles(const std::string& fileName)
 {
   Viewer viewer(MakeBall());
   const std::string timer = Viewer::Timer();
@@ -652,6 +652,15 @@ void TestHandles()
     Viewer::Key('u') + Viewer::Mouse("MouseMoveEvent", 10, 8) +
     Viewer::Mouse("LeftButtonReleaseEvent", 10, 8, true) + timer);
   VERIFY(!release(9, 8));
+
+  // Those of a session that is loaded.
+  viewer.Replay(Viewer::Key('p', 20, 5) + timer);
+  VERIFY(viewer.SessionObject->SaveSession(fileName));
+  viewer.Replay(Viewer::Key('z') + timer);
+  VERIFY(!release(20, 5));
+  VERIFY(viewer.SessionObject->LoadSession(fileName));
+  viewer.Replay(timer);
+  VERIFY(release(20, 5));
   VERIFY(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
 }
 
@@ -815,7 +824,7 @@ int TestDeformVolumeInteractorStyle(int argc, char* argv[])
   TestVisible();
   TestTools(Session::CHAIN_MAIL, fileName);
   TestTools(Session::COROTATIONAL, fileName);
-  TestHandles();
+  TestHandles(fileName);
   TestProbeAndMeasure();
   TestCamera();
   TestThread();

@@ -12,6 +12,8 @@
 #include <vtkTriangleFilter.h>
 #include <vtksys/SystemTools.hxx>
 
+#include <glm/geometric.hpp>
+
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -214,6 +216,77 @@ void TestDrag(vtkImageData* volume)
   VERIFY_EQUAL(one.Object->GetProbedValue(), values->GetComponent(volume->FindPoint(10, 11, 9), 0));
   VERIFY(!one.Object->Probe(-9, 2, 2));
   VERIFY(one.Object->GetSimulationTime() > 0.0 && one.Object->GetResamplingTime() > 0.0);
+}
+
+// What holds the body, as it is asked for.
+struct HeldPlace
+{
+  int Number;
+  glm::dvec3 Now;
+  glm::dvec3 Rest;
+  bool IsGrabbed;
+};
+
+bool IsHeldAt(Session* session, const std::vector<HeldPlace>& wanted)
+{
+  vtkNew<vtkPolyData> handles;
+  session->GetHandles(handles);
+  vtkPointData* data = handles->GetPointData();
+  bool isEqual = handles->GetNumberOfPoints() == static_cast<vtkIdType>(wanted.size());
+  for (vtkIdType id = 0; isEqual && id < handles->GetNumberOfPoints(); ++id)
+  {
+    const HeldPlace& one = wanted[static_cast<std::size_t>(id)];
+    glm::dvec3 rest(0.0);
+    data->GetArray("RestPosition")->GetTuple(id, &rest.x);
+    const double* now = handles->GetPoint(id);
+    isEqual = data->GetArray("Handle")->GetComponent(id, 0) == one.Number &&
+      (data->GetArray("Grabbed")->GetComponent(id, 0) != 0.0) == one.IsGrabbed &&
+      glm::length(rest - one.Rest) < 1e-6 &&
+      glm::length(glm::dvec3(now[0], now[1], now[2]) - one.Now) < 1e-6;
+  }
+  return isEqual;
+}
+
+void TestHandles(vtkImageData* volume, const std::string& fileName)
+{
+  Tested one(volume);
+  Session* session = one.Object;
+  VERIFY(IsHeldAt(session, {}));
+  session->ChangeModel(Session::CHAIN_MAIL);
+  const int pin = session->Pin(4, 5, 6);
+  const int grab = session->BeginGrab(10, 11, 9);
+  session->MoveGrab(grab, 12, 11, 9);
+  VERIFY(IsHeldAt(session, {})); // those of the last update
+  one.Step();
+  const HeldPlace pinned{ pin, { 4, 5, 6 }, { 4, 5, 6 }, false };
+  HeldPlace pulled{ grab, { 12, 11, 9 }, { 10, 11, 9 }, true };
+  VERIFY(IsHeldAt(session, { pinned, pulled }));
+  // What cannot be reached is not held there.
+  session->MoveGrab(grab, 1e30, 11, 9);
+  one.Step();
+  VERIFY(!one.TakeError().empty());
+  VERIFY(IsHeldAt(session, { pinned, pulled }));
+  session->HoldGrab(grab);
+  one.Step();
+  pulled.IsGrabbed = false;
+  VERIFY(IsHeldAt(session, { pinned, pulled }));
+  VERIFY(session->SaveSession(fileName));
+  session->Release(pin);
+  one.Step();
+  VERIFY(IsHeldAt(session, { pulled }));
+  session->Undo();
+  one.Step();
+  VERIFY(IsHeldAt(session, { pinned, pulled }));
+  // Another session knows those of the file, and lets them go.
+  Tested other(volume);
+  VERIFY(other.Object->LoadSession(fileName));
+  other.Step();
+  VERIFY(IsHeldAt(other.Object, { pinned, pulled }));
+  other.Object->Release(grab);
+  other.Step();
+  VERIFY(IsHeldAt(other.Object, { pinned }));
+  VERIFY(other.Object->SetInputs(volume));
+  VERIFY(IsHeldAt(other.Object, {}));
 }
 
 // What is done twice is undone twice, with a body that is pulled apart, so that cuts are seen.
@@ -593,6 +666,7 @@ int TestDeformVolumeSession(int argc, char* argv[])
   const auto volume = MakeVolume(Box);
   TestMisuse(volume);
   TestDrag(volume);
+  TestHandles(volume, fileName);
   TestTwice(volume);
   TestFiles(volume, fileName);
   TestThread(volume, fileName);
