@@ -155,6 +155,7 @@ void SessionPipeline::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
     actions->clear();
   }
   this->IsStroke = false;
+  this->Refused.clear();
   this->CutFilter->SetInputData(this->Volume);
   this->CutFilter->SetSheetData(nullptr);
   this->CutFilter->SetDeformationData(nullptr);
@@ -245,6 +246,12 @@ void SessionPipeline::Apply(const SessionEvent& event)
     this->Rebuild();
   }
   this->IsStroke = this->IsStroke && event.Kind == SessionEvent::CARVE;
+  const bool isOfGrab = event.Kind == SessionEvent::MOVE_GRAB ||
+    event.Kind == SessionEvent::END_GRAB || event.Kind == SessionEvent::HOLD;
+  if (isOfGrab && this->Refused.count(event.Numbers[0]) > 0)
+  {
+    return; // who drags has not heard yet that there is nothing to drag
+  }
   switch (event.Kind)
   {
     case SessionEvent::BEGIN_GRAB:
@@ -354,6 +361,19 @@ void SessionPipeline::LimitStates()
 }
 
 void SessionPipeline::BeginGrab(double handle, const glm::dvec3& place)
+{
+  try
+  {
+    this->TryBeginGrab(handle, place);
+  }
+  catch (...)
+  {
+    this->Refused.insert(handle);
+    throw;
+  }
+}
+
+void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& place)
 {
   for (const Action& action : this->Done)
   {
@@ -856,6 +876,37 @@ void SessionPipeline::UpdateModel(const Actions& held)
   }
 }
 
+// After a step that was not possible.
+void SessionPipeline::StepBack()
+{
+  for (Action& action : this->Done)
+  {
+    action.Now = action.LastPossible;
+  }
+  try
+  {
+    this->UpdateModel(this->GetHeld());
+    return;
+  }
+  catch (const std::runtime_error&)
+  {
+    // A body that moves too fast stays so: it comes from rest.
+  }
+  try
+  {
+    this->Rebuild();
+  }
+  catch (const std::runtime_error&)
+  {
+    // Nor can it be where it is held. Nothing holds it any more.
+    for (Action& action : this->Done)
+    {
+      action.IsGrabbed = action.IsHeld = false;
+    }
+    this->Rebuild();
+  }
+}
+
 bool SessionPipeline::Step()
 {
   if (this->IsToRebuild)
@@ -872,11 +923,7 @@ bool SessionPipeline::Step()
   }
   catch (...)
   {
-    for (Action& action : this->Done)
-    {
-      action.Now = action.LastPossible;
-    }
-    this->UpdateModel(this->GetHeld());
+    this->StepBack();
     throw;
   }
   for (Action& action : this->Done)

@@ -9,6 +9,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,7 +52,8 @@ public:
   void Apply(const SessionEvent& event);
 
   /// One step of the simulation. Where a handle cannot be where it is wanted, handles go back to
-  /// where they were, and std::runtime_error is thrown. Returns whether the body still moves.
+  /// where they were, and std::runtime_error is thrown; where that is not possible either, the body
+  /// comes from rest, and as the last resort nothing holds it. Returns whether it still moves.
   bool Step();
 
   /// Throws std::runtime_error.
@@ -110,6 +112,8 @@ private:
   using Actions = std::vector<Action>;
 
   void BeginGrab(double handle, const glm::dvec3& place);
+  void TryBeginGrab(double handle, const glm::dvec3& place);
+  void StepBack();
   Action& FindHandle(double handle, bool isGrabbed);
   void Release(double handle);
   void Cut(const SessionEvent& event);
@@ -162,7 +166,8 @@ private:
   double HandleRadius = 0.0;
   int RelaxationSweeps = 5;
   double UndoMemory = 1073741824.0;
-  bool IsStroke = false; // whether a carving may go on
+  bool IsStroke = false;    // whether a carving may go on
+  std::set<double> Refused; // handles that could not be grabbed
   Actions Done;
   Actions Undone;
   std::vector<double> LastVectors; // of a mesh

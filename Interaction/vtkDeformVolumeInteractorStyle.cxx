@@ -261,6 +261,21 @@ public:
     return this->WantedModel >= 0 ? this->WantedModel : this->Session->GetModel();
   }
 
+  bool IsHandleHeld() const
+  {
+    vtkNew<vtkPolyData> handles;
+    this->Session->GetHandles(handles);
+    vtkDataArray* numbers = handles->GetPointData()->GetArray("Handle");
+    for (vtkIdType id = 0; id < handles->GetNumberOfPoints(); ++id)
+    {
+      if (numbers->GetComponent(id, 0) == this->Handle)
+      {
+        return true;
+      }
+    }
+    return false;
+  }
+
   // Numbers and places of all handles but the one that is dragged.
   std::vector<std::pair<int, glm::dvec3>> FindOtherHandles() const
   {
@@ -567,6 +582,10 @@ bool vtkDeformVolumeInteractorStyle::Poll()
   if (!isBusy)
   {
     internals.WantedModel = -1;
+    if (internals.Handle >= 0 && !internals.IsHandleHeld())
+    {
+      internals.EndPress(); // there was nothing to hold
+    }
   }
   if (isBusy != internals.WasBusy)
   {

@@ -46,7 +46,8 @@
  * @par Errors:
  * Each is one vtkErrorMacro that says what is wrong and what to do, and GetErrorMessage(). The
  * event that failed has then changed nothing; only where the model or the lattice cannot be
- * changed, the body comes from rest again. Errors of events are reported by Update() and
+ * changed, or a simulation has diverged, the body comes from rest again. What is called for a
+ * handle that could not be grabbed does nothing. Errors of events are reported by Update() and
  * TakeOutput(): no inputs; places that are not finite, or where there is nothing to grab; a handle
  * that is not grabbed, or cannot go so far; a sheet that is empty or not made of triangles; what
  * the filters report; files that cannot be written or read, are damaged, or are of another version

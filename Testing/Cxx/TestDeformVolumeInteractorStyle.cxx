@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkDeformVolumeInteractorStyle: misuse, what is visible against what is known of it, recorded
-// input against the same calls of a session, the thread, and a picture.
+// input against the same calls of a session, the thread, random input, and a picture.
+//
+// Usage: TestDeformVolumeInteractorStyle [NUMBER OF RANDOM EVENTS] (300) [SEED] (1)
 #include "FilterTesting.h"
 
 #include "vtkDeformVolumeInteractorStyle.h"
@@ -26,8 +28,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <random>
 #include <sstream>
 #include <thread>
 #include <vector>
@@ -758,6 +763,74 @@ void TestThread()
   VERIFY(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
 }
 
+// Whatever is pressed and moved in a window whose size changes: no error but those that users make,
+// and the volume at rest when all is undone.
+void TestRandom(int events, unsigned seed)
+{
+  Viewer viewer(MakeBall());
+  const vtkSmartPointer<vtkImageData> first = viewer.Object->GetOutput();
+  std::mt19937 random(seed);
+  const auto pick = [&](double low, double high)
+  { return std::uniform_real_distribution<double>(low, high)(random); };
+  const std::string keys = "tgcvbmppxx2341uuyzh+-r";
+  std::map<std::string, int> words;
+  for (int i = 0; i < events && GetNumberOfFailures() == 0; ++i)
+  {
+    const double x = pick(Box[0] - 4.0, Box[1] + 4.0);
+    const double y = pick(Box[2] - 4.0, Box[3] + 4.0);
+    switch (random() % 8)
+    {
+      case 0:
+      case 1:
+        viewer.Replay(Viewer::Key(keys[random() % keys.size()], x, y));
+        break;
+      case 2:
+        viewer.Replay(Viewer::Mouse("LeftButtonPressEvent", x, y));
+        break;
+      case 3:
+        viewer.Replay(Viewer::Mouse("LeftButtonReleaseEvent", x, y, random() % 2 == 0));
+        break;
+      case 4:
+        viewer.Replay(Viewer::Mouse(
+          random() % 2 == 0 ? "MouseWheelForwardEvent" : "MouseWheelBackwardEvent", x, y));
+        break;
+      case 5:
+        // In the middle of a drag, too. One pixel is the smallest window.
+        viewer.Window->SetSize(
+          static_cast<int>(pick(1.0, 500.0)), static_cast<int>(pick(1.0, 500.0)));
+        viewer.Interactor->SetSize(viewer.Window->GetSize());
+        viewer.Interactor->InvokeEvent(vtkCommand::ConfigureEvent);
+        viewer.Replay(Viewer::Timer());
+        break;
+      default:
+        viewer.Replay(Viewer::Mouse("MouseMoveEvent", x, y));
+    }
+    if (random() % 3 == 0)
+    {
+      viewer.Replay(Viewer::Timer());
+    }
+    VERIFY_EQUAL(viewer.TakeError(), std::string());
+    const std::string error = viewer.SessionErrors->GetErrorMessage();
+    viewer.SessionErrors->Clear();
+    // Two handles may want one node, what is seen may have gone since, and springs may be torn.
+    if (!error.empty() && error.find("holds no node") == std::string::npos &&
+      error.find("has diverged") == std::string::npos &&
+      error.find("nothing of the volume") == std::string::npos &&
+      error.find("released already") == std::string::npos)
+    {
+      VERIFY_EQUAL(error, std::string());
+    }
+    ++words[viewer.Object->GetMessage()];
+  }
+  VERIFY(words.size() > 5); // all kinds of things have happened
+  std::string timers = Viewer::Mouse("LeftButtonReleaseEvent", 0.0, 0.0);
+  timers += Viewer::Key('z') + Viewer::Timer() + Viewer::Timer();
+  viewer.Replay(timers);
+  VERIFY_EQUAL(viewer.SessionObject->GetNumberOfActions(), vtkIdType(0));
+  VERIFY_EQUAL(viewer.SessionObject->GetModel(), static_cast<int>(Session::NONE));
+  VERIFY(AreEqual(viewer.Object->GetOutput(), first));
+}
+
 // A ball in a block, dragged, cut and carved, with handles, a measure and the sphere that carves.
 int ComparePicture(int argc, char* argv[])
 {
@@ -814,6 +887,9 @@ int ComparePicture(int argc, char* argv[])
 
 int TestDeformVolumeInteractorStyle(int argc, char* argv[])
 {
+  // The test driver has options of its own.
+  const int events = argc > 1 && std::atoi(argv[1]) > 0 ? std::atoi(argv[1]) : 300;
+  const int seed = argc > 2 ? std::max(std::atoi(argv[2]), 1) : 1;
   std::string folder = ".";
   for (int i = 1; i + 1 < argc; ++i)
   {
@@ -828,6 +904,7 @@ int TestDeformVolumeInteractorStyle(int argc, char* argv[])
   TestProbeAndMeasure();
   TestCamera();
   TestThread();
+  TestRandom(events, static_cast<unsigned>(seed));
   VERIFY(ComparePicture(argc, argv) != vtkRegressionTester::FAILED);
   return GetExitCode();
 }

@@ -289,6 +289,36 @@ void TestHandles(vtkImageData* volume, const std::string& fileName)
   VERIFY(IsHeldAt(other.Object, {}));
 }
 
+// Springs that are torn, and a handle with nothing to hold: one error each, and the session goes
+// on.
+void TestRecovery(vtkImageData* volume)
+{
+  Tested one(volume);
+  Session* session = one.Object;
+  session->ChangeModel(Session::MASS_SPRING);
+  const int handle = session->BeginGrab(10, 10, 17);
+  one.Step();
+  VERIFY(IsHeldAt(session, { { handle, { 10, 10, 17 }, { 10, 10, 17 }, true } }));
+  session->MoveGrab(handle, 1e7, 10, 17);
+  one.Step();
+  VERIFY(Holds(one.TakeError(), "diverged"));
+  VERIFY(IsHeldAt(session, { { handle, { 10, 10, 17 }, { 10, 10, 17 }, true } }));
+  session->MoveGrab(handle, 11, 10, 17);
+  VERIFY(one.Step() != nullptr);
+  VERIFY_EQUAL(one.TakeError(), std::string());
+
+  const int nowhere = session->BeginGrab(1000, 10, 17);
+  session->MoveGrab(nowhere, 1001, 10, 17);
+  session->HoldGrab(nowhere);
+  one.Step();
+  const std::string error = one.TakeError();
+  VERIFY(Holds(error, "nothing of the volume"));
+  VERIFY(error.find("not grabbed") == std::string::npos);
+  session->Reset();
+  VerifyRest(one.Finish(), volume);
+  VERIFY_EQUAL(one.TakeError(), std::string());
+}
+
 // What is done twice is undone twice, with a body that is pulled apart, so that cuts are seen.
 void TestTwice(vtkImageData* volume)
 {
@@ -400,10 +430,12 @@ public:
     if (this->Random() % 2 == 0)
     {
       this->One.Step();
-      // Handles that are gone may be moved, and two may want one node; nothing else may go wrong.
+      // Handles that are gone may be moved, two may want one node, and springs may be torn; nothing
+      // else may go wrong.
       const std::string error = this->One.TakeError();
       if (!error.empty() && error.find("is not grabbed") == std::string::npos &&
         error.find("holds nothing") == std::string::npos &&
+        error.find("has diverged") == std::string::npos &&
         error.find("holds no node") == std::string::npos &&
         error.find("released already") == std::string::npos &&
         error.find("nothing of the volume") == std::string::npos)
@@ -667,6 +699,7 @@ int TestDeformVolumeSession(int argc, char* argv[])
   TestMisuse(volume);
   TestDrag(volume);
   TestHandles(volume, fileName);
+  TestRecovery(volume);
   TestTwice(volume);
   TestFiles(volume, fileName);
   TestThread(volume, fileName);
