@@ -957,10 +957,11 @@ bool SessionPipeline::FindMotion()
   return this->QuietSteps < (this->Model == Session::MASS_SPRING ? 10 : 1);
 }
 
-vtkImageData* SessionPipeline::Resample(int samplingFactor, int padding)
+vtkImageData* SessionPipeline::Resample(const Sampling& sampling)
 {
-  this->Resampler->SetSamplingFactor(samplingFactor);
-  this->Resampler->SetPadding(padding);
+  this->Resampler->SetSamplingFactor(sampling.Factor);
+  this->Resampler->SetPadding(sampling.Padding);
+  this->Resampler->SetBackgroundValue(sampling.BackgroundValue);
   this->Update(this->Resampler);
   return this->Resampler->GetOutput();
 }

@@ -56,8 +56,14 @@ public:
   /// comes from rest, and as the last resort nothing holds it. Returns whether it still moves.
   bool Step();
 
+  struct Sampling
+  {
+    int Factor = 1;
+    int Padding = 8;
+    double BackgroundValue = 0.0;
+  };
   /// Throws std::runtime_error.
-  vtkImageData* Resample(int samplingFactor, int padding);
+  vtkImageData* Resample(const Sampling& sampling);
 
   vtkImageData* GetVolume() { return this->Volume; }
   vtkDataSet* GetDeformation();

@@ -5,12 +5,10 @@
 #include "VisiblePlaces.h"
 #include "vtkDeformVolumeSession.h"
 
-#include "vtkArrayDispatch.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCamera.h"
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
-#include "vtkDataArrayRange.h"
 #include "vtkImageData.h"
 #include "vtkMath.h"
 #include "vtkMatrix3x3.h"
@@ -23,7 +21,6 @@
 #include "vtkRenderWindow.h"
 #include "vtkRenderWindowInteractor.h"
 #include "vtkRenderer.h"
-#include "vtkSMPTools.h"
 #include "vtkSmartPointer.h"
 #include "vtkVolume.h"
 #include "vtkVolumeMapper.h"
@@ -123,45 +120,6 @@ std::string Format(const double place[3])
   return "(" + Format(place[0]) + ", " + Format(place[1]) + ", " + Format(place[2]) + ")";
 }
 
-// Gives voxels that the body does not cover a value.
-struct UncoveredVoxels
-{
-  vtkDataArray* Covered;
-  double Value;
-
-  template <typename ArrayT>
-  void operator()(ArrayT* array)
-  {
-    auto tuples = vtk::DataArrayTupleRange(array);
-    using ValueT = vtk::GetAPIType<ArrayT>;
-    vtkSMPTools::For(0, array->GetNumberOfTuples(),
-      [&](vtkIdType begin, vtkIdType end)
-      {
-        for (vtkIdType id = begin; id < end; ++id)
-        {
-          if (this->Covered->GetComponent(id, 0) == 0.0)
-          {
-            tuples[id][0] = static_cast<ValueT>(this->Value);
-          }
-        }
-      });
-  }
-};
-
-vtkSmartPointer<vtkDataArray> MarkUncovered(
-  vtkDataArray* scalars, vtkDataArray* covered, double value)
-{
-  vtkSmartPointer<vtkDataArray> marked;
-  marked.TakeReference(scalars->NewInstance());
-  marked->DeepCopy(scalars);
-  UncoveredVoxels worker{ covered, value };
-  if (!vtkArrayDispatch::Dispatch::Execute(marked, worker))
-  {
-    worker(marked.Get());
-  }
-  return marked;
-}
-
 // Where the grid along the axes of an image lies in the world.
 vtkSmartPointer<vtkMatrix4x4> MakeAxes(vtkImageData* image)
 {
@@ -235,8 +193,6 @@ public:
   vtkNew<vtkCallbackCommand> SessionObserver;
   vtkSmartPointer<vtkImageData> Output;
   vtkSmartPointer<vtkImageData> Shown;
-  bool HasLeast = false;
-  double Least = 0.0; // value of the first output
   std::vector<deformvolume::SlicePlane> Planes;
   StyleOverlay Overlay;
   int TimerId = -1;
@@ -524,7 +480,6 @@ void vtkDeformVolumeInteractorStyle::Forget()
   internals.EndPress();
   internals.Output = nullptr;
   internals.Shown = nullptr;
-  internals.HasLeast = false;
   internals.WantedModel = -1;
   internals.Measured.clear();
   internals.Sphere.clear();
@@ -615,22 +570,12 @@ bool vtkDeformVolumeInteractorStyle::Poll()
 void vtkDeformVolumeInteractorStyle::ShowOutput()
 {
   vtkInternals& internals = *this->Internals;
-  vtkDataArray* scalars = internals.Output->GetPointData()->GetScalars();
-  vtkDataArray* covered = internals.Output->GetPointData()->GetArray("vtkValidPointMask");
   internals.Shown = vtkSmartPointer<vtkImageData>::New();
   int dimensions[3];
   internals.Output->GetDimensions(dimensions);
   internals.Shown->SetDimensions(dimensions);
   internals.Shown->SetSpacing(internals.Output->GetSpacing());
-  if (scalars && !internals.HasLeast)
-  {
-    internals.Least = scalars->GetRange(0)[0];
-    internals.HasLeast = true;
-  }
-  // The background of the filter is 0, which is tissue where air is negative.
-  internals.Shown->GetPointData()->SetScalars(scalars && covered && internals.Least < 0.0
-      ? MarkUncovered(scalars, covered, internals.Least)
-      : vtkSmartPointer<vtkDataArray>(scalars));
+  internals.Shown->GetPointData()->SetScalars(internals.Output->GetPointData()->GetScalars());
   if (!internals.Volume)
   {
     return;

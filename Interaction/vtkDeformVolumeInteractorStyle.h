@@ -165,16 +165,14 @@ public:
   ///@{
   /**
    * The last output of the session, and the image that the mapper has: the same scalars on a grid
-   * along the axes. Where values may be negative, voxels that nothing covers have the least value
-   * of the body in it. Null before there is one.
+   * along the axes. Null before there is one.
    */
   vtkImageData* GetOutput();
   vtkImageData* GetShownImage();
   ///@}
 
   /**
-   * Forget handles, measures and the output. Call it after SetInputs() or LoadSession() of the
-   * session. Handles that a loaded session holds cannot be released by the mouse.
+   * Forget measures and the output. Call it after SetInputs() or LoadSession() of the session.
    */
   void Forget();
 

@@ -83,11 +83,18 @@ public:
   PublishedState State;
   bool IsBusy = false; // something moves, or events are being made
   bool IsToStop = false;
-  int Waiting = 0; // callers that wait for the pipeline
-  int Factor = 1;
-  int Padding = 8;
+  int Waiting = 0;                                  // callers that wait for the pipeline
+  deformvolume::SessionPipeline::Sampling Sampling; // where something moves
   std::thread Worker;
   int LastHandle = -1;
+
+  deformvolume::SessionPipeline::Sampling GetFullSampling()
+  {
+    const std::lock_guard<std::mutex> lock(this->QueueMutex);
+    deformvolume::SessionPipeline::Sampling sampling = this->Sampling;
+    sampling.Factor = 1;
+    return sampling;
+  }
 
   // For files only: all of the volume is read.
   const std::string& GetInputHash()
@@ -119,14 +126,12 @@ public:
   bool RunOnce()
   {
     SessionEvents events;
-    int factor = 1;
-    int padding = 0;
+    deformvolume::SessionPipeline::Sampling sampling;
     {
       const std::lock_guard<std::mutex> lock(this->QueueMutex);
       events.swap(this->Queue);
       this->IsBusy = true;
-      factor = this->Factor;
-      padding = this->Padding;
+      sampling = this->Sampling;
     }
     PublishedState state;
     std::vector<std::string> errors;
@@ -136,18 +141,19 @@ public:
       this->Make(std::move(event), errors);
     }
     this->Make({ SessionEvent::STEP, {} }, errors);
-    if (factor != 1 && factor != 2 && factor != 4)
+    if (sampling.Factor != 1 && sampling.Factor != 2 && sampling.Factor != 4)
     {
       errors.emplace_back("MovingSamplingFactor is not 1, 2 or 4. Set one of these.");
-      factor = 1;
+      sampling.Factor = 1;
     }
+    sampling.Factor = this->IsMoving ? sampling.Factor : 1;
     state.SimulationTime = GetSeconds() - begin;
 
     vtkSmartPointer<vtkImageData> output;
     try
     {
       begin = GetSeconds();
-      vtkImageData* resampled = this->Pipeline.Resample(this->IsMoving ? factor : 1, padding);
+      vtkImageData* resampled = this->Pipeline.Resample(sampling);
       state.ResamplingTime = GetSeconds() - begin;
       // The filter writes to no array that somebody else holds.
       output = vtkSmartPointer<vtkImageData>::New();
@@ -337,6 +343,8 @@ bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid
     internals.Queue.clear();
     internals.NewOutput = nullptr;
     internals.State = PublishedState();
+    internals.Sampling.BackgroundValue =
+      std::min(volume->GetPointData()->GetScalars()->GetRange(0)[0], 0.0);
     internals.IsBusy = true; // for the first output
   }
   catch (const std::exception& error)
@@ -497,9 +505,9 @@ void vtkDeformVolumeSession::ChangeUndoMemory(double bytes)
 void vtkDeformVolumeSession::SetMovingSamplingFactor(int factor)
 {
   const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
-  if (factor != this->Internals->Factor)
+  if (factor != this->Internals->Sampling.Factor)
   {
-    this->Internals->Factor = factor;
+    this->Internals->Sampling.Factor = factor;
     this->Modified();
   }
 }
@@ -507,7 +515,7 @@ void vtkDeformVolumeSession::SetMovingSamplingFactor(int factor)
 int vtkDeformVolumeSession::GetMovingSamplingFactor()
 {
   const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
-  return this->Internals->Factor;
+  return this->Internals->Sampling.Factor;
 }
 
 void vtkDeformVolumeSession::SetPadding(int voxels)
@@ -515,9 +523,9 @@ void vtkDeformVolumeSession::SetPadding(int voxels)
   constexpr int most = 1000;
   const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
   const int padding = std::clamp(voxels, 0, most);
-  if (padding != this->Internals->Padding)
+  if (padding != this->Internals->Sampling.Padding)
   {
-    this->Internals->Padding = padding;
+    this->Internals->Sampling.Padding = padding;
     this->Modified();
   }
 }
@@ -525,7 +533,23 @@ void vtkDeformVolumeSession::SetPadding(int voxels)
 int vtkDeformVolumeSession::GetPadding()
 {
   const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
-  return this->Internals->Padding;
+  return this->Internals->Sampling.Padding;
+}
+
+void vtkDeformVolumeSession::SetBackgroundValue(double value)
+{
+  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
+  if (value != this->Internals->Sampling.BackgroundValue)
+  {
+    this->Internals->Sampling.BackgroundValue = value;
+    this->Modified();
+  }
+}
+
+double vtkDeformVolumeSession::GetBackgroundValue()
+{
+  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
+  return this->Internals->Sampling.BackgroundValue;
 }
 
 bool vtkDeformVolumeSession::Update()
@@ -609,7 +633,7 @@ bool vtkDeformVolumeSession::Probe(double x, double y, double z)
   try
   {
     deformvolume::SessionPipeline& pipeline = this->Internals->Pipeline;
-    vtkImageData* output = pipeline.Resample(1, this->GetPadding());
+    vtkImageData* output = pipeline.Resample(this->Internals->GetFullSampling());
     const vtkIdType voxel = output->FindPoint(x, y, z);
     vtkDataArray* covered = output->GetPointData()->GetArray("vtkValidPointMask");
     if (voxel < 0 || !covered || covered->GetComponent(voxel, 0) == 0.0)
@@ -744,7 +768,8 @@ bool vtkDeformVolumeSession::Save(const std::string& fileName, bool isMesh)
     deformvolume::SessionPipeline& pipeline = this->Internals->Pipeline;
     if (!isMesh)
     {
-      WriteData<vtkXMLImageDataWriter>(pipeline.Resample(1, this->GetPadding()), fileName);
+      WriteData<vtkXMLImageDataWriter>(
+        pipeline.Resample(this->Internals->GetFullSampling()), fileName);
       return true;
     }
     auto* mesh = vtkUnstructuredGrid::SafeDownCast(pipeline.GetDeformation());
@@ -835,6 +860,7 @@ void vtkDeformVolumeSession::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "Undone Actions: " << this->GetNumberOfUndoneActions() << "\n"
      << indent << "MovingSamplingFactor: " << this->GetMovingSamplingFactor() << "\n"
      << indent << "Padding: " << this->GetPadding() << "\n"
+     << indent << "BackgroundValue: " << this->GetBackgroundValue() << "\n"
      << indent << "Running: " << (this->GetIsRunning() ? "on" : "off") << "\n"
      << indent << "Error Message: " << this->ErrorMessage << "\n";
 }

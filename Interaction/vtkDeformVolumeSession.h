@@ -190,6 +190,16 @@ public:
   int GetPadding();
   ///@}
 
+  ///@{
+  /**
+   * What voxels of the output get that nothing covers, in every array, as by BackgroundValue of
+   * vtkDeformVolumeFilter. SetInputs() sets it to the least value of the first component of the
+   * scalars, which is air in CT, or to 0 where that is less.
+   */
+  void SetBackgroundValue(double value);
+  double GetBackgroundValue();
+  ///@}
+
   /**
    * Make the events that wait, one step of the simulation, and an output, in the thread of the
    * caller. Returns whether the body still moves. An error while the thread of the session runs.

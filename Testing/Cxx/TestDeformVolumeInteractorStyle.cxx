@@ -337,14 +337,21 @@ void TestVisible()
   VERIFY(glm::length(glm::dvec3(point[0], point[1], point[2]) -
            GetPoint(other.Object->GetOutput(), last)) < 1e-9);
 
-  // Air is negative, and so is what the body does not cover.
+  // Air is negative, and so is what the body does not cover, unless another value is wanted.
   auto negative = MakeImage(Box);
   AddScalars<short>(negative, "value", [](const glm::dvec3& p) { return -1000.0 + p.x; });
   Viewer third(negative);
   vtkDataArray* values = third.Object->GetShownImage()->GetPointData()->GetScalars();
   VERIFY_EQUAL(values->GetComponent(0, 0), -1003.0);
   VERIFY_EQUAL(values->GetRange(0)[1], -972.0);
-  VERIFY_EQUAL(third.Object->GetOutput()->GetPointData()->GetScalars()->GetComponent(0, 0), 0.0);
+  VERIFY_EQUAL(third.SessionObject->GetBackgroundValue(), -1003.0);
+  third.SessionObject->SetBackgroundValue(-7.0);
+  third.SessionObject->ChangeModel(Session::CHAIN_MAIL);
+  third.Replay(Viewer::Timer());
+  values = third.Object->GetShownImage()->GetPointData()->GetScalars();
+  VERIFY_EQUAL(values->GetComponent(0, 0), -7.0);
+  VERIFY(third.SessionObject->SetInputs(MakeBall()));
+  VERIFY_EQUAL(third.SessionObject->GetBackgroundValue(), 0.0);
 }
 
 struct Event

@@ -207,6 +207,7 @@ void TestDrag(vtkImageData* volume)
   Deformed wanted(volume, model.Filter->GetOutput());
   wanted.Filter->SetOutputBoundsModeToVolumeBounds();
   wanted.Filter->SetPadding(8);
+  wanted.Filter->SetBackgroundValue(one.Object->GetBackgroundValue());
   VERIFY(AreEqual(output, wanted.Update()));
 
   VERIFY(one.Object->Probe(14, 11, 8));
