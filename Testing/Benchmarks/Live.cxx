@@ -6,7 +6,8 @@
 namespace
 {
 const std::string LoggedSuffix = "-logged";
-constexpr double fractionOfEdges = 0.215; // 1 % of the nodes
+constexpr std::array<double, 3> some{ { 0.215, 0.215, 0.215 } }; // 1 % of the nodes
+constexpr std::array<double, 3> few{ { 0.02, 0.30, 0.02 } };     // they reach into 14 bricks
 
 using LiveCases = std::map<std::string, std::unique_ptr<LiveCase>>;
 
@@ -38,7 +39,7 @@ void RegisterLive(const EvaluationSize& size)
   const std::array<int, 3> maskCells{ { 2, 30, 30 } };
   const std::pair<const char*, std::function<void(LiveCase&)>> kinds[] = {
     { "all-move", [](LiveCase& live) { live.MoveAll(); } },
-    { "some-move", [](LiveCase& live) { live.MoveSome(fractionOfEdges); } },
+    { "some-move", [](LiveCase& live) { live.MoveSome(some); } },
     { "nothing", [](LiveCase& live) { live.Touch(); } },
     { "split", [](LiveCase& live) { live.Split(splitTetrahedra, splitNodes); } },
     { "masks", [=](LiveCase& live) { live.ChangeMask(maskCells); } },
@@ -50,6 +51,7 @@ void RegisterLive(const EvaluationSize& size)
       } },
     { "subdivide", [](LiveCase& live) { live.Subdivide(subdividedTetrahedra); } },
     { "another-mesh", [](LiveCase& live) { live.MoveAtRest(); } },
+    { "few-move", [](LiveCase& live) { live.MoveSome(few); } },
   };
   std::vector<Contestant<LiveCases>> edits;
   for (const auto& [name, edit] : kinds)

@@ -82,10 +82,10 @@ void LiveCase::Finish(vtkDataArray* array)
 
 void LiveCase::MoveAll()
 {
-  this->MoveSome(2.0);
+  this->MoveSome({ { 2.0, 2.0, 2.0 } });
 }
 
-void LiveCase::MoveSome(double fraction)
+void LiveCase::MoveSome(const std::array<double, 3>& fractions)
 {
   ++this->Step;
   double* bounds = this->Volume->GetBounds();
@@ -94,14 +94,14 @@ void LiveCase::MoveSome(double fraction)
   {
     double point[3];
     this->Mesh->GetPoint(node, point);
-    double apart = 0.0;
+    bool isMoved = true;
     for (int axis = 0; axis < 3; ++axis)
     {
       const double middle = 0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]);
       const double size = bounds[2 * axis + 1] - bounds[2 * axis];
-      apart = std::max(apart, std::abs(point[axis] - middle) / size);
+      isMoved = isMoved && 2.0 * std::abs(point[axis] - middle) <= fractions[axis] * size;
     }
-    if (2.0 * apart <= fraction)
+    if (isMoved)
     {
       const auto move = static_cast<float>(
         0.25 + 0.2 * std::sin(0.05 * (point[0] + point[1] + point[2]) + 0.7 * this->Step));

@@ -25,9 +25,9 @@ public:
   LiveCase(const std::array<int, 3>& dimensions, int nodesPerAxis, bool logged);
   ~LiveCase();
 
-  /// Moves all nodes, or those in a box whose edges have this fraction of the volume's.
+  /// Moves all nodes, or those in a box whose edges have these fractions of the volume's.
   void MoveAll();
-  void MoveSome(double fraction);
+  void MoveSome(const std::array<double, 3>& fractions);
   /// So many tetrahedra beside a plane of the lattice, another one each time, get at most so many
   /// nodes of their own, which move a little.
   void Split(int tetrahedra, int nodes);

@@ -248,6 +248,7 @@ def live(results, _folder, _kind):
                 ("Live/all-move", "all nodes move"),
                 ("Live/some-move", "the nodes in a box of 1/100 of the volume move"),
                 ("Live/some-move-logged", "the same, logged"),
+                ("Live/few-move", "nodes move in 14 of 285 bricks"),
                 ("Live/nothing", "nothing, but that the mesh is marked as modified"),
                 ("Live/split", "2,000 tetrahedra get 1,000 new nodes"),
                 ("Live/split-logged", "the same, logged"),
