@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 
 namespace
 {
@@ -471,12 +472,14 @@ bool Viewer::OnMouseMove(vtkObject*, unsigned long, void*)
   return true;
 }
 
+// The program that it comes from waits until this returns, and VTK ends where that has gone by
+// then: it is opened later.
 void Viewer::OnDrop(vtkObject*, unsigned long, void* files)
 {
   auto* const paths = static_cast<vtkStringArray*>(files);
   if (paths && paths->GetNumberOfValues() > 0)
   {
-    this->Open(paths->GetValue(0));
+    this->Dropped = paths->GetValue(0);
   }
 }
 
@@ -494,6 +497,11 @@ void Viewer::OnInteraction(vtkObject*, unsigned long event, void*)
 
 void Viewer::OnTimer(vtkObject*, unsigned long, void*)
 {
+  const std::string dropped = std::exchange(this->Dropped, "");
+  if (!dropped.empty())
+  {
+    this->Open(dropped);
+  }
   if (this->IsChanged)
   {
     this->ShowTexts();

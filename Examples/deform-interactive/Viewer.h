@@ -91,6 +91,7 @@ private:
   vtkNew<vtkTextActor> PromptLine;
   vtkSmartPointer<vtkInteractorEventRecorder> Recorder; // while it records
   std::string FileName = "deformed";                    // without its ending
+  std::string Dropped;                                  // a file that is to be opened
   bool ShowNumbers = true;
   bool IsChanged = false; // since it was drawn
   bool IsReplaying = false;
