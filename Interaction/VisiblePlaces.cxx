@@ -3,6 +3,7 @@
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
+#include "vtkInteractorObserver.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
 
@@ -101,6 +102,25 @@ private:
 };
 
 } // namespace
+
+glm::dvec3 deformvolume::GetWorld(vtkRenderer* renderer, double x, double y, double z)
+{
+  double world[4];
+  vtkInteractorObserver::ComputeDisplayToWorld(renderer, x, y, z, world);
+  return { world[0], world[1], world[2] };
+}
+
+glm::dvec3 deformvolume::GetDisplay(vtkRenderer* renderer, const glm::dvec3& place)
+{
+  double display[3];
+  vtkInteractorObserver::ComputeWorldToDisplay(renderer, place.x, place.y, place.z, display);
+  return { display[0], display[1], display[2] };
+}
+
+LineOfSight deformvolume::GetLineOfSight(vtkRenderer* renderer, int x, int y)
+{
+  return { GetWorld(renderer, x, y, 0.0), GetWorld(renderer, x, y, 1.0) };
+}
 
 vtkIdType deformvolume::FindAbsorbingVoxel(
   vtkImageData* image, const LineOfSight& line, vtkPiecewiseFunction* opacity, double unitDistance)

@@ -10,6 +10,7 @@
 
 class vtkImageData;
 class vtkPiecewiseFunction;
+class vtkRenderer;
 
 namespace deformvolume
 {
@@ -20,6 +21,13 @@ struct LineOfSight
   glm::dvec3 Near;
   glm::dvec3 Far;
 };
+
+///@{
+/// Between pixels, with their depth from 0 to 1, and the world.
+glm::dvec3 GetWorld(vtkRenderer* renderer, double x, double y, double z);
+glm::dvec3 GetDisplay(vtkRenderer* renderer, const glm::dvec3& place);
+LineOfSight GetLineOfSight(vtkRenderer* renderer, int x, int y);
+///@}
 
 struct SlicePlane
 {

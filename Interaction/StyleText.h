@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeStyleText_h
+#define DeformVolumeStyleText_h
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+namespace deformvolume
+{
+
+/// What a key chooses.
+struct Choice
+{
+  char Key;
+  const char* Name;
+};
+/// In the order of the enumerations.
+inline constexpr std::array<Choice, 6> ToolChoices = { { { 't', "turn" }, { 'g', "grab" },
+  { 'c', "cut" }, { 'v', "carve" }, { 'b', "probe" }, { 'm', "measure" } } };
+inline constexpr std::array<Choice, 4> ModelChoices = { { { '1', "none" }, { '2', "ChainMail" },
+  { '3', "mass-spring" }, { '4', "finite elements" } } };
+
+/// All in a row, the chosen one in brackets.
+template <std::size_t Count>
+std::string ListChoices(const std::array<Choice, Count>& choices, int chosen)
+{
+  std::string text;
+  for (std::size_t i = 0; i < Count; ++i)
+  {
+    const bool isChosen = static_cast<int>(i) == chosen;
+    text += text.empty() ? "" : " ";
+    text += isChosen ? '[' : ' ';
+    text += choices[i].Key;
+    text += ' ';
+    text += choices[i].Name;
+    text += isChosen ? ']' : ' ';
+  }
+  return text;
+}
+
+/// The place of the one with a key; -1 where there is none.
+template <std::size_t Count>
+int FindChoice(const std::array<Choice, Count>& choices, char key)
+{
+  for (std::size_t i = 0; i < Count; ++i)
+  {
+    if (choices[i].Key == key)
+    {
+      return static_cast<int>(i);
+    }
+  }
+  return -1;
+}
+
+std::string Format(double number);
+std::string Format(const double place[3]);
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the tools do.
+#include "vtkDeformVolumeInteractorStyleInternals.h"
+
+#include "StyleText.h"
+
+#include "vtkCellArray.h"
+#include "vtkDataArray.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkRenderWindowInteractor.h"
+#include "vtkRenderer.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+using deformvolume::Format;
+using deformvolume::GetDisplay;
+using deformvolume::GetLineOfSight;
+using deformvolume::GetWorld;
+using Session = vtkDeformVolumeSession;
+
+namespace
+{
+
+constexpr int PixelsOfStroke = 4;  // between the points of a stroke
+constexpr int PixelsOfHandle = 20; // from the cursor to a handle
+
+// A strip of triangles between two rows of points.
+vtkSmartPointer<vtkPolyData> MakeStrip(
+  const std::vector<glm::dvec3>& upper, const std::vector<glm::dvec3>& lower)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> triangles;
+  for (std::size_t i = 0; i < upper.size(); ++i)
+  {
+    points->InsertNextPoint(&upper[i].x);
+    points->InsertNextPoint(&lower[i].x);
+    if (i > 0)
+    {
+      const vtkIdType last = 2 * static_cast<vtkIdType>(i);
+      const vtkIdType first[3] = { last - 2, last - 1, last };
+      const vtkIdType second[3] = { last - 1, last + 1, last };
+      triangles->InsertNextCell(3, first);
+      triangles->InsertNextCell(3, second);
+    }
+  }
+  auto strip = vtkSmartPointer<vtkPolyData>::New();
+  strip->SetPoints(points);
+  strip->SetPolys(triangles);
+  return strip;
+}
+
+} // namespace
+
+void vtkDeformVolumeInteractorStyle::BeginTool()
+{
+  vtkInternals& internals = *this->Internals;
+  const int x = this->Interactor->GetEventPosition()[0];
+  const int y = this->Interactor->GetEventPosition()[1];
+  internals.EndPress();
+  this->ShowMessage("");
+  if (!internals.Output)
+  {
+    this->ShowMessage("There is no volume yet. Wait until it is shown.");
+    return;
+  }
+  if (this->Tool == CUT) // a stroke may begin beside the body
+  {
+    internals.IsPressed = true;
+    internals.Stroke.push_back({ { x, y } });
+    return;
+  }
+  glm::dvec3 place(0.0);
+  if (!this->FindPlace(x, y, &place.x))
+  {
+    this->ShowMessage("There is nothing here. Press on the body.");
+    return;
+  }
+  switch (this->Tool)
+  {
+    case GRAB:
+      internals.Handle = internals.Session->BeginGrab(place.x, place.y, place.z);
+      if (internals.Handle >= 0)
+      {
+        internals.IsPressed = true;
+        internals.Held = place;
+        internals.Cursor = { { x, y } };
+        if (internals.GetModel() == Session::NONE)
+        {
+          this->ShowMessage("Nothing follows without a model. Press 2, 3 or 4 for one.");
+        }
+      }
+      break;
+    case CARVE:
+      internals.IsPressed = true;
+      internals.CarvedImage = internals.Output;
+      internals.Carved = place;
+      internals.Session->CarveSphere(place.x, place.y, place.z, this->GetUsedCarveRadius());
+      break;
+    case PROBE:
+      this->ProbeAt(x, y);
+      break;
+    default:
+      this->MeasureAt(x, y);
+  }
+}
+
+void vtkDeformVolumeInteractorStyle::MoveTool()
+{
+  vtkInternals& internals = *this->Internals;
+  const int x = this->Interactor->GetEventPosition()[0];
+  const int y = this->Interactor->GetEventPosition()[1];
+  switch (this->Tool)
+  {
+    case GRAB:
+      this->DragTo(x, y);
+      break;
+    case CUT:
+    {
+      const auto& last = internals.Stroke.back();
+      if (std::abs(x - last[0]) + std::abs(y - last[1]) >= PixelsOfStroke)
+      {
+        internals.Stroke.push_back({ { x, y } });
+      }
+      break;
+    }
+    default:
+      this->CarveAt(x, y, false);
+  }
+  internals.IsChanged = true;
+}
+
+void vtkDeformVolumeInteractorStyle::DragTo(int x, int y)
+{
+  vtkInternals& internals = *this->Internals;
+  // The handle is where its voxel was, which is not just under the cursor.
+  const double depth = GetDisplay(this->CurrentRenderer, internals.Held).z;
+  internals.Held += GetWorld(this->CurrentRenderer, x, y, depth) -
+    GetWorld(this->CurrentRenderer, internals.Cursor[0], internals.Cursor[1], depth);
+  internals.Cursor = { { x, y } };
+  internals.Session->MoveGrab(
+    internals.Handle, internals.Held.x, internals.Held.y, internals.Held.z);
+}
+
+// Each event of a carving looks at the whole sphere: those that are near the last one wait.
+void vtkDeformVolumeInteractorStyle::CarveAt(int x, int y, bool isLast)
+{
+  vtkInternals& internals = *this->Internals;
+  // On the body as it was: otherwise the sphere would sink into the hole that it makes.
+  const vtkIdType voxel =
+    internals.FindVoxel(this, internals.CarvedImage, GetLineOfSight(this->CurrentRenderer, x, y));
+  if (voxel < 0)
+  {
+    return;
+  }
+  glm::dvec3 place(0.0);
+  internals.CarvedImage->GetPoint(voxel, &place.x);
+  const double way = glm::length(place - internals.Carved);
+  if (way >= 0.25 * this->GetUsedCarveRadius() || (isLast && way > 0.0))
+  {
+    internals.Carved = place;
+    internals.Session->CarveTo(place.x, place.y, place.z, this->GetUsedCarveRadius());
+  }
+}
+
+void vtkDeformVolumeInteractorStyle::EndTool(bool isHeld)
+{
+  vtkInternals& internals = *this->Internals;
+  if (!internals.IsPressed)
+  {
+    return;
+  }
+  if (this->Tool == GRAB)
+  {
+    const int handle = internals.Handle;
+    internals.EndPress();
+    if (isHeld)
+    {
+      internals.Session->HoldGrab(handle);
+    }
+    else
+    {
+      internals.Session->EndGrab(handle);
+    }
+    return;
+  }
+  if (this->Tool == CUT)
+  {
+    this->FinishCut();
+  }
+  else if (this->Tool == CARVE)
+  {
+    const int* position = this->Interactor->GetEventPosition();
+    this->CarveAt(position[0], position[1], true);
+  }
+  internals.EndPress();
+}
+
+void vtkDeformVolumeInteractorStyle::FinishCut()
+{
+  vtkInternals& internals = *this->Internals;
+  const std::size_t count = internals.Stroke.size();
+  std::vector<glm::dvec3> places(count, glm::dvec3(0.0));
+  std::vector<bool> isFound(count, false);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    isFound[i] = this->FindPlace(internals.Stroke[i][0], internals.Stroke[i][1], &places[i].x);
+  }
+  if (count < 2 || std::find(isFound.begin(), isFound.end(), true) == isFound.end())
+  {
+    this->ShowMessage("The stroke misses the body. Draw it over the body.");
+    return;
+  }
+  // Beside the body the sheet is as deep as where the stroke is on the body nearest.
+  std::vector<glm::dvec3> upper;
+  std::vector<glm::dvec3> lower;
+  const double* spacing = internals.Output->GetSpacing();
+  const double above = 2.0 * std::max({ spacing[0], spacing[1], spacing[2] });
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    std::size_t way = 0;
+    const auto isThere = [&](std::size_t at) { return at < count && isFound[at]; };
+    while (!isThere(i + way) && !isThere(i - way)) // i - way wraps round beyond the first one
+    {
+      ++way;
+    }
+    const glm::dvec3 nearest = places[isThere(i + way) ? i + way : i - way];
+    const double x = internals.Stroke[i][0];
+    const double y = internals.Stroke[i][1];
+    const double depth = GetDisplay(this->CurrentRenderer, nearest).z;
+    const glm::dvec3 place = GetWorld(this->CurrentRenderer, x, y, depth);
+    const glm::dvec3 away = glm::normalize(
+      GetWorld(this->CurrentRenderer, x, y, 1.0) - GetWorld(this->CurrentRenderer, x, y, 0.0));
+    upper.push_back(place - above * away);
+    lower.push_back(place + this->GetUsedCutDepth() * away);
+  }
+  internals.Session->Cut(MakeStrip(upper, lower));
+}
+
+// The session is asked only where it need not be waited for.
+void vtkDeformVolumeInteractorStyle::ProbeAt(int x, int y)
+{
+  vtkInternals& internals = *this->Internals;
+  double place[3];
+  if (!this->FindPlace(x, y, place))
+  {
+    this->ShowMessage("There is nothing here.");
+    return;
+  }
+  if (internals.Session->GetIsBusy())
+  {
+    vtkImageData* output = internals.Output;
+    vtkDataArray* scalars = output->GetPointData()->GetScalars();
+    const vtkIdType voxel = output->FindPoint(place);
+    this->ShowMessage("value " + Format(scalars ? scalars->GetComponent(voxel, 0) : 0.0) + " at " +
+      Format(place) + ", moving");
+  }
+  else if (internals.Session->Probe(place[0], place[1], place[2]))
+  {
+    this->ShowMessage("value " + Format(internals.Session->GetProbedValue()) + " at " +
+      Format(place) + ", at rest " + Format(internals.Session->GetProbedRestPosition()));
+  }
+}
+
+void vtkDeformVolumeInteractorStyle::MeasureAt(int x, int y)
+{
+  vtkInternals& internals = *this->Internals;
+  glm::dvec3 place(0.0);
+  this->FindPlace(x, y, &place.x);
+  if (internals.Measured.size() > 1)
+  {
+    internals.Measured.clear();
+  }
+  internals.Measured.push_back(place);
+  if (internals.Measured.size() == 1)
+  {
+    this->ShowMessage("Press on the other place.");
+    return;
+  }
+  this->MeasuredDistance = glm::length(internals.Measured[1] - internals.Measured[0]);
+  this->ShowMessage("distance " + Format(this->MeasuredDistance));
+}
+
+void vtkDeformVolumeInteractorStyle::PinAt(int x, int y)
+{
+  vtkInternals& internals = *this->Internals;
+  glm::dvec3 place(0.0);
+  if (!this->FindPlace(x, y, &place.x))
+  {
+    this->ShowMessage("There is nothing here. Pin a place on the body.");
+    return;
+  }
+  internals.Session->Pin(place.x, place.y, place.z);
+}
+
+void vtkDeformVolumeInteractorStyle::ReleaseAt(int x, int y)
+{
+  if (!this->FindUsedRenderer())
+  {
+    return;
+  }
+  vtkInternals& internals = *this->Internals;
+  int nearest = -1;
+  double least = PixelsOfHandle;
+  for (const auto& handle : internals.GetHandles())
+  {
+    const glm::dvec3 at = GetDisplay(this->CurrentRenderer, handle.second);
+    const double distance = std::hypot(at.x - x, at.y - y);
+    if (handle.first != internals.Handle && distance <= least)
+    {
+      least = distance;
+      nearest = handle.first;
+    }
+  }
+  if (nearest < 0)
+  {
+    this->ShowMessage("There is no handle under the cursor. Move it to a green point.");
+    return;
+  }
+  internals.Session->Release(nearest);
+}
