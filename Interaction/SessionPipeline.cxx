@@ -10,24 +10,17 @@
 #include "vtkCorotationalDeformation.h"
 #include "vtkCutVolume.h"
 #include "vtkDeformVolumeFilter.h"
-#include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
-#include "vtkFloatArray.h"
 #include "vtkImageData.h"
-#include "vtkLatticeTetrahedraSource.h"
 #include "vtkMassSpringDeformation.h"
-#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
-#include "vtkVolumeEditAlgorithm.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -56,30 +49,6 @@ void TakeError(vtkObject*, unsigned long, void* target, void* text)
 void TakeWarning(vtkObject*, unsigned long, void* target, void* text)
 {
   static_cast<std::vector<std::string>*>(target)->push_back(StripMessage(text));
-}
-
-vtkSmartPointer<vtkUnstructuredGrid> MakeLattice(vtkImageData* volume, int nodes)
-{
-  vtkNew<vtkLatticeTetrahedraSource> source;
-  source->SetInputData(volume);
-  source->SetNumberOfNodes(nodes, nodes, nodes);
-  source->Update();
-  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  mesh->ShallowCopy(source->GetOutput());
-  return mesh;
-}
-
-// Nodes of the first layer of a lattice.
-void FixFirstLayer(vtkUnstructuredGrid* lattice, int nodes)
-{
-  vtkNew<vtkUnsignedCharArray> fixed;
-  fixed->SetName("Fixed");
-  fixed->SetNumberOfTuples(lattice->GetNumberOfPoints());
-  for (vtkIdType id = 0; id < lattice->GetNumberOfPoints(); ++id)
-  {
-    fixed->SetValue(id, id < static_cast<vtkIdType>(nodes) * nodes ? 1 : 0);
-  }
-  lattice->GetPointData()->AddArray(fixed);
 }
 
 glm::dvec3 GetPlace(const SessionEvent& event, std::size_t first)
@@ -139,13 +108,7 @@ void SessionPipeline::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
 {
   this->Volume = volume;
   this->Mesh = mesh;
-  this->Still = MakeLattice(this->Volume, 2);
-  vtkNew<vtkFloatArray> none;
-  none->SetName("Displacement");
-  none->SetNumberOfComponents(3);
-  none->SetNumberOfTuples(this->Still->GetNumberOfPoints());
-  none->Fill(0.0);
-  this->Still->GetPointData()->SetVectors(none);
+  this->MakeStill();
   this->TakeRestMesh();
 
   for (Actions* actions : { &this->Done, &this->Undone })
@@ -167,64 +130,12 @@ void SessionPipeline::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
   this->Rebuild();
 }
 
-void SessionPipeline::TakeRestMesh()
-{
-  if (this->Mesh)
-  {
-    this->RestMesh = this->Mesh;
-  }
-  else
-  {
-    this->RestMesh = MakeLattice(this->Volume, this->NumberOfNodes);
-    FixFirstLayer(this->RestMesh, this->NumberOfNodes);
-  }
-  this->MassSpring->SetInputData(this->RestMesh);
-  this->Corotational->SetInputData(this->RestMesh);
-  for (Actions* actions : { &this->Done, &this->Undone })
-  {
-    for (Action& action : *actions)
-    {
-      action.ToNode = this->FindWayToNode(action.Rest);
-    }
-  }
-}
-
 SessionEvents SessionPipeline::GetSettings() const
 {
   return { { SessionEvent::HANDLE_RADIUS, { this->HandleRadius } },
     { SessionEvent::RELAXATION, { static_cast<double>(this->RelaxationSweeps) } },
     { SessionEvent::LATTICE, { static_cast<double>(this->NumberOfNodes) } },
     { SessionEvent::UNDO_MEMORY, { this->UndoMemory } } };
-}
-
-vtkElasticDeformation* SessionPipeline::GetElastic()
-{
-  switch (this->Model)
-  {
-    case Session::MASS_SPRING:
-      return this->MassSpring;
-    case Session::COROTATIONAL:
-      return this->Corotational;
-    default:
-      return nullptr;
-  }
-}
-
-vtkAlgorithm* SessionPipeline::GetModelFilter()
-{
-  return this->Model == Session::CHAIN_MAIL ? static_cast<vtkAlgorithm*>(this->ChainMail)
-                                            : static_cast<vtkAlgorithm*>(this->GetElastic());
-}
-
-vtkDataSet* SessionPipeline::GetDeformation()
-{
-  vtkAlgorithm* filter = this->GetModelFilter();
-  return filter ? vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0)) : this->Still.Get();
-}
-
-vtkIdType SessionPipeline::GetNumberOfMovedVoxels()
-{
-  return this->Model == Session::CHAIN_MAIL ? this->ChainMail->GetNumberOfMovedVoxels() : 0;
 }
 
 void SessionPipeline::Update(vtkAlgorithm* filter)
@@ -308,55 +219,6 @@ void SessionPipeline::Apply(const SessionEvent& event)
       return;
     case SessionEvent::STEP:
       this->Step();
-  }
-}
-
-// To be called before anything of the action is seen by the model.
-void SessionPipeline::Do(Action action)
-{
-  for (Action& undone : this->Undone)
-  {
-    this->ForgetStates(undone);
-  }
-  this->Undone.clear();
-  action.Before = this->SaveState();
-  this->Done.push_back(std::move(action));
-  this->LimitStates();
-}
-
-vtkIdType SessionPipeline::SaveState()
-{
-  return this->Model == Session::CHAIN_MAIL && !this->IsToRebuild ? this->ChainMail->SaveState()
-                                                                  : -1;
-}
-
-// To where all voxels were, or from rest to where handles are where that is not known.
-void SessionPipeline::RestoreState(vtkIdType state)
-{
-  this->Connect();
-  this->IsToRebuild = this->Model != Session::CHAIN_MAIL || !this->ChainMail->RestoreState(state);
-}
-
-void SessionPipeline::ForgetStates(Action& action)
-{
-  for (vtkIdType* state : { &action.Before, &action.After })
-  {
-    this->ChainMail->RemoveState(*state);
-    *state = -1;
-  }
-}
-
-// Those go first that are the most steps of undo or redo away.
-void SessionPipeline::LimitStates()
-{
-  for (Actions* actions : { &this->Done, &this->Undone })
-  {
-    for (auto action = actions->begin(); action != actions->end() &&
-         static_cast<double>(this->ChainMail->GetStateMemory()) > this->UndoMemory;
-         ++action)
-    {
-      this->ForgetStates(*action);
-    }
   }
 }
 
@@ -565,168 +427,6 @@ void SessionPipeline::Carve(const SessionEvent& event)
   this->IsStroke = true;
 }
 
-void SessionPipeline::SetModel(int model)
-{
-  if (model == this->Model)
-  {
-    return;
-  }
-  const Actions done = this->Done;
-  const Actions undone = this->Undone;
-  this->EndGrabs();
-  Action change;
-  change.Kind = Action::MODEL;
-  change.Model = model;
-  change.FormerModel = this->Model;
-  this->Do(change);
-  this->Model = model;
-  try
-  {
-    this->Rebuild();
-  }
-  catch (...)
-  {
-    this->Model = change.FormerModel;
-    this->RestoreState(this->Done.back().Before);
-    this->Done = done;
-    this->Undone = undone;
-    throw;
-  }
-}
-
-void SessionPipeline::SetLattice(int nodes)
-{
-  if (nodes == this->NumberOfNodes)
-  {
-    return;
-  }
-  const int former = this->NumberOfNodes;
-  this->NumberOfNodes = nodes;
-  this->TakeRestMesh();
-  try
-  {
-    if (this->GetElastic())
-    {
-      this->Rebuild();
-    }
-  }
-  catch (...) // the handles hold no nodes of this lattice
-  {
-    this->NumberOfNodes = former;
-    this->TakeRestMesh();
-    this->Rebuild();
-    throw;
-  }
-}
-
-void SessionPipeline::EndGrabs()
-{
-  for (Action& action : this->Done)
-  {
-    if (action.IsGrabbed)
-    {
-      action.IsGrabbed = action.IsHeld = false;
-    }
-  }
-}
-
-void SessionPipeline::UndoEdits(vtkVolumeEditAlgorithm* filter, int edits)
-{
-  for (int i = 0; i < edits; ++i)
-  {
-    filter->Undo();
-  }
-  this->Update(filter);
-}
-
-void SessionPipeline::RedoEdits(vtkVolumeEditAlgorithm* filter, int edits)
-{
-  for (int i = 0; i < edits; ++i)
-  {
-    filter->Redo();
-  }
-  this->Update(filter);
-}
-
-void SessionPipeline::Undo()
-{
-  if (this->Done.empty())
-  {
-    return;
-  }
-  Action action = this->Done.back();
-  this->Done.pop_back();
-  action.After = action.After < 0 ? this->SaveState() : action.After;
-  this->Undone.push_back(action);
-  this->LimitStates();
-  vtkElasticDeformation* elastic = this->GetElastic();
-  switch (action.Kind)
-  {
-    case Action::CUT:
-      this->UndoEdits(this->CutFilter, 1);
-      if (elastic && action.HasSplit && !this->IsToRebuild)
-      {
-        elastic->UndoCut();
-        this->UpdateModel(this->GetHeld());
-      }
-      break;
-    case Action::CARVE:
-      this->CarveFilter->ClearToolPositions();
-      this->UndoEdits(this->CarveFilter, action.NumberOfEdits);
-      break;
-    case Action::MODEL:
-      this->Model = action.FormerModel;
-      this->RestoreState(action.Before);
-      return;
-    default:
-      break;
-  }
-  // Meshes go to where they are held now by themselves.
-  if (!elastic)
-  {
-    this->RestoreState(action.Before);
-  }
-}
-
-void SessionPipeline::Redo()
-{
-  if (this->Undone.empty())
-  {
-    return;
-  }
-  const Action action = this->Undone.back();
-  this->Undone.pop_back();
-  this->Done.push_back(action);
-  switch (action.Kind)
-  {
-    case Action::CUT:
-      this->RedoEdits(this->CutFilter, 1);
-      break;
-    case Action::CARVE:
-      this->RedoEdits(this->CarveFilter, action.NumberOfEdits);
-      break;
-    case Action::MODEL:
-      this->Model = action.Model;
-      break;
-    default:
-      break;
-  }
-  // A cut splits a mesh at rest.
-  if (!this->GetElastic() || action.Kind == Action::CUT || action.Kind == Action::MODEL)
-  {
-    this->RestoreState(action.After);
-  }
-}
-
-void SessionPipeline::Reset()
-{
-  this->EndGrabs();
-  while (!this->Done.empty())
-  {
-    this->Undo();
-  }
-}
-
 SessionPipeline::Actions SessionPipeline::GetHeld() const
 {
   Actions held;
@@ -755,215 +455,6 @@ std::vector<SessionPipeline::Handle> SessionPipeline::GetHandles() const
       { static_cast<int>(action.Handle), action.Rest, action.Now, action.IsGrabbed });
   }
   return handles;
-}
-
-void SessionPipeline::Connect()
-{
-  vtkElasticDeformation* elastic = this->GetElastic();
-  this->Resampler->SetOpenSplits(elastic != nullptr);
-  // A body that is a mesh opens where the mesh is split. The mask of a cut would be a second gap
-  // beside that, along the sheet.
-  if (elastic)
-  {
-    this->CarveFilter->SetInputData(this->Volume);
-  }
-  else
-  {
-    this->CarveFilter->SetInputConnection(this->CutFilter->GetOutputPort());
-  }
-  if (vtkAlgorithm* filter = this->GetModelFilter())
-  {
-    this->Resampler->SetDeformationConnection(filter->GetOutputPort());
-  }
-  else
-  {
-    this->Resampler->SetDeformationData(this->Still);
-  }
-}
-
-void SessionPipeline::Rebuild()
-{
-  this->IsToRebuild = false;
-  this->Connect();
-  this->LastVectors.clear();
-  this->QuietSteps = 0;
-  if (this->Model == Session::CHAIN_MAIL)
-  {
-    this->ChainMail->Reset();
-    this->UpdateModel(this->GetHeld());
-  }
-  else if (vtkElasticDeformation* elastic = this->GetElastic())
-  {
-    elastic->Reset();
-    elastic->ClearCuts();
-    elastic->SetSheetData(nullptr);
-    this->UpdateModel({});
-    for (Action& action : this->Done)
-    {
-      if (action.Kind == Action::CUT)
-      {
-        this->CutMesh(elastic, action.RestSheet, {}, action);
-      }
-    }
-    elastic->Reset();
-    this->UpdateModel(this->GetHeld());
-  }
-  else
-  {
-    this->Update(this->CarveFilter);
-  }
-}
-
-glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
-{
-  vtkDataArray* fixed = this->RestMesh->GetPointData()->GetArray("Fixed");
-  glm::dvec3 nearest(0.0); // no way where no node can move
-  double least = std::numeric_limits<double>::infinity();
-  for (vtkIdType id = 0; id < this->RestMesh->GetNumberOfPoints(); ++id)
-  {
-    double place[3];
-    this->RestMesh->GetPoint(id, place);
-    const glm::dvec3 way = glm::dvec3(place[0], place[1], place[2]) - rest;
-    const double square = glm::dot(way, way);
-    if (square < least && !(fixed && fixed->GetComponent(id, 0) != 0.0))
-    {
-      least = square;
-      nearest = way;
-    }
-  }
-  return nearest;
-}
-
-// To the nearest node of a mesh, where none lies within the radius of handles: who grabs something
-// coarse gets hold of it nevertheless.
-glm::dvec3 SessionPipeline::GetShift(const Action& drag)
-{
-  return this->GetElastic() && glm::length(drag.ToNode) > this->HandleRadius ? drag.ToNode
-                                                                             : glm::dvec3(0.0);
-}
-
-void SessionPipeline::UpdateModel(const Actions& held)
-{
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  vtkNew<vtkDoubleArray> rest;
-  rest->SetName("RestPosition");
-  rest->SetNumberOfComponents(3);
-  for (const Action& action : held)
-  {
-    const glm::dvec3 shift = this->GetShift(action);
-    points->InsertNextPoint(action.Now.x + shift.x, action.Now.y + shift.y, action.Now.z + shift.z);
-    rest->InsertNextTuple3(
-      action.Rest.x + shift.x, action.Rest.y + shift.y, action.Rest.z + shift.z);
-  }
-  vtkNew<vtkPolyData> handles;
-  handles->SetPoints(points);
-  handles->GetPointData()->AddArray(rest);
-  if (this->Model == Session::CHAIN_MAIL)
-  {
-    this->ChainMail->SetHandleRadius(this->HandleRadius);
-    this->ChainMail->SetRelaxationSweeps(this->RelaxationSweeps);
-    this->ChainMail->SetHandlesData(handles);
-    this->ChainMail->Modified();
-    this->Update(this->ChainMail);
-  }
-  else if (vtkElasticDeformation* elastic = this->GetElastic())
-  {
-    elastic->SetHandleRadius(this->HandleRadius);
-    elastic->SetHandlesData(handles);
-    elastic->Modified();
-    this->Update(elastic);
-  }
-}
-
-// After a step that was not possible.
-void SessionPipeline::StepBack()
-{
-  for (Action& action : this->Done)
-  {
-    action.Now = action.LastPossible;
-  }
-  try
-  {
-    this->UpdateModel(this->GetHeld());
-    return;
-  }
-  catch (const std::runtime_error&)
-  {
-    // A body that moves too fast stays so: it comes from rest.
-  }
-  try
-  {
-    this->Rebuild();
-  }
-  catch (const std::runtime_error&)
-  {
-    // Nor can it be where it is held. Nothing holds it any more.
-    for (Action& action : this->Done)
-    {
-      action.IsGrabbed = action.IsHeld = false;
-    }
-    this->Rebuild();
-  }
-}
-
-bool SessionPipeline::Step()
-{
-  if (this->IsToRebuild)
-  {
-    this->Rebuild();
-  }
-  if (this->Model == Session::NONE)
-  {
-    return false;
-  }
-  try
-  {
-    this->UpdateModel(this->GetHeld());
-  }
-  catch (...)
-  {
-    this->StepBack();
-    throw;
-  }
-  for (Action& action : this->Done)
-  {
-    action.LastPossible = action.Now;
-  }
-  return this->FindMotion();
-}
-
-// A body with inertia stands still for a moment where it turns round.
-bool SessionPipeline::FindMotion()
-{
-  if (this->Model == Session::CHAIN_MAIL)
-  {
-    const int* changed = this->ChainMail->GetChangedExtent();
-    return changed[0] <= changed[1];
-  }
-  vtkDataArray* vectors = this->GetDeformation()->GetPointData()->GetVectors();
-  std::vector<double> now(static_cast<std::size_t>(vectors->GetNumberOfValues()));
-  for (vtkIdType id = 0; id < vectors->GetNumberOfTuples(); ++id)
-  {
-    vectors->GetTuple(id, &now[3 * static_cast<std::size_t>(id)]);
-  }
-  const double* spacing = this->Volume->GetSpacing();
-  const double most = 1e-3 * std::min({ spacing[0], spacing[1], spacing[2] });
-  const bool isQuiet = now.size() == this->LastVectors.size() &&
-    std::equal(now.begin(), now.end(), this->LastVectors.begin(),
-      [=](double one, double other) { return std::abs(one - other) <= most; });
-  this->LastVectors = now;
-  this->QuietSteps = isQuiet ? this->QuietSteps + 1 : 0;
-  return this->QuietSteps < (this->Model == Session::MASS_SPRING ? 10 : 1);
-}
-
-vtkImageData* SessionPipeline::Resample(const Sampling& sampling)
-{
-  this->Resampler->SetSamplingFactor(sampling.Factor);
-  this->Resampler->SetPadding(sampling.Padding);
-  this->Resampler->SetBackgroundValue(sampling.BackgroundValue);
-  this->Update(this->Resampler);
-  return this->Resampler->GetOutput();
 }
 
 } // namespace deformvolume

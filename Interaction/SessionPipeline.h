@@ -147,6 +147,7 @@ private:
   glm::dvec3 GetShift(const Action& drag);
   void Update(vtkAlgorithm* filter);
   void Connect();
+  void MakeStill();
   void TakeRestMesh();
   bool FindMotion();
   vtkAlgorithm* GetModelFilter();

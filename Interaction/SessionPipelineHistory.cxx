@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What was done, undone and made again.
+#include "SessionPipeline.h"
+
+#include "vtkDeformVolumeSession.h"
+
+#include "vtkCarveVolume.h"
+#include "vtkChainMailDeformation.h"
+#include "vtkCutVolume.h"
+#include "vtkElasticDeformation.h"
+#include "vtkImageData.h"
+#include "vtkPolyData.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <utility>
+
+using Session = vtkDeformVolumeSession;
+
+namespace deformvolume
+{
+
+// To be called before anything of the action is seen by the model.
+void SessionPipeline::Do(Action action)
+{
+  for (Action& undone : this->Undone)
+  {
+    this->ForgetStates(undone);
+  }
+  this->Undone.clear();
+  action.Before = this->SaveState();
+  this->Done.push_back(std::move(action));
+  this->LimitStates();
+}
+
+vtkIdType SessionPipeline::SaveState()
+{
+  return this->Model == Session::CHAIN_MAIL && !this->IsToRebuild ? this->ChainMail->SaveState()
+                                                                  : -1;
+}
+
+// To where all voxels were, or from rest to where handles are where that is not known.
+void SessionPipeline::RestoreState(vtkIdType state)
+{
+  this->Connect();
+  this->IsToRebuild = this->Model != Session::CHAIN_MAIL || !this->ChainMail->RestoreState(state);
+}
+
+void SessionPipeline::ForgetStates(Action& action)
+{
+  for (vtkIdType* state : { &action.Before, &action.After })
+  {
+    this->ChainMail->RemoveState(*state);
+    *state = -1;
+  }
+}
+
+// Those go first that are the most steps of undo or redo away.
+void SessionPipeline::LimitStates()
+{
+  for (Actions* actions : { &this->Done, &this->Undone })
+  {
+    for (auto action = actions->begin(); action != actions->end() &&
+         static_cast<double>(this->ChainMail->GetStateMemory()) > this->UndoMemory;
+         ++action)
+    {
+      this->ForgetStates(*action);
+    }
+  }
+}
+
+void SessionPipeline::EndGrabs()
+{
+  for (Action& action : this->Done)
+  {
+    if (action.IsGrabbed)
+    {
+      action.IsGrabbed = action.IsHeld = false;
+    }
+  }
+}
+
+void SessionPipeline::UndoEdits(vtkVolumeEditAlgorithm* filter, int edits)
+{
+  for (int i = 0; i < edits; ++i)
+  {
+    filter->Undo();
+  }
+  this->Update(filter);
+}
+
+void SessionPipeline::RedoEdits(vtkVolumeEditAlgorithm* filter, int edits)
+{
+  for (int i = 0; i < edits; ++i)
+  {
+    filter->Redo();
+  }
+  this->Update(filter);
+}
+
+void SessionPipeline::Undo()
+{
+  if (this->Done.empty())
+  {
+    return;
+  }
+  Action action = this->Done.back();
+  this->Done.pop_back();
+  action.After = action.After < 0 ? this->SaveState() : action.After;
+  this->Undone.push_back(action);
+  this->LimitStates();
+  vtkElasticDeformation* elastic = this->GetElastic();
+  switch (action.Kind)
+  {
+    case Action::CUT:
+      this->UndoEdits(this->CutFilter, 1);
+      if (elastic && action.HasSplit && !this->IsToRebuild)
+      {
+        elastic->UndoCut();
+        this->UpdateModel(this->GetHeld());
+      }
+      break;
+    case Action::CARVE:
+      this->CarveFilter->ClearToolPositions();
+      this->UndoEdits(this->CarveFilter, action.NumberOfEdits);
+      break;
+    case Action::MODEL:
+      this->Model = action.FormerModel;
+      this->RestoreState(action.Before);
+      return;
+    default:
+      break;
+  }
+  // Meshes go to where they are held now by themselves.
+  if (!elastic)
+  {
+    this->RestoreState(action.Before);
+  }
+}
+
+void SessionPipeline::Redo()
+{
+  if (this->Undone.empty())
+  {
+    return;
+  }
+  const Action action = this->Undone.back();
+  this->Undone.pop_back();
+  this->Done.push_back(action);
+  switch (action.Kind)
+  {
+    case Action::CUT:
+      this->RedoEdits(this->CutFilter, 1);
+      break;
+    case Action::CARVE:
+      this->RedoEdits(this->CarveFilter, action.NumberOfEdits);
+      break;
+    case Action::MODEL:
+      this->Model = action.Model;
+      break;
+    default:
+      break;
+  }
+  // A cut splits a mesh at rest.
+  if (!this->GetElastic() || action.Kind == Action::CUT || action.Kind == Action::MODEL)
+  {
+    this->RestoreState(action.After);
+  }
+}
+
+void SessionPipeline::Reset()
+{
+  this->EndGrabs();
+  while (!this->Done.empty())
+  {
+    this->Undo();
+  }
+}
+
+} // namespace deformvolume
