@@ -6,7 +6,6 @@
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
-#include "vtkSMPThreadLocal.h"
 #include "vtkSMPTools.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -18,6 +17,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 namespace
 {
@@ -93,11 +93,12 @@ glm::dvec3 FindNearestVoxel(vtkImageData* field, const glm::dvec3& deformed)
   const int* extent = field->GetExtent();
   const vtkIdType width = extent[1] - extent[0] + 1;
   const glm::dvec3 along = GetPlace(field, 1) - GetPlace(field, 0);
-  vtkSMPThreadLocal<NearestVoxel> locals;
+  NearestVoxel best;
+  std::mutex mutex;
   vtkSMPTools::For(0, field->GetNumberOfPoints() / width,
     [&](vtkIdType begin, vtkIdType end)
     {
-      NearestVoxel& nearest = locals.Local();
+      NearestVoxel nearest;
       for (vtkIdType row = begin; row < end; ++row)
       {
         const glm::dvec3 first = GetPlace(field, row * width) - deformed;
@@ -112,12 +113,9 @@ glm::dvec3 FindNearestVoxel(vtkImageData* field, const glm::dvec3& deformed)
           nearest = found.IsBetterThan(nearest) ? found : nearest;
         }
       }
+      const std::lock_guard<std::mutex> lock(mutex);
+      best = nearest.IsBetterThan(best) ? nearest : best;
     });
-  NearestVoxel best;
-  for (const NearestVoxel& nearest : locals)
-  {
-    best = nearest.IsBetterThan(best) ? nearest : best;
-  }
   return GetPlace(field, best.Id);
 }
 

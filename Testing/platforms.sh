@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Runs the two commands of README.md in pristine Debian systems, each made for it in
-# build/platforms, and prints a table of what they found. As root, on Debian; packages come from the
+# build/platforms, and prints a table of what they found, warnings of the compiler among it. As root, on Debian; packages come from the
 # archive that this system uses. The logs stay in build/platforms, and so do the pictures that
 # Examples/run.sh draws: look at them. What ccache keeps of a system is kept for the next run, in
 # ~/.cache/deformvolume-platforms: a system whose compiler and sources are the same compiles less.
@@ -122,6 +122,8 @@ for suite in "${suites[@]}"; do
     sed -n '/^== summary/,$p' "$log"
     tests=$(sed -n '/^== summary/,$ s/^\([a-z]*\): .* out of \([0-9]*\)$/\1 \2/p' "$log" |
       paste -s -d, | sed 's/,/, /g')
+    warnings=$(grep -c ': warning: ' "$log" || true)
+    [ "$warnings" = 0 ] || result+=", $warnings warnings"
     results+=" | $result${tests:+ ($tests tests)}, $(((SECONDS - begin + 59) / 60)) min"
   done
   rows+=("$row | $(versions "$root")$results |")

@@ -329,7 +329,7 @@ TEST(ElasticAborts, StableTimeStep)
   MassSpringModel model;
   model.SetBody(body);
   std::vector<float> displacements(body.Points.size() * 3, 0.0F);
-  displacements.back() = 1e-4F;
+  displacements.at(displacements.size() - 1) = 1e-4F;
   const std::vector<float> velocities(displacements.size(), 1e-2F);
   model.SetState(displacements, velocities);
   MassSpringRequest request;
