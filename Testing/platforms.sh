@@ -1,10 +1,11 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Runs the two commands of README.md in pristine Debian systems, each made for it in
-# build/platforms, and prints a table of what they found, warnings of the compiler among it. As root, on Debian; packages come from the
-# archive that this system uses. The logs stay in build/platforms, and so do the pictures that
-# Examples/run.sh draws: look at them. What ccache keeps of a system is kept for the next run, in
-# ~/.cache/deformvolume-platforms: a system whose compiler and sources are the same compiles less.
+# build/platforms, and prints a table of what they found, warnings of the compiler among it. As root,
+# on Debian; packages come from the archive that this system uses. The logs stay in build/platforms,
+# and so do the pictures that Examples/run.sh draws: look at them. What ccache keeps of a system is
+# kept for the next run, in ~/.cache/deformvolume-platforms: a system whose compiler and sources are
+# the same compiles less.
 #
 # Usage: platforms.sh [--keep] [--quick] [SUITE]...    (default: bookworm trixie forky)
 #   --keep  leaves the systems with what was built in them, to look into a failure
