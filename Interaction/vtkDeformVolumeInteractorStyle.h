@@ -83,7 +83,8 @@ public:
   ///@{
   /**
    * Have a thread of the session work, and a timer of the interactor poll it. Without them, Poll()
-   * does both. StopSession() waits for the end of a step.
+   * does both. StopSession() waits for the end of a step. It destroys the timer, and so must not be
+   * called by an observer of this timer's event, nor of UpdateDataEvent.
    */
   void StartSession();
   void StopSession();

@@ -18,8 +18,8 @@ declare -A packages=(
   [library]="g++ cmake ninja-build ccache libvtk9-dev python3-vtk9 libglm-dev libeigen3-dev
     opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev pocl-opencl-icd tetgen"
   [example]="libcli11-dev mricron-data xvfb xauth"
-  [test]="libgtest-dev libbenchmark-dev libopenmpi-dev openmpi-bin oclgrind python3-numpy mricron-data
-    xvfb xauth"
+  [test]="libgtest-dev libbenchmark-dev libopenmpi-dev openmpi-bin oclgrind python3-numpy python3-xlib
+    mricron-data xvfb xauth"
   [benchmark]="python3-matplotlib"
   [paraview]="paraview paraview-dev libopenmpi-dev libdouble-conversion-dev libutfcpp-dev
     liblz4-dev liblzma-dev libgl-dev libopengl-dev libx11-dev libglew-dev libfreetype-dev"

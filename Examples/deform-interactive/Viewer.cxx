@@ -25,7 +25,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
-#include <utility>
 
 namespace
 {
@@ -473,13 +472,15 @@ bool Viewer::OnMouseMove(vtkObject*, unsigned long, void*)
 }
 
 // The program that it comes from waits until this returns, and VTK ends where that has gone by
-// then: it is opened later.
+// then: it is opened later. By a timer of its own, as that of the style ends with its session, and
+// no timer may be destroyed by its own event.
 void Viewer::OnDrop(vtkObject*, unsigned long, void* files)
 {
   auto* const paths = static_cast<vtkStringArray*>(files);
   if (paths && paths->GetNumberOfValues() > 0)
   {
     this->Dropped = paths->GetValue(0);
+    this->DropTimer = this->Interactor->CreateOneShotTimer(1);
   }
 }
 
@@ -495,12 +496,12 @@ void Viewer::OnInteraction(vtkObject*, unsigned long event, void*)
   this->IsChanged = true;
 }
 
-void Viewer::OnTimer(vtkObject*, unsigned long, void*)
+void Viewer::OnTimer(vtkObject*, unsigned long, void* timer)
 {
-  const std::string dropped = std::exchange(this->Dropped, "");
-  if (!dropped.empty())
+  if (timer && *static_cast<int*>(timer) == this->DropTimer)
   {
-    this->Open(dropped);
+    this->DropTimer = -1;
+    this->Open(this->Dropped);
   }
   if (this->IsChanged)
   {

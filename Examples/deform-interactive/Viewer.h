@@ -51,7 +51,7 @@ private:
   void OnOutput(vtkObject*, unsigned long, void*);
   void OnFrame(vtkObject*, unsigned long event, void*);
   void OnInteraction(vtkObject*, unsigned long event, void*);
-  void OnTimer(vtkObject*, unsigned long, void*);
+  void OnTimer(vtkObject*, unsigned long, void* timer);
   void OnDrop(vtkObject*, unsigned long, void* files);
 
   void OpenVolume(const std::string& path);
@@ -92,6 +92,7 @@ private:
   vtkSmartPointer<vtkInteractorEventRecorder> Recorder; // while it records
   std::string FileName = "deformed";                    // without its ending
   std::string Dropped;                                  // a file that is to be opened
+  int DropTimer = -1;                                   // that opens it
   bool ShowNumbers = true;
   bool IsChanged = false; // since it was drawn
   bool IsReplaying = false;

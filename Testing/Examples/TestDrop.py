@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A recording that is dropped onto the window of deform-interactive, as file managers drop it, is
+replayed. The program that it comes from has gone by then. Usage: TestDrop.py PROGRAM FOLDER"""
+import os
+import subprocess
+import sys
+import time
+
+try:
+    from Xlib import X, display
+    from Xlib.protocol import event
+except ImportError:
+    print("Skipped: there is no Python module Xlib. Install python3-xlib.")
+    sys.exit(125)
+
+from Volumes import make_ball, make_folder, write_vti
+from WindowEvents import WindowEvents
+
+PATIENCE = 100.0  # seconds
+program = sys.argv[1]
+folder = make_folder(sys.argv[2], "Drop")
+
+
+def path(name):
+    return os.path.join(folder, name)
+
+
+def wait_for(find):
+    """What find() gives once that is something."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        found = find()
+        if found:
+            return found
+        assert running.poll() is None, (running.returncode, running.communicate())
+        time.sleep(0.05)
+    raise AssertionError("nothing came of it in time")
+
+
+class Source:
+    """A client of the X server that drags a file, by version 5 of the protocol XDND."""
+
+    def __init__(self):
+        self.display = display.Display()
+        root = self.display.screen().root
+        self.window = root.create_window(0, 0, 1, 1, 0, self.display.screen().root_depth)
+        self.window.set_selection_owner(self.atom("XdndSelection"), X.CurrentTime)
+        self.target = wait_for(lambda: self.find(root))
+
+    def atom(self, name):
+        return self.display.intern_atom(name)
+
+    def find(self, window):
+        """The window that takes what is dropped."""
+        if window.get_full_property(self.atom("XdndAware"), X.AnyPropertyType):
+            return window
+        return next(filter(None, map(self.find, window.query_tree().children)), None)
+
+    def tell(self, name, *numbers):
+        data = (32, [self.window.id] + list(numbers) + [0] * (4 - len(numbers)))
+        self.target.send_event(event.ClientMessage(window=self.target, client_type=self.atom(name),
+                                                   data=data), event_mask=0)
+        self.display.flush()
+
+    def await_event(self, kind):
+        def find():
+            while self.display.pending_events():
+                found = self.display.next_event()
+                if found.type & 0x7f == kind:
+                    return found
+            return None
+        return wait_for(find)
+
+    def drop(self, name):
+        self.tell("XdndEnter", 5 << 24, self.atom("text/uri-list"))
+        self.tell("XdndPosition", 0, 20 << 16 | 20, X.CurrentTime, self.atom("XdndActionCopy"))
+        self.await_event(X.ClientMessage)
+        self.tell("XdndDrop", 0, X.CurrentTime)
+        request = self.await_event(X.SelectionRequest)
+        request.requestor.change_property(request.property, request.target, 8,
+                                          f"file://{name}\r\n".encode())
+        request.requestor.send_event(event.SelectionNotify(
+            time=request.time, requestor=request.requestor, selection=request.selection,
+            target=request.target, property=request.property))
+        self.display.flush()
+        answer = self.await_event(X.ClientMessage)
+        assert answer.client_type == self.atom("XdndFinished")
+        self.display.close()
+
+
+write_vti(make_ball(dimensions=(31, 28, 25), spacing=(1.0, 1.0, 1.0)), path("ball.vti"))
+WindowEvents().keys("s\r").wait(2).write(path("events.log"))
+with subprocess.Popen([program, path("ball.vti"), "--size", "200,200"], stdout=subprocess.PIPE,
+                      stderr=subprocess.STDOUT, cwd=folder) as running:
+    try:
+        Source().drop(path("events.log"))
+        wait_for(lambda: os.path.exists(path("ball-deformed.vti")))
+    finally:
+        running.kill()
