@@ -23,6 +23,7 @@ BUILD = WORK / "build"
 
 NARROW = ("TestNarrowDecisions", "*")
 MASKS = ("TestIncremental", "IncrementalMasks*")
+ALONG = ("TestPiecewise", "*AlongSomeAxes*")
 MISSING = ("TestPiecewise", "*Masks*")
 FOLDS = ("TestIncrementalFolds", "-*ByCell")
 BY_CELL = ("TestIncremental", "*Borders*ByCell")
@@ -62,6 +63,10 @@ MUTATIONS = {
                      [MISSING]),
     "vertex-edge": ("Kernels/Resampling/GroupCoverage.cl", "1 << (vertex ^ 1)", "1 << (vertex ^ 2)",
                     [MISSING]),
+    "edge-end": ("Kernels/Resampling/GroupResampling.cl", "(x >= FROM(0))", "(x > FROM(0))", [ALONG]),
+    "edge-end-bent": ("Kernels/Resampling/GroupResampling.cl", " & ~endsY & ~endsZ);", ");", [ALONG]),
+    "edge-side": ("Kernels/Resampling/GroupResampling.cl", "const INTS lowestZ = alongZ & lowX & lowY;",
+                  "const INTS lowestZ = alongZ & lowX;", [ALONG]),
     "base-counts": ("Kernels/Cutting/MaskEditor.cxx",
                     "this->NumberOfSwitchedOff -= CountBits(this->Base[cell] ^ this->Mask[cell]);", "",
                     [("TestMaskEditor", "*")]),

@@ -105,6 +105,25 @@ static __attribute__((noinline)) INTS FindBoxes(const Group* group, int mirror, 
   return ALIGNED(X) & ALIGNED(Y) & ALIGNED(Z);
 }
 
+// Cells whose edges along an axis are parallel to it, while the other two coordinates vary along their own axes only,
+// and grow with the indices: such as where tissue is pulled along an axis.
+typedef struct
+{
+  INTS X, Y, Z;
+} ParallelEdges;
+
+static __attribute__((noinline)) void FindParallelEdges(
+  const Group* group, int mirror, ParallelEdges* edges)
+{
+  LOAD_VERTICES
+  const INTS x = ALONG_Y(X) & ALONG_Z(X) & RISES(X, 1);
+  const INTS y = ALONG_X(Y) & ALONG_Z(Y) & RISES(Y, 4);
+  const INTS z = ALONG_X(Z) & ALONG_Y(Z) & RISES(Z, 2);
+  edges->X = y & z;
+  edges->Y = x & z;
+  edges->Z = x & y;
+}
+
 // The first of the samples of the output that lie within bounds on an axis, and one past the last.
 // Of cells that are not there either may be anything.
 #define FIRST_OF(low) TO_INTS(Most(low, 0.0f) + ALMOST_ONE)

@@ -76,6 +76,39 @@ static __attribute__((always_inline)) INTS VerticesAt(const GroupFrame* f, const
   return at->Y + f->Y0 == f->Y7 ? vertices << 4 : vertices;
 }
 
+// Decides samples on the four lines that hold a cell's edges along an axis, where these are parallel to it (ParallelEdges),
+// inside the mesh. Planes bound such a cell on the other two axes, so that the shifts along these lead out of it from its
+// high sides and into it from the low ones: of the four edges it owns what lies between the ends of the lowest one. At an
+// end of an edge along x the shift along x decides, which comes first. Where edges lie along another axis, the face at
+// the end may be bent as seen from there, and the sample stays undecided. x, y, z: the samples, in voxels of the output.
+// Returns which cells own theirs, and takes what is decided from undecided.
+static __attribute__((noinline)) uint DecideOnEdges(const Group* group, const GroupFrame* f,
+  const ParallelEdges* edges, FLOATS x, FLOATS y, FLOATS z, uint* undecided, INTS* onVertex,
+  const KernelParameters* p)
+{
+  const int mirror = Mirror(group->X, group->Y, group->Z, p);
+  const INTS lowX = x == Least(f->X0, f->X7), onX = lowX | (x == Most(f->X0, f->X7));
+  const INTS lowY = y == Least(f->Y0, f->Y7), onY = lowY | (y == Most(f->Y0, f->Y7));
+  const INTS lowZ = z == Least(f->Z0, f->Z7), onZ = lowZ | (z == Most(f->Z0, f->Z7));
+#define FROM(slot) VERTEX(mirror, slot)
+  const INTS alongX = edges->X & onY & onZ;
+  const INTS ownsX = alongX & lowY & lowZ & (x >= FROM(0)) & (x < VERTEX(mirror ^ 1, 0));
+  const INTS alongY = edges->Y & onX & onZ & ~alongX;
+  const INTS lowestY = alongY & lowX & lowZ;
+  const INTS endsY = lowestY & ((y == FROM(1)) | (y == VERTEX(mirror ^ 4, 1)));
+  const INTS ownsY = lowestY & (y > FROM(1)) & (y < VERTEX(mirror ^ 4, 1));
+  const INTS alongZ = edges->Z & onX & onY & ~alongX & ~alongY;
+  const INTS lowestZ = alongZ & lowX & lowY;
+  const INTS endsZ = lowestZ & ((z == FROM(2)) | (z == VERTEX(mirror ^ 2, 2)));
+  const INTS ownsZ = lowestZ & (z > FROM(2)) & (z < VERTEX(mirror ^ 2, 2));
+  const uint decided =
+    *undecided & LaneBits((alongX | alongY | alongZ) & ~endsY & ~endsZ);
+  *undecided &= ~decided;
+  *onVertex |= ownsX & (x == FROM(0)) & LanesOf(decided);
+#undef FROM
+  return decided & LaneBits(ownsX | ownsY | ownsZ);
+}
+
 // What became of a group's candidates. In a round each lane takes one of its own.
 typedef struct
 {
@@ -84,6 +117,24 @@ typedef struct
   uint Ambiguous; // cells, as bits, with one that is still undecided
   uint Doubts;    // how many rounds doubts has
 } Rounds;
+
+// Whether cells inside the mesh have edges of which DecideOnEdges knows, and which.
+static __attribute__((noinline)) int LookForEdges(const Group* group, const GroupFrame* frame,
+  const SamplingMesh* mesh, ParallelEdges* edges, const KernelParameters* p)
+{
+  INTS inside = LanesOf(frame->Nice) & ~frame->Inverted;
+  if (group->Border)
+  {
+    GroupState state;
+    StatesOfGroup(mesh, group->X, group->Y, group->Z, &state, p);
+    inside &= state.Interior == 255;
+  }
+  FindParallelEdges(group, Mirror(group->X, group->Y, group->Z, p), edges);
+  edges->X &= inside;
+  edges->Y &= inside;
+  edges->Z &= inside;
+  return LaneBits(edges->X | edges->Y | edges->Z) != 0;
+}
 
 // Takes the candidates of some cells, as bits. hits: of each round the cells that it has found a sample in. All else
 // is as for ResampleGroup.
@@ -107,6 +158,8 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
   Walk at;
   BeginWalk(c, frame, &at, p);
   uint kept = found->Count;
+  ParallelEdges edges;
+  int hasEdges = !state && p->Pass == DEFORMVOLUME_PASS_DIRECT ? -1 : 0; // -1: not known
   for (;;)
   {
     SampleWeights weights;
@@ -125,6 +178,18 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
           DecideOnVertices(group, decided, VerticesAt(frame, &at), &c->State, at.X + frame->X0,
             at.Y + frame->Y0, at.Z + frame->Z0, mesh, output, p);
         onVertex = beside;
+      }
+    }
+    if (undecided && hasEdges)
+    {
+      if (hasEdges < 0)
+      {
+        hasEdges = LookForEdges(group, frame, mesh, &edges, p);
+      }
+      if (hasEdges)
+      {
+        held |= DecideOnEdges(group, frame, &edges, at.X + frame->X0, at.Y + frame->Y0,
+          at.Z + frame->Z0, &undecided, &onVertex, p);
       }
     }
     if (undecided && state)
@@ -146,7 +211,7 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
     {
       onVertex |= box & IsOnVertex(frame, &at);
     }
-    if (hasBoxes || state)
+    if (hasBoxes || state || hasEdges > 0)
     {
       SnapWeights(onVertex, frame, &weights);
     }

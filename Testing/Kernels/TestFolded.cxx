@@ -103,6 +103,27 @@ TEST(Folded, MirroredVolumeHasNoOverlap)
   Check(mirrored, reference);
 }
 
+TEST(Folded, MirroredAlongAnAxis)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  // Nothing moves along the other two: all samples lie on edges of cells.
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    SCOPED_TRACE(axis);
+    const auto jitter = MakeJitter(static_cast<unsigned int>(axis), 0.17);
+    const DeformerCase mirrored = MakeCase(Volume, NoScale,
+      [&](const glm::dvec3& index)
+      {
+        glm::dvec3 moved = index;
+        moved[axis] = -jitter(index)[axis];
+        return moved;
+      });
+    const reference::Result reference = ResampleByReference(mirrored);
+    EXPECT_EQ(reference.NumberOfInvertedTetrahedra, 5 * GetNumberOfCells(Volume));
+    Check(mirrored, reference);
+  }
+}
+
 TEST(Folded, CornersOfOneCellOverlap)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
