@@ -233,9 +233,9 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
   }
 }
 
-// The samples of a group of cells. mesh: where state is null. state: where the group is on the border, if samples that floats do not decide
-// are to be decided by integers: those of the cells in only, as bits. Else null, and doubts takes these samples.
-// What cells that must be repeated have written is not counted.
+// The samples of a group of cells. mesh: where state is null. state: where the group is on the border, if samples that
+// floats do not decide are to be decided by integers: those of the cells in only, as bits. Else null, and doubts takes
+// these samples. What cells that must be repeated have written is not counted.
 static __attribute__((always_inline)) void ResampleGroup(
   const GroupCandidates* c, uint only, const GroupState* state, const SamplingMesh* mesh,
   Output* output, Found* found, Doubts* doubts, Outcome* outcome,
