@@ -108,15 +108,14 @@ void SessionPipeline::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
 {
   this->Volume = volume;
   this->Mesh = mesh;
-  this->MakeStill();
-  this->TakeRestMesh();
-
   for (Actions* actions : { &this->Done, &this->Undone })
   {
     std::for_each(
       actions->begin(), actions->end(), [this](Action& action) { this->ForgetStates(action); });
     actions->clear();
   }
+  this->MakeStill();
+  this->TakeRestMesh();
   this->IsStroke = false;
   this->Refused.clear();
   this->CutFilter->SetInputData(this->Volume);

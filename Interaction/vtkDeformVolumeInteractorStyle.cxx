@@ -374,12 +374,14 @@ bool vtkDeformVolumeInteractorStyle::Poll()
   if (!isBusy)
   {
     internals.WantedModel = -1;
-    const auto handles = internals.GetHandles();
-    const bool isHeld = std::any_of(handles.begin(), handles.end(),
-      [&](const auto& handle) { return handle.first == internals.Handle; });
-    if (internals.Handle >= 0 && !isHeld)
+    if (internals.Handle >= 0)
     {
-      internals.EndPress(); // there was nothing to hold
+      const auto handles = internals.GetHandles();
+      if (std::none_of(handles.begin(), handles.end(),
+            [&](const auto& handle) { return handle.first == internals.Handle; }))
+      {
+        internals.EndPress(); // there was nothing to hold
+      }
     }
   }
   if (isBusy != internals.WasBusy)

@@ -4,6 +4,7 @@
 #include "DeformedPositions.h"
 #include "Error.h"
 #include "MaskArray.h"
+#include "WrittenTuples.h"
 
 #include "vtkArrayChanges.h"
 #include "vtkCellData.h"
@@ -16,6 +17,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -161,13 +163,12 @@ bool VolumeEditor::SetVolume(vtkImageData* volume, vtkInformation* info)
   this->CutStamp = cutStamp;
   if (isNew || stamp != this->BaseStamp)
   {
-    // The array itself may know what has been written since.
-    const vtkArrayChanges* log = base ? vtkArrayChanges::FindLog(base) : nullptr;
-    MaskEditor::Ranges changes;
-    const bool areKnown = log && this->BaseStamp.size() == stamp.size() &&
-      this->BaseStamp[0].first == stamp[0].first && this->BaseStamp[1] == stamp[1] &&
-      log->GetTuplesSince(this->BaseStamp[0].second, changes);
-    this->Mask->SetBase(bytes, areKnown ? &changes : nullptr);
+    std::optional<PointRanges> changes;
+    if (base && this->BaseStamp.size() == stamp.size() && this->BaseStamp[1] == stamp[1])
+    {
+      changes = FindWritten(base, this->BaseStamp[0].first, this->BaseStamp[0].second);
+    }
+    this->Mask->SetBase(bytes, changes ? &*changes : nullptr);
     this->BaseStamp = stamp;
   }
   return isNew;

@@ -69,16 +69,7 @@ void BoundaryDistances::UpdateBrick(std::size_t brick, const std::vector<const D
 
 std::vector<std::size_t> BoundaryDistances::TakeChangedBricks()
 {
-  std::vector<std::size_t> changed;
-  for (std::size_t brick = 0; !this->Values.empty() && brick < this->Changed.size(); ++brick)
-  {
-    if (this->Changed[brick])
-    {
-      changed.push_back(brick);
-      this->Changed[brick] = false;
-    }
-  }
-  return changed;
+  return this->Values.empty() ? std::vector<std::size_t>() : TakeMarked(this->Changed);
 }
 
 std::uint64_t BoundaryDistances::GetMemory() const

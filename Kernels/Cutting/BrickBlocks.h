@@ -24,6 +24,21 @@ const Block* FindBlock(
     : nullptr;
 }
 
+/// The bricks that are marked, in ascending order. None is afterwards.
+inline std::vector<std::size_t> TakeMarked(std::vector<bool>& marked)
+{
+  std::vector<std::size_t> taken;
+  for (std::size_t brick = 0; brick < marked.size(); ++brick)
+  {
+    if (marked[brick])
+    {
+      taken.push_back(brick);
+      marked[brick] = false;
+    }
+  }
+  return taken;
+}
+
 /// Calls function(local indices, place in a block, place in the volume) for the cells of a brick,
 /// or its vertices (GetVertexBricks).
 template <typename Function>

@@ -38,7 +38,7 @@ MaskEditor::MaskEditor(const Extent& vertices, float far)
 }
 
 std::vector<std::size_t> MaskEditor::CompareBase(
-  const unsigned char* base, const Ranges& changes) const
+  const unsigned char* base, const PointRanges& changes) const
 {
   const auto differs = [&](std::size_t first, std::size_t end)
   { return std::memcmp(base + first, this->Base.data() + first, end - first) != 0; };
@@ -66,24 +66,16 @@ std::vector<std::size_t> MaskEditor::CompareBase(
       }
     }
   }
-  std::vector<std::size_t> bricks;
-  for (std::size_t brick = 0; brick < isChanged.size(); ++brick)
-  {
-    if (isChanged[brick])
-    {
-      bricks.push_back(brick);
-    }
-  }
-  return bricks;
+  return TakeMarked(isChanged);
 }
 
-void MaskEditor::SetBase(const unsigned char* base, const Ranges* changes)
+void MaskEditor::SetBase(const unsigned char* base, const PointRanges* changes)
 {
   const std::size_t count = this->Mask.size();
   if (base && !this->Base.empty())
   {
     const std::vector<std::size_t> bricks =
-      this->CompareBase(base, changes ? *changes : Ranges{ { { 0, count } } });
+      this->CompareBase(base, changes ? *changes : PointRanges{ { { 0, count } } });
     for (const std::size_t brick : bricks)
     {
       ForEachCell(this->Bricks, brick,
@@ -210,16 +202,7 @@ void MaskEditor::Reset()
 
 std::vector<std::size_t> MaskEditor::TakeChangedBricks()
 {
-  std::vector<std::size_t> changed;
-  for (std::size_t brick = 0; brick < this->Changed.size(); ++brick)
-  {
-    if (this->Changed[brick])
-    {
-      changed.push_back(brick);
-      this->Changed[brick] = false;
-    }
-  }
-  return changed;
+  return TakeMarked(this->Changed);
 }
 
 std::uint64_t MaskEditor::GetMemory() const
@@ -291,15 +274,7 @@ void MaskEditor::Update(const std::list<Edit>& edits)
       isHit[brick] = true;
     }
   }
-  std::vector<std::size_t> bricks;
-  for (std::size_t brick = 0; brick < isHit.size(); ++brick)
-  {
-    if (isHit[brick])
-    {
-      bricks.push_back(brick);
-    }
-  }
-  this->Update(bricks);
+  this->Update(TakeMarked(isHit));
 }
 
 void MaskEditor::UpdateBrick(std::size_t brick)

@@ -8,6 +8,7 @@
 #include "DeformVolumeExport.h"
 #include "DistanceSet.h"
 #include "Extent.h"
+#include "PointRanges.h"
 #include "SmoothCrossings.h"
 #include "TetrahedronSet.h"
 
@@ -42,10 +43,9 @@ public:
   const CellBricks& GetBricks() const { return this->Bricks; }
 
   /// Another mask before all edits, one byte a cell; null: all are active. The edits stay. changes:
-  /// cells that may have changed since the last one, as ranges of the first and the one after the
-  /// last; null where that is not known. Bricks that are equal do not count as changed.
-  using Ranges = std::vector<std::array<std::size_t, 2>>;
-  void SetBase(const unsigned char* base, const Ranges* changes = nullptr);
+  /// cells that may have changed since the last one; null where that is not known. Bricks that are
+  /// equal do not count as changed.
+  void SetBase(const unsigned char* base, const PointRanges* changes = nullptr);
   /// Other boundary distances before all edits, one a vertex; null: there are none.
   void SetBaseDistances(const float* base);
 
@@ -106,7 +106,7 @@ private:
   };
 
   /// Which bricks of a base differ, in ascending order.
-  std::vector<std::size_t> CompareBase(const unsigned char* base, const Ranges& changes) const;
+  std::vector<std::size_t> CompareBase(const unsigned char* base, const PointRanges& changes) const;
   /// Makes the mask of some bricks anew.
   void Update(const std::vector<std::size_t>& bricks);
   /// Makes all anew that an edit hits.

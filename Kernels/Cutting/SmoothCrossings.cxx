@@ -306,33 +306,14 @@ void SmoothCrossings::UpdateCells(std::size_t brick, const std::vector<const Cro
     });
 }
 
-namespace
-{
-
-std::vector<std::size_t> Take(std::vector<bool>& changed)
-{
-  std::vector<std::size_t> taken;
-  for (std::size_t brick = 0; brick < changed.size(); ++brick)
-  {
-    if (changed[brick])
-    {
-      taken.push_back(brick);
-      changed[brick] = false;
-    }
-  }
-  return taken;
-}
-
-} // namespace
-
 std::vector<std::size_t> SmoothCrossings::TakeChangedBricks()
 {
-  return this->Crossed.empty() ? std::vector<std::size_t>() : Take(this->Changed);
+  return this->Crossed.empty() ? std::vector<std::size_t>() : TakeMarked(this->Changed);
 }
 
 std::vector<std::size_t> SmoothCrossings::TakeChangedVertexBricks()
 {
-  return this->Crossed.empty() ? std::vector<std::size_t>() : Take(this->ChangedVertices);
+  return this->Crossed.empty() ? std::vector<std::size_t>() : TakeMarked(this->ChangedVertices);
 }
 
 std::uint64_t SmoothCrossings::GetMemory() const

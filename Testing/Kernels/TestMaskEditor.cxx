@@ -57,9 +57,9 @@ reference::Mask Apply(const reference::Mask& base, const std::vector<Edit>& edit
 }
 
 // Changes some ranges of a mask, and tells which.
-MaskEditor::Ranges ChangeSome(std::mt19937& random, reference::Mask& mask)
+PointRanges ChangeSome(std::mt19937& random, reference::Mask& mask)
 {
-  MaskEditor::Ranges ranges(random() % 4);
+  PointRanges ranges(random() % 4);
   for (std::array<std::size_t, 2>& range : ranges)
   {
     range[0] = random() % mask.size();
@@ -194,7 +194,7 @@ TEST(MaskEditor, HistoriesEqualTheReference)
       else if (hasBase)
       {
         const bool isTold = random() % 2 == 0;
-        const MaskEditor::Ranges ranges = ChangeSome(random, base);
+        const PointRanges ranges = ChangeSome(random, base);
         const std::vector<std::size_t> expected = FindDifferent(editor.GetBricks(), base, before);
         editor.SetBase(base.data(), isTold ? &ranges : nullptr);
         changed = editor.TakeChangedBricks();
