@@ -48,7 +48,7 @@ static __attribute__((always_inline)) void ResampleCells(const GroupCandidates* 
     }
     if (outcome.Ambiguous)
     {
-      again |= ResampleByIntegers(c, outcome.Ambiguous, output, found, p ARRAY_ARGUMENTS);
+      again |= ResampleByIntegers(c, outcome.Ambiguous, mesh, output, found, p ARRAY_ARGUMENTS);
     }
   }
   if (again)

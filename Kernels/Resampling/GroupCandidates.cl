@@ -27,7 +27,7 @@ typedef struct
   INTS Number;      // how many in all, in cells that have some
   INTS Box;         // cells that are boxes, if HasBoxes
   INTS Beside;      // boxes where something is missing round a vertex (DecideOnVertices), if HasBeside
-  GroupState State; // if the group is on the border
+  GroupState State; // if HasBeside
   int HasBoxes;
   int HasBeside;
   int Skip; // no cell touches a voxel to be won
@@ -226,8 +226,12 @@ static __attribute__((always_inline)) void EndOnBorder(GroupCandidates* c, INTS 
 {
   const Group* const group = &c->Cells;
   GroupState* const state = &c->State;
-  StatesOfGroup(mesh, group->X, group->Y, group->Z, state, p);
-  *whole = c->There & LaneBits(state->Whole);
+  // Without states all that is there is whole.
+  if (p->HasState || c->HasBoxes)
+  {
+    StatesOfGroup(mesh, group->X, group->Y, group->Z, state, p);
+    *whole = c->There & LaneBits(state->Whole);
+  }
   // Boxes on the border leave what is on their high sides to the next cells, if there are any. That the
   // high sides are the upper ones is wanted for that.
   if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && c->HasBoxes)

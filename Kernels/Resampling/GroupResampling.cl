@@ -119,14 +119,15 @@ typedef struct
 } Rounds;
 
 // Whether cells inside the mesh have edges of which DecideOnEdges knows, and which.
-static __attribute__((noinline)) int LookForEdges(const GroupCandidates* c, const GroupFrame* frame,
-  ParallelEdges* edges, const KernelParameters* p)
+static __attribute__((noinline)) int LookForEdges(const Group* group, const GroupFrame* frame,
+  const SamplingMesh* mesh, ParallelEdges* edges, const KernelParameters* p)
 {
-  const Group* const group = &c->Cells;
   INTS inside = LanesOf(frame->Nice) & ~frame->Inverted;
   if (group->Border)
   {
-    inside &= c->State.Interior == 255;
+    GroupState state;
+    StatesOfGroup(mesh, group->X, group->Y, group->Z, &state, p);
+    inside &= state.Interior == 255;
   }
   FindParallelEdges(group, Mirror(group->X, group->Y, group->Z, p), edges);
   edges->X &= inside;
@@ -183,7 +184,7 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
     {
       if (hasEdges < 0)
       {
-        hasEdges = LookForEdges(c, frame, &edges, p);
+        hasEdges = LookForEdges(group, frame, mesh, &edges, p);
       }
       if (hasEdges)
       {
@@ -288,11 +289,16 @@ static __attribute__((noinline)) Outcome ResampleByFloats(
 
 // Returns the cells that are left to ResampleCell.
 static __attribute__((noinline)) uint ResampleByIntegers(
-  const GroupCandidates* c, uint only, Output* output, Found* found,
+  const GroupCandidates* c, uint only, const SamplingMesh* mesh, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
+  GroupState state;
+  if (c->Cells.Border)
+  {
+    StatesOfGroup(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, &state, p);
+  }
   Outcome outcome;
-  ResampleGroup(c, only, &c->State, 0, output, found, 0, &outcome, p ARRAY_ARGUMENTS);
+  ResampleGroup(c, only, &state, 0, output, found, 0, &outcome, p ARRAY_ARGUMENTS);
   return outcome.Unsure;
 }
 
