@@ -42,6 +42,7 @@ typedef struct
 
 // Functions that are inlined give no structures back: Oclgrind does not know what compilers make of that.
 
+#if LANES > 1
 // Bounds of the columns of four vertices at a place of the rows.
 static __attribute__((always_inline)) void BoundColumns(const LocalRow* rows, int place, Bounds* b)
 {
@@ -79,6 +80,7 @@ static __attribute__((always_inline)) void Shift(const Bounds* a, const Bounds* 
   b->HighY = NextLanes(a->HighY, behind->HighY);
   b->HighZ = NextLanes(a->HighZ, behind->HighZ);
 }
+#endif
 
 // The cells, as bits, whose edge from vertex 0 to another one is parallel to an axis: two coordinates of its ends
 // are the same, and one is not.
@@ -91,7 +93,7 @@ static __attribute__((always_inline)) uint FindAxialEdges(const Group* group, in
 
 // Cells that are boxes, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume: each
 // coordinate varies along one axis of the voxel grid only. rises: those whose coordinates grow with the indices.
-static __attribute__((noinline)) INTS FindBoxes(const Group* group, int mirror, INTS* rises)
+static SELDOM INTS FindBoxes(const Group* group, int mirror, INTS* rises)
 {
   LOAD_VERTICES
 #define SAME(C, a, b) (C##a == C##b)
@@ -112,7 +114,7 @@ typedef struct
   INTS X, Y, Z;
 } ParallelEdges;
 
-static __attribute__((noinline)) void FindParallelEdges(
+static SELDOM void FindParallelEdges(
   const Group* group, int mirror, ParallelEdges* edges)
 {
   LOAD_VERTICES
@@ -130,7 +132,7 @@ static __attribute__((noinline)) void FindParallelEdges(
 #define END_OF(high, toEnd, size) TO_INTS(Least((high) + toEnd, (float)(size)))
 
 // Boxes do not look at their high sides, nor at whether they own a sample: all samples in them count as touched.
-static __attribute__((noinline)) void TouchBoxes(
+static SELDOM void TouchBoxes(
   INTS box, const Bounds* b, Output* output, const KernelParameters* p)
 {
   const INTS firstX = FIRST_OF(b->LowX);
@@ -160,6 +162,7 @@ static __attribute__((noinline)) void TouchBoxes(
   }
 }
 
+#if LANES > 1
 // Has the processor fetch the output where the candidates of some lanes of a group begin, long before it is written:
 // FetchFound reaches the caches in time, and memory only where this has begun.
 static __attribute__((always_inline)) void FetchOutput(
@@ -174,6 +177,7 @@ static __attribute__((always_inline)) void FetchOutput(
     PREFETCH_TO_WRITE(output->Coverage + place)
   }
 }
+#endif
 
 // How large cells with these bounds are.
 static __attribute__((always_inline)) void MeasureCells(const Bounds* b, GroupCandidates* c)
@@ -360,10 +364,11 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   c->Some = some & c->Fit;
 }
 
+#if LANES > 1
 // For the two groups at place k of a row of cells, for even and for odd x: cells of the second begin at the odd
 // vertices. even: the bounds of the columns of even x at this place, and then at the next one. output: of the
 // column of the brick.
-static __attribute__((noinline)) void FindPairCandidates(const RowOfCells* row, int k, Bounds* even,
+static SELDOM void FindPairCandidates(const RowOfCells* row, int k, Bounds* even,
   const SamplingMesh* mesh, Output* output, GroupCandidates* candidates,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -379,3 +384,4 @@ static __attribute__((noinline)) void FindPairCandidates(const RowOfCells* row, 
   FindGroupCandidates(&cells, mesh, output, candidates + 1, p ARRAY_ARGUMENTS);
   *even = behind;
 }
+#endif

@@ -381,6 +381,8 @@ Deformed LoadAndRun(
   Deformed deformed = RunDeformer(deformer, deformerCase, arrays);
   deformed.ByCell = std::make_shared<Deformed>(
     RunDeformer(deformer, deformerCase, arrays, Resampling::ExactByCell));
+  deformed.ByColumns = std::make_shared<Deformed>(
+    RunDeformer(deformer, deformerCase, arrays, Resampling::ExactByColumns));
   return deformed;
 }
 
@@ -423,6 +425,18 @@ void ExpectEqualsReference(const DeformerCase& deformerCase, const reference::Re
     break;
       DEFORMVOLUME_ELEMENT_TYPES(COMPARE_CASE)
 #undef COMPARE_CASE
+    }
+  }
+  if (deformed.ByColumns)
+  {
+    SCOPED_TRACE("by columns");
+    ExpectEqualsReference(deformerCase, reference, arrays, *deformed.ByColumns);
+    if (HasVectors())
+    {
+      for (std::size_t array = 0; array < arrays.size(); ++array)
+      {
+        EXPECT_TRUE(deformed.Outputs[array] == deformed.ByColumns->Outputs[array]) << array;
+      }
     }
   }
   if (deformed.ByCell)

@@ -45,6 +45,10 @@ int main(int argc, char* argv[])
     {
       deform.Method = Resampling::ExactByCell;
     }
+    else if (word == "columns")
+    {
+      deform.Method = Resampling::ExactByColumns;
+    }
     else if (word == "runs")
     {
       route = Route::Runs;
