@@ -7,9 +7,14 @@
 // in local memory; all items map the next one together. Neighbours along x write voxels that mostly lie side by side.
 // What few cells need would keep registers from all others, and most of a group waiting: cells on the border of
 // the mesh, bent or large ones and those that a cut divides go into a queue, which ResampleQueued takes after that.
-// Most cells have a sample or none. Of the remaining ones, those that are boxes, as where nothing is deformed, own
-// what is within their bounds; and for samples near a face all items of a group that have such a one go through the
-// same branch.
+// Most cells have a sample or none. Cells that are boxes, as where nothing is deformed, own what is within their bounds.
+// Samples that floats do not decide are put into a list in local memory, and when all cells of a layer have been
+// seen, the group takes what is in that, a sample an item: so no item waits for another one's integers, and neither
+// kind of arithmetic has registers where the other one works.
+//
+// What the host puts in front of this text:
+//   HAS_COLUMN_KERNEL  1 for ResampleColumns, 0 for ResampleQueued
+//   PASS_IS_DIRECT     1 where the pass of ResampleColumns is known to be the direct one, which costs fewer registers
 //
 // Data: as BrickResampling.cl. It comes after GroupWalk.cl. queue: the number of entries, then the entries
 // (QUEUE_...). rows: ROW floats for each row of two planes.
@@ -18,6 +23,7 @@
 #define FLAG_BORDER 1  // a vertex that is not interior
 #define FLAG_SPECIAL 2 // one with a value that sums of products do not give back bit for bit
 #define FLAG_APART 4   // one that lies elsewhere as seen from the other side of a smooth cut
+#define FLAG_OUTSIDE 8 // a place beyond the volume
 
 // Of cells with more candidates each takes all lanes as long as the longest of them: they go into the queue.
 #define MOST_CANDIDATES_IN_COLUMN 64
@@ -29,6 +35,12 @@
 #define QUEUE_FLOATS 0 // the cell is resampled as a group is
 #define QUEUE_DOUBTS 1 // it has been, but for samples that floats do not decide: these, by ResampleSamples
 #define QUEUE_UNSURE 2 // by ResampleCell
+#define QUEUE_INTEGERS 3 // as with QUEUE_DOUBTS, but by integers of 32 bits: there was no room in the list
+
+// Samples that floats have not decided, of a layer of a group: the cell, and above LISTED_BITS the number of the candidate.
+#define MOST_LISTED 1024
+#define LISTED_BITS 8
+#define NONE_LISTED 0xffff
 
 // What becomes of a cell whose samples floats and integers of 32 bits have taken.
 #define CELL_DONE -1
@@ -114,10 +126,10 @@ static int IsDecidedOnVertices(const GroupCandidates* c, const GroupFrame* frame
   const GroupScales* scales, float decisive, const KernelParameters* p)
 {
   int decided = c->HasBeside && c->Beside;
-  Walk at;
-  BeginWalk(c, frame, &at, p);
-  for (int i = 0; i < c->Number && decided && c->Extent < MAXIMUM_EXACT_EXTENT; ++i, Advance(&at))
+  for (int i = 0; i < c->Number && decided && c->Extent < MAXIMUM_EXACT_EXTENT; ++i)
   {
+    Walk at;
+    GoTo(c, frame, i, &at, p);
     SampleWeights weights;
     WeighSamples(frame, scales, at.X, at.Y, at.Z, &weights);
     uint undecided;
@@ -127,11 +139,12 @@ static int IsDecidedOnVertices(const GroupCandidates* c, const GroupFrame* frame
   return decided;
 }
 
-// The samples of a cell whose frame is nice. mesh: where the cell may be on the border. Returns what is still to be
-// done: CELL_DONE or QUEUE_...
+// The samples of a cell whose frame is nice. mesh: where the cell may be on the border. undecidedOnes: takes the numbers,
+// as bits, of candidates that floats do not decide and integers of 32 bits are to; null: these do so here.
+// onlyUndecided: of all samples those only. Returns what is still to be done: CELL_DONE or QUEUE_...
 static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
-  const GroupFrame* frame, const SamplingMesh* mesh, Output* output,
-  const KernelParameters* p ARRAY_PARAMETERS)
+  const GroupFrame* frame, const SamplingMesh* mesh, ulong* undecidedOnes, int onlyUndecided,
+  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Group* const group = &c->Cells;
   // Boxes take all their candidates, whatever the second smallest weight is, from which it is told that a sample is
@@ -148,19 +161,25 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
   }
   GroupScales scales;
   FindScales(frame, &scales);
-  Walk at;
-  BeginWalk(c, frame, &at, p);
+  // The only vertex that may be among the candidates of a box inside the mesh is its lowest one, the first candidate; but
+  // not so in passes for all cells that hold a voxel.
+  Walk first;
+  GoTo(c, frame, 0, &first, p);
+  const int mayReachEnds = mesh || DEFORMVOLUME_IS_CLOSED(p->Pass);
+  const int beginsOnVertex = box && IsOnVertex(frame, &first);
   const int beside = mesh && IsDecidedOnVertices(c, frame, &scales, decisive, p);
   uint writes = 0;
   uint left = 0;      // whether floats have left samples undecided
   uint ambiguous = 0; // whether integers have
   for (int i = 0; i < c->Number; ++i)
   {
+    Walk at;
+    GoTo(c, frame, i, &at, p);
     SampleWeights weights;
     WeighSamples(frame, &scales, at.X, at.Y, at.Z, &weights);
     uint undecided;
     uint held = DecideByFloats(&weights, 1, decisive, frame->Bound, &undecided);
-    int onVertex = box && IsOnVertex(frame, &at);
+    int onVertex = i == 0 ? beginsOnVertex : mayReachEnds && box && IsOnVertex(frame, &at);
     if (beside && IsOnVertex(frame, &at))
     {
       undecided = 0;
@@ -168,7 +187,12 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
         at.Y + frame->Y0, at.Z + frame->Z0, mesh, output, p);
       onVertex = 1;
     }
-    if (undecided && isExact)
+    held = onlyUndecided ? 0 : held;
+    if (undecided && isExact && undecidedOnes)
+    {
+      *undecidedOnes |= 1ul << i;
+    }
+    else if (undecided && isExact)
     {
       const float sample[3] = { at.X, at.Y, at.Z };
       int isVertex;
@@ -184,7 +208,7 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
     {
       held &= InOutput(at.X + frame->X0, at.Y + frame->Y0, at.Z + frame->Z0, p);
     }
-    writes += held;
+    *(undecidedOnes ? &output->Writes : &writes) += held;
     if (held)
     {
       if (onVertex)
@@ -193,7 +217,6 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
       }
       StoreSample(group, at.Place, frame->Inverted, &weights, output, p ARRAY_ARGUMENTS);
     }
-    Advance(&at);
   }
   // Cells too large for these integers leave the samples in question only: they have many, and hardly one is.
   const int again = left && c->Extent < MAXIMUM_EXACT_EXTENT ? 1 : (int)ambiguous;
@@ -202,15 +225,14 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
     return QUEUE_UNSURE; // and what it has written must not count twice
   }
   output->Writes += writes;
-  output->Inverted += frame->Inverted ? 5 : 0;
+  output->Inverted += frame->Inverted && !onlyUndecided ? 5 : 0;
   return left ? QUEUE_DOUBTS : CELL_DONE;
 }
 
-// A cell, as far as floats and integers of 32 bits take it. mesh: where it may be on the border; else null. most: of
-// its candidates. Returns what is still to be done.
+// A cell, as far as floats and integers of 32 bits take it. most: of its candidates. All else is as for TakeSamples.
 static __attribute__((always_inline)) int ResampleColumnCell(GroupCandidates* c, int most,
-  const SamplingMesh* mesh, GroupFrame* frame, Output* output,
-  const KernelParameters* p ARRAY_PARAMETERS)
+  const SamplingMesh* mesh, GroupFrame* frame, ulong* undecidedOnes, int onlyUndecided,
+  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   Bounds bounds;
   BoundCell(&c->Cells, &bounds);
@@ -233,7 +255,7 @@ static __attribute__((always_inline)) int ResampleColumnCell(GroupCandidates* c,
     output->Inverted += frame->Inverted ? 5 : 0;
     return CELL_DONE;
   }
-  return TakeSamples(c, frame, mesh, output, p ARRAY_ARGUMENTS);
+  return TakeSamples(c, frame, mesh, undecidedOnes, onlyUndecided, output, p ARRAY_ARGUMENTS);
 }
 
 // Adds the counts of a work-item to those of its group.
@@ -251,40 +273,134 @@ static void AddToGroup(const Output* output, __local uint* counts)
 }
 
 #if HAS_COLUMN_KERNEL
+// The cell of a group at a place of its layer. z: of the cell.
+static __attribute__((always_inline)) void MakeColumnCell(__local const float* rows, int3 first,
+  int inX, int inY, int z, Group* cell, const KernelParameters* p)
+{
+  cell->Row = rows + (inY + (inY & 1)) * ROW + (inX >> 1);
+  cell->OddY = inY & 1 ? -ROW : ROW;
+  cell->Side = inX & 1;
+  cell->X = first.x + inX;
+  cell->Y = first.y + inY;
+  cell->Z = z;
+  cell->Odd = (p->First[0] + cell->X + p->First[1] + cell->Y + p->First[2] + z) & 1;
+  cell->Border = 0;
+  cell->Apart = 0;
+}
+
+// Lists samples of a cell, by the numbers of the candidates, as bits. Returns whether there was room.
+static int List(ulong candidates, int cell, __local ushort* list, __local uint* listed)
+{
+  const uint number = popcount(candidates);
+  uint place = atomic_add(listed, number);
+  const int fits = place + number <= MOST_LISTED;
+  for (; candidates && place < MOST_LISTED; candidates &= candidates - 1, ++place)
+  {
+    const int candidate = 63 - clz(candidates & -candidates);
+    list[place] = fits ? candidate << LISTED_BITS | cell : NONE_LISTED;
+  }
+  return fits;
+}
+
+// A sample of the list. Its cell is neither a box nor on the border, and its frame is nice.
+static __attribute__((always_inline)) void TakeListed(
+  const Group* group, int candidate, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  GroupFrame frame;
+  FindNormals(group, &frame);
+  TurnInverted(1, &frame);
+  // As it was found to be a candidate.
+  const float toEnd = p->Pass != DEFORMVOLUME_PASS_DIRECT ? 1.0f : ALMOST_ONE;
+  const ToEnds toEnds = { toEnd, toEnd, toEnd };
+  Bounds bounds;
+  BoundCell(group, &bounds);
+  GroupCandidates c;
+  SetCandidates(&bounds, &toEnds, &c, p);
+  Walk at;
+  GoTo(&c, &frame, candidate, &at, p);
+  const float sample[3] = { at.X, at.Y, at.Z };
+  int onVertex;
+  uint none = 0;
+  GroupState unused;
+  uint held =
+    DecideByIntegers(group, 1, sample, frame.Inverted, &unused, &onVertex, &none, output, p);
+  if (p->IsPart)
+  {
+    held &= InOutput(at.X + frame.X0, at.Y + frame.Y0, at.Z + frame.Z0, p);
+  }
+  if (!held)
+  {
+    return;
+  }
+  output->Writes++;
+  FindCoordinates(group, &frame);
+  GroupScales scales;
+  FindScales(&frame, &scales);
+  SampleWeights weights;
+  WeighSamples(&frame, &scales, at.X, at.Y, at.Z, &weights);
+  SnapWeights(onVertex, &frame, &weights);
+  StoreSample(group, at.Place, frame.Inverted, &weights, output, p ARRAY_ARGUMENTS);
+}
+
+// The section of a brick that a group takes, or one of a brick that has none to be run, for a group that only fills the
+// launch. What can be found from the number of the group is not kept in registers.
+static uint BrickOfGroup(__global const uint* bricks, const KernelParameters* p)
+{
+  const int place = p->ListBegin + (int)(get_group_id(0) / DEFORMVOLUME_COLUMNS);
+  return place < p->ListEnd ? bricks[place] : 0;
+}
+
+static size_t SectionOfGroup(uint brick)
+{
+  return DEFORMVOLUME_SECTIONS * (size_t)(brick & ((1u << DEFORMVOLUME_BRICK_BITS) - 1)) +
+    (get_group_id(2) * 2 + get_group_id(1)) * DEFORMVOLUME_COLUMNS +
+    get_group_id(0) % DEFORMVOLUME_COLUMNS;
+}
+
+static int3 FirstInBrick()
+{
+  return (int3)((int)(get_group_id(0) % DEFORMVOLUME_COLUMNS) * ROW_CELLS,
+    (int)get_group_id(1) * CELL_ROWS, (int)get_group_id(2) * CELL_LAYERS);
+}
+
+// A cell of a group as the queue numbers it. cell: its place in a layer.
+static uint NumberInLaunch(int cell, int layer)
+{
+  const int3 first = FirstInBrick();
+  return get_group_id(0) / DEFORMVOLUME_COLUMNS * CELLS_OF_BRICK +
+    ((first.z + layer) * DEFORMVOLUME_BRICK_Y + first.y + cell / ROW_CELLS) * DEFORMVOLUME_BRICK_X +
+    first.x + cell % ROW_CELLS;
+}
+
 // Bricks of a list from p.ListBegin to p.ListEnd, a group a section: on x the columns of one brick after the other, on y
 // and z the halves.
 __kernel void ResampleColumns(MAPPING_PARAMETERS, __global const uchar* state,
   __global const uchar* active, __global const float* distances, __global char* coverage,
   __global KEY* winners, __global char* patches, __global uint* largeCells,
   __global uint* counters CUT_PARAMETERS, __global const uint* bricks, __global uint* queue,
-  __local float* rows, const KernelParameters p ARRAY_PARAMETERS)
+  __local float* rows, const KernelParameters parameters ARRAY_PARAMETERS)
 {
+  KernelParameters p = parameters;
+#if PASS_IS_DIRECT
+  p.Pass = DEFORMVOLUME_PASS_DIRECT;
+#endif
   __local uchar flags[2 * PLANE_VERTICES];
+  __local ushort list[MOST_LISTED];
+  __local uint listed;
   __local uint counts[DEFORMVOLUME_COUNTERS];
-  const int place = get_group_id(0) / DEFORMVOLUME_COLUMNS;
-  const int column = get_group_id(0) % DEFORMVOLUME_COLUMNS;
-  const int halves = get_group_id(2) * 2 + get_group_id(1);
-  const uint brick = place < p.ListEnd - p.ListBegin ? bricks[p.ListBegin + place] : 0;
-  const size_t section =
-    DEFORMVOLUME_SECTIONS * (size_t)(brick & ((1u << DEFORMVOLUME_BRICK_BITS) - 1)) +
-    halves * DEFORMVOLUME_COLUMNS + column;
-  const int3 ofBrick = FirstOfBrick(brick, &p);
-  const int3 inBrick = (int3)(
-    column * ROW_CELLS, (int)get_group_id(1) * CELL_ROWS, (int)get_group_id(2) * CELL_LAYERS);
-  const int3 first = ofBrick + inBrick;
-  const int isRun = IsSectionRun(brick, section); // of what fills the launch no section is
-  const int beginX = max(first.x, 0), endX = min(first.x + ROW_CELLS, p.Size[0] - 1);
-  const int beginY = max(first.y, 0), endY = min(first.y + CELL_ROWS, p.Size[1] - 1);
+  const uint brick = BrickOfGroup(bricks, &p);
+  const int3 first = FirstOfBrick(brick, &p) + FirstInBrick();
   const int beginZ = max(first.z, p.LayersBegin);
-  const int endZ = min(first.z + CELL_LAYERS, p.LayersEnd);
-  const int isEmpty = !isRun || beginX >= endX || beginY >= endY || beginZ >= endZ;
+  const int endZ = IsSectionRun(brick, SectionOfGroup(brick)) && beginZ < p.LayersEnd
+    ? min(first.z + CELL_LAYERS, p.LayersEnd)
+    : beginZ - 1;
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, 0, { 0, 0, 0 } };
   Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
   for (int i = get_local_id(0); i < DEFORMVOLUME_COUNTERS; i += get_local_size(0))
   {
     counts[i] = 0;
   }
-  for (int z = beginZ; z <= (isEmpty ? beginZ - 1 : endZ); ++z)
+  for (int z = beginZ; z <= endZ; ++z)
   {
     // Rows of even and of odd structured y, and planes, lie by their parity.
     const int plane = (p.First[2] + z) & 1;
@@ -292,62 +408,62 @@ __kernel void ResampleColumns(MAPPING_PARAMETERS, __global const uchar* state,
     {
       const int inX = i % (ROW_CELLS + 1), inY = i / (ROW_CELLS + 1);
       const int x = first.x + inX, y = first.y + inY;
-      if (x >= beginX && x <= endX && y >= beginY && y <= endY)
-      {
-        flags[plane * PLANE_VERTICES + i] = MapVertex(&mesh, x, y, z,
-          rows + (plane * ROWS + inY) * ROW + (inX >> 1) + (inX & 1 ? ODD : 0),
-          &p ARRAY_ARGUMENTS);
-      }
+      flags[plane * PLANE_VERTICES + i] = x >= 0 && y >= 0 && x < p.Size[0] && y < p.Size[1]
+        ? MapVertex(&mesh, x, y, z,
+            rows + (plane * ROWS + inY) * ROW + (inX >> 1) + (inX & 1 ? ODD : 0), &p ARRAY_ARGUMENTS)
+        : FLAG_OUTSIDE;
+    }
+    if (get_local_id(0) == 0)
+    {
+      listed = 0;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    for (int i = get_local_id(0); i < ROW_CELLS * CELL_ROWS; i += get_local_size(0))
+    for (int i = get_local_id(0); i < (z > beginZ ? ROW_CELLS * CELL_ROWS : 0);
+         i += get_local_size(0))
     {
       const int inX = i % ROW_CELLS, inY = i / ROW_CELLS;
-      const int x = first.x + inX, y = first.y + inY;
-      if (z == beginZ || x < beginX || x >= endX || y < beginY || y >= endY)
-      {
-        continue;
-      }
       __local const uchar* const f = flags + inY * (ROW_CELLS + 1) + inX;
       const int other = PLANE_VERTICES, up = ROW_CELLS + 1;
       const uint any =
         f[0] | f[1] | f[up] | f[up + 1] | f[other] | f[other + 1] | f[other + up] | f[other + up + 1];
-      const uint cell = (uint)place * CELLS_OF_BRICK +
-        ((z - 1 - ofBrick.z) * DEFORMVOLUME_BRICK_Y + y - ofBrick.y) * DEFORMVOLUME_BRICK_X + x -
-        ofBrick.x;
-      int left = QUEUE_FLOATS;
-      if (any & FLAG_SPECIAL)
-      {
-        left = QUEUE_UNSURE;
-      }
-      else if (any == 0)
+      int left = any & FLAG_OUTSIDE ? CELL_DONE : any & FLAG_SPECIAL ? QUEUE_UNSURE : QUEUE_FLOATS;
+      if (any == 0)
       {
         GroupCandidates c;
-        c.Cells.Row = rows + (inY + (inY & 1)) * ROW + (inX >> 1);
-        c.Cells.OddY = inY & 1 ? -ROW : ROW;
-        c.Cells.Side = inX & 1;
-        c.Cells.X = x;
-        c.Cells.Y = y;
-        c.Cells.Z = z - 1;
-        c.Cells.Odd = (p.First[0] + x + p.First[1] + y + p.First[2] + z - 1) & 1;
-        c.Cells.Border = 0;
-        c.Cells.Apart = 0;
+        MakeColumnCell(rows, first, inX, inY, z - 1, &c.Cells, &p);
         GroupFrame frame;
-        left = ResampleColumnCell(
-          &c, MOST_CANDIDATES_IN_COLUMN, 0, &frame, &output, &p ARRAY_ARGUMENTS);
+        ulong undecided = 0;
+        left = ResampleColumnCell(&c, MOST_CANDIDATES_IN_COLUMN, 0, &frame, &undecided, 0, &output,
+          &p ARRAY_ARGUMENTS);
+        if (undecided && !List(undecided, i, list, &listed))
+        {
+          left = QUEUE_INTEGERS;
+        }
       }
       if (left != CELL_DONE)
       {
-        Enqueue(queue, cell, left);
+        Enqueue(queue, NumberInLaunch(i, z - 1 - first.z), left);
+      }
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint i = get_local_id(0); i < min(listed, (uint)MOST_LISTED); i += get_local_size(0))
+    {
+      const uint entry = list[i];
+      if (entry != NONE_LISTED)
+      {
+        const int cell = entry & ((1 << LISTED_BITS) - 1);
+        Group group;
+        MakeColumnCell(rows, first, cell % ROW_CELLS, cell / ROW_CELLS, z - 1, &group, &p);
+        TakeListed(&group, entry >> LISTED_BITS, &output, &p ARRAY_ARGUMENTS);
       }
     }
     barrier(CLK_LOCAL_MEM_FENCE);
   }
   AddToGroup(&output, counts);
   barrier(CLK_LOCAL_MEM_FENCE);
-  for (int i = get_local_id(0); i < DEFORMVOLUME_COUNTERS && isRun; i += get_local_size(0))
+  for (int i = get_local_id(0); i < DEFORMVOLUME_COUNTERS; i += get_local_size(0))
   {
-    AddCount(i, counts[i], section, counters, &p);
+    AddCount(i, counts[i], SectionOfGroup(BrickOfGroup(bricks, &p)), counters, &p);
   }
 }
 
@@ -367,11 +483,11 @@ static void ResampleDoubts(const GroupCandidates* c, const GroupFrame* frame,
   const uint inverted = output->Inverted;
   GroupScales scales;
   FindScales(frame, &scales);
-  Walk at;
-  BeginWalk(c, frame, &at, p);
   const float decisive = c->HasBoxes && c->Box ? -INFINITY : frame->Bound;
-  for (int i = 0; i < c->Number; ++i, Advance(&at))
+  for (int i = 0; i < c->Number; ++i)
   {
+    Walk at;
+    GoTo(c, frame, i, &at, p);
     SampleWeights weights;
     WeighSamples(frame, &scales, at.X, at.Y, at.Z, &weights);
     uint undecided;
@@ -426,18 +542,8 @@ static void ResampleQueuedCell(const SamplingMesh* mesh, int x, int y, int z, in
     c.Cells.Odd = (p->First[0] + x + p->First[1] + y + p->First[2] + z) & 1;
     c.Cells.Border = (flags & FLAG_BORDER) != 0;
     c.Cells.Apart = (flags & FLAG_APART) != 0;
-    if (what == QUEUE_DOUBTS)
-    {
-      Output none = *output; // all else has been counted
-      Bounds bounds;
-      BoundCell(&c.Cells, &bounds);
-      FindGroupCandidates(&bounds, mesh, &none, &c, p ARRAY_ARGUMENTS);
-      MakeGroupFrame(&c, c.Fit, &frame);
-    }
-    else
-    {
-      what = ResampleColumnCell(&c, MAXIMUM_CANDIDATES, mesh, &frame, output, p ARRAY_ARGUMENTS);
-    }
+    what = ResampleColumnCell(
+      &c, MAXIMUM_CANDIDATES, mesh, &frame, 0, what != QUEUE_FLOATS, output, p ARRAY_ARGUMENTS);
     if (what == QUEUE_DOUBTS)
     {
       ResampleDoubts(&c, &frame, mesh, output, p ARRAY_ARGUMENTS);

@@ -116,7 +116,7 @@ std::size_t ExactPasses::GetNumberOfLaunches() const
   return static_cast<std::size_t>((this->Volume.GetSize(2) + layers - 1) / layers);
 }
 
-cl::Kernel ExactPasses::MakeKernel(ResamplingForm form, const OutputSlab& output)
+cl::Kernel ExactPasses::MakeKernel(ResamplingForm form, const OutputSlab& output, int pass)
 {
   OpenCLContext& context = this->Device.GetContext();
   const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
@@ -131,7 +131,8 @@ cl::Kernel ExactPasses::MakeKernel(ResamplingForm form, const OutputSlab& output
   }
   const bool wideKeys = GetWinnerSize(this->Volume.GetVoxelGrid()) == 8;
   return cl::Kernel(GetResamplingProgram(context, this->Source.GetMappingForm(), arrays,
-                      { form, wideKeys, output.HasCoverageBits(), this->Volume.HasCut() }),
+                      { form, wideKeys, output.HasCoverageBits(), this->Volume.HasCut(),
+                        form == ResamplingForm::Columns && pass == DEFORMVOLUME_PASS_DIRECT }),
     GetKernelName(form));
 }
 
@@ -351,7 +352,7 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
   }
   const std::vector<cl_uint>& list = bricks ? *bricks : all;
   const ResamplingForm form = this->ChooseForm(request.Method, output);
-  cl::Kernel kernel = this->MakeKernel(form, output);
+  cl::Kernel kernel = this->MakeKernel(form, output, pass);
   this->SendBricks(list);
   if (form == ResamplingForm::Columns)
   {
@@ -383,7 +384,8 @@ void ExactPasses::RunColumns(const DeformRequest& request, const OutputSlab& out
   {
     Reserve(this->Device.GetContext(), this->Queue, (1 + entries) * sizeof(cl_uint));
   }
-  cl::Kernel queue = this->MakeKernel(ResamplingForm::Queue, output);
+  cl::Kernel queue =
+    this->MakeKernel(ResamplingForm::Queue, output, launches.front().Parameters.Pass);
   const PlannedLaunch& first = launches.front();
   this->PrepareKernel(columns, first.Chunk, output, ResamplingForm::Columns, first.Parameters);
   this->Device.GetQueue().enqueueFillBuffer(this->Queue, cl_uint{ 0 }, 0, sizeof(cl_uint));
@@ -418,7 +420,7 @@ void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& 
     left += static_cast<std::uint64_t>(cell.Pieces);
   }
   this->Launched.Expect(left / DEFORMVOLUME_PIECES + 1);
-  cl::Kernel kernel = this->MakeKernel(ResamplingForm::LargeCells, output);
+  cl::Kernel kernel = this->MakeKernel(ResamplingForm::LargeCells, output, pass);
   const std::size_t group = this->Device.GetBusyGroupSize(kernel);
   Reserve(this->Device.GetContext(), this->Pieces, DEFORMVOLUME_PIECES * sizeof(Piece));
   for (const VolumeChunk& chunk : this->Volume.GetChunks())

@@ -77,7 +77,7 @@ private:
   std::size_t GetColumnGroup(const cl::Kernel& kernel, ResamplingForm form);
   std::size_t GetQueueItems(std::size_t group);
 
-  cl::Kernel MakeKernel(ResamplingForm form, const OutputSlab& output);
+  cl::Kernel MakeKernel(ResamplingForm form, const OutputSlab& output, int pass);
   /// Has a kernel compiled before it runs (OpenCLContext::Prepare).
   void PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk, const OutputSlab& output,
     ResamplingForm form, const KernelParameters& parameters);

@@ -292,6 +292,29 @@ static __attribute__((always_inline)) void FindSamplesOfWhole(
   s->CountZ = WHOLE_END(b->HighZ, toEnds->Z, 2) - s->FirstZ;
 }
 
+// The samples within the bounds of cells as their candidates.
+static __attribute__((always_inline)) void SetCandidates(
+  const Bounds* b, const ToEnds* toEnds, GroupCandidates* c, const KernelParameters* p)
+{
+  SamplesInBounds s;
+  if (p->IsPart)
+  {
+    FindSamplesOfWhole(b, toEnds, &s, p);
+  }
+  else
+  {
+    FindSamples(b, toEnds, &s, p);
+  }
+  c->First[0] = s.FirstX;
+  c->First[1] = s.FirstY;
+  c->First[2] = s.FirstZ;
+  c->Count[0] = s.CountX;
+  c->Count[1] = s.CountY;
+  c->Count[2] = s.CountZ;
+  c->Place = (s.FirstZ * p->OutputSize[1] + s.FirstY) * p->OutputSize[0] + s.FirstX;
+  c->Number = s.CountX * s.CountY * s.CountZ;
+}
+
 // Whether some cells, as bits, touch no voxel to be won.
 static __attribute__((always_inline)) int IsSettled(
   uint some, const SamplesInBounds* s, const Output* output, const KernelParameters* p)
@@ -347,18 +370,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   // Cells that a cut divides, none of which is whole, reach beyond the bounds of their vertices.
   const int isDivided = HAS_CUT && (c->There & ~whole);
   c->Skip = DEFORMVOLUME_IS_CLOSED(p->Pass) && !isDivided && IsSettled(some, &s, output, p);
-  if (p->IsPart)
-  {
-    FindSamplesOfWhole(b, &toEnds, &s, p);
-  }
-  c->First[0] = s.FirstX;
-  c->First[1] = s.FirstY;
-  c->First[2] = s.FirstZ;
-  c->Count[0] = s.CountX;
-  c->Count[1] = s.CountY;
-  c->Count[2] = s.CountZ;
-  c->Place = (s.FirstZ * p->OutputSize[1] + s.FirstY) * p->OutputSize[0] + s.FirstX;
-  c->Number = s.CountX * s.CountY * s.CountZ;
+  SetCandidates(b, &toEnds, c, p);
   c->Fit = whole & LaneBits(c->Extent < MAXIMUM_EXTENT) &
     ~(some & LaneBits(c->Number > MAXIMUM_CANDIDATES));
   c->Some = some & c->Fit;

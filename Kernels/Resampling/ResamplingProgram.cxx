@@ -35,8 +35,8 @@ std::size_t GetColumnMemory(std::size_t slots)
   return 2 * (DEFORMVOLUME_BRICK_Y / 2 + 1) * row * sizeof(cl_float);
 }
 
-/// What that has besides: flags of the vertices, and counts.
-constexpr std::size_t OtherColumnMemory = 1024;
+/// What that has besides: flags of the vertices, a list of samples, and counts.
+constexpr std::size_t OtherColumnMemory = 4096;
 
 std::size_t GetLocalMemory(const OpenCLContext& context)
 {
@@ -74,9 +74,10 @@ std::size_t CountSlots(
 
 /// What the texts from LaneVectors.cl to BrickResampling.cl, or to ColumnResampling.cl, expect in
 /// front of them.
-std::string MakeLanePreamble(
-  const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingForm form)
+std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<VolumeArray>& arrays,
+  const ResamplingVariant& variant)
 {
+  const ResamplingForm form = variant.Form;
   const std::vector<bool> inLanes = FindLaneArrays(context, arrays, form);
   std::string list;
   std::string others;
@@ -101,25 +102,26 @@ std::string MakeLanePreamble(
   return "#define LANES " + std::to_string(lanes ? GetLanes(context) : 1) +
     "\n#define ROW_MEMORY " + (local ? "__local" : "__global") + "\n#define ROWS_ARE_GLOBAL " +
     (local ? "0\n" : "1\n") + shape + "#define HAS_COLUMN_KERNEL " +
-    (form == ResamplingForm::Columns ? "1" : "0") + "\n#define LANE_SLOTS " +
-    std::to_string(slots) + "\n#define LANE_ARRAYS(DO)" + list + "\n#define HAS_OTHER_ARRAYS " +
+    (form == ResamplingForm::Columns ? "1" : "0") + "\n#define PASS_IS_DIRECT " +
+    (variant.IsDirect ? "1" : "0") + "\n#define LANE_SLOTS " + std::to_string(slots) +
+    "\n#define LANE_ARRAYS(DO)" + list + "\n#define HAS_OTHER_ARRAYS " +
     (others.empty() ? "0" : "1") + "\n#define STORE_OTHER_ARRAYS " + others + "\n";
 }
 
 /// The texts of a form, besides those that all have.
-ProgramText GetFormText(
-  const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingForm form)
+ProgramText GetFormText(const OpenCLContext& context, const std::vector<VolumeArray>& arrays,
+  const ResamplingVariant& variant)
 {
-  switch (form)
+  switch (variant.Form)
   {
     case ResamplingForm::Lanes:
-      return ProgramText(MakeLanePreamble(context, arrays, form)) + LaneVectors_cl +
+      return ProgramText(MakeLanePreamble(context, arrays, variant)) + LaneVectors_cl +
         GroupVertices_cl + RowDisplacements_cl + BrickMapping_cl + GroupValues_cl +
         GroupSamples_cl + GroupCoverage_cl + GroupCandidates_cl + GroupWeights_cl + GroupWalk_cl +
         GroupResampling_cl + BrickResampling_cl;
     case ResamplingForm::Columns:
     case ResamplingForm::Queue:
-      return ProgramText(MakeLanePreamble(context, arrays, form)) + LaneVectors_cl +
+      return ProgramText(MakeLanePreamble(context, arrays, variant)) + LaneVectors_cl +
         GroupVertices_cl + GroupValues_cl + GroupCoverage_cl + GroupCandidates_cl +
         GroupWeights_cl + GroupWalk_cl + ColumnResampling_cl;
     case ResamplingForm::LargeCells:
@@ -172,7 +174,7 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
       key + "#define HAS_MAPPING_KERNEL 0\n" + GetMappingText(mapping) +
       "#define HAS_CELL_KERNEL " + (form == ResamplingForm::Cells ? "1\n" : "0\n") +
       IntegerVectors_cl + CellVertices_cl + CutCells_cl + CellCoverage_cl + SampleStoring_cl +
-      VoxelWinners_cl + Resampling_cl + GetFormText(context, arrays, form),
+      VoxelWinners_cl + Resampling_cl + GetFormText(context, arrays, variant),
     KernelOptions);
 }
 

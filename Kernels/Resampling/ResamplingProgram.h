@@ -37,6 +37,8 @@ struct ResamplingVariant
   bool CoverageBits;
   /// Whether there is a smooth cut (CutCells.cl).
   bool WithCut;
+  /// Whether columns are resampled in the direct pass only.
+  bool IsDirect = false;
 };
 
 /// The exact resampling for arrays of these types. Throws Error where the device lacks what the
