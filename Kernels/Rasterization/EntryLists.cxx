@@ -52,13 +52,13 @@ public:
 
 } // namespace
 
-std::uint64_t EntryLists::Count(WorkDevice& device, const RasterParameters& p, ListBuffers& buffers)
+std::uint64_t EntryLists::Count(WorkDevice& device, const cl::Buffer& tetrahedra,
+  const cl::Buffer& positions, const RasterParameters& p, ListBuffers& buffers)
 {
   const auto count = static_cast<cl_uint>(p.Tetrahedra);
   ReserveLists(device, this->EntryBegins, std::uint64_t{ count } * sizeof(cl_uint));
   SharedWork(device, "FindTiles", count)
-    .Launch(device, buffers.Tetrahedra, buffers.Positions, buffers.Boxes, buffers.Counters,
-      this->EntryBegins, p);
+    .Launch(device, tetrahedra, positions, buffers.Boxes, buffers.Counters, this->EntryBegins, p);
   const std::size_t place = this->AddBefore(device, this->EntryBegins, count);
   cl_ulong length = 0;
   device.GetQueue().enqueueReadBuffer(
@@ -70,6 +70,7 @@ void EntryLists::Fill(
   WorkDevice& device, const RasterParameters& p, ListBuffers& buffers, cl_uint length)
 {
   const auto tiles = static_cast<cl_uint>(CountTiles(p));
+  ReserveLists(device, buffers.Begins, (std::uint64_t{ tiles } + 1) * sizeof(cl_uint));
   for (cl::Buffer* buffer : { &this->Keys, &this->SortedKeys, &this->SortedLists })
   {
     ReserveLists(device, *buffer, std::max<std::uint64_t>(length, 1) * sizeof(cl_uint));

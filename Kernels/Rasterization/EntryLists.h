@@ -15,8 +15,9 @@ namespace deformvolume
 class EntryLists
 {
 public:
-  /// Finds the boxes and the counters. Returns how long the lists are.
-  std::uint64_t Count(WorkDevice& device, const RasterParameters& p, ListBuffers& buffers);
+  /// Finds the boxes of the mesh and the counters. Returns how long the lists are.
+  std::uint64_t Count(WorkDevice& device, const cl::Buffer& tetrahedra, const cl::Buffer& positions,
+    const RasterParameters& p, ListBuffers& buffers);
   void Fill(WorkDevice& device, const RasterParameters& p, ListBuffers& buffers, cl_uint length);
 
   /// Bytes on the device, and those that it needs for lists of this length.

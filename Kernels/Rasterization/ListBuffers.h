@@ -15,10 +15,6 @@ class WorkDevice;
 /// What the lists of the tetrahedra in each tile are made of, and the lists (TetrahedronLists).
 struct ListBuffers
 {
-  /// The deformation mesh.
-  cl::Buffer Tetrahedra;
-  cl::Buffer Positions;
-
   cl::Buffer Boxes;    // the tiles of each tetrahedron
   cl::Buffer Counters; // see RasterParameters.h
   cl::Buffer Begins;   // of the list of each tile in the lists, and the end of the last one

@@ -30,14 +30,16 @@ std::uint64_t CountPlaceBytes(std::size_t ranges, std::uint64_t tiles)
 
 } // namespace
 
-std::uint64_t RangeLists::Count(WorkDevice& device, const RasterParameters& p, ListBuffers& buffers)
+std::uint64_t RangeLists::Count(WorkDevice& device, const cl::Buffer& tetrahedra,
+  const cl::Buffer& positions, const RasterParameters& p, ListBuffers& buffers)
 {
   const std::uint64_t tiles = CountTiles(p);
   const std::size_t ranges = CountRanges(device, static_cast<std::size_t>(p.Tetrahedra), tiles);
   ReserveLists(device, this->Places, CountPlaceBytes(ranges, tiles));
+  ReserveLists(device, buffers.Begins, (tiles + 1) * sizeof(cl_uint));
   cl::Kernel count(GetRangeListsProgram(device.GetContext()), "CountTetrahedra");
-  count.setArg(0, buffers.Tetrahedra);
-  count.setArg(1, buffers.Positions);
+  count.setArg(0, tetrahedra);
+  count.setArg(1, positions);
   count.setArg(2, buffers.Boxes);
   count.setArg(3, buffers.Counters);
   count.setArg(4, this->Places);

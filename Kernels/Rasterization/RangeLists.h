@@ -15,8 +15,9 @@ namespace deformvolume
 class RangeLists
 {
 public:
-  /// Finds the boxes, the counters, and where lists begin. Returns how long these are.
-  std::uint64_t Count(WorkDevice& device, const RasterParameters& p, ListBuffers& buffers);
+  /// Finds the boxes of the mesh, the counters, and where lists begin. Returns how long these are.
+  std::uint64_t Count(WorkDevice& device, const cl::Buffer& tetrahedra, const cl::Buffer& positions,
+    const RasterParameters& p, ListBuffers& buffers);
   void Fill(WorkDevice& device, const RasterParameters& p, const ListBuffers& buffers);
 
   /// Bytes on the device, and those that it needs for so many tiles.

@@ -15,18 +15,16 @@ std::int64_t TetrahedronLists::Make(WorkDevice& device, const cl::Buffer& tetrah
   const cl::Buffer& positions, const RasterParameters& p)
 {
   ListBuffers& buffers = this->Buffers;
-  buffers.Tetrahedra = tetrahedra;
-  buffers.Positions = positions;
   ReserveLists(device, buffers.Boxes, static_cast<std::uint64_t>(p.Tetrahedra) * sizeof(cl_uint2));
   ReserveLists(device, buffers.Counters, DEFORMVOLUME_BINNED_COUNTERS * sizeof(cl_uint));
-  ReserveLists(device, buffers.Begins, (CountTiles(p) + 1) * sizeof(cl_uint));
   const QueueGuard guard(device.GetQueue());
-  const cl_uint zeros[DEFORMVOLUME_BINNED_COUNTERS] = {};
-  device.GetQueue().enqueueWriteBuffer(buffers.Counters, CL_TRUE, 0, sizeof(zeros), zeros);
+  static const cl_uint zeros[DEFORMVOLUME_BINNED_COUNTERS] = {};
+  device.GetQueue().enqueueWriteBuffer(buffers.Counters, CL_FALSE, 0, sizeof(zeros), zeros);
   // Whatever the way, the lists are the same.
   const bool serial = device.HasSerialGroups();
-  const std::uint64_t counted =
-    serial ? this->Ranges.Count(device, p, buffers) : this->Entries.Count(device, p, buffers);
+  const std::uint64_t counted = serial
+    ? this->Ranges.Count(device, tetrahedra, positions, p, buffers)
+    : this->Entries.Count(device, tetrahedra, positions, p, buffers);
   const std::int64_t inverted = this->CheckCounters(device);
   const cl_uint length = CheckLength(counted);
   ReserveLists(device, buffers.Lists, std::max<std::uint64_t>(length, 1) * sizeof(cl_int));
