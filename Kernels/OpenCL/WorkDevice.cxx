@@ -43,6 +43,11 @@ std::uint64_t WorkDevice::GetAllocationLimit()
   return this->AllocationLimit ? std::min(device, this->AllocationLimit) : device;
 }
 
+bool WorkDevice::HasSerialGroups()
+{
+  return this->GetDevice().HasVectors && this->WorkGroupSize == 0;
+}
+
 std::size_t WorkDevice::GetGroupSize(const cl::Kernel& kernel, std::size_t wanted)
 {
   const auto largest = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(this->GetDevice().Device);
@@ -51,8 +56,7 @@ std::size_t WorkDevice::GetGroupSize(const cl::Kernel& kernel, std::size_t wante
 
 std::size_t WorkDevice::GetBusyGroupSize(const cl::Kernel& kernel, std::size_t wanted)
 {
-  return this->GetDevice().HasVectors && !this->WorkGroupSize ? 1
-                                                              : this->GetGroupSize(kernel, wanted);
+  return this->HasSerialGroups() ? 1 : this->GetGroupSize(kernel, wanted);
 }
 
 cl::Buffer WorkDevice::Send(const void* data, std::size_t bytes, const cl::Buffer& previous)

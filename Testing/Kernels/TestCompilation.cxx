@@ -215,7 +215,8 @@ TEST(Compilation, NoWarnings)
     "");
   EXPECT_EQ(GetLog(GetOutputProgram(context)), "");
   EXPECT_EQ(GetLog(GetPublishedProgram(context, linear)), "");
-  EXPECT_EQ(GetLog(GetBinningProgram(context)), "");
+  EXPECT_EQ(GetLog(GetRangeListsProgram(context)), "");
+  EXPECT_EQ(GetLog(GetEntryListsProgram(context)), "");
   for (const Interpolation interpolation : { Interpolation::Linear, Interpolation::Cubic })
   {
     EXPECT_EQ(
