@@ -8,13 +8,19 @@
 #   nvidia    clang with libclc's builtins to PTX, and from there CUDA's ptxas
 #   amd       clang with ROCm's device libraries
 #   spirv     clang and llvm-spirv to SPIR-V, which spirv-val checks
-#   intel     Intel's compiler for graphics, ocloc
+#   intel     Intel's compiler for graphics: ocloc, installed or in build/ocloc. There it is without
+#             a driver, which would be loaded beside others:
+#             mkdir -p build/ocloc && cd build/ocloc && apt-get download intel-opencl-icd libigc1 \
+#               libigdfcl1 libigdgmm12 libopencl-clang14 libllvmspirvlib14 &&
+#             for package in *.deb; do dpkg -x "$package" .; done
 #   oclgrind  no compiler: instructions of the resampling kernels for a small volume, counted
 # Default: all of them. What is not installed is skipped.
+# All but ptxas and ocloc come with bash Testing/packages.sh gpu-compilers.
 #   --only    programs whose name holds a pattern of grep -E, such as 'Resample-links'
 #
 # From the build of preset vtk; DEFORMVOLUME_BUILD: another build directory. All that is made is in
 # build/gpu-compilers. CUDA is looked for in CUDA_HOME, by default /usr/local/cuda.
+# shellcheck disable=SC2317 # functions are called by names that are put together
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -119,7 +125,8 @@ front() # FILE [OPTION]...
 
 make_ptx()
 {
-  front "$1" -target nvptx64-nvidia-nvcl -Xclang -target-cpu -Xclang $ptx_target -S -o "$2.ptx" \
+  front "$1" -target nvptx64-nvidia-nvcl -Xclang -target-cpu -Xclang "$ptx_target" -S -o "$2.ptx" \
+    -Xclang -mlink-builtin-bitcode -Xclang "$output/builtins.bc" \
     -Xclang -mlink-builtin-bitcode -Xclang "$libclc"
 }
 
@@ -147,7 +154,7 @@ make_spirv()
 
 make_intel()
 {
-  ocloc compile -file "$1" -device "$3" -options "$(cat "${1%.cl}.options")" \
+  LD_LIBRARY_PATH=$ocloc_libraries "$ocloc" compile -file "$1" -device "$3" -options "$(cat "${1%.cl}.options")" \
     -out_dir "$2.binaries" >"$2.listing" 2>&1 || {
     cat "$2.listing"
     return 1
@@ -173,12 +180,15 @@ run_nvidia()
   local target targets=()
   libclc=/usr/lib/clc/nvptx64--nvidiacl.bc
   ptxas=$cuda/bin/ptxas
-  if [ -z "$clang" ] || [ ! -e $libclc ]; then
+  if [ -z "$clang" ] || [ ! -e "$libclc" ]; then
     skip NVIDIA "clang-15 with libclc-15"
     return
   fi
   ptx=$output/nvidia/ptx
-  export libclc ptxas ptx ptx_target
+  export libclc ptxas ptx ptx_target output
+  "$clang" -x cl -cl-std=CL1.2 -target nvptx64-nvidia-nvcl -Xclang -target-cpu -Xclang "$ptx_target" \
+    -Xclang -cl-ext=+cl_khr_int64_base_atomics -O3 -emit-llvm -c -o "$output/builtins.bc" \
+    Testing/gpu-builtins.cl
   programs double | for_each make_ptx "$ptx"
   if [ ! -x "$ptxas" ]; then
     skip NVIDIA "ptxas of CUDA: only PTX was made"
@@ -240,19 +250,48 @@ run_spirv()
 run_intel()
 {
   local target
-  if [ -z "$(find_first ocloc)" ]; then
+  ocloc=$(find_first "$PWD/build/ocloc/usr/bin/ocloc" ocloc)
+  ocloc_libraries=
+  if [ -z "$ocloc" ]; then
     skip Intel ocloc
     return
   fi
+  if [[ $ocloc == "$PWD"/* ]]; then
+    ocloc_libraries=$(dirname "$(find build/ocloc -name libocloc.so)")
+  fi
+  export ocloc ocloc_libraries
   for target in $intel_targets; do
     programs "$(intel_precision "$target")" | for_each make_intel "$output/intel/$target" "$target"
   done
-  title "Intel: ocloc"
+  title "Intel: ocloc with IGC"
   # shellcheck disable=SC2086 # a list of words
   /usr/bin/python3 Testing/gpu_tables.py "$output" intel $intel_targets
   for target in $intel_targets; do
     report_failures "$output/intel/$target"
   done
+}
+
+# Instructions of LLVM that a processor or a card has, too, as Oclgrind counts them.
+run_oclgrind()
+{
+  local icd=/usr/lib/oclgrind/liboclgrind-rt-icd.so shape folder=$output/oclgrind
+  if [ ! -e "$icd" ]; then
+    skip Oclgrind Oclgrind
+    return
+  fi
+  mkdir -p "$folder"
+  for shape in still moved jittered folded; do
+    # Oclgrind 21.10 does not know all that its own compiler puts into inlined functions.
+    # shellcheck disable=SC2046 # no word, or one
+    OCL_ICD_VENDORS=$icd OCLGRIND_INST_COUNTS=1 OCLGRIND_BUILD_OPTIONS=-fno-inline \
+      "$build/bin/FirstUpdate" $([ "$shape" = moved ] || echo "$shape") 16 oclgrind \
+      >"$folder/$shape.txt" 2>&1 || {
+      failed=1
+      cat "$folder/$shape.txt"
+    }
+  done
+  title "Oclgrind: 16 x 16 x 16 voxels of 16 bits, links"
+  /usr/bin/python3 Testing/gpu_tables.py "$output" oclgrind still moved jittered folded
 }
 
 intel_precision()
@@ -268,8 +307,8 @@ clang=$(find_first clang-15)
 export clang
 export -f make_one front make_ptx assemble_ptx make_amd make_spirv make_intel
 
-export DEFORMVOLUME_CACHE_DIR=off
-rm -rf "$output"
+export DEFORMVOLUME_CACHE_DIR=off POCL_CACHE_DIR=$output/kernel-cache
+rm -rf "$output/texts"
 for precision in double single; do
   mkdir -p "$output/texts/$precision"
   "$build/bin/KernelTexts" "$output/texts/$precision" "$precision"
@@ -278,6 +317,7 @@ done
 failed=0
 for compiler in nvidia amd spirv intel oclgrind; do
   if is_wanted $compiler; then
+    rm -rf "${output:?}/$compiler"
     "run_$compiler"
   fi
 done

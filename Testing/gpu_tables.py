@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tables of what compilers for graphics cards say of each kernel: for Testing/gpu-compilers.sh.
 
-usage: gpu_tables.py FOLDER (nvidia | amd | intel) TARGET...
+usage: gpu_tables.py FOLDER (nvidia | amd | intel | oclgrind) TARGET...
 
 FOLDER/texts/double and FOLDER/texts/single hold what KernelTexts wrote, and FOLDER/VENDOR/TARGET
-what the compilers printed or made of it. Rows that are equal in all numbers are one.
+what the compilers printed or made of it. Rows that are equal in all numbers are one. For oclgrind
+the targets are the deformations whose counts are in FOLDER/oclgrind.
 """
 
 import collections
@@ -50,6 +51,10 @@ def find_least(limits):
     return min((number, name) for name, number in limits.items() if number is not None)
 
 
+def describe_occupancy(count, most, limit):
+    return f"{count} of {most}" + (f" ({limit})" if count < most else "")
+
+
 def describe_nvidia(target, registers, local, use):
     """Warps at once: how many, and what limits them."""
     most, groups, memory, own = NVIDIA[target]
@@ -61,10 +66,10 @@ def describe_nvidia(target, registers, local, use):
         {
             "registers": by_registers // warps,
             "local memory": memory // held if held else None,
-            "": min(groups, most // warps),
+            "groups": min(groups, most // warps),
         }
     )
-    return f"{least * warps} of {most}" + (f" ({name})" if name else "")
+    return describe_occupancy(least * warps, most, name)
 
 
 def read_nvidia(folder, target, program):
@@ -138,15 +143,12 @@ def make_amd_cell(target, numbers, use):
         {
             "registers": by_registers * simds // waves,
             "local memory": memory // round_up(local, 512) if local else None,
-            "": simds * most if waves == 1 else min(groups, simds * most // waves),
+            "groups": simds * most if waves == 1 else min(groups, simds * most // waves),
         }
     )
-    limit = f" ({name})" if name and least * waves < simds * most else ""
-    return (
-        f"{vectors} + {scalars}; {scratch}; {spilled} + {spilled_scalars}; "
-        f"{least * waves} of {simds * most}{limit}",
-        shared,
-    )
+    occupancy = describe_occupancy(least * waves, simds * most, name)
+    cell = f"{vectors} + {scalars}; {scratch}; {spilled} + {spilled_scalars}; {occupancy}"
+    return cell, shared
 
 
 def read_intel(folder, target, program):
@@ -191,10 +193,41 @@ VENDORS = {
 }
 
 
+# What costs nothing, or is a part of another instruction.
+FREE = re.compile(r"getelementptr|bitcast|phi|alloca|freeze|addrspacecast|call llvm\.lifetime")
+
+
+def print_counts(folder, shapes, voxels):
+    print("Of one whole update, by kernel: instructions of LLVM and how many a voxel of the volume,")
+    print("loads and stores of private memory among them, and bytes of global memory a voxel.")
+    print("Functions are not inlined; addresses and copies between registers are not counted.\n")
+    print("| Deformation | Kernel | Launches | Instructions | A voxel | Of private memory | Global bytes a voxel |")
+    print("|---|---|---|---|---|---|---|")
+    for shape in shapes:
+        counts = collections.defaultdict(lambda: [0, 0, 0, 0])
+        kernel = None
+        for line in read(f"{folder}/oclgrind/{shape}.txt").partition("later:")[2].splitlines():
+            begin = re.search(r"Instructions executed for kernel '(\w+)'", line)
+            if begin:
+                kernel = counts[begin.group(1)]
+                kernel[0] += 1
+            entry = re.match(r" +(\d+) - ([^(]+?)\s*(?:\((\d+) bytes\))?(?:\(\))?$", line)
+            if not entry or FREE.match(entry.group(2)):
+                continue
+            number, name, size = int(entry.group(1)), entry.group(2), int(entry.group(3) or 0)
+            kernel[1] += number
+            kernel[2] += number if name.endswith("private") else 0
+            kernel[3] += size if name.endswith("global") else 0
+        for name, (launches, instructions, private, size) in sorted(counts.items()):
+            print(
+                f"| {shape} | {name} | {launches} | {instructions:,} | {instructions / voxels:.0f} "
+                f"| {private / instructions:.0%} | {size / voxels:.0f} |"
+            )
+
+
 def print_table(folder, vendor, targets):
     read_numbers, make_cell, legend = VENDORS[vendor]
     rows = collections.defaultdict(list)
-    missing = 0
     for precision in ("double", "single"):
         list_path = f"{folder}/texts/{precision}/kernels.txt"
         for line in read(list_path).splitlines() if os.path.exists(list_path) else []:
@@ -212,7 +245,6 @@ def print_table(folder, vendor, targets):
                     static = max(static, shared)
                 elif os.path.exists(errors):
                     cells.append("does not compile")
-                    missing += 1
                 else:
                     cells.append("")
             if any(cells):
@@ -226,10 +258,12 @@ def print_table(folder, vendor, targets):
         kernel, items, local, *cells = row
         columns = [kernel, "<br>".join(rows[row]), str(items), str(local), *cells]
         print("| " + " | ".join(columns) + " |")
-    return missing
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 4 or sys.argv[2] not in VENDORS:
+    if len(sys.argv) < 4 or sys.argv[2] not in (*VENDORS, "oclgrind"):
         sys.exit(__doc__)
-    sys.exit(1 if print_table(sys.argv[1], sys.argv[2], sys.argv[3:]) else 0)
+    if sys.argv[2] == "oclgrind":
+        print_counts(sys.argv[1], sys.argv[3:], 16**3)
+    else:
+        print_table(*sys.argv[1:3], sys.argv[3:])

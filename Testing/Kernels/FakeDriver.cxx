@@ -10,6 +10,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <vector>
 
 FakeDriver& FakeDriver::Get()
 {
@@ -100,6 +101,12 @@ extern "C" cl_mem CL_API_CALL clCreateBuffer(
 {
   static auto* const real = Find<decltype(clCreateBuffer)>("clCreateBuffer");
   FakeDriver::Get().BytesWritten += flags & CL_MEM_COPY_HOST_PTR ? size : 0;
+  if (FakeDriver::Get().SkipsLaunches && !memory)
+  {
+    const std::vector<char> zeros(size);
+    return real(
+      context, flags | CL_MEM_COPY_HOST_PTR, size, const_cast<char*>(zeros.data()), error);
+  }
   if (!(flags & CL_MEM_USE_HOST_PTR))
   {
     return real(context, flags, size, memory, error);
@@ -307,6 +314,10 @@ extern "C" cl_int CL_API_CALL clEnqueueNDRangeKernel(cl_command_queue queue, cl_
   if (FakeDriver::Get().OnLaunch)
   {
     FakeDriver::Get().OnLaunch(DescribeLaunch(kernel, dimensions, local));
+  }
+  if (FakeDriver::Get().SkipsLaunches)
+  {
+    return clEnqueueMarkerWithWaitList(queue, number, events, done);
   }
   return real(queue, kernel, dimensions, offset, global, local, number, events, done);
 }

@@ -37,6 +37,8 @@ struct FakeDriver
   bool FusesProducts = false;
   /// Launches of more than one work-item that left the size of the groups to the driver.
   int LaunchesWithoutGroup = 0;
+  /// Kernels are not run, and what they would have written stays as it was: 0 at first.
+  bool SkipsLaunches = false;
   /// Called with each program that has been built from its text: the text, the options, and the
   /// names of the kernels, which are separated by semicolons.
   std::function<void(const std::string&, const std::string&, const std::string&)> OnBuild;
