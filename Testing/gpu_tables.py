@@ -256,7 +256,7 @@ def print_table(folder, vendor, targets):
     print("|" + "---|" * len(heads))
     for row in sorted(rows, key=lambda row: (row[0], rows[row])):
         kernel, items, local, *cells = row
-        columns = [kernel, "<br>".join(rows[row]), str(items), str(local), *cells]
+        columns = [kernel, "<br>".join(sorted(set(rows[row]))), str(items), str(local), *cells]
         print("| " + " | ".join(columns) + " |")
 
 

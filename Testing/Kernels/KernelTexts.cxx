@@ -82,7 +82,10 @@ private:
     {
       return;
     }
-    name = kernels.substr(0, kernels.find(';')) + "-" + this->Purpose;
+    // The last kernel of a text is its own; those before it may be those of other texts, too.
+    name = kernels.substr(kernels.rfind(';') + 1) + "-" + this->Purpose;
+    const int count = ++this->Counts[name];
+    name += count > 1 ? "-" + std::to_string(count) : "";
     std::ofstream(this->Folder + "/" + name + ".cl") << text;
     std::ofstream(this->Folder + "/" + name + ".options") << options << "\n";
     for (std::size_t begin = 0; begin < kernels.size();)
@@ -96,6 +99,7 @@ private:
   std::string Folder;
   std::string Purpose;
   std::map<std::string, std::string> Names; // of the programs, by their text
+  std::map<std::string, int> Counts;        // of the programs with a name
   std::map<std::pair<std::string, std::string>, Use> Kernels;
 };
 
