@@ -3,11 +3,12 @@
 // is compiled makes the difference. Testing/drivers.sh makes a table of it. Prints a line "later:"
 // between the two, for what drivers print: Testing/gpu-compilers.sh counts instructions by it.
 //
-// Usage: FirstUpdate [still | jittered | folded] [cells] [runs] [VOXELS] [DEVICE]
+// Usage: FirstUpdate [still | jittered | folded] [cells | columns] [runs] [VOXELS] [DEVICE]
 //   still      the volume is where it was; else it is moved by a quarter of a voxel
 //   jittered   its voxels are moved besides, each on its own, by up to 0.15 voxels
 //   folded     it is folded over, so that winners are chosen
 //   cells      by the kernel that takes one cell after the other
+//   columns    by the kernel for graphics cards
 //   runs       with runs in place of links
 //   VOXELS     on each axis, 32 by default
 #include "DeformerCase.h"

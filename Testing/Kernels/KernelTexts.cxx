@@ -299,15 +299,20 @@ void BuildOthers(Recorder& recorder)
 {
   recorder.SetPurpose("links-int16-wide");
   OpenCLContext& context = OpenCLContext::Get(FindDevice(""));
-  for (const ResamplingForm form : { ResamplingForm::Cells, ResamplingForm::LargeCells })
+  for (const ResamplingForm form : { ResamplingForm::Columns, ResamplingForm::Queue,
+         ResamplingForm::Cells, ResamplingForm::LargeCells })
   {
-    GetResamplingProgram(context, MappingForm::Links, OneArray, true, form);
+    const bool bits = form != ResamplingForm::Cells;
+    GetResamplingProgram(context, MappingForm::Links, OneArray, { form, true, bits, false });
   }
   for (const bool withCut : { false, true })
   {
     recorder.SetPurpose(withCut ? "links-int16-cut" : "links-int16");
     GetResamplingProgram(
-      context, MappingForm::Links, OneArray, false, ResamplingForm::LargeCells, withCut);
+      context, MappingForm::Links, OneArray, { ResamplingForm::LargeCells, false, true, withCut });
+    // For outputs that columns do not take.
+    GetResamplingProgram(
+      context, MappingForm::Links, OneArray, { ResamplingForm::Cells, false, false, withCut });
   }
 }
 

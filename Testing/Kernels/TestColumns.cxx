@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernel for graphics cards: what it leaves to lists and to the queue, and that the size of its
+// groups and the division of the output change nothing. All other tests of the exact resampling
+// compare it with the one for processors, too.
+#include "DeformerCase.h"
+#include "DeviceNeeds.h"
+
+#include <gtest/gtest.h>
+
+using namespace deformvolume;
+
+namespace
+{
+
+const std::array<double, 3> NoScale{ { 1, 1, 1 } };
+
+/// Compares what groups of several sizes make with the reference, and with each other bit for bit.
+/// asLanes: and with the kernel for processors.
+void Check(const DeformerCase& deformerCase, bool asLanes = true)
+{
+  const auto voxels = static_cast<std::size_t>(deformerCase.GetNumberOfVoxels());
+  const auto shorts = MakeRandomValues<std::int16_t>(voxels, 2);
+  const auto floats = MakeRandomValues<float>(voxels, 3);
+  const auto labels = MakeRandomValues<std::uint8_t>(voxels, 4);
+  const std::vector<VolumeArray> arrays{ MakeArray(shorts, 1, false, -7.0),
+    MakeArray(floats, 1, false, 5.0), MakeArray(labels, 1, true, 9.0) };
+  const reference::Result reference = ResampleByReference(deformerCase);
+  VolumeDeformer deformer;
+  Load(deformer, deformerCase, arrays, Route::Field);
+  std::vector<Deformed> all;
+  for (const std::size_t group : { 1, 24, 64, 256 })
+  {
+    SCOPED_TRACE(group);
+    deformer.SetWorkGroupSize(group);
+    all.push_back(RunDeformer(deformer, deformerCase, arrays, Resampling::ExactByColumns));
+    ExpectEqualsReference(deformerCase, reference, arrays, all.back());
+    EXPECT_TRUE(all.back().Outputs == all.front().Outputs);
+  }
+  deformer.SetWorkGroupSize(0);
+  if (asLanes && HasVectors())
+  {
+    const Deformed lanes = RunDeformer(deformer, deformerCase, arrays, Resampling::ExactByLanes);
+    EXPECT_TRUE(lanes.Outputs == all.front().Outputs);
+  }
+  // In slabs of a few planes, each a part of the output.
+  deformer.SetAllocationLimit(
+    4 * GetSize(deformerCase.Output, 0) * GetSize(deformerCase.Output, 1) * 3 * sizeof(float));
+  const Deformed slabs = RunDeformer(deformer, deformerCase, arrays, Resampling::ExactByColumns);
+  EXPECT_TRUE(slabs.Outputs == all.front().Outputs);
+  EXPECT_EQ(slabs.Coverage, all.front().Coverage);
+}
+
+DeformerCase MakeSheared(const Extent& extent, double factor, double shear)
+{
+  return MakeCase(extent, NoScale,
+    [=](const glm::dvec3& index)
+    { return glm::dvec3(factor * index.x + shear * index.y, factor * index.y, factor * index.z); });
+}
+
+} // namespace
+
+TEST(Columns, AtRest)
+{
+  Check(MakeSheared({ { 0, 40, -3, 17, 1, 19 } }, 1.0, 0.0));
+}
+
+TEST(Columns, MoreTiesThanTheListHolds)
+{
+  // Every vertex is a sample, and each of the 256 cells of a layer has several on its faces.
+  Check(MakeSheared({ { 0, 66, 0, 18, 0, 10 } }, 1.0, 1.0));
+}
+
+TEST(Columns, MoreCandidatesThanACellTakesAtOnce)
+{
+  Check(MakeCase({ { 0, 11, 0, 10, 0, 9 } }, NoScale,
+    [jitter = MakeJitter(2, 0.12)](const glm::dvec3& index) { return 4.75 * jitter(index); }));
+}
+
+TEST(Columns, CellsTooLargeForIntegersOf32Bits)
+{
+  // Which of these cells are interpolated in double precision differs by lanes and by columns.
+  Check(MakeSheared({ { 0, 11, 0, 10, 0, 9 } }, 4.0, 2.0), false);
+}
+
+TEST(Columns, BentCells)
+{
+  Check(MakeCase({ { 0, 20, 0, 19, 0, 18 } }, NoScale, MakeJitter(7, 0.24)));
+}
+
+TEST(Columns, MoreBricksThanALaunchTakes)
+{
+  const Extent tall{ { 0, 2, 0, 2, 0, 3300 } };
+  DeformerCase tallCase = MakeCase(tall, NoScale, MakeJitter(5, 0.15));
+  const auto values =
+    MakeRandomValues<std::uint16_t>(static_cast<std::size_t>(tallCase.GetNumberOfVoxels()), 2);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  VolumeDeformer deformer;
+  Load(deformer, tallCase, arrays, Route::Field);
+  ExpectEqualsReference(tallCase, ResampleByReference(tallCase), arrays,
+    RunDeformer(deformer, tallCase, arrays, Resampling::ExactByColumns));
+}
+
+TEST(Columns, OutputsThatTheyDoNotTake)
+{
+  DeformerCase far = MakeSheared({ { 0, 4, 0, 4, 0, 4 } }, 1.0, 0.0);
+  far.Output[4] += 5000000;
+  far.Output[5] += 5000000;
+  const std::vector<float> values(static_cast<std::size_t>(far.GetNumberOfVoxels()), 1.0F);
+  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  VolumeDeformer deformer;
+  Load(deformer, far, arrays, Route::Field);
+  try
+  {
+    RunDeformer(deformer, far, arrays, Resampling::ExactByColumns);
+    FAIL() << "no error";
+  }
+  catch (const Error& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("columns"), std::string::npos) << error.what();
+  }
+}
