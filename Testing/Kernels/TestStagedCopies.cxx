@@ -101,6 +101,12 @@ protected:
     request.Coverage = reinterpret_cast<signed char*>(memory[2].data() + 1);
     return request;
   }
+  /// All tests have one case.
+  const reference::Result& GetReference() const
+  {
+    static const reference::Result result = ResampleByReference(this->Case);
+    return result;
+  }
   void LoadInPlanes(std::uint64_t planes)
   {
     const Extent& output = this->Case.Output;
@@ -132,7 +138,7 @@ TEST_F(StagedOutputs, WithoutPageLockedMemory)
   this->ExpectRight();
   EXPECT_EQ(driver.Reads, 2) << "one by the test";
   EXPECT_EQ(driver.Writes, 1);
-  const reference::Result reference = ResampleByReference(this->Case);
+  const reference::Result& reference = this->GetReference();
   Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
   ExpectEqualsReference(
     this->Case, reference, this->Arrays, RunDeformer(this->Deformer, this->Case, this->Arrays));
@@ -263,7 +269,7 @@ TEST_F(Staged, WritesThatFail)
 TEST_F(StagedOutputs, ArraysThatFail)
 {
   FakeDriver& driver = FakeDriver::Get();
-  const reference::Result reference = ResampleByReference(this->Case);
+  const reference::Result& reference = this->GetReference();
   Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
   for (const int good : { 0, 1, 4 })
   {
@@ -283,7 +289,7 @@ TEST_F(StagedOutputs, ArraysThatFail)
 TEST_F(StagedOutputs, PortionsOfSlabsThatFail)
 {
   FakeDriver& driver = FakeDriver::Get();
-  const reference::Result reference = ResampleByReference(this->Case);
+  const reference::Result& reference = this->GetReference();
   for (const std::uint64_t planes : { 12, 1000 })
   {
     for (const int good : { 0, 1, 3, 5 })
@@ -310,7 +316,7 @@ TEST_F(StagedOutputs, PortionsOfSlabsThatFail)
 TEST_F(StagedOutputs, AbortBetweenSlabs)
 {
   FakeDriver& driver = FakeDriver::Get();
-  const reference::Result reference = ResampleByReference(this->Case);
+  const reference::Result& reference = this->GetReference();
   int aborted = 0;
   for (const int calls : { 1, 4, 8, 12, 16, 20 })
   {
@@ -507,7 +513,7 @@ TEST_F(Staged, ManyThreads)
 // A whole output and its slabs, of which one is read while the next one is made.
 TEST_F(StagedOutputs, Slabs)
 {
-  const reference::Result reference = ResampleByReference(this->Case);
+  const reference::Result& reference = this->GetReference();
   std::vector<std::vector<Bytes>> all;
   for (const std::uint64_t planes : { 10, 15, 29, 1000 })
   {
