@@ -54,6 +54,7 @@ REPLACEMENT = ("TestReplacement", "*Knows*:*Equals*/*OfGrid:*Equals*/Links:*Equa
 
 COROTATIONAL = ("TestCorotational", "*")
 DEFORMED_CUTTING = ("TestDeformedCutting", "*")
+LISTS = ("TestTetrahedronLists", "*")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
@@ -132,6 +133,11 @@ MUTATIONS = {
     "replaced-sources": ("Kernels/Mapping/DeviceMapping.cxx",
                          "if ((before[i].Tetrahedron < 0) != (after[i].Tetrahedron < 0))", "if (false)", [REPLACEMENT]),
     "replaced-rows": ("Kernels/Mapping/DeviceMapping.cxx", "has.Rows[row] = end;", "", [REPLACEMENT]),
+    "lists-order": ("Kernels/Rasterization/EntryLists.cl",
+                    "before += word < item / 32 ? popcount(mask[word]) : 0;", "", [LISTS]),
+    "lists-inverted": ("Kernels/Rasterization/EntryLists.cl", "2 * tile + IsInverted(box.y);", "2 * tile;", [LISTS]),
+    "lists-box": ("Kernels/Rasterization/TetrahedronBinning.cl", "#define TILES_BITS_X 8", "#define TILES_BITS_X 7",
+                  [LISTS]),
     "cut-above": ("Kernels/Cutting/TriangleCrossing.h", "return (sign != 0 ? sign : this->NormalSign) > 0;",
                   "return sign > 0;", [CUTTING]),
     "cut-face": ("Kernels/Cutting/TriangleCrossing.cxx", "sign != 0 ? sign : -movement;",

@@ -12,6 +12,7 @@
 #   paraview  to build and test against ParaView's VTK on the same machine
 #   check     to check the style of the sources
 #   platforms to try other systems on this one
+#   gpu-compilers for Testing/gpu-compilers.sh, on Debian 12
 set -euo pipefail
 
 declare -A packages=(
@@ -25,6 +26,7 @@ declare -A packages=(
     liblz4-dev liblzma-dev libgl-dev libopengl-dev libx11-dev libglew-dev libfreetype-dev"
   [check]="clang-format"
   [platforms]="debootstrap curl"
+  [gpu-compilers]="clang-15 libclc-15 llvm-spirv-15 spirv-tools rocm-device-libs oclgrind"
 )
 # Left out where the system has none: the tests that want them are skipped.
 optional="oclgrind"

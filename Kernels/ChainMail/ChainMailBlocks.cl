@@ -16,6 +16,12 @@
 #define NO_LIMIT DEFORMVOLUME_NO_LIMIT
 // So that arrays of vectors stay in registers.
 #define UNROLL _Pragma("unroll")
+// Over the faces: unrolled, a work-item needs more registers than graphics cards have.
+#if SERIAL
+#define UNROLL_FACES UNROLL
+#else
+#define UNROLL_FACES _Pragma("unroll 1")
+#endif
 
 #if SERIAL
 #define BARRIER()

@@ -59,7 +59,7 @@ INLINE int FindViolation(const int8* x, uchar8 m, __global const int* displaceme
   uint block, int r, const ChainMailGrid* g)
 {
   int8 largest = 0;
-  UNROLL
+  UNROLL_FACES
   for (int face = 0; face < 6; ++face)
   {
     Neighbours n;

@@ -62,7 +62,7 @@ __kernel void Relax(__global int* displacements, __global const uchar* flags,
       lowest[c] = -NO_LIMIT;
       highest[c] = NO_LIMIT;
     }
-    UNROLL
+    UNROLL_FACES
     for (int face = 0; face < 6; ++face)
     {
       Neighbours n;

@@ -41,7 +41,7 @@ std::uint64_t CountDeviceMemory(
     // Arrays and both masks.
     return voxels * (sent + 2) +
       MeshRasterizer::GetMemoryNeeded(
-        outputVoxels, outputBytesPerVoxel, size.NumberOfNodes, size.NumberOfTetrahedra);
+        device, outputVoxels, outputBytesPerVoxel, size.NumberOfNodes, size.NumberOfTetrahedra);
   }
   // Arrays, state, active tetrahedra and blanking; links or runs of a mesh; arrays and coverage of
   // the output; the deformation itself.

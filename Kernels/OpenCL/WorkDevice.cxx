@@ -43,15 +43,20 @@ std::uint64_t WorkDevice::GetAllocationLimit()
   return this->AllocationLimit ? std::min(device, this->AllocationLimit) : device;
 }
 
-std::size_t WorkDevice::GetGroupSize(const cl::Kernel& kernel)
+bool WorkDevice::HasSerialGroups()
 {
-  const auto largest = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(this->GetDevice().Device);
-  return std::min<std::size_t>(this->WorkGroupSize ? this->WorkGroupSize : 64, largest);
+  return this->GetDevice().HasVectors && this->WorkGroupSize == 0;
 }
 
-std::size_t WorkDevice::GetBusyGroupSize(const cl::Kernel& kernel)
+std::size_t WorkDevice::GetGroupSize(const cl::Kernel& kernel, std::size_t wanted)
 {
-  return this->GetDevice().HasVectors && !this->WorkGroupSize ? 1 : this->GetGroupSize(kernel);
+  const auto largest = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(this->GetDevice().Device);
+  return std::min<std::size_t>(this->WorkGroupSize ? this->WorkGroupSize : wanted, largest);
+}
+
+std::size_t WorkDevice::GetBusyGroupSize(const cl::Kernel& kernel, std::size_t wanted)
+{
+  return this->HasSerialGroups() ? 1 : this->GetGroupSize(kernel, wanted);
 }
 
 cl::Buffer WorkDevice::Send(const void* data, std::size_t bytes, const cl::Buffer& previous)

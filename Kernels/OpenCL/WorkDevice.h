@@ -33,11 +33,13 @@ public:
 
   /// Work-items in a work-group along the rows of the volume; 0: chosen by device.
   void SetWorkGroupSize(std::size_t size) { this->WorkGroupSize = size; }
-  /// Those that a kernel gets, as far as it can.
-  std::size_t GetGroupSize(const cl::Kernel& kernel);
-  /// The same for a kernel whose work-groups have much to do: one work-item can do that where it
-  /// has the vector registers of a processor for itself.
-  std::size_t GetBusyGroupSize(const cl::Kernel& kernel);
+  /// Whether one work-item does what a work-group has to do: it has the vector registers of a
+  /// processor for itself, and no size is set.
+  bool HasSerialGroups();
+  /// Those that a kernel gets, as far as it can. wanted: where none were set.
+  std::size_t GetGroupSize(const cl::Kernel& kernel, std::size_t wanted = 64);
+  /// The same for a kernel whose work-groups have much to do: one where groups are serial.
+  std::size_t GetBusyGroupSize(const cl::Kernel& kernel, std::size_t wanted = 64);
 
   /// Sends data, and waits until they are there. Returns the previous buffer where it has the size
   /// of the data, else a new one.

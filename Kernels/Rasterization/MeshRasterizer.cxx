@@ -329,14 +329,18 @@ std::uint64_t MeshRasterizer::GetMemory() const
   return bytes;
 }
 
-std::uint64_t MeshRasterizer::GetMemoryNeeded(std::uint64_t outputVoxels,
+std::uint64_t MeshRasterizer::GetMemoryNeeded(WorkDevice& device, std::uint64_t outputVoxels,
   std::uint64_t bytesPerVoxel, std::size_t numberOfNodes, std::size_t numberOfTetrahedra)
 {
-  // Tetrahedra with four places in lists, nodes with positions and displacements, or points of a
-  // field with their vectors; for a tile four numbers and a few counters.
-  const std::uint64_t node = numberOfTetrahedra > 0 ? 32 : 3 * sizeof(float);
-  return outputVoxels * (bytesPerVoxel + 1) + std::uint64_t{ numberOfTetrahedra } * 32 +
-    std::uint64_t{ numberOfNodes } * node + outputVoxels / DEFORMVOLUME_TILE_VOXELS * 128;
+  // Tetrahedra with their lists, nodes with positions and displacements, or points of a field with
+  // their vectors; counters of tiles.
+  const std::uint64_t tiles = outputVoxels / DEFORMVOLUME_TILE_VOXELS;
+  const bool field = numberOfTetrahedra == 0;
+  const std::uint64_t node = field ? 3 * sizeof(float) : 32;
+  return outputVoxels * (bytesPerVoxel + 1) +
+    std::uint64_t{ numberOfTetrahedra } * sizeof(Tetrahedron) +
+    (field ? 0 : TetrahedronLists::GetMemoryNeeded(device, numberOfTetrahedra, tiles)) +
+    std::uint64_t{ numberOfNodes } * node + tiles * DEFORMVOLUME_TILE_COUNTERS * sizeof(cl_uint);
 }
 
 } // namespace deformvolume

@@ -71,8 +71,8 @@ public:
   /// Bytes on the device, and those that a rasterisation needs there besides the arrays of the
   /// volume and its masks, as far as is known beforehand.
   std::uint64_t GetMemory() const;
-  static std::uint64_t GetMemoryNeeded(std::uint64_t outputVoxels, std::uint64_t bytesPerVoxel,
-    std::size_t numberOfNodes, std::size_t numberOfTetrahedra);
+  static std::uint64_t GetMemoryNeeded(WorkDevice& device, std::uint64_t outputVoxels,
+    std::uint64_t bytesPerVoxel, std::size_t numberOfNodes, std::size_t numberOfTetrahedra);
 
 private:
   void CheckPositions() const;

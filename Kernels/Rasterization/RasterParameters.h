@@ -17,10 +17,13 @@
 // functions: with e in 1/256 voxel, they are at most 2 e^3, and their partial sums 3 e^3.
 #define DEFORMVOLUME_LARGEST_TETRAHEDRON 5000
 
-// Counters of a range of tetrahedra.
+// Counters of all tetrahedra.
 #define DEFORMVOLUME_BINNED_INVERTED 0
 #define DEFORMVOLUME_BINNED_OVERSTRETCHED 1
 #define DEFORMVOLUME_BINNED_COUNTERS 2
+
+// Entries are sorted by so many bits of their keys at a time, at most (EntryLists.cl).
+#define DEFORMVOLUME_DIGIT_BITS 8
 
 // Counters of a tile.
 #define DEFORMVOLUME_TILE_COVERED 0  // voxels
@@ -45,7 +48,6 @@ typedef struct
   int TileCount[3];
   int TileBegin;       // first tile of a launch
   int Tetrahedra;      // of the deformation mesh
-  int Ranges;          // work-items that bin them, each a range of tetrahedra
   int FractionBits[3]; // of rest coordinates, see MeshRasterization.cl
   int Tolerance[3];    // by which a rest coordinate may leave the volume, in its own unit
   int HasActive;       // whether a mask of active tetrahedra is there
@@ -55,6 +57,14 @@ typedef struct
   float InverseScale[3];
   float InverseScaleRest[3];
 } RasterParameters;
+
+// What entries are sorted by (EntryLists.cl): some bits of their keys.
+typedef struct
+{
+  unsigned int Entries;
+  unsigned int Shift; // the lowest bit
+  unsigned int Bits;
+} DigitParameters;
 
 // An inverse displacement field. OutputToField: row-major 3 x 4, from the index of an output voxel
 // to a continuous index of the field; a sum of two floats.

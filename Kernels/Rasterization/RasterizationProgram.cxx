@@ -11,10 +11,18 @@
 namespace deformvolume
 {
 
-cl::Program GetBinningProgram(OpenCLContext& context)
+cl::Program GetRangeListsProgram(OpenCLContext& context)
 {
   return context.GetProgram(
-    ProgramText(RasterParameters_h) + IntegerVectors_cl + TetrahedronBinning_cl, KernelOptions);
+    ProgramText(RasterParameters_h) + IntegerVectors_cl + TetrahedronBinning_cl + RangeLists_cl,
+    KernelOptions);
+}
+
+cl::Program GetEntryListsProgram(OpenCLContext& context)
+{
+  return context.GetProgram(
+    ProgramText(RasterParameters_h) + IntegerVectors_cl + TetrahedronBinning_cl + EntryLists_cl,
+    KernelOptions);
 }
 
 cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays,

@@ -12,8 +12,9 @@
 namespace deformvolume
 {
 
-/// The binning of the tetrahedra of the deformation mesh (TetrahedronBinning.cl).
-cl::Program GetBinningProgram(OpenCLContext& context);
+/// The lists of the tetrahedra in each tile (RangeLists.cl, EntryLists.cl).
+cl::Program GetRangeListsProgram(OpenCLContext& context);
+cl::Program GetEntryListsProgram(OpenCLContext& context);
 
 /// The mesh rasterisation (MeshRasterization.cl, RestSampling.cl), or for a field the look-up
 /// through it (FieldLookup.cl), for arrays of these types. Throws Error where the device lacks what

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binning for the mesh rasterisation: lists the tetrahedra of the deformation mesh that may hold
-// voxels of each output tile, in the order in which they win: upright ones first, then inverted
-// ones, each in ascending order.
+// Binning for the mesh rasterisation: tiles of the output, and which of them a tetrahedron of the
+// deformation mesh may hold voxels of. RangeLists.cl and EntryLists.cl list for each tile such
+// tetrahedra, in the order in which they win: upright ones first, then inverted ones, each in
+// ascending order.
 //
 // Data: a tetrahedron is four nodes (16 bytes), ordered so that it is positively oriented at rest,
 // or -1 where it has no volume at rest; a node is its deformed position in 1/256 output voxel (16
 // bytes, the last four unused).
-//
-// A work-item takes a range of tetrahedra and keeps a counter for each tile, once for upright and
-// once for inverted ones. Their sums over the ranges are the places to write to, so that the lists
-// come out in order without atomic operations. The host does the sums in between.
 
 static Vector Difference(int4 a, int4 b)
 {
@@ -57,20 +54,50 @@ static VoxelBox GetTile(int index, int* origin, const RasterParameters* p)
   return tile;
 }
 
+// The tiles of a tetrahedron: the first one; and in one number how many on x, y and z, with bits
+// enough for the largest tetrahedron, and whether it is inverted.
+#define TILES_BITS_X 8
+#define TILES_BITS_Y 10
+#define TILES_BITS_Z 10
+
+static uint PackSizes(uint x, uint y, uint z, uint inverted)
+{
+  return x | y << TILES_BITS_X | z << (TILES_BITS_X + TILES_BITS_Y) | inverted << 31;
+}
+
+static uint GetSizeX(uint sizes)
+{
+  return sizes & ((1u << TILES_BITS_X) - 1);
+}
+
+static uint GetSizeY(uint sizes)
+{
+  return sizes >> TILES_BITS_X & ((1u << TILES_BITS_Y) - 1);
+}
+
+static uint GetSizeZ(uint sizes)
+{
+  return sizes >> (TILES_BITS_X + TILES_BITS_Y) & ((1u << TILES_BITS_Z) - 1);
+}
+
+static uint IsInverted(uint sizes)
+{
+  return sizes >> 31;
+}
+
 // A tetrahedron as far as binning goes.
 typedef struct
 {
-  VoxelBox Tiles; // counted from the first tile; empty where nothing is to be rasterised
-  int Inverted;
-  int Overstretched;
+  uint2 Tiles; // none where nothing is to be rasterised
+  uint Inverted;
+  uint Overstretched;
 } Binned;
 
 static Binned Bin(int4 nodes, __global const int4* positions, const RasterParameters* p)
 {
   Binned r;
   r.Inverted = r.Overstretched = 0;
-  r.Tiles.Low = (int4)(0);
-  r.Tiles.High = (int4)(-1);
+  r.Tiles = (uint2)(0);
   if (nodes.x < 0)
   {
     return r;
@@ -95,69 +122,10 @@ static Binned Bin(int4 nodes, __global const int4* positions, const RasterParame
     const int4 bits = { DEFORMVOLUME_TILE_BITS_X, DEFORMVOLUME_TILE_BITS_Y,
       DEFORMVOLUME_TILE_BITS_Z, 0 };
     const int4 first = { p->TileFirst[0], p->TileFirst[1], p->TileFirst[2], 0 };
-    r.Tiles.Low = (voxels.Low >> bits) - first;
-    r.Tiles.High = (voxels.High >> bits) - first;
+    const int4 tile = (voxels.Low >> bits) - first;
+    const uint4 size = as_uint4((voxels.High >> bits) - first - tile + 1);
+    r.Tiles.x = (uint)((tile.z * p->TileCount[1] + tile.y) * p->TileCount[0] + tile.x);
+    r.Tiles.y = PackSizes(size.x, size.y, size.z, r.Inverted);
   }
   return r;
-}
-
-#define FOR_EACH_TILE(tile, tiles, p)                                                              \
-  for (int tz = tiles.Low.z; tz <= tiles.High.z; ++tz)                                             \
-    for (int ty = tiles.Low.y; ty <= tiles.High.y; ++ty)                                           \
-      for (size_t tile = ((size_t)tz * p.TileCount[1] + ty) * p.TileCount[0] + tiles.Low.x,        \
-                  end = tile + tiles.High.x - tiles.Low.x;                                         \
-           tile <= end; ++tile)
-
-static int RangeBegin(int range, const RasterParameters* p)
-{
-  return (int)((long)p->Tetrahedra * range / p->Ranges);
-}
-
-// places: for upright and then for inverted tetrahedra, for each range, for each tile a number.
-__kernel void CountTetrahedra(__global const int4* tetrahedra, __global const int4* positions,
-  __global uint* places, __global uint* counters, const RasterParameters p)
-{
-  const int range = get_global_id(0);
-  const size_t tiles = (size_t)p.TileCount[0] * p.TileCount[1] * p.TileCount[2];
-  __global uint* upright = places + tiles * range;
-  __global uint* inverted = upright + tiles * p.Ranges;
-  for (size_t tile = 0; tile < tiles; ++tile)
-  {
-    upright[tile] = inverted[tile] = 0;
-  }
-  uint numberOfInverted = 0;
-  uint overstretched = 0;
-  for (int t = RangeBegin(range, &p); t < RangeBegin(range + 1, &p); ++t)
-  {
-    const Binned found = Bin(tetrahedra[t], positions, &p);
-    numberOfInverted += found.Inverted;
-    overstretched += found.Overstretched;
-    __global uint* counts = found.Inverted ? inverted : upright;
-    FOR_EACH_TILE(tile, found.Tiles, p)
-    {
-      ++counts[tile];
-    }
-  }
-  counters[range * DEFORMVOLUME_BINNED_COUNTERS + DEFORMVOLUME_BINNED_INVERTED] = numberOfInverted;
-  counters[range * DEFORMVOLUME_BINNED_COUNTERS + DEFORMVOLUME_BINNED_OVERSTRETCHED] =
-    overstretched;
-}
-
-// places: as above, the number being the place in the lists of the next tetrahedron.
-__kernel void ListTetrahedra(__global const int4* tetrahedra, __global const int4* positions,
-  __global uint* places, __global int* lists, const RasterParameters p)
-{
-  const int range = get_global_id(0);
-  const size_t tiles = (size_t)p.TileCount[0] * p.TileCount[1] * p.TileCount[2];
-  __global uint* upright = places + tiles * range;
-  __global uint* inverted = upright + tiles * p.Ranges;
-  for (int t = RangeBegin(range, &p); t < RangeBegin(range + 1, &p); ++t)
-  {
-    const Binned found = Bin(tetrahedra[t], positions, &p);
-    __global uint* next = found.Inverted ? inverted : upright;
-    FOR_EACH_TILE(tile, found.Tiles, p)
-    {
-      lists[next[tile]++] = t;
-    }
-  }
 }

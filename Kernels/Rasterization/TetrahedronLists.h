@@ -2,9 +2,11 @@
 #ifndef DeformVolumeTetrahedronLists_h
 #define DeformVolumeTetrahedronLists_h
 
-#include "OpenCLContext.h"
-#include "RasterParameters.h"
+#include "EntryLists.h"
+#include "ListBuffers.h"
+#include "RangeLists.h"
 
+#include <cstddef>
 #include <cstdint>
 
 namespace deformvolume
@@ -13,32 +15,31 @@ namespace deformvolume
 class WorkDevice;
 
 /// For each tile of the output the tetrahedra of the deformation mesh that may hold some of its
-/// voxels (TetrahedronBinning.cl).
+/// voxels, upright ones first, then inverted ones, each in ascending order (TetrahedronBinning.cl).
 class TetrahedronLists
 {
 public:
-  /// Lists them, and puts into the parameters how. tetrahedra, positions: of the mesh. Returns how
-  /// many tetrahedra are inverted. Throws an Error where the deformation is beyond what can be
-  /// rasterised.
+  /// Lists them. tetrahedra, positions: of the mesh. Returns how many tetrahedra are inverted.
+  /// Throws an Error where the deformation is beyond what can be rasterised.
   std::int64_t Make(WorkDevice& device, const cl::Buffer& tetrahedra, const cl::Buffer& positions,
-    RasterParameters& parameters);
+    const RasterParameters& parameters);
 
   /// For each tile where its list begins, in the lists.
-  const cl::Buffer& GetBegins() const { return this->Begins; }
-  const cl::Buffer& GetLists() const { return this->Lists; }
+  const cl::Buffer& GetBegins() const { return this->Buffers.Begins; }
+  const cl::Buffer& GetLists() const { return this->Buffers.Lists; }
 
-  /// Bytes on the device.
+  /// Bytes on the device, and those that it needs there, as far as is known beforehand.
   std::uint64_t GetMemory() const;
+  static std::uint64_t GetMemoryNeeded(
+    WorkDevice& device, std::size_t numberOfTetrahedra, std::uint64_t tiles);
 
 private:
-  std::int64_t Count(WorkDevice& device, const cl::Buffer& tetrahedra, const cl::Buffer& positions,
-    const RasterParameters& p);
-  /// Makes places in the lists of what was counted. Returns how long these are.
-  std::uint64_t FindPlaces(WorkDevice& device, const RasterParameters& p);
+  /// Throws an Error where tetrahedra are too large. Returns how many are inverted.
+  std::int64_t CheckCounters(WorkDevice& device) const;
 
-  cl::Buffer Places; // of each range of tetrahedra in the lists
-  cl::Buffer Begins;
-  cl::Buffer Lists;
+  ListBuffers Buffers;
+  RangeLists Ranges;  // for processors
+  EntryLists Entries; // for other devices
 };
 
 } // namespace deformvolume

@@ -1,25 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The rows of vertices that ResampleBricks (BrickResampling.cl) works on: finds the positions of a row and puts
-// them into memory, with the values of the arrays.
-//
-// Data: in ROW_MEMORY, a row: for even, then for odd vertices the position in output voxels relative to the
-// first output voxel (x, y, z; float, exact multiples of 1/256), then the values of the arrays that are
-// interpolated in single precision, HALF_ROW floats each.
+// them into memory (GroupVertices.cl), with the values of the arrays.
 //
 // Vertices come sixteen at a time, with the operations of PositionOf (DeformationMapping.cl) in the same order;
 // where one of these is missing, one at a time. The last ones of a row come with some before them, which then
 // come twice.
-
-#define HALF_ROW ((DEFORMVOLUME_BRICK_X / 2 / LANES + 1) * LANES)
-#define SLOTS (3 + LANE_SLOTS)
-#define ODD (SLOTS * HALF_ROW)   // from an even vertex to the odd one with the same place
-#define ROW (2 * ODD)
-#define ROWS (DEFORMVOLUME_BRICK_Y + 1)
-#define NOT_THERE -1e30f // x of places beyond the volume
-#define NO_SOURCE 1e30f  // x of vertices without position
-#define STEP (1.0f / 256.0f) // of positions, in voxels
-
-typedef ROW_MEMORY const float* LocalRow;
 
 // What is known of the vertices of a row, eight of them a bit, the lowest first.
 typedef struct
@@ -50,10 +35,6 @@ static ulong StatesOf(
 
 #define STORE_EIGHT(v, place) *(ROW_MEMORY PlacedFloat8*)(place) = v;
 #define FLAGS_TOGETHER 7u // those of RowFlags that sixteen vertices may be in
-
-// A value, by its bits, that the sum of products would not give back: -0, not finite, or so large (2^115) that the
-// sum may overflow, as weights add up to the determinant, which is under 2^11.
-#define IS_SPECIAL(bits) ((((bits)&0x7f800000) >= 0x79000000) | ((bits) == INT_MIN))
 
 #define PUT_VALUE(index, TYPE, BITS, SLOT)                                                         \
   {                                                                                                \

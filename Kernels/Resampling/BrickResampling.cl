@@ -16,14 +16,7 @@
 // vertices as BrickMapping.cl has them. It comes after GroupResampling.cl.
 //
 // What the host puts in front of this text, besides that of Resampling.cl:
-//   LANES                16, 8 or 4: floats in a vector
-//   ROW_MEMORY           address space of the rows of vertices: __local, or __global where local memory is too small;
-//                        ROWS_ARE_GLOBAL 0 or 1 says the same
-//   LANE_ARRAYS(DO)      DO(index, type, bits, slot) for each array that is interpolated in single
-//                        precision: linear ones of one component, float (bits 32) or integers of 8 or
-//                        16 bits
-//   LANE_SLOTS           how many these are
-//   STORE_OTHER_ARRAYS   statements that store all other arrays at a sample; HAS_OTHER_ARRAYS 0 or 1
+//   ROWS_ARE_GLOBAL      0 or 1: what ROW_MEMORY is (GroupVertices.cl)
 
 // A group of a row whose cells from beginX to endX are wanted. special: whether a value is one that sums of
 // products do not give back.

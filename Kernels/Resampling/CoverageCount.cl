@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Passes over all voxels of the output. Here: counts those that are covered, a partial sum a work-item.
+// Passes over all voxels of the output, or over all counters. Here: counts the voxels that are covered, a partial sum a
+// work-item.
 __kernel void CountCovered(
   __global const char* coverage, const ulong numberOfVoxels, __global uint* sums)
 {
@@ -16,6 +17,87 @@ __kernel void CountCovered(
     sum += coverage[i];
   }
   sums[item] = sum;
+}
+
+// The same where coverage is bits. words: of these.
+__kernel void CountCoveredBits(__global const uint* bits, const ulong words, __global uint* sums)
+{
+  uint sum = 0;
+  for (size_t i = get_global_id(0); i < words; i += get_global_size(0))
+  {
+    sum += popcount(bits[i]);
+  }
+  sums[get_global_id(0)] = sum;
+}
+
+// Adds up the counters of all sections (DEFORMVOLUME_SUMMARY_WORDS), in one work-group. sums: room for all counters of
+// each work-item.
+__kernel void Summarize(
+  __global const uint* counters, const uint sections, __global uint* summary, __local ulong* sums)
+{
+  const size_t item = get_local_id(0);
+  const size_t items = get_local_size(0);
+  for (int i = 0; i < DEFORMVOLUME_COUNTERS; ++i)
+  {
+    sums[i * items + item] = 0;
+  }
+  for (size_t section = item; section < sections; section += items)
+  {
+    for (int i = 0; i < DEFORMVOLUME_COUNTERS; ++i)
+    {
+      sums[i * items + item] += counters[section * DEFORMVOLUME_COUNTERS + i];
+    }
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (size_t i = item; i < DEFORMVOLUME_COUNTERS; i += items)
+  {
+    for (size_t k = 1; k < items; ++k)
+    {
+      sums[i * items] += sums[i * items + k];
+    }
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  if (item == 0)
+  {
+#define SUM_OF(counter) sums[(counter)*items]
+    const ulong wide[3] = { SUM_OF(DEFORMVOLUME_COUNT_WRITES), SUM_OF(DEFORMVOLUME_COUNT_COVERED),
+      SUM_OF(DEFORMVOLUME_COUNT_INVERTED) };
+    for (int i = 0; i < 3; ++i)
+    {
+      summary[2 * i] = (uint)wide[i];
+      summary[2 * i + 1] = (uint)(wide[i] >> 32);
+    }
+    summary[6] = (uint)min(SUM_OF(DEFORMVOLUME_COUNT_OVERSTRETCHED), (ulong)UINT_MAX);
+    summary[7] = (SUM_OF(DEFORMVOLUME_COUNT_MISSING) && SUM_OF(DEFORMVOLUME_COUNT_ASSUMED)
+                     ? DEFORMVOLUME_SUMMARY_MISSING_WHERE_ASSUMED
+                     : 0) |
+      (SUM_OF(DEFORMVOLUME_COUNT_LARGE) ? DEFORMVOLUME_SUMMARY_LARGE : 0);
+  }
+}
+
+// The counters of the sections of a list of bricks that are to be run are 0 again: an item a section.
+__kernel void ClearSections(__global uint* counters, __global const uint* bricks, const uint sections)
+{
+  const size_t i = get_global_id(0);
+  const uint brick = i < sections ? bricks[i / DEFORMVOLUME_SECTIONS] : 0; // no section of it
+  const size_t section =
+    DEFORMVOLUME_SECTIONS * (size_t)(brick & ((1u << DEFORMVOLUME_BRICK_BITS) - 1)) +
+    i % DEFORMVOLUME_SECTIONS;
+  for (int k = 0; k < DEFORMVOLUME_COUNTERS && IsSectionRun(brick, section); ++k)
+  {
+    counters[section * DEFORMVOLUME_COUNTERS + k] = 0;
+  }
+}
+
+// Those counters of all sections are 0 again that tell the passes which choose winners where there is work.
+__kernel void ClearWork(__global uint* counters, const uint sections)
+{
+  const size_t i = get_global_id(0);
+  if (i < sections)
+  {
+    counters[i * DEFORMVOLUME_COUNTERS + DEFORMVOLUME_COUNT_CANDIDATES] = 0;
+    counters[i * DEFORMVOLUME_COUNTERS + DEFORMVOLUME_COUNT_TOUCHED] = 0;
+  }
 }
 
 // Sections of bricks that hold the winners of voxels: counts in them are set where there is one. Voxels side by

@@ -24,6 +24,9 @@ enum class Resampling
   /// arrays of one component, of float or integers of 8 or 16 bits, are interpolated in single
   /// precision.
   ExactByLanes,
+  /// The same with the kernel for graphics cards, whose work-items are lanes, each a column of
+  /// cells: arrays as above, outputs as above, any device with local memory for it, else an Error.
+  ExactByColumns,
   /// The published kernel, kept as the yardstick of benchmarks: float tolerance, racing writes.
   Published,
   /// The tetrahedra of the deformation mesh themselves are rasterised, and the volume is looked up
@@ -48,7 +51,8 @@ struct DeformRequest
   /// Structured indices of the output voxels.
   Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
   /// The output that these are a part of; empty: they are all of it. What a voxel gets with the
-  /// methods Exact, ExactByCell and ExactByLanes depends on this one alone, to the last bit.
+  /// methods Exact, ExactByCell, ExactByLanes and ExactByColumns depends on this one alone, to the
+  /// last bit.
   Extent WholeOutputExtent{ { 0, -1, 0, -1, 0, -1 } };
   /// For each array of the volume, room for Components elements a voxel of OutputExtent. A device
   /// that is a processor works there; after a failure the contents are undefined.
@@ -58,7 +62,7 @@ struct DeformRequest
   /// Keeps what is needed to write only what changes until the next call. That call needs the
   /// output of this one in LastOutputs and LastCoverage. Where that is not faster or not possible,
   /// all is written; the result is the same to the last bit. For volumes and outputs within the
-  /// allocation limit, and methods Exact, ExactByCell and ExactByLanes.
+  /// allocation limit, and methods Exact, ExactByCell, ExactByLanes and ExactByColumns.
   bool Incremental = false;
   /// What the last call wrote, unchanged: the same memory as Outputs and Coverage, or other memory,
   /// from which it is copied, whatever the device. Empty and null where there is none.

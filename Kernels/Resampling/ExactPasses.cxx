@@ -22,6 +22,42 @@ static_assert(DEFORMVOLUME_CUBOID_X % DEFORMVOLUME_COLUMN == 0 &&
     DEFORMVOLUME_BRICK_Z / 2 % DEFORMVOLUME_CUBOID_Z == 0,
   "bricks are made of cuboids, and these of columns in one half of a brick on y and z");
 
+namespace
+{
+
+// Bricks in a launch by columns at most: each of its cells has room in the queue.
+constexpr int MostBricksForQueue = 192;
+// A launch of what is in the queue: it is not known to the host how much that is.
+constexpr std::size_t QueueGroupsPerUnit = 16;
+// Work-items of a group that have places in its local memory: see ResampleQueued.
+constexpr std::size_t LargestQueueGroup =
+  std::size_t{ DEFORMVOLUME_COLUMN / 2 } * ((DEFORMVOLUME_BRICK_Y / 2 + 1) / 2);
+
+const char* GetKernelName(ResamplingForm form)
+{
+  switch (form)
+  {
+    case ResamplingForm::Cells:
+      return "Resample";
+    case ResamplingForm::Lanes:
+      return "ResampleBricks";
+    case ResamplingForm::Columns:
+      return "ResampleColumns";
+    case ResamplingForm::Queue:
+      return "ResampleQueued";
+    case ResamplingForm::LargeCells:
+      return "ResampleLargeCells";
+  }
+  return "";
+}
+
+bool IsByColumns(ResamplingForm form)
+{
+  return form == ResamplingForm::Columns || form == ResamplingForm::Queue;
+}
+
+} // namespace
+
 ExactPasses::ExactPasses(
   WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches)
   : Device(device)
@@ -31,23 +67,37 @@ ExactPasses::ExactPasses(
 {
 }
 
-bool ExactPasses::UseLanes(Resampling method, const OutputSlab& output)
+ResamplingForm ExactPasses::ChooseForm(Resampling method, const OutputSlab& output)
 {
   const bool fits = output.FitsLanes();
-  if (method == Resampling::ExactByLanes && !fits)
+  const bool hasVectors = this->Device.GetDevice().HasVectors;
+  if ((method == Resampling::ExactByLanes || method == Resampling::ExactByColumns) && !fits)
   {
     throw Error(
-      "The resampling by lanes takes only outputs under 2^31 voxels, and of at most 32,768 "
-      "on an axis, that begin within 2^22 voxels of index 0.");
+      "The resampling by lanes or columns takes only outputs under 2^31 voxels, and of at most "
+      "32,768 on an axis, that begin within 2^22 voxels of index 0.");
   }
-  const bool hasVectors = this->Device.GetDevice().HasVectors;
   if (method == Resampling::ExactByLanes && !hasVectors)
   {
     throw Error("The resampling by lanes is for processors whose vector registers a work-item has "
                 "for itself, and the device \"" +
       this->Device.GetDevice().Name + "\" is none.");
   }
-  return fits && hasVectors && (method == Resampling::ExactByLanes || method == Resampling::Exact);
+  const bool hasColumns = HasLocalColumns(this->Device.GetContext());
+  if (method == Resampling::ExactByColumns && !hasColumns)
+  {
+    throw Error("The resampling by columns needs more local memory than the device \"" +
+      this->Device.GetDevice().Name + "\" has.");
+  }
+  if (!fits || method == Resampling::ExactByCell)
+  {
+    return ResamplingForm::Cells;
+  }
+  if (hasVectors && method != Resampling::ExactByColumns)
+  {
+    return ResamplingForm::Lanes;
+  }
+  return hasColumns ? ResamplingForm::Columns : ResamplingForm::Cells;
 }
 
 int ExactPasses::GetLayersPerLaunch() const
@@ -66,25 +116,24 @@ std::size_t ExactPasses::GetNumberOfLaunches() const
   return static_cast<std::size_t>((this->Volume.GetSize(2) + layers - 1) / layers);
 }
 
-cl::Kernel ExactPasses::MakeKernel(ResamplingForm form)
+cl::Kernel ExactPasses::MakeKernel(ResamplingForm form, const OutputSlab& output, int pass)
 {
   OpenCLContext& context = this->Device.GetContext();
   const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
-  const bool lanes = form == ResamplingForm::Lanes;
-  if (lanes)
+  if (form == ResamplingForm::Lanes)
   {
     Reserve(context, this->TakenBricks, sizeof(cl_uint));
+    if (!HasLocalBricks(context))
+    {
+      Reserve(context, this->BrickRows,
+        std::uint64_t{ context.GetNumberOfUnits() } * GetBrickMemory(context, arrays));
+    }
   }
-  if (lanes && !HasLocalBricks(context))
-  {
-    Reserve(context, this->BrickRows,
-      std::uint64_t{ context.GetNumberOfUnits() } * GetBrickMemory(context, arrays));
-  }
+  const bool wideKeys = GetWinnerSize(this->Volume.GetVoxelGrid()) == 8;
   return cl::Kernel(GetResamplingProgram(context, this->Source.GetMappingForm(), arrays,
-                      GetWinnerSize(this->Volume.GetVoxelGrid()) == 8, form, this->Volume.HasCut()),
-    lanes                             ? "ResampleBricks"
-      : form == ResamplingForm::Cells ? "Resample"
-                                      : "ResampleLargeCells");
+                      { form, wideKeys, output.HasCoverageBits(), this->Volume.HasCut(),
+                        form == ResamplingForm::Columns && pass == DEFORMVOLUME_PASS_DIRECT }),
+    GetKernelName(form));
 }
 
 void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
@@ -94,11 +143,11 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   kernel.setArg(i++, this->Volume.GetState(chunk));
   kernel.setArg(i++, this->Volume.GetActive(chunk));
   kernel.setArg(i++, this->Volume.GetDistances(chunk));
-  kernel.setArg(i++, output.GetCoverage());
+  kernel.setArg(i++, output.GetCoverageTarget());
   // A null pointer is not something that all drivers take: any buffer stands in for a missing one.
   const OutputWinners& winners = output.GetWinners();
-  kernel.setArg(i++, winners.GetKeys()() ? winners.GetKeys() : output.GetCoverage());
-  kernel.setArg(i++, winners.GetPatches()() ? winners.GetPatches() : output.GetCoverage());
+  kernel.setArg(i++, winners.GetKeys()() ? winners.GetKeys() : output.GetCoverageTarget());
+  kernel.setArg(i++, winners.GetPatches()() ? winners.GetPatches() : output.GetCoverageTarget());
   kernel.setArg(i++, output.GetLargeCells());
   kernel.setArg(i++, output.GetCounters());
   if (this->Volume.HasCut())
@@ -121,6 +170,12 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
     {
       kernel.setArg(i++, this->BrickRows);
     }
+  }
+  else if (IsByColumns(form))
+  {
+    kernel.setArg(i++, this->Queue);
+    kernel.setArg(
+      i++, cl::Local(GetColumnMemory(this->Device.GetContext(), this->Volume.GetVolumeArrays())));
   }
   else if (form == ResamplingForm::Cells)
   {
@@ -146,11 +201,39 @@ void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
   KernelParameters p = parameters;
   p.ListBegin = p.ListEnd = 0;
   this->SetArguments(kernel, chunk, output, form, p);
-  const std::size_t group = this->Device.GetBusyGroupSize(kernel);
-  this->Device.GetContext().Prepare(this->Device.GetQueue(), kernel,
-    form == ResamplingForm::Cells     ? cl::NDRange(group, 1, 1)
-      : form == ResamplingForm::Lanes ? cl::NDRange(1)
-                                      : cl::NDRange(group));
+  const auto getGroup = [&]
+  {
+    const std::size_t group = this->Device.GetBusyGroupSize(kernel);
+    switch (form)
+    {
+      case ResamplingForm::Cells:
+        return cl::NDRange(group, 1, 1);
+      case ResamplingForm::Lanes:
+        return cl::NDRange(1);
+      case ResamplingForm::Columns:
+        return cl::NDRange(this->GetColumnGroup(kernel, form), 1, 1);
+      case ResamplingForm::Queue:
+        return cl::NDRange(this->GetColumnGroup(kernel, form));
+      case ResamplingForm::LargeCells:
+        break;
+    }
+    return cl::NDRange(group);
+  };
+  this->Device.GetContext().Prepare(this->Device.GetQueue(), kernel, getGroup());
+}
+
+std::size_t ExactPasses::GetColumnGroup(const cl::Kernel& kernel, ResamplingForm form)
+{
+  if (form == ResamplingForm::Columns)
+  {
+    return this->Device.GetBusyGroupSize(kernel, DEFORMVOLUME_COLUMN * DEFORMVOLUME_BRICK_Y / 2);
+  }
+  return std::min(this->Device.GetBusyGroupSize(kernel), LargestQueueGroup);
+}
+
+std::size_t ExactPasses::GetQueueItems(std::size_t group)
+{
+  return QueueGroupsPerUnit * this->Device.GetContext().GetNumberOfUnits() * group;
 }
 
 std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanAll(
@@ -220,6 +303,22 @@ void ExactPasses::Launch(
       cl::NDRange(std::min(this->Device.GetContext().GetNumberOfUnits(), bricks)), cl::NDRange(1));
     return;
   }
+  if (form == ResamplingForm::Columns)
+  {
+    this->Device.GetQueue().enqueueFillBuffer(this->Queue, cl_uint{ 0 }, 0, sizeof(cl_uint));
+    const std::size_t group = this->GetColumnGroup(kernel, form);
+    this->Launched.Run(request, kernel, cl::NDRange(group * DEFORMVOLUME_COLUMNS * bricks, 2, 2),
+      cl::NDRange(group, 1, 1));
+    return;
+  }
+  if (form == ResamplingForm::Queue)
+  {
+    const std::size_t group = this->GetColumnGroup(kernel, form);
+    this->Launched.GetResamplingEvents().push_back(
+      this->Device.GetContext().Launch(this->Device.GetQueue(), kernel,
+        cl::NDRange(this->GetQueueItems(group)), cl::NDRange(group)));
+    return;
+  }
   const std::size_t group = this->Device.GetBusyGroupSize(kernel);
   constexpr std::size_t cuboids = DEFORMVOLUME_BRICK_X / DEFORMVOLUME_CUBOID_X;
   this->Launched.Run(request, kernel,
@@ -228,15 +327,16 @@ void ExactPasses::Launch(
     cl::NDRange(group, 1, 1));
 }
 
-void ExactPasses::SendBricks(const std::vector<cl_uint>& list)
+const cl::Buffer& ExactPasses::SendBricks(const std::vector<cl_uint>& list)
 {
   if (list == this->SentBricks)
   {
-    return; // to send them again would wait for all that is enqueued
+    return this->Bricks; // to send them again would wait for all that is enqueued
   }
   this->SentBricks.clear(); // it is unknown what the device has, if this fails
   this->Bricks = this->Device.Send(list.data(), list.size() * sizeof(cl_uint), this->Bricks);
   this->SentBricks = list;
+  return this->Bricks;
 }
 
 void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, int pass,
@@ -251,15 +351,56 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
     return;
   }
   const std::vector<cl_uint>& list = bricks ? *bricks : all;
-  const ResamplingForm form =
-    this->UseLanes(request.Method, output) ? ResamplingForm::Lanes : ResamplingForm::Cells;
-  cl::Kernel kernel = this->MakeKernel(form);
+  const ResamplingForm form = this->ChooseForm(request.Method, output);
+  cl::Kernel kernel = this->MakeKernel(form, output, pass);
   this->SendBricks(list);
+  if (form == ResamplingForm::Columns)
+  {
+    this->RunColumns(request, output, kernel, launches);
+    return;
+  }
   this->PrepareKernel(kernel, launches.front().Chunk, output, form, launches.front().Parameters);
   for (const auto& [chunk, p] : launches)
   {
     this->SetArguments(kernel, chunk, output, form, p);
     this->Launch(request, kernel, form, p);
+  }
+}
+
+void ExactPasses::RunColumns(const DeformRequest& request, const OutputSlab& output,
+  cl::Kernel& columns, const std::vector<PlannedLaunch>& launches)
+{
+  int most = 0;
+  for (const PlannedLaunch& launch : launches)
+  {
+    most = std::max(most, launch.Parameters.ListEnd - launch.Parameters.ListBegin);
+  }
+  constexpr std::uint64_t cellsOfBrick =
+    std::uint64_t{ DEFORMVOLUME_BRICK_X } * DEFORMVOLUME_BRICK_Y * DEFORMVOLUME_BRICK_Z;
+  const std::uint64_t entries =
+    static_cast<std::uint64_t>(std::min(most, MostBricksForQueue)) * cellsOfBrick;
+  // A longer one serves as well.
+  if (deformvolume::GetMemory(this->Queue) < (1 + entries) * sizeof(cl_uint))
+  {
+    Reserve(this->Device.GetContext(), this->Queue, (1 + entries) * sizeof(cl_uint));
+  }
+  cl::Kernel queue =
+    this->MakeKernel(ResamplingForm::Queue, output, launches.front().Parameters.Pass);
+  const PlannedLaunch& first = launches.front();
+  this->PrepareKernel(columns, first.Chunk, output, ResamplingForm::Columns, first.Parameters);
+  this->Device.GetQueue().enqueueFillBuffer(this->Queue, cl_uint{ 0 }, 0, sizeof(cl_uint));
+  this->PrepareKernel(queue, first.Chunk, output, ResamplingForm::Queue, first.Parameters);
+  for (const auto& [chunk, planned] : launches)
+  {
+    KernelParameters p = planned;
+    for (p.ListEnd = p.ListBegin; p.ListEnd < planned.ListEnd; p.ListBegin = p.ListEnd)
+    {
+      p.ListEnd = std::min(p.ListBegin + MostBricksForQueue, planned.ListEnd);
+      this->SetArguments(columns, chunk, output, ResamplingForm::Columns, p);
+      this->Launch(request, columns, ResamplingForm::Columns, p);
+      this->SetArguments(queue, chunk, output, ResamplingForm::Queue, p);
+      this->Launch(request, queue, ResamplingForm::Queue, p);
+    }
   }
 }
 
@@ -279,7 +420,7 @@ void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& 
     left += static_cast<std::uint64_t>(cell.Pieces);
   }
   this->Launched.Expect(left / DEFORMVOLUME_PIECES + 1);
-  cl::Kernel kernel = this->MakeKernel(ResamplingForm::LargeCells);
+  cl::Kernel kernel = this->MakeKernel(ResamplingForm::LargeCells, output, pass);
   const std::size_t group = this->Device.GetBusyGroupSize(kernel);
   Reserve(this->Device.GetContext(), this->Pieces, DEFORMVOLUME_PIECES * sizeof(Piece));
   for (const VolumeChunk& chunk : this->Volume.GetChunks())

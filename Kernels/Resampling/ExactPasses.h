@@ -29,9 +29,9 @@ public:
   ExactPasses(
     WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches);
 
-  /// Whether cells are worked on by lanes, brick by brick. Throws an Error where the method demands
-  /// that and it cannot be.
-  bool UseLanes(Resampling method, const OutputSlab& output);
+  /// The kernel for cells: Cells, Lanes or Columns. Throws an Error where the method demands one
+  /// that it cannot be.
+  ResamplingForm ChooseForm(Resampling method, const OutputSlab& output);
 
   /// Runs a pass (DEFORMVOLUME_PASS_DIRECT and so on). bricks: those to run
   /// (DEFORMVOLUME_BRICK_BITS), where the volume is one chunk; null: all. The mapping is up to date
@@ -43,6 +43,9 @@ public:
 
   /// Launches of Run over all cells, about.
   std::size_t GetNumberOfLaunches() const;
+
+  /// Makes a list, which is not empty, the one that the device has.
+  const cl::Buffer& SendBricks(const std::vector<cl_uint>& list);
 
   /// Bytes on the device, but for lists of work.
   std::uint64_t GetMemory() const;
@@ -66,10 +69,15 @@ private:
   /// Launches a kernel of a form over the bricks that the parameters have of the list.
   void Launch(const DeformRequest& request, cl::Kernel& kernel, ResamplingForm form,
     const KernelParameters& p);
+  /// Launches the kernel for columns, and after each launch the one for what that leaves.
+  void RunColumns(const DeformRequest& request, const OutputSlab& output, cl::Kernel& columns,
+    const std::vector<PlannedLaunch>& launches);
+  /// Work-items of a group of the kernels for columns and for what these leave in the queue, and
+  /// those of a launch of the latter.
+  std::size_t GetColumnGroup(const cl::Kernel& kernel, ResamplingForm form);
+  std::size_t GetQueueItems(std::size_t group);
 
-  /// Makes a list, which is not empty, the one that the device has.
-  void SendBricks(const std::vector<cl_uint>& list);
-  cl::Kernel MakeKernel(ResamplingForm form);
+  cl::Kernel MakeKernel(ResamplingForm form, const OutputSlab& output, int pass);
   /// Has a kernel compiled before it runs (OpenCLContext::Prepare).
   void PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk, const OutputSlab& output,
     ResamplingForm form, const KernelParameters& parameters);
@@ -84,6 +92,7 @@ private:
   std::vector<cl_uint> SentBricks; // what it has
   cl::Buffer BrickRows;            // what these need, where local memory is too small
   cl::Buffer TakenBricks;          // how many of these the launch that runs has taken
+  cl::Buffer Queue;                // what columns leave for later
   cl::Buffer Pieces;               // of large cells, to work on
 };
 

@@ -38,10 +38,14 @@ void ExactResampler::Make(
 {
   OutputSlab& target = this->Targets[plan.GetTarget(slab)];
   this->Launched.Expect((plan.Slabs.size() - slab) * this->Exact.GetNumberOfLaunches());
-  target.Prepare(this->Device.GetContext(), this->Device.GetQueue(), plan.Slabs[slab], request,
+  target.Place(this->Device.GetContext(), this->Device.GetQueue(), plan.Slabs[slab], request,
     this->Volume.GetVolumeArrays(), this->Volume.GetVoxelGrid(),
     this->Volume.GetBricks().GetNumberOfBricks(), this->Launched.GetResamplingEvents());
-  if (request.Method == Resampling::Published)
+  const bool isPublished = request.Method == Resampling::Published;
+  target.Clear(this->Device.GetContext(), this->Volume.GetVolumeArrays(),
+    !isPublished && this->Exact.ChooseForm(request.Method, target) == ResamplingForm::Columns,
+    this->Launched.GetResamplingEvents());
+  if (isPublished)
   {
     this->MakePublished(request, target, report);
     this->Last = LastOutput::Unknown;
@@ -75,14 +79,15 @@ ExactResampler::Outcome ExactResampler::RunFirstPass(
   Outcome outcome;
   const auto count = [&]
   {
-    outcome.Covered =
-      output.CountCovered(this->Device.GetContext(), this->Launched.GetResamplingEvents());
-    outcome.Counts = output.ReadCounts();
+    outcome.Counts = output.ReadCounts(this->Device, this->Launched.GetResamplingEvents());
+    outcome.Covered = output.HasCoverageBits()
+      ? outcome.Counts.Covered
+      : output.CountCovered(this->Device.GetContext(), this->Launched.GetResamplingEvents());
   };
   this->Source.PrepareMapping(this->Launched.GetMappingEvents());
   this->RunPass(request, output, pass, false);
   count();
-  outcome.HasLargeCells = outcome.Counts.Large > 0;
+  outcome.HasLargeCells = outcome.Counts.HasLarge;
   if (outcome.HasLargeCells)
   {
     this->Exact.RunLargeCells(request, output, pass);
@@ -128,6 +133,8 @@ void ExactResampler::MakeExact(
     }
     covered = output.CountCovered(this->Device.GetContext(), this->Launched.GetResamplingEvents());
   }
+  output.Complete(this->Device.GetContext(), this->Volume.GetVolumeArrays(), false,
+    this->Launched.GetResamplingEvents());
   report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
   this->IsContested = report.Overlapping || this->IsFolded(first.Counts);
 }
@@ -213,20 +220,29 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
   OutputSlab& output = this->Targets[0];
   const bool won = this->HasWinners();
   const int pass = won ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT;
+  const cl::Buffer list = bricks.empty() ? cl::Buffer() : this->Exact.SendBricks(bricks);
   output.PrepareAgain(this->Device.GetContext(), this->Device.GetQueue(), request,
-    this->Volume.GetVolumeArrays(), { bricks, patches, won }, this->Launched.GetResamplingEvents());
+    this->Volume.GetVolumeArrays(), { bricks, list, patches, won },
+    this->Launched.GetResamplingEvents());
   this->Source.PrepareMapping(this->Launched.GetMappingEvents(), &bricks);
   this->RunPass(request, output, pass, false, &bricks);
   Again again;
-  again.Counts = output.ReadCounts();
-  const bool hasLargeCells = again.Counts.Large > 0;
+  again.Counts = output.ReadCounts(this->Device, this->Launched.GetResamplingEvents());
+  const bool hasLargeCells = again.Counts.HasLarge;
   if (hasLargeCells)
   {
     this->Exact.RunLargeCells(request, output, pass);
-    again.Counts = output.ReadCounts();
+    again.Counts = output.ReadCounts(this->Device, this->Launched.GetResamplingEvents());
   }
+  const auto complete = [&]
+  {
+    output.Complete(this->Device.GetContext(), this->Volume.GetVolumeArrays(), true,
+      this->Launched.GetResamplingEvents());
+    this->Device.GetQueue().finish(); // it is read in another queue
+  };
   if (!won)
   {
+    complete();
     return again;
   }
   if (!bricks.empty())
@@ -244,8 +260,8 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
   if (!bricks.empty())
   {
     this->WriteWinners(request, output, hasLargeCells, true);
-    this->Device.GetQueue().finish(); // it is read in another queue
   }
+  complete();
   return again;
 }
 

@@ -42,6 +42,7 @@ typedef struct
 
 // Functions that are inlined give no structures back: Oclgrind does not know what compilers make of that.
 
+#if LANES > 1
 // Bounds of the columns of four vertices at a place of the rows.
 static __attribute__((always_inline)) void BoundColumns(const LocalRow* rows, int place, Bounds* b)
 {
@@ -79,6 +80,7 @@ static __attribute__((always_inline)) void Shift(const Bounds* a, const Bounds* 
   b->HighY = NextLanes(a->HighY, behind->HighY);
   b->HighZ = NextLanes(a->HighZ, behind->HighZ);
 }
+#endif
 
 // The cells, as bits, whose edge from vertex 0 to another one is parallel to an axis: two coordinates of its ends
 // are the same, and one is not.
@@ -91,7 +93,7 @@ static __attribute__((always_inline)) uint FindAxialEdges(const Group* group, in
 
 // Cells that are boxes, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume: each
 // coordinate varies along one axis of the voxel grid only. rises: those whose coordinates grow with the indices.
-static __attribute__((noinline)) INTS FindBoxes(const Group* group, int mirror, INTS* rises)
+static SELDOM INTS FindBoxes(const Group* group, int mirror, INTS* rises)
 {
   LOAD_VERTICES
 #define SAME(C, a, b) (C##a == C##b)
@@ -112,7 +114,7 @@ typedef struct
   INTS X, Y, Z;
 } ParallelEdges;
 
-static __attribute__((noinline)) void FindParallelEdges(
+static SELDOM void FindParallelEdges(
   const Group* group, int mirror, ParallelEdges* edges)
 {
   LOAD_VERTICES
@@ -130,7 +132,7 @@ static __attribute__((noinline)) void FindParallelEdges(
 #define END_OF(high, toEnd, size) TO_INTS(Least((high) + toEnd, (float)(size)))
 
 // Boxes do not look at their high sides, nor at whether they own a sample: all samples in them count as touched.
-static __attribute__((noinline)) void TouchBoxes(
+static SELDOM void TouchBoxes(
   INTS box, const Bounds* b, Output* output, const KernelParameters* p)
 {
   const INTS firstX = FIRST_OF(b->LowX);
@@ -160,6 +162,7 @@ static __attribute__((noinline)) void TouchBoxes(
   }
 }
 
+#if LANES > 1
 // Has the processor fetch the output where the candidates of some lanes of a group begin, long before it is written:
 // FetchFound reaches the caches in time, and memory only where this has begun.
 static __attribute__((always_inline)) void FetchOutput(
@@ -174,6 +177,7 @@ static __attribute__((always_inline)) void FetchOutput(
     PREFETCH_TO_WRITE(output->Coverage + place)
   }
 }
+#endif
 
 // How large cells with these bounds are.
 static __attribute__((always_inline)) void MeasureCells(const Bounds* b, GroupCandidates* c)
@@ -288,6 +292,29 @@ static __attribute__((always_inline)) void FindSamplesOfWhole(
   s->CountZ = WHOLE_END(b->HighZ, toEnds->Z, 2) - s->FirstZ;
 }
 
+// The samples within the bounds of cells as their candidates.
+static __attribute__((always_inline)) void SetCandidates(
+  const Bounds* b, const ToEnds* toEnds, GroupCandidates* c, const KernelParameters* p)
+{
+  SamplesInBounds s;
+  if (p->IsPart)
+  {
+    FindSamplesOfWhole(b, toEnds, &s, p);
+  }
+  else
+  {
+    FindSamples(b, toEnds, &s, p);
+  }
+  c->First[0] = s.FirstX;
+  c->First[1] = s.FirstY;
+  c->First[2] = s.FirstZ;
+  c->Count[0] = s.CountX;
+  c->Count[1] = s.CountY;
+  c->Count[2] = s.CountZ;
+  c->Place = (s.FirstZ * p->OutputSize[1] + s.FirstY) * p->OutputSize[0] + s.FirstX;
+  c->Number = s.CountX * s.CountY * s.CountZ;
+}
+
 // Whether some cells, as bits, touch no voxel to be won.
 static __attribute__((always_inline)) int IsSettled(
   uint some, const SamplesInBounds* s, const Output* output, const KernelParameters* p)
@@ -343,27 +370,17 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   // Cells that a cut divides, none of which is whole, reach beyond the bounds of their vertices.
   const int isDivided = HAS_CUT && (c->There & ~whole);
   c->Skip = DEFORMVOLUME_IS_CLOSED(p->Pass) && !isDivided && IsSettled(some, &s, output, p);
-  if (p->IsPart)
-  {
-    FindSamplesOfWhole(b, &toEnds, &s, p);
-  }
-  c->First[0] = s.FirstX;
-  c->First[1] = s.FirstY;
-  c->First[2] = s.FirstZ;
-  c->Count[0] = s.CountX;
-  c->Count[1] = s.CountY;
-  c->Count[2] = s.CountZ;
-  c->Place = (s.FirstZ * p->OutputSize[1] + s.FirstY) * p->OutputSize[0] + s.FirstX;
-  c->Number = s.CountX * s.CountY * s.CountZ;
+  SetCandidates(b, &toEnds, c, p);
   c->Fit = whole & LaneBits(c->Extent < MAXIMUM_EXTENT) &
     ~(some & LaneBits(c->Number > MAXIMUM_CANDIDATES));
   c->Some = some & c->Fit;
 }
 
+#if LANES > 1
 // For the two groups at place k of a row of cells, for even and for odd x: cells of the second begin at the odd
 // vertices. even: the bounds of the columns of even x at this place, and then at the next one. output: of the
 // column of the brick.
-static __attribute__((noinline)) void FindPairCandidates(const RowOfCells* row, int k, Bounds* even,
+static SELDOM void FindPairCandidates(const RowOfCells* row, int k, Bounds* even,
   const SamplingMesh* mesh, Output* output, GroupCandidates* candidates,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -379,3 +396,4 @@ static __attribute__((noinline)) void FindPairCandidates(const RowOfCells* row, 
   FindGroupCandidates(&cells, mesh, output, candidates + 1, p ARRAY_ARGUMENTS);
   *even = behind;
 }
+#endif

@@ -20,8 +20,10 @@ static INTS LoadStates(__global const uchar* row)
   return convert_int16((ushort16)(as_ushort8(vload16(0, row)), as_ushort8(vload16(1, row))));
 #elif LANES == 8
   return convert_int8(as_ushort8(vload16(0, row)));
-#else
+#elif LANES == 4
   return convert_int4(as_ushort4(vload8(0, row)));
+#else
+  return row[0] | row[1] << 8;
 #endif
 }
 
@@ -42,10 +44,10 @@ static void AddStates(INTS row, int o, int mirror, GroupState* states)
 {
   const int low = 1 << (o ^ mirror);
   const int high = 1 << ((o | 1) ^ mirror);
-  states->Interior |= (((row & DEFORMVOLUME_VERTEX_INTERIOR) != 0) & low) |
-    (((row & DEFORMVOLUME_VERTEX_INTERIOR << 8) != 0) & high);
-  states->Regular |= (((row & DEFORMVOLUME_VERTEX_REGULAR) != 0) & low) |
-    (((row & DEFORMVOLUME_VERTEX_REGULAR << 8) != 0) & high);
+  states->Interior |= WHERE((row & DEFORMVOLUME_VERTEX_INTERIOR) != 0, low) |
+    WHERE((row & DEFORMVOLUME_VERTEX_INTERIOR << 8) != 0, high);
+  states->Regular |= WHERE((row & DEFORMVOLUME_VERTEX_REGULAR) != 0, low) |
+    WHERE((row & DEFORMVOLUME_VERTEX_REGULAR << 8) != 0, high);
 }
 
 // The same vertex by vertex: what lies beyond the states must not be read.
@@ -72,7 +74,7 @@ static void StatesOfLanes(
   states->Regular = regular.Vector;
 }
 
-static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, int x, int y, int z,
+static SELDOM void StatesOfGroup(const SamplingMesh* mesh, int x, int y, int z,
   GroupState* states, const KernelParameters* p)
 {
   const INTS cellX = x + 2 * LANE_INDEX;
@@ -87,7 +89,7 @@ static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, in
     states->Whole = inVolume;
     states->Regular = 255;
     states->Interior =
-      ~(outer | ((cellX == 0) & lowX) | ((cellX == p->Size[0] - 2) & (255 ^ lowX))) & 255;
+      ~(outer | WHERE(cellX == 0, lowX) | WHERE(cellX == p->Size[0] - 2, 255 ^ lowX)) & 255;
     return;
   }
   __global const uchar* const state = BeginStates(mesh, x, y, z, p);
@@ -107,14 +109,14 @@ static __attribute__((noinline)) void StatesOfGroup(const SamplingMesh* mesh, in
   AddStates(LoadStates(state + row), 4, mirror, states);
   AddStates(LoadStates(state + plane + row), 6, mirror, states);
   states->Whole = inVolume & ((here & DEFORMVOLUME_CELL_WHOLE) != 0);
-  states->Interior &= inVolume;
-  states->Regular &= inVolume;
+  states->Interior = WHERE(inVolume, states->Interior);
+  states->Regular = WHERE(inVolume, states->Regular);
 }
 
 #if HAS_CUT
 // The cells of a group, as bits, that a smooth cut may divide (CutCells.cl): one that it crosses, with a vertex that lies
 // elsewhere as seen from the other side.
-static __attribute__((noinline)) uint FindDivided(
+static SELDOM uint FindDivided(
   const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
   __global const uchar* const state = BeginStates(mesh, x, y, z, p);
@@ -136,9 +138,10 @@ static __attribute__((noinline)) uint FindDivided(
 // 2 (256 extent)^3. Normals, of at most 2 (256 extent)^2 each and three times that together, are exact in float, whose
 // products cost less. sample: in voxels relative to vertex 0 of the cell. inverted: lanes whose tetrahedra are.
 // simplex: the vertices of the simplex that the sample lies in, 0 where that is not in the cell.
-static __attribute__((noinline)) INTS HoldSample(
+static SELDOM INTS HoldSample(
   const Group* group, const FLOATS* sample, int odd, INTS inverted, INTS* simplex)
 {
+#if LANES > 1
   FLOATS q[8][3];
   for (int v = 0; v < 8; ++v)
   {
@@ -147,29 +150,38 @@ static __attribute__((noinline)) INTS HoldSample(
       q[v][axis] = VERTEX(v, axis) - VERTEX(0, axis);
     }
   }
+#define RELATIVE(v, axis) q[v][axis]
+#else
+  // Registers are few: vertices are read again.
+#define RELATIVE(v, axis) (VERTEX(v, axis) - VERTEX(0, axis))
+#endif
   INTS held = 0;
   *simplex = 0;
+  NOT_UNROLLED
   for (int t = 0; t < 5; ++t)
   {
     FLOATS e[3][3]; // edges from the first vertex, and the normals of the faces opposite the others
     FLOATS n[4][3];
     INTS r[3]; // the sample, in 1/256 voxel
+    UNROLLED
     for (int axis = 0; axis < 3; ++axis)
     {
-      const FLOATS first = q[Tetrahedra[t][0]][axis];
+      const FLOATS first = RELATIVE(Tetrahedra[t][0], axis);
       r[axis] = TO_INTS((sample[axis] - first) * 256.0f);
+      UNROLLED
       for (int k = 0; k < 3; ++k)
       {
-        e[k][axis] = q[Tetrahedra[t][k + 1]][axis] - first;
+        e[k][axis] = RELATIVE(Tetrahedra[t][k + 1], axis) - first;
       }
     }
     // The orientation that the parity of the cell asks for: normals point inside.
-    const INTS negative = odd != (t == 4) ? ~inverted : inverted;
+    const INTS negative = odd != (t == 4) ? !inverted : inverted;
 #define NORMAL_OF(k, u, v)                                                                         \
   {                                                                                                \
     const FLOATS normal = fma(e[u][a], e[v][b], -(e[u][b] * e[v][a]));                             \
     n[k][axis] = negative ? -normal : normal;                                                      \
   }
+    UNROLLED
     for (int axis = 0; axis < 3; ++axis)
     {
       const int a = (axis + 1) % 3;
@@ -189,6 +201,7 @@ static __attribute__((noinline)) INTS HoldSample(
     INTS inside = -1;
     INTS closed = -1;
     INTS vertices = 0;
+    UNROLLED
     for (int k = 3; k >= 0; --k)
     {
       const INTS f = k ? PRODUCT(k, r) : first;
@@ -200,12 +213,13 @@ static __attribute__((noinline)) INTS HoldSample(
             ((n[k][0] == 0.0f) &
               ((n[k][1] > 0.0f) | ((n[k][1] == 0.0f) & (n[k][2] > 0.0f))))));
       closed &= f >= 0;
-      vertices |= (f > 0) & (1 << Tetrahedra[t][k]);
+      vertices |= WHERE(f > 0, 1 << Tetrahedra[t][k]);
     }
 #undef PRODUCT
     held |= inside;
-    *simplex |= closed & vertices;
+    *simplex |= WHERE(closed, vertices);
   }
+#undef RELATIVE
   return held;
 }
 
@@ -218,7 +232,7 @@ static __attribute__((always_inline)) uint InOutput(
 }
 
 // Marks the samples of some lanes, by bits, which hold these and do not own them. x, y, z: in voxels of the output.
-static __attribute__((noinline)) void TouchHeld(
+static SELDOM void TouchHeld(
   uint lanes, FLOATS x, FLOATS y, FLOATS z, Output* output, const KernelParameters* p)
 {
   Lanes place[3];
@@ -276,7 +290,7 @@ static __attribute__((always_inline)) uint DecideByIntegers(const Group* group, 
 // Whether a box that has all its tetrahedra, and whose coordinates grow with the indices, owns a sample on one of its
 // vertices, which is on the border of the mesh. Of its tetrahedra that share the vertex it is the one at the edge along
 // x that a shift away from the vertex leads into.
-static __attribute__((noinline)) int OwnsVertex(
+static SELDOM int OwnsVertex(
   const SamplingMesh* mesh, int x, int y, int z, int vertex, const KernelParameters* p)
 {
   const int edge = 1 << vertex | 1 << (vertex ^ 1);
@@ -304,7 +318,7 @@ static __attribute__((noinline)) int OwnsVertex(
 
 // Returns which of some cells, as bits, own their sample. The cells are as for OwnsVertex. simplex: the vertex that
 // the sample is, as a mask. x, y, z: the sample, in voxels of the output.
-static __attribute__((noinline)) uint DecideOnVertices(const Group* group, uint some, INTS simplex,
+static SELDOM uint DecideOnVertices(const Group* group, uint some, INTS simplex,
   const GroupState* state, FLOATS x, FLOATS y, FLOATS z, const SamplingMesh* mesh, Output* output,
   const KernelParameters* p)
 {

@@ -1,6 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A group of cells: LANES of a row, of equal parity (BrickResampling.cl). Where its vertices lie.
+// A group of cells: LANES of a row, of equal parity (BrickResampling.cl, ColumnResampling.cl). Where its vertices lie.
+//
+// Data: in ROW_MEMORY, a row of vertices: for even, then for odd ones the position in output voxels relative to the
+// first output voxel (x, y, z; float, exact multiples of 1/256), then the values of the arrays that are
+// interpolated in single precision, HALF_ROW floats each.
+//
+// What the host puts in front of this text:
+//   ROW_MEMORY           address space of the rows: __local, or __global where local memory is too small
+//   ROW_CELLS, CELL_ROWS cells along a row, and rows of cells between two planes of vertices
+//   LANE_SLOTS           how many arrays have values in a row
+//   LANE_ARRAYS(DO)      DO(index, type, bits, slot) for each of these: linear ones of one component, float
+//                        (bits 32) or integers of 8 or 16 bits
 
+#define HALF_ROW ((ROW_CELLS / 2 / LANES + 1) * LANES)
+#define SLOTS (3 + LANE_SLOTS)
+#define ODD (SLOTS * HALF_ROW)   // from an even vertex to the odd one with the same place
+#define ROW (2 * ODD)
+#define ROWS (CELL_ROWS + 1)
+#define NOT_THERE -1e30f // x of places beyond the volume
+#define NO_SOURCE 1e30f  // x of vertices without position
+#define STEP (1.0f / 256.0f) // of positions, in voxels
+
+typedef ROW_MEMORY const float* LocalRow;
+
+// A value, by its bits, that the sum of products would not give back: -0, not finite, or so large (2^115) that the
+// sum may overflow, as weights add up to the determinant, which is under 2^11.
+#define IS_SPECIAL(bits) ((((bits)&0x7f800000) >= 0x79000000) | ((bits) == INT_MIN))
+
+#if LANES > 1
 // A row of cells between two rows of vertices in each of two planes. Rows: of places of even x, by bit 0: odd z,
 // bit 1: odd y, as the vertices of a cell have their numbers by the parity of their structured indices
 // (CellCoverage.cl). Odd: the parity of y and z together.
@@ -14,13 +41,19 @@ typedef struct
   uint Borders; // as RowFlags
   uint Apart;
 } RowOfCells;
+#endif
 
 // Cells from X on, every second one. Side: 1 where these have vertices of even x behind those of odd x. Odd:
 // parity of x, y and z together. Border: whether a vertex may not be interior. Apart: whether a vertex may
 // lie elsewhere as seen from the other side of a smooth cut.
 typedef struct
 {
+#if LANES > 1
   LocalRow Rows[4];
+#else
+  LocalRow Row; // of even y and z; planes of even and odd z are ROWS rows apart
+  int OddY;     // from there to the row of odd y
+#endif
   int Side;
   int X;
   int Y;
@@ -30,6 +63,7 @@ typedef struct
   int Apart;
 } Group;
 
+#if LANES > 1
 // The flags of the vertices of a group's cells.
 #define GROUP_FLAGS(k) (((2u << (2 * LANES / 8)) - 1) << ((k) >> 2))
 
@@ -44,9 +78,18 @@ static __attribute__((always_inline)) void MakeGroup(
     (row->Borders & GROUP_FLAGS(k)) != 0, (row->Apart & GROUP_FLAGS(k)) != 0 };
   *group = made;
 }
+#endif
 
-#define VERTEX(v, slot)                                                                            \
-  LOAD(group->Rows[(v) >> 1] + ((v)&1 ? ODD : group->Side) + (slot)*HALF_ROW)
+// The row of a vertex of a group's cells, and the place of that in it.
+#if LANES > 1
+#define ROW_OF(group, v) ((group)->Rows[(v) >> 1])
+#else
+#define ROW_OF(group, v)                                                                           \
+  ((group)->Row + ((v) >> 1 & 1) * (ROWS * ROW) + ((v) >> 2) * (group)->OddY)
+#endif
+#define PLACE_OF(group, v) (ROW_OF(group, v) + ((v)&1 ? ODD : (group)->Side))
+
+#define VERTEX(v, slot) LOAD(PLACE_OF(group, v) + (slot)*HALF_ROW)
 #define LOAD_VERTEX(v)                                                                             \
   const FLOATS X##v = VERTEX(v, 0), Y##v = VERTEX(v, 1), Z##v = VERTEX(v, 2);
 #define LOAD_VERTICES                                                                              \

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Vectors of LANES floats or integers, for the kernels that say themselves what the lanes of a processor's vectors
 // do. What the host puts in front of this text:
-//   LANES  16, 8 or 4: floats in a vector
+//   LANES  16, 8 or 4: floats in a vector; 1 for devices whose work-items are the lanes
 
+#if LANES > 1
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 #define FLOATS JOIN(float, LANES)
@@ -11,11 +12,32 @@
 #define TO_FLOATS JOIN(convert_float, LANES)
 #define TO_INTS JOIN(convert_int, LANES)
 #define AS_INTS JOIN(as_int, LANES)
+// A value where a lane of a mask is set, else 0.
+#define WHERE(mask, v) ((mask) & (v))
+// Of functions that are seldom called, and of loops that keep arrays out of registers unless they are unrolled.
+#define SELDOM __attribute__((noinline))
+#define UNROLLED
+#define NOT_UNROLLED
+#else
+// A comparison gives 1 then, and not -1: masks are combined by & and |, by ~ only beside &, and are no bits of values.
+#define FLOATS float
+#define INTS int
+#define LOAD(p) (*(p))
+#define TO_FLOATS convert_float
+#define TO_INTS convert_int
+#define AS_INTS as_int
+#define WHERE(mask, v) ((mask) ? (v) : 0)
+#define SELDOM // a call has all that is in registers stored
+#define UNROLLED _Pragma("unroll")
+#define NOT_UNROLLED _Pragma("unroll 1")
+#endif
 
+#if LANES > 1
 // Vectors where their elements may lie. Stored so they take one instruction; vstore16 of PoCL 3.1 takes three.
 typedef float16 __attribute__((aligned(4))) PlacedFloat16;
 typedef float8 __attribute__((aligned(4))) PlacedFloat8;
 typedef int16 __attribute__((aligned(4))) PlacedInt16;
+#endif
 
 static FLOATS Least(FLOATS a, FLOATS b)
 {
@@ -31,11 +53,14 @@ static FLOATS Most(FLOATS a, FLOATS b)
 #define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
 #elif LANES == 8
 #define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7))
-#else
+#elif LANES == 4
 #define LANE_INDEX ((INTS)(0, 1, 2, 3))
+#else
+#define LANE_INDEX 0
 #endif
 #define LANE_BITS ((INTS)(1) << LANE_INDEX)
 
+#if LANES > 1
 // From the second lane on, and the first lane of another vector. One instruction for clang's builtin, five for
 // what PoCL 3.1 makes of vectors put together.
 static FLOATS NextLanes(FLOATS v, FLOATS behind)
@@ -53,6 +78,7 @@ static FLOATS NextLanes(FLOATS v, FLOATS behind)
   return (FLOATS)(v.s1, v.s23, behind.s0);
 #endif
 }
+#endif
 
 // A vector that is read back lane by lane.
 typedef union
@@ -64,7 +90,9 @@ typedef union
 // A bit for each lane that is set.
 static uint LaneBits(INTS mask)
 {
-#if LANES == 8 && defined(__AVX__)
+#if LANES == 1
+  return mask != 0;
+#elif LANES == 8 && defined(__AVX__)
   return __builtin_ia32_movmskps256(as_float8(mask));
 #elif LANES == 16 && defined(__AVX512DQ__)
   return __builtin_ia32_cvtd2mask512(mask);
@@ -89,6 +117,7 @@ static INTS LanesOf(uint bits)
   return ((INTS)bits & LANE_BITS) != 0;
 }
 
+#if LANES > 1
 // Writes the lanes with set bits to a place, one after the other; what comes behind them there is lost.
 static void Append(INTS v, uint bits, int* place)
 {
@@ -104,6 +133,7 @@ static void Append(INTS v, uint bits, int* place)
   }
 #endif
 }
+#endif
 
 // For each set bit, the highest first: lane is its number.
 #define FOR_EACH_LANE(lane, bits)                                                                  \
@@ -112,6 +142,9 @@ static void Append(INTS v, uint bits, int* place)
 // The largest lane.
 static int MostOf(INTS v)
 {
+#if LANES == 1
+  return v;
+#else
 #if LANES == 16
   const int8 a = max(v.lo, v.hi);
   const int4 b = max(a.lo, a.hi);
@@ -122,6 +155,7 @@ static int MostOf(INTS v)
 #endif
   const int2 c = max(b.lo, b.hi);
   return max(c.x, c.y);
+#endif
 }
 
 // The least and the largest of some lanes.

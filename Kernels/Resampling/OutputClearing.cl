@@ -38,28 +38,39 @@ FILL(Fill2, ushort, ushort16)
 FILL(Fill4, uint, uint16)
 FILL(Fill8, ulong, ulong16)
 
+// The rows of a patch that a work-item takes: the voxels from a first one to an end, which has the value of the first
+// where the row is not in the output.
+typedef struct
+{
+  size_t First, End;
+} VoxelRow;
+
+static VoxelRow RowOfPatch(size_t patch, size_t i, const KernelParameters* p)
+{
+  const size_t width = p->OutputSize[0];
+  const size_t height = p->OutputSize[1];
+  const size_t row = patch / DEFORMVOLUME_PATCHES(width);
+  const size_t beginX = patch % DEFORMVOLUME_PATCHES(width) * DEFORMVOLUME_PATCH;
+  const size_t y = row % DEFORMVOLUME_PATCHES(height) * DEFORMVOLUME_PATCH + i % DEFORMVOLUME_PATCH;
+  const size_t z = row / DEFORMVOLUME_PATCHES(height) * DEFORMVOLUME_PATCH + i / DEFORMVOLUME_PATCH;
+  const int isThere = y < height && z < (size_t)p->OutputSize[2];
+  const size_t first = (z * height + y) * width + beginX;
+  const VoxelRow voxels = { first,
+    isThere ? first + min((size_t)DEFORMVOLUME_PATCH, width - beginX) : first };
+  return voxels;
+}
+
+#define ROWS_OF_PATCH (DEFORMVOLUME_PATCH * DEFORMVOLUME_PATCH)
+
 // The patches of a list: a work-group takes one. elements: of a voxel.
 #define FILL_PATCHES(NAME, TYPE)                                                                   \
   __kernel void NAME(__global TYPE* restrict target, const uint elements, const TYPE value,        \
     __global const uint* patches, const KernelParameters p)                                        \
   {                                                                                                \
-    const size_t patch = patches[get_group_id(0)];                                                 \
-    const size_t width = p.OutputSize[0];                                                          \
-    const size_t height = p.OutputSize[1];                                                         \
-    const size_t row = patch / DEFORMVOLUME_PATCHES(width);                                        \
-    const size_t beginX = patch % DEFORMVOLUME_PATCHES(width) * DEFORMVOLUME_PATCH;                \
-    const size_t beginY = row % DEFORMVOLUME_PATCHES(height) * DEFORMVOLUME_PATCH;                 \
-    const size_t beginZ = row / DEFORMVOLUME_PATCHES(height) * DEFORMVOLUME_PATCH;                 \
-    const size_t endX = min(beginX + DEFORMVOLUME_PATCH, width);                                   \
-    for (size_t i = get_local_id(0); i < DEFORMVOLUME_PATCH * DEFORMVOLUME_PATCH;                  \
-         i += get_local_size(0))                                                                   \
+    for (size_t i = get_local_id(0); i < ROWS_OF_PATCH; i += get_local_size(0))                    \
     {                                                                                              \
-      const size_t y = beginY + i % DEFORMVOLUME_PATCH;                                            \
-      const size_t z = beginZ + i / DEFORMVOLUME_PATCH;                                            \
-      const int isThere = y < height && z < (size_t)p.OutputSize[2];                               \
-      const size_t first = (z * height + y) * width;                                               \
-      const size_t end = isThere ? (first + endX) * elements : 0;                                  \
-      for (size_t e = (first + beginX) * elements; e < end; ++e)                                   \
+      const VoxelRow row = RowOfPatch(patches[get_group_id(0)], i, &p);                            \
+      for (size_t e = row.First * elements; e < row.End * elements; ++e)                           \
       {                                                                                            \
         target[e] = value;                                                                         \
       }                                                                                            \
@@ -70,3 +81,72 @@ FILL_PATCHES(FillPatches1, uchar)
 FILL_PATCHES(FillPatches2, ushort)
 FILL_PATCHES(FillPatches4, uint)
 FILL_PATCHES(FillPatches8, ulong)
+
+// The rest is for coverage that is bits, in words of 32.
+
+static uint IsCovered(__global const uint* bits, size_t voxel)
+{
+  return bits[voxel >> 5] >> (voxel & 31) & 1;
+}
+
+// The same as bytes, an item a voxel.
+__kernel void ExpandCoverage(__global const uint* bits, __global uchar* coverage, const ulong voxels)
+{
+  for (size_t i = get_global_id(0); i < voxels; i += get_global_size(0))
+  {
+    coverage[i] = IsCovered(bits, i);
+  }
+}
+
+// Elements of voxels that are not covered, an item an element: so each element of an output is written once only.
+#define FILL_UNCOVERED(NAME, TYPE)                                                                 \
+  __kernel void NAME(__global TYPE* restrict target, const ulong voxels, const TYPE value,         \
+    __global const uint* bits, const uint elements)                                                \
+  {                                                                                                \
+    for (size_t i = get_global_id(0); i < voxels * elements; i += get_global_size(0))              \
+    {                                                                                              \
+      if (!IsCovered(bits, i / elements))                                                          \
+      {                                                                                            \
+        target[i] = value;                                                                         \
+      }                                                                                            \
+    }                                                                                              \
+  }
+
+FILL_UNCOVERED(FillUncovered1, uchar)
+FILL_UNCOVERED(FillUncovered2, ushort)
+FILL_UNCOVERED(FillUncovered4, uint)
+FILL_UNCOVERED(FillUncovered8, ulong)
+
+// The patches of a list, a work-group each: clears their bits, or makes bytes of them.
+__kernel void ClearPatchBits(
+  __global uint* bits, __global const uint* patches, const KernelParameters p)
+{
+  for (size_t i = get_local_id(0); i < ROWS_OF_PATCH; i += get_local_size(0))
+  {
+    // A row is shorter than a word, and may end in the next one.
+    const VoxelRow row = RowOfPatch(patches[get_group_id(0)], i, &p);
+    const ulong mask = ((1ul << (row.End - row.First)) - 1) << (row.First & 31);
+    const uint low = mask, high = mask >> 32;
+    if (low)
+    {
+      atomic_and(bits + (row.First >> 5), ~low);
+    }
+    if (high)
+    {
+      atomic_and(bits + (row.First >> 5) + 1, ~high);
+    }
+  }
+}
+
+__kernel void ExpandPatches(__global const uint* bits, __global uchar* coverage,
+  __global const uint* patches, const KernelParameters p)
+{
+  for (size_t i = get_local_id(0); i < ROWS_OF_PATCH; i += get_local_size(0))
+  {
+    const VoxelRow row = RowOfPatch(patches[get_group_id(0)], i, &p);
+    for (size_t voxel = row.First; voxel < row.End; ++voxel)
+    {
+      coverage[voxel] = IsCovered(bits, voxel);
+    }
+  }
+}

@@ -17,6 +17,14 @@ cl::Kernel MakeKernel(OpenCLContext& context, const std::string& name, const Ele
   return cl::Kernel(GetOutputProgram(context), (name + std::to_string(value.Size)).c_str());
 }
 
+/// A group for each patch of a list, an item for each row of it.
+void LaunchPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+  std::size_t count, std::vector<cl::Event>& events)
+{
+  constexpr std::size_t group = DEFORMVOLUME_PATCH * DEFORMVOLUME_PATCH;
+  events.push_back(context.Launch(queue, kernel, cl::NDRange(group * count), cl::NDRange(group)));
+}
+
 } // namespace
 
 ElementBytes GetBackground(const VolumeArray& array)
@@ -38,6 +46,17 @@ void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
   const std::size_t group = context.GetDevice().HasVectors ? 1 : 64;
   events.push_back(context.Launch(
     queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group)));
+}
+
+void LaunchSmallItems(OpenCLContext& context, const cl::CommandQueue& queue,
+  const cl::Kernel& kernel, std::uint64_t items, std::vector<cl::Event>& events)
+{
+  constexpr std::uint64_t group = 64;
+  constexpr std::uint64_t most = std::uint64_t{ 1 } << 22; // more than any device runs at once
+  const auto launched =
+    static_cast<std::size_t>((std::min(items, most) + group - 1) / group * group);
+  events.push_back(
+    context.Launch(queue, kernel, cl::NDRange(launched), cl::NDRange(std::size_t{ group })));
 }
 
 void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
@@ -76,14 +95,59 @@ void FillPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl
   const ElementBytes& value, std::size_t elements, const cl::Buffer& patches, std::size_t count,
   const KernelParameters& parameters, std::vector<cl::Event>& events)
 {
-  constexpr std::size_t group = DEFORMVOLUME_PATCH * DEFORMVOLUME_PATCH;
   cl::Kernel kernel = MakeKernel(context, "FillPatches", value);
   kernel.setArg(0, buffer);
   kernel.setArg(1, static_cast<cl_uint>(elements));
   kernel.setArg(2, value.Size, value.Bytes.data());
   kernel.setArg(3, patches);
   kernel.setArg(4, parameters);
-  events.push_back(context.Launch(queue, kernel, cl::NDRange(group * count), cl::NDRange(group)));
+  LaunchPatches(context, queue, kernel, count, events);
+}
+
+void ExpandCoverage(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
+  const cl::Buffer& coverage, std::uint64_t voxels, std::vector<cl::Event>& events)
+{
+  cl::Kernel kernel(GetOutputProgram(context), "ExpandCoverage");
+  kernel.setArg(0, bits);
+  kernel.setArg(1, coverage);
+  kernel.setArg(2, cl_ulong{ voxels });
+  LaunchSmallItems(context, queue, kernel, voxels, events);
+}
+
+void ExpandPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
+  const cl::Buffer& coverage, const cl::Buffer& patches, std::size_t count,
+  const KernelParameters& parameters, std::vector<cl::Event>& events)
+{
+  cl::Kernel kernel(GetOutputProgram(context), "ExpandPatches");
+  kernel.setArg(0, bits);
+  kernel.setArg(1, coverage);
+  kernel.setArg(2, patches);
+  kernel.setArg(3, parameters);
+  LaunchPatches(context, queue, kernel, count, events);
+}
+
+void ClearPatchBits(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
+  const cl::Buffer& patches, std::size_t count, const KernelParameters& parameters,
+  std::vector<cl::Event>& events)
+{
+  cl::Kernel kernel(GetOutputProgram(context), "ClearPatchBits");
+  kernel.setArg(0, bits);
+  kernel.setArg(1, patches);
+  kernel.setArg(2, parameters);
+  LaunchPatches(context, queue, kernel, count, events);
+}
+
+void FillUncovered(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  const ElementBytes& value, std::uint64_t voxels, std::size_t elements, const cl::Buffer& bits,
+  std::vector<cl::Event>& events)
+{
+  cl::Kernel kernel = MakeKernel(context, "FillUncovered", value);
+  kernel.setArg(0, buffer);
+  kernel.setArg(1, cl_ulong{ voxels });
+  kernel.setArg(2, value.Size, value.Bytes.data());
+  kernel.setArg(3, bits);
+  kernel.setArg(4, static_cast<cl_uint>(elements));
+  LaunchSmallItems(context, queue, kernel, voxels * elements, events);
 }
 
 } // namespace deformvolume

@@ -39,6 +39,11 @@ ElementBytes GetBackground(const VolumeArray& array);
 void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Kernel& kernel, std::size_t items, std::vector<cl::Event>& events);
 
+/// The same for items that have little to do. There may be fewer or more of them: kernels go
+/// through what there is in steps of their number, or leave out what there is not.
+void LaunchSmallItems(OpenCLContext& context, const cl::CommandQueue& queue,
+  const cl::Kernel& kernel, std::uint64_t items, std::vector<cl::Event>& events);
+
 /// Fills a buffer of so many elements. Processors do that with a kernel: see OutputClearing.cl.
 void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
   const ElementBytes& value, std::uint64_t size, std::vector<cl::Event>& events);
@@ -48,6 +53,22 @@ void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffe
 void FillPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
   const ElementBytes& value, std::size_t elements, const cl::Buffer& patches, std::size_t count,
   const KernelParameters& parameters, std::vector<cl::Event>& events);
+
+///@{
+/// Where coverage is bits: makes bytes of them, for all voxels of an output or for patches; clears
+/// those of patches; and fills the voxels of an array that are not covered.
+void ExpandCoverage(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
+  const cl::Buffer& coverage, std::uint64_t voxels, std::vector<cl::Event>& events);
+void ExpandPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
+  const cl::Buffer& coverage, const cl::Buffer& patches, std::size_t count,
+  const KernelParameters& parameters, std::vector<cl::Event>& events);
+void ClearPatchBits(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
+  const cl::Buffer& patches, std::size_t count, const KernelParameters& parameters,
+  std::vector<cl::Event>& events);
+void FillUncovered(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  const ElementBytes& value, std::uint64_t voxels, std::size_t elements, const cl::Buffer& bits,
+  std::vector<cl::Event>& events);
+///@}
 
 } // namespace deformvolume
 

@@ -6,6 +6,7 @@
 #include "OutputFilling.h"
 #include "OutputPatches.h"
 #include "ResamplingProgram.h"
+#include "WorkDevice.h"
 
 #include <algorithm>
 #include <limits>
@@ -31,6 +32,12 @@ std::uint64_t ReadSum(const cl::CommandQueue& queue, const cl::Buffer& sums, std
   std::vector<cl_uint> counts(items);
   queue.enqueueReadBuffer(sums, CL_TRUE, 0, items * sizeof(cl_uint), counts.data());
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{ 0 });
+}
+
+/// Of so many bits.
+std::uint64_t CountWords(std::uint64_t bits)
+{
+  return (bits + 31) / 32;
 }
 
 /// Lets go of memory of the host.
@@ -103,11 +110,11 @@ void OutputSlab::PlaceArrays(
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
     this->TupleSizes[i] = GetTupleSize(arrays[i]);
-    Place(context, this->Arrays[i],
+    deformvolume::Place(context, this->Arrays[i],
       static_cast<char*>(request.Outputs[i]) + offset * this->TupleSizes[i],
       GetElementSize(arrays[i].Type), this->NumberOfVoxels * this->TupleSizes[i]);
   }
-  Place(context, this->Coverage, request.Coverage + offset, 1, this->NumberOfVoxels);
+  deformvolume::Place(context, this->Coverage, request.Coverage + offset, 1, this->NumberOfVoxels);
 }
 
 bool OutputSlab::HoldsLastOutput(const OpenCLContext& context, const DeformRequest& request,
@@ -146,11 +153,10 @@ void OutputSlab::PrepareAgain(OpenCLContext& context, const cl::CommandQueue& qu
   }
   this->PlaceArrays(context, request, arrays);
   const bool withWinners = part.WithWinners && !part.Bricks.empty();
-  if (!part.Patches.empty() && (!onHost || withWinners))
+  this->NumberOfListedPatches = 0;
+  if (!onHost || withWinners || this->BitsUsed)
   {
-    const std::uint64_t bytes = part.Patches.size() * sizeof(cl_uint);
-    Reserve(context, this->PatchList, bytes);
-    queue.enqueueWriteBuffer(this->PatchList, CL_TRUE, 0, bytes, part.Patches.data());
+    this->SendPatches(context, part.Patches);
   }
   KernelParameters p = {};
   this->SetParameters(p);
@@ -169,46 +175,54 @@ void OutputSlab::PrepareAgain(OpenCLContext& context, const cl::CommandQueue& qu
     }
     clear(this->Coverage, ElementBytes::Of(cl_uchar{ 0 }), 1);
   }
+  if (this->BitsUsed && !part.Patches.empty())
+  {
+    ClearPatchBits(
+      context, queue, this->CoverageBits, this->PatchList, part.Patches.size(), p, events);
+  }
   if (withWinners)
   {
     this->Winners.PrepareAgain(context, part.Patches, this->PatchList, p, events);
   }
   if (!part.Bricks.empty())
   {
-    this->ClearSections(part.Bricks);
+    this->ClearSections(context, part, events);
   }
 }
 
-void OutputSlab::ClearSections(const std::vector<cl_uint>& bricks)
+void OutputSlab::SendPatches(OpenCLContext& context, const std::vector<std::uint32_t>& patches)
 {
-  for (const cl_uint brick : bricks)
+  if (!patches.empty())
   {
-    const std::size_t number = brick & ((1U << DEFORMVOLUME_BRICK_BITS) - 1);
-    for (std::size_t section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
-    {
-      const cl_uint bits = GetSectionBits(section);
-      if ((brick & bits) == bits)
-      {
-        std::fill_n(this->LastCounters.begin() +
-            static_cast<std::ptrdiff_t>(
-              (DEFORMVOLUME_SECTIONS * number + section) * DEFORMVOLUME_COUNTERS),
-          DEFORMVOLUME_COUNTERS, cl_uint{ 0 });
-      }
-    }
+    const std::uint64_t bytes = patches.size() * sizeof(cl_uint);
+    Reserve(context, this->PatchList, bytes);
+    this->Queue.enqueueWriteBuffer(this->PatchList, CL_TRUE, 0, bytes, patches.data());
+    this->NumberOfListedPatches = patches.size();
   }
-  for (std::size_t section = 0; section < this->NumberOfSections; ++section)
-  {
-    cl_uint* const counter = this->LastCounters.data() + section * DEFORMVOLUME_COUNTERS;
-    counter[DEFORMVOLUME_COUNT_CANDIDATES] = counter[DEFORMVOLUME_COUNT_TOUCHED] = 0;
-  }
-  // Done when Finish() is, at the latest.
-  this->Queue.enqueueWriteBuffer(this->Counters, CL_FALSE, 0,
-    this->LastCounters.size() * sizeof(cl_uint), this->LastCounters.data());
 }
 
-void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
-  const Extent& extent, const DeformRequest& request, const std::vector<VolumeArray>& arrays,
-  const VoxelGrid& voxelGrid, std::size_t numberOfBricks, std::vector<cl::Event>& events)
+void OutputSlab::ClearSections(
+  OpenCLContext& context, const PartToMake& part, std::vector<cl::Event>& events)
+{
+  const auto run = [&](const char* name, std::size_t sections, auto... arguments)
+  {
+    cl::Kernel kernel(GetOutputProgram(context), name);
+    cl_uint i = 0;
+    kernel.setArg(i++, this->Counters);
+    (kernel.setArg(i++, arguments), ...);
+    kernel.setArg(i++, static_cast<cl_uint>(sections));
+    LaunchSmallItems(context, this->Queue, kernel, sections, events);
+  };
+  run("ClearSections", DEFORMVOLUME_SECTIONS * part.Bricks.size(), part.BrickList);
+  if (part.WithWinners)
+  {
+    run("ClearWork", this->NumberOfSections);
+  }
+}
+
+void OutputSlab::Place(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
+  const DeformRequest& request, const std::vector<VolumeArray>& arrays, const VoxelGrid& voxelGrid,
+  std::size_t numberOfBricks, std::vector<cl::Event>& events)
 {
   this->FinishReading();
   this->Finish();
@@ -218,13 +232,6 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(extent));
   this->Winners.Start(queue, extent, voxelGrid);
   this->PlaceArrays(context, request, arrays);
-  for (std::size_t i = 0; i < arrays.size(); ++i)
-  {
-    Fill(context, queue, this->Arrays[i], GetBackground(arrays[i]),
-      this->NumberOfVoxels * static_cast<std::uint64_t>(arrays[i].Components), events);
-  }
-  Fill(
-    context, queue, this->Coverage, ElementBytes::Of(cl_uchar{ 0 }), this->NumberOfVoxels, events);
   this->NumberOfSections = DEFORMVOLUME_SECTIONS * numberOfBricks;
   Reserve(
     context, this->Counters, this->NumberOfSections * DEFORMVOLUME_COUNTERS * sizeof(cl_uint));
@@ -232,6 +239,60 @@ void OutputSlab::Prepare(OpenCLContext& context, const cl::CommandQueue& queue,
   this->MostLargeCells = static_cast<std::size_t>(std::min<std::int64_t>(
     GetNumberOfCells(voxelGrid.VertexExtent), DEFORMVOLUME_MOST_LARGE_CELLS));
   Reserve(context, this->LargeCells, (1 + this->MostLargeCells) * sizeof(LargeCell));
+}
+
+void OutputSlab::Clear(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
+  bool coverageBits, std::vector<cl::Event>& events)
+{
+  this->BitsUsed = coverageBits;
+  if (coverageBits)
+  {
+    const std::uint64_t words = CountWords(this->NumberOfVoxels);
+    Reserve(context, this->CoverageBits, words * sizeof(cl_uint));
+    Fill(context, this->Queue, this->CoverageBits, ElementBytes::Of(cl_uint{ 0 }), words, events);
+    return;
+  }
+  this->CoverageBits = cl::Buffer();
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    Fill(context, this->Queue, this->Arrays[i], GetBackground(arrays[i]),
+      this->NumberOfVoxels * static_cast<std::uint64_t>(arrays[i].Components), events);
+  }
+  Fill(context, this->Queue, this->Coverage, ElementBytes::Of(cl_uchar{ 0 }), this->NumberOfVoxels,
+    events);
+}
+
+void OutputSlab::ExpandCoverage(OpenCLContext& context, bool again, std::vector<cl::Event>& events)
+{
+  if (!again)
+  {
+    deformvolume::ExpandCoverage(
+      context, this->Queue, this->CoverageBits, this->Coverage, this->NumberOfVoxels, events);
+  }
+  else if (this->NumberOfListedPatches > 0)
+  {
+    KernelParameters p = {};
+    this->SetParameters(p);
+    ExpandPatches(context, this->Queue, this->CoverageBits, this->Coverage, this->PatchList,
+      this->NumberOfListedPatches, p, events);
+  }
+}
+
+void OutputSlab::Complete(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
+  bool again, std::vector<cl::Event>& events)
+{
+  if (!this->BitsUsed)
+  {
+    return;
+  }
+  this->ExpandCoverage(context, again, events);
+  for (std::size_t i = 0; i < arrays.size() && !again; ++i)
+  {
+    FillUncovered(context, this->Queue, this->Arrays[i], GetBackground(arrays[i]),
+      this->NumberOfVoxels, static_cast<std::size_t>(arrays[i].Components), this->CoverageBits,
+      events);
+  }
+  this->Queue.finish(); // it is read in another queue
 }
 
 void OutputSlab::ClearCounters(OpenCLContext& context, std::vector<cl::Event>& events)
@@ -245,6 +306,10 @@ void OutputSlab::Settle(OpenCLContext& context, bool claimed, const KernelParame
 {
   KernelParameters p = parameters;
   this->SetParameters(p);
+  if (this->BitsUsed && !claimed)
+  {
+    this->ExpandCoverage(context, false, events);
+  }
   this->Winners.Settle(context, claimed, this->Coverage, this->Counters, p, events);
 }
 
@@ -268,28 +333,25 @@ std::vector<OutputSlab::LargeCell> OutputSlab::ReadLargeCells() const
 
 std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::Event>& events)
 {
-  const auto items = static_cast<std::size_t>(
-    (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS);
+  const std::uint64_t words = CountWords(this->NumberOfVoxels);
+  const std::uint64_t items = this->BitsUsed
+    ? DEFORMVOLUME_BIT_COUNTERS
+    : (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS;
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, items * sizeof(cl_uint));
-  cl::Kernel kernel(GetOutputProgram(context), "CountCovered");
-  kernel.setArg(0, this->Coverage);
-  kernel.setArg(1, cl_ulong{ this->NumberOfVoxels });
+  cl::Kernel kernel(
+    GetOutputProgram(context), this->BitsUsed ? "CountCoveredBits" : "CountCovered");
+  kernel.setArg(0, this->GetCoverageTarget());
+  kernel.setArg(1, cl_ulong{ this->BitsUsed ? words : this->NumberOfVoxels });
   kernel.setArg(2, sums);
-  LaunchBusyItems(context, this->Queue, kernel, items, events);
-  return ReadSum(this->Queue, sums, items);
-}
-
-const std::vector<cl_uint>& OutputSlab::ReadCounters()
-{
-  this->LastCounters.resize(this->NumberOfSections * DEFORMVOLUME_COUNTERS);
-  this->Queue.enqueueReadBuffer(this->Counters, CL_TRUE, 0,
-    this->LastCounters.size() * sizeof(cl_uint), this->LastCounters.data());
-  return this->LastCounters;
+  LaunchBusyItems(context, this->Queue, kernel, static_cast<std::size_t>(items), events);
+  return ReadSum(this->Queue, sums, static_cast<std::size_t>(items));
 }
 
 std::vector<cl_uint> OutputSlab::FindBricks(int counter)
 {
-  const std::vector<cl_uint>& counters = this->ReadCounters();
+  std::vector<cl_uint> counters(this->NumberOfSections * DEFORMVOLUME_COUNTERS);
+  this->Queue.enqueueReadBuffer(
+    this->Counters, CL_TRUE, 0, counters.size() * sizeof(cl_uint), counters.data());
   std::vector<cl_uint> bricks;
   for (std::size_t brick = 0; brick < this->NumberOfSections / DEFORMVOLUME_SECTIONS; ++brick)
   {
@@ -310,23 +372,28 @@ std::vector<cl_uint> OutputSlab::FindBricks(int counter)
   return bricks;
 }
 
-OutputSlab::Counts OutputSlab::ReadCounts()
+OutputSlab::Counts OutputSlab::ReadCounts(WorkDevice& device, std::vector<cl::Event>& events)
 {
-  const std::vector<cl_uint>& counters = this->ReadCounters();
+  OpenCLContext& context = device.GetContext();
+  std::array<cl_uint, DEFORMVOLUME_SUMMARY_WORDS> words;
+  Reserve(context, this->Summary, sizeof(words));
+  cl::Kernel kernel(GetOutputProgram(context), "Summarize");
+  const std::size_t group = device.GetBusyGroupSize(kernel, 256);
+  kernel.setArg(0, this->Counters);
+  kernel.setArg(1, static_cast<cl_uint>(this->NumberOfSections));
+  kernel.setArg(2, this->Summary);
+  kernel.setArg(3, cl::Local(DEFORMVOLUME_COUNTERS * group * sizeof(cl_ulong)));
+  events.push_back(context.Launch(this->Queue, kernel, cl::NDRange(group), cl::NDRange(group)));
+  this->Queue.enqueueReadBuffer(this->Summary, CL_TRUE, 0, sizeof(words), words.data());
+  const auto join = [&](std::size_t word)
+  { return words[word] | std::uint64_t{ words[word + 1] } << 32; };
   Counts counts;
-  std::uint64_t missing = 0;
-  std::uint64_t assumed = 0;
-  for (std::size_t section = 0; section < this->NumberOfSections; ++section)
-  {
-    const cl_uint* counter = counters.data() + section * DEFORMVOLUME_COUNTERS;
-    counts.Writes += counter[DEFORMVOLUME_COUNT_WRITES];
-    counts.Inverted += counter[DEFORMVOLUME_COUNT_INVERTED];
-    counts.Overstretched += counter[DEFORMVOLUME_COUNT_OVERSTRETCHED];
-    counts.Large += counter[DEFORMVOLUME_COUNT_LARGE];
-    missing += counter[DEFORMVOLUME_COUNT_MISSING];
-    assumed += counter[DEFORMVOLUME_COUNT_ASSUMED];
-  }
-  counts.MissingWhereAssumed = missing > 0 && assumed > 0;
+  counts.Writes = join(0);
+  counts.Covered = join(2);
+  counts.Inverted = join(4);
+  counts.Overstretched = words[6];
+  counts.MissingWhereAssumed = (words[7] & DEFORMVOLUME_SUMMARY_MISSING_WHERE_ASSUMED) != 0;
+  counts.HasLarge = (words[7] & DEFORMVOLUME_SUMMARY_LARGE) != 0;
   return counts;
 }
 
@@ -410,7 +477,8 @@ void OutputSlab::Finish()
 
 std::uint64_t OutputSlab::GetMemory() const
 {
-  std::uint64_t bytes = deformvolume::GetMemory(this->Coverage) + this->Winners.GetMemory() +
+  std::uint64_t bytes = deformvolume::GetMemory(this->Coverage) +
+    deformvolume::GetMemory(this->CoverageBits) + this->Winners.GetMemory() +
     deformvolume::GetMemory(this->Counters);
   for (const cl::Buffer& array : this->Arrays)
   {

@@ -14,6 +14,8 @@
 namespace deformvolume
 {
 
+class WorkDevice;
+
 /// What the device holds of the output: a range of planes of all arrays, their coverage, the
 /// winners where tetrahedra overlap, and the counters of the bricks of cells.
 class OutputSlab
@@ -24,7 +26,8 @@ public:
     std::uint64_t Writes = 0;
     std::uint64_t Inverted = 0;
     std::uint64_t Overstretched = 0;
-    std::uint64_t Large = 0; // cells
+    std::uint64_t Covered = 0; // where coverage is bits, after a pass over all cells
+    bool HasLarge = false;     // cells
     /// On the border of the mesh, tetrahedra that cover nothing, where the kernel took them to.
     bool MissingWhereAssumed = false;
 
@@ -48,10 +51,18 @@ public:
     const std::vector<VolumeArray>& arrays, const DeformRequest& request);
 
   /// Makes room for a slab of the request's output, or uses what is there, or the memory of the
-  /// request; fills it with the background. Events of launches are added to a list.
-  void Prepare(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
+  /// request. Events of launches are added to a list.
+  void Place(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
     const DeformRequest& request, const std::vector<VolumeArray>& arrays,
     const VoxelGrid& voxelGrid, std::size_t numberOfBricks, std::vector<cl::Event>& events);
+  /// After that: nothing is covered. Fills the arrays with the background, or leaves that to
+  /// Complete where coverage is bits.
+  void Clear(OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool coverageBits,
+    std::vector<cl::Event>& events);
+  /// Where coverage is bits: makes bytes of them, and voxels that are not covered background.
+  /// again: where only the patches have changed that PrepareAgain has cleared.
+  void Complete(OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool again,
+    std::vector<cl::Event>& events);
 
   /// Whether the last output, of a request for the same extent, is at hand: in the memory of this
   /// request, as far as that is worked on in place, and on the device.
@@ -61,12 +72,13 @@ public:
   struct PartToMake
   {
     const std::vector<cl_uint>& Bricks;
+    const cl::Buffer& BrickList; // the same on the device, where there are some
     const std::vector<std::uint32_t>& Patches;
     bool WithWinners; // whether winners were chosen in the last output
   };
-  /// The same as Prepare where the last output is at hand, and the counters are those of it that
-  /// ReadCounts or FindBricks has read last: clears the patches, the counters of the bricks, and
-  /// those of work for the passes that choose winners. Patches that are left keep their winners.
+  /// The same as Place and Clear where the last output is at hand, and the counters are those of
+  /// it: clears the patches, the counters of the bricks, and those of work for the passes that
+  /// choose winners. Patches that are left keep their winners.
   void PrepareAgain(OpenCLContext& context, const cl::CommandQueue& queue,
     const DeformRequest& request, const std::vector<VolumeArray>& arrays, const PartToMake& part,
     std::vector<cl::Event>& events);
@@ -89,7 +101,7 @@ public:
   std::vector<LargeCell> ReadLargeCells() const;
 
   std::uint64_t CountCovered(OpenCLContext& context, std::vector<cl::Event>& events);
-  Counts ReadCounts();
+  Counts ReadCounts(WorkDevice& device, std::vector<cl::Event>& events);
 
   /// Whether the kernel for processors, with positions in float and indices of 31 bits, can write
   /// the slab.
@@ -104,6 +116,12 @@ public:
   const Extent& GetExtent() const { return this->SlabExtent; }
   const cl::Buffer& GetArray(std::size_t index) const { return this->Arrays[index]; }
   const cl::Buffer& GetCoverage() const { return this->Coverage; }
+  bool HasCoverageBits() const { return this->BitsUsed; }
+  /// What kernels that resample write: bits, or bytes.
+  const cl::Buffer& GetCoverageTarget() const
+  {
+    return this->BitsUsed ? this->CoverageBits : this->Coverage;
+  }
   const cl::Buffer& GetLargeCells() const { return this->LargeCells; }
   const cl::Buffer& GetCounters() const { return this->Counters; }
 
@@ -120,8 +138,10 @@ public:
 private:
   void PlaceArrays(
     OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays);
-  void ClearSections(const std::vector<cl_uint>& bricks);
-  const std::vector<cl_uint>& ReadCounters();
+  void SendPatches(OpenCLContext& context, const std::vector<std::uint32_t>& patches);
+  void ClearSections(
+    OpenCLContext& context, const PartToMake& part, std::vector<cl::Event>& events);
+  void ExpandCoverage(OpenCLContext& context, bool again, std::vector<cl::Event>& events);
   std::uint64_t GetOffset(const DeformRequest& request) const;
 
   cl::CommandQueue Queue;
@@ -130,14 +150,17 @@ private:
   std::vector<cl::Buffer> Arrays;
   std::vector<std::size_t> TupleSizes;
   cl::Buffer Coverage;
+  cl::Buffer CoverageBits;
+  bool BitsUsed = false;
   OutputWinners Winners;
   cl::Buffer PatchList; // those that an update clears
+  std::size_t NumberOfListedPatches = 0;
   cl::Buffer Counters;
+  cl::Buffer Summary; // of these
   cl::Buffer
     LargeCells; // at most a megabyte, which GetMemory leaves out as it does all lists of work
   std::size_t MostLargeCells = 0;
-  std::vector<cl_uint> LastCounters; // as they were read
-  std::size_t NumberOfSections = 0;  // of bricks
+  std::size_t NumberOfSections = 0; // of bricks
   std::uint64_t NumberOfVoxels = 0;
   PendingReads Reads; // last: they end before the buffers do
 };

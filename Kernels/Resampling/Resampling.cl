@@ -154,7 +154,7 @@ static void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long*
     BeginSamples(s, cell->X, cell->Y, cell->Z, t, volume, p);
   }
   PlaceSample(s, weights, target);
-  output->Coverage[target] = 1;
+  Cover(output, target);
   StoreArrays(s ARRAY_ARGUMENTS);
 }
 
@@ -644,16 +644,10 @@ static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Ca
 static void AddCounts(
   const Output* output, size_t section, __global uint* counters, const KernelParameters* p)
 {
-  const uint counts[DEFORMVOLUME_COUNTERS] = { output->Writes, output->Inverted,
-    output->Overstretched, output->Missing, output->Assumed, output->Candidates,
-    output->Touched, output->Large };
+  const uint counts[DEFORMVOLUME_COUNTERS] = COUNTS_OF(output);
   for (int i = 0; i < DEFORMVOLUME_COUNTERS; ++i)
   {
-    // The passes that come later count nothing again.
-    if (counts[i] && (i == DEFORMVOLUME_COUNT_CANDIDATES || !DEFORMVOLUME_IS_CLOSED(p->Pass)))
-    {
-      atomic_add(counters + section * DEFORMVOLUME_COUNTERS + i, counts[i]);
-    }
+    AddCount(i, counts[i], section, counters, p);
   }
 }
 

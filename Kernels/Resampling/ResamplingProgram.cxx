@@ -28,29 +28,57 @@ std::size_t GetBrickMemory(const OpenCLContext& context, std::size_t slots)
     sizeof(cl_float);
 }
 
-/// For each array whether the kernel ResampleBricks interpolates it in single precision: as many as
-/// the local memory holds, if it is used.
-std::vector<bool> FindLaneArrays(
-  const OpenCLContext& context, const std::vector<VolumeArray>& arrays)
+/// The same for a work-group of the kernel ResampleColumns: two planes of vertices.
+std::size_t GetColumnMemory(std::size_t slots)
 {
-  const std::size_t memory = HasLocalBricks(context)
-    ? context.GetDevice().Device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>()
+  const std::size_t row = 2 * (3 + slots) * (DEFORMVOLUME_COLUMN / 2 + 1);
+  return 2 * (DEFORMVOLUME_BRICK_Y / 2 + 1) * row * sizeof(cl_float);
+}
+
+/// What that has besides: flags of the vertices, a list of samples, and counts.
+constexpr std::size_t OtherColumnMemory = 4096;
+
+std::size_t GetLocalMemory(const OpenCLContext& context)
+{
+  return context.GetDevice().Device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+}
+
+/// For each array whether the kernel interpolates it in single precision: as many as the local
+/// memory holds, if it is used.
+std::vector<bool> FindLaneArrays(
+  const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingForm form)
+{
+  const bool lanes = form == ResamplingForm::Lanes;
+  const std::size_t memory = !lanes || HasLocalBricks(context)
+    ? GetLocalMemory(context)
     : std::numeric_limits<std::size_t>::max();
   std::vector<bool> found;
   std::size_t slots = 0;
   for (const VolumeArray& array : arrays)
   {
-    const bool fits = FitsFloat(array) && GetBrickMemory(context, slots + 1) <= memory;
+    const std::size_t needed =
+      lanes ? GetBrickMemory(context, slots + 1) : GetColumnMemory(slots + 1) + OtherColumnMemory;
+    const bool fits = FitsFloat(array) && needed <= memory;
     found.push_back(fits);
     slots += fits;
   }
   return found;
 }
 
-/// What the texts from LaneVectors.cl to BrickResampling.cl expect in front of them.
-std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<VolumeArray>& arrays)
+std::size_t CountSlots(
+  const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingForm form)
 {
-  const std::vector<bool> inLanes = FindLaneArrays(context, arrays);
+  const std::vector<bool> found = FindLaneArrays(context, arrays, form);
+  return static_cast<std::size_t>(std::count(found.begin(), found.end(), true));
+}
+
+/// What the texts from LaneVectors.cl to BrickResampling.cl, or to ColumnResampling.cl, expect in
+/// front of them.
+std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<VolumeArray>& arrays,
+  const ResamplingVariant& variant)
+{
+  const ResamplingForm form = variant.Form;
+  const std::vector<bool> inLanes = FindLaneArrays(context, arrays, form);
   std::string list;
   std::string others;
   int slots = 0;
@@ -65,20 +93,55 @@ std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<Vol
     list += " DO(" + index + ", " + GetTypeName(arrays[i].Type) + ", " +
       std::to_string(8 * GetElementSize(arrays[i].Type)) + ", " + std::to_string(slots++) + ")";
   }
-  const bool local = HasLocalBricks(context);
-  return "#define LANES " + std::to_string(GetLanes(context)) + "\n#define ROW_MEMORY " +
-    (local ? "__local" : "__global") + "\n#define ROWS_ARE_GLOBAL " + (local ? "0" : "1") +
-    "\n#define LANE_SLOTS " + std::to_string(slots) + "\n#define LANE_ARRAYS(DO)" + list +
-    "\n#define HAS_OTHER_ARRAYS " + (others.empty() ? "0" : "1") + "\n#define STORE_OTHER_ARRAYS " +
-    others + "\n";
+  const bool lanes = form == ResamplingForm::Lanes;
+  const bool local = !lanes || HasLocalBricks(context);
+  const std::string shape = lanes
+    ? "#define ROW_CELLS DEFORMVOLUME_BRICK_X\n#define CELL_ROWS DEFORMVOLUME_BRICK_Y\n"
+    : "#define ROW_CELLS DEFORMVOLUME_COLUMN\n#define CELL_ROWS (DEFORMVOLUME_BRICK_Y / 2)\n"
+      "#define CELL_LAYERS (DEFORMVOLUME_BRICK_Z / 2)\n";
+  return "#define LANES " + std::to_string(lanes ? GetLanes(context) : 1) +
+    "\n#define ROW_MEMORY " + (local ? "__local" : "__global") + "\n#define ROWS_ARE_GLOBAL " +
+    (local ? "0\n" : "1\n") + shape + "#define HAS_COLUMN_KERNEL " +
+    (form == ResamplingForm::Columns ? "1" : "0") + "\n#define PASS_IS_DIRECT " +
+    (variant.IsDirect ? "1" : "0") + "\n#define LANE_SLOTS " + std::to_string(slots) +
+    "\n#define LANE_ARRAYS(DO)" + list + "\n#define HAS_OTHER_ARRAYS " +
+    (others.empty() ? "0" : "1") + "\n#define STORE_OTHER_ARRAYS " + others + "\n";
+}
+
+/// The texts of a form, besides those that all have.
+ProgramText GetFormText(const OpenCLContext& context, const std::vector<VolumeArray>& arrays,
+  const ResamplingVariant& variant)
+{
+  switch (variant.Form)
+  {
+    case ResamplingForm::Lanes:
+      return ProgramText(MakeLanePreamble(context, arrays, variant)) + LaneVectors_cl +
+        GroupVertices_cl + RowDisplacements_cl + BrickMapping_cl + GroupValues_cl +
+        GroupSamples_cl + GroupCoverage_cl + GroupCandidates_cl + GroupWeights_cl + GroupWalk_cl +
+        GroupResampling_cl + BrickResampling_cl;
+    case ResamplingForm::Columns:
+    case ResamplingForm::Queue:
+      return ProgramText(MakeLanePreamble(context, arrays, variant)) + LaneVectors_cl +
+        GroupVertices_cl + GroupValues_cl + GroupCoverage_cl + GroupCandidates_cl +
+        GroupWeights_cl + GroupWalk_cl + ColumnResampling_cl;
+    case ResamplingForm::LargeCells:
+      return LargeCells_cl;
+    case ResamplingForm::Cells:
+      break;
+  }
+  return {};
 }
 
 } // namespace
 
 bool HasLocalBricks(const OpenCLContext& context)
 {
-  return GetBrickMemory(context, 0) <=
-    context.GetDevice().Device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+  return GetBrickMemory(context, 0) <= GetLocalMemory(context);
+}
+
+bool HasLocalColumns(const OpenCLContext& context)
+{
+  return GetColumnMemory(0) + OtherColumnMemory <= GetLocalMemory(context);
 }
 
 cl::Program GetOutputProgram(OpenCLContext& context)
@@ -88,11 +151,12 @@ cl::Program GetOutputProgram(OpenCLContext& context)
 }
 
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
-  const std::vector<VolumeArray>& arrays, bool wideKeys, ResamplingForm form, bool withCut)
+  const std::vector<VolumeArray>& arrays, const ResamplingVariant& variant)
 {
+  const ResamplingForm form = variant.Form;
   ProgramText key = "#define KEY uint\n#define ATOMIC_MIN atomic_min\n"
                     "#define ATOMIC_CMPXCHG atomic_cmpxchg\n";
-  if (wideKeys)
+  if (variant.WideKeys)
   {
     key = "#pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable\n"
           "#pragma OPENCL EXTENSION cl_khr_int64_extended_atomics : enable\n"
@@ -105,29 +169,23 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
         "a smaller volume or another device.");
     }
   }
-  ProgramText text = Resampling_cl;
-  if (form == ResamplingForm::Lanes)
-  {
-    text += ProgramText(MakeLanePreamble(context, arrays)) + LaneVectors_cl + RowDisplacements_cl +
-      BrickMapping_cl + GroupVertices_cl + GroupSamples_cl + GroupCoverage_cl + GroupCandidates_cl +
-      GroupWeights_cl + GroupResampling_cl + BrickResampling_cl;
-  }
-  else if (form == ResamplingForm::LargeCells)
-  {
-    text += LargeCells_cl;
-  }
-  return context.GetProgram(GetSamplingMeshText(withCut) + MakeArrayText(context, arrays) + key +
-      "#define HAS_MAPPING_KERNEL 0\n" + GetMappingText(mapping) + "#define HAS_CELL_KERNEL " +
-      (form == ResamplingForm::Cells ? "1\n" : "0\n") + IntegerVectors_cl + CellVertices_cl +
-      CutCells_cl + CellCoverage_cl + SampleStoring_cl + VoxelWinners_cl + text,
+  key += variant.CoverageBits ? "#define COVERAGE_IS_BITS 1\n" : "#define COVERAGE_IS_BITS 0\n";
+  return context.GetProgram(GetSamplingMeshText(variant.WithCut) + MakeArrayText(context, arrays) +
+      key + "#define HAS_MAPPING_KERNEL 0\n" + GetMappingText(mapping) +
+      "#define HAS_CELL_KERNEL " + (form == ResamplingForm::Cells ? "1\n" : "0\n") +
+      IntegerVectors_cl + CellVertices_cl + CutCells_cl + CellCoverage_cl + SampleStoring_cl +
+      VoxelWinners_cl + Resampling_cl + GetFormText(context, arrays, variant),
     KernelOptions);
 }
 
 std::size_t GetBrickMemory(const OpenCLContext& context, const std::vector<VolumeArray>& arrays)
 {
-  const std::vector<bool> inLanes = FindLaneArrays(context, arrays);
-  return GetBrickMemory(
-    context, static_cast<std::size_t>(std::count(inLanes.begin(), inLanes.end(), true)));
+  return GetBrickMemory(context, CountSlots(context, arrays, ResamplingForm::Lanes));
+}
+
+std::size_t GetColumnMemory(const OpenCLContext& context, const std::vector<VolumeArray>& arrays)
+{
+  return GetColumnMemory(CountSlots(context, arrays, ResamplingForm::Columns));
 }
 
 cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays)

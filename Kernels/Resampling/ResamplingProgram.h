@@ -19,21 +19,43 @@ enum class ResamplingForm
   Cells,
   /// By lanes: ResampleBricks in BrickResampling.cl.
   Lanes,
-  /// What either puts off: ResampleLargeCells in LargeCells.cl.
+  /// By columns: ResampleColumns in ColumnResampling.cl.
+  Columns,
+  /// What these leave in a queue: ResampleQueued in ColumnResampling.cl.
+  Queue,
+  /// What all of them put off: ResampleLargeCells in LargeCells.cl.
   LargeCells
 };
 
-/// The exact resampling for arrays of these types. wideKeys: cells are too many for the 30 bits of
-/// a narrow winner's key. withCut: there is a smooth cut (CutCells.cl). Throws Error where the
-/// device lacks what the arrays need.
+/// What a program of the exact resampling is made for.
+struct ResamplingVariant
+{
+  ResamplingForm Form;
+  /// Whether cells are too many for the 30 bits of a narrow winner's key.
+  bool WideKeys;
+  /// Whether coverage is bits (VoxelWinners.cl): where columns are resampled.
+  bool CoverageBits;
+  /// Whether there is a smooth cut (CutCells.cl).
+  bool WithCut;
+  /// Whether columns are resampled in the direct pass only.
+  bool IsDirect = false;
+};
+
+/// The exact resampling for arrays of these types. Throws Error where the device lacks what the
+/// arrays need.
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
-  const std::vector<VolumeArray>& arrays, bool wideKeys, ResamplingForm form, bool withCut = false);
+  const std::vector<VolumeArray>& arrays, const ResamplingVariant& variant);
 
 /// Whether the kernel ResampleBricks works in local memory: where there is enough. Else it does so
 /// in a buffer, which has room for each work-item.
 bool HasLocalBricks(const OpenCLContext& context);
 /// Bytes of that for a work-item.
 std::size_t GetBrickMemory(const OpenCLContext& context, const std::vector<VolumeArray>& arrays);
+
+/// Whether there is enough local memory for the kernel ResampleColumns.
+bool HasLocalColumns(const OpenCLContext& context);
+/// Bytes of that for a work-group.
+std::size_t GetColumnMemory(const OpenCLContext& context, const std::vector<VolumeArray>& arrays);
 
 /// What is done with the output besides resampling (CoverageCount.cl, OutputClearing.cl).
 cl::Program GetOutputProgram(OpenCLContext& context);

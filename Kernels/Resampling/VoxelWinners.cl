@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The output of a launch, and which cell wins a voxel that several cells write.
 //
-// Data: coverage 1 byte an output voxel; winners 4 or 8 bytes an output voxel (only where tetrahedra overlap);
+// Data: coverage 1 byte an output voxel, or 1 bit, in words of 32; winners 4 or 8 bytes an output voxel (only where tetrahedra overlap);
 // patches of the output 1 byte each.
 //
 // What the host puts in front of this text:
 //   KEY, ATOMIC_MIN,     type of the winner's key, and its minimum and conditional exchange
 //   ATOMIC_CMPXCHG
+//   COVERAGE_IS_BITS     0 or 1
 
 typedef struct
 {
@@ -23,10 +24,41 @@ typedef struct
   uint Candidates; // voxels that were won, as far as others had marked them by then
   uint Touched; // nonzero where samples are held that others write, or none
   uint Large; // cells that were put into the list
+  uint Covered; // voxels that none had written before, where coverage is bits
 } Output;
 
 #define NEW_OUTPUT(coverage, winners, patches, largeCells)                                         \
-  { coverage, winners, patches, largeCells, 0, 0, 0, 0, 0, 0, 0, 0 }
+  { coverage, winners, patches, largeCells, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+
+// A voxel is covered. Bits tell whether it was before, so that no pass over all voxels has to count them.
+static void Cover(Output* output, size_t target)
+{
+#if COVERAGE_IS_BITS
+  const uint bit = 1u << (target & 31);
+  const uint before = atomic_or((__global uint*)output->Coverage + (target >> 5), bit);
+  output->Covered += (before & bit) == 0;
+#else
+  output->Coverage[target] = 1;
+#endif
+}
+
+// The counts in the order of the counters of a section.
+#define COUNTS_OF(output)                                                                          \
+  {                                                                                                \
+    (output)->Writes, (output)->Inverted, (output)->Overstretched, (output)->Missing,              \
+      (output)->Assumed, (output)->Candidates, (output)->Touched, (output)->Large,                 \
+      (output)->Covered                                                                            \
+  }
+
+// Adds to a counter of a section. The passes that come later count nothing again.
+static void AddCount(
+  int i, uint count, size_t section, __global uint* counters, const KernelParameters* p)
+{
+  if (count && (i == DEFORMVOLUME_COUNT_CANDIDATES || !DEFORMVOLUME_IS_CLOSED(p->Pass)))
+  {
+    atomic_add(counters + section * DEFORMVOLUME_COUNTERS + i, count);
+  }
+}
 
 // Of overlapping tetrahedra upright ones win, then the lowest cell. Within a cell the order of
 // writing decides, the lowest tetrahedron last. The key of a voxel that is contested has the highest bit: so it is

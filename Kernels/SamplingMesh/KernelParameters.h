@@ -123,7 +123,8 @@ typedef struct
 #define DEFORMVOLUME_COLUMNS (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_COLUMN)
 #define DEFORMVOLUME_SECTIONS (4 * DEFORMVOLUME_COLUMNS)
 
-// What a work-item of the kernel ResampleBricks takes, and some work-groups of the kernel Resample:
+// What a work-item of the kernel ResampleBricks takes, and some work-groups of the kernels Resample
+// and ResampleColumns:
 // the number of a brick, and above that a bit for each column, and for y and z a bit for the lower
 // half and one for the upper half. ResampleBricks takes all columns from the lowest to the highest.
 #define DEFORMVOLUME_BRICK_BITS 22
@@ -147,7 +148,14 @@ typedef struct
 #define DEFORMVOLUME_COUNT_CANDIDATES 5 // voxels that cells may have won
 #define DEFORMVOLUME_COUNT_TOUCHED 6 // nonzero where cells hold samples that others write, or none
 #define DEFORMVOLUME_COUNT_LARGE 7   // cells that were put into the list of large ones
-#define DEFORMVOLUME_COUNTERS 8
+#define DEFORMVOLUME_COUNT_COVERED 8 // voxels that were covered first, where coverage is bits
+#define DEFORMVOLUME_COUNTERS 9
+
+// What the counters of all sections add up to (the kernel Summarize): two words each, the lower one
+// first, of writes, voxels covered and inverted tetrahedra; then overstretched ones, and the flags.
+#define DEFORMVOLUME_SUMMARY_WORDS 8
+#define DEFORMVOLUME_SUMMARY_MISSING_WHERE_ASSUMED 1 // missing and assumed ones, somewhere
+#define DEFORMVOLUME_SUMMARY_LARGE 2                 // large cells
 
 // Samples that a work-item tries of one cell. A cell whose box has more is large: it goes into a
 // list, and what that lists is resampled in pieces, by kernels that follow (LargeCells.cl).
@@ -171,6 +179,9 @@ typedef struct
 #define DEFORMVOLUME_PATCH_UNSETTLED 1 // voxels have to be won
 #define DEFORMVOLUME_PATCH_TOUCHED 2   // cells may hold voxels that others write, or none
 #define DEFORMVOLUME_PATCH_KEPT 4      // its voxels stay as they are
+
+// Work-items that count the voxels that bits say are covered.
+#define DEFORMVOLUME_BIT_COUNTERS 4096
 
 // Bytes that a work-item of the kernels Fill1 to Fill8 writes.
 #define DEFORMVOLUME_FILLED_BYTES 65536

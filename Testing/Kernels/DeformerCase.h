@@ -87,6 +87,8 @@ struct Deformed
   deformvolume::Resampling Method = deformvolume::Resampling::Exact;
   /// The same by the kernel that takes one cell after the other, where the method is left open.
   std::shared_ptr<Deformed> ByCell;
+  /// And by the kernel for graphics cards.
+  std::shared_ptr<Deformed> ByColumns;
 
   template <typename T>
   const T* GetOutput(int array) const
@@ -101,12 +103,15 @@ Deformed RunDeformer(deformvolume::VolumeDeformer& deformer, const DeformerCase&
   deformvolume::Resampling method = deformvolume::Resampling::Exact,
   deformvolume::Interpolation interpolation = deformvolume::Interpolation::Linear);
 
-/// Load and RunDeformer on a new deformer, by the kernel of its choice and cell by cell.
+/// Load and RunDeformer on a new deformer, by the kernel of its choice, cell by cell and by
+/// columns.
 Deformed LoadAndRun(const DeformerCase& deformerCase,
   const std::vector<deformvolume::VolumeArray>& arrays, Route route = Route::Field);
 
-/// Coverage, counts and all values against the reference, also those found cell by cell. Values of
-/// arrays that go by lanes have single precision, all others the precision of the reference.
+/// Coverage, counts and all values against the reference, also those found cell by cell and by
+/// columns. Values of arrays that go by lanes have single precision, all others the precision of
+/// the reference. By columns they are the same as by lanes, to the last bit, but where cells are
+/// interpolated in double precision for what is beside them: a smooth cut, or special values.
 void ExpectEqualsReference(const DeformerCase& deformerCase, const reference::Result& reference,
   const std::vector<deformvolume::VolumeArray>& arrays, const Deformed& deformed);
 

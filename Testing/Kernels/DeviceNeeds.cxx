@@ -17,6 +17,10 @@ bool HasVectors()
 
 std::vector<Resampling> GetExactMethods()
 {
-  return HasVectors() ? std::vector<Resampling>{ Resampling::ExactByLanes, Resampling::ExactByCell }
-                      : std::vector<Resampling>{ Resampling::ExactByCell };
+  std::vector<Resampling> methods{ Resampling::ExactByColumns, Resampling::ExactByCell };
+  if (HasVectors())
+  {
+    methods.insert(methods.begin(), Resampling::ExactByLanes);
+  }
+  return methods;
 }

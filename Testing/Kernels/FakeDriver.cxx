@@ -12,6 +12,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 FakeDriver& FakeDriver::Get()
 {
@@ -84,6 +85,45 @@ bool Fails(int asked, Counter<int>& before, cl_command_queue queue, cl_event* do
   return true;
 }
 
+/// Bytes of local memory that arguments of kernels ask for.
+std::map<cl_kernel, std::map<cl_uint, std::size_t>> LocalMemory;
+
+template <typename Query>
+std::string GetText(Query&& query)
+{
+  std::size_t size = 0;
+  query(0, nullptr, &size);
+  std::string text(size, '\0');
+  query(size, size ? &text[0] : nullptr, nullptr);
+  return text.c_str(); // to the first zero
+}
+
+std::string GetText(cl_program program, cl_program_info what)
+{
+  return GetText([&](std::size_t size, void* place, std::size_t* needed)
+    { clGetProgramInfo(program, what, size, place, needed); });
+}
+
+FakeDriver::Launch DescribeLaunch(cl_kernel kernel, cl_uint dimensions, const std::size_t* local)
+{
+  FakeDriver::Launch launch;
+  cl_program program = nullptr;
+  clGetKernelInfo(kernel, CL_KERNEL_PROGRAM, sizeof(program), &program, nullptr);
+  launch.Text = GetText(program, CL_PROGRAM_SOURCE);
+  launch.Kernel = GetText([&](std::size_t size, void* place, std::size_t* needed)
+    { clGetKernelInfo(kernel, CL_KERNEL_FUNCTION_NAME, size, place, needed); });
+  for (cl_uint axis = 0; local && axis < dimensions; ++axis)
+  {
+    launch.Items *= local[axis];
+  }
+  const std::lock_guard<std::mutex> lock(Mutex);
+  for (const auto& argument : LocalMemory[kernel])
+  {
+    launch.LocalMemory += argument.second;
+  }
+  return launch;
+}
+
 } // namespace
 
 extern "C" cl_mem CL_API_CALL clCreateBuffer(
@@ -98,6 +138,12 @@ extern "C" cl_mem CL_API_CALL clCreateBuffer(
       *error = CL_MEM_OBJECT_ALLOCATION_FAILURE;
     }
     return nullptr;
+  }
+  if (FakeDriver::Get().SkipsLaunches && !memory)
+  {
+    const std::vector<char> zeros(size);
+    return real(
+      context, flags | CL_MEM_COPY_HOST_PTR, size, const_cast<char*>(zeros.data()), error);
   }
   if (!(flags & CL_MEM_USE_HOST_PTR))
   {
@@ -146,6 +192,41 @@ extern "C" cl_program CL_API_CALL clCreateProgramWithSource(
   }
   const char* whole = text.c_str();
   return real(context, 1, &whole, nullptr, error);
+}
+
+extern "C" cl_int CL_API_CALL clBuildProgram(cl_program program, cl_uint number,
+  const cl_device_id* devices, const char* options, void(CL_CALLBACK* done)(cl_program, void*),
+  void* data)
+{
+  static auto* const real = Find<decltype(clBuildProgram)>("clBuildProgram");
+  const cl_int error = real(program, number, devices, options, done, data);
+  if (error == CL_SUCCESS && !done && FakeDriver::Get().OnBuild)
+  {
+    FakeDriver::Get().OnBuild(GetText(program, CL_PROGRAM_SOURCE), options ? options : "",
+      GetText(program, CL_PROGRAM_KERNEL_NAMES));
+  }
+  return error;
+}
+
+extern "C" cl_int CL_API_CALL clSetKernelArg(
+  cl_kernel kernel, cl_uint index, std::size_t size, const void* value)
+{
+  static auto* const real = Find<decltype(clSetKernelArg)>("clSetKernelArg");
+  if (!value && FakeDriver::Get().OnLaunch)
+  {
+    const std::lock_guard<std::mutex> lock(Mutex);
+    LocalMemory[kernel][index] = size;
+  }
+  return real(kernel, index, size, value);
+}
+
+extern "C" cl_kernel CL_API_CALL clCreateKernel(cl_program program, const char* name, cl_int* error)
+{
+  static auto* const real = Find<decltype(clCreateKernel)>("clCreateKernel");
+  cl_kernel kernel = real(program, name, error);
+  const std::lock_guard<std::mutex> lock(Mutex);
+  LocalMemory.erase(kernel); // one that is gone may have had this place
+  return kernel;
 }
 
 extern "C" cl_int CL_API_CALL clRetainMemObject(cl_mem buffer)
@@ -286,5 +367,13 @@ extern "C" cl_int CL_API_CALL clEnqueueNDRangeKernel(cl_command_queue queue, cl_
 {
   static auto* const real = Find<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel");
   FakeDriver::Get().LaunchesWithoutGroup += !local && global[0] > 1;
+  if (FakeDriver::Get().OnLaunch)
+  {
+    FakeDriver::Get().OnLaunch(DescribeLaunch(kernel, dimensions, local));
+  }
+  if (FakeDriver::Get().SkipsLaunches)
+  {
+    return clEnqueueMarkerWithWaitList(queue, number, events, done);
+  }
   return real(queue, kernel, dimensions, offset, global, local, number, events, done);
 }

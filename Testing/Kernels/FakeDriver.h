@@ -8,6 +8,8 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <string>
 
 /// A number that several threads count.
 template <typename T>
@@ -38,6 +40,15 @@ private:
 
 struct FakeDriver
 {
+  /// A kernel of a program as the driver gets it.
+  struct Launch
+  {
+    std::string Text; // of the program
+    std::string Kernel;
+    std::size_t Items = 1;       // in a group
+    std::size_t LocalMemory = 0; // bytes of a group that arguments ask for
+  };
+
   /// Copies from the device, and to it, that the host does not wait for fail, unless 0: with this
   /// error. So many of them succeed before.
   int ReadError = 0;
@@ -64,6 +75,13 @@ struct FakeDriver
   bool FusesProducts = false;
   /// Launches of more than one work-item that left the size of the groups to the driver.
   Counter<int> LaunchesWithoutGroup;
+  /// Kernels are not run, and what they would have written stays as it was: 0 at first.
+  bool SkipsLaunches = false;
+  /// Called with each program that has been built from its text: the text, the options, and the
+  /// names of the kernels, which are separated by semicolons.
+  std::function<void(const std::string&, const std::string&, const std::string&)> OnBuild;
+  /// Called with each launch.
+  std::function<void(const Launch&)> OnLaunch;
 
   /// Bytes that calls of the host have brought from buffers and to them. A buffer that is mapped
   /// counts as read and written as the access has it, unless it is page-locked: that one stays

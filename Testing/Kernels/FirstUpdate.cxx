@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Prints what the first execution of a process costs on a device, and what a later one does: what
-// is compiled makes the difference. Testing/drivers.sh makes a table of it.
+// is compiled makes the difference. Testing/drivers.sh makes a table of it. Prints a line "later:"
+// between the two, for what drivers print: Testing/gpu-compilers.sh counts instructions by it.
 //
-// Usage: FirstUpdate [folded] [cells] [runs] [DEVICE]
-//   folded   the volume is folded over, so that winners are chosen
-//   cells    by the kernel that takes one cell after the other
-//   runs     with runs in place of links
+// Usage: FirstUpdate [still | jittered | folded] [cells] [runs] [VOXELS] [DEVICE]
+//   still      the volume is where it was; else it is moved by a quarter of a voxel
+//   jittered   its voxels are moved besides, each on its own, by up to 0.15 voxels
+//   folded     it is folded over, so that winners are chosen
+//   cells      by the kernel that takes one cell after the other
+//   runs       with runs in place of links
+//   VOXELS     on each axis, 32 by default
 #include "DeformerCase.h"
 #include "Device.h"
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 
 using namespace deformvolume;
@@ -30,20 +35,29 @@ double Measure(Function&& function)
 
 int main(int argc, char* argv[])
 {
-  bool folded = false;
+  std::string shape;
+  int size = 32;
   Route route = Route::Mesh;
   DeformRequest deform;
   const char* request = "";
   for (int i = 1; i < argc; ++i)
   {
     const std::string word = argv[i];
-    if (word == "folded")
+    if (word == "still" || word == "jittered" || word == "folded")
     {
-      folded = true;
+      shape = word;
+    }
+    else if (!word.empty() && word.find_first_not_of("0123456789") == std::string::npos)
+    {
+      size = std::atoi(word.c_str());
     }
     else if (word == "cells")
     {
       deform.Method = Resampling::ExactByCell;
+    }
+    else if (word == "columns")
+    {
+      deform.Method = Resampling::ExactByColumns;
     }
     else if (word == "runs")
     {
@@ -54,10 +68,17 @@ int main(int argc, char* argv[])
       request = argv[i];
     }
   }
-  const int size = 31;
-  const DeformerCase deformerCase = MakeCase({ { 0, size, 0, size, 0, size } }, { { 1, 1, 1 } },
+  const bool folded = shape == "folded";
+  const auto jitter = MakeJitter(1, 0.15);
+  const int last = size - 1;
+  const DeformerCase deformerCase = MakeCase({ { 0, last, 0, last, 0, last } }, { { 1, 1, 1 } },
     [&](const glm::dvec3& v)
-    { return folded && v.x > size / 2 ? glm::dvec3(size - v.x, v.y, v.z) : v + 0.25; });
+    {
+      return folded && v.x > last / 2 ? glm::dvec3(last - v.x, v.y, v.z)
+        : shape == "still"            ? v
+        : shape == "jittered"         ? jitter(v + 0.25)
+                                      : v + 0.25;
+    });
   const std::vector<short> values(
     static_cast<std::size_t>(deformerCase.GetNumberOfVoxels()), short{ 1 });
   const std::vector<VolumeArray> arrays{ MakeArray(values) };
@@ -78,6 +99,8 @@ int main(int argc, char* argv[])
         Load(deformer, deformerCase, arrays, route);
         report = deformer.Deform(deform);
       });
+    std::puts("later:");
+    std::fflush(stdout);
     const double later = Measure(
       [&]
       {

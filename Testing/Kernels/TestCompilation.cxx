@@ -85,6 +85,14 @@ std::vector<ElementType> GetAllTypes()
   return types;
 }
 
+const ResamplingForm AllForms[] = { ResamplingForm::Cells, ResamplingForm::Lanes,
+  ResamplingForm::Columns, ResamplingForm::Queue, ResamplingForm::LargeCells };
+
+bool HasBits(ResamplingForm form)
+{
+  return form == ResamplingForm::Columns || form == ResamplingForm::Queue;
+}
+
 struct Compiled
 {
   DeformReport Report;
@@ -180,29 +188,35 @@ TEST(Compilation, NoWarnings)
     for (const bool withCut : { false, true })
     {
       EXPECT_EQ(GetLog(GetMappingProgram(context, form, withCut)), "");
-      EXPECT_EQ(
-        GetLog(GetResamplingProgram(context, form, one, false, ResamplingForm::Lanes, withCut)),
-        "");
+      for (const ResamplingForm kernel : { ResamplingForm::Lanes, ResamplingForm::Columns })
+      {
+        EXPECT_EQ(GetLog(GetResamplingProgram(
+                    context, form, one, { kernel, false, HasBits(kernel), withCut })),
+          "");
+      }
     }
   }
-  for (const bool wide : { false, true })
+  for (const ResamplingForm kernel : AllForms)
   {
-    for (const ResamplingForm form :
-      { ResamplingForm::Cells, ResamplingForm::Lanes, ResamplingForm::LargeCells })
+    SCOPED_TRACE(static_cast<int>(kernel));
+    const bool bits = HasBits(kernel);
+    const auto getLog = [&](const std::vector<VolumeArray>& arrays, bool wide, bool withCut)
     {
-      EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, linear, wide, form)), "");
-    }
+      return GetLog(
+        GetResamplingProgram(context, MappingForm::Links, arrays, { kernel, wide, bits, withCut }));
+    };
+    EXPECT_EQ(getLog(linear, false, false), "");
+    EXPECT_EQ(getLog(linear, true, false), "");
+    EXPECT_EQ(getLog(labels, false, false), "");
+    EXPECT_EQ(getLog(linear, false, true), "");
   }
-  for (const ResamplingForm form :
-    { ResamplingForm::Cells, ResamplingForm::Lanes, ResamplingForm::LargeCells })
-  {
-    EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, labels, false, form)), "");
-    EXPECT_EQ(
-      GetLog(GetResamplingProgram(context, MappingForm::Links, linear, false, form, true)), "");
-  }
+  EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, linear,
+              { ResamplingForm::LargeCells, false, true, false })),
+    "");
   EXPECT_EQ(GetLog(GetOutputProgram(context)), "");
   EXPECT_EQ(GetLog(GetPublishedProgram(context, linear)), "");
-  EXPECT_EQ(GetLog(GetBinningProgram(context)), "");
+  EXPECT_EQ(GetLog(GetRangeListsProgram(context)), "");
+  EXPECT_EQ(GetLog(GetEntryListsProgram(context)), "");
   for (const Interpolation interpolation : { Interpolation::Linear, Interpolation::Cubic })
   {
     EXPECT_EQ(
@@ -217,9 +231,12 @@ TEST(Compilation, KernelsThatAreNotUsedAreNotCompiled)
   const std::vector<VolumeArray> arrays = MakeArrays({ ElementType::Int16 }, false);
   for (const auto& [form, name] : { std::make_pair(ResamplingForm::Cells, "Resample"),
          std::make_pair(ResamplingForm::Lanes, "ResampleBricks"),
+         std::make_pair(ResamplingForm::Columns, "ResampleColumns"),
+         std::make_pair(ResamplingForm::Queue, "ResampleQueued"),
          std::make_pair(ResamplingForm::LargeCells, "ResampleLargeCells") })
   {
-    const std::string names = GetResamplingProgram(context, MappingForm::Field, arrays, false, form)
+    const std::string names = GetResamplingProgram(
+      context, MappingForm::Field, arrays, { form, false, HasBits(form), false })
                                 .getInfo<CL_PROGRAM_KERNEL_NAMES>();
     EXPECT_EQ(std::string(names.c_str()), name);
   }

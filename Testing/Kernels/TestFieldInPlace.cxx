@@ -78,8 +78,8 @@ TEST(FieldInPlace, EqualsACopy)
     for (const std::array<double, 9>& matrix : matrices)
     {
       vectors.Field.ToDisplacement = matrix;
-      for (const Resampling method :
-        { Resampling::Exact, Resampling::ExactByCell, Resampling::ExactByLanes })
+      for (const Resampling method : { Resampling::Exact, Resampling::ExactByCell,
+             Resampling::ExactByColumns, Resampling::ExactByLanes })
       {
         SCOPED_TRACE("method " + std::to_string(static_cast<int>(method)));
         EditedOutputs expected(volume);

@@ -309,8 +309,9 @@ TEST(Folded, OutputsBeforeDoNotMatter)
   const auto values = MakeRandomValues<std::uint16_t>(fold(60.0).GetNumberOfVoxels(), 2);
   const auto floats = MakeRandomValues<float>(fold(60.0).GetNumberOfVoxels(), 3);
   const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(floats) };
-  for (const auto& [method, number] : { std::make_pair(Resampling::ExactByLanes, 0),
-         std::make_pair(Resampling::ExactByLanes, 1), std::make_pair(Resampling::ExactByCell, 0) })
+  for (const auto& [method, number] :
+    { std::make_pair(Resampling::ExactByLanes, 0), std::make_pair(Resampling::ExactByLanes, 1),
+      std::make_pair(Resampling::ExactByColumns, 0), std::make_pair(Resampling::ExactByCell, 0) })
   {
     if (method == Resampling::ExactByLanes && !HasVectors())
     {

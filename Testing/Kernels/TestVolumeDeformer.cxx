@@ -132,10 +132,11 @@ TEST(VolumeDeformer, TinyClipped)
   Check(tiny, Route::Field);
 }
 
-TEST(VolumeDeformer, TinyByLanes)
+namespace
 {
-  SKIP_WITHOUT_VECTORS()
-  const DeformerCase tiny = MakeCase({ { 0, 5, 0, 3, -1, 2 } }, NoScale, MakeJitter(6, 0.15));
+
+void CheckTiny(Resampling method, const DeformerCase& tiny)
+{
   const auto values = MakeRandomValues<std::uint16_t>(tiny.GetNumberOfVoxels(), 2);
   const auto others = MakeRandomValues<float>(tiny.GetNumberOfVoxels(), 3);
   const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(others) };
@@ -143,8 +144,30 @@ TEST(VolumeDeformer, TinyByLanes)
   Load(deformer, tiny, arrays, Route::Field);
   const reference::Result reference = ResampleByReference(tiny);
   ExpectEmbedding(reference);
-  ExpectEqualsReference(
-    tiny, reference, arrays, RunDeformer(deformer, tiny, arrays, Resampling::ExactByLanes));
+  ExpectEqualsReference(tiny, reference, arrays, RunDeformer(deformer, tiny, arrays, method));
+}
+
+} // namespace
+
+TEST(VolumeDeformer, TinyByLanes)
+{
+  SKIP_WITHOUT_VECTORS()
+  CheckTiny(
+    Resampling::ExactByLanes, MakeCase({ { 0, 5, 0, 3, -1, 2 } }, NoScale, MakeJitter(6, 0.15)));
+}
+
+// Of several sections, with cells for the queue on its border and inside.
+TEST(VolumeDeformer, TinyByColumns)
+{
+  for (const double amplitude : { 0.0, 0.15 })
+  {
+    SCOPED_TRACE(amplitude);
+    DeformerCase tiny = MakeCase({ { 0, 5, 0, 3, -1, 2 } }, NoScale, MakeJitter(6, amplitude));
+    CheckTiny(Resampling::ExactByColumns, tiny);
+    tiny.Active.assign(75, 31);
+    tiny.Active[37] = 0x13;
+    CheckTiny(Resampling::ExactByColumns, tiny);
+  }
 }
 
 TEST(VolumeDeformer, TinyPublished)

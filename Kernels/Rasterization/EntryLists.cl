@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The lists of the tetrahedra in each tile, for devices with many work-items.
+//
+// An entry is a tetrahedron in the list of a tile. Entries are made in the order of the tetrahedra,
+// those of a tetrahedron side by side: sums over their numbers of tiles tell an item which entry is
+// whose, so that many items make those of a large tetrahedron. Then entries are sorted by keys, a
+// few bits at a time, from the lowest ones on, and those with equal bits stay in their order. A key
+// is twice the tile, and one more where the tetrahedron is inverted.
+//
+// A work-group takes a range of tetrahedra, entries or tiles. What comes out depends neither on the
+// number of ranges nor on that of the items, nor on which item comes first: atomic operations only
+// add numbers and set bits, which a barrier or the end of the kernel waits for.
+//
+// This text comes after TetrahedronBinning.cl.
+
+// A part of count numbers: that of one of several ranges, which follow each other.
+static uint RangeBegin(uint count, uint range, uint ranges)
+{
+  return (uint)((ulong)count * range / ranges);
+}
+
+#define GROUP_BEGIN(count) RangeBegin(count, get_group_id(0), get_num_groups(0))
+#define GROUP_END(count) RangeBegin(count, get_group_id(0) + 1, get_num_groups(0))
+
+// For each tetrahedron its tiles, and how many these are. counters: see RasterParameters.h.
+__kernel void FindTiles(__global const int4* tetrahedra, __global const int4* positions,
+  __global uint2* boxes, __global uint* counters, __global uint* counts, const RasterParameters p)
+{
+  uint inverted = 0;
+  uint overstretched = 0;
+  const uint end = GROUP_END(p.Tetrahedra);
+  for (uint t = GROUP_BEGIN(p.Tetrahedra) + get_local_id(0); t < end; t += get_local_size(0))
+  {
+    const Binned found = Bin(tetrahedra[t], positions, &p);
+    inverted += found.Inverted;
+    overstretched += found.Overstretched;
+    boxes[t] = found.Tiles;
+    const uint sizes = found.Tiles.y;
+    counts[t] = GetSizeX(sizes) * GetSizeY(sizes) * GetSizeZ(sizes);
+  }
+  if (inverted > 0)
+  {
+    atomic_add(counters + DEFORMVOLUME_BINNED_INVERTED, inverted);
+  }
+  if (overstretched > 0)
+  {
+    atomic_add(counters + DEFORMVOLUME_BINNED_OVERSTRETCHED, overstretched);
+  }
+}
+
+// The sum over the items before this one; *all is that over all of them. All items call it.
+static ulong SumItemsBefore(ulong own, __local ulong* shared, ulong* all)
+{
+  const uint item = get_local_id(0);
+  const uint items = get_local_size(0);
+  shared[item] = own;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  if (item == 0)
+  {
+    ulong sum = 0;
+    for (uint i = 0; i < items; ++i)
+    {
+      const ulong number = shared[i];
+      shared[i] = sum;
+      sum += number;
+    }
+    shared[items] = sum;
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  *all = shared[items];
+  return shared[item];
+}
+
+// Of each range of numbers the sum. shared: a number more than there are items.
+__kernel void SumRanges(
+  __global const uint* numbers, const uint count, __global ulong* sums, __local ulong* shared)
+{
+  ulong own = 0;
+  const uint end = GROUP_END(count);
+  for (uint i = GROUP_BEGIN(count) + get_local_id(0); i < end; i += get_local_size(0))
+  {
+    own += numbers[i];
+  }
+  ulong all;
+  SumItemsBefore(own, shared, &all);
+  if (get_local_id(0) == 0)
+  {
+    sums[get_group_id(0)] = all;
+  }
+}
+
+// Each sum becomes that over the ranges before it; that over all of them comes last. For one
+// work-group.
+__kernel void AddSums(const uint ranges, __global ulong* sums, __local ulong* shared)
+{
+  const uint begin = RangeBegin(ranges, get_local_id(0), get_local_size(0));
+  const uint end = RangeBegin(ranges, get_local_id(0) + 1, get_local_size(0));
+  ulong own = 0;
+  for (uint i = begin; i < end; ++i)
+  {
+    own += sums[i];
+  }
+  ulong all;
+  ulong sum = SumItemsBefore(own, shared, &all);
+  for (uint i = begin; i < end; ++i)
+  {
+    const ulong number = sums[i];
+    sums[i] = sum;
+    sum += number;
+  }
+  if (get_local_id(0) == 0)
+  {
+    sums[ranges] = all;
+  }
+}
+
+// Each number becomes the sum over those before it.
+__kernel void AddNumbers(
+  __global uint* numbers, const uint count, __global const ulong* sums, __local ulong* shared)
+{
+  const uint first = GROUP_BEGIN(count);
+  const uint length = GROUP_END(count) - first;
+  const uint begin = first + RangeBegin(length, get_local_id(0), get_local_size(0));
+  const uint end = first + RangeBegin(length, get_local_id(0) + 1, get_local_size(0));
+  uint own = 0;
+  for (uint i = begin; i < end; ++i)
+  {
+    own += numbers[i];
+  }
+  ulong all;
+  uint sum = (uint)(sums[get_group_id(0)] + SumItemsBefore(own, shared, &all));
+  for (uint i = begin; i < end; ++i)
+  {
+    const uint number = numbers[i];
+    numbers[i] = sum;
+    sum += number;
+  }
+}
+
+// The tetrahedron of an entry, where it is not before the first one. begins: of their entries.
+static uint FindTetrahedron(__global const uint* begins, uint count, uint first, uint entry)
+{
+  uint low = first;
+  uint step = 1;
+  while (low + step < count && begins[low + step] <= entry)
+  {
+    low += step;
+    step *= 2;
+  }
+  uint high = min(low + step, count); // it is before this one
+  while (high - low > 1)
+  {
+    const uint middle = low + (high - low) / 2;
+    if (begins[middle] <= entry)
+    {
+      low = middle;
+    }
+    else
+    {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+// boxes: the tiles of each tetrahedron; begins: of their entries.
+__kernel void MakeEntries(__global const uint2* boxes, __global const uint* begins,
+  const uint entries, __global uint* keys, __global int* lists, const RasterParameters p)
+{
+  uint t = 0;
+  const uint end = GROUP_END(entries);
+  for (uint i = GROUP_BEGIN(entries) + get_local_id(0); i < end; i += get_local_size(0))
+  {
+    t = FindTetrahedron(begins, p.Tetrahedra, t, i);
+    const uint2 box = boxes[t];
+    const uint inBox = i - begins[t];
+    const uint row = inBox / GetSizeX(box.y);
+    const uint x = inBox - row * GetSizeX(box.y);
+    const uint z = row / GetSizeY(box.y);
+    const uint y = row - z * GetSizeY(box.y);
+    const uint tile = box.x + (z * p.TileCount[1] + y) * p.TileCount[0] + x;
+    keys[i] = 2 * tile + IsInverted(box.y);
+    lists[i] = (int)t;
+  }
+}
+
+static uint GetDigit(uint key, DigitParameters d)
+{
+  return key >> d.Shift & ((1u << d.Bits) - 1);
+}
+
+// counters: for each digit, for each range of entries a number.
+__kernel void CountDigits(__global const uint* keys, __global uint* counters,
+  const DigitParameters d)
+{
+  __local uint counts[1 << DEFORMVOLUME_DIGIT_BITS];
+  const uint item = get_local_id(0);
+  const uint items = get_local_size(0);
+  for (uint digit = item; digit < 1u << d.Bits; digit += items)
+  {
+    counts[digit] = 0;
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  const uint end = GROUP_END(d.Entries);
+  for (uint i = GROUP_BEGIN(d.Entries) + item; i < end; i += items)
+  {
+    atomic_inc(counts + GetDigit(keys[i], d));
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (uint digit = item; digit < 1u << d.Bits; digit += items)
+  {
+    counters[digit * get_num_groups(0) + get_group_id(0)] = counts[digit];
+  }
+}
+
+// counters: as above, the number being the place of the first entry with that digit. masks: for
+// each digit a bit an item. They tell an item how many items before it have the same digit.
+__kernel void SortByDigits(__global const uint* keys, __global const int* lists,
+  __global const uint* counters, __global uint* sortedKeys, __global int* sortedLists,
+  __local uint* masks, const DigitParameters d)
+{
+  __local uint places[1 << DEFORMVOLUME_DIGIT_BITS];
+  const uint item = get_local_id(0);
+  const uint items = get_local_size(0);
+  const uint words = (items + 31) / 32;
+  for (uint digit = item; digit < 1u << d.Bits; digit += items)
+  {
+    places[digit] = counters[digit * get_num_groups(0) + get_group_id(0)];
+    for (uint word = 0; word < words; ++word)
+    {
+      masks[digit * words + word] = 0;
+    }
+  }
+  const uint end = GROUP_END(d.Entries);
+  for (uint begin = GROUP_BEGIN(d.Entries); begin < end; begin += items)
+  {
+    const uint i = begin + item;
+    const uint key = i < end ? keys[i] : 0;
+    const uint digit = GetDigit(key, d);
+    __local uint* mask = masks + digit * words;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (i < end)
+    {
+      atomic_or(mask + item / 32, 1u << item % 32);
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    uint before = 0;
+    uint all = 0;
+    if (i < end)
+    {
+      for (uint word = 0; word < words; ++word)
+      {
+        before += word < item / 32 ? popcount(mask[word]) : 0;
+        all += popcount(mask[word]);
+      }
+      before += popcount(mask[item / 32] & ((1u << item % 32) - 1));
+      const uint place = places[digit] + before;
+      sortedKeys[place] = key;
+      sortedLists[place] = lists[i];
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (i < end && before == all - 1)
+    {
+      places[digit] += all;
+      for (uint word = 0; word < words; ++word)
+      {
+        mask[word] = 0;
+      }
+    }
+  }
+}
+
+// For each tile where its list begins, and where the last one ends. keys: sorted.
+__kernel void FindBegins(
+  __global const uint* keys, const uint entries, const uint tiles, __global uint* begins)
+{
+  const uint end = GROUP_END(tiles + 1);
+  for (uint tile = GROUP_BEGIN(tiles + 1) + get_local_id(0); tile < end; tile += get_local_size(0))
+  {
+    uint low = 0;
+    uint high = entries;
+    while (low < high)
+    {
+      const uint middle = low + (high - low) / 2;
+      if (keys[middle] >> 1 < tile)
+      {
+        low = middle + 1;
+      }
+      else
+      {
+        high = middle;
+      }
+    }
+    begins[tile] = low;
+  }
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ListBuffers.h"
+
+#include "Error.h"
+#include "HostMemory.h"
+#include "WorkDevice.h"
+
+#include <limits>
+#include <string>
+
+namespace deformvolume
+{
+namespace
+{
+
+// Work-items go on by the size of their group, and must not get beyond 32 bits.
+constexpr cl_uint LargestLength = std::numeric_limits<cl_uint>::max() - 4096;
+
+} // namespace
+
+std::uint64_t CountTiles(const RasterParameters& p)
+{
+  return static_cast<std::uint64_t>(p.TileCount[0]) * static_cast<std::uint64_t>(p.TileCount[1]) *
+    static_cast<std::uint64_t>(p.TileCount[2]);
+}
+
+void ReserveLists(WorkDevice& device, cl::Buffer& buffer, std::uint64_t bytes)
+{
+  const std::uint64_t limit = device.GetAllocationLimit();
+  if (bytes > limit)
+  {
+    throw Error("The lists of the tetrahedra in each part of the output need " +
+      std::to_string(bytes) + " bytes in one piece, and the device gives no more than " +
+      std::to_string(limit) +
+      ". Use a coarser deformation mesh, the resampler Exact, or another device.");
+  }
+  if (GetMemory(buffer) < bytes)
+  {
+    buffer = cl::Buffer();
+    buffer = cl::Buffer(device.GetContext().GetContext(), CL_MEM_READ_WRITE, bytes);
+  }
+}
+
+cl_uint CheckLength(std::uint64_t length)
+{
+  if (length > LargestLength)
+  {
+    throw Error("The deformation mesh and the output are too large for the resampler "
+                "MeshRasterization: use the resampler Exact, or a coarser mesh.");
+  }
+  return static_cast<cl_uint>(length);
+}
+
+} // namespace deformvolume

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RangeLists.h"
+
+#include "HostMemory.h"
+#include "RasterizationProgram.h"
+#include "WorkDevice.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace deformvolume
+{
+namespace
+{
+
+// More ranges keep more work-items busy, and cost two counters a tile each.
+std::size_t CountRanges(WorkDevice& device, std::size_t numberOfTetrahedra, std::uint64_t tiles)
+{
+  const std::uint64_t most = std::max<std::uint64_t>(
+    1, (std::uint64_t{ 64 } << 20) / (8 * std::max<std::uint64_t>(1, tiles)));
+  const std::uint64_t units = device.GetContext().GetNumberOfUnits();
+  return static_cast<std::size_t>(std::min<std::uint64_t>(
+    { most, 4 * units, 128, static_cast<std::uint64_t>(numberOfTetrahedra) }));
+}
+
+std::uint64_t CountPlaceBytes(std::size_t ranges, std::uint64_t tiles)
+{
+  return 2 * ranges * tiles * sizeof(cl_uint);
+}
+
+} // namespace
+
+std::uint64_t RangeLists::Count(WorkDevice& device, const cl::Buffer& tetrahedra,
+  const cl::Buffer& positions, const RasterParameters& p, ListBuffers& buffers)
+{
+  const std::uint64_t tiles = CountTiles(p);
+  const std::size_t ranges = CountRanges(device, static_cast<std::size_t>(p.Tetrahedra), tiles);
+  ReserveLists(device, this->Places, CountPlaceBytes(ranges, tiles));
+  ReserveLists(device, buffers.Begins, (tiles + 1) * sizeof(cl_uint));
+  cl::Kernel count(GetRangeListsProgram(device.GetContext()), "CountTetrahedra");
+  count.setArg(0, tetrahedra);
+  count.setArg(1, positions);
+  count.setArg(2, buffers.Boxes);
+  count.setArg(3, buffers.Counters);
+  count.setArg(4, this->Places);
+  count.setArg(5, p);
+  device.GetContext().Launch(device.GetQueue(), count, cl::NDRange(ranges), cl::NDRange(1));
+  return this->FindPlaces(device, ranges, static_cast<std::size_t>(tiles), buffers);
+}
+
+std::uint64_t RangeLists::FindPlaces(
+  WorkDevice& device, std::size_t ranges, std::size_t tiles, const ListBuffers& buffers)
+{
+  // Sums over the ranges, tile by tile.
+  const std::size_t lists = 2 * ranges;
+  std::vector<cl_uint> begins(tiles + 1);
+  const cl::CommandQueue& queue = device.GetQueue();
+  cl_uint* places = static_cast<cl_uint*>(queue.enqueueMapBuffer(
+    this->Places, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, CountPlaceBytes(ranges, tiles)));
+  std::uint64_t place = 0;
+  for (std::size_t tile = 0; tile < tiles; ++tile)
+  {
+    begins[tile] = static_cast<cl_uint>(place);
+    for (std::size_t list = 0; list < lists; ++list)
+    {
+      cl_uint& entry = places[list * tiles + tile];
+      const cl_uint number = entry;
+      entry = static_cast<cl_uint>(place);
+      place += number;
+    }
+  }
+  begins[tiles] = static_cast<cl_uint>(place);
+  queue.enqueueUnmapMemObject(this->Places, places);
+  queue.enqueueWriteBuffer(
+    buffers.Begins, CL_TRUE, 0, begins.size() * sizeof(cl_uint), begins.data());
+  return place;
+}
+
+void RangeLists::Fill(WorkDevice& device, const RasterParameters& p, const ListBuffers& buffers)
+{
+  cl::Kernel list(GetRangeListsProgram(device.GetContext()), "ListTetrahedra");
+  list.setArg(0, buffers.Boxes);
+  list.setArg(1, this->Places);
+  list.setArg(2, buffers.Lists);
+  list.setArg(3, p);
+  const std::size_t ranges =
+    CountRanges(device, static_cast<std::size_t>(p.Tetrahedra), CountTiles(p));
+  device.GetContext().Launch(device.GetQueue(), list, cl::NDRange(ranges), cl::NDRange(1));
+}
+
+std::uint64_t RangeLists::GetMemory() const
+{
+  return deformvolume::GetMemory(this->Places);
+}
+
+std::uint64_t RangeLists::GetMemoryNeeded(
+  WorkDevice& device, std::size_t numberOfTetrahedra, std::uint64_t tiles)
+{
+  return CountPlaceBytes(CountRanges(device, numberOfTetrahedra, tiles), tiles);
+}
+
+} // namespace deformvolume

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The values at samples of groups of cells (GroupVertices.cl): how they are interpolated.
+//
+// What the host puts in front of this text:
+//   STORE_OTHER_ARRAYS   statements that store the arrays at a sample that are not LANE_ARRAYS; HAS_OTHER_ARRAYS
+//                        0 or 1
+
+#define LANE_RANGE_LOW_char -128.0f
+#define LANE_RANGE_HIGH_char 127.0f
+#define LANE_RANGE_LOW_uchar 0.0f
+#define LANE_RANGE_HIGH_uchar 255.0f
+#define LANE_RANGE_LOW_short -32768.0f
+#define LANE_RANGE_HIGH_short 32767.0f
+#define LANE_RANGE_LOW_ushort 0.0f
+#define LANE_RANGE_HIGH_ushort 65535.0f
+#define LANE_RANGE_LOW_float 0.0f
+#define LANE_RANGE_HIGH_float 0.0f
+#define LANE_CONVERT_32(TYPE, bits) as_float(bits)
+#define LANE_CONVERT_16(TYPE, bits) ((TYPE)(bits))
+#define LANE_CONVERT_8(TYPE, bits) ((TYPE)(bits))
+
+#if HAS_OTHER_ARRAYS
+// The weights and their sum, as of edge functions, of the origin in a tetrahedron of a cell with these vertices.
+// Coordinates are whole numbers of 1/256 voxel under 2^14, so that all numbers are under 2^47, and exact. (What
+// MakeEdgeFunctions and Evaluate are for larger cells, which doubles do not hold.)
+static __attribute__((always_inline)) void WeighOrigin(
+  const EXACT* x, const EXACT* y, const EXACT* z, int t, long* weights, long* volume)
+{
+  const int a = Tetrahedra[t][0], b = Tetrahedra[t][1], c = Tetrahedra[t][2], d = Tetrahedra[t][3];
+  const EXACT ux = x[b] - x[a], uy = y[b] - y[a], uz = z[b] - z[a];
+  const EXACT vx = x[c] - x[a], vy = y[c] - y[a], vz = z[c] - z[a];
+  const EXACT wx = x[d] - x[a], wy = y[d] - y[a], wz = z[d] - z[a];
+  // The normals of the faces opposite b, c and d.
+  const EXACT bx = vy * wz - vz * wy, by = vz * wx - vx * wz, bz = vx * wy - vy * wx;
+  const EXACT cx = wy * uz - wz * uy, cy = wz * ux - wx * uz, cz = wx * uy - wy * ux;
+  const EXACT dx = uy * vz - uz * vy, dy = uz * vx - ux * vz, dz = ux * vy - uy * vx;
+  const EXACT sum = ux * bx + uy * by + uz * bz;
+  const EXACT sign = sum < 0 ? -1 : 1;
+  weights[1] = (long)(-sign * (x[a] * bx + y[a] * by + z[a] * bz));
+  weights[2] = (long)(-sign * (x[a] * cx + y[a] * cy + z[a] * cz));
+  weights[3] = (long)(-sign * (x[a] * dx + y[a] * dy + z[a] * dz));
+  *volume = (long)(sign * sum);
+  weights[0] = *volume - weights[1] - weights[2] - weights[3];
+}
+
+// A sample that is in a cell, for the arrays that want its weights as they are: which of the cell's
+// tetrahedra holds it is found out again, in whole numbers.
+static SELDOM void StoreOtherArrays(
+  const Group* group, int lane, uint place, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const uint width = p->OutputSize[0];
+  const uint plane = width * p->OutputSize[1];
+  const uint sampleZ = place / plane;
+  const uint inPlane = place - sampleZ * plane;
+  const uint sampleY = inPlane / width;
+  const float sample[3] = { inPlane - sampleY * width, sampleY, sampleZ };
+  EXACT x[8], y[8], z[8]; // relative to the sample
+#pragma unroll
+  for (int v = 0; v < 8; ++v)
+  {
+    LocalRow vertex = PLACE_OF(group, v) + lane;
+    x[v] = (EXACT)((vertex[0] - sample[0]) * 256.0f);
+    y[v] = (EXACT)((vertex[HALF_ROW] - sample[1]) * 256.0f);
+    z[v] = (EXACT)((vertex[2 * HALF_ROW] - sample[2]) * 256.0f);
+  }
+  long weights[4];
+  long volume;
+  WeighOrigin(x, y, z, 4, weights, &volume);
+  int t = 4;
+  for (int k = 0; k < 4; ++k)
+  {
+    t = weights[k] < 0 ? CornerBehindFace[k] : t;
+  }
+  if (t != 4)
+  {
+    WeighOrigin(x, y, z, t, weights, &volume);
+  }
+  Sample made;
+  BeginSamples(&made, group->X + 2 * lane, group->Y, group->Z, t, volume, p);
+  PlaceSample(&made, weights, place);
+  const Sample* s = &made;
+  STORE_OTHER_ARRAYS
+}
+#endif
+
+// The weights of the cells' vertices at samples (GroupWeights.cl).
+typedef struct
+{
+  FLOATS T0, T3, T5, T6; // of the central tetrahedron, still to be multiplied by Scale
+  FLOATS U1, U2, U4, U7; // of the corners
+  FLOATS Scale;
+} SampleWeights;
+
+// The interpolated values v of an array, those of integers rounded: their bits are what LANE_CONVERT takes.
+#define INTERPOLATE_LANES(v, TYPE, BITS, SLOT)                                                     \
+  FLOATS v;                                                                                        \
+  {                                                                                                \
+    FLOATS inner = weights->T0 * VERTEX(0, 3 + SLOT);                                              \
+    inner = fma(weights->T3, VERTEX(3, 3 + SLOT), inner);                                          \
+    inner = fma(weights->T5, VERTEX(5, 3 + SLOT), inner);                                          \
+    inner = fma(weights->T6, VERTEX(6, 3 + SLOT), inner);                                          \
+    FLOATS outer = weights->U1 * VERTEX(1, 3 + SLOT);                                              \
+    outer = fma(weights->U2, VERTEX(2, 3 + SLOT), outer);                                          \
+    outer = fma(weights->U4, VERTEX(4, 3 + SLOT), outer);                                          \
+    outer = fma(weights->U7, VERTEX(7, 3 + SLOT), outer);                                          \
+    v = fma(inner, weights->Scale, outer);                                                         \
+    if (BITS != 32)                                                                                \
+    {                                                                                              \
+      v = Least(Most(v, LANE_RANGE_LOW_##TYPE), LANE_RANGE_HIGH_##TYPE) + ROUND_TO_INTEGER;        \
+    }                                                                                              \
+  }

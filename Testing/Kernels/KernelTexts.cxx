@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes the OpenCL programs that this library builds for a graphics card into a folder, each kind
+// of them once, for Testing/gpu-compilers.sh: whatever is built while volumes are deformed in the
+// ways that there are, on any device, which appears to be a graphics card.
+//
+// Usage: KernelTexts FOLDER (double | single) [texts]
+//   single   the card has no double precision
+//   texts    no kernel is run, which saves their compilation: those that depend on what others have
+//            found are written for few kinds of arrays only, and no launches are known
+//
+// The folder gets a file NAME.cl for each program, NAME.options, and the list kernels.txt with a
+// line for each kernel: the name of the program, that of the kernel, and of its launches the most
+// work-items of a group and the most bytes of local memory in arguments; 0 and 0 where it was
+// not launched.
+#include "ChainMailSubject.h"
+#include "FakeDriver.h"
+#include "LatticeBody.h"
+#include "MassSpringModel.h"
+#include "OpenCLContext.h"
+#include "RasterCase.h"
+#include "ResamplingProgram.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <numeric>
+#include <string>
+
+using namespace deformvolume;
+
+namespace
+{
+
+class Recorder
+{
+public:
+  explicit Recorder(const std::string& folder)
+    : Folder(folder)
+  {
+    FakeDriver& driver = FakeDriver::Get();
+    driver.OnBuild = [this](const std::string& text, const std::string& options,
+                       const std::string& kernels) { this->AddProgram(text, options, kernels); };
+    driver.OnLaunch = [this](const FakeDriver::Launch& launch)
+    {
+      Use& use = this->Kernels[{ this->Names.at(launch.Text), launch.Kernel }];
+      use.Items = std::max(use.Items, launch.Items);
+      use.LocalMemory = std::max(use.LocalMemory, launch.LocalMemory);
+    };
+  }
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// What programs are built for from now on; it becomes a part of their names.
+  void SetPurpose(const std::string& words) { this->Purpose = words; }
+
+  void WriteKernels() const
+  {
+    std::ofstream file(this->Folder + "/kernels.txt");
+    for (const auto& [kernel, use] : this->Kernels)
+    {
+      file << kernel.first << " " << kernel.second << " " << use.Items << " " << use.LocalMemory
+           << "\n";
+    }
+    if (!file.flush())
+    {
+      throw Error("Cannot write to the folder \"" + this->Folder + "\".");
+    }
+  }
+
+private:
+  struct Use
+  {
+    std::size_t Items = 0;
+    std::size_t LocalMemory = 0;
+  };
+
+  void AddProgram(const std::string& text, const std::string& options, const std::string& kernels)
+  {
+    std::string& name = this->Names[text];
+    if (!name.empty())
+    {
+      return;
+    }
+    // The last kernel of a text is its own; those before it may be those of other texts, too.
+    name = kernels.substr(kernels.rfind(';') + 1) + "-" + this->Purpose;
+    const int count = ++this->Counts[name];
+    name += count > 1 ? "-" + std::to_string(count) : "";
+    std::ofstream(this->Folder + "/" + name + ".cl") << text;
+    std::ofstream(this->Folder + "/" + name + ".options") << options << "\n";
+    for (std::size_t begin = 0; begin < kernels.size();)
+    {
+      const std::size_t end = std::min(kernels.find(';', begin), kernels.size());
+      this->Kernels[{ name, kernels.substr(begin, end - begin) }];
+      begin = end + 1;
+    }
+  }
+
+  std::string Folder;
+  std::string Purpose;
+  std::map<std::string, std::string> Names; // of the programs, by their text
+  std::map<std::string, int> Counts;        // of the programs with a name
+  std::map<std::pair<std::string, std::string>, Use> Kernels;
+};
+
+const std::array<double, 3> NoScale{ { 1, 1, 1 } };
+
+/// Folded in places, and with cells that are so large that they are put off.
+DeformerCase MakeFolded()
+{
+  const auto jitter = MakeJitter(3, 1.0);
+  return MakeCase({ { 0, 7, 0, 5, 0, 4 } }, NoScale,
+    [&jitter](const glm::dvec3& index)
+    { return index + (index == glm::dvec3(7, 5, 4) ? glm::dvec3(60) : jitter(index) - index); });
+}
+
+/// A whole output, and one of which a part is made anew.
+void Deform(VolumeDeformer& deformer, const DeformerCase& deformerCase,
+  const std::vector<VolumeArray>& arrays, Resampling method = Resampling::Exact)
+{
+  const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(deformerCase.Output));
+  std::vector<std::vector<char>> outputs;
+  DeformRequest request;
+  request.Method = method;
+  request.OutputExtent = deformerCase.Output;
+  for (const VolumeArray& array : arrays)
+  {
+    outputs.emplace_back(
+      voxels * static_cast<std::size_t>(array.Components) * GetElementSize(array.Type));
+    request.Outputs.push_back(outputs.back().data());
+  }
+  std::vector<signed char> coverage(voxels);
+  request.Coverage = coverage.data();
+  deformer.Deform(request);
+}
+
+/// Values for arrays of all kinds: their bits do not matter here.
+const std::vector<std::uint64_t> Values(100000);
+
+VolumeArray MakeArray(ElementType type, int components = 1, bool categorical = false)
+{
+  VolumeArray array;
+  array.Data = Values.data();
+  array.Type = type;
+  array.Components = components;
+  array.Categorical = categorical;
+  return array;
+}
+
+const std::vector<VolumeArray> OneArray{ MakeArray(ElementType::Int16) };
+
+void DeformEach(Recorder& recorder, const std::string& purpose, const DeformerCase& deformerCase)
+{
+  for (const auto& [route, name] : { std::make_pair(Route::Mesh, "links"),
+         std::make_pair(Route::Runs, "runs"), std::make_pair(Route::Field, "field") })
+  {
+    recorder.SetPurpose(name + purpose);
+    VolumeDeformer deformer;
+    Load(deformer, deformerCase, OneArray, route);
+    Deform(deformer, deformerCase, OneArray);
+    if (route != Route::Field)
+    {
+      // Two nodes lie in one place.
+      std::vector<std::int32_t> places(static_cast<std::size_t>(deformerCase.GetNumberOfVoxels()));
+      std::iota(places.begin(), places.end(), 0);
+      places.back() = 0;
+      deformer.SetNodePlaces(places.data());
+      Deform(deformer, deformerCase, OneArray);
+    }
+  }
+}
+
+void DeformArrays(Recorder& recorder, bool single)
+{
+  const DeformerCase folded = MakeFolded();
+  std::vector<std::pair<std::string, std::vector<VolumeArray>>> kinds{
+    { "uint8", { MakeArray(ElementType::UInt8) } },
+    { "float", { MakeArray(ElementType::Float32) } },
+    { "uint8x3", { MakeArray(ElementType::UInt8, 3) } },
+    { "labels16", { MakeArray(ElementType::UInt16, 1, true) } },
+    { "int16-labels8-floatx3",
+      { MakeArray(ElementType::Int16), MakeArray(ElementType::UInt8, 1, true),
+        MakeArray(ElementType::Float32, 3) } },
+  };
+  if (!single)
+  {
+    kinds.push_back({ "double", { MakeArray(ElementType::Float64) } });
+    kinds.push_back({ "int32", { MakeArray(ElementType::Int32) } });
+    kinds.push_back({ "int64", { MakeArray(ElementType::Int64) } });
+  }
+  for (const auto& [name, arrays] : kinds)
+  {
+    recorder.SetPurpose("links-" + name);
+    VolumeDeformer deformer;
+    Load(deformer, folded, arrays, Route::Mesh);
+    Deform(deformer, folded, arrays);
+  }
+}
+
+void DeformByDeviceVectors(Recorder& recorder, bool single)
+{
+  const DeformerCase folded = MakeFolded();
+  const auto vectors =
+    std::make_shared<DeviceVectors>("", static_cast<std::size_t>(folded.GetNumberOfVoxels()));
+  std::vector<float> displacements = folded.GetDisplacements();
+  vectors->Write(displacements.data());
+  DisplacementField field;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    field.Dimensions[axis] = static_cast<int>(GetSize(folded.VoxelGrid.VertexExtent, axis));
+  }
+  if (!single)
+  {
+    field.ToDisplacement = { { 0.5, 0, 0, 0, 1, 0, 0, 0, 1 } };
+  }
+  recorder.SetPurpose("vectors");
+  VolumeDeformer deformer;
+  Load(deformer, folded, OneArray, Route::Mesh);
+  deformer.SetNodeDisplacements(vectors, field.ToDisplacement);
+  Deform(deformer, folded, OneArray);
+  recorder.SetPurpose("fieldinplace-int16");
+  Load(deformer, folded, OneArray, Route::Field);
+  deformer.SetDisplacementField(field, vectors);
+  Deform(deformer, folded, OneArray);
+}
+
+void DeformCut(Recorder& recorder)
+{
+  DeformerCase cut = MakeFolded();
+  const auto voxels = static_cast<std::size_t>(cut.GetNumberOfVoxels());
+  for (std::size_t voxel = 0; voxel < voxels; ++voxel)
+  {
+    cut.CutDistances.push_back(voxel % 8 < 4 ? -1.0F : 1.0F);
+  }
+  cut.Crossed.assign(GetNumberOfCells(cut.VoxelGrid.VertexExtent), 31);
+  DeformEach(recorder, "-int16-cut", cut);
+}
+
+void Rasterize(Recorder& recorder, bool single)
+{
+  const RasterCase mesh = MakeRasterCase(
+    { { 0, 9, 0, 8, 0, 7 } }, 2, [](const glm::dvec3& index) { return index * 1.1; });
+  std::vector<std::pair<std::string, std::vector<VolumeArray>>> kinds{ { "int16", OneArray },
+    { "float-labels8",
+      { MakeArray(ElementType::Float32), MakeArray(ElementType::UInt8, 1, true) } } };
+  if (!single)
+  {
+    kinds.push_back({ "double", { MakeArray(ElementType::Float64) } });
+  }
+  for (const auto& [name, arrays] : kinds)
+  {
+    for (const Interpolation interpolation : { Interpolation::Linear, Interpolation::Cubic })
+    {
+      recorder.SetPurpose(name + (interpolation == Interpolation::Cubic ? "-cubic" : "-linear"));
+      VolumeDeformer deformer;
+      Load(deformer, mesh, arrays);
+      ::Rasterize(deformer, mesh, arrays, interpolation);
+      DisplacementField field;
+      field.Dimensions = { { 2, 2, 2 } };
+      const std::vector<float> vectors(24, 0.25F);
+      field.Vectors = vectors.data();
+      deformer.SetVoxelGrid(mesh.VoxelGrid, 16, false);
+      deformer.SetArrays(arrays);
+      deformer.SetInverseField(field);
+      ::Rasterize(deformer, mesh, arrays, interpolation);
+    }
+  }
+}
+
+void MoveBodies(Recorder& recorder)
+{
+  recorder.SetPurpose("chainmail");
+  const Extent extent{ { 0, 9, 0, 8, 0, 4 } };
+  chainMailTesting::Subject subject(extent);
+  subject.Model.SetMaterials({ { 0.5, 1.5, 0.5 } }, nullptr);
+  subject.Step({ chainMailTesting::MakeHandle({ { 4, 4, 2 } }, { { 5, 0, 0 } }) }, 2);
+  recorder.SetPurpose("massspring");
+  ElasticBody body = physicsTesting::MakeLatticeBody({ { 4, 3, 3 } }, glm::dvec3(2.5e-3));
+  physicsTesting::FixNodes(body, [](const glm::dvec3& point) { return point.x == 0.0; });
+  MassSpringModel model;
+  MassSpringRequest request;
+  request.Duration = 1e-3;
+  try
+  {
+    model.SetBody(body);
+    model.Advance(request);
+  }
+  catch (const Error&)
+  {
+    if (!FakeDriver::Get().SkipsLaunches) // else the forces of the springs are missing
+    {
+      throw;
+    }
+  }
+}
+
+/// For volumes of more than 2^30 cells, and what a volume may not have needed.
+void BuildOthers(Recorder& recorder)
+{
+  recorder.SetPurpose("links-int16-wide");
+  OpenCLContext& context = OpenCLContext::Get(FindDevice(""));
+  for (const ResamplingForm form : { ResamplingForm::Cells, ResamplingForm::LargeCells })
+  {
+    GetResamplingProgram(context, MappingForm::Links, OneArray, true, form);
+  }
+  for (const bool withCut : { false, true })
+  {
+    recorder.SetPurpose(withCut ? "links-int16-cut" : "links-int16");
+    GetResamplingProgram(
+      context, MappingForm::Links, OneArray, false, ResamplingForm::LargeCells, withCut);
+  }
+}
+
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  const std::string precision = argc >= 3 ? argv[2] : "";
+  const bool single = precision == "single";
+  const bool texts = argc == 4 && std::string(argv[3]) == "texts";
+  if ((!single && precision != "double") || argc != (texts ? 4 : 3))
+  {
+    std::fprintf(stderr, "usage: KernelTexts FOLDER (double | single) [texts]\n");
+    return 2;
+  }
+  FakeDriver::Get().SkipsLaunches = texts;
+  FakeDriver::Get().IsGraphics = true;
+  FakeDriver::Get().HasDouble = !single;
+  try
+  {
+    Recorder recorder(argv[1]);
+    DeformEach(recorder, "-int16", MakeFolded());
+    DeformArrays(recorder, single);
+    DeformByDeviceVectors(recorder, single);
+    DeformCut(recorder);
+    recorder.SetPurpose("int16");
+    {
+      const DeformerCase folded = MakeFolded();
+      VolumeDeformer deformer;
+      Load(deformer, folded, OneArray, Route::Mesh);
+      Deform(deformer, folded, OneArray, Resampling::Published);
+    }
+    Rasterize(recorder, single);
+    MoveBodies(recorder);
+    BuildOthers(recorder);
+    recorder.WriteKernels();
+  }
+  catch (const Error& error)
+  {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All tests of the resampler MeshRasterization on a device that appears to be a graphics card, with
+// memory of its own and groups of work-items.
+#include "DeviceNeeds.h"
+#include "FakeDriver.h"
+#include "Tetrahedron.h"
+#include "TetrahedronLists.h"
+#include "WorkDevice.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+using namespace deformvolume;
+
+namespace
+{
+
+// Before there is a context.
+const bool IsSet = []
+{
+  FakeDriver::Get().IsGraphics = true;
+  return true;
+}();
+
+} // namespace
+
+TEST(MeshRasterizationGraphics, TheDeviceIsAGraphicsCard)
+{
+  ASSERT_TRUE(IsSet);
+  EXPECT_FALSE(HasVectors());
+}
+
+// What is counted stays on the device: a length and two numbers come to the host, however many
+// tiles there are.
+TEST(MeshRasterizationGraphics, ListsStayOnTheDevice)
+{
+  const std::vector<cl_int> positions{ 0, 0, 0, 0, 256000, 0, 0, 0, 0, 256000, 0, 0, 0, 0, 256000,
+    0 };
+  const std::vector<Tetrahedron> tetrahedra(1000, Tetrahedron{ { 0, 1, 2, 3 } });
+  RasterParameters p = {};
+  p.Tetrahedra = static_cast<int>(tetrahedra.size());
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    p.OutputSize[axis] = 64;
+    p.TileCount[axis] = axis == 0 ? 2 : 8;
+  }
+  WorkDevice device;
+  const cl::Buffer nodes =
+    device.Send(positions.data(), positions.size() * sizeof(cl_int), cl::Buffer());
+  const cl::Buffer mesh =
+    device.Send(tetrahedra.data(), tetrahedra.size() * sizeof(Tetrahedron), cl::Buffer());
+  TetrahedronLists lists;
+  FakeDriver& driver = FakeDriver::Get();
+  driver.BytesRead = 0;
+  driver.BytesWritten = 0;
+  driver.LaunchesWithoutGroup = 0;
+  EXPECT_EQ(lists.Make(device, mesh, nodes, p), 0);
+  EXPECT_EQ(driver.BytesRead, 2 * sizeof(cl_uint) + sizeof(cl_ulong));
+  EXPECT_EQ(driver.BytesWritten, 2 * sizeof(cl_uint));
+  EXPECT_EQ(driver.LaunchesWithoutGroup, 0);
+  EXPECT_GE(lists.GetMemory(), 128U * 1000U * sizeof(cl_int));
+}

@@ -1,0 +1,335 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Compiles the OpenCL programs that this library builds for a graphics card with compilers for
+# graphics cards, of which none has to be there, and prints a table for each: registers, what is
+# spilled, and how many work-items run at once. Fails where a program does not compile.
+#
+# Usage: gpu-compilers.sh [--only PATTERN] [COMPILER]...
+#   nvidia    clang with libclc's builtins to PTX, and from there CUDA's ptxas
+#   amd       clang with ROCm's device libraries
+#   spirv     clang and llvm-spirv to SPIR-V, which spirv-val checks
+#   intel     Intel's compiler for graphics: ocloc, installed or in build/ocloc. There it is without
+#             a driver, which would be loaded beside others:
+#             mkdir -p build/ocloc && cd build/ocloc && apt-get download intel-opencl-icd libigc1 \
+#               libigdfcl1 libigdgmm12 libopencl-clang14 libllvmspirvlib14 &&
+#             for package in *.deb; do dpkg -x "$package" .; done
+#   oclgrind  no compiler: instructions of the resampling kernels for a small volume, counted
+# Default: all of them. What is not installed is skipped.
+# All but ptxas and ocloc come with bash Testing/packages.sh gpu-compilers.
+#   --only    programs whose name holds a pattern of grep -E, such as 'Resample-links'
+#
+# From the build of preset vtk; DEFORMVOLUME_BUILD: another build directory. All that is made is in
+# build/gpu-compilers. CUDA is looked for in CUDA_HOME, by default /usr/local/cuda.
+# shellcheck disable=SC2317 # functions are called by names that are put together
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+build=$(realpath "${DEFORMVOLUME_BUILD:-build/vtk}")
+output=$PWD/build/gpu-compilers
+cuda=${CUDA_HOME:-/usr/local/cuda}
+
+nvidia_targets="sm_70 sm_75 sm_80 sm_86 sm_90"
+# The oldest one, which all assemblers above take further.
+ptx_target=sm_70
+amd_targets="gfx906 gfx90a gfx1030"
+# The first two have double precision, the others have not.
+intel_targets="skl pvc tgllp dg2-g10"
+
+only=
+if [ "${1-}" = --only ]; then
+  only=$2
+  shift 2
+fi
+compilers=("$@")
+[ ${#compilers[@]} -gt 0 ] || compilers=(nvidia amd spirv intel oclgrind)
+for compiler in "${compilers[@]}"; do
+  case $compiler in
+    nvidia | amd | spirv | intel | oclgrind) ;;
+    *)
+      echo "gpu-compilers.sh: no compiler $compiler; there are: nvidia amd spirv intel oclgrind" >&2
+      exit 2
+      ;;
+  esac
+done
+[ -x "$build/bin/KernelTexts" ] || {
+  echo "Build first: cmake --preset vtk && cmake --build --preset vtk" >&2
+  exit 1
+}
+
+is_wanted()
+{
+  [[ " ${compilers[*]} " == *" $1 "* ]]
+}
+
+find_first() # of these that is a program
+{
+  local name
+  for name in "$@"; do
+    command -v "$name" && return
+  done
+  return 0
+}
+
+title()
+{
+  printf '\n## %s\n\n' "$*"
+}
+
+skip()
+{
+  title "$1"
+  echo "Skipped: there is no $2."
+}
+
+programs() # of the precisions named, as files
+{
+  local precision
+  for precision in "$@"; do
+    find "$output/texts/$precision" -name '*.cl'
+  done | grep -E -- "${only:-.}" | sort || true
+}
+
+# Takes files from its input. Each becomes the argument of a function, with the files to make
+# without their endings, and what else is given; as many at once as there are processors.
+for_each() # FUNCTION FOLDER [ARGUMENT]...
+{
+  mkdir -p "$2"
+  xargs -r -P "$(nproc)" -I{} bash -c 'make_one "$@"' make_one {} "$@"
+}
+
+# What a function prints stays in NAME.errors where it fails.
+make_one() # FILE FUNCTION FOLDER [ARGUMENT]...
+{
+  local file=$1 function=$2 base precision
+  precision=$(basename "$(dirname "$file")")
+  base=$3/$precision.$(basename "$file" .cl)
+  shift 3
+  rm -f "$base".*
+  if "$function" "$file" "$base" "$@" >"$base.printed" 2>&1; then
+    rm "$base.printed"
+  else
+    mv "$base.printed" "$base.errors"
+  fi
+}
+
+# Clang for a target, with the options that the program is built with; more follow.
+front() # FILE [OPTION]...
+{
+  local file=$1
+  shift
+  # The version is what drivers define. The atomic operations of 64 bits are those of all targets.
+  # shellcheck disable=SC2046 # a list of words
+  "$clang" -x cl $(cat "${file%.cl}.options") -D__OPENCL_VERSION__=120 -O3 \
+    -Xclang -cl-ext=+cl_khr_int64_base_atomics,+cl_khr_int64_extended_atomics "$@" "$file"
+}
+
+make_ptx()
+{
+  front "$1" -target nvptx64-nvidia-nvcl -Xclang -target-cpu -Xclang "$ptx_target" -S -o "$2.ptx" \
+    -Xclang -mlink-builtin-bitcode -Xclang "$output/builtins.bc" \
+    -Xclang -mlink-builtin-bitcode -Xclang "$libclc"
+}
+
+assemble_ptx() # the listing that the table is made of
+{
+  # ptxas has no OpenCL's functions: whatever stayed undefined fails here.
+  "$ptxas" -v -arch="$3" "$ptx/$(basename "$2").ptx" -o "$2.cubin" >"$2.listing" 2>&1 || {
+    cat "$2.listing"
+    return 1
+  }
+  mv "$2.listing" "$2.log"
+}
+
+make_amd()
+{
+  front "$1" -target amdgcn-amd-amdhsa -mcpu="$3" --rocm-device-lib-path="$rocm" -S -o "$2.s"
+}
+
+make_spirv()
+{
+  local environment=opencl1.2
+  # With what is an extension.
+  if grep -q cl_khr_int64_base_atomics "$1"; then
+    environment=spv1.0
+  fi
+  # The translator does not know all that an optimiser makes.
+  front "$1" -target spir64-unknown-unknown -O0 -emit-llvm -c -o "$2.bc" &&
+    "$llvm_spirv" --spirv-max-version=1.0 "$2.bc" -o "$2.spv" &&
+    spirv-val --target-env "$environment" "$2.spv"
+}
+
+make_intel()
+{
+  LD_LIBRARY_PATH=$ocloc_libraries "$ocloc" compile -file "$1" -device "$3" -options "$(cat "${1%.cl}.options")" \
+    -out_dir "$2.binaries" >"$2.listing" 2>&1 || {
+    cat "$2.listing"
+    return 1
+  }
+  rm -r "$2.binaries"
+  mv "$2.listing" "$2.log"
+}
+
+report_failures() # of a folder
+{
+  local errors count=0
+  for errors in "$1"/*.errors; do
+    [ -e "$errors" ] || continue
+    failed=1
+    count=$((count + 1))
+    if [ "$count" -gt 5 ]; then
+      printf '\nOthers do not compile either: %s/*.errors\n' "${1#"$PWD"/}"
+      return
+    fi
+    printf '\n%s does not compile:\n\n' "$(basename "$errors" .errors)"
+    # Without the places in files of this machine.
+    sed -n 's/^/    /; 1,12p' "$errors"
+  done
+}
+
+run_nvidia()
+{
+  local target targets=()
+  libclc=/usr/lib/clc/nvptx64--nvidiacl.bc
+  ptxas=$cuda/bin/ptxas
+  if [ -z "$clang" ] || [ ! -e "$libclc" ]; then
+    skip NVIDIA "clang-15 with libclc-15"
+    return
+  fi
+  ptx=$output/nvidia/ptx
+  export libclc ptxas ptx ptx_target output
+  "$clang" -x cl -cl-std=CL1.2 -target nvptx64-nvidia-nvcl -Xclang -target-cpu -Xclang "$ptx_target" \
+    -Xclang -cl-ext=+cl_khr_int64_base_atomics -O3 -emit-llvm -c -o "$output/builtins.bc" \
+    Testing/gpu-builtins.cl
+  programs double | for_each make_ptx "$ptx"
+  if [ ! -x "$ptxas" ]; then
+    skip NVIDIA "ptxas of CUDA: only PTX was made"
+  else
+    for target in $nvidia_targets; do
+      if "$ptxas" --help | grep "'$target'" >/dev/null; then
+        targets+=("$target")
+      fi
+    done
+    for target in "${targets[@]}"; do
+      programs double | for_each assemble_ptx "$output/nvidia/$target" "$target"
+    done
+    title "NVIDIA: $("$clang" --version | head -1), ptxas $("$ptxas" --version |
+      sed -n 's/.* V\([0-9.]*\)$/\1/p')"
+    /usr/bin/python3 Testing/gpu_tables.py "$output" nvidia "${targets[@]}"
+  fi
+  report_failures "$ptx"
+  for target in "${targets[@]}"; do
+    report_failures "$output/nvidia/$target"
+  done
+}
+
+run_amd()
+{
+  local target
+  rocm=$(find /usr/lib -maxdepth 4 -type d -path '*/amdgcn/bitcode' 2>/dev/null | head -1)
+  if [ -z "$clang" ] || [ -z "$rocm" ]; then
+    skip AMD "clang-15 with rocm-device-libs"
+    return
+  fi
+  export rocm
+  for target in $amd_targets; do
+    programs double | for_each make_amd "$output/amd/$target" "$target"
+  done
+  title "AMD: $("$clang" --version | head -1)"
+  # shellcheck disable=SC2086 # a list of words
+  /usr/bin/python3 Testing/gpu_tables.py "$output" amd $amd_targets
+  for target in $amd_targets; do
+    report_failures "$output/amd/$target"
+  done
+}
+
+run_spirv()
+{
+  local folder=$output/spirv all
+  llvm_spirv=$(find_first llvm-spirv-15)
+  if [ -z "$clang" ] || [ -z "$llvm_spirv" ] || [ -z "$(find_first spirv-val)" ]; then
+    skip SPIR-V "clang-15 with llvm-spirv-15 and spirv-tools"
+    return
+  fi
+  export llvm_spirv
+  programs double single | for_each make_spirv "$folder"
+  title "SPIR-V: $("$clang" --version | head -1)"
+  all=$(programs double single | wc -l)
+  echo "Of $all programs $((all - $(find "$folder" -name '*.errors' | wc -l))) become valid SPIR-V."
+  report_failures "$folder"
+}
+
+run_intel()
+{
+  local target
+  ocloc=$(find_first "$PWD/build/ocloc/usr/bin/ocloc" ocloc)
+  ocloc_libraries=
+  if [ -z "$ocloc" ]; then
+    skip Intel ocloc
+    return
+  fi
+  if [[ $ocloc == "$PWD"/* ]]; then
+    ocloc_libraries=$(dirname "$(find build/ocloc -name libocloc.so)")
+  fi
+  export ocloc ocloc_libraries
+  for target in $intel_targets; do
+    programs "$(intel_precision "$target")" | for_each make_intel "$output/intel/$target" "$target"
+  done
+  title "Intel: ocloc with IGC"
+  # shellcheck disable=SC2086 # a list of words
+  /usr/bin/python3 Testing/gpu_tables.py "$output" intel $intel_targets
+  for target in $intel_targets; do
+    report_failures "$output/intel/$target"
+  done
+}
+
+# Instructions of LLVM that a processor or a card has, too, as Oclgrind counts them.
+run_oclgrind()
+{
+  local icd=/usr/lib/oclgrind/liboclgrind-rt-icd.so shape folder=$output/oclgrind
+  if [ ! -e "$icd" ]; then
+    skip Oclgrind Oclgrind
+    return
+  fi
+  mkdir -p "$folder"
+  for shape in still moved jittered folded; do
+    # Oclgrind 21.10 does not know all that its own compiler puts into inlined functions.
+    # shellcheck disable=SC2046 # no word, or one
+    OCL_ICD_VENDORS=$icd OCLGRIND_INST_COUNTS=1 OCLGRIND_BUILD_OPTIONS=-fno-inline \
+      "$build/bin/FirstUpdate" $([ "$shape" = moved ] || echo "$shape") 16 oclgrind \
+      >"$folder/$shape.txt" 2>&1 || {
+      failed=1
+      cat "$folder/$shape.txt"
+    }
+  done
+  title "Oclgrind: 16 x 16 x 16 voxels of 16 bits, links"
+  /usr/bin/python3 Testing/gpu_tables.py "$output" oclgrind still moved jittered folded
+}
+
+intel_precision()
+{
+  case $1 in
+    skl | pvc) echo double ;;
+    *) echo single ;;
+  esac
+}
+
+# libclc, llvm-spirv and ROCm's libraries are of this version.
+clang=$(find_first clang-15)
+export clang
+export -f make_one front make_ptx assemble_ptx make_amd make_spirv make_intel
+
+export DEFORMVOLUME_CACHE_DIR=off POCL_CACHE_DIR=$output/kernel-cache
+rm -rf "$output/texts"
+for precision in double single; do
+  mkdir -p "$output/texts/$precision"
+  "$build/bin/KernelTexts" "$output/texts/$precision" "$precision"
+done
+
+failed=0
+for compiler in nvidia amd spirv intel oclgrind; do
+  if is_wanted $compiler; then
+    rm -rf "${output:?}/$compiler"
+    "run_$compiler"
+  fi
+done
+exit $failed
