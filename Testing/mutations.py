@@ -33,6 +33,7 @@ MEMORY = ("TestHostMemory", "*")
 LARGE = ("TestLargeCells", "-*Time*")
 FAULTS = ("TestFaults", "*")
 GRAPHICS = ("TestGraphicsDevice", "*")
+STAGED = ("TestStagedCopies", "Staged.*")
 CUTTING = ("TestCutting", "*")
 SMOOTH = ("TestSmoothCuts", "*")
 SPLIT = ("TestMeshSplit", "*")
@@ -91,7 +92,11 @@ MUTATIONS = {
     "launch-end": ("Kernels/Resampling/Resampling.cl", "z <= p.LayersEnd + 1", "z <= p.LayersEnd", [MEMORY]),
     "launch-begin": ("Kernels/Resampling/Resampling.cl", "z >= max(p.LayersBegin - 1, 0)", "z >= p.LayersBegin",
                      [MEMORY]),
-    "failed-read": ("Kernels/OpenCL/HostMemory.cxx", "if (error != CL_SUCCESS)", "if (false)", [FAULTS]),
+    "failed-read": ("Kernels/OpenCL/HostMemory.cxx", "error = error == CL_SUCCESS ? its : error;",
+                    "static_cast<void>(its);", [FAULTS]),
+    "staged-error": ("Kernels/OpenCL/StagedCopies.cxx", "    copy.Error = error;", "", [STAGED]),
+    "staged-plane": ("Kernels/OpenCL/StagedCopies.cxx", "size[2] > 1 || there.Origin[2] > 0 ? there.Plane : 0;",
+                     "size[2] > 1 ? there.Plane : 0;", [STAGED]),
     "memory-twice": ("Kernels/OpenCL/MemoryBudget.cxx", "std::min(all, system) : all;",
                      "std::min(all, system) : all + this->CountHeld();", [GRAPHICS]),
     "arrays-half-set": ("Kernels/Mapping/DeviceVolume.cxx",

@@ -163,26 +163,15 @@ void ChainMailState::ReadOutput(const std::vector<Extent>& changes)
   {
     if (!this->Device.GetContext().SharesHostMemory())
     {
-      BeginToRead(queue, output, output.getInfo<CL_MEM_SIZE>(), memory).wait();
+      BeginToRead(queue, output, output.getInfo<CL_MEM_SIZE>(), memory).Check();
     }
     return;
   }
-  const std::size_t row = static_cast<std::size_t>(this->Grid.Size[0]) * 3 * sizeof(float);
-  const std::size_t plane = row * static_cast<std::size_t>(this->Grid.Size[1]);
   const Extent& whole = this->Blocks.GetExtent();
   PendingReads reads;
   for (const Extent& box : changes)
   {
-    const cl::array<cl::size_type, 3> origin{ static_cast<std::size_t>(box[0] - whole[0]) * 3 *
-        sizeof(float),
-      static_cast<std::size_t>(box[2] - whole[2]), static_cast<std::size_t>(box[4] - whole[4]) };
-    const cl::array<cl::size_type, 3> size{ static_cast<std::size_t>(GetSize(box, 0)) * 3 *
-        sizeof(float),
-      static_cast<std::size_t>(GetSize(box, 1)), static_cast<std::size_t>(GetSize(box, 2)) };
-    cl::Event done;
-    queue.enqueueReadBufferRect(
-      output, CL_FALSE, origin, origin, size, row, plane, row, plane, memory, nullptr, &done);
-    reads.Add(done);
+    reads.Add(BeginToReadBox(queue, output, whole, box, 3 * sizeof(float), memory, whole));
   }
   reads.Check();
 }
@@ -298,10 +287,8 @@ void ChainMailState::ReadBlocks(
     {
       ++end;
     }
-    cl::Event done;
-    this->Device.GetQueue().enqueueReadBuffer(this->Displacements, CL_FALSE, list[begin] * bytes,
-      (end - begin) * bytes, values[begin].data(), nullptr, &done);
-    reads.Add(done);
+    reads.Add(BeginToReadRange(this->Device.GetQueue(), this->Displacements, list[begin] * bytes,
+      (end - begin) * bytes, values[begin].data()));
     begin = end;
   }
   reads.Check();

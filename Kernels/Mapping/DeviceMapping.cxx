@@ -182,8 +182,8 @@ void DeviceMapping::SetRuns(
     CheckAllocation(std::max(bytes[0], bytes[1]), this->AllocationLimit);
     Reserve(this->Context, chunk.Runs, bytes[0]);
     Reserve(this->Context, chunk.RowRanges, bytes[1]);
-    this->Queue.enqueueWriteBuffer(chunk.Runs, CL_TRUE, 0, bytes[0], runs.Runs.data() + *first);
-    this->Queue.enqueueWriteBuffer(chunk.RowRanges, CL_TRUE, 0, bytes[1], has.Rows.data());
+    Write(this->Queue, chunk.Runs, 0, bytes[0], runs.Runs.data() + *first);
+    Write(this->Queue, chunk.RowRanges, 0, bytes[1], has.Rows.data());
     this->Runs.push_back(std::move(has));
   }
   this->Records.Set(runs.Tetrahedra, order);
@@ -375,10 +375,9 @@ void DeviceMapping::UpdateRuns(VolumeChunk& chunk, ChunkRuns& has, const std::ve
         range[1] = static_cast<std::uint32_t>(has.End + added.size());
       });
   }
-  this->Queue.enqueueWriteBuffer(chunk.Runs, CL_TRUE, has.End * sizeof(VertexRun),
-    added.size() * sizeof(VertexRun), added.data());
-  this->Queue.enqueueWriteBuffer(
-    chunk.RowRanges, CL_TRUE, 0, has.Rows.size() * sizeof(std::uint32_t), has.Rows.data());
+  Write(this->Queue, chunk.Runs, has.End * sizeof(VertexRun), added.size() * sizeof(VertexRun),
+    added.data());
+  Write(this->Queue, chunk.RowRanges, 0, has.Rows.size() * sizeof(std::uint32_t), has.Rows.data());
   has.End += more;
 }
 

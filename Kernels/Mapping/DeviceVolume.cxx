@@ -115,8 +115,8 @@ cl::Buffer DeviceVolume::Send(const void* data, std::size_t bytesPerElement,
   }
   if (bytes > 0)
   {
-    this->Queue.enqueueWriteBuffer(
-      buffer, CL_FALSE, 0, bytes, static_cast<const char*>(data) + layerBytes * begin);
+    Write(this->Queue, buffer, 0, bytes,
+      static_cast<const char*>(data) + layerBytes * static_cast<std::uint64_t>(begin));
   }
   return buffer;
 }

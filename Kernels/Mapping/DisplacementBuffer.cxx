@@ -423,8 +423,8 @@ void DisplacementBuffer::Send(const float* displacements, std::size_t count,
   if (changed[0] < changed[1])
   {
     constexpr std::size_t bytes = 4 * sizeof(float);
-    queue.enqueueWriteBuffer(this->Buffer, CL_TRUE, changed[0] * bytes,
-      (changed[1] - changed[0]) * bytes, this->Copy.data() + 4 * changed[0]);
+    deformvolume::Write(queue, this->Buffer, changed[0] * bytes, (changed[1] - changed[0]) * bytes,
+      this->Copy.data() + 4 * changed[0]);
   }
 }
 

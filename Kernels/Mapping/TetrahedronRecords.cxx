@@ -98,12 +98,10 @@ void TetrahedronRecords::Set(const std::vector<RestTetrahedron>& tetrahedra, con
     this->WriteRest(i, tetrahedra[i], rest.data());
     owners[i] = MeshOrder::Get(order.Tetrahedra, tetrahedra[i].Tetrahedron);
   }
-  const QueueGuard guard(this->Queue);
   if (!tetrahedra.empty())
   {
-    this->Queue.enqueueWriteBuffer(this->Rest, CL_FALSE, 0, rest.size(), rest.data());
-    this->Queue.enqueueWriteBuffer(
-      this->Owners, CL_FALSE, 0, owners.size() * sizeof(std::int32_t), owners.data());
+    Write(this->Queue, this->Rest, 0, rest.size(), rest.data());
+    Write(this->Queue, this->Owners, 0, owners.size() * sizeof(std::int32_t), owners.data());
   }
   this->Count = tetrahedra.size();
 }

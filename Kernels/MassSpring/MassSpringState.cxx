@@ -106,14 +106,14 @@ cl::Buffer MassSpringState::Fill(const void* data, std::size_t bytes)
 
 void MassSpringState::Write(const cl::Buffer& buffer, const void* data, std::size_t bytes)
 {
-  this->Device.GetQueue().enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data);
+  deformvolume::Write(this->Device.GetQueue(), buffer, 0, bytes, data);
 }
 
 std::vector<float> MassSpringState::Read(const cl::Buffer& buffer)
 {
   std::vector<float> values(this->NumberOfNodes * 3);
-  this->Device.GetQueue().enqueueReadBuffer(
-    buffer, CL_TRUE, 0, values.size() * sizeof(float), values.data());
+  BeginToReadRange(this->Device.GetQueue(), buffer, 0, values.size() * sizeof(float), values.data())
+    .Check();
   return values;
 }
 

@@ -73,8 +73,8 @@ void DeviceVectors::Internals::Write(const float* vectors)
   }
   else
   {
-    this->Device.GetQueue().enqueueWriteBuffer(
-      this->Buffer, CL_TRUE, 0, this->NumberOfPoints * VectorSize, vectors);
+    deformvolume::Write(
+      this->Device.GetQueue(), this->Buffer, 0, this->NumberOfPoints * VectorSize, vectors);
   }
   this->MarkAllWritten();
 }
@@ -106,8 +106,17 @@ void DeviceVectors::Internals::Write(const float* vectors, const PointRanges& wr
   const QueueGuard guard(this->Device.GetQueue());
   for (const auto& range : ranges)
   {
-    this->Device.GetQueue().enqueueWriteBuffer(this->Buffer, CL_FALSE, range[0] * VectorSize,
-      (range[1] - range[0]) * VectorSize, vectors + 3 * range[0]);
+    const std::uint64_t bytes = (range[1] - range[0]) * VectorSize;
+    if (bytes >= StagedCopies::LeastBytes)
+    {
+      deformvolume::Write(this->Device.GetQueue(), this->Buffer, range[0] * VectorSize, bytes,
+        vectors + 3 * range[0]);
+    }
+    else
+    {
+      this->Device.GetQueue().enqueueWriteBuffer(
+        this->Buffer, CL_FALSE, range[0] * VectorSize, bytes, vectors + 3 * range[0]);
+    }
   }
 }
 
@@ -124,10 +133,8 @@ const float* DeviceVectors::Internals::Read()
   for (const auto& range :
     changes ? Join(*changes) : PointRanges{ { { 0, this->NumberOfPoints } } })
   {
-    cl::Event done;
-    this->Device.GetQueue().enqueueReadBuffer(this->Buffer, CL_FALSE, range[0] * VectorSize,
-      (range[1] - range[0]) * VectorSize, this->Host.data() + 3 * range[0], nullptr, &done);
-    reads.Add(done);
+    reads.Add(BeginToReadRange(this->Device.GetQueue(), this->Buffer, range[0] * VectorSize,
+      (range[1] - range[0]) * VectorSize, this->Host.data() + 3 * range[0]));
   }
   reads.Check();
   this->HostRevision = this->Log.GetRevision();

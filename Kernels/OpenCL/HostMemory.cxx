@@ -5,6 +5,18 @@
 
 namespace deformvolume
 {
+namespace
+{
+
+/// Null: the copy is better left to the driver.
+StagedCopies* FindStagedCopies(const cl::CommandQueue& queue, std::uint64_t bytes)
+{
+  OpenCLContext* const context =
+    bytes >= StagedCopies::LeastBytes ? OpenCLContext::Find(queue) : nullptr;
+  return context ? context->GetStagedCopies() : nullptr;
+}
+
+} // namespace
 
 std::uint64_t GetMemory(const cl::Buffer& buffer)
 {
@@ -67,74 +79,114 @@ void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::
   }
 }
 
-cl::Event BeginToRead(
+PendingRead BeginToRead(
   const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t bytes, void* memory)
 {
+  if (!IsInPlace(buffer))
+  {
+    return BeginToReadRange(queue, buffer, 0, bytes, memory);
+  }
+  // What was written is sure to be in the host's memory only while it is mapped there.
   cl::Event done;
-  if (IsInPlace(buffer))
-  {
-    // What was written is sure to be in the host's memory only while it is mapped there.
-    void* mapped = queue.enqueueMapBuffer(buffer, CL_FALSE, CL_MAP_READ, 0, bytes);
-    queue.enqueueUnmapMemObject(buffer, mapped, nullptr, &done);
-  }
-  else
-  {
-    queue.enqueueReadBuffer(buffer, CL_FALSE, 0, bytes, memory, nullptr, &done);
-  }
-  return done;
+  void* mapped = queue.enqueueMapBuffer(buffer, CL_FALSE, CL_MAP_READ, 0, bytes);
+  queue.enqueueUnmapMemObject(buffer, mapped, nullptr, &done);
+  return PendingRead(done);
 }
 
-cl::Event BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+PendingRead BeginToReadRange(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  std::uint64_t offset, std::uint64_t bytes, void* memory)
+{
+  if (StagedCopies* const staged = FindStagedCopies(queue, bytes))
+  {
+    return PendingRead(
+      *staged, staged->BeginToRead(queue, buffer, CopiedBox::MakeRange(offset, bytes), memory));
+  }
+  cl::Event done;
+  queue.enqueueReadBuffer(buffer, CL_FALSE, offset, bytes, memory, nullptr, &done);
+  return PendingRead(done);
+}
+
+PendingRead BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   const Extent& whole, const Extent& part, std::size_t bytes, void* memory, const Extent& held)
 {
-  using Bytes = cl::array<cl::size_type, 3>;
-  const auto findOrigin = [&](const Extent& extent)
+  const auto place = [&](const Extent& extent)
   {
-    Bytes origin;
+    const std::size_t row = bytes * static_cast<std::size_t>(GetSize(extent, 0));
+    CopiedBox::Place result{ {}, row, row * static_cast<std::size_t>(GetSize(extent, 1)) };
     for (int axis = 0; axis < 3; ++axis)
     {
-      origin[axis] =
+      result.Origin[axis] =
         (axis == 0 ? bytes : 1) * static_cast<std::size_t>(part[2 * axis] - extent[2 * axis]);
     }
-    return origin;
+    return result;
   };
-  const auto count = [](const Extent& extent, int axis)
-  { return static_cast<std::size_t>(GetSize(extent, axis)); };
-  const Bytes region{ { bytes * count(part, 0), count(part, 1), count(part, 2) } };
-  const std::size_t row = bytes * count(whole, 0);
-  const std::size_t heldRow = bytes * count(held, 0);
+  const auto size = [&](int axis) { return static_cast<std::size_t>(GetSize(part, axis)); };
+  const CopiedBox box{ { { bytes * size(0), size(1), size(2) } }, place(whole), place(held) };
+  if (StagedCopies* const staged = FindStagedCopies(queue, box.GetBytes()))
+  {
+    return PendingRead(*staged, staged->BeginToRead(queue, buffer, box, memory));
+  }
   cl::Event done;
-  queue.enqueueReadBufferRect(buffer, CL_FALSE, findOrigin(whole), findOrigin(held), region, row,
-    row * count(whole, 1), heldRow, heldRow * count(held, 1), memory, nullptr, &done);
-  return done;
+  queue.enqueueReadBufferRect(buffer, CL_FALSE, box.OnDevice.Origin, box.OnHost.Origin, box.Size,
+    box.OnDevice.Row, box.OnDevice.Plane, box.OnHost.Row, box.OnHost.Plane, memory, nullptr, &done);
+  return PendingRead(done);
+}
+
+void Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t offset,
+  std::uint64_t bytes, const void* data)
+{
+  StagedCopies* const staged = FindStagedCopies(queue, bytes);
+  if (!staged)
+  {
+    queue.enqueueWriteBuffer(buffer, CL_TRUE, offset, bytes, data);
+    return;
+  }
+  const cl_int error = staged->Write(queue, buffer, CopiedBox::MakeRange(offset, bytes), data);
+  if (error != CL_SUCCESS)
+  {
+    throw cl::Error(error, "copying to the device");
+  }
+}
+
+cl_int WaitFor(cl_event event) noexcept
+{
+  const cl_int error = clWaitForEvents(1, &event);
+  cl_int status = CL_COMPLETE;
+  clGetEventInfo(event, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof(status), &status, nullptr);
+  return status < 0 ? status : error;
+}
+
+void PendingRead::Check()
+{
+  const cl_int error = this->Wait();
+  if (error != CL_SUCCESS)
+  {
+    throw cl::Error(error, "copying from the device");
+  }
+}
+
+cl_int PendingRead::Wait() noexcept
+{
+  if (this->Copy)
+  {
+    return this->Copies->Wait(*std::exchange(this->Copy, nullptr));
+  }
+  return this->Event() ? WaitFor(std::exchange(this->Event, cl::Event())()) : CL_SUCCESS;
 }
 
 void PendingReads::Check()
 {
   cl_int error = CL_SUCCESS;
-  for (const cl::Event& event : this->Events)
+  for (PendingRead& read : this->Reads)
   {
-    const cl_event waited = event();
-    clWaitForEvents(1, &waited);
-    cl_int status = CL_COMPLETE;
-    clGetEventInfo(waited, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof(status), &status, nullptr);
-    error = status < 0 && error == CL_SUCCESS ? status : error;
+    const cl_int its = read.Wait();
+    error = error == CL_SUCCESS ? its : error;
   }
-  this->Events.clear();
+  this->Reads.clear();
   if (error != CL_SUCCESS)
   {
     throw cl::Error(error, "copying the output from the device");
   }
-}
-
-void PendingReads::Wait()
-{
-  for (const cl::Event& event : this->Events)
-  {
-    const cl_event waited = event();
-    clWaitForEvents(1, &waited);
-  }
-  this->Events.clear();
 }
 
 bool IsInPlace(const cl::Buffer& buffer)

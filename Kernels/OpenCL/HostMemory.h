@@ -4,9 +4,12 @@
 
 #include "Extent.h"
 #include "OpenCLContext.h"
+#include "StagedCopies.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace deformvolume
@@ -54,44 +57,86 @@ void CheckAllocation(std::uint64_t bytes, std::uint64_t limit);
 /// Makes a buffer of the device of so many bytes, where it is not one.
 void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t bytes);
 
+/// Waits for a command. Returns OpenCL's error, or CL_SUCCESS.
+cl_int WaitFor(cl_event event) noexcept;
+
+/// A copy to memory of the caller that is under way. It ends before the object does.
+class PendingRead
+{
+public:
+  explicit PendingRead(const cl::Event& event)
+    : Event(event)
+  {
+  }
+  PendingRead(StagedCopies& copies, std::shared_ptr<StagedCopies::Copy> copy)
+    : Copies(&copies)
+    , Copy(std::move(copy))
+  {
+  }
+  ~PendingRead() { this->Wait(); }
+  PendingRead(const PendingRead&) = delete;
+  PendingRead& operator=(const PendingRead&) = delete;
+  PendingRead(PendingRead&&) noexcept = default;
+  PendingRead& operator=(PendingRead&&) = delete;
+
+  /// Waits. Throws cl::Error where it has failed: what it was to copy is not there.
+  void Check();
+  /// The same where that does not matter any more. Returns OpenCL's error, or CL_SUCCESS.
+  cl_int Wait() noexcept;
+
+private:
+  cl::Event Event;
+  StagedCopies* Copies = nullptr;
+  std::shared_ptr<StagedCopies::Copy> Copy;
+};
+
 /// A buffer for an output: over the memory of the host where it goes, if the device can work there,
 /// else one of the device. Then BeginToRead brings it there, or what the device has not yet written
-/// of it; the event tells that it is there.
+/// of it. Nothing may write to the buffer until that has ended.
 void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::size_t elementSize,
   std::uint64_t bytes);
-cl::Event BeginToRead(
+PendingRead BeginToRead(
   const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t bytes, void* memory);
 
-/// The same for a part of a buffer that is not over the memory of the host. bytes: of a voxel;
-/// whole: the voxels that are in the buffer; held: those that there is room for in the memory.
-cl::Event BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+///@{
+/// The same for a part of a buffer that is not over the memory of the host: of some bytes from an
+/// offset on, or of a box. bytes: of a voxel; whole: the voxels that are in the buffer; held: those
+/// that there is room for in the memory.
+PendingRead BeginToReadRange(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  std::uint64_t offset, std::uint64_t bytes, void* memory);
+PendingRead BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   const Extent& whole, const Extent& part, std::size_t bytes, void* memory, const Extent& held);
+///@}
+
+/// Copies to a buffer from an offset on, after all that is in the queue, and returns when that is
+/// done.
+void Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t offset,
+  std::uint64_t bytes, const void* data);
 
 /// Copies to memory of the caller that are under way.
 class PendingReads
 {
 public:
   PendingReads() = default;
-  ~PendingReads() { this->Wait(); }
   PendingReads(const PendingReads&) = delete;
   PendingReads& operator=(const PendingReads&) = delete;
   PendingReads(PendingReads&&) = default;
   PendingReads& operator=(PendingReads&& other) noexcept
   {
     this->Wait();
-    this->Events = std::move(other.Events);
+    this->Reads = std::move(other.Reads);
     return *this;
   }
 
-  void Add(const cl::Event& event) { this->Events.push_back(event); }
+  void Add(PendingRead read) { this->Reads.push_back(std::move(read)); }
   /// Waits for all of them, and forgets them. Throws cl::Error where one has failed: what it was to
   /// copy is not there.
   void Check();
   /// The same where that does not matter any more. Throws nothing.
-  void Wait();
+  void Wait() { this->Reads.clear(); }
 
 private:
-  std::vector<cl::Event> Events;
+  std::vector<PendingRead> Reads;
 };
 
 /// Waits for a queue, however a scope is left: before memory of the caller, or buffers that are

@@ -7,6 +7,7 @@
 #include "Error.h"
 #include "KernelCache.h"
 #include "ProgramCache.h"
+#include "StagedCopies.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -177,6 +178,18 @@ std::string ListNames(const std::vector<OpenCLDevice>& devices)
   return list;
 }
 
+struct ContextList
+{
+  std::mutex Mutex;
+  std::map<cl_device_id, OpenCLContext*> Contexts;
+};
+
+ContextList& GetContexts()
+{
+  static auto* const list = new ContextList; // lives as long as the process
+  return *list;
+}
+
 } // namespace
 
 std::vector<OpenCLDevice> FindDevices()
@@ -233,15 +246,25 @@ OpenCLDevice FindDevice(const std::string& request)
 
 OpenCLContext& OpenCLContext::Get(const OpenCLDevice& device)
 {
-  static std::mutex mutex;
-  static auto* contexts = new std::map<cl_device_id, OpenCLContext*>;
-  const std::lock_guard<std::mutex> lock(mutex);
-  OpenCLContext*& context = (*contexts)[device.Device()];
+  ContextList& list = GetContexts();
+  const std::lock_guard<std::mutex> lock(list.Mutex);
+  OpenCLContext*& context = list.Contexts[device.Device()];
   if (!context)
   {
     context = new OpenCLContext(device);
   }
   return *context;
+}
+
+OpenCLContext* OpenCLContext::Find(const cl::CommandQueue& queue)
+{
+  ContextList& list = GetContexts();
+  const std::lock_guard<std::mutex> lock(list.Mutex);
+  const auto found = list.Contexts.find(queue.getInfo<CL_QUEUE_DEVICE>()());
+  return found != list.Contexts.end() && found->second &&
+      found->second->Context() == queue.getInfo<CL_QUEUE_CONTEXT>()()
+    ? found->second
+    : nullptr;
 }
 
 OpenCLContext::OpenCLContext(const OpenCLDevice& device)
@@ -265,6 +288,20 @@ bool OpenCLContext::HasExtension(const std::string& name) const
 bool OpenCLContext::SharesHostMemory() const
 {
   return IsPoCL(this->Device);
+}
+
+StagedCopies* OpenCLContext::GetStagedCopies()
+{
+  if (this->Device.IsProcessor || this->Device.Description.SharesMemory)
+  {
+    return nullptr; // there is no bus
+  }
+  const std::lock_guard<std::mutex> lock(this->StagingMutex);
+  if (!this->Staging)
+  {
+    this->Staging = StagedCopies::Make(this->Context, this->Device.Device);
+  }
+  return this->Staging.get();
 }
 
 cl::Program OpenCLContext::GetProgram(const ProgramText& source, const std::string& options)

@@ -13,6 +13,7 @@
 #include <cfenv>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
@@ -21,6 +22,8 @@
 
 namespace deformvolume
 {
+
+class StagedCopies;
 
 struct OpenCLDevice
 {
@@ -46,6 +49,8 @@ class OpenCLContext
 public:
   /// The context of a device; made at the first request. Throws Error.
   static OpenCLContext& Get(const OpenCLDevice& device);
+  /// The one that a queue belongs to; null for queues of other contexts.
+  static OpenCLContext* Find(const cl::CommandQueue& queue);
 
   const OpenCLDevice& GetDevice() const { return this->Device; }
   const cl::Context& GetContext() const { return this->Context; }
@@ -54,6 +59,9 @@ public:
   /// Whether a buffer over memory of the host (CL_MEM_USE_HOST_PTR) is that memory, wherever it
   /// lies. Other drivers may keep a copy, which has to be told of what the host writes there.
   bool SharesHostMemory() const;
+  /// How large copies reach a device with memory of its own, which is behind a bus; null where it
+  /// shares that of the host, or the driver gives no page-locked memory.
+  StagedCopies* GetStagedCopies();
 
   /// The program of this text and these options; built at the first request, or made of what an
   /// earlier process has built (ProgramCache). Throws Error with the compiler's log.
@@ -85,6 +93,8 @@ private:
   std::map<std::pair<std::string, ProgramText>, cl::Program> Requested; // by options and text
   std::map<std::string, cl::Program> Programs;
   std::set<std::pair<cl_program, std::string>> Launched;
+  std::mutex StagingMutex; // of its own: compilation takes long
+  std::unique_ptr<StagedCopies> Staging;
 };
 
 /// What an error of the OpenCL layer means to the user.

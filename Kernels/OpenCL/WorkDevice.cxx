@@ -66,7 +66,7 @@ cl::Buffer WorkDevice::Send(const void* data, std::size_t bytes, const cl::Buffe
   {
     buffer = cl::Buffer(this->GetContext().GetContext(), CL_MEM_READ_ONLY, bytes);
   }
-  this->GetQueue().enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data);
+  Write(this->GetQueue(), buffer, 0, bytes, data);
   return buffer;
 }
 

@@ -122,7 +122,7 @@ bool IncrementalOutput::IsChangeInside() const
     return this->Changes.IsInside(mapped.Get(), all);
   }
   std::vector<unsigned char> read(static_cast<std::size_t>(GetNumberOfPoints(moved)));
-  BeginToReadBox(queue, state, all, moved, 1, read.data(), moved).wait();
+  BeginToReadBox(queue, state, all, moved, 1, read.data(), moved).Check();
   return this->Changes.IsInside(read.data(), moved);
 }
 

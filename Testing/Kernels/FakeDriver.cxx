@@ -5,11 +5,13 @@
 #include <CL/cl.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <dlfcn.h>
 #include <map>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 FakeDriver& FakeDriver::Get()
@@ -55,6 +57,34 @@ struct Range
 
 std::mutex Mutex;
 std::map<cl_mem, Range> Ranges;
+const std::thread::id FirstThread = std::this_thread::get_id();
+
+bool IsPinned(cl_mem buffer)
+{
+  cl_mem_flags flags = 0;
+  clGetMemObjectInfo(buffer, CL_MEM_FLAGS, sizeof(flags), &flags, nullptr);
+  return flags & CL_MEM_ALLOC_HOST_PTR;
+}
+
+/// Whether a copy that the host does not wait for fails; then error is what the call returns.
+bool Fails(int asked, Counter<int>& before, cl_command_queue queue, cl_event* done, cl_int& error)
+{
+  if (!asked || !done || before-- > 0)
+  {
+    return false;
+  }
+  if (FakeDriver::Get().FailsAtOnce)
+  {
+    error = asked;
+    return true;
+  }
+  cl_context context = nullptr;
+  clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof(context), &context, nullptr);
+  *done = clCreateUserEvent(context, nullptr);
+  error = clSetUserEventStatus(*done, asked);
+  return true;
+}
+
 /// Bytes of local memory that arguments of kernels ask for.
 std::map<cl_kernel, std::map<cl_uint, std::size_t>> LocalMemory;
 
@@ -101,6 +131,14 @@ extern "C" cl_mem CL_API_CALL clCreateBuffer(
 {
   static auto* const real = Find<decltype(clCreateBuffer)>("clCreateBuffer");
   FakeDriver::Get().BytesWritten += flags & CL_MEM_COPY_HOST_PTR ? size : 0;
+  if (flags & CL_MEM_ALLOC_HOST_PTR && FakeDriver::Get().RefusesPinned)
+  {
+    if (error)
+    {
+      *error = CL_MEM_OBJECT_ALLOCATION_FAILURE;
+    }
+    return nullptr;
+  }
   if (FakeDriver::Get().SkipsLaunches && !memory)
   {
     const std::vector<char> zeros(size);
@@ -221,9 +259,14 @@ extern "C" cl_int CL_API_CALL clGetDeviceInfo(
   static auto* const real = Find<decltype(clGetDeviceInfo)>("clGetDeviceInfo");
   const FakeDriver& driver = FakeDriver::Get();
   const cl_device_type graphics = CL_DEVICE_TYPE_GPU;
+  const cl_bool isUnified = CL_FALSE;
   if (what == CL_DEVICE_TYPE && driver.IsGraphics)
   {
     return Give(&graphics, sizeof(graphics), room, place, needed);
+  }
+  if (what == CL_DEVICE_HOST_UNIFIED_MEMORY && driver.IsGraphics)
+  {
+    return Give(&isUnified, sizeof(isUnified), room, place, needed);
   }
   if (what == CL_DEVICE_GLOBAL_MEM_SIZE && driver.GlobalMemory)
   {
@@ -255,16 +298,13 @@ extern "C" cl_int CL_API_CALL clEnqueueReadBuffer(cl_command_queue queue, cl_mem
   const cl_event* events, cl_event* done)
 {
   static auto* const real = Find<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer");
-  const int error = FakeDriver::Get().ReadError;
-  FakeDriver::Get().BytesRead += size;
-  if (!error || blocking || !done)
-  {
-    return real(queue, buffer, blocking, offset, size, memory, number, events, done);
-  }
-  cl_context context = nullptr;
-  clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof(context), &context, nullptr);
-  *done = clCreateUserEvent(context, nullptr);
-  return clSetUserEventStatus(*done, error);
+  FakeDriver& driver = FakeDriver::Get();
+  driver.BytesRead += size;
+  ++driver.Reads;
+  cl_int error = CL_SUCCESS;
+  return !blocking && Fails(driver.ReadError, driver.ReadsBeforeError, queue, done, error)
+    ? error
+    : real(queue, buffer, blocking, offset, size, memory, number, events, done);
 }
 
 extern "C" cl_int CL_API_CALL clEnqueueReadBufferRect(cl_command_queue queue, cl_mem buffer,
@@ -273,17 +313,14 @@ extern "C" cl_int CL_API_CALL clEnqueueReadBufferRect(cl_command_queue queue, cl
   std::size_t hostSlice, void* memory, cl_uint number, const cl_event* events, cl_event* done)
 {
   static auto* const real = Find<decltype(clEnqueueReadBufferRect)>("clEnqueueReadBufferRect");
-  const int error = FakeDriver::Get().ReadError;
-  FakeDriver::Get().BytesRead += region[0] * region[1] * region[2];
-  if (!error || blocking || !done)
-  {
-    return real(queue, buffer, blocking, origin, hostOrigin, region, row, slice, hostRow, hostSlice,
-      memory, number, events, done);
-  }
-  cl_context context = nullptr;
-  clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof(context), &context, nullptr);
-  *done = clCreateUserEvent(context, nullptr);
-  return clSetUserEventStatus(*done, error);
+  FakeDriver& driver = FakeDriver::Get();
+  driver.BytesRead += region[0] * region[1] * region[2];
+  ++driver.Reads;
+  cl_int error = CL_SUCCESS;
+  return !blocking && Fails(driver.ReadError, driver.ReadsBeforeError, queue, done, error)
+    ? error
+    : real(queue, buffer, blocking, origin, hostOrigin, region, row, slice, hostRow, hostSlice,
+        memory, number, events, done);
 }
 
 extern "C" cl_int CL_API_CALL clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer,
@@ -291,8 +328,24 @@ extern "C" cl_int CL_API_CALL clEnqueueWriteBuffer(cl_command_queue queue, cl_me
   const cl_event* events, cl_event* done)
 {
   static auto* const real = Find<decltype(clEnqueueWriteBuffer)>("clEnqueueWriteBuffer");
-  FakeDriver::Get().BytesWritten += size;
-  return real(queue, buffer, blocking, offset, size, memory, number, events, done);
+  FakeDriver& driver = FakeDriver::Get();
+  driver.BytesWritten += size;
+  ++driver.Writes;
+  cl_int error = CL_SUCCESS;
+  return !blocking && Fails(driver.WriteError, driver.WritesBeforeError, queue, done, error)
+    ? error
+    : real(queue, buffer, blocking, offset, size, memory, number, events, done);
+}
+
+extern "C" cl_int CL_API_CALL clWaitForEvents(cl_uint number, const cl_event* events)
+{
+  static auto* const real = Find<decltype(clWaitForEvents)>("clWaitForEvents");
+  const int delay = FakeDriver::Get().Delay;
+  if (delay && std::this_thread::get_id() != FirstThread)
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(delay));
+  }
+  return real(number, events);
 }
 
 extern "C" void* CL_API_CALL clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer,
@@ -300,8 +353,11 @@ extern "C" void* CL_API_CALL clEnqueueMapBuffer(cl_command_queue queue, cl_mem b
   const cl_event* events, cl_event* done, cl_int* error)
 {
   static auto* const real = Find<decltype(clEnqueueMapBuffer)>("clEnqueueMapBuffer");
-  FakeDriver::Get().BytesRead += access & CL_MAP_READ ? size : 0;
-  FakeDriver::Get().BytesWritten += access & ~cl_map_flags{ CL_MAP_READ } ? size : 0;
+  if (!IsPinned(buffer))
+  {
+    FakeDriver::Get().BytesRead += access & CL_MAP_READ ? size : 0;
+    FakeDriver::Get().BytesWritten += access & ~cl_map_flags{ CL_MAP_READ } ? size : 0;
+  }
   return real(queue, buffer, blocking, access, offset, size, number, events, done, error);
 }
 

@@ -5,10 +5,38 @@
 #ifndef FakeDriver_h
 #define FakeDriver_h
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
+
+/// A number that several threads count.
+template <typename T>
+class Counter
+{
+public:
+  Counter(T value = 0)
+    : Value(value)
+  {
+  }
+  Counter(const Counter& other)
+    : Value(T(other))
+  {
+  }
+  Counter& operator=(const Counter& other)
+  {
+    this->Value = T(other);
+    return *this;
+  }
+  operator T() const { return this->Value; }
+  T operator+=(T more) { return this->Value += more; }
+  T operator++() { return ++this->Value; }
+  T operator--(int) { return this->Value--; }
+
+private:
+  std::atomic<T> Value;
+};
 
 struct FakeDriver
 {
@@ -21,10 +49,20 @@ struct FakeDriver
     std::size_t LocalMemory = 0; // bytes of a group that arguments ask for
   };
 
-  /// Copies from the device that the host does not wait for fail, unless 0: with this error.
+  /// Copies from the device, and to it, that the host does not wait for fail, unless 0: with this
+  /// error. So many of them succeed before.
   int ReadError = 0;
-  /// The device is a graphics card, and has no double precision. Contexts live as long as the
-  /// process: these are set before the first one.
+  Counter<int> ReadsBeforeError;
+  int WriteError = 0;
+  Counter<int> WritesBeforeError;
+  /// Those that fail are not even enqueued.
+  bool FailsAtOnce = false;
+  /// There is no page-locked memory.
+  bool RefusesPinned = false;
+  /// Milliseconds that a wait for a command takes longer, in threads that are not the first one.
+  int Delay = 0;
+  /// The device is a graphics card with memory of its own, and has no double precision. Contexts
+  /// live as long as the process: these are set before the first one.
   bool IsGraphics = false;
   bool HasDouble = true;
   /// Bytes that the device has, 0: as it is.
@@ -36,7 +74,7 @@ struct FakeDriver
   /// Programs are compiled so that products are fused with sums wherever that is possible.
   bool FusesProducts = false;
   /// Launches of more than one work-item that left the size of the groups to the driver.
-  int LaunchesWithoutGroup = 0;
+  Counter<int> LaunchesWithoutGroup;
   /// Kernels are not run, and what they would have written stays as it was: 0 at first.
   bool SkipsLaunches = false;
   /// Called with each program that has been built from its text: the text, the options, and the
@@ -46,9 +84,13 @@ struct FakeDriver
   std::function<void(const Launch&)> OnLaunch;
 
   /// Bytes that calls of the host have brought from buffers and to them. A buffer that is mapped
-  /// counts as read and written as the access has it.
-  std::uint64_t BytesRead = 0;
-  std::uint64_t BytesWritten = 0;
+  /// counts as read and written as the access has it, unless it is page-locked: that one stays
+  /// mapped, and is a place of the host.
+  Counter<std::uint64_t> BytesRead;
+  Counter<std::uint64_t> BytesWritten;
+  /// Calls that have done so, those of buffers that are mapped left out.
+  Counter<int> Reads;
+  Counter<int> Writes;
 
   static FakeDriver& Get();
 };

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeCopiedBox_h
+#define DeformVolumeCopiedBox_h
+
+#include <array>
+#include <cstddef>
+
+namespace deformvolume
+{
+
+/// What is copied between a buffer of a device and memory of the host, in bytes: a box of rows, in
+/// planes, that lies in larger boxes on both sides.
+struct CopiedBox
+{
+  using Bytes = std::array<std::size_t, 3>; // bytes of a row, rows, planes
+  struct Place
+  {
+    Bytes Origin;      // of the box in the larger one
+    std::size_t Row;   // bytes from one row to the next
+    std::size_t Plane; // bytes from one plane to the next
+
+    std::size_t GetOffset(const Bytes& shift = {}) const
+    {
+      return this->Origin[0] + shift[0] + (this->Origin[1] + shift[1]) * this->Row +
+        (this->Origin[2] + shift[2]) * this->Plane;
+    }
+  };
+
+  Bytes Size;
+  Place OnDevice;
+  Place OnHost;
+
+  /// So many bytes that lie side by side. offset: in the buffer.
+  static CopiedBox MakeRange(std::size_t offset, std::size_t bytes)
+  {
+    return { { { bytes, 1, 1 } }, { { { offset, 0, 0 } }, bytes, bytes },
+      { { { 0, 0, 0 } }, bytes, bytes } };
+  }
+
+  std::size_t GetBytes() const { return this->Size[0] * this->Size[1] * this->Size[2]; }
+  bool IsRange() const { return this->Size[1] == 1 && this->Size[2] == 1; }
+
+  /// Rows that follow one another on both sides become one, and so do planes: fewer are copied
+  /// faster.
+  void Join()
+  {
+    for (int times = 0; times < 2; ++times)
+    {
+      const std::size_t row = this->Size[0];
+      const bool isWhole = (row == this->OnDevice.Row && row == this->OnHost.Row);
+      if (this->Size[1] > 1 && !isWhole)
+      {
+        return;
+      }
+      this->Size = { { row * this->Size[1], this->Size[2], 1 } };
+      for (Place* const place : { &this->OnDevice, &this->OnHost })
+      {
+        place->Origin = { { place->Origin[0] + place->Origin[1] * place->Row, place->Origin[2],
+          0 } };
+        place->Row = place->Plane;
+      }
+    }
+  }
+};
+
+} // namespace deformvolume
+
+#endif
