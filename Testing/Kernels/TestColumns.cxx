@@ -66,8 +66,8 @@ TEST(Columns, AtRest)
 
 TEST(Columns, MoreTiesThanTheListHolds)
 {
-  // Every vertex is a sample, and each of the 256 cells of a layer has several on its faces.
-  Check(MakeSheared({ { 0, 66, 0, 18, 0, 10 } }, 1.0, 1.0));
+  // Every vertex is a sample, and each of the 256 cells of a layer has more than four on its faces.
+  Check(MakeSheared({ { 0, 66, 0, 18, 0, 10 } }, 2.0, 1.0));
 }
 
 TEST(Columns, MoreCandidatesThanACellTakesAtOnce)
