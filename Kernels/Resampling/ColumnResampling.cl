@@ -120,20 +120,36 @@ static __attribute__((always_inline)) void StoreSample(const Group* group, int p
 #endif
 }
 
+// What a weight has to exceed for a sample to be inside. Boxes take all their candidates, whatever the second smallest
+// weight is, from which that is told.
+static float DecisiveWeight(const GroupCandidates* c, const GroupFrame* frame)
+{
+  return c->HasBoxes && c->Box ? -INFINITY : frame->Bound;
+}
+
+// A candidate by its number: where it is, its weights, and whether floats leave it undecided. Returns whether the cell
+// holds it, as far as they decide.
+static __attribute__((always_inline)) uint WeighCandidate(const GroupCandidates* c,
+  const GroupFrame* frame, const GroupScales* scales, int candidate, Walk* at,
+  SampleWeights* weights, uint* undecided, const KernelParameters* p)
+{
+  GoTo(c, frame, candidate, at, p);
+  WeighSamples(frame, scales, at->X, at->Y, at->Z, weights);
+  return DecideByFloats(weights, 1, DecisiveWeight(c, frame), frame->Bound, undecided);
+}
+
 // Whether a box beside what is missing has its samples on vertices decided by DecideOnVertices: where others are
 // undecided, too, integers decide all of them, as they do for groups (GroupResampling.cl).
 static int IsDecidedOnVertices(const GroupCandidates* c, const GroupFrame* frame,
-  const GroupScales* scales, float decisive, const KernelParameters* p)
+  const GroupScales* scales, const KernelParameters* p)
 {
   int decided = c->HasBeside && c->Beside;
   for (int i = 0; i < c->Number && decided && c->Extent < MAXIMUM_EXACT_EXTENT; ++i)
   {
     Walk at;
-    GoTo(c, frame, i, &at, p);
     SampleWeights weights;
-    WeighSamples(frame, scales, at.X, at.Y, at.Z, &weights);
     uint undecided;
-    DecideByFloats(&weights, 1, decisive, frame->Bound, &undecided);
+    WeighCandidate(c, frame, scales, i, &at, &weights, &undecided, p);
     decided = !undecided || IsOnVertex(frame, &at);
   }
   return decided;
@@ -147,10 +163,7 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Group* const group = &c->Cells;
-  // Boxes take all their candidates, whatever the second smallest weight is, from which it is told that a sample is
-  // inside.
   const int box = c->HasBoxes && c->Box;
-  const float decisive = box ? -INFINITY : frame->Bound;
   // Integers of 32 bits decide who owns a sample.
   const int isExact =
     c->Extent < MAXIMUM_EXACT_EXTENT && !DEFORMVOLUME_IS_CLOSED(p->Pass);
@@ -167,18 +180,16 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
   GoTo(c, frame, 0, &first, p);
   const int mayReachEnds = mesh || DEFORMVOLUME_IS_CLOSED(p->Pass);
   const int beginsOnVertex = box && IsOnVertex(frame, &first);
-  const int beside = mesh && IsDecidedOnVertices(c, frame, &scales, decisive, p);
+  const int beside = mesh && IsDecidedOnVertices(c, frame, &scales, p);
   uint writes = 0;
   uint left = 0;      // whether floats have left samples undecided
   uint ambiguous = 0; // whether integers have
   for (int i = 0; i < c->Number; ++i)
   {
     Walk at;
-    GoTo(c, frame, i, &at, p);
     SampleWeights weights;
-    WeighSamples(frame, &scales, at.X, at.Y, at.Z, &weights);
     uint undecided;
-    uint held = DecideByFloats(&weights, 1, decisive, frame->Bound, &undecided);
+    uint held = WeighCandidate(c, frame, &scales, i, &at, &weights, &undecided, p);
     int onVertex = i == 0 ? beginsOnVertex : mayReachEnds && box && IsOnVertex(frame, &at);
     if (beside && IsOnVertex(frame, &at))
     {
@@ -258,6 +269,22 @@ static __attribute__((always_inline)) int ResampleColumnCell(GroupCandidates* c,
   return TakeSamples(c, frame, mesh, undecidedOnes, onlyUndecided, output, p ARRAY_ARGUMENTS);
 }
 
+// A cell whose vertices lie in rows. row: the place of its vertices in the row of even y and z.
+static __attribute__((always_inline)) void MakeCellGroup(LocalRow row, int oddY, int side, int x,
+  int y, int z, uint flags, Group* cell, const KernelParameters* p)
+{
+  cell->Row = row;
+  cell->OddY = oddY;
+  cell->Side = side;
+  cell->X = x;
+  cell->Y = y;
+  cell->Z = z;
+  cell->Odd = (p->First[0] + x + p->First[1] + y + p->First[2] + z) & 1;
+  cell->Border = (flags & FLAG_BORDER) != 0;
+  cell->Apart = (flags & FLAG_APART) != 0;
+}
+
+#if HAS_COLUMN_KERNEL
 // Adds the counts of a work-item to those of its group.
 static void AddToGroup(const Output* output, __local uint* counts)
 {
@@ -272,20 +299,12 @@ static void AddToGroup(const Output* output, __local uint* counts)
   }
 }
 
-#if HAS_COLUMN_KERNEL
-// The cell of a group at a place of its layer. z: of the cell.
+// The cell of a group at a place of its layer, inside the mesh. z: of the cell.
 static __attribute__((always_inline)) void MakeColumnCell(__local const float* rows, int3 first,
   int inX, int inY, int z, Group* cell, const KernelParameters* p)
 {
-  cell->Row = rows + (inY + (inY & 1)) * ROW + (inX >> 1);
-  cell->OddY = inY & 1 ? -ROW : ROW;
-  cell->Side = inX & 1;
-  cell->X = first.x + inX;
-  cell->Y = first.y + inY;
-  cell->Z = z;
-  cell->Odd = (p->First[0] + cell->X + p->First[1] + cell->Y + p->First[2] + z) & 1;
-  cell->Border = 0;
-  cell->Apart = 0;
+  MakeCellGroup(rows + (inY + (inY & 1)) * ROW + (inX >> 1), inY & 1 ? -ROW : ROW, inX & 1,
+    first.x + inX, first.y + inY, z, 0, cell, p);
 }
 
 // Lists samples of a cell, by the numbers of the candidates, as bits. Returns whether there was room.
@@ -483,15 +502,12 @@ static void ResampleDoubts(const GroupCandidates* c, const GroupFrame* frame,
   const uint inverted = output->Inverted;
   GroupScales scales;
   FindScales(frame, &scales);
-  const float decisive = c->HasBoxes && c->Box ? -INFINITY : frame->Bound;
   for (int i = 0; i < c->Number; ++i)
   {
     Walk at;
-    GoTo(c, frame, i, &at, p);
     SampleWeights weights;
-    WeighSamples(frame, &scales, at.X, at.Y, at.Z, &weights);
     uint undecided;
-    DecideByFloats(&weights, 1, decisive, frame->Bound, &undecided);
+    WeighCandidate(c, frame, &scales, i, &at, &weights, &undecided, p);
     const float x = at.X + frame->X0, y = at.Y + frame->Y0, z = at.Z + frame->Z0;
     if (!undecided || !InOutput(x, y, z, p) ||
       (c->HasBeside && c->Beside && IsOnVertex(frame, &at)))
@@ -533,15 +549,7 @@ static void ResampleQueuedCell(const SamplingMesh* mesh, int x, int y, int z, in
     }
     GroupCandidates c;
     GroupFrame frame;
-    c.Cells.Row = place;
-    c.Cells.OddY = ROW;
-    c.Cells.Side = 0;
-    c.Cells.X = x;
-    c.Cells.Y = y;
-    c.Cells.Z = z;
-    c.Cells.Odd = (p->First[0] + x + p->First[1] + y + p->First[2] + z) & 1;
-    c.Cells.Border = (flags & FLAG_BORDER) != 0;
-    c.Cells.Apart = (flags & FLAG_APART) != 0;
+    MakeCellGroup(place, ROW, 0, x, y, z, flags, &c.Cells, p);
     what = ResampleColumnCell(
       &c, MAXIMUM_CANDIDATES, mesh, &frame, 0, what != QUEUE_FLOATS, output, p ARRAY_ARGUMENTS);
     if (what == QUEUE_DOUBTS)
@@ -562,7 +570,6 @@ static void ResampleQueuedCell(const SamplingMesh* mesh, int x, int y, int z, in
 
 // What is in the queue, an entry a work-item. Groups have at most as many items as there are places for the vertices of
 // cells with rows of their own, two in each plane.
-
 __kernel void ResampleQueued(MAPPING_PARAMETERS, __global const uchar* state,
   __global const uchar* active, __global const float* distances, __global char* coverage,
   __global KEY* winners, __global char* patches, __global uint* largeCells,
