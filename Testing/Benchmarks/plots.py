@@ -13,6 +13,18 @@ STYLES = {
 }
 
 
+class Pictures:
+    """The folder of the plots, and how the text that shows them calls it."""
+
+    def __init__(self, folder, prefix=""):
+        self.folder = folder
+        self.prefix = prefix
+
+    def show(self, name, words):
+        """What shows a plot in the text."""
+        return f"![{words}]({self.prefix}{name})\n"
+
+
 def _finish(axes, path, title):
     axes.figure.suptitle(title, fontsize=10)
     axes.grid(True, which="both", alpha=0.25)
@@ -52,7 +64,8 @@ def plot_bars(path, title, label, bars):
     values = [value for _, value, _ in bars]
     colours = ["tab:blue" if ours else "tab:gray" for _, _, ours in bars]
     drawn = axes.barh(names, values, color=colours)
-    axes.bar_label(drawn, [f"{value:.0f}" for value in values], padding=3, fontsize=8)
+    axes.bar_label(drawn, [f"{value:.0f}" if value >= 10.0 else f"{value:.3g}" for value in values],
+                   padding=3, fontsize=8)
     axes.invert_yaxis()
     axes.set_xscale("log")
     axes.set_xlim(0.3 * min(values), 4.0 * max(values))

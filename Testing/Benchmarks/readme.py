@@ -5,7 +5,6 @@ import pathlib
 import sys
 
 from plots import plot_bars
-from report import processor
 from results import Results
 from sections import PEERS, POSES, cell, table
 
@@ -32,10 +31,9 @@ def measured(results):
 
 def section(devices, picture):
     yield "## Measured\n"
-    gpus = [results for results in devices if results.context["device_is_processor"] != "1"]
+    gpus = [results for results in devices if not results.is_processor]
     for results in devices:
-        is_processor = results.context["device_is_processor"] == "1"
-        machine = processor() if is_processor else results.context["device"]
+        machine = results.processors if results.is_processor else results.device
         yield (f"Time of one `Update()` after the mesh has moved, {POSES[POSE]}, 189 x 305 x 229 voxels of 16 "
                f"bits (13.2 million), on {machine}:\n")
         yield table(["", "ms", "times as long"],
@@ -44,7 +42,7 @@ def section(devices, picture):
     if picture:
         bars = [(short, milliseconds, short.startswith("DeformVolume"))
                 for _, short, milliseconds, _ in measured(devices[0])]
-        plot_bars(picture, f"One update, 13.2 million voxels\n{processor()}", "ms", bars)
+        plot_bars(picture, f"One update, 13.2 million voxels\n{devices[0].processors}", "ms", bars)
         yield f"![The same as bars]({picture.as_posix()})\n"
     yield (("" if gpus else "No GPU has been measured yet. ")
            + "[Documents/benchmarks.md](Documents/benchmarks.md) tells what is compared and how, and how to "

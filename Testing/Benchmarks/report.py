@@ -1,84 +1,103 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes a report in Markdown, with plots, of what the benchmark programs wrote: report.py FOLDER.
-FOLDER holds a folder of JSON files for each device; report.md and the plots are written to it."""
-import os
+"""Makes a report in Markdown, with plots, of what the benchmark programs wrote: report.py FOLDER [DOCUMENT].
+FOLDER holds a folder of JSON files for each device; report.md and the plots are written to it. With
+DOCUMENT the report is of the GPUs only and is written to that file, its plots to images/ beside it."""
 import pathlib
 import sys
 
 import sections
 from demands import DEMANDS
+from plots import Pictures
 from results import Results
 from sections import cell, table
 
 
-def processor():
-    """Model, number and widest vectors of the processors."""
-    model, flags = "unknown processor", ""
-    with open("/proc/cpuinfo", encoding="utf-8") as file:
-        for line in file:
-            key, _, value = line.partition(":")
-            if key.strip() == "model name":
-                model = value.strip()
-            elif key.strip() == "flags":
-                flags = value.split()
-    width = next((words for flag, words in (
-        ("avx512f", "AVX-512, 16 floats"), ("avx2", "AVX2, 8 floats"), ("avx", "AVX, 8 floats"))
-        if flag in flags), "vectors of 4 floats")
-    return f"{model}, {os.cpu_count()} processors, {width}"
-
-
 def describe(results):
     context = results.context
-    words = (f"{context['device']}, driver {context['driver']}, {context['version']}, "
-             f"{context['compute_units']} compute units, vectors of {context['vector_width']} "
-             "floats")
-    return words + f"; host {processor()}"
+    words = [results.device] + [f"{word} {context[key]}".strip() for word, key in (
+        ("driver", "driver"), ("", "version")) if key in context]
+    if "compute_units" in context:
+        words.append(f"{context['compute_units']} compute units")
+    if results.is_processor:
+        words.append(f"vectors of {context['vector_width']} floats")
+    return ", ".join(words) + f"; host {results.processors}"
 
 
-def demand_rows(devices):
+def demands(devices):
+    """What is measured in a table, the rest in a line for each device."""
     rows = []
+    missing = {kind: [] for kind in devices}
     for demand in DEMANDS:
         for kind, results in devices.items():
-            is_processor = results.context["device_is_processor"] == "1"
-            if demand.only_on == "gpu" and is_processor:
+            if demand.only_on == "gpu" and results.is_processor:
                 continue
             value = demand.value(results)
-            verdict = "not measured" if value is None else \
-                "met" if value <= demand.limit else "**not met**"
-            rows.append([demand.words, f"{cell(demand.limit, 3)} {demand.unit}".strip(),
-                         cell(value, 3), verdict, kind])
-    return rows
+            if value is None:
+                missing[kind].append(demand.words)
+                continue
+            rows.append([demand.words, f"{cell(demand.limit, 3)} {demand.unit}".strip(), cell(value, 3),
+                         "met" if value <= demand.limit else "**not met**", kind])
+    if rows:
+        yield table(["demand", "at most", "measured", "", "device"], rows)
+    for kind, words in missing.items():
+        if words:
+            yield f"Not measured on {kind}: {'; '.join(words)}.\n"
 
 
-def report(folder):
-    devices = {path.name: Results(path) for path in sorted(folder.iterdir()) if path.is_dir()}
-    devices = {kind: results for kind, results in devices.items() if results.runs}
-    if not devices:
-        sys.exit(f"report.py: {folder} holds no results")
+def device_report(results, pictures, kind):
+    yield f"# Device {kind}: {results.device}\n"
+    missing = []
+    for words, section in (sections.ALL if results.is_processor else sections.ON_GPUS | sections.ALL).items():
+        lines = list(section(results, pictures, kind))
+        yield from lines
+        if not lines:
+            missing.append(words)
+    if missing:
+        yield f"Not measured: {', '.join(missing)}.\n"
+    errors = results.errors()
+    if errors:
+        yield "## What failed\n"
+        yield table(["measurement", "message"],
+                    [[name, " ".join(words.split())] for name, words in errors])
+
+
+def report(devices, pictures, manual):
+    """manual: what the text calls Documents/benchmarks.md."""
     yield "# Benchmarks\n"
     dates = {results.context["date"] for results in devices.values()}
-    yield f"Measured on {min(dates)}. What each table means: Documents/benchmarks.md.\n"
+    yield f"Measured on {min(dates)}. What each table means: {manual}.\n"
     yield table(["device", "what it is"],
                 [[kind, describe(results)] for kind, results in devices.items()])
     yield "## Demands\n"
     yield ("Each number is a median over the rounds of one run, ratios are medians of ratios within "
            "rounds, and all are from the device in the last column.\n")
-    yield table(["demand", "at most", "measured", "", "device"], demand_rows(devices))
+    yield from demands(devices)
     for kind, results in devices.items():
-        yield f"# Device {kind}: {results.context['device']}\n"
-        for section in sections.ALL:
-            yield from section(results, folder, kind)
-        errors = results.errors()
-        if errors:
-            yield "## What failed\n"
-            yield table(["measurement", "message"],
-                        [[name, " ".join(words.split())] for name, words in errors])
+        yield from device_report(results, pictures, kind)
+
+
+def main(folder, document=None):
+    if not folder.is_dir():
+        sys.exit(f"report.py: {folder} is no folder")
+    devices = {path.name: Results(path) for path in sorted(folder.iterdir()) if path.is_dir()}
+    devices = {kind: results for kind, results in devices.items()
+               if results.runs and not (document and results.is_processor)}
+    if not devices:
+        sys.exit(f"report.py: {folder} holds no results" + (" of a GPU" if document else ""))
+    if document:
+        pictures = Pictures(document.parent / "images", "images/")
+        pictures.folder.mkdir(exist_ok=True)
+        manual = "[benchmarks.md](benchmarks.md)"
+    else:
+        document = folder / "report.md"
+        pictures = Pictures(folder)
+        manual = "Documents/benchmarks.md"
+    text = "\n".join(report(devices, pictures, manual))
+    document.write_text(text, encoding="utf-8")
+    print(text)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
+    if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
-    FOLDER = pathlib.Path(sys.argv[1])
-    TEXT = "\n".join(report(FOLDER))
-    (FOLDER / "report.md").write_text(TEXT, encoding="utf-8")
-    print(TEXT)
+    main(*map(pathlib.Path, sys.argv[1:]))

@@ -15,21 +15,40 @@ class Results:
     def __init__(self, folder):
         self.runs = collections.defaultdict(list)
         self.context = {}
+        self.unreadable = []
         for path in sorted(pathlib.Path(folder).glob("*.json")):
-            with open(path, encoding="utf-8") as file:
-                result = json.load(file)
+            try:
+                with open(path, encoding="utf-8") as file:
+                    result = json.load(file)
+            except json.JSONDecodeError as error:
+                self.unreadable.append((path.name, f"what wrote it was stopped: {error}"))
+                continue
             self.context.update(result["context"])
             for run in result["benchmarks"]:
                 self.runs[run["name"].split(SUFFIX)[0]].append(run)
+
+    @property
+    def device(self):
+        """What DeformVolumeDevice calls the device."""
+        return self.context.get("device", "a device that was not described")
+
+    @property
+    def is_processor(self):
+        return self.context.get("device_is_processor") == "1"
+
+    @property
+    def processors(self):
+        """What machine.py says of the processors."""
+        return self.context.get("processors", "unknown processors")
 
     def names(self, prefix):
         """Names that begin with a prefix, in the order of their first run."""
         return [name for name in self.runs if name.startswith(prefix)]
 
     def errors(self):
-        """(name, message) of each measurement that failed."""
-        return [(name, runs[0]["error_message"]) for name, runs in self.runs.items()
-                if runs[0].get("error_occurred")]
+        """(name, message) of each measurement that failed, and of each file that cannot be read."""
+        return self.unreadable + [(name, runs[0]["error_message"]) for name, runs in self.runs.items()
+                                  if runs[0].get("error_occurred")]
 
     def values(self, name, key="real_time"):
         """One value for each round; None where it failed."""

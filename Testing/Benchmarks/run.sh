@@ -3,29 +3,82 @@
 # Repeats the published evaluation on this machine, on its processors and on its GPU if there is one,
 # and writes build/benchmarks/report.md with plots. Documents/benchmarks.md says what it means.
 #
-# Usage: Testing/Benchmarks/run.sh [--quick]
-#   --quick   few rounds and no volume over 30 million voxels: to see that it works, not to rely on
+# Usage: Testing/Benchmarks/run.sh [OPTION]...
+#   --quick             few rounds and no volume over 30 million voxels: to see that it works, not to
+#                       rely on
+#   --programs FOLDER   measures with the programs in FOLDER, built elsewhere; installs and builds
+#                       nothing. Without xvfb-run or DeformVolumeRendering the viewports are left out,
+#                       without matplotlib the report
+#   --output FOLDER     a folder that is empty or not there, instead of build/benchmarks
+#   --parts PART,...    only these of: benchmarks, memory, rendering, gpu-peers
+#   --filter REGEX      only the benchmarks whose names match. Given several times, each is a run with a
+#                       file of results of its own, in this order
+# What fails does not stop the rest; the status is then 1 at the end.
 # DEFORMVOLUME_DEVICE, if set, is the only device that is measured.
 set -euo pipefail
+
+fail()
+{
+  echo "run.sh: $1" >&2
+  exit 2
+}
+
+known="benchmarks,memory,rendering,gpu-peers"
+quick=()
+programs=""
+results=""
+parts=$known
+filters=()
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --quick) quick=(--quick) ;;
+    --programs | --output | --parts | --filter)
+      [ -n "${2-}" ] || fail "$1 needs a value"
+      case "$1" in
+        --programs) programs=$(realpath -- "$2") ;;
+        --output) results=$(realpath -m -- "$2") ;;
+        --parts) parts=$2 ;;
+        --filter) filters+=("$2") ;;
+      esac
+      shift
+      ;;
+    *)
+      echo "usage: Testing/Benchmarks/run.sh [--quick] [--programs FOLDER] [--output FOLDER]" \
+        "[--parts PART,...] [--filter REGEX]..." >&2
+      exit 2
+      ;;
+  esac
+  shift
+done
 cd "$(dirname "$0")/../.."
 
-quick=()
-case "${1-}" in
-  "") ;;
-  --quick) quick=(--quick) ;;
-  *)
-    echo "usage: Testing/Benchmarks/run.sh [--quick]" >&2
-    exit 2
-    ;;
-esac
+for part in ${parts//,/ }; do
+  [[ ",$known," == *",$part,"* ]] || fail "no part is called $part; there are $known"
+done
+wants() # PART
+{
+  [[ ",$parts," == *",$1,"* ]]
+}
 
-bash Testing/packages.sh library test benchmark
-[ -f build/vtk/build.ninja ] || cmake --preset vtk >/dev/null
-cmake --build --preset vtk --target DeformVolumeBenchmarkPrograms
+python=/usr/bin/python3
+if [ -n "$programs" ]; then
+  python=python3
+  for program in DeformVolumeDevice DeformVolumeBenchmarks DeformVolumeMemory; do
+    [ -x "$programs/$program" ] || fail "$programs holds no $program"
+  done
+else
+  bash Testing/packages.sh library test benchmark
+  [ -f build/vtk/build.ninja ] || cmake --preset vtk >/dev/null
+  cmake --build --preset vtk --target DeformVolumeBenchmarkPrograms
+  programs=build/vtk/bin
+fi
 
-results=build/benchmarks
-programs=build/vtk/bin
-rm -rf "$results"
+if [ -z "$results" ]; then
+  results=build/benchmarks
+  rm -rf "$results"
+elif [ -e "$results" ] && { [ ! -d "$results" ] || [ -n "$(ls -A "$results")" ]; }; then
+  fail "$results is no empty folder"
+fi
 mkdir -p "$results"
 
 measure() # PROGRAM NAME-OF-RESULT [ARGUMENT]...
@@ -41,6 +94,55 @@ memory=("189 305 229 ushort 13 exact" "189 305 229 ushort 80 exact"
 [ ${#quick[@]} -gt 0 ] || memory+=("464 464 464 ushort 13 exact" \
   "1000 1000 1000 uchar 13 exact" "1000 1000 1000 uchar 13 mesh-rasterization")
 
+# The others are still worth having.
+failed=no
+try() # COMMAND [ARGUMENT]...
+{
+  local status=0
+  "$@" || status=$?
+  if [ $status -ne 0 ]; then
+    echo "run.sh: failed with status $status: $*" >&2
+    failed=yes
+  fi
+}
+
+measure_benchmarks()
+{
+  if [ ${#filters[@]} -eq 0 ]; then
+    try measure DeformVolumeBenchmarks benchmarks "${quick[@]}"
+    return
+  fi
+  local number=0
+  for filter in "${filters[@]}"; do
+    number=$((number + 1))
+    try measure DeformVolumeBenchmarks "benchmarks-$(printf %02d $number)" "${quick[@]}" \
+      "--benchmark_filter=$filter"
+  done
+}
+
+measure_rendering()
+{
+  if [ ! -x "$programs/DeformVolumeRendering" ] || ! command -v xvfb-run >/dev/null; then
+    echo "run.sh: the viewports are left out: there is no DeformVolumeRendering or no xvfb-run" >&2
+    return
+  fi
+  try xvfb-run -a -s "-noreset -screen 0 1920x1200x24" \
+    "$programs/DeformVolumeRendering" "${quick[@]}" "--pictures=$folder" \
+    "--benchmark_out=$folder/rendering.json" --benchmark_out_format=json
+}
+
+measure_gpu_peers()
+{
+  local status=0
+  # Whatever Python holds torch and cupy.
+  python3 Testing/Benchmarks/gpu_peers.py "$folder" || status=$?
+  # 125: neither is there.
+  if [ $status -ne 0 ] && [ $status -ne 125 ]; then
+    echo "run.sh: gpu_peers.py failed with status $status" >&2
+    failed=yes
+  fi
+}
+
 devices=(cpu gpu)
 [ -z "${DEFORMVOLUME_DEVICE-}" ] || devices=("$DEFORMVOLUME_DEVICE")
 for device in "${devices[@]}"; do
@@ -54,14 +156,24 @@ for device in "${devices[@]}"; do
     continue
   fi
   [ $status -eq 0 ]
-  measure DeformVolumeBenchmarks benchmarks "${quick[@]}"
-  for line in "${memory[@]}"; do
-    # shellcheck disable=SC2086 # a list of words
-    measure DeformVolumeMemory "memory-${line// /-}" $line
-  done
-  xvfb-run -a -s "-noreset -screen 0 1920x1200x24" \
-    "$programs/DeformVolumeRendering" "${quick[@]}" "--pictures=$folder" \
-    "--benchmark_out=$folder/rendering.json" --benchmark_out_format=json
+  "$python" Testing/Benchmarks/machine.py "$folder"
+  if wants benchmarks; then measure_benchmarks; fi
+  if wants memory; then
+    for line in "${memory[@]}"; do
+      # shellcheck disable=SC2086 # a list of words
+      try measure DeformVolumeMemory "memory-${line// /-}" $line
+    done
+  fi
+  if wants rendering; then measure_rendering; fi
+  if wants gpu-peers && grep -q '"device_is_processor": "0"' "$folder/device.json"; then
+    measure_gpu_peers
+  fi
 done
 
-/usr/bin/python3 Testing/Benchmarks/report.py "$results"
+if [ "$python" != /usr/bin/python3 ] && ! "$python" -c "import matplotlib" 2>/dev/null; then
+  echo "run.sh: the report is left out: there is no matplotlib. Copy $results to a machine that has it:" \
+    "Testing/Benchmarks/report.py makes the report" >&2
+else
+  "$python" Testing/Benchmarks/report.py "$results"
+fi
+[ $failed = no ]

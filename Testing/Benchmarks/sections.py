@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The sections of the report on one device. Each yields Markdown, nothing where nothing was
-measured, and may write plots to the folder of the report."""
+measured, and may draw plots: see Pictures."""
 from plots import STYLES, plot_bars, plot_curves
 
 # The method's authors measured these on a Radeon R9 270X: Rodriguez, Leon, Martin and Otaduy,
@@ -35,6 +35,18 @@ PEERS = {
 }
 
 
+# What users of GPUs have where the inverse deformation is known.
+GPU_PEERS = {
+    "torch/nearest/float32": "torch, grid_sample, nearest",
+    "torch/linear/float32": "torch, grid_sample, bilinear",
+    "torch/linear/float16": "torch, grid_sample, bilinear, half",
+    "cupy/nearest/float32": "cupy, map_coordinates, order 0",
+    "cupy/linear/float32": "cupy, map_coordinates, order 1",
+}
+# What is deformed, in the names of results.
+DEFORMATIONS = {"2197": "2,197 nodes", "512000": "512,000 nodes", "field": "dense field"}
+
+
 def cell(value, digits=1):
     """A number in a table: with so many significant digits, at least all before the point."""
     if value is None:
@@ -53,7 +65,7 @@ def table(header, rows):
     return "\n".join(lines) + "\n"
 
 
-def device(results, _folder, _kind):
+def device(results, _pictures, _kind):
     rate = results.median("Device/copy", "bytes_per_second")
     if not rate:
         return
@@ -65,7 +77,80 @@ def device(results, _folder, _kind):
            f"map of 16 bytes per voxel {21e3 * voxels / rate:.2f} ms: no resampling is faster.\n")
 
 
-def comparison(results, folder, kind):
+def _least_milliseconds(results, name):
+    """The time in which DeformVolumeDevice copies as many bytes as must be moved: the volume is read, the
+    result and its mask are written."""
+    rate = results.median("Device/copy", "bytes_per_second")
+    voxels, output = (results.median(name, key) for key in ("voxels", "output_voxels"))
+    return 1e3 * (2.0 * voxels + 3.0 * output) / rate if rate and voxels and output else None
+
+
+def gpu(results, _pictures, _kind):
+    """What a GPU is bought for: the kernels."""
+    rows = []
+    for pose, words in POSES.items():
+        for deformation, what in DEFORMATIONS.items():
+            name = f"Deform/{pose}/{deformation}/exact"
+            published = f"Deform/{pose}/{deformation}/published"
+            time = results.milliseconds(name, "kernels")
+            if not time:
+                continue
+            least = _least_milliseconds(results, name)
+            rows.append([words, what, time, results.ratio(name, f"Deform/{pose}/2197/exact", "kernels"),
+                         results.milliseconds(published, "kernels"),
+                         results.ratio(name, published, "kernels"), least, least and time / least,
+                         results.milliseconds(name, "transfer"), results.median(name)])
+    if rows:
+        yield "## GPU: mapping and resampling of 189 x 305 x 229 voxels of 16 bits\n"
+        yield ("Ratios to 2,197 nodes and to the published kernel, on the same GPU, are medians of ratios within "
+               "rounds. No resampling takes less than it takes to copy the bytes that it reads and writes: the "
+               "volume once, the result and its mask once.\n")
+        yield table(["pose", "deformation", "mapping + resampling, ms", "by 2,197 nodes",
+                     "published kernel, ms", "by published kernel", "copy of its bytes, ms", "by that",
+                     "transfer, ms", "Update(), ms"], rows)
+
+
+def gpu_peers(results, pictures, kind):
+    if not any(results.median(name) for name in results.names("GpuPeer/")):
+        return
+    yield "## Peers on the GPU\n"
+    copies = [f"{name.split('/')[-1]} {1e-9 * rate:,.0f} GB/s" for name in results.names("GpuPeer/copy/")
+              for rate in [results.median(name, "bytes_per_second")] if rate]
+    yield (f"Measured with {results.context['gpu_peers']}. They get the inverse deformation, as a position for "
+           "each voxel of the output that lies on the GPU already. They read and write values of 32 bits (half: "
+           "all of 16) and no mask. DeformVolume gets the forward deformation, and reads and writes 16 bits and "
+           "a mask. It ran in another process: the last columns are quotients of medians, its mapping and "
+           "resampling by the time of the peer."
+           + (f" A copy on the device reads and writes, together: {', '.join(copies)}." if copies else "")
+           + "\n")
+    for pose, words in POSES.items():
+        ours = {what: results.milliseconds(f"Deform/{pose}/{deformation}/exact", "kernels")
+                for deformation, what in DEFORMATIONS.items()}
+        published = results.milliseconds(f"Deform/{pose}/2197/published", "kernels")
+        bars = [(f"DeformVolume, {what}", time, True) for what, time in ours.items() if time]
+        bars += [("published kernel, 2,197 nodes", published, False)] if published else []
+        rows = []
+        for name in results.names(f"GpuPeer/{pose}/"):
+            what = GPU_PEERS["/".join(name.split("/")[2:])]
+            time = results.median(name)
+            if not time:
+                continue
+            rows.append([what, results.median(name, "output_voxels") / 1e6, time,
+                         1e-9 * results.median(name, "bytes_per_second")]
+                        + [value and value / time for value in ours.values()])
+            bars.append((what, time, False))
+        if not rows:
+            continue
+        yield f"{words[0].upper()}{words[1:]}:\n"
+        yield table(["peer", "million voxels of the output", "ms", "GB/s at least"]
+                    + [f"DeformVolume, {what}, by it" for what in ours], rows)
+        image = f"{kind}-kernels-{pose}.png"
+        plot_bars(pictures.folder / image, f"Mapping and resampling, 13.2 million voxels, {words}\n"
+                  f"{results.device}", "ms", bars)
+        yield pictures.show(image, f"Mapping and resampling, {words}")
+
+
+def comparison(results, pictures, kind):
     for pose, words in POSES.items():
         rows, bars = [], []
         for name in results.names(f"Deform/{pose}/"):
@@ -99,15 +184,18 @@ def comparison(results, folder, kind):
             if results.median(name):
                 rows.append([what, results.median(name), results.ratio(ours, name)])
                 bars.append((short, results.median(name), False))
-        yield f"Peers over the same output, {words}, 2,197 nodes:\n"
-        yield table(["peer", "Update(), ms", "ours by peer"], rows)
+        if rows:
+            yield f"Peers over the same output, {words}, 2,197 nodes:\n"
+            yield table(["peer", "Update(), ms", "ours by peer"], rows)
+        if not bars:
+            continue
         image = f"{kind}-peers-{pose}.png"
-        plot_bars(folder / image, f"Whole update, 13.2 million voxels, {words}\n"
-                  f"{results.context['device']}", "ms", bars)
-        yield f"![Whole updates, {words}]({image})\n"
+        plot_bars(pictures.folder / image, f"Whole update, 13.2 million voxels, {words}\n"
+                  f"{results.device}", "ms", bars)
+        yield pictures.show(image, f"Whole updates, {words}")
 
 
-def poses(results, _folder, _kind):
+def poses(results, _pictures, _kind):
     rows = []
     for name in results.names("Table2/"):
         _, pose, resampler = name.split("/")
@@ -134,7 +222,7 @@ def poses(results, _folder, _kind):
                      "mapping + resampling by near identity"], rows)
 
 
-def nodes(results, _folder, _kind):
+def nodes(results, _pictures, _kind):
     rows = []
     for name in results.names("Nodes/"):
         _, pose, number = name.split("/")
@@ -152,7 +240,7 @@ def _chosen(results, name):
         results.median(name, "resampler_in_use"), "-")
 
 
-def tetrahedra(results, folder, kind):
+def tetrahedra(results, pictures, kind):
     counts = list(dict.fromkeys(name.split("/")[1] for name in results.names("Tetrahedra/")))
     rows, curves = [], {}
     for count in counts:
@@ -172,14 +260,16 @@ def tetrahedra(results, folder, kind):
     yield table(["tetrahedra"] + [f"{name}: {what}" for name, _, _ in STYLES.values()
                                   for what in ("mapping + resampling, ms", "Update(), ms")]
                 + ["Automatic takes"], rows)
+    if not curves:
+        return
     image = f"{kind}-tetrahedra.png"
-    plot_curves(folder / image, "189 x 305 x 229 voxels, near identity\n"
-                + results.context["device"],
+    plot_curves(pictures.folder / image, "189 x 305 x 229 voxels, near identity\n"
+                + results.device,
                 ("tetrahedra of the deformation mesh", "mapping + resampling, ms"), curves)
-    yield f"![Time against tetrahedra]({image})\n"
+    yield pictures.show(image, "Time against tetrahedra")
 
 
-def voxels(results, folder, kind):
+def voxels(results, pictures, kind):
     rows, curves = [], {}
     for name in results.names("Voxels/"):
         _, dimensions, resampler = name.split("/")
@@ -201,20 +291,20 @@ def voxels(results, folder, kind):
     image = f"{kind}-voxels.png"
     ours = [time for count, time in zip(*curves.get("exact", ((), ()))) if count > 3.9]
     middle = 0.5 * (min(ours) + max(ours)) if ours else None
-    plot_curves(folder / image, "Near identity, 2,197 nodes\n" + results.context["device"],
+    plot_curves(pictures.folder / image, "Near identity, 2,197 nodes\n" + results.device,
                 ("million voxels", "mapping + resampling, ns per voxel"), curves,
                 (0.8 * middle, 1.2 * middle) if middle else None)
-    yield f"![Time per voxel]({image})\n"
+    yield pictures.show(image, "Time per voxel")
 
 
-def preprocessing(results, _folder, _kind):
+def preprocessing(results, _pictures, _kind):
     rows = [name.split("/")[1:] + [results.median(name)] for name in results.names("Preprocess/")]
     if rows:
         yield "## Preprocessing: the static mapping, once for a volume and a mesh at rest\n"
         yield table(["voxels", "nodes", "ms"], rows)
 
 
-def memory(results, _folder, _kind):
+def memory(results, _pictures, _kind):
     rows = []
     for name in results.names("Memory/"):
         _, dimensions, scalars, nodes, resampler = name.split("/")
@@ -229,7 +319,7 @@ def memory(results, _folder, _kind):
                      "resident bytes per voxel", "highest resident memory of the process, GB"], rows)
 
 
-def incremental(results, _folder, _kind):
+def incremental(results, _pictures, _kind):
     rows = [[words, results.median(name), results.milliseconds(name, "kernels"),
              results.ratio(name, "Incremental/near")]
             for name, words in (("Incremental/near", "all"),
@@ -241,7 +331,7 @@ def incremental(results, _folder, _kind):
         yield table(["what moves", "Update(), ms", "mapping + resampling, ms", "by all"], rows)
 
 
-def live(results, _folder, _kind):
+def live(results, _pictures, _kind):
     rows = [[words, results.median(name), results.milliseconds(name, "kernels"),
              results.ratio(name, "Live/all-move")]
             for name, words in (
@@ -265,7 +355,7 @@ def live(results, _folder, _kind):
                      "Update() by that where all move"], rows)
 
 
-def chain_mail(results, _folder, _kind):
+def chain_mail(results, _pictures, _kind):
     rows = []
     for dimensions in INTERACTIVE_SIZES:
         for part, words in (("part", "what has moved"), ("whole", "all of it")):
@@ -293,7 +383,7 @@ PHYSICS = (
     ("elements-19456", "finite elements"))
 
 
-def physics(results, _folder, _kind):
+def physics(results, _pictures, _kind):
     rows = []
     for body, words in PHYSICS:
         name = f"Physics/{body}/frame"
@@ -330,7 +420,7 @@ SESSIONS = (
     ("elements-125", "finite elements, 125 nodes"), ("elements-729", "finite elements, 729 nodes"))
 
 
-def session(results, _folder, _kind):
+def session(results, _pictures, _kind):
     rows = [[words, event, results.median(f"Session/{body}/{event}", "moved") or None,
              *(results.milliseconds(f"Session/{body}/{event}", part)
                for part in ("simulation", "resampling")), results.median(f"Session/{body}/{event}")]
@@ -342,7 +432,7 @@ def session(results, _folder, _kind):
                      "in all, ms"], rows)
 
 
-def edits(results, _folder, _kind):
+def edits(results, _pictures, _kind):
     rows = [[dimensions, words, results.median(f"Edit/{dimensions}/{name}"), paper]
             for dimensions in INTERACTIVE_SIZES
             for name, words, paper in (
@@ -356,7 +446,7 @@ def edits(results, _folder, _kind):
         yield table(["voxels", "edit", "Update(), ms", "published, at most, ms"], rows)
 
 
-def given(results, _folder, _kind):
+def given(results, _pictures, _kind):
     rows = [[words, results.median(name), results.milliseconds(name, "kernels"),
              results.difference(name, "Given/same-grid")]
             for name, words in (
@@ -374,7 +464,7 @@ def given(results, _folder, _kind):
                      "Update() beyond that with the same grid, ms"], rows)
 
 
-def rendering(results, folder, kind):
+def rendering(results, pictures, kind):
     rows = []
     for name in results.names("Render/"):
         if not name.endswith("/undeformed"):
@@ -390,10 +480,31 @@ def rendering(results, folder, kind):
     yield table(["mapper", "viewport", "gradients", "undeformed, ms", "deformed, ms",
                  "deformed by undeformed", "update of the filter before the frame, ms",
                  "ray casting in the paper (Radeon R9 270X), ms"], rows)
-    for path in sorted((folder / kind).glob("head-*.png")):
-        yield f"![{path.stem}]({kind}/{path.name})"
-    yield ""
+    for path in sorted((pictures.folder / kind).glob("head-*.png")):
+        yield pictures.show(f"{kind}/{path.name}", path.stem)
 
 
-ALL = [device, comparison, poses, nodes, tetrahedra, voxels, preprocessing, memory, incremental, live,
-       chain_mail, physics, session, edits, given, rendering]
+# What each shows, in a few words, for the report to say what was not measured.
+ALL = {
+    "the memory bandwidth": device,
+    "table 1": comparison,
+    "table 2 and the poses": poses,
+    "nodes": nodes,
+    "figure 7": tetrahedra,
+    "figure 8": voxels,
+    "preprocessing": preprocessing,
+    "memory": memory,
+    "edits": incremental,
+    "live": live,
+    "ChainMail": chain_mail,
+    "physics": physics,
+    "sessions": session,
+    "cutting and carving": edits,
+    "what is given": given,
+    "viewports": rendering,
+}
+# On GPUs, before these.
+ON_GPUS = {
+    "kernels on the GPU": gpu,
+    "peers on the GPU": gpu_peers,
+}

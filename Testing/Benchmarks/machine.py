@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes what the processors of this machine are to FOLDER/machine.json, in the form of Google Benchmark,
+so that a report can be made on another machine: machine.py FOLDER."""
+import json
+import os
+import pathlib
+import sys
+
+
+def describe_processors():
+    """Model, number and widest vectors of the processors."""
+    model, flags = "unknown processor", ""
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        for line in file:
+            key, _, value = line.partition(":")
+            if key.strip() == "model name":
+                model = value.strip()
+            elif key.strip() == "flags":
+                flags = value.split()
+    width = next((words for flag, words in (
+        ("avx512f", "AVX-512, 16 floats"), ("avx2", "AVX2, 8 floats"), ("avx", "AVX, 8 floats"))
+        if flag in flags), "vectors of 4 floats")
+    return f"{model}, {os.cpu_count()} processors, {width}"
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    with open(pathlib.Path(sys.argv[1]) / "machine.json", "w", encoding="utf-8") as FILE:
+        json.dump({"context": {"processors": describe_processors()}, "benchmarks": []}, FILE)
