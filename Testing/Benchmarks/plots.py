@@ -33,9 +33,9 @@ def _finish(axes, path, title):
     plt.close(axes.figure)
 
 
-def _label_plainly(axis):
-    """Ticks of a logarithmic axis at 1, 2 and 5, as plain numbers."""
-    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+def _label_plainly(axis, ticks=(1.0, 2.0, 5.0)):
+    """Ticks of a logarithmic axis, as plain numbers."""
+    axis.set_major_locator(LogLocator(subs=ticks))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
     axis.set_minor_formatter(NullFormatter())
 
@@ -68,6 +68,7 @@ def plot_bars(path, title, label, bars):
                    padding=3, fontsize=8)
     axes.invert_yaxis()
     axes.set_xscale("log")
+    _label_plainly(axes.xaxis, (1.0, 2.0, 5.0) if max(values) < 30.0 * min(values) else (1.0,))
     axes.set_xlim(0.3 * min(values), 4.0 * max(values))
     axes.set_xlabel(label)
     _finish(axes, path, title)

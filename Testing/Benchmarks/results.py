@@ -21,7 +21,7 @@ class Results:
                 with open(path, encoding="utf-8") as file:
                     result = json.load(file)
             except json.JSONDecodeError as error:
-                self.unreadable.append((path.name, f"what wrote it was stopped: {error}"))
+                self.unreadable.append((path.name, f"it is empty or cut off: {error}"))
                 continue
             self.context.update(result["context"])
             for run in result["benchmarks"]:

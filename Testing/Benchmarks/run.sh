@@ -13,6 +13,7 @@
 #   --parts PART,...    only these of: benchmarks, memory, rendering, gpu-peers
 #   --filter REGEX      only the benchmarks whose names match. Given several times, each is a run with a
 #                       file of results of its own, in this order
+#   --seconds NUMBER    starts no further run with a filter after so many seconds; the other parts follow
 # What fails does not stop the rest; the status is then 1 at the end.
 # DEFORMVOLUME_DEVICE, if set, is the only device that is measured.
 set -euo pipefail
@@ -29,22 +30,24 @@ programs=""
 results=""
 parts=$known
 filters=()
+seconds=""
 while [ $# -gt 0 ]; do
   case "$1" in
     --quick) quick=(--quick) ;;
-    --programs | --output | --parts | --filter)
+    --programs | --output | --parts | --filter | --seconds)
       [ -n "${2-}" ] || fail "$1 needs a value"
       case "$1" in
-        --programs) programs=$(realpath -- "$2") ;;
+        --programs) programs=$(realpath -m -- "$2") ;;
         --output) results=$(realpath -m -- "$2") ;;
         --parts) parts=$2 ;;
         --filter) filters+=("$2") ;;
+        --seconds) seconds=$2 ;;
       esac
       shift
       ;;
     *)
       echo "usage: Testing/Benchmarks/run.sh [--quick] [--programs FOLDER] [--output FOLDER]" \
-        "[--parts PART,...] [--filter REGEX]..." >&2
+        "[--parts PART,...] [--filter REGEX]... [--seconds NUMBER]" >&2
       exit 2
       ;;
   esac
@@ -52,6 +55,7 @@ while [ $# -gt 0 ]; do
 done
 cd "$(dirname "$0")/../.."
 
+[[ -z "$seconds" || "$seconds" =~ ^[0-9]+$ ]] || fail "--seconds needs a whole number, not $seconds"
 for part in ${parts//,/ }; do
   [[ ",$known," == *",$part,"* ]] || fail "no part is called $part; there are $known"
 done
@@ -114,6 +118,10 @@ measure_benchmarks()
   fi
   local number=0
   for filter in "${filters[@]}"; do
+    if [ -n "$seconds" ] && [ $SECONDS -ge "$seconds" ]; then
+      echo "run.sh: $seconds seconds have passed: --filter '$filter' is left out" >&2
+      continue
+    fi
     number=$((number + 1))
     try measure DeformVolumeBenchmarks "benchmarks-$(printf %02d $number)" "${quick[@]}" \
       "--benchmark_filter=$filter"
