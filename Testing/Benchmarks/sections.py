@@ -59,6 +59,10 @@ def cell(value, digits=1):
     return f"{value:.{max(digits - magnitude, 0)}f}" if abs(value) >= 1 else f"{value:.{digits}f}"
 
 
+def _count(value):
+    return None if value is None else f"{value:,.0f}"
+
+
 def table(header, rows):
     lines = ["| " + " | ".join(header) + " |", "|---" * len(header) + "|"]
     lines += ["| " + " | ".join(cell(value, 3) for value in row) + " |" for row in rows]
@@ -361,7 +365,7 @@ def chain_mail(results, _pictures, _kind):
         for part, words in (("part", "what has moved"), ("whole", "all of it")):
             name = f"ChainMail/{dimensions}/{part}"
             if name in results.runs:
-                rows.append([dimensions, f"{results.median(name, 'moved'):,.0f}",
+                rows.append([dimensions, _count(results.median(name, "moved")),
                              results.milliseconds(name, "step"), words,
                              results.milliseconds(name, "mapping"),
                              results.milliseconds(name, "resampling"), results.median(name)])
@@ -390,8 +394,8 @@ def physics(results, _pictures, _kind):
         if name not in results.runs:
             continue
         frame = results.median(name)
-        rows.append([words, f"{results.median(name, 'nodes') or 0:,.0f}",
-                     f"{results.median(name, 'tetrahedra') or 0:,.0f}",
+        rows.append([words, _count(results.median(name, "nodes")),
+                     _count(results.median(name, "tetrahedra")),
                      *(results.milliseconds(name, part)
                        for part in ("simulation", "mapping", "resampling")),
                      frame, frame and 1000.0 / frame,
@@ -404,7 +408,7 @@ def physics(results, _pictures, _kind):
         yield table(["simulation", "nodes", "tetrahedra", "simulation, ms", "mapping, ms",
                      "resampling, ms", "frame: step and Update(), ms", "frames a second",
                      "device memory of the filter, MiB"], rows)
-    rows = [[words, f"{results.median(name, 'nodes') or 0:,.0f}",
+    rows = [[words, _count(results.median(name, "nodes")),
              1.0 / results.median(name, "simulation"), SOFA_RATES[body],
              1.0 / results.median(name, "simulation") / SOFA_RATES[body]]
             for body, words in (("springs-4096", "springs"), ("elements-19456", "finite elements"))

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The report on results of which parts are missing, have failed or are cut off, with made-up numbers under the
+names that DeformVolumeBenchmarks lists: TestReport.py DeformVolumeBenchmarks."""
+import contextlib
+import io
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+try:
+    import gpu_peers
+    import report
+    import sections
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(125)
+
+import numpy as np
+
+COUNTERS = (
+    "kernels mapping resampling transfer preprocessing voxels output_voxels device_bytes_per_voxel mapping_builds "
+    "volume_uploads samples tetrahedra fewest_samples most_samples resident_bytes "
+    "resident_bytes_per_voxel step moved simulation nodes device_bytes update bytes_per_second").split()
+ROUNDS = 3
+OTHER_NAMES = (
+    [f"Memory/189x305x229/ushort/2197/{resampler}" for resampler in ("exact", "published")]
+    + [f"Render/gpu-ray-cast/700x700/shaded/{what}" for what in ("undeformed", "deformed")]
+    + [f"GpuPeer/{pose}/{peer}" for pose in sections.POSES for peer in sections.GPU_PEERS]
+    + ["GpuPeer/copy/torch", "GpuPeer/copy/cupy", "Device/copy"]
+    # Not there with ParaView's VTK.
+    + [f"Session/at-rest/{event}" for event in ("drag", "cut", "carve")])
+DRAWN = []
+
+
+def draw_nothing(path, *_arguments):
+    DRAWN.append(path)
+
+
+sections.plot_bars = sections.plot_curves = draw_nothing
+
+
+def list_names(program):
+    lines = subprocess.run([program, "--benchmark_list_tests"], check=True, capture_output=True, text=True).stdout
+    return list(dict.fromkeys(line.split("/iterations:")[0] for line in lines.splitlines()))
+
+
+def make_runs(names):
+    return [{"name": f"{name}/iterations:1/manual_time", "real_time": 10.0 + number + 100.0 * turn,
+             "resampler_in_use": 1.0, **{counter: 0.01 * (1 + number + turn) for counter in COUNTERS}}
+            for turn in range(ROUNDS) for number, name in enumerate(names)]
+
+
+def write(folder, kind, runs, is_processor="0"):
+    (folder / kind).mkdir()
+    context = {"date": "2000-01-01", "device": "A device", "device_is_processor": is_processor, "driver": "1",
+               "version": "OpenCL", "compute_units": "1", "vector_width": "4", "gpu_peers": "torch and cupy",
+               "processors": "Some processors"}
+    (folder / kind / "all.json").write_text(json.dumps({"context": context, "benchmarks": runs}))
+
+
+def make_report(folder, *document):
+    with contextlib.redirect_stdout(io.StringIO()) as text:
+        report.main(folder, *document)
+    return text.getvalue()
+
+
+def report_on(runs, is_processor="0"):
+    with tempfile.TemporaryDirectory() as folder:
+        write(pathlib.Path(folder), "gpu", runs, is_processor)
+        return make_report(pathlib.Path(folder))
+
+
+def missing_sections(text):
+    for line in text.splitlines():
+        if line.startswith("Not measured: "):
+            return set(line[len("Not measured: "):-1].split(", "))
+    return set()
+
+
+def check_parts(names):
+    """Each measurement has a place in the report, and a report without it says so."""
+    everything = set(sections.ON_GPUS | sections.ALL)
+    runs = make_runs(names)
+    text = report_on(runs)
+    assert not missing_sections(text), missing_sections(text)
+    assert missing_sections(report_on(make_runs(["Unknown"]))) == everything
+    assert not missing_sections(report_on(runs, "1"))
+    for name in names:
+        its_runs = [run for run in runs if run["name"].split("/iterations:")[0] == name]
+        others = [run for run in runs if run not in its_runs]
+        assert report_on(others) != text, f"{name} is nowhere in the report"
+        # Whatever lacks what it is compared with.
+        report_on(its_runs)
+
+
+def check_failures(names):
+    runs = [{"name": name, "error_occurred": True, "error_message": "no\nmemory"} for name in names]
+    text = report_on(runs)
+    assert all(f"| {name} | no memory |" in text for name in names)
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        write(folder, "gpu", make_runs(names))
+        (folder / "gpu" / "cut-off.json").write_text('{"context": {')
+        assert "| cut-off.json | it is empty or cut off" in make_report(folder)
+
+
+def check_ratio():
+    """The median of the ratios within rounds, not the ratio of the medians."""
+    runs = []
+    for ours, published in ((0.002, 0.010), (0.004, 0.040), (0.300, 0.300)):
+        for name, time in (("exact", ours), ("published", published)):
+            runs.append({"name": f"Deform/near/2197/{name}", "real_time": 1.0, "kernels": time, "voxels": 1e6,
+                         "output_voxels": 2e6})
+    runs.append({"name": "Device/copy", "real_time": 1.0, "bytes_per_second": 8e9})
+    row = next(line for line in report_on(runs).splitlines() if line.startswith("| near identity | 2,197 nodes |"))
+    # 8 million bytes are read and written, in 1 ms.
+    expected = ["near identity", "2,197 nodes", "4.00", "1.00", "40.0", "0.200", "1.00", "4.00", "-", "1.00"]
+    assert [word.strip() for word in row.strip("| ").split(" | ")] == expected, row
+
+
+def check_document(names):
+    with tempfile.TemporaryDirectory() as folder:
+        results, documents = (pathlib.Path(folder) / name for name in ("results", "documents"))
+        results.mkdir()
+        documents.mkdir()
+        write(results, "cpu", make_runs(names), "1")
+        try:
+            make_report(results, documents / "gpu.md")
+        except SystemExit as error:
+            assert "no results of a GPU" in str(error)
+        else:
+            raise AssertionError("a document of no GPU")
+        write(results, "gpu", make_runs(names))
+        DRAWN.clear()
+        make_report(results, documents / "gpu.md")
+        text = (documents / "gpu.md").read_text()
+        assert "| cpu |" not in text and "A device" in text and "Some processors" in text
+        assert DRAWN
+        for path in DRAWN:
+            assert path.parent == documents / "images" and f"](images/{path.name})" in text, path
+
+
+def check_positions():
+    """The positions of the peers are the inverse of the general pose, and near identity."""
+    shape = gpu_peers.get_output_shape(27.5e6)
+    assert abs(np.prod(shape) - 27.5e6) < 0.01 * 27.5e6
+    matrix = gpu_peers.SCALE * gpu_peers.rotation((7.0, 7.0, 7.0))
+    small = (5, 7, 6)
+    positions = gpu_peers.make_positions("general", small, 0)
+    centre = 0.5 * (np.array(gpu_peers.VOLUME) - 1.0)
+    for voxel in np.ndindex(small):
+        moved = matrix @ (positions[(slice(None), *voxel)] - centre) + 0.5 * (np.array(small) - 1.0)
+        assert np.allclose(moved, voxel, atol=1e-4), voxel
+    near = gpu_peers.make_positions("near", gpu_peers.VOLUME, 0)
+    for axis, index in enumerate(np.indices(gpu_peers.VOLUME, np.float32, True)):
+        displacement = near[axis] - index
+        assert 11.0 < np.abs(displacement).max() <= gpu_peers.AMPLITUDE + 1e-4
+
+
+NAMES = list(dict.fromkeys(list_names(sys.argv[1]) + OTHER_NAMES))
+check_parts(NAMES)
+check_failures(NAMES)
+check_ratio()
+check_document(NAMES)
+check_positions()
