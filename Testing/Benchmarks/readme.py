@@ -9,6 +9,7 @@ from results import Results
 from sections import PEERS, POSES, cell, table
 
 POSE = "near"
+GPU_DOCUMENT = "Documents/benchmarks-gpu.md"
 OURS = f"Deform/{POSE}/2197/exact"
 # Name, what it is, what it is on the plot, what it is compared with.
 ROWS = [
@@ -44,8 +45,13 @@ def section(devices, picture):
                 for _, short, milliseconds, _ in measured(devices[0])]
         plot_bars(picture, f"One update, 13.2 million voxels\n{devices[0].processors}", "ms", bars)
         yield f"![The same as bars]({picture.as_posix()})\n"
-    yield (("" if gpus else "No GPU has been measured yet. ")
-           + "[Documents/benchmarks.md](Documents/benchmarks.md) tells what is compared and how, and how to "
+    if gpus:
+        other = ""
+    elif pathlib.Path(GPU_DOCUMENT).is_file():
+        other = f"[{GPU_DOCUMENT}]({GPU_DOCUMENT}) has what was measured on a GPU. "
+    else:
+        other = "No GPU has been measured yet. "
+    yield (other + "[Documents/benchmarks.md](Documents/benchmarks.md) tells what is compared and how, and how to "
            "measure your\nmachine.")
 
 

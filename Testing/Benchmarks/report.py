@@ -61,9 +61,9 @@ def device_report(results, pictures, kind):
                     [[name, " ".join(words.split())] for name, words in errors])
 
 
-def report(devices, pictures, manual):
+def report(devices, pictures, title, manual):
     """manual: what the text calls Documents/benchmarks.md."""
-    yield "# Benchmarks\n"
+    yield f"# {title}\n"
     dates = {results.context["date"] for results in devices.values()}
     yield f"Measured on {min(dates)}. What each table means: {manual}.\n"
     yield table(["device", "what it is"],
@@ -87,12 +87,12 @@ def main(folder, document=None):
     if document:
         pictures = Pictures(document.parent / "images", "images/")
         pictures.folder.mkdir(exist_ok=True)
-        manual = "[benchmarks.md](benchmarks.md)"
+        title, manual = "Benchmarks on GPUs", "[benchmarks.md](benchmarks.md)"
     else:
         document = folder / "report.md"
         pictures = Pictures(folder)
-        manual = "Documents/benchmarks.md"
-    text = "\n".join(report(devices, pictures, manual))
+        title, manual = "Benchmarks", "Documents/benchmarks.md"
+    text = "\n".join(report(devices, pictures, title, manual))
     document.write_text(text, encoding="utf-8")
     print(text)
 

@@ -121,8 +121,9 @@ def gpu_peers(results, pictures, kind):
     copies = [f"{name.split('/')[-1]} {1e-9 * rate:,.0f} GB/s" for name in results.names("GpuPeer/copy/")
               for rate in [results.median(name, "bytes_per_second")] if rate]
     yield (f"Measured with {results.context['gpu_peers']}. They get the inverse deformation, as a position for "
-           "each voxel of the output that lies on the GPU already. They read and write values of 32 bits (half: "
-           "all of 16) and no mask. DeformVolume gets the forward deformation, and reads and writes 16 bits and "
+           "each voxel of the output that lies on the GPU already. They read and write values of 32 bits, and no "
+           "mask; with half, values and positions have 16 bits, so that a position is off by a tenth of a voxel "
+           "or more. DeformVolume gets the forward deformation, and reads and writes 16 bits and "
            "a mask. It ran in another process: the last columns are quotients of medians, its mapping and "
            "resampling by the time of the peer."
            + (f" A copy on the device reads and writes, together: {', '.join(copies)}." if copies else "")
