@@ -283,16 +283,18 @@ def main():
     options = parser.parse_args()
     if not options.folder.is_dir():
         parser.error(f"{options.folder} is no folder")
+    writer = Writer()
     peers = []
     for kind in (Torch, Cupy):
         try:
             peers.append(kind(options.cpu))
         except ImportError as error:
             print(f"gpu_peers.py: {kind.name} is left out: {error}", file=sys.stderr)
-    if not peers:
+        except Exception as error:  # whatever a library throws
+            writer.fail(f"GpuPeer/{kind.name}", error)
+    if not peers and not writer.failed:
         return 125
     results = Results(options.folder)
-    writer = Writer()
     for peer in peers:
         measure_copy(peer, writer)
     for pose in POSES:

@@ -9,6 +9,7 @@
 #   --programs FOLDER   measures with the programs in FOLDER, built elsewhere; installs and builds
 #                       nothing. Without xvfb-run or DeformVolumeRendering the viewports are left out,
 #                       without matplotlib the report
+#   --libraries FOLDER  where these programs find libraries; Python does not look there
 #   --output FOLDER     a folder that is empty or not there, instead of build/benchmarks
 #   --parts PART,...    only these of: benchmarks, memory, rendering, gpu-peers
 #   --filter REGEX      only the benchmarks whose names match. Given several times, each is a run with a
@@ -27,6 +28,7 @@ fail()
 known="benchmarks,memory,rendering,gpu-peers"
 quick=()
 programs=""
+libraries=""
 results=""
 parts=$known
 filters=()
@@ -34,10 +36,11 @@ seconds=""
 while [ $# -gt 0 ]; do
   case "$1" in
     --quick) quick=(--quick) ;;
-    --programs | --output | --parts | --filter | --seconds)
+    --programs | --libraries | --output | --parts | --filter | --seconds)
       [ -n "${2-}" ] || fail "$1 needs a value"
       case "$1" in
         --programs) programs=$(realpath -m -- "$2") ;;
+        --libraries) libraries=$(realpath -m -- "$2") ;;
         --output) results=$(realpath -m -- "$2") ;;
         --parts) parts=$2 ;;
         --filter) filters+=("$2") ;;
@@ -46,8 +49,8 @@ while [ $# -gt 0 ]; do
       shift
       ;;
     *)
-      echo "usage: Testing/Benchmarks/run.sh [--quick] [--programs FOLDER] [--output FOLDER]" \
-        "[--parts PART,...] [--filter REGEX]... [--seconds NUMBER]" >&2
+      echo "usage: Testing/Benchmarks/run.sh [--quick] [--programs FOLDER] [--libraries FOLDER]" \
+        "[--output FOLDER] [--parts PART,...] [--filter REGEX]... [--seconds NUMBER]" >&2
       exit 2
       ;;
   esac
@@ -63,6 +66,8 @@ wants() # PART
 {
   [[ ",$parts," == *",$1,"* ]]
 }
+
+[ -z "$libraries" ] || [ -d "$libraries" ] || fail "$libraries is no folder"
 
 python=/usr/bin/python3
 if [ -n "$programs" ]; then
@@ -85,11 +90,15 @@ elif [ -e "$results" ] && { [ ! -d "$results" ] || [ -n "$(ls -A "$results")" ];
 fi
 mkdir -p "$results"
 
+# How the programs are started.
+start=(env)
+[ -z "$libraries" ] || start=(env "LD_LIBRARY_PATH=$libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}")
+
 measure() # PROGRAM NAME-OF-RESULT [ARGUMENT]...
 {
   local program=$1 result=$2
   shift 2
-  "$programs/$program" "$@" "--benchmark_out=$folder/$result.json" --benchmark_out_format=json
+  "${start[@]}" "$programs/$program" "$@" "--benchmark_out=$folder/$result.json" --benchmark_out_format=json
 }
 
 # Volume, type, nodes on each axis, resampler; a process of its own for each.
@@ -135,7 +144,7 @@ measure_rendering()
     return
   fi
   try xvfb-run -a -s "-noreset -screen 0 1920x1200x24" \
-    "$programs/DeformVolumeRendering" "${quick[@]}" "--pictures=$folder" \
+    "${start[@]}" "$programs/DeformVolumeRendering" "${quick[@]}" "--pictures=$folder" \
     "--benchmark_out=$folder/rendering.json" --benchmark_out_format=json
 }
 
