@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MemoryNeeds.h"
 
+#include "BrickGrid.h"
 #include "DeviceVolume.h"
+#include "ExactPasses.h"
 #include "MemoryBudget.h"
 #include "MeshRasterizer.h"
 #include "OutputSlab.h"
@@ -43,10 +45,14 @@ std::uint64_t CountDeviceMemory(
       MeshRasterizer::GetMemoryNeeded(
         device, outputVoxels, outputBytesPerVoxel, size.NumberOfNodes, size.NumberOfTetrahedra);
   }
+  // The queue of the kernel for graphics cards, and coverage as bits.
+  const std::uint64_t queue =
+    ExactPasses::GetQueueMemory(device, BrickGrid(size.Grid).GetNumberOfBricks());
+  const std::uint64_t bits = queue > 0 ? (outputVoxels + 31) / 32 * 4 : 0;
   // Arrays, state, active tetrahedra and blanking; links or runs of a mesh; arrays and coverage of
   // the output; the deformation itself.
-  return voxels * (sent + 3) + size.MappingBytes + outputVoxels * outputBytesPerVoxel +
-    (size.NumberOfNodes + size.NumberOfTetrahedra) * 16;
+  return voxels * (sent + 3) + size.MappingBytes + outputVoxels * outputBytesPerVoxel + queue +
+    bits + (size.NumberOfNodes + size.NumberOfTetrahedra) * 16;
 }
 
 } // namespace

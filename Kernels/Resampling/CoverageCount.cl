@@ -19,48 +19,86 @@ __kernel void CountCovered(
   sums[item] = sum;
 }
 
-// The same where coverage is bits. words: of these.
-__kernel void CountCoveredBits(__global const uint* bits, const ulong words, __global uint* sums)
-{
-  uint sum = 0;
-  for (size_t i = get_global_id(0); i < words; i += get_global_size(0))
-  {
-    sum += popcount(bits[i]);
-  }
-  sums[get_global_id(0)] = sum;
-}
-
-// Adds up the counters of all sections (DEFORMVOLUME_SUMMARY_WORDS), in one work-group. sums: room for all counters of
-// each work-item.
-__kernel void Summarize(
-  __global const uint* counters, const uint sections, __global uint* summary, __local ulong* sums)
+// Adds up what the work-items of a group have in rows of local memory, into the first item of each row.
+static void AddRows(__local ulong* rows, int number)
 {
   const size_t item = get_local_id(0);
   const size_t items = get_local_size(0);
-  for (int i = 0; i < DEFORMVOLUME_COUNTERS; ++i)
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (size_t left = items; left > 1;)
   {
-    sums[i * items + item] = 0;
+    const size_t middle = (left + 1) / 2;
+    for (int i = 0; i < number && item + middle < left; ++i)
+    {
+      rows[i * items + item] += rows[i * items + item + middle];
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    left = middle;
   }
+}
+
+// The same where coverage is bits, a partial sum a work-group. words: of these; row: room for an element a work-item.
+__kernel void CountCoveredBits(
+  __global const uint* bits, const ulong words, __global uint* sums, __local ulong* row)
+{
+  const size_t step = get_global_size(0);
+  uint sum = 0;
+  size_t i = get_global_id(0);
+  for (; i + 3 * step < words; i += 4 * step) // memory is asked for all of them at once
+  {
+    const uint4 some = (uint4)(bits[i], bits[i + step], bits[i + 2 * step], bits[i + 3 * step]);
+    const uint4 counts = popcount(some);
+    sum += counts.x + counts.y + counts.z + counts.w;
+  }
+  for (; i < words; i += step)
+  {
+    sum += popcount(bits[i]);
+  }
+  row[get_local_id(0)] = sum;
+  AddRows(row, 1);
+  if (get_local_id(0) == 0)
+  {
+    sums[get_group_id(0)] = (uint)row[0];
+  }
+}
+
+// Adds up the counters of all sections, and partial sums of the voxels that are covered (DEFORMVOLUME_SUMMARY_WORDS),
+// in one work-group. rows: room for SUMMED_ROWS of an element a work-item.
+#define SUMMED_COVERED DEFORMVOLUME_COUNTERS
+#define SUMMED_ROWS (DEFORMVOLUME_COUNTERS + 1)
+
+__kernel void Summarize(__global const uint* counters, const uint sections,
+  __global const uint* covered, const uint parts, __global uint* summary, __local ulong* rows)
+{
+  const size_t item = get_local_id(0);
+  const size_t items = get_local_size(0);
+  ulong sums[SUMMED_ROWS] = { 0 };
+#pragma unroll 4
   for (size_t section = item; section < sections; section += items)
   {
+    const uint8 some = vload8(section, counters); // DEFORMVOLUME_COUNTERS
+    const uint counts[DEFORMVOLUME_COUNTERS] = { some.s0, some.s1, some.s2, some.s3, some.s4, some.s5,
+      some.s6, some.s7 };
+#pragma unroll
     for (int i = 0; i < DEFORMVOLUME_COUNTERS; ++i)
     {
-      sums[i * items + item] += counters[section * DEFORMVOLUME_COUNTERS + i];
+      sums[i] += counts[i];
     }
   }
-  barrier(CLK_LOCAL_MEM_FENCE);
-  for (size_t i = item; i < DEFORMVOLUME_COUNTERS; i += items)
+  for (size_t i = item; i < parts; i += items)
   {
-    for (size_t k = 1; k < items; ++k)
-    {
-      sums[i * items] += sums[i * items + k];
-    }
+    sums[SUMMED_COVERED] += covered[i];
   }
-  barrier(CLK_LOCAL_MEM_FENCE);
+#pragma unroll
+  for (int i = 0; i < SUMMED_ROWS; ++i)
+  {
+    rows[i * items + item] = sums[i];
+  }
+  AddRows(rows, SUMMED_ROWS);
   if (item == 0)
   {
-#define SUM_OF(counter) sums[(counter)*items]
-    const ulong wide[3] = { SUM_OF(DEFORMVOLUME_COUNT_WRITES), SUM_OF(DEFORMVOLUME_COUNT_COVERED),
+#define SUM_OF(counter) rows[(counter)*items]
+    const ulong wide[3] = { SUM_OF(DEFORMVOLUME_COUNT_WRITES), SUM_OF(SUMMED_COVERED),
       SUM_OF(DEFORMVOLUME_COUNT_INVERTED) };
     for (int i = 0; i < 3; ++i)
     {

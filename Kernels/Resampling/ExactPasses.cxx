@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace deformvolume
 {
@@ -25,8 +26,14 @@ static_assert(DEFORMVOLUME_CUBOID_X % DEFORMVOLUME_COLUMN == 0 &&
 namespace
 {
 
-// Bricks in a launch by columns at most: each of its cells has room in the queue.
-constexpr int MostBricksForQueue = 192;
+// Cells in a launch, about: where the lanes of processors take them, and where work-items do.
+constexpr std::int64_t CellsOfProcessors = std::int64_t{ 1 } << 23;
+constexpr std::int64_t CellsOfColumns = std::int64_t{ 1 } << 25;
+// Bricks in a launch by columns, each of whose cells has room in the queue: what is more than one of
+// CellsOfColumns has is of no use. Between these as many as take this part of the memory at most.
+constexpr std::uint64_t LeastBricksForQueue = 64;
+constexpr std::uint64_t MostBricksForQueue = 704;
+constexpr std::uint64_t PartForQueue = 64;
 // A launch of what is in the queue: it is not known to the host how much that is.
 constexpr std::size_t QueueGroupsPerUnit = 16;
 // Work-items of a group that have places in its local memory: see ResampleQueued.
@@ -43,6 +50,8 @@ const char* GetKernelName(ResamplingForm form)
       return "ResampleBricks";
     case ResamplingForm::Columns:
       return "ResampleColumns";
+    case ResamplingForm::Undecided:
+      return "ResampleUndecided";
     case ResamplingForm::Queue:
       return "ResampleQueued";
     case ResamplingForm::LargeCells:
@@ -53,10 +62,33 @@ const char* GetKernelName(ResamplingForm form)
 
 bool IsByColumns(ResamplingForm form)
 {
-  return form == ResamplingForm::Columns || form == ResamplingForm::Queue;
+  return form == ResamplingForm::Columns || form == ResamplingForm::Undecided ||
+    form == ResamplingForm::Queue;
+}
+
+/// What the queue takes for a launch of so many bricks: two counts, then the entries.
+std::uint64_t CountQueueBytes(std::uint64_t bricks)
+{
+  constexpr std::uint64_t cellsOfBrick =
+    std::uint64_t{ DEFORMVOLUME_BRICK_X } * DEFORMVOLUME_BRICK_Y * DEFORMVOLUME_BRICK_Z;
+  return (2 + bricks * cellsOfBrick) * sizeof(cl_uint);
+}
+
+std::uint64_t GetMostBricksForQueue(WorkDevice& device)
+{
+  const std::uint64_t memory =
+    device.GetDevice().Device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>() / PartForQueue;
+  return std::clamp(memory / CountQueueBytes(1), LeastBricksForQueue, MostBricksForQueue);
 }
 
 } // namespace
+
+std::uint64_t ExactPasses::GetQueueMemory(WorkDevice& device, std::uint64_t bricks)
+{
+  return device.GetDevice().HasVectors || !HasLocalColumns(device.GetContext())
+    ? 0
+    : CountQueueBytes(std::min(bricks, GetMostBricksForQueue(device)));
+}
 
 ExactPasses::ExactPasses(
   WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches)
@@ -102,7 +134,8 @@ ResamplingForm ExactPasses::ChooseForm(Resampling method, const OutputSlab& outp
 
 int ExactPasses::GetLayersPerLaunch() const
 {
-  constexpr std::int64_t cells = 1 << 23;
+  const std::int64_t cells =
+    this->Device.GetDevice().HasVectors ? CellsOfProcessors : CellsOfColumns;
   const std::int64_t layer = std::int64_t{ this->Volume.GetSize(0) } * this->Volume.GetSize(1);
   constexpr std::int64_t turn = BrickGrid::BricksInTurn * DEFORMVOLUME_BRICK_Z;
   const std::int64_t turns = (cells / layer + turn - 1) / turn;
@@ -132,7 +165,8 @@ cl::Kernel ExactPasses::MakeKernel(ResamplingForm form, const OutputSlab& output
   const bool wideKeys = GetWinnerSize(this->Volume.GetVoxelGrid()) == 8;
   return cl::Kernel(GetResamplingProgram(context, this->Source.GetMappingForm(), arrays,
                       { form, wideKeys, output.HasCoverageBits(), this->Volume.HasCut(),
-                        form == ResamplingForm::Columns && pass == DEFORMVOLUME_PASS_DIRECT }),
+                        (form == ResamplingForm::Columns || form == ResamplingForm::Undecided) &&
+                          pass == DEFORMVOLUME_PASS_DIRECT }),
     GetKernelName(form));
 }
 
@@ -212,6 +246,7 @@ void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
         return cl::NDRange(1);
       case ResamplingForm::Columns:
         return cl::NDRange(this->GetColumnGroup(kernel, form), 1, 1);
+      case ResamplingForm::Undecided:
       case ResamplingForm::Queue:
         return cl::NDRange(this->GetColumnGroup(kernel, form));
       case ResamplingForm::LargeCells:
@@ -305,13 +340,13 @@ void ExactPasses::Launch(
   }
   if (form == ResamplingForm::Columns)
   {
-    this->Device.GetQueue().enqueueFillBuffer(this->Queue, cl_uint{ 0 }, 0, sizeof(cl_uint));
+    this->ClearQueue();
     const std::size_t group = this->GetColumnGroup(kernel, form);
     this->Launched.Run(request, kernel, cl::NDRange(group * DEFORMVOLUME_COLUMNS * bricks, 2, 2),
       cl::NDRange(group, 1, 1));
     return;
   }
-  if (form == ResamplingForm::Queue)
+  if (IsByColumns(form))
   {
     const std::size_t group = this->GetColumnGroup(kernel, form);
     this->Launched.GetResamplingEvents().push_back(
@@ -370,38 +405,48 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
 void ExactPasses::RunColumns(const DeformRequest& request, const OutputSlab& output,
   cl::Kernel& columns, const std::vector<PlannedLaunch>& launches)
 {
-  int most = 0;
+  const auto most = static_cast<int>(GetMostBricksForQueue(this->Device));
+  int used = 0;
   for (const PlannedLaunch& launch : launches)
   {
-    most = std::max(most, launch.Parameters.ListEnd - launch.Parameters.ListBegin);
+    used = std::max(used, launch.Parameters.ListEnd - launch.Parameters.ListBegin);
   }
-  constexpr std::uint64_t cellsOfBrick =
-    std::uint64_t{ DEFORMVOLUME_BRICK_X } * DEFORMVOLUME_BRICK_Y * DEFORMVOLUME_BRICK_Z;
-  const std::uint64_t entries =
-    static_cast<std::uint64_t>(std::min(most, MostBricksForQueue)) * cellsOfBrick;
   // A longer one serves as well.
-  if (deformvolume::GetMemory(this->Queue) < (1 + entries) * sizeof(cl_uint))
+  const std::uint64_t bytes = CountQueueBytes(static_cast<std::uint64_t>(std::min(used, most)));
+  if (deformvolume::GetMemory(this->Queue) < bytes)
   {
-    Reserve(this->Device.GetContext(), this->Queue, (1 + entries) * sizeof(cl_uint));
+    Reserve(this->Device.GetContext(), this->Queue, bytes);
   }
-  cl::Kernel queue =
-    this->MakeKernel(ResamplingForm::Queue, output, launches.front().Parameters.Pass);
   const PlannedLaunch& first = launches.front();
-  this->PrepareKernel(columns, first.Chunk, output, ResamplingForm::Columns, first.Parameters);
-  this->Device.GetQueue().enqueueFillBuffer(this->Queue, cl_uint{ 0 }, 0, sizeof(cl_uint));
-  this->PrepareKernel(queue, first.Chunk, output, ResamplingForm::Queue, first.Parameters);
+  const int pass = first.Parameters.Pass;
+  std::array<std::pair<ResamplingForm, cl::Kernel>, 3> kernels{ {
+    { ResamplingForm::Columns, columns },
+    { ResamplingForm::Undecided, this->MakeKernel(ResamplingForm::Undecided, output, pass) },
+    { ResamplingForm::Queue, this->MakeKernel(ResamplingForm::Queue, output, pass) },
+  } };
+  this->ClearQueue();
+  for (auto& [form, kernel] : kernels)
+  {
+    this->PrepareKernel(kernel, first.Chunk, output, form, first.Parameters);
+  }
   for (const auto& [chunk, planned] : launches)
   {
     KernelParameters p = planned;
     for (p.ListEnd = p.ListBegin; p.ListEnd < planned.ListEnd; p.ListBegin = p.ListEnd)
     {
-      p.ListEnd = std::min(p.ListBegin + MostBricksForQueue, planned.ListEnd);
-      this->SetArguments(columns, chunk, output, ResamplingForm::Columns, p);
-      this->Launch(request, columns, ResamplingForm::Columns, p);
-      this->SetArguments(queue, chunk, output, ResamplingForm::Queue, p);
-      this->Launch(request, queue, ResamplingForm::Queue, p);
+      p.ListEnd = std::min(p.ListBegin + most, planned.ListEnd);
+      for (auto& [form, kernel] : kernels)
+      {
+        this->SetArguments(kernel, chunk, output, form, p);
+        this->Launch(request, kernel, form, p);
+      }
     }
   }
+}
+
+void ExactPasses::ClearQueue()
+{
+  this->Device.GetQueue().enqueueFillBuffer(this->Queue, cl_uint{ 0 }, 0, 2 * sizeof(cl_uint));
 }
 
 void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& output, int pass)
@@ -460,7 +505,7 @@ void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& 
 
 std::uint64_t ExactPasses::GetMemory() const
 {
-  return deformvolume::GetMemory(this->BrickRows);
+  return deformvolume::GetMemory(this->BrickRows) + deformvolume::GetMemory(this->Queue);
 }
 
 } // namespace deformvolume

@@ -47,8 +47,10 @@ public:
   /// Makes a list, which is not empty, the one that the device has.
   const cl::Buffer& SendBricks(const std::vector<cl_uint>& list);
 
-  /// Bytes on the device, but for lists of work.
+  /// Bytes on the device, but for lists of work that are short.
   std::uint64_t GetMemory() const;
+  /// Of these, what the queue takes for a volume of so many bricks where the device has one.
+  static std::uint64_t GetQueueMemory(WorkDevice& device, std::uint64_t bricks);
 
 private:
   struct PlannedLaunch
@@ -69,9 +71,10 @@ private:
   /// Launches a kernel of a form over the bricks that the parameters have of the list.
   void Launch(const DeformRequest& request, cl::Kernel& kernel, ResamplingForm form,
     const KernelParameters& p);
-  /// Launches the kernel for columns, and after each launch the one for what that leaves.
+  /// Launches the kernel for columns, and after each launch those for what that leaves.
   void RunColumns(const DeformRequest& request, const OutputSlab& output, cl::Kernel& columns,
     const std::vector<PlannedLaunch>& launches);
+  void ClearQueue();
   /// Work-items of a group of the kernels for columns and for what these leave in the queue, and
   /// those of a launch of the latter.
   std::size_t GetColumnGroup(const cl::Kernel& kernel, ResamplingForm form);
@@ -92,7 +95,7 @@ private:
   std::vector<cl_uint> SentBricks; // what it has
   cl::Buffer BrickRows;            // what these need, where local memory is too small
   cl::Buffer TakenBricks;          // how many of these the launch that runs has taken
-  cl::Buffer Queue;                // what columns leave for later
+  cl::Buffer Queue;                // cells that columns leave for later
   cl::Buffer Pieces;               // of large cells, to work on
 };
 

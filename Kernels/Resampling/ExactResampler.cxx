@@ -60,7 +60,7 @@ void ExactResampler::MakePublished(
   this->Source.PrepareMapping(this->Launched.GetMappingEvents());
   this->Published.Run(request, output);
   report.NumberOfCoveredVoxels += static_cast<std::int64_t>(
-    output.CountCovered(this->Device.GetContext(), this->Launched.GetResamplingEvents()));
+    output.CountCovered(this->Device, this->Launched.GetResamplingEvents()));
 }
 
 void ExactResampler::RunPass(const DeformRequest& request, const OutputSlab& output, int pass,
@@ -79,10 +79,10 @@ ExactResampler::Outcome ExactResampler::RunFirstPass(
   Outcome outcome;
   const auto count = [&]
   {
-    outcome.Counts = output.ReadCounts(this->Device, this->Launched.GetResamplingEvents());
+    outcome.Counts = output.ReadCounts(this->Device, true, this->Launched.GetResamplingEvents());
     outcome.Covered = output.HasCoverageBits()
       ? outcome.Counts.Covered
-      : output.CountCovered(this->Device.GetContext(), this->Launched.GetResamplingEvents());
+      : output.CountCovered(this->Device, this->Launched.GetResamplingEvents());
   };
   this->Source.PrepareMapping(this->Launched.GetMappingEvents());
   this->RunPass(request, output, pass, false);
@@ -131,7 +131,7 @@ void ExactResampler::MakeExact(
       this->Last =
         claimed && first.Counts.Overstretched == 0 ? LastOutput::Won : LastOutput::Unknown;
     }
-    covered = output.CountCovered(this->Device.GetContext(), this->Launched.GetResamplingEvents());
+    covered = output.CountCovered(this->Device, this->Launched.GetResamplingEvents());
   }
   output.Complete(this->Device.GetContext(), this->Volume.GetVolumeArrays(), false,
     this->Launched.GetResamplingEvents());
@@ -227,12 +227,12 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
   this->Source.PrepareMapping(this->Launched.GetMappingEvents(), &bricks);
   this->RunPass(request, output, pass, false, &bricks);
   Again again;
-  again.Counts = output.ReadCounts(this->Device, this->Launched.GetResamplingEvents());
+  again.Counts = output.ReadCounts(this->Device, false, this->Launched.GetResamplingEvents());
   const bool hasLargeCells = again.Counts.HasLarge;
   if (hasLargeCells)
   {
     this->Exact.RunLargeCells(request, output, pass);
-    again.Counts = output.ReadCounts(this->Device, this->Launched.GetResamplingEvents());
+    again.Counts = output.ReadCounts(this->Device, false, this->Launched.GetResamplingEvents());
   }
   const auto complete = [&]
   {

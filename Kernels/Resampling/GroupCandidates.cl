@@ -25,6 +25,7 @@ typedef struct
   INTS Count[3];    // how many on each axis
   INTS Place;       // of the first one in the output
   INTS Number;      // how many in all, in cells that have some
+  int IsBeyond;     // whether some may lie beyond the part of the output that is made
   INTS Box;         // cells that are boxes, if HasBoxes
   INTS Beside;      // boxes where something is missing round a vertex (DecideOnVertices), if HasBeside
   GroupState State; // if HasBeside
@@ -129,7 +130,7 @@ static SELDOM void FindParallelEdges(
 // The first of the samples of the output that lie within bounds on an axis, and one past the last.
 // Of cells that are not there either may be anything.
 #define FIRST_OF(low) TO_INTS(Most(low, 0.0f) + ALMOST_ONE)
-#define END_OF(high, toEnd, size) TO_INTS(Least((high) + toEnd, (float)(size)))
+#define END_OF(high, toEnd, size) min(TO_INTS((high) + toEnd), (INTS)(size))
 
 // Boxes do not look at their high sides, nor at whether they own a sample: all samples in them count as touched.
 static SELDOM void TouchBoxes(
@@ -278,12 +279,11 @@ static __attribute__((always_inline)) void FindSamplesOfWhole(
   const Bounds* b, const ToEnds* toEnds, SamplesInBounds* s, const KernelParameters* p)
 {
 #define WHOLE_FIRST(low, axis)                                                                     \
-  TO_INTS(Most(low, max((float)p->WholeFirst[axis], -MAXIMUM_EXTENT)) +                            \
-    (MAXIMUM_EXTENT + ALMOST_ONE)) - (int)MAXIMUM_EXTENT
+  max(TO_INTS((low) + (MAXIMUM_EXTENT + ALMOST_ONE)) - (int)MAXIMUM_EXTENT,                        \
+    (INTS)(max(p->WholeFirst[axis], -(int)MAXIMUM_EXTENT)))
 #define WHOLE_END(high, toEnd, axis)                                                               \
-  TO_INTS(Least((high) + toEnd,                                                                    \
-            min((float)p->WholeEnd[axis], p->OutputSize[axis] + MAXIMUM_EXTENT)) +                 \
-    MAXIMUM_EXTENT) - (int)MAXIMUM_EXTENT
+  min(TO_INTS((high) + toEnd + MAXIMUM_EXTENT) - (int)MAXIMUM_EXTENT,                              \
+    (INTS)(min(p->WholeEnd[axis], p->OutputSize[axis] + (int)MAXIMUM_EXTENT)))
   s->FirstX = WHOLE_FIRST(b->LowX, 0);
   s->FirstY = WHOLE_FIRST(b->LowY, 1);
   s->FirstZ = WHOLE_FIRST(b->LowZ, 2);
@@ -292,18 +292,20 @@ static __attribute__((always_inline)) void FindSamplesOfWhole(
   s->CountZ = WHOLE_END(b->HighZ, toEnds->Z, 2) - s->FirstZ;
 }
 
-// The samples within the bounds of cells as their candidates.
-static __attribute__((always_inline)) void SetCandidates(
-  const Bounds* b, const ToEnds* toEnds, GroupCandidates* c, const KernelParameters* p)
+// The samples within the bounds of cells as their candidates. inPart: those in the buffers.
+static __attribute__((always_inline)) void SetCandidates(const Bounds* b, const ToEnds* toEnds,
+  const SamplesInBounds* inPart, GroupCandidates* c, const KernelParameters* p)
 {
-  SamplesInBounds s;
-  if (p->IsPart)
+  // What lies in the part has the same samples in the whole.
+  c->IsBeyond = p->IsPart &&
+    LaneBits((Least(b->LowX, Least(b->LowY, b->LowZ)) < 0.0f) |
+      (inPart->FirstX + inPart->CountX == p->OutputSize[0]) |
+      (inPart->FirstY + inPart->CountY == p->OutputSize[1]) |
+      (inPart->FirstZ + inPart->CountZ == p->OutputSize[2]));
+  SamplesInBounds s = *inPart;
+  if (c->IsBeyond)
   {
     FindSamplesOfWhole(b, toEnds, &s, p);
-  }
-  else
-  {
-    FindSamples(b, toEnds, &s, p);
   }
   c->First[0] = s.FirstX;
   c->First[1] = s.FirstY;
@@ -327,7 +329,8 @@ static __attribute__((always_inline)) int IsSettled(
   return !some || !AnyUnsettled(output->Patches, first, last, p);
 }
 
-// b: the bounds of the cells.
+// b: the bounds of the cells. mesh: null where nothing round the cells is missing, or as for ResampleColumnCell
+// (ColumnCells.cl).
 static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   const SamplingMesh* mesh, Output* output, GroupCandidates* c,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -342,7 +345,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   c->HasBeside = 0;
   const FLOATS toEnd = border || p->Pass != DEFORMVOLUME_PASS_DIRECT ? 1.0f : ALMOST_ONE;
   ToEnds toEnds = { toEnd, toEnd, toEnd };
-  if (border)
+  if (border && mesh)
   {
     EndOnBorder(c, rises, mesh, &whole, &box, &toEnds, output, p);
   }
@@ -352,7 +355,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
     whole &= ~FindDivided(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, p);
   }
 #endif
-  if (c->HasBoxes)
+  if (c->HasBoxes && (!border || mesh))
   {
     c->Box = box;
     if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
@@ -370,7 +373,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   // Cells that a cut divides, none of which is whole, reach beyond the bounds of their vertices.
   const int isDivided = HAS_CUT && (c->There & ~whole);
   c->Skip = DEFORMVOLUME_IS_CLOSED(p->Pass) && !isDivided && IsSettled(some, &s, output, p);
-  SetCandidates(b, &toEnds, c, p);
+  SetCandidates(b, &toEnds, &s, c, p);
   c->Fit = whole & LaneBits(c->Extent < MAXIMUM_EXTENT) &
     ~(some & LaneBits(c->Number > MAXIMUM_CANDIDATES));
   c->Some = some & c->Fit;

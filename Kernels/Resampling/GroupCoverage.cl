@@ -227,8 +227,9 @@ static SELDOM INTS HoldSample(
 static __attribute__((always_inline)) uint InOutput(
   FLOATS x, FLOATS y, FLOATS z, const KernelParameters* p)
 {
-  return LaneBits((x >= 0.0f) & (x < (float)p->OutputSize[0]) & (y >= 0.0f) &
-    (y < (float)p->OutputSize[1]) & (z >= 0.0f) & (z < (float)p->OutputSize[2]));
+  const INTS ix = TO_INTS(x), iy = TO_INTS(y), iz = TO_INTS(z);
+  return LaneBits((ix >= 0) & (ix < p->OutputSize[0]) & (iy >= 0) & (iy < p->OutputSize[1]) &
+    (iz >= 0) & (iz < p->OutputSize[2]));
 }
 
 // Marks the samples of some lanes, by bits, which hold these and do not own them. x, y, z: in voxels of the output.

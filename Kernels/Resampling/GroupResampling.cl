@@ -149,7 +149,7 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
       rounds->Ambiguous |= undecided;
       doubts->Rounds[rounds->Doubts++] = rounds->Count << 16 | undecided;
     }
-    if (p->IsPart)
+    if (c->IsBeyond)
     {
       held &= InOutput(at.X + frame->X0, at.Y + frame->Y0, at.Z + frame->Z0, p);
     }

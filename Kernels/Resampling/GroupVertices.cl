@@ -51,8 +51,9 @@ typedef struct
 #if LANES > 1
   LocalRow Rows[4];
 #else
-  LocalRow Row; // of even y and z; planes of even and odd z are ROWS rows apart
+  LocalRow Row; // of even y and z
   int OddY;     // from there to the row of odd y
+  int OddZ;     // and to the one of odd z
 #endif
   int Side;
   int X;
@@ -85,7 +86,7 @@ static __attribute__((always_inline)) void MakeGroup(
 #define ROW_OF(group, v) ((group)->Rows[(v) >> 1])
 #else
 #define ROW_OF(group, v)                                                                           \
-  ((group)->Row + ((v) >> 1 & 1) * (ROWS * ROW) + ((v) >> 2) * (group)->OddY)
+  ((group)->Row + ((v) >> 1 & 1) * (group)->OddZ + ((v) >> 2) * (group)->OddY)
 #endif
 #define PLACE_OF(group, v) (ROW_OF(group, v) + ((v)&1 ? ODD : (group)->Side))
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The way of the lanes through the candidates of their cells (GroupCandidates.cl), one after the other.
 
-#if LANES > 1
 // Where the lanes are among the candidates of their cells.
 typedef struct
 {
@@ -39,30 +38,6 @@ static __attribute__((always_inline)) void Advance(Walk* at)
   at->Z = planeDone ? at->Z + 1.0f : at->Z;
   at->Place += 1 + WHERE(rowDone, at->ToNextRow) + WHERE(planeDone, at->ToNextPlane);
 }
-
-#else
-
-typedef struct
-{
-  float X, Y, Z;
-  int Place;
-} Walk;
-
-// To a candidate by its number. Registers are few: what others keep from one to the next is found again.
-static __attribute__((always_inline)) void GoTo(
-  const GroupCandidates* c, const GroupFrame* f, int candidate, Walk* at, const KernelParameters* p)
-{
-  // Exact: rounding takes no quotient of these numbers over an integer.
-  const int row = (int)((candidate + 0.5f) * (1.0f / (float)c->Count[0]));
-  const int plane = (int)((row + 0.5f) * (1.0f / (float)c->Count[1]));
-  const int inRow = candidate - row * c->Count[0];
-  const int inPlane = row - plane * c->Count[1];
-  at->X = ((float)c->First[0] - f->X0) + (float)inRow;
-  at->Y = ((float)c->First[1] - f->Y0) + (float)inPlane;
-  at->Z = ((float)c->First[2] - f->Z0) + (float)plane;
-  at->Place = c->Place + inRow + (plane * p->OutputSize[1] + inPlane) * p->OutputSize[0];
-}
-#endif
 
 // The lanes whose candidate is a vertex of their cell, if that is a box.
 static __attribute__((always_inline)) INTS IsOnVertex(const GroupFrame* f, const Walk* at)

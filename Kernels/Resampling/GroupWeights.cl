@@ -53,8 +53,9 @@ typedef struct
 } GroupFrame;
 
 // A group's normals and determinants, as if no cell were inverted.
-static __attribute__((always_inline)) void FindNormals(const Group* group, GroupFrame* f)
+static __attribute__((always_inline)) void FindNormals(const GroupCandidates* c, GroupFrame* f)
 {
+  const Group* const group = &c->Cells;
   LOAD_VERTEX(0)
   LOAD_VERTEX(3)
   LOAD_VERTEX(5)
@@ -70,7 +71,13 @@ static __attribute__((always_inline)) void FindNormals(const Group* group, Group
   f->n##x = fma(a##y, b##z, -(a##z * b##y));                                                       \
   f->n##y = fma(a##z, b##x, -(a##x * b##z));                                                       \
   f->n##z = fma(a##x, b##y, -(a##y * b##x));
-  if (group->Odd)
+#if LANES > 1
+  const int turned = group->Odd;
+#else
+  // Every second work-item has an odd cell: a branch would be two ways for all. Signs do where normals are exact.
+  const int turned = group->Odd && c->Extent > EXACT_NORMALS_EXTENT;
+#endif
+  if (turned)
   {
     NORMAL(N3, e6, e5)
     NORMAL(N5, e3, e6)
@@ -81,6 +88,11 @@ static __attribute__((always_inline)) void FindNormals(const Group* group, Group
     NORMAL(N3, e5, e6)
     NORMAL(N5, e6, e3)
     NORMAL(N6, e3, e5)
+#if LANES == 1
+    const float sign = group->Odd ? -1.0f : 1.0f;
+#define SIGN(v) f->v *= sign;
+    SIGN(N3x) SIGN(N3y) SIGN(N3z) SIGN(N5x) SIGN(N5y) SIGN(N5z) SIGN(N6x) SIGN(N6y) SIGN(N6z)
+#endif
   }
   f->Determinant = fma(e3z, f->N3z, fma(e3y, f->N3y, e3x * f->N3x));
 }
@@ -148,7 +160,7 @@ static __attribute__((always_inline)) void BoundErrors(
 static __attribute__((always_inline)) void MakeGroupFrame(
   const GroupCandidates* c, uint fit, GroupFrame* frame)
 {
-  FindNormals(&c->Cells, frame);
+  FindNormals(c, frame);
   TurnInverted(fit, frame);
   FindCoordinates(&c->Cells, frame);
   BoundErrors(c, fit, frame);

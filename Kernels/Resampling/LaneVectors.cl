@@ -39,6 +39,7 @@ typedef float8 __attribute__((aligned(4))) PlacedFloat8;
 typedef int16 __attribute__((aligned(4))) PlacedInt16;
 #endif
 
+#if LANES > 1
 static FLOATS Least(FLOATS a, FLOATS b)
 {
   return a < b ? a : b;
@@ -48,6 +49,11 @@ static FLOATS Most(FLOATS a, FLOATS b)
 {
   return a > b ? a : b;
 }
+#else
+// One instruction, where a comparison and a choice are two.
+#define Least fmin
+#define Most fmax
+#endif
 
 #if LANES == 16
 #define LANE_INDEX ((INTS)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))

@@ -38,6 +38,25 @@ FILL(Fill2, ushort, ushort16)
 FILL(Fill4, uint, uint16)
 FILL(Fill8, ulong, ulong16)
 
+// Whether a pointer and what is a multiple of as many bytes behind it can be stored to at once.
+#define IS_ALIGNED(target) (((size_t)(target) & (sizeof(uint4) - 1)) == 0)
+
+// For devices whose work-items are lanes: each takes 16 bytes, which are those of a pattern.
+__kernel void FillWide(__global uchar* restrict target, const ulong bytes, const uint4 pattern)
+{
+  const size_t first = get_global_id(0) * sizeof(uint4);
+  if (first + sizeof(uint4) <= bytes && IS_ALIGNED(target))
+  {
+    *(__global uint4*)(target + first) = pattern;
+    return;
+  }
+  const uchar* value = (const uchar*)&pattern;
+  for (size_t i = first; i < min(first + sizeof(uint4), (size_t)bytes); ++i)
+  {
+    target[i] = value[i - first];
+  }
+}
+
 // The rows of a patch that a work-item takes: the voxels from a first one to an end, which has the value of the first
 // where the row is not in the output.
 typedef struct
@@ -89,33 +108,71 @@ static uint IsCovered(__global const uint* bits, size_t voxel)
   return bits[voxel >> 5] >> (voxel & 31) & 1;
 }
 
-// The same as bytes, an item a voxel.
+// Neighbours take DEFORMVOLUME_EXPANDED voxels each, as many bytes as are stored at once, side by side.
+static uint CoveredOf(__global const uint* bits, size_t first)
+{
+  return bits[first >> 5] >> (first & 31) & 0xffff;
+}
+
+// Four bits as bytes.
+static uint BytesOf(uint bits)
+{
+  return (bits & 15) * 0x00204081 & 0x01010101;
+}
+
+// The same as bytes.
 __kernel void ExpandCoverage(__global const uint* bits, __global uchar* coverage, const ulong voxels)
 {
-  for (size_t i = get_global_id(0); i < voxels; i += get_global_size(0))
+  const size_t first = get_global_id(0) * DEFORMVOLUME_EXPANDED;
+  const size_t end = min(first + DEFORMVOLUME_EXPANDED, (size_t)voxels);
+  if (first + DEFORMVOLUME_EXPANDED <= voxels && IS_ALIGNED(coverage))
+  {
+    const uint covered = CoveredOf(bits, first);
+    *(__global uint4*)(coverage + first) = (uint4)(
+      BytesOf(covered), BytesOf(covered >> 4), BytesOf(covered >> 8), BytesOf(covered >> 12));
+    return;
+  }
+  for (size_t i = first; i < end; ++i)
   {
     coverage[i] = IsCovered(bits, i);
   }
 }
 
-// Elements of voxels that are not covered, an item an element: so each element of an output is written once only.
-#define FILL_UNCOVERED(NAME, TYPE)                                                                 \
+// Elements of voxels that are not covered: so each element of an output is written once only. WIDE: a vector of 16
+// bytes.
+#define FILL_UNCOVERED(NAME, TYPE, WIDE)                                                           \
   __kernel void NAME(__global TYPE* restrict target, const ulong voxels, const TYPE value,         \
     __global const uint* bits, const uint elements)                                                \
   {                                                                                                \
-    for (size_t i = get_global_id(0); i < voxels * elements; i += get_global_size(0))              \
+    const size_t first = get_global_id(0) * DEFORMVOLUME_EXPANDED;                                 \
+    const size_t end = min(first + DEFORMVOLUME_EXPANDED, (size_t)voxels);                         \
+    const uint covered = first < end ? CoveredOf(bits, first) : 0xffff;                            \
+    if (covered == 0xffff)                                                                         \
     {                                                                                              \
-      if (!IsCovered(bits, i / elements))                                                          \
+      return;                                                                                      \
+    }                                                                                              \
+    if (covered == 0 && first + DEFORMVOLUME_EXPANDED <= voxels && IS_ALIGNED(target))             \
+    {                                                                                              \
+      __global WIDE* const wide = (__global WIDE*)(target + first * elements);                     \
+      for (uint i = 0; i < elements * (uint)sizeof(TYPE); ++i)                                     \
       {                                                                                            \
-        target[i] = value;                                                                         \
+        wide[i] = (WIDE)value;                                                                     \
+      }                                                                                            \
+      return;                                                                                      \
+    }                                                                                              \
+    for (size_t i = first; i < end; ++i)                                                           \
+    {                                                                                              \
+      for (uint e = 0; e < elements && !IsCovered(bits, i); ++e)                                   \
+      {                                                                                            \
+        target[i * elements + e] = value;                                                          \
       }                                                                                            \
     }                                                                                              \
   }
 
-FILL_UNCOVERED(FillUncovered1, uchar)
-FILL_UNCOVERED(FillUncovered2, ushort)
-FILL_UNCOVERED(FillUncovered4, uint)
-FILL_UNCOVERED(FillUncovered8, ulong)
+FILL_UNCOVERED(FillUncovered1, uchar, uchar16)
+FILL_UNCOVERED(FillUncovered2, ushort, ushort8)
+FILL_UNCOVERED(FillUncovered4, uint, uint4)
+FILL_UNCOVERED(FillUncovered8, ulong, ulong2)
 
 // The patches of a list, a work-group each: clears their bits, or makes bytes of them.
 __kernel void ClearPatchBits(

@@ -25,6 +25,14 @@ void LaunchPatches(OpenCLContext& context, const cl::CommandQueue& queue, const 
   events.push_back(context.Launch(queue, kernel, cl::NDRange(group * count), cl::NDRange(group)));
 }
 
+/// An item for as many voxels as it takes at once.
+void LaunchExpanded(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+  std::uint64_t voxels, std::vector<cl::Event>& events)
+{
+  LaunchBusyItems(context, queue, kernel,
+    static_cast<std::size_t>((voxels + DEFORMVOLUME_EXPANDED - 1) / DEFORMVOLUME_EXPANDED), events);
+}
+
 } // namespace
 
 ElementBytes GetBackground(const VolumeArray& array)
@@ -72,14 +80,19 @@ void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffe
   }
   if (!context.GetDevice().IsProcessor)
   {
-    cl_event done = nullptr;
-    const cl_int error = clEnqueueFillBuffer(
-      queue(), buffer(), value.Bytes.data(), value.Size, 0, size * value.Size, 0, nullptr, &done);
-    if (error != CL_SUCCESS)
+    cl_uint4 pattern;
+    auto* const bytes = reinterpret_cast<unsigned char*>(&pattern);
+    for (std::size_t i = 0; i < sizeof(pattern); ++i)
     {
-      throw cl::Error(error, "clEnqueueFillBuffer");
+      bytes[i] = value.Bytes[i % value.Size];
     }
-    events.emplace_back(done);
+    cl::Kernel kernel(GetOutputProgram(context), "FillWide");
+    kernel.setArg(0, buffer);
+    kernel.setArg(1, cl_ulong{ size * value.Size });
+    kernel.setArg(2, pattern);
+    LaunchBusyItems(context, queue, kernel,
+      static_cast<std::size_t>((size * value.Size + sizeof(pattern) - 1) / sizeof(pattern)),
+      events);
     return;
   }
   cl::Kernel kernel = MakeKernel(context, "Fill", value);
@@ -111,7 +124,7 @@ void ExpandCoverage(OpenCLContext& context, const cl::CommandQueue& queue, const
   kernel.setArg(0, bits);
   kernel.setArg(1, coverage);
   kernel.setArg(2, cl_ulong{ voxels });
-  LaunchSmallItems(context, queue, kernel, voxels, events);
+  LaunchExpanded(context, queue, kernel, voxels, events);
 }
 
 void ExpandPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
@@ -147,7 +160,7 @@ void FillUncovered(OpenCLContext& context, const cl::CommandQueue& queue, const 
   kernel.setArg(2, value.Size, value.Bytes.data());
   kernel.setArg(3, bits);
   kernel.setArg(4, static_cast<cl_uint>(elements));
-  LaunchSmallItems(context, queue, kernel, voxels * elements, events);
+  LaunchExpanded(context, queue, kernel, voxels, events);
 }
 
 } // namespace deformvolume

@@ -331,20 +331,38 @@ std::vector<OutputSlab::LargeCell> OutputSlab::ReadLargeCells() const
   return cells;
 }
 
-std::uint64_t OutputSlab::CountCovered(OpenCLContext& context, std::vector<cl::Event>& events)
+std::uint64_t OutputSlab::CountCovered(WorkDevice& device, std::vector<cl::Event>& events)
 {
-  const std::uint64_t words = CountWords(this->NumberOfVoxels);
-  const std::uint64_t items = this->BitsUsed
-    ? DEFORMVOLUME_BIT_COUNTERS
-    : (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS;
+  if (this->BitsUsed)
+  {
+    this->CountBits(device, events);
+    return ReadSum(this->Queue, this->CoveredParts, DEFORMVOLUME_BIT_COUNTERS);
+  }
+  OpenCLContext& context = device.GetContext();
+  const std::uint64_t items =
+    (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS;
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, items * sizeof(cl_uint));
-  cl::Kernel kernel(
-    GetOutputProgram(context), this->BitsUsed ? "CountCoveredBits" : "CountCovered");
-  kernel.setArg(0, this->GetCoverageTarget());
-  kernel.setArg(1, cl_ulong{ this->BitsUsed ? words : this->NumberOfVoxels });
+  cl::Kernel kernel(GetOutputProgram(context), "CountCovered");
+  kernel.setArg(0, this->Coverage);
+  kernel.setArg(1, cl_ulong{ this->NumberOfVoxels });
   kernel.setArg(2, sums);
   LaunchBusyItems(context, this->Queue, kernel, static_cast<std::size_t>(items), events);
   return ReadSum(this->Queue, sums, static_cast<std::size_t>(items));
+}
+
+void OutputSlab::CountBits(WorkDevice& device, std::vector<cl::Event>& events)
+{
+  OpenCLContext& context = device.GetContext();
+  constexpr std::size_t parts = DEFORMVOLUME_BIT_COUNTERS;
+  Reserve(context, this->CoveredParts, parts * sizeof(cl_uint));
+  cl::Kernel kernel(GetOutputProgram(context), "CountCoveredBits");
+  const std::size_t group = device.GetBusyGroupSize(kernel, 256);
+  kernel.setArg(0, this->CoverageBits);
+  kernel.setArg(1, cl_ulong{ CountWords(this->NumberOfVoxels) });
+  kernel.setArg(2, this->CoveredParts);
+  kernel.setArg(3, cl::Local(group * sizeof(cl_ulong)));
+  events.push_back(
+    context.Launch(this->Queue, kernel, cl::NDRange(group * parts), cl::NDRange(group)));
 }
 
 std::vector<cl_uint> OutputSlab::FindBricks(int counter)
@@ -372,17 +390,26 @@ std::vector<cl_uint> OutputSlab::FindBricks(int counter)
   return bricks;
 }
 
-OutputSlab::Counts OutputSlab::ReadCounts(WorkDevice& device, std::vector<cl::Event>& events)
+OutputSlab::Counts OutputSlab::ReadCounts(
+  WorkDevice& device, bool covered, std::vector<cl::Event>& events)
 {
   OpenCLContext& context = device.GetContext();
   std::array<cl_uint, DEFORMVOLUME_SUMMARY_WORDS> words;
   Reserve(context, this->Summary, sizeof(words));
+  covered &= this->BitsUsed;
+  if (covered)
+  {
+    this->CountBits(device, events);
+  }
   cl::Kernel kernel(GetOutputProgram(context), "Summarize");
   const std::size_t group = device.GetBusyGroupSize(kernel, 256);
+  // A null pointer is not something that all drivers take.
   kernel.setArg(0, this->Counters);
   kernel.setArg(1, static_cast<cl_uint>(this->NumberOfSections));
-  kernel.setArg(2, this->Summary);
-  kernel.setArg(3, cl::Local(DEFORMVOLUME_COUNTERS * group * sizeof(cl_ulong)));
+  kernel.setArg(2, covered ? this->CoveredParts : this->Counters);
+  kernel.setArg(3, cl_uint{ covered ? DEFORMVOLUME_BIT_COUNTERS : 0U });
+  kernel.setArg(4, this->Summary);
+  kernel.setArg(5, cl::Local((DEFORMVOLUME_COUNTERS + 1) * group * sizeof(cl_ulong)));
   events.push_back(context.Launch(this->Queue, kernel, cl::NDRange(group), cl::NDRange(group)));
   this->Queue.enqueueReadBuffer(this->Summary, CL_TRUE, 0, sizeof(words), words.data());
   const auto join = [&](std::size_t word)

@@ -100,8 +100,9 @@ public:
   void ClearLargeCells() const;
   std::vector<LargeCell> ReadLargeCells() const;
 
-  std::uint64_t CountCovered(OpenCLContext& context, std::vector<cl::Event>& events);
-  Counts ReadCounts(WorkDevice& device, std::vector<cl::Event>& events);
+  std::uint64_t CountCovered(WorkDevice& device, std::vector<cl::Event>& events);
+  /// covered: whether Counts.Covered is wanted; known only where coverage is bits.
+  Counts ReadCounts(WorkDevice& device, bool covered, std::vector<cl::Event>& events);
 
   /// Whether the kernel for processors, with positions in float and indices of 31 bits, can write
   /// the slab.
@@ -141,6 +142,7 @@ private:
   void SendPatches(OpenCLContext& context, const std::vector<std::uint32_t>& patches);
   void ClearSections(
     OpenCLContext& context, const PartToMake& part, std::vector<cl::Event>& events);
+  void CountBits(WorkDevice& device, std::vector<cl::Event>& events);
   void ExpandCoverage(OpenCLContext& context, bool again, std::vector<cl::Event>& events);
   std::uint64_t GetOffset(const DeformRequest& request) const;
 
@@ -151,6 +153,7 @@ private:
   std::vector<std::size_t> TupleSizes;
   cl::Buffer Coverage;
   cl::Buffer CoverageBits;
+  cl::Buffer CoveredParts; // partial sums of these
   bool BitsUsed = false;
   OutputWinners Winners;
   cl::Buffer PatchList; // those that an update clears

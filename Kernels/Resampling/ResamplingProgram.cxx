@@ -28,15 +28,15 @@ std::size_t GetBrickMemory(const OpenCLContext& context, std::size_t slots)
     sizeof(cl_float);
 }
 
-/// The same for a work-group of the kernel ResampleColumns: two planes of vertices.
+/// The same for a work-group of the kernel ResampleColumns: three planes of vertices.
 std::size_t GetColumnMemory(std::size_t slots)
 {
   const std::size_t row = 2 * (3 + slots) * (DEFORMVOLUME_COLUMN / 2 + 1);
-  return 2 * (DEFORMVOLUME_BRICK_Y / 2 + 1) * row * sizeof(cl_float);
+  return 3 * (DEFORMVOLUME_BRICK_Y / 2 + 1) * row * sizeof(cl_float);
 }
 
-/// What that has besides: flags of the vertices, a list of samples, and counts.
-constexpr std::size_t OtherColumnMemory = 4096;
+/// What that has besides: flags of the vertices, and counts.
+constexpr std::size_t OtherColumnMemory = 1024;
 
 std::size_t GetLocalMemory(const OpenCLContext& context)
 {
@@ -72,8 +72,8 @@ std::size_t CountSlots(
   return static_cast<std::size_t>(std::count(found.begin(), found.end(), true));
 }
 
-/// What the texts from LaneVectors.cl to BrickResampling.cl, or to ColumnResampling.cl, expect in
-/// front of them.
+/// What the texts from LaneVectors.cl to BrickResampling.cl, or to ColumnCells.cl, expect in front
+/// of them.
 std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<VolumeArray>& arrays,
   const ResamplingVariant& variant)
 {
@@ -102,7 +102,7 @@ std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<Vol
   return "#define LANES " + std::to_string(lanes ? GetLanes(context) : 1) +
     "\n#define ROW_MEMORY " + (local ? "__local" : "__global") + "\n#define ROWS_ARE_GLOBAL " +
     (local ? "0\n" : "1\n") + shape + "#define HAS_COLUMN_KERNEL " +
-    (form == ResamplingForm::Columns ? "1" : "0") + "\n#define PASS_IS_DIRECT " +
+    (form == ResamplingForm::Queue ? "0" : "1") + "\n#define PASS_IS_DIRECT " +
     (variant.IsDirect ? "1" : "0") + "\n#define LANE_SLOTS " + std::to_string(slots) +
     "\n#define LANE_ARRAYS(DO)" + list + "\n#define HAS_OTHER_ARRAYS " +
     (others.empty() ? "0" : "1") + "\n#define STORE_OTHER_ARRAYS " + others + "\n";
@@ -120,16 +120,28 @@ ProgramText GetFormText(const OpenCLContext& context, const std::vector<VolumeAr
         GroupSamples_cl + GroupCoverage_cl + GroupCandidates_cl + GroupWeights_cl + GroupWalk_cl +
         GroupResampling_cl + BrickResampling_cl;
     case ResamplingForm::Columns:
+    case ResamplingForm::Undecided:
     case ResamplingForm::Queue:
       return ProgramText(MakeLanePreamble(context, arrays, variant)) + LaneVectors_cl +
         GroupVertices_cl + GroupValues_cl + GroupCoverage_cl + GroupCandidates_cl +
-        GroupWeights_cl + GroupWalk_cl + ColumnResampling_cl;
+        GroupWeights_cl + GroupWalk_cl + ColumnCells_cl +
+        (variant.Form == ResamplingForm::Queue ? QueuedResampling_cl : ColumnResampling_cl);
     case ResamplingForm::LargeCells:
       return LargeCells_cl;
     case ResamplingForm::Cells:
       break;
   }
   return {};
+}
+
+/// Options besides those of all kernels. The kernels for columns wait for memory more than they
+/// compute: four groups on a multiprocessor are faster than two, although some of the values that a
+/// work-item keeps do not find registers (Documents/resampling.md, GPUs).
+std::string GetFormOptions(const OpenCLContext& context, ResamplingForm form)
+{
+  const bool isColumns = form == ResamplingForm::Columns || form == ResamplingForm::Undecided;
+  return isColumns && context.HasExtension("cl_nv_compiler_options") ? " -cl-nv-maxrregcount=64"
+                                                                     : "";
 }
 
 } // namespace
@@ -175,7 +187,7 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
       "#define HAS_CELL_KERNEL " + (form == ResamplingForm::Cells ? "1\n" : "0\n") +
       IntegerVectors_cl + CellVertices_cl + CutCells_cl + CellCoverage_cl + SampleStoring_cl +
       VoxelWinners_cl + Resampling_cl + GetFormText(context, arrays, variant),
-    KernelOptions);
+    std::string(KernelOptions) + GetFormOptions(context, form));
 }
 
 std::size_t GetBrickMemory(const OpenCLContext& context, const std::vector<VolumeArray>& arrays)

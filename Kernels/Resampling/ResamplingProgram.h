@@ -21,7 +21,9 @@ enum class ResamplingForm
   Lanes,
   /// By columns: ResampleColumns in ColumnResampling.cl.
   Columns,
-  /// What these leave in a queue: ResampleQueued in ColumnResampling.cl.
+  /// The samples that these leave to integers: ResampleUndecided in ColumnResampling.cl.
+  Undecided,
+  /// The cells that they leave in a queue: ResampleQueued in QueuedResampling.cl.
   Queue,
   /// What all of them put off: ResampleLargeCells in LargeCells.cl.
   LargeCells

@@ -24,19 +24,16 @@ typedef struct
   uint Candidates; // voxels that were won, as far as others had marked them by then
   uint Touched; // nonzero where samples are held that others write, or none
   uint Large; // cells that were put into the list
-  uint Covered; // voxels that none had written before, where coverage is bits
 } Output;
 
 #define NEW_OUTPUT(coverage, winners, patches, largeCells)                                         \
-  { coverage, winners, patches, largeCells, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+  { coverage, winners, patches, largeCells, 0, 0, 0, 0, 0, 0, 0, 0 }
 
-// A voxel is covered. Bits tell whether it was before, so that no pass over all voxels has to count them.
+// A voxel is covered. What a bit was before is not asked for: items would wait for the answer.
 static void Cover(Output* output, size_t target)
 {
 #if COVERAGE_IS_BITS
-  const uint bit = 1u << (target & 31);
-  const uint before = atomic_or((__global uint*)output->Coverage + (target >> 5), bit);
-  output->Covered += (before & bit) == 0;
+  atomic_or((__global uint*)output->Coverage + (target >> 5), 1u << (target & 31));
 #else
   output->Coverage[target] = 1;
 #endif
@@ -46,8 +43,7 @@ static void Cover(Output* output, size_t target)
 #define COUNTS_OF(output)                                                                          \
   {                                                                                                \
     (output)->Writes, (output)->Inverted, (output)->Overstretched, (output)->Missing,              \
-      (output)->Assumed, (output)->Candidates, (output)->Touched, (output)->Large,                 \
-      (output)->Covered                                                                            \
+      (output)->Assumed, (output)->Candidates, (output)->Touched, (output)->Large                  \
   }
 
 // Adds to a counter of a section. The passes that come later count nothing again.

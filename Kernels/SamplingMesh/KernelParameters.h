@@ -148,8 +148,7 @@ typedef struct
 #define DEFORMVOLUME_COUNT_CANDIDATES 5 // voxels that cells may have won
 #define DEFORMVOLUME_COUNT_TOUCHED 6 // nonzero where cells hold samples that others write, or none
 #define DEFORMVOLUME_COUNT_LARGE 7   // cells that were put into the list of large ones
-#define DEFORMVOLUME_COUNT_COVERED 8 // voxels that were covered first, where coverage is bits
-#define DEFORMVOLUME_COUNTERS 9
+#define DEFORMVOLUME_COUNTERS 8
 
 // What the counters of all sections add up to (the kernel Summarize): two words each, the lower one
 // first, of writes, voxels covered and inverted tetrahedra; then overstretched ones, and the flags.
@@ -180,8 +179,11 @@ typedef struct
 #define DEFORMVOLUME_PATCH_TOUCHED 2   // cells may hold voxels that others write, or none
 #define DEFORMVOLUME_PATCH_KEPT 4      // its voxels stay as they are
 
-// Work-items that count the voxels that bits say are covered.
-#define DEFORMVOLUME_BIT_COUNTERS 4096
+// Work-groups that count the voxels that bits say are covered.
+#define DEFORMVOLUME_BIT_COUNTERS 128
+
+// Voxels of which a work-item makes bytes of the bits of coverage, or fills what is not covered: half a word of these.
+#define DEFORMVOLUME_EXPANDED 16
 
 // Bytes that a work-item of the kernels Fill1 to Fill8 writes.
 #define DEFORMVOLUME_FILLED_BYTES 65536

@@ -89,7 +89,7 @@ TEST(Columns, BentCells)
 
 TEST(Columns, MoreBricksThanALaunchTakes)
 {
-  const Extent tall{ { 0, 2, 0, 2, 0, 3300 } };
+  const Extent tall{ { 0, 2, 0, 2, 0, 12000 } };
   DeformerCase tallCase = MakeCase(tall, NoScale, MakeJitter(5, 0.15));
   const auto values =
     MakeRandomValues<std::uint16_t>(static_cast<std::size_t>(tallCase.GetNumberOfVoxels()), 2);

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A cell a work-item, for devices whose work-items are lanes, such as graphics cards: what the kernels that take columns
+// of cells and those that take cells from a queue share (ColumnResampling.cl, QueuedResampling.cl). Decisions by floats
+// and by integers of 32 bits are those of the kernels for processors (BrickResampling.cl).
+//
+// What the host puts in front of this text:
+//   HAS_COLUMN_KERNEL  1 for ResampleColumns and ResampleUndecided, 0 for ResampleQueued
+//   PASS_IS_DIRECT     1 where the pass of the first two is known to be the direct one, which costs fewer registers
+//
+// Data: as BrickResampling.cl. It comes after GroupWalk.cl. rows: ROW floats for each row of three planes. queue: the
+// number of cells for ResampleQueued, and of those for ResampleUndecided; then room for all cells of the launch. The
+// former fill it from its begin (QUEUE_...), the latter from its end.
+
+#define PLANE_VERTICES ((ROW_CELLS + 1) * ROWS)
+#define FLAG_BORDER 1  // a vertex that is not interior
+#define FLAG_SPECIAL 2 // one with a value that sums of products do not give back bit for bit
+#define FLAG_APART 4   // one that lies elsewhere as seen from the other side of a smooth cut
+#define FLAG_OUTSIDE 8 // a place beyond the volume
+#define FLAG_WHOLE 16  // the cell that begins at the vertex has all its tetrahedra
+
+// An entry of the queue: the place in the launch's part of the list of bricks, times the cells of a brick, plus the
+// cell in the brick, and above that what is to be done.
+#define CELLS_OF_BRICK (DEFORMVOLUME_BRICK_X * DEFORMVOLUME_BRICK_Y * DEFORMVOLUME_BRICK_Z)
+#define QUEUE_BITS 30
+#define QUEUE_FLOATS 0 // the cell is resampled as a group is
+#define QUEUE_DOUBTS 1 // it has been, but for samples that floats do not decide: these, by ResampleSamples
+#define QUEUE_UNSURE 2 // by ResampleCell
+// What becomes of a cell besides.
+#define QUEUE_INTEGERS 3 // as with QUEUE_DOUBTS, but by integers of 32 bits: it is for ResampleUndecided
+#define CELL_DONE -1
+
+// Maps a vertex into a place of the rows, with the values of the arrays. Returns its flags. The operations are those
+// of MapOne (BrickMapping.cl), in their order.
+static uint MapVertex(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY float* place,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const int state = StateOf(mesh->State, x, y, z, p);
+  float4 position = (float4)(NO_SOURCE, 0.0f, 0.0f, 0.0f);
+  if (state & DEFORMVOLUME_VERTEX_SOURCE)
+  {
+    const RestPosition rx = mesh->Map.Rest[x];
+    const RestPosition ry = mesh->Map.Rest[p->Size[0] + y];
+    const RestPosition rz = mesh->Map.Rest[p->Size[0] + p->Size[1] + z];
+    const float4 moved = Displacement(&mesh->Map, x, y, z, p) +
+      (float4)(rx.Fraction * STEP, ry.Fraction * STEP, rz.Fraction * STEP, 0.0f);
+    position = RoundSteps_float4(moved, STEP) +
+      (float4)((rx.Whole - p->OutputFirst[0] * 256) * STEP,
+        (ry.Whole - p->OutputFirst[1] * 256) * STEP, (rz.Whole - p->OutputFirst[2] * 256) * STEP,
+        0.0f);
+  }
+  place[0] = position.x;
+  place[HALF_ROW] = position.y;
+  place[2 * HALF_ROW] = position.z;
+  uint flags = state & DEFORMVOLUME_VERTEX_INTERIOR ? 0 : FLAG_BORDER;
+  flags |= state & DEFORMVOLUME_CELL_WHOLE || !p->HasState ? FLAG_WHOLE : 0;
+#if HAS_CUT
+  flags |= state & DEFORMVOLUME_VERTEX_TOGETHER ? 0 : FLAG_APART;
+#endif
+#define PUT_COLUMN_VALUE(index, TYPE, BITS, SLOT)                                                  \
+  {                                                                                                \
+    const float value = (float)source##index[VertexInChunk(x, y, z, p)];                           \
+    place[(3 + SLOT) * HALF_ROW] = value;                                                          \
+    flags |= BITS == 32 && IS_SPECIAL(as_int(value)) ? FLAG_SPECIAL : 0;                           \
+  }
+  LANE_ARRAYS(PUT_COLUMN_VALUE)
+  return flags;
+}
+
+static __attribute__((always_inline)) void BoundCell(const Group* group, Bounds* b)
+{
+  LOAD_VERTICES
+#define BOUND_CELL(C)                                                                              \
+  b->Low##C = Least(Least(Least(C##0, C##1), Least(C##2, C##3)),                                   \
+    Least(Least(C##4, C##5), Least(C##6, C##7)));                                                  \
+  b->High##C = Most(Most(Most(C##0, C##1), Most(C##2, C##3)),                                      \
+    Most(Most(C##4, C##5), Most(C##6, C##7)));
+  BOUND_CELL(X)
+  BOUND_CELL(Y)
+  BOUND_CELL(Z)
+}
+
+// A sample that the cell owns.
+static __attribute__((always_inline)) void StoreSample(const Group* group, uint place, int inverted,
+  const SampleWeights* weights, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  if (p->Pass != DEFORMVOLUME_PASS_DIRECT &&
+    !TakesPlace(output, place, MakeKey(group->X, group->Y, group->Z, inverted, p), p))
+  {
+    return;
+  }
+  Cover(output, place);
+#define STORE_COLUMN_VALUE(index, TYPE, BITS, SLOT)                                                \
+  {                                                                                                \
+    INTERPOLATE_LANES(v, TYPE, BITS, SLOT)                                                         \
+    target##index[place] = LANE_CONVERT_##BITS(TYPE, as_int(v));                                   \
+  }
+  LANE_ARRAYS(STORE_COLUMN_VALUE)
+#if HAS_OTHER_ARRAYS
+  StoreOtherArrays(group, 0, place, p ARRAY_ARGUMENTS);
+#endif
+}
+
+// What a weight has to exceed for a sample to be inside. Boxes take all their candidates, whatever the second smallest
+// weight is, from which that is told.
+static float DecisiveWeight(const GroupCandidates* c, const GroupFrame* frame)
+{
+  return c->HasBoxes && c->Box ? -INFINITY : frame->Bound;
+}
+
+// The weights of a sample, and whether floats leave it undecided. Returns whether the cell holds it, as far as they
+// decide.
+static __attribute__((always_inline)) uint WeighCandidate(const GroupCandidates* c,
+  const GroupFrame* frame, const GroupScales* scales, const Walk* at, SampleWeights* weights,
+  uint* undecided)
+{
+  WeighSamples(frame, scales, at->X, at->Y, at->Z, weights);
+  return DecideByFloats(weights, 1, DecisiveWeight(c, frame), frame->Bound, undecided);
+}
+
+// Whether a box beside what is missing has its samples on vertices decided by DecideOnVertices: where others are
+// undecided, too, integers decide all of them, as they do for groups (GroupResampling.cl).
+static int IsDecidedOnVertices(const GroupCandidates* c, const GroupFrame* frame,
+  const GroupScales* scales, const KernelParameters* p)
+{
+  int decided = c->HasBeside && c->Beside;
+  Walk at;
+  BeginWalk(c, frame, &at, p);
+  for (int i = 0; i < c->Number && decided && c->Extent < MAXIMUM_EXACT_EXTENT; ++i)
+  {
+    SampleWeights weights;
+    uint undecided;
+    WeighCandidate(c, frame, scales, &at, &weights, &undecided);
+    decided = !undecided || IsOnVertex(frame, &at);
+    Advance(&at);
+  }
+  return decided;
+}
+
+// The samples of a cell whose frame is nice. mesh, byIntegers, onlyUndecided: as for ResampleColumnCell. Returns what is
+// still to be done: CELL_DONE or QUEUE_...
+static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
+  const GroupFrame* frame, const SamplingMesh* mesh, int byIntegers, int onlyUndecided,
+  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const Group* const group = &c->Cells;
+  const int box = c->HasBoxes && c->Box;
+  const int isSmall = c->Extent < MAXIMUM_EXACT_EXTENT; // integers of 32 bits can decide who owns a sample
+  GroupState state;
+  if (mesh && group->Border)
+  {
+    StatesOfGroup(mesh, group->X, group->Y, group->Z, &state, p);
+  }
+  GroupScales scales;
+  FindScales(frame, &scales);
+  Walk at;
+  BeginWalk(c, frame, &at, p);
+  // The only vertex that may be among the candidates of a box inside the mesh is its lowest one, the first candidate; but
+  // not so in passes for all cells that hold a voxel.
+  const int mayReachEnds = mesh || DEFORMVOLUME_IS_CLOSED(p->Pass);
+  const int beginsOnVertex = box && IsOnVertex(frame, &at);
+  const int beside = mesh && IsDecidedOnVertices(c, frame, &scales, p);
+  uint writes = 0;
+  uint left = 0;      // whether floats have left samples undecided
+  uint ambiguous = 0; // whether integers have
+  for (int i = 0; i < c->Number; ++i)
+  {
+    SampleWeights weights;
+    uint undecided;
+    uint held = WeighCandidate(c, frame, &scales, &at, &weights, &undecided);
+    int onVertex = i == 0 ? beginsOnVertex : mayReachEnds && box && IsOnVertex(frame, &at);
+    if (beside && IsOnVertex(frame, &at))
+    {
+      undecided = 0;
+      held = DecideOnVertices(group, 1, VerticesAt(frame, &at), &c->State, at.X + frame->X0,
+        at.Y + frame->Y0, at.Z + frame->Z0, mesh, output, p);
+      onVertex = 1;
+    }
+    held = onlyUndecided ? 0 : held;
+    if (byIntegers && undecided && isSmall && !DEFORMVOLUME_IS_CLOSED(p->Pass))
+    {
+      const float sample[3] = { at.X, at.Y, at.Z };
+      int isVertex;
+      held = DecideByIntegers(
+        group, 1, sample, frame->Inverted, &state, &isVertex, &ambiguous, output, p);
+      onVertex |= isVertex;
+    }
+    else
+    {
+      left |= undecided;
+    }
+    if (c->IsBeyond)
+    {
+      held &= InOutput(at.X + frame->X0, at.Y + frame->Y0, at.Z + frame->Z0, p);
+    }
+    writes += held;
+    if (held)
+    {
+      if (onVertex)
+      {
+        SnapWeights(1, frame, &weights);
+      }
+      StoreSample(group, at.Place, frame->Inverted, &weights, output, p ARRAY_ARGUMENTS);
+    }
+    Advance(&at);
+  }
+  // What is looked at again as a whole must not count twice. Cells too large for these integers leave the samples in
+  // question only: they have many, and hardly one is.
+  if (left && !mesh && group->Border)
+  {
+    return QUEUE_FLOATS;
+  }
+  if ((left && isSmall && DEFORMVOLUME_IS_CLOSED(p->Pass)) || ambiguous)
+  {
+    return QUEUE_UNSURE;
+  }
+  output->Writes += writes;
+  output->Inverted += frame->Inverted && !onlyUndecided ? 5 : 0;
+  return !left ? CELL_DONE : isSmall ? QUEUE_INTEGERS : QUEUE_DOUBTS;
+}
+
+// A cell, as far as floats take it. mesh: null for cells that are whole, inside the mesh or at least no boxes on its
+// border. byIntegers: whether those of 32 bits decide what floats do not, at once. onlyUndecided: of all samples those
+// only. most: of its candidates. Returns what is still to be done: CELL_DONE or QUEUE_...
+static __attribute__((always_inline)) int ResampleColumnCell(GroupCandidates* c, int most,
+  const SamplingMesh* mesh, GroupFrame* frame, int byIntegers, int onlyUndecided, Output* output,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  Bounds bounds;
+  BoundCell(&c->Cells, &bounds);
+  FindGroupCandidates(&bounds, mesh, output, c, p ARRAY_ARGUMENTS);
+  if (!c->There || c->Skip)
+  {
+    return CELL_DONE;
+  }
+  // Boxes on the border own what depends on the cells round them.
+  if ((c->Some && c->Number > most) || (!mesh && c->Cells.Border && c->HasBoxes))
+  {
+    return QUEUE_FLOATS;
+  }
+  MakeGroupFrame(c, c->Fit, frame);
+  if (!frame->Nice)
+  {
+    return QUEUE_UNSURE;
+  }
+  if (!c->Some)
+  {
+    output->Inverted += frame->Inverted && !onlyUndecided ? 5 : 0;
+    return CELL_DONE;
+  }
+  return TakeSamples(
+    c, frame, mesh, byIntegers, onlyUndecided, output, p ARRAY_ARGUMENTS);
+}
+
+// A cell whose vertices lie in rows. row: the place of its vertices in the row of even y and z.
+static __attribute__((always_inline)) void MakeCellGroup(LocalRow row, int oddY, int oddZ, int side,
+  int x, int y, int z, uint flags, Group* cell, const KernelParameters* p)
+{
+  cell->Row = row;
+  cell->OddY = oddY;
+  cell->OddZ = oddZ;
+  cell->Side = side;
+  cell->X = x;
+  cell->Y = y;
+  cell->Z = z;
+  cell->Odd = (p->First[0] + x + p->First[1] + y + p->First[2] + z) & 1;
+  cell->Border = (flags & FLAG_BORDER) != 0;
+  cell->Apart = (flags & FLAG_APART) != 0;
+}
+
+// Cells of the queue have their vertices in places of the rows that are a work-item's own. Groups have at most as many
+// items as there are such places, two in each plane.
+static ROW_MEMORY float* PlaceOfItem(ROW_MEMORY float* rows)
+{
+  const int item = get_local_id(0);
+  return rows + item / (ROW_CELLS / 2) * 2 * ROW + item % (ROW_CELLS / 2);
+}
+
+static void MapCell(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY float* place,
+  Group* cell, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const int mirror = Mirror(x, y, z, p);
+  uint flags = 0;
+  NOT_UNROLLED
+  for (int v = 0; v < 8; ++v)
+  {
+    const int o = v ^ mirror;
+    flags |= MapVertex(mesh, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1),
+      place + (v >> 1 & 1) * (ROWS * ROW) + (v >> 2) * ROW + (v & 1 ? ODD : 0), p ARRAY_ARGUMENTS);
+  }
+  MakeCellGroup(place, ROW, ROWS * ROW, 0, x, y, z, flags, cell, p);
+}
+
+// The cell of an entry of the queue.
+static int3 CellOfEntry(uint entry, __global const uint* bricks, const KernelParameters* p)
+{
+  const uint cell = entry & ((1u << QUEUE_BITS) - 1);
+  const uint inBrick = cell % CELLS_OF_BRICK;
+  const int3 inside = (int3)((int)(inBrick % DEFORMVOLUME_BRICK_X),
+    (int)(inBrick / DEFORMVOLUME_BRICK_X % DEFORMVOLUME_BRICK_Y),
+    (int)(inBrick / DEFORMVOLUME_BRICK_X / DEFORMVOLUME_BRICK_Y));
+  return FirstOfBrick(bricks[p->ListBegin + cell / CELLS_OF_BRICK], p) + inside;
+}
+
+#define QUEUE_ENTRIES(queue) ((queue) + 2)
+// The entry of ResampleUndecided with a number.
+#define UNDECIDED_ENTRY(queue, number, p)                                                          \
+  QUEUE_ENTRIES(queue)[(uint)((p)->ListEnd - (p)->ListBegin) * CELLS_OF_BRICK - 1 - (number)]

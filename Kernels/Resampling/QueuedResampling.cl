@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the kernel that takes columns of cells leaves in the queue (ColumnResampling.cl), but for what integers of 32
+// bits decide.
+
+// The samples of a cell that floats do not decide.
+static void ResampleDoubts(const GroupCandidates* c, const GroupFrame* frame,
+  const SamplingMesh* mesh, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const Group* const group = &c->Cells;
+  const Candidates all = AllCandidates(p);
+  Neighbours near;
+  const SamplingMesh keeping = KeepNeighbours(mesh, group->X, group->Y, group->Z, &near);
+  Cell cell;
+  int isMade = -1; // -1: not known
+  // It is counted already whether the cell is inverted.
+  const uint inverted = output->Inverted;
+  GroupScales scales;
+  FindScales(frame, &scales);
+  Walk at;
+  BeginWalk(c, frame, &at, p);
+  for (int i = 0; i < c->Number; ++i, Advance(&at))
+  {
+    SampleWeights weights;
+    uint undecided;
+    WeighCandidate(c, frame, &scales, &at, &weights, &undecided);
+    const float x = at.X + frame->X0, y = at.Y + frame->Y0, z = at.Z + frame->Z0;
+    if (!undecided || !InOutput(x, y, z, p) ||
+      (c->HasBeside && c->Beside && IsOnVertex(frame, &at)))
+    {
+      continue;
+    }
+    const Vector voxel = { (int)x + p->OutputFirst[0], (int)y + p->OutputFirst[1],
+      (int)z + p->OutputFirst[2] };
+    const Candidates only = { voxel, voxel };
+    // In the closed passes the sample decides whether the cell is looked at.
+    if (isMade < 0 || DEFORMVOLUME_IS_CLOSED(p->Pass))
+    {
+      // No whole cell is divided: there are no views of it.
+      isMade = MakeCell(&keeping, group->X, group->Y, group->Z,
+                 DEFORMVOLUME_IS_CLOSED(p->Pass) ? &only : &all, &cell, 0, output, p) &&
+        !IsPutOff(&cell, &only, output, p);
+    }
+    if (isMade)
+    {
+      ResampleSamples(&keeping, &cell, &only, output, p ARRAY_ARGUMENTS);
+    }
+  }
+  output->Inverted = inverted;
+}
+
+// A cell of the queue by itself. place: for its vertices.
+static void ResampleQueuedCell(const SamplingMesh* mesh, int x, int y, int z, int what,
+  ROW_MEMORY float* place, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  if (what != QUEUE_UNSURE)
+  {
+    GroupCandidates c;
+    GroupFrame frame;
+    MapCell(mesh, x, y, z, place, &c.Cells, p ARRAY_ARGUMENTS);
+    what = ResampleColumnCell(
+      &c, MAXIMUM_CANDIDATES, mesh, &frame, 1, what != QUEUE_FLOATS, output, p ARRAY_ARGUMENTS);
+    if (what == QUEUE_DOUBTS)
+    {
+      ResampleDoubts(&c, &frame, mesh, output, p ARRAY_ARGUMENTS);
+      return;
+    }
+    if (what == CELL_DONE)
+    {
+      return;
+    }
+  }
+  const Candidates all = AllCandidates(p);
+  Neighbours near;
+  const SamplingMesh keeping = KeepNeighbours(mesh, x, y, z, &near);
+  ResampleCell(&keeping, x, y, z, &all, output, p ARRAY_ARGUMENTS);
+}
+
+// An entry of the queue a work-item. The host does not know how many there are.
+__kernel void ResampleQueued(MAPPING_PARAMETERS, __global const uchar* state,
+  __global const uchar* active, __global const float* distances, __global char* coverage,
+  __global KEY* winners, __global char* patches, __global uint* largeCells,
+  __global uint* counters CUT_PARAMETERS, __global const uint* bricks, __global uint* queue,
+  __local float* rows, const KernelParameters p ARRAY_PARAMETERS)
+{
+  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, 0, { 0, 0, 0 } };
+  const uint entries = queue[0];
+  for (uint i = get_global_id(0); i < entries; i += get_global_size(0))
+  {
+    const uint entry = QUEUE_ENTRIES(queue)[i];
+    const int3 cell = CellOfEntry(entry, bricks, &p);
+    Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
+    ResampleQueuedCell(&mesh, cell.x, cell.y, cell.z, entry >> QUEUE_BITS, PlaceOfItem(rows),
+      &output, &p ARRAY_ARGUMENTS);
+    AddCounts(&output, SectionOf(cell.x, cell.y, cell.z, &p), counters, &p);
+  }
+}
