@@ -17,6 +17,10 @@
 // Where the mesh folds over, several may write a voxel, and at the crease none. Further passes then
 // take every tetrahedron that holds the centre of such a voxel, and the winner's key decides.
 //
+// What the host puts in front of this text:
+//   OUTLINED  of large functions: nothing, or the attribute that keeps them from being inlined, where compilers that
+//             inline all take many seconds
+//
 // All arithmetic is exact: positions are integers in 1/256 voxel, and for a tetrahedron of e
 // voxels the edge functions are at most 2 (256 e)^3, which fits 64 bits up to 6,500 voxels.
 
@@ -60,7 +64,7 @@ typedef struct
   long Volume;
 } EdgeFunctions;
 
-static EdgeFunctions MakeEdgeFunctions(Vector a, Vector b, Vector c, Vector d)
+static OUTLINED EdgeFunctions MakeEdgeFunctions(Vector a, Vector b, Vector c, Vector d)
 {
   EdgeFunctions f;
   const Vector u = Subtract(b, a);
@@ -128,7 +132,7 @@ static int FirstShiftInside(const EdgeFunctions* f, int tetrahedron, int simplex
 // Whether of the tetrahedra that share the simplex with these vertices (a mask over the cell's vertices)
 // none comes before this one of the cell by the rule for the border of the mesh. own: the first shift into it. side: of
 // a smooth cut, from which they are seen.
-static int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron,
+static OUTLINED int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron,
   int simplex, int own, int side, const KernelParameters* p)
 {
   if (own == 0)
@@ -223,7 +227,7 @@ typedef struct
   int Regular; // all that surrounds these is there, but for what would lie beyond the volume
 } CellState;
 
-static CellState CellStateOf(
+static OUTLINED CellState CellStateOf(
   const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
   const int mirror = Mirror(x, y, z, p);
@@ -265,7 +269,7 @@ static int IsOwnerByIndex(
 #define OWNER 2    // writes it
 
 // What a tetrahedron of a cell is to the sample with these weights.
-static int RoleOf(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron, const long* weights,
+static OUTLINED int RoleOf(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron, const long* weights,
   const EdgeFunctions* f, CellState state, const KernelParameters* p)
 {
   int simplex = 0;

@@ -280,7 +280,11 @@ static void MapCell(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY fl
 {
   const int mirror = Mirror(x, y, z, p);
   uint flags = 0;
+#if HAS_COLUMN_KERNEL
+  UNROLLED // memory is asked for all of them at once
+#else
   NOT_UNROLLED
+#endif
   for (int v = 0; v < 8; ++v)
   {
     const int o = v ^ mirror;

@@ -37,9 +37,8 @@ static void AddRows(__local ulong* rows, int number)
   }
 }
 
-// The same where coverage is bits, a partial sum a work-group. words: of these; row: room for an element a work-item.
-__kernel void CountCoveredBits(
-  __global const uint* bits, const ulong words, __global uint* sums, __local ulong* row)
+// The covered voxels among words of bits, as far as a work-item sees them.
+static uint CountBits(__global const uint* bits, ulong words)
 {
   const size_t step = get_global_size(0);
   uint sum = 0;
@@ -54,29 +53,21 @@ __kernel void CountCoveredBits(
   {
     sum += popcount(bits[i]);
   }
-  row[get_local_id(0)] = sum;
-  AddRows(row, 1);
-  if (get_local_id(0) == 0)
-  {
-    sums[get_group_id(0)] = (uint)row[0];
-  }
+  return sum;
 }
 
-// Adds up the counters of all sections, and partial sums of the voxels that are covered (DEFORMVOLUME_SUMMARY_WORDS),
-// in one work-group. rows: room for SUMMED_ROWS of an element a work-item.
-#define SUMMED_COVERED DEFORMVOLUME_COUNTERS
-#define SUMMED_ROWS (DEFORMVOLUME_COUNTERS + 1)
-
-__kernel void Summarize(__global const uint* counters, const uint sections,
-  __global const uint* covered, const uint parts, __global uint* summary, __local ulong* rows)
+// Adds up the counters of all sections, and the voxels that are covered where coverage is bits: DEFORMVOLUME_SUMMED
+// partial sums a work-group, of as many groups as DEFORMVOLUME_PARTS says. words: of bits, 0 where these do not matter;
+// rows: room for as many sums a work-item.
+__kernel void SumParts(__global const uint* counters, const uint sections,
+  __global const uint* bits, const ulong words, __global ulong* parts, __local ulong* rows)
 {
   const size_t item = get_local_id(0);
   const size_t items = get_local_size(0);
-  ulong sums[SUMMED_ROWS] = { 0 };
-#pragma unroll 4
-  for (size_t section = item; section < sections; section += items)
+  ulong sums[DEFORMVOLUME_SUMMED] = { 0 };
+  for (size_t section = get_global_id(0); section < sections; section += get_global_size(0))
   {
-    const uint8 some = vload8(section, counters); // DEFORMVOLUME_COUNTERS
+    const uint8 some = vload8(section, counters);
     const uint counts[DEFORMVOLUME_COUNTERS] = { some.s0, some.s1, some.s2, some.s3, some.s4, some.s5,
       some.s6, some.s7 };
 #pragma unroll
@@ -85,20 +76,38 @@ __kernel void Summarize(__global const uint* counters, const uint sections,
       sums[i] += counts[i];
     }
   }
-  for (size_t i = item; i < parts; i += items)
-  {
-    sums[SUMMED_COVERED] += covered[i];
-  }
+  sums[DEFORMVOLUME_SUMMED_COVERED] = CountBits(bits, words);
 #pragma unroll
-  for (int i = 0; i < SUMMED_ROWS; ++i)
+  for (int i = 0; i < DEFORMVOLUME_SUMMED; ++i)
   {
     rows[i * items + item] = sums[i];
   }
-  AddRows(rows, SUMMED_ROWS);
+  AddRows(rows, DEFORMVOLUME_SUMMED);
+  for (size_t i = item; i < DEFORMVOLUME_SUMMED; i += items)
+  {
+    parts[get_group_id(0) * DEFORMVOLUME_SUMMED + i] = rows[i * items];
+  }
+}
+
+// What the parts add up to (DEFORMVOLUME_SUMMARY_WORDS), in one work-group.
+__kernel void Summarize(__global const ulong* parts, __global uint* summary, __local ulong* rows)
+{
+  const size_t item = get_local_id(0);
+  const size_t items = get_local_size(0);
+  for (int i = 0; i < DEFORMVOLUME_SUMMED; ++i)
+  {
+    ulong sum = 0;
+    for (size_t part = item; part < DEFORMVOLUME_PARTS; part += items)
+    {
+      sum += parts[part * DEFORMVOLUME_SUMMED + i];
+    }
+    rows[i * items + item] = sum;
+  }
+  AddRows(rows, DEFORMVOLUME_SUMMED);
   if (item == 0)
   {
 #define SUM_OF(counter) rows[(counter)*items]
-    const ulong wide[3] = { SUM_OF(DEFORMVOLUME_COUNT_WRITES), SUM_OF(SUMMED_COVERED),
+    const ulong wide[3] = { SUM_OF(DEFORMVOLUME_COUNT_WRITES), SUM_OF(DEFORMVOLUME_SUMMED_COVERED),
       SUM_OF(DEFORMVOLUME_COUNT_INVERTED) };
     for (int i = 0; i < 3; ++i)
     {

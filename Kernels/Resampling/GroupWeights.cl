@@ -175,10 +175,10 @@ typedef struct
 
 static __attribute__((always_inline)) void FindScales(const GroupFrame* f, GroupScales* scales)
 {
-  scales->Central = 1.0f / f->Determinant;
+  scales->Central = INVERSE(f->Determinant);
   // One division for four.
   const FLOATS product12 = f->B16 * f->B25, product47 = f->B43 * f->B70;
-  const FLOATS inverses = 1.0f / (product12 * product47);
+  const FLOATS inverses = INVERSE(product12 * product47);
   const FLOATS inverse12 = inverses * product47, inverse47 = inverses * product12;
   scales->Corner1 = inverse12 * f->B25;
   scales->Corner2 = inverse12 * f->B16;

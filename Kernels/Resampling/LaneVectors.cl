@@ -27,7 +27,11 @@
 #define TO_INTS convert_int
 #define AS_INTS as_int
 #define WHERE(mask, v) ((mask) ? (v) : 0)
+#if HAS_COLUMN_KERNEL
 #define SELDOM // a call has all that is in registers stored
+#else
+#define SELDOM __attribute__((noinline))
+#endif
 #define UNROLLED _Pragma("unroll")
 #define NOT_UNROLLED _Pragma("unroll 1")
 #endif
@@ -53,6 +57,13 @@ static FLOATS Most(FLOATS a, FLOATS b)
 // One instruction, where a comparison and a choice are two.
 #define Least fmin
 #define Most fmax
+#endif
+
+// 1 / v, of numbers that are neither tiny nor huge, to a unit in the last place or two.
+#ifdef __NV_CL_C_VERSION
+#define INVERSE(v) native_recip(v) // else scaled before and after, in case
+#else
+#define INVERSE(v) (1.0f / (v))
 #endif
 
 #if LANES == 16

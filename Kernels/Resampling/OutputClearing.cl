@@ -41,19 +41,18 @@ FILL(Fill8, ulong, ulong16)
 // Whether a pointer and what is a multiple of as many bytes behind it can be stored to at once.
 #define IS_ALIGNED(target) (((size_t)(target) & (sizeof(uint4) - 1)) == 0)
 
-// For devices whose work-items are lanes: each takes 16 bytes, which are those of a pattern.
+// For devices whose work-items are lanes: neighbours take 16 bytes each, side by side, which are those of a pattern.
 __kernel void FillWide(__global uchar* restrict target, const ulong bytes, const uint4 pattern)
 {
-  const size_t first = get_global_id(0) * sizeof(uint4);
-  if (first + sizeof(uint4) <= bytes && IS_ALIGNED(target))
+  const size_t whole = IS_ALIGNED(target) ? bytes / sizeof(uint4) : 0;
+  for (size_t i = get_global_id(0); i < whole; i += get_global_size(0))
   {
-    *(__global uint4*)(target + first) = pattern;
-    return;
+    ((__global uint4*)target)[i] = pattern;
   }
   const uchar* value = (const uchar*)&pattern;
-  for (size_t i = first; i < min(first + sizeof(uint4), (size_t)bytes); ++i)
+  for (size_t i = whole * sizeof(uint4) + get_global_id(0); i < bytes; i += get_global_size(0))
   {
-    target[i] = value[i - first];
+    target[i] = value[i % sizeof(uint4)];
   }
 }
 
@@ -123,48 +122,48 @@ static uint BytesOf(uint bits)
 // The same as bytes.
 __kernel void ExpandCoverage(__global const uint* bits, __global uchar* coverage, const ulong voxels)
 {
-  const size_t first = get_global_id(0) * DEFORMVOLUME_EXPANDED;
-  const size_t end = min(first + DEFORMVOLUME_EXPANDED, (size_t)voxels);
-  if (first + DEFORMVOLUME_EXPANDED <= voxels && IS_ALIGNED(coverage))
+  const size_t whole = IS_ALIGNED(coverage) ? voxels / DEFORMVOLUME_EXPANDED : 0;
+#pragma unroll 4
+  for (size_t i = get_global_id(0); i < whole; i += get_global_size(0))
   {
-    const uint covered = CoveredOf(bits, first);
-    *(__global uint4*)(coverage + first) = (uint4)(
+    const uint covered = CoveredOf(bits, i * DEFORMVOLUME_EXPANDED);
+    ((__global uint4*)coverage)[i] = (uint4)(
       BytesOf(covered), BytesOf(covered >> 4), BytesOf(covered >> 8), BytesOf(covered >> 12));
-    return;
   }
-  for (size_t i = first; i < end; ++i)
+  for (size_t i = whole * DEFORMVOLUME_EXPANDED + get_global_id(0); i < voxels;
+       i += get_global_size(0))
   {
     coverage[i] = IsCovered(bits, i);
   }
 }
 
-// Elements of voxels that are not covered: so each element of an output is written once only. WIDE: a vector of 16
-// bytes.
+// Elements of voxels that are not covered: so each element of an output is written once only. Where some of the voxels
+// that an item takes are, it stores to the others one after the other. WIDE: a vector of 16 bytes.
 #define FILL_UNCOVERED(NAME, TYPE, WIDE)                                                           \
   __kernel void NAME(__global TYPE* restrict target, const ulong voxels, const TYPE value,         \
     __global const uint* bits, const uint elements)                                                \
   {                                                                                                \
-    const size_t first = get_global_id(0) * DEFORMVOLUME_EXPANDED;                                 \
-    const size_t end = min(first + DEFORMVOLUME_EXPANDED, (size_t)voxels);                         \
-    const uint covered = first < end ? CoveredOf(bits, first) : 0xffff;                            \
-    if (covered == 0xffff)                                                                         \
+    const size_t step = get_global_size(0) * DEFORMVOLUME_EXPANDED;                                \
+    for (size_t first = get_global_id(0) * DEFORMVOLUME_EXPANDED; first < voxels; first += step)   \
     {                                                                                              \
-      return;                                                                                      \
-    }                                                                                              \
-    if (covered == 0 && first + DEFORMVOLUME_EXPANDED <= voxels && IS_ALIGNED(target))             \
-    {                                                                                              \
-      __global WIDE* const wide = (__global WIDE*)(target + first * elements);                     \
-      for (uint i = 0; i < elements * (uint)sizeof(TYPE); ++i)                                     \
+      const uint number = (uint)min((ulong)DEFORMVOLUME_EXPANDED, voxels - first);                 \
+      uint open = ~CoveredOf(bits, first) & ((1u << number) - 1);                                  \
+      if (open == (1u << DEFORMVOLUME_EXPANDED) - 1 && IS_ALIGNED(target))                         \
       {                                                                                            \
-        wide[i] = (WIDE)value;                                                                     \
+        __global WIDE* const wide = (__global WIDE*)(target + first * elements);                   \
+        for (uint i = 0; i < elements * (uint)sizeof(TYPE); ++i)                                   \
+        {                                                                                          \
+          wide[i] = (WIDE)value;                                                                   \
+        }                                                                                          \
+        continue;                                                                                  \
       }                                                                                            \
-      return;                                                                                      \
-    }                                                                                              \
-    for (size_t i = first; i < end; ++i)                                                           \
-    {                                                                                              \
-      for (uint e = 0; e < elements && !IsCovered(bits, i); ++e)                                   \
+      for (; open; open &= open - 1)                                                               \
       {                                                                                            \
-        target[i * elements + e] = value;                                                          \
+        const size_t voxel = first + 31 - clz(open & -open);                                       \
+        for (uint e = 0; e < elements; ++e)                                                        \
+        {                                                                                          \
+          target[voxel * elements + e] = value;                                                    \
+        }                                                                                          \
       }                                                                                            \
     }                                                                                              \
   }

@@ -25,12 +25,15 @@ void LaunchPatches(OpenCLContext& context, const cl::CommandQueue& queue, const 
   events.push_back(context.Launch(queue, kernel, cl::NDRange(group * count), cl::NDRange(group)));
 }
 
-/// An item for as many voxels as it takes at once.
-void LaunchExpanded(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
-  std::uint64_t voxels, std::vector<cl::Event>& events)
+/// For kernels that go through memory in portions, with a stride: no more items than a device runs
+/// at once, as to start one takes longer than a portion.
+void LaunchPortions(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+  std::uint64_t size, std::uint64_t portion, std::vector<cl::Event>& events)
 {
+  constexpr std::uint64_t itemsOfUnit = 2048;
+  const std::uint64_t portions = (size + portion - 1) / portion;
   LaunchBusyItems(context, queue, kernel,
-    static_cast<std::size_t>((voxels + DEFORMVOLUME_EXPANDED - 1) / DEFORMVOLUME_EXPANDED), events);
+    static_cast<std::size_t>(std::min(portions, context.GetNumberOfUnits() * itemsOfUnit)), events);
 }
 
 } // namespace
@@ -90,9 +93,7 @@ void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffe
     kernel.setArg(0, buffer);
     kernel.setArg(1, cl_ulong{ size * value.Size });
     kernel.setArg(2, pattern);
-    LaunchBusyItems(context, queue, kernel,
-      static_cast<std::size_t>((size * value.Size + sizeof(pattern) - 1) / sizeof(pattern)),
-      events);
+    LaunchPortions(context, queue, kernel, size * value.Size, sizeof(pattern), events);
     return;
   }
   cl::Kernel kernel = MakeKernel(context, "Fill", value);
@@ -124,7 +125,7 @@ void ExpandCoverage(OpenCLContext& context, const cl::CommandQueue& queue, const
   kernel.setArg(0, bits);
   kernel.setArg(1, coverage);
   kernel.setArg(2, cl_ulong{ voxels });
-  LaunchExpanded(context, queue, kernel, voxels, events);
+  LaunchPortions(context, queue, kernel, voxels, DEFORMVOLUME_EXPANDED, events);
 }
 
 void ExpandPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
@@ -160,7 +161,7 @@ void FillUncovered(OpenCLContext& context, const cl::CommandQueue& queue, const 
   kernel.setArg(2, value.Size, value.Bytes.data());
   kernel.setArg(3, bits);
   kernel.setArg(4, static_cast<cl_uint>(elements));
-  LaunchExpanded(context, queue, kernel, voxels, events);
+  LaunchPortions(context, queue, kernel, voxels, DEFORMVOLUME_EXPANDED, events);
 }
 
 } // namespace deformvolume

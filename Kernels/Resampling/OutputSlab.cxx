@@ -335,8 +335,7 @@ std::uint64_t OutputSlab::CountCovered(WorkDevice& device, std::vector<cl::Event
 {
   if (this->BitsUsed)
   {
-    this->CountBits(device, events);
-    return ReadSum(this->Queue, this->CoveredParts, DEFORMVOLUME_BIT_COUNTERS);
+    return this->ReadCounts(device, true, events).Covered;
   }
   OpenCLContext& context = device.GetContext();
   const std::uint64_t items =
@@ -348,21 +347,6 @@ std::uint64_t OutputSlab::CountCovered(WorkDevice& device, std::vector<cl::Event
   kernel.setArg(2, sums);
   LaunchBusyItems(context, this->Queue, kernel, static_cast<std::size_t>(items), events);
   return ReadSum(this->Queue, sums, static_cast<std::size_t>(items));
-}
-
-void OutputSlab::CountBits(WorkDevice& device, std::vector<cl::Event>& events)
-{
-  OpenCLContext& context = device.GetContext();
-  constexpr std::size_t parts = DEFORMVOLUME_BIT_COUNTERS;
-  Reserve(context, this->CoveredParts, parts * sizeof(cl_uint));
-  cl::Kernel kernel(GetOutputProgram(context), "CountCoveredBits");
-  const std::size_t group = device.GetBusyGroupSize(kernel, 256);
-  kernel.setArg(0, this->CoverageBits);
-  kernel.setArg(1, cl_ulong{ CountWords(this->NumberOfVoxels) });
-  kernel.setArg(2, this->CoveredParts);
-  kernel.setArg(3, cl::Local(group * sizeof(cl_ulong)));
-  events.push_back(
-    context.Launch(this->Queue, kernel, cl::NDRange(group * parts), cl::NDRange(group)));
 }
 
 std::vector<cl_uint> OutputSlab::FindBricks(int counter)
@@ -395,22 +379,24 @@ OutputSlab::Counts OutputSlab::ReadCounts(
 {
   OpenCLContext& context = device.GetContext();
   std::array<cl_uint, DEFORMVOLUME_SUMMARY_WORDS> words;
+  Reserve(context, this->Parts, DEFORMVOLUME_PARTS * DEFORMVOLUME_SUMMED * sizeof(cl_ulong));
   Reserve(context, this->Summary, sizeof(words));
-  covered &= this->BitsUsed;
-  if (covered)
+  const bool withBits = covered && this->BitsUsed;
+  const auto run = [&](const char* name, std::size_t groups, const auto&... arguments)
   {
-    this->CountBits(device, events);
-  }
-  cl::Kernel kernel(GetOutputProgram(context), "Summarize");
-  const std::size_t group = device.GetBusyGroupSize(kernel, 256);
+    cl::Kernel kernel(GetOutputProgram(context), name);
+    const std::size_t group = device.GetBusyGroupSize(kernel, 256);
+    cl_uint i = 0;
+    (kernel.setArg(i++, arguments), ...);
+    kernel.setArg(i, cl::Local(DEFORMVOLUME_SUMMED * group * sizeof(cl_ulong)));
+    events.push_back(
+      context.Launch(this->Queue, kernel, cl::NDRange(group * groups), cl::NDRange(group)));
+  };
   // A null pointer is not something that all drivers take.
-  kernel.setArg(0, this->Counters);
-  kernel.setArg(1, static_cast<cl_uint>(this->NumberOfSections));
-  kernel.setArg(2, covered ? this->CoveredParts : this->Counters);
-  kernel.setArg(3, cl_uint{ covered ? DEFORMVOLUME_BIT_COUNTERS : 0U });
-  kernel.setArg(4, this->Summary);
-  kernel.setArg(5, cl::Local((DEFORMVOLUME_COUNTERS + 1) * group * sizeof(cl_ulong)));
-  events.push_back(context.Launch(this->Queue, kernel, cl::NDRange(group), cl::NDRange(group)));
+  run("SumParts", DEFORMVOLUME_PARTS, this->Counters,
+    static_cast<cl_uint>(this->NumberOfSections), withBits ? this->CoverageBits : this->Counters,
+    cl_ulong{ withBits ? CountWords(this->NumberOfVoxels) : 0 }, this->Parts);
+  run("Summarize", 1, this->Parts, this->Summary);
   this->Queue.enqueueReadBuffer(this->Summary, CL_TRUE, 0, sizeof(words), words.data());
   const auto join = [&](std::size_t word)
   { return words[word] | std::uint64_t{ words[word + 1] } << 32; };

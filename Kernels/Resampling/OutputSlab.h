@@ -142,7 +142,6 @@ private:
   void SendPatches(OpenCLContext& context, const std::vector<std::uint32_t>& patches);
   void ClearSections(
     OpenCLContext& context, const PartToMake& part, std::vector<cl::Event>& events);
-  void CountBits(WorkDevice& device, std::vector<cl::Event>& events);
   void ExpandCoverage(OpenCLContext& context, bool again, std::vector<cl::Event>& events);
   std::uint64_t GetOffset(const DeformRequest& request) const;
 
@@ -153,13 +152,13 @@ private:
   std::vector<std::size_t> TupleSizes;
   cl::Buffer Coverage;
   cl::Buffer CoverageBits;
-  cl::Buffer CoveredParts; // partial sums of these
   bool BitsUsed = false;
   OutputWinners Winners;
   cl::Buffer PatchList; // those that an update clears
   std::size_t NumberOfListedPatches = 0;
   cl::Buffer Counters;
-  cl::Buffer Summary; // of these
+  cl::Buffer Parts;   // partial sums of these
+  cl::Buffer Summary; // of them
   cl::Buffer
     LargeCells; // at most a megabyte, which GetMemory leaves out as it does all lists of work
   std::size_t MostLargeCells = 0;

@@ -114,7 +114,7 @@ static __attribute__((noinline)) int IsWrittenBefore(
 }
 
 // s: of the tetrahedron, as far as it is known.
-static void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long* weights, long volume,
+static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long* weights, long volume,
   Sample* s, Vector voxel, int role, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   if (IsLeftOut(cell, t, weights))
@@ -204,7 +204,7 @@ static long CountCandidates(Candidates c)
 // A cell whose tetrahedra are all there and upright: a sample behind no face of the central
 // tetrahedron is in it, and a corner tetrahedron holds only samples behind its face. Corner tetrahedra of a cell that
 // is much bent overlap. As in any cell, the lowest tetrahedron comes last, because the last one to write wins.
-static void ResampleUprightCell(const SamplingMesh* mesh, const Cell* cell, Candidates c,
+static OUTLINED void ResampleUprightCell(const SamplingMesh* mesh, const Cell* cell, Candidates c,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   // All that hold a sample write it in turn then.
@@ -278,7 +278,7 @@ static int2 ClipRow(const long* weights, const long* steps, const float* zeros, 
 }
 
 // The samples of a tetrahedron among candidates.
-static void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* cell, int t,
+static OUTLINED void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* cell, int t,
   const Candidates* candidates, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const EdgeFunctions f = EdgeFunctionsOf(cell, t);
@@ -329,7 +329,7 @@ static void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* cell, int 
 }
 
 // Any cell: each tetrahedron on its own. The lowest one last, because the last one to write wins.
-static void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* cell, const Candidates* all,
+static OUTLINED void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* cell, const Candidates* all,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int parts = CountParts(cell);
@@ -374,7 +374,7 @@ static int AreUnsettled(Candidates c, const Output* output, const KernelParamete
 #define MOST_ONE_BY_ONE 128
 
 // The samples of a cell, by whichever of the two ways is right for it. all: those that are wanted.
-static void ResampleSamples(const SamplingMesh* mesh, const Cell* cell, const Candidates* all,
+static OUTLINED void ResampleSamples(const SamplingMesh* mesh, const Cell* cell, const Candidates* all,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   if (cell->Tetrahedra == DEFORMVOLUME_ALL_TETRAHEDRA && cell->Inverted == 0)
@@ -417,7 +417,7 @@ static int ClippedVertices(const SamplingMesh* mesh, Cell* cell, const KernelPar
 
 // Makes some tetrahedra of a cell, given as bits, those of a cell or a view that has its vertices. present: vertices of
 // these that have a place. clipped: ones on the far side of the boundary. Returns whether one is flat, or left out.
-static int MakeTetrahedra(Cell* cell, int tetrahedra, int present, int clipped, int odd, Output* output)
+static OUTLINED int MakeTetrahedra(Cell* cell, int tetrahedra, int present, int clipped, int odd, Output* output)
 {
   const Vector* const q = cell->Vertices;
   cell->Tetrahedra = 0;
@@ -516,7 +516,7 @@ static __attribute__((noinline)) int FinishViews(
 
 // What is known of a cell before its samples are, and is counted. views: room for two, where the cell may be divided.
 // Returns whether it may have some samples.
-static int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all, Cell* cell,
+static OUTLINED int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all, Cell* cell,
   Cell* views, Output* output, const KernelParameters* p)
 {
   const int found = LoadCell(mesh, x, y, z, p, cell->Vertices);
@@ -630,7 +630,7 @@ static int IsPutOff(
 }
 
 // One cell. all: the samples that are wanted.
-static void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all,
+static OUTLINED void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   Cell cell, views[2];

@@ -185,6 +185,7 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
   return context.GetProgram(GetSamplingMeshText(variant.WithCut) + MakeArrayText(context, arrays) +
       key + "#define HAS_MAPPING_KERNEL 0\n" + GetMappingText(mapping) +
       "#define HAS_CELL_KERNEL " + (form == ResamplingForm::Cells ? "1\n" : "0\n") +
+      "#define OUTLINED" + (form == ResamplingForm::Queue ? " __attribute__((noinline))\n" : "\n") +
       IntegerVectors_cl + CellVertices_cl + CutCells_cl + CellCoverage_cl + SampleStoring_cl +
       VoxelWinners_cl + Resampling_cl + GetFormText(context, arrays, variant),
     std::string(KernelOptions) + GetFormOptions(context, form));

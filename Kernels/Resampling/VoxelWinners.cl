@@ -154,7 +154,7 @@ static int AnyUnsettled(
 }
 
 // A cell holds a voxel of the output that it does not own. If there turns out to be a winner, it may be this cell.
-static void Touch(int x, int y, int z, Output* output, const KernelParameters* p)
+static OUTLINED void Touch(int x, int y, int z, Output* output, const KernelParameters* p)
 {
   __global char* patch = output->Patches + PatchRow(y, z, p) + x / DEFORMVOLUME_PATCH;
   if (*patch != DEFORMVOLUME_PATCH_KEPT)

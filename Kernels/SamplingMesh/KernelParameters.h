@@ -150,6 +150,12 @@ typedef struct
 #define DEFORMVOLUME_COUNT_LARGE 7   // cells that were put into the list of large ones
 #define DEFORMVOLUME_COUNTERS 8
 
+// Partial sums of these, and of the voxels that bits say are covered (the kernel SumParts): how many, and how many
+// parts there are.
+#define DEFORMVOLUME_SUMMED_COVERED DEFORMVOLUME_COUNTERS
+#define DEFORMVOLUME_SUMMED (DEFORMVOLUME_COUNTERS + 1)
+#define DEFORMVOLUME_PARTS 128
+
 // What the counters of all sections add up to (the kernel Summarize): two words each, the lower one
 // first, of writes, voxels covered and inverted tetrahedra; then overstretched ones, and the flags.
 #define DEFORMVOLUME_SUMMARY_WORDS 8
@@ -178,9 +184,6 @@ typedef struct
 #define DEFORMVOLUME_PATCH_UNSETTLED 1 // voxels have to be won
 #define DEFORMVOLUME_PATCH_TOUCHED 2   // cells may hold voxels that others write, or none
 #define DEFORMVOLUME_PATCH_KEPT 4      // its voxels stay as they are
-
-// Work-groups that count the voxels that bits say are covered.
-#define DEFORMVOLUME_BIT_COUNTERS 128
 
 // Voxels of which a work-item makes bytes of the bits of coverage, or fills what is not covered: half a word of these.
 #define DEFORMVOLUME_EXPANDED 16
