@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OutputArrays.h"
 
+#include "vtkDeviceOutputArray.h"
+
 #include "vtkCharArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -8,6 +10,7 @@
 #include "vtkPointData.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <utility>
 
@@ -53,6 +56,15 @@ std::uint64_t CountBytes(vtkDataArray* array, vtkIdType numberOfTuples)
   const vtkIdType values =
     std::min(array->GetSize(), numberOfTuples * array->GetNumberOfComponents());
   return static_cast<std::uint64_t>(values) * static_cast<std::uint64_t>(array->GetDataTypeSize());
+}
+
+// Where VTK does not know the class of an array it reads numbers as doubles, which do not hold all
+// integers of 64 bits.
+bool CanStayOnDevice(vtkDataArray* array)
+{
+  constexpr int mostBytes = 4;
+  const int type = array->GetDataType();
+  return type == VTK_FLOAT || type == VTK_DOUBLE || array->GetDataTypeSize() <= mostBytes;
 }
 
 // Names and the like; values are not touched.
@@ -142,8 +154,7 @@ std::uint64_t OutputArrays::Prepare(
   return bytes;
 }
 
-void OutputArrays::Make(
-  const std::vector<SourceArray>& sources, vtkImageData* image, DeformRequest& request)
+void OutputArrays::Make(const std::vector<SourceArray>& sources, DeformRequest& request)
 {
   if (std::all_of(this->Last.begin(), this->Last.end(),
         [this](const Kept& last) { return last.IsAsKept(this->NumberOfTuples); }))
@@ -182,13 +193,34 @@ void OutputArrays::Make(
     {
       request.Outputs.push_back(GetWritableValues(made));
     }
-    image->GetPointData()->AddArray(made);
     this->Made.push_back(made);
   }
 }
 
-void OutputArrays::Keep(std::uint64_t revision)
+void OutputArrays::Give(DeformReport& report, vtkImageData* image)
 {
+  for (std::size_t i = 0; i < this->Made.size(); ++i)
+  {
+    vtkSmartPointer<vtkDataArray> given = this->Made[i];
+    if (!report.DeviceOutputs.empty() && CanStayOnDevice(given))
+    {
+      given = MakeDeviceOutputArray(given, report.DeviceOutputs[i]);
+    }
+    else if (!report.DeviceOutputs.empty())
+    {
+      const auto begin = std::chrono::steady_clock::now();
+      report.DeviceOutputs[i]->Read();
+      report.TransferTime +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    }
+    image->GetPointData()->AddArray(given);
+  }
+  this->OnDevice.assign(report.DeviceOutputs.begin(), report.DeviceOutputs.end());
+}
+
+void OutputArrays::Keep(const DeformReport& report)
+{
+  const bool isOnDevice = !report.DeviceOutputs.empty();
   for (std::size_t i = 0; i < this->Made.size(); ++i)
   {
     if (this->Made[i] != this->Last[i].Array)
@@ -198,9 +230,9 @@ void OutputArrays::Keep(std::uint64_t revision)
     Kept& last = this->Last[i];
     last.Array = std::exchange(this->Made[i], nullptr);
     last.Array->Modified(); // ranges that were found of earlier values do not hold
-    last.Values = GetWritableValues(last.Array);
+    last.Values = isOnDevice ? nullptr : GetWritableValues(last.Array);
     last.Modified = last.Array->GetMTime();
-    last.Revision = revision;
+    last.Revision = report.Revision;
   }
   this->Made.clear();
 }
@@ -210,6 +242,17 @@ void OutputArrays::Forget()
   this->Last.clear();
   this->Older.clear();
   this->Made.clear();
+  this->OnDevice.clear();
+}
+
+int OutputArrays::GetNumberOfUnread() const
+{
+  return static_cast<int>(std::count_if(this->OnDevice.begin(), this->OnDevice.end(),
+    [](const std::weak_ptr<DeviceOutput>& output)
+    {
+      const std::shared_ptr<DeviceOutput> there = output.lock();
+      return there && !there->IsRead();
+    }));
 }
 
 } // namespace deformvolume

@@ -207,13 +207,17 @@ DeformationSize VolumeDeformation::GetSize(const DeformRequest& request) const
 
 DeformReport VolumeDeformation::Deform(const DeformRequest& request)
 {
+  this->BringOutput(); // its memory is that of the next one
   this->Volume.ReadArraysAgain();
   this->Source.ReadFieldAgain();
   const std::uint64_t spare = CheckDeviceMemory(this->Device, this->Budget, this->GetSize(request),
     OutputSlab::GetBytesPerVoxel(
       this->Device.GetContext(), this->Volume.GetVolumeArrays(), request));
-  return request.Method == Resampling::MeshRasterization ? this->Rasterize(request, spare)
-                                                         : this->Resample(request, spare);
+  const bool isRasterized = request.Method == Resampling::MeshRasterization;
+  DeformReport report =
+    isRasterized ? this->Rasterize(request, spare) : this->Resample(request, spare);
+  this->Unread.Set(report.DeviceOutputs, isRasterized);
+  return report;
 }
 
 DeformReport VolumeDeformation::Resample(const DeformRequest& request, std::uint64_t spare)
@@ -250,7 +254,7 @@ DeformReport VolumeDeformation::Rasterize(const DeformRequest& request, std::uin
 std::uint64_t VolumeDeformation::GetMemory() const
 {
   return this->Volume.GetMemory() + this->Source.GetMemory() + this->Rasterizer.GetMemory() +
-    this->Exact.GetMemory();
+    this->Exact.GetMemory() + this->Unread.GetMemory();
 }
 
 } // namespace deformvolume

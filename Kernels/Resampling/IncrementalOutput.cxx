@@ -126,14 +126,20 @@ bool IncrementalOutput::IsChangeInside() const
   return this->Changes.IsInside(read.data(), moved);
 }
 
+bool IncrementalOutput::StaysOnDevice(const DeformRequest& request) const
+{
+  return request.MayStayOnDevice && !this->Device.GetDevice().IsProcessor;
+}
+
 bool IncrementalOutput::CanUpdate(const DeformRequest& request, ExactResampler& resampler)
 {
+  const bool hasLast = request.LastCoverage &&
+    request.LastOutputs.size() == request.Outputs.size() &&
+    !std::count(request.LastOutputs.begin(), request.LastOutputs.end(), nullptr);
   return request.Incremental && this->Changes.IsTracking() &&
     this->Changes.GetOutputExtent() == request.OutputExtent &&
     this->LastWholeExtent == request.WholeOutputExtent && this->LastMethod == request.Method &&
-    request.LastCoverage && request.LastOutputs.size() == request.Outputs.size() &&
-    !std::count(request.LastOutputs.begin(), request.LastOutputs.end(), nullptr) &&
-    resampler.HoldsLastOutput(request);
+    (hasLast || this->StaysOnDevice(request)) && resampler.HoldsLastOutput(request);
 }
 
 void IncrementalOutput::CopyLastOutput(const DeformRequest& request) const
@@ -206,8 +212,17 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   // However this ends, the memory of the request is left alone afterwards.
   const SlabResampler::FinishGuard finish(resampler);
   const QueueGuard reads(this->Device.GetReadQueue());
-  this->CopyLastOutput(request);
-  const std::uint64_t before = CountCoveredInPatches(request, plan.Patches);
+  const bool stays = this->StaysOnDevice(request);
+  const auto countCovered = [&]
+  {
+    return stays ? resampler.CountCovered(plan.Patches)
+                 : CountCoveredInPatches(request, plan.Patches);
+  };
+  if (!stays)
+  {
+    this->CopyLastOutput(request);
+  }
+  const std::uint64_t before = countCovered();
   report.ResamplingTime += GetSecondsSince(begin);
   const std::optional<ExactResampler::Again> again =
     resampler.MakeAgain(request, plan.Bricks, plan.Patches);
@@ -218,16 +233,23 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   const OutputSlab::Counts& counts = again->Counts;
   const auto done = Clock::now();
   const Extent changed = this->Changes.GetChangedExtent();
-  resampler.ReadPart(request, changed);
-  resampler.FinishReading();
+  if (!stays)
+  {
+    resampler.ReadPart(request, changed);
+    resampler.FinishReading();
+  }
   report.TransferTime += GetSecondsSince(done);
   const auto read = Clock::now();
-  const std::uint64_t covered =
-    this->LastCovered - before + CountCoveredInPatches(request, plan.Patches);
+  const std::uint64_t covered = this->LastCovered - before + countCovered();
   report.ResamplingTime += GetSecondsSince(read);
   if (!won && (counts.NeedWinners(covered) || (inside && counts.Writes != covered)))
   {
     return false;
+  }
+  if (stays)
+  {
+    constexpr std::size_t target = 0; // of all updates of a part
+    report.DeviceOutputs = resampler.Leave(request, target);
   }
   this->LastCovered = covered;
   report.ChangedExtent = changed;

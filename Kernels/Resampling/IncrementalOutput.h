@@ -46,6 +46,8 @@ public:
     ExactResampler& resampler, DeformReport& report);
 
 private:
+  /// Whether the output is left on the device.
+  bool StaysOnDevice(const DeformRequest& request) const;
   bool CanUpdate(const DeformRequest& request, ExactResampler& resampler);
   /// The same as Update, but that after a failure it is not forgotten that there is a last output.
   bool TryUpdate(const DeformRequest& request, const DisplacementSource& source,

@@ -11,6 +11,9 @@
 #include "VolumeArray.h"
 #include "VoxelGrid.h"
 
+#include <memory>
+#include <vector>
+
 namespace deformvolume
 {
 
@@ -101,6 +104,9 @@ public:
   std::vector<LargeCell> ReadLargeCells() const;
 
   std::uint64_t CountCovered(OpenCLContext& context, std::vector<cl::Event>& events);
+  /// Of some patches, after Complete.
+  std::uint64_t CountCovered(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
+    std::vector<cl::Event>& events);
   Counts ReadCounts(WorkDevice& device, std::vector<cl::Event>& events);
 
   /// Whether the kernel for processors, with positions in float and indices of 31 bits, can write
@@ -128,6 +134,10 @@ public:
   /// Begins to copy a part of the slab, which is done, to its place in the request's memory, in a
   /// queue of its own.
   void Read(const cl::CommandQueue& queue, const DeformRequest& request, const Extent& part);
+  /// Leaves the slab, which is done and is the whole output, where it is. It has to be brought to
+  /// the host before another one is placed here or made of it. The queue is for that.
+  std::vector<std::shared_ptr<DeviceOutput>> Leave(const cl::CommandQueue& queue,
+    const DeformRequest& request, const std::vector<VolumeArray>& arrays) const;
   /// Waits until the slab is in the request's memory. Throws cl::Error where it did not get there.
   void FinishReading() { this->Reads.Check(); }
   /// Waits, whatever has happened, and lets go of the request's memory. Throws nothing.

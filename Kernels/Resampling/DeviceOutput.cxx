@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DeviceOutput.h"
+
+#include "DeviceOutputInternals.h"
+#include "GuardedCall.h"
+#include "HostMemory.h"
+
+#include <cstring>
+#include <exception>
+#include <utility>
+
+namespace deformvolume
+{
+
+DeviceOutput::Internals::Internals(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  std::uint64_t bytes, void* memory, const ElementBytes& background)
+  : Queue(queue)
+  , Buffer(buffer)
+  , Bytes(bytes)
+  , Memory(static_cast<char*>(memory))
+  , Background(background)
+{
+}
+
+void DeviceOutput::Internals::Bring() noexcept
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  if (!this->Buffer())
+  {
+    return;
+  }
+  try
+  {
+    this->Copy();
+  }
+  catch (const std::exception& error)
+  {
+    this->FillWithBackground();
+    this->Message = error.what();
+  }
+  this->Buffer = cl::Buffer();
+  this->Queue = cl::CommandQueue();
+  this->IsThere.store(true, std::memory_order_release);
+}
+
+void DeviceOutput::Internals::Copy()
+{
+  CallGuarded([this]
+    { BeginToReadRange(this->Queue, this->Buffer, 0, this->Bytes, this->Memory).Check(); },
+    [] {}, " The output is left with the background. Update it once more.");
+}
+
+void DeviceOutput::Internals::FillWithBackground() const
+{
+  for (std::uint64_t i = 0; i < this->Bytes; i += this->Background.Size)
+  {
+    std::memcpy(this->Memory + i, this->Background.Bytes.data(), this->Background.Size);
+  }
+}
+
+std::string DeviceOutput::Internals::GetMessage()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->Message;
+}
+
+void DeviceOutput::Internals::Leave() noexcept
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  this->Buffer = cl::Buffer();
+  this->Queue = cl::CommandQueue();
+}
+
+std::uint64_t DeviceOutput::Internals::GetMemory()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->Buffer() ? this->Bytes : 0;
+}
+
+void UnreadOutputs::Set(const std::vector<std::shared_ptr<DeviceOutput>>& outputs, bool ownBuffers)
+{
+  this->Outputs.clear();
+  for (const std::shared_ptr<DeviceOutput>& output : outputs)
+  {
+    this->Outputs.push_back(output->GetInternals());
+  }
+  this->OwnBuffers = ownBuffers;
+}
+
+void UnreadOutputs::Bring() noexcept
+{
+  for (const std::weak_ptr<DeviceOutput::Internals>& output : this->Outputs)
+  {
+    if (const std::shared_ptr<DeviceOutput::Internals> unread = output.lock())
+    {
+      unread->Bring();
+    }
+  }
+  this->Outputs.clear();
+}
+
+std::uint64_t UnreadOutputs::GetMemory() const
+{
+  std::uint64_t bytes = 0;
+  for (const std::weak_ptr<DeviceOutput::Internals>& output : this->Outputs)
+  {
+    const std::shared_ptr<DeviceOutput::Internals> unread = output.lock();
+    bytes += unread && this->OwnBuffers ? unread->GetMemory() : 0;
+  }
+  return bytes;
+}
+
+DeviceOutput::DeviceOutput(std::shared_ptr<Internals> internals)
+  : Impl(std::move(internals))
+{
+}
+
+DeviceOutput::~DeviceOutput()
+{
+  this->Impl->Leave();
+}
+
+bool DeviceOutput::IsRead() const
+{
+  return this->Impl->IsRead();
+}
+
+void DeviceOutput::Read()
+{
+  this->Impl->Bring();
+  const std::string message = this->Impl->GetMessage();
+  if (!message.empty())
+  {
+    throw Error(message);
+  }
+}
+
+} // namespace deformvolume
