@@ -88,7 +88,8 @@ void CopyDescription(vtkDataArray* array, vtkDataArray* wanted)
 bool OutputArrays::Kept::IsAsKept(vtkIdType numberOfTuples) const
 {
   return this->Array && this->Array->GetNumberOfTuples() == numberOfTuples &&
-    GetWritableValues(this->Array) == this->Values && this->Array->GetMTime() == this->Modified;
+    GetWritableValues(this->Array) == this->Values && this->Array->GetMTime() == this->Modified &&
+    (!this->OnDevice || this->OnDevice->IsRead());
 }
 
 bool OutputArrays::Kept::IsHeldByOthers() const
@@ -170,6 +171,7 @@ void OutputArrays::Make(const std::vector<SourceArray>& sources, DeformRequest& 
   {
     const bool isMask = i == sources.size();
     Kept& serving = this->GetServing(i);
+    request.HeldRevisions.push_back(serving.IsAsKept(this->NumberOfTuples) ? serving.Revision : 0);
     vtkSmartPointer<vtkDataArray> made = serving.Array;
     if (made)
     {
@@ -215,12 +217,10 @@ void OutputArrays::Give(DeformReport& report, vtkImageData* image)
     }
     image->GetPointData()->AddArray(given);
   }
-  this->OnDevice.assign(report.DeviceOutputs.begin(), report.DeviceOutputs.end());
 }
 
 void OutputArrays::Keep(const DeformReport& report)
 {
-  const bool isOnDevice = !report.DeviceOutputs.empty();
   for (std::size_t i = 0; i < this->Made.size(); ++i)
   {
     if (this->Made[i] != this->Last[i].Array)
@@ -230,9 +230,10 @@ void OutputArrays::Keep(const DeformReport& report)
     Kept& last = this->Last[i];
     last.Array = std::exchange(this->Made[i], nullptr);
     last.Array->Modified(); // ranges that were found of earlier values do not hold
-    last.Values = isOnDevice ? nullptr : GetWritableValues(last.Array);
+    last.Values = GetWritableValues(last.Array);
     last.Modified = last.Array->GetMTime();
     last.Revision = report.Revision;
+    last.OnDevice = report.DeviceOutputs.empty() ? nullptr : report.DeviceOutputs[i];
   }
   this->Made.clear();
 }
@@ -242,17 +243,12 @@ void OutputArrays::Forget()
   this->Last.clear();
   this->Older.clear();
   this->Made.clear();
-  this->OnDevice.clear();
 }
 
 int OutputArrays::GetNumberOfUnread() const
 {
-  return static_cast<int>(std::count_if(this->OnDevice.begin(), this->OnDevice.end(),
-    [](const std::weak_ptr<DeviceOutput>& output)
-    {
-      const std::shared_ptr<DeviceOutput> there = output.lock();
-      return there && !there->IsRead();
-    }));
+  return static_cast<int>(std::count_if(this->Last.begin(), this->Last.end(),
+    [](const Kept& last) { return last.OnDevice && last.OnDevice->IsOnDevice(); }));
 }
 
 } // namespace deformvolume

@@ -52,8 +52,9 @@ private:
     const void* Values = nullptr;
     vtkMTimeType Modified = 0;
     std::uint64_t Revision = 0;
+    std::shared_ptr<DeviceOutput> OnDevice; // null: the values came to the host at once
 
-    /// Whether it is of so many tuples, and nobody has written to it.
+    /// Whether it is of so many tuples, has the values of the output, and nobody has written to it.
     bool IsAsKept(vtkIdType numberOfTuples) const;
     bool IsHeldByOthers() const;
   };
@@ -67,7 +68,6 @@ private:
   std::vector<Kept> Last;
   std::vector<Kept> Older; // of the execution before, those that serve in turn
   std::vector<vtkSmartPointer<vtkDataArray>> Made;
-  std::vector<std::weak_ptr<DeviceOutput>> OnDevice; // what is, or was, of the last output
 };
 
 } // namespace deformvolume

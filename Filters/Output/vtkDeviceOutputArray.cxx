@@ -28,7 +28,32 @@ vtkDeviceOutputArray<T>::vtkDeviceOutputArray()
 
 //------------------------------------------------------------------------------
 template <typename T>
-vtkDeviceOutputArray<T>::~vtkDeviceOutputArray() = default;
+vtkDeviceOutputArray<T>::~vtkDeviceOutputArray()
+{
+  this->Drop();
+}
+
+//------------------------------------------------------------------------------
+template <typename T>
+void vtkDeviceOutputArray<T>::Drop()
+{
+  if (this->Output)
+  {
+    this->Output->Drop();
+    this->Output.reset();
+  }
+}
+
+//------------------------------------------------------------------------------
+template <typename T>
+void vtkDeviceOutputArray<T>::Modified()
+{
+  if (this->Values)
+  {
+    this->Host->Modified(); // whose memory is not what the filter has put there
+  }
+  this->Superclass::Modified();
+}
 
 //------------------------------------------------------------------------------
 template <typename T>
@@ -70,7 +95,6 @@ T* vtkDeviceOutputArray<T>::BringToHost() const
     {
       message = error.what();
     }
-    this->Output.reset();
     values = static_cast<T*>(this->Host->GetVoidPointer(0));
     this->Values.store(values, std::memory_order_release);
   }
@@ -98,7 +122,7 @@ bool vtkDeviceOutputArray<T>::SetSize(vtkIdType values, vtkIdType kept)
   {
     std::copy_n(this->GetValues(), kept, memory);
   }
-  this->Output.reset();
+  this->Drop();
   this->Host = host;
   this->Values = memory;
   return true;

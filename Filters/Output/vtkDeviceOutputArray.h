@@ -44,6 +44,7 @@ public:
   /// anybody else has this array.
   void SetOutput(vtkDataArray* host, const std::shared_ptr<deformvolume::DeviceOutput>& output);
 
+  void Modified() override;
   int GetDataType() const override { return this->DataType; }
 
   /// The values on the host.
@@ -101,6 +102,8 @@ private:
   void operator=(const vtkDeviceOutputArray&) = delete;
 
   T* BringToHost() const;
+  /// Lets go of the values.
+  void Drop();
   /// Gives it memory of its own, for so many values; the first ones are kept, or none.
   bool SetSize(vtkIdType values, vtkIdType kept);
 
@@ -108,8 +111,7 @@ private:
   vtkSmartPointer<vtkDataArray> Host;        // whose memory it is
   mutable std::mutex Mutex;                  // of a first access
   mutable std::atomic<T*> Values{ nullptr }; // null: they have to be brought
-  // Last: it lets go of the memory before that goes.
-  mutable std::shared_ptr<deformvolume::DeviceOutput> Output;
+  std::shared_ptr<deformvolume::DeviceOutput> Output;
 };
 
 #endif

@@ -183,6 +183,11 @@ void VolumeDeformation::CheckRequest(const DeformRequest& request) const
     throw Error("No deformation is set: call SetMesh and SetNodeDisplacements, or "
                 "SetDisplacementField, first.");
   }
+  if (!request.HeldRevisions.empty() && request.HeldRevisions.size() != arrays.size() + 1)
+  {
+    throw Error("The request must tell the held revision of each array and of the coverage, or of "
+                "none.");
+  }
   if (request.Outputs.size() != arrays.size() || !request.Coverage ||
     std::count(request.Outputs.begin(), request.Outputs.end(), nullptr))
   {

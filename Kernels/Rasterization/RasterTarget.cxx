@@ -10,6 +10,7 @@ namespace deformvolume
 
 RasterTarget::RasterTarget(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
   const DeformRequest& request, const Extent& slab)
+  : SlabExtent(slab)
 {
   const std::uint64_t plane = static_cast<std::uint64_t>(GetSize(slab, 0) * GetSize(slab, 1));
   this->FirstVoxel =
@@ -34,8 +35,8 @@ void RasterTarget::AddMemory(OpenCLContext& context, void* output, std::uint64_t
   Memory memory;
   memory.Background = background;
   memory.Host = static_cast<char*>(output) + this->FirstVoxel * tuple;
-  memory.Bytes = this->NumberOfVoxels * tuple;
-  Place(context, memory.Buffer, memory.Host, elementSize, memory.Bytes);
+  memory.Tuple = tuple;
+  Place(context, memory.Buffer, memory.Host, elementSize, this->NumberOfVoxels * tuple);
   this->Memories.push_back(memory);
 }
 
@@ -43,7 +44,8 @@ void RasterTarget::Read(const cl::CommandQueue& queue)
 {
   for (const Memory& memory : this->Memories)
   {
-    this->Reads.Add(BeginToRead(queue, memory.Buffer, memory.Bytes, memory.Host));
+    this->Reads.Add(
+      BeginToRead(queue, memory.Buffer, this->NumberOfVoxels * memory.Tuple, memory.Host));
   }
   queue.flush();
 }
@@ -53,8 +55,10 @@ std::vector<std::shared_ptr<DeviceOutput>> RasterTarget::Leave(const cl::Command
   std::vector<std::shared_ptr<DeviceOutput>> outputs;
   for (const Memory& memory : this->Memories)
   {
+    const DeviceOutput::Internals::Voxels voxels{ this->SlabExtent, this->SlabExtent,
+      memory.Tuple };
     outputs.push_back(std::make_shared<DeviceOutput>(std::make_shared<DeviceOutput::Internals>(
-      queue, memory.Buffer, memory.Bytes, memory.Host, memory.Background)));
+      queue, memory.Buffer, voxels, memory.Host, memory.Background)));
   }
   return outputs;
 }

@@ -46,12 +46,13 @@ private:
   {
     cl::Buffer Buffer;
     char* Host;
-    std::uint64_t Bytes;
+    std::uint64_t Tuple; // bytes of a voxel
     ElementBytes Background;
   };
   void AddMemory(OpenCLContext& context, void* output, std::uint64_t tuple, std::size_t elementSize,
     const ElementBytes& background);
 
+  Extent SlabExtent;
   std::uint64_t FirstVoxel; // of the slab in the output
   std::uint64_t NumberOfVoxels;
   std::vector<Memory> Memories;

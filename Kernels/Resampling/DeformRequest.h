@@ -65,6 +65,10 @@ struct DeformRequest
   /// of its own and makes the output in one piece, DeformReport::DeviceOutputs are it. Outputs and
   /// Coverage get the values when they are read.
   bool MayStayOnDevice = false;
+  /// For such outputs: DeformReport::Revision of what the memory of each of Outputs, and then that
+  /// of Coverage, holds unchanged, 0: nothing of use. In an update of a part only what has changed
+  /// since is then copied there. Empty: they hold nothing.
+  std::vector<std::uint64_t> HeldRevisions;
   /// Keeps what is needed to write only what changes until the next call. That call needs the
   /// output of this one in LastOutputs and LastCoverage. Where that is not faster or not possible,
   /// all is written; the result is the same to the last bit. For volumes and outputs within the

@@ -13,46 +13,70 @@ namespace deformvolume
 {
 
 DeviceOutput::Internals::Internals(const cl::CommandQueue& queue, const cl::Buffer& buffer,
-  std::uint64_t bytes, void* memory, const ElementBytes& background)
+  const Voxels& voxels, void* memory, const ElementBytes& background)
   : Queue(queue)
   , Buffer(buffer)
-  , Bytes(bytes)
+  , Values(voxels)
   , Memory(static_cast<char*>(memory))
   , Background(background)
 {
 }
 
+std::uint64_t DeviceOutput::Internals::GetBytes() const
+{
+  return static_cast<std::uint64_t>(GetNumberOfPoints(this->Values.Whole)) * this->Values.Bytes;
+}
+
+void DeviceOutput::Internals::LeaveDevice(Place place) noexcept
+{
+  this->Buffer = cl::Buffer();
+  this->Queue = cl::CommandQueue();
+  this->State = place;
+}
+
 void DeviceOutput::Internals::Bring() noexcept
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
-  if (!this->Buffer())
+  if (!this->IsOnDevice())
   {
     return;
   }
   try
   {
     this->Copy();
+    this->LeaveDevice(Place::Host);
   }
   catch (const std::exception& error)
   {
     this->FillWithBackground();
     this->Message = error.what();
+    this->LeaveDevice(Place::Nowhere);
   }
-  this->Buffer = cl::Buffer();
-  this->Queue = cl::CommandQueue();
-  this->IsThere.store(true, std::memory_order_release);
 }
 
 void DeviceOutput::Internals::Copy()
 {
-  CallGuarded([this]
-    { BeginToReadRange(this->Queue, this->Buffer, 0, this->Bytes, this->Memory).Check(); },
-    [] {}, " The output is left with the background. Update it once more.");
+  const auto copy = [this]
+  {
+    const Voxels& values = this->Values;
+    if (values.Part == values.Whole)
+    {
+      BeginToReadRange(this->Queue, this->Buffer, 0, this->GetBytes(), this->Memory).Check();
+    }
+    else if (GetNumberOfPoints(values.Part) > 0)
+    {
+      BeginToReadBox(this->Queue, this->Buffer, values.Whole, values.Part, values.Bytes,
+        this->Memory, values.Whole)
+        .Check();
+    }
+  };
+  CallGuarded(
+    copy, [] {}, " The output is left with the background. Update it once more.");
 }
 
 void DeviceOutput::Internals::FillWithBackground() const
 {
-  for (std::uint64_t i = 0; i < this->Bytes; i += this->Background.Size)
+  for (std::uint64_t i = 0; i < this->GetBytes(); i += this->Background.Size)
   {
     std::memcpy(this->Memory + i, this->Background.Bytes.data(), this->Background.Size);
   }
@@ -64,17 +88,19 @@ std::string DeviceOutput::Internals::GetMessage()
   return this->Message;
 }
 
-void DeviceOutput::Internals::Leave() noexcept
+void DeviceOutput::Internals::Drop() noexcept
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
-  this->Buffer = cl::Buffer();
-  this->Queue = cl::CommandQueue();
+  if (this->IsOnDevice())
+  {
+    this->LeaveDevice(Place::Nowhere);
+  }
 }
 
 std::uint64_t DeviceOutput::Internals::GetMemory()
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
-  return this->Buffer() ? this->Bytes : 0;
+  return this->IsOnDevice() ? this->GetBytes() : 0;
 }
 
 void UnreadOutputs::Set(const std::vector<std::shared_ptr<DeviceOutput>>& outputs, bool ownBuffers)
@@ -117,12 +143,22 @@ DeviceOutput::DeviceOutput(std::shared_ptr<Internals> internals)
 
 DeviceOutput::~DeviceOutput()
 {
-  this->Impl->Leave();
+  this->Impl->Drop();
+}
+
+bool DeviceOutput::IsOnDevice() const
+{
+  return this->Impl->IsOnDevice();
 }
 
 bool DeviceOutput::IsRead() const
 {
   return this->Impl->IsRead();
+}
+
+void DeviceOutput::Drop()
+{
+  this->Impl->Drop();
 }
 
 void DeviceOutput::Read()

@@ -3,10 +3,12 @@
 #define DeformVolumeDeviceOutputInternals_h
 
 #include "DeviceOutput.h"
+#include "Extent.h"
 #include "OpenCLContext.h"
 #include "OutputFilling.h"
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -20,12 +22,22 @@ namespace deformvolume
 class DeviceOutput::Internals
 {
 public:
-  /// The buffer, of which so many bytes are the values, is written, and nobody writes to it before
-  /// Bring() was called. background: what the memory gets where the values cannot be copied.
-  Internals(const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t bytes,
+  /// What there is to copy: of the voxels of an output, with so many bytes each, a part. The others
+  /// are there.
+  struct Voxels
+  {
+    Extent Whole;
+    Extent Part;
+    std::size_t Bytes;
+  };
+
+  /// The buffer is written, and nobody writes to it before Bring() was called. background: what all
+  /// of the memory gets where the values cannot be copied.
+  Internals(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Voxels& voxels,
     void* memory, const ElementBytes& background);
 
-  bool IsRead() const { return this->IsThere.load(std::memory_order_acquire); }
+  bool IsOnDevice() const { return this->State == Place::Device; }
+  bool IsRead() const { return this->State == Place::Host; }
 
   /// Brings the values to the memory, unless that is done, and lets go of the buffer. Throws
   /// nothing.
@@ -33,20 +45,28 @@ public:
   /// What went wrong then; "" where nothing did.
   std::string GetMessage();
   /// Nobody wants the values, and the memory may go. Waits for a copy that is under way.
-  void Leave() noexcept;
+  void Drop() noexcept;
 
   /// Bytes of the device.
   std::uint64_t GetMemory();
 
 private:
+  enum class Place
+  {
+    Device,
+    Host,
+    Nowhere // dropped, or lost
+  };
   void Copy();
   void FillWithBackground() const;
+  void LeaveDevice(Place place) noexcept;
+  std::uint64_t GetBytes() const;
 
   std::mutex Mutex;
-  std::atomic<bool> IsThere{ false };
+  std::atomic<Place> State{ Place::Device };
   cl::CommandQueue Queue;
-  cl::Buffer Buffer; // none once it is read or left
-  std::uint64_t Bytes;
+  cl::Buffer Buffer;
+  Voxels Values;
   char* Memory;
   ElementBytes Background;
   std::string Message;

@@ -189,8 +189,16 @@ void ExactResampler::Read(const DeformRequest& request, std::size_t target)
 std::vector<std::shared_ptr<DeviceOutput>> ExactResampler::Leave(
   const DeformRequest& request, std::size_t target)
 {
-  return this->Targets[target].Leave(
-    this->Device.GetReadQueue(), request, this->Volume.GetVolumeArrays());
+  const OutputSlab& output = this->Targets[target];
+  return output.Leave(this->Device.GetReadQueue(), request, this->Volume.GetVolumeArrays(),
+    std::vector<Extent>(request.Outputs.size() + 1, output.GetExtent()));
+}
+
+std::vector<std::shared_ptr<DeviceOutput>> ExactResampler::LeaveParts(
+  const DeformRequest& request, const std::vector<Extent>& parts)
+{
+  return this->Targets[0].Leave(
+    this->Device.GetReadQueue(), request, this->Volume.GetVolumeArrays(), parts);
 }
 
 std::uint64_t ExactResampler::CountCovered(const std::vector<std::uint32_t>& patches)

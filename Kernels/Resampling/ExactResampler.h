@@ -67,6 +67,10 @@ public:
     const std::vector<std::uint32_t>& patches);
   /// The covered voxels of some patches of the last output, counted on the device.
   std::uint64_t CountCovered(const std::vector<std::uint32_t>& patches);
+  /// The same as Leave(), where of each array, and of the coverage, a part has to be copied when it
+  /// is read.
+  std::vector<std::shared_ptr<DeviceOutput>> LeaveParts(
+    const DeformRequest& request, const std::vector<Extent>& parts);
   /// Begins to copy a part of that to the memory of the request, as Read() does.
   void ReadPart(const DeformRequest& request, const Extent& part);
 

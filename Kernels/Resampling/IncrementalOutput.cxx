@@ -64,6 +64,7 @@ void IncrementalOutput::Start(
   this->LastWholeExtent = request.WholeOutputExtent;
   this->LastCovered = static_cast<std::uint64_t>(report.NumberOfCoveredVoxels);
   this->RevisionBefore = 0;
+  this->LastChanges.clear();
   this->Revision = MakeRevision();
   report.Revision = this->Revision;
   if (source.IsWrittenInPart())
@@ -164,6 +165,36 @@ void IncrementalOutput::CopyLastOutput(const DeformRequest& request) const
   }
 }
 
+Extent IncrementalOutput::GetMissing(std::uint64_t held) const
+{
+  const auto first = std::find_if(this->LastChanges.begin(), this->LastChanges.end(),
+    [=](const Change& change) { return change.Before == held; });
+  if (first == this->LastChanges.end())
+  {
+    return this->Changes.GetOutputExtent();
+  }
+  Extent missing{ { 0, -1, 0, -1, 0, -1 } };
+  for (auto change = first; change != this->LastChanges.end(); ++change)
+  {
+    if (GetNumberOfPoints(change->Changed) > 0)
+    {
+      Include(missing, change->Changed);
+    }
+  }
+  return missing;
+}
+
+std::vector<std::shared_ptr<DeviceOutput>> IncrementalOutput::Leave(
+  const DeformRequest& request, ExactResampler& resampler) const
+{
+  std::vector<Extent> parts;
+  for (std::size_t i = 0; i <= request.Outputs.size(); ++i)
+  {
+    parts.push_back(this->GetMissing(request.HeldRevisions.empty() ? 0 : request.HeldRevisions[i]));
+  }
+  return resampler.LeaveParts(request, parts);
+}
+
 bool IncrementalOutput::Update(const DeformRequest& request, const DisplacementSource& source,
   ExactResampler& resampler, DeformReport& report)
 {
@@ -246,10 +277,15 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   {
     return false;
   }
+  constexpr std::size_t mostChanges = 16;
+  this->LastChanges.push_back({ this->Revision, changed });
+  if (this->LastChanges.size() > mostChanges)
+  {
+    this->LastChanges.pop_front();
+  }
   if (stays)
   {
-    constexpr std::size_t target = 0; // of all updates of a part
-    report.DeviceOutputs = resampler.Leave(request, target);
+    report.DeviceOutputs = this->Leave(request, resampler);
   }
   this->LastCovered = covered;
   report.ChangedExtent = changed;

@@ -479,14 +479,17 @@ void OutputSlab::Read(
 }
 
 std::vector<std::shared_ptr<DeviceOutput>> OutputSlab::Leave(const cl::CommandQueue& queue,
-  const DeformRequest& request, const std::vector<VolumeArray>& arrays) const
+  const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+  const std::vector<Extent>& parts) const
 {
   std::vector<std::shared_ptr<DeviceOutput>> outputs;
   const auto leave = [&](const cl::Buffer& buffer, std::size_t tupleSize, void* memory,
                        const ElementBytes& background)
   {
-    outputs.push_back(std::make_shared<DeviceOutput>(std::make_shared<DeviceOutput::Internals>(
-      queue, buffer, this->NumberOfVoxels * tupleSize, memory, background)));
+    const DeviceOutput::Internals::Voxels voxels{ this->SlabExtent, parts[outputs.size()],
+      tupleSize };
+    outputs.push_back(std::make_shared<DeviceOutput>(
+      std::make_shared<DeviceOutput::Internals>(queue, buffer, voxels, memory, background)));
   };
   for (std::size_t i = 0; i < this->Arrays.size(); ++i)
   {

@@ -135,9 +135,11 @@ public:
   /// queue of its own.
   void Read(const cl::CommandQueue& queue, const DeformRequest& request, const Extent& part);
   /// Leaves the slab, which is done and is the whole output, where it is. It has to be brought to
-  /// the host before another one is placed here or made of it. The queue is for that.
+  /// the host before another one is placed here or made of it. The queue is for that. parts: of
+  /// each array, and of the coverage, what the request's memory has not.
   std::vector<std::shared_ptr<DeviceOutput>> Leave(const cl::CommandQueue& queue,
-    const DeformRequest& request, const std::vector<VolumeArray>& arrays) const;
+    const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+    const std::vector<Extent>& parts) const;
   /// Waits until the slab is in the request's memory. Throws cl::Error where it did not get there.
   void FinishReading() { this->Reads.Check(); }
   /// Waits, whatever has happened, and lets go of the request's memory. Throws nothing.
