@@ -379,9 +379,15 @@ public:
   /**
    * Whether the arrays of the output stay in the memory of a device that has its own until somebody
    * reads or writes one of them; then that one is brought to the host, once. An update takes no
-   * time for that, and what nobody reads never passes the bus. The arrays have VTK's interfaces for
-   * any array of their type, and are none of its own classes: what needs these, such as a
-   * vtkShortArray, gets them from a copy (DeepCopy()).
+   * time for that, and what nobody reads never passes the bus. Where memory of the host still holds
+   * an earlier output, only what has changed since is copied (see Incremental). Arrays of integers
+   * of 64 bits go to the host at once: VTK reads arrays of classes that it does not know as
+   * doubles.
+   *
+   * The arrays have the interfaces that all of VTK's arrays have, GetVoidPointer() included, and
+   * may be read by several threads. They are none of VTK's own classes: what needs one of these,
+   * such as a vtkShortArray, gets it from a copy (DeepCopy() of the data set or into such an
+   * array).
    *
    * What is still held of an output, and not read, is brought to the host before the device writes
    * the next one, has another volume, or is to release its memory (ReleaseDeviceMemory()). Until
@@ -389,9 +395,7 @@ public:
    * cannot be brought, that is an error of the array, which holds the background.
    *
    * The property is without effect on devices that are processors, as they work in the memory of
-   * the host, and where the device does not hold the output in one piece. With all of the output
-   * read at each update, nothing is gained, and where an update resamples some bricks only (see
-   * Incremental), more is copied than without it. Default: off.
+   * the host, and where the device does not hold the output in one piece. Default: off.
    */
   vtkSetMacro(OutputOnDevice, bool);
   vtkGetMacro(OutputOnDevice, bool);
