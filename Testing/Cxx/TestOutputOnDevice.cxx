@@ -460,6 +460,15 @@ void TestHeldOutputs()
   both.Move(0.3, 400);
   both.Check(both.Update());
   VERIFY_EQUAL(GetArray(held, "value")->GetComponent(77, 0), 3.0);
+  // Written, and dropped: its memory holds no output.
+  both.Move(0.3, 400);
+  both.Check(both.Update());
+  vtkDataArray* value = GetArray(both.Found.Filter->GetOutput(), "value");
+  value->Fill(4.0);
+  value->Modified();
+  held->Initialize();
+  both.Move(0.3, 400);
+  both.Check(both.Update());
 }
 
 void TestDeletedFilter()
@@ -519,6 +528,22 @@ void TestIncremental()
     }
   }
   VERIFY(parts > 4);
+  // Who reads each of them copies what has changed, whether he holds the one before or not.
+  vtkNew<vtkImageData> held;
+  for (int step = 0; step < 6; ++step)
+  {
+    both.Move(0.2, 800);
+    both.Expected.Update();
+    const std::uint64_t read = CountRead([&] { both.Check(both.Found.Update()); });
+    if (step != 0 && step != 3) // when there is no memory, or not for two
+    {
+      VERIFY(read < GetBytes(GetArray(both.Found.Filter->GetOutput(), "value")) / 4 + 60000);
+    }
+    if (step >= 2)
+    {
+      held->ShallowCopy(both.Found.Filter->GetOutput());
+    }
+  }
 }
 
 // Many threads read first.
@@ -665,6 +690,22 @@ void TestLostDevice()
   }
 }
 
+// Where an array goes to the host at once the update fails, as without the property.
+void TestFailedUpdate()
+{
+  Both both;
+  both.Update();
+  both.Move(0.1);
+  FakeDriver::Get().ReadError = -36; // of the ids
+  both.Found.Filter->Update();
+  VERIFY_EQUAL(both.Found.TakeErrors(), 1);
+  VERIFY_EQUAL(both.Found.Filter->GetOutput()->GetNumberOfPoints(), 0);
+  VERIFY_EQUAL(both.GetNumberOfUnread(), 0);
+  FakeDriver::Get().ReadError = 0;
+  both.Found.Filter->Modified();
+  both.Check(both.Update());
+}
+
 // Where memory is short the output is held once, and an output in parts goes to the host.
 void TestMemory()
 {
@@ -738,6 +779,7 @@ int main(int argc, char* argv[])
   TestIncremental();
   TestThreads();
   TestLostDevice();
+  TestFailedUpdate();
   TestMemory();
   return GetExitCode();
 }

@@ -228,9 +228,12 @@ TEST_P(OnDevice, EqualsWholeOutputsWhateverIsRead)
     this->Request.HeldRevisions.assign(held[turn].begin(), held[turn].end());
     const DeformReport report = this->Update();
     parts += report.NumberOfResampledBricks < report.NumberOfBricks;
+    const auto isCovered = [](signed char covered) { return covered != 0; };
     outputs[turn] = report.DeviceOutputs;
     ASSERT_EQ(outputs[turn].size(), 3U);
     expected[turn] = this->MakeExpected();
+    EXPECT_EQ(report.NumberOfCoveredVoxels,
+      std::count_if(expected[turn]->Coverage.begin(), expected[turn]->Coverage.end(), isCovered));
     revisions[turn] = report.Revision;
     if (random() % 2 == 0) // some of it; the memory of the others holds what it held
     {
