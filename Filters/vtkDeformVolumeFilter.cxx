@@ -164,6 +164,12 @@ vtkTypeInt64 vtkDeformVolumeFilter::GetDeviceMemory()
 }
 
 //------------------------------------------------------------------------------
+int vtkDeformVolumeFilter::GetNumberOfUnreadArrays()
+{
+  return this->Internals->State->Outputs.GetNumberOfUnread();
+}
+
+//------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::ReleaseDeviceMemory()
 {
   for (auto& state : this->Internals->States)
@@ -240,6 +246,7 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ResamplerInUse: " << this->ResamplerInUse << "\n";
   os << indent << "OpenSplits: " << (this->OpenSplits ? "on" : "off") << "\n";
   os << indent << "Incremental: " << (this->Incremental ? "on" : "off") << "\n";
+  os << indent << "OutputOnDevice: " << (this->OutputOnDevice ? "on" : "off") << "\n";
   os << indent << "StreamInput: " << (this->StreamInput ? "on" : "off") << "\n";
   os << indent << "Device: \"" << this->Device << "\"\n";
   os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";

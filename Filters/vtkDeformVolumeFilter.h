@@ -377,6 +377,38 @@ public:
 
   ///@{
   /**
+   * Whether the arrays of the output stay in the memory of a device that has its own until somebody
+   * reads or writes one of them; then that one is brought to the host, once. An update takes no
+   * time for that, and what nobody reads never passes the bus. Where memory of the host still holds
+   * an earlier output, only what has changed since is copied (see Incremental). Arrays of integers
+   * of 64 bits go to the host at once: VTK reads arrays of classes that it does not know as
+   * doubles.
+   *
+   * The arrays have the interfaces that all of VTK's arrays have, GetVoidPointer() included, and
+   * may be read by several threads. They are none of VTK's own classes: what needs one of these,
+   * such as a vtkShortArray, gets it from a copy (DeepCopy() of the data set or into such an
+   * array).
+   *
+   * What is still held of an output, and not read, is brought to the host before the device writes
+   * the next one, has another volume, or is to release its memory (ReleaseDeviceMemory()). Until
+   * then it is part of GetDeviceMemory(). It can be read when this filter is no more. Where it
+   * cannot be brought, that is an error of the array, which holds the background.
+   *
+   * The property is without effect on devices that are processors, as they work in the memory of
+   * the host, and where the device does not hold the output in one piece. Default: off.
+   */
+  vtkSetMacro(OutputOnDevice, bool);
+  vtkGetMacro(OutputOnDevice, bool);
+  vtkBooleanMacro(OutputOnDevice, bool);
+  ///@}
+
+  /**
+   * How many arrays of the last output are on the device, and have not been read (OutputOnDevice).
+   */
+  int GetNumberOfUnreadArrays();
+
+  ///@{
+  /**
    * Whether the input is asked only for what can land in the output even where all of the output is
    * asked for. Where a part is asked for that is done anyway. It matters where the output shows a
    * part of the deformed volume only (CUSTOM_BOUNDS). The volume is asked for whole all the same
@@ -437,7 +469,8 @@ public:
   ///@{
   /**
    * What the last execution did. Times are in seconds: PreprocessingTime for the static mapping (0
-   * when the one of an earlier execution served), TransferTime for copies to and from the device,
+   * when the one of an earlier execution served), TransferTime for copies to and from the device
+   * (without those of arrays that are read later, see OutputOnDevice),
    * ResamplingTime for the kernels, CompilationTime for their compilation, which is part of no
    * other time and close to 0 once the kernels are known. The exact kernels map and resample in
    * one, and MappingTime is 0 then; the published method does one after the other. With
@@ -557,6 +590,7 @@ private:
   int Interpolation = LINEAR_INTERPOLATION;
   bool OpenSplits = false;
   bool Incremental = true;
+  bool OutputOnDevice = false;
   bool StreamInput = false;
   std::string Device;
   vtkTypeInt64 MemoryLimit = 0;

@@ -394,11 +394,13 @@ int vtkDeformVolumeFilter::RequestData(
     image->SetExtent(request.OutputExtent.data());
     deformvolume::SetTransform(image, outputGeometry);
     image->GetFieldData()->ShallowCopy(volume->GetFieldData());
-    state.Outputs.Make(arrays, image, request);
+    state.Outputs.Make(arrays, request);
     request.Incremental = this->Incremental;
-    deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
+    request.MayStayOnDevice = this->OutputOnDevice;
 
     report = device.Deform(request);
+    state.Outputs.Give(report, image);
+    deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
   };
   this->Internals->RunInTurn(ranks,
     deformvolume::GetKernelKey(this->DeviceInUse, request, form, described), numberOfPoints > 0,
@@ -421,7 +423,7 @@ int vtkDeformVolumeFilter::RequestData(
   }
   else
   {
-    state.Outputs.Keep(report.Revision);
+    state.Outputs.Keep(report);
   }
   if (!hasLast)
   {

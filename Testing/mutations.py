@@ -32,6 +32,7 @@ OWN_MEMORY = ("TestIncrementalGraphics", "*IncrementalGraphics*")
 MEMORY = ("TestHostMemory", "*")
 LARGE = ("TestLargeCells", "-*Time*")
 FAULTS = ("TestFaults", "*")
+DEVICE_OUTPUT = ("TestDeviceOutput", "*")
 GRAPHICS = ("TestGraphicsDevice", "*")
 STAGED = ("TestStagedCopies", "Staged.*")
 CUTTING = ("TestCutting", "*")
@@ -97,6 +98,17 @@ MUTATIONS = {
     "staged-error": ("Kernels/OpenCL/StagedCopies.cxx", "    copy.Error = error;", "", [STAGED]),
     "staged-plane": ("Kernels/OpenCL/StagedCopies.cxx", "size[2] > 1 || there.Origin[2] > 0 ? there.Plane : 0;",
                      "size[2] > 1 ? there.Plane : 0;", [STAGED]),
+    "unread-overwritten": ("Kernels/Deformer/VolumeDeformation.cxx",
+                           "  this->BringOutput(); // its memory is that of the next one\n", "", [DEVICE_OUTPUT]),
+    "unread-released": ("Kernels/Deformer/VolumeDeformerInternals.cxx",
+                        "    this->Volume->BringOutput(); // or it would keep its memory of the device\n", "",
+                        [DEVICE_OUTPUT]),
+    "unread-missing": ("Kernels/Resampling/IncrementalOutput.cxx", "change != this->LastChanges.end(); ++change)",
+                       "change == first; ++change)", [DEVICE_OUTPUT]),
+    "unread-held": ("Kernels/Resampling/IncrementalOutput.cxx", "return this->Changes.GetOutputExtent();",
+                    "return this->LastChanges.back().Changed;", [DEVICE_OUTPUT]),
+    "unread-covered": ("Kernels/Resampling/OutputClearing.cl", "  for (size_t i = 0; i < ROWS_OF_PATCH; ++i)\n",
+                       "  for (size_t i = 1; i < ROWS_OF_PATCH; ++i)\n", [DEVICE_OUTPUT]),
     "memory-twice": ("Kernels/OpenCL/MemoryBudget.cxx", "std::min(all, system) : all;",
                      "std::min(all, system) : all + this->CountHeld();", [GRAPHICS]),
     "arrays-half-set": ("Kernels/Mapping/DeviceVolume.cxx",

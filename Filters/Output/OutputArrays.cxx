@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OutputArrays.h"
 
+#include "vtkDeviceOutputArray.h"
+
 #include "vtkCharArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -8,6 +10,7 @@
 #include "vtkPointData.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <utility>
 
@@ -55,6 +58,15 @@ std::uint64_t CountBytes(vtkDataArray* array, vtkIdType numberOfTuples)
   return static_cast<std::uint64_t>(values) * static_cast<std::uint64_t>(array->GetDataTypeSize());
 }
 
+// Where VTK does not know the class of an array it reads numbers as doubles, which do not hold all
+// integers of 64 bits.
+bool CanStayOnDevice(vtkDataArray* array)
+{
+  constexpr int mostBytes = 4;
+  const int type = array->GetDataType();
+  return type == VTK_FLOAT || type == VTK_DOUBLE || array->GetDataTypeSize() <= mostBytes;
+}
+
 // Names and the like; values are not touched.
 void CopyDescription(vtkDataArray* array, vtkDataArray* wanted)
 {
@@ -76,7 +88,8 @@ void CopyDescription(vtkDataArray* array, vtkDataArray* wanted)
 bool OutputArrays::Kept::IsAsKept(vtkIdType numberOfTuples) const
 {
   return this->Array && this->Array->GetNumberOfTuples() == numberOfTuples &&
-    GetWritableValues(this->Array) == this->Values && this->Array->GetMTime() == this->Modified;
+    GetWritableValues(this->Array) == this->Values && this->Array->GetMTime() == this->Modified &&
+    (!this->OnDevice || this->OnDevice->IsRead());
 }
 
 bool OutputArrays::Kept::IsHeldByOthers() const
@@ -142,8 +155,7 @@ std::uint64_t OutputArrays::Prepare(
   return bytes;
 }
 
-void OutputArrays::Make(
-  const std::vector<SourceArray>& sources, vtkImageData* image, DeformRequest& request)
+void OutputArrays::Make(const std::vector<SourceArray>& sources, DeformRequest& request)
 {
   if (std::all_of(this->Last.begin(), this->Last.end(),
         [this](const Kept& last) { return last.IsAsKept(this->NumberOfTuples); }))
@@ -159,6 +171,7 @@ void OutputArrays::Make(
   {
     const bool isMask = i == sources.size();
     Kept& serving = this->GetServing(i);
+    request.HeldRevisions.push_back(serving.IsAsKept(this->NumberOfTuples) ? serving.Revision : 0);
     vtkSmartPointer<vtkDataArray> made = serving.Array;
     if (made)
     {
@@ -182,12 +195,31 @@ void OutputArrays::Make(
     {
       request.Outputs.push_back(GetWritableValues(made));
     }
-    image->GetPointData()->AddArray(made);
     this->Made.push_back(made);
   }
 }
 
-void OutputArrays::Keep(std::uint64_t revision)
+void OutputArrays::Give(DeformReport& report, vtkImageData* image)
+{
+  for (std::size_t i = 0; i < this->Made.size(); ++i)
+  {
+    vtkSmartPointer<vtkDataArray> given = this->Made[i];
+    if (!report.DeviceOutputs.empty() && CanStayOnDevice(given))
+    {
+      given = MakeDeviceOutputArray(given, report.DeviceOutputs[i]);
+    }
+    else if (!report.DeviceOutputs.empty())
+    {
+      const auto begin = std::chrono::steady_clock::now();
+      report.DeviceOutputs[i]->Read();
+      report.TransferTime +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    }
+    image->GetPointData()->AddArray(given);
+  }
+}
+
+void OutputArrays::Keep(const DeformReport& report)
 {
   for (std::size_t i = 0; i < this->Made.size(); ++i)
   {
@@ -200,7 +232,8 @@ void OutputArrays::Keep(std::uint64_t revision)
     last.Array->Modified(); // ranges that were found of earlier values do not hold
     last.Values = GetWritableValues(last.Array);
     last.Modified = last.Array->GetMTime();
-    last.Revision = revision;
+    last.Revision = report.Revision;
+    last.OnDevice = report.DeviceOutputs.empty() ? nullptr : report.DeviceOutputs[i];
   }
   this->Made.clear();
 }
@@ -210,6 +243,12 @@ void OutputArrays::Forget()
   this->Last.clear();
   this->Older.clear();
   this->Made.clear();
+}
+
+int OutputArrays::GetNumberOfUnread() const
+{
+  return static_cast<int>(std::count_if(this->Last.begin(), this->Last.end(),
+    [](const Kept& last) { return last.OnDevice && last.OnDevice->IsOnDevice(); }));
 }
 
 } // namespace deformvolume

@@ -8,6 +8,7 @@
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 class vtkDataArray;
@@ -26,15 +27,22 @@ public:
   /// can. The output holds no array when this is called.
   std::uint64_t Prepare(const std::vector<SourceArray>& sources, vtkIdType numberOfTuples);
 
-  /// Gives the image a point array like each of the sources and vtkValidPointMask, and the request
-  /// their memory, and that of the last output where nobody has changed it. After Prepare() with
-  /// the same arguments.
-  void Make(const std::vector<SourceArray>& sources, vtkImageData* image, DeformRequest& request);
+  /// Makes an array like each of the sources and vtkValidPointMask, and gives the request their
+  /// memory, and that of the last output where nobody has changed it. After Prepare() with the same
+  /// arguments.
+  void Make(const std::vector<SourceArray>& sources, DeformRequest& request);
 
-  /// Keeps what Make() made, now that it is written, for the next execution. revision: of the
-  /// output (DeformReport).
-  void Keep(std::uint64_t revision);
+  /// Gives the image these arrays, now that the request is done, as point arrays. Where the values
+  /// have stayed on the device, what reads them there; but integers of 64 bits go to the host at
+  /// once, which is added to the report.
+  void Give(DeformReport& report, vtkImageData* image);
+
+  /// Keeps what Make() made for the next execution.
+  void Keep(const DeformReport& report);
   void Forget();
+
+  /// How many arrays of the last output nobody has read, and are on the device.
+  int GetNumberOfUnread() const;
 
 private:
   // An array of an output, as it was kept.
@@ -44,8 +52,9 @@ private:
     const void* Values = nullptr;
     vtkMTimeType Modified = 0;
     std::uint64_t Revision = 0;
+    std::shared_ptr<DeviceOutput> OnDevice; // null: the values came to the host at once
 
-    /// Whether it is of so many tuples, and nobody has written to it.
+    /// Whether it is of so many tuples, has the values of the output, and nobody has written to it.
     bool IsAsKept(vtkIdType numberOfTuples) const;
     bool IsHeldByOthers() const;
   };

@@ -22,6 +22,8 @@ void MakeSlabs(SlabResampler& resampler, WorkDevice& device, const DeviceVolume&
     request.OutputExtent, arrays, volume.GetVoxelGrid(), device.GetAllocationLimit());
   const std::uint64_t bytes = OutputSlab::GetBytesPerVoxel(device.GetContext(), arrays, request) *
     static_cast<std::uint64_t>(GetNumberOfPoints(plan.Slabs.front()));
+  const bool stays =
+    request.MayStayOnDevice && !device.GetDevice().IsProcessor && plan.Slabs.size() == 1;
   plan.Overlapped = bytes > 0 && plan.Slabs.size() > 1 && spare >= bytes;
   // However this ends, the memory of the request is left alone afterwards.
   const SlabResampler::FinishGuard finish(resampler);
@@ -30,6 +32,11 @@ void MakeSlabs(SlabResampler& resampler, WorkDevice& device, const DeviceVolume&
   for (std::size_t slab = 0; slab < plan.Slabs.size(); ++slab)
   {
     resampler.Make(request, plan, slab, report);
+    if (stays)
+    {
+      report.DeviceOutputs = resampler.Leave(request, plan.GetTarget(slab));
+      continue;
+    }
     const Clock::time_point begin = Clock::now();
     resampler.Read(request, plan.GetTarget(slab));
     if (!plan.Overlapped || slab + 1 == plan.Slabs.size())

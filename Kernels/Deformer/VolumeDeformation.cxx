@@ -183,6 +183,11 @@ void VolumeDeformation::CheckRequest(const DeformRequest& request) const
     throw Error("No deformation is set: call SetMesh and SetNodeDisplacements, or "
                 "SetDisplacementField, first.");
   }
+  if (!request.HeldRevisions.empty() && request.HeldRevisions.size() != arrays.size() + 1)
+  {
+    throw Error("The request must tell the held revision of each array and of the coverage, or of "
+                "none.");
+  }
   if (request.Outputs.size() != arrays.size() || !request.Coverage ||
     std::count(request.Outputs.begin(), request.Outputs.end(), nullptr))
   {
@@ -207,13 +212,17 @@ DeformationSize VolumeDeformation::GetSize(const DeformRequest& request) const
 
 DeformReport VolumeDeformation::Deform(const DeformRequest& request)
 {
+  this->BringOutput(); // its memory is that of the next one
   this->Volume.ReadArraysAgain();
   this->Source.ReadFieldAgain();
   const std::uint64_t spare = CheckDeviceMemory(this->Device, this->Budget, this->GetSize(request),
     OutputSlab::GetBytesPerVoxel(
       this->Device.GetContext(), this->Volume.GetVolumeArrays(), request));
-  return request.Method == Resampling::MeshRasterization ? this->Rasterize(request, spare)
-                                                         : this->Resample(request, spare);
+  const bool isRasterized = request.Method == Resampling::MeshRasterization;
+  DeformReport report =
+    isRasterized ? this->Rasterize(request, spare) : this->Resample(request, spare);
+  this->Unread.Set(report.DeviceOutputs, isRasterized);
+  return report;
 }
 
 DeformReport VolumeDeformation::Resample(const DeformRequest& request, std::uint64_t spare)
@@ -250,7 +259,7 @@ DeformReport VolumeDeformation::Rasterize(const DeformRequest& request, std::uin
 std::uint64_t VolumeDeformation::GetMemory() const
 {
   return this->Volume.GetMemory() + this->Source.GetMemory() + this->Rasterizer.GetMemory() +
-    this->Exact.GetMemory();
+    this->Exact.GetMemory() + this->Unread.GetMemory();
 }
 
 } // namespace deformvolume

@@ -3,6 +3,7 @@
 #define DeformVolumeVolumeDeformation_h
 
 #include "DeformRequest.h"
+#include "DeviceOutputInternals.h"
 #include "DeviceVolume.h"
 #include "DisplacementSource.h"
 #include "ExactResampler.h"
@@ -77,6 +78,10 @@ public:
   void CheckRequest(const DeformRequest& request) const;
   DeformReport Deform(const DeformRequest& request);
 
+  /// Brings to the host what can still be read of the last output and is on the device. Throws
+  /// nothing.
+  void BringOutput() { this->Unread.Bring(); }
+
   /// Bytes on the device.
   std::uint64_t GetMemory() const;
 
@@ -94,6 +99,7 @@ private:
   DisplacementSource Source;
   ExactResampler Exact;
   MeshRasterizer Rasterizer;
+  UnreadOutputs Unread;
 };
 
 } // namespace deformvolume

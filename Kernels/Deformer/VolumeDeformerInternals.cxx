@@ -34,6 +34,15 @@ void VolumeDeformer::Internals::SetVolume(
     this->Device, this->Budget, voxelGrid, bytesPerVoxel, withLinks);
 }
 
+void VolumeDeformer::Internals::Forget()
+{
+  if (this->Volume)
+  {
+    this->Volume->BringOutput(); // or it would keep its memory of the device
+    this->Volume.reset();
+  }
+}
+
 VolumeDeformation& VolumeDeformer::Internals::GetVolume() const
 {
   if (!this->Volume)

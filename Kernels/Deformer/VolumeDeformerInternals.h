@@ -51,7 +51,7 @@ public:
   void SetVolume(const VoxelGrid& voxelGrid, std::size_t bytesPerVoxel, bool withLinks);
   /// Throws an Error where none is set.
   VolumeDeformation& GetVolume() const;
-  void Forget() { this->Volume.reset(); }
+  void Forget();
 
   /// Bytes allocated on the device.
   std::uint64_t GetMemory() const { return this->Volume ? this->Volume->GetMemory() : 0; }

@@ -301,6 +301,12 @@ void MeshRasterizer::Read(const DeformRequest&, std::size_t target)
   this->Targets[target]->Read(this->Device->GetReadQueue());
 }
 
+std::vector<std::shared_ptr<DeviceOutput>> MeshRasterizer::Leave(
+  const DeformRequest&, std::size_t target)
+{
+  return this->Targets[target]->Leave(this->Device->GetReadQueue());
+}
+
 void MeshRasterizer::FinishReading()
 {
   for (const std::unique_ptr<RasterTarget>& target : this->Targets)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RasterTarget.h"
 
-#include "Background.h"
+#include "DeviceOutputInternals.h"
 
 #include <cstring>
 
@@ -10,6 +10,7 @@ namespace deformvolume
 
 RasterTarget::RasterTarget(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
   const DeformRequest& request, const Extent& slab)
+  : SlabExtent(slab)
 {
   const std::uint64_t plane = static_cast<std::uint64_t>(GetSize(slab, 0) * GetSize(slab, 1));
   this->FirstVoxel =
@@ -18,33 +19,24 @@ RasterTarget::RasterTarget(OpenCLContext& context, const std::vector<VolumeArray
   std::vector<cl_ulong> backgrounds(arrays.size());
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
-    this->AddMemory(
-      context, request.Outputs[i], GetTupleSize(arrays[i]), GetElementSize(arrays[i].Type));
-    switch (arrays[i].Type)
-    {
-#define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
-  case ElementType::name:                                                                          \
-  {                                                                                                \
-    const ctype background = ClampTo<ctype>(arrays[i].Background);                                 \
-    std::memcpy(&backgrounds[i], &background, sizeof(ctype));                                      \
-    break;                                                                                         \
+    const ElementBytes background = GetBackground(arrays[i]);
+    std::memcpy(&backgrounds[i], background.Bytes.data(), background.Size);
+    this->AddMemory(context, request.Outputs[i], GetTupleSize(arrays[i]),
+      GetElementSize(arrays[i].Type), background);
   }
-      DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
-#undef DEFORMVOLUME_CASE
-    }
-  }
-  this->AddMemory(context, request.Coverage, 1, 1);
+  this->AddMemory(context, request.Coverage, 1, 1, ElementBytes::Of(cl_uchar{ 0 }));
   this->Backgrounds = cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
     backgrounds.size() * sizeof(cl_ulong), backgrounds.data());
 }
 
-void RasterTarget::AddMemory(
-  OpenCLContext& context, void* output, std::uint64_t tuple, std::size_t elementSize)
+void RasterTarget::AddMemory(OpenCLContext& context, void* output, std::uint64_t tuple,
+  std::size_t elementSize, const ElementBytes& background)
 {
   Memory memory;
+  memory.Background = background;
   memory.Host = static_cast<char*>(output) + this->FirstVoxel * tuple;
-  memory.Bytes = this->NumberOfVoxels * tuple;
-  Place(context, memory.Buffer, memory.Host, elementSize, memory.Bytes);
+  memory.Tuple = tuple;
+  Place(context, memory.Buffer, memory.Host, elementSize, this->NumberOfVoxels * tuple);
   this->Memories.push_back(memory);
 }
 
@@ -52,9 +44,23 @@ void RasterTarget::Read(const cl::CommandQueue& queue)
 {
   for (const Memory& memory : this->Memories)
   {
-    this->Reads.Add(BeginToRead(queue, memory.Buffer, memory.Bytes, memory.Host));
+    this->Reads.Add(
+      BeginToRead(queue, memory.Buffer, this->NumberOfVoxels * memory.Tuple, memory.Host));
   }
   queue.flush();
+}
+
+std::vector<std::shared_ptr<DeviceOutput>> RasterTarget::Leave(const cl::CommandQueue& queue) const
+{
+  std::vector<std::shared_ptr<DeviceOutput>> outputs;
+  for (const Memory& memory : this->Memories)
+  {
+    const DeviceOutput::Internals::Voxels voxels{ this->SlabExtent, this->SlabExtent,
+      memory.Tuple };
+    outputs.push_back(std::make_shared<DeviceOutput>(std::make_shared<DeviceOutput::Internals>(
+      queue, memory.Buffer, voxels, memory.Host, memory.Background)));
+  }
+  return outputs;
 }
 
 } // namespace deformvolume

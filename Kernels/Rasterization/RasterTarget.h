@@ -6,7 +6,11 @@
 #include "Extent.h"
 #include "HostMemory.h"
 #include "OpenCLContext.h"
+#include "OutputFilling.h"
 #include "VolumeArray.h"
+
+#include <memory>
+#include <vector>
 
 namespace deformvolume
 {
@@ -32,6 +36,9 @@ public:
   /// after FinishReading, which throws cl::Error where that has failed.
   void Read(const cl::CommandQueue& queue);
   void FinishReading() { this->Reads.Check(); }
+  /// Leaves the slab, which is the whole output, on the device. The queue is that by which it is
+  /// read then.
+  std::vector<std::shared_ptr<DeviceOutput>> Leave(const cl::CommandQueue& queue) const;
 
 private:
   /// Of an array, or of the coverage: on the device, and of the request.
@@ -39,11 +46,13 @@ private:
   {
     cl::Buffer Buffer;
     char* Host;
-    std::uint64_t Bytes;
+    std::uint64_t Tuple; // bytes of a voxel
+    ElementBytes Background;
   };
-  void AddMemory(
-    OpenCLContext& context, void* output, std::uint64_t tuple, std::size_t elementSize);
+  void AddMemory(OpenCLContext& context, void* output, std::uint64_t tuple, std::size_t elementSize,
+    const ElementBytes& background);
 
+  Extent SlabExtent;
   std::uint64_t FirstVoxel; // of the slab in the output
   std::uint64_t NumberOfVoxels;
   std::vector<Memory> Memories;

@@ -2,10 +2,12 @@
 #ifndef DeformVolumeDeformRequest_h
 #define DeformVolumeDeformRequest_h
 
+#include "DeviceOutput.h"
 #include "Extent.h"
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace deformvolume
@@ -59,13 +61,22 @@ struct DeformRequest
   std::vector<void*> Outputs;
   /// Room for one byte a voxel: 1 where the deformed volume covers it, else 0.
   signed char* Coverage = nullptr;
+  /// The output may stay on the device until somebody wants it on the host: where that has memory
+  /// of its own and makes the output in one piece, DeformReport::DeviceOutputs are it. Outputs and
+  /// Coverage get the values when they are read.
+  bool MayStayOnDevice = false;
+  /// For such outputs: DeformReport::Revision of what the memory of each of Outputs, and then that
+  /// of Coverage, holds unchanged, 0: nothing of use. In an update of a part only what has changed
+  /// since is then copied there. Empty: they hold nothing.
+  std::vector<std::uint64_t> HeldRevisions;
   /// Keeps what is needed to write only what changes until the next call. That call needs the
   /// output of this one in LastOutputs and LastCoverage. Where that is not faster or not possible,
   /// all is written; the result is the same to the last bit. For volumes and outputs within the
   /// allocation limit, and methods Exact, ExactByCell, ExactByLanes and ExactByColumns.
   bool Incremental = false;
   /// What the last call wrote, unchanged: the same memory as Outputs and Coverage, or other memory,
-  /// from which it is copied, whatever the device. Empty and null where there is none.
+  /// from which it is copied, whatever the device. Empty and null where there is none. An output
+  /// that stays on the device needs neither.
   std::vector<const void*> LastOutputs;
   const signed char* LastCoverage = nullptr;
   /// DeformReport::Revision of the output that Outputs and Coverage hold, where these are other
@@ -99,6 +110,9 @@ struct DeformReport
   std::int64_t NumberOfResampledBricks = 0;
   /// What tells this output from others that this deformer has made; 0: nothing is kept of it.
   std::uint64_t Revision = 0;
+  /// The output where it has stayed on the device: that of each array, and then the coverage. Empty
+  /// where the memory of the request has it. TransferTime does not count when that is read.
+  std::vector<std::shared_ptr<DeviceOutput>> DeviceOutputs;
   /// Holds all output voxels that may differ from the last output: OutputExtent where all was made,
   /// less in an incremental update, empty where nothing changed.
   Extent ChangedExtent{ { 0, -1, 0, -1, 0, -1 } };

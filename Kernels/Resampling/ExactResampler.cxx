@@ -186,6 +186,27 @@ void ExactResampler::Read(const DeformRequest& request, std::size_t target)
     this->Device.GetReadQueue(), request, this->Targets[target].GetExtent());
 }
 
+std::vector<std::shared_ptr<DeviceOutput>> ExactResampler::Leave(
+  const DeformRequest& request, std::size_t target)
+{
+  const OutputSlab& output = this->Targets[target];
+  return output.Leave(this->Device.GetReadQueue(), request, this->Volume.GetVolumeArrays(),
+    std::vector<Extent>(request.Outputs.size() + 1, output.GetExtent()));
+}
+
+std::vector<std::shared_ptr<DeviceOutput>> ExactResampler::LeaveParts(
+  const DeformRequest& request, const std::vector<Extent>& parts)
+{
+  return this->Targets[0].Leave(
+    this->Device.GetReadQueue(), request, this->Volume.GetVolumeArrays(), parts);
+}
+
+std::uint64_t ExactResampler::CountCovered(const std::vector<std::uint32_t>& patches)
+{
+  return this->Targets[0].CountCovered(
+    this->Device.GetContext(), patches, this->Launched.GetResamplingEvents());
+}
+
 void ExactResampler::ReadPart(const DeformRequest& request, const Extent& part)
 {
   this->Targets[0].Read(this->Device.GetReadQueue(), request, part);

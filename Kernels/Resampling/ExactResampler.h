@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -40,6 +41,8 @@ public:
   void Make(const DeformRequest& request, const SlabPlan& plan, std::size_t slab,
     DeformReport& report) override;
   void Read(const DeformRequest& request, std::size_t target) override;
+  std::vector<std::shared_ptr<DeviceOutput>> Leave(
+    const DeformRequest& request, std::size_t target) override;
   void FinishReading() override;
   void Finish() noexcept override;
 
@@ -62,6 +65,12 @@ public:
   /// needed, as there are none any more.
   std::optional<Again> MakeAgain(const DeformRequest& request, const std::vector<cl_uint>& bricks,
     const std::vector<std::uint32_t>& patches);
+  /// The covered voxels of some patches of the last output, counted on the device.
+  std::uint64_t CountCovered(const std::vector<std::uint32_t>& patches);
+  /// The same as Leave(), where of each array, and of the coverage, a part has to be copied when it
+  /// is read.
+  std::vector<std::shared_ptr<DeviceOutput>> LeaveParts(
+    const DeformRequest& request, const std::vector<Extent>& parts);
   /// Begins to copy a part of that to the memory of the request, as Read() does.
   void ReadPart(const DeformRequest& request, const Extent& part);
 

@@ -64,6 +64,7 @@ void IncrementalOutput::Start(
   this->LastWholeExtent = request.WholeOutputExtent;
   this->LastCovered = static_cast<std::uint64_t>(report.NumberOfCoveredVoxels);
   this->RevisionBefore = 0;
+  this->LastChanges.clear();
   this->Revision = MakeRevision();
   report.Revision = this->Revision;
   if (source.IsWrittenInPart())
@@ -126,14 +127,20 @@ bool IncrementalOutput::IsChangeInside() const
   return this->Changes.IsInside(read.data(), moved);
 }
 
+bool IncrementalOutput::StaysOnDevice(const DeformRequest& request) const
+{
+  return request.MayStayOnDevice && !this->Device.GetDevice().IsProcessor;
+}
+
 bool IncrementalOutput::CanUpdate(const DeformRequest& request, ExactResampler& resampler)
 {
+  const bool hasLast = request.LastCoverage &&
+    request.LastOutputs.size() == request.Outputs.size() &&
+    !std::count(request.LastOutputs.begin(), request.LastOutputs.end(), nullptr);
   return request.Incremental && this->Changes.IsTracking() &&
     this->Changes.GetOutputExtent() == request.OutputExtent &&
     this->LastWholeExtent == request.WholeOutputExtent && this->LastMethod == request.Method &&
-    request.LastCoverage && request.LastOutputs.size() == request.Outputs.size() &&
-    !std::count(request.LastOutputs.begin(), request.LastOutputs.end(), nullptr) &&
-    resampler.HoldsLastOutput(request);
+    (hasLast || this->StaysOnDevice(request)) && resampler.HoldsLastOutput(request);
 }
 
 void IncrementalOutput::CopyLastOutput(const DeformRequest& request) const
@@ -156,6 +163,36 @@ void IncrementalOutput::CopyLastOutput(const DeformRequest& request) const
   {
     CopyOnThreads(request.Coverage, request.LastCoverage, voxels);
   }
+}
+
+Extent IncrementalOutput::GetMissing(std::uint64_t held) const
+{
+  const auto first = std::find_if(this->LastChanges.begin(), this->LastChanges.end(),
+    [=](const Change& change) { return change.Before == held; });
+  if (first == this->LastChanges.end())
+  {
+    return this->Changes.GetOutputExtent();
+  }
+  Extent missing{ { 0, -1, 0, -1, 0, -1 } };
+  for (auto change = first; change != this->LastChanges.end(); ++change)
+  {
+    if (GetNumberOfPoints(change->Changed) > 0)
+    {
+      Include(missing, change->Changed);
+    }
+  }
+  return missing;
+}
+
+std::vector<std::shared_ptr<DeviceOutput>> IncrementalOutput::Leave(
+  const DeformRequest& request, ExactResampler& resampler) const
+{
+  std::vector<Extent> parts;
+  for (std::size_t i = 0; i <= request.Outputs.size(); ++i)
+  {
+    parts.push_back(this->GetMissing(request.HeldRevisions.empty() ? 0 : request.HeldRevisions[i]));
+  }
+  return resampler.LeaveParts(request, parts);
 }
 
 bool IncrementalOutput::Update(const DeformRequest& request, const DisplacementSource& source,
@@ -206,8 +243,17 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   // However this ends, the memory of the request is left alone afterwards.
   const SlabResampler::FinishGuard finish(resampler);
   const QueueGuard reads(this->Device.GetReadQueue());
-  this->CopyLastOutput(request);
-  const std::uint64_t before = CountCoveredInPatches(request, plan.Patches);
+  const bool stays = this->StaysOnDevice(request);
+  const auto countCovered = [&]
+  {
+    return stays ? resampler.CountCovered(plan.Patches)
+                 : CountCoveredInPatches(request, plan.Patches);
+  };
+  if (!stays)
+  {
+    this->CopyLastOutput(request);
+  }
+  const std::uint64_t before = countCovered();
   report.ResamplingTime += GetSecondsSince(begin);
   const std::optional<ExactResampler::Again> again =
     resampler.MakeAgain(request, plan.Bricks, plan.Patches);
@@ -218,16 +264,28 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   const OutputSlab::Counts& counts = again->Counts;
   const auto done = Clock::now();
   const Extent changed = this->Changes.GetChangedExtent();
-  resampler.ReadPart(request, changed);
-  resampler.FinishReading();
+  if (!stays)
+  {
+    resampler.ReadPart(request, changed);
+    resampler.FinishReading();
+  }
   report.TransferTime += GetSecondsSince(done);
   const auto read = Clock::now();
-  const std::uint64_t covered =
-    this->LastCovered - before + CountCoveredInPatches(request, plan.Patches);
+  const std::uint64_t covered = this->LastCovered - before + countCovered();
   report.ResamplingTime += GetSecondsSince(read);
   if (!won && (counts.NeedWinners(covered) || (inside && counts.Writes != covered)))
   {
     return false;
+  }
+  constexpr std::size_t mostChanges = 16;
+  this->LastChanges.push_back({ this->Revision, changed });
+  if (this->LastChanges.size() > mostChanges)
+  {
+    this->LastChanges.pop_front();
+  }
+  if (stays)
+  {
+    report.DeviceOutputs = this->Leave(request, resampler);
   }
   this->LastCovered = covered;
   report.ChangedExtent = changed;

@@ -7,6 +7,8 @@
 #include "IncrementalUpdate.h"
 
 #include <cstdint>
+#include <deque>
+#include <memory>
 #include <vector>
 
 namespace deformvolume
@@ -46,10 +48,18 @@ public:
     ExactResampler& resampler, DeformReport& report);
 
 private:
+  /// Whether the output is left on the device.
+  bool StaysOnDevice(const DeformRequest& request) const;
   bool CanUpdate(const DeformRequest& request, ExactResampler& resampler);
   /// The same as Update, but that after a failure it is not forgotten that there is a last output.
   bool TryUpdate(const DeformRequest& request, const DisplacementSource& source,
     ExactResampler& resampler, DeformReport& report);
+  /// What has to be copied to memory that holds the output of a revision, for it to hold the last
+  /// one.
+  Extent GetMissing(std::uint64_t held) const;
+  /// The last output where it is left on the device, in an update of a part.
+  std::vector<std::shared_ptr<DeviceOutput>> Leave(
+    const DeformRequest& request, ExactResampler& resampler) const;
   /// See IncrementalUpdate::IsInside.
   bool IsChangeInside() const;
   /// Finds out where the smooth cut passes, once the last output is that with it.
@@ -68,6 +78,13 @@ private:
   // Of the one before it, and the patches that are different in that; 0: that is not known.
   std::uint64_t RevisionBefore = 0;
   std::vector<std::uint32_t> LastPatches;
+  // What has changed in the last updates of parts: from the revision before each to its own.
+  struct Change
+  {
+    std::uint64_t Before;
+    Extent Changed;
+  };
+  std::deque<Change> LastChanges;
 };
 
 } // namespace deformvolume

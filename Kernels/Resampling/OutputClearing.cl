@@ -100,6 +100,27 @@ FILL_PATCHES(FillPatches2, ushort)
 FILL_PATCHES(FillPatches4, uint)
 FILL_PATCHES(FillPatches8, ulong)
 
+// The voxels that are covered in the patches of a list, an item a patch.
+__kernel void CountCoveredInPatches(__global const uchar* coverage, __global const uint* patches, const uint count,
+  __global uint* sums, const KernelParameters p)
+{
+  const size_t item = get_global_id(0);
+  if (item >= count)
+  {
+    return; // an item that only fills its group
+  }
+  uint sum = 0;
+  for (size_t i = 0; i < ROWS_OF_PATCH; ++i)
+  {
+    const VoxelRow row = RowOfPatch(patches[item], i, &p);
+    for (size_t voxel = row.First; voxel < row.End; ++voxel)
+    {
+      sum += coverage[voxel];
+    }
+  }
+  sums[item] = sum;
+}
+
 // The rest is for coverage that is bits, in words of 32.
 
 static uint IsCovered(__global const uint* bits, size_t voxel)

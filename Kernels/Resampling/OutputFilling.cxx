@@ -118,6 +118,19 @@ void FillPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl
   LaunchPatches(context, queue, kernel, count, events);
 }
 
+void CountCoveredInPatches(OpenCLContext& context, const cl::CommandQueue& queue,
+  const cl::Buffer& coverage, const cl::Buffer& patches, std::size_t count,
+  const KernelParameters& parameters, const cl::Buffer& sums, std::vector<cl::Event>& events)
+{
+  cl::Kernel kernel(GetOutputProgram(context), "CountCoveredInPatches");
+  kernel.setArg(0, coverage);
+  kernel.setArg(1, patches);
+  kernel.setArg(2, static_cast<cl_uint>(count));
+  kernel.setArg(3, sums);
+  kernel.setArg(4, parameters);
+  LaunchBusyItems(context, queue, kernel, count, events);
+}
+
 void ExpandCoverage(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
   const cl::Buffer& coverage, std::uint64_t voxels, std::vector<cl::Event>& events)
 {

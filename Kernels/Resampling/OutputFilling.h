@@ -54,6 +54,11 @@ void FillPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl
   const ElementBytes& value, std::size_t elements, const cl::Buffer& patches, std::size_t count,
   const KernelParameters& parameters, std::vector<cl::Event>& events);
 
+/// Writes how many voxels of each of count patches are covered, a uint each.
+void CountCoveredInPatches(OpenCLContext& context, const cl::CommandQueue& queue,
+  const cl::Buffer& coverage, const cl::Buffer& patches, std::size_t count,
+  const KernelParameters& parameters, const cl::Buffer& sums, std::vector<cl::Event>& events);
+
 ///@{
 /// Where coverage is bits: makes bytes of them, for all voxels of an output or for patches; clears
 /// those of patches; and fills the voxels of an array that are not covered.

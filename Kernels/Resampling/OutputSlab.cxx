@@ -2,6 +2,7 @@
 #include "OutputSlab.h"
 
 #include "BrickGrid.h"
+#include "DeviceOutputInternals.h"
 #include "Error.h"
 #include "OutputFilling.h"
 #include "OutputPatches.h"
@@ -349,6 +350,22 @@ std::uint64_t OutputSlab::CountCovered(WorkDevice& device, std::vector<cl::Event
   return ReadSum(this->Queue, sums, static_cast<std::size_t>(items));
 }
 
+std::uint64_t OutputSlab::CountCovered(
+  OpenCLContext& context, const std::vector<std::uint32_t>& patches, std::vector<cl::Event>& events)
+{
+  if (patches.empty())
+  {
+    return 0;
+  }
+  this->SendPatches(context, patches);
+  const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, patches.size() * sizeof(cl_uint));
+  KernelParameters p = {};
+  this->SetParameters(p);
+  CountCoveredInPatches(
+    context, this->Queue, this->Coverage, this->PatchList, patches.size(), p, sums, events);
+  return ReadSum(this->Queue, sums, patches.size());
+}
+
 std::vector<cl_uint> OutputSlab::FindBricks(int counter)
 {
   std::vector<cl_uint> counters(this->NumberOfSections * DEFORMVOLUME_COUNTERS);
@@ -472,6 +489,27 @@ void OutputSlab::Read(
   }
   read(this->Coverage, 1, request.Coverage);
   queue.flush();
+}
+
+std::vector<std::shared_ptr<DeviceOutput>> OutputSlab::Leave(const cl::CommandQueue& queue,
+  const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+  const std::vector<Extent>& parts) const
+{
+  std::vector<std::shared_ptr<DeviceOutput>> outputs;
+  const auto leave = [&](const cl::Buffer& buffer, std::size_t tupleSize, void* memory,
+                       const ElementBytes& background)
+  {
+    const DeviceOutput::Internals::Voxels voxels{ this->SlabExtent, parts[outputs.size()],
+      tupleSize };
+    outputs.push_back(std::make_shared<DeviceOutput>(
+      std::make_shared<DeviceOutput::Internals>(queue, buffer, voxels, memory, background)));
+  };
+  for (std::size_t i = 0; i < this->Arrays.size(); ++i)
+  {
+    leave(this->Arrays[i], this->TupleSizes[i], request.Outputs[i], GetBackground(arrays[i]));
+  }
+  leave(this->Coverage, 1, request.Coverage, ElementBytes::Of(cl_uchar{ 0 }));
+  return outputs;
 }
 
 void OutputSlab::Finish()

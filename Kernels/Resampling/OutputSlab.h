@@ -11,6 +11,9 @@
 #include "VolumeArray.h"
 #include "VoxelGrid.h"
 
+#include <memory>
+#include <vector>
+
 namespace deformvolume
 {
 
@@ -101,6 +104,9 @@ public:
   std::vector<LargeCell> ReadLargeCells() const;
 
   std::uint64_t CountCovered(WorkDevice& device, std::vector<cl::Event>& events);
+  /// Of some patches, after Complete.
+  std::uint64_t CountCovered(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
+    std::vector<cl::Event>& events);
   /// covered: whether Counts.Covered is wanted; known only where coverage is bits.
   Counts ReadCounts(WorkDevice& device, bool covered, std::vector<cl::Event>& events);
 
@@ -129,6 +135,12 @@ public:
   /// Begins to copy a part of the slab, which is done, to its place in the request's memory, in a
   /// queue of its own.
   void Read(const cl::CommandQueue& queue, const DeformRequest& request, const Extent& part);
+  /// Leaves the slab, which is done and is the whole output, where it is. It has to be brought to
+  /// the host before another one is placed here or made of it. The queue is for that. parts: of
+  /// each array, and of the coverage, what the request's memory has not.
+  std::vector<std::shared_ptr<DeviceOutput>> Leave(const cl::CommandQueue& queue,
+    const DeformRequest& request, const std::vector<VolumeArray>& arrays,
+    const std::vector<Extent>& parts) const;
   /// Waits until the slab is in the request's memory. Throws cl::Error where it did not get there.
   void FinishReading() { this->Reads.Check(); }
   /// Waits, whatever has happened, and lets go of the request's memory. Throws nothing.

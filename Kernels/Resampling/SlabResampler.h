@@ -6,6 +6,7 @@
 #include "Extent.h"
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace deformvolume
@@ -35,6 +36,9 @@ public:
     const DeformRequest& request, const SlabPlan& plan, std::size_t slab, DeformReport& report) = 0;
   /// Begins to copy a target to the memory of the request, in a queue of its own.
   virtual void Read(const DeformRequest& request, std::size_t target) = 0;
+  /// Leaves a target on the device that is the whole output.
+  virtual std::vector<std::shared_ptr<DeviceOutput>> Leave(
+    const DeformRequest& request, std::size_t target) = 0;
   /// Waits until all that is read is there. Throws cl::Error where it did not get there.
   virtual void FinishReading() = 0;
   /// Waits, whatever has happened, and lets go of the memory of the request. Throws nothing.

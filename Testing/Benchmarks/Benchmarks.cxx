@@ -19,6 +19,7 @@ int main(int argc, char* argv[])
   }
   RegisterComparison(size);
   RegisterNodes(size);
+  RegisterReadback(size);
   RegisterProbe(size);
   RegisterPoses(size);
   RegisterTetrahedra(size);

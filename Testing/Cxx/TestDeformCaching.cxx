@@ -2,7 +2,10 @@
 // What is built and sent once and kept, and what the filter reports of its work.
 #include "FilterTesting.h"
 
+#include "Device.h"
+
 #include <vtkCommand.h>
+#include <vtkShortArray.h>
 #include <vtkStringArray.h>
 
 using namespace filterTesting;
@@ -210,6 +213,27 @@ void TestCompilation()
   VERIFY_EQUAL(listener.Begins, begins);
 }
 
+// On a processor the property changes nothing: what is in the memory of the host is an ordinary
+// array.
+void TestOutputOnDevice()
+{
+  Counted counted;
+  vtkDeformVolumeFilter* filter = counted.Subject.Filter;
+  VERIFY_EQUAL(filter->GetNumberOfUnreadArrays(), 0);
+  filter->OutputOnDeviceOn();
+  counted.Expect("on the device", 1, 1);
+  const bool ownMemory = deformvolume::GetDeviceAbilities("").OwnMemory;
+  VERIFY_EQUAL(filter->GetNumberOfUnreadArrays(), ownMemory ? 2 : 0);
+  VERIFY_EQUAL(vtkShortArray::SafeDownCast(counted.Subject.GetValues()) != nullptr, !ownMemory);
+  vtkNew<vtkImageData> kept;
+  kept->DeepCopy(filter->GetOutput());
+  filter->OutputOnDeviceOff();
+  counted.Expect("on the host", 0, 0);
+  VERIFY_EQUAL(filter->GetNumberOfUnreadArrays(), 0);
+  VERIFY(vtkShortArray::SafeDownCast(counted.Subject.GetValues()) != nullptr);
+  VERIFY(AreEqual(kept, filter->GetOutput()));
+}
+
 } // namespace
 
 int TestDeformCaching(int, char*[])
@@ -218,6 +242,7 @@ int TestDeformCaching(int, char*[])
   TestCounters();
   TestReports();
   TestMemoryLimit();
+  TestOutputOnDevice();
   TestPublishedResampler();
   return GetExitCode();
 }

@@ -1,0 +1,785 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Outputs that stay on a device that appears to be a graphics card with memory of its own, until
+// somebody reads them.
+#include "FakeDriver.h"
+#include "FilterTesting.h"
+
+#include "Device.h"
+
+#include <vtkArrayIteratorTemplate.h>
+#include <vtkCallbackCommand.h>
+#include <vtkFlyingEdges3D.h>
+#include <vtkIdTypeArray.h>
+#include <vtkImageReslice.h>
+#include <vtkPolyData.h>
+#include <vtkSMPTools.h>
+#include <vtkShortArray.h>
+#include <vtkVariant.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLImageDataWriter.h>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+using namespace filterTesting;
+
+namespace
+{
+
+const Extent VolumeExtent{ { 0, 40, 0, 30, 0, 25 } };
+constexpr int NumberOfArrays = 6; // with the mask
+constexpr int MostUnread = 5;     // without the ids
+
+template <typename T>
+void AddArray(vtkImageData* image, const char* name, const WorldFunction& function)
+{
+  // Else it would take the place of the scalars that there are.
+  image->GetPointData()->SetActiveAttribute(-1, vtkDataSetAttributes::SCALARS);
+  AddScalars<T>(image, name, function);
+}
+
+// A volume with arrays of several types, ids among them, one of two components.
+vtkSmartPointer<vtkImageData> MakeArrays()
+{
+  const auto volume = MakeVolume(VolumeExtent);
+  vtkPointData* points = volume->GetPointData();
+  AddArray<double>(volume, "double", [](const glm::dvec3& p) { return p.x * 0.3 - p.y; });
+  AddArray<unsigned char>(volume, "byte", [](const glm::dvec3& p) { return p.z + p.x; });
+  // Each of them other than its neighbours as a double.
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("id");
+  ids->SetNumberOfTuples(volume->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < ids->GetNumberOfValues(); ++i)
+  {
+    ids->SetValue(i, (vtkIdType{ 1 } << 60) + i);
+  }
+  points->SetGlobalIds(ids);
+  vtkNew<vtkFloatArray> two;
+  two->SetName("two");
+  two->SetNumberOfComponents(2);
+  two->SetComponentName(1, "second");
+  two->SetNumberOfTuples(volume->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < two->GetNumberOfValues(); ++i)
+  {
+    two->SetValue(i, static_cast<float>(i % 997));
+  }
+  points->AddArray(two);
+  points->SetActiveScalars("value");
+  return volume;
+}
+
+const WorldMap Bend = [](const glm::dvec3& p)
+{ return p + glm::dvec3(1.3 * std::sin(0.1 * p.y), 0.7, 0.9 * std::cos(0.07 * p.x)); };
+
+// A filter whose output stays on the device, and one whose output does not.
+struct Both
+{
+  explicit Both(vtkImageData* volume = MakeArrays(), int nodes = 9)
+    : Volume(volume)
+    , Mesh(MakeMesh(volume, nodes))
+    , Found(volume, this->Mesh)
+    , Expected(volume, this->Mesh)
+  {
+    SetDisplacements(this->Mesh, Bend);
+    this->Found.Filter->OutputOnDeviceOn();
+    for (Deformed* one : { &this->Found, &this->Expected })
+    {
+      one->Filter->SetBackgroundValue(7.0);
+      one->Filter->SetOutputBoundsModeToVolumeBounds();
+    }
+  }
+  void Move(double by, vtkIdType node = -1)
+  {
+    auto* vectors = vtkFloatArray::SafeDownCast(this->Mesh->GetPointData()->GetVectors());
+    const vtkIdType first = std::max<vtkIdType>(node, 0);
+    const vtkIdType last = node < 0 ? vectors->GetNumberOfTuples() - 1 : node;
+    for (vtkIdType i = first; i <= last; ++i)
+    {
+      vectors->SetComponent(i, 0, vectors->GetComponent(i, 0) + by);
+    }
+    vectors->Modified();
+  }
+  vtkImageData* Update()
+  {
+    this->Expected.Update();
+    return this->Found.Update();
+  }
+  // Reads all, and compares.
+  void Check(vtkImageData* image) { VERIFY(AreEqual(this->Expected.Filter->GetOutput(), image)); }
+  int GetNumberOfUnread() { return this->Found.Filter->GetNumberOfUnreadArrays(); }
+
+  vtkSmartPointer<vtkImageData> Volume;
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh;
+  Deformed Found;
+  Deformed Expected;
+};
+
+std::uint64_t CountRead(const std::function<void()>& function)
+{
+  FakeDriver::Get().BytesRead = 0;
+  function();
+  return FakeDriver::Get().BytesRead;
+}
+
+std::uint64_t GetBytes(vtkDataArray* array)
+{
+  return static_cast<std::uint64_t>(array->GetNumberOfValues()) *
+    static_cast<std::uint64_t>(array->GetDataTypeSize());
+}
+
+vtkDataArray* GetArray(vtkImageData* image, const char* name)
+{
+  return image->GetPointData()->GetArray(name);
+}
+
+// Nothing passes the bus before somebody reads, and then what he reads, once.
+void TestReading()
+{
+  Both both;
+  vtkImageData* image = nullptr;
+  both.Update();
+  both.Move(0.25);
+  both.Expected.Update();
+  const std::uint64_t told = CountRead([&] { image = both.Found.Update(); });
+  const std::uint64_t ids = GetBytes(GetArray(image, "id"));
+  VERIFY(told - ids < 30000);
+  VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread);
+  VERIFY_EQUAL(both.Found.Filter->GetNumberOfCoveredVoxels(),
+    both.Expected.Filter->GetNumberOfCoveredVoxels());
+  // What describes an array is no access.
+  vtkDataArray* value = GetArray(image, "value");
+  VERIFY_EQUAL(value, image->GetPointData()->GetScalars());
+  VERIFY_EQUAL(value->GetDataType(), VTK_SHORT);
+  VERIFY(vtkIdTypeArray::SafeDownCast(GetArray(image, "id")) != nullptr); // is there at once
+  VERIFY_EQUAL(value->GetNumberOfTuples(), image->GetNumberOfPoints());
+  VERIFY_EQUAL(GetArray(image, "two")->GetNumberOfComponents(), 2);
+  VERIFY_EQUAL(std::string(GetArray(image, "two")->GetComponentName(1)), "second");
+  VERIFY_EQUAL(image->GetScalarType(), VTK_SHORT);
+  VERIFY(value->HasStandardMemoryLayout());
+  vtkNew<vtkImageData> shallow;
+  shallow->ShallowCopy(image);
+  VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread);
+  std::uint64_t read = CountRead([&] { value->GetComponent(100, 0); });
+  VERIFY_EQUAL(read, GetBytes(value));
+  VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread - 1);
+  read = CountRead([&] { both.Check(shallow); });
+  std::uint64_t others = 0;
+  for (int i = 0; i < NumberOfArrays; ++i)
+  {
+    others += GetBytes(image->GetPointData()->GetArray(i));
+  }
+  VERIFY_EQUAL(read, others - GetBytes(value) - ids);
+  VERIFY_EQUAL(CountRead([&] { both.Check(image); }), 0U);
+  VERIFY_EQUAL(both.GetNumberOfUnread(), 0);
+}
+
+// Each way to read is the first access once.
+void TestInterfaces()
+{
+  using Access = std::function<double(vtkDataArray*)>;
+  constexpr vtkIdType id = 12345;
+  const std::vector<Access> accesses = {
+    [](vtkDataArray* array) { return array->GetComponent(id, 0); },
+    [](vtkDataArray* array) { return array->GetTuple1(id); },
+    [](vtkDataArray* array) { return array->GetTuple(id)[0]; },
+    [](vtkDataArray* array) { return array->GetVariantValue(id).ToDouble(); },
+    [](vtkDataArray* array)
+    { return static_cast<double>(static_cast<short*>(array->GetVoidPointer(0))[id]); },
+    [](vtkDataArray* array)
+    { return static_cast<double>(static_cast<short*>(array->GetVoidPointer(id))[0]); },
+    [](vtkDataArray* array)
+    { return static_cast<double>(static_cast<short*>(array->WriteVoidPointer(0, 1))[id]); },
+    [](vtkDataArray* array)
+    {
+      const auto iterator = vtkSmartPointer<vtkArrayIterator>::Take(array->NewIterator());
+      return static_cast<double>(
+        static_cast<vtkArrayIteratorTemplate<short>*>(iterator.Get())->GetValue(id));
+    },
+    [](vtkDataArray* array)
+    {
+      vtkNew<vtkShortArray> copy;
+      copy->DeepCopy(array);
+      return static_cast<double>(copy->GetValue(id));
+    },
+    [](vtkDataArray* array)
+    {
+      vtkNew<vtkShortArray> copy;
+      copy->ShallowCopy(array);
+      return static_cast<double>(copy->GetValue(id));
+    },
+    [](vtkDataArray* array)
+    {
+      const auto copy = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
+      VERIFY(vtkShortArray::SafeDownCast(copy) != nullptr);
+      copy->InsertNextTuple(id, array);
+      return copy->GetComponent(0, 0);
+    },
+    [](vtkDataArray* array) { return static_cast<double>(vtk::DataArrayValueRange(array)[id]); },
+    [](vtkDataArray* array)
+    {
+      vtkNew<vtkShortArray> copy;
+      copy->SetNumberOfTuples(3);
+      array->GetTuples(id - 1, id + 1, copy);
+      return static_cast<double>(copy->GetValue(1));
+    },
+    [](vtkDataArray* array)
+    {
+      array->SetComponent(0, 0, 5.0); // the others are as they were
+      return array->GetComponent(id, 0);
+    },
+    [](vtkDataArray* array)
+    {
+      array->Resize(2 * array->GetNumberOfTuples());
+      return array->GetComponent(id, 0);
+    },
+    [](vtkDataArray* array)
+    {
+      const double five = 5.0;
+      array->InsertNextTuple(&five);
+      VERIFY_EQUAL(array->GetComponent(array->GetNumberOfTuples() - 1, 0), five);
+      return array->GetComponent(id, 0);
+    },
+    [](vtkDataArray* array)
+    {
+      array->RemoveFirstTuple();
+      return array->GetComponent(id - 1, 0);
+    },
+    [](vtkDataArray* array)
+    {
+      // By a value that is there: the first place that has it.
+      const double value = array->GetComponent(id, 0);
+      const vtkIdType found = array->LookupValue(vtkVariant(static_cast<short>(value)));
+      return array->GetComponent(found, 0);
+    },
+  };
+  Both both;
+  for (std::size_t i = 0; i < accesses.size(); ++i)
+  {
+    both.Move(0.01);
+    vtkDataArray* value = GetArray(both.Update(), "value");
+    VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread);
+    const double found = accesses[i](value);
+    const double expected =
+      GetArray(both.Expected.Filter->GetOutput(), "value")->GetComponent(id, 0);
+    if (found != expected)
+    {
+      std::cerr << "Access " << i << ": ";
+      VERIFY_EQUAL(found, expected);
+    }
+    VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread - 1);
+  }
+  // What has been written there is not seen in the next output.
+  both.Move(0.01);
+  both.Check(both.Update());
+  double expected[2];
+  double found[2];
+  for (const int component : { 0, 1, -1 })
+  {
+    both.Move(0.01);
+    vtkDataArray* two = GetArray(both.Update(), "two");
+    two->GetRange(found, component);
+    GetArray(both.Expected.Filter->GetOutput(), "two")->GetRange(expected, component);
+    VERIFY(found[0] == expected[0] && found[1] == expected[1]);
+  }
+}
+
+// An array as any other, after it has been emptied and filled anew.
+void TestAsAnyArray()
+{
+  Both both;
+  both.Update();
+  vtkDataArray* two = GetArray(both.Found.Filter->GetOutput(), "two");
+  VERIFY_EQUAL(CountRead([&] { two->Initialize(); }), 0U); // nobody wants the values
+  VERIFY_EQUAL(two->GetNumberOfTuples(), 0);
+  VERIFY(two->GetVoidPointer(0) == nullptr);
+  two->SetNumberOfComponents(3);
+  for (int i = 0; i < 100; ++i)
+  {
+    const double tuple[3] = { 1.0 * i, 2.0 * i, 3.0 * i };
+    two->InsertNextTuple(tuple);
+  }
+  two->Squeeze();
+  VERIFY_EQUAL(two->GetNumberOfTuples(), 100);
+  VERIFY_EQUAL(two->GetComponent(99, 2), 297.0);
+  VERIFY_EQUAL(two->GetComponent(3, 1), 6.0);
+  two->SetNumberOfTuples(2);
+  two->Fill(4.5);
+  VERIFY_EQUAL(two->GetComponent(1, 2), 4.5);
+  both.Move(0.2);
+  both.Check(both.Update());
+}
+
+// VTK's own users.
+void TestFilters(const std::string& folder)
+{
+  Both both;
+  const auto compare = [&](const std::function<vtkSmartPointer<vtkDataObject>(vtkImageData*)>& run)
+  {
+    both.Move(0.1);
+    both.Update();
+    const auto found = run(both.Found.Filter->GetOutput());
+    const auto expected = run(both.Expected.Filter->GetOutput());
+    if (auto* image = vtkImageData::SafeDownCast(found))
+    {
+      VERIFY(AreEqual(vtkImageData::SafeDownCast(expected), image));
+      return;
+    }
+    auto* points = vtkPolyData::SafeDownCast(found);
+    auto* others = vtkPolyData::SafeDownCast(expected);
+    VERIFY(points->GetNumberOfPoints() > 100);
+    VERIFY(HaveEqualBits(points->GetPoints()->GetData(), others->GetPoints()->GetData()));
+  };
+  compare(
+    [](vtkImageData* image)
+    {
+      vtkNew<vtkFlyingEdges3D> contour;
+      contour->SetInputData(image);
+      contour->SetValue(0, 400.0);
+      contour->Update();
+      return vtkSmartPointer<vtkDataObject>(contour->GetOutput());
+    });
+  compare(
+    [](vtkImageData* image)
+    {
+      vtkNew<vtkImageReslice> reslice;
+      reslice->SetInputData(image);
+      reslice->SetOutputSpacing(1.5, 1.5, 1.5);
+      reslice->SetInterpolationModeToCubic();
+      reslice->Update();
+      return vtkSmartPointer<vtkDataObject>(reslice->GetOutput());
+    });
+  compare(
+    [](vtkImageData* image)
+    {
+      vtkNew<vtkImageData> copy;
+      copy->DeepCopy(image);
+      VERIFY(vtkShortArray::SafeDownCast(GetArray(copy, "value")) != nullptr);
+      VERIFY(vtkIdTypeArray::SafeDownCast(GetArray(copy, "id")) != nullptr);
+      return vtkSmartPointer<vtkDataObject>(copy);
+    });
+  for (const int mode : { vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended })
+  {
+    compare(
+      [&](vtkImageData* image)
+      {
+        const std::string name = folder + "/TestOutputOnDevice.vti";
+        vtkNew<vtkXMLImageDataWriter> writer;
+        writer->SetInputData(image);
+        writer->SetFileName(name.c_str());
+        writer->SetDataMode(mode);
+        VERIFY(writer->Write() == 1);
+        vtkNew<vtkXMLImageDataReader> reader;
+        reader->SetFileName(name.c_str());
+        reader->Update();
+        return vtkSmartPointer<vtkDataObject>(reader->GetOutput());
+      });
+  }
+  // The volume of another filter on the same device.
+  both.Move(0.1);
+  both.Update();
+  Deformed again(both.Found.Filter->GetOutput(), both.Mesh);
+  Deformed expected(both.Expected.Filter->GetOutput(), both.Mesh);
+  again.Filter->OutputOnDeviceOn();
+  VERIFY(AreEqual(expected.Update(), again.Update()));
+}
+
+// Who still holds an output has that one, whatever the filter does then.
+void TestHeldOutputs()
+{
+  Both both;
+  vtkNew<vtkImageData> held;
+  vtkNew<vtkImageData> wanted;
+  const auto hold = [&]
+  {
+    both.Move(0.3);
+    held->ShallowCopy(both.Update());
+    wanted->DeepCopy(both.Expected.Filter->GetOutput());
+    VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread);
+  };
+  const auto check = [&]
+  {
+    VERIFY(AreEqual(wanted, held));
+    VERIFY_EQUAL(CountRead([&] { VERIFY(AreEqual(wanted, held)); }), 0U);
+  };
+  hold();
+  for (int i = 0; i < 3; ++i) // all anew, and the one before is held
+  {
+    both.Move(0.3);
+    both.Check(both.Update());
+    check();
+    hold();
+  }
+  both.Move(0.3, 400); // a part, in the same memory
+  both.Check(both.Update());
+  check();
+  hold();
+  both.Found.Filter->SetResamplerToMeshRasterization();
+  both.Expected.Filter->SetResamplerToMeshRasterization();
+  both.Move(0.3);
+  both.Check(both.Update());
+  check();
+  hold();
+  both.Found.Filter->SetSamplingFactor(2);
+  both.Expected.Filter->SetSamplingFactor(2);
+  both.Check(both.Update());
+  check();
+  hold();
+  both.Found.Filter->OutputOnDeviceOff();
+  both.Move(0.3);
+  both.Check(both.Update());
+  VERIFY_EQUAL(both.GetNumberOfUnread(), 0);
+  check();
+  both.Found.Filter->OutputOnDeviceOn();
+  both.Found.Filter->SetResamplerToExact();
+  both.Expected.Filter->SetResamplerToExact();
+  hold();
+  // An execution that fails.
+  both.Found.Filter->SetDisplacementScale(std::nan(""));
+  both.Found.Filter->Update();
+  VERIFY_EQUAL(both.Found.TakeErrors(), 1);
+  both.Found.Filter->SetDisplacementScale(1.0);
+  check();
+  hold();
+  // An output that is dropped is never read.
+  held->Initialize();
+  both.Move(0.3);
+  both.Expected.Update();
+  VERIFY(CountRead([&] { both.Found.Update(); }) <
+    GetBytes(GetArray(both.Found.Filter->GetOutput(), "id")) + 30000);
+  hold();
+  both.Found.Filter->ReleaseDeviceMemory();
+  VERIFY_EQUAL(both.GetNumberOfUnread(), 0);
+  VERIFY_EQUAL(both.Found.Filter->GetDeviceMemory(), 0);
+  check();
+  // Written by somebody, and held: the next output is another.
+  hold();
+  GetArray(held, "value")->Fill(3.0);
+  both.Move(0.3, 400);
+  both.Check(both.Update());
+  VERIFY_EQUAL(GetArray(held, "value")->GetComponent(77, 0), 3.0);
+  // Written, and dropped: its memory holds no output.
+  both.Move(0.3, 400);
+  both.Check(both.Update());
+  vtkDataArray* value = GetArray(both.Found.Filter->GetOutput(), "value");
+  value->Fill(4.0);
+  value->Modified();
+  held->Initialize();
+  both.Move(0.3, 400);
+  both.Check(both.Update());
+}
+
+void TestDeletedFilter()
+{
+  for (const bool isRasterized : { false, true })
+  {
+    vtkNew<vtkImageData> held;
+    vtkNew<vtkImageData> wanted;
+    {
+      Both both;
+      for (Deformed* one : { &both.Found, &both.Expected })
+      {
+        one->Filter->SetResampler(
+          isRasterized ? vtkDeformVolumeFilter::MESH_RASTERIZATION : vtkDeformVolumeFilter::EXACT);
+      }
+      held->ShallowCopy(both.Update());
+      wanted->ShallowCopy(both.Expected.Filter->GetOutput());
+      VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread);
+    }
+    VERIFY(CountRead([&] { VERIFY(AreEqual(wanted, held)); }) > 0);
+    {
+      Both both;
+      held->ShallowCopy(both.Update());
+    }
+    held->Initialize(); // and nobody has read it
+  }
+}
+
+// Updates of a part work on what the device has, read or not.
+void TestIncremental()
+{
+  const auto volume = MakeVolume({ { 0, 200, 0, 60, 0, 40 } });
+  Both both(volume, 12);
+  both.Update();
+  int parts = 0;
+  for (int step = 0; step < 12; ++step)
+  {
+    if (step == 6)
+    {
+      both.Found.Filter->OutputOnDeviceOff();
+    }
+    if (step == 9)
+    {
+      both.Found.Filter->OutputOnDeviceOn();
+    }
+    both.Move(step % 4 == 1 ? 40.0 : 0.4, step % 2 ? 400 : 800 + step);
+    both.Update();
+    parts +=
+      both.Found.Filter->GetNumberOfResampledBricks() < both.Found.Filter->GetNumberOfBricks();
+    VERIFY_EQUAL(both.Found.Filter->GetNumberOfCoveredVoxels(),
+      both.Expected.Filter->GetNumberOfCoveredVoxels());
+    VERIFY_EQUAL(both.Found.Filter->GetNumberOfInvertedTetrahedra(),
+      both.Expected.Filter->GetNumberOfInvertedTetrahedra());
+    if (step % 3 != 0)
+    {
+      both.Check(both.Found.Filter->GetOutput());
+    }
+  }
+  VERIFY(parts > 4);
+  // Who reads each of them copies what has changed, whether he holds the one before or not.
+  vtkNew<vtkImageData> held;
+  for (int step = 0; step < 6; ++step)
+  {
+    both.Move(0.2, 800);
+    both.Expected.Update();
+    const std::uint64_t read = CountRead([&] { both.Check(both.Found.Update()); });
+    if (step != 0 && step != 3) // when there is no memory, or not for two
+    {
+      VERIFY(read < GetBytes(GetArray(both.Found.Filter->GetOutput(), "value")) / 4 + 60000);
+    }
+    if (step >= 2)
+    {
+      held->ShallowCopy(both.Found.Filter->GetOutput());
+    }
+  }
+}
+
+// Many threads read first.
+void TestThreads()
+{
+  Both both;
+  for (int round = 0; round < 20; ++round)
+  {
+    both.Move(0.02);
+    vtkDataArray* value = GetArray(both.Update(), "value");
+    vtkDataArray* expected = GetArray(both.Expected.Filter->GetOutput(), "value");
+    const std::uint64_t read = CountRead(
+      [&]
+      {
+        std::vector<int> wrong(8);
+        std::vector<std::thread> threads;
+        for (std::size_t i = 0; i < wrong.size(); ++i)
+        {
+          threads.emplace_back(
+            [&, i]
+            {
+              for (auto id = static_cast<vtkIdType>(i); id < value->GetNumberOfTuples(); id += 8)
+              {
+                wrong[i] += value->GetComponent(id, 0) != expected->GetComponent(id, 0);
+              }
+            });
+        }
+        for (std::thread& thread : threads)
+        {
+          thread.join();
+        }
+        VERIFY(wrong == std::vector<int>(8));
+      });
+    VERIFY_EQUAL(read, GetBytes(value));
+  }
+  // One reads what the filter is about to bring to the host itself.
+  for (int round = 0; round < 20; ++round)
+  {
+    both.Move(0.02);
+    vtkNew<vtkImageData> held;
+    held->ShallowCopy(both.Update());
+    vtkNew<vtkImageData> wanted;
+    wanted->DeepCopy(both.Expected.Filter->GetOutput());
+    std::thread reader([&] { GetArray(held, "double")->GetVoidPointer(0); });
+    if (round % 2 == 0)
+    {
+      both.Move(0.02);
+      both.Found.Update();
+    }
+    else
+    {
+      both.Found.Filter->ReleaseDeviceMemory();
+    }
+    reader.join();
+    VERIFY(AreEqual(wanted, held));
+  }
+}
+
+struct Errors
+{
+  void Observe(vtkDataArray* array)
+  {
+    vtkNew<vtkCallbackCommand> command;
+    command->SetClientData(this);
+    command->SetCallback(
+      [](vtkObject* caller, unsigned long, void* self, void* text)
+      {
+        auto* errors = static_cast<Errors*>(self);
+        ++errors->Number;
+        errors->Text = static_cast<const char*>(text);
+        // Who shows an error may look at the array.
+        errors->Seen = vtkDataArray::SafeDownCast(caller)->GetComponent(5, 0);
+      });
+    array->AddObserver(vtkCommand::ErrorEvent, command);
+  }
+  int Number = 0;
+  std::string Text;
+  double Seen = 0.0;
+};
+
+bool IsAll(vtkDataArray* array, double value)
+{
+  for (vtkIdType id = 0; id < array->GetNumberOfTuples(); ++id)
+  {
+    for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+    {
+      if (array->GetComponent(id, c) != value)
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+// The device is lost before the output is read.
+void TestLostDevice()
+{
+  enum
+  {
+    Reads,
+    UpdatesBefore, // the filter brings the output to the host
+    DeletesBefore
+  };
+  for (const int way : { Reads, UpdatesBefore, DeletesBefore })
+  {
+    for (const bool atOnce : { false, true })
+    {
+      vtkNew<vtkImageData> held;
+      Errors errors[2];
+      const auto volume = MakeArrays();
+      volume->GetPointData()->RemoveArray("id"); // it would be read by the update
+      auto both = std::make_unique<Both>(volume);
+      held->ShallowCopy(both->Update());
+      errors[0].Observe(GetArray(held, "two"));
+      errors[1].Observe(GetArray(held, "vtkValidPointMask"));
+      if (way == DeletesBefore)
+      {
+        both.reset();
+      }
+      FakeDriver::Get().ReadError = -36; // CL_INVALID_COMMAND_QUEUE
+      FakeDriver::Get().FailsAtOnce = atOnce;
+      if (way == UpdatesBefore)
+      {
+        both->Move(0.1);
+        both->Found.Update(); // itself it copies nothing
+      }
+      VERIFY(IsAll(GetArray(held, "two"), 7.0));
+      VERIFY(IsAll(GetArray(held, "vtkValidPointMask"), 0.0));
+      VERIFY(IsAll(GetArray(held, "two"), 7.0));
+      FakeDriver::Get().ReadError = 0;
+      FakeDriver::Get().FailsAtOnce = false;
+      VERIFY_EQUAL(errors[0].Number, 1);
+      VERIFY_EQUAL(errors[1].Number, 1);
+      VERIFY_EQUAL(errors[0].Seen, 7.0);
+      VERIFY(errors[0].Text.find("The OpenCL device was lost") != std::string::npos);
+      VERIFY(errors[0].Text.find("background") != std::string::npos);
+      if (both)
+      {
+        both->Move(0.1);
+        both->Check(both->Update());
+      }
+    }
+  }
+}
+
+// Where an array goes to the host at once the update fails, as without the property.
+void TestFailedUpdate()
+{
+  Both both;
+  both.Update();
+  both.Move(0.1);
+  FakeDriver::Get().ReadError = -36; // of the ids
+  both.Found.Filter->Update();
+  VERIFY_EQUAL(both.Found.TakeErrors(), 1);
+  VERIFY_EQUAL(both.Found.Filter->GetOutput()->GetNumberOfPoints(), 0);
+  VERIFY_EQUAL(both.GetNumberOfUnread(), 0);
+  FakeDriver::Get().ReadError = 0;
+  both.Found.Filter->Modified();
+  both.Check(both.Update());
+}
+
+// Where memory is short the output is held once, and an output in parts goes to the host.
+void TestMemory()
+{
+  Both both;
+  both.Update();
+  both.Update();
+  const vtkTypeInt64 held = both.Found.Filter->GetDeviceMemory();
+  VERIFY_EQUAL(held, both.Expected.Filter->GetDeviceMemory());
+  both.Check(both.Found.Filter->GetOutput());
+  VERIFY_EQUAL(both.Found.Filter->GetDeviceMemory(), held);
+  // The other resampler keeps no output itself.
+  for (Deformed* one : { &both.Found, &both.Expected })
+  {
+    one->Filter->SetResamplerToMeshRasterization();
+  }
+  both.Update();
+  std::uint64_t bytes = 0;
+  for (int i = 0; i < NumberOfArrays; ++i)
+  {
+    vtkDataArray* array = both.Found.Filter->GetOutput()->GetPointData()->GetArray(i);
+    bytes += array->GetDataType() == VTK_ID_TYPE ? 0 : GetBytes(array);
+  }
+  VERIFY_EQUAL(both.Found.Filter->GetDeviceMemory(),
+    both.Expected.Filter->GetDeviceMemory() + static_cast<vtkTypeInt64>(bytes));
+  both.Check(both.Found.Filter->GetOutput());
+  VERIFY_EQUAL(both.Found.Filter->GetDeviceMemory(), both.Expected.Filter->GetDeviceMemory());
+  // As much as an update needs, and an output is held.
+  for (Deformed* one : { &both.Found, &both.Expected })
+  {
+    one->Filter->SetResamplerToExact();
+  }
+  both.Found.Filter->SetMemoryLimit(1);
+  both.Found.Filter->Update();
+  VERIFY_EQUAL(both.Found.TakeErrors(), 1);
+  const std::string& message = both.Found.LastError;
+  const std::size_t needed = message.find("device: ");
+  VERIFY(needed != std::string::npos);
+  both.Found.Filter->SetMemoryLimit(std::stoll(message.substr(needed + 8)));
+  vtkNew<vtkImageData> first;
+  first->ShallowCopy(both.Update());
+  vtkNew<vtkImageData> wanted;
+  wanted->DeepCopy(both.Expected.Filter->GetOutput());
+  VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread);
+  for (int i = 0; i < 3; ++i)
+  {
+    both.Move(0.3);
+    both.Check(both.Update());
+  }
+  VERIFY(AreEqual(wanted, first));
+}
+
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  FakeDriver::Get().IsGraphics = true; // before there is a context
+  if (!deformvolume::GetDeviceAbilities("").OwnMemory)
+  {
+    std::cerr << "The calls of the library do not go through the fake driver.\n";
+    return EXIT_FAILURE;
+  }
+  vtkNew<vtkDeformVolumeFilter> filter;
+  VERIFY(!filter->GetOutputOnDevice());
+  VERIFY_EQUAL(filter->GetNumberOfUnreadArrays(), 0);
+  TestReading();
+  TestInterfaces();
+  TestAsAnyArray();
+  TestFilters(argc > 1 ? argv[1] : ".");
+  TestHeldOutputs();
+  TestDeletedFilter();
+  TestIncremental();
+  TestThreads();
+  TestLostDevice();
+  TestFailedUpdate();
+  TestMemory();
+  return GetExitCode();
+}

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Outputs that stay on a device that appears to be a graphics card, with memory of its own.
+#include "EditedVolume.h"
+#include "FakeDriver.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+using namespace deformvolume;
+
+namespace
+{
+
+// Before there is a context.
+const bool IsSet = []
+{
+  FakeDriver::Get().IsGraphics = true;
+  return true;
+}();
+
+using DeviceOutputs = std::vector<std::shared_ptr<DeviceOutput>>;
+
+class OnDevice : public testing::TestWithParam<Route>
+{
+protected:
+  void SetUp() override
+  {
+    ASSERT_TRUE(IsSet);
+    SKIP_WITHOUT_DOUBLE_PRECISION()
+    this->Edited.SendAll(*this->Deformer, GetParam());
+    this->Request.MayStayOnDevice = true;
+    this->Request.Incremental = true;
+  }
+
+  DeformReport Update()
+  {
+    this->Edited.SendDisplacements(*this->Deformer, GetParam());
+    return this->Deformer->Deform(this->Request);
+  }
+  /// What a deformer without a past makes.
+  EditedOutputs MakeExpected() const
+  {
+    VolumeDeformer fresh;
+    this->Edited.SendAll(fresh, GetParam());
+    EditedOutputs expected(this->Edited);
+    fresh.Deform(expected.MakeRequest(this->Edited));
+    return expected;
+  }
+  static void Read(const DeviceOutputs& outputs)
+  {
+    for (const std::shared_ptr<DeviceOutput>& output : outputs)
+    {
+      output->Read();
+    }
+  }
+  std::uint64_t CountRead(const DeviceOutputs& outputs)
+  {
+    FakeDriver::Get().BytesRead = 0;
+    Read(outputs);
+    return FakeDriver::Get().BytesRead;
+  }
+  float* At(int x, int y, int z)
+  {
+    return &this->Edited.Displacements[3 * this->Edited.GetNode({ { x, y, z } })];
+  }
+  std::uint64_t GetBytes() const
+  {
+    return 19 * static_cast<std::uint64_t>(GetNumberOfPoints(this->Edited.Output));
+  }
+
+  EditedVolume Edited;
+  std::unique_ptr<VolumeDeformer> Deformer = std::make_unique<VolumeDeformer>();
+  EditedOutputs Outputs{ this->Edited };
+  DeformRequest Request = this->Outputs.MakeRequest(this->Edited);
+};
+
+} // namespace
+
+TEST_P(OnDevice, MisuseIsAnError)
+{
+  this->Request.HeldRevisions = { 1, 2 }; // two arrays, and the coverage
+  EXPECT_THROW(this->Deformer->Deform(this->Request), Error);
+  this->Request.HeldRevisions = { 1, 2, 3 }; // of other outputs, or none
+  const DeviceOutputs outputs = this->Update().DeviceOutputs;
+  ASSERT_EQ(outputs.size(), 3U);
+  Read(outputs);
+  EXPECT_TRUE(this->Outputs == this->MakeExpected());
+}
+
+TEST_P(OnDevice, IsReadOnce)
+{
+  this->Update();
+  this->Update(); // it reads the static mapping, to know what nodes move
+  EditedOutputs untouched(this->Edited);
+  FakeDriver::Get().BytesRead = 0;
+  DeviceOutputs outputs = this->Update().DeviceOutputs;
+  ASSERT_EQ(outputs.size(), 3U);
+  EXPECT_LT(FakeDriver::Get().BytesRead, this->GetBytes() / 50);
+  EXPECT_TRUE(this->Outputs == untouched);
+  EXPECT_TRUE(outputs[0]->IsOnDevice());
+  EXPECT_FALSE(outputs[0]->IsRead());
+  EXPECT_EQ(this->CountRead({ outputs[1] }), this->GetBytes() / 19 * 16);
+  EXPECT_TRUE(outputs[1]->IsRead());
+  EXPECT_FALSE(outputs[1]->IsOnDevice());
+  EXPECT_TRUE(outputs[0]->IsOnDevice());
+  EXPECT_EQ(this->CountRead(outputs), this->GetBytes() / 19 * 3);
+  EXPECT_EQ(this->CountRead(outputs), 0U);
+  EXPECT_TRUE(this->Outputs == this->MakeExpected());
+  // Nobody wants it.
+  this->At(5, 3, 2)[0] = 0.75F;
+  this->Outputs = untouched;
+  outputs = this->Update().DeviceOutputs;
+  outputs[0]->Drop();
+  EXPECT_FALSE(outputs[0]->IsOnDevice());
+  EXPECT_FALSE(outputs[0]->IsRead());
+  outputs[0]->Read(); // it is not there
+  outputs.clear();
+  this->At(5, 3, 2)[0] = 0.5F;
+  FakeDriver::Get().BytesRead = 0;
+  outputs = this->Update().DeviceOutputs;
+  EXPECT_LT(FakeDriver::Get().BytesRead, this->GetBytes() / 50);
+  EXPECT_TRUE(this->Outputs == untouched);
+  Read(outputs);
+  EXPECT_TRUE(this->Outputs == this->MakeExpected());
+}
+
+// What is there when the deformer needs its memory, or goes.
+TEST_P(OnDevice, OutlivesWhatFollows)
+{
+  enum
+  {
+    WholeOutput,
+    PartOfTheOutput,
+    OtherVolume,
+    Release,
+    Deletion,
+    Failure,
+    NumberOfWays
+  };
+  for (int way = 0; way < NumberOfWays; ++way)
+  {
+    SCOPED_TRACE("way " + std::to_string(way));
+    EditedOutputs next(this->Edited);
+    const EditedOutputs expected = this->MakeExpected();
+    const DeviceOutputs outputs = this->Update().DeviceOutputs;
+    ASSERT_EQ(outputs.size(), 3U);
+    const std::uint64_t held = this->Deformer->GetDeviceMemory();
+    DeformRequest request = next.MakeRequest(this->Edited);
+    request.Incremental = way == PartOfTheOutput;
+    this->At(6, 3, 2)[1] += 0.5F;
+    switch (way)
+    {
+      case WholeOutput:
+      case PartOfTheOutput:
+      {
+        request.MayStayOnDevice = true;
+        this->Edited.SendDisplacements(*this->Deformer, GetParam());
+        const DeformReport report = this->Deformer->Deform(request);
+        EXPECT_EQ(report.NumberOfResampledBricks < report.NumberOfBricks, way == PartOfTheOutput);
+        EXPECT_FALSE(outputs[0]->IsOnDevice());
+        Read(report.DeviceOutputs);
+        EXPECT_TRUE(next == this->MakeExpected());
+        EXPECT_EQ(this->Deformer->GetDeviceMemory(), held) << "the output is there once";
+        break;
+      }
+      case OtherVolume:
+        this->Edited.SendAll(*this->Deformer, GetParam());
+        break;
+      case Release:
+        this->Deformer->ReleaseMemory();
+        EXPECT_EQ(this->Deformer->GetDeviceMemory(), 0U);
+        EXPECT_FALSE(outputs[0]->IsOnDevice());
+        break;
+      case Deletion:
+        this->Deformer = std::make_unique<VolumeDeformer>();
+        EXPECT_TRUE(outputs[0]->IsOnDevice());
+        break;
+      case Failure:
+        this->Edited.SendDisplacements(*this->Deformer, GetParam());
+        this->Deformer->SetMemoryLimit(1);
+        EXPECT_THROW(this->Deformer->Deform(request), Error);
+        this->Deformer->SetMemoryLimit(0);
+        break;
+      default:
+        break;
+    }
+    Read(outputs);
+    EXPECT_TRUE(this->Outputs == expected);
+    this->Edited.SendAll(*this->Deformer, GetParam());
+  }
+}
+
+// Random edits, of which some are whole: it is read or not, into one memory or another, which holds
+// what it held.
+TEST_P(OnDevice, EqualsWholeOutputsWhateverIsRead)
+{
+  std::mt19937 random(static_cast<unsigned>(GetParam()) + 1);
+  std::vector<EditedOutputs> memories(3, EditedOutputs(this->Edited));
+  std::array<std::array<std::uint64_t, 3>, 3> held{};
+  std::array<std::uint64_t, 3> revisions{};
+  std::array<DeviceOutputs, 3> outputs;
+  std::array<std::optional<EditedOutputs>, 3> expected;
+  int parts = 0;
+  for (int i = 0; i < GetNumberOfCases(40); ++i)
+  {
+    SCOPED_TRACE("edit " + std::to_string(i));
+    const std::size_t turn = random() % memories.size();
+    outputs[turn].clear(); // or not, before the memory is used again
+    if (i % 9 == 8)
+    {
+      this->Edited.Move(random, 0, 14.0F); // it is folded, and later it is not
+    }
+    else if (i % 13 != 5) // and once nothing changes
+    {
+      this->Edited.MoveInside(random, 0.5F);
+    }
+    this->Request = memories[turn].MakeRequest(this->Edited);
+    this->Request.Incremental = i % 17 != 16;
+    this->Request.MayStayOnDevice = true;
+    this->Request.HeldRevisions.assign(held[turn].begin(), held[turn].end());
+    const DeformReport report = this->Update();
+    parts += report.NumberOfResampledBricks < report.NumberOfBricks;
+    const auto isCovered = [](signed char covered) { return covered != 0; };
+    outputs[turn] = report.DeviceOutputs;
+    ASSERT_EQ(outputs[turn].size(), 3U);
+    expected[turn] = this->MakeExpected();
+    EXPECT_EQ(report.NumberOfCoveredVoxels,
+      std::count_if(expected[turn]->Coverage.begin(), expected[turn]->Coverage.end(), isCovered));
+    revisions[turn] = report.Revision;
+    if (random() % 2 == 0) // some of it; the memory of the others holds what it held
+    {
+      const std::size_t array = random() % 3;
+      outputs[turn][array]->Read();
+      held[turn][array] = report.Revision;
+    }
+    const std::size_t other = random() % memories.size();
+    if (!outputs[other].empty()) // all of it, of now or of some time ago
+    {
+      Read(outputs[other]);
+      ASSERT_TRUE(memories[other] == *expected[other]);
+      held[other].fill(revisions[other]);
+    }
+  }
+  EXPECT_GT(parts, GetNumberOfCases(40) / 3);
+}
+
+TEST_P(OnDevice, LittleIsReadOfALocalEdit)
+{
+  DeformReport report = this->Update();
+  Read(report.DeviceOutputs);
+  this->At(12, 3, 2)[0] = 0.5F;
+  this->Request.HeldRevisions.assign(3, report.Revision);
+  report = this->Update();
+  ASSERT_LT(report.NumberOfResampledBricks, report.NumberOfBricks);
+  const std::uint64_t read = this->CountRead(report.DeviceOutputs);
+  EXPECT_GT(read, 0U);
+  EXPECT_LT(read, this->GetBytes() / 4);
+  EXPECT_TRUE(this->Outputs == this->MakeExpected());
+  // Nothing has changed.
+  this->Request.HeldRevisions.assign(3, report.Revision);
+  report = this->Update();
+  EXPECT_EQ(this->CountRead(report.DeviceOutputs), 0U);
+  EXPECT_TRUE(this->Outputs == this->MakeExpected());
+}
+
+TEST_P(OnDevice, WhatIsMadeInPartsGoesToTheHost)
+{
+  // Room for the two doubles of some planes of voxels.
+  this->Deformer->SetAllocationLimit(16 *
+    static_cast<std::uint64_t>(GetSize(this->Edited.Output, 0)) *
+    static_cast<std::uint64_t>(GetSize(this->Edited.Output, 1)) * 15);
+  this->Edited.SendAll(*this->Deformer, GetParam());
+  EXPECT_TRUE(this->Update().DeviceOutputs.empty());
+  EXPECT_TRUE(this->Outputs == this->MakeExpected());
+}
+
+TEST_P(OnDevice, ManyThreadsReadAtOnce)
+{
+  for (int i = 0; i < 10; ++i)
+  {
+    this->At(6, 3, 2)[1] += 0.25F;
+    const DeviceOutputs outputs = this->Update().DeviceOutputs;
+    const EditedOutputs expected = this->MakeExpected();
+    FakeDriver::Get().BytesRead = 0;
+    std::vector<std::thread> threads;
+    std::array<bool, 6> same{};
+    for (std::size_t thread = 0; thread < same.size(); ++thread)
+    {
+      threads.emplace_back(
+        [&, thread]
+        {
+          outputs[thread % 3]->Read();
+          same[thread] = thread % 3 == 0 ? this->Outputs.First == expected.First
+            : thread % 3 == 1            ? this->Outputs.Second == expected.Second
+                                         : this->Outputs.Coverage == expected.Coverage;
+        });
+    }
+    for (std::thread& thread : threads)
+    {
+      thread.join();
+    }
+    EXPECT_TRUE(std::all_of(same.begin(), same.end(), [](bool one) { return one; }));
+    EXPECT_EQ(FakeDriver::Get().BytesRead, this->GetBytes());
+  }
+}
+
+TEST_P(OnDevice, CopiesThatFail)
+{
+  for (const bool atOnce : { false, true })
+  {
+    const DeviceOutputs outputs = this->Update().DeviceOutputs;
+    const EditedOutputs expected = this->MakeExpected();
+    FakeDriver::Get().ReadError = -5;
+    FakeDriver::Get().FailsAtOnce = atOnce;
+    EXPECT_THROW(outputs[0]->Read(), Error);
+    FakeDriver::Get().ReadError = 0;
+    FakeDriver::Get().FailsAtOnce = false;
+    EXPECT_THROW(outputs[0]->Read(), Error) << "and again, whoever asks";
+    EXPECT_FALSE(outputs[0]->IsOnDevice());
+    EXPECT_FALSE(outputs[0]->IsRead());
+    EXPECT_EQ(std::count(this->Outputs.First.begin(), this->Outputs.First.end(), 3),
+      static_cast<std::ptrdiff_t>(this->Outputs.First.size()));
+    Read({ outputs[1], outputs[2] });
+    EXPECT_TRUE(this->Outputs.Second == expected.Second);
+    // The device has lost nothing.
+    this->At(6, 3, 2)[1] += 0.5F;
+    Read(this->Update().DeviceOutputs);
+    EXPECT_TRUE(this->Outputs == this->MakeExpected());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+  Routes, OnDevice, testing::Values(Route::Mesh, Route::Runs, Route::Field), GetRouteName);
