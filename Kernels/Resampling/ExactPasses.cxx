@@ -29,8 +29,9 @@ namespace
 // Cells in a launch, about: where the lanes of processors take them, and where work-items do.
 constexpr std::int64_t CellsOfProcessors = std::int64_t{ 1 } << 23;
 constexpr std::int64_t CellsOfColumns = std::int64_t{ 1 } << 25;
-// Bricks in a launch by columns, each of whose cells has room in the queue: what is more than one of
-// CellsOfColumns has is of no use. Between these as many as take this part of the memory at most.
+// Bricks in a launch by columns, each of whose cells has room in the queue: what is more than one
+// of CellsOfColumns has is of no use. Between these as many as take this part of the memory at
+// most.
 constexpr std::uint64_t LeastBricksForQueue = 64;
 constexpr std::uint64_t MostBricksForQueue = 704;
 constexpr std::uint64_t PartForQueue = 64;

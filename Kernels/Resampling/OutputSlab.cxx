@@ -410,8 +410,8 @@ OutputSlab::Counts OutputSlab::ReadCounts(
       context.Launch(this->Queue, kernel, cl::NDRange(group * groups), cl::NDRange(group)));
   };
   // A null pointer is not something that all drivers take.
-  run("SumParts", DEFORMVOLUME_PARTS, this->Counters,
-    static_cast<cl_uint>(this->NumberOfSections), withBits ? this->CoverageBits : this->Counters,
+  run("SumParts", DEFORMVOLUME_PARTS, this->Counters, static_cast<cl_uint>(this->NumberOfSections),
+    withBits ? this->CoverageBits : this->Counters,
     cl_ulong{ withBits ? CountWords(this->NumberOfVoxels) : 0 }, this->Parts);
   run("Summarize", 1, this->Parts, this->Summary);
   this->Queue.enqueueReadBuffer(this->Summary, CL_TRUE, 0, sizeof(words), words.data());

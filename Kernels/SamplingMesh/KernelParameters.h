@@ -150,8 +150,8 @@ typedef struct
 #define DEFORMVOLUME_COUNT_LARGE 7   // cells that were put into the list of large ones
 #define DEFORMVOLUME_COUNTERS 8
 
-// Partial sums of these, and of the voxels that bits say are covered (the kernel SumParts): how many, and how many
-// parts there are.
+// Partial sums of these, and of the voxels that bits say are covered (the kernel SumParts): how
+// many, and how many parts there are.
 #define DEFORMVOLUME_SUMMED_COVERED DEFORMVOLUME_COUNTERS
 #define DEFORMVOLUME_SUMMED (DEFORMVOLUME_COUNTERS + 1)
 #define DEFORMVOLUME_PARTS 128

@@ -34,8 +34,8 @@ void RegisterComparison(const EvaluationSize& size);
 /// Nodes/<pose>/<nodes>: meshes of few and of many nodes, alone.
 void RegisterNodes(const EvaluationSize& size);
 
-/// Readback/<pose>/<at-once, unread or later>: outputs that stay on the device (OutputOnDevice), and
-/// one that does not. On a processor there is no difference.
+/// Readback/<pose>/<at-once, unread or later>: outputs that stay on the device (OutputOnDevice),
+/// and one that does not. On a processor there is no difference.
 void RegisterReadback(const EvaluationSize& size);
 
 /// Probe/<pose>/<resampler or probe>: the slowest peer.
