@@ -63,12 +63,11 @@ static int StateOf(__global const uchar* state, int x, int y, int z, const Kerne
   {
     return state[VertexInChunk(x, y, z, p)];
   }
-  const int3 v = (int3)(x, y, z);
-  const int3 last = (int3)(p->Size[0], p->Size[1], p->Size[2]) - 1;
+  const int isFirst = (x == 0) | (y == 0) | (z == 0);
+  const int isLast = (x == p->Size[0] - 1) | (y == p->Size[1] - 1) | (z == p->Size[2] - 1);
   return DEFORMVOLUME_VERTEX_SOURCE | DEFORMVOLUME_VERTEX_REGULAR | DEFORMVOLUME_CELL_UNCROSSED |
-    DEFORMVOLUME_VERTEX_TOGETHER |
-    (all(v > 0) && all(v < last) ? DEFORMVOLUME_VERTEX_INTERIOR : 0) |
-    (all(v < last) ? DEFORMVOLUME_CELL_WHOLE : 0);
+    DEFORMVOLUME_VERTEX_TOGETHER | (isFirst | isLast ? 0 : DEFORMVOLUME_VERTEX_INTERIOR) |
+    (isLast ? 0 : DEFORMVOLUME_CELL_WHOLE);
 }
 
 static float3 FieldIndex(const FieldParameters* field, int3 index)

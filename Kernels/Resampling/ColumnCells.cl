@@ -4,12 +4,12 @@
 // and by integers of 32 bits are those of the kernels for processors (BrickResampling.cl).
 //
 // What the host puts in front of this text:
-//   HAS_COLUMN_KERNEL  1 for ResampleColumns and ResampleUndecided, 0 for ResampleQueued
+//   HAS_COLUMN_KERNEL  1 for ResampleColumns and ResampleLeft, 0 for ResampleQueued
 //   PASS_IS_DIRECT     1 where the pass of the first two is known to be the direct one, which costs fewer registers
 //
 // Data: as BrickResampling.cl. It comes after GroupWalk.cl. rows: ROW floats for each row of three planes. queue: the
-// number of cells for ResampleQueued, and of those for ResampleUndecided; then room for all cells of the launch. The
-// former fill it from its begin (QUEUE_...), the latter from its end.
+// number of cells for ResampleQueued, and of those for ResampleLeft; then room for all cells of the launch. The former
+// fill it from its begin, the latter from its end.
 
 #define PLANE_VERTICES ((ROW_CELLS + 1) * ROWS)
 #define FLAG_BORDER 1  // a vertex that is not interior
@@ -22,11 +22,12 @@
 // cell in the brick, and above that what is to be done.
 #define CELLS_OF_BRICK (DEFORMVOLUME_BRICK_X * DEFORMVOLUME_BRICK_Y * DEFORMVOLUME_BRICK_Z)
 #define QUEUE_BITS 30
-#define QUEUE_FLOATS 0 // the cell is resampled as a group is
-#define QUEUE_DOUBTS 1 // it has been, but for samples that floats do not decide: these, by ResampleSamples
-#define QUEUE_UNSURE 2 // by ResampleCell
-// What becomes of a cell besides.
-#define QUEUE_INTEGERS 3 // as with QUEUE_DOUBTS, but by integers of 32 bits: it is for ResampleUndecided
+#define QUEUE_FLOATS 0   // the cell is resampled as a group is
+#define QUEUE_INTEGERS 1 // it has been, but for samples that floats do not decide: these, by integers of 32 bits; then
+                         // nothing: ResampleQueued never gets this
+#define QUEUE_DOUBTS 2   // by ResampleSamples
+#define QUEUE_UNSURE 3   // the cell, by ResampleCell
+// What becomes of a cell with which nothing is left to be done.
 #define CELL_DONE -1
 
 // Maps a vertex into a place of the rows, with the values of the arrays. Returns its flags. The operations are those
@@ -136,17 +137,17 @@ static int IsDecidedOnVertices(const GroupCandidates* c, const GroupFrame* frame
   return decided;
 }
 
-// The samples of a cell whose frame is nice. mesh, byIntegers, onlyUndecided: as for ResampleColumnCell. Returns what is
+// The samples of a cell whose frame is nice. mesh, isComplete, onlyUndecided: as for ResampleColumnCell. Returns what is
 // still to be done: CELL_DONE or QUEUE_...
 static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
-  const GroupFrame* frame, const SamplingMesh* mesh, int byIntegers, int onlyUndecided,
+  const GroupFrame* frame, const SamplingMesh* mesh, int isComplete, int onlyUndecided,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Group* const group = &c->Cells;
   const int box = c->HasBoxes && c->Box;
   const int isSmall = c->Extent < MAXIMUM_EXACT_EXTENT; // integers of 32 bits can decide who owns a sample
   GroupState state;
-  if (mesh && group->Border)
+  if (isComplete && group->Border)
   {
     StatesOfGroup(mesh, group->X, group->Y, group->Z, &state, p);
   }
@@ -156,7 +157,7 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
   BeginWalk(c, frame, &at, p);
   // The only vertex that may be among the candidates of a box inside the mesh is its lowest one, the first candidate; but
   // not so in passes for all cells that hold a voxel.
-  const int mayReachEnds = mesh || DEFORMVOLUME_IS_CLOSED(p->Pass);
+  const int mayReachEnds = isComplete || DEFORMVOLUME_IS_CLOSED(p->Pass);
   const int beginsOnVertex = box && IsOnVertex(frame, &at);
   const int beside = mesh && IsDecidedOnVertices(c, frame, &scales, p);
   uint writes = 0;
@@ -176,7 +177,7 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
       onVertex = 1;
     }
     held = onlyUndecided ? 0 : held;
-    if (byIntegers && undecided && isSmall && !DEFORMVOLUME_IS_CLOSED(p->Pass))
+    if (isComplete && undecided && isSmall && !DEFORMVOLUME_IS_CLOSED(p->Pass))
     {
       const float sample[3] = { at.X, at.Y, at.Z };
       int isVertex;
@@ -205,7 +206,7 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
   }
   // What is looked at again as a whole must not count twice. Cells too large for these integers leave the samples in
   // question only: they have many, and hardly one is.
-  if (left && !mesh && group->Border)
+  if (left && !isComplete && group->Border)
   {
     return QUEUE_FLOATS;
   }
@@ -218,22 +219,23 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
   return !left ? CELL_DONE : isSmall ? QUEUE_INTEGERS : QUEUE_DOUBTS;
 }
 
-// A cell, as far as floats take it. mesh: null for cells that are whole, inside the mesh or at least no boxes on its
-// border. byIntegers: whether those of 32 bits decide what floats do not, at once. onlyUndecided: of all samples those
-// only. most: of its candidates. Returns what is still to be done: CELL_DONE or QUEUE_...
+// A cell, as far as floats take it, or integers of 32 bits. mesh: null where vertices have no state, or it does not matter.
+// isComplete: whether integers decide what floats do not, at once, and cells on the border are told from others; else
+// they must be whole. onlyUndecided: of all samples those only. most: of its candidates. Returns what is still to be done:
+// CELL_DONE or QUEUE_...
 static __attribute__((always_inline)) int ResampleColumnCell(GroupCandidates* c, int most,
-  const SamplingMesh* mesh, GroupFrame* frame, int byIntegers, int onlyUndecided, Output* output,
+  const SamplingMesh* mesh, GroupFrame* frame, int isComplete, int onlyUndecided, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Bounds bounds;
   BoundCell(&c->Cells, &bounds);
-  FindGroupCandidates(&bounds, mesh, output, c, p ARRAY_ARGUMENTS);
+  FindGroupCandidates(&bounds, mesh, isComplete, output, c, p ARRAY_ARGUMENTS);
   if (!c->There || c->Skip)
   {
     return CELL_DONE;
   }
   // Boxes on the border own what depends on the cells round them.
-  if ((c->Some && c->Number > most) || (!mesh && c->Cells.Border && c->HasBoxes))
+  if ((c->Some && c->Number > most) || (!isComplete && c->Cells.Border && c->HasBoxes))
   {
     return QUEUE_FLOATS;
   }
@@ -248,7 +250,7 @@ static __attribute__((always_inline)) int ResampleColumnCell(GroupCandidates* c,
     return CELL_DONE;
   }
   return TakeSamples(
-    c, frame, mesh, byIntegers, onlyUndecided, output, p ARRAY_ARGUMENTS);
+    c, frame, mesh, isComplete, onlyUndecided, output, p ARRAY_ARGUMENTS);
 }
 
 // A cell whose vertices lie in rows. row: the place of its vertices in the row of even y and z.
@@ -306,6 +308,6 @@ static int3 CellOfEntry(uint entry, __global const uint* bricks, const KernelPar
 }
 
 #define QUEUE_ENTRIES(queue) ((queue) + 2)
-// The entry of ResampleUndecided with a number.
-#define UNDECIDED_ENTRY(queue, number, p)                                                          \
+// The entry of ResampleLeft with a number.
+#define LEFT_ENTRY(queue, number, p)                                                               \
   QUEUE_ENTRIES(queue)[(uint)((p)->ListEnd - (p)->ListBegin) * CELLS_OF_BRICK - 1 - (number)]

@@ -5,9 +5,10 @@
 // A work-group takes a section of a brick, layer by layer, an item a column of cells of it. Two planes of vertices are
 // in local memory, and a third one, so that some items may map the next plane while others still read these. Neighbours along x write voxels that mostly lie side by side.
 // Most cells have a sample or none. Cells that are boxes, as where nothing is deformed, own what is within their bounds.
-// What few cells need would keep registers from all others, and most of a group waiting: boxes on the border of the
-// mesh, cells that are bent or large and those that a cut divides go into a queue, which ResampleQueued takes after that
-// (QueuedResampling.cl). So do cells with samples that floats do not decide; that is for ResampleUndecided.
+// What few cells need would keep registers from all others, and most of a group waiting: so cells are left for later
+// that have samples which floats do not decide, or very many, and boxes on the border of the mesh. ResampleLeft takes
+// these. Cells that are bent or large, that a cut divides, or of which tetrahedra may be missing, go into a queue for
+// ResampleQueued (QueuedResampling.cl), as does what ResampleLeft cannot do.
 //
 // Why undecided samples do not go into a list that the group takes after each layer: some eight of 256 cells have one,
 // one warp has all of them, and the others wait.
@@ -59,20 +60,24 @@ static uint NumberInLaunch(int cell, int layer)
     first.x + cell % ROW_CELLS;
 }
 
-static void Enqueue(__global uint* queue, uint cell, int what, const KernelParameters* p)
+// left: what is still to be done with a cell that columns have looked at, or that they must not.
+static void LeaveForLater(__global uint* queue, uint cell, int left, const KernelParameters* p)
 {
-  if (what == QUEUE_INTEGERS)
+  const uint entry = cell | (uint)left << QUEUE_BITS;
+  if (left == QUEUE_INTEGERS || (left == QUEUE_FLOATS && !p->HasState))
   {
-    UNDECIDED_ENTRY(queue, atomic_inc(queue + 1), p) = cell;
+    LEFT_ENTRY(queue, atomic_inc(queue + 1), p) = entry;
   }
   else
   {
-    QUEUE_ENTRIES(queue)[atomic_inc(queue)] = cell | (uint)what << QUEUE_BITS;
+    QUEUE_ENTRIES(queue)[atomic_inc(queue)] = entry;
   }
 }
 
-// What is to be done with a cell before it is looked at: QUEUE_INTEGERS stands for what floats can tell. any: the flags
-// of all its vertices; lowest: of the one that it begins at.
+// Whether floats can tell something of a cell, and what is to be done with it else. any: the flags of all its vertices;
+// lowest: of the one that it begins at.
+#define SORT_BY_FLOATS -2
+
 static int SortCell(uint any, uint lowest)
 {
   if (any & FLAG_OUTSIDE)
@@ -84,7 +89,7 @@ static int SortCell(uint any, uint lowest)
     return QUEUE_UNSURE;
   }
   return any & FLAG_APART || (any & FLAG_BORDER && !(lowest & FLAG_WHOLE)) ? QUEUE_FLOATS
-                                                                           : QUEUE_INTEGERS;
+                                                                           : SORT_BY_FLOATS;
 }
 
 // Bricks of a list from p.ListBegin to p.ListEnd, a group a section: on x the columns of one brick after the other, on y
@@ -139,7 +144,7 @@ __kernel void ResampleColumns(MAPPING_PARAMETERS, __global const uchar* state,
       const int up = ROW_CELLS + 1;
       const uint any = f[0] | f[1] | f[up] | f[up + 1] | g[0] | g[1] | g[up] | g[up + 1];
       int left = SortCell(any, f[0]);
-      if (left == QUEUE_INTEGERS)
+      if (left == SORT_BY_FLOATS)
       {
         GroupCandidates c;
         MakeCellGroup(rows + (even * ROWS + inY + (inY & 1)) * ROW + (inX >> 1),
@@ -151,7 +156,7 @@ __kernel void ResampleColumns(MAPPING_PARAMETERS, __global const uchar* state,
       }
       if (left != CELL_DONE)
       {
-        Enqueue(queue, NumberInLaunch(i, z - 1 - first.z), left, &p);
+        LeaveForLater(queue, NumberInLaunch(i, z - 1 - first.z), left, &p);
       }
     }
     low = high;
@@ -165,9 +170,9 @@ __kernel void ResampleColumns(MAPPING_PARAMETERS, __global const uchar* state,
   }
 }
 
-// The samples of cells of the queue that floats do not decide, by integers of 32 bits, a cell a work-item. These cells
-// are whole, inside the mesh, and their frames are nice.
-__kernel void ResampleUndecided(MAPPING_PARAMETERS, __global const uchar* state,
+// What columns leave of cells that are not for ResampleQueued, a cell a work-item. The host does not know how many there
+// are.
+__kernel void ResampleLeft(MAPPING_PARAMETERS, __global const uchar* state,
   __global const uchar* active, __global const float* distances, __global char* coverage,
   __global KEY* winners, __global char* patches, __global uint* largeCells,
   __global uint* counters CUT_PARAMETERS, __global const uint* bricks, __global uint* queue,
@@ -181,14 +186,16 @@ __kernel void ResampleUndecided(MAPPING_PARAMETERS, __global const uchar* state,
   const uint entries = queue[1];
   for (uint i = get_global_id(0); i < entries; i += get_global_size(0))
   {
-    const int3 cell = CellOfEntry(UNDECIDED_ENTRY(queue, i, &p), bricks, &p);
+    const uint entry = LEFT_ENTRY(queue, i, &p);
+    const int3 cell = CellOfEntry(entry, bricks, &p);
     GroupCandidates c;
     MapCell(&mesh, cell.x, cell.y, cell.z, PlaceOfItem(rows), &c.Cells, &p ARRAY_ARGUMENTS);
-    c.Cells.Border = c.Cells.Apart = 0;
     Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
     GroupFrame frame;
-    ResampleColumnCell(
-      &c, MOST_CANDIDATES_IN_COLUMN, 0, &frame, 1, 1, &output, &p ARRAY_ARGUMENTS);
+    const int left = ResampleColumnCell(&c, MAXIMUM_CANDIDATES, 0, &frame, 1,
+      entry >> QUEUE_BITS == QUEUE_INTEGERS, &output, &p ARRAY_ARGUMENTS);
+    LEFT_ENTRY(queue, i, &p) = (entry & ((1u << QUEUE_BITS) - 1)) |
+      (uint)(left == CELL_DONE ? QUEUE_INTEGERS : left) << QUEUE_BITS;
     AddCounts(&output, SectionOf(cell.x, cell.y, cell.z, &p), counters, &p);
   }
 }

@@ -50,8 +50,8 @@ const char* GetKernelName(ResamplingForm form)
       return "ResampleBricks";
     case ResamplingForm::Columns:
       return "ResampleColumns";
-    case ResamplingForm::Undecided:
-      return "ResampleUndecided";
+    case ResamplingForm::Left:
+      return "ResampleLeft";
     case ResamplingForm::Queue:
       return "ResampleQueued";
     case ResamplingForm::LargeCells:
@@ -62,7 +62,7 @@ const char* GetKernelName(ResamplingForm form)
 
 bool IsByColumns(ResamplingForm form)
 {
-  return form == ResamplingForm::Columns || form == ResamplingForm::Undecided ||
+  return form == ResamplingForm::Columns || form == ResamplingForm::Left ||
     form == ResamplingForm::Queue;
 }
 
@@ -165,7 +165,7 @@ cl::Kernel ExactPasses::MakeKernel(ResamplingForm form, const OutputSlab& output
   const bool wideKeys = GetWinnerSize(this->Volume.GetVoxelGrid()) == 8;
   return cl::Kernel(GetResamplingProgram(context, this->Source.GetMappingForm(), arrays,
                       { form, wideKeys, output.HasCoverageBits(), this->Volume.HasCut(),
-                        (form == ResamplingForm::Columns || form == ResamplingForm::Undecided) &&
+                        (form == ResamplingForm::Columns || form == ResamplingForm::Left) &&
                           pass == DEFORMVOLUME_PASS_DIRECT }),
     GetKernelName(form));
 }
@@ -246,7 +246,7 @@ void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
         return cl::NDRange(1);
       case ResamplingForm::Columns:
         return cl::NDRange(this->GetColumnGroup(kernel, form), 1, 1);
-      case ResamplingForm::Undecided:
+      case ResamplingForm::Left:
       case ResamplingForm::Queue:
         return cl::NDRange(this->GetColumnGroup(kernel, form));
       case ResamplingForm::LargeCells:
@@ -421,7 +421,7 @@ void ExactPasses::RunColumns(const DeformRequest& request, const OutputSlab& out
   const int pass = first.Parameters.Pass;
   std::array<std::pair<ResamplingForm, cl::Kernel>, 3> kernels{ {
     { ResamplingForm::Columns, columns },
-    { ResamplingForm::Undecided, this->MakeKernel(ResamplingForm::Undecided, output, pass) },
+    { ResamplingForm::Left, this->MakeKernel(ResamplingForm::Left, output, pass) },
     { ResamplingForm::Queue, this->MakeKernel(ResamplingForm::Queue, output, pass) },
   } };
   this->ClearQueue();

@@ -329,10 +329,10 @@ static __attribute__((always_inline)) int IsSettled(
   return !some || !AnyUnsettled(output->Patches, first, last, p);
 }
 
-// b: the bounds of the cells. mesh: null where nothing round the cells is missing, or as for ResampleColumnCell
-// (ColumnCells.cl).
+// b: the bounds of the cells. mesh: null where vertices have no state. withBorder: whether cells on the border are to
+// be told from others; else they must be whole, and if there are boxes among them, nothing holds but that there are.
 static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
-  const SamplingMesh* mesh, Output* output, GroupCandidates* c,
+  const SamplingMesh* mesh, int withBorder, Output* output, GroupCandidates* c,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   MeasureCells(b, c);
@@ -345,7 +345,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
   c->HasBeside = 0;
   const FLOATS toEnd = border || p->Pass != DEFORMVOLUME_PASS_DIRECT ? 1.0f : ALMOST_ONE;
   ToEnds toEnds = { toEnd, toEnd, toEnd };
-  if (border && mesh)
+  if (border && withBorder)
   {
     EndOnBorder(c, rises, mesh, &whole, &box, &toEnds, output, p);
   }
@@ -355,7 +355,7 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
     whole &= ~FindDivided(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, p);
   }
 #endif
-  if (c->HasBoxes && (!border || mesh))
+  if (c->HasBoxes && (!border || withBorder))
   {
     c->Box = box;
     if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
@@ -392,11 +392,11 @@ static SELDOM void FindPairCandidates(const RowOfCells* row, int k, Bounds* even
   BoundColumns(row->Rows, k + LANES, &behind);
   MakeGroup(row, k, 0, &candidates[0].Cells);
   Join(even, &odd, &cells);
-  FindGroupCandidates(&cells, mesh, output, candidates, p ARRAY_ARGUMENTS);
+  FindGroupCandidates(&cells, mesh, 1, output, candidates, p ARRAY_ARGUMENTS);
   MakeGroup(row, k, 1, &candidates[1].Cells);
   Shift(even, &behind, &cells);
   Join(&cells, &odd, &cells);
-  FindGroupCandidates(&cells, mesh, output, candidates + 1, p ARRAY_ARGUMENTS);
+  FindGroupCandidates(&cells, mesh, 1, output, candidates + 1, p ARRAY_ARGUMENTS);
   *even = behind;
 }
 #endif

@@ -158,41 +158,39 @@ __kernel void ExpandCoverage(__global const uint* bits, __global uchar* coverage
   }
 }
 
-// Elements of voxels that are not covered: so each element of an output is written once only. Where some of the voxels
-// that an item takes are, it stores to the others one after the other. WIDE: a vector of 16 bytes.
-#define FILL_UNCOVERED(NAME, TYPE, WIDE)                                                           \
+// Elements of voxels that are not covered: so each element of an output is written once only. An item asks memory for
+// some at once. Neighbours take neighbours: most of what is stored lies on the border of what is covered, where wide
+// stores are not possible, and single ones of an item are as many writes.
+#define FILLED_AT_ONCE 8
+#define FILL_UNCOVERED(NAME, TYPE)                                                                 \
   __kernel void NAME(__global TYPE* restrict target, const ulong voxels, const TYPE value,         \
     __global const uint* bits, const uint elements)                                                \
   {                                                                                                \
-    const size_t step = get_global_size(0) * DEFORMVOLUME_EXPANDED;                                \
-    for (size_t first = get_global_id(0) * DEFORMVOLUME_EXPANDED; first < voxels; first += step)   \
+    const size_t step = get_global_size(0);                                                        \
+    for (size_t first = get_global_id(0); first < voxels; first += FILLED_AT_ONCE * step)          \
     {                                                                                              \
-      const uint number = (uint)min((ulong)DEFORMVOLUME_EXPANDED, voxels - first);                 \
-      uint open = ~CoveredOf(bits, first) & ((1u << number) - 1);                                  \
-      if (open == (1u << DEFORMVOLUME_EXPANDED) - 1 && IS_ALIGNED(target))                         \
+      uint covered[FILLED_AT_ONCE];                                                                \
+      _Pragma("unroll")                                                                            \
+      for (int k = 0; k < FILLED_AT_ONCE; ++k)                                                     \
       {                                                                                            \
-        __global WIDE* const wide = (__global WIDE*)(target + first * elements);                   \
-        for (uint i = 0; i < elements * (uint)sizeof(TYPE); ++i)                                   \
-        {                                                                                          \
-          wide[i] = (WIDE)value;                                                                   \
-        }                                                                                          \
-        continue;                                                                                  \
+        const size_t voxel = first + k * step;                                                     \
+        covered[k] = voxel < voxels ? IsCovered(bits, voxel) : 1;                                  \
       }                                                                                            \
-      for (; open; open &= open - 1)                                                               \
+      _Pragma("unroll")                                                                            \
+      for (int k = 0; k < FILLED_AT_ONCE; ++k)                                                     \
       {                                                                                            \
-        const size_t voxel = first + 31 - clz(open & -open);                                       \
-        for (uint e = 0; e < elements; ++e)                                                        \
+        for (uint e = 0; e < elements && !covered[k]; ++e)                                         \
         {                                                                                          \
-          target[voxel * elements + e] = value;                                                    \
+          target[(first + k * step) * elements + e] = value;                                       \
         }                                                                                          \
       }                                                                                            \
     }                                                                                              \
   }
 
-FILL_UNCOVERED(FillUncovered1, uchar, uchar16)
-FILL_UNCOVERED(FillUncovered2, ushort, ushort8)
-FILL_UNCOVERED(FillUncovered4, uint, uint4)
-FILL_UNCOVERED(FillUncovered8, ulong, ulong2)
+FILL_UNCOVERED(FillUncovered1, uchar)
+FILL_UNCOVERED(FillUncovered2, ushort)
+FILL_UNCOVERED(FillUncovered4, uint)
+FILL_UNCOVERED(FillUncovered8, ulong)
 
 // The patches of a list, a work-group each: clears their bits, or makes bytes of them.
 __kernel void ClearPatchBits(

@@ -174,7 +174,7 @@ void FillUncovered(OpenCLContext& context, const cl::CommandQueue& queue, const 
   kernel.setArg(2, value.Size, value.Bytes.data());
   kernel.setArg(3, bits);
   kernel.setArg(4, static_cast<cl_uint>(elements));
-  LaunchPortions(context, queue, kernel, voxels, DEFORMVOLUME_EXPANDED, events);
+  LaunchPortions(context, queue, kernel, voxels, 1, events);
 }
 
 } // namespace deformvolume

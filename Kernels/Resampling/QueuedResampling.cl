@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the kernel that takes columns of cells leaves in the queue (ColumnResampling.cl), but for what integers of 32
-// bits decide.
+// Cells that the kernels for columns leave in the queue (ColumnResampling.cl): those that are bent or large, that a cut
+// divides, or of which tetrahedra may be missing.
 
 // The samples of a cell that floats do not decide.
 static void ResampleDoubts(const GroupCandidates* c, const GroupFrame* frame,
@@ -75,7 +75,8 @@ static void ResampleQueuedCell(const SamplingMesh* mesh, int x, int y, int z, in
   ResampleCell(&keeping, x, y, z, &all, output, p ARRAY_ARGUMENTS);
 }
 
-// An entry of the queue a work-item. The host does not know how many there are.
+// An entry of the queue a work-item, and of what ResampleLeft has had, unless that is done. The host does not know how
+// many there are.
 __kernel void ResampleQueued(MAPPING_PARAMETERS, __global const uchar* state,
   __global const uchar* active, __global const float* distances, __global char* coverage,
   __global KEY* winners, __global char* patches, __global uint* largeCells,
@@ -83,10 +84,14 @@ __kernel void ResampleQueued(MAPPING_PARAMETERS, __global const uchar* state,
   __local float* rows, const KernelParameters p ARRAY_PARAMETERS)
 {
   const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, 0, { 0, 0, 0 } };
-  const uint entries = queue[0];
+  const uint queued = queue[0], entries = queued + queue[1];
   for (uint i = get_global_id(0); i < entries; i += get_global_size(0))
   {
-    const uint entry = QUEUE_ENTRIES(queue)[i];
+    const uint entry = i < queued ? QUEUE_ENTRIES(queue)[i] : LEFT_ENTRY(queue, i - queued, &p);
+    if (entry >> QUEUE_BITS == QUEUE_INTEGERS)
+    {
+      continue;
+    }
     const int3 cell = CellOfEntry(entry, bricks, &p);
     Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
     ResampleQueuedCell(&mesh, cell.x, cell.y, cell.z, entry >> QUEUE_BITS, PlaceOfItem(rows),

@@ -120,7 +120,7 @@ ProgramText GetFormText(const OpenCLContext& context, const std::vector<VolumeAr
         GroupSamples_cl + GroupCoverage_cl + GroupCandidates_cl + GroupWeights_cl + GroupWalk_cl +
         GroupResampling_cl + BrickResampling_cl;
     case ResamplingForm::Columns:
-    case ResamplingForm::Undecided:
+    case ResamplingForm::Left:
     case ResamplingForm::Queue:
       return ProgramText(MakeLanePreamble(context, arrays, variant)) + LaneVectors_cl +
         GroupVertices_cl + GroupValues_cl + GroupCoverage_cl + GroupCandidates_cl +
@@ -139,7 +139,7 @@ ProgramText GetFormText(const OpenCLContext& context, const std::vector<VolumeAr
 /// work-item keeps do not find registers (Documents/resampling.md, GPUs).
 std::string GetFormOptions(const OpenCLContext& context, ResamplingForm form)
 {
-  const bool isColumns = form == ResamplingForm::Columns || form == ResamplingForm::Undecided;
+  const bool isColumns = form == ResamplingForm::Columns || form == ResamplingForm::Left;
   return isColumns && context.HasExtension("cl_nv_compiler_options") ? " -cl-nv-maxrregcount=64"
                                                                      : "";
 }

@@ -21,9 +21,9 @@ enum class ResamplingForm
   Lanes,
   /// By columns: ResampleColumns in ColumnResampling.cl.
   Columns,
-  /// The samples that these leave to integers: ResampleUndecided in ColumnResampling.cl.
-  Undecided,
-  /// The cells that they leave in a queue: ResampleQueued in QueuedResampling.cl.
+  /// What these leave for later: ResampleLeft in ColumnResampling.cl.
+  Left,
+  /// What both leave in a queue: ResampleQueued in QueuedResampling.cl.
   Queue,
   /// What all of them put off: ResampleLargeCells in LargeCells.cl.
   LargeCells

@@ -185,7 +185,7 @@ typedef struct
 #define DEFORMVOLUME_PATCH_TOUCHED 2   // cells may hold voxels that others write, or none
 #define DEFORMVOLUME_PATCH_KEPT 4      // its voxels stay as they are
 
-// Voxels of which a work-item makes bytes of the bits of coverage, or fills what is not covered: half a word of these.
+// Voxels of which a work-item makes bytes of the bits of coverage at a time: half a word of these.
 #define DEFORMVOLUME_EXPANDED 16
 
 // Bytes that a work-item of the kernels Fill1 to Fill8 writes.
