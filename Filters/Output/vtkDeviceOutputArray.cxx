@@ -130,6 +130,76 @@ bool vtkDeviceOutputArray<T>::SetSize(vtkIdType values, vtkIdType kept)
 
 //------------------------------------------------------------------------------
 template <typename T>
+vtkDataArray* vtkDeviceOutputArray<T>::GetHost() const
+{
+  this->GetValues();
+  const bool isAlike = this->Host->GetNumberOfComponents() == this->NumberOfComponents &&
+    this->Host->GetNumberOfValues() == this->GetNumberOfValues();
+  return isAlike ? this->Host.Get() : nullptr;
+}
+
+//------------------------------------------------------------------------------
+template <typename T>
+void vtkDeviceOutputArray<T>::ComputeRange(double range[2], int component)
+{
+  if (vtkDataArray* const host = this->GetHost())
+  {
+    host->GetRange(range, component);
+  }
+  else
+  {
+    this->Superclass::ComputeRange(range, component);
+  }
+}
+
+//------------------------------------------------------------------------------
+template <typename T>
+void vtkDeviceOutputArray<T>::ComputeFiniteRange(double range[2], int component)
+{
+  if (vtkDataArray* const host = this->GetHost())
+  {
+    host->GetFiniteRange(range, component);
+  }
+  else
+  {
+    this->Superclass::ComputeFiniteRange(range, component);
+  }
+}
+
+#ifdef DEFORMVOLUME_RANGES_OF_GHOSTS
+//------------------------------------------------------------------------------
+template <typename T>
+void vtkDeviceOutputArray<T>::ComputeRange(
+  double range[2], int component, const unsigned char* ghosts, unsigned char ghostsToSkip)
+{
+  if (vtkDataArray* const host = this->GetHost())
+  {
+    host->GetRange(range, component, ghosts, ghostsToSkip);
+  }
+  else
+  {
+    this->Superclass::ComputeRange(range, component, ghosts, ghostsToSkip);
+  }
+}
+
+//------------------------------------------------------------------------------
+template <typename T>
+void vtkDeviceOutputArray<T>::ComputeFiniteRange(
+  double range[2], int component, const unsigned char* ghosts, unsigned char ghostsToSkip)
+{
+  if (vtkDataArray* const host = this->GetHost())
+  {
+    host->GetFiniteRange(range, component, ghosts, ghostsToSkip);
+  }
+  else
+  {
+    this->Superclass::ComputeFiniteRange(range, component, ghosts, ghostsToSkip);
+  }
+}
+#endif
+
+//------------------------------------------------------------------------------
+template <typename T>
 bool vtkDeviceOutputArray<T>::AllocateTuples(vtkIdType tuples)
 {
   return this->SetSize(tuples * this->NumberOfComponents, 0);

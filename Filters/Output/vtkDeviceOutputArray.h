@@ -2,6 +2,8 @@
 #ifndef vtkDeviceOutputArray_h
 #define vtkDeviceOutputArray_h
 
+#include "RangesOfGhosts.h"
+
 #include "vtkDataArray.h"
 #include "vtkGenericDataArray.h"
 #include "vtkSmartPointer.h"
@@ -89,6 +91,19 @@ public:
   ///@}
 
 protected:
+  ///@{
+  /// By the ordinary array, whose numbers are not read as doubles: mappers ask for ranges of each
+  /// new output.
+  void ComputeRange(double range[2], int component) override;
+  void ComputeFiniteRange(double range[2], int component) override;
+#ifdef DEFORMVOLUME_RANGES_OF_GHOSTS
+  void ComputeRange(double range[2], int component, const unsigned char* ghosts,
+    unsigned char ghostsToSkip = 0xff) override;
+  void ComputeFiniteRange(double range[2], int component, const unsigned char* ghosts,
+    unsigned char ghostsToSkip = 0xff) override;
+#endif
+  ///@}
+
   vtkDeviceOutputArray();
   ~vtkDeviceOutputArray() override;
 
@@ -104,6 +119,8 @@ private:
   T* BringToHost() const;
   /// Lets go of the values.
   void Drop();
+  /// The ordinary array with the values of this one; null where that has another size by now.
+  vtkDataArray* GetHost() const;
   /// Gives it memory of its own, for so many values; the first ones are kept, or none.
   bool SetSize(vtkIdType values, vtkIdType kept);
 

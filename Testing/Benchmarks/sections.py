@@ -336,6 +336,20 @@ def incremental(results, _pictures, _kind):
         yield table(["what moves", "Update(), ms", "mapping + resampling, ms", "by all"], rows)
 
 
+def readback(results, _pictures, _kind):
+    rows = [[moves, words, results.median(name), results.milliseconds(name, "kernels"),
+             results.milliseconds(name, "transfer"), results.milliseconds(name, "reading")]
+            for pose, moves in (("near", "all"), ("local-edit", "a box that touches 5 % of the blocks"))
+            for way, words in (("at-once", "is copied in the update"),
+                               ("unread", "stays on the device, and nobody reads it"),
+                               ("later", "stays on the device, and is read after the update"))
+            for name in [f"Readback/{pose}/{way}"] if name in results.runs]
+    if rows:
+        yield "## Where the output lies: 189 x 305 x 229 voxels of 16 bits, 2,197 nodes\n"
+        yield table(["what moves", "the output", "Update() and reading, ms", "mapping + resampling, ms",
+                     "transfer in Update(), ms", "reading, ms"], rows)
+
+
 def live(results, _pictures, _kind):
     rows = [[words, results.median(name), results.milliseconds(name, "kernels"),
              results.ratio(name, "Live/all-move")]
@@ -512,4 +526,5 @@ ALL = {
 ON_GPUS = {
     "kernels on the GPU": gpu,
     "peers on the GPU": gpu_peers,
+    "where the output lies": readback,
 }

@@ -11,6 +11,7 @@
 #include <vtkFlyingEdges3D.h>
 #include <vtkIdTypeArray.h>
 #include <vtkImageReslice.h>
+#include <vtkMath.h>
 #include <vtkPolyData.h>
 #include <vtkSMPTools.h>
 #include <vtkShortArray.h>
@@ -283,6 +284,27 @@ void TestInterfaces()
     two->GetRange(found, component);
     GetArray(both.Expected.Filter->GetOutput(), "two")->GetRange(expected, component);
     VERIFY(found[0] == expected[0] && found[1] == expected[1]);
+    // Of what has been written.
+    two->SetComponent(100, 0, -5000.0);
+    two->SetComponent(200, 1, std::nan(""));
+    two->SetComponent(300, 1, vtkMath::Inf());
+    two->Modified();
+    two->GetRange(found, 0);
+    VERIFY_EQUAL(found[0], -5000.0);
+    two->GetFiniteRange(found, 1);
+    VERIFY(found[1] < 1000.0);
+    two->GetRange(found, 1);
+    VERIFY_EQUAL(found[1], vtkMath::Inf());
+    // Of fewer, and of more.
+    two->SetNumberOfTuples(99);
+    two->Modified();
+    two->GetRange(found, 0);
+    VERIFY(found[0] >= 0.0);
+    const double tuple[2] = { 5000.0, 0.0 };
+    two->InsertNextTuple(tuple);
+    two->Modified();
+    two->GetRange(found, 0);
+    VERIFY_EQUAL(found[1], 5000.0);
   }
 }
 
