@@ -29,7 +29,7 @@ def demands(devices):
     missing = {kind: [] for kind in devices}
     for demand in DEMANDS:
         for kind, results in devices.items():
-            if demand.only_on == "gpu" and results.is_processor:
+            if demand.only_on not in ("", "cpu" if results.is_processor else "gpu"):
                 continue
             value = demand.value(results)
             if value is None:
