@@ -3,8 +3,9 @@
 // voxels as the kernels for processors (BrickResampling.cl).
 //
 // A work-group takes a section of a brick, layer by layer, an item a column of cells of it. Two planes of vertices are
-// in local memory, and a third one, so that some items may map the next plane while others still read these. Neighbours along x write voxels that mostly lie side by side.
-// Most cells have a sample or none. Cells that are boxes, as where nothing is deformed, own what is within their bounds.
+// in local memory, and a third one, so that some items may map the next plane while others still read these. Neighbours
+// along x write voxels that mostly lie side by side. Most cells have a sample or none. Cells that are boxes, as where
+// nothing is deformed, own what is within their bounds.
 // What few cells need would keep registers from all others, and most of a group waiting: so cells are left for later
 // that have samples which floats do not decide, or very many, and boxes on the border of the mesh. ResampleLeft takes
 // these. Cells that are bent or large, that a cut divides, or of which tetrahedra may be missing, go into a queue for
@@ -13,7 +14,7 @@
 // Why undecided samples do not go into a list that the group takes after each layer: some eight of 256 cells have one,
 // one warp has all of them, and the others wait.
 
-// Of cells with more candidates each takes all lanes as long as the longest of them: they go into the queue.
+// Of cells with more candidates each takes all lanes as long as the longest of them: they are left for later.
 #define MOST_CANDIDATES_IN_COLUMN 64
 
 // Adds the counts of a work-item to those of its group.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Passes over all voxels of the output, or over all counters. Here: counts the voxels that are covered, a partial sum a
-// work-item.
-__kernel void CountCovered(
-  __global const char* coverage, const ulong numberOfVoxels, __global uint* sums)
+// work-item. voxelsOfItem: that it takes.
+__kernel void CountCovered(__global const char* coverage, const ulong numberOfVoxels,
+  const uint voxelsOfItem, __global uint* sums)
 {
   const size_t item = get_global_id(0);
-  const size_t begin = item * DEFORMVOLUME_COUNTED_VOXELS;
-  const size_t end = min(begin + DEFORMVOLUME_COUNTED_VOXELS, (size_t)numberOfVoxels);
+  const size_t begin = item * voxelsOfItem;
+  const size_t end = min(begin + voxelsOfItem, (size_t)numberOfVoxels);
   if (begin >= end)
   {
     return; // an item that only fills its group
@@ -178,15 +178,17 @@ static void MarkSection(ulong cell, CellRun* run, __global uint* counters, const
 // is written twice, claimed is 0: those that are covered are settled then. words: uints of a key; patches: what is
 // known of them, in which voxels that are not covered can be won where cells touch them, and then, of as many, which
 // have contested voxels. Patches that are kept are left out.
+// voxelsOfItem: as for CountCovered.
 __kernel void Settle(__global const char* coverage, __global uint* winners, const uint words,
-  const int claimed, __global char* patches, __global uint* counters, const KernelParameters p)
+  const int claimed, __global char* patches, __global uint* counters, const uint voxelsOfItem,
+  const KernelParameters p)
 {
   const uint contested = 1u << 31;
   const size_t width = p.OutputSize[0];
   const size_t height = p.OutputSize[1];
   const size_t item = get_global_id(0);
-  const size_t begin = item * DEFORMVOLUME_COUNTED_VOXELS;
-  const size_t end = min(begin + DEFORMVOLUME_COUNTED_VOXELS, width * height * p.OutputSize[2]);
+  const size_t begin = item * voxelsOfItem;
+  const size_t end = min(begin + voxelsOfItem, width * height * p.OutputSize[2]);
   __global char* contestedPatches = patches + PatchRow(0, PatchedPlanes(&p), &p);
   CellRun run = { 0, 0 };
   for (size_t i = begin; i < end;)

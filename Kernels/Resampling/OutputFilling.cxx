@@ -59,6 +59,11 @@ void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
     queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group)));
 }
 
+cl_uint GetCountedVoxels(const OpenCLContext& context)
+{
+  return context.GetDevice().HasVectors ? 4096 : 128;
+}
+
 void LaunchSmallItems(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Kernel& kernel, std::uint64_t items, std::vector<cl::Event>& events)
 {

@@ -44,6 +44,10 @@ void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
 void LaunchSmallItems(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Kernel& kernel, std::uint64_t items, std::vector<cl::Event>& events);
 
+/// Output voxels that a work-item takes of the kernels that count or settle all of them: many where
+/// it has a thread for itself, fewer where thousands run at once.
+cl_uint GetCountedVoxels(const OpenCLContext& context);
+
 /// Fills a buffer of so many elements. Processors do that with a kernel: see OutputClearing.cl.
 void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
   const ElementBytes& value, std::uint64_t size, std::vector<cl::Event>& events);

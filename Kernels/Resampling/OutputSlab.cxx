@@ -339,13 +339,14 @@ std::uint64_t OutputSlab::CountCovered(WorkDevice& device, std::vector<cl::Event
     return this->ReadCounts(device, true, events).Covered;
   }
   OpenCLContext& context = device.GetContext();
-  const std::uint64_t items =
-    (this->NumberOfVoxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS;
+  const cl_uint voxelsOfItem = GetCountedVoxels(context);
+  const std::uint64_t items = (this->NumberOfVoxels + voxelsOfItem - 1) / voxelsOfItem;
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, items * sizeof(cl_uint));
   cl::Kernel kernel(GetOutputProgram(context), "CountCovered");
   kernel.setArg(0, this->Coverage);
   kernel.setArg(1, cl_ulong{ this->NumberOfVoxels });
-  kernel.setArg(2, sums);
+  kernel.setArg(2, voxelsOfItem);
+  kernel.setArg(3, sums);
   LaunchBusyItems(context, this->Queue, kernel, static_cast<std::size_t>(items), events);
   return ReadSum(this->Queue, sums, static_cast<std::size_t>(items));
 }

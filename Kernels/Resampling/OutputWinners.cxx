@@ -106,6 +106,7 @@ void OutputWinners::Settle(OpenCLContext& context, bool claimed, const cl::Buffe
       ElementBytes::Of(static_cast<cl_uchar>(DEFORMVOLUME_PATCH_TOUCHED)), this->CountPatches(),
       events);
   }
+  const cl_uint voxelsOfItem = GetCountedVoxels(context);
   cl::Kernel kernel(GetOutputProgram(context), "Settle");
   kernel.setArg(0, coverage);
   kernel.setArg(1, this->Keys);
@@ -113,10 +114,10 @@ void OutputWinners::Settle(OpenCLContext& context, bool claimed, const cl::Buffe
   kernel.setArg(3, cl_int{ claimed });
   kernel.setArg(4, this->Patches);
   kernel.setArg(5, counters);
-  kernel.setArg(6, parameters);
+  kernel.setArg(6, voxelsOfItem);
+  kernel.setArg(7, parameters);
   const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(this->Output));
-  LaunchBusyItems(context, this->Queue, kernel,
-    (voxels + DEFORMVOLUME_COUNTED_VOXELS - 1) / DEFORMVOLUME_COUNTED_VOXELS, events);
+  LaunchBusyItems(context, this->Queue, kernel, (voxels + voxelsOfItem - 1) / voxelsOfItem, events);
 }
 
 std::uint64_t OutputWinners::GetMemory() const

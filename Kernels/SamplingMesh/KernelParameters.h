@@ -171,10 +171,6 @@ typedef struct
 // Pieces in a launch.
 #define DEFORMVOLUME_PIECES 1024
 
-// Output voxels that a work-item takes of the kernels that count or settle all that are
-// covered or not.
-#define DEFORMVOLUME_COUNTED_VOXELS 4096
-
 // Voxels of a patch of the output on each axis: what is cleared where a part is made anew and what
 // it covers may change, and what is looked at where voxels are not settled.
 #define DEFORMVOLUME_PATCH 8

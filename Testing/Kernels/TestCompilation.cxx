@@ -231,7 +231,8 @@ TEST(Compilation, KernelsThatAreNotUsedAreNotCompiled)
   const std::vector<VolumeArray> arrays = MakeArrays({ ElementType::Int16 }, false);
   for (const auto& [form, name] : { std::make_pair(ResamplingForm::Cells, "Resample"),
          std::make_pair(ResamplingForm::Lanes, "ResampleBricks"),
-         std::make_pair(ResamplingForm::Columns, "ResampleColumns"),
+         std::make_pair(
+           ResamplingForm::Columns, "ResampleColumns;ResampleLeft"), // one after the other
          std::make_pair(ResamplingForm::Queue, "ResampleQueued"),
          std::make_pair(ResamplingForm::LargeCells, "ResampleLargeCells") })
   {
