@@ -38,7 +38,7 @@ public:
 
   /// For objects of this library.
   class DEFORMVOLUME_NO_EXPORT Internals;
-  explicit DeviceOutput(std::shared_ptr<Internals> internals);
+  DEFORMVOLUME_NO_EXPORT explicit DeviceOutput(std::shared_ptr<Internals> internals);
   const std::shared_ptr<Internals>& GetInternals() const { return this->Impl; }
 
 private:
