@@ -18,8 +18,12 @@ from vtkmodules.vtkRenderingCore import (
     vtkVolumeProperty,
     vtkWindowToImageFilter,
 )
-from vtkmodules.vtkRenderingImage import vtkImageResliceMapper
 from vtkmodules.vtkRenderingVolume import vtkFixedPointVolumeRayCastMapper, vtkGPUVolumeRayCastMapper
+
+try:
+    from vtkmodules.vtkRenderingImage import vtkImageResliceMapper as vtkSliceMapper
+except ImportError:  # which ParaView's Python lacks
+    from vtkmodules.vtkRenderingCore import vtkImageSliceMapper as vtkSliceMapper
 
 SHAPE = (40, 48, 44)
 
@@ -55,7 +59,7 @@ def move(mesh, amount):
 
 
 def make_actor(mapper):
-    if isinstance(mapper, vtkImageResliceMapper):
+    if isinstance(mapper, vtkSliceMapper):
         mapper.SliceFacesCameraOn()
         mapper.SliceAtFocalPointOn()
         actor = vtkImageSlice()
@@ -115,7 +119,7 @@ def draw(mapper_class, image, mesh, on_device):
 
 volume = make_volume()
 lattice = make_mesh(volume)
-for mapper_kind in (vtkGPUVolumeRayCastMapper, vtkFixedPointVolumeRayCastMapper, vtkImageResliceMapper):
+for mapper_kind in (vtkGPUVolumeRayCastMapper, vtkFixedPointVolumeRayCastMapper, vtkSliceMapper):
     found, expected = (draw(mapper_kind, volume, lattice, way) for way in (True, False))
     for picture, wanted in zip(found, expected):
         assert wanted.std() > 10, "an empty picture"
