@@ -294,6 +294,7 @@ run_oclgrind()
     return
   fi
   mkdir -p "$folder"
+  title "Oclgrind: 16 x 16 x 16 voxels of 16 bits, links"
   for form in columns cells; do
     for shape in still moved jittered folded; do
       runs+=("$form-$shape")
@@ -302,13 +303,16 @@ run_oclgrind()
       # shellcheck disable=SC2046 # no word, or one
       OCL_ICD_VENDORS=$icd OCLGRIND_INST_COUNTS=1 OCLGRIND_BUILD_OPTIONS=-fno-inline \
         "$build/bin/FirstUpdate" $([ "$shape" = moved ] || echo "$shape") "$form" 16 oclgrind \
-        >"$file" 2>&1 || {
+        >"$file" 2>&1 && continue
+      # Nor all functions that its compiler makes of expressions.
+      if grep -q '^Undefined external function' "$file"; then
+        printf 'Not counted: %s. %s\n\n' "$form-$shape" "$(grep '^Undefined external' "$file")"
+      else
         failed=1
         cat "$file"
-      }
+      fi
     done
   done
-  title "Oclgrind: 16 x 16 x 16 voxels of 16 bits, links"
   /usr/bin/python3 Testing/gpu_tables.py "$output" oclgrind "${runs[@]}"
 }
 
