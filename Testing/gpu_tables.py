@@ -5,7 +5,7 @@ usage: gpu_tables.py FOLDER (nvidia | amd | intel | oclgrind) TARGET...
 
 FOLDER/texts/double and FOLDER/texts/single hold what KernelTexts wrote, and FOLDER/VENDOR/TARGET
 what the compilers printed or made of it. Rows that are equal in all numbers are one. For oclgrind
-the targets are the deformations whose counts are in FOLDER/oclgrind.
+the targets are the updates whose counts are in FOLDER/oclgrind: FORM-DEFORMATION.
 """
 
 import collections
@@ -73,7 +73,10 @@ def describe_nvidia(target, registers, local, use):
 
 
 def read_nvidia(folder, target, program):
-    """What ptxas prints: a cell's numbers by kernel."""
+    """What ptxas prints: a cell's numbers by kernel.
+
+    What functions spill that are called is listed behind the kernel that calls them first.
+    """
     found = {}
     kernel = None
     path = f"{folder}/nvidia/{target}/{program}.log"
@@ -81,24 +84,24 @@ def read_nvidia(folder, target, program):
         begin = re.search(r"Compiling entry function '(\w+)'", line)
         if begin:
             kernel = begin.group(1)
+            numbers = found[kernel] = dict.fromkeys(
+                ("registers", "stack", "stores", "loads", "shared"), 0
+            )
         spills = re.search(
             r"(\d+) bytes stack frame, (\d+) bytes spill stores, (\d+) bytes spill loads", line
         )
         if spills and kernel:
-            frame, stores, loads = map(int, spills.groups())
+            numbers["stack"] = max(numbers["stack"], int(spills.group(1)))
+            numbers["stores"] += int(spills.group(2))
+            numbers["loads"] += int(spills.group(3))
         used = re.search(r"Used (\d+) registers", line)
         if used and kernel:
             stack = re.search(r"(\d+) bytes cumulative stack", line)
             shared = re.search(r"(\d+) bytes smem", line)
-            found[kernel] = (
-                int(used.group(1)),
-                int(stack.group(1)) if stack else frame,
-                stores,
-                loads,
-                int(shared.group(1)) if shared else 0,
-            )
-            kernel = None
-    return found
+            numbers["registers"] = int(used.group(1))
+            numbers["stack"] = max(numbers["stack"], int(stack.group(1)) if stack else 0)
+            numbers["shared"] = int(shared.group(1)) if shared else 0
+    return {name: tuple(numbers.values()) for name, numbers in found.items()}
 
 
 def make_nvidia_cell(target, numbers, use):
@@ -176,8 +179,8 @@ VENDORS = {
     "nvidia": (
         read_nvidia,
         make_nvidia_cell,
-        "registers; bytes of stack; bytes of spill stores + loads; warps at once on a "
-        "multiprocessor, and what limits them",
+        "registers; bytes of stack; bytes of spill stores + loads, those of called functions with "
+        "them; warps at once on a multiprocessor, and what limits them",
     ),
     "amd": (
         read_amd,
@@ -197,16 +200,17 @@ VENDORS = {
 FREE = re.compile(r"getelementptr|bitcast|phi|alloca|freeze|addrspacecast|call llvm\.lifetime")
 
 
-def print_counts(folder, shapes, voxels):
+def print_counts(folder, runs, voxels):
     print("Of one whole update, by kernel: instructions of LLVM and how many a voxel of the volume,")
     print("loads and stores of private memory among them, and bytes of global memory a voxel.")
     print("Functions are not inlined; addresses and copies between registers are not counted.\n")
-    print("| Deformation | Kernel | Launches | Instructions | A voxel | Of private memory | Global bytes a voxel |")
-    print("|---|---|---|---|---|---|---|")
-    for shape in shapes:
+    print("| Form | Deformation | Kernel | Launches | Instructions | A voxel | Of private memory | Global bytes a voxel |")
+    print("|---|---|---|---|---|---|---|---|")
+    for run in runs:
+        form, _, shape = run.partition("-")
         counts = collections.defaultdict(lambda: [0, 0, 0, 0])
         kernel = None
-        for line in read(f"{folder}/oclgrind/{shape}.txt").partition("later:")[2].splitlines():
+        for line in read(f"{folder}/oclgrind/{run}.txt").partition("later:")[2].splitlines():
             begin = re.search(r"Instructions executed for kernel '(\w+)'", line)
             if begin:
                 kernel = counts[begin.group(1)]
@@ -220,7 +224,7 @@ def print_counts(folder, shapes, voxels):
             kernel[3] += size if name.endswith("global") else 0
         for name, (launches, instructions, private, size) in sorted(counts.items()):
             print(
-                f"| {shape} | {name} | {launches} | {instructions:,} | {instructions / voxels:.0f} "
+                f"| {form} | {shape} | {name} | {launches} | {instructions:,} | {instructions / voxels:.0f} "
                 f"| {private / instructions:.0%} | {size / voxels:.0f} |"
             )
 

@@ -199,7 +199,12 @@ extern "C" cl_int CL_API_CALL clBuildProgram(cl_program program, cl_uint number,
   void* data)
 {
   static auto* const real = Find<decltype(clBuildProgram)>("clBuildProgram");
-  const cl_int error = real(program, number, devices, options, done, data);
+  std::string known = options ? options : "";
+  if (FakeDriver::Get().HasNVIDIAOptions)
+  {
+    known.erase(std::min(known.find(" -cl-nv-"), known.size()));
+  }
+  const cl_int error = real(program, number, devices, known.c_str(), done, data);
   if (error == CL_SUCCESS && !done && FakeDriver::Get().OnBuild)
   {
     FakeDriver::Get().OnBuild(GetText(program, CL_PROGRAM_SOURCE), options ? options : "",
@@ -276,19 +281,18 @@ extern "C" cl_int CL_API_CALL clGetDeviceInfo(
   {
     return Give(&driver.LocalMemory, sizeof(cl_ulong), room, place, needed);
   }
-  if (what == CL_DEVICE_EXTENSIONS && !driver.HasDouble)
+  if (what == CL_DEVICE_EXTENSIONS && (!driver.HasDouble || driver.HasNVIDIAOptions))
   {
-    std::size_t size = 0;
-    real(device, what, 0, nullptr, &size);
-    std::string names(size, '\0');
-    real(device, what, size, &names[0], nullptr);
+    std::string names = GetText([&](std::size_t size, void* text, std::size_t* length)
+      { real(device, what, size, text, length); });
     const std::string name = "cl_khr_fp64";
-    const std::size_t begin = names.find(name);
+    const std::size_t begin = driver.HasDouble ? std::string::npos : names.find(name);
     if (begin != std::string::npos)
     {
       names.replace(begin, name.size(), name.size(), ' ');
     }
-    return Give(names.data(), size, room, place, needed);
+    names += driver.HasNVIDIAOptions ? " cl_nv_compiler_options" : "";
+    return Give(names.c_str(), names.size() + 1, room, place, needed);
   }
   return real(device, what, room, place, needed);
 }

@@ -65,6 +65,9 @@ struct FakeDriver
   /// live as long as the process: these are set before the first one.
   bool IsGraphics = false;
   bool HasDouble = true;
+  /// The device has the extension cl_nv_compiler_options. Options from the first one of it on are
+  /// for OnBuild only, as the driver does not know them.
+  bool HasNVIDIAOptions = false;
   /// Bytes that the device has, 0: as it is.
   std::uint64_t GlobalMemory = 0;
   std::uint64_t LocalMemory = 0;

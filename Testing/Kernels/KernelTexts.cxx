@@ -8,10 +8,10 @@
 //   texts    no kernel is run, which saves their compilation: those that depend on what others have
 //            found are written for few kinds of arrays only, and no launches are known
 //
-// The folder gets a file NAME.cl for each program, NAME.options, and the list kernels.txt with a
-// line for each kernel: the name of the program, that of the kernel, and of its launches the most
-// work-items of a group and the most bytes of local memory in arguments; 0 and 0 where it was
-// not launched.
+// The folder gets a file NAME.cl for each program, NAME.options, NAME.nvidia with the options that
+// only NVIDIA's drivers have, and the list kernels.txt with a line for each kernel: the name of the
+// program, that of the kernel, and of its launches the most work-items of a group and the most
+// bytes of local memory in arguments; 0 and 0 where it was not launched.
 #include "ChainMailSubject.h"
 #include "FakeDriver.h"
 #include "LatticeBody.h"
@@ -87,7 +87,9 @@ private:
     const int count = ++this->Counts[name];
     name += count > 1 ? "-" + std::to_string(count) : "";
     std::ofstream(this->Folder + "/" + name + ".cl") << text;
-    std::ofstream(this->Folder + "/" + name + ".options") << options << "\n";
+    const std::size_t others = std::min(options.find(" -cl-nv-"), options.size());
+    std::ofstream(this->Folder + "/" + name + ".options") << options.substr(0, others) << "\n";
+    std::ofstream(this->Folder + "/" + name + ".nvidia") << options.substr(others) << "\n";
     for (std::size_t begin = 0; begin < kernels.size();)
     {
       const std::size_t end = std::min(kernels.find(';', begin), kernels.size());
@@ -331,6 +333,7 @@ int main(int argc, char* argv[])
   FakeDriver::Get().SkipsLaunches = texts;
   FakeDriver::Get().IsGraphics = true;
   FakeDriver::Get().HasDouble = !single;
+  FakeDriver::Get().HasNVIDIAOptions = true;
   try
   {
     Recorder recorder(argv[1]);
