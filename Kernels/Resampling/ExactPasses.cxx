@@ -209,8 +209,8 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   else if (IsByColumns(form))
   {
     kernel.setArg(i++, this->Queue);
-    kernel.setArg(
-      i++, cl::Local(GetColumnMemory(this->Device.GetContext(), this->Volume.GetVolumeArrays())));
+    kernel.setArg(i++,
+      cl::Local(GetColumnMemory(this->Device.GetContext(), this->Volume.GetVolumeArrays(), form)));
   }
   else if (form == ResamplingForm::Cells)
   {

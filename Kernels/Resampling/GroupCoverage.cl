@@ -284,7 +284,12 @@ static __attribute__((always_inline)) uint DecideByIntegers(const Group* group, 
     TouchHeld(undecided & LaneBits(~held & (simplex != 0)), sample[0] + VERTEX(0, 0),
       sample[1] + VERTEX(0, 1), sample[2] + VERTEX(0, 2), output, p);
   }
+#if LANES > 1
   *onVertex = LanesOf(undecided) & ((simplex & (simplex - 1)) == 0);
+#else
+  // Oclgrind lacks a function for what its compiler makes of the above.
+  *onVertex = undecided && popcount(simplex) < 2;
+#endif
   return undecided & LaneBits(held);
 }
 

@@ -28,11 +28,12 @@ std::size_t GetBrickMemory(const OpenCLContext& context, std::size_t slots)
     sizeof(cl_float);
 }
 
-/// The same for a work-group of the kernel ResampleColumns: three planes of vertices.
-std::size_t GetColumnMemory(std::size_t slots)
+/// The same for a work-group of the kernel ResampleColumns, or of those that take what it leaves:
+/// so many planes of vertices.
+std::size_t GetColumnMemory(std::size_t slots, std::size_t planes = 3)
 {
   const std::size_t row = 2 * (3 + slots) * (DEFORMVOLUME_COLUMN / 2 + 1);
-  return 3 * (DEFORMVOLUME_BRICK_Y / 2 + 1) * row * sizeof(cl_float);
+  return planes * (DEFORMVOLUME_BRICK_Y / 2 + 1) * row * sizeof(cl_float);
 }
 
 /// What that has besides: flags of the vertices, and counts.
@@ -196,9 +197,11 @@ std::size_t GetBrickMemory(const OpenCLContext& context, const std::vector<Volum
   return GetBrickMemory(context, CountSlots(context, arrays, ResamplingForm::Lanes));
 }
 
-std::size_t GetColumnMemory(const OpenCLContext& context, const std::vector<VolumeArray>& arrays)
+std::size_t GetColumnMemory(
+  const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingForm form)
 {
-  return GetColumnMemory(CountSlots(context, arrays, ResamplingForm::Columns));
+  return GetColumnMemory(
+    CountSlots(context, arrays, form), form == ResamplingForm::Columns ? 3 : 2);
 }
 
 cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays)

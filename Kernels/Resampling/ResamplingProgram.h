@@ -56,8 +56,9 @@ std::size_t GetBrickMemory(const OpenCLContext& context, const std::vector<Volum
 
 /// Whether there is enough local memory for the kernel ResampleColumns.
 bool HasLocalColumns(const OpenCLContext& context);
-/// Bytes of that for a work-group.
-std::size_t GetColumnMemory(const OpenCLContext& context, const std::vector<VolumeArray>& arrays);
+/// Bytes of that for a work-group of one of the kernels for columns and for what these leave.
+std::size_t GetColumnMemory(
+  const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingForm form);
 
 /// What is done with the output besides resampling (CoverageCount.cl, OutputClearing.cl).
 cl::Program GetOutputProgram(OpenCLContext& context);
