@@ -7,9 +7,9 @@
 //   HAS_COLUMN_KERNEL  1 for ResampleColumns and ResampleLeft, 0 for ResampleQueued
 //   PASS_IS_DIRECT     1 where the pass of the first two is known to be the direct one, which costs fewer registers
 //
-// Data: as BrickResampling.cl. It comes after GroupWalk.cl. rows: ROW floats for each row of three planes, or of two for what is left. queue: the
-// number of cells for ResampleQueued, and of those for ResampleLeft; then room for all cells of the launch. The former
-// fill it from its begin, the latter from its end.
+// Data: as BrickResampling.cl. It comes after GroupWalk.cl. rows: ROW floats for each row of three planes, or of two in
+// the kernels for what is left. queue: the number of cells for ResampleQueued, and of those for ResampleLeft; then room
+// for all cells of the launch. The former fill it from its begin, the latter from its end.
 
 #define PLANE_VERTICES ((ROW_CELLS + 1) * ROWS)
 #define FLAG_BORDER 1  // a vertex that is not interior
