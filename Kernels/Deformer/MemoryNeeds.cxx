@@ -48,7 +48,7 @@ std::uint64_t CountDeviceMemory(
   // The queue of the kernel for graphics cards, and coverage as bits.
   const std::uint64_t queue =
     ExactPasses::GetQueueMemory(device, BrickGrid(size.Grid).GetNumberOfBricks());
-  const std::uint64_t bits = queue > 0 ? (outputVoxels + 31) / 32 * 4 : 0;
+  const std::uint64_t bits = queue > 0 ? OutputSlab::CountWords(outputVoxels) * 4 : 0;
   // Arrays, state, active tetrahedra and blanking; links or runs of a mesh; arrays and coverage of
   // the output; the deformation itself.
   return voxels * (sent + 3) + size.MappingBytes + outputVoxels * outputBytesPerVoxel + queue +

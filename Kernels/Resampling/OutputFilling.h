@@ -39,8 +39,8 @@ ElementBytes GetBackground(const VolumeArray& array);
 void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Kernel& kernel, std::size_t items, std::vector<cl::Event>& events);
 
-/// The same for items that have little to do. There may be fewer or more of them: kernels go
-/// through what there is in steps of their number, or leave out what there is not.
+/// The same for items that have little to do. There may be more of them, which the kernel leaves
+/// out.
 void LaunchSmallItems(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Kernel& kernel, std::uint64_t items, std::vector<cl::Event>& events);
 
@@ -48,7 +48,7 @@ void LaunchSmallItems(OpenCLContext& context, const cl::CommandQueue& queue,
 /// it has a thread for itself, fewer where thousands run at once.
 cl_uint GetCountedVoxels(const OpenCLContext& context);
 
-/// Fills a buffer of so many elements. Processors do that with a kernel: see OutputClearing.cl.
+/// Fills a buffer of so many elements. A kernel does that: see OutputClearing.cl.
 void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
   const ElementBytes& value, std::uint64_t size, std::vector<cl::Event>& events);
 

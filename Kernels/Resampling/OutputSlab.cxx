@@ -35,12 +35,6 @@ std::uint64_t ReadSum(const cl::CommandQueue& queue, const cl::Buffer& sums, std
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{ 0 });
 }
 
-/// Of so many bits.
-std::uint64_t CountWords(std::uint64_t bits)
-{
-  return (bits + 31) / 32;
-}
-
 /// Lets go of memory of the host.
 void Release(cl::Buffer& buffer)
 {
@@ -57,6 +51,11 @@ Extent GetWholeOutput(const DeformRequest& request)
 }
 
 } // namespace
+
+std::uint64_t OutputSlab::CountWords(std::uint64_t voxels)
+{
+  return (voxels + 31) / 32;
+}
 
 std::vector<Extent> OutputSlab::Split(const Extent& output, const std::vector<VolumeArray>& arrays,
   const VoxelGrid& voxelGrid, std::uint64_t allocationLimit)

@@ -48,6 +48,8 @@ public:
   static std::vector<Extent> Split(const Extent& output, const std::vector<VolumeArray>& arrays,
     const VoxelGrid& voxelGrid, std::uint64_t allocationLimit);
 
+  /// Words of 32 that coverage as bits takes.
+  static std::uint64_t CountWords(std::uint64_t voxels);
   /// Bytes of a voxel of the request's output that need memory of the device: those of the arrays
   /// and the coverage that are not worked on in place.
   static std::uint64_t GetBytesPerVoxel(const OpenCLContext& context,

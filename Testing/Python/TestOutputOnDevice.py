@@ -9,6 +9,8 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 
+from lattice import make_mesh
+
 TYPES = (np.int8, np.uint8, np.int16, np.uint16, np.int32, np.uint32, np.int64, np.uint64, np.float32, np.float64)
 SHAPE = (12, 14, 16)
 
@@ -32,18 +34,6 @@ def make_volume():
         image.GetPointData().AddArray(made)
     image.GetPointData().SetActiveScalars("int16")
     return image
-
-
-def make_mesh(image):
-    source = deformvolume.vtkLatticeTetrahedraSource()
-    source.SetNumberOfNodes(4, 4, 4)
-    source.SetInputData(image)
-    source.Update()
-    mesh = source.GetOutput()
-    made = numpy_to_vtk(np.zeros((mesh.GetNumberOfPoints(), 3), np.float32), deep=True)
-    made.SetName("displacement")
-    mesh.GetPointData().SetVectors(made)
-    return mesh
 
 
 def move(mesh, amount):
@@ -77,7 +67,7 @@ def check_equal(found, expected):
 
 def test_numpy():
     image = make_volume()
-    mesh = make_mesh(image)
+    mesh = make_mesh(image, 4)
     found = make_filter(image, mesh, True)
     expected = make_filter(image, mesh, False)
     assert found.GetNumberOfUnreadArrays() == 0
@@ -121,7 +111,7 @@ def test_numpy():
 
 def test_pipeline():
     image = make_volume()
-    mesh = make_mesh(image)
+    mesh = make_mesh(image, 4)
     surfaces = []
     for on_device in (True, False):
         deform = make_filter(image, mesh, on_device)

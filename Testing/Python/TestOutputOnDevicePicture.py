@@ -20,6 +20,8 @@ from vtkmodules.vtkRenderingCore import (
 )
 from vtkmodules.vtkRenderingVolume import vtkFixedPointVolumeRayCastMapper, vtkGPUVolumeRayCastMapper
 
+from lattice import make_mesh
+
 try:
     from vtkmodules.vtkRenderingImage import vtkImageResliceMapper as vtkSliceMapper
 except ImportError:  # which ParaView's Python lacks
@@ -37,18 +39,6 @@ def make_volume():
     made.SetName("value")
     image.GetPointData().SetScalars(made)
     return image
-
-
-def make_mesh(image):
-    source = deformvolume.vtkLatticeTetrahedraSource()
-    source.SetNumberOfNodes(6, 6, 6)
-    source.SetInputData(image)
-    source.Update()
-    mesh = source.GetOutput()
-    made = numpy_to_vtk(np.zeros((mesh.GetNumberOfPoints(), 3), np.float32), deep=True)
-    made.SetName("displacement")
-    mesh.GetPointData().SetVectors(made)
-    return mesh
 
 
 def move(mesh, amount):
@@ -118,7 +108,7 @@ def draw(mapper_class, image, mesh, on_device):
 
 
 volume = make_volume()
-lattice = make_mesh(volume)
+lattice = make_mesh(volume, 6)
 for mapper_kind in (vtkGPUVolumeRayCastMapper, vtkFixedPointVolumeRayCastMapper, vtkSliceMapper):
     found, expected = (draw(mapper_kind, volume, lattice, way) for way in (True, False))
     for picture, wanted in zip(found, expected):
