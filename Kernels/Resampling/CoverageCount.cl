@@ -178,66 +178,69 @@ static void MarkSection(ulong cell, CellRun* run, __global uint* counters, const
 // is written twice, claimed is 0: those that are covered are settled then. words: uints of a key; patches: what is
 // known of them, in which voxels that are not covered can be won where cells touch them, and then, of as many, which
 // have contested voxels. Patches that are kept are left out.
-// voxelsOfItem: as for CountCovered.
+// patchesOfItem: those side by side that an item takes. An item has its patches alone, as it also writes what is
+// known of them.
 __kernel void Settle(__global const char* coverage, __global uint* winners, const uint words,
-  const int claimed, __global char* patches, __global uint* counters, const uint voxelsOfItem,
+  const int claimed, __global char* patches, __global uint* counters, const uint patchesOfItem,
   const KernelParameters p)
 {
   const uint contested = 1u << 31;
-  const size_t width = p.OutputSize[0];
-  const size_t height = p.OutputSize[1];
-  const size_t item = get_global_id(0);
-  const size_t begin = item * voxelsOfItem;
-  const size_t end = min(begin + voxelsOfItem, width * height * p.OutputSize[2]);
+  const size_t width = DEFORMVOLUME_PATCHES(p.OutputSize[0]);
+  const size_t itemsOfRow = (width + patchesOfItem - 1) / patchesOfItem;
+  const size_t row = get_global_id(0) / itemsOfRow;
+  const size_t first = get_global_id(0) % itemsOfRow * patchesOfItem;
+  const size_t last = min(first + patchesOfItem, width);
+  const size_t height = DEFORMVOLUME_PATCHES(p.OutputSize[1]);
+  const int firstZ = row / height * DEFORMVOLUME_PATCH;
+  const int lastZ = min(firstZ + DEFORMVOLUME_PATCH, p.OutputSize[2]); // none for items that only fill their group
+  const int firstY = row % height * DEFORMVOLUME_PATCH;
+  const int lastY = min(firstY + DEFORMVOLUME_PATCH, p.OutputSize[1]);
   __global char* contestedPatches = patches + PatchRow(0, PatchedPlanes(&p), &p);
   CellRun run = { 0, 0 };
-  for (size_t i = begin; i < end;)
+  for (int z = firstZ; z < lastZ; ++z)
   {
-    const size_t row = i / width;
-    const size_t first = i - row * width;
-    const size_t last = min(width, first + end - i);
-    const size_t firstPatch = PatchRow(row % height, row / height, &p);
-    __global char* patchRow = patches + firstPatch;
-    for (size_t x = first; x < last;)
+    for (int y = firstY; y < lastY; ++y)
     {
-      const size_t patch = x / DEFORMVOLUME_PATCH;
-      const size_t patchEnd = min((patch + 1) * DEFORMVOLUME_PATCH, last);
-      if (patchRow[patch] == DEFORMVOLUME_PATCH_KEPT)
+      const size_t rowOfVoxels = ((size_t)z * p.OutputSize[1] + y) * p.OutputSize[0];
+      for (size_t patch = first; patch < last; ++patch)
       {
-        i += patchEnd - x;
-        x = patchEnd;
-        continue;
-      }
-      uint some = 0;
-      uint none = 0;
-      for (; x < patchEnd; ++x, ++i)
-      {
-        __global uint* key = winners + i * words;
-        const uint high = key[words - 1];
-        if (!claimed && coverage[i])
+        const size_t known = row * width + patch;
+        if (patches[known] == DEFORMVOLUME_PATCH_KEPT)
         {
-          key[words - 1] = 0;
+          continue;
         }
-        else if (high == 0xffffffff)
+        uint some = 0;
+        uint none = 0;
+        const size_t end =
+          rowOfVoxels + min((patch + 1) * DEFORMVOLUME_PATCH, (size_t)p.OutputSize[0]);
+        for (size_t i = rowOfVoxels + patch * DEFORMVOLUME_PATCH; i < end; ++i)
         {
-          none = 1;
+          __global uint* key = winners + i * words;
+          const uint high = key[words - 1];
+          if (!claimed && coverage[i])
+          {
+            key[words - 1] = 0;
+          }
+          else if (high == 0xffffffff)
+          {
+            none = 1;
+          }
+          else if (high & contested)
+          {
+            some = 1;
+            const uint part = high & (contested >> 1) - 1; // without the two bits that tell of keys
+            MarkSection(words == 1 ? part : (ulong)part << 32 | key[0], &run, counters, &p);
+          }
         }
-        else if (high & contested)
+        if (some)
         {
-          some = 1;
-          const uint part = high & (contested >> 1) - 1; // without the two bits that tell of keys
-          MarkSection(
-            words == 1 ? part : (ulong)part << 32 | key[0], &run, counters, &p);
+          contestedPatches[known] = 1;
         }
-      }
-      if (some)
-      {
-        contestedPatches[firstPatch + patch] = 1;
-      }
-      const int touched = patchRow[patch] & DEFORMVOLUME_PATCH_TOUCHED;
-      if (some || (none && touched))
-      {
-        patchRow[patch] = touched | DEFORMVOLUME_PATCH_UNSETTLED;
+        const int touched = patches[known] & DEFORMVOLUME_PATCH_TOUCHED;
+        if (some || (none && touched))
+        {
+          patches[known] = touched | DEFORMVOLUME_PATCH_UNSETTLED;
+        }
       }
     }
   }

@@ -44,8 +44,8 @@ void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
 void LaunchSmallItems(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Kernel& kernel, std::uint64_t items, std::vector<cl::Event>& events);
 
-/// Output voxels that a work-item takes of the kernels that count or settle all of them: many where
-/// it has a thread for itself, fewer where thousands run at once.
+/// Output voxels that a work-item takes of the kernel that counts all of them: many where it has a
+/// thread for itself, fewer where thousands run at once.
 cl_uint GetCountedVoxels(const OpenCLContext& context);
 
 /// Fills a buffer of so many elements. A kernel does that: see OutputClearing.cl.

@@ -106,7 +106,8 @@ void OutputWinners::Settle(OpenCLContext& context, bool claimed, const cl::Buffe
       ElementBytes::Of(static_cast<cl_uchar>(DEFORMVOLUME_PATCH_TOUCHED)), this->CountPatches(),
       events);
   }
-  const cl_uint voxelsOfItem = GetCountedVoxels(context);
+  // Where an item has a thread for itself, it takes many patches side by side.
+  const cl_uint patchesOfItem = context.GetDevice().HasVectors ? 32 : 1;
   cl::Kernel kernel(GetOutputProgram(context), "Settle");
   kernel.setArg(0, coverage);
   kernel.setArg(1, this->Keys);
@@ -114,10 +115,13 @@ void OutputWinners::Settle(OpenCLContext& context, bool claimed, const cl::Buffe
   kernel.setArg(3, cl_int{ claimed });
   kernel.setArg(4, this->Patches);
   kernel.setArg(5, counters);
-  kernel.setArg(6, voxelsOfItem);
+  kernel.setArg(6, patchesOfItem);
   kernel.setArg(7, parameters);
-  const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(this->Output));
-  LaunchBusyItems(context, this->Queue, kernel, (voxels + voxelsOfItem - 1) / voxelsOfItem, events);
+  const std::uint64_t patchesOfRow =
+    static_cast<std::uint64_t>(DEFORMVOLUME_PATCHES(GetSize(this->Output, 0)));
+  const std::uint64_t items =
+    (patchesOfRow + patchesOfItem - 1) / patchesOfItem * (this->CountPatches() / patchesOfRow);
+  LaunchBusyItems(context, this->Queue, kernel, static_cast<std::size_t>(items), events);
 }
 
 std::uint64_t OutputWinners::GetMemory() const
