@@ -4,9 +4,11 @@
 set(deformvolume_module_files "${CMAKE_CURRENT_SOURCE_DIR}/vtk.module")
 set(deformvolume_requested_modules DeformVolume::Filters)
 if (NOT DEFORMVOLUME_USE_PARAVIEW)
-  # ParaView has an interaction of its own.
-  list(APPEND deformvolume_module_files "${CMAKE_CURRENT_SOURCE_DIR}/Interaction/vtk.module")
-  list(APPEND deformvolume_requested_modules DeformVolume::Interaction)
+  # ParaView has an interaction and views of its own.
+  foreach (module IN ITEMS Interaction Rendering)
+    list(APPEND deformvolume_module_files "${CMAKE_CURRENT_SOURCE_DIR}/${module}/vtk.module")
+    list(APPEND deformvolume_requested_modules DeformVolume::${module})
+  endforeach ()
 endif ()
 vtk_module_scan(
   MODULE_FILES ${deformvolume_module_files}
@@ -46,6 +48,18 @@ if (DEFORMVOLUME_WRAP_PYTHON)
   set(deformvolume_python_imports "from .vtkDeformVolume import *")
   if (TARGET DeformVolume::Interaction)
     string(APPEND deformvolume_python_imports "\nfrom .vtkDeformVolumeInteraction import *")
+  endif ()
+  if (TARGET DeformVolume::Rendering)
+    # Who draws nothing, or with other mappers, need not load OpenGL.
+    string(APPEND deformvolume_python_imports "
+
+def __getattr__(name):
+    if name == \"vtkDeviceVolumeMapper\":
+        from .vtkDeformVolumeRendering import vtkDeviceVolumeMapper
+
+        return vtkDeviceVolumeMapper
+    raise AttributeError(f\"module {__name__!r} has no attribute {name!r}\")
+")
   endif ()
   set(deformvolume_python_package
     "${CMAKE_BINARY_DIR}/${DEFORMVOLUME_PYTHON_DIRECTORY}/deformvolume/__init__.py")

@@ -17,8 +17,9 @@ set(deformvolume_vtk_components
   ParallelCore
   vtksys)
 if (NOT DEFORMVOLUME_USE_PARAVIEW)
-  # Of the module in Interaction.
-  list(APPEND deformvolume_vtk_components InteractionStyle IOXML IOXMLParser RenderingCore)
+  # Of the modules in Interaction and Rendering.
+  list(APPEND deformvolume_vtk_components
+    InteractionStyle IOXML IOXMLParser RenderingCore RenderingOpenGL2 RenderingVolumeOpenGL2)
 endif ()
 # Those that an installed DeformVolume needs.
 set(deformvolume_package_components ${deformvolume_vtk_components})

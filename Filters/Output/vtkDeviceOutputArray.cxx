@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDeviceOutputArray.h"
 
-#include "DeviceOutput.h"
-
 #include "vtkArrayIteratorTemplate.h"
 #include "vtkGenericDataArray.txx"
 #include "vtkInformation.h"
@@ -67,8 +65,50 @@ void vtkDeviceOutputArray<T>::SetOutput(
   this->Host = host;
   this->Output = output;
   this->Values = nullptr;
+  this->Ranges.clear();
   this->DataChanged();
   this->Modified();
+}
+
+//------------------------------------------------------------------------------
+template <typename T>
+std::shared_ptr<deformvolume::DeviceOutput> vtkDeviceOutputArray<T>::GetDeviceOutput() const
+{
+  return !this->Values && this->Output && this->Output->IsOnDevice() ? this->Output : nullptr;
+}
+
+//------------------------------------------------------------------------------
+template <typename T>
+bool vtkDeviceOutputArray<T>::FindRangeOnDevice(double range[2], int component, bool finite) const
+{
+  const std::shared_ptr<deformvolume::DeviceOutput> output = this->GetDeviceOutput();
+  const int wanted = this->NumberOfComponents == 1 ? 0 : component;
+  if (!output || wanted < 0 || wanted >= this->NumberOfComponents)
+  {
+    return false;
+  }
+  const std::lock_guard<std::mutex> lock(this->RangesMutex);
+  this->Ranges.resize(static_cast<std::size_t>(this->NumberOfComponents));
+  std::optional<deformvolume::DeviceOutput::Range>& found =
+    this->Ranges[static_cast<std::size_t>(wanted)];
+  try
+  {
+    if (!found)
+    {
+      found = output->FindRange(wanted);
+    }
+  }
+  catch (const std::exception&)
+  {
+    return false; // who reads the values is told
+  }
+  if (!found || (!finite && !found->AllFinite))
+  {
+    return false;
+  }
+  range[0] = found->Least;
+  range[1] = found->Largest;
+  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -142,6 +182,10 @@ vtkDataArray* vtkDeviceOutputArray<T>::GetHost() const
 template <typename T>
 void vtkDeviceOutputArray<T>::ComputeRange(double range[2], int component)
 {
+  if (this->FindRangeOnDevice(range, component, false))
+  {
+    return;
+  }
   if (vtkDataArray* const host = this->GetHost())
   {
     host->GetRange(range, component);
@@ -156,6 +200,10 @@ void vtkDeviceOutputArray<T>::ComputeRange(double range[2], int component)
 template <typename T>
 void vtkDeviceOutputArray<T>::ComputeFiniteRange(double range[2], int component)
 {
+  if (this->FindRangeOnDevice(range, component, true))
+  {
+    return;
+  }
   if (vtkDataArray* const host = this->GetHost())
   {
     host->GetFiniteRange(range, component);
@@ -172,7 +220,11 @@ template <typename T>
 void vtkDeviceOutputArray<T>::ComputeRange(
   double range[2], int component, const unsigned char* ghosts, unsigned char ghostsToSkip)
 {
-  if (vtkDataArray* const host = this->GetHost())
+  if (!ghosts)
+  {
+    this->ComputeRange(range, component);
+  }
+  else if (vtkDataArray* const host = this->GetHost())
   {
     host->GetRange(range, component, ghosts, ghostsToSkip);
   }
@@ -187,7 +239,11 @@ template <typename T>
 void vtkDeviceOutputArray<T>::ComputeFiniteRange(
   double range[2], int component, const unsigned char* ghosts, unsigned char ghostsToSkip)
 {
-  if (vtkDataArray* const host = this->GetHost())
+  if (!ghosts)
+  {
+    this->ComputeFiniteRange(range, component);
+  }
+  else if (vtkDataArray* const host = this->GetHost())
   {
     host->GetFiniteRange(range, component, ghosts, ghostsToSkip);
   }

@@ -2,6 +2,7 @@
 #ifndef vtkDeviceOutputArray_h
 #define vtkDeviceOutputArray_h
 
+#include "DeviceOutput.h"
 #include "RangesOfGhosts.h"
 
 #include "vtkDataArray.h"
@@ -12,11 +13,11 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <vector>
 
 namespace deformvolume
 {
-
-class DeviceOutput;
 
 /// An array of the output of a filter whose values are on the device: it has the name and the
 /// description of an ordinary array, and gets the values into the memory of that when somebody
@@ -33,7 +34,9 @@ vtkSmartPointer<vtkDataArray> MakeDeviceOutputArray(
 /// Where the values cannot be brought to the host that is an error of this object, and they are
 /// the background.
 template <typename T>
-class vtkDeviceOutputArray : public vtkGenericDataArray<vtkDeviceOutputArray<T>, T>
+class vtkDeviceOutputArray
+  : public vtkGenericDataArray<vtkDeviceOutputArray<T>, T>
+  , public deformvolume::DeviceOutputHolder
 {
   using Generic = vtkGenericDataArray<vtkDeviceOutputArray<T>, T>;
 
@@ -45,6 +48,8 @@ public:
   /// The values become those of an output, in the memory of an array of T that has its size. Before
   /// anybody else has this array.
   void SetOutput(vtkDataArray* host, const std::shared_ptr<deformvolume::DeviceOutput>& output);
+
+  std::shared_ptr<deformvolume::DeviceOutput> GetDeviceOutput() const override;
 
   void Modified() override;
   int GetDataType() const override { return this->DataType; }
@@ -92,8 +97,8 @@ public:
 
 protected:
   ///@{
-  /// By the ordinary array, whose numbers are not read as doubles: mappers ask for ranges of each
-  /// new output.
+  /// Mappers ask for ranges of each new output. Those of components are found on the device, and
+  /// the others by the ordinary array, whose numbers are not read as doubles.
   void ComputeRange(double range[2], int component) override;
   void ComputeFiniteRange(double range[2], int component) override;
 #ifdef DEFORMVOLUME_RANGES_OF_GHOSTS
@@ -117,6 +122,9 @@ private:
   void operator=(const vtkDeviceOutputArray&) = delete;
 
   T* BringToHost() const;
+  /// The range of a component as long as the values are on the device. Returns false where the host
+  /// is to find it.
+  bool FindRangeOnDevice(double range[2], int component, bool finite) const;
   /// Lets go of the values.
   void Drop();
   /// The ordinary array with the values of this one; null where that has another size by now.
@@ -129,6 +137,8 @@ private:
   mutable std::mutex Mutex;                  // of a first access
   mutable std::atomic<T*> Values{ nullptr }; // null: they have to be brought
   std::shared_ptr<deformvolume::DeviceOutput> Output;
+  mutable std::mutex RangesMutex;
+  mutable std::vector<std::optional<deformvolume::DeviceOutput::Range>> Ranges; // of components
 };
 
 #endif

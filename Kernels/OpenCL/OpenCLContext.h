@@ -8,6 +8,7 @@
 #include <CL/opencl.hpp>
 
 #include "DeviceRank.h"
+#include "OpenGLSharing.h"
 #include "ProgramText.h"
 
 #include <cfenv>
@@ -15,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -49,12 +51,15 @@ class OpenCLContext
 public:
   /// The context of a device; made at the first request. Throws Error.
   static OpenCLContext& Get(const OpenCLDevice& device);
+  /// The same, which shares buffers with an OpenGL context: see ShareWithOpenGL.
+  static OpenCLContext& Share(const OpenCLDevice& device, const OpenGLContext& openGL);
   /// The one that a queue belongs to; null for queues of other contexts.
   static OpenCLContext* Find(const cl::CommandQueue& queue);
 
   const OpenCLDevice& GetDevice() const { return this->Device; }
   const cl::Context& GetContext() const { return this->Context; }
   bool HasExtension(const std::string& name) const;
+  bool IsSharedWith(const OpenGLContext& openGL) const { return this->OpenGL == openGL; }
   cl_uint GetNumberOfUnits() const { return this->NumberOfUnits; }
   /// Whether a buffer over memory of the host (CL_MEM_USE_HOST_PTR) is that memory, wherever it
   /// lies. Other drivers may keep a copy, which has to be told of what the host writes there.
@@ -78,7 +83,8 @@ public:
   void Prepare(const cl::CommandQueue& queue, const cl::Kernel& kernel, const cl::NDRange& group);
 
 private:
-  explicit OpenCLContext(const OpenCLDevice& device);
+  explicit OpenCLContext(
+    const OpenCLDevice& device, const std::optional<OpenGLContext>& openGL = std::nullopt);
 
   cl::Program Build(const std::string& source, const std::string& options) const;
   cl::Program BuildSource(const std::string& source, const std::string& options) const;
@@ -86,6 +92,7 @@ private:
   bool IsNew(const cl::Kernel& kernel, const cl::NDRange& group);
 
   OpenCLDevice Device;
+  std::optional<OpenGLContext> OpenGL; // that it shares buffers with
   cl::Context Context;
   std::string Extensions;
   cl_uint NumberOfUnits;

@@ -21,22 +21,23 @@ RasterTarget::RasterTarget(OpenCLContext& context, const std::vector<VolumeArray
   {
     const ElementBytes background = GetBackground(arrays[i]);
     std::memcpy(&backgrounds[i], background.Bytes.data(), background.Size);
-    this->AddMemory(context, request.Outputs[i], GetTupleSize(arrays[i]),
-      GetElementSize(arrays[i].Type), background);
+    this->AddMemory(
+      context, request.Outputs[i], GetTupleSize(arrays[i]), arrays[i].Type, background);
   }
-  this->AddMemory(context, request.Coverage, 1, 1, ElementBytes::Of(cl_uchar{ 0 }));
+  this->AddMemory(context, request.Coverage, 1, ElementType::Int8, ElementBytes::Of(cl_uchar{ 0 }));
   this->Backgrounds = cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
     backgrounds.size() * sizeof(cl_ulong), backgrounds.data());
 }
 
 void RasterTarget::AddMemory(OpenCLContext& context, void* output, std::uint64_t tuple,
-  std::size_t elementSize, const ElementBytes& background)
+  ElementType type, const ElementBytes& background)
 {
   Memory memory;
+  memory.Type = type;
   memory.Background = background;
   memory.Host = static_cast<char*>(output) + this->FirstVoxel * tuple;
   memory.Tuple = tuple;
-  Place(context, memory.Buffer, memory.Host, elementSize, this->NumberOfVoxels * tuple);
+  Place(context, memory.Buffer, memory.Host, GetElementSize(type), this->NumberOfVoxels * tuple);
   this->Memories.push_back(memory);
 }
 
@@ -55,7 +56,7 @@ std::vector<std::shared_ptr<DeviceOutput>> RasterTarget::Leave(const cl::Command
   std::vector<std::shared_ptr<DeviceOutput>> outputs;
   for (const Memory& memory : this->Memories)
   {
-    const DeviceOutput::Internals::Voxels voxels{ this->SlabExtent, this->SlabExtent,
+    const DeviceOutput::Internals::Voxels voxels{ this->SlabExtent, this->SlabExtent, memory.Type,
       memory.Tuple };
     outputs.push_back(std::make_shared<DeviceOutput>(std::make_shared<DeviceOutput::Internals>(
       queue, memory.Buffer, voxels, memory.Host, memory.Background)));

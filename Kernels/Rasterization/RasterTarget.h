@@ -46,10 +46,11 @@ private:
   {
     cl::Buffer Buffer;
     char* Host;
+    ElementType Type;
     std::uint64_t Tuple; // bytes of a voxel
     ElementBytes Background;
   };
-  void AddMemory(OpenCLContext& context, void* output, std::uint64_t tuple, std::size_t elementSize,
+  void AddMemory(OpenCLContext& context, void* output, std::uint64_t tuple, ElementType type,
     const ElementBytes& background);
 
   Extent SlabExtent;

@@ -4,6 +4,8 @@
 #include "DeviceOutputInternals.h"
 #include "GuardedCall.h"
 #include "HostMemory.h"
+#include "OpenGLBufferInternals.h"
+#include "OutputRange.h"
 
 #include <cstring>
 #include <exception>
@@ -97,6 +99,34 @@ void DeviceOutput::Internals::Drop() noexcept
   }
 }
 
+std::optional<DeviceOutput::Range> DeviceOutput::Internals::FindRange(int component)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const Voxels& values = this->Values;
+  const std::size_t element = GetElementSize(values.Type);
+  const bool isWide = element == sizeof(std::int64_t) && values.Type != ElementType::Float64;
+  if (!this->IsOnDevice() || isWide)
+  {
+    return std::nullopt;
+  }
+  const Range range = CallGuarded(
+    [&]
+    {
+      return deformvolume::FindRange(this->Queue, this->Buffer, values.Type,
+        static_cast<std::uint64_t>(GetNumberOfPoints(values.Whole)), values.Bytes / element,
+        static_cast<std::size_t>(component));
+    });
+  return range.Least <= range.Largest ? std::optional<Range>(range) : std::nullopt;
+}
+
+bool DeviceOutput::Internals::CopyTo(const OpenGLBuffer& buffer)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->IsOnDevice() &&
+    CallGuarded(
+      [&] { return buffer.GetInternals().CopyFrom(this->Queue, this->Buffer, this->GetBytes()); });
+}
+
 std::uint64_t DeviceOutput::Internals::GetMemory()
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
@@ -160,6 +190,18 @@ void DeviceOutput::Drop()
 {
   this->Impl->Drop();
 }
+
+std::optional<DeviceOutput::Range> DeviceOutput::FindRange(int component)
+{
+  return this->Impl->FindRange(component);
+}
+
+bool DeviceOutput::CopyTo(const OpenGLBuffer& buffer)
+{
+  return this->Impl->CopyTo(buffer);
+}
+
+DeviceOutputHolder::~DeviceOutputHolder() = default;
 
 void DeviceOutput::Read()
 {

@@ -6,9 +6,12 @@
 #include "Error.h"
 
 #include <memory>
+#include <optional>
 
 namespace deformvolume
 {
+
+class OpenGLBuffer;
 
 /// An array of an output, or its coverage, that is still on the device (DeformRequest::
 /// MayStayOnDevice). It goes to the memory of the request when somebody asks for it, and before
@@ -32,6 +35,24 @@ public:
   /// copied, now or by another call; the memory then holds the background.
   void Read();
 
+  /// What a component holds: from the least to the largest of the values that are finite.
+  struct Range
+  {
+    double Least = 0.0;
+    double Largest = 0.0;
+    bool AllFinite = false; // no value is infinite or no number
+  };
+  /// Found on the device, as nobody reads the values for that. Nothing where they are not there,
+  /// where none is finite, or where they are integers of 64 bits, which a double does not hold.
+  /// Throws an Error where the device fails.
+  std::optional<Range> FindRange(int component);
+
+  /// Copies the values to a buffer object of OpenGL, which has room for them, on the device. OpenGL
+  /// must have ended all commands on it (glFinish), and may use it when this returns. Returns false
+  /// where the values are not on the device, or its context does not share with that of the buffer
+  /// (ShareWithOpenGL). Throws an Error where the device fails.
+  bool CopyTo(const OpenGLBuffer& buffer);
+
   /// Nobody wants the values, and the memory of the request may go. Waits for a copy that is under
   /// way. The destructor does so, too.
   void Drop();
@@ -43,6 +64,15 @@ public:
 
 private:
   std::shared_ptr<Internals> Impl;
+};
+
+/// What holds such an array, for those who know it by another class.
+class DEFORMVOLUME_EXPORT DeviceOutputHolder
+{
+public:
+  virtual ~DeviceOutputHolder();
+  /// Null where the values are not on the device any more, or never were.
+  virtual std::shared_ptr<DeviceOutput> GetDeviceOutput() const = 0;
 };
 
 } // namespace deformvolume

@@ -3,6 +3,7 @@
 #define DeformVolumeDeviceOutputInternals_h
 
 #include "DeviceOutput.h"
+#include "ElementType.h"
 #include "Extent.h"
 #include "OpenCLContext.h"
 #include "OutputFilling.h"
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,11 +25,12 @@ class DeviceOutput::Internals
 {
 public:
   /// What there is to copy: of the voxels of an output, with so many bytes each, a part. The others
-  /// are there.
+  /// are there. The buffer has all of them.
   struct Voxels
   {
     Extent Whole;
     Extent Part;
+    ElementType Type;
     std::size_t Bytes;
   };
 
@@ -46,6 +49,10 @@ public:
   std::string GetMessage();
   /// Nobody wants the values, and the memory may go. Waits for a copy that is under way.
   void Drop() noexcept;
+
+  /// See DeviceOutput.
+  std::optional<Range> FindRange(int component);
+  bool CopyTo(const OpenGLBuffer& buffer);
 
   /// Bytes of the device.
   std::uint64_t GetMemory();

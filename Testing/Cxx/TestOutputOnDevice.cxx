@@ -308,6 +308,83 @@ void TestInterfaces()
   }
 }
 
+// Ranges are found where the values are.
+void TestRanges()
+{
+  const auto volume = MakeVolume(VolumeExtent);
+  const auto wave = [](double height, double middle)
+  {
+    return [=](const glm::dvec3& p)
+    { return middle + height * std::sin(0.31 * p.x + 0.17 * p.y - 0.23 * p.z); };
+  };
+  AddArray<signed char>(volume, "int8", wave(100.0, -20.0));
+  AddArray<unsigned char>(volume, "uint8", wave(90.0, 150.0));
+  AddArray<unsigned short>(volume, "uint16", wave(20000.0, 40000.0));
+  AddArray<int>(volume, "int32", wave(1e9, -1e9));
+  AddArray<unsigned int>(volume, "uint32", wave(1e9, 3e9));
+  AddArray<float>(volume, "float", wave(1e-3, -5.0));
+  AddArray<double>(volume, "double", wave(1e200, 0.0));
+  vtkNew<vtkFloatArray> three;
+  three->SetName("three");
+  three->SetNumberOfComponents(3);
+  three->SetNumberOfTuples(volume->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < three->GetNumberOfTuples(); ++i)
+  {
+    const auto value = static_cast<float>(i % 997);
+    three->SetTuple3(i, value, i == 9000 ? std::nan("") : -value, i == 12000 ? vtkMath::Inf() : i);
+  }
+  volume->GetPointData()->AddArray(three);
+  volume->GetPointData()->SetActiveScalars("value");
+  Both both(volume);
+  vtkImageData* image = both.Update();
+  const auto read = CountRead(
+    [&]
+    {
+      for (const char* name : { "value", "int8", "uint8", "uint16", "int32", "uint32", "float",
+             "double", "vtkValidPointMask", "three" })
+      {
+        vtkDataArray* const array = GetArray(image, name);
+        vtkDataArray* const expected = GetArray(both.Expected.Filter->GetOutput(), name);
+        const int components = array->GetNumberOfComponents();
+        for (int component = 0; component < components; ++component)
+        {
+          double range[2];
+          double wanted[2];
+          array->GetFiniteRange(range, component);
+          expected->GetFiniteRange(wanted, component);
+          VERIFY_EQUAL(range[0], wanted[0]);
+          VERIFY_EQUAL(range[1], wanted[1]);
+          VERIFY(range[0] < range[1]);
+          if (component == 0) // of others VTK counts what is infinite
+          {
+            array->GetRange(range, component);
+            VERIFY_EQUAL(range[0], wanted[0]);
+            VERIFY_EQUAL(range[1], wanted[1]);
+          }
+        }
+      }
+    });
+  VERIFY(read < 100000);
+  VERIFY_EQUAL(both.GetNumberOfUnread(), 10);
+  // As is one of the only component, however it is asked for.
+  double range[2];
+  GetArray(image, "uint16")->GetFiniteRange(range, -1);
+  VERIFY_EQUAL(both.GetNumberOfUnread(), 10);
+  // Not so what the device does not find: infinite ones, and lengths of vectors.
+  GetArray(image, "three")->GetRange(range, 2);
+  VERIFY_EQUAL(range[1], vtkMath::Inf());
+  VERIFY_EQUAL(both.GetNumberOfUnread(), 9);
+  both.Check(image);
+  // Each output has its own, and so has what is written.
+  both.Move(0.4);
+  image = both.Update();
+  GetArray(image, "float")->GetRange(range);
+  VERIFY_EQUAL(range[0], GetArray(both.Expected.Filter->GetOutput(), "float")->GetRange()[0]);
+  GetArray(image, "float")->SetComponent(17, 0, -100.0);
+  GetArray(image, "float")->Modified();
+  VERIFY_EQUAL(GetArray(image, "float")->GetRange()[0], -100.0);
+}
+
 // An array as any other, after it has been emptied and filled anew.
 void TestAsAnyArray()
 {
@@ -794,6 +871,7 @@ int main(int argc, char* argv[])
   VERIFY_EQUAL(filter->GetNumberOfUnreadArrays(), 0);
   TestReading();
   TestInterfaces();
+  TestRanges();
   TestAsAnyArray();
   TestFilters(argc > 1 ? argv[1] : ".");
   TestHeldOutputs();

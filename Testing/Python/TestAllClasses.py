@@ -20,6 +20,9 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 FOLDERS = ["Filters"]
 if hasattr(deformvolume, "vtkDeformVolumeSession"):  # not where VTK is ParaView's
     FOLDERS.append("Interaction")
+if hasattr(deformvolume, "vtkDeviceVolumeMapper"):  # it is loaded when it is asked for
+    FOLDERS.append("Rendering")
+    vars(deformvolume)["vtkDeviceVolumeMapper"] = deformvolume.vtkDeviceVolumeMapper
 ROOT = os.path.join(os.path.dirname(__file__), "..", "..")
 
 failures = []

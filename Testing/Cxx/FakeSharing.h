@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The extension cl_khr_gl_sharing for drivers that lack it, as far as buffers go: the values of a
+// buffer go to OpenGL when OpenCL releases it, by way of the host. Programs that link it take its
+// functions in place of those of the OpenCL library, as with FakeDriver.h.
+#ifndef FakeSharing_h
+#define FakeSharing_h
+
+struct FakeSharing
+{
+  /// The device is not the one that draws.
+  bool DrawsElsewhere = false;
+  /// OpenCL gets no buffer to work with, unless 0: this error instead.
+  int AcquireError = 0;
+
+  /// Contexts that were made to share with OpenGL, buffers that were shared and still are, and
+  /// copies to such.
+  int Contexts = 0;
+  int Buffers = 0;
+  int Copies = 0;
+  /// Copies to buffers that OpenCL did not have.
+  int WrongCopies = 0;
+
+  static FakeSharing& Get();
+};
+
+#endif
