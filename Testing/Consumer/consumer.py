@@ -7,6 +7,8 @@ import deformvolume
 
 prefix = os.path.realpath(sys.argv[1])
 assert os.path.realpath(deformvolume.__file__).startswith(prefix), deformvolume.__file__
+if hasattr(deformvolume, "vtkDeviceVolumeMapper"):  # not where VTK is ParaView's
+    assert not deformvolume.vtkDeviceVolumeMapper().GetLoadedOnDevice()
 devices = deformvolume.vtkDeformVolumeFilter.GetDeviceNames()
 assert devices.GetNumberOfValues() > 0
 with open("/proc/self/maps", encoding="utf-8") as maps:
