@@ -29,6 +29,12 @@ std::string Trim(const std::string& text)
     : whole.substr(begin, whole.find_last_not_of(blank) - begin + 1);
 }
 
+/// Bindings of C++ give the platform of a device as one of two types.
+cl_platform_id GetPlatform(const cl::Device& device)
+{
+  return cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>())();
+}
+
 DeviceDescription GetDescription(const cl::Device& device, const cl::Platform& platform)
 {
   using Kind = DeviceDescription::Kind;
@@ -78,7 +84,7 @@ std::string GetProcessorText()
 /// All that decides, besides source and options, what the driver makes of a program.
 std::string GetCompilerText(const OpenCLDevice& device)
 {
-  const cl::Platform platform(device.Device.getInfo<CL_DEVICE_PLATFORM>());
+  const cl::Platform platform(GetPlatform(device.Device));
   std::string text;
   for (const std::string& part :
     { platform.getInfo<CL_PLATFORM_NAME>(), platform.getInfo<CL_PLATFORM_VENDOR>(),
@@ -184,7 +190,7 @@ std::vector<cl_context_properties> GetSharingProperties(
 {
   const auto asProperty = [](auto* pointer)
   { return reinterpret_cast<cl_context_properties>(pointer); };
-  return { CL_CONTEXT_PLATFORM, asProperty(device.getInfo<CL_DEVICE_PLATFORM>()), CL_GL_CONTEXT_KHR,
+  return { CL_CONTEXT_PLATFORM, asProperty(GetPlatform(device)), CL_GL_CONTEXT_KHR,
     asProperty(openGL.Context),
     openGL.WindowSystem == OpenGLContext::System::GLX ? CL_GLX_DISPLAY_KHR : CL_EGL_DISPLAY_KHR,
     asProperty(openGL.Display), 0 };
@@ -199,9 +205,8 @@ void CheckSharing(const OpenCLDevice& device, const std::vector<cl_context_prope
     throw Error("The device \"" + device.Name +
       "\" shares no memory with OpenGL: it lacks the extension cl_khr_gl_sharing.");
   }
-  auto* const find =
-    reinterpret_cast<clGetGLContextInfoKHR_fn>(clGetExtensionFunctionAddressForPlatform(
-      device.Device.getInfo<CL_DEVICE_PLATFORM>(), "clGetGLContextInfoKHR"));
+  auto* const find = reinterpret_cast<clGetGLContextInfoKHR_fn>(
+    clGetExtensionFunctionAddressForPlatform(GetPlatform(device.Device), "clGetGLContextInfoKHR"));
   std::vector<cl_device_id> devices(64);
   std::size_t bytes = 0;
   const cl_int error = find ? find(properties.data(), CL_DEVICES_FOR_GL_CONTEXT_KHR,

@@ -29,17 +29,6 @@ namespace
 // Cells in a launch, about: where the lanes of processors take them, and where work-items do.
 constexpr std::int64_t CellsOfProcessors = std::int64_t{ 1 } << 23;
 constexpr std::int64_t CellsOfColumns = std::int64_t{ 1 } << 25;
-// Bricks in a launch by columns, each of whose cells has room in the queue: what is more than one
-// of CellsOfColumns has is of no use. Between these as many as take this part of the memory at
-// most.
-constexpr std::uint64_t LeastBricksForQueue = 64;
-constexpr std::uint64_t MostBricksForQueue = 704;
-constexpr std::uint64_t PartForQueue = 64;
-// A launch of what is in the queue: it is not known to the host how much that is.
-constexpr std::size_t QueueGroupsPerUnit = 16;
-// Work-items of a group that have places in its local memory: see ResampleQueued.
-constexpr std::size_t LargestQueueGroup =
-  std::size_t{ DEFORMVOLUME_COLUMN / 2 } * ((DEFORMVOLUME_BRICK_Y / 2 + 1) / 2);
 
 const char* GetKernelName(ResamplingForm form)
 {
@@ -67,29 +56,7 @@ bool IsByColumns(ResamplingForm form)
     form == ResamplingForm::Queue;
 }
 
-/// What the queue takes for a launch of so many bricks: two counts, then the entries.
-std::uint64_t CountQueueBytes(std::uint64_t bricks)
-{
-  constexpr std::uint64_t cellsOfBrick =
-    std::uint64_t{ DEFORMVOLUME_BRICK_X } * DEFORMVOLUME_BRICK_Y * DEFORMVOLUME_BRICK_Z;
-  return (2 + bricks * cellsOfBrick) * sizeof(cl_uint);
-}
-
-std::uint64_t GetMostBricksForQueue(WorkDevice& device)
-{
-  const std::uint64_t memory =
-    device.GetDevice().Device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>() / PartForQueue;
-  return std::clamp(memory / CountQueueBytes(1), LeastBricksForQueue, MostBricksForQueue);
-}
-
 } // namespace
-
-std::uint64_t ExactPasses::GetQueueMemory(WorkDevice& device, std::uint64_t bricks)
-{
-  return device.GetDevice().HasVectors || !HasLocalColumns(device.GetContext())
-    ? 0
-    : CountQueueBytes(std::min(bricks, GetMostBricksForQueue(device)));
-}
 
 ExactPasses::ExactPasses(
   WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches)
@@ -97,6 +64,7 @@ ExactPasses::ExactPasses(
   , Volume(volume)
   , Source(source)
   , Launched(launches)
+  , Queue(device)
 {
 }
 
@@ -208,7 +176,7 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   }
   else if (IsByColumns(form))
   {
-    kernel.setArg(i++, this->Queue);
+    kernel.setArg(i++, this->Queue.GetBuffer());
     kernel.setArg(i++,
       cl::Local(GetColumnMemory(this->Device.GetContext(), this->Volume.GetVolumeArrays(), form)));
   }
@@ -246,10 +214,10 @@ void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
       case ResamplingForm::Lanes:
         return cl::NDRange(1);
       case ResamplingForm::Columns:
-        return cl::NDRange(this->GetColumnGroup(kernel, form), 1, 1);
+        return cl::NDRange(this->GetColumnGroup(kernel), 1, 1);
       case ResamplingForm::Left:
       case ResamplingForm::Queue:
-        return cl::NDRange(this->GetColumnGroup(kernel, form));
+        return cl::NDRange(this->Queue.GetGroup(kernel));
       case ResamplingForm::LargeCells:
         break;
     }
@@ -258,18 +226,9 @@ void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
   this->Device.GetContext().Prepare(this->Device.GetQueue(), kernel, getGroup());
 }
 
-std::size_t ExactPasses::GetColumnGroup(const cl::Kernel& kernel, ResamplingForm form)
+std::size_t ExactPasses::GetColumnGroup(const cl::Kernel& kernel)
 {
-  if (form == ResamplingForm::Columns)
-  {
-    return this->Device.GetBusyGroupSize(kernel, DEFORMVOLUME_COLUMN * DEFORMVOLUME_BRICK_Y / 2);
-  }
-  return std::min(this->Device.GetBusyGroupSize(kernel), LargestQueueGroup);
-}
-
-std::size_t ExactPasses::GetQueueItems(std::size_t group)
-{
-  return QueueGroupsPerUnit * this->Device.GetContext().GetNumberOfUnits() * group;
+  return this->Device.GetBusyGroupSize(kernel, DEFORMVOLUME_COLUMN * DEFORMVOLUME_BRICK_Y / 2);
 }
 
 std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanAll(
@@ -341,18 +300,18 @@ void ExactPasses::Launch(
   }
   if (form == ResamplingForm::Columns)
   {
-    this->ClearQueue();
-    const std::size_t group = this->GetColumnGroup(kernel, form);
+    this->Queue.Clear();
+    const std::size_t group = this->GetColumnGroup(kernel);
     this->Launched.Run(request, kernel, cl::NDRange(group * DEFORMVOLUME_COLUMNS * bricks, 2, 2),
       cl::NDRange(group, 1, 1));
     return;
   }
   if (IsByColumns(form))
   {
-    const std::size_t group = this->GetColumnGroup(kernel, form);
+    const std::size_t group = this->Queue.GetGroup(kernel);
     this->Launched.GetResamplingEvents().push_back(
       this->Device.GetContext().Launch(this->Device.GetQueue(), kernel,
-        cl::NDRange(this->GetQueueItems(group)), cl::NDRange(group)));
+        cl::NDRange(this->Queue.GetItems(group)), cl::NDRange(group)));
     return;
   }
   const std::size_t group = this->Device.GetBusyGroupSize(kernel);
@@ -406,18 +365,13 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
 void ExactPasses::RunColumns(const DeformRequest& request, const OutputSlab& output,
   cl::Kernel& columns, const std::vector<PlannedLaunch>& launches)
 {
-  const auto most = static_cast<int>(GetMostBricksForQueue(this->Device));
+  const auto most = static_cast<int>(this->Queue.GetMostBricks());
   int used = 0;
   for (const PlannedLaunch& launch : launches)
   {
     used = std::max(used, launch.Parameters.ListEnd - launch.Parameters.ListBegin);
   }
-  // A longer one serves as well.
-  const std::uint64_t bytes = CountQueueBytes(static_cast<std::uint64_t>(std::min(used, most)));
-  if (deformvolume::GetMemory(this->Queue) < bytes)
-  {
-    Reserve(this->Device.GetContext(), this->Queue, bytes);
-  }
+  this->Queue.Reserve(static_cast<std::uint64_t>(used));
   const PlannedLaunch& first = launches.front();
   const int pass = first.Parameters.Pass;
   std::array<std::pair<ResamplingForm, cl::Kernel>, 3> kernels{ {
@@ -425,7 +379,6 @@ void ExactPasses::RunColumns(const DeformRequest& request, const OutputSlab& out
     { ResamplingForm::Left, this->MakeKernel(ResamplingForm::Left, output, pass) },
     { ResamplingForm::Queue, this->MakeKernel(ResamplingForm::Queue, output, pass) },
   } };
-  this->ClearQueue();
   for (auto& [form, kernel] : kernels)
   {
     this->PrepareKernel(kernel, first.Chunk, output, form, first.Parameters);
@@ -443,11 +396,6 @@ void ExactPasses::RunColumns(const DeformRequest& request, const OutputSlab& out
       }
     }
   }
-}
-
-void ExactPasses::ClearQueue()
-{
-  this->Device.GetQueue().enqueueFillBuffer(this->Queue, cl_uint{ 0 }, 0, 2 * sizeof(cl_uint));
 }
 
 void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& output, int pass)
@@ -506,7 +454,8 @@ void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& 
 
 std::uint64_t ExactPasses::GetMemory() const
 {
-  return deformvolume::GetMemory(this->BrickRows) + deformvolume::GetMemory(this->Queue);
+  return deformvolume::GetMemory(this->BrickRows) +
+    deformvolume::GetMemory(this->Queue.GetBuffer());
 }
 
 } // namespace deformvolume

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeExactPasses_h
 #define DeformVolumeExactPasses_h
 
+#include "ColumnQueue.h"
 #include "DeformRequest.h"
 #include "KernelParameters.h"
 #include "OpenCLContext.h"
@@ -49,8 +50,6 @@ public:
 
   /// Bytes on the device, but for lists of work that are short.
   std::uint64_t GetMemory() const;
-  /// Of these, what the queue takes for a volume of so many bricks where the device has one.
-  static std::uint64_t GetQueueMemory(WorkDevice& device, std::uint64_t bricks);
 
 private:
   struct PlannedLaunch
@@ -74,11 +73,8 @@ private:
   /// Launches the kernel for columns, and after each launch those for what that leaves.
   void RunColumns(const DeformRequest& request, const OutputSlab& output, cl::Kernel& columns,
     const std::vector<PlannedLaunch>& launches);
-  void ClearQueue();
-  /// Work-items of a group of the kernels for columns and for what these leave in the queue, and
-  /// those of a launch of the latter.
-  std::size_t GetColumnGroup(const cl::Kernel& kernel, ResamplingForm form);
-  std::size_t GetQueueItems(std::size_t group);
+  /// Work-items of a group of the kernel for columns.
+  std::size_t GetColumnGroup(const cl::Kernel& kernel);
 
   cl::Kernel MakeKernel(ResamplingForm form, const OutputSlab& output, int pass);
   /// Has a kernel compiled before it runs (OpenCLContext::Prepare).
@@ -95,7 +91,7 @@ private:
   std::vector<cl_uint> SentBricks; // what it has
   cl::Buffer BrickRows;            // what these need, where local memory is too small
   cl::Buffer TakenBricks;          // how many of these the launch that runs has taken
-  cl::Buffer Queue;                // cells that columns leave for later
+  ColumnQueue Queue;               // cells that columns leave for later
   cl::Buffer Pieces;               // of large cells, to work on
 };
 

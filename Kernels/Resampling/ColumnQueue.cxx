@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ColumnQueue.h"
+
+#include "HostMemory.h"
+#include "KernelParameters.h"
+#include "ResamplingProgram.h"
+#include "WorkDevice.h"
+
+#include <algorithm>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+// Bricks in a launch, each of whose cells has room: as many as take this part of the memory,
+// between these. More than a launch of ExactPasses has are of no use.
+constexpr std::uint64_t LeastBricks = 64;
+constexpr std::uint64_t MostBricks = 704;
+constexpr std::uint64_t PartOfMemory = 64;
+// A launch of what is in the list, whose length the host does not know.
+constexpr std::size_t GroupsPerUnit = 16;
+// Work-items of a group that have places in its local memory: see ResampleQueued.
+constexpr std::size_t LargestGroup =
+  std::size_t{ DEFORMVOLUME_COLUMN / 2 } * ((DEFORMVOLUME_BRICK_Y / 2 + 1) / 2);
+
+/// For launches of so many bricks.
+std::uint64_t CountBytes(std::uint64_t bricks)
+{
+  constexpr std::uint64_t cellsOfBrick =
+    std::uint64_t{ DEFORMVOLUME_BRICK_X } * DEFORMVOLUME_BRICK_Y * DEFORMVOLUME_BRICK_Z;
+  return (2 + bricks * cellsOfBrick) * sizeof(cl_uint);
+}
+
+std::uint64_t CountMostBricks(WorkDevice& device)
+{
+  const std::uint64_t memory =
+    device.GetDevice().Device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>() / PartOfMemory;
+  return std::clamp(memory / CountBytes(1), LeastBricks, MostBricks);
+}
+
+} // namespace
+
+std::uint64_t ColumnQueue::GetMemory(WorkDevice& device, std::uint64_t bricks)
+{
+  return device.GetDevice().HasVectors || !HasLocalColumns(device.GetContext())
+    ? 0
+    : CountBytes(std::min(bricks, CountMostBricks(device)));
+}
+
+std::uint64_t ColumnQueue::GetMostBricks()
+{
+  return CountMostBricks(this->Device);
+}
+
+void ColumnQueue::Reserve(std::uint64_t bricks)
+{
+  const std::uint64_t bytes = CountBytes(std::min(bricks, this->GetMostBricks()));
+  if (deformvolume::GetMemory(this->Buffer) < bytes) // a longer one serves as well
+  {
+    deformvolume::Reserve(this->Device.GetContext(), this->Buffer, bytes);
+  }
+  this->Clear();
+}
+
+void ColumnQueue::Clear()
+{
+  this->Device.GetQueue().enqueueFillBuffer(this->Buffer, cl_uint{ 0 }, 0, 2 * sizeof(cl_uint));
+}
+
+std::size_t ColumnQueue::GetGroup(const cl::Kernel& kernel)
+{
+  return std::min(this->Device.GetBusyGroupSize(kernel), LargestGroup);
+}
+
+std::size_t ColumnQueue::GetItems(std::size_t group)
+{
+  return GroupsPerUnit * this->Device.GetContext().GetNumberOfUnits() * group;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeColumnQueue_h
+#define DeformVolumeColumnQueue_h
+
+#include "OpenCLContext.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace deformvolume
+{
+
+class WorkDevice;
+
+/// The cells that the kernel for columns leaves for those that follow, in a list on the device. The
+/// host does not know how many there are: the list has room for all cells of a launch.
+class ColumnQueue
+{
+public:
+  explicit ColumnQueue(WorkDevice& device)
+    : Device(device)
+  {
+  }
+
+  /// Bytes for a volume of so many bricks; 0 where the device has no kernel for columns.
+  static std::uint64_t GetMemory(WorkDevice& device, std::uint64_t bricks);
+
+  /// Bricks in a launch by columns, at most.
+  std::uint64_t GetMostBricks();
+  /// Makes room for launches of so many bricks, or of GetMostBricks(), and clears the list.
+  void Reserve(std::uint64_t bricks);
+  /// Nothing is in the list.
+  void Clear();
+
+  const cl::Buffer& GetBuffer() const { return this->Buffer; }
+
+  /// Work-items of a group of the kernels that drain the list (ResampleLeft, ResampleQueued), and
+  /// of a launch with groups of that size.
+  std::size_t GetGroup(const cl::Kernel& kernel);
+  std::size_t GetItems(std::size_t group);
+
+private:
+  WorkDevice& Device;
+  cl::Buffer Buffer; // two counts, then the entries: see ColumnCells.cl
+};
+
+} // namespace deformvolume
+
+#endif
