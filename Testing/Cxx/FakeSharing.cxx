@@ -9,6 +9,7 @@
 #include <dlfcn.h>
 #include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 FakeSharing& FakeSharing::Get()
@@ -27,18 +28,19 @@ Function* Find(const char* name)
   return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
-/// The function of the OpenGL library that the process has loaded.
+/// The function of OpenGL, by the library that the process has loaded.
 template <typename Function>
 Function* FindOpenGL(const char* name)
 {
-  for (const char* library : { "libOpenGL.so.0", "libGL.so.1" })
+  using Finder = void* (*)(const char*);
+  for (const auto& [library, finder] : { std::make_pair("libGLX.so.0", "glXGetProcAddressARB"),
+         std::make_pair("libEGL.so.1", "eglGetProcAddress") })
   {
-    if (void* const loaded = dlopen(library, RTLD_LAZY | RTLD_NOLOAD))
+    void* const loaded = dlopen(library, RTLD_LAZY | RTLD_NOLOAD);
+    auto* const find = reinterpret_cast<Finder>(loaded ? dlsym(loaded, finder) : nullptr);
+    if (void* const function = find ? find(name) : nullptr)
     {
-      if (void* const function = dlsym(loaded, name))
-      {
-        return reinterpret_cast<Function*>(function);
-      }
+      return reinterpret_cast<Function*>(function);
     }
   }
   return nullptr;
@@ -108,7 +110,8 @@ extern "C" cl_context CL_API_CALL clCreateContext(const cl_context_properties* p
   for (; properties && *properties; properties += 2)
   {
     hasContext = hasContext || (*properties == CL_GL_CONTEXT_KHR && properties[1]);
-    hasDisplay = hasDisplay || (*properties == CL_GLX_DISPLAY_KHR && properties[1]);
+    hasDisplay = hasDisplay ||
+      ((*properties == CL_GLX_DISPLAY_KHR || *properties == CL_EGL_DISPLAY_KHR) && properties[1]);
     if (*properties == CL_CONTEXT_PLATFORM)
     {
       known.insert(known.end(), properties, properties + 2);
