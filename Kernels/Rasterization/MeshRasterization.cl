@@ -17,8 +17,9 @@
 //
 // Rest coordinates are found by RestCoordinates.cl for all wanted voxels of a row.
 //
-// This text comes after TetrahedronBinning.cl, RestSampling.cl and RestCoordinates.cl, and the host
-// puts nothing more in front of it than of those.
+// This text comes after TetrahedronBinning.cl, RestSampling.cl and RestCoordinates.cl. What the host puts in front of it
+// besides what those ask for:
+//   SETUP_IS_SHARED  1 where the items of a group set tetrahedra up for each other, else 0
 
 // The bits from first to last, both included; none where last is before first.
 static uint Bits(int first, int last)
@@ -90,18 +91,112 @@ static uint FindRow(const TileTetrahedron* t, const long* edges, int count, uint
   return Bits(low, high);
 }
 
-// All rows of a tile that are this work-item's. Returns whether tetrahedra overlap.
-static int RasterizeRows(__global const int4* tetrahedra, __global const int4* positions,
-  __global const float4* displacements, __global const int* list, uint listed, VolumeMasks masks,
-  VoxelBox tile, const int* origin, __local int* rests, __local uint* covered,
-  __local uint* own, const RasterParameters* p)
+// The voxels of a row that a tetrahedron holds and no other one has taken. first: voxel of the row at the lowest one of
+// the tetrahedron's box, where the edge functions are edges.
+static uint FindWanted(const TileTetrahedron* t, const long* edges, int first, __local const uint* covered,
+  __local uint* own, int* overlaps)
+{
+  uint ownHere;
+  const uint held = FindRow(t, edges, t->Box.High.x - t->Box.Low.x, &ownHere) << first;
+  ownHere <<= first;
+  *overlaps |= (*own & ownHere) != 0;
+  *own |= ownHere;
+  return held & ~*covered;
+}
+
+// Of these, the ones that the volume covers: finds their rest coordinates. voxel: the first one of the row.
+static uint CoverRow(const TileTetrahedron* t, const RestMap* map, long* edges, const int* voxel, const int* origin,
+  uint wanted, VolumeMasks masks, __local int* rowRests, const RasterParameters* p)
+{
+  uint found;
+  if (map->Fits)
+  {
+    found = FindRests(map, voxel[1] - origin[1], voxel[2] - origin[2], wanted, rowRests, p);
+  }
+  else
+  {
+    for (int k = 0; k < 4; ++k)
+    {
+      edges[k] -= (t->Box.Low.x - voxel[0]) * t->Steps[k].x;
+    }
+    found = FindRestsOneByOne(t, map, edges, voxel, wanted, rowRests, p);
+  }
+  return HasMasks(p) ? SelectSources(masks, found, rowRests, p) : found;
+}
+
+// Goes through the tetrahedra of a tile, with all of its rows that are this work-item's. Returns whether tetrahedra
+// overlap. Where work-items are lanes, they set some tetrahedra up for each other, one each, before each takes a row
+// through these: tetrahedra are many, and to set one up takes longer than a row of it.
+#if SETUP_IS_SHARED
+typedef struct
+{
+  TileTetrahedron Tetrahedron;
+  RestMap Map;
+  int IsThere;
+} SharedTetrahedron;
+
+static __attribute__((always_inline)) int RasterizeRows(__global const int4* tetrahedra,
+  __global const int4* positions, __global const float4* displacements, __global const int* list, uint listed,
+  VolumeMasks masks, VoxelBox tile, const int* origin, __local SharedTetrahedron* shared, __local int* rests,
+  __local uint* covered, __local uint* own, const RasterParameters* p)
 {
   const int items = get_local_size(0);
   const int item = get_local_id(0);
-  for (int row = item; row < DEFORMVOLUME_TILE_ROWS; row += items)
+  int overlaps = 0;
+  for (uint begin = 0; begin < listed; begin += DEFORMVOLUME_TILE_SHARED)
   {
-    own[row] = covered[row] = 0;
+    const int count = min(listed - begin, (uint)DEFORMVOLUME_TILE_SHARED);
+    for (int i = item; i < count; i += items)
+    {
+      SharedTetrahedron one;
+      one.IsThere = SetUpTetrahedron(tetrahedra[list[begin + i]], positions, tile, &one.Tetrahedron, p);
+      if (one.IsThere)
+      {
+        SetRestMap(&one.Tetrahedron, displacements, origin, &one.Map, p);
+      }
+      shared[i] = one;
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (int row = item; row < DEFORMVOLUME_TILE_ROWS; row += items)
+    {
+      const int voxel[3] = { origin[0], origin[1] + (row & ((1 << DEFORMVOLUME_TILE_BITS_Y) - 1)),
+        origin[2] + (row >> DEFORMVOLUME_TILE_BITS_Y) };
+      for (int i = 0; i < count; ++i)
+      {
+        const VoxelBox box = shared[i].Tetrahedron.Box;
+        if (!shared[i].IsThere || voxel[1] < box.Low.y || voxel[1] > box.High.y || voxel[2] < box.Low.z ||
+          voxel[2] > box.High.z)
+        {
+          continue;
+        }
+        const TileTetrahedron t = shared[i].Tetrahedron;
+        long edges[4];
+        for (int k = 0; k < 4; ++k)
+        {
+          edges[k] = t.Start[k] + (voxel[1] - box.Low.y) * t.Steps[k].y + (voxel[2] - box.Low.z) * t.Steps[k].z;
+        }
+        const uint wanted =
+          FindWanted(&t, edges, box.Low.x - origin[0], covered + row, own + row, &overlaps);
+        if (wanted)
+        {
+          const RestMap map = shared[i].Map;
+          covered[row] |= CoverRow(
+            &t, &map, edges, voxel, origin, wanted, masks, rests + (row << DEFORMVOLUME_TILE_BITS_X), p);
+        }
+      }
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
   }
+  return overlaps;
+}
+#else
+static int RasterizeRows(__global const int4* tetrahedra, __global const int4* positions,
+  __global const float4* displacements, __global const int* list, uint listed, VolumeMasks masks,
+  VoxelBox tile, const int* origin, __local int* rests, __local uint* covered, __local uint* own,
+  const RasterParameters* p)
+{
+  const int items = get_local_size(0);
+  const int item = get_local_id(0);
   int overlaps = 0;
   for (uint i = 0; i < listed; ++i)
   {
@@ -112,8 +207,6 @@ static int RasterizeRows(__global const int4* tetrahedra, __global const int4* p
     }
     RestMap map;
     int mapped = 0;
-    const int first = t.Box.Low.x - origin[0];
-    const int count = t.Box.High.x - t.Box.Low.x;
     long slice[4] = { t.Start[0], t.Start[1], t.Start[2], t.Start[3] };
     for (int z = t.Box.Low.z; z <= t.Box.High.z; ++z)
     {
@@ -136,12 +229,8 @@ static int RasterizeRows(__global const int4* tetrahedra, __global const int4* p
         {
           continue;
         }
-        uint ownHere;
-        const uint held = FindRow(&t, edges, count, &ownHere) << first;
-        ownHere <<= first;
-        overlaps |= (own[row] & ownHere) != 0;
-        own[row] |= ownHere;
-        const uint wanted = held & ~covered[row];
+        const uint wanted =
+          FindWanted(&t, edges, t.Box.Low.x - origin[0], covered + row, own + row, &overlaps);
         if (!wanted)
         {
           continue;
@@ -151,31 +240,15 @@ static int RasterizeRows(__global const int4* tetrahedra, __global const int4* p
           SetRestMap(&t, displacements, origin, &map, p);
           mapped = 1;
         }
-        __local int* rowRests = rests + (row << DEFORMVOLUME_TILE_BITS_X);
-        uint found;
-        if (map.Fits)
-        {
-          found = FindRests(&map, y - origin[1], z - origin[2], wanted, rowRests, p);
-        }
-        else
-        {
-          for (int k = 0; k < 4; ++k)
-          {
-            edges[k] -= first * t.Steps[k].x;
-          }
-          const int voxel[3] = { origin[0], y, z };
-          found = FindRestsOneByOne(&t, &map, edges, voxel, wanted, rowRests, p);
-        }
-        if (HasMasks(p))
-        {
-          found = SelectSources(masks, found, rowRests, p);
-        }
-        covered[row] |= found;
+        const int voxel[3] = { origin[0], y, z };
+        covered[row] |= CoverRow(
+          &t, &map, edges, voxel, origin, wanted, masks, rests + (row << DEFORMVOLUME_TILE_BITS_X), p);
       }
     }
   }
   return overlaps;
 }
+#endif
 
 __kernel void RasterizeMesh(__global const int4* tetrahedra, __global const int4* positions,
   __global const float4* displacements, __global const uint* listBegins,
@@ -188,6 +261,9 @@ __kernel void RasterizeMesh(__global const int4* tetrahedra, __global const int4
   __local uint covered[DEFORMVOLUME_TILE_ROWS];
   __local uint own[DEFORMVOLUME_TILE_ROWS];
   __local uint overlaps;
+#if SETUP_IS_SHARED
+  __local SharedTetrahedron shared[DEFORMVOLUME_TILE_SHARED];
+#endif
   const int index = p.TileBegin + (int)get_group_id(0);
   int origin[3];
   const VoxelBox tile = GetTile(index, origin, &p);
@@ -195,10 +271,18 @@ __kernel void RasterizeMesh(__global const int4* tetrahedra, __global const int4
   {
     overlaps = 0;
   }
+  for (int row = get_local_id(0); row < DEFORMVOLUME_TILE_ROWS; row += get_local_size(0))
+  {
+    own[row] = covered[row] = 0;
+  }
   barrier(CLK_LOCAL_MEM_FENCE);
   const VolumeMasks masks = { active, blanked, distances };
   if (RasterizeRows(tetrahedra, positions, displacements, lists + listBegins[index],
-        listBegins[index + 1] - listBegins[index], masks, tile, origin, rests, covered, own, &p))
+        listBegins[index + 1] - listBegins[index], masks, tile, origin,
+#if SETUP_IS_SHARED
+        shared,
+#endif
+        rests, covered, own, &p))
   {
     atomic_or(&overlaps, 1);
   }

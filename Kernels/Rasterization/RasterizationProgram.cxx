@@ -51,7 +51,8 @@ cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<Vo
       MakeArrayText(context, arrays) + stores + "#define LANES " +
       std::to_string(processor ? GetLanes(context) : 4) + "\n#define CUBIC " +
       (interpolation == Interpolation::Cubic ? "1" : "0") + "\n#define STRETCH " +
-      (processor ? "32" : "1") + "\n#define INDEX " + (wide ? "long" : "int") +
+      (processor ? "32" : "1") + "\n#define SETUP_IS_SHARED " + (processor ? "0" : "1") +
+      "\n#define INDEX " + (wide ? "long" : "int") +
       (laneArrays.empty() ? "" : "\n#define HAS_LANE_ARRAYS") +
       (tapArrays.empty() ? "" : "\n#define HAS_TAP_ARRAYS") + "\n#define LANE_ARRAYS(DO)" +
       laneArrays + "\n#define TAP_ARRAYS(DO)" + tapArrays + "\n" + MultiplyAdd_cl +

@@ -5,10 +5,13 @@
 #include <CL/cl.h>
 #include <CL/cl_gl.h>
 
+#include <chrono>
 #include <cstring>
 #include <dlfcn.h>
 #include <map>
+#include <mutex>
 #include <set>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -16,6 +19,15 @@ FakeSharing& FakeSharing::Get()
 {
   static FakeSharing sharing;
   return sharing;
+}
+
+bool FakeSharing::WaitForBuffers(int number) const
+{
+  for (int i = 0; i < 500 && this->Buffers != number; ++i)
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return this->Buffers == number;
 }
 
 namespace
@@ -62,6 +74,7 @@ std::size_t Bind(unsigned int name)
   return static_cast<std::size_t>(size);
 }
 
+std::mutex Mutex;
 std::map<cl_mem, unsigned int> Names; // of the buffers that are shared
 std::set<cl_mem> Acquired;
 
@@ -129,12 +142,14 @@ extern "C" cl_mem CL_API_CALL clCreateFromGLBuffer(
   Bind(0);
   if (buffer)
   {
+    const std::lock_guard<std::mutex> lock(Mutex);
     Names[buffer] = name;
     ++FakeSharing::Get().Buffers;
     clSetMemObjectDestructorCallback(
       buffer,
       [](cl_mem gone, void*)
       {
+        const std::lock_guard<std::mutex> lock(Mutex);
         Names.erase(gone);
         --FakeSharing::Get().Buffers;
       },
@@ -159,6 +174,7 @@ extern "C" cl_int CL_API_CALL clEnqueueCopyBuffer(cl_command_queue queue, cl_mem
   const cl_event* events, cl_event* done)
 {
   static auto* const real = Find<decltype(clEnqueueCopyBuffer)>("clEnqueueCopyBuffer");
+  const std::lock_guard<std::mutex> lock(Mutex);
   if (Names.count(target))
   {
     ++FakeSharing::Get().Copies;
@@ -174,7 +190,11 @@ extern "C" cl_int CL_API_CALL clEnqueueReleaseGLObjects(cl_command_queue queue, 
   static auto* const read = Find<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer");
   for (cl_uint i = 0; i < number; ++i)
   {
-    const std::size_t size = Bind(Names.at(objects[i]));
+    std::size_t size = 0;
+    {
+      const std::lock_guard<std::mutex> lock(Mutex);
+      size = Bind(Names.at(objects[i]));
+    }
     std::vector<char> values(size);
     const cl_int error =
       read(queue, objects[i], CL_TRUE, 0, size, values.data(), 0, nullptr, nullptr);

@@ -5,6 +5,8 @@
 #ifndef FakeSharing_h
 #define FakeSharing_h
 
+#include <atomic>
+
 struct FakeSharing
 {
   /// The device is not the one that draws.
@@ -15,10 +17,15 @@ struct FakeSharing
   /// Contexts that were made to share with OpenGL, buffers that were shared and still are, and
   /// copies to such.
   int Contexts = 0;
-  int Buffers = 0;
+  std::atomic<int> Buffers{
+    0
+  }; // drivers may let go of them in threads of their own, somewhat later
   int Copies = 0;
   /// Copies to buffers that OpenCL did not have.
   int WrongCopies = 0;
+
+  /// Waits until so many buffers are shared, and returns whether that is so in the end.
+  bool WaitForBuffers(int number) const;
 
   static FakeSharing& Get();
 };

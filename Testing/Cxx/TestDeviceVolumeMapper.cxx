@@ -224,7 +224,7 @@ void TestReading(const std::string& folder)
     VERIFY(both.Mapper->GetLoadedOnDevice());
     VERIFY_EQUAL(both.GetNumberOfUnread(), 2);
     VERIFY_EQUAL(FakeSharing::Get().Copies, copies + 1);
-    VERIFY_EQUAL(FakeSharing::Get().Buffers, 1);
+    VERIFY(FakeSharing::Get().WaitForBuffers(1));
     both.Expected.Move(by);
     VERIFY(both.DrawAgain());
     VERIFY_EQUAL(FakeSharing::Get().Copies, copies + 1); // nothing was new
@@ -317,7 +317,7 @@ void TestOtherWays()
     view->Window->MakeCurrent();
     view->Mapper->ReleaseGraphicsResources(view->Window);
   }
-  VERIFY_EQUAL(FakeSharing::Get().Buffers, 0);
+  VERIFY(FakeSharing::Get().WaitForBuffers(0));
   both.Turn();
   VERIFY(!both.DrawAgain());
   VERIFY(both.Draw(1.0));
@@ -336,7 +336,7 @@ void TestOtherWays()
     view->Body.Filter->SetPadding(3);
   }
   VERIFY(both.Draw(-1.0));
-  VERIFY_EQUAL(FakeSharing::Get().Buffers, 1);
+  VERIFY(FakeSharing::Get().WaitForBuffers(1));
   // The device fails: a warning, and the picture.
   FakeSharing::Get().AcquireError = -5; // CL_OUT_OF_RESOURCES
   VERIFY(!both.Draw(-2.0));
@@ -350,8 +350,8 @@ void TestOtherWays()
   VERIFY(!both.Draw(-1.3));
   both.Mapper->LoadOnDeviceOn();
   VERIFY(both.Draw(-0.3));
-  // Surfaces are contoured on the host (of an oblique volume VTK 9.1 then draws next to nothing).
-  both.LeastContrast = 20;
+  // Surfaces are contoured on the host (of an oblique volume VTK then draws next to nothing).
+  both.LeastContrast = -1;
   all(
     [](vtkOpenGLGPUVolumeRayCastMapper* mapper)
     {
@@ -430,7 +430,7 @@ int main(int argc, char* argv[])
   TestOtherWays();
   TestPartitions();
   TestGhosts();
-  VERIFY_EQUAL(FakeSharing::Get().Buffers, 0);
+  VERIFY(FakeSharing::Get().WaitForBuffers(0));
   VERIFY_EQUAL(FakeSharing::Get().WrongCopies, 0);
   return GetExitCode();
 }

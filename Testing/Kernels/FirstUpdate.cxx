@@ -3,16 +3,19 @@
 // is compiled makes the difference. Testing/drivers.sh makes a table of it. Prints a line "later:"
 // between the two, for what drivers print: Testing/gpu-compilers.sh counts instructions by it.
 //
-// Usage: FirstUpdate [still | jittered | folded] [cells | columns] [runs] [VOXELS] [DEVICE]
+// Usage: FirstUpdate [still | jittered | folded] [cells | columns] [runs] [mesh CELLS] [VOXELS]
+// [DEVICE]
 //   still      the volume is where it was; else it is moved by a quarter of a voxel
 //   jittered   its voxels are moved besides, each on its own, by up to 0.15 voxels
 //   folded     it is folded over, so that winners are chosen
 //   cells      by the kernel that takes one cell after the other
 //   columns    by the kernel for graphics cards
 //   runs       with runs in place of links
-//   VOXELS     on each axis, 32 by default
+//   mesh       by mesh rasterisation, with a mesh of so many cubes on each axis, of six tetrahedra
+//   each VOXELS     on each axis, 32 by default
 #include "DeformerCase.h"
 #include "Device.h"
+#include "RasterCase.h"
 
 #include <chrono>
 #include <cstdio>
@@ -38,6 +41,7 @@ int main(int argc, char* argv[])
 {
   std::string shape;
   int size = 32;
+  int meshCells = 0;
   Route route = Route::Mesh;
   DeformRequest deform;
   const char* request = "";
@@ -51,6 +55,11 @@ int main(int argc, char* argv[])
     else if (!word.empty() && word.find_first_not_of("0123456789") == std::string::npos)
     {
       size = std::atoi(word.c_str());
+    }
+    else if (word == "mesh" && i + 1 < argc)
+    {
+      deform.Method = Resampling::MeshRasterization;
+      meshCells = std::atoi(argv[++i]);
     }
     else if (word == "cells")
     {
@@ -72,14 +81,26 @@ int main(int argc, char* argv[])
   const bool folded = shape == "folded";
   const auto jitter = MakeJitter(1, 0.15);
   const int last = size - 1;
-  const DeformerCase deformerCase = MakeCase({ { 0, last, 0, last, 0, last } }, { { 1, 1, 1 } },
-    [&](const glm::dvec3& v)
-    {
-      return folded && v.x > last / 2 ? glm::dvec3(last - v.x, v.y, v.z)
-        : shape == "still"            ? v
-        : shape == "jittered"         ? jitter(v + 0.25)
-                                      : v + 0.25;
-    });
+  const auto move = [&](const glm::dvec3& v)
+  {
+    return folded && v.x > last / 2 ? glm::dvec3(last - v.x, v.y, v.z)
+      : shape == "still"            ? v
+      : shape == "jittered"         ? jitter(v + 0.25)
+                                    : v + 0.25;
+  };
+  const Extent extent{ { 0, last, 0, last, 0, last } };
+  DeformerCase deformerCase;
+  RasterCase rasterCase;
+  if (meshCells > 0)
+  {
+    rasterCase = MakeRasterCase(extent, meshCells, move);
+    deformerCase.VoxelGrid = rasterCase.VoxelGrid;
+    deformerCase.Output = rasterCase.Output;
+  }
+  else
+  {
+    deformerCase = MakeCase(extent, { { 1, 1, 1 } }, move);
+  }
   const std::vector<short> values(
     static_cast<std::size_t>(deformerCase.GetNumberOfVoxels()), short{ 1 });
   const std::vector<VolumeArray> arrays{ MakeArray(values) };
@@ -94,10 +115,15 @@ int main(int argc, char* argv[])
     std::string device;
     const double start = Measure([&] { device = deformer.SetDevice(request); });
     DeformReport report;
+    const auto load = [&]
+    {
+      meshCells > 0 ? Load(deformer, rasterCase, arrays)
+                    : Load(deformer, deformerCase, arrays, route);
+    };
     const double first = Measure(
       [&]
       {
-        Load(deformer, deformerCase, arrays, route);
+        load();
         report = deformer.Deform(deform);
       });
     std::puts("later:");
@@ -105,7 +131,7 @@ int main(int argc, char* argv[])
     const double later = Measure(
       [&]
       {
-        Load(deformer, deformerCase, arrays, route);
+        load();
         deformer.Deform(deform);
       });
     std::printf(
