@@ -125,7 +125,7 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      rest[axis * DEFORMVOLUME_TILE_VOXELS + x] = found[axis];
+      rest[axis * REST_AXIS_STEP + x * REST_STEP] = found[axis];
     }
   }
   return inside;
@@ -135,7 +135,7 @@ __kernel void LookUpField(__global const float* vectors, const LookupParameters 
   __global const uchar* active, __global const uchar* blanked, __global const float* distances,
   __global const ulong* backgrounds, __global char* coverage, __global uint* counters, const RasterParameters p ARRAY_PARAMETERS)
 {
-  __local int rests[3 * DEFORMVOLUME_TILE_VOXELS];
+  __local int rests[RESTS];
   __local uint covered[DEFORMVOLUME_TILE_ROWS];
   const int index = p.TileBegin + (int)get_group_id(0);
   int origin[3];
@@ -145,7 +145,7 @@ __kernel void LookUpField(__global const float* vectors, const LookupParameters 
   {
     const int y = origin[1] + (row & ((1 << DEFORMVOLUME_TILE_BITS_Y) - 1));
     const int z = origin[2] + (row >> DEFORMVOLUME_TILE_BITS_Y);
-    __local int* rowRests = rests + (row << DEFORMVOLUME_TILE_BITS_X);
+    __local int* rowRests = rests + row * REST_ROW_STEP;
     uint found = 0;
     if (y >= tile.Low.y && y <= tile.High.y && z >= tile.Low.z && z <= tile.High.z)
     {
@@ -156,7 +156,7 @@ __kernel void LookUpField(__global const float* vectors, const LookupParameters 
         found |= (uint)LookUpRest(vectors, &common, voxel, x, rowRests, &f, &p) << x;
       }
     }
-    if (found && HasMasks(&p))
+    if (found)
     {
       found = SelectSources(masks, found, rowRests, &p);
     }

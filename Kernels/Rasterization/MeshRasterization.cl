@@ -5,7 +5,7 @@
 // Data: tetrahedra, positions of nodes and lists of tetrahedra as in TetrahedronBinning.cl;
 // displacements of nodes, 16 bytes, in output voxels (the last four unused). In local memory for
 // each voxel of a tile the rest coordinate: three integers, the index from the volume's first voxel
-// times 2^FractionBits; and for each row of a tile a bit a voxel that is covered, and
+// times 2^FractionBits, as LaneSampling.cl lays them out; and for each row of a tile a bit a voxel that is covered, and
 // one that a tetrahedron holds of its own.
 //
 // A work-group takes an output tile, its work-items the rows of the tile in turn, and each goes
@@ -17,9 +17,8 @@
 //
 // Rest coordinates are found by RestCoordinates.cl for all wanted voxels of a row.
 //
-// This text comes after TetrahedronBinning.cl, RestSampling.cl and RestCoordinates.cl. What the host puts in front of it
-// besides what those ask for:
-//   SETUP_IS_SHARED  1 where the items of a group set tetrahedra up for each other, else 0
+// This text comes after TetrahedronBinning.cl, RestSampling.cl and RestCoordinates.cl, and the host
+// puts nothing more in front of it than of those.
 
 // The bits from first to last, both included; none where last is before first.
 static uint Bits(int first, int last)
@@ -30,7 +29,7 @@ static uint Bits(int first, int last)
 // The voxels of a row that the tetrahedron holds, counted from the lowest of its box. edges: the
 // edge functions at the lowest voxel; count: of voxels, less one. Those that it holds after the
 // shift, too, which no neighbour holds as well, are *own.
-static uint FindRow(const TileTetrahedron* t, const long* edges, int count, uint* own)
+static uint FindRow(OF_GROUP const TileTetrahedron* t, const long* edges, int count, uint* own)
 {
   int low = 0;
   int high = count;
@@ -93,7 +92,7 @@ static uint FindRow(const TileTetrahedron* t, const long* edges, int count, uint
 
 // The voxels of a row that a tetrahedron holds and no other one has taken. first: voxel of the row at the lowest one of
 // the tetrahedron's box, where the edge functions are edges.
-static uint FindWanted(const TileTetrahedron* t, const long* edges, int first, __local const uint* covered,
+static uint FindWanted(OF_GROUP const TileTetrahedron* t, const long* edges, int first, __local const uint* covered,
   __local uint* own, int* overlaps)
 {
   uint ownHere;
@@ -105,8 +104,8 @@ static uint FindWanted(const TileTetrahedron* t, const long* edges, int first, _
 }
 
 // Of these, the ones that the volume covers: finds their rest coordinates. voxel: the first one of the row.
-static uint CoverRow(const TileTetrahedron* t, const RestMap* map, long* edges, const int* voxel, const int* origin,
-  uint wanted, VolumeMasks masks, __local int* rowRests, const RasterParameters* p)
+static uint CoverRow(OF_GROUP const TileTetrahedron* t, OF_GROUP const RestMap* map, long* edges, const int* voxel,
+  const int* origin, uint wanted, VolumeMasks masks, __local int* rowRests, const RasterParameters* p)
 {
   uint found;
   if (map->Fits)
@@ -121,7 +120,7 @@ static uint CoverRow(const TileTetrahedron* t, const RestMap* map, long* edges, 
     }
     found = FindRestsOneByOne(t, map, edges, voxel, wanted, rowRests, p);
   }
-  return HasMasks(p) ? SelectSources(masks, found, rowRests, p) : found;
+  return SelectSources(masks, found, rowRests, p);
 }
 
 // Goes through the tetrahedra of a tile, with all of its rows that are this work-item's. Returns whether tetrahedra
@@ -132,8 +131,19 @@ typedef struct
 {
   TileTetrahedron Tetrahedron;
   RestMap Map;
-  int IsThere;
+  ulong Rows; // a bit for each row of the tile that is in its box
 } SharedTetrahedron;
+
+static ulong FindRows(VoxelBox box, const int* origin)
+{
+  const ulong ofPlane = Bits(box.Low.y - origin[1], box.High.y - origin[1]);
+  ulong rows = 0;
+  for (int z = box.Low.z; z <= box.High.z; ++z)
+  {
+    rows |= ofPlane << ((z - origin[2]) << DEFORMVOLUME_TILE_BITS_Y);
+  }
+  return rows;
+}
 
 static __attribute__((always_inline)) int RasterizeRows(__global const int4* tetrahedra,
   __global const int4* positions, __global const float4* displacements, __global const int* list, uint listed,
@@ -148,40 +158,43 @@ static __attribute__((always_inline)) int RasterizeRows(__global const int4* tet
     const int count = min(listed - begin, (uint)DEFORMVOLUME_TILE_SHARED);
     for (int i = item; i < count; i += items)
     {
-      SharedTetrahedron one;
-      one.IsThere = SetUpTetrahedron(tetrahedra[list[begin + i]], positions, tile, &one.Tetrahedron, p);
-      if (one.IsThere)
+      const int4 nodes = tetrahedra[list[begin + i]];
+      __local SharedTetrahedron* one = shared + i;
+      one->Rows = 0;
+      if (SetUpTetrahedron(nodes, positions, tile, &one->Tetrahedron, p))
       {
-        SetRestMap(&one.Tetrahedron, displacements, origin, &one.Map, p);
+        SetRestMap(&one->Tetrahedron, nodes, displacements, origin, &one->Map, p);
+        one->Rows = FindRows(one->Tetrahedron.Box, origin);
       }
-      shared[i] = one;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     for (int row = item; row < DEFORMVOLUME_TILE_ROWS; row += items)
     {
       const int voxel[3] = { origin[0], origin[1] + (row & ((1 << DEFORMVOLUME_TILE_BITS_Y) - 1)),
         origin[2] + (row >> DEFORMVOLUME_TILE_BITS_Y) };
+      // First those of this row alone: neighbours then go through theirs side by side, whichever they are.
+      uint left = 0;
       for (int i = 0; i < count; ++i)
       {
-        const VoxelBox box = shared[i].Tetrahedron.Box;
-        if (!shared[i].IsThere || voxel[1] < box.Low.y || voxel[1] > box.High.y || voxel[2] < box.Low.z ||
-          voxel[2] > box.High.z)
-        {
-          continue;
-        }
-        const TileTetrahedron t = shared[i].Tetrahedron;
+        left |= (uint)(shared[i].Rows >> row & 1) << i;
+      }
+      for (; left; left &= left - 1)
+      {
+        const int i = popcount((left & -left) - 1);
+        __local const TileTetrahedron* t = &shared[i].Tetrahedron;
+        const int y = voxel[1] - t->Box.Low.y;
+        const int z = voxel[2] - t->Box.Low.z;
         long edges[4];
         for (int k = 0; k < 4; ++k)
         {
-          edges[k] = t.Start[k] + (voxel[1] - box.Low.y) * t.Steps[k].y + (voxel[2] - box.Low.z) * t.Steps[k].z;
+          edges[k] = t->Start[k] + y * t->Steps[k].y + z * t->Steps[k].z;
         }
         const uint wanted =
-          FindWanted(&t, edges, box.Low.x - origin[0], covered + row, own + row, &overlaps);
+          FindWanted(t, edges, t->Box.Low.x - origin[0], covered + row, own + row, &overlaps);
         if (wanted)
         {
-          const RestMap map = shared[i].Map;
           covered[row] |= CoverRow(
-            &t, &map, edges, voxel, origin, wanted, masks, rests + (row << DEFORMVOLUME_TILE_BITS_X), p);
+            t, &shared[i].Map, edges, voxel, origin, wanted, masks, rests + row * REST_ROW_STEP, p);
         }
       }
     }
@@ -200,8 +213,9 @@ static int RasterizeRows(__global const int4* tetrahedra, __global const int4* p
   int overlaps = 0;
   for (uint i = 0; i < listed; ++i)
   {
+    const int4 nodes = tetrahedra[list[i]];
     TileTetrahedron t;
-    if (!SetUpTetrahedron(tetrahedra[list[i]], positions, tile, &t, p))
+    if (!SetUpTetrahedron(nodes, positions, tile, &t, p))
     {
       continue;
     }
@@ -237,12 +251,12 @@ static int RasterizeRows(__global const int4* tetrahedra, __global const int4* p
         }
         if (!mapped)
         {
-          SetRestMap(&t, displacements, origin, &map, p);
+          SetRestMap(&t, nodes, displacements, origin, &map, p);
           mapped = 1;
         }
         const int voxel[3] = { origin[0], y, z };
         covered[row] |= CoverRow(
-          &t, &map, edges, voxel, origin, wanted, masks, rests + (row << DEFORMVOLUME_TILE_BITS_X), p);
+          &t, &map, edges, voxel, origin, wanted, masks, rests + row * REST_ROW_STEP, p);
       }
     }
   }
@@ -257,7 +271,7 @@ __kernel void RasterizeMesh(__global const int4* tetrahedra, __global const int4
   __global uint* counters,
   const RasterParameters p ARRAY_PARAMETERS)
 {
-  __local int rests[3 * DEFORMVOLUME_TILE_VOXELS];
+  __local int rests[RESTS];
   __local uint covered[DEFORMVOLUME_TILE_ROWS];
   __local uint own[DEFORMVOLUME_TILE_ROWS];
   __local uint overlaps;

@@ -13,8 +13,8 @@
 #define DEFORMVOLUME_TILE_ROWS 64
 #define DEFORMVOLUME_TILE_VOXELS 2048
 
-// Tetrahedra that the items of a work-group set up for each other at a time: as many as go into local
-// memory of 32 KB with what a tile needs.
+// Tetrahedra that the items of a work-group set up for each other at a time: as many as go into
+// local memory of 32 KB with what a tile needs.
 #define DEFORMVOLUME_TILE_SHARED 16
 
 // Tetrahedra over more output voxels than this on an axis do not fit the 64 bits of the edge

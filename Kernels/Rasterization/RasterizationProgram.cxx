@@ -26,7 +26,7 @@ cl::Program GetEntryListsProgram(OpenCLContext& context)
 }
 
 cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
-  const VoxelGrid& voxelGrid, Interpolation interpolation, bool field)
+  const VoxelGrid& voxelGrid, Interpolation interpolation, bool field, bool masks)
 {
   const bool processor = context.GetDevice().HasVectors;
   std::string stores;
@@ -36,7 +36,7 @@ cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<Vo
   {
     const std::string index = std::to_string(i);
     const std::string element = " DO(" + index + ", " + GetTypeName(arrays[i].Type) + ", ";
-    if (processor && interpolation == Interpolation::Linear && FitsFloat(arrays[i]))
+    if (interpolation == Interpolation::Linear && FitsFloat(arrays[i]))
     {
       laneArrays += element + std::to_string(8 * GetElementSize(arrays[i].Type)) + ")";
     }
@@ -49,10 +49,10 @@ cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<Vo
   const bool wide = GetNumberOfPoints(voxelGrid.VertexExtent) > std::numeric_limits<cl_int>::max();
   return context.GetProgram(ProgramText(FiveTetrahedra_h) + RasterParameters_h +
       MakeArrayText(context, arrays) + stores + "#define LANES " +
-      std::to_string(processor ? GetLanes(context) : 4) + "\n#define CUBIC " +
+      std::to_string(processor ? GetLanes(context) : 1) + "\n#define CUBIC " +
       (interpolation == Interpolation::Cubic ? "1" : "0") + "\n#define STRETCH " +
       (processor ? "32" : "1") + "\n#define SETUP_IS_SHARED " + (processor ? "0" : "1") +
-      "\n#define INDEX " + (wide ? "long" : "int") +
+      "\n#define HAS_MASKS " + (masks ? "1" : "0") + "\n#define INDEX " + (wide ? "long" : "int") +
       (laneArrays.empty() ? "" : "\n#define HAS_LANE_ARRAYS") +
       (tapArrays.empty() ? "" : "\n#define HAS_TAP_ARRAYS") + "\n#define LANE_ARRAYS(DO)" +
       laneArrays + "\n#define TAP_ARRAYS(DO)" + tapArrays + "\n" + MultiplyAdd_cl +

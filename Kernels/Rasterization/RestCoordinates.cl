@@ -7,6 +7,9 @@
 // voxel and goes on from there by forward differences in integers, which do not drift; neither
 // depends on the output's extent.
 //
+// What the host puts in front of this text:
+//   SETUP_IS_SHARED  1 where the items of a group set tetrahedra up for each other, else 0
+//
 // Data: see MeshRasterization.cl. Rest coordinates are integers of 32 bits, their steps integers of 64
 // bits with STEP_BITS more.
 
@@ -15,10 +18,16 @@
 #define LARGEST_REST 524288
 #define STEP_BITS 18
 
+// Where tetrahedra lie that are set up: in memory of the group, or of a work-item that has a thread for itself.
+#if SETUP_IS_SHARED
+#define OF_GROUP __local
+#else
+#define OF_GROUP __private
+#endif
+
 // A tetrahedron in a tile.
 typedef struct
 {
-  int4 Nodes;
   VoxelBox Box;       // the voxels of the tile that may lie in it
   long Start[4];      // edge function opposite node k at the lowest voxel of the box
   Vector Steps[4];    // and its steps from voxel to voxel
@@ -40,13 +49,12 @@ static Vector Scaled(Vector v, long factor)
 
 // Returns 0 where the tetrahedron has no voxel in the tile.
 static int SetUpTetrahedron(int4 nodes, __global const int4* positions, VoxelBox tile,
-  TileTetrahedron* t, const RasterParameters* p)
+  OF_GROUP TileTetrahedron* t, const RasterParameters* p)
 {
   const int4 a = positions[nodes.x];
   const int4 b = positions[nodes.y];
   const int4 c = positions[nodes.z];
   const int4 d = positions[nodes.w];
-  t->Nodes = nodes;
   t->Box = FindVoxels(min(min(a, b), min(c, d)), max(max(a, b), max(c, d)), p);
   t->Box.Low = max(t->Box.Low, tile.Low);
   t->Box.High = min(t->Box.High, tile.High);
@@ -111,7 +119,7 @@ typedef struct
 } RestMap;
 
 // edges: the edge functions at this output voxel.
-static void FindRest(const RestMap* map, const long* edges, const int* voxel, REAL* rest,
+static void FindRest(OF_GROUP const RestMap* map, const long* edges, const int* voxel, REAL* rest,
   const RasterParameters* p)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -126,11 +134,11 @@ static void FindRest(const RestMap* map, const long* edges, const int* voxel, RE
   }
 }
 
-static void SetRestMap(const TileTetrahedron* t, __global const float4* displacements,
-  const int* origin, RestMap* map, const RasterParameters* p)
+static void SetRestMap(OF_GROUP const TileTetrahedron* t, int4 ofNodes, __global const float4* displacements,
+  const int* origin, OF_GROUP RestMap* map, const RasterParameters* p)
 {
-  const int nodes[4] = { t->Nodes.x, t->Nodes.y, t->Nodes.z, t->Nodes.w };
-  const float4 last = displacements[nodes[3]];
+  const int nodes[3] = { ofNodes.x, ofNodes.y, ofNodes.z };
+  const float4 last = displacements[ofNodes.w];
   const float lasts[3] = { last.x, last.y, last.z };
   REAL slopes[3][3] = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 } };
   long edges[3];
@@ -185,7 +193,7 @@ static void SetRestMap(const TileTetrahedron* t, __global const float4* displace
 
 // Rest coordinates of some voxels of a row, one by one. voxel: the first of the row; edges: the edge
 // functions there; bits: the voxels that are wanted; returns those within the volume.
-static uint FindRestsOneByOne(const TileTetrahedron* t, const RestMap* map, const long* edges,
+static uint FindRestsOneByOne(OF_GROUP const TileTetrahedron* t, OF_GROUP const RestMap* map, const long* edges,
   const int* voxel, uint bits, __local int* rests, const RasterParameters* p)
 {
   uint found = 0;
@@ -211,7 +219,7 @@ static uint FindRestsOneByOne(const TileTetrahedron* t, const RestMap* map, cons
       for (int axis = 0; axis < 3; ++axis)
       {
         const int most = (p->Size[axis] - 1) << p->FractionBits[axis];
-        rests[axis * DEFORMVOLUME_TILE_VOXELS + x] =
+        rests[axis * REST_AXIS_STEP + x * REST_STEP] =
           min(max(convert_int_sat_rte(rest[axis]), 0), most);
       }
       found |= 1u << x;
@@ -222,7 +230,7 @@ static uint FindRestsOneByOne(const TileTetrahedron* t, const RestMap* map, cons
 
 // The same by forward differences: x, y and z count from the tile's first voxel.
 static uint FindRests(
-  const RestMap* map, int y, int z, uint bits, __local int* rests, const RasterParameters* p)
+  OF_GROUP const RestMap* map, int y, int z, uint bits, __local int* rests, const RasterParameters* p)
 {
   const int first = popcount((bits & -bits) - 1);
   const int last = 31 - clz(bits);
@@ -283,7 +291,7 @@ static uint FindRests(
     }
     for (int axis = 0; axis < 3; ++axis)
     {
-      __local int* place = rests + axis * DEFORMVOLUME_TILE_VOXELS + x;
+      __local int* place = rests + axis * REST_AXIS_STEP + x * REST_STEP;
       STORE(select(LOAD(place), rest[axis], mask), place);
     }
   }

@@ -8,12 +8,13 @@
 // 64, which repeat those of the volume's border beyond it. Voxels without weight are not read into
 // the sum: a NaN stays within its cells, and a voxel's own place gives its bits.
 //
-// On processors arrays of one component, linear, and of float or integers of 8 or 16 bits go by lanes
+// Arrays of one component, linear, and of float or integers of 8 or 16 bits go by lanes
 // (LaneSampling.cl). All else goes voxel by voxel in REAL.
 //
 // What the host puts in front of this text, besides that of LaneSampling.cl:
 //   REAL                  type of the interpolation: double where the device has it, else float
 //   CUBIC                 whether the interpolation is cubic
+//   HAS_MASKS             1 where the volume has masks or boundary distances, else 0
 //   STRETCH                 neighbouring voxels that a work-item takes: 32 on processors, else 1
 //   ARRAY_PARAMETERS      kernel parameters: source and target of each array
 //   TAP_ARRAYS(DO)        DO(index, type, components) for the others
@@ -160,11 +161,15 @@ typedef struct
   __global const float* Distances; // to the boundary, a float a voxel
 } VolumeMasks;
 
-static int HasMasks(const RasterParameters* p)
+static void LoadRest(__local const int* rests, int x, int* rest)
 {
-  return p->HasActive || p->HasBlanked || p->HasDistances;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    rest[axis] = rests[axis * REST_AXIS_STEP + x * REST_STEP];
+  }
 }
 
+#if HAS_MASKS
 // Whether a point lies in a tetrahedron of a cell, or on its surface. point: in the cell, mirrored
 // as its parity asks for, from 0 to one. weights: of the vertices then, all with one factor.
 static int IsInTetrahedron(int t, Vector point, long one, long* weights)
@@ -268,14 +273,6 @@ static int IsBlanked(__global const uchar* blanked, const int* rest, const Raste
   return 0;
 }
 
-static void LoadRest(__local const int* rests, int x, int* rest)
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    rest[axis] = rests[axis * DEFORMVOLUME_TILE_VOXELS + x];
-  }
-}
-
 // Of the voxels of a row those whose rest coordinates the masks let through.
 static uint SelectSources(
   VolumeMasks masks, uint bits, __local const int* rests, const RasterParameters* p)
@@ -295,6 +292,9 @@ static uint SelectSources(
   }
   return bits;
 }
+#else
+#define SelectSources(masks, bits, rests, p) (bits)
+#endif
 
 #define BACKGROUND(NUMBER, TYPE) (*(__global const TYPE*)(backgrounds + NUMBER))
 
@@ -302,19 +302,19 @@ static uint SelectSources(
 // in the output.
 #define STORE_LANES(NUMBER, TYPE, BITS)                                                            \
   {                                                                                                \
-    JOIN(TYPE, LANES) values = (TYPE)(BACKGROUND(NUMBER, TYPE));                                   \
+    LANES_OF(TYPE) values = (TYPE)(BACKGROUND(NUMBER, TYPE));                                      \
     if (bits)                                                                                      \
     {                                                                                              \
       values = SampleLanes##NUMBER(source##NUMBER, &cells, (float)BACKGROUND(NUMBER, TYPE));       \
     }                                                                                              \
     if (x >= from && x + LANES - 1 <= to)                                                          \
     {                                                                                              \
-      JOIN(vstore, LANES)(values, 0, target##NUMBER + row + x);                                    \
+      STORE(values, target##NUMBER + row + x);                                                     \
     }                                                                                              \
     else                                                                                           \
     {                                                                                              \
       TYPE single[LANES];                                                                          \
-      JOIN(vstore, LANES)(values, 0, single);                                                      \
+      STORE(values, single);                                                                       \
       for (int i = max(from, x); i <= min(to, x + LANES - 1); ++i)                                 \
       {                                                                                            \
         target##NUMBER[row + i] = single[i - x];                                                   \
@@ -353,7 +353,7 @@ static __attribute__((always_inline)) void SampleTile(VoxelBox tile, const int* 
         p->OutputSize[0] +
       origin[0] - p->OutputFirst[0];
     const uint held = covered[first >> DEFORMVOLUME_TILE_BITS_X];
-    __local const int* rowRests = rests + first - inRow;
+    __local const int* rowRests = rests + (first >> DEFORMVOLUME_TILE_BITS_X) * REST_ROW_STEP;
     for (int x = from; x <= to; ++x)
     {
       coverage[row + x] = held >> x & 1;
@@ -365,7 +365,7 @@ static __attribute__((always_inline)) void SampleTile(VoxelBox tile, const int* 
       LaneCells cells;
       if (bits)
       {
-        MakeLaneCells(rowRests + x, bits, &cells, p);
+        MakeLaneCells(rowRests + x * REST_STEP, bits, &cells, p);
       }
       LANE_ARRAYS(STORE_LANES)
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The part of RestSampling.cl for processors: looks the volume up at the rest
+// The part of RestSampling.cl for arrays that single precision does for: looks the volume up at the rest
 // coordinates of LANES neighbouring voxels of a row, side by side.
 //
 // Why it is shaped so: rest coordinates of neighbours may be anywhere, so that memory is read lane by
@@ -12,26 +12,46 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 
-#define UINTS JOIN(uint, LANES)
-#define AS_UINTS JOIN(as_uint, LANES)
+// LANES elements of a type, and how they are stored.
+#if LANES > 1
+#define LANES_OF(TYPE) JOIN(TYPE, LANES)
 #define STORE(v, p) JOIN(vstore, LANES)(v, 0, p)
+#else
+#define LANES_OF(TYPE) TYPE
+#define STORE(v, p) (*(p) = (v))
+#endif
+#define UINTS LANES_OF(uint)
+#define AS_UINTS LANES_OF(as_uint)
 // Of small numbers: added to 1.5 * 2^23, they are rounded to the nearest integer.
 #define ROUND_TO_INTS(v) (AS_INTS((v) + 12582912.0f) - 0x4B400000)
 
 #define LANE_MASK ((uint)(((ulong)1 << LANES) - 1))
 
-#define INDICES JOIN(INDEX, LANES)
-#define TO_INDICES JOIN(convert_, INDICES)
-#define STORE_INDICES(v, p) JOIN(vstore, LANES)(v, 0, p)
+#define TO_INDICES JOIN(convert_, LANES_OF(INDEX))
 #if LANES == 16
 #define GATHER(F, o)                                                                               \
   F(0, o), F(1, o), F(2, o), F(3, o), F(4, o), F(5, o), F(6, o), F(7, o), F(8, o), F(9, o),        \
     F(10, o), F(11, o), F(12, o), F(13, o), F(14, o), F(15, o)
 #elif LANES == 8
 #define GATHER(F, o) F(0, o), F(1, o), F(2, o), F(3, o), F(4, o), F(5, o), F(6, o), F(7, o)
-#else
+#elif LANES == 4
 #define GATHER(F, o) F(0, o), F(1, o), F(2, o), F(3, o)
+#else
+#define GATHER(F, o) F(0, o)
 #endif
+
+// Rest coordinates of a tile in local memory, by axis. Of processors those of a row lie side by side; where work-items
+// are lanes, those of neighbours on x and in neighbouring rows both lie in other banks.
+#if LANES > 1
+#define REST_STEP 1
+#define REST_ROW_STEP (1 << DEFORMVOLUME_TILE_BITS_X)
+#define REST_AXIS_STEP DEFORMVOLUME_TILE_VOXELS
+#else
+#define REST_STEP (DEFORMVOLUME_TILE_ROWS + 1)
+#define REST_ROW_STEP 1
+#define REST_AXIS_STEP (REST_STEP << DEFORMVOLUME_TILE_BITS_X)
+#endif
+#define RESTS (3 * REST_AXIS_STEP)
 
 // Where the values of LANES neighbouring voxels come from.
 typedef struct
@@ -50,14 +70,14 @@ static void MakeLaneCells(
   for (int axis = 0; axis < 3; ++axis)
   {
     const int shift = p->FractionBits[axis];
-    const INTS rest = LOAD(rests + axis * DEFORMVOLUME_TILE_VOXELS) & cells->Mask;
+    const INTS rest = WHERE(cells->Mask, LOAD(rests + axis * REST_AXIS_STEP));
     voxels[axis] = min(rest >> shift, p->Size[axis] - 2);
     cells->Fractions[axis] =
       TO_FLOATS(rest - (voxels[axis] << shift)) * (1.0f / (float)(1 << shift));
   }
   cells->StepY = p->Size[0];
   cells->StepZ = (INDEX)p->Size[0] * p->Size[1];
-  STORE_INDICES(TO_INDICES(voxels[2]) * cells->StepZ + TO_INDICES(voxels[1]) * cells->StepY +
+  STORE(TO_INDICES(voxels[2]) * cells->StepZ + TO_INDICES(voxels[1]) * cells->StepY +
       TO_INDICES(voxels[0]),
     cells->Places);
 }
@@ -107,13 +127,13 @@ static FLOATS MixFloats(FLOATS a, FLOATS b, FLOATS f)
 #define MIX_16 MixIntegers
 #define MIX_32 MixFloats
 
-#define TO_8(TYPE) JOIN(JOIN(JOIN(convert_, TYPE), LANES), _sat_rte)
+#define TO_8(TYPE) JOIN(JOIN(convert_, LANES_OF(TYPE)), _sat_rte)
 #define TO_16(TYPE) TO_8(TYPE)
 #define TO_32(TYPE) // floats they are
 
 // The values of LANES voxels, as a vector of the array's type.
 #define DEFINE_LANE_SAMPLING(NUMBER, TYPE, BITS)                                                   \
-  static JOIN(TYPE, LANES) SampleLanes##NUMBER(                                                    \
+  static LANES_OF(TYPE) SampleLanes##NUMBER(                                                       \
     __global const TYPE* restrict source, const LaneCells* cells, float background)                \
   {                                                                                                \
     FLOATS rows[4];                                                                                \

@@ -3,9 +3,9 @@
 // do. What the host puts in front of this text:
 //   LANES  16, 8 or 4: floats in a vector; 1 for devices whose work-items are the lanes
 
-#if LANES > 1
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
+#if LANES > 1
 #define FLOATS JOIN(float, LANES)
 #define INTS JOIN(int, LANES)
 #define LOAD(p) JOIN(vload, LANES)(0, p)

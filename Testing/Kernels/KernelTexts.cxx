@@ -267,6 +267,10 @@ void Rasterize(Recorder& recorder, bool single)
       ::Rasterize(deformer, mesh, arrays, interpolation);
     }
   }
+  RasterCase masked = mesh;
+  masked.Active.assign(static_cast<std::size_t>(GetNumberOfCells(mesh.VoxelGrid.VertexExtent)), 15);
+  recorder.SetPurpose("int16-linear-masked");
+  LoadAndRun(masked, OneArray);
 }
 
 void MoveBodies(Recorder& recorder)

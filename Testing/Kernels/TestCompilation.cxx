@@ -219,8 +219,12 @@ TEST(Compilation, NoWarnings)
   EXPECT_EQ(GetLog(GetEntryListsProgram(context)), "");
   for (const Interpolation interpolation : { Interpolation::Linear, Interpolation::Cubic })
   {
-    EXPECT_EQ(
-      GetLog(GetRasterizationProgram(context, linear, voxelGrid, interpolation, false)), "");
+    for (const bool masks : { false, true })
+    {
+      EXPECT_EQ(
+        GetLog(GetRasterizationProgram(context, linear, voxelGrid, interpolation, false, masks)),
+        "");
+    }
   }
 }
 
