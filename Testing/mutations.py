@@ -32,6 +32,7 @@ OWN_MEMORY = ("TestIncrementalGraphics", "*IncrementalGraphics*")
 MEMORY = ("TestHostMemory", "*")
 LARGE = ("TestLargeCells", "-*Time*")
 FAULTS = ("TestFaults", "*")
+RASTER_GRAPHICS = ("TestMeshRasterizationGraphics", "MeshRasterization.*-*IdentityAndWholeShifts*:*ValuesOfAllTypes*")
 DEVICE_OUTPUT = ("TestDeviceOutput", "*")
 GRAPHICS = ("TestGraphicsDevice", "*")
 STAGED = ("TestStagedCopies", "Staged.*")
@@ -124,6 +125,10 @@ MUTATIONS = {
                    [DEVICE_OUTPUT]),
     "range-run": ("Kernels/Resampling/OutputRange.cl", "first + run, (size_t)tuples", "first + 1, (size_t)tuples / 2",
                   [DEVICE_OUTPUT]),
+    "raster-last": ("Kernels/Rasterization/MeshRasterization.cl", "begin < listed; begin +=", "begin + DEFORMVOLUME_TILE_SHARED <= listed; begin +=",
+                    [RASTER_GRAPHICS]),
+    "raster-rows": ("Kernels/Rasterization/MeshRasterization.cl", "rows |= ofPlane", "rows = ofPlane",
+                    [RASTER_GRAPHICS]),
     "columns-left": ("Kernels/Resampling/ColumnResampling.cl", "entry >> QUEUE_BITS == QUEUE_INTEGERS, &output", "1, &output",
                      [("TestColumns", "*")]),
     "columns-again": ("Kernels/Resampling/ColumnResampling.cl", "left == CELL_DONE ? QUEUE_INTEGERS : left)",

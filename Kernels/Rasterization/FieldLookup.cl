@@ -131,6 +131,60 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
   return inside;
 }
 
+// The first voxel of a row of a tile.
+static void FindFirst(int row, const int* origin, int* voxel)
+{
+  voxel[0] = origin[0];
+  voxel[1] = origin[1] + (row & ((1 << DEFORMVOLUME_TILE_BITS_Y) - 1));
+  voxel[2] = origin[2] + (row >> DEFORMVOLUME_TILE_BITS_Y);
+}
+
+#if LANES == 1
+// Rest coordinates of the voxels of a tile that are this work-item's, the first one -1 where there is none. Neighbours
+// take neighbours on x: what they read lies side by side. Always inlined: see SampleTile.
+static __attribute__((always_inline)) void FindTileRests(__global const float* vectors, VoxelBox tile,
+  const int* origin, __local int* rests, const LookupParameters* f, const RasterParameters* p)
+{
+  for (int i = get_local_id(0); i < DEFORMVOLUME_TILE_VOXELS; i += get_local_size(0))
+  {
+    const int row = i >> DEFORMVOLUME_TILE_BITS_X;
+    const int x = i & ((1 << DEFORMVOLUME_TILE_BITS_X) - 1);
+    __local int* rowRests = rests + row * REST_ROW_STEP;
+    int voxel[3];
+    FindFirst(row, origin, voxel);
+    int inside = voxel[0] + x >= tile.Low.x && voxel[0] + x <= tile.High.x && voxel[1] >= tile.Low.y &&
+      voxel[1] <= tile.High.y && voxel[2] >= tile.Low.z && voxel[2] <= tile.High.z;
+    if (inside)
+    {
+      const LookupRow common = MakeLookupRow(voxel, f, p);
+      inside = LookUpRest(vectors, &common, voxel, x, rowRests, f, p);
+    }
+    if (!inside)
+    {
+      rowRests[x * REST_STEP] = -1;
+    }
+  }
+}
+#else
+// Rest coordinates of a row of a tile: returns the bits of those that there are.
+static uint FindRowRests(__global const float* vectors, VoxelBox tile, const int* origin, int row,
+  __local int* rowRests, const LookupParameters* f, const RasterParameters* p)
+{
+  int voxel[3];
+  FindFirst(row, origin, voxel);
+  uint found = 0;
+  if (voxel[1] >= tile.Low.y && voxel[1] <= tile.High.y && voxel[2] >= tile.Low.z && voxel[2] <= tile.High.z)
+  {
+    const LookupRow common = MakeLookupRow(voxel, f, p);
+    for (int x = tile.Low.x - origin[0]; x <= tile.High.x - origin[0]; ++x)
+    {
+      found |= (uint)LookUpRest(vectors, &common, voxel, x, rowRests, f, p) << x;
+    }
+  }
+  return found;
+}
+#endif
+
 __kernel void LookUpField(__global const float* vectors, const LookupParameters f,
   __global const uchar* active, __global const uchar* blanked, __global const float* distances,
   __global const ulong* backgrounds, __global char* coverage, __global uint* counters, const RasterParameters p ARRAY_PARAMETERS)
@@ -141,26 +195,23 @@ __kernel void LookUpField(__global const float* vectors, const LookupParameters 
   int origin[3];
   const VoxelBox tile = GetTile(index, origin, &p);
   const VolumeMasks masks = { active, blanked, distances };
+#if LANES == 1
+  FindTileRests(vectors, tile, origin, rests, &f, &p);
+  barrier(CLK_LOCAL_MEM_FENCE);
+#endif
   for (int row = get_local_id(0); row < DEFORMVOLUME_TILE_ROWS; row += get_local_size(0))
   {
-    const int y = origin[1] + (row & ((1 << DEFORMVOLUME_TILE_BITS_Y) - 1));
-    const int z = origin[2] + (row >> DEFORMVOLUME_TILE_BITS_Y);
     __local int* rowRests = rests + row * REST_ROW_STEP;
+#if LANES == 1
     uint found = 0;
-    if (y >= tile.Low.y && y <= tile.High.y && z >= tile.Low.z && z <= tile.High.z)
+    for (int x = 0; x < 1 << DEFORMVOLUME_TILE_BITS_X; ++x)
     {
-      const int voxel[3] = { origin[0], y, z };
-      const LookupRow common = MakeLookupRow(voxel, &f, &p);
-      for (int x = tile.Low.x - origin[0]; x <= tile.High.x - origin[0]; ++x)
-      {
-        found |= (uint)LookUpRest(vectors, &common, voxel, x, rowRests, &f, &p) << x;
-      }
+      found |= (uint)(rowRests[x * REST_STEP] >= 0) << x;
     }
-    if (found)
-    {
-      found = SelectSources(masks, found, rowRests, &p);
-    }
-    covered[row] = found;
+#else
+    const uint found = FindRowRests(vectors, tile, origin, row, rowRests, &f, &p);
+#endif
+    covered[row] = found ? SelectSources(masks, found, rowRests, &p) : 0;
   }
   barrier(CLK_LOCAL_MEM_FENCE);
   SampleTile(tile, origin, rests, covered, backgrounds, coverage, &p ARRAY_ARGUMENTS);
