@@ -128,9 +128,11 @@ static SELDOM void FindParallelEdges(
 }
 
 // The first of the samples of the output that lie within bounds on an axis, and one past the last.
-// Of cells that are not there either may be anything.
+// Of cells that are not there either may be anything. Cells with a vertex without position reach to the end of the
+// output, as their samples may lie anywhere beyond the other vertices: floats are limited, not the integers that they
+// become, as processors make the least one of NO_SOURCE.
 #define FIRST_OF(low) TO_INTS(Most(low, 0.0f) + ALMOST_ONE)
-#define END_OF(high, toEnd, size) min(TO_INTS((high) + toEnd), (INTS)(size))
+#define END_OF(high, toEnd, size) TO_INTS(Least((high) + toEnd, (float)(size)))
 
 // Boxes do not look at their high sides, nor at whether they own a sample: all samples in them count as touched.
 static SELDOM void TouchBoxes(
@@ -282,8 +284,10 @@ static __attribute__((always_inline)) void FindSamplesOfWhole(
   max(TO_INTS((low) + (MAXIMUM_EXTENT + ALMOST_ONE)) - (int)MAXIMUM_EXTENT,                        \
     (INTS)(max(p->WholeFirst[axis], -(int)MAXIMUM_EXTENT)))
 #define WHOLE_END(high, toEnd, axis)                                                               \
-  min(TO_INTS((high) + toEnd + MAXIMUM_EXTENT) - (int)MAXIMUM_EXTENT,                              \
-    (INTS)(min(p->WholeEnd[axis], p->OutputSize[axis] + (int)MAXIMUM_EXTENT)))
+  (TO_INTS(Least((high) + toEnd,                                                                   \
+             (float)min(p->WholeEnd[axis], p->OutputSize[axis] + (int)MAXIMUM_EXTENT)) +           \
+     MAXIMUM_EXTENT) -                                                                             \
+    (int)MAXIMUM_EXTENT)
   s->FirstX = WHOLE_FIRST(b->LowX, 0);
   s->FirstY = WHOLE_FIRST(b->LowY, 1);
   s->FirstZ = WHOLE_FIRST(b->LowZ, 2);

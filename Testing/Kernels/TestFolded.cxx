@@ -264,6 +264,26 @@ TEST(Folded, OverlapWithMasks)
   Check(jittered);
 }
 
+TEST(Folded, CellsWithoutAllVerticesAtTheEdgeOfTheOutput)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  // Where a vertex is blanked nothing bounds the cell's samples on that side. Some of these cells
+  // win a voxel, and begin before the output does.
+  std::mt19937 random(5);
+  DeformerCase jittered = MakeCase(Volume, NoScale, MakeJitter(32, 1.0));
+  for (std::int64_t voxel = 0; voxel < GetNumberOfPoints(Volume); ++voxel)
+  {
+    jittered.Blanked.push_back(random() % 12 == 0 ? 1 : 0);
+  }
+  const int first = jittered.Output[0];
+  for (const int cropped : { 3, 5, 7 })
+  {
+    SCOPED_TRACE(cropped);
+    jittered.Output[0] = first + cropped;
+    Check(jittered);
+  }
+}
+
 TEST(Folded, SameFromRunToRunAndForEveryWorkGroupSize)
 {
   const DeformerCase jittered = MakeCase(Volume, NoScale, MakeJitter(33, 1.5));
