@@ -180,6 +180,7 @@ TEST_P(IncrementalCutWays, EqualWholeOutputs)
 // without a cut.
 TEST_P(IncrementalCutWays, AffineMotionsShowNoCut)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   EditedVolume volume = MakeVolume();
   volume.Output = { { -20, 170, -20, 70, -20, 60 } };
   std::size_t component = 0;
@@ -385,6 +386,7 @@ struct VoxelField
 // than any of its vertices. The other side is far away.
 TEST(IncrementalCuts, CopiesReachFurtherThanVertices)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   for (const Resampling method : GetExactMethods())
   {
     SCOPED_TRACE(static_cast<int>(method));
@@ -455,6 +457,7 @@ TEST(IncrementalCuts, VoxelsMoveCopiesUpToTwoVoxelsAway)
 // tetrahedra whose other copies are far away, beyond all that the brick of the voxel reaches.
 TEST(IncrementalCuts, CopiesOfTheNextBrickMove)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   for (const Resampling method : GetExactMethods())
   {
     SCOPED_TRACE(static_cast<int>(method));
