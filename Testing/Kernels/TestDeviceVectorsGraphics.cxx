@@ -3,6 +3,7 @@
 // own; and what passes between it and the host.
 #include "ChainMailModel.h"
 #include "DeformerCase.h"
+#include "DeviceNeeds.h"
 #include "DeviceVectors.h"
 #include "EditedVolume.h"
 #include "FakeDriver.h"
@@ -80,6 +81,7 @@ TEST_F(Transfers, WhatIsWrittenAndReadIsCopiedOnce)
 // An image and its segmentation, of another spacing.
 TEST_F(Transfers, SeveralVolumesTakeOneUpload)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   VolumeDeformer deformers[2];
   for (VolumeDeformer& deformer : deformers)
   {
@@ -109,6 +111,7 @@ TEST_F(Transfers, SeveralVolumesTakeOneUpload)
 
 TEST_F(Transfers, FieldsPassNothingThroughTheHost)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   VolumeDeformer deformer;
   Load(deformer, this->Case, this->Arrays, Route::Field);
   const auto vectors = std::make_shared<DeviceVectors>("", this->Points);
@@ -130,6 +133,7 @@ TEST_F(Transfers, FieldsPassNothingThroughTheHost)
 // In a drag the displacements of the voxels neither come to the host nor go from it.
 TEST_F(Transfers, ChainMailPassesNothingThroughTheHost)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const Extent extent{ { 0, 47, 0, 47, 0, 47 } };
   const DeformerCase large =
     MakeCase(extent, { { 1, 1, 1 } }, [](const glm::dvec3& index) { return index; });
@@ -172,6 +176,7 @@ TEST_F(Transfers, ChainMailPassesNothingThroughTheHost)
 // the device.
 TEST_F(Transfers, APartOfAFieldMovesAPartOfTheOutput)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   EditedVolume edited(Extent{ { -5, 140, 0, 100, 3, 80 } });
   const DisplacementField field = edited.GetField();
   const auto vectors = std::make_shared<DeviceVectors>("", edited.GetNumberOfNodes());
