@@ -220,11 +220,11 @@ template <typename T>
 void vtkDeviceOutputArray<T>::ComputeRange(
   double range[2], int component, const unsigned char* ghosts, unsigned char ghostsToSkip)
 {
-  if (!ghosts)
+  if (!ghosts && this->FindRangeOnDevice(range, component, false))
   {
-    this->ComputeRange(range, component);
+    return;
   }
-  else if (vtkDataArray* const host = this->GetHost())
+  if (vtkDataArray* const host = this->GetHost())
   {
     host->GetRange(range, component, ghosts, ghostsToSkip);
   }
@@ -239,11 +239,11 @@ template <typename T>
 void vtkDeviceOutputArray<T>::ComputeFiniteRange(
   double range[2], int component, const unsigned char* ghosts, unsigned char ghostsToSkip)
 {
-  if (!ghosts)
+  if (!ghosts && this->FindRangeOnDevice(range, component, true))
   {
-    this->ComputeFiniteRange(range, component);
+    return;
   }
-  else if (vtkDataArray* const host = this->GetHost())
+  if (vtkDataArray* const host = this->GetHost())
   {
     host->GetFiniteRange(range, component, ghosts, ghostsToSkip);
   }
