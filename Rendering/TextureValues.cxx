@@ -49,42 +49,42 @@ protected:
   TextureArray() = default;
   ~TextureArray() override = default;
 
-  void ComputeRange(double range[2], int component) override
-  {
-    if (this->Values)
-    {
-      this->Values->GetRange(range, component);
-    }
-  }
-  void ComputeFiniteRange(double range[2], int component) override
-  {
-    if (this->Values)
-    {
-      this->Values->GetFiniteRange(range, component);
-    }
-  }
 #ifdef DEFORMVOLUME_RANGES_OF_GHOSTS
   void ComputeRange(double range[2], int component, const unsigned char* ghosts,
     unsigned char ghostsToSkip = 0xff) override
   {
-    if (this->Values)
-    {
-      this->Values->GetRange(range, component, ghosts, ghostsToSkip);
-    }
+    Find(range, [&] { this->Values->GetRange(range, component, ghosts, ghostsToSkip); });
   }
   void ComputeFiniteRange(double range[2], int component, const unsigned char* ghosts,
     unsigned char ghostsToSkip = 0xff) override
   {
-    if (this->Values)
-    {
-      this->Values->GetFiniteRange(range, component, ghosts, ghostsToSkip);
-    }
+    Find(range, [&] { this->Values->GetFiniteRange(range, component, ghosts, ghostsToSkip); });
+  }
+#else
+  void ComputeRange(double range[2], int component) override
+  {
+    Find(range, [&] { this->Values->GetRange(range, component); });
+  }
+  void ComputeFiniteRange(double range[2], int component) override
+  {
+    Find(range, [&] { this->Values->GetFiniteRange(range, component); });
   }
 #endif
 
 private:
   TextureArray(const TextureArray&) = delete;
   void operator=(const TextureArray&) = delete;
+
+  template <typename Function>
+  void Find(double range[2], Function&& function)
+  {
+    range[0] = VTK_DOUBLE_MAX;
+    range[1] = VTK_DOUBLE_MIN;
+    if (this->Values)
+    {
+      function();
+    }
+  }
 
   vtkWeakPointer<vtkDataArray> Values;
   bool IsWithoutValues = false;
@@ -106,19 +106,16 @@ vtkSmartPointer<vtkDataArray> MakeTextureValues(vtkDataArray* values)
 {
   switch (values->GetDataType())
   {
-    case VTK_SIGNED_CHAR:
-      return Make<signed char>(values);
-    case VTK_UNSIGNED_CHAR:
-      return Make<unsigned char>(values);
-    case VTK_SHORT:
-      return Make<short>(values);
-    case VTK_UNSIGNED_SHORT:
-      return Make<unsigned short>(values);
-    case VTK_FLOAT:
-      return Make<float>(values);
+    vtkTemplateMacro(return Make<VTK_TT>(values));
     default:
-      return nullptr; // the mapper makes floats of these, on the host
+      return values; // there are no others
   }
+}
+
+bool IsTextureType(int type)
+{
+  return type == VTK_SIGNED_CHAR || type == VTK_UNSIGNED_CHAR || type == VTK_SHORT ||
+    type == VTK_UNSIGNED_SHORT || type == VTK_FLOAT;
 }
 
 } // namespace deformvolume

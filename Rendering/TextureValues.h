@@ -8,9 +8,11 @@
 namespace deformvolume
 {
 
-/// An array that a texture is made from, in place of another one whose values are on a device. It
-/// has the type, the size and the ranges of that, and does not hold it: the other one can go when
-/// its filter makes the next output, and need not be read for that.
+/// An array that stands in for another one whose values are on a device, in the input of a mapper.
+/// It has the type, the size and the ranges of that, and does not hold it: the other one can go
+/// when its filter makes the next output, and need not be read for that. It is one of VTK's own
+/// arrays whose memory is null: who reads it by anything but GetVoidPointer() crashes, as VTK's
+/// mapper does not when a texture is made (9.1 to 9.6).
 class TextureValues
 {
 public:
@@ -28,9 +30,12 @@ public:
   ///@}
 };
 
-/// The types that a texture of VTK's volume mapper has as they are. Null for others. The object is
-/// a TextureValues, too.
+/// The object is a TextureValues, too.
 vtkSmartPointer<vtkDataArray> MakeTextureValues(vtkDataArray* values);
+
+/// Whether a texture of VTK's volume mapper has the values of a type as they are: of others the
+/// mapper makes floats, on the host.
+bool IsTextureType(int type);
 
 } // namespace deformvolume
 

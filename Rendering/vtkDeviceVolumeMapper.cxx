@@ -13,12 +13,16 @@
 #include "vtkPointData.h"
 #include "vtkRenderer.h"
 #include "vtkTextureObject.h"
+#include "vtkVolume.h"
 #include "vtkVolumeInputHelper.h"
+#include "vtkVolumeProperty.h"
 #include "vtkVolumeTexture.h"
+#include "vtkWeakPointer.h"
 
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <vector>
 
 using namespace deformvolume;
 
@@ -37,8 +41,11 @@ class vtkDeviceVolumeMapper::Internals
 public:
   /// What has been filled and is drawn, in place of the scalars of the input.
   vtkSmartPointer<vtkDataArray> Loaded;
-  /// Whether the superclass has what it needs for the window: else it loads the texture again.
-  bool IsReady = false;
+  /// The window that the superclass has drawn one input in, and has what it needs for: in another
+  /// one it loads the texture again.
+  vtkWeakPointer<vtkRenderWindow> ReadyFor;
+  /// Whether what belongs to a window has been released.
+  bool IsReleased = true;
 
   /// Makes the buffer for values of an array, in the OpenGL context that is current.
   void Reserve(vtkRenderWindow* window, const OpenGLContext& context, vtkDataArray* values)
@@ -59,16 +66,35 @@ public:
     this->Context = context;
     this->Shared = std::make_unique<OpenGLBuffer>(this->Pixels->GetHandle(), context);
   }
-  /// The input has the scalars again that were taken from it.
-  void GiveBack(vtkImageData* input)
+  /// Arrays that are on the device, and have a name, get others in their place. The mapper keeps
+  /// its input, and their filter brings those to the host that somebody holds.
+  static void Take(vtkImageData* input)
   {
-    const auto* const values = dynamic_cast<TextureValues*>(this->Loaded.Get());
-    if (values && values->GetValues() &&
-      input->GetPointData()->GetArray(this->Loaded->GetName()) == this->Loaded)
+    vtkPointData* const points = input->GetPointData();
+    for (int i = 0; i < points->GetNumberOfArrays(); ++i)
     {
-      input->GetPointData()->AddArray(values->GetValues());
+      vtkDataArray* const array = points->GetArray(i);
+      const auto* const holder = dynamic_cast<DeviceOutputHolder*>(array);
+      if (holder && holder->GetDeviceOutput() && IsNamed(array))
+      {
+        points->AddArray(MakeTextureValues(array)); // in the place of that of the same name
+      }
     }
   }
+  /// The input has the arrays again that were taken from it.
+  static void GiveBack(vtkImageData* input)
+  {
+    vtkPointData* const points = input->GetPointData();
+    for (int i = 0; i < points->GetNumberOfArrays(); ++i)
+    {
+      const auto* const values = dynamic_cast<TextureValues*>(points->GetArray(i));
+      if (values && values->GetValues())
+      {
+        points->AddArray(values->GetValues());
+      }
+    }
+  }
+  static bool IsNamed(vtkDataArray* array) { return array->GetName() && *array->GetName(); }
   /// The context of the buffer is current.
   void Release()
   {
@@ -94,11 +120,7 @@ vtkDeviceVolumeMapper::vtkDeviceVolumeMapper()
 //------------------------------------------------------------------------------
 vtkDeviceVolumeMapper::~vtkDeviceVolumeMapper()
 {
-  if (this->Impl->Pixels && this->Impl->Pixels->GetContext())
-  {
-    this->Impl->Pixels->GetContext()->MakeCurrent();
-  }
-  this->Impl->Release();
+  this->ReleaseGraphicsResources(nullptr); // of the window that it has drawn in, if any
 }
 
 //------------------------------------------------------------------------------
@@ -133,9 +155,16 @@ bool vtkDeviceVolumeMapper::ShareDevice(vtkRenderWindow* window, const char* dev
 //------------------------------------------------------------------------------
 void vtkDeviceVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
-  this->Impl->Release();
-  this->Impl->IsReady = false;
+  // The superclass has this called again, while the context of the window is current that it has
+  // drawn in. Where it does not, that is the case already, or there is nothing to be released.
+  this->Impl->IsReleased = false;
   this->Superclass::ReleaseGraphicsResources(window);
+  if (!this->Impl->IsReleased)
+  {
+    this->Impl->Release();
+    this->Impl->ReadyFor = nullptr;
+    this->Impl->IsReleased = true;
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -144,22 +173,31 @@ void vtkDeviceVolumeMapper::GPURender(vtkRenderer* renderer, vtkVolume* volume)
   if (!this->Load(renderer, volume))
   {
     this->Impl->Loaded = nullptr;
+    if (!this->LoadOnDevice && this->Impl->Pixels &&
+      this->Impl->Pixels->GetContext() == renderer->GetRenderWindow())
+    {
+      renderer->GetRenderWindow()->MakeCurrent();
+      this->Impl->Release(); // it is not needed any more
+    }
   }
   this->Superclass::GPURender(renderer, volume);
   // What the superclass loads once more, for reasons of its own, it has read.
   const auto* const values = dynamic_cast<TextureValues*>(this->Impl->Loaded.Get());
   this->LoadedOnDevice = values && values->GetNumberOfReads() == 0;
-  this->Impl->IsReady = true;
+  this->Impl->ReadyFor = this->GetInputCount() == 1 ? renderer->GetRenderWindow() : nullptr;
 }
 
 //------------------------------------------------------------------------------
-bool vtkDeviceVolumeMapper::CanLoad(vtkImageData* input)
+bool vtkDeviceVolumeMapper::CanLoad(vtkRenderer* renderer, vtkVolume* volume, vtkImageData* input)
 {
+  // Surfaces and second dimensions of transfer functions are made on the host.
   const auto texture = this->AssembledInputs.find(0);
-  return this->LoadOnDevice && this->Impl->IsReady && this->GetInputCount() == 1 &&
-    !this->UseDepthPass && texture != this->AssembledInputs.end() &&
-    !HasPartitions(texture->second.Texture) && !input->GetPointGhostArray() &&
-    !input->GetCellGhostArray();
+  return this->LoadOnDevice && this->Impl->ReadyFor &&
+    this->Impl->ReadyFor == renderer->GetRenderWindow() && this->GetInputCount() == 1 &&
+    !this->UseDepthPass &&
+    volume->GetProperty()->GetTransferFunctionMode() == vtkVolumeProperty::TF_1D &&
+    texture != this->AssembledInputs.end() && !HasPartitions(texture->second.Texture) &&
+    !input->GetPointGhostArray() && !input->GetCellGhostArray();
 }
 
 //------------------------------------------------------------------------------
@@ -172,29 +210,29 @@ bool vtkDeviceVolumeMapper::Load(vtkRenderer* renderer, vtkVolume* volume)
   {
     return false;
   }
-  int cellFlag = 0;
-  vtkDataArray* const scalars = GetScalars(
-    input, this->ScalarMode, this->ArrayAccessMode, this->ArrayId, this->ArrayName, cellFlag);
-  if (!scalars || cellFlag != 0 || !this->CanLoad(input))
+  const auto getScalars = [&]() -> vtkDataArray*
   {
-    this->Impl->GiveBack(input);
-    return false;
-  }
-  if (scalars == this->Impl->Loaded)
+    int cellFlag = 0;
+    vtkDataArray* const scalars = GetScalars(
+      input, this->ScalarMode, this->ArrayAccessMode, this->ArrayId, this->ArrayName, cellFlag);
+    return cellFlag == 0 ? scalars : nullptr;
+  };
+  const bool canLoad = this->CanLoad(renderer, volume, input);
+  if (canLoad && this->Impl->Loaded && getScalars() == this->Impl->Loaded)
   {
     return true; // nothing is new but what is drawn of it
   }
-  const vtkSmartPointer<vtkDataArray> given = scalars; // the input lets go of it
-  if (!this->CopyToBuffer(renderer, given))
+  Internals::GiveBack(input);
+  const vtkSmartPointer<vtkDataArray> scalars = getScalars(); // the input lets go of them
+  if (!canLoad || !scalars || !this->CopyToBuffer(renderer, scalars))
   {
     return false;
   }
-  this->Impl->Loaded = MakeTextureValues(given);
-  // In the place of that of the same name, whatever the mapper chooses its scalars by.
-  input->GetPointData()->AddArray(this->Impl->Loaded);
+  Internals::Take(input);
+  this->Impl->Loaded = getScalars();
   if (!this->LoadTexture(renderer, volume))
   {
-    this->Impl->GiveBack(input);
+    Internals::GiveBack(input);
     return false;
   }
   return true;
@@ -207,16 +245,15 @@ bool vtkDeviceVolumeMapper::CopyToBuffer(vtkRenderer* renderer, vtkDataArray* sc
   const std::shared_ptr<DeviceOutput> output = holder ? holder->GetDeviceOutput() : nullptr;
   const std::uint64_t bytes = static_cast<std::uint64_t>(scalars->GetNumberOfValues()) *
     static_cast<std::uint64_t>(scalars->GetDataTypeSize());
-  const char* const name = scalars->GetName();
-  if (!output || !name || !*name || bytes > std::numeric_limits<unsigned int>::max() ||
-    !MakeTextureValues(scalars))
+  if (!output || !Internals::IsNamed(scalars) || !IsTextureType(scalars->GetDataType()) ||
+    bytes > std::numeric_limits<unsigned int>::max())
   {
     return false;
   }
   vtkRenderWindow* const window = renderer->GetRenderWindow();
   window->MakeCurrent();
   const std::optional<OpenGLContext> context = FindCurrentOpenGLContext();
-  if (!context)
+  if (!context || !output->SharesWith(*context))
   {
     return false;
   }
@@ -228,6 +265,7 @@ bool vtkDeviceVolumeMapper::CopyToBuffer(vtkRenderer* renderer, vtkDataArray* sc
   }
   catch (const std::exception& error)
   {
+    this->Impl->Release();
     vtkWarningMacro(<< error.what() << " The volume is drawn by way of the host.");
     return false;
   }
@@ -241,7 +279,7 @@ bool vtkDeviceVolumeMapper::LoadTexture(vtkRenderer* renderer, vtkVolume* volume
   values->SetWithoutValues(true);
   const bool made = this->PreLoadData(renderer, volume);
   values->SetWithoutValues(false); // from here on they are read if the texture is made again
-  if (!made)
+  if (!made || !this->Impl->Pixels)
   {
     return false;
   }

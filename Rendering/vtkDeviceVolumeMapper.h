@@ -16,13 +16,15 @@
  * mapper->SetInputConnection(deform->GetOutputPort());
  * @endcode
  *
- * These are drawn by way of the host: the first picture, and the first one after
- * ReleaseGraphicsResources(); scalars of other types than signed char, unsigned char, short,
- * unsigned short and float, of cells, without a name, or of 4 GiB and more; volumes with ghosts;
- * several inputs; partitions; UseDepthPass. So are outputs of filters on other devices, and those
- * that somebody has read: their values are on the host already. GetLoadedOnDevice() tells.
+ * These are drawn by way of the host: the first picture in a window, and the first one after
+ * ReleaseGraphicsResources() or a picture in another window; scalars of other types than signed
+ * char, unsigned char, short, unsigned short and float, of cells, without a name, or of 4 GiB and
+ * more; volumes with ghosts; several inputs or volumes of one mapper; partitions; UseDepthPass;
+ * transfer functions of two dimensions. So are outputs of filters on other devices, and those that
+ * somebody has read: their values are on the host already. GetLoadedOnDevice() tells.
  *
- * The device has another copy of the scalars, in the buffer.
+ * The device has another copy of the scalars then, in the buffer. Other arrays of the output stay
+ * on the device, too, as long as nobody but this mapper holds them.
  *
  * @par Errors:
  * Where a copy on the device fails, that is a warning, and the values are read.
@@ -48,10 +50,13 @@ public:
 
   /**
    * Has a device share its memory with a window, for all filters and mappers of this process. To be
-   * called before any filter uses the device, which can share with one window only, or with others
-   * whose OpenGL context is the same. Called again for the two it does nothing. The window is
-   * initialized. Its context is one of GLX or EGL; that of a vtkGenericOpenGLRenderWindow has to be
-   * current.
+   * called before any filter uses the device, which can share with one window only. Called again
+   * for the two it does nothing. The window is initialized, and its context is current afterwards:
+   * one of GLX or EGL. That of a vtkGenericOpenGLRenderWindow has to be current before.
+   *
+   * The OpenGL context of the window has to be there for as long as filters use the device, or else
+   * what these do is undefined: do not close the window before, nor have its context made anew, as
+   * Finalize(), full screen, or a widget that gets another parent do.
    *
    * device: as for vtkDeformVolumeFilter::SetDevice(), "" is the best one.
    *
@@ -93,7 +98,7 @@ private:
   /// Fills the texture on the device, unless it has been. Returns false where that is not possible;
   /// then the input is as it was.
   bool Load(vtkRenderer* renderer, vtkVolume* volume);
-  bool CanLoad(vtkImageData* input);
+  bool CanLoad(vtkRenderer* renderer, vtkVolume* volume, vtkImageData* input);
   /// Copies the values of an array to the buffer that OpenCL and OpenGL share.
   bool CopyToBuffer(vtkRenderer* renderer, vtkDataArray* scalars);
   /// Makes the texture from that buffer.

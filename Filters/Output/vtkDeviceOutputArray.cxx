@@ -74,7 +74,8 @@ void vtkDeviceOutputArray<T>::SetOutput(
 template <typename T>
 std::shared_ptr<deformvolume::DeviceOutput> vtkDeviceOutputArray<T>::GetDeviceOutput() const
 {
-  return !this->Values && this->Output && this->Output->IsOnDevice() ? this->Output : nullptr;
+  const bool isThere = !this->Values && this->Output && this->Output->IsOnDevice();
+  return isThere && this->IsLikeHost() ? this->Output : nullptr;
 }
 
 //------------------------------------------------------------------------------
@@ -170,48 +171,18 @@ bool vtkDeviceOutputArray<T>::SetSize(vtkIdType values, vtkIdType kept)
 
 //------------------------------------------------------------------------------
 template <typename T>
+bool vtkDeviceOutputArray<T>::IsLikeHost() const
+{
+  return this->Host->GetNumberOfComponents() == this->NumberOfComponents &&
+    this->Host->GetNumberOfValues() == this->GetNumberOfValues();
+}
+
+//------------------------------------------------------------------------------
+template <typename T>
 vtkDataArray* vtkDeviceOutputArray<T>::GetHost() const
 {
   this->GetValues();
-  const bool isAlike = this->Host->GetNumberOfComponents() == this->NumberOfComponents &&
-    this->Host->GetNumberOfValues() == this->GetNumberOfValues();
-  return isAlike ? this->Host.Get() : nullptr;
-}
-
-//------------------------------------------------------------------------------
-template <typename T>
-void vtkDeviceOutputArray<T>::ComputeRange(double range[2], int component)
-{
-  if (this->FindRangeOnDevice(range, component, false))
-  {
-    return;
-  }
-  if (vtkDataArray* const host = this->GetHost())
-  {
-    host->GetRange(range, component);
-  }
-  else
-  {
-    this->Superclass::ComputeRange(range, component);
-  }
-}
-
-//------------------------------------------------------------------------------
-template <typename T>
-void vtkDeviceOutputArray<T>::ComputeFiniteRange(double range[2], int component)
-{
-  if (this->FindRangeOnDevice(range, component, true))
-  {
-    return;
-  }
-  if (vtkDataArray* const host = this->GetHost())
-  {
-    host->GetFiniteRange(range, component);
-  }
-  else
-  {
-    this->Superclass::ComputeFiniteRange(range, component);
-  }
+  return this->IsLikeHost() ? this->Host.Get() : nullptr;
 }
 
 #ifdef DEFORMVOLUME_RANGES_OF_GHOSTS
@@ -250,6 +221,42 @@ void vtkDeviceOutputArray<T>::ComputeFiniteRange(
   else
   {
     this->Superclass::ComputeFiniteRange(range, component, ghosts, ghostsToSkip);
+  }
+}
+#else
+//------------------------------------------------------------------------------
+template <typename T>
+void vtkDeviceOutputArray<T>::ComputeRange(double range[2], int component)
+{
+  if (this->FindRangeOnDevice(range, component, false))
+  {
+    return;
+  }
+  if (vtkDataArray* const host = this->GetHost())
+  {
+    host->GetRange(range, component);
+  }
+  else
+  {
+    this->Superclass::ComputeRange(range, component);
+  }
+}
+
+//------------------------------------------------------------------------------
+template <typename T>
+void vtkDeviceOutputArray<T>::ComputeFiniteRange(double range[2], int component)
+{
+  if (this->FindRangeOnDevice(range, component, true))
+  {
+    return;
+  }
+  if (vtkDataArray* const host = this->GetHost())
+  {
+    host->GetFiniteRange(range, component);
+  }
+  else
+  {
+    this->Superclass::ComputeFiniteRange(range, component);
   }
 }
 #endif

@@ -99,13 +99,15 @@ protected:
   ///@{
   /// Mappers ask for ranges of each new output. Those of components are found on the device, and
   /// the others by the ordinary array, whose numbers are not read as doubles.
-  void ComputeRange(double range[2], int component) override;
-  void ComputeFiniteRange(double range[2], int component) override;
 #ifdef DEFORMVOLUME_RANGES_OF_GHOSTS
+  // Those without ghosts come here.
   void ComputeRange(double range[2], int component, const unsigned char* ghosts,
     unsigned char ghostsToSkip = 0xff) override;
   void ComputeFiniteRange(double range[2], int component, const unsigned char* ghosts,
     unsigned char ghostsToSkip = 0xff) override;
+#else
+  void ComputeRange(double range[2], int component) override;
+  void ComputeFiniteRange(double range[2], int component) override;
 #endif
   ///@}
 
@@ -122,6 +124,8 @@ private:
   void operator=(const vtkDeviceOutputArray&) = delete;
 
   T* BringToHost() const;
+  /// Whether the ordinary array has the size of this one.
+  bool IsLikeHost() const;
   /// The range of a component as long as the values are on the device. Returns false where the host
   /// is to find it.
   bool FindRangeOnDevice(double range[2], int component, bool finite) const;

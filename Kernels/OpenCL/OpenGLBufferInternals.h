@@ -28,7 +28,8 @@ public:
 private:
   unsigned int Name;
   OpenGLContext Context;
-  cl::BufferGL Buffer; // made when it is needed first
+  cl::BufferGL Buffer; // made when it is needed first, for this context of OpenCL
+  const OpenCLContext* Owner = nullptr;
 };
 
 } // namespace deformvolume

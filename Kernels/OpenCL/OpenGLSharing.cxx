@@ -22,13 +22,24 @@ bool OpenGLBuffer::Internals::CopyFrom(
   {
     return false;
   }
-  if (!this->Buffer())
+  if (this->Owner != context)
   {
     this->Buffer = cl::BufferGL(context->GetContext(), CL_MEM_WRITE_ONLY, this->Name);
+    this->Owner = context;
   }
   const std::vector<cl::Memory> objects{ this->Buffer };
   queue.enqueueAcquireGLObjects(&objects);
-  queue.enqueueCopyBuffer(source, this->Buffer, 0, 0, bytes);
+  try
+  {
+    queue.enqueueCopyBuffer(source, this->Buffer, 0, 0, bytes);
+  }
+  catch (const cl::Error&)
+  {
+    // OpenGL gets it back whatever happens. These throw nothing.
+    clEnqueueReleaseGLObjects(queue(), 1, &this->Buffer(), 0, nullptr, nullptr);
+    clFinish(queue());
+    throw;
+  }
   queue.enqueueReleaseGLObjects(&objects);
   queue.finish();
   return true;

@@ -33,8 +33,9 @@ struct OpenGLContext
 /// The context of a device, which is made now and serves for all that follows in this process,
 /// shares buffers with an OpenGL context (cl_khr_gl_sharing), which has to be current in this
 /// thread. request: as for ResolveDevice. To be called before anything else uses the device; once
-/// more for the same two does nothing. Throws an Error where the device cannot do that, is not the
-/// one that draws, or is in use already.
+/// more for the same two does nothing. The OpenGL context has to be there for as long as anything
+/// uses the device: when it is destroyed, whatever is done with the device is undefined. Throws an
+/// Error where the device cannot do that, is not the one that draws, or is in use already.
 DEFORMVOLUME_EXPORT void ShareWithOpenGL(const std::string& request, const OpenGLContext& context);
 
 /// A buffer object of OpenGL that outputs can be copied to on the device: see DeviceOutput::CopyTo.

@@ -14,8 +14,8 @@
 #define DEFORMVOLUME_TILE_VOXELS 2048
 
 // Tetrahedra that the items of a work-group set up for each other at a time: as many as go into
-// local memory of 32 KB with what a tile needs.
-#define DEFORMVOLUME_TILE_SHARED 16
+// local memory of 32 KB with what a tile needs, and leave a little of it.
+#define DEFORMVOLUME_TILE_SHARED 15
 
 // Tetrahedra over more output voxels than this on an axis do not fit the 64 bits of the edge
 // functions: with e in 1/256 voxel, they are at most 2 e^3, and their partial sums 3 e^3.

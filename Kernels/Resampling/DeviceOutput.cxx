@@ -105,7 +105,9 @@ std::optional<DeviceOutput::Range> DeviceOutput::Internals::FindRange(int compon
   const Voxels& values = this->Values;
   const std::size_t element = GetElementSize(values.Type);
   const bool isWide = element == sizeof(std::int64_t) && values.Type != ElementType::Float64;
-  if (!this->IsOnDevice() || isWide)
+  const bool isThere =
+    component >= 0 && static_cast<std::size_t>(component) < values.Bytes / element;
+  if (!this->IsOnDevice() || isWide || !isThere)
   {
     return std::nullopt;
   }
@@ -117,6 +119,13 @@ std::optional<DeviceOutput::Range> DeviceOutput::Internals::FindRange(int compon
         static_cast<std::size_t>(component));
     });
   return range.Least <= range.Largest ? std::optional<Range>(range) : std::nullopt;
+}
+
+bool DeviceOutput::Internals::SharesWith(const OpenGLContext& context)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const OpenCLContext* const own = this->IsOnDevice() ? OpenCLContext::Find(this->Queue) : nullptr;
+  return own && own->IsSharedWith(context);
 }
 
 bool DeviceOutput::Internals::CopyTo(const OpenGLBuffer& buffer)
@@ -194,6 +203,11 @@ void DeviceOutput::Drop()
 std::optional<DeviceOutput::Range> DeviceOutput::FindRange(int component)
 {
   return this->Impl->FindRange(component);
+}
+
+bool DeviceOutput::SharesWith(const OpenGLContext& context) const
+{
+  return this->Impl->SharesWith(context);
 }
 
 bool DeviceOutput::CopyTo(const OpenGLBuffer& buffer)

@@ -12,6 +12,7 @@ namespace deformvolume
 {
 
 class OpenGLBuffer;
+struct OpenGLContext;
 
 /// An array of an output, or its coverage, that is still on the device (DeformRequest::
 /// MayStayOnDevice). It goes to the memory of the request when somebody asks for it, and before
@@ -43,10 +44,13 @@ public:
     bool AllFinite = false; // no value is infinite or no number
   };
   /// Found on the device, as nobody reads the values for that. Nothing where they are not there,
-  /// where none is finite, or where they are integers of 64 bits, which a double does not hold.
+  /// where there is no such component, where none is finite, or where they are integers of 64 bits,
+  /// which a double does not hold.
   /// Throws an Error where the device fails.
   std::optional<Range> FindRange(int component);
 
+  /// Whether CopyTo would find them, for a buffer of this context.
+  bool SharesWith(const OpenGLContext& context) const;
   /// Copies the values to a buffer object of OpenGL, which has room for them, on the device. OpenGL
   /// must have ended all commands on it (glFinish), and may use it when this returns. Returns false
   /// where the values are not on the device, or its context does not share with that of the buffer

@@ -52,6 +52,7 @@ public:
 
   /// See DeviceOutput.
   std::optional<Range> FindRange(int component);
+  bool SharesWith(const OpenGLContext& context);
   bool CopyTo(const OpenGLBuffer& buffer);
 
   /// Bytes of the device.

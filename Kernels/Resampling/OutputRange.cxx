@@ -76,10 +76,11 @@ DeviceOutput::Range Find(const cl::CommandQueue& queue, const cl::Buffer& buffer
   kernel.setArg(6, counter);
   kernel.setArg(7, cl::Local(group * sizeof(T)));
   kernel.setArg(8, cl::Local(group * sizeof(T)));
+  // Not by OpenCLContext::Launch: queues that read take no times.
   queue.enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(groups * group), cl::NDRange(group));
-  queue.enqueueReadBuffer(counter, CL_FALSE, 0, sizeof(others), &others);
   queue.enqueueReadBuffer(found, CL_TRUE, 0, ranges.size() * sizeof(T), ranges.data());
+  queue.enqueueReadBuffer(counter, CL_TRUE, 0, sizeof(others), &others);
   T least = ranges[0];
   T largest = ranges[1];
   for (std::size_t i = 0; i < groups; ++i)

@@ -165,7 +165,9 @@ extern "C" cl_int CL_API_CALL clEnqueueAcquireGLObjects(cl_command_queue /*queue
   {
     return FakeSharing::Get().AcquireError;
   }
+  const std::lock_guard<std::mutex> lock(Mutex);
   Acquired.insert(objects, objects + number);
+  FakeSharing::Get().Held = static_cast<int>(Acquired.size());
   return CL_SUCCESS;
 }
 
@@ -179,6 +181,10 @@ extern "C" cl_int CL_API_CALL clEnqueueCopyBuffer(cl_command_queue queue, cl_mem
   {
     ++FakeSharing::Get().Copies;
     FakeSharing::Get().WrongCopies += Acquired.count(target) == 0;
+    if (FakeSharing::Get().CopyError)
+    {
+      return FakeSharing::Get().CopyError;
+    }
   }
   return real(queue, source, target, from, to, size, number, events, done);
 }
@@ -205,7 +211,9 @@ extern "C" cl_int CL_API_CALL clEnqueueReleaseGLObjects(cl_command_queue queue, 
     FindOpenGL<void(unsigned int, std::ptrdiff_t, std::ptrdiff_t, const void*)>("glBufferSubData")(
       CopyWriteBuffer, 0, static_cast<std::ptrdiff_t>(size), values.data());
     Bind(0);
+    const std::lock_guard<std::mutex> lock(Mutex);
     Acquired.erase(objects[i]);
+    FakeSharing::Get().Held = static_cast<int>(Acquired.size());
   }
   return CL_SUCCESS;
 }

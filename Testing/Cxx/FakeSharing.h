@@ -11,8 +11,11 @@ struct FakeSharing
 {
   /// The device is not the one that draws.
   bool DrawsElsewhere = false;
-  /// OpenCL gets no buffer to work with, unless 0: this error instead.
+  ///@{
+  /// OpenCL gets no buffer to work with, or nothing is copied to it, unless 0: this error instead.
   int AcquireError = 0;
+  int CopyError = 0;
+  ///@}
 
   /// Contexts that were made to share with OpenGL, buffers that were shared and still are, and
   /// copies to such.
@@ -23,6 +26,8 @@ struct FakeSharing
   int Copies = 0;
   /// Copies to buffers that OpenCL did not have.
   int WrongCopies = 0;
+  /// Buffers that OpenCL has, and OpenGL must not use.
+  int Held = 0;
 
   /// Waits until so many buffers are shared, and returns whether that is so in the end.
   bool WaitForBuffers(int number) const;

@@ -213,11 +213,11 @@ void TestReading(const std::string& folder)
 {
   Both both(MakeBall<short>(-1000.0, 10.0), -1000.0, 10.0);
   VERIFY(!both.DrawAgain()); // the first picture
+  VERIFY(both.Draw(0.5));    // the mapper has held the mask of the first one
   for (const double by : { 2.0, -1.0, 3.0 })
   {
     const int copies = FakeSharing::Get().Copies;
     both.Found.Move(by);
-    both.Found.Body.Update();
     FakeDriver::Get().BytesRead = 0;
     both.Found.Draw();
     VERIFY(FakeDriver::Get().BytesRead < 10000);
@@ -338,12 +338,18 @@ void TestOtherWays()
   VERIFY(both.Draw(-1.0));
   VERIFY(FakeSharing::Get().WaitForBuffers(1));
   // The device fails: a warning, and the picture.
-  FakeSharing::Get().AcquireError = -5; // CL_OUT_OF_RESOURCES
-  VERIFY(!both.Draw(-2.0));
-  FakeSharing::Get().AcquireError = 0;
-  VERIFY(both.Found.Observer->GetWarningMessage().find("by way of the host") != std::string::npos);
-  both.Found.Observer->Clear();
-  VERIFY(both.Draw(2.5));
+  for (int* const error : { &FakeSharing::Get().AcquireError, &FakeSharing::Get().CopyError })
+  {
+    *error = -5; // CL_OUT_OF_RESOURCES
+    VERIFY(!both.Draw(-2.0));
+    *error = 0;
+    VERIFY(
+      both.Found.Observer->GetWarningMessage().find("by way of the host") != std::string::npos);
+    both.Found.Observer->Clear();
+    VERIFY_EQUAL(FakeSharing::Get().Held, 0);
+    VERIFY(FakeSharing::Get().WaitForBuffers(0));
+    VERIFY(both.Draw(2.5));
+  }
   both.Mapper->LoadOnDeviceOff();
   both.Turn();
   VERIFY(!both.DrawAgain());
@@ -371,6 +377,35 @@ void TestOtherWays()
   both.Expected.Mapper->SetInputData(copy);
   both.Turn();
   VERIFY(!both.DrawAgain());
+}
+
+// One mapper in two windows, of which one shares with the device.
+void TestWindows()
+{
+  Both both(MakeBall<short>());
+  both.DrawAgain();
+  VERIFY(both.Draw(2.0));
+  const auto other = MakeWindow();
+  vtkNew<vtkRenderer> renderer;
+  renderer->SetBackground(0.1, 0.1, 0.2);
+  renderer->AddVolume(both.Found.Volume);
+  renderer->SetActiveCamera(both.Found.Renderer->GetActiveCamera());
+  other->AddRenderer(renderer);
+  for (const double by : { -1.0, 1.5, 0.7 })
+  {
+    both.Found.Move(by);
+    other->Render();
+    VERIFY(!both.Mapper->GetLoadedOnDevice());
+    VERIFY(FakeSharing::Get().WaitForBuffers(0));
+    VERIFY(!both.Draw(by + 0.3)); // the first one in this window
+    VERIFY(both.Draw(by + 0.6));
+  }
+  // Another window is current when the mapper goes.
+  other->RemoveRenderer(renderer);
+  other->MakeCurrent();
+  renderer->RemoveVolume(both.Found.Volume);
+  both.Found.Volume->SetMapper(nullptr);
+  VERIFY(other->IsCurrent());
 }
 
 // Blocks of the volume have a texture one after the other.
@@ -427,7 +462,10 @@ int main(int argc, char* argv[])
   TestReading(argc > 1 ? argv[1] : ".");
   TestTypes();
   TestComponents();
+  VERIFY(FakeSharing::Get().WaitForBuffers(0));
   TestOtherWays();
+  TestWindows();
+  VERIFY(FakeSharing::Get().WaitForBuffers(0));
   TestPartitions();
   TestGhosts();
   VERIFY(FakeSharing::Get().WaitForBuffers(0));

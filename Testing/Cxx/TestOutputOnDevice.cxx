@@ -383,6 +383,24 @@ void TestRanges()
   GetArray(image, "float")->SetComponent(17, 0, -100.0);
   GetArray(image, "float")->Modified();
   VERIFY_EQUAL(GetArray(image, "float")->GetRange()[0], -100.0);
+  // Nor does the device know of an array that has another shape by now.
+  vtkDataArray* const shaped = GetArray(image, "uint16");
+  shaped->SetNumberOfComponents(3);
+  VERIFY_EQUAL(shaped->GetNumberOfTuples(), image->GetNumberOfPoints() / 3);
+  shaped->GetRange(range, 2);
+  double most = 0.0;
+  for (vtkIdType i = 0; i < shaped->GetNumberOfTuples(); ++i)
+  {
+    most = std::max(most, shaped->GetComponent(i, 2));
+  }
+  VERIFY_EQUAL(range[1], most);
+  vtkDataArray* const grown = GetArray(image, "uint8");
+  grown->InsertNextTuple1(255.0);
+  grown->Modified();
+  grown->GetRange(range);
+  VERIFY_EQUAL(range[1], 255.0);
+  grown->GetFiniteRange(range);
+  VERIFY_EQUAL(range[1], 255.0);
 }
 
 // An array as any other, after it has been emptied and filled anew.
