@@ -125,6 +125,8 @@ MUTATIONS = {
                    [DEVICE_OUTPUT]),
     "range-run": ("Kernels/Resampling/OutputRange.cl", "first + run, (size_t)tuples", "first + 1, (size_t)tuples / 2",
                   [DEVICE_OUTPUT]),
+    "far-vertices": ("Kernels/Resampling/GroupCandidates.cl", "TO_INTS(Least((high) + toEnd, (float)(size)))",
+                     "min(TO_INTS((high) + toEnd), (INTS)(size))", [("TestFolded", "*AtTheEdge*")]),
     "raster-last": ("Kernels/Rasterization/MeshRasterization.cl", "begin < listed; begin +=", "begin + DEFORMVOLUME_TILE_SHARED <= listed; begin +=",
                     [RASTER_GRAPHICS]),
     "raster-rows": ("Kernels/Rasterization/MeshRasterization.cl", "rows |= ofPlane", "rows = ofPlane",
