@@ -448,8 +448,8 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,
     return;
   }
   this->Cut.ForgetStencils();
-  this->WithState = this->HasBlanked() || this->HasActive() || this->HasDistances() ||
-    this->HasCut() || !(this->HasMesh() ? this->Mapping.AreAllLinked() : movesAll);
+  this->WithState = this->HasMasks() || this->HasCut() ||
+    !(this->HasMesh() ? this->Mapping.AreAllLinked() : movesAll);
   if (!this->WithState)
   {
     this->States.Release(this->Chunks);

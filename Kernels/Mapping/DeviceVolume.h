@@ -114,6 +114,8 @@ public:
   }
   bool HasBlanked() const { return this->Blanked.HasBuffers(); }
   bool HasDistances() const { return this->Distances.HasBuffers(); }
+  /// Whether there is any of these.
+  bool HasMasks() const { return this->HasActive() || this->HasBlanked() || this->HasDistances(); }
   /// The boundary distances of a chunk, or any buffer that stands in for them.
   const cl::Buffer& GetDistances(const VolumeChunk& chunk) const
   {

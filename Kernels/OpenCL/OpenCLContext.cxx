@@ -35,6 +35,12 @@ cl_platform_id GetPlatform(const cl::Device& device)
   return cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>())();
 }
 
+bool DeviceHasExtension(const cl::Device& device, const std::string& name)
+{
+  const std::string extensions = " " + device.getInfo<CL_DEVICE_EXTENSIONS>() + " ";
+  return extensions.find(" " + name + " ") != std::string::npos;
+}
+
 DeviceDescription GetDescription(const cl::Device& device, const cl::Platform& platform)
 {
   using Kind = DeviceDescription::Kind;
@@ -46,8 +52,7 @@ DeviceDescription GetDescription(const cl::Device& device, const cl::Platform& p
   description.Name = Trim(device.getInfo<CL_DEVICE_NAME>());
   description.Platform = Trim(platform.getInfo<CL_PLATFORM_NAME>());
   description.SharesMemory = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_FALSE;
-  description.HasDouble =
-    (" " + device.getInfo<CL_DEVICE_EXTENSIONS>() + " ").find(" cl_khr_fp64 ") != std::string::npos;
+  description.HasDouble = DeviceHasExtension(device, "cl_khr_fp64");
   description.ComputeUnits = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
   return description;
 }
@@ -199,8 +204,7 @@ std::vector<cl_context_properties> GetSharingProperties(
 /// Throws an Error where the context of a device cannot share with that of OpenGL.
 void CheckSharing(const OpenCLDevice& device, const std::vector<cl_context_properties>& properties)
 {
-  const std::string extensions = " " + device.Device.getInfo<CL_DEVICE_EXTENSIONS>() + " ";
-  if (extensions.find(" cl_khr_gl_sharing ") == std::string::npos)
+  if (!DeviceHasExtension(device.Device, "cl_khr_gl_sharing"))
   {
     throw Error("The device \"" + device.Name +
       "\" shares no memory with OpenGL: it lacks the extension cl_khr_gl_sharing.");

@@ -131,14 +131,6 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
   return inside;
 }
 
-// The first voxel of a row of a tile.
-static void FindFirst(int row, const int* origin, int* voxel)
-{
-  voxel[0] = origin[0];
-  voxel[1] = origin[1] + (row & ((1 << DEFORMVOLUME_TILE_BITS_Y) - 1));
-  voxel[2] = origin[2] + (row >> DEFORMVOLUME_TILE_BITS_Y);
-}
-
 #if LANES == 1
 // Rest coordinates of the voxels of a tile that are this work-item's, the first one -1 where there is none. Neighbours
 // take neighbours on x: what they read lies side by side. Always inlined: see SampleTile.
@@ -151,7 +143,7 @@ static __attribute__((always_inline)) void FindTileRests(__global const float* v
     const int x = i & ((1 << DEFORMVOLUME_TILE_BITS_X) - 1);
     __local int* rowRests = rests + row * REST_ROW_STEP;
     int voxel[3];
-    FindFirst(row, origin, voxel);
+    FindFirstOfRow(row, origin, voxel);
     int inside = voxel[0] + x >= tile.Low.x && voxel[0] + x <= tile.High.x && voxel[1] >= tile.Low.y &&
       voxel[1] <= tile.High.y && voxel[2] >= tile.Low.z && voxel[2] <= tile.High.z;
     if (inside)
@@ -171,7 +163,7 @@ static uint FindRowRests(__global const float* vectors, VoxelBox tile, const int
   __local int* rowRests, const LookupParameters* f, const RasterParameters* p)
 {
   int voxel[3];
-  FindFirst(row, origin, voxel);
+  FindFirstOfRow(row, origin, voxel);
   uint found = 0;
   if (voxel[1] >= tile.Low.y && voxel[1] <= tile.High.y && voxel[2] >= tile.Low.z && voxel[2] <= tile.High.z)
   {

@@ -55,8 +55,7 @@ cl::Kernel MeshRasterizer::MakeKernel(Interpolation interpolation) const
 {
   return cl::Kernel(
     GetRasterizationProgram(this->Device->GetContext(), this->Volume->GetVolumeArrays(),
-      this->Volume->GetVoxelGrid(), interpolation, this->HasField(),
-      this->Volume->HasActive() || this->Volume->HasBlanked() || this->Volume->HasDistances()),
+      this->Volume->GetVoxelGrid(), interpolation, this->HasField(), this->Volume->HasMasks()),
     this->HasField() ? "LookUpField" : "RasterizeMesh");
 }
 

@@ -170,8 +170,8 @@ static __attribute__((always_inline)) int RasterizeRows(__global const int4* tet
     barrier(CLK_LOCAL_MEM_FENCE);
     for (int row = item; row < DEFORMVOLUME_TILE_ROWS; row += items)
     {
-      const int voxel[3] = { origin[0], origin[1] + (row & ((1 << DEFORMVOLUME_TILE_BITS_Y) - 1)),
-        origin[2] + (row >> DEFORMVOLUME_TILE_BITS_Y) };
+      int voxel[3];
+      FindFirstOfRow(row, origin, voxel);
       // First those of this row alone: neighbours then go through theirs side by side, whichever they are.
       uint left = 0;
       for (int i = 0; i < count; ++i)

@@ -339,9 +339,11 @@ static __attribute__((always_inline)) void SampleTile(VoxelBox tile, const int* 
        stretch += get_local_size(0))
   {
     const int first = stretch * STRETCH;
-    const int y = origin[1] +
-      (first >> DEFORMVOLUME_TILE_BITS_X & ((1 << DEFORMVOLUME_TILE_BITS_Y) - 1));
-    const int z = origin[2] + (first >> (DEFORMVOLUME_TILE_BITS_X + DEFORMVOLUME_TILE_BITS_Y));
+    const int rowOfTile = first >> DEFORMVOLUME_TILE_BITS_X;
+    int voxel[3];
+    FindFirstOfRow(rowOfTile, origin, voxel);
+    const int y = voxel[1];
+    const int z = voxel[2];
     const int inRow = first & 31;
     const int from = max(inRow, tile.Low.x - origin[0]);
     const int to = min(inRow + STRETCH - 1, tile.High.x - origin[0]);
@@ -352,8 +354,8 @@ static __attribute__((always_inline)) void SampleTile(VoxelBox tile, const int* 
     const long row = ((long)(z - p->OutputFirst[2]) * p->OutputSize[1] + y - p->OutputFirst[1]) *
         p->OutputSize[0] +
       origin[0] - p->OutputFirst[0];
-    const uint held = covered[first >> DEFORMVOLUME_TILE_BITS_X];
-    __local const int* rowRests = rests + (first >> DEFORMVOLUME_TILE_BITS_X) * REST_ROW_STEP;
+    const uint held = covered[rowOfTile];
+    __local const int* rowRests = rests + rowOfTile * REST_ROW_STEP;
     for (int x = from; x <= to; ++x)
     {
       coverage[row + x] = held >> x & 1;

@@ -54,6 +54,14 @@ static VoxelBox GetTile(int index, int* origin, const RasterParameters* p)
   return tile;
 }
 
+// The first voxel of a row of a tile. origin: the tile's first voxel.
+static void FindFirstOfRow(int row, const int* origin, int* voxel)
+{
+  voxel[0] = origin[0];
+  voxel[1] = origin[1] + (row & ((1 << DEFORMVOLUME_TILE_BITS_Y) - 1));
+  voxel[2] = origin[2] + (row >> DEFORMVOLUME_TILE_BITS_Y);
+}
+
 // The tiles of a tetrahedron: the first one; and in one number how many on x, y and z, with bits
 // enough for the largest tetrahedron, and whether it is inverted.
 #define TILES_BITS_X 8

@@ -33,10 +33,7 @@ std::string MakePreamble(ElementType type)
   {
     most = "ULONG_MAX";
   }
-  return std::string(std::is_same<T, double>::value
-             ? "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n"
-             : "") +
-    "#define TYPE " + name + "\n#define TYPE_LEAST ((" + name + ")(" + least +
+  return "#define TYPE " + name + "\n#define TYPE_LEAST ((" + name + ")(" + least +
     "))\n#define TYPE_MOST ((" + name + ")(" + most + "))\n#define IS_FINITE(value) " +
     (isReal ? "isfinite(value)" : "1") + "\n";
 }
@@ -51,7 +48,8 @@ DeviceOutput::Range Find(const cl::CommandQueue& queue, const cl::Buffer& buffer
     throw Error("The output is in a queue of another context.");
   }
   cl::Kernel kernel(
-    context->GetProgram(ProgramText(MakePreamble<T>(type)) + OutputRange_cl, KernelOptions),
+    context->GetProgram(
+      ProgramText(GetReal(*context) + MakePreamble<T>(type)) + OutputRange_cl, KernelOptions),
     "FindRange");
   // Where an item has a thread for itself it goes through memory in a row, elsewhere all of them
   // do together.
