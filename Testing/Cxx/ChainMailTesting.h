@@ -76,17 +76,27 @@ struct Dragged
     VERIFY(errors.empty() || this->Filter->GetOutput()->GetPointData()->GetNumberOfArrays() == 0);
     return errors;
   }
-  vtkFloatArray* Update()
+  /// The displacements of the output, which may lie on a device.
+  vtkDataArray* GetArray()
   {
-    VERIFY_EQUAL(this->TryUpdate(), std::string());
-    vtkDataArray* array = this->Filter->GetOutput()->GetPointData()->GetArray("Displacement");
+    return this->Filter->GetOutput()->GetPointData()->GetArray("Displacement");
+  }
+  /// Their values: the array itself, or a copy of one that lies on a device.
+  vtkFloatArray* GetFloats()
+  {
+    vtkDataArray* array = this->GetArray();
     auto* const floats = vtkFloatArray::SafeDownCast(array);
-    if (array && !floats) // it is on a device
+    if (array && !floats)
     {
       this->Copied->DeepCopy(array);
       return this->Copied;
     }
     return floats;
+  }
+  vtkFloatArray* Update()
+  {
+    VERIFY_EQUAL(this->TryUpdate(), std::string());
+    return this->GetFloats();
   }
   vtkFloatArray* Drag(const std::vector<Handle>& handles)
   {
@@ -100,7 +110,7 @@ struct Dragged
   vtkNew<vtkFloatArray> Copied;
 };
 
-inline vtkSmartPointer<vtkFloatArray> Copy(vtkFloatArray* array)
+inline vtkSmartPointer<vtkFloatArray> Copy(vtkDataArray* array)
 {
   auto copy = vtkSmartPointer<vtkFloatArray>::New();
   copy->DeepCopy(array);

@@ -51,7 +51,7 @@ void TestWorldForm()
   VERIFY_EQUAL(found->GetNumberOfTuples(), volume->GetNumberOfPoints());
   vtkImageData* output = dragged.Filter->GetOutput();
   VERIFY_EQUAL(GetExtent(output), GetExtent(volume));
-  VERIFY(output->GetPointData()->GetVectors() == found);
+  VERIFY(output->GetPointData()->GetVectors() == dragged.GetArray());
   const glm::dvec3 origin = GetWorld(volume, glm::dvec3(0.0));
   double largest = 0.0;
   for (int k = 0; k <= 18; ++k)
@@ -86,8 +86,10 @@ void TestKept()
   Dragged dragged(volume);
   const glm::dvec3 rest(8, 12, 12);
   vtkFloatArray* found = dragged.Drag({ { rest, rest + glm::dvec3(2, 0, 0) } });
+  vtkDataArray* const array = dragged.GetArray();
+  const bool isOnHost = array == found;
   const float* memory = found->GetPointer(0);
-  const vtkMTimeType time = found->GetMTime();
+  const vtkMTimeType time = array->GetMTime();
   // 7 voxels along the three axes, and so on: an octahedron with half axes of 3 voxels.
   VERIFY_EQUAL(dragged.Filter->GetNumberOfMovedVoxels(), vtkIdType{ 63 });
   VERIFY_EQUAL(GetExtent(dragged.Filter->GetOutput()), GetExtent(volume));
@@ -99,13 +101,15 @@ void TestKept()
   };
   VERIFY_EQUAL(getChanges(), (Extent{ { 0, 15, 8, 15, 8, 15 } }));
   // The same again: nothing changes.
-  VERIFY(dragged.Update() == found && found->GetMTime() == time);
+  dragged.Update();
+  VERIFY(dragged.GetArray() == array && array->GetMTime() == time);
   VERIFY_EQUAL(dragged.Filter->GetNumberOfMovedVoxels(), vtkIdType{ 0 });
   VERIFY_EQUAL(getChanges(), (Extent{ { 0, -1, 0, -1, 0, -1 } }));
   // A drag elsewhere: what was moved stays.
   const glm::dvec3 other(34, 12, 12);
-  VERIFY(dragged.Drag({ { other, other + glm::dvec3(0, -1, 0) } }) == found);
-  VERIFY(found->GetPointer(0) == memory && found->GetMTime() > time);
+  found = dragged.Drag({ { other, other + glm::dvec3(0, -1, 0) } });
+  VERIFY(dragged.GetArray() == array && array->GetMTime() > time);
+  VERIFY(!isOnHost || found->GetPointer(0) == memory);
   VERIFY(GetTuple(found, GetId(volume, 8, 12, 12)) == glm::dvec3(2, 0, 0));
   VERIFY(GetTuple(found, GetId(volume, 34, 12, 12)) == glm::dvec3(0, -1, 0));
   VERIFY_EQUAL(getChanges(), (Extent{ { 32, 39, 8, 15, 8, 15 } }));
@@ -192,7 +196,9 @@ void TestPinsAndCuts()
     active->SetValue(cell, cell % 20 == 8 ? 0 : 31);
   }
   volume->GetCellData()->AddArray(active);
-  VERIFY(dragged.Update() == found);
+  vtkDataArray* const array = dragged.GetArray();
+  found = dragged.Update();
+  VERIFY(dragged.GetArray() == array);
   VERIFY_EQUAL(dragged.Filter->GetNumberOfReducedHandles(), 0);
   VERIFY(GetTuple(found, GetId(volume, 6, 5, 5)) == glm::dvec3(5, 0, 0));
   VERIFY(GetTuple(found, GetId(volume, 8, 5, 5)) == glm::dvec3(4, 0, 0));
@@ -213,7 +219,8 @@ void TestAborted()
   Dragged dragged(volume);
   const glm::dvec3 rest(20, 20, 20);
   vtkFloatArray* found = dragged.Drag({ { rest, rest + glm::dvec3(3, 0, 0) } });
-  const vtkSmartPointer<vtkFloatArray> before = Copy(found);
+  const vtkSmartPointer<vtkDataArray> array = dragged.GetArray();
+  const vtkSmartPointer<vtkFloatArray> before = Copy(array);
   struct Abort
   {
     static void Execute(vtkObject* filter, unsigned long, void*, void*)
@@ -226,10 +233,11 @@ void TestAborted()
   const unsigned long tag = dragged.Filter->AddObserver(vtkCommand::ProgressEvent, abort);
   dragged.Filter->SetHandlesData(MakeHandles({ { rest, rest + glm::dvec3(9, 0, 0) } }));
   dragged.Filter->Update();
-  VERIFY(HaveEqualBits(found, before));
+  VERIFY(HaveEqualBits(Copy(array), before)); // the output has no array now
   dragged.Filter->RemoveObserver(tag);
   dragged.Filter->SetAbortExecute(0);
   dragged.Filter->Update(); // not up to date
+  found = dragged.GetFloats();
   VERIFY(GetTuple(found, GetId(volume, 20, 20, 20)) == glm::dvec3(9, 0, 0));
 }
 

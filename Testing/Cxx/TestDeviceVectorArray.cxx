@@ -269,21 +269,38 @@ void TestFilter(bool byField)
     found.Filter->SetOutputBoundsMode(mode);
     VERIFY(AreEqual(expected.Update(), found.Update()));
   }
-  // Some tuples are written, in both arrays alike.
+  // Some tuples are written, in both arrays alike: three times without a log, then with one.
+  const bool ownMemory = deformvolume::GetDeviceAbilities("").OwnMemory;
+  constexpr int firstLogged = 3;
+  vtkNew<vtkArrayChanges> expectedLog;
+  vtkNew<vtkArrayChanges> log;
   auto* changed = vtkFloatArray::SafeDownCast(floats->GetPointData()->GetVectors());
-  for (int frame = 0; frame < 3; ++frame)
+  for (int frame = 0; frame < 2 * firstLogged; ++frame)
   {
     for (vtkIdType id = 100; id < 110; ++id)
     {
-      const float move[3] = { 0.5F * static_cast<float>(frame), 0.25F, -0.5F };
+      const float move[3] = { 0.5F * static_cast<float>(frame % firstLogged), 0.25F, -0.5F };
       changed->SetTypedTuple(id, move);
       array->SetTypedTuple(id, move);
     }
-    changed->Modified();
-    array->Modified();
+    if (frame < firstLogged)
+    {
+      changed->Modified();
+      array->Modified();
+    }
+    else
+    {
+      expectedLog->SetArray(changed);
+      expectedLog->AddTuples(100, 109);
+      log->SetArray(array);
+      log->AddTuples(100, 109);
+    }
     VERIFY(AreEqual(expected.Update(), found.Update()));
-    VERIFY_EQUAL(
-      found.Filter->GetNumberOfResampledBricks(), expected.Filter->GetNumberOfResampledBricks());
+    // A device with memory of its own resamples a part of the volume for a field with a log, from
+    // the second logged change on: the first one finds the bounds that the next are compared with.
+    const bool inPart = !ownMemory || (byField && frame > firstLogged);
+    VERIFY_EQUAL(found.Filter->GetNumberOfResampledBricks(),
+      inPart ? expected.Filter->GetNumberOfResampledBricks() : found.Filter->GetNumberOfBricks());
   }
   // A coarse volume, and vectors that are deformed themselves.
   for (Deformed* one : { &expected, &found })
