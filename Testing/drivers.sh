@@ -24,7 +24,7 @@ build=$(realpath "${DEFORMVOLUME_BUILD:-build/vtk}")
 output=$PWD/build/drivers
 tests=${DEFORMVOLUME_DRIVER_TESTS:-^(Kernels|Cxx)\.}
 # These choose a driver or a cache of their own, or need no driver.
-others='Oclgrind|ProgramCacheOfDriver|TestEnvironment|TestTetGen|TestDeformHead|TestDeformLarge'
+others='Oclgrind|TestEnvironment|TestTetGen|TestDeformHead|TestDeformLarge'
 library=$PWD/build/intel-opencl/lib
 
 icd() # the file of a driver in the system's folder, if any
@@ -69,7 +69,7 @@ first_update() # seconds of compilation in a first and in a second process, on a
   rm -rf "$caches"
   mkdir -p "$caches"
   export HOME=$caches XDG_CACHE_HOME=$caches
-  unset POCL_CACHE_DIR DEFORMVOLUME_CACHE_DIR
+  unset POCL_CACHE_DIR
   local run
   for run in 1 2; do
     "$build/bin/FirstUpdate" 2>&1 | sed -n 's/.* compilation \([0-9.]*\) .*/\1/p'
@@ -87,7 +87,7 @@ run() # a driver; leaves its row of the table
   (
     choose "$1"
     times=$(first_update "$1")
-    # Tests fill caches one by one, as each has its own; what a driver lets us keep is shared.
+    # Tests fill caches one by one, as each has its own.
     ctest --test-dir "$build" -R "$tests" -E "$others" --timeout "${DEFORMVOLUME_TEST_TIMEOUT:-900}" \
       --output-on-failure >"$log" 2>&1 || true
     # What tests that pass, or are skipped, say.

@@ -329,7 +329,7 @@ clang=$(find_first clang-15)
 export clang
 export -f make_one front make_ptx assemble_ptx make_amd make_spirv make_intel
 
-export DEFORMVOLUME_CACHE_DIR=off POCL_CACHE_DIR=$output/kernel-cache
+export POCL_CACHE_DIR=$output/kernel-cache
 rm -rf "$output/texts"
 for precision in double single; do
   mkdir -p "$output/texts/$precision"

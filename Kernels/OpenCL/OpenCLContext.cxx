@@ -6,12 +6,10 @@
 #include "DeviceThreads.h"
 #include "Error.h"
 #include "KernelCache.h"
-#include "ProgramCache.h"
 #include "StagedCopies.h"
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 
 namespace deformvolume
 {
@@ -65,55 +63,6 @@ bool IsUsable(const cl::Device& device)
 bool IsPoCL(const OpenCLDevice& device)
 {
   return device.Name.find("Portable Computing Language") != std::string::npos;
-}
-
-/// What the instructions of the processor are: drivers compile for the one that they run on, and a
-/// home directory may serve several.
-std::string GetProcessorText()
-{
-  std::ifstream file("/proc/cpuinfo");
-  std::string text;
-  for (std::string line; std::getline(file, line) && !line.empty();) // the first one
-  {
-    for (const char* key : { "vendor_id", "cpu family", "model", "stepping", "flags", "Features" })
-    {
-      if (line.rfind(key, 0) == 0)
-      {
-        text += line + "\n";
-      }
-    }
-  }
-  return text;
-}
-
-/// All that decides, besides source and options, what the driver makes of a program.
-std::string GetCompilerText(const OpenCLDevice& device)
-{
-  const cl::Platform platform(GetPlatform(device.Device));
-  std::string text;
-  for (const std::string& part :
-    { platform.getInfo<CL_PLATFORM_NAME>(), platform.getInfo<CL_PLATFORM_VENDOR>(),
-      platform.getInfo<CL_PLATFORM_VERSION>(), device.Device.getInfo<CL_DEVICE_NAME>(),
-      device.Device.getInfo<CL_DEVICE_VENDOR>(), device.Device.getInfo<CL_DEVICE_VERSION>(),
-      device.Device.getInfo<CL_DRIVER_VERSION>(), device.Device.getInfo<CL_DEVICE_EXTENSIONS>() })
-  {
-    text += Trim(part) + "\n";
-  }
-  return text + GetProcessorText();
-}
-
-/// What the driver made of a program; empty where it does not give that.
-std::vector<unsigned char> GetBinary(const cl::Program& program)
-{
-  try
-  {
-    const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
-    return binaries.empty() ? std::vector<unsigned char>() : binaries.front();
-  }
-  catch (const cl::Error&)
-  {
-    return {};
-  }
 }
 
 double GetSeconds(const cl::Event& event)
@@ -398,34 +347,6 @@ cl::Program OpenCLContext::GetProgram(const ProgramText& source, const std::stri
 }
 
 cl::Program OpenCLContext::Build(const std::string& source, const std::string& options) const
-{
-  if (IsPoCL(this->Device))
-  {
-    // PoCL keeps what it compiles; asked for a binary, it would compile all kernels once more.
-    return this->BuildSource(source, options);
-  }
-  const ProgramCache cache(ProgramCache::GetDefaultDirectory());
-  const std::string key = GetCompilerText(this->Device) + options + "\n" + source;
-  const std::vector<unsigned char> binary = cache.Read(key);
-  if (!binary.empty())
-  {
-    try
-    {
-      cl::Program program(this->Context, { this->Device.Device }, { binary });
-      program.build({ this->Device.Device }, options.c_str());
-      return program;
-    }
-    catch (const cl::Error&)
-    {
-      // The driver does not take it any longer.
-    }
-  }
-  const cl::Program program = this->BuildSource(source, options);
-  cache.Write(key, GetBinary(program));
-  return program;
-}
-
-cl::Program OpenCLContext::BuildSource(const std::string& source, const std::string& options) const
 {
   cl::Program program(this->Context, source);
   try

@@ -68,8 +68,8 @@ public:
   /// shares that of the host, or the driver gives no page-locked memory.
   StagedCopies* GetStagedCopies();
 
-  /// The program of this text and these options; built at the first request, or made of what an
-  /// earlier process has built (ProgramCache). Throws Error with the compiler's log.
+  /// The program of this text and these options, built at the first request. Throws Error with the
+  /// compiler's log.
   cl::Program GetProgram(const ProgramText& source, const std::string& options);
 
   /// Enqueues a kernel, in a queue that takes the times. Drivers may compile a kernel once more for
@@ -87,7 +87,6 @@ private:
     const OpenCLDevice& device, const std::optional<OpenGLContext>& openGL = std::nullopt);
 
   cl::Program Build(const std::string& source, const std::string& options) const;
-  cl::Program BuildSource(const std::string& source, const std::string& options) const;
   /// Whether it is the first time that this is asked for such launches.
   bool IsNew(const cl::Kernel& kernel, const cl::NDRange& group);
 

@@ -19,7 +19,7 @@ rm -f "$log"
 # because Oclgrind 21.10 does not know all that its own compiler puts into inlined functions. Its
 # search for uninitialised values is left out: it takes what clEnqueueFillBuffer wrote for such.
 OCL_ICD_VENDORS="$library" DEFORMVOLUME_DEVICE=oclgrind OCLGRIND_LOG="$log" \
-  OCLGRIND_BUILD_OPTIONS=-cl-opt-disable DEFORMVOLUME_CACHE_DIR=off \
+  OCLGRIND_BUILD_OPTIONS=-cl-opt-disable \
   OCLGRIND_DATA_RACES="${OCLGRIND_DATA_RACES:-1}" \
   OCLGRIND_LOCAL_MEM_SIZE="${OCLGRIND_LOCAL_MEM_SIZE:-1048576}" "$@" || exit 1
 

@@ -29,7 +29,7 @@ public:
     this->Directory = testing::TempDir() + "empty-caches-XXXXXX";
     ASSERT_TRUE(mkdtemp(this->Directory.data()));
     setenv("POCL_CACHE_DIR", (this->Directory + "/pocl").c_str(), 1);
-    setenv("DEFORMVOLUME_CACHE_DIR", (this->Directory + "/programs").c_str(), 1);
+    setenv("CUDA_CACHE_PATH", (this->Directory + "/nvidia").c_str(), 1);
     setenv("MESA_SHADER_CACHE_DIR", (this->Directory + "/mesa").c_str(), 1);
   }
   void TearDown() override
