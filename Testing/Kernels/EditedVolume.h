@@ -101,13 +101,6 @@ inline auto GetWays()
 class WayTest : public testing::TestWithParam<Way>
 {
 protected:
-  void SetUp() override
-  {
-    if (GetMethod() == deformvolume::Resampling::ExactByCell && !HasVectors())
-    {
-      GTEST_SKIP() << "the device chooses the kernel by cell itself";
-    }
-  }
   static Route GetRoute() { return std::get<0>(GetParam()); }
   static deformvolume::Resampling GetMethod() { return std::get<1>(GetParam()); }
   template <typename... Arguments>
