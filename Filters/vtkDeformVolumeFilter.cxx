@@ -192,7 +192,10 @@ int vtkDeformVolumeFilter::FillInputPortInformation(int port, vtkInformation* in
   }
   // Composite datasets come first, or the executive would iterate over their leaves.
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
+  for (const char* grid : { "vtkUnstructuredGrid", "vtkStructuredGrid", "vtkRectilinearGrid" })
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), grid);
+  }
   if (port == 1)
   {
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
@@ -218,6 +221,7 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "DisplacementScale: " << this->DisplacementScale << "\n";
+  os << indent << "PointsAreDeformed: " << (this->PointsAreDeformed ? "on" : "off") << "\n";
   os << indent << "FieldIsInverse: " << (this->FieldIsInverse ? "on" : "off") << "\n";
   os << indent << "OutputBoundsMode: " << this->OutputBoundsMode << "\n";
   os << indent << "NumberOfTimeSamples: " << this->NumberOfTimeSamples << "\n";

@@ -27,21 +27,24 @@
  * not resampled, and a warning names them.
  *
  * @par Port 1, the deformation, one of:
- * - vtkUnstructuredGrid, or a composite dataset of such (they are joined): tetrahedra; other
- *   three-dimensional cells, quadratic and Lagrange cells included, are split into tetrahedra
- *   between their nodes (Bezier cells are an error). Without port 2 its points are the
- *   rest positions, and the vectors chosen by SetInputArrayToProcess(0, 1, 0, POINTS, name), three
- *   components in world units, are added DisplacementScale times. By default these are the active
- *   vectors; an empty name stands for the active vectors or else the only array of three
- *   components. With port 2 its points are the deformed positions, in world coordinates.
+ * - vtkUnstructuredGrid, vtkStructuredGrid, vtkRectilinearGrid, or a composite dataset of such
+ *   (they are joined): tetrahedra; other three-dimensional cells, quadratic and Lagrange cells
+ *   included, are split into tetrahedra (Bezier cells are an error). Cells that vtkGhostType marks
+ *   as hidden or duplicate are left out, and so are cells of structured and rectilinear grids with
+ *   a hidden point. Without port 2 its points are the rest positions, and the vectors chosen by
+ *   SetInputArrayToProcess(0, 1, 0, POINTS, name), three components in world units, are added
+ *   DisplacementScale times. By default these are the active vectors; an empty name stands for the
+ *   active vectors or else the only array of three components. With port 2 its points are the
+ *   deformed positions, in world coordinates. Positions and displacements of nodes that no
+ *   three-dimensional cell uses have no effect and need not be finite (in a vtkDeviceVectorArray
+ *   they must be), and a block without such cells needs no displacements.
  * - vtkImageData with a three-component point array chosen in the same way: a displacement field,
  *   in world units, at the volume's resolution or any other, trilinear between its points. It is
  *   forward: it leads from a point of the volume at rest to where that point goes. Registration
  *   programs write inverse fields, see FieldIsInverse.
  *
  * @par Port 2, optional, the rest configuration:
- * vtkUnstructuredGrid (or a composite dataset of such) with the cells and the number of points of
- * port 1.
+ * A mesh, as on port 1, with the cells and the number of points of port 1.
  *
  * @par Output:
  * vtkImageData with the volume's origin and direction matrix, and by default its spacing; only the
@@ -114,6 +117,20 @@ public:
    */
   vtkSetMacro(DisplacementScale, double);
   vtkGetMacro(DisplacementScale, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the points of the mesh on port 1 are deformed already, with the displacements that led
+   * there beside them, as some readers give them (vtkExodusIIReader with ApplyDisplacements). The
+   * rest positions are then the points minus the displacements, to which these are added
+   * DisplacementScale times. With a rest configuration on port 2, or a displacement field on port
+   * 1, it is an error. Where points are stored as float, rest positions differ from time step to
+   * time step by rounding, and the static mapping is built for each step. Default: off.
+   */
+  vtkSetMacro(PointsAreDeformed, bool);
+  vtkGetMacro(PointsAreDeformed, bool);
+  vtkBooleanMacro(PointsAreDeformed, bool);
   ///@}
 
   ///@{
@@ -575,6 +592,7 @@ private:
   void operator=(const vtkDeformVolumeFilter&) = delete;
 
   double DisplacementScale = 1.0;
+  bool PointsAreDeformed = false;
   bool FieldIsInverse = false;
   int OutputBoundsMode = DEFORMED_BOUNDS;
   int NumberOfTimeSamples = 11;

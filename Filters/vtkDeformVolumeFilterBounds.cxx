@@ -7,7 +7,9 @@
 #include "LookupBounds.h"
 #include "OutputExtent.h"
 #include "VectorBounds.h"
+#include "WorldBoxes.h"
 
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -66,8 +68,9 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
       : deformvolume::ComputeDeformedBounds(voxelGrid, field);
     if (bounds.IsEmpty())
     {
-      throw Error("The displacement field on input port 1 holds no voxel of the volume. Check "
-                  "that both are in the same world coordinates and overlap.");
+      throw Error("The displacement field on input port 1 holds no voxel of the volume. " +
+        deformvolume::DescribeBoxes(
+          deformvolume::GetGeometry(vtkImageData::SafeDownCast(source.Shape)), volume));
     }
     return bounds;
   }

@@ -16,6 +16,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
 #include "vtkInformationIntegerVectorKey.h"
+#include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -170,6 +171,8 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
     { return this->Self->GetInputArrayToProcess(0, dataSet, association); });
   source.FieldIsInverse = this->Self->FieldIsInverse;
   source.Choice += source.FieldIsInverse ? " inverse" : "";
+  source.PointsAreDeformed = this->Self->PointsAreDeformed;
+  source.Choice += source.PointsAreDeformed ? " deformed" : "";
   source.DisplacementScale = this->Self->DisplacementScale;
   if (!std::isfinite(source.DisplacementScale))
   {
@@ -321,31 +324,49 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
     }
     return text;
   };
-  std::string warning;
+  std::set<std::string> warnings;
   const std::string cellArrays = list(deformvolume::GetUnusedCellArrays(volume));
   if (!cellArrays.empty())
   {
-    warning += "Cell arrays of the volume are not resampled: " + cellArrays +
-      ". Convert them to point arrays where they are wanted. ";
+    warnings.insert("Cell arrays of the volume are not resampled: " + cellArrays +
+      ". Convert them to point arrays where they are wanted.");
   }
   if (!leftOut.empty())
   {
-    warning += "Point arrays of the volume of a type that cannot be resampled are left out: " +
-      list(leftOut) + ". ";
+    warnings.insert("Point arrays of the volume of a type that cannot be resampled are left out: " +
+      list(leftOut) + ".");
+  }
+  using Attributes = vtkDataSetAttributes;
+  for (const auto& [role, kind] : { std::pair(Attributes::VECTORS, "vectors"),
+         std::pair(Attributes::NORMALS, "normals"), std::pair(Attributes::TENSORS, "tensors") })
+  {
+    if (vtkDataArray* array = volume->GetPointData()->GetAttribute(role))
+    {
+      warnings.insert(std::string("The active ") + kind + " \"" +
+        (array->GetName() ? array->GetName() : "") +
+        "\" of the volume are interpolated component by component, and not rotated with the "
+        "deformation. Rotate them afterwards where their directions matter.");
+    }
   }
   const std::string& ignored = this->State->Deformation.GetRestMesh().GetIgnoredCells();
   const std::string& cells = ignored.empty() ? this->Gathering.GetIgnoredCells() : ignored;
   if (!this->State->Deformation.IsField() && !cells.empty())
   {
-    warning += "Cells of the deformation mesh that are not three-dimensional, or of a type that "
-               "cannot be split into tetrahedra, are ignored: " +
-      cells + ". ";
+    warnings.insert(
+      "Cells of the deformation mesh that are not three-dimensional, or of a type that "
+      "cannot be split into tetrahedra, are ignored: " +
+      cells + ".");
   }
-  if (warning != this->WarnedOf && !warning.empty())
+  std::string news;
+  for (const std::string& warning : warnings)
   {
-    vtkWarningWithObjectMacro(this->Self, << warning);
+    news += this->WarnedOf.count(warning) > 0 ? "" : (news.empty() ? "" : " ") + warning;
   }
-  this->WarnedOf = warning;
+  if (!news.empty())
+  {
+    vtkWarningWithObjectMacro(this->Self, << news);
+  }
+  this->WarnedOf = warnings;
 }
 
 //------------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #include "ExecutionState.h"
 #include "ImageGeometry.h"
 #include "MeshGathering.h"
+#include "MeshGrids.h"
 #include "Ranks.h"
 
 #include "vtkDeformVolumeFilter.h"
@@ -138,6 +139,8 @@ public:
 
   std::set<std::string> CategoricalArrays;
   vtkNew<vtkStringArray> DeviceChoices;
+  deformvolume::MeshGrids ShapeGrids;
+  deformvolume::MeshGrids RestGrids;
   deformvolume::MeshGathering Gathering;
 
   // What is kept for each SamplingFactor, and for the one that is set.
@@ -198,7 +201,7 @@ private:
   vtkSmartPointer<vtkImageData> CutVolume;
   std::pair<const void*, vtkMTimeType> CutStamp;
 
-  std::string WarnedOf;
+  std::set<std::string> WarnedOf;
   // When what the last error was about had been changed.
   vtkMTimeType ToldTime = 0;
 };

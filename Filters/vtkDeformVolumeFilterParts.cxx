@@ -27,9 +27,16 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::ReadDeformation(
   const Ranks& ranks, const ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest)
 {
   DeformationSource source;
-  ranks.Attempt([&] { source = this->MakeSource(volume, shape, rest); });
-  source.ShapeIsMade = !deformvolume::IsInMemory(this->Self, 1);
-  source.RestIsMade = !deformvolume::IsInMemory(this->Self, 2);
+  ranks.Attempt(
+    [&]
+    {
+      source = this->MakeSource(volume, shape, rest);
+      source.ShapeIsMade = !deformvolume::IsInMemory(this->Self, 1);
+      source.RestIsMade = !deformvolume::IsInMemory(this->Self, 2);
+      source.ShapeParts = this->ShapeGrids.Find(
+        shape, source.ShapeIsMade, source.PointsAreDeformed ? &source.Selector : nullptr);
+      source.RestParts = this->RestGrids.Find(rest, source.RestIsMade);
+    });
   source = this->Gathering.Gather(ranks, source);
   ranks.Attempt(
     [&]

@@ -9,6 +9,7 @@
 #include "MaskArray.h"
 #include "OutputExtent.h"
 #include "VolumeArrays.h"
+#include "WorldBoxes.h"
 
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
@@ -159,8 +160,8 @@ int vtkDeformVolumeFilter::RequestInformation(
       }
       if (this->GetNumberOfInputConnections(1) == 0)
       {
-        throw Error("There is no deformation. Connect a vtkUnstructuredGrid with tetrahedra or a "
-                    "vtkImageData with displacements to input port 1.");
+        throw Error("There is no deformation. Connect a mesh, such as a vtkUnstructuredGrid with "
+                    "tetrahedra, or a vtkImageData with displacements to input port 1.");
       }
       if (!volumeInfo->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
       {
@@ -376,6 +377,10 @@ int vtkDeformVolumeFilter::RequestData(
     device.SetVolume(voxelGrid, worked, arrays, this->BackgroundValue, request.Method);
     if (request.Method == deformvolume::Resampling::MeshRasterization)
     {
+      if (!deformation.IsField())
+      {
+        deformvolume::CheckBoxes(deformation, geometry);
+      }
       device.SetRestMesh(deformation, mapped.Extrapolate);
     }
     else

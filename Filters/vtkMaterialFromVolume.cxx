@@ -203,7 +203,7 @@ void vtkMaterialFromVolume::Execute(
 
   const deformvolume::GridTetrahedra read = deformvolume::ReadTetrahedra(mesh);
   const std::vector<glm::dvec3> points = mesh->GetNumberOfPoints() > 0
-    ? deformvolume::ReadPoints({ mesh }, "mesh on input port 0")
+    ? deformvolume::ReadPoints({ mesh }, "mesh on input port 0", read.Tetrahedra)
     : std::vector<glm::dvec3>();
   deformvolume::ProgressReport progress(this);
   const deformvolume::MaterialMeans means = deformvolume::FindMaterialMeans(

@@ -61,6 +61,8 @@ const deformvolume::VertexPositions& vtkVolumeEditAlgorithm::vtkEdits::GetVertic
   deformvolume::ChooseVectors(source, this->Self->GetInputArrayInformation(0),
     [this](vtkDataSet* dataSet, int& association)
     { return this->Self->GetInputArrayToProcess(0, dataSet, association); });
+  source.PointsAreDeformed = this->Self->PointsAreDeformed;
+  source.Choice += source.PointsAreDeformed ? " deformed" : "";
   source.DisplacementScale = this->Self->DisplacementScale;
   return this->Editor.GetPositions(source, this->Self->OutsideMode == EXTRAPOLATE);
 }
@@ -188,7 +190,10 @@ int vtkVolumeEditAlgorithm::FillInputPortInformation(int port, vtkInformation* i
   }
   // Composite datasets come first, or the executive would iterate over their leaves.
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
+  for (const char* grid : { "vtkUnstructuredGrid", "vtkStructuredGrid", "vtkRectilinearGrid" })
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), grid);
+  }
   if (port == 2)
   {
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
@@ -258,6 +263,7 @@ void vtkVolumeEditAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Accumulate: " << (this->Accumulate ? "on" : "off") << "\n";
   os << indent << "NumberOfToolPositions: " << this->GetNumberOfToolPositions() << "\n";
   os << indent << "DisplacementScale: " << this->DisplacementScale << "\n";
+  os << indent << "PointsAreDeformed: " << (this->PointsAreDeformed ? "on" : "off") << "\n";
   os << indent << "OutsideMode: " << this->OutsideMode << "\n";
   os << indent << "NumberOfSwitchedOffTetrahedra: " << this->GetNumberOfSwitchedOffTetrahedra()
      << "\n";

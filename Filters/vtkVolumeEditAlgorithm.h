@@ -111,6 +111,16 @@ public:
   vtkGetMacro(DisplacementScale, double);
   ///@}
 
+  ///@{
+  /**
+   * Whether the points of a mesh on port 2 are deformed already, as in vtkDeformVolumeFilter.
+   * Default: off.
+   */
+  vtkSetMacro(PointsAreDeformed, bool);
+  vtkGetMacro(PointsAreDeformed, bool);
+  vtkBooleanMacro(PointsAreDeformed, bool);
+  ///@}
+
   enum OutsideModes
   {
     DISCARD = 0,
@@ -153,6 +163,7 @@ protected:
 
   bool Accumulate = false;
   double DisplacementScale = 1.0;
+  bool PointsAreDeformed = false;
   int OutsideMode = DISCARD;
 
   class vtkEdits;

@@ -97,6 +97,7 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
       0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, deformation.Displacement.c_str());
   }
   filter->SetDisplacementScale(options.Scale);
+  filter->SetPointsAreDeformed(options.PointsAreDeformed);
   filter->SetFieldIsInverse(options.FieldIsInverse);
   filter->SetOutsideMode(
     options.Extrapolate ? vtkDeformVolumeFilter::EXTRAPOLATE : vtkDeformVolumeFilter::DISCARD);

@@ -130,7 +130,8 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     "What deforms the volume (one of --mesh, --field, --tetgen, --lattice, --model)";
   program
     .add_option("--mesh", options.Mesh,
-      "Tetrahedral mesh (.vtu, .vtm; other cells are split), or a displacement field (.vti)")
+      "Mesh (.vtu, .vts, .vtr, .vtm; cells are split into tetrahedra), or a displacement field "
+      "(.vti)")
     ->type_name("FILE")
     ->group(group);
   program
@@ -156,6 +157,11 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     .add_option("--rest", options.Rest,
       "The mesh at rest, with the cells of --mesh; the points of --mesh are then deformed")
     ->type_name("FILE")
+    ->group(group);
+  program
+    .add_flag("--points-are-deformed", options.PointsAreDeformed,
+      "The points of --mesh are deformed already: their displacements lead from the rest "
+      "positions to them")
     ->group(group);
   program.add_option("--scale", options.Scale, "Factor on the displacements of --mesh")
     ->capture_default_str()
@@ -268,7 +274,7 @@ void AddDependencies(CLI::App& program)
       program.get_option(option)->needs(program.get_option(needed));
     }
   };
-  needs("--mesh", { "--rest" });
+  needs("--mesh", { "--rest", "--points-are-deformed" });
   needs("--field", { "--field-is-inverse" });
   needs("--tetgen",
     { "--isovalue", "--pieces", "--edge-length", "--radius-edge-ratio", "--tetgen-executable" });
@@ -279,6 +285,7 @@ void AddDependencies(CLI::App& program)
   needs("--frames", { "--movie" });
   needs("--cut", { "--smooth-cut" });
   program.get_option("--scale")->excludes(program.get_option("--rest"));
+  program.get_option("--points-are-deformed")->excludes(program.get_option("--rest"));
   program.get_option("--field")->excludes(program.get_option("--file-coordinates"));
   program.get_option("--isovalue")->excludes(program.get_option("--labels"));
   for (const char* option : { "--mesh", "--field" })

@@ -25,6 +25,7 @@ struct Options
   std::string Rest;
   double Scale = 1.0;
   std::string Field;
+  bool PointsAreDeformed = false;
   bool FieldIsInverse = false;
 
   bool TetGen = false;

@@ -183,6 +183,9 @@ const VertexPositions& VolumeEditor::GetPositions(DeformationSource source, bool
   source.Volume = this->Geometry;
   try
   {
+    source.ShapeParts = this->ShapeGrids.Find(
+      source.Shape, source.ShapeIsMade, source.PointsAreDeformed ? &source.Selector : nullptr);
+    source.RestParts = this->RestGrids.Find(source.Rest, source.RestIsMade);
     this->Deformation.Read(source);
     const bool isField = this->Deformation.IsField();
     // The mapping of a part has whole rows, and is that of the whole volume to the last bit.

@@ -9,6 +9,7 @@
 #include "ImageGeometry.h"
 #include "MappingCache.h"
 #include "MaskEditor.h"
+#include "MeshGrids.h"
 #include "VertexPositions.h"
 
 #include "vtkSmartPointer.h"
@@ -101,6 +102,8 @@ private:
   vtkSmartPointer<vtkFloatArray> CutDistances;
 
   std::unique_ptr<RestPositions> Rest;
+  MeshGrids ShapeGrids;
+  MeshGrids RestGrids;
   deformvolume::Deformation Deformation;
   MappingCache Mapping;
   std::unique_ptr<DeformedPositions> Deformed;

@@ -3,6 +3,7 @@
 
 #include "Error.h"
 #include "VertexRuns.h"
+#include "WorldBoxes.h"
 
 #include <algorithm>
 #include <chrono>
@@ -178,9 +179,7 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
   }
   if (!holdsVoxels)
   {
-    throw Error("The deformation mesh at rest holds no voxel of the volume. Check that both are "
-                "in the same world coordinates and overlap, and that input port 1 or, where it is "
-                "connected, port 2 has the rest configuration.");
+    throw Error(DescribeMiss(deformation, volume.Whole));
   }
   this->Mapping = std::move(mapping);
   this->Survey = survey;

@@ -35,6 +35,14 @@ glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor)
 
 void Deformation::Read(const DeformationSource& source)
 {
+  const bool isField = vtkImageData::SafeDownCast(source.Shape) != nullptr;
+  if (source.PointsAreDeformed && (isField || source.Rest))
+  {
+    throw Error(std::string("PointsAreDeformed is on, but input port ") +
+      (isField ? "1 has a displacement field, whose points are at rest"
+               : "2 has a rest configuration, so that no displacements are read") +
+      ". Set PointsAreDeformed off" + (isField ? "." : ", or disconnect port 2."));
+  }
   if (const auto image = vtkImageData::SafeDownCast(source.Shape))
   {
     if (source.Rest)
@@ -52,8 +60,13 @@ void Deformation::Read(const DeformationSource& source)
 
 void Deformation::ReadMesh(const DeformationSource& source)
 {
-  const MeshParts shape = GetMeshParts(source.Shape, MESH_NAME);
-  const MeshParts rest = source.Rest ? GetMeshParts(source.Rest, REST_NAME) : shape;
+  const MeshParts& shape = source.ShapeParts;
+  const MeshParts& rest = source.Rest ? source.RestParts : shape;
+  CheckParts(shape, source.Shape, MESH_NAME);
+  if (source.Rest)
+  {
+    CheckParts(rest, source.Rest, REST_NAME);
+  }
   if (GetNumberOfNodes(shape) != GetNumberOfNodes(rest))
   {
     throw Error("The deformation mesh on input port 1 has " +
@@ -66,6 +79,10 @@ void Deformation::ReadMesh(const DeformationSource& source)
   {
     this->ConnectivityOfVectors = this->Mesh.GetConnectivityVersion();
     ++this->VectorsVersion;
+    if (this->Faults.MayHaveAny())
+    {
+      this->VectorsStamp.clear(); // tetrahedra may use them now
+    }
   }
 
   Stamp stamp = source.Rest ? GetPointsStamp(shape) : GetPointVectorsStamp(shape);
@@ -99,16 +116,39 @@ void Deformation::ReadMesh(const DeformationSource& source)
     {
       if (ofPoints)
       {
-        ReadPointDifferences(shape, rest, take, this->Memories);
+        ReadPointDifferences(shape, rest, take, this->Memories, this->Faults);
       }
       else
       {
-        ReadPointVectors(
-          shape, source.Selector, source.Wanted, MESH_NAME, take, &this->Memories, takeFloats);
+        ReadPointVectors(shape, source.Selector, this->Faults, take, &this->Memories, takeFloats);
       }
+      this->CheckFaults(shape, source);
     },
     ofPoints ? 1.0 : source.DisplacementScale, source);
   this->RememberVectors(stamp, source, false);
+}
+
+void Deformation::ThrowTooFar()
+{
+  throw Error("The deformation moves the volume by more than 16,383 output voxels. Check "
+              "DisplacementScale, the output spacing, and that displacements and volume are in "
+              "the same world units.");
+}
+
+void Deformation::CheckFaults(const MeshParts& shape, const DeformationSource& source) const
+{
+  const std::vector<Tetrahedron>& tetrahedra = this->Mesh.GetTetrahedra();
+  const vtkIdType node = this->Faults.FindUsed(tetrahedra);
+  if (node >= 0 && this->Faults.Get(node) == NodeFaults::TooFar)
+  {
+    ThrowTooFar();
+  }
+  if (source.Rest)
+  {
+    CheckPoints(shape, MESH_NAME, this->Faults, tetrahedra);
+    return;
+  }
+  CheckPointVectors(shape, source.Selector, source.Wanted, MESH_NAME, this->Faults, tetrahedra);
 }
 
 bool Deformation::VectorsAreCurrent(
@@ -201,10 +241,11 @@ void Deformation::ReplaceVectors(
   const VectorConversion conversion(GetToDisplacement(source, factor));
   std::vector<std::atomic<bool>> changed(blocks);
   std::vector<std::atomic<bool>> inPieces(blocks);
-  std::atomic<bool> tooFar{ false };
+  this->Faults.Resize(count);
   // Returns false where a vector is not finite, or a displacement too large.
   const auto takeVectors = [&](vtkIdType first, const auto* vectors, vtkIdType number, int width)
   {
+    this->Faults.Clear(first, number);
     std::array<float, 3 * PointsPerBlock> displacements;
     auto point = static_cast<std::size_t>(first);
     const std::size_t end = point + static_cast<std::size_t>(number);
@@ -214,7 +255,18 @@ void Deformation::ReplaceVectors(
       const std::size_t some = std::min(end, (block + 1) * PointsPerBlock) - point;
       if (!conversion.Convert(vectors, some, displacements.data()))
       {
-        return false;
+        if (width != 1)
+        {
+          return false;
+        }
+        for (std::size_t i = 0; i < some; ++i)
+        {
+          if (!conversion.Convert(vectors + i, 1, &displacements[3 * i]))
+          {
+            std::fill_n(&displacements[3 * i], 3, 0.0F);
+            this->Faults.Mark(static_cast<vtkIdType>(point + i), NodeFaults::TooFar);
+          }
+        }
       }
       float* last = this->Vectors.data() + 3 * point;
       if (std::memcmp(last, displacements.data(), 3 * some * sizeof(float)) != 0)
@@ -236,22 +288,10 @@ void Deformation::ReplaceVectors(
     }
     return true;
   };
-  read(
-    [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType number)
-    {
-      if (!takeVectors(first, vectors, number, 1))
-      {
-        tooFar = true;
-      }
-    },
+  read([&](vtkIdType first, const glm::dvec3* vectors, vtkIdType number)
+    { takeVectors(first, vectors, number, 1); },
     [&](vtkIdType first, const float* vectors, vtkIdType number)
     { return takeVectors(first, vectors, number, 3); });
-  if (tooFar)
-  {
-    throw Error("The deformation moves the volume by more than 16,383 output voxels. Check "
-                "DisplacementScale, the output spacing, and that displacements and volume are in "
-                "the same world units.");
-  }
   std::size_t number = 0;
   for (std::size_t block = 0; block < blocks; ++block)
   {
@@ -280,6 +320,8 @@ void Deformation::RememberVectors(const Stamp& stamp, const DeformationSource& s
   // Only compared, never called or read through again.
   this->VectorsSource.Shape = nullptr;
   this->VectorsSource.Rest = nullptr;
+  this->VectorsSource.ShapeParts.clear();
+  this->VectorsSource.RestParts.clear();
   this->VectorsSource.Selector = nullptr;
 }
 

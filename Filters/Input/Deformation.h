@@ -35,6 +35,9 @@ struct DeformationSource
   /// What is connected to port 1, and to port 2 or null.
   vtkDataObject* Shape = nullptr;
   vtkDataObject* Rest = nullptr;
+  /// Their grids, where they are meshes.
+  MeshParts ShapeParts;
+  MeshParts RestParts;
   /// Whether a filter makes these, and they are not data that somebody holds (see MeshStamp).
   bool ShapeIsMade = false;
   bool RestIsMade = false;
@@ -43,6 +46,8 @@ struct DeformationSource
   std::string Wanted;
   std::string Choice;
   double DisplacementScale = 1.0;
+  /// Whether the mesh is given by its deformed points; the grids above are at rest all the same.
+  bool PointsAreDeformed = false;
   /// Whether a field leads from the output to the volume at rest.
   bool FieldIsInverse = false;
   ImageGeometry Volume;
@@ -125,13 +130,16 @@ private:
   bool HasSameUnits(const DeformationSource& source) const;
   /// Calls one of its arguments for all displacements in world units.
   using VectorSource = std::function<void(const VectorTaker&, const FloatTaker&)>;
-  /// read: of so many displacements.
+  /// read: of so many displacements; it throws an Error where some cannot be used.
   void SetVectors(
     std::size_t count, const VectorSource& read, double factor, const DeformationSource& source);
   /// The same without a new version.
   void ReplaceVectors(
     std::size_t count, const VectorSource& read, double factor, const DeformationSource& source);
 
+  [[noreturn]] static void ThrowTooFar();
+  /// Throws an Error where tetrahedra use a vector that cannot be used.
+  void CheckFaults(const MeshParts& shape, const DeformationSource& source) const;
   /// There are so many vectors now, in so many blocks.
   void ResizeVectors(std::size_t count, std::size_t blocks);
 
@@ -141,6 +149,7 @@ private:
   std::vector<std::uint64_t> BlockVersions; // that with which each block of the vectors came
   std::vector<VectorComponents> BlockComponents;
   bool VectorsAreWhole = false; // else the last reading of them failed
+  NodeFaults Faults;            // of the vectors, where they are read from a mesh
   std::array<int, 3> FieldDimensions{ { 0, 0, 0 } };
   std::array<double, 12> IndexToField{};
   DisplacementField FieldInPlace; // with an owner, or there is none

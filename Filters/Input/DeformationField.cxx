@@ -103,7 +103,8 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   }
   const ImageGeometry geometry = GetGeometry(image);
   CheckTransform(geometry, "the displacement field on input port 1");
-  vtkDataArray* array = FindVectors(image, source.Selector, source.Wanted, FIELD);
+  vtkDataArray* array =
+    FindVectors(image, source.Selector, source.Wanted, std::string("the ") + FIELD);
   image->GetDimensions(this->FieldDimensions.data());
   glm::dmat4 toField = geometry.GetWorldToIndex() * source.Volume.GetIndexToWorld();
   for (int axis = 0; axis < 3 && source.FieldIsInverse; ++axis)
@@ -148,10 +149,17 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   }
   if (!this->UseFieldInPlace(array, source))
   {
+    this->Faults.Reset();
     this->SetVectors(
       static_cast<std::size_t>(array->GetNumberOfTuples()),
       [&](const VectorTaker& take, const FloatTaker& takeFloats)
-      { ReadVectors(array, take, "Vector", FIELD, nullptr, takeFloats); },
+      {
+        ReadVectors(array, take, "Vector", FIELD, nullptr, takeFloats);
+        if (this->Faults.MayHaveAny())
+        {
+          ThrowTooFar();
+        }
+      },
       source.DisplacementScale, source);
   }
   this->RememberVectors(stamp, source, true);

@@ -4,62 +4,87 @@
 #include "Error.h"
 #include "VectorArray.h"
 
-#include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
-#include "vtkSmartPointer.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <limits>
 
 namespace deformvolume
 {
 
-MeshParts FindGrids(vtkDataObject* object)
+namespace
 {
-  MeshParts parts;
-  if (const auto grid = vtkUnstructuredGrid::SafeDownCast(object))
+
+// Where a node of a mesh is: its part, and its number there.
+std::pair<std::size_t, vtkIdType> FindNode(const MeshParts& parts, vtkIdType node)
+{
+  std::size_t part = 0;
+  while (part + 1 < parts.size() && node >= parts[part]->GetNumberOfPoints())
   {
-    parts.push_back(grid);
+    node -= parts[part]->GetNumberOfPoints();
+    ++part;
   }
-  else if (const auto composite = vtkCompositeDataSet::SafeDownCast(object))
-  {
-    const auto leaves = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
-    for (leaves->InitTraversal(); !leaves->IsDoneWithTraversal(); leaves->GoToNextItem())
-    {
-      if (const auto leaf = vtkUnstructuredGrid::SafeDownCast(leaves->GetCurrentDataObject()))
-      {
-        parts.push_back(leaf);
-      }
-    }
-  }
-  return parts;
+  return { part, node };
 }
 
-MeshParts GetMeshParts(vtkDataObject* object, const std::string& name)
+[[noreturn]] void ThrowNotFinite(
+  const MeshParts& parts, vtkIdType node, const std::string& kind, const std::string& name)
 {
-  MeshParts parts = FindGrids(object);
+  const auto [part, number] = FindNode(parts, node);
+  throw Error(kind + " " + std::to_string(number) + " of " + DescribePart(parts, part, name) +
+    " is not finite, and cells use it. Remove NaN and infinity from it.");
+}
+
+void MarkMissing(vtkIdType first, vtkIdType count, const VectorTaker& take, NodeFaults& faults)
+{
+  const std::array<glm::dvec3, 512> zeros{};
+  for (vtkIdType done = 0; done < count;)
+  {
+    const vtkIdType some = std::min<vtkIdType>(zeros.size(), count - done);
+    take(first + done, zeros.data(), some);
+    done += some;
+  }
+  for (vtkIdType node = first; node < first + count; ++node)
+  {
+    faults.Mark(node, NodeFaults::Missing);
+  }
+}
+
+} // namespace
+
+std::string DescribePart(const MeshParts& parts, std::size_t part, const std::string& name)
+{
+  return (parts.Blocks.empty() ? "" : parts.Blocks[part] + " of ") + "the " + name;
+}
+
+void CheckParts(const MeshParts& parts, vtkDataObject* object, const std::string& name)
+{
+  constexpr const char* connect = ". Connect a vtkUnstructuredGrid with tetrahedra, or a "
+                                  "vtkStructuredGrid or vtkRectilinearGrid.";
   if (parts.empty() && vtkCompositeDataSet::SafeDownCast(object))
   {
     throw Error("The composite dataset that is the " + name +
-      " holds no vtkUnstructuredGrid. Connect one with tetrahedra.");
+      " holds no vtkUnstructuredGrid, vtkStructuredGrid or vtkRectilinearGrid. Connect one with "
+      "three-dimensional cells.");
   }
   if (parts.empty())
   {
-    throw Error("There is no " + name + ". Connect a vtkUnstructuredGrid with tetrahedra.");
+    throw Error("There is no " + name + connect);
   }
   if (GetNumberOfNodes(parts) == 0)
   {
-    throw Error("The " + name + " has no points. Connect a vtkUnstructuredGrid with tetrahedra.");
+    throw Error("The " + name + " has no points" + connect);
   }
   if (GetNumberOfNodes(parts) > std::numeric_limits<std::int32_t>::max())
   {
     throw Error("The " + name + " has more than 2,147,483,647 points. Connect a coarser one.");
   }
-  return parts;
 }
 
 std::size_t GetNumberOfNodes(const MeshParts& parts)
@@ -72,9 +97,12 @@ std::size_t GetNumberOfNodes(const MeshParts& parts)
   return nodes;
 }
 
-std::vector<glm::dvec3> ReadPoints(const MeshParts& parts, const std::string& name)
+std::vector<glm::dvec3> ReadPoints(
+  const MeshParts& parts, const std::string& name, const std::vector<Tetrahedron>& tetrahedra)
 {
   std::vector<glm::dvec3> points(GetNumberOfNodes(parts));
+  NodeFaults faults;
+  faults.Resize(points.size());
   glm::dvec3* next = points.data();
   for (vtkUnstructuredGrid* grid : parts)
   {
@@ -84,11 +112,23 @@ std::vector<glm::dvec3> ReadPoints(const MeshParts& parts, const std::string& na
         grid->GetPoints()->GetData(),
         [next](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
         { std::copy_n(vectors, count, next + first); },
-        "Point", name);
+        "Point", name, nullptr, {},
+        [&](vtkIdType point) { faults.Mark(next - points.data() + point, NodeFaults::NotFinite); });
       next += grid->GetNumberOfPoints();
     }
   }
+  CheckPoints(parts, name, faults, tetrahedra);
   return points;
+}
+
+void CheckPoints(const MeshParts& parts, const std::string& name, const NodeFaults& faults,
+  const std::vector<Tetrahedron>& tetrahedra)
+{
+  const vtkIdType node = faults.FindUsed(tetrahedra);
+  if (node >= 0)
+  {
+    ThrowNotFinite(parts, node, "Point", name);
+  }
 }
 
 vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
@@ -100,20 +140,22 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
     const char* const alternative = vtkUnstructuredGrid::SafeDownCast(dataSet)
       ? ", or connect a rest configuration to input port 2 where the mesh is deformed already."
       : ".";
-    throw Error("The " + name + " has no " + wanted +
+    std::string what = name;
+    what.front() = static_cast<char>(std::toupper(what.front()));
+    throw Error(what + " has no " + wanted +
       ". Choose the displacements with SetInputArrayToProcess(0, 1, 0, "
       "vtkDataObject::FIELD_ASSOCIATION_POINTS, name)" +
       alternative);
   }
   if (array->GetNumberOfComponents() != 3)
   {
-    throw Error("The displacements of the " + name + ", " + wanted + ", have " +
+    throw Error("The displacements of " + name + ", " + wanted + ", have " +
       std::to_string(array->GetNumberOfComponents()) +
       " components. Choose an array with three components.");
   }
   if (array->GetNumberOfTuples() != dataSet->GetNumberOfPoints())
   {
-    throw Error("The displacements of the " + name + ", " + wanted + ", have " +
+    throw Error("The displacements of " + name + ", " + wanted + ", have " +
       std::to_string(array->GetNumberOfTuples()) + " tuples for " +
       std::to_string(dataSet->GetNumberOfPoints()) +
       " points. Choose an array with one tuple for each point.");
@@ -121,9 +163,14 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
   return array;
 }
 
-void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
-  const std::string& wanted, const std::string& name, const VectorTaker& take,
-  std::vector<VectorMemory>* memories, const FloatTaker& takeFloats)
+bool HaveVectors(vtkDataSet* dataSet, vtkDataArray* vectors)
+{
+  return vectors && vectors->GetNumberOfComponents() == 3 &&
+    vectors->GetNumberOfTuples() == dataSet->GetNumberOfPoints();
+}
+
+void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector, NodeFaults& faults,
+  const VectorTaker& take, std::vector<VectorMemory>* memories, const FloatTaker& takeFloats)
 {
   std::vector<VectorMemory> none;
   std::vector<VectorMemory>& last = memories ? *memories : none;
@@ -133,23 +180,50 @@ void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
   {
     vtkUnstructuredGrid* grid = parts[part];
     const vtkIdType points = grid->GetNumberOfPoints();
-    if (points == 0 || last[part].Place != next)
+    vtkDataArray* array = points > 0 ? selector(grid) : nullptr;
+    const bool isUsable = HaveVectors(grid, array);
+    if (!isUsable || last[part].Place != next)
     {
       last[part] = VectorMemory();
       last[part].Place = next;
     }
-    if (points > 0)
+    if (!isUsable)
+    {
+      MarkMissing(next, points, take, faults);
+    }
+    else
     {
       ReadVectors(
-        FindVectors(grid, selector, wanted, name),
+        array,
         [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
         { take(next + first, vectors, count); },
-        "Displacement", name, memories ? &last[part] : nullptr,
+        "Displacement", "", memories ? &last[part] : nullptr,
         takeFloats ? [&](vtkIdType first, const float* vectors, vtkIdType count)
           { return takeFloats(next + first, vectors, count); }
-                   : FloatTaker());
+                   : FloatTaker(),
+        [&](vtkIdType point) { faults.Mark(next + point, NodeFaults::NotFinite); });
     }
     next += points;
+  }
+}
+
+void CheckPointVectors(const MeshParts& parts, const ArraySelector& selector,
+  const std::string& wanted, const std::string& name, const NodeFaults& faults,
+  const std::vector<Tetrahedron>& tetrahedra)
+{
+  const vtkIdType node = faults.FindUsed(tetrahedra);
+  if (node < 0)
+  {
+    return;
+  }
+  if (faults.Get(node) == NodeFaults::Missing)
+  {
+    const std::size_t part = FindNode(parts, node).first;
+    FindVectors(parts[part], selector, wanted, DescribePart(parts, part, name));
+  }
+  if (faults.Get(node) == NodeFaults::NotFinite)
+  {
+    ThrowNotFinite(parts, node, "Displacement", name);
   }
 }
 

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeDeformationMesh_h
 #define DeformVolumeDeformationMesh_h
 
+#include "NodeFaults.h"
 #include "VectorArray.h"
 
 #include "vtkType.h"
@@ -27,22 +28,32 @@ constexpr const char* REST_NAME = "rest configuration on input port 2";
 
 /// The grids that make up a mesh: one, or the leaves of a composite dataset. Nodes are counted
 /// through all of them, in order.
-using MeshParts = std::vector<vtkUnstructuredGrid*>;
+struct MeshParts : std::vector<vtkUnstructuredGrid*>
+{
+  using std::vector<vtkUnstructuredGrid*>::vector;
+  /// The name or number of each block of a composite dataset; empty for a single grid.
+  std::vector<std::string> Blocks;
+};
+
+/// What errors call a part of the mesh that they call by `name`.
+std::string DescribePart(const MeshParts& parts, std::size_t part, const std::string& name);
 
 /// Tells two states of VTK objects apart: addresses and modification times.
 using Stamp = std::vector<std::pair<const void*, vtkMTimeType>>;
 
-/// The grids in a data object, which may have none, or be null.
-MeshParts FindGrids(vtkDataObject* object);
-
-/// The grids in a data object, which the Errors thrown call by `name`: there must be one, and it
-/// must have points.
-MeshParts GetMeshParts(vtkDataObject* object, const std::string& name);
+/// Throws an Error, which calls the mesh by `name`, where there is no part, or no point in all of
+/// them. object: where the parts were found (see MeshGrids).
+void CheckParts(const MeshParts& parts, vtkDataObject* object, const std::string& name);
 
 std::size_t GetNumberOfNodes(const MeshParts& parts);
 
-/// The points, in world coordinates.
-std::vector<glm::dvec3> ReadPoints(const MeshParts& parts, const std::string& name);
+/// The points, in world coordinates. Throws an Error where tetrahedra use one that is not finite.
+std::vector<glm::dvec3> ReadPoints(
+  const MeshParts& parts, const std::string& name, const std::vector<Tetrahedron>& tetrahedra);
+
+/// Throws an Error where tetrahedra use a point that is not finite.
+void CheckPoints(const MeshParts& parts, const std::string& name, const NodeFaults& faults,
+  const std::vector<Tetrahedron>& tetrahedra);
 
 /// Finds the vectors of a dataset, or null.
 using ArraySelector = std::function<vtkDataArray*(vtkDataSet*)>;
@@ -52,11 +63,22 @@ using ArraySelector = std::function<vtkDataArray*(vtkDataSet*)>;
 vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
   const std::string& wanted, const std::string& name);
 
-/// Vectors of all points, one part's after the other's. memories: of the last reading, where they
-/// were taken to the same places; null: all are taken. memories, takeFloats: see ReadVectors.
-void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector,
-  const std::string& wanted, const std::string& name, const VectorTaker& take,
-  std::vector<VectorMemory>* memories = nullptr, const FloatTaker& takeFloats = {});
+/// Whether a dataset has these as one vector of three components for each point; they may be null.
+bool HaveVectors(vtkDataSet* dataSet, vtkDataArray* vectors);
+
+/// Vectors of all points, one part's after the other's. Those that are not finite, and those of
+/// parts without a usable array, are marked in faults, after they have been taken as zeros.
+/// memories: of the last reading, where they were taken to the same places; null: all are taken.
+/// memories, takeFloats: see ReadVectors.
+void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector, NodeFaults& faults,
+  const VectorTaker& take, std::vector<VectorMemory>* memories = nullptr,
+  const FloatTaker& takeFloats = {});
+
+/// Throws an Error where tetrahedra use a node without a vector, or with one that is not finite.
+/// Those that are too far are left to the caller.
+void CheckPointVectors(const MeshParts& parts, const ArraySelector& selector,
+  const std::string& wanted, const std::string& name, const NodeFaults& faults,
+  const std::vector<Tetrahedron>& tetrahedra);
 
 ///@{
 /// What the functions above depend on.

@@ -53,13 +53,25 @@ void Deformation::BringToHost()
     return;
   }
   Stamp stamp = this->VectorsStamp;
+  this->Faults.Reset();
   this->Memories.clear();
   this->ReplaceVectors(
     static_cast<std::size_t>(this->ArrayOnDevice->GetNumberOfTuples()),
     [&](const VectorTaker& take, const FloatTaker& takeFloats)
     {
-      ReadVectors(this->ArrayOnDevice, take, this->Field ? "Vector" : "Displacement",
-        this->Field ? "displacement field on input port 1" : MESH_NAME, nullptr, takeFloats);
+      if (!this->Field)
+      {
+        ReadVectors(this->ArrayOnDevice, take, "Displacement", "", nullptr, takeFloats,
+          [&](vtkIdType node) { this->Faults.Mark(node, NodeFaults::NotFinite); });
+        this->CheckFaults({}, this->VectorsSource);
+        return;
+      }
+      ReadVectors(this->ArrayOnDevice, take, "Vector", "displacement field on input port 1",
+        nullptr, takeFloats);
+      if (this->Faults.MayHaveAny())
+      {
+        ThrowTooFar();
+      }
     },
     this->FactorOnDevice, this->VectorsSource);
   this->VectorsStamp = std::move(stamp);

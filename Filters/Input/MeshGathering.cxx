@@ -28,16 +28,16 @@ namespace
 Stamp GetPieceStamp(const DeformationSource& source)
 {
   Stamp stamp;
-  for (vtkDataObject* object : { source.Shape, source.Rest })
+  for (const MeshParts* parts : { &source.ShapeParts, &source.RestParts })
   {
-    const MeshParts parts = FindGrids(object);
     for (const Stamp& part :
-      { GetCellArraysStamp(parts), GetPointsStamp(parts), GetPointVectorsStamp(parts) })
+      { GetCellArraysStamp(*parts), GetPointsStamp(*parts), GetPointVectorsStamp(*parts) })
     {
       stamp.insert(stamp.end(), part.begin(), part.end());
     }
-    stamp.emplace_back(object, 0);
   }
+  stamp.emplace_back(source.Shape, 0);
+  stamp.emplace_back(source.Rest, 0);
   return stamp;
 }
 
@@ -101,8 +101,8 @@ struct MeshGathering::Piece
 
 MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
 {
-  const MeshParts shape = FindGrids(source.Shape);
-  const MeshParts rest = source.Rest ? FindGrids(source.Rest) : shape;
+  const MeshParts& shape = source.ShapeParts;
+  const MeshParts& rest = source.Rest ? source.RestParts : shape;
   const std::size_t nodes = GetNumberOfNodes(shape);
   Piece piece;
   if (nodes != GetNumberOfNodes(rest))
@@ -124,16 +124,19 @@ MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
   }
   piece.Tetrahedra = std::move(cells.Tetrahedra);
   piece.IgnoredCells = std::move(cells.Ignored);
-  piece.RestPoints = ReadPoints(rest, source.Rest ? REST_NAME : MESH_NAME);
+  piece.RestPoints = ReadPoints(rest, source.Rest ? REST_NAME : MESH_NAME, piece.Tetrahedra);
   if (source.Rest)
   {
-    piece.Vectors = ReadPoints(shape, MESH_NAME);
+    piece.Vectors = ReadPoints(shape, MESH_NAME, piece.Tetrahedra);
     return piece;
   }
   piece.Vectors.resize(nodes);
-  ReadPointVectors(shape, source.Selector, source.Wanted, MESH_NAME,
+  NodeFaults faults;
+  faults.Resize(nodes);
+  ReadPointVectors(shape, source.Selector, faults,
     [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
     { std::copy(vectors, vectors + count, piece.Vectors.begin() + first); });
+  CheckPointVectors(shape, source.Selector, source.Wanted, MESH_NAME, faults, piece.Tetrahedra);
   return piece;
 }
 
@@ -228,6 +231,8 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
   DeformationSource whole = source;
   whole.Shape = this->Shape;
   whole.Rest = this->Rest;
+  whole.ShapeParts = { this->Shape };
+  whole.RestParts = this->Rest ? MeshParts{ this->Rest } : MeshParts();
   whole.Selector = [](vtkDataSet* dataSet)
   { return vtkDataSet::SafeDownCast(dataSet)->GetPointData()->GetArray(0); };
   return whole;

@@ -60,7 +60,7 @@ private:
 } // namespace
 
 void ReadPointDifferences(const MeshParts& shape, const MeshParts& rest, const VectorTaker& take,
-  std::vector<VectorMemory>& memories)
+  std::vector<VectorMemory>& memories, NodeFaults& faults)
 {
   const PointsOfParts starts(rest);
   memories.resize(shape.size());
@@ -91,7 +91,8 @@ void ReadPointDifferences(const MeshParts& shape, const MeshParts& rest, const V
             take(next + first + begin, moves.data(), some);
           }
         },
-        "Point", MESH_NAME, &memories[part]);
+        "Point", MESH_NAME, &memories[part], {},
+        [&](vtkIdType point) { faults.Mark(next + point, NodeFaults::NotFinite); });
     }
     next += count;
   }

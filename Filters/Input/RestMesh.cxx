@@ -127,6 +127,8 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
     throw Error("The deformation mesh has cells that use points that are not there. Mend the cells "
                 "of the mesh.");
   }
+  this->ShapeIsOld = true; // where the check fails
+  CheckPoints(rest, source.Rest ? REST_NAME : MESH_NAME, this->PointFaults, this->Tetrahedra);
   this->ShapeIsOld = false;
   this->RestCells = restCells;
   this->ShapeCells = shapeCells;
@@ -212,6 +214,7 @@ void RestMesh::ReadPoints(const MeshParts& rest, const DeformationSource& source
   const std::size_t before = this->Points.size();
   // Points that are gone are still those of tetrahedra as they were.
   this->Points.resize(std::max(before, GetNumberOfNodes(rest)));
+  this->PointFaults.Resize(GetNumberOfNodes(rest));
   std::atomic<bool> kept{ true };
   try
   {
@@ -250,6 +253,7 @@ void RestMesh::ReadMovedPoints(const MeshParts& rest, const DeformationSource& s
         rest[part]->GetPoints()->GetData(),
         [&](vtkIdType begin, const glm::dvec3* points, vtkIdType some)
         {
+          this->PointFaults.Clear(first + begin, some);
           for (vtkIdType i = 0; i < some; ++i)
           {
             const auto node = static_cast<std::size_t>(first + begin + i);
@@ -261,7 +265,8 @@ void RestMesh::ReadMovedPoints(const MeshParts& rest, const DeformationSource& s
             this->Points[node] = point;
           }
         },
-        "Point", source.Rest ? REST_NAME : MESH_NAME, &memory);
+        "Point", "", &memory, {},
+        [&](vtkIdType point) { this->PointFaults.Mark(first + point, NodeFaults::NotFinite); });
     }
     first += count;
   }

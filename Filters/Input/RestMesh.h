@@ -107,6 +107,7 @@ private:
 
   std::vector<Tetrahedron> Tetrahedra;
   std::vector<glm::dvec3> Points;
+  NodeFaults PointFaults;
   std::string IgnoredCells;
   std::uint64_t ShapeVersion = 0;
   std::uint64_t ConnectivityVersion = 0;

@@ -180,8 +180,8 @@ void VisitVectors(vtkDataArray* array, Body&& body)
 struct VectorReader
 {
   template <typename ArrayT>
-  void operator()(
-    ArrayT* array, const VectorTaker& take, VectorMemory* memory, const FloatTaker& takeFloats)
+  void operator()(ArrayT* array, const VectorTaker& take, VectorMemory* memory,
+    const FloatTaker& takeFloats, const FaultTaker& takeFault)
   {
     const vtkIdType tuples = array->GetNumberOfTuples();
     const BlockComparison comparison(array, GetBytes(array), memory);
@@ -196,7 +196,8 @@ struct VectorReader
       }
       std::array<glm::dvec3, BLOCK> vectors;
       CopyTuples(array, first, count, vectors.data());
-      if (!AreFinite(&vectors[0].x, 3 * count))
+      const bool areFinite = AreFinite(&vectors[0].x, 3 * count);
+      if (!areFinite && !takeFault)
       {
         const auto found = std::find_if_not(vectors.begin(), vectors.begin() + count, IsFinite);
         const vtkIdType tuple = first + (found - vectors.begin());
@@ -206,7 +207,17 @@ struct VectorReader
         }
         return;
       }
+      std::vector<vtkIdType> faults;
+      for (vtkIdType i = 0; i < count && !areFinite; ++i)
+      {
+        if (!IsFinite(vectors[i]))
+        {
+          vectors[i] = glm::dvec3(0.0);
+          faults.push_back(first + i);
+        }
+      }
       take(first, vectors.data(), count);
+      std::for_each(faults.begin(), faults.end(), takeFault);
       comparison.Remember(first, count);
     };
     ParallelFor(0, (tuples + BLOCK - 1) / BLOCK, 0,
@@ -232,7 +243,8 @@ struct VectorReader
 } // namespace
 
 void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string& kind,
-  const std::string& owner, VectorMemory* memory, const FloatTaker& takeFloats)
+  const std::string& owner, VectorMemory* memory, const FloatTaker& takeFloats,
+  const FaultTaker& takeFault)
 {
   if (array->GetNumberOfComponents() != 3)
   {
@@ -240,7 +252,7 @@ void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string
       std::to_string(array->GetNumberOfComponents()) + " components. Give each of them three.");
   }
   VectorReader reader;
-  VisitVectors(array, [&](auto* typed) { reader(typed, take, memory, takeFloats); });
+  VisitVectors(array, [&](auto* typed) { reader(typed, take, memory, takeFloats, takeFault); });
   if (memory)
   {
     memory->Type = reader.HasBytes && reader.FirstBad == NONE ? array->GetDataType() : VTK_VOID;

@@ -24,6 +24,9 @@ using VectorTaker =
 /// Returns false where it has not taken them, as one is not finite: they go to the VectorTaker.
 using FloatTaker = std::function<bool(vtkIdType first, const float* vectors, vtkIdType count)>;
 
+/// Is told of a vector that is not finite; called in parallel.
+using FaultTaker = std::function<void(vtkIdType tuple)>;
+
 /// What an array held when it was read last.
 struct VectorMemory
 {
@@ -45,8 +48,11 @@ struct VectorMemory
 /// out: a log of the array (vtkArrayChanges) tells them, or else a comparison where bytes are kept.
 /// Null: all are taken.
 /// takeFloats: offered vectors that lie in memory as floats, where it is not empty.
+/// takeFault: called for tuples that are not finite, after they have been taken as zeros. Empty:
+/// they are an error.
 void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string& kind,
-  const std::string& owner, VectorMemory* memory = nullptr, const FloatTaker& takeFloats = {});
+  const std::string& owner, VectorMemory* memory = nullptr, const FloatTaker& takeFloats = {},
+  const FaultTaker& takeFault = {});
 
 /// Copies tuples of an array of three components, from the one with number first on; may be called
 /// by several threads.

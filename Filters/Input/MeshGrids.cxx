@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshGrids.h"
+
+#include "MaskArray.h"
+#include "ParallelFor.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkInformation.h"
+#include "vtkNew.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
+#include <array>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+const char* GetName(vtkInformation* metaData)
+{
+  return metaData ? metaData->Get(vtkCompositeDataSet::NAME()) : nullptr;
+}
+
+// The name of the block that a composite dataset is traversed to, or else its flat index.
+std::string FindBlock(vtkCompositeDataSet* composite, vtkCompositeDataIterator* leaf)
+{
+  const char* name = leaf->HasCurrentMetaData() ? GetName(leaf->GetCurrentMetaData()) : nullptr;
+  auto* collection = vtkPartitionedDataSetCollection::SafeDownCast(composite);
+  for (unsigned int i = 0; collection && !name && i < collection->GetNumberOfPartitionedDataSets();
+       ++i)
+  {
+    for (unsigned int k = 0; k < collection->GetNumberOfPartitions(i); ++k)
+    {
+      if (collection->GetPartitionAsDataObject(i, k) == leaf->GetCurrentDataObject())
+      {
+        name = collection->HasMetaData(i) ? GetName(collection->GetMetaData(i)) : nullptr;
+      }
+    }
+  }
+  return name ? std::string("block \"") + name + "\""
+              : "the block with flat index " + std::to_string(leaf->GetCurrentFlatIndex());
+}
+
+bool IsGrid(vtkDataObject* object)
+{
+  return vtkUnstructuredGrid::SafeDownCast(object) || vtkStructuredGrid::SafeDownCast(object) ||
+    vtkRectilinearGrid::SafeDownCast(object);
+}
+
+void AddArray(Stamp& stamp, vtkAbstractArray* array)
+{
+  stamp.emplace_back(array, array ? array->GetMTime() : 0);
+  stamp.emplace_back(nullptr, array ? static_cast<vtkMTimeType>(array->GetNumberOfValues()) : 0);
+}
+
+ByteArray* FindGhosts(vtkDataSetAttributes* attributes, vtkIdType count, const char* kind)
+{
+  return FindMask(
+    attributes, vtkDataSetAttributes::GhostArrayName(), count, kind, "deformation mesh");
+}
+
+// All cells but the blanked ones: those that are hidden or duplicate, or have a hidden point.
+void MakeCells(vtkDataSet* source, vtkUnstructuredGrid* grid)
+{
+  ByteArray* cellGhosts = FindGhosts(source->GetCellData(), source->GetNumberOfCells(), "cell");
+  ByteArray* pointGhosts = FindGhosts(source->GetPointData(), source->GetNumberOfPoints(), "point");
+  const auto isLeft = [](ByteArray* ghosts, vtkIdType id, int kinds)
+  { return ghosts && (ghosts->GetValue(id) & kinds) != 0; };
+  vtkNew<vtkUnsignedCharArray> types;
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < source->GetNumberOfCells(); ++cell)
+  {
+    source->GetCellPoints(cell, ids);
+    if (!isLeft(cellGhosts, cell,
+          vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::DUPLICATECELL) &&
+      std::none_of(ids->begin(), ids->end(),
+        [&](vtkIdType id) { return isLeft(pointGhosts, id, vtkDataSetAttributes::HIDDENPOINT); }))
+    {
+      types->InsertNextValue(static_cast<unsigned char>(source->GetCellType(cell)));
+      cells->InsertNextCell(ids);
+    }
+  }
+  grid->SetCells(types, cells);
+}
+
+vtkSmartPointer<vtkPoints> MakePoints(vtkRectilinearGrid* source)
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(source->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < source->GetNumberOfPoints(); ++id)
+  {
+    double point[3];
+    source->GetPoint(id, point);
+    points->SetPoint(id, point);
+  }
+  return points;
+}
+
+// Points less vectors, of as many tuples.
+vtkSmartPointer<vtkPoints> Subtract(vtkDataArray* points, vtkDataArray* vectors)
+{
+  vtkNew<vtkDoubleArray> differences;
+  differences->SetNumberOfComponents(3);
+  differences->SetNumberOfTuples(points->GetNumberOfTuples());
+  auto* const first = reinterpret_cast<glm::dvec3*>(differences->GetPointer(0));
+  const VectorCopier copyPoints = MakeVectorCopier(points);
+  const VectorCopier copyVectors = MakeVectorCopier(vectors);
+  constexpr vtkIdType block = 512;
+  const vtkIdType count = points->GetNumberOfTuples();
+  ParallelFor(0, (count + block - 1) / block, 0,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      std::array<glm::dvec3, block> moves;
+      for (vtkIdType i = begin * block; i < std::min(end * block, count); i += block)
+      {
+        const vtkIdType some = std::min(block, count - i);
+        copyPoints(i, some, first + i);
+        copyVectors(i, some, moves.data());
+        for (vtkIdType k = 0; k < some; ++k)
+        {
+          first[i + k] -= moves[k];
+        }
+      }
+    });
+  auto made = vtkSmartPointer<vtkPoints>::New();
+  made->SetData(differences);
+  return made;
+}
+
+} // namespace
+
+vtkUnstructuredGrid* MeshGrids::UpdateRest(Conversion& conversion, vtkUnstructuredGrid* deformed,
+  vtkDataArray* displacements, vtkMTimeType time)
+{
+  vtkDataArray* points = deformed->GetPoints() ? deformed->GetPoints()->GetData() : nullptr;
+  // Without usable displacements the cells, if there are any that need them, are an error later on.
+  if (!points || !HaveVectors(deformed, displacements))
+  {
+    conversion.Rest = nullptr;
+    return deformed;
+  }
+  Stamp stamp{ { nullptr, time } };
+  AddArray(stamp, points);
+  AddArray(stamp, displacements);
+  vtkSmartPointer<vtkPoints> rest = conversion.Rest ? conversion.Rest->GetPoints() : nullptr;
+  if (!rest || conversion.RestPoints != stamp)
+  {
+    rest = Subtract(points, displacements);
+    conversion.RestPoints = stamp;
+  }
+  if (!conversion.Rest)
+  {
+    conversion.Rest = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  }
+  conversion.Rest->ShallowCopy(deformed);
+  conversion.Rest->SetPoints(rest);
+  return conversion.Rest;
+}
+
+void MeshGrids::Update(Conversion& conversion, vtkDataSet* source, bool made)
+{
+  if (!conversion.Grid)
+  {
+    conversion.Grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  }
+  vtkUnstructuredGrid* grid = conversion.Grid;
+  auto* curved = vtkStructuredGrid::SafeDownCast(source);
+  auto* straight = vtkRectilinearGrid::SafeDownCast(source);
+  // Who modifies a grid that no filter makes may have written to its arrays.
+  const vtkMTimeType time = made ? 0 : source->vtkObject::GetMTime();
+  Stamp cells{ { nullptr, time } };
+  Stamp points{ { nullptr, time } };
+  int dimensions[3];
+  curved ? curved->GetDimensions(dimensions) : straight->GetDimensions(dimensions);
+  for (const int size : dimensions)
+  {
+    cells.emplace_back(nullptr, static_cast<vtkMTimeType>(size));
+  }
+  const char* const ghosts = vtkDataSetAttributes::GhostArrayName();
+  AddArray(cells, source->GetCellData()->GetAbstractArray(ghosts));
+  AddArray(cells, source->GetPointData()->GetAbstractArray(ghosts));
+  if (straight)
+  {
+    AddArray(points, straight->GetXCoordinates());
+    AddArray(points, straight->GetYCoordinates());
+    AddArray(points, straight->GetZCoordinates());
+  }
+  if (conversion.Time != time)
+  {
+    conversion.Time = time;
+    grid->Modified();
+  }
+  if (curved)
+  {
+    grid->SetPoints(curved->GetPoints());
+  }
+  else if (conversion.Points != points)
+  {
+    grid->SetPoints(MakePoints(straight));
+  }
+  conversion.Points = points;
+  if (conversion.Cells != cells)
+  {
+    conversion.Cells.clear();
+    MakeCells(source, grid);
+    conversion.Cells = cells;
+  }
+  const Stamp pointData{ { source->GetPointData(), source->GetPointData()->GetMTime() } };
+  if (conversion.PointData != pointData)
+  {
+    grid->GetPointData()->ShallowCopy(source->GetPointData());
+    conversion.PointData = pointData;
+  }
+}
+
+MeshParts MeshGrids::Find(vtkDataObject* object, bool made, const ArraySelector* displacements)
+{
+  std::vector<vtkDataSet*> grids;
+  MeshParts parts;
+  if (IsGrid(object))
+  {
+    grids.push_back(static_cast<vtkDataSet*>(object));
+  }
+  else if (const auto composite = vtkCompositeDataSet::SafeDownCast(object))
+  {
+    const auto leaves = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+    for (leaves->InitTraversal(); !leaves->IsDoneWithTraversal(); leaves->GoToNextItem())
+    {
+      if (IsGrid(leaves->GetCurrentDataObject()))
+      {
+        grids.push_back(static_cast<vtkDataSet*>(leaves->GetCurrentDataObject()));
+        parts.Blocks.push_back(FindBlock(composite, leaves));
+      }
+    }
+  }
+  this->Conversions.resize(grids.size());
+  for (std::size_t i = 0; i < grids.size(); ++i)
+  {
+    Conversion& conversion = this->Conversions[i];
+    auto* grid = vtkUnstructuredGrid::SafeDownCast(grids[i]);
+    if (!grid)
+    {
+      Update(conversion, grids[i], made);
+      grid = conversion.Grid;
+    }
+    if (displacements)
+    {
+      grid = UpdateRest(
+        conversion, grid, (*displacements)(grid), made ? 0 : grid->vtkObject::GetMTime());
+    }
+    parts.push_back(grid);
+  }
+  return parts;
+}
+
+} // namespace deformvolume

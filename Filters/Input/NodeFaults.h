@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeNodeFaults_h
+#define DeformVolumeNodeFaults_h
+
+#include "Tetrahedron.h"
+
+#include "vtkType.h"
+
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// Nodes of a mesh whose position or vector cannot be used. They count as zero, and are an error
+/// only where a tetrahedron uses them. Several threads may mark different nodes at a time.
+class NodeFaults
+{
+public:
+  enum Kind : unsigned char
+  {
+    None,
+    NotFinite,
+    TooFar,
+    Missing
+  };
+
+  void Resize(std::size_t count) { this->Kinds.resize(count, None); }
+  void Reset()
+  {
+    this->Kinds.clear();
+    this->Any = false;
+  }
+  void Mark(vtkIdType node, Kind kind)
+  {
+    this->Kinds[static_cast<std::size_t>(node)] = kind;
+    this->Any.store(true, std::memory_order_relaxed);
+  }
+  /// Nodes are about to be read again.
+  void Clear(vtkIdType first, vtkIdType count)
+  {
+    if (this->Any.load(std::memory_order_relaxed))
+    {
+      std::fill_n(this->Kinds.begin() + first, count, None);
+    }
+  }
+  bool MayHaveAny() const { return this->Any; }
+  Kind Get(vtkIdType node) const
+  {
+    return static_cast<Kind>(this->Kinds[static_cast<std::size_t>(node)]);
+  }
+
+  /// The first faulty node that some tetrahedra use, or -1.
+  vtkIdType FindUsed(const std::vector<Tetrahedron>& tetrahedra) const
+  {
+    vtkIdType found = -1;
+    for (const Tetrahedron& tetrahedron : tetrahedra)
+    {
+      if (!this->Any)
+      {
+        break;
+      }
+      for (const std::int32_t node : tetrahedron)
+      {
+        // Nodes behind these are derived from others.
+        if (static_cast<std::size_t>(node) < this->Kinds.size() && this->Kinds[node] != None &&
+          (found < 0 || node < found))
+        {
+          found = node;
+        }
+      }
+    }
+    return found;
+  }
+
+private:
+  std::vector<unsigned char> Kinds;
+  std::atomic<bool> Any{ false };
+};
+
+} // namespace deformvolume
+
+#endif

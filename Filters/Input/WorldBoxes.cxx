@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "WorldBoxes.h"
+
+#include "Deformation.h"
+#include "Error.h"
+#include "ImageGeometry.h"
+
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+
+#include <limits>
+#include <sstream>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+struct Box
+{
+  glm::dvec3 Least{ std::numeric_limits<double>::infinity() };
+  glm::dvec3 Most{ -std::numeric_limits<double>::infinity() };
+
+  void Add(const glm::dvec3& point)
+  {
+    this->Least = glm::min(this->Least, point);
+    this->Most = glm::max(this->Most, point);
+  }
+};
+
+Box GetIndexBox(const Extent& extent)
+{
+  Box box;
+  box.Add({ extent[0], extent[2], extent[4] });
+  box.Add({ extent[1], extent[3], extent[5] });
+  return box;
+}
+
+Box GetWorldBox(const ImageGeometry& geometry)
+{
+  const Box indices = GetIndexBox(geometry.PointExtent);
+  Box box;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    glm::dvec3 index = indices.Least;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      index[axis] = (corner >> axis) % 2 == 0 ? indices.Least[axis] : indices.Most[axis];
+    }
+    box.Add(glm::dvec3(geometry.GetIndexToWorld() * glm::dvec4(index, 1.0)));
+  }
+  return box;
+}
+
+// Of the nodes that tetrahedra use, which are in indices of a volume.
+template <typename Function>
+Box FindBox(const Deformation& mesh, const Function& transform)
+{
+  Box box;
+  for (const Tetrahedron& tetrahedron : mesh.GetTetrahedra())
+  {
+    for (const std::int32_t node : tetrahedron)
+    {
+      box.Add(transform(mesh.GetRestPoints()[static_cast<std::size_t>(node)]));
+    }
+  }
+  return box;
+}
+
+std::string Describe(const Box& box)
+{
+  std::ostringstream text;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    text << (axis == 0 ? "" : ", ") << "xyz"[axis] << " from " << box.Least[axis] << " to "
+         << box.Most[axis];
+  }
+  return text.str();
+}
+
+std::string Describe(const char* what, const Box& box, const ImageGeometry& volume)
+{
+  return std::string("The box of the ") + what + " is " + Describe(box) +
+    ", and that of the volume " + Describe(GetWorldBox(volume)) +
+    ". Give both in the same world coordinates and the same unit: metres beside millimetres is "
+    "the usual cause.";
+}
+
+} // namespace
+
+std::string DescribeBoxes(const ImageGeometry& field, const ImageGeometry& volume)
+{
+  return Describe("field", GetWorldBox(field), volume);
+}
+
+void CheckBoxes(const Deformation& mesh, const ImageGeometry& volume)
+{
+  const Box box = FindBox(mesh, [](const glm::dvec3& point) { return point; });
+  const Box voxels = GetIndexBox(volume.PointExtent);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (box.Least[axis] > voxels.Most[axis] || box.Most[axis] < voxels.Least[axis])
+    {
+      throw Error(DescribeMiss(mesh, volume));
+    }
+  }
+}
+
+std::string DescribeMiss(const Deformation& mesh, const ImageGeometry& volume)
+{
+  const glm::dmat4 toWorld = volume.GetIndexToWorld();
+  const Box box = FindBox(
+    mesh, [&](const glm::dvec3& point) { return glm::dvec3(toWorld * glm::dvec4(point, 1.0)); });
+  return "The deformation mesh at rest holds no voxel of the volume. " +
+    Describe("mesh", box, volume) +
+    " Check also that input port 1 or, where it is connected, port 2 has the rest configuration.";
+}
+
+} // namespace deformvolume

@@ -1,0 +1,658 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Meshes as other programs write them: nodes that no cell uses, blocks without displacements,
+// structured and rectilinear grids, points that are deformed already, other units, and what is said
+// of arrays whose vectors do not turn with the tissue.
+#include "FilterTesting.h"
+#include "UpdateChecks.h"
+
+#include <vtkArrayChanges.h>
+#include <vtkCarveVolume.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkDoubleArray.h>
+#include <vtkInformation.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkPartitionedDataSet.h>
+#include <vtkPartitionedDataSetCollection.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkSphere.h>
+#include <vtkStructuredGrid.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <glm/common.hpp>
+
+#include <limits>
+
+using namespace filterTesting;
+
+namespace
+{
+
+using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+const char* const name = "displacement";
+
+glm::dvec3 Bend(const glm::dvec3& p)
+{
+  return p + glm::dvec3(0.4 * std::sin(0.5 * p.y), 0.3 * std::cos(0.4 * p.z), 1.0 + 0.03 * p.x);
+}
+
+void Expect(Deformed& deformed, const std::string& words)
+{
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeErrors(), 1);
+  if (deformed.LastError.find(words) == std::string::npos)
+  {
+    ++GetNumberOfFailures();
+    std::cerr << "expected: " << words << "\ninstead of: " << deformed.LastError << '\n';
+  }
+}
+
+// A copy of a mesh, with nodes before and behind all others that no cell uses.
+Grid AddUnusedNodes(vtkUnstructuredGrid* mesh, const glm::dvec3& place, const glm::dvec3& vector)
+{
+  Grid more = Grid::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkDoubleArray> vectors;
+  vectors->SetName(name);
+  vectors->SetNumberOfComponents(3);
+  const auto add = [&]
+  {
+    points->InsertNextPoint(&place.x);
+    vectors->InsertNextTuple(&vector.x);
+  };
+  add();
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+  {
+    points->InsertNextPoint(mesh->GetPoint(id));
+    vectors->InsertNextTuple(mesh->GetPointData()->GetArray(name)->GetTuple(id));
+  }
+  add();
+  more->SetPoints(points);
+  more->GetPointData()->SetVectors(vectors);
+  vtkNew<vtkCellArray> cells;
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> ids;
+    mesh->GetCellPoints(cell, ids);
+    for (vtkIdType& id : *ids)
+    {
+      ++id;
+    }
+    cells->InsertNextCell(ids);
+  }
+  more->SetCells(VTK_TETRA, cells);
+  return more;
+}
+
+Grid MakeBentMesh(vtkImageData* volume)
+{
+  Grid mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Bend);
+  return mesh;
+}
+
+Grid MoveToDeformed(vtkUnstructuredGrid* mesh)
+{
+  Grid moved = Grid::New();
+  moved->DeepCopy(mesh);
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+  {
+    glm::dvec3 vector;
+    mesh->GetPointData()->GetArray(name)->GetTuple(id, &vector.x);
+    const glm::dvec3 point = GetPoint(mesh, id) + vector;
+    moved->GetPoints()->SetPoint(id, &point.x);
+  }
+  return moved;
+}
+
+void TestUnusedNodes()
+{
+  const auto volume = MakeVolume();
+  const Grid mesh = MakeBentMesh(volume);
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const auto& [place, vector] :
+    { std::pair(glm::dvec3(50.0), glm::dvec3(nan)), std::pair(glm::dvec3(nan), glm::dvec3(0.0)),
+      std::pair(glm::dvec3(1.0, infinity, nan), glm::dvec3(nan, 0.0, -infinity)),
+      std::pair(glm::dvec3(50.0), glm::dvec3(1e30, 0.0, 0.0)) })
+  {
+    const Grid more = AddUnusedNodes(mesh, place, vector);
+    vtkNew<vtkMultiBlockDataSet> blocks;
+    blocks->SetBlock(0, vtkNew<vtkUnstructuredGrid>());
+    blocks->SetBlock(1, more);
+    Deformed expected(volume, mesh);
+    Deformed found(volume, more);
+    Deformed composite(volume, blocks);
+    Deformed twoPorts(volume, MoveToDeformed(more));
+    twoPorts.Filter->SetRestData(more);
+    Deformed expectedOfTwo(volume, MoveToDeformed(mesh));
+    expectedOfTwo.Filter->SetRestData(mesh);
+    const auto compare = [&](const auto& set)
+    {
+      for (Deformed* one : { &expected, &found, &composite, &twoPorts, &expectedOfTwo })
+      {
+        set(one->Filter);
+      }
+      vtkImageData* output = expected.Update();
+      VERIFY(expected.Filter->GetNumberOfCoveredVoxels() > 300);
+      VERIFY(AreEqual(output, found.Update()));
+      VERIFY(AreEqual(output, composite.Update()));
+      VERIFY(AreEqual(expectedOfTwo.Update(), twoPorts.Update()));
+    };
+    compare([](vtkDeformVolumeFilter*) {});
+    compare([](vtkDeformVolumeFilter* filter) { filter->SetBoundsGranularity(8); });
+    compare([](vtkDeformVolumeFilter* filter) { filter->OpenSplitsOn(); });
+    compare([](vtkDeformVolumeFilter* filter) { filter->SetOutsideModeToExtrapolate(); });
+    compare(
+      [](vtkDeformVolumeFilter* filter)
+      {
+        filter->SetOutsideModeToDiscard();
+        filter->SetResamplerToMeshRasterization();
+      });
+    compare([](vtkDeformVolumeFilter* filter) { filter->SetOutputBoundsModeToVolumeBounds(); });
+  }
+}
+
+// Updates of a part; and a node that is used later on.
+void TestUnusedNodesThatChange()
+{
+  const auto volume = MakeVolume({ { 0, 40, 0, 40, 0, 40 } });
+  const Grid mesh = MakeBentMesh(volume);
+  const Grid more = AddUnusedNodes(mesh, glm::dvec3(nan), glm::dvec3(nan));
+  Deformed tested(volume, more);
+  tested.Filter->SetBoundsGranularity(16);
+  tested.Update();
+  int parts = 0;
+  auto* vectors = more->GetPointData()->GetArray(name);
+  const vtkIdType last = more->GetNumberOfPoints() - 1;
+  for (int step = 0; step < 4; ++step)
+  {
+    vectors->SetComponent(1, 2, 1.0 + 0.1 * step);
+    vectors->SetComponent(last, 2, step == 2 ? 1.0 : nan);
+    vectors->Modified();
+    Deformed fresh(volume, more);
+    fresh.Filter->SetOutputBoundsModeToCustomBounds();
+    fresh.Filter->SetCustomBounds(tested.Filter->GetOutput()->GetBounds());
+    tested.Update();
+    fresh.Filter->SetCustomBounds(tested.Filter->GetOutput()->GetBounds());
+    CompareWithFresh(tested, fresh, "a step of a mesh with unused nodes", parts);
+  }
+  VERIFY(parts > 1);
+  // The last cell takes the last node for another, and then this one's own values.
+  vtkNew<vtkIdList> before;
+  const vtkIdType cell = more->GetNumberOfCells() - 1;
+  more->GetCellPoints(cell, before);
+  vtkNew<vtkIdList> after;
+  after->DeepCopy(before);
+  after->SetId(0, last);
+  more->GetCells()->ReplaceCellAtId(cell, after);
+  more->GetCells()->Modified();
+  more->Modified();
+  Expect(tested, "Point " + std::to_string(last) + " of the deformation mesh");
+  more->GetPoints()->SetPoint(last, more->GetPoint(before->GetId(0)));
+  more->GetPoints()->Modified();
+  Expect(tested, "Displacement " + std::to_string(last) + " of the deformation mesh");
+  vectors->SetTuple(last, before->GetId(0), vectors);
+  vectors->SetComponent(last, 0, 1e30);
+  vectors->Modified();
+  Expect(tested, "more than 16,383 output voxels");
+  vectors->SetTuple(last, before->GetId(0), vectors);
+  vectors->Modified();
+  Deformed fresh(volume, more);
+  fresh.Filter->SetBoundsGranularity(16);
+  tested.Filter->SetBoundsGranularity(15);
+  tested.Update();
+  tested.Filter->SetBoundsGranularity(16);
+  CompareWithFresh(tested, fresh, "the use of a node", parts);
+}
+
+Grid MakeShells()
+{
+  Grid shells = Grid::New();
+  vtkNew<vtkPoints> points;
+  for (const glm::dvec3& p :
+    { glm::dvec3(0, 0, 0), glm::dvec3(1, 0, 0), glm::dvec3(1, 1, 0), glm::dvec3(0, 1, 0) })
+  {
+    points->InsertNextPoint(&p.x);
+  }
+  shells->SetPoints(points);
+  const vtkIdType quad[4] = { 0, 1, 2, 3 };
+  shells->InsertNextCell(VTK_QUAD, 4, quad);
+  return shells;
+}
+
+void TestBlocks()
+{
+  const auto volume = MakeVolume();
+  const Grid mesh = MakeBentMesh(volume);
+  Deformed expected(volume, mesh);
+  vtkImageData* output = expected.Update();
+  const Grid solids = Grid::New();
+  solids->DeepCopy(mesh);
+  solids->GetPointData()->Initialize();
+  // An array of that name need not be one of displacements there.
+  const Grid other = MakeShells();
+  vtkNew<vtkDoubleArray> thickness;
+  thickness->SetName(name);
+  thickness->SetNumberOfTuples(other->GetNumberOfPoints());
+  thickness->Fill(2.0);
+  other->GetPointData()->AddArray(thickness);
+  for (const Grid& shells : { MakeShells(), other })
+  {
+    for (const unsigned int first : { 0U, 1U })
+    {
+      vtkNew<vtkMultiBlockDataSet> blocks;
+      blocks->SetBlock(first, mesh);
+      blocks->SetBlock(1 - first, shells);
+      Deformed found(volume, blocks);
+      found.Filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name);
+      found.Filter->Update();
+      VERIFY(found.TakeWarning().find("1 vtkQuad") != std::string::npos);
+      VERIFY(AreEqual(output, found.Update()));
+      // With solids in it, that block needs them.
+      blocks->SetBlock(1 - first, solids);
+      Expect(found,
+        "The block with flat index " + std::to_string(2 - first) +
+          " of the deformation mesh on input port 1 has no point array \"displacement\"");
+      blocks->GetMetaData(1 - first)->Set(vtkCompositeDataSet::NAME(), "liver");
+      blocks->Modified();
+      Expect(found, "Block \"liver\" of the deformation mesh on input port 1 has no point array");
+      blocks->SetBlock(1 - first, shells);
+      VERIFY(AreEqual(output, found.Update()));
+    }
+  }
+  vtkNew<vtkPartitionedDataSetCollection> collection;
+  collection->SetPartition(0, 0, mesh);
+  collection->SetPartition(1, 0, solids);
+  collection->GetMetaData(1)->Set(vtkCompositeDataSet::NAME(), "bone");
+  Deformed named(volume, collection);
+  Expect(named, "Block \"bone\" of the deformation mesh");
+  // The number of a node is that in its block.
+  solids->GetPointData()->ShallowCopy(mesh->GetPointData());
+  const Grid spoilt = Grid::New();
+  spoilt->DeepCopy(mesh);
+  spoilt->GetPointData()->GetArray(name)->SetComponent(3, 1, nan);
+  collection->SetPartition(1, 0, spoilt);
+  collection->Modified();
+  Expect(named, "Displacement 3 of block \"bone\" of the deformation mesh");
+}
+
+// The nodes of a grid of nodes on each axis, unevenly spaced.
+const std::array<int, 3> nodes{ { 4, 5, 3 } };
+double GetCoordinate(int axis, int i)
+{
+  return -0.5 + 10.0 * std::pow(i / (nodes[axis] - 1.0), 1.2);
+}
+
+vtkSmartPointer<vtkRectilinearGrid> MakeRectilinearGrid()
+{
+  auto grid = vtkSmartPointer<vtkRectilinearGrid>::New();
+  grid->SetDimensions(nodes.data());
+  vtkNew<vtkDoubleArray> coordinates[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int i = 0; i < nodes[axis]; ++i)
+    {
+      coordinates[axis]->InsertNextValue(GetCoordinate(axis, i));
+    }
+  }
+  grid->SetXCoordinates(coordinates[0]);
+  grid->SetYCoordinates(coordinates[1]);
+  grid->SetZCoordinates(coordinates[2]);
+  return grid;
+}
+
+glm::dvec3 Skew(const glm::dvec3& p)
+{
+  return p + glm::dvec3(0.3 * std::sin(p.y), 0.05 * p.x, 0.2 * std::cos(0.4 * p.x));
+}
+
+vtkSmartPointer<vtkStructuredGrid> MakeStructuredGrid()
+{
+  auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
+  grid->SetDimensions(nodes.data());
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (int k = 0; k < nodes[2]; ++k)
+  {
+    for (int j = 0; j < nodes[1]; ++j)
+    {
+      for (int i = 0; i < nodes[0]; ++i)
+      {
+        const glm::dvec3 p =
+          Skew({ GetCoordinate(0, i), GetCoordinate(1, j), GetCoordinate(2, k) });
+        points->InsertNextPoint(&p.x);
+      }
+    }
+  }
+  grid->SetPoints(points);
+  return grid;
+}
+
+// The same as hexahedra, without some cells.
+Grid MakeHexahedra(vtkDataSet* grid, const std::function<bool(int cell)>& isLeftOut)
+{
+  Grid hexahedra = Grid::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (vtkIdType id = 0; id < grid->GetNumberOfPoints(); ++id)
+  {
+    points->InsertNextPoint(grid->GetPoint(id));
+  }
+  hexahedra->SetPoints(points);
+  hexahedra->GetPointData()->ShallowCopy(grid->GetPointData());
+  int cell = 0;
+  for (int k = 0; k + 1 < nodes[2]; ++k)
+  {
+    for (int j = 0; j + 1 < nodes[1]; ++j)
+    {
+      for (int i = 0; i + 1 < nodes[0]; ++i, ++cell)
+      {
+        const vtkIdType first = i + nodes[0] * (j + nodes[1] * k);
+        const vtkIdType row = nodes[0];
+        const vtkIdType layer = row * nodes[1];
+        const vtkIdType ids[8] = { first, first + 1, first + 1 + row, first + row, first + layer,
+          first + 1 + layer, first + 1 + row + layer, first + row + layer };
+        if (!isLeftOut(cell))
+        {
+          hexahedra->InsertNextCell(VTK_HEXAHEDRON, 8, ids);
+        }
+      }
+    }
+  }
+  return hexahedra;
+}
+
+vtkSmartPointer<vtkUnsignedCharArray> AddGhosts(vtkDataSetAttributes* attributes, vtkIdType count)
+{
+  auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfValues(count);
+  ghosts->Fill(0);
+  attributes->AddArray(ghosts);
+  return ghosts;
+}
+
+void TestGrid(vtkDataSet* grid)
+{
+  const auto volume = MakeVolume();
+  SetDisplacements(grid, Bend);
+  const Grid whole = MakeHexahedra(grid, [](int) { return false; });
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, MakeShells());
+  blocks->SetBlock(1, grid);
+  Deformed expected(volume, whole);
+  Deformed found(volume, grid);
+  Deformed composite(volume, blocks);
+  for (const int resampler :
+    { vtkDeformVolumeFilter::EXACT, vtkDeformVolumeFilter::MESH_RASTERIZATION })
+  {
+    for (Deformed* one : { &expected, &found, &composite })
+    {
+      one->Filter->SetResampler(resampler);
+    }
+    vtkImageData* output = expected.Update();
+    VERIFY(expected.Filter->GetNumberOfCoveredVoxels() > 500);
+    VERIFY(AreEqual(output, found.Update()));
+    VERIFY(AreEqual(output, composite.Update()));
+  }
+  for (Deformed* one : { &expected, &found })
+  {
+    one->Filter->SetResamplerToExact();
+    one->Update();
+  }
+  // What is written to the displacements is seen, and the mapping stays.
+  auto* vectors = grid->GetPointData()->GetVectors();
+  vtkNew<vtkArrayChanges> changes;
+  changes->SetArray(vectors);
+  const vtkTypeInt64 builds = found.Filter->GetNumberOfMappingBuilds();
+  vectors->SetComponent(17, 0, 0.6);
+  changes->AddTuples(17, 17);
+  VERIFY(AreEqual(expected.Update(), found.Update()));
+  VERIFY_EQUAL(found.Filter->GetNumberOfMappingBuilds(), builds);
+  // Two configurations.
+  vtkNew<vtkStructuredGrid> moved;
+  moved->SetDimensions(nodes.data());
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (vtkIdType id = 0; id < grid->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 p = Bend(GetPoint(grid, id));
+    points->InsertNextPoint(&p.x);
+  }
+  moved->SetPoints(points);
+  Deformed two(volume, moved);
+  two.Filter->SetRestData(vtkStructuredGrid::SafeDownCast(grid) ? grid : whole.Get());
+  Deformed expectedOfTwo(volume, MakeHexahedra(moved, [](int) { return false; }));
+  expectedOfTwo.Filter->SetRestData(whole);
+  VERIFY(AreEqual(expectedOfTwo.Update(), two.Update()));
+  // Blanked cells, and those of blanked points.
+  const auto cellGhosts = AddGhosts(grid->GetCellData(), grid->GetNumberOfCells());
+  cellGhosts->SetValue(3, vtkDataSetAttributes::HIDDENCELL);
+  grid->Modified();
+  Deformed expectedWithout(volume, MakeHexahedra(grid, [](int cell) { return cell == 3; }));
+  VERIFY(AreEqual(expectedWithout.Update(), found.Update()));
+  VERIFY(found.Filter->GetNumberOfCoveredVoxels() < expected.Filter->GetNumberOfCoveredVoxels());
+  cellGhosts->SetValue(3, 0);
+  cellGhosts->SetValue(10, vtkDataSetAttributes::DUPLICATECELL);
+  cellGhosts->Modified();
+  expectedWithout.Filter->SetDeformationData(
+    MakeHexahedra(grid, [](int cell) { return cell == 10; }));
+  VERIFY(AreEqual(expectedWithout.Update(), found.Update()));
+  cellGhosts->SetValue(10, 0);
+  cellGhosts->Modified();
+  const auto pointGhosts = AddGhosts(grid->GetPointData(), grid->GetNumberOfPoints());
+  pointGhosts->SetValue(1, vtkDataSetAttributes::HIDDENPOINT);
+  expectedWithout.Filter->SetDeformationData(
+    MakeHexahedra(grid, [](int cell) { return cell < 2; }));
+  VERIFY(AreEqual(expectedWithout.Update(), found.Update()));
+  pointGhosts->SetValue(1, 0);
+  pointGhosts->Modified();
+  VERIFY(AreEqual(expected.Update(), found.Update()));
+}
+
+void TestGrids()
+{
+  TestGrid(MakeRectilinearGrid());
+  TestGrid(MakeStructuredGrid());
+  const auto volume = MakeVolume();
+  vtkNew<vtkStructuredGrid> empty;
+  Deformed found(volume, empty);
+  Expect(found, "no points");
+  vtkNew<vtkStructuredGrid> flat;
+  flat->SetDimensions(nodes[0], nodes[1], 1);
+  vtkNew<vtkPoints> points;
+  points->SetNumberOfPoints(nodes[0] * nodes[1]);
+  flat->SetPoints(points);
+  found.Filter->SetDeformationData(flat);
+  Expect(found, "no tetrahedra, but 12 vtkQuad");
+  // Image data inside a composite dataset are no mesh.
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, volume);
+  found.Filter->SetDeformationData(blocks);
+  Expect(found, "holds no vtkUnstructuredGrid, vtkStructuredGrid or vtkRectilinearGrid");
+}
+
+// With numbers that floats hold.
+glm::dvec3 BendExactly(const glm::dvec3& p)
+{
+  return p + glm::round(64.0 * (Bend(p) - p)) / 64.0;
+}
+
+void TestDeformedPoints()
+{
+  const auto volume = MakeVolume();
+  const Grid mesh = MakeMesh(volume);
+  SetDisplacements(mesh, BendExactly);
+  const Grid moved = MoveToDeformed(mesh);
+  Deformed expected(volume, mesh);
+  Deformed found(volume, moved);
+  found.Filter->PointsAreDeformedOn();
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, MakeShells());
+  blocks->SetBlock(3, AddUnusedNodes(moved, glm::dvec3(nan), glm::dvec3(nan)));
+  Deformed composite(volume, blocks);
+  composite.Filter->PointsAreDeformedOn();
+  for (const double scale : { 1.0, 2.0, 0.0 })
+  {
+    for (Deformed* one : { &expected, &found, &composite })
+    {
+      one->Filter->SetDisplacementScale(scale);
+    }
+    vtkImageData* output = expected.Update();
+    VERIFY(expected.Filter->GetNumberOfCoveredVoxels() > 500);
+    VERIFY(AreEqual(output, found.Update()));
+    VERIFY(AreEqual(output, composite.Update()));
+  }
+  // Another time step: the same mesh at rest.
+  for (Deformed* one : { &expected, &found })
+  {
+    one->Filter->SetDisplacementScale(1.0);
+    one->Update();
+  }
+  const vtkTypeInt64 builds = found.Filter->GetNumberOfMappingBuilds();
+  SetDisplacements(mesh, [](const glm::dvec3& p) { return 2.0 * BendExactly(p) - p; });
+  const Grid next = MoveToDeformed(mesh);
+  moved->GetPoints()->DeepCopy(next->GetPoints());
+  moved->GetPoints()->Modified();
+  moved->GetPointData()->GetVectors()->DeepCopy(next->GetPointData()->GetVectors());
+  moved->GetPointData()->GetVectors()->Modified();
+  VERIFY(AreEqual(expected.Update(), found.Update()));
+  VERIFY_EQUAL(found.Filter->GetNumberOfMappingBuilds(), builds);
+  // A structured grid.
+  const auto structured = MakeStructuredGrid();
+  for (vtkIdType id = 0; id < structured->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 p = glm::round(64.0 * GetPoint(structured, id)) / 64.0;
+    structured->GetPoints()->SetPoint(id, &p.x);
+  }
+  SetDisplacements(structured, BendExactly);
+  expected.Filter->SetDeformationData(MakeHexahedra(structured, [](int) { return false; }));
+  for (vtkIdType id = 0; id < structured->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 p = BendExactly(GetPoint(structured, id));
+    structured->GetPoints()->SetPoint(id, &p.x);
+  }
+  found.Filter->SetDeformationData(structured);
+  VERIFY(AreEqual(expected.Update(), found.Update()));
+  // What is carved out of the deformed volume.
+  vtkNew<vtkSphere> ball;
+  ball->SetCenter(5.0, 4.0, 6.0);
+  ball->SetRadius(3.0);
+  vtkIdType gone[2];
+  for (const bool areDeformed : { false, true })
+  {
+    vtkNew<vtkCarveVolume> carve;
+    carve->SetInputData(volume);
+    carve->SetDeformationData(areDeformed ? next : mesh);
+    carve->SetPointsAreDeformed(areDeformed);
+    carve->SetImplicitFunction(ball);
+    carve->Update();
+    gone[areDeformed ? 1 : 0] = carve->GetNumberOfSwitchedOffTetrahedra();
+  }
+  VERIFY(gone[0] > 50);
+  VERIFY_EQUAL(gone[0], gone[1]);
+  // Misuse.
+  found.Filter->SetDeformationData(moved);
+  found.Filter->SetRestData(mesh);
+  Expect(found, "PointsAreDeformed is on, but input port 2 has a rest configuration");
+  found.Filter->SetRestData(nullptr);
+  found.Update();
+  const auto field = MakeImage({ { -1, 10, -1, 10, -1, 10 } });
+  SetDisplacements(field, Bend);
+  found.Filter->SetDeformationData(field);
+  Expect(found, "PointsAreDeformed is on, but input port 1 has a displacement field");
+  const Grid without = MakeMesh(volume);
+  found.Filter->SetDeformationData(without);
+  Expect(found, "The deformation mesh on input port 1 has no active Vectors");
+}
+
+void TestUnits()
+{
+  const auto volume = MakeImage({ { 0, 9, 0, 8, 0, 7 } }, glm::dvec3(1.0), glm::dvec3(20, 30, -40));
+  AddScalars<short>(volume, "value", [](const glm::dvec3& p) { return p.x; });
+  const Grid mesh = MakeBentMesh(volume);
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 point = 0.001 * GetPoint(mesh, id);
+    mesh->GetPoints()->SetPoint(id, &point.x);
+  }
+  const Grid more = AddUnusedNodes(mesh, glm::dvec3(25.0, 35.0, -35.0), glm::dvec3(0.0));
+  const std::string boxes = "The box of the mesh is x from 0.0195 to 0.0295, y from 0.0295 to "
+                            "0.0385, z from -0.0405 to -0.0325, and that of the volume x from 20 "
+                            "to 29, y from 30 to 38, z from -40 to -33.";
+  Deformed deformed(volume, more);
+  Expect(deformed, boxes);
+  deformed.Filter->SetOutsideModeToExtrapolate();
+  Expect(deformed, boxes);
+  deformed.Filter->SetOutsideModeToDiscard();
+  deformed.Filter->SetOutputBoundsModeToVolumeBounds();
+  Expect(deformed, boxes);
+  deformed.Filter->SetResamplerToMeshRasterization();
+  Expect(deformed, boxes);
+  deformed.Filter->SetResamplerToExact();
+  deformed.Filter->SetOutputBoundsModeToDeformedBounds();
+  const auto field = MakeImage({ { 0, 4, 0, 4, 0, 4 } }, glm::dvec3(0.002), glm::dvec3(0.02));
+  SetDisplacements(field, Shift(0.0, 0.0, 0.0));
+  deformed.Filter->SetDeformationData(field);
+  Expect(deformed, "The box of the field is x from 0.02 to 0.028");
+}
+
+vtkSmartPointer<vtkDoubleArray> MakeConstant(const char* called, int components, vtkIdType count)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName(called);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(count);
+  array->Fill(1.0);
+  return array;
+}
+
+void TestDirections()
+{
+  const auto volume = MakeVolume();
+  const Grid mesh = MakeBentMesh(volume);
+  const vtkIdType count = volume->GetNumberOfPoints();
+  vtkPointData* arrays = volume->GetPointData();
+  arrays->AddArray(MakeConstant("color", 3, count));
+  Deformed deformed(volume, mesh);
+  const auto has = [](const std::string& text, const std::string& words)
+  { return text.find(words) != std::string::npos; };
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeWarning(), std::string());
+  arrays->SetVectors(MakeConstant("fibre", 3, count));
+  deformed.Filter->Update();
+  const std::string first = deformed.TakeWarning();
+  VERIFY(has(first, "active vectors \"fibre\"") && has(first, "not rotated"));
+  deformed.Filter->Modified();
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeWarning(), std::string());
+  arrays->SetNormals(MakeConstant("gradient", 3, count));
+  arrays->SetTensors(MakeConstant("diffusion", 9, count));
+  volume->Modified();
+  deformed.Filter->Update();
+  const std::string second = deformed.TakeWarning();
+  VERIFY(has(second, "active normals \"gradient\"") && has(second, "active tensors \"diffusion\""));
+  VERIFY(!has(second, "fibre"));
+  deformed.Filter->SetDisplacementScale(0.5);
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeWarning(), std::string());
+}
+
+} // namespace
+
+int TestDeformMeshes(int, char*[])
+{
+  TestUnusedNodes();
+  TestUnusedNodesThatChange();
+  TestBlocks();
+  TestGrids();
+  TestDeformedPoints();
+  TestUnits();
+  TestDirections();
+  return GetExitCode();
+}
