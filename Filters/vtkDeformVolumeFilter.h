@@ -29,7 +29,8 @@
  * @par Port 1, the deformation, one of:
  * - vtkUnstructuredGrid, vtkStructuredGrid, vtkRectilinearGrid, or a composite dataset of such
  *   (they are joined): tetrahedra; other three-dimensional cells, quadratic and Lagrange cells
- *   included, are split into tetrahedra (Bezier cells are an error). Cells that vtkGhostType marks
+ *   included, are split into tetrahedra (Bezier cells are an error, and so are concave polyhedra
+ *   that are not star-shaped). Cells that vtkGhostType marks
  *   as hidden or duplicate are left out, and so are cells of structured and rectilinear grids with
  *   a hidden point. Without port 2 its points are the rest positions, and the vectors chosen by
  *   SetInputArrayToProcess(0, 1, 0, POINTS, name), three components in world units, are added

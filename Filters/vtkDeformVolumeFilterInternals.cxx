@@ -357,6 +357,16 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
       "cannot be split into tetrahedra, are ignored: " +
       cells + ".");
   }
+  const std::string& far = this->State->Deformation.GetRestMesh().GetFarMidSides();
+  const std::string& midSides = far.empty() ? this->Gathering.GetFarMidSides() : far;
+  if (!this->State->Deformation.IsField() && !midSides.empty())
+  {
+    warnings.insert(midSides +
+      " quadratic cells of the deformation mesh have a mid-side node that is farther from the "
+      "middle of its edge than 30 % of the length of the edge. Check that the nodes of the cells "
+      "are in VTK's "
+      "order.");
+  }
   std::string news;
   for (const std::string& warning : warnings)
   {

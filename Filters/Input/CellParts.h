@@ -17,6 +17,9 @@ struct CellPart
 {
   std::vector<int> Nodes;
   CellFaces Faces;
+  /// Where the part is split round a node that the cell does not have: the weights of the cell's
+  /// nodes there. The faces are triangles then.
+  std::vector<double> CenterWeights;
 };
 using CellParts = std::vector<CellPart>;
 

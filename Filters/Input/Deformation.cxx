@@ -2,6 +2,7 @@
 #include "Deformation.h"
 
 #include "Error.h"
+#include "ParallelFor.h"
 #include "PointDifferences.h"
 #include "VectorArray.h"
 #include "VectorComponents.h"
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -79,9 +81,9 @@ void Deformation::ReadMesh(const DeformationSource& source)
   {
     this->ConnectivityOfVectors = this->Mesh.GetConnectivityVersion();
     ++this->VectorsVersion;
-    if (this->Faults.MayHaveAny())
+    if (this->Faults.MayHaveAny() || this->Mesh.GetDerivedNodes().GetCount() > 0)
     {
-      this->VectorsStamp.clear(); // tetrahedra may use them now
+      this->VectorsStamp.clear(); // tetrahedra may use them now, or have other nodes in the middle
     }
   }
 
@@ -98,7 +100,11 @@ void Deformation::ReadMesh(const DeformationSource& source)
   {
     return;
   }
-  vtkDataArray* only = !ofPoints && shape.size() == 1 ? source.Selector(shape.front()) : nullptr;
+  const DerivedNodes& derived = this->Mesh.GetDerivedNodes();
+  // Derived displacements are made on the host.
+  vtkDataArray* only = !ofPoints && shape.size() == 1 && derived.GetCount() == 0
+    ? source.Selector(shape.front())
+    : nullptr;
   if (this->UseVectorsOnDevice(
         only, shape.front()->GetNumberOfPoints(), source.DisplacementScale, source))
   {
@@ -124,7 +130,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
       }
       this->CheckFaults(shape, source);
     },
-    ofPoints ? 1.0 : source.DisplacementScale, source);
+    ofPoints ? 1.0 : source.DisplacementScale, source, &derived);
   this->RememberVectors(stamp, source, false);
 }
 
@@ -198,11 +204,11 @@ PointRanges Deformation::GetChanges(std::uint64_t version) const
   return changes;
 }
 
-void Deformation::SetVectors(
-  std::size_t count, const VectorSource& read, double factor, const DeformationSource& source)
+void Deformation::SetVectors(std::size_t count, const VectorSource& read, double factor,
+  const DeformationSource& source, const DerivedNodes* derived)
 {
   ++this->VectorsVersion;
-  this->ReplaceVectors(count, read, factor, source);
+  this->ReplaceVectors(count, read, factor, source, derived);
 }
 
 void Deformation::ResizeVectors(std::size_t count, std::size_t blocks)
@@ -223,20 +229,64 @@ void Deformation::ResizeVectors(std::size_t count, std::size_t blocks)
   this->BlockComponents.resize(blocks);
 }
 
-void Deformation::ReplaceVectors(
-  std::size_t count, const VectorSource& read, double factor, const DeformationSource& source)
+void Deformation::UpdateDerived(
+  const DerivedNodes& derived, std::size_t count, std::vector<std::atomic<bool>>& changed)
+{
+  std::atomic<bool> tooFar{ false };
+  ParallelForParts(derived.GetCount(), PointsPerBlock,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const glm::vec3 sum(derived.Sum(i,
+          [&](std::int32_t node)
+          {
+            const float* vector = this->Vectors.data() + 3 * static_cast<std::size_t>(node);
+            return glm::dvec3(vector[0], vector[1], vector[2]);
+          }));
+        float* last = this->Vectors.data() + 3 * (count + i);
+        if (std::memcmp(last, &sum.x, 3 * sizeof(float)) != 0)
+        {
+          std::copy_n(&sum.x, 3, last);
+          changed[(count + i) / PointsPerBlock].store(true, std::memory_order_relaxed);
+        }
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          if (!(std::abs(sum[axis]) <= LargestDisplacement))
+          {
+            tooFar = true;
+          }
+        }
+      }
+    });
+  if (tooFar)
+  {
+    ThrowTooFar();
+  }
+  const std::size_t all = count + derived.GetCount();
+  for (std::size_t block = count / PointsPerBlock; block * PointsPerBlock < all; ++block)
+  {
+    const std::size_t first = block * PointsPerBlock;
+    this->BlockComponents[block] = FindComponents(
+      this->Vectors.data() + 3 * first, 3 * (std::min(first + PointsPerBlock, all) - first));
+  }
+}
+
+void Deformation::ReplaceVectors(std::size_t count, const VectorSource& read, double factor,
+  const DeformationSource& source, const DerivedNodes* derived)
 {
   // Whatever fails from here on, the vectors are not those of any source.
   this->VectorsStamp.clear();
   this->FieldInPlace = DisplacementField();
   const std::uint64_t version = this->VectorsVersion;
-  const std::size_t blocks = (count + PointsPerBlock - 1) / PointsPerBlock;
+  const std::size_t all = count + (derived ? derived->GetCount() : 0);
+  const std::size_t blocks = (all + PointsPerBlock - 1) / PointsPerBlock;
   if (!this->VectorsAreWhole || !this->HasSameUnits(source))
   {
     this->Memories.clear();
   }
   const bool isFollowing = !this->Memories.empty();
-  this->ResizeVectors(count, blocks);
+  this->ResizeVectors(all, blocks);
   this->VectorsAreWhole = false;
   const VectorConversion conversion(GetToDisplacement(source, factor));
   std::vector<std::atomic<bool>> changed(blocks);
@@ -274,7 +324,7 @@ void Deformation::ReplaceVectors(
         std::copy_n(displacements.begin(), 3 * some, last);
         changed[block].store(true, std::memory_order_relaxed);
       }
-      if (some == std::min(PointsPerBlock, count - block * PointsPerBlock))
+      if (some == std::min(PointsPerBlock, all - block * PointsPerBlock))
       {
         // While the caches hold them.
         this->BlockComponents[block] = FindComponents(displacements.data(), 3 * some);
@@ -292,13 +342,20 @@ void Deformation::ReplaceVectors(
     { takeVectors(first, vectors, number, 1); },
     [&](vtkIdType first, const float* vectors, vtkIdType number)
     { return takeVectors(first, vectors, number, 3); });
-  std::size_t number = 0;
   for (std::size_t block = 0; block < blocks; ++block)
   {
     if (inPieces[block])
     {
       this->BlockComponents[block] = VectorComponents();
     }
+  }
+  if (all > count)
+  {
+    this->UpdateDerived(*derived, count, changed);
+  }
+  std::size_t number = 0;
+  for (std::size_t block = 0; block < blocks; ++block)
+  {
     if (changed[block])
     {
       this->BlockVersions[block] = version;

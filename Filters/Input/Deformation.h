@@ -18,6 +18,7 @@
 #include <glm/mat3x3.hpp>
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -130,12 +131,17 @@ private:
   bool HasSameUnits(const DeformationSource& source) const;
   /// Calls one of its arguments for all displacements in world units.
   using VectorSource = std::function<void(const VectorTaker&, const FloatTaker&)>;
-  /// read: of so many displacements; it throws an Error where some cannot be used.
-  void SetVectors(
-    std::size_t count, const VectorSource& read, double factor, const DeformationSource& source);
+  /// read: of so many displacements; it throws an Error where some cannot be used. derived: of
+  /// which those of others follow; null: of none.
+  void SetVectors(std::size_t count, const VectorSource& read, double factor,
+    const DeformationSource& source, const DerivedNodes* derived = nullptr);
   /// The same without a new version.
-  void ReplaceVectors(
-    std::size_t count, const VectorSource& read, double factor, const DeformationSource& source);
+  void ReplaceVectors(std::size_t count, const VectorSource& read, double factor,
+    const DeformationSource& source, const DerivedNodes* derived = nullptr);
+  /// Makes the displacements of derived nodes, which stand behind count others, those that follow
+  /// from these. changed: set for blocks where some are other ones now.
+  void UpdateDerived(
+    const DerivedNodes& derived, std::size_t count, std::vector<std::atomic<bool>>& changed);
 
   [[noreturn]] static void ThrowTooFar();
   /// Throws an Error where tetrahedra use a vector that cannot be used.

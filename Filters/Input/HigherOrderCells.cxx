@@ -5,6 +5,7 @@
 #include "vtkBiQuadraticQuadraticWedge.h"
 #include "vtkCell.h"
 #include "vtkCellType.h"
+#include "vtkGenericCell.h"
 #include "vtkHigherOrderHexahedron.h"
 #include "vtkHigherOrderTetra.h"
 #include "vtkHigherOrderWedge.h"
@@ -16,6 +17,7 @@
 #include "vtkQuadraticPyramid.h"
 #include "vtkQuadraticTetra.h"
 #include "vtkQuadraticWedge.h"
+#include "vtkSmartPointer.h"
 #include "vtkTriQuadraticHexahedron.h"
 #include "vtkTriQuadraticPyramid.h"
 
@@ -73,7 +75,14 @@ CellParts MakeParts(int cellType)
   switch (cellType)
   {
     case VTK_QUADRATIC_TETRA:
-      return SplitSerendipity(ReadFaces(vtkNew<vtkQuadraticTetra>()));
+    {
+      CellParts parts = SplitSerendipity(ReadFaces(vtkNew<vtkQuadraticTetra>()));
+      // What is left of the tetrahedron without its corners is an octahedron. None of its three
+      // diagonals is better than the others: the values of the shape functions in the middle are.
+      parts.back().CenterWeights.assign(4, -0.125);
+      parts.back().CenterWeights.resize(10, 0.25);
+      return parts;
+    }
     case VTK_QUADRATIC_HEXAHEDRON:
       return SplitSerendipity(ReadFaces(vtkNew<vtkQuadraticHexahedron>()));
     case VTK_QUADRATIC_WEDGE:
@@ -118,6 +127,10 @@ CellParts MakeLagrangeTetrahedron(vtkIdType numberOfPoints)
   }
   const int degree = FindDegree(
     numberOfPoints, [](vtkIdType n) -> vtkIdType { return (n + 1) * (n + 2) * (n + 3) / 6; });
+  if (degree == 2)
+  {
+    return MakeParts(VTK_QUADRATIC_TETRA); // which has the same nodes
+  }
   return SplitTetrahedron(degree,
     [degree](int i, int j, int k)
     {
@@ -187,6 +200,29 @@ bool HigherOrderCells::Contain(int cellType)
     default:
       return GetNumberOfCellPoints(cellType) > 0 && cellType >= VTK_QUADRATIC_EDGE;
   }
+}
+
+const std::vector<std::array<int, 3>>& HigherOrderCells::GetMidSides(int cellType)
+{
+  const auto known = this->MidSides.try_emplace(cellType);
+  if (known.second && GetNumberOfCellPoints(cellType) > 0)
+  {
+    const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(cellType));
+    for (vtkIdType i = 0; i < cell->GetNumberOfPoints(); ++i)
+    {
+      cell->PointIds->SetId(i, i);
+    }
+    for (int i = 0; i < cell->GetNumberOfEdges(); ++i)
+    {
+      vtkIdList* ids = cell->GetEdge(i)->GetPointIds();
+      if (ids->GetNumberOfIds() == 3)
+      {
+        known.first->second.push_back({ { static_cast<int>(ids->GetId(0)),
+          static_cast<int>(ids->GetId(1)), static_cast<int>(ids->GetId(2)) } });
+      }
+    }
+  }
+  return known.first->second;
 }
 
 bool HigherOrderCells::IsBezier(int cellType)

@@ -31,7 +31,12 @@ public:
   const CellParts& GetParts(
     int cellType, vtkIdType numberOfPoints, const std::array<int, 3>* degrees);
 
+  /// The edges of a quadratic type of fixed shape that have a node in their middle: two corners,
+  /// then that node, by positions in the cell's list of points. Valid as long as this object.
+  const std::vector<std::array<int, 3>>& GetMidSides(int cellType);
+
 private:
+  std::map<int, std::vector<std::array<int, 3>>> MidSides;
   using Key = std::pair<std::pair<int, vtkIdType>, std::array<int, 3>>;
   std::map<Key, CellParts> Known;
 };

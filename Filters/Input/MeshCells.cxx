@@ -7,16 +7,22 @@
 #include "HigherOrderCells.h"
 #include "MaskArray.h"
 #include "PolyhedronFaces.h"
+#include "PolyhedronSplit.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <glm/geometric.hpp>
+
 #include <array>
+#include <limits>
 #include <map>
+#include <utility>
 
 namespace deformvolume
 {
@@ -60,10 +66,84 @@ void CheckStructure(vtkUnstructuredGrid* grid)
   }
 }
 
+// Where the nodes of a mesh are, found one by one: few cells need it.
+class NodePositions
+{
+public:
+  explicit NodePositions(const MeshParts& parts)
+    : Parts(parts)
+  {
+  }
+
+  glm::dvec3 Get(std::int32_t node) const
+  {
+    auto id = static_cast<vtkIdType>(node);
+    for (vtkUnstructuredGrid* grid : this->Parts)
+    {
+      if (id < grid->GetNumberOfPoints())
+      {
+        glm::dvec3 point;
+        grid->GetPoints()->GetPoint(id, &point.x);
+        return point;
+      }
+      id -= grid->GetNumberOfPoints();
+    }
+    return glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+  }
+
+  // The relative error of rounding.
+  double GetRounding() const
+  {
+    double rounding = std::numeric_limits<double>::epsilon();
+    for (vtkUnstructuredGrid* grid : this->Parts)
+    {
+      if (grid->GetNumberOfPoints() > 0 && grid->GetPoints()->GetDataType() == VTK_FLOAT)
+      {
+        rounding = std::numeric_limits<float>::epsilon();
+      }
+    }
+    return rounding;
+  }
+
+private:
+  const MeshParts& Parts;
+};
+
+// What is read of a mesh.
+struct Reading
+{
+  explicit Reading(const MeshParts& rest)
+    : Positions(rest)
+  {
+  }
+
+  MeshCells Cells;
+  std::int32_t NumberOfNodes = 0; // of all grids
+  NodePositions Positions;
+  HigherOrderCells HigherOrder;
+  std::map<int, vtkIdType> Ignored;
+  vtkIdType NumberOfQuadraticCells = 0;
+  vtkIdType NumberOfFarMidSides = 0;
+
+  // Returns the number of a new node.
+  std::int32_t AddNode(const std::vector<std::int32_t>& nodes, const std::vector<double>& weights)
+  {
+    const std::size_t number =
+      static_cast<std::size_t>(this->NumberOfNodes) + this->Cells.Derived.GetCount();
+    if (number >= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+    {
+      throw Error("The deformation mesh has more than 2,147,483,647 nodes, with those in the "
+                  "middle of its cells. Connect a coarser one.");
+    }
+    this->Cells.Derived.Add(nodes, weights);
+    return static_cast<std::int32_t>(number);
+  }
+};
+
 // A polyhedron brings its own faces. Its points may be listed in any order, so positions are
 // looked up by id.
-void SplitPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell, vtkIdType count,
-  std::int32_t firstNode, std::vector<Tetrahedron>& tetrahedra)
+void ReadPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell, vtkIdType count,
+  std::int32_t firstNode, Reading& reading)
 {
   PolyhedronFaces faces;
   bool complete = ReadPolyhedronFaces(grid, cell, faces) && faces.size() >= 4;
@@ -90,7 +170,49 @@ void SplitPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell, vtkIdType count,
   {
     ThrowBadCell(cell, VTK_POLYHEDRON, count, " and incomplete faces");
   }
-  SplitCell(nodes, positionsOfFaces, tetrahedra);
+  std::vector<glm::dvec3> points;
+  for (const std::int32_t node : nodes)
+  {
+    points.push_back(reading.Positions.Get(node));
+  }
+  PolyhedronSplit split;
+  if (!SplitPolyhedron(nodes, positionsOfFaces, points, reading.Positions.GetRounding(), split))
+  {
+    throw Error("Cell " + std::to_string(cell) + " of the deformation mesh is a concave " +
+      GetCellClassName(VTK_POLYHEDRON) + " with " + std::to_string(nodes.size()) +
+      " points, and no point inside sees all of its faces. Divide it into convex or star-shaped "
+      "cells.");
+  }
+  std::vector<Tetrahedron>& tetrahedra = reading.Cells.Tetrahedra;
+  tetrahedra.insert(tetrahedra.end(), split.Tetrahedra.begin(), split.Tetrahedra.end());
+  if (!split.CenterWeights.empty())
+  {
+    const std::int32_t center = reading.AddNode(nodes, split.CenterWeights);
+    for (const std::array<std::int32_t, 3>& triangle : split.Triangles)
+    {
+      tetrahedra.push_back({ { center, triangle[0], triangle[1], triangle[2] } });
+    }
+  }
+}
+
+// Whether all nodes in the middle of edges are about there. The middle of an arc of 120 degrees is
+// farther by 0.29 of the length between its ends, a quarter point is by 0.25, and the middle of
+// another edge is by 0.5 where all edges have one length.
+bool HasNearMidSides(int type, const std::vector<std::int32_t>& nodes, Reading& reading)
+{
+  constexpr double most = 0.3;
+  for (const std::array<int, 3>& edge : reading.HigherOrder.GetMidSides(type))
+  {
+    const auto at = [&](int i)
+    { return reading.Positions.Get(nodes[static_cast<std::size_t>(edge[i])]); };
+    const glm::dvec3 first = at(0);
+    const glm::dvec3 second = at(1);
+    if (glm::distance(at(2), 0.5 * (first + second)) > most * glm::distance(first, second))
+    {
+      return false;
+    }
+  }
+  return true;
 }
 
 // The degrees of Lagrange cells along their axes, one tuple for each cell of the mesh; null where
@@ -113,8 +235,7 @@ vtkDataArray* FindDegrees(vtkUnstructuredGrid* grid)
 
 // nodes: of the cell.
 void SplitHigherOrderCell(vtkUnstructuredGrid* grid, vtkIdType cell, int type,
-  const std::vector<std::int32_t>& nodes, HigherOrderCells& cells,
-  std::vector<Tetrahedron>& tetrahedra)
+  const std::vector<std::int32_t>& nodes, Reading& reading)
 {
   std::array<int, 3> degrees{ { 0, 0, 0 } };
   vtkDataArray* array = FindDegrees(grid);
@@ -124,11 +245,12 @@ void SplitHigherOrderCell(vtkUnstructuredGrid* grid, vtkIdType cell, int type,
     degrees[axis] = degree >= 1.0 && degree < 1e6 ? static_cast<int>(degree) : 0;
   }
   const auto count = static_cast<vtkIdType>(nodes.size());
-  const CellParts& parts = cells.GetParts(type, count, array ? &degrees : nullptr);
+  const CellParts& parts = reading.HigherOrder.GetParts(type, count, array ? &degrees : nullptr);
   if (parts.empty())
   {
     ThrowBadCell(cell, type, count, ", which does not fit its degree");
   }
+  std::vector<Tetrahedron>& tetrahedra = reading.Cells.Tetrahedra;
   std::vector<std::int32_t> some;
   for (const CellPart& part : parts)
   {
@@ -137,13 +259,25 @@ void SplitHigherOrderCell(vtkUnstructuredGrid* grid, vtkIdType cell, int type,
     {
       some.push_back(nodes[static_cast<std::size_t>(node)]);
     }
-    SplitCell(some, part.Faces, tetrahedra);
+    if (part.CenterWeights.empty())
+    {
+      SplitCell(some, part.Faces, tetrahedra);
+      continue;
+    }
+    const std::int32_t center = reading.AddNode(nodes, part.CenterWeights);
+    for (const std::vector<int>& face : part.Faces)
+    {
+      tetrahedra.push_back({ { center, some[static_cast<std::size_t>(face[0])],
+        some[static_cast<std::size_t>(face[1])], some[static_cast<std::size_t>(face[2])] } });
+    }
   }
+  ++reading.NumberOfQuadraticCells;
+  reading.NumberOfFarMidSides += HasNearMidSides(type, nodes, reading) ? 0 : 1;
 }
 
-void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode,
-  std::vector<Tetrahedron>& tetrahedra, std::map<int, vtkIdType>& ignored)
+void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode, Reading& reading)
 {
+  std::vector<Tetrahedron>& tetrahedra = reading.Cells.Tetrahedra;
   ByteArray* ghosts = FindMask(grid->GetCellData(), vtkDataSetAttributes::GhostArrayName(),
     grid->GetNumberOfCells(), "cell", "deformation mesh");
   constexpr unsigned char skipped =
@@ -151,7 +285,6 @@ void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode,
   const vtkIdType numberOfCells = grid->GetNumberOfCells();
   const vtkIdType numberOfPoints = grid->GetNumberOfPoints();
   CheckStructure(grid);
-  HigherOrderCells higherOrderCells;
   std::vector<std::int32_t> nodes;
   for (vtkIdType cell = 0; cell < numberOfCells; ++cell)
   {
@@ -183,7 +316,7 @@ void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode,
     }
     if (type == VTK_POLYHEDRON)
     {
-      SplitPolyhedron(grid, cell, count, firstNode, tetrahedra);
+      ReadPolyhedron(grid, cell, count, firstNode, reading);
       continue;
     }
     nodes.resize(static_cast<std::size_t>(count));
@@ -203,7 +336,7 @@ void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode,
     }
     else if (HigherOrderCells::Contain(type))
     {
-      SplitHigherOrderCell(grid, cell, type, nodes, higherOrderCells, tetrahedra);
+      SplitHigherOrderCell(grid, cell, type, nodes, reading);
     }
     else if (HigherOrderCells::IsBezier(type))
     {
@@ -213,38 +346,46 @@ void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode,
     }
     else
     {
-      ++ignored[type];
+      ++reading.Ignored[type];
     }
   }
 }
 
 } // namespace
 
-MeshCells ReadCells(const MeshParts& parts)
+MeshCells ReadCells(const MeshParts& parts, const MeshParts& rest)
 {
-  MeshCells cells;
-  std::map<int, vtkIdType> ignored;
   std::size_t numberOfCells = 0;
+  vtkIdType numberOfNodes = 0;
   for (vtkUnstructuredGrid* grid : parts)
   {
     numberOfCells += static_cast<std::size_t>(grid->GetNumberOfCells());
+    numberOfNodes += grid->GetNumberOfPoints();
   }
+  Reading reading(rest);
+  reading.NumberOfNodes = static_cast<std::int32_t>(numberOfNodes);
+  MeshCells& cells = reading.Cells;
   cells.Tetrahedra.reserve(numberOfCells);
   std::int32_t firstNode = 0;
   for (vtkUnstructuredGrid* grid : parts)
   {
     if (grid->GetNumberOfCells() > 0)
     {
-      ReadPart(grid, firstNode, cells.Tetrahedra, ignored);
+      ReadPart(grid, firstNode, reading);
     }
     firstNode += static_cast<std::int32_t>(grid->GetNumberOfPoints());
   }
-  for (const auto& entry : ignored)
+  for (const auto& entry : reading.Ignored)
   {
     cells.Ignored += (cells.Ignored.empty() ? "" : ", ") + std::to_string(entry.second) + " " +
       GetCellClassName(entry.first);
   }
-  return cells;
+  if (reading.NumberOfFarMidSides > 0)
+  {
+    cells.FarMidSides = std::to_string(reading.NumberOfFarMidSides) + " of " +
+      std::to_string(reading.NumberOfQuadraticCells);
+  }
+  return std::move(cells);
 }
 
 } // namespace deformvolume

@@ -3,6 +3,7 @@
 #define DeformVolumeMeshCells_h
 
 #include "DeformationMesh.h" // for MeshParts
+#include "DerivedNodes.h"
 #include "Tetrahedron.h"
 
 #include <string>
@@ -14,17 +15,23 @@ namespace deformvolume
 struct MeshCells
 {
   std::vector<Tetrahedron> Tetrahedra;
+  /// Nodes that some tetrahedra have besides those of the grids, numbered behind these.
+  DerivedNodes Derived;
   /// Cells that are not three-dimensional, or of a type that is not known, in words for a warning;
   /// "" without such.
   std::string Ignored;
+  /// Quadratic cells with a node that is far from the middle of its edge, in words for a warning;
+  /// "" without such.
+  std::string FarMidSides;
 };
 
 /// The tetrahedra of a mesh, and those that its other three-dimensional cells are split into: the
 /// nodes of quadratic and Lagrange cells all become nodes of tetrahedra. Cells that vtkGhostType
-/// marks as hidden or duplicate are left out.
+/// marks as hidden or duplicate are left out. rest: the same mesh with its points at rest, on which
+/// the split of concave polyhedra depends.
 /// Throws an Error where a cell has a wrong number of points, points that are not there or
-/// incomplete faces, and where it is a Bezier cell.
-MeshCells ReadCells(const MeshParts& parts);
+/// incomplete faces, where it is a Bezier cell, and where it is a polyhedron that cannot be split.
+MeshCells ReadCells(const MeshParts& parts, const MeshParts& rest);
 
 } // namespace deformvolume
 

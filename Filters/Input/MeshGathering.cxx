@@ -97,6 +97,7 @@ struct MeshGathering::Piece
   /// Deformed positions where there is a rest configuration, else displacements.
   std::vector<glm::dvec3> Vectors;
   std::string IgnoredCells;
+  std::string FarMidSides;
 };
 
 MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
@@ -116,18 +117,32 @@ MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
   {
     return piece;
   }
-  MeshCells cells = ReadCells(rest);
-  if (source.Rest && ReadCells(shape).Tetrahedra != cells.Tetrahedra)
+  MeshCells cells = ReadCells(rest, rest);
+  if (source.Rest && ReadCells(shape, rest).Tetrahedra != cells.Tetrahedra)
   {
     throw Error("The cells of the deformation mesh on input port 1 are not those of the rest "
                 "configuration on port 2. Connect two configurations of one mesh, split alike.");
   }
   piece.Tetrahedra = std::move(cells.Tetrahedra);
   piece.IgnoredCells = std::move(cells.Ignored);
+  piece.FarMidSides = std::move(cells.FarMidSides);
   piece.RestPoints = ReadPoints(rest, source.Rest ? REST_NAME : MESH_NAME, piece.Tetrahedra);
+  // They are nodes as others from here on.
+  const auto addDerived = [&]
+  {
+    for (std::vector<glm::dvec3>* vectors : { &piece.RestPoints, &piece.Vectors })
+    {
+      for (std::size_t i = 0; i < cells.Derived.GetCount(); ++i)
+      {
+        vectors->push_back(
+          cells.Derived.Sum(i, [&](std::int32_t node) { return (*vectors)[node]; }));
+      }
+    }
+  };
   if (source.Rest)
   {
     piece.Vectors = ReadPoints(shape, MESH_NAME, piece.Tetrahedra);
+    addDerived();
     return piece;
   }
   piece.Vectors.resize(nodes);
@@ -137,6 +152,7 @@ MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
     [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
     { std::copy(vectors, vectors + count, piece.Vectors.begin() + first); });
   CheckPointVectors(shape, source.Selector, source.Wanted, MESH_NAME, faults, piece.Tetrahedra);
+  addDerived();
   return piece;
 }
 
@@ -198,6 +214,7 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
     AddToHash(hash, piece.RestPoints);
     AddToHash(hash, piece.Vectors);
     this->IgnoredCells = piece.IgnoredCells;
+    this->FarMidSides = piece.FarMidSides;
     if (!ranks.AreEqual(hash))
     {
       const std::vector<std::uint64_t> nodes = ranks.Gather(piece.RestPoints.size());

@@ -27,6 +27,8 @@ public:
 
   /// Cells of this rank's piece that were ignored, in words; "" without such.
   const std::string& GetIgnoredCells() const { return this->IgnoredCells; }
+  /// See RestMesh.
+  const std::string& GetFarMidSides() const { return this->FarMidSides; }
 
 private:
   struct Piece;
@@ -39,6 +41,7 @@ private:
   vtkSmartPointer<vtkUnstructuredGrid> Shape;
   vtkSmartPointer<vtkUnstructuredGrid> Rest;
   std::string IgnoredCells;
+  std::string FarMidSides;
 };
 
 } // namespace deformvolume

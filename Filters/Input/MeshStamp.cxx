@@ -44,6 +44,10 @@ Stamp GetCellFormStamp(vtkUnstructuredGrid* grid)
   if (HasPolyhedronFaces(grid))
   {
     stamp.emplace_back(grid, grid->vtkObject::GetMTime()); // which knows of the faces
+    // The split of concave polyhedra follows from where their points are.
+    vtkPoints* points = grid->GetPoints();
+    stamp.emplace_back(points, points ? points->vtkObject::GetMTime() : 0);
+    AddArray(stamp, points ? points->GetData() : nullptr);
   }
   return stamp;
 }

@@ -103,15 +103,32 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   CellReading cells = this->ReadCells(shape, rest, restCells, shapeCells);
   std::vector<CellMemory> cellMemories = GetCellMemories(rest);
   const std::size_t nodes = GetNumberOfNodes(rest);
-  const std::size_t nodesBefore = this->Points.size();
+  const std::size_t nodesBefore = this->Points.size() - this->Derived.GetCount();
   this->RestCells = this->ShapeCells = MeshStamp(); // of nothing, where this fails
   this->RestCellMemories.clear();
-  this->ReadPoints(rest, source);
+  // The numbers of derived nodes follow from those of all others.
+  const bool keepsDerived =
+    !cells.Derived && (this->Derived.GetCount() == 0 || nodes == nodesBefore);
+  if (!keepsDerived)
+  {
+    this->ShapeIsOld = true;
+    this->Points.resize(nodesBefore);
+    this->Derived = DerivedNodes();
+  }
+  const bool haveRead = this->ReadPoints(rest, source, nodesBefore);
   const bool isSameShape = !this->ShapeIsOld && this->KeptPoints && this->HaveSameShape(cells);
   const bool mayFollow = !isSameShape && !this->ShapeIsOld && this->KeptPoints;
   std::optional<TetrahedronReplacement> replacement =
     mayFollow ? this->FindReplacement(cells) : std::nullopt;
-  this->Points.resize(nodes);
+  if (cells.Derived)
+  {
+    this->Derived = std::move(*cells.Derived);
+  }
+  this->Points.resize(nodes + this->Derived.GetCount());
+  if (!keepsDerived || haveRead)
+  {
+    this->UpdateDerivedPoints(nodes);
+  }
   if (!isSameShape)
   {
     this->SetShape(std::move(cells), std::move(replacement));
@@ -120,10 +137,10 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   {
     this->SetConnectivity(std::move(cells.Differences->Changed));
   }
-  if (nodes < nodesBefore && !AreNodes(this->Tetrahedra, nodes))
+  if (nodes < nodesBefore && !AreNodes(this->Tetrahedra, this->Points.size()))
   {
     this->ShapeIsOld = true;
-    deformvolume::ReadCells(rest); // which says what is wrong
+    deformvolume::ReadCells(rest, rest); // which says what is wrong
     throw Error("The deformation mesh has cells that use points that are not there. Mend the cells "
                 "of the mesh.");
   }
@@ -138,7 +155,7 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
 std::optional<CellDifferences> RestMesh::CompareCells(
   const MeshParts& shape, const MeshParts& rest, bool sameRest, bool sameShape, bool shared) const
 {
-  if (!this->IgnoredCells.empty() || this->Tetrahedra.empty())
+  if (!this->IgnoredCells.empty() || this->Derived.GetCount() > 0 || this->Tetrahedra.empty())
   {
     return {};
   }
@@ -167,6 +184,7 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
   const bool sameShape = shapeCells.IsThatOf(this->ShapeCells);
   CellReading reading;
   reading.Ignored = this->IgnoredCells;
+  reading.FarMidSides = this->FarMidSides;
   if (sameRest && (sameShape || shared))
   {
     reading.Differences = CellDifferences();
@@ -178,7 +196,7 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
   }
   if (!reading.Differences)
   {
-    MeshCells cells = deformvolume::ReadCells(rest);
+    MeshCells cells = deformvolume::ReadCells(rest, rest);
     if (cells.Tetrahedra.empty())
     {
       throw Error("The deformation mesh has no tetrahedra" +
@@ -186,34 +204,49 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
         ". Connect a mesh of three-dimensional cells, for example from "
         "vtkLatticeTetrahedraSource, vtkTetGenMesher or vtkDelaunay3D.");
     }
-    if (!shared && deformvolume::ReadCells(shape).Tetrahedra != cells.Tetrahedra)
+    if (!shared && deformvolume::ReadCells(shape, rest).Tetrahedra != cells.Tetrahedra)
     {
       throw Error("The cells of the deformation mesh on input port 1 are not those of the rest "
                   "configuration on port 2. Connect two configurations of one mesh.");
     }
     reading.Ignored = cells.Ignored;
+    reading.FarMidSides = cells.FarMidSides;
+    if (!(cells.Derived == this->Derived))
+    {
+      reading.Derived = std::move(cells.Derived);
+    }
     reading.Differences = FindDifferences(this->Tetrahedra, cells.Tetrahedra);
     reading.All = std::move(cells.Tetrahedra);
   }
   return reading;
 }
 
-void RestMesh::ReadPoints(const MeshParts& rest, const DeformationSource& source)
+void RestMesh::UpdateDerivedPoints(std::size_t nodes)
+{
+  for (std::size_t i = 0; i < this->Derived.GetCount(); ++i)
+  {
+    this->Points[nodes + i] =
+      this->Derived.Sum(i, [&](std::int32_t node) { return this->Points[node]; });
+  }
+}
+
+bool RestMesh::ReadPoints(
+  const MeshParts& rest, const DeformationSource& source, std::size_t before)
 {
   this->KeptPoints = true;
   const MeshStamp stamp = MeshStamp::OfPoints(rest, IsRestMade(source));
   if (stamp.IsThatOf(this->PointsStamp) && source.Volume == this->Volume)
   {
-    return;
+    return false;
   }
   this->PointsStamp = MeshStamp(); // of nothing, where this fails
   if (!(source.Volume == this->Volume))
   {
     this->PointMemories.clear();
   }
-  const std::size_t before = this->Points.size();
+  const std::size_t sizeBefore = this->Points.size();
   // Points that are gone are still those of tetrahedra as they were.
-  this->Points.resize(std::max(before, GetNumberOfNodes(rest)));
+  this->Points.resize(std::max(sizeBefore, GetNumberOfNodes(rest)));
   this->PointFaults.Resize(GetNumberOfNodes(rest));
   std::atomic<bool> kept{ true };
   try
@@ -223,13 +256,14 @@ void RestMesh::ReadPoints(const MeshParts& rest, const DeformationSource& source
   catch (...)
   {
     this->ShapeIsOld |= !kept;
-    this->Points.resize(before);
+    this->Points.resize(sizeBefore);
     this->PointMemories.clear();
     throw;
   }
   this->KeptPoints = kept;
   this->PointsStamp = stamp;
   this->Volume = source.Volume;
+  return true;
 }
 
 void RestMesh::ReadMovedPoints(const MeshParts& rest, const DeformationSource& source,
@@ -353,6 +387,7 @@ void RestMesh::SetShape(CellReading&& cells, std::optional<TetrahedronReplacemen
     Apply(*cells.Differences, this->Tetrahedra);
   }
   this->IgnoredCells = cells.Ignored;
+  this->FarMidSides = cells.FarMidSides;
   ++this->ShapeVersion;
   this->LogBegin = this->VersionReplaced = ++this->ConnectivityVersion;
   this->Log.clear();

@@ -4,6 +4,7 @@
 
 #include "CellComparison.h"
 #include "DeformationMesh.h"
+#include "DerivedNodes.h"
 #include "ImageGeometry.h"
 #include "MappingUpdate.h"
 #include "MeshStamp.h"
@@ -50,7 +51,9 @@ public:
   void Read(const MeshParts& shape, const MeshParts& rest, const DeformationSource& source);
 
   const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Tetrahedra; }
+  /// Those of the grids, and behind them the derived ones.
   const std::vector<glm::dvec3>& GetPoints() const { return this->Points; }
+  const DerivedNodes& GetDerivedNodes() const { return this->Derived; }
 
   /// Changes with the shape of the tetrahedra at rest, and with their number.
   std::uint64_t GetShapeVersion() const { return this->ShapeVersion; }
@@ -75,6 +78,8 @@ public:
 
   /// Cells that were ignored, in words for a warning; "" without such.
   const std::string& GetIgnoredCells() const { return this->IgnoredCells; }
+  /// Quadratic cells with a node far from the middle of its edge, in words; "" without such.
+  const std::string& GetFarMidSides() const { return this->FarMidSides; }
 
 private:
   using Changes = std::vector<TetrahedronChange>;
@@ -83,8 +88,10 @@ private:
   struct CellReading
   {
     std::optional<CellDifferences> Differences;
-    std::vector<Tetrahedron> All; // where there is nothing in the former, or not that alone
+    std::vector<Tetrahedron> All;        // where there is nothing in the former, or not that alone
+    std::optional<DerivedNodes> Derived; // where they are others than there are
     std::string Ignored;
+    std::string FarMidSides;
   };
 
   CellReading ReadCells(const MeshParts& shape, const MeshParts& rest, const MeshStamp& restCells,
@@ -95,10 +102,13 @@ private:
     bool sameRest, bool sameShape, bool shared) const;
   /// Whether cells are as many tetrahedra as there are, in the places of these.
   bool HaveSameShape(const CellReading& cells) const;
-  void ReadPoints(const MeshParts& rest, const DeformationSource& source);
+  /// before: how many nodes there were. Returns false where nothing had to be read.
+  bool ReadPoints(const MeshParts& rest, const DeformationSource& source, std::size_t before);
   /// before: how many nodes there were. kept: set to false where one of these is elsewhere now.
   void ReadMovedPoints(const MeshParts& rest, const DeformationSource& source, std::size_t before,
     std::atomic<bool>& kept);
+  /// nodes: how many the grids have.
+  void UpdateDerivedPoints(std::size_t nodes);
   /// How the tetrahedra that were read follow from those that there are, while all points are still
   /// there.
   std::optional<TetrahedronReplacement> FindReplacement(CellReading& cells) const;
@@ -107,8 +117,10 @@ private:
 
   std::vector<Tetrahedron> Tetrahedra;
   std::vector<glm::dvec3> Points;
+  DerivedNodes Derived;
   NodeFaults PointFaults;
   std::string IgnoredCells;
+  std::string FarMidSides;
   std::uint64_t ShapeVersion = 0;
   std::uint64_t ConnectivityVersion = 0;
   std::optional<MeshReplacement> Replacement;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Quadratic and Lagrange cells: the tetrahedra that they are split into fill them, agree with those
-// of their neighbours, use all of their nodes, and come closer to the cells' own shape functions at
-// the rate of linear interpolation where the mesh is refined.
+// Quadratic and Lagrange cells, and concave polyhedra: the tetrahedra that they are split into fill
+// them, agree with those of their neighbours, use all of their nodes, and come closer to the cells'
+// own shape functions at the rate of linear interpolation where the mesh is refined.
 #include "FilterTesting.h"
 #include "MeshCells.h"
 
@@ -32,19 +32,43 @@ namespace
 
 using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
 
-double GetVolume(vtkUnstructuredGrid* grid, const Tetrahedron& nodes)
+double GetVolume(const std::vector<glm::dvec3>& points, const Tetrahedron& nodes)
 {
-  const glm::dvec3 origin = GetPoint(grid, nodes[0]);
-  return std::abs(glm::determinant(glm::dmat3(GetPoint(grid, nodes[1]) - origin,
-           GetPoint(grid, nodes[2]) - origin, GetPoint(grid, nodes[3]) - origin))) /
+  const glm::dvec3 origin = points[nodes[0]];
+  return std::abs(glm::determinant(glm::dmat3(
+           points[nodes[1]] - origin, points[nodes[2]] - origin, points[nodes[3]] - origin))) /
     6.0;
+}
+
+// Vectors of the nodes of a mesh, and behind them those of derived nodes.
+std::vector<glm::dvec3> AddDerived(
+  const std::vector<glm::dvec3>& vectors, const deformvolume::MeshCells& cells)
+{
+  std::vector<glm::dvec3> all = vectors;
+  for (std::size_t i = 0; i < cells.Derived.GetCount(); ++i)
+  {
+    all.push_back(cells.Derived.Sum(i, [&](std::int32_t node) { return vectors[node]; }));
+  }
+  return all;
+}
+
+std::vector<glm::dvec3> GetPoints(vtkUnstructuredGrid* grid, const deformvolume::MeshCells& cells)
+{
+  std::vector<glm::dvec3> points;
+  for (vtkIdType id = 0; id < grid->GetNumberOfPoints(); ++id)
+  {
+    points.push_back(GetPoint(grid, id));
+  }
+  return AddDerived(points, cells);
 }
 
 // A conforming mesh of the cells' parts: each face belongs to one tetrahedron or two, and those of
 // one make up a surface of this area; the volumes of all make up this volume; every node is used.
 void CheckFilled(const std::string& what, vtkUnstructuredGrid* grid, double volume, double area)
 {
-  const std::vector<Tetrahedron> tetrahedra = deformvolume::ReadCells({ grid }).Tetrahedra;
+  const deformvolume::MeshCells cells = deformvolume::ReadCells({ grid }, { grid });
+  const std::vector<Tetrahedron>& tetrahedra = cells.Tetrahedra;
+  const std::vector<glm::dvec3> points = GetPoints(grid, cells);
   std::set<std::int32_t> used;
   std::map<std::array<std::int32_t, 3>, int> faces;
   double sum = 0.0;
@@ -65,7 +89,7 @@ void CheckFilled(const std::string& what, vtkUnstructuredGrid* grid, double volu
       std::sort(face.begin(), face.end());
       ++faces[face];
     }
-    const double part = GetVolume(grid, tetrahedron);
+    const double part = GetVolume(points, tetrahedron);
     sum += part;
     least = std::min(least, part);
   }
@@ -76,22 +100,21 @@ void CheckFilled(const std::string& what, vtkUnstructuredGrid* grid, double volu
     most = std::max(most, face.second);
     if (face.second == 1)
     {
-      const glm::dvec3 origin = GetPoint(grid, face.first[0]);
+      const glm::dvec3 origin = points[face.first[0]];
       surface += 0.5 *
-        glm::length(glm::cross(
-          GetPoint(grid, face.first[1]) - origin, GetPoint(grid, face.first[2]) - origin));
+        glm::length(glm::cross(points[face.first[1]] - origin, points[face.first[2]] - origin));
     }
   }
   // Sums of some thousand numbers of order one.
   if (std::abs(sum - volume) > 1e-10 * volume || std::abs(surface - area) > 1e-10 * area ||
     most > 2 || least < 1e-6 * volume / static_cast<double>(tetrahedra.size()) ||
-    static_cast<vtkIdType>(used.size()) != grid->GetNumberOfPoints())
+    used.size() != points.size())
   {
     ++GetNumberOfFailures();
     std::cerr << what << ": " << tetrahedra.size() << " tetrahedra of volume " << sum
               << " instead of " << volume << ", the least " << least << ", surface " << surface
               << " instead of " << area << ", up to " << most << " at a face, " << used.size()
-              << " of " << grid->GetNumberOfPoints() << " nodes\n";
+              << " of " << points.size() << " nodes\n";
   }
 }
 
@@ -392,7 +415,7 @@ void TestDegrees()
     degrees->SetNumberOfTuples(0);
     try
     {
-      deformvolume::ReadCells({ grid });
+      deformvolume::ReadCells({ grid }, { grid });
       VERIFY(false);
     }
     catch (const deformvolume::Error& error)
@@ -425,13 +448,16 @@ double FindDifference(const Shape& shape, int blocks)
     grid->GetPoints()->SetPoint(id, &point.x);
     displacements.push_back(Move(point));
   }
-  const std::vector<Tetrahedron> tetrahedra = deformvolume::ReadCells({ grid }).Tetrahedra;
+  const deformvolume::MeshCells cells = deformvolume::ReadCells({ grid }, { grid });
+  const std::vector<Tetrahedron>& tetrahedra = cells.Tetrahedra;
+  const std::vector<glm::dvec3> points = GetPoints(grid, cells);
+  displacements = AddDerived(displacements, cells);
   std::vector<glm::dmat3> inverses;
   for (const Tetrahedron& nodes : tetrahedra)
   {
-    const glm::dvec3 last = GetPoint(grid, nodes[3]);
-    inverses.push_back(glm::inverse(glm::dmat3(GetPoint(grid, nodes[0]) - last,
-      GetPoint(grid, nodes[1]) - last, GetPoint(grid, nodes[2]) - last)));
+    const glm::dvec3 last = points[nodes[3]];
+    inverses.push_back(glm::inverse(
+      glm::dmat3(points[nodes[0]] - last, points[nodes[1]] - last, points[nodes[2]] - last)));
   }
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -461,7 +487,7 @@ double FindDifference(const Shape& shape, int blocks)
     for (std::size_t t = 0; t < tetrahedra.size(); ++t)
     {
       const Tetrahedron& nodes = tetrahedra[t];
-      const glm::dvec3 w = inverses[t] * (position - GetPoint(grid, nodes[3]));
+      const glm::dvec3 w = inverses[t] * (position - points[nodes[3]]);
       const double last = 1.0 - w.x - w.y - w.z;
       if (std::min({ w.x, w.y, w.z, last }) >= -1e-9)
       {
@@ -506,7 +532,7 @@ void ExpectError(int type, vtkIdType count, const std::string& words)
   grid->InsertNextCell(type, count, ids.data());
   try
   {
-    deformvolume::ReadCells({ grid });
+    deformvolume::ReadCells({ grid }, { grid });
     ++GetNumberOfFailures();
     std::cerr << "no error of " << count << " points of type " << type << '\n';
   }
@@ -583,6 +609,234 @@ void TestVolume()
   VERIFY(worst[0] < 0.5 * worst[1]);
 }
 
+// Polyhedra with faces that name their points, for points in an order that a seed decides.
+class PolyhedralMesh
+{
+public:
+  PolyhedralMesh(const std::vector<glm::dvec3>& points, unsigned int seed)
+    : Places(points.size())
+  {
+    std::iota(this->Places.begin(), this->Places.end(), 0);
+    std::mt19937 random(seed);
+    std::shuffle(this->Places.begin(), this->Places.end(), random);
+    vtkNew<vtkPoints> all;
+    all->SetDataTypeToDouble();
+    all->SetNumberOfPoints(static_cast<vtkIdType>(points.size()));
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      all->SetPoint(this->Places[i], &points[i].x);
+    }
+    this->Mesh->SetPoints(all);
+  }
+
+  // Faces may run round the cell in either sense.
+  void Add(const std::vector<std::vector<int>>& faces)
+  {
+    vtkNew<vtkIdList> stream;
+    stream->InsertNextId(static_cast<vtkIdType>(faces.size()));
+    for (const std::vector<int>& face : faces)
+    {
+      stream->InsertNextId(static_cast<vtkIdType>(face.size()));
+      for (const int point : face)
+      {
+        stream->InsertNextId(this->Places[static_cast<std::size_t>(point)]);
+      }
+    }
+    this->Mesh->InsertNextCell(VTK_POLYHEDRON, stream);
+  }
+
+  Grid Mesh = Grid::New();
+
+private:
+  std::vector<vtkIdType> Places;
+};
+
+using Polygon = std::vector<std::array<double, 2>>;
+
+// Prisms over a polygon, one on the other.
+Grid MakePrisms(const Polygon& polygon, int layers, unsigned int seed)
+{
+  const auto count = static_cast<int>(polygon.size());
+  std::vector<glm::dvec3> points;
+  for (int layer = 0; layer <= layers; ++layer)
+  {
+    for (const auto& corner : polygon)
+    {
+      points.emplace_back(corner[0], corner[1], layer);
+    }
+  }
+  PolyhedralMesh mesh(points, seed);
+  for (int layer = 0; layer < layers; ++layer)
+  {
+    const int first = layer * count;
+    std::vector<std::vector<int>> faces(2);
+    for (int i = 0; i < count; ++i)
+    {
+      faces[0].push_back(first + i);
+      faces[1].push_back(first + count + i);
+      const int next = (i + 1) % count;
+      faces.push_back({ first + i, first + next, first + count + next, first + count + i });
+    }
+    mesh.Add(faces);
+  }
+  return mesh.Mesh;
+}
+
+double GetArea(const Polygon& polygon)
+{
+  double area = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+  {
+    const auto& a = polygon[i];
+    const auto& b = polygon[(i + 1) % polygon.size()];
+    area += 0.5 * (a[0] * b[1] - a[1] * b[0]);
+  }
+  return area;
+}
+
+double GetLength(const Polygon& polygon)
+{
+  double length = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+  {
+    const auto& a = polygon[i];
+    const auto& b = polygon[(i + 1) % polygon.size()];
+    length += std::hypot(a[0] - b[0], a[1] - b[1]);
+  }
+  return length;
+}
+
+Polygon MakeStar()
+{
+  Polygon star;
+  for (int i = 0; i < 10; ++i)
+  {
+    const double angle = 0.6283185307179586 * i;
+    const double radius = i % 2 == 0 ? 2.0 : 0.8;
+    star.push_back({ { radius * std::cos(angle), radius * std::sin(angle) } });
+  }
+  return star;
+}
+
+void TestConcavePolyhedra()
+{
+  const Polygon angle{ { { 0, 0 }, { 3, 0 }, { 3, 1 }, { 1, 1 }, { 1, 2 }, { 0, 2 } } };
+  const Polygon arrow{ { { 0, 0 }, { 2, 1 }, { 0, 2 }, { 0.6, 1 } } };
+  for (const Polygon& polygon : { angle, arrow, MakeStar() })
+  {
+    const double area = GetArea(polygon);
+    const double length = GetLength(polygon);
+    for (unsigned int seed = 0; seed < 60; ++seed)
+    {
+      CheckFilled("a concave prism", MakePrisms(polygon, 1, seed), area, 2.0 * area + length);
+      CheckFilled(
+        "concave prisms", MakePrisms(polygon, 3, seed), 3.0 * area, 2.0 * area + 3.0 * length);
+    }
+  }
+  // Spikes on the faces of a cube.
+  std::vector<glm::dvec3> points;
+  for (int i = 0; i < 8; ++i)
+  {
+    points.emplace_back(i % 2, i / 2 % 2, i / 4);
+  }
+  const std::vector<std::vector<int>> sides{ { 0, 1, 3, 2 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 },
+    { 2, 3, 7, 6 }, { 0, 2, 6, 4 }, { 1, 3, 7, 5 } };
+  std::vector<std::vector<int>> faces;
+  for (const std::vector<int>& side : sides)
+  {
+    glm::dvec3 middle(0.0);
+    for (const int corner : side)
+    {
+      middle += 0.25 * points[static_cast<std::size_t>(corner)];
+    }
+    for (int i = 0; i < 4; ++i)
+    {
+      faces.push_back({ side[i], side[(i + 1) % 4], static_cast<int>(points.size()) });
+    }
+    points.push_back(middle + 3.0 * (middle - glm::dvec3(0.5)));
+  }
+  for (unsigned int seed = 0; seed < 60; ++seed)
+  {
+    PolyhedralMesh spikes(points, seed);
+    spikes.Add(faces);
+    CheckFilled(
+      "a cube with spikes", spikes.Mesh, 1.0 + 6.0 * 1.5 / 3.0, 24.0 * 0.5 * std::hypot(1.5, 0.5));
+  }
+  // No point sees all of it.
+  const Polygon cup{ { { 0, 0 }, { 3, 0 }, { 3, 3 }, { 2, 3 }, { 2, 1 }, { 1, 1 }, { 1, 3 },
+    { 0, 3 } } };
+  for (unsigned int seed = 0; seed < 5; ++seed)
+  {
+    try
+    {
+      const Grid mesh = MakePrisms(cup, 1, seed);
+      deformvolume::ReadCells({ mesh }, { mesh });
+      VERIFY(false);
+    }
+    catch (const deformvolume::Error& error)
+    {
+      VERIFY(std::string(error.what())
+               .find("Cell 0 of the deformation mesh is a concave vtkPolyhedron with 16 points") !=
+        std::string::npos);
+    }
+  }
+  // The split of convex cells is between their own nodes, from the lowest one.
+  Polygon round;
+  for (int i = 0; i < 7; ++i)
+  {
+    round.push_back({ { std::cos(0.8975979 * i), std::sin(0.8975979 * i) } });
+  }
+  round.push_back({ { 0.5 * (round[6][0] + round[0][0]), 0.5 * (round[6][1] + round[0][1]) } });
+  for (unsigned int seed = 0; seed < 20; ++seed)
+  {
+    const Grid mesh = MakePrisms(round, 1, seed);
+    const deformvolume::MeshCells cells = deformvolume::ReadCells({ mesh }, { mesh });
+    VERIFY_EQUAL(cells.Derived.GetCount(), 0U);
+    VERIFY(std::all_of(cells.Tetrahedra.begin(), cells.Tetrahedra.end(),
+      [](const Tetrahedron& nodes) { return nodes[0] == 0; }));
+  }
+}
+
+// A volume within a concave cell: all of its voxels, whatever the order of the points.
+void TestConcaveVolume()
+{
+  const auto volume = MakeVolume({ { 0, 12, 0, 12, 0, 12 } });
+  Polygon angle{ { { 0, 0 }, { 12, 0 }, { 12, 4 }, { 4, 4 }, { 4, 8 }, { 0, 8 } } };
+  for (auto& corner : angle)
+  {
+    corner[0] += 0.5;
+    corner[1] += 0.5;
+  }
+  for (unsigned int seed = 0; seed < 8; ++seed)
+  {
+    const Grid mesh = MakePrisms(angle, 1, seed);
+    for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+    {
+      glm::dvec3 point = GetPoint(mesh, id);
+      point.z = 0.5 + 8.0 * point.z;
+      mesh->GetPoints()->SetPoint(id, &point.x);
+    }
+    // What moves its nodes by an affine map moves all of it so.
+    SetDisplacements(mesh, [](const glm::dvec3& p) { return p + glm::dvec3(1.0, 2.0, p.x / 3.0); });
+    Deformed deformed(volume, mesh);
+    deformed.Filter->SetResamplerToMeshRasterization();
+    deformed.Update();
+    VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), (12 * 4 + 4 * 4) * 8);
+    // Where it is moved at rest so that it is convex, it is split between its nodes.
+    for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+    {
+      glm::dvec3 point = GetPoint(mesh, id);
+      point += glm::dvec3(point.x == 4.5 && point.y == 4.5 ? 4.0 : 0.0);
+      point.z = std::min(point.z, 8.5);
+      mesh->GetPoints()->SetPoint(id, &point.x);
+    }
+    mesh->GetPoints()->Modified();
+    Deformed fresh(volume, mesh);
+    fresh.Filter->SetResamplerToMeshRasterization();
+    VERIFY(AreEqual(deformed.Update(), fresh.Update()));
+  }
+}
+
 } // namespace
 
 int TestHigherOrderCells(int, char*[])
@@ -593,5 +847,7 @@ int TestHigherOrderCells(int, char*[])
   TestDegrees();
   TestConvergence();
   TestVolume();
+  TestConcavePolyhedra();
+  TestConcaveVolume();
   return GetExitCode();
 }

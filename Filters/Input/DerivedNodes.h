@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeDerivedNodes_h
+#define DeformVolumeDerivedNodes_h
+
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// Nodes that the grids of a mesh do not have. Positions and displacements of each are sums of
+/// those of nodes that they have, times weights whose sum is 1. They are numbered behind the nodes
+/// of all grids.
+class DerivedNodes
+{
+public:
+  std::size_t GetCount() const { return this->Ends.size(); }
+
+  void Add(const std::vector<std::int32_t>& nodes, const std::vector<double>& weights)
+  {
+    this->Nodes.insert(this->Nodes.end(), nodes.begin(), nodes.end());
+    this->Weights.insert(this->Weights.end(), weights.begin(), weights.end());
+    this->Ends.push_back(this->Nodes.size());
+  }
+
+  /// The weighted sum for a derived node. get(node): the vector of a node of the grids.
+  template <typename Get>
+  glm::dvec3 Sum(std::size_t derived, const Get& get) const
+  {
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = derived == 0 ? 0 : this->Ends[derived - 1]; i < this->Ends[derived]; ++i)
+    {
+      sum += this->Weights[i] * glm::dvec3(get(this->Nodes[i]));
+    }
+    return sum;
+  }
+
+  bool operator==(const DerivedNodes& other) const
+  {
+    return this->Ends == other.Ends && this->Nodes == other.Nodes && this->Weights == other.Weights;
+  }
+
+private:
+  std::vector<std::size_t> Ends;
+  std::vector<std::int32_t> Nodes;
+  std::vector<double> Weights;
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PolyhedronSplit.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+// Of the volume: what the tetrahedra of a cell may have too much.
+constexpr double VolumeTolerance = 5e-7;
+
+using Triangle = std::array<int, 3>; // positions in the cell's list of points
+
+double GetVolume(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d)
+{
+  return glm::dot(b - a, glm::cross(c - a, d - a)) / 6.0;
+}
+
+// Twice the area of a triangle, as a vector.
+glm::dvec3 GetArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
+{
+  return glm::cross(b - a, c - a);
+}
+
+// Makes all faces run round the cell in the same sense. False where some edge is not one of two
+// faces.
+bool OrientFaces(CellFaces& faces)
+{
+  struct Use
+  {
+    std::size_t Face;
+    bool Ascending;
+  };
+  std::map<std::pair<int, int>, std::vector<Use>> edges;
+  for (std::size_t f = 0; f < faces.size(); ++f)
+  {
+    for (std::size_t i = 0; i < faces[f].size(); ++i)
+    {
+      const int a = faces[f][i];
+      const int b = faces[f][(i + 1) % faces[f].size()];
+      edges[std::minmax(a, b)].push_back({ f, a < b });
+    }
+  }
+  std::vector<std::vector<std::pair<std::size_t, bool>>> neighbours(faces.size());
+  for (const auto& edge : edges)
+  {
+    const std::vector<Use>& uses = edge.second;
+    if (uses.size() != 2 || edge.first.first == edge.first.second)
+    {
+      return false;
+    }
+    const bool isSame = uses[0].Ascending != uses[1].Ascending;
+    neighbours[uses[0].Face].emplace_back(uses[1].Face, isSame);
+    neighbours[uses[1].Face].emplace_back(uses[0].Face, isSame);
+  }
+  std::vector<int> senses(faces.size(), 0);
+  std::vector<std::size_t> waiting{ 0 };
+  senses[0] = 1;
+  while (!waiting.empty())
+  {
+    const std::size_t face = waiting.back();
+    waiting.pop_back();
+    for (const auto& [other, isSame] : neighbours[face])
+    {
+      const int sense = isSame ? senses[face] : -senses[face];
+      if (senses[other] == 0)
+      {
+        senses[other] = sense;
+        waiting.push_back(other);
+      }
+      else if (senses[other] != sense)
+      {
+        return false;
+      }
+    }
+  }
+  for (std::size_t f = 0; f < faces.size(); ++f)
+  {
+    if (senses[f] == 0)
+    {
+      return false;
+    }
+    if (senses[f] < 0)
+    {
+      std::reverse(faces[f].begin(), faces[f].end());
+    }
+  }
+  return true;
+}
+
+// The triangles of a polygon that no line from its first node crosses are those of a fan; else ears
+// are cut off, the first one first.
+std::vector<Triangle> SplitPolygon(
+  const std::vector<int>& face, const std::vector<glm::dvec3>& points)
+{
+  const auto at = [&](int node) { return points[static_cast<std::size_t>(node)]; };
+  std::vector<Triangle> fan;
+  glm::dvec3 normal(0.0);
+  for (std::size_t i = 1; i + 1 < face.size(); ++i)
+  {
+    fan.push_back({ { face[0], face[i], face[i + 1] } });
+    normal += GetArea(at(face[0]), at(face[i]), at(face[i + 1]));
+  }
+  const double tolerance = 1e-12 * glm::dot(normal, normal);
+  const auto getTurn = [&](int a, int b, int c)
+  { return glm::dot(normal, GetArea(at(a), at(b), at(c))); };
+  if (std::all_of(fan.begin(), fan.end(),
+        [&](const Triangle& t) { return getTurn(t[0], t[1], t[2]) >= -tolerance; }))
+  {
+    return fan;
+  }
+  std::vector<Triangle> ears;
+  std::vector<int> left = face;
+  while (left.size() > 3)
+  {
+    std::size_t ear = left.size();
+    for (std::size_t i = 0; i < left.size() && ear == left.size(); ++i)
+    {
+      const int before = left[(i + left.size() - 1) % left.size()];
+      const int after = left[(i + 1) % left.size()];
+      const bool isEmpty = std::none_of(left.begin(), left.end(),
+        [&](int node)
+        {
+          return node != before && node != left[i] && node != after &&
+            getTurn(before, left[i], node) >= -tolerance &&
+            getTurn(left[i], after, node) >= -tolerance &&
+            getTurn(after, before, node) >= -tolerance;
+        });
+      ear = isEmpty && getTurn(before, left[i], after) > tolerance ? i : ear;
+    }
+    if (ear == left.size())
+    {
+      return fan; // the polygon crosses itself
+    }
+    ears.push_back({ { left[(ear + left.size() - 1) % left.size()], left[ear],
+      left[(ear + 1) % left.size()] } });
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
+  }
+  ears.push_back({ { left[0], left[1], left[2] } });
+  return ears;
+}
+
+// The same whatever the first node and the sense of the face. The triangles have its sense.
+std::vector<Triangle> SplitFace(const std::vector<int>& face,
+  const std::vector<std::int32_t>& nodes, const std::vector<glm::dvec3>& points)
+{
+  const auto number = [&](int node) { return nodes[static_cast<std::size_t>(node)]; };
+  std::vector<int> canonical = face;
+  std::rotate(canonical.begin(),
+    std::min_element(
+      canonical.begin(), canonical.end(), [&](int a, int b) { return number(a) < number(b); }),
+    canonical.end());
+  const bool isReversed = number(canonical.back()) < number(canonical[1]);
+  if (isReversed)
+  {
+    std::reverse(canonical.begin() + 1, canonical.end());
+  }
+  std::vector<Triangle> triangles = SplitPolygon(canonical, points);
+  for (Triangle& triangle : triangles)
+  {
+    if (isReversed)
+    {
+      std::swap(triangle[1], triangle[2]);
+    }
+  }
+  return triangles;
+}
+
+// A point that is inside of all triangles, as far from them as can be had without much ado. False
+// where none is found.
+bool FindCenter(const std::vector<Triangle>& triangles, const std::vector<glm::dvec3>& points,
+  double size, glm::dvec3& center)
+{
+  struct Plane
+  {
+    glm::dvec3 Normal; // outwards
+    glm::dvec3 Origin;
+  };
+  std::vector<Plane> planes;
+  for (const Triangle& triangle : triangles)
+  {
+    const glm::dvec3& origin = points[static_cast<std::size_t>(triangle[0])];
+    const glm::dvec3 area = GetArea(origin, points[static_cast<std::size_t>(triangle[1])],
+      points[static_cast<std::size_t>(triangle[2])]);
+    const double length = glm::length(area);
+    if (length > 1e-12 * size * size)
+    {
+      planes.push_back({ area / length, origin });
+    }
+  }
+  glm::dvec3 mean(0.0);
+  for (const glm::dvec3& point : points)
+  {
+    mean += point / static_cast<double>(points.size());
+  }
+  constexpr int mostSteps = 500;
+  for (double margin = 0.25 * size; margin > 1e-5 * size; margin *= 0.5)
+  {
+    center = mean;
+    for (int step = 0; step < mostSteps; ++step)
+    {
+      // To the plane of which it is farthest on the wrong side, and somewhat beyond.
+      double most = 0.0;
+      const Plane* worst = nullptr;
+      for (const Plane& plane : planes)
+      {
+        const double over = glm::dot(plane.Normal, center - plane.Origin) + margin;
+        if (over > most)
+        {
+          most = over;
+          worst = &plane;
+        }
+      }
+      if (!worst)
+      {
+        return true;
+      }
+      center -= (1.2 * most) * worst->Normal;
+    }
+  }
+  return false;
+}
+
+// Weights of points whose sum is 1, and that give a place; of all such those with the least
+// squares.
+std::vector<double> FindWeights(const std::vector<glm::dvec3>& points, const glm::dvec3& place)
+{
+  const auto count = static_cast<double>(points.size());
+  glm::dvec3 mean(0.0);
+  for (const glm::dvec3& point : points)
+  {
+    mean += point / count;
+  }
+  glm::dmat3 spread(0.0);
+  for (const glm::dvec3& point : points)
+  {
+    spread += glm::outerProduct(point - mean, point - mean);
+  }
+  const glm::dvec3 factors = glm::inverse(spread) * (place - mean);
+  std::vector<double> weights;
+  for (const glm::dvec3& point : points)
+  {
+    weights.push_back(1.0 / count + glm::dot(factors, point - mean));
+  }
+  return weights;
+}
+
+} // namespace
+
+bool SplitPolyhedron(const std::vector<std::int32_t>& nodes, const CellFaces& faces,
+  const std::vector<glm::dvec3>& points, double rounding, PolyhedronSplit& split)
+{
+  split = PolyhedronSplit();
+  SplitCell(nodes, faces, split.Tetrahedra);
+  CellFaces oriented = faces;
+  if (!OrientFaces(oriented))
+  {
+    return true;
+  }
+  std::vector<Triangle> triangles;
+  for (const std::vector<int>& face : oriented)
+  {
+    const std::vector<Triangle> some = SplitFace(face, nodes, points);
+    triangles.insert(triangles.end(), some.begin(), some.end());
+  }
+  const auto at = [&](int node) { return points[static_cast<std::size_t>(node)]; };
+  const auto sum = [&](const glm::dvec3& apex)
+  {
+    double volume = 0.0;
+    for (const Triangle& t : triangles)
+    {
+      volume += GetVolume(apex, at(t[0]), at(t[1]), at(t[2]));
+    }
+    return volume;
+  };
+  double volume = sum(points[0]);
+  if (volume < 0.0)
+  {
+    volume = -volume;
+    for (Triangle& triangle : triangles)
+    {
+      std::swap(triangle[1], triangle[2]);
+    }
+  }
+  std::map<std::int32_t, int> positions;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+  {
+    positions[nodes[i]] = static_cast<int>(i);
+  }
+  double filled = 0.0;
+  for (const Tetrahedron& t : split.Tetrahedra)
+  {
+    filled += std::abs(GetVolume(
+      at(positions[t[0]]), at(positions[t[1]]), at(positions[t[2]]), at(positions[t[3]])));
+  }
+  double area = 0.0;
+  double largest = 0.0;
+  for (const Triangle& t : triangles)
+  {
+    area += 0.5 * glm::length(GetArea(at(t[0]), at(t[1]), at(t[2])));
+    const glm::dvec3 size = glm::abs(at(t[0]));
+    largest = std::max({ largest, size.x, size.y, size.z });
+  }
+  const double tolerance = VolumeTolerance * volume + rounding * largest * area;
+  // Not-a-number where a point is.
+  if (!(volume > 0.0) || !(std::abs(filled - volume) > tolerance))
+  {
+    return true;
+  }
+  glm::dvec3 center(0.0);
+  if (!FindCenter(triangles, points, std::cbrt(volume), center))
+  {
+    return false;
+  }
+  split.Tetrahedra.clear();
+  split.CenterWeights = FindWeights(points, center);
+  for (const Triangle& t : triangles)
+  {
+    split.Triangles.push_back({ { nodes[static_cast<std::size_t>(t[0])],
+      nodes[static_cast<std::size_t>(t[1])], nodes[static_cast<std::size_t>(t[2])] } });
+  }
+  return true;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,402 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cells that are split round a node of their own: ten-node tetrahedra, and concave polyhedra. The
+// reference of the former is a mesh of the same four-node tetrahedra in which these nodes are
+// ordinary ones.
+#include "FilterTesting.h"
+#include "MeshCells.h"
+#include "UpdateChecks.h"
+
+#include "Error.h"
+
+#include "vtkDeviceVectorArray.h"
+
+#include <vtkArrayChanges.h>
+#include <vtkCellArray.h>
+#include <vtkCellType.h>
+#include <vtkDoubleArray.h>
+#include <vtkMultiBlockDataSet.h>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <random>
+
+using namespace filterTesting;
+using deformvolume::Tetrahedron;
+
+namespace
+{
+
+using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
+using Ids = std::vector<vtkIdType>;
+
+// Corners of the edges with the nodes 4 to 9.
+constexpr int edges[6][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 }, { 0, 3 }, { 1, 3 }, { 2, 3 } };
+
+glm::dvec3 Curve(const glm::dvec3& p)
+{
+  const glm::dvec3 move(0.02 * p.y * p.y, 0.5 + 0.01 * p.z * p.x, 0.015 * p.x * p.x);
+  return p + glm::round(64.0 * move) / 64.0;
+}
+
+// Ten-node tetrahedra on the tetrahedra of a mesh, with displacements. separated: each has nodes of
+// its own.
+Grid MakeTenNodes(vtkUnstructuredGrid* linear, bool separated = false)
+{
+  Grid grid = Grid::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  std::map<std::array<vtkIdType, 3>, vtkIdType> known;
+  for (vtkIdType cell = 0; cell < linear->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> corners;
+    linear->GetCellPoints(cell, corners);
+    const auto add = [&](vtkIdType a, vtkIdType b)
+    {
+      const auto [low, high] = std::minmax(a, b);
+      const auto found =
+        known.emplace(std::array<vtkIdType, 3>{ { separated ? cell : 0, low, high } },
+          points->GetNumberOfPoints());
+      if (found.second)
+      {
+        const glm::dvec3 middle = 0.5 * (GetPoint(linear, a) + GetPoint(linear, b));
+        points->InsertNextPoint(&middle.x);
+      }
+      return found.first->second;
+    };
+    Ids ids;
+    for (vtkIdType i = 0; i < 4; ++i)
+    {
+      ids.push_back(add(corners->GetId(i), corners->GetId(i)));
+    }
+    for (const auto& edge : edges)
+    {
+      ids.push_back(add(corners->GetId(edge[0]), corners->GetId(edge[1])));
+    }
+    grid->InsertNextCell(VTK_QUADRATIC_TETRA, 10, ids.data());
+  }
+  grid->SetPoints(points);
+  SetDisplacements(grid, Curve);
+  return grid;
+}
+
+glm::dvec3 GetVector(vtkDataSet* dataSet, vtkIdType id)
+{
+  glm::dvec3 vector;
+  dataSet->GetPointData()->GetVectors()->GetTuple(id, &vector.x);
+  return vector;
+}
+
+// The same with four-node tetrahedra: the nodes in the middle are added behind all others.
+Grid MakeReference(vtkUnstructuredGrid* tenNodes)
+{
+  Grid grid = Grid::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkDoubleArray> vectors;
+  vectors->SetName("displacement");
+  vectors->SetNumberOfComponents(3);
+  for (vtkIdType id = 0; id < tenNodes->GetNumberOfPoints(); ++id)
+  {
+    points->InsertNextPoint(tenNodes->GetPoint(id));
+    const glm::dvec3 vector = GetVector(tenNodes, id);
+    vectors->InsertNextTuple(&vector.x);
+  }
+  for (vtkIdType cell = 0; cell < tenNodes->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> ids;
+    tenNodes->GetCellPoints(cell, ids);
+    glm::dvec3 point(0.0);
+    glm::dvec3 vector(0.0);
+    for (int i = 0; i < 10; ++i)
+    {
+      const double weight = i < 4 ? -0.125 : 0.25;
+      point += weight * GetPoint(tenNodes, ids->GetId(i));
+      vector += weight * GetVector(tenNodes, ids->GetId(i));
+    }
+    points->InsertNextPoint(&point.x);
+    vectors->InsertNextTuple(&vector.x);
+  }
+  // The maps of tetrahedra differ in rounding by the order of their nodes.
+  for (const Tetrahedron& nodes : deformvolume::ReadCells({ tenNodes }, { tenNodes }).Tetrahedra)
+  {
+    const vtkIdType ids[4] = { nodes[0], nodes[1], nodes[2], nodes[3] };
+    grid->InsertNextCell(VTK_TETRA, 4, ids);
+  }
+  grid->SetPoints(points);
+  grid->GetPointData()->SetVectors(vectors);
+  return grid;
+}
+
+Grid MoveToDeformed(vtkUnstructuredGrid* mesh)
+{
+  Grid moved = Grid::New();
+  moved->DeepCopy(mesh);
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 point = GetPoint(mesh, id) + GetVector(mesh, id);
+    moved->GetPoints()->SetPoint(id, &point.x);
+  }
+  return moved;
+}
+
+void TestTenNodes()
+{
+  const auto volume = MakeVolume({ { 0, 15, 0, 15, 0, 15 } });
+  const Grid mesh = MakeTenNodes(MakeMesh(volume));
+  const Grid reference = MakeReference(mesh);
+  Deformed expected(volume, reference);
+  Deformed found(volume, mesh);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, mesh);
+  blocks->SetBlock(1, MakeReference(mesh)); // lies in the same place, and comes second
+  Deformed composite(volume, blocks);
+  Deformed twoPorts(volume, MoveToDeformed(mesh));
+  twoPorts.Filter->SetRestData(mesh);
+  Deformed deformedPoints(volume, MoveToDeformed(mesh));
+  deformedPoints.Filter->PointsAreDeformedOn();
+  const auto compare = [&](const auto& set)
+  {
+    for (Deformed* one : { &expected, &found, &twoPorts, &deformedPoints, &composite })
+    {
+      set(one->Filter);
+    }
+    vtkImageData* output = expected.Update();
+    VERIFY(expected.Filter->GetNumberOfCoveredVoxels() > 100);
+    for (Deformed* one : { &found, &twoPorts, &deformedPoints, &composite })
+    {
+      VERIFY(AreEqual(output, one->Update()));
+    }
+  };
+  compare([](vtkDeformVolumeFilter*) {});
+  compare([](vtkDeformVolumeFilter* filter) { filter->SetOutsideModeToExtrapolate(); });
+  compare(
+    [](vtkDeformVolumeFilter* filter)
+    {
+      filter->SetOutsideModeToDiscard();
+      filter->SetSamplingFactor(2);
+    });
+  compare(
+    [](vtkDeformVolumeFilter* filter)
+    {
+      filter->SetSamplingFactor(1);
+      filter->SetResamplerToMeshRasterization();
+    });
+  // Vectors of a device array.
+  vtkNew<vtkDeviceVectorArray> array;
+  array->SetName("displacement");
+  array->SetNumberOfComponents(3);
+  array->SetNumberOfTuples(mesh->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+  {
+    array->SetTuple(id, mesh->GetPointData()->GetVectors()->GetTuple(id));
+  }
+  Grid other = Grid::New();
+  other->ShallowCopy(mesh);
+  other->GetPointData()->SetVectors(array);
+  found.Filter->SetDeformationData(other);
+  VERIFY(AreEqual(expected.Update(), found.Update()));
+}
+
+// Updates of parts, with and without a log, of the displacements and of the mesh at rest.
+void TestUpdates()
+{
+  const auto volume = MakeVolume({ { 0, 47, 0, 47, 0, 47 } });
+  const Grid mesh = MakeTenNodes(MakeMesh(volume, 5));
+  Deformed tested(volume, mesh);
+  tested.Filter->SetOutputBoundsModeToVolumeBounds();
+  tested.Update();
+  auto* vectors = mesh->GetPointData()->GetVectors();
+  vtkNew<vtkArrayChanges> changes;
+  changes->SetArray(vectors);
+  int parts = 0;
+  const auto check = [&](const std::string& what)
+  {
+    Deformed fresh(volume, MakeReference(mesh));
+    fresh.Filter->SetOutputBoundsModeToVolumeBounds();
+    CompareWithFresh(tested, fresh, what, parts);
+  };
+  for (const vtkIdType node : { 4, 3, 60, 200 })
+  {
+    vectors->SetComponent(node, 1, vectors->GetComponent(node, 1) + 0.75);
+    changes->AddTuples(node, node);
+    check("a node that was logged");
+  }
+  VERIFY(parts > 2);
+  vectors->SetComponent(77, 0, 1.5);
+  vectors->Modified();
+  check("a node that was not logged");
+  const glm::dvec3 point = GetPoint(mesh, 100) + glm::dvec3(0.25, 0.125, -0.25);
+  mesh->GetPoints()->SetPoint(100, &point.x);
+  mesh->GetPoints()->Modified();
+  check("another place at rest");
+  // A cell gets another node in the middle of an edge, in the same place: the mesh is split there.
+  const vtkIdType cell = mesh->GetNumberOfCells() / 2;
+  vtkNew<vtkIdList> ids;
+  mesh->GetCellPoints(cell, ids);
+  const vtkIdType split = mesh->GetPoints()->InsertNextPoint(mesh->GetPoint(ids->GetId(7)));
+  vectors->InsertNextTuple(ids->GetId(7), vectors);
+  vectors->SetComponent(split, 0, vectors->GetComponent(split, 0) + 1.0);
+  ids->SetId(7, split);
+  mesh->GetCells()->ReplaceCellAtId(cell, ids);
+  mesh->GetCells()->Modified();
+  mesh->GetPoints()->Modified();
+  vectors->Modified();
+  mesh->Modified();
+  check("a split");
+  // Fewer cells.
+  vtkNew<vtkCellArray> fewer;
+  for (vtkIdType i = 0; i + 20 < mesh->GetNumberOfCells(); ++i)
+  {
+    mesh->GetCellPoints(i, ids);
+    fewer->InsertNextCell(ids);
+  }
+  mesh->SetCells(VTK_QUADRATIC_TETRA, fewer);
+  mesh->Modified();
+  check("fewer cells");
+  // Then cells without such nodes, and with them again.
+  const Grid linear = MakeMesh(volume, 5);
+  SetDisplacements(linear, Curve);
+  tested.Filter->SetDeformationData(linear);
+  Deformed fresh(volume, linear);
+  fresh.Filter->SetOutputBoundsModeToVolumeBounds();
+  CompareWithFresh(tested, fresh, "linear cells", parts);
+  const auto field = MakeImage({ { 0, 47, 0, 47, 0, 47 } });
+  SetDisplacements(field, Curve);
+  tested.Filter->SetDeformationData(field);
+  Deformed ofField(volume, field);
+  ofField.Filter->SetOutputBoundsModeToVolumeBounds();
+  CompareWithFresh(tested, ofField, "a field", parts);
+  tested.Filter->SetDeformationData(mesh);
+  check("the cells of before");
+  vectors->SetComponent(5, 1, 1e5);
+  vectors->Modified();
+  tested.Filter->Update();
+  VERIFY_EQUAL(tested.TakeErrors(), 1);
+  VERIFY(tested.LastError.find("16,383") != std::string::npos);
+}
+
+// Cells with nodes of their own, which come apart.
+void TestSplits()
+{
+  const auto volume = MakeVolume({ { 0, 15, 0, 15, 0, 15 } });
+  const Grid mesh = MakeTenNodes(MakeMesh(volume), true);
+  std::mt19937 random(5);
+  auto* vectors = mesh->GetPointData()->GetVectors();
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+  {
+    const double away = id / 10 % 2 == 0 ? 3.0 : 0.0; // ten nodes a cell
+    vectors->SetComponent(id, 0, vectors->GetComponent(id, 0) + away);
+  }
+  Deformed expected(volume, MakeReference(mesh));
+  Deformed found(volume, mesh);
+  vtkIdType covered[2];
+  for (const bool open : { false, true })
+  {
+    expected.Filter->SetOpenSplits(open);
+    found.Filter->SetOpenSplits(open);
+    VERIFY(AreEqual(expected.Update(), found.Update()));
+    covered[open ? 1 : 0] = found.Filter->GetNumberOfCoveredVoxels();
+  }
+  VERIFY(covered[1] < covered[0]);
+}
+
+// How far the displacements of voxels in one cell are from those of a quadratic function, as the
+// root of the mean square.
+double FindError(bool tenNodes, const std::array<glm::dvec3, 4>& corners, int kind)
+{
+  const auto move = [&](const glm::dvec3& p)
+  {
+    const double products[6] = { p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.y * p.z, p.z * p.x };
+    return 0.01 * products[kind];
+  };
+  // What is seen at the deformed place is the rest position: the volume holds x, and moves along z.
+  auto volume = MakeImage({ { 0, 40, 0, 40, 0, 40 } });
+  AddScalars<float>(volume, "value", [](const glm::dvec3& p) { return p.z; });
+  Grid linear = Grid::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  const vtkIdType ids[4] = { 0, 1, 2, 3 };
+  for (const glm::dvec3& corner : corners)
+  {
+    points->InsertNextPoint(&corner.x);
+  }
+  linear->SetPoints(points);
+  linear->InsertNextCell(VTK_TETRA, 4, ids);
+  const Grid mesh = tenNodes ? MakeTenNodes(linear) : linear;
+  SetDisplacements(mesh, [&](const glm::dvec3& p) { return p + glm::dvec3(move(p), 0.0, 0.0); });
+  Deformed deformed(volume, mesh);
+  AddScalars<float>(volume, "value", [](const glm::dvec3& p) { return p.x; });
+  vtkImageData* output = deformed.Update();
+  double sum = 0.0;
+  int count = 0;
+  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+  {
+    if (deformed.IsCovered(id))
+    {
+      const glm::dvec3 point = GetPoint(output, id);
+      const double rest = deformed.GetValues()->GetComponent(id, 0);
+      const double error = rest + move({ rest, point.y, point.z }) - point.x;
+      sum += error * error;
+      ++count;
+    }
+  }
+  VERIFY(count > 200);
+  return std::sqrt(sum / count);
+}
+
+void TestAccuracy()
+{
+  const std::array<glm::dvec3, 4> corners{ { { 4.3, 5.1, 6.2 }, { 35.7, 8.4, 3.3 },
+    { 12.6, 36.2, 9.9 }, { 15.4, 12.8, 37.1 } } };
+  double worst = 0.0;
+  for (int kind = 0; kind < 6; ++kind)
+  {
+    worst = std::max(worst, FindError(true, corners, kind) / FindError(false, corners, kind));
+  }
+  std::cout << "Of the error of a four-node tetrahedron: " << worst << '\n';
+  // Half the distance between nodes is a quarter of the error; in the middle, where distances are
+  // largest, less than a half.
+  VERIFY(worst < 0.45);
+}
+
+// Nodes of the edges in another order.
+void TestMidSides()
+{
+  const auto volume = MakeVolume();
+  const Grid mesh = MakeTenNodes(MakeMesh(volume));
+  const vtkIdType cells = mesh->GetNumberOfCells();
+  Deformed deformed(volume, mesh);
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeWarning(), std::string());
+  for (vtkIdType cell = 0; cell < 7; ++cell)
+  {
+    vtkNew<vtkIdList> ids;
+    mesh->GetCellPoints(cell, ids);
+    std::swap(*(ids->begin() + 8), *(ids->begin() + 9));
+    mesh->GetCells()->ReplaceCellAtId(cell, ids);
+  }
+  mesh->GetCells()->Modified();
+  mesh->Modified();
+  deformed.Filter->Update();
+  const std::string warning = deformed.TakeWarning();
+  VERIFY(warning.find("7 of " + std::to_string(cells) + " quadratic cells") != std::string::npos);
+  deformed.Filter->Modified();
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeWarning(), std::string());
+}
+
+} // namespace
+
+int TestDeformCells(int, char*[])
+{
+  TestTenNodes();
+  TestUpdates();
+  TestSplits();
+  TestAccuracy();
+  TestMidSides();
+  return GetExitCode();
+}
