@@ -379,6 +379,7 @@ void Deformation::RememberVectors(const Stamp& stamp, const DeformationSource& s
   this->VectorsSource.Rest = nullptr;
   this->VectorsSource.ShapeParts.clear();
   this->VectorsSource.RestParts.clear();
+  this->VectorsSource.Derived = nullptr;
   this->VectorsSource.Selector = nullptr;
 }
 

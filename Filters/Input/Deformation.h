@@ -39,6 +39,8 @@ struct DeformationSource
   /// Their grids, where they are meshes.
   MeshParts ShapeParts;
   MeshParts RestParts;
+  /// Derived nodes that their cells name already (see ReadCells), or null.
+  const DerivedNodes* Derived = nullptr;
   /// Whether a filter makes these, and they are not data that somebody holds (see MeshStamp).
   bool ShapeIsMade = false;
   bool RestIsMade = false;

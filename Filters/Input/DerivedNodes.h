@@ -14,9 +14,13 @@ namespace deformvolume
 /// Nodes that the grids of a mesh do not have. Positions and displacements of each are sums of
 /// those of nodes that they have, times weights whose sum is 1. They are numbered behind the nodes
 /// of all grids.
-class DerivedNodes
+struct DerivedNodes
 {
-public:
+  /// Of each the end of its nodes and their weights in the lists of all.
+  std::vector<std::uint64_t> Ends;
+  std::vector<std::int32_t> Nodes;
+  std::vector<double> Weights;
+
   std::size_t GetCount() const { return this->Ends.size(); }
 
   void Add(const std::vector<std::int32_t>& nodes, const std::vector<double>& weights)
@@ -42,11 +46,6 @@ public:
   {
     return this->Ends == other.Ends && this->Nodes == other.Nodes && this->Weights == other.Weights;
   }
-
-private:
-  std::vector<std::size_t> Ends;
-  std::vector<std::int32_t> Nodes;
-  std::vector<double> Weights;
 };
 
 } // namespace deformvolume

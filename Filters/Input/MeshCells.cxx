@@ -119,6 +119,7 @@ struct Reading
 
   MeshCells Cells;
   std::int32_t NumberOfNodes = 0; // of all grids
+  vtkIdType NumberOfNamed = 0;    // derived nodes that cells name
   NodePositions Positions;
   HigherOrderCells HigherOrder;
   std::map<int, vtkIdType> Ignored;
@@ -271,7 +272,7 @@ void SplitHigherOrderCell(vtkUnstructuredGrid* grid, vtkIdType cell, int type,
         some[static_cast<std::size_t>(face[1])], some[static_cast<std::size_t>(face[2])] } });
     }
   }
-  ++reading.NumberOfQuadraticCells;
+  reading.NumberOfQuadraticCells += reading.HigherOrder.GetMidSides(type).empty() ? 0 : 1;
   reading.NumberOfFarMidSides += HasNearMidSides(type, nodes, reading) ? 0 : 1;
 }
 
@@ -283,7 +284,7 @@ void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode, Reading& readin
   constexpr unsigned char skipped =
     vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
   const vtkIdType numberOfCells = grid->GetNumberOfCells();
-  const vtkIdType numberOfPoints = grid->GetNumberOfPoints();
+  const vtkIdType numberOfPoints = grid->GetNumberOfPoints() + reading.NumberOfNamed;
   CheckStructure(grid);
   std::vector<std::int32_t> nodes;
   for (vtkIdType cell = 0; cell < numberOfCells; ++cell)
@@ -353,7 +354,7 @@ void ReadPart(vtkUnstructuredGrid* grid, std::int32_t firstNode, Reading& readin
 
 } // namespace
 
-MeshCells ReadCells(const MeshParts& parts, const MeshParts& rest)
+MeshCells ReadCells(const MeshParts& parts, const MeshParts& rest, const DerivedNodes* derived)
 {
   std::size_t numberOfCells = 0;
   vtkIdType numberOfNodes = 0;
@@ -365,6 +366,11 @@ MeshCells ReadCells(const MeshParts& parts, const MeshParts& rest)
   Reading reading(rest);
   reading.NumberOfNodes = static_cast<std::int32_t>(numberOfNodes);
   MeshCells& cells = reading.Cells;
+  if (derived)
+  {
+    cells.Derived = *derived;
+    reading.NumberOfNamed = static_cast<vtkIdType>(derived->GetCount());
+  }
   cells.Tetrahedra.reserve(numberOfCells);
   std::int32_t firstNode = 0;
   for (vtkUnstructuredGrid* grid : parts)

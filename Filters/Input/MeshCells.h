@@ -28,10 +28,12 @@ struct MeshCells
 /// The tetrahedra of a mesh, and those that its other three-dimensional cells are split into: the
 /// nodes of quadratic and Lagrange cells all become nodes of tetrahedra. Cells that vtkGhostType
 /// marks as hidden or duplicate are left out. rest: the same mesh with its points at rest, on which
-/// the split of concave polyhedra depends.
+/// the split of concave polyhedra depends. derived: the derived nodes of a single grid whose cells
+/// name them already; else null.
 /// Throws an Error where a cell has a wrong number of points, points that are not there or
 /// incomplete faces, where it is a Bezier cell, and where it is a polyhedron that cannot be split.
-MeshCells ReadCells(const MeshParts& parts, const MeshParts& rest);
+MeshCells ReadCells(
+  const MeshParts& parts, const MeshParts& rest, const DerivedNodes* derived = nullptr);
 
 } // namespace deformvolume
 

@@ -15,6 +15,7 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -93,6 +94,7 @@ vtkSmartPointer<vtkDoubleArray> MakeArray(const std::vector<glm::dvec3>& vectors
 struct MeshGathering::Piece
 {
   std::vector<Tetrahedron> Tetrahedra;
+  DerivedNodes Derived;
   std::vector<glm::dvec3> RestPoints;
   /// Deformed positions where there is a rest configuration, else displacements.
   std::vector<glm::dvec3> Vectors;
@@ -124,25 +126,13 @@ MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
                 "configuration on port 2. Connect two configurations of one mesh, split alike.");
   }
   piece.Tetrahedra = std::move(cells.Tetrahedra);
+  piece.Derived = std::move(cells.Derived);
   piece.IgnoredCells = std::move(cells.Ignored);
   piece.FarMidSides = std::move(cells.FarMidSides);
   piece.RestPoints = ReadPoints(rest, source.Rest ? REST_NAME : MESH_NAME, piece.Tetrahedra);
-  // They are nodes as others from here on.
-  const auto addDerived = [&]
-  {
-    for (std::vector<glm::dvec3>* vectors : { &piece.RestPoints, &piece.Vectors })
-    {
-      for (std::size_t i = 0; i < cells.Derived.GetCount(); ++i)
-      {
-        vectors->push_back(
-          cells.Derived.Sum(i, [&](std::int32_t node) { return (*vectors)[node]; }));
-      }
-    }
-  };
   if (source.Rest)
   {
     piece.Vectors = ReadPoints(shape, MESH_NAME, piece.Tetrahedra);
-    addDerived();
     return piece;
   }
   piece.Vectors.resize(nodes);
@@ -152,7 +142,6 @@ MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
     [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
     { std::copy(vectors, vectors + count, piece.Vectors.begin() + first); });
   CheckPointVectors(shape, source.Selector, source.Wanted, MESH_NAME, faults, piece.Tetrahedra);
-  addDerived();
   return piece;
 }
 
@@ -211,21 +200,31 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
     ranks.Attempt([&] { piece = this->Read(source); });
     std::uint64_t hash = 14695981039346656037U;
     AddToHash(hash, piece.Tetrahedra);
+    AddToHash(hash, piece.Derived.Nodes);
+    AddToHash(hash, piece.Derived.Weights);
     AddToHash(hash, piece.RestPoints);
     AddToHash(hash, piece.Vectors);
     this->IgnoredCells = piece.IgnoredCells;
     this->FarMidSides = piece.FarMidSides;
     if (!ranks.AreEqual(hash))
     {
-      const std::vector<std::uint64_t> nodes = ranks.Gather(piece.RestPoints.size());
-      std::uint64_t first = 0;
-      std::uint64_t sum = 0;
-      for (int rank = 0; rank < ranks.GetCount(); ++rank)
+      // What the ranks before this one have, and all of them.
+      const auto count = [&](std::size_t mine)
       {
-        first += rank < ranks.GetRank() ? nodes[rank] : 0;
-        sum += nodes[rank];
-      }
-      if (sum > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max()))
+        std::array<std::uint64_t, 2> counts{};
+        const std::vector<std::uint64_t> numbers = ranks.Gather(mine);
+        for (int rank = 0; rank < ranks.GetCount(); ++rank)
+        {
+          counts[0] += rank < ranks.GetRank() ? numbers[rank] : 0;
+          counts[1] += numbers[rank];
+        }
+        return counts;
+      };
+      const std::size_t mine = piece.RestPoints.size();
+      const auto [first, sum] = count(mine);
+      const auto [firstDerived, sumOfDerived] = count(piece.Derived.GetCount());
+      const std::uint64_t firstWeight = count(piece.Derived.Weights.size())[0];
+      if (sum + sumOfDerived > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max()))
       {
         throw Error("The " + std::string(MESH_NAME) +
           " has more than 2,147,483,647 points on all ranks. Connect a coarser one.");
@@ -234,20 +233,35 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
       {
         for (std::int32_t& node : tetrahedron)
         {
-          node += static_cast<std::int32_t>(first);
+          const auto number = static_cast<std::size_t>(node);
+          node = static_cast<std::int32_t>(
+            number < mine ? first + number : sum + firstDerived + (number - mine));
         }
       }
+      for (std::int32_t& node : piece.Derived.Nodes)
+      {
+        node += static_cast<std::int32_t>(first);
+      }
+      for (std::uint64_t& end : piece.Derived.Ends)
+      {
+        end += firstWeight;
+      }
+      GatherVector(ranks, piece.Derived.Ends, MESH_NAME);
+      GatherVector(ranks, piece.Derived.Nodes, MESH_NAME);
+      GatherVector(ranks, piece.Derived.Weights, MESH_NAME);
       GatherVector(ranks, piece.Tetrahedra, MESH_NAME);
       GatherVector(ranks, piece.RestPoints, MESH_NAME);
       GatherVector(ranks, piece.Vectors, MESH_NAME);
     }
     ranks.Attempt([&] { this->Make(piece, withRest); });
+    this->Derived = std::move(piece.Derived);
     this->PieceStamp = stamp;
     this->Choice = source.Choice;
   }
   DeformationSource whole = source;
   whole.Shape = this->Shape;
   whole.Rest = this->Rest;
+  whole.Derived = &this->Derived;
   whole.ShapeParts = { this->Shape };
   whole.RestParts = this->Rest ? MeshParts{ this->Rest } : MeshParts();
   whole.Selector = [](vtkDataSet* dataSet)

@@ -3,6 +3,7 @@
 #define DeformVolumeMeshGathering_h
 
 #include "Deformation.h"
+#include "DerivedNodes.h"
 #include "Ranks.h"
 
 #include "vtkSmartPointer.h"
@@ -40,6 +41,7 @@ private:
   std::string Choice;
   vtkSmartPointer<vtkUnstructuredGrid> Shape;
   vtkSmartPointer<vtkUnstructuredGrid> Rest;
+  DerivedNodes Derived; // which the cells of both name, behind their points
   std::string IgnoredCells;
   std::string FarMidSides;
 };

@@ -100,7 +100,7 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
 {
   const MeshStamp restCells = MeshStamp::OfCells(rest, IsRestMade(source));
   const MeshStamp shapeCells = MeshStamp::OfCells(shape, source.ShapeIsMade);
-  CellReading cells = this->ReadCells(shape, rest, restCells, shapeCells);
+  CellReading cells = this->ReadCells(shape, rest, source.Derived, restCells, shapeCells);
   std::vector<CellMemory> cellMemories = GetCellMemories(rest);
   const std::size_t nodes = GetNumberOfNodes(rest);
   const std::size_t nodesBefore = this->Points.size() - this->Derived.GetCount();
@@ -140,7 +140,7 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   if (nodes < nodesBefore && !AreNodes(this->Tetrahedra, this->Points.size()))
   {
     this->ShapeIsOld = true;
-    deformvolume::ReadCells(rest, rest); // which says what is wrong
+    deformvolume::ReadCells(rest, rest, source.Derived); // which says what is wrong
     throw Error("The deformation mesh has cells that use points that are not there. Mend the cells "
                 "of the mesh.");
   }
@@ -177,7 +177,7 @@ std::optional<CellDifferences> RestMesh::CompareCells(
 }
 
 RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshParts& rest,
-  const MeshStamp& restCells, const MeshStamp& shapeCells)
+  const DerivedNodes* derived, const MeshStamp& restCells, const MeshStamp& shapeCells)
 {
   const bool shared = shapeCells.HasArraysOf(restCells);
   const bool sameRest = restCells.IsThatOf(this->RestCells);
@@ -196,7 +196,7 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
   }
   if (!reading.Differences)
   {
-    MeshCells cells = deformvolume::ReadCells(rest, rest);
+    MeshCells cells = deformvolume::ReadCells(rest, rest, derived);
     if (cells.Tetrahedra.empty())
     {
       throw Error("The deformation mesh has no tetrahedra" +
@@ -204,7 +204,7 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
         ". Connect a mesh of three-dimensional cells, for example from "
         "vtkLatticeTetrahedraSource, vtkTetGenMesher or vtkDelaunay3D.");
     }
-    if (!shared && deformvolume::ReadCells(shape, rest).Tetrahedra != cells.Tetrahedra)
+    if (!shared && deformvolume::ReadCells(shape, rest, derived).Tetrahedra != cells.Tetrahedra)
     {
       throw Error("The cells of the deformation mesh on input port 1 are not those of the rest "
                   "configuration on port 2. Connect two configurations of one mesh.");

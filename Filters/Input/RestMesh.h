@@ -94,8 +94,8 @@ private:
     std::string FarMidSides;
   };
 
-  CellReading ReadCells(const MeshParts& shape, const MeshParts& rest, const MeshStamp& restCells,
-    const MeshStamp& shapeCells);
+  CellReading ReadCells(const MeshParts& shape, const MeshParts& rest, const DerivedNodes* derived,
+    const MeshStamp& restCells, const MeshStamp& shapeCells);
   /// How the cells differ, where a comparison can tell that. sameRest, sameShape: whether both are
   /// as they were; shared: whether both are the same.
   std::optional<CellDifferences> CompareCells(const MeshParts& shape, const MeshParts& rest,

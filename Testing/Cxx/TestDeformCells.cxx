@@ -4,6 +4,7 @@
 // ordinary ones.
 #include "FilterTesting.h"
 #include "MeshCells.h"
+#include "TenNodeCells.h"
 #include "UpdateChecks.h"
 
 #include "Error.h"
@@ -31,10 +32,6 @@ namespace
 {
 
 using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
-using Ids = std::vector<vtkIdType>;
-
-// Corners of the edges with the nodes 4 to 9.
-constexpr int edges[6][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 }, { 0, 3 }, { 1, 3 }, { 2, 3 } };
 
 glm::dvec3 Curve(const glm::dvec3& p)
 {
@@ -42,43 +39,9 @@ glm::dvec3 Curve(const glm::dvec3& p)
   return p + glm::round(64.0 * move) / 64.0;
 }
 
-// Ten-node tetrahedra on the tetrahedra of a mesh, with displacements. separated: each has nodes of
-// its own.
-Grid MakeTenNodes(vtkUnstructuredGrid* linear, bool separated = false)
+Grid MakeCurvedTenNodes(vtkUnstructuredGrid* linear, bool separated = false)
 {
-  Grid grid = Grid::New();
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  std::map<std::array<vtkIdType, 3>, vtkIdType> known;
-  for (vtkIdType cell = 0; cell < linear->GetNumberOfCells(); ++cell)
-  {
-    vtkNew<vtkIdList> corners;
-    linear->GetCellPoints(cell, corners);
-    const auto add = [&](vtkIdType a, vtkIdType b)
-    {
-      const auto [low, high] = std::minmax(a, b);
-      const auto found =
-        known.emplace(std::array<vtkIdType, 3>{ { separated ? cell : 0, low, high } },
-          points->GetNumberOfPoints());
-      if (found.second)
-      {
-        const glm::dvec3 middle = 0.5 * (GetPoint(linear, a) + GetPoint(linear, b));
-        points->InsertNextPoint(&middle.x);
-      }
-      return found.first->second;
-    };
-    Ids ids;
-    for (vtkIdType i = 0; i < 4; ++i)
-    {
-      ids.push_back(add(corners->GetId(i), corners->GetId(i)));
-    }
-    for (const auto& edge : edges)
-    {
-      ids.push_back(add(corners->GetId(edge[0]), corners->GetId(edge[1])));
-    }
-    grid->InsertNextCell(VTK_QUADRATIC_TETRA, 10, ids.data());
-  }
-  grid->SetPoints(points);
+  Grid grid = MakeTenNodes(linear, separated);
   SetDisplacements(grid, Curve);
   return grid;
 }
@@ -146,7 +109,7 @@ Grid MoveToDeformed(vtkUnstructuredGrid* mesh)
 void TestTenNodes()
 {
   const auto volume = MakeVolume({ { 0, 15, 0, 15, 0, 15 } });
-  const Grid mesh = MakeTenNodes(MakeMesh(volume));
+  const Grid mesh = MakeCurvedTenNodes(MakeMesh(volume));
   const Grid reference = MakeReference(mesh);
   Deformed expected(volume, reference);
   Deformed found(volume, mesh);
@@ -205,7 +168,7 @@ void TestTenNodes()
 void TestUpdates()
 {
   const auto volume = MakeVolume({ { 0, 47, 0, 47, 0, 47 } });
-  const Grid mesh = MakeTenNodes(MakeMesh(volume, 5));
+  const Grid mesh = MakeCurvedTenNodes(MakeMesh(volume, 5));
   Deformed tested(volume, mesh);
   tested.Filter->SetOutputBoundsModeToVolumeBounds();
   tested.Update();
@@ -283,7 +246,7 @@ void TestUpdates()
 void TestSplits()
 {
   const auto volume = MakeVolume({ { 0, 15, 0, 15, 0, 15 } });
-  const Grid mesh = MakeTenNodes(MakeMesh(volume), true);
+  const Grid mesh = MakeCurvedTenNodes(MakeMesh(volume), true);
   std::mt19937 random(5);
   auto* vectors = mesh->GetPointData()->GetVectors();
   for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
@@ -367,7 +330,7 @@ void TestAccuracy()
 void TestMidSides()
 {
   const auto volume = MakeVolume();
-  const Grid mesh = MakeTenNodes(MakeMesh(volume));
+  const Grid mesh = MakeCurvedTenNodes(MakeMesh(volume));
   const vtkIdType cells = mesh->GetNumberOfCells();
   Deformed deformed(volume, mesh);
   deformed.Filter->Update();

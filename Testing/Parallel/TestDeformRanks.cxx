@@ -4,6 +4,7 @@
 // argument "cold": the start with an empty cache of kernels.
 #include "DivisionCases.h"
 #include "RankTesting.h"
+#include "TenNodeCells.h"
 
 #include <vtkIdList.h>
 #include <vtkIdTypeArray.h>
@@ -341,6 +342,13 @@ void TestAll()
       TestErrors(from, whole);
       TestSmallAndMoving(from);
       TestKeptExtent(from);
+      // Cells with derived nodes.
+      Case quadratic = from;
+      const auto mesh = MakeTenNodes(vtkUnstructuredGrid::SafeDownCast(from.Deformation));
+      SetDisplacements(mesh, Bend(from.Volume));
+      quadratic.Name = "Ten nodes";
+      quadratic.Deformation = mesh;
+      TestSpread(quadratic, MakeWhole(quadratic));
     }
   }
 }
