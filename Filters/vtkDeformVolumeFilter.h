@@ -42,7 +42,8 @@
  * - vtkImageData with a three-component point array chosen in the same way: a displacement field,
  *   in world units, at the volume's resolution or any other, trilinear between its points. It is
  *   forward: it leads from a point of the volume at rest to where that point goes. Registration
- *   programs write inverse fields, see FieldIsInverse.
+ *   programs write inverse fields, see FieldIsInverse. At points that vtkGhostType marks as hidden
+ *   it is undefined: voxels whose interpolation needs one are not covered.
  *
  * @par Port 2, optional, the rest configuration:
  * A mesh, as on port 1, with the cells and the number of points of port 1.

@@ -374,7 +374,8 @@ int vtkDeformVolumeFilter::RequestData(
   const auto deform = [&]
   {
     checkMemory(request.OutputExtent, request.Method);
-    device.SetVolume(voxelGrid, worked, arrays, this->BackgroundValue, request.Method);
+    device.SetVolume(voxelGrid, worked, arrays, this->BackgroundValue, deformation,
+      mapped.Extrapolate, request.Method);
     if (request.Method == deformvolume::Resampling::MeshRasterization)
     {
       if (!deformation.IsField())

@@ -99,7 +99,8 @@ void DeviceSession::CheckMemory(const VoxelGrid& voxelGrid, const std::vector<Vo
 }
 
 void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
-  const std::vector<SourceArray>& arrays, double background, Resampling method)
+  const std::vector<SourceArray>& arrays, double background, const Deformation& deformation,
+  bool extrapolate, Resampling method)
 {
   if (!this->Known)
   {
@@ -143,12 +144,28 @@ void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
   this->Deformer.SetArrayOptions(described);
 
   const Stamp masksStamp = GetMasksStamp(volume);
-  if (!this->MasksAreSet || this->SentMasks != masksStamp)
+  const std::pair<std::uint64_t, bool> undefined(deformation.GetUndefinedVersion(), extrapolate);
+  const bool isDefined = undefined.first == 0 && this->SentUndefined.first == 0;
+  if (!this->MasksAreSet || this->SentMasks != masksStamp ||
+    (!isDefined && this->SentUndefined != undefined))
   {
-    const VolumeMasks masks = ReadMasks(volume, this->MasksAreSet ? this->SentMasks : Stamp());
+    VolumeMasks masks = ReadMasks(volume, this->MasksAreSet ? this->SentMasks : Stamp());
     const auto written = [](const std::optional<PointRanges>& ranges)
     { return ranges ? &*ranges : nullptr; };
-    this->Deformer.SetBlanked(masks.Blanked, masks.BlankedBits, written(masks.WrittenBlanked));
+    std::vector<unsigned char> blanked;
+    if (undefined.first != 0)
+    {
+      blanked = deformation.FindUndefinedVoxels(voxelGrid.VertexExtent, extrapolate);
+      for (std::size_t i = 0; i < blanked.size() && masks.Blanked; ++i)
+      {
+        blanked[i] |= (masks.Blanked[i] & masks.BlankedBits) != 0 ? 1 : 0;
+      }
+      masks.Blanked = blanked.data();
+      masks.BlankedBits = 1;
+    }
+    this->Deformer.SetBlanked(
+      masks.Blanked, masks.BlankedBits, isDefined ? written(masks.WrittenBlanked) : nullptr);
+    this->SentUndefined = undefined;
     this->Deformer.SetActiveTetrahedra(masks.Active, written(masks.WrittenActive));
     this->Deformer.SetBoundaryDistances(masks.Distances.Values, written(masks.WrittenDistances));
     this->Deformer.SetCut(masks.Cut.Crossed, masks.Cut.Distances.Values);

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkImageData;
@@ -45,9 +46,10 @@ public:
     std::uint64_t runBytes, Resampling method = Resampling::Exact) const;
 
   /// A change to or from the method MeshRasterization sends the volume anew.
+  /// Voxels whose displacement is undefined count as blanked.
   void SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
-    const std::vector<SourceArray>& arrays, double background,
-    Resampling method = Resampling::Exact);
+    const std::vector<SourceArray>& arrays, double background, const Deformation& deformation,
+    bool extrapolate, Resampling method = Resampling::Exact);
 
   /// Brings the mapping up to date, too, where it has to be sent. openSplits: whether gaps open
   /// where the mesh is split.
@@ -84,6 +86,7 @@ private:
   bool SentForLinks = false;
   Stamp SentArrays;
   Stamp SentMasks;
+  std::pair<std::uint64_t, bool> SentUndefined{ 0, false };
   bool MasksAreSet = false;
   bool HasMesh = false;
   bool HasField = false;

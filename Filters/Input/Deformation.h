@@ -100,6 +100,20 @@ public:
   ///@}
 
   ///@{
+  /// The voxels of a part of the volume, one byte each, whose displacement would need a point of a
+  /// forward field that is undefined; and a version that tells two such fields apart, which is 0
+  /// for all other deformations. (Vectors of undefined points of an inverse field are
+  /// not-a-number.)
+  std::vector<unsigned char> FindUndefinedVoxels(const Extent& part, bool extrapolate) const;
+  std::uint64_t GetUndefinedVersion() const
+  {
+    return this->UndefinedPoints.empty() || !this->Field || this->IsInverseField()
+      ? 0
+      : this->UndefinedVersion;
+  }
+  ///@}
+
+  ///@{
   /// The vectors on the device, where they are read there, and the matrix that takes them to
   /// displacements; else null. The displacements above are then those of before, or none, until
   /// they are brought to the host.
@@ -121,6 +135,8 @@ public:
 private:
   void ReadMesh(const DeformationSource& source);
   void ReadField(vtkImageData* image, const DeformationSource& source);
+  /// Reads vectors of a field, of which those of undefined points count as zero.
+  void ReadDefined(vtkDataArray* array, const VectorTaker& take);
   /// False where the field is not one that can be used in place.
   bool UseFieldInPlace(vtkDataArray* array, const DeformationSource& source);
   /// Has vectors be read where they lie on a device. False where an array has none there.
@@ -160,6 +176,8 @@ private:
   NodeFaults Faults;            // of the vectors, where they are read from a mesh
   std::array<int, 3> FieldDimensions{ { 0, 0, 0 } };
   std::array<double, 12> IndexToField{};
+  std::vector<unsigned char> UndefinedPoints; // of the field; empty: all are defined
+  std::uint64_t UndefinedVersion = 0;
   DisplacementField FieldInPlace; // with an owner, or there is none
   IndexBounds FieldBounds;
   FieldScan ScanInPlace;

@@ -5,16 +5,23 @@
 #include "CoarseVolume.h"
 #include "Error.h"
 #include "FieldScan.h"
+#include "MaskArray.h"
+#include "ParallelFor.h"
 #include "VectorArray.h"
 #include "WrittenTuples.h"
 
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkDeviceVectorArray.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace deformvolume
@@ -69,6 +76,20 @@ int GetStep(const Extent& voxels, const std::array<double, 12>& indexToField,
   return found ? static_cast<int>(step) : 1;
 }
 
+// The hidden points, one byte each; empty where there are none.
+std::vector<unsigned char> FindHidden(vtkDataArray* ghosts)
+{
+  std::vector<unsigned char> hidden;
+  bool any = false;
+  for (vtkIdType i = 0; ghosts && i < ghosts->GetNumberOfTuples(); ++i)
+  {
+    const auto kinds = static_cast<int>(ghosts->GetComponent(i, 0));
+    hidden.push_back((kinds & vtkDataSetAttributes::HIDDENPOINT) != 0 ? 1 : 0);
+    any = any || hidden.back() != 0;
+  }
+  return any ? hidden : std::vector<unsigned char>();
+}
+
 } // namespace
 
 DisplacementField Deformation::GetField(bool extrapolate) const
@@ -105,6 +126,8 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   CheckTransform(geometry, "the displacement field on input port 1");
   vtkDataArray* array =
     FindVectors(image, source.Selector, source.Wanted, std::string("the ") + FIELD);
+  const auto lastDimensions = this->FieldDimensions;
+  const auto lastIndexToField = this->IndexToField;
   image->GetDimensions(this->FieldDimensions.data());
   glm::dmat4 toField = geometry.GetWorldToIndex() * source.Volume.GetIndexToWorld();
   for (int axis = 0; axis < 3 && source.FieldIsInverse; ++axis)
@@ -122,7 +145,10 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   const int step = source.FieldIsInverse
     ? 1
     : GetStep(source.Volume.PointExtent, this->IndexToField, this->FieldDimensions);
+  vtkDataArray* ghosts = FindMask(pointData, vtkDataSetAttributes::GhostArrayName(),
+    image->GetNumberOfPoints(), "point", "displacement field");
   vtkSmartPointer<vtkDataArray> taken;
+  vtkSmartPointer<vtkDataArray> takenGhosts;
   if (step > 1)
   {
     // The vectors between the voxels are never looked at.
@@ -139,22 +165,39 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
     }
     taken = TakeTuples(array, points, voxels, step);
     array = taken;
+    takenGhosts = ghosts ? TakeTuples(ghosts, points, voxels, step) : nullptr;
+    ghosts = takenGhosts;
   }
+  std::vector<unsigned char> undefined = FindHidden(ghosts);
+  if (undefined != this->UndefinedPoints || lastDimensions != this->FieldDimensions ||
+    lastIndexToField != this->IndexToField)
+  {
+    ++this->UndefinedVersion;
+  }
+  this->UndefinedPoints = std::move(undefined);
+  const bool areDefined = this->UndefinedPoints.empty();
   this->Memories.clear();
-  if (this->UseVectorsOnDevice(source.FieldIsInverse ? nullptr : array, image->GetNumberOfPoints(),
-        source.DisplacementScale, source))
+  if (this->UseVectorsOnDevice(source.FieldIsInverse || !areDefined ? nullptr : array,
+        image->GetNumberOfPoints(), source.DisplacementScale, source))
   {
     this->RememberVectors(stamp, source, true);
     return;
   }
-  if (!this->UseFieldInPlace(array, source))
+  if (!areDefined || !this->UseFieldInPlace(array, source))
   {
     this->Faults.Reset();
     this->SetVectors(
       static_cast<std::size_t>(array->GetNumberOfTuples()),
       [&](const VectorTaker& take, const FloatTaker& takeFloats)
       {
-        ReadVectors(array, take, "Vector", FIELD, nullptr, takeFloats);
+        if (areDefined)
+        {
+          ReadVectors(array, take, "Vector", FIELD, nullptr, takeFloats);
+        }
+        else
+        {
+          this->ReadDefined(array, take);
+        }
         if (this->Faults.MayHaveAny())
         {
           ThrowTooFar();
@@ -162,7 +205,102 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
       },
       source.DisplacementScale, source);
   }
+  for (std::size_t i = 0; i < this->UndefinedPoints.size() && source.FieldIsInverse; ++i)
+  {
+    if (this->UndefinedPoints[i])
+    {
+      std::fill_n(&this->Vectors[3 * i], 3, std::numeric_limits<float>::quiet_NaN());
+    }
+  }
   this->RememberVectors(stamp, source, true);
+}
+
+void Deformation::ReadDefined(vtkDataArray* array, const VectorTaker& take)
+{
+  std::atomic<vtkIdType> fault{ -1 };
+  ReadVectors(
+    array,
+    [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
+    {
+      std::vector<glm::dvec3> defined(vectors, vectors + count);
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        defined[i] *= this->UndefinedPoints[first + i] ? 0.0 : 1.0;
+      }
+      take(first, defined.data(), count);
+    },
+    "Vector", FIELD, nullptr, {},
+    [&](vtkIdType point)
+    {
+      if (!this->UndefinedPoints[point])
+      {
+        fault = point;
+      }
+    });
+  if (fault >= 0)
+  {
+    throw Error("Vector " + std::to_string(fault) + " of the " + FIELD +
+      " is not finite. Remove NaN and infinity from it, or mark its point as hidden in " +
+      vtkDataSetAttributes::GhostArrayName() + ".");
+  }
+}
+
+std::vector<unsigned char> Deformation::FindUndefinedVoxels(
+  const Extent& part, bool extrapolate) const
+{
+  // Weights below this are rounding errors of positions.
+  constexpr double tolerance = 1e-5;
+  const auto width = static_cast<std::size_t>(GetSize(part, 0));
+  const auto height = static_cast<std::size_t>(GetSize(part, 1));
+  std::vector<unsigned char> undefined(static_cast<std::size_t>(GetNumberOfPoints(part)), 0);
+  const auto& m = this->IndexToField;
+  const auto isUndefined = [&](int x, int y, int z)
+  {
+    std::array<int, 3> low;
+    std::array<int, 3> high;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int last = this->FieldDimensions[axis] - 1;
+      double at = m[4 * axis] * x + m[4 * axis + 1] * y + m[4 * axis + 2] * z + m[4 * axis + 3];
+      if (!extrapolate && (at < -tolerance || at > last + tolerance))
+      {
+        return false; // it is outside
+      }
+      at = std::min(std::max(at, 0.0), static_cast<double>(last));
+      low[axis] = static_cast<int>(at + tolerance);
+      high[axis] = std::min(last, at - low[axis] > tolerance ? low[axis] + 1 : low[axis]);
+    }
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      std::size_t point = 0;
+      for (int axis = 2; axis >= 0; --axis)
+      {
+        point = point * static_cast<std::size_t>(this->FieldDimensions[axis]) +
+          static_cast<std::size_t>((corner >> axis & 1) != 0 ? high[axis] : low[axis]);
+      }
+      if (this->UndefinedPoints[point])
+      {
+        return true;
+      }
+    }
+    return false;
+  };
+  ParallelFor(part[4], part[5] + 1, 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (auto z = static_cast<int>(begin); z < static_cast<int>(end); ++z)
+      {
+        std::size_t voxel = static_cast<std::size_t>(z - part[4]) * width * height;
+        for (int y = part[2]; y <= part[3]; ++y)
+        {
+          for (int x = part[0]; x <= part[1]; ++x)
+          {
+            undefined[voxel++] = isUndefined(x, y, z) ? 1 : 0;
+          }
+        }
+      }
+    });
+  return undefined;
 }
 
 bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& source)

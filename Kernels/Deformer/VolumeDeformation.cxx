@@ -4,10 +4,13 @@
 #include "Error.h"
 #include "FieldParameters.h"
 #include "MemoryBudget.h"
+#include "ParallelFor.h"
 #include "SlabLoop.h"
 #include "WorkDevice.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 
 namespace deformvolume
 {
@@ -83,9 +86,45 @@ void VolumeDeformation::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t n
   this->Rasterizer.SetMesh(tetrahedra, numberOfTetrahedra, restNodes, numberOfNodes);
 }
 
+namespace
+{
+
+// Vectors of undefined points are not-a-number on all axes, others finite and not too large.
+void CheckInverseVectors(const DisplacementField& field)
+{
+  const auto count = static_cast<std::size_t>(CountPoints(field));
+  std::atomic<std::size_t> bad{ count };
+  constexpr std::size_t step = 16384;
+  ParallelForParts(count, step,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t point = begin; point < end; ++point)
+      {
+        const float* v = field.Vectors + 3 * point;
+        const auto isGood = [](float component)
+        { return std::abs(component) <= LargestDisplacement; };
+        const bool isUndefined = std::isnan(v[0]) && std::isnan(v[1]) && std::isnan(v[2]);
+        if (!isUndefined && !std::all_of(v, v + 3, isGood))
+        {
+          std::size_t first = bad;
+          while (point < first && !bad.compare_exchange_weak(first, point))
+          {
+          }
+          return;
+        }
+      }
+    });
+  if (bad < count)
+  {
+    ThrowBadDisplacement("point", bad);
+  }
+}
+
+} // namespace
+
 void VolumeDeformation::SetInverseField(const DisplacementField& field)
 {
-  CheckDisplacements(field.Vectors, CountPoints(field), "point", nullptr);
+  CheckInverseVectors(field);
   this->Source.Forget();
   this->Rasterizer.SetField(field);
 }

@@ -53,7 +53,8 @@ static void MixAlongX(__global const float* vectors, size_t row, int low, int hi
   mixed[2] = MIX((REAL)a.z, (REAL)b.z, t);
 }
 
-// The vector at a position within the field, trilinear.
+// The vector at a position within the field, trilinear. A point without weight is not read, since its
+// vector may be not-a-number, which stands for an undefined one.
 static void InterpolateField(
   __global const float* vectors, const REAL* position, REAL* vector, const LookupParameters* f)
 {
@@ -72,9 +73,9 @@ static void InterpolateField(
     vector[2] = (REAL)here.z;
     return;
   }
-  const int high = min(x + 1, f->Dimensions[0] - 1);
-  const size_t nextY = y + 1 < f->Dimensions[1] ? f->Dimensions[0] : 0;
-  const size_t nextZ = z + 1 < f->Dimensions[2] ? (size_t)f->Dimensions[0] * f->Dimensions[1] : 0;
+  const int high = tx > 0 ? x + 1 : x;
+  const size_t nextY = ty > 0 ? f->Dimensions[0] : 0;
+  const size_t nextZ = tz > 0 ? (size_t)f->Dimensions[0] * f->Dimensions[1] : 0;
   REAL a[3], b[3], c[3], d[3];
   MixAlongX(vectors, row, x, high, tx, a);
   MixAlongX(vectors, row + nextY, x, high, tx, b);
@@ -109,6 +110,17 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
   }
   REAL vector[3];
   InterpolateField(vectors, position, vector, f);
+  if (isnan(vector[0]))
+  {
+    // Rounding may have given an undefined point a weight.
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const REAL nearest = rint(position[axis]);
+      position[axis] =
+        fabs(position[axis] - nearest) <= (REAL)DEFORMVOLUME_LOOKUP_TOLERANCE ? nearest : position[axis];
+    }
+    InterpolateField(vectors, position, vector, f);
+  }
   inside = 1;
   int found[3];
   for (int axis = 0; axis < 3; ++axis)

@@ -65,7 +65,11 @@ public:
       {
         for (int x = first.x; x <= last.x; ++x)
         {
-          vectors.Add(this->GetPoint(x, y, z));
+          const glm::dvec3 vector = this->GetPoint(x, y, z);
+          if (IsFinite(vector)) // else it is undefined
+          {
+            vectors.Add(vector);
+          }
         }
       }
     }
@@ -101,7 +105,15 @@ public:
     {
       return false;
     }
-    const glm::dvec3 rest = (voxel + this->Interpolate(position)) / this->Scale;
+    glm::dvec3 vector = this->Interpolate(position);
+    if (!IsFinite(vector)) // as in the kernel
+    {
+      const glm::dvec3 nearest = glm::round(position);
+      const auto isNear =
+        glm::lessThanEqual(glm::abs(position - nearest), glm::dvec3(DEFORMVOLUME_LOOKUP_TOLERANCE));
+      vector = this->Interpolate(glm::mix(position, nearest, isNear));
+    }
+    const glm::dvec3 rest = (voxel + vector) / this->Scale;
     return glm::all(glm::greaterThanEqual(rest, this->Volume.Min)) &&
       glm::all(glm::lessThanEqual(rest, this->Volume.Max));
   }

@@ -62,7 +62,8 @@ Deformed RunCase(VolumeDeformer& deformer, InverseCase& c, const std::vector<Vol
 }
 
 /// Where an output voxel lies in the volume, counted from the first voxel, and how far inside it
-/// is: of the field in points, of the volume in voxels; negative outside.
+/// is: of the field in points, of the volume in voxels; negative outside, and where an undefined
+/// vector counts.
 std::array<long double, 3> GetRest(
   const InverseCase& c, const std::array<int, 3>& voxel, long double& margin)
 {
@@ -86,8 +87,15 @@ std::array<long double, 3> GetRest(
   }
   const Extent points{ { 0, c.Field.Dimensions[0] - 1, 0, c.Field.Dimensions[1] - 1, 0,
     c.Field.Dimensions[2] - 1 } };
+  // Positions nearer to a point than 1/1024 may be on it.
+  long double most = 0.0L;
   for (const auto& [point, weight] : reference::GetWeights(points, place, false))
   {
+    if (std::isnan(c.Vectors[3 * point]))
+    {
+      most = std::max(most, static_cast<long double>(weight));
+      continue;
+    }
     for (int axis = 0; axis < 3; ++axis)
     {
       vector[axis] += weight * static_cast<long double>(c.Vectors[3 * point + axis]);
@@ -102,6 +110,7 @@ std::array<long double, 3> GetRest(
     margin = std::min(
       { margin, rest[axis], static_cast<long double>(GetSize(volume, axis) - 1) - rest[axis] });
   }
+  margin = most > 1.0L / 1024.0L ? -1.0L : most > 1e-9L ? 0.0L : margin;
   return rest;
 }
 
@@ -218,6 +227,33 @@ TEST(InverseField, EqualsReference)
       deformer.SetAllocationLimit(0);
       deformer.SetWorkGroupSize(0);
     }
+  }
+}
+
+TEST(InverseField, VoxelsThatNeedUndefinedVectorsAreNotCovered)
+{
+  const float nan = std::nanf("");
+  // Between voxels; and each third voxel a point, exactly.
+  for (const bool onVoxels : { false, true })
+  {
+    InverseCase c = MakeCase(Volume, { { 8, 7, 6 } }, 0.002F);
+    if (onVoxels)
+    {
+      c.Field.IndexToField = { { 1 / 3.0, 0, 0, 1, 0, 1 / 3.0, 0, -1 / 3.0, 0, 0, 1 / 3.0, 3 } };
+    }
+    for (const std::size_t point : { 0U, 100U, 101U, 160U, 200U })
+    {
+      std::fill_n(&c.Vectors[3 * point], 3, nan);
+    }
+    const auto values = MakeRandomValues<float>(GetNumberOfPoints(Volume), 1);
+    const auto integers = MakeRandomValues<std::int16_t>(GetNumberOfPoints(Volume), 2);
+    const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(integers) };
+    VolumeDeformer deformer;
+    deformer.SetDevice("");
+    ExpectLookedUp(c, values, integers, RunCase(deformer, c, arrays));
+    c.Vectors[3 * 100 + 1] = 0.0F;
+    EXPECT_NE(
+      GetError([&] { RunCase(deformer, c, arrays); }).find("point 100 "), std::string::npos);
   }
 }
 

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Displacement fields with hidden points, where they are undefined: voxels that would need one are
+// not covered, as if they were blanked, and all others are as with a field that is whole.
+#include "FilterTesting.h"
+#include "UpdateChecks.h"
+
+#include <vtkUnsignedCharArray.h>
+
+#include <glm/common.hpp>
+
+#include <functional>
+#include <limits>
+
+using namespace filterTesting;
+
+namespace
+{
+
+using Image = vtkSmartPointer<vtkImageData>;
+using Choice = std::function<bool(const glm::dvec3& point)>;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+vtkSmartPointer<vtkUnsignedCharArray> Hide(vtkImageData* image, const Choice& isHidden)
+{
+  auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (vtkIdType id = 0; id < image->GetNumberOfPoints(); ++id)
+  {
+    const bool hidden = isHidden(GetPoint(image, id));
+    ghosts->InsertNextValue(hidden ? vtkDataSetAttributes::HIDDENPOINT : 0);
+  }
+  image->GetPointData()->AddArray(ghosts);
+  return ghosts;
+}
+
+// What programs write at points that are undefined.
+void Spoil(vtkImageData* field, const Choice& isHidden)
+{
+  vtkDataArray* vectors = field->GetPointData()->GetVectors();
+  const double values[4] = { nan, 0.0, 1e30, -std::numeric_limits<double>::infinity() };
+  for (vtkIdType id = 0; id < field->GetNumberOfPoints(); ++id)
+  {
+    if (isHidden(GetPoint(field, id)))
+    {
+      vectors->SetTuple3(id, values[id % 4], values[id / 4 % 4], values[id / 16 % 4]);
+    }
+  }
+}
+
+Image CopyVolume(vtkImageData* volume)
+{
+  Image copy = Image::New();
+  copy->DeepCopy(volume);
+  return copy;
+}
+
+WorldMap Bend()
+{
+  return [](const glm::dvec3& p)
+  { return p + glm::dvec3(0.6 * std::sin(0.4 * p.y), 0.4 * std::cos(0.5 * p.z), 0.05 * p.x); };
+}
+
+// Compares with a volume of which the voxels that need an undefined point are blanked.
+void CheckForward(vtkImageData* volume, vtkImageData* field, const Choice& isHidden,
+  const Choice& isUndefined, bool extrapolate = false, int factor = 1)
+{
+  const Image blanked = CopyVolume(volume);
+  Hide(blanked, isUndefined);
+  Deformed expected(blanked, CopyVolume(field));
+  const Image gaps = CopyVolume(field);
+  Hide(gaps, isHidden);
+  Spoil(gaps, isHidden);
+  Deformed found(volume, gaps);
+  for (Deformed* one : { &expected, &found })
+  {
+    one->Filter->SetOutputBoundsModeToVolumeBounds();
+    one->Filter->SetSamplingFactor(factor);
+    one->Filter->SetOutsideMode(
+      extrapolate ? vtkDeformVolumeFilter::EXTRAPOLATE : vtkDeformVolumeFilter::DISCARD);
+    one->Update();
+    VERIFY(one->Filter->GetNumberOfCoveredVoxels() > 100);
+  }
+  vtkPointData* arrays = expected.Filter->GetOutput()->GetPointData();
+  for (const char* name : { "value", "vtkValidPointMask" })
+  {
+    VERIFY(HaveEqualBits(
+      arrays->GetArray(name), found.Filter->GetOutput()->GetPointData()->GetArray(name)));
+  }
+  Deformed whole(volume, field);
+  whole.Filter->SetOutputBoundsModeToVolumeBounds();
+  whole.Filter->SetSamplingFactor(factor);
+  whole.Filter->SetOutsideMode(found.Filter->GetOutsideMode());
+  whole.Update();
+  VERIFY(found.Filter->GetNumberOfCoveredVoxels() < whole.Filter->GetNumberOfCoveredVoxels());
+}
+
+void TestForward()
+{
+  const auto volume = MakeVolume({ { 0, 12, 0, 12, 0, 12 } });
+  // On the voxels: each needs its own point only.
+  const auto same = MakeImage({ { 0, 12, 0, 12, 0, 12 } });
+  SetDisplacements(same, Bend());
+  const auto isCorner = [](const glm::dvec3& p) { return p.x > 7.0 && p.y > 5.0; };
+  CheckForward(volume, same, isCorner, isCorner);
+  CheckForward(volume, same, isCorner, isCorner, false, 2);
+  // Between its points.
+  const auto coarse = MakeImage({ { 0, 4, 0, 4, 0, 4 } }, glm::dvec3(3.0));
+  SetDisplacements(coarse, Bend());
+  const glm::dvec3 middle(6.0);
+  const auto isMiddle = [=](const glm::dvec3& p) { return p == middle; };
+  const auto isNear = [=](const glm::dvec3& p)
+  {
+    const glm::dvec3 d = glm::abs(p - middle);
+    return d.x < 3.0 && d.y < 3.0 && d.z < 3.0;
+  };
+  CheckForward(volume, coarse, isMiddle, isNear);
+  // Voxels outside follow the nearest point.
+  const auto small = MakeImage({ { 0, 2, 0, 2, 0, 2 } }, glm::dvec3(3.0), glm::dvec3(3.0));
+  SetDisplacements(small, Bend());
+  const auto isEnd = [](const glm::dvec3& p) { return p == glm::dvec3(9.0); };
+  CheckForward(
+    volume, small, isEnd, [](const glm::dvec3& p) { return p.x > 6.0 && p.y > 6.0 && p.z > 6.0; },
+    true);
+  // So many points that they would be read where they lie.
+  const auto large = MakeVolume({ { 0, 65, 0, 63, 0, 63 } });
+  const auto floats = MakeImage({ { 0, 65, 0, 63, 0, 63 } });
+  SetDisplacements(floats, Shift(1.0, 0.25, 0.0));
+  CheckForward(large, floats, isCorner, isCorner);
+}
+
+void TestUpdates()
+{
+  const auto volume = MakeVolume({ { 0, 30, 0, 30, 0, 30 } });
+  const auto field = MakeImage({ { 0, 30, 0, 30, 0, 30 } });
+  SetDisplacements(field, Bend());
+  const auto ghosts = Hide(field, [](const glm::dvec3& p) { return p.x < 4.0; });
+  Deformed tested(volume, field);
+  int parts = 0;
+  const auto check = [&](const char* what)
+  {
+    Deformed fresh(volume, field);
+    CompareWithFresh(tested, fresh, what, parts);
+  };
+  check("the start");
+  field->GetPointData()->GetVectors()->SetComponent(20000, 1, 0.75);
+  field->GetPointData()->GetVectors()->Modified();
+  check("a vector");
+  ghosts->SetValue(15000, vtkDataSetAttributes::HIDDENPOINT);
+  ghosts->Modified();
+  check("a point that is hidden");
+  const vtkIdType covered = tested.Filter->GetNumberOfCoveredVoxels();
+  ghosts->Fill(0);
+  ghosts->Modified();
+  check("no points that are hidden");
+  VERIFY(tested.Filter->GetNumberOfCoveredVoxels() > covered);
+  ghosts->SetValue(15000, vtkDataSetAttributes::HIDDENPOINT);
+  ghosts->Modified();
+  check("a point that is hidden again");
+  const auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Bend());
+  tested.Filter->SetDeformationData(mesh);
+  Deformed ofMesh(volume, mesh);
+  CompareWithFresh(tested, ofMesh, "a mesh", parts);
+  tested.Filter->SetDeformationData(field);
+  check("the field again");
+  field->GetPointData()->GetVectors()->SetComponent(16000, 1, nan);
+  field->GetPointData()->GetVectors()->Modified();
+  tested.Filter->Update();
+  VERIFY_EQUAL(tested.TakeErrors(), 1);
+  VERIFY(tested.LastError.find("Vector 16000 of the displacement field") != std::string::npos);
+}
+
+// Each output voxel of an inverse field is looked up in the volume, or not covered.
+void TestInverse()
+{
+  // The last of these numbers are not those of floats, so that positions are rounded.
+  for (const double spacing : { 1.0, 0.7 })
+  {
+    const auto volume = MakeImage(
+      { { 0, 12, 0, 12, 0, 12 } }, glm::dvec3(spacing), glm::dvec3(0.1 * spacing, 0.3, 0.7));
+    AddScalars<float>(
+      volume, "value", [](const glm::dvec3& p) { return p.x + 10.0 * p.y + 100.0 * p.z; });
+    for (const int step : { 1, 3 })
+    {
+      const int last = 12 / step;
+      const auto field = MakeImage({ { 0, last, 0, last, 0, last } }, glm::dvec3(step * spacing),
+        glm::dvec3(0.1 * spacing, 0.3, 0.7));
+      SetDisplacements(field, Shift(2.0 * spacing, 0.0, 0.0));
+      // Three points in a row, and all beyond voxel 9 on z.
+      const auto isHidden = [&](int i, int j, int k) {
+        return (j * step == 6 && k * step == 6 && i * step >= 3 && i * step <= 9) || k * step > 9;
+      };
+      vtkIdType id = 0;
+      const auto ghosts = Hide(field, [](const glm::dvec3&) { return false; });
+      for (int k = 0; k <= last; ++k)
+      {
+        for (int j = 0; j <= last; ++j)
+        {
+          for (int i = 0; i <= last; ++i, ++id)
+          {
+            if (isHidden(i, j, k))
+            {
+              ghosts->SetValue(id, vtkDataSetAttributes::HIDDENPOINT);
+              field->GetPointData()->GetVectors()->SetTuple3(id, i % 2 ? nan : 0.0, nan, 1e30);
+            }
+          }
+        }
+      }
+      Deformed deformed(volume, field);
+      deformed.Filter->FieldIsInverseOn();
+      const Extent extent{ { 0, 10, 0, 12, 0, 9 } };
+      VERIFY_EQUAL(GetExtent(deformed.Update()), extent);
+      deformed.Filter->SetOutputBoundsModeToVolumeBounds();
+      vtkImageData* output = deformed.Update();
+      int wrong = 0;
+      id = 0;
+      for (int z = 0; z <= 12; ++z)
+      {
+        for (int y = 0; y <= 12; ++y)
+        {
+          for (int x = 0; x <= 12; ++x, ++id)
+          {
+            bool defined = true;
+            for (int corner = 0; corner < 8; ++corner)
+            {
+              const auto at = [&](int index, int axis)
+              { return (index + ((corner >> axis & 1) != 0 ? step - 1 : 0)) / step; };
+              defined = defined && !isHidden(at(x, 0), at(y, 1), at(z, 2));
+            }
+            const bool covered = defined && x <= 10;
+            const glm::dvec3 rest = GetPoint(output, id) + glm::dvec3(2.0 * spacing, 0.0, 0.0);
+            const double value =
+              static_cast<float>(covered ? rest.x + 10.0 * rest.y + 100.0 * rest.z : 0.0);
+            wrong += deformed.IsCovered(id) != covered ||
+                std::abs(deformed.GetValues()->GetComponent(id, 0) - value) > 1e-3
+              ? 1
+              : 0;
+          }
+        }
+      }
+      VERIFY_EQUAL(wrong, 0);
+    }
+  }
+}
+
+} // namespace
+
+int TestUndefinedVectors(int, char*[])
+{
+  TestForward();
+  TestUpdates();
+  TestInverse();
+  return GetExitCode();
+}
