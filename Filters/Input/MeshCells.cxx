@@ -19,6 +19,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <map>
@@ -71,42 +72,42 @@ class NodePositions
 {
 public:
   explicit NodePositions(const MeshParts& parts)
-    : Parts(parts)
   {
+    for (vtkUnstructuredGrid* grid : parts)
+    {
+      if (grid->GetNumberOfPoints() > 0)
+      {
+        this->Points.push_back(grid->GetPoints());
+        this->Ends.push_back(
+          (this->Ends.empty() ? 0 : this->Ends.back()) + grid->GetNumberOfPoints());
+        if (grid->GetPoints()->GetDataType() == VTK_FLOAT)
+        {
+          this->Rounding = std::numeric_limits<float>::epsilon();
+        }
+      }
+    }
   }
 
   glm::dvec3 Get(std::int32_t node) const
   {
-    auto id = static_cast<vtkIdType>(node);
-    for (vtkUnstructuredGrid* grid : this->Parts)
+    const auto end = std::upper_bound(this->Ends.begin(), this->Ends.end(), node);
+    glm::dvec3 point(std::numeric_limits<double>::quiet_NaN());
+    if (end != this->Ends.end())
     {
-      if (id < grid->GetNumberOfPoints())
-      {
-        glm::dvec3 point;
-        grid->GetPoints()->GetPoint(id, &point.x);
-        return point;
-      }
-      id -= grid->GetNumberOfPoints();
+      const vtkIdType first = end == this->Ends.begin() ? 0 : *(end - 1);
+      this->Points[static_cast<std::size_t>(end - this->Ends.begin())]->GetPoint(
+        node - first, &point.x);
     }
-    return glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+    return point;
   }
 
-  // The relative error of rounding.
-  double GetRounding() const
-  {
-    double rounding = std::numeric_limits<double>::epsilon();
-    for (vtkUnstructuredGrid* grid : this->Parts)
-    {
-      if (grid->GetNumberOfPoints() > 0 && grid->GetPoints()->GetDataType() == VTK_FLOAT)
-      {
-        rounding = std::numeric_limits<float>::epsilon();
-      }
-    }
-    return rounding;
-  }
+  // The relative error of the positions.
+  double GetRounding() const { return this->Rounding; }
 
 private:
-  const MeshParts& Parts;
+  std::vector<vtkPoints*> Points;
+  std::vector<vtkIdType> Ends; // of the nodes of each
+  double Rounding = std::numeric_limits<double>::epsilon();
 };
 
 // What is read of a mesh.

@@ -33,6 +33,44 @@ glm::dvec3 GetArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c
   return glm::cross(b - a, c - a);
 }
 
+// Whether all points are on one side of each face, and all faces are convex, but for an error of
+// the places: this is quickly found out, and most cells are so.
+bool IsConvex(const CellFaces& faces, const std::vector<glm::dvec3>& points, double error)
+{
+  for (const std::vector<int>& face : faces)
+  {
+    const auto at = [&](std::size_t i)
+    { return points[static_cast<std::size_t>(face[i % face.size()])]; };
+    glm::dvec3 normal(0.0);
+    for (std::size_t i = 1; i + 1 < face.size(); ++i)
+    {
+      normal += GetArea(at(0), at(i), at(i + 1));
+    }
+    const double length = glm::length(normal);
+    double least = 0.0;
+    double most = 0.0;
+    for (const glm::dvec3& point : points)
+    {
+      const double side = glm::dot(normal, point - at(0));
+      least = std::min(least, side);
+      most = std::max(most, side);
+    }
+    if (!(length > 0.0) || (least < -error * length && most > error * length))
+    {
+      return false;
+    }
+    for (std::size_t i = 0; i < face.size(); ++i)
+    {
+      const glm::dvec3 area = GetArea(at(i), at(i + 1), at(i + 2));
+      if (glm::dot(normal, area) < -error * std::sqrt(length) * length)
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 // Makes all faces run round the cell in the same sense. False where some edge is not one of two
 // faces.
 bool OrientFaces(CellFaces& faces)
@@ -263,6 +301,16 @@ bool SplitPolyhedron(const std::vector<std::int32_t>& nodes, const CellFaces& fa
 {
   split = PolyhedronSplit();
   SplitCell(nodes, faces, split.Tetrahedra);
+  double error = 0.0; // of the places
+  for (const glm::dvec3& point : points)
+  {
+    const glm::dvec3 size = glm::abs(point);
+    error = std::max({ error, rounding * size.x, rounding * size.y, rounding * size.z });
+  }
+  if (IsConvex(faces, points, error))
+  {
+    return true;
+  }
   CellFaces oriented = faces;
   if (!OrientFaces(oriented))
   {
@@ -305,14 +353,11 @@ bool SplitPolyhedron(const std::vector<std::int32_t>& nodes, const CellFaces& fa
       at(positions[t[0]]), at(positions[t[1]]), at(positions[t[2]]), at(positions[t[3]])));
   }
   double area = 0.0;
-  double largest = 0.0;
   for (const Triangle& t : triangles)
   {
     area += 0.5 * glm::length(GetArea(at(t[0]), at(t[1]), at(t[2])));
-    const glm::dvec3 size = glm::abs(at(t[0]));
-    largest = std::max({ largest, size.x, size.y, size.z });
   }
-  const double tolerance = VolumeTolerance * volume + rounding * largest * area;
+  const double tolerance = VolumeTolerance * volume + error * area;
   // Not-a-number where a point is.
   if (!(volume > 0.0) || !(std::abs(filled - volume) > tolerance))
   {

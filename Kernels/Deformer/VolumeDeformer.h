@@ -150,8 +150,8 @@ public:
     std::size_t numberOfNodes, const double* restNodes);
   /// An inverse displacement field for MeshRasterization, in place of SetRestMesh: its vectors, in
   /// output voxels, lead from a point of the output to the point of the volume at rest that is seen
-  /// there, and IndexToField takes an index of the output. Vectors that are not-a-number on all axes
-  /// are undefined: output voxels whose interpolation needs one are not covered.
+  /// there, and IndexToField takes an index of the output. Vectors that are not-a-number on all
+  /// axes are undefined: output voxels whose interpolation needs one are not covered.
   void SetInverseField(const DisplacementField& field);
   /// Displacements of the nodes, three floats each, in output voxels. changes: all others are those
   /// of the last call, and are not looked at, if there was one for this mesh and it did not fail.

@@ -7,8 +7,13 @@ import sys
 import numpy
 from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
-from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
+from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkStructuredGrid, vtkUnstructuredGrid
+from vtkmodules.vtkIOXML import (
+    vtkXMLStructuredGridWriter,
+    vtkXMLUnstructuredGridReader,
+    vtkXMLUnstructuredGridWriter,
+)
 
 program = sys.argv[1]
 folder = make_folder(sys.argv[2], "CommandLine")
@@ -67,6 +72,8 @@ for deformation, option, expected in (
         (mesh, ("--write-mesh", path("o.vtu")), "excludes"),
         (mesh, push, "--push goes with"),
         (("--mesh", path("m.vtu"), "--rest", path("r.vtu")), ("--scale", "2"), "excludes"),
+        (("--mesh", path("m.vtu"), "--rest", path("r.vtu")), ("--points-are-deformed",), "excludes"),
+        ((*lattice, *push), ("--points-are-deformed",), "--points-are-deformed requires --mesh"),
         (tetgen, ("--isovalue", "4", "--labels"), "excludes"),
         (mesh, ("--threshold", "4"), "--threshold requires --image"),
         (mesh, ("--view", "0,1,0"), "--view requires --image")):
@@ -177,6 +184,33 @@ assert writer.Write()
 call(program, path("in.vti"), "--mesh", path("deformed.vtu"), "--rest", path("mesh.vtu"), "-o",
      path("pair.vti"), "--background", "-7", "--bounds", "volume", "--quiet")
 assert numpy.array_equal(after, get_values(read_vti(path("pair.vti")), "Values"))
+
+# So does the deformed mesh with its displacements, but for the rounding of their differences.
+call(program, path("in.vti"), "--mesh", path("deformed.vtu"), "--displacement", "Displacement",
+     "--points-are-deformed", "-o", path("beside.vti"), "--background", "-7", "--bounds", "volume",
+     "--quiet")
+assert (after != get_values(read_vti(path("beside.vti")), "Values")).mean() < 1e-3
+
+# A structured grid of one cell that does not move.
+box = volume.GetBounds()
+grid = vtkStructuredGrid()
+grid.SetDimensions(2, 2, 2)
+corners = vtkPoints()
+still = vtkDoubleArray()
+still.SetName("D")
+still.SetNumberOfComponents(3)
+for corner in range(8):
+    corners.InsertNextPoint(*(box[2 * axis + (corner >> axis & 1)] for axis in range(3)))
+    still.InsertNextTuple((0, 0, 0))
+grid.SetPoints(corners)
+grid.GetPointData().AddArray(still)
+writer = vtkXMLStructuredGridWriter()
+writer.SetInputData(grid)
+writer.SetFileName(path("grid.vts"))
+assert writer.Write()
+call(program, path("in.vti"), "--mesh", path("grid.vts"), "--displacement", "D", "-o",
+     path("still.vti"), "--quiet")
+assert numpy.array_equal(get_values(volume, "Values"), get_values(read_vti(path("still.vti")), "Values"))
 
 # A mesh of the ball alone discards what lies outside.
 output, _ = call(program, path("in.vti"), "--tetgen", "--isovalue", "400", "--edge-length", "5",
