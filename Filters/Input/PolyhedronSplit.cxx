@@ -33,8 +33,8 @@ glm::dvec3 GetArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c
   return glm::cross(b - a, c - a);
 }
 
-// Whether all points are on one side of each face, and all faces are convex, but for an error of
-// the places: this is quickly found out, and most cells are so.
+// Whether all points are on one side of each face, and all faces are convex, within the error of
+// the positions. Most cells are convex, and the volumes need not be computed for these.
 bool IsConvex(const CellFaces& faces, const std::vector<glm::dvec3>& points, double error)
 {
   for (const std::vector<int>& face : faces)

@@ -7,8 +7,6 @@
 #include "TenNodeCells.h"
 #include "UpdateChecks.h"
 
-#include "Error.h"
-
 #include "vtkDeviceVectorArray.h"
 
 #include <vtkArrayChanges.h>
@@ -18,12 +16,8 @@
 #include <vtkMultiBlockDataSet.h>
 
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <map>
-#include <numeric>
-#include <random>
 
 using namespace filterTesting;
 using deformvolume::Tetrahedron;
@@ -247,7 +241,6 @@ void TestSplits()
 {
   const auto volume = MakeVolume({ { 0, 15, 0, 15, 0, 15 } });
   const Grid mesh = MakeCurvedTenNodes(MakeMesh(volume), true);
-  std::mt19937 random(5);
   auto* vectors = mesh->GetPointData()->GetVectors();
   for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
   {
@@ -321,9 +314,10 @@ void TestAccuracy()
     worst = std::max(worst, FindError(true, corners, kind) / FindError(false, corners, kind));
   }
   std::cout << "Of the error of a four-node tetrahedron: " << worst << '\n';
-  // Half the distance between nodes is a quarter of the error; in the middle, where distances are
-  // largest, less than a half.
-  VERIFY(worst < 0.45);
+  // The error of linear interpolation is proportional to the squares of edges. Those of the twelve
+  // tetrahedra are half as long as those of the cell, but for the lines to the center: of a regular
+  // cell, whose edges have the length 1, these are sqrt(1 / 8). With some room for another shape.
+  VERIFY(worst < 0.35);
 }
 
 // Nodes of the edges in another order.
