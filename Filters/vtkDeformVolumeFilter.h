@@ -278,11 +278,12 @@ public:
 
   ///@{
   /**
-   * What happens to voxels of the volume outside the deformation mesh or field: they are discarded,
-   * or they follow the nearest tetrahedron, whose affine map is extended (it is the tetrahedron
-   * of the nearest voxel inside the mesh; with a field, the displacement of the nearest point of
-   * the field). The latter needs 16 bytes a voxel for the mapping whatever the mesh, while the
-   * former makes do with less where tetrahedra are large. Default: DISCARD.
+   * What happens to the volume outside the deformation mesh or field: it is discarded, so that the
+   * deformed volume ends where the deformed mesh ends (up to 1/128 output voxel, as node positions
+   * are rounded), or its voxels follow the nearest tetrahedron, whose affine map is extended (it is
+   * the tetrahedron of the nearest voxel inside the mesh; with a field, the displacement of the
+   * nearest point of the field). The latter needs 16 bytes a voxel for the mapping whatever the
+   * mesh, while the former makes do with less where tetrahedra are large. Default: DISCARD.
    */
   vtkSetClampMacro(OutsideMode, int, DISCARD, EXTRAPOLATE);
   vtkGetMacro(OutsideMode, int);
@@ -504,8 +505,10 @@ public:
 
   /**
    * Active tetrahedra of the sampling mesh that the deformation turned inside out at the last
-   * execution; with MESH_RASTERIZATION tetrahedra of the deformation mesh, and with FieldIsInverse
-   * those of the field's lattice, five for each cell: parts of the volume are then seen twice.
+   * execution, and, in cells that the boundary of the deformation mesh crosses or touches,
+   * tetrahedra of the deformation mesh; with MESH_RASTERIZATION tetrahedra of the deformation mesh,
+   * and with FieldIsInverse those of the field's lattice, five for each cell: parts of the volume
+   * are then seen twice.
    */
   vtkGetMacro(NumberOfInvertedTetrahedra, vtkIdType);
 
@@ -544,9 +547,9 @@ public:
    * How often this filter has built a static mapping, and sent a volume to the device: a moved mesh
    * costs neither. MESH_RASTERIZATION needs no mapping; a change to it or from it sends the volume.
    * The mapping is built anew after a change of the mesh at rest (tetrahedra that get other nodes
-   * in the same places are none, and nor are nodes that are added; where some tetrahedra are
-   * replaced by others, only voxels near these are mapped anew), of the volume's geometry, of
-   * the ratio of spacings, of OutsideMode or of the device, and after ReleaseDeviceMemory().
+   * in the same places are none, and nor are nodes that are added; where tetrahedra of a mesh that
+   * holds the volume are replaced, only voxels near these are mapped anew), of the volume's
+   * geometry, the ratio of spacings, OutsideMode or the device, and after ReleaseDeviceMemory().
    */
   vtkGetMacro(NumberOfMappingBuilds, vtkIdType);
   vtkGetMacro(NumberOfVolumeUploads, vtkIdType);

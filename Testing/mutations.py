@@ -57,6 +57,7 @@ REPLACEMENT = ("TestReplacement", "*Knows*:*Equals*/*OfGrid:*Equals*/Links:*Equa
 COROTATIONAL = ("TestCorotational", "*")
 DEFORMED_CUTTING = ("TestDeformedCutting", "*")
 LISTS = ("TestTetrahedronLists", "*")
+BOUNDARY = ("TestMeshBoundary", "*")
 
 # name: (file, text, replacement, [(program, filter of its tests)])
 MUTATIONS = {
@@ -164,11 +165,31 @@ MUTATIONS = {
     "replaced-sources": ("Kernels/Mapping/DeviceMapping.cxx",
                          "if ((before[i].Tetrahedron < 0) != (after[i].Tetrahedron < 0))", "if (false)", [REPLACEMENT]),
     "replaced-rows": ("Kernels/Mapping/DeviceMapping.cxx", "has.Rows[row] = end;", "", [REPLACEMENT]),
-    "lists-order": ("Kernels/Rasterization/EntryLists.cl",
+    "lists-order": ("Kernels/Binning/EntryLists.cl",
                     "before += word < item / 32 ? popcount(mask[word]) : 0;", "", [LISTS]),
-    "lists-inverted": ("Kernels/Rasterization/EntryLists.cl", "2 * tile + IsInverted(box.y);", "2 * tile;", [LISTS]),
-    "lists-box": ("Kernels/Rasterization/TetrahedronBinning.cl", "#define TILES_BITS_X 8", "#define TILES_BITS_X 7",
+    "lists-inverted": ("Kernels/Binning/EntryLists.cl", "2 * tile + IsInverted(box.y);", "2 * tile;", [LISTS]),
+    "lists-box": ("Kernels/Binning/TetrahedronBinning.cl", "#define TILES_BITS_X 8", "#define TILES_BITS_X 7",
                   [LISTS]),
+    "boundary-neighbours": ("Kernels/Mapping/MeshBoundary.cxx", "this->Near.Add(i, j, k);",
+                            "i == x && j == y && k == z ? this->Near.Add(i, j, k) : (void)0;", [BOUNDARY]),
+    "boundary-places": ("Kernels/Mapping/MeshBoundary.cxx", "faces[end].IsAbove != faces[i].IsAbove", "false", [BOUNDARY]),
+    "boundary-border": ("Kernels/Mapping/MeshBoundary.cxx", "BorderTolerance = 1.0 / 512.0;",
+                        "BorderTolerance = -1.0 / 512.0;", [BOUNDARY]),
+    "boundary-large": ("Kernels/Mapping/MeshBoundary.cxx", "LargestPiece = 128.0;", "LargestPiece = 1e9;", [BOUNDARY]),
+    "boundary-told": ("Kernels/SamplingMesh/VertexState.cl", "!BeginsCrossed(state, active, x, y, z, p)", "1", [BOUNDARY]),
+    "boundary-surrounded": ("Kernels/SamplingMesh/VertexState.cl",
+                            "|| IsComplete(state, cell, i, j, k, p);", "|| 1;", [BOUNDARY]),
+    "boundary-points": ("Kernels/Mapping/BrickPoints.cxx",
+                        "std::for_each(mesh.Boundary[brick].begin(), mesh.Boundary[brick].end(), add);", "", [BOUNDARY]),
+    "boundary-inside": ("Kernels/Resampling/IncrementalUpdate.cxx",
+                        "(!atBoundary.empty() && atBoundary[subBrick])", "false", [BOUNDARY]),
+    "boundary-patches": ("Kernels/Resampling/BoundaryCells.cxx", "this->CoveredInPatches[patch] = 0;", "", [BOUNDARY]),
+    "boundary-upright": ("Kernels/Resampling/BoundaryCells.cl", "(ulong)isInverted << 63 | ", "", [BOUNDARY]),
+    "boundary-chunks": ("Kernels/Resampling/BoundaryCells.cxx", "std::vector<int>{ 1, 2 }", "std::vector<int>{ 3 }",
+                        [BOUNDARY]),
+    "boundary-blanked": ("Kernels/Resampling/BoundaryCells.cl", "if (r->HasBlanked && masks->Blanked[voxel])", "if (false)",
+                         [BOUNDARY]),
+    "boundary-active": ("Kernels/Resampling/BoundaryCells.cl", "if ((active >> t & 1) && ", "if (", [BOUNDARY]),
     "cut-above": ("Kernels/Cutting/TriangleCrossing.h", "return (sign != 0 ? sign : this->NormalSign) > 0;",
                   "return sign > 0;", [CUTTING]),
     "cut-face": ("Kernels/Cutting/TriangleCrossing.cxx", "sign != 0 ? sign : -movement;",

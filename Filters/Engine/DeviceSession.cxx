@@ -255,12 +255,13 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
     Transfer transfer(this);
     if (mapping.IsByRuns())
     {
-      this->Deformer.SetMesh(tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetRuns());
+      this->Deformer.SetMesh(tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetRuns(),
+        &mapping.GetMapping().Boundary);
     }
     else
     {
-      this->Deformer.SetMesh(
-        tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetLinks().data());
+      this->Deformer.SetMesh(tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetLinks().data(),
+        &mapping.GetMapping().Boundary);
     }
     transfer.End();
     this->SentMapping = mapping.GetVersion();

@@ -48,6 +48,14 @@ std::uint64_t EstimateRunBytes(const StaticMappingBuilder& builder, const Mapped
   return 1 + static_cast<std::uint64_t>(share * static_cast<double>(bytes));
 }
 
+// Whether a mesh ends within the volume.
+bool EndsWithin(const Deformation& deformation, const MappedVolume& volume)
+{
+  const Extent& voxels = volume.Whole.PointExtent;
+  return !FindMeshBoundary(voxels, voxels, deformation.GetRestPoints(), deformation.GetTetrahedra())
+            .IsEmpty();
+}
+
 } // namespace
 
 bool MappingCache::IsCurrent(const Deformation& deformation, const MappedVolume& volume) const
@@ -96,7 +104,7 @@ const StaticMappingUpdater* MappingCache::FindUpdater(
   const MeshReplacement* replacement = deformation.GetRestMesh().GetReplacement();
   Key before = key;
   before.ShapeVersion = replacement ? replacement->ShapeVersion : 0;
-  if (!replacement || !(this->MappingKey == before) || !key.Volume.IsWhole())
+  if (!replacement || !(this->MappingKey == before) || !key.Volume.IsWhole() || this->HasBoundary)
   {
     return nullptr;
   }
@@ -117,6 +125,10 @@ std::optional<MappingUpdate> MappingCache::UpdateInPart(
   const Key key{ &deformation, deformation.GetRestMesh().GetShapeVersion(), volume };
   const StaticMappingUpdater* updater = this->FindUpdater(deformation, key);
   if (!updater)
+  {
+    return {};
+  }
+  if (EndsWithin(deformation, volume))
   {
     return {};
   }
@@ -166,8 +178,8 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
   const std::uint64_t runBytes = EstimateRunBytes(builder, volume);
   const MappingSurvey survey = builder.GetSurvey();
   // The same for any part that the volume is read in.
-  const bool holdsVoxels =
-    mapping.NumberOfInnerVoxels > 0 || (!volume.IsWhole() && builder.HoldsVoxels());
+  const bool holdsVoxels = mapping.NumberOfInnerVoxels > 0 || !mapping.Boundary.IsEmpty() ||
+    (!volume.IsWhole() && (builder.HoldsVoxels() || EndsWithin(deformation, volume)));
   if (volume.IsWhole())
   {
     this->Builder.reset();
@@ -182,6 +194,7 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
     throw Error(DescribeMiss(deformation, volume.Whole));
   }
   this->Mapping = std::move(mapping);
+  this->HasBoundary = !this->Mapping.Boundary.IsEmpty();
   this->Survey = survey;
   this->RunBytes = runBytes;
   this->MappingKey = key;
@@ -193,6 +206,7 @@ void MappingCache::ReleaseVoxels()
 {
   std::vector<VertexLink>().swap(this->Mapping.Links);
   this->Mapping.Runs = VertexRuns();
+  this->Mapping.Boundary = MeshBoundary();
 }
 
 double MappingCache::TakeTime()

@@ -65,7 +65,7 @@ public:
   {
     return !this->Mapping.Links.empty() || !this->Mapping.Runs.Runs.empty();
   }
-  /// Frees the links or runs.
+  /// Frees the links or runs, and the boundary.
   void ReleaseVoxels();
 
   /// Changes with the mapping.
@@ -100,6 +100,7 @@ private:
   MappingSurvey Survey;
   Key MappingKey; // without a source: there is no mapping
   std::uint64_t RunBytes = 0;
+  bool HasBoundary = false; // that of the mesh passes through the volume
   std::unique_ptr<StaticMappingBuilder> Builder;
   Key BuilderKey;                                // that of the whole volume
   std::unique_ptr<StaticMappingUpdater> Updater; // from the mapping on

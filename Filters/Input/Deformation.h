@@ -101,8 +101,8 @@ public:
 
   ///@{
   /// The voxels of a part of the volume, one byte each, whose displacement would need a point of a
-  /// forward field that is undefined; and a version that differs between two such fields, which is 0
-  /// for all other deformations. (Vectors of undefined points of an inverse field are
+  /// forward field that is undefined; and a version that differs between two such fields, which is
+  /// 0 for all other deformations. (Vectors of undefined points of an inverse field are
   /// not-a-number.)
   std::vector<unsigned char> FindUndefinedVoxels(const Extent& part, bool extrapolate) const;
   std::uint64_t GetUndefinedVersion() const

@@ -6,6 +6,12 @@ typedef struct
   long x, y, z;
 } Vector;
 
+static Vector Difference(int4 a, int4 b)
+{
+  const Vector r = { (long)a.x - b.x, (long)a.y - b.y, (long)a.z - b.z };
+  return r;
+}
+
 static Vector Subtract(Vector a, Vector b)
 {
   const Vector r = { a.x - b.x, a.y - b.y, a.z - b.z };

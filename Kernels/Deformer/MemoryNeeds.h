@@ -25,7 +25,7 @@ struct DeformationSize
   const Extent& OutputExtent;
   std::size_t NumberOfNodes; // of the mesh, or points of a field
   std::size_t NumberOfTetrahedra;
-  std::uint64_t MappingBytes; // see GetMappingBytes
+  std::uint64_t MappingBytes; // see GetMappingBytes; with what the boundary of a mesh takes
   bool IsRasterized;          // by MeshRasterization
   bool HasDistances = false;  // to the boundary
 };

@@ -82,6 +82,7 @@ void VolumeDeformation::SetNodePlaces(const std::int32_t* places)
 void VolumeDeformation::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
   std::size_t numberOfNodes, const double* restNodes)
 {
+  this->SetBoundary({}, {});
   this->Source.Forget();
   this->Rasterizer.SetMesh(tetrahedra, numberOfTetrahedra, restNodes, numberOfNodes);
 }
@@ -125,6 +126,7 @@ void CheckInverseVectors(const DisplacementField& field)
 void VolumeDeformation::SetInverseField(const DisplacementField& field)
 {
   CheckInverseVectors(field);
+  this->SetBoundary({}, {});
   this->Source.Forget();
   this->Rasterizer.SetField(field);
 }
@@ -174,6 +176,7 @@ void VolumeDeformation::SetDisplacementField(
   const DisplacementField& field, const std::shared_ptr<DeviceVectors>& vectors)
 {
   this->Source.SetField(field, vectors);
+  this->UpdateFieldBoundary(field);
   this->Rasterizer.Clear();
 }
 
@@ -182,6 +185,46 @@ void VolumeDeformation::SetDisplacementField(
 {
   this->Rasterizer.Clear();
   this->Source.SetField(field, changes);
+  this->UpdateFieldBoundary(field);
+}
+
+void VolumeDeformation::SetBoundary(
+  const MeshBoundary& boundary, const std::vector<std::int32_t>& numbers)
+{
+  this->BoundaryField = DisplacementField();
+  try
+  {
+    this->Exact.GetBoundary().Set(boundary, numbers);
+    this->Volume.SetBoundary(boundary, numbers);
+  }
+  catch (...)
+  {
+    this->Exact.GetBoundary().Clear();
+    this->Source.Forget(); // without its boundary the deformation would lack a layer
+    throw;
+  }
+}
+
+void VolumeDeformation::UpdateFieldBoundary(const DisplacementField& field)
+{
+  DisplacementField& last = this->BoundaryField;
+  if (field.Dimensions == last.Dimensions && field.IndexToField == last.IndexToField &&
+    field.Extrapolate == last.Extrapolate)
+  {
+    return;
+  }
+  const VoxelGrid& grid = this->Volume.GetVoxelGrid();
+  const Extent& whole =
+    GetNumberOfPoints(grid.WholeExtent) > 0 ? grid.WholeExtent : grid.VertexExtent;
+  MeshBoundary boundary;
+  if (!field.Extrapolate)
+  {
+    boundary = FindFieldBoundary(grid.VertexExtent, whole, field);
+  }
+  this->SetBoundary(boundary, {});
+  last.Dimensions = field.Dimensions;
+  last.IndexToField = field.IndexToField;
+  last.Extrapolate = field.Extrapolate;
 }
 
 void VolumeDeformation::CheckRequest(const DeformRequest& request) const
@@ -238,6 +281,10 @@ DeformationSize VolumeDeformation::GetSize(const DeformRequest& request) const
 {
   const VoxelGrid& grid = this->Volume.GetVoxelGrid();
   const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
+  const std::uint64_t boundary = this->Exact.GetBoundary().GetMemory() +
+    (this->Volume.HasBoundary()
+        ? 2 * static_cast<std::uint64_t>(GetNumberOfCells(grid.VertexExtent))
+        : 0);
   if (request.Method == Resampling::MeshRasterization)
   {
     return { grid, arrays, request.OutputExtent, this->Rasterizer.GetNumberOfNodes(),
@@ -245,7 +292,7 @@ DeformationSize VolumeDeformation::GetSize(const DeformRequest& request) const
   }
   return { grid, arrays, request.OutputExtent, this->Source.GetNumberOfNodes(),
     this->Source.GetNumberOfTetrahedra(),
-    GetMappingBytes(grid, !this->Volume.HasMesh(), this->Volume.GetRunBytes()), false,
+    boundary + GetMappingBytes(grid, !this->Volume.HasMesh(), this->Volume.GetRunBytes()), false,
     this->Volume.HasDistances() };
 }
 

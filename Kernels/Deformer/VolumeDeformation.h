@@ -6,6 +6,7 @@
 #include "DeviceOutputInternals.h"
 #include "DeviceVolume.h"
 #include "DisplacementSource.h"
+#include "Error.h"
 #include "ExactResampler.h"
 #include "IncrementalOutput.h"
 #include "MemoryNeeds.h"
@@ -44,9 +45,14 @@ public:
   /// Meshes and fields that were checked (CheckMesh, CountPoints). Mapping: links or runs.
   template <typename Mapping>
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
-    std::size_t numberOfNodes, const Mapping& mapping)
+    std::size_t numberOfNodes, const Mapping& mapping, const MeshBoundary* boundary)
   {
+    this->SetBoundary({}, {});
     this->Source.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, mapping);
+    if (boundary)
+    {
+      this->SetBoundary(*boundary, this->Source.FindNumbers(boundary->Pieces));
+    }
     this->Rasterizer.Clear();
   }
   void ChangeConnectivity(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
@@ -57,6 +63,11 @@ public:
   void ReplaceTetrahedra(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const MappingUpdate& update)
   {
+    if (this->Volume.HasBoundary())
+    {
+      throw Error("Tetrahedra cannot be replaced where the boundary of the mesh is known: call "
+                  "SetMesh.");
+    }
     // Voxels that have come into the mesh are sources now.
     this->Incremental.ChangeMask(
       this->Source.ReplaceTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes, update), false);
@@ -86,6 +97,9 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
+  void SetBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& numbers);
+  /// Finds the boundary of a field, where its mapping is another one than before.
+  void UpdateFieldBoundary(const DisplacementField& field);
   /// Throws an Error where there is no deformation mesh.
   void CheckMesh() const;
   DeformationSize GetSize(const DeformRequest& request) const;
@@ -100,6 +114,7 @@ private:
   ExactResampler Exact;
   MeshRasterizer Rasterizer;
   UnreadOutputs Unread;
+  DisplacementField BoundaryField; // the one that the boundary was found of, without its vectors
 };
 
 } // namespace deformvolume

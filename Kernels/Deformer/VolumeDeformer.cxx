@@ -148,19 +148,19 @@ void VolumeDeformer::SetCut(const unsigned char* crossed, const float* distances
 }
 
 void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
-  std::size_t numberOfNodes, const VertexLink* links)
+  std::size_t numberOfNodes, const VertexLink* links, const MeshBoundary* boundary)
 {
   CheckMesh(links ? tetrahedra : nullptr, numberOfTetrahedra, numberOfNodes);
   this->Impl->Send([&](VolumeDeformation& volume)
-    { volume.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, links); });
+    { volume.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, links, boundary); });
 }
 
 void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
-  std::size_t numberOfNodes, const VertexRuns& runs)
+  std::size_t numberOfNodes, const VertexRuns& runs, const MeshBoundary* boundary)
 {
   CheckMesh(tetrahedra, numberOfTetrahedra, numberOfNodes);
   this->Impl->Send([&](VolumeDeformation& volume)
-    { volume.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, runs); });
+    { volume.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, runs, boundary); });
 }
 
 void VolumeDeformer::ChangeConnectivity(const Tetrahedron* tetrahedra,

@@ -8,6 +8,7 @@
 #include "DisplacementField.h"
 #include "Error.h"
 #include "MappingUpdate.h"
+#include "MeshBoundary.h"
 #include "PointRanges.h"
 #include "Tetrahedron.h"
 #include "VertexLink.h"
@@ -117,14 +118,17 @@ public:
   /// then. Takes 44 bytes on the device for each vertex of a cell with crossed tetrahedra.
   void SetCut(const unsigned char* crossed, const float* distances);
 
-  /// A tetrahedral deformation mesh, with a link for each voxel.
+  /// A tetrahedral deformation mesh, with a link for each voxel. boundary: where that of the mesh
+  /// passes through the volume (StaticMapping::Boundary): the deformed volume ends where the
+  /// deformed mesh ends. Null: it ends with the last tetrahedra of the sampling mesh that have all
+  /// of their voxels in the mesh.
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
-    std::size_t numberOfNodes, const VertexLink* links);
+    std::size_t numberOfNodes, const VertexLink* links, const MeshBoundary* boundary = nullptr);
   /// The same with runs of voxels. Displacements are as exact as by links but for rounding errors
   /// of less than 1/1024 output voxel where they are under 8,192 voxels (VertexRuns.h has the
   /// bound); equal displacements of all nodes move each voxel by exactly that.
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
-    std::size_t numberOfNodes, const VertexRuns& runs);
+    std::size_t numberOfNodes, const VertexRuns& runs, const MeshBoundary* boundary = nullptr);
   /// The same mesh, of as many tetrahedra, where some have got other nodes, and there are more
   /// nodes, or fewer: after SetMesh, whose links or runs stay, as the nodes lie at rest where the
   /// others did. changes: what has changed since the last call, each tetrahedron once; null: that
@@ -136,7 +140,8 @@ public:
   /// nodes, or fewer: after SetMesh. All nodes that there were, and are, lie at rest where they
   /// lay. update: the links or the runs of the voxels that this touches, in the form that the
   /// mapping has (StaticMappingUpdater makes it); those of all others stay. Tetrahedra that are
-  /// kept have the nodes that they had. SetNodeDisplacements follows as after ChangeConnectivity.
+  /// kept have the nodes that they had. An Error where a boundary was set. SetNodeDisplacements
+  /// follows as after ChangeConnectivity.
   void ReplaceTetrahedra(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const MappingUpdate& update);
   /// Opens a gap where the mesh is split: tetrahedra of the sampling mesh with vertices on both

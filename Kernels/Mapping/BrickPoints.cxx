@@ -109,6 +109,11 @@ void BrickPoints::Collect(
           need.Tetrahedra.push_back(tetrahedron);
         }
       });
+    if (!mesh.Boundary.empty())
+    {
+      const std::vector<std::int32_t>& boundary = mesh.Boundary[(*wanted)[i]];
+      need.Tetrahedra.insert(need.Tetrahedra.end(), boundary.begin(), boundary.end());
+    }
     SortOnce(need.Tetrahedra);
     for (const std::int32_t tetrahedron : need.Tetrahedra)
     {
@@ -126,21 +131,25 @@ void BrickPoints::Collect(
     {
       Needs& need = needs[brick];
       need.Nodes.reserve(64);
-      visit(grid.GetVertices(brick, grid.Reach), need,
-        [&](std::int32_t tetrahedron)
+      const auto add = [&](std::int32_t tetrahedron)
+      {
+        if (tetrahedra.Add(tetrahedron, brick))
         {
-          if (tetrahedra.Add(tetrahedron, brick))
-          {
-            ForNodes(mesh.Tetrahedra[tetrahedron],
-              [&](std::int32_t node)
+          ForNodes(mesh.Tetrahedra[tetrahedron],
+            [&](std::int32_t node)
+            {
+              if (nodes.Add(node, brick))
               {
-                if (nodes.Add(node, brick))
-                {
-                  need.Nodes.push_back(node);
-                }
-              });
-          }
-        });
+                need.Nodes.push_back(node);
+              }
+            });
+        }
+      };
+      visit(grid.GetVertices(brick, grid.Reach), need, add);
+      if (!mesh.Boundary.empty())
+      {
+        std::for_each(mesh.Boundary[brick].begin(), mesh.Boundary[brick].end(), add);
+      }
       std::sort(need.Nodes.begin(), need.Nodes.end());
     }
   };

@@ -31,6 +31,8 @@ public:
     const Tetrahedron* Tetrahedra;
     std::size_t NumberOfTetrahedra;
     std::size_t NumberOfNodes;
+    /// For each brick of the grid those that move cells at the boundary of the mesh in it; or none.
+    const std::vector<std::vector<std::int32_t>>& Boundary;
   };
   /// Runs as on the device, see RunMapping.cl and RunEvaluation.cl.
   struct Runs

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which tetrahedra of the sampling mesh would bridge the gap where the deformation mesh has been split. It comes after
-// VertexState.cl.
+// Which tetrahedra of the sampling mesh are resampled by their vertices: those that are active, bridge no gap where the
+// deformation mesh has been split, and are in no cell that the boundary of the mesh crosses. It comes after VertexState.cl.
 //
 // Where a node is split, tetrahedra on both sides of the split name different nodes in the same place at rest. A
 // tetrahedron of the sampling mesh with vertices in two such tetrahedra would be stretched over the gap that opens
@@ -12,7 +12,8 @@
 // side.
 //
 // Data: tetrahedra int4, the places of nodes (DEFORMVOLUME_NODE_PLACES); placesAtRest: 4 bytes a node, a number that all
-// nodes with one place at rest share.
+// nodes with one place at rest share; boundary: a byte a cell, the tetrahedra that the boundary leaves, and
+// DEFORMVOLUME_CELL_AT_BOUNDARY and DEFORMVOLUME_CELL_CROSSED.
 
 #if MAPPING == MAPPING_RUNS
 #define TETRAHEDRON_OF(m, x, y, z, p) RunTetrahedronOf(m, owners, x, y, z, p)
@@ -22,11 +23,11 @@ static int RunTetrahedronOf(
   const int record = RunOf(m, x, y, z, p).Tetrahedron;
   return record < 0 ? -1 : owners[record];
 }
-#else
+#elif MAPPING == MAPPING_LINKS
 #define TETRAHEDRON_OF(m, x, y, z, p) (m)->Links[VertexInChunk(x, y, z, p)].Tetrahedron
+#else
+#define TETRAHEDRON_OF(m, x, y, z, p) -1
 #endif
-
-__constant uchar SamplingTetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
 
 #define SHARES_NODE 1
 #define IS_SPLIT 2
@@ -115,7 +116,7 @@ static int FindBridges(
     {
       for (int j = 0; j < i; ++j)
       {
-        const int v = SamplingTetrahedra[t][i], w = SamplingTetrahedra[t][j];
+        const int v = Tetrahedra[t][i], w = Tetrahedra[t][j];
         const int isParted = (cut.x >> t & 1) && ((cut.y >> v ^ cut.y >> w) & 1);
         bridges |= !isParted && ((split[v] >> w & 1) || group[v] != group[w]) ? 1 << t : 0;
       }
@@ -124,11 +125,11 @@ static int FindBridges(
   return bridges;
 }
 
-// The active tetrahedra of the cells of a cuboid that bridge no gap. changed: 1 for each cuboid of the list with a cell
-// that has other ones than before.
+// The tetrahedra of the cells of a cuboid that are left. changed: 1 for each cuboid of the list with a cell that has
+// other ones than before.
 __kernel void LeaveOutBridges(MAPPING_PARAMETERS, __global const int* owners,
-  __global const int4* tetrahedraOfMesh, __global const int* placesAtRest, __global const uchar* active,
-  const int hasActive, __global const uint* cutRows, __global const CutVertex* cutVertices,
+  __global const int4* tetrahedraOfMesh, __global const int* placesAtRest, const int hasPlaces,
+  __global const uchar* boundary, const int hasBoundary, __global const uchar* active, const int hasActive, __global const uint* cutRows, __global const CutVertex* cutVertices,
   __global uchar* joined, __global uint* changed, __global const uint* cuboids, const KernelParameters p)
 {
   const Mapping m = MAPPING_ARGUMENTS;
@@ -141,11 +142,10 @@ __kernel void LeaveOutBridges(MAPPING_PARAMETERS, __global const int* owners,
     {
       for (int x = first.x + get_global_id(0); x < end.x; x += get_global_size(0))
       {
-        const int mirror =
-          ((p.First[0] + x) & 1) | ((p.First[2] + z) & 1) << 1 | ((p.First[1] + y) & 1) << 2;
+        const int mirror = Mirror(x, y, z, &p);
         int ownersOfCell[8];
         int same = 1;
-        for (int v = 0; v < 8; ++v)
+        for (int v = 0; v < 8 && hasPlaces; ++v)
         {
           const int o = v ^ mirror;
           ownersOfCell[v] = TETRAHEDRON_OF(&m, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), &p);
@@ -156,7 +156,10 @@ __kernel void LeaveOutBridges(MAPPING_PARAMETERS, __global const int* owners,
           : FindBridges(ownersOfCell, FindCut(cutRows, cutVertices, x, y, z, mirror, &p),
               tetrahedraOfMesh, placesAtRest);
         const size_t cell = CellInChunk(x, y, z, &p);
-        const int left = DEFORMVOLUME_ALL_TETRAHEDRA & (hasActive ? active[cell] : ~0) & ~bridges;
+        const int ofBoundary = hasBoundary ? boundary[cell] : DEFORMVOLUME_ALL_TETRAHEDRA;
+        const int left = ofBoundary &
+          ((DEFORMVOLUME_ALL_TETRAHEDRA & (hasActive ? active[cell] : ~0) & ~bridges) |
+            DEFORMVOLUME_CELL_AT_BOUNDARY | DEFORMVOLUME_CELL_CROSSED);
         isChanged |= left != joined[cell];
         joined[cell] = left;
       }

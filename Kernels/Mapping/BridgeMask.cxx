@@ -13,12 +13,14 @@ namespace deformvolume
 void BridgeMask::SetPlaces(
   OpenCLContext& context, const cl::CommandQueue& queue, const std::vector<std::int32_t>& places)
 {
-  const bool wasOn = this->IsOn();
+  const bool had = this->HasPlaces();
   if (places.empty())
   {
     this->Places = cl::Buffer();
-    this->Current = true;
-    this->Known = false;
+    if (had)
+    {
+      this->Forget();
+    }
     return;
   }
   const std::size_t bytes = places.size() * sizeof(std::int32_t);
@@ -28,10 +30,16 @@ void BridgeMask::SetPlaces(
     this->Places = cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY, bytes + bytes / 8);
   }
   queue.enqueueWriteBuffer(this->Places, CL_TRUE, 0, bytes, places.data());
-  if (!wasOn)
+  if (!had)
   {
     this->Forget();
   }
+}
+
+void BridgeMask::SetBoundary(bool has)
+{
+  this->WithBoundary = has;
+  this->Forget();
 }
 
 void BridgeMask::Forget()
@@ -88,8 +96,11 @@ void BridgeMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   cl::Kernel kernel(source.Program, "LeaveOutBridges");
   cl_uint i = source.SetMapping(kernel);
   kernel.setArg(i++, source.Owners);
-  kernel.setArg(i++, source.Tetrahedra);
-  kernel.setArg(i++, this->Places);
+  kernel.setArg(i++, source.Tetrahedra() ? source.Tetrahedra : source.Other);
+  kernel.setArg(i++, this->HasPlaces() ? this->Places : source.Other);
+  kernel.setArg(i++, cl_int{ this->HasPlaces() });
+  kernel.setArg(i++, this->WithBoundary ? chunk.Boundary : source.Other);
+  kernel.setArg(i++, cl_int{ this->WithBoundary });
   kernel.setArg(i++, source.Active);
   kernel.setArg(i++, cl_int{ source.HasActive });
   kernel.setArg(i++, source.CutRows);

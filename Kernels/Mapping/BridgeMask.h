@@ -15,8 +15,9 @@ namespace deformvolume
 {
 
 /// Leaves out the tetrahedra of the sampling mesh that would bridge the gap where the deformation
-/// mesh has been split (BridgeMask.cl has the rule): keeps a mask of the others on the device, and
-/// looks again only at the cells round tetrahedra that have got other nodes.
+/// mesh has been split (BridgeMask.cl has the rule), and the cells that the boundary of the mesh
+/// crosses (MeshBoundary): keeps a mask of the others on the device, and looks again only at the
+/// cells round tetrahedra that have got other nodes.
 class BridgeMask
 {
 public:
@@ -30,6 +31,7 @@ public:
     cl::Buffer Tetrahedra;
     cl::Buffer Active; // any buffer, if there is none
     bool HasActive;
+    cl::Buffer Other;   // any buffer
     cl::Buffer CutRows; // any buffer, if there is no cut
     cl::Buffer CutVertices;
   };
@@ -38,7 +40,11 @@ public:
   /// share; empty: nothing is left out. (What tetrahedra had changed has to be told.)
   void SetPlaces(
     OpenCLContext& context, const cl::CommandQueue& queue, const std::vector<std::int32_t>& places);
-  bool IsOn() const { return this->Places() != nullptr; }
+  bool HasPlaces() const { return this->Places() != nullptr; }
+  /// Whether chunks have a boundary (VolumeChunk::Boundary).
+  void SetBoundary(bool has);
+  bool HasBoundary() const { return this->WithBoundary; }
+  bool IsOn() const { return this->HasPlaces() || this->WithBoundary; }
 
   /// All cells have to be looked at.
   void Forget();
@@ -57,6 +63,7 @@ public:
 
 private:
   cl::Buffer Places;
+  bool WithBoundary = false;
   bool Current = true;
   bool Known = false; // but for these
   std::vector<Extent> Vertices;

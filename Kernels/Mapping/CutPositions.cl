@@ -20,7 +20,6 @@
 #define IS_CONSTANT 2 // theirs
 #define IS_JOINED 3  // nothing: tetrahedra that are not divided join both sides
 
-__constant uchar TetrahedraOfCell[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
 
 // The list, with the masks of the chunk.
 typedef struct
@@ -39,11 +38,6 @@ static int ActiveOf(const CutMesh* mesh, int x, int y, int z, const KernelParame
     return 0;
   }
   return DEFORMVOLUME_ALL_TETRAHEDRA & (p->HasActive ? mesh->Active[CellInChunk(x, y, z, p)] : ~0);
-}
-
-static int MirrorOf(int x, int y, int z, const KernelParameters* p)
-{
-  return ((p->First[0] + x) & 1) | ((p->First[2] + z) & 1) << 1 | ((p->First[1] + y) & 1) << 2;
 }
 
 static int IsInVolume(int x, int y, int z, const KernelParameters* p)
@@ -77,14 +71,14 @@ static void AddNeighbours(const CutMesh* mesh, int3 vertex, int side, int3 cell,
   }
   const int first = FindCutVertex(mesh->Rows, mesh->Vertices, cell.x, cell.y, cell.z, p);
   const int crossed = first < 0 ? 0 : mesh->Vertices[first].Tetrahedra;
-  const int mirror = MirrorOf(cell.x, cell.y, cell.z, p);
+  const int mirror = Mirror(cell.x, cell.y, cell.z, p);
   const int own = ((vertex.x - cell.x) | (vertex.z - cell.z) << 1 | (vertex.y - cell.y) << 2) ^ mirror;
   for (int t = 0; t < 5; ++t)
   {
     int hasOwn = 0;
     for (int k = 0; k < 4; ++k)
     {
-      hasOwn |= TetrahedraOfCell[t][k] == own;
+      hasOwn |= Tetrahedra[t][k] == own;
     }
     if (!hasOwn || !(active >> t & 1))
     {
@@ -94,7 +88,7 @@ static void AddNeighbours(const CutMesh* mesh, int3 vertex, int side, int3 cell,
     uint other = 0;
     for (int k = 0; k < 4; ++k)
     {
-      const int o = TetrahedraOfCell[t][k] ^ mirror;
+      const int o = Tetrahedra[t][k] ^ mirror;
       const int3 at = cell + (int3)(o & 1, o >> 2, o >> 1 & 1);
       const uint bit = NEIGHBOUR(at.x - vertex.x, at.y - vertex.y, at.z - vertex.z);
       all |= bit;
@@ -122,7 +116,7 @@ static int AreConnected(const CutMesh* mesh, int3 a, int3 b, const KernelParamet
     }
     const int3 cell = low - back;
     const int active = ActiveOf(mesh, cell.x, cell.y, cell.z, p);
-    const int mirror = MirrorOf(cell.x, cell.y, cell.z, p);
+    const int mirror = Mirror(cell.x, cell.y, cell.z, p);
     const int numberA = ((a.x - cell.x) | (a.z - cell.z) << 1 | (a.y - cell.y) << 2) ^ mirror;
     const int numberB = ((b.x - cell.x) | (b.z - cell.z) << 1 | (b.y - cell.y) << 2) ^ mirror;
     for (int t = 0; t < 5; ++t)
@@ -130,7 +124,7 @@ static int AreConnected(const CutMesh* mesh, int3 a, int3 b, const KernelParamet
       int has = 0;
       for (int k = 0; k < 4; ++k)
       {
-        has += TetrahedraOfCell[t][k] == numberA || TetrahedraOfCell[t][k] == numberB;
+        has += Tetrahedra[t][k] == numberA || Tetrahedra[t][k] == numberB;
       }
       if (has == 2 && (active >> t & 1))
       {

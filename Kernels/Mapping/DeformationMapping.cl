@@ -51,11 +51,6 @@ typedef struct
 DEFINE_ROUND_STEPS(float4)
 DEFINE_ROUND_STEPS(float16)
 
-static size_t VertexInChunk(int x, int y, int z, const KernelParameters* p)
-{
-  return ((size_t)(z - p->ChunkFirst) * p->Size[1] + y) * p->Size[0] + x;
-}
-
 // The state of a vertex.
 static int StateOf(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
 {

@@ -176,6 +176,23 @@ IndexBounds GetCoveredBox(
   return bounds;
 }
 
+// Whether a field ends within the volume, and not at its voxels: the deformed volume then ends with
+// it.
+bool EndsBetweenVoxels(
+  const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldGeometry& geometry)
+{
+  const IndexBounds box = GetBox(voxelGrid);
+  bool holdsAll = true;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec3 position = geometry.ToField(glm::dvec3(corner & 1 ? box.Max.x : box.Min.x,
+      corner & 2 ? box.Max.y : box.Min.y, corner & 4 ? box.Max.z : box.Min.z));
+    holdsAll = holdsAll && glm::all(glm::greaterThan(position, glm::dvec3(-FieldTolerance))) &&
+      glm::all(glm::lessThan(position, geometry.Last + FieldTolerance));
+  }
+  return !field.Extrapolate && geometry.IsInvertible() && !geometry.IsOnGrid() && !holdsAll;
+}
+
 // The trilinear displacement at a place, whose border is that of the field.
 glm::dvec3 Interpolate(const DisplacementField& field, const glm::dvec3& position)
 {
@@ -242,7 +259,8 @@ IndexBounds ComputeBoundsOfCells(
 {
   const IndexBounds box = GetBox(voxelGrid);
   IndexBounds covered = GetCoveredBox(field, geometry, box);
-  if (covered.IsEmpty() || !ShrinkToVoxels(covered))
+  const bool endsBetween = EndsBetweenVoxels(voxelGrid, field, geometry);
+  if (covered.IsEmpty() || (!endsBetween && !ShrinkToVoxels(covered)))
   {
     return IndexBounds();
   }
@@ -280,7 +298,8 @@ IndexBounds ComputeBoundsOfCells(
         rest = geometry.ToIndex(cellBox);
         rest.Min = glm::max(rest.Min, covered.Min);
         rest.Max = glm::min(rest.Max, covered.Max);
-        if (!ShrinkToVoxels(rest))
+        if (rest.Min.x > rest.Max.x || rest.Min.y > rest.Max.y || rest.Min.z > rest.Max.z ||
+          (!endsBetween && !ShrinkToVoxels(rest)))
         {
           return;
         }
@@ -364,7 +383,9 @@ IndexBounds ComputeDeformedBounds(const VoxelGrid& voxelGrid, const Displacement
   const FieldGeometry geometry(field);
   // A field over the volume's own grid may cover a part of it only, and then has fewer points.
   const bool coLocated = geometry.IsOnGrid();
-  return coLocated || points >= GetNumberOfPoints(voxelGrid.VertexExtent)
+  return coLocated ||
+      (points >= GetNumberOfPoints(voxelGrid.VertexExtent) &&
+        !EndsBetweenVoxels(voxelGrid, field, geometry))
     ? ComputeBoundsOfVoxels(voxelGrid, field, geometry)
     : ComputeBoundsOfCells(voxelGrid, field, geometry);
 }

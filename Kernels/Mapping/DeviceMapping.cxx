@@ -383,6 +383,7 @@ void DeviceMapping::UpdateRuns(VolumeChunk& chunk, ChunkRuns& has, const std::ve
 
 BrickPoints DeviceMapping::MakeBrickPoints(const VolumeChunk& chunk, const BrickGrid& grid,
   const cl::Buffer& tetrahedra, std::size_t numberOfNodes,
+  const std::vector<std::vector<std::int32_t>>& boundary,
   const std::vector<std::size_t>* wanted) const
 {
   const MappedBuffer<const Tetrahedron> places(this->Queue, tetrahedra, CL_MAP_READ);
@@ -392,7 +393,7 @@ BrickPoints DeviceMapping::MakeBrickPoints(const VolumeChunk& chunk, const Brick
   {
     const MappedBuffer<const VertexLink> links(this->Queue, chunk.Links, CL_MAP_READ);
     return BrickPoints::FromLinks(
-      grid, links.Get(), { places.Get(), numberOfTetrahedra, numberOfNodes }, wanted);
+      grid, links.Get(), { places.Get(), numberOfTetrahedra, numberOfNodes, boundary }, wanted);
   }
   const MappedBuffer<const VertexRun> runs(this->Queue, chunk.Runs, CL_MAP_READ);
   const MappedBuffer<const std::int32_t> owners(
@@ -403,7 +404,7 @@ BrickPoints DeviceMapping::MakeBrickPoints(const VolumeChunk& chunk, const Brick
     {
       points = BrickPoints::FromRuns(grid,
         { runs.Get(), this->Runs.front().Rows.data(), rest, owners.Get() },
-        { places.Get(), numberOfTetrahedra, numberOfNodes }, wanted);
+        { places.Get(), numberOfTetrahedra, numberOfNodes, boundary }, wanted);
     });
   return points;
 }

@@ -55,9 +55,10 @@ public:
   const TetrahedronRecords& GetRecords() const { return this->Records; }
 
   /// Of a mapping in one chunk, on a processor. tetrahedra: as on the device. wanted: see
-  /// BrickPoints::FromLinks.
+  /// BrickPoints::FromLinks. boundary: see BrickPoints::Mesh.
   BrickPoints MakeBrickPoints(const VolumeChunk& chunk, const BrickGrid& grid,
     const cl::Buffer& tetrahedra, std::size_t numberOfNodes,
+    const std::vector<std::vector<std::int32_t>>& boundary,
     const std::vector<std::size_t>* wanted) const;
 
 private:

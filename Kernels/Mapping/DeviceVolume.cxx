@@ -271,6 +271,7 @@ const std::vector<cl::Buffer>& DeviceVolume::GetArrays(const VolumeChunk& chunk)
 void DeviceVolume::SetLinks(const VertexLink* links, const MeshOrder& order)
 {
   this->SetNodePlaces({});
+  this->SetBoundary({}, {});
   const QueueGuard guard(this->Queue);
   this->States.Forget();
   this->Mapping.SetLinks(this->Chunks, links, order);
@@ -279,6 +280,7 @@ void DeviceVolume::SetLinks(const VertexLink* links, const MeshOrder& order)
 void DeviceVolume::ForgetMesh()
 {
   this->SetNodePlaces({});
+  this->SetBoundary({}, {});
   this->Mapping.Forget(this->Chunks);
   this->States.Forget();
 }
@@ -321,7 +323,8 @@ std::vector<Extent> DeviceVolume::SetActive(const unsigned char* active, const P
   if (this->Bridges.IsOn())
   {
     this->Bridges.ChangeCells(changes);
-    return {};
+    // In cells that the boundary crosses the mask is looked at otherwise (BoundaryCells).
+    return this->HasBoundary() ? changes : std::vector<Extent>();
   }
   this->States.ChangeCells(changes);
   return changes;
@@ -366,14 +369,118 @@ cl_uint DeviceVolume::SetCutArguments(cl::Kernel& kernel, cl_uint argument) cons
 void DeviceVolume::SetNodePlaces(const std::vector<std::int32_t>& places)
 {
   this->Queue.finish(); // nothing uses what is let go
-  const bool wasOn = this->Bridges.IsOn();
+  const bool had = this->Bridges.HasPlaces();
   this->Bridges.SetPlaces(this->Context, this->Queue, places);
-  if (wasOn != this->Bridges.IsOn())
+  if (had != this->Bridges.HasPlaces())
   {
     this->States.Forget();
     for (VolumeChunk& chunk : this->Chunks)
     {
       chunk.Joined = cl::Buffer();
+    }
+  }
+}
+
+void DeviceVolume::SetBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& mesh)
+{
+  if (boundary.IsEmpty() && !this->HasBoundary())
+  {
+    return;
+  }
+  this->Queue.finish(); // nothing uses what is let go
+  this->States.Forget();
+  this->Bridges.SetBoundary(!boundary.IsEmpty());
+  const std::int64_t layer =
+    static_cast<std::int64_t>(this->GetSize(0) - 1) * (this->GetSize(1) - 1);
+  for (VolumeChunk& chunk : this->Chunks)
+  {
+    chunk.Joined = chunk.Boundary = cl::Buffer();
+    if (boundary.IsEmpty())
+    {
+      continue;
+    }
+    std::vector<unsigned char> cells(
+      static_cast<std::size_t>(layer * (chunk.PlanesEnd - chunk.PlanesBegin - 1)),
+      DEFORMVOLUME_ALL_TETRAHEDRA);
+    const std::int64_t first = layer * chunk.PlanesBegin;
+    const auto mark = [&](const std::vector<std::int64_t>& numbers, unsigned char value)
+    {
+      const auto begin = std::lower_bound(numbers.begin(), numbers.end(), first);
+      const auto end =
+        std::lower_bound(begin, numbers.end(), first + static_cast<std::int64_t>(cells.size()));
+      std::for_each(begin, end,
+        [&](std::int64_t number) { cells[static_cast<std::size_t>(number - first)] = value; });
+    };
+    mark(boundary.Near, DEFORMVOLUME_ALL_TETRAHEDRA | DEFORMVOLUME_CELL_AT_BOUNDARY);
+    mark(boundary.Crossed, DEFORMVOLUME_CELL_AT_BOUNDARY | DEFORMVOLUME_CELL_CROSSED);
+    chunk.Boundary =
+      this->Send(cells.data(), 1, layer, 0, chunk.PlanesEnd - chunk.PlanesBegin - 1, cl::Buffer());
+    this->Queue.finish();
+  }
+  this->ListBoundary(boundary, mesh);
+}
+
+void DeviceVolume::ListBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& mesh)
+{
+  this->BoundaryOfSubBricks.clear();
+  this->SubBricksAtBoundary.clear();
+  if (boundary.IsEmpty())
+  {
+    return;
+  }
+  const BrickGrid grid = this->Bricks.GetSubBricks();
+  const auto getPlace = [&](int axis, double cell)
+  {
+    return std::clamp(
+      (static_cast<int>(std::clamp(cell, 0.0, this->GetSize(axis) - 2.0)) - grid.Origin[axis]) /
+        grid.Cells[axis],
+      0, grid.Count[axis] - 1);
+  };
+  const auto getNumber = [&](int x, int y, int z)
+  {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(grid.Count[1]) +
+             static_cast<std::size_t>(y)) *
+      static_cast<std::size_t>(grid.Count[0]) +
+      static_cast<std::size_t>(x);
+  };
+  std::vector<unsigned char>& isNear = this->SubBricksAtBoundary;
+  isNear.resize(grid.GetNumberOfBricks());
+  for (const std::int64_t cell : boundary.Near)
+  {
+    const std::int64_t size[2] = { this->GetSize(0) - 1, this->GetSize(1) - 1 };
+    isNear[getNumber(getPlace(0, static_cast<double>(cell % size[0])),
+      getPlace(1, static_cast<double>(cell / size[0] % size[1])),
+      getPlace(2, static_cast<double>(cell / size[0] / size[1])))] = 1;
+  }
+  std::vector<std::vector<std::int32_t>>& listed = this->BoundaryOfSubBricks;
+  listed.resize(mesh.empty() ? 0 : isNear.size());
+  for (std::size_t i = 0; i < mesh.size(); ++i)
+  {
+    int first[3];
+    int last[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const auto& rest = boundary.Pieces[i].Rest;
+      const auto ends = std::minmax({ rest[0][axis], rest[1][axis], rest[2][axis], rest[3][axis] });
+      // Nodes are rounded before samples are looked for.
+      first[axis] =
+        getPlace(axis, std::floor(ends.first - this->Shape.VertexExtent[2 * axis]) - 1.0);
+      last[axis] =
+        getPlace(axis, std::floor(ends.second - this->Shape.VertexExtent[2 * axis]) + 1.0);
+    }
+    for (int z = first[2]; z <= last[2]; ++z)
+    {
+      for (int y = first[1]; y <= last[1]; ++y)
+      {
+        for (int x = first[0]; x <= last[0]; ++x)
+        {
+          std::vector<std::int32_t>& list = listed[getNumber(x, y, z)];
+          if (isNear[getNumber(x, y, z)] && (list.empty() || list.back() != mesh[i]))
+          {
+            list.push_back(mesh[i]);
+          }
+        }
+      }
     }
   }
 }
@@ -394,7 +501,7 @@ std::vector<Extent> DeviceVolume::UpdateBridges(MappingForm mapping, const cl::B
       { program, [&](cl::Kernel& kernel) { return set(kernel, chunk); },
         this->HasRuns() ? this->Mapping.GetRecords().GetOwners() : this->RestPositions, tetrahedra,
         this->Active.HasBuffers() ? chunk.Active : this->RestPositions, this->Active.HasBuffers(),
-        this->HasCut() ? this->Cut.GetRows() : this->RestPositions,
+        this->RestPositions, this->HasCut() ? this->Cut.GetRows() : this->RestPositions,
         this->HasCut() ? this->Cut.GetVertices() : this->RestPositions },
       changes);
   }
@@ -501,10 +608,11 @@ std::uint64_t DeviceVolume::GetMemory() const
     this->Mapping.GetRecords().GetMemory() + this->Cut.GetMemory();
   for (const VolumeChunk& chunk : this->Chunks)
   {
-    bytes += deformvolume::GetMemory(chunk.Joined) + deformvolume::GetMemory(chunk.Links) +
-      deformvolume::GetMemory(chunk.Runs) + deformvolume::GetMemory(chunk.RowRanges) +
-      deformvolume::GetMemory(chunk.State) + deformvolume::GetMemory(chunk.Blanked) +
-      deformvolume::GetMemory(chunk.Active) + deformvolume::GetMemory(chunk.Distances);
+    bytes += deformvolume::GetMemory(chunk.Boundary) + deformvolume::GetMemory(chunk.Joined) +
+      deformvolume::GetMemory(chunk.Links) + deformvolume::GetMemory(chunk.Runs) +
+      deformvolume::GetMemory(chunk.RowRanges) + deformvolume::GetMemory(chunk.State) +
+      deformvolume::GetMemory(chunk.Blanked) + deformvolume::GetMemory(chunk.Active) +
+      deformvolume::GetMemory(chunk.Distances);
     for (const cl::Buffer& array : chunk.Arrays)
     {
       bytes += deformvolume::GetMemory(array);

@@ -11,6 +11,7 @@
 #include "HostMemory.h"
 #include "KernelParameters.h"
 #include "MappingProgram.h"
+#include "MeshBoundary.h"
 #include "MeshOrder.h"
 #include "OpenCLContext.h"
 #include "Tetrahedron.h"
@@ -89,7 +90,16 @@ public:
   /// BridgeMask; empty: none are. vertices: those that lie in tetrahedra which have got other
   /// nodes.
   void SetNodePlaces(const std::vector<std::int32_t>& places);
-  bool LeavesOutBridges() const { return this->Bridges.IsOn(); }
+  bool LeavesOutBridges() const { return this->Bridges.HasPlaces(); }
+  /// The cells that the boundary of the deformation mesh crosses are left out. mesh: numbers of the
+  /// device of its tetrahedra, one for each piece; empty, of a field.
+  void SetBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& mesh);
+  bool HasBoundary() const { return this->Bridges.HasBoundary(); }
+  /// Whether sub-bricks have cells at the boundary; empty: none has.
+  const std::vector<unsigned char>& GetSubBricksAtBoundary() const
+  {
+    return this->SubBricksAtBoundary;
+  }
   void ForgetBridges() { this->Bridges.Forget(); }
   void ChangeOwners(const std::vector<Extent>& vertices) { this->Bridges.ChangeVertices(vertices); }
   /// Finds them, where anything changed that this depends on; returns the boxes of cells that have
@@ -105,6 +115,7 @@ public:
   }
   /// Whether there is a mask of active tetrahedra, or one of those that bridge no gap.
   bool HasActive() const { return this->Active.HasBuffers() || this->Bridges.IsOn(); }
+  bool HasOwnActive() const { return this->Active.HasBuffers(); }
   /// That of a chunk, or any buffer that stands in for it.
   const cl::Buffer& GetActive(const VolumeChunk& chunk) const
   {
@@ -149,8 +160,8 @@ public:
   BrickPoints MakeBrickPoints(const cl::Buffer& tetrahedra, std::size_t numberOfNodes,
     const std::vector<std::size_t>* wanted = nullptr) const
   {
-    return this->Mapping.MakeBrickPoints(
-      this->Chunks.front(), this->Bricks.GetSubBricks(), tetrahedra, numberOfNodes, wanted);
+    return this->Mapping.MakeBrickPoints(this->Chunks.front(), this->Bricks.GetSubBricks(),
+      tetrahedra, numberOfNodes, this->BoundaryOfSubBricks, wanted);
   }
 
   /// Brings the state of the vertices up to date, where anything changed that it depends on.
@@ -181,6 +192,7 @@ private:
   /// Reads the data until the queue has finished.
   cl::Buffer Send(const void* data, std::size_t bytesPerElement, std::int64_t elementsPerLayer,
     std::int64_t begin, std::int64_t end, const cl::Buffer& previous);
+  void ListBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& mesh);
   /// Lets go of the buffers over memory of the host.
   void LeaveArrays();
   cl::Buffer MakeRestPositions() const;
@@ -202,6 +214,10 @@ private:
   DeviceMask Distances{ DeviceMask::Kind::BoundaryDistances };
   DeviceCut Cut;
   BridgeMask Bridges;
+  /// The tetrahedra, by their numbers of the device, that move cells at the boundary in each
+  /// sub-brick; empty where there are none.
+  std::vector<std::vector<std::int32_t>> BoundaryOfSubBricks;
+  std::vector<unsigned char> SubBricksAtBoundary;
   VertexStates States;
   bool WithState = true;
 };

@@ -490,6 +490,30 @@ cl_uint DisplacementSource::SetMappingArguments(cl::Kernel& kernel, const Volume
   return i;
 }
 
+std::vector<std::int32_t> DisplacementSource::FindNumbers(
+  const std::vector<MeshBoundary::Piece>& pieces) const
+{
+  std::vector<std::int32_t> numbers(pieces.size());
+  std::transform(pieces.begin(), pieces.end(), numbers.begin(),
+    [this](const MeshBoundary::Piece& piece) { return this->Order.GetLinked(piece.Tetrahedron); });
+  return numbers;
+}
+
+cl_uint DisplacementSource::SetPointArguments(
+  cl::Kernel& kernel, cl_uint argument, const cl::Buffer& other) const
+{
+  const bool mesh = this->HasMesh();
+  cl_int4 dimensions = { { 0, 0, 0, 0 } };
+  for (int axis = 0; axis < 3 && !mesh; ++axis)
+  {
+    dimensions.s[axis] = this->Field.Dimensions[axis];
+  }
+  kernel.setArg(argument++, mesh ? this->Tetrahedra : other);
+  kernel.setArg(argument++, mesh ? this->Nodes.Get() : this->FieldVectors.Get());
+  kernel.setArg(argument++, dimensions);
+  return argument;
+}
+
 void DisplacementSource::PrepareMapping(
   std::vector<cl::Event>& events, const std::vector<cl_uint>* bricks)
 {

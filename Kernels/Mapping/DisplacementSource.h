@@ -9,6 +9,7 @@
 #include "KernelParameters.h"
 #include "MappingProgram.h"
 #include "MappingUpdate.h"
+#include "MeshBoundary.h"
 #include "MeshOrder.h"
 #include "Tetrahedron.h"
 #include "VectorReading.h"
@@ -91,6 +92,14 @@ public:
   MappingForm GetMappingForm() const;
   /// Sets a kernel's first arguments, those of the mapping, and returns how many they are.
   cl_uint SetMappingArguments(cl::Kernel& kernel, const VolumeChunk& chunk) const;
+
+  ///@{
+  /// The numbers on the device of the tetrahedra of the pieces of a boundary.
+  std::vector<std::int32_t> FindNumbers(const std::vector<MeshBoundary::Piece>& pieces) const;
+  /// Sets arguments from one on, and returns the number of the next one: tetrahedra, points, and as
+  /// four integers the dimensions of a field, 0 for a mesh. other: any buffer.
+  cl_uint SetPointArguments(cl::Kernel& kernel, cl_uint argument, const cl::Buffer& other) const;
+  ///@}
 
   /// Which points move the sub-bricks of the volume, where that is one chunk.
   BrickPoints MakeBrickPoints() const;

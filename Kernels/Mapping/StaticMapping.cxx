@@ -107,6 +107,10 @@ StaticMapping StaticMappingBuilder::Build(
   {
     this->BuildLinks(part, report, mapping);
   }
+  if (!this->Survey.IsExtrapolated)
+  {
+    mapping.Boundary = FindMeshBoundary(part, this->Voxels, this->RestPoints, this->Tetrahedra);
+  }
   mapping.NumberOfFlatTetrahedra = this->Survey.NumberOfFlatTetrahedra;
   return mapping;
 }

@@ -5,6 +5,7 @@
 #include "DeformVolumeExport.h"
 #include "Extent.h"
 #include "MappingSurvey.h"
+#include "MeshBoundary.h"
 #include "Tetrahedron.h"
 #include "VertexLink.h"
 #include "VertexRuns.h"
@@ -29,6 +30,9 @@ struct StaticMapping
   std::vector<VertexLink> Links;
   /// Runs of voxels; or none.
   VertexRuns Runs;
+  /// Where the boundary of the mesh passes through the volume; empty where voxels outside the mesh
+  /// are extrapolated.
+  MeshBoundary Boundary;
   /// Voxels inside the mesh (extrapolated ones do not count).
   std::int64_t NumberOfInnerVoxels = 0;
   /// Tetrahedra without volume; they are skipped.

@@ -24,7 +24,8 @@ struct VolumeChunk
   cl::Buffer Blanked;
   cl::Buffer Active;
   cl::Buffer Distances;           // to the boundary, a float a voxel
-  cl::Buffer Joined;              // the active tetrahedra that bridge no gap (BridgeMask), or none
+  cl::Buffer Boundary;            // where that of the deformation mesh is (BridgeMask.cl), or none
+  cl::Buffer Joined;              // the active tetrahedra that are resampled (BridgeMask), or none
   std::vector<cl::Buffer> Arrays; // see DeviceVolume::GetArrays
 };
 

@@ -43,9 +43,6 @@ constexpr double LargestPosition = 1 << 21;
 // Launches a rasterisation is split into, for progress and for an abort.
 constexpr int LaunchesPerSlab = 32;
 
-constexpr int TileBits[3] = { DEFORMVOLUME_TILE_BITS_X, DEFORMVOLUME_TILE_BITS_Y,
-  DEFORMVOLUME_TILE_BITS_Z };
-
 // Six times the signed volume of a tetrahedron at rest.
 double GetRestVolume(const Tetrahedron& tetrahedron, const double* nodes)
 {
@@ -79,23 +76,14 @@ void Send(WorkDevice& device, cl::Buffer& buffer, const void* data, std::uint64_
   buffer = device.Send(data, static_cast<std::size_t>(bytes), buffer);
 }
 
-int FloorDivide(int value, int bits)
-{
-  return value >= 0 ? value >> bits : -((-(value + 1) >> bits) + 1);
-}
-
 RasterParameters MakeParameters(
   const DeviceVolume& volume, const Extent& slab, std::size_t numberOfTetrahedra)
 {
-  RasterParameters p = {};
+  RasterParameters p = MakeTiles(slab, numberOfTetrahedra);
   for (int axis = 0; axis < 3; ++axis)
   {
     p.Size[axis] = volume.GetSize(axis);
     p.First[axis] = volume.GetVoxelGrid().VertexExtent[2 * axis];
-    p.OutputFirst[axis] = slab[2 * axis];
-    p.OutputSize[axis] = static_cast<int>(GetSize(slab, axis));
-    p.TileFirst[axis] = FloorDivide(slab[2 * axis], TileBits[axis]);
-    p.TileCount[axis] = FloorDivide(slab[2 * axis + 1], TileBits[axis]) - p.TileFirst[axis] + 1;
     // As many as fit into an int beside an index that is one voxel too far, and into a float.
     int bits = 24;
     while ((static_cast<std::int64_t>(p.Size[axis]) + 2) << bits > std::int64_t{ 1 } << 31)
@@ -111,7 +99,6 @@ RasterParameters MakeParameters(
     p.Tolerance[axis] =
       static_cast<int>(std::ldexp(std::min(1.0, inverse / 256.0), p.FractionBits[axis]));
   }
-  p.Tetrahedra = static_cast<int>(numberOfTetrahedra);
   p.HasActive = volume.HasActive();
   p.HasBlanked = volume.HasBlanked();
   p.HasDistances = volume.HasDistances();
@@ -270,8 +257,16 @@ void MeshRasterizer::Make(
   if (!this->HasField())
   {
     // Every slab sees all tetrahedra.
-    report.NumberOfInvertedTetrahedra =
+    const TetrahedronLists::Counts counts =
       this->Lists.Make(*this->Device, this->Tetrahedra, this->Positions, p);
+    if (counts.Overstretched > 0)
+    {
+      throw Error(std::to_string(counts.Overstretched) +
+        " tetrahedra of the deformation mesh span more than 5,000 output voxels, which the "
+        "resampler MeshRasterization cannot rasterise. Use the resampler Exact, a finer mesh or a "
+        "greater output spacing.");
+    }
+    report.NumberOfInvertedTetrahedra = counts.Inverted;
   }
   report.MappingTime += watch.GetSeconds();
 

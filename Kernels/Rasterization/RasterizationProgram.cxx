@@ -2,6 +2,7 @@
 #include "RasterizationProgram.h"
 
 #include "ArrayText.h"
+#include "BinningProgram.h"
 #include "KernelSources.h"
 #include "KernelText.h"
 
@@ -10,20 +11,6 @@
 
 namespace deformvolume
 {
-
-cl::Program GetRangeListsProgram(OpenCLContext& context)
-{
-  return context.GetProgram(
-    ProgramText(RasterParameters_h) + IntegerVectors_cl + TetrahedronBinning_cl + RangeLists_cl,
-    KernelOptions);
-}
-
-cl::Program GetEntryListsProgram(OpenCLContext& context)
-{
-  return context.GetProgram(
-    ProgramText(RasterParameters_h) + IntegerVectors_cl + TetrahedronBinning_cl + EntryLists_cl,
-    KernelOptions);
-}
 
 cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
   const VoxelGrid& voxelGrid, Interpolation interpolation, bool field, bool masks)
@@ -51,12 +38,11 @@ cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<Vo
       MakeArrayText(context, arrays) + stores + "#define LANES " +
       std::to_string(processor ? GetLanes(context) : 1) + "\n#define CUBIC " +
       (interpolation == Interpolation::Cubic ? "1" : "0") + "\n#define STRETCH " +
-      (processor ? "32" : "1") + "\n#define SETUP_IS_SHARED " + (processor ? "0" : "1") +
-      "\n#define HAS_MASKS " + (masks ? "1" : "0") + "\n#define INDEX " + (wide ? "long" : "int") +
-      (laneArrays.empty() ? "" : "\n#define HAS_LANE_ARRAYS") +
+      (processor ? "32" : "1") + "\n#define HAS_MASKS " + (masks ? "1" : "0") + "\n#define INDEX " +
+      (wide ? "long" : "int") + (laneArrays.empty() ? "" : "\n#define HAS_LANE_ARRAYS") +
       (tapArrays.empty() ? "" : "\n#define HAS_TAP_ARRAYS") + "\n#define LANE_ARRAYS(DO)" +
       laneArrays + "\n#define TAP_ARRAYS(DO)" + tapArrays + "\n" + MultiplyAdd_cl +
-      IntegerVectors_cl + TetrahedronBinning_cl + LaneVectors_cl + LaneSampling_cl +
+      GetTileText(!processor) + PointInTetrahedron_cl + LaneVectors_cl + LaneSampling_cl +
       RestSampling_cl +
       (field ? ProgramText(FieldLookup_cl)
              : ProgramText(RestCoordinates_cl) + MeshRasterization_cl),

@@ -12,10 +12,6 @@
 namespace deformvolume
 {
 
-/// The lists of the tetrahedra in each tile (RangeLists.cl, EntryLists.cl).
-cl::Program GetRangeListsProgram(OpenCLContext& context);
-cl::Program GetEntryListsProgram(OpenCLContext& context);
-
 /// The mesh rasterisation (MeshRasterization.cl, RestSampling.cl), or for a field the look-up
 /// through it (FieldLookup.cl), for arrays of these types. masks: whether the volume has some: what
 /// looks at them takes twice the registers of all else. Throws Error where the device lacks what

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rest coordinates for the mesh rasterisation: a tetrahedron in a tile, and where in the undeformed
-// volume the voxels are that it holds.
+// Rest coordinates for the mesh rasterisation: where in the undeformed volume the voxels are that a
+// tetrahedron holds.
 //
 // What is interpolated is the displacement, d3 + sum of w_k (d_k - d3), rather than the rest
 // coordinate: a mesh that moves as a whole moves the volume exactly. It is evaluated at the tile's first
 // voxel and goes on from there by forward differences in integers, which do not drift; neither
 // depends on the output's extent.
 //
-// What the host puts in front of this text:
-//   SETUP_IS_SHARED  1 where the items of a group set tetrahedra up for each other, else 0
+// This text comes after TileTetrahedra.cl.
 //
 // Data: see MeshRasterization.cl. Rest coordinates are integers of 32 bits, their steps integers of 64
 // bits with STEP_BITS more.
@@ -17,93 +16,6 @@
 // gradients are huge) voxel by voxel.
 #define LARGEST_REST 524288
 #define STEP_BITS 18
-
-// Where tetrahedra lie that are set up: in memory of the group, or of a work-item that has a thread for itself.
-#if SETUP_IS_SHARED
-#define OF_GROUP __local
-#else
-#define OF_GROUP __private
-#endif
-
-// A tetrahedron in a tile.
-typedef struct
-{
-  VoxelBox Box;       // the voxels of the tile that may lie in it
-  long Start[4];      // edge function opposite node k at the lowest voxel of the box
-  Vector Steps[4];    // and its steps from voxel to voxel
-  float Inverse[4];   // of the step along a row, made positive
-  int AcceptsTie[4];  // whether a voxel on the face stays inside after a shift by (e, e^2, e^3)
-  REAL InverseVolume;
-} TileTetrahedron;
-
-static int ShiftsInside(Vector normal)
-{
-  return normal.x > 0 || (normal.x == 0 && (normal.y > 0 || (normal.y == 0 && normal.z > 0)));
-}
-
-static Vector Scaled(Vector v, long factor)
-{
-  const Vector r = { v.x * factor, v.y * factor, v.z * factor };
-  return r;
-}
-
-// Returns 0 where the tetrahedron has no voxel in the tile.
-static int SetUpTetrahedron(int4 nodes, __global const int4* positions, VoxelBox tile,
-  OF_GROUP TileTetrahedron* t, const RasterParameters* p)
-{
-  const int4 a = positions[nodes.x];
-  const int4 b = positions[nodes.y];
-  const int4 c = positions[nodes.z];
-  const int4 d = positions[nodes.w];
-  t->Box = FindVoxels(min(min(a, b), min(c, d)), max(max(a, b), max(c, d)), p);
-  t->Box.Low = max(t->Box.Low, tile.Low);
-  t->Box.High = min(t->Box.High, tile.High);
-  if (IsEmpty(t->Box))
-  {
-    return 0;
-  }
-  const Vector u = Difference(a, d);
-  const Vector v = Difference(b, d);
-  const Vector w = Difference(c, d);
-  Vector normals[4];
-  normals[0] = Cross(v, w);
-  normals[1] = Cross(w, u);
-  normals[2] = Cross(u, v);
-  long volume = Dot(u, normals[0]);
-  const long sign = volume < 0 ? -1 : 1;
-  volume *= sign;
-  for (int k = 0; k < 3; ++k)
-  {
-    normals[k] = Scaled(normals[k], sign);
-  }
-  normals[3].x = -(normals[0].x + normals[1].x + normals[2].x);
-  normals[3].y = -(normals[0].y + normals[1].y + normals[2].y);
-  normals[3].z = -(normals[0].z + normals[1].z + normals[2].z);
-  const Vector r = Difference(t->Box.Low * 256, d);
-  t->Start[3] = volume;
-  for (int k = 0; k < 3; ++k)
-  {
-    t->Start[k] = Dot(normals[k], r);
-    t->Start[3] -= t->Start[k];
-  }
-  const int4 size = t->Box.High - t->Box.Low;
-  for (int k = 0; k < 4; ++k)
-  {
-    const Vector step = Scaled(normals[k], 256);
-    t->Steps[k] = step;
-    // The whole box may lie behind the face.
-    if (t->Start[k] + max(0L, step.x * size.x) + max(0L, step.y * size.y) +
-        max(0L, step.z * size.z) <
-      0)
-    {
-      return 0;
-    }
-    t->Inverse[k] = step.x != 0 ? 1.0f / fabs((float)step.x) : 0.0f;
-    t->AcceptsTie[k] = ShiftsInside(normals[k]);
-  }
-  t->InverseVolume = (REAL)1 / (REAL)volume;
-  return 1;
-}
 
 // What turns edge functions into rest coordinates, in 2^-FractionBits voxel.
 typedef struct

@@ -21,8 +21,6 @@
 //   HAS_LANE_ARRAYS, HAS_TAP_ARRAYS  defined where there are such
 //   STORE_ARRAY_i         statement that stores array i at a sample
 
-__constant uchar Tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
-
 #define TAPS_PER_AXIS (CUBIC ? 4 : 2)
 #define TAPS (CUBIC ? 64 : 8)
 
@@ -170,33 +168,6 @@ static void LoadRest(__local const int* rests, int x, int* rest)
 }
 
 #if HAS_MASKS
-// Whether a point lies in a tetrahedron of a cell, or on its surface. point: in the cell, mirrored
-// as its parity asks for, from 0 to one. weights: of the vertices then, all with one factor.
-static int IsInTetrahedron(int t, Vector point, long one, long* weights)
-{
-  int4 corners[4];
-  for (int k = 0; k < 4; ++k)
-  {
-    const int v = Tetrahedra[t][k];
-    corners[k] = (int4)(v & 1, v >> 2, v >> 1 & 1, 0);
-  }
-  for (int k = 0; k < 4; ++k)
-  {
-    const int4 a = corners[(k + 1) & 3];
-    const Vector normal =
-      Cross(Difference(corners[(k + 2) & 3], a), Difference(corners[(k + 3) & 3], a));
-    const Vector r = { point.x - a.x * one, point.y - a.y * one, point.z - a.z * one };
-    const long side = Dot(normal, r);
-    const long inner = Dot(normal, Difference(corners[k], a));
-    if (inner > 0 ? side < 0 : side > 0)
-    {
-      return 0;
-    }
-    weights[k] = side < 0 ? -side : side;
-  }
-  return 1;
-}
-
 // Whether a point in a tetrahedron of a cell lies on the far side of the boundary. mirror: parity bits of the cell.
 static int IsBeyondBoundary(__global const float* distances, const int* cell, int mirror, int t,
   const long* weights, const RasterParameters* p)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The vertices of the cells of the sampling mesh: where they are, and which tetrahedra they make.
 
-__constant uchar Tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
 __constant uchar CornerBehindFace[4] = DEFORMVOLUME_CORNER_BEHIND_FACE;
 
 // Positions of the vertices of a cell and of the cells round it, as far as they have been asked for: on the border of
@@ -104,15 +103,8 @@ static int4 VertexPosition(
 static int ActiveTetrahedra(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
   return p->HasActive
-    ? mesh->Active[((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x] &
-      DEFORMVOLUME_ALL_TETRAHEDRA
+    ? mesh->Active[CellInChunk(x, y, z, p)] & DEFORMVOLUME_ALL_TETRAHEDRA
     : DEFORMVOLUME_ALL_TETRAHEDRA;
-}
-
-// Parity bits of a cell in the order of the bits of a vertex number: x, z, y.
-static int Mirror(int x, int y, int z, const KernelParameters* p)
-{
-  return ((p->First[0] + x) & 1) | ((p->First[2] + z) & 1) << 1 | ((p->First[1] + y) & 1) << 2;
 }
 
 // The eight vertices of a cell; returns the mask of those that have a position.

@@ -17,6 +17,7 @@ ExactResampler::ExactResampler(
   , Source(source)
   , Launched(device)
   , Exact(device, volume, source, this->Launched)
+  , Boundary(device, volume, source, this->Launched)
   , Published(device, volume, source, this->Launched)
 {
 }
@@ -37,7 +38,8 @@ void ExactResampler::Make(
   const DeformRequest& request, const SlabPlan& plan, std::size_t slab, DeformReport& report)
 {
   OutputSlab& target = this->Targets[plan.GetTarget(slab)];
-  this->Launched.Expect((plan.Slabs.size() - slab) * this->Exact.GetNumberOfLaunches());
+  this->Launched.Expect((plan.Slabs.size() - slab) *
+    (this->Exact.GetNumberOfLaunches() + this->Boundary.GetNumberOfLaunches()));
   target.Place(this->Device.GetContext(), this->Device.GetQueue(), plan.Slabs[slab], request,
     this->Volume.GetVolumeArrays(), this->Volume.GetVoxelGrid(),
     this->Volume.GetBricks().GetNumberOfBricks(), this->Launched.GetResamplingEvents());
@@ -59,6 +61,7 @@ void ExactResampler::MakePublished(
 {
   this->Source.PrepareMapping(this->Launched.GetMappingEvents());
   this->Published.Run(request, output);
+  this->Boundary.Run(request, output);
   report.NumberOfCoveredVoxels += static_cast<std::int64_t>(
     output.CountCovered(this->Device, this->Launched.GetResamplingEvents()));
 }
@@ -133,9 +136,16 @@ void ExactResampler::MakeExact(
     }
     covered = output.CountCovered(this->Device, this->Launched.GetResamplingEvents());
   }
+  this->Boundary.Run(request, output);
   output.Complete(this->Device.GetContext(), this->Volume.GetVolumeArrays(), false,
     this->Launched.GetResamplingEvents());
-  report.NumberOfCoveredVoxels += static_cast<std::int64_t>(covered);
+  report.NumberOfCoveredVoxels +=
+    static_cast<std::int64_t>(covered + this->Boundary.GetNumberOfCovered());
+  if (isFirst)
+  {
+    report.NumberOfInvertedTetrahedra += this->Boundary.GetCounts().Inverted;
+    report.NumberOfOverstretchedCells += this->Boundary.GetCounts().Overstretched;
+  }
   this->IsContested = report.Overlapping || this->IsFolded(first.Counts);
 }
 
@@ -257,6 +267,10 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
   }
   const auto complete = [&]
   {
+    if (!patches.empty())
+    {
+      this->Boundary.Run(request, output, &patches);
+    }
     output.Complete(this->Device.GetContext(), this->Volume.GetVolumeArrays(), true,
       this->Launched.GetResamplingEvents());
     this->Device.GetQueue().finish(); // it is read in another queue
@@ -288,8 +302,8 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
 
 std::uint64_t ExactResampler::GetMemory() const
 {
-  return this->Exact.GetMemory() + this->Published.GetMemory() + this->Targets[0].GetMemory() +
-    this->Targets[1].GetMemory();
+  return this->Exact.GetMemory() + this->Boundary.GetMemory() + this->Published.GetMemory() +
+    this->Targets[0].GetMemory() + this->Targets[1].GetMemory();
 }
 
 } // namespace deformvolume

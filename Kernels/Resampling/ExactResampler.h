@@ -2,6 +2,7 @@
 #ifndef DeformVolumeExactResampler_h
 #define DeformVolumeExactResampler_h
 
+#include "BoundaryCells.h"
 #include "ExactPasses.h"
 #include "Launches.h"
 #include "OutputSlab.h"
@@ -74,6 +75,10 @@ public:
   /// Begins to copy a part of that to the memory of the request, as Read() does.
   void ReadPart(const DeformRequest& request, const Extent& part);
 
+  /// What it does where the boundary of the deformation mesh passes through the volume.
+  BoundaryCells& GetBoundary() { return this->Boundary; }
+  const BoundaryCells& GetBoundary() const { return this->Boundary; }
+
   /// Bytes on the device.
   std::uint64_t GetMemory() const;
 
@@ -108,6 +113,7 @@ private:
   DisplacementSource& Source;
   Launches Launched;
   ExactPasses Exact;
+  BoundaryCells Boundary;
   PublishedPass Published;
   std::array<OutputSlab, 2> Targets;
   bool WasContested = false; // whether cells of the last output overlapped, or were folded

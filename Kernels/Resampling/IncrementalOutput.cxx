@@ -109,9 +109,10 @@ bool IncrementalOutput::IsChangeInside() const
 {
   const cl::Buffer& state = this->Volume.GetChunks().front().State;
   const Extent moved = this->Changes.GetMovedVertices();
+  const std::vector<unsigned char>& atBoundary = this->Volume.GetSubBricksAtBoundary();
   if (!state() || GetNumberOfPoints(moved) == 0)
   {
-    return this->Changes.IsInside(nullptr, moved);
+    return this->Changes.IsInside(nullptr, moved, atBoundary);
   }
   // As it was for the last output: where a mask has changed, the change is not inside.
   const std::array<int, 3>& size = this->Volume.GetBricks().Size;
@@ -120,11 +121,11 @@ bool IncrementalOutput::IsChangeInside() const
   if (this->Device.GetDevice().IsProcessor)
   {
     const MappedBuffer<const unsigned char> mapped(queue, state, CL_MAP_READ);
-    return this->Changes.IsInside(mapped.Get(), all);
+    return this->Changes.IsInside(mapped.Get(), all, atBoundary);
   }
   std::vector<unsigned char> read(static_cast<std::size_t>(GetNumberOfPoints(moved)));
   BeginToReadBox(queue, state, all, moved, 1, read.data(), moved).Check();
-  return this->Changes.IsInside(read.data(), moved);
+  return this->Changes.IsInside(read.data(), moved, atBoundary);
 }
 
 bool IncrementalOutput::StaysOnDevice(const DeformRequest& request) const
@@ -273,7 +274,9 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   const auto read = Clock::now();
   const std::uint64_t covered = this->LastCovered - before + countCovered();
   report.ResamplingTime += GetSecondsSince(read);
-  if (!won && (counts.NeedWinners(covered) || (inside && counts.Writes != covered)))
+  const BoundaryCells& boundary = resampler.GetBoundary();
+  const std::uint64_t byCells = covered - boundary.GetNumberOfCovered();
+  if (!won && (counts.NeedWinners(byCells) || (inside && counts.Writes != byCells)))
   {
     return false;
   }
@@ -294,8 +297,10 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   report.Revision = this->Revision;
   this->Changes.Finish();
   this->FindCut();
-  report.NumberOfInvertedTetrahedra = static_cast<std::int64_t>(counts.Inverted);
-  report.NumberOfOverstretchedCells = static_cast<std::int64_t>(counts.Overstretched);
+  report.NumberOfInvertedTetrahedra =
+    static_cast<std::int64_t>(counts.Inverted) + boundary.GetCounts().Inverted;
+  report.NumberOfOverstretchedCells =
+    static_cast<std::int64_t>(counts.Overstretched) + boundary.GetCounts().Overstretched;
   report.Overlapping = again->Overlapping;
   report.NumberOfCoveredVoxels = static_cast<std::int64_t>(covered);
   report.NumberOfResampledBricks = static_cast<std::int64_t>(plan.Bricks.size());

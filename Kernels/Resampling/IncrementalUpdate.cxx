@@ -109,7 +109,8 @@ Extent IncrementalUpdate::GetMovedVertices() const
   return box;
 }
 
-bool IncrementalUpdate::IsInside(const unsigned char* state, const Extent& box) const
+bool IncrementalUpdate::IsInside(
+  const unsigned char* state, const Extent& box, const std::vector<unsigned char>& atBoundary) const
 {
   std::atomic<bool> inside{ true };
   ParallelForParts(this->Grid.GetNumberOfBricks(), StepSize,
@@ -118,7 +119,9 @@ bool IncrementalUpdate::IsInside(const unsigned char* state, const Extent& box) 
       for (std::size_t subBrick = begin; subBrick < end && inside; ++subBrick)
       {
         if (this->Masked[subBrick] ||
-          (this->Moved[subBrick] && !this->HasOnlyInterior(subBrick, state, box)))
+          (this->Moved[subBrick] &&
+            ((!atBoundary.empty() && atBoundary[subBrick]) ||
+              !this->HasOnlyInterior(subBrick, state, box))))
         {
           inside = false;
         }

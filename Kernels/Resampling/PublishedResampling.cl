@@ -12,7 +12,6 @@
 
 #define TOLERANCE 1e-5f
 
-__constant uchar Tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
 
 typedef struct
 {
@@ -62,7 +61,7 @@ __kernel void ResamplePublished(__global const int* positions, __global const uc
   {
     return;
   }
-  const int mirror = ((p.First[0] + x) & 1) | ((p.First[2] + z) & 1) << 1 | ((p.First[1] + y) & 1) << 2;
+  const int mirror = Mirror(x, y, z, &p);
   const size_t row = p.Size[0];
   const size_t plane = row * p.Size[1];
   float3 vertices[8];
@@ -80,7 +79,7 @@ __kernel void ResamplePublished(__global const int* positions, __global const uc
     indices[v] = (size_t)(z + dz - p.ChunkFirst) * plane + i;
   }
   const int tetrahedra = p.HasActive
-    ? active[((size_t)(z - p.ChunkFirst) * (p.Size[1] - 1) + y) * (p.Size[0] - 1) + x]
+    ? active[CellInChunk(x, y, z, &p)]
     : DEFORMVOLUME_ALL_TETRAHEDRA;
   const int3 last = (int3)(p.OutputSize[0], p.OutputSize[1], p.OutputSize[2]) - 1;
   for (int t = 0; t < 5; ++t)

@@ -519,9 +519,9 @@ static __attribute__((noinline)) int FinishViews(
 static OUTLINED int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all, Cell* cell,
   Cell* views, Output* output, const KernelParameters* p)
 {
-  const int found = LoadCell(mesh, x, y, z, p, cell->Vertices);
   const int active = ActiveTetrahedra(mesh, x, y, z, p);
-  if (found == 0 || active == 0)
+  const int found = active ? LoadCell(mesh, x, y, z, p, cell->Vertices) : 0;
+  if (found == 0)
   {
     return 0;
   }

@@ -24,6 +24,10 @@
     }                                                                                              \
   }
 
+#ifdef __OPENCL_VERSION__
+__constant uchar Tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+#endif
+
 // The bits of a cell in a mask of active tetrahedra where all of them are.
 #define DEFORMVOLUME_ALL_TETRAHEDRA 31
 

@@ -188,15 +188,39 @@ typedef struct
 #define DEFORMVOLUME_FILLED_BYTES 65536
 
 // State of a vertex of the sampling mesh.
-#define DEFORMVOLUME_VERTEX_SOURCE 1   // it has a deformed position and may be interpolated
-#define DEFORMVOLUME_VERTEX_INTERIOR 2 // all tetrahedra that it could belong to are there
-#define DEFORMVOLUME_CELL_WHOLE 4      // of the cell that begins at it, all tetrahedra are there
-#define DEFORMVOLUME_VERTEX_REGULAR 8  // interior, but that it may lie on the border of the volume
+#define DEFORMVOLUME_VERTEX_SOURCE 1 // it has a deformed position and may be interpolated
+// All tetrahedra that it could belong to are there, but for those in cells that the boundary of the
+// deformation mesh crosses.
+#define DEFORMVOLUME_VERTEX_INTERIOR 2
+#define DEFORMVOLUME_CELL_WHOLE 4     // of the cell that begins at it, all tetrahedra are there
+#define DEFORMVOLUME_VERTEX_REGULAR 8 // interior, but that it may lie on the border of the volume
 #define DEFORMVOLUME_VERTEX_UNCLIPPED 16 // a source, not on the far side of the boundary
 #define DEFORMVOLUME_CELL_UNCROSSED 32   // a smooth cut crosses no tetrahedron of that cell
 #define DEFORMVOLUME_VERTEX_TOGETHER 64  // both sides of the cut see it where it is
 
+// Beside the active tetrahedra of a cell: the boundary of the deformation mesh crosses it or one of
+// its neighbours; and it crosses the cell itself.
+#define DEFORMVOLUME_CELL_AT_BOUNDARY 32
+#define DEFORMVOLUME_CELL_CROSSED 64
+
 #ifdef __OPENCL_VERSION__
+
+// Parity bits of a cell in the order of the bits of a vertex number: x, z, y.
+static int Mirror(int x, int y, int z, const KernelParameters* p)
+{
+  return ((p->First[0] + x) & 1) | ((p->First[2] + z) & 1) << 1 | ((p->First[1] + y) & 1) << 2;
+}
+
+// Places of a vertex, and of a cell, in what a chunk has of each.
+static size_t VertexInChunk(int x, int y, int z, const KernelParameters* p)
+{
+  return ((size_t)(z - p->ChunkFirst) * p->Size[1] + y) * p->Size[0] + x;
+}
+
+static size_t CellInChunk(int x, int y, int z, const KernelParameters* p)
+{
+  return ((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x;
+}
 
 // Place of the x of a vertex's position; its y and z follow one and two rows later.
 static size_t PositionIndex(int x, int y, int z, const KernelParameters* p)

@@ -63,11 +63,6 @@ static int SourceBits(__global const uchar* state, int x, int y, int z, const Ke
   return state[VertexInChunk(x, y, z, p)] & (DEFORMVOLUME_VERTEX_SOURCE | DEFORMVOLUME_VERTEX_UNCLIPPED);
 }
 
-static size_t CellInChunk(int x, int y, int z, const KernelParameters* p)
-{
-  return ((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x;
-}
-
 // Whether a cell has all of its tetrahedra.
 static int IsWhole(int active)
 {
@@ -147,6 +142,67 @@ static int IsCrossed(
 #endif
 }
 
+// Whether a cell is whole, and all its vertices are there.
+static int IsComplete(__global const uchar* state, int cell, int x, int y, int z, const KernelParameters* p)
+{
+  int all = IsWhole(cell);
+  for (int v = 0; v < 8 && all; ++v)
+  {
+    all = IsUnclipped(state, x + (v & 1), y + (v >> 1 & 1), z + (v >> 2), p);
+  }
+  return all;
+}
+
+// Whether the boundary of the deformation mesh crosses one of the cells round a vertex.
+static int IsBesideCrossed(__global const uchar* active, int x, int y, int z, const KernelParameters* p)
+{
+  int crossed = 0;
+  for (int k = max(z - 1, 0); k <= min(z, p->Size[2] - 2); ++k)
+  {
+    for (int j = max(y - 1, 0); j <= min(y, p->Size[1] - 2); ++j)
+    {
+      for (int i = max(x - 1, 0); i <= min(x, p->Size[0] - 2); ++i)
+      {
+        crossed |= active[CellInChunk(i, j, k, p)] & DEFORMVOLUME_CELL_CROSSED;
+      }
+    }
+  }
+  return crossed != 0;
+}
+
+// Whether a vertex and all tetrahedra round it are there, but for those in cells that the boundary of the deformation
+// mesh crosses: samples on their faces are found when these cells are resampled (BoundaryCells.cl).
+static int IsSurrounded(__global const uchar* state, __global const uchar* active, int x, int y, int z,
+  const KernelParameters* p)
+{
+  int all = IsUnclipped(state, x, y, z, p);
+  for (int v = 0; v < 8 && all; ++v)
+  {
+    const int i = x - (v & 1);
+    const int j = y - (v >> 1 & 1);
+    const int k = z - (v >> 2);
+    if (i >= 0 && j >= 0 && k >= 0 && i < p->Size[0] - 1 && j < p->Size[1] - 1 && k < p->Size[2] - 1)
+    {
+      const int cell = active[CellInChunk(i, j, k, p)];
+      all = (cell & DEFORMVOLUME_CELL_CROSSED) || IsComplete(state, cell, i, j, k, p);
+    }
+  }
+  return all;
+}
+
+// Whether the boundary crosses the cell that begins at a vertex, and all its vertices are there: it has to be told from
+// whole ones by a vertex that is not interior.
+static int BeginsCrossed(__global const uchar* state, __global const uchar* active, int x, int y, int z,
+  const KernelParameters* p)
+{
+  if (!p->HasActive || x == p->Size[0] - 1 || y == p->Size[1] - 1 || z == p->Size[2] - 1 ||
+    !(active[CellInChunk(x, y, z, p)] & DEFORMVOLUME_CELL_CROSSED))
+  {
+    return 0;
+  }
+  return IsComplete(state, DEFORMVOLUME_ALL_TETRAHEDRA, x, y, z, p);
+}
+
 // The state of the vertices of a row of a cuboid that begins at first, into a place for that.
 static void MarkRow(__global const uchar* state, __global const uchar* active, __global const uint* cutRows,
   __global const CutVertex* cutVertices, int3 first, int endX, int y, int z, __global uchar* marked,
@@ -172,10 +228,12 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, _
     if (bits)
     {
       bits |= DEFORMVOLUME_VERTEX_TOGETHER; // until its copy is found (CutPositions.cl)
-      if ((before & here & after & ALL_SOURCES) && (before & here & ALL_ACTIVE))
+      if (((before & here & after & ALL_SOURCES) && (before & here & ALL_ACTIVE)) ||
+        (p->HasActive && IsBesideCrossed(active, x, y, z, p) && IsSurrounded(state, active, x, y, z, p)))
       {
         bits |= DEFORMVOLUME_VERTEX_REGULAR;
-        bits |= x > 0 && y > 0 && z > 0 && x < p->Size[0] - 1 && y < p->Size[1] - 1 && z < p->Size[2] - 1
+        bits |= x > 0 && y > 0 && z > 0 && x < p->Size[0] - 1 && y < p->Size[1] - 1 && z < p->Size[2] - 1 &&
+            !BeginsCrossed(state, active, x, y, z, p)
           ? DEFORMVOLUME_VERTEX_INTERIOR
           : 0;
       }
@@ -191,9 +249,10 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, _
 }
 
 // Second pass: a vertex is interior when all vertices round it are unclipped sources and all tetrahedra of
-// the eight cells round it are active: those that a smooth cut divides are all there as each side sees
-// them (CutCells.cl). Being wrong on the careful side costs time, not truth. A cell is whole when its vertices are
-// unclipped sources and its tetrahedra active. Not into the states, where others look for sources meanwhile.
+// the eight cells round it are active, or in cells that the boundary of the deformation mesh crosses: those that a
+// smooth cut divides are all there as each side sees them (CutCells.cl). Being wrong on the careful side costs time,
+// not truth. A cell is whole when its vertices are unclipped sources and its tetrahedra active. Not into the states,
+// where others look for sources meanwhile.
 __kernel void MarkVertices(__global const uchar* state, __global const uchar* active,
   __global const uint* cutRows, __global const CutVertex* cutVertices, __global uchar* marked, __global const uint* cuboids, const KernelParameters p)
 {

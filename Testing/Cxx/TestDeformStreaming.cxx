@@ -229,15 +229,16 @@ void TestRequests(const Case& from)
   }
 }
 
-// A mesh between the voxels is an error whatever part is asked for, and whatever was before.
-void TestMeshWithoutVoxels(const Case& from)
+// A mesh between the voxels leaves nothing but background, and one beside the volume is an error,
+// whatever part is asked for, and whatever was before.
+void TestMeshWithoutVoxels(const Case& from, double place, bool isBeside)
 {
-  vtkNew<vtkLatticeTetrahedraSource> between;
-  between->SetNumberOfNodes(2, 2, 2);
-  between->SetBounds(10.3, 10.6, 8.3, 8.6, 3.3, 3.6);
-  between->Update();
+  vtkNew<vtkLatticeTetrahedraSource> mesh;
+  mesh->SetNumberOfNodes(2, 2, 2);
+  mesh->SetBounds(place, place + 0.3, 8.3, 8.6, 3.3, 3.6);
+  mesh->Update();
   Case none = from;
-  none.Deformation = between->GetOutput();
+  none.Deformation = mesh->GetOutput();
   SetDisplacements(none.Deformation, Shift(0.0, 0.0, 0.0));
   none.Set = [](vtkDeformVolumeFilter* filter) { filter->SetOutputBoundsModeToVolumeBounds(); };
   Streamed edited(none);
@@ -251,10 +252,12 @@ void TestMeshWithoutVoxels(const Case& from)
     for (Streamed* streamed : { &edited, &fresh })
     {
       streamed->Filter->UpdateExtent(part.data());
-      streamed->TakeErrors();
-      VERIFY_EQUAL(streamed->Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
+      VERIFY_EQUAL(streamed->TakeErrors(), isBeside ? 1 : 0);
+      VERIFY_EQUAL(streamed->Filter->GetOutput()->GetNumberOfPoints(),
+        isBeside ? 0 : vtkIdType{ deformvolume::GetNumberOfPoints(part) });
+      VERIFY_EQUAL(streamed->Filter->GetNumberOfCoveredVoxels(), vtkIdType{ 0 });
     }
-    VERIFY(fresh.LastError.find("holds no voxel") != std::string::npos);
+    VERIFY((fresh.LastError.find("holds no voxel") != std::string::npos) == isBeside);
   }
 }
 
@@ -270,7 +273,8 @@ int TestDeformStreaming(int, char*[])
   const std::vector<Case> cases = MakeCases();
   TestWrongParts(cases[2]);
   TestRequests(cases[2]);
-  TestMeshWithoutVoxels(cases[2]);
+  TestMeshWithoutVoxels(cases[2], 10.3, false);
+  TestMeshWithoutVoxels(cases[2], 1000.3, true);
   for (const Case& from : cases)
   {
     const auto whole = MakeWhole(from);

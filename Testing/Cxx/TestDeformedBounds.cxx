@@ -291,18 +291,19 @@ void TestLinks()
           .IsEmpty());
 }
 
-// All voxels, one by one.
-IndexBounds SearchVoxels(const VoxelGrid& voxelGrid, const DisplacementField& field)
+// All places of the volume on a lattice with so many points for each voxel, one by one.
+IndexBounds SearchPlaces(const VoxelGrid& voxelGrid, const DisplacementField& field, int density)
 {
   const Extent& extent = voxelGrid.VertexExtent;
   const auto& m = field.IndexToField;
   IndexBounds bounds;
-  for (int z = extent[4]; z <= extent[5]; ++z)
+  for (int k = density * extent[4]; k <= density * extent[5]; ++k)
   {
-    for (int y = extent[2]; y <= extent[3]; ++y)
+    for (int j = density * extent[2]; j <= density * extent[3]; ++j)
     {
-      for (int x = extent[0]; x <= extent[1]; ++x)
+      for (int i = density * extent[0]; i <= density * extent[1]; ++i)
       {
+        const glm::dvec3 place = glm::dvec3(i, j, k) / static_cast<double>(density);
         bool inside = true;
         glm::dvec3 sum(0.0);
         int low[3];
@@ -310,7 +311,8 @@ IndexBounds SearchVoxels(const VoxelGrid& voxelGrid, const DisplacementField& fi
         for (int axis = 0; axis < 3; ++axis)
         {
           const int last = field.Dimensions[axis] - 1;
-          double f = m[4 * axis] * x + m[4 * axis + 1] * y + m[4 * axis + 2] * z + m[4 * axis + 3];
+          double f = m[4 * axis] * place.x + m[4 * axis + 1] * place.y + m[4 * axis + 2] * place.z +
+            m[4 * axis + 3];
           inside = inside && f >= -1e-9 && f <= last + 1e-9;
           // The offsets below are off by 1e-12; a point must not be mixed with its neighbour for
           // that, which may not be finite.
@@ -339,7 +341,7 @@ IndexBounds SearchVoxels(const VoxelGrid& voxelGrid, const DisplacementField& fi
         }
         if ((inside || field.Extrapolate) && std::isfinite(sum.x + sum.y + sum.z))
         {
-          bounds.Add(GetRatio(voxelGrid) * glm::dvec3(x, y, z) + sum);
+          bounds.Add(GetRatio(voxelGrid) * place + sum);
         }
       }
     }
@@ -360,23 +362,25 @@ void TestField()
     double Angle;
     bool Exact;
     bool ExactIfConstant;
+    bool EndsBetween; // it ends within the volume, not at voxels: so does the deformed volume
   };
   const Case cases[] = {
     // The volume's own points, some of them, and more.
-    { { { 14, 13, 12 } }, glm::dvec3(1.0), center, 0.0, true, true },
-    { { { 6, 5, 4 } }, glm::dvec3(1.0), center, 0.0, true, true },
-    { { { 10, 3, 24 } }, glm::dvec3(1.0), center, 0.0, true, true },
+    { { { 14, 13, 12 } }, glm::dvec3(1.0), center, 0.0, true, true, false },
+    { { { 6, 5, 4 } }, glm::dvec3(1.0), center, 0.0, true, true, false },
+    { { { 10, 3, 24 } }, glm::dvec3(1.0), center, 0.0, true, true, false },
     // Finer than the volume.
-    { { { 40, 41, 42 } }, glm::dvec3(0.4), center, 0.5, true, true },
+    { { { 40, 41, 42 } }, glm::dvec3(0.4), center, 0.5, true, true, true },
     // Coarser: covering all, in part, in part and turned, not at all; one point thick.
-    { { { 7, 7, 7 } }, glm::dvec3(2.6, 2.3, 2.7), center, 0.0, false, true },
-    { { { 4, 4, 4 } }, glm::dvec3(2.15, 1.7, 3.3), center + 1.3, 0.0, false, true },
-    { { { 9, 9, 9 } }, glm::dvec3(3.0), center, 0.6, false, true },
-    { { { 5, 6, 5 } }, glm::dvec3(1.7, 2.1, 2.3), center + 2.0, 0.6, false, false },
-    { { { 2, 2, 2 } }, glm::dvec3(16.0), center + glm::dvec3(0.0, 14.0, 0.0), 0.8, false, false },
-    { { { 5, 6, 5 } }, glm::dvec3(1.7, 2.1, 2.3), center + 60.0, 0.6, false, true },
-    { { { 4, 1, 4 } }, glm::dvec3(2.0), center, 0.0, false, true },
-    { { { 1, 1, 1 } }, glm::dvec3(2.0), center, 0.0, false, true },
+    { { { 7, 7, 7 } }, glm::dvec3(2.6, 2.3, 2.7), center, 0.0, false, true, false },
+    { { { 4, 4, 4 } }, glm::dvec3(2.15, 1.7, 3.3), center + 1.3, 0.0, false, true, true },
+    { { { 9, 9, 9 } }, glm::dvec3(3.0), center, 0.6, false, true, false },
+    { { { 5, 6, 5 } }, glm::dvec3(1.7, 2.1, 2.3), center + 2.0, 0.6, false, false, true },
+    { { { 2, 2, 2 } }, glm::dvec3(16.0), center + glm::dvec3(0.0, 14.0, 0.0), 0.8, false, false,
+      true },
+    { { { 5, 6, 5 } }, glm::dvec3(1.7, 2.1, 2.3), center + 60.0, 0.6, false, true, false },
+    { { { 4, 1, 4 } }, glm::dvec3(2.0), center, 0.0, false, true, true },
+    { { { 1, 1, 1 } }, glm::dvec3(2.0), center, 0.0, false, true, true },
   };
   for (const Case& item : cases)
   {
@@ -410,14 +414,18 @@ void TestField()
         vectors[i] = i % 3 == 0 ? 3.25F : (i % 3 == 1 ? -7.5F : 100.0F);
       }
       field.Vectors = vectors.data();
-      IndexBounds expected = SearchVoxels(voxelGrid, field);
+      const bool endsBetween = item.EndsBetween && !extrapolate;
+      const int density = endsBetween ? 4 : 1;
+      IndexBounds expected = SearchPlaces(voxelGrid, field, density);
       IndexBounds found = ComputeDeformedBounds(voxelGrid, field);
       CHECK(Contains(found, expected, 1e-9));
-      CHECK(!(item.ExactIfConstant || extrapolate) || AreClose(found, expected, 1e-9));
-      // The corners of what a turned field covers need not be voxels, but are within one of them.
+      CHECK(
+        !(item.ExactIfConstant || extrapolate) || endsBetween || AreClose(found, expected, 1e-9));
+      // The corners of what a field covers need not be among these places, but are near them.
+      const double distance = endsBetween && item.Angle == 0.0 ? 0.25 : 1.0;
       IndexBounds grown = expected;
-      grown.Min -= GetRatio(voxelGrid);
-      grown.Max += GetRatio(voxelGrid);
+      grown.Min -= distance * GetRatio(voxelGrid);
+      grown.Max += distance * GetRatio(voxelGrid);
       CHECK(expected.IsEmpty() || Contains(grown, found, 1e-9));
       // No larger than the volume.
       const glm::dvec3 shift(3.25, -7.5, 100.0);
@@ -433,10 +441,10 @@ void TestField()
         vectors[vectors.size() - 1] =
           broken ? std::numeric_limits<float>::infinity() : vectors[vectors.size() - 1];
         field.Vectors = vectors.data();
-        expected = SearchVoxels(voxelGrid, field);
+        expected = SearchPlaces(voxelGrid, field, density);
         found = ComputeDeformedBounds(voxelGrid, field);
         CHECK(Contains(found, expected, 1e-4));
-        CHECK(!item.Exact || AreClose(found, expected, 1e-4));
+        CHECK(!item.Exact || endsBetween || AreClose(found, expected, 1e-4));
         // Not absurdly large either: no further out than any vector takes a voxel.
         IndexBounds reach;
         for (const float value : vectors)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is compiled, what the compiler says to it, and that its time is told apart from that of the
 // kernels.
+#include "BinningProgram.h"
 #include "CompilationWatch.h"
 #include "DeformerCase.h"
 #include "Device.h"

@@ -55,7 +55,7 @@ TEST(MeshRasterizationGraphics, ListsStayOnTheDevice)
   driver.BytesRead = 0;
   driver.BytesWritten = 0;
   driver.LaunchesWithoutGroup = 0;
-  EXPECT_EQ(lists.Make(device, mesh, nodes, p), 0);
+  EXPECT_EQ(lists.Make(device, mesh, nodes, p).Inverted, 0);
   EXPECT_EQ(driver.BytesRead, 2 * sizeof(cl_uint) + sizeof(cl_ulong));
   EXPECT_EQ(driver.BytesWritten, 2 * sizeof(cl_uint));
   EXPECT_EQ(driver.LaunchesWithoutGroup, 0);

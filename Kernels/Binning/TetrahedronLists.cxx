@@ -1,17 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TetrahedronLists.h"
 
-#include "Error.h"
 #include "HostMemory.h"
 #include "WorkDevice.h"
 
 #include <algorithm>
-#include <string>
 
 namespace deformvolume
 {
 
-std::int64_t TetrahedronLists::Make(WorkDevice& device, const cl::Buffer& tetrahedra,
+namespace
+{
+
+constexpr int TileBits[3] = { DEFORMVOLUME_TILE_BITS_X, DEFORMVOLUME_TILE_BITS_Y,
+  DEFORMVOLUME_TILE_BITS_Z };
+
+int FloorDivide(int value, int bits)
+{
+  return value >= 0 ? value >> bits : -((-(value + 1) >> bits) + 1);
+}
+
+} // namespace
+
+RasterParameters MakeTiles(const Extent& slab, std::size_t numberOfTetrahedra)
+{
+  RasterParameters p = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    p.OutputFirst[axis] = slab[2 * axis];
+    p.OutputSize[axis] = static_cast<int>(GetSize(slab, axis));
+    p.TileFirst[axis] = FloorDivide(slab[2 * axis], TileBits[axis]);
+    p.TileCount[axis] = FloorDivide(slab[2 * axis + 1], TileBits[axis]) - p.TileFirst[axis] + 1;
+  }
+  p.Tetrahedra = static_cast<int>(numberOfTetrahedra);
+  return p;
+}
+
+TetrahedronLists::Counts TetrahedronLists::Make(WorkDevice& device, const cl::Buffer& tetrahedra,
   const cl::Buffer& positions, const RasterParameters& p)
 {
   ListBuffers& buffers = this->Buffers;
@@ -25,7 +50,8 @@ std::int64_t TetrahedronLists::Make(WorkDevice& device, const cl::Buffer& tetrah
   const std::uint64_t counted = serial
     ? this->Ranges.Count(device, tetrahedra, positions, p, buffers)
     : this->Entries.Count(device, tetrahedra, positions, p, buffers);
-  const std::int64_t inverted = this->CheckCounters(device);
+  cl_uint counts[DEFORMVOLUME_BINNED_COUNTERS];
+  device.GetQueue().enqueueReadBuffer(buffers.Counters, CL_TRUE, 0, sizeof(counts), counts);
   const cl_uint length = CheckLength(counted);
   ReserveLists(device, buffers.Lists, std::max<std::uint64_t>(length, 1) * sizeof(cl_int));
   if (serial)
@@ -36,21 +62,7 @@ std::int64_t TetrahedronLists::Make(WorkDevice& device, const cl::Buffer& tetrah
   {
     this->Entries.Fill(device, p, buffers, length);
   }
-  return inverted;
-}
-
-std::int64_t TetrahedronLists::CheckCounters(WorkDevice& device) const
-{
-  cl_uint counts[DEFORMVOLUME_BINNED_COUNTERS];
-  device.GetQueue().enqueueReadBuffer(this->Buffers.Counters, CL_TRUE, 0, sizeof(counts), counts);
-  if (counts[DEFORMVOLUME_BINNED_OVERSTRETCHED] > 0)
-  {
-    throw Error(std::to_string(counts[DEFORMVOLUME_BINNED_OVERSTRETCHED]) +
-      " tetrahedra of the deformation mesh span more than 5,000 output voxels, which the resampler "
-      "MeshRasterization cannot rasterise. Use the resampler Exact, a finer mesh or a greater "
-      "output spacing.");
-  }
-  return counts[DEFORMVOLUME_BINNED_INVERTED];
+  return { counts[DEFORMVOLUME_BINNED_INVERTED], counts[DEFORMVOLUME_BINNED_OVERSTRETCHED] };
 }
 
 std::uint64_t TetrahedronLists::GetMemory() const

@@ -3,6 +3,7 @@
 #define DeformVolumeTetrahedronLists_h
 
 #include "EntryLists.h"
+#include "Extent.h"
 #include "ListBuffers.h"
 #include "RangeLists.h"
 
@@ -14,14 +15,23 @@ namespace deformvolume
 
 class WorkDevice;
 
+/// The tiles of a slab of the output, for so many tetrahedra.
+RasterParameters MakeTiles(const Extent& slab, std::size_t numberOfTetrahedra);
+
 /// For each tile of the output the tetrahedra of the deformation mesh that may hold some of its
 /// voxels, upright ones first, then inverted ones, each in ascending order (TetrahedronBinning.cl).
 class TetrahedronLists
 {
 public:
-  /// Lists them. tetrahedra, positions: of the mesh. Returns how many tetrahedra are inverted.
-  /// Throws an Error where the deformation is beyond what can be rasterised.
-  std::int64_t Make(WorkDevice& device, const cl::Buffer& tetrahedra, const cl::Buffer& positions,
+  /// Of all tetrahedra, listed or not. Those that span more output voxels than edge functions allow
+  /// (DEFORMVOLUME_LARGEST_TETRAHEDRON) are overstretched, and in no list.
+  struct Counts
+  {
+    std::int64_t Inverted;
+    std::int64_t Overstretched;
+  };
+  /// Lists them. tetrahedra, positions: of the mesh.
+  Counts Make(WorkDevice& device, const cl::Buffer& tetrahedra, const cl::Buffer& positions,
     const RasterParameters& parameters);
 
   /// For each tile where its list begins, in the lists.
@@ -34,9 +44,6 @@ public:
     WorkDevice& device, std::size_t numberOfTetrahedra, std::uint64_t tiles);
 
 private:
-  /// Throws an Error where tetrahedra are too large. Returns how many are inverted.
-  std::int64_t CheckCounters(WorkDevice& device) const;
-
   ListBuffers Buffers;
   RangeLists Ranges;  // for processors
   EntryLists Entries; // for other devices

@@ -8,12 +8,6 @@
 // or -1 where it has no volume at rest; a node is its deformed position in 1/256 output voxel (16
 // bytes, the last four unused).
 
-static Vector Difference(int4 a, int4 b)
-{
-  const Vector r = { (long)a.x - b.x, (long)a.y - b.y, (long)a.z - b.z };
-  return r;
-}
-
 // The voxels of the output in the box of a tetrahedron, both ends included.
 typedef struct
 {

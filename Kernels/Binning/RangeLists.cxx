@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RangeLists.h"
 
+#include "BinningProgram.h"
 #include "HostMemory.h"
-#include "RasterizationProgram.h"
 #include "WorkDevice.h"
 
 #include <algorithm>

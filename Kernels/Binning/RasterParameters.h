@@ -62,6 +62,16 @@ typedef struct
   float InverseScaleRest[3];
 } RasterParameters;
 
+// A corner of a piece at the boundary of the deformation mesh (MeshBoundary).
+typedef struct
+{
+  int Whole[3];      // where it lies at rest, in 1/256 output voxel: a whole number
+  float Fraction[3]; // and what misses to it
+  float Weights[4];  // of the nodes; of a field: its continuous index there in the first three
+  int Tetrahedron;   // by its number on the device
+  int Node;          // the one of the four that the corner is, or -1
+} BoundaryCorner;
+
 // What entries are sorted by (EntryLists.cl): some bits of their keys.
 typedef struct
 {

@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Resampling of the cells of the sampling mesh that the boundary of the deformation mesh crosses, by the tetrahedra of
+// the deformation mesh, or parts of them (MeshBoundary): pieces. It runs when all other cells have been resampled.
+//
+// An output voxel that these have not covered is taken where a deformed piece holds it, and its rest coordinate lies in
+// a cell at the boundary (DEFORMVOLUME_CELL_AT_BOUNDARY), in one of that cell's own five tetrahedra that is active, has
+// no blanked vertex, and lies on the near side of a carved boundary. Upright pieces come before inverted ones, then the
+// lowest cell, then the lowest piece. Its values are those of that tetrahedron at the rest coordinate, so that they
+// continue those of the cells beside it.
+//
+// A work-group takes a tile of the output. Where work-items are lanes each takes a row of it at a time, else one takes
+// all rows: ROWS_AT_ONCE.
+//
+// What the host puts in front of this text, besides what SampleStoring.cl and VoxelWinners.cl name:
+//   ROWS_AT_ONCE  rows of a tile that a work-item takes at once
+//
+// Data: positions and displacements of the corners of pieces, as BoundaryCorners.cl makes them.
+
+// Bits of rest coordinates, which are structured indices, behind the point.
+#define REST_BITS 24
+
+typedef struct
+{
+  __global const uchar* Cells;     // of the sampling mesh, those at the boundary have a bit
+  __global const uchar* Active;    // a byte a cell, bit i = its tetrahedron i
+  __global const uchar* Blanked;   // a byte a voxel
+  __global const float* Distances; // to a carved boundary, a float a voxel
+} BoundaryMasks;
+
+// What moves a piece in a tile: displacements in output voxels.
+typedef struct
+{
+  REAL Last[3];         // of the last corner
+  REAL Gradients[3][3]; // by edge function, by axis
+} PieceMap;
+
+// A place in the volume: a tetrahedron of a cell, with the weights that a point has there.
+typedef struct
+{
+  int Cell[3]; // local index
+  int Tetrahedron;
+  long Weights[4];
+} RestPlace;
+
+// The order in which pieces with such places win a voxel: upright before inverted, then by the cell, x varying
+// fastest, then by the tetrahedron. 20 bits for each index.
+static ulong KeyOf(const RestPlace* place, int isInverted)
+{
+  return (ulong)isInverted << 63 | (ulong)place->Cell[2] << 43 | (ulong)place->Cell[1] << 23 |
+    (ulong)place->Cell[0] << 3 | (ulong)place->Tetrahedron;
+}
+
+// A rest coordinate in a cell, mirrored as the parity of the cell asks for, from 0 to one.
+static Vector InCell(const long* rest, const int* cell, const KernelParameters* p)
+{
+  long point[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int index = cell[axis] + p->First[axis];
+    point[axis] = rest[axis] - ((long)index << REST_BITS);
+    point[axis] = index & 1 ? (1L << REST_BITS) - point[axis] : point[axis];
+  }
+  const Vector r = { point[0], point[1], point[2] };
+  return r;
+}
+
+// The place of a rest coordinate that has a key.
+static void SetPlace(ulong key, const long* rest, RestPlace* place, const KernelParameters* p)
+{
+  place->Tetrahedron = key & 7;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    place->Cell[axis] = key >> (3 + 20 * axis) & 0xfffff;
+  }
+  IsInTetrahedron(place->Tetrahedron, InCell(rest, place->Cell, p), 1L << REST_BITS, place->Weights);
+}
+
+// Whether no vertex of a tetrahedron is blanked, and a point in it lies on the near side of a carved boundary.
+static int IsUnmasked(
+  const RestPlace* place, const BoundaryMasks* masks, const RasterParameters* r, const KernelParameters* p)
+{
+  const int mirror = Mirror(place->Cell[0], place->Cell[1], place->Cell[2], p);
+  REAL distance = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const int o = Tetrahedra[place->Tetrahedron][k] ^ mirror;
+    const size_t voxel =
+      VertexInChunk(place->Cell[0] + (o & 1), place->Cell[1] + (o >> 2), place->Cell[2] + (o >> 1 & 1), p);
+    if (r->HasBlanked && masks->Blanked[voxel])
+    {
+      return 0;
+    }
+    distance = r->HasDistances && place->Weights[k]
+      ? MULTIPLY_ADD_REAL((REAL)place->Weights[k], (REAL)masks->Distances[voxel], distance)
+      : distance;
+  }
+  return !(distance < 0);
+}
+
+// Finds the lowest cell at the boundary that holds a rest coordinate, on its surface included, and the lowest of its
+// tetrahedra that does and is there. Returns 0 where there is none. last: of the last voxel of the volume.
+static int FindPlace(const long* rest, const int* last, RestPlace* place, const BoundaryMasks* masks,
+  const RasterParameters* r, const KernelParameters* p)
+{
+  int cell[3];
+  int below = 0; // on which axes it lies on the lower side of the cell, as bits
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int index = min((int)(rest[axis] >> REST_BITS), last[axis] - 1);
+    cell[axis] = index - p->First[axis];
+    below |= (rest[axis] == (long)index << REST_BITS) << axis;
+  }
+  for (int neighbour = below;; neighbour = (neighbour - 1) & below)
+  {
+    int isCell = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      place->Cell[axis] = cell[axis] - (neighbour >> axis & 1);
+      isCell &= place->Cell[axis] >= 0 && place->Cell[axis] < p->Size[axis] - 1;
+    }
+    isCell &= place->Cell[2] >= p->LayersBegin && place->Cell[2] < p->LayersEnd;
+    const size_t number = isCell ? CellInChunk(place->Cell[0], place->Cell[1], place->Cell[2], p) : 0;
+    if (isCell && (masks->Cells[number] & DEFORMVOLUME_CELL_AT_BOUNDARY))
+    {
+      const int active = r->HasActive ? masks->Active[number] : DEFORMVOLUME_ALL_TETRAHEDRA;
+      const Vector point = InCell(rest, place->Cell, p);
+      for (int t = 0; t < 5; ++t)
+      {
+        place->Tetrahedron = t;
+        if ((active >> t & 1) && IsInTetrahedron(t, point, 1L << REST_BITS, place->Weights) &&
+          (!(r->HasBlanked || r->HasDistances) || IsUnmasked(place, masks, r, p)))
+        {
+          return 1;
+        }
+      }
+    }
+    if (neighbour == 0)
+    {
+      return 0;
+    }
+  }
+}
+
+// The rest coordinate of a voxel that a piece holds. edges: its edge functions. Returns 0 outside the volume, where
+// rounding does not explain it.
+static int FindRest(const PieceMap* map, const long* edges, const int* voxel, const int* first, const int* last,
+  long* rest, const RasterParameters* r)
+{
+  int isInside = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    REAL d = map->Last[axis];
+    for (int k = 0; k < 3; ++k)
+    {
+      d = MULTIPLY_ADD_REAL((REAL)edges[k], map->Gradients[k][axis], d);
+    }
+    const REAL scale = (REAL)r->InverseScale[axis] + (REAL)r->InverseScaleRest[axis];
+    const REAL at = ((REAL)voxel[axis] - d) * scale;
+    // Corners are rounded to 1/256 output voxel.
+    const REAL tolerance = min((REAL)1, scale / 256);
+    isInside &= at >= (REAL)first[axis] - tolerance && at <= (REAL)last[axis] + tolerance;
+    rest[axis] = convert_long_rte(clamp(at, (REAL)first[axis], (REAL)last[axis]) * (REAL)(1 << REST_BITS));
+  }
+  return isInside;
+}
+
+static void SetMap(
+  const TileTetrahedron* t, __global const float4* displacements, int4 corners, PieceMap* map)
+{
+  const float4 d = displacements[corners.w];
+  const float last[3] = { d.x, d.y, d.z };
+  const int others[3] = { corners.x, corners.y, corners.z };
+  for (int k = 0; k < 3; ++k)
+  {
+    const float4 o = displacements[others[k]];
+    const float other[3] = { o.x, o.y, o.z };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      map->Gradients[k][axis] = ((REAL)other[axis] - (REAL)last[axis]) * t->InverseVolume;
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    map->Last[axis] = (REAL)last[axis];
+  }
+}
+
+static size_t TargetOf(const int* voxel, const RasterParameters* r)
+{
+  return ((size_t)(voxel[2] - r->OutputFirst[2]) * r->OutputSize[1] + voxel[1] - r->OutputFirst[1]) *
+    r->OutputSize[0] +
+    voxel[0] - r->OutputFirst[0];
+}
+
+static int IsCovered(__global const char* coverage, size_t target)
+{
+#if COVERAGE_IS_BITS
+  // Others set other bits meanwhile.
+  return atomic_or((volatile __global uint*)coverage + (target >> 5), 0u) >> (target & 31) & 1;
+#else
+  return coverage[target];
+#endif
+}
+
+static uint BitsBetween(int first, int last)
+{
+  return last < first ? 0u : (0xffffffffu >> (31 - (last - first))) << first;
+}
+
+// orientation: of the pieces that take part: 1: upright, 2: inverted, or 3: both. first, last: structured indices of the
+// first and the last voxel of the whole volume. counts: the voxels that are taken in each patch.
+__kernel void ResampleBoundary(__global const int4* tetrahedra, __global const int4* positions,
+  __global const float4* displacements, __global const uint* listBegins, __global const int* lists,
+  __global const uint* tiles, __global const uchar* cells, __global const uchar* active,
+  __global const uchar* blanked, __global const float* distances, __global char* coverage, __global uint* counts,
+  const int4 firstVoxel, const int4 lastVoxel, const int orientation, const RasterParameters r,
+  const KernelParameters p ARRAY_PARAMETERS)
+{
+  const uint tile = tiles[get_group_id(0)];
+  const uint listBegin = listBegins[tile];
+  const uint listEnd = listBegins[tile + 1];
+  if (listBegin == listEnd)
+  {
+    return;
+  }
+  const BoundaryMasks masks = { cells, active, blanked, distances };
+  const int first[3] = { firstVoxel.x, firstVoxel.y, firstVoxel.z };
+  const int last[3] = { lastVoxel.x, lastVoxel.y, lastVoxel.z };
+  int origin[3];
+  const VoxelBox box = GetTile(tile, origin, &r);
+  for (int begin = get_local_id(0) * ROWS_AT_ONCE; begin < DEFORMVOLUME_TILE_ROWS;
+       begin += get_local_size(0) * ROWS_AT_ONCE)
+  {
+    uint open[ROWS_AT_ONCE]; // voxels that no cell has covered
+    uint taken[ROWS_AT_ONCE];
+    long rests[ROWS_AT_ONCE][32][3];
+    ulong keys[ROWS_AT_ONCE][32];
+    uint any = 0;
+    for (int i = 0; i < ROWS_AT_ONCE; ++i)
+    {
+      int voxel[3];
+      FindFirstOfRow(begin + i, origin, voxel);
+      open[i] = taken[i] = 0;
+      if (voxel[1] >= box.Low.y && voxel[1] <= box.High.y && voxel[2] >= box.Low.z && voxel[2] <= box.High.z)
+      {
+        voxel[0] = box.Low.x;
+        const size_t target = TargetOf(voxel, &r);
+        const int count = box.High.x - box.Low.x + 1;
+        for (int x = 0; x < count; ++x)
+        {
+          open[i] |= (IsCovered(coverage, target + x) ? 0u : 1u) << x;
+        }
+        open[i] <<= box.Low.x - origin[0];
+      }
+      any |= open[i];
+    }
+    for (uint i = any ? listBegin : listEnd; i < listEnd; ++i)
+    {
+      const int4 corners = tetrahedra[lists[i]];
+      const int4 a = positions[corners.x];
+      const int4 b = positions[corners.y];
+      const int4 c = positions[corners.z];
+      const int4 d = positions[corners.w];
+      VoxelBox near = FindVoxels(min(min(a, b), min(c, d)), max(max(a, b), max(c, d)), &r);
+      near.Low = max(near.Low, box.Low);
+      near.High = min(near.High, box.High);
+      const uint columns = BitsBetween(near.Low.x - origin[0], near.High.x - origin[0]);
+      uint wanted = 0;
+      for (int z = near.Low.z; z <= near.High.z; ++z)
+      {
+        for (int y = near.Low.y; y <= near.High.y; ++y)
+        {
+          const int row = ((z - origin[2]) << DEFORMVOLUME_TILE_BITS_Y) + y - origin[1] - begin;
+          wanted |= row >= 0 && row < ROWS_AT_ONCE ? open[row] & columns : 0;
+        }
+      }
+      TileTetrahedron t;
+      if (!wanted || !SetUpTetrahedron(corners, positions, box, &t, &r))
+      {
+        continue;
+      }
+      const int isInverted = Dot(Difference(b, a), Cross(Difference(c, a), Difference(d, a))) < 0;
+      if (!(orientation >> isInverted & 1))
+      {
+        continue;
+      }
+      PieceMap map;
+      SetMap(&t, displacements, corners, &map);
+      for (int z = t.Box.Low.z; z <= t.Box.High.z; ++z)
+      {
+        for (int y = t.Box.Low.y; y <= t.Box.High.y; ++y)
+        {
+          const int row = ((z - origin[2]) << DEFORMVOLUME_TILE_BITS_Y) + y - origin[1] - begin;
+          uint left = row >= 0 && row < ROWS_AT_ONCE ? open[row] & columns : 0;
+          for (; left; left &= left - 1)
+          {
+            const int x = popcount((left & -left) - 1);
+            const int voxel[3] = { origin[0] + x, y, z };
+            long edges[4];
+            long least = 0;
+            for (int k = 0; k < 4; ++k)
+            {
+              edges[k] = t.Start[k] + (voxel[0] - t.Box.Low.x) * t.Steps[k].x + (y - t.Box.Low.y) * t.Steps[k].y +
+                (z - t.Box.Low.z) * t.Steps[k].z;
+              least = min(least, edges[k]);
+            }
+            long rest[3];
+            RestPlace place;
+            if (least < 0 || !FindRest(&map, edges, voxel, first, last, rest, &r) ||
+              !FindPlace(rest, last, &place, &masks, &r, &p))
+            {
+              continue;
+            }
+            const ulong key = KeyOf(&place, isInverted);
+            if ((taken[row] >> x & 1) && keys[row][x] <= key)
+            {
+              continue;
+            }
+            taken[row] |= 1u << x;
+            keys[row][x] = key;
+            for (int axis = 0; axis < 3; ++axis)
+            {
+              rests[row][x][axis] = rest[axis];
+            }
+          }
+        }
+      }
+    }
+    for (int i = 0; i < ROWS_AT_ONCE; ++i)
+    {
+      int voxel[3];
+      FindFirstOfRow(begin + i, origin, voxel);
+      for (uint left = taken[i]; left; left &= left - 1)
+      {
+        const int x = popcount((left & -left) - 1);
+        voxel[0] = origin[0] + x;
+        RestPlace place;
+        SetPlace(keys[i][x], rests[i][x], &place, &p);
+        const long sum = place.Weights[0] + place.Weights[1] + place.Weights[2] + place.Weights[3];
+        const size_t target = TargetOf(voxel, &r);
+        Sample s;
+        BeginSamples(&s, place.Cell[0], place.Cell[1], place.Cell[2], place.Tetrahedron, sum, &p);
+        PlaceSample(&s, place.Weights, target);
+        StoreArrays(&s ARRAY_ARGUMENTS);
+#if COVERAGE_IS_BITS
+        atomic_or((volatile __global uint*)coverage + (target >> 5), 1u << (target & 31));
+#else
+        coverage[target] = 1;
+#endif
+        const size_t patch = PatchRow(voxel[1] - r.OutputFirst[1], voxel[2] - r.OutputFirst[2], &p) +
+          (voxel[0] - r.OutputFirst[0]) / DEFORMVOLUME_PATCH;
+        atomic_inc(counts + patch);
+      }
+    }
+  }
+}

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BoundaryCells.h"
+
+#include "ArrayText.h"
+#include "BinningProgram.h"
+#include "DeviceVolume.h"
+#include "DisplacementSource.h"
+#include "Error.h"
+#include "HostMemory.h"
+#include "KernelSources.h"
+#include "KernelText.h"
+#include "Launches.h"
+#include "OutputSlab.h"
+#include "SamplingMeshText.h"
+#include "WorkDevice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+namespace deformvolume
+{
+namespace
+{
+
+constexpr int TileSize[3] = { 1 << DEFORMVOLUME_TILE_BITS_X, 1 << DEFORMVOLUME_TILE_BITS_Y,
+  1 << DEFORMVOLUME_TILE_BITS_Z };
+
+cl_int4 MakeInt4(int x, int y, int z)
+{
+  return { { x, y, z, 0 } };
+}
+
+cl::Program GetCornerProgram(OpenCLContext& context)
+{
+  return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText() +
+      RasterParameters_h + MultiplyAdd_cl + BoundaryCorners_cl,
+    KernelOptions);
+}
+
+cl::Program GetBoundaryProgram(
+  OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool coverageBits, bool serial)
+{
+  return context.GetProgram(GetSamplingMeshText() + RasterParameters_h +
+      MakeArrayText(context, arrays) + "#define COVERAGE_IS_BITS " + (coverageBits ? "1" : "0") +
+      "\n#define ROWS_AT_ONCE " + (serial ? "DEFORMVOLUME_TILE_ROWS\n" : "1\n") + MultiplyAdd_cl +
+      GetTileText(false) + PointInTetrahedron_cl + SampleStoring_cl + BoundaryCells_cl,
+    KernelOptions);
+}
+
+} // namespace
+
+BoundaryCells::BoundaryCells(
+  WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches)
+  : Device(device)
+  , Volume(volume)
+  , Source(source)
+  , Launched(launches)
+{
+}
+
+void BoundaryCells::Clear()
+{
+  this->NumberOfPieces = 0;
+  for (cl::Buffer* buffer : { &this->Corners, &this->Pieces, &this->Positions, &this->Displacements,
+         &this->Tiles, &this->PatchCounts })
+  {
+    *buffer = cl::Buffer();
+  }
+  this->Lists = TetrahedronLists();
+  this->Counts = { 0, 0 };
+  this->CoveredInPatches.clear();
+  this->Covered = 0;
+}
+
+void BoundaryCells::Set(const MeshBoundary& boundary, const std::vector<std::int32_t>& numbers)
+{
+  this->Clear();
+  const std::size_t count = boundary.Pieces.size();
+  if (count == 0)
+  {
+    return;
+  }
+  const std::uint64_t bytes = std::uint64_t{ 4 } * count * sizeof(BoundaryCorner);
+  // A limit that was set is for what can be divided.
+  const std::uint64_t most =
+    this->Device.GetDevice().Device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+  if (bytes > most || 4 * count > std::numeric_limits<cl_int>::max())
+  {
+    throw Error("The boundary of the deformation needs " + std::to_string(bytes) +
+      " bytes in one piece, and the device gives no more than " + std::to_string(most) +
+      ". Use a coarser mesh or field, a smaller volume or another device.");
+  }
+  const std::array<double, 3>& scale = this->Volume.GetVoxelGrid().Scale;
+  std::vector<BoundaryCorner> corners(4 * count);
+  std::vector<cl_int4> pieces(count);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const MeshBoundary::Piece& piece = boundary.Pieces[i];
+    for (std::size_t k = 0; k < 4; ++k)
+    {
+      BoundaryCorner& corner = corners[4 * i + k];
+      for (std::size_t axis = 0; axis < 3; ++axis)
+      {
+        const double position =
+          256.0 * scale[axis] * piece.Rest[k][static_cast<glm::length_t>(axis)];
+        // Beyond that nothing of it is in any output.
+        const double whole = std::clamp(std::floor(position), -0x1p30, 0x1p30);
+        corner.Whole[axis] = static_cast<cl_int>(whole);
+        corner.Fraction[axis] = static_cast<float>(position - whole);
+      }
+      std::copy(piece.Weights[k].begin(), piece.Weights[k].end(), corner.Weights);
+      corner.Tetrahedron = numbers.empty() ? 0 : numbers[i];
+      const auto whole = std::find(piece.Weights[k].begin(), piece.Weights[k].end(), 1.0F);
+      corner.Node = whole == piece.Weights[k].end()
+        ? -1
+        : static_cast<cl_int>(whole - piece.Weights[k].begin());
+      pieces[i].s[k] = static_cast<cl_int>(4 * i + k);
+    }
+  }
+  this->Corners =
+    this->Device.Send(corners.data(), corners.size() * sizeof(BoundaryCorner), this->Corners);
+  this->Pieces = this->Device.Send(pieces.data(), pieces.size() * sizeof(cl_int4), this->Pieces);
+  const cl::Context& context = this->Device.GetContext().GetContext();
+  this->Positions = cl::Buffer(context, CL_MEM_READ_WRITE, 4 * count * sizeof(cl_int4));
+  this->Displacements = cl::Buffer(context, CL_MEM_READ_WRITE, 4 * count * sizeof(cl_float4));
+  this->NumberOfPieces = count;
+}
+
+void BoundaryCells::MoveCorners()
+{
+  OpenCLContext& context = this->Device.GetContext();
+  cl::Kernel kernel(GetCornerProgram(context), "MoveCorners");
+  const auto count = static_cast<cl_uint>(4 * this->NumberOfPieces);
+  cl_uint i = 0;
+  kernel.setArg(i++, this->Corners);
+  i = this->Source.SetPointArguments(kernel, i, this->Pieces);
+  kernel.setArg(i++, this->Positions);
+  kernel.setArg(i++, this->Displacements);
+  kernel.setArg(i++, count);
+  const std::size_t group = this->Device.GetGroupSize(kernel);
+  this->Launched.GetMappingEvents().push_back(context.Launch(this->Device.GetQueue(), kernel,
+    cl::NDRange((count + group - 1) / group * group), cl::NDRange(group)));
+}
+
+std::vector<cl_uint> BoundaryCells::ListTiles(
+  const RasterParameters& r, const std::vector<std::uint32_t>* patches)
+{
+  std::vector<cl_uint> tiles;
+  const auto count = static_cast<std::size_t>(CountTiles(r));
+  if (!patches)
+  {
+    tiles.resize(count);
+    std::iota(tiles.begin(), tiles.end(), 0U);
+    return tiles;
+  }
+  std::vector<unsigned char> wanted(count);
+  const std::uint32_t across = DEFORMVOLUME_PATCHES(static_cast<std::uint32_t>(r.OutputSize[0]));
+  const std::uint32_t down = DEFORMVOLUME_PATCHES(static_cast<std::uint32_t>(r.OutputSize[1]));
+  for (const std::uint32_t patch : *patches)
+  {
+    const int place[3] = { static_cast<int>(patch % across),
+      static_cast<int>(patch / across % down), static_cast<int>(patch / across / down) };
+    int first[3];
+    int last[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      // Patches are counted from the first voxel, tiles from index 0.
+      const int low =
+        r.OutputFirst[axis] + place[axis] * DEFORMVOLUME_PATCH - r.TileFirst[axis] * TileSize[axis];
+      const int size =
+        std::min(DEFORMVOLUME_PATCH, r.OutputSize[axis] - place[axis] * DEFORMVOLUME_PATCH);
+      first[axis] = low / TileSize[axis];
+      last[axis] = (low + size - 1) / TileSize[axis];
+    }
+    for (int z = first[2]; z <= last[2]; ++z)
+    {
+      for (int y = first[1]; y <= last[1]; ++y)
+      {
+        for (int x = first[0]; x <= last[0]; ++x)
+        {
+          wanted[static_cast<std::size_t>((z * r.TileCount[1] + y) * r.TileCount[0] + x)] = 1;
+        }
+      }
+    }
+  }
+  for (std::size_t tile = 0; tile < count; ++tile)
+  {
+    if (wanted[tile])
+    {
+      tiles.push_back(static_cast<cl_uint>(tile));
+    }
+  }
+  return tiles;
+}
+
+void BoundaryCells::Run(
+  const DeformRequest& request, const OutputSlab& output, const std::vector<std::uint32_t>* patches)
+{
+  if (this->IsEmpty())
+  {
+    return;
+  }
+  const cl::CommandQueue& queue = this->Device.GetQueue();
+  RasterParameters r = MakeTiles(output.GetExtent(), this->NumberOfPieces);
+  const VoxelGrid& grid = this->Volume.GetVoxelGrid();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double inverse = 1.0 / grid.Scale[axis];
+    r.InverseScale[axis] = static_cast<float>(inverse);
+    r.InverseScaleRest[axis] = static_cast<float>(inverse - r.InverseScale[axis]);
+  }
+  r.HasActive = this->Volume.HasOwnActive();
+  r.HasBlanked = this->Volume.HasBlanked();
+  r.HasDistances = this->Volume.HasDistances();
+
+  std::size_t numberOfPatches = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    numberOfPatches *= static_cast<std::size_t>(DEFORMVOLUME_PATCHES(r.OutputSize[axis]));
+  }
+  this->CoveredInPatches.resize(numberOfPatches);
+  if (patches)
+  {
+    for (const std::uint32_t patch : *patches)
+    {
+      this->CoveredInPatches[patch] = 0;
+    }
+  }
+  else
+  {
+    this->CoveredInPatches.assign(numberOfPatches, 0);
+  }
+  const QueueGuard guard(queue);
+  this->MoveCorners();
+  this->Counts = this->Lists.Make(this->Device, this->Pieces, this->Positions, r);
+  const std::vector<cl_uint> tiles = ListTiles(r, patches);
+  if (!tiles.empty())
+  {
+    this->Tiles = this->Device.Send(tiles.data(), tiles.size() * sizeof(cl_uint), this->Tiles);
+    const std::uint64_t bytes = numberOfPatches * sizeof(cl_uint);
+    Reserve(this->Device.GetContext(), this->PatchCounts, bytes);
+    queue.enqueueWriteBuffer(this->PatchCounts, CL_FALSE, 0, bytes, this->CoveredInPatches.data());
+    this->RunTiles(request, output, r, tiles.size());
+    queue.enqueueReadBuffer(this->PatchCounts, CL_TRUE, 0, bytes, this->CoveredInPatches.data());
+  }
+  this->Covered = std::accumulate(
+    this->CoveredInPatches.begin(), this->CoveredInPatches.end(), std::uint64_t{ 0 });
+}
+
+void BoundaryCells::RunTiles(const DeformRequest& request, const OutputSlab& output,
+  const RasterParameters& r, std::size_t numberOfTiles)
+{
+  const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
+  cl::Kernel kernel(GetBoundaryProgram(this->Device.GetContext(), arrays, output.HasCoverageBits(),
+                      this->Device.HasSerialGroups()),
+    "ResampleBoundary");
+  const std::size_t group = this->Device.GetBusyGroupSize(kernel);
+  const VoxelGrid& grid = this->Volume.GetVoxelGrid();
+  const Extent& whole =
+    GetNumberOfPoints(grid.WholeExtent) > 0 ? grid.WholeExtent : grid.VertexExtent;
+  const std::vector<VolumeChunk>& chunks = this->Volume.GetChunks();
+  // Of several chunks none may have inverted pieces before all have had their upright ones.
+  for (const int orientation : chunks.size() > 1 ? std::vector<int>{ 1, 2 } : std::vector<int>{ 3 })
+  {
+    for (const VolumeChunk& chunk : chunks)
+    {
+      KernelParameters p = this->Volume.GetParameters(chunk);
+      output.SetParameters(p);
+      const cl::Buffer& other = this->Volume.GetRestPositions();
+      cl_uint i = 0;
+      kernel.setArg(i++, this->Pieces);
+      kernel.setArg(i++, this->Positions);
+      kernel.setArg(i++, this->Displacements);
+      kernel.setArg(i++, this->Lists.GetBegins());
+      kernel.setArg(i++, this->Lists.GetLists());
+      kernel.setArg(i++, this->Tiles);
+      kernel.setArg(i++, this->Volume.GetActive(chunk));
+      kernel.setArg(i++, r.HasActive ? chunk.Active : other);
+      kernel.setArg(i++, r.HasBlanked ? chunk.Blanked : other);
+      kernel.setArg(i++, this->Volume.GetDistances(chunk));
+      kernel.setArg(i++, output.GetCoverageTarget());
+      kernel.setArg(i++, this->PatchCounts);
+      kernel.setArg(i++, MakeInt4(whole[0], whole[2], whole[4]));
+      kernel.setArg(i++, MakeInt4(whole[1], whole[3], whole[5]));
+      kernel.setArg(i++, cl_int{ orientation });
+      kernel.setArg(i++, r);
+      kernel.setArg(i++, p);
+      const std::vector<cl::Buffer>& sources = this->Volume.GetArrays(chunk);
+      for (std::size_t a = 0; a < sources.size(); ++a)
+      {
+        kernel.setArg(i++, sources[a]);
+        kernel.setArg(i++, output.GetArray(a));
+      }
+      this->Launched.Run(request, kernel, cl::NDRange(numberOfTiles * group), cl::NDRange(group));
+    }
+  }
+}
+
+std::size_t BoundaryCells::GetNumberOfLaunches() const
+{
+  const std::size_t chunks = this->Volume.GetChunks().size();
+  return this->IsEmpty() ? 0 : chunks > 1 ? 2 * chunks : 1;
+}
+
+std::uint64_t BoundaryCells::GetMemory() const
+{
+  std::uint64_t bytes = this->Lists.GetMemory();
+  for (const cl::Buffer* buffer : { &this->Corners, &this->Pieces, &this->Positions,
+         &this->Displacements, &this->Tiles, &this->PatchCounts })
+  {
+    bytes += deformvolume::GetMemory(*buffer);
+  }
+  return bytes;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The corners of the pieces that the boundary of the deformation mesh is resampled by (BoundaryCells.cl).
+
+// Where the corners of the pieces are now, in 1/256 output voxel, and their displacements. Of a mesh: points: nodes;
+// tetrahedra: as links have them. Of a field: points: float4, displacements.
+__kernel void MoveCorners(__global const BoundaryCorner* corners, __global const int4* tetrahedra,
+  __global const float4* points, const int4 dimensions, __global int4* positions, __global float4* displacements,
+  const uint count)
+{
+  const uint i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const BoundaryCorner corner = corners[i];
+  float4 d = 0.0f;
+  if (dimensions.x > 0)
+  {
+    const float3 f = (float3)(corner.Weights[0], corner.Weights[1], corner.Weights[2]);
+    const int3 last = dimensions.xyz - 1;
+    const int3 low = min(convert_int3(floor(f)), last);
+    const int3 high = min(low + 1, last);
+    const float3 t = f - convert_float3(low);
+#define POINT(i, j, k) points[((size_t)(k) * dimensions.y + (j)) * dimensions.x + (i)]
+#define MIX(a, b, t) MULTIPLY_ADD((float4)(t), (b) - (a), a)
+    const float4 a = MIX(POINT(low.x, low.y, low.z), POINT(high.x, low.y, low.z), t.x);
+    const float4 b = MIX(POINT(low.x, high.y, low.z), POINT(high.x, high.y, low.z), t.x);
+    const float4 c = MIX(POINT(low.x, low.y, high.z), POINT(high.x, low.y, high.z), t.x);
+    const float4 e = MIX(POINT(low.x, high.y, high.z), POINT(high.x, high.y, high.z), t.x);
+    d = MIX(MIX(a, b, t.y), MIX(c, e, t.y), t.z);
+  }
+  else if (corner.Node >= 0)
+  {
+    const int place = ((__global const int*)tetrahedra)[4 * (size_t)corner.Tetrahedron + corner.Node];
+    d = points[place / DEFORMVOLUME_NODE_PLACES];
+  }
+  else
+  {
+    const int4 places = tetrahedra[corner.Tetrahedron];
+    const int nodes[4] = { places.x, places.y, places.z, places.w };
+    for (int k = 0; k < 4; ++k)
+    {
+      d = MULTIPLY_ADD((float4)(corner.Weights[k]), points[nodes[k] / DEFORMVOLUME_NODE_PLACES], d);
+    }
+  }
+  // Both parts of the product are exact.
+  const float4 steps = clamp(d, -16384.0f, 16384.0f) * 256.0f;
+  const float4 whole = floor(steps);
+  const float4 fraction = (float4)(corner.Fraction[0], corner.Fraction[1], corner.Fraction[2], 0.0f);
+  positions[i] = (int4)(corner.Whole[0], corner.Whole[1], corner.Whole[2], 0) + convert_int4(whole) +
+    convert_int4_rte(fraction + (steps - whole));
+  displacements[i] = d;
+}

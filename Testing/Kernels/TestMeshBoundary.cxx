@@ -1,0 +1,555 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Meshes that end within the volume: the deformed volume ends where the deformed mesh ends.
+#include "DeviceNeeds.h"
+#include "TightMesh.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+#include <random>
+
+using namespace deformvolume;
+
+namespace
+{
+
+const Extent Volume{ { -3, 20, 2, 24, 0, 21 } };
+const glm::dvec3 Middle(8.37, 13.21, 10.63);
+
+glm::dmat3 Turn(double angle)
+{
+  const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), angle, glm::dvec3(0.3, 0.5, 0.81));
+  return glm::dmat3(turn);
+}
+
+glm::dvec3 Rotate(const glm::dvec3& point, double angle)
+{
+  return Turn(angle) * (point - Middle) - (point - Middle);
+}
+
+TightMesh MakeBall(double edge, double angle = 0.4)
+{
+  return MakeTightMesh(Volume, edge, Turn(angle), Middle,
+    [](const glm::dvec3& point) { return glm::length(point - Middle) < 7.7; });
+}
+
+TightMesh MakeTorus(double edge)
+{
+  return MakeTightMesh(Volume, edge, Turn(0.7), Middle,
+    [](const glm::dvec3& point)
+    {
+      const glm::dvec3 p = point - Middle;
+      return glm::length(glm::dvec2(glm::length(glm::dvec2(p.x, p.y)) - 6.0, p.z)) < 2.4;
+    });
+}
+
+// Thinner than a voxel.
+TightMesh MakeWall(double thickness)
+{
+  const glm::dmat3 turn = Turn(0.5);
+  return MakeTightMesh(Volume, thickness, turn, Middle,
+    [=](const glm::dvec3& point)
+    {
+      const glm::dvec3 p = glm::transpose(turn) * (point - Middle) / thickness;
+      return p.z > 0.0 && p.z < 1.0 && std::abs(p.x) * thickness < 6.5 &&
+        std::abs(p.y) * thickness < 5.5;
+    });
+}
+
+// Of noise between 0 and 1 in a tetrahedron of unit edges: no derivative is over 1, and a rest
+// coordinate is off by what rounding moves (1/512 on each axis), turned, so on each axis by less
+// than sqrt(3) / 512 times what the map compresses.
+double GetBound(double compression)
+{
+  return 3.0 * std::sqrt(3.0) / 512.0 * compression + 1e-5;
+}
+
+class TightMeshes : public testing::TestWithParam<Resampling>
+{
+protected:
+  void SetUp() override
+  {
+    if (this->GetParam() == Resampling::ExactByLanes)
+    {
+      SKIP_WITHOUT_VECTORS()
+    }
+  }
+  TightOutput LoadAndRun(
+    const TightMesh& mesh, StaticMappingForm form = StaticMappingForm::Automatic)
+  {
+    VolumeDeformer deformer;
+    Load(deformer, mesh, form);
+    return DeformTight(deformer, mesh, this->GetParam());
+  }
+};
+
+} // namespace
+
+TEST_P(TightMeshes, AtRestNothingIsLost)
+{
+  for (const TightMesh& mesh :
+    { MakeBall(1.3), MakeBall(4.1), MakeTorus(1.1), MakeWall(1.2), MakeWall(0.45) })
+  {
+    const TightOutput output = this->LoadAndRun(mesh);
+    ExpectTight(mesh, output, 1e-12); // what the search rounds
+    EXPECT_EQ(output.Report.NumberOfInvertedTetrahedra, 0);
+  }
+}
+
+TEST_P(TightMeshes, MovedAndTurned)
+{
+  for (TightMesh mesh :
+    { MakeBall(1.3), MakeBall(4.1), MakeTorus(1.1), MakeWall(1.2), MakeWall(0.45) })
+  {
+    mesh.Move([](const glm::dvec3&) { return glm::dvec3(0.5, -0.25, 0.3); });
+    ExpectTight(mesh, this->LoadAndRun(mesh), GetBound(1.0));
+    mesh.Move([](const glm::dvec3& point) { return Rotate(point, 0.9); });
+    ExpectTight(mesh, this->LoadAndRun(mesh), GetBound(1.0));
+    ExpectTight(mesh, this->LoadAndRun(mesh, StaticMappingForm::Runs), GetBound(1.0));
+  }
+}
+
+TEST_P(TightMeshes, FinerOutput)
+{
+  TightMesh mesh = MakeBall(2.3);
+  mesh.Grid.Scale = { { 1.5, 0.75, 2.0 } };
+  mesh.Move([](const glm::dvec3&) { return glm::dvec3(0.4, 0.1, -0.3); });
+  ExpectTight(mesh, this->LoadAndRun(mesh), GetBound(1.0 / 0.75));
+}
+
+TEST_P(TightMeshes, NoHoleInHundredPoses)
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  TightMesh mesh = MakeTorus(1.7);
+  VolumeDeformer deformer;
+  Load(deformer, mesh);
+  for (int pose = 0; pose < 100; ++pose)
+  {
+    const double angle = 3.0 * number(random);
+    const glm::dvec3 shift(number(random), number(random), number(random));
+    const glm::dvec3 bend(number(random), number(random), number(random));
+    mesh.Move(
+      [&](const glm::dvec3& point)
+      {
+        const glm::dvec3 p = 0.3 * (point - Middle);
+        return Rotate(point, angle) + shift + bend * glm::sin(glm::dvec3(p.y, p.z, p.x));
+      });
+    deformer.SetNodeDisplacements(mesh.Displacements.data());
+    const TightOutput output = DeformTight(deformer, mesh, this->GetParam());
+    const std::vector<TightVoxel> voxels = FindTightVoxels(mesh);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < voxels.size(); ++i)
+    {
+      wrong += voxels[i].Covered >= 0 && voxels[i].Covered != output.Coverage[i] ? 1 : 0;
+    }
+    ASSERT_EQ(wrong, 0U) << "pose " << pose;
+  }
+}
+
+TEST_P(TightMeshes, Masks)
+{
+  TightMesh mesh = MakeBall(2.1);
+  std::mt19937 random(11);
+  const Extent& e = mesh.Grid.VertexExtent;
+  mesh.Active.resize(static_cast<std::size_t>(GetNumberOfCells(e)));
+  for (unsigned char& active : mesh.Active)
+  {
+    active = static_cast<unsigned char>(random() % 4 ? 31 : random() % 32);
+  }
+  mesh.Blanked.resize(static_cast<std::size_t>(mesh.GetNumberOfVoxels()));
+  for (unsigned char& blanked : mesh.Blanked)
+  {
+    blanked = random() % 40 == 0 ? 1 : 0;
+  }
+  for (int z = e[4]; z <= e[5]; ++z)
+  {
+    for (int y = e[2]; y <= e[3]; ++y)
+    {
+      for (int x = e[0]; x <= e[1]; ++x)
+      {
+        mesh.Distances.push_back(static_cast<float>(
+          glm::length(glm::dvec3(x, y, z) - Middle - glm::dvec3(7, 0, 0)) - 4.3));
+      }
+    }
+  }
+  mesh.Move([](const glm::dvec3& point) { return Rotate(point, 0.6); });
+  ExpectTight(mesh, this->LoadAndRun(mesh), GetBound(1.0));
+}
+
+// A sheet between two planes of voxels: all cells that meet it are crossed, and all of their
+// vertices lie in it. A boundary distance carves a part of it.
+TEST_P(TightMeshes, CarvedSheet)
+{
+  const Extent wide{ { 0, 99, 0, 14, 0, 9 } };
+  TightMesh mesh = MakeTightMesh(wide, 1.0, glm::dmat3(1.0), glm::dvec3(-2.0, -2.0, 4.0),
+    [](const glm::dvec3& p)
+    { return p.z > 4.0 && p.z < 6.0 && p.x < 102.0 && p.x > -2.0 && p.y < 17.0 && p.y > -2.0; });
+  const Extent& e = wide;
+  for (int z = e[4]; z <= e[5]; ++z)
+  {
+    for (int y = e[2]; y <= e[3]; ++y)
+    {
+      for (int x = e[0]; x <= e[1]; ++x)
+      {
+        mesh.Distances.push_back(static_cast<float>(
+          std::min(std::abs(x - 50.0) - 20.4, glm::length(glm::dvec2(x - 90.0, y - 7.0)) - 0.7)));
+      }
+    }
+  }
+  mesh.Move([](const glm::dvec3&) { return glm::dvec3(0.3, 0.25, 0.4); });
+  mesh.Output = wide;
+  ExpectTight(mesh, this->LoadAndRun(mesh), GetBound(1.0));
+}
+
+// The same bits whatever is made anew, and in whatever parts.
+TEST_P(TightMeshes, UpdatesEqualNewOutputs)
+{
+  TightMesh mesh = MakeBall(1.9);
+  mesh.Move([](const glm::dvec3& point) { return Rotate(point, 0.5); });
+  mesh.Output = { { -8, 26, -2, 29, -6, 27 } };
+  VolumeDeformer deformer;
+  Load(deformer, mesh);
+  TightOutput last = DeformTight(deformer, mesh, this->GetParam());
+  const std::vector<std::int64_t> crossed =
+    FindMeshBoundary(Volume, Volume, mesh.Points, mesh.Tetrahedra).Crossed;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> number(-0.6F, 0.6F);
+  int masked = 0;
+  std::int64_t inPart = 0;
+  for (int step = 0; step < 40; ++step)
+  {
+    if (step % 4 == 3)
+    {
+      const auto cells = static_cast<std::size_t>(GetNumberOfCells(mesh.Grid.VertexExtent));
+      mesh.Active.resize(cells, 31);
+      mesh.Active[static_cast<std::size_t>(crossed[random() % crossed.size()])] =
+        step % 8 == 3 ? 0 : 30;
+      SetMasks(deformer, mesh);
+    }
+    else
+    {
+      const std::size_t node = random() % mesh.Points.size();
+      for (std::size_t axis = 0; axis < 3; ++axis)
+      {
+        mesh.Displacements[3 * node + axis] += number(random);
+      }
+      deformer.SetNodeDisplacements(mesh.Displacements.data());
+    }
+    const TightOutput output = DeformTight(deformer, mesh, this->GetParam(), &last);
+    masked += step % 4 == 3 && output.Coverage != last.Coverage ? 1 : 0;
+    inPart += output.Report.NumberOfResampledBricks < output.Report.NumberOfBricks ||
+        output.Report.ChangedExtent != mesh.Output
+      ? 1
+      : 0;
+    VolumeDeformer fresh;
+    Load(fresh, mesh);
+    ExpectSame(output, DeformTight(fresh, mesh, this->GetParam()));
+    if (this->HasFailure())
+    {
+      FAIL() << "step " << step;
+    }
+    last = output;
+  }
+  EXPECT_GT(inPart, 20);
+  EXPECT_GE(masked, 3);
+}
+
+TEST_P(TightMeshes, ChunksAndSlabs)
+{
+  TightMesh mesh = MakeBall(2.1);
+  const auto turn = [](const glm::dvec3& point) { return Rotate(point, 0.9) * 1.4; };
+  // Folded along a plane, obliquely to the planes of voxels.
+  const auto fold = [](const glm::dvec3& point)
+  {
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(0.3, -0.4, 0.8));
+    const double height = glm::dot(point - Middle, normal);
+    return height > 0.9 ? (1.8 - 2.0 * height) * 0.9 * normal : glm::dvec3(0.1);
+  };
+  for (const bool isFolded : { false, true })
+  {
+    if (isFolded)
+    {
+      mesh.Move(fold);
+    }
+    else
+    {
+      mesh.Move(turn);
+    }
+    const TightOutput whole = this->LoadAndRun(mesh);
+    EXPECT_EQ(whole.Report.NumberOfInvertedTetrahedra > 0, isFolded);
+    VolumeDeformer deformer;
+    // Eight planes of links; the output in slabs of a few planes.
+    deformer.SetAllocationLimit(8 * 16 * 24 * 23);
+    Load(deformer, mesh);
+    ExpectSame(DeformTight(deformer, mesh, this->GetParam()), whole);
+    // The same by all kernels.
+    VolumeDeformer other;
+    Load(other, mesh);
+    const TightOutput byCell = DeformTight(other, mesh, Resampling::ExactByCell);
+    EXPECT_EQ(byCell.Coverage, whole.Coverage);
+    EXPECT_EQ(byCell.Labels, whole.Labels);
+    if (!isFolded) // on the crease of a fold cells of the volume are bent, and not the mesh
+    {
+      ExpectTight(mesh, whole, GetBound(1.0));
+    }
+  }
+}
+
+// A part of the volume and of its output, as of the whole.
+TEST_P(TightMeshes, Parts)
+{
+  TightMesh mesh = MakeBall(2.1);
+  mesh.Move([](const glm::dvec3&) { return glm::dvec3(0.3, 0.2, 0.1); });
+  const TightOutput whole = this->LoadAndRun(mesh);
+  TightMesh part = mesh;
+  part.Grid.WholeExtent = Volume;
+  part.Grid.VertexExtent[4] = 6;
+  part.Grid.VertexExtent[5] = 16;
+  part.Output[4] = 9;
+  part.Output[5] = 13;
+  // Its arrays are those of the whole.
+  const std::int64_t plane = GetSize(Volume, 0) * GetSize(Volume, 1);
+  const std::vector<float> noise = MakeNoise(mesh);
+  const std::vector<std::int16_t> labels = MakeLabels(mesh);
+  VolumeDeformer deformer;
+  deformer.SetVoxelGrid(part.Grid);
+  VolumeArray values;
+  values.Data = noise.data() + 6 * plane;
+  values.Type = ElementType::Float32;
+  values.Components = 1;
+  values.Background = -1.0;
+  VolumeArray names;
+  names.Data = labels.data() + 6 * plane;
+  names.Type = ElementType::Int16;
+  names.Components = 1;
+  names.Categorical = true;
+  deformer.SetArrays({ values, names });
+  const StaticMapping mapping = StaticMappingBuilder(
+    Volume, glm::dvec3(1.0), mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links)
+                                  .Build(part.Grid.VertexExtent);
+  deformer.SetMesh(mesh.Tetrahedra.data(), mesh.Tetrahedra.size(), mesh.Points.size(),
+    mapping.Links.data(), &mapping.Boundary);
+  deformer.SetNodeDisplacements(mesh.Displacements.data());
+  const TightOutput output = DeformTight(deformer, part, this->GetParam());
+  const std::int64_t outputPlane = GetSize(mesh.Output, 0) * GetSize(mesh.Output, 1);
+  const std::int64_t first = outputPlane * (part.Output[4] - mesh.Output[4]);
+  for (std::size_t i = 0; i < output.Values.size(); ++i)
+  {
+    const std::size_t there = i + static_cast<std::size_t>(first);
+    ASSERT_EQ(output.Coverage[i], whole.Coverage[there]) << i;
+    ASSERT_EQ(output.Values[i], whole.Values[there]) << i;
+    ASSERT_EQ(output.Labels[i], whole.Labels[there]) << i;
+  }
+}
+
+// All voxels lie in the mesh, and a gap goes between them that opens. Rows are so long that the
+// kernels take many cells beside it at once.
+TEST_P(TightMeshes, GapsBetweenVoxels)
+{
+  const Extent wide{ { -3, 100, 2, 20, 0, 9 } };
+  const double gap = 8.4;
+  TightMesh mesh = MakeTightMesh(wide, 110.0, glm::dmat3(1.0), glm::dvec3(-6.0, gap, -40.0),
+    [&](const glm::dvec3& p) { return p.x < 110.0 && p.z < 80.0 && std::abs(p.y - gap) < 100.0; });
+  // Two halves, from 8.4 on and up to 8.2.
+  const std::size_t points = mesh.Points.size();
+  for (Tetrahedron& tetrahedron : mesh.Tetrahedra)
+  {
+    double y = 0.0;
+    for (const std::int32_t node : tetrahedron)
+    {
+      y += 0.25 * mesh.Points[static_cast<std::size_t>(node)].y;
+    }
+    for (std::int32_t& node : tetrahedron)
+    {
+      node += y < gap ? static_cast<std::int32_t>(points) : 0;
+    }
+  }
+  for (std::size_t i = 0; i < points; ++i)
+  {
+    mesh.Points.push_back(mesh.Points[i] - glm::dvec3(0.0, 0.2, 0.0));
+  }
+  // Opened by 1.5 voxels on either side.
+  mesh.Displacements.assign(3 * mesh.Points.size(), 0.125F);
+  for (std::size_t i = 0; i < mesh.Points.size(); ++i)
+  {
+    mesh.Displacements[3 * i + 1] = i < points ? 1.5F : -1.5F;
+  }
+  mesh.Output = wide;
+  ExpectTight(mesh, this->LoadAndRun(mesh), GetBound(1.0));
+}
+
+// A forward field that ends within the volume, on a grid at an angle: as a mesh of its cells.
+TEST_P(TightMeshes, Fields)
+{
+  const double edge = 2.7;
+  const glm::dmat3 turn = Turn(0.6);
+  const glm::dvec3 first = Middle - turn * (edge * glm::dvec3(2.0, 1.5, 2.5));
+  const std::array<int, 3> size{ { 5, 4, 6 } };
+  const auto isInside = [&](const glm::dvec3& point)
+  {
+    const glm::dvec3 q = glm::transpose(turn) * (point - first) / edge;
+    return q.x > 0.0 && q.y > 0.0 && q.z > 0.0 && q.x < 4.0 && q.y < 3.0 && q.z < 5.0;
+  };
+  TightMesh mesh = MakeTightMesh(Volume, edge, turn, first, isInside);
+  const auto move = [](const glm::dvec3& point)
+  { return Rotate(point, 0.3) + 0.1 * (point - Middle); };
+  mesh.Move(move);
+
+  std::vector<float> vectors;
+  for (int z = 0; z < size[2]; ++z)
+  {
+    for (int y = 0; y < size[1]; ++y)
+    {
+      for (int x = 0; x < size[0]; ++x)
+      {
+        const glm::dvec3 d = move(first + turn * (edge * glm::dvec3(x, y, z)));
+        vectors.insert(vectors.end(), { float(d.x), float(d.y), float(d.z) });
+      }
+    }
+  }
+  DisplacementField field;
+  field.Dimensions = size;
+  field.Vectors = vectors.data();
+  const glm::dvec3 offset = glm::transpose(turn) * first / edge;
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      field.IndexToField[static_cast<std::size_t>(4 * row + column)] = turn[row][column] / edge;
+    }
+    field.IndexToField[static_cast<std::size_t>(4 * row + 3)] = -offset[row];
+  }
+  VolumeDeformer deformer;
+  Load(deformer, mesh);
+  deformer.SetDisplacementField(field);
+  const TightOutput output = DeformTight(deformer, mesh, this->GetParam());
+  ExpectTight(mesh, output, GetBound(1.0));
+
+  // All of it moves, and a part of it; both times as for a new deformer.
+  TightOutput last = output;
+  for (const std::size_t point : { std::size_t{ 119 }, std::size_t{ 0 } })
+  {
+    for (std::size_t i = 0; i < (point == 0 ? vectors.size() : 3); ++i)
+    {
+      vectors[3 * point + i] += 0.4F;
+    }
+    deformer.SetDisplacementField(field);
+    const TightOutput moved = DeformTight(deformer, mesh, this->GetParam(), &last);
+    VolumeDeformer fresh;
+    Load(fresh, mesh);
+    fresh.SetDisplacementField(field);
+    ExpectSame(moved, DeformTight(fresh, mesh, this->GetParam()));
+    EXPECT_NE(moved.Values, last.Values);
+    last = moved;
+  }
+}
+
+// Parts of one are small enough for edge functions of 64 bits.
+TEST_P(TightMeshes, LargeTetrahedra)
+{
+  TightMesh mesh = MakeTightMesh(Volume, 3000.0, Turn(0.3), Middle,
+    [](const glm::dvec3& point)
+    {
+      return (glm::transpose(Turn(0.3)) * (point - Middle)).x > 0.0 &&
+        glm::length(point - Middle) < 4000.0;
+    });
+  mesh.Move([](const glm::dvec3& point) { return 1e-3 * (point - Middle); });
+  mesh.Output = Volume;
+  ExpectTight(mesh, this->LoadAndRun(mesh), 3 * GetBound(1.0));
+}
+
+// Nodes that are in one place at rest belong together: there is no boundary between parts of a
+// mesh.
+TEST(MeshBoundaries, PartsThatAreNotJoinedHaveNone)
+{
+  const TightMesh mesh =
+    MakeTightMesh(Volume, 12.3, Turn(0.2), Middle, [](const glm::dvec3&) { return true; });
+  TightMesh apart = mesh;
+  apart.Points.clear();
+  for (Tetrahedron& tetrahedron : apart.Tetrahedra)
+  {
+    for (std::int32_t& node : tetrahedron)
+    {
+      apart.Points.push_back(mesh.Points[static_cast<std::size_t>(node)]);
+      node = static_cast<std::int32_t>(apart.Points.size() - 1);
+    }
+  }
+  EXPECT_TRUE(FindMeshBoundary(Volume, Volume, mesh.Points, mesh.Tetrahedra).IsEmpty());
+  EXPECT_TRUE(FindMeshBoundary(Volume, Volume, apart.Points, apart.Tetrahedra).IsEmpty());
+}
+
+// A mesh that is there twice, and a flat tetrahedron on its surface, have the boundary that it has
+// once.
+TEST(MeshBoundaries, FacesOnOneSideOnly)
+{
+  const TightMesh mesh = MakeBall(3.1);
+  const MeshBoundary once = FindMeshBoundary(Volume, Volume, mesh.Points, mesh.Tetrahedra);
+  TightMesh twice = mesh;
+  twice.Points.insert(twice.Points.end(), mesh.Points.begin(), mesh.Points.end());
+  for (Tetrahedron tetrahedron : mesh.Tetrahedra)
+  {
+    for (std::int32_t& node : tetrahedron)
+    {
+      node += static_cast<std::int32_t>(mesh.Points.size());
+    }
+    twice.Tetrahedra.push_back(tetrahedron);
+  }
+  EXPECT_EQ(FindMeshBoundary(Volume, Volume, twice.Points, twice.Tetrahedra).Crossed, once.Crossed);
+  TightMesh same = mesh;
+  same.Tetrahedra.insert(same.Tetrahedra.end(), mesh.Tetrahedra.begin(), mesh.Tetrahedra.end());
+  EXPECT_EQ(FindMeshBoundary(Volume, Volume, same.Points, same.Tetrahedra).Crossed, once.Crossed);
+  TightMesh flat = mesh;
+  for (const Tetrahedron& t : mesh.Tetrahedra)
+  {
+    flat.Tetrahedra.push_back({ { t[0], t[0], t[1], t[2] } });
+    flat.Tetrahedra.push_back({ { t[3], t[1], t[2], t[3] } });
+  }
+  EXPECT_EQ(FindMeshBoundary(Volume, Volume, flat.Points, flat.Tetrahedra).Crossed, once.Crossed);
+}
+
+// Of meshes that hold the whole volume none passes through it, also where it lies on the border of
+// the volume or touches a corner.
+TEST(MeshBoundaries, MeshesThatHoldTheVolumeHaveNone)
+{
+  const Extent& e = Volume;
+  const glm::dvec3 low(e[0], e[2], e[4]);
+  const glm::dvec3 high(e[1], e[3], e[5]);
+  const TightMesh same = MakeTightMesh(Volume, 1.0, glm::dmat3(1.0), low,
+    [&](const glm::dvec3& p)
+    { return glm::all(glm::greaterThan(p, low)) && glm::all(glm::lessThan(p, high)); });
+  EXPECT_TRUE(FindMeshBoundary(Volume, Volume, same.Points, same.Tetrahedra).IsEmpty());
+  // A layer less on one side.
+  const TightMesh less = MakeTightMesh(Volume, 1.0, glm::dmat3(1.0), low,
+    [&](const glm::dvec3& p)
+    {
+      return glm::all(glm::greaterThan(p, low + glm::dvec3(1, 0, 0))) &&
+        glm::all(glm::lessThan(p, high));
+    });
+  EXPECT_FALSE(FindMeshBoundary(Volume, Volume, less.Points, less.Tetrahedra).IsEmpty());
+  // A cube that has a corner of the volume on one of its faces.
+  const glm::dmat3 turn = Turn(0.4);
+  const glm::dvec3 corner = glm::transpose(turn) * low;
+  glm::dvec3 first = corner;
+  for (int i = 0; i < 8; ++i)
+  {
+    const glm::dvec3 other(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
+    first = glm::min(first, glm::transpose(turn) * other);
+  }
+  const TightMesh touching = MakeTightMesh(Volume, 60.0, turn, turn * first,
+    [&](const glm::dvec3& p) {
+      return glm::all(glm::greaterThan(glm::transpose(turn) * p, first)) && glm::length(p) < 80.0;
+    });
+  EXPECT_TRUE(FindMeshBoundary(Volume, Volume, touching.Points, touching.Tetrahedra).IsEmpty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, TightMeshes,
+  testing::Values(Resampling::ExactByCell, Resampling::ExactByLanes, Resampling::ExactByColumns),
+  [](const auto& info)
+  {
+    return info.param == Resampling::ExactByCell ? "ByCell"
+      : info.param == Resampling::ExactByLanes   ? "ByLanes"
+                                                 : "ByColumns";
+  });
