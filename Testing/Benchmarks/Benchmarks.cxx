@@ -22,6 +22,7 @@ int main(int argc, char* argv[])
   RegisterReadback(size);
   RegisterProbe(size);
   RegisterPoses(size);
+  RegisterTightMeshes(size);
   RegisterTetrahedra(size);
   RegisterVoxels(size);
   RegisterPreprocessing(size);

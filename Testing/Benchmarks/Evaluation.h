@@ -44,6 +44,9 @@ void RegisterProbe(const EvaluationSize& size);
 /// Table2/<pose>/<resampler>, and Poses/<pose> for the volume of the comparison.
 void RegisterPoses(const EvaluationSize& size);
 
+/// TightMesh/<nodes>/<boundary or without>: meshes that end within the volume.
+void RegisterTightMeshes(const EvaluationSize& size);
+
 /// Tetrahedra/<number>/<resampler>: figure 7.
 void RegisterTetrahedra(const EvaluationSize& size);
 
