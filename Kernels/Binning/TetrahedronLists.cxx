@@ -36,6 +36,19 @@ RasterParameters MakeTiles(const Extent& slab, std::size_t numberOfTetrahedra)
   return p;
 }
 
+void SetInverseScale(const VoxelGrid& grid, RasterParameters& parameters)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double inverse = 1.0 / grid.Scale[axis];
+    // Volatile, as GCC 12 leaves out the rounding where it makes vectors of this loop: what misses
+    // is zero then.
+    const volatile float rounded = static_cast<float>(inverse);
+    parameters.InverseScale[axis] = rounded;
+    parameters.InverseScaleRest[axis] = static_cast<float>(inverse - rounded);
+  }
+}
+
 TetrahedronLists::Counts TetrahedronLists::Make(WorkDevice& device, const cl::Buffer& tetrahedra,
   const cl::Buffer& positions, const RasterParameters& p)
 {

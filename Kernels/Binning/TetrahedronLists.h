@@ -6,6 +6,7 @@
 #include "Extent.h"
 #include "ListBuffers.h"
 #include "RangeLists.h"
+#include "VoxelGrid.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -17,6 +18,9 @@ class WorkDevice;
 
 /// The tiles of a slab of the output, for so many tetrahedra.
 RasterParameters MakeTiles(const Extent& slab, std::size_t numberOfTetrahedra);
+
+/// Sets how many voxels of the volume an output voxel is long, as the sum of two floats.
+void SetInverseScale(const VoxelGrid& grid, RasterParameters& parameters);
 
 /// For each tile of the output the tetrahedra of the deformation mesh that may hold some of its
 /// voxels, upright ones first, then inverted ones, each in ascending order (TetrahedronBinning.cl).

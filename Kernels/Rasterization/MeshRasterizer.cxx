@@ -80,6 +80,7 @@ RasterParameters MakeParameters(
   const DeviceVolume& volume, const Extent& slab, std::size_t numberOfTetrahedra)
 {
   RasterParameters p = MakeTiles(slab, numberOfTetrahedra);
+  SetInverseScale(volume.GetVoxelGrid(), p);
   for (int axis = 0; axis < 3; ++axis)
   {
     p.Size[axis] = volume.GetSize(axis);
@@ -92,8 +93,6 @@ RasterParameters MakeParameters(
     }
     p.FractionBits[axis] = bits;
     const double inverse = 1.0 / volume.GetVoxelGrid().Scale[axis];
-    p.InverseScale[axis] = static_cast<float>(inverse);
-    p.InverseScaleRest[axis] = static_cast<float>(inverse - p.InverseScale[axis]);
     // Rounding to 1/256 output voxel moves a surface that is that of the volume by half of it at
     // most on each axis.
     p.Tolerance[axis] =

@@ -205,13 +205,7 @@ void BoundaryCells::Run(
   }
   const cl::CommandQueue& queue = this->Device.GetQueue();
   RasterParameters r = MakeTiles(output.GetExtent(), this->NumberOfPieces);
-  const VoxelGrid& grid = this->Volume.GetVoxelGrid();
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double inverse = 1.0 / grid.Scale[axis];
-    r.InverseScale[axis] = static_cast<float>(inverse);
-    r.InverseScaleRest[axis] = static_cast<float>(inverse - r.InverseScale[axis]);
-  }
+  SetInverseScale(this->Volume.GetVoxelGrid(), r);
   r.HasActive = this->Volume.HasOwnActive();
   r.HasBlanked = this->Volume.HasBlanked();
   r.HasDistances = this->Volume.HasDistances();
