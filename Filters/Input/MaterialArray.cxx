@@ -45,14 +45,6 @@ void ForValues(vtkDataArray* array, const Function& function)
   }
 }
 
-void Lower(std::atomic<vtkIdType>& least, vtkIdType value)
-{
-  vtkIdType before = least.load();
-  while (value < before && !least.compare_exchange_weak(before, value))
-  {
-  }
-}
-
 // -1 for values that are no index.
 template <typename T>
 int ToIndex(T value)

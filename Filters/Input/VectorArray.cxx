@@ -200,11 +200,7 @@ struct VectorReader
       if (!areFinite && !takeFault)
       {
         const auto found = std::find_if_not(vectors.begin(), vectors.begin() + count, IsFinite);
-        const vtkIdType tuple = first + (found - vectors.begin());
-        vtkIdType least = bad;
-        while (tuple < least && !bad.compare_exchange_weak(least, tuple))
-        {
-        }
+        Lower(bad, first + static_cast<vtkIdType>(found - vectors.begin()));
         return;
       }
       std::vector<vtkIdType> faults;

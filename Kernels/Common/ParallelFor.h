@@ -5,6 +5,7 @@
 #include "DeformVolumeExport.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -46,6 +47,16 @@ void ParallelForParts(std::size_t size, std::size_t step, Body&& body)
         body(part * step, std::min(size, (part + 1) * step));
       }
     });
+}
+
+/// Sets the least of the values that several threads find to another one, if that is lower.
+template <typename T>
+void Lower(std::atomic<T>& least, T value)
+{
+  T before = least.load();
+  while (value < before && !least.compare_exchange_weak(before, value))
+  {
+  }
 }
 
 } // namespace deformvolume

@@ -107,10 +107,7 @@ void CheckInverseVectors(const DisplacementField& field)
         const bool isUndefined = std::isnan(v[0]) && std::isnan(v[1]) && std::isnan(v[2]);
         if (!isUndefined && !std::all_of(v, v + 3, isGood))
         {
-          std::size_t first = bad;
-          while (point < first && !bad.compare_exchange_weak(first, point))
-          {
-          }
+          Lower(bad, point);
           return;
         }
       }
@@ -214,12 +211,10 @@ void VolumeDeformation::UpdateFieldBoundary(const DisplacementField& field)
     return;
   }
   const VoxelGrid& grid = this->Volume.GetVoxelGrid();
-  const Extent& whole =
-    GetNumberOfPoints(grid.WholeExtent) > 0 ? grid.WholeExtent : grid.VertexExtent;
   MeshBoundary boundary;
   if (!field.Extrapolate)
   {
-    boundary = FindFieldBoundary(grid.VertexExtent, whole, field);
+    boundary = FindFieldBoundary(grid.VertexExtent, GetWholeExtent(grid), field);
   }
   this->SetBoundary(boundary, {});
   last.Dimensions = field.Dimensions;

@@ -87,11 +87,7 @@ std::size_t FindBadVector(
       if (!good)
       {
         const float* found = std::find_if_not(vectors + 3 * begin, vectors + 3 * end, isGood);
-        const auto vector = static_cast<std::size_t>(found - vectors) / 3;
-        std::size_t first = bad;
-        while (vector < first && !bad.compare_exchange_weak(first, vector))
-        {
-        }
+        Lower(bad, static_cast<std::size_t>(found - vectors) / 3);
       }
     });
   return bad;

@@ -68,8 +68,7 @@ FieldParameters MakeFieldParameters(const DisplacementField& field, const VoxelG
   // The kernels count from the first voxel of the whole volume: large structured indices do not fit
   // into a float, and a part must round as the whole does.
   const Extent& extent = voxelGrid.VertexExtent;
-  const Extent& whole =
-    GetNumberOfPoints(voxelGrid.WholeExtent) > 0 ? voxelGrid.WholeExtent : extent;
+  const Extent& whole = GetWholeExtent(voxelGrid);
   for (int row = 0; row < 3; ++row)
   {
     const double* m = &field.IndexToField[4 * row];

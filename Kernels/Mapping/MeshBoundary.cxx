@@ -288,6 +288,17 @@ std::vector<Triangle> FindBoundaryFaces(
   return single;
 }
 
+// Gives a piece a positive volume at rest.
+void Orient(MeshBoundary::Piece& piece)
+{
+  const std::array<glm::dvec3, 4>& q = piece.Rest;
+  if (glm::dot(q[1] - q[0], glm::cross(q[2] - q[0], q[3] - q[0])) < 0.0)
+  {
+    std::swap(piece.Rest[2], piece.Rest[3]);
+    std::swap(piece.Weights[2], piece.Weights[3]);
+  }
+}
+
 // Finds which cells the faces of a boundary cross, and collects the pieces that meet these.
 class BoundaryFinder
 {
@@ -436,18 +447,6 @@ private:
     return divided;
   }
 
-public:
-  static void Orient(MeshBoundary::Piece& piece)
-  {
-    const std::array<glm::dvec3, 4>& q = piece.Rest;
-    if (glm::dot(q[1] - q[0], glm::cross(q[2] - q[0], q[3] - q[0])) < 0.0)
-    {
-      std::swap(piece.Rest[2], piece.Rest[3]);
-      std::swap(piece.Weights[2], piece.Weights[3]);
-    }
-  }
-
-private:
   Extent Whole;
   Extent Cells;
   CellSet Crossed;
@@ -477,18 +476,13 @@ std::vector<MeshBoundary::Piece> CollectPieces(std::size_t numbers, Add&& add)
   return pieces;
 }
 
-bool HasCells(const Extent& voxels)
-{
-  return GetSize(voxels, 0) > 1 && GetSize(voxels, 1) > 1 && GetSize(voxels, 2) > 1;
-}
-
 } // namespace
 
 MeshBoundary FindMeshBoundary(const Extent& part, const Extent& whole,
   const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra)
 {
   MeshBoundary boundary;
-  if (!HasCells(part))
+  if (GetNumberOfCells(part) == 0)
   {
     return boundary;
   }
@@ -520,7 +514,7 @@ MeshBoundary FindMeshBoundary(const Extent& part, const Extent& whole,
         piece.Weights[k] = {};
         piece.Weights[k][k] = 1.0F;
       }
-      BoundaryFinder::Orient(piece);
+      Orient(piece);
       finder.Add(piece, pieces);
     });
   finder.Finish(boundary);
@@ -532,7 +526,7 @@ MeshBoundary FindFieldBoundary(
 {
   MeshBoundary boundary;
   const std::array<int, 3>& size = field.Dimensions;
-  if (!HasCells(part) || std::min({ size[0], size[1], size[2] }) < 2)
+  if (GetNumberOfCells(part) == 0 || std::min({ size[0], size[1], size[2] }) < 2)
   {
     return boundary;
   }
@@ -640,7 +634,7 @@ MeshBoundary FindFieldBoundary(
           piece.Weights[k] = { { static_cast<float>(point.x), static_cast<float>(point.y),
             static_cast<float>(point.z), 0.0F } };
         }
-        BoundaryFinder::Orient(piece);
+        Orient(piece);
         finder.Add(piece, pieces);
       }
     });

@@ -116,10 +116,7 @@ void VectorReading::Check(const std::optional<PointRanges>& changes, const char*
           const float sum = moved[0] + moved[1] + moved[2]; // not-a-number where one of them is
           if (!(largest <= LargestDisplacement) || std::isnan(sum))
           {
-            std::size_t first = bad;
-            while (point < first && !bad.compare_exchange_weak(first, point))
-            {
-            }
+            Lower(bad, point);
             return;
           }
         }

@@ -252,9 +252,7 @@ void BoundaryCells::RunTiles(const DeformRequest& request, const OutputSlab& out
                       this->Device.HasSerialGroups()),
     "ResampleBoundary");
   const std::size_t group = this->Device.GetBusyGroupSize(kernel);
-  const VoxelGrid& grid = this->Volume.GetVoxelGrid();
-  const Extent& whole =
-    GetNumberOfPoints(grid.WholeExtent) > 0 ? grid.WholeExtent : grid.VertexExtent;
+  const Extent& whole = GetWholeExtent(this->Volume.GetVoxelGrid());
   const std::vector<VolumeChunk>& chunks = this->Volume.GetChunks();
   // Of several chunks none may have inverted pieces before all have had their upright ones.
   for (const int orientation : chunks.size() > 1 ? std::vector<int>{ 1, 2 } : std::vector<int>{ 3 })

@@ -190,8 +190,8 @@ static int IsSurrounded(__global const uchar* state, __global const uchar* activ
   return all;
 }
 
-// Whether the boundary crosses the cell that begins at a vertex, and all its vertices are there: it has to be told from
-// whole ones by a vertex that is not interior.
+// Whether the boundary crosses the cell that begins at a vertex, and all its vertices are there. Such a vertex must not
+// be interior: a cell whose eight vertices are interior counts as whole.
 static int BeginsCrossed(__global const uchar* state, __global const uchar* active, int x, int y, int z,
   const KernelParameters* p)
 {

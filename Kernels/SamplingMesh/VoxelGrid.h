@@ -23,6 +23,12 @@ struct VoxelGrid
   Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } };
 };
 
+/// Structured indices of the whole volume, whether the voxels are a part of it or all of it.
+inline const Extent& GetWholeExtent(const VoxelGrid& grid)
+{
+  return GetNumberOfPoints(grid.WholeExtent) > 0 ? grid.WholeExtent : grid.VertexExtent;
+}
+
 } // namespace deformvolume
 
 #endif
