@@ -217,6 +217,8 @@ void VolumeDeformation::UpdateFieldBoundary(const DisplacementField& field)
     boundary = FindFieldBoundary(grid.VertexExtent, GetWholeExtent(grid), field);
   }
   this->SetBoundary(boundary, {});
+  // Other points move the bricks at the boundary.
+  this->Incremental.GetObserver().ForgetMapping();
   last.Dimensions = field.Dimensions;
   last.IndexToField = field.IndexToField;
   last.Extrapolate = field.Extrapolate;

@@ -238,7 +238,8 @@ BrickPoints BrickPoints::FromRuns(
   return points;
 }
 
-BrickPoints BrickPoints::FromField(const BrickGrid& grid, const FieldParameters& field)
+BrickPoints BrickPoints::FromField(
+  const BrickGrid& grid, const FieldParameters& field, const std::vector<Extent>& boundary)
 {
   BrickPoints points;
   std::copy_n(field.Dimensions, 3, points.FieldSize.begin());
@@ -264,6 +265,10 @@ BrickPoints BrickPoints::FromField(const BrickGrid& grid, const FieldParameters&
       const double end = field.Dimensions[axis] - 1;
       box[2 * axis] = static_cast<int>(std::min(std::max(std::floor(low - margin), 0.0), end));
       box[2 * axis + 1] = static_cast<int>(std::min(std::max(std::ceil(high + margin), 0.0), end));
+    }
+    if (!boundary.empty() && GetNumberOfPoints(boundary[brick]) > 0)
+    {
+      Include(box, boundary[brick]);
     }
     points.Boxes.push_back(box);
   }

@@ -50,7 +50,10 @@ public:
   static BrickPoints FromRuns(const BrickGrid& grid, const Runs& runs, const Mesh& mesh,
     const std::vector<std::size_t>* wanted = nullptr);
   ///@}
-  static BrickPoints FromField(const BrickGrid& grid, const FieldParameters& field);
+  /// boundary: for each brick of the grid a box of points of the field that move cells at the
+  /// boundary of the field in it, maybe empty; or none at all.
+  static BrickPoints FromField(
+    const BrickGrid& grid, const FieldParameters& field, const std::vector<Extent>& boundary);
   /// Of groups of bricks: the points that any of a group has. They are for AnyOf and IsApart only.
   BrickPoints Join(const std::vector<std::vector<std::size_t>>& groups) const;
   /// Some bricks of a mesh have other points now: those that were made for them alone.

@@ -422,8 +422,8 @@ void DeviceVolume::SetBoundary(const MeshBoundary& boundary, const std::vector<s
 
 void DeviceVolume::ListBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& mesh)
 {
-  this->BoundaryOfSubBricks.clear();
-  this->SubBricksAtBoundary.clear();
+  this->TetrahedraAtBoundary.clear();
+  this->FieldPointsAtBoundary.clear();
   if (boundary.IsEmpty())
   {
     return;
@@ -443,8 +443,7 @@ void DeviceVolume::ListBoundary(const MeshBoundary& boundary, const std::vector<
       static_cast<std::size_t>(grid.Count[0]) +
       static_cast<std::size_t>(x);
   };
-  std::vector<unsigned char>& isNear = this->SubBricksAtBoundary;
-  isNear.resize(grid.GetNumberOfBricks());
+  std::vector<unsigned char> isNear(grid.GetNumberOfBricks());
   for (const std::int64_t cell : boundary.Near)
   {
     const std::int64_t size[2] = { this->GetSize(0) - 1, this->GetSize(1) - 1 };
@@ -452,21 +451,29 @@ void DeviceVolume::ListBoundary(const MeshBoundary& boundary, const std::vector<
       getPlace(1, static_cast<double>(cell / size[0] % size[1])),
       getPlace(2, static_cast<double>(cell / size[0] / size[1])))] = 1;
   }
-  std::vector<std::vector<std::int32_t>>& listed = this->BoundaryOfSubBricks;
-  listed.resize(mesh.empty() ? 0 : isNear.size());
-  for (std::size_t i = 0; i < mesh.size(); ++i)
+  const bool isField = mesh.empty();
+  this->TetrahedraAtBoundary.resize(isField ? 0 : isNear.size());
+  this->FieldPointsAtBoundary.resize(isField ? isNear.size() : 0, { { 0, -1, 0, -1, 0, -1 } });
+  for (std::size_t i = 0; i < boundary.Pieces.size(); ++i)
   {
+    const MeshBoundary::Piece& piece = boundary.Pieces[i];
     int first[3];
     int last[3];
-    for (int axis = 0; axis < 3; ++axis)
+    Extent points;
+    for (std::size_t axis = 0; axis < 3; ++axis)
     {
-      const auto& rest = boundary.Pieces[i].Rest;
-      const auto ends = std::minmax({ rest[0][axis], rest[1][axis], rest[2][axis], rest[3][axis] });
-      // Nodes are rounded before samples are looked for.
-      first[axis] =
-        getPlace(axis, std::floor(ends.first - this->Shape.VertexExtent[2 * axis]) - 1.0);
-      last[axis] =
-        getPlace(axis, std::floor(ends.second - this->Shape.VertexExtent[2 * axis]) + 1.0);
+      const auto getEnds = [](const auto& corners, std::size_t k) {
+        return std::minmax({ corners[0][k], corners[1][k], corners[2][k], corners[3][k] });
+      };
+      const auto rest = getEnds(piece.Rest, axis);
+      const int begin = this->Shape.VertexExtent[2 * axis];
+      // Nodes are rounded before samples are looked for. And a piece that moves a cell moves the
+      // crossed one beside it, too: so no change of pieces is inside (IncrementalUpdate::IsInside).
+      first[axis] = getPlace(static_cast<int>(axis), std::floor(rest.first - begin) - 1.0);
+      last[axis] = getPlace(static_cast<int>(axis), std::floor(rest.second - begin) + 1.0);
+      const auto indices = getEnds(piece.Weights, axis);
+      points[2 * axis] = static_cast<int>(std::floor(indices.first));
+      points[2 * axis + 1] = static_cast<int>(std::ceil(indices.second));
     }
     for (int z = first[2]; z <= last[2]; ++z)
     {
@@ -474,8 +481,18 @@ void DeviceVolume::ListBoundary(const MeshBoundary& boundary, const std::vector<
       {
         for (int x = first[0]; x <= last[0]; ++x)
         {
-          std::vector<std::int32_t>& list = listed[getNumber(x, y, z)];
-          if (isNear[getNumber(x, y, z)] && (list.empty() || list.back() != mesh[i]))
+          const std::size_t subBrick = getNumber(x, y, z);
+          if (!isNear[subBrick])
+          {
+            continue;
+          }
+          if (isField)
+          {
+            Include(this->FieldPointsAtBoundary[subBrick], points);
+            continue;
+          }
+          std::vector<std::int32_t>& list = this->TetrahedraAtBoundary[subBrick];
+          if (list.empty() || list.back() != mesh[i])
           {
             list.push_back(mesh[i]);
           }

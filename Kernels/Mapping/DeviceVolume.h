@@ -95,11 +95,6 @@ public:
   /// device of its tetrahedra, one for each piece; empty, of a field.
   void SetBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& mesh);
   bool HasBoundary() const { return this->Bridges.HasBoundary(); }
-  /// Whether sub-bricks have cells at the boundary; empty: none has.
-  const std::vector<unsigned char>& GetSubBricksAtBoundary() const
-  {
-    return this->SubBricksAtBoundary;
-  }
   void ForgetBridges() { this->Bridges.Forget(); }
   void ChangeOwners(const std::vector<Extent>& vertices) { this->Bridges.ChangeVertices(vertices); }
   /// Finds them, where anything changed that this depends on; returns the boxes of cells that have
@@ -161,7 +156,12 @@ public:
     const std::vector<std::size_t>* wanted = nullptr) const
   {
     return this->Mapping.MakeBrickPoints(this->Chunks.front(), this->Bricks.GetSubBricks(),
-      tetrahedra, numberOfNodes, this->BoundaryOfSubBricks, wanted);
+      tetrahedra, numberOfNodes, this->TetrahedraAtBoundary, wanted);
+  }
+  /// The same of a field.
+  BrickPoints MakeBrickPoints(const FieldParameters& field) const
+  {
+    return BrickPoints::FromField(this->Bricks.GetSubBricks(), field, this->FieldPointsAtBoundary);
   }
 
   /// Brings the state of the vertices up to date, where anything changed that it depends on.
@@ -214,10 +214,11 @@ private:
   DeviceMask Distances{ DeviceMask::Kind::BoundaryDistances };
   DeviceCut Cut;
   BridgeMask Bridges;
-  /// The tetrahedra, by their numbers of the device, that move cells at the boundary in each
-  /// sub-brick; empty where there are none.
-  std::vector<std::vector<std::int32_t>> BoundaryOfSubBricks;
-  std::vector<unsigned char> SubBricksAtBoundary;
+  /// For each sub-brick what moves its cells at the boundary: tetrahedra, by their numbers of the
+  /// device, or a box of points of the field. Empty without a mesh, or a field, that has a
+  /// boundary.
+  std::vector<std::vector<std::int32_t>> TetrahedraAtBoundary;
+  std::vector<Extent> FieldPointsAtBoundary;
   VertexStates States;
   bool WithState = true;
 };

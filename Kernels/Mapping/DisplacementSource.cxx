@@ -534,7 +534,7 @@ BrickPoints DisplacementSource::MakeBrickPoints() const
 {
   return this->Volume.HasMesh()
     ? this->Volume.MakeBrickPoints(this->Tetrahedra, this->Order.Nodes.size())
-    : BrickPoints::FromField(this->Volume.GetBricks().GetSubBricks(), this->Field);
+    : this->Volume.MakeBrickPoints(this->Field);
 }
 
 void DisplacementSource::Visit(

@@ -109,10 +109,9 @@ bool IncrementalOutput::IsChangeInside() const
 {
   const cl::Buffer& state = this->Volume.GetChunks().front().State;
   const Extent moved = this->Changes.GetMovedVertices();
-  const std::vector<unsigned char>& atBoundary = this->Volume.GetSubBricksAtBoundary();
   if (!state() || GetNumberOfPoints(moved) == 0)
   {
-    return this->Changes.IsInside(nullptr, moved, atBoundary);
+    return this->Changes.IsInside(nullptr, moved);
   }
   // As it was for the last output: where a mask has changed, the change is not inside.
   const std::array<int, 3>& size = this->Volume.GetBricks().Size;
@@ -121,11 +120,11 @@ bool IncrementalOutput::IsChangeInside() const
   if (this->Device.GetDevice().IsProcessor)
   {
     const MappedBuffer<const unsigned char> mapped(queue, state, CL_MAP_READ);
-    return this->Changes.IsInside(mapped.Get(), all, atBoundary);
+    return this->Changes.IsInside(mapped.Get(), all);
   }
   std::vector<unsigned char> read(static_cast<std::size_t>(GetNumberOfPoints(moved)));
   BeginToReadBox(queue, state, all, moved, 1, read.data(), moved).Check();
-  return this->Changes.IsInside(read.data(), moved, atBoundary);
+  return this->Changes.IsInside(read.data(), moved);
 }
 
 bool IncrementalOutput::StaysOnDevice(const DeformRequest& request) const

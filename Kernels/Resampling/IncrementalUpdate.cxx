@@ -109,8 +109,7 @@ Extent IncrementalUpdate::GetMovedVertices() const
   return box;
 }
 
-bool IncrementalUpdate::IsInside(
-  const unsigned char* state, const Extent& box, const std::vector<unsigned char>& atBoundary) const
+bool IncrementalUpdate::IsInside(const unsigned char* state, const Extent& box) const
 {
   std::atomic<bool> inside{ true };
   ParallelForParts(this->Grid.GetNumberOfBricks(), StepSize,
@@ -119,9 +118,7 @@ bool IncrementalUpdate::IsInside(
       for (std::size_t subBrick = begin; subBrick < end && inside; ++subBrick)
       {
         if (this->Masked[subBrick] ||
-          (this->Moved[subBrick] &&
-            ((!atBoundary.empty() && atBoundary[subBrick]) ||
-              !this->HasOnlyInterior(subBrick, state, box))))
+          (this->Moved[subBrick] && !this->HasOnlyInterior(subBrick, state, box)))
         {
           inside = false;
         }

@@ -80,10 +80,8 @@ public:
   Extent GetMovedVertices() const;
   /// Whether all that changed are sub-bricks of which points moved and all vertices are inside the
   /// sampling mesh. state: of the vertices in a box that holds these (VertexState.cl), null where
-  /// all have a position and all cells are active. atBoundary: whether sub-bricks have cells at the
-  /// boundary of the mesh, which are not inside; empty: none has.
-  bool IsInside(const unsigned char* state, const Extent& box,
-    const std::vector<unsigned char>& atBoundary) const;
+  /// all have a position and all cells are active.
+  bool IsInside(const unsigned char* state, const Extent& box) const;
 
   /// Whether it is known where sub-bricks lie, as far as MakePlan wants it.
   bool HasBoxes() const { return this->BoxesKnown; }

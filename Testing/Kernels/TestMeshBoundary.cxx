@@ -58,6 +58,85 @@ TightMesh MakeWall(double thickness)
     });
 }
 
+// A forward field that ends within the volume, round its middle.
+class TightField
+{
+public:
+  // edge: of its cells, in voxels; size: its points on each axis.
+  TightField(double edge, const glm::dmat3& axes, const std::array<int, 3>& size)
+    : Edge(edge)
+    , Axes(axes)
+    , Size(size)
+    , First(Middle - axes * (0.5 * edge * (glm::dvec3(size[0], size[1], size[2]) - 1.0)))
+  {
+  }
+
+  // The cells of the field as those of a mesh.
+  TightMesh MakeMesh() const
+  {
+    return MakeTightMesh(Volume, this->Edge, this->Axes, this->First,
+      [this](const glm::dvec3& point)
+      {
+        const glm::dvec3 q = glm::transpose(this->Axes) * (point - this->First) / this->Edge;
+        return q.x > 0.0 && q.y > 0.0 && q.z > 0.0 && q.x < this->Size[0] - 1.0 &&
+          q.y < this->Size[1] - 1.0 && q.z < this->Size[2] - 1.0;
+      });
+  }
+
+  std::vector<float> MakeVectors(const std::function<glm::dvec3(const glm::dvec3&)>& move) const
+  {
+    std::vector<float> vectors;
+    for (int z = 0; z < this->Size[2]; ++z)
+    {
+      for (int y = 0; y < this->Size[1]; ++y)
+      {
+        for (int x = 0; x < this->Size[0]; ++x)
+        {
+          const glm::dvec3 d = move(this->First + this->Axes * (this->Edge * glm::dvec3(x, y, z)));
+          vectors.insert(vectors.end(), { float(d.x), float(d.y), float(d.z) });
+        }
+      }
+    }
+    return vectors;
+  }
+
+  DisplacementField MakeField(const std::vector<float>& vectors) const
+  {
+    DisplacementField field;
+    field.Dimensions = this->Size;
+    field.Vectors = vectors.data();
+    const glm::dvec3 offset = glm::transpose(this->Axes) * this->First / this->Edge;
+    for (int row = 0; row < 3; ++row)
+    {
+      for (int column = 0; column < 3; ++column)
+      {
+        field.IndexToField[static_cast<std::size_t>(4 * row + column)] =
+          this->Axes[row][column] / this->Edge;
+      }
+      field.IndexToField[static_cast<std::size_t>(4 * row + 3)] = -offset[row];
+    }
+    return field;
+  }
+
+  // The number of the point at four times an index, or of the last one on an axis.
+  std::size_t GetPoint(const std::array<std::size_t, 3>& index) const
+  {
+    std::size_t number = 0;
+    for (std::size_t axis = 3; axis-- > 0;)
+    {
+      const auto size = static_cast<std::size_t>(this->Size[axis]);
+      number = number * size + std::min(4 * index[axis], size - 1);
+    }
+    return number;
+  }
+
+private:
+  double Edge;
+  glm::dmat3 Axes;
+  std::array<int, 3> Size;
+  glm::dvec3 First;
+};
+
 // Of noise between 0 and 1 in a tetrahedron of unit edges: no derivative is over 1, and a rest
 // coordinate is off by what rounding moves (1/512 on each axis), turned, so on each axis by less
 // than sqrt(3) / 512 times what the map compresses.
@@ -82,6 +161,56 @@ protected:
     VolumeDeformer deformer;
     Load(deformer, mesh, form);
     return DeformTight(deformer, mesh, this->GetParam());
+  }
+
+  // Nodes move and masks change at random.
+  void CheckUpdates(TightMesh mesh)
+  {
+    VolumeDeformer deformer;
+    Load(deformer, mesh);
+    TightOutput last = DeformTight(deformer, mesh, this->GetParam());
+    const std::vector<std::int64_t> crossed =
+      FindMeshBoundary(Volume, Volume, mesh.Points, mesh.Tetrahedra).Crossed;
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> number(-0.6F, 0.6F);
+    int masked = 0;
+    std::int64_t inPart = 0;
+    for (int step = 0; step < 40; ++step)
+    {
+      if (step % 4 == 3)
+      {
+        const auto cells = static_cast<std::size_t>(GetNumberOfCells(mesh.Grid.VertexExtent));
+        mesh.Active.resize(cells, 31);
+        mesh.Active[static_cast<std::size_t>(crossed[random() % crossed.size()])] =
+          step % 8 == 3 ? 0 : 30;
+        SetMasks(deformer, mesh);
+      }
+      else
+      {
+        const std::size_t node = random() % mesh.Points.size();
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+          mesh.Displacements[3 * node + axis] += number(random);
+        }
+        deformer.SetNodeDisplacements(mesh.Displacements.data());
+      }
+      const TightOutput output = DeformTight(deformer, mesh, this->GetParam(), &last);
+      masked += step % 4 == 3 && output.Coverage != last.Coverage ? 1 : 0;
+      inPart += output.Report.NumberOfResampledBricks < output.Report.NumberOfBricks ||
+          output.Report.ChangedExtent != mesh.Output
+        ? 1
+        : 0;
+      VolumeDeformer fresh;
+      Load(fresh, mesh);
+      ExpectSame(output, DeformTight(fresh, mesh, this->GetParam()));
+      if (this->HasFailure())
+      {
+        FAIL() << "step " << step;
+      }
+      last = output;
+    }
+    EXPECT_GT(inPart, 20);
+    EXPECT_GE(masked, 3);
   }
 };
 
@@ -204,57 +333,16 @@ TEST_P(TightMeshes, CarvedSheet)
   ExpectTight(mesh, this->LoadAndRun(mesh), GetBound(1.0));
 }
 
-// The same bits whatever is made anew, and in whatever parts.
+// The same bits whatever is made anew, and in whatever parts. Of the wall no tetrahedron moves a
+// voxel.
 TEST_P(TightMeshes, UpdatesEqualNewOutputs)
 {
-  TightMesh mesh = MakeBall(1.9);
-  mesh.Move([](const glm::dvec3& point) { return Rotate(point, 0.5); });
-  mesh.Output = { { -8, 26, -2, 29, -6, 27 } };
-  VolumeDeformer deformer;
-  Load(deformer, mesh);
-  TightOutput last = DeformTight(deformer, mesh, this->GetParam());
-  const std::vector<std::int64_t> crossed =
-    FindMeshBoundary(Volume, Volume, mesh.Points, mesh.Tetrahedra).Crossed;
-  std::mt19937 random(7);
-  std::uniform_real_distribution<float> number(-0.6F, 0.6F);
-  int masked = 0;
-  std::int64_t inPart = 0;
-  for (int step = 0; step < 40; ++step)
+  for (TightMesh mesh : { MakeBall(1.9), MakeWall(0.45) })
   {
-    if (step % 4 == 3)
-    {
-      const auto cells = static_cast<std::size_t>(GetNumberOfCells(mesh.Grid.VertexExtent));
-      mesh.Active.resize(cells, 31);
-      mesh.Active[static_cast<std::size_t>(crossed[random() % crossed.size()])] =
-        step % 8 == 3 ? 0 : 30;
-      SetMasks(deformer, mesh);
-    }
-    else
-    {
-      const std::size_t node = random() % mesh.Points.size();
-      for (std::size_t axis = 0; axis < 3; ++axis)
-      {
-        mesh.Displacements[3 * node + axis] += number(random);
-      }
-      deformer.SetNodeDisplacements(mesh.Displacements.data());
-    }
-    const TightOutput output = DeformTight(deformer, mesh, this->GetParam(), &last);
-    masked += step % 4 == 3 && output.Coverage != last.Coverage ? 1 : 0;
-    inPart += output.Report.NumberOfResampledBricks < output.Report.NumberOfBricks ||
-        output.Report.ChangedExtent != mesh.Output
-      ? 1
-      : 0;
-    VolumeDeformer fresh;
-    Load(fresh, mesh);
-    ExpectSame(output, DeformTight(fresh, mesh, this->GetParam()));
-    if (this->HasFailure())
-    {
-      FAIL() << "step " << step;
-    }
-    last = output;
+    mesh.Move([](const glm::dvec3& point) { return Rotate(point, 0.5); });
+    mesh.Output = { { -8, 26, -2, 29, -6, 27 } };
+    this->CheckUpdates(mesh);
   }
-  EXPECT_GT(inPart, 20);
-  EXPECT_GE(masked, 3);
 }
 
 TEST_P(TightMeshes, ChunksAndSlabs)
@@ -384,79 +472,124 @@ TEST_P(TightMeshes, GapsBetweenVoxels)
 // A forward field that ends within the volume, on a grid at an angle: as a mesh of its cells.
 TEST_P(TightMeshes, Fields)
 {
-  const double edge = 2.7;
-  const glm::dmat3 turn = Turn(0.6);
-  const glm::dvec3 first = Middle - turn * (edge * glm::dvec3(2.0, 1.5, 2.5));
-  const std::array<int, 3> size{ { 5, 4, 6 } };
-  const auto isInside = [&](const glm::dvec3& point)
-  {
-    const glm::dvec3 q = glm::transpose(turn) * (point - first) / edge;
-    return q.x > 0.0 && q.y > 0.0 && q.z > 0.0 && q.x < 4.0 && q.y < 3.0 && q.z < 5.0;
-  };
-  TightMesh mesh = MakeTightMesh(Volume, edge, turn, first, isInside);
+  const TightField tight(2.7, Turn(0.6), { { 5, 4, 6 } });
+  TightMesh mesh = tight.MakeMesh();
   const auto move = [](const glm::dvec3& point)
   { return Rotate(point, 0.3) + 0.1 * (point - Middle); };
   mesh.Move(move);
-
-  std::vector<float> vectors;
-  for (int z = 0; z < size[2]; ++z)
-  {
-    for (int y = 0; y < size[1]; ++y)
-    {
-      for (int x = 0; x < size[0]; ++x)
-      {
-        const glm::dvec3 d = move(first + turn * (edge * glm::dvec3(x, y, z)));
-        vectors.insert(vectors.end(), { float(d.x), float(d.y), float(d.z) });
-      }
-    }
-  }
-  DisplacementField field;
-  field.Dimensions = size;
-  field.Vectors = vectors.data();
-  const glm::dvec3 offset = glm::transpose(turn) * first / edge;
-  for (int row = 0; row < 3; ++row)
-  {
-    for (int column = 0; column < 3; ++column)
-    {
-      field.IndexToField[static_cast<std::size_t>(4 * row + column)] = turn[row][column] / edge;
-    }
-    field.IndexToField[static_cast<std::size_t>(4 * row + 3)] = -offset[row];
-  }
+  std::vector<float> vectors = tight.MakeVectors(move);
+  const DisplacementField field = tight.MakeField(vectors);
   VolumeDeformer deformer;
   Load(deformer, mesh);
   deformer.SetDisplacementField(field);
-  const TightOutput output = DeformTight(deformer, mesh, this->GetParam());
-  ExpectTight(mesh, output, GetBound(1.0));
+  ExpectTight(mesh, DeformTight(deformer, mesh, this->GetParam()), GetBound(1.0));
+}
 
-  // All of it moves, and a part of it; both times as for a new deformer.
-  TightOutput last = output;
-  for (const std::size_t point : { std::size_t{ 119 }, std::size_t{ 0 } })
+// Fields coarser and finer than the pieces that they are taken as, one of them with points beside
+// the volume: whatever points move, the output
+// is that of a new deformer to the last bit.
+TEST_P(TightMeshes, UpdatesOfFieldsEqualNewOutputs)
+{
+  for (const TightField& tight :
+    { TightField(2.7, Turn(0.6), { { 5, 4, 6 } }), TightField(0.9, Turn(0.6), { { 13, 11, 15 } }),
+      TightField(0.83, glm::dmat3(1.0), { { 34, 12, 12 } }) })
   {
-    for (std::size_t i = 0; i < (point == 0 ? vectors.size() : 3); ++i)
-    {
-      vectors[3 * point + i] += 0.4F;
-    }
+    TightMesh mesh = tight.MakeMesh();
+    // Voxels of the output lie beyond the outermost voxels of the field.
+    const auto move = [](const glm::dvec3& point)
+    { return 0.1 * (point - Middle) + glm::dvec3(0.55, 0.6, 0.0); };
+    mesh.Move(move);
+    mesh.Output = { { -8, 26, -2, 29, -6, 27 } }; // a part of which changes
+    std::vector<float> vectors = tight.MakeVectors(move);
+    const DisplacementField field = tight.MakeField(vectors);
+    VolumeDeformer deformer;
+    Load(deformer, mesh);
     deformer.SetDisplacementField(field);
-    const TightOutput moved = DeformTight(deformer, mesh, this->GetParam(), &last);
-    VolumeDeformer fresh;
-    Load(fresh, mesh);
-    fresh.SetDisplacementField(field);
-    ExpectSame(moved, DeformTight(fresh, mesh, this->GetParam()));
-    EXPECT_NE(moved.Values, last.Values);
-    last = moved;
+    TightOutput last = DeformTight(deformer, mesh, this->GetParam());
+    std::mt19937 random(9);
+    std::uniform_real_distribution<float> number(-0.9F, 0.9F);
+    int changed = 0;
+    int inPart = 0;
+    for (int step = 0; step < 50; ++step)
+    {
+      // A corner of one of the pieces that a fine field is taken as, or any point.
+      const std::size_t point = step % 2
+        ? tight.GetPoint({ random() % 9, random() % 4, random() % 4 })
+        : random() % (vectors.size() / 3);
+      // All of it moves, or a point.
+      for (std::size_t i = 0; i < (step == 3 ? vectors.size() : 3); ++i)
+      {
+        vectors[step == 3 ? i : 3 * point + i] += number(random) * (step == 3 ? 0.1F : 1.0F);
+      }
+      deformer.SetDisplacementField(field);
+      const TightOutput output = DeformTight(deformer, mesh, this->GetParam(), &last);
+      VolumeDeformer fresh;
+      Load(fresh, mesh);
+      fresh.SetDisplacementField(field);
+      ExpectSame(output, DeformTight(fresh, mesh, this->GetParam()));
+      if (this->HasFailure())
+      {
+        FAIL() << "step " << step;
+      }
+      inPart += output.Report.ChangedExtent != mesh.Output ? 1 : 0;
+      changed += output.Values != last.Values ? 1 : 0;
+      last = output;
+    }
+    EXPECT_GT(changed, 10);
+    EXPECT_GT(inPart, 10);
   }
+}
+
+// Of a mesh that is folded onto itself the upright part is on top, also where that comes in a later
+// part of the volume. Both parts lie between planes of voxels at rest.
+TEST_P(TightMeshes, UprightBeforeInvertedInAllChunks)
+{
+  const double edge = 0.6;
+  const glm::dvec3 first(8.3, 13.2, 4.2);
+  TightMesh mesh = MakeTightMesh(Volume, edge, glm::dmat3(1.0), first,
+    [&](const glm::dvec3& p)
+    {
+      const glm::dvec3 q = glm::abs(p - first);
+      return q.x < 6.0 && q.y < 5.4 && p.z > 4.2 && (p.z < 4.8 || (p.z > 16.2 && p.z < 16.8));
+    });
+  const auto isBelow = [](const glm::dvec3& p) { return p.z < 10.0; };
+  mesh.Move(
+    [&](const glm::dvec3& p) {
+      return isBelow(p) ? glm::dvec3(2.0 * (first.x - p.x), 0.0, 12.5) : glm::dvec3(0.0, 0.0, 0.5);
+    });
+  mesh.Output = Volume;
+  TightMesh apart = mesh;
+  for (std::size_t i = 0; i < mesh.Points.size(); ++i)
+  {
+    apart.Displacements[3 * i + 2] -= isBelow(mesh.Points[i]) ? 10.0F : 0.0F;
+  }
+  const TightOutput whole = this->LoadAndRun(mesh);
+  const TightOutput beside = this->LoadAndRun(apart);
+  const auto plane = static_cast<std::size_t>(GetSize(Volume, 0) * GetSize(Volume, 1));
+  std::size_t covered = 0;
+  for (std::size_t i = 17 * plane; i < 18 * plane; ++i)
+  {
+    covered += beside.Coverage[i] == 1 ? 1U : 0U;
+    ASSERT_EQ(whole.Coverage[i], beside.Coverage[i]) << i;
+    ASSERT_EQ(whole.Labels[i], beside.Labels[i]) << i;
+  }
+  EXPECT_EQ(covered, 12U * 11U);
+  VolumeDeformer deformer;
+  deformer.SetAllocationLimit(8 * 16 * 24 * 23); // eight planes of links
+  Load(deformer, mesh);
+  ExpectSame(DeformTight(deformer, mesh, this->GetParam()), whole);
 }
 
 // Parts of one are small enough for edge functions of 64 bits.
 TEST_P(TightMeshes, LargeTetrahedra)
 {
-  TightMesh mesh = MakeTightMesh(Volume, 3000.0, Turn(0.3), Middle,
+  TightMesh mesh = MakeTightMesh(Volume, 40000.0, Turn(0.3), Middle,
     [](const glm::dvec3& point)
     {
       return (glm::transpose(Turn(0.3)) * (point - Middle)).x > 0.0 &&
-        glm::length(point - Middle) < 4000.0;
+        glm::length(point - Middle) < 50000.0;
     });
-  mesh.Move([](const glm::dvec3& point) { return 1e-3 * (point - Middle); });
+  mesh.Move([](const glm::dvec3& point) { return 1e-4 * (point - Middle); });
   mesh.Output = Volume;
   ExpectTight(mesh, this->LoadAndRun(mesh), 3 * GetBound(1.0));
 }
