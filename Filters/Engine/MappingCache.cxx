@@ -51,9 +51,8 @@ std::uint64_t EstimateRunBytes(const StaticMappingBuilder& builder, const Mapped
 // Whether a mesh ends within the volume.
 bool EndsWithin(const Deformation& deformation, const MappedVolume& volume)
 {
-  const Extent& voxels = volume.Whole.PointExtent;
-  return !FindMeshBoundary(voxels, voxels, deformation.GetRestPoints(), deformation.GetTetrahedra())
-            .IsEmpty();
+  return HasMeshBoundary(
+    volume.Whole.PointExtent, deformation.GetRestPoints(), deformation.GetTetrahedra());
 }
 
 } // namespace

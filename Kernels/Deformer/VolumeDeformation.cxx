@@ -82,7 +82,7 @@ void VolumeDeformation::SetNodePlaces(const std::int32_t* places)
 void VolumeDeformation::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
   std::size_t numberOfNodes, const double* restNodes)
 {
-  this->SetBoundary({}, {});
+  this->SetBoundary({}, {}, nullptr);
   this->Source.Forget();
   this->Rasterizer.SetMesh(tetrahedra, numberOfTetrahedra, restNodes, numberOfNodes);
 }
@@ -123,7 +123,7 @@ void CheckInverseVectors(const DisplacementField& field)
 void VolumeDeformation::SetInverseField(const DisplacementField& field)
 {
   CheckInverseVectors(field);
-  this->SetBoundary({}, {});
+  this->SetBoundary({}, {}, nullptr);
   this->Source.Forget();
   this->Rasterizer.SetField(field);
 }
@@ -185,13 +185,13 @@ void VolumeDeformation::SetDisplacementField(
   this->UpdateFieldBoundary(field);
 }
 
-void VolumeDeformation::SetBoundary(
-  const MeshBoundary& boundary, const std::vector<std::int32_t>& numbers)
+void VolumeDeformation::SetBoundary(const MeshBoundary& boundary,
+  const std::vector<std::int32_t>& numbers, const Tetrahedron* tetrahedra)
 {
   this->BoundaryField = DisplacementField();
   try
   {
-    this->Exact.GetBoundary().Set(boundary, numbers);
+    this->Exact.GetBoundary().Set(boundary, numbers, tetrahedra);
     this->Volume.SetBoundary(boundary, numbers);
   }
   catch (...)
@@ -216,7 +216,7 @@ void VolumeDeformation::UpdateFieldBoundary(const DisplacementField& field)
   {
     boundary = FindFieldBoundary(grid.VertexExtent, GetWholeExtent(grid), field);
   }
-  this->SetBoundary(boundary, {});
+  this->SetBoundary(boundary, {}, nullptr);
   // Other points move the bricks at the boundary.
   this->Incremental.GetObserver().ForgetMapping();
   last.Dimensions = field.Dimensions;

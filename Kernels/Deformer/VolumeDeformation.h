@@ -47,11 +47,11 @@ public:
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const Mapping& mapping, const MeshBoundary* boundary)
   {
-    this->SetBoundary({}, {});
+    this->SetBoundary({}, {}, nullptr);
     this->Source.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, mapping);
     if (boundary)
     {
-      this->SetBoundary(*boundary, this->Source.FindNumbers(boundary->Pieces));
+      this->SetBoundary(*boundary, this->Source.FindNumbers(boundary->Pieces), tetrahedra);
     }
     this->Rasterizer.Clear();
   }
@@ -59,6 +59,7 @@ public:
     std::size_t numberOfNodes, const std::vector<TetrahedronChange>* changes)
   {
     this->Source.ChangeConnectivity(tetrahedra, numberOfTetrahedra, numberOfNodes, changes);
+    this->Exact.GetBoundary().SetCorners(tetrahedra);
   }
   void ReplaceTetrahedra(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const MappingUpdate& update)
@@ -97,7 +98,8 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
-  void SetBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& numbers);
+  void SetBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& numbers,
+    const Tetrahedron* tetrahedra);
   /// Finds the boundary of a field, where its mapping is another one than before.
   void UpdateFieldBoundary(const DisplacementField& field);
   /// Throws an Error where there is no deformation mesh.

@@ -462,10 +462,10 @@ void DeviceVolume::ListBoundary(const MeshBoundary& boundary, const std::vector<
     Extent points;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-      const auto getEnds = [](const auto& corners, std::size_t k) {
+      const auto getEnds = [](const auto& corners, auto k) {
         return std::minmax({ corners[0][k], corners[1][k], corners[2][k], corners[3][k] });
       };
-      const auto rest = getEnds(piece.Rest, axis);
+      const auto rest = getEnds(piece.Rest, static_cast<glm::length_t>(axis));
       const int begin = this->Shape.VertexExtent[2 * axis];
       // Nodes are rounded before samples are looked for. And a piece that moves a cell moves the
       // crossed one beside it, too: so no change of pieces is inside (IncrementalUpdate::IsInside).

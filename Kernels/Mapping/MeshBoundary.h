@@ -55,9 +55,13 @@ struct MeshBoundary
 DEFORMVOLUME_EXPORT MeshBoundary FindMeshBoundary(const Extent& part, const Extent& whole,
   const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra);
 
-/// The same of a field that does not extrapolate: its pieces are tetrahedra of about four voxels,
-/// in which it is taken to be linear. Where a side of the field lies on voxels there is none, as
-/// cells end there by themselves.
+/// Whether FindMeshBoundary finds any for a whole volume.
+DEFORMVOLUME_EXPORT bool HasMeshBoundary(const Extent& volume,
+  const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra);
+
+/// The boundary of a field that does not extrapolate: its pieces are tetrahedra of about four
+/// voxels, in which it is taken to be linear. Where a side of the field lies on voxels there is
+/// none, as cells end there by themselves.
 MeshBoundary FindFieldBoundary(
   const Extent& part, const Extent& whole, const DisplacementField& field);
 

@@ -64,17 +64,6 @@ static Vector InCell(const long* rest, const int* cell, const KernelParameters* 
   return r;
 }
 
-// The place of a rest coordinate that has a key.
-static void SetPlace(ulong key, const long* rest, RestPlace* place, const KernelParameters* p)
-{
-  place->Tetrahedron = key & 7;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    place->Cell[axis] = key >> (3 + 20 * axis) & 0xfffff;
-  }
-  IsInTetrahedron(place->Tetrahedron, InCell(rest, place->Cell, p), 1L << REST_BITS, place->Weights);
-}
-
 // Whether no vertex of a tetrahedron is blanked, and a point in it lies on the near side of a carved boundary.
 static int IsUnmasked(
   const RestPlace* place, const BoundaryMasks* masks, const RasterParameters* r, const KernelParameters* p)
@@ -141,11 +130,41 @@ static int FindPlace(const long* rest, const int* last, RestPlace* place, const 
   }
 }
 
-// The rest coordinate of a voxel that a piece holds. edges: its edge functions. Returns 0 outside the volume, where
-// rounding does not explain it.
-static int FindRest(const PieceMap* map, const long* edges, const int* voxel, const int* first, const int* last,
-  long* rest, const RasterParameters* r)
+// The edge functions of a piece at a voxel.
+static long4 FindEdges(const TileTetrahedron* t, int x, int y, int z)
 {
+  const long dx = x - t->Box.Low.x;
+  const long dy = y - t->Box.Low.y;
+  const long dz = z - t->Box.Low.z;
+  long edges[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    edges[k] = t->Start[k] + dx * t->Steps[k].x + dy * t->Steps[k].y + dz * t->Steps[k].z;
+  }
+  return (long4)(edges[0], edges[1], edges[2], edges[3]);
+}
+
+// Which voxels of a row of the tile lie in a piece, as bits. first: of the tile on x.
+static uint FindInside(const TileTetrahedron* t, int first, int y, int z)
+{
+  const long4 step = (long4)(t->Steps[0].x, t->Steps[1].x, t->Steps[2].x, t->Steps[3].x);
+  long4 edges = FindEdges(t, t->Box.Low.x, y, z);
+  uint inside = 0;
+  for (int x = t->Box.Low.x; x <= t->Box.High.x; ++x)
+  {
+    inside |= (any(edges < 0) ? 0u : 1u) << (x - first);
+    edges += step;
+  }
+  return inside;
+}
+
+// The rest coordinate of a voxel that a piece holds. Returns 0 outside the volume, where
+// rounding does not explain it.
+static int FindRest(const PieceMap* map, const TileTetrahedron* t, const int* voxel, const int* first,
+  const int* last, long* rest, const RasterParameters* r)
+{
+  const long4 all = FindEdges(t, voxel[0], voxel[1], voxel[2]);
+  const long edges[3] = { all.x, all.y, all.z };
   int isInside = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -207,6 +226,31 @@ static uint BitsBetween(int first, int last)
   return last < first ? 0u : (0xffffffffu >> (31 - (last - first))) << first;
 }
 
+static void MarkCovered(const int* voxel, __global char* coverage, __global uint* counts, const RasterParameters* r,
+  const KernelParameters* p)
+{
+  const size_t target = TargetOf(voxel, r);
+#if COVERAGE_IS_BITS
+  atomic_or((volatile __global uint*)coverage + (target >> 5), 1u << (target & 31));
+#else
+  coverage[target] = 1;
+#endif
+  const size_t patch = PatchRow(voxel[1] - r->OutputFirst[1], voxel[2] - r->OutputFirst[2], p) +
+    (voxel[0] - r->OutputFirst[0]) / DEFORMVOLUME_PATCH;
+  atomic_inc(counts + patch);
+}
+
+// Writes the values of a place into a voxel.
+static void StoreSample(const RestPlace* place, const int* voxel, const RasterParameters* r,
+  const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const long sum = place->Weights[0] + place->Weights[1] + place->Weights[2] + place->Weights[3];
+  Sample s;
+  BeginSamples(&s, place->Cell[0], place->Cell[1], place->Cell[2], place->Tetrahedron, sum, p);
+  PlaceSample(&s, place->Weights, TargetOf(voxel, r));
+  StoreArrays(&s ARRAY_ARGUMENTS);
+}
+
 // orientation: of the pieces that take part: 1: upright, 2: inverted, or 3: both. first, last: structured indices of the
 // first and the last voxel of the whole volume. counts: the voxels that are taken in each patch.
 __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const int4* positions,
@@ -233,7 +277,6 @@ __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const i
   {
     uint open[ROWS_AT_ONCE]; // voxels that no cell has covered
     uint taken[ROWS_AT_ONCE];
-    long rests[ROWS_AT_ONCE][32][3];
     ulong keys[ROWS_AT_ONCE][32];
     uint any = 0;
     for (int i = 0; i < ROWS_AT_ONCE; ++i)
@@ -291,65 +334,34 @@ __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const i
         for (int y = t.Box.Low.y; y <= t.Box.High.y; ++y)
         {
           const int row = ((z - origin[2]) << DEFORMVOLUME_TILE_BITS_Y) + y - origin[1] - begin;
-          uint left = row >= 0 && row < ROWS_AT_ONCE ? open[row] & columns : 0;
-          for (; left; left &= left - 1)
+          const uint here = row >= 0 && row < ROWS_AT_ONCE ? open[row] & columns : 0;
+          for (uint left = here ? here & FindInside(&t, origin[0], y, z) : 0; left; left &= left - 1)
           {
             const int x = popcount((left & -left) - 1);
             const int voxel[3] = { origin[0] + x, y, z };
-            long edges[4];
-            long least = 0;
-            for (int k = 0; k < 4; ++k)
-            {
-              edges[k] = t.Start[k] + (voxel[0] - t.Box.Low.x) * t.Steps[k].x + (y - t.Box.Low.y) * t.Steps[k].y +
-                (z - t.Box.Low.z) * t.Steps[k].z;
-              least = min(least, edges[k]);
-            }
             long rest[3];
             RestPlace place;
-            if (least < 0 || !FindRest(&map, edges, voxel, first, last, rest, &r) ||
+            if (!FindRest(&map, &t, voxel, first, last, rest, &r) ||
               !FindPlace(rest, last, &place, &masks, &r, &p))
             {
               continue;
             }
             const ulong key = KeyOf(&place, isInverted);
-            if ((taken[row] >> x & 1) && keys[row][x] <= key)
+            const int isTaken = taken[row] >> x & 1;
+            if (isTaken && keys[row][x] <= key)
             {
               continue;
             }
-            taken[row] |= 1u << x;
             keys[row][x] = key;
-            for (int axis = 0; axis < 3; ++axis)
+            taken[row] |= 1u << x;
+            // Few voxels have several pieces that hold them: what is not the last word is written over.
+            StoreSample(&place, voxel, &r, &p ARRAY_ARGUMENTS);
+            if (!isTaken)
             {
-              rests[row][x][axis] = rest[axis];
+              MarkCovered(voxel, coverage, counts, &r, &p);
             }
           }
         }
-      }
-    }
-    for (int i = 0; i < ROWS_AT_ONCE; ++i)
-    {
-      int voxel[3];
-      FindFirstOfRow(begin + i, origin, voxel);
-      for (uint left = taken[i]; left; left &= left - 1)
-      {
-        const int x = popcount((left & -left) - 1);
-        voxel[0] = origin[0] + x;
-        RestPlace place;
-        SetPlace(keys[i][x], rests[i][x], &place, &p);
-        const long sum = place.Weights[0] + place.Weights[1] + place.Weights[2] + place.Weights[3];
-        const size_t target = TargetOf(voxel, &r);
-        Sample s;
-        BeginSamples(&s, place.Cell[0], place.Cell[1], place.Cell[2], place.Tetrahedron, sum, &p);
-        PlaceSample(&s, place.Weights, target);
-        StoreArrays(&s ARRAY_ARGUMENTS);
-#if COVERAGE_IS_BITS
-        atomic_or((volatile __global uint*)coverage + (target >> 5), 1u << (target & 31));
-#else
-        coverage[target] = 1;
-#endif
-        const size_t patch = PatchRow(voxel[1] - r.OutputFirst[1], voxel[2] - r.OutputFirst[2], &p) +
-          (voxel[0] - r.OutputFirst[0]) / DEFORMVOLUME_PATCH;
-        atomic_inc(counts + patch);
       }
     }
   }

@@ -19,6 +19,7 @@
 #include <limits>
 #include <numeric>
 #include <string>
+#include <unordered_map>
 
 namespace deformvolume
 {
@@ -63,7 +64,9 @@ BoundaryCells::BoundaryCells(
 
 void BoundaryCells::Clear()
 {
-  this->NumberOfPieces = 0;
+  this->Boundary.clear();
+  this->Numbers.clear();
+  this->NumberOfCorners = 0;
   for (cl::Buffer* buffer : { &this->Corners, &this->Pieces, &this->Positions, &this->Displacements,
          &this->Tiles, &this->PatchCounts })
   {
@@ -75,33 +78,46 @@ void BoundaryCells::Clear()
   this->Covered = 0;
 }
 
-void BoundaryCells::Set(const MeshBoundary& boundary, const std::vector<std::int32_t>& numbers)
+void BoundaryCells::Set(const MeshBoundary& boundary, const std::vector<std::int32_t>& numbers,
+  const Tetrahedron* tetrahedra)
 {
   this->Clear();
-  const std::size_t count = boundary.Pieces.size();
-  if (count == 0)
+  this->Boundary = boundary.Pieces;
+  this->Numbers = numbers;
+  this->SetCorners(tetrahedra);
+}
+
+void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
+{
+  if (this->IsEmpty())
   {
     return;
   }
-  const std::uint64_t bytes = std::uint64_t{ 4 } * count * sizeof(BoundaryCorner);
-  // A limit that was set is for what can be divided.
-  const std::uint64_t most =
-    this->Device.GetDevice().Device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
-  if (bytes > most || 4 * count > std::numeric_limits<cl_int>::max())
-  {
-    throw Error("The boundary of the deformation needs " + std::to_string(bytes) +
-      " bytes in one piece, and the device gives no more than " + std::to_string(most) +
-      ". Use a coarser mesh or field, a smaller volume or another device.");
-  }
   const std::array<double, 3>& scale = this->Volume.GetVoxelGrid().Scale;
-  std::vector<BoundaryCorner> corners(4 * count);
-  std::vector<cl_int4> pieces(count);
-  for (std::size_t i = 0; i < count; ++i)
+  std::vector<BoundaryCorner> corners;
+  std::vector<cl_int4> pieces;
+  std::unordered_map<std::int32_t, cl_int> found; // by nodes
+  for (std::size_t i = 0; i < this->Boundary.size(); ++i)
   {
-    const MeshBoundary::Piece& piece = boundary.Pieces[i];
+    const MeshBoundary::Piece& piece = this->Boundary[i];
+    cl_int4 numbers;
     for (std::size_t k = 0; k < 4; ++k)
     {
-      BoundaryCorner& corner = corners[4 * i + k];
+      const std::array<float, 4>& weights = piece.Weights[k];
+      const auto one = std::find(weights.begin(), weights.end(), 1.0F) - weights.begin();
+      const bool isNode = tetrahedra && one < 4;
+      numbers.s[k] = static_cast<cl_int>(corners.size());
+      if (isNode)
+      {
+        const Tetrahedron& nodes = tetrahedra[static_cast<std::size_t>(piece.Tetrahedron)];
+        const std::int32_t node = nodes[static_cast<std::size_t>(one)];
+        numbers.s[k] = found.emplace(node, numbers.s[k]).first->second;
+      }
+      if (numbers.s[k] < static_cast<cl_int>(corners.size()))
+      {
+        continue;
+      }
+      BoundaryCorner corner;
       for (std::size_t axis = 0; axis < 3; ++axis)
       {
         const double position =
@@ -111,29 +127,38 @@ void BoundaryCells::Set(const MeshBoundary& boundary, const std::vector<std::int
         corner.Whole[axis] = static_cast<cl_int>(whole);
         corner.Fraction[axis] = static_cast<float>(position - whole);
       }
-      std::copy(piece.Weights[k].begin(), piece.Weights[k].end(), corner.Weights);
-      corner.Tetrahedron = numbers.empty() ? 0 : numbers[i];
-      const auto whole = std::find(piece.Weights[k].begin(), piece.Weights[k].end(), 1.0F);
-      corner.Node = whole == piece.Weights[k].end()
-        ? -1
-        : static_cast<cl_int>(whole - piece.Weights[k].begin());
-      pieces[i].s[k] = static_cast<cl_int>(4 * i + k);
+      std::copy(weights.begin(), weights.end(), corner.Weights);
+      corner.Tetrahedron = tetrahedra ? this->Numbers[i] : 0;
+      corner.Node = isNode ? static_cast<cl_int>(one) : -1;
+      corners.push_back(corner);
     }
+    pieces.push_back(numbers);
+  }
+  const std::uint64_t bytes =
+    std::max(corners.size() * sizeof(BoundaryCorner), pieces.size() * sizeof(cl_int4));
+  // A limit that was set is for what can be divided.
+  const std::uint64_t most =
+    this->Device.GetDevice().Device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+  if (bytes > most)
+  {
+    throw Error("The boundary of the deformation needs " + std::to_string(bytes) +
+      " bytes in one piece, and the device gives no more than " + std::to_string(most) +
+      ". Use a coarser mesh or field, a smaller volume or another device.");
   }
   this->Corners =
     this->Device.Send(corners.data(), corners.size() * sizeof(BoundaryCorner), this->Corners);
   this->Pieces = this->Device.Send(pieces.data(), pieces.size() * sizeof(cl_int4), this->Pieces);
-  const cl::Context& context = this->Device.GetContext().GetContext();
-  this->Positions = cl::Buffer(context, CL_MEM_READ_WRITE, 4 * count * sizeof(cl_int4));
-  this->Displacements = cl::Buffer(context, CL_MEM_READ_WRITE, 4 * count * sizeof(cl_float4));
-  this->NumberOfPieces = count;
+  OpenCLContext& context = this->Device.GetContext();
+  Reserve(context, this->Positions, corners.size() * sizeof(cl_int4));
+  Reserve(context, this->Displacements, corners.size() * sizeof(cl_float4));
+  this->NumberOfCorners = corners.size();
 }
 
 void BoundaryCells::MoveCorners()
 {
   OpenCLContext& context = this->Device.GetContext();
   cl::Kernel kernel(GetCornerProgram(context), "MoveCorners");
-  const auto count = static_cast<cl_uint>(4 * this->NumberOfPieces);
+  const auto count = static_cast<cl_uint>(this->NumberOfCorners);
   cl_uint i = 0;
   kernel.setArg(i++, this->Corners);
   i = this->Source.SetPointArguments(kernel, i, this->Pieces);
@@ -204,7 +229,7 @@ void BoundaryCells::Run(
     return;
   }
   const cl::CommandQueue& queue = this->Device.GetQueue();
-  RasterParameters r = MakeTiles(output.GetExtent(), this->NumberOfPieces);
+  RasterParameters r = MakeTiles(output.GetExtent(), this->Boundary.size());
   SetInverseScale(this->Volume.GetVoxelGrid(), r);
   r.HasActive = this->Volume.HasOwnActive();
   r.HasBlanked = this->Volume.HasBlanked();

@@ -29,10 +29,14 @@ public:
     WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches);
 
   /// Takes the boundary of the mesh that the source has, or of its field. numbers: of the
-  /// tetrahedra of the mesh on the device, one for each piece; empty for a field.
-  void Set(const MeshBoundary& boundary, const std::vector<std::int32_t>& numbers);
+  /// tetrahedra of the mesh on the device, one for each piece; tetrahedra: all of them. Empty and
+  /// null for a field.
+  void Set(const MeshBoundary& boundary, const std::vector<std::int32_t>& numbers,
+    const Tetrahedron* tetrahedra);
+  /// Tetrahedra have got other nodes, in the same places at rest.
+  void SetCorners(const Tetrahedron* tetrahedra);
   void Clear();
-  bool IsEmpty() const { return this->NumberOfPieces == 0; }
+  bool IsEmpty() const { return this->Boundary.empty(); }
 
   /// Launches of Run over all tiles.
   std::size_t GetNumberOfLaunches() const;
@@ -60,9 +64,11 @@ private:
   DeviceVolume& Volume;
   const DisplacementSource& Source;
   Launches& Launched;
-  std::size_t NumberOfPieces = 0;
-  cl::Buffer Corners; // four a piece
-  cl::Buffer Pieces;  // the numbers of these
+  std::vector<MeshBoundary::Piece> Boundary;
+  std::vector<std::int32_t> Numbers;
+  std::size_t NumberOfCorners = 0; // different ones, as pieces have nodes in common
+  cl::Buffer Corners;
+  cl::Buffer Pieces; // each four numbers of corners
   cl::Buffer Positions;
   cl::Buffer Displacements;
   cl::Buffer Tiles;

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes as large as their bodies: the deformed volume covers what vtkProbeFilter finds in the
-// moved mesh, and has the values that a mesh round the whole volume gives.
+// Meshes as large as their bodies, that of a head by TetGen among them: the deformed volume covers
+// what vtkProbeFilter finds in the moved mesh, and has the values that a mesh round the whole
+// volume gives.
 #include "FilterTesting.h"
+#include "vtkTetGenMesher.h"
 
 #include <vtkCellLocator.h>
 #include <vtkDataSetSurfaceFilter.h>
 #include <vtkDoubleArray.h>
+#include <vtkExtractVOI.h>
+#include <vtkNIFTIImageReader.h>
 #include <vtkPolyData.h>
 #include <vtkProbeFilter.h>
+#include <vtksys/SystemTools.hxx>
 
 #include <glm/geometric.hpp>
 
@@ -72,6 +77,38 @@ glm::dvec3 Turn(const glm::dvec3& p, double angle)
   return glm::dvec3(q.x, c * q.y - s * q.z, s * q.y + c * q.z);
 }
 
+/// A mesh that fits the head in a scan, as large as the volume allows; null without the scan.
+vtkSmartPointer<vtkUnstructuredGrid> MakeHead()
+{
+  const char* const file = "/usr/share/mricron/templates/ch2.nii.gz";
+  if (!vtksys::SystemTools::FileExists(file))
+  {
+    std::cout << "skipped: " << file << " is missing, install the package mricron-data\n";
+    return nullptr;
+  }
+  vtkNew<vtkNIFTIImageReader> reader;
+  reader->SetFileName(file);
+  vtkNew<vtkExtractVOI> coarse;
+  coarse->SetInputConnection(reader->GetOutputPort());
+  coarse->SetSampleRate(4, 4, 4);
+  vtkNew<vtkTetGenMesher> mesher;
+  mesher->SetInputConnection(coarse->GetOutputPort());
+  mesher->Update();
+  vtkSmartPointer<vtkUnstructuredGrid> head = mesher->GetOutput();
+  VERIFY(head->GetNumberOfCells() > 1000);
+  double bounds[6];
+  head->GetBounds(bounds);
+  const glm::dvec3 low(bounds[0], bounds[2], bounds[4]);
+  const glm::dvec3 high(bounds[1], bounds[3], bounds[5]);
+  for (vtkIdType id = 0; id < head->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 place =
+      Center + 22.0 / (high.y - low.y) * (GetPoint(head, id) - 0.5 * (low + high));
+    head->GetPoints()->SetPoint(id, &place.x);
+  }
+  return head;
+}
+
 struct Body
 {
   std::string Name;
@@ -117,6 +154,10 @@ std::vector<Body> MakeBodies()
         const glm::dvec3 out = glm::normalize(glm::dvec3(p.x, p.y, 0.7));
         return Center + (10.5 + 0.9 * p.z) * out;
       }) });
+  if (const auto head = MakeHead())
+  {
+    bodies.push_back({ "head", head });
+  }
   return bodies;
 }
 

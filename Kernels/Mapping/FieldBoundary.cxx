@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshBoundary.h"
+
+#include "BoundaryFinder.h"
+#include "FiveTetrahedra.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+// Cells of the volume on an axis of a piece of a field, about: in a piece the field is linear.
+constexpr double FieldPiece = 4.0;
+
+} // namespace
+
+MeshBoundary FindFieldBoundary(
+  const Extent& part, const Extent& whole, const DisplacementField& field)
+{
+  const std::array<int, 3>& size = field.Dimensions;
+  if (GetNumberOfCells(part) == 0 || std::min({ size[0], size[1], size[2] }) < 2)
+  {
+    return MeshBoundary();
+  }
+  const auto& m = field.IndexToField;
+  const glm::dmat3 toField(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
+  const glm::dmat3 toIndex = glm::inverse(toField);
+  if (!(std::abs(glm::determinant(toField)) > 0.0))
+  {
+    return MeshBoundary();
+  }
+  const glm::dvec3 offset(m[3], m[7], m[11]);
+  const auto place = [&](const glm::dvec3& point) { return toIndex * (point - offset); };
+
+  // Two triangles on each side of the field.
+  std::vector<Triangle> faces;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int side = 0; side < 2; ++side)
+    {
+      std::array<glm::dvec3, 4> corners;
+      for (int corner = 0; corner < 4; ++corner)
+      {
+        glm::dvec3 point;
+        point[axis] = side * (size[static_cast<std::size_t>(axis)] - 1);
+        point[(axis + 1) % 3] = (corner & 1) * (size[static_cast<std::size_t>((axis + 1) % 3)] - 1);
+        point[(axis + 2) % 3] =
+          (corner >> 1) * (size[static_cast<std::size_t>((axis + 2) % 3)] - 1);
+        corners[static_cast<std::size_t>(corner)] = place(point);
+      }
+      faces.push_back({ { corners[0], corners[1], corners[2] } });
+      faces.push_back({ { corners[3], corners[1], corners[2] } });
+    }
+  }
+  BoundaryFinder finder(part, whole);
+  // Where a side of the field lies on voxels, cells end there by themselves: kernels take voxels
+  // that lie by 1/1000 of a cell of the field outside it for voxels in it.
+  const double finest =
+    std::min({ glm::length(toIndex[0]), glm::length(toIndex[1]), glm::length(toIndex[2]) });
+  if (!finder.Cross(faces, std::min(BorderTolerance, 0.5e-3 * finest)))
+  {
+    return MeshBoundary();
+  }
+
+  // A lattice with cells that are about as large as a piece is to be: parts of the field's cells,
+  // or several of these.
+  glm::dvec3 step; // from cell to cell of the lattice, in points of the field
+  glm::i64vec3 cells;
+  glm::dvec3 last;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double length = glm::length(toIndex[axis]);
+    step[axis] = length > FieldPiece ? 1.0 / std::round(length / FieldPiece)
+                                     : std::max(1.0, std::floor(FieldPiece / length));
+    last[axis] = size[static_cast<std::size_t>(axis)] - 1;
+    cells[axis] =
+      std::max<std::int64_t>(1, std::llround(std::ceil(last[axis] / step[axis] - 1e-9)));
+  }
+  // Those that meet cells near the boundary.
+  std::vector<std::int64_t> numbers;
+  finder.ForEachNear(
+    [&](std::int64_t x, std::int64_t y, std::int64_t z)
+    {
+      const glm::dvec3 middle = (toField * (glm::dvec3(x, y, z) + 0.5) + offset) / step;
+      const glm::dvec3 reach = (0.5 + BoundaryTolerance) *
+        (glm::abs(toField[0]) + glm::abs(toField[1]) + glm::abs(toField[2])) / step;
+      const glm::i64vec3 first(
+        glm::clamp(glm::floor(middle - reach), glm::dvec3(0.0), glm::dvec3(cells)));
+      const glm::i64vec3 end(
+        glm::clamp(glm::floor(middle + reach) + 1.0, glm::dvec3(0.0), glm::dvec3(cells)));
+      for (std::int64_t k = first.z; k < end.z; ++k)
+      {
+        for (std::int64_t j = first.y; j < end.y; ++j)
+        {
+          for (std::int64_t i = first.x; i < end.x; ++i)
+          {
+            numbers.push_back((k * cells.y + j) * cells.x + i);
+          }
+        }
+      }
+    });
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return finder.Collect(numbers.size(),
+    [&](std::size_t number, const auto& add)
+    {
+      static constexpr int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+      const std::int64_t i = numbers[number];
+      const glm::i64vec3 cell(i % cells.x, i / cells.x % cells.y, i / cells.x / cells.y);
+      std::array<glm::dvec3, 8> points;
+      for (int vertex = 0; vertex < 8; ++vertex)
+      {
+        const glm::i64vec3 odd = cell & std::int64_t{ 1 };
+        const glm::i64vec3 corner =
+          cell + (glm::i64vec3(vertex & 1, vertex >> 2 & 1, vertex >> 1 & 1) ^ odd);
+        points[static_cast<std::size_t>(vertex)] = glm::min(glm::dvec3(corner) * step, last);
+      }
+      for (const auto& tetrahedron : split)
+      {
+        MeshBoundary::Piece piece;
+        piece.Tetrahedron = 0;
+        for (std::size_t k = 0; k < 4; ++k)
+        {
+          const glm::dvec3& point = points[static_cast<std::size_t>(tetrahedron[k])];
+          piece.Rest[k] = place(point);
+          piece.Weights[k] = { { static_cast<float>(point.x), static_cast<float>(point.y),
+            static_cast<float>(point.z), 0.0F } };
+        }
+        add(piece);
+      }
+    });
+}
+
+} // namespace deformvolume
