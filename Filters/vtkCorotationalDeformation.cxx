@@ -33,15 +33,19 @@ deformvolume::ElasticSimulation& vtkCorotationalDeformation::PrepareSimulation()
 int vtkCorotationalDeformation::RequestData(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  const std::int32_t before = this->Internals->Simulation.Report.NumberOfFrozenPieces;
+  const deformvolume::CorotationalReport& report = this->Internals->Simulation.Report;
+  const std::int32_t before = report.NumberOfFrozenPieces;
   const int result = this->Superclass::RequestData(request, input, output);
-  const std::int32_t frozen = this->Internals->Simulation.Report.NumberOfFrozenPieces;
-  if (frozen != before && frozen > 0)
+  if (report.NumberOfFrozenPieces != before && report.NumberOfFrozenPieces > 0)
   {
-    vtkWarningMacro(
-      << frozen
-      << " pieces of the mesh are not held by three nodes that lie on no common line, "
-         "and stay where they were. Fix nodes of them, or connect them.");
+    vtkWarningMacro(<< report.NumberOfFrozenPieces
+                    << " pieces of the mesh are not held: tetrahedra that are connected by their "
+                       "faces need three nodes that lie on no common line and are fixed, held by "
+                       "handles, or shared with a piece that is held. One of them has tetrahedron "
+                    << report.FirstFrozenTetrahedron << ". They bear no load; "
+                    << report.NumberOfFollowingPieces
+                    << " of them go with the nodes that they share, the others stay where they "
+                       "were. Fix nodes of them, or connect them by faces.");
   }
   return result;
 }

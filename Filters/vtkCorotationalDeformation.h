@@ -15,9 +15,11 @@
  * Documents/physics.md has numbers.
  *
  * @par Pieces:
- * A piece of the mesh that shares no node with others is held by three nodes that lie on no common
- * line, fixed or held by handles. Pieces that are not held stay where they were, with a warning
- * (GetNumberOfFrozenPieces()). Where no piece is held there is an error.
+ * A piece of the mesh is what holds together by faces of tetrahedra. It is held by three nodes that
+ * lie on no common line and are fixed, held by handles, or shared with a piece that is held. Other
+ * pieces bear no load and exert no force: those that share nodes go with these like rigid bodies,
+ * about the line of the shared nodes on the shortest way; the rest stays where it was. A warning
+ * tells their number (GetNumberOfFrozenPieces()). Where no piece is held there is an error.
  *
  * @par Errors:
  * Those of vtkElasticDeformation; no piece that is held; forces that are no numbers any more. The

@@ -257,7 +257,8 @@ void CorotationalElements::FindInvertedNodes(Watch& watch,
         const Lanes determinant = Dot(F.Columns[0], Cross(F.Columns[1], F.Columns[2]));
         for (int lane = 0; lane < NumberOfLanes; ++lane)
         {
-          for (int node = 0; node < 4 && determinant[lane] < 0.0; ++node)
+          for (int node = 0; node < 4 && determinant[lane] < 0.0 && batch.Volume[lane] > 0.0;
+               ++node)
           {
             isInverted[static_cast<std::size_t>(batch.Nodes[node][lane])] = 1;
           }

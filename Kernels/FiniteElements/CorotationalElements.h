@@ -3,6 +3,7 @@
 #define DeformVolumeCorotationalElements_h
 
 #include "BlockMatrix.h"
+#include "BodyPieces.h"
 #include "CorotationalTypes.h"
 #include "ElementBatches.h"
 #include "Watch.h"
@@ -25,6 +26,13 @@ public:
   }
 
   void SetMaterials(const ElasticBody& body) { deformvolume::SetMaterials(this->Batches, body); }
+
+  /// See SetActivePieces of ElementBatches.
+  void SetActivePieces(
+    const ElasticBody& body, const BodyPieces& pieces, const std::vector<bool>& isActive)
+  {
+    deformvolume::SetActivePieces(this->Batches, body, pieces.PieceOfTetrahedron, isActive);
+  }
 
   /// What is needed to assemble matrices of this pattern.
   void SetPattern(Watch& watch, const BlockPattern& pattern)

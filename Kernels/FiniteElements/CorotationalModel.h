@@ -25,8 +25,8 @@ namespace deformvolume
 /// across its thickness.
 ///
 /// Order of calls: SetBody, then Solve, as often as wanted. Solve begins with the last
-/// displacements. Every failure is an Error; the model is then as before the call, and what follows
-/// is to the last bit as if there had been none.
+/// displacements. Every failure is an Error; the body, its materials and its displacements are then
+/// as before the call.
 /// Results do not depend on the number of threads, to the last bit.
 class DEFORMVOLUME_EXPORT CorotationalModel
 {

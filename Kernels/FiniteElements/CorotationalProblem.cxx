@@ -59,38 +59,45 @@ CorotationalProblem MakeProblem(const CorotationalRequest& request, const Elasti
     isNotFree[static_cast<std::size_t>(held.Node)] = 1;
     targets[static_cast<std::size_t>(held.Node)] = held.Displacement;
   }
-  const std::vector<bool> isHeld = FindHeldPieces(body, pieces, isNotFree);
   CorotationalProblem problem;
   problem.Limits = ChooseLimits(request);
   problem.IsInteractive = request.Mode == CorotationalMode::Interactive;
-  problem.FrozenPieces = static_cast<std::int32_t>(std::count(isHeld.begin(), isHeld.end(), false));
-  if (problem.FrozenPieces == pieces.NumberOfPieces)
+  problem.Supports = FindSupports(body, pieces, isNotFree);
+  const std::vector<bool>& isHeld = problem.Supports.IsHeld;
+  if (std::count(isHeld.begin(), isHeld.end(), true) == 0)
   {
     throw Error("No constraints: nothing holds the body. Fix or hold at least three of its nodes "
                 "that do not lie on a line.");
+  }
+  std::vector<unsigned char> isOfHeldPiece(nodes, 0);
+  for (std::size_t node = 0; node < nodes; ++node)
+  {
+    const std::int32_t piece = pieces.PieceOfNode[node];
+    isOfHeldPiece[node] = piece >= 0 && isHeld[static_cast<std::size_t>(piece)] ? 1 : 0;
+  }
+  for (const auto& [node, piece] : pieces.SharedNodes)
+  {
+    isOfHeldPiece[static_cast<std::size_t>(node)] |=
+      isHeld[static_cast<std::size_t>(piece)] ? 1 : 0;
   }
   problem.IsFree.assign(nodes, 0);
   problem.Loads.assign(nodes, glm::dvec3(0.0));
   for (std::size_t node = 0; node < nodes; ++node)
   {
-    const std::int32_t piece = pieces.PieceOfNode[node];
-    if (piece < 0 || !isHeld[static_cast<std::size_t>(piece)])
-    {
-      continue;
-    }
-    problem.Loads[node] = request.Loads.Gravity * masses[node];
-    if (!request.Loads.Forces.empty())
-    {
-      problem.Loads[node] += request.Loads.Forces[node];
-    }
-    if (isNotFree[node] != 0)
+    if (isNotFree[node] != 0 && pieces.PieceOfNode[node] >= 0)
     {
       problem.HeldNodes.push_back(static_cast<std::int32_t>(node));
       problem.Targets.push_back(targets[node]);
     }
-    else
+    if (isOfHeldPiece[node] == 0)
     {
-      problem.IsFree[node] = 1;
+      continue;
+    }
+    problem.IsFree[node] = isNotFree[node] == 0 ? 1 : 0;
+    problem.Loads[node] = request.Loads.Gravity * masses[node];
+    if (!request.Loads.Forces.empty())
+    {
+      problem.Loads[node] += request.Loads.Forces[node];
     }
   }
   return problem;

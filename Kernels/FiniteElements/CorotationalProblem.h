@@ -2,6 +2,7 @@
 #ifndef DeformVolumeCorotationalProblem_h
 #define DeformVolumeCorotationalProblem_h
 
+#include "BodyPieces.h"
 #include "CorotationalTypes.h"
 #include "ElasticBody.h"
 
@@ -16,13 +17,15 @@ namespace deformvolume
 /// What does not change during a call of Solve.
 struct CorotationalProblem
 {
+  /// Nodes of pieces that are held, but for those that are fixed or held by a handle.
   std::vector<unsigned char> IsFree;
-  /// Nodes that a piece holds which is not frozen, but that are not free.
+  /// Nodes that are fixed or held by a handle.
   std::vector<std::int32_t> HeldNodes;
   /// Where these are to be.
   std::vector<glm::dvec3> Targets;
+  /// On the nodes of pieces that are held.
   std::vector<glm::dvec3> Loads;
-  std::int32_t FrozenPieces = 0;
+  PieceSupports Supports;
   /// None of them 0.
   CorotationalLimits Limits;
   bool IsInteractive = false;

@@ -15,6 +15,7 @@ namespace deformvolume
 CorotationalSolver::CorotationalSolver(Watch& watch, const ElasticBody& body)
   : Body(body)
   , Pieces(FindPieces(body, &watch))
+  , ActivePieces(static_cast<std::size_t>(Pieces.NumberOfPieces), true)
   , Elements(watch, body)
   , Tangent(this->Body.Points, this->Elements)
 {
@@ -52,14 +53,17 @@ void CorotationalSolver::SetMaterials(const std::vector<ElasticMaterial>& materi
   this->Elements.SetMaterials(this->Body);
   Watch watch(nullptr);
   this->UpdateScale(watch);
-  this->HasForces = false;
-  this->HasTangent = false;
-  this->Tangent.Forget();
+  this->Forget();
 }
 
 void CorotationalSolver::SetDisplacements(const std::vector<glm::dvec3>& displacements)
 {
   this->Last.Displacements = displacements;
+  this->Forget();
+}
+
+void CorotationalSolver::Forget()
+{
   this->HasForces = false;
   this->HasTangent = false;
   this->Tangent.Forget();
@@ -281,30 +285,59 @@ CorotationalReport CorotationalSolver::Solve(const CorotationalRequest& request)
   const CorotationalProblem problem = MakeProblem(request, this->Body, this->Pieces, this->Masses);
   Watch watch(request.Progress);
   watch.Ask();
-  const bool hadTangent = this->HasTangent;
-  const bool wasTangentOld = this->IsTangentOld;
-  this->Tangent.Begin();
+  this->UseHeldPieces(problem);
   try
   {
     return this->FindEquilibrium(watch, request, problem);
   }
   catch (...)
   {
-    // The next call is as if there had not been this one.
-    this->Tangent.Undo();
-    this->HasTangent = hadTangent;
-    this->IsTangentOld = wasTangentOld;
+    this->Forget();
     throw;
   }
+}
+
+void CorotationalSolver::UseHeldPieces(const CorotationalProblem& problem)
+{
+  if (this->ActivePieces == problem.Supports.IsHeld)
+  {
+    return;
+  }
+  this->ActivePieces = problem.Supports.IsHeld;
+  this->Elements.SetActivePieces(this->Body, this->Pieces, this->ActivePieces);
+  this->Forget();
+}
+
+void CorotationalSolver::MoveFollowers(const CorotationalProblem& problem, State& state) const
+{
+  if (problem.Supports.Following.empty())
+  {
+    return;
+  }
+  std::vector<unsigned char> isPlaced = problem.IsFree;
+  for (const std::int32_t node : problem.HeldNodes)
+  {
+    isPlaced[static_cast<std::size_t>(node)] = 1;
+  }
+  MoveFollowing(
+    this->Body, this->Pieces, problem.Supports.Following, isPlaced, state.Displacements);
 }
 
 CorotationalReport CorotationalSolver::FindEquilibrium(
   Watch& watch, const CorotationalRequest& request, const CorotationalProblem& problem)
 {
   const CorotationalLimits& limits = problem.Limits;
-  this->Tangent.Restore(watch, problem.IsFree, this->HasTangent && problem.IsInteractive);
   CorotationalReport report;
-  report.NumberOfFrozenPieces = problem.FrozenPieces;
+  const std::vector<bool>& isHeld = problem.Supports.IsHeld;
+  report.NumberOfFrozenPieces =
+    static_cast<std::int32_t>(std::count(isHeld.begin(), isHeld.end(), false));
+  report.NumberOfFollowingPieces = static_cast<std::int32_t>(problem.Supports.Following.size());
+  if (report.NumberOfFrozenPieces > 0)
+  {
+    const auto first = std::find(isHeld.begin(), isHeld.end(), false) - isHeld.begin();
+    report.FirstFrozenTetrahedron =
+      this->Pieces.Tetrahedra[this->Pieces.Begins[static_cast<std::size_t>(first)]];
+  }
   this->RightHandSide.resize(problem.IsFree.size());
   State state = this->Last;
   if (this->HasForces)
@@ -363,6 +396,7 @@ CorotationalReport CorotationalSolver::FindEquilibrium(
     this->HasTangent = false;
   }
   this->IsTangentOld = true;
+  this->MoveFollowers(problem, state);
   report.StrainEnergy = state.Sums.Energy;
   report.NumberOfInvertedTetrahedra = state.Sums.Inverted;
   std::swap(this->Last, state);

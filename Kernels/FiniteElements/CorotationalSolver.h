@@ -40,6 +40,11 @@ private:
     double Potential = 0.0;
   };
   void UpdateScale(Watch& watch);
+  // What the last calls have found serves no longer, but for the displacements.
+  void Forget();
+  void UseHeldPieces(const CorotationalProblem& problem);
+  // Pieces that are not held go with what moves their nodes of support.
+  void MoveFollowers(const CorotationalProblem& problem, State& state) const;
   CorotationalReport FindEquilibrium(
     Watch& watch, const CorotationalRequest& request, const CorotationalProblem& problem);
   void Evaluate(Watch& watch, const CorotationalProblem& problem, State& state) const;
@@ -65,6 +70,8 @@ private:
 
   ElasticBody Body;
   BodyPieces Pieces;
+  // Which of these the elements are of: those that are held.
+  std::vector<bool> ActivePieces;
   std::vector<double> Masses;
   // E h^2, in N.
   double ForceScale = 0.0;

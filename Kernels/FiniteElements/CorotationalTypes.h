@@ -65,9 +65,13 @@ struct CorotationalReport
   double RelativeResidual = 0.0;
   /// The strain energy, in J.
   double StrainEnergy = 0.0;
-  /// Pieces of the body that are not held by three nodes that lie on no common line. They have
-  /// stayed where they were.
+  /// Pieces of the body (BodyPieces) that are not held by three nodes that lie on no common line,
+  /// and a tetrahedron of the first of them. They bear no loads, and exert no forces.
   std::int32_t NumberOfFrozenPieces = 0;
+  std::int32_t FirstFrozenTetrahedron = -1;
+  /// Those of them that have gone like rigid bodies with nodes that hold or that they share with
+  /// others; the rest has stayed where it was.
+  std::int32_t NumberOfFollowingPieces = 0;
   /// Tetrahedra that are inside out now.
   std::int64_t NumberOfInvertedTetrahedra = 0;
 };

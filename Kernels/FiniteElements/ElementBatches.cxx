@@ -175,6 +175,21 @@ ElementBatches MakeElementBatches(Watch& watch, const ElasticBody& body)
   return result;
 }
 
+void SetActivePieces(ElementBatches& batches, const ElasticBody& body,
+  const std::vector<std::int32_t>& pieceOfTetrahedron, const std::vector<bool>& isActive)
+{
+  for (std::size_t i = 0; i < batches.Tetrahedra.size(); ++i)
+  {
+    const std::int32_t tetrahedron = batches.Tetrahedra[i];
+    if (tetrahedron >= 0)
+    {
+      const auto piece = pieceOfTetrahedron[static_cast<std::size_t>(tetrahedron)];
+      SetLane(batches.Batches[i / NumberOfLanes], static_cast<int>(i % NumberOfLanes), body,
+        tetrahedron, isActive[static_cast<std::size_t>(piece)]);
+    }
+  }
+}
+
 void SetMaterials(ElementBatches& batches, const ElasticBody& body)
 {
   for (std::size_t i = 0; i < batches.Tetrahedra.size(); ++i)

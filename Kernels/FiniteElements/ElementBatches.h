@@ -51,6 +51,11 @@ struct ElementBatches
 
 ElementBatches MakeElementBatches(Watch& watch, const ElasticBody& body);
 
+/// Leaves out the tetrahedra of some pieces of a body: they exert no forces, and do not count as
+/// inverted. isActive: of each piece whether its tetrahedra are there.
+void SetActivePieces(ElementBatches& batches, const ElasticBody& body,
+  const std::vector<std::int32_t>& pieceOfTetrahedron, const std::vector<bool>& isActive);
+
 /// Takes over the materials of a body.
 void SetMaterials(ElementBatches& batches, const ElasticBody& body);
 

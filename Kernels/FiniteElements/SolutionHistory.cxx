@@ -8,29 +8,6 @@
 namespace deformvolume
 {
 
-void SolutionHistory::Begin()
-{
-  this->NumberBefore = this->Number;
-  this->HadProducts = this->HasProducts;
-  this->HasAdded = false;
-  this->Replaced = 0;
-}
-
-void SolutionHistory::Undo()
-{
-  if (this->HasAdded)
-  {
-    std::rotate(this->Entries.begin(), this->Entries.begin() + 1, this->Entries.end());
-  }
-  for (std::size_t i = 0; i < this->Replaced; ++i)
-  {
-    this->Entries[i].Product.swap(this->ProductsBefore[i]);
-  }
-  this->Number = this->NumberBefore;
-  this->HasProducts = this->HadProducts;
-  this->Begin();
-}
-
 void SolutionHistory::Guess(Watch& watch, const BlockMatrix& matrix,
   const std::vector<unsigned char>& isFree, const std::vector<glm::dvec3>& rightHandSide,
   std::vector<glm::dvec3>& solution, std::vector<glm::dvec3>& residual)
@@ -41,11 +18,6 @@ void SolutionHistory::Guess(Watch& watch, const BlockMatrix& matrix,
   for (std::size_t i = 0; i < this->Number && !this->HasProducts; ++i)
   {
     Entry& entry = this->Entries[i];
-    if (i == this->Replaced)
-    {
-      entry.Product.swap(this->ProductsBefore[i]);
-      ++this->Replaced;
-    }
     entry.Product.resize(rows);
     ForRows(watch, rows,
       [&](std::size_t begin, std::size_t end)
@@ -124,7 +96,6 @@ void SolutionHistory::Add(const std::vector<glm::dvec3>& solution,
   std::transform(rightHandSide.begin(), rightHandSide.end(), residual.begin(),
     entry.Product.begin(), [](const glm::dvec3& a, const glm::dvec3& b) { return a - b; });
   this->Number = std::min(this->Number + 1, Length);
-  this->HasAdded = true;
 }
 
 } // namespace deformvolume

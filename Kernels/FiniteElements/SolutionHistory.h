@@ -23,10 +23,6 @@ public:
   /// As many as a handle has directions.
   static constexpr std::size_t Length = 3;
 
-  /// One guess and one addition after it can be undone.
-  void Begin();
-  void Undo();
-
   void Clear() { this->Number = 0; }
   /// The matrix is another one.
   void ForgetProducts() { this->HasProducts = false; }
@@ -51,17 +47,10 @@ private:
 
   Factors FindFactors(Watch& watch, const std::vector<glm::dvec3>& rightHandSide) const;
 
-  // Those that were taken up last come first. The last one is what the last addition has put out,
-  // or room for the next one.
-  std::array<Entry, Length + 1> Entries;
+  // Those that were taken up last come first.
+  std::array<Entry, Length> Entries;
   std::size_t Number = 0;
   bool HasProducts = false;
-  // How it was, and the products that a guess has replaced, of so many entries.
-  std::size_t NumberBefore = 0;
-  bool HadProducts = false;
-  bool HasAdded = false;
-  std::array<std::vector<glm::dvec3>, Length> ProductsBefore;
-  std::size_t Replaced = 0;
 };
 
 } // namespace deformvolume

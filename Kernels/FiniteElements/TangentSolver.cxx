@@ -19,118 +19,50 @@ constexpr std::ptrdiff_t LeastNumberForLevels = 1000;
 
 void TangentSolver::Forget()
 {
-  this->Now = State();
-  this->ShapeOfMatrix.reset();
-  this->SourceOfLevels.reset();
-  this->History.Clear();
-}
-
-void TangentSolver::Begin()
-{
-  this->Before = this->Now;
-  this->History.Begin();
-}
-
-void TangentSolver::Undo()
-{
-  this->Now = this->Before;
+  this->IsFree.clear();
   this->IsPreconditioned = false;
-  this->History.Undo();
-}
-
-void TangentSolver::Restore(Watch& watch, const std::vector<unsigned char>& isFree, bool usesMatrix)
-{
-  if (this->Now.Levels && this->Now.Levels != this->SourceOfLevels && *this->Now.IsFree == isFree)
-  {
-    this->Assemble(watch, this->Now.Levels->Shape);
-    this->BuildLevels(watch, this->Now.Levels);
-  }
-  if (usesMatrix)
-  {
-    this->Assemble(watch, this->Now.Shape);
-  }
+  this->History.Clear();
 }
 
 void TangentSolver::Update(Watch& watch, const std::vector<glm::dvec3>& displacements)
 {
-  // A call that was undone may have made it already.
-  const bool isThere = this->ShapeOfMatrix && *this->ShapeOfMatrix == displacements;
-  this->Assemble(watch,
-    isThere ? this->ShapeOfMatrix : std::make_shared<const std::vector<glm::dvec3>>(displacements));
-  this->Now.Shape = this->ShapeOfMatrix;
   this->IsPreconditioned = false;
   this->History.ForgetProducts();
+  this->Elements.AssembleTangent(watch, displacements, this->Matrix);
+  this->Shape = displacements;
 }
 
-void TangentSolver::Assemble(Watch& watch, const Displacements& displacements)
-{
-  if (this->ShapeOfMatrix == displacements)
-  {
-    return;
-  }
-  this->ShapeOfMatrix.reset();
-  this->IsPreconditioned = false;
-  this->Elements.AssembleTangent(watch, *displacements, this->Matrix);
-  this->ShapeOfMatrix = displacements;
-}
-
-void TangentSolver::BuildLevels(Watch& watch, const std::shared_ptr<const LevelsSource>& source)
-{
-  this->SourceOfLevels.reset();
-  this->IsPreconditioned = false;
-  this->Levels.Build(watch, this->Matrix, *source->IsFree, this->FindPositions(*source->Shape));
-  this->SourceOfLevels = source;
-}
-
-std::vector<glm::dvec3> TangentSolver::FindPositions(
-  const std::vector<glm::dvec3>& displacements) const
+std::vector<glm::dvec3> TangentSolver::FindPositions() const
 {
   std::vector<glm::dvec3> positions = this->Points;
   for (std::size_t node = 0; node < positions.size(); ++node)
   {
-    positions[node] += displacements[node];
+    positions[node] += this->Shape[node];
   }
   return positions;
 }
 
 Preconditioner& TangentSolver::Precondition(Watch& watch, const std::vector<unsigned char>& isFree)
 {
-  const bool isNew = !this->Now.IsFree || *this->Now.IsFree != isFree;
+  const bool isNew = this->IsFree != isFree;
   this->HasLevels = std::count(isFree.begin(), isFree.end(), 1) >= LeastNumberForLevels;
-  if (isNew)
+  if (this->HasLevels && isNew)
   {
-    this->Now.IsFree = std::make_shared<const std::vector<unsigned char>>(isFree);
-    this->Now.Levels.reset();
-    this->IsPreconditioned = false;
+    this->Levels.Build(watch, this->Matrix, isFree, this->FindPositions());
+    this->CostOfLevels = 0.0;
   }
-  if (!this->HasLevels)
+  if (isNew || !this->IsPreconditioned)
   {
-    if (!this->IsPreconditioned)
+    if (this->HasLevels)
+    {
+      this->Levels.SetPositions(watch, this->Matrix.GetPattern(), this->FindPositions());
+    }
+    else
     {
       this->Jacobi.Build(watch, this->Matrix, isFree);
     }
   }
-  else
-  {
-    if (isNew)
-    {
-      // A call that was undone may have built them already.
-      const bool areThere = this->SourceOfLevels && *this->SourceOfLevels->IsFree == isFree &&
-        *this->SourceOfLevels->Shape == *this->Now.Shape;
-      if (!areThere)
-      {
-        this->BuildLevels(watch,
-          std::make_shared<const LevelsSource>(LevelsSource{ this->Now.Shape, this->Now.IsFree }));
-      }
-      this->Now.Levels = this->SourceOfLevels;
-      this->Now.CostOfLevels = 0.0;
-    }
-    if (!this->IsPreconditioned)
-    {
-      this->Levels.SetPositions(
-        watch, this->Matrix.GetPattern(), this->FindPositions(*this->Now.Shape));
-    }
-  }
+  this->IsFree = isFree;
   this->IsPreconditioned = true;
   return this->HasLevels ? static_cast<Preconditioner&>(this->Levels) : this->Jacobi;
 }
@@ -145,13 +77,13 @@ void TangentSolver::JudgeLevels(int iterations, double digits)
   {
     return;
   }
-  if (this->Now.CostOfLevels == 0.0)
+  if (this->CostOfLevels == 0.0)
   {
-    this->Now.CostOfLevels = std::max(1.0, cost);
+    this->CostOfLevels = std::max(1.0, cost);
   }
-  else if (iterations > fewIterations && cost > manyTimes * this->Now.CostOfLevels)
+  else if (iterations > fewIterations && cost > manyTimes * this->CostOfLevels)
   {
-    this->Now.IsFree.reset();
+    this->IsFree.clear();
   }
 }
 
@@ -161,7 +93,7 @@ int TangentSolver::Solve(Watch& watch, const std::vector<unsigned char>& isFree,
 {
   const double squared = SumOfProducts(watch, rightHandSide, rightHandSide);
   const double wanted = limits.Tolerance * limits.Tolerance * squared;
-  if (!this->Now.IsFree || *this->Now.IsFree != isFree)
+  if (this->IsFree != isFree)
   {
     this->History.Clear(); // of other nodes
   }

@@ -12,7 +12,6 @@
 
 #include <glm/vec3.hpp>
 
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -21,10 +20,7 @@ namespace deformvolume
 
 /// The tangent of a body, and what solves linear systems with it: conjugate gradients, with the
 /// inverses of the diagonal for few nodes, and levels for many, which are kept while they serve.
-///
-/// What it does can be undone. It remembers which displacements the matrix and the levels belong
-/// to, and makes them anew where they have been replaced meanwhile: to keep two of each would take
-/// twice the memory.
+/// After an exception it has to Forget.
 class TangentSolver
 {
 public:
@@ -51,13 +47,6 @@ public:
   /// Makes the matrix for displacements.
   void Update(Watch& watch, const std::vector<glm::dvec3>& displacements);
 
-  /// What follows, of which one solution repeats, can be undone.
-  void Begin();
-  void Undo();
-  /// Makes what was replaced before it was undone: the levels, where they are for these free nodes,
-  /// and the matrix, where that is used on.
-  void Restore(Watch& watch, const std::vector<unsigned char>& isFree, bool usesMatrix);
-
   /// Nothing of what was solved before has to do with what follows.
   void Forget();
 
@@ -68,42 +57,22 @@ public:
     std::vector<glm::dvec3>& solution);
 
 private:
-  using Displacements = std::shared_ptr<const std::vector<glm::dvec3>>;
-  using FreeNodes = std::shared_ptr<const std::vector<unsigned char>>;
-  // What levels are built from.
-  struct LevelsSource
-  {
-    Displacements Shape;
-    FreeNodes IsFree;
-  };
-  struct State
-  {
-    // Those of the matrix.
-    Displacements Shape;
-    // The nodes that the preconditioner is for; none: it is to be built.
-    FreeNodes IsFree;
-    std::shared_ptr<const LevelsSource> Levels;
-    // Iterations for each digit, when the levels were new.
-    double CostOfLevels = 0.0;
-  };
-
-  void Assemble(Watch& watch, const Displacements& displacements);
-  void BuildLevels(Watch& watch, const std::shared_ptr<const LevelsSource>& source);
-  std::vector<glm::dvec3> FindPositions(const std::vector<glm::dvec3>& displacements) const;
+  std::vector<glm::dvec3> FindPositions() const;
   Preconditioner& Precondition(Watch& watch, const std::vector<unsigned char>& isFree);
   // Has the levels built anew where they have become unlike the matrix.
   void JudgeLevels(int iterations, double digits);
 
   const std::vector<glm::dvec3>& Points;
   const CorotationalElements& Elements;
-  State Now;
-  State Before;
   BlockMatrix Matrix;
+  // The displacements that it is of.
+  std::vector<glm::dvec3> Shape;
   BlockJacobi Jacobi;
   Multigrid Levels;
-  // What the matrix and the levels are of, which may be of a call that was undone.
-  Displacements ShapeOfMatrix;
-  std::shared_ptr<const LevelsSource> SourceOfLevels;
+  // The nodes that the preconditioner is for; empty: it is to be built.
+  std::vector<unsigned char> IsFree;
+  // Iterations for each digit, when the levels were new.
+  double CostOfLevels = 0.0;
   // Whether the preconditioner is for this matrix.
   bool IsPreconditioned = false;
   // Whether that is the levels.

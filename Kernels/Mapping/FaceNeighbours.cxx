@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FaceNeighbours.h"
 
-#include "ParallelFor.h"
+#include "Watch.h"
 
 #include <algorithm>
 #include <array>
@@ -26,8 +26,6 @@ struct Entry
   }
 };
 
-constexpr std::size_t NodesOfPart = 2048;
-
 std::array<std::int32_t, 3> GetSortedNodes(const Tetrahedron& tetrahedron, std::size_t k)
 {
   std::int32_t a = tetrahedron[k == 0 ? 1 : 0];
@@ -42,49 +40,51 @@ std::array<std::int32_t, 3> GetSortedNodes(const Tetrahedron& tetrahedron, std::
 } // namespace
 
 FaceNeighbours::FaceNeighbours(
-  const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes)
+  const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes, Watch* watch)
   : Next(4 * tetrahedra.size())
 {
+  Watch none(nullptr);
+  Watch& asked = watch ? *watch : none;
   // The lists one after another: that of a node has few entries, so that it is sorted at once.
   std::vector<std::size_t> ends(numberOfNodes + 1, 0);
-  for (const Tetrahedron& tetrahedron : tetrahedra)
-  {
-    for (std::size_t k = 0; k < 4; ++k)
+  ForItems(asked, tetrahedra.size(),
+    [&](std::size_t t)
     {
-      ++ends[static_cast<std::size_t>(GetSortedNodes(tetrahedron, k)[0]) + 1];
-    }
-  }
+      for (std::size_t k = 0; k < 4; ++k)
+      {
+        ++ends[static_cast<std::size_t>(GetSortedNodes(tetrahedra[t], k)[0]) + 1];
+      }
+    });
   for (std::size_t node = 0; node < numberOfNodes; ++node)
   {
     ends[node + 1] += ends[node];
   }
-  std::vector<Entry> entries(this->Next.size());
+  std::vector<Entry> entries;
+  Grow(asked, entries, this->Next.size());
   // Each end is that of the list before until its entries have come.
-  for (std::size_t t = 0; t < tetrahedra.size(); ++t)
-  {
-    for (std::size_t k = 0; k < 4; ++k)
+  ForItems(asked, tetrahedra.size(),
+    [&](std::size_t t)
     {
-      const std::array<std::int32_t, 3> nodes = GetSortedNodes(tetrahedra[t], k);
-      entries[ends[static_cast<std::size_t>(nodes[0])]++] = { nodes[1], nodes[2],
-        static_cast<std::uint32_t>(4 * t + k) };
-    }
-  }
-  ParallelForParts(numberOfNodes, NodesOfPart,
-    [&](std::size_t first, std::size_t last)
-    {
-      for (std::size_t node = first; node < last; ++node)
+      for (std::size_t k = 0; k < 4; ++k)
       {
-        const std::size_t end = ends[node];
-        std::size_t begin = node == 0 ? 0 : ends[node - 1];
-        std::sort(entries.begin() + static_cast<std::ptrdiff_t>(begin),
-          entries.begin() + static_cast<std::ptrdiff_t>(end));
-        for (std::size_t i = begin; i < end; ++i)
-        {
-          const bool isLast = i + 1 == end || entries[i + 1].Middle != entries[i].Middle ||
-            entries[i + 1].Highest != entries[i].Highest;
-          this->Next[entries[i].Face] = entries[isLast ? begin : i + 1].Face;
-          begin = isLast ? i + 1 : begin;
-        }
+        const std::array<std::int32_t, 3> nodes = GetSortedNodes(tetrahedra[t], k);
+        entries[ends[static_cast<std::size_t>(nodes[0])]++] = { nodes[1], nodes[2],
+          static_cast<std::uint32_t>(4 * t + k) };
+      }
+    });
+  ForItemsInParallel(asked, numberOfNodes,
+    [&](std::size_t node)
+    {
+      const std::size_t end = ends[node];
+      std::size_t begin = node == 0 ? 0 : ends[node - 1];
+      std::sort(entries.begin() + static_cast<std::ptrdiff_t>(begin),
+        entries.begin() + static_cast<std::ptrdiff_t>(end));
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const bool isLast = i + 1 == end || entries[i + 1].Middle != entries[i].Middle ||
+          entries[i + 1].Highest != entries[i].Highest;
+        this->Next[entries[i].Face] = entries[isLast ? begin : i + 1].Face;
+        begin = isLast ? i + 1 : begin;
       }
     });
 }

@@ -11,14 +11,17 @@
 namespace deformvolume
 {
 
+class Watch;
+
 /// What lies beyond the faces of tetrahedra. Face 4 t + k is that of tetrahedron t which is
 /// opposite to its node k.
 class FaceNeighbours
 {
 public:
   /// tetrahedra: at most 2^30, with nodes from 0 to numberOfNodes - 1. Takes time for these
-  /// numbers.
-  FaceNeighbours(const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes);
+  /// numbers. watch: asked now and then.
+  FaceNeighbours(
+    const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes, Watch* watch = nullptr);
 
   /// The face of another tetrahedron that has the same nodes; the face itself where there is none.
   /// Where a mesh has more than two such faces, they follow each other in a ring.

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 
 namespace deformvolume
@@ -103,18 +102,6 @@ void CheckLength(std::size_t length, std::size_t wanted, const std::string& what
     throw Error("There are " + std::to_string(length) + " " + what + ", but " +
       std::to_string(wanted) + " are needed.");
   }
-}
-
-// The root of a node in a forest that it makes lower on the way.
-std::int32_t FindRoot(std::vector<std::int32_t>& parents, std::int32_t node)
-{
-  auto at = [&](std::int32_t i) -> std::int32_t& { return parents[static_cast<std::size_t>(i)]; };
-  while (at(node) != node)
-  {
-    at(node) = at(at(node));
-    node = at(node);
-  }
-  return node;
 }
 
 } // namespace
@@ -235,81 +222,6 @@ std::vector<double> GetNodeMasses(const ElasticBody& body, const std::vector<dou
     }
   }
   return masses;
-}
-
-BodyPieces FindPieces(const ElasticBody& body, Watch* watch)
-{
-  Watch none(nullptr);
-  Watch& asked = watch ? *watch : none;
-  std::vector<std::int32_t> parents(body.Points.size());
-  std::iota(parents.begin(), parents.end(), 0);
-  std::vector<unsigned char> isUsed(body.Points.size(), 0);
-  ForItems(asked, body.Tetrahedra.size(),
-    [&](std::size_t t)
-    {
-      const std::int32_t root = FindRoot(parents, body.Tetrahedra[t][0]);
-      for (const std::int32_t node : body.Tetrahedra[t])
-      {
-        isUsed[static_cast<std::size_t>(node)] = 1;
-        parents[static_cast<std::size_t>(FindRoot(parents, node))] = root;
-      }
-    });
-  BodyPieces pieces;
-  pieces.PieceOfNode.assign(body.Points.size(), -1);
-  for (std::size_t node = 0; node < body.Points.size(); ++node)
-  {
-    if (isUsed[node] != 0)
-    {
-      std::int32_t& piece = pieces.PieceOfNode[static_cast<std::size_t>(
-        FindRoot(parents, static_cast<std::int32_t>(node)))];
-      piece = piece < 0 ? pieces.NumberOfPieces++ : piece;
-      pieces.PieceOfNode[node] = piece;
-    }
-  }
-  return pieces;
-}
-
-std::vector<bool> FindHeldPieces(
-  const ElasticBody& body, const BodyPieces& pieces, const std::vector<unsigned char>& isNotFree)
-{
-  // Of each piece: nodes that are not free, as far as they are needed.
-  struct Support
-  {
-    int Count = 0; // 1: a point; 2: a line; 3: a plane
-    glm::dvec3 Origin{ 0.0 };
-    glm::dvec3 Direction{ 0.0 };
-  };
-  const auto number = static_cast<std::size_t>(pieces.NumberOfPieces);
-  std::vector<Support> supports(number);
-  for (std::size_t node = 0; node < body.Points.size(); ++node)
-  {
-    if (isNotFree[node] == 0 || pieces.PieceOfNode[node] < 0)
-    {
-      continue;
-    }
-    Support& support = supports[static_cast<std::size_t>(pieces.PieceOfNode[node])];
-    const glm::dvec3 offset = body.Points[node] - support.Origin;
-    if (support.Count == 0)
-    {
-      support.Origin = body.Points[node];
-      support.Count = 1;
-    }
-    else if (support.Count == 1 && glm::length(offset) > 0.0)
-    {
-      support.Direction = offset;
-      support.Count = 2;
-    }
-    else if (support.Count == 2 &&
-      glm::length(glm::cross(offset, support.Direction)) >
-        LeastHeight * glm::dot(support.Direction, support.Direction))
-    {
-      support.Count = 3;
-    }
-  }
-  std::vector<bool> isHeld(number);
-  std::transform(supports.begin(), supports.end(), isHeld.begin(),
-    [](const Support& support) { return support.Count == 3; });
-  return isHeld;
 }
 
 } // namespace deformvolume

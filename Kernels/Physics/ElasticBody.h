@@ -105,21 +105,6 @@ DEFORMVOLUME_EXPORT std::vector<double> GetVolumes(const ElasticBody& body);
 DEFORMVOLUME_EXPORT std::vector<double> GetNodeMasses(
   const ElasticBody& body, const std::vector<double>& volumes);
 
-/// The pieces of a body that have no node in common.
-struct BodyPieces
-{
-  /// Of each node the number of its piece; -1 for a node without a tetrahedron.
-  std::vector<std::int32_t> PieceOfNode;
-  std::int32_t NumberOfPieces = 0;
-};
-/// watch: of the engine; asked now and then.
-DEFORMVOLUME_EXPORT BodyPieces FindPieces(const ElasticBody& body, Watch* watch = nullptr);
-
-/// Of each piece whether the nodes that are not free, of which there is one byte a node, hold it:
-/// at least three of them that lie on no common line.
-DEFORMVOLUME_EXPORT std::vector<bool> FindHeldPieces(
-  const ElasticBody& body, const BodyPieces& pieces, const std::vector<unsigned char>& isNotFree);
-
 } // namespace deformvolume
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshSplitCase.h"
 
+#include "BodyPieces.h"
 #include "LatticeBody.h"
 
 #include <gtest/gtest.h>

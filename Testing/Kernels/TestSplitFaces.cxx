@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cuts of a deformation mesh along its faces: which faces are split.
+#include "BodyPieces.h"
 #include "LatticeBody.h"
 #include "MeshSplitCase.h"
 #include "ParallelFor.h"
 
+#include "BodyPieces.h"
 #include <glm/geometric.hpp>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>

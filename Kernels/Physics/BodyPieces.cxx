@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BodyPieces.h"
+
+#include "FaceNeighbours.h"
+#include "Watch.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace deformvolume
+{
+namespace
+{
+
+// Points lie on a line where the area between them is less than this part of a square.
+constexpr double LeastArea = 1e-6;
+
+// The root of a tetrahedron in a forest that it makes lower on the way.
+std::int32_t FindRoot(std::vector<std::int32_t>& parents, std::int32_t tetrahedron)
+{
+  auto at = [&](std::int32_t i) -> std::int32_t& { return parents[static_cast<std::size_t>(i)]; };
+  while (at(tetrahedron) != tetrahedron)
+  {
+    at(tetrahedron) = at(at(tetrahedron));
+    tetrahedron = at(tetrahedron);
+  }
+  return tetrahedron;
+}
+
+void FindNodes(const ElasticBody& body, BodyPieces& pieces)
+{
+  pieces.PieceOfNode.assign(body.Points.size(), -1);
+  for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
+  {
+    for (const std::int32_t node : body.Tetrahedra[t])
+    {
+      const std::int32_t here = pieces.PieceOfTetrahedron[t];
+      std::int32_t& piece = pieces.PieceOfNode[static_cast<std::size_t>(node)];
+      if (piece >= 0 && piece != here)
+      {
+        pieces.SharedNodes.emplace_back(node, piece);
+        pieces.SharedNodes.emplace_back(node, here);
+      }
+      piece = piece < 0 ? here : std::min(piece, here);
+    }
+  }
+  std::vector<std::pair<std::int32_t, std::int32_t>>& shared = pieces.SharedNodes;
+  std::sort(shared.begin(), shared.end());
+  shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
+  for (const auto& [node, piece] : shared)
+  {
+    pieces.SharedByPieces.emplace_back(piece, node);
+  }
+  std::sort(pieces.SharedByPieces.begin(), pieces.SharedByPieces.end());
+}
+
+void SortTetrahedra(BodyPieces& pieces)
+{
+  pieces.Begins.assign(static_cast<std::size_t>(pieces.NumberOfPieces) + 1, 0);
+  for (const std::int32_t piece : pieces.PieceOfTetrahedron)
+  {
+    ++pieces.Begins[static_cast<std::size_t>(piece) + 1];
+  }
+  std::partial_sum(pieces.Begins.begin(), pieces.Begins.end(), pieces.Begins.begin());
+  std::vector<std::size_t> next = pieces.Begins;
+  pieces.Tetrahedra.resize(pieces.PieceOfTetrahedron.size());
+  for (std::size_t t = 0; t < pieces.Tetrahedra.size(); ++t)
+  {
+    const auto piece = static_cast<std::size_t>(pieces.PieceOfTetrahedron[t]);
+    pieces.Tetrahedra[next[piece]++] = static_cast<std::int32_t>(t);
+  }
+}
+
+// Calls take(second) for all pairs with a number as the first one.
+template <typename Take>
+void ForPairs(
+  const std::vector<std::pair<std::int32_t, std::int32_t>>& pairs, std::int32_t first, Take&& take)
+{
+  const auto isBefore = [](const auto& pair, std::int32_t number) { return pair.first < number; };
+  for (auto pair = std::lower_bound(pairs.begin(), pairs.end(), first, isBefore);
+       pair != pairs.end() && pair->first == first; ++pair)
+  {
+    take(pair->second);
+  }
+}
+
+// Nodes that support a piece, as far as they are needed.
+class Support
+{
+public:
+  void Add(const std::vector<glm::dvec3>& points, std::int32_t node)
+  {
+    const auto place = [&](std::int32_t i) { return points[static_cast<std::size_t>(i)]; };
+    if (this->Nodes[0] < 0)
+    {
+      this->Nodes[0] = node;
+      return;
+    }
+    const glm::dvec3 offset = place(node) - place(this->Nodes[0]);
+    if (this->Nodes[1] < 0)
+    {
+      this->Nodes[1] = glm::length(offset) > 0.0 ? node : -1;
+      return;
+    }
+    const glm::dvec3 along = place(this->Nodes[1]) - place(this->Nodes[0]);
+    this->Holds =
+      this->Holds || glm::length(glm::cross(offset, along)) > LeastArea * glm::dot(along, along);
+  }
+
+  std::array<std::int32_t, 2> Nodes{ { -1, -1 } };
+  bool Holds = false;
+};
+
+// Turns a vector as one direction is turned into another, on the shortest way.
+glm::dvec3 TurnBetween(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& vector)
+{
+  const glm::dvec3 axis = glm::cross(from, to);
+  const double cosine = glm::dot(from, to);
+  constexpr double opposite = -1.0 + 1e-12;
+  if (cosine > opposite)
+  {
+    return vector + glm::cross(axis, vector) +
+      glm::cross(axis, glm::cross(axis, vector)) / (1.0 + cosine);
+  }
+  // Half a turn, about any direction across.
+  const glm::dvec3 other = std::abs(from.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 across = glm::normalize(glm::cross(from, other));
+  return 2.0 * glm::dot(across, vector) * across - vector;
+}
+
+} // namespace
+
+BodyPieces FindPieces(const ElasticBody& body, Watch* watch)
+{
+  Watch none(nullptr);
+  Watch& asked = watch ? *watch : none;
+  const FaceNeighbours neighbours(body.Tetrahedra, body.Points.size(), &asked);
+  asked.Ask();
+  std::vector<std::int32_t> parents(body.Tetrahedra.size());
+  std::iota(parents.begin(), parents.end(), 0);
+  ForItems(asked, body.Tetrahedra.size(),
+    [&](std::size_t t)
+    {
+      for (std::size_t face = 4 * t; face < 4 * t + 4; ++face)
+      {
+        const auto next = static_cast<std::int32_t>(neighbours.GetNext(face) / 4);
+        const std::int32_t a = FindRoot(parents, static_cast<std::int32_t>(t));
+        const std::int32_t b = FindRoot(parents, next);
+        parents[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+      }
+    });
+  BodyPieces pieces;
+  pieces.PieceOfTetrahedron.resize(body.Tetrahedra.size());
+  for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
+  {
+    // Each root is the lowest of its piece, and so comes first.
+    const auto root = static_cast<std::size_t>(FindRoot(parents, static_cast<std::int32_t>(t)));
+    pieces.PieceOfTetrahedron[t] =
+      root == t ? pieces.NumberOfPieces++ : pieces.PieceOfTetrahedron[root];
+  }
+  asked.Ask();
+  SortTetrahedra(pieces);
+  asked.Ask();
+  FindNodes(body, pieces);
+  asked.Ask();
+  return pieces;
+}
+
+PieceSupports FindSupports(
+  const ElasticBody& body, const BodyPieces& pieces, const std::vector<unsigned char>& isNotFree)
+{
+  const auto number = static_cast<std::size_t>(pieces.NumberOfPieces);
+  std::vector<Support> supports(number);
+  for (std::size_t node = 0; node < body.Points.size(); ++node)
+  {
+    if (isNotFree[node] != 0 && pieces.PieceOfNode[node] >= 0)
+    {
+      supports[static_cast<std::size_t>(pieces.PieceOfNode[node])].Add(
+        body.Points, static_cast<std::int32_t>(node));
+    }
+  }
+  for (const auto& [node, piece] : pieces.SharedNodes)
+  {
+    if (isNotFree[static_cast<std::size_t>(node)] != 0)
+    {
+      supports[static_cast<std::size_t>(piece)].Add(body.Points, node);
+    }
+  }
+  // What has been placed supports what shares nodes with it. Calls take for all pieces that a
+  // condition is true for, then or when others have been taken.
+  std::vector<bool> isTaken(number, false);
+  std::vector<bool> isPlaced(body.Points.size(), false);
+  const auto spread = [&](auto&& isNext, auto&& take)
+  {
+    std::vector<std::int32_t> open(number);
+    std::iota(open.begin(), open.end(), 0);
+    for (std::size_t i = 0; i < open.size(); ++i)
+    {
+      const std::int32_t piece = open[i];
+      if (isTaken[static_cast<std::size_t>(piece)] ||
+        !isNext(supports[static_cast<std::size_t>(piece)]))
+      {
+        continue;
+      }
+      isTaken[static_cast<std::size_t>(piece)] = true;
+      take(piece);
+      ForPairs(pieces.SharedByPieces, piece,
+        [&](std::int32_t node)
+        {
+          if (isPlaced[static_cast<std::size_t>(node)])
+          {
+            return;
+          }
+          isPlaced[static_cast<std::size_t>(node)] = true;
+          ForPairs(pieces.SharedNodes, node,
+            [&](std::int32_t other)
+            {
+              supports[static_cast<std::size_t>(other)].Add(body.Points, node);
+              open.push_back(other);
+            });
+        });
+    }
+  };
+  PieceSupports result;
+  spread([](const Support& support) { return support.Holds; }, [](std::int32_t) {});
+  result.IsHeld = isTaken;
+  spread([](const Support& support) { return support.Nodes[0] >= 0; },
+    [&](std::int32_t piece)
+    {
+      const std::array<std::int32_t, 2>& nodes = supports[static_cast<std::size_t>(piece)].Nodes;
+      result.Following.push_back({ piece, nodes[0], nodes[1] });
+    });
+  return result;
+}
+
+void MoveFollowing(const ElasticBody& body, const BodyPieces& pieces,
+  const std::vector<FollowingPiece>& following, std::vector<unsigned char>& isPlaced,
+  std::vector<glm::dvec3>& displacements)
+{
+  for (const FollowingPiece& follower : following)
+  {
+    const auto first = static_cast<std::size_t>(follower.First);
+    const glm::dvec3 origin = body.Points[first];
+    const glm::dvec3 moved = origin + displacements[first];
+    glm::dvec3 from(1.0, 0.0, 0.0);
+    glm::dvec3 to = from;
+    if (follower.Second >= 0)
+    {
+      const auto second = static_cast<std::size_t>(follower.Second);
+      from = glm::normalize(body.Points[second] - origin);
+      const glm::dvec3 along = body.Points[second] + displacements[second] - moved;
+      to = glm::length(along) > 0.0 ? glm::normalize(along) : from;
+    }
+    const auto piece = static_cast<std::size_t>(follower.Piece);
+    for (std::size_t i = pieces.Begins[piece]; i < pieces.Begins[piece + 1]; ++i)
+    {
+      for (const std::int32_t corner :
+        body.Tetrahedra[static_cast<std::size_t>(pieces.Tetrahedra[i])])
+      {
+        const auto node = static_cast<std::size_t>(corner);
+        if (isPlaced[node] == 0)
+        {
+          isPlaced[node] = 1;
+          displacements[node] =
+            moved + TurnBetween(from, to, body.Points[node] - origin) - body.Points[node];
+        }
+      }
+    }
+  }
+}
+
+} // namespace deformvolume
