@@ -30,26 +30,6 @@ deformvolume::ElasticSimulation& vtkCorotationalDeformation::PrepareSimulation()
   return this->Internals->Simulation;
 }
 
-int vtkCorotationalDeformation::RequestData(
-  vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
-{
-  const deformvolume::CorotationalReport& report = this->Internals->Simulation.Report;
-  const std::int32_t before = report.NumberOfFrozenPieces;
-  const int result = this->Superclass::RequestData(request, input, output);
-  if (report.NumberOfFrozenPieces != before && report.NumberOfFrozenPieces > 0)
-  {
-    vtkWarningMacro(<< report.NumberOfFrozenPieces
-                    << " pieces of the mesh are not held: tetrahedra that are connected by their "
-                       "faces need three nodes that lie on no common line and are fixed, held by "
-                       "handles, or shared with a piece that is held. One of them has tetrahedron "
-                    << report.FirstFrozenTetrahedron << ". They bear no load; "
-                    << report.NumberOfFollowingPieces
-                    << " of them go with the nodes that they share, the others stay where they "
-                       "were. Fix nodes of them, or connect them by faces.");
-  }
-  return result;
-}
-
 bool vtkCorotationalDeformation::GetIsConverged()
 {
   return this->Internals->Simulation.Report.IsConverged;

@@ -21,6 +21,10 @@
  * about the line of the shared nodes on the shortest way; the rest stays where it was. A warning
  * tells their number (GetNumberOfFrozenPieces()). Where no piece is held there is an error.
  *
+ * @par Warnings:
+ * Pieces that are not held; a body that is not in equilibrium, with what is left (in the mode
+ * INTERACTIVE once); tetrahedra that are inside out, with their number.
+ *
  * @par Errors:
  * Those of vtkElasticDeformation; no piece that is held; forces that are no numbers any more. The
  * body is then as it was.
@@ -57,9 +61,9 @@ public:
 
   ///@{
   /**
-   * INTERACTIVE (default): one or two steps towards equilibrium, for a body that is moved live,
-   * until GetRelativeResidual() is at most 0.01 where handles have moved, else 0.001; the next
-   * execution goes on from what is left. CONVERGED: equilibrium, to 1e-6.
+   * CONVERGED (default): equilibrium, to a GetRelativeResidual() of 1e-6. INTERACTIVE: one or two
+   * steps towards equilibrium, for a body that is moved live, until GetRelativeResidual() is at
+   * most 0.01 where handles have moved, else 0.001; the next execution goes on from what is left.
    */
   vtkSetClampMacro(Mode, int, INTERACTIVE, CONVERGED);
   vtkGetMacro(Mode, int);
@@ -90,9 +94,6 @@ protected:
   vtkCorotationalDeformation();
   ~vtkCorotationalDeformation() override;
 
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
-
 #ifndef __VTK_WRAP__
   deformvolume::ElasticSimulation& PrepareSimulation() override;
   double GetFreeDuration() override
@@ -105,7 +106,7 @@ private:
   vtkCorotationalDeformation(const vtkCorotationalDeformation&) = delete;
   void operator=(const vtkCorotationalDeformation&) = delete;
 
-  int Mode = INTERACTIVE;
+  int Mode = CONVERGED;
 
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

@@ -78,6 +78,7 @@ public:
   deformvolume::ElasticSession Session;
   bool IsToReset = false;
   std::size_t CutsToUndo = 0;
+  double CheckedSize = -1.0; // of the body, in m
   deformvolume::PipelineExecution Execution;
 };
 
@@ -237,6 +238,7 @@ void vtkElasticDeformation::Execute(
       "The simulation starts anew: the rest mesh has got other points or cells, or the "
       "body was lost in an update that was aborted or failed.");
   }
+  this->CheckSize(session.GetMesh().Size);
   this->UpdateCuts(vtkPolyData::GetData(input[2]));
   ElasticSimulation::Frame frame;
   frame.Held = deformvolume::ReadHandles(
@@ -278,6 +280,10 @@ void vtkElasticDeformation::Execute(
     session.Time = done + 1.0 == frames ? end : session.Time + frame.Duration;
   }
   this->NumberOfHeldNodes = static_cast<vtkIdType>(frame.Held.size());
+  for (const std::string& warning : simulation.TakeWarnings())
+  {
+    vtkWarningMacro(<< warning);
+  }
 
   output->ShallowCopy(session.GetGrid(grid));
   vtkDataArray* displacements = simulation.WriteOutput(1.0 / settings.UnitLength);
@@ -291,6 +297,19 @@ void vtkElasticDeformation::Execute(
   {
     output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), end);
   }
+}
+
+void vtkElasticDeformation::CheckSize(double size)
+{
+  constexpr double least = 1e-3;
+  constexpr double most = 10.0;
+  if (size != this->Internals->CheckedSize && !(size >= least && size <= most))
+  {
+    vtkWarningMacro(<< "The body measures " << size << " m from corner to corner, as LengthUnit is "
+                    << (this->LengthUnit == METRE ? "METRE" : "MILLIMETRE")
+                    << ". Set the unit of the mesh with SetLengthUnit, if that is wrong.");
+  }
+  this->Internals->CheckedSize = size;
 }
 
 void vtkElasticDeformation::UpdateCuts(vtkPolyData* sheet)

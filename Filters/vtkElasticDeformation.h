@@ -20,8 +20,8 @@
  * @par Port 1, optional, the handles:
  * vtkPointSet. A point is where a handle is now. A point array "RestPosition" of three components
  * says which place of the mesh at rest it holds: the nodes within HandleRadius of it, or the
- * nearest node where that is 0. Where several handles hold a node the first one counts, and nodes
- * that are fixed stay.
+ * nearest node where that is 0. Points that no tetrahedron uses do not count. Where several handles
+ * hold a node the first one counts, and nodes that are fixed stay.
  *
  * @par Port 2, optional, the sheet:
  * vtkPolyData in world coordinates: triangles, polygons and triangle strips; polylines where
@@ -180,8 +180,8 @@ public:
 
   ///@{
   /**
-   * The unit of the mesh, the handles and the displacements: METRE (default) or MILLIMETRE. Medical
-   * images are in millimetres as a rule.
+   * The unit of the mesh, the handles and the displacements: MILLIMETRE (default), as in most
+   * medical images, or METRE. A body of less than 1 mm or more than 10 m is warned of.
    */
   vtkSetClampMacro(LengthUnit, int, METRE, MILLIMETRE);
   vtkGetMacro(LengthUnit, int);
@@ -268,6 +268,8 @@ private:
 
   void Execute(vtkInformationVector** input, vtkInformationVector* output);
   void UpdateCuts(vtkPolyData* sheet);
+  /// Warns where a body of so many metres is hardly meant.
+  void CheckSize(double size);
 
   double HandleRadius = 0.0;
   double Gravity[3] = { 0.0, 0.0, 0.0 };
@@ -275,7 +277,7 @@ private:
   double PoissonRatio = 0.3;
   double Density = 1000.0;
   double SweepVector[3] = { 0.0, 0.0, 0.0 };
-  int LengthUnit = METRE;
+  int LengthUnit = MILLIMETRE;
   double FrameTime = 1.0 / 60.0;
   double EndTime = 0.0;
   bool ElementResults = false;

@@ -65,6 +65,13 @@ double vtkMassSpringDeformation::GetTimeStepInUse()
   return this->Internals->Simulation ? this->Internals->Simulation->Report.TimeStep : 0.0;
 }
 
+vtkIdType vtkMassSpringDeformation::GetNumberOfInvertedTetrahedra()
+{
+  return this->Internals->Simulation
+    ? static_cast<vtkIdType>(this->Internals->Simulation->Report.NumberOfInvertedTetrahedra)
+    : 0;
+}
+
 std::string vtkMassSpringDeformation::GetDeviceInUse()
 {
   return this->Internals->Simulation ? this->Internals->Simulation->GetDevice() : std::string();
@@ -80,6 +87,10 @@ std::string vtkMassSpringDeformation::GetSummary()
          << "Steps of a frame: " << this->GetNumberOfSteps() << "\n"
          << "Time step: " << this->GetTimeStepInUse() * 1e3 << " ms\n"
          << "Longest stable time step: " << this->GetStableTimeStep() * 1e3 << " ms";
+    if (this->GetNumberOfInvertedTetrahedra() > 0)
+    {
+      more << "\nTetrahedra inside out: " << this->GetNumberOfInvertedTetrahedra();
+    }
     text += more.str();
   }
   return text;
@@ -95,5 +106,6 @@ void vtkMassSpringDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "DeviceInUse: " << this->GetDeviceInUse() << "\n";
   os << indent << "NumberOfSteps: " << this->GetNumberOfSteps() << "\n";
   os << indent << "TimeStepInUse: " << this->GetTimeStepInUse() << "\n";
+  os << indent << "NumberOfInvertedTetrahedra: " << this->GetNumberOfInvertedTetrahedra() << "\n";
   os << indent << "StableTimeStep: " << this->GetStableTimeStep() << "\n";
 }

@@ -15,7 +15,11 @@
  * lattices of cubes of five tetrahedra each (vtkLatticeTetrahedraSource with equal spacing). For
  * other meshes it is calibrated so that a bar of the mesh has the Young modulus. Springs have a
  * Poisson ratio of 0.25 by themselves, and the volumes make what is more. Less than that counts as
- * 0.25.
+ * 0.25, with a warning.
+ *
+ * @par Tetrahedra inside out:
+ * The springs of a tetrahedron have no force that turns it back when it is inside out. A warning
+ * tells how many there are, when there were none before (GetNumberOfInvertedTetrahedra()).
  *
  * @par Errors:
  * Those of vtkElasticDeformation; a time step that is longer than the stable one; a simulation that
@@ -87,10 +91,12 @@ public:
 
   ///@{
   /**
-   * Of the last frame: how many steps it took, and how long each was, in s.
+   * Of the last frame: how many steps it took, and how long each was, in s; tetrahedra that are
+   * inside out at its end.
    */
   vtkIdType GetNumberOfSteps();
   double GetTimeStepInUse();
+  vtkIdType GetNumberOfInvertedTetrahedra();
   ///@}
 
   /**

@@ -95,11 +95,7 @@ SessionPipeline::SessionPipeline()
   this->Resampler->SetInputConnection(this->CarveFilter->GetOutputPort());
   // So that the extent is always the same one, and outputs are updated in part.
   this->Resampler->SetOutputBoundsModeToVolumeBounds();
-  for (vtkElasticDeformation* elastic : { static_cast<vtkElasticDeformation*>(this->MassSpring),
-         static_cast<vtkElasticDeformation*>(this->Corotational) })
-  {
-    elastic->SetLengthUnitToMillimetre();
-  }
+  this->Corotational->SetModeToInteractive();
 }
 
 SessionPipeline::~SessionPipeline() = default;

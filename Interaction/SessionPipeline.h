@@ -71,6 +71,8 @@ public:
   int GetModel() const { return this->Model; }
   /// By ChainMail, in the last step.
   vtkIdType GetNumberOfMovedVoxels();
+  /// Of the finite elements, in the last step; 0 with other models.
+  double GetRelativeResidual();
   std::size_t GetNumberOfActions() const { return this->Done.size(); }
   std::size_t GetNumberOfUndoneActions() const { return this->Undone.size(); }
   /// What the filters have warned of since the last call.

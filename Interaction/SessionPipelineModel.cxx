@@ -125,6 +125,11 @@ vtkIdType SessionPipeline::GetNumberOfMovedVoxels()
   return this->Model == Session::CHAIN_MAIL ? this->ChainMail->GetNumberOfMovedVoxels() : 0;
 }
 
+double SessionPipeline::GetRelativeResidual()
+{
+  return this->Model == Session::COROTATIONAL ? this->Corotational->GetRelativeResidual() : 0.0;
+}
+
 void SessionPipeline::SetModel(int model)
 {
   if (model == this->Model)

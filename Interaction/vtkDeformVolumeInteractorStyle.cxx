@@ -346,7 +346,11 @@ std::string vtkDeformVolumeInteractorStyle::GetStatus()
     text += ListChoices(ModelChoices, internals.GetModel()) + "  " +
       std::to_string(internals.Session->GetNumberOfActions()) + " done, " +
       std::to_string(internals.Session->GetNumberOfUndoneActions()) + " undone" +
-      (internals.Session->GetIsBusy() ? ", moving" : "") + '\n';
+      (internals.Session->GetIsBusy() ? ", moving" : "");
+    // Of the finite elements, which come to rest in several frames.
+    constexpr double leastShown = 1e-3;
+    const double residual = internals.Session->GetRelativeResidual();
+    text += residual > leastShown ? ", residual " + Format(100.0 * residual) + " %\n" : "\n";
   }
   return text + (this->Message.empty() ? "h help" : this->Message);
 }

@@ -54,6 +54,7 @@ struct PublishedState
   std::size_t UndoneActions = 0;
   vtkIdType Steps = 0;
   vtkIdType MovedVoxels = 0;
+  double RelativeResidual = 0.0;
   double SimulationTime = 0.0;
   double ResamplingTime = 0.0;
   std::vector<deformvolume::SessionPipeline::Handle> Handles;
@@ -169,6 +170,7 @@ public:
     state.UndoneActions = this->Pipeline.GetNumberOfUndoneActions();
     state.Steps = this->Steps;
     state.MovedVoxels = this->Pipeline.GetNumberOfMovedVoxels();
+    state.RelativeResidual = this->Pipeline.GetRelativeResidual();
     state.Handles = this->Pipeline.GetHandles();
     const std::lock_guard<std::mutex> lock(this->QueueMutex);
     this->Errors.insert(this->Errors.end(), errors.begin(), errors.end());
@@ -848,6 +850,7 @@ GET_STATE(vtkIdType, NumberOfActions, Actions)
 GET_STATE(vtkIdType, NumberOfUndoneActions, UndoneActions)
 GET_STATE(vtkIdType, NumberOfSteps, Steps)
 GET_STATE(vtkIdType, NumberOfMovedVoxels, MovedVoxels)
+GET_STATE(double, RelativeResidual, RelativeResidual)
 GET_STATE(double, SimulationTime, SimulationTime)
 GET_STATE(double, ResamplingTime, ResamplingTime)
 #undef GET_STATE

@@ -272,6 +272,12 @@ public:
   vtkIdType GetNumberOfMovedVoxels();
 
   /**
+   * How far the finite elements are from equilibrium: the largest force that is left on a node, as
+   * a part of the largest force that is applied or holds a node; 0 with other models.
+   */
+  double GetRelativeResidual();
+
+  /**
    * The last error in words; "" where there was none.
    */
   vtkGetMacro(ErrorMessage, std::string);

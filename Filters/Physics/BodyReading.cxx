@@ -4,6 +4,7 @@
 #include "CellTypes.h"
 #include "Error.h"
 #include "HandlePlaces.h"
+#include "IndexBounds.h"
 #include "ShapedArray.h"
 #include "VectorArray.h"
 
@@ -90,9 +91,24 @@ void ReadMaterials(vtkUnstructuredGrid* grid, const BodySettings& settings, Body
   }
 }
 
-// Adds the nodes that a place holds.
+// The diagonal of the box of all nodes of tetrahedra.
+double FindSize(const ElasticBody& body)
+{
+  IndexBounds box;
+  for (const Tetrahedron& tetrahedron : body.Tetrahedra)
+  {
+    for (const std::int32_t node : tetrahedron)
+    {
+      box.Add(body.Points[static_cast<std::size_t>(node)]);
+    }
+  }
+  return glm::distance(box.Min, box.Max);
+}
+
+// Adds the nodes that a place holds. isUsed: by a tetrahedron; isTaken: by another handle.
 void Hold(const glm::dvec3& place, double radius, const glm::dvec3& displacement,
-  const ElasticBody& body, std::vector<unsigned char>& isTaken, std::vector<HeldNode>& held)
+  const ElasticBody& body, const std::vector<unsigned char>& isUsed,
+  std::vector<unsigned char>& isTaken, std::vector<HeldNode>& held)
 {
   const std::size_t before = held.size();
   const auto add = [&](std::size_t node)
@@ -108,12 +124,12 @@ void Hold(const glm::dvec3& place, double radius, const glm::dvec3& displacement
   for (std::size_t node = 0; node < body.Points.size(); ++node)
   {
     const double distance = glm::distance(body.Points[node], place);
-    if (distance < least)
+    if (distance < least && isUsed[node] != 0)
     {
       least = distance;
       nearest = node;
     }
-    if (radius > 0.0 && distance <= radius)
+    if (radius > 0.0 && distance <= radius && isUsed[node] != 0)
     {
       add(node);
     }
@@ -230,6 +246,7 @@ BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings)
     mesh.Forces = ReadAll(force, 1.0, FORCE);
   }
   CheckBody(mesh.Body);
+  mesh.Size = FindSize(mesh.Body);
   return mesh;
 }
 
@@ -239,11 +256,19 @@ std::vector<HeldNode> ReadHandles(
   std::vector<HeldNode> held;
   const HandlePlaces places = ReadHandlePlaces(handles, "mesh");
   std::vector<unsigned char> isTaken(body.Points.size(), 0);
+  std::vector<unsigned char> isUsed(body.Points.size(), 0);
+  for (const Tetrahedron& tetrahedron : body.Tetrahedra)
+  {
+    for (const std::int32_t node : tetrahedron)
+    {
+      isUsed[static_cast<std::size_t>(node)] = 1;
+    }
+  }
   for (std::size_t i = 0; i < places.Rest.size(); ++i)
   {
     const glm::dvec3 rest = places.Rest[i] * settings.UnitLength;
     const glm::dvec3 now = places.Now[i] * settings.UnitLength;
-    Hold(rest, radius * settings.UnitLength, now - rest, body, isTaken, held);
+    Hold(rest, radius * settings.UnitLength, now - rest, body, isUsed, isTaken, held);
   }
   return held;
 }

@@ -49,6 +49,7 @@ struct BodyMesh
   std::vector<glm::dvec3> Forces; // of nodes, in N; empty: none
   /// The cell that each tetrahedron is.
   std::vector<vtkIdType> Cells;
+  double Size = 0.0; // of the diagonal of its box, in m
 };
 
 /// What ReadBody depends on.
@@ -59,10 +60,10 @@ Stamp GetBodyStamp(vtkUnstructuredGrid* grid);
 /// left out. Throws an Error for other cells, arrays of another shape, and what CheckBody refuses.
 BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings);
 
-/// Which nodes handles hold, and where: the nodes within a radius of the rest position of a handle,
-/// or the nearest node where the radius is 0. Lengths are those of the mesh. The first handle
-/// counts where several hold a node; fixed nodes stay. Throws an Error where a handle holds no
-/// node.
+/// Which nodes of tetrahedra handles hold, and where: those within a radius of the rest position of
+/// a handle, or the nearest one where the radius is 0. Lengths are those of the mesh. The first
+/// handle counts where several hold a node; fixed nodes stay. Throws an Error where a handle holds
+/// no node.
 std::vector<HeldNode> ReadHandles(
   vtkPointSet* handles, double radius, const ElasticBody& body, const BodySettings& settings);
 

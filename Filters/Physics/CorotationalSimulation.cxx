@@ -2,6 +2,7 @@
 #include "CorotationalSimulation.h"
 
 #include <new>
+#include <sstream>
 
 namespace deformvolume
 {
@@ -44,7 +45,48 @@ void CorotationalSimulation::Advance(const Frame& frame)
   request.Loads = frame.Loads;
   request.Mode = this->Mode;
   request.Progress = [&] { return frame.Progress(someProgress); };
+  const CorotationalReport last = this->Report;
   this->Report = this->Model.Solve(request);
+  this->Warn(last);
+}
+
+void CorotationalSimulation::Warn(const CorotationalReport& last)
+{
+  const CorotationalReport& now = this->Report;
+  std::ostringstream text;
+  if (now.NumberOfFrozenPieces != last.NumberOfFrozenPieces && now.NumberOfFrozenPieces > 0)
+  {
+    text << now.NumberOfFrozenPieces
+         << " pieces of the mesh are not held: tetrahedra that are connected by their faces need "
+            "three nodes that lie on no common line and are fixed, held by handles, or shared with "
+            "a piece that is held. One of them has tetrahedron "
+         << now.FirstFrozenTetrahedron << ". They bear no load; " << now.NumberOfFollowingPieces
+         << " of them go with the nodes that they share, the others stay where they were. Fix "
+            "nodes of them, or connect them by faces.";
+    this->Warnings.push_back(text.str());
+    text.str("");
+  }
+  // Live, what is left is less in each frame: once is enough.
+  const bool isLive = this->Mode == CorotationalMode::Interactive;
+  if (!now.IsConverged && !(isLive && this->HasWarnedOfResidual))
+  {
+    text << "The body is not in equilibrium after " << now.NewtonSteps
+         << " steps: the largest force that is left on a node is " << 100.0 * now.RelativeResidual
+         << " % of the largest one that is applied or holds a node. "
+         << (isLive ? "Further updates go on from there. Use the mode CONVERGED to have "
+                      "equilibrium in one."
+                    : "Move handles and loads in smaller steps, or make a better mesh.");
+    this->Warnings.push_back(text.str());
+    text.str("");
+    this->HasWarnedOfResidual = true;
+  }
+  if (now.NumberOfInvertedTetrahedra > 0 && (!isLive || last.NumberOfInvertedTetrahedra == 0))
+  {
+    text << now.NumberOfInvertedTetrahedra
+         << " tetrahedra are inside out. Move handles and loads in smaller steps, or make a better "
+            "mesh.";
+    this->Warnings.push_back(text.str());
+  }
 }
 
 vtkDataArray* CorotationalSimulation::WriteOutput(double factor)

@@ -35,7 +35,10 @@ public:
   vtkDataArray* WriteOutput(double factor) override;
 
 private:
+  void Warn(const CorotationalReport& last);
+
   CorotationalModel Model;
+  bool HasWarnedOfResidual = false;
   vtkSmartPointer<vtkFloatArray> Output;
 };
 

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkDataArray;
@@ -54,6 +55,12 @@ public:
   virtual std::vector<ElementResults> GetElementResults() = 0;
   /// The displacements, times a factor, in the array that is always the same for a number of nodes.
   virtual vtkDataArray* WriteOutput(double factor) = 0;
+
+  /// What is to be warned of since the last call.
+  std::vector<std::string> TakeWarnings() { return std::exchange(this->Warnings, {}); }
+
+protected:
+  std::vector<std::string> Warnings;
 };
 
 } // namespace deformvolume

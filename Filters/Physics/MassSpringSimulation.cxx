@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MassSpringSimulation.h"
 
+#include <algorithm>
+
 namespace deformvolume
 {
 namespace
@@ -55,6 +57,16 @@ void MassSpringSimulation::SetBody(
   }
   this->Factor = 0.0;
   this->Model.SetBody(body, progress);
+  const auto ratios = std::count_if(body.Materials.begin(), body.Materials.end(),
+    [](const ElasticMaterial& material)
+    { return material.PoissonRatio < MassSpringModel::LeastPoissonRatio; });
+  if (ratios > 0)
+  {
+    this->Warnings.push_back("The Poisson ratio of " +
+      (body.Materials.size() == 1 ? "the body" : std::to_string(ratios) + " tetrahedra") +
+      " is less than 0.25, which springs cannot have: it counts as 0.25. Use "
+      "vtkCorotationalDeformation, if the ratio matters.");
+  }
   this->NumberOfNodes = body.Points.size();
   if (keepsState)
   {
@@ -86,7 +98,14 @@ void MassSpringSimulation::Advance(const Frame& frame)
   request.Held = frame.Held;
   request.Loads = frame.Loads;
   request.Progress = frame.Progress;
+  const std::int64_t before = this->Report.NumberOfInvertedTetrahedra;
   this->Report = this->Model.Advance(request);
+  if (before == 0 && this->Report.NumberOfInvertedTetrahedra > 0)
+  {
+    this->Warnings.push_back(std::to_string(this->Report.NumberOfInvertedTetrahedra) +
+      " tetrahedra are inside out, and springs may keep them so. Reset the body, and move handles "
+      "and loads more slowly, or use vtkCorotationalDeformation.");
+  }
 }
 
 ElasticSimulation::State MassSpringSimulation::GetState()

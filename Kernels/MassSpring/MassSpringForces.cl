@@ -98,6 +98,43 @@ static void StoreForce(Vectors force, __global FLOATS* place)
   place[2] = force.Z;
 }
 
+// Six times the volume of a tetrahedron; less than 0 where its nodes go round the other way.
+static FLOATS Determinant(Vectors a, Vectors b, Vectors c)
+{
+  return Dot(a, Cross(b, c));
+}
+
+// Counts the tetrahedra that are inside out.
+__kernel void CountInverted(__global const INTS* tetrahedra, __global const float* restPoints,
+  __global const float* displacements, __global int* count, uint numberOfGroups)
+{
+  const size_t group = get_global_id(0);
+  if (group >= numberOfGroups)
+  {
+    return;
+  }
+  Vectors rest[4];
+  Vectors now[4];
+  for (int i = 0; i < 4; ++i)
+  {
+    rest[i] = GetVectors(restPoints, tetrahedra[4 * group + i]);
+    now[i] = Plus(rest[i], GetVectors(displacements, tetrahedra[4 * group + i]));
+  }
+  const FLOATS product =
+    Determinant(Minus(now[1], now[0]), Minus(now[2], now[0]), Minus(now[3], now[0])) *
+    Determinant(Minus(rest[1], rest[0]), Minus(rest[2], rest[0]), Minus(rest[3], rest[0]));
+  const float* const each = (const float*)&product;
+  int inverted = 0;
+  for (int lane = 0; lane < LANES; ++lane)
+  {
+    inverted += each[lane] < 0.0f;
+  }
+  if (inverted > 0)
+  {
+    atomic_add(count, inverted);
+  }
+}
+
 // tetrahedra: the four nodes, times 3; materials: the stiffness of each edge, in N/m, and the modulus of the
 // volume, in Pa; forces: of the four nodes, in N.
 __kernel void ComputeForces(__global const INTS* tetrahedra, __global const FLOATS* materials,
@@ -129,7 +166,7 @@ __kernel void ComputeForces(__global const INTS* tetrahedra, __global const FLOA
   const Vectors area1 = Cross(b2, b3);
   const Vectors area2 = Cross(b3, b1);
   const Vectors area3 = Cross(b1, b2);
-  const FLOATS restDeterminant = Dot(a1, Cross(a2, a3));
+  const FLOATS restDeterminant = Determinant(a1, a2, a3);
   const FLOATS growth = Dot(e1, area1) + Dot(a1, Plus(Cross(e2, b3), Cross(a2, e3)));
   const FLOATS ratio = growth / restDeterminant;
   const FLOATS pressure = copysign(materials[2 * group + 1] * (1.0f / 6.0f), restDeterminant) * -ratio;

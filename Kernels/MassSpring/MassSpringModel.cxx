@@ -424,6 +424,7 @@ MassSpringReport MassSpringModel::Advance(const MassSpringRequest& request)
       {
         impl.State->WriteOutput();
       }
+      report.NumberOfInvertedTetrahedra = impl.State->CountInverted();
       return report;
     });
 }

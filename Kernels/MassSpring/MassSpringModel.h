@@ -39,6 +39,8 @@ struct MassSpringReport
 {
   std::int64_t NumberOfSteps = 0;
   double TimeStep = 0.0; // that was used, in s
+  /// Tetrahedra that are inside out at the end. Springs may keep them so.
+  std::int64_t NumberOfInvertedTetrahedra = 0;
 };
 
 /// Dynamics of an elastic body whose tetrahedra have springs for edges and an energy for their
@@ -57,6 +59,9 @@ struct MassSpringReport
 class DEFORMVOLUME_EXPORT MassSpringModel
 {
 public:
+  /// Springs have at least this Poisson ratio; less counts as this.
+  static constexpr double LeastPoissonRatio = 0.25;
+
   MassSpringModel();
   ~MassSpringModel();
   MassSpringModel(const MassSpringModel&) = delete;

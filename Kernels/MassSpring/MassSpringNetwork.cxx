@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MassSpringNetwork.h"
 
+#include "MassSpringModel.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -60,9 +62,8 @@ double FindShortestEdge(Watch& watch, const ElasticBody& body)
 
 ElasticMaterial GetSpringMaterial(const ElasticMaterial& material)
 {
-  constexpr double ratioOfSprings = 0.25;
   ElasticMaterial possible = material;
-  possible.PoissonRatio = std::max(material.PoissonRatio, ratioOfSprings);
+  possible.PoissonRatio = std::max(material.PoissonRatio, MassSpringModel::LeastPoissonRatio);
   return possible;
 }
 

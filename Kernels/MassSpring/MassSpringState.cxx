@@ -76,12 +76,16 @@ MassSpringState::MassSpringState(
   this->Velocities = send(zeros);
   const cl_int none = 0;
   this->HasDiverged = this->Fill(&none, sizeof(none));
+  this->Inverted = this->Fill(&none, sizeof(none));
   Reserve(context, this->Forces,
     this->NumberOfGroups * 12 * static_cast<std::size_t>(network.Lanes) * sizeof(float));
   const auto nodes = static_cast<cl_uint>(this->NumberOfNodes);
   this->ComputeForcesKernel =
     MakeKernel(this->Program, "ComputeForces", this->Tetrahedra, this->Materials, this->RestPoints,
       this->Displacements, this->Forces, static_cast<cl_uint>(this->NumberOfGroups));
+  this->CountInvertedKernel =
+    MakeKernel(this->Program, "CountInverted", this->Tetrahedra, this->RestPoints,
+      this->Displacements, this->Inverted, static_cast<cl_uint>(this->NumberOfGroups));
   this->AddForcesKernel = MakeKernel(
     this->Program, "AddForces", this->Begins, this->Places, this->Forces, this->Sums, nodes);
   // What is set later stands for itself for now.
@@ -207,6 +211,15 @@ bool MassSpringState::TakeDivergence()
     this->Write(this->HasDiverged, &none, sizeof(none));
   }
   return hasDiverged != 0;
+}
+
+std::int64_t MassSpringState::CountInverted()
+{
+  cl_int count = 0;
+  this->Write(this->Inverted, &count, sizeof(count));
+  this->Launch(this->CountInvertedKernel, this->NumberOfGroups);
+  this->Device.GetQueue().enqueueReadBuffer(this->Inverted, CL_TRUE, 0, sizeof(count), &count);
+  return count;
 }
 
 void MassSpringState::Save()

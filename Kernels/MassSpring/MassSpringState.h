@@ -54,6 +54,8 @@ public:
   void Finish() { this->Device.GetQueue().finish(); }
   /// Whether a step since the last call has diverged.
   bool TakeDivergence();
+  /// Tetrahedra that are inside out now.
+  std::int64_t CountInverted();
 
   ///@{
   /// Keeps the displacements and velocities, and brings them back.
@@ -82,9 +84,9 @@ private:
   std::size_t WorkGroupSize;
   cl::Program Program;
   cl::Kernel ComputeForcesKernel, AddForcesKernel, MoveNodesKernel, MoveHandlesKernel,
-    WriteOutputKernel;
+    WriteOutputKernel, CountInvertedKernel;
   cl::Buffer Tetrahedra, Materials, RestPoints, Begins, Places, Mobilities;
-  cl::Buffer Forces, Displacements, Velocities, Loads, Handles, HasDiverged;
+  cl::Buffer Forces, Displacements, Velocities, Loads, Handles, HasDiverged, Inverted;
   cl::Buffer Sums, SavedDisplacements, SavedVelocities;
   std::size_t NumberOfHandles = 0;
   bool HasLoads = false;

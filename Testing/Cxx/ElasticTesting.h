@@ -49,6 +49,7 @@ struct Simulated
       this->Object->AddObserver(event, this->Observer);
       this->Object->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
     }
+    this->Object->SetLengthUnitToMetre();
     this->Object->SetInputDataObject(mesh);
   }
 

@@ -144,6 +144,73 @@ void TestErrorsOfTheirOwn()
   VERIFY(Holds(elements.TryUpdate(), "nothing holds the body"));
 }
 
+// Brings the filter up to date, which has to succeed; what it warns of.
+template <typename Filter>
+std::string UpdateAndWarn(Simulated<Filter>& simulated)
+{
+  simulated.Object->Modified();
+  simulated.Object->Update();
+  VERIFY(!simulated.Observer->GetError());
+  const std::string warning = simulated.Observer->GetWarningMessage();
+  simulated.Observer->Clear();
+  return warning;
+}
+
+// Results that are not what they seem are warned of.
+template <typename Filter>
+void TestWarnings(double push)
+{
+  // A body of 30 m, and one of 30 micrometres.
+  for (const double unit : { 1e-3, 1e3 })
+  {
+    Simulated<Filter> simulated(MakeBar(unit));
+    VERIFY(Holds(UpdateAndWarn(simulated), "LengthUnit"));
+    VERIFY(!Holds(UpdateAndWarn(simulated), "LengthUnit"));
+  }
+  vtkNew<Filter> fresh;
+  VERIFY_EQUAL(fresh->GetLengthUnit(), static_cast<int>(Filter::MILLIMETRE));
+
+  // A point that no tetrahedron uses lies nearest to the handle, which pushes a node through its
+  // neighbours.
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
+  const glm::dvec3 top(0.005, 0.005, 0.03);
+  const vtkIdType node = bar->FindPoint(top.x, top.y, top.z);
+  bar->GetPoints()->InsertNextPoint(top.x, top.y, top.z + 1e-4);
+  bar->GetPointData()->GetArray("Fixed")->InsertNextTuple1(0.0);
+  Simulated<Filter> simulated(bar);
+  simulated.Object->SetHandlesData(
+    MakeHandles({ { top + glm::dvec3(0.0, 0.0, 1e-4), top - glm::dvec3(0.0, 0.0, push) } }));
+  const std::string warning = UpdateAndWarn(simulated);
+  VERIFY(Holds(warning, "inside out"));
+  VERIFY(simulated.Object->GetNumberOfInvertedTetrahedra() > 0);
+  VERIFY(Holds(simulated.Object->GetSummary(), "inside out"));
+  VERIFY(std::abs(simulated.Copy()->GetComponent(node, 2) + push + 1e-4) < 1e-6);
+  VERIFY_EQUAL(simulated.Copy()->GetComponent(bar->GetNumberOfPoints() - 1, 2), 0.0);
+}
+
+void TestWarningsOfTheirOwn()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
+  Simulated<vtkMassSpringDeformation> springs(bar);
+  springs.Object->SetPoissonRatio(0.2);
+  VERIFY(Holds(UpdateAndWarn(springs), "Poisson ratio of the body is less than 0.25"));
+  springs.Object->SetPoissonRatio(0.25);
+  VERIFY_EQUAL(UpdateAndWarn(springs), std::string());
+
+  // By default one execution ends in equilibrium.
+  Simulated<vtkCorotationalDeformation> elements(bar);
+  elements.Object->SetGravity(0.0, -60.0, 0.0);
+  VERIFY_EQUAL(elements.TryUpdate(), std::string());
+  VERIFY(elements.Object->GetIsConverged());
+  VERIFY(elements.Object->GetRelativeResidual() <= 1e-6);
+  Simulated<vtkCorotationalDeformation> live(bar);
+  live.Object->SetModeToInteractive();
+  live.Object->SetGravity(0.0, -60.0, 0.0);
+  VERIFY(Holds(UpdateAndWarn(live), "not in equilibrium after 2 steps"));
+  live.Object->Reset();
+  VERIFY(!Holds(UpdateAndWarn(live), "not in equilibrium"));
+}
+
 // A bar that hangs by its own weight is longer by rho g L^2 / 2 E.
 template <typename Filter, typename Settle>
 void TestHangingBar(const Settle& settle)
@@ -378,6 +445,9 @@ int TestElasticDeformation(int, char*[])
   TestMisuse<vtkMassSpringDeformation>();
   TestMisuse<vtkCorotationalDeformation>();
   TestErrorsOfTheirOwn();
+  TestWarnings<vtkMassSpringDeformation>(0.008);
+  TestWarnings<vtkCorotationalDeformation>(0.02);
+  TestWarningsOfTheirOwn();
   TestHangingBar<vtkMassSpringDeformation>(
     [](Simulated<vtkMassSpringDeformation>& simulated)
     {
