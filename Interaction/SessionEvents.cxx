@@ -7,10 +7,10 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <stdexcept>
 
 namespace
@@ -68,9 +68,13 @@ std::string deformvolume::FormatEvent(const SessionEvent& event)
   std::string text = Forms[event.Kind].Name;
   for (const double number : event.Numbers)
   {
+    // With a point, whatever the locale.
+    constexpr int enough = 17;
     char digits[32];
-    std::snprintf(digits, sizeof(digits), " %.17g", number);
-    text += digits;
+    const auto end =
+      std::to_chars(digits, digits + sizeof(digits), number, std::chars_format::general, enough);
+    text += ' ';
+    text.append(digits, end.ptr);
   }
   return text;
 }
@@ -89,11 +93,13 @@ SessionEvent deformvolume::ParseEvent(const std::string& text)
     throw std::runtime_error("there is no event \"" + name + "\"");
   }
   event.Kind = static_cast<SessionEvent::KindType>(kind);
-  for (const char* at = text.c_str() + name.size(); *at != '\0';)
+  const char* const textEnd = text.data() + text.size();
+  for (const char* at = text.data() + name.size(); at != textEnd;)
   {
-    char* end = nullptr;
-    const double number = std::strtod(at, &end);
-    if (end == at || !std::isfinite(number))
+    double number = 0.0;
+    at = std::find_if(at, textEnd, [](char c) { return c != ' '; });
+    const auto [end, error] = std::from_chars(at, textEnd, number);
+    if (error != std::errc() || !std::isfinite(number))
     {
       throw std::runtime_error("\"" + name + "\" has something that is no finite number");
     }

@@ -47,11 +47,15 @@ void vtkDeformVolumeInteractorStyle::OnLeftButtonUp()
   {
     return;
   }
-  if (this->State == VTKIS_NONE)
+  // Also where the view is being turned with the other button.
+  if (this->State == VTKIS_NONE || this->Internals->IsPressed)
   {
     this->EndTool(this->Interactor->GetShiftKey() != 0);
     this->InvokeEvent(vtkCommand::EndInteractionEvent);
-    this->ReleaseFocus();
+    if (this->State == VTKIS_NONE)
+    {
+      this->ReleaseFocus();
+    }
   }
   else
   {

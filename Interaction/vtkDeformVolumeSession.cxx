@@ -747,6 +747,7 @@ void WriteData(vtkDataObject* data, const std::string& fileName)
       writer->AddObserver(vtkCommand::ErrorEvent, observer);
       writer->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
       writer->SetFileName(name.c_str());
+      writer->SetDataModeToBinary(); // raw appended data confuse the parser of some versions
       writer->SetInputData(data);
       if (writer->Write() == 0 || hasFailed || writer->GetErrorCode() != 0)
       {

@@ -522,7 +522,10 @@ void TestTools(int model, const std::string& fileName)
   events += Viewer::Key('p', 4.0, 20.0) + timer;
   mouse("LeftButtonPressEvent", 22.0, 8.0);
   mouse("MouseMoveEvent", 21.0, 9.0);
+  // It ends with the left button, although the right one is down.
+  mouse("RightButtonPressEvent", 21.0, 9.0);
   mouse("LeftButtonReleaseEvent", 21.0, 9.0);
+  mouse("RightButtonReleaseEvent", 21.0, 9.0);
   // All again: the body is at rest, so that places are known.
   events += Viewer::Key('z') + timer + Viewer::Key('y') + Viewer::Key('1') + timer;
   viewer.Replay(events);

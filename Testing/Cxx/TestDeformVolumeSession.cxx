@@ -557,6 +557,11 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   VERIFY(one.Object->SaveSession(fileName));
   VERIFY(one.Object->SaveVolume(fileName + ".vti") && one.Object->SaveMesh(fileName + ".vtu"));
   const std::string text = ReadText(fileName);
+  for (const char* const type : { ".vti", ".vtu" })
+  {
+    // Inline: there are ParaViews that cannot read raw appended data.
+    VERIFY(ReadText(fileName + type).find("<AppendedData") == std::string::npos);
+  }
 
   const std::string damaged = fileName + ".damaged";
   const struct
@@ -572,6 +577,7 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
     { Replace(text, "MoveGrab", "Move"), "there is no event" },
     { Replace(text, "MoveGrab 0 13 ", "MoveGrab 0 "), "other numbers" },
     { Replace(text, "MoveGrab 0 13 ", "MoveGrab 0 nan "), "finite" },
+    { Replace(text, "MoveGrab 0 13 ", "MoveGrab 0 1e999 "), "finite" },
   };
   for (const auto& wrong : cases)
   {
