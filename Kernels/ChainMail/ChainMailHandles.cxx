@@ -71,6 +71,11 @@ ChainMailHandles::ChainMailHandles(const ChainMailBlocks& blocks,
   const auto isSame = [](const HeldVoxel& a, const HeldVoxel& b) { return a.Place == b.Place; };
   this->Voxels.erase(
     std::unique(this->Voxels.begin(), this->Voxels.end(), isSame), this->Voxels.end());
+  this->HasSome.resize(handles.size());
+  for (const HeldVoxel& voxel : this->Voxels)
+  {
+    this->HasSome[voxel.Handle] = true;
+  }
 }
 
 void ChainMailHandles::Select(const ChainMailBlocks& blocks, const std::array<double, 3>& spacing,

@@ -40,6 +40,8 @@ public:
     return this->Targets[handle];
   }
   std::size_t GetNumberOfHandles() const { return this->Targets.size(); }
+  /// Whether a handle has voxels, which do not belong to handles before it.
+  bool HasVoxels(std::size_t handle) const { return this->HasSome[handle]; }
 
 private:
   void Select(const ChainMailBlocks& blocks, const std::array<double, 3>& spacing,
@@ -47,6 +49,7 @@ private:
 
   std::vector<HeldVoxel> Voxels;
   std::vector<std::array<std::int32_t, 3>> Targets;
+  std::vector<bool> HasSome;
 };
 
 } // namespace deformvolume

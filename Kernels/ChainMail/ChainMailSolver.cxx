@@ -265,6 +265,10 @@ void ChainMailSolver::ResolveInOrder(const ChainMailHandles& handles, ChainMailR
   bool isRestored = true; // as before the step, but for what was accepted
   for (std::size_t i = 0; i < count; ++i)
   {
+    if (!handles.HasVoxels(i))
+    {
+      continue; // what handles before it hold has been resolved
+    }
     HandleTask task{ handles.GetTarget(i), Source };
     for (int attempt = 0; task.Flags; ++attempt)
     {

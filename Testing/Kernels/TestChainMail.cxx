@@ -282,6 +282,30 @@ TEST(ChainMail, HandlesThatContradictEachOther)
   EXPECT_EQ(subject.Get(reference.GetVoxel(16, 4, 4), 0), 40.0);
 }
 
+// Handles of voxels that others hold already take no time: the first one counts.
+TEST(ChainMail, ManyHandlesOfAFewVoxels)
+{
+  const Extent extent{ { 0, 29, 0, 8, 0, 8 } };
+  const std::vector<ChainMailHandle> few{ MakeHandle({ { 10, 4, 4 } }, { { 4, 0, 0 } }),
+    MakeHandle({ { 16, 4, 4 } }, { { -4, 1, 0 } }),
+    MakeHandle({ { 22, 4, 4 } }, { { 0, -6, 0 } }) };
+  std::vector<ChainMailHandle> many = few;
+  for (int i = 0; i < 300; ++i)
+  {
+    many.push_back(few[static_cast<std::size_t>(i % 3)]);
+    many.back().Displacement = { { 1.0 * (i % 7), -3.0, 2.0 } };
+  }
+  ChainMailReference reference(extent, { { 1, 1, 1 } });
+  Subject subject(extent);
+  Subject other(extent);
+  const ChainMailReport report = subject.Step(many);
+  EXPECT_EQ(report.NumberOfSweeps, other.Step(few).NumberOfSweeps);
+  ExpectSame(report.Handles, reference.Step(many));
+  subject.ExpectEqual(reference);
+  EXPECT_TRUE(report.Handles.back().IsHeld);
+  EXPECT_EQ(report.Handles.back().NumberOfVoxels, 0);
+}
+
 TEST(ChainMail, AHandleThatCannotBeHeldIsReleased)
 {
   const Extent extent{ { 0, 20, 0, 4, 0, 4 } };
