@@ -38,6 +38,7 @@ GRAPHICS = ("TestGraphicsDevice", "*")
 STAGED = ("TestStagedCopies", "Staged.*")
 CUTTING = ("TestCutting", "*")
 SMOOTH = ("TestSmoothCuts", "*")
+EDITS = ("TestMaskEditor", "*")
 SPLIT = ("TestMeshSplit", "*")
 SPLIT_FACES = ("TestSplitFaces", "*")
 CROSSINGS = ("TestSheetCrossings", "*")
@@ -170,12 +171,12 @@ MUTATIONS = {
     "lists-inverted": ("Kernels/Binning/EntryLists.cl", "2 * tile + IsInverted(box.y);", "2 * tile;", [LISTS]),
     "lists-box": ("Kernels/Binning/TetrahedronBinning.cl", "#define TILES_BITS_X 8", "#define TILES_BITS_X 7",
                   [LISTS]),
-    "boundary-neighbours": ("Kernels/Mapping/MeshBoundary.cxx", "this->Near.Add(i, j, k);",
+    "boundary-neighbours": ("Kernels/Mapping/BoundaryFinder.cxx", "this->Near.Add(i, j, k);",
                             "i == x && j == y && k == z ? this->Near.Add(i, j, k) : (void)0;", [BOUNDARY]),
     "boundary-places": ("Kernels/Mapping/MeshBoundary.cxx", "faces[end].IsAbove != faces[i].IsAbove", "false", [BOUNDARY]),
-    "boundary-border": ("Kernels/Mapping/MeshBoundary.cxx", "BorderTolerance = 1.0 / 512.0;",
+    "boundary-border": ("Kernels/Mapping/BoundaryFinder.h", "BorderTolerance = 1.0 / 512.0;",
                         "BorderTolerance = -1.0 / 512.0;", [BOUNDARY]),
-    "boundary-large": ("Kernels/Mapping/MeshBoundary.cxx", "LargestPiece = 128.0;", "LargestPiece = 1e9;", [BOUNDARY]),
+    "boundary-large": ("Kernels/Mapping/BoundaryFinder.cxx", "LargestPiece = 128.0;", "LargestPiece = 1e9;", [BOUNDARY]),
     "boundary-told": ("Kernels/SamplingMesh/VertexState.cl", "!BeginsCrossed(state, active, x, y, z, p)", "1", [BOUNDARY]),
     "boundary-surrounded": ("Kernels/SamplingMesh/VertexState.cl",
                             "|| IsComplete(state, cell, i, j, k, p);", "|| 1;", [BOUNDARY]),
@@ -189,6 +190,8 @@ MUTATIONS = {
     "boundary-blanked": ("Kernels/Resampling/BoundaryCells.cl", "if (r->HasBlanked && masks->Blanked[voxel])", "if (false)",
                          [BOUNDARY]),
     "boundary-active": ("Kernels/Resampling/BoundaryCells.cl", "if ((active >> t & 1) && ", "if (", [BOUNDARY]),
+    "edits-forget": ("Kernels/Cutting/MaskEditor.cxx", "this->Hits.Forget(edit.Set.Bricks);", "", [EDITS]),
+    "edits-crossings": ("Kernels/Cutting/SmoothCrossings.cxx", "this->Cells.Forget(edit.Bricks);", "", [CROSSINGS]),
     "cut-above": ("Kernels/Cutting/TriangleCrossing.h", "return (sign != 0 ? sign : this->NormalSign) > 0;",
                   "return sign > 0;", [CUTTING]),
     "cut-face": ("Kernels/Cutting/TriangleCrossing.cxx", "sign != 0 ? sign : -movement;",

@@ -31,6 +31,22 @@ void BoundaryDistances::SetBase(const float* base, const std::vector<const Dista
   this->Changed.assign(this->Changed.size(), true);
 }
 
+void BoundaryDistances::Add(const DistanceSet& edit)
+{
+  if (this->Values.empty() && !edit.IsEmpty())
+  {
+    this->Values.assign(this->Bricks.GetNumberOfCells(), this->Far);
+  }
+  for (std::size_t i = 0; i < edit.Bricks.size(); ++i)
+  {
+    const DistanceSet::Block& block = edit.Blocks[i];
+    ForEachCell(this->Bricks, edit.Bricks[i],
+      [&](const std::array<int, 3>&, std::size_t place, std::size_t vertex)
+      { this->Values[vertex] = std::min(this->Values[vertex], block[place]); });
+    this->Changed[edit.Bricks[i]] = true;
+  }
+}
+
 void BoundaryDistances::Update(
   const std::vector<std::size_t>& bricks, const std::vector<const DistanceSet*>& sets)
 {

@@ -30,7 +30,9 @@ public:
   /// edits.
   void SetBase(const float* base, const std::vector<const DistanceSet*>& sets);
 
-  /// Makes some bricks anew.
+  /// An edit comes.
+  void Add(const DistanceSet& edit);
+  /// Makes some bricks anew, as an edit has gone. sets: of those that are left.
   void Update(const std::vector<std::size_t>& bricks, const std::vector<const DistanceSet*>& sets);
 
   /// One a vertex, x varying fastest; none before there was a boundary.

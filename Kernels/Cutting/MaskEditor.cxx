@@ -28,6 +28,9 @@ MaskEditor::MaskEditor(const Extent& vertices, float far)
   : Bricks(vertices)
   , Mask(this->Bricks.GetNumberOfCells(), DEFORMVOLUME_ALL_TETRAHEDRA)
   , Changed(this->Bricks.GetNumberOfBricks(), true)
+  , Hits(0,
+      [](unsigned char& hit, const unsigned char& other)
+      { hit = static_cast<unsigned char>(hit | other); })
   , Distances(vertices, far)
   , Crossings(vertices)
 {
@@ -141,7 +144,7 @@ std::uint64_t MaskEditor::Add(
   this->Undone.clear();
   this->Edits.push_back(
     { ++this->LastNumber, std::move(set), std::move(distances), std::move(crossings) });
-  this->Update(this->Edits.back());
+  this->Apply(this->Edits.back());
   return this->LastNumber;
 }
 
@@ -161,7 +164,7 @@ bool MaskEditor::Remove(std::uint64_t edit)
   }
   std::list<Edit> removed;
   removed.splice(removed.end(), this->Edits, found);
-  this->Update(removed.front());
+  this->TakeBack(removed.front());
   return true;
 }
 
@@ -172,7 +175,7 @@ bool MaskEditor::Undo()
     return false;
   }
   this->Undone.splice(this->Undone.end(), this->Edits, std::prev(this->Edits.end()));
-  this->Update(this->Undone.back());
+  this->TakeBack(this->Undone.back());
   return true;
 }
 
@@ -183,7 +186,7 @@ bool MaskEditor::Redo()
     return false;
   }
   this->Edits.splice(this->Edits.end(), this->Undone, std::prev(this->Undone.end()));
-  this->Update(this->Edits.back());
+  this->Apply(this->Edits.back());
   return true;
 }
 
@@ -192,11 +195,12 @@ void MaskEditor::Reset()
   std::list<Edit> edits;
   edits.swap(this->Edits);
   this->Undone.clear();
+  this->Hits.Clear();
   this->Update(edits);
   for (const Edit& edit : edits)
   {
     this->Distances.Update(edit.Distances.Bricks, {});
-    this->Update(this->Crossings.Update(edit.Crossings, {}));
+    this->Update(this->Crossings.Remove(edit.Crossings, {}));
   }
 }
 
@@ -208,7 +212,7 @@ std::vector<std::size_t> MaskEditor::TakeChangedBricks()
 std::uint64_t MaskEditor::GetMemory() const
 {
   std::uint64_t bytes = this->Mask.size() + this->Base.size() + this->Distances.GetMemory() +
-    this->Crossings.GetMemory();
+    this->Crossings.GetMemory() + this->Hits.GetMemory();
   for (const std::list<Edit>* edits : { &this->Edits, &this->Undone })
   {
     for (const Edit& edit : *edits)
@@ -248,11 +252,24 @@ std::vector<const Set*> MaskEditor::GetSets(Set Edit::*set) const
   return sets;
 }
 
-void MaskEditor::Update(const Edit& edit)
+void MaskEditor::Apply(const Edit& edit)
 {
+  this->Hits.Add(edit.Set.Bricks, edit.Set.Blocks);
+  this->Update(edit.Set.Bricks);
+  this->Distances.Add(edit.Distances);
+  this->Update(this->Crossings.Add(edit.Crossings));
+}
+
+void MaskEditor::TakeBack(const Edit& edit)
+{
+  this->Hits.Forget(edit.Set.Bricks);
+  for (const Edit& other : this->Edits)
+  {
+    this->Hits.AddAgain(edit.Set.Bricks, other.Set.Bricks, other.Set.Blocks);
+  }
   this->Update(edit.Set.Bricks);
   this->Distances.Update(edit.Distances.Bricks, this->GetSets(&Edit::Distances));
-  this->Update(this->Crossings.Update(edit.Crossings, this->GetSets(&Edit::Crossings)));
+  this->Update(this->Crossings.Remove(edit.Crossings, this->GetSets(&Edit::Crossings)));
 }
 
 void MaskEditor::Update(const std::vector<std::size_t>& bricks)
@@ -279,23 +296,12 @@ void MaskEditor::Update(const std::list<Edit>& edits)
 
 void MaskEditor::UpdateBrick(std::size_t brick)
 {
-  std::vector<const TetrahedronSet::Block*> blocks;
-  for (const Edit& edit : this->Edits)
-  {
-    if (const TetrahedronSet::Block* block = FindBlock(edit.Set.Bricks, edit.Set.Blocks, brick))
-    {
-      blocks.push_back(block);
-    }
-  }
+  const TetrahedronSet::Block* const block = this->Hits.Find(brick);
   const std::vector<unsigned char>& off = this->Crossings.GetSwitchedOff();
   ForEachCell(this->Bricks, brick,
     [&](const std::array<int, 3>&, std::size_t place, std::size_t cell)
     {
-      unsigned int hit = 0;
-      for (const TetrahedronSet::Block* block : blocks)
-      {
-        hit |= (*block)[place];
-      }
+      unsigned int hit = block ? (*block)[place] : 0U;
       hit |= off.empty() ? 0U : off[cell];
       const unsigned int base = this->Base.empty() ? DEFORMVOLUME_ALL_TETRAHEDRA : this->Base[cell];
       const unsigned int next = base & ~(hit & DEFORMVOLUME_ALL_TETRAHEDRA);

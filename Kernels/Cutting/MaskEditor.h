@@ -8,6 +8,7 @@
 #include "DeformVolumeExport.h"
 #include "DistanceSet.h"
 #include "Extent.h"
+#include "JoinedBlocks.h"
 #include "PointRanges.h"
 #include "SmoothCrossings.h"
 #include "TetrahedronSet.h"
@@ -27,7 +28,8 @@ namespace deformvolume
 /// An edit is kept as the set of tetrahedra that it hits. The mask is the base, which is the mask
 /// before all edits, without what the edits hit. So the order of edits does not matter, one in the
 /// middle can be removed, and what is undone comes back bit for bit. Work is done only on the
-/// bricks that an edit hits. Of the bytes of the base, the bits above the fifth stay as they are.
+/// bricks that an edit hits, and does not grow with the number of edits before it; where one is
+/// undone or removed, it does. Of the bytes of the base, the bits above the fifth stay as they are.
 ///
 /// An edit may have the distances of vertices to a smooth boundary besides, which passes through
 /// tetrahedra that stay active (BoundaryDistances), and where a sheet crosses edges, which divides
@@ -93,6 +95,12 @@ public:
   /// As TakeChangedBricks(), of their vertices.
   std::vector<std::size_t> TakeChangedVertexBricks() { return this->Distances.TakeChangedBricks(); }
 
+  /// Blocks of edits that were joined so far, of tetrahedra and of crossings: what edits cost.
+  std::uint64_t GetNumberOfJoins() const
+  {
+    return this->Hits.GetNumberOfJoins() + this->Crossings.GetNumberOfJoins();
+  }
+
   /// Bytes of memory that the mask, the base and the edits take.
   std::uint64_t GetMemory() const;
 
@@ -109,8 +117,9 @@ private:
   std::vector<std::size_t> CompareBase(const unsigned char* base, const PointRanges& changes) const;
   /// Makes the mask of some bricks anew.
   void Update(const std::vector<std::size_t>& bricks);
-  /// Makes all anew that an edit hits.
-  void Update(const Edit& edit);
+  /// An edit comes, or goes: makes all anew that it hits.
+  void Apply(const Edit& edit);
+  void TakeBack(const Edit& edit);
   /// Those of all edits that are not empty.
   template <typename Set>
   std::vector<const Set*> GetSets(Set Edit::*set) const;
@@ -126,7 +135,8 @@ private:
   std::list<Edit> Undone; // the last one undone at the end
   std::uint64_t LastNumber = 0;
   std::int64_t NumberOfSwitchedOff = 0;
-  std::vector<bool> Changed; // of each brick
+  std::vector<bool> Changed;                // of each brick
+  JoinedBlocks<TetrahedronSet::Block> Hits; // of all edits
   BoundaryDistances Distances;
   SmoothCrossings Crossings;
 };

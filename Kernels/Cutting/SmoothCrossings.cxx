@@ -64,6 +64,9 @@ void AppendVertex(DistanceSet& set, std::size_t brick)
 SmoothCrossings::SmoothCrossings(const Extent& vertices)
   : Bricks(vertices)
   , VertexBricks(deformvolume::GetVertexBricks(vertices))
+  , Cells({}, [](CrossingSet::Cell& cell, const CrossingSet::Cell& other) { cell.Join(other); })
+  , VertexDistances(FarFromSheets,
+      [](float& distance, const float& other) { distance = JoinSheetDistances(distance, other); })
   , Changed(this->Bricks.GetNumberOfBricks(), true)
   , ChangedVertices(this->VertexBricks.GetNumberOfBricks(), true)
 {
@@ -160,13 +163,22 @@ void SmoothCrossings::SetBase(
         }
       });
   }
+  this->Cells.Clear();
+  this->VertexDistances.Clear();
+  const auto join = [this](const CrossingSet& set)
+  {
+    this->Cells.Add(set.Bricks, set.Blocks);
+    this->VertexDistances.Add(set.Distances.Bricks, set.Distances.Blocks);
+  };
+  join(this->Base);
+  std::for_each(sets.begin(), sets.end(), [&](const CrossingSet* set) { join(*set); });
   for (std::size_t brick = 0; brick < this->VertexBricks.GetNumberOfBricks(); ++brick)
   {
-    this->UpdateDistances(brick, sets);
+    this->UpdateDistances(brick);
   }
   for (std::size_t brick = 0; brick < this->Bricks.GetNumberOfBricks(); ++brick)
   {
-    this->UpdateCells(brick, sets);
+    this->UpdateCells(brick);
   }
   this->Changed.assign(this->Changed.size(), true);
   this->ChangedVertices.assign(this->ChangedVertices.size(), true);
@@ -202,8 +214,31 @@ std::vector<std::size_t> SmoothCrossings::FindNeighbours(
   return found;
 }
 
-std::vector<std::size_t> SmoothCrossings::Update(
+std::vector<std::size_t> SmoothCrossings::Add(const CrossingSet& edit)
+{
+  this->Cells.Add(edit.Bricks, edit.Blocks);
+  this->VertexDistances.Add(edit.Distances.Bricks, edit.Distances.Blocks);
+  return this->Update(edit);
+}
+
+std::vector<std::size_t> SmoothCrossings::Remove(
   const CrossingSet& edit, const std::vector<const CrossingSet*>& sets)
+{
+  this->Cells.Forget(edit.Bricks);
+  this->VertexDistances.Forget(edit.Distances.Bricks);
+  const auto joinAgain = [&](const CrossingSet& set)
+  {
+    this->Cells.AddAgain(edit.Bricks, set.Bricks, set.Blocks);
+    this->VertexDistances.AddAgain(
+      edit.Distances.Bricks, set.Distances.Bricks, set.Distances.Blocks);
+  };
+  joinAgain(this->Base);
+  std::for_each(sets.begin(), sets.end(), [&](const CrossingSet* set) { joinAgain(*set); });
+  return this->Update(edit);
+}
+
+// Makes all anew that an edit hits.
+std::vector<std::size_t> SmoothCrossings::Update(const CrossingSet& edit)
 {
   if (edit.IsEmpty())
   {
@@ -212,65 +247,38 @@ std::vector<std::size_t> SmoothCrossings::Update(
   this->Allocate();
   for (const std::size_t brick : edit.Distances.Bricks)
   {
-    this->UpdateDistances(brick, sets);
+    this->UpdateDistances(brick);
     this->ChangedVertices[brick] = true;
   }
   // Vertices on the sides of bricks belong to cells of several.
   std::vector<std::size_t> bricks = this->FindNeighbours(edit.Bricks);
   for (const std::size_t brick : bricks)
   {
-    this->UpdateCells(brick, sets);
+    this->UpdateCells(brick);
     this->Changed[brick] = true;
   }
   return bricks;
 }
 
-void SmoothCrossings::UpdateDistances(
-  std::size_t brick, const std::vector<const CrossingSet*>& sets)
+void SmoothCrossings::UpdateDistances(std::size_t brick)
 {
-  std::vector<const DistanceSet::Block*> blocks;
-  const auto add = [&](const CrossingSet& set)
-  {
-    if (const auto* block = FindBlock(set.Distances.Bricks, set.Distances.Blocks, brick))
-    {
-      blocks.push_back(block);
-    }
-  };
-  add(this->Base);
-  std::for_each(sets.begin(), sets.end(), [&](const CrossingSet* set) { add(*set); });
+  const DistanceSet::Block* const block = this->VertexDistances.Find(brick);
   ForEachCell(this->VertexBricks, brick,
     [&](const std::array<int, 3>&, std::size_t place, std::size_t vertex)
     {
-      float distance = FarFromSheets;
-      for (const DistanceSet::Block* block : blocks)
-      {
-        distance = JoinSheetDistances(distance, (*block)[place]);
-      }
+      const float distance = block ? (*block)[place] : FarFromSheets;
       this->Distances[vertex] = distance == FarFromSheets ? 0.0F : distance;
     });
 }
 
-void SmoothCrossings::UpdateCells(std::size_t brick, const std::vector<const CrossingSet*>& sets)
+void SmoothCrossings::UpdateCells(std::size_t brick)
 {
-  std::vector<const CrossingSet::Block*> blocks;
-  const auto add = [&](const CrossingSet& set)
-  {
-    if (const auto* block = FindBlock(set.Bricks, set.Blocks, brick))
-    {
-      blocks.push_back(block);
-    }
-  };
-  add(this->Base);
-  const CrossingSet::Block* const base = blocks.empty() ? nullptr : blocks.front();
-  std::for_each(sets.begin(), sets.end(), [&](const CrossingSet* set) { add(*set); });
+  const CrossingSet::Block* const block = this->Cells.Find(brick);
+  const CrossingSet::Block* const base = FindBlock(this->Base.Bricks, this->Base.Blocks, brick);
   ForEachCell(this->Bricks, brick,
     [&](const std::array<int, 3>& cell, std::size_t place, std::size_t number)
     {
-      CrossingSet::Cell joined;
-      for (const CrossingSet::Block* block : blocks)
-      {
-        joined.Join((*block)[place]);
-      }
+      const CrossingSet::Cell joined = block ? (*block)[place] : CrossingSet::Cell();
       const unsigned int mirror = GetMirror(this->Bricks.GetVertices(), cell);
       unsigned int crossed = 0;
       unsigned int off = 0;
@@ -319,7 +327,8 @@ std::vector<std::size_t> SmoothCrossings::TakeChangedVertexBricks()
 std::uint64_t SmoothCrossings::GetMemory() const
 {
   return this->Crossed.size() + this->SwitchedOff.size() + this->Distances.size() * sizeof(float) +
-    this->Base.Bricks.size() * sizeof(CrossingSet::Block) +
+    this->Base.Bricks.size() * sizeof(CrossingSet::Block) + this->Cells.GetMemory() +
+    this->VertexDistances.GetMemory() +
     this->Base.Distances.Bricks.size() * sizeof(DistanceSet::Block);
 }
 

@@ -6,6 +6,7 @@
 #include "CrossingSet.h"
 #include "DeformVolumeExport.h"
 #include "Extent.h"
+#include "JoinedBlocks.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -36,10 +37,18 @@ public:
   void SetBase(const unsigned char* crossed, const float* distances,
     const std::vector<const CrossingSet*>& sets);
 
-  /// An edit comes or goes. sets: of all that are left. Returns the bricks of cells that may have
+  ///@{
+  /// An edit comes, or goes; sets: of all that are left. Returns the bricks of cells that may have
   /// changed.
-  std::vector<std::size_t> Update(
+  std::vector<std::size_t> Add(const CrossingSet& edit);
+  std::vector<std::size_t> Remove(
     const CrossingSet& edit, const std::vector<const CrossingSet*>& sets);
+  ///@}
+  /// Blocks of edits that were joined so far.
+  std::uint64_t GetNumberOfJoins() const
+  {
+    return this->Cells.GetNumberOfJoins() + this->VertexDistances.GetNumberOfJoins();
+  }
 
   ///@{
   /// One a cell, x varying fastest: tetrahedra that are divided, as bits, and that are switched
@@ -65,13 +74,17 @@ public:
 private:
   void Allocate();
   std::vector<std::size_t> FindNeighbours(const std::vector<std::size_t>& bricks) const;
-  void UpdateDistances(std::size_t brick, const std::vector<const CrossingSet*>& sets);
-  void UpdateCells(std::size_t brick, const std::vector<const CrossingSet*>& sets);
+  std::vector<std::size_t> Update(const CrossingSet& edit);
+  void UpdateDistances(std::size_t brick);
+  void UpdateCells(std::size_t brick);
   std::size_t GetVertex(const std::array<int, 3>& cell, unsigned int offset) const;
 
   CellBricks Bricks;
   CellBricks VertexBricks;
   CrossingSet Base;
+  // The base and all edits together.
+  JoinedBlocks<CrossingSet::Block> Cells;
+  JoinedBlocks<DistanceSet::Block> VertexDistances;
   std::vector<unsigned char> Crossed;
   std::vector<unsigned char> SwitchedOff;
   std::vector<float> Distances;

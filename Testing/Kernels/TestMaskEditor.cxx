@@ -122,6 +122,46 @@ TEST(MaskEditor, RefusesWhatIsNoMask)
   EXPECT_TRUE(editor.Redo());
 }
 
+// As many updates of a tool: the last one looks at no more than the first one, and all together do
+// what one edit does.
+TEST(MaskEditor, WorkDoesNotGrowWithTheNumberOfEdits)
+{
+  const Extent vertices{ { 0, 16, 0, 8, 0, 8 } };
+  MaskEditor editor(vertices);
+  MaskEditor other(vertices);
+  std::mt19937 random(4);
+  TetrahedronSet all;
+  all.Bricks = std::vector<std::size_t>{ 0, 1 };
+  all.Blocks.resize(2);
+  for (int edit = 0; edit < 10000; ++edit)
+  {
+    TetrahedronSet set;
+    set.Bricks = std::vector<std::size_t>{ 0, 1 };
+    set.Blocks.resize(2);
+    CrossingSet crossings;
+    crossings.Bricks.push_back(1);
+    crossings.Blocks.resize(1);
+    for (std::size_t brick = 0; brick < 2; ++brick)
+    {
+      const std::size_t cell = random() % 512;
+      set.Blocks[brick][cell] = static_cast<unsigned char>(random() % 32);
+      all.Blocks[brick][cell] |= set.Blocks[brick][cell];
+    }
+    crossings.Blocks[0][random() % 512].Edges = 1;
+    const std::uint64_t before = editor.GetNumberOfJoins();
+    editor.Add(std::move(set), {}, edit % 2 ? CrossingSet() : std::move(crossings));
+    ASSERT_EQ(editor.GetNumberOfJoins() - before, edit % 2 ? 2U : 3U);
+  }
+  other.Add(std::move(all));
+  EXPECT_EQ(editor.GetNumberOfEdits(), 10000U);
+  // Edges that are crossed many times switch tetrahedra off besides.
+  for (std::size_t cell = 0; cell < other.GetMask().size(); ++cell)
+  {
+    ASSERT_EQ(editor.GetMask()[cell],
+      other.GetMask()[cell] & ~editor.GetSmoothCrossings().GetSwitchedOff()[cell]);
+  }
+}
+
 TEST(MaskEditor, HistoriesEqualTheReference)
 {
   std::mt19937 random(10);
