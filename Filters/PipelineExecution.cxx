@@ -6,6 +6,7 @@
 
 #include "vtkAlgorithm.h"
 
+#include <exception>
 #include <new>
 
 namespace deformvolume
@@ -31,6 +32,10 @@ int PipelineExecution::Run(
   catch (const std::bad_alloc&)
   {
     vtkErrorWithObjectMacro(algorithm, << noMemory);
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorWithObjectMacro(algorithm, << "The update has failed: " << error.what());
   }
   return Fail(algorithm);
 }

@@ -105,9 +105,12 @@ SmoothCarving vtkCarveVolume::vtkInternals::CarveLabel(vtkDataArray* labels) con
     const glm::dvec3& spacing = editor.GetGeometry().Spacing;
     const double half =
       0.5 * std::min({ std::abs(spacing.x), std::abs(spacing.y), std::abs(spacing.z) });
-    return deformvolume::FindSmoothCarving(editor.GetBricks(), find, half, editor.GetFarDistance());
+    return deformvolume::FindSmoothCarving(
+      editor.GetBricks(), find, half, editor.GetFarDistance(), this->Self->Edits->Progress);
   }
-  return { deformvolume::FindCarvedTetrahedra(editor.GetBricks(), find, this->GetRule()), {} };
+  return { deformvolume::FindCarvedTetrahedra(
+             editor.GetBricks(), find, this->GetRule(), this->Self->Edits->Progress),
+    {} };
 }
 
 //------------------------------------------------------------------------------
@@ -118,9 +121,11 @@ SmoothCarving vtkCarveVolume::vtkInternals::Carve(
   const deformvolume::VertexPositions& vertices = edits.GetVertices(input);
   if (this->Self->SmoothBoundary)
   {
-    return deformvolume::FindSmoothCarving(vertices, tool, edits.Editor.GetFarDistance());
+    return deformvolume::FindSmoothCarving(
+      vertices, tool, edits.Editor.GetFarDistance(), edits.Progress);
   }
-  return { deformvolume::FindCarvedTetrahedra(vertices, tool, this->GetRule()), {} };
+  return { deformvolume::FindCarvedTetrahedra(vertices, tool, this->GetRule(), edits.Progress),
+    {} };
 }
 
 //------------------------------------------------------------------------------

@@ -94,11 +94,12 @@ void vtkCutVolume::UpdateEdits(vtkInformationVector** input)
     vtkInternals::Cut made;
     if (this->SmoothCut)
     {
-      made.Divided = deformvolume::FindSheetCrossings(vertices, triangles);
+      made.Divided = deformvolume::FindSheetCrossings(vertices, triangles, this->Edits->Progress);
     }
     else
     {
-      made.SwitchedOff = deformvolume::FindCrossedTetrahedra(vertices, triangles);
+      made.SwitchedOff =
+        deformvolume::FindCrossedTetrahedra(vertices, triangles, this->Edits->Progress);
     }
     return made;
   };

@@ -239,10 +239,57 @@ void vtkElasticDeformation::Execute(
       "body was lost in an update that was aborted or failed.");
   }
   this->CheckSize(session.GetMesh().Size);
-  this->UpdateCuts(vtkPolyData::GetData(input[2]));
+  const std::size_t cuts = session.GetNumberOfCuts();
+  const double time = session.Time;
+  try
+  {
+    this->UpdateCuts(vtkPolyData::GetData(input[2]));
+    this->Advance(simulation, vtkPointSet::GetData(input[1]), info, progress);
+  }
+  catch (const deformvolume::Aborted&)
+  {
+    throw;
+  }
+  catch (const deformvolume::Error&)
+  {
+    if (session.Time == time)
+    {
+      session.TakeBackNewCuts(cuts); // the sheet cuts when what is wrong has been mended
+    }
+    throw;
+  }
+  catch (...)
+  {
+    session.Lose();
+    throw;
+  }
+  for (const std::string& warning : simulation.TakeWarnings())
+  {
+    vtkWarningMacro(<< warning);
+  }
+
+  output->ShallowCopy(session.GetGrid(grid));
+  vtkDataArray* displacements = simulation.WriteOutput(1.0 / settings.UnitLength);
+  displacements->Modified();
+  output->GetPointData()->SetVectors(displacements);
+  if (this->ElementResults)
+  {
+    AddElementResults(output, session.GetMesh(), simulation.GetElementResults());
+  }
+  if (info->Has(Pipeline::UPDATE_TIME_STEP()))
+  {
+    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), session.Time);
+  }
+}
+
+void vtkElasticDeformation::Advance(ElasticSimulation& simulation, vtkPointSet* handles,
+  vtkInformation* info, deformvolume::ProgressReport& progress)
+{
+  vtkInternals& internals = *this->Internals;
+  deformvolume::ElasticSession& session = internals.Session;
   ElasticSimulation::Frame frame;
   frame.Held = deformvolume::ReadHandles(
-    vtkPointSet::GetData(input[1]), this->HandleRadius, session.GetMesh().Body, settings);
+    handles, this->HandleRadius, session.GetMesh().Body, session.GetSettings());
   frame.Loads.Gravity = { this->Gravity[0], this->Gravity[1], this->Gravity[2] };
   frame.Loads.Forces = session.GetMesh().Forces;
 
@@ -262,7 +309,6 @@ void vtkElasticDeformation::Execute(
     {
       session.Reset();
     }
-    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), end);
   }
   else
   {
@@ -280,23 +326,6 @@ void vtkElasticDeformation::Execute(
     session.Time = done + 1.0 == frames ? end : session.Time + frame.Duration;
   }
   this->NumberOfHeldNodes = static_cast<vtkIdType>(frame.Held.size());
-  for (const std::string& warning : simulation.TakeWarnings())
-  {
-    vtkWarningMacro(<< warning);
-  }
-
-  output->ShallowCopy(session.GetGrid(grid));
-  vtkDataArray* displacements = simulation.WriteOutput(1.0 / settings.UnitLength);
-  displacements->Modified();
-  output->GetPointData()->SetVectors(displacements);
-  if (this->ElementResults)
-  {
-    AddElementResults(output, session.GetMesh(), simulation.GetElementResults());
-  }
-  if (info->Has(Pipeline::UPDATE_TIME_STEP()))
-  {
-    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), end);
-  }
 }
 
 void vtkElasticDeformation::CheckSize(double size)

@@ -75,7 +75,9 @@
 namespace deformvolume
 {
 class ElasticSimulation;
+class ProgressReport;
 }
+class vtkPointSet;
 class vtkPolyData;
 
 class VTKDEFORMVOLUME_EXPORT vtkElasticDeformation : public vtkUnstructuredGridAlgorithm
@@ -268,6 +270,9 @@ private:
 
   void Execute(vtkInformationVector** input, vtkInformationVector* output);
   void UpdateCuts(vtkPolyData* sheet);
+  /// Goes on to the time that is asked for, if any.
+  void Advance(deformvolume::ElasticSimulation& simulation, vtkPointSet* handles,
+    vtkInformation* info, deformvolume::ProgressReport& progress);
   /// Warns where a body of so many metres is hardly meant.
   void CheckSize(double size);
 

@@ -4,9 +4,9 @@
 #include "vtkVolumeEditAlgorithmInternals.h"
 
 #include "Error.h"
-#include "FailureReport.h"
 #include "ImageGeometry.h"
 #include "PieceRequest.h"
+#include "ProgressReport.h"
 #include "VTKThreads.h"
 #include "VectorChoice.h"
 
@@ -22,8 +22,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <cmath>
-#include <exception>
-#include <new>
 
 namespace
 {
@@ -233,27 +231,32 @@ int vtkVolumeEditAlgorithm::RequestData(
     image->ShallowCopy(volume);
     return 1;
   }
-  try
-  {
-    if (!std::isfinite(this->DisplacementScale))
+  deformvolume::ProgressReport progress(this);
+  this->Edits->Progress = [&](double done) { return progress.Tell(done); };
+  const int result = this->Edits->Execution.Run(this,
+    "The memory of this machine does not suffice for the edits. Use a smaller volume.",
+    [&]
     {
-      throw deformvolume::Error("DisplacementScale is not finite. Set a finite one.");
-    }
-    this->UpdateEdits(input);
-    this->Edits->Tool.Finish();
-    this->Edits->Editor.Write(volume, image);
-    return 1;
-  }
-  catch (const std::bad_alloc&)
-  {
-    vtkErrorMacro(
-      "The memory of this machine does not suffice for the edits. Use a smaller volume.");
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-  }
-  return deformvolume::Fail(this);
+      if (!std::isfinite(this->DisplacementScale))
+      {
+        throw deformvolume::Error("DisplacementScale is not finite. Set a finite one.");
+      }
+      this->UpdateEdits(input);
+      this->Edits->Tool.Finish();
+      this->Edits->Editor.Write(volume, image);
+    });
+  this->Edits->Progress = nullptr;
+  return result;
+}
+
+//------------------------------------------------------------------------------
+int vtkVolumeEditAlgorithm::ComputePipelineMTime(vtkInformation* request,
+  vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
+  vtkMTimeType* mtime)
+{
+  this->Edits->Execution.RenewAborted(this);
+  return this->Superclass::ComputePipelineMTime(
+    request, input, output, requestFromOutputPort, mtime);
 }
 
 //------------------------------------------------------------------------------

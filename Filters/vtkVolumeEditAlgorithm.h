@@ -36,6 +36,10 @@
  * direction); everything then edits anew. They stay when values or "ActiveTetrahedra" of the volume
  * change.
  *
+ * @par Abort:
+ * An execution that is aborted ends with an empty output; the edits are as they were, and the next
+ * update makes those that are missing.
+ *
  * @par Errors:
  * No volume, or one that is flat; an "ActiveTetrahedra" array of another type or size; a tool
  * position or a DisplacementScale that is not finite; a deformation that vtkDeformVolumeFilter
@@ -153,6 +157,8 @@ protected:
    */
   virtual void UpdateEdits(vtkInformationVector** input) = 0;
 
+  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** input,
+    vtkInformationVector* output, int requestFromOutputPort, vtkMTimeType* mtime) override;
   vtkTypeBool ProcessRequest(
     vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
   int FillInputPortInformation(int port, vtkInformation* info) override;

@@ -2,6 +2,8 @@
 #ifndef vtkVolumeEditAlgorithmInternals_h
 #define vtkVolumeEditAlgorithmInternals_h
 
+#include "EditProgress.h"
+#include "PipelineExecution.h"
 #include "ToolPath.h"
 #include "VertexPositions.h"
 #include "VolumeEditor.h"
@@ -24,6 +26,8 @@ public:
 
   deformvolume::VolumeEditor Editor;
   deformvolume::ToolPath Tool;
+  deformvolume::EditProgress Progress; // of the execution that there is
+  deformvolume::PipelineExecution Execution;
 
 private:
   vtkVolumeEditAlgorithm* Self;

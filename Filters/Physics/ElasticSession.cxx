@@ -151,11 +151,35 @@ void ElasticSession::Cut(const WorldSheet& sheet)
       cut.Before = std::move(before);
       this->Cuts.push_back(std::move(cut));
       ++this->CutsVersion;
-      this->Mesh = this->WithCuts(this->Whole);
-      this->Simulation->SplitNodes(this->Mesh.Body, appended);
+      try
+      {
+        BodyMesh mesh = this->WithCuts(this->Whole);
+        this->Simulation->SplitNodes(mesh.Body, appended);
+        this->Mesh = std::move(mesh);
+      }
+      catch (...)
+      {
+        this->Lose();
+        throw;
+      }
     }
   }
   this->Sheet = sheet;
+}
+
+void ElasticSession::TakeBackNewCuts(std::size_t left)
+{
+  if (left < this->Cuts.size())
+  {
+    this->RemoveCuts(left);
+    this->Sheet = WorldSheet();
+  }
+}
+
+void ElasticSession::Lose()
+{
+  this->WasLost = this->WasLost || this->HasMoved;
+  this->Exists = false;
 }
 
 void ElasticSession::RemoveCuts(std::size_t left)

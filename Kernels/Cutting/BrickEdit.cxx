@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BrickEdit.h"
 
+#include "Error.h"
 #include "FiveTetrahedra.h"
 #include "ParallelFor.h"
 
@@ -71,34 +72,44 @@ BrickEdit::CellTetrahedra BrickEdit::GetTetrahedra(int x, int y, int z) const
   return tetrahedra;
 }
 
-TetrahedronSet BrickEdit::ForEachBrick(
-  std::size_t bricks, const std::function<void(std::size_t brick, BrickEdit& edit)>& function)
+TetrahedronSet BrickEdit::ForEachBrick(std::size_t bricks,
+  const std::function<void(std::size_t brick, BrickEdit& edit)>& function,
+  const EditProgress& progress)
 {
   constexpr std::size_t step = 64;
+  constexpr std::size_t askedFor = 16 * step;                // bricks between two questions
   std::vector<std::pair<std::size_t, TetrahedronSet>> parts; // by their first bricks
   std::mutex mutex;
-  ParallelForParts(bricks, step,
-    [&](std::size_t begin, std::size_t end)
+  const auto run = [&](std::size_t begin, std::size_t end)
+  {
+    const auto edit = std::make_unique<BrickEdit>();
+    TetrahedronSet part;
+    for (std::size_t brick = begin; brick < end; ++brick)
     {
-      const auto edit = std::make_unique<BrickEdit>();
-      TetrahedronSet part;
-      for (std::size_t brick = begin; brick < end; ++brick)
+      function(brick, *edit);
+      if (edit->HasHits)
       {
-        function(brick, *edit);
-        if (edit->HasHits)
-        {
-          part.Bricks.push_back(brick);
-          part.Blocks.push_back(edit->Hits);
-          edit->Hits.fill(0);
-          edit->HasHits = false;
-        }
+        part.Bricks.push_back(brick);
+        part.Blocks.push_back(edit->Hits);
+        edit->Hits.fill(0);
+        edit->HasHits = false;
       }
-      if (!part.IsEmpty())
-      {
-        const std::lock_guard<std::mutex> lock(mutex);
-        parts.emplace_back(begin, std::move(part));
-      }
-    });
+    }
+    if (!part.IsEmpty())
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      parts.emplace_back(begin, std::move(part));
+    }
+  };
+  for (std::size_t first = 0; first < bricks; first += askedFor)
+  {
+    if (progress && !progress(static_cast<double>(first) / static_cast<double>(bricks)))
+    {
+      throw Aborted();
+    }
+    ParallelForParts(std::min(askedFor, bricks - first), step,
+      [&](std::size_t begin, std::size_t end) { run(first + begin, first + end); });
+  }
   std::sort(
     parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   TetrahedronSet whole;

@@ -3,6 +3,7 @@
 #define DeformVolumeBrickEdit_h
 
 #include "CellBricks.h"
+#include "EditProgress.h"
 #include "SnappedPoint.h"
 #include "TetrahedronSet.h"
 #include "VertexPositions.h"
@@ -81,8 +82,9 @@ public:
   }
 
   /// Calls a function for some bricks, in parallel, and gathers what is hit.
-  static TetrahedronSet ForEachBrick(
-    std::size_t bricks, const std::function<void(std::size_t brick, BrickEdit& edit)>& function);
+  static TetrahedronSet ForEachBrick(std::size_t bricks,
+    const std::function<void(std::size_t brick, BrickEdit& edit)>& function,
+    const EditProgress& progress);
 
 private:
   Extent Vertices{ { 0, -1, 0, -1, 0, -1 } };

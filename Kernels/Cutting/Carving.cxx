@@ -169,10 +169,11 @@ CarvingTool MakeSweptSphere(const std::vector<glm::dvec3>& centers, const glm::d
   return tool;
 }
 
-TetrahedronSet FindCarvedTetrahedra(
-  const VertexPositions& positions, const CarvingTool& tool, CarvingRule rule)
+TetrahedronSet FindCarvedTetrahedra(const VertexPositions& positions, const CarvingTool& tool,
+  CarvingRule rule, const EditProgress& progress)
 {
-  return BrickEdit::ForEachBrick(positions.GetBricks().GetNumberOfBricks(),
+  return BrickEdit::ForEachBrick(
+    positions.GetBricks().GetNumberOfBricks(),
     [&](std::size_t brick, BrickEdit& edit)
     {
       const CarvingReach reach = FindReach(positions.GetBox(brick), tool);
@@ -196,21 +197,25 @@ TetrahedronSet FindCarvedTetrahedra(
       std::array<double, BrickEdit::MaxVertices> values;
       tool.Function(points.data(), edit.GetNumberOfVertices(), values.data());
       CarveByVertices(edit, values.data(), rule);
-    });
+    },
+    progress);
 }
 
 TetrahedronSet FindCarvedTetrahedra(const CellBricks& bricks,
-  const std::function<void(const Extent& vertices, double* values)>& find, CarvingRule rule)
+  const std::function<void(const Extent& vertices, double* values)>& find, CarvingRule rule,
+  const EditProgress& progress)
 {
   const RestPositions positions(bricks.GetVertices());
-  return BrickEdit::ForEachBrick(bricks.GetNumberOfBricks(),
+  return BrickEdit::ForEachBrick(
+    bricks.GetNumberOfBricks(),
     [&](std::size_t brick, BrickEdit& edit)
     {
       edit.Set(positions, brick);
       std::array<double, BrickEdit::MaxVertices> values;
       find(edit.GetVertices(), values.data());
       CarveByVertices(edit, values.data(), rule);
-    });
+    },
+    progress);
 }
 
 } // namespace deformvolume

@@ -4,6 +4,7 @@
 
 #include "DeformVolumeExport.h"
 #include "DistanceSet.h"
+#include "EditProgress.h"
 #include "Extent.h"
 #include "IndexBounds.h"
 #include "TetrahedronSet.h"
@@ -55,14 +56,15 @@ DEFORMVOLUME_EXPORT CarvingTool MakeSweptSphere(
 
 /// The tetrahedra of the sampling mesh that a tool carves out. The centroid of a tetrahedron is the
 /// mean of its vertices. A tetrahedron with a vertex that has no position is left alone.
-DEFORMVOLUME_EXPORT TetrahedronSet FindCarvedTetrahedra(
-  const VertexPositions& positions, const CarvingTool& tool, CarvingRule rule);
+DEFORMVOLUME_EXPORT TetrahedronSet FindCarvedTetrahedra(const VertexPositions& positions,
+  const CarvingTool& tool, CarvingRule rule, const EditProgress& progress = nullptr);
 
 /// The same where the values at the vertices are known, such as where a label is: wherever these
 /// are now. The value at a centroid is the mean of those at the vertices. find: the values of the
 /// vertices in a box of structured indices, x varying fastest; called by many threads.
 DEFORMVOLUME_EXPORT TetrahedronSet FindCarvedTetrahedra(const CellBricks& bricks,
-  const std::function<void(const Extent& vertices, double* values)>& find, CarvingRule rule);
+  const std::function<void(const Extent& vertices, double* values)>& find, CarvingRule rule,
+  const EditProgress& progress = nullptr);
 
 /// What a tool carves out with a boundary between vertices.
 struct SmoothCarving
@@ -75,14 +77,14 @@ struct SmoothCarving
 };
 
 /// far: the distance that counts as far from the boundary.
-DEFORMVOLUME_EXPORT SmoothCarving FindSmoothCarving(
-  const VertexPositions& positions, const CarvingTool& tool, float far);
+DEFORMVOLUME_EXPORT SmoothCarving FindSmoothCarving(const VertexPositions& positions,
+  const CarvingTool& tool, float far, const EditProgress& progress = nullptr);
 
 /// The same where values at the vertices are known, as for FindCarvedTetrahedra; distance: of all
 /// vertices from the boundary.
 DEFORMVOLUME_EXPORT SmoothCarving FindSmoothCarving(const CellBricks& bricks,
   const std::function<void(const Extent& vertices, double* values)>& find, double distance,
-  float far);
+  float far, const EditProgress& progress = nullptr);
 
 } // namespace deformvolume
 

@@ -269,25 +269,30 @@ DistanceSet GatherDistances(
 
 } // namespace
 
-TetrahedronSet FindCrossedTetrahedra(const VertexPositions& positions, const Sheet& sheet)
+TetrahedronSet FindCrossedTetrahedra(
+  const VertexPositions& positions, const Sheet& sheet, const EditProgress& progress)
 {
   const SheetTriangles triangles(positions, sheet);
-  return BrickEdit::ForEachBrick(positions.GetBricks().GetNumberOfBricks(),
+  return BrickEdit::ForEachBrick(
+    positions.GetBricks().GetNumberOfBricks(),
     [&](std::size_t brick, BrickEdit& edit)
     {
       for (const std::size_t triangle : FindNear(triangles, positions, brick, edit))
       {
         Hit(triangles, triangle, edit);
       }
-    });
+    },
+    progress);
 }
 
-CrossingSet FindSheetCrossings(const VertexPositions& positions, const Sheet& sheet)
+CrossingSet FindSheetCrossings(
+  const VertexPositions& positions, const Sheet& sheet, const EditProgress& progress)
 {
   const SheetTriangles triangles(positions, sheet.Orient());
   std::mutex mutex;
   std::vector<std::unique_ptr<BrickCrossings>> parts;
-  BrickEdit::ForEachBrick(positions.GetBricks().GetNumberOfBricks(),
+  BrickEdit::ForEachBrick(
+    positions.GetBricks().GetNumberOfBricks(),
     [&](std::size_t brick, BrickEdit& edit)
     {
       const std::vector<std::size_t> near = FindNear(triangles, positions, brick, edit);
@@ -308,7 +313,8 @@ CrossingSet FindSheetCrossings(const VertexPositions& positions, const Sheet& sh
         const std::lock_guard<std::mutex> lock(mutex);
         parts.push_back(std::move(part));
       }
-    });
+    },
+    progress);
   std::sort(
     parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a->Brick < b->Brick; });
   CrossingSet set;

@@ -4,6 +4,7 @@
 
 #include "CrossingSet.h"
 #include "DeformVolumeExport.h"
+#include "EditProgress.h"
 #include "Sheet.h"
 #include "TetrahedronSet.h"
 #include "VertexPositions.h"
@@ -18,13 +19,13 @@ namespace deformvolume
 /// deformation draws a brick that may be crossed out to more than 2,048 voxels, which is too large
 /// for 64 bits.
 DEFORMVOLUME_EXPORT TetrahedronSet FindCrossedTetrahedra(
-  const VertexPositions& positions, const Sheet& sheet);
+  const VertexPositions& positions, const Sheet& sheet, const EditProgress& progress = nullptr);
 
 /// Where a sheet crosses the edges of the sampling mesh, exactly, for a cut that divides tetrahedra
 /// (SmoothCrossings). Which side of the sheet is positive follows from the first triangle of each
 /// of its pieces. All else is as above.
 DEFORMVOLUME_EXPORT CrossingSet FindSheetCrossings(
-  const VertexPositions& positions, const Sheet& sheet);
+  const VertexPositions& positions, const Sheet& sheet, const EditProgress& progress = nullptr);
 
 } // namespace deformvolume
 

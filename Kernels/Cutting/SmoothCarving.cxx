@@ -195,12 +195,13 @@ private:
 
 } // namespace
 
-SmoothCarving FindSmoothCarving(
-  const VertexPositions& positions, const CarvingTool& tool, float far)
+SmoothCarving FindSmoothCarving(const VertexPositions& positions, const CarvingTool& tool,
+  float far, const EditProgress& progress)
 {
   DistanceGatherer gatherer(positions.GetBricks().GetVertices(), far);
   SmoothCarving carving;
-  carving.Tetrahedra = BrickEdit::ForEachBrick(positions.GetBricks().GetNumberOfBricks(),
+  carving.Tetrahedra = BrickEdit::ForEachBrick(
+    positions.GetBricks().GetNumberOfBricks(),
     [&](std::size_t brick, BrickEdit& edit)
     {
       if (FindReach(positions.GetBox(brick), tool) == CarvingReach::Nothing)
@@ -234,19 +235,21 @@ SmoothCarving FindSmoothCarving(
         tool.Distance(points.data(), marked.size(), values.data());
       }
       gatherer.Add(edit.GetVertices(), boundary.Join(marked, values.data()));
-    });
+    },
+    progress);
   carving.Distances = gatherer.Take();
   return carving;
 }
 
 SmoothCarving FindSmoothCarving(const CellBricks& bricks,
   const std::function<void(const Extent& vertices, double* values)>& find, double distance,
-  float far)
+  float far, const EditProgress& progress)
 {
   const RestPositions positions(bricks.GetVertices());
   DistanceGatherer gatherer(bricks.GetVertices(), far);
   SmoothCarving carving;
-  carving.Tetrahedra = BrickEdit::ForEachBrick(bricks.GetNumberOfBricks(),
+  carving.Tetrahedra = BrickEdit::ForEachBrick(
+    bricks.GetNumberOfBricks(),
     [&](std::size_t brick, BrickEdit& edit)
     {
       edit.Set(positions, brick);
@@ -264,7 +267,8 @@ SmoothCarving FindSmoothCarving(const CellBricks& bricks,
         const std::vector<double> distances(marked.size(), distance);
         gatherer.Add(edit.GetVertices(), boundary.Join(marked, distances.data()));
       }
-    });
+    },
+    progress);
   carving.Distances = gatherer.Take();
   return carving;
 }

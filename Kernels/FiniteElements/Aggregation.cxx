@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -88,8 +89,8 @@ template <int Size>
 std::vector<Eigen::Matrix<double, Size, Size>> InvertDiagonal(
   Watch& watch, const SparseBlocks<Size, Size>& matrix)
 {
-  std::vector<Eigen::Matrix<double, Size, Size>> inverses(
-    static_cast<std::size_t>(matrix.GetNumberOfRows()));
+  using Block = Eigen::Matrix<double, Size, Size>;
+  std::vector<Block> inverses(static_cast<std::size_t>(matrix.GetNumberOfRows()));
   ForItemsInParallel(watch, inverses.size(),
     [&](std::size_t item)
     {
@@ -98,8 +99,13 @@ std::vector<Eigen::Matrix<double, Size, Size>> InvertDiagonal(
       {
         if (matrix.ColumnOfBlock[block] == row)
         {
-          inverses[item] =
-            matrix.Blocks[block].llt().solve(Eigen::Matrix<double, Size, Size>::Identity());
+          // Of a block that is not positive definite, as far as rounding tells, its size does.
+          const Block& own = matrix.Blocks[block];
+          const Eigen::LLT<Block> factor(own);
+          const Block identity = Block::Identity();
+          inverses[item] = factor.info() == Eigen::Success
+            ? Block(factor.solve(identity))
+            : Block(identity / std::max(own.norm(), std::numeric_limits<double>::min()));
         }
       }
     });

@@ -179,7 +179,8 @@ void Restrict(Watch& watch, const MultigridLevel<Size>& level, std::vector<float
 }
 
 // The method of Cholesky, by columns that take some milliseconds together: below the diagonal.
-void Factorize(Watch& watch, Eigen::MatrixXd& matrix)
+// Returns whether the matrix is positive definite, as far as rounding tells.
+bool Factorize(Watch& watch, Eigen::MatrixXd& matrix)
 {
   const Eigen::Index size = matrix.rows();
   for (Eigen::Index begin = 0; begin < size; begin += ColumnsAtOnce)
@@ -190,13 +191,18 @@ void Factorize(Watch& watch, Eigen::MatrixXd& matrix)
     auto own = matrix.block(begin, begin, columns, columns);
     auto below = matrix.block(begin + columns, begin, rest, columns);
     const Eigen::LLT<Eigen::MatrixXd> factor(own);
+    if (factor.info() != Eigen::Success)
+    {
+      return false;
+    }
     own = factor.matrixL();
     factor.matrixU().solveInPlace<Eigen::OnTheRight>(below);
     matrix.bottomRightCorner(rest, rest).selfadjointView<Eigen::Lower>().rankUpdate(below, -1.0);
   }
+  return true;
 }
 
-// The inverse of a matrix, by rows.
+// The inverse of a matrix, by rows; empty where it is not positive definite.
 std::vector<float> Invert(Watch& watch, const SparseBlocks<6, 6>& matrix)
 {
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(matrix.GetNumberOfRows());
@@ -208,7 +214,10 @@ std::vector<float> Invert(Watch& watch, const SparseBlocks<6, 6>& matrix)
       dense.block<6, 6>(6 * row, 6 * matrix.ColumnOfBlock[block]) = matrix.Blocks[block];
     }
   }
-  Factorize(watch, dense);
+  if (!Factorize(watch, dense))
+  {
+    return {};
+  }
   std::vector<float> result(static_cast<std::size_t>(size * size));
   for (Eigen::Index begin = 0; begin < size; begin += ColumnsAtOnce)
   {
@@ -257,12 +266,12 @@ void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
     coarse = std::move(next.Matrix);
     modes = std::move(next.Modes);
   }
-  const bool isSmall = coarse.GetNumberOfRows() <= CoarsestGroups;
-  this->Inverse = isSmall ? Invert(watch, coarse) : std::vector<float>();
+  this->Inverse =
+    coarse.GetNumberOfRows() <= CoarsestGroups ? Invert(watch, coarse) : std::vector<float>();
   // The coarsest level has vectors only.
   this->Coarse.emplace_back();
   const std::size_t length = static_cast<std::size_t>(coarse.GetNumberOfRows()) * PaddedSize<6>;
-  if (!isSmall)
+  if (this->Inverse.empty())
   {
     this->Coarse.back().Smoother = MakeSmoother(watch, InvertDiagonal(watch, coarse), 1.0);
   }

@@ -6,6 +6,7 @@
 #include "ArrayMaking.h"
 #include "FilterTesting.h"
 
+#include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkPolyData.h>
@@ -13,7 +14,10 @@
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
+#include <chrono>
+#include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace filterTesting
@@ -150,6 +154,46 @@ struct Edited
   vtkNew<vtkTest::ErrorObserver> Observer;
   vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
 };
+
+/// An update that is aborted has an empty output and no error; the next one makes the edits.
+/// edit: gives a filter something to do.
+template <typename FilterT>
+void CheckAborts(const std::function<void(FilterT*, vtkImageData*)>& edit)
+{
+  // So many bricks that progress is told twice.
+  const auto volume = MakeVolume({ { 0, 96, 0, 96, 0, 64 } });
+  Edited<FilterT> whole;
+  whole.Filter->SetInputData(volume);
+  edit(whole.Filter, volume);
+  const std::vector<unsigned char> expected = whole.CopyMask();
+  VERIFY(CountActive(expected) < 5 * static_cast<int>(expected.size()));
+  for (const int allowed : { 0, 1 })
+  {
+    Edited<FilterT> aborted;
+    aborted.Filter->SetInputData(volume);
+    edit(aborted.Filter, volume);
+    int left = allowed;
+    vtkNew<vtkCallbackCommand> command;
+    command->SetClientData(&left);
+    command->SetCallback(
+      [](vtkObject* caller, unsigned long, void* data, void*)
+      {
+        std::this_thread::sleep_for(std::chrono::milliseconds(30)); // it is told again
+        if (--*static_cast<int*>(data) < 0)
+        {
+          static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+        }
+      });
+    const unsigned long tag = aborted.Filter->AddObserver(vtkCommand::ProgressEvent, command);
+    aborted.Update();
+    VERIFY(left < 0);
+    VERIFY_EQUAL(aborted.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
+    VERIFY_EQUAL(aborted.Filter->GetNumberOfSwitchedOffTetrahedra(), vtkIdType{ 0 });
+    aborted.Filter->RemoveObserver(tag);
+    aborted.Filter->SetAbortExecute(0);
+    VERIFY(aborted.CopyMask() == expected);
+  }
+}
 
 } // namespace filterTesting
 

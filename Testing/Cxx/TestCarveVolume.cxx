@@ -292,5 +292,15 @@ int TestCarveVolume(int, char*[])
   TestSurfaces();
   TestLabels();
   TestTool();
+  for (const bool isSmooth : { false, true })
+  {
+    CheckAborts<vtkCarveVolume>(
+      [=](vtkCarveVolume* carve, vtkImageData*)
+      {
+        carve->SetSmoothBoundary(isSmooth);
+        carve->SetToolRadius(9.0);
+        carve->AddToolPosition(40, 50, 30);
+      });
+  }
   return GetExitCode();
 }

@@ -324,5 +324,17 @@ int TestCutVolume(int, char*[])
   TestSheets();
   TestEdits();
   TestOutput();
+  for (const bool isSmooth : { false, true })
+  {
+    CheckAborts<vtkCutVolume>(
+      [=](vtkCutVolume* cut, vtkImageData* volume)
+      {
+        cut->SetSmoothCut(isSmooth);
+        cut->SetSheetData(MakePlaneX(volume, 40.3));
+        // Twice through the same edges: what is cut smoothly is switched off there.
+        cut->AddToolPosition(40.7, -9, -9, 40.7, -9, 99);
+        cut->AddToolPosition(40.2, 99, -9, 40.2, 99, 99);
+      });
+  }
   return GetExitCode();
 }

@@ -152,6 +152,43 @@ void VerifyRestMesh(vtkUnstructuredGrid* cut, vtkUnstructuredGrid* whole)
   VERIFY_EQUAL(different, 0);
 }
 
+// A cut of an update that fails is not there, and is made when what was wrong has been mended.
+template <typename Filter>
+void TestFailedCuts()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
+  const auto prepare = [](Simulated<Filter>& simulated)
+  {
+    simulated.Object->SetLengthUnitToMillimetre();
+    simulated.Object->SetHandleRadius(3.0);
+    VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  };
+  const auto handles =
+    MakeHandles({ { glm::dvec3(10.0, 5.0, 30.0), glm::dvec3(11.0, 5.0, 31.0) } });
+  const auto sheet = MakeSheet(5.0, 15.0);
+  Simulated<Filter> expected(bar);
+  prepare(expected);
+  expected.Object->SetSheetData(sheet);
+  expected.Object->SetHandlesData(handles);
+  VERIFY_EQUAL(expected.TryUpdate(), std::string());
+  VERIFY(expected.Object->GetNumberOfSplitFaces() > 0);
+
+  Simulated<Filter> simulated(bar);
+  prepare(simulated);
+  simulated.Object->SetSheetData(sheet);
+  simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(1e3), glm::dvec3(1e3) } }));
+  VERIFY(Holds(simulated.TryUpdate(), "holds no node that could move"));
+  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), vtkIdType{ 0 });
+  simulated.Object->SetHandlesData(handles);
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  VERIFY_EQUAL(simulated.Object->GetNumberOfSplitFaces(), expected.Object->GetNumberOfSplitFaces());
+  VERIFY_EQUAL(simulated.Copy()->GetNumberOfTuples(), expected.Copy()->GetNumberOfTuples());
+  for (vtkIdType i = 0; i < expected.Copy()->GetNumberOfValues(); ++i)
+  {
+    VERIFY(simulated.Copy()->GetValue(i) == expected.Copy()->GetValue(i));
+  }
+}
+
 // Cuts through what was cut, which copy copies of nodes; and one in the place of another one.
 template <typename Filter>
 void TestCutsOfCuts()
@@ -205,5 +242,7 @@ int TestElasticCuts(int, char*[])
   TestPieces();
   TestCutsOfCuts<vtkMassSpringDeformation>();
   TestCutsOfCuts<vtkCorotationalDeformation>();
+  TestFailedCuts<vtkMassSpringDeformation>();
+  TestFailedCuts<vtkCorotationalDeformation>();
   return GetExitCode();
 }
