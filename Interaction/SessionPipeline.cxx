@@ -103,6 +103,7 @@ SessionPipeline::~SessionPipeline() = default;
 void SessionPipeline::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
 {
   this->Volume = volume;
+  this->HasWarnedOfPadding = false;
   this->Mesh = mesh;
   for (Actions* actions : { &this->Done, &this->Undone })
   {

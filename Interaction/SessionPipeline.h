@@ -168,7 +168,11 @@ private:
   vtkNew<vtkCallbackCommand> ErrorObserver;
   vtkNew<vtkCallbackCommand> WarningObserver;
   std::string Message; // the first error of the filters, since it was taken
+  /// Warns once where a handle has pulled tissue out of the output.
+  void CheckHandles();
+
   std::vector<std::string> Warnings;
+  bool HasWarnedOfPadding = false;
 
   int Model = 0;
   int NumberOfNodes = 7;

@@ -390,7 +390,30 @@ vtkImageData* SessionPipeline::Resample(const Sampling& sampling)
   this->Resampler->SetPadding(sampling.Padding);
   this->Resampler->SetBackgroundValue(sampling.BackgroundValue);
   this->Update(this->Resampler);
+  this->CheckHandles();
   return this->Resampler->GetOutput();
+}
+
+void SessionPipeline::CheckHandles()
+{
+  vtkImageData* output = this->Resampler->GetOutput();
+  const int* extent = output->GetExtent();
+  for (const Handle& handle : this->GetHandles())
+  {
+    double index[3];
+    output->TransformPhysicalPointToContinuousIndex(&handle.Now.x, index);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const bool isOutside =
+        index[axis] < extent[2 * axis] - 0.5 || index[axis] > extent[2 * axis + 1] + 0.5;
+      if (isOutside && this->Model != Session::NONE && !this->HasWarnedOfPadding)
+      {
+        this->HasWarnedOfPadding = true;
+        this->Warnings.emplace_back(
+          "A handle lies outside the output: tissue there is cut off. Set a larger Padding.");
+      }
+    }
+  }
 }
 
 } // namespace deformvolume

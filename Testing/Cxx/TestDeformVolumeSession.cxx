@@ -546,6 +546,30 @@ std::string Replace(std::string text, const std::string& from, const std::string
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+// Tissue that is pulled out of the output is cut off, which is told once.
+void TestPadding(vtkImageData* volume)
+{
+  for (const int padding : { 8, 30 })
+  {
+    Tested one(volume);
+    vtkNew<vtkTest::ErrorObserver> warnings;
+    one.Object->AddObserver(vtkCommand::WarningEvent, warnings);
+    one.Object->SetPadding(padding);
+    one.Object->ChangeModel(Session::CHAIN_MAIL);
+    const int handle = one.Object->BeginGrab(10, 10, 17);
+    one.Object->MoveGrab(handle, 10, 10, 24);
+    one.Finish();
+    VERIFY(!warnings->GetWarning());
+    one.Object->MoveGrab(handle, 10, 10, 45);
+    one.Finish();
+    VERIFY_EQUAL(Holds(warnings->GetWarningMessage(), "larger Padding"), padding == 8);
+    warnings->Clear();
+    one.Object->MoveGrab(handle, 10, 10, 46);
+    one.Finish();
+    VERIFY(!warnings->GetWarning());
+  }
+}
+
 void TestFiles(vtkImageData* volume, const std::string& fileName)
 {
   Tested one(volume);
@@ -708,6 +732,7 @@ int TestDeformVolumeSession(int argc, char* argv[])
   TestHandles(volume, fileName);
   TestRecovery(volume);
   TestTwice(volume);
+  TestPadding(volume);
   TestFiles(volume, fileName);
   TestThread(volume, fileName);
   TestRandom(volume, events, static_cast<unsigned>(seed), fileName);
