@@ -47,7 +47,9 @@ difference = numpy.abs(get_values(read_vti(path("o.vti"))).astype(float) -
                        get_values(read_vti(path("whole.vti"))))
 assert difference.max() <= 1, difference.max()
 
-output, errors = call(program, path("in.vti"), "--model", "mass-spring", *common, "--duration", "0.05",
+# Springs that are pulled far in so short a time turn tetrahedra inside out, which is warned of.
+gently = [part.replace(",6,0,2,3", ",2,0,1,3") for part in common]
+output, errors = call(program, path("in.vti"), "--model", "mass-spring", *gently, "--duration", "0.05",
                       "--movie", path("m.ogv"), "--frames", "1", code=None)
 if "Ogg Theora" in errors:
     print("this VTK writes no Ogg Theora")
