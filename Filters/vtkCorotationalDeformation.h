@@ -17,9 +17,10 @@
  * @par Pieces:
  * A piece of the mesh is what holds together by faces of tetrahedra. It is held by three nodes that
  * lie on no common line and are fixed, held by handles, or shared with a piece that is held. Other
- * pieces bear no load and exert no force: those that share nodes go with these like rigid bodies,
- * about the line of the shared nodes on the shortest way; the rest stays where it was. A warning
- * tells their number (GetNumberOfFrozenPieces()). Where no piece is held there is an error.
+ * pieces bear no load and exert no force: those with a node or two that are shared, fixed or held
+ * by handles go with these like rigid bodies, turned on the shortest way; the rest stays where it
+ * was. A warning tells their number (GetNumberOfFrozenPieces()). Where no piece is held there is an
+ * error.
  *
  * @par Warnings:
  * Pieces that are not held; a body that is not in equilibrium, with what is left (in the mode

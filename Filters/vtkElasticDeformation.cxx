@@ -239,11 +239,12 @@ void vtkElasticDeformation::Execute(
       "body was lost in an update that was aborted or failed.");
   }
   this->CheckSize(session.GetMesh().Size);
-  const std::size_t cuts = session.GetNumberOfCuts();
-  const double time = session.Time;
+  const bool wasToReset = internals.IsToReset;
+  std::size_t cuts = session.GetNumberOfCuts();
+  const double time = wasToReset ? 0.0 : session.Time;
   try
   {
-    this->UpdateCuts(vtkPolyData::GetData(input[2]));
+    cuts = this->UpdateCuts(vtkPolyData::GetData(input[2]));
     this->Advance(simulation, vtkPointSet::GetData(input[1]), info, progress);
   }
   catch (const deformvolume::Aborted&)
@@ -252,9 +253,11 @@ void vtkElasticDeformation::Execute(
   }
   catch (const deformvolume::Error&)
   {
-    if (session.Time == time)
+    // The sheet cuts when what is wrong has been mended.
+    if (session.Time == time || (wasToReset && internals.IsToReset))
     {
-      session.TakeBackNewCuts(cuts); // the sheet cuts when what is wrong has been mended
+      this->TakeBackCuts(simulation, cuts);
+      internals.IsToReset = wasToReset;
     }
     throw;
   }
@@ -341,7 +344,25 @@ void vtkElasticDeformation::CheckSize(double size)
   this->Internals->CheckedSize = size;
 }
 
-void vtkElasticDeformation::UpdateCuts(vtkPolyData* sheet)
+void vtkElasticDeformation::TakeBackCuts(ElasticSimulation& simulation, std::size_t left)
+{
+  deformvolume::ElasticSession& session = this->Internals->Session;
+  if (!simulation.HasBody())
+  {
+    session.Lose(); // such as where a device has failed
+    return;
+  }
+  try
+  {
+    session.TakeBackNewCuts(left);
+  }
+  catch (...)
+  {
+    session.Lose(); // the first error counts
+  }
+}
+
+std::size_t vtkElasticDeformation::UpdateCuts(vtkPolyData* sheet)
 {
   deformvolume::ElasticSession& session = this->Internals->Session;
   const deformvolume::WorldSheet read = deformvolume::ReadSheet(sheet,
@@ -349,7 +370,9 @@ void vtkElasticDeformation::UpdateCuts(vtkPolyData* sheet)
   const std::size_t undone = std::min(this->Internals->CutsToUndo, session.GetNumberOfCuts());
   session.RemoveCuts(session.GetNumberOfCuts() - undone);
   this->Internals->CutsToUndo = 0;
+  const std::size_t before = session.GetNumberOfCuts();
   session.Cut(read);
+  return before;
 }
 
 std::string vtkElasticDeformation::GetSummary()

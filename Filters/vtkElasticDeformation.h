@@ -56,10 +56,12 @@
  *
  * @par Errors:
  * Each is one vtkErrorMacro that says what is wrong and what to do, the output is then empty, and
- * what was simulated is kept: no tetrahedra or other three-dimensional cells; tetrahedra that are
- * flat, or some of them inside out; coordinates and numbers that are not finite; a Young modulus or
- * a density of 0 or less, a Poisson ratio of less than 0 or of 0.495 and more; arrays of another
- * shape; a handle that holds no node; a sheet that vtkCutVolume would refuse.
+ * what was simulated is kept, but for failures of memory or of a device, after which the body
+ * begins anew. A cut of the update is not there, and is made when what is wrong has been mended: no
+ * tetrahedra or other three-dimensional cells; tetrahedra that are flat, or some of them inside
+ * out; coordinates and numbers that are not finite; a Young modulus or a density of 0 or less, a
+ * Poisson ratio of less than 0 or of 0.495 and more; arrays of another shape; a handle that holds
+ * no node; a sheet that vtkCutVolume would refuse.
  *
  * @sa vtkMassSpringDeformation vtkCorotationalDeformation vtkDeformVolumeFilter
  */
@@ -69,8 +71,9 @@
 #include "vtkDeformVolumeModule.h" // for export macro
 #include "vtkUnstructuredGridAlgorithm.h"
 
-#include <memory> // for std::unique_ptr
-#include <string> // for std::string
+#include <cstddef> // for std::size_t
+#include <memory>  // for std::unique_ptr
+#include <string>  // for std::string
 
 namespace deformvolume
 {
@@ -269,7 +272,9 @@ private:
   void operator=(const vtkElasticDeformation&) = delete;
 
   void Execute(vtkInformationVector** input, vtkInformationVector* output);
-  void UpdateCuts(vtkPolyData* sheet);
+  /// Returns how many cuts there were before that of the sheet.
+  std::size_t UpdateCuts(vtkPolyData* sheet);
+  void TakeBackCuts(deformvolume::ElasticSimulation& simulation, std::size_t left);
   /// Goes on to the time that is asked for, if any.
   void Advance(deformvolume::ElasticSimulation& simulation, vtkPointSet* handles,
     vtkInformation* info, deformvolume::ProgressReport& progress);

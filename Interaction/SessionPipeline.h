@@ -145,6 +145,7 @@ private:
   void Rebuild();
   Actions GetHeld() const;
   void UpdateModel(const Actions& held);
+  bool IsUsed(vtkIdType point);
   glm::dvec3 FindWayToNode(const glm::dvec3& rest);
   glm::dvec3 GetShift(const Action& drag);
   void Update(vtkAlgorithm* filter);

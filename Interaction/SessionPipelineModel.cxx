@@ -11,6 +11,7 @@
 #include "vtkDeformVolumeFilter.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
+#include "vtkIdList.h"
 #include "vtkImageData.h"
 #include "vtkLatticeTetrahedraSource.h"
 #include "vtkMassSpringDeformation.h"
@@ -241,6 +242,13 @@ void SessionPipeline::Rebuild()
   }
 }
 
+bool SessionPipeline::IsUsed(vtkIdType point)
+{
+  vtkNew<vtkIdList> cells;
+  this->RestMesh->GetPointCells(point, cells); // which makes the links once
+  return cells->GetNumberOfIds() > 0;
+}
+
 glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
 {
   vtkDataArray* fixed = this->RestMesh->GetPointData()->GetArray("Fixed");
@@ -252,7 +260,8 @@ glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
     this->RestMesh->GetPoint(id, place);
     const glm::dvec3 way = glm::dvec3(place[0], place[1], place[2]) - rest;
     const double square = glm::dot(way, way);
-    if (square < least && !(fixed && fixed->GetComponent(id, 0) != 0.0))
+    // Points that no cell uses are no nodes.
+    if (square < least && !(fixed && fixed->GetComponent(id, 0) != 0.0) && this->IsUsed(id))
     {
       least = square;
       nearest = way;

@@ -13,6 +13,11 @@ void CorotationalSimulation::SetBody(
   const std::vector<glm::dvec3> displacements =
     keepsState ? this->Model.GetDisplacements() : std::vector<glm::dvec3>();
   this->Model.SetBody(body, progress);
+  if (!keepsState)
+  {
+    this->Report = CorotationalReport();
+    this->HasWarnedOfResidual = false;
+  }
   if (keepsState)
   {
     this->Model.SetDisplacements(displacements);
@@ -61,7 +66,8 @@ void CorotationalSimulation::Warn(const CorotationalReport& last)
             "three nodes that lie on no common line and are fixed, held by handles, or shared with "
             "a piece that is held. One of them has tetrahedron "
          << now.FirstFrozenTetrahedron << ". They bear no load; " << now.NumberOfFollowingPieces
-         << " of them go with the nodes that they share, the others stay where they were. Fix "
+         << " of them go with nodes that they share, or that are held, the others stay where they "
+            "were. Fix "
             "nodes of them, or connect them by faces.";
     this->Warnings.push_back(text.str());
     text.str("");
@@ -73,8 +79,7 @@ void CorotationalSimulation::Warn(const CorotationalReport& last)
     text << "The body is not in equilibrium after " << now.NewtonSteps
          << " steps: the largest force that is left on a node is " << 100.0 * now.RelativeResidual
          << " % of the largest one that is applied or holds a node. "
-         << (isLive ? "Further updates go on from there. Use the mode CONVERGED to have "
-                      "equilibrium in one."
+         << (isLive ? "Further updates go on from there (mode INTERACTIVE)."
                     : "Move handles and loads in smaller steps, or make a better mesh.");
     this->Warnings.push_back(text.str());
     text.str("");

@@ -57,6 +57,7 @@ void MassSpringSimulation::SetBody(
   }
   this->Factor = 0.0;
   this->Model.SetBody(body, progress);
+  this->Report = keepsState ? this->Report : MassSpringReport();
   const auto ratios = std::count_if(body.Materials.begin(), body.Materials.end(),
     [](const ElasticMaterial& material)
     { return material.PoissonRatio < MassSpringModel::LeastPoissonRatio; });

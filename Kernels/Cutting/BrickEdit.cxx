@@ -4,6 +4,7 @@
 #include "Error.h"
 #include "FiveTetrahedra.h"
 #include "ParallelFor.h"
+#include "Processors.h"
 
 #include <algorithm>
 #include <memory>
@@ -77,7 +78,9 @@ TetrahedronSet BrickEdit::ForEachBrick(std::size_t bricks,
   const EditProgress& progress)
 {
   constexpr std::size_t step = 64;
-  constexpr std::size_t askedFor = 16 * step;                // bricks between two questions
+  // Bricks between two questions.
+  const std::size_t askedFor =
+    progress ? 16 * step * static_cast<std::size_t>(GetProcessorShare()) : std::max(bricks, step);
   std::vector<std::pair<std::size_t, TetrahedronSet>> parts; // by their first bricks
   std::mutex mutex;
   const auto run = [&](std::size_t begin, std::size_t end)

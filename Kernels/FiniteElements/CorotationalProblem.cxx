@@ -46,7 +46,7 @@ double LargestComponent(const glm::dvec3& vector)
 }
 
 CorotationalProblem MakeProblem(const CorotationalRequest& request, const ElasticBody& body,
-  const BodyPieces& pieces, const std::vector<double>& masses)
+  const BodyPieces& pieces, const std::vector<double>& volumes, std::vector<double> masses)
 {
   CheckLoads(body, request.Loads);
   CheckHeldNodes(body, request.Held);
@@ -66,8 +66,8 @@ CorotationalProblem MakeProblem(const CorotationalRequest& request, const Elasti
   const std::vector<bool>& isHeld = problem.Supports.IsHeld;
   if (std::count(isHeld.begin(), isHeld.end(), true) == 0)
   {
-    throw Error("No constraints: nothing holds the body. Fix or hold at least three of its nodes "
-                "that do not lie on a line.");
+    throw Error("No constraints: nothing holds the body. Fix or hold at least three nodes that do "
+                "not lie on a line, of tetrahedra that are connected by faces.");
   }
   std::vector<unsigned char> isOfHeldPiece(nodes, 0);
   for (std::size_t node = 0; node < nodes; ++node)
@@ -79,6 +79,18 @@ CorotationalProblem MakeProblem(const CorotationalRequest& request, const Elasti
   {
     isOfHeldPiece[static_cast<std::size_t>(node)] |=
       isHeld[static_cast<std::size_t>(piece)] ? 1 : 0;
+  }
+  // What is not held bears no load, also at the nodes that it shares.
+  for (std::size_t piece = 0; piece < isHeld.size(); ++piece)
+  {
+    for (std::size_t i = pieces.Begins[piece]; i < pieces.Begins[piece + 1] && !isHeld[piece]; ++i)
+    {
+      const auto t = static_cast<std::size_t>(pieces.Tetrahedra[i]);
+      for (const std::int32_t node : body.Tetrahedra[t])
+      {
+        masses[static_cast<std::size_t>(node)] -= 0.25 * volumes[t] * body.GetMaterial(t).Density;
+      }
+    }
   }
   problem.IsFree.assign(nodes, 0);
   problem.Loads.assign(nodes, glm::dvec3(0.0));

@@ -31,9 +31,10 @@ struct CorotationalProblem
   bool IsInteractive = false;
 };
 
-/// Throws an Error where nothing holds the body, and where limits or loads make no sense.
+/// volumes: of tetrahedra; masses: of nodes. Throws an Error where nothing holds the body, and
+/// where limits or loads make no sense.
 CorotationalProblem MakeProblem(const CorotationalRequest& request, const ElasticBody& body,
-  const BodyPieces& pieces, const std::vector<double>& masses);
+  const BodyPieces& pieces, const std::vector<double>& volumes, std::vector<double> masses);
 
 /// Components of forces: the largest of those that are left on free nodes, and of those that are
 /// applied or hold a node.

@@ -28,7 +28,8 @@ CorotationalSolver::CorotationalSolver(Watch& watch, const ElasticBody& body)
 void CorotationalSolver::UpdateScale(Watch& watch)
 {
   watch.Ask();
-  const std::vector<double> volumes = GetVolumes(this->Body);
+  this->Volumes = GetVolumes(this->Body);
+  const std::vector<double>& volumes = this->Volumes;
   watch.Ask();
   this->Masses = GetNodeMasses(this->Body, volumes);
   double total = 0.0;
@@ -282,7 +283,8 @@ bool CorotationalSolver::Step(Watch& watch, const CorotationalProblem& problem, 
 
 CorotationalReport CorotationalSolver::Solve(const CorotationalRequest& request)
 {
-  const CorotationalProblem problem = MakeProblem(request, this->Body, this->Pieces, this->Masses);
+  const CorotationalProblem problem =
+    MakeProblem(request, this->Body, this->Pieces, this->Volumes, this->Masses);
   Watch watch(request.Progress);
   watch.Ask();
   this->UseHeldPieces(problem);

@@ -72,6 +72,7 @@ private:
   BodyPieces Pieces;
   // Which of these the elements are of: those that are held.
   std::vector<bool> ActivePieces;
+  std::vector<double> Volumes;
   std::vector<double> Masses;
   // E h^2, in N.
   double ForceScale = 0.0;

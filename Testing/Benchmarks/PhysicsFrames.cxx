@@ -100,6 +100,10 @@ struct SimulatedVolume
     this->Model->SetHandlesConnection(this->Simulated.Handle->GetOutputPort());
     this->Model->SetHandleRadius(this->Simulated.Radius);
     this->Model->SetLengthUnitToMillimetre();
+    if (auto* elements = vtkCorotationalDeformation::SafeDownCast(this->Model))
+    {
+      elements->SetModeToInteractive(); // as in a live session
+    }
     this->Filter->SetDeformationConnection(this->Model->GetOutputPort());
     this->Model->Update();
   }

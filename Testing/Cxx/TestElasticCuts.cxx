@@ -189,6 +189,32 @@ void TestFailedCuts()
   }
 }
 
+// Also where the last cut is taken back and the body is to rest in the update that fails: both are
+// done when it succeeds.
+void TestFailedCutAfterOthers()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
+  Simulated<vtkCorotationalDeformation> simulated(bar);
+  simulated.Object->SetLengthUnitToMillimetre();
+  simulated.Object->SetHandleRadius(3.0);
+  const auto handles =
+    MakeHandles({ { glm::dvec3(10.0, 5.0, 30.0), glm::dvec3(14.0, 5.0, 31.0) } });
+  simulated.Object->SetHandlesData(handles);
+  simulated.Object->SetSheetData(MakeSheet(5.0, 15.0));
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), vtkIdType{ 1 });
+  simulated.Object->UndoCut();
+  simulated.Object->Reset();
+  simulated.Object->SetSheetData(MakeSheet(5.0, 20.0));
+  simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(1e3), glm::dvec3(1e3) } }));
+  VERIFY(Holds(simulated.TryUpdate(), "holds no node that could move"));
+  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), vtkIdType{ 0 });
+  simulated.Object->SetHandlesData(nullptr);
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), vtkIdType{ 1 });
+  VERIFY_EQUAL(simulated.Copy()->GetRange(-1)[1], 0.0);
+}
+
 // Cuts through what was cut, which copy copies of nodes; and one in the place of another one.
 template <typename Filter>
 void TestCutsOfCuts()
@@ -244,5 +270,6 @@ int TestElasticCuts(int, char*[])
   TestCutsOfCuts<vtkCorotationalDeformation>();
   TestFailedCuts<vtkMassSpringDeformation>();
   TestFailedCuts<vtkCorotationalDeformation>();
+  TestFailedCutAfterOthers();
   return GetExitCode();
 }
