@@ -174,7 +174,8 @@ void TestWarnings(double push)
   // neighbours.
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   const glm::dvec3 top(0.005, 0.005, 0.03);
-  const vtkIdType node = bar->FindPoint(top.x, top.y, top.z);
+  glm::dvec3 place = top;
+  const vtkIdType node = bar->FindPoint(&place.x);
   bar->GetPoints()->InsertNextPoint(top.x, top.y, top.z + 1e-4);
   bar->GetPointData()->GetArray("Fixed")->InsertNextTuple1(0.0);
   Simulated<Filter> simulated(bar);
