@@ -253,7 +253,7 @@ void vtkElasticDeformation::Execute(
   }
   catch (const deformvolume::Error&)
   {
-    // The sheet cuts when what is wrong has been mended.
+    // The sheet cuts in the next update that succeeds.
     if (session.Time == time || (wasToReset && internals.IsToReset))
     {
       this->TakeBackCuts(simulation, cuts);

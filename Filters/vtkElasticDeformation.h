@@ -55,13 +55,13 @@
  * interrupted.
  *
  * @par Errors:
- * Each is one vtkErrorMacro that says what is wrong and what to do, the output is then empty, and
- * what was simulated is kept, but for failures of memory or of a device, after which the body
- * begins anew. A cut of the update is not there, and is made when what is wrong has been mended: no
- * tetrahedra or other three-dimensional cells; tetrahedra that are flat, or some of them inside
- * out; coordinates and numbers that are not finite; a Young modulus or a density of 0 or less, a
- * Poisson ratio of less than 0 or of 0.495 and more; arrays of another shape; a handle that holds
- * no node; a sheet that vtkCutVolume would refuse.
+ * Each is one vtkErrorMacro that says what is wrong and what to do: no tetrahedra or other
+ * three-dimensional cells; tetrahedra that are flat, or some of them inside out; coordinates and
+ * numbers that are not finite; a Young modulus or a density of 0 or less, a Poisson ratio of less
+ * than 0 or of 0.495 and more; arrays of another shape; a handle that holds no node; a sheet that
+ * vtkCutVolume would refuse. The output is then empty, what was simulated is kept, and a new sheet
+ * cuts in the next execution that succeeds. After a failure of memory or of a device the body
+ * begins anew.
  *
  * @sa vtkMassSpringDeformation vtkCorotationalDeformation vtkDeformVolumeFilter
  */

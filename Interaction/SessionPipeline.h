@@ -146,6 +146,8 @@ private:
   Actions GetHeld() const;
   void UpdateModel(const Actions& held);
   bool IsUsed(vtkIdType point);
+  /// Warns once where a handle has pulled tissue out of the output.
+  void CheckHandles();
   glm::dvec3 FindWayToNode(const glm::dvec3& rest);
   glm::dvec3 GetShift(const Action& drag);
   void Update(vtkAlgorithm* filter);
@@ -169,9 +171,6 @@ private:
   vtkNew<vtkCallbackCommand> ErrorObserver;
   vtkNew<vtkCallbackCommand> WarningObserver;
   std::string Message; // the first error of the filters, since it was taken
-  /// Warns once where a handle has pulled tissue out of the output.
-  void CheckHandles();
-
   std::vector<std::string> Warnings;
   bool HasWarnedOfPadding = false;
 

@@ -405,6 +405,10 @@ vtkImageData* SessionPipeline::Resample(const Sampling& sampling)
 
 void SessionPipeline::CheckHandles()
 {
+  if (this->Model == Session::NONE || this->HasWarnedOfPadding)
+  {
+    return;
+  }
   vtkImageData* output = this->Resampler->GetOutput();
   const int* extent = output->GetExtent();
   for (const Handle& handle : this->GetHandles())
@@ -413,13 +417,12 @@ void SessionPipeline::CheckHandles()
     output->TransformPhysicalPointToContinuousIndex(&handle.Now.x, index);
     for (int axis = 0; axis < 3; ++axis)
     {
-      const bool isOutside =
-        index[axis] < extent[2 * axis] - 0.5 || index[axis] > extent[2 * axis + 1] + 0.5;
-      if (isOutside && this->Model != Session::NONE && !this->HasWarnedOfPadding)
+      if (index[axis] < extent[2 * axis] - 0.5 || index[axis] > extent[2 * axis + 1] + 0.5)
       {
         this->HasWarnedOfPadding = true;
         this->Warnings.emplace_back(
           "A handle lies outside the output: tissue there is cut off. Set a larger Padding.");
+        return;
       }
     }
   }

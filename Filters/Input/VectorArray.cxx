@@ -216,7 +216,10 @@ struct VectorReader
       std::for_each(faults.begin(), faults.end(), takeFault);
       comparison.Remember(first, count);
     };
-    ParallelFor(0, (tuples + BLOCK - 1) / BLOCK, 0,
+    // A thread that is started for a few blocks costs more than it saves: the device's own threads
+    // lose a turn to it when they begin their work right after.
+    constexpr vtkIdType blocksOfPart = 8;
+    ParallelFor(0, (tuples + BLOCK - 1) / BLOCK, blocksOfPart,
       [&](vtkIdType begin, vtkIdType end)
       {
         for (vtkIdType first = begin * BLOCK; first < std::min(end * BLOCK, tuples); first += BLOCK)

@@ -10,18 +10,16 @@ namespace deformvolume
 void CorotationalSimulation::SetBody(
   const ElasticBody& body, bool keepsState, const std::function<bool()>& progress)
 {
-  const std::vector<glm::dvec3> displacements =
-    keepsState ? this->Model.GetDisplacements() : std::vector<glm::dvec3>();
-  this->Model.SetBody(body, progress);
-  if (!keepsState)
-  {
-    this->Report = CorotationalReport();
-    this->HasWarnedOfResidual = false;
-  }
   if (keepsState)
   {
+    const std::vector<glm::dvec3> displacements = this->Model.GetDisplacements();
+    this->Model.SetBody(body, progress);
     this->Model.SetDisplacements(displacements);
+    return;
   }
+  this->Model.SetBody(body, progress);
+  this->Report = CorotationalReport();
+  this->HasWarnedOfResidual = false;
 }
 
 void CorotationalSimulation::SplitNodes(
@@ -67,8 +65,7 @@ void CorotationalSimulation::Warn(const CorotationalReport& last)
             "a piece that is held. One of them has tetrahedron "
          << now.FirstFrozenTetrahedron << ". They bear no load; " << now.NumberOfFollowingPieces
          << " of them go with nodes that they share, or that are held, the others stay where they "
-            "were. Fix "
-            "nodes of them, or connect them by faces.";
+            "were. Fix nodes of them, or connect them by faces.";
     this->Warnings.push_back(text.str());
     text.str("");
   }

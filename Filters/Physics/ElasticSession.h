@@ -36,7 +36,7 @@ public:
   void RemoveCuts(std::size_t left);
   /// The same after an error: the sheet that has made them is to cut again.
   void TakeBackNewCuts(std::size_t left);
-  /// Nobody knows what there is of the body: the next Update() begins with a new one.
+  /// For a body in an unknown state: the next Update() begins with a new one.
   void Lose();
   std::size_t GetNumberOfCuts() const { return this->Cuts.size(); }
   std::int64_t GetNumberOfSplitFaces() const;

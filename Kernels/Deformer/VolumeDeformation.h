@@ -58,11 +58,11 @@ public:
   void ChangeConnectivity(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const std::vector<TetrahedronChange>* changes)
   {
-    this->Source.ChangeConnectivity(tetrahedra, numberOfTetrahedra, numberOfNodes, changes);
     if (!tetrahedra && !this->Exact.GetBoundary().IsEmpty())
     {
       throw Error("All tetrahedra are needed where the mesh ends within the volume.");
     }
+    this->Source.ChangeConnectivity(tetrahedra, numberOfTetrahedra, numberOfNodes, changes);
     this->Exact.GetBoundary().SetCorners(tetrahedra);
   }
   void ReplaceTetrahedra(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,

@@ -29,17 +29,17 @@ void CorotationalSolver::UpdateScale(Watch& watch)
 {
   watch.Ask();
   this->Volumes = GetVolumes(this->Body);
-  const std::vector<double>& volumes = this->Volumes;
   watch.Ask();
-  this->Masses = GetNodeMasses(this->Body, volumes);
+  this->Masses = GetNodeMasses(this->Body, this->Volumes);
   double total = 0.0;
-  for (const double volume : volumes)
+  for (const double volume : this->Volumes)
   {
     total += volume;
   }
   // A cell of as many tetrahedra as a node has on average of its own.
   constexpr double tetrahedraOfCell = 6.0;
-  const double size = std::cbrt(tetrahedraOfCell * total / static_cast<double>(volumes.size()));
+  const double size =
+    std::cbrt(tetrahedraOfCell * total / static_cast<double>(this->Volumes.size()));
   double modulus = this->Body.Materials.front().YoungModulus;
   for (const ElasticMaterial& material : this->Body.Materials)
   {

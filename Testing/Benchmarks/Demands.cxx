@@ -134,12 +134,17 @@ void CheckSpeedAndMemory()
     subject.Move(pose, grid);
     return subject.Update();
   };
-  // The second of two in a row: the first one of a short update finds the caches full of what
-  // others left there, which is not so while a volume is worked with.
+  // The shortest of some updates in a row. The first one of a short update finds the caches full of
+  // what others left there, which is not so while a volume is worked with, and one turn of another
+  // process on a processor takes half as long as such an update.
   const auto updateAgain = [&](BenchmarkCase& subject, Pose pose)
   {
-    update(subject, pose);
-    return update(subject, pose);
+    double shortest = update(subject, pose).Update;
+    for (int i = 0; i < 3; ++i)
+    {
+      shortest = std::min(shortest, update(subject, pose).Update);
+    }
+    return shortest;
   };
   const auto resliceLike = [&](BenchmarkCase& subject)
   {
@@ -182,8 +187,8 @@ void CheckSpeedAndMemory()
   {
     const UpdateTimes nearTimes = update(near, Pose::NearIdentity);
     const double resliceNear = resliceLike(near);
-    const double sampledTime = updateAgain(sampled, Pose::NearIdentity).Update;
-    const double unsampledTime = updateAgain(near, Pose::NearIdentity).Update;
+    const double sampledTime = updateAgain(sampled, Pose::NearIdentity);
+    const double unsampledTime = updateAgain(near, Pose::NearIdentity);
     const double publishedNearTime = update(published, Pose::NearIdentity).GetKernels();
     const UpdateTimes fineTimes = update(fine, Pose::NearIdentity);
     const double fineTime = fineTimes.GetKernels();
