@@ -236,7 +236,7 @@ void vtkElasticDeformation::Execute(
   {
     vtkWarningMacro(
       "The simulation starts anew: the rest mesh has got other points or cells, or the "
-      "body was lost in an update that was aborted or failed.");
+      "body was lost in an update that failed.");
   }
   this->CheckSize(session.GetMesh().Size);
   const bool wasToReset = internals.IsToReset;

@@ -50,9 +50,7 @@
  *
  * @par Abort:
  * An execution that is aborted ends within some 50 ms, with an empty output; what was simulated is
- * kept. Only a body of springs whose materials or fixed nodes are being changed may be lost: the
- * next execution then starts anew, with a warning. Reading the mesh and cutting it are not
- * interrupted.
+ * kept. Reading the mesh, copying a body of springs to the device and cutting are not interrupted.
  *
  * @par Errors:
  * Each is one vtkErrorMacro that says what is wrong and what to do: no tetrahedra or other

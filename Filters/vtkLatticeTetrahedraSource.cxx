@@ -105,6 +105,31 @@ std::string FrameOfVolume(
   return std::string();
 }
 
+// Makes the cells of a lattice cubes, and tells how many nodes that takes on each axis.
+void MakeCubes(Lattice& lattice, int nodes[3])
+{
+  // Rounding does not add a cell.
+  constexpr double tolerance = 1e-9;
+  double edge = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    edge = std::max(edge, glm::length(lattice.Steps[axis]));
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    glm::dvec3& step = lattice.Steps[axis];
+    const double length = glm::length(step);
+    if (length < edge * (1.0 - tolerance))
+    {
+      const double needed = (nodes[axis] - 1) * length / edge;
+      const double cells = std::max(1.0, std::ceil(needed * (1.0 - tolerance)));
+      step *= edge / length;
+      lattice.Corner -= step * (0.5 * (cells - needed));
+      nodes[axis] = static_cast<int>(cells) + 1;
+    }
+  }
+}
+
 // The memory that the output takes is asked for in one piece and given back: the arrays themselves
 // would report a failure in words that do not say what to do.
 bool CanAllocate(double bytes)
@@ -168,24 +193,12 @@ int vtkLatticeTetrahedraSource::RequestData(
     return 1;
   }
 
-  const int* nodes = this->NumberOfNodes;
+  int nodes[3];
+  std::copy_n(this->NumberOfNodes, 3, nodes);
   if (*std::min_element(nodes, nodes + 3) < 2)
   {
     vtkErrorMacro("NumberOfNodes is " << nodes[0] << ", " << nodes[1] << ", " << nodes[2]
                                       << ". A lattice needs at least 2 nodes on every axis.");
-    return deformvolume::Fail(this);
-  }
-  const double nodeCount = 1.0 * nodes[0] * nodes[1] * nodes[2];
-  const double tetrahedronCount = 5.0 * (nodes[0] - 1.0) * (nodes[1] - 1.0) * (nodes[2] - 1.0);
-  const double bytes =
-    nodeCount * 3 * sizeof(double) + tetrahedronCount * (5 * sizeof(vtkIdType) + 1);
-  if (nodeCount > VTK_INT_MAX || 4 * tetrahedronCount > static_cast<double>(VTK_ID_MAX) ||
-    !CanAllocate(bytes))
-  {
-    vtkErrorMacro("A lattice of " << nodes[0] << " x " << nodes[1] << " x " << nodes[2]
-                                  << " nodes takes " << bytes / (1024.0 * 1024.0 * 1024.0)
-                                  << " GiB, which is more than can be stored. Reduce "
-                                     "NumberOfNodes.");
     return deformvolume::Fail(this);
   }
 
@@ -216,6 +229,24 @@ int vtkLatticeTetrahedraSource::RequestData(
   if (!problem.empty())
   {
     vtkErrorMacro(<< problem);
+    return deformvolume::Fail(this);
+  }
+  if (this->EqualSpacing)
+  {
+    MakeCubes(lattice, nodes);
+  }
+
+  const double nodeCount = 1.0 * nodes[0] * nodes[1] * nodes[2];
+  const double tetrahedronCount = 5.0 * (nodes[0] - 1.0) * (nodes[1] - 1.0) * (nodes[2] - 1.0);
+  const double bytes =
+    nodeCount * 3 * sizeof(double) + tetrahedronCount * (5 * sizeof(vtkIdType) + 1);
+  if (nodeCount > VTK_INT_MAX || 4 * tetrahedronCount > static_cast<double>(VTK_ID_MAX) ||
+    !CanAllocate(bytes))
+  {
+    vtkErrorMacro("A lattice of " << nodes[0] << " x " << nodes[1] << " x " << nodes[2]
+                                  << " nodes takes " << bytes / (1024.0 * 1024.0 * 1024.0)
+                                  << " GiB, which is more than can be stored. Reduce "
+                                     "NumberOfNodes.");
     return deformvolume::Fail(this);
   }
 
@@ -292,6 +323,7 @@ int vtkLatticeTetrahedraSource::RequestData(
   cells->SetData(offsets, connectivity);
   output->SetPoints(points);
   output->SetCells(VTK_TETRA, cells);
+  std::copy_n(nodes, 3, this->Dimensions);
   return 1;
 }
 
@@ -306,4 +338,7 @@ void vtkLatticeTetrahedraSource::PrintSelf(ostream& os, vtkIndent indent)
     os << " " << bound;
   }
   os << "\n" << indent << "Margin: " << this->Margin << "\n";
+  os << indent << "EqualSpacing: " << (this->EqualSpacing ? "On\n" : "Off\n");
+  os << indent << "Dimensions: " << this->Dimensions[0] << " " << this->Dimensions[1] << " "
+     << this->Dimensions[2] << "\n";
 }

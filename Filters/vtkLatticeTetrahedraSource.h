@@ -8,17 +8,17 @@
  * shared faces match. It is the split that vtkDeformVolumeFilter uses for the voxels themselves.
  *
  * @par Port 0, optional, the volume:
- * vtkImageData, of which only the geometry is used. The lattice then spans the volume's whole
+ * vtkImageData, of which only the geometry is used. The lattice then covers the volume's whole
  * extent, from the first voxel centre to the last, along the volume's own axes: origin, spacing,
  * direction matrix and an extent that does not start at 0 are honoured. Each axis needs at least
- * two voxels. Without an input the lattice spans Bounds, along the world axes.
+ * two voxels. Without an input the lattice covers Bounds, along the world axes.
  *
  * @par Output:
  * vtkUnstructuredGrid. Points in double precision, the first axis varying fastest. Cells are
  * vtkTetra, all with positive volume (the fourth vertex on the side to which the normal of the
- * first three points); the five of a cell follow each other. There are
- * nx * ny * nz points and 5 (nx-1) (ny-1) (nz-1) tetrahedra. The first piece is the whole lattice,
- * all others are empty.
+ * first three points); the five of a cell follow each other. For Dimensions of nx, ny and nz there
+ * are nx * ny * nz points and 5 (nx-1) (ny-1) (nz-1) tetrahedra. The first piece is the whole
+ * lattice, all others are empty.
  *
  * @par Errors:
  * Bounds that are empty or not finite, a volume with fewer than two voxels on an axis, fewer than
@@ -41,7 +41,7 @@ public:
 
   ///@{
   /**
-   * Nodes on each axis, at least 2. Default: 13, 13, 13.
+   * Nodes on each axis, at least 2; with EqualSpacing, at most as many. Default: 13, 13, 13.
    */
   vtkSetVector3Macro(NumberOfNodes, int);
   vtkGetVector3Macro(NumberOfNodes, int);
@@ -49,7 +49,25 @@ public:
 
   ///@{
   /**
-   * The box in world coordinates (x min, x max, y min, y max, z min, z max) that the lattice spans
+   * Whether the cells are cubes, as vtkMassSpringDeformation needs them and as tetrahedra are best.
+   * The edge of a cube is then the longest of the distances that NumberOfNodes gives on the axes.
+   * Axes on which that takes fewer nodes get fewer, and the lattice reaches beyond the box or the
+   * volume there, by less than half a cell and as far on both sides. When off, each axis has
+   * NumberOfNodes, and the lattice ends where the box ends. Default: on.
+   */
+  vtkSetMacro(EqualSpacing, bool);
+  vtkGetMacro(EqualSpacing, bool);
+  vtkBooleanMacro(EqualSpacing, bool);
+  ///@}
+
+  /**
+   * Nodes on each axis of the last output; 0, 0, 0 before the first.
+   */
+  vtkGetVector3Macro(Dimensions, int);
+
+  ///@{
+  /**
+   * The box in world coordinates (x min, x max, y min, y max, z min, z max) that the lattice covers
    * when no volume is connected. Default: -0.5, 0.5, -0.5, 0.5, -0.5, 0.5.
    */
   vtkSetVector6Macro(Bounds, double);
@@ -58,8 +76,9 @@ public:
 
   ///@{
   /**
-   * How far the lattice reaches beyond the box or the volume on each side, in world units, at
-   * least 0. Default 0: the outermost voxel centres lie on the lattice's boundary.
+   * How far the lattice reaches beyond the box or the volume on each side at least, in world units,
+   * at least 0. Default 0: without EqualSpacing, the outermost voxel centres lie on the lattice's
+   * boundary.
    */
   vtkSetClampMacro(Margin, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Margin, double);
@@ -80,6 +99,8 @@ protected:
   int NumberOfNodes[3] = { 13, 13, 13 };
   double Bounds[6] = { -0.5, 0.5, -0.5, 0.5, -0.5, 0.5 };
   double Margin = 0.0;
+  bool EqualSpacing = true;
+  int Dimensions[3] = { 0, 0, 0 };
 
 private:
   bool Aborted = false;

@@ -45,14 +45,7 @@ deformvolume::ElasticSimulation& vtkMassSpringDeformation::PrepareSimulation()
 
 double vtkMassSpringDeformation::GetStableTimeStep()
 {
-  try
-  {
-    return this->Internals->Simulation ? this->Internals->Simulation->GetStableTimeStep() : 0.0;
-  }
-  catch (const deformvolume::Error&)
-  {
-    return 0.0;
-  }
+  return this->Internals->Simulation ? this->Internals->Simulation->GetStableTimeStep() : 0.0;
 }
 
 vtkIdType vtkMassSpringDeformation::GetNumberOfSteps()
@@ -86,7 +79,7 @@ std::string vtkMassSpringDeformation::GetSummary()
     more << "\nDevice: " << this->GetDeviceInUse() << "\n"
          << "Steps of a frame: " << this->GetNumberOfSteps() << "\n"
          << "Time step: " << this->GetTimeStepInUse() * 1e3 << " ms\n"
-         << "Longest stable time step: " << this->GetStableTimeStep() * 1e3 << " ms";
+         << "Stable time step: " << this->GetStableTimeStep() * 1e3 << " ms";
     if (this->GetNumberOfInvertedTetrahedra() > 0)
     {
       more << "\nTetrahedra inside out: " << this->GetNumberOfInvertedTetrahedra();

@@ -11,9 +11,10 @@
  * has changed.
  *
  * @par Materials:
- * The stiffness of springs is derived from the Young modulus and the Poisson ratio. It is right for
- * lattices of cubes of five tetrahedra each (vtkLatticeTetrahedraSource with equal spacing). For
- * other meshes it is calibrated so that a bar of the mesh has the Young modulus. Springs have a
+ * The stiffness of springs is derived from the Young modulus and the Poisson ratio. Springs are a
+ * material on lattices of equal cubes only, of five tetrahedra each: those of
+ * vtkLatticeTetrahedraSource with EqualSpacing, also with tetrahedra missing or cut apart. Edges
+ * may differ by a thousandth. For other meshes use vtkCorotationalDeformation. Springs have a
  * Poisson ratio of 0.25 by themselves, and the volumes make what is more. Less than that counts as
  * 0.25, with a warning.
  *
@@ -22,7 +23,8 @@
  * tells how many there are, when there were none before (GetNumberOfInvertedTetrahedra()).
  *
  * @par Errors:
- * Those of vtkElasticDeformation; a time step that is longer than the stable one; a simulation that
+ * Those of vtkElasticDeformation; a tetrahedron that is not a fifth of a cube of the same size as
+ * the others; a time step that is longer than the stable one; a simulation that
  * diverges, after which the body is as it was; all nodes fixed; too little memory on the device.
  *
  * Sources: Rodriguez, Leon, Martin and Otaduy, "A parallel resampling method for interactive
@@ -49,8 +51,8 @@ public:
 
   ///@{
   /**
-   * The longest time step, in s; 0: half of the stable one. A frame has as many equal steps as it
-   * needs. Default 0, at least 0.
+   * The longest time step, in s; 0: three quarters of the stable one. A frame has as many equal
+   * steps as it needs. Default 0, at least 0.
    */
   vtkSetClampMacro(TimeStep, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeStep, double);
@@ -84,8 +86,8 @@ public:
   ///@}
 
   /**
-   * The longest time step, in s, with which the body is stable near rest; 0 before the first
-   * execution, and where it cannot be found.
+   * A time step, in s, with which the body is stable near rest (Documents/physics.md); longer ones
+   * are refused. 0 before the first execution.
    */
   double GetStableTimeStep();
 

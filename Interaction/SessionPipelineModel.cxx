@@ -33,6 +33,7 @@ using Session = vtkDeformVolumeSession;
 namespace
 {
 
+// A lattice of cubes over a volume, whose nodes of the first layer on the last axis are fixed.
 vtkSmartPointer<vtkUnstructuredGrid> MakeLattice(vtkImageData* volume, int nodes)
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
@@ -41,20 +42,17 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeLattice(vtkImageData* volume, int nodes
   source->Update();
   auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
   mesh->ShallowCopy(source->GetOutput());
-  return mesh;
-}
-
-// Nodes of the first layer of a lattice.
-void FixFirstLayer(vtkUnstructuredGrid* lattice, int nodes)
-{
+  const int* dimensions = source->GetDimensions();
+  const vtkIdType layer = static_cast<vtkIdType>(dimensions[0]) * dimensions[1];
   vtkNew<vtkUnsignedCharArray> fixed;
   fixed->SetName("Fixed");
-  fixed->SetNumberOfTuples(lattice->GetNumberOfPoints());
-  for (vtkIdType id = 0; id < lattice->GetNumberOfPoints(); ++id)
+  fixed->SetNumberOfTuples(mesh->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
   {
-    fixed->SetValue(id, id < static_cast<vtkIdType>(nodes) * nodes ? 1 : 0);
+    fixed->SetValue(id, id < layer ? 1 : 0);
   }
-  lattice->GetPointData()->AddArray(fixed);
+  mesh->GetPointData()->AddArray(fixed);
+  return mesh;
 }
 
 } // namespace
@@ -83,7 +81,6 @@ void SessionPipeline::TakeRestMesh()
   else
   {
     this->RestMesh = MakeLattice(this->Volume, this->NumberOfNodes);
-    FixFirstLayer(this->RestMesh, this->NumberOfNodes);
   }
   this->MassSpring->SetInputData(this->RestMesh);
   this->Corotational->SetInputData(this->RestMesh);

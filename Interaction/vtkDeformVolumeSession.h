@@ -28,9 +28,10 @@
  * NONE does not deform. CHAIN_MAIL is vtkChainMailDeformation: tissue stays where a handle leaves
  * it, and relaxes. MASS_SPRING and COROTATIONAL are vtkMassSpringDeformation and
  * vtkCorotationalDeformation on the mesh that SetInputs() was given, or else on a
- * vtkLatticeTetrahedraSource with the first layer of nodes fixed, in millimetres. A change of the
- * model keeps handles, cuts and carvings. Cuts split meshes along the faces of tetrahedra; those
- * that were made with another model, or undone and made again, split the mesh at rest.
+ * vtkLatticeTetrahedraSource with the first layer of nodes fixed, in millimetres. MASS_SPRING
+ * refuses meshes of other cells than equal cubes. A change of the model keeps handles, cuts and
+ * carvings. Cuts split meshes along the faces of tetrahedra; those that were made with another
+ * model, or undone and made again, split the mesh at rest.
  *
  * @par Output:
  * vtkImageData as vtkDeformVolumeFilter makes it, with the bounds of the volume at rest and
@@ -163,8 +164,8 @@ public:
   /**
    * Settings, which are events but cannot be undone: how far round its place a handle holds voxels
    * or nodes, in world units (initially 0); sweeps of relaxation in a step of ChainMail, 0 to 10000
-   * (initially 5); nodes of the lattice on each axis, 2 to 100 (initially 7); bytes that may be
-   * kept of where ChainMail had voxels before actions (initially 1 GiB).
+   * (initially 5); the most nodes of the lattice on an axis, 2 to 100 (initially 7); bytes that may
+   * be kept of where ChainMail had voxels before actions (initially 1 GiB).
    */
   void ChangeHandleRadius(double radius);
   void ChangeRelaxationSweeps(int sweeps);

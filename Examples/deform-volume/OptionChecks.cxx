@@ -65,6 +65,11 @@ void CheckModel(const Options& options)
         " needs --tetgen or --lattice, the mesh that it "
         "moves");
     }
+    if (options.Model == "mass-spring" && options.TetGen)
+    {
+      throw UsageError("--model mass-spring needs the cubes of --lattice; --model fem takes the "
+                       "mesh of --tetgen, too");
+    }
     if (!options.Pushes.empty())
     {
       throw UsageError(

@@ -173,7 +173,8 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program
     .add_option("--lattice", raw.Lattice,
-      "Regular mesh over the whole volume with so many nodes on each axis, then --push")
+      "Mesh of cubes over the whole volume, of five tetrahedra each, with at most so many nodes on "
+      "each axis, then --push")
     ->type_name("NX,NY,NZ")
     ->group(group);
   program
@@ -189,7 +190,7 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     .add_option("--model", options.Model,
       "chainmail: each voxel is linked to its neighbours, which follow a --pull as far as their "
       "links do not give way. fem, with --tetgen or --lattice: the mesh comes to equilibrium, by "
-      "finite elements. mass-spring, with these, too: it moves for some time. Units are mm")
+      "finite elements. mass-spring, with --lattice: it moves for some time. Units are mm")
     ->check(CLI::IsMember({ "chainmail", "fem", "mass-spring" }))
     ->type_name("NAME")
     ->group(group);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MassSpringModel.h"
 
+#include "CubeFifths.h"
 #include "DeviceVectorsInternals.h"
 #include "GuardedCall.h"
-#include "LinearizedNetwork.h"
 #include "MassSpringResults.h"
 #include "MassSpringState.h"
 #include "MemoryBudget.h"
@@ -13,7 +13,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace deformvolume
 {
@@ -22,21 +21,11 @@ namespace
 
 // Displacements beyond so many times the size of the body are none of a simulation.
 constexpr double LargestDisplacement = 1e4;
+// The time step by the stable one, where it is not given: tetrahedra that are compressed vibrate
+// faster than at rest.
+constexpr double PartOfStable = 0.75;
 // Steps are waited for when they have taken about so long, to see whether to go on.
 constexpr std::chrono::milliseconds Batch(20);
-
-// The same body of one material, with the mean Poisson ratio of what there is.
-ElasticBody MakeUniform(const ElasticBody& body)
-{
-  ElasticBody uniform = body;
-  ElasticMaterial mean = body.Materials.front();
-  mean.PoissonRatio =
-    std::accumulate(body.Materials.begin(), body.Materials.end(), 0.0,
-      [](double sum, const ElasticMaterial& material) { return sum + material.PoissonRatio; }) /
-    static_cast<double>(body.Materials.size());
-  uniform.Materials = { mean };
-  return uniform;
-}
 
 void CheckTimes(const MassSpringRequest& request)
 {
@@ -83,13 +72,10 @@ public:
   {
     this->State.reset();
     this->Network.reset();
-    this->Largest = -1.0;
   }
 
-  void CheckMemory(const ElasticBody& body);
-  double Calibrate(Watch& watch, const ElasticBody& uniform);
-  void Make(Watch& watch, const ElasticBody& body, double scale);
-  double GetStableTimeStep(Watch& watch);
+  void CheckSize(const ElasticBody& body);
+  void Make(Watch& watch, const ElasticBody& body, double cubeEdge);
   void Hold(const std::vector<HeldNode>& held);
   void Run(const MassSpringRequest& request, const MassSpringStep& step, std::int64_t steps);
 
@@ -97,14 +83,13 @@ public:
   MemoryBudget Budget;
   std::size_t WorkGroupSize = 0;
   ElasticBody Body;
-  double Scale = 1.0;
+  double CubeEdge = 0.0; // in m
   std::unique_ptr<MassSpringNetwork> Network;
   std::unique_ptr<MassSpringState> State;
   std::vector<std::int32_t> HeldBefore;
-  double Largest = -1.0; // angular frequency; less than 0: not known
 };
 
-void MassSpringModel::Internals::CheckMemory(const ElasticBody& body)
+void MassSpringModel::Internals::CheckSize(const ElasticBody& body)
 {
   constexpr std::size_t valuesOfTetrahedron = 12;
   constexpr std::size_t mostLanes = 16;
@@ -116,62 +101,24 @@ void MassSpringModel::Internals::CheckMemory(const ElasticBody& body)
   }
   const std::uint64_t allocation = body.Tetrahedra.size() * valuesOfTetrahedron * sizeof(float);
   MemoryBudget::CheckBytes(allocation, this->Device.GetAllocationLimit(), "in one allocation");
+}
+
+void MassSpringModel::Internals::Make(Watch& watch, const ElasticBody& body, double cubeEdge)
+{
+  watch.Ask();
+  auto network = std::make_unique<MassSpringNetwork>(
+    watch, body, MassSpringState::GetLanes(this->Device), cubeEdge);
+  watch.Ask();
+  // There is no abort from here on: there is the last body, or this one.
+  this->Forget(); // memory of the last body goes first
   this->Budget.CheckRoomFor(
     MassSpringState::GetNeededMemory(body.Points.size(), body.Tetrahedra.size()), "on the device");
-}
-
-// Leaves the body made, with a factor of 1.
-double MassSpringModel::Internals::Calibrate(Watch& watch, const ElasticBody& uniform)
-{
-  this->Make(watch, uniform, 1.0);
-  const double stiffness =
-    LinearizedNetwork(watch, *this->State, *this->Network).FindStiffness(uniform);
-  if (!(stiffness > 0.0) || !std::isfinite(stiffness))
-  {
-    this->Forget();
-    throw Error("The mesh is too bad for springs: its tetrahedra are nearly flat. Make a better "
-                "mesh, with tetrahedra of about the same shape.");
-  }
-  return 1.0 / stiffness;
-}
-
-void MassSpringModel::Internals::Make(Watch& watch, const ElasticBody& body, double scale)
-{
-  this->State.reset(); // its memory goes first
-  watch.Ask();
   this->Body = body;
-  watch.Ask();
-  this->Scale = scale;
-  this->Network = std::make_unique<MassSpringNetwork>(
-    watch, body, MassSpringState::GetLanes(this->Device), scale);
-  watch.Ask();
+  this->CubeEdge = cubeEdge;
+  this->Network = std::move(network);
   this->State =
-    std::make_unique<MassSpringState>(watch, this->Device, *this->Network, this->WorkGroupSize);
+    std::make_unique<MassSpringState>(this->Device, *this->Network, this->WorkGroupSize);
   this->HeldBefore.clear();
-  this->Largest = -1.0;
-}
-
-double MassSpringModel::Internals::GetStableTimeStep(Watch& watch)
-{
-  if (this->Largest < 0.0)
-  {
-    const std::vector<float> displacements = this->State->GetDisplacements();
-    try
-    {
-      this->Largest = LinearizedNetwork(watch, *this->State, *this->Network).FindLargestFrequency();
-    }
-    catch (const Aborted&)
-    {
-      this->State->SetDisplacements(displacements);
-      throw;
-    }
-    this->State->SetDisplacements(displacements);
-  }
-  if (!(this->Largest > 0.0))
-  {
-    throw Error("All nodes of the mesh are fixed: there is nothing to simulate.");
-  }
-  return 2.0 / this->Largest;
 }
 
 void MassSpringModel::Internals::Hold(const std::vector<HeldNode>& held)
@@ -275,27 +222,14 @@ void MassSpringModel::SetBody(const ElasticBody& body, const std::function<bool(
   Watch watch(progress);
   watch.Ask();
   CheckBody(body, &watch);
+  const double cubeEdge = FindCubeEdge(watch, body);
   Internals& impl = *this->Impl;
   impl.Guard(
     [&]
     {
       impl.Device.GetContext();
-      impl.Forget();
-      impl.CheckMemory(body);
-      const bool isUniform = body.Materials.size() == 1;
-      try
-      {
-        const double scale = impl.Calibrate(watch, isUniform ? body : MakeUniform(body));
-        if (!isUniform || scale != 1.0)
-        {
-          impl.Make(watch, body, scale);
-        }
-      }
-      catch (const Aborted&)
-      {
-        impl.Forget();
-        throw;
-      }
+      impl.CheckSize(body);
+      impl.Make(watch, body, cubeEdge);
     });
 }
 
@@ -330,7 +264,7 @@ void MassSpringModel::SplitNodes(const ElasticBody& body, const std::vector<std:
       displacements.resize(body.Points.size() * 3);
       velocities.resize(body.Points.size() * 3);
       Watch watch(nullptr);
-      impl.Make(watch, body, impl.Scale);
+      impl.Make(watch, body, impl.CubeEdge);
       impl.State->SetDisplacements(displacements);
       impl.State->SetVelocities(velocities);
     });
@@ -365,11 +299,10 @@ void MassSpringModel::SetOutput(const std::shared_ptr<DeviceVectors>& output, do
     });
 }
 
-double MassSpringModel::GetStableTimeStep()
+double MassSpringModel::GetStableTimeStep() const
 {
   this->Impl->CheckIsSet();
-  Watch watch(nullptr);
-  return this->Impl->Guard([&] { return this->Impl->GetStableTimeStep(watch); });
+  return this->Impl->Network->StableTimeStep;
 }
 
 MassSpringReport MassSpringModel::Advance(const MassSpringRequest& request)
@@ -385,10 +318,14 @@ MassSpringReport MassSpringModel::Advance(const MassSpringRequest& request)
       MassSpringReport report;
       if (request.Duration > 0.0)
       {
-        Watch watch(
-          request.Progress ? [&] { return request.Progress(0.0); } : std::function<bool()>());
+        const std::vector<float>& mobilities = impl.Network->Mobilities;
+        if (std::count(mobilities.begin(), mobilities.end(), 0.0F) ==
+          static_cast<std::ptrdiff_t>(mobilities.size()))
+        {
+          throw Error("All nodes of the mesh are fixed: there is nothing to simulate.");
+        }
         const double longest =
-          request.TimeStep > 0.0 ? request.TimeStep : 0.5 * impl.GetStableTimeStep(watch);
+          request.TimeStep > 0.0 ? request.TimeStep : PartOfStable * impl.Network->StableTimeStep;
         // A hair more than a whole number of steps is that number.
         constexpr double hair = 1e-9;
         const double steps = std::max(1.0, std::ceil(request.Duration / longest * (1.0 - hair)));
@@ -489,13 +426,7 @@ std::vector<float> MassSpringModel::GetForces()
 std::vector<ElementResults> MassSpringModel::GetElementResults()
 {
   const std::vector<float> displacements = this->GetDisplacements();
-  return ComputeMassSpringResults(this->Impl->Body, displacements, this->Impl->Scale);
-}
-
-double MassSpringModel::GetCalibration() const
-{
-  this->Impl->CheckIsSet();
-  return this->Impl->Scale;
+  return ComputeMassSpringResults(this->Impl->Body, displacements, this->Impl->CubeEdge);
 }
 
 std::uint64_t MassSpringModel::GetDeviceMemory() const

@@ -21,8 +21,8 @@ struct MassSpringRequest
 {
   /// Time to go on by, in s; 0 or more.
   double Duration = 0.0;
-  /// The longest time step, in s: as many equal steps are made as are needed. 0: half of the stable
-  /// one.
+  /// The longest time step, in s: as many equal steps are made as are needed. 0: three
+  /// quarters of the stable one.
   double TimeStep = 0.0;
   /// How fast velocities die away, in 1/s; 0 or more.
   double Damping = 2.0;
@@ -30,8 +30,7 @@ struct MassSpringRequest
   /// duration.
   std::vector<HeldNode> Held;
   BodyLoads Loads;
-  /// Called now and then with how much of the duration is behind, 0 to 1, and with 0 while the
-  /// stable time step is looked for; returning false aborts.
+  /// Called now and then with how much of the duration is behind, 0 to 1; returning false aborts.
   std::function<bool(double)> Progress;
 };
 
@@ -77,10 +76,9 @@ public:
   /// Work-items in a work-group; 0: chosen by device. To be called before SetBody.
   void SetWorkGroupSize(std::size_t size);
 
-  /// A body at rest. The stiffness of its springs is calibrated so that a bar of this mesh has the
-  /// Young modulus that it should; on a lattice of cubes they are right as they are. progress:
-  /// called every few milliseconds, in the thread that called; returning false aborts. Then there
-  /// is still the last body, or none.
+  /// A body at rest, all of whose tetrahedra are fifths of equal cubes (see FindCubeEdge).
+  /// progress: called every few milliseconds, in the thread that called; returning false aborts,
+  /// and the last body stays.
   void SetBody(const ElasticBody& body, const std::function<bool()>& progress = nullptr);
 
   /// The same body with other nodes in some tetrahedra: nodes have been appended, each a copy of
@@ -94,9 +92,9 @@ public:
   void SetOutput(const std::shared_ptr<DeviceVectors>& output, double factor = 1.0);
   ///@}
 
-  /// The longest time step, in s, with which a body near rest is stable: found from its fastest
-  /// vibration.
-  double GetStableTimeStep();
+  /// A time step, in s, with which the body is stable near rest: h sqrt(rho / 6 lambda), for the
+  /// least of its materials. The longest one is up to 1.6 times that.
+  double GetStableTimeStep() const;
 
   /// Goes on in time. Where the simulation diverges, the body is put back to what it was, and an
   /// Error says so. Throws Aborted where the progress asks for an end; the body is put back, too.
@@ -117,9 +115,6 @@ public:
 
   /// What the tetrahedra undergo now.
   std::vector<ElementResults> GetElementResults();
-
-  /// The factor of the stiffness that calibration has found.
-  double GetCalibration() const;
 
   /// Bytes allocated on the device, without the output.
   std::uint64_t GetDeviceMemory() const;

@@ -7,8 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
-#include <limits>
+#include <cmath>
 #include <numeric>
 
 namespace deformvolume
@@ -19,43 +18,17 @@ namespace
 constexpr std::size_t TetrahedraOfPart = 4096;
 constexpr std::size_t PartsAtOnce = 8;
 
-std::array<glm::dvec3, 4> GetCorners(const ElasticBody& body, const Tetrahedron& tetrahedron)
+// No body vibrates faster than the fastest of its tetrahedra alone, with the masses that it gives
+// to its nodes. For a corner of a cube that is sqrt(24 lambda / rho) / h at most, where springs
+// make sqrt(24 mu / rho) / h and the volume what is more; the middle of a cube is slower.
+double FindStableTimeStep(const ElasticBody& body, double cubeEdge)
 {
-  std::array<glm::dvec3, 4> corners;
-  std::transform(tetrahedron.begin(), tetrahedron.end(), corners.begin(),
-    [&](std::int32_t node) { return body.Points[static_cast<std::size_t>(node)]; });
-  return corners;
-}
-
-// The sum of the squared areas of the faces.
-double GetSquaredAreas(const std::array<glm::dvec3, 4>& corners)
-{
-  double sum = 0.0;
-  for (std::size_t i = 0; i < 4; ++i)
+  double fastest = 0.0;
+  for (const ElasticMaterial& material : body.Materials)
   {
-    const glm::dvec3& a = corners[(i + 1) % 4];
-    const glm::dvec3 normal = glm::cross(corners[(i + 2) % 4] - a, corners[(i + 3) % 4] - a);
-    sum += 0.25 * glm::dot(normal, normal);
+    fastest = std::max(fastest, 24.0 * GetSpringMaterial(material).GetLambda() / material.Density);
   }
-  return sum;
-}
-
-double FindShortestEdge(Watch& watch, const ElasticBody& body)
-{
-  double shortest = std::numeric_limits<double>::infinity();
-  ForItems(watch, body.Tetrahedra.size(),
-    [&](std::size_t t)
-    {
-      const std::array<glm::dvec3, 4> corners = GetCorners(body, body.Tetrahedra[t]);
-      for (std::size_t i = 0; i < 4; ++i)
-      {
-        for (std::size_t j = 0; j < i; ++j)
-        {
-          shortest = std::min(shortest, glm::distance(corners[i], corners[j]));
-        }
-      }
-    });
-  return shortest;
+  return 2.0 * cubeEdge / std::sqrt(fastest);
 }
 
 } // namespace
@@ -68,21 +41,20 @@ ElasticMaterial GetSpringMaterial(const ElasticMaterial& material)
 }
 
 SpringStiffness GetSpringStiffness(
-  const ElasticMaterial& material, double restVolume, const std::array<glm::dvec3, 4>& corners)
+  const ElasticMaterial& material, double restVolume, double cubeEdge)
 {
   const ElasticMaterial possible = GetSpringMaterial(material);
   const double mu = possible.GetShearModulus();
-  // A rule for all shapes: 3/2 mu h^4 / V, where h^-2 is the sum of the squared inverse heights.
-  // For the two shapes of a cube's tetrahedra it gives the springs of the isotropic lattice, and
-  // for tetrahedra that are nearly flat it gives hardly any.
-  const double squaredHeight = 9.0 * restVolume * restVolume / GetSquaredAreas(corners);
   SpringStiffness stiffness;
-  stiffness.Edge = static_cast<float>(1.5 * mu * squaredHeight * squaredHeight / restVolume);
+  // A quarter of mu h for a corner, half of it for the middle: each edge of a cube belongs to four
+  // corners, and each diagonal to two cubes with two corners and a middle each.
+  stiffness.Edge = static_cast<float>(1.5 * mu * restVolume / (cubeEdge * cubeEdge));
   stiffness.Volume = static_cast<float>(possible.GetLambda() - mu);
   return stiffness;
 }
 
-MassSpringNetwork::MassSpringNetwork(Watch& watch, const ElasticBody& body, int lanes, double scale)
+MassSpringNetwork::MassSpringNetwork(
+  Watch& watch, const ElasticBody& body, int lanes, double cubeEdge)
   : Lanes(lanes)
   , NumberOfGroups((body.Tetrahedra.size() + static_cast<std::size_t>(lanes) - 1) /
       static_cast<std::size_t>(lanes))
@@ -92,13 +64,13 @@ MassSpringNetwork::MassSpringNetwork(Watch& watch, const ElasticBody& body, int 
   , Begins(body.Points.size() + 1, 0)
   , Places(body.Tetrahedra.size() * 4)
   , Mobilities(body.Points.size(), 0.0F)
+  , StableTimeStep(FindStableTimeStep(body, cubeEdge))
 {
   const auto width = static_cast<std::size_t>(lanes);
   watch.Ask();
   const std::vector<double> volumes = GetVolumes(body);
   watch.Ask();
   this->Masses = GetNodeMasses(body, volumes);
-  this->ShortestEdge = FindShortestEdge(watch, body);
   glm::dvec3 least = body.Points.front();
   glm::dvec3 most = least;
   for (const glm::dvec3& point : body.Points)
@@ -128,12 +100,11 @@ MassSpringNetwork::MassSpringNetwork(Watch& watch, const ElasticBody& body, int 
       for (std::size_t t = part * TetrahedraOfPart; t < last; ++t)
       {
         const SpringStiffness stiffness =
-          GetSpringStiffness(body.GetMaterial(t), volumes[t], GetCorners(body, body.Tetrahedra[t]));
+          GetSpringStiffness(body.GetMaterial(t), volumes[t], cubeEdge);
         const std::size_t group = t / width;
         const std::size_t lane = t % width;
-        this->Materials[group * 2 * width + lane] = static_cast<float>(stiffness.Edge * scale);
-        this->Materials[(group * 2 + 1) * width + lane] =
-          static_cast<float>(stiffness.Volume * scale);
+        this->Materials[group * 2 * width + lane] = stiffness.Edge;
+        this->Materials[(group * 2 + 1) * width + lane] = stiffness.Volume;
         for (std::size_t i = 0; i < 4; ++i)
         {
           this->Tetrahedra[(group * 4 + i) * width + lane] = body.Tetrahedra[t][i] * 3;

@@ -25,19 +25,18 @@ struct SpringStiffness
 /// outwards, which is unstable. They count as 1/4, with the same Young modulus.
 ElasticMaterial GetSpringMaterial(const ElasticMaterial& material);
 
-/// The stiffness of a tetrahedron that makes a body of a material (GetSpringMaterial). On a lattice
-/// of cubes of five tetrahedra each, axes of length h then have springs of mu h and diagonals of 2
-/// mu h, which is the only isotropic choice; their Poisson ratio is 1/4, and the volume makes the
-/// rest of it.
+/// The stiffness of a fifth of a cube of a material (GetSpringMaterial). In a lattice, edges of
+/// cubes then have springs of mu h and diagonals of 2 mu h, which is the only isotropic choice;
+/// their Poisson ratio is 1/4, and the volume makes the rest of it.
 SpringStiffness GetSpringStiffness(
-  const ElasticMaterial& material, double restVolume, const std::array<glm::dvec3, 4>& corners);
+  const ElasticMaterial& material, double restVolume, double cubeEdge);
 
 /// A body as the kernels have it. Tetrahedra lie in groups of so many lanes, the last one filled up
 /// with tetrahedra that no node knows; see MassSpringForces.cl and MassSpringMotion.cl.
 struct MassSpringNetwork
 {
-  /// scale: a factor of all stiffnesses.
-  MassSpringNetwork(Watch& watch, const ElasticBody& body, int lanes, double scale);
+  /// cubeEdge: see FindCubeEdge.
+  MassSpringNetwork(Watch& watch, const ElasticBody& body, int lanes, double cubeEdge);
 
   int Lanes;
   std::size_t NumberOfGroups;
@@ -48,8 +47,10 @@ struct MassSpringNetwork
   std::vector<std::uint32_t> Places;
   std::vector<double> Masses; // in kg
   std::vector<float> Mobilities;
-  double Size = 0.0;         // the diagonal of the body, in m
-  double ShortestEdge = 0.0; // in m
+  double Size = 0.0; // the diagonal of the body, in m
+  /// A time step with which the body is stable near rest, in s: 2 by a bound of its largest angular
+  /// frequency.
+  double StableTimeStep = 0.0;
 };
 
 } // namespace deformvolume

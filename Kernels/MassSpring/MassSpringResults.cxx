@@ -24,15 +24,15 @@ double GetSignedVolume(const std::array<glm::dvec3, 4>& corners)
 
 // The stress of springs is that of their forces times their lengths, over the volume.
 ElementResults FindResults(const std::array<glm::dvec3, 4>& rest,
-  const std::array<glm::dvec3, 4>& now, const ElasticMaterial& material, double scale)
+  const std::array<glm::dvec3, 4>& now, const ElasticMaterial& material, double cubeEdge)
 {
   constexpr int components[6][2] = { { 0, 0 }, { 1, 1 }, { 2, 2 }, { 0, 1 }, { 1, 2 }, { 0, 2 } };
   ElementResults results;
   const double restVolume = GetSignedVolume(rest);
   results.Determinant = GetSignedVolume(now) / restVolume;
-  const SpringStiffness stiffness = GetSpringStiffness(material, std::abs(restVolume), rest);
+  const SpringStiffness stiffness = GetSpringStiffness(material, std::abs(restVolume), cubeEdge);
   const double growth = results.Determinant - 1.0;
-  const double bulk = static_cast<double>(stiffness.Volume) * scale;
+  const double bulk = static_cast<double>(stiffness.Volume);
   results.StrainEnergyDensity = 0.5 * bulk * growth * growth;
   const bool hasStress = !IsFlat(results.Determinant);
   for (std::size_t i = 0; i < 3 && hasStress; ++i)
@@ -46,7 +46,7 @@ ElementResults FindResults(const std::array<glm::dvec3, 4>& rest,
       const glm::dvec3 edge = now[a] - now[b];
       const double length = glm::length(edge);
       const double lengthening = length - glm::distance(rest[a], rest[b]);
-      const double force = static_cast<double>(stiffness.Edge) * scale * lengthening;
+      const double force = static_cast<double>(stiffness.Edge) * lengthening;
       results.StrainEnergyDensity += 0.5 * force * lengthening / std::abs(restVolume);
       for (std::size_t i = 0; i < 6 && length > 0.0 && hasStress; ++i)
       {
@@ -61,7 +61,7 @@ ElementResults FindResults(const std::array<glm::dvec3, 4>& rest,
 } // namespace
 
 std::vector<ElementResults> ComputeMassSpringResults(
-  const ElasticBody& body, const std::vector<float>& displacements, double scale)
+  const ElasticBody& body, const std::vector<float>& displacements, double cubeEdge)
 {
   std::vector<ElementResults> results(body.Tetrahedra.size());
   ParallelForParts(results.size(), TetrahedraAtOnce,
@@ -78,7 +78,7 @@ std::vector<ElementResults> ComputeMassSpringResults(
           rest[i] = body.Points[node];
           now[i] = rest[i] + glm::dvec3(displacement[0], displacement[1], displacement[2]);
         }
-        results[t] = FindResults(rest, now, body.GetMaterial(t), scale);
+        results[t] = FindResults(rest, now, body.GetMaterial(t), cubeEdge);
       }
     });
   return results;

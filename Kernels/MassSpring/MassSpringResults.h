@@ -11,9 +11,9 @@ namespace deformvolume
 {
 
 /// What the tetrahedra of a body of springs undergo. displacements: three floats a node, in m;
-/// scale: the factor of all stiffnesses.
+/// cubeEdge: see FindCubeEdge.
 std::vector<ElementResults> ComputeMassSpringResults(
-  const ElasticBody& body, const std::vector<float>& displacements, double scale);
+  const ElasticBody& body, const std::vector<float>& displacements, double cubeEdge);
 
 } // namespace deformvolume
 

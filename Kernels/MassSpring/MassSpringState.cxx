@@ -46,7 +46,7 @@ std::uint64_t MassSpringState::GetMemory() const
 }
 
 MassSpringState::MassSpringState(
-  Watch& watch, WorkDevice& device, const MassSpringNetwork& network, std::size_t workGroupSize)
+  WorkDevice& device, const MassSpringNetwork& network, std::size_t workGroupSize)
   : Device(device)
   , NumberOfNodes(network.Masses.size())
   , NumberOfGroups(network.NumberOfGroups)
@@ -61,10 +61,7 @@ MassSpringState::MassSpringState(
   text += ProgramText(MassSpringParameters_h) + MassSpringForces_cl + MassSpringMotion_cl;
   this->Program = context.GetProgram(text, KernelOptions);
   const auto send = [&](const auto& values)
-  {
-    watch.Ask();
-    return this->Fill(values.data(), values.size() * sizeof(values[0]));
-  };
+  { return this->Fill(values.data(), values.size() * sizeof(values[0])); };
   this->Tetrahedra = send(network.Tetrahedra);
   this->Materials = send(network.Materials);
   this->RestPoints = send(network.RestPoints);

@@ -7,7 +7,6 @@
 #include "MassSpringNetwork.h"
 #include "MassSpringParameters.h"
 #include "OutputVectors.h"
-#include "Watch.h"
 #include "WorkDevice.h"
 
 #include <cstdint>
@@ -22,8 +21,7 @@ class MassSpringState
 {
 public:
   /// device: it stays where it is. workGroupSize: 0: chosen by device.
-  MassSpringState(
-    Watch& watch, WorkDevice& device, const MassSpringNetwork& network, std::size_t workGroupSize);
+  MassSpringState(WorkDevice& device, const MassSpringNetwork& network, std::size_t workGroupSize);
 
   /// Tetrahedra that a work-item of a device has.
   static int GetLanes(WorkDevice& device);

@@ -154,6 +154,7 @@ BenchmarkCase::BenchmarkCase(
     vtkNew<vtkLatticeTetrahedraSource> lattice;
     lattice->SetInputData(volume);
     lattice->SetNumberOfNodes(nodesPerAxis, nodesPerAxis, nodesPerAxis);
+    lattice->EqualSpacingOff();
     lattice->Update();
     this->Deformation = Renumber(lattice->GetOutput(), nodesPerAxis, numbering);
   }

@@ -81,6 +81,7 @@ public:
     vtkNew<vtkLatticeTetrahedraSource> lattice;
     lattice->SetInputData(volume);
     lattice->SetNumberOfNodes(nodes, nodes, nodes);
+    lattice->EqualSpacingOff();
     lattice->Update();
     this->Mesh->ShallowCopy(lattice->GetOutput());
     this->Displacements->SetName("Displacement");

@@ -39,6 +39,7 @@ LiveCase::LiveCase(const std::array<int, 3>& dimensions, int nodesPerAxis, bool 
   vtkNew<vtkLatticeTetrahedraSource> lattice;
   lattice->SetInputData(this->Volume);
   lattice->SetNumberOfNodes(nodesPerAxis, nodesPerAxis, nodesPerAxis);
+  lattice->EqualSpacingOff();
   lattice->Update();
   this->Mesh->DeepCopy(lattice->GetOutput());
   this->Displacements->SetName("Displacement");

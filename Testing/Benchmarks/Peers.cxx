@@ -136,6 +136,7 @@ public:
     vtkNew<vtkLatticeTetrahedraSource> lattice;
     lattice->SetInputData(volume);
     lattice->SetNumberOfNodes(nodesPerAxis, nodesPerAxis, nodesPerAxis);
+    lattice->EqualSpacingOff();
     lattice->Update();
     this->Mesh->DeepCopy(lattice->GetOutput());
     this->Rest = lattice->GetOutput()->GetPoints();

@@ -46,6 +46,7 @@ int main()
   vtkNew<vtkLatticeTetrahedraSource> lattice;
   lattice->SetInputData(volume);
   lattice->SetNumberOfNodes(4, 3, 5);
+  lattice->EqualSpacingOff();
   lattice->Update();
 
   vtkNew<vtkUnstructuredGrid> mesh;

@@ -262,6 +262,7 @@ inline std::vector<Case> MakeCases()
     {
       vtkNew<vtkLatticeTetrahedraSource> source;
       source->SetNumberOfNodes(4, 4, 3);
+      source->EqualSpacingOff();
       source->SetBounds(bounds[0] - 1.0, bounds[1] + 1.0, bounds[2] - 1.0, bounds[3] + 1.0,
         half ? middle + 0.1 : bounds[4] - 1.0, half ? bounds[5] + 1.0 : middle);
       source->Update();

@@ -154,6 +154,7 @@ inline vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
   source->SetNumberOfNodes(nodes, nodes, nodes);
+  source->EqualSpacingOff();
   double bounds[6];
   volume->GetBounds(bounds);
   for (int i = 0; i < 6; ++i)

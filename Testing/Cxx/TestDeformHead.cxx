@@ -135,6 +135,7 @@ int TestDeformHead(int argc, char* argv[])
 
   vtkNew<vtkLatticeTetrahedraSource> lattice;
   lattice->SetNumberOfNodes(19, 22, 19);
+  lattice->EqualSpacingOff();
   lattice->SetInputData(head);
   lattice->Update();
   vtkUnstructuredGrid* mesh = lattice->GetOutput();

@@ -89,6 +89,7 @@ void TestUpstreamPipeline()
   volumeSource->SetOutput(volume);
   vtkNew<vtkLatticeTetrahedraSource> lattice;
   lattice->SetNumberOfNodes(3, 4, 5);
+  lattice->EqualSpacingOff();
   lattice->SetBounds(-1.0, 10.0, -1.0, 10.0, -1.0, 10.0);
   Deformed deformed;
   deformed.Filter->SetInputConnection(volumeSource->GetOutputPort());

@@ -34,6 +34,7 @@ public:
     vtkNew<vtkLatticeTetrahedraSource> source;
     const int cells = 2 * static_cast<int>(0.5 * dimensions[0] / voxelsPerEdge + 1.0);
     source->SetNumberOfNodes(cells + 1, 5, 4);
+    source->EqualSpacingOff();
     source->SetBounds(this->Middle - 0.5 * cells * voxelsPerEdge,
       this->Middle + 0.5 * cells * voxelsPerEdge, -0.5, 0.5 * dimensions[1], -1.0,
       2.0 * dimensions[2]);

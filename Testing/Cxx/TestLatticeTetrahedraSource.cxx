@@ -62,6 +62,7 @@ void TestMisuse()
   source->SetNumberOfNodes(100000, 100000, 100000);
   check.Fails("more than can be stored");
   source->SetNumberOfNodes(1 << 30, 2, 2);
+  source->EqualSpacingOff();
   check.Fails("more than can be stored");
   source->SetNumberOfNodes(2, 2, 2);
 
@@ -101,6 +102,7 @@ void TestBox()
   VerifyConforming(source->GetOutput(), nodes);
   VERIFY(source->GetOutput()->GetPoints()->GetDataType() == VTK_DOUBLE);
 
+  source->EqualSpacingOff();
   const int uneven[3] = { 4, 2, 7 };
   source->SetNumberOfNodes(uneven[0], uneven[1], uneven[2]);
   source->SetBounds(-1, 5, 100, 101, -8, -5);
@@ -143,6 +145,7 @@ void TestVolume()
     vtkNew<vtkLatticeTetrahedraSource> source;
     source->SetInputData(volume);
     source->SetNumberOfNodes(nodes[0], nodes[1], nodes[2]);
+    source->EqualSpacingOff();
     FailureCheck check(source);
     check.Succeeds();
     vtkUnstructuredGrid* mesh = source->GetOutput();
@@ -179,6 +182,64 @@ void TestVolume()
   }
 }
 
+// Cubes cover the volume, and reach as far beyond it on one side as on the other.
+void TestEqualSpacing()
+{
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  FailureCheck check(source);
+  VERIFY(source->GetEqualSpacing());
+  VERIFY(source->GetDimensions()[0] == 0);
+  for (double sign : { 1.0, -1.0 })
+  {
+    vtkNew<vtkImageData> volume;
+    const int extent[6] = { -7, 12, 4, 9, -3, 20 };
+    volume->SetExtent(const_cast<int*>(extent));
+    volume->SetOrigin(10.0, -20.0, 5.0);
+    volume->SetSpacing(0.5, 2.0, 1.25);
+    SetRotation(volume, sign);
+    source->SetInputData(volume);
+    source->SetNumberOfNodes(20, 6, 5);
+    check.Succeeds();
+    // 9.5, 10 and 28.75 mm: steps of 0.5, 2 and 7.1875 mm, of which the last is the longest.
+    const int nodes[3] = { 3, 3, 5 };
+    VERIFY(std::equal(nodes, nodes + 3, source->GetDimensions()));
+    VerifyConforming(source->GetOutput(), nodes);
+    const double edge = 28.75 / 4.0;
+    for (vtkIdType node = 0; node < source->GetOutput()->GetNumberOfPoints(); ++node)
+    {
+      const vtkIdType ijk[3] = { node % 3, node / 3 % 3, node / 9 };
+      double index[3];
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double middle = 0.5 * (extent[2 * axis] + extent[2 * axis + 1]);
+        index[axis] = middle +
+          (static_cast<double>(ijk[axis]) - 0.5 * (nodes[axis] - 1)) * edge /
+            volume->GetSpacing()[axis];
+      }
+      double place[3];
+      double point[3];
+      volume->TransformContinuousIndexToPhysicalPoint(index, place);
+      source->GetOutput()->GetPoint(node, point);
+      VERIFY_NEAR(
+        std::hypot(place[0] - point[0], place[1] - point[1], place[2] - point[2]), 0.0, 1e-12);
+    }
+    source->SetMargin(3.0);
+    check.Succeeds();
+    // 15.5, 16 and 34.75 mm.
+    VERIFY(source->GetDimensions()[0] == 3 && source->GetDimensions()[2] == 5);
+    VERIFY_NEAR(
+      Summarize(source->GetOutput()).Volume, 2.0 * 2.0 * 4.0 * std::pow(34.75 / 4.0, 3), 1e-8);
+    source->SetMargin(0.0);
+  }
+  // Rounding adds no cells: thirds of a cube's edge are not exact.
+  source->SetInputData(nullptr);
+  source->SetBounds(0.0, 0.1, 0.1, 0.4, 0.7, 1.0);
+  source->SetNumberOfNodes(2, 4, 4);
+  check.Succeeds();
+  const int nodes[3] = { 2, 4, 4 };
+  VERIFY(std::equal(nodes, nodes + 3, source->GetDimensions()));
+}
+
 void TestAbort()
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
@@ -206,6 +267,7 @@ void TestPieces()
   vtkNew<vtkLatticeTetrahedraSource> source;
   vtkNew<vtkImageData> volume;
   volume->SetDimensions(4, 5, 6);
+  source->EqualSpacingOff();
   for (vtkImageData* input : { static_cast<vtkImageData*>(nullptr), volume.Get() })
   {
     source->SetInputData(input);
@@ -243,6 +305,7 @@ int TestLatticeTetrahedraSource(int, char*[])
   TestMisuse();
   TestBox();
   TestVolume();
+  TestEqualSpacing();
   TestAbort();
   TestPieces();
   TestLarge();

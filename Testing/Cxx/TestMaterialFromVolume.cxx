@@ -53,6 +53,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(vtkImageData* volume, int nodes)
   vtkNew<vtkLatticeTetrahedraSource> lattice;
   lattice->SetInputData(volume);
   lattice->SetNumberOfNodes(nodes, nodes, nodes);
+  lattice->EqualSpacingOff();
   lattice->Update();
   auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
   mesh->DeepCopy(lattice->GetOutput());
@@ -379,6 +380,7 @@ void TestInSimulation()
   vtkNew<vtkLatticeTetrahedraSource> lattice;
   lattice->SetInputData(volume);
   lattice->SetNumberOfNodes(3, 3, 11);
+  lattice->EqualSpacingOff();
   lattice->Update();
   vtkNew<vtkUnstructuredGrid> bar;
   bar->ShallowCopy(lattice->GetOutput());

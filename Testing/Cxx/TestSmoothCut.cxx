@@ -291,6 +291,7 @@ void TestSplitMesh()
   {
     vtkNew<vtkLatticeTetrahedraSource> source;
     source->SetNumberOfNodes(3, 3, 3);
+    source->EqualSpacingOff();
     source->SetBounds(side ? place : -3.0, side ? 14.0 : place, -1, 11, 0, 10);
     source->Update();
     vtkUnstructuredGrid* half = source->GetOutput();

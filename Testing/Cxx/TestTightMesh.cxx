@@ -48,6 +48,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeBody(const std::array<int, 3>& nodes, c
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
   source->SetNumberOfNodes(nodes[0], nodes[1], nodes[2]);
+  source->EqualSpacingOff();
   source->SetBounds(-1.0, 1.0, -1.0, 1.0, -1.0, 1.0);
   source->Update();
   auto body = vtkSmartPointer<vtkUnstructuredGrid>::New();

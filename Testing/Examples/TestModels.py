@@ -70,6 +70,7 @@ fails(2, "--movie requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--
       "--frames", "3")
 fails(1, "there is no folder", "--model", "fem", *lattice, *fix, "--movie",
       path("none/x.png"), "--frames", "3")
+fails(2, "needs the cubes of --lattice", "--model", "mass-spring", "--tetgen", *fix)
 fails(2, "ChainMail has no mesh", "--model", "chainmail", *pull, "--write-mesh", path("m.vtu"))
 
 # The same by the filters.

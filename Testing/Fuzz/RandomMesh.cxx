@@ -129,6 +129,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeVoxelMesh(vtkImageData* volume)
   vtkNew<vtkLatticeTetrahedraSource> source;
   source->SetInputData(volume);
   source->SetNumberOfNodes(volume->GetDimensions());
+  source->EqualSpacingOff();
   source->Update();
   auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
   mesh->ShallowCopy(source->GetOutput());

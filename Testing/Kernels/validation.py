@@ -16,8 +16,8 @@ import tempfile
 
 DOCUMENT = pathlib.Path(__file__).resolve().parents[2] / "Documents" / "physics.md"
 TESTS = {
-    "TestMassSpring": "*PeriodOfASpring:*FreeFall:*StableTimeStepIsTheLimit:*NothingMovesAtRest",
-    "TestMassSpringStatics": "*LatticesAreIsotropic:*OtherMeshesAreCalibrated",
+    "TestMassSpring": "*PeriodOfASpring:*FreeFall:*StableTimeStep:*NothingMovesAtRest",
+    "TestMassSpringStatics": "*LatticesAreIsotropic",
     "TestCorotational": "*Scramble",
     "TestCorotationalBeams": "*",
 }
@@ -49,19 +49,13 @@ def listed(values, names, digits):
 
 def springs(values):
     lattice = values["LatticesAreIsotropic"]
-    others = values["OtherMeshesAreCalibrated"]
     ratios = ("25", "40", "45")
     return table(["Case", "Expected", "Measured"], [
         ["Young modulus of a bar of 8 x 8 x 8 cubes, Poisson ratio 0.25, 0.40, 0.45", "1",
          listed(lattice, [f"E, {ratio}" for ratio in ratios], 3)],
         ["Poisson ratio of the same inside", "0.25, 0.40, 0.45",
          listed(lattice, [f"nu, {ratio}" for ratio in ratios], 3)],
-        ["Longest stable step, by the speed of sound and the edge", "0.94, 0.79, 0.71",
-         listed(lattice, [f"step, {ratio}" for ratio in ratios], 3)],
-        ["10,000 steps of 0.98 and of 1.05 of it", "stable; diverges", "stable; diverges, and says so"],
-        ["Young modulus of calibrated meshes (cubes of six tetrahedra, with nodes moved, cubes of five with nodes "
-         "moved)", "1", f"within {100 * others['E']:.1f} %; springs alone within "
-         f"{100 * others['E, springs alone']:.1f} %"],
+        ["10,000 steps of the stable one and of 1.7 of it", "stable; diverges", "stable; diverges, and says so"],
         ["Forces of a body at rest", "0", "0"],
         ["Period of a node on springs", "2 pi sqrt(m/k)",
          f"within {100 * values['PeriodOfASpring']['period']:.1g} %"],

@@ -115,6 +115,7 @@ def bent_lattice(volume, nodes=6, array="Displacement", function="0.05*coordsY*c
     volume.UpdatePipeline()
     lattice = simple.TetrahedralLatticeOfVolume(Volume=volume)
     lattice.NumberOfNodes = [nodes] * 3
+    lattice.EqualSpacing = False
     bent = simple.Calculator(Input=lattice)
     bent.ResultArrayName = array
     bent.Function = function

@@ -31,6 +31,7 @@ def write_series(image):
     lattice = deformvolume.vtkLatticeTetrahedraSource()
     lattice.SetInputData(image)
     lattice.SetNumberOfNodes(7, 7, 7)
+    lattice.EqualSpacingOff()
     lattice.SetMargin(0.5)
     lattice.Update()
     meshes, entries = [], []

@@ -40,6 +40,7 @@ def plain_mesh(volume, nodes, displace):
     lattice = deformvolume.vtkLatticeTetrahedraSource()
     lattice.SetInputData(volume)
     lattice.SetNumberOfNodes(nodes, nodes, nodes)
+    lattice.EqualSpacingOff()
     lattice.Update()
     mesh = lattice.GetOutput()
     points = numpy_support.vtk_to_numpy(mesh.GetPoints().GetData())

@@ -16,7 +16,7 @@ if servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartitions(
     sys.exit(f"not {ranks} ranks")
 
 volume = simple.XMLImageDataReader(FileName=[volume_file])
-lattice = TetrahedralLattice(NumberOfNodes=[7, 7, 7], Bounds=[-32, 32, -31, 31, -33, 33])
+lattice = TetrahedralLattice(NumberOfNodes=[7, 7, 7], EqualSpacing=False, Bounds=[-32, 32, -31, 31, -33, 33])
 lattice.UpdatePipeline()
 if lattice.GetDataInformation().GetNumberOfCells() != 5 * 6**3:
     sys.exit(f"{ranks} ranks make {lattice.GetDataInformation().GetNumberOfCells()} cells")

@@ -11,6 +11,7 @@ def make_mesh(image, nodes):
     """nodes: on each axis. Their displacements are 0."""
     source = deformvolume.vtkLatticeTetrahedraSource()
     source.SetNumberOfNodes(nodes, nodes, nodes)
+    source.EqualSpacingOff()
     source.SetInputData(image)
     source.Update()
     mesh = source.GetOutput()
