@@ -90,7 +90,9 @@ SessionPipeline::SessionPipeline()
     filter->AddObserver(vtkCommand::WarningEvent, this->WarningObserver);
   }
   this->CutFilter->AccumulateOn();
+  this->CutFilter->SmoothCutOn();
   this->CarveFilter->AccumulateOn();
+  this->CarveFilter->SmoothBoundaryOn();
   this->ChainMail->SetInputConnection(this->CarveFilter->GetOutputPort());
   this->Resampler->SetInputConnection(this->CarveFilter->GetOutputPort());
   // So that the extent is always the same one, and outputs are updated in part.

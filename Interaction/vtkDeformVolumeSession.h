@@ -121,14 +121,17 @@ public:
   int Pin(double x, double y, double z);
 
   /**
-   * Cut along a sheet of triangles. It is copied.
+   * Cut along a sheet of triangles. It is copied. NONE and CHAIN_MAIL divide what the sheet crosses
+   * (SmoothCut of vtkCutVolume), so that nothing is lost and a cut is seen when it opens; the other
+   * models split their mesh along the faces of its tetrahedra.
    */
   void Cut(vtkPolyData* sheet);
 
   ///@{
   /**
    * Carve out a sphere, which begins a stroke, and go on with the stroke: what a sphere sweeps from
-   * its last place. A stroke ends with any event of another kind, and is undone as one.
+   * its last place. The surface passes between the voxels (SmoothBoundary of vtkCarveVolume). A
+   * stroke ends with any event of another kind, and is undone as one.
    */
   void CarveSphere(double x, double y, double z, double radius);
   void CarveTo(double x, double y, double z, double radius);

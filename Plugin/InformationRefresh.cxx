@@ -33,8 +33,8 @@ void ObserveProxy(vtkSMProxy* proxy)
   const std::string made = name ? name : "";
   if ((made == "vtkDeformVolumeFilter" || made == "vtkTetGenMesher" || made == "vtkCutVolume" ||
         made == "vtkCarveVolume" || made == "vtkChainMailDeformation" ||
-        made == "vtkMassSpringDeformation" || made == "vtkCorotationalDeformation" ||
-        made == "vtkMaterialFromVolume") &&
+        made == "vtkLatticeTetrahedraSource" || made == "vtkMassSpringDeformation" ||
+        made == "vtkCorotationalDeformation" || made == "vtkMaterialFromVolume") &&
     !proxy->HasObserver(vtkCommand::UpdateDataEvent, fetch))
   {
     proxy->AddObserver(vtkCommand::UpdateDataEvent, fetch);

@@ -5,6 +5,8 @@
 // Usage: TestDeformVolumeSession [NUMBER OF RANDOM EVENTS] (300) [SEED] (1)
 #include "ChainMailTesting.h"
 
+#include "vtkCarveVolume.h"
+#include "vtkCutVolume.h"
 #include "vtkDeformVolumeSession.h"
 
 #include <vtkPlaneSource.h>
@@ -217,6 +219,50 @@ void TestDrag(vtkImageData* volume)
   VERIFY_EQUAL(one.Object->GetProbedValue(), values->GetComponent(volume->FindPoint(10, 11, 9), 0));
   VERIFY(!one.Object->Probe(-9, 2, 2));
   VERIFY(one.Object->GetSimulationTime() > 0.0 && one.Object->GetResamplingTime() > 0.0);
+}
+
+// Cuts divide tetrahedra, and what is carved out ends between the voxels: as by filters alone.
+void TestSmoothTools(vtkImageData* volume)
+{
+  const auto compare = [](
+                         Tested& one, vtkImageData* output, vtkImageData* edited, vtkDataSet* moved)
+  {
+    Deformed wanted(edited, moved);
+    wanted.Filter->SetOutputBoundsModeToVolumeBounds();
+    wanted.Filter->SetPadding(8);
+    wanted.Filter->SetBackgroundValue(one.Object->GetBackgroundValue());
+    VERIFY(AreEqual(output, wanted.Update()));
+  };
+  const auto sheet = MakePlane({ 8.3, 10.4, 8.6 }, { 0, 40, 2 }, { 1, 0, 40 });
+  Tested cut(volume);
+  cut.Object->ChangeModel(Session::CHAIN_MAIL);
+  cut.Object->Cut(sheet);
+  const int handle = cut.Object->BeginGrab(12, 10, 9);
+  cut.Object->MoveGrab(handle, 15, 10, 9);
+  const auto opened = cut.Step();
+  vtkNew<vtkCutVolume> knife;
+  knife->SetInputData(volume);
+  knife->SetSheetData(sheet);
+  knife->SmoothCutOn();
+  knife->Update();
+  Dragged model(knife->GetOutput());
+  model.Filter->SetRelaxationSweeps(5);
+  model.Update(); // the model was chosen
+  model.Drag({ { { 12, 10, 9 }, { 15, 10, 9 } } });
+  compare(cut, opened, knife->GetOutput(), model.Filter->GetOutput());
+
+  Tested carved(volume);
+  carved.Object->CarveSphere(12, 10, 9, 4.3);
+  const auto hollow = carved.Finish();
+  vtkNew<vtkCarveVolume> carve;
+  carve->SetInputData(volume);
+  carve->SmoothBoundaryOn();
+  carve->SetToolRadius(4.3);
+  carve->AddToolPosition(12, 10, 9);
+  carve->Update();
+  const auto still = MakeMesh(volume, 2, 1.0);
+  SetDisplacements(still, Shift(0.0, 0.0, 0.0));
+  compare(carved, hollow, carve->GetOutput(), still);
 }
 
 // What holds the body, as it is asked for.
@@ -729,6 +775,7 @@ int TestDeformVolumeSession(int argc, char* argv[])
   const auto volume = MakeVolume(Box);
   TestMisuse(volume);
   TestDrag(volume);
+  TestSmoothTools(volume);
   TestHandles(volume, fileName);
   TestRecovery(volume);
   TestTwice(volume);
