@@ -53,12 +53,24 @@ void DeviceMask::Allocate(
     const std::array<int, 2> planes = this->GetPlanes(chunk);
     const std::size_t bytes = plane * static_cast<std::size_t>(planes[1] - planes[0] + 1);
     this->GetBuffer(chunk) = cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY, bytes);
-    queue.enqueueFillBuffer(this->GetBuffer(chunk), usual, 0, bytes);
+    if (this->MaskKind == Kind::BoundaryDistances)
+    {
+      queue.enqueueFillBuffer(this->GetBuffer(chunk), this->Farthest, 0, bytes);
+    }
+    else
+    {
+      queue.enqueueFillBuffer(this->GetBuffer(chunk), usual, 0, bytes);
+    }
   }
   queue.finish();
   if (!context.GetDevice().IsProcessor || chunks.size() > 1)
   {
-    this->Last.assign(plane * static_cast<std::size_t>(this->Size[2]), usual);
+    this->Last.assign(this->CountBytes(), usual);
+    if (this->MaskKind == Kind::BoundaryDistances)
+    {
+      std::fill_n(reinterpret_cast<float*>(this->Last.data()), this->Last.size() / sizeof(float),
+        this->Farthest);
+    }
   }
   this->WithBuffers = true;
 }
@@ -94,6 +106,24 @@ void DeviceMask::Write(const cl::CommandQueue& queue, VolumeChunk& chunk, const 
     const_cast<unsigned char*>(this->Last.data()));
 }
 
+bool DeviceMask::IsAny(const MaskValues& values)
+{
+  if (this->MaskKind != Kind::BoundaryDistances)
+  {
+    return !FindMaskChanges(this->Size, this->MakeValues(nullptr, 0), values).empty();
+  }
+  bool isAny = false;
+  this->Farthest = 0.0F;
+  const auto* distances = reinterpret_cast<const float*>(values.Bytes);
+  const std::size_t count = distances ? this->CountBytes() / sizeof(float) : 0;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    isAny |= distances[i] < 0.0F;
+    this->Farthest = std::max(this->Farthest, distances[i]);
+  }
+  return isAny;
+}
+
 std::vector<Extent> DeviceMask::Set(const OpenCLContext& context, const cl::CommandQueue& queue,
   const std::array<int, 3>& vertices, std::vector<VolumeChunk>& chunks, const unsigned char* next,
   unsigned char bits, const PointRanges* written)
@@ -102,7 +132,13 @@ std::vector<Extent> DeviceMask::Set(const OpenCLContext& context, const cl::Comm
   const int less = this->MaskKind == Kind::ActiveTetrahedra ? 1 : 0;
   const int width = this->GetWidth();
   this->Size = { { width * (vertices[0] - less), vertices[1] - less, vertices[2] - less } };
-  const MaskValues wanted = this->MakeValues(next, bits);
+  std::vector<float> none;
+  if (this->MaskKind == Kind::BoundaryDistances && this->WithBuffers && !next)
+  {
+    none.assign(this->CountBytes() / sizeof(float), this->Farthest);
+  }
+  const MaskValues wanted = this->MakeValues(
+    none.empty() ? next : reinterpret_cast<const unsigned char*>(none.data()), bits);
   std::vector<Extent> changes;
   const auto copy = [&](unsigned char* last)
   {
@@ -129,8 +165,7 @@ std::vector<Extent> DeviceMask::Set(const OpenCLContext& context, const cl::Comm
   const PointRanges* news = this->WithBuffers && next && written ? &bytes : nullptr;
   if (!this->WithBuffers)
   {
-    changes = FindMaskChanges(this->Size, this->MakeValues(nullptr, 0), wanted);
-    if (changes.empty())
+    if (!this->IsAny(wanted))
     {
       return changes;
     }

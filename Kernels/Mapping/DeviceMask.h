@@ -8,6 +8,7 @@
 #include "VolumeChunk.h"
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace deformvolume
@@ -23,7 +24,7 @@ public:
   {
     BlankedVertices,
     ActiveTetrahedra,
-    BoundaryDistances // a float a vertex, 0 as usual
+    BoundaryDistances // a float a vertex
   };
 
   explicit DeviceMask(Kind kind)
@@ -47,7 +48,14 @@ private:
   cl::Buffer& GetBuffer(VolumeChunk& chunk) const;
   /// Bytes of a vertex or a cell.
   int GetWidth() const;
+  std::size_t CountBytes() const
+  {
+    return static_cast<std::size_t>(this->Size[0]) * static_cast<std::size_t>(this->Size[1]) *
+      static_cast<std::size_t>(this->Size[2]);
+  }
   MaskValues MakeValues(const unsigned char* bytes, unsigned char bits) const;
+  /// Whether something of a mask is not as usual. Notes the farthest of distances.
+  bool IsAny(const MaskValues& values);
   /// First and last plane of a chunk in the mask.
   std::array<int, 2> GetPlanes(const VolumeChunk& chunk) const;
   void Allocate(
@@ -58,6 +66,7 @@ private:
   Kind MaskKind;
   std::array<int, 3> Size{ { 0, 0, 0 } }; // on x in bytes
   bool WithBuffers = false;
+  float Farthest = 0.0F; // the distance where there are none: it changes least when there are some
   std::vector<unsigned char> Last; // what the device has, where the host cannot look into that
 };
 
