@@ -15,12 +15,12 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-commands=("bash Examples/run.sh" "bash Testing/run.sh")
+commands=("bash Examples/run.sh" "bash Testing/run.sh --all")
 keep=0
 while [[ "${1-}" == --* ]]; do
   case $1 in
     --keep) keep=1 ;;
-    --quick) commands=("bash Testing/run.sh --quick vtk") ;;
+    --quick) commands=("bash Testing/run.sh") ;;
     *)
       echo "platforms.sh: unknown option $1" >&2
       exit 2

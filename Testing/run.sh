@@ -1,23 +1,31 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what is missing, builds against VTK, against ParaView's VTK and with the sanitizers, and
-# runs all tests of each. From a pristine Debian 12 as root; afterwards without a network and
-# without rights.
+# Installs what is missing, builds against VTK, and runs the quick tests. From a pristine Debian 12
+# as root; afterwards without a network and without rights.
 #
-# Usage: run.sh [--quick] [PRESET]...    (default: vtk paraview asan)
-#   --quick leaves out the tests that take long
+# Usage: run.sh [--all] [PRESET]...
+#   --all   runs all tests, and without PRESET those of vtk, paraview (the plugin) and asan (the
+#           engine with the sanitizers)
+#   PRESET  of CMakePresets.json, in place of vtk
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-tests=()
-if [ "${1-}" = --quick ]; then
-  tests=(--label-regex quick)
+all=no
+tests=(--label-regex quick)
+if [ "${1-}" = --all ]; then
+  all=yes
+  tests=()
   shift
 fi
 presets=("$@")
-[ ${#presets[@]} -gt 0 ] || presets=(vtk paraview asan)
+if [ ${#presets[@]} -eq 0 ]; then
+  presets=(vtk)
+  [ $all = no ] || presets=(vtk paraview asan)
+fi
 
-bash Testing/packages.sh library example test paraview
+packages=(library example test)
+case " ${presets[*]} " in *" paraview"*) packages+=(paraview) ;; esac
+bash Testing/packages.sh "${packages[@]}"
 
 # Kernels run on all processors already; more than a few tests at once only wait for each other.
 jobs=$(nproc)

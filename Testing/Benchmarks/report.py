@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes a report in Markdown, with plots, of what the benchmark programs wrote: report.py FOLDER [DOCUMENT].
 FOLDER holds a folder of JSON files for each device; report.md and the plots are written to it. With
-DOCUMENT the report is of the GPUs only and is written to that file, its plots to images/ beside it."""
+DOCUMENT the report is of the GPUs only and is written to that file, its plots to images/ beside it. Fails where a demand is not met."""
 import pathlib
 import sys
 
@@ -95,9 +95,11 @@ def main(folder, document=None):
     text = "\n".join(report(devices, pictures, title, manual))
     document.write_text(text, encoding="utf-8")
     print(text)
+    return text
 
 
 if __name__ == "__main__":
     if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
-    main(*map(pathlib.Path, sys.argv[1:]))
+    if "| **not met** |" in main(*map(pathlib.Path, sys.argv[1:])):
+        sys.exit("report.py: a demand is not met")

@@ -95,6 +95,9 @@ void TestBackends()
     }
     std::cout << "backend " << backend << '\n';
     TestRange();
+    const std::size_t most = std::string(backend) == "Sequential" ? 1 : 2;
+    vtkSMPTools::Initialize(static_cast<int>(most));
+    VERIFY_EQUAL(CountThreads(64), most);
     VERIFY(IsCarried<std::runtime_error>());
     VERIFY(IsCarried<NoMemory>());
     VERIFY_EQUAL(std::string(vtkSMPTools::GetBackend()), std::string(backend));

@@ -101,9 +101,10 @@ std::string Pipeline::CheckOutput(const Outcome& tested, const Outcome& fresh, b
   if (wrong.empty() && this->Geometry == fuzz::Geometry::Exact && !this->Rest &&
     fresh.Resampler == vtkDeformVolumeFilter::EXACT && fresh.Output->GetNumberOfPoints() > 0)
   {
-    ++this->References;
-    wrong = CompareWithReference(fresh.Output, this->Volume,
+    const std::optional<std::string> found = CompareWithReference(fresh.Output, this->Volume,
       vtkDataSet::SafeDownCast(this->Deformation), this->Settings, fresh.Inverted);
+    this->References += found.has_value();
+    wrong = found.value_or("");
   }
   return wrong;
 }

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <type_traits>
@@ -259,12 +260,12 @@ std::string CompareArrays(const reference::Result& result, vtkImageData* output,
 
 } // namespace
 
-std::string CompareWithReference(vtkImageData* output, vtkImageData* volume,
+std::optional<std::string> CompareWithReference(vtkImageData* output, vtkImageData* volume,
   vtkDataSet* deformation, const Settings& settings, vtkIdType inverted)
 {
   if (volume->GetNumberOfPoints() > LARGEST_VOLUME || output->GetNumberOfPoints() > LARGEST_OUTPUT)
   {
-    return "";
+    return std::nullopt;
   }
   reference::SamplingMesh mesh;
   reference::Box box;
@@ -272,7 +273,7 @@ std::string CompareWithReference(vtkImageData* output, vtkImageData* volume,
   output->GetExtent(box.data());
   if (!FindPositions(output, volume, deformation, settings.DisplacementScale, mesh))
   {
-    return "";
+    return std::nullopt;
   }
   FindMasks(volume, mesh);
   reference::Result result;
@@ -282,7 +283,7 @@ std::string CompareWithReference(vtkImageData* output, vtkImageData* volume,
   }
   catch (const std::range_error&)
   {
-    return "";
+    return std::nullopt;
   }
   if (result.NumberOfInvertedTetrahedra != inverted)
   {

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# VTK or ParaView, and the Python that it is wrapped for.
+
+# Components are named throughout: without them, VTK and ParaView ask for the development files of
+# all their modules, Qt included.
+set(deformvolume_vtk_components
+  CommonCore
+  CommonDataModel
+  CommonExecutionModel
+  CommonMath
+  CommonSystem
+  FiltersCore
+  FiltersGeneral
+  FiltersGeometry
+  FiltersModeling
+  ImagingCore
+  ParallelCore
+  vtksys)
+if (NOT DEFORMVOLUME_USE_PARAVIEW)
+  # Of the module in Interaction.
+  list(APPEND deformvolume_vtk_components InteractionStyle IOXML IOXMLParser RenderingCore)
+endif ()
+# Those that an installed DeformVolume needs.
+set(deformvolume_package_components ${deformvolume_vtk_components})
+if (DEFORMVOLUME_WRAP_PYTHON)
+  # Another python3 that comes first on PATH would not know the modules of the system's VTK.
+  if (NOT Python3_EXECUTABLE AND EXISTS "/usr/bin/python3")
+    set(Python3_EXECUTABLE "/usr/bin/python3" CACHE FILEPATH "The Python that VTK is wrapped for")
+  endif ()
+  find_package(Python3 REQUIRED COMPONENTS Interpreter Development.Module)
+  list(APPEND deformvolume_vtk_components Python WrappingPythonCore WrappingTools)
+endif ()
+if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
+  list(APPEND deformvolume_vtk_components
+    FiltersSources
+    ImagingGeneral
+    ImagingMath
+    ImagingSources
+    InteractionStyle
+    IOImage
+    IOMovie
+    IOXML
+    RenderingContextOpenGL2
+    RenderingCore
+    RenderingFreeType
+    RenderingOpenGL2
+    RenderingVolume
+    RenderingVolumeOpenGL2
+    zlib)
+  if (NOT DEFORMVOLUME_USE_PARAVIEW)
+    list(APPEND deformvolume_vtk_components RenderingImage) # of deform-interactive
+  endif ()
+endif ()
+if (BUILD_TESTING)
+  list(APPEND deformvolume_vtk_components
+    FiltersHybrid IOExodus IOGeometry TestingCore TestingRendering)
+endif ()
+
+# VTK 9.6's own functions pass empty arguments on, of which CMake 3.31 and later warn.
+set(CMAKE_POLICY_DEFAULT_CMP0174 OLD)
+
+if (DEFORMVOLUME_USE_PARAVIEW)
+  find_package(ParaView 5.11 REQUIRED COMPONENTS RemotingCore RemotingServerManager)
+endif ()
+set(deformvolume_optional_vtk_components "")
+if (NOT DEFORMVOLUME_USE_PARAVIEW AND NOT RenderingVolumeOpenGL2 IN_LIST deformvolume_vtk_components)
+  # Of the module in Rendering.
+  list(APPEND deformvolume_optional_vtk_components RenderingOpenGL2 RenderingVolumeOpenGL2)
+endif ()
+if (DEFORMVOLUME_BUILD_EXAMPLES)
+  # ParaView's VTK has no ImagingMorphological.
+  list(APPEND deformvolume_optional_vtk_components ImagingMorphological IOOggTheora)
+endif ()
+if (BUILD_TESTING AND NOT DEFORMVOLUME_SANITIZE)
+  list(APPEND deformvolume_optional_vtk_components ParallelMPI)
+endif ()
+if (deformvolume_optional_vtk_components)
+  list(PREPEND deformvolume_optional_vtk_components OPTIONAL_COMPONENTS)
+endif ()
+find_package(VTK 9.1 REQUIRED
+  COMPONENTS ${deformvolume_vtk_components}
+  ${deformvolume_optional_vtk_components})
+
+if (NOT DEFORMVOLUME_USE_PARAVIEW AND TARGET VTK::RenderingVolumeOpenGL2)
+  list(APPEND deformvolume_package_components RenderingOpenGL2 RenderingVolumeOpenGL2)
+endif ()

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one check of time: an update of vtkDeformVolumeFilter beside vtkImageReslice with an affine
+// transform, which fills the same output, in turns. The best of ten of each, so that other work on
+// the machine matters little.
+#include "BenchmarkCase.h"
+#include "Peers.h"
+
+#include <vtkImageData.h>
+
+#include <CL/cl.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <limits>
+#include <vector>
+
+namespace
+{
+
+// Floats in a register of the processor that OpenCL works on; 0: there is none.
+unsigned int FindLanes()
+{
+  cl_uint count = 0;
+  clGetPlatformIDs(0, nullptr, &count);
+  std::vector<cl_platform_id> platforms(count);
+  clGetPlatformIDs(count, platforms.data(), nullptr);
+  for (const cl_platform_id platform : platforms)
+  {
+    cl_device_id device;
+    cl_uint width = 0;
+    if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_CPU, 1, &device, nullptr) == CL_SUCCESS &&
+      clGetDeviceInfo(
+        device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof(width), &width, nullptr) == CL_SUCCESS)
+    {
+      return width;
+    }
+  }
+  return 0;
+}
+
+// The ratio as measured with VTK 9.1 on two cores with so many lanes; 0: nobody has.
+double GetMeasuredRatio(unsigned int lanes)
+{
+  return lanes == 16 ? 0.47 : 0.0;
+}
+
+} // namespace
+
+int main()
+{
+  constexpr int rounds = 10;
+  constexpr double slack = 1.5;
+  try
+  {
+    const auto volume = MakeVolume(BenchmarkVolume);
+    BenchmarkCase deform(volume, CoarseNodes);
+    deform.GetFilter()->SetDevice("cpu");
+    const auto reslice = MakeAffineReslice(volume);
+    double deformed = std::numeric_limits<double>::infinity();
+    double resliced = deformed;
+    // The first round compiles kernels and finds the static mapping.
+    for (int round = 0; round <= rounds; ++round)
+    {
+      deform.Move(Pose::NearIdentity);
+      const double update = deform.Update().Update;
+      const double peer = reslice->Update(
+        Pose::General, deform.GetStep(), deform.GetFilter()->GetOutput()->GetExtent());
+      deformed = round > 0 ? std::min(deformed, update) : deformed;
+      resliced = round > 0 ? std::min(resliced, peer) : resliced;
+    }
+    const double ratio = deformed / resliced;
+    const unsigned int lanes = FindLanes();
+    const double measured = GetMeasuredRatio(lanes);
+    std::cout << "an update by vtkImageReslice: " << ratio << " with " << lanes << " lanes";
+    if (measured == 0.0)
+    {
+      std::cout << ", for which there is no number to compare with\n";
+      return EXIT_SUCCESS;
+    }
+    std::cout << ", at most " << slack * measured << "\n";
+    return ratio <= slack * measured ? EXIT_SUCCESS : EXIT_FAILURE;
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << error.what() << "\n";
+    return EXIT_FAILURE;
+  }
+}

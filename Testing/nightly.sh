@@ -1,0 +1,38 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
+# What takes too long for each change: all tests of the VTK classes against ParaView's VTK and with
+# the sanitizers, those with Oclgrind that take minutes, random pipelines with new seeds, all
+# mutations, and the README's commands on other Debian systems. Takes hours; logs are in build.
+#
+# Usage: nightly.sh [--seconds SECONDS]
+#   --seconds  how long random pipelines run, 3600 by default
+# Fails where one of them does, after all of them.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+seconds=3600
+if [ "${1-}" = --seconds ]; then
+  seconds=$2
+fi
+
+failed=()
+run() # a name, and a command
+{
+  echo "== $1"
+  "${@:2}" || failed+=("$1")
+}
+
+run "all tests" bash Testing/run.sh --all vtk paraview-all asan-all
+cmake --preset vtk -DDEFORMVOLUME_LONG_TESTS=ON >/dev/null
+run "long tests" ctest --preset vtk -R Oclgrind
+cmake --preset vtk -DDEFORMVOLUME_LONG_TESTS=OFF >/dev/null
+seed=$(date +%s)
+run "random pipelines from seed $seed" build/vtk/bin/DeformVolumeFuzz --seed "$seed" \
+  --seconds "$seconds" --keep-going
+run "mutations" python3 Testing/mutations.py
+run "platforms" bash Testing/platforms.sh
+
+if [ ${#failed[@]} -gt 0 ]; then
+  printf 'failed: %s\n' "${failed[@]}"
+  exit 1
+fi
