@@ -15,7 +15,7 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::int64_t UNLIMITED = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t NoLimit = std::numeric_limits<std::int64_t>::max();
 
 // The names of a version's files and of what can be reclaimed.
 struct Names
@@ -29,14 +29,14 @@ struct Names
 // not limit: its use is then no matter, and it takes the system time to find that.
 std::int64_t GetLeft(const std::string& folder, const Names& names, std::int64_t all)
 {
-  std::int64_t limit = UNLIMITED;
+  std::int64_t limit = NoLimit;
   for (const char* name : names.Limits)
   {
-    limit = std::min(limit, ReadNumber(folder + "/" + name).value_or(UNLIMITED));
+    limit = std::min(limit, ReadNumber(folder + "/" + name).value_or(NoLimit));
   }
   if (limit >= all)
   {
-    return UNLIMITED;
+    return NoLimit;
   }
   const std::int64_t usage = ReadNumber(folder + "/" + names.Usage).value_or(0);
   const std::int64_t reclaimable = ReadSum(folder + "/memory.stat", names.Reclaimable).value_or(0);
@@ -48,7 +48,7 @@ std::int64_t GetLeft(const std::string& folder, const Names& names, std::int64_t
 std::uint64_t GetSystemMemory(const std::string& root)
 {
   constexpr std::int64_t kibibyte = 1024;
-  std::int64_t left = UNLIMITED;
+  std::int64_t left = NoLimit;
   const std::string system = root + "/proc/meminfo";
   if (const auto available = ReadSum(system, { "MemAvailable:" }))
   {
@@ -57,7 +57,7 @@ std::uint64_t GetSystemMemory(const std::string& root)
   // The first line; it stays, but for tests.
   static const auto ownTotal = ReadSum("/proc/meminfo", { "MemTotal:" });
   const auto total = root.empty() ? ownTotal : ReadSum(system, { "MemTotal:" });
-  const std::int64_t all = total ? *total * kibibyte : UNLIMITED;
+  const std::int64_t all = total ? *total * kibibyte : NoLimit;
   // A process seldom changes its groups, and this is asked for at each update.
   static const ControlGroups ownGroups = FindControlGroups("memory");
   const ControlGroups groups = root.empty() ? ownGroups : FindControlGroups("memory", root);
@@ -74,7 +74,7 @@ std::uint64_t GetSystemMemory(const std::string& root)
   {
     left = std::min(left, GetLeft(folder, legacy, all));
   }
-  return left == UNLIMITED ? 0 : static_cast<std::uint64_t>(std::max<std::int64_t>(1, left));
+  return left == NoLimit ? 0 : static_cast<std::uint64_t>(std::max<std::int64_t>(1, left));
 }
 
 } // namespace deformvolume

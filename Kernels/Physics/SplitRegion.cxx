@@ -13,7 +13,7 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::size_t TetrahedraOfPart = 16384;
+constexpr std::size_t TetrahedraAtOnce = 16384;
 
 SnappedPoint Round(const glm::dvec3& point)
 {
@@ -48,12 +48,12 @@ SnappedBox GetReach(
 template <typename Start>
 std::vector<std::size_t> Choose(std::size_t count, Start&& start)
 {
-  std::vector<std::vector<std::size_t>> parts((count + TetrahedraOfPart - 1) / TetrahedraOfPart);
-  ParallelForParts(count, TetrahedraOfPart,
+  std::vector<std::vector<std::size_t>> parts((count + TetrahedraAtOnce - 1) / TetrahedraAtOnce);
+  ParallelForParts(count, TetrahedraAtOnce,
     [&](std::size_t begin, std::size_t end)
     {
       auto isChosen = start();
-      std::vector<std::size_t>& chosen = parts[begin / TetrahedraOfPart];
+      std::vector<std::size_t>& chosen = parts[begin / TetrahedraAtOnce];
       for (std::size_t t = begin; t < end; ++t)
       {
         if (isChosen(t))
@@ -117,7 +117,7 @@ SplitRegion::SplitRegion(const std::vector<glm::dvec3>& positions,
     }
   }
   this->Centroids.resize(this->Numbers.size());
-  ParallelForParts(this->Numbers.size(), TetrahedraOfPart,
+  ParallelForParts(this->Numbers.size(), TetrahedraAtOnce,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t t = begin; t < end; ++t)

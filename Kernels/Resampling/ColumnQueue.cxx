@@ -22,7 +22,7 @@ constexpr std::uint64_t PartOfMemory = 64;
 // A launch of what is in the list, whose length the host does not know.
 constexpr std::size_t GroupsPerUnit = 16;
 // Work-items of a group that have places in its local memory: see ResampleQueued.
-constexpr std::size_t LargestGroup =
+constexpr std::size_t LargestQueueGroup =
   std::size_t{ DEFORMVOLUME_COLUMN / 2 } * ((DEFORMVOLUME_BRICK_Y / 2 + 1) / 2);
 
 /// For launches of so many bricks.
@@ -71,7 +71,7 @@ void ColumnQueue::Clear()
 
 std::size_t ColumnQueue::GetGroup(const cl::Kernel& kernel)
 {
-  return std::min(this->Device.GetBusyGroupSize(kernel), LargestGroup);
+  return std::min(this->Device.GetBusyGroupSize(kernel), LargestQueueGroup);
 }
 
 std::size_t ColumnQueue::GetItems(std::size_t group)
