@@ -43,7 +43,7 @@ if (DEFORMVOLUME_WRAP_PYTHON)
   vtk_module_wrap_python(
     MODULES ${deformvolume_modules}
     TARGET DeformVolume::PythonModule
-    PYTHON_PACKAGE deformvolume
+    PYTHON_PACKAGE deformvolume_vtk
     MODULE_DESTINATION "${DEFORMVOLUME_PYTHON_DIRECTORY}"
     LIBRARY_DESTINATION "${CMAKE_INSTALL_LIBDIR}"
     CMAKE_DESTINATION "${deformvolume_package_directory}"
@@ -66,12 +66,12 @@ def __getattr__(name):
 ")
   endif ()
   set(deformvolume_python_package
-    "${CMAKE_BINARY_DIR}/${DEFORMVOLUME_PYTHON_DIRECTORY}/deformvolume/__init__.py")
+    "${CMAKE_BINARY_DIR}/${DEFORMVOLUME_PYTHON_DIRECTORY}/deformvolume_vtk/__init__.py")
   configure_file(
     "${CMAKE_CURRENT_SOURCE_DIR}/Python/__init__.py.in" "${deformvolume_python_package}" @ONLY)
   install(
     FILES "${deformvolume_python_package}"
-    DESTINATION "${DEFORMVOLUME_PYTHON_DIRECTORY}/deformvolume")
+    DESTINATION "${DEFORMVOLUME_PYTHON_DIRECTORY}/deformvolume_vtk")
 endif ()
 
 include(CMakePackageConfigHelpers)

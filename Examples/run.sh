@@ -19,7 +19,8 @@ cd "$(dirname "$0")/.."
 bash Testing/packages.sh library example
 # What only tests need is not asked for. A build directory that is there is taken as it is.
 [ -f build/vtk/build.ninja ] || cmake --preset vtk -DBUILD_TESTING=OFF
-cmake --build --preset vtk --target deform-volume cut-and-pull squished-head deform-interactive
+cmake --build --preset vtk --target deform-volume cut-and-pull squished-head deform-interactive \
+  vtkDeformVolumePython vtkDeformVolumeInteractionPython
 
 templates=/usr/share/mricron/templates
 mkdir -p build/demo/kernel-cache

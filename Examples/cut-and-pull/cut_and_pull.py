@@ -5,7 +5,7 @@ pixels (700) side by side. Made for ch2better.nii.gz of the package mricron-data
 import math
 import sys
 
-import deformvolume
+import deformvolume_vtk
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (what draws)
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkPoints
@@ -98,7 +98,7 @@ def make_actor(surface):
 
 
 def deform(volume, field, scale):
-    deformed = deformvolume.vtkDeformVolumeFilter()
+    deformed = deformvolume_vtk.vtkDeformVolumeFilter()
     deformed.SetInputConnection(volume.GetOutputPort())
     deformed.SetDeformationConnection(field.GetOutputPort())
     deformed.SetInputArrayToProcess(0, 1, 0, 0, "Displacement")
@@ -113,10 +113,10 @@ size = int(sys.argv[3]) if len(sys.argv) > 3 else 700
 reader = vtkNIFTIImageReader()
 reader.SetFileName(sys.argv[1])
 sheet = make_sheet()
-cut = deformvolume.vtkCutVolume()
+cut = deformvolume_vtk.vtkCutVolume()
 cut.SetInputConnection(reader.GetOutputPort())
 cut.SetSheetConnection(sheet.GetOutputPort())
-chain_mail = deformvolume.vtkChainMailDeformation()
+chain_mail = deformvolume_vtk.vtkChainMailDeformation()
 chain_mail.SetInputConnection(cut.GetOutputPort())
 chain_mail.SetHandlesData(make_hooks())
 chain_mail.SetHandleRadius(3.0)

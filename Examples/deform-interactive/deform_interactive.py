@@ -4,7 +4,7 @@ Press 2 for ChainMail, g to grab, and h for all keys. With EVENTS.log, which vtk
 has recorded, these events are replayed, and the session is saved."""
 import sys
 
-import deformvolume
+import deformvolume_vtk
 import vtkmodules.vtkRenderingFreeType  # noqa: F401 (draws texts)
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401 (draws volumes)
 from vtkmodules import vtkIOImage, vtkRenderingCore, vtkRenderingVolume
@@ -26,9 +26,9 @@ window.AddRenderer(renderer)
 interactor = vtkRenderingCore.vtkRenderWindowInteractor()
 interactor.SetRenderWindow(window)
 
-session = deformvolume.vtkDeformVolumeSession()
+session = deformvolume_vtk.vtkDeformVolumeSession()
 session.SetInputs(reader.GetOutput())
-style = deformvolume.vtkDeformVolumeInteractorStyle()
+style = deformvolume_vtk.vtkDeformVolumeInteractorStyle()
 style.SetSession(session)
 style.SetVolume(volume)
 interactor.SetInteractorStyle(style)

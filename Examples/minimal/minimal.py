@@ -3,7 +3,7 @@
 bends the volume along x by a sine of z with an amplitude of a tenth of its height."""
 import sys
 
-import deformvolume
+import deformvolume_vtk
 from vtkmodules.vtkFiltersCore import vtkArrayCalculator
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
 
@@ -13,7 +13,7 @@ if len(sys.argv) != 3:
 reader = vtkXMLImageDataReader()
 reader.SetFileName(sys.argv[1])
 
-mesh = deformvolume.vtkLatticeTetrahedraSource()
+mesh = deformvolume_vtk.vtkLatticeTetrahedraSource()
 mesh.SetInputConnection(reader.GetOutputPort())
 mesh.SetNumberOfNodes(20, 20, 20)
 
@@ -26,7 +26,7 @@ displacement.AddCoordinateScalarVariable("z", 2)
 displacement.SetFunction(f"0.1 * {height} * sin(6.2832 * z / {height}) * iHat")
 displacement.SetResultArrayName("Displacement")
 
-deform = deformvolume.vtkDeformVolumeFilter()
+deform = deformvolume_vtk.vtkDeformVolumeFilter()
 deform.SetInputConnection(reader.GetOutputPort())
 deform.SetDeformationConnection(displacement.GetOutputPort())
 deform.SetInputArrayToProcess(0, 1, 0, 0, "Displacement")

@@ -66,7 +66,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(vtkAlgorithmOutput* volume)
   material->SetInputConnection(lattice->GetOutputPort());
   material->SetVolumeConnection(brighter->GetOutputPort());
   material->ClearMaterials();
-  material->SetMaterial(AIR, 100.0, 0.0, airDensity); // in Pa and kg/m^3
+  material->SetMaterial(AIR, 100.0, 0.25, airDensity); // in Pa and kg/m^3
   material->SetMaterial(SOFT, 1e4, 0.3, 1000.0);
   material->SetMaterial(BONE, 1e6, 0.3, 1900.0);
   material->AddMaterialRange(0.0, 1.0, AIR);

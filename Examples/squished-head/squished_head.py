@@ -6,7 +6,7 @@ shows them. Made for ch2.nii.gz of the package mricron-data, in mm from the firs
 right, y to the front, z upwards."""
 import sys
 
-import deformvolume
+import deformvolume_vtk
 import numpy
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (what draws)
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
@@ -36,7 +36,7 @@ AIR_DENSITY = 100.0
 def make_mesh(volume):
     """Cubes of 9 mm, each of five tetrahedra, as stiff as the voxels in them. Tetrahedra of air
     alone are left out, and a speck of noise in a corner."""
-    lattice = deformvolume.vtkLatticeTetrahedraSource()
+    lattice = deformvolume_vtk.vtkLatticeTetrahedraSource()
     lattice.SetInputConnection(volume)
     lattice.SetNumberOfNodes(21, 25, 21)
     # Bone is as dark as the outermost voxels of the skin, but thicker: these get the value of a
@@ -44,11 +44,11 @@ def make_mesh(volume):
     brighter = vtkImageContinuousDilate3D()
     brighter.SetInputConnection(volume)
     brighter.SetKernelSize(3, 3, 3)
-    material = deformvolume.vtkMaterialFromVolume()
+    material = deformvolume_vtk.vtkMaterialFromVolume()
     material.SetInputConnection(lattice.GetOutputPort())
     material.SetVolumeConnection(brighter.GetOutputPort())
     material.ClearMaterials()
-    material.SetMaterial(AIR, 100.0, 0.0, AIR_DENSITY)  # in Pa and kg/m^3
+    material.SetMaterial(AIR, 100.0, 0.25, AIR_DENSITY)  # in Pa and kg/m^3
     material.SetMaterial(SOFT, 1e4, 0.3, 1000.0)
     material.SetMaterial(BONE, 1e6, 0.3, 1900.0)
     material.AddMaterialRange(0.0, 1.0, AIR)
@@ -86,7 +86,7 @@ def hold(body, mesh):
 
 
 def deform(volume, body, scale):
-    deformed = deformvolume.vtkDeformVolumeFilter()
+    deformed = deformvolume_vtk.vtkDeformVolumeFilter()
     deformed.SetInputConnection(volume)
     deformed.SetDeformationConnection(body.GetOutputPort())
     deformed.SetInputArrayToProcess(0, 1, 0, 0, "Displacement")
@@ -139,16 +139,16 @@ size = int(sys.argv[3]) if len(sys.argv) > 3 else 700
 reader = vtkNIFTIImageReader()
 reader.SetFileName(sys.argv[1])
 mesh = make_mesh(reader.GetOutputPort())
-elements = deformvolume.vtkCorotationalDeformation()
+elements = deformvolume_vtk.vtkCorotationalDeformation()
 hold(elements, mesh)
 elements.SetModeToConverged()
-hook = deformvolume.vtkDeformationHandleSource()
+hook = deformvolume_vtk.vtkDeformationHandleSource()
 move_hook(hook, 1.0)
 elements.SetHandlesConnection(hook.GetOutputPort())
 elements.Update()
-springs = deformvolume.vtkMassSpringDeformation()
+springs = deformvolume_vtk.vtkMassSpringDeformation()
 hold(springs, mesh)
-slow_hook = deformvolume.vtkDeformationHandleSource()
+slow_hook = deformvolume_vtk.vtkDeformationHandleSource()
 springs.SetHandlesConnection(slow_hook.GetOutputPort())
 for frame in range(1, FRAMES + 1):
     # The hook arrives when half of the time is over.

@@ -3,13 +3,13 @@
 import os
 import sys
 
-import deformvolume
+import deformvolume_vtk
 
 prefix = os.path.realpath(sys.argv[1])
-assert os.path.realpath(deformvolume.__file__).startswith(prefix), deformvolume.__file__
-if hasattr(deformvolume, "vtkDeviceVolumeMapper"):  # not where VTK is ParaView's
-    assert not deformvolume.vtkDeviceVolumeMapper().GetLoadedOnDevice()
-devices = deformvolume.vtkDeformVolumeFilter.GetDeviceNames()
+assert os.path.realpath(deformvolume_vtk.__file__).startswith(prefix), deformvolume_vtk.__file__
+if hasattr(deformvolume_vtk, "vtkDeviceVolumeMapper"):  # not where VTK is ParaView's
+    assert not deformvolume_vtk.vtkDeviceVolumeMapper().GetLoadedOnDevice()
+devices = deformvolume_vtk.vtkDeformVolumeFilter.GetDeviceNames()
 assert devices.GetNumberOfValues() > 0
 with open("/proc/self/maps", encoding="utf-8") as maps:
     libraries = {line.split()[-1] for line in maps if "libvtkDeformVolume" in line}

@@ -7,7 +7,7 @@ import os
 import re
 import sys
 
-import deformvolume
+import deformvolume_vtk
 import numpy
 from Baselines import read_picture
 from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
@@ -80,7 +80,7 @@ events.keys("m").stroke(middle).stroke((90, 95)).keys("d").wait(1).keys("d").wai
 events.turn(middle, (120, 100)).keys("fff,oabc" + chr(27) + "hh").wait(1)
 events.keys("s" + 60 * chr(8) + path("saved.xml") + "\r").wait(1).write(path("all.log"))
 made = replay("all")
-session = deformvolume.vtkDeformVolumeSession()
+session = deformvolume_vtk.vtkDeformVolumeSession()
 assert session.SetInputs(read_vti(path("ball.vti")))
 assert session.LoadSession(path("all.xml"))
 assert session.SaveVolume(path("loaded.vti"))

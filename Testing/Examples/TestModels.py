@@ -4,7 +4,7 @@ wrong with its options. Usage: TestModels.py PROGRAM FOLDER"""
 import os
 import sys
 
-import deformvolume
+import deformvolume_vtk
 import numpy
 from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -74,7 +74,7 @@ fails(2, "needs the cubes of --lattice", "--model", "mass-spring", "--tetgen", *
 fails(2, "ChainMail has no mesh", "--model", "chainmail", *pull, "--write-mesh", path("m.vtu"))
 
 # The same by the filters.
-source = deformvolume.vtkLatticeTetrahedraSource()
+source = deformvolume_vtk.vtkLatticeTetrahedraSource()
 source.SetInputData(volume)
 source.SetNumberOfNodes(7, 7, 7)
 source.Update()
@@ -108,7 +108,7 @@ def check(name, model, words, *arguments):
         model.Update()
     else:
         model.UpdateTimeStep(0.1)
-    deform = deformvolume.vtkDeformVolumeFilter()
+    deform = deformvolume_vtk.vtkDeformVolumeFilter()
     deform.SetInputData(volume)
     deform.SetDeformationData(model.GetOutput())
     deform.Update()
@@ -134,20 +134,20 @@ def check_materials_and_cut():
     writer.Write()
     low, high = volume.GetPointData().GetScalars().GetRange()
     limit = 0.5 * (low + high)
-    materials = deformvolume.vtkMaterialFromVolume()
+    materials = deformvolume_vtk.vtkMaterialFromVolume()
     materials.SetInputData(mesh)
     materials.SetVolumeData(volume)
     materials.SetMaterial(0, 2e4, 0.2, 900)
     materials.SetMaterial(1, 5000, 0.4, 1000)
     materials.AddMaterialRange(limit, 1e9, 0)
-    model = deformvolume.vtkCorotationalDeformation()
+    model = deformvolume_vtk.vtkCorotationalDeformation()
     model.SetInputConnection(materials.GetOutputPort())
     model.SetModeToConverged()
     model.SetHandlesData(handles)
     model.SetHandleRadius(numbers[6])
     model.SetLengthUnitToMillimetre()
     model.SetSheetConnection(plane.GetOutputPort())
-    deform = deformvolume.vtkDeformVolumeFilter()
+    deform = deformvolume_vtk.vtkDeformVolumeFilter()
     deform.SetInputData(volume)
     deform.SetDeformationConnection(model.GetOutputPort())
     deform.OpenSplitsOn()
@@ -162,6 +162,6 @@ def check_materials_and_cut():
 
 
 check_materials_and_cut()
-check("fem", deformvolume.vtkCorotationalDeformation(), "to equilibrium, strain energy")
-check("mass-spring", deformvolume.vtkMassSpringDeformation(), "0.1 s, in steps of", "--duration",
+check("fem", deformvolume_vtk.vtkCorotationalDeformation(), "to equilibrium, strain energy")
+check("mass-spring", deformvolume_vtk.vtkMassSpringDeformation(), "0.1 s, in steps of", "--duration",
       "0.1")

@@ -4,7 +4,7 @@ Usage: TestTools.py PROGRAM FOLDER"""
 import os
 import sys
 
-import deformvolume
+import deformvolume_vtk
 import numpy
 from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
 from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -85,7 +85,7 @@ def deform(image, field=None):
         zeros = numpy_to_vtk(numpy.zeros((8, 3), numpy.float32), deep=True)
         zeros.SetName("Displacement")
         field.GetPointData().AddArray(zeros)
-    result = deformvolume.vtkDeformVolumeFilter()
+    result = deformvolume_vtk.vtkDeformVolumeFilter()
     result.SetInputData(image)
     result.SetDeformationData(field)
     result.SetInputArrayToProcess(0, 1, 0, 0, "Displacement")
@@ -105,7 +105,7 @@ def check(name, expected, *arguments):
 
 
 # A cut alone leaves the volume where it is.
-cutter = deformvolume.vtkCutVolume()
+cutter = deformvolume_vtk.vtkCutVolume()
 cutter.SetInputData(volume)
 cutter.SetSheetData(sheet)
 cutter.Update()
@@ -116,7 +116,7 @@ assert numpy.array_equal(get_values(read_vti(path("cut.vti")), "Values")[covered
                          get_values(volume)[covered == 1])
 
 # A smooth one leaves all of it there.
-smooth_cutter = deformvolume.vtkCutVolume()
+smooth_cutter = deformvolume_vtk.vtkCutVolume()
 smooth_cutter.SetInputData(volume)
 smooth_cutter.SetSheetData(sheet)
 smooth_cutter.SmoothCutOn()
@@ -133,7 +133,7 @@ assert numpy.array_equal(get_values(read_vti(path("smooth.vti")), "Values"), get
 sphere = vtkSphere()
 sphere.SetCenter(middle[0] + 4, middle[1], middle[2])
 sphere.SetRadius(5)
-carver = deformvolume.vtkCarveVolume()
+carver = deformvolume_vtk.vtkCarveVolume()
 carver.SetInputConnection(cutter.GetOutputPort())
 carver.SetImplicitFunction(sphere)
 carver.Update()
@@ -150,7 +150,7 @@ handles.SetPoints(points)
 rest = numpy_to_vtk(numpy.array([numbers[:3]]), deep=True)
 rest.SetName("RestPosition")
 handles.GetPointData().AddArray(rest)
-chain_mail = deformvolume.vtkChainMailDeformation()
+chain_mail = deformvolume_vtk.vtkChainMailDeformation()
 chain_mail.SetInputConnection(carver.GetOutputPort())
 chain_mail.SetHandlesData(handles)
 chain_mail.SetHandleRadius(numbers[6])

@@ -5,7 +5,7 @@ ParaView's readers, plays as the .pvd file does."""
 
 import os
 
-import deformvolume
+import deformvolume_vtk
 import numpy
 from paraview import simple
 from vtkmodules.util import numpy_support
@@ -28,7 +28,7 @@ def displacements(points, time):
 
 def write_series(image):
     """A .pvd of the lattice with its displacements at each step, and the meshes."""
-    lattice = deformvolume.vtkLatticeTetrahedraSource()
+    lattice = deformvolume_vtk.vtkLatticeTetrahedraSource()
     lattice.SetInputData(image)
     lattice.SetNumberOfNodes(7, 7, 7)
     lattice.EqualSpacingOff()
@@ -110,7 +110,7 @@ def main():
         scene.AnimationTime = 0.5 * step
         filter_.UpdatePipeline(keeper.Time)
         got = fetch(filter_)
-        fresh = deformvolume.vtkDeformVolumeFilter()
+        fresh = deformvolume_vtk.vtkDeformVolumeFilter()
         fresh.SetInputData(image)
         fresh.SetDeformationData(meshes[step])
         fresh.SetInputArrayToProcess(0, 1, 0, 0, "U")

@@ -2,7 +2,7 @@
 """The proxies' results against those of the classes used without ParaView's server manager: a head
 of an MRI, and ParaView's wavelet with several arrays and all kinds of deformation."""
 
-import deformvolume
+import deformvolume_vtk
 import numpy
 from paraview import simple
 from vtkmodules.util import numpy_support
@@ -24,7 +24,7 @@ POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 
 
 def plain_filter(volume, deformation, array, rest=None):
-    filter_ = deformvolume.vtkDeformVolumeFilter()
+    filter_ = deformvolume_vtk.vtkDeformVolumeFilter()
     filter_.SetInputData(volume)
     filter_.SetDeformationData(deformation)
     if rest is not None:
@@ -37,7 +37,7 @@ def plain_filter(volume, deformation, array, rest=None):
 
 def plain_mesh(volume, nodes, displace):
     """The lattice over a volume with displacements made by numpy."""
-    lattice = deformvolume.vtkLatticeTetrahedraSource()
+    lattice = deformvolume_vtk.vtkLatticeTetrahedraSource()
     lattice.SetInputData(volume)
     lattice.SetNumberOfNodes(nodes, nodes, nodes)
     lattice.EqualSpacingOff()
@@ -128,7 +128,7 @@ def test_wavelet():
     mesher = simple.TetGenMesher(Input=volume)
     mesher.UpdatePipeline()
     mesher.UpdatePipelineInformation()
-    plain = deformvolume.vtkTetGenMesher()
+    plain = deformvolume_vtk.vtkTetGenMesher()
     plain.SetInputData(fetch(volume))
     plain.Update()
     check(mesher.UsedIsovalue == plain.GetUsedIsovalue() != 0.0, f"{mesher.UsedIsovalue}")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ChainMail Deformation with handles, materials and ranges, and Deform Volume behind it."""
 
-import deformvolume  # noqa: F401, the class of the object on the server
+import deformvolume_vtk  # noqa: F401, the class of the object on the server
 from paraview import simple
 from PluginTesting import load_plugin
 

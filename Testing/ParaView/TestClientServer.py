@@ -7,7 +7,7 @@ import re
 import subprocess
 import sys
 
-import deformvolume
+import deformvolume_vtk
 from paraview import simple
 
 from PluginTesting import (
@@ -31,7 +31,7 @@ LOG = os.path.join(OUTPUT, "TestClientServer.log")
 def check_session():
     load_plugin(remote=True)
     load_plugin()
-    here = deformvolume.vtkDeformVolumeFilter.GetDeviceNames()
+    here = deformvolume_vtk.vtkDeformVolumeFilter.GetDeviceNames()
     check(here.GetNumberOfValues() == 0, "The client has devices: it proves nothing")
 
     volume = wavelet(9)

@@ -2,7 +2,7 @@
 """Mass-Spring and Finite-Element Deformation with handles, materials and times, and Deform Volume
 behind them."""
 
-import deformvolume  # noqa: F401, the classes of the objects on the server
+import deformvolume_vtk  # noqa: F401, the classes of the objects on the server
 from paraview import simple
 from PluginTesting import load_plugin
 

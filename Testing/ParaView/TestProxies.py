@@ -8,7 +8,7 @@ import re
 import sys
 import xml.etree.ElementTree as ElementTree
 
-import deformvolume
+import deformvolume_vtk
 from paraview import simple
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
@@ -87,7 +87,7 @@ def properties_of(proxy):
 
 def own_names(cls):
     """What the class and its bases in this package add to VTK's."""
-    own = [base for base in cls.__mro__ if base in vars(deformvolume).values()]
+    own = [base for base in cls.__mro__ if base in vars(deformvolume_vtk).values()]
     inherited = set(dir(own[-1].__bases__[0]))
     return {name for base in own for name in vars(base)} - inherited
 
@@ -226,7 +226,7 @@ def main():
     proxies = proxies_by_class()
     classes = {
         name: value
-        for name, value in vars(deformvolume).items()
+        for name, value in vars(deformvolume_vtk).items()
         if inspect.isclass(value) and issubclass(value, vtkAlgorithm) and not value.__subclasses__()
     }
     check(len(classes) >= 3, f"The package has only {sorted(classes)}")

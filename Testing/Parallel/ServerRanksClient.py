@@ -5,7 +5,7 @@ import os
 import pickle
 import sys
 
-import deformvolume
+import deformvolume_vtk
 import numpy
 from paraview import simple
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
@@ -70,7 +70,7 @@ def expected_output(mesh):
     """By the class itself, in the client."""
     source = vtkRTAnalyticSource()
     source.SetWholeExtent(-9, 9, -9, 9, -9, 9)
-    filter_ = deformvolume.vtkDeformVolumeFilter()
+    filter_ = deformvolume_vtk.vtkDeformVolumeFilter()
     filter_.SetInputConnection(source.GetOutputPort())
     filter_.SetDeformationData(mesh)
     filter_.SetInputArrayToProcess(0, 1, 0, 0, "Displacement")

@@ -7,7 +7,7 @@ import os
 import re
 import sys
 
-import deformvolume
+import deformvolume_vtk
 from vtkmodules.vtkCommonCore import vtkObject
 from vtkmodules.vtkCommonDataModel import (
     vtkImageData,
@@ -18,11 +18,11 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 FOLDERS = ["Filters"]
-if hasattr(deformvolume, "vtkDeformVolumeSession"):  # not where VTK is ParaView's
+if hasattr(deformvolume_vtk, "vtkDeformVolumeSession"):  # not where VTK is ParaView's
     FOLDERS.append("Interaction")
-if hasattr(deformvolume, "vtkDeviceVolumeMapper"):  # it is loaded when it is asked for
+if hasattr(deformvolume_vtk, "vtkDeviceVolumeMapper"):  # it is loaded when it is asked for
     FOLDERS.append("Rendering")
-    vars(deformvolume)["vtkDeviceVolumeMapper"] = deformvolume.vtkDeviceVolumeMapper
+    vars(deformvolume_vtk)["vtkDeviceVolumeMapper"] = deformvolume_vtk.vtkDeviceVolumeMapper
 ROOT = os.path.join(os.path.dirname(__file__), "..", "..")
 
 failures = []
@@ -36,7 +36,7 @@ def check(condition, text):
 def own_classes():
     classes = [
         value
-        for value in vars(deformvolume).values()
+        for value in vars(deformvolume_vtk).values()
         if inspect.isclass(value) and issubclass(value, vtkObject)
     ]
     return sorted(classes, key=lambda value: value.__name__)

@@ -3,12 +3,12 @@
 
 import numpy as np
 
-import deformvolume
+import deformvolume_vtk
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData
 
-Filter = deformvolume.vtkDeformVolumeFilter
+Filter = deformvolume_vtk.vtkDeformVolumeFilter
 random = np.random.default_rng(1)
 
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-import deformvolume
+import deformvolume_vtk
 from vtkmodules.numpy_interface import dataset_adapter
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -44,7 +44,7 @@ def move(mesh, amount):
 
 
 def make_filter(image, mesh, on_device):
-    deform = deformvolume.vtkDeformVolumeFilter()
+    deform = deformvolume_vtk.vtkDeformVolumeFilter()
     deform.SetInputData(image)
     deform.SetDeformationData(mesh)
     deform.SetOutputBoundsModeToVolumeBounds()

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-import deformvolume
+import deformvolume_vtk
 import vtkmodules.vtkInteractionStyle  # noqa: F401  (they make the classes of windows and mappers)
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
@@ -75,7 +75,7 @@ def make_actor(mapper):
 
 def draw(mapper_class, image, mesh, on_device):
     """Three pictures, the last one after an update that nobody looks at."""
-    deform = deformvolume.vtkDeformVolumeFilter()
+    deform = deformvolume_vtk.vtkDeformVolumeFilter()
     deform.SetInputData(image)
     deform.SetDeformationData(mesh)
     deform.SetOutputBoundsModeToVolumeBounds()

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-import deformvolume
+import deformvolume_vtk
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -25,7 +25,7 @@ def make_volume(shape):
 
 
 def make_mesh(image, displacement):
-    source = deformvolume.vtkLatticeTetrahedraSource()
+    source = deformvolume_vtk.vtkLatticeTetrahedraSource()
     source.SetNumberOfNodes(4, 4, 4)
     source.SetInputData(image)
     source.Update()
@@ -57,7 +57,7 @@ def record_errors(algorithm):
 
 def test_shift():
     image, values, labels = make_volume((6, 7, 8))
-    deform = deformvolume.vtkDeformVolumeFilter()
+    deform = deformvolume_vtk.vtkDeformVolumeFilter()
     deform.SetInputData(image)
     deform.SetDeformationData(make_mesh(image, (2, -1, 3)))
     deform.AddCategoricalArray("label")
@@ -74,7 +74,7 @@ def test_shift():
 
 def test_half_a_voxel():
     image, values, labels = make_volume((6, 7, 8))
-    deform = deformvolume.vtkDeformVolumeFilter()
+    deform = deformvolume_vtk.vtkDeformVolumeFilter()
     deform.SetInputData(image)
     deform.SetDeformationData(make_mesh(image, (0.5, 0, 0)))
     deform.AddCategoricalArray("label")
@@ -95,7 +95,7 @@ def test_half_a_voxel():
 
 def test_errors():
     image, values, _ = make_volume((6, 7, 8))
-    deform = deformvolume.vtkDeformVolumeFilter()
+    deform = deformvolume_vtk.vtkDeformVolumeFilter()
     messages = record_errors(deform)
     deform.SetInputData(image)
     deform.Update()
@@ -112,11 +112,11 @@ def test_errors():
 
 
 def test_devices():
-    names = deformvolume.vtkDeformVolumeFilter.GetDeviceNames()
+    names = deformvolume_vtk.vtkDeformVolumeFilter.GetDeviceNames()
     assert names.GetNumberOfValues() > 0
     image, _, _ = make_volume((3, 3, 3))
     for index in range(names.GetNumberOfValues()):
-        deform = deformvolume.vtkDeformVolumeFilter()
+        deform = deformvolume_vtk.vtkDeformVolumeFilter()
         deform.SetInputData(image)
         deform.SetDeformationData(make_mesh(image, (0, 0, 0)))
         deform.SetDevice(names.GetValue(index))
@@ -133,7 +133,7 @@ def test_values_in_place():
     scalars = numpy_to_vtk(values)
     scalars.SetName("value")
     image.GetPointData().SetScalars(scalars)
-    deform = deformvolume.vtkDeformVolumeFilter()
+    deform = deformvolume_vtk.vtkDeformVolumeFilter()
     deform.SetInputData(image)
     deform.SetDeformationData(make_mesh(image, (0, 0, 0)))
     deform.Update()

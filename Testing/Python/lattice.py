@@ -3,13 +3,13 @@
 
 import numpy as np
 
-import deformvolume
+import deformvolume_vtk
 from vtkmodules.util.numpy_support import numpy_to_vtk
 
 
 def make_mesh(image, nodes):
     """nodes: on each axis. Their displacements are 0."""
-    source = deformvolume.vtkLatticeTetrahedraSource()
+    source = deformvolume_vtk.vtkLatticeTetrahedraSource()
     source.SetNumberOfNodes(nodes, nodes, nodes)
     source.EqualSpacingOff()
     source.SetInputData(image)
