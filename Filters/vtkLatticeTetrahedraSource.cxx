@@ -124,7 +124,7 @@ void MakeCubes(Lattice& lattice, int nodes[3])
       const double needed = (nodes[axis] - 1) * length / edge;
       const double cells = std::max(1.0, std::ceil(needed * (1.0 - tolerance)));
       step *= edge / length;
-      lattice.Corner -= step * (0.5 * (cells - needed));
+      lattice.Corner -= step * (0.5 * std::max(0.0, cells - needed));
       nodes[axis] = static_cast<int>(cells) + 1;
     }
   }
@@ -188,6 +188,7 @@ int vtkLatticeTetrahedraSource::RequestData(
 {
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector);
   output->Initialize();
+  std::fill_n(this->Dimensions, 3, 0);
   if (!deformvolume::IsFirstPiece(outputVector))
   {
     return 1;

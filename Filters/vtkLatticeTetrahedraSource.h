@@ -53,7 +53,8 @@ public:
    * The edge of a cube is then the longest of the distances that NumberOfNodes gives on the axes.
    * Axes on which that takes fewer nodes get fewer, and the lattice reaches beyond the box or the
    * volume there, by less than half a cell and as far on both sides. When off, each axis has
-   * NumberOfNodes, and the lattice ends where the box ends. Default: on.
+   * NumberOfNodes, and the lattice ends where the box ends. Where the axes of a volume are not
+   * perpendicular, edges are equally long, but cells are no cubes. Default: on.
    */
   vtkSetMacro(EqualSpacing, bool);
   vtkGetMacro(EqualSpacing, bool);
@@ -61,7 +62,7 @@ public:
   ///@}
 
   /**
-   * Nodes on each axis of the last output; 0, 0, 0 before the first.
+   * Nodes on each axis of the last output; 0, 0, 0 where that is empty.
    */
   vtkGetVector3Macro(Dimensions, int);
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # What takes too long for each change: all tests of the VTK classes against ParaView's VTK and with
 # the sanitizers, those with Oclgrind that take minutes, random pipelines with new seeds, all
-# mutations, and the README's commands on other Debian systems. Takes hours; logs are in build.
+# mutations, and Examples/run.sh and Testing/run.sh --all on other Debian systems. Takes hours; logs are in build.
 #
 # Usage: nightly.sh [--seconds SECONDS]
 #   --seconds  how long random pipelines run, 3600 by default
@@ -11,8 +11,11 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 seconds=3600
-if [ "${1-}" = --seconds ]; then
+if [ "${1-}" = --seconds ] && [ $# -eq 2 ]; then
   seconds=$2
+elif [ $# -gt 0 ]; then
+  echo "nightly.sh: unknown arguments $*" >&2
+  exit 2
 fi
 
 failed=()
@@ -23,9 +26,9 @@ run() # a name, and a command
 }
 
 run "all tests" bash Testing/run.sh --all vtk paraview-all asan-all
-cmake --preset vtk -DDEFORMVOLUME_LONG_TESTS=ON >/dev/null
+run "configuration of long tests" cmake --preset vtk -DDEFORMVOLUME_LONG_TESTS=ON
 run "long tests" ctest --preset vtk -R Oclgrind
-cmake --preset vtk -DDEFORMVOLUME_LONG_TESTS=OFF >/dev/null
+run "configuration" cmake --preset vtk -DDEFORMVOLUME_LONG_TESTS=OFF
 seed=$(date +%s)
 run "random pipelines from seed $seed" build/vtk/bin/DeformVolumeFuzz --seed "$seed" \
   --seconds "$seconds" --keep-going

@@ -88,7 +88,7 @@ void MassSpringSimulation::Advance(const Frame& frame)
   if (this->TimeStep > 0.0 && this->TimeStep > this->Model.GetStableTimeStep())
   {
     throw Error("The time step of " + std::to_string(this->TimeStep * 1e3) +
-      " ms is longer than the longest stable one of " +
+      " ms is longer than the stable one of " +
       std::to_string(this->Model.GetStableTimeStep() * 1e3) +
       " ms. Set a shorter one, or 0 to have it chosen.");
   }

@@ -66,7 +66,8 @@ private:
   Kind MaskKind;
   std::array<int, 3> Size{ { 0, 0, 0 } }; // on x in bytes
   bool WithBuffers = false;
-  float Farthest = 0.0F; // the distance where there are none: it changes least when there are some
+  // What buffers hold before distances are there: those that are as far count as unchanged then.
+  float Farthest = 0.0F;
   std::vector<unsigned char> Last; // what the device has, where the host cannot look into that
 };
 

@@ -109,7 +109,7 @@ void MassSpringModel::Internals::Make(Watch& watch, const ElasticBody& body, dou
   auto network = std::make_unique<MassSpringNetwork>(
     watch, body, MassSpringState::GetLanes(this->Device), cubeEdge);
   watch.Ask();
-  // There is no abort from here on: there is the last body, or this one.
+  // There is no abort from here on: there is this body in the end, or none where memory is short.
   this->Forget(); // memory of the last body goes first
   this->Budget.CheckRoomFor(
     MassSpringState::GetNeededMemory(body.Points.size(), body.Tetrahedra.size()), "on the device");

@@ -81,9 +81,10 @@ public:
   /// and the last body stays.
   void SetBody(const ElasticBody& body, const std::function<bool()>& progress = nullptr);
 
-  /// The same body with other nodes in some tetrahedra: nodes have been appended, each a copy of
-  /// one there was. origins: of each appended node. They are where their origins are, and as fast.
-  /// Without origins the last nodes may be gone, as where a split is undone.
+  /// The same body, in the same places, with other nodes in some tetrahedra: nodes have been
+  /// appended, each a copy of one there was. origins: of each appended node. They are where their
+  /// origins are, and as fast. Without origins the last nodes may be gone, as where a split is
+  /// undone.
   void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins);
 
   /// Where the displacements go, three floats a node, times a factor; written by each Advance.
