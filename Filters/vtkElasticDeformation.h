@@ -59,7 +59,7 @@
  * than 0 or of 0.495 and more; arrays of another shape; a handle that holds no node; a sheet that
  * vtkCutVolume would refuse. The output is then empty, what was simulated is kept, and a new sheet
  * cuts in the next execution that succeeds. After a failure of memory or of a device the body
- * begins anew.
+ * starts again from rest.
  *
  * @sa vtkMassSpringDeformation vtkCorotationalDeformation vtkDeformVolumeFilter
  */

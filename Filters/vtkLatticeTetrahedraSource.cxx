@@ -105,7 +105,7 @@ std::string FrameOfVolume(
   return std::string();
 }
 
-// Makes the cells of a lattice cubes, and tells how many nodes that takes on each axis.
+// Makes the cells of a lattice cubes. nodes: on each axis, before and after.
 void MakeCubes(Lattice& lattice, int nodes[3])
 {
   // Rounding does not add a cell.

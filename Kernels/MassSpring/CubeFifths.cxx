@@ -63,18 +63,16 @@ bool IsFifth(const Corners& corners, double edge)
 double FindCubeEdge(Watch& watch, const ElasticBody& body)
 {
   const Corners first = GetCorners(body, body.Tetrahedra.front());
-  double shortest = glm::distance(first[0], first[1]);
-  double longest = shortest;
-  for (std::size_t i = 2; i < 4; ++i)
+  // The longest edge of both kinds is a diagonal of a face of the cube.
+  double longest = 0.0;
+  for (std::size_t i = 1; i < 4; ++i)
   {
     for (std::size_t j = 0; j < i; ++j)
     {
-      shortest = std::min(shortest, glm::distance(first[i], first[j]));
       longest = std::max(longest, glm::distance(first[i], first[j]));
     }
   }
-  const bool isMiddle = IsAbout(shortest, longest);
-  const double edge = isMiddle ? longest / std::sqrt(2.0) : shortest;
+  const double edge = longest / std::sqrt(2.0);
   ForItems(watch, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
