@@ -85,25 +85,36 @@ void DeviceMask::Release(std::vector<VolumeChunk>& chunks)
   std::vector<unsigned char>().swap(this->Last);
 }
 
-void DeviceMask::Write(const cl::CommandQueue& queue, VolumeChunk& chunk, const Extent& box) const
+void DeviceMask::Write(
+  const cl::CommandQueue& queue, VolumeChunk& chunk, const std::vector<Extent>& changes) const
 {
   const std::array<int, 2> planes = this->GetPlanes(chunk);
-  const int first = std::max(box[4], planes[0]);
-  const int last = std::min(box[5], planes[1]);
-  if (first > last)
+  Extent box{ { 0, -1, 0, -1, 0, -1 } };
+  for (const Extent& change : changes)
+  {
+    if (change[4] > planes[1] || change[5] < planes[0])
+    {
+      continue;
+    }
+    const bool isFirst = box[0] > box[1];
+    for (int i = 0; i < 6; ++i)
+    {
+      const bool isBegin = i % 2 == 0;
+      box[i] = isFirst ? change[i]
+        : isBegin      ? std::min(box[i], change[i])
+                       : std::max(box[i], change[i]);
+    }
+  }
+  if (box[0] > box[1])
   {
     return;
   }
-  const auto count = [](int begin, int end) { return static_cast<std::size_t>(end - begin + 1); };
-  const auto row = static_cast<std::size_t>(this->Size[0]);
-  const std::size_t plane = row * static_cast<std::size_t>(this->Size[1]);
-  const auto x = static_cast<std::size_t>(box[0]);
-  const auto y = static_cast<std::size_t>(box[2]);
-  queue.enqueueWriteBufferRect(this->GetBuffer(chunk), CL_FALSE,
-    { x, y, static_cast<std::size_t>(first - planes[0]) },
-    { x, y, static_cast<std::size_t>(first) },
-    { count(box[0], box[1]), count(box[2], box[3]), count(first, last) }, row, plane, row, plane,
-    const_cast<unsigned char*>(this->Last.data()));
+  box[4] = std::max(box[4], planes[0]);
+  box[5] = std::min(box[5], planes[1]);
+  const int x = this->Size[0] - 1;
+  const int y = this->Size[1] - 1;
+  WriteBox(queue, this->GetBuffer(chunk), { { 0, x, 0, y, planes[0], planes[1] } }, box, 1,
+    this->Last.data(), { { 0, x, 0, y, 0, this->Size[2] - 1 } });
 }
 
 bool DeviceMask::IsAny(const MaskValues& values)
@@ -177,12 +188,8 @@ std::vector<Extent> DeviceMask::Set(const OpenCLContext& context, const cl::Comm
     copy(this->Last.data());
     for (VolumeChunk& chunk : chunks)
     {
-      for (const Extent& box : changes)
-      {
-        this->Write(queue, chunk, box);
-      }
+      this->Write(queue, chunk, changes);
     }
-    queue.finish();
   }
   else
   {

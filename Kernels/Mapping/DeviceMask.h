@@ -61,7 +61,10 @@ private:
   void Allocate(
     const OpenCLContext& context, const cl::CommandQueue& queue, std::vector<VolumeChunk>& chunks);
   void Release(std::vector<VolumeChunk>& chunks);
-  void Write(const cl::CommandQueue& queue, VolumeChunk& chunk, const Extent& box) const;
+  /// Sends one box that holds all changes: a call for each of them takes longer than what lies
+  /// between them.
+  void Write(
+    const cl::CommandQueue& queue, VolumeChunk& chunk, const std::vector<Extent>& changes) const;
 
   Kind MaskKind;
   std::array<int, 3> Size{ { 0, 0, 0 } }; // on x in bytes

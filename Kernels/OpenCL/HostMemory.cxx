@@ -16,6 +16,31 @@ StagedCopies* FindStagedCopies(const cl::CommandQueue& queue, std::uint64_t byte
   return context ? context->GetStagedCopies() : nullptr;
 }
 
+CopiedBox MakeBox(const Extent& whole, const Extent& part, std::size_t bytes, const Extent& held)
+{
+  const auto place = [&](const Extent& extent)
+  {
+    const std::size_t row = bytes * static_cast<std::size_t>(GetSize(extent, 0));
+    CopiedBox::Place result{ {}, row, row * static_cast<std::size_t>(GetSize(extent, 1)) };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      result.Origin[axis] =
+        (axis == 0 ? bytes : 1) * static_cast<std::size_t>(part[2 * axis] - extent[2 * axis]);
+    }
+    return result;
+  };
+  const auto size = [&](int axis) { return static_cast<std::size_t>(GetSize(part, axis)); };
+  return { { { bytes * size(0), size(1), size(2) } }, place(whole), place(held) };
+}
+
+void CheckWritten(cl_int error)
+{
+  if (error != CL_SUCCESS)
+  {
+    throw cl::Error(error, "copying to the device");
+  }
+}
+
 } // namespace
 
 std::uint64_t GetMemory(const cl::Buffer& buffer)
@@ -109,19 +134,7 @@ PendingRead BeginToReadRange(const cl::CommandQueue& queue, const cl::Buffer& bu
 PendingRead BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   const Extent& whole, const Extent& part, std::size_t bytes, void* memory, const Extent& held)
 {
-  const auto place = [&](const Extent& extent)
-  {
-    const std::size_t row = bytes * static_cast<std::size_t>(GetSize(extent, 0));
-    CopiedBox::Place result{ {}, row, row * static_cast<std::size_t>(GetSize(extent, 1)) };
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      result.Origin[axis] =
-        (axis == 0 ? bytes : 1) * static_cast<std::size_t>(part[2 * axis] - extent[2 * axis]);
-    }
-    return result;
-  };
-  const auto size = [&](int axis) { return static_cast<std::size_t>(GetSize(part, axis)); };
-  const CopiedBox box{ { { bytes * size(0), size(1), size(2) } }, place(whole), place(held) };
+  const CopiedBox box = MakeBox(whole, part, bytes, held);
   if (StagedCopies* const staged = FindStagedCopies(queue, box.GetBytes()))
   {
     return PendingRead(*staged, staged->BeginToRead(queue, buffer, box, memory));
@@ -141,11 +154,21 @@ void Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_
     queue.enqueueWriteBuffer(buffer, CL_TRUE, offset, bytes, data);
     return;
   }
-  const cl_int error = staged->Write(queue, buffer, CopiedBox::MakeRange(offset, bytes), data);
-  if (error != CL_SUCCESS)
+  CheckWritten(staged->Write(queue, buffer, CopiedBox::MakeRange(offset, bytes), data));
+}
+
+void WriteBox(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Extent& whole,
+  const Extent& part, std::size_t bytes, const void* memory, const Extent& held)
+{
+  const CopiedBox box = MakeBox(whole, part, bytes, held);
+  StagedCopies* const staged = FindStagedCopies(queue, box.GetBytes());
+  if (!staged)
   {
-    throw cl::Error(error, "copying to the device");
+    queue.enqueueWriteBufferRect(buffer, CL_TRUE, box.OnDevice.Origin, box.OnHost.Origin, box.Size,
+      box.OnDevice.Row, box.OnDevice.Plane, box.OnHost.Row, box.OnHost.Plane, memory);
+    return;
   }
+  CheckWritten(staged->Write(queue, buffer, box, memory));
 }
 
 cl_int WaitFor(cl_event event) noexcept

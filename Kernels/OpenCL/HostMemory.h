@@ -113,6 +113,10 @@ PendingRead BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buff
 void Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t offset,
   std::uint64_t bytes, const void* data);
 
+/// The same for a box, with parameters as those of BeginToReadBox.
+void WriteBox(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Extent& whole,
+  const Extent& part, std::size_t bytes, const void* memory, const Extent& held);
+
 /// Copies to memory of the caller that are under way.
 class PendingReads
 {
