@@ -343,6 +343,22 @@ extern "C" cl_int CL_API_CALL clEnqueueWriteBuffer(cl_command_queue queue, cl_me
     : real(queue, buffer, blocking, offset, size, memory, number, events, done);
 }
 
+extern "C" cl_int CL_API_CALL clEnqueueWriteBufferRect(cl_command_queue queue, cl_mem buffer,
+  cl_bool blocking, const std::size_t* origin, const std::size_t* hostOrigin,
+  const std::size_t* region, std::size_t row, std::size_t slice, std::size_t hostRow,
+  std::size_t hostSlice, const void* memory, cl_uint number, const cl_event* events, cl_event* done)
+{
+  static auto* const real = Find<decltype(clEnqueueWriteBufferRect)>("clEnqueueWriteBufferRect");
+  FakeDriver& driver = FakeDriver::Get();
+  driver.BytesWritten += region[0] * region[1] * region[2];
+  ++driver.Writes;
+  cl_int error = CL_SUCCESS;
+  return !blocking && Fails(driver.WriteError, driver.WritesBeforeError, queue, done, error)
+    ? error
+    : real(queue, buffer, blocking, origin, hostOrigin, region, row, slice, hostRow, hostSlice,
+        memory, number, events, done);
+}
+
 extern "C" cl_int CL_API_CALL clWaitForEvents(cl_uint number, const cl_event* events)
 {
   static auto* const real = Find<decltype(clWaitForEvents)>("clWaitForEvents");

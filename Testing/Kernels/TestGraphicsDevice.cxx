@@ -146,6 +146,24 @@ TEST_F(GraphicsDevice, MemoryIsCountedOnce)
   EXPECT_NO_THROW(RunDeformer(this->Deformer, larger, this->Arrays));
 }
 
+// A call for each of many places takes longer than what lies between them.
+TEST_F(GraphicsDevice, ChangedMasksAreSentAtOnce)
+{
+  Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
+  this->Case.Blanked.assign(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()), 0);
+  this->Case.Blanked[1000] = 1;
+  this->Deformer.SetBlanked(this->Case.Blanked.data());
+  for (std::size_t i = 3; i + 400 < this->Case.Blanked.size(); i += 397)
+  {
+    this->Case.Blanked[i] = 1;
+  }
+  FakeDriver::Get().Writes = 0;
+  this->Deformer.SetBlanked(this->Case.Blanked.data());
+  EXPECT_EQ(FakeDriver::Get().Writes, 1);
+  ExpectEqualsReference(this->Case, ResampleByReference(this->Case), this->Arrays,
+    RunDeformer(this->Deformer, this->Case, this->Arrays));
+}
+
 // Single precision holds whole numbers up to 2^24.
 TEST_F(GraphicsDevice, WholeNumbersThatSinglePrecisionDoesNotHold)
 {
