@@ -5,8 +5,8 @@
     python3 Testing/mutations.py [NAME...]
 
 Without names all mutations are tried; --list prints them, and --check says which texts are no longer there. The sources are copied to build/mutations, so that the
-working tree stays as it is. Each mutation replaces one text in one file; the tests of the kernels are built, and
-those named with the mutation are run. It prints a table of what was changed and the first test that failed, and
+working tree stays as it is. Each mutation replaces one text in one file; the tests are built, and those named
+with the mutation are run. It prints a table of what was changed and the first test that failed, and
 returns 1 if a mutation was not noticed. Before that the tests must pass without a change. CONTRIBUTING.md tells
 when to add one.
 """
@@ -28,14 +28,14 @@ MISSING = ("TestPiecewise", "*Masks*")
 FOLDS = ("TestIncrementalFolds", "-*ByCell")
 BY_CELL = ("TestIncremental", "*Borders*ByCell")
 ALIGNED = ("TestIncrementalOutputs", "*NotAligned*")
-OWN_MEMORY = ("TestIncrementalGraphics", "*IncrementalGraphics*")
+OWN_MEMORY = ("TestIncrementalGraphics@gpu-like", "*")
 MEMORY = ("TestHostMemory", "*")
 LARGE = ("TestLargeCells", "-*Time*")
 FAULTS = ("TestFaults", "*")
-RASTER_GRAPHICS = ("TestMeshRasterizationGraphics", "MeshRasterization.*-*IdentityAndWholeShifts*:*ValuesOfAllTypes*")
-DEVICE_OUTPUT = ("TestDeviceOutput", "*")
-GRAPHICS = ("TestGraphicsDevice", "*")
-STAGED = ("TestStagedCopies", "Staged.*")
+RASTER_GRAPHICS = ("TestMeshRasterization@gpu-like", "-*IdentityAndWholeShifts*:*ValuesOfAllTypes*")
+DEVICE_OUTPUT = ("TestDeviceOutput@gpu-like", "*")
+GRAPHICS = ("TestGraphicsDevice@gpu-like-no-double", "*")
+STAGED = ("TestStagedCopies@gpu-like", "Staged.*")
 CUTTING = ("TestCutting", "*")
 SMOOTH = ("TestSmoothCuts", "*")
 EDITS = ("TestMaskEditor", "*")
@@ -48,7 +48,7 @@ CHAINMAIL = ("TestChainMail", "*")
 RELAXATION = ("TestChainMailRelaxation", "*")
 SEQUENCES = ("TestChainMailSequences", "*")
 VECTORS = ("TestDeviceVectors", "*")
-VECTORS_GRAPHICS = ("TestDeviceVectorsGraphics", "*")
+VECTORS_GRAPHICS = ("TestDeviceVectors,TestDeviceVectorsGraphics@gpu-like", "*")
 ELEMENTS = ("TestCorotationalElements", "*")
 SPRINGS = ("TestMassSpring", "*")
 SPRINGS_AT_REST = ("TestMassSpringStatics", "*")
@@ -60,7 +60,11 @@ DEFORMED_CUTTING = ("TestDeformedCutting", "*")
 LISTS = ("TestTetrahedronLists", "*")
 BOUNDARY = ("TestMeshBoundary", "*")
 
-# name: (file, text, replacement, [(program, filter of its tests)])
+# Tests of the VTK classes that open a window.
+WITH_WINDOW = ("TestDeformVolumeInteractorStyle",)
+
+# name: (file, text, replacement, tests): of the engine their
+# sources, with the kind of device behind @, and GoogleTest's filter; of the VTK classes their name in CTest
 MUTATIONS = {
     "filter-upright": ("Kernels/Resampling/GroupWeights.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
     "vertex-shift": ("Kernels/Resampling/GroupCoverage.cl",
@@ -240,7 +244,7 @@ MUTATIONS = {
                         "FindLimitsBeside(limits, m, n.Materials, face, under, over);", [RELAXATION]),
     "chainmail-copy": ("Kernels/ChainMail/ChainMailSolver.cxx",
                        "this->State.ReadOutput(changes);", "",
-                       [("TestChainMailGraphics", "*Sequences*")]),
+                       [("TestChainMailSequences@gpu-like-no-double", "*")]),
     "chainmail-told": ("Kernels/ChainMail/ChainMailSolver.cxx",
                        "this->State.TellOfChanges(report.Changes);", "", [VECTORS]),
     "memory-granted": ("Kernels/Common/FreeMemory.cxx", "this->Measured / 2;", "this->Measured;", [VECTORS]),
@@ -288,6 +292,68 @@ MUTATIONS = {
                       [DEFORMED_CUTTING]),
     "box-changes": ("Kernels/Cutting/DeformedFieldVertices.cxx", " - first - 1, 0)", " - first, 0)",
                     [DEFORMED_CUTTING]),
+    # The VTK classes.
+    "extent-snap": ("Filters/Output/OutputExtent.cxx", "std::round(index * 256.0) / 256.0", "index",
+                    ["Cxx.TestDeformGeometry", "Cxx.TestDeformKeptBounds"]),
+    "image-direction": ("Filters/Input/ImageGeometry.cxx", "glm::transpose(glm::make_mat3(rows))",
+                        "glm::make_mat3(rows)", ["Cxx.TestDeformGeometry"]),
+    "image-spacing": ("Filters/Input/ImageGeometry.cxx", "inverse[column] /= this->Spacing",
+                      "inverse[column] /= this->Spacing[column]", ["Cxx.TestDeformGeometry", "Cxx.TestDeformGrids"]),
+    "cut-pair": ("Filters/Input/MaskArray.cxx", "(crossed != nullptr) != (cut.Distances.Values != nullptr)", "false",
+                 ["Cxx.TestDeformMasks", "Cxx.TestSmoothCut"]),
+    "material-range": ("Filters/Input/MaterialArray.cxx", "number < range.Maximum", "number <= range.Maximum",
+                       ["Cxx.TestMaterialFromVolume", "Cxx.TestChainMailDeformation"]),
+    "material-number": ("Filters/Input/MaterialArray.cxx", "static_cast<T>(static_cast<int>(value)) == value", "true",
+                        ["Cxx.TestMaterialFromVolume", "Cxx.TestChainMailMisuse"]),
+    "categories": ("Filters/Input/VolumeArrays.cxx", "isId || (array->GetName()", "(array->GetName()",
+                   ["Cxx.TestDeformArrays", "Cxx.TestDeformTopology"]),
+    "cell-diagonal": ("Filters/Input/CellSplit.cxx", "lowest = node(face, i) < node(face, lowest) ? i : lowest;", "",
+                      ["Cxx.TestDeformCells", "Cxx.TestHigherOrderCells"]),
+    "editor-held": ("Filters/Cutting/VolumeEditor.cxx", "array && array->GetReferenceCount() == 1", "array",
+                    ["Cxx.TestCutVolume", "Cxx.TestCarveVolume"]),
+    "editor-ports": ("Filters/Cutting/VolumeEditor.cxx",
+                     "text[at + name.size() - 1] = static_cast<char>(port + 1);", "", ["Cxx.TestCutDeformedVolume"]),
+    "sheet-smooth": ("Filters/vtkCutVolume.cxx", "(this->SmoothCut != last.IsSmooth && !sheet.IsEmpty())", "false",
+                     ["Cxx.TestSmoothCut"]),
+    "sheet-accumulate": ("Filters/vtkCutVolume.cxx", "else if (isNew && !this->Accumulate)", "else if (false)",
+                         ["Cxx.TestCutVolume"]),
+    "changes-before": ("Filters/vtkArrayChanges.cxx", "time < this->Begin ||", "", ["Cxx.TestArrayChanges"]),
+    "changes-copies": ("Filters/vtkArrayChanges.cxx", "log && log->Array == array ? log", "log ? log",
+                       ["Cxx.TestArrayChanges"]),
+    "body-unit": ("Filters/Physics/BodyReading.cxx", "radius * settings.UnitLength", "radius",
+                  ["Cxx.TestElasticDeformation"]),
+    "body-taken": ("Filters/Physics/BodyReading.cxx", "isTaken[node] == 0 && ", "", ["Cxx.TestElasticDeformation"]),
+    "body-fixed": ("Filters/Physics/BodyReading.cxx", "fixed->GetComponent(i, 0) != 0.0 ? 1 : 0",
+                   "fixed->GetComponent(i, 0) > 0.0 ? 0 : 1", ["Cxx.TestElasticDeformation"]),
+    "mapping-parts": ("Filters/Engine/MappingCache.cxx", "(!volume.IsWhole() && (builder.HoldsVoxels()",
+                      "(false && (builder.HoldsVoxels()", ["Cxx.TestDeformStreaming"]),
+    "bounds-times": ("Filters/vtkDeformVolumeFilterBounds.cxx",
+                     "bounds.Add(this->ReadBounds(ranks, volume, output, &step));",
+                     "bounds = this->ReadBounds(ranks, volume, output, &step);", ["Cxx.TestDeformTime"]),
+    "bounds-grown": ("Filters/vtkDeformVolumeFilterBounds.cxx", "this->BoundsHaveGrown = true;", "",
+                     ["Cxx.TestDeformContinuousTime", "Cxx.TestDeformTime"]),
+    "resampler-choice": ("Filters/Engine/ResamplerChoice.cxx",
+                         "obstacle.empty() && !fits(Resampling::Exact) &&", "!fits(Resampling::Exact) &&",
+                         ["Cxx.TestDeformMemory", "Cxx.TestLinkExtrapolation"]),
+    "body-distance": ("Filters/Meshing/DistanceTransform.cxx", "std::min(x - (run->Begin - 1), run->End - x)",
+                      "std::min(x - run->Begin, run->End - x)",
+                      ["Cxx.TestTetGenMesherBodies", "Cxx.TestTetGenMesher"]),
+    "chainmail-cut": ("Filters/Engine/ChainMailSession.cxx",
+                      "SwitchOffCut(masks, static_cast<std::size_t>(volume->GetNumberOfCells()));", "",
+                      ["Cxx.TestSmoothCut", "Cxx.TestDeformVolumeSession"]),
+    "session-carvings": ("Interaction/SessionPipelineHistory.cxx",
+                         "this->UndoEdits(this->CarveFilter, action.NumberOfEdits);",
+                         "this->UndoEdits(this->CarveFilter, 1);", ["Cxx.TestDeformVolumeSession"]),
+    "session-model": ("Interaction/SessionPipelineHistory.cxx", "this->Model = action.FormerModel;", "",
+                      ["Cxx.TestDeformVolumeSession"]),
+    "session-hash": ("Interaction/SessionFiles.cxx", "hash.Add(volume->GetSpacing(), 3 * sizeof(double));", "",
+                     ["Cxx.TestDeformVolumeSession"]),
+    "session-field": ("Interaction/SessionPlaces.cxx", "step == 1 ? part[axis] : 1.0 - part[axis]",
+                      "step == 0 ? part[axis] : 1.0 - part[axis]", ["Cxx.TestDeformVolumeSession"]),
+    "pick-absorbed": ("Interaction/VisiblePlaces.cxx", "sum += (1.0 - sum) * (1.0 -", "sum += (1.0 -",
+                      ["Cxx.TestDeformVolumeInteractorStyle"]),
+    "pick-covered": ("Interaction/VisiblePlaces.cxx", "this->Covered->GetComponent(voxel, 0) == 0.0 ? -1 : voxel",
+                     "false ? -1 : voxel", ["Cxx.TestDeformVolumeInteractorStyle"]),
 }
 
 
@@ -312,7 +378,7 @@ def write(path, content):
     path.write_bytes(content)
 
 
-def build(programs):
+def build(tests):
     """Returns whether it worked; what the compiler says is printed where it did not."""
     if not (BUILD / "build.ninja").is_file():
         subprocess.run(
@@ -321,28 +387,42 @@ def build(programs):
              "-DDEFORMVOLUME_BUILD_BENCHMARKS=OFF", "-DPython3_EXECUTABLE=/usr/bin/python3"],
             check=True, stdout=subprocess.DEVNULL)
     result = subprocess.run(
-        ["cmake", "--build", BUILD, "--target", *programs], capture_output=True, text=True)
+        ["cmake", "--build", BUILD, "--target",
+         *sorted({"DeformVolumeCxxTests" if isinstance(test, str) else "DeformVolumeEngineTests" for test in tests})], capture_output=True, text=True)
     if result.returncode:
         print(result.stdout[-4000:], file=sys.stderr)
     return result.returncode == 0
+
+
+def get_command(test):
+    """The test's name, and how it is started."""
+    if isinstance(test, str):
+        name = test.partition(".")[2]
+        command = [BUILD / "bin" / "DeformVolumeCxxTests", name, "-T", WORK, "-D", SOURCE / "Testing" / "Data"]
+        baseline = SOURCE / "Testing" / "Data" / f"{name}.png"
+        window = ["xvfb-run", "-a", "-s", "-noreset -screen 0 1280x1024x24"] if name in WITH_WINDOW else []
+        return test, [*window, *command, "-V", baseline]
+    files, pattern = test
+    names, _, device = files.partition("@")
+    return names, [BUILD / "bin" / "DeformVolumeEngineTests", f"--files={names}",
+                   *([f"--device={device}"] if device else []), f"--gtest_filter={pattern}", "--gtest_fail_fast"]
 
 
 def find_failure(tests):
     """The first test that fails, or None."""
     environment = dict(os.environ, POCL_CACHE_DIR=str(WORK / "kernel-cache"))
     pathlib.Path(environment["POCL_CACHE_DIR"]).mkdir(parents=True, exist_ok=True)
-    for program, pattern in tests:
+    for test in tests:
+        name, command = get_command(test)
         try:
-            result = subprocess.run(
-                [BUILD / "bin" / program, f"--gtest_filter={pattern}", "--gtest_fail_fast"],
-                capture_output=True, text=True, env=environment, timeout=600)
+            result = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=600)
         except subprocess.TimeoutExpired:
-            return f"{program} (does not end)"
+            return f"{name} (does not end)"
         if result.returncode < 0:
-            return f"{program} (signal {-result.returncode})"
+            return f"{name} (signal {-result.returncode})"
         if result.returncode:
             failed = [line for line in result.stdout.splitlines() if line.startswith("[  FAILED  ]")]
-            return failed[0].split("]")[1].split(",")[0].split("(")[0].strip() if failed else program
+            return failed[0].split("]")[1].split(",")[0].split("(")[0].strip() if failed else name
     return None
 
 
@@ -371,9 +451,8 @@ def main():
     if unknown:
         parser.error("there is no mutation " + ", ".join(unknown))
     copy_sources()
-    tests = sorted({test for name in names for test in MUTATIONS[name][3]})
-    programs = sorted({program for program, _ in tests})
-    if not build(programs):
+    tests = list(dict.fromkeys(test for name in names for test in MUTATIONS[name][3]))
+    if not build(tests):
         print("The sources do not build without a change.", file=sys.stderr)
         return 1
     failure = find_failure(tests)
@@ -386,7 +465,7 @@ def main():
         file, old, new, its_tests = MUTATIONS[name]
         text = (SOURCE / file).read_text()
         write(COPY / file, text.replace(old, new).encode())
-        built = build(sorted({program for program, _ in its_tests}))
+        built = build(its_tests)
         caught = find_failure(its_tests) if built else "the compiler"
         write(COPY / file, text.encode())
         survived += caught is None

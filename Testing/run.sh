@@ -7,6 +7,7 @@
 #   --all   runs all tests, and without PRESET those of vtk, paraview (the plugin) and asan (the
 #           engine with the sanitizers)
 #   PRESET  of CMakePresets.json, in place of vtk
+# DEFORMVOLUME_CMAKE_OPTIONS: further options of CMake for all presets.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -35,7 +36,8 @@ mkdir -p build
 failed=0
 for preset in "${presets[@]}"; do
   echo "== $preset: build"
-  cmake --preset "$preset" >"build/configure-$preset.log" 2>&1 || {
+  # shellcheck disable=SC2086 # a list of words
+  cmake --preset "$preset" ${DEFORMVOLUME_CMAKE_OPTIONS-} >"build/configure-$preset.log" 2>&1 || {
     cat "build/configure-$preset.log"
     exit 1
   }

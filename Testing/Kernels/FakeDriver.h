@@ -38,6 +38,12 @@ private:
   std::atomic<T> Value;
 };
 
+#define SKIP_UNLESS_GRAPHICS()                                                                     \
+  if (!FakeDriver::Get().IsGraphics)                                                               \
+  {                                                                                                \
+    GTEST_SKIP() << "for --device=gpu-like";                                                       \
+  }
+
 struct FakeDriver
 {
   /// A kernel of a program as the driver gets it.

@@ -20,30 +20,28 @@ using namespace deformvolume;
 namespace
 {
 
-/// What was compiled before neither takes time nor makes the compiler speak: this process begins
-/// with nothing.
-class EmptyCaches : public testing::Environment
+// What was compiled before neither takes time nor makes the compiler speak: this process begins
+// with nothing.
+class Compilation : public testing::Test
 {
-public:
-  void SetUp() override
+protected:
+  static void SetUpTestSuite()
   {
-    this->Directory = testing::TempDir() + "empty-caches-XXXXXX";
-    ASSERT_TRUE(mkdtemp(this->Directory.data()));
-    setenv("POCL_CACHE_DIR", (this->Directory + "/pocl").c_str(), 1);
-    setenv("CUDA_CACHE_PATH", (this->Directory + "/nvidia").c_str(), 1);
-    setenv("MESA_SHADER_CACHE_DIR", (this->Directory + "/mesa").c_str(), 1);
+    Directory = testing::TempDir() + "empty-caches-XXXXXX";
+    ASSERT_TRUE(mkdtemp(Directory.data()));
+    setenv("POCL_CACHE_DIR", (Directory + "/pocl").c_str(), 1);
+    setenv("CUDA_CACHE_PATH", (Directory + "/nvidia").c_str(), 1);
+    setenv("MESA_SHADER_CACHE_DIR", (Directory + "/mesa").c_str(), 1);
   }
-  void TearDown() override
+  static void TearDownTestSuite()
   {
     std::error_code error;
-    std::filesystem::remove_all(this->Directory, error);
+    std::filesystem::remove_all(Directory, error);
   }
 
 private:
-  std::string Directory;
+  static inline std::string Directory;
 };
-
-const auto* const Caches = testing::AddGlobalTestEnvironment(new EmptyCaches);
 
 bool IsDevice(const char* part)
 {
@@ -122,7 +120,7 @@ Compiled Deform(VolumeDeformer& deformer, const DeformerCase& deformerCase, Resa
 } // namespace
 
 // First, while nothing is compiled.
-TEST(Compilation, HasItsOwnTime)
+TEST_F(Compilation, HasItsOwnTime)
 {
   if (IsEmulated(FindDevice("").Description))
   {
@@ -154,7 +152,7 @@ TEST(Compilation, HasItsOwnTime)
   }
 }
 
-TEST(Compilation, WatchesAreOfTheirThread)
+TEST_F(Compilation, WatchesAreOfTheirThread)
 {
   EXPECT_EQ(CompilationWatch::GetCurrentSeconds(), 0.0);
   {
@@ -171,7 +169,7 @@ TEST(Compilation, WatchesAreOfTheirThread)
 }
 
 // PoCL writes "1 warning generated." to the terminal of the user, who can do nothing about it.
-TEST(Compilation, NoWarnings)
+TEST_F(Compilation, NoWarnings)
 {
   if (!IsDevice("Portable Computing Language"))
   {
@@ -230,7 +228,7 @@ TEST(Compilation, NoWarnings)
 }
 
 // A device for graphics has no use for lanes, and a processor none for cells.
-TEST(Compilation, KernelsThatAreNotUsedAreNotCompiled)
+TEST_F(Compilation, KernelsThatAreNotUsedAreNotCompiled)
 {
   OpenCLContext& context = GetContext();
   const std::vector<VolumeArray> arrays = MakeArrays({ ElementType::Int16 }, false);

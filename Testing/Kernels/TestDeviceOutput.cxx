@@ -19,13 +19,6 @@ using namespace deformvolume;
 namespace
 {
 
-// Before there is a context.
-const bool IsSet = []
-{
-  FakeDriver::Get().IsGraphics = true;
-  return true;
-}();
-
 using DeviceOutputs = std::vector<std::shared_ptr<DeviceOutput>>;
 
 class OnDevice : public testing::TestWithParam<Route>
@@ -33,7 +26,7 @@ class OnDevice : public testing::TestWithParam<Route>
 protected:
   void SetUp() override
   {
-    ASSERT_TRUE(IsSet);
+    SKIP_UNLESS_GRAPHICS()
     SKIP_WITHOUT_DOUBLE_PRECISION()
     this->Edited.SendAll(*this->Deformer, GetParam());
     this->Request.MayStayOnDevice = true;

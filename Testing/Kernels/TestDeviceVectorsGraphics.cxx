@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All tests of vectors on a device, on one that appears to be a graphics card with memory of its
-// own; and what passes between it and the host.
+// What passes between the host and vectors on a device with memory of its own.
 #include "ChainMailModel.h"
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
@@ -23,20 +22,13 @@ using namespace deformvolume;
 namespace
 {
 
-// Before there is a context.
-const bool IsSet = []
-{
-  FakeDriver::Get().IsGraphics = true;
-  return true;
-}();
-
 // A few numbers that the host and the device tell each other.
 constexpr std::uint64_t Few = 256;
 
 class Transfers : public testing::Test
 {
 protected:
-  void SetUp() override { ASSERT_TRUE(IsSet); }
+  void SetUp() override { SKIP_UNLESS_GRAPHICS() }
 
   void Reset()
   {

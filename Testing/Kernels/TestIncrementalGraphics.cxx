@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All tests of updates of a part of the output on a device that appears to be a graphics card, with
-// memory of its own and groups of work-items; what such a device sends; and copies from it that
-// fail.
+// What updates of a part of the output send from and to a device with memory of its own; and copies
+// from it that fail.
 #include "EditedVolume.h"
 #include "FakeDriver.h"
 
@@ -12,19 +11,12 @@ using namespace deformvolume;
 namespace
 {
 
-// Before there is a context.
-const bool IsSet = []
-{
-  FakeDriver::Get().IsGraphics = true;
-  return true;
-}();
-
 class IncrementalGraphics : public testing::TestWithParam<Route>
 {
 protected:
   void SetUp() override
   {
-    ASSERT_TRUE(IsSet);
+    SKIP_UNLESS_GRAPHICS()
     SKIP_WITHOUT_DOUBLE_PRECISION()
     this->Edited.Blanked.resize(GetNumberOfPoints(this->Edited.Shape.VertexExtent));
     this->Edited.SendAll(this->Deformer, GetParam());

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All tests of the resampler MeshRasterization on a device that appears to be a graphics card, with
-// memory of its own and groups of work-items.
-#include "DeviceNeeds.h"
+// What the lists of tetrahedra send from and to a device with memory of its own.
 #include "FakeDriver.h"
 #include "Tetrahedron.h"
 #include "TetrahedronLists.h"
@@ -13,28 +11,11 @@
 
 using namespace deformvolume;
 
-namespace
-{
-
-// Before there is a context.
-const bool IsSet = []
-{
-  FakeDriver::Get().IsGraphics = true;
-  return true;
-}();
-
-} // namespace
-
-TEST(MeshRasterizationGraphics, TheDeviceIsAGraphicsCard)
-{
-  ASSERT_TRUE(IsSet);
-  EXPECT_FALSE(HasVectors());
-}
-
 // What is counted stays on the device: a length and two numbers come to the host, however many
 // tiles there are.
 TEST(MeshRasterizationGraphics, ListsStayOnTheDevice)
 {
+  SKIP_UNLESS_GRAPHICS()
   const std::vector<cl_int> positions{ 0, 0, 0, 0, 256000, 0, 0, 0, 0, 256000, 0, 0, 0, 0, 256000,
     0 };
   const std::vector<Tetrahedron> tetrahedra(1000, Tetrahedron{ { 0, 1, 2, 3 } });

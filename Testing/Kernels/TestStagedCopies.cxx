@@ -37,7 +37,7 @@ Bytes MakeBytes(std::size_t size, unsigned int seed)
 class Staged : public testing::Test
 {
 protected:
-  Staged()
+  void SetUp() override{ SKIP_UNLESS_GRAPHICS() } Staged()
   {
     FakeDriver::Get() = FakeDriver();
     FakeDriver::Get().IsGraphics = true;

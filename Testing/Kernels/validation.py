@@ -4,7 +4,7 @@
 
     python3 Testing/Kernels/validation.py FOLDER [--write]
 
-FOLDER has the programs of the tests (build/vtk/bin). They are run, which takes some 20 seconds, and the tables are
+FOLDER has the tests of the engine (build/vtk/bin). Some are run, which takes some 20 seconds, and the tables are
 printed. With --write they take the place of those in the document.
 """
 import argparse
@@ -26,11 +26,11 @@ TESTS = {
 def measure(folder):
     """What the tests have recorded: {test: {name: value}}. Ends where one fails."""
     values = {}
-    for program, pattern in TESTS.items():
+    for source, pattern in TESTS.items():
         with tempfile.TemporaryDirectory() as temporary:
             path = pathlib.Path(temporary) / "results.json"
-            subprocess.run([folder / program, f"--gtest_filter={pattern}", f"--gtest_output=json:{path}"],
-                           check=True, stdout=subprocess.DEVNULL)
+            subprocess.run([folder / "DeformVolumeEngineTests", f"--files={source}", f"--gtest_filter={pattern}",
+                            f"--gtest_output=json:{path}"], check=True, stdout=subprocess.DEVNULL)
             suites = json.loads(path.read_text(encoding="utf-8"))["testsuites"]
         for test in (test for suite in suites for test in suite["testsuite"]):
             values[test["name"]] = {name: float(value) for name, value in test.items()
