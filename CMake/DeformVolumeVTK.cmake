@@ -53,7 +53,7 @@ if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
 endif ()
 if (BUILD_TESTING)
   list(APPEND deformvolume_vtk_components
-    FiltersHybrid IOExodus IOGeometry TestingCore TestingRendering)
+    FiltersHybrid IOExodus IOGeometry TestingCore)
 endif ()
 
 # VTK 9.6's own functions pass empty arguments on, of which CMake 3.31 and later warn.

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Volumes that are cut, carved and split.
+#include "SceneTesting.h"
+
+#include "vtkCarveVolume.h"
+#include "vtkCorotationalDeformation.h"
+#include "vtkCutVolume.h"
+
+#include <vtkCellArray.h>
+#include <vtkLookupTable.h>
+#include <vtkPolyData.h>
+#include <vtkSphere.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
+using namespace sceneTesting;
+
+namespace
+{
+
+// A rounded block in layers, whose surface lies two voxels within the volume: its values fall off
+// there, so that only what cuts and carves leave is as sharp as the output's voxels.
+vtkSmartPointer<vtkImageData> MakeBlock(const Extent& extent)
+{
+  auto volume = MakeImage(extent);
+  AddValues<float>(volume, "layer", [](const glm::dvec3& p) { return std::cos(0.8 * p.z); });
+  AddValues<float>(volume, "value",
+    [&extent](const glm::dvec3& p)
+    {
+      glm::dvec3 outside;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double depth = std::min(p[axis] - extent[2 * axis], extent[2 * axis + 1] - p[axis]);
+        outside[axis] = std::max(4.0 - depth, 0.0);
+      }
+      return 25.0 * (4.0 - glm::length(outside));
+    });
+  return volume;
+}
+
+// Shows an edited block. Where it is cut, the background takes half of the contrast of layers.
+void AddBlock(vtkRenderer* renderer, vtkDeformVolumeFilter* filter, double spacing)
+{
+  SetSampling(filter, spacing);
+  AddSurface(renderer, filter->GetOutputPort(), "layer",
+    MakeColours(-1.0, 1.0, { { 0.75, 0.45, 0.35 }, { 0.95, 0.85, 0.7 } }));
+}
+
+vtkSmartPointer<vtkDataSet> MakeField(vtkImageData* volume, const WorldMap& map, Version version)
+{
+  vtkNew<vtkImageData> field;
+  field->CopyStructure(volume);
+  SetDisplacements(field, map);
+  return Shifted(field, version);
+}
+
+// A line from y = first to last, at x of each of its points.
+vtkSmartPointer<vtkPolyData> MakeLine(
+  const glm::dvec3& start, const glm::dvec3& step, int number, const WorldMap& map)
+{
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> lines;
+  lines->InsertNextCell(number);
+  for (int i = 0; i < number; ++i)
+  {
+    const glm::dvec3 point = map(start + static_cast<double>(i) * step);
+    lines->InsertCellPoint(points->InsertNextPoint(&point.x));
+  }
+  auto line = vtkSmartPointer<vtkPolyData>::New();
+  line->SetPoints(points);
+  line->SetLines(lines);
+  return line;
+}
+
+} // namespace
+
+namespace sceneTesting
+{
+
+// A wedge: the sheet ends within the block, and what is above its end is turned apart. Spoiled: not
+// cut, so that the block is stretched over the gap.
+void DrawHardCut(vtkRenderWindow* window, Version version)
+{
+  const auto block = MakeBlock({ { -14, 14, -10, 10, -2, 24 } });
+  vtkNew<vtkCutVolume> cut;
+  cut->SetInputData(block);
+  cut->SetSweepVector(0.0, 20.0, 0.0);
+  if (version != Version::SPOILED)
+  {
+    cut->SetSheetData(
+      MakeLine(glm::dvec3(0.3, -10.0, 7.0), glm::dvec3(0.0, 0.0, 18.0), 2, Shift(0, 0, 0)));
+  }
+  const auto open = [](const glm::dvec3& p)
+  { return p + glm::dvec3((p.x < 0.3 ? -0.35 : 0.35) * std::max(p.z - 7.0, 0.0), 0.0, 0.0); };
+  vtkNew<vtkDeformVolumeFilter> filter;
+  filter->SetInputConnection(cut->GetOutputPort());
+  filter->SetDeformationData(MakeField(block, open, version));
+  AddBlock(AddRenderer(window, glm::dvec3(0.0, 0.0, 10.0), glm::dvec3(30.0, -80.0, 45.0), 42.0),
+    filter, 0.25);
+}
+
+// A curved sheet, pulled open: whole tetrahedra left out, and beside it divided. Spoiled: whole
+// tetrahedra left out in both.
+void DrawSmoothCut(vtkRenderWindow* window, Version version)
+{
+  const auto block = MakeBlock({ { -9, 9, -20, 20, -2, 8 } });
+  const auto sheet = [](double y) { return 2.5 * std::sin(0.25 * y); };
+  const auto open = [&](const glm::dvec3& p)
+  { return p + glm::dvec3(p.x < sheet(p.y) ? -2.0 : 2.0, 0.0, 0.0); };
+  for (const bool isSmooth : { false, true })
+  {
+    vtkNew<vtkCutVolume> cut;
+    cut->SetInputData(block);
+    cut->SetSheetData(MakeLine(glm::dvec3(0.0, -25.0, -5.0), glm::dvec3(0.0, 0.5, 0.0), 101,
+      [&](const glm::dvec3& p) { return p + glm::dvec3(sheet(p.y), 0.0, 0.0); }));
+    cut->SetSweepVector(0.0, 0.0, 20.0);
+    cut->SetSmoothCut(isSmooth && version != Version::SPOILED);
+    vtkNew<vtkDeformVolumeFilter> filter;
+    filter->SetInputConnection(cut->GetOutputPort());
+    filter->SetDeformationData(MakeField(block, open, version));
+    AddBlock(AddRenderer(window, glm::dvec3(0.0, 0.0, 3.0), glm::dvec3(0.0, -50.0, 70.0), 40.0,
+               isSmooth ? 1 : 0, 2),
+      filter, 0.125);
+  }
+}
+
+// A bowl carved out of whole tetrahedra, and beside it with a smooth boundary. Spoiled: whole
+// tetrahedra in both.
+void DrawSmoothBoundary(vtkRenderWindow* window, Version version)
+{
+  const auto block = MakeBlock({ { -10, 10, -16, 16, -4, 12 } });
+  vtkNew<vtkSphere> sphere;
+  sphere->SetCenter(0.0, 0.0, 11.0);
+  sphere->SetRadius(6.5);
+  for (const bool isSmooth : { false, true })
+  {
+    vtkNew<vtkCarveVolume> carve;
+    carve->SetInputData(block);
+    carve->SetImplicitFunction(sphere);
+    carve->SetSmoothBoundary(isSmooth && version != Version::SPOILED);
+    vtkNew<vtkDeformVolumeFilter> filter;
+    filter->SetInputConnection(carve->GetOutputPort());
+    filter->SetDeformationData(MakeField(block, Shift(0, 0, 0), version));
+    AddBlock(AddRenderer(window, glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0, -60.0, 60.0), 34.0,
+               isSmooth ? 1 : 0, 2),
+      filter, 0.125);
+  }
+}
+
+// A beam that is held at both ends and cut from below: its mesh is split along the sheet, and
+// gapes. Spoiled: the volume is stretched over the gap.
+void DrawSplit(vtkRenderWindow* window, Version version)
+{
+  const auto beam = MakeBlock({ { -22, 22, -7, 7, -2, 17 } });
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetInputData(beam);
+  lattice->SetNumberOfNodes(25, 25, 25);
+  lattice->SetMargin(0.5);
+  lattice->Update();
+  vtkNew<vtkUnstructuredGrid> mesh;
+  mesh->ShallowCopy(lattice->GetOutput());
+  vtkNew<vtkUnsignedCharArray> fixed;
+  fixed->SetName("Fixed");
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    fixed->InsertNextValue(std::abs(GetPoint(mesh, i).x) > 20.0);
+  }
+  mesh->GetPointData()->AddArray(fixed);
+  vtkNew<vtkCorotationalDeformation> elastic;
+  elastic->SetInputData(mesh);
+  elastic->SetSheetData(
+    MakeLine(glm::dvec3(0.0, -10.0, -10.0), glm::dvec3(0.0, 0.0, 21.0), 2, Shift(0, 0, 0)));
+  elastic->SetSweepVector(0.0, 20.0, 0.0);
+  elastic->SetGravity(0.0, 0.0, -80.0);
+  elastic->Update();
+  vtkNew<vtkDeformVolumeFilter> filter;
+  filter->SetInputData(beam);
+  filter->SetDeformationData(Shifted(elastic->GetOutput(), version));
+  filter->SetOpenSplits(version != Version::SPOILED);
+  AddBlock(AddRenderer(window, glm::dvec3(0.0, 0.0, 2.0), glm::dvec3(30.0, -90.0, 25.0), 46.0),
+    filter, 0.25);
+}
+
+} // namespace sceneTesting
