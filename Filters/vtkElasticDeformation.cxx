@@ -292,7 +292,7 @@ void vtkElasticDeformation::Advance(ElasticSimulation& simulation, vtkPointSet* 
   deformvolume::ElasticSession& session = internals.Session;
   ElasticSimulation::Frame frame;
   frame.Held = deformvolume::ReadHandles(
-    handles, this->HandleRadius, session.GetMesh().Body, session.GetSettings());
+    handles, this->HandleRadius, session.GetMesh(), session.GetSettings());
   frame.Loads.Gravity = { this->Gravity[0], this->Gravity[1], this->Gravity[2] };
   frame.Loads.Forces = session.GetMesh().Forces;
 

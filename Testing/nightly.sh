@@ -29,6 +29,8 @@ run "all tests" bash Testing/run.sh --all vtk paraview-all asan-all
 run "configuration of long tests" cmake --preset vtk -DDEFORMVOLUME_LONG_TESTS=ON
 run "long tests" ctest --preset vtk -R Oclgrind
 run "configuration" cmake --preset vtk -DDEFORMVOLUME_LONG_TESTS=OFF
+run "edits by cell, as on a graphics card" build/vtk/bin/DeformVolumeEngineTests --device=gpu-like \
+  --files=TestConnectivity,TestIncremental,TestIncrementalFolds,TestIncrementalOutputs '--gtest_filter=*ByCell'
 seed=$(date +%s)
 run "random pipelines from seed $seed" build/vtk/bin/DeformVolumeFuzz --seed "$seed" \
   --seconds "$seconds" --keep-going

@@ -91,25 +91,27 @@ void ReadMaterials(vtkUnstructuredGrid* grid, const BodySettings& settings, Body
   }
 }
 
-// The diagonal of the box of all nodes of tetrahedra.
-double FindSize(const ElasticBody& body)
+// Which nodes tetrahedra use, and the diagonal of the box of these.
+void FindUsed(BodyMesh& mesh)
 {
+  mesh.IsUsed.assign(mesh.Body.Points.size(), 0);
   IndexBounds box;
-  for (const Tetrahedron& tetrahedron : body.Tetrahedra)
+  for (const Tetrahedron& tetrahedron : mesh.Body.Tetrahedra)
   {
     for (const std::int32_t node : tetrahedron)
     {
-      box.Add(body.Points[static_cast<std::size_t>(node)]);
+      mesh.IsUsed[static_cast<std::size_t>(node)] = 1;
+      box.Add(mesh.Body.Points[static_cast<std::size_t>(node)]);
     }
   }
-  return glm::distance(box.Min, box.Max);
+  mesh.Size = glm::distance(box.Min, box.Max);
 }
 
-// Adds the nodes that a place holds. isUsed: by a tetrahedron; isTaken: by another handle.
+// Adds the nodes that a place holds. isTaken: by another handle.
 void Hold(const glm::dvec3& place, double radius, const glm::dvec3& displacement,
-  const ElasticBody& body, const std::vector<unsigned char>& isUsed,
-  std::vector<unsigned char>& isTaken, std::vector<HeldNode>& held)
+  const BodyMesh& mesh, std::vector<unsigned char>& isTaken, std::vector<HeldNode>& held)
 {
+  const ElasticBody& body = mesh.Body;
   const std::size_t before = held.size();
   const auto add = [&](std::size_t node)
   {
@@ -124,12 +126,12 @@ void Hold(const glm::dvec3& place, double radius, const glm::dvec3& displacement
   for (std::size_t node = 0; node < body.Points.size(); ++node)
   {
     const double distance = glm::distance(body.Points[node], place);
-    if (distance < least && isUsed[node] != 0)
+    if (distance < least && mesh.IsUsed[node] != 0)
     {
       least = distance;
       nearest = node;
     }
-    if (radius > 0.0 && distance <= radius && isUsed[node] != 0)
+    if (radius > 0.0 && distance <= radius && mesh.IsUsed[node] != 0)
     {
       add(node);
     }
@@ -246,29 +248,21 @@ BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings)
     mesh.Forces = ReadAll(force, 1.0, FORCE);
   }
   CheckBody(mesh.Body);
-  mesh.Size = FindSize(mesh.Body);
+  FindUsed(mesh);
   return mesh;
 }
 
 std::vector<HeldNode> ReadHandles(
-  vtkPointSet* handles, double radius, const ElasticBody& body, const BodySettings& settings)
+  vtkPointSet* handles, double radius, const BodyMesh& mesh, const BodySettings& settings)
 {
   std::vector<HeldNode> held;
   const HandlePlaces places = ReadHandlePlaces(handles, "mesh");
-  std::vector<unsigned char> isTaken(body.Points.size(), 0);
-  std::vector<unsigned char> isUsed(body.Points.size(), 0);
-  for (const Tetrahedron& tetrahedron : body.Tetrahedra)
-  {
-    for (const std::int32_t node : tetrahedron)
-    {
-      isUsed[static_cast<std::size_t>(node)] = 1;
-    }
-  }
+  std::vector<unsigned char> isTaken(mesh.Body.Points.size(), 0);
   for (std::size_t i = 0; i < places.Rest.size(); ++i)
   {
     const glm::dvec3 rest = places.Rest[i] * settings.UnitLength;
     const glm::dvec3 now = places.Now[i] * settings.UnitLength;
-    Hold(rest, radius * settings.UnitLength, now - rest, body, isUsed, isTaken, held);
+    Hold(rest, radius * settings.UnitLength, now - rest, mesh, isTaken, held);
   }
   return held;
 }

@@ -49,7 +49,8 @@ struct BodyMesh
   std::vector<glm::dvec3> Forces; // of nodes, in N; empty: none
   /// The cell that each tetrahedron is.
   std::vector<vtkIdType> Cells;
-  double Size = 0.0; // of the diagonal of its box, in m
+  std::vector<unsigned char> IsUsed; // nodes: by a tetrahedron
+  double Size = 0.0;                 // of the diagonal of its box, in m
 };
 
 /// What ReadBody depends on.
@@ -65,7 +66,7 @@ BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings);
 /// handle counts where several hold a node; fixed nodes stay. Throws an Error where a handle holds
 /// no node.
 std::vector<HeldNode> ReadHandles(
-  vtkPointSet* handles, double radius, const ElasticBody& body, const BodySettings& settings);
+  vtkPointSet* handles, double radius, const BodyMesh& mesh, const BodySettings& settings);
 
 } // namespace deformvolume
 

@@ -115,6 +115,7 @@ BodyMesh ElasticSession::WithCuts(const BodyMesh& whole) const
     AppendCopies(mesh.Body.Points, cut.Origins);
     AppendCopies(mesh.Body.Fixed, cut.Origins);
     AppendCopies(mesh.Forces, cut.Origins);
+    AppendCopies(mesh.IsUsed, cut.Origins);
   }
   return mesh;
 }
