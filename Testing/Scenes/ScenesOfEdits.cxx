@@ -15,6 +15,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <functional>
 
 using namespace sceneTesting;
 
@@ -57,16 +58,15 @@ vtkSmartPointer<vtkDataSet> MakeField(vtkImageData* volume, const WorldMap& map,
   return Shifted(field, version);
 }
 
-// A line from y = first to last, at x of each of its points.
-vtkSmartPointer<vtkPolyData> MakeLine(
-  const glm::dvec3& start, const glm::dvec3& step, int number, const WorldMap& map)
+// A line through a number of places, told by a number from 0 to 1.
+vtkSmartPointer<vtkPolyData> MakeLine(int number, const std::function<glm::dvec3(double)>& place)
 {
   vtkNew<vtkPoints> points;
   vtkNew<vtkCellArray> lines;
   lines->InsertNextCell(number);
   for (int i = 0; i < number; ++i)
   {
-    const glm::dvec3 point = map(start + static_cast<double>(i) * step);
+    const glm::dvec3 point = place(i / (number - 1.0));
     lines->InsertCellPoint(points->InsertNextPoint(&point.x));
   }
   auto line = vtkSmartPointer<vtkPolyData>::New();
@@ -90,8 +90,7 @@ void DrawHardCut(vtkRenderWindow* window, Version version)
   cut->SetSweepVector(0.0, 20.0, 0.0);
   if (version != Version::SPOILED)
   {
-    cut->SetSheetData(
-      MakeLine(glm::dvec3(0.3, -10.0, 7.0), glm::dvec3(0.0, 0.0, 18.0), 2, Shift(0, 0, 0)));
+    cut->SetSheetData(MakeLine(2, [](double t) { return glm::dvec3(0.3, -10.0, 7.0 + 18.0 * t); }));
   }
   const auto open = [](const glm::dvec3& p)
   { return p + glm::dvec3((p.x < 0.3 ? -0.35 : 0.35) * std::max(p.z - 7.0, 0.0), 0.0, 0.0); };
@@ -114,8 +113,12 @@ void DrawSmoothCut(vtkRenderWindow* window, Version version)
   {
     vtkNew<vtkCutVolume> cut;
     cut->SetInputData(block);
-    cut->SetSheetData(MakeLine(glm::dvec3(0.0, -25.0, -5.0), glm::dvec3(0.0, 0.5, 0.0), 101,
-      [&](const glm::dvec3& p) { return p + glm::dvec3(sheet(p.y), 0.0, 0.0); }));
+    cut->SetSheetData(MakeLine(101,
+      [&](double t)
+      {
+        const double y = 50.0 * t - 25.0;
+        return glm::dvec3(sheet(y), y, -5.0);
+      }));
     cut->SetSweepVector(0.0, 0.0, 20.0);
     cut->SetSmoothCut(isSmooth && version != Version::SPOILED);
     vtkNew<vtkDeformVolumeFilter> filter;
@@ -172,7 +175,7 @@ void DrawSplit(vtkRenderWindow* window, Version version)
   vtkNew<vtkCorotationalDeformation> elastic;
   elastic->SetInputData(mesh);
   elastic->SetSheetData(
-    MakeLine(glm::dvec3(0.0, -10.0, -10.0), glm::dvec3(0.0, 0.0, 21.0), 2, Shift(0, 0, 0)));
+    MakeLine(2, [](double t) { return glm::dvec3(0.0, -10.0, 21.0 * t - 10.0); }));
   elastic->SetSweepVector(0.0, 20.0, 0.0);
   elastic->SetGravity(0.0, 0.0, -80.0);
   elastic->Update();
