@@ -5,13 +5,16 @@
 # run at once, and a kernel is compiled once for each of them.
 #
 # Usage: WithKernelCache.sh FOLDER COMMAND [ARGUMENT]...
+set -euo pipefail
+
 folder=$1
 shift
 mkdir -p "$folder"
 number=1
 # The lock is held by the command, which inherits the descriptor.
 exec 9>"$folder/$number.lock"
-until flock --nonblock 9; do
+until flock --nonblock --conflict-exit-code 75 9; do
+  [ $? -eq 75 ] || exit 1
   number=$((number + 1))
   exec 9>"$folder/$number.lock"
 done

@@ -7,7 +7,7 @@
 #   --all   runs all tests, and without PRESET those of vtk, paraview (the plugin) and asan (the
 #           engine with the sanitizers)
 #   PRESET  of CMakePresets.json, in place of vtk
-# DEFORMVOLUME_CMAKE_OPTIONS: further options of CMake for all presets.
+# DEFORMVOLUME_CMAKE_OPTIONS: further options of CMake for all presets, which keep them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -92,20 +92,12 @@ void DeviceMask::Write(
   Extent box{ { 0, -1, 0, -1, 0, -1 } };
   for (const Extent& change : changes)
   {
-    if (change[4] > planes[1] || change[5] < planes[0])
+    if (change[4] <= planes[1] && change[5] >= planes[0])
     {
-      continue;
-    }
-    const bool isFirst = box[0] > box[1];
-    for (int i = 0; i < 6; ++i)
-    {
-      const bool isBegin = i % 2 == 0;
-      box[i] = isFirst ? change[i]
-        : isBegin      ? std::min(box[i], change[i])
-                       : std::max(box[i], change[i]);
+      Include(box, change);
     }
   }
-  if (box[0] > box[1])
+  if (GetNumberOfPoints(box) == 0)
   {
     return;
   }

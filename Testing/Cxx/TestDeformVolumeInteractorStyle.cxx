@@ -906,6 +906,7 @@ void TestPicture()
   viewer.Object->ShowStatusOff();
   const Pixel body{ { 255, 204, 153 } };
   const Pixel handle{ { 90, 230, 120 } };
+  const Pixel stroke{ { 255, 110, 90 } };
   const std::string timer = Viewer::Timer();
   const glm::dvec2 middle(Middle[0], Middle[1]);
 
@@ -916,7 +917,8 @@ void TestPicture()
   VERIFY(std::abs(rest.Count / (3.141593 * 3600.0) - 1.0) < 0.17);
   VERIFY_EQUAL(Shown(viewer.Window, handle).Count, 0);
 
-  // A handle is a square of nine pixels, in front of all.
+  // A handle is a square of nine pixels, in front of all; a pixel more or less on each side makes
+  // 64 to 100.
   viewer.Replay(Viewer::Key('2') + timer + Viewer::Key('p', 15.0, 14.0) + timer);
   const Shown pinned(viewer.Window, handle);
   VERIFY(std::abs(pinned.Count - 81) <= 18);
@@ -939,11 +941,19 @@ void TestPicture()
   VERIFY(glm::length(held.Mean - glm::dvec2(5.0, 14.0)) < 0.15);
   VERIFY(dragged.Left < rest.Left - 1.0);
 
-  // What a sphere carves out is gone, and nothing else. It goes through the ball where it is nearer
-  // than two units to the middle of the sphere.
+  // What a sphere carves out is gone, and nothing else. Within two units of its middle the sphere
+  // reaches through the whole ball.
   viewer.Object->SetCarveRadius(9.0);
   viewer.Replay(Viewer::Key('u') + timer + Viewer::Key('v') +
-    Viewer::Mouse("LeftButtonPressEvent", 18.0, 13.5) + timer +
+    Viewer::Mouse("LeftButtonPressEvent", 18.0, 13.5) + timer);
+  const Shown circle(viewer.Window, stroke);
+  VERIFY(circle.Count > 100);
+  for (int i = 0; i < WindowSize * WindowSize; ++i)
+  {
+    const double distance = glm::length(Shown::GetPlace(i) - glm::dvec2(18.0, 13.5));
+    VERIFY(!circle.IsThere[i] || std::abs(distance - 9.0) < 0.2);
+  }
+  viewer.Replay(
     Viewer::Mouse("LeftButtonReleaseEvent", 18.0, 13.5) + timer + Viewer::Key('t') + timer);
   const Shown carved(viewer.Window, body);
   int left = 0;
@@ -957,6 +967,16 @@ void TestPicture()
   VERIFY_EQUAL(left, 0);
   VERIFY_EQUAL(lost, 0);
   VERIFY(carved.Count > rest.Count / 4);
+
+  // The stroke of a cut, while the button is down.
+  viewer.Replay(Viewer::Key('u') + timer + Viewer::Key('c') +
+    Viewer::Mouse("LeftButtonPressEvent", 6.0, 13.5) + Viewer::Mouse("MouseMoveEvent", 12.0, 13.5) +
+    timer);
+  const Shown cut(viewer.Window, stroke);
+  VERIFY(cut.Count > 100);
+  VERIFY(glm::length(cut.Mean - glm::dvec2(9.0, 13.5)) < 0.15);
+  viewer.Replay(Viewer::Mouse("LeftButtonReleaseEvent", 12.0, 13.5) + timer + Viewer::Key('t') +
+    Viewer::Key('u') + timer);
 
   // A measure is a line of two pixels with a square at each end.
   viewer.Replay(Viewer::Key('m') + Viewer::Mouse("LeftButtonPressEvent", 8.0, 12.0) +

@@ -31,4 +31,11 @@ std::vector<deformvolume::Resampling> GetExactMethods();
     GTEST_SKIP() << "work-items of the device have no vector registers for themselves";            \
   }
 
+/// For tests that include FakeDriver.h.
+#define SKIP_UNLESS_GRAPHICS()                                                                     \
+  if (!FakeDriver::Get().IsGraphics)                                                               \
+  {                                                                                                \
+    GTEST_SKIP() << "for --device=gpu-like";                                                       \
+  }
+
 #endif

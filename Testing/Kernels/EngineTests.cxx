@@ -4,9 +4,8 @@
 //
 // Usage: DeformVolumeEngineTests [--files=NAME,...] [--device=KIND] [OPTION OF GOOGLETEST]...
 //   --files   only tests of these sources, such as --files=TestColumns,TestFolded
-//   --device  gpu-like: the device appears to be a graphics card; gpu-like-no-double: one that has
-//   no
-//             double precision
+//   --device  gpu-like: the device appears to be a graphics card
+//             gpu-like-no-double: to be one without double precision
 #include "Device.h"
 #include "FakeDriver.h"
 
@@ -96,6 +95,10 @@ int Run(int argc, char* argv[])
     if (argument.rfind("--files=", 0) == 0)
     {
       files = Split(argument.substr(argument.find('=') + 1), ',');
+      if (files.empty())
+      {
+        return Fail("--files names no source");
+      }
     }
     else if (argument == "--device=gpu-like" || argument == "--device=gpu-like-no-double")
     {
@@ -128,7 +131,9 @@ int Run(int argc, char* argv[])
       return Fail("no tests come from a source " + missing);
     }
   }
-  return RUN_ALL_TESTS();
+  const int result = RUN_ALL_TESTS();
+  return testing::UnitTest::GetInstance()->test_to_run_count() > 0 ? result
+                                                                   : Fail("no test was selected");
 }
 
 } // namespace

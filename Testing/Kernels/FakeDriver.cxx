@@ -20,6 +20,14 @@ FakeDriver& FakeDriver::Get()
   return driver;
 }
 
+void FakeDriver::Reset()
+{
+  FakeDriver fresh;
+  fresh.IsGraphics = Get().IsGraphics;
+  fresh.HasDouble = Get().HasDouble;
+  Get() = fresh;
+}
+
 namespace
 {
 

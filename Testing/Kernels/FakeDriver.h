@@ -38,12 +38,6 @@ private:
   std::atomic<T> Value;
 };
 
-#define SKIP_UNLESS_GRAPHICS()                                                                     \
-  if (!FakeDriver::Get().IsGraphics)                                                               \
-  {                                                                                                \
-    GTEST_SKIP() << "for --device=gpu-like";                                                       \
-  }
-
 struct FakeDriver
 {
   /// A kernel of a program as the driver gets it.
@@ -104,6 +98,8 @@ struct FakeDriver
   Counter<int> Writes;
 
   static FakeDriver& Get();
+  /// Everything as at first, but the kind of the device, which cannot change in a process.
+  static void Reset();
 };
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copies of ChainMail from a device with memory of its own that fail.
 #include "ChainMailModel.h"
+#include "DeviceNeeds.h"
 #include "FakeDriver.h"
 
 #include <gtest/gtest.h>

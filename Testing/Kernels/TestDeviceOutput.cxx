@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Outputs that stay on a device that appears to be a graphics card, with memory of its own.
+#include "DeviceNeeds.h"
 #include "EditedVolume.h"
 #include "FakeDriver.h"
 

@@ -17,7 +17,7 @@ namespace
 class Faults : public testing::Test
 {
 protected:
-  ~Faults() override { FakeDriver::Get() = FakeDriver(); }
+  ~Faults() override { FakeDriver::Reset(); }
 
   DeformerCase Case = MakeCase({ { 0, 21, 0, 18, -1, 17 } }, { { 1, 1, 1 } }, MakeJitter(5, 0.15));
   reference::Result Reference = ResampleByReference(this->Case);

@@ -2,6 +2,7 @@
 // What is different on a graphics card, on whatever device there is: memory of its own, no double
 // precision, and groups of work-items.
 #include "DeformerCase.h"
+#include "DeviceNeeds.h"
 #include "DeviceVectors.h"
 #include "FakeDriver.h"
 #include "RefinedMesh.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What updates of a part of the output send from and to a device with memory of its own; and copies
 // from it that fail.
+#include "DeviceNeeds.h"
 #include "EditedVolume.h"
 #include "FakeDriver.h"
 

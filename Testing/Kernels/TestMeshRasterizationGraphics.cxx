@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the lists of tetrahedra send from and to a device with memory of its own.
+#include "DeviceNeeds.h"
 #include "FakeDriver.h"
 #include "Tetrahedron.h"
 #include "TetrahedronLists.h"

@@ -2,6 +2,7 @@
 // Copies to and from a device with memory of its own that go through page-locked memory in
 // portions: copies that fail, threads that are late, boxes, and whole outputs.
 #include "DeformerCase.h"
+#include "DeviceNeeds.h"
 #include "DeviceVectors.h"
 #include "FakeDriver.h"
 #include "HostMemory.h"
@@ -37,17 +38,9 @@ Bytes MakeBytes(std::size_t size, unsigned int seed)
 class Staged : public testing::Test
 {
 protected:
-  void SetUp() override{ SKIP_UNLESS_GRAPHICS() } Staged()
-  {
-    FakeDriver::Get() = FakeDriver();
-    FakeDriver::Get().IsGraphics = true;
-  }
-  ~Staged() override
-  {
-    const bool isGraphics = FakeDriver::Get().IsGraphics;
-    FakeDriver::Get() = FakeDriver();
-    FakeDriver::Get().IsGraphics = isGraphics;
-  }
+  Staged() { FakeDriver::Reset(); }
+  ~Staged() override { FakeDriver::Reset(); }
+  void SetUp() override { SKIP_UNLESS_GRAPHICS() }
 
   const cl::CommandQueue& GetQueue() { return this->Device.GetQueue(); }
   cl::Buffer MakeBuffer(std::size_t bytes)

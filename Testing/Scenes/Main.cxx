@@ -4,11 +4,15 @@
 // Usage: DeformVolumeScenes SCENE|all -D FOLDER_OF_BASELINES -T FOLDER_OF_OUTPUT [--update]
 #include "SceneTesting.h"
 
+#include <algorithm>
+#include <iterator>
+
 using namespace sceneTesting;
 
 namespace
 {
 
+// As in CMakeLists.txt.
 const Scene Scenes[] = {
   { "VolumeRendering", 3.5, DrawVolumeRendering },
   { "Isosurface", 3.3, DrawIsosurface },
@@ -30,11 +34,15 @@ int main(int argc, char* argv[])
   std::string baselines;
   std::string output;
   bool isUpdate = false;
+  bool isRight = argc > 1;
   for (int i = 2; i < argc; ++i)
   {
     const std::string option = argv[i];
-    isUpdate = isUpdate || option == "--update";
-    if (i + 1 < argc && option == "-D")
+    if (option == "--update")
+    {
+      isUpdate = true;
+    }
+    else if (i + 1 < argc && option == "-D")
     {
       baselines = argv[++i];
     }
@@ -42,19 +50,16 @@ int main(int argc, char* argv[])
     {
       output = argv[++i];
     }
-  }
-  const std::string name = argc > 1 ? argv[1] : "";
-  int drawn = 0;
-  int failed = 0;
-  for (const Scene& scene : Scenes)
-  {
-    if (name == scene.Name || name == "all")
+    else
     {
-      ++drawn;
-      failed += !(isUpdate ? WriteBaseline(scene, baselines) : Test(scene, baselines, output));
+      isRight = false;
     }
   }
-  if (drawn == 0 || baselines.empty() || (output.empty() && !isUpdate))
+  const std::string name = argc > 1 ? argv[1] : "";
+  const bool isScene = name == "all" ||
+    std::any_of(
+      std::begin(Scenes), std::end(Scenes), [&](const Scene& scene) { return name == scene.Name; });
+  if (!isRight || !isScene || baselines.empty() || (output.empty() && !isUpdate))
   {
     std::cerr << "Usage: " << argv[0] << " SCENE|all -D BASELINES -T OUTPUT [--update]\nScenes:";
     for (const Scene& scene : Scenes)
@@ -63,6 +68,14 @@ int main(int argc, char* argv[])
     }
     std::cerr << '\n';
     return EXIT_FAILURE;
+  }
+  int failed = 0;
+  for (const Scene& scene : Scenes)
+  {
+    if (name == scene.Name || name == "all")
+    {
+      failed += !(isUpdate ? WriteBaseline(scene, baselines) : Test(scene, baselines, output));
+    }
   }
   return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -171,8 +171,9 @@ void DrawLabels(vtkRenderWindow* window, Version version)
   }
 }
 
-// A bulge that is pushed over what is beside it. Where two upright parts overlap, the lower cells
-// are in front. Spoiled: indices run the other way, so that the other part is in front.
+// A bulge that is pushed over what is beside it. Where two upright parts overlap, the cells
+// with lower indices are in front. Spoiled: indices run the other way, so that the other part is in
+// front.
 void DrawFold(vtkRenderWindow* window, Version version)
 {
   auto volume = MakeImage({ { -20, 20, -16, 16, -1, 1 } });

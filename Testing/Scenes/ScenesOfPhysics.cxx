@@ -41,7 +41,7 @@ void AddPolyData(
 namespace sceneTesting
 {
 
-// Soft tissue with a stiff ball in it, on the ground, dragged by two handles. Spoiled: the ball is
+// Soft tissue with a stiff ball in it, on the ground, dragged by a handle. Spoiled: the ball is
 // as soft as the rest.
 void DrawChainMail(vtkRenderWindow* window, Version version)
 {
