@@ -10,6 +10,8 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <glm/geometric.hpp>
+
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -435,6 +437,40 @@ void TestDeformedVolume()
   VERIFY_EQUAL(deform->GetOutput()->GetDimensions()[2], 33);
 }
 
+// Handles hold what lies within the radius, in units of the mesh; the first one counts where two
+// do.
+template <typename Filter>
+void TestHeldNodes()
+{
+  const auto bar = MakeBar(0.001); // 10 x 10 x 30 mm in cells of 2.5 mm
+  Simulated<Filter> simulated(bar);
+  simulated.Object->SetLengthUnitToMillimetre();
+  simulated.Object->SetHandleRadius(3.0);
+  const std::vector<Handle> handles = { { { 5.0, 5.0, 30.0 }, { 5.5, 5.0, 30.0 } },
+    { { 5.0, 5.0, 25.0 }, { 5.0, 5.5, 25.0 } } };
+  simulated.Object->SetHandlesData(MakeHandles(handles));
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  const auto moved = simulated.Copy();
+  int held[2] = { 0, 0 };
+  for (vtkIdType i = 0; i < bar->GetNumberOfPoints(); ++i)
+  {
+    const glm::dvec3 point = GetPoint(bar, i);
+    double tuple[3];
+    moved->GetTuple(i, tuple);
+    const glm::dvec3 displacement(tuple[0], tuple[1], tuple[2]);
+    bool isHeld = false;
+    for (int k = 0; k < 2 && !isHeld; ++k)
+    {
+      isHeld = glm::distance(point, handles[k].Rest) <= 3.0;
+      held[k] += isHeld;
+      VERIFY(!isHeld || glm::distance(displacement, handles[k].Now - handles[k].Rest) < 1e-6);
+    }
+    VERIFY(isHeld || glm::distance(displacement, glm::dvec3(0.5, 0.0, 0.0)) > 1e-6);
+  }
+  VERIFY_EQUAL(held[0], 6);
+  VERIFY_EQUAL(held[1], 6); // of seven, one of which the first handle holds
+}
+
 } // namespace
 
 int TestElasticDeformation(int, char*[])
@@ -463,6 +499,8 @@ int TestElasticDeformation(int, char*[])
   TestWhatIsKept<vtkCorotationalDeformation>();
   TestAborted<vtkMassSpringDeformation>();
   TestAborted<vtkCorotationalDeformation>();
+  TestHeldNodes<vtkCorotationalDeformation>();
+  TestHeldNodes<vtkMassSpringDeformation>();
   TestDeformedVolume();
   return GetExitCode();
 }
