@@ -168,6 +168,39 @@ void TestRolesAndFieldData()
   VERIFY(passed && passed->GetValue(0) == "somebody");
 }
 
+// Ids of points are those of some point, whatever arrays are categorical.
+void TestIds()
+{
+  auto volume = MakeImage({ { 0, 8, 0, 8, 0, 8 } });
+  vtkNew<vtkIdTypeArray> ids[2];
+  for (int kind = 0; kind < 2; ++kind)
+  {
+    ids[kind]->SetName(kind == 0 ? "global" : "pedigree");
+    for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+    {
+      ids[kind]->InsertNextValue(1000 * id);
+    }
+  }
+  volume->GetPointData()->SetGlobalIds(ids[0]);
+  volume->GetPointData()->SetPedigreeIds(ids[1]);
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, [](const glm::dvec3& p) { return 1.3 * p; });
+  Deformed deformed(volume, mesh);
+  vtkPointData* output = deformed.Update()->GetPointData();
+  for (vtkAbstractArray* array :
+    { static_cast<vtkAbstractArray*>(output->GetGlobalIds()), output->GetPedigreeIds() })
+  {
+    auto* const found = vtkIdTypeArray::SafeDownCast(array);
+    VERIFY(found);
+    int mixed = 0;
+    for (vtkIdType id = 0; found && id < found->GetNumberOfTuples(); ++id)
+    {
+      mixed += deformed.IsCovered(id) && found->GetValue(id) % 1000 != 0;
+    }
+    VERIFY_EQUAL(mixed, 0);
+  }
+}
+
 void TestLabels()
 {
   auto volume = MakeImage({ { 0, 8, 0, 8, 0, 8 } });
@@ -310,6 +343,7 @@ int TestDeformArrays(int, char*[])
   TestIdentityOfTypes();
   TestOtherMemoryLayouts();
   TestRolesAndFieldData();
+  TestIds();
   TestLabels();
   TestBackgroundAndRounding();
   TestNotANumberStaysWithinItsTetrahedra();

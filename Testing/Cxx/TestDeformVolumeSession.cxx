@@ -366,6 +366,26 @@ void TestRecovery(vtkImageData* volume)
   VERIFY_EQUAL(one.TakeError(), std::string());
 }
 
+void TestModels(vtkImageData* volume)
+{
+  Tested one(volume);
+  const auto step = [&](int model)
+  {
+    one.Step();
+    VERIFY_EQUAL(one.Object->GetModel(), model);
+  };
+  one.Object->ChangeModel(Session::MASS_SPRING);
+  step(Session::MASS_SPRING);
+  one.Object->ChangeModel(Session::CHAIN_MAIL);
+  step(Session::CHAIN_MAIL);
+  one.Object->Undo();
+  step(Session::MASS_SPRING);
+  one.Object->Undo();
+  step(Session::NONE);
+  one.Object->Redo();
+  step(Session::MASS_SPRING);
+}
+
 // What is done twice is undone twice, with a body that is pulled apart, so that cuts are seen.
 void TestTwice(vtkImageData* volume)
 {
@@ -661,6 +681,12 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   Tested foreign(MakeVolume({ { 0, 9, 0, 8, 0, 7 } }));
   VERIFY(!foreign.Object->LoadSession(fileName));
   VERIFY(Holds(foreign.TakeError(), "another volume"));
+  vtkNew<vtkImageData> stretched;
+  stretched->ShallowCopy(volume);
+  stretched->SetSpacing(1.0, 1.0, 1.5 * volume->GetSpacing()[2]);
+  Tested other(stretched);
+  VERIFY(!other.Object->LoadSession(fileName));
+  VERIFY(Holds(other.TakeError(), "another volume"));
 
   // A folder that is not there, and a disk that is full: the old file stays.
   VERIFY(!one.Object->SaveSession("/dev/null/session"));
@@ -759,6 +785,7 @@ int TestDeformVolumeSession(int argc, char* argv[])
   TestSmoothTools(volume);
   TestHandles(volume, fileName);
   TestRecovery(volume);
+  TestModels(volume);
   TestTwice(volume);
   TestPadding(volume);
   TestFiles(volume, fileName);
