@@ -4,8 +4,8 @@
 
     python3 Testing/mutations.py [NAME...]
 
-Without names all mutations are tried; --list prints them, and --check says which texts are no longer there. The sources are copied to build/mutations, so that the
-working tree stays as it is. Each mutation replaces one text in one file; the tests are built, and those named
+Without names all mutations are tried; --list prints them, and --check says which texts are no longer there. The
+sources are copied to build/mutations, so that the working tree stays as it is. Each mutation replaces one text in one file; the tests are built, and those named
 with the mutation are run. It prints a table of what was changed and the first test that failed, and
 returns 1 if a mutation was not noticed. Before that the tests must pass without a change. CONTRIBUTING.md tells
 when to add one.
@@ -310,7 +310,7 @@ MUTATIONS = {
     "material-number": ("Filters/Input/MaterialArray.cxx", "static_cast<T>(static_cast<int>(value)) == value", "true",
                         ["Cxx.TestMaterialFromVolume", "Cxx.TestChainMailMisuse"]),
     "categories": ("Filters/Input/VolumeArrays.cxx", "isId || (array->GetName()", "(array->GetName()",
-                   ["Cxx.TestDeformArrays", "Cxx.TestDeformTopology"]),
+                   ["Cxx.TestDeformArrays"]),
     "cell-diagonal": ("Filters/Input/CellSplit.cxx", "lowest = node(face, i) < node(face, lowest) ? i : lowest;", "",
                       ["Cxx.TestDeformCells", "Cxx.TestHigherOrderCells"]),
     "editor-held": ("Filters/Cutting/VolumeEditor.cxx", "array && array->GetReferenceCount() == 1", "array",
@@ -336,9 +336,6 @@ MUTATIONS = {
                      "bounds = this->ReadBounds(ranks, volume, output, &step);", ["Cxx.TestDeformTime"]),
     "bounds-grown": ("Filters/vtkDeformVolumeFilterBounds.cxx", "this->BoundsHaveGrown = true;", "",
                      ["Cxx.TestDeformContinuousTime", "Cxx.TestDeformTime"]),
-    "resampler-choice": ("Filters/Engine/ResamplerChoice.cxx",
-                         "obstacle.empty() && !fits(Resampling::Exact) &&", "!fits(Resampling::Exact) &&",
-                         ["Cxx.TestDeformMemory", "Cxx.TestLinkExtrapolation"]),
     "body-distance": ("Filters/Meshing/DistanceTransform.cxx", "std::min(x - (run->Begin - 1), run->End - x)",
                       "std::min(x - run->Begin, run->End - x)",
                       ["Cxx.TestTetGenMesherBodies", "Cxx.TestTetGenMesher"]),
@@ -354,8 +351,6 @@ MUTATIONS = {
                      ["Cxx.TestDeformVolumeSession"]),
     "session-field": ("Interaction/SessionPlaces.cxx", "step == 1 ? part[axis] : 1.0 - part[axis]",
                       "step == 0 ? part[axis] : 1.0 - part[axis]", ["Cxx.TestDeformVolumeSession"]),
-    "pick-absorbed": ("Interaction/VisiblePlaces.cxx", "sum += (1.0 - sum) * (1.0 -", "sum += (1.0 -",
-                      ["Cxx.TestDeformVolumeInteractorStyle"]),
     "pick-covered": ("Interaction/VisiblePlaces.cxx", "this->Covered->GetComponent(voxel, 0) == 0.0 ? -1 : voxel",
                      "false ? -1 : voxel", ["Cxx.TestDeformVolumeInteractorStyle"]),
 }
