@@ -87,7 +87,7 @@ run() # a driver; leaves its row of the table
   (
     choose "$1"
     times=$(first_update "$1")
-    # One test after the other, since their times are told: all fill the same cache.
+    # Tests run one after the other, as their times are printed, and share one kernel cache.
     ctest --test-dir "$build" -R "$tests" -E "$others" --timeout "${DEFORMVOLUME_TEST_TIMEOUT:-900}" \
       --output-on-failure >"$log" 2>&1 || true
     # What tests that pass, or are skipped, say.

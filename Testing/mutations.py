@@ -398,9 +398,8 @@ def get_command(test):
     if isinstance(test, str):
         name = test.partition(".")[2]
         command = [BUILD / "bin" / "DeformVolumeCxxTests", name, "-T", WORK, "-D", SOURCE / "Testing" / "Data"]
-        baseline = SOURCE / "Testing" / "Data" / f"{name}.png"
         window = ["xvfb-run", "-a", "-s", "-noreset -screen 0 1280x1024x24"] if name in WITH_WINDOW else []
-        return test, [*window, *command, "-V", baseline]
+        return test, [*window, *command]
     files, pattern = test
     names, _, device = files.partition("@")
     return names, [BUILD / "bin" / "DeformVolumeEngineTests", f"--files={names}",

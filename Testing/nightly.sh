@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # What takes too long for each change: all tests of the VTK classes against ParaView's VTK and with
-# the sanitizers, those with Oclgrind that take minutes, edits by cell as on a graphics card, random pipelines with new seeds, all
-# mutations, and Examples/run.sh and Testing/run.sh --all on other Debian systems. Takes hours; logs are in build.
+# the sanitizers, those with Oclgrind that take minutes, edits by cell as on a graphics card, random
+# pipelines with new seeds, all mutations, and Examples/run.sh and Testing/run.sh --all on other
+# Debian systems. Takes hours; logs are in build.
 #
 # Usage: nightly.sh [--seconds SECONDS]
 #   --seconds  how long random pipelines run, 3600 by default

@@ -18,6 +18,19 @@ namespace elasticTesting
 using namespace chainMailTesting;
 using namespace filterTesting;
 
+// Gives a mesh the array Fixed.
+template <typename IsFixed>
+void FixPoints(vtkUnstructuredGrid* mesh, IsFixed&& isFixed)
+{
+  vtkNew<vtkUnsignedCharArray> fixed;
+  fixed->SetName("Fixed");
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    fixed->InsertNextValue(isFixed(GetPoint(mesh, i)) ? 1 : 0);
+  }
+  mesh->GetPointData()->AddArray(fixed);
+}
+
 // A bar of 4 x 4 x 12 cells, held at z = 0. Lengths are in units of so many metres.
 inline vtkSmartPointer<vtkUnstructuredGrid> MakeBar(double unit)
 {
@@ -28,14 +41,7 @@ inline vtkSmartPointer<vtkUnstructuredGrid> MakeBar(double unit)
   lattice->Update();
   auto bar = vtkSmartPointer<vtkUnstructuredGrid>::New();
   bar->DeepCopy(lattice->GetOutput());
-  vtkNew<vtkUnsignedCharArray> fixed;
-  fixed->SetName("Fixed");
-  fixed->SetNumberOfTuples(bar->GetNumberOfPoints());
-  for (vtkIdType i = 0; i < bar->GetNumberOfPoints(); ++i)
-  {
-    fixed->SetValue(i, bar->GetPoint(i)[2] == 0.0 ? 1 : 0);
-  }
-  bar->GetPointData()->AddArray(fixed);
+  FixPoints(bar, [](const glm::dvec3& p) { return p.z == 0.0; });
   return bar;
 }
 

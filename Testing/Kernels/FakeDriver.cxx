@@ -93,6 +93,25 @@ bool Fails(int asked, Counter<int>& before, cl_command_queue queue, cl_event* do
   return true;
 }
 
+/// Counts a copy, and returns whether it fails instead.
+bool FailsToRead(
+  std::size_t bytes, cl_bool blocking, cl_command_queue queue, cl_event* done, cl_int& error)
+{
+  FakeDriver& driver = FakeDriver::Get();
+  driver.BytesRead += bytes;
+  ++driver.Reads;
+  return !blocking && Fails(driver.ReadError, driver.ReadsBeforeError, queue, done, error);
+}
+
+bool FailsToWrite(
+  std::size_t bytes, cl_bool blocking, cl_command_queue queue, cl_event* done, cl_int& error)
+{
+  FakeDriver& driver = FakeDriver::Get();
+  driver.BytesWritten += bytes;
+  ++driver.Writes;
+  return !blocking && Fails(driver.WriteError, driver.WritesBeforeError, queue, done, error);
+}
+
 /// Bytes of local memory that arguments of kernels ask for.
 std::map<cl_kernel, std::map<cl_uint, std::size_t>> LocalMemory;
 
@@ -312,11 +331,8 @@ extern "C" cl_int CL_API_CALL clEnqueueReadBuffer(cl_command_queue queue, cl_mem
   const cl_event* events, cl_event* done)
 {
   static auto* const real = Find<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer");
-  FakeDriver& driver = FakeDriver::Get();
-  driver.BytesRead += size;
-  ++driver.Reads;
   cl_int error = CL_SUCCESS;
-  return !blocking && Fails(driver.ReadError, driver.ReadsBeforeError, queue, done, error)
+  return FailsToRead(size, blocking, queue, done, error)
     ? error
     : real(queue, buffer, blocking, offset, size, memory, number, events, done);
 }
@@ -327,11 +343,8 @@ extern "C" cl_int CL_API_CALL clEnqueueReadBufferRect(cl_command_queue queue, cl
   std::size_t hostSlice, void* memory, cl_uint number, const cl_event* events, cl_event* done)
 {
   static auto* const real = Find<decltype(clEnqueueReadBufferRect)>("clEnqueueReadBufferRect");
-  FakeDriver& driver = FakeDriver::Get();
-  driver.BytesRead += region[0] * region[1] * region[2];
-  ++driver.Reads;
   cl_int error = CL_SUCCESS;
-  return !blocking && Fails(driver.ReadError, driver.ReadsBeforeError, queue, done, error)
+  return FailsToRead(region[0] * region[1] * region[2], blocking, queue, done, error)
     ? error
     : real(queue, buffer, blocking, origin, hostOrigin, region, row, slice, hostRow, hostSlice,
         memory, number, events, done);
@@ -342,11 +355,8 @@ extern "C" cl_int CL_API_CALL clEnqueueWriteBuffer(cl_command_queue queue, cl_me
   const cl_event* events, cl_event* done)
 {
   static auto* const real = Find<decltype(clEnqueueWriteBuffer)>("clEnqueueWriteBuffer");
-  FakeDriver& driver = FakeDriver::Get();
-  driver.BytesWritten += size;
-  ++driver.Writes;
   cl_int error = CL_SUCCESS;
-  return !blocking && Fails(driver.WriteError, driver.WritesBeforeError, queue, done, error)
+  return FailsToWrite(size, blocking, queue, done, error)
     ? error
     : real(queue, buffer, blocking, offset, size, memory, number, events, done);
 }
@@ -357,11 +367,8 @@ extern "C" cl_int CL_API_CALL clEnqueueWriteBufferRect(cl_command_queue queue, c
   std::size_t hostSlice, const void* memory, cl_uint number, const cl_event* events, cl_event* done)
 {
   static auto* const real = Find<decltype(clEnqueueWriteBufferRect)>("clEnqueueWriteBufferRect");
-  FakeDriver& driver = FakeDriver::Get();
-  driver.BytesWritten += region[0] * region[1] * region[2];
-  ++driver.Writes;
   cl_int error = CL_SUCCESS;
-  return !blocking && Fails(driver.WriteError, driver.WritesBeforeError, queue, done, error)
+  return FailsToWrite(region[0] * region[1] * region[2], blocking, queue, done, error)
     ? error
     : real(queue, buffer, blocking, origin, hostOrigin, region, row, slice, hostRow, hostSlice,
         memory, number, events, done);

@@ -28,7 +28,7 @@ constexpr std::uint64_t Few = 256;
 class Transfers : public testing::Test
 {
 protected:
-  void SetUp() override { SKIP_UNLESS_GRAPHICS() }
+  void SetUp() override { SKIP_UNLESS_GRAPHICS(); }
 
   void Reset()
   {

@@ -19,7 +19,7 @@ namespace
 class GraphicsDevice : public testing::Test
 {
 protected:
-  void SetUp() override{ SKIP_UNLESS_GRAPHICS() }
+  void SetUp() override { SKIP_UNLESS_GRAPHICS(); }
 
   DeformerCase Case = MakeCase({ { 0, 21, 0, 18, -1, 17 } }, { { 1, 1, 1 } }, MakeJitter(5, 0.15));
   std::vector<std::uint16_t> Values =

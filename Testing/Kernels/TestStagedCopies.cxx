@@ -40,7 +40,7 @@ class Staged : public testing::Test
 protected:
   Staged() { FakeDriver::Reset(); }
   ~Staged() override { FakeDriver::Reset(); }
-  void SetUp() override { SKIP_UNLESS_GRAPHICS() }
+  void SetUp() override { SKIP_UNLESS_GRAPHICS(); }
 
   const cl::CommandQueue& GetQueue() { return this->Device.GetQueue(); }
   cl::Buffer MakeBuffer(std::size_t bytes)

@@ -7,8 +7,6 @@ import sys
 
 import numpy
 from paraview import simple
-from vtkmodules.util import numpy_support
-from vtkmodules.vtkIOImage import vtkPNGReader
 
 from PluginTesting import (
     OUTPUT,
@@ -19,16 +17,9 @@ from PluginTesting import (
     head_file,
     load_plugin,
     messages,
+    read_png,
     wavelet,
 )
-
-
-def read_png(path):
-    reader = vtkPNGReader()
-    reader.SetFileName(path)
-    reader.Update()
-    values = numpy_support.vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
-    return values.reshape(-1, reader.GetOutput().GetNumberOfScalarComponents()).astype(float)
 
 
 def main(baseline):

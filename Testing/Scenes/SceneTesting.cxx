@@ -5,10 +5,6 @@
 #include <vtkPNGReader.h>
 #include <vtkPNGWriter.h>
 #include <vtkRendererCollection.h>
-#include <vtkUnsignedCharArray.h>
-#include <vtkWindowToImageFilter.h>
-
-#include <algorithm>
 
 namespace sceneTesting
 {
@@ -30,44 +26,7 @@ vtkSmartPointer<vtkImageData> DrawPicture(const Scene& scene, Version version)
   {
     renderer->ResetCameraClippingRange();
   }
-  window->Render();
-  vtkNew<vtkWindowToImageFilter> grab;
-  grab->SetInput(window);
-  grab->SetInputBufferTypeToRGB();
-  grab->ReadFrontBufferOff();
-  grab->Update();
-  return grab->GetOutput();
-}
-
-struct Comparison
-{
-  double Difference = 255.0; // that of pictures that cannot be compared
-  vtkSmartPointer<vtkImageData> Image;
-};
-
-Comparison Compare(vtkImageData* first, vtkImageData* second)
-{
-  auto* const one = vtkUnsignedCharArray::SafeDownCast(first->GetPointData()->GetScalars());
-  auto* const other = vtkUnsignedCharArray::SafeDownCast(second->GetPointData()->GetScalars());
-  Comparison comparison;
-  if (!one || !other || GetExtent(first) != GetExtent(second) ||
-    one->GetNumberOfComponents() != other->GetNumberOfComponents())
-  {
-    return comparison;
-  }
-  comparison.Image = vtkSmartPointer<vtkImageData>::New();
-  comparison.Image->DeepCopy(first);
-  auto* const image =
-    static_cast<vtkUnsignedCharArray*>(comparison.Image->GetPointData()->GetScalars());
-  double sum = 0.0;
-  for (vtkIdType i = 0; i < one->GetNumberOfValues(); ++i)
-  {
-    const int difference = std::abs(one->GetValue(i) - other->GetValue(i));
-    image->SetValue(i, static_cast<unsigned char>(difference));
-    sum += difference;
-  }
-  comparison.Difference = sum / static_cast<double>(one->GetNumberOfValues());
-  return comparison;
+  return Draw(window);
 }
 
 bool Write(vtkImageData* image, const std::string& fileName)

@@ -5,9 +5,8 @@
 #ifndef SceneTesting_h
 #define SceneTesting_h
 
-#include "FilterTesting.h"
+#include "PictureTesting.h"
 
-#include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 
 #include <glm/vec3.hpp>
@@ -20,7 +19,7 @@ class vtkLookupTable;
 namespace sceneTesting
 {
 
-using namespace filterTesting;
+using namespace pictureTesting;
 
 /// What is drawn. INTACT is what the baseline shows. The others have to differ from it: SPOILED is
 /// what an error that the scene is there to find would draw, and of SHIFTED all displacements are
@@ -33,7 +32,7 @@ enum class Version
 };
 
 /// Adds what a scene shows to a window of 300 x 300 pixels.
-using Draw = void (*)(vtkRenderWindow* window, Version version);
+using AddScene = void (*)(vtkRenderWindow* window, Version version);
 
 struct Scene
 {
@@ -41,11 +40,12 @@ struct Scene
   /// Of the mean absolute difference of all bytes of two pictures, 0 to 255: at most half of the
   /// smaller difference of SPOILED and SHIFTED, far above what two drivers of OpenGL differ by.
   double Limit;
-  Draw DrawScene;
+  AddScene DrawScene;
 };
 
-/// Compares all versions of a scene with <baselines>/<Name>.png, and tells whether it passes. What
-/// fails is written to the folder of output.
+/// Compares all versions of a scene with <baselines>/<Name>.png. Returns whether INTACT is within
+/// the limit, and the others differ by twice the limit or more. Pictures that fail go to the folder
+/// of output.
 bool Test(const Scene& scene, const std::string& baselines, const std::string& output);
 
 /// Makes the picture the baseline.

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Volumes that are cut, carved and split.
+#include "ElasticTesting.h"
 #include "SceneTesting.h"
 
 #include "vtkCarveVolume.h"
-#include "vtkCorotationalDeformation.h"
 #include "vtkCutVolume.h"
 
 #include <vtkCellArray.h>
 #include <vtkLookupTable.h>
 #include <vtkPolyData.h>
 #include <vtkSphere.h>
-#include <vtkUnsignedCharArray.h>
 
 #include <glm/geometric.hpp>
 
@@ -42,7 +41,7 @@ vtkSmartPointer<vtkImageData> MakeBlock(const Extent& extent)
   return volume;
 }
 
-// Shows an edited block. Where it is cut, the background takes half of the contrast of layers.
+// Shows a deformed block. The background has half of the value where the surface is drawn.
 void AddBlock(vtkRenderer* renderer, vtkDeformVolumeFilter* filter, double spacing)
 {
   SetSampling(filter, spacing);
@@ -50,15 +49,20 @@ void AddBlock(vtkRenderer* renderer, vtkDeformVolumeFilter* filter, double spaci
     MakeColours(-1.0, 1.0, { { 0.75, 0.45, 0.35 }, { 0.95, 0.85, 0.7 } }));
 }
 
-vtkSmartPointer<vtkDataSet> MakeField(vtkImageData* volume, const WorldMap& map, Version version)
+// Shows a block that has been edited, and that a field with the block's voxels deforms.
+void AddEditedBlock(vtkRenderer* renderer, vtkImageData* block, vtkAlgorithmOutput* edited,
+  const WorldMap& map, Version version, double spacing)
 {
   vtkNew<vtkImageData> field;
-  field->CopyStructure(volume);
+  field->CopyStructure(block);
   SetDisplacements(field, map);
-  return Shifted(field, version);
+  vtkNew<vtkDeformVolumeFilter> filter;
+  filter->SetInputConnection(edited);
+  filter->SetDeformationData(Shifted(field, version));
+  AddBlock(renderer, filter, spacing);
 }
 
-// A line through a number of places, told by a number from 0 to 1.
+// A polyline. place: its points, for parameters from 0 to 1.
 vtkSmartPointer<vtkPolyData> MakeLine(int number, const std::function<glm::dvec3(double)>& place)
 {
   vtkNew<vtkPoints> points;
@@ -94,11 +98,9 @@ void DrawHardCut(vtkRenderWindow* window, Version version)
   }
   const auto open = [](const glm::dvec3& p)
   { return p + glm::dvec3((p.x < 0.3 ? -0.35 : 0.35) * std::max(p.z - 7.0, 0.0), 0.0, 0.0); };
-  vtkNew<vtkDeformVolumeFilter> filter;
-  filter->SetInputConnection(cut->GetOutputPort());
-  filter->SetDeformationData(MakeField(block, open, version));
-  AddBlock(AddRenderer(window, glm::dvec3(0.0, 0.0, 10.0), glm::dvec3(30.0, -80.0, 45.0), 42.0),
-    filter, 0.25);
+  vtkRenderer* renderer =
+    AddRenderer(window, glm::dvec3(0.0, 0.0, 10.0), glm::dvec3(30.0, -80.0, 45.0), 42.0);
+  AddEditedBlock(renderer, block, cut->GetOutputPort(), open, version, 0.25);
 }
 
 // A curved sheet, pulled open: whole tetrahedra left out, and beside it divided. Spoiled: whole
@@ -121,12 +123,9 @@ void DrawSmoothCut(vtkRenderWindow* window, Version version)
       }));
     cut->SetSweepVector(0.0, 0.0, 20.0);
     cut->SetSmoothCut(isSmooth && version != Version::SPOILED);
-    vtkNew<vtkDeformVolumeFilter> filter;
-    filter->SetInputConnection(cut->GetOutputPort());
-    filter->SetDeformationData(MakeField(block, open, version));
-    AddBlock(AddRenderer(window, glm::dvec3(0.0, 0.0, 3.0), glm::dvec3(0.0, -50.0, 70.0), 40.0,
-               isSmooth ? 1 : 0, 2),
-      filter, 0.125);
+    vtkRenderer* renderer = AddRenderer(
+      window, glm::dvec3(0.0, 0.0, 3.0), glm::dvec3(0.0, -50.0, 70.0), 40.0, isSmooth ? 1 : 0, 2);
+    AddEditedBlock(renderer, block, cut->GetOutputPort(), open, version, 0.125);
   }
 }
 
@@ -144,12 +143,9 @@ void DrawSmoothBoundary(vtkRenderWindow* window, Version version)
     carve->SetInputData(block);
     carve->SetImplicitFunction(sphere);
     carve->SetSmoothBoundary(isSmooth && version != Version::SPOILED);
-    vtkNew<vtkDeformVolumeFilter> filter;
-    filter->SetInputConnection(carve->GetOutputPort());
-    filter->SetDeformationData(MakeField(block, Shift(0, 0, 0), version));
-    AddBlock(AddRenderer(window, glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0, -60.0, 60.0), 34.0,
-               isSmooth ? 1 : 0, 2),
-      filter, 0.125);
+    vtkRenderer* renderer = AddRenderer(
+      window, glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0, -60.0, 60.0), 34.0, isSmooth ? 1 : 0, 2);
+    AddEditedBlock(renderer, block, carve->GetOutputPort(), Shift(0, 0, 0), version, 0.125);
   }
 }
 
@@ -165,13 +161,7 @@ void DrawSplit(vtkRenderWindow* window, Version version)
   lattice->Update();
   vtkNew<vtkUnstructuredGrid> mesh;
   mesh->ShallowCopy(lattice->GetOutput());
-  vtkNew<vtkUnsignedCharArray> fixed;
-  fixed->SetName("Fixed");
-  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
-  {
-    fixed->InsertNextValue(std::abs(GetPoint(mesh, i).x) > 20.0);
-  }
-  mesh->GetPointData()->AddArray(fixed);
+  elasticTesting::FixPoints(mesh, [](const glm::dvec3& p) { return std::abs(p.x) > 20.0; });
   vtkNew<vtkCorotationalDeformation> elastic;
   elastic->SetInputData(mesh);
   elastic->SetSheetData(

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Volumes that are deformed by a model of their tissue.
-#include "ChainMailTesting.h"
+#include "ElasticTesting.h"
 #include "SceneTesting.h"
 
-#include "vtkCorotationalDeformation.h"
 #include "vtkTetGenMesher.h"
 
 #include <vtkActor.h>
@@ -12,7 +11,6 @@
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
-#include <vtkUnsignedCharArray.h>
 #include <vtkWarpVector.h>
 
 #include <glm/geometric.hpp>
@@ -105,13 +103,7 @@ void DrawFiniteElements(vtkRenderWindow* window, Version version)
   mesher->Update();
   vtkNew<vtkUnstructuredGrid> mesh;
   mesh->ShallowCopy(mesher->GetOutput());
-  vtkNew<vtkUnsignedCharArray> fixed;
-  fixed->SetName("Fixed");
-  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
-  {
-    fixed->InsertNextValue(GetPoint(mesh, i).z < 1.0);
-  }
-  mesh->GetPointData()->AddArray(fixed);
+  elasticTesting::FixPoints(mesh, [](const glm::dvec3& p) { return p.z < 1.0; });
   vtkNew<vtkCorotationalDeformation> elastic;
   elastic->SetInputData(mesh);
   elastic->SetGravity(60.0, 0.0, -10.0);
