@@ -10,7 +10,7 @@ import numpy
 from paraview import simple
 from vtkmodules.util import numpy_support
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
-from vtkmodules.vtkIOImage import vtkNIFTIImageReader, vtkPNGReader
+from vtkmodules.vtkIOImage import vtkNIFTIImageReader
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 PLUGIN = os.environ["DEFORMVOLUME_PLUGIN"]
@@ -86,16 +86,6 @@ def check_equal_images(first, second, what):
     for name, values in one.items():
         check(values.dtype == other[name].dtype, f"{what}: {name} changes its type")
         check(numpy.array_equal(values, other[name]), f"{what}: {name} differs")
-
-
-def read_png(path):
-    """The colours of a picture, as numbers: rows, columns, channels."""
-    reader = vtkPNGReader()
-    reader.SetFileName(path)
-    reader.Update()
-    picture = reader.GetOutput()
-    values = numpy_support.vtk_to_numpy(picture.GetPointData().GetScalars())
-    return values.reshape(picture.GetDimensions()[1], picture.GetDimensions()[0], -1).astype(float)
 
 
 def wavelet(half=10):

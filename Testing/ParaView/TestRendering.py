@@ -8,6 +8,7 @@ import sys
 import numpy
 from paraview import simple
 
+from Baselines import read_picture
 from PluginTesting import (
     OUTPUT,
     bent_lattice,
@@ -17,7 +18,6 @@ from PluginTesting import (
     head_file,
     load_plugin,
     messages,
-    read_png,
     wavelet,
 )
 
@@ -66,7 +66,7 @@ def main(baseline):
     picture = os.path.join(OUTPUT, "TestParaViewRendering.png")
     simple.SaveScreenshot(picture, view, ImageResolution=[300, 300])
     check(os.path.exists(baseline), f"There is no {baseline}; look at {picture}")
-    shown, expected = read_png(picture), read_png(baseline)
+    shown, expected = read_picture(picture), read_picture(baseline)
     check(shown.shape == expected.shape, f"{picture} has another size than {baseline}")
     # Pressed in 3 voxels less, the head differs by 1.1, beside its place by 1.4, undeformed by 6.1; renderers that
     # are both right differ by 0.001.

@@ -13,7 +13,8 @@ from vtkmodules.util import numpy_support
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGWriter
 
-from PluginTesting import OUTPUT, bent_lattice, check, load_plugin, read_png, wavelet
+from Baselines import read_picture
+from PluginTesting import OUTPUT, bent_lattice, check, load_plugin, wavelet
 
 BEND = "(0.04*coordsZ*coordsZ-2+%d)*iHat+0.1*coordsX*kHat"
 FINE = {"OutputSpacingMode": "Custom Spacing", "CustomSpacing": [0.25] * 3, "Padding": 1}
@@ -146,11 +147,11 @@ def main(baselines, is_update):
         baseline = os.path.join(baselines, name + ".png")
         if is_update:
             draw(scene, "intact", baseline)
-        expected = read_png(baseline)
+        expected = read_picture(baseline)
         for version in ("intact", "spoiled", "shifted"):
             path = os.path.join(OUTPUT, f"{name}.{version}.png")
             draw(scene, version, path)
-            differences = numpy.abs(read_png(path) - expected)
+            differences = numpy.abs(read_picture(path) - expected)
             mean = differences.mean()
             print(f"{name} {version}: difference {mean:.6g}, limit {limit}")
             if not (mean <= limit if version == "intact" else mean >= 2.0 * limit):
