@@ -124,6 +124,7 @@ MUTATIONS = {
                      "std::min(all, system) : all + this->CountHeld();", [GRAPHICS]),
     "arrays-half-set": ("Kernels/Mapping/DeviceVolume.cxx",
                         "this->Arrays.clear(); // there are none if this fails", "", [FAULTS]),
+    "pressed-flat": ("Kernels/Mapping/FieldFolds.cxx", "sum < 0.999", "sum < 1.1", [("TestInverseField", "*")]),
     "links-half-set": ("Kernels/Mapping/DeviceMapping.cxx", "this->WithLinks = false; // until all of them are there",
                        "this->WithLinks = true;", [FAULTS]),
     "far-output": ("Kernels/Resampling/OutputSlab.cxx", "farthest = 1 << 22;", "farthest = 1 << 28;",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Inverse displacement fields against a look-up on the host in extended precision: misuse,
 // coverage, values, and that nothing depends on slabs and work-groups.
+#include "FieldFolds.h"
 #include "RasterCase.h"
 #include "RasterReference.h"
 
@@ -254,6 +255,110 @@ TEST(InverseField, VoxelsThatNeedUndefinedVectorsAreNotCovered)
     c.Vectors[3 * 100 + 1] = 0.0F;
     EXPECT_NE(
       GetError([&] { RunCase(deformer, c, arrays); }).find("point 100 "), std::string::npos);
+  }
+}
+
+// Six times the signed volume.
+long double GetVolume(const std::array<std::array<long double, 3>, 4>& points)
+{
+  long double e[3][3];
+  for (int k = 0; k < 3; ++k)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      e[k][axis] = points[k + 1][axis] - points[0][axis];
+    }
+  }
+  return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
+    e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+    e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+}
+
+// The middle tetrahedron of each cell has its four points whose indices have an even sum; each of
+// the other four points has a tetrahedron with its three neighbours in the cell.
+std::int64_t CountInvertedByDefinition(const DisplacementField& field)
+{
+  using Index = std::array<int, 3>;
+  const auto& size = field.Dimensions;
+  const auto isInverted = [&](const std::array<Index, 4>& points)
+  {
+    std::array<std::array<long double, 3>, 4> rest;
+    std::array<std::array<long double, 3>, 4> moved;
+    for (int k = 0; k < 4; ++k)
+    {
+      const Index& at = points[k];
+      const float* vector = field.Vectors +
+        3 * ((static_cast<std::int64_t>(at[2]) * size[1] + at[1]) * size[0] + at[0]);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        rest[k][axis] = moved[k][axis] = at[axis];
+        for (int column = 0; column < 3; ++column)
+        {
+          moved[k][axis] +=
+            static_cast<long double>(field.IndexToField[4 * axis + column]) * vector[column];
+        }
+      }
+    }
+    return GetVolume(moved) / GetVolume(rest) < 0.0L;
+  };
+  std::int64_t inverted = 0;
+  for (int cell = 0; cell < (size[0] - 1) * (size[1] - 1) * (size[2] - 1); ++cell)
+  {
+    const Index first{ { cell % (size[0] - 1), cell / (size[0] - 1) % (size[1] - 1),
+      cell / (size[0] - 1) / (size[1] - 1) } };
+    std::vector<Index> middle;
+    for (int vertex = 0; vertex < 8; ++vertex)
+    {
+      const Index step{ { vertex & 1, vertex >> 1 & 1, vertex >> 2 } };
+      const Index point{ { first[0] + step[0], first[1] + step[1], first[2] + step[2] } };
+      if ((point[0] + point[1] + point[2]) % 2 == 0)
+      {
+        middle.push_back(point);
+        continue;
+      }
+      std::array<Index, 4> corner{ { point, point, point, point } };
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        corner[axis + 1][axis] += step[axis] != 0 ? -1 : 1;
+      }
+      inverted += isInverted(corner) ? 1 : 0;
+    }
+    inverted += isInverted({ { middle[0], middle[1], middle[2], middle[3] } }) ? 1 : 0;
+  }
+  return inverted;
+}
+
+TEST(InverseField, InvertedTetrahedra)
+{
+  // Pressed flat along an axis, and a little more or less.
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (const float factor : { 0.99F, 1.01F })
+    {
+      InverseCase c;
+      c.Field.Dimensions = { { 4, 3, 5 } };
+      c.Vectors.resize(3L * 4 * 3 * 5);
+      for (int point = 0; point < 4 * 3 * 5; ++point)
+      {
+        const int at[3] = { point % 4, point / 4 % 3, point / 12 };
+        c.Vectors[3 * point + axis] = -factor * at[axis];
+      }
+      c.Field.Vectors = c.Vectors.data();
+      EXPECT_EQ(CountInvertedTetrahedra(c.Field), factor < 1.0F ? 0 : 5L * 3 * 2 * 4) << axis;
+    }
+  }
+  // From a few cells whose edges change by nearly the most that inverts nothing, to all.
+  for (const float strength : { 0.0F, 0.0003F, 0.0005F, 0.0007F, 0.001F, 0.005F })
+  {
+    InverseCase c = MakeCase(Volume, { { 9, 8, 7 } }, strength);
+    c.Field.Vectors = c.Vectors.data();
+    EXPECT_EQ(CountInvertedTetrahedra(c.Field), CountInvertedByDefinition(c.Field)) << strength;
+    // What has an undefined vertex is not counted.
+    for (const std::size_t point : { 0U, 100U, 101U, 163U, 300U })
+    {
+      std::fill_n(&c.Vectors[3 * point], 3, std::nanf(""));
+    }
+    EXPECT_EQ(CountInvertedTetrahedra(c.Field), CountInvertedByDefinition(c.Field)) << strength;
   }
 }
 
