@@ -475,6 +475,19 @@ void ExpectEmbedding(const reference::Result& reference)
   ASSERT_EQ(reference.NumberOfTouchedVoxels, 0) << "the test wants another deformation";
 }
 
+UsualArrays::UsualArrays(std::size_t voxels)
+  : Shorts(MakeRandomValues<std::int16_t>(voxels, 4))
+  , Floats(MakeRandomValues<float>(voxels, 5))
+  , Labels(MakeRandomValues<std::uint16_t>(2 * voxels, 3))
+{
+}
+
+std::vector<VolumeArray> UsualArrays::Get() const
+{
+  return { MakeArray(this->Shorts), MakeArray(this->Floats, 1, false, 2.0),
+    MakeArray(this->Labels, 2, true, 12.0) };
+}
+
 template <typename T>
 std::vector<T> MakeRandomValues(std::size_t size, unsigned int seed)
 {

@@ -115,7 +115,7 @@ Deformed LoadAndRun(const DeformerCase& deformerCase,
 void ExpectEqualsReference(const DeformerCase& deformerCase, const reference::Result& reference,
   const std::vector<deformvolume::VolumeArray>& arrays, const Deformed& deformed);
 
-/// The same on a new deformer, with arrays that go by lanes, and with others.
+/// The same on a new deformer, with the usual arrays.
 void ExpectEqualsReference(const DeformerCase& deformerCase, Route route = Route::Field);
 
 /// No hole and no voxel that more than one tetrahedron writes.
@@ -152,6 +152,21 @@ deformvolume::VolumeArray MakeArray(
   array.Background = background;
   return array;
 }
+
+/// An array of each kind that the kernels of the resampling treat in a way of its own: integers and
+/// floats that go by lanes, and labels that do not. Kernels are compiled for each list of types,
+/// which takes seconds: a test that needs no others has these.
+struct UsualArrays
+{
+  explicit UsualArrays(std::size_t voxels);
+
+  std::vector<std::int16_t> Shorts;
+  std::vector<float> Floats;
+  std::vector<std::uint16_t> Labels; // two of each voxel
+
+  /// In this order.
+  std::vector<deformvolume::VolumeArray> Get() const;
+};
 
 /// A map with entries of -0.5 to 0.5 on top of a random rotation, neither flat nor mirrored.
 glm::dmat3 MakeRandomMatrix(std::mt19937& random, double distortion = 0.3);

@@ -49,13 +49,8 @@ VertexRuns MakeRuns(const DeformerCase& deformerCase)
 
 void ExpectEqualsReference(const DeformerCase& deformerCase, Route route)
 {
-  const std::size_t size = deformerCase.GetNumberOfVoxels();
-  const reference::Result reference = ResampleByReference(deformerCase);
-  const auto shorts = MakeRandomValues<std::int16_t>(size, 4);
-  const auto floats = MakeRandomValues<float>(size, 5);
-  const std::vector<VolumeArray> linear{ MakeArray(shorts), MakeArray(floats, 1, false, 2.0) };
-  ExpectEqualsReference(deformerCase, reference, linear, LoadAndRun(deformerCase, linear, route));
-  const auto labels = MakeRandomValues<std::uint16_t>(size * 2, 3);
-  const std::vector<VolumeArray> others{ MakeArray(labels, 2, true, 12.0) };
-  ExpectEqualsReference(deformerCase, reference, others, LoadAndRun(deformerCase, others, route));
+  const UsualArrays usual(deformerCase.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
+  ExpectEqualsReference(deformerCase, ResampleByReference(deformerCase), arrays,
+    LoadAndRun(deformerCase, arrays, route));
 }

@@ -68,8 +68,8 @@ TEST(BoundaryDistances, MisuseIsAnError)
   const std::vector<float> distances(GetNumberOfPoints(Volume), -1.0F);
   EXPECT_THROW(deformer.SetBoundaryDistances(distances.data()), Error);
   DeformerCase still = MakeCase(Volume, NoScale, [](const glm::dvec3& index) { return index; });
-  const auto values = MakeRandomValues<std::int16_t>(distances.size(), 1);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(distances.size());
+  const std::vector<VolumeArray> arrays = usual.Get();
   still.Distances = distances;
   Load(deformer, still, arrays, Route::Field);
   EXPECT_THROW(RunDeformer(deformer, still, arrays, Resampling::Published), Error);
@@ -84,8 +84,8 @@ TEST(BoundaryDistances, WhatIsNotNegativeStays)
 {
   const DeformerCase moved =
     MakeCase(Volume, NoScale, [](const glm::dvec3& index) { return index * 1.25; });
-  const auto values = MakeRandomValues<std::int16_t>(moved.GetNumberOfVoxels(), 1);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(moved.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   VolumeDeformer deformer;
   Load(deformer, moved, arrays, Route::Field);
   const Deformed all = RunDeformer(deformer, moved, arrays);
@@ -106,8 +106,8 @@ TEST(BoundaryDistances, PlaneLiesBetweenVoxels)
   const Extent extent{ { -1, 6, 0, 4, 0, 3 } };
   DeformerCase fine = MakeCase(
     extent, { { 16, 2, 2 } }, [](const glm::dvec3& index) { return index * glm::dvec3(16, 2, 2); });
-  const auto values = MakeRandomValues<float>(fine.GetNumberOfVoxels(), 1);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(fine.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   for (const double place : { 2.0, 2.3125, 3.5, 4.96875 })
   {
     SCOPED_TRACE(place);
@@ -200,8 +200,8 @@ TEST(BoundaryDistances, ChunksAndPartsEqualTheWhole)
   DeformerCase clipped =
     MakeCase(Volume, NoScale, [&](const glm::dvec3& index) { return matrix * index; });
   clipped.Distances = MakeDistances(clipped.GetNumberOfVoxels(), 2, true);
-  const auto values = MakeRandomValues<std::int16_t>(clipped.GetNumberOfVoxels(), 1);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(clipped.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   const Deformed whole = LoadAndRun(clipped, arrays);
   VolumeDeformer chunked;
   chunked.SetDevice("");
@@ -219,8 +219,8 @@ TEST(BoundaryDistances, MeshRasterizationLeavesOutTheSame)
     MakeCase(Volume, { { 4, 4, 4 } }, [](const glm::dvec3& index) { return 4.0 * index + 8.0; });
   const std::size_t size = moved.GetNumberOfVoxels();
   moved.Distances = MakeDistances(size, 8, true);
-  const auto values = MakeRandomValues<float>(size, 1);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(size);
+  const std::vector<VolumeArray> arrays = usual.Get();
   const Deformed exact = LoadAndRun(moved, arrays);
   const std::vector<double> nodes{ -100, -100, -100, 400, -100, -100, -100, 400, -100, -100, -100,
     400 };

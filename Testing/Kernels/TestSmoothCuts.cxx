@@ -121,8 +121,8 @@ TEST(SmoothCuts, MisuseIsAnError)
   DeformerCase still = MakeCase(Volume, NoScale, [](const glm::dvec3& index) { return index; });
   CutAtRandom(still, 1, 2);
   EXPECT_THROW(deformer.SetCut(still.Crossed.data(), still.CutDistances.data()), Error);
-  const auto values = MakeRandomValues<std::int16_t>(still.GetNumberOfVoxels(), 1);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(still.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   Load(deformer, still, arrays, Route::Field);
   EXPECT_THROW(deformer.SetCut(still.Crossed.data(), nullptr), Error);
   EXPECT_THROW(deformer.SetCut(nullptr, still.CutDistances.data()), Error);
@@ -151,9 +151,8 @@ TEST(SmoothCuts, AtRestNothingIsSeen)
     SCOPED_TRACE(scale);
     DeformerCase cut = MakeCase(
       Volume, { { scale, scale, scale } }, [=](const glm::dvec3& index) { return index * scale; });
-    const auto shorts = MakeRandomValues<std::int16_t>(cut.GetNumberOfVoxels(), 4);
-    const auto floats = MakeRandomValues<float>(cut.GetNumberOfVoxels(), 5);
-    const std::vector<VolumeArray> arrays{ MakeArray(shorts), MakeArray(floats) };
+    const UsualArrays usual(cut.GetNumberOfVoxels());
+    const std::vector<VolumeArray> arrays = usual.Get();
     for (unsigned int seed = 0; seed < 4; ++seed)
     {
       SCOPED_TRACE(seed);
@@ -309,8 +308,8 @@ TEST(SmoothCuts, ChunksEqualTheWhole)
     DeformerCase cut =
       MakeCase(extent, NoScale, [&](const glm::dvec3& index) { return matrix * jitter(index); });
     CutAtRandom(cut, seed, 1 + seed);
-    const auto values = MakeRandomValues<std::int16_t>(cut.GetNumberOfVoxels(), 1);
-    const std::vector<VolumeArray> arrays{ MakeArray(values) };
+    const UsualArrays usual(cut.GetNumberOfVoxels());
+    const std::vector<VolumeArray> arrays = usual.Get();
     const Deformed whole = LoadAndRun(cut, arrays, Route::Mesh);
     VolumeDeformer chunked;
     chunked.SetDevice("");
@@ -343,8 +342,8 @@ TEST(SmoothCuts, NothingIsLostBetweenThePlanesOfAGap)
       [&](const glm::dvec3& index)
       { return index * factor + (sheet(index) < 0.0 ? -apart : apart); });
     CutAlong(cut, sheet);
-    const auto values = MakeRandomValues<float>(cut.GetNumberOfVoxels(), 1);
-    const Deformed deformed = LoadAndRun(cut, { MakeArray(values) });
+    const UsualArrays usual(cut.GetNumberOfVoxels());
+    const Deformed deformed = LoadAndRun(cut, usual.Get());
     // Distances are floats: no sample is nearer to a plane than that but those on it.
     constexpr double rounding = 1e-5;
     std::size_t voxel = 0;
@@ -379,7 +378,7 @@ TEST(SmoothCuts, NothingIsLostBetweenThePlanesOfAGap)
       off.Active[i] = off.Crossed[i] ? 0 : 31;
     }
     off.Crossed.clear();
-    const Deformed lossy = LoadAndRun(off, { MakeArray(values) });
+    const Deformed lossy = LoadAndRun(off, usual.Get());
     EXPECT_LT(lossy.Report.NumberOfCoveredVoxels, 0.95 * static_cast<double>(expected));
   }
 }
@@ -398,13 +397,13 @@ TEST(SmoothCuts, AffineMotionsLeaveTheCutClosed)
     DeformerCase cut =
       MakeCase(Volume, NoScale, [&](const glm::dvec3& index) { return matrix * index + shift; });
     CutAlong(cut, sheet, [seed](const glm::dvec3& cell) { return seed % 2 == 0 || cell.y < 5; });
-    const auto values = MakeRandomValues<float>(cut.GetNumberOfVoxels(), 1);
-    const Pair both = RunBoth(cut, { MakeArray(values) }, GetSomeRoute(seed));
+    const UsualArrays usual(cut.GetNumberOfVoxels());
+    const Pair both = RunBoth(cut, usual.Get(), GetSomeRoute(seed));
     EXPECT_EQ(both.Cut.Coverage, both.Whole.Coverage);
     EXPECT_FALSE(both.Cut.Report.Overlapping);
     const glm::dmat3 inverse = glm::inverse(matrix);
-    const float* with = both.Cut.GetOutput<float>(0);
-    const float* without = both.Whole.GetOutput<float>(0);
+    const float* with = both.Cut.GetOutput<float>(1);
+    const float* without = both.Whole.GetOutput<float>(1);
     std::size_t voxel = 0;
     for (int z = cut.Output[4]; z <= cut.Output[5]; ++z)
     {
@@ -452,8 +451,8 @@ TEST(SmoothCuts, SmoothMotionsLeaveTheCutClosed)
       });
     CutAlong(cut, sheet,
       [seed](const glm::dvec3& cell) { return seed < 3 || (cell.y < 9 && cell.z > 3); });
-    const auto values = MakeRandomValues<std::int16_t>(cut.GetNumberOfVoxels(), 1);
-    const Pair both = RunBoth(cut, { MakeArray(values) }, GetSomeRoute(seed));
+    const UsualArrays usual(cut.GetNumberOfVoxels());
+    const Pair both = RunBoth(cut, usual.Get(), GetSomeRoute(seed));
     // One kernel interpolates both alike; by lanes cells away from the sheet have single precision.
     ExpectSame(*both.Cut.ByCell, *both.Whole.ByCell);
     EXPECT_EQ(both.Cut.Coverage, both.Whole.Coverage);
@@ -481,8 +480,8 @@ TEST(SmoothCuts, NothingIsTornWhereACutEnds)
   };
   DeformerCase cut = MakeCase(extent, NoScale, open);
   CutAlong(cut, sheet, isCut);
-  const auto values = MakeRandomValues<std::int16_t>(cut.GetNumberOfVoxels(), 1);
-  const Deformed deformed = LoadAndRun(cut, { MakeArray(values) });
+  const UsualArrays usual(cut.GetNumberOfVoxels());
+  const Deformed deformed = LoadAndRun(cut, usual.Get());
   EXPECT_FALSE(deformed.Report.Overlapping);
   EXPECT_EQ(deformed.Report.NumberOfInvertedTetrahedra, 0);
   std::size_t voxel = 0;
@@ -516,8 +515,8 @@ TEST(SmoothCuts, EditsEqualWhatIsMadeAnew)
   std::mt19937 random(17);
   const Extent extent{ { -3, 60, 0, 30, 1, 28 } };
   DeformerCase cut = MakeCase(extent, NoScale, MakeJitter(3, 0.3));
-  const auto values = MakeRandomValues<std::int16_t>(cut.GetNumberOfVoxels(), 1);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(cut.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   VolumeDeformer deformer;
   Load(deformer, cut, arrays, Route::Field);
   for (unsigned int step = 0; step < 12; ++step)
