@@ -288,6 +288,67 @@ std::vector<TetrahedronChange> EditedVolume::Split(std::mt19937& random, int rea
   return changes;
 }
 
+void EditedVolume::CutAlong(double place, double slope, int end)
+{
+  const Extent& extent = this->Shape.VertexExtent;
+  std::array<int, 3> size;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    size[axis] = static_cast<int>(GetSize(extent, axis));
+  }
+  const auto distance = [=](int x, int y, int z) { return x - place + slope * y - 0.125 * z; };
+  this->CutDistances.clear();
+  for (int z = 0; z < size[2]; ++z)
+  {
+    for (int y = 0; y < size[1]; ++y)
+    {
+      for (int x = 0; x < size[0]; ++x)
+      {
+        this->CutDistances.push_back(static_cast<float>(distance(x, y, z)));
+      }
+    }
+  }
+  this->Crossed.clear();
+  for (int z = 0; z + 1 < size[2]; ++z)
+  {
+    for (int y = 0; y + 1 < size[1]; ++y)
+    {
+      for (int x = 0; x + 1 < size[0]; ++x)
+      {
+        // Those of which one side has no vertex are not divided, and may be among them.
+        const bool isNear = std::abs(distance(x, y, z)) < 2.0;
+        this->Crossed.push_back(isNear && y < end ? 31 : 0);
+      }
+    }
+  }
+}
+
+void EditedVolume::EditCut(const std::vector<unsigned char>& crossed, std::mt19937& random)
+{
+  if (this->Crossed.empty())
+  {
+    return;
+  }
+  const Extent& extent = this->Shape.VertexExtent;
+  const auto sizeX = static_cast<std::size_t>(GetSize(extent, 0));
+  const auto sizeY = static_cast<std::size_t>(GetSize(extent, 1));
+  const std::size_t firstY = random() % 40;
+  const std::size_t firstZ = random() % 30;
+  const bool joins = random() % 4 == 0;
+  for (std::size_t z = firstZ; z < firstZ + 4; ++z)
+  {
+    for (std::size_t y = firstY; y < firstY + 4; ++y)
+    {
+      for (std::size_t x = 0; x + 1 < sizeX; ++x)
+      {
+        this->CutDistances[(z * sizeY + y) * sizeX + x] += 0.3F;
+        const std::size_t cell = (z * (sizeY - 1) + y) * (sizeX - 1) + x;
+        this->Crossed[cell] = joins ? 0 : crossed[cell];
+      }
+    }
+  }
+}
+
 void EditedVolume::MoveRound(
   const std::array<int, 3>& center, std::mt19937& random, int radius, float amount)
 {

@@ -70,6 +70,13 @@ struct EditedVolume
   /// Gives tetrahedra near one new nodes in place of some of theirs, displaced otherwise.
   std::vector<deformvolume::TetrahedronChange> Split(std::mt19937& random, int reach);
 
+  /// A smooth cut along a plane, through all of the volume or up to a y, counted from the first
+  /// voxel.
+  void CutAlong(double place, double slope, int end);
+  /// In a box takes over what is crossed, or joins it again, and moves the sheet. Nothing where
+  /// there is no cut.
+  void EditCut(const std::vector<unsigned char>& crossed, std::mt19937& random);
+
 private:
   void MakeTetrahedra();
   void MakeLinks(bool hasCorner);

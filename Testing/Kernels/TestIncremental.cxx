@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Incremental updates against whole ones of another deformer, bit by bit, after random edits of the
-// deformation, the masks and the request.
+// Incremental updates after certain edits: they equal whole ones, and run few bricks. TestEdits.cxx
+// has edits at random.
 #include "EditedVolume.h"
 
 #include <gtest/gtest.h>
@@ -16,258 +16,11 @@ using namespace deformvolume;
 namespace
 {
 
-enum class Edit
-{
-  None,
-  Node,
-  Inside,
-  FoldInside,
-  Region,
-  Half,
-  All,
-  Fold,
-  Unfold,
-  Blanked,
-  Active,
-  Distances,
-  NoMasks,
-  Extent,
-  Background,
-  Values,
-  Abort,
-  Count
-};
-
-void Change(EditedVolume& volume, Edit edit, std::mt19937& random)
-{
-  switch (edit)
-  {
-    case Edit::Node:
-      volume.Move(random, 0, 1.5F);
-      break;
-    case Edit::Inside:
-      volume.MoveInside(random, 2.0F);
-      break;
-    case Edit::FoldInside:
-      volume.MoveInside(random, 14.0F);
-      break;
-    case Edit::Region:
-      volume.Move(random, 1, 1.5F);
-      break;
-    case Edit::Half:
-      volume.Move(random, 5, 1.0F);
-      break;
-    case Edit::All:
-      volume.Move(random, 100, 1.5F);
-      break;
-    case Edit::Fold:
-      volume.Move(random, 0, 14.0F);
-      break;
-    case Edit::Unfold:
-      std::fill(volume.Displacements.begin(), volume.Displacements.end(), 0.25F);
-      break;
-    case Edit::Blanked:
-      volume.Blanked.resize(GetNumberOfPoints(volume.Shape.VertexExtent));
-      volume.Blanked[random() % volume.Blanked.size()] ^= 1;
-      break;
-    case Edit::Active:
-      volume.Active.resize(GetNumberOfCells(volume.Shape.VertexExtent), 31);
-      volume.Active[random() % volume.Active.size()] = random() % 32;
-      break;
-    case Edit::Distances:
-      volume.Distances.resize(GetNumberOfPoints(volume.Shape.VertexExtent), 1.0F);
-      volume.Distances[random() % volume.Distances.size()] =
-        static_cast<float>(random() % 64) / 16.0F - 2.0F;
-      break;
-    case Edit::NoMasks:
-      volume.Blanked.clear();
-      volume.Active.clear();
-      volume.Distances.clear();
-      break;
-    case Edit::Extent:
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        volume.Output[2 * axis] =
-          volume.Shape.VertexExtent[2 * axis] - static_cast<int>(random() % 8) + 4;
-        volume.Output[2 * axis + 1] =
-          volume.Shape.VertexExtent[2 * axis + 1] + static_cast<int>(random() % 8) - 4;
-      }
-      break;
-    case Edit::Background:
-      volume.Background += 1.0;
-      break;
-    case Edit::Values:
-      volume.First[random() % volume.First.size()] ^= 1;
-      break;
-    default:
-      break;
-  }
-}
-
-// Whether two outputs are the same outside an extent.
-bool AreSameOutside(const EditedOutputs& first, const EditedOutputs& second, const Extent& output,
-  const Extent& extent)
-{
-  std::size_t i = 0;
-  for (int z = output[4]; z <= output[5]; ++z)
-  {
-    for (int y = output[2]; y <= output[3]; ++y)
-    {
-      for (int x = output[0]; x <= output[1]; ++x, ++i)
-      {
-        const bool isInside = x >= extent[0] && x <= extent[1] && y >= extent[2] &&
-          y <= extent[3] && z >= extent[4] && z <= extent[5];
-        const bool isSame = first.First[i] == second.First[i] &&
-          std::memcmp(&first.Second[2 * i], &second.Second[2 * i], 2 * sizeof(double)) == 0 &&
-          first.Coverage[i] == second.Coverage[i];
-        if (!isInside && !isSame)
-        {
-          return false;
-        }
-      }
-    }
-  }
-  return true;
-}
-
 class Incremental : public WayTest
 {
 };
 
 } // namespace
-
-TEST_P(Incremental, EqualsWholeUpdates)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  const Route route = GetRoute();
-  EditedVolume volume = MakeVolume();
-  VolumeDeformer whole;
-  VolumeDeformer incremental;
-  volume.SendAll(whole, route);
-  volume.SendAll(incremental, route);
-  std::mt19937 random(17);
-  auto last = std::make_unique<EditedOutputs>(volume);
-  bool hasLast = false;
-  int parts = 0;
-  std::int64_t fewest = 1000000;
-  const int edits = GetNumberOf(150);
-  for (int i = 0; i < edits; ++i)
-  {
-    // Small edits come more often: only they are worked on in part.
-    static const Edit small[] = { Edit::Node, Edit::Inside, Edit::Region, Edit::Blanked,
-      Edit::Active };
-    const Edit edit = i < 3 ? Edit::None
-      : random() % 3        ? small[random() % std::size(small)]
-                            : static_cast<Edit>(random() % static_cast<int>(Edit::Count));
-    SCOPED_TRACE("edit " + std::to_string(i) + " of kind " + std::to_string(int(edit)));
-    const std::vector<float> sent = volume.Displacements;
-    Change(volume, edit, random);
-    const PointRanges changes = volume.FindChanges(sent, random);
-    for (VolumeDeformer* deformer : { &whole, &incremental })
-    {
-      if (edit == Edit::Values)
-      {
-        deformer->SetArrays(volume.GetArrays());
-      }
-      deformer->SetArrayOptions(volume.GetArrays());
-      if (edit == Edit::Blanked || edit == Edit::Active || edit == Edit::NoMasks)
-      {
-        volume.SendMasks(*deformer);
-      }
-      volume.SendDisplacements(
-        *deformer, route, deformer == &incremental && i % 2 ? &changes : nullptr);
-    }
-    EditedOutputs expected(volume);
-    const DeformReport wanted = whole.Deform(expected.MakeRequest(volume));
-
-    // In place, or from the last output, which has to stay as it is.
-    auto next = std::make_unique<EditedOutputs>(volume);
-    const bool inPlace = edit != Edit::Extent && random() % 2 == 0;
-    const EditedOutputs before = *last;
-    DeformRequest request = (inPlace ? *last : *next).MakeRequest(volume);
-    request.Incremental = true;
-    if (hasLast)
-    {
-      last->SetLast(request);
-    }
-    if (edit == Edit::Abort)
-    {
-      request.Progress = [](double) { return false; };
-      volume.Move(random, 0, 1.5F);
-      volume.SendDisplacements(incremental, route);
-      EXPECT_THROW(incremental.Deform(request), Aborted);
-      volume.SendDisplacements(whole, route);
-      whole.Deform(expected.MakeRequest(volume));
-      request.Progress = nullptr;
-      if (random() % 2)
-      {
-        request.LastOutputs.clear();
-      }
-    }
-    const DeformReport report = incremental.Deform(request);
-    if (edit != Edit::Abort)
-    {
-      ExpectSame(report, wanted);
-    }
-    if (!inPlace)
-    {
-      EXPECT_TRUE(*last == before) << "the last output was written to";
-      last = std::move(next);
-    }
-    ASSERT_TRUE(*last == expected);
-    EXPECT_EQ(wanted.NumberOfResampledBricks, wanted.NumberOfBricks);
-    EXPECT_EQ(wanted.ChangedExtent, volume.Output);
-    if (!hasLast || edit == Edit::Extent || edit == Edit::Abort)
-    {
-      EXPECT_EQ(report.ChangedExtent, volume.Output);
-    }
-    else
-    {
-      EXPECT_TRUE(AreSameOutside(before, *last, volume.Output, report.ChangedExtent));
-    }
-    hasLast = true;
-    if (report.NumberOfResampledBricks < report.NumberOfBricks)
-    {
-      ++parts;
-      fewest = std::min(fewest, report.NumberOfResampledBricks);
-    }
-  }
-  EXPECT_GT(parts, edits / 5);
-  EXPECT_EQ(fewest, 0) << "an edit of nothing";
-}
-
-// Where only vertices inside the mesh move nothing is cleared, as long as nothing folds.
-TEST_P(Incremental, EditsInsideEqualWholeUpdates)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  const Route route = GetRoute();
-  // So deep that these parts reach no border.
-  EditedVolume volume = MakeVolume(Extent{ { -5, 140, 0, 74, 3, 78 } });
-  Twins twins;
-  twins.SendAll(volume, route);
-  std::mt19937 random(29);
-  int parts = 0;
-  int folds = 0;
-  const int edits = GetNumberOf(50);
-  for (int i = 0; i < edits; ++i)
-  {
-    SCOPED_TRACE("edit " + std::to_string(i));
-    const bool folding = i % 5 == 3;
-    const bool unfolding = i % 5 == 4;
-    Change(volume, folding ? Edit::FoldInside : unfolding ? Edit::Unfold : Edit::Inside, random);
-    ASSERT_NO_FATAL_FAILURE(twins.Deform(volume, route));
-    folds += twins.WholeReport.NumberOfInvertedTetrahedra > 0;
-    if (twins.IsPart())
-    {
-      EXPECT_EQ(twins.WholeReport.NumberOfInvertedTetrahedra, 0);
-      // What a node moves lies in three bricks on an axis at most.
-      EXPECT_LE(twins.UpdatedReport.NumberOfResampledBricks, 3 * 3);
-      ++parts;
-    }
-  }
-  EXPECT_GT(folds, edits / 15);
-  EXPECT_GT(parts, edits / 10);
-}
 
 // Edits that change what is covered, but not how much of it, so that counts do not tell: of two
 // sides, of a hole, and of masks.
@@ -515,5 +268,59 @@ TEST_F(IncrementalMasks, AMaskChangesBesideAPart)
   EXPECT_EQ(this->Parts, changes);
 }
 
+namespace
+{
+
+class IncrementalFolds : public WayTest
+{
+protected:
+  IncrementalFolds() { this->Edited.Method = GetMethod(); }
+
+  void Deform()
+  {
+    for (VolumeDeformer* deformer : { &this->Both.Whole, &this->Both.Updated })
+    {
+      this->Edited.SendMasks(*deformer);
+    }
+    this->Both.Deform(this->Edited, GetRoute());
+  }
+  bool IsFolded() const { return this->Both.WholeReport.NumberOfInvertedTetrahedra > 0; }
+
+  // So large that a node moves a part of it.
+  EditedVolume Edited{ Extent{ { -5, 140, 0, 74, 3, 78 } } };
+  Twins Both;
+};
+
+} // namespace
+
+// What is folded and stays as it is costs an edit elsewhere nothing.
+TEST_P(IncrementalFolds, AnEditElsewhereRunsFewBricks)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  EditedVolume& edited = this->Edited;
+  this->Both.SendAll(edited, GetRoute());
+  edited.Displacements[3 * edited.GetNode({ { 4, 5, 5 } })] = 14.0F;
+  ASSERT_NO_FATAL_FAILURE(this->Deform());
+  EXPECT_TRUE(this->Both.WholeReport.Overlapping);
+  float& far = edited.Displacements[3 * edited.GetNode({ { 14, 3, 3 } })];
+  for (int i = 1; i <= 3; ++i)
+  {
+    far = 0.5F * static_cast<float>(i);
+    ASSERT_NO_FATAL_FAILURE(this->Deform());
+    EXPECT_TRUE(this->Both.UpdatedReport.Overlapping);
+    EXPECT_LE(this->Both.UpdatedReport.NumberOfResampledBricks, 3 * 3);
+  }
+  EXPECT_TRUE(this->Both.IsPart());
+  // The fold goes, and with it all winners: a whole output, and parts again afterwards.
+  edited.Displacements[3 * edited.GetNode({ { 4, 5, 5 } })] = 0.0F;
+  ASSERT_NO_FATAL_FAILURE(this->Deform());
+  EXPECT_FALSE(this->IsFolded());
+  EXPECT_FALSE(this->Both.IsPart());
+  far = 0.25F;
+  ASSERT_NO_FATAL_FAILURE(this->Deform());
+  EXPECT_TRUE(this->Both.IsPart());
+}
+
 INSTANTIATE_TEST_SUITE_P(Ways, Incremental, GetWays(), GetWayName);
 INSTANTIATE_TEST_SUITE_P(Ways, IncrementalBorders, GetWays(), GetWayName);
+INSTANTIATE_TEST_SUITE_P(Ways, IncrementalFolds, GetWays(), GetWayName);
