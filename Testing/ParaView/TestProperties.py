@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every property of every proxy: its default is that of the class, what is set reaches that property of
-the object that the proxy makes, and no other. Then each is set to its extremes: the process lives, an
-error is one readable message, and the defaults work afterwards. Then what ParaView shows."""
+"""Every property of every proxy: its default is that of the class, and what is set reaches that property
+of the proxy's object, and no other. Then each is set to its extremes: the process lives, an error is
+one readable message, and the defaults work afterwards. Then what ParaView shows."""
 
 import re
 
