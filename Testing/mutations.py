@@ -21,6 +21,8 @@ SOURCE = pathlib.Path(__file__).resolve().parent.parent
 WORK = SOURCE / "build" / "mutations"
 COPY = WORK / "source"
 BUILD = WORK / "build"
+# Against ParaView's VTK, with the plugin; CTest starts its tests.
+PLUGIN_BUILD = WORK / "plugin-build"
 SKIPPED = 125
 # As CTest fails tests of the VTK classes.
 ERROR = re.compile(r"(^|\n)ERROR: |(^|\n|[|] *)ERR[|]")
@@ -63,12 +65,13 @@ COROTATIONAL = ("TestCorotational", "*")
 DEFORMED_CUTTING = ("TestDeformedCutting", "*")
 LISTS = ("TestTetrahedronLists", "*")
 BOUNDARY = ("TestMeshBoundary", "*")
+PROPERTIES = "ParaView.TestProperties"
 
 # Tests of the VTK classes that open a window.
 WITH_WINDOW = ("TestDeformVolumeInteractorStyle",)
 
 # name: (file, text, replacement, tests). A test of the engine: its sources, with the kind of device behind @, and a
-# filter of GoogleTest. A test of the VTK classes: its name in CTest.
+# filter of GoogleTest. A test of the VTK classes or of the plugin: its name in CTest.
 MUTATIONS = {
     "filter-upright": ("Kernels/Resampling/GroupWeights.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
     "vertex-shift": ("Kernels/Resampling/GroupCoverage.cl",
@@ -354,6 +357,25 @@ MUTATIONS = {
                       "step == 0 ? part[axis] : 1.0 - part[axis]", ["Cxx.TestDeformVolumeSession"]),
     "pick-covered": ("Interaction/VisiblePlaces.cxx", "this->Covered->GetComponent(voxel, 0) == 0.0 ? -1 : voxel",
                      "false ? -1 : voxel", ["Cxx.TestDeformVolumeInteractorStyle"]),
+    # The plugin.
+    "plugin-command": ("Plugin/CarveVolume.xml", 'command="SetSmoothBoundary"', 'command="SetAccumulate"', [PROPERTIES]),
+    "plugin-port": ("Plugin/CutVolume.xml", 'command="SetSheetConnection"', 'command="SetRestConnection"', [PROPERTIES]),
+    "plugin-default": ("Plugin/ElasticDeformation.xml", 'default_values="0.3"', 'default_values="0.35"', [PROPERTIES]),
+    "plugin-materials": ("Plugin/ChainMailDeformation.xml", "3 0.95 1.05 0.05", "3 0.95 1.05 0.5", [PROPERTIES]),
+    "plugin-array": ("Plugin/VolumeEdit.xml", '";2;0;0;"', '";1;0;0;"', [PROPERTIES]),
+    "plugin-limit": ("Plugin/ElasticDeformation.xml", 'max="0.494"', 'max="0.5"', [PROPERTIES]),
+    "plugin-list": ("Plugin/TetGenMesher.xml", 'clean_command="ClearLabels"', 'clean_command="ClearRefinementSpheres"',
+                    [PROPERTIES]),
+    "plugin-step": ("Plugin/MassSpringDeformation.xml", 'command="SetTimeStep"', 'command="SetDamping"', [PROPERTIES]),
+    "plugin-button": ("Plugin/VolumeEdit.xml", 'command="Redo"', 'command="Undo"', ["ParaView.TestProxies"]),
+    "plugin-fetch": ("Plugin/InformationRefresh.cxx", "static_cast<vtkSMProxy*>(proxy)->UpdatePropertyInformation();",
+                     "static_cast<void>(proxy);", [PROPERTIES]),
+    "plugin-classes": ("Plugin/InformationRefresh.cxx", 'made == "vtkCutVolume" ||', "", [PROPERTIES]),
+    "plugin-servers": ("Plugin/InformationRefresh.cxx",
+                       "module->AddObserver(vtkCommand::ConnectionCreatedEvent, connected);", "",
+                       ["ParaView.TestClientServer"]),
+    "plugin-major": ("Plugin/VersionCheck.cxx", "built[0] != running[0]", "false", ["ParaView.TestVersions"]),
+    "plugin-minor": ("Plugin/VersionCheck.cxx", "built[1] != running[1]", "false", ["ParaView.TestVersions"]),
 }
 
 
@@ -378,24 +400,46 @@ def write(path, content):
     path.write_bytes(content)
 
 
+def is_of_plugin(test):
+    return isinstance(test, str) and test.startswith("ParaView.")
+
+
+def configure(folder, *options):
+    if not (folder / "build.ninja").is_file():
+        subprocess.run(
+            ["cmake", "-S", COPY, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+             "-DBUILD_TESTING=ON", "-DDEFORMVOLUME_BUILD_EXAMPLES=OFF", "-DDEFORMVOLUME_BUILD_BENCHMARKS=OFF",
+             "-DPython3_EXECUTABLE=/usr/bin/python3", *options],
+            check=True, stdout=subprocess.DEVNULL)
+
+
 def build(tests):
     """Returns whether it worked; what the compiler says is printed where it did not."""
-    if not (BUILD / "build.ninja").is_file():
-        subprocess.run(
-            ["cmake", "-S", COPY, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-             "-DBUILD_TESTING=ON", "-DDEFORMVOLUME_WRAP_PYTHON=OFF", "-DDEFORMVOLUME_BUILD_EXAMPLES=OFF",
-             "-DDEFORMVOLUME_BUILD_BENCHMARKS=OFF", "-DPython3_EXECUTABLE=/usr/bin/python3"],
-            check=True, stdout=subprocess.DEVNULL)
-    result = subprocess.run(
-        ["cmake", "--build", BUILD, "--target",
-         *sorted({"DeformVolumeCxxTests" if isinstance(test, str) else "DeformVolumeEngineTests" for test in tests})], capture_output=True, text=True)
-    if result.returncode:
-        print(result.stdout[-4000:], file=sys.stderr)
-    return result.returncode == 0
+    commands = []
+    targets = {"DeformVolumeCxxTests" if isinstance(test, str) else "DeformVolumeEngineTests"
+               for test in tests if not is_of_plugin(test)}
+    if targets:
+        configure(BUILD, "-DDEFORMVOLUME_WRAP_PYTHON=OFF")
+        commands.append(["cmake", "--build", BUILD, "--target", *sorted(targets)])
+    if any(map(is_of_plugin, tests)):
+        # As the preset paraview.
+        configure(PLUGIN_BUILD, "-DDEFORMVOLUME_USE_PARAVIEW=ON", "-DDEFORMVOLUME_TEST_KERNELS=OFF",
+                  "-DDEFORMVOLUME_TEST_CLASSES=OFF", f"-DDEFORMVOLUME_TEST_KERNEL_CACHE={WORK / 'plugin-kernels'}",
+                  f"-DCMAKE_PREFIX_PATH={SOURCE / 'build' / 'paraview-prefix' / 'usr'}")
+        commands.append(["cmake", "--build", PLUGIN_BUILD])
+    for command in commands:
+        result = subprocess.run(command, capture_output=True, text=True)
+        if result.returncode:
+            print(result.stdout[-4000:], file=sys.stderr)
+            return False
+    return True
 
 
 def get_command(test):
     """The test's name, and how it is started."""
+    if is_of_plugin(test):
+        # CTest knows its environment.
+        return test, ["ctest", "--test-dir", PLUGIN_BUILD, "-R", f"^{re.escape(test)}$", "--no-tests=error"]
     if isinstance(test, str):
         name = test.partition(".")[2]
         command = [BUILD / "bin" / "DeformVolumeCxxTests", name, "-T", WORK, "-D", SOURCE / "Testing" / "Data"]
@@ -417,12 +461,12 @@ def find_failure(tests):
             result = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=600)
         except subprocess.TimeoutExpired:
             return f"{name} (does not end)"
-        if result.returncode == SKIPPED:
+        if result.returncode == SKIPPED or (is_of_plugin(test) and "***Skipped" in result.stdout):
             print(f"{name} was skipped", file=sys.stderr)
             continue
         if result.returncode < 0:
             return f"{name} (signal {-result.returncode})"
-        if isinstance(test, str) and ERROR.search(result.stdout + result.stderr):
+        if isinstance(test, str) and not is_of_plugin(test) and ERROR.search(result.stdout + result.stderr):
             return name
         if result.returncode:
             failed = [line for line in result.stdout.splitlines() if line.startswith("[  FAILED  ]")]

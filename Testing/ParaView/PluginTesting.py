@@ -5,6 +5,7 @@ import contextlib
 import os
 import re
 import sys
+import xml.etree.ElementTree as ElementTree
 
 import numpy
 from paraview import simple
@@ -14,6 +15,7 @@ from vtkmodules.vtkIOImage import vtkNIFTIImageReader
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 PLUGIN = os.environ["DEFORMVOLUME_PLUGIN"]
+PLUGIN_SOURCE = os.path.join(os.path.dirname(__file__), "..", "..", "Plugin")
 OUTPUT = os.environ["DEFORMVOLUME_TEST_OUTPUT"]
 MRI = "/usr/share/mricron/templates/ch2.nii.gz"  # 181 x 217 x 181 bytes, a head
 
@@ -21,6 +23,26 @@ MRI = "/usr/share/mricron/templates/ch2.nii.gz"  # 181 x 217 x 181 bytes, a head
 def load_plugin(remote=False):
     """Makes the plugin's proxies functions of paraview.simple."""
     simple.LoadPlugin(PLUGIN, remote=remote, ns=vars(simple))
+
+
+def plugin_proxies():
+    """The elements of the proxies that a user meets, each with all that it is based on."""
+    elements = {}
+    for name in sorted(os.listdir(PLUGIN_SOURCE)):
+        if name.endswith(".xml"):
+            root = ElementTree.parse(os.path.join(PLUGIN_SOURCE, name)).getroot()
+            for group in root.iter("ProxyGroup"):
+                elements.update({(group.get("name"), proxy.get("name")): proxy for proxy in group})
+    result = []
+    for (group, _), proxy in elements.items():
+        if group == "internal_filters":
+            continue
+        base = proxy
+        while base.get("base_proxyname"):
+            base = elements[base.get("base_proxygroup"), base.get("base_proxyname")]
+            proxy.extend(list(base))
+        result.append(proxy)
+    return result
 
 
 def check(condition, text):

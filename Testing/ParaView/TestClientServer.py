@@ -44,6 +44,8 @@ def check_session():
     filter_.Padding = 1
     filter_.CategoricalArrays = ["RTData"]
     filter_.UpdatePipeline()
+    shown = filter_.SMProxy.GetProperty("NumberOfCoveredVoxels").GetElement(0)
+    check(shown > 1000.0, f"Without asking, {shown} covered voxels are shown")
     filter_.UpdatePipelineInformation()
     check(filter_.DeviceInUse == choices[3], f"In use is {filter_.DeviceInUse}")
     check(filter_.CoveredVoxels > 1000.0 and filter_.ResamplingTime > 0.0, "No information")
@@ -72,6 +74,8 @@ def check_session():
 
 
 def client(port):
+    # A client that loads the plugin when it starts connects afterwards.
+    load_plugin()
     simple.Connect("localhost", port)
     check_session()
 

@@ -63,6 +63,12 @@ def check_carve(volume):
     carve.Body.Radius = 5
     large = off(active(carve))
     check(3 * small < large < 7 * small, f"spheres of radius 3 and 5 carve {small} and {large}")
+    carve.Body.Center = [2, 0, -1]
+    by_body = active(carve)
+    tool = simple.CarveVolume(Volume=volume, ToolPositions=[2, 0, -1], ToolRadius=5)
+    tool.Body = "Sphere"
+    tool.Body.Radius = 1
+    check(active(tool) == by_body, "a tool that does not move carves another sphere")
     for name in ("Box", "Cylinder", "Plane"):
         carve.Body = name
         check(off(active(carve)) > 0, f"{name} carves nothing")

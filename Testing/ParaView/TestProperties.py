@@ -1,8 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every property of every proxy, set to its extremes: the process lives, an error is one readable
-message, and the defaults work afterwards. Then the defaults themselves."""
+"""Every property of every proxy: its default is that of the class, and what is set reaches that property
+of the proxy's object, and no other. Then each is set to its extremes: the process lives, an error is
+one readable message, and the defaults work afterwards. Then what ParaView shows."""
 
+import re
+
+import deformvolume_vtk  # noqa: F401, the classes of the objects on the server
 from paraview import simple
+from vtkmodules.vtkCommonDataModel import vtkDataObject
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkTrivialProducer
 
 from PluginTesting import (
     bent_lattice,
@@ -11,8 +17,248 @@ from PluginTesting import (
     deformed,
     load_plugin,
     messages,
+    plugin_proxies,
     wavelet,
 )
+
+# Where ParaView has another default than the class. ParaView has a clock; other pipelines are asked
+# for times only by those who want them. A panel shows the name of a device.
+OTHER_DEFAULTS = {
+    ("vtkMassSpringDeformation", "EndTime"): [1.0],
+    ("vtkCorotationalDeformation", "EndTime"): [1.0],
+    ("vtkDeformVolumeFilter", "Device"): ["best"],
+}
+# Values of lists that the classes take; of other lists they take any numbers.
+LISTS = {
+    ("vtkChainMailDeformation", "Materials"): [3, 0.5, 1.5, 0.25, 7, 0.25, 2.5, 0.125],
+    ("vtkMaterialFromVolume", "Materials"): [3, 2000.5, 0.25, 900, 7, 500, 0.125, 1100],
+}
+
+
+def read_materials(instance):
+    """Index and values of each material that is defined."""
+    read = getattr(instance, "GetMaterialLimits", None) or instance.GetMaterialValues
+    result = []
+    for index in range(256):
+        values = [0.0] * 3
+        if read(index, values):
+            result += [index, *values]
+    check(len(result) == 4 * instance.GetNumberOfMaterials(), "Not all materials are found")
+    return result
+
+
+def read_ranges(instance):
+    """The class prints them only."""
+    printed = re.search(r"MaterialRanges:\n((?: +\S+ to \S+: \d+\n)*)", str(instance)).group(1)
+    ranges = re.findall(r"(\S+) to (\S+): (\d+)", printed)
+    check(len(ranges) == instance.GetNumberOfMaterialRanges(), f"{ranges} are printed")
+    return [float(number) for entry in ranges for number in entry]
+
+
+def read_spheres(instance):
+    result = []
+    for index in range(instance.GetNumberOfRefinementSpheres()):
+        sphere = [0.0] * 5
+        instance.GetRefinementSphere(index, sphere)
+        result += sphere
+    return result
+
+
+def read_array_choice(instance):
+    information = instance.GetInputArrayInformation(0)
+    keys = (vtkAlgorithm.INPUT_PORT(), vtkAlgorithm.INPUT_CONNECTION(),
+            vtkDataObject.FIELD_ASSOCIATION())
+    name = information.Get(vtkDataObject.FIELD_NAME())
+    return ["0", *(str(information.Get(key)) for key in keys), name or ""]
+
+
+# How properties are read whose names are not those of getters. The classes tell only how many
+# positions of tools there are; where they cut is in TestEdits.py.
+READERS = {
+    "Materials": read_materials,
+    "MaterialRanges": read_ranges,
+    "RefinementSpheres": read_spheres,
+    "Labels": lambda made: [made.GetLabel(i) for i in range(made.GetNumberOfLabels())],
+    "CategoricalArrays": lambda made: [
+        made.GetCategoricalArray(i) for i in range(made.GetNumberOfCategoricalArrays())
+    ],
+    "ToolPositions": lambda made: made.GetNumberOfToolPositions(),
+    "DisplacementArray": read_array_choice,
+    "Scalars": read_array_choice,
+}
+
+
+def properties_of(proxy, information=False):
+    """The properties that a user sets, or those that are information, by name."""
+    iterator = proxy.SMProxy.NewPropertyIterator()
+    result = {}
+    iterator.Begin()
+    while not iterator.IsAtEnd():
+        if bool(iterator.GetProperty().GetInformationOnly()) == information:
+            result[iterator.GetKey()] = iterator.GetProperty()
+        iterator.Next()
+    return result
+
+
+def find_port(cls, name):
+    """The input port that an input property is to reach."""
+    instance, producer = cls(), vtkTrivialProducer()
+    getattr(instance, f"Set{name}Connection")(producer.GetOutputPort())
+    ports = range(instance.GetNumberOfInputPorts())
+    return next(port for port in ports if instance.GetNumberOfInputConnections(port))
+
+
+def read(instance, name, smproperty):
+    """What the object has of a property; a property that cannot be read ends the test."""
+    if smproperty.IsA("vtkSMInputProperty"):
+        port = find_port(type(instance), name)
+        count = instance.GetNumberOfInputConnections(port)
+        return [instance.GetInputConnection(port, i).GetProducer() for i in range(count)]
+    if name in READERS:
+        return READERS[name](instance)
+    getter = getattr(instance, f"Get{name}", None)
+    check(getter, f"{type(instance).__name__} has no Get{name}(): add it to READERS")
+    value = getter()
+    return list(value) if isinstance(value, tuple) else [value]
+
+
+def elements_of(smproperty):
+    return [smproperty.GetElement(i) for i in range(smproperty.GetNumberOfElements())]
+
+
+def other_values(instance, name, smproperty, default):
+    """Lists of elements other than the default; no two numbers of a list are equal."""
+    domain = smproperty.FindDomain("vtkSMEnumerationDomain")
+    if domain:
+        entries = [domain.GetEntryValue(i) for i in range(domain.GetNumberOfEntries())]
+        return [[entry] for entry in entries if entry != default[0]]
+    if smproperty.FindDomain("vtkSMBooleanDomain"):
+        return [[1 - int(default[0])]]
+    is_text = smproperty.IsA("vtkSMStringVectorProperty")
+    if smproperty.GetRepeatable():
+        if (type(instance).__name__, name) in LISTS:
+            return [LISTS[type(instance).__name__, name]]
+        numbers = range(1, 2 * smproperty.GetNumberOfElementsPerCommand() + 1)
+        return [[f"array {number}" if is_text else number for number in numbers], []]
+    if is_text:
+        return [[*default[:-1], "another"]]
+    # Some properties are integers of the class, and floating-point numbers in ParaView.
+    step = 1 if isinstance(default[0], int) else 0.0625
+    values = [number + step * (i + 1) for i, number in enumerate(default)]
+    if smproperty.IsA("vtkSMIntVectorProperty") or smproperty.IsA("vtkSMDoubleVectorProperty"):
+        greatest = getattr(instance, f"Get{name}MaxValue", lambda: values[0])()
+        return [values if values[0] <= greatest else [default[0] - step]]
+    return []
+
+
+def set_elements(smproperty, values):
+    smproperty.SetNumberOfElements(len(values))
+    for i, value in enumerate(values):
+        smproperty.SetElement(i, value)
+
+
+def has(got, values, name, smproperty):
+    """Whether what was read is what was set."""
+    if name == "ToolPositions":
+        return got == len(values) // smproperty.GetNumberOfElementsPerCommand()
+    return got == values
+
+
+def check_reach(proxy, sources):
+    instance = proxy.GetClientSideObject()
+    fresh = type(instance)()
+    properties = {
+        name: smproperty
+        for name, smproperty in properties_of(proxy).items()
+        if smproperty.GetClassName() != "vtkSMProperty"  # a button
+    }
+
+    def read_all():
+        return {name: read(instance, name, prop) for name, prop in properties.items()}
+
+    def check_only(name, before, is_right, label):
+        """Only this property has changed."""
+        after = read_all()
+        check(is_right(after[name]), f"{label}: the object has {after[name]}")
+        others = [other for other in before if other != name and before[other] != after[other]]
+        check(not others, f"{label} changes {others}")
+
+    for name, smproperty in properties.items():
+        label = f"{proxy.GetXMLName()}.{name}"
+        before = read_all()
+        if smproperty.IsA("vtkSMInputProperty"):
+            check(not before[name], f"{label}: there is an input")
+            check_input(proxy, name, smproperty, sources, check_only, before)
+            continue
+        if smproperty.IsA("vtkSMProxyProperty"):
+            wrapped = proxy.GetProperty(name)
+            check(len(wrapped.Available) > 1, f"{label}: no choice")
+            for choice in reversed(wrapped.Available):
+                wrapped.SetData(choice)
+                proxy.SMProxy.UpdateVTKObjects()
+                chosen = [wrapped.GetData().GetClientSideObject()]
+                check_only(name, before, lambda got: got == chosen, f"{label} = {choice}")
+            continue
+        default = read(fresh, name, smproperty)
+        default = OTHER_DEFAULTS.get((type(instance).__name__, name), default)
+        check(before[name] == default, f"{label}: the default is {before[name]}, not {default}")
+        shown = elements_of(smproperty)
+        if name not in ("DisplacementArray", "Scalars"):  # their empty index counts as 0
+            check(has(default, shown, name, smproperty), f"{label}: {shown}, not {default}")
+        values = other_values(instance, name, smproperty, default)
+        check(values, f"{label}: no other value is known")
+        for elements in values:
+            set_elements(smproperty, elements)
+            proxy.SMProxy.UpdateVTKObjects()
+            check_only(name, before, lambda got: has(got, elements, name, smproperty),
+                       f"{label} = {elements}")
+        set_elements(smproperty, shown)
+        proxy.SMProxy.UpdateVTKObjects()
+        check(read_all() == before, f"{label}: the default does not come back")
+
+
+def check_input(proxy, name, smproperty, sources, check_only, before):
+    label = f"{proxy.GetXMLName()}.{name}"
+
+    def comes_from(source):
+        """ParaView may put an algorithm of its own between."""
+        def is_right(producers):
+            if len(producers) != 1:
+                return False
+            producer, made = producers[0], source.GetClientSideObject()
+            while producer is not made and producer.GetNumberOfInputConnections(0):
+                producer = producer.GetInputConnection(0, 0).GetProducer()
+            return producer is made
+        return is_right
+
+    accepted = 0
+    for source in sources:
+        smproperty.SetInputConnection(0, source.SMProxy, 0)
+        if smproperty.IsInDomains():
+            accepted += 1
+            proxy.SMProxy.UpdateVTKObjects()
+            check_only(name, before, comes_from(source), f"{label} = {source.GetXMLName()}")
+    check(accepted > 0, f"{label} accepts none of the sources")
+    smproperty.RemoveAllProxies()
+    proxy.SMProxy.UpdateVTKObjects()
+
+
+def check_all_reach(sources):
+    for element in plugin_proxies():
+        name = element.get("name")
+        check(hasattr(simple, name), f"{name}: not in paraview.simple")
+        simple.SetActiveSource(None)  # would become the input
+        with messages():  # inputs are missing
+            proxy = getattr(simple, name)()
+            missing = [
+                prop.get("name")
+                for prop in element
+                if prop.tag.endswith("Property") and not proxy.SMProxy.GetProperty(prop.get("name"))
+            ]
+            check(not missing, f"{name}: ParaView has no {missing}")
+            check_reach(proxy, sources)
+            simple.Delete(proxy)
+
 
 HUGE = 1e300
 BAD_NUMBERS = [-HUGE, HUGE, 0.0, 1e-300, float("nan"), float("inf")]
@@ -40,7 +286,7 @@ def extremes(prop):
     if kind == "vtkSMIntVectorProperty":
         numbers = [-(2**31), -1, 0, 1, 2, 2**31 - 1]
         return [number if count == 1 else [number] * count for number in numbers]
-    return []
+    raise AssertionError(f"{kind} has no extremes")
 
 
 def update(proxy):
@@ -74,6 +320,55 @@ def check_extremes(make, names):
             simple.Delete(proxy)
     check_silent(update(make()))
     return tried
+
+
+def check_limits(make):
+    """Panels offer what the class works with. TestProxies.py looks at classes that clamp."""
+    for name, smproperty in properties_of(make()).items():
+        enumeration = smproperty.FindDomain("vtkSMEnumerationDomain")
+        kind = re.sub("VectorProperty$", "RangeDomain", smproperty.GetClassName())
+        interval = smproperty.FindDomain(kind)
+        good, bad = [], []
+        if hasattr(make().GetClientSideObject(), f"Get{name}MaxValue"):
+            continue
+        if enumeration:
+            good = [enumeration.GetEntryValue(i) for i in range(enumeration.GetNumberOfEntries())]
+            bad = [max(good) + 1]
+        elif interval and interval.GetClassName() == kind:  # and not one that follows the data
+            if interval.GetMinimumExists(0):
+                bad.append(interval.GetMinimum(0) - 1)
+            if interval.GetMaximumExists(0):
+                good.append(interval.GetMaximum(0))
+                bad.append(1.01 * interval.GetMaximum(0))
+        for value in good + bad:
+            proxy = make()
+            proxy.SMProxy.GetProperty(name).SetElement(0, value)
+            proxy.SMProxy.UpdateVTKObjects()
+            texts = update(proxy)
+            expected = 0 if value in good else 1
+            check(len(texts) == expected, f"{proxy.GetXMLName()}.{name} = {value}: {texts}")
+            simple.Delete(proxy)
+
+
+def check_shown(make):
+    """Panels show what is there after an update, without asking for it."""
+    proxy = make()
+    instance = proxy.GetClientSideObject()
+    information = {
+        name: smproperty
+        for name, smproperty in properties_of(proxy, information=True).items()
+        # ParaView makes these of more than one number that a getter gives.
+        if name not in ("DeviceChoices", "TimestepValues", "TimeRange")
+    }
+    before = {name: read(instance, name, smproperty) for name, smproperty in information.items()}
+    proxy.UpdatePipeline()
+    after = {name: read(instance, name, smproperty) for name, smproperty in information.items()}
+    check(not information or before != after, f"{proxy.GetXMLName()}: the update changes nothing")
+    for name, smproperty in information.items():
+        shown = elements_of(smproperty)
+        label = f"{proxy.GetXMLName()}.{name}"
+        check(shown == after[name], f"{label}: {shown} is shown, not {after[name]}")
+    simple.Delete(proxy)
 
 
 def check_defaults(volume):
@@ -121,9 +416,6 @@ def check_defaults(volume):
         check(shown("DeviceInUse") != "", "No device is shown")
         check(f"Covered voxels: {covered:,}\n" in shown("Summary"), shown("Summary"))
         check("Inverted tetrahedra: 0\n" in shown("Summary"), shown("Summary"))
-    mesher = simple.TetGenMesher(Input=volume, AutomaticIsovalue=0, Isovalue=150.0)
-    mesher.UpdatePipeline()
-    check(mesher.SMProxy.GetProperty("UsedIsovalue").GetElement(0) == 150.0, "No isovalue is shown")
 
     # Folded over, tetrahedra are inverted and counted.
     filter_ = deformed(volume, two)
@@ -141,6 +433,7 @@ def main():
     volume.UpdatePipeline()
     ball = simple.Sphere()
     ball.UpdatePipeline()
+    check_all_reach([volume, mesh, ball])
 
     def deform(**properties):
         # An output that is too large is an error before it fills this machine.
@@ -153,15 +446,43 @@ def main():
             Input=volume, AutomaticIsovalue=0, Isovalue=150.0, TargetEdgeLength=4.0
         )
 
-    tried = check_extremes(deform, None)
+    plane = simple.Plane(Origin=[0.5, -9, -9], Point1=[0.5, 9, -9], Point2=[0.5, -9, 9])
+    surface = simple.Sphere(Radius=4)
+    labels = simple.Calculator(Input=volume, ResultArrayName="label", Function="floor(coordsX/4)")
+    lattice = simple.TetrahedralLattice(NumberOfNodes=[4, 4, 4], Bounds=[-6, 6] * 3)
+    wide = simple.TetrahedralLattice(NumberOfNodes=[5, 5, 5], Bounds=[-20, 20] * 3)
+    held = simple.Calculator(Input=lattice, ResultArrayName="Fixed", Function="coordsZ < -5")
+    handle = simple.DeformationHandle(RestPosition=[0, 0, 6], Position=[1, 0, 6])
+    edited = {"Volume": volume, "Deformation": mesh}
+    elastic = {"RestMesh": held, "Handles": handle}
+    makers = {
+        "CarveVolume": lambda: simple.CarveVolume(ToolPositions=[1, 2, 3], **edited),
+        "CarveVolumeLabel": lambda: simple.CarveVolumeLabel(Volume=labels, Labels="label"),
+        "CarveVolumeWithSurface": lambda: simple.CarveVolumeWithSurface(Surface=surface, **edited),
+        "ChainMailDeformation": lambda: simple.ChainMailDeformation(Volume=volume, Handles=handle),
+        "CorotationalDeformation": lambda: simple.CorotationalDeformation(**elastic),
+        "CutVolume": lambda: simple.CutVolume(Sheet=plane, **edited),
+        "DeformVolume": deform,
+        "DeformationHandle": simple.DeformationHandle,
+        "MassSpringDeformation": lambda: simple.MassSpringDeformation(**elastic),
+        "MaterialFromVolume": lambda: simple.MaterialFromVolume(Mesh=wide, Volume=volume),
+        "TetGenMesher": body,
+        "TetrahedralLattice": simple.TetrahedralLattice,
+        "TetrahedralLatticeOfVolume": lambda: simple.TetrahedralLatticeOfVolume(Volume=volume),
+    }
+
+    tried = 0
+    for element in plugin_proxies():
+        name = element.get("name")
+        check(name in makers, f"{name} is not tried")
+        tried += check_extremes(makers[name], None)
+        check_limits(makers[name])
+        check_shown(makers[name])
     tried += check_extremes(lambda: deform(OutputBoundsMode="Custom Bounds"), ["CustomBounds"])
     tried += check_extremes(lambda: deform(OutputSpacingMode="Custom Spacing"), ["CustomSpacing"])
     tried += check_extremes(lambda: deform(Resampler="Mesh Rasterization"), ["Interpolation"])
-    tried += check_extremes(simple.TetrahedralLattice, None)
-    tried += check_extremes(lambda: simple.TetrahedralLatticeOfVolume(Volume=volume), None)
-    tried += check_extremes(body, None)
     tried += check_extremes(lambda: simple.TetGenMesher(Input=ball), ["TargetEdgeLength"])
-    check(tried > 150, f"Only {tried} values were tried")
+    check(tried > 500, f"Only {tried} values were tried")
     lattice = simple.TetrahedralLattice(NumberOfNodes=[-5, 2**31 - 1, 0])
     check(len(update(lattice)) == 1, "Too few nodes are no error")
     lattice.NumberOfNodes = [2**31 - 1] * 3

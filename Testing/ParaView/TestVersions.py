@@ -17,15 +17,18 @@ def load(path):
     return texts
 
 
-def main(major, patch, not_loadable):
-    running = ".".join(
+def main(other_major, other_minor, other_patch, not_loadable):
+    major, minor, patch = (
         str(getattr(simple.servermanager.vtkSMProxyManager, f"GetVersion{part}")())
         for part in ("Major", "Minor", "Patch")
     )
-    texts = load(major)
-    check_one_message(texts, ["ERROR", "ParaView 4.9.1", f"this is ParaView {running}", "Build"])
-    texts = load(patch)
-    check_one_message(texts, ["Warning", running.rpartition(".")[0] + ".99", running])
+    running = f"this is ParaView {major}.{minor}.{patch}"
+    texts = load(other_major)
+    check_one_message(texts, ["ERROR", f"ParaView 4.{minor}.{patch}", running, "Build"])
+    texts = load(other_minor)
+    check_one_message(texts, ["ERROR", f"ParaView {major}.99.{patch}", running, "Build"])
+    texts = load(other_patch)
+    check_one_message(texts, ["Warning", f"ParaView {major}.{minor}.99", running])
     texts = load(not_loadable)
     check_one_message(texts, ["vtkRemotingCore-pv4.9", "DeformVolumeNotLoadable.so"])
     with messages() as texts:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Plugins for another ParaView than this one: two that load and have the plugin's check, and a library
+# Plugins for another ParaView than this one: three that load and have the plugin's check, and a library
 # that does not load, since it needs a library of the other ParaView.
 
 function (deformvolume_add_other_version name version)
@@ -19,6 +19,7 @@ file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/cmake_install.cmake" "# Nothing is insta
 paraview_plugin_scan(
   PLUGIN_FILES
     "${CMAKE_CURRENT_LIST_DIR}/Major/paraview.plugin"
+    "${CMAKE_CURRENT_LIST_DIR}/Minor/paraview.plugin"
     "${CMAKE_CURRENT_LIST_DIR}/Patch/paraview.plugin"
   PROVIDES_PLUGINS plugins
   ENABLE_BY_DEFAULT ON
