@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # What takes too long for each change: all tests of the VTK classes against ParaView's VTK and with
-# the sanitizers, those with Oclgrind that take minutes, edits by cell as on a graphics card, random
-# pipelines with new seeds, all mutations, and Examples/run.sh and Testing/run.sh --all on other
+# the sanitizers, those with Oclgrind that take minutes, edits by cell as on a graphics card, edits and
+# random pipelines with new seeds, all mutations, and Examples/run.sh and Testing/run.sh --all on other
 # Debian systems. Takes hours; logs are in build.
 #
 # Usage: nightly.sh [--seconds SECONDS]
@@ -33,6 +33,8 @@ run "configuration" cmake --preset vtk -DDEFORMVOLUME_LONG_TESTS=OFF
 run "edits by cell, as on a graphics card" build/vtk/bin/DeformVolumeEngineTests --device=gpu-like \
   --files=TestEdits,TestIncremental '--gtest_filter=*ByCell'
 seed=$(date +%s)
+run "edits from seed $((seed % 99999))" build/vtk/bin/DeformVolumeEngineTests --files=TestEdits \
+  --gtest_random_seed=$((seed % 99999))
 run "random pipelines from seed $seed" build/vtk/bin/DeformVolumeFuzz --seed "$seed" \
   --seconds "$seconds" --keep-going
 run "mutations" python3 Testing/mutations.py
