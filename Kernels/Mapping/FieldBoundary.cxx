@@ -3,6 +3,7 @@
 
 #include "BoundaryFinder.h"
 #include "FiveTetrahedra.h"
+#include "IndexBounds.h" // for GetVoxelsToField
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -31,7 +32,7 @@ MeshBoundary FindFieldBoundary(
     return MeshBoundary();
   }
   const auto& m = field.IndexToField;
-  const glm::dmat3 toField(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
+  const glm::dmat3 toField = GetVoxelsToField(field);
   const glm::dmat3 toIndex = glm::inverse(toField);
   if (!(std::abs(glm::determinant(toField)) > 0.0))
   {

@@ -2,7 +2,7 @@
 #include "FieldFolds.h"
 
 #include "FiveTetrahedra.h"
-#include "IndexBounds.h" // for GetVector
+#include "IndexBounds.h" // for GetVector and GetVoxelsToField
 #include "ParallelFor.h"
 
 #include <glm/geometric.hpp>
@@ -46,17 +46,16 @@ private:
   const glm::dmat3 ToField;
   // By the parities of y and z, so that the next row of cells finds two of them here.
   std::array<std::array<Row, 2>, 2> Rows;
-  // Of each point and of each cell of the row: sums over the components, see FindRegularCells().
+  // How much one component changes from the rows at a point to the next ones along y and along z.
   std::vector<double> ChangeAcross[2];
+  // Of each cell of the row, whether its edges tell that none of its tetrahedra is inverted.
   std::vector<unsigned char> IsRegular;
 };
 
 RowCounter::RowCounter(const DisplacementField& field)
   : Field(field)
   , Size(static_cast<std::size_t>(field.Dimensions[0]))
-  , ToField(field.IndexToField[0], field.IndexToField[4], field.IndexToField[8],
-      field.IndexToField[1], field.IndexToField[5], field.IndexToField[9], field.IndexToField[2],
-      field.IndexToField[6], field.IndexToField[10])
+  , ToField(GetVoxelsToField(field))
   , IsRegular(this->Size)
 {
   for (auto& rows : this->Rows)

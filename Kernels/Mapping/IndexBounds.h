@@ -7,6 +7,7 @@
 #include "VoxelGrid.h"
 
 #include <glm/common.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include <cmath>
@@ -66,6 +67,13 @@ inline bool IsFinite(const glm::dvec3& v)
 inline glm::dvec3 GetVector(const float* vectors, std::int64_t index)
 {
   return glm::dvec3(vectors[3 * index], vectors[3 * index + 1], vectors[3 * index + 2]);
+}
+
+/// What takes a vector in voxels of the volume to one in points of a field.
+inline glm::dmat3 GetVoxelsToField(const DisplacementField& field)
+{
+  const auto& m = field.IndexToField;
+  return glm::dmat3(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
 }
 
 /// The displacement of a point of a field.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LookupBounds.h"
 
+#include "IndexBounds.h" // for GetVoxelsToField
 #include "ParallelFor.h"
 #include "RasterParameters.h"
 
@@ -31,15 +32,11 @@ public:
     , Scale(GetScale(voxelGrid))
     , Volume(GetBox(voxelGrid))
   {
-    const auto& m = field.IndexToField;
-    for (int row = 0; row < 3; ++row)
+    this->ToField = GetVoxelsToField(field);
+    for (int axis = 0; axis < 3; ++axis)
     {
-      for (int column = 0; column < 3; ++column)
-      {
-        this->ToField[column][row] = m[4 * row + column];
-      }
-      this->Offset[row] = m[4 * row + 3];
-      this->Last[row] = field.Dimensions[row] - 1;
+      this->Offset[axis] = field.IndexToField[4 * axis + 3];
+      this->Last[axis] = field.Dimensions[axis] - 1;
     }
     this->FromField = glm::inverse(this->ToField);
     // As in the kernel: half of the rounding of positions to 1/256 output voxel.
