@@ -30,7 +30,7 @@ ERROR = re.compile(r"(^|\n)ERROR: |(^|\n|[|] *)ERR[|]")
 NARROW = ("TestNarrowDecisions", "*")
 MASKS = ("TestIncremental", "IncrementalMasks*")
 ALONG = ("TestPiecewise", "*AlongSomeAxes*")
-MISSING = ("TestPiecewise", "*Masks*")
+MISSING = ("TestResampling", "*_Uncut")
 FOLDS = ("TestIncremental,TestEdits", "*IncrementalFolds*:*Edits*-*ByCell")
 BY_CELL = ("TestIncremental,TestEdits", "*Borders*ByCell:*Edits*ByCell")
 ALIGNED = ("TestEdits", "-*ByCell")
@@ -43,7 +43,7 @@ DEVICE_OUTPUT = ("TestDeviceOutput@gpu-like", "*")
 GRAPHICS = ("TestGraphicsDevice@gpu-like-no-double", "*")
 STAGED = ("TestStagedCopies@gpu-like", "Staged.*")
 CUTTING = ("TestCutting", "*")
-SMOOTH = ("TestSmoothCuts", "*")
+SMOOTH = ("TestSmoothCuts,TestResampling", "SmoothCuts*:*_CutAtRandom:*_Opened:*_Overlapping")
 EDITS = ("TestMaskEditor", "*")
 SPLIT = ("TestMeshSplit", "*")
 SPLIT_FACES = ("TestSplitFaces", "*")
@@ -150,7 +150,7 @@ MUTATIONS = {
     "columns-again": ("Kernels/Resampling/ColumnResampling.cl", "left == CELL_DONE ? QUEUE_INTEGERS : left)",
                       "QUEUE_INTEGERS)", [("TestColumns", "*")]),
     "columns-whole": ("Kernels/Resampling/ColumnResampling.cl", "(any & FLAG_BORDER && !(lowest & FLAG_WHOLE))", "0",
-                      [("TestPiecewise", "*Masks*")]),
+                      [MISSING]),
     "columns-launch": ("Kernels/Resampling/ColumnCells.cl", "bricks[p->ListBegin + cell / CELLS_OF_BRICK]",
                        "bricks[cell / CELLS_OF_BRICK]", [("TestColumns", "*MoreBricks*")]),
     "float-integers": ("Kernels/SamplingMesh/ArrayText.cxx", "GetElementSize(arrays[i].Type) >= 4)",

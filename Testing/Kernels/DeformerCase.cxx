@@ -236,6 +236,63 @@ DeformerCase MakeCase(const Extent& extent, const std::array<double, 3>& scale,
   return made;
 }
 
+namespace
+{
+
+glm::dvec3 GetPoint(const Extent& extent, std::int64_t i)
+{
+  const std::int64_t x = GetSize(extent, 0);
+  const std::int64_t y = GetSize(extent, 1);
+  return glm::dvec3(extent[0] + i % x, extent[2] + i / x % y, extent[4] + i / (x * y));
+}
+
+} // namespace
+
+void CutAtRandom(DeformerCase& made, unsigned int seed, unsigned int every)
+{
+  std::mt19937 random(seed);
+  made.CutDistances.resize(made.GetNumberOfVoxels());
+  for (float& distance : made.CutDistances)
+  {
+    distance = (static_cast<float>(random() % 65) - 32.0F) / 16.0F;
+  }
+  made.Crossed.assign(GetNumberOfCells(made.VoxelGrid.VertexExtent), 0);
+  for (unsigned char& cell : made.Crossed)
+  {
+    cell = random() % every == 0 ? static_cast<unsigned char>(random() % 32) : 0;
+  }
+}
+
+void CutAlong(DeformerCase& made, const std::function<double(const glm::dvec3&)>& distance,
+  const std::function<bool(const glm::dvec3&)>& isWanted)
+{
+  const Extent& extent = made.VoxelGrid.VertexExtent;
+  made.CutDistances.clear();
+  for (std::int64_t i = 0; i < made.GetNumberOfVoxels(); ++i)
+  {
+    made.CutDistances.push_back(static_cast<float>(distance(GetPoint(extent, i))));
+  }
+  Extent cells = extent;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    --cells[2 * axis + 1];
+  }
+  made.Crossed.clear();
+  for (std::int64_t i = 0; i < GetNumberOfPoints(cells); ++i)
+  {
+    const glm::dvec3 first = GetPoint(cells, i);
+    double low = 1e9;
+    double high = -1e9;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const double d = distance(first + glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2));
+      low = std::min(low, d);
+      high = std::max(high, d);
+    }
+    made.Crossed.push_back(low < 0.0 && high >= 0.0 && isWanted(first) ? 31 : 0);
+  }
+}
+
 reference::Result ResampleByReference(const DeformerCase& deformerCase)
 {
   reference::SamplingMesh mesh;

@@ -59,6 +59,17 @@ struct DeformerCase
 DeformerCase MakeCase(const deformvolume::Extent& extent, const std::array<double, 3>& scale,
   const std::function<glm::dvec3(const glm::dvec3&)>& deformation, int margin = 1);
 
+/// Adds a smooth cut with distances of random sign; of the cells one in `every` has tetrahedra that
+/// are crossed. Distances are multiples of 1/16: the kernels and the reference add them up without
+/// rounding.
+void CutAtRandom(DeformerCase& made, unsigned int seed, unsigned int every);
+
+/// Adds a smooth cut where a function of the index is 0: it crosses the wanted ones of the cells
+/// that have vertices on both sides.
+void CutAlong(
+  DeformerCase& made, const std::function<double(const glm::dvec3&)>& distance,
+  const std::function<bool(const glm::dvec3&)>& isWanted = [](const glm::dvec3&) { return true; });
+
 reference::Result ResampleByReference(const DeformerCase& deformerCase);
 
 /// Which of the nodes of its tetrahedron a voxel is: it changes from voxel to voxel, so that all

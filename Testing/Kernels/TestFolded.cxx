@@ -70,35 +70,6 @@ DeformerCase MakeCellWithOverlap(int parity, int first, int second, double size)
 
 } // namespace
 
-TEST(Folded, InvertedTetrahedraAreCountedAndRasterised)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  for (const double amplitude : { 0.4, 0.8, 1.5 })
-  {
-    SCOPED_TRACE(amplitude);
-    const DeformerCase jittered = MakeCase(Volume, NoScale, MakeJitter(31, amplitude));
-    const reference::Result reference = ResampleByReference(jittered);
-    EXPECT_GT(reference.NumberOfInvertedTetrahedra, 0);
-    if (amplitude > 0.5) // smaller folds lie between the samples
-    {
-      EXPECT_GT(reference.NumberOfOverlappedVoxels, 0);
-    }
-    Check(jittered, reference);
-  }
-}
-
-TEST(Folded, MirroredVolumeHasNoOverlap)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  const DeformerCase mirrored = MakeCase(Volume, NoScale,
-    [](const glm::dvec3& index)
-    { return glm::dvec3(-1.25 * index.x, index.y + 0.125 * index.x, index.z); });
-  const reference::Result reference = ResampleByReference(mirrored);
-  EXPECT_EQ(reference.NumberOfInvertedTetrahedra, 5 * GetNumberOfCells(Volume));
-  EXPECT_EQ(reference.NumberOfOverlappedVoxels, 0);
-  Check(mirrored, reference);
-}
-
 TEST(Folded, MirroredAlongAnAxis)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -242,22 +213,6 @@ TEST(Folded, UprightOverlap)
   EXPECT_EQ(reference.NumberOfInvertedTetrahedra, 0);
   EXPECT_GT(reference.NumberOfOverlappedVoxels, 0);
   Check(wound, reference);
-}
-
-TEST(Folded, OverlapWithMasks)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  std::mt19937 random(5);
-  DeformerCase jittered = MakeCase(Volume, NoScale, MakeJitter(32, 1.0));
-  for (std::int64_t cell = 0; cell < GetNumberOfCells(Volume); ++cell)
-  {
-    jittered.Active.push_back(static_cast<unsigned char>(random() % 64));
-  }
-  for (std::int64_t voxel = 0; voxel < GetNumberOfPoints(Volume); ++voxel)
-  {
-    jittered.Blanked.push_back(random() % 12 == 0 ? 1 : 0);
-  }
-  Check(jittered);
 }
 
 TEST(Folded, CellsWithoutAllVerticesAtTheEdgeOfTheOutput)

@@ -23,70 +23,6 @@ const std::array<double, 3> NoScale{ { 1, 1, 1 } };
 const Extent Volume{ { -3, 17, 0, 9, 1, 8 } };
 using Deformation = std::function<glm::dvec3(const glm::dvec3&)>;
 
-glm::dvec3 GetPoint(const Extent& extent, std::int64_t i)
-{
-  const std::int64_t x = GetSize(extent, 0);
-  const std::int64_t y = GetSize(extent, 1);
-  return glm::dvec3(extent[0] + i % x, extent[2] + i / x % y, extent[4] + i / (x * y));
-}
-
-// Distances of random sign; of the tetrahedra one in `every` is crossed.
-void CutAtRandom(DeformerCase& made, unsigned int seed, unsigned int every)
-{
-  std::mt19937 random(seed);
-  made.CutDistances.resize(made.GetNumberOfVoxels());
-  for (float& distance : made.CutDistances)
-  {
-    distance = (static_cast<float>(random() % 65) - 32.0F) / 16.0F;
-  }
-  made.Crossed.assign(GetNumberOfCells(made.VoxelGrid.VertexExtent), 0);
-  for (unsigned char& cell : made.Crossed)
-  {
-    cell = random() % every == 0 ? static_cast<unsigned char>(random() % 32) : 0;
-  }
-}
-
-// Cuts where a function of the index is 0, and crosses what has vertices on both sides of that, in
-// cells that are wanted.
-void CutAlong(
-  DeformerCase& made, const std::function<double(const glm::dvec3&)>& distance,
-  const std::function<bool(const glm::dvec3&)>& isWanted = [](const glm::dvec3&) { return true; })
-{
-  const Extent& extent = made.VoxelGrid.VertexExtent;
-  made.CutDistances.clear();
-  for (std::int64_t i = 0; i < made.GetNumberOfVoxels(); ++i)
-  {
-    made.CutDistances.push_back(static_cast<float>(distance(GetPoint(extent, i))));
-  }
-  Extent cells = extent;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    --cells[2 * axis + 1];
-  }
-  made.Crossed.clear();
-  for (std::int64_t i = 0; i < GetNumberOfPoints(cells); ++i)
-  {
-    const glm::dvec3 first = GetPoint(cells, i);
-    double low = 1e9;
-    double high = -1e9;
-    for (int corner = 0; corner < 8; ++corner)
-    {
-      const double d = distance(first + glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2));
-      low = std::min(low, d);
-      high = std::max(high, d);
-    }
-    made.Crossed.push_back(low < 0.0 && high >= 0.0 && isWanted(first) ? 31 : 0);
-  }
-}
-
-// Moves what is on one side of a sheet away from the other.
-Deformation MoveApart(const std::function<double(const glm::dvec3&)>& distance,
-  const glm::dvec3& negative, const glm::dvec3& positive)
-{
-  return [=](const glm::dvec3& index)
-  { return index + (distance(index) < 0.0 ? negative : positive); };
-}
-
 // With the cut and without it.
 struct Pair
 {
@@ -178,74 +114,6 @@ TEST(SmoothCuts, AtRestNothingIsSeen)
   }
 }
 
-TEST(SmoothCuts, EqualTheReference)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  std::mt19937 random(3);
-  for (unsigned int seed = 0; seed < 8; ++seed)
-  {
-    SCOPED_TRACE(seed);
-    const glm::dmat3 matrix = MakeRandomMatrix(random);
-    // A jump of one voxel or less for every vertex, so that most gaps open.
-    const Deformation jitter = MakeJitter(seed, 0.1 + 0.05 * seed);
-    DeformerCase cut =
-      MakeCase(Volume, NoScale, [&](const glm::dvec3& index) { return matrix * jitter(index); });
-    const std::size_t size = cut.GetNumberOfVoxels();
-    CutAtRandom(cut, seed, 1 + seed % 4);
-    if (seed > 2)
-    {
-      cut.Blanked.resize(size);
-      cut.Active.resize(GetNumberOfCells(Volume), 31);
-      for (int i = 0; i < 20; ++i)
-      {
-        cut.Blanked[random() % size] = 1;
-        cut.Active[random() % cut.Active.size()] = static_cast<unsigned char>(random() % 32);
-      }
-    }
-    if (seed > 4)
-    {
-      cut.Distances.assign(size, 1.0F);
-      for (int i = 0; i < 30; ++i)
-      {
-        cut.Distances[random() % size] = -0.5F;
-      }
-    }
-    ExpectEqualsReference(cut, GetSomeRoute(seed));
-  }
-}
-
-TEST(SmoothCuts, EqualTheReferenceWhereSidesComeApart)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  std::mt19937 random(5);
-  for (unsigned int seed = 0; seed < 6; ++seed)
-  {
-    SCOPED_TRACE(seed);
-    const auto sheet = [seed](const glm::dvec3& i)
-    { return i.x - 7.25 + 0.25 * std::floor(0.5 * seed * i.y) - 0.125 * i.z; };
-    const glm::dvec3 step(2.5 * (seed % 3), 0.75 * seed, -0.5);
-    DeformerCase cut = MakeCase(Volume, NoScale, MoveApart(sheet, -step, step));
-    CutAlong(cut, sheet, [seed](const glm::dvec3& cell) { return seed < 3 || cell.y < 5; });
-    ExpectEqualsReference(cut, seed % 2 == 0 ? Route::Field : Route::Mesh);
-    // Into each other.
-    cut = MakeCase(Volume, NoScale, MoveApart(sheet, step, -step));
-    CutAlong(cut, sheet, [seed](const glm::dvec3& cell) { return seed < 3 || cell.y < 5; });
-    ExpectEqualsReference(cut, seed % 2 == 0 ? Route::Runs : Route::Field);
-  }
-}
-
-TEST(SmoothCuts, EqualTheReferenceWhereTheVolumeIsFolded)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  for (unsigned int seed = 0; seed < 4; ++seed)
-  {
-    SCOPED_TRACE(seed);
-    DeformerCase cut = MakeCase(Volume, NoScale, MakeJitter(seed, 0.4 + 0.4 * seed));
-    CutAtRandom(cut, seed, 1 + seed % 3);
-    ExpectEqualsReference(cut);
-  }
-}
-
 // A copy overlaps other tissue where no vertex of a cell of its group is near: it wins all the
 // same. One side has been drawn back across the other and away, so that the copies of the other
 // side, which go on beyond all of these vertices, lie in patches of the output of their own. There
@@ -279,20 +147,6 @@ TEST(SmoothCuts, CopiesAreSettledBeyondTheVerticesOfTheirCells)
   const reference::Result reference = ResampleByReference(cut);
   EXPECT_GT(reference.NumberOfOverlappedVoxels, 0);
   EXPECT_GT(reference.NumberOfInvertedTetrahedra, 0);
-  ExpectEqualsReference(cut);
-}
-
-TEST(SmoothCuts, LargeCellsAreDivided)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  const Extent extent{ { 0, 2, 0, 2, 0, 2 } };
-  DeformerCase cut = MakeCase(extent, NoScale,
-    [](const glm::dvec3& index)
-    {
-      return index * 40.0 + glm::dvec3(index.y, index.z, index.x) +
-        glm::dvec3(index.x > 0.5 ? 11.0 : 0.0, 0.0, 0.0);
-    });
-  CutAtRandom(cut, 5, 1);
   ExpectEqualsReference(cut);
 }
 
@@ -507,41 +361,5 @@ TEST(SmoothCuts, NothingIsTornWhereACutEnds)
         }
       }
     }
-  }
-}
-
-TEST(SmoothCuts, EditsEqualWhatIsMadeAnew)
-{
-  std::mt19937 random(17);
-  const Extent extent{ { -3, 60, 0, 30, 1, 28 } };
-  DeformerCase cut = MakeCase(extent, NoScale, MakeJitter(3, 0.3));
-  const UsualArrays usual(cut.GetNumberOfVoxels());
-  const std::vector<VolumeArray> arrays = usual.Get();
-  VolumeDeformer deformer;
-  Load(deformer, cut, arrays, Route::Field);
-  for (unsigned int step = 0; step < 12; ++step)
-  {
-    SCOPED_TRACE(step);
-    switch (random() % 4)
-    {
-      case 0:
-        CutAtRandom(cut, step, 1 + random() % 50);
-        break;
-      case 1:
-        cut.Crossed.clear();
-        break;
-      case 2:
-        cut.Active.resize(GetNumberOfCells(extent), 31);
-        cut.Active[random() % cut.Active.size()] = static_cast<unsigned char>(random() % 32);
-        break;
-      default:
-        cut.Displacements[random() % cut.Displacements.size()][0] += 100;
-        break;
-    }
-    deformer.SetActiveTetrahedra(cut.Active.empty() ? nullptr : cut.Active.data());
-    deformer.SetCut(cut.Crossed.empty() ? nullptr : cut.Crossed.data(),
-      cut.Crossed.empty() ? nullptr : cut.CutDistances.data());
-    MoveByField(deformer, cut);
-    ExpectSame(RunDeformer(deformer, cut, arrays), LoadAndRun(cut, arrays));
   }
 }
