@@ -5,14 +5,8 @@ set(deformvolume_module_files "${CMAKE_CURRENT_SOURCE_DIR}/vtk.module")
 set(deformvolume_requested_modules DeformVolume::Filters)
 if (NOT DEFORMVOLUME_USE_PARAVIEW)
   # ParaView has an interaction and views of its own.
-  set(deformvolume_extra_modules Interaction)
-  if (TARGET VTK::RenderingVolumeOpenGL2)
-    list(APPEND deformvolume_extra_modules Rendering)
-  endif ()
-  foreach (module IN LISTS deformvolume_extra_modules)
-    list(APPEND deformvolume_module_files "${CMAKE_CURRENT_SOURCE_DIR}/${module}/vtk.module")
-    list(APPEND deformvolume_requested_modules DeformVolume::${module})
-  endforeach ()
+  list(APPEND deformvolume_module_files "${CMAKE_CURRENT_SOURCE_DIR}/Interaction/vtk.module")
+  list(APPEND deformvolume_requested_modules DeformVolume::Interaction)
 endif ()
 vtk_module_scan(
   MODULE_FILES ${deformvolume_module_files}
@@ -52,18 +46,6 @@ if (DEFORMVOLUME_WRAP_PYTHON)
   set(deformvolume_python_imports "from .vtkDeformVolume import *")
   if (TARGET DeformVolume::Interaction)
     string(APPEND deformvolume_python_imports "\nfrom .vtkDeformVolumeInteraction import *")
-  endif ()
-  if (TARGET DeformVolume::Rendering)
-    # Who draws nothing, or with other mappers, need not load OpenGL.
-    string(APPEND deformvolume_python_imports "
-
-def __getattr__(name):
-    if name == \"vtkDeviceVolumeMapper\":
-        from .vtkDeformVolumeRendering import vtkDeviceVolumeMapper
-
-        return vtkDeviceVolumeMapper
-    raise AttributeError(f\"module {__name__!r} has no attribute {name!r}\")
-")
   endif ()
   set(deformvolume_python_package
     "${CMAKE_BINARY_DIR}/${DEFORMVOLUME_PYTHON_DIRECTORY}/deformvolume_vtk/__init__.py")

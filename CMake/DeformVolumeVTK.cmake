@@ -63,10 +63,6 @@ if (DEFORMVOLUME_USE_PARAVIEW)
   find_package(ParaView 5.11 REQUIRED COMPONENTS RemotingCore RemotingServerManager)
 endif ()
 set(deformvolume_optional_vtk_components "")
-if (NOT DEFORMVOLUME_USE_PARAVIEW AND NOT RenderingVolumeOpenGL2 IN_LIST deformvolume_vtk_components)
-  # Of the module in Rendering.
-  list(APPEND deformvolume_optional_vtk_components RenderingOpenGL2 RenderingVolumeOpenGL2)
-endif ()
 if (DEFORMVOLUME_BUILD_EXAMPLES)
   # ParaView's VTK has no ImagingMorphological.
   list(APPEND deformvolume_optional_vtk_components ImagingMorphological IOOggTheora)
@@ -80,7 +76,3 @@ endif ()
 find_package(VTK 9.1 REQUIRED
   COMPONENTS ${deformvolume_vtk_components}
   ${deformvolume_optional_vtk_components})
-
-if (NOT DEFORMVOLUME_USE_PARAVIEW AND TARGET VTK::RenderingVolumeOpenGL2)
-  list(APPEND deformvolume_package_components RenderingOpenGL2 RenderingVolumeOpenGL2)
-endif ()

@@ -34,9 +34,7 @@ vtkSmartPointer<vtkDataArray> MakeDeviceOutputArray(
 /// Where the values cannot be brought to the host that is an error of this object, and they are
 /// the background.
 template <typename T>
-class vtkDeviceOutputArray
-  : public vtkGenericDataArray<vtkDeviceOutputArray<T>, T>
-  , public deformvolume::DeviceOutputHolder
+class vtkDeviceOutputArray : public vtkGenericDataArray<vtkDeviceOutputArray<T>, T>
 {
   using Generic = vtkGenericDataArray<vtkDeviceOutputArray<T>, T>;
 
@@ -48,8 +46,6 @@ public:
   /// The values become those of an output, in the memory of an array of T that has its size. Before
   /// anybody else has this array.
   void SetOutput(vtkDataArray* host, const std::shared_ptr<deformvolume::DeviceOutput>& output);
-
-  std::shared_ptr<deformvolume::DeviceOutput> GetDeviceOutput() const override;
 
   void Modified() override;
   int GetDataType() const override { return this->DataType; }
@@ -124,6 +120,8 @@ private:
   void operator=(const vtkDeviceOutputArray&) = delete;
 
   T* BringToHost() const;
+  /// Null where the values are not on the device any more, or never were.
+  std::shared_ptr<deformvolume::DeviceOutput> GetDeviceOutput() const;
   /// Whether the ordinary array has the size of this one.
   bool IsLikeHost() const;
   /// The range of a component as long as the values are on the device. Returns false where the host

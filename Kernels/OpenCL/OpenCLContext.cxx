@@ -28,11 +28,6 @@ std::string Trim(const std::string& text)
 }
 
 /// Bindings of C++ give the platform of a device as one of two types.
-cl_platform_id GetPlatform(const cl::Device& device)
-{
-  return cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>())();
-}
-
 bool DeviceHasExtension(const cl::Device& device, const std::string& name)
 {
   const std::string extensions = " " + device.getInfo<CL_DEVICE_EXTENSIONS>() + " ";
@@ -138,41 +133,6 @@ std::string ListNames(const std::vector<OpenCLDevice>& devices)
   return list;
 }
 
-/// What tells OpenCL of the context that buffers are shared with.
-std::vector<cl_context_properties> GetSharingProperties(
-  const cl::Device& device, const OpenGLContext& openGL)
-{
-  const auto asProperty = [](auto* pointer)
-  { return reinterpret_cast<cl_context_properties>(pointer); };
-  return { CL_CONTEXT_PLATFORM, asProperty(GetPlatform(device)), CL_GL_CONTEXT_KHR,
-    asProperty(openGL.Context),
-    openGL.WindowSystem == OpenGLContext::System::GLX ? CL_GLX_DISPLAY_KHR : CL_EGL_DISPLAY_KHR,
-    asProperty(openGL.Display), 0 };
-}
-
-/// Throws an Error where the context of a device cannot share with that of OpenGL.
-void CheckSharing(const OpenCLDevice& device, const std::vector<cl_context_properties>& properties)
-{
-  if (!DeviceHasExtension(device.Device, "cl_khr_gl_sharing"))
-  {
-    throw Error("The device \"" + device.Name +
-      "\" shares no memory with OpenGL: it lacks the extension cl_khr_gl_sharing.");
-  }
-  auto* const find = reinterpret_cast<clGetGLContextInfoKHR_fn>(
-    clGetExtensionFunctionAddressForPlatform(GetPlatform(device.Device), "clGetGLContextInfoKHR"));
-  std::vector<cl_device_id> devices(64);
-  std::size_t bytes = 0;
-  const cl_int error = find ? find(properties.data(), CL_DEVICES_FOR_GL_CONTEXT_KHR,
-                                devices.size() * sizeof(cl_device_id), devices.data(), &bytes)
-                            : CL_INVALID_OPERATION;
-  devices.resize(error == CL_SUCCESS ? bytes / sizeof(cl_device_id) : 0);
-  if (std::find(devices.begin(), devices.end(), device.Device()) == devices.end())
-  {
-    throw Error("The device \"" + device.Name +
-      "\" is not the one that draws in this window, or its driver does not know that.");
-  }
-}
-
 struct ContextList
 {
   std::mutex Mutex;
@@ -251,24 +211,6 @@ OpenCLContext& OpenCLContext::Get(const OpenCLDevice& device)
   return *context;
 }
 
-OpenCLContext& OpenCLContext::Share(const OpenCLDevice& device, const OpenGLContext& openGL)
-{
-  ContextList& list = GetContexts();
-  const std::lock_guard<std::mutex> lock(list.Mutex);
-  OpenCLContext*& context = list.Contexts[device.Device()];
-  if (context && !context->IsSharedWith(openGL))
-  {
-    throw Error("The device \"" + device.Name +
-      "\" is in use already, and its memory cannot be shared with this window any more. Share it "
-      "before the first update of a filter that uses it, with one window.");
-  }
-  if (!context)
-  {
-    context = new OpenCLContext(device, openGL);
-  }
-  return *context;
-}
-
 OpenCLContext* OpenCLContext::Find(const cl::CommandQueue& queue)
 {
   ContextList& list = GetContexts();
@@ -280,9 +222,8 @@ OpenCLContext* OpenCLContext::Find(const cl::CommandQueue& queue)
     : nullptr;
 }
 
-OpenCLContext::OpenCLContext(const OpenCLDevice& device, const std::optional<OpenGLContext>& openGL)
+OpenCLContext::OpenCLContext(const OpenCLDevice& device)
   : Device(device)
-  , OpenGL(openGL)
   , NumberOfUnits(device.Device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>())
 {
   if (IsPoCL(device))
@@ -290,17 +231,7 @@ OpenCLContext::OpenCLContext(const OpenCLDevice& device, const std::optional<Ope
     CheckKernelCompiler();
   }
   const FloatingPointTrapGuard guard;
-  if (openGL)
-  {
-    const std::vector<cl_context_properties> properties =
-      GetSharingProperties(device.Device, *openGL);
-    CheckSharing(device, properties);
-    this->Context = cl::Context(device.Device, properties.data());
-  }
-  else
-  {
-    this->Context = cl::Context(device.Device);
-  }
+  this->Context = cl::Context(device.Device);
   this->Extensions = " " + device.Device.getInfo<CL_DEVICE_EXTENSIONS>() + " ";
 }
 

@@ -8,7 +8,6 @@
 #include <CL/opencl.hpp>
 
 #include "DeviceRank.h"
-#include "OpenGLSharing.h"
 #include "ProgramText.h"
 
 #include <cfenv>
@@ -51,15 +50,12 @@ class OpenCLContext
 public:
   /// The context of a device; made at the first request. Throws Error.
   static OpenCLContext& Get(const OpenCLDevice& device);
-  /// The same, which shares buffers with an OpenGL context: see ShareWithOpenGL.
-  static OpenCLContext& Share(const OpenCLDevice& device, const OpenGLContext& openGL);
   /// The one that a queue belongs to; null for queues of other contexts.
   static OpenCLContext* Find(const cl::CommandQueue& queue);
 
   const OpenCLDevice& GetDevice() const { return this->Device; }
   const cl::Context& GetContext() const { return this->Context; }
   bool HasExtension(const std::string& name) const;
-  bool IsSharedWith(const OpenGLContext& openGL) const { return this->OpenGL == openGL; }
   cl_uint GetNumberOfUnits() const { return this->NumberOfUnits; }
   /// Whether a buffer over memory of the host (CL_MEM_USE_HOST_PTR) is that memory, wherever it
   /// lies. Other drivers may keep a copy, which has to be told of what the host writes there.
@@ -83,15 +79,13 @@ public:
   void Prepare(const cl::CommandQueue& queue, const cl::Kernel& kernel, const cl::NDRange& group);
 
 private:
-  explicit OpenCLContext(
-    const OpenCLDevice& device, const std::optional<OpenGLContext>& openGL = std::nullopt);
+  explicit OpenCLContext(const OpenCLDevice& device);
 
   cl::Program Build(const std::string& source, const std::string& options) const;
   /// Whether it is the first time that this is asked for such launches.
   bool IsNew(const cl::Kernel& kernel, const cl::NDRange& group);
 
   OpenCLDevice Device;
-  std::optional<OpenGLContext> OpenGL; // that it shares buffers with
   cl::Context Context;
   std::string Extensions;
   cl_uint NumberOfUnits;

@@ -4,7 +4,6 @@
 #include "DeviceOutputInternals.h"
 #include "GuardedCall.h"
 #include "HostMemory.h"
-#include "OpenGLBufferInternals.h"
 #include "OutputRange.h"
 
 #include <cstring>
@@ -121,21 +120,6 @@ std::optional<DeviceOutput::Range> DeviceOutput::Internals::FindRange(int compon
   return range.Least <= range.Largest ? std::optional<Range>(range) : std::nullopt;
 }
 
-bool DeviceOutput::Internals::SharesWith(const OpenGLContext& context)
-{
-  const std::lock_guard<std::mutex> lock(this->Mutex);
-  const OpenCLContext* const own = this->IsOnDevice() ? OpenCLContext::Find(this->Queue) : nullptr;
-  return own && own->IsSharedWith(context);
-}
-
-bool DeviceOutput::Internals::CopyTo(const OpenGLBuffer& buffer)
-{
-  const std::lock_guard<std::mutex> lock(this->Mutex);
-  return this->IsOnDevice() &&
-    CallGuarded(
-      [&] { return buffer.GetInternals().CopyFrom(this->Queue, this->Buffer, this->GetBytes()); });
-}
-
 std::uint64_t DeviceOutput::Internals::GetMemory()
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
@@ -204,18 +188,6 @@ std::optional<DeviceOutput::Range> DeviceOutput::FindRange(int component)
 {
   return this->Impl->FindRange(component);
 }
-
-bool DeviceOutput::SharesWith(const OpenGLContext& context) const
-{
-  return this->Impl->SharesWith(context);
-}
-
-bool DeviceOutput::CopyTo(const OpenGLBuffer& buffer)
-{
-  return this->Impl->CopyTo(buffer);
-}
-
-DeviceOutputHolder::~DeviceOutputHolder() = default;
 
 void DeviceOutput::Read()
 {

@@ -11,9 +11,6 @@
 namespace deformvolume
 {
 
-class OpenGLBuffer;
-struct OpenGLContext;
-
 /// An array of an output, or its coverage, that is still on the device (DeformRequest::
 /// MayStayOnDevice). It goes to the memory of the request when somebody asks for it, and before
 /// that by itself where the deformer needs the memory of the device: for its next output, for
@@ -49,14 +46,6 @@ public:
   /// Throws an Error where the device fails.
   std::optional<Range> FindRange(int component);
 
-  /// Whether CopyTo would find them, for a buffer of this context.
-  bool SharesWith(const OpenGLContext& context) const;
-  /// Copies the values to a buffer object of OpenGL, which has room for them, on the device. OpenGL
-  /// must have ended all commands on it (glFinish), and may use it when this returns. Returns false
-  /// where the values are not on the device, or its context does not share with that of the buffer
-  /// (ShareWithOpenGL). Throws an Error where the device fails.
-  bool CopyTo(const OpenGLBuffer& buffer);
-
   /// Nobody wants the values, and the memory of the request may go. Waits for a copy that is under
   /// way. The destructor does so, too.
   void Drop();
@@ -68,15 +57,6 @@ public:
 
 private:
   std::shared_ptr<Internals> Impl;
-};
-
-/// What holds such an array, for those who know it by another class.
-class DEFORMVOLUME_EXPORT DeviceOutputHolder
-{
-public:
-  virtual ~DeviceOutputHolder();
-  /// Null where the values are not on the device any more, or never were.
-  virtual std::shared_ptr<DeviceOutput> GetDeviceOutput() const = 0;
 };
 
 } // namespace deformvolume

@@ -52,8 +52,6 @@ public:
 
   /// See DeviceOutput.
   std::optional<Range> FindRange(int component);
-  bool SharesWith(const OpenGLContext& context);
-  bool CopyTo(const OpenGLBuffer& buffer);
 
   /// Bytes of the device.
   std::uint64_t GetMemory();

@@ -4,9 +4,6 @@
 #ifdef HAS_INTERACTION
 #include <vtkDeformVolumeSession.h>
 #endif
-#ifdef HAS_RENDERING
-#include <vtkDeviceVolumeMapper.h>
-#endif
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkLatticeTetrahedraSource.h>
@@ -96,10 +93,6 @@ int main()
 #ifdef HAS_INTERACTION
   vtkNew<vtkDeformVolumeSession> session;
   wrong += session->SetInputs(volume) ? 0 : 1;
-#endif
-#ifdef HAS_RENDERING
-  vtkNew<vtkDeviceVolumeMapper> mapper;
-  wrong += mapper->GetLoadedOnDevice() ? 1 : 0;
 #endif
   std::cout << wrong << " of " << volume->GetNumberOfPoints() << " voxels are wrong.\n";
   return wrong == 0 ? 0 : 1;

@@ -308,8 +308,7 @@ extern "C" cl_int CL_API_CALL clGetDeviceInfo(
   {
     return Give(&driver.LocalMemory, sizeof(cl_ulong), room, place, needed);
   }
-  if (what == CL_DEVICE_EXTENSIONS &&
-    (!driver.HasDouble || driver.HasNVIDIAOptions || driver.HasOpenGLSharing))
+  if (what == CL_DEVICE_EXTENSIONS && (!driver.HasDouble || driver.HasNVIDIAOptions))
   {
     std::string names = GetText([&](std::size_t size, void* text, std::size_t* length)
       { real(device, what, size, text, length); });
@@ -320,7 +319,6 @@ extern "C" cl_int CL_API_CALL clGetDeviceInfo(
       names.replace(begin, name.size(), name.size(), ' ');
     }
     names += driver.HasNVIDIAOptions ? " cl_nv_compiler_options" : "";
-    names += driver.HasOpenGLSharing ? " cl_khr_gl_sharing" : "";
     return Give(names.c_str(), names.size() + 1, room, place, needed);
   }
   return real(device, what, room, place, needed);

@@ -68,8 +68,6 @@ struct FakeDriver
   /// The device has the extension cl_nv_compiler_options. Options from the first one of it on are
   /// for OnBuild only, as the driver does not know them.
   bool HasNVIDIAOptions = false;
-  /// The device has the extension cl_khr_gl_sharing: see FakeSharing.h.
-  bool HasOpenGLSharing = false;
   /// Bytes that the device has, 0: as it is.
   std::uint64_t GlobalMemory = 0;
   std::uint64_t LocalMemory = 0;

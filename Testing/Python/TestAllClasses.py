@@ -20,9 +20,6 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 FOLDERS = ["Filters"]
 if hasattr(deformvolume_vtk, "vtkDeformVolumeSession"):  # not where VTK is ParaView's
     FOLDERS.append("Interaction")
-if hasattr(deformvolume_vtk, "vtkDeviceVolumeMapper"):  # it is loaded when it is asked for
-    FOLDERS.append("Rendering")
-    vars(deformvolume_vtk)["vtkDeviceVolumeMapper"] = deformvolume_vtk.vtkDeviceVolumeMapper
 ROOT = os.path.join(os.path.dirname(__file__), "..", "..")
 
 failures = []
