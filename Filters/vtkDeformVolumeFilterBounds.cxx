@@ -111,13 +111,9 @@ void vtkDeformVolumeFilter::vtkInternals::UpdateBoundsOfMesh(
   const deformvolume::VoxelGrid& voxelGrid)
 {
   const deformvolume::RestMesh& mesh = this->State->Deformation.GetRestMesh();
-  const deformvolume::MeshReplacement* replacement = mesh.GetReplacement();
   std::optional<std::vector<deformvolume::TetrahedronChange>> changes;
   const bool isSameGrid = this->State->BoundsGrid.VertexExtent == voxelGrid.VertexExtent &&
     this->State->BoundsGrid.Scale == voxelGrid.Scale;
-  const bool isReplaced = isSameGrid && replacement &&
-    this->State->BoundsShapeVersion == replacement->ShapeVersion &&
-    this->State->BoundsConnectivityVersion == replacement->ConnectivityVersion;
   if (isSameGrid && this->State->BoundsShapeVersion == mesh.GetShapeVersion())
   {
     if (this->State->BoundsConnectivityVersion == mesh.GetConnectivityVersion())
@@ -130,11 +126,6 @@ void vtkDeformVolumeFilter::vtkInternals::UpdateBoundsOfMesh(
   if (changes)
   {
     this->State->BoundsOfMesh.ChangeConnectivity(mesh.GetPoints(), mesh.GetTetrahedra(), *changes);
-  }
-  else if (isReplaced)
-  {
-    this->State->BoundsOfMesh.ReplaceTetrahedra(
-      mesh.GetPoints(), mesh.GetTetrahedra(), replacement->Tetrahedra);
   }
   else
   {

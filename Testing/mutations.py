@@ -59,7 +59,6 @@ ELEMENTS = ("TestCorotationalElements", "*")
 SPRINGS = ("TestMassSpring", "*")
 SPRINGS_AT_REST = ("TestMassSpringStatics", "*")
 ABORTS = ("TestElasticAborts", "*")
-REPLACEMENT = ("TestReplacement", "*Knows*:*Equals*/*OfGrid:*Equals*/Links:*Equals*/Runs")
 
 COROTATIONAL = ("TestCorotational", "*")
 DEFORMED_CUTTING = ("TestDeformedCutting", "*")
@@ -163,21 +162,6 @@ MUTATIONS = {
     "fused-field": ("Kernels/Mapping/DeformationMapping.cl",
                     "#define MIX(a, b, t) MULTIPLY_ADD((float4)(t), (b) - (a), a)",
                     "#define MIX(a, b, t) ((a) + (t) * ((b) - (a)))", [("TestContraction", "*")]),
-    "replaced-boxes": ("Kernels/Mapping/StaticMappingUpdater.cxx", "grid.FindBox(places, 2.0 * VoxelLinker::Reach)",
-                       "grid.FindBox(places, -2.0)", [REPLACEMENT]),
-    "replaced-removed": ("Kernels/Mapping/StaticMappingUpdater.cxx", "    add(removed.Places, -1);", "", [REPLACEMENT]),
-    "replaced-form": ("Kernels/Mapping/StaticMappingUpdater.cxx",
-                      "(this->RunBytes > 0) == (before.GetRunBytes(voxels) > 0) &&", "", [REPLACEMENT]),
-    "replaced-records": ("Kernels/Mapping/TetrahedronRecords.cxx", "kinds[tetrahedron] = Removed;", "", [REPLACEMENT]),
-    "replaced-points": ("Kernels/Resampling/IncrementalChanges.cxx", "this->Points.Replace(subBricks, points);", "",
-                        [REPLACEMENT]),
-    "replaced-excess": ("Kernels/Mapping/BrickPointChanges.cxx", "this->Excess[brick] = points.Excess[i];", "",
-                        [REPLACEMENT]),
-    "replaced-states": ("Kernels/Mapping/DeviceVolume.cxx", "if (wereAllLinked != this->Mapping.AreAllLinked())",
-                        "if (false)", [REPLACEMENT]),
-    "replaced-sources": ("Kernels/Mapping/DeviceMapping.cxx",
-                         "if ((before[i].Tetrahedron < 0) != (after[i].Tetrahedron < 0))", "if (false)", [REPLACEMENT]),
-    "replaced-rows": ("Kernels/Mapping/DeviceMapping.cxx", "has.Rows[row] = end;", "", [REPLACEMENT]),
     "lists-order": ("Kernels/Binning/EntryLists.cl",
                     "before += word < item / 32 ? popcount(mask[word]) : 0;", "", [LISTS]),
     "lists-inverted": ("Kernels/Binning/EntryLists.cl", "2 * tile + IsInverted(box.y);", "2 * tile;", [LISTS]),

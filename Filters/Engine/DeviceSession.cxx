@@ -231,25 +231,10 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
   const std::vector<Tetrahedron>& tetrahedra = mesh.GetTetrahedra();
   const std::size_t nodes = mesh.GetPoints().size();
   const std::uint64_t connectivity = mesh.GetConnectivityVersion();
-  const bool hasMapping = this->HasMesh && this->SentMapping == mapping.GetVersion();
-  const bool isCurrent = hasMapping && mapping.IsCurrent(deformation, volume);
+  const bool isCurrent = this->HasMesh && this->SentMapping == mapping.GetVersion() &&
+    mapping.IsCurrent(deformation, volume);
   const bool hasSplit = isCurrent && this->SentConnectivity != connectivity;
-  const MeshReplacement* replacement = mesh.GetReplacement();
-  std::optional<MappingUpdate> update;
-  if (hasMapping && !isCurrent && replacement &&
-    replacement->ConnectivityVersion == this->SentConnectivity)
-  {
-    update = mapping.UpdateInPart(deformation, volume);
-  }
-  const bool meshIsSent = isCurrent || update;
-  if (update)
-  {
-    Transfer transfer(this);
-    this->Deformer.ReplaceTetrahedra(tetrahedra.data(), tetrahedra.size(), nodes, *update);
-    transfer.End();
-    this->SentMapping = mapping.GetVersion();
-  }
-  else if (!meshIsSent)
+  if (!isCurrent)
   {
     mapping.Update(deformation, volume, progress);
     Transfer transfer(this);
@@ -281,7 +266,7 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
     // Only the bounds of an extrapolated deformation need them again.
     mapping.ReleaseVoxels();
   }
-  if (openSplits != this->PlacesAreSent || (openSplits && (hasSplit || update)))
+  if (openSplits != this->PlacesAreSent || (openSplits && hasSplit))
   {
     if (openSplits)
     {
@@ -293,11 +278,11 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
     transfer.End();
     this->PlacesAreSent = openSplits;
   }
-  if (!meshIsSent || this->SentVectors != deformation.GetVectorsVersion())
+  if (!isCurrent || this->SentVectors != deformation.GetVectorsVersion())
   {
     const PointRanges changes = deformation.GetChanges(this->SentVectors);
     Transfer transfer(this);
-    this->SetNodes(deformation, meshIsSent ? &changes : nullptr);
+    this->SetNodes(deformation, isCurrent ? &changes : nullptr);
     transfer.End();
   }
 }

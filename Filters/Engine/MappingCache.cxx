@@ -90,68 +90,7 @@ std::uint64_t MappingCache::GetRunBytes(const Deformation& deformation, const Ma
   }
   const Stopwatch stopwatch(this->Time);
   const Key key{ &deformation, deformation.GetRestMesh().GetShapeVersion(), volume };
-  if (const StaticMappingUpdater* updater = this->FindUpdater(deformation, key))
-  {
-    return updater->GetRunBytes();
-  }
   return EstimateRunBytes(this->GetBuilder(deformation, key), volume);
-}
-
-const StaticMappingUpdater* MappingCache::FindUpdater(
-  const Deformation& deformation, const Key& key)
-{
-  const MeshReplacement* replacement = deformation.GetRestMesh().GetReplacement();
-  Key before = key;
-  before.ShapeVersion = replacement ? replacement->ShapeVersion : 0;
-  if (!replacement || !(this->MappingKey == before) || !key.Volume.IsWhole() || this->HasBoundary)
-  {
-    return nullptr;
-  }
-  if (!this->Updater || !(this->UpdaterKey == key))
-  {
-    this->Updater =
-      std::make_unique<StaticMappingUpdater>(key.Volume.Whole.PointExtent, this->Survey,
-        deformation.GetRestPoints(), deformation.GetTetrahedra(), replacement->Tetrahedra);
-    this->UpdaterKey = key;
-  }
-  return this->Updater->IsWorthwhile() ? this->Updater.get() : nullptr;
-}
-
-std::optional<MappingUpdate> MappingCache::UpdateInPart(
-  const Deformation& deformation, const MappedVolume& volume)
-{
-  const Stopwatch stopwatch(this->Time);
-  const Key key{ &deformation, deformation.GetRestMesh().GetShapeVersion(), volume };
-  const StaticMappingUpdater* updater = this->FindUpdater(deformation, key);
-  if (!updater)
-  {
-    return {};
-  }
-  if (EndsWithin(deformation, volume))
-  {
-    return {};
-  }
-  MappingUpdate update = updater->Build();
-  // Of the voxels that are mapped anew all may have been inside.
-  std::int64_t inner = this->Mapping.NumberOfInnerVoxels;
-  for (const Extent& box : update.Boxes)
-  {
-    inner -= GetNumberOfPoints(box);
-  }
-  inner = std::max<std::int64_t>(inner, 0) + update.NumberOfInnerVoxels;
-  if (inner == 0)
-  {
-    return {}; // there may be none at all, which is an error
-  }
-  this->ReleaseVoxels();
-  this->Mapping.NumberOfInnerVoxels = inner;
-  this->Survey = updater->GetSurvey();
-  this->Mapping.NumberOfFlatTetrahedra = this->Survey.NumberOfFlatTetrahedra;
-  this->RunBytes = updater->GetRunBytes();
-  this->MappingKey = key;
-  this->Updater.reset();
-  ++this->Version;
-  return update;
 }
 
 void MappingCache::Update(const Deformation& deformation, const MappedVolume& volume,
@@ -170,12 +109,10 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
   // The old links go first, so that two sets never stand in memory.
   this->Mapping = StaticMapping();
   this->MappingKey = Key();
-  this->Updater.reset();
   const Key key{ &deformation, deformation.GetRestMesh().GetShapeVersion(), volume };
   const StaticMappingBuilder& builder = this->GetBuilder(deformation, key);
   StaticMapping mapping = builder.Build(volume.Part, progress);
   const std::uint64_t runBytes = EstimateRunBytes(builder, volume);
-  const MappingSurvey survey = builder.GetSurvey();
   // The same for any part that the volume is read in.
   const bool holdsVoxels = mapping.NumberOfInnerVoxels > 0 || !mapping.Boundary.IsEmpty() ||
     (!volume.IsWhole() && (builder.HoldsVoxels() || EndsWithin(deformation, volume)));
@@ -193,8 +130,6 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
     throw Error(DescribeMiss(deformation, volume.Whole));
   }
   this->Mapping = std::move(mapping);
-  this->HasBoundary = !this->Mapping.Boundary.IsEmpty();
-  this->Survey = survey;
   this->RunBytes = runBytes;
   this->MappingKey = key;
   ++this->Version;

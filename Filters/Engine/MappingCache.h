@@ -5,12 +5,10 @@
 #include "Deformation.h"
 #include "ImageGeometry.h"
 #include "StaticMapping.h"
-#include "StaticMappingUpdater.h"
 
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace deformvolume
@@ -46,12 +44,6 @@ public:
   /// the mesh holds no voxel of the whole volume, and Aborted where progress asked for an end.
   void Update(const Deformation& deformation, const MappedVolume& volume,
     const std::function<bool(double)>& progress);
-
-  /// The same where some tetrahedra were replaced by others since the mapping was made: what has
-  /// changed of the links or runs, which are then gone. Nothing, and no change, where all of it is
-  /// to be made anew.
-  std::optional<MappingUpdate> UpdateInPart(
-    const Deformation& deformation, const MappedVolume& volume);
 
   /// Whether the mapping is that of a volume and a mesh, with or without its links or runs.
   bool IsCurrent(const Deformation& deformation, const MappedVolume& volume) const;
@@ -93,18 +85,11 @@ private:
   /// The builder for a key, made ahead by GetRunBytes or now.
   StaticMappingBuilder& GetBuilder(const Deformation& deformation, const Key& key);
 
-  /// What brings the mapping up to date for a key; null where all of it is to be made anew.
-  const StaticMappingUpdater* FindUpdater(const Deformation& deformation, const Key& key);
-
   StaticMapping Mapping;
-  MappingSurvey Survey;
   Key MappingKey; // without a source: there is no mapping
   std::uint64_t RunBytes = 0;
-  bool HasBoundary = false; // that of the mesh passes through the volume
   std::unique_ptr<StaticMappingBuilder> Builder;
-  Key BuilderKey;                                // that of the whole volume
-  std::unique_ptr<StaticMappingUpdater> Updater; // from the mapping on
-  Key UpdaterKey;
+  Key BuilderKey; // that of the whole volume
   std::uint64_t Version = 0;
   std::int64_t NumberOfBuilds = 0;
   double Time = 0.0;

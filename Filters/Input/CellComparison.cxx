@@ -32,13 +32,11 @@ constexpr std::size_t MostChanges = 8; // one tetrahedron in so many
 struct ComparedPart
 {
   const Tetrahedron* Tetrahedra;
-  vtkIdType Count;   // how many these are
   std::size_t First; // its first tetrahedron, of all
   std::int32_t FirstNode;
   std::size_t Most;                   // changes that are worth to be listed
   std::vector<unsigned char> Written; // blocks, where a log tells which; else empty
   std::vector<TetrahedronChange> Changes;
-  std::vector<Tetrahedron> Appended;
 };
 
 // The cells of a part, in arrays of numbers of one size. Null: all have the type, or the number of
@@ -153,9 +151,9 @@ bool Compare(
           continue;
         }
         const vtkIdType begin = block * BLOCK;
-        bool isUsable = cells.AreTetrahedra(begin, std::min(begin + BLOCK, count));
-        const vtkIdType end = std::min(begin + BLOCK, std::min(count, part.Count));
-        if (isUsable && begin < end &&
+        const vtkIdType end = std::min(begin + BLOCK, count);
+        bool isUsable = cells.AreTetrahedra(begin, end);
+        if (isUsable &&
           !cells.HaveNodes(begin, end, part.Tetrahedra, static_cast<Integer>(part.FirstNode)))
         {
           std::vector<TetrahedronChange>& found = changes[static_cast<std::size_t>(block)];
@@ -171,12 +169,6 @@ bool Compare(
   for (const std::vector<TetrahedronChange>& some : changes)
   {
     part.Changes.insert(part.Changes.end(), some.begin(), some.end());
-  }
-  for (vtkIdType cell = part.Count; cell < count && usable; ++cell)
-  {
-    part.Appended.emplace_back();
-    usable = cells.Read(cell, grid->GetNumberOfPoints(), static_cast<std::int32_t>(part.FirstNode),
-      part.Appended.back());
   }
   return usable;
 }
@@ -269,10 +261,10 @@ std::vector<CellMemory> GetCellMemories(const MeshParts& parts)
   return memories;
 }
 
-std::optional<CellDifferences> FindDifferences(const MeshParts& parts,
+std::optional<std::vector<TetrahedronChange>> FindDifferences(const MeshParts& parts,
   const std::vector<Tetrahedron>& tetrahedra, const std::vector<CellMemory>& memories)
 {
-  CellDifferences differences;
+  std::vector<TetrahedronChange> differences;
   const std::size_t most = tetrahedra.size() / MostChanges;
   std::size_t first = 0;
   std::int32_t firstNode = 0;
@@ -281,17 +273,14 @@ std::optional<CellDifferences> FindDifferences(const MeshParts& parts,
   for (vtkUnstructuredGrid* grid : parts)
   {
     const auto count = static_cast<std::size_t>(grid->GetNumberOfCells());
-    const std::size_t before = parts.size() == 1 ? tetrahedra.size() : count;
-    const std::size_t more = std::max(count, before) - std::min(count, before);
-    if (before > tetrahedra.size() - first || more > most)
+    if (count > tetrahedra.size() - first)
     {
       return {};
     }
     if (count > 0)
     {
-      ComparedPart part{ tetrahedra.data() + first, static_cast<vtkIdType>(before), first,
-        firstNode, most, {}, {}, {} };
-      if (areKnown && more == 0)
+      ComparedPart part{ tetrahedra.data() + first, first, firstNode, most, {}, {} };
+      if (areKnown)
       {
         part.Written = FindWrittenBlocks(grid, memories.front(), count);
       }
@@ -299,12 +288,9 @@ std::optional<CellDifferences> FindDifferences(const MeshParts& parts,
       {
         return {};
       }
-      differences.Changed.insert(
-        differences.Changed.end(), part.Changes.begin(), part.Changes.end());
-      differences.Appended = std::move(part.Appended);
+      differences.insert(differences.end(), part.Changes.begin(), part.Changes.end());
     }
-    first += before;
-    differences.Count += count;
+    first += count;
     firstNode += static_cast<std::int32_t>(grid->GetNumberOfPoints());
   }
   if (first != tetrahedra.size())

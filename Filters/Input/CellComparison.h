@@ -5,7 +5,6 @@
 #include "DeformationMesh.h"
 #include "Tetrahedron.h"
 
-#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -22,24 +21,13 @@ struct CellMemory
 
 std::vector<CellMemory> GetCellMemories(const MeshParts& parts);
 
-/// What some tetrahedra have become.
-struct CellDifferences
-{
-  /// Those that have other nodes under the number that they had; in ascending order.
-  std::vector<TetrahedronChange> Changed;
-  /// How many there are now.
-  std::size_t Count = 0;
-  /// Those behind the numbers that there were.
-  std::vector<Tetrahedron> Appended;
-};
-
-/// What some tetrahedra have become, where the cells of a mesh are those now. Nothing where it
-/// takes more than a comparison of memory to say: other cells than tetrahedra, ghosts, uncommon
-/// layouts, nodes that are not there, other numbers of cells in a mesh of several parts, or changes
-/// of so many tetrahedra that they are read faster. memories: of when the tetrahedra were these.
-/// Where a log of the connectivity (vtkArrayChanges) tells which cells have been written since,
-/// only these are compared. Empty: all are.
-std::optional<CellDifferences> FindDifferences(const MeshParts& parts,
+/// Which of some tetrahedra have other nodes, where the cells of a mesh are those now; in ascending
+/// order. Nothing where it takes more than a comparison of memory to say: other cells than
+/// tetrahedra, another number of them, ghosts, uncommon layouts, nodes that are not there, or
+/// changes of so many tetrahedra that they are read faster. memories: of when the tetrahedra were
+/// these. Where a log of the connectivity (vtkArrayChanges) tells which cells have been written
+/// since, only these are compared. Empty: all are.
+std::optional<std::vector<TetrahedronChange>> FindDifferences(const MeshParts& parts,
   const std::vector<Tetrahedron>& tetrahedra, const std::vector<CellMemory>& memories);
 
 } // namespace deformvolume

@@ -6,7 +6,6 @@
 #include "Error.h"
 #include "MeshCells.h"
 #include "ParallelFor.h"
-#include "TetrahedronMatching.h"
 
 #include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
@@ -21,8 +20,7 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::size_t MostInLog = 8;    // one tetrahedron in so many
-constexpr std::size_t FewChanged = 256; // the same
+constexpr std::size_t MostInLog = 8; // one tetrahedron in so many
 
 // The mesh at rest is the one on port 1 where port 2 has none.
 bool IsRestMade(const DeformationSource& source)
@@ -30,44 +28,39 @@ bool IsRestMade(const DeformationSource& source)
   return source.Rest ? source.RestIsMade : source.ShapeIsMade;
 }
 
-bool AreEqual(const CellDifferences& first, const CellDifferences& second)
+bool AreEqual(
+  const std::vector<TetrahedronChange>& first, const std::vector<TetrahedronChange>& second)
 {
-  return first.Count == second.Count && first.Appended == second.Appended &&
-    std::equal(first.Changed.begin(), first.Changed.end(), second.Changed.begin(),
-      second.Changed.end(),
-      [](const TetrahedronChange& a, const TetrahedronChange& b)
-      { return a.Number == b.Number && a.After == b.After; });
+  return std::equal(first.begin(), first.end(), second.begin(), second.end(),
+    [](const TetrahedronChange& a, const TetrahedronChange& b)
+    { return a.Number == b.Number && a.After == b.After; });
 }
 
 // Of as many tetrahedra those that have other nodes.
-std::optional<CellDifferences> FindDifferences(
+std::optional<std::vector<TetrahedronChange>> FindDifferences(
   const std::vector<Tetrahedron>& before, const std::vector<Tetrahedron>& after)
 {
   if (before.size() != after.size())
   {
     return {};
   }
-  CellDifferences differences;
-  differences.Count = after.size();
+  std::vector<TetrahedronChange> differences;
   for (std::size_t t = 0; t < before.size(); ++t)
   {
     if (before[t] != after[t])
     {
-      differences.Changed.push_back({ static_cast<std::int32_t>(t), before[t], after[t] });
+      differences.push_back({ static_cast<std::int32_t>(t), before[t], after[t] });
     }
   }
   return differences;
 }
 
-void Apply(const CellDifferences& differences, std::vector<Tetrahedron>& tetrahedra)
+void Apply(const std::vector<TetrahedronChange>& changes, std::vector<Tetrahedron>& tetrahedra)
 {
-  for (const TetrahedronChange& change : differences.Changed)
+  for (const TetrahedronChange& change : changes)
   {
     tetrahedra[change.Number] = change.After;
   }
-  const std::vector<Tetrahedron>& appended = differences.Appended;
-  tetrahedra.resize(differences.Count - appended.size());
-  tetrahedra.insert(tetrahedra.end(), appended.begin(), appended.end());
 }
 
 // Whether all nodes of some tetrahedra are under a number.
@@ -117,9 +110,6 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   }
   const bool haveRead = this->ReadPoints(rest, source, nodesBefore);
   const bool isSameShape = !this->ShapeIsOld && this->KeptPoints && this->HaveSameShape(cells);
-  const bool mayFollow = !isSameShape && !this->ShapeIsOld && this->KeptPoints;
-  std::optional<TetrahedronReplacement> replacement =
-    mayFollow ? this->FindReplacement(cells) : std::nullopt;
   if (cells.Derived)
   {
     this->Derived = std::move(*cells.Derived);
@@ -131,11 +121,11 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   }
   if (!isSameShape)
   {
-    this->SetShape(std::move(cells), std::move(replacement));
+    this->SetShape(std::move(cells));
   }
-  else if (!cells.Differences->Changed.empty() || nodes != nodesBefore)
+  else if (!cells.Differences->empty() || nodes != nodesBefore)
   {
-    this->SetConnectivity(std::move(cells.Differences->Changed));
+    this->SetConnectivity(std::move(*cells.Differences));
   }
   if (nodes < nodesBefore && !AreNodes(this->Tetrahedra, this->Points.size()))
   {
@@ -152,22 +142,21 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   this->RestCellMemories = std::move(cellMemories);
 }
 
-std::optional<CellDifferences> RestMesh::CompareCells(
+std::optional<RestMesh::Changes> RestMesh::CompareCells(
   const MeshParts& shape, const MeshParts& rest, bool sameRest, bool sameShape, bool shared) const
 {
   if (!this->IgnoredCells.empty() || this->Derived.GetCount() > 0 || this->Tetrahedra.empty())
   {
     return {};
   }
-  CellDifferences none;
-  none.Count = this->Tetrahedra.size();
-  std::optional<CellDifferences> differences =
-    sameRest ? none : deformvolume::FindDifferences(rest, this->Tetrahedra, this->RestCellMemories);
+  std::optional<Changes> differences = sameRest
+    ? Changes()
+    : deformvolume::FindDifferences(rest, this->Tetrahedra, this->RestCellMemories);
   if (differences && !shared)
   {
     // Both had these tetrahedra.
-    const std::optional<CellDifferences> others =
-      sameShape ? none : deformvolume::FindDifferences(shape, this->Tetrahedra, {});
+    const std::optional<Changes> others =
+      sameShape ? Changes() : deformvolume::FindDifferences(shape, this->Tetrahedra, {});
     if (!others || !AreEqual(*differences, *others))
     {
       return {};
@@ -187,8 +176,7 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
   reading.FarMidSides = this->FarMidSides;
   if (sameRest && (sameShape || shared))
   {
-    reading.Differences = CellDifferences();
-    reading.Differences->Count = this->Tetrahedra.size();
+    reading.Differences = Changes();
   }
   else
   {
@@ -308,8 +296,8 @@ void RestMesh::ReadMovedPoints(const MeshParts& rest, const DeformationSource& s
 
 bool RestMesh::HaveSameShape(const CellReading& cells) const
 {
-  return cells.Differences && cells.Differences->Count == this->Tetrahedra.size() &&
-    std::all_of(cells.Differences->Changed.begin(), cells.Differences->Changed.end(),
+  return cells.Differences &&
+    std::all_of(cells.Differences->begin(), cells.Differences->end(),
       [&](const TetrahedronChange& change)
       {
         bool inPlace = true;
@@ -321,63 +309,8 @@ bool RestMesh::HaveSameShape(const CellReading& cells) const
       });
 }
 
-std::optional<TetrahedronReplacement> RestMesh::FindReplacement(CellReading& cells) const
+void RestMesh::SetShape(CellReading&& cells)
 {
-  TetrahedronReplacement replacement;
-  if (cells.All.empty() && cells.Differences->Changed.size() * FewChanged > this->Tetrahedra.size())
-  {
-    // They may have other numbers only.
-    cells.All = this->Tetrahedra;
-    Apply(*cells.Differences, cells.All);
-  }
-  if (cells.All.empty())
-  {
-    std::int32_t next = 0;
-    const auto keep = [&](std::int32_t end)
-    {
-      if (next < end)
-      {
-        replacement.Kept.push_back({ next, next, end - next });
-      }
-      next = end + 1;
-    };
-    for (const TetrahedronChange& change : cells.Differences->Changed)
-    {
-      keep(change.Number);
-    }
-    keep(static_cast<std::int32_t>(std::min(this->Tetrahedra.size(), cells.Differences->Count)));
-  }
-  else
-  {
-    auto kept = MatchTetrahedra(this->Tetrahedra, cells.All);
-    if (!kept)
-    {
-      return {};
-    }
-    replacement.Kept = std::move(*kept);
-  }
-  ForEachReplaced(replacement.Kept, static_cast<std::int32_t>(this->Tetrahedra.size()), 0,
-    [&](std::int32_t begin, std::int32_t end, std::int32_t, std::int32_t)
-    {
-      for (std::int32_t t = begin; t < end; ++t)
-      {
-        const Tetrahedron& nodes = this->Tetrahedra[t];
-        replacement.Removed.push_back({ nodes,
-          { { this->Points[nodes[0]], this->Points[nodes[1]], this->Points[nodes[2]],
-            this->Points[nodes[3]] } } });
-      }
-    });
-  return replacement;
-}
-
-void RestMesh::SetShape(CellReading&& cells, std::optional<TetrahedronReplacement>&& replacement)
-{
-  this->Replacement.reset();
-  if (replacement)
-  {
-    this->Replacement =
-      MeshReplacement{ this->ShapeVersion, this->ConnectivityVersion, std::move(*replacement) };
-  }
   if (!cells.All.empty())
   {
     this->Tetrahedra = std::move(cells.All);
@@ -389,16 +322,13 @@ void RestMesh::SetShape(CellReading&& cells, std::optional<TetrahedronReplacemen
   this->IgnoredCells = cells.Ignored;
   this->FarMidSides = cells.FarMidSides;
   ++this->ShapeVersion;
-  this->LogBegin = this->VersionReplaced = ++this->ConnectivityVersion;
+  this->LogBegin = ++this->ConnectivityVersion;
   this->Log.clear();
 }
 
 void RestMesh::SetConnectivity(Changes&& changes)
 {
-  for (const TetrahedronChange& change : changes)
-  {
-    this->Tetrahedra[change.Number] = change.After;
-  }
+  Apply(changes, this->Tetrahedra);
   this->Log.emplace_back(++this->ConnectivityVersion, std::move(changes));
   std::size_t size = 0;
   for (const auto& entry : this->Log)

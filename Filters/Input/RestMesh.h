@@ -6,7 +6,6 @@
 #include "DeformationMesh.h"
 #include "DerivedNodes.h"
 #include "ImageGeometry.h"
-#include "MappingUpdate.h"
 #include "MeshStamp.h"
 #include "Tetrahedron.h"
 #include "VectorArray.h"
@@ -25,17 +24,6 @@ namespace deformvolume
 {
 
 struct DeformationSource;
-
-/// How a mesh follows from another one, of which most tetrahedra are the same.
-struct MeshReplacement
-{
-  ///@{
-  /// Those of the other mesh.
-  std::uint64_t ShapeVersion = 0;
-  std::uint64_t ConnectivityVersion = 0;
-  ///@}
-  TetrahedronReplacement Tetrahedra;
-};
 
 /// The tetrahedra of the deformation mesh, and its nodes at rest in continuous indices of the
 /// volume. Reads again only what is not as it was, and says what that is. Content decides: a mesh
@@ -63,16 +51,6 @@ public:
   /// was the same, each once. Nothing where that is not known any more.
   std::optional<std::vector<TetrahedronChange>> GetChanges(std::uint64_t version) const;
 
-  /// How the last change of the shape came about, where the nodes that there were stayed in their
-  /// places, and most tetrahedra with the same nodes: null where that is not so, or the
-  /// connectivity has changed since.
-  const MeshReplacement* GetReplacement() const
-  {
-    return this->Replacement && this->VersionReplaced == this->ConnectivityVersion
-      ? &*this->Replacement
-      : nullptr;
-  }
-
   /// Whether the last call of Read() found all nodes that there were before where they were.
   bool HasKeptPoints() const { return this->KeptPoints; }
 
@@ -87,7 +65,7 @@ private:
   /// What the cells are found to be: how they differ, or all of them.
   struct CellReading
   {
-    std::optional<CellDifferences> Differences;
+    std::optional<Changes> Differences;  // where there are as many as before
     std::vector<Tetrahedron> All;        // where there is nothing in the former, or not that alone
     std::optional<DerivedNodes> Derived; // where they are others than there are
     std::string Ignored;
@@ -98,8 +76,8 @@ private:
     const MeshStamp& restCells, const MeshStamp& shapeCells);
   /// How the cells differ, where a comparison can tell that. sameRest, sameShape: whether both are
   /// as they were; shared: whether both are the same.
-  std::optional<CellDifferences> CompareCells(const MeshParts& shape, const MeshParts& rest,
-    bool sameRest, bool sameShape, bool shared) const;
+  std::optional<Changes> CompareCells(const MeshParts& shape, const MeshParts& rest, bool sameRest,
+    bool sameShape, bool shared) const;
   /// Whether cells are as many tetrahedra as there are, in the places of these.
   bool HaveSameShape(const CellReading& cells) const;
   /// before: how many nodes there were. Returns false where nothing had to be read.
@@ -109,11 +87,8 @@ private:
     std::atomic<bool>& kept);
   /// nodes: how many the grids have.
   void UpdateDerivedPoints(std::size_t nodes);
-  /// How the tetrahedra that were read follow from those that there are, while all points are still
-  /// there.
-  std::optional<TetrahedronReplacement> FindReplacement(CellReading& cells) const;
   void SetConnectivity(Changes&& changes);
-  void SetShape(CellReading&& cells, std::optional<TetrahedronReplacement>&& replacement);
+  void SetShape(CellReading&& cells);
 
   std::vector<Tetrahedron> Tetrahedra;
   std::vector<glm::dvec3> Points;
@@ -123,8 +98,6 @@ private:
   std::string FarMidSides;
   std::uint64_t ShapeVersion = 0;
   std::uint64_t ConnectivityVersion = 0;
-  std::optional<MeshReplacement> Replacement;
-  std::uint64_t VersionReplaced = 0; // of the connectivity, that it led to
   bool ShapeIsOld = false; // a reading that failed has left other points than that of the version
   bool KeptPoints = false;
 

@@ -65,18 +65,6 @@ public:
     this->Source.ChangeConnectivity(tetrahedra, numberOfTetrahedra, numberOfNodes, changes);
     this->Exact.GetBoundary().SetCorners(tetrahedra);
   }
-  void ReplaceTetrahedra(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
-    std::size_t numberOfNodes, const MappingUpdate& update)
-  {
-    if (this->Volume.HasBoundary())
-    {
-      throw Error("Tetrahedra cannot be replaced where the boundary of the mesh is known: call "
-                  "SetMesh.");
-    }
-    // Voxels that have come into the mesh are sources now.
-    this->Incremental.ChangeMask(
-      this->Source.ReplaceTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes, update), false);
-  }
   void SetNodePlaces(const std::int32_t* places);
   void SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const double* restNodes);

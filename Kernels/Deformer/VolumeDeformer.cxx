@@ -171,13 +171,6 @@ void VolumeDeformer::ChangeConnectivity(const Tetrahedron* tetrahedra,
     { volume.ChangeConnectivity(tetrahedra, numberOfTetrahedra, numberOfNodes, changes); });
 }
 
-void VolumeDeformer::ReplaceTetrahedra(const Tetrahedron* tetrahedra,
-  std::size_t numberOfTetrahedra, std::size_t numberOfNodes, const MappingUpdate& update)
-{
-  this->Impl->Send([&](VolumeDeformation& volume)
-    { volume.ReplaceTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes, update); });
-}
-
 void VolumeDeformer::SetNodePlaces(const std::int32_t* places)
 {
   this->Impl->Send([&](VolumeDeformation& volume) { volume.SetNodePlaces(places); });

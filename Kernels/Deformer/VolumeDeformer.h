@@ -7,7 +7,6 @@
 #include "DeviceVectors.h"
 #include "DisplacementField.h"
 #include "Error.h"
-#include "MappingUpdate.h"
 #include "MeshBoundary.h"
 #include "PointRanges.h"
 #include "Tetrahedron.h"
@@ -136,18 +135,10 @@ public:
   /// set.
   void ChangeConnectivity(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const std::vector<TetrahedronChange>* changes = nullptr);
-  /// A mesh of which some tetrahedra were replaced by others, removed or added, and which has more
-  /// nodes, or fewer: after SetMesh. All nodes that there were, and are, lie at rest where they
-  /// lay. update: the links or the runs of the voxels that this touches, in the form that the
-  /// mapping has (StaticMappingUpdater makes it); those of all others stay. Tetrahedra that are
-  /// kept have the nodes that they had. An Error where a boundary was set. SetNodeDisplacements
-  /// follows as after ChangeConnectivity.
-  void ReplaceTetrahedra(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
-    std::size_t numberOfNodes, const MappingUpdate& update);
   /// Opens a gap where the mesh is split: tetrahedra of the sampling mesh with vertices on both
   /// sides are left out (BridgeMask.cl has the rule). places: for each node a number that all nodes
-  /// with one place at rest share. To be called again after SetMesh, ChangeConnectivity and
-  /// ReplaceTetrahedra. Null: no gaps open, the default.
+  /// with one place at rest share. To be called again after SetMesh and ChangeConnectivity.
+  /// Null: no gaps open, the default.
   void SetNodePlaces(const std::int32_t* places);
   /// The deformation mesh for MeshRasterization, in place of SetMesh. restNodes: three numbers a
   /// node, continuous indices of the volume.

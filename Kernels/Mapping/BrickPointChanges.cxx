@@ -185,27 +185,4 @@ BrickPoints BrickPoints::Join(const std::vector<std::vector<std::size_t>>& group
   return joined;
 }
 
-void BrickPoints::Replace(const std::vector<std::size_t>& bricks, const BrickPoints& points)
-{
-  for (std::size_t i = 0; i < bricks.size(); ++i)
-  {
-    const std::size_t brick = bricks[i];
-    this->NumberOfUnused += this->Ends[brick] - this->Begins[brick];
-    this->Begins[brick] = this->Ranges.size();
-    const auto first = points.Ranges.begin();
-    this->Ranges.insert(this->Ranges.end(), first + static_cast<std::ptrdiff_t>(points.Begins[i]),
-      first + static_cast<std::ptrdiff_t>(points.Ends[i]));
-    this->Ends[brick] = this->Ranges.size();
-    if (!points.Excess.empty())
-    {
-      this->Excess[brick] = points.Excess[i];
-    }
-    if (!this->Added.empty())
-    {
-      this->NumberOfAdded -= this->Added[brick].size();
-      this->Added[brick].clear();
-    }
-  }
-}
-
 } // namespace deformvolume

@@ -93,37 +93,12 @@ void BrickPoints::Append(const Needs& needs)
 
 // visit(vertices, needs, add): calls add(tetrahedron) for those that the vertices are linked to.
 template <typename Visit>
-void BrickPoints::Collect(
-  const BrickGrid& grid, const Mesh& mesh, const std::vector<std::size_t>* wanted, Visit&& visit)
+void BrickPoints::Collect(const BrickGrid& grid, const Mesh& mesh, Visit&& visit)
 {
-  const std::size_t bricks = wanted ? wanted->size() : grid.GetNumberOfBricks();
+  const std::size_t bricks = grid.GetNumberOfBricks();
   std::vector<Needs> needs(bricks);
-  const auto collectSome = [&](std::size_t i)
-  {
-    Needs& need = needs[i];
-    visit(grid.GetVertices((*wanted)[i], grid.Reach), need,
-      [&](std::int32_t tetrahedron)
-      {
-        if (need.Tetrahedra.empty() || need.Tetrahedra.back() != tetrahedron)
-        {
-          need.Tetrahedra.push_back(tetrahedron);
-        }
-      });
-    if (!mesh.Boundary.empty())
-    {
-      const std::vector<std::int32_t>& boundary = mesh.Boundary[(*wanted)[i]];
-      need.Tetrahedra.insert(need.Tetrahedra.end(), boundary.begin(), boundary.end());
-    }
-    SortOnce(need.Tetrahedra);
-    for (const std::int32_t tetrahedron : need.Tetrahedra)
-    {
-      ForNodes(
-        mesh.Tetrahedra[tetrahedron], [&](std::int32_t node) { need.Nodes.push_back(node); });
-    }
-    SortOnce(need.Nodes);
-  };
   const std::size_t parts = std::min(static_cast<std::size_t>(GetProcessorShare()), bricks);
-  const auto collectAll = [&](std::size_t part)
+  const auto collect = [&](std::size_t part)
   {
     Marks tetrahedra(mesh.NumberOfTetrahedra);
     Marks nodes(mesh.NumberOfNodes);
@@ -153,25 +128,17 @@ void BrickPoints::Collect(
       std::sort(need.Nodes.begin(), need.Nodes.end());
     }
   };
-  if (wanted)
-  {
-    ParallelForParts(bricks, 1, [&](std::size_t i, std::size_t) { collectSome(i); });
-  }
-  else
-  {
-    ParallelForParts(parts, 1, [&](std::size_t part, std::size_t) { collectAll(part); });
-  }
+  ParallelForParts(parts, 1, [&](std::size_t part, std::size_t) { collect(part); });
   for (const Needs& need : needs)
   {
     this->Append(need);
   }
 }
 
-BrickPoints BrickPoints::FromLinks(const BrickGrid& grid, const VertexLink* links, const Mesh& mesh,
-  const std::vector<std::size_t>* wanted)
+BrickPoints BrickPoints::FromLinks(const BrickGrid& grid, const VertexLink* links, const Mesh& mesh)
 {
   BrickPoints points;
-  points.Collect(grid, mesh, wanted,
+  points.Collect(grid, mesh,
     [&](const Extent& vertices, Needs& needs, const auto& add)
     {
       for (std::int64_t z = vertices[4]; z <= vertices[5]; ++z)
@@ -193,11 +160,10 @@ BrickPoints BrickPoints::FromLinks(const BrickGrid& grid, const VertexLink* link
   return points;
 }
 
-BrickPoints BrickPoints::FromRuns(
-  const BrickGrid& grid, const Runs& runs, const Mesh& mesh, const std::vector<std::size_t>* wanted)
+BrickPoints BrickPoints::FromRuns(const BrickGrid& grid, const Runs& runs, const Mesh& mesh)
 {
   BrickPoints points;
-  points.Collect(grid, mesh, wanted,
+  points.Collect(grid, mesh,
     [&](const Extent& vertices, Needs& needs, const auto& add)
     {
       for (std::int64_t z = vertices[4]; z <= vertices[5]; ++z)

@@ -43,12 +43,8 @@ public:
     const std::int32_t* Owners;
   };
   ///@{
-  /// From links or runs. wanted: the bricks to look at, which are then counted in this order; null:
-  /// all of them.
-  static BrickPoints FromLinks(const BrickGrid& grid, const VertexLink* links, const Mesh& mesh,
-    const std::vector<std::size_t>* wanted = nullptr);
-  static BrickPoints FromRuns(const BrickGrid& grid, const Runs& runs, const Mesh& mesh,
-    const std::vector<std::size_t>* wanted = nullptr);
+  static BrickPoints FromLinks(const BrickGrid& grid, const VertexLink* links, const Mesh& mesh);
+  static BrickPoints FromRuns(const BrickGrid& grid, const Runs& runs, const Mesh& mesh);
   ///@}
   /// boundary: for each brick of the grid a box of points of the field that move cells at the
   /// boundary of the field in it, maybe empty; or none at all.
@@ -56,8 +52,6 @@ public:
     const BrickGrid& grid, const FieldParameters& field, const std::vector<Extent>& boundary);
   /// Of groups of bricks: the points that any of a group has. They are for AnyOf and IsApart only.
   BrickPoints Join(const std::vector<std::vector<std::size_t>>& groups) const;
-  /// Some bricks of a mesh have other points now: those that were made for them alone.
-  void Replace(const std::vector<std::size_t>& bricks, const BrickPoints& points);
 
   bool IsEmpty() const { return this->Begins.empty() && this->Boxes.empty(); }
 
@@ -79,11 +73,8 @@ public:
   /// now on.
   void AddPoints(
     const std::vector<ChangesOfBrick>& bricks, const std::vector<TetrahedronChange>& changes);
-  /// Whether so many were added, or are left over, that all are better found anew.
-  bool AreOverloaded() const
-  {
-    return this->NumberOfAdded + 2 * this->NumberOfUnused > this->Ranges.size() / 2 + 4096;
-  }
+  /// Whether so many were added that all are better found anew.
+  bool AreOverloaded() const { return this->NumberOfAdded > this->Ranges.size() / 2 + 4096; }
 
   /// Whether body(begin, end) was true for one of the ranges that a brick's points are; no more are
   /// asked then.
@@ -162,8 +153,7 @@ public:
 private:
   struct Needs;
   template <typename Visit>
-  void Collect(
-    const BrickGrid& grid, const Mesh& mesh, const std::vector<std::size_t>* wanted, Visit&& visit);
+  void Collect(const BrickGrid& grid, const Mesh& mesh, Visit&& visit);
   /// Takes the points of the next brick, in ascending order.
   void Append(const Needs& needs);
   /// Returns how many nodes are new to the brick.
@@ -179,7 +169,6 @@ private:
   std::vector<std::size_t> Begins; // the ranges of each brick, in Ranges: the first one
   std::vector<std::size_t> Ends;   // and one past the last
   std::vector<Range> Ranges;
-  std::size_t NumberOfUnused = 0; // ranges of no brick any more
   std::vector<double> Excess;
   std::vector<std::vector<std::int32_t>> Added; // of each brick, in no order; or none at all
   std::size_t NumberOfAdded = 0;

@@ -3,8 +3,6 @@
 #define DeformVolumeDeviceMapping_h
 
 #include "BrickPoints.h"
-#include "Extent.h"
-#include "MappingUpdate.h"
 #include "MeshOrder.h"
 #include "OpenCLContext.h"
 #include "Tetrahedron.h"
@@ -36,48 +34,24 @@ public:
   ///@}
   void Forget(std::vector<VolumeChunk>& chunks);
 
-  /// Some rows get other links or runs: those of an update that was checked (CheckMappingUpdate).
-  /// first: structured index of the volume's first voxel. order: the numbers of now. removed: those
-  /// on the device that no tetrahedron has any more. Returns boxes that hold all voxels which are
-  /// inside the mesh now and were not, or the other way round, in local indices.
-  std::vector<Extent> Update(std::vector<VolumeChunk>& chunks, const MappingUpdate& update,
-    const std::array<int, 3>& first, const MeshOrder& order,
-    const std::vector<std::int32_t>& removed);
-
   bool HasLinks() const { return this->WithLinks; }
   bool HasRuns() const { return this->RunBytes > 0; }
   /// See GetRunBytes in VertexRuns.h; 0 without runs.
   std::uint64_t GetRunBytes() const { return this->RunBytes; }
-  /// Whether no link or run says that a voxel is outside, as far as that is known.
+  /// Whether no link or run says that a voxel is outside.
   bool AreAllLinked() const { return this->AllLinked; }
 
   TetrahedronRecords& GetRecords() { return this->Records; }
   const TetrahedronRecords& GetRecords() const { return this->Records; }
 
-  /// Of a mapping in one chunk, on a processor. tetrahedra: as on the device. wanted: see
-  /// BrickPoints::FromLinks. boundary: see BrickPoints::Mesh.
+  /// Of a mapping in one chunk, on a processor. tetrahedra: as on the device. boundary: see
+  /// BrickPoints::Mesh.
   BrickPoints MakeBrickPoints(const VolumeChunk& chunk, const BrickGrid& grid,
     const cl::Buffer& tetrahedra, std::size_t numberOfNodes,
-    const std::vector<std::vector<std::int32_t>>& boundary,
-    const std::vector<std::size_t>* wanted) const;
+    const std::vector<std::vector<std::int32_t>>& boundary) const;
 
 private:
-  /// The runs of a chunk: where those of each row lie, and where room is left behind all of them.
-  struct ChunkRuns
-  {
-    std::vector<std::uint32_t> Rows; // as on the device (RowRanges in VolumeChunk)
-    std::uint64_t End = 0;
-  };
-  class Changes;
-
   void SendLinks(VolumeChunk& chunk, const VertexLink* links, const MeshOrder& order);
-  void UpdateLinks(const VolumeChunk& chunk, const Extent& box, const VertexLink* links,
-    const MeshOrder& order, Changes& changes) const;
-  /// boxes: those of the runs, in local indices. records: the numbers on the device of theirs.
-  void UpdateRuns(VolumeChunk& chunk, ChunkRuns& has, const std::vector<Extent>& boxes,
-    const VertexRuns& runs, const std::vector<std::int32_t>& records, Changes& changes);
-  /// Makes room for so many runs behind the others, of which it leaves out those of no row.
-  void MakeRoom(VolumeChunk& chunk, ChunkRuns& has, std::uint64_t more) const;
 
   OpenCLContext& Context;
   cl::CommandQueue Queue;
@@ -86,7 +60,8 @@ private:
   bool WithLinks = false;
   std::uint64_t RunBytes = 0;
   bool AllLinked = false;
-  std::vector<ChunkRuns> Runs; // of each chunk
+  /// Where the runs of each row lie in each chunk, as on the device (RowRanges in VolumeChunk).
+  std::vector<std::vector<std::uint32_t>> Rows;
   TetrahedronRecords Records;
 };
 

@@ -291,22 +291,6 @@ void DeviceVolume::SetRuns(const VertexRuns& runs, const MeshOrder& order)
   this->Mapping.SetRuns(this->Chunks, runs, order);
 }
 
-std::vector<Extent> DeviceVolume::UpdateMapping(
-  const MappingUpdate& update, const MeshOrder& order, const std::vector<std::int32_t>& removed)
-{
-  this->Queue.finish(); // nothing uses what is let go
-  const Extent& extent = this->Shape.VertexExtent;
-  const std::array<int, 3> first{ { extent[0], extent[2], extent[4] } };
-  const bool wereAllLinked = this->Mapping.AreAllLinked();
-  std::vector<Extent> changes = this->Mapping.Update(this->Chunks, update, first, order, removed);
-  if (wereAllLinked != this->Mapping.AreAllLinked())
-  {
-    this->States.Forget(); // there may be none
-  }
-  this->States.ChangeSources(changes);
-  return changes;
-}
-
 std::vector<Extent> DeviceVolume::SetBlanked(
   const unsigned char* blanked, unsigned char bits, const PointRanges* written)
 {

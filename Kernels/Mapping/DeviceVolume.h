@@ -66,9 +66,6 @@ public:
   /// The runs were checked (CheckRuns).
   void SetRuns(const VertexRuns& runs, const MeshOrder& order = {});
   ///@}
-  /// Tetrahedra of the mesh were replaced by others: see DeviceMapping::Update.
-  std::vector<Extent> UpdateMapping(
-    const MappingUpdate& update, const MeshOrder& order, const std::vector<std::int32_t>& removed);
   /// Frees the links or the runs.
   void ForgetMesh();
   ///@{
@@ -152,11 +149,10 @@ public:
   const BrickGrid& GetBricks() const { return this->Bricks; }
   /// Those of the sub-bricks, of a mesh, where the voxel grid is one chunk. Devices with memory of
   /// their own copy the static mapping to the host for that. See DeviceMapping.
-  BrickPoints MakeBrickPoints(const cl::Buffer& tetrahedra, std::size_t numberOfNodes,
-    const std::vector<std::size_t>* wanted = nullptr) const
+  BrickPoints MakeBrickPoints(const cl::Buffer& tetrahedra, std::size_t numberOfNodes) const
   {
     return this->Mapping.MakeBrickPoints(this->Chunks.front(), this->Bricks.GetSubBricks(),
-      tetrahedra, numberOfNodes, this->TetrahedraAtBoundary, wanted);
+      tetrahedra, numberOfNodes, this->TetrahedraAtBoundary);
   }
   /// The same of a field.
   BrickPoints MakeBrickPoints(const FieldParameters& field) const

@@ -44,14 +44,6 @@ public:
   /// boxes that hold all vertices which lie in one of these; nothing where that is not known.
   virtual std::optional<std::vector<Extent>> ChangeTetrahedra(
     const std::vector<TetrahedronChange>& changes, const float* last) = 0;
-  ///@{
-  /// Vertices in some boxes get other tetrahedra. last: as above. Returns the sub-bricks that
-  /// depend on these, and is then told which points they have.
-  virtual std::vector<std::size_t> MoveVertices(
-    const std::vector<Extent>& vertices, const float* last) = 0;
-  virtual void ReplacePoints(
-    const std::vector<std::size_t>& subBricks, const BrickPoints& points) = 0;
-  ///@}
   /// Points have changed. after: of these, or of more.
   virtual void AddMoved(const DisplacementBounds& after) = 0;
   /// All points change. after: of all of them, where it is known.

@@ -89,7 +89,6 @@ void DisplacementSource::SendTetrahedra(const Tetrahedron* tetrahedra,
   {
     this->NodesByNumber[this->Order.Nodes[node]] = static_cast<std::int32_t>(node);
   }
-  this->FreeNumbers.clear();
   if (this->Nodes.GetNumberOfPoints() != numberOfNodes)
   {
     this->Nodes.Clear();

@@ -8,7 +8,6 @@
 #include "HostMemory.h"
 #include "KernelParameters.h"
 #include "MappingProgram.h"
-#include "MappingUpdate.h"
 #include "MeshBoundary.h"
 #include "MeshOrder.h"
 #include "Tetrahedron.h"
@@ -53,10 +52,6 @@ public:
   /// See VolumeDeformer; the mesh is the one that was set.
   void ChangeConnectivity(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const std::vector<TetrahedronChange>* changes);
-  /// Returns boxes that hold all voxels which have come into the mesh, or have left it, in local
-  /// indices.
-  std::vector<Extent> ReplaceTetrahedra(const Tetrahedron* tetrahedra,
-    std::size_t numberOfTetrahedra, std::size_t numberOfNodes, const MappingUpdate& update);
   void SetNodePlaces(const std::int32_t* places);
   /// Three floats a node, in output voxels. changes, areChecked: see
   /// VolumeDeformer::SetNodeDisplacements.
@@ -133,10 +128,6 @@ private:
   void SendNodes(const float* displacements, const PointRanges* changes, bool areChecked);
   /// There are so many nodes now; those that are new get numbers of the device.
   void SetNumberOfNodes(std::size_t numberOfNodes);
-  /// Gives the tetrahedra that are new numbers of the device; returns those that are not in use any
-  /// more. added: filled with the tetrahedra that are new, all by the numbers of the device.
-  std::vector<std::int32_t> Renumber(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
-    const MappingUpdate& update, std::vector<TetrahedronChange>& added);
   void ForgetNodes();
   void ForgetField();
   bool HasField() const { return this->GetFieldVectors()() != nullptr; }
@@ -170,7 +161,6 @@ private:
   std::size_t NumberOfNodes = 0;
   MeshOrder Order;                         // of all nodes that there have been
   std::vector<std::int32_t> NodesByNumber; // these by the numbers of the device
-  std::vector<std::int32_t> FreeNumbers;   // of the device, that no tetrahedron has any more
   DisplacementBuffer Nodes;
   bool NodesSet = false;
 

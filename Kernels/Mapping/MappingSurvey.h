@@ -29,15 +29,13 @@ constexpr double LeastMeanRunLength = 3.0;
 /// What a tile of a volume, some rows of voxels, is found to have.
 struct TileSample
 {
-  std::int64_t Tile = 0;
   std::int64_t Rows = 0;
   std::int64_t Runs = 0;
   std::int64_t RunsOfSlivers = 0; // see VertexRuns.h
 };
 
 /// What the choice between the forms of a static mapping follows from, and what is counted of a
-/// mesh. Where tetrahedra are replaced it is brought up to date, so that the choice stays that of a
-/// mapping that is made anew.
+/// mesh.
 struct MappingSurvey
 {
   StaticMappingForm Form = StaticMappingForm::Automatic;

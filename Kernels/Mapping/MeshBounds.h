@@ -5,7 +5,6 @@
 #include "BlockBounds.h"
 #include "DeformVolumeExport.h"
 #include "IndexBounds.h"
-#include "MappingUpdate.h"
 #include "Tetrahedron.h"
 #include "VectorComponents.h"
 #include "VoxelGrid.h"
@@ -39,11 +38,6 @@ public:
   void ChangeConnectivity(const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, const std::vector<TetrahedronChange>& changes);
 
-  /// Some tetrahedra were replaced by others, and there may be more nodes, or fewer. restPoints and
-  /// tetrahedra: as they are now.
-  void ReplaceTetrahedra(const std::vector<glm::dvec3>& restPoints,
-    const std::vector<Tetrahedron>& tetrahedra, const TetrahedronReplacement& replacement);
-
   /// restPoints and tetrahedra: those that were set. changes: all other displacements are those of
   /// the last call for this mesh, if there was one; null: any may have changed. known: of each
   /// block of displacements what they lie between, where it is finite; null: of none.
@@ -59,8 +53,6 @@ private:
   void Resize(std::size_t numberOfNodes);
   /// A tetrahedron inside the volume has come, or has gone: so many more uses of its nodes.
   void Use(const Tetrahedron& tetrahedron, std::uint32_t uses);
-  /// Gives clipped tetrahedra their new numbers, and takes others.
-  void ReplaceClipped(const std::vector<KeptTetrahedra>& kept, std::vector<std::int32_t>&& added);
   void CountUses(
     const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra);
 

@@ -2,10 +2,8 @@
 #ifndef DeformVolumeMeshChecks_h
 #define DeformVolumeMeshChecks_h
 
-#include "MappingUpdate.h"
 #include "Tetrahedron.h"
 #include "VertexLink.h"
-#include "VoxelGrid.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -27,12 +25,6 @@ void CheckTetrahedra(
 
 /// Throws an Error where one of so many voxels is linked to a tetrahedron that is none.
 void CheckLinks(const VertexLink* links, std::int64_t count, std::size_t numberOfTetrahedra);
-
-/// Throws an Error where an update keeps tetrahedra that were not there or are not there now, or
-/// the same ones twice, or does not have a link, or a run, for each voxel of its boxes, and only
-/// these. byRuns: whether the mapping has runs.
-void CheckMappingUpdate(const MappingUpdate& update, const VoxelGrid& voxelGrid,
-  std::size_t numberBefore, std::size_t numberAfter, bool byRuns);
 
 } // namespace deformvolume
 

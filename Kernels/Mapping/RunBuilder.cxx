@@ -179,7 +179,6 @@ std::vector<TileSample> RunBuilder::SampleTiles(const std::vector<std::int64_t>&
       {
         const TileRuns made =
           this->MakeTileRuns(tiles[i], this->Linker.GetTiles().GetVoxels(tiles[i]));
-        samples[i].Tile = tiles[i];
         samples[i].Runs = static_cast<std::int64_t>(made.Runs.size());
         samples[i].Rows = static_cast<std::int64_t>(made.RunsOfRow.size());
         samples[i].RunsOfSlivers = std::count_if(made.Runs.begin(), made.Runs.end(),

@@ -17,7 +17,7 @@ __kernel void EvaluateTetrahedra(__global const REAL* restrict rest,
   const uint count)
 {
   const size_t id = get_global_id(0);
-  if (id >= count || owners[id] < 0)
+  if (id >= count)
   {
     return;
   }

@@ -67,8 +67,6 @@ public:
 
   /// Bytes of the runs, about; 0 for links.
   std::uint64_t GetRunBytes() const { return this->RunBytes; }
-  /// What a StaticMappingUpdater needs to know of the mapping.
-  const MappingSurvey& GetSurvey() const { return this->Survey; }
 
   /// Whether any tetrahedron holds a voxel of the volume: at once where one of the first does.
   bool HoldsVoxels() const;

@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <utility>
 
 namespace deformvolume
 {
@@ -51,27 +49,10 @@ void TetrahedronRecords::Clear()
   this->Current = false;
 }
 
-void TetrahedronRecords::Grow(cl::Buffer& buffer, std::uint64_t bytes, std::uint64_t used) const
+cl::Buffer TetrahedronRecords::MakeBuffer(std::uint64_t bytes) const
 {
   CheckAllocation(bytes, this->AllocationLimit);
-  const cl::Buffer larger(this->Context.GetContext(), CL_MEM_READ_WRITE, bytes);
-  if (used > 0)
-  {
-    this->Queue.enqueueCopyBuffer(buffer, larger, 0, 0, used);
-    this->Queue.finish();
-  }
-  buffer = larger;
-}
-
-void TetrahedronRecords::MakeRoom(std::size_t count)
-{
-  const std::size_t room = std::max<std::size_t>(count, 1); // no buffer is of no bytes
-  if (deformvolume::GetMemory(this->Owners) < room * sizeof(std::int32_t))
-  {
-    this->Grow(this->Rest, room * this->GetRestSize(), this->Count * this->GetRestSize());
-    this->Grow(this->Owners, room * sizeof(std::int32_t), this->Count * sizeof(std::int32_t));
-    this->Grow(this->Records, (room + 1) * sizeof(TetrahedronRecord), 0); // evaluated anew
-  }
+  return { this->Context.GetContext(), CL_MEM_READ_WRITE, bytes };
 }
 
 void TetrahedronRecords::WriteRest(
@@ -90,7 +71,10 @@ void TetrahedronRecords::WriteRest(
 void TetrahedronRecords::Set(const std::vector<RestTetrahedron>& tetrahedra, const MeshOrder& order)
 {
   this->Clear();
-  this->MakeRoom(tetrahedra.size());
+  const std::size_t room = std::max<std::size_t>(tetrahedra.size(), 1); // no buffer is of no bytes
+  this->Rest = this->MakeBuffer(room * this->GetRestSize());
+  this->Owners = this->MakeBuffer(room * sizeof(std::int32_t));
+  this->Records = this->MakeBuffer((room + 1) * sizeof(TetrahedronRecord));
   std::vector<char> rest(tetrahedra.size() * this->GetRestSize());
   std::vector<std::int32_t> owners(tetrahedra.size());
   for (std::size_t i = 0; i < tetrahedra.size(); ++i)
@@ -104,95 +88,6 @@ void TetrahedronRecords::Set(const std::vector<RestTetrahedron>& tetrahedra, con
     Write(this->Queue, this->Owners, 0, owners.size() * sizeof(std::int32_t), owners.data());
   }
   this->Count = tetrahedra.size();
-}
-
-std::vector<std::int32_t> TetrahedronRecords::Add(const std::vector<RestTetrahedron>& tetrahedra,
-  const MeshOrder& order, const std::vector<std::int32_t>& removed)
-{
-  this->Current = false;
-  // What is looked for, by owner.
-  std::vector<std::pair<std::int32_t, std::size_t>> wanted;
-  std::int32_t last = -1;
-  for (std::size_t i = 0; i < tetrahedra.size(); ++i)
-  {
-    wanted.emplace_back(MeshOrder::Get(order.Tetrahedra, tetrahedra[i].Tetrahedron), i);
-    last = std::max(last, wanted.back().first);
-  }
-  std::sort(wanted.begin(), wanted.end());
-  enum Kind : unsigned char
-  {
-    Other,
-    Removed,
-    Wanted
-  };
-  const std::int32_t lastRemoved =
-    removed.empty() ? -1 : *std::max_element(removed.begin(), removed.end());
-  std::vector<unsigned char> kinds(
-    static_cast<std::size_t>(std::max(last, lastRemoved)) + 1, Other);
-  for (const auto& one : wanted)
-  {
-    kinds[one.first] = Wanted;
-  }
-  std::vector<std::int32_t> numbers(tetrahedra.size(), -1);
-  std::vector<std::int32_t> unused;
-  // A tetrahedron that is new may have the number of one that is gone, but none of its records.
-  for (const std::int32_t tetrahedron : removed)
-  {
-    kinds[tetrahedron] = Removed;
-  }
-  if (this->Count > 0)
-  {
-    const MappedBuffer<std::int32_t> owners(this->Queue, this->Owners, CL_MAP_READ | CL_MAP_WRITE);
-    const MappedBuffer<const char> rest(this->Queue, this->Rest, CL_MAP_READ);
-    std::vector<char> one(this->GetRestSize());
-    for (std::size_t record = 0; record < this->Count; ++record)
-    {
-      const std::int32_t owner = owners.Get()[record];
-      if (owner >= static_cast<std::int32_t>(kinds.size()))
-      {
-        continue;
-      }
-      if (owner < 0 || kinds[owner] == Removed)
-      {
-        owners.Get()[record] = -1;
-        unused.push_back(static_cast<std::int32_t>(record));
-      }
-      else if (kinds[owner] == Wanted)
-      {
-        // Those of a sliver differ.
-        for (auto found = std::lower_bound(
-               wanted.begin(), wanted.end(), std::make_pair(owner, std::size_t{ 0 }));
-             found != wanted.end() && found->first == owner; ++found)
-        {
-          this->WriteRest(0, tetrahedra[found->second], one.data());
-          if (std::equal(one.begin(), one.end(), rest.Get() + record * one.size()))
-          {
-            numbers[found->second] = static_cast<std::int32_t>(record);
-          }
-        }
-      }
-    }
-  }
-  const auto missing =
-    static_cast<std::size_t>(std::count(numbers.begin(), numbers.end(), std::int32_t{ -1 }));
-  const std::size_t added = missing - std::min(missing, unused.size());
-  if ((this->Count + added) * sizeof(std::int32_t) > deformvolume::GetMemory(this->Owners))
-  {
-    this->MakeRoom(this->Count + added + (this->Count + added) / 8); // more may follow soon
-  }
-  const MappedBuffer<std::int32_t> owners(this->Queue, this->Owners, CL_MAP_READ | CL_MAP_WRITE);
-  const MappedBuffer<char> rest(this->Queue, this->Rest, CL_MAP_READ | CL_MAP_WRITE);
-  auto free = unused.begin();
-  for (std::size_t i = 0; i < tetrahedra.size(); ++i)
-  {
-    if (numbers[i] < 0)
-    {
-      numbers[i] = free != unused.end() ? *free++ : static_cast<std::int32_t>(this->Count++);
-      owners.Get()[numbers[i]] = MeshOrder::Get(order.Tetrahedra, tetrahedra[i].Tetrahedron);
-      this->WriteRest(static_cast<std::size_t>(numbers[i]), tetrahedra[i], rest.Get());
-    }
-  }
-  return numbers;
 }
 
 cl::Event TetrahedronRecords::Evaluate(

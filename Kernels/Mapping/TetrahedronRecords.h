@@ -24,10 +24,6 @@ public:
 
   /// With numbers of the mesh, which become those of the device.
   void Set(const std::vector<RestTetrahedron>& tetrahedra, const MeshOrder& order);
-  /// Finds a record for each of some tetrahedra, or adds one. removed: tetrahedra of the device
-  /// whose records are of no use any more. Returns their numbers.
-  std::vector<std::int32_t> Add(const std::vector<RestTetrahedron>& tetrahedra,
-    const MeshOrder& order, const std::vector<std::int32_t>& removed);
   void Clear();
 
   /// For each record the displacements as an affine function (TetrahedronRecord), after Evaluate,
@@ -38,7 +34,7 @@ public:
   cl::Event Evaluate(
     const cl::Program& mapping, const cl::Buffer& tetrahedra, const cl::Buffer& nodes);
 
-  /// The tetrahedron of each, -1 where a record is of no use.
+  /// The tetrahedron of each.
   const cl::Buffer& GetOwners() const { return this->Owners; }
   /// Calls a function with the 15 numbers of each (RunEvaluation.cl). On a processor.
   void VisitRest(const std::function<void(const double*)>& visit) const;
@@ -46,10 +42,7 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
-  /// Gives the buffers room for so many records; those that there are stay.
-  void MakeRoom(std::size_t count);
-  /// Makes a buffer of so many bytes, and copies as many of it as are used.
-  void Grow(cl::Buffer& buffer, std::uint64_t bytes, std::uint64_t used) const;
+  cl::Buffer MakeBuffer(std::uint64_t bytes) const;
   void WriteRest(std::size_t record, const RestTetrahedron& tetrahedron, void* rest) const;
   std::size_t GetRestSize() const;
 

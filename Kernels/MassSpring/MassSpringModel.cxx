@@ -20,7 +20,7 @@ namespace
 {
 
 // Displacements beyond so many times the size of the body are none of a simulation.
-constexpr double LargestDisplacement = 1e4;
+constexpr double LargestDisplacementBySize = 1e4;
 // The time step by the stable one, where it is not given: tetrahedra that are compressed vibrate
 // faster than at rest.
 constexpr double PartOfStable = 0.75;
@@ -338,7 +338,7 @@ MassSpringReport MassSpringModel::Advance(const MassSpringRequest& request)
         {
           step.Gravity[axis] = static_cast<float>(request.Loads.Gravity[axis]);
         }
-        step.Limit = static_cast<float>(LargestDisplacement * impl.Network->Size);
+        step.Limit = static_cast<float>(LargestDisplacementBySize * impl.Network->Size);
         step.NumberOfNodes = static_cast<int>(impl.State->GetNumberOfNodes());
         impl.State->SetLoads(request.Loads.Forces);
         impl.Hold(request.Held);

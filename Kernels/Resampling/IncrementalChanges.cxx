@@ -210,61 +210,6 @@ void IncrementalUpdate::ForSubBricks(const Extent& box, int more, int reach, Bod
   }
 }
 
-std::vector<std::size_t> IncrementalUpdate::MoveVertices(
-  const std::vector<Extent>& vertices, const float* last)
-{
-  std::vector<unsigned char> found(this->Grid.GetNumberOfBricks());
-  for (const Extent& box : vertices)
-  {
-    this->ForSubBricks(
-      box, 0, this->Grid.Reach, [&](std::size_t subBrick) { found[subBrick] = 1; });
-  }
-  std::vector<std::size_t> subBricks;
-  for (std::size_t subBrick = 0; subBrick < found.size(); ++subBrick)
-  {
-    if (found[subBrick])
-    {
-      subBricks.push_back(subBrick);
-      if (this->Tracking)
-      {
-        this->Move(subBrick, last);
-      }
-      this->Known[subBrick] = 0;
-    }
-  }
-  this->BoxesKnown = false;
-  return subBricks;
-}
-
-void IncrementalUpdate::ReplacePoints(
-  const std::vector<std::size_t>& subBricks, const BrickPoints& points)
-{
-  this->Points.Replace(subBricks, points);
-  if (this->Points.AreOverloaded())
-  {
-    this->ForgetMapping();
-    return;
-  }
-  std::vector<std::size_t> bricks;
-  for (const std::size_t subBrick : subBricks)
-  {
-    bricks.push_back(this->Places[subBrick].first);
-  }
-  std::sort(bricks.begin(), bricks.end());
-  bricks.erase(std::unique(bricks.begin(), bricks.end()), bricks.end());
-  std::vector<std::vector<std::size_t>> groups(bricks.size());
-  for (std::size_t subBrick = 0; subBrick < this->Places.size(); ++subBrick)
-  {
-    const std::size_t brick = this->Places[subBrick].first;
-    const auto group = std::lower_bound(bricks.begin(), bricks.end(), brick);
-    if (group != bricks.end() && *group == brick)
-    {
-      groups[static_cast<std::size_t>(group - bricks.begin())].push_back(subBrick);
-    }
-  }
-  this->PointsOfBricks.Replace(bricks, this->Points.Join(groups));
-}
-
 void IncrementalUpdate::ChangeMask(const std::vector<Extent>& changes, bool ofCells)
 {
   if (!this->Tracking)

@@ -69,9 +69,6 @@ public:
   void MovePoints(const PointSet& changed, const float* last) override;
   std::optional<std::vector<Extent>> ChangeTetrahedra(
     const std::vector<TetrahedronChange>& changes, const float* last) override;
-  std::vector<std::size_t> MoveVertices(
-    const std::vector<Extent>& vertices, const float* last) override;
-  void ReplacePoints(const std::vector<std::size_t>& subBricks, const BrickPoints& points) override;
   void AddMoved(const DisplacementBounds& after) override;
   void MoveAll(const std::optional<DisplacementBounds>& after) override;
   ///@}

@@ -35,7 +35,6 @@ void RegisterLive(const EvaluationSize& size)
 {
   constexpr int splitTetrahedra = 2000;
   constexpr int splitNodes = 1000;
-  constexpr int subdividedTetrahedra = 1000;
   const std::array<int, 3> maskCells{ { 2, 30, 30 } };
   const std::pair<const char*, std::function<void(LiveCase&)>> kinds[] = {
     { "all-move", [](LiveCase& live) { live.MoveAll(); } },
@@ -49,7 +48,6 @@ void RegisterLive(const EvaluationSize& size)
         live.Split(splitTetrahedra, splitNodes);
         live.ChangeMask(maskCells);
       } },
-    { "subdivide", [](LiveCase& live) { live.Subdivide(subdividedTetrahedra); } },
     { "another-mesh", [](LiveCase& live) { live.MoveAtRest(); } },
     { "few-move", [](LiveCase& live) { live.MoveSome(few); } },
   };

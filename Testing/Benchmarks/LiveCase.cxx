@@ -173,59 +173,6 @@ void LiveCase::Split(int tetrahedra, int nodes)
   this->Mesh->Modified();
 }
 
-void LiveCase::Subdivide(int tetrahedra)
-{
-  // A cube of cells, of five tetrahedra each.
-  const vtkIdType cells = this->NodesPerAxis - 1;
-  const auto width = static_cast<vtkIdType>(std::ceil(std::cbrt(tetrahedra / 5.0)));
-  const vtkIdType places = cells / width;
-  const std::array<vtkIdType, 3> first{ { width * (this->Step++ % places), cells / 2, cells / 2 } };
-  vtkCellArray* connectivity = this->Mesh->GetCells();
-  for (vtkIdType i = 0; i < 5 * width * width * width && tetrahedra > 0; ++i, --tetrahedra)
-  {
-    const vtkIdType x = first[0] + i / 5 % width;
-    const vtkIdType y = first[1] + i / 5 / width % width;
-    const vtkIdType z = first[2] + i / 5 / width / width;
-    const vtkIdType parent = 5 * ((z * cells + y) * cells + x) + i % 5;
-    vtkIdType size;
-    const vtkIdType* points;
-    connectivity->GetCellAtId(parent, size, points);
-    const std::array<vtkIdType, 4> nodes{ { points[0], points[1], points[2], points[3] } };
-    std::array<double, 3> center{};
-    std::array<double, 3> moved{};
-    for (const vtkIdType node : nodes)
-    {
-      std::array<double, 3> point;
-      this->Mesh->GetPoint(node, point.data());
-      const double* displacement = this->Displacements->GetTuple3(node);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        center[axis] += 0.25 * point[axis];
-        moved[axis] += 0.25 * displacement[axis];
-      }
-    }
-    const vtkIdType node = this->Mesh->GetPoints()->InsertNextPoint(center.data());
-    this->Displacements->InsertNextTuple3(moved[0], moved[1], moved[2] + 0.05);
-    for (int k = 0; k < 4; ++k)
-    {
-      std::array<vtkIdType, 4> child = nodes;
-      child[k] = node;
-      if (k == 0)
-      {
-        connectivity->ReplaceCellAtId(parent, 4, child.data());
-      }
-      else
-      {
-        this->Mesh->InsertNextCell(VTK_TETRA, 4, child.data());
-      }
-    }
-  }
-  connectivity->Modified();
-  this->Mesh->GetPoints()->Modified();
-  this->Finish(this->Displacements);
-  this->Mesh->Modified();
-}
-
 void LiveCase::MoveAtRest()
 {
   const vtkIdType node = this->Mesh->GetNumberOfPoints() / 2 + this->Step++;

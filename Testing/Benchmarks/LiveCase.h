@@ -31,9 +31,6 @@ public:
   /// So many tetrahedra beside a plane of the lattice, another one each time, get at most so many
   /// nodes of their own, which move a little.
   void Split(int tetrahedra, int nodes);
-  /// So many tetrahedra of neighbouring cells, others each time, become four, round a new node
-  /// each.
-  void Subdivide(int tetrahedra);
   /// Moves a node at rest, so that all is made anew.
   void MoveAtRest();
   /// Switches tetrahedra off, and others on again, in a box of so many cells.

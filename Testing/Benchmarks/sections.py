@@ -380,7 +380,6 @@ def live(results, _pictures, _kind):
                 ("Live/masks-logged", "the same, logged"),
                 ("Live/split-and-masks", "both of these"),
                 ("Live/split-and-masks-logged", "both of these, logged"),
-                ("Live/subdivide", "1,000 tetrahedra become four each"),
                 ("Live/another-mesh", "a node moves at rest: all is made anew"))
             if name in results.runs]
     if rows:

@@ -5,9 +5,6 @@
 #include "DeviceNeeds.h"
 #include "DeviceVectors.h"
 #include "FakeDriver.h"
-#include "RefinedMesh.h"
-#include "StaticMapping.h"
-#include "StaticMappingUpdater.h"
 
 #include <gtest/gtest.h>
 
@@ -70,62 +67,6 @@ TEST_F(GraphicsDevice, GroupsAreNotLeftToTheDriver)
   EXPECT_TRUE(report.Overlapping);
   EXPECT_EQ(report.NumberOfCoveredVoxels, ResampleByReference(folded).NumberOfCoveredVoxels);
   EXPECT_EQ(FakeDriver::Get().LaunchesWithoutGroup, 0);
-}
-
-// Links and runs are written in part into memory of the device.
-TEST_F(GraphicsDevice, TetrahedraThatAreReplaced)
-{
-  for (const Route route : { Route::Mesh, Route::Runs })
-  {
-    EditedVolume volume(Extent{ { 0, 40, -1, 40, 3, 40 } });
-    RefinedMesh mesh(volume, 1.5, 9);
-    MappingSurvey survey;
-    const auto deform = [&](VolumeDeformer& deformer)
-    {
-      deformer.SetNodeDisplacements(volume.Displacements.data());
-      EditedOutputs outputs(volume);
-      DeformRequest request = outputs.MakeRequest(volume);
-      request.Outputs.resize(1);
-      deformer.Deform(request);
-      return std::make_pair(outputs.First, outputs.Coverage);
-    };
-    const auto sendAll = [&](VolumeDeformer& deformer)
-    {
-      const StaticMappingBuilder builder(volume.Shape.VertexExtent, glm::dvec3(1.0),
-        mesh.GetPoints(), volume.Tetrahedra, false,
-        route == Route::Runs ? StaticMappingForm::Runs : StaticMappingForm::Links);
-      const StaticMapping mapping = builder.Build();
-      survey = builder.GetSurvey();
-      deformer.SetDevice("");
-      deformer.SetVoxelGrid(volume.Shape);
-      deformer.SetArrays({ MakeArray(volume.First) });
-      const std::size_t nodes = volume.GetNumberOfNodes();
-      const std::vector<Tetrahedron>& all = volume.Tetrahedra;
-      route == Route::Runs ? deformer.SetMesh(all.data(), all.size(), nodes, mapping.Runs)
-                           : deformer.SetMesh(all.data(), all.size(), nodes, mapping.Links.data());
-      return deform(deformer);
-    };
-    sendAll(this->Deformer);
-    int updates = 0;
-    for (int edit = 0; edit < 8; ++edit)
-    {
-      SCOPED_TRACE(mesh.Edit());
-      const StaticMappingUpdater updater(volume.Shape.VertexExtent, survey, mesh.GetPoints(),
-        volume.Tetrahedra, mesh.TakeReplacement());
-      VolumeDeformer fresh;
-      const auto expected = sendAll(fresh);
-      if (!updater.IsWorthwhile())
-      {
-        sendAll(this->Deformer);
-        continue;
-      }
-      this->Deformer.ReplaceTetrahedra(volume.Tetrahedra.data(), volume.Tetrahedra.size(),
-        volume.GetNumberOfNodes(), updater.Build());
-      ++updates;
-      ASSERT_TRUE(deform(this->Deformer) == expected);
-    }
-    EXPECT_GT(updates, 4);
-  }
 }
 
 // The memory of the device is all that it has, and not what it has beside what is held.
