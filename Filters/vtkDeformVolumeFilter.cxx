@@ -113,23 +113,6 @@ vtkStringArray* vtkDeformVolumeFilter::GetDeviceNames()
 }
 
 //------------------------------------------------------------------------------
-vtkStringArray* vtkDeformVolumeFilter::GetDeviceChoices()
-{
-  deformvolume::Ranks().ShareProcessors();
-  vtkStringArray* choices = this->Internals->DeviceChoices;
-  choices->Initialize();
-  for (const char* kind : { deformvolume::BEST_DEVICE, "cpu", "gpu" })
-  {
-    choices->InsertNextValue(kind);
-  }
-  for (const std::string& name : deformvolume::GetDeviceNames())
-  {
-    choices->InsertNextValue(name);
-  }
-  return choices;
-}
-
-//------------------------------------------------------------------------------
 std::string vtkDeformVolumeFilter::GetSummary()
 {
   if (this->DeviceInUse.empty())
@@ -153,7 +136,8 @@ std::string vtkDeformVolumeFilter::GetSummary()
        << "Seconds for links: " << this->PreprocessingTime << "\n"
        << "Seconds for transfer: " << this->TransferTime << "\n"
        << "Seconds in kernels: " << this->MappingTime + this->ResamplingTime << "\n"
-       << "Seconds for compilation: " << this->CompilationTime;
+       << "Seconds for compilation: " << this->CompilationTime << "\n"
+       << "Arrays on the device: " << this->Internals->State->Outputs.GetNumberOfUnread();
   return text.str();
 }
 
@@ -161,12 +145,6 @@ std::string vtkDeformVolumeFilter::GetSummary()
 vtkTypeInt64 vtkDeformVolumeFilter::GetDeviceMemory()
 {
   return static_cast<vtkTypeInt64>(this->Internals->GetDeviceMemory());
-}
-
-//------------------------------------------------------------------------------
-int vtkDeformVolumeFilter::GetNumberOfUnreadArrays()
-{
-  return this->Internals->State->Outputs.GetNumberOfUnread();
 }
 
 //------------------------------------------------------------------------------
@@ -251,10 +229,8 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "OpenSplits: " << (this->OpenSplits ? "on" : "off") << "\n";
   os << indent << "Incremental: " << (this->Incremental ? "on" : "off") << "\n";
   os << indent << "OutputOnDevice: " << (this->OutputOnDevice ? "on" : "off") << "\n";
-  os << indent << "StreamInput: " << (this->StreamInput ? "on" : "off") << "\n";
   os << indent << "Device: \"" << this->Device << "\"\n";
   os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
-  os << indent << "WorkGroupSize: " << this->WorkGroupSize << "\n";
   os << indent << "PreprocessingTime: " << this->PreprocessingTime << "\n";
   os << indent << "TransferTime: " << this->TransferTime << "\n";
   os << indent << "MappingTime: " << this->MappingTime << "\n";

@@ -59,10 +59,11 @@
  *
  * @par Parts and ranks:
  * The filter makes any extent of its output, and under MPI each rank makes its piece; voxels are
- * the same to the last bit however the output is divided. Where a part is asked for, the input is
- * asked for the voxels that can land there only, provided that all sources of the volume can make
- * parts (they say so with CAN_PRODUCE_SUB_EXTENT) and the resampler is exact; see StreamInput. With
- * FieldIsInverse it is asked for whole. Of the deformation mesh each rank may have a piece, none,
+ * the same to the last bit however the output is divided. Where a part is asked for, and with
+ * CUSTOM_BOUNDS, the input is asked only for the voxels that can land there, provided that all
+ * sources of the volume can make parts (they say so with CAN_PRODUCE_SUB_EXTENT), that the resampler
+ * is EXACT or AUTOMATIC, which then is EXACT even if the whole would not have fit into memory, and
+ * that the mesh is not extrapolated. Else, and with FieldIsInverse, it is asked for whole. Of the deformation mesh each rank may have a piece, none,
  * or the whole: it is gathered through vtkMultiProcessController::GetGlobalController(). A
  * displacement field every rank must be given whole. All ranks have to update together; an error of
  * one is told on all. Counts of voxels, tetrahedra and bricks are summed over the ranks: what two
@@ -422,25 +423,6 @@ public:
   vtkBooleanMacro(OutputOnDevice, bool);
   ///@}
 
-  /**
-   * How many arrays of the last output are on the device, and have not been read (OutputOnDevice).
-   */
-  int GetNumberOfUnreadArrays();
-
-  ///@{
-  /**
-   * Whether the input is asked only for what can land in the output even where all of the output is
-   * asked for. Where a part is asked for that is done anyway. It matters where the output shows a
-   * part of the deformed volume only (CUSTOM_BOUNDS). The volume is asked for whole all the same
-   * where one of its sources cannot make parts of it, with other resamplers than EXACT, and where a
-   * mesh is extrapolated. What is read in parts is resampled by EXACT under AUTOMATIC, even if the
-   * whole would not have fit into memory. Default: off.
-   */
-  vtkSetMacro(StreamInput, bool);
-  vtkGetMacro(StreamInput, bool);
-  vtkBooleanMacro(StreamInput, bool);
-  ///@}
-
   ///@{
   /**
    * The OpenCL device: "" or "best" is the best there is (the first of GetDeviceNames()), or what
@@ -462,12 +444,6 @@ public:
    */
   static VTK_NEWINSTANCE vtkStringArray* GetDeviceNames();
 
-  /**
-   * What a list of devices to choose from may offer on this machine: "best", "cpu", "gpu", and the
-   * names of the devices. The array belongs to this filter.
-   */
-  vtkStringArray* GetDeviceChoices();
-
   ///@{
   /**
    * Bytes of device memory that may be used; 0 is what the device has available. An update that
@@ -475,15 +451,6 @@ public:
    */
   vtkSetClampMacro(MemoryLimit, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
   vtkGetMacro(MemoryLimit, vtkTypeInt64);
-  ///@}
-
-  ///@{
-  /**
-   * Work-items in a work-group of the resampling kernel, 0: chosen for the device. The result does
-   * not depend on it. Default 0.
-   */
-  vtkSetClampMacro(WorkGroupSize, int, 0, 1024);
-  vtkGetMacro(WorkGroupSize, int);
   ///@}
 
   ///@{
@@ -614,10 +581,8 @@ private:
   bool OpenSplits = false;
   bool Incremental = true;
   bool OutputOnDevice = false;
-  bool StreamInput = false;
   std::string Device;
   vtkTypeInt64 MemoryLimit = 0;
-  int WorkGroupSize = 0;
 
   double PreprocessingTime = 0.0;
   double TransferTime = 0.0;

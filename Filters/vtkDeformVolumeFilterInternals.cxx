@@ -80,8 +80,7 @@ std::string vtkDeformVolumeFilter::vtkInternals::SelectDevice()
       this->ReleaseOtherStates();
     }
   }
-  return this->State->Device.SetDevice(
-    this->Self->Device, limit, static_cast<std::size_t>(this->Self->WorkGroupSize));
+  return this->State->Device.SetDevice(this->Self->Device, limit);
 }
 
 //------------------------------------------------------------------------------

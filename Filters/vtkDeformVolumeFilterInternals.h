@@ -11,7 +11,6 @@
 #include "vtkDeformVolumeFilter.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
-#include "vtkStringArray.h"
 #include "vtkTimeStamp.h"
 
 #include <functional>
@@ -87,7 +86,7 @@ public:
     const deformvolume::DeformationSource& source, vtkInformation* output);
 
   /// The extent of the volume that is needed for what is asked for: all of it, unless a part of the
-  /// output or StreamInput asks for less, and all before the volume can give less. Collective.
+  /// output or CUSTOM_BOUNDS asks for less, and all before the volume can give less. Collective.
   deformvolume::Extent GetNeededExtent(
     const deformvolume::Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output);
 
@@ -138,7 +137,6 @@ public:
   std::function<void(bool)> GetCompilationReport() const;
 
   std::set<std::string> CategoricalArrays;
-  vtkNew<vtkStringArray> DeviceChoices;
   deformvolume::MeshGrids ShapeGrids;
   deformvolume::MeshGrids RestGrids;
   deformvolume::MeshGathering Gathering;

@@ -53,7 +53,8 @@ bool vtkDeformVolumeFilter::vtkInternals::WantsPart(vtkInformation* output) cons
 {
   Extent whole;
   output->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
-  return this->Self->StreamInput || deformvolume::GetRequestedPart(output) != whole;
+  return this->Self->OutputBoundsMode == CUSTOM_BOUNDS ||
+    deformvolume::GetRequestedPart(output) != whole;
 }
 
 //------------------------------------------------------------------------------

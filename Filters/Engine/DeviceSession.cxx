@@ -60,11 +60,9 @@ std::string DeviceSession::FindOwnMemory(const std::string& request)
   return GetDeviceAbilities(wanted).OwnMemory ? ResolveDevice(wanted) : "";
 }
 
-std::string DeviceSession::SetDevice(
-  const std::string& request, std::uint64_t memoryLimit, std::size_t workGroupSize)
+std::string DeviceSession::SetDevice(const std::string& request, std::uint64_t memoryLimit)
 {
   this->Deformer.SetMemoryLimit(memoryLimit);
-  this->Deformer.SetWorkGroupSize(workGroupSize);
   const std::string device = this->Deformer.SetDevice(Translate(request));
   if (device != this->Device)
   {

@@ -37,8 +37,7 @@ public:
   static std::string FindOwnMemory(const std::string& request);
 
   /// Chooses the device and returns its name.
-  std::string SetDevice(
-    const std::string& request, std::uint64_t memoryLimit, std::size_t workGroupSize);
+  std::string SetDevice(const std::string& request, std::uint64_t memoryLimit);
 
   /// See VolumeDeformer.
   void CheckMemory(const VoxelGrid& voxelGrid, const std::vector<VolumeArray>& arrays,

@@ -358,7 +358,7 @@ def check_shown(make):
         name: smproperty
         for name, smproperty in properties_of(proxy, information=True).items()
         # ParaView makes these of more than one number that a getter gives.
-        if name not in ("DeviceChoices", "TimestepValues", "TimeRange")
+        if name not in ("TimestepValues", "TimeRange")
     }
     before = {name: read(instance, name, smproperty) for name, smproperty in information.items()}
     proxy.UpdatePipeline()
@@ -389,8 +389,7 @@ def check_defaults(volume):
     filter_.DisplacementArray = ["POINTS", "u"]
     check_silent(update(filter_))
     # What the last update did.
-    check(filter_.DeviceInUse and filter_.DeviceInUse in list(filter_.GetProperty("DeviceChoices")),
-          f"The device in use is {filter_.DeviceInUse}")
+    check(filter_.DeviceInUse, "No device is in use")
     check(filter_.ResamplerInUse == "Exact", f"{filter_.ResamplerInUse}")
     check(filter_.InvertedTetrahedra == 0.0, f"{filter_.InvertedTetrahedra}")
     check(filter_.CoveredVoxels > 1000.0, f"{filter_.CoveredVoxels}")

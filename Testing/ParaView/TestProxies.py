@@ -42,7 +42,6 @@ WITHOUT_PROPERTY = {
     "GetStateMemory",
     # ParaView reads each output at once, for the ranges of its arrays.
     "SetOutputOnDevice",
-    "GetNumberOfUnreadArrays",
 }
 
 failures = []

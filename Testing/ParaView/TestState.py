@@ -44,7 +44,6 @@ PROPERTIES = {
     "Incremental": 0,
     "Device": "cpu",
     "MemoryLimit": 5e9,
-    "WorkGroupSize": 64,
 }
 
 
