@@ -129,15 +129,36 @@ std::string vtkDeformVolumeFilter::GetSummary()
     return text;
   };
   std::ostringstream text;
-  text.precision(3);
+  const deformvolume::DeformReport& report = this->Internals->Report;
+  const auto sum = [this](const auto& getCount)
+  {
+    vtkIdType all = 0;
+    for (const auto& state : this->Internals->States)
+    {
+      all += static_cast<vtkIdType>(getCount(state.second));
+    }
+    return all;
+  };
+  using State = deformvolume::ExecutionState;
   text << "Device: " << this->DeviceInUse << "\n"
-       << "Inverted tetrahedra: " << count(this->NumberOfInvertedTetrahedra) << "\n"
+       << "Resampler: "
+       << (this->ResamplerInUse == MESH_RASTERIZATION ? "mesh rasterization" : "exact") << "\n"
        << "Covered voxels: " << count(this->NumberOfCoveredVoxels) << "\n"
-       << "Seconds for links: " << this->PreprocessingTime << "\n"
-       << "Seconds for transfer: " << this->TransferTime << "\n"
-       << "Seconds in kernels: " << this->MappingTime + this->ResamplingTime << "\n"
-       << "Seconds for compilation: " << this->CompilationTime << "\n"
-       << "Arrays on the device: " << this->Internals->State->Outputs.GetNumberOfUnread();
+       << "Inverted tetrahedra: " << count(this->NumberOfInvertedTetrahedra) << "\n"
+       << "Flat tetrahedra: " << count(this->NumberOfFlatTetrahedra) << "\n"
+       << "Bricks resampled: " << count(report.NumberOfResampledBricks) << "\n"
+       << "Bricks of the volume: " << count(report.NumberOfBricks) << "\n"
+       << "Static mappings made: "
+       << count(sum([](const State& state) { return state.Mapping.GetNumberOfBuilds(); })) << "\n"
+       << "Volumes sent: "
+       << count(sum([](const State& state) { return state.Device.GetNumberOfVolumeUploads(); }))
+       << "\n"
+       << "Arrays on the device: " << this->Internals->State->Outputs.GetNumberOfUnread() << "\n"
+       << "Seconds for the static mapping: " << this->Internals->StaticMappingTime << "\n"
+       << "Seconds for transfer: " << report.TransferTime << "\n"
+       << "Seconds for mapping: " << report.MappingTime << "\n"
+       << "Seconds for resampling: " << report.ResamplingTime << "\n"
+       << "Seconds for compilation: " << report.CompilationTime;
   return text.str();
 }
 
@@ -231,23 +252,14 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "OutputOnDevice: " << (this->OutputOnDevice ? "on" : "off") << "\n";
   os << indent << "Device: \"" << this->Device << "\"\n";
   os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
-  os << indent << "PreprocessingTime: " << this->PreprocessingTime << "\n";
-  os << indent << "TransferTime: " << this->TransferTime << "\n";
-  os << indent << "MappingTime: " << this->MappingTime << "\n";
-  os << indent << "ResamplingTime: " << this->ResamplingTime << "\n";
-  os << indent << "CompilationTime: " << this->CompilationTime << "\n";
   os << indent << "NumberOfInvertedTetrahedra: " << this->NumberOfInvertedTetrahedra << "\n";
   os << indent << "NumberOfFlatTetrahedra: " << this->NumberOfFlatTetrahedra << "\n";
   os << indent << "NumberOfCoveredVoxels: " << this->NumberOfCoveredVoxels << "\n";
-  os << indent << "NumberOfBricks: " << this->NumberOfBricks << "\n";
-  os << indent << "NumberOfResampledBricks: " << this->NumberOfResampledBricks << "\n";
   os << indent << "ChangedExtent:";
   for (const int end : this->ChangedExtent)
   {
     os << " " << end;
   }
   os << "\n";
-  os << indent << "NumberOfMappingBuilds: " << this->NumberOfMappingBuilds << "\n";
-  os << indent << "NumberOfVolumeUploads: " << this->NumberOfVolumeUploads << "\n";
   os << indent << "DeviceInUse: \"" << this->DeviceInUse << "\"\n";
 }

@@ -61,13 +61,13 @@
  * The filter makes any extent of its output, and under MPI each rank makes its piece; voxels are
  * the same to the last bit however the output is divided. Where a part is asked for, and with
  * CUSTOM_BOUNDS, the input is asked only for the voxels that can land there, provided that all
- * sources of the volume can make parts (they say so with CAN_PRODUCE_SUB_EXTENT), that the resampler
- * is EXACT or AUTOMATIC, which then is EXACT even if the whole would not have fit into memory, and
- * that the mesh is not extrapolated. Else, and with FieldIsInverse, it is asked for whole. Of the deformation mesh each rank may have a piece, none,
- * or the whole: it is gathered through vtkMultiProcessController::GetGlobalController(). A
- * displacement field every rank must be given whole. All ranks have to update together; an error of
- * one is told on all. Counts of voxels, tetrahedra and bricks are summed over the ranks: what two
- * of them have counts twice.
+ * sources of the volume can make parts (they say so with CAN_PRODUCE_SUB_EXTENT), that the
+ * resampler is EXACT or AUTOMATIC, which then is EXACT even if the whole would not have fit into
+ * memory, and that the mesh is not extrapolated. Else, and with FieldIsInverse, it is asked for
+ * whole. Of the deformation mesh each rank may have a piece, none, or the whole: it is gathered
+ * through vtkMultiProcessController::GetGlobalController(). A displacement field every rank must be
+ * given whole. All ranks have to update together; an error of one is told on all. Counts of voxels,
+ * tetrahedra and bricks are summed over the ranks: what two of them have counts twice.
  *
  * @par Errors:
  * All failures are one vtkErrorMacro that says what is wrong and what to do; the output is then
@@ -453,23 +453,6 @@ public:
   vtkGetMacro(MemoryLimit, vtkTypeInt64);
   ///@}
 
-  ///@{
-  /**
-   * What the last execution did. Times are in seconds: PreprocessingTime for the static mapping (0
-   * when the one of an earlier execution served), TransferTime for copies to and from the device
-   * (without those of arrays that are read later, see OutputOnDevice),
-   * ResamplingTime for the kernels, CompilationTime for their compilation, which is part of no
-   * other time and close to 0 once the kernels are known. The exact kernels map and resample in
-   * one, and MappingTime is 0 then; the published method does one after the other. With
-   * MESH_RASTERIZATION the mapping is the listing of the tetrahedra of each part of the output.
-   */
-  vtkGetMacro(PreprocessingTime, double);
-  vtkGetMacro(TransferTime, double);
-  vtkGetMacro(MappingTime, double);
-  vtkGetMacro(ResamplingTime, double);
-  vtkGetMacro(CompilationTime, double);
-  ///@}
-
   /**
    * Active tetrahedra of the sampling mesh that the deformation turned inside out at the last
    * execution, and, in cells that the boundary of the deformation mesh crosses or touches,
@@ -489,15 +472,6 @@ public:
    */
   vtkGetMacro(NumberOfCoveredVoxels, vtkIdType);
 
-  ///@{
-  /**
-   * Bricks of 192 x 16 x 16 cells that the volume has, and of how many of them the last execution
-   * resampled all or a part; 0 with MESH_RASTERIZATION, which knows no bricks.
-   */
-  vtkGetMacro(NumberOfBricks, vtkIdType);
-  vtkGetMacro(NumberOfResampledBricks, vtkIdType);
-  ///@}
-
   /**
    * The smallest extent, in structured indices of the output, that is known to hold all voxels that
    * the last execution may have changed, so that a viewer sends only these to the device that draws
@@ -509,27 +483,29 @@ public:
    */
   vtkGetVector6Macro(ChangedExtent, int);
 
-  ///@{
-  /**
-   * How often this filter has built a static mapping, and sent a volume to the device: a moved mesh
-   * costs neither. MESH_RASTERIZATION needs no mapping; a change to it or from it sends the volume.
-   * The mapping is built anew after a change of the mesh at rest (tetrahedra that get other nodes
-   * in the same places are none, and nor are nodes that are added; where tetrahedra of a mesh that
-   * holds the volume are replaced, only voxels near these are mapped anew), of the volume's
-   * geometry, the ratio of spacings, OutsideMode or the device, and after ReleaseDeviceMemory().
-   */
-  vtkGetMacro(NumberOfMappingBuilds, vtkIdType);
-  vtkGetMacro(NumberOfVolumeUploads, vtkIdType);
-  ///@}
-
   /**
    * Name of the device of the last execution; "" before the first.
    */
   vtkGetMacro(DeviceInUse, std::string);
 
   /**
-   * The device, the most important counts and the times of the last execution in a few lines of
-   * words, for people to read; "" before the first.
+   * What the last execution did, one "name: value" a line; "" before the first. It also goes to
+   * vtkLogger (TRACE).
+   *
+   * "Device" and "Resampler"; "Covered voxels", "Inverted tetrahedra", "Flat tetrahedra". "Bricks
+   * resampled", all or in part, and "Bricks of the volume", each of 192 x 16 x 16 cells: 0 with
+   * MESH_RASTERIZATION, which knows none. "Static mappings made" and "Volumes sent" to the device
+   * since the filter is there: a moved mesh costs neither; another mesh at rest (not where nodes
+   * are added, or tetrahedra get other nodes in the same places), another geometry of the volume,
+   * ratio of spacings, OutsideMode or device, and ReleaseDeviceMemory() cost a mapping. "Arrays on
+   * the device" that nobody has read (OutputOnDevice).
+   *
+   * "Seconds for the static mapping", 0 when that of an earlier execution served; "for transfer" to
+   * and from the device, without arrays that are read later; "for mapping", which exact kernels do
+   * while they resample (0), and which for MESH_RASTERIZATION is the listing of the tetrahedra of
+   * each part of the output; "for resampling"; "for compilation" of kernels, which is part of no
+   * other time and close to 0 once the kernels are known. Under MPI voxels, inverted tetrahedra and
+   * bricks are summed over the ranks, and times are those of this rank.
    */
   std::string GetSummary();
 
@@ -584,19 +560,10 @@ private:
   std::string Device;
   vtkTypeInt64 MemoryLimit = 0;
 
-  double PreprocessingTime = 0.0;
-  double TransferTime = 0.0;
-  double MappingTime = 0.0;
-  double ResamplingTime = 0.0;
-  double CompilationTime = 0.0;
   vtkIdType NumberOfInvertedTetrahedra = 0;
   vtkIdType NumberOfFlatTetrahedra = 0;
   vtkIdType NumberOfCoveredVoxels = 0;
-  vtkIdType NumberOfBricks = 0;
-  vtkIdType NumberOfResampledBricks = 0;
   int ChangedExtent[6] = { 0, -1, 0, -1, 0, -1 };
-  vtkIdType NumberOfMappingBuilds = 0;
-  vtkIdType NumberOfVolumeUploads = 0;
   int ResamplerInUse = AUTOMATIC;
   std::string DeviceInUse;
 

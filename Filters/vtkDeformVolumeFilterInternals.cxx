@@ -238,11 +238,9 @@ void vtkDeformVolumeFilter::vtkInternals::SetResamplerInUse(deformvolume::Resamp
 void vtkDeformVolumeFilter::vtkInternals::TakeReport(
   const deformvolume::DeformReport& report, deformvolume::Resampling method)
 {
-  this->Self->PreprocessingTime = this->State->Mapping.TakeTime();
-  this->Self->TransferTime = report.TransferTime;
-  this->Self->MappingTime = report.MappingTime;
-  this->Self->ResamplingTime = report.ResamplingTime;
-  this->Self->CompilationTime = report.CompilationTime;
+  this->Report = report;
+  this->Report.DeviceOutputs.clear(); // the arrays of the output have them
+  this->StaticMappingTime = this->State->Mapping.TakeTime();
   this->Self->NumberOfInvertedTetrahedra = this->State->Deformation.IsInverseField()
     ? this->GetNumberOfFolds()
     : report.NumberOfInvertedTetrahedra;
@@ -251,15 +249,7 @@ void vtkDeformVolumeFilter::vtkInternals::TakeReport(
     : this->State->Deformation.IsField() ? 0
                                          : this->State->Mapping.GetNumberOfFlatTetrahedra();
   this->Self->NumberOfCoveredVoxels = report.NumberOfCoveredVoxels;
-  this->Self->NumberOfBricks = report.NumberOfBricks;
-  this->Self->NumberOfResampledBricks = report.NumberOfResampledBricks;
   std::copy(report.ChangedExtent.begin(), report.ChangedExtent.end(), this->Self->ChangedExtent);
-  this->Self->NumberOfMappingBuilds = this->Self->NumberOfVolumeUploads = 0;
-  for (const auto& state : this->States)
-  {
-    this->Self->NumberOfMappingBuilds += state.second.Mapping.GetNumberOfBuilds();
-    this->Self->NumberOfVolumeUploads += state.second.Device.GetNumberOfVolumeUploads();
-  }
   if (report.NumberOfOverstretchedCells > 0)
   {
     vtkWarningWithObjectMacro(

@@ -113,7 +113,7 @@ public:
   void TakeReport(const deformvolume::DeformReport& report, deformvolume::Resampling method);
 
   /// Makes what has been counted on this rank that of all ranks. Collective.
-  void AddUpCounts(const deformvolume::Ranks& ranks) const;
+  void AddUpCounts(const deformvolume::Ranks& ranks);
 
   /// The executive unites the extents asked for until an execution succeeds: after a failure the
   /// next one must start anew.
@@ -135,6 +135,9 @@ public:
   /// A callback that is told when the compilation of kernels begins and ends: while it lasts, the
   /// progress of the filter has a text that says so.
   std::function<void(bool)> GetCompilationReport() const;
+
+  deformvolume::DeformReport Report; // of the last execution
+  double StaticMappingTime = 0.0;    // of that
 
   std::set<std::string> CategoricalArrays;
   deformvolume::MeshGrids ShapeGrids;

@@ -255,18 +255,21 @@ void vtkDeformVolumeFilter::vtkInternals::RunInTurn(const Ranks& ranks, const st
 }
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::AddUpCounts(const Ranks& ranks) const
+void vtkDeformVolumeFilter::vtkInternals::AddUpCounts(const Ranks& ranks)
 {
   if (!ranks.AreMany())
   {
     return;
   }
-  for (vtkIdType* count :
-    { &this->Self->NumberOfInvertedTetrahedra, &this->Self->NumberOfCoveredVoxels,
-      &this->Self->NumberOfBricks, &this->Self->NumberOfResampledBricks })
+  const auto addUp = [&ranks](auto& count)
   {
-    *count = static_cast<vtkIdType>(ranks.GetSum(static_cast<std::uint64_t>(*count)));
-  }
+    count =
+      static_cast<std::decay_t<decltype(count)>>(ranks.GetSum(static_cast<std::uint64_t>(count)));
+  };
+  addUp(this->Self->NumberOfInvertedTetrahedra);
+  addUp(this->Self->NumberOfCoveredVoxels);
+  addUp(this->Report.NumberOfBricks);
+  addUp(this->Report.NumberOfResampledBricks);
   // Of the whole mesh, which each rank knows that has work.
   this->Self->NumberOfFlatTetrahedra = static_cast<vtkIdType>(
     ranks.GetMost(static_cast<std::uint64_t>(this->Self->NumberOfFlatTetrahedra)));

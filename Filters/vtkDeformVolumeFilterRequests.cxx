@@ -17,6 +17,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLogger.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -263,10 +264,9 @@ int vtkDeformVolumeFilter::RequestData(
   image->Initialize();
   const bool hasLast = this->Internals->FactorOfOutput == this->SamplingFactor;
   this->Internals->FactorOfOutput = 0;
-  this->PreprocessingTime = this->TransferTime = this->MappingTime = this->ResamplingTime = 0.0;
-  this->CompilationTime = 0.0;
+  this->Internals->Report = {};
+  this->Internals->StaticMappingTime = 0.0;
   this->NumberOfInvertedTetrahedra = this->NumberOfFlatTetrahedra = this->NumberOfCoveredVoxels = 0;
-  this->NumberOfBricks = this->NumberOfResampledBricks = 0;
   const Extent nothing{ { 0, -1, 0, -1, 0, -1 } };
   std::copy(nothing.begin(), nothing.end(), this->ChangedExtent);
   const deformvolume::Ranks ranks;
@@ -416,6 +416,8 @@ int vtkDeformVolumeFilter::RequestData(
     this->Internals->TakeReport(report, request.Method);
   }
   this->Internals->AddUpCounts(ranks);
+  vtkVLogF(
+    vtkLogger::VERBOSITY_TRACE, "%s:\n%s", vtkLogIdentifier(this), this->GetSummary().c_str());
   if (numberOfPoints == 0)
   {
     return 1;

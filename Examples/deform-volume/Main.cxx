@@ -173,11 +173,8 @@ void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume,
   {
     std::cout << "cut        " << tool << "\n";
   }
-  std::cout << "result     " << GetDimensionsText(result) << " voxels, "
-            << filter->GetNumberOfCoveredVoxels() << " of them covered\n"
-            << "inverted   " << filter->GetNumberOfInvertedTetrahedra() << " tetrahedra\n"
-            << "device     " << filter->GetDeviceInUse() << ", "
-            << filter->GetDeviceMemory() / (1024 * 1024) << " MiB in use\n\n";
+  std::cout << "result     " << GetDimensionsText(result) << " voxels\n\n"
+            << filter->GetSummary() << "\n\n";
   timings.Print(std::cout);
 }
 
@@ -249,11 +246,6 @@ void DeformVolume(const Options& options, Messages& messages)
       "of the volume, which is seen more than once.");
   }
   timings.Add("deform", deforming.GetSeconds());
-  timings.Add("find tetrahedra of voxels", filter->GetPreprocessingTime(), true);
-  timings.Add("compile kernels", filter->GetCompilationTime(), true);
-  timings.Add("copy to and from device", filter->GetTransferTime(), true);
-  timings.Add("deformation mapping", filter->GetMappingTime(), true);
-  timings.Add("resampling", filter->GetResamplingTime(), true);
 
   Volume result = volume;
   result.Image = filter->GetOutput();

@@ -3,9 +3,9 @@
 
 #include <iomanip>
 
-void TimingTable::Add(const std::string& step, double seconds, bool part)
+void TimingTable::Add(const std::string& step, double seconds)
 {
-  this->Rows.push_back({ step, seconds, part });
+  this->Rows.push_back({ step, seconds });
 }
 
 void TimingTable::Print(std::ostream& stream) const
@@ -21,8 +21,8 @@ void TimingTable::Print(std::ostream& stream) const
          << "\n";
   for (const Row& row : this->Rows)
   {
-    line((row.Part ? "  " : "") + row.Step, row.Seconds);
-    total += row.Part ? 0.0 : row.Seconds;
+    line(row.Step, row.Seconds);
+    total += row.Seconds;
   }
   line("total", total);
   stream.flags(flags);

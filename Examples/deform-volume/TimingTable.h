@@ -20,11 +20,11 @@ private:
   std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
 };
 
-/// What each step took. Indented rows are parts of the row above them.
+/// What each step took.
 class TimingTable
 {
 public:
-  void Add(const std::string& step, double seconds, bool part = false);
+  void Add(const std::string& step, double seconds);
   void Print(std::ostream& stream) const;
 
 private:
@@ -32,7 +32,6 @@ private:
   {
     std::string Step;
     double Seconds;
-    bool Part;
   };
   std::vector<Row> Rows;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BenchmarkCase.h"
 
+#include "../Reported.h"
 #include "Timing.h"
 
 #include <vtkCallbackCommand.h>
@@ -256,10 +257,10 @@ UpdateTimes BenchmarkCase::Update()
   {
     throw std::runtime_error("no voxel is covered");
   }
-  times.Mapping = this->Filter->GetMappingTime();
-  times.Resampling = this->Filter->GetResamplingTime();
-  times.Transfer = this->Filter->GetTransferTime();
-  times.Preprocessing = this->Filter->GetPreprocessingTime();
+  times.Mapping = GetReportedSeconds(this->Filter, "Seconds for mapping");
+  times.Resampling = GetReportedSeconds(this->Filter, "Seconds for resampling");
+  times.Transfer = GetReportedSeconds(this->Filter, "Seconds for transfer");
+  times.Preprocessing = GetReportedSeconds(this->Filter, "Seconds for the static mapping");
   return times;
 }
 

@@ -3,6 +3,7 @@
 #include "Evaluation.h"
 #include "Timing.h"
 
+#include "../Reported.h"
 #include "vtkChainMailDeformation.h"
 #include "vtkDeformationHandleSource.h"
 
@@ -64,8 +65,8 @@ Measurement MeasureFrame(DraggedVolume& dragged, bool whole)
     throw std::runtime_error("nothing was deformed");
   }
   measurement.Counters["step"] = step;
-  measurement.Counters["mapping"] = dragged.Filter->GetMappingTime();
-  measurement.Counters["resampling"] = dragged.Filter->GetResamplingTime();
+  measurement.Counters["mapping"] = GetReportedSeconds(dragged.Filter, "Seconds for mapping");
+  measurement.Counters["resampling"] = GetReportedSeconds(dragged.Filter, "Seconds for resampling");
   measurement.Counters["moved"] = static_cast<double>(dragged.ChainMail->GetNumberOfMovedVoxels());
   return measurement;
 }

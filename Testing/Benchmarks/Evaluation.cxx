@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Evaluation.h"
+#include "../Reported.h"
 
 #include <vtkImageData.h>
 
 Measurement Measure(BenchmarkCase& subject, Pose pose, Grid grid)
 {
   vtkDeformVolumeFilter* filter = subject.GetFilter();
-  const vtkIdType builds = filter->GetNumberOfMappingBuilds();
-  const vtkIdType uploads = filter->GetNumberOfVolumeUploads();
+  const vtkIdType builds = GetReported(filter, "Static mappings made");
+  const vtkIdType uploads = GetReported(filter, "Volumes sent");
   subject.Move(pose, grid);
   const UpdateTimes times = subject.Update();
   const auto voxels = static_cast<double>(subject.GetNumberOfVoxels());
@@ -24,8 +25,8 @@ Measurement Measure(BenchmarkCase& subject, Pose pose, Grid grid)
     { "tetrahedra_of_mesh", static_cast<double>(subject.GetNumberOfTetrahedra()) },
     { "resampler_in_use", static_cast<double>(filter->GetResamplerInUse()) },
     { "device_bytes_per_voxel", static_cast<double>(filter->GetDeviceMemory()) / voxels },
-    { "mapping_builds", static_cast<double>(filter->GetNumberOfMappingBuilds() - builds) },
-    { "volume_uploads", static_cast<double>(filter->GetNumberOfVolumeUploads() - uploads) },
+    { "mapping_builds", static_cast<double>(GetReported(filter, "Static mappings made") - builds) },
+    { "volume_uploads", static_cast<double>(GetReported(filter, "Volumes sent") - uploads) },
   };
   return measurement;
 }

@@ -4,6 +4,8 @@
 // and fails where the process was ever over 8 GB resident.
 //
 // Arguments: voxels an axis, nodes an axis. Only the default size has a limit.
+#include "../Reported.h"
+
 #include <vtkDataArray.h>
 #include <vtkDeformVolumeFilter.h>
 #include <vtkFloatArray.h>
@@ -109,9 +111,12 @@ public:
     this->Filter->Update();
     Report(what, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     const double voxels = std::pow(this->Size, 3.0);
-    std::cout << "  preprocessing " << this->Filter->GetPreprocessingTime() << " s, transfer "
-              << this->Filter->GetTransferTime() << " s, mapping " << this->Filter->GetMappingTime()
-              << " s, resampling " << this->Filter->GetResamplingTime() << " s; device memory "
+    std::cout << "  preprocessing "
+              << GetReportedSeconds(this->Filter, "Seconds for the static mapping")
+              << " s, transfer " << GetReportedSeconds(this->Filter, "Seconds for transfer")
+              << " s, mapping " << GetReportedSeconds(this->Filter, "Seconds for mapping")
+              << " s, resampling " << GetReportedSeconds(this->Filter, "Seconds for resampling")
+              << " s; device memory "
               << static_cast<double>(this->Filter->GetDeviceMemory()) / voxels
               << " bytes a voxel; covered "
               << static_cast<double>(this->Filter->GetNumberOfCoveredVoxels()) / voxels

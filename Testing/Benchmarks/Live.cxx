@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What changes between two frames, and what that costs.
+#include "../Reported.h"
 #include "Evaluation.h"
 #include "LiveCase.h"
 
@@ -22,10 +23,12 @@ Contestant<LiveCases> MakeEdit(const std::string& name, const std::function<void
       Measurement measurement;
       measurement.Seconds = live.Update();
       vtkDeformVolumeFilter* filter = live.GetFilter();
-      measurement.Counters["kernels"] = filter->GetMappingTime() + filter->GetResamplingTime();
-      measurement.Counters["transfer"] = filter->GetTransferTime();
-      measurement.Counters["preprocessing"] = filter->GetPreprocessingTime();
-      measurement.Counters["bricks"] = static_cast<double>(filter->GetNumberOfResampledBricks());
+      measurement.Counters["kernels"] = GetReportedSeconds(filter, "Seconds for mapping") +
+        GetReportedSeconds(filter, "Seconds for resampling");
+      measurement.Counters["transfer"] = GetReportedSeconds(filter, "Seconds for transfer");
+      measurement.Counters["preprocessing"] =
+        GetReportedSeconds(filter, "Seconds for the static mapping");
+      measurement.Counters["bricks"] = static_cast<double>(GetReported(filter, "Bricks resampled"));
       return measurement;
     } };
 }

@@ -4,6 +4,7 @@
 #include "Evaluation.h"
 #include "Timing.h"
 
+#include "../Reported.h"
 #include "vtkCorotationalDeformation.h"
 #include "vtkDeformationHandleSource.h"
 #include "vtkLatticeTetrahedraSource.h"
@@ -119,8 +120,8 @@ struct SimulatedVolume
       throw std::runtime_error("nothing was deformed");
     }
     measurement.Counters["simulation"] = simulation;
-    measurement.Counters["mapping"] = this->Filter->GetMappingTime();
-    measurement.Counters["resampling"] = this->Filter->GetResamplingTime();
+    measurement.Counters["mapping"] = GetReportedSeconds(this->Filter, "Seconds for mapping");
+    measurement.Counters["resampling"] = GetReportedSeconds(this->Filter, "Seconds for resampling");
     measurement.Counters["nodes"] = static_cast<double>(this->Simulated.Mesh->GetNumberOfPoints());
     measurement.Counters["tetrahedra"] =
       static_cast<double>(this->Simulated.Mesh->GetNumberOfCells());

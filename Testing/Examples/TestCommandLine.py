@@ -146,7 +146,7 @@ assert output.strip(), "no device"
 output, errors = call(program, path("in.vti"), *lattice, *push, "-o", path("pushed.vti"),
                       "--write-mesh", path("mesh.vtu"), "--background", "-7", "--bounds", "volume")
 # Cubes of 4.5 over 24 x 31.5 x 36: 7 x 8 x 9 nodes.
-for word in ("step", "compile kernels", "resampling", "total", "25 x 22 x 19", "504 nodes"):
+for word in ("step", "Seconds for resampling", "total", "25 x 22 x 19", "504 nodes"):
     assert word in output, word
 assert "\r" not in errors, "a progress bar without a terminal"
 pushed = read_vti(path("pushed.vti"))

@@ -3,6 +3,7 @@
 // makes, to the last bit; whoever has the deformation mesh; errors end alike on all ranks. With the
 // argument "cold": the start with an empty cache of kernels.
 #include "DivisionCases.h"
+#include "../Reported.h"
 #include "RankTesting.h"
 #include "TenNodeCells.h"
 
@@ -306,8 +307,8 @@ void TestSmallAndMoving(const Case& from)
   }
   // What it has needed stays.
   VERIFY(moving.Source->Made.size() <= 2);
-  VERIFY(moving.Filter->GetNumberOfMappingBuilds() <= 2);
-  VERIFY(moving.Filter->GetNumberOfVolumeUploads() <= 2);
+  VERIFY(GetReported(moving.Filter, "Static mappings made") <= 2);
+  VERIFY(GetReported(moving.Filter, "Volumes sent") <= 2);
 }
 
 /// All ranks keep the same extent.

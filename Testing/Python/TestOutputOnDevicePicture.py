@@ -21,6 +21,7 @@ from vtkmodules.vtkRenderingCore import (
 from vtkmodules.vtkRenderingVolume import vtkFixedPointVolumeRayCastMapper, vtkGPUVolumeRayCastMapper
 
 from lattice import make_mesh
+from reported import reported
 
 try:
     from vtkmodules.vtkRenderingImage import vtkImageResliceMapper as vtkSliceMapper
@@ -94,12 +95,12 @@ def draw(mapper_class, image, mesh, on_device):
         move(mesh, amount)
         if step == 2:
             deform.Update()
-            assert deform.GetNumberOfUnreadArrays() == (2 if on_device else 0)
+            assert reported(deform, "Arrays on the device") == (2 if on_device else 0)
             continue
         if step == 0:
             renderer.ResetCamera()
         window.Render()
-        assert deform.GetNumberOfUnreadArrays() < 2  # the values are read
+        assert reported(deform, "Arrays on the device") < 2  # the values are read
         shot = vtkWindowToImageFilter()
         shot.SetInput(window)
         shot.Update()

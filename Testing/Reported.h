@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What vtkDeformVolumeFilter::GetSummary() tells, as numbers.
+#ifndef Reported_h
+#define Reported_h
+
+#include <vtkDeformVolumeFilter.h>
+#include <vtkType.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+/// The seconds in a line "name: seconds" of the summary. Throws where there is none.
+inline double GetReportedSeconds(vtkDeformVolumeFilter* filter, const std::string& name)
+{
+  const std::string summary = "\n" + filter->GetSummary() + "\n";
+  const std::size_t begin = summary.find("\n" + name + ": ");
+  if (begin == std::string::npos)
+  {
+    throw std::runtime_error("The summary has no line \"" + name + "\":" + summary);
+  }
+  const std::size_t value = begin + name.size() + 3;
+  std::string text = summary.substr(value, summary.find('\n', value) - value);
+  text.erase(std::remove(text.begin(), text.end(), ','), text.end());
+  return std::stod(text);
+}
+
+/// The count in a line "name: count"; 0 before the first execution.
+inline vtkIdType GetReported(vtkDeformVolumeFilter* filter, const std::string& name)
+{
+  return filter->GetSummary().empty() ? 0
+                                      : static_cast<vtkIdType>(GetReportedSeconds(filter, name));
+}
+
+#endif
