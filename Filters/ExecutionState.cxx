@@ -17,14 +17,13 @@ bool ExecutionState::BoundsKey::operator==(const BoundsKey& other) const
 {
   return this->Inputs == other.Inputs && this->Volume == other.Volume &&
     this->Scale == other.Scale && this->DisplacementScale == other.DisplacementScale &&
-    this->Choice == other.Choice && this->OutsideMode == other.OutsideMode &&
-    this->NumberOfTimeSamples == other.NumberOfTimeSamples;
+    this->Choice == other.Choice && this->OutsideMode == other.OutsideMode;
 }
 
 bool ExecutionState::ExtentKey::operator==(const ExtentKey& other) const
 {
-  return this->Settings == other.Settings && this->Times == other.Times &&
-    this->Padding == other.Padding && this->Granularity == other.Granularity;
+  return this->Settings == other.Settings && this->Padding == other.Padding &&
+    this->Granularity == other.Granularity;
 }
 
 bool ExecutionState::RegionsKey::operator==(const RegionsKey& other) const

@@ -45,18 +45,17 @@ struct ExecutionState
     double DisplacementScale = 0.0;
     std::string Choice;
     int OutsideMode = -1;
-    int NumberOfTimeSamples = 0;
     bool operator==(const BoundsKey& other) const;
   };
   BoundsKey KeyOfBounds;
   IndexBounds Bounds;
   std::set<double> TimesInBounds;
+  bool HasWarnedOfGrowth = false; // of these bounds
 
   // The last extent that was made of the bounds, and what it depends on besides these.
   struct ExtentKey
   {
     BoundsKey Settings; // without inputs
-    std::set<double> Times;
     int Padding = 0;
     int Granularity = 0; // 0: there is no extent
     bool operator==(const ExtentKey& other) const;

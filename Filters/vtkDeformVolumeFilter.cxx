@@ -223,7 +223,6 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "PointsAreDeformed: " << (this->PointsAreDeformed ? "on" : "off") << "\n";
   os << indent << "FieldIsInverse: " << (this->FieldIsInverse ? "on" : "off") << "\n";
   os << indent << "OutputBoundsMode: " << this->OutputBoundsMode << "\n";
-  os << indent << "NumberOfTimeSamples: " << this->NumberOfTimeSamples << "\n";
   os << indent << "CustomBounds:";
   for (double bound : this->CustomBounds)
   {

@@ -159,28 +159,17 @@ public:
 
   ///@{
   /**
-   * What decides the output's whole extent: the bounds of the deformed volume (for a deformation
-   * that varies in time the union over its time steps, see NumberOfTimeSamples), those of the
-   * volume at rest, or
-   * CustomBounds. Default: DEFORMED_BOUNDS.
+   * What decides the output's whole extent: the bounds of the deformed volume, those of the volume
+   * at rest, or CustomBounds. For a deformation that varies in time DEFORMED_BOUNDS is the union
+   * over the times seen so far: where the volume leaves it at another time, it is cut off there, a
+   * warning tells (once for a deformation), and the next update has a greater extent. Default:
+   * DEFORMED_BOUNDS.
    */
   vtkSetClampMacro(OutputBoundsMode, int, DEFORMED_BOUNDS, CUSTOM_BOUNDS);
   vtkGetMacro(OutputBoundsMode, int);
   void SetOutputBoundsModeToDeformedBounds() { this->SetOutputBoundsMode(DEFORMED_BOUNDS); }
   void SetOutputBoundsModeToVolumeBounds() { this->SetOutputBoundsMode(VOLUME_BOUNDS); }
   void SetOutputBoundsModeToCustomBounds() { this->SetOutputBoundsMode(CUSTOM_BOUNDS); }
-  ///@}
-
-  ///@{
-  /**
-   * At how many times, evenly spaced over its range, a deformation is looked at for DEFORMED_BOUNDS
-   * whose source announces a range of time and no steps. Where a source farther up announces steps
-   * from one end of this range to the other, these are taken instead: vtkTemporalInterpolator is
-   * linear between them. Where the deformed volume at another time leaves the extent found in this
-   * way, a warning tells, and the next update has a greater one. Default 11, at least 2.
-   */
-  vtkSetClampMacro(NumberOfTimeSamples, int, 2, 100000);
-  vtkGetMacro(NumberOfTimeSamples, int);
   ///@}
 
   ///@{
@@ -543,7 +532,6 @@ private:
   bool PointsAreDeformed = false;
   bool FieldIsInverse = false;
   int OutputBoundsMode = DEFORMED_BOUNDS;
-  int NumberOfTimeSamples = 11;
   double CustomBounds[6] = { -1.0, 1.0, -1.0, 1.0, -1.0, 1.0 };
   int Padding = 0;
   int BoundsGranularity = 0;

@@ -14,6 +14,9 @@
 #include "vtkInformationDoubleKey.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <algorithm>
+#include <cstring>
+
 using deformvolume::DeformationSource;
 using deformvolume::Error;
 using deformvolume::ImageGeometry;
@@ -137,19 +140,35 @@ void vtkDeformVolumeFilter::vtkInternals::UpdateBoundsOfMesh(
 }
 
 //------------------------------------------------------------------------------
-IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
-  const deformvolume::Ranks& ranks, const ImageGeometry& volume, vtkInformation* output)
+std::optional<double> vtkDeformVolumeFilter::vtkInternals::FindTime(vtkInformation* output) const
 {
-  deformvolume::ExecutionState::BoundsKey key;
-  std::set<double> times;
+  if (output->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
+  {
+    return output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
+  }
+  std::optional<double> first;
   for (int port = 1; port < 3; ++port)
   {
     if (this->Self->GetNumberOfInputConnections(port) > 0)
     {
-      const std::vector<double> inputTimes =
-        deformvolume::GetSampleTimes(this->Self, port, this->Self->NumberOfTimeSamples);
-      times.insert(inputTimes.begin(), inputTimes.end());
+      const std::vector<double> times =
+        deformvolume::GetTimes(this->Self->GetInputInformation(port, 0));
+      if (!times.empty())
+      {
+        first = std::min(first.value_or(times.front()), times.front());
+      }
     }
+  }
+  return first;
+}
+
+//------------------------------------------------------------------------------
+IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
+  const deformvolume::Ranks& ranks, const ImageGeometry& volume, vtkInformation* output)
+{
+  deformvolume::ExecutionState::BoundsKey key;
+  for (int port = 1; port < 3; ++port)
+  {
     key.Inputs.push_back(deformvolume::GetInputStamp(this->Self, port));
   }
   key.Volume = volume;
@@ -158,31 +177,31 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
   key.DisplacementScale = source.DisplacementScale;
   key.Choice = source.Choice;
   key.OutsideMode = this->Self->OutsideMode;
-  key.NumberOfTimeSamples = this->Self->NumberOfTimeSamples;
   if (!ranks.IsAny(!(key == this->State->KeyOfBounds)))
   {
     return this->State->Bounds;
   }
-  if (!ranks.AreEqual(times.size()))
+  // One time is enough for the first picture; the bounds grow with the others (KeepInBounds).
+  const std::optional<double> time = this->FindTime(output);
+  std::uint64_t bits = 0;
+  if (time)
+  {
+    std::memcpy(&bits, &*time, sizeof(bits));
+  }
+  if (!ranks.AreEqual(time ? 1 : 0) || !ranks.AreEqual(bits))
   {
     throw Error("The deformation has different time steps on different ranks. Connect a source "
                 "that announces the same on all.");
   }
-
-  IndexBounds bounds;
-  if (times.empty())
-  {
-    bounds = this->ReadBounds(ranks, volume, output, nullptr);
-  }
-  // The first step comes last: it is what an input then holds where no time is asked for.
-  for (auto time = times.rbegin(); time != times.rend(); ++time)
-  {
-    const double step = *time;
-    bounds.Add(this->ReadBounds(ranks, volume, output, &step));
-  }
+  const IndexBounds bounds = this->ReadBounds(ranks, volume, output, time ? &*time : nullptr);
   this->State->KeyOfBounds = key;
   this->State->Bounds = bounds;
-  this->State->TimesInBounds = times;
+  this->State->TimesInBounds.clear();
+  if (time)
+  {
+    this->State->TimesInBounds.insert(*time);
+  }
+  this->State->HasWarnedOfGrowth = false;
   return bounds;
 }
 
@@ -207,8 +226,8 @@ deformvolume::Extent vtkDeformVolumeFilter::vtkInternals::GetDeformedExtent(
     this->ForgetDeformedExtent();
     return this->FindExtent(bounds);
   }
-  deformvolume::ExecutionState::ExtentKey key{ this->State->KeyOfBounds, this->State->TimesInBounds,
-    this->Self->Padding, this->Self->BoundsGranularity };
+  deformvolume::ExecutionState::ExtentKey key{ this->State->KeyOfBounds, this->Self->Padding,
+    this->Self->BoundsGranularity };
   key.Settings.Inputs.clear();
   // Ranks keep what all of them have kept.
   bool keep = !ranks.IsAny(!(key == this->State->KeyOfExtent));
@@ -244,16 +263,24 @@ void vtkDeformVolumeFilter::vtkInternals::KeepInBounds(const deformvolume::Ranks
   }
   IndexBounds bounds = this->State->Bounds;
   ranks.Attempt([&] { bounds.Add(this->ComputeBounds(volume, source)); });
+  const bool isOutside = this->FindExtent(bounds) != this->FindExtent(this->State->Bounds);
   this->State->VersionsInBounds = this->GetVersions();
-  if (this->FindExtent(bounds) == this->FindExtent(this->State->Bounds))
+  this->State->TimesInBounds.insert(time);
+  this->State->Bounds = bounds;
+  if (!isOutside)
   {
     return;
   }
-  this->State->Bounds = bounds;
   this->BoundsHaveGrown = true;
-  vtkWarningWithObjectMacro(this->Self,
-    << "The deformed volume at time " << time
-    << " leaves the extent of the output, which was found from other times, and is cut off there. "
-       "The next update has an extent that holds it. Set a greater NumberOfTimeSamples or Padding, "
-       "or CustomBounds.");
+  if (!this->State->HasWarnedOfGrowth)
+  {
+    this->State->HasWarnedOfGrowth = true;
+    vtkWarningWithObjectMacro(this->Self,
+      << "The deformed volume at time " << time
+      << " leaves the extent of the output, which holds it at the times seen before, and is cut "
+         "off "
+         "there. The next update has an extent that holds it; later times may extend it again "
+         "without another warning. Set OutputBoundsMode to VOLUME_BOUNDS or CUSTOM_BOUNDS, or "
+         "Padding, where the extent must hold all times from the first picture on.");
+  }
 }

@@ -79,9 +79,9 @@ public:
   /// The next such extent depends on no other.
   void ForgetDeformedExtent() { this->State->KeyOfExtent = {}; }
 
-  /// Warns where the deformation at the time asked for leaves the bounds that decided the extent of
-  /// the output, as can happen between the times that were looked at. These bounds then grow, and
-  /// the next pass finds the filter out of date. Collective.
+  /// Warns, the first time, where the deformation at the time asked for leaves the bounds that
+  /// decided the extent of the output. These bounds then grow, and the next pass finds the filter
+  /// out of date. Collective.
   void KeepInBounds(const deformvolume::Ranks& ranks, const deformvolume::ImageGeometry& volume,
     const deformvolume::DeformationSource& source, vtkInformation* output);
 
@@ -168,7 +168,10 @@ public:
 private:
   /// False where there was nothing to free.
   bool ReleaseOtherStates();
-  /// The bounds of the deformed volume, united over the time steps of the deformation. Collective.
+  /// The time of the first look at a deformation: the one asked for, or the first that the inputs
+  /// announce; nothing where it does not vary.
+  std::optional<double> FindTime(vtkInformation* output) const;
+  /// The bounds of the deformed volume, united over the times seen so far. Collective.
   deformvolume::IndexBounds GetDeformedBounds(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkInformation* output);
   deformvolume::IndexBounds ReadBounds(const deformvolume::Ranks& ranks,

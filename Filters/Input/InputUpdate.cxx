@@ -101,34 +101,6 @@ bool CanProduceParts(vtkAlgorithm* producer, int index, int depth)
   return inputs > 0;
 }
 
-// The steps from first to last that an input of a producer announces, or one farther up.
-std::vector<double> FindSteps(vtkAlgorithm* producer, double first, double last, int depth)
-{
-  constexpr int deepest = 1000;
-  for (int port = 0; port < producer->GetNumberOfInputPorts() && depth < deepest; ++port)
-  {
-    for (int i = 0; i < producer->GetNumberOfInputConnections(port); ++i)
-    {
-      vtkInformation* input = producer->GetInputInformation(port, i);
-      std::vector<double> steps = input ? GetTimes(input) : std::vector<double>();
-      if (!steps.empty() && input->Has(Pipeline::TIME_STEPS()))
-      {
-        if (steps.front() == first && steps.back() == last)
-        {
-          return steps;
-        }
-        continue; // on another scale of time
-      }
-      steps = FindSteps(producer->GetInputAlgorithm(port, i), first, last, depth + 1);
-      if (!steps.empty())
-      {
-        return steps;
-      }
-    }
-  }
-  return {};
-}
-
 } // namespace
 
 vtkDataObject* UpdateInput(
@@ -266,27 +238,6 @@ std::vector<double> GetTimes(vtkInformation* input)
     }
   }
   return {};
-}
-
-std::vector<double> GetSampleTimes(vtkAlgorithm* filter, int port, int samples)
-{
-  vtkInformation* input = filter->GetInputInformation(port, 0);
-  const std::vector<double> ends = GetTimes(input);
-  if (ends.size() < 2 || input->Has(Pipeline::TIME_STEPS()) || !(ends.front() < ends.back()))
-  {
-    return ends;
-  }
-  std::vector<double> times =
-    FindSteps(filter->GetInputAlgorithm(port, 0), ends.front(), ends.back(), 0);
-  if (times.empty())
-  {
-    for (int i = 0; i < samples; ++i)
-    {
-      const double share = i / (samples - 1.0);
-      times.push_back((1.0 - share) * ends.front() + share * ends.back());
-    }
-  }
-  return times;
 }
 
 void MergeTimes(vtkAlgorithm* filter, vtkInformation* output)

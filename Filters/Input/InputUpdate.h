@@ -63,12 +63,6 @@ vtkDataObject* UpdateInputPart(
 /// none for one that does not vary.
 std::vector<double> GetTimes(vtkInformation* input);
 
-/// The times at which to look at an input in order to know all of it: its steps; or, where it
-/// announces a range without steps, the steps that are announced farther up for the same range
-/// (vtkTemporalInterpolator is linear between these), and without such so many samples of the
-/// range, its ends included.
-std::vector<double> GetSampleTimes(vtkAlgorithm* filter, int port, int samples);
-
 /// Gives the output the time steps and the range of all inputs.
 void MergeTimes(vtkAlgorithm* filter, vtkInformation* output);
 
