@@ -71,7 +71,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
       : deformvolume::ComputeDeformedBounds(voxelGrid, field);
     if (bounds.IsEmpty())
     {
-      throw Error("The displacement field on input port 1 holds no voxel of the volume. " +
+      throw Error("The displacement field holds no voxel of the volume. " +
         deformvolume::DescribeBoxes(
           deformvolume::GetGeometry(vtkImageData::SafeDownCast(source.Shape)), volume));
     }

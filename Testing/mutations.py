@@ -303,8 +303,6 @@ MUTATIONS = {
                       ["Cxx.TestDeformCells", "Cxx.TestHigherOrderCells"]),
     "editor-held": ("Filters/Cutting/VolumeEditor.cxx", "array && array->GetReferenceCount() == 1", "array",
                     ["Cxx.TestCutVolume", "Cxx.TestCarveVolume"]),
-    "editor-ports": ("Filters/Cutting/VolumeEditor.cxx",
-                     "text[at + name.size() - 1] = static_cast<char>(port + 1);", "", ["Cxx.TestCutDeformedVolume"]),
     "sheet-smooth": ("Filters/vtkCutVolume.cxx", "(this->SmoothCut != last.IsSmooth && !sheet.IsEmpty())", "false",
                      ["Cxx.TestSmoothCut"]),
     "sheet-accumulate": ("Filters/vtkCutVolume.cxx", "else if (isNew && !this->Accumulate)", "else if (false)",

@@ -26,21 +26,6 @@ namespace deformvolume
 namespace
 {
 
-// What reads a deformation calls it port 1, and the rest configuration port 2, as in
-// vtkDeformVolumeFilter.
-std::string RenamePorts(std::string text)
-{
-  for (const char port : { '2', '1' })
-  {
-    const std::string name = std::string("port ") + port;
-    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1))
-    {
-      text[at + name.size() - 1] = static_cast<char>(port + 1);
-    }
-  }
-  return text;
-}
-
 float GetDiagonal(const Extent& extent, const glm::dvec3& spacing)
 {
   glm::dvec3 size;
@@ -181,58 +166,51 @@ const VertexPositions& VolumeEditor::GetPositions(DeformationSource source, bool
     return *this->Rest;
   }
   source.Volume = this->Geometry;
-  try
+  source.ShapeParts = this->ShapeGrids.Find(
+    source.Shape, source.ShapeIsMade, source.PointsAreDeformed ? &source.Selector : nullptr);
+  source.RestParts = this->RestGrids.Find(source.Rest, source.RestIsMade);
+  this->Deformation.Read(source);
+  const bool isField = this->Deformation.IsField();
+  // The mapping of a part has whole rows, and is that of the whole volume to the last bit.
+  MappedVolume mapped{ this->Geometry, this->Geometry.PointExtent, extrapolate };
+  mapped.Whole.PointExtent = this->Whole;
+  mapped.Part[0] = this->Whole[0];
+  mapped.Part[1] = this->Whole[1];
+  mapped.Part = extrapolate ? this->Whole : mapped.Part;
+  if (!isField)
   {
-    source.ShapeParts = this->ShapeGrids.Find(
-      source.Shape, source.ShapeIsMade, source.PointsAreDeformed ? &source.Selector : nullptr);
-    source.RestParts = this->RestGrids.Find(source.Rest, source.RestIsMade);
-    this->Deformation.Read(source);
-    const bool isField = this->Deformation.IsField();
-    // The mapping of a part has whole rows, and is that of the whole volume to the last bit.
-    MappedVolume mapped{ this->Geometry, this->Geometry.PointExtent, extrapolate };
-    mapped.Whole.PointExtent = this->Whole;
-    mapped.Part[0] = this->Whole[0];
-    mapped.Part[1] = this->Whole[1];
-    mapped.Part = extrapolate ? this->Whole : mapped.Part;
-    if (!isField)
-    {
-      this->Mapping.Update(this->Deformation, mapped, {});
-    }
-    const std::array<std::uint64_t, 3> mapping{ { isField ? 0 : this->Mapping.GetVersion(),
-      isField ? 1U : 0U, extrapolate ? 1U : 0U } };
-    const std::uint64_t vectors = this->Deformation.GetVectorsVersion();
-    if (this->Deformed && mapping == this->DeformedMapping && vectors == this->DeformedVectors)
-    {
-      return *this->Deformed;
-    }
-    if (this->Deformed && mapping == this->DeformedMapping && !isField)
-    {
-      this->Deformed->SetDisplacements(this->Deformation.GetNodeDisplacements());
-    }
-    else if (this->Deformed && mapping == this->DeformedMapping)
-    {
-      const PointRanges changes = this->Deformation.GetChanges(this->DeformedVectors);
-      this->Deformed->SetField(this->Deformation.GetField(extrapolate), &changes);
-    }
-    else if (isField)
-    {
-      this->Deformed = std::make_unique<DeformedPositions>(
-        this->Geometry.PointExtent, this->Deformation.GetField(extrapolate));
-    }
-    else
-    {
-      this->Deformed.reset();
-      this->Deformed = std::make_unique<DeformedPositions>(this->Geometry.PointExtent, mapped.Part,
-        this->Mapping.GetMapping(), this->Deformation.GetTetrahedra(),
-        this->Deformation.GetNodeDisplacements());
-    }
-    this->DeformedMapping = mapping;
-    this->DeformedVectors = vectors;
+    this->Mapping.Update(this->Deformation, mapped, {});
   }
-  catch (const Error& error)
+  const std::array<std::uint64_t, 3> mapping{ { isField ? 0 : this->Mapping.GetVersion(),
+    isField ? 1U : 0U, extrapolate ? 1U : 0U } };
+  const std::uint64_t vectors = this->Deformation.GetVectorsVersion();
+  if (this->Deformed && mapping == this->DeformedMapping && vectors == this->DeformedVectors)
   {
-    throw Error(RenamePorts(error.what()));
+    return *this->Deformed;
   }
+  if (this->Deformed && mapping == this->DeformedMapping && !isField)
+  {
+    this->Deformed->SetDisplacements(this->Deformation.GetNodeDisplacements());
+  }
+  else if (this->Deformed && mapping == this->DeformedMapping)
+  {
+    const PointRanges changes = this->Deformation.GetChanges(this->DeformedVectors);
+    this->Deformed->SetField(this->Deformation.GetField(extrapolate), &changes);
+  }
+  else if (isField)
+  {
+    this->Deformed = std::make_unique<DeformedPositions>(
+      this->Geometry.PointExtent, this->Deformation.GetField(extrapolate));
+  }
+  else
+  {
+    this->Deformed.reset();
+    this->Deformed = std::make_unique<DeformedPositions>(this->Geometry.PointExtent, mapped.Part,
+      this->Mapping.GetMapping(), this->Deformation.GetTetrahedra(),
+      this->Deformation.GetNodeDisplacements());
+  }
+  this->DeformedMapping = mapping;
+  this->DeformedVectors = vectors;
   return *this->Deformed;
 }
 

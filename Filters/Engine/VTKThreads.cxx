@@ -15,24 +15,16 @@ namespace deformvolume
 namespace
 {
 
-/// How many threads the user of VTK's threads has asked for: vtkSMPTools::Initialize() or the
-/// environment variable VTK_SMP_MAX_THREADS; 0 where the number is left open.
-int GetChosenThreads()
-{
-  const vtkSMPTools::Config config(vtk::detail::smp::vtkSMPToolsAPI::GetInstance());
-  const char* variable = std::getenv("VTK_SMP_MAX_THREADS");
-  return config.MaxNumberOfThreads > 0 ? config.MaxNumberOfThreads
-                                       : (variable ? std::max(0, std::atoi(variable)) : 0);
-}
-
 /// How many threads of our own to use instead of VTK's, 0: none. VTK's are set for the whole
 /// process, so that changing them for one filter would disturb all others. They do not serve where
 /// - VTK is sequential because it was built so, as ParaView's is, and nobody has chosen that with
 ///   VTK_SMP_BACKEND_IN_USE;
-/// - they are more than this process's share of the processors, and nobody has chosen their number.
+/// - they are more than this process's share of the processors, and VTK_SMP_MAX_THREADS does not
+///   choose their number.
 int GetOwnThreads()
 {
-  const int chosen = GetChosenThreads();
+  const char* variable = std::getenv("VTK_SMP_MAX_THREADS");
+  const int chosen = variable ? std::max(0, std::atoi(variable)) : 0;
   const int share = GetProcessorShare();
   if (std::string(vtkSMPTools::GetBackend()) == "Sequential")
   {

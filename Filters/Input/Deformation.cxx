@@ -40,17 +40,17 @@ void Deformation::Read(const DeformationSource& source)
   const bool isField = vtkImageData::SafeDownCast(source.Shape) != nullptr;
   if (source.PointsAreDeformed && (isField || source.Rest))
   {
-    throw Error(std::string("PointsAreDeformed is on, but input port ") +
-      (isField ? "1 has a displacement field, whose points are at rest"
-               : "2 has a rest configuration, so that no displacements are read") +
-      ". Set PointsAreDeformed off" + (isField ? "." : ", or disconnect port 2."));
+    throw Error(std::string("PointsAreDeformed is on, but ") +
+      (isField ? "the deformation is a displacement field, whose points are at rest"
+               : "there is a rest configuration, so that no displacements are read") +
+      ". Set PointsAreDeformed off" + (isField ? "." : ", or disconnect the rest configuration."));
   }
   if (const auto image = vtkImageData::SafeDownCast(source.Shape))
   {
     if (source.Rest)
     {
-      throw Error("Input port 2 has a rest configuration, but port 1 has a displacement field, "
-                  "which needs none. Disconnect port 2.");
+      throw Error("There is a rest configuration, but the deformation is a displacement field, "
+                  "which needs none. Disconnect the rest configuration.");
     }
     this->ReadField(image, source);
   }
@@ -71,9 +71,8 @@ void Deformation::ReadMesh(const DeformationSource& source)
   }
   if (GetNumberOfNodes(shape) != GetNumberOfNodes(rest))
   {
-    throw Error("The deformation mesh on input port 1 has " +
-      std::to_string(GetNumberOfNodes(shape)) +
-      " points and the rest configuration on port 2 has " + std::to_string(GetNumberOfNodes(rest)) +
+    throw Error("The deformation mesh has " + std::to_string(GetNumberOfNodes(shape)) +
+      " points and the rest configuration has " + std::to_string(GetNumberOfNodes(rest)) +
       ". Connect two configurations of one mesh.");
   }
   this->Mesh.Read(shape, rest, source);

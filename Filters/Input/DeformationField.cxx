@@ -30,7 +30,7 @@ namespace deformvolume
 namespace
 {
 
-const char* const FIELD = "displacement field on input port 1";
+const char* const FIELD = "displacement field";
 
 // Fields of fewer points are converted and compared with what they were: that takes no time, and
 // then only what changed is made anew.
@@ -119,11 +119,11 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   }
   if (image->GetNumberOfPoints() == 0)
   {
-    throw Error("The displacement field on input port 1 is empty. Connect a vtkImageData with a "
+    throw Error("The displacement field is empty. Connect a vtkImageData with a "
                 "point array of three components.");
   }
   const ImageGeometry geometry = GetGeometry(image);
-  CheckTransform(geometry, "the displacement field on input port 1");
+  CheckTransform(geometry, "the displacement field");
   vtkDataArray* array =
     FindVectors(image, source.Selector, source.Wanted, std::string("the ") + FIELD);
   const auto lastDimensions = this->FieldDimensions;

@@ -138,7 +138,7 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
   if (!array)
   {
     const char* const alternative = vtkUnstructuredGrid::SafeDownCast(dataSet)
-      ? ", or connect a rest configuration to input port 2 where the mesh is deformed already."
+      ? ", or connect a rest configuration where the mesh is deformed already."
       : ".";
     std::string what = name;
     what.front() = static_cast<char>(std::toupper(what.front()));

@@ -23,8 +23,8 @@ namespace deformvolume
 {
 
 /// What errors call the meshes.
-constexpr const char* MESH_NAME = "deformation mesh on input port 1";
-constexpr const char* REST_NAME = "rest configuration on input port 2";
+constexpr const char* MESH_NAME = "deformation mesh";
+constexpr const char* REST_NAME = "rest configuration";
 
 /// The grids that make up a mesh: one, or the leaves of a composite dataset. Nodes are counted
 /// through all of them, in order.

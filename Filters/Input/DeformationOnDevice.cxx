@@ -66,8 +66,7 @@ void Deformation::BringToHost()
         this->CheckFaults({}, this->VectorsSource);
         return;
       }
-      ReadVectors(this->ArrayOnDevice, take, "Vector", "displacement field on input port 1",
-        nullptr, takeFloats);
+      ReadVectors(this->ArrayOnDevice, take, "Vector", "displacement field", nullptr, takeFloats);
       if (this->Faults.MayHaveAny())
       {
         ThrowTooFar();

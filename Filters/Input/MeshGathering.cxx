@@ -110,10 +110,9 @@ MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
   Piece piece;
   if (nodes != GetNumberOfNodes(rest))
   {
-    throw Error("A rank has " + std::to_string(nodes) +
-      " points of the deformation mesh on input port 1 and " +
+    throw Error("A rank has " + std::to_string(nodes) + " points of the deformation mesh and " +
       std::to_string(GetNumberOfNodes(rest)) +
-      " of the rest configuration on port 2. Connect two configurations of one mesh, split alike.");
+      " of the rest configuration. Connect two configurations of one mesh, split alike.");
   }
   if (nodes == 0)
   {
@@ -122,8 +121,8 @@ MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
   MeshCells cells = ReadCells(rest, rest);
   if (source.Rest && ReadCells(shape, rest).Tetrahedra != cells.Tetrahedra)
   {
-    throw Error("The cells of the deformation mesh on input port 1 are not those of the rest "
-                "configuration on port 2. Connect two configurations of one mesh, split alike.");
+    throw Error("The cells of the deformation mesh are not those of the rest configuration. "
+                "Connect two configurations of one mesh, split alike.");
   }
   piece.Tetrahedra = std::move(cells.Tetrahedra);
   piece.Derived = std::move(cells.Derived);

@@ -194,8 +194,8 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
     }
     if (!shared && deformvolume::ReadCells(shape, rest, derived).Tetrahedra != cells.Tetrahedra)
     {
-      throw Error("The cells of the deformation mesh on input port 1 are not those of the rest "
-                  "configuration on port 2. Connect two configurations of one mesh.");
+      throw Error("The cells of the deformation mesh are not those of the rest configuration. "
+                  "Connect two configurations of one mesh.");
     }
     reading.Ignored = cells.Ignored;
     reading.FarMidSides = cells.FarMidSides;

@@ -257,10 +257,10 @@ void TestBlocks()
       blocks->SetBlock(1 - first, solids);
       Expect(found,
         "The block with flat index " + std::to_string(2 - first) +
-          " of the deformation mesh on input port 1 has no point array \"displacement\"");
+          " of the deformation mesh has no point array \"displacement\"");
       blocks->GetMetaData(1 - first)->Set(vtkCompositeDataSet::NAME(), "liver");
       blocks->Modified();
-      Expect(found, "Block \"liver\" of the deformation mesh on input port 1 has no point array");
+      Expect(found, "Block \"liver\" of the deformation mesh has no point array");
       blocks->SetBlock(1 - first, shells);
       VERIFY(AreEqual(output, found.Update()));
     }
@@ -559,16 +559,16 @@ void TestDeformedPoints()
   // Misuse.
   found.Filter->SetDeformationData(moved);
   found.Filter->SetRestData(mesh);
-  Expect(found, "PointsAreDeformed is on, but input port 2 has a rest configuration");
+  Expect(found, "PointsAreDeformed is on, but there is a rest configuration");
   found.Filter->SetRestData(nullptr);
   found.Update();
   const auto field = MakeImage({ { -1, 10, -1, 10, -1, 10 } });
   SetDisplacements(field, Bend);
   found.Filter->SetDeformationData(field);
-  Expect(found, "PointsAreDeformed is on, but input port 1 has a displacement field");
+  Expect(found, "PointsAreDeformed is on, but the deformation is a displacement field");
   const Grid without = MakeMesh(volume);
   found.Filter->SetDeformationData(without);
-  Expect(found, "The deformation mesh on input port 1 has no active Vectors");
+  Expect(found, "The deformation mesh has no active Vectors");
 }
 
 void TestUnits()

@@ -349,7 +349,7 @@ void TestRestMeshes(Misuse& misuse)
   SetDisplacements(field, Shift(0.0, 0.0, 0.0));
   misuse.GetFilter()->SetDeformationData(field);
   misuse.GetFilter()->SetRestData(misuse.CopyMesh());
-  misuse.Expect("a rest mesh with a displacement field", "port 2");
+  misuse.Expect("a rest mesh with a displacement field", "Disconnect the rest configuration");
 }
 
 void TestSettings(Misuse& misuse)
