@@ -141,6 +141,9 @@ void TestPulledApart(const std::array<int, 3>& dimensions, double voxelsPerEdge)
     block.PullApart();
     VERIFY_EQUAL(CountGap(tested.Update()), Pull);
     VERIFY_EQUAL(tested.Filter->GetNumberOfCoveredVoxels(), whole);
+    // Nodes that are split lie where they lay at rest.
+    VERIFY_EQUAL(
+      tested.Filter->GetNumberOfMappingBuilds(), resampler == vtkDeformVolumeFilter::EXACT ? 1 : 0);
     // What is cut before the filter sees it.
     Deformed fresh(block.Volume, block.Mesh);
     fresh.Filter->SetResampler(resampler);
