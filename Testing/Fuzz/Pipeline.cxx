@@ -134,7 +134,7 @@ void Pipeline::MakeDeformation()
   this->Given = Form::Displacements;
   this->VariesInTime = false;
   this->MakeShape();
-  if (this->IsLive && this->Random.Chance(0.7))
+  if (this->IsLive && this->Random.Chance(0.95))
   {
     // Not folded all over.
     vtkDataArray* vectors =
@@ -148,10 +148,10 @@ void Pipeline::MakeDeformation()
 void Pipeline::MakeShape()
 {
   const bool exact = this->Geometry == fuzz::Geometry::Exact;
-  if (this->Random.Chance(exact ? 0.6 : 0.2))
+  if (this->Random.Chance(exact ? 0.6 : this->IsLive ? 0.35 : 0.2))
   {
-    // Of a large volume half have a point at each voxel.
-    const bool isOfVoxels = this->IsLive && this->Random.Chance(0.5);
+    // Of a large volume most have a point at each voxel.
+    const bool isOfVoxels = this->IsLive && this->Random.Chance(0.7);
     this->Deformation = MakeField(
       this->Volume, this->Random, isOfVoxels ? Geometry::Exact : this->Geometry, this->Log);
     return;

@@ -407,7 +407,7 @@ vtkSmartPointer<vtkImageData> MakeVolume(
   int extent[6];
   const bool large = random.Chance(0.05);
   // Fields over so many voxels are read where they lie.
-  const bool larger = random.Chance(0.3);
+  const bool larger = random.Chance(0.4);
   const int far = random.Chance(0.02) ? 100000 : 0;
   for (int axis = 0; axis < 3; ++axis)
   {

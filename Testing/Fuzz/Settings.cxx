@@ -63,7 +63,7 @@ void EditOutput(Settings& settings, vtkImageData* volume, Random& random, Geomet
 
 void EditMethod(Settings& settings, Random& random)
 {
-  switch (random.Int(0, 10))
+  switch (random.Int(0, 11))
   {
     case 0:
       settings.OutsideMode = random.Int(0, 1);
@@ -127,12 +127,13 @@ void EditResources(Settings& settings, Random& random)
 void EditSettings(
   Settings& settings, vtkImageData* volume, Random& random, Geometry geometry, std::ostream& log)
 {
-  switch (random.Int(0, 2))
+  switch (random.Int(0, 3))
   {
     case 0:
       EditOutput(settings, volume, random, geometry);
       break;
     case 1:
+    case 2:
       EditMethod(settings, random);
       break;
     default:
