@@ -381,7 +381,7 @@ MUTATIONS = {
                      "static_cast<void>(changes);", [PIPELINES]),
     "mask-hidden": ("Filters/Input/VolumeArrays.cxx",
                     "masks.Joined.empty() && !arrays[HiddenCells] && HasSameMask(arrays, HiddenCells, last)",
-                    "masks.Joined.empty()", [PIPELINES]),
+                    "masks.Joined.empty()", ["Cxx.TestArrayChanges"]),
     "outputs-held": ("Filters/Output/OutputArrays.cxx", "this->Array->GetReferenceCount() > 1",
                      "this->Array->GetReferenceCount() > 2", [PIPELINES]),
     "outputs-written": ("Filters/Output/OutputArrays.cxx", "this->Array->GetMTime() == this->Modified &&", "",

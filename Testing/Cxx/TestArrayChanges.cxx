@@ -182,6 +182,18 @@ void TestFilter()
   VERIFY(!AreEqual(masked, fresh()));
   active->Modified();
   VERIFY(AreEqual(update(), fresh()));
+
+  // Cells that were hidden are not told of by the log.
+  maskLog->AddTuples(0, 0);
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(volume->GetNumberOfCells());
+  ghosts->Fill(0);
+  ghosts->SetValue(20 * 900 + 15 * 30 + 15, vtkDataSetAttributes::HIDDENCELL);
+  volume->GetCellData()->AddArray(ghosts);
+  VERIFY(AreEqual(update(), fresh()));
+  volume->GetCellData()->RemoveArray(ghosts->GetName());
+  VERIFY(AreEqual(update(), fresh()));
 }
 
 } // namespace
