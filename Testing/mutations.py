@@ -65,6 +65,7 @@ DEFORMED_CUTTING = ("TestDeformedCutting", "*")
 LISTS = ("TestTetrahedronLists", "*")
 BOUNDARY = ("TestMeshBoundary", "*")
 PROPERTIES = "ParaView.TestProperties"
+PIPELINES = "Fuzz.Pipelines"
 
 # Tests of the VTK classes that open a window.
 WITH_WINDOW = ("TestDeformVolumeInteractorStyle",)
@@ -336,6 +337,36 @@ MUTATIONS = {
                       "step == 0 ? part[axis] : 1.0 - part[axis]", ["Cxx.TestDeformVolumeSession"]),
     "pick-covered": ("Interaction/VisiblePlaces.cxx", "this->Covered->GetComponent(voxel, 0) == 0.0 ? -1 : voxel",
                      "false ? -1 : voxel", ["Cxx.TestDeformVolumeInteractorStyle"]),
+    # Updates of an edited pipeline.
+    "moved-blocks": ("Filters/Input/Deformation.cxx", "if (this->BlockVersions[block] <= version)",
+                     "if (this->BlockVersions[block] <= version + 1)", [PIPELINES]),
+    "moved-scale": ("Filters/Input/Deformation.cxx", "source.DisplacementScale == last.DisplacementScale && ", "",
+                    [PIPELINES]),
+    "moved-rest": ("Filters/Input/Deformation.cxx", " || (ofPoints && !this->Mesh.HasKeptPoints())", "",
+                   ["Cxx.TestDeformGrids"]),
+    "moved-errors": ("Filters/Input/Deformation.cxx",
+                     "  this->VectorsAreWhole = false;\n  const VectorConversion conversion",
+                     "  const VectorConversion conversion", [PIPELINES]),
+    "field-undefined": ("Filters/Input/DeformationField.cxx", "if (undefined != this->UndefinedPoints ||",
+                        "if (undefined.size() != this->UndefinedPoints.size() ||", [PIPELINES]),
+    "field-log": ("Filters/Input/DeformationField.cxx", "written ? this->VectorsVersion : NoVersion;",
+                  "this->VectorsVersion;", [PIPELINES]),
+    "split-places": ("Filters/Engine/DeviceSession.cxx", "|| (openSplits && (hasSplit || update))", "", [PIPELINES]),
+    "split-shape": ("Filters/Input/RestMesh.cxx",
+                    "inPlace &= this->Points[change.Before[k]] == this->Points[change.After[k]];",
+                    "inPlace &= change.Before[k] >= 0;", [PIPELINES]),
+    "split-bounds": ("Filters/vtkDeformVolumeFilterBounds.cxx",
+                     "this->State->BoundsOfMesh.ChangeConnectivity(mesh.GetPoints(), mesh.GetTetrahedra(), *changes);",
+                     "static_cast<void>(changes);", [PIPELINES]),
+    "mask-hidden": ("Filters/Input/VolumeArrays.cxx",
+                    "masks.Joined.empty() && !arrays[HiddenCells] && HasSameMask(arrays, HiddenCells, last)",
+                    "masks.Joined.empty()", ["Cxx.TestArrayChanges"]),
+    "outputs-held": ("Filters/Output/OutputArrays.cxx", "this->Array->GetReferenceCount() > 1",
+                     "this->Array->GetReferenceCount() > 2", [PIPELINES]),
+    "outputs-written": ("Filters/Output/OutputArrays.cxx", "this->Array->GetMTime() == this->Modified &&", "",
+                        [PIPELINES]),
+    "changed-factor": ("Filters/vtkDeformVolumeFilterRequests.cxx", "if (!hasLast)", "if (false)",
+                       [PIPELINES]),
     # The plugin.
     "plugin-command": ("Plugin/CarveVolume.xml", 'command="SetSmoothBoundary"', 'command="SetAccumulate"', [PROPERTIES]),
     "plugin-port": ("Plugin/CutVolume.xml", 'command="SetSheetConnection"', 'command="SetRestConnection"', [PROPERTIES]),
@@ -383,6 +414,12 @@ def is_of_plugin(test):
     return isinstance(test, str) and test.startswith("ParaView.")
 
 
+def get_program(test):
+    if not isinstance(test, str):
+        return "DeformVolumeEngineTests"
+    return "DeformVolumeFuzz" if test == PIPELINES else "DeformVolumeCxxTests"
+
+
 def configure(folder, *options):
     if not (folder / "build.ninja").is_file():
         subprocess.run(
@@ -395,8 +432,7 @@ def configure(folder, *options):
 def build(tests):
     """Returns whether it worked; what the compiler says is printed where it did not."""
     commands = []
-    targets = {"DeformVolumeCxxTests" if isinstance(test, str) else "DeformVolumeEngineTests"
-               for test in tests if not is_of_plugin(test)}
+    targets = {get_program(test) for test in tests if not is_of_plugin(test)}
     if targets:
         configure(BUILD, "-DDEFORMVOLUME_WRAP_PYTHON=OFF")
         commands.append(["cmake", "--build", BUILD, "--target", *sorted(targets)])
@@ -419,14 +455,18 @@ def get_command(test):
     if is_of_plugin(test):
         # CTest knows its environment.
         return test, ["ctest", "--test-dir", PLUGIN_BUILD, "-R", f"^{re.escape(test)}$", "--no-tests=error"]
+    program = BUILD / "bin" / get_program(test)
+    if test == PIPELINES:
+        # As CTest does.
+        return test, [program, "--seed", "1", "--count", "160"]
     if isinstance(test, str):
         name = test.partition(".")[2]
-        command = [BUILD / "bin" / "DeformVolumeCxxTests", name, "-T", WORK, "-D", SOURCE / "Testing" / "Data"]
+        command = [program, name, "-T", WORK, "-D", SOURCE / "Testing" / "Data"]
         window = ["xvfb-run", "-a", "-s", "-noreset -screen 0 1280x1024x24"] if name in WITH_WINDOW else []
         return test, [*window, *command]
     files, pattern = test
     names, _, device = files.partition("@")
-    return names, [BUILD / "bin" / "DeformVolumeEngineTests", f"--files={names}",
+    return names, [program, f"--files={names}",
                    *([f"--device={device}"] if device else []), f"--gtest_filter={pattern}", "--gtest_fail_fast"]
 
 

@@ -241,7 +241,7 @@ void TestAborted()
   VERIFY(GetTuple(found, GetId(volume, 20, 20, 20)) == glm::dvec3(9, 0, 0));
 }
 
-// The filter behind it has, step by step, what it makes of a copy of the displacements.
+// What the filter behind it makes of the displacements, step by step.
 void TestDeformed(const Extent& extent)
 {
   const auto volume = MakeVolume(extent);
@@ -257,10 +257,6 @@ void TestDeformed(const Extent& extent)
     const glm::dvec3 drag(1.0 * step, -1.0, 2.0 - step);
     dragged.Filter->SetHandlesData(MakeHandles({ { rest, rest + drag } }));
     vtkImageData* found = chain.Update();
-    vtkNew<vtkImageData> copy;
-    copy->DeepCopy(dragged.Filter->GetOutput());
-    Deformed fresh(volume, copy);
-    VERIFY(AreEqual(found, fresh.Update()));
     // Within the handle the volume is shifted by whole voxels.
     for (int i = 19; i <= 21; ++i)
     {

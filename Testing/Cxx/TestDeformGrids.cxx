@@ -124,6 +124,18 @@ void Exchange(vtkUnstructuredGrid* grid, vtkIdType cell)
   grid->GetCells()->ReplaceCellAtId(cell, points);
 }
 
+// A cell gets a first node of its own, where it lay.
+void SplitNode(vtkUnstructuredGrid* grid, vtkIdType cell)
+{
+  vtkNew<vtkIdList> nodes;
+  grid->GetCells()->GetCellAtId(cell, nodes);
+  const glm::dvec3 place = GetPoint(grid, nodes->GetId(0));
+  nodes->SetId(0, grid->GetPoints()->InsertNextPoint(&place.x));
+  grid->GetCells()->ReplaceCellAtId(cell, nodes);
+  grid->GetPoints()->Modified();
+  grid->Modified();
+}
+
 void TestOtherGrids()
 {
   Meshes meshes;
@@ -178,6 +190,9 @@ void TestEditsInPlace()
   Exchange(meshes.Mesh, 11);
   meshes.Mesh->Modified();
   meshes.Expect("a cell replaced, and only the grid modified", 0);
+  SplitNode(meshes.Mesh, 9);
+  meshes.Move();
+  meshes.Expect("a node that is split", 0);
   meshes.Mesh->GetPoints()->GetData()->SetComponent(3, 1, -0.75);
   meshes.Mesh->Modified();
   meshes.Expect("a point set, and only the grid modified", 1);
@@ -293,6 +308,9 @@ void TestTwoMeshes()
   meshes.Rest = Copy(meshes.Rest);
   meshes.Tested.Filter->SetRestData(meshes.Rest);
   meshes.Expect("a copy at rest", 0);
+  SplitNode(meshes.Rest, 8);
+  SplitNode(shape, 8);
+  meshes.Expect("a node that is split in both", 0);
   meshes.Rest->GetPoints()->GetData()->SetComponent(9, 0, -0.25);
   meshes.Rest->GetPoints()->Modified();
   meshes.Expect("another point at rest", 1);

@@ -151,8 +151,12 @@ std::string CheckValues(vtkImageData* output, vtkImageData* volume, const Settin
       {
         continue;
       }
-      std::sort(values.begin(), values.end());
-      const double slack = 1e-5 * std::max(std::abs(values.front()), std::abs(values.back()));
+      if (exact)
+      {
+        std::sort(values.begin(), values.end());
+      }
+      const auto [least, most] = std::minmax_element(values.begin(), values.end());
+      const double slack = 1e-5 * std::max(std::abs(*least), std::abs(*most));
       for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
       {
         const double covered = mask->GetComponent(id, 0);
@@ -168,7 +172,7 @@ std::string CheckValues(vtkImageData* output, vtkImageData* volume, const Settin
             value == static_cast<double>(static_cast<float>(settings.BackgroundValue)) ||
             value == settings.BackgroundValue
           : (exact ? std::binary_search(values.begin(), values.end(), value)
-                   : value >= values.front() - slack && value <= values.back() + slack);
+                   : value >= *least - slack && value <= *most + slack);
         if (!right)
         {
           return "array " + name + " has " + std::to_string(value) + " at point " +

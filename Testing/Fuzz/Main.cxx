@@ -136,6 +136,7 @@ struct Totals
   std::uint64_t Outputs = 0;
   std::uint64_t Errors = 0;
   std::uint64_t References = 0;
+  fuzz::Pipeline::LiveUpdates Live;
   std::uint64_t Failures = 0;
 };
 
@@ -155,6 +156,11 @@ void RunOne(
     totals.Outputs += static_cast<std::uint64_t>(pipeline.GetNumberOfOutputs());
     totals.Errors += static_cast<std::uint64_t>(pipeline.GetNumberOfErrors());
     totals.References += static_cast<std::uint64_t>(pipeline.GetNumberOfReferences());
+    const fuzz::Pipeline::LiveUpdates& live = pipeline.GetLiveUpdates();
+    totals.Live.All += live.All;
+    totals.Live.Parts += live.Parts;
+    totals.Live.FoldedParts += live.FoldedParts;
+    totals.Live.SplitParts += live.SplitParts;
   }
   catch (const std::exception& error)
   {
@@ -205,6 +211,16 @@ int main(int argc, char* argv[])
             << " outputs, " << totals.References << " of them compared with the reference, "
             << totals.Errors << " errors as there should be, " << totals.Failures
             << " pipelines failed\n";
+  const fuzz::Pipeline::LiveUpdates& live = totals.Live;
+  std::cout << live.All << " updates of large volumes: " << live.Parts << " in part, "
+            << live.FoldedParts << " of these folded, " << live.SplitParts << " of split meshes\n";
+  if (live.All > 200 &&
+    (5 * live.Parts < live.All || 40 * live.FoldedParts < live.All ||
+      40 * live.SplitParts < live.All))
+  {
+    std::cout << "There were too few updates in part.\n";
+    return EXIT_FAILURE;
+  }
   if (totals.Outputs == 0 && arguments.Count > 1)
   {
     std::cout << "There was no output at all.\n";

@@ -3,6 +3,7 @@
 
 #include "RandomDisplacements.h"
 #include "RandomMesh.h"
+#include "TetrahedronEdits.h"
 
 #include <vtkCallbackCommand.h>
 #include <vtkCompositeDataIterator.h>
@@ -63,6 +64,29 @@ bool IsFinite(vtkDataArray* array)
   return array != nullptr;
 }
 
+// Moves the points of a mesh by its displacements.
+void MovePoints(vtkDataObject* data)
+{
+  auto* mesh = vtkUnstructuredGrid::SafeDownCast(data);
+  vtkDataArray* vectors = mesh ? mesh->GetPointData()->GetArray(DISPLACEMENTS) : nullptr;
+  if (!mesh || !mesh->GetPoints() || !IsFinite(vectors) ||
+    vectors->GetNumberOfTuples() != mesh->GetNumberOfPoints())
+  {
+    return;
+  }
+  for (vtkIdType point = 0; point < mesh->GetNumberOfPoints(); ++point)
+  {
+    double place[3];
+    mesh->GetPoint(point, place);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      place[axis] += vectors->GetComponent(point, axis);
+    }
+    mesh->GetPoints()->SetPoint(point, place);
+  }
+  mesh->GetPoints()->Modified();
+}
+
 void AbortLater(vtkObject* caller, unsigned long, void* left, void*)
 {
   if (--*static_cast<int*>(left) <= 0)
@@ -76,49 +100,81 @@ void AbortLater(vtkObject* caller, unsigned long, void* left, void*)
 Pipeline::Pipeline(std::uint64_t seed, std::ostream& log)
   : Random(seed)
   , Log(log)
-  , Geometry(Random.Chance(0.3) ? fuzz::Geometry::Exact : fuzz::Geometry::Any)
+  , IsLive(seed % 8 == 0)
+  , Geometry(!IsLive && Random.Chance(0.3) ? fuzz::Geometry::Exact : fuzz::Geometry::Any)
 {
-  this->Volume = MakeVolume(this->Random, this->Geometry, log);
-  for (int edits = this->Random.Chance(0.6) ? this->Random.Int(1, 4) : 0; edits > 0; --edits)
+  this->Volume = MakeVolume(this->Random, this->Geometry, this->IsLive, log);
+  if (this->IsLive)
+  {
+    // An output that keeps its extent can be updated in part.
+    this->Settings.OutputBoundsMode = this->Random.Chance(0.8)
+      ? vtkDeformVolumeFilter::VOLUME_BOUNDS
+      : vtkDeformVolumeFilter::DEFORMED_BOUNDS;
+    this->Settings.Resampler =
+      this->Random.Chance(0.9) ? vtkDeformVolumeFilter::EXACT : vtkDeformVolumeFilter::AUTOMATIC;
+    this->Settings.OpenSplits = this->Random.Chance(0.4);
+  }
+  for (int edits = !this->IsLive && this->Random.Chance(0.6) ? this->Random.Int(1, 4) : 0;
+       edits > 0; --edits)
   {
     EditSettings(this->Settings, this->Volume, this->Random, this->Geometry, log);
   }
+  this->StartSettings = this->Settings;
   this->MakeDeformation();
-  this->VolumeInParts = this->Random.Chance(0.15);
+  this->VolumeInParts = !this->IsLive && this->Random.Chance(0.15);
   this->Parts->Volume = this->Volume;
   log << (this->VolumeInParts ? "volume from a source of parts\n" : "");
   this->Connect(this->Tested, false);
+  this->Settings.PointsAreDeformed = this->Given == Form::DeformedPoints;
   Apply(this->Settings, this->Tested.GetFilter());
 }
 
 void Pipeline::MakeDeformation()
 {
-  this->Rest = nullptr;
+  this->Given = Form::Displacements;
   this->VariesInTime = false;
-  const bool exact = this->Geometry == fuzz::Geometry::Exact;
-  if (this->Random.Chance(exact ? 0.6 : 0.2))
+  this->MakeShape();
+  if (this->IsLive && this->Random.Chance(0.95))
   {
-    this->Deformation = MakeField(this->Volume, this->Random, this->Geometry, this->Log);
+    // Not folded all over.
+    vtkDataArray* vectors =
+      GetLeaves(this->Deformation)[0]->GetPointData()->GetArray(DISPLACEMENTS);
+    vectors->Fill(0.25);
+    vectors->Modified();
+  }
+  this->Before = { Copy(this->Deformation) };
+}
+
+void Pipeline::MakeShape()
+{
+  const bool exact = this->Geometry == fuzz::Geometry::Exact;
+  if (this->Random.Chance(exact ? 0.6 : this->IsLive ? 0.35 : 0.2))
+  {
+    // Of a large volume most have a point at each voxel.
+    const bool isOfVoxels = this->IsLive && this->Random.Chance(0.7);
+    this->Deformation = MakeField(
+      this->Volume, this->Random, isOfVoxels ? Geometry::Exact : this->Geometry, this->Log);
     return;
   }
   const int* dimensions = this->Volume->GetDimensions();
   const bool simple = this->Volume->GetNumberOfPoints() < 3000 &&
     *std::min_element(dimensions, dimensions + 3) > 1 && this->Volume->GetSpacing()[1] != 0.0 &&
     std::isfinite(this->Volume->GetOrigin()[1]);
-  vtkSmartPointer<vtkUnstructuredGrid> mesh =
-    exact && simple ? MakeVoxelMesh(this->Volume) : MakeMesh(this->Volume, this->Random, this->Log);
+  vtkSmartPointer<vtkUnstructuredGrid> mesh = exact && simple ? MakeVoxelMesh(this->Volume)
+    : this->IsLive ? MakeFineLattice(this->Volume, this->Random, this->Log)
+                   : MakeMesh(this->Volume, this->Random, this->Log);
   SetDisplacements(mesh, this->Volume, this->Random, this->Geometry, this->Log);
   this->Deformation = mesh;
   if (exact)
   {
     return;
   }
-  if (this->Random.Chance(0.1))
+  if (!this->IsLive && this->Random.Chance(0.1))
   {
     this->Deformation = MakeBlocks(mesh, this->Random);
     this->Log << "in blocks\n";
   }
-  else if (this->Random.Chance(0.12))
+  else if (!this->IsLive && this->Random.Chance(0.12))
   {
     this->VariesInTime = true;
     this->Times->Steps = { mesh };
@@ -133,38 +189,17 @@ void Pipeline::MakeDeformation()
     this->Time = this->Random.Int(0, 3);
     this->Log << "in time\n";
   }
-  if (!this->VariesInTime && this->Random.Chance(0.15))
+  if (!this->VariesInTime && this->Random.Chance(0.2))
   {
-    this->MakeRest();
+    this->EditForm();
   }
 }
 
-// What deforms becomes the rest configuration, and a copy with moved points deforms.
-void Pipeline::MakeRest()
+void Pipeline::EditForm()
 {
-  this->Rest = Copy(this->Deformation);
-  for (vtkDataSet* leaf : GetLeaves(this->Deformation))
-  {
-    auto* mesh = vtkUnstructuredGrid::SafeDownCast(leaf);
-    vtkDataArray* vectors = leaf->GetPointData()->GetArray(DISPLACEMENTS);
-    if (!mesh || !mesh->GetPoints() || !IsFinite(vectors) ||
-      vectors->GetNumberOfTuples() != mesh->GetNumberOfPoints())
-    {
-      continue;
-    }
-    for (vtkIdType point = 0; point < mesh->GetNumberOfPoints(); ++point)
-    {
-      double place[3];
-      mesh->GetPoint(point, place);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        place[axis] += vectors->GetComponent(point, axis);
-      }
-      mesh->GetPoints()->SetPoint(point, place);
-    }
-    mesh->GetPoints()->Modified();
-  }
-  this->Log << "with a rest configuration\n";
+  this->Given =
+    this->Random.Pick({ Form::Displacements, Form::TwoConfigurations, Form::DeformedPoints });
+  this->Log << "mesh given in form " << static_cast<int>(this->Given) << '\n';
 }
 
 void Pipeline::Connect(Subject& subject, bool copies)
@@ -193,13 +228,22 @@ void Pipeline::Connect(Subject& subject, bool copies)
   {
     filter->SetInputConnection(1, this->Times->GetOutputPort());
   }
-  else
+  else if (this->Given == Form::Displacements)
   {
     give(1, this->Deformation);
   }
-  if (this->Rest)
+  else
   {
-    give(2, this->Rest);
+    const auto moved = Copy(this->Deformation);
+    for (vtkDataSet* leaf : GetLeaves(moved))
+    {
+      MovePoints(leaf);
+    }
+    give(1, moved);
+  }
+  if (this->Given == Form::TwoConfigurations)
+  {
+    give(2, this->Deformation);
   }
   else
   {
@@ -227,12 +271,9 @@ void Pipeline::TouchSources()
   this->Parts->Modified();
   this->Times->Modified();
   // The time of a composite dataset does not tell of its blocks.
-  for (vtkDataObject* data : { this->Deformation.Get(), this->Rest.Get() })
+  if (vtkCompositeDataSet::SafeDownCast(this->Deformation))
   {
-    if (vtkCompositeDataSet::SafeDownCast(data))
-    {
-      data->Modified();
-    }
+    this->Deformation->Modified();
   }
 }
 
@@ -242,53 +283,60 @@ void Pipeline::EditDeformation()
   vtkDataSet* leaf = leaves.empty() ? nullptr : this->Random.Pick(leaves);
   auto* mesh = vtkUnstructuredGrid::SafeDownCast(leaf);
   const bool any = this->Geometry == fuzz::Geometry::Any;
-  const int kind = this->Random.Int(0, 9);
+  const int kind = this->Random.Int(0, 15);
   if (!leaf || kind == 0)
   {
     this->MakeDeformation();
   }
-  else if (kind == 1 && any && mesh)
+  else if (kind < 6 && any && mesh)
   {
     EditCells(mesh, this->Random, this->Log);
+    if (kind == 1)
+    {
+      this->Before.push_back(Copy(this->Deformation));
+    }
   }
-  else if (kind == 2 && any && mesh && !this->VariesInTime)
+  else if (kind == 6 && any && mesh && !this->VariesInTime)
   {
-    if (this->Rest)
-    {
-      this->Deformation = this->Rest;
-      this->Rest = nullptr;
-      this->Log << "no rest configuration\n";
-    }
-    else
-    {
-      this->MakeRest();
-    }
+    this->EditForm();
   }
-  else if (kind == 3 && !this->VariesInTime)
+  else if (kind == 7 && !this->VariesInTime)
   {
     this->Deformation = Copy(this->Deformation);
     this->Log << "an equal deformation\n";
   }
-  else if (mesh && this->Rest)
+  else if (kind == 8 && !this->VariesInTime)
   {
-    EditCells(mesh, this->Random, this->Log);
+    this->Deformation->DeepCopy(this->Random.Pick(this->Before));
+    this->Log << "a deformation that was\n";
   }
   else
   {
-    EditDisplacements(leaf, this->Volume, this->Random, this->Geometry, this->Log);
+    this->Repair = EditDisplacements(leaf, this->Volume, this->Random, this->Geometry, this->Log);
   }
 }
 
 void Pipeline::Edit()
 {
+  if (this->Repair)
+  {
+    this->Log << "what was an error is put right\n";
+    this->Repair();
+    this->Repair = nullptr;
+  }
   const int kind = this->Random.Int(0, 19);
-  if (kind < 10)
+  if (kind < 9)
   {
     this->EditDeformation();
   }
   else if (kind < 13)
   {
     EditVolume(this->Volume, this->Random, this->Geometry, this->Log);
+  }
+  else if (kind < 15)
+  {
+    this->Log << "settings as in the beginning\n";
+    this->Settings = this->StartSettings;
   }
   else if (kind < 17)
   {
@@ -305,12 +353,13 @@ void Pipeline::Edit()
   }
   else
   {
-    this->Volume = MakeVolume(this->Random, this->Geometry, this->Log);
+    this->Volume = MakeVolume(this->Random, this->Geometry, this->IsLive, this->Log);
     this->MakeDeformation();
   }
   this->Time = this->Random.Int(0, 3);
   this->TouchSources();
   this->Connect(this->Tested, false);
+  this->Settings.PointsAreDeformed = this->Given == Form::DeformedPoints;
   Apply(this->Settings, this->Tested.GetFilter());
 }
 
@@ -329,6 +378,14 @@ void Pipeline::Abort()
   const Outcome outcome = this->Tested.Update(nullptr, this->VariesInTime ? &this->Time : nullptr);
   filter->RemoveObserver(observer);
   filter->SetAbortExecute(0);
+  if (outcome.Output->GetNumberOfPoints() == 0)
+  {
+    this->Shown = nullptr;
+  }
+  else
+  {
+    this->CheckChangedExtent(outcome.Output); // there was no such event
+  }
   if (!outcome.Errors.empty())
   {
     this->LastMessage = outcome.Errors.back();
@@ -338,7 +395,7 @@ void Pipeline::Abort()
 std::string Pipeline::Run()
 {
   std::string wrong = this->Check();
-  for (int edits = this->Random.Int(0, 6); edits > 0 && wrong.empty(); --edits)
+  for (int edits = this->IsLive ? 24 : this->Random.Int(0, 6); edits > 0 && wrong.empty(); --edits)
   {
     this->Edit();
     wrong = this->Check();

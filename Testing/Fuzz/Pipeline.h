@@ -8,12 +8,14 @@
 #include "Sources.h"
 #include "Subject.h"
 
+#include <vtkDataArray.h>
 #include <vtkDataObject.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <ostream>
@@ -26,7 +28,8 @@ namespace fuzz
 class Pipeline
 {
 public:
-  /// The inputs are made at once. log gets what is made and done, one line each.
+  /// The inputs are made at once. log gets what is made and done, one line each. Every eighth seed
+  /// makes many small edits of a large volume.
   Pipeline(std::uint64_t seed, std::ostream& log);
 
   /// Updates and edits. Returns what went wrong, or "".
@@ -37,9 +40,29 @@ public:
   int GetNumberOfErrors() const { return this->Errors; }
   int GetNumberOfReferences() const { return this->References; }
 
+  /// Of a large volume: updates, those in part, and of these those of a folded volume and of a mesh
+  /// whose nodes were split.
+  struct LiveUpdates
+  {
+    int All = 0;
+    int Parts = 0;
+    int FoldedParts = 0;
+    int SplitParts = 0;
+  };
+  const LiveUpdates& GetLiveUpdates() const { return this->Live; }
+
 private:
+  // How a mesh is given to the filter; the one here has its points at rest, and displacements.
+  enum class Form
+  {
+    Displacements,
+    TwoConfigurations,
+    DeformedPoints
+  };
+
   void MakeDeformation();
-  void MakeRest();
+  void MakeShape();
+  void EditForm();
   void Connect(Subject& subject, bool copies);
   void Edit();
   void EditDeformation();
@@ -48,27 +71,36 @@ private:
   std::vector<vtkDataSet*> GetDeformed() const;
   std::string Check();
   std::string CheckError(const Outcome& tested, const Outcome& fresh);
+  std::string CheckChangedExtent(vtkImageData* output);
+  void CountLive(const Outcome& tested);
   std::string CheckOutput(const Outcome& tested, const Outcome& fresh, bool divided);
 
   fuzz::Random Random;
   std::ostream& Log;
+  bool IsLive;
   fuzz::Geometry Geometry;
   fuzz::Settings Settings;
 
   vtkSmartPointer<vtkImageData> Volume;
   vtkSmartPointer<vtkDataObject> Deformation;
-  vtkSmartPointer<vtkDataObject> Rest;
+  Form Given = Form::Displacements;
   vtkNew<PartSource> Parts;
   vtkNew<TimeSource> Times;
   bool VolumeInParts = false;
   bool VariesInTime = false;
   double Time = 0.0;
 
+  fuzz::Settings StartSettings;
+  std::vector<vtkSmartPointer<vtkDataObject>> Before; // deformations that were, from the first on
+  std::function<void()> Repair;                       // what is an error, if there is one
+
   Subject Tested;
+  vtkSmartPointer<vtkImageData> Shown; // the output, by what has changed
   std::string LastMessage;
   int Outputs = 0;
   int Errors = 0;
   int References = 0;
+  LiveUpdates Live;
 };
 
 } // namespace fuzz

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RandomDisplacements.h"
 
+#include "WrittenTuples.h"
+
 #include <vtkDataArray.h>
 #include <vtkFloatArray.h>
 #include <vtkMatrix3x3.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkSOADataArrayTemplate.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
-#include <functional>
 #include <limits>
 
 namespace fuzz
@@ -120,14 +122,75 @@ void SetVector(vtkDataArray* vectors, vtkIdType point, const glm::dvec3& inVoxel
   vectors->SetTuple(point, &world.x);
 }
 
-void AddError(vtkDataArray* vectors, Random& random, std::ostream& log)
+vtkIdType PickTuple(vtkDataArray* array, Random& random)
+{
+  const vtkIdType count = array->GetNumberOfTuples();
+  // Arrays are compared by blocks of 512 tuples.
+  return count > 512 && random.Chance(0.1)
+    ? random.Pick({ vtkIdType{ 0 }, vtkIdType{ 511 }, vtkIdType{ 512 }, count - 1 })
+    : static_cast<vtkIdType>(random.Bits() % static_cast<std::uint64_t>(count));
+}
+
+// Returns what takes it back.
+std::function<void()> AddError(
+  const vtkSmartPointer<vtkDataArray>& vectors, Random& random, std::ostream& log)
 {
   log << "  displacements with an error\n";
-  vectors->SetComponent(static_cast<vtkIdType>(
-                          random.Bits() % static_cast<std::uint64_t>(vectors->GetNumberOfTuples())),
-    random.Int(0, 2),
-    random.Pick({ std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-      1e30, -1e9 }));
+  const vtkIdType tuple = PickTuple(vectors, random);
+  const int component = random.Int(0, 2);
+  const double before = vectors->GetComponent(tuple, component);
+  const auto set = [=](double value)
+  {
+    vectors->SetComponent(tuple, component, value);
+    MarkWritten(vectors, tuple, tuple);
+  };
+  set(random.Pick({ std::numeric_limits<double>::quiet_NaN(),
+    std::numeric_limits<double>::infinity(), 1e30, -1e9 }));
+  return [=]() { set(before); };
+}
+
+// One moves, those near it or all.
+void MoveSome(vtkDataSet* points, vtkDataArray* vectors, vtkImageData* volume, Random& random,
+  Geometry geometry)
+{
+  const vtkIdType first = PickTuple(vectors, random);
+  const glm::dvec3 center = GetPlace(points, first, volume);
+  const bool isOfVoxels = vectors->GetNumberOfTuples() > 20000;
+  const double reach = random.Pick({ 0.0, 0.0, 0.0, 6.0, 9.0, isOfVoxels ? 6.0 : 1e3 });
+  // One that moves far folds its cells.
+  const double most =
+    random.Pick({ 0.3, 1.0, reach > 0.0 ? 0.3 : 12.0 }) * (isOfVoxels && reach > 0.0 ? 0.3 : 1.0);
+  for (vtkIdType point = 0; point < points->GetNumberOfPoints(); ++point)
+  {
+    if (point == first ||
+      (reach > 0.0 && glm::distance(GetPlace(points, point, volume), center) <= reach))
+    {
+      SetVector(vectors, point, MakeVector(random, most), volume, geometry);
+      MarkWritten(vectors, point, point);
+    }
+  }
+}
+
+void HideSome(vtkImageData* field, Random& random)
+{
+  const char* const name = vtkDataSetAttributes::GhostArrayName();
+  vtkSmartPointer<vtkUnsignedCharArray> ghosts =
+    vtkUnsignedCharArray::SafeDownCast(field->GetPointData()->GetArray(name));
+  if (ghosts && random.Chance(0.3))
+  {
+    field->GetPointData()->RemoveArray(name);
+    return;
+  }
+  if (!ghosts)
+  {
+    ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    ghosts->SetName(name);
+    ghosts->SetNumberOfTuples(field->GetNumberOfPoints());
+    ghosts->Fill(0);
+    field->GetPointData()->AddArray(ghosts);
+  }
+  ghosts->SetValue(PickTuple(ghosts, random), vtkDataSetAttributes::HIDDENPOINT);
+  ghosts->Modified();
 }
 
 } // namespace
@@ -171,62 +234,89 @@ void SetDisplacements(
   }
 }
 
-void EditDisplacements(
+std::function<void()> EditDisplacements(
   vtkDataSet* points, vtkImageData* volume, Random& random, Geometry geometry, std::ostream& log)
 {
   const vtkSmartPointer<vtkDataArray> vectors = points->GetPointData()->GetArray(DISPLACEMENTS);
-  const int kind = random.Int(0, 11);
+  // A large volume that is folded all over takes long.
+  const bool isLarge = points->GetNumberOfPoints() > 600;
+  const int kind = random.Int(isLarge ? 1 : 0, 15);
   log << "displacements, edit " << kind << '\n';
   if (!vectors || vectors->GetNumberOfTuples() != points->GetNumberOfPoints() || kind == 0)
   {
     SetDisplacements(points, volume, random, geometry, log);
-    return;
+    return {};
   }
-  const auto count = static_cast<std::uint64_t>(vectors->GetNumberOfTuples());
+  const vtkIdType count = vectors->GetNumberOfTuples();
   if (count == 0)
   {
-    return;
+    return {};
   }
+  auto* field = geometry == Geometry::Any ? vtkImageData::SafeDownCast(points) : nullptr;
   switch (kind)
   {
     case 1: // nothing
-      break;
+      vectors->Modified();
+      return {};
     case 2:
-      if (random.Chance(0.3))
-      {
-        AddError(vectors, random, log);
-      }
-      break;
+      MoveSome(points, vectors, volume, random, geometry);
+      return AddError(vectors, random, log);
     case 3: // shorter than the points, in place
       if (random.Chance(0.3))
       {
-        vectors->SetNumberOfTuples(static_cast<vtkIdType>(count) - 1);
+        vectors->SetNumberOfTuples(count - 1);
+        vectors->Modified();
+        return [=]()
+        {
+          vectors->SetNumberOfTuples(count);
+          vectors->SetTuple3(count - 1, 0.0, 0.0, 0.0);
+          vectors->Modified();
+        };
       }
-      break;
+      return {};
     case 4: // another array with the same values
     {
-      const auto copy = vtkSmartPointer<vtkDataArray>::Take(vectors->NewInstance());
+      const auto copy = vtkSmartPointer<vtkDataArray>::Take(
+        vtkDataArray::CreateDataArray(random.Pick({ VTK_FLOAT, VTK_DOUBLE })));
       copy->DeepCopy(vectors);
+      copy->SetName(DISPLACEMENTS);
       points->GetPointData()->AddArray(copy);
-      break;
+      return {};
     }
     case 5:
     {
       const Map map = MakeMap(random, log);
-      for (vtkIdType point = 0; point < points->GetNumberOfPoints(); ++point)
+      for (vtkIdType point = 0; point < count && !isLarge; ++point)
       {
         SetVector(vectors, point, map(GetPlace(points, point, volume)), volume, geometry);
       }
-      break;
-    }
-    default:
-      for (int i = random.Pick({ 1, 1, 2, 5 }); i > 0; --i)
+      if (isLarge)
       {
-        SetVector(vectors, static_cast<vtkIdType>(random.Bits() % count),
-          MakeVector(random, random.Pick({ 0.3, 1.0, 5.0 })), volume, geometry);
+        vectors->Fill(0.25);
       }
+      vectors->Modified();
+      return {};
+    }
+    case 6:
+      StartLog(vectors);
+      return {};
+    case 7:
+    case 8:
+      if (field)
+      {
+        HideSome(field, random);
+        return {};
+      }
+      [[fallthrough]];
+    default:
+      MoveSome(points, vectors, volume, random, geometry);
   }
-  vectors->Modified();
+  if (kind == 9) // with some that no log tells of
+  {
+    SetVector(vectors, PickTuple(vectors, random), MakeVector(random, 0.3), volume, geometry);
+    vectors->Modified();
+  }
+  return {};
 }
 
 vtkSmartPointer<vtkImageData> MakeField(

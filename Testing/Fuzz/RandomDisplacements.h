@@ -7,6 +7,8 @@
 
 #include <vtkDataSet.h>
 
+#include <functional>
+
 namespace fuzz
 {
 
@@ -19,8 +21,9 @@ constexpr const char* DISPLACEMENTS = "U";
 void SetDisplacements(
   vtkDataSet* points, vtkImageData* volume, Random& random, Geometry geometry, std::ostream& log);
 
-/// Changes some of the displacements, all, none, or their array.
-void EditDisplacements(
+/// Changes some of the displacements, all, none, or their array; hides points of a field, where it
+/// is undefined. Where that is an error the function that is returned takes it back.
+std::function<void()> EditDisplacements(
   vtkDataSet* points, vtkImageData* volume, Random& random, Geometry geometry, std::ostream& log);
 
 /// A displacement field over a volume or a part of it; with an exact geometry of its voxels.

@@ -27,7 +27,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeVoxelMesh(vtkImageData* volume);
 /// The cells of a mesh, dealt out to several blocks; some blocks are empty or no meshes.
 vtkSmartPointer<vtkMultiBlockDataSet> MakeBlocks(vtkUnstructuredGrid* mesh, Random& random);
 
-/// Adds points or cells, or replaces or reorders cells, in place.
+/// Adds points or cells, replaces or reorders cells, moves nodes or splits them, in place.
 void EditCells(vtkUnstructuredGrid* mesh, Random& random, std::ostream& log);
 
 } // namespace fuzz

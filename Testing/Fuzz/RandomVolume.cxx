@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RandomVolume.h"
 
+#include "WrittenTuples.h"
+
 #include <vtkAOSDataArrayTemplate.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -332,10 +334,21 @@ void EditMasks(vtkImageData* volume, Random& random, std::ostream& log)
   {
     return;
   }
-  const int kind = random.Int(0, 5);
+  const bool isLarge = points > 20000;
+  const int kind = random.Int(0, isLarge ? 4 : 5);
   log << " masks " << kind;
   vtkUnsignedCharArray* mask = nullptr;
-  const int density = random.Pick({ 2, 10, 100 });
+  const int density = isLarge ? random.Pick({ 3000, 100000 }) : random.Pick({ 2, 10, 100 });
+  const bool isLogged = random.Chance(0.3);
+  const auto set = [&](vtkIdType i, int value)
+  {
+    if (isLogged)
+    {
+      StartLog(mask);
+    }
+    mask->SetValue(i, static_cast<unsigned char>(value));
+    MarkWritten(mask, i, i);
+  };
   switch (kind)
   {
     case 0:
@@ -344,9 +357,9 @@ void EditMasks(vtkImageData* volume, Random& random, std::ostream& log)
       {
         if (random.Int(0, density) == 0)
         {
-          mask->SetValue(i,
-            static_cast<unsigned char>(random.Pick({ 0, int(vtkDataSetAttributes::HIDDENPOINT),
-              int(vtkDataSetAttributes::DUPLICATEPOINT) })));
+          set(i,
+            random.Pick({ 0, int(vtkDataSetAttributes::HIDDENPOINT),
+              int(vtkDataSetAttributes::DUPLICATEPOINT) }));
         }
       }
       break;
@@ -356,9 +369,9 @@ void EditMasks(vtkImageData* volume, Random& random, std::ostream& log)
       {
         if (random.Int(0, density) == 0)
         {
-          mask->SetValue(i,
-            static_cast<unsigned char>(random.Pick({ 0, int(vtkDataSetAttributes::HIDDENCELL),
-              int(vtkDataSetAttributes::DUPLICATECELL) })));
+          set(i,
+            random.Pick({ 0, int(vtkDataSetAttributes::HIDDENCELL),
+              int(vtkDataSetAttributes::DUPLICATECELL) }));
         }
       }
       break;
@@ -368,14 +381,14 @@ void EditMasks(vtkImageData* volume, Random& random, std::ostream& log)
       {
         if (random.Int(0, density) == 0)
         {
-          mask->SetValue(i, static_cast<unsigned char>(random.Int(0, 255)));
+          set(i, random.Int(0, 255));
         }
       }
       break;
     case 3:
       EditDistances(volume, density, random);
       break;
-    case 4:
+    case 5:
       EditCut(volume, density, random);
       break;
     default:
@@ -385,17 +398,16 @@ void EditMasks(vtkImageData* volume, Random& random, std::ostream& log)
       volume->GetCellData()->Initialize();
       volume->Modified();
   }
-  if (mask)
-  {
-    mask->Modified();
-  }
 }
 
-vtkSmartPointer<vtkImageData> MakeVolume(Random& random, Geometry geometry, std::ostream& log)
+vtkSmartPointer<vtkImageData> MakeVolume(
+  Random& random, Geometry geometry, bool isLarge, std::ostream& log)
 {
   auto volume = vtkSmartPointer<vtkImageData>::New();
   int extent[6];
   const bool large = random.Chance(0.05);
+  // Fields over so many voxels are read where they lie.
+  const bool larger = random.Chance(0.4);
   const int far = random.Chance(0.02) ? 100000 : 0;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -404,7 +416,11 @@ vtkSmartPointer<vtkImageData> MakeVolume(Random& random, Geometry geometry, std:
     {
       size = axis == 0 ? random.Int(180, 200) : random.Int(2, 20);
     }
-    if (random.Chance(0.004))
+    if (isLarge)
+    {
+      size = larger ? random.Int(65, 70) : random.Int(40, 65);
+    }
+    else if (random.Chance(0.004))
     {
       size = random.Int(0, 1);
     }
@@ -422,11 +438,11 @@ vtkSmartPointer<vtkImageData> MakeVolume(Random& random, Geometry geometry, std:
       << volume->GetDimensions()[2] << " from " << extent[0] << ' ' << extent[2] << ' '
       << extent[4];
   FillArrays(volume, random, log);
-  for (int masks = random.Chance(0.4) ? random.Int(1, 2) : 0; masks > 0; --masks)
+  for (int masks = !isLarge && random.Chance(0.4) ? random.Int(1, 2) : 0; masks > 0; --masks)
   {
     EditMasks(volume, random, log);
   }
-  if (random.Chance(0.02))
+  if (!isLarge && random.Chance(0.02))
   {
     Spoil(volume, random, log);
   }
@@ -464,7 +480,7 @@ void EditVolume(vtkImageData* volume, Random& random, Geometry geometry, std::os
       SetSpacing(volume, random, geometry);
       break;
     case 5:
-      if (random.Chance(0.3))
+      if (random.Chance(volume->GetNumberOfPoints() > 20000 ? 0.0 : 0.3))
       {
         Spoil(volume, random, log);
       }

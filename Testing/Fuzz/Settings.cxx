@@ -63,7 +63,7 @@ void EditOutput(Settings& settings, vtkImageData* volume, Random& random, Geomet
 
 void EditMethod(Settings& settings, Random& random)
 {
-  switch (random.Int(0, 6))
+  switch (random.Int(0, 11))
   {
     case 0:
       settings.OutsideMode = random.Int(0, 1);
@@ -82,6 +82,16 @@ void EditMethod(Settings& settings, Random& random)
       settings.StreamInput = random.Chance(0.5);
       break;
     case 5:
+    case 9:
+      settings.SamplingFactor = random.Pick({ 1, 2, 4 });
+      break;
+    case 6:
+      settings.OpenSplits = random.Chance(0.5);
+      break;
+    case 7:
+      settings.FieldIsInverse = random.Chance(0.4);
+      break;
+    case 8:
       settings.CategoricalArrays = random.Chance(0.8) ? std::set<std::string>{ "label" }
                                                       : std::set<std::string>{ "value", "absent" };
       break;
@@ -117,12 +127,13 @@ void EditResources(Settings& settings, Random& random)
 void EditSettings(
   Settings& settings, vtkImageData* volume, Random& random, Geometry geometry, std::ostream& log)
 {
-  switch (random.Int(0, 2))
+  switch (random.Int(0, 3))
   {
     case 0:
       EditOutput(settings, volume, random, geometry);
       break;
     case 1:
+    case 2:
       EditMethod(settings, random);
       break;
     default:
@@ -138,7 +149,9 @@ void EditSettings(
       << s.CustomSpacing[0] << ' ' << s.CustomSpacing[1] << ' ' << s.CustomSpacing[2]
       << ") background " << s.BackgroundValue << " outside " << s.OutsideMode << " resampler "
       << s.Resampler << " interpolation " << s.Interpolation << " incremental " << s.Incremental
-      << " stream " << s.StreamInput << " device \"" << s.Device << "\" memory " << s.MemoryLimit
+      << " stream " << s.StreamInput << " factor " << s.SamplingFactor << " open splits "
+      << s.OpenSplits << " inverse " << s.FieldIsInverse << " deformed points "
+      << s.PointsAreDeformed << " device \"" << s.Device << "\" memory " << s.MemoryLimit
       << " work-group " << s.WorkGroupSize << " displacements \"" << s.Displacements
       << "\" categorical " << *s.CategoricalArrays.rbegin() << '\n';
 }
@@ -169,6 +182,10 @@ void Apply(const Settings& settings, vtkDeformVolumeFilter* filter)
   filter->SetInterpolation(settings.Interpolation);
   filter->SetIncremental(settings.Incremental);
   filter->SetStreamInput(settings.StreamInput);
+  filter->SetSamplingFactor(settings.SamplingFactor);
+  filter->SetOpenSplits(settings.OpenSplits);
+  filter->SetFieldIsInverse(settings.FieldIsInverse);
+  filter->SetPointsAreDeformed(settings.PointsAreDeformed);
   filter->SetDevice(settings.Device);
   filter->SetMemoryLimit(settings.MemoryLimit);
   filter->SetWorkGroupSize(settings.WorkGroupSize);

@@ -31,6 +31,10 @@ struct Settings
   int Interpolation = vtkDeformVolumeFilter::LINEAR_INTERPOLATION;
   bool Incremental = true;
   bool StreamInput = false;
+  int SamplingFactor = 1;
+  bool OpenSplits = false;
+  bool FieldIsInverse = false;
+  bool PointsAreDeformed = false;
   std::string Device;
   vtkTypeInt64 MemoryLimit = 0;
   int WorkGroupSize = 0;

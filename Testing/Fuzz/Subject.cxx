@@ -61,6 +61,7 @@ Outcome Subject::Update(const int* part, const double* time)
   outcome.Covered = this->Filter->GetNumberOfCoveredVoxels();
   outcome.Inverted = this->Filter->GetNumberOfInvertedTetrahedra();
   outcome.Flat = this->Filter->GetNumberOfFlatTetrahedra();
+  outcome.IsPart = this->Filter->GetNumberOfResampledBricks() < this->Filter->GetNumberOfBricks();
   outcome.Resampler = this->Filter->GetResamplerInUse();
   return outcome;
 }

@@ -51,6 +51,7 @@ struct Outcome
   vtkIdType Inverted = 0;
   vtkIdType Flat = 0;
   int Resampler = 0;
+  bool IsPart = false; // only some of its bricks were resampled
 };
 
 class Subject

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Meshes of many tetrahedra, whose nodes and cells change as in cuts and in refinement.
+#ifndef Fuzz_TetrahedronEdits_h
+#define Fuzz_TetrahedronEdits_h
+
+#include "Random.h"
+
+#include <vtkImageData.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <ostream>
+
+namespace fuzz
+{
+
+/// A lattice round a volume, so fine that a node moves a small part of it.
+vtkSmartPointer<vtkUnstructuredGrid> MakeFineLattice(
+  vtkImageData* volume, Random& random, std::ostream& log);
+
+/// Splits or joins nodes, refines or removes tetrahedra of a mesh with displacements, in place.
+/// False for meshes of other cells.
+bool EditTetrahedra(vtkUnstructuredGrid* mesh, Random& random, std::ostream& log);
+
+} // namespace fuzz
+
+#endif
