@@ -4,6 +4,8 @@
 #ifndef FilterTesting_h
 #define FilterTesting_h
 
+#include "../Reported.h"
+
 #include "vtkDeformVolumeFilter.h"
 #include "vtkLatticeTetrahedraSource.h"
 #include "vtkTestErrorObserver.h"

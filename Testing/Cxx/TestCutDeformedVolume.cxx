@@ -164,22 +164,6 @@ void TestParts()
   }
 }
 
-// Errors name the ports of the filter that was called, not those of vtkDeformVolumeFilter.
-void TestErrors()
-{
-  const auto volume = MakeVolume(Box);
-  vtkNew<vtkImageData> field; // without vectors
-  field->CopyStructure(volume);
-  Edited<vtkCutVolume> cut;
-  cut.Filter->SetInputData(volume);
-  cut.Filter->SetSheetData(MakePlaneX(volume, 3.5));
-  cut.Filter->SetDeformationData(field);
-  cut.Filter->Update();
-  const std::string error = cut.Observer->GetErrorMessage();
-  VERIFY(error.find("port 2") != std::string::npos);
-  VERIFY(error.find("port 1") == std::string::npos);
-}
-
 // A rank may have a part without cells, or none.
 void TestPartsWithoutCells()
 {
@@ -251,7 +235,6 @@ int TestCutDeformedVolume(int, char*[])
   TestChain();
   TestDeformed();
   TestParts();
-  TestErrors();
   TestPartsWithoutCells();
   TestGap();
   return GetExitCode();

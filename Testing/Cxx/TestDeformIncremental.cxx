@@ -78,8 +78,8 @@ void TestProperty()
 {
   vtkNew<vtkDeformVolumeFilter> filter;
   VERIFY(filter->GetIncremental());
-  VERIFY_EQUAL(filter->GetNumberOfBricks(), 0);
-  VERIFY_EQUAL(filter->GetNumberOfResampledBricks(), 0);
+  VERIFY_EQUAL(GetReported(filter, "Bricks of the volume"), 0);
+  VERIFY_EQUAL(GetReported(filter, "Bricks resampled"), 0);
   const vtkMTimeType time = filter->GetMTime();
   filter->IncrementalOff();
   VERIFY(filter->GetMTime() > time);

@@ -162,24 +162,24 @@ void TestAffineMap()
   VERIFY(covered > 5000);
 
   // What it tells: there is no mapping, and a moved mesh sends nothing.
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfMappingBuilds(), 0);
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfVolumeUploads(), 1);
-  VERIFY_EQUAL(deformed.Filter->GetPreprocessingTime(), 0.0);
-  VERIFY(deformed.Filter->GetMappingTime() > 0.0);
-  VERIFY(deformed.Filter->GetResamplingTime() > 0.0);
+  VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 0);
+  VERIFY_EQUAL(GetReported(deformed.Filter, "Volumes sent"), 1);
+  VERIFY_EQUAL(GetReportedSeconds(deformed.Filter, "Seconds for the static mapping"), 0.0);
+  VERIFY(GetReportedSeconds(deformed.Filter, "Seconds for mapping") > 0.0);
+  VERIFY(GetReportedSeconds(deformed.Filter, "Seconds for resampling") > 0.0);
   VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), 0);
   VERIFY_EQUAL(deformed.Filter->GetNumberOfFlatTetrahedra(), 0);
   SetDisplacements(mesh, [](const glm::dvec3& p) { return glm::dvec3(-p.x, p.y, p.z); });
   deformed.Update();
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfMappingBuilds(), 0);
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfVolumeUploads(), 1);
+  VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 0);
+  VERIFY_EQUAL(GetReported(deformed.Filter, "Volumes sent"), 1);
   VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), mesh->GetNumberOfCells());
   VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 5000);
 
   // To the other resampler and back.
   deformed.Filter->SetResamplerToExact();
   deformed.Update();
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfMappingBuilds(), 1);
+  VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 1);
   deformed.Filter->SetResamplerToMeshRasterization();
   SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
   deformed.Filter->SetOutputSpacingModeToVolumeSpacing();

@@ -321,18 +321,18 @@ public:
   {
     vtkDeformVolumeFilter* filter = this->Tested.Filter;
     this->Update(1);
-    VERIFY_EQUAL(filter->GetNumberOfMappingBuilds(), 1);
-    VERIFY_EQUAL(filter->GetNumberOfVolumeUploads(), 1);
+    VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 1);
+    VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 1);
     const vtkTypeInt64 bytes = filter->GetDeviceMemory();
     this->Update(2);
-    VERIFY_EQUAL(filter->GetNumberOfMappingBuilds(), 2);
-    VERIFY_EQUAL(filter->GetNumberOfVolumeUploads(), 2);
+    VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 2);
+    VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 2);
     VERIFY(filter->GetDeviceMemory() > bytes);
     for (const int factor : { 1, 2, 1, 2 })
     {
       // Nothing is built, sent or made, though the output is another one.
       this->Update(factor);
-      VERIFY_EQUAL(filter->GetPreprocessingTime(), 0.0);
+      VERIFY_EQUAL(GetReportedSeconds(filter, "Seconds for the static mapping"), 0.0);
       this->ExpectParts(true);
     }
     // What moves at one factor has moved at the other.
@@ -342,8 +342,8 @@ public:
       this->Update(factor);
       this->ExpectParts(false);
     }
-    VERIFY_EQUAL(filter->GetNumberOfMappingBuilds(), 2);
-    VERIFY_EQUAL(filter->GetNumberOfVolumeUploads(), 2);
+    VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 2);
+    VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 2);
 
     // Values and masks that change in place.
     for (const int factor : { 2, 1, 2, 1 })
@@ -353,7 +353,7 @@ public:
       values->Modified();
       this->Update(factor);
     }
-    VERIFY_EQUAL(filter->GetNumberOfVolumeUploads(), 6);
+    VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 6);
     MaskSome(this->Volume);
     for (const int factor : { 1, 2 })
     {
@@ -362,8 +362,8 @@ public:
       active->Modified();
       this->Update(factor);
     }
-    VERIFY_EQUAL(filter->GetNumberOfMappingBuilds(), 2);
-    VERIFY_EQUAL(filter->GetNumberOfVolumeUploads(), 7); // the last value, at 2
+    VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 2);
+    VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 7); // the last value, at 2
 
     // All is given back, and built anew.
     filter->ReleaseDeviceMemory();
@@ -371,7 +371,7 @@ public:
     filter->Modified();
     this->Update(1);
     this->Update(2);
-    VERIFY_EQUAL(filter->GetNumberOfMappingBuilds(), 4);
+    VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 4);
 
     // An error belongs to all factors.
     vtkDataArray* vectors = this->Mesh->GetPointData()->GetVectors();
@@ -416,8 +416,8 @@ private:
 
   void ExpectParts(bool nothing)
   {
-    const vtkIdType made = this->Tested.Filter->GetNumberOfResampledBricks();
-    const vtkIdType all = this->Tested.Filter->GetNumberOfBricks();
+    const vtkIdType made = GetReported(this->Tested.Filter, "Bricks resampled");
+    const vtkIdType all = GetReported(this->Tested.Filter, "Bricks of the volume");
     VERIFY(nothing ? made == 0 : made < all);
   }
 
@@ -455,7 +455,7 @@ void TestMemory()
     filter->SetSamplingFactor(factor);
     VERIFY(deformed.Update()->GetNumberOfPoints() > 0);
     VERIFY(filter->GetDeviceMemory() <= limit);
-    builds = filter->GetNumberOfMappingBuilds();
+    builds = GetReported(filter, "Static mappings made");
   }
   VERIFY(builds > 2);
   // With room for both they stay.
@@ -464,7 +464,7 @@ void TestMemory()
   {
     filter->SetSamplingFactor(factor);
     deformed.Update();
-    return filter->GetNumberOfMappingBuilds();
+    return GetReported(filter, "Static mappings made");
   };
   update(2);
   builds = update(1);

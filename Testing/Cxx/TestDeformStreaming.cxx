@@ -210,8 +210,8 @@ void TestRequests(const Case& from)
     streamer->SetNumberOfStreamDivisions(4);
     streamer->Update();
     VERIFY_EQUAL(streamed.Source->Made.size(), std::size_t{ 1 });
-    VERIFY_EQUAL(streamed.Filter->GetNumberOfVolumeUploads(), vtkTypeInt64{ 1 });
-    VERIFY_EQUAL(streamed.Filter->GetNumberOfMappingBuilds(), vtkTypeInt64{ 1 });
+    VERIFY_EQUAL(GetReported(streamed.Filter, "Volumes sent"), vtkTypeInt64{ 1 });
+    VERIFY_EQUAL(GetReported(streamed.Filter, "Static mappings made"), vtkTypeInt64{ 1 });
   }
   {
     // Beside the volume, there is nothing to read, and all is background.
@@ -219,7 +219,6 @@ void TestRequests(const Case& from)
     streamed.Filter->SetOutputBoundsModeToCustomBounds();
     streamed.Filter->SetCustomBounds(1000.0, 1010.0, 0.0, 9.0, 0.0, 9.0);
     streamed.Filter->SetBackgroundValue(5.0);
-    streamed.Filter->StreamInputOn();
     streamed.Filter->Update();
     VERIFY_EQUAL(streamed.TakeErrors(), 0);
     VERIFY(10 * streamed.Source->GetMost() < all);

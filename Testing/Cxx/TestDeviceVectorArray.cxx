@@ -299,8 +299,9 @@ void TestFilter(bool byField)
     // A device with memory of its own resamples a part of the volume for a field with a log, from
     // the second logged change on: the first one finds the bounds that the next are compared with.
     const bool inPart = !ownMemory || (byField && frame > firstLogged);
-    VERIFY_EQUAL(found.Filter->GetNumberOfResampledBricks(),
-      inPart ? expected.Filter->GetNumberOfResampledBricks() : found.Filter->GetNumberOfBricks());
+    VERIFY_EQUAL(GetReported(found.Filter, "Bricks resampled"),
+      inPart ? GetReported(expected.Filter, "Bricks resampled")
+             : GetReported(found.Filter, "Bricks of the volume"));
   }
   // A coarse volume, and vectors that are deformed themselves.
   for (Deformed* one : { &expected, &found })

@@ -268,8 +268,8 @@ private:
       one->Filter->SetRelaxationSweeps(this->Sweeps);
     }
     vtkImageData* output = this->Output.Update();
-    const bool isPart =
-      this->Output.Filter->GetNumberOfResampledBricks() < this->Output.Filter->GetNumberOfBricks();
+    const bool isPart = GetReported(this->Output.Filter, "Bricks resampled") <
+      GetReported(this->Output.Filter, "Bricks of the volume");
 
     const auto cut = this->Cuts.MakeAgain(this->Volume);
     const auto edited = this->Carvings.MakeAgain(cut);

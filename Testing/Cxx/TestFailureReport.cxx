@@ -105,20 +105,14 @@ void TestMessages(vtkImageData* volume, vtkUnstructuredGrid* mesh)
   VERIFY(display.CountErrors() > 5);
 }
 
-void TestDeviceChoices(vtkImageData* volume, vtkUnstructuredGrid* mesh)
+void TestDevices(vtkImageData* volume, vtkUnstructuredGrid* mesh)
 {
   Deformed deformed(volume, mesh);
-  vtkStringArray* choices = deformed.Filter->GetDeviceChoices();
-  VERIFY_EQUAL(choices, deformed.Filter->GetDeviceChoices());
   vtkSmartPointer<vtkStringArray> names;
   names.TakeReference(vtkDeformVolumeFilter::GetDeviceNames());
   VERIFY(names->GetNumberOfValues() > 0);
-  VERIFY_EQUAL(std::string(choices->GetValue(0)), std::string("best"));
-  VERIFY_EQUAL(std::string(choices->GetValue(1)), std::string("cpu"));
-  VERIFY_EQUAL(std::string(choices->GetValue(2)), std::string("gpu"));
   for (vtkIdType i = 0; i < names->GetNumberOfValues(); ++i)
   {
-    VERIFY(choices->LookupValue(names->GetValue(i).c_str()) >= 3);
     deformed.Filter->SetDevice(names->GetValue(i));
     deformed.Update();
     VERIFY_EQUAL(deformed.Filter->GetDeviceInUse(), std::string(names->GetValue(i)));
@@ -138,7 +132,7 @@ int TestFailureReport(int, char*[])
   auto volume = MakeVolume();
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
-  TestDeviceChoices(volume, mesh);
+  TestDevices(volume, mesh);
   TestMessages(volume, mesh);
   TestSources();
   return GetExitCode();

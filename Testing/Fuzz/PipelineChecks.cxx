@@ -173,7 +173,8 @@ std::string Pipeline::Check()
   settings.Incremental = settings.Incremental && this->Random.Chance(0.5);
   Apply(settings, other.GetFilter());
   // Where a part of the volume is read, a mesh beside it is no error.
-  const bool streamed = this->VolumeInParts && this->Settings.StreamInput;
+  const bool streamed =
+    this->VolumeInParts && this->Settings.OutputBoundsMode == vtkDeformVolumeFilter::CUSTOM_BOUNDS;
   this->Connect(other, this->Random.Chance(0.3) && !streamed);
   Outcome fresh = other.Update(nullptr, time);
 

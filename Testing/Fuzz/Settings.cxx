@@ -76,10 +76,8 @@ void EditMethod(Settings& settings, Random& random)
       settings.Interpolation = random.Chance(0.3) ? 1 : 0;
       break;
     case 3:
-      settings.Incremental = random.Chance(0.7);
-      break;
     case 4:
-      settings.StreamInput = random.Chance(0.5);
+      settings.Incremental = random.Chance(0.7);
       break;
     case 5:
     case 9:
@@ -104,7 +102,7 @@ void EditMethod(Settings& settings, Random& random)
 
 void EditResources(Settings& settings, Random& random)
 {
-  switch (random.Int(0, 3))
+  switch (random.Int(0, 2))
   {
     case 0:
       settings.Device =
@@ -113,9 +111,6 @@ void EditResources(Settings& settings, Random& random)
     case 1:
       settings.MemoryLimit =
         random.Chance(0.3) ? random.Pick({ vtkTypeInt64(1000), vtkTypeInt64(300000) }) : 0;
-      break;
-    case 2:
-      settings.WorkGroupSize = random.Pick({ 0, 1, 32, 64, 1024 });
       break;
     default:
       settings.Displacements = random.Chance(0.1) ? "absent" : random.Pick({ "", "U" });
@@ -149,10 +144,9 @@ void EditSettings(
       << s.CustomSpacing[0] << ' ' << s.CustomSpacing[1] << ' ' << s.CustomSpacing[2]
       << ") background " << s.BackgroundValue << " outside " << s.OutsideMode << " resampler "
       << s.Resampler << " interpolation " << s.Interpolation << " incremental " << s.Incremental
-      << " stream " << s.StreamInput << " factor " << s.SamplingFactor << " open splits "
-      << s.OpenSplits << " inverse " << s.FieldIsInverse << " deformed points "
-      << s.PointsAreDeformed << " device \"" << s.Device << "\" memory " << s.MemoryLimit
-      << " work-group " << s.WorkGroupSize << " displacements \"" << s.Displacements
+      << " factor " << s.SamplingFactor << " open splits " << s.OpenSplits << " inverse "
+      << s.FieldIsInverse << " deformed points " << s.PointsAreDeformed << " device \"" << s.Device
+      << "\" memory " << s.MemoryLimit << " displacements \"" << s.Displacements
       << "\" categorical " << *s.CategoricalArrays.rbegin() << '\n';
 }
 
@@ -181,14 +175,12 @@ void Apply(const Settings& settings, vtkDeformVolumeFilter* filter)
   filter->SetResampler(settings.Resampler);
   filter->SetInterpolation(settings.Interpolation);
   filter->SetIncremental(settings.Incremental);
-  filter->SetStreamInput(settings.StreamInput);
   filter->SetSamplingFactor(settings.SamplingFactor);
   filter->SetOpenSplits(settings.OpenSplits);
   filter->SetFieldIsInverse(settings.FieldIsInverse);
   filter->SetPointsAreDeformed(settings.PointsAreDeformed);
   filter->SetDevice(settings.Device);
   filter->SetMemoryLimit(settings.MemoryLimit);
-  filter->SetWorkGroupSize(settings.WorkGroupSize);
   filter->SetInputArrayToProcess(
     0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, settings.Displacements.c_str());
 }

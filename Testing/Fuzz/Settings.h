@@ -30,14 +30,12 @@ struct Settings
   int Resampler = vtkDeformVolumeFilter::AUTOMATIC;
   int Interpolation = vtkDeformVolumeFilter::LINEAR_INTERPOLATION;
   bool Incremental = true;
-  bool StreamInput = false;
   int SamplingFactor = 1;
   bool OpenSplits = false;
   bool FieldIsInverse = false;
   bool PointsAreDeformed = false;
   std::string Device;
   vtkTypeInt64 MemoryLimit = 0;
-  int WorkGroupSize = 0;
   /// The name of the displacements; "" stands for what the filter takes by itself.
   std::string Displacements;
 };

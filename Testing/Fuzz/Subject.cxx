@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Subject.h"
 
+#include "../Reported.h"
+
 #include <vtkObjectFactory.h>
 
 namespace fuzz
@@ -61,7 +63,8 @@ Outcome Subject::Update(const int* part, const double* time)
   outcome.Covered = this->Filter->GetNumberOfCoveredVoxels();
   outcome.Inverted = this->Filter->GetNumberOfInvertedTetrahedra();
   outcome.Flat = this->Filter->GetNumberOfFlatTetrahedra();
-  outcome.IsPart = this->Filter->GetNumberOfResampledBricks() < this->Filter->GetNumberOfBricks();
+  outcome.IsPart = GetReported(this->Filter, "Bricks resampled") <
+    GetReported(this->Filter, "Bricks of the volume");
   outcome.Resampler = this->Filter->GetResamplerInUse();
   return outcome;
 }
