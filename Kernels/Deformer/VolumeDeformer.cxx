@@ -5,9 +5,14 @@
 #include "FieldParameters.h"
 #include "MemoryNeeds.h"
 #include "MeshChecks.h"
+#include "ParallelFor.h"
+#include "VectorReading.h"
 #include "VolumeDeformerInternals.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <utility>
 
 namespace deformvolume
 {
@@ -44,6 +49,34 @@ void CheckArrays(const std::vector<VolumeArray>& arrays)
   }
 }
 
+// Vectors of undefined points are not-a-number on all axes, others finite and not too large.
+void CheckInverseVectors(const DisplacementField& field)
+{
+  const auto count = static_cast<std::size_t>(CountPoints(field));
+  std::atomic<std::size_t> bad{ count };
+  constexpr std::size_t step = 16384;
+  ParallelForParts(count, step,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t point = begin; point < end; ++point)
+      {
+        const float* v = field.Vectors + 3 * point;
+        const auto isGood = [](float component)
+        { return std::abs(component) <= LargestDisplacement; };
+        const bool isUndefined = std::isnan(v[0]) && std::isnan(v[1]) && std::isnan(v[2]);
+        if (!isUndefined && !std::all_of(v, v + 3, isGood))
+        {
+          Lower(bad, point);
+          return;
+        }
+      }
+    });
+  if (bad < count)
+  {
+    ThrowBadDisplacement("point", bad);
+  }
+}
+
 } // namespace
 
 VolumeDeformer::VolumeDeformer()
@@ -55,28 +88,34 @@ VolumeDeformer::~VolumeDeformer() = default;
 
 std::string VolumeDeformer::SetDevice(const std::string& request)
 {
-  return this->Impl->Guard(
+  Internals& impl = *this->Impl;
+  return impl.Guard(
     [&]
     {
-      this->Impl->GetBudget().ForgetSystemMemory();
-      this->Impl->SelectDevice(request);
-      return this->Impl->GetDevice().GetDevice().Name;
+      impl.Budget.ForgetSystemMemory();
+      OpenCLContext& context = OpenCLContext::Get(FindDevice(request));
+      if (!impl.Device.Uses(context))
+      {
+        impl.Forget();
+        impl.Device.Use(context);
+      }
+      return impl.Device.GetDevice().Name;
     });
 }
 
 void VolumeDeformer::SetMemoryLimit(std::uint64_t bytes)
 {
-  this->Impl->GetBudget().SetLimit(bytes);
+  this->Impl->Budget.SetLimit(bytes);
 }
 
 void VolumeDeformer::SetAllocationLimit(std::uint64_t bytes)
 {
-  this->Impl->GetDevice().SetAllocationLimit(bytes);
+  this->Impl->Device.SetAllocationLimit(bytes);
 }
 
 void VolumeDeformer::SetWorkGroupSize(std::size_t size)
 {
-  this->Impl->GetDevice().SetWorkGroupSize(size);
+  this->Impl->Device.SetWorkGroupSize(size);
 }
 
 void VolumeDeformer::CheckMemory(const VoxelGrid& voxelGrid, const std::vector<VolumeArray>& arrays,
@@ -86,9 +125,7 @@ void VolumeDeformer::CheckMemory(const VoxelGrid& voxelGrid, const std::vector<V
   const DeformationSize size{ voxelGrid, arrays, outputExtent, numberOfNodes, numberOfTetrahedra,
     GetMappingBytes(voxelGrid, field, runBytes), false };
   this->Impl->Guard(
-    [&] {
-      deformvolume::CheckMemory(this->Impl->GetDevice(), this->Impl->GetBudget(), size, heldBytes);
-    });
+    [&] { deformvolume::CheckMemory(this->Impl->Device, this->Impl->Budget, size, heldBytes); });
 }
 
 void VolumeDeformer::CheckRasterizationMemory(const VoxelGrid& voxelGrid,
@@ -98,44 +135,62 @@ void VolumeDeformer::CheckRasterizationMemory(const VoxelGrid& voxelGrid,
   const DeformationSize size{ voxelGrid, arrays, outputExtent, numberOfNodes, numberOfTetrahedra, 0,
     true };
   this->Impl->Guard(
-    [&] {
-      deformvolume::CheckMemory(this->Impl->GetDevice(), this->Impl->GetBudget(), size, heldBytes);
-    });
+    [&] { deformvolume::CheckMemory(this->Impl->Device, this->Impl->Budget, size, heldBytes); });
 }
 
 void VolumeDeformer::SetVoxelGrid(
   const VoxelGrid& voxelGrid, std::size_t bytesPerVoxel, bool withLinks)
 {
   CheckGrid(voxelGrid);
-  this->Impl->Guard([&] { this->Impl->SetVolume(voxelGrid, bytesPerVoxel, withLinks); });
+  Internals& impl = *this->Impl;
+  impl.Guard(
+    [&]
+    {
+      impl.Forget(); // its memory is free for the next one
+      impl.All = std::make_unique<Internals::Parts>(
+        impl.Device, impl.Budget, voxelGrid, bytesPerVoxel, withLinks);
+    });
 }
 
 void VolumeDeformer::SetArrays(const std::vector<VolumeArray>& arrays)
 {
   CheckArrays(arrays);
-  this->Impl->Send([&](VolumeDeformation& volume) { volume.SetArrays(arrays); });
+  this->Impl->Send(
+    [&](Internals::Parts& parts)
+    {
+      parts.Incremental.Forget();
+      parts.Volume.SetArrays(arrays, parts.Source.GetFieldInPlace());
+    });
 }
 
 void VolumeDeformer::SetArrayOptions(const std::vector<VolumeArray>& arrays)
 {
-  this->Impl->GetVolume().SetArrayOptions(arrays);
+  Internals::Parts& parts = this->Impl->GetParts();
+  if (parts.Volume.SetArrayOptions(arrays))
+  {
+    parts.Incremental.Forget();
+  }
 }
 
 void VolumeDeformer::SetBlanked(
   const unsigned char* blanked, unsigned char bits, const PointRanges* written)
 {
-  this->Impl->Send([&](VolumeDeformation& volume) { volume.SetBlanked(blanked, bits, written); });
+  this->Impl->Send([&](Internals::Parts& parts)
+    { parts.Incremental.ChangeMask(parts.Volume.SetBlanked(blanked, bits, written), false); });
 }
 
 void VolumeDeformer::SetActiveTetrahedra(const unsigned char* active, const PointRanges* written)
 {
-  this->Impl->Send([&](VolumeDeformation& volume) { volume.SetActiveTetrahedra(active, written); });
+  this->Impl->Send([&](Internals::Parts& parts)
+    { parts.Incremental.ChangeMask(parts.Volume.SetActive(active, written), true); });
 }
 
 void VolumeDeformer::SetBoundaryDistances(const float* distances, const PointRanges* written)
 {
   this->Impl->Send(
-    [&](VolumeDeformation& volume) { volume.SetBoundaryDistances(distances, written); });
+    [&](Internals::Parts& parts) {
+      parts.Incremental.ChangeMask(parts.Volume.SetBoundaryDistances(distances, written), false);
+    });
 }
 
 void VolumeDeformer::SetCut(const unsigned char* crossed, const float* distances)
@@ -144,77 +199,142 @@ void VolumeDeformer::SetCut(const unsigned char* crossed, const float* distances
   {
     throw Error("A cut needs both the crossed tetrahedra and the distances of the voxels.");
   }
-  this->Impl->Send([&](VolumeDeformation& volume) { volume.SetCut(crossed, distances); });
+  this->Impl->Send(
+    [&](Internals::Parts& parts)
+    {
+      const int reach = parts.Volume.GetBricks().Reach;
+      const std::vector<Extent> changes = parts.Volume.SetCut(crossed, distances);
+      if (reach != parts.Volume.GetBricks().Reach)
+      {
+        parts.Source.ChangeReach();
+      }
+      parts.Incremental.ChangeCut(changes);
+    });
 }
 
 void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
   std::size_t numberOfNodes, const VertexLink* links, const MeshBoundary* boundary)
 {
   CheckMesh(links ? tetrahedra : nullptr, numberOfTetrahedra, numberOfNodes);
-  this->Impl->Send([&](VolumeDeformation& volume)
-    { volume.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, links, boundary); });
+  this->Impl->Send([&](Internals::Parts& parts)
+    { parts.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, links, boundary); });
 }
 
 void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
   std::size_t numberOfNodes, const VertexRuns& runs, const MeshBoundary* boundary)
 {
   CheckMesh(tetrahedra, numberOfTetrahedra, numberOfNodes);
-  this->Impl->Send([&](VolumeDeformation& volume)
-    { volume.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, runs, boundary); });
+  this->Impl->Send([&](Internals::Parts& parts)
+    { parts.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, runs, boundary); });
 }
 
 void VolumeDeformer::ChangeConnectivity(const Tetrahedron* tetrahedra,
   std::size_t numberOfTetrahedra, std::size_t numberOfNodes,
   const std::vector<TetrahedronChange>* changes)
 {
-  this->Impl->Send([&](VolumeDeformation& volume)
-    { volume.ChangeConnectivity(tetrahedra, numberOfTetrahedra, numberOfNodes, changes); });
+  this->Impl->Send(
+    [&](Internals::Parts& parts)
+    {
+      if (!tetrahedra && !parts.Exact.GetBoundary().IsEmpty())
+      {
+        throw Error("All tetrahedra are needed where the mesh ends within the volume.");
+      }
+      parts.Source.ChangeConnectivity(tetrahedra, numberOfTetrahedra, numberOfNodes, changes);
+      parts.Exact.GetBoundary().SetCorners(tetrahedra);
+    });
 }
 
 void VolumeDeformer::SetNodePlaces(const std::int32_t* places)
 {
-  this->Impl->Send([&](VolumeDeformation& volume) { volume.SetNodePlaces(places); });
+  this->Impl->Send(
+    [&](Internals::Parts& parts)
+    {
+      const bool wasOn = parts.Volume.LeavesOutBridges();
+      parts.Source.SetNodePlaces(places);
+      if (wasOn != parts.Volume.LeavesOutBridges())
+      {
+        parts.Incremental.Forget();
+      }
+    });
 }
 
 void VolumeDeformer::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
   std::size_t numberOfNodes, const double* restNodes)
 {
   CheckMesh(restNodes ? tetrahedra : nullptr, numberOfTetrahedra, numberOfNodes);
-  this->Impl->Send([&](VolumeDeformation& volume)
-    { volume.SetRestMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, restNodes); });
+  this->Impl->Send(
+    [&](Internals::Parts& parts)
+    {
+      parts.SetBoundary({}, {}, nullptr);
+      parts.Source.Forget();
+      parts.Rasterizer.SetMesh(tetrahedra, numberOfTetrahedra, restNodes, numberOfNodes);
+    });
 }
 
 void VolumeDeformer::SetInverseField(const DisplacementField& field)
 {
   CountPoints(field); // throws where there are none
-  this->Impl->Send([&](VolumeDeformation& volume) { volume.SetInverseField(field); });
+  this->Impl->Send(
+    [&](Internals::Parts& parts)
+    {
+      CheckInverseVectors(field);
+      parts.SetBoundary({}, {}, nullptr);
+      parts.Source.Forget();
+      parts.Rasterizer.SetField(field);
+    });
 }
 
 void VolumeDeformer::SetNodeDisplacements(
   const float* displacements, const PointRanges* changes, bool areChecked)
 {
-  this->Impl->Send([&](VolumeDeformation& volume)
-    { volume.SetNodeDisplacements(displacements, changes, areChecked); });
+  this->Impl->Send([&](Internals::Parts& parts)
+    { parts.SetNodeDisplacements(displacements, changes, areChecked); });
 }
 
 void VolumeDeformer::SetDisplacementField(
   const DisplacementField& field, const PointRanges* changes)
 {
   CountPoints(field); // throws where there are none
-  this->Impl->Send([&](VolumeDeformation& volume) { volume.SetDisplacementField(field, changes); });
+  this->Impl->Send(
+    [&](Internals::Parts& parts)
+    {
+      parts.Rasterizer.Clear();
+      parts.Source.SetField(field, changes);
+      parts.UpdateFieldBoundary(field);
+    });
 }
 
 void VolumeDeformer::SetNodeDisplacements(
   const std::shared_ptr<DeviceVectors>& vectors, const std::array<double, 9>& toDisplacement)
 {
   this->Impl->Send(
-    [&](VolumeDeformation& volume) { volume.SetNodeDisplacements(vectors, toDisplacement); });
+    [&](Internals::Parts& parts)
+    {
+      if (!parts.Rasterizer.HasMesh())
+      {
+        parts.CheckMesh();
+        parts.Source.SetNodeDisplacements(vectors, toDisplacement);
+        return;
+      }
+      // The nodes of a rasterised mesh come from the host.
+      DisplacementField field;
+      field.ToDisplacement = toDisplacement;
+      VectorReading reading(this->Impl->Device);
+      reading.Begin(vectors, field, parts.Rasterizer.GetNumberOfNodes());
+      parts.SetNodeDisplacements(reading.GetDisplacements({}), nullptr, false);
+    });
 }
 
 void VolumeDeformer::SetDisplacementField(
   const DisplacementField& field, const std::shared_ptr<DeviceVectors>& vectors)
 {
-  this->Impl->Send([&](VolumeDeformation& volume) { volume.SetDisplacementField(field, vectors); });
+  this->Impl->Send(
+    [&](Internals::Parts& parts)
+    {
+      parts.Source.SetField(field, vectors);
+      parts.UpdateFieldBoundary(field);
+      parts.Rasterizer.Clear();
+    });
 }
 
 DeformReport VolumeDeformer::Deform(const DeformRequest& request)
@@ -223,12 +343,12 @@ DeformReport VolumeDeformer::Deform(const DeformRequest& request)
   {
     throw Error("The extent of the output is empty.");
   }
-  VolumeDeformation& volume = this->Impl->GetVolume();
-  volume.CheckRequest(request);
-  const MemoryBudget::UpdateGuard guard(this->Impl->GetBudget());
+  Internals::Parts& parts = this->Impl->GetParts();
+  parts.CheckRequest(request);
+  const MemoryBudget::UpdateGuard guard(this->Impl->Budget);
   const CompilationWatch compilation(request.Compiling);
-  DeformReport report = this->Impl->Guard([&] { return volume.Deform(request); });
-  report.TransferTime += this->Impl->TakeSendingTime();
+  DeformReport report = this->Impl->Guard([&] { return parts.Deform(request); });
+  report.TransferTime += std::exchange(this->Impl->SendingTime, 0.0);
   report.CompilationTime = compilation.GetSeconds();
   return report;
 }
@@ -240,7 +360,7 @@ std::uint64_t VolumeDeformer::GetDeviceMemory() const
 
 void VolumeDeformer::ReleaseMemory()
 {
-  this->Impl->GetBudget().ForgetSystemMemory();
+  this->Impl->Budget.ForgetSystemMemory();
   this->Impl->Forget();
 }
 

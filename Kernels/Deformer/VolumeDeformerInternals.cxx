@@ -1,55 +1,211 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VolumeDeformerInternals.h"
 
+#include "FieldParameters.h"
+#include "SlabLoop.h"
+
+#include <algorithm>
+
 namespace deformvolume
 {
 
-VolumeDeformer::Internals::Internals()
-  : Budget(this->Device, [this] { return this->GetMemory(); })
-{
-}
-
-double VolumeDeformer::Internals::TakeSendingTime()
-{
-  const double seconds = this->SendingTime;
-  this->SendingTime = 0.0;
-  return seconds;
-}
-
-void VolumeDeformer::Internals::SelectDevice(const std::string& request)
-{
-  OpenCLContext& context = OpenCLContext::Get(FindDevice(request));
-  if (!this->Device.Uses(context))
-  {
-    this->Forget();
-    this->Device.Use(context);
-  }
-}
-
-void VolumeDeformer::Internals::SetVolume(
+VolumeDeformer::Internals::Parts::Parts(WorkDevice& device, MemoryBudget& budget,
   const VoxelGrid& voxelGrid, std::size_t bytesPerVoxel, bool withLinks)
+  : Device(device)
+  , Budget(budget)
+  , Volume(device.GetContext(), device.GetQueue(), voxelGrid, bytesPerVoxel,
+      device.GetAllocationLimit(), withLinks)
+  , Incremental(device, this->Volume)
+  , Source(device, this->Volume, this->Incremental.GetObserver())
+  , Exact(device, budget, this->Volume, this->Source)
+  , Rasterizer(device, this->Volume)
 {
-  this->Forget(); // its memory is free for the next one
-  this->Volume = std::make_unique<VolumeDeformation>(
-    this->Device, this->Budget, voxelGrid, bytesPerVoxel, withLinks);
 }
 
-void VolumeDeformer::Internals::Forget()
+void VolumeDeformer::Internals::Parts::SetBoundary(const MeshBoundary& boundary,
+  const std::vector<std::int32_t>& numbers, const Tetrahedron* tetrahedra)
 {
-  if (this->Volume)
+  this->BoundaryField = DisplacementField();
+  try
   {
-    this->Volume->BringOutput(); // or it would keep its memory of the device
-    this->Volume.reset();
+    this->Exact.GetBoundary().Set(boundary, numbers, tetrahedra);
+    this->Volume.SetBoundary(boundary, numbers);
+  }
+  catch (...)
+  {
+    this->Exact.GetBoundary().Clear();
+    this->Source.Forget(); // without its boundary the deformation would lack a layer
+    throw;
   }
 }
 
-VolumeDeformation& VolumeDeformer::Internals::GetVolume() const
+void VolumeDeformer::Internals::Parts::UpdateFieldBoundary(const DisplacementField& field)
 {
-  if (!this->Volume)
+  DisplacementField& last = this->BoundaryField;
+  if (field.Dimensions == last.Dimensions && field.IndexToField == last.IndexToField &&
+    field.Extrapolate == last.Extrapolate)
   {
-    throw Error("No volume is set: call SetVoxelGrid first.");
+    return;
   }
-  return *this->Volume;
+  const VoxelGrid& grid = this->Volume.GetVoxelGrid();
+  MeshBoundary boundary;
+  if (!field.Extrapolate)
+  {
+    boundary = FindFieldBoundary(grid.VertexExtent, GetWholeExtent(grid), field);
+  }
+  this->SetBoundary(boundary, {}, nullptr);
+  // Other points move the bricks at the boundary.
+  this->Incremental.GetObserver().ForgetMapping();
+  last.Dimensions = field.Dimensions;
+  last.IndexToField = field.IndexToField;
+  last.Extrapolate = field.Extrapolate;
+}
+
+void VolumeDeformer::Internals::Parts::CheckMesh() const
+{
+  if (!this->Source.HasMesh())
+  {
+    throw Error("No deformation mesh is set: call SetMesh first.");
+  }
+}
+
+void VolumeDeformer::Internals::Parts::SetNodeDisplacements(
+  const float* displacements, const PointRanges* changes, bool areChecked)
+{
+  if (this->Rasterizer.HasMesh())
+  {
+    if (!areChecked)
+    {
+      CheckDisplacements(displacements, this->Rasterizer.GetNumberOfNodes(), "node", nullptr);
+    }
+    this->Rasterizer.SetDisplacements(displacements);
+    return;
+  }
+  this->CheckMesh();
+  this->Source.SetNodeDisplacements(displacements, changes, areChecked);
+}
+
+void VolumeDeformer::Internals::Parts::CheckRequest(const DeformRequest& request) const
+{
+  const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
+  const bool rasterized = request.Method == Resampling::MeshRasterization;
+  if (arrays.empty())
+  {
+    throw Error("No arrays are set: call SetArrays first.");
+  }
+  if (request.Method == Resampling::Published && this->Volume.HasDistances())
+  {
+    throw Error("The published resampler knows no boundary distances. Use the resampler Exact or "
+                "MeshRasterization, or call SetBoundaryDistances with null.");
+  }
+  if (request.Method == Resampling::Published && this->Volume.HasCut())
+  {
+    throw Error("The published resampler knows no smooth cuts. Use the resampler Exact, or call "
+                "SetCut with null.");
+  }
+  if (rasterized && this->Volume.HasCut())
+  {
+    throw Error("The resampler MeshRasterization knows no smooth cuts, since it looks at the "
+                "deformation mesh only. Use the resampler Exact, or call SetCut with null.");
+  }
+  if (!rasterized && request.Interpolation != Interpolation::Linear)
+  {
+    throw Error("Cubic interpolation is there only with the resampler MeshRasterization.");
+  }
+  if (rasterized && !this->Rasterizer.IsReady())
+  {
+    throw Error("The resampler MeshRasterization needs a deformation mesh with its rest positions: "
+                "call SetRestMesh and SetNodeDisplacements, or SetInverseField, first. For a "
+                "forward displacement field use the resampler Exact.");
+  }
+  if (!rasterized && !this->Source.IsReady())
+  {
+    throw Error("No deformation is set: call SetMesh and SetNodeDisplacements, or "
+                "SetDisplacementField, first.");
+  }
+  if (!request.HeldRevisions.empty() && request.HeldRevisions.size() != arrays.size() + 1)
+  {
+    throw Error("The request must tell the held revision of each array and of the coverage, or of "
+                "none.");
+  }
+  if (request.Outputs.size() != arrays.size() || !request.Coverage ||
+    std::count(request.Outputs.begin(), request.Outputs.end(), nullptr))
+  {
+    throw Error("The request must have room for each array of the volume and for the coverage.");
+  }
+}
+
+DeformationSize VolumeDeformer::Internals::Parts::GetSize(const DeformRequest& request) const
+{
+  const VoxelGrid& grid = this->Volume.GetVoxelGrid();
+  const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
+  const std::uint64_t boundary = this->Exact.GetBoundary().GetMemory() +
+    (this->Volume.HasBoundary()
+        ? 2 * static_cast<std::uint64_t>(GetNumberOfCells(grid.VertexExtent))
+        : 0);
+  if (request.Method == Resampling::MeshRasterization)
+  {
+    return { grid, arrays, request.OutputExtent, this->Rasterizer.GetNumberOfNodes(),
+      this->Rasterizer.GetNumberOfTetrahedra(), 0, true, this->Volume.HasDistances() };
+  }
+  return { grid, arrays, request.OutputExtent, this->Source.GetNumberOfNodes(),
+    this->Source.GetNumberOfTetrahedra(),
+    boundary + GetMappingBytes(grid, !this->Volume.HasMesh(), this->Volume.GetRunBytes()), false,
+    this->Volume.HasDistances() };
+}
+
+DeformReport VolumeDeformer::Internals::Parts::Deform(const DeformRequest& request)
+{
+  this->BringOutput(); // its memory is that of the next one
+  this->Volume.ReadArraysAgain();
+  this->Source.ReadFieldAgain();
+  const std::uint64_t spare = CheckDeviceMemory(this->Device, this->Budget, this->GetSize(request),
+    OutputSlab::GetBytesPerVoxel(
+      this->Device.GetContext(), this->Volume.GetVolumeArrays(), request));
+  const bool isRasterized = request.Method == Resampling::MeshRasterization;
+  DeformReport report =
+    isRasterized ? this->Rasterize(request, spare) : this->Resample(request, spare);
+  this->Unread.Set(report.DeviceOutputs, isRasterized);
+  return report;
+}
+
+DeformReport VolumeDeformer::Internals::Parts::Resample(
+  const DeformRequest& request, std::uint64_t spare)
+{
+  this->Exact.Start();
+  // Before anything is planned that depends on masks.
+  this->Incremental.ChangeMask(this->Source.UpdateBridges(), true);
+  DeformReport report;
+  report.NumberOfBricks = static_cast<std::int64_t>(this->Volume.GetBricks().GetNumberOfBricks());
+  if (!this->Incremental.Update(request, this->Source, this->Exact, report))
+  {
+    MakeSlabs(this->Exact, this->Device, this->Volume, request, spare, report);
+    report.NumberOfResampledBricks = report.NumberOfBricks;
+    report.ChangedExtent = request.OutputExtent;
+    if (request.Incremental && this->Exact.CanMakeAgain())
+    {
+      this->Incremental.Start(request, this->Source, report);
+    }
+  }
+  this->Exact.AddTimes(report);
+  return report;
+}
+
+DeformReport VolumeDeformer::Internals::Parts::Rasterize(
+  const DeformRequest& request, std::uint64_t spare)
+{
+  this->Incremental.Forget();
+  DeformReport report;
+  // As much again for lists of tetrahedra that are longer than was foreseen.
+  MakeSlabs(this->Rasterizer, this->Device, this->Volume, request, spare / 2, report);
+  report.ChangedExtent = request.OutputExtent;
+  return report;
+}
+
+std::uint64_t VolumeDeformer::Internals::Parts::GetMemory() const
+{
+  return this->Volume.GetMemory() + this->Source.GetMemory() + this->Rasterizer.GetMemory() +
+    this->Exact.GetMemory() + this->Unread.GetMemory();
 }
 
 } // namespace deformvolume
