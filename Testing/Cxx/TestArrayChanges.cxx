@@ -189,9 +189,16 @@ void TestFilter()
   ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
   ghosts->SetNumberOfTuples(volume->GetNumberOfCells());
   ghosts->Fill(0);
-  ghosts->SetValue(20 * 900 + 15 * 30 + 15, vtkDataSetAttributes::HIDDENCELL);
+  for (int i = 0; i < 8; ++i)
+  {
+    ghosts->SetValue(
+      (20 + i / 4) * 900 + (15 + i / 2 % 2) * 30 + 15 + i % 2, vtkDataSetAttributes::HIDDENCELL);
+  }
+  const auto shown = update();
   volume->GetCellData()->AddArray(ghosts);
-  VERIFY(AreEqual(update(), fresh()));
+  const auto hidden = update();
+  VERIFY(!AreEqual(hidden, shown));
+  VERIFY(AreEqual(hidden, fresh()));
   volume->GetCellData()->RemoveArray(ghosts->GetName());
   VERIFY(AreEqual(update(), fresh()));
 }
