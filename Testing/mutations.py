@@ -352,7 +352,7 @@ MUTATIONS = {
                         ["Cxx.TestUndefinedVectors"]),
     "field-log": ("Filters/Input/DeformationField.cxx", "written ? this->VectorsVersion : NoVersion;",
                   "this->VectorsVersion;", [PIPELINES]),
-    "split-places": ("Filters/Engine/DeviceSession.cxx", "|| (openSplits && (hasSplit || update))", "", [PIPELINES]),
+    "split-places": ("Filters/Engine/DeviceSession.cxx", "|| (openSplits && hasSplit)", "", [PIPELINES]),
     "split-shape": ("Filters/Input/RestMesh.cxx",
                     "inPlace &= this->Points[change.Before[k]] == this->Points[change.After[k]];",
                     "inPlace &= change.Before[k] >= 0;", [PIPELINES]),
