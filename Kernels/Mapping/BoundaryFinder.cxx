@@ -19,6 +19,9 @@ namespace
 // Cells on an axis of a piece at most: edge functions have 64 bits, which hold those of pieces that
 // span up to 5,000 output voxels.
 constexpr double LargestPiece = 128.0;
+// Tetrahedra over so many cells are halved across their longest edge. Where all of their edges were
+// halved, one with a node far away would fall into (its length / 128)^2 slivers within the volume.
+constexpr double LargestDivided = 4096.0;
 
 // The cells between voxels.
 Extent GetCells(const Extent& voxels)
@@ -113,6 +116,34 @@ Extent Widen(const Extent& cells, const Extent& whole)
     wide[2 * axis + 1] = std::min(cells[2 * axis + 1] + 1, whole[2 * axis + 1]);
   }
   return wide;
+}
+
+// The two parts of a tetrahedron on both sides of the middle of its longest edge.
+std::array<MeshBoundary::Piece, 2> Halve(const MeshBoundary::Piece& whole)
+{
+  std::size_t first = 0;
+  std::size_t second = 1;
+  for (std::size_t a = 0; a < 4; ++a)
+  {
+    for (std::size_t b = a + 1; b < 4; ++b)
+    {
+      if (glm::distance(whole.Rest[a], whole.Rest[b]) >
+        glm::distance(whole.Rest[first], whole.Rest[second]))
+      {
+        first = a;
+        second = b;
+      }
+    }
+  }
+  std::array<MeshBoundary::Piece, 2> halves{ { whole, whole } };
+  const glm::dvec3 middle = 0.5 * (whole.Rest[first] + whole.Rest[second]);
+  halves[0].Rest[second] = halves[1].Rest[first] = middle;
+  for (std::size_t k = 0; k < 4; ++k)
+  {
+    halves[0].Weights[second][k] = halves[1].Weights[first][k] =
+      0.5F * (whole.Weights[first][k] + whole.Weights[second][k]);
+  }
+  return halves;
 }
 
 // The eight parts of a tetrahedron between its corners and the middles of its edges.
@@ -210,12 +241,16 @@ void BoundaryFinder::Add(
   {
     return;
   }
-  if (size > LargestPiece)
+  const auto addAll = [&](const auto& parts)
   {
-    for (const MeshBoundary::Piece& part : Divide(piece))
+    for (const MeshBoundary::Piece& part : parts)
     {
       this->Add(part, pieces);
     }
+  };
+  if (size > LargestPiece)
+  {
+    size > LargestDivided ? addAll(Halve(piece)) : addAll(Divide(piece));
     return;
   }
   pieces.push_back(piece);

@@ -7,6 +7,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -676,6 +677,41 @@ TEST(MeshBoundaries, MeshesThatHoldTheVolumeHaveNone)
       return glm::all(glm::greaterThan(glm::transpose(turn) * p, first)) && glm::length(p) < 80.0;
     });
   EXPECT_TRUE(FindMeshBoundary(Volume, Volume, touching.Points, touching.Tetrahedra).IsEmpty());
+}
+
+// A tetrahedron that reaches far beyond the volume falls into few pieces, which fill it there.
+TEST(MeshBoundaries, NodeFarAway)
+{
+  const std::vector<glm::dvec3> points{ { 0.3, 5.1, 3.2 }, { 0.2, 20.4, 5.3 }, { 0.4, 8.7, 18.6 },
+    { 1e8, 10.2, 9.1 } };
+  const MeshBoundary boundary = FindMeshBoundary(Volume, Volume, points, { { { 0, 1, 2, 3 } } });
+  ASSERT_FALSE(boundary.IsEmpty());
+  EXPECT_LT(boundary.Pieces.size(), 5000U);
+  const auto isInside = [](const auto& corners, const glm::dvec3& point)
+  {
+    const glm::dmat3 edges(
+      corners[1] - corners[0], corners[2] - corners[0], corners[3] - corners[0]);
+    const glm::dvec3 w = glm::inverse(edges) * (point - corners[0]);
+    return std::min({ w.x, w.y, w.z, 1.0 - w.x - w.y - w.z }) > -1e-9;
+  };
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  int inside = 0;
+  for (int i = 0; i < 300; ++i)
+  {
+    // Beside the face that all three near nodes have.
+    const double u = uniform(random);
+    const double v = (1.0 - u) * uniform(random);
+    const glm::dvec3 point =
+      points[0] + u * (points[1] - points[0]) + v * (points[2] - points[0]) + glm::dvec3(0.5, 0, 0);
+    if (isInside(points, point))
+    {
+      ++inside;
+      EXPECT_TRUE(std::any_of(boundary.Pieces.begin(), boundary.Pieces.end(),
+        [&](const MeshBoundary::Piece& piece) { return isInside(piece.Rest, point); }));
+    }
+  }
+  EXPECT_GT(inside, 250);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, TightMeshes,
