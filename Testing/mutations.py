@@ -240,7 +240,6 @@ MUTATIONS = {
                        [("TestChainMailSequences@gpu-like-no-double", "*")]),
     "chainmail-told": ("Kernels/ChainMail/ChainMailSolver.cxx",
                        "this->State.TellOfChanges(report.Changes);", "", [VECTORS]),
-    "memory-granted": ("Kernels/Common/FreeMemory.cxx", "this->Measured / 2;", "this->Measured;", [VECTORS]),
     "log-begin": ("Kernels/Common/RangeLog.cxx", "this->Begin = this->Entries.front().Revision;", "", [VECTORS]),
     "vectors-turns": ("Kernels/Mapping/DisplacementSource.cxx",
                       "this->Reading.Forget();\n  this->SendNodes", "this->SendNodes", [VECTORS]),

@@ -26,11 +26,6 @@ struct Mount
   std::string Group;
 };
 
-bool HasWord(const std::string& list, const std::string& word)
-{
-  return ("," + list + ",").find("," + word + ",") != std::string::npos;
-}
-
 // Spaces and the like are written as a backslash and three octal digits.
 std::string Unescape(const std::string& text)
 {
@@ -52,11 +47,12 @@ std::string Unescape(const std::string& text)
 }
 
 // A line of mountinfo: id, parent, device, root, mount point, options, any number of optional
-// fields, "-", type, source, options of the file system.
-bool ParseMount(const std::string& line, std::string& type, std::string& options, Mount& mount)
+// fields, "-", type, source, options of the file system. False where it is no mount of groups.
+bool ParseMount(const std::string& line, Mount& mount)
 {
   std::istringstream words(line);
   std::string skipped;
+  std::string type;
   if (!(words >> skipped >> skipped >> skipped >> mount.Group >> mount.Folder))
   {
     return false;
@@ -64,7 +60,7 @@ bool ParseMount(const std::string& line, std::string& type, std::string& options
   while (words >> skipped && skipped != "-")
   {
   }
-  if (!(words >> type >> skipped >> options) || type.rfind("cgroup", 0) != 0)
+  if (!(words >> type) || type != "cgroup2")
   {
     return false;
   }
@@ -126,53 +122,26 @@ std::vector<std::string> ListFolders(
 
 } // namespace
 
-ControlGroups FindControlGroups(const std::string& controller, const std::string& root)
+std::vector<std::string> FindControlGroups(const std::string& root)
 {
-  // Lines "number:controllers:group"; version 2 is "0::group".
-  std::string unifiedGroup;
-  std::string legacyGroup;
+  // The line "0::group"; others are of version 1.
+  std::string group;
   std::string line;
   std::ifstream own(root + "/proc/self/cgroup");
-  while (std::getline(own, line))
+  while (group.empty() && std::getline(own, line))
   {
-    const std::size_t first = line.find(':');
-    const std::size_t second = first == std::string::npos ? first : line.find(':', first + 1);
-    if (second == std::string::npos)
-    {
-      continue;
-    }
-    const std::string controllers = line.substr(first + 1, second - first - 1);
-    if (controllers.empty())
-    {
-      unifiedGroup = line.substr(second + 1);
-    }
-    else if (HasWord(controllers, controller))
-    {
-      legacyGroup = line.substr(second + 1);
-    }
+    group = line.rfind("0::", 0) == 0 ? line.substr(3) : "";
   }
-  ControlGroups groups;
   std::ifstream mounts(root + "/proc/self/mountinfo");
-  while (std::getline(mounts, line))
+  while (!group.empty() && std::getline(mounts, line))
   {
-    std::string type;
-    std::string options;
     Mount mount;
-    if (!ParseMount(line, type, options, mount))
+    if (ParseMount(line, mount))
     {
-      continue;
-    }
-    if (type == "cgroup2" && !unifiedGroup.empty() && groups.Unified.empty())
-    {
-      groups.Unified = ListFolders(root, mount, unifiedGroup);
-    }
-    else if (type == "cgroup" && HasWord(options, controller) && !legacyGroup.empty() &&
-      groups.Legacy.empty())
-    {
-      groups.Legacy = ListFolders(root, mount, legacyGroup);
+      return ListFolders(root, mount, group);
     }
   }
-  return groups;
+  return {};
 }
 
 std::optional<std::int64_t> ReadNumber(const std::string& path)

@@ -10,19 +10,11 @@
 namespace deformvolume
 {
 
-/// The folders of the control groups that this process is in, its own first, then those round it
-/// as far as they can be seen: what limits one of them limits the process.
-struct ControlGroups
-{
-  /// Of version 2.
-  std::vector<std::string> Unified;
-  /// Of version 1, those with the controller that was asked for.
-  std::vector<std::string> Legacy;
-};
-
-/// controller: "memory" or "cpu". root is put in front of all paths, so that tests can bring a tree
-/// of their own. What cannot be read counts as not there.
-ControlGroups FindControlGroups(const std::string& controller, const std::string& root = "");
+/// The folders of the control groups (version 2) that this process is in, its own first, then those
+/// round it as far as they can be seen: what limits one of them limits the process. root is put in
+/// front of all paths, so that tests can bring a tree of their own. What cannot be read counts as
+/// not there.
+std::vector<std::string> FindControlGroups(const std::string& root = "");
 
 /// The number that a file begins with; nothing where there is no file, and no number, as in "max".
 std::optional<std::int64_t> ReadNumber(const std::string& path);

@@ -44,8 +44,7 @@ double GetQuota(double quota, double period)
 double GetQuota(const std::string& root)
 {
   double least = UNLIMITED;
-  const ControlGroups groups = FindControlGroups("cpu", root);
-  for (const std::string& folder : groups.Unified)
+  for (const std::string& folder : FindControlGroups(root))
   {
     // "quota period", or "max period" without a limit.
     std::ifstream file(folder + "/cpu.max");
@@ -55,13 +54,6 @@ double GetQuota(const std::string& root)
     {
       least = std::min(least, GetQuota(quota, period));
     }
-  }
-  for (const std::string& folder : groups.Legacy)
-  {
-    const auto quota = ReadNumber(folder + "/cpu.cfs_quota_us"); // -1 without a limit
-    const auto period = ReadNumber(folder + "/cpu.cfs_period_us");
-    least = std::min(least,
-      GetQuota(static_cast<double>(quota.value_or(0)), static_cast<double>(period.value_or(0))));
   }
   return least;
 }

@@ -4,7 +4,6 @@
 #include "ControlGroups.h"
 
 #include <algorithm>
-#include <initializer_list>
 #include <limits>
 #include <string>
 #include <vector>
@@ -17,29 +16,20 @@ namespace
 
 constexpr std::int64_t NoLimit = std::numeric_limits<std::int64_t>::max();
 
-// The names of a version's files and of what can be reclaimed.
-struct Names
-{
-  std::initializer_list<const char*> Limits;
-  const char* Usage;
-  std::vector<std::string> Reclaimable;
-};
-
 // What a group has left. all: the memory of the system, which a group that may have as much does
 // not limit: its use is then no matter, and it takes the system time to find that.
-std::int64_t GetLeft(const std::string& folder, const Names& names, std::int64_t all)
+std::int64_t GetLeft(const std::string& folder, std::int64_t all)
 {
-  std::int64_t limit = NoLimit;
-  for (const char* name : names.Limits)
-  {
-    limit = std::min(limit, ReadNumber(folder + "/" + name).value_or(NoLimit));
-  }
+  const std::int64_t limit = std::min(ReadNumber(folder + "/memory.max").value_or(NoLimit),
+    ReadNumber(folder + "/memory.high").value_or(NoLimit));
   if (limit >= all)
   {
     return NoLimit;
   }
-  const std::int64_t usage = ReadNumber(folder + "/" + names.Usage).value_or(0);
-  const std::int64_t reclaimable = ReadSum(folder + "/memory.stat", names.Reclaimable).value_or(0);
+  const std::int64_t usage = ReadNumber(folder + "/memory.current").value_or(0);
+  const std::int64_t reclaimable =
+    ReadSum(folder + "/memory.stat", { "inactive_file", "active_file", "slab_reclaimable" })
+      .value_or(0);
   return limit - std::max<std::int64_t>(0, usage - reclaimable);
 }
 
@@ -59,20 +49,11 @@ std::uint64_t GetSystemMemory(const std::string& root)
   const auto total = root.empty() ? ownTotal : ReadSum(system, { "MemTotal:" });
   const std::int64_t all = total ? *total * kibibyte : NoLimit;
   // A process seldom changes its groups, and this is asked for at each update.
-  static const ControlGroups ownGroups = FindControlGroups("memory");
-  const ControlGroups groups = root.empty() ? ownGroups : FindControlGroups("memory", root);
-  const Names unified{ { "memory.max", "memory.high" }, "memory.current",
-    { "inactive_file", "active_file", "slab_reclaimable" } };
-  for (const std::string& folder : groups.Unified)
+  static const std::vector<std::string> ownGroups = FindControlGroups();
+  const std::vector<std::string> groups = root.empty() ? ownGroups : FindControlGroups(root);
+  for (const std::string& folder : groups)
   {
-    left = std::min(left, GetLeft(folder, unified, all));
-  }
-  // A group without a limit has one that is near the largest number.
-  const Names legacy{ { "memory.limit_in_bytes" }, "memory.usage_in_bytes",
-    { "total_inactive_file", "total_active_file" } };
-  for (const std::string& folder : groups.Legacy)
-  {
-    left = std::min(left, GetLeft(folder, legacy, all));
+    left = std::min(left, GetLeft(folder, all));
   }
   return left == NoLimit ? 0 : static_cast<std::uint64_t>(std::max<std::int64_t>(1, left));
 }

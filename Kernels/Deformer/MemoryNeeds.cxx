@@ -69,7 +69,7 @@ std::uint64_t CheckDeviceMemory(WorkDevice& device, MemoryBudget& budget,
   const DeformationSize& size, std::uint64_t outputBytesPerVoxel)
 {
   const std::uint64_t needed = CountDeviceMemory(device, size, outputBytesPerVoxel);
-  const std::uint64_t available = budget.GetUsable(needed);
+  const std::uint64_t available = budget.GetUsable();
   MemoryBudget::CheckBytes(needed, available, "on the device");
   return available - needed;
 }
@@ -92,7 +92,7 @@ void CheckMemory(
   const std::uint64_t host = size.MappingBytes + copied +
     static_cast<std::uint64_t>(GetNumberOfPoints(size.OutputExtent)) * (tuple + 1);
   const std::uint64_t onDevice = shared ? CountDeviceMemory(device, size, outputBytesPerVoxel) : 0;
-  const std::uint64_t system = budget.GetSystemMemory(host + onDevice);
+  const std::uint64_t system = budget.GetSystemMemory();
   if (system > 0)
   {
     MemoryBudget::CheckBytes(host + onDevice, system + heldBytes, "in the system");

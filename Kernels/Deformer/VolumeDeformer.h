@@ -42,9 +42,8 @@ public:
   VolumeDeformer& operator=(const VolumeDeformer&) = delete;
 
   /// Chooses the device (see ResolveDevice) and returns its name. A change of device forgets
-  /// all that was set. An update begins here: how much memory is free is measured at most once
-  /// from this call to the end of Deform; objects that ask for it one after the other, within a
-  /// tenth of a second, share a measurement as long as memory is plenty.
+  /// all that was set. An update begins here: how much memory is free is measured once from
+  /// this call to the end of Deform, and again where a fold or a simulation needs more.
   std::string SetDevice(const std::string& request);
 
   /// Bytes that may be used on the device; 0: what the device (and for a processor, the

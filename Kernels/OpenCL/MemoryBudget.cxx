@@ -2,7 +2,7 @@
 #include "MemoryBudget.h"
 
 #include "Error.h"
-#include "FreeMemory.h"
+#include "SystemMemory.h"
 #include "WorkDevice.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ MemoryBudget::MemoryBudget(WorkDevice& device, std::function<std::uint64_t()> he
 {
 }
 
-std::uint64_t MemoryBudget::GetUsable(std::uint64_t needed)
+std::uint64_t MemoryBudget::GetUsable()
 {
   if (this->Limit)
   {
@@ -26,50 +26,37 @@ std::uint64_t MemoryBudget::GetUsable(std::uint64_t needed)
   }
   const OpenCLDevice& device = this->Device.GetDevice();
   const std::uint64_t all = device.Device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
-  const std::uint64_t system = device.IsProcessor ? this->GetSystemMemory(needed) : 0;
+  const std::uint64_t system = device.IsProcessor ? this->GetSystemMemory() : 0;
   return system ? std::min(all, system) : all;
 }
 
-std::uint64_t MemoryBudget::GetSystemMemory(std::uint64_t needed)
+std::uint64_t MemoryBudget::GetSystemMemory()
 {
-  if (this->SystemMemory && (this->IsMeasured || needed <= this->Granted))
+  if (!this->SystemMemory)
   {
-    return *this->SystemMemory;
-  }
-  if (const auto left = FreeMemory::Get().Grant(needed))
-  {
-    this->SystemMemory = left;
-    this->Granted = needed;
-    this->IsMeasured = false;
-  }
-  else
-  {
-    this->MeasureSystemMemory(needed);
+    this->MeasureSystemMemory();
   }
   return *this->SystemMemory;
 }
 
-void MemoryBudget::MeasureSystemMemory(std::uint64_t needed)
+void MemoryBudget::MeasureSystemMemory()
 {
-  const std::uint64_t left = FreeMemory::Get().Measure(needed);
+  const std::uint64_t left = deformvolume::GetSystemMemory();
   const bool shared = this->Device.GetDevice().IsProcessor;
   this->SystemMemory = left + (left && shared ? this->CountHeld() : 0);
-  this->IsMeasured = true;
 }
 
 bool MemoryBudget::HasRoomFor(std::uint64_t bytes)
 {
-  this->MeasureSystemMemory(bytes); // the output takes some of it by now
+  this->MeasureSystemMemory(); // the output takes some of it by now
   // Also where none is missing: the limit may be lower now.
-  const std::uint64_t needed = this->CountHeld() + bytes;
-  return needed <= this->GetUsable(needed);
+  return this->CountHeld() + bytes <= this->GetUsable();
 }
 
 void MemoryBudget::CheckRoomFor(std::uint64_t bytes, const char* where)
 {
-  this->MeasureSystemMemory(bytes);
-  const std::uint64_t needed = this->CountHeld() + bytes;
-  CheckBytes(needed, this->GetUsable(needed), where);
+  this->MeasureSystemMemory();
+  CheckBytes(this->CountHeld() + bytes, this->GetUsable(), where);
 }
 
 void MemoryBudget::CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where)

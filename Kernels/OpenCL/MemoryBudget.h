@@ -24,14 +24,11 @@ public:
   void SetLimit(std::uint64_t bytes) { this->Limit = bytes; }
 
   /// Bytes that may be allocated on the device, those included that are and will be freed or used
-  /// again: all that it has, and for a processor no more than GetSystemMemory(). needed: how many
-  /// are wanted.
-  std::uint64_t GetUsable(std::uint64_t needed);
+  /// again: all that it has, and for a processor no more than GetSystemMemory().
+  std::uint64_t GetUsable();
   /// Bytes that the system had left when this was asked first in an update, and for a processor
-  /// those held then, which are of the same memory; 0: unknown. needed: how many are wanted, in
-  /// all. Where they are far fewer than another object has measured a moment ago (FreeMemory), it
-  /// is not measured again, and what is held does not count: it may be of a later time.
-  std::uint64_t GetSystemMemory(std::uint64_t needed);
+  /// those held then, which are of the same memory; 0: unknown.
+  std::uint64_t GetSystemMemory();
   /// An update begins: it is asked again.
   void ForgetSystemMemory() { this->SystemMemory.reset(); }
   /// Does so at the end of an update, also of one that fails.
@@ -60,14 +57,12 @@ public:
 
 private:
   /// Measures the memory of the system: something may have been allocated.
-  void MeasureSystemMemory(std::uint64_t needed);
+  void MeasureSystemMemory();
 
   WorkDevice& Device;
   std::function<std::uint64_t()> CountHeld;
   std::uint64_t Limit = 0;
   std::optional<std::uint64_t> SystemMemory;
-  bool IsMeasured = false;   // for this object
-  std::uint64_t Granted = 0; // else: what another measurement has granted
 };
 
 } // namespace deformvolume

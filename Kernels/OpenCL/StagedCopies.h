@@ -23,7 +23,7 @@ namespace deformvolume
 ///
 /// Threads are there as long as copies are under way. May be used by many threads at once. The
 /// slots are memory of the host, and of the process: they are no part of what an object holds on
-/// the device, and what the system has left is measured without them (FreeMemory).
+/// the device, and what the system has left is measured without them (MemoryBudget).
 class StagedCopies
 {
 public:

@@ -9,7 +9,6 @@
 #include "Device.h"
 #include "DeviceNeeds.h"
 #include "DeviceVectors.h"
-#include "FreeMemory.h"
 #include "RangeLog.h"
 #include "VectorBounds.h"
 
@@ -587,68 +586,4 @@ TEST(DeviceVectors, TinyBoxes)
       }
     }
   }
-}
-
-TEST(FreeMemory, IsMeasuredOnceWhereThereIsPlenty)
-{
-  constexpr std::uint64_t mebibyte = 1024 * 1024;
-  std::uint64_t left = 8000 * mebibyte;
-  FreeMemory memory([&] { return left; });
-  EXPECT_FALSE(memory.Grant(1)) << "nothing has been measured";
-  EXPECT_EQ(memory.Measure(1000 * mebibyte), left);
-  EXPECT_FALSE(memory.Grant(3001 * mebibyte)) << "more than half of it";
-  EXPECT_EQ(memory.Grant(2000 * mebibyte), 7000 * mebibyte);
-  EXPECT_EQ(memory.Grant(1000 * mebibyte), 5000 * mebibyte);
-  EXPECT_FALSE(memory.Grant(1)) << "half of it is granted";
-  EXPECT_EQ(memory.GetNumberOfMeasurements(), 1U);
-  left = 100 * mebibyte;
-  EXPECT_EQ(memory.Measure(0), left);
-  EXPECT_EQ(memory.Grant(mebibyte), left);
-  const auto end = std::chrono::steady_clock::now() + FreeMemory::Validity;
-  while (std::chrono::steady_clock::now() <= end)
-  {
-  }
-  EXPECT_FALSE(memory.Grant(1)) << "too long ago";
-  left = 0;
-  EXPECT_EQ(memory.Measure(0), 0U);
-  EXPECT_FALSE(memory.Grant(0)) << "nothing is known";
-}
-
-// Whose updates follow each other.
-TEST(FreeMemory, TwoDeformersShareAMeasurement)
-{
-  const Subject subject(Extent{ { 0, 4, 0, 4, 0, 4 } });
-  VolumeDeformer deformers[2];
-  for (VolumeDeformer& deformer : deformers)
-  {
-    subject.LoadInto(deformer, Route::Mesh);
-    subject.Run(deformer);
-  }
-  std::vector<std::uint16_t> output(
-    static_cast<std::size_t>(GetNumberOfPoints(subject.Case.Output)));
-  std::vector<signed char> coverage(output.size());
-  DeformRequest request;
-  request.OutputExtent = subject.Case.Output;
-  request.Outputs = { output.data() };
-  request.Coverage = coverage.data();
-  for (int attempt = 0; attempt < 100; ++attempt)
-  {
-    const std::uint64_t before = FreeMemory::Get().GetNumberOfMeasurements();
-    const auto begin = std::chrono::steady_clock::now();
-    for (VolumeDeformer& deformer : deformers)
-    {
-      deformer.SetDevice("");
-      deformer.CheckMemory(subject.Case.VoxelGrid, subject.Arrays, subject.Case.Output,
-        subject.Points, subject.Points, false);
-      deformer.Deform(request);
-    }
-    const std::uint64_t measured = FreeMemory::Get().GetNumberOfMeasurements() - before;
-    ASSERT_LE(measured, 2U) << "once for each of them";
-    if (std::chrono::steady_clock::now() - begin < FreeMemory::Validity)
-    {
-      EXPECT_LE(measured, 1U);
-      return;
-    }
-  }
-  GTEST_SKIP() << "This machine is too busy: two updates take longer than a measurement holds.";
 }

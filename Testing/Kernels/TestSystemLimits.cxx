@@ -58,16 +58,6 @@ protected:
       "30 23 0:26 " +
         group + " " + folder + " rw,nosuid shared:4 master:2 - cgroup2 cgroup2 rw,nsdelegate\n");
   }
-  void MountLegacy(const std::string& group)
-  {
-    this->Write("/proc/self/mountinfo",
-      "31 30 0:27 / /sys/fs/cgroup/systemd rw - cgroup cgroup rw,name=systemd\n"
-      "33 30 0:29 " +
-        group +
-        " /sys/fs/cgroup/memory rw - cgroup cgroup rw,memory\n"
-        "34 30 0:30 " +
-        group + " /sys/fs/cgroup/cpu,cpuacct rw - cgroup cgroup rw,cpu,cpuacct\n");
-  }
   /// In MiB.
   std::uint64_t GetMemory() const { return GetSystemMemory(this->Root) / MiB; }
 
@@ -143,23 +133,6 @@ TEST_F(SystemLimits, UnifiedContainer)
   EXPECT_EQ(this->GetMemory(), 300U);
 }
 
-TEST_F(SystemLimits, LegacyGroups)
-{
-  this->MountLegacy("/docker/abc");
-  this->Write("/proc/self/cgroup",
-    "5:cpu,cpuacct:/docker/abc\n4:memory:/docker/abc\n1:name=systemd:/docker/abc\n");
-  const std::string folder = "/sys/fs/cgroup/memory/";
-  this->Write(folder + "memory.limit_in_bytes", "9223372036854771712\n");
-  this->Write(folder + "memory.usage_in_bytes", InBytes(100));
-  EXPECT_EQ(this->GetMemory(), 8000U);
-  this->Write(folder + "memory.limit_in_bytes", InBytes(1000));
-  EXPECT_EQ(this->GetMemory(), 900U);
-  this->Write(folder + "memory.stat",
-    "inactive_file " + InBytes(1) + "total_inactive_file " + InBytes(40) + "total_active_file " +
-      InBytes(20));
-  EXPECT_EQ(this->GetMemory(), 960U);
-}
-
 TEST_F(SystemLimits, Processors)
 {
   const int all = GetProcessorShare(1, this->Root);
@@ -171,14 +144,6 @@ TEST_F(SystemLimits, Processors)
   this->Write("/sys/fs/cgroup/app/cpu.max", "150000 100000\n");
   EXPECT_EQ(GetProcessorShare(1, this->Root), std::min(all, 2));
   this->Write("/sys/fs/cgroup/app/cpu.max", "20000 100000\n");
-  EXPECT_EQ(GetProcessorShare(1, this->Root), 1);
-
-  this->MountLegacy("/");
-  this->Write("/proc/self/cgroup", "5:cpu,cpuacct:/\n");
-  this->Write("/sys/fs/cgroup/cpu,cpuacct/cpu.cfs_period_us", "100000\n");
-  this->Write("/sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "-1\n");
-  EXPECT_EQ(GetProcessorShare(1, this->Root), all);
-  this->Write("/sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "100000\n");
   EXPECT_EQ(GetProcessorShare(1, this->Root), 1);
 }
 
