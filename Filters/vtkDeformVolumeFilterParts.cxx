@@ -119,11 +119,7 @@ Extent vtkDeformVolumeFilter::vtkInternals::KeepNeeded(
   Extent kept = needed;
   if (share == this->State->LastShare)
   {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      kept[2 * axis] = std::min(kept[2 * axis], this->State->LastNeeded[2 * axis]);
-      kept[2 * axis + 1] = std::max(kept[2 * axis + 1], this->State->LastNeeded[2 * axis + 1]);
-    }
+    deformvolume::Include(kept, this->State->LastNeeded);
   }
   this->State->LastShare = share;
   this->State->LastNeeded = kept;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BodyVoxels.h"
 
+#include "DisjointSets.h"
 #include "MaskArray.h"
 #include "ParallelFor.h"
 
@@ -10,7 +11,6 @@
 #include "vtkImageData.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace deformvolume
 {
@@ -107,36 +107,7 @@ struct FindRuns
   }
 };
 
-// A forest in which each run leads to the first one of its piece.
-class Forest
-{
-public:
-  explicit Forest(std::size_t size)
-    : Parents(size)
-  {
-    std::iota(this->Parents.begin(), this->Parents.end(), vtkIdType(0));
-  }
-  vtkIdType Root(vtkIdType item)
-  {
-    while (this->Parents[item] != item)
-    {
-      this->Parents[item] = this->Parents[this->Parents[item]];
-      item = this->Parents[item];
-    }
-    return item;
-  }
-  void Join(vtkIdType a, vtkIdType b)
-  {
-    a = this->Root(a);
-    b = this->Root(b);
-    this->Parents[std::max(a, b)] = std::min(a, b);
-  }
-
-private:
-  std::vector<vtkIdType> Parents;
-};
-
-void JoinRows(const BodyVoxels& body, vtkIdType row, vtkIdType other, Forest& forest)
+void JoinRows(const BodyVoxels& body, vtkIdType row, vtkIdType other, DisjointSets<vtkIdType>& sets)
 {
   vtkIdType a = body.RowStarts[row];
   vtkIdType b = body.RowStarts[other];
@@ -148,7 +119,7 @@ void JoinRows(const BodyVoxels& body, vtkIdType row, vtkIdType other, Forest& fo
     const VoxelRun& runB = body.Runs[b];
     if (runA.Begin <= runB.End && runB.Begin <= runA.End)
     {
-      forest.Join(a, b);
+      sets.Unite(a, b);
     }
     ++(runA.End < runB.End ? a : b);
   }
@@ -223,7 +194,7 @@ BodyVoxels FindBodyVoxels(vtkImageData* volume, vtkDataArray* array, const BodyC
 
 void FindPieces(BodyVoxels& body, vtkIdType speckSize, bool largestOnly)
 {
-  Forest forest(body.Runs.size());
+  DisjointSets<vtkIdType> sets(body.Runs.size());
   for (int z = 0; z < body.Size[2]; ++z)
   {
     for (int y = 0; y < body.Size[1]; ++y)
@@ -231,11 +202,11 @@ void FindPieces(BodyVoxels& body, vtkIdType speckSize, bool largestOnly)
       const vtkIdType row = vtkIdType(z) * body.Size[1] + y;
       if (y > 0)
       {
-        JoinRows(body, row, row - 1, forest);
+        JoinRows(body, row, row - 1, sets);
       }
       for (int j = std::max(y - 1, 0); z > 0 && j <= std::min(y + 1, body.Size[1] - 1); ++j)
       {
-        JoinRows(body, row, vtkIdType(z - 1) * body.Size[1] + j, forest);
+        JoinRows(body, row, vtkIdType(z - 1) * body.Size[1] + j, sets);
       }
     }
   }
@@ -243,7 +214,7 @@ void FindPieces(BodyVoxels& body, vtkIdType speckSize, bool largestOnly)
   std::vector<vtkIdType> sizes;
   for (vtkIdType i = 0; i < static_cast<vtkIdType>(body.Runs.size()); ++i)
   {
-    const vtkIdType root = forest.Root(i);
+    const vtkIdType root = sets.Find(i);
     if (root == i)
     {
       body.Runs[i].Piece = static_cast<vtkIdType>(sizes.size());

@@ -406,14 +406,7 @@ void ChainMailSolver::Finish(ChainMailReport& report)
   report.Changes = this->Blocks.Join(changed);
   for (const Extent& extent : report.Changes)
   {
-    Extent& all = report.ChangedExtent;
-    const bool isFirst = all[0] > all[1];
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      all[2 * axis] = isFirst ? extent[2 * axis] : std::min(all[2 * axis], extent[2 * axis]);
-      all[2 * axis + 1] =
-        isFirst ? extent[2 * axis + 1] : std::max(all[2 * axis + 1], extent[2 * axis + 1]);
-    }
+    Include(report.ChangedExtent, extent);
   }
   // Blocks that were saved and have not moved hold their displacements again, too.
   this->State.ReadOutput(this->Blocks.Join(this->Saved));

@@ -166,16 +166,9 @@ std::vector<Extent> FindChanges(const std::vector<CutVertex>& a, const std::vect
   std::map<std::array<int, 3>, Extent> boxes;
   const auto add = [&](const CutVertex& v)
   {
-    Extent& box = boxes
-                    .try_emplace({ { v.Z / block, v.Y / block, v.X / block } },
-                      Extent{ { v.X, v.X, v.Y, v.Y, v.Z, v.Z } })
-                    .first->second;
-    const std::array<int, 3> at{ { v.X, v.Y, v.Z } };
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      box[2 * axis] = std::min(box[2 * axis], at[axis]);
-      box[2 * axis + 1] = std::max(box[2 * axis + 1], at[axis]);
-    }
+    const Extent vertex{ { v.X, v.X, v.Y, v.Y, v.Z, v.Z } };
+    Include(boxes.try_emplace({ { v.Z / block, v.Y / block, v.X / block } }, vertex).first->second,
+      vertex);
   };
   auto i = a.begin();
   auto j = b.begin();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BodyPieces.h"
 
+#include "DisjointSets.h"
 #include "FaceNeighbours.h"
 #include "Watch.h"
 
@@ -18,18 +19,6 @@ namespace
 
 // Points lie on a line where the area between them is less than this part of a square.
 constexpr double LeastArea = 1e-6;
-
-// The root of a tetrahedron in a forest that it makes lower on the way.
-std::int32_t FindRoot(std::vector<std::int32_t>& parents, std::int32_t tetrahedron)
-{
-  auto at = [&](std::int32_t i) -> std::int32_t& { return parents[static_cast<std::size_t>(i)]; };
-  while (at(tetrahedron) != tetrahedron)
-  {
-    at(tetrahedron) = at(at(tetrahedron));
-    tetrahedron = at(tetrahedron);
-  }
-  return tetrahedron;
-}
 
 void FindNodes(const ElasticBody& body, BodyPieces& pieces)
 {
@@ -140,25 +129,22 @@ BodyPieces FindPieces(const ElasticBody& body, Watch* watch)
   Watch& asked = watch ? *watch : none;
   const FaceNeighbours neighbours(body.Tetrahedra, body.Points.size(), &asked);
   asked.Ask();
-  std::vector<std::int32_t> parents(body.Tetrahedra.size());
-  std::iota(parents.begin(), parents.end(), 0);
+  DisjointSets<std::int32_t> sets(body.Tetrahedra.size());
   ForItems(asked, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
       for (std::size_t face = 4 * t; face < 4 * t + 4; ++face)
       {
-        const auto next = static_cast<std::int32_t>(neighbours.GetNext(face) / 4);
-        const std::int32_t a = FindRoot(parents, static_cast<std::int32_t>(t));
-        const std::int32_t b = FindRoot(parents, next);
-        parents[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+        sets.Unite(
+          static_cast<std::int32_t>(t), static_cast<std::int32_t>(neighbours.GetNext(face) / 4));
       }
     });
   BodyPieces pieces;
   pieces.PieceOfTetrahedron.resize(body.Tetrahedra.size());
   for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
   {
-    // Each root is the lowest of its piece, and so comes first.
-    const auto root = static_cast<std::size_t>(FindRoot(parents, static_cast<std::int32_t>(t)));
+    // The lowest of a piece comes first.
+    const auto root = static_cast<std::size_t>(sets.Find(static_cast<std::int32_t>(t)));
     pieces.PieceOfTetrahedron[t] =
       root == t ? pieces.NumberOfPieces++ : pieces.PieceOfTetrahedron[root];
   }

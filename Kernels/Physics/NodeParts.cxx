@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NodeParts.h"
 
+#include "DisjointSets.h"
 #include "ParallelFor.h"
 
 #include <algorithm>
@@ -61,20 +62,16 @@ public:
   std::int32_t Find(const std::size_t* begin, const std::size_t* end, std::int32_t* partOfCorner)
   {
     const auto count = static_cast<std::size_t>(end - begin);
-    this->Parents.resize(count);
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      this->Parents[i] = i;
-    }
+    this->Sets.Reset(count);
     for (std::size_t i = 0; i < count; ++i)
     {
       this->JoinNeighbours(begin, end, i);
     }
-    // Each root is the lowest of its part, and so comes first.
+    // The lowest of a part comes first.
     std::int32_t parts = 0;
     for (std::size_t i = 0; i < count; ++i)
     {
-      const std::size_t root = this->FindRoot(i);
+      const std::size_t root = this->Sets.Find(i);
       partOfCorner[begin[i]] = root == i ? parts++ : partOfCorner[begin[root]];
     }
     return parts;
@@ -94,26 +91,14 @@ private:
         continue;
       }
       const std::size_t* other = std::lower_bound(begin, end, next / 4 * 4);
-      std::size_t a = this->FindRoot(i);
-      std::size_t b = this->FindRoot(static_cast<std::size_t>(other - begin));
-      this->Parents[std::max(a, b)] = std::min(a, b);
+      this->Sets.Unite(i, static_cast<std::size_t>(other - begin));
     }
-  }
-
-  std::size_t FindRoot(std::size_t i)
-  {
-    while (this->Parents[i] != i)
-    {
-      this->Parents[i] = this->Parents[this->Parents[i]];
-      i = this->Parents[i];
-    }
-    return i;
   }
 
   const std::vector<Tetrahedron>& Tetrahedra;
   const FaceNeighbours& Neighbours;
   const std::vector<unsigned char>& IsSplit;
-  std::vector<std::size_t> Parents;
+  DisjointSets<std::size_t> Sets;
 };
 
 } // namespace
