@@ -250,6 +250,8 @@ MUTATIONS = {
     "chainmail-relax": ("Kernels/ChainMail/ChainMailRelaxation.cl",
                         "FindLimitsBeside(limits, m, n.Materials, face, over, under);",
                         "FindLimitsBeside(limits, m, n.Materials, face, under, over);", [RELAXATION]),
+    "chainmail-weights": ("Kernels/ChainMail/ChainMailLimits.cxx", "std::max(ranges[kind], smallest)",
+                          "std::max(ranges[0], smallest)", [RELAXATION]),
     "chainmail-copy": ("Kernels/ChainMail/ChainMailSolver.cxx",
                        "this->State.ReadOutput(changes);", "",
                        [("TestChainMailSequences@gpu-like-no-double", "*")]),

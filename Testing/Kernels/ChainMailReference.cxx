@@ -251,6 +251,87 @@ std::vector<ChainMailHandleReport> ChainMailReference::Step(
   return reports;
 }
 
+double ChainMailReference::GetSmallestRange() const
+{
+  double smallest = 1e300;
+  for (const ChainMailMaterial& material : this->Table)
+  {
+    smallest = std::min(
+      { smallest, material.MaximumStretch - material.MinimumStretch, 2.0 * material.Shear });
+  }
+  return std::max(smallest, 1.0 / 1024.0);
+}
+
+double ChainMailReference::GetWeight(
+  const ReferenceLink& link, int component, double smallestRange) const
+{
+  const ChainMailMaterial& a = this->Table[this->Materials[link.First]];
+  const ChainMailMaterial& b = this->Table[this->Materials[link.Second]];
+  const double range = link.Axis == component
+    ? 0.5 * (a.MaximumStretch + b.MaximumStretch - a.MinimumStretch - b.MinimumStretch)
+    : a.Shear + b.Shear;
+  return std::max(1.0, std::round(std::min(1.0, smallestRange / range) * 255.0));
+}
+
+std::vector<std::array<double, 3>> ChainMailReference::Relax(
+  int sweeps, const std::vector<ChainMailHandle>& handles) const
+{
+  std::vector<char> stays(this->Pinned.begin(), this->Pinned.end());
+  for (const ChainMailHandle& handle : handles)
+  {
+    for (const std::size_t voxel : this->Select(handle))
+    {
+      stays[voxel] = 1;
+    }
+  }
+  std::vector<std::array<double, 3>> x(this->GetNumberOfVoxels());
+  std::vector<std::vector<std::size_t>> linksOf(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i)
+  {
+    std::copy(this->Displacements[i].begin(), this->Displacements[i].end(), x[i].begin());
+  }
+  for (std::size_t l = 0; l < this->Links.size(); ++l)
+  {
+    linksOf[this->Links[l].First].push_back(l);
+    linksOf[this->Links[l].Second].push_back(l);
+  }
+  const double smallestRange = this->GetSmallestRange();
+  const auto relax = [&](std::size_t voxel, int c)
+  {
+    double pull = 0.0;
+    double sum = 0.0;
+    double lowest = -1e300;
+    double highest = 1e300;
+    for (const std::size_t l : linksOf[voxel])
+    {
+      const ReferenceLink& link = this->Links[l];
+      const bool isSecond = link.Second == voxel;
+      const std::array<std::int64_t, 2> limits = this->GetLimits(link, c);
+      const double there = x[isSecond ? link.First : link.Second][c];
+      const double weight = this->GetWeight(link, c, smallestRange);
+      pull += weight * there;
+      sum += weight;
+      highest = std::min(highest, there + static_cast<double>(limits[isSecond ? 0 : 1]));
+      lowest = std::max(lowest, there - static_cast<double>(limits[isSecond ? 1 : 0]));
+    }
+    return sum > 0.0 ? std::max(lowest, std::min(highest, pull / sum)) : x[voxel][c];
+  };
+  for (int turn = 0; turn < 2 * sweeps; ++turn)
+  {
+    for (std::size_t voxel = 0; voxel < x.size(); ++voxel)
+    {
+      const std::size_t i = voxel % this->Size[0];
+      const std::size_t j = voxel / this->Size[0] % this->Size[1];
+      const std::size_t k = voxel / this->Size[0] / this->Size[1];
+      if (!stays[voxel] && static_cast<int>((i + j + k) % 2) == turn % 2)
+      {
+        x[voxel] = { { relax(voxel, 0), relax(voxel, 1), relax(voxel, 2) } };
+      }
+    }
+  }
+  return x;
+}
+
 double ChainMailReference::GetViolation(const std::vector<float>& displacements) const
 {
   double largest = 0.0;
