@@ -234,6 +234,33 @@ TEST(SmoothCuts, EqualTheReferenceWhereSidesComeApart)
   }
 }
 
+// Samples on vertices and edges at the border of the mesh: both sides move by halves of voxels, and
+// tetrahedra are switched off beside the cut. Nothing overlaps, so that a voxel shows that two
+// tetrahedra take, or none.
+TEST(SmoothCuts, EqualTheReferenceWhereTetrahedraAreMissingBesideTheCut)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  std::mt19937 random(11);
+  for (unsigned int seed = 0; seed < 12; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    const auto sheet = [seed](const glm::dvec3& i)
+    { return i.x - 7.25 + 0.25 * (seed % 4) * i.y - 0.125 * i.z; };
+    const glm::dvec3 step(8.0 + 0.5 * (seed % 2), 0.5 * (seed % 5), -0.5 * (seed % 3));
+    DeformerCase cut = MakeCase(Volume, NoScale, MoveApart(sheet, -step, step));
+    CutAlong(cut, sheet);
+    cut.Active.resize(cut.Crossed.size());
+    for (unsigned char& active : cut.Active)
+    {
+      active = random() % 3 == 0 ? static_cast<unsigned char>(random() % 32) : 31;
+    }
+    const reference::Result reference = ResampleByReference(cut);
+    EXPECT_EQ(reference.NumberOfOverlappedVoxels, 0);
+    EXPECT_EQ(reference.NumberOfInvertedTetrahedra, 0);
+    ExpectEqualsReference(cut);
+  }
+}
+
 TEST(SmoothCuts, EqualTheReferenceWhereTheVolumeIsFolded)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
