@@ -285,34 +285,45 @@ std::vector<std::array<double, 3>> ChainMailReference::Relax(
     }
   }
   std::vector<std::array<double, 3>> x(this->GetNumberOfVoxels());
-  std::vector<std::vector<std::size_t>> linksOf(x.size());
   for (std::size_t i = 0; i < x.size(); ++i)
   {
     std::copy(this->Displacements[i].begin(), this->Displacements[i].end(), x[i].begin());
   }
-  for (std::size_t l = 0; l < this->Links.size(); ++l)
+  // What a voxel has at the other end of a link, for each component: how much more the voxel may
+  // have than that, and how much less.
+  struct End
   {
-    linksOf[this->Links[l].First].push_back(l);
-    linksOf[this->Links[l].Second].push_back(l);
-  }
+    std::size_t There;
+    std::array<double, 3> More, Less, Weight;
+  };
+  std::vector<std::vector<End>> ends(x.size());
   const double smallestRange = this->GetSmallestRange();
+  for (const ReferenceLink& link : this->Links)
+  {
+    End ofSecond{ link.First, {}, {}, {} };
+    for (int c = 0; c < 3; ++c)
+    {
+      const std::array<std::int64_t, 2> limits = this->GetLimits(link, c);
+      ofSecond.More[c] = static_cast<double>(limits[0]);
+      ofSecond.Less[c] = static_cast<double>(limits[1]);
+      ofSecond.Weight[c] = this->GetWeight(link, c, smallestRange);
+    }
+    ends[link.First].push_back({ link.Second, ofSecond.Less, ofSecond.More, ofSecond.Weight });
+    ends[link.Second].push_back(ofSecond);
+  }
   const auto relax = [&](std::size_t voxel, int c)
   {
     double pull = 0.0;
     double sum = 0.0;
     double lowest = -1e300;
     double highest = 1e300;
-    for (const std::size_t l : linksOf[voxel])
+    for (const End& end : ends[voxel])
     {
-      const ReferenceLink& link = this->Links[l];
-      const bool isSecond = link.Second == voxel;
-      const std::array<std::int64_t, 2> limits = this->GetLimits(link, c);
-      const double there = x[isSecond ? link.First : link.Second][c];
-      const double weight = this->GetWeight(link, c, smallestRange);
-      pull += weight * there;
-      sum += weight;
-      highest = std::min(highest, there + static_cast<double>(limits[isSecond ? 0 : 1]));
-      lowest = std::max(lowest, there - static_cast<double>(limits[isSecond ? 1 : 0]));
+      const double there = x[end.There][c];
+      pull += end.Weight[c] * there;
+      sum += end.Weight[c];
+      highest = std::min(highest, there + end.More[c]);
+      lowest = std::max(lowest, there - end.Less[c]);
     }
     return sum > 0.0 ? std::max(lowest, std::min(highest, pull / sum)) : x[voxel][c];
   };
