@@ -14,6 +14,6 @@ endfunction ()
 
 if (DEFORMVOLUME_SANITIZE)
   add_compile_options(
-    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  add_link_options(-fsanitize=address,undefined)
+    -fsanitize=${DEFORMVOLUME_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${DEFORMVOLUME_SANITIZE})
 endif ()

@@ -23,7 +23,6 @@ class VoxelsOnLine
 public:
   VoxelsOnLine(vtkImageData* image, const LineOfSight& line)
     : Image(image)
-    , Line(line)
     , Scalars(image->GetPointData()->GetScalars())
     , Covered(image->GetPointData()->GetArray("vtkValidPointMask"))
   {
@@ -90,7 +89,6 @@ private:
   }
 
   vtkImageData* Image;
-  LineOfSight Line;
   vtkDataArray* Scalars;
   vtkDataArray* Covered;
   glm::dvec3 From;

@@ -32,7 +32,7 @@ MASKS = ("TestIncremental", "IncrementalMasks*")
 ALONG = ("TestPiecewise", "*AlongSomeAxes*")
 MISSING = ("TestResampling", "*_Uncut")
 FOLDS = ("TestIncremental,TestEdits", "*IncrementalFolds*:*Edits*-*ByCell")
-BY_CELL = ("TestIncremental,TestEdits", "*Borders*ByCell:*Edits*ByCell")
+BY_CELL = ("TestIncremental", "*Folds*ByCell")
 ALIGNED = ("TestEdits", "-*ByCell")
 OWN_MEMORY = ("TestIncrementalGraphics@gpu-like", "*")
 MEMORY = ("TestHostMemory", "*")
@@ -235,6 +235,8 @@ MUTATIONS = {
     "chainmail-relax": ("Kernels/ChainMail/ChainMailRelaxation.cl",
                         "FindLimitsBeside(limits, m, n.Materials, face, over, under);",
                         "FindLimitsBeside(limits, m, n.Materials, face, under, over);", [RELAXATION]),
+    "chainmail-weights": ("Kernels/ChainMail/ChainMailLimits.cxx", "std::max(ranges[kind], smallest)",
+                          "std::max(ranges[0], smallest)", [RELAXATION]),
     "chainmail-copy": ("Kernels/ChainMail/ChainMailSolver.cxx",
                        "this->State.ReadOutput(changes);", "",
                        [("TestChainMailSequences@gpu-like-no-double", "*")]),

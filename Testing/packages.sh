@@ -11,6 +11,7 @@
 #   benchmark to measure and draw the results, besides test
 #   paraview  to build and test against ParaView's VTK on the same machine
 #   check     to check the style of the sources
+#   clang     to build with Clang
 #   platforms to try other systems on this one
 #   gpu-compilers for Testing/gpu-compilers.sh, on Debian 12
 set -euo pipefail
@@ -25,6 +26,7 @@ declare -A packages=(
   [paraview]="paraview paraview-dev libopenmpi-dev libdouble-conversion-dev libutfcpp-dev
     liblz4-dev liblzma-dev libgl-dev libopengl-dev libx11-dev libglew-dev libfreetype-dev"
   [check]="clang-format"
+  [clang]="clang"
   [platforms]="debootstrap curl"
   [gpu-compilers]="clang-15 libclc-15 llvm-spirv-15 spirv-tools rocm-device-libs oclgrind"
 )

@@ -12,7 +12,7 @@
 // them exists for the least one and, on x86, for those with AVX2. Neither fuses products with sums,
 // so that both give the same bits.
 // None of them is ever called, so that it does not matter how lanes would be passed.
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__) || defined(__clang__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 #define DEFORMVOLUME_ALWAYS_INLINE inline __attribute__((always_inline))

@@ -251,6 +251,98 @@ std::vector<ChainMailHandleReport> ChainMailReference::Step(
   return reports;
 }
 
+double ChainMailReference::GetSmallestRange() const
+{
+  double smallest = 1e300;
+  for (const ChainMailMaterial& material : this->Table)
+  {
+    smallest = std::min(
+      { smallest, material.MaximumStretch - material.MinimumStretch, 2.0 * material.Shear });
+  }
+  return std::max(smallest, 1.0 / 1024.0);
+}
+
+double ChainMailReference::GetWeight(
+  const ReferenceLink& link, int component, double smallestRange) const
+{
+  const ChainMailMaterial& a = this->Table[this->Materials[link.First]];
+  const ChainMailMaterial& b = this->Table[this->Materials[link.Second]];
+  const double range = link.Axis == component
+    ? 0.5 * (a.MaximumStretch + b.MaximumStretch - a.MinimumStretch - b.MinimumStretch)
+    : a.Shear + b.Shear;
+  return std::max(1.0, std::round(std::min(1.0, smallestRange / range) * 255.0));
+}
+
+std::vector<std::array<double, 3>> ChainMailReference::Relax(
+  int sweeps, const std::vector<ChainMailHandle>& handles) const
+{
+  std::vector<char> stays(this->Pinned.begin(), this->Pinned.end());
+  for (const ChainMailHandle& handle : handles)
+  {
+    for (const std::size_t voxel : this->Select(handle))
+    {
+      stays[voxel] = 1;
+    }
+  }
+  std::vector<std::array<double, 3>> x(this->GetNumberOfVoxels());
+  for (std::size_t i = 0; i < x.size(); ++i)
+  {
+    std::copy(this->Displacements[i].begin(), this->Displacements[i].end(), x[i].begin());
+  }
+  // What a voxel has at the other end of a link, for each component: how much more the voxel may
+  // have than that, and how much less.
+  struct End
+  {
+    std::size_t There;
+    std::array<double, 3> More, Less, Weight;
+  };
+  std::vector<std::vector<End>> ends(x.size());
+  const double smallestRange = this->GetSmallestRange();
+  for (const ReferenceLink& link : this->Links)
+  {
+    End ofSecond{ link.First, {}, {}, {} };
+    for (int c = 0; c < 3; ++c)
+    {
+      const std::array<std::int64_t, 2> limits = this->GetLimits(link, c);
+      ofSecond.More[c] = static_cast<double>(limits[0]);
+      ofSecond.Less[c] = static_cast<double>(limits[1]);
+      ofSecond.Weight[c] = this->GetWeight(link, c, smallestRange);
+    }
+    ends[link.First].push_back({ link.Second, ofSecond.Less, ofSecond.More, ofSecond.Weight });
+    ends[link.Second].push_back(ofSecond);
+  }
+  const auto relax = [&](std::size_t voxel, int c)
+  {
+    double pull = 0.0;
+    double sum = 0.0;
+    double lowest = -1e300;
+    double highest = 1e300;
+    for (const End& end : ends[voxel])
+    {
+      const double there = x[end.There][c];
+      pull += end.Weight[c] * there;
+      sum += end.Weight[c];
+      highest = std::min(highest, there + end.More[c]);
+      lowest = std::max(lowest, there - end.Less[c]);
+    }
+    return sum > 0.0 ? std::max(lowest, std::min(highest, pull / sum)) : x[voxel][c];
+  };
+  for (int turn = 0; turn < 2 * sweeps; ++turn)
+  {
+    for (std::size_t voxel = 0; voxel < x.size(); ++voxel)
+    {
+      const std::size_t i = voxel % this->Size[0];
+      const std::size_t j = voxel / this->Size[0] % this->Size[1];
+      const std::size_t k = voxel / this->Size[0] / this->Size[1];
+      if (!stays[voxel] && static_cast<int>((i + j + k) % 2) == turn % 2)
+      {
+        x[voxel] = { { relax(voxel, 0), relax(voxel, 1), relax(voxel, 2) } };
+      }
+    }
+  }
+  return x;
+}
+
 double ChainMailReference::GetViolation(const std::vector<float>& displacements) const
 {
   double largest = 0.0;

@@ -40,6 +40,11 @@ public:
   /// Moves handles, in order.
   std::vector<deformvolume::ChainMailHandleReport> Step(
     const std::vector<deformvolume::ChainMailHandle>& handles);
+  /// Displacements after so many sweeps of relaxation of all voxels but those that the handles hold
+  /// and those that are pinned, in 1/65536 voxel. They are not rounded, and Displacements stay as
+  /// they are.
+  std::vector<std::array<double, 3>> Relax(
+    int sweeps, const std::vector<deformvolume::ChainMailHandle>& handles) const;
   void Reset() { this->Displacements.assign(this->Displacements.size(), { { 0, 0, 0 } }); }
 
   /// In 1/65536 voxel.
@@ -52,6 +57,9 @@ public:
   std::array<std::int64_t, 2> GetLimits(const ReferenceLink& link, int component) const;
 
 private:
+  double GetSmallestRange() const;
+  /// How much a link counts in a mean of displacements: a whole number from 1 to 255.
+  double GetWeight(const ReferenceLink& link, int component, double smallestRange) const;
   std::vector<std::int64_t> FindWays(
     const std::vector<std::size_t>& from, int component, bool upwards) const;
   std::vector<std::size_t> Select(const deformvolume::ChainMailHandle& handle) const;

@@ -25,6 +25,7 @@ void FakeDriver::Reset()
   FakeDriver fresh;
   fresh.IsGraphics = Get().IsGraphics;
   fresh.HasDouble = Get().HasDouble;
+  fresh.FirstName = Get().FirstName;
   Get() = fresh;
 }
 
@@ -289,6 +290,7 @@ extern "C" cl_int CL_API_CALL clGetDeviceInfo(
   cl_device_id device, cl_device_info what, std::size_t room, void* place, std::size_t* needed)
 {
   static auto* const real = Find<decltype(clGetDeviceInfo)>("clGetDeviceInfo");
+  static const cl_device_id first = device;
   const FakeDriver& driver = FakeDriver::Get();
   const cl_device_type graphics = CL_DEVICE_TYPE_GPU;
   const cl_bool isUnified = CL_FALSE;
@@ -299,6 +301,10 @@ extern "C" cl_int CL_API_CALL clGetDeviceInfo(
   if (what == CL_DEVICE_HOST_UNIFIED_MEMORY && driver.IsGraphics)
   {
     return Give(&isUnified, sizeof(isUnified), room, place, needed);
+  }
+  if (what == CL_DEVICE_NAME && device == first && !driver.FirstName.empty())
+  {
+    return Give(driver.FirstName.c_str(), driver.FirstName.size() + 1, room, place, needed);
   }
   if (what == CL_DEVICE_GLOBAL_MEM_SIZE && driver.GlobalMemory)
   {

@@ -65,6 +65,8 @@ struct FakeDriver
   /// live as long as the process: these are set before the first one.
   bool IsGraphics = false;
   bool HasDouble = true;
+  /// The name of the device that is asked for something first; empty: as it is.
+  std::string FirstName;
   /// The device has the extension cl_nv_compiler_options. Options from the first one of it on are
   /// for OnBuild only, as the driver does not know them.
   bool HasNVIDIAOptions = false;

@@ -24,7 +24,8 @@ namespace
 
 using Place = LatticeBody::Place;
 
-// In s; with the address sanitizer all code is several times slower, and bodies are smaller.
+// In s; with the address or the thread sanitizer all code is several times slower, and bodies are
+// smaller.
 #ifdef DEFORMVOLUME_TEST_SANITIZED
 constexpr double LongestPause = 0.5;
 constexpr int Shrinking = 2;

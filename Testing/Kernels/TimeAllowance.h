@@ -3,15 +3,15 @@
 #define TimeAllowance_h
 
 #ifdef __has_feature
-#if __has_feature(address_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define DEFORMVOLUME_TEST_SANITIZED
 #endif
-#elif defined(__SANITIZE_ADDRESS__)
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define DEFORMVOLUME_TEST_SANITIZED
 #endif
 
-/// How many random cases there is time for, of some: fewer with the address sanitizer, which is
-/// slow, and does not look for wrong results.
+/// How many random cases there is time for, of some: fewer with the address or the thread
+/// sanitizer, which are slow, and do not look for wrong results.
 constexpr int GetNumberOfCases(int cases)
 {
 #ifdef DEFORMVOLUME_TEST_SANITIZED
