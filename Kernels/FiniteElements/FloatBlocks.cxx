@@ -24,7 +24,7 @@ struct FloatLanes<8>
   using Type = float __attribute__((vector_size(32), aligned(32)));
 };
 
-struct ProductArguments
+struct FloatProduct
 {
   std::size_t Begin;
   std::size_t End;
@@ -45,7 +45,7 @@ enum class Product
 };
 
 template <int Rows, int Columns, Product Kind>
-DEFORMVOLUME_ALWAYS_INLINE void MultiplyRows(const ProductArguments& arguments)
+DEFORMVOLUME_ALWAYS_INLINE void MultiplyRows(const FloatProduct& arguments)
 {
   constexpr std::size_t padded = PaddedSize<Rows>;
   constexpr std::size_t paddedColumns = PaddedSize<Columns>;
@@ -92,14 +92,14 @@ DEFORMVOLUME_ALWAYS_INLINE void MultiplyRows(const ProductArguments& arguments)
 
 #if DEFORMVOLUME_HAS_AVX2_CODE
 template <int Rows, int Columns, Product Kind>
-DEFORMVOLUME_FOR_AVX2 void MultiplyRowsWide(const ProductArguments& arguments)
+DEFORMVOLUME_FOR_AVX2 void MultiplyRowsWide(const FloatProduct& arguments)
 {
   MultiplyRows<Rows, Columns, Kind>(arguments);
 }
 #endif
 
 template <int Rows, int Columns, Product Kind>
-void Run(const ProductArguments& arguments)
+void Run(const FloatProduct& arguments)
 {
 #if DEFORMVOLUME_HAS_AVX2_CODE
   if (HasWideLanes())

@@ -11,7 +11,7 @@ namespace deformvolume
 namespace
 {
 
-using Bounds = std::array<cl_float, 6>;
+using BoundsOfAxes = std::array<cl_float, 6>;
 
 } // namespace
 
@@ -38,8 +38,8 @@ std::vector<DisplacementBounds> BoxBounds::Find(
   }
   OpenCLContext& context = this->Device.GetContext();
   const cl::CommandQueue& queue = this->Device.GetQueue();
-  const std::size_t bytes = boxes.size() * sizeof(Bounds);
-  std::vector<Bounds> found(boxes.size());
+  const std::size_t bytes = boxes.size() * sizeof(BoundsOfAxes);
+  std::vector<BoundsOfAxes> found(boxes.size());
   const cl::Buffer bounds(context.GetContext(), CL_MEM_READ_WRITE, bytes);
   const QueueGuard guard(queue);
   cl::Kernel kernel(GetConversionProgram(context), "FindBoxBounds");
@@ -49,7 +49,7 @@ std::vector<DisplacementBounds> BoxBounds::Find(
   kernel.setArg(i++, cl_int{ size[0] });
   kernel.setArg(i++, cl_int{ size[1] });
   kernel.setArg(i++, this->BoxesThere);
-  kernel.setArg(i++, cl::Local(group * sizeof(Bounds)));
+  kernel.setArg(i++, cl::Local(group * sizeof(BoundsOfAxes)));
   kernel.setArg(i++, bounds);
   context.Launch(queue, kernel, cl::NDRange(boxes.size() * group), cl::NDRange(group));
   queue.enqueueReadBuffer(bounds, CL_TRUE, 0, bytes, found.data());
