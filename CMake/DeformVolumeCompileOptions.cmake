@@ -12,6 +12,15 @@ function (deformvolume_set_compile_options)
   endforeach ()
 endfunction ()
 
+# deformvolume_optimize_less(<target>...): for tests, most of which run in no time and take long to
+# compile.
+function (deformvolume_optimize_less)
+  foreach (target IN LISTS ARGN)
+    target_compile_options("${target}" PRIVATE
+      $<$<AND:$<CXX_COMPILER_ID:GNU,Clang,AppleClang>,$<NOT:$<CONFIG:Debug>>>:-O1;-g1>)
+  endforeach ()
+endfunction ()
+
 if (DEFORMVOLUME_SANITIZE)
   add_compile_options(
     -fsanitize=${DEFORMVOLUME_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
