@@ -50,7 +50,6 @@ struct ExecutionState
   BoundsKey KeyOfBounds;
   IndexBounds Bounds;
   std::set<double> TimesInBounds;
-  bool HasWarnedOfGrowth = false; // of these bounds
 
   // The last extent that was made of the bounds, and what it depends on besides these.
   struct ExtentKey

@@ -142,7 +142,10 @@ std::string vtkDeformVolumeFilter::GetSummary()
   using State = deformvolume::ExecutionState;
   text << "Device: " << this->DeviceInUse << "\n"
        << "Resampler: "
-       << (this->ResamplerInUse == MESH_RASTERIZATION ? "mesh rasterization" : "exact") << "\n"
+       << (this->ResamplerInUse == MESH_RASTERIZATION ? "mesh rasterization"
+              : this->ResamplerInUse == PUBLISHED     ? "published"
+                                                      : "exact")
+       << "\n"
        << "Covered voxels: " << count(this->NumberOfCoveredVoxels) << "\n"
        << "Inverted tetrahedra: " << count(this->NumberOfInvertedTetrahedra) << "\n"
        << "Flat tetrahedra: " << count(this->NumberOfFlatTetrahedra) << "\n"

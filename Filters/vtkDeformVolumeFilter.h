@@ -161,8 +161,9 @@ public:
   /**
    * What decides the output's whole extent: the bounds of the deformed volume, those of the volume
    * at rest, or CustomBounds. For a deformation that varies in time DEFORMED_BOUNDS is the union
-   * over the times seen so far: where the volume leaves it at another time, it is cut off there, a
-   * warning tells (once for a deformation), and the next update has a greater extent. Default:
+   * over the times seen since it or a setting has changed. Where the volume leaves it at another
+   * time, it grows: at once where this filter is updated; where a consumer asks, which does not
+   * know of the new extent yet, the volume is cut off in that update, and a warning tells. Default:
    * DEFORMED_BOUNDS.
    */
   vtkSetClampMacro(OutputBoundsMode, int, DEFORMED_BOUNDS, CUSTOM_BOUNDS);

@@ -201,7 +201,6 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
   {
     this->State->TimesInBounds.insert(*time);
   }
-  this->State->HasWarnedOfGrowth = false;
   return bounds;
 }
 
@@ -247,40 +246,94 @@ deformvolume::Extent vtkDeformVolumeFilter::vtkInternals::GetDeformedExtent(
 }
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::KeepInBounds(const deformvolume::Ranks& ranks,
-  const ImageGeometry& volume, const DeformationSource& source, vtkInformation* output)
+void vtkDeformVolumeFilter::vtkInternals::HoldTime(
+  vtkInformation* volumeInfo, vtkInformation* output)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  if (this->Self->OutputBoundsMode != DEFORMED_BOUNDS || !output->Has(Pipeline::UPDATE_TIME_STEP()))
+  this->ExtentBefore.reset();
+  const deformvolume::Ranks ranks;
+  const bool isNew = !this->InformationFailed && this->Self->OutputBoundsMode == DEFORMED_BOUNDS &&
+    output->Has(Pipeline::UPDATE_TIME_STEP()) &&
+    this->State->TimesInBounds.count(output->Get(Pipeline::UPDATE_TIME_STEP())) == 0 &&
+    !this->State->TimesInBounds.empty();
+  if (!ranks.IsAny(isNew))
   {
     return;
   }
   const double time = output->Get(Pipeline::UPDATE_TIME_STEP());
-  if (!ranks.IsAny(this->State->TimesInBounds.count(time) == 0 &&
-        this->State->VersionsInBounds != this->GetVersions()))
-  {
-    return;
-  }
-  IndexBounds bounds = this->State->Bounds;
-  ranks.Attempt([&] { bounds.Add(this->ComputeBounds(volume, source)); });
-  const bool isOutside = this->FindExtent(bounds) != this->FindExtent(this->State->Bounds);
-  this->State->VersionsInBounds = this->GetVersions();
+  const ImageGeometry volume =
+    this->GetCoarseGeometry(this->GetVolumeGeometry(ranks, volumeInfo, output));
+  const IndexBounds bounds = this->ReadBounds(ranks, volume, output, &time);
   this->State->TimesInBounds.insert(time);
-  this->State->Bounds = bounds;
-  if (!isOutside)
+  const deformvolume::Extent before = this->FindExtent(this->State->Bounds);
+  this->State->Bounds.Add(bounds);
+  const deformvolume::Extent after = this->FindExtent(this->State->Bounds);
+  if (before == after)
   {
     return;
   }
   this->BoundsHaveGrown = true;
-  if (!this->State->HasWarnedOfGrowth)
+  if (this->Self->BoundsGranularity > 1)
   {
-    this->State->HasWarnedOfGrowth = true;
-    vtkWarningWithObjectMacro(this->Self,
-      << "The deformed volume at time " << time
-      << " leaves the extent of the output, which holds it at the times seen before, and is cut "
-         "off "
-         "there. The next update has an extent that holds it; later times may extend it again "
-         "without another warning. Set OutputBoundsMode to VOLUME_BOUNDS or CUSTOM_BOUNDS, or "
-         "Padding, where the extent must hold all times from the first picture on.");
+    this->State->LastExtent = after;
+  }
+  deformvolume::Extent asked;
+  output->Get(Pipeline::UPDATE_EXTENT(), asked.data());
+  output->Set(Pipeline::WHOLE_EXTENT(), after.data(), 6);
+  if (asked == before)
+  {
+    output->Set(Pipeline::UPDATE_EXTENT(), after.data(), 6);
+    this->ExtentBefore = before;
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfCut(vtkInformation* output)
+{
+  deformvolume::Extent asked;
+  output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked.data());
+  if (this->ExtentBefore && asked == *this->ExtentBefore)
+  {
+    this->WarnOfGrowth();
+  }
+  this->ExtentBefore.reset();
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfGrowth()
+{
+  vtkWarningWithObjectMacro(this->Self,
+    "The deformed volume leaves the extent that holds it at the times seen before, and is cut off "
+    "there. The next update has an extent that holds it. Set OutputBoundsMode to VOLUME_BOUNDS or "
+    "CUSTOM_BOUNDS, or Padding, where the extent must hold all times from the first picture on.");
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::KeepInBounds(const deformvolume::Ranks& ranks,
+  const ImageGeometry& volume, const DeformationSource& source, vtkInformation* output)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  if (this->Self->OutputBoundsMode != DEFORMED_BOUNDS)
+  {
+    return;
+  }
+  const bool hasTime = output->Has(Pipeline::UPDATE_TIME_STEP()) != 0;
+  const double time = hasTime ? output->Get(Pipeline::UPDATE_TIME_STEP()) : 0.0;
+  const bool isKnown = hasTime && this->State->TimesInBounds.count(time) > 0;
+  if (!ranks.IsAny(!isKnown && this->State->VersionsInBounds != this->GetVersions()))
+  {
+    return;
+  }
+  const deformvolume::Extent before = this->FindExtent(this->State->Bounds);
+  ranks.Attempt([&] { this->State->Bounds.Add(this->ComputeBounds(volume, source)); });
+  this->State->VersionsInBounds = this->GetVersions();
+  if (hasTime)
+  {
+    this->State->TimesInBounds.insert(time);
+  }
+  if (this->FindExtent(this->State->Bounds) != before)
+  {
+    this->BoundsHaveGrown = true;
+    this->WarnOfGrowth();
   }
 }

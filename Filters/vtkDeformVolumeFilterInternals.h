@@ -79,11 +79,18 @@ public:
   /// The next such extent depends on no other.
   void ForgetDeformedExtent() { this->State->KeyOfExtent = {}; }
 
-  /// Warns, the first time, where the deformation at the time asked for leaves the bounds that
-  /// decided the extent of the output. These bounds then grow, and the next pass finds the filter
-  /// out of date. Collective.
+  ///@{
+  /// The bounds that decided the extent of the output hold the times seen before. Where the
+  /// deformation at the time asked for leaves them they grow, and the next pass finds the filter
+  /// out of date, so that its consumers learn of the new extent. HoldTime: before extents are asked
+  /// for, so that who updates this filter alone gets all of the new extent. KeepInBounds: where
+  /// that pass did not come, or no time is asked for. Collective.
+  void HoldTime(vtkInformation* volumeInfo, vtkInformation* output);
   void KeepInBounds(const deformvolume::Ranks& ranks, const deformvolume::ImageGeometry& volume,
     const deformvolume::DeformationSource& source, vtkInformation* output);
+  ///@}
+  /// Warns where a consumer that does not know of an extent that has grown asks for the one before.
+  void WarnOfCut(vtkInformation* output);
 
   /// The extent of the volume that is needed for what is asked for: all of it, unless a part of the
   /// output or CUSTOM_BOUNDS asks for less, and all before the volume can give less. Collective.
@@ -163,6 +170,8 @@ public:
   bool Aborted = false;
   // So does one whose output was too small.
   bool BoundsHaveGrown = false;
+  /// The whole extent that consumers know, after it has grown in this update.
+  std::optional<deformvolume::Extent> ExtentBefore;
   vtkTimeStamp AbortTime;
 
 private:
@@ -174,6 +183,7 @@ private:
   /// The bounds of the deformed volume, united over the times seen so far. Collective.
   deformvolume::IndexBounds GetDeformedBounds(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkInformation* output);
+  void WarnOfGrowth();
   deformvolume::IndexBounds ReadBounds(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkInformation* output, const double* time);
   /// The extent that BoundsGranularity, Padding and the extent before make of bounds.

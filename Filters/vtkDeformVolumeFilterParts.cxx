@@ -112,7 +112,8 @@ Extent vtkDeformVolumeFilter::vtkInternals::KeepNeeded(
   Extent whole;
   output->Get(Pipeline::UPDATE_EXTENT(), asked.data());
   output->Get(Pipeline::WHOLE_EXTENT(), whole.data());
-  if (asked != whole)
+  // With CUSTOM_BOUNDS other bounds want other voxels, and none of those before.
+  if (asked != whole || this->Self->OutputBoundsMode == CUSTOM_BOUNDS)
   {
     share.Asked = asked;
   }

@@ -70,6 +70,10 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
     {
       return deformvolume::Fail(this);
     }
+    if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_TIME_DEPENDENT_INFORMATION()))
+    {
+      this->Internals->HoldTime(input[0]->GetInformationObject(0), output->GetInformationObject(0));
+    }
     if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
     {
       this->Internals->ToldMessage.clear();
@@ -202,6 +206,8 @@ int vtkDeformVolumeFilter::RequestInformation(
   outInfo->Set(vtkDataObject::SPACING(), glm::value_ptr(outputGeometry.Spacing), 3);
   outInfo->Set(vtkDataObject::DIRECTION(), glm::value_ptr(rows), 9);
   outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  // The time is known after this pass only.
+  outInfo->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
   vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
     volumeInfo, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
   if (scalars && scalars->Has(vtkDataObject::FIELD_ARRAY_TYPE()))
@@ -284,6 +290,7 @@ int vtkDeformVolumeFilter::RequestData(
       mapped = this->Internals->GetMappedVolume(volume, volumeInfo);
     });
   const ImageGeometry& geometry = mapped.Whole;
+  this->Internals->WarnOfCut(outInfo);
   const DeformationSource source = this->Internals->ReadDeformation(
     ranks, geometry, vtkDataObject::GetData(input[1]), vtkDataObject::GetData(input[2]));
   deformvolume::Deformation& deformation = state.Deformation;
@@ -416,8 +423,6 @@ int vtkDeformVolumeFilter::RequestData(
     this->Internals->TakeReport(report, request.Method);
   }
   this->Internals->AddUpCounts(ranks);
-  vtkVLogF(
-    vtkLogger::VERBOSITY_TRACE, "%s:\n%s", vtkLogIdentifier(this), this->GetSummary().c_str());
   if (numberOfPoints == 0)
   {
     return 1;
@@ -433,6 +438,8 @@ int vtkDeformVolumeFilter::RequestData(
   {
     state.Outputs.Keep(report);
   }
+  vtkVLogF(
+    vtkLogger::VERBOSITY_TRACE, "%s:\n%s", vtkLogIdentifier(this), this->GetSummary().c_str());
   if (!hasLast)
   {
     std::copy(request.OutputExtent.begin(), request.OutputExtent.end(), this->ChangedExtent);

@@ -14,7 +14,6 @@ namespace deformvolume
 // What a brick's vertices are found to need.
 struct BrickPoints::Needs
 {
-  std::vector<std::int32_t> Tetrahedra; // some of them several times; where they are listed
   std::vector<std::int32_t> Nodes;
   double Excess = 0.0;
 
@@ -34,12 +33,6 @@ struct BrickPoints::Needs
 
 namespace
 {
-
-void SortOnce(std::vector<std::int32_t>& numbers)
-{
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
 
 template <typename Use>
 void ForNodes(const Tetrahedron& places, Use&& use)

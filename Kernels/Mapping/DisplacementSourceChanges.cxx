@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How DisplacementSource follows changes of the mesh: tetrahedra that get other nodes, or that are
-// replaced by others.
+// How DisplacementSource follows changes of the mesh: tetrahedra that get other nodes.
 #include "DisplacementSource.h"
 
 #include "DeviceVolume.h"

@@ -276,23 +276,4 @@ VertexRuns RunBuilder::Build(const Extent& part, std::int64_t& numberOfInnerVoxe
   return runs;
 }
 
-VertexRuns RunBuilder::BuildTiles(
-  const std::vector<std::int64_t>& tiles, std::int64_t& numberOfInnerVoxels) const
-{
-  std::vector<TileRuns> made(tiles.size());
-  const auto getBox = [&](std::size_t i) { return this->Linker.GetTiles().GetVoxels(tiles[i]); };
-  ParallelForParts(tiles.size(), 1,
-    [&](std::size_t i, std::size_t) { made[i] = this->MakeTileRuns(tiles[i], getBox(i)); });
-  VertexRuns runs;
-  Numbering numbering(*this, this->Voxels, runs.Tetrahedra);
-  numberOfInnerVoxels = 0;
-  for (std::size_t i = 0; i < tiles.size(); ++i)
-  {
-    numberOfInnerVoxels += made[i].InnerVoxels;
-    this->Append({ made[i] }, getBox(i), numbering, runs);
-  }
-  runs.RowBegins.push_back(static_cast<std::uint32_t>(runs.Runs.size()));
-  return runs;
-}
-
 } // namespace deformvolume

@@ -37,9 +37,6 @@ public:
   /// part: voxels of the volume, whole rows.
   VertexRuns Build(const Extent& part, std::int64_t& numberOfInnerVoxels,
     const std::function<void(double)>& progress) const;
-  /// The runs of the rows of some tiles, one after the other, and of no other rows.
-  VertexRuns BuildTiles(
-    const std::vector<std::int64_t>& tiles, std::int64_t& numberOfInnerVoxels) const;
 
 private:
   struct TileRuns

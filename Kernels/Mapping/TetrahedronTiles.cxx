@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <limits>
 
 namespace deformvolume
 {
@@ -69,76 +68,10 @@ TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::
                 "index 0. Check the units of the mesh and the spacing of the volume.");
   }
   this->FlatTetrahedra = flat;
-  this->MakeLists({}, ranges, {});
+  this->MakeLists(ranges);
 }
 
-TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
-  const std::vector<Tetrahedron>& tetrahedra, double margin,
-  const std::vector<unsigned char>& wanted)
-  : TileGrid(voxels)
-{
-  // Most tetrahedra are nowhere near the tiles, which a look at two coordinates tells.
-  glm::dvec3 low(std::numeric_limits<double>::infinity());
-  glm::dvec3 high(-low);
-  for (std::int64_t tile = 0; tile < this->GetNumberOfTiles(); ++tile)
-  {
-    if (wanted[tile])
-    {
-      const VoxelBox box = this->GetVoxels(tile);
-      low = glm::min(low, glm::dvec3(box.Min[0], box.Min[1], box.Min[2]) - margin);
-      high = glm::max(high, glm::dvec3(box.Max[0], box.Max[1], box.Max[2]) + margin);
-    }
-  }
-  const auto isNear = [&](const Places& places)
-  {
-    bool near = true;
-    for (int axis = 1; axis < 3; ++axis)
-    {
-      near &= std::max({ places[0][axis], places[1][axis], places[2][axis], places[3][axis] }) >=
-          low[axis] &&
-        std::min({ places[0][axis], places[1][axis], places[2][axis], places[3][axis] }) <=
-          high[axis];
-    }
-    return near;
-  };
-  struct Found
-  {
-    std::vector<std::int32_t> Numbers;
-    std::vector<Range> Ranges;
-  };
-  const auto size = static_cast<std::int64_t>(tetrahedra.size());
-  std::vector<Found> found(CountChunks(size));
-  ForEachChunk(size,
-    [&](std::int64_t chunk, std::int64_t begin, std::int64_t end)
-    {
-      for (std::int64_t id = begin; id < end; ++id)
-      {
-        const Places places = GetPlaces(tetrahedra[id], restPoints);
-        if (!isNear(places))
-        {
-          continue;
-        }
-        const Range range = this->FindRange(places, margin);
-        bool isWanted = false;
-        this->ForEachTile(range, [&](std::int64_t tile) { isWanted |= wanted[tile] != 0; });
-        if (isWanted)
-        {
-          found[chunk].Numbers.push_back(static_cast<std::int32_t>(id));
-          found[chunk].Ranges.push_back(range);
-        }
-      }
-    });
-  Found all;
-  for (const Found& some : found)
-  {
-    all.Numbers.insert(all.Numbers.end(), some.Numbers.begin(), some.Numbers.end());
-    all.Ranges.insert(all.Ranges.end(), some.Ranges.begin(), some.Ranges.end());
-  }
-  this->MakeLists(all.Numbers, all.Ranges, wanted);
-}
-
-void TetrahedronTiles::MakeLists(const std::vector<std::int32_t>& numbers,
-  const std::vector<Range>& ranges, const std::vector<unsigned char>& wanted)
+void TetrahedronTiles::MakeLists(const std::vector<Range>& ranges)
 {
   const std::int64_t tiles = this->GetNumberOfTiles();
   const auto size = static_cast<std::int64_t>(ranges.size());
@@ -149,14 +82,7 @@ void TetrahedronTiles::MakeLists(const std::vector<std::int32_t>& numbers,
       {
         for (std::int64_t i = begin; i < end; ++i)
         {
-          this->ForEachTile(ranges[i],
-            [&](std::int64_t tile)
-            {
-              if (wanted.empty() || wanted[tile])
-              {
-                body(chunk, i, tile);
-              }
-            });
+          this->ForEachTile(ranges[i], [&](std::int64_t tile) { body(chunk, i, tile); });
         }
       });
   };
@@ -177,12 +103,8 @@ void TetrahedronTiles::MakeLists(const std::vector<std::int32_t>& numbers,
   }
   this->Offsets[tiles] = offset;
   this->Bins.resize(offset);
-  forEachEntry(
-    [&](std::int64_t chunk, std::int64_t i, std::int64_t tile)
-    {
-      this->Bins[counts[chunk][tile]++] =
-        numbers.empty() ? static_cast<std::int32_t>(i) : numbers[i];
-    });
+  forEachEntry([&](std::int64_t chunk, std::int64_t i, std::int64_t tile)
+    { this->Bins[counts[chunk][tile]++] = static_cast<std::int32_t>(i); });
 }
 
 } // namespace deformvolume

@@ -23,12 +23,6 @@ public:
   /// Throws Error where a node is more than 2^31 voxels away.
   TetrahedronTiles(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, double margin);
-  /// The same with lists of some tiles alone: those that are wanted, of all of them. Flat
-  /// tetrahedra are not counted, and those of the tiles are within the limit.
-  TetrahedronTiles(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
-    const std::vector<Tetrahedron>& tetrahedra, double margin,
-    const std::vector<unsigned char>& wanted);
-
   /// The tetrahedra of a tile in ascending order.
   struct List
   {
@@ -49,10 +43,8 @@ public:
   std::int64_t GetNumberOfFlatTetrahedra() const { return this->FlatTetrahedra; }
 
 private:
-  /// Lists the tetrahedra under some numbers, or all where these are none. ranges: the tiles of
-  /// each.
-  void MakeLists(const std::vector<std::int32_t>& numbers, const std::vector<Range>& ranges,
-    const std::vector<unsigned char>& wanted);
+  /// ranges: the tiles of each tetrahedron.
+  void MakeLists(const std::vector<Range>& ranges);
 
   // The tetrahedra of tile i are Bins[Offsets[i]] to Bins[Offsets[i + 1]].
   std::vector<std::int64_t> Offsets;

@@ -52,15 +52,6 @@ VoxelLinker::VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& re
 {
 }
 
-VoxelLinker::VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
-  const std::vector<Tetrahedron>& tetrahedra, const std::vector<unsigned char>& wanted)
-  : RestPoints(restPoints)
-  , Tetrahedra(tetrahedra)
-  , Voxels(MakeVoxelBox(voxels))
-  , Tiles(voxels, restPoints, tetrahedra, Reach, wanted)
-{
-}
-
 bool VoxelLinker::ComesBefore(std::int32_t id, std::int32_t other) const
 {
   for (int node = 0; node < 4; ++node)

@@ -69,10 +69,6 @@ public:
   /// Throws Error where a tetrahedron has a node more than 2^31 voxels away from index 0.
   VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra);
-  /// For some tiles alone: those that are wanted, of all of them.
-  VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
-    const std::vector<Tetrahedron>& tetrahedra, const std::vector<unsigned char>& wanted);
-
   /// What a voxel gets depends only on the tetrahedra whose boxes, widened by so much, hold it.
   static constexpr double Reach = 1.0 / 128.0;
 

@@ -27,7 +27,6 @@ std::string Trim(const std::string& text)
     : whole.substr(begin, whole.find_last_not_of(blank) - begin + 1);
 }
 
-/// Bindings of C++ give the platform of a device as one of two types.
 bool DeviceHasExtension(const cl::Device& device, const std::string& name)
 {
   const std::string extensions = " " + device.getInfo<CL_DEVICE_EXTENSIONS>() + " ";

@@ -125,7 +125,18 @@ Pipeline::Pipeline(std::uint64_t seed, std::ostream& log)
   this->Parts->Volume = this->Volume;
   log << (this->VolumeInParts ? "volume from a source of parts\n" : "");
   this->Connect(this->Tested, false);
+  this->ApplySettings();
+}
+
+void Pipeline::ApplySettings()
+{
   this->Settings.PointsAreDeformed = this->Given == Form::DeformedPoints;
+  if (this->VariesInTime &&
+    this->Settings.OutputBoundsMode == vtkDeformVolumeFilter::DEFORMED_BOUNDS)
+  {
+    // A new filter has seen other times.
+    this->Settings.OutputBoundsMode = vtkDeformVolumeFilter::VOLUME_BOUNDS;
+  }
   Apply(this->Settings, this->Tested.GetFilter());
 }
 
@@ -359,8 +370,7 @@ void Pipeline::Edit()
   this->Time = this->Random.Int(0, 3);
   this->TouchSources();
   this->Connect(this->Tested, false);
-  this->Settings.PointsAreDeformed = this->Given == Form::DeformedPoints;
-  Apply(this->Settings, this->Tested.GetFilter());
+  this->ApplySettings();
 }
 
 void Pipeline::Abort()

@@ -61,6 +61,7 @@ private:
   };
 
   void MakeDeformation();
+  void ApplySettings();
   void MakeShape();
   void EditForm();
   void Connect(Subject& subject, bool copies);
