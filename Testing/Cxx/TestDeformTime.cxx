@@ -91,10 +91,10 @@ int TestDeformTime(int, char*[])
   info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
   VERIFY_EQUAL(whole, (Extent{ { 0, 9, 0, 8, 0, 7 } }));
 
-  const auto check = [&](double time, int last)
+  const auto check = [&](double time, int last, int first = 0)
   {
     vtkImageData* output = deformed.Filter->GetOutput();
-    VERIFY_EQUAL(GetExtent(output), (Extent{ { 0, last, 0, 8, 0, 7 } }));
+    VERIFY_EQUAL(GetExtent(output), (Extent{ { first, last, 0, 8, 0, 7 } }));
     VERIFY_EQUAL(FindCoveredStart(deformed), static_cast<int>(lattice->Speed * time));
     VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
     VERIFY_EQUAL(output->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), time);
@@ -119,7 +119,7 @@ int TestDeformTime(int, char*[])
   lattice->Speed = 2.0;
   lattice->Modified();
   deformed.Filter->UpdateTimeStep(4.0);
-  check(4.0, 17);
+  check(4.0, 17, 8);
 
   // A consumer knows of the extent before: where the volume has gone there is nothing at first.
   vtkNew<vtkImageShiftScale> consumer;
@@ -137,7 +137,7 @@ int TestDeformTime(int, char*[])
     consumer->UpdateTimeStep(time);
     VERIFY_EQUAL(GetExtent(consumer->GetOutput())[1], last);
     VERIFY(deformed.TakeWarning().empty());
-    check(time, last);
+    check(time, last, 8);
   }
 
   // The volume's bounds need no look at the time steps.
