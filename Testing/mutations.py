@@ -80,6 +80,8 @@ MUTATIONS = {
                      [MISSING]),
     "vertex-edge": ("Kernels/Resampling/GroupCoverage.cl", "1 << (vertex ^ 1)", "1 << (vertex ^ 2)",
                     [MISSING]),
+    "special-groups": ("Kernels/Resampling/BrickResampling.cl", "~LaneBits(special)",
+                       "LaneBits(special) ? 0u : ~0u", [("TestElementTypes", "*NotANumber*")]),
     "edge-end": ("Kernels/Resampling/GroupResampling.cl", "(x >= FROM(0))", "(x > FROM(0))", [ALONG]),
     "edge-end-bent": ("Kernels/Resampling/GroupResampling.cl", " & ~endsY & ~endsZ);", ");", [ALONG]),
     "edge-side": ("Kernels/Resampling/GroupResampling.cl", "const INTS lowestZ = alongZ & lowX & lowY;",

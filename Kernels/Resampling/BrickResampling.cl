@@ -18,31 +18,48 @@
 // What the host puts in front of this text, besides that of Resampling.cl:
 //   ROWS_ARE_GLOBAL      0 or 1: what ROW_MEMORY is (GroupVertices.cl)
 
-// A group of a row whose cells from beginX to endX are wanted. special: whether a value is one that sums of
-// products do not give back.
-static __attribute__((always_inline)) void ResampleCells(const GroupCandidates* c, int special,
+// Leaves the cells of a group that have a value which sums of products do not give back to ResampleCell: these only. The
+// flags of rows tell of many vertices at once, and of which depends on where what is mapped of a row begins and ends.
+static SELDOM void LeaveSpecials(GroupCandidates* c)
+{
+  const Group* const group = &c->Cells;
+  INTS special = 0;
+#define FIND_SPECIALS(index, TYPE, BITS, SLOT)                                                     \
+  for (int v = 0; BITS == 32 && v < 8; ++v)                                                        \
+  {                                                                                                \
+    const INTS bits = AS_INTS(VERTEX(v, 3 + SLOT));                                                \
+    special |= IS_SPECIAL(bits);                                                                   \
+  }
+  LANE_ARRAYS(FIND_SPECIALS)
+  const uint others = ~LaneBits(special);
+  c->Fit &= others;
+  c->Some &= others;
+}
+
+// A group of a row whose cells from beginX to endX are wanted. special: whether such a value may be among those of
+// the group, or near it.
+static __attribute__((always_inline)) void ResampleCells(GroupCandidates* c, int special,
   int beginX, int endX, const SamplingMesh* mesh, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
-  uint again = (1u << LANES) - 1;
-  if (!special)
+  if (c->Skip)
   {
-    if (c->Skip)
-    {
-      return;
-    }
-    Doubts doubts;
-    const Outcome outcome = ResampleByFloats(c, mesh, output, found, &doubts, p ARRAY_ARGUMENTS);
-    again = outcome.Unsure;
-    if (outcome.Doubtful)
-    {
-      ResampleDoubts(
-        c, &doubts, outcome.Doubtful, beginX, endX, mesh, output, p ARRAY_ARGUMENTS);
-    }
-    if (outcome.Ambiguous)
-    {
-      again |= ResampleByIntegers(c, outcome.Ambiguous, mesh, output, found, p ARRAY_ARGUMENTS);
-    }
+    return;
+  }
+  if (special)
+  {
+    LeaveSpecials(c);
+  }
+  Doubts doubts;
+  const Outcome outcome = ResampleByFloats(c, mesh, output, found, &doubts, p ARRAY_ARGUMENTS);
+  uint again = outcome.Unsure;
+  if (outcome.Doubtful)
+  {
+    ResampleDoubts(c, &doubts, outcome.Doubtful, beginX, endX, mesh, output, p ARRAY_ARGUMENTS);
+  }
+  if (outcome.Ambiguous)
+  {
+    again |= ResampleByIntegers(c, outcome.Ambiguous, mesh, output, found, p ARRAY_ARGUMENTS);
   }
   if (again)
   {
@@ -77,7 +94,7 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
   {
     Output* const output = OUTPUT_OF_COLUMN(outputs, k);
     const int special = (specials & GROUP_FLAGS(k)) != 0;
-    const GroupCandidates* const here = candidates[place];
+    GroupCandidates* const here = candidates[place];
     FetchOutput(here + 1, output ARRAY_ARGUMENTS);
     ResampleCells(here, special, beginX, endX, mesh, output, found, p ARRAY_ARGUMENTS);
     const int next = k + LANES;

@@ -114,6 +114,30 @@ static SELDOM void StatesOfGroup(const SamplingMesh* mesh, int x, int y, int z,
 }
 
 #if HAS_CUT
+// What FindDivided finds, vertex by vertex: as StatesOfLanes.
+static uint FindDividedLanes(
+  const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
+{
+  uint divided = 0;
+  for (int lane = 0; lane < LANES; ++lane)
+  {
+    const int cell = x + 2 * lane;
+    if (cell < 0 || cell >= p->Size[0] - 1)
+    {
+      continue;
+    }
+    int all = DEFORMVOLUME_VERTEX_TOGETHER;
+    for (int o = 0; o < 8; ++o)
+    {
+      all &= mesh->State[VertexInChunk(cell + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p)];
+    }
+    const int crossed =
+      !(mesh->State[VertexInChunk(cell, y, z, p)] & DEFORMVOLUME_CELL_UNCROSSED);
+    divided |= (uint)(crossed && !all) << lane;
+  }
+  return divided;
+}
+
 // The cells of a group, as bits, that a smooth cut may divide (CutCells.cl): one that it crosses, with a vertex that lies
 // elsewhere as seen from the other side.
 static SELDOM uint FindDivided(
@@ -122,7 +146,7 @@ static SELDOM uint FindDivided(
   __global const uchar* const state = BeginStates(mesh, x, y, z, p);
   if (!state)
   {
-    return (1u << LANES) - 1;
+    return FindDividedLanes(mesh, x, y, z, p);
   }
   const long row = p->Size[0];
   const long plane = row * p->Size[1];

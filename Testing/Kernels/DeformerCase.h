@@ -121,8 +121,7 @@ Deformed LoadAndRun(const DeformerCase& deformerCase,
 
 /// Coverage, counts and all values against the reference, also those found cell by cell and by
 /// columns. Values of arrays that go by lanes have single precision, all others the precision of
-/// the reference. By columns they are the same as by lanes, to the last bit, but where cells are
-/// interpolated in double precision for what is beside them: a smooth cut, or special values.
+/// the reference. By columns they are the same as by lanes, to the last bit.
 void ExpectEqualsReference(const DeformerCase& deformerCase, const reference::Result& reference,
   const std::vector<deformvolume::VolumeArray>& arrays, const Deformed& deformed);
 

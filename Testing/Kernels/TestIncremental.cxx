@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <random>
 
@@ -266,6 +267,37 @@ TEST_F(IncrementalMasks, AMaskChangesBesideAPart)
     }
   }
   EXPECT_EQ(this->Parts, changes);
+}
+
+// A cell with a value that sums of products do not give back is interpolated in double precision,
+// and those beside it are not, whichever of them are made.
+TEST_F(IncrementalMasks, SpecialValuesLieBesideAPart)
+{
+  const auto voxelAt = [](int x, int y)
+  { return static_cast<std::size_t>((20 * 49 + y) * 49 + x); };
+  const float specials[] = { std::numeric_limits<float>::max(),
+    std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN(), -0.0F };
+  int y = 4;
+  for (const float special : specials)
+  {
+    this->Values[voxelAt(36, y)] = special; // parts meet at 32
+    y += 12;
+  }
+  this->Wanted->SetArrays(this->Arrays);
+  this->Updated.SetArrays(this->Arrays);
+  std::vector<unsigned char> blanked(this->Values.size());
+  const std::vector<unsigned char> active(
+    static_cast<std::size_t>(GetNumberOfCells(this->Case.VoxelGrid.VertexExtent)), 31);
+  this->Update(blanked, active);
+  y = 4;
+  for (const float special : specials)
+  {
+    SCOPED_TRACE(testing::Message() << special);
+    blanked[voxelAt(10, y)] = 1;
+    ASSERT_NO_FATAL_FAILURE(this->Update(blanked, active));
+    y += 12;
+  }
+  EXPECT_EQ(this->Parts, 4);
 }
 
 namespace
