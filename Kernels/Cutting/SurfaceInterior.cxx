@@ -30,7 +30,8 @@ public:
     : Triangle{ { PointsPerStep * triangle[0], PointsPerStep * triangle[1],
         PointsPerStep * triangle[2] } }
     , Box(deformvolume::GetBox(this->Triangle))
-    , Normal(deformvolume::Cross(this->Triangle[1] - this->Triangle[0], this->Triangle[2] - this->Triangle[0]))
+    , Normal(deformvolume::Cross(
+        this->Triangle[1] - this->Triangle[0], this->Triangle[2] - this->Triangle[0]))
   {
   }
 

@@ -2,8 +2,8 @@
 // Several ranks: each makes its piece of the output, and all pieces are those that one process
 // makes, to the last bit; whoever has the deformation mesh; errors end alike on all ranks. With the
 // argument "cold": the start with an empty cache of kernels.
-#include "DivisionCases.h"
 #include "../Reported.h"
+#include "DivisionCases.h"
 #include "RankTesting.h"
 #include "TenNodeCells.h"
 
