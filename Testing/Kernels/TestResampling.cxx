@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The table of the exact resampling: each deformation with each kind of mask and each kind of
 // smooth cut equals the reference, by all kernels, and by links, runs and fields in turn. One row
-// is
-// --gtest_filter='*/Bent_Blanked_Opened'. All types of elements are those of
+// is run with --gtest_filter='*/Bent_Blanked_Opened'. All types of elements are those of
 // TestElementTypes, what is special about single rows those of TestPiecewise, TestFolded,
 // TestLargeCells, TestBoundaryDistances and TestSmoothCuts.
 #include "DeformerCase.h"
