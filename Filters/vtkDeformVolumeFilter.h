@@ -62,9 +62,10 @@
  * the same to the last bit however the output is divided. Where a part is asked for, and with
  * CUSTOM_BOUNDS, the input is asked only for the voxels that can land there, provided that all
  * sources of the volume can make parts (they say so with CAN_PRODUCE_SUB_EXTENT), that the
- * resampler is EXACT or AUTOMATIC, which then is EXACT even if the whole would not have fit into
- * memory, and that the mesh is not extrapolated. Else, and with FieldIsInverse, it is asked for
- * whole. Of the deformation mesh each rank may have a piece, none, or the whole: it is gathered
+ * resampler is EXACT, or AUTOMATIC with linear interpolation, that the mesh is not extrapolated,
+ * and that the volume has no smooth cut or SamplingFactor is above 1. AUTOMATIC is then EXACT, even
+ * if the whole would not have fit into memory. Else, and with FieldIsInverse, the input is asked
+ * for whole. Of the deformation mesh each rank may have a piece, none, or the whole: it is gathered
  * through vtkMultiProcessController::GetGlobalController(). A displacement field every rank must be
  * given whole. All ranks have to update together; an error of one is told on all. Counts of voxels,
  * tetrahedra and bricks are summed over the ranks: what two of them have counts twice.
