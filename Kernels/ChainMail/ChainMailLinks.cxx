@@ -116,8 +116,7 @@ unsigned char ChainMailLinks::Find(const ChainMailBlocks& blocks, int x, int y, 
       continue;
     }
     const Extent& whole = blocks.GetExtent();
-    const int mirror =
-      ((whole[0] + cx) & 1) | ((whole[4] + cz) & 1) << 1 | ((whole[2] + cy) & 1) << 2;
+    const int mirror = DEFORMVOLUME_MIRROR(whole[0] + cx, whole[2] + cy, whole[4] + cz);
     const std::size_t cell = (static_cast<std::size_t>(cz) * static_cast<std::size_t>(size[1] - 1) +
                                static_cast<std::size_t>(cy)) *
         static_cast<std::size_t>(size[0] - 1) +

@@ -57,17 +57,16 @@ BrickEdit::CellTetrahedra BrickEdit::GetTetrahedra(int x, int y, int z) const
 {
   static constexpr int table[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
   // Of the structured index: pieces of a volume are split as the whole is.
-  const int oddX = (this->Vertices[0] + x) & 1;
-  const int oddY = (this->Vertices[2] + y) & 1;
-  const int oddZ = (this->Vertices[4] + z) & 1;
+  const int mirror =
+    DEFORMVOLUME_MIRROR(this->Vertices[0] + x, this->Vertices[2] + y, this->Vertices[4] + z);
   CellTetrahedra tetrahedra;
   for (std::size_t t = 0; t < 5; ++t)
   {
     for (std::size_t k = 0; k < 4; ++k)
     {
-      const int v = table[t][k];
+      const int offset = table[t][k] ^ mirror;
       tetrahedra[t][k] =
-        this->GetVertex(x + ((v & 1) ^ oddX), y + ((v >> 2 & 1) ^ oddY), z + ((v >> 1 & 1) ^ oddZ));
+        this->GetVertex(x + (offset & 1), y + (offset >> 2 & 1), z + (offset >> 1 & 1));
     }
   }
   return tetrahedra;

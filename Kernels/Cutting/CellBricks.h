@@ -3,6 +3,7 @@
 #define DeformVolumeCellBricks_h
 
 #include "Extent.h"
+#include "FiveTetrahedra.h"
 
 #include <algorithm>
 #include <array>
@@ -60,6 +61,13 @@ public:
       cells[2 * axis + 1] = std::min(cells[2 * axis] + Length, this->Size[axis]) - 1;
     }
     return cells;
+  }
+
+  /// On which axes the tetrahedra of a cell are mirrored (FiveTetrahedra.h), by its local indices.
+  int GetMirror(const std::array<int, 3>& cell) const
+  {
+    return DEFORMVOLUME_MIRROR(
+      this->Vertices[0] + cell[0], this->Vertices[2] + cell[1], this->Vertices[4] + cell[2]);
   }
 
   /// Structured indices of the vertices of a brick.

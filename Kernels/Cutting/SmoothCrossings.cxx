@@ -82,29 +82,15 @@ void SmoothCrossings::Allocate()
   }
 }
 
-std::size_t SmoothCrossings::GetVertex(const std::array<int, 3>& cell, unsigned int offset) const
+std::size_t SmoothCrossings::GetVertex(const std::array<int, 3>& cell, int offset) const
 {
   const std::array<int, 3>& size = this->VertexBricks.GetSize();
-  return (static_cast<std::size_t>(cell[2] + static_cast<int>(offset >> 1U & 1U)) *
+  return (static_cast<std::size_t>(cell[2] + (offset >> 1 & 1)) *
              static_cast<std::size_t>(size[1]) +
-           static_cast<std::size_t>(cell[1] + static_cast<int>(offset >> 2U & 1U))) *
+           static_cast<std::size_t>(cell[1] + (offset >> 2 & 1))) *
     static_cast<std::size_t>(size[0]) +
-    static_cast<std::size_t>(cell[0] + static_cast<int>(offset & 1U));
+    static_cast<std::size_t>(cell[0] + (offset & 1));
 }
-
-namespace
-{
-
-// Which of the offsets of a cell the vertices of its tetrahedra are: numbers with these bits
-// exchanged (FiveTetrahedra.h).
-unsigned int GetMirror(const Extent& vertices, const std::array<int, 3>& cell)
-{
-  return (static_cast<unsigned int>(vertices[0] + cell[0]) & 1U) |
-    (static_cast<unsigned int>(vertices[4] + cell[2]) & 1U) << 1U |
-    (static_cast<unsigned int>(vertices[2] + cell[1]) & 1U) << 2U;
-}
-
-} // namespace
 
 void SmoothCrossings::SetBase(
   const unsigned char* crossed, const float* distances, const std::vector<const CrossingSet*>& sets)
@@ -127,14 +113,13 @@ void SmoothCrossings::SetBase(
       [&](const std::array<int, 3>& cell, std::size_t place, std::size_t number)
       {
         const unsigned int hit = crossed[number] & DEFORMVOLUME_ALL_TETRAHEDRA;
-        const unsigned int mirror = GetMirror(this->Bricks.GetVertices(), cell);
+        const int mirror = this->Bricks.GetMirror(cell);
         for (unsigned int t = 0; hit != 0 && t < 5; ++t)
         {
           std::array<bool, 4> isNegative;
           for (std::size_t k = 0; k < 4; ++k)
           {
-            const std::size_t vertex =
-              this->GetVertex(cell, static_cast<unsigned int>(FiveTetrahedra[t][k]) ^ mirror);
+            const std::size_t vertex = this->GetVertex(cell, FiveTetrahedra[t][k] ^ mirror);
             isNegative[k] = distances[vertex] < 0.0F;
             isCorner[vertex] = isCorner[vertex] || (hit >> t & 1U) != 0;
           }
@@ -279,7 +264,7 @@ void SmoothCrossings::UpdateCells(std::size_t brick)
     [&](const std::array<int, 3>& cell, std::size_t place, std::size_t number)
     {
       const CrossingSet::Cell joined = block ? (*block)[place] : CrossingSet::Cell();
-      const unsigned int mirror = GetMirror(this->Bricks.GetVertices(), cell);
+      const int mirror = this->Bricks.GetMirror(cell);
       unsigned int crossed = 0;
       unsigned int off = 0;
       unsigned int before = 0; // what the cut before all edits divides
@@ -295,8 +280,8 @@ void SmoothCrossings::UpdateCells(std::size_t brick)
         bool isClear = true;
         for (std::size_t k = 0; k < 4; ++k)
         {
-          const float distance = this->Distances[this->GetVertex(
-            cell, static_cast<unsigned int>(FiveTetrahedra[t][k]) ^ mirror)];
+          const float distance =
+            this->Distances[this->GetVertex(cell, FiveTetrahedra[t][k] ^ mirror)];
           isNegative[k] = distance < 0.0F;
           isClear = isClear && distance != 0.0F;
         }

@@ -77,7 +77,7 @@ private:
   std::vector<std::size_t> Update(const CrossingSet& edit);
   void UpdateDistances(std::size_t brick);
   void UpdateCells(std::size_t brick);
-  std::size_t GetVertex(const std::array<int, 3>& cell, unsigned int offset) const;
+  std::size_t GetVertex(const std::array<int, 3>& cell, int offset) const;
 
   CellBricks Bricks;
   CellBricks VertexBricks;

@@ -97,15 +97,14 @@ private:
     const Extent& extent = this->Shape.VertexExtent;
     for (const CrossedCell& cell : cells)
     {
-      const unsigned int mirror = (static_cast<unsigned int>(extent[0] + cell.X) & 1U) |
-        (static_cast<unsigned int>(extent[4] + layer) & 1U) << 1U |
-        (static_cast<unsigned int>(extent[2] + cell.Y) & 1U) << 2U;
+      const int mirror =
+        DEFORMVOLUME_MIRROR(extent[0] + cell.X, extent[2] + cell.Y, extent[4] + layer);
       unsigned int corners = 0; // of crossed tetrahedra, as bits of offsets
       for (unsigned int t = 0; t < 5; ++t)
       {
         for (const int v : FiveTetrahedra[t])
         {
-          corners |= (cell.Tetrahedra >> t & 1U) << (static_cast<unsigned int>(v) ^ mirror);
+          corners |= (cell.Tetrahedra >> t & 1U) << (v ^ mirror);
         }
       }
       for (unsigned int offset = 0; offset < 8; ++offset)

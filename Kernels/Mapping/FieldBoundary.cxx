@@ -119,9 +119,9 @@ MeshBoundary FindFieldBoundary(
       std::array<glm::dvec3, 8> points;
       for (int vertex = 0; vertex < 8; ++vertex)
       {
-        const glm::i64vec3 odd = cell & std::int64_t{ 1 };
+        const auto offset = vertex ^ DEFORMVOLUME_MIRROR(cell.x, cell.y, cell.z);
         const glm::i64vec3 corner =
-          cell + (glm::i64vec3(vertex & 1, vertex >> 2 & 1, vertex >> 1 & 1) ^ odd);
+          cell + glm::i64vec3(offset & 1, offset >> 2 & 1, offset >> 1 & 1);
         points[static_cast<std::size_t>(vertex)] = glm::min(glm::dvec3(corner) * step, last);
       }
       for (const auto& tetrahedron : split)

@@ -168,7 +168,7 @@ static void LoadRest(__local const int* rests, int x, int* rest)
 }
 
 #if HAS_MASKS
-// Whether a point in a tetrahedron of a cell lies on the far side of the boundary. mirror: parity bits of the cell.
+// Whether a point in a tetrahedron of a cell lies on the far side of the boundary. mirror: DEFORMVOLUME_MIRROR of the cell.
 static int IsBeyondBoundary(__global const float* distances, const int* cell, int mirror, int t,
   const long* weights, const RasterParameters* p)
 {
@@ -207,8 +207,7 @@ static int IsThere(VolumeMasks masks, const int* rest, const RasterParameters* p
     const int tetrahedra = p->HasActive
       ? masks.Active[((size_t)c[2] * (p->Size[1] - 1) + c[1]) * (p->Size[0] - 1) + c[0]]
       : DEFORMVOLUME_ALL_TETRAHEDRA;
-    const int mirror = ((p->First[0] + c[0]) & 1) | ((p->First[2] + c[2]) & 1) << 1 |
-      ((p->First[1] + c[1]) & 1) << 2;
+    const int mirror = DEFORMVOLUME_MIRROR(p->First[0] + c[0], p->First[1] + c[1], p->First[2] + c[2]);
     long point[3];
     for (int axis = 0; axis < 3; ++axis)
     {

@@ -24,6 +24,10 @@
     }                                                                                              \
   }
 
+// The axes on which the split of the cell with this structured index is mirrored, in the order of
+// the bits of a vertex number: v ^ mirror is the offset of vertex v.
+#define DEFORMVOLUME_MIRROR(x, y, z) (((x)&1) | ((z)&1) << 1 | ((y)&1) << 2)
+
 #ifdef __OPENCL_VERSION__
 __constant uchar Tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
 #endif

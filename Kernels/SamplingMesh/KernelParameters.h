@@ -205,10 +205,10 @@ typedef struct
 
 #ifdef __OPENCL_VERSION__
 
-// Parity bits of a cell in the order of the bits of a vertex number: x, z, y.
+// On which axes the split of a cell is mirrored; x, y, z are local indices.
 static int Mirror(int x, int y, int z, const KernelParameters* p)
 {
-  return ((p->First[0] + x) & 1) | ((p->First[2] + z) & 1) << 1 | ((p->First[1] + y) & 1) << 2;
+  return DEFORMVOLUME_MIRROR(p->First[0] + x, p->First[1] + y, p->First[2] + z);
 }
 
 // Places of a vertex, and of a cell, in what a chunk has of each.
