@@ -237,9 +237,8 @@ static void ResampleLayer(const SamplingMesh* mesh, const BrickCells* cells, int
 
 // A brick of cells, or some of its sections. item: as for FindCells. isAbove: whether it is the whole brick above the
 // one before, so that its first plane of vertices is in the memory, with their flags (lists hold no bricks without
-// cells).
-static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __global char* coverage,
-  __global KEY* winners, __global char* patches, __global uint* largeCells,
+// cells). empty: an output without counts.
+static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, const Output* empty,
   __global uint* counters, const BrickMemory* memory, const KernelParameters* p ARRAY_PARAMETERS)
 {
   BrickCells cells;
@@ -251,8 +250,7 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
   Output outputs[DEFORMVOLUME_SECTIONS];
   for (int section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
   {
-    const Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
-    outputs[section] = output;
+    outputs[section] = *empty;
   }
   Found found;
   found.Count = 0;
@@ -284,16 +282,14 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, __gl
 //
 // Why items take one small portion after the other: drivers deal out work-groups in large portions, and wait at the
 // end for the thread that the system has let wait, or that has more to do.
-__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPPING_PARAMETERS,
-  __global const uchar* state, __global const uchar* active, __global const float* distances,
-  __global char* coverage, __global KEY* winners, __global char* patches,
-  __global uint* largeCells, __global uint* counters CUT_PARAMETERS, __global const uint* bricks,
-  __global uint* taken, ROW_MEMORY float* rows, const KernelParameters p ARRAY_PARAMETERS)
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(GIVEN_PARAMETERS,
+  __global const uint* bricks, __global uint* taken, ROW_MEMORY float* rows, const KernelParameters p ARRAY_PARAMETERS)
 {
 #if ROWS_ARE_GLOBAL
   rows += get_global_id(0) * BRICK_FLOATS;
 #endif
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, 0, { 0, 0, 0 } };
+  const SamplingMesh mesh = GIVEN_MESH;
+  const Output empty = GIVEN_OUTPUT;
   RowFlags flags[2][ROWS];
   ROW_MEMORY float* const displaced = rows + 4 * HALF_ROW;
   const BrickMemory memory = { rows, displaced, displaced + 3 * ROW_PLACES, flags };
@@ -306,8 +302,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(MAPP
       const uint above = i > begin ? bricks[i - 1] + p.BrickCount[0] * p.BrickCount[1] : 0;
       const int isAbove =
         bricks[i] == above && above >> DEFORMVOLUME_BRICK_BITS == DEFORMVOLUME_WHOLE_BRICK;
-      ResampleBrick(&mesh, bricks[i], isAbove, coverage, winners, patches, largeCells, counters,
-        &memory, &p ARRAY_ARGUMENTS);
+      ResampleBrick(&mesh, bricks[i], isAbove, &empty, counters, &memory, &p ARRAY_ARGUMENTS);
     }
   }
 }

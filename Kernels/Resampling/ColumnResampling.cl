@@ -95,10 +95,7 @@ static int SortCell(uint any, uint lowest)
 
 // Bricks of a list from p.ListBegin to p.ListEnd, a group a section: on x the columns of one brick after the other, on y
 // and z the halves.
-__kernel void ResampleColumns(MAPPING_PARAMETERS, __global const uchar* state,
-  __global const uchar* active, __global const float* distances, __global char* coverage,
-  __global KEY* winners, __global char* patches, __global uint* largeCells,
-  __global uint* counters CUT_PARAMETERS, __global const uint* bricks, __global uint* queue,
+__kernel void ResampleColumns(GIVEN_PARAMETERS, __global const uint* bricks, __global uint* queue,
   __local float* rows, const KernelParameters parameters ARRAY_PARAMETERS)
 {
   KernelParameters p = parameters;
@@ -113,8 +110,8 @@ __kernel void ResampleColumns(MAPPING_PARAMETERS, __global const uchar* state,
   const int endZ = IsSectionRun(brick, SectionOfGroup(brick)) && beginZ < p.LayersEnd
     ? min(first.z + CELL_LAYERS, p.LayersEnd)
     : beginZ - 1;
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, 0, { 0, 0, 0 } };
-  Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
+  const SamplingMesh mesh = GIVEN_MESH;
+  Output output = GIVEN_OUTPUT;
   for (int i = get_local_id(0); i < DEFORMVOLUME_COUNTERS; i += get_local_size(0))
   {
     counts[i] = 0;
@@ -173,17 +170,14 @@ __kernel void ResampleColumns(MAPPING_PARAMETERS, __global const uchar* state,
 
 // What columns leave of cells that are not for ResampleQueued, a cell a work-item. The host does not know how many there
 // are.
-__kernel void ResampleLeft(MAPPING_PARAMETERS, __global const uchar* state,
-  __global const uchar* active, __global const float* distances, __global char* coverage,
-  __global KEY* winners, __global char* patches, __global uint* largeCells,
-  __global uint* counters CUT_PARAMETERS, __global const uint* bricks, __global uint* queue,
+__kernel void ResampleLeft(GIVEN_PARAMETERS, __global const uint* bricks, __global uint* queue,
   __local float* rows, const KernelParameters parameters ARRAY_PARAMETERS)
 {
   KernelParameters p = parameters;
 #if PASS_IS_DIRECT
   p.Pass = DEFORMVOLUME_PASS_DIRECT;
 #endif
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, 0, { 0, 0, 0 } };
+  const SamplingMesh mesh = GIVEN_MESH;
   const uint entries = queue[1];
   for (uint i = get_global_id(0); i < entries; i += get_global_size(0))
   {
@@ -191,7 +185,7 @@ __kernel void ResampleLeft(MAPPING_PARAMETERS, __global const uchar* state,
     const int3 cell = CellOfEntry(entry, bricks, &p);
     GroupCandidates c;
     MapCell(&mesh, cell.x, cell.y, cell.z, PlaceOfItem(rows), &c.Cells, &p ARRAY_ARGUMENTS);
-    Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
+    Output output = GIVEN_OUTPUT;
     GroupFrame frame;
     const int left = ResampleColumnCell(&c, MAXIMUM_CANDIDATES, 0, &frame, 1,
       entry >> QUEUE_BITS == QUEUE_INTEGERS, &output, &p ARRAY_ARGUMENTS);

@@ -5,9 +5,7 @@
 // Data and what the host puts in front of this text: as in Resampling.cl, which it comes after. pieces: from
 // p.ListBegin to p.ListEnd local x, y and z of a cell, and the number of a piece of it.
 
-__kernel void ResampleLargeCells(MAPPING_PARAMETERS, __global const uchar* state,
-  __global const uchar* active, __global const float* distances, __global char* coverage, __global KEY* winners,
-  __global char* patches, __global uint* largeCells, __global uint* counters CUT_PARAMETERS,
+__kernel void ResampleLargeCells(GIVEN_PARAMETERS,
   __global const int4* pieces, const KernelParameters p ARRAY_PARAMETERS)
 {
   const int i = p.ListBegin + (int)get_global_id(0);
@@ -16,8 +14,8 @@ __kernel void ResampleLargeCells(MAPPING_PARAMETERS, __global const uchar* state
     return; // an item that only fills its group
   }
   const int4 piece = pieces[i];
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, 0, { 0, 0, 0 } };
-  Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
+  const SamplingMesh mesh = GIVEN_MESH;
+  Output output = GIVEN_OUTPUT;
   const Candidates all = AllCandidates(&p);
   Cell cell, views[2];
   if (!MakeCell(&mesh, piece.x, piece.y, piece.z, &all, &cell, views, &output, &p))

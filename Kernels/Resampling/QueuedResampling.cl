@@ -77,13 +77,10 @@ static void ResampleQueuedCell(const SamplingMesh* mesh, int x, int y, int z, in
 
 // An entry of the queue a work-item, and of what ResampleLeft has had, unless that is done. The host does not know how
 // many there are.
-__kernel void ResampleQueued(MAPPING_PARAMETERS, __global const uchar* state,
-  __global const uchar* active, __global const float* distances, __global char* coverage,
-  __global KEY* winners, __global char* patches, __global uint* largeCells,
-  __global uint* counters CUT_PARAMETERS, __global const uint* bricks, __global uint* queue,
+__kernel void ResampleQueued(GIVEN_PARAMETERS, __global const uint* bricks, __global uint* queue,
   __local float* rows, const KernelParameters p ARRAY_PARAMETERS)
 {
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, 0, { 0, 0, 0 } };
+  const SamplingMesh mesh = GIVEN_MESH;
   const uint queued = queue[0], entries = queued + queue[1];
   for (uint i = get_global_id(0); i < entries; i += get_global_size(0))
   {
@@ -93,7 +90,7 @@ __kernel void ResampleQueued(MAPPING_PARAMETERS, __global const uchar* state,
       continue;
     }
     const int3 cell = CellOfEntry(entry, bricks, &p);
-    Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
+    Output output = GIVEN_OUTPUT;
     ResampleQueuedCell(&mesh, cell.x, cell.y, cell.z, entry >> QUEUE_BITS, PlaceOfItem(rows),
       &output, &p ARRAY_ARGUMENTS);
     AddCounts(&output, SectionOf(cell.x, cell.y, cell.z, &p), counters, &p);

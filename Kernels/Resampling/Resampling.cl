@@ -666,10 +666,7 @@ static int HasCells(int3 first, const KernelParameters* p)
 // Bricks of a list from p.ListBegin to p.ListEnd (DEFORMVOLUME_BRICK_BITS). A work-group takes a cuboid of cells of a
 // brick, column by column, since counts are those of sections. On x there are the groups of one brick after the other.
 // positions: room for three ints a vertex of the cuboid.
-__kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
-  __global const uchar* active, __global const float* distances, __global char* coverage,
-  __global KEY* winners, __global char* patches, __global uint* largeCells,
-  __global uint* counters CUT_PARAMETERS, __global const uint* bricks, __local int* positions,
+__kernel void Resample(GIVEN_PARAMETERS, __global const uint* bricks, __local int* positions,
   const KernelParameters p ARRAY_PARAMETERS)
 {
   const int place = p.ListBegin + (int)(get_group_id(0) / CUBOIDS_X);
@@ -684,7 +681,7 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   {
     columns |= IsSectionRun(brick, section + column) << column;
   }
-  const SamplingMesh unmapped = { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, 0, { 0, 0, 0 } };
+  const SamplingMesh unmapped = GIVEN_MESH;
   const int width = DEFORMVOLUME_CUBOID_X + 1;
   const int height = DEFORMVOLUME_CUBOID_Y + 1;
   const int vertices = columns ? DEFORMVOLUME_CUBOID_VERTICES : 0;
@@ -704,15 +701,18 @@ __kernel void Resample(MAPPING_PARAMETERS, __global const uchar* state,
   }
   barrier(CLK_LOCAL_MEM_FENCE);
 
-  const SamplingMesh mesh = { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, positions,
-    { first.x, first.y, first.z } };
+  SamplingMesh mesh = unmapped;
+  mesh.Cuboid = positions;
+  mesh.CuboidFirst[0] = first.x;
+  mesh.CuboidFirst[1] = first.y;
+  mesh.CuboidFirst[2] = first.z;
   const Candidates all = AllCandidates(&p);
   for (int column = 0; column < COLUMNS_OF_CUBOID; ++column)
   {
     const int cells = columns >> column & 1
       ? DEFORMVOLUME_COLUMN * DEFORMVOLUME_CUBOID_Y * DEFORMVOLUME_CUBOID_Z
       : 0;
-    Output output = NEW_OUTPUT(coverage, winners, patches, largeCells);
+    Output output = GIVEN_OUTPUT;
     for (int i = get_local_id(0); i < cells; i += get_local_size(0))
     {
       const int x = first.x + column * DEFORMVOLUME_COLUMN + i % DEFORMVOLUME_COLUMN;

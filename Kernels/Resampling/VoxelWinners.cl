@@ -26,8 +26,13 @@ typedef struct
   uint Large; // cells that were put into the list
 } Output;
 
-#define NEW_OUTPUT(coverage, winners, patches, largeCells)                                         \
-  { coverage, winners, patches, largeCells, 0, 0, 0, 0, 0, 0, 0, 0 }
+// What each of these kernels is given first (ExactPasses::SetArguments), and the mesh and the output made of it.
+#define GIVEN_PARAMETERS                                                                           \
+  MAPPING_PARAMETERS, __global const uchar *state, __global const uchar *active,                   \
+    __global const float *distances, __global char *coverage, __global KEY *winners,               \
+    __global char *patches, __global uint *largeCells, __global uint *counters CUT_PARAMETERS
+#define GIVEN_MESH { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, 0, { 0, 0, 0 } }
+#define GIVEN_OUTPUT { coverage, winners, patches, largeCells, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 // A voxel is covered. What a bit was before is not asked for: items would wait for the answer.
 static void Cover(Output* output, size_t target)
