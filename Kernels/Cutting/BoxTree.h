@@ -4,6 +4,7 @@
 
 #include "SnappedPoint.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -16,6 +17,12 @@ class BoxTree
 {
 public:
   explicit BoxTree(std::vector<SnappedBox> boxes);
+  /// getBox: the box of one of the items.
+  template <typename Item, typename GetBox>
+  BoxTree(const std::vector<Item>& items, const GetBox& getBox)
+    : BoxTree(TransformItems(items, getBox))
+  {
+  }
 
   /// Appends the numbers of the boxes that overlap a box, in no certain order.
   void Find(const SnappedBox& box, std::vector<std::size_t>& numbers) const;
@@ -25,6 +32,15 @@ public:
   const SnappedBox& GetBox(std::size_t number) const { return this->Boxes[number]; }
 
 private:
+  template <typename Item, typename GetBox>
+  static std::vector<SnappedBox> TransformItems(
+    const std::vector<Item>& items, const GetBox& getBox)
+  {
+    std::vector<SnappedBox> boxes(items.size());
+    std::transform(items.begin(), items.end(), boxes.begin(), getBox);
+    return boxes;
+  }
+
   /// A box around some of the boxes: those between two places in Order, or two nodes.
   struct Node
   {

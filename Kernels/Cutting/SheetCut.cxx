@@ -3,12 +3,12 @@
 
 #include "BoxTree.h"
 #include "BrickEdit.h"
+#include "DistanceGatherer.h"
 #include "Error.h"
 #include "TriangleCrossing.h"
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -34,7 +34,7 @@ class SheetTriangles
 public:
   SheetTriangles(const VertexPositions& positions, const Sheet& sheet)
     : Triangles(sheet.Divide(positions.GetBox()))
-    , Tree(GetBoxes(this->Triangles))
+    , Tree(this->Triangles, [](const SnappedTriangle& triangle) { return GetBox(triangle); })
   {
     this->Crossings.reserve(this->Triangles.size());
     for (const SnappedTriangle& triangle : this->Triangles)
@@ -62,14 +62,6 @@ public:
   }
 
 private:
-  static std::vector<SnappedBox> GetBoxes(const std::vector<SnappedTriangle>& triangles)
-  {
-    std::vector<SnappedBox> boxes(triangles.size());
-    std::transform(triangles.begin(), triangles.end(), boxes.begin(),
-      [](const SnappedTriangle& triangle) { return GetBox(triangle); });
-    return boxes;
-  }
-
   unsigned char GetPlaces(
     const TriangleCrossing& crossing, const SnappedBox& box, const SnappedPoint& p) const;
 
@@ -225,48 +217,6 @@ void Cross(
     });
 }
 
-// Puts the distances of bricks of cells into one set.
-DistanceSet GatherDistances(
-  const Extent& volume, const std::vector<std::unique_ptr<BrickCrossings>>& parts)
-{
-  const CellBricks bricks = GetVertexBricks(volume);
-  std::map<std::size_t, DistanceSet::Block> blocks;
-  for (const auto& part : parts)
-  {
-    std::size_t vertex = 0;
-    for (int z = part->Vertices[4] - volume[4]; z <= part->Vertices[5] - volume[4]; ++z)
-    {
-      for (int y = part->Vertices[2] - volume[2]; y <= part->Vertices[3] - volume[2]; ++y)
-      {
-        for (int x = part->Vertices[0] - volume[0]; x <= part->Vertices[1] - volume[0]; ++x)
-        {
-          const float distance = part->Distances[vertex++];
-          if (distance == FarFromSheets)
-          {
-            continue;
-          }
-          constexpr int length = CellBricks::Length;
-          const auto added = blocks.try_emplace(bricks.FindBrick({ { x, y, z } }));
-          if (added.second)
-          {
-            added.first->second.fill(FarFromSheets);
-          }
-          float& joined =
-            added.first->second[TetrahedronSet::GetPlace(x % length, y % length, z % length)];
-          joined = JoinSheetDistances(joined, distance);
-        }
-      }
-    }
-  }
-  DistanceSet set;
-  for (const auto& [brick, block] : blocks)
-  {
-    set.Bricks.push_back(brick);
-    set.Blocks.push_back(block);
-  }
-  return set;
-}
-
 } // namespace
 
 TetrahedronSet FindCrossedTetrahedra(
@@ -318,12 +268,14 @@ CrossingSet FindSheetCrossings(
   std::sort(
     parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a->Brick < b->Brick; });
   CrossingSet set;
+  DistanceGatherer gatherer(positions.GetBricks().GetVertices(), FarFromSheets, JoinSheetDistances);
   for (const auto& part : parts)
   {
     set.Bricks.push_back(part->Brick);
     set.Blocks.push_back(part->Cells);
+    gatherer.Add(part->Vertices, part->Distances.data());
   }
-  set.Distances = GatherDistances(positions.GetBricks().GetVertices(), parts);
+  set.Distances = gatherer.Take();
   return set;
 }
 

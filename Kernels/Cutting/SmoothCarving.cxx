@@ -3,13 +3,12 @@
 #include "BrickEdit.h"
 #include "Carving.h"
 #include "CarvingReach.h"
+#include "DistanceGatherer.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -123,82 +122,18 @@ private:
   std::array<bool, BrickEdit::MaxVertices> Marked{};
 };
 
-/// Gathers the distances of bricks of cells, found by several threads, into those of vertices.
-class DistanceGatherer
+/// A vertex of several bricks may be near the boundary in one of them only.
+float JoinCarvedDistances(float last, float next)
 {
-public:
-  DistanceGatherer(const Extent& vertices, float far)
-    : Vertices(vertices)
-    , Bricks(GetVertexBricks(vertices))
-    , Far(far)
-  {
-  }
-
-  void Add(const Extent& vertices, const BrickDistances& distances)
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    std::size_t i = 0;
-    for (int z = vertices[4]; z <= vertices[5]; ++z)
-    {
-      for (int y = vertices[2]; y <= vertices[3]; ++y)
-      {
-        for (int x = vertices[0]; x <= vertices[1]; ++x, ++i)
-        {
-          if (distances[i] != this->Far)
-          {
-            this->Put(
-              x - this->Vertices[0], y - this->Vertices[2], z - this->Vertices[4], distances[i]);
-          }
-        }
-      }
-    }
-  }
-
-  DistanceSet Take()
-  {
-    DistanceSet set;
-    for (auto& [brick, block] : this->Blocks)
-    {
-      set.Bricks.push_back(brick);
-      set.Blocks.push_back(block);
-    }
-    return set;
-  }
-
-private:
-  void Put(int x, int y, int z, float distance)
-  {
-    constexpr int length = CellBricks::Length;
-    const std::array<int, 3>& size = this->Bricks.GetSize();
-    const auto count = [&](int axis)
-    { return static_cast<std::size_t>((size[axis] + length - 1) / length); };
-    const std::size_t brick =
-      (static_cast<std::size_t>(z / length) * count(1) + static_cast<std::size_t>(y / length)) *
-        count(0) +
-      static_cast<std::size_t>(x / length);
-    const auto [found, isNew] = this->Blocks.try_emplace(brick);
-    if (isNew)
-    {
-      found->second.fill(this->Far);
-    }
-    // A vertex of several bricks may be near the boundary in one of them only.
-    float& last = found->second[TetrahedronSet::GetPlace(x % length, y % length, z % length)];
-    last = std::abs(distance) <= std::abs(last) ? distance : last;
-  }
-
-  Extent Vertices;
-  CellBricks Bricks;
-  float Far;
-  std::mutex Mutex;
-  std::map<std::size_t, DistanceSet::Block> Blocks;
-};
+  return std::abs(next) <= std::abs(last) ? next : last;
+}
 
 } // namespace
 
 SmoothCarving FindSmoothCarving(const VertexPositions& positions, const CarvingTool& tool,
   float far, const EditProgress& progress)
 {
-  DistanceGatherer gatherer(positions.GetBricks().GetVertices(), far);
+  DistanceGatherer gatherer(positions.GetBricks().GetVertices(), far, JoinCarvedDistances);
   SmoothCarving carving;
   carving.Tetrahedra = BrickEdit::ForEachBrick(
     positions.GetBricks().GetNumberOfBricks(),
@@ -234,7 +169,7 @@ SmoothCarving FindSmoothCarving(const VertexPositions& positions, const CarvingT
       {
         tool.Distance(points.data(), marked.size(), values.data());
       }
-      gatherer.Add(edit.GetVertices(), boundary.Join(marked, values.data()));
+      gatherer.Add(edit.GetVertices(), boundary.Join(marked, values.data()).data());
     },
     progress);
   carving.Distances = gatherer.Take();
@@ -246,7 +181,7 @@ SmoothCarving FindSmoothCarving(const CellBricks& bricks,
   float far, const EditProgress& progress)
 {
   const RestPositions positions(bricks.GetVertices());
-  DistanceGatherer gatherer(bricks.GetVertices(), far);
+  DistanceGatherer gatherer(bricks.GetVertices(), far, JoinCarvedDistances);
   SmoothCarving carving;
   carving.Tetrahedra = BrickEdit::ForEachBrick(
     bricks.GetNumberOfBricks(),
@@ -265,7 +200,7 @@ SmoothCarving FindSmoothCarving(const CellBricks& bricks,
       {
         const std::vector<std::size_t> marked = boundary.GetMarked();
         const std::vector<double> distances(marked.size(), distance);
-        gatherer.Add(edit.GetVertices(), boundary.Join(marked, distances.data()));
+        gatherer.Add(edit.GetVertices(), boundary.Join(marked, distances.data()).data());
       }
     },
     progress);

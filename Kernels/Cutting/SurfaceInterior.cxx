@@ -79,7 +79,7 @@ class Interior
 public:
   explicit Interior(std::vector<RayTriangle> triangles)
     : Triangles(std::move(triangles))
-    , Tree(GetBoxes(this->Triangles))
+    , Tree(this->Triangles, [](const RayTriangle& triangle) { return triangle.GetBox(); })
   {
   }
 
@@ -109,14 +109,6 @@ public:
   }
 
 private:
-  static std::vector<SnappedBox> GetBoxes(const std::vector<RayTriangle>& triangles)
-  {
-    std::vector<SnappedBox> boxes(triangles.size());
-    std::transform(triangles.begin(), triangles.end(), boxes.begin(),
-      [](const RayTriangle& triangle) { return triangle.GetBox(); });
-    return boxes;
-  }
-
   bool IsInside(const SnappedPoint& point, std::vector<std::size_t>& near) const
   {
     SnappedBox ray;

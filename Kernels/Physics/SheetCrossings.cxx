@@ -53,14 +53,6 @@ std::vector<SnappedTriangle> SnapSheet(const MeshSteps& steps,
   return Sheet(indices, triangles).Divide(GetMeshBox());
 }
 
-std::vector<SnappedBox> GetBoxes(const std::vector<SnappedTriangle>& triangles)
-{
-  std::vector<SnappedBox> boxes(triangles.size());
-  std::transform(triangles.begin(), triangles.end(), boxes.begin(),
-    [](const SnappedTriangle& triangle) { return GetBox(triangle); });
-  return boxes;
-}
-
 bool Contains(const SnappedBox& box, const SnappedBox& other)
 {
   return glm::min(box.Min, other.Min) == box.Min && glm::max(box.Max, other.Max) == box.Max;
@@ -102,7 +94,7 @@ SheetCrossings::SheetCrossings(const MeshSteps& steps, const std::vector<glm::dv
   {
     this->Crossings.emplace_back(triangle);
   }
-  this->Tree = BoxTree(GetBoxes(divided));
+  this->Tree = BoxTree(divided, [](const SnappedTriangle& triangle) { return GetBox(triangle); });
   this->Sums.assign(this->GetPlace(0, 0, this->Cells + 1), 0);
   std::vector<std::size_t> numbers(divided.size());
   std::iota(numbers.begin(), numbers.end(), std::size_t{ 0 });
