@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FaceNeighbours.h"
 
+#include "CountedLists.h"
 #include "Watch.h"
 
 #include <algorithm>
@@ -45,38 +46,31 @@ FaceNeighbours::FaceNeighbours(
 {
   Watch none(nullptr);
   Watch& asked = watch ? *watch : none;
-  // The lists one after another: that of a node has few entries, so that it is sorted at once.
-  std::vector<std::size_t> ends(numberOfNodes + 1, 0);
-  ForItems(asked, tetrahedra.size(),
-    [&](std::size_t t)
-    {
-      for (std::size_t k = 0; k < 4; ++k)
-      {
-        ++ends[static_cast<std::size_t>(GetSortedNodes(tetrahedra[t], k)[0]) + 1];
-      }
-    });
-  for (std::size_t node = 0; node < numberOfNodes; ++node)
-  {
-    ends[node + 1] += ends[node];
-  }
+  // Of each node the faces whose lowest one it is: few, so that they are sorted at once.
+  std::vector<std::size_t> begins;
   std::vector<Entry> entries;
   Grow(asked, entries, this->Next.size());
-  // Each end is that of the list before until its entries have come.
-  ForItems(asked, tetrahedra.size(),
-    [&](std::size_t t)
+  MakeLists(
+    numberOfNodes,
+    [&](const auto& take)
     {
-      for (std::size_t k = 0; k < 4; ++k)
-      {
-        const std::array<std::int32_t, 3> nodes = GetSortedNodes(tetrahedra[t], k);
-        entries[ends[static_cast<std::size_t>(nodes[0])]++] = { nodes[1], nodes[2],
-          static_cast<std::uint32_t>(4 * t + k) };
-      }
-    });
+      ForItems(asked, tetrahedra.size(),
+        [&](std::size_t t)
+        {
+          for (std::size_t k = 0; k < 4; ++k)
+          {
+            const std::array<std::int32_t, 3> nodes = GetSortedNodes(tetrahedra[t], k);
+            take(static_cast<std::size_t>(nodes[0]),
+              Entry{ nodes[1], nodes[2], static_cast<std::uint32_t>(4 * t + k) });
+          }
+        });
+    },
+    begins, entries);
   ForItemsInParallel(asked, numberOfNodes,
     [&](std::size_t node)
     {
-      const std::size_t end = ends[node];
-      std::size_t begin = node == 0 ? 0 : ends[node - 1];
+      std::size_t begin = begins[node];
+      const std::size_t end = begins[node + 1];
       std::sort(entries.begin() + static_cast<std::ptrdiff_t>(begin),
         entries.begin() + static_cast<std::ptrdiff_t>(end));
       for (std::size_t i = begin; i < end; ++i)

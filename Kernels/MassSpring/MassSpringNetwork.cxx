@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MassSpringNetwork.h"
 
+#include "CountedLists.h"
 #include "MassSpringModel.h"
 
 #include <glm/common.hpp>
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace deformvolume
 {
@@ -61,8 +61,6 @@ MassSpringNetwork::MassSpringNetwork(
   , Tetrahedra(this->NumberOfGroups * 4 * static_cast<std::size_t>(lanes), 0)
   , Materials(this->NumberOfGroups * 2 * static_cast<std::size_t>(lanes), 0.0F)
   , RestPoints(body.Points.size() * 3)
-  , Begins(body.Points.size() + 1, 0)
-  , Places(body.Tetrahedra.size() * 4)
   , Mobilities(body.Points.size(), 0.0F)
   , StableTimeStep(FindStableTimeStep(body, cubeEdge))
 {
@@ -111,26 +109,21 @@ MassSpringNetwork::MassSpringNetwork(
         }
       }
     });
-  ForItems(watch, tetrahedra,
-    [&](std::size_t t)
+  MakeLists(
+    body.Points.size(),
+    [&](const auto& take)
     {
-      for (const std::int32_t node : body.Tetrahedra[t])
-      {
-        ++this->Begins[static_cast<std::size_t>(node) + 1];
-      }
-    });
-  std::partial_sum(this->Begins.begin(), this->Begins.end(), this->Begins.begin());
-  std::vector<std::uint32_t> next(this->Begins.begin(), this->Begins.end() - 1);
-  ForItems(watch, tetrahedra,
-    [&](std::size_t t)
-    {
-      for (std::size_t i = 0; i < 4; ++i)
-      {
-        const auto node = static_cast<std::size_t>(body.Tetrahedra[t][i]);
-        this->Places[next[node]++] =
-          static_cast<std::uint32_t>(((t / width * 4 + i) * 3) * width + t % width);
-      }
-    });
+      ForItems(watch, tetrahedra,
+        [&](std::size_t t)
+        {
+          for (std::size_t i = 0; i < 4; ++i)
+          {
+            take(static_cast<std::size_t>(body.Tetrahedra[t][i]),
+              static_cast<std::uint32_t>(((t / width * 4 + i) * 3) * width + t % width));
+          }
+        });
+    },
+    this->Begins, this->Places);
 }
 
 } // namespace deformvolume

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BodyPieces.h"
 
+#include "CountedLists.h"
 #include "DisjointSets.h"
 #include "FaceNeighbours.h"
 #include "Watch.h"
@@ -49,19 +50,16 @@ void FindNodes(const ElasticBody& body, BodyPieces& pieces)
 
 void SortTetrahedra(BodyPieces& pieces)
 {
-  pieces.Begins.assign(static_cast<std::size_t>(pieces.NumberOfPieces) + 1, 0);
-  for (const std::int32_t piece : pieces.PieceOfTetrahedron)
-  {
-    ++pieces.Begins[static_cast<std::size_t>(piece) + 1];
-  }
-  std::partial_sum(pieces.Begins.begin(), pieces.Begins.end(), pieces.Begins.begin());
-  std::vector<std::size_t> next = pieces.Begins;
-  pieces.Tetrahedra.resize(pieces.PieceOfTetrahedron.size());
-  for (std::size_t t = 0; t < pieces.Tetrahedra.size(); ++t)
-  {
-    const auto piece = static_cast<std::size_t>(pieces.PieceOfTetrahedron[t]);
-    pieces.Tetrahedra[next[piece]++] = static_cast<std::int32_t>(t);
-  }
+  MakeLists(
+    static_cast<std::size_t>(pieces.NumberOfPieces),
+    [&](const auto& take)
+    {
+      for (std::size_t t = 0; t < pieces.PieceOfTetrahedron.size(); ++t)
+      {
+        take(static_cast<std::size_t>(pieces.PieceOfTetrahedron[t]), static_cast<std::int32_t>(t));
+      }
+    },
+    pieces.Begins, pieces.Tetrahedra);
 }
 
 // Calls take(second) for all pairs with a number as the first one.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NodeParts.h"
 
+#include "CountedLists.h"
 #include "DisjointSets.h"
 #include "ParallelFor.h"
 
@@ -12,39 +13,6 @@ namespace
 {
 
 constexpr std::size_t NodesOfPart = 1024;
-
-// Lists of corners, one for each wanted node, ascending.
-struct CornerLists
-{
-  std::vector<std::size_t> Ends; // that of list n; it begins where the one before ends
-  std::vector<std::size_t> Corners;
-
-  CornerLists(
-    const std::vector<Tetrahedron>& tetrahedra, const std::vector<unsigned char>& isWanted)
-    : Ends(isWanted.size() + 1, 0)
-  {
-    const auto forEachCorner = [&](auto&& function)
-    {
-      for (std::size_t corner = 0; corner < 4 * tetrahedra.size(); ++corner)
-      {
-        const auto node = static_cast<std::size_t>(tetrahedra[corner / 4][corner % 4]);
-        if (isWanted[node] != 0)
-        {
-          function(corner, node);
-        }
-      }
-    };
-    forEachCorner([&](std::size_t, std::size_t node) { ++this->Ends[node + 1]; });
-    for (std::size_t node = 0; node < isWanted.size(); ++node)
-    {
-      this->Ends[node + 1] += this->Ends[node];
-    }
-    this->Corners.resize(this->Ends.back());
-    // Each end is that of the list before until its corners have come.
-    forEachCorner(
-      [&](std::size_t corner, std::size_t node) { this->Corners[this->Ends[node]++] = corner; });
-  }
-};
 
 // Finds the parts of one node after another.
 class PartFinder
@@ -107,7 +75,23 @@ NodeParts FindNodeParts(const std::vector<Tetrahedron>& tetrahedra,
   const FaceNeighbours& neighbours, const std::vector<unsigned char>& isSplit,
   const std::vector<unsigned char>& isWanted)
 {
-  const CornerLists lists(tetrahedra, isWanted);
+  // Of each wanted node its corners of tetrahedra, ascending.
+  std::vector<std::size_t> begins;
+  std::vector<std::size_t> corners;
+  MakeLists(
+    isWanted.size(),
+    [&](const auto& take)
+    {
+      for (std::size_t corner = 0; corner < 4 * tetrahedra.size(); ++corner)
+      {
+        const auto node = static_cast<std::size_t>(tetrahedra[corner / 4][corner % 4]);
+        if (isWanted[node] != 0)
+        {
+          take(node, corner);
+        }
+      }
+    },
+    begins, corners);
   NodeParts parts;
   parts.PartOfCorner.assign(4 * tetrahedra.size(), 0);
   parts.NumberOfCopies.assign(isWanted.size(), 0);
@@ -119,9 +103,8 @@ NodeParts FindNodeParts(const std::vector<Tetrahedron>& tetrahedra,
       {
         if (isWanted[node] != 0)
         {
-          const std::size_t begin = node == 0 ? 0 : lists.Ends[node - 1];
           parts.NumberOfCopies[node] =
-            finder.Find(lists.Corners.data() + begin, lists.Corners.data() + lists.Ends[node],
+            finder.Find(corners.data() + begins[node], corners.data() + begins[node + 1],
               parts.PartOfCorner.data()) -
             1;
         }
