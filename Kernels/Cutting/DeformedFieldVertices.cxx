@@ -75,8 +75,7 @@ private:
 
 bool DeformedFieldVertices::Find(const glm::dvec3& vertex, glm::dvec3& displacement) const
 {
-  std::array<std::int64_t, 3> low;
-  std::array<double, 3> fraction;
+  glm::dvec3 inside;
   for (int axis = 0; axis < 3; ++axis)
   {
     const double* row = &this->Field.IndexToField[4 * axis];
@@ -86,26 +85,10 @@ bool DeformedFieldVertices::Find(const glm::dvec3& vertex, glm::dvec3& displacem
     {
       return false;
     }
-    const double inside = std::min(std::max(place, 0.0), last);
-    low[axis] = static_cast<std::int64_t>(inside);
-    fraction[axis] = inside - static_cast<double>(low[axis]);
+    inside[axis] = std::min(std::max(place, 0.0), last);
   }
-  displacement = glm::dvec3(0.0);
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    double weight = 1.0;
-    std::int64_t point = 0;
-    for (int axis = 2; axis >= 0; --axis)
-    {
-      const int upper = corner >> axis & 1;
-      weight *= upper ? fraction[axis] : 1.0 - fraction[axis];
-      point = point * this->Field.Dimensions[axis] + low[axis] + upper;
-    }
-    if (weight != 0.0) // else the point may be none
-    {
-      displacement += weight * GetVector(this->Field, point);
-    }
-  }
+  displacement = Interpolate(
+    this->Field, inside, [this](std::int64_t point) { return GetVector(this->Field, point); });
   return true;
 }
 

@@ -233,23 +233,7 @@ static float4 Displacement(const Mapping* m, int x, int y, int z, const KernelPa
   const int3 last =
     (int3)(field->Dimensions[0], field->Dimensions[1], field->Dimensions[2]) - 1;
   const float3 f = clamp(FieldIndex(field, (int3)(x, y, z)), 0.0f, convert_float3(last));
-  const int3 low = convert_int3(floor(f));
-  const int3 high = min(low + 1, last);
-  const float3 t = f - convert_float3(low);
-  __global const float4* lowLow = m->Vectors + low.z * plane + low.y * width;
-  __global const float4* lowHigh = m->Vectors + low.z * plane + high.y * width;
-  __global const float4* highLow = m->Vectors + high.z * plane + low.y * width;
-  __global const float4* highHigh = m->Vectors + high.z * plane + high.y * width;
-  // a + t (b - a) is exact for t = 0: no rounding where a voxel is a point of the field.
-#define MIX(a, b, t) MULTIPLY_ADD((float4)(t), (b) - (a), a)
-  const float4 a = MIX(lowLow[low.x], lowLow[high.x], t.x);
-  const float4 b = MIX(lowHigh[low.x], lowHigh[high.x], t.x);
-  const float4 c = MIX(highLow[low.x], highLow[high.x], t.x);
-  const float4 d = MIX(highHigh[low.x], highHigh[high.x], t.x);
-  const float4 e = MIX(a, b, t.y);
-  const float4 g = MIX(c, d, t.y);
-  return MIX(e, g, t.z);
-#undef MIX
+  return InterpolatePoints(m->Vectors, width, plane, f, last);
 }
 
 static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters* p)

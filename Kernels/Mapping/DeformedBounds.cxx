@@ -196,31 +196,12 @@ bool EndsBetweenVoxels(
 // The trilinear displacement at a place, whose border is that of the field.
 glm::dvec3 Interpolate(const DisplacementField& field, const glm::dvec3& position)
 {
-  std::int64_t low[3];
-  std::int64_t high[3];
-  glm::dvec3 t;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double last = field.Dimensions[axis] - 1;
-    const double place = std::min(std::max(position[axis], 0.0), last);
-    low[axis] = static_cast<std::int64_t>(place + OnPoint);
-    t[axis] = place - static_cast<double>(low[axis]);
-    if (t[axis] < OnPoint)
-    {
-      t[axis] = 0.0;
-    }
-    high[axis] = low[axis] + (t[axis] > 0.0 ? 1 : 0);
-  }
-  const auto at = [&](std::int64_t x, std::int64_t y, std::int64_t z)
-  { return GetVector(field, (z * field.Dimensions[1] + y) * field.Dimensions[0] + x); };
-  if (t == glm::dvec3(0.0))
-  {
-    return at(low[0], low[1], low[2]);
-  }
-  const auto row = [&](std::int64_t y, std::int64_t z)
-  { return glm::mix(at(low[0], y, z), at(high[0], y, z), t.x); };
-  return glm::mix(glm::mix(row(low[1], low[2]), row(high[1], low[2]), t.y),
-    glm::mix(row(low[1], high[2]), row(high[1], high[2]), t.y), t.z);
+  const glm::dvec3 last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1);
+  const glm::dvec3 inside = glm::clamp(position, glm::dvec3(0.0), last);
+  const glm::dvec3 nearest = glm::round(inside);
+  const auto isOnPoint = glm::lessThan(glm::abs(inside - nearest), glm::dvec3(OnPoint));
+  return Interpolate(field, glm::mix(inside, nearest, isOnPoint),
+    [&](std::int64_t point) { return GetVector(field, point); });
 }
 
 // Bounds of the voxels themselves, for fields that are no coarser than the volume.

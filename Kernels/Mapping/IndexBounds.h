@@ -83,6 +83,33 @@ inline glm::dvec3 GetVector(const DisplacementField& field, std::int64_t point)
   return glm::dvec3(displacement[0], displacement[1], displacement[2]);
 }
 
+/// The trilinear vector at a position within a field, in indices of its points. getVector returns
+/// the one of a point; it is not asked for points without weight, which may be undefined.
+template <typename Function>
+glm::dvec3 Interpolate(
+  const DisplacementField& field, const glm::dvec3& position, const Function& getVector)
+{
+  const glm::i64vec3 low(position);
+  const glm::dvec3 t = position - glm::dvec3(low);
+  glm::dvec3 vector(0.0);
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    double weight = 1.0;
+    std::int64_t point = 0;
+    for (int axis = 2; axis >= 0; --axis)
+    {
+      const int upper = corner >> axis & 1;
+      weight *= upper ? t[axis] : 1.0 - t[axis];
+      point = point * field.Dimensions[static_cast<std::size_t>(axis)] + low[axis] + upper;
+    }
+    if (weight != 0.0)
+    {
+      vector += weight * getVector(point);
+    }
+  }
+  return vector;
+}
+
 } // namespace deformvolume
 
 #endif

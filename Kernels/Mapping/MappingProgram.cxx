@@ -20,7 +20,8 @@ ProgramText GetMappingText(MappingForm mapping)
     case MappingForm::FieldInPlace:
       return ProgramText("#define MAPPING 3\n") + MultiplyAdd_cl + DeformationMapping_cl;
     default:
-      return ProgramText("#define MAPPING 2\n") + MultiplyAdd_cl + DeformationMapping_cl;
+      return ProgramText("#define MAPPING 2\n") + MultiplyAdd_cl + FieldPoints_cl +
+        DeformationMapping_cl;
   }
 }
 

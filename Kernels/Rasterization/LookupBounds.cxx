@@ -125,27 +125,8 @@ private:
 
   glm::dvec3 Interpolate(const glm::dvec3& position) const
   {
-    const glm::dvec3 inside = glm::clamp(position, glm::dvec3(0.0), this->Last);
-    const glm::ivec3 low(inside);
-    const glm::ivec3 high = glm::min(low + 1, glm::ivec3(this->Last));
-    const glm::dvec3 t = inside - glm::dvec3(low);
-    glm::dvec3 vector(0.0);
-    for (int corner = 0; corner < 8; ++corner)
-    {
-      double weight = 1.0;
-      glm::ivec3 point;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const bool upper = (corner >> axis & 1) != 0;
-        weight *= upper ? t[axis] : 1.0 - t[axis];
-        point[axis] = upper ? high[axis] : low[axis];
-      }
-      if (weight != 0.0)
-      {
-        vector += weight * this->GetPoint(point.x, point.y, point.z);
-      }
-    }
-    return vector;
+    return deformvolume::Interpolate(this->Field, glm::clamp(position, glm::dvec3(0.0), this->Last),
+      [this](std::int64_t point) { return GetVector(this->Field.Vectors, point); });
   }
 
   const DisplacementField& Field;

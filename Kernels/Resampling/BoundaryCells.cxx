@@ -37,7 +37,7 @@ cl_int4 MakeInt4(int x, int y, int z)
 cl::Program GetCornerProgram(OpenCLContext& context)
 {
   return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText() +
-      RasterParameters_h + MultiplyAdd_cl + BoundaryCorners_cl,
+      RasterParameters_h + MultiplyAdd_cl + FieldPoints_cl + BoundaryCorners_cl,
     KernelOptions);
 }
 

@@ -17,17 +17,8 @@ __kernel void MoveCorners(__global const BoundaryCorner* corners, __global const
   if (dimensions.x > 0)
   {
     const float3 f = (float3)(corner.Weights[0], corner.Weights[1], corner.Weights[2]);
-    const int3 last = dimensions.xyz - 1;
-    const int3 low = min(convert_int3(floor(f)), last);
-    const int3 high = min(low + 1, last);
-    const float3 t = f - convert_float3(low);
-#define POINT(i, j, k) points[((size_t)(k) * dimensions.y + (j)) * dimensions.x + (i)]
-#define MIX(a, b, t) MULTIPLY_ADD((float4)(t), (b) - (a), a)
-    const float4 a = MIX(POINT(low.x, low.y, low.z), POINT(high.x, low.y, low.z), t.x);
-    const float4 b = MIX(POINT(low.x, high.y, low.z), POINT(high.x, high.y, low.z), t.x);
-    const float4 c = MIX(POINT(low.x, low.y, high.z), POINT(high.x, low.y, high.z), t.x);
-    const float4 e = MIX(POINT(low.x, high.y, high.z), POINT(high.x, high.y, high.z), t.x);
-    d = MIX(MIX(a, b, t.y), MIX(c, e, t.y), t.z);
+    const size_t width = dimensions.x;
+    d = InterpolatePoints(points, width, width * dimensions.y, f, dimensions.xyz - 1);
   }
   else if (corner.Node >= 0)
   {
