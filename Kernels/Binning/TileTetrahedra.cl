@@ -23,11 +23,6 @@ typedef struct
   REAL InverseVolume;
 } TileTetrahedron;
 
-static int ShiftsInside(Vector normal)
-{
-  return normal.x > 0 || (normal.x == 0 && (normal.y > 0 || (normal.y == 0 && normal.z > 0)));
-}
-
 static Vector Scaled(Vector v, long factor)
 {
   const Vector r = { v.x * factor, v.y * factor, v.z * factor };
@@ -49,23 +44,9 @@ static int SetUpTetrahedron(int4 nodes, __global const int4* positions, VoxelBox
   {
     return 0;
   }
-  const Vector u = Difference(a, d);
-  const Vector v = Difference(b, d);
-  const Vector w = Difference(c, d);
   Vector normals[4];
-  normals[0] = Cross(v, w);
-  normals[1] = Cross(w, u);
-  normals[2] = Cross(u, v);
-  long volume = Dot(u, normals[0]);
-  const long sign = volume < 0 ? -1 : 1;
-  volume *= sign;
-  for (int k = 0; k < 3; ++k)
-  {
-    normals[k] = Scaled(normals[k], sign);
-  }
-  normals[3].x = -(normals[0].x + normals[1].x + normals[2].x);
-  normals[3].y = -(normals[0].y + normals[1].y + normals[2].y);
-  normals[3].z = -(normals[0].z + normals[1].z + normals[2].z);
+  const long volume =
+    FindFaceNormals(Difference(a, d), Difference(b, d), Difference(c, d), normals, normals + 3);
   const Vector r = Difference(t->Box.Low * 256, d);
   t->Start[3] = volume;
   for (int k = 0; k < 3; ++k)
@@ -86,7 +67,7 @@ static int SetUpTetrahedron(int4 nodes, __global const int4* positions, VoxelBox
       return 0;
     }
     t->Inverse[k] = step.x != 0 ? 1.0f / fabs((float)step.x) : 0.0f;
-    t->AcceptsTie[k] = ShiftsInside(normals[k]);
+    t->AcceptsTie[k] = ShiftsInside(normals[k], 0);
   }
   t->InverseVolume = (REAL)1 / (REAL)volume;
   return 1;

@@ -28,3 +28,38 @@ static long Dot(Vector a, Vector b)
 {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+
+// Inward normals of the faces of a tetrahedron, the one opposite the end of u, of v and of w, and the last one opposite
+// the vertex where these edges begin; as long as twice the area of the face. They add up to 0. Returns six times the
+// volume.
+static long FindFaceNormals(Vector u, Vector v, Vector w, Vector* normals, Vector* last)
+{
+  normals[0] = Cross(v, w);
+  normals[1] = Cross(w, u);
+  normals[2] = Cross(u, v);
+  long volume = Dot(u, normals[0]);
+  if (volume < 0)
+  {
+    volume = -volume;
+    for (int k = 0; k < 3; ++k)
+    {
+      normals[k].x = -normals[k].x;
+      normals[k].y = -normals[k].y;
+      normals[k].z = -normals[k].z;
+    }
+  }
+  last->x = -(normals[0].x + normals[1].x + normals[2].x);
+  last->y = -(normals[0].y + normals[1].y + normals[2].y);
+  last->z = -(normals[0].z + normals[1].z + normals[2].z);
+  return volume;
+}
+
+// Whether a shift by (e, e^2, e^3) moves a sample on the face towards the inside; of the signs of the
+// shift those are reversed whose bits are set.
+static int ShiftsInside(Vector normal, int signs)
+{
+  const long along = normal.x ? (signs & 1 ? -normal.x : normal.x)
+    : normal.y                ? (signs & 2 ? -normal.y : normal.y)
+                              : (signs & 4 ? -normal.z : normal.z);
+  return along > 0;
+}

@@ -67,27 +67,9 @@ typedef struct
 static OUTLINED EdgeFunctions MakeEdgeFunctions(Vector a, Vector b, Vector c, Vector d)
 {
   EdgeFunctions f;
-  const Vector u = Subtract(b, a);
-  const Vector v = Subtract(c, a);
-  const Vector w = Subtract(d, a);
   f.Origin = a;
-  f.Normals[1] = Cross(v, w);
-  f.Normals[2] = Cross(w, u);
-  f.Normals[3] = Cross(u, v);
-  f.Volume = Dot(u, f.Normals[1]);
-  if (f.Volume < 0)
-  {
-    f.Volume = -f.Volume;
-    for (int k = 1; k < 4; ++k)
-    {
-      f.Normals[k].x = -f.Normals[k].x;
-      f.Normals[k].y = -f.Normals[k].y;
-      f.Normals[k].z = -f.Normals[k].z;
-    }
-  }
-  f.Normals[0].x = -(f.Normals[1].x + f.Normals[2].x + f.Normals[3].x);
-  f.Normals[0].y = -(f.Normals[1].y + f.Normals[2].y + f.Normals[3].y);
-  f.Normals[0].z = -(f.Normals[1].z + f.Normals[2].z + f.Normals[3].z);
+  f.Volume =
+    FindFaceNormals(Subtract(b, a), Subtract(c, a), Subtract(d, a), f.Normals + 1, f.Normals);
   return f;
 }
 
@@ -98,16 +80,6 @@ static void Evaluate(const EdgeFunctions* f, Vector sample, long* weights)
   weights[2] = Dot(f->Normals[2], r);
   weights[3] = Dot(f->Normals[3], r);
   weights[0] = f->Volume - weights[1] - weights[2] - weights[3];
-}
-
-// Whether a shift by (e, e^2, e^3) moves a sample on the face towards the inside; of the signs of the
-// shift those are reversed whose bits are set.
-static int ShiftsInside(Vector normal, int signs)
-{
-  const long along = normal.x ? (signs & 1 ? -normal.x : normal.x)
-    : normal.y                ? (signs & 2 ? -normal.y : normal.y)
-                              : (signs & 4 ? -normal.z : normal.z);
-  return along > 0;
 }
 
 // The first shift that leads from a simplex into the tetrahedron with these edge functions and
