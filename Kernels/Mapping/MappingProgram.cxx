@@ -47,7 +47,8 @@ cl::Program GetConversionProgram(OpenCLContext& context)
   const ProgramText products =
     HasDouble(context) ? GetMappingText(MappingForm::FieldInPlace) : ProgramText("");
   return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText() +
-      "#define HAS_MAPPING_KERNEL 0\n" + products + VectorConversion_cl + VectorBounds_cl,
+      "#define HAS_MAPPING_KERNEL 0\n" + products + VectorConversion_cl + GroupReduction_cl +
+      VectorBounds_cl,
     KernelOptions);
 }
 

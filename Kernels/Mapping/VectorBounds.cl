@@ -1,27 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bounds of displacements on the device, and of voxels that vectors there move. It comes after VectorConversion.cl.
+// Bounds of displacements on the device, and of voxels that vectors there move. It comes after GroupReduction.cl
+// and VectorConversion.cl.
 
 #define BOUNDS 6 // the least x, y and z, and the greatest ones
 
-// What the items of a work-group have found, joined by each item for one bound of six. All items call it.
-#define JOIN_BOUNDS(TYPE, shared, least, greatest, bounds)                                         \
+// What the items of a work-group have found, joined into six bounds. shared: room for as many an item. All items call it.
+#define JOIN_BOUND(row, a, b) ((row) < 3 ? fmin(a, b) : fmax(a, b))
+#define JOIN_BOUNDS(shared, least, greatest, bounds)                                               \
   {                                                                                                \
-    __local TYPE* own = shared + BOUNDS * get_local_id(0);                                         \
     for (int axis = 0; axis < 3; ++axis)                                                           \
     {                                                                                              \
-      own[axis] = least[axis];                                                                     \
-      own[axis + 3] = greatest[axis];                                                              \
+      shared[axis * get_local_size(0) + get_local_id(0)] = least[axis];                            \
+      shared[(axis + 3) * get_local_size(0) + get_local_id(0)] = greatest[axis];                   \
     }                                                                                              \
-    barrier(CLK_LOCAL_MEM_FENCE);                                                                  \
+    REDUCE_ROWS(shared, BOUNDS, JOIN_BOUND)                                                        \
     for (int i = get_local_id(0); i < BOUNDS; i += get_local_size(0))                              \
     {                                                                                              \
-      TYPE found = shared[i];                                                                      \
-      for (int item = 1; item < (int)get_local_size(0); ++item)                                    \
-      {                                                                                            \
-        const TYPE next = shared[BOUNDS * item + i];                                               \
-        found = i < 3 ? fmin(found, next) : fmax(found, next);                                     \
-      }                                                                                            \
-      bounds[BOUNDS * get_group_id(0) + i] = found;                                                \
+      bounds[BOUNDS * get_group_id(0) + i] = shared[i * get_local_size(0)];                        \
     }                                                                                              \
   }
 
@@ -48,7 +43,7 @@ __kernel void FindBoxBounds(__global const float4* displacements, const int widt
     greatest[1] = fmax(greatest[1], moved.y);
     greatest[2] = fmax(greatest[2], moved.z);
   }
-  JOIN_BOUNDS(float, shared, least, greatest, bounds)
+  JOIN_BOUNDS(shared, least, greatest, bounds)
 }
 
 #if REAL_IS_DOUBLE
@@ -87,7 +82,7 @@ __kernel void FindBounds(__global const float* vectors, const FieldParameters fi
       }
     }
   }
-  JOIN_BOUNDS(double, shared, least, greatest, bounds)
+  JOIN_BOUNDS(shared, least, greatest, bounds)
 }
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Passes over all voxels of the output, or over all counters. Here: counts the voxels that are covered, a partial sum a
-// work-item. voxelsOfItem: that it takes.
+// Passes over all voxels of the output, or over all counters. It comes after GroupReduction.cl.
+
+// Counts the voxels that are covered, a partial sum a work-item. voxelsOfItem: that it takes.
 __kernel void CountCovered(__global const char* coverage, const ulong numberOfVoxels,
   const uint voxelsOfItem, __global uint* sums)
 {
@@ -19,23 +20,7 @@ __kernel void CountCovered(__global const char* coverage, const ulong numberOfVo
   sums[item] = sum;
 }
 
-// Adds up what the work-items of a group have in rows of local memory, into the first item of each row.
-static void AddRows(__local ulong* rows, int number)
-{
-  const size_t item = get_local_id(0);
-  const size_t items = get_local_size(0);
-  barrier(CLK_LOCAL_MEM_FENCE);
-  for (size_t left = items; left > 1;)
-  {
-    const size_t middle = (left + 1) / 2;
-    for (int i = 0; i < number && item + middle < left; ++i)
-    {
-      rows[i * items + item] += rows[i * items + item + middle];
-    }
-    barrier(CLK_LOCAL_MEM_FENCE);
-    left = middle;
-  }
-}
+#define ADD(row, a, b) ((a) + (b))
 
 // The covered voxels among words of bits, as far as a work-item sees them.
 static uint CountBits(__global const uint* bits, ulong words)
@@ -82,7 +67,7 @@ __kernel void SumParts(__global const uint* counters, const uint sections,
   {
     rows[i * items + item] = sums[i];
   }
-  AddRows(rows, DEFORMVOLUME_SUMMED);
+  REDUCE_ROWS(rows, DEFORMVOLUME_SUMMED, ADD)
   for (size_t i = item; i < DEFORMVOLUME_SUMMED; i += items)
   {
     parts[get_group_id(0) * DEFORMVOLUME_SUMMED + i] = rows[i * items];
@@ -103,7 +88,7 @@ __kernel void Summarize(__global const ulong* parts, __global uint* summary, __l
     }
     rows[i * items + item] = sum;
   }
-  AddRows(rows, DEFORMVOLUME_SUMMED);
+  REDUCE_ROWS(rows, DEFORMVOLUME_SUMMED, ADD)
   if (item == 0)
   {
 #define SUM_OF(counter) rows[(counter)*items]

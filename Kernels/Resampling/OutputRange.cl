@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The range of what a component of an output holds. In front of this text: TYPE, TYPE_LEAST and TYPE_MOST, of which all
-// values of the type lie between, and IS_FINITE(value).
+// values of the type lie between, and IS_FINITE(value); and GroupReduction.cl.
+
+// The least values, and the largest ones.
+#define JOIN_ENDS(row, a, b) ((row) == 0 ? ((b) < (a) ? (b) : (a)) : ((b) > (a) ? (b) : (a)))
 
 // A work-group leaves its least and its largest finite value side by side, those that are TYPE_MOST and TYPE_LEAST
 // where there is none, and adds 1 to others where it has met other values. run: tuples in a row that an item takes,
-// before those of the other items follow. least, most: a value an item.
+// before those of the other items follow. ends: two values an item.
 __kernel void FindRange(__global const TYPE* values, const ulong tuples, const uint components, const uint component,
-  const uint run, __global TYPE* found, __global uint* others, __local TYPE* least, __local TYPE* most)
+  const uint run, __global TYPE* found, __global uint* others, __local TYPE* ends)
 {
   TYPE low = TYPE_MOST;
   TYPE high = TYPE_LEAST;
@@ -23,28 +26,16 @@ __kernel void FindRange(__global const TYPE* values, const ulong tuples, const u
       anyOther |= !isFinite;
     }
   }
-  const size_t item = get_local_id(0);
-  least[item] = low;
-  most[item] = high;
+  ends[get_local_id(0)] = low;
+  ends[get_local_size(0) + get_local_id(0)] = high;
   if (anyOther)
   {
     atomic_inc(others);
   }
-  barrier(CLK_LOCAL_MEM_FENCE);
-  for (size_t left = get_local_size(0); left > 1;)
+  REDUCE_ROWS(ends, 2, JOIN_ENDS)
+  if (get_local_id(0) == 0)
   {
-    const size_t middle = (left + 1) / 2;
-    if (item + middle < left)
-    {
-      least[item] = least[item + middle] < least[item] ? least[item + middle] : least[item];
-      most[item] = most[item + middle] > most[item] ? most[item + middle] : most[item];
-    }
-    barrier(CLK_LOCAL_MEM_FENCE);
-    left = middle;
-  }
-  if (item == 0)
-  {
-    found[2 * get_group_id(0)] = least[0];
-    found[2 * get_group_id(0) + 1] = most[0];
+    found[2 * get_group_id(0)] = ends[0];
+    found[2 * get_group_id(0) + 1] = ends[get_local_size(0)];
   }
 }

@@ -47,9 +47,9 @@ DeviceOutput::Range Find(const cl::CommandQueue& queue, const cl::Buffer& buffer
   {
     throw Error("The output is in a queue of another context.");
   }
-  cl::Kernel kernel(
-    context->GetProgram(
-      ProgramText(GetReal(*context) + MakePreamble<T>(type)) + OutputRange_cl, KernelOptions),
+  cl::Kernel kernel(context->GetProgram(ProgramText(GetReal(*context) + MakePreamble<T>(type)) +
+                        GroupReduction_cl + OutputRange_cl,
+                      KernelOptions),
     "FindRange");
   // Where an item has a thread for itself it goes through memory in a row, elsewhere all of them
   // do together.
@@ -72,8 +72,7 @@ DeviceOutput::Range Find(const cl::CommandQueue& queue, const cl::Buffer& buffer
   kernel.setArg(4, run);
   kernel.setArg(5, found);
   kernel.setArg(6, counter);
-  kernel.setArg(7, cl::Local(group * sizeof(T)));
-  kernel.setArg(8, cl::Local(group * sizeof(T)));
+  kernel.setArg(7, cl::Local(2 * group * sizeof(T)));
   // Not by OpenCLContext::Launch: queues that read take no times.
   queue.enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(groups * group), cl::NDRange(group));

@@ -160,7 +160,8 @@ bool HasLocalColumns(const OpenCLContext& context)
 cl::Program GetOutputProgram(OpenCLContext& context)
 {
   return context.GetProgram(
-    GetSamplingMeshText() + CoverageCount_cl + OutputClearing_cl, KernelOptions);
+    GetSamplingMeshText() + GroupReduction_cl + CoverageCount_cl + OutputClearing_cl,
+    KernelOptions);
 }
 
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reductions over the work-items of a group.
+
+// Joins what the items of a group have in local memory into the first item's: of each of some rows of one value an item,
+// by the expression JOIN(row, a, b). All items come here; the value of the first item of a row is that of all then.
+#define REDUCE_ROWS(rows, number, JOIN)                                                            \
+  {                                                                                                \
+    const size_t reduced = get_local_size(0);                                                      \
+    barrier(CLK_LOCAL_MEM_FENCE);                                                                  \
+    for (size_t left = reduced, middle = (left + 1) / 2; left > 1;                                 \
+         left = middle, middle = (left + 1) / 2)                                                   \
+    {                                                                                              \
+      for (int row = 0; row < (number) && get_local_id(0) + middle < left; ++row)                  \
+      {                                                                                            \
+        const size_t own = row * reduced + get_local_id(0);                                        \
+        rows[own] = JOIN(row, rows[own], rows[own + middle]);                                      \
+      }                                                                                            \
+      barrier(CLK_LOCAL_MEM_FENCE);                                                                \
+    }                                                                                              \
+  }
