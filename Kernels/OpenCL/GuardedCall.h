@@ -5,14 +5,16 @@
 #include "Error.h"
 #include "OpenCLContext.h"
 
+#include <new>
 #include <string>
 
 namespace deformvolume
 {
 
 /// Runs a function, with floating-point traps off and OpenCL's errors put into words: an Error with
-/// their meaning and the advice. clean: called before that, as what is on the device may be half
-/// done.
+/// their meaning and the advice. clean: called before that, and where memory of the host is short,
+/// as what is on the device may be half done. Functions throw other errors before they change
+/// anything.
 template <typename Function, typename Cleaner>
 auto CallGuarded(Function&& function, Cleaner&& clean, const char* advice = "")
 {
@@ -25,6 +27,11 @@ auto CallGuarded(Function&& function, Cleaner&& clean, const char* advice = "")
   {
     clean();
     throw Error(GetMessage(error) + advice);
+  }
+  catch (const std::bad_alloc&)
+  {
+    clean();
+    throw;
   }
 }
 
