@@ -260,20 +260,28 @@ StagedCopies* OpenCLContext::GetStagedCopies()
 
 cl::Program OpenCLContext::GetProgram(const ProgramText& source, const std::string& options)
 {
-  const std::lock_guard<std::mutex> lock(this->Mutex);
-  cl::Program& requested = this->Requested[{ options, source }];
-  if (!requested())
+  // Who wants another program, or launches one, does not wait for a compiler.
+  BuiltProgram& built = this->FindProgram(source, options);
+  const std::lock_guard<std::mutex> lock(built.Mutex);
+  if (!built.Program())
   {
-    const std::string text = source.GetText();
-    cl::Program& program = this->Programs[options + "\n" + text];
-    if (!program())
-    {
-      const CompilationWatch::Compilation compilation;
-      program = this->Build(text, options);
-    }
-    requested = program;
+    const CompilationWatch::Compilation compilation;
+    built.Program = this->Build(source.GetText(), options);
   }
-  return requested;
+  return built.Program;
+}
+
+OpenCLContext::BuiltProgram& OpenCLContext::FindProgram(
+  const ProgramText& source, const std::string& options)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  BuiltProgram*& requested = this->Requested[{ options, source }];
+  if (!requested)
+  {
+    // References to elements of a map stay.
+    requested = &this->Programs[options + "\n" + source.GetText()];
+  }
+  return *requested;
 }
 
 cl::Program OpenCLContext::Build(const std::string& source, const std::string& options) const

@@ -15,7 +15,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -79,8 +78,16 @@ public:
   void Prepare(const cl::CommandQueue& queue, const cl::Kernel& kernel, const cl::NDRange& group);
 
 private:
+  struct BuiltProgram
+  {
+    std::mutex Mutex; // held while it is compiled
+    cl::Program Program;
+  };
+
   explicit OpenCLContext(const OpenCLDevice& device);
 
+  /// The place of a program, which stays where it is.
+  BuiltProgram& FindProgram(const ProgramText& source, const std::string& options);
   cl::Program Build(const std::string& source, const std::string& options) const;
   /// Whether it is the first time that this is asked for such launches.
   bool IsNew(const cl::Kernel& kernel, const cl::NDRange& group);
@@ -90,10 +97,10 @@ private:
   std::string Extensions;
   cl_uint NumberOfUnits;
   std::mutex Mutex;
-  std::map<std::pair<std::string, ProgramText>, cl::Program> Requested; // by options and text
-  std::map<std::string, cl::Program> Programs;
+  std::map<std::pair<std::string, ProgramText>, BuiltProgram*> Requested; // by options and text
+  std::map<std::string, BuiltProgram> Programs;
   std::set<std::pair<cl_program, std::string>> Launched;
-  std::mutex StagingMutex; // of its own: compilation takes long
+  std::mutex StagingMutex;
   std::unique_ptr<StagedCopies> Staging;
 };
 

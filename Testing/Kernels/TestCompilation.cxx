@@ -5,6 +5,7 @@
 #include "CompilationWatch.h"
 #include "DeformerCase.h"
 #include "Device.h"
+#include "FakeDriver.h"
 #include "KernelText.h"
 #include "RasterizationProgram.h"
 #include "ResamplingProgram.h"
@@ -14,6 +15,8 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <future>
+#include <thread>
 
 using namespace deformvolume;
 
@@ -150,6 +153,30 @@ TEST_F(Compilation, HasItsOwnTime)
     EXPECT_EQ(second.Report.CompilationTime, 0.0);
     EXPECT_TRUE(second.Calls.empty());
   }
+}
+
+TEST_F(Compilation, HoldsUpNoOtherProgram)
+{
+  std::promise<void> isCompiling;
+  std::promise<void> hasOther;
+  bool came = false;
+  FakeDriver::Get().OnBuild =
+    [&](const std::string& text, const std::string& /*options*/, const std::string& /*kernels*/)
+  {
+    if (text.find("Slow") != std::string::npos)
+    {
+      isCompiling.set_value();
+      came = hasOther.get_future().wait_for(std::chrono::seconds(20)) == std::future_status::ready;
+    }
+  };
+  std::thread slow(
+    [] { GetContext().GetProgram(ProgramText("__kernel void Slow()\n{\n}\n"), ""); });
+  isCompiling.get_future().wait();
+  GetContext().GetProgram(ProgramText("__kernel void Quick()\n{\n}\n"), "");
+  hasOther.set_value();
+  slow.join();
+  FakeDriver::Reset();
+  EXPECT_TRUE(came);
 }
 
 TEST_F(Compilation, WatchesAreOfTheirThread)
