@@ -3,7 +3,6 @@
 
 #include "Error.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <mutex>
@@ -96,22 +95,6 @@ void Prepare()
   std::atexit(RemoveTemporaryDirectory);
 }
 
-bool IsOnPath(const std::string& program)
-{
-  const std::string path = GetEnvironment("PATH");
-  for (std::size_t begin = 0; begin <= path.size();)
-  {
-    const std::size_t end = std::min(path.find(':', begin), path.size());
-    const std::string directory = path.substr(begin, end - begin);
-    if (access(((directory.empty() ? "." : directory) + "/" + program).c_str(), X_OK) == 0)
-    {
-      return true;
-    }
-    begin = end + 1;
-  }
-  return false;
-}
-
 } // namespace
 
 void PrepareKernelCache()
@@ -119,17 +102,12 @@ void PrepareKernelCache()
   std::call_once(Prepared, Prepare);
 }
 
-void CheckKernelCompiler()
+void CheckKernelCache()
 {
   PrepareKernelCache();
   if (!Problem.empty())
   {
     throw Error(Problem);
-  }
-  if (!IsOnPath("ld"))
-  {
-    throw Error("The kernels cannot be compiled: PoCL needs the linker \"ld\" on the PATH. Install "
-                "the package binutils, or mend PATH.");
   }
 }
 

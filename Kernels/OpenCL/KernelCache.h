@@ -11,8 +11,8 @@ namespace deformvolume
 /// directory. Later calls do nothing.
 void PrepareKernelCache();
 
-/// Throws Error where PoCL could not compile: no usable cache directory, or no linker on the PATH.
-void CheckKernelCompiler();
+/// Throws Error where there is no usable cache directory.
+void CheckKernelCache();
 
 } // namespace deformvolume
 

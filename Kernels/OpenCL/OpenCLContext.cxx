@@ -6,6 +6,7 @@
 #include "DeviceThreads.h"
 #include "Error.h"
 #include "KernelCache.h"
+#include "KernelLinker.h"
 #include "StagedCopies.h"
 
 #include <algorithm>
@@ -176,7 +177,7 @@ OpenCLDevice FindDevice(const std::string& request)
   const std::vector<OpenCLDevice> devices = FindDevices();
   if (devices.empty())
   {
-    CheckKernelCompiler(); // the likelier reason, where there is one
+    CheckKernelCache(); // the likelier reason, where there is one
     throw Error(
       "There is no OpenCL device. Install an OpenCL driver (on Debian the package "
       "pocl-opencl-icd runs on every processor), and check OCL_ICD_VENDORS if it is set.");
@@ -227,7 +228,9 @@ OpenCLContext::OpenCLContext(const OpenCLDevice& device)
 {
   if (IsPoCL(device))
   {
-    CheckKernelCompiler();
+    CheckKernelCache();
+    const cl::Platform platform(device.Device.getInfo<CL_DEVICE_PLATFORM>());
+    CheckKernelLinker(platform.getInfo<CL_PLATFORM_VERSION>());
   }
   const FloatingPointTrapGuard guard;
   this->Context = cl::Context(device.Device);

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "KernelLinker.h"
+
+#include "Error.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <mutex>
+#include <system_error>
+#include <vector>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace deformvolume
+{
+namespace
+{
+
+bool RunsLinker(const std::string& version)
+{
+  int major = 0;
+  int minor = 0;
+  const std::size_t begin = version.find("PoCL ");
+  return begin != std::string::npos &&
+    std::sscanf(version.c_str() + begin, "PoCL %d.%d", &major, &minor) == 2 &&
+    (major < 7 || (major == 7 && minor < 2));
+}
+
+// Where the libraries of C compilers lie that the linker does not know by itself.
+std::vector<std::string> FindLibraries()
+{
+  std::vector<std::string> found;
+  std::error_code error;
+  for (const char* const root : { "/usr/lib/gcc", "/usr/lib64/gcc" })
+  {
+    for (std::filesystem::directory_iterator target(root, error), end; target != end;
+         target.increment(error))
+    {
+      for (std::filesystem::directory_iterator release(target->path(), error); release != end;
+           release.increment(error))
+      {
+        found.push_back("-L" + release->path().string());
+      }
+    }
+  }
+  const char* const variable = std::getenv("LIBRARY_PATH");
+  const std::string paths = variable ? variable : "";
+  for (std::size_t begin = 0; begin < paths.size();)
+  {
+    const std::size_t end = std::min(paths.find(':', begin), paths.size());
+    found.push_back("-L" + paths.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return found;
+}
+
+// Runs a program that is found on the PATH. Returns what is wrong: its words, or those of the
+// system; empty where it succeeds.
+std::string Run(const std::vector<std::string>& command)
+{
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0)
+  {
+    return ""; // nobody knows
+  }
+  std::vector<char*> arguments;
+  for (const std::string& word : command)
+  {
+    arguments.push_back(const_cast<char*>(word.c_str()));
+  }
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
+  pid_t process = 0;
+  const int error =
+    posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  std::string words;
+  std::array<char, 512> part;
+  while (error == 0)
+  {
+    const ssize_t count = read(ends[0], part.data(), part.size());
+    if (count > 0)
+    {
+      words.append(part.data(), static_cast<std::size_t>(count));
+    }
+    else if (count == 0 || errno != EINTR)
+    {
+      break;
+    }
+  }
+  close(ends[0]);
+  if (error != 0)
+  {
+    return "it cannot be run (" + std::generic_category().message(error) + ")";
+  }
+  int status = 0;
+  // A program that ignores its children does not get to know how they end.
+  if (waitpid(process, &status, 0) != process || status == 0)
+  {
+    return "";
+  }
+  return words.empty() ? "it fails without a word" : words.substr(0, words.find('\n'));
+}
+
+} // namespace
+
+void CheckKernelLinker(const std::string& version)
+{
+  if (!RunsLinker(version))
+  {
+    return;
+  }
+  static std::once_flag isChecked;
+  static auto* const problem = new std::string;
+  std::call_once(isChecked,
+    []
+    {
+      std::vector<std::string> command{ "ld", "-shared", "-o", "/dev/null" };
+      for (const std::string& path : FindLibraries())
+      {
+        command.push_back(path);
+      }
+      for (const char* const library :
+        { "-lm", "-lgcc", "--as-needed", "-lgcc_s", "--no-as-needed", "-lc" })
+      {
+        command.emplace_back(library);
+      }
+      *problem = Run(command);
+    });
+  if (!problem->empty())
+  {
+    throw Error("The kernels cannot be compiled: PoCL needs the linker \"ld\" on the PATH, with "
+                "the libraries of a C compiler, but: " +
+      *problem + ". Install a C compiler (on Debian the package gcc), or PoCL 7.2 or later.");
+  }
+}
+
+} // namespace deformvolume
