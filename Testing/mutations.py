@@ -247,8 +247,6 @@ MUTATIONS = {
     "log-begin": ("Kernels/Common/RangeLog.cxx", "this->Begin = this->Entries.front().Revision;", "", [VECTORS]),
     "vectors-turns": ("Kernels/Mapping/DisplacementSource.cxx",
                       "this->Reading.Forget();\n  this->SendNodes", "this->SendNodes", [VECTORS]),
-    "vectors-numbers": ("Kernels/Mapping/VectorReading.cxx", "if (this->Numbers != numbers)",
-                        "if (this->Numbers.empty())", [VECTORS_GRAPHICS]),
     "vectors-good": ("Kernels/Mapping/VectorConversion.cl", "if (!all(fabs(moved) <= largest))",
                      "if (any(fabs(moved) > largest))", [VECTORS_GRAPHICS]),
     "vectors-factor": ("Kernels/Mapping/DisplacementField.h", "constexpr std::uint64_t unit = 1 << 24;",

@@ -68,7 +68,7 @@ typedef struct
   int Whole[3];      // where it lies at rest, in 1/256 output voxel: a whole number
   float Fraction[3]; // and what misses to it
   float Weights[4];  // of the nodes; of a field: its continuous index there in the first three
-  int Tetrahedron;   // by its number on the device
+  int Tetrahedron;   // its number in the mesh
   int Node;          // the one of the four that the corner is, or -1
 } BoundaryCorner;
 

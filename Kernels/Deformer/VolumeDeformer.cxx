@@ -265,7 +265,7 @@ void VolumeDeformer::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numb
   this->Impl->Send(
     [&](Internals::Parts& parts)
     {
-      parts.SetBoundary({}, {}, nullptr);
+      parts.SetBoundary({}, nullptr);
       parts.Source.Forget();
       parts.Rasterizer.SetMesh(tetrahedra, numberOfTetrahedra, restNodes, numberOfNodes);
     });
@@ -278,7 +278,7 @@ void VolumeDeformer::SetInverseField(const DisplacementField& field)
     [&](Internals::Parts& parts)
     {
       CheckInverseVectors(field);
-      parts.SetBoundary({}, {}, nullptr);
+      parts.SetBoundary({}, nullptr);
       parts.Source.Forget();
       parts.Rasterizer.SetField(field);
     });

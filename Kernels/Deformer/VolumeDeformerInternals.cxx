@@ -22,14 +22,14 @@ VolumeDeformer::Internals::Parts::Parts(WorkDevice& device, MemoryBudget& budget
 {
 }
 
-void VolumeDeformer::Internals::Parts::SetBoundary(const MeshBoundary& boundary,
-  const std::vector<std::int32_t>& numbers, const Tetrahedron* tetrahedra)
+void VolumeDeformer::Internals::Parts::SetBoundary(
+  const MeshBoundary& boundary, const Tetrahedron* tetrahedra)
 {
   this->BoundaryField = DisplacementField();
   try
   {
-    this->Exact.GetBoundary().Set(boundary, numbers, tetrahedra);
-    this->Volume.SetBoundary(boundary, numbers);
+    this->Exact.GetBoundary().Set(boundary, tetrahedra);
+    this->Volume.SetBoundary(boundary, tetrahedra == nullptr);
   }
   catch (...)
   {
@@ -53,7 +53,7 @@ void VolumeDeformer::Internals::Parts::UpdateFieldBoundary(const DisplacementFie
   {
     boundary = FindFieldBoundary(grid.VertexExtent, GetWholeExtent(grid), field);
   }
-  this->SetBoundary(boundary, {}, nullptr);
+  this->SetBoundary(boundary, nullptr);
   // Other points move the bricks at the boundary.
   this->Incremental.GetObserver().ForgetMapping();
   last.Dimensions = field.Dimensions;

@@ -35,8 +35,8 @@ public:
     Parts(WorkDevice& device, MemoryBudget& budget, const VoxelGrid& voxelGrid,
       std::size_t bytesPerVoxel, bool withLinks);
 
-    void SetBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& numbers,
-      const Tetrahedron* tetrahedra);
+    /// tetrahedra: those of the mesh; null for a field.
+    void SetBoundary(const MeshBoundary& boundary, const Tetrahedron* tetrahedra);
     /// Finds the boundary of a field, where its mapping is another one than before.
     void UpdateFieldBoundary(const DisplacementField& field);
     /// A mesh that was checked (CheckMesh). Mapping: links or runs.
@@ -44,11 +44,11 @@ public:
     void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
       std::size_t numberOfNodes, const Mapping& mapping, const MeshBoundary* boundary)
     {
-      this->SetBoundary({}, {}, nullptr);
+      this->SetBoundary({}, nullptr);
       this->Source.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, mapping);
       if (boundary)
       {
-        this->SetBoundary(*boundary, this->Source.FindNumbers(boundary->Pieces), tetrahedra);
+        this->SetBoundary(*boundary, tetrahedra);
       }
       this->Rasterizer.Clear();
     }

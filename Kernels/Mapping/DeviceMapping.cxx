@@ -2,7 +2,6 @@
 #include "DeviceMapping.h"
 
 #include "HostMemory.h"
-#include "ParallelFor.h"
 
 #include <algorithm>
 
@@ -19,38 +18,17 @@ DeviceMapping::DeviceMapping(OpenCLContext& context, const cl::CommandQueue& que
 {
 }
 
-void DeviceMapping::SendLinks(VolumeChunk& chunk, const VertexLink* links, const MeshOrder& order)
+void DeviceMapping::SendLinks(VolumeChunk& chunk, const VertexLink* links)
 {
   const std::int64_t plane = static_cast<std::int64_t>(this->Size[0]) * this->Size[1];
-  const auto bytesOf = [&](std::int64_t planes)
-  { return static_cast<std::uint64_t>(planes * plane) * sizeof(VertexLink); };
-  CheckAllocation(bytesOf(chunk.PlanesEnd - chunk.PlanesBegin), this->AllocationLimit);
-  Reserve(this->Context, chunk.Links, bytesOf(chunk.PlanesEnd - chunk.PlanesBegin));
-  // Some planes after the others: a device with its own memory needs room for them on the host.
-  constexpr std::int64_t linksAtOnce = 1 << 20;
-  const std::int64_t step = std::max<std::int64_t>(1, linksAtOnce / plane);
-  for (std::int64_t first = chunk.PlanesBegin; first < chunk.PlanesEnd; first += step)
-  {
-    const std::int64_t planes = std::min<std::int64_t>(step, chunk.PlanesEnd - first);
-    auto* const sent = static_cast<VertexLink*>(this->Queue.enqueueMapBuffer(chunk.Links, CL_TRUE,
-      CL_MAP_WRITE_INVALIDATE_REGION, bytesOf(first - chunk.PlanesBegin), bytesOf(planes)));
-    ParallelForParts(static_cast<std::size_t>(planes * plane), 1 << 16,
-      [&](std::size_t begin, std::size_t end)
-      {
-        std::transform(links + first * plane + begin, links + first * plane + end, sent + begin,
-          [&](VertexLink link)
-          {
-            link.Tetrahedron = order.GetLinked(link.Tetrahedron);
-            return link;
-          });
-      });
-    this->Queue.enqueueUnmapMemObject(chunk.Links, sent);
-    this->Queue.finish();
-  }
+  const std::uint64_t bytes =
+    static_cast<std::uint64_t>((chunk.PlanesEnd - chunk.PlanesBegin) * plane) * sizeof(VertexLink);
+  CheckAllocation(bytes, this->AllocationLimit);
+  Reserve(this->Context, chunk.Links, bytes);
+  Write(this->Queue, chunk.Links, 0, bytes, links + chunk.PlanesBegin * plane);
 }
 
-void DeviceMapping::SetLinks(
-  std::vector<VolumeChunk>& chunks, const VertexLink* links, const MeshOrder& order)
+void DeviceMapping::SetLinks(std::vector<VolumeChunk>& chunks, const VertexLink* links)
 {
   for (VolumeChunk& chunk : chunks)
   {
@@ -66,7 +44,7 @@ void DeviceMapping::SetLinks(
     links, links + voxels, [](const VertexLink& link) { return link.Tetrahedron >= 0; });
   for (VolumeChunk& chunk : chunks)
   {
-    this->SendLinks(chunk, links, order);
+    this->SendLinks(chunk, links);
   }
   this->WithLinks = true;
 }
@@ -83,8 +61,7 @@ void DeviceMapping::Forget(std::vector<VolumeChunk>& chunks)
   this->WithLinks = false;
 }
 
-void DeviceMapping::SetRuns(
-  std::vector<VolumeChunk>& chunks, const VertexRuns& runs, const MeshOrder& order)
+void DeviceMapping::SetRuns(std::vector<VolumeChunk>& chunks, const VertexRuns& runs)
 {
   static_assert(
     sizeof(VertexRun) == 8 && sizeof(TetrahedronRecord) == 64, "as the kernels have it");
@@ -111,7 +88,7 @@ void DeviceMapping::SetRuns(
     Write(this->Queue, chunk.RowRanges, 0, bytes[1], ranges.data());
     this->Rows.push_back(std::move(ranges));
   }
-  this->Records.Set(runs.Tetrahedra, order);
+  this->Records.Set(runs.Tetrahedra);
   this->RunBytes = GetBytes(runs);
 }
 

@@ -3,7 +3,6 @@
 #define DeformVolumeDeviceMapping_h
 
 #include "BrickPoints.h"
-#include "MeshOrder.h"
 #include "OpenCLContext.h"
 #include "Tetrahedron.h"
 #include "TetrahedronRecords.h"
@@ -27,10 +26,10 @@ public:
     const std::array<int, 3>& size, std::uint64_t allocationLimit);
 
   ///@{
-  /// With numbers of the mesh, which become those of the device. A call that fails leaves none.
-  void SetLinks(std::vector<VolumeChunk>& chunks, const VertexLink* links, const MeshOrder& order);
+  /// A call that fails leaves none.
+  void SetLinks(std::vector<VolumeChunk>& chunks, const VertexLink* links);
   /// The runs were checked (CheckRuns).
-  void SetRuns(std::vector<VolumeChunk>& chunks, const VertexRuns& runs, const MeshOrder& order);
+  void SetRuns(std::vector<VolumeChunk>& chunks, const VertexRuns& runs);
   ///@}
   void Forget(std::vector<VolumeChunk>& chunks);
 
@@ -51,7 +50,7 @@ public:
     const std::vector<std::vector<std::int32_t>>& boundary) const;
 
 private:
-  void SendLinks(VolumeChunk& chunk, const VertexLink* links, const MeshOrder& order);
+  void SendLinks(VolumeChunk& chunk, const VertexLink* links);
 
   OpenCLContext& Context;
   cl::CommandQueue Queue;

@@ -19,8 +19,18 @@ bool IsUsedInPlace(const OpenCLContext& context, const VolumeArray& array)
   return array.Owner && CanWorkInPlace(context, array.Data, GetElementSize(array.Type));
 }
 
+Tetrahedron NameNodePlaces(const Tetrahedron& tetrahedron)
+{
+  Tetrahedron places = tetrahedron;
+  for (std::int32_t& node : places)
+  {
+    node *= DEFORMVOLUME_NODE_PLACES;
+  }
+  return places;
+}
+
 std::vector<Tetrahedron> NameNodePlaces(
-  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, const MeshOrder& order)
+  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra)
 {
   std::vector<Tetrahedron> places(numberOfTetrahedra);
   ParallelForParts(numberOfTetrahedra, 1 << 16,
@@ -28,10 +38,7 @@ std::vector<Tetrahedron> NameNodePlaces(
     {
       for (std::size_t t = begin; t < end; ++t)
       {
-        std::transform(tetrahedra[t].begin(), tetrahedra[t].end(),
-          places[MeshOrder::Get(order.Tetrahedra, t)].begin(),
-          [&](std::int32_t node)
-          { return DEFORMVOLUME_NODE_PLACES * MeshOrder::Get(order.Nodes, node); });
+        places[t] = NameNodePlaces(tetrahedra[t]);
       }
     });
   return places;
@@ -268,27 +275,27 @@ const std::vector<cl::Buffer>& DeviceVolume::GetArrays(const VolumeChunk& chunk)
   return chunk.Arrays;
 }
 
-void DeviceVolume::SetLinks(const VertexLink* links, const MeshOrder& order)
+void DeviceVolume::SetLinks(const VertexLink* links)
 {
   this->SetNodePlaces({});
-  this->SetBoundary({}, {});
+  this->SetBoundary({}, false);
   const QueueGuard guard(this->Queue);
   this->States.Forget();
-  this->Mapping.SetLinks(this->Chunks, links, order);
+  this->Mapping.SetLinks(this->Chunks, links);
 }
 
 void DeviceVolume::ForgetMesh()
 {
   this->SetNodePlaces({});
-  this->SetBoundary({}, {});
+  this->SetBoundary({}, false);
   this->Mapping.Forget(this->Chunks);
   this->States.Forget();
 }
 
-void DeviceVolume::SetRuns(const VertexRuns& runs, const MeshOrder& order)
+void DeviceVolume::SetRuns(const VertexRuns& runs)
 {
   this->ForgetMesh();
-  this->Mapping.SetRuns(this->Chunks, runs, order);
+  this->Mapping.SetRuns(this->Chunks, runs);
 }
 
 std::vector<Extent> DeviceVolume::SetBlanked(
@@ -365,7 +372,7 @@ void DeviceVolume::SetNodePlaces(const std::vector<std::int32_t>& places)
   }
 }
 
-void DeviceVolume::SetBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& mesh)
+void DeviceVolume::SetBoundary(const MeshBoundary& boundary, bool isField)
 {
   if (boundary.IsEmpty() && !this->HasBoundary())
   {
@@ -401,10 +408,10 @@ void DeviceVolume::SetBoundary(const MeshBoundary& boundary, const std::vector<s
       this->Send(cells.data(), 1, layer, 0, chunk.PlanesEnd - chunk.PlanesBegin - 1, cl::Buffer());
     this->Queue.finish();
   }
-  this->ListBoundary(boundary, mesh);
+  this->ListBoundary(boundary, isField);
 }
 
-void DeviceVolume::ListBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& mesh)
+void DeviceVolume::ListBoundary(const MeshBoundary& boundary, bool isField)
 {
   this->TetrahedraAtBoundary.clear();
   this->FieldPointsAtBoundary.clear();
@@ -435,12 +442,10 @@ void DeviceVolume::ListBoundary(const MeshBoundary& boundary, const std::vector<
       getPlace(1, static_cast<double>(cell / size[0] % size[1])),
       getPlace(2, static_cast<double>(cell / size[0] / size[1])))] = 1;
   }
-  const bool isField = mesh.empty();
   this->TetrahedraAtBoundary.resize(isField ? 0 : isNear.size());
   this->FieldPointsAtBoundary.resize(isField ? isNear.size() : 0, { { 0, -1, 0, -1, 0, -1 } });
-  for (std::size_t i = 0; i < boundary.Pieces.size(); ++i)
+  for (const MeshBoundary::Piece& piece : boundary.Pieces)
   {
-    const MeshBoundary::Piece& piece = boundary.Pieces[i];
     int first[3];
     int last[3];
     Extent points;
@@ -476,9 +481,9 @@ void DeviceVolume::ListBoundary(const MeshBoundary& boundary, const std::vector<
             continue;
           }
           std::vector<std::int32_t>& list = this->TetrahedraAtBoundary[subBrick];
-          if (list.empty() || list.back() != mesh[i])
+          if (list.empty() || list.back() != piece.Tetrahedron)
           {
-            list.push_back(mesh[i]);
+            list.push_back(piece.Tetrahedron);
           }
         }
       }

@@ -12,7 +12,6 @@
 #include "KernelParameters.h"
 #include "MappingProgram.h"
 #include "MeshBoundary.h"
-#include "MeshOrder.h"
 #include "OpenCLContext.h"
 #include "Tetrahedron.h"
 #include "VertexLink.h"
@@ -31,9 +30,12 @@ namespace deformvolume
 /// Whether an array of the volume is not copied to the device.
 bool IsUsedInPlace(const OpenCLContext& context, const VolumeArray& array);
 
+///@{
 /// Tetrahedra as the device has them, with the places of their nodes (DEFORMVOLUME_NODE_PLACES).
+Tetrahedron NameNodePlaces(const Tetrahedron& tetrahedron);
 std::vector<Tetrahedron> NameNodePlaces(
-  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, const MeshOrder& order = {});
+  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra);
+///@}
 
 /// What the device holds of the sampling mesh: per voxel the arrays and the state; the static links
 /// into the deformation mesh, or runs; per cell the active tetrahedra.
@@ -61,10 +63,9 @@ public:
   /// at a time: waits for all that was enqueued where that is another one.
   const std::vector<cl::Buffer>& GetArrays(const VolumeChunk& chunk);
   ///@{
-  /// With numbers of the mesh, which become those of the device.
-  void SetLinks(const VertexLink* links, const MeshOrder& order = {});
-  /// The runs were checked (CheckRuns).
-  void SetRuns(const VertexRuns& runs, const MeshOrder& order = {});
+  /// The links or runs were checked (CheckLinks, CheckRuns).
+  void SetLinks(const VertexLink* links);
+  void SetRuns(const VertexRuns& runs);
   ///@}
   /// Frees the links or the runs.
   void ForgetMesh();
@@ -88,9 +89,8 @@ public:
   /// nodes.
   void SetNodePlaces(const std::vector<std::int32_t>& places);
   bool LeavesOutBridges() const { return this->Bridges.HasPlaces(); }
-  /// The cells that the boundary of the deformation mesh crosses are left out. mesh: numbers of the
-  /// device of its tetrahedra, one for each piece; empty, of a field.
-  void SetBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& mesh);
+  /// The cells that the boundary of the deformation mesh, or of the field, crosses are left out.
+  void SetBoundary(const MeshBoundary& boundary, bool isField);
   bool HasBoundary() const { return this->Bridges.HasBoundary(); }
   void ForgetBridges() { this->Bridges.Forget(); }
   void ChangeOwners(const std::vector<Extent>& vertices) { this->Bridges.ChangeVertices(vertices); }
@@ -188,7 +188,7 @@ private:
   /// Reads the data until the queue has finished.
   cl::Buffer Send(const void* data, std::size_t bytesPerElement, std::int64_t elementsPerLayer,
     std::int64_t begin, std::int64_t end, const cl::Buffer& previous);
-  void ListBoundary(const MeshBoundary& boundary, const std::vector<std::int32_t>& mesh);
+  void ListBoundary(const MeshBoundary& boundary, bool isField);
   /// Lets go of the buffers over memory of the host.
   void LeaveArrays();
   cl::Buffer MakeRestPositions() const;
@@ -210,9 +210,8 @@ private:
   DeviceMask Distances{ DeviceMask::Kind::BoundaryDistances };
   DeviceCut Cut;
   BridgeMask Bridges;
-  /// For each sub-brick what moves its cells at the boundary: tetrahedra, by their numbers of the
-  /// device, or a box of points of the field. Empty without a mesh, or a field, that has a
-  /// boundary.
+  /// For each sub-brick what moves its cells at the boundary: tetrahedra, or a box of points of the
+  /// field. Empty without a mesh, or a field, that has a boundary.
   std::vector<std::vector<std::int32_t>> TetrahedraAtBoundary;
   std::vector<Extent> FieldPointsAtBoundary;
   VertexStates States;

@@ -93,11 +93,9 @@ std::size_t FindBadVector(
   return bad;
 }
 
-using Numbers = DisplacementBuffer::Numbers;
-
-// Marks, by the numbers of the device, the vectors that differ from those that it has, four floats
-// each; returns how many they are. Once they are more than the most, it leaves out the rest.
-std::size_t MarkChanges(const float* vectors, const float* last, const Numbers& numbers,
+// Marks the vectors that differ from those that the device has, four floats each; returns how many
+// they are. Once they are more than the most, it leaves out the rest.
+std::size_t MarkChanges(const float* vectors, const float* last,
   const std::vector<std::size_t>& words, std::size_t count, std::size_t most, PointSet& changed)
 {
   std::atomic<std::size_t> number{ 0 };
@@ -109,39 +107,21 @@ std::size_t MarkChanges(const float* vectors, const float* last, const Numbers& 
         return;
       }
       // Bit by bit: -0 is not 0, and what is not the same may not be taken for it.
-      const auto differs = [&](std::size_t i, std::size_t place)
-      { return std::memcmp(vectors + 3 * i, last + 4 * place, 3 * sizeof(float)) != 0; };
-      std::size_t found = 0;
-      if (numbers.empty())
+      std::uint64_t bits = 0;
+      for (std::size_t i = begin; i < end; ++i)
       {
-        std::uint64_t bits = 0;
-        for (std::size_t i = begin; i < end; ++i)
-        {
-          bits |= std::uint64_t{ differs(i, i) } << (i - begin);
-        }
-        changed.AddWord(word, bits);
-        found = std::bitset<WordSize>(bits).count();
+        const bool differs = std::memcmp(vectors + 3 * i, last + 4 * i, 3 * sizeof(float)) != 0;
+        bits |= std::uint64_t{ differs } << (i - begin);
       }
-      else
-      {
-        for (std::size_t i = begin; i < end; ++i)
-        {
-          const auto place = static_cast<std::size_t>(numbers[i]);
-          if (differs(i, place))
-          {
-            changed.Add(place);
-            ++found;
-          }
-        }
-      }
-      number += found;
+      changed.AddWord(word, bits);
+      number += std::bitset<WordSize>(bits).count();
     });
   return number;
 }
 
 // Whether so many vectors differ that it is not worthwhile to find out which, by a sample of them.
-bool AreMostlyOther(const float* vectors, const float* last, const Numbers& numbers,
-  const std::vector<std::size_t>& words, std::size_t count, std::size_t most)
+bool AreMostlyOther(const float* vectors, const float* last, const std::vector<std::size_t>& words,
+  std::size_t count, std::size_t most)
 {
   constexpr std::size_t sampleSize = 512;
   const std::size_t all = std::min(words.size() * WordSize, count);
@@ -155,8 +135,7 @@ bool AreMostlyOther(const float* vectors, const float* last, const Numbers& numb
     // One in each of evenly spread words, and not always the same one.
     const std::size_t word = words[k * words.size() / sampleSize];
     const std::size_t i = std::min(word * WordSize + 37 * k % WordSize, count - 1);
-    const std::size_t place = numbers.empty() ? i : static_cast<std::size_t>(numbers[i]);
-    found += std::memcmp(vectors + 3 * i, last + 4 * place, 3 * sizeof(float)) != 0 ? 1 : 0;
+    found += std::memcmp(vectors + 3 * i, last + 4 * i, 3 * sizeof(float)) != 0 ? 1 : 0;
   }
   return found * all > sampleSize * (most + (count - most) / 2);
 }
@@ -168,10 +147,9 @@ std::array<float, 4> PadOne(const float* vector)
 }
 
 // Pads some vectors that follow each other, all of which have a vector or another float behind
-// them, and stores each where it belongs.
-template <typename PlaceOf>
-void PadSome(const float* vectors, std::size_t begin, std::size_t end, const PlaceOf& placeOf,
-  float* padded, DisplacementBounds& bounds)
+// them.
+void PadSome(const float* vectors, std::size_t begin, std::size_t end, float* padded,
+  DisplacementBounds& bounds)
 {
 #ifdef __SSE2__
   // Compilers do not find these by themselves, and there are millions of vectors.
@@ -183,7 +161,7 @@ void PadSome(const float* vectors, std::size_t begin, std::size_t end, const Pla
     const __m128 next = _mm_and_ps(_mm_loadu_ps(vectors + 3 * i), mask);
     least = _mm_min_ps(least, next);
     greatest = _mm_max_ps(greatest, next);
-    _mm_storeu_ps(padded + 4 * placeOf(i), next);
+    _mm_storeu_ps(padded + 4 * i, next);
   }
   _mm_store_ps(bounds.Least.data(), least);
   _mm_store_ps(bounds.Greatest.data(), greatest);
@@ -192,65 +170,15 @@ void PadSome(const float* vectors, std::size_t begin, std::size_t end, const Pla
   {
     const std::array<float, 4> next = PadOne(vectors + 3 * i);
     bounds.Add(next.data(), 0, 1);
-    std::copy(next.begin(), next.end(), padded + 4 * placeOf(i));
+    std::copy(next.begin(), next.end(), padded + 4 * i);
   }
 #endif
-}
-
-// Pads the vectors with some numbers of the device. Not all numbers need have one.
-void PadInOrder(const float* vectors, const Numbers& points, std::size_t count,
-  const std::array<std::size_t, 2>& places, float* padded, DisplacementBounds& bounds)
-{
-  const auto padOne = [&](std::size_t place, std::size_t point)
-  {
-    alignas(16) const std::array<float, 4> next = PadOne(vectors + 3 * point);
-    bounds.Add(next.data(), 0, 1);
-    std::copy(next.begin(), next.end(), padded + 4 * place);
-  };
-  std::size_t place = places[0];
-#ifdef __SSE2__
-  const __m128 mask = _mm_castsi128_ps(_mm_set_epi32(0, -1, -1, -1));
-  const bool isAligned = reinterpret_cast<std::uintptr_t>(padded) % sizeof(__m128) == 0;
-  __m128 least = _mm_load_ps(bounds.Least.data());
-  __m128 greatest = _mm_load_ps(bounds.Greatest.data());
-  std::size_t left = places[1]; // the number of the last vector, which has no float behind it
-  for (; isAligned && place < places[1]; ++place)
-  {
-    const auto point = static_cast<std::size_t>(points[place]);
-    if (point + 1 < count)
-    {
-      const __m128 next = _mm_and_ps(_mm_loadu_ps(vectors + 3 * point), mask);
-      least = _mm_min_ps(least, next);
-      greatest = _mm_max_ps(greatest, next);
-      _mm_stream_ps(padded + 4 * place, next);
-    }
-    else if (point + 1 == count)
-    {
-      left = place;
-    }
-  }
-  _mm_sfence();
-  _mm_store_ps(bounds.Least.data(), least);
-  _mm_store_ps(bounds.Greatest.data(), greatest);
-  if (left < places[1])
-  {
-    padOne(left, count - 1);
-  }
-#endif
-  for (; place < places[1]; ++place)
-  {
-    const auto point = static_cast<std::size_t>(points[place]);
-    if (point < count)
-    {
-      padOne(place, point);
-    }
-  }
 }
 
 // The three floats of each vector become the four that the device reads at once; returns what they
 // lie between.
-DisplacementBounds PadVectors(const float* vectors, const Numbers& numbers,
-  const std::vector<std::size_t>& words, std::size_t count, float* padded)
+DisplacementBounds PadVectors(
+  const float* vectors, const std::vector<std::size_t>& words, std::size_t count, float* padded)
 {
   DisplacementBounds all;
   std::mutex mutex;
@@ -261,47 +189,16 @@ DisplacementBounds PadVectors(const float* vectors, const Numbers& numbers,
       for (std::size_t word = first; word < past; ++word)
       {
         const std::size_t begin = words[word] * WordSize;
-        const std::size_t some = std::min(WordSize, count - begin);
-        const std::size_t end = begin + some;
+        const std::size_t end = begin + std::min(WordSize, count - begin);
         const std::size_t followed = end == count ? end - 1 : end;
-        const auto pad = [&](const auto& placeOf)
+        PadSome(vectors, begin, followed, padded, bounds);
+        for (std::size_t i = followed; i < end; ++i)
         {
-          PadSome(vectors, begin, followed, placeOf, padded, bounds);
-          for (std::size_t i = followed; i < end; ++i)
-          {
-            alignas(16) const std::array<float, 4> last = PadOne(vectors + 3 * i);
-            bounds.Add(last.data(), 0, 1);
-            std::copy(last.begin(), last.end(), padded + 4 * placeOf(i));
-          }
-        };
-        if (numbers.empty())
-        {
-          pad([](std::size_t i) { return i; });
-        }
-        else
-        {
-          pad([&](std::size_t i) { return static_cast<std::size_t>(numbers[i]); });
+          alignas(16) const std::array<float, 4> last = PadOne(vectors + 3 * i);
+          bounds.Add(last.data(), 0, 1);
+          std::copy(last.begin(), last.end(), padded + 4 * i);
         }
       }
-      const std::lock_guard<std::mutex> lock(mutex);
-      all.Add(bounds);
-    });
-  return all;
-}
-
-// The same for all vectors, of which there are count, in the order that the device has them in:
-// what it has is not read, and goes to memory past the caches, which hold little of it.
-DisplacementBounds PadAll(
-  const float* vectors, const Numbers& points, std::size_t count, float* padded)
-{
-  DisplacementBounds all;
-  std::mutex mutex;
-  constexpr std::size_t step = 16384;
-  ParallelForParts(points.size(), step,
-    [&](std::size_t first, std::size_t past)
-    {
-      DisplacementBounds bounds;
-      PadInOrder(vectors, points, count, { { first, past } }, padded, bounds);
       const std::lock_guard<std::mutex> lock(mutex);
       all.Add(bounds);
     });
@@ -388,18 +285,16 @@ void DisplacementBuffer::Reserve(std::size_t count)
   }
 }
 
-void DisplacementBuffer::Send(const float* displacements, std::size_t count,
-  const Numbering& numbering, const PointRanges* changes,
-  const std::function<BrickPoints()>& makePoints)
+void DisplacementBuffer::Send(const float* displacements, std::size_t count, std::size_t room,
+  const PointRanges* changes, const std::function<BrickPoints()>& makePoints)
 {
-  const Numbers& numbers = numbering.OfPoints;
-  // Points with numbers may be fewer than there is room for.
-  const std::size_t room = this->GetNumberOfPoints();
+  const std::size_t held = this->GetNumberOfPoints();
   const bool isProcessor = this->Device.GetDevice().IsProcessor;
-  const bool hasCopy = isProcessor || this->Copy.size() == 4 * room;
-  if (!hasCopy || (numbers.empty() ? room != count : room < numbers.size()))
+  const bool hasCopy = isProcessor || this->Copy.size() == 4 * held;
+  room = std::max(room, count);
+  if (!hasCopy || held < room)
   {
-    const std::size_t floats = 4 * std::max(count, numbers.size());
+    const std::size_t floats = 4 * room;
     this->Clear();
     this->Buffer =
       cl::Buffer(this->Device.GetContext().GetContext(), CL_MEM_READ_ONLY, floats * sizeof(float));
@@ -407,7 +302,7 @@ void DisplacementBuffer::Send(const float* displacements, std::size_t count,
     this->Observer.MoveAll({});
     changes = nullptr;
   }
-  const News news{ displacements, count, numbering, changes, makePoints };
+  const News news{ displacements, count, changes, makePoints };
   const cl::CommandQueue& queue = this->Device.GetQueue();
   if (isProcessor)
   {
@@ -426,20 +321,18 @@ void DisplacementBuffer::Send(const float* displacements, std::size_t count,
 
 std::array<std::size_t, 2> DisplacementBuffer::Write(const News& news, float* sent)
 {
-  const auto& [displacements, count, numbering, changes, makePoints] = news;
-  const Numbers& numbers = numbering.OfPoints;
-  const std::size_t all = std::max(count, numbers.size());
+  const auto& [displacements, count, changes, makePoints] = news;
   const std::vector<std::size_t> words = FindWords(changes, count);
   bool partly = this->Observer.IsTracking();
   if (partly)
   {
     const std::size_t most = this->Observer.GetMostMoved(count);
-    partly = !AreMostlyOther(displacements, sent, numbers, words, count, most);
+    partly = !AreMostlyOther(displacements, sent, words, count, most);
     if (partly)
     {
-      this->Changed.Clear(all);
+      this->Changed.Clear(count);
       const std::size_t number =
-        MarkChanges(displacements, sent, numbers, words, count, most, this->Changed);
+        MarkChanges(displacements, sent, words, count, most, this->Changed);
       if (number == 0)
       {
         return { { 0, 0 } };
@@ -450,21 +343,19 @@ std::array<std::size_t, 2> DisplacementBuffer::Write(const News& news, float* se
   if (!partly)
   {
     const bool areAll = words.size() * WordSize >= count;
-    const DisplacementBounds bounds = areAll && !numbers.empty()
-      ? PadAll(displacements, numbering.Points, count, sent)
-      : PadVectors(displacements, numbers, words, count, sent);
+    const DisplacementBounds bounds = PadVectors(displacements, words, count, sent);
     this->Observer.MoveAll(areAll ? std::optional(bounds) : std::nullopt);
-    return { { 0, all } };
+    return { { 0, count } };
   }
   if (!this->Observer.HasPoints())
   {
     this->Observer.SetPoints(makePoints());
   }
   this->Observer.MovePoints(this->Changed, sent);
-  this->Observer.AddMoved(PadVectors(displacements, numbers, words, count, sent));
+  this->Observer.AddMoved(PadVectors(displacements, words, count, sent));
   std::array<std::size_t, 2> changed;
   this->Changed.GetEnds(changed[0], changed[1]);
-  return { { changed[0], std::min(changed[1], all) } };
+  return { { changed[0], std::min(changed[1], count) } };
 }
 
 } // namespace deformvolume

@@ -4,12 +4,10 @@
 
 #include "DisplacementBounds.h"
 #include "PointSet.h"
-#include "Tetrahedron.h"
 #include "WorkDevice.h"
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -38,24 +36,18 @@ public:
   {
   }
 
-  /// What the device calls each point, and the points by these numbers; empty: as it comes.
-  using Numbers = std::vector<std::int32_t>;
-  struct Numbering
-  {
-    const Numbers& OfPoints;
-    const Numbers& Points;
-  };
-  /// displacements: three floats a point, checked. changes: those that may have changed since the
-  /// last call; null: all. makePoints: makes what the observer wants to know
+  /// displacements: three floats a point, checked. room: for so many points at least, where more of
+  /// them have been there than there are. changes: those that may have changed since the last call;
+  /// null: all. makePoints: makes what the observer wants to know
   /// (DisplacementObserver::SetPoints).
-  void Send(const float* displacements, std::size_t count, const Numbering& numbering,
+  void Send(const float* displacements, std::size_t count, std::size_t room,
     const PointRanges* changes, const std::function<BrickPoints()>& makePoints);
 
-  /// Makes room for points of so many numbers; those that are new have no displacement yet.
+  /// Makes room for so many points; those that are new have no displacement yet.
   void Reserve(std::size_t count);
 
-  /// Makes room for points of so many numbers that a kernel writes; what was there may be lost. All
-  /// points count as changed.
+  /// Makes room for so many points that a kernel writes; what was there may be lost. All points
+  /// count as changed.
   const cl::Buffer& Place(std::size_t count);
 
   const cl::Buffer& Get() const { return this->Buffer; }
@@ -71,12 +63,11 @@ private:
   {
     const float* Vectors;
     std::size_t Count;
-    const Numbering& PointNumbers;
     const PointRanges* Changes;
     const std::function<BrickPoints()>& MakePoints;
   };
   /// Brings up to date what the device has, as the host sees it, and tells the observer. Returns
-  /// the numbers of the first point that has changed and one past the last, or of more points.
+  /// the first point that has changed and one past the last, or more points.
   std::array<std::size_t, 2> Write(const News& news, float* sent);
 
   WorkDevice& Device;

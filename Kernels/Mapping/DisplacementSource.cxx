@@ -8,7 +8,6 @@
 #include "FieldParameters.h"
 #include "KernelText.h"
 #include "MeshChecks.h"
-#include "MeshOrder.h"
 #include "WorkDevice.h"
 
 #include <algorithm>
@@ -55,23 +54,20 @@ void DisplacementSource::SetMesh(const Tetrahedron* tetrahedra, std::size_t numb
 {
   CheckLinks(
     links, GetNumberOfPoints(this->Volume.GetVoxelGrid().VertexExtent), numberOfTetrahedra);
-  MeshOrder order =
-    FindOrder(this->Volume.GetBricks(), links, tetrahedra, numberOfTetrahedra, numberOfNodes);
-  this->Volume.SetLinks(links, order);
-  this->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes, std::move(order));
+  this->Volume.SetLinks(links);
+  this->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes);
 }
 
 void DisplacementSource::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
   std::size_t numberOfNodes, const VertexRuns& runs)
 {
   CheckRuns(runs, this->Volume.GetVoxelGrid(), numberOfTetrahedra);
-  MeshOrder order = FindOrder(runs, tetrahedra, numberOfTetrahedra, numberOfNodes);
-  this->Volume.SetRuns(runs, order);
-  this->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes, std::move(order));
+  this->Volume.SetRuns(runs);
+  this->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes);
 }
 
-void DisplacementSource::SendTetrahedra(const Tetrahedron* tetrahedra,
-  std::size_t numberOfTetrahedra, std::size_t numberOfNodes, MeshOrder&& order)
+void DisplacementSource::SendTetrahedra(
+  const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes)
 {
   static_assert(DEFORMVOLUME_NODE_PLACES == 2, "as the message says");
   if (numberOfNodes > std::size_t{ 1 } << 30)
@@ -79,16 +75,11 @@ void DisplacementSource::SendTetrahedra(const Tetrahedron* tetrahedra,
     throw Error("The deformation mesh has more than 2^30 nodes. Use a coarser mesh.");
   }
   this->NumberOfTetrahedra = numberOfTetrahedra;
-  const std::vector<Tetrahedron> places = NameNodePlaces(tetrahedra, numberOfTetrahedra, order);
+  const std::vector<Tetrahedron> places = NameNodePlaces(tetrahedra, numberOfTetrahedra);
   this->Tetrahedra =
     this->Device.Send(places.data(), numberOfTetrahedra * sizeof(Tetrahedron), this->Tetrahedra);
   this->NumberOfNodes = numberOfNodes;
-  this->Order = std::move(order);
-  this->NodesByNumber.resize(this->Order.Nodes.size());
-  for (std::size_t node = 0; node < this->Order.Nodes.size(); ++node)
-  {
-    this->NodesByNumber[this->Order.Nodes[node]] = static_cast<std::int32_t>(node);
-  }
+  this->MostNodes = numberOfNodes;
   if (this->Nodes.GetNumberOfPoints() != numberOfNodes)
   {
     this->Nodes.Clear();
@@ -110,17 +101,14 @@ void DisplacementSource::SetNodePlaces(const std::int32_t* places)
   {
     throw Error("No deformation mesh with links or runs is set: call SetMesh first.");
   }
-  std::vector<std::int32_t> numbered;
+  std::vector<std::int32_t> all;
   if (places)
   {
     // Nodes that are there no more share no place with others.
-    numbered.assign(this->Order.Nodes.size(), -1);
-    for (std::size_t node = 0; node < this->NumberOfNodes; ++node)
-    {
-      numbered[this->Order.Nodes[node]] = places[node];
-    }
+    all.assign(places, places + this->NumberOfNodes);
+    all.resize(this->MostNodes, -1);
   }
-  this->Volume.SetNodePlaces(numbered);
+  this->Volume.SetNodePlaces(all);
 }
 
 std::vector<Extent> DisplacementSource::UpdateBridges()
@@ -154,8 +142,7 @@ void DisplacementSource::SetNodeDisplacements(
     return;
   }
   this->NodesSet = false;
-  this->Reading.Convert(this->Nodes.Place(std::max(this->NumberOfNodes, this->Order.Nodes.size())),
-    this->Order.Nodes, "node");
+  this->Reading.Convert(this->Nodes.Place(this->MostNodes), "node");
   this->NodesSet = true;
   this->LastSent = true;
   this->Volume.GetRecords().Forget();
@@ -170,8 +157,8 @@ void DisplacementSource::SendNodes(
   {
     CheckDisplacements(displacements, this->NumberOfNodes, "node", news);
   }
-  this->Nodes.Send(displacements, this->NumberOfNodes, { this->Order.Nodes, this->NodesByNumber },
-    news, [this] { return this->MakeBrickPoints(); });
+  this->Nodes.Send(displacements, this->NumberOfNodes, this->MostNodes, news,
+    [this] { return this->MakeBrickPoints(); });
   this->NodesSet = true;
   this->LastSent = true;
   this->Volume.GetRecords().Forget();
@@ -225,14 +212,14 @@ void DisplacementSource::ConvertField(const PointRanges* changes)
   this->BoundsOfSubBricks.clear();
   if (changes)
   {
-    this->Reading.Convert(this->FieldVectors.Get(), {}, "point");
+    this->Reading.Convert(this->FieldVectors.Get(), "point");
     if (!this->TellOfChanges(*changes, [this] { return Join(this->FindBoundsOfSubBricks()); }))
     {
       this->Observer.MoveAll({});
     }
     return;
   }
-  this->Reading.Convert(this->FieldVectors.Place(this->NumberOfNodes), {}, "point");
+  this->Reading.Convert(this->FieldVectors.Place(this->NumberOfNodes), "point");
   this->IsConverted = true;
 }
 
@@ -303,6 +290,10 @@ void DisplacementSource::SendField(
   const DisplacementField& field, const FieldParameters& parameters, const PointRanges* changes)
 {
   const std::size_t points = this->NumberOfNodes;
+  if (this->FieldVectors.GetNumberOfPoints() != points)
+  {
+    this->FieldVectors.Clear();
+  }
   const PointRanges* news = this->LastSent && this->FieldVectors.GetNumberOfPoints() == points &&
       HasSameDimensions(parameters, this->Field)
     ? changes
@@ -314,9 +305,8 @@ void DisplacementSource::SendField(
   CheckDisplacements(vectors, points, "point", news);
   this->CheckFieldSize();
   this->Field = parameters;
-  const DisplacementBuffer::Numbers none;
   this->FieldVectors.Send(
-    vectors, points, { none, none }, news, [this] { return this->MakeBrickPoints(); });
+    vectors, points, points, news, [this] { return this->MakeBrickPoints(); });
   this->LastSent = true;
 }
 
@@ -422,10 +412,9 @@ void DisplacementSource::ForgetNodes()
 {
   this->Tetrahedra = cl::Buffer();
   this->Nodes.Clear();
-  this->Order = MeshOrder();
-  this->NodesByNumber.clear();
   this->NumberOfTetrahedra = 0;
   this->NumberOfNodes = 0;
+  this->MostNodes = 0;
   this->NodesSet = false;
 }
 
@@ -489,15 +478,6 @@ cl_uint DisplacementSource::SetMappingArguments(cl::Kernel& kernel, const Volume
   return i;
 }
 
-std::vector<std::int32_t> DisplacementSource::FindNumbers(
-  const std::vector<MeshBoundary::Piece>& pieces) const
-{
-  std::vector<std::int32_t> numbers(pieces.size());
-  std::transform(pieces.begin(), pieces.end(), numbers.begin(),
-    [this](const MeshBoundary::Piece& piece) { return this->Order.GetLinked(piece.Tetrahedron); });
-  return numbers;
-}
-
 cl_uint DisplacementSource::SetPointArguments(
   cl::Kernel& kernel, cl_uint argument, const cl::Buffer& other) const
 {
@@ -531,9 +511,8 @@ void DisplacementSource::PrepareMapping(
 
 BrickPoints DisplacementSource::MakeBrickPoints() const
 {
-  return this->Volume.HasMesh()
-    ? this->Volume.MakeBrickPoints(this->Tetrahedra, this->Order.Nodes.size())
-    : this->Volume.MakeBrickPoints(this->Field);
+  return this->Volume.HasMesh() ? this->Volume.MakeBrickPoints(this->Tetrahedra, this->MostNodes)
+                                : this->Volume.MakeBrickPoints(this->Field);
 }
 
 void DisplacementSource::Visit(

@@ -9,7 +9,6 @@
 #include "KernelParameters.h"
 #include "MappingProgram.h"
 #include "MeshBoundary.h"
-#include "MeshOrder.h"
 #include "Tetrahedron.h"
 #include "VectorReading.h"
 #include "VertexLink.h"
@@ -88,13 +87,9 @@ public:
   /// Sets a kernel's first arguments, those of the mapping, and returns how many they are.
   cl_uint SetMappingArguments(cl::Kernel& kernel, const VolumeChunk& chunk) const;
 
-  ///@{
-  /// The numbers on the device of the tetrahedra of the pieces of a boundary.
-  std::vector<std::int32_t> FindNumbers(const std::vector<MeshBoundary::Piece>& pieces) const;
   /// Sets arguments from one on, and returns the number of the next one: tetrahedra, points, and as
   /// four integers the dimensions of a field, 0 for a mesh. other: any buffer.
   cl_uint SetPointArguments(cl::Kernel& kernel, cl_uint argument, const cl::Buffer& other) const;
-  ///@}
 
   /// Which points move the sub-bricks of the volume, where that is one chunk.
   BrickPoints MakeBrickPoints() const;
@@ -119,14 +114,14 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
-  void SendTetrahedra(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
-    std::size_t numberOfNodes, MeshOrder&& order);
+  void SendTetrahedra(
+    const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
   /// The tetrahedra that are not as the device has them.
   std::vector<TetrahedronChange> FindChanges(const Tetrahedron* tetrahedra) const;
   void CheckChanges(const std::vector<TetrahedronChange>& changes, std::size_t numberOfNodes) const;
   void SendChanges(const std::vector<TetrahedronChange>& changes);
   void SendNodes(const float* displacements, const PointRanges* changes, bool areChecked);
-  /// There are so many nodes now; those that are new get numbers of the device.
+  /// There are so many nodes now.
   void SetNumberOfNodes(std::size_t numberOfNodes);
   void ForgetNodes();
   void ForgetField();
@@ -156,11 +151,10 @@ private:
   DeviceVolume& Volume;
   DisplacementObserver& Observer;
 
-  cl::Buffer Tetrahedra; // their nodes (DEFORMVOLUME_NODE_PLACES), in the order of the device
+  cl::Buffer Tetrahedra; // their nodes (DEFORMVOLUME_NODE_PLACES)
   std::size_t NumberOfTetrahedra = 0;
   std::size_t NumberOfNodes = 0;
-  MeshOrder Order;                         // of all nodes that there have been
-  std::vector<std::int32_t> NodesByNumber; // these by the numbers of the device
+  std::size_t MostNodes = 0; // that the mesh has had: the buffers have room for them
   DisplacementBuffer Nodes;
   bool NodesSet = false;
 

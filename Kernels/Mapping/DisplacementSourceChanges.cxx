@@ -25,9 +25,9 @@ std::vector<TetrahedronChange> DisplacementSource::FindChanges(const Tetrahedron
   {
     TetrahedronChange change;
     change.Number = static_cast<std::int32_t>(t);
-    const Tetrahedron& last = places.Get()[this->Order.Tetrahedra[t]];
+    const Tetrahedron& last = places.Get()[t];
     std::transform(last.begin(), last.end(), change.Before.begin(),
-      [&](std::int32_t place) { return this->NodesByNumber[place / DEFORMVOLUME_NODE_PLACES]; });
+      [](std::int32_t place) { return place / DEFORMVOLUME_NODE_PLACES; });
     change.After = tetrahedra[t];
     if (change.After != change.Before)
     {
@@ -53,8 +53,7 @@ void DisplacementSource::CheckChanges(
       throw Error(name + " is to have other nodes, but there are " +
         std::to_string(this->NumberOfTetrahedra) + " tetrahedra.");
     }
-    if (!areNodes(change.After, numberOfNodes) ||
-      !areNodes(change.Before, this->Order.Nodes.size()))
+    if (!areNodes(change.After, numberOfNodes) || !areNodes(change.Before, this->MostNodes))
     {
       throw Error(name +
         " is to have other nodes, and one of these, or of those that it had, is "
@@ -66,22 +65,13 @@ void DisplacementSource::CheckChanges(
 
 void DisplacementSource::SendChanges(const std::vector<TetrahedronChange>& changes)
 {
-  const auto place = [](const Tetrahedron& nodes)
-  {
-    Tetrahedron places = nodes;
-    for (std::int32_t& node : places)
-    {
-      node *= DEFORMVOLUME_NODE_PLACES;
-    }
-    return places;
-  };
   const cl::CommandQueue& queue = this->Device.GetQueue();
   if (this->Device.GetDevice().IsProcessor)
   {
     const MappedBuffer<Tetrahedron> sent(queue, this->Tetrahedra, CL_MAP_READ | CL_MAP_WRITE);
     for (const TetrahedronChange& change : changes)
     {
-      sent.Get()[change.Number] = place(change.After);
+      sent.Get()[change.Number] = NameNodePlaces(change.After);
     }
     return;
   }
@@ -90,7 +80,7 @@ void DisplacementSource::SendChanges(const std::vector<TetrahedronChange>& chang
   const QueueGuard guard(queue);
   for (const TetrahedronChange& change : changes)
   {
-    places.push_back(place(change.After));
+    places.push_back(NameNodePlaces(change.After));
     queue.enqueueWriteBuffer(this->Tetrahedra, CL_FALSE,
       static_cast<std::size_t>(change.Number) * sizeof(Tetrahedron), sizeof(Tetrahedron),
       &places.back());
@@ -105,27 +95,21 @@ void DisplacementSource::ChangeConnectivity(const Tetrahedron* tetrahedra,
   {
     throw Error("The tetrahedra are not those of the mesh that was set: call SetMesh.");
   }
-  std::vector<TetrahedronChange> numbered = changes ? *changes : this->FindChanges(tetrahedra);
-  this->CheckChanges(numbered, numberOfNodes);
-  this->SetNumberOfNodes(numberOfNodes);
-  for (TetrahedronChange& change : numbered)
+  std::vector<TetrahedronChange> found;
+  if (!changes)
   {
-    change.Number = this->Order.Tetrahedra[change.Number];
-    for (Tetrahedron* nodes : { &change.Before, &change.After })
-    {
-      for (std::int32_t& node : *nodes)
-      {
-        node = this->Order.Nodes[node];
-      }
-    }
+    found = this->FindChanges(tetrahedra);
+    changes = &found;
   }
+  this->CheckChanges(*changes, numberOfNodes);
+  this->SetNumberOfNodes(numberOfNodes);
   std::optional<std::vector<Extent>> boxes;
   if (this->Observer.HasPoints())
   {
     this->Nodes.Visit(
-      [&](const float* last) { boxes = this->Observer.ChangeTetrahedra(numbered, last); });
+      [&](const float* last) { boxes = this->Observer.ChangeTetrahedra(*changes, last); });
   }
-  this->SendChanges(numbered);
+  this->SendChanges(*changes);
   if (boxes)
   {
     this->Volume.ChangeOwners(*boxes);
@@ -139,11 +123,7 @@ void DisplacementSource::ChangeConnectivity(const Tetrahedron* tetrahedra,
 
 void DisplacementSource::SetNumberOfNodes(std::size_t numberOfNodes)
 {
-  for (std::size_t node = this->Order.Nodes.size(); node < numberOfNodes; ++node)
-  {
-    this->Order.Nodes.push_back(static_cast<std::int32_t>(node));
-    this->NodesByNumber.push_back(static_cast<std::int32_t>(node));
-  }
+  this->MostNodes = std::max(this->MostNodes, numberOfNodes);
   this->Nodes.Reserve(numberOfNodes);
   if (this->Observer.IsTracking())
   {
@@ -156,10 +136,9 @@ void DisplacementSource::SetNumberOfNodes(std::size_t numberOfNodes)
     this->Nodes.Visit(
       [&](const float* last)
       {
-        for (std::size_t node = this->NumberOfNodes; node < numberOfNodes; ++node)
+        if (this->NumberOfNodes < numberOfNodes)
         {
-          const auto place = static_cast<std::size_t>(this->Order.Nodes[node]);
-          bounds.Add({ last, nullptr }, place, place + 1);
+          bounds.Add(last, this->NumberOfNodes, numberOfNodes);
         }
       });
     this->Observer.AddMoved(bounds);

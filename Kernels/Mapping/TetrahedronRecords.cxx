@@ -68,7 +68,7 @@ void TetrahedronRecords::WriteRest(
     [](double number) { return static_cast<float>(number); });
 }
 
-void TetrahedronRecords::Set(const std::vector<RestTetrahedron>& tetrahedra, const MeshOrder& order)
+void TetrahedronRecords::Set(const std::vector<RestTetrahedron>& tetrahedra)
 {
   this->Clear();
   const std::size_t room = std::max<std::size_t>(tetrahedra.size(), 1); // no buffer is of no bytes
@@ -80,7 +80,7 @@ void TetrahedronRecords::Set(const std::vector<RestTetrahedron>& tetrahedra, con
   for (std::size_t i = 0; i < tetrahedra.size(); ++i)
   {
     this->WriteRest(i, tetrahedra[i], rest.data());
-    owners[i] = MeshOrder::Get(order.Tetrahedra, tetrahedra[i].Tetrahedron);
+    owners[i] = tetrahedra[i].Tetrahedron;
   }
   if (!tetrahedra.empty())
   {

@@ -2,7 +2,6 @@
 #ifndef DeformVolumeTetrahedronRecords_h
 #define DeformVolumeTetrahedronRecords_h
 
-#include "MeshOrder.h"
 #include "OpenCLContext.h"
 #include "VertexRuns.h"
 
@@ -22,8 +21,7 @@ public:
   TetrahedronRecords(
     OpenCLContext& context, const cl::CommandQueue& queue, std::uint64_t allocationLimit);
 
-  /// With numbers of the mesh, which become those of the device.
-  void Set(const std::vector<RestTetrahedron>& tetrahedra, const MeshOrder& order);
+  void Set(const std::vector<RestTetrahedron>& tetrahedra);
   void Clear();
 
   /// For each record the displacements as an affine function (TetrahedronRecord), after Evaluate,

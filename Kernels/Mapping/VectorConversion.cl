@@ -15,11 +15,10 @@ static float3 ConvertVector(float3 v, const FieldParameters* field)
   return v;
 }
 
-// Four floats a point, at the point's number, or where there are none at its place. A point whose displacement is not
-// finite, or larger than the largest, is reported. A work-item takes one point.
-__kernel void ConvertVectors(__global const float* vectors, const FieldParameters field,
-  __global const int* numbers, const int hasNumbers, const ulong count, const float largest,
-  __global float4* displacements, __global uint* firstBad)
+// Four floats a point. A point whose displacement is not finite, or larger than the largest, is reported. A work-item
+// takes one point.
+__kernel void ConvertVectors(__global const float* vectors, const FieldParameters field, const ulong count,
+  const float largest, __global float4* displacements, __global uint* firstBad)
 {
   const size_t point = get_global_id(0);
   if (point >= count)
@@ -32,5 +31,5 @@ __kernel void ConvertVectors(__global const float* vectors, const FieldParameter
   {
     atomic_min(firstBad, (uint)point);
   }
-  displacements[hasNumbers ? (size_t)numbers[point] : point] = (float4)(moved, 0.0f);
+  displacements[point] = (float4)(moved, 0.0f);
 }

@@ -49,24 +49,8 @@ bool VectorReading::CanConvert() const
     (HasDouble(this->Device.GetContext()) || HasDisplacements(this->Field));
 }
 
-void VectorReading::SendNumbers(const std::vector<std::int32_t>& numbers)
+void VectorReading::Convert(const cl::Buffer& displacements, const char* what)
 {
-  if (this->Numbers != numbers)
-  {
-    this->Numbers.clear();
-    this->NumbersThere =
-      this->Device.Send(numbers.data(), numbers.size() * sizeof(std::int32_t), this->NumbersThere);
-    this->Numbers = numbers;
-  }
-}
-
-void VectorReading::Convert(
-  const cl::Buffer& displacements, const std::vector<std::int32_t>& numbers, const char* what)
-{
-  if (!numbers.empty())
-  {
-    this->SendNumbers(numbers);
-  }
   OpenCLContext& context = this->Device.GetContext();
   const cl::CommandQueue& queue = this->Device.GetQueue();
   const std::size_t count = this->Vectors->GetNumberOfPoints();
@@ -79,8 +63,6 @@ void VectorReading::Convert(
   cl_uint i = 0;
   kernel.setArg(i++, vectors);
   kernel.setArg(i++, MakeMatrixParameters(this->Field));
-  kernel.setArg(i++, numbers.empty() ? vectors : this->NumbersThere);
-  kernel.setArg(i++, cl_int{ !numbers.empty() });
   kernel.setArg(i++, cl_ulong{ count });
   kernel.setArg(i++, static_cast<cl_float>(LargestDisplacement));
   kernel.setArg(i++, displacements);

@@ -36,11 +36,9 @@ public:
   /// Whether a kernel can read what was begun: where there is a matrix, that needs double
   /// precision.
   bool CanConvert() const;
-  /// Writes four floats a point to a buffer, at numbers; these are empty where they are the points.
-  /// Throws an Error where a displacement is not finite or too large; the buffer is then undefined.
-  /// what: what has it, in the Error.
-  void Convert(
-    const cl::Buffer& displacements, const std::vector<std::int32_t>& numbers, const char* what);
+  /// Writes four floats a point to a buffer. Throws an Error where a displacement is not finite or
+  /// too large; the buffer is then undefined. what: what has it, in the Error.
+  void Convert(const cl::Buffer& displacements, const char* what);
 
   /// Throws the same Error where they are read on the host. changes: what Begin() has returned.
   void Check(const std::optional<PointRanges>& changes, const char* what);
@@ -48,16 +46,11 @@ public:
   const float* GetDisplacements(const std::optional<PointRanges>& changes);
 
 private:
-  void SendNumbers(const std::vector<std::int32_t>& numbers);
-
   WorkDevice& Device;
   std::shared_ptr<DeviceVectors> Vectors;
   DisplacementField Field; // without vectors
   std::uint64_t Revision = 0;
   std::vector<float> Displacements; // those on the host that a matrix has made
-  // On the device, and as they were sent.
-  cl::Buffer NumbersThere;
-  std::vector<std::int32_t> Numbers;
 };
 
 } // namespace deformvolume

@@ -65,7 +65,6 @@ BoundaryCells::BoundaryCells(
 void BoundaryCells::Clear()
 {
   this->Boundary.clear();
-  this->Numbers.clear();
   this->NumberOfCorners = 0;
   for (cl::Buffer* buffer : { &this->Corners, &this->Pieces, &this->Positions, &this->Displacements,
          &this->Tiles, &this->PatchCounts })
@@ -78,12 +77,10 @@ void BoundaryCells::Clear()
   this->Covered = 0;
 }
 
-void BoundaryCells::Set(const MeshBoundary& boundary, const std::vector<std::int32_t>& numbers,
-  const Tetrahedron* tetrahedra)
+void BoundaryCells::Set(const MeshBoundary& boundary, const Tetrahedron* tetrahedra)
 {
   this->Clear();
   this->Boundary = boundary.Pieces;
-  this->Numbers = numbers;
   this->SetCorners(tetrahedra);
 }
 
@@ -97,9 +94,8 @@ void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
   std::vector<BoundaryCorner> corners;
   std::vector<cl_int4> pieces;
   std::unordered_map<std::int32_t, cl_int> found; // by nodes
-  for (std::size_t i = 0; i < this->Boundary.size(); ++i)
+  for (const MeshBoundary::Piece& piece : this->Boundary)
   {
-    const MeshBoundary::Piece& piece = this->Boundary[i];
     cl_int4 numbers;
     for (std::size_t k = 0; k < 4; ++k)
     {
@@ -128,7 +124,7 @@ void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
         corner.Fraction[axis] = static_cast<float>(position - whole);
       }
       std::copy(weights.begin(), weights.end(), corner.Weights);
-      corner.Tetrahedron = tetrahedra ? this->Numbers[i] : 0;
+      corner.Tetrahedron = piece.Tetrahedron;
       corner.Node = isNode ? static_cast<cl_int>(one) : -1;
       corners.push_back(corner);
     }

@@ -28,11 +28,9 @@ public:
   BoundaryCells(
     WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches);
 
-  /// Takes the boundary of the mesh that the source has, or of its field. numbers: of the
-  /// tetrahedra of the mesh on the device, one for each piece; tetrahedra: all of them. Empty and
-  /// null for a field.
-  void Set(const MeshBoundary& boundary, const std::vector<std::int32_t>& numbers,
-    const Tetrahedron* tetrahedra);
+  /// Takes the boundary of the mesh that the source has, or of its field. tetrahedra: those
+  /// of the mesh; null for a field.
+  void Set(const MeshBoundary& boundary, const Tetrahedron* tetrahedra);
   /// Tetrahedra have got other nodes, in the same places at rest.
   void SetCorners(const Tetrahedron* tetrahedra);
   void Clear();
@@ -65,7 +63,6 @@ private:
   const DisplacementSource& Source;
   Launches& Launched;
   std::vector<MeshBoundary::Piece> Boundary;
-  std::vector<std::int32_t> Numbers;
   std::size_t NumberOfCorners = 0; // different ones, as pieces have nodes in common
   cl::Buffer Corners;
   cl::Buffer Pieces; // each four numbers of corners

@@ -5,8 +5,6 @@
 #include "Timing.h"
 
 #include <vtkCallbackCommand.h>
-#include <vtkCellArray.h>
-#include <vtkCellType.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkLatticeTetrahedraSource.h>
@@ -17,8 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <random>
 #include <stdexcept>
 #include <vector>
 
@@ -50,75 +46,6 @@ void FillWaves(vtkImageData* volume, double mean, double amplitude)
     }
   }
 }
-
-// The old numbers of so many things in a random order.
-std::vector<vtkIdType> MakeRandomOrder(vtkIdType count)
-{
-  std::vector<vtkIdType> order(static_cast<std::size_t>(count));
-  std::iota(order.begin(), order.end(), vtkIdType{ 0 });
-  std::mt19937 random(5);
-  std::shuffle(order.begin(), order.end(), random);
-  return order;
-}
-
-// The old numbers of a lattice's nodes, or cells of five tetrahedra, along z.
-std::vector<vtkIdType> MakeOrderAlongZ(vtkIdType perAxis, vtkIdType each)
-{
-  std::vector<vtkIdType> order;
-  for (vtkIdType x = 0; x < perAxis; ++x)
-  {
-    for (vtkIdType y = 0; y < perAxis; ++y)
-    {
-      for (vtkIdType z = 0; z < perAxis; ++z)
-      {
-        for (vtkIdType i = 0; i < each; ++i)
-        {
-          order.push_back(each * ((z * perAxis + y) * perAxis + x) + i);
-        }
-      }
-    }
-  }
-  return order;
-}
-
-// The same lattice with other numbers. The nodes of a cell stay in their order.
-vtkSmartPointer<vtkUnstructuredGrid> Renumber(
-  vtkUnstructuredGrid* lattice, vtkIdType nodesPerAxis, Numbering numbering)
-{
-  if (numbering == Numbering::AlongX)
-  {
-    return lattice;
-  }
-  const bool random = numbering == Numbering::Random;
-  const vtkIdType numberOfNodes = lattice->GetNumberOfPoints();
-  const vtkIdType numberOfCells = lattice->GetNumberOfCells();
-  const std::vector<vtkIdType> nodes =
-    random ? MakeRandomOrder(numberOfNodes) : MakeOrderAlongZ(nodesPerAxis, 1);
-  const std::vector<vtkIdType> cells =
-    random ? MakeRandomOrder(numberOfCells) : MakeOrderAlongZ(nodesPerAxis - 1, 5);
-  vtkNew<vtkPoints> points;
-  points->SetDataType(lattice->GetPoints()->GetDataType());
-  points->SetNumberOfPoints(numberOfNodes);
-  std::vector<vtkIdType> numbers(nodes.size());
-  for (vtkIdType node = 0; node < numberOfNodes; ++node)
-  {
-    points->SetPoint(node, lattice->GetPoint(nodes[node]));
-    numbers[nodes[node]] = node;
-  }
-  auto renumbered = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  renumbered->SetPoints(points);
-  renumbered->AllocateExact(numberOfCells, 4 * numberOfCells);
-  for (const vtkIdType cell : cells)
-  {
-    vtkIdType size;
-    const vtkIdType* old;
-    lattice->GetCells()->GetCellAtId(cell, size, old);
-    const vtkIdType corners[4] = { numbers[old[0]], numbers[old[1]], numbers[old[2]],
-      numbers[old[3]] };
-    renumbered->InsertNextCell(VTK_TETRA, 4, corners);
-  }
-  return renumbered;
-}
 }
 
 vtkSmartPointer<vtkImageData> MakeVolume(const std::array<int, 3>& dimensions, int type)
@@ -140,8 +67,7 @@ vtkSmartPointer<vtkImageData> MakeVolume(const std::array<int, 3>& dimensions, i
   return volume;
 }
 
-BenchmarkCase::BenchmarkCase(
-  vtkImageData* volume, int nodesPerAxis, int resampler, Numbering numbering)
+BenchmarkCase::BenchmarkCase(vtkImageData* volume, int nodesPerAxis, int resampler)
 {
   volume->GetDimensions(this->Dimensions.data());
   if (nodesPerAxis == DenseField)
@@ -157,7 +83,7 @@ BenchmarkCase::BenchmarkCase(
     lattice->SetNumberOfNodes(nodesPerAxis, nodesPerAxis, nodesPerAxis);
     lattice->EqualSpacingOff();
     lattice->Update();
-    this->Deformation = Renumber(lattice->GetOutput(), nodesPerAxis, numbering);
+    this->Deformation = lattice->GetOutput();
   }
   this->Displacements = vtkSmartPointer<vtkFloatArray>::New();
   this->Displacements->SetName("Displacement");
@@ -230,15 +156,7 @@ void BenchmarkCase::Move(Pose pose, Grid grid)
     return;
   }
   const auto next = vtkSmartPointer<vtkDataSet>::Take(this->Deformation->NewInstance());
-  if (grid == Grid::SharingArrays)
-  {
-    next->ShallowCopy(this->Deformation);
-  }
-  else
-  {
-    next->DeepCopy(this->Deformation);
-    this->Displacements = next->GetPointData()->GetVectors();
-  }
+  next->ShallowCopy(this->Deformation);
   this->Deformation = next;
   this->Filter->SetDeformationData(next);
 }

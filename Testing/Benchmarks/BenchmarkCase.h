@@ -27,26 +27,13 @@ inline constexpr int FineNodes = 80;   // on each axis: 512,000 nodes
 /// Instead of nodes: a displacement field with a vector for each voxel.
 inline constexpr int DenseField = 0;
 
-/// How the nodes and the cells of a lattice are numbered.
-enum class Numbering
-{
-  /// Along x, then y, then z, as vtkLatticeTetrahedraSource does it.
-  AlongX,
-  /// Along z, then y, then x.
-  AlongZ,
-  /// At random; the same at each call.
-  Random
-};
-
 /// What the filter gets when nodes have moved.
 enum class Grid
 {
   /// The grid that it has, with other displacements.
   Same,
   /// Another grid with the same arrays, as filters give it that pass a mesh on.
-  SharingArrays,
-  /// Another grid with equal arrays, as readers of time series give it.
-  EqualCopy
+  SharingArrays
 };
 
 /// A synthetic volume, waves along each axis. type: VTK_UNSIGNED_SHORT or VTK_UNSIGNED_CHAR.
@@ -70,8 +57,8 @@ class BenchmarkCase
 {
 public:
   /// nodesPerAxis: of a lattice of tetrahedra, or DenseField.
-  BenchmarkCase(vtkImageData* volume, int nodesPerAxis,
-    int resampler = vtkDeformVolumeFilter::EXACT, Numbering numbering = Numbering::AlongX);
+  BenchmarkCase(
+    vtkImageData* volume, int nodesPerAxis, int resampler = vtkDeformVolumeFilter::EXACT);
   ~BenchmarkCase();
 
   /// Instead of displacements: deformed positions, and another grid with equal cells for the rest

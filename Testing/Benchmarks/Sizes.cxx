@@ -179,26 +179,16 @@ void RegisterGivenMeshes(const EvaluationSize& size)
     {
       auto cases = std::make_shared<CaseMap>();
       const auto volume = MakeVolume(BenchmarkVolume);
-      const auto add = [&](const char* name, Numbering numbering)
+      for (const char* name : { "same-grid", "shared-arrays", "two-meshes" })
       {
-        return ((*cases)[name] = std::make_unique<BenchmarkCase>(
-                  volume, FineNodes, vtkDeformVolumeFilter::EXACT, numbering))
-          .get();
-      };
-      for (const char* name : { "same-grid", "shared-arrays", "equal-copies" })
-      {
-        add(name, Numbering::AlongX);
+        (*cases)[name] = std::make_unique<BenchmarkCase>(volume, FineNodes);
       }
-      add("two-meshes", Numbering::AlongX)->ConnectRest();
-      add("along-z", Numbering::AlongZ);
-      add("at-random", Numbering::Random);
+      (*cases)["two-meshes"]->ConnectRest();
       (*cases)["dense-field"] = std::make_unique<BenchmarkCase>(volume, DenseField);
       return cases;
     },
     { contestant("same-grid", Grid::Same), contestant("shared-arrays", Grid::SharingArrays),
-      contestant("equal-copies", Grid::EqualCopy), contestant("two-meshes", Grid::Same),
-      contestant("along-z", Grid::Same), contestant("at-random", Grid::Same),
-      contestant("dense-field", Grid::Same) });
+      contestant("two-meshes", Grid::Same), contestant("dense-field", Grid::Same) });
 }
 
 void RegisterIncremental(const EvaluationSize& size)

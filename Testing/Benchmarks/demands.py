@@ -116,14 +116,8 @@ DEMANDS = [
            lambda r: r.median("Live/few-move"), "ms"),
     Demand("Update() by its mapping and resampling, 512,000 nodes that all move", 1.04,
            lambda r: r.ratio_to_counter("Given/same-grid", "kernels")),
-    Demand("mapping and resampling, 512,000 nodes numbered along z by along x", 1.1,
-           lambda r: r.ratio("Given/along-z", "Given/same-grid", "kernels")),
-    Demand("mapping and resampling, 512,000 nodes numbered at random by along x", 1.1,
-           lambda r: r.ratio("Given/at-random", "Given/same-grid", "kernels")),
     Demand("Update() with another grid that shares its arrays, beyond that with one grid, 512,000 "
            "nodes", 3.0, lambda r: r.difference("Given/shared-arrays", "Given/same-grid"), "ms"),
-    Demand("Update() with another grid that is an equal copy, beyond that with one grid, 512,000 "
-           "nodes", 12.0, lambda r: r.difference("Given/equal-copies", "Given/same-grid"), "ms"),
     Demand("Update() with a deformed mesh, modified, and one at rest, beyond that with one grid, "
            "512,000 nodes", 12.0, lambda r: r.difference("Given/two-meshes", "Given/same-grid"),
            "ms"),

@@ -485,10 +485,7 @@ def given(results, _pictures, _kind):
             for name, words in (
                 ("Given/same-grid", "the same grid, other displacements"),
                 ("Given/shared-arrays", "another grid that shares its arrays"),
-                ("Given/equal-copies", "another grid that is an equal copy"),
                 ("Given/two-meshes", "a deformed mesh, modified, and one at rest"),
-                ("Given/along-z", "nodes and cells numbered along z"),
-                ("Given/at-random", "nodes and cells numbered at random"),
                 ("Given/dense-field", "no mesh: a displacement for each voxel"))
             if name in results.runs]
     if rows:

@@ -378,7 +378,7 @@ TEST(DeviceVectors, FieldsOfAnotherGrid)
   EXPECT_EQ(found, subject.Run(fresh));
 }
 
-// Nodes that are appended have numbers, too.
+// Nodes that are appended have vectors, too.
 TEST(DeviceVectors, ConnectivityChanges)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
