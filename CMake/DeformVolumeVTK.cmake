@@ -14,6 +14,7 @@ set(deformvolume_vtk_components
   FiltersGeometry
   FiltersModeling
   ImagingCore
+  ImagingGeneral
   ParallelCore
   vtksys)
 if (NOT DEFORMVOLUME_USE_PARAVIEW)
@@ -33,7 +34,6 @@ endif ()
 if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
   list(APPEND deformvolume_vtk_components
     FiltersSources
-    ImagingGeneral
     ImagingMath
     ImagingSources
     InteractionStyle

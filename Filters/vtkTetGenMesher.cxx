@@ -8,15 +8,18 @@
 #include "PieceRequest.h"
 #include "TetGenProcess.h"
 #include "VTKThreads.h"
-#include "VolumeFrame.h"
 
+#include "vtkCellArray.h"
+#include "vtkIdList.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMassProperties.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTetra.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
@@ -75,28 +78,31 @@ double RegularVolume(double length)
   return std::sqrt(2.0) / 12.0 * length * length * length;
 }
 
-void CheckSize(
-  vtkPolyData* surface, double length, const std::vector<deformvolume::RefinementSphere>& spheres)
+void CheckSize(vtkPolyData* surface, double length,
+  const std::vector<deformvolume::RefinementSphere>& spheres = {})
 {
+  vtkNew<vtkMassProperties> properties;
+  properties->SetInputData(surface);
   // TetGen ends up with about half of the largest volume on average.
-  const double expected = 2.0 * deformvolume::EnclosedVolume(surface) / RegularVolume(length);
-  const double triangles =
-    deformvolume::SurfaceArea(surface) / (std::sqrt(3.0) / 4.0 * length * length);
-  if (!(expected + triangles < MaximumNumberOfTetrahedra))
+  const double expected = 2.0 * properties->GetVolume() / RegularVolume(length) +
+    properties->GetSurfaceArea() / (std::sqrt(3.0) / 4.0 * length * length);
+  const double refined = spheres.empty() ? 0.0 : deformvolume::EstimateTetrahedra(surface, spheres);
+  if (expected + refined < MaximumNumberOfTetrahedra)
   {
-    std::ostringstream message;
-    message << "A TargetEdgeLength of " << length << " asks for about " << expected + triangles
-            << " tetrahedra; at most 20 million are made. Set a greater TargetEdgeLength.";
-    throw deformvolume::Error(message.str());
+    return;
   }
-  const double refined = deformvolume::EstimateTetrahedra(surface, spheres);
-  if (!(expected + triangles + refined < MaximumNumberOfTetrahedra))
+  std::ostringstream message;
+  if (expected < MaximumNumberOfTetrahedra)
   {
-    std::ostringstream message;
     message << "The refinement spheres ask for about " << refined
             << " tetrahedra; at most 20 million are made. Give them smaller radii or longer edges.";
-    throw deformvolume::Error(message.str());
   }
+  else
+  {
+    message << "A TargetEdgeLength of " << length << " asks for about " << expected
+            << " tetrahedra; at most 20 million are made. Set a greater TargetEdgeLength.";
+  }
+  throw deformvolume::Error(message.str());
 }
 
 std::vector<deformvolume::RefinementSphere> GetSpheres(
@@ -118,6 +124,29 @@ std::vector<deformvolume::RefinementSphere> GetSpheres(
     spheres.push_back({ glm::dvec3(n[0], n[1], n[2]), n[3], n[4] });
   }
   return spheres;
+}
+
+// Gives all tetrahedra a positive volume.
+void Orient(vtkUnstructuredGrid* mesh)
+{
+  vtkCellArray* cells = mesh->GetCells();
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell)
+  {
+    cells->GetCellAtId(cell, ids);
+    double corners[4][3];
+    for (int k = 0; k < 4; ++k)
+    {
+      mesh->GetPoint(ids->GetId(k), corners[k]);
+    }
+    if (vtkTetra::ComputeVolume(corners[0], corners[1], corners[2], corners[3]) < 0.0)
+    {
+      const vtkIdType second = ids->GetId(1);
+      ids->SetId(1, ids->GetId(0));
+      ids->SetId(0, second);
+      cells->ReplaceCellAtId(cell, ids);
+    }
+  }
 }
 
 } // namespace
@@ -152,6 +181,16 @@ int vtkTetGenMesher::GetNumberOfLabels()
 vtkTypeInt64 vtkTetGenMesher::GetLabel(int index)
 {
   return index >= 0 && index < this->GetNumberOfLabels() ? this->Labels[index] : 0;
+}
+
+void vtkTetGenMesher::SetPieceMode(int mode)
+{
+  mode = mode == LARGEST_PIECE ? LARGEST_PIECE : ALL_PIECES;
+  if (mode != this->PieceMode)
+  {
+    this->PieceMode = mode;
+    this->Modified();
+  }
 }
 
 void vtkTetGenMesher::AddRefinementSphere(
@@ -233,15 +272,17 @@ int vtkTetGenMesher::RequestData(
   vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
   try
   {
+    const std::vector<deformvolume::RefinementSphere> spheres = GetSpheres(this->RefinementSpheres);
     if (vtkImageData* volume = vtkImageData::SafeDownCast(input))
     {
       this->MeshVolume(
-        volume, FindArray(this->GetInputArrayToProcess(0, inputVector), volume), output);
+        volume, FindArray(this->GetInputArrayToProcess(0, inputVector), volume), spheres, output);
     }
     else if (vtkPolyData* surface = vtkPolyData::SafeDownCast(input))
     {
-      this->MeshSurface(surface, output);
+      this->MeshSurface(surface, spheres, output);
     }
+    Orient(output);
   }
   catch (const deformvolume::Aborted&)
   {
@@ -270,7 +311,8 @@ void vtkTetGenMesher::CheckStep(double share)
   }
 }
 
-void vtkTetGenMesher::MeshSurface(vtkPolyData* input, vtkUnstructuredGrid* output)
+void vtkTetGenMesher::MeshSurface(
+  vtkPolyData* input, const Spheres& spheres, vtkUnstructuredGrid* output)
 {
   const auto surface = deformvolume::CleanTriangles(input);
   deformvolume::CheckClosedSurface(surface);
@@ -279,11 +321,11 @@ void vtkTetGenMesher::MeshSurface(vtkPolyData* input, vtkUnstructuredGrid* outpu
     this->TargetEdgeLength > 0.0 ? this->TargetEdgeLength : surface->GetLength() / 20.0;
   this->UsedTargetEdgeLength = length;
   const auto decimated = this->Decimation ? deformvolume::Decimate(surface, length) : nullptr;
-  if (decimated && deformvolume::IsClosedManifold(decimated))
+  if (decimated && decimated != surface)
   {
     try
     {
-      this->Fill(decimated, length, nullptr, false, output);
+      output->ShallowCopy(this->Fill(decimated, length, spheres, false));
       return;
     }
     catch (const deformvolume::SurfaceRejected&)
@@ -291,43 +333,42 @@ void vtkTetGenMesher::MeshSurface(vtkPolyData* input, vtkUnstructuredGrid* outpu
       // Decimation can make a surface intersect itself: below, it is taken as it is.
     }
   }
-  CheckSize(surface, length, {});
+  CheckSize(surface, length);
   const auto split = deformvolume::SplitLongEdges(surface, 1.5 * length);
-  this->Fill(deformvolume::IsClosedManifold(split) ? split.Get() : surface.Get(), length, nullptr,
-    true, output);
+  output->ShallowCopy(
+    this->Fill(deformvolume::IsClosedManifold(split) ? split : surface, length, spheres, true));
 }
 
-void vtkTetGenMesher::Fill(vtkPolyData* coarse, double length,
-  const deformvolume::VolumeFrame* frame, bool diagnose, vtkUnstructuredGrid* output)
+vtkSmartPointer<vtkUnstructuredGrid> vtkTetGenMesher::Fill(
+  vtkPolyData* surface, double length, const Spheres& spheres, bool diagnose)
 {
-  std::vector<deformvolume::RefinementSphere> spheres = GetSpheres(this->RefinementSpheres);
-  for (deformvolume::RefinementSphere& sphere : spheres)
-  {
-    sphere.Center = frame ? frame->ToOffset(sphere.Center) : sphere.Center;
-  }
   deformvolume::TetGenParameters parameters;
   parameters.Executable = this->FindExecutable();
-  parameters.RadiusEdgeRatio = this->RadiusEdgeRatio;
-  parameters.MaximumVolume = RegularVolume(length);
   parameters.TimeLimit = this->TimeLimit;
   parameters.Diagnose = diagnose;
-  CheckSize(coarse, length, spheres);
-  const auto surface = deformvolume::RefineSurface(coarse, spheres);
-  parameters.Points = deformvolume::MakePoints(surface, spheres);
-
-  auto wait = [this](double passed)
+  if (length > 0.0)
   {
-    this->UpdateProgress(SurfaceShare + TetGenShare * std::min(1.0, std::sqrt(passed)));
-    return deformvolume::IsAborted(this);
-  };
-  this->CheckStep(1.0);
-  const auto mesh = deformvolume::RunTetGen(surface, parameters, wait);
-  deformvolume::SplitLongEdges(mesh, spheres);
-  if (frame)
-  {
-    frame->MoveToWorld(mesh);
+    CheckSize(surface, length, spheres);
+    if (!spheres.empty())
+    {
+      deformvolume::SplitLongEdges(surface, spheres);
+      parameters.Points = deformvolume::MakePoints(surface, spheres);
+    }
+    parameters.RadiusEdgeRatio = this->RadiusEdgeRatio;
+    parameters.MaximumVolume = RegularVolume(length);
   }
-  output->ShallowCopy(mesh);
+  this->CheckStep(1.0);
+  auto mesh = deformvolume::RunTetGen(surface, parameters,
+    [this](double passed)
+    {
+      this->UpdateProgress(SurfaceShare + TetGenShare * std::min(1.0, std::sqrt(passed)));
+      return deformvolume::IsAborted(this);
+    });
+  if (!spheres.empty())
+  {
+    deformvolume::SplitLongEdges(mesh, spheres);
+  }
+  return mesh;
 }
 
 std::string vtkTetGenMesher::FindExecutable()
@@ -361,8 +402,10 @@ void vtkTetGenMesher::PrintSelf(ostream& os, vtkIndent indent)
   {
     os << " " << label;
   }
-  const char* const modes[] = { "All Pieces", "Convex Hull", "Largest Piece" };
-  os << "\n" << indent << "PieceMode: " << modes[this->PieceMode] << "\n";
+  os << "\n"
+     << indent
+     << "PieceMode: " << (this->PieceMode == LARGEST_PIECE ? "Largest Piece" : "All Pieces")
+     << "\n";
   os << indent << "SpeckSize: " << this->SpeckSize << "\n";
   os << indent << "TargetEdgeLength: " << this->TargetEdgeLength << "\n";
   os << indent << "Margin: " << this->Margin << "\n";

@@ -17,9 +17,10 @@
  * the mesh if its center is in a tetrahedron, or on its surface, to within 1/256 of a voxel.
  * @par
  * The surface follows the body at the distance of Margin. Where smoothing or decimation cuts voxels
- * off, its vertices are moved outwards. So at most one voxel of 100,000 of the body lies outside
- * the mesh, in all bodies tried none, unless PieceMode leaves pieces out.
- * GetNumberOfBodyVoxelsOutside() tells how many do; from one of 1,000 on there is a warning.
+ * off, its vertices are moved outwards until TetGen's tetrahedra hold them. So no voxel of the body
+ * lies outside the mesh unless PieceMode leaves pieces out, but for rounding.
+ * GetNumberOfBodyVoxelsOutside() is the number of those that do; from one of 1,000 on there is a
+ * warning.
  *
  * @par Port 0, one of:
  * - vtkImageData, the volume, with at least two voxels on each axis; origin, spacing, direction
@@ -50,6 +51,7 @@
 #define vtkTetGenMesher_h
 
 #include "vtkDeformVolumeModule.h" // for export macro
+#include "vtkSmartPointer.h"
 #include "vtkUnstructuredGridAlgorithm.h"
 
 #include <array>  // for std::array
@@ -61,7 +63,10 @@ class vtkImageData;
 class vtkPolyData;
 namespace deformvolume
 {
-class VolumeFrame;
+struct BodyVoxels;
+struct RefinementSphere;
+struct SurfaceParameters;
+struct UncoveredVoxels;
 }
 
 class VTKDEFORMVOLUME_EXPORT vtkTetGenMesher : public vtkUnstructuredGridAlgorithm
@@ -80,7 +85,6 @@ public:
   enum PieceModes
   {
     ALL_PIECES = 0,
-    CONVEX_HULL = 1,
     LARGEST_PIECE = 2
   };
 
@@ -126,15 +130,14 @@ public:
 
   ///@{
   /**
-   * What happens to a body of several pieces: each is meshed (ALL_PIECES), the convex hull of all
-   * is (CONVEX_HULL), so that they move together, or the piece with most voxels is and the others
-   * are left out (LARGEST_PIECE). Pieces that are closer together than the mesh reaches beyond them
-   * are meshed as one. Volumes only. Default: ALL_PIECES.
+   * What happens to a body of several pieces: each is meshed (ALL_PIECES), or the piece with most
+   * voxels is and the others are left out (LARGEST_PIECE). Pieces that are closer together than the
+   * mesh reaches beyond them are meshed as one. Volumes only. Default: ALL_PIECES, which every
+   * other number stands for as well.
    */
-  vtkSetClampMacro(PieceMode, int, ALL_PIECES, LARGEST_PIECE);
+  virtual void SetPieceMode(int mode);
   vtkGetMacro(PieceMode, int);
   void SetPieceModeToAllPieces() { this->SetPieceMode(ALL_PIECES); }
-  void SetPieceModeToConvexHull() { this->SetPieceMode(CONVEX_HULL); }
   void SetPieceModeToLargestPiece() { this->SetPieceMode(LARGEST_PIECE); }
   ///@}
 
@@ -283,10 +286,15 @@ protected:
   std::string TetGenExecutable;
 
 private:
-  void MeshVolume(vtkImageData* volume, vtkDataArray* array, vtkUnstructuredGrid* output);
-  void MeshSurface(vtkPolyData* surface, vtkUnstructuredGrid* output);
-  void Fill(vtkPolyData* surface, double length, const deformvolume::VolumeFrame* frame,
-    bool diagnose, vtkUnstructuredGrid* output);
+  using Spheres = std::vector<deformvolume::RefinementSphere>;
+  void MeshVolume(
+    vtkImageData* volume, vtkDataArray* array, const Spheres& spheres, vtkUnstructuredGrid* output);
+  void MeshSurface(vtkPolyData* surface, const Spheres& spheres, vtkUnstructuredGrid* output);
+  deformvolume::UncoveredVoxels MeshBody(const deformvolume::BodyVoxels& body,
+    const deformvolume::SurfaceParameters& parameters, const Spheres& spheres, bool isLast,
+    vtkUnstructuredGrid* output);
+  vtkSmartPointer<vtkUnstructuredGrid> Fill(
+    vtkPolyData* surface, double length, const Spheres& spheres, bool diagnose);
   void WarnOfVoxelsOutside();
   void CheckStep(double share);
   std::string FindExecutable();

@@ -4,12 +4,14 @@
 
 #include "BodyCoverage.h"
 #include "BodyIsovalue.h"
-#include "EnclosingSurfaces.h"
+#include "BodySurface.h"
+#include "ClosedSurface.h"
+#include "MeshRefinement.h"
 #include "TetGenProcess.h"
-#include "VolumeFrame.h"
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -22,9 +24,10 @@ namespace
 
 // From that part of the body's voxels on, those outside the mesh are worth a warning.
 constexpr double WarningShare = 0.001;
-// That part of them may be outside before another surface is tried.
-constexpr double AllowedShare = 1e-5;
-
+// Nodes of a grid that is finer than the edges ask for.
+constexpr double FineNodes = 3e5;
+// In which a surface may grow around voxels outside.
+constexpr int MaximumNumberOfRounds = 20;
 double DiagonalOf(vtkImageData* volume)
 {
   int dimensions[3];
@@ -62,6 +65,37 @@ deformvolume::Error NoBody(
   return deformvolume::Error(text.str());
 }
 
+glm::dvec3 FirstVoxel(vtkImageData* volume)
+{
+  int extent[6];
+  volume->GetExtent(extent);
+  return glm::dvec3(extent[0], extent[2], extent[4]);
+}
+
+glm::dvec3 ToOffset(const glm::dvec3& world, vtkImageData* volume, const glm::dvec3& spacing)
+{
+  glm::dvec3 index;
+  volume->TransformPhysicalPointToContinuousIndex(&world.x, &index.x);
+  return (index - FirstVoxel(volume)) * spacing;
+}
+
+// From offsets from the first voxel of the extent, along the axes of the volume. There, faces that
+// the volume's border cuts are exactly plane.
+void MoveToWorld(vtkUnstructuredGrid* mesh, vtkImageData* volume, const glm::dvec3& spacing)
+{
+  const glm::dvec3 first = FirstVoxel(volume);
+  vtkPoints* points = mesh->GetPoints();
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    glm::dvec3 point;
+    points->GetPoint(i, &point.x);
+    point = point / spacing + first;
+    volume->TransformContinuousIndexToPhysicalPoint(&point.x, &point.x);
+    points->SetPoint(i, &point.x);
+  }
+  points->Modified();
+}
+
 std::string WithCommas(vtkIdType number)
 {
   std::string text = std::to_string(number);
@@ -75,7 +109,7 @@ std::string WithCommas(vtkIdType number)
 } // namespace
 
 void vtkTetGenMesher::MeshVolume(
-  vtkImageData* volume, vtkDataArray* array, vtkUnstructuredGrid* output)
+  vtkImageData* volume, vtkDataArray* array, const Spheres& spheres, vtkUnstructuredGrid* output)
 {
   const double length =
     this->TargetEdgeLength > 0.0 ? this->TargetEdgeLength : DiagonalOf(volume) / 20.0;
@@ -99,53 +133,85 @@ void vtkTetGenMesher::MeshVolume(
   deformvolume::FindPieces(body, this->SpeckSize, this->PieceMode == LARGEST_PIECE);
   this->CheckStep(0.2);
 
-  deformvolume::SurfaceParameters parameters;
-  parameters.EdgeLength = length;
-  parameters.Margin = length * this->Margin;
-  parameters.SmoothingIterations = this->SmoothingIterations;
-  parameters.Decimation = this->Decimation;
-  parameters.Hull = this->PieceMode == CONVEX_HULL;
-  const deformvolume::VolumeFrame frame(volume);
-  double step = 0.2;
-  deformvolume::EnclosingSurfaces surfaces(
-    body, frame.GetSpacing(), parameters, [&]() { this->CheckStep(std::min(0.9, step += 0.1)); });
-  using deformvolume::PieceKind;
-  const double allowed = AllowedShare * body.CountVoxels(PieceKind::Meshed);
-  deformvolume::UncoveredVoxels uncovered;
-  bool meshed = false;
-  while (const auto surface = surfaces.Next())
+  const glm::dvec3& spacing = body.Spacing;
+  const double margin = length * this->Margin;
+  const double coarse = length / 1.5;
+  // On the fine grid, the distance of half an edge is more than the diagonal of a cell, so that
+  // parts of the body however thin are surrounded evenly, unless that takes too many nodes.
+  const glm::dvec3 size =
+    spacing * glm::dvec3(body.Size[0], body.Size[1], body.Size[2]) + 2.0 * margin;
+  const double fine =
+    std::max(0.28 * length, std::min(coarse, std::cbrt(size.x * size.y * size.z / FineNodes)));
+  // Decimation, smoothing and growth can make a surface intersect itself: then there is another
+  // one. An isosurface never does, and the last one encloses the body by construction.
+  std::vector<deformvolume::SurfaceParameters> attempts;
+  for (double decimated = length; this->Decimation && decimated > 0.75 * length;
+       decimated -= 0.1 * length)
   {
+    attempts.push_back({ fine, margin, this->SmoothingIterations, decimated, false });
+  }
+  attempts.push_back({ coarse, margin, this->SmoothingIterations, 0.0, false });
+  attempts.push_back({ coarse, margin, 0, 0.0, true });
+  Spheres moved = spheres;
+  for (deformvolume::RefinementSphere& sphere : moved)
+  {
+    sphere.Center = ToOffset(sphere.Center, volume, body.Spacing);
+  }
+  using deformvolume::PieceKind;
+  deformvolume::UncoveredVoxels uncovered;
+  for (std::size_t i = 0; i < attempts.size(); ++i)
+  {
+    const bool isLast = i + 1 == attempts.size();
     try
     {
-      this->Fill(surface, length, &frame, surfaces.IsLast() && !meshed, output);
+      uncovered = this->MeshBody(body, attempts[i], moved, isLast, output);
+      break;
     }
     catch (const deformvolume::SurfaceRejected&)
     {
-      if (surfaces.IsLast() && !meshed)
+      if (isLast)
       {
         throw;
       }
-      continue;
-    }
-    // Voxels that the surface has just inside can be outside once positions are rounded.
-    meshed = true;
-    uncovered = deformvolume::FindUncovered(output, volume, body);
-    if (static_cast<double>(uncovered.OfMeshed) <= allowed)
-    {
-      break;
     }
   }
-  if (!meshed)
-  {
-    throw deformvolume::Error("No surface around the body can be made. Set another "
-                              "TargetEdgeLength.");
-  }
+  MoveToWorld(output, volume, spacing);
   this->NumberOfSpeckVoxels = body.CountVoxels(PieceKind::Speck);
   this->NumberOfBodyVoxels =
     body.CountVoxels(PieceKind::Meshed) + body.CountVoxels(PieceKind::LeftOut);
   this->NumberOfBodyVoxelsOutside = uncovered.OfBody;
   this->NumberOfPieces = body.CountPieces(PieceKind::Meshed) + body.CountPieces(PieceKind::LeftOut);
   this->WarnOfVoxelsOutside();
+}
+
+deformvolume::UncoveredVoxels vtkTetGenMesher::MeshBody(const deformvolume::BodyVoxels& body,
+  const deformvolume::SurfaceParameters& parameters, const Spheres& spheres, bool isLast,
+  vtkUnstructuredGrid* output)
+{
+  const double length = this->UsedTargetEdgeLength;
+  const double voxel = std::min({ body.Spacing.x, body.Spacing.y, body.Spacing.z });
+  const auto surface = deformvolume::MakeBodySurface(body, parameters);
+  this->CheckStep(0.5);
+  deformvolume::CheckClosedSurface(surface);
+  for (int round = 0; !isLast; ++round)
+  {
+    // What is just inside can be outside the mesh once positions are rounded.
+    const auto shrunk = deformvolume::Shrink(surface, 0.02 * voxel);
+    const auto mesh = this->Fill(shrunk, 0.0, {}, false);
+    const std::vector<glm::dvec3> outside = deformvolume::FindUncovered(mesh, body).OfMeshed;
+    if (outside.empty())
+    {
+      break;
+    }
+    if (round == MaximumNumberOfRounds)
+    {
+      throw deformvolume::SurfaceRejected("The surface does not enclose the body.");
+    }
+    deformvolume::GrowAround(surface, outside, 0.05 * voxel, 0.75 * length);
+  }
+  deformvolume::RoundPositions(surface, length);
+  output->ShallowCopy(this->Fill(surface, length, spheres, isLast));
+  return deformvolume::FindUncovered(output, body);
 }
 
 void vtkTetGenMesher::WarnOfVoxelsOutside()
@@ -164,8 +230,8 @@ void vtkTetGenMesher::WarnOfVoxelsOutside()
   if (this->PieceMode == LARGEST_PIECE && this->NumberOfPieces > 1)
   {
     text << " The body has " << WithCommas(this->NumberOfPieces)
-         << " pieces, of which PieceMode chooses the largest. All pieces, or their convex hull, "
-            "can be meshed instead.";
+         << " pieces, of which PieceMode chooses the largest. All pieces can be meshed "
+            "instead.";
   }
   else
   {

@@ -23,7 +23,6 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
-#include <map>
 #include <sstream>
 
 namespace
@@ -76,9 +75,8 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
     mesher->AutomaticIsovalueOff();
     mesher->SetIsovalue(*options.Isovalue);
   }
-  const std::map<std::string, int> modes{ { "all", vtkTetGenMesher::ALL_PIECES },
-    { "hull", vtkTetGenMesher::CONVEX_HULL }, { "largest", vtkTetGenMesher::LARGEST_PIECE } };
-  mesher->SetPieceMode(modes.at(options.Pieces));
+  mesher->SetPieceMode(
+    options.Pieces == "largest" ? vtkTetGenMesher::LARGEST_PIECE : vtkTetGenMesher::ALL_PIECES);
   mesher->SetTargetEdgeLength(options.EdgeLength);
   for (const Push& push : options.Pushes)
   {

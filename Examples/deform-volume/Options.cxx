@@ -236,11 +236,10 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     ->group(tetgen);
   program
     .add_option("--pieces", options.Pieces,
-      "Of a body in several pieces, mesh all, their convex hull, or the largest alone: all, hull "
-      "or "
-      "largest. Specks of up to 26 voxels are left out")
+      "Of a body in several pieces, mesh all or the largest alone: all or largest. Specks of up to "
+      "26 voxels are left out")
     ->capture_default_str()
-    ->check(CLI::IsMember({ "all", "hull", "largest" }))
+    ->check(CLI::IsMember({ "all", "largest" }))
     ->type_name("MODE")
     ->group(tetgen);
   program

@@ -3,7 +3,6 @@
 
 #include "ParallelFor.h"
 #include "TetrahedronRaster.h"
-#include "VolumeFrame.h"
 
 #include "vtkCellArray.h"
 #include "vtkPoints.h"
@@ -20,17 +19,15 @@ namespace
 
 using Marks = std::unique_ptr<std::atomic<unsigned char>[]>;
 
-std::vector<RasterPoint> GetRasterPoints(vtkUnstructuredGrid* mesh, vtkImageData* volume)
+std::vector<RasterPoint> GetRasterPoints(vtkUnstructuredGrid* mesh, const glm::dvec3& spacing)
 {
-  const VolumeFrame frame(volume);
   std::vector<RasterPoint> points(mesh->GetNumberOfPoints());
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    double point[3];
-    mesh->GetPoint(static_cast<vtkIdType>(i), point);
-    const glm::dvec3 index =
-      frame.ToOffset(glm::dvec3(point[0], point[1], point[2])) / frame.GetSpacing();
-    points[i] = { { RoundToRaster(index.x), RoundToRaster(index.y), RoundToRaster(index.z) } };
+    glm::dvec3 point;
+    mesh->GetPoint(static_cast<vtkIdType>(i), &point.x);
+    point /= spacing;
+    points[i] = { { RoundToRaster(point.x), RoundToRaster(point.y), RoundToRaster(point.z) } };
   }
   return points;
 }
@@ -88,10 +85,9 @@ void MarkTetrahedron(
 
 } // namespace
 
-UncoveredVoxels FindUncovered(
-  vtkUnstructuredGrid* mesh, vtkImageData* volume, const BodyVoxels& body)
+UncoveredVoxels FindUncovered(vtkUnstructuredGrid* mesh, const BodyVoxels& body)
 {
-  const std::vector<RasterPoint> points = GetRasterPoints(mesh, volume);
+  const std::vector<RasterPoint> points = GetRasterPoints(mesh, body.Spacing);
   const vtkIdType voxels = body.NumberOfRows() * body.Size[0];
   Marks marks(new std::atomic<unsigned char>[voxels]());
   std::vector<std::array<vtkIdType, 4>> tetrahedra;
@@ -122,14 +118,23 @@ UncoveredVoxels FindUncovered(
     for (vtkIdType i = body.RowStarts[row]; i < body.RowStarts[row + 1]; ++i)
     {
       const VoxelRun& run = body.Runs[i];
-      vtkIdType count = 0;
+      const PieceKind kind = body.Pieces[run.Piece];
+      if (kind == PieceKind::Speck)
+      {
+        continue;
+      }
       for (int x = run.Begin; x < run.End; ++x)
       {
-        count += rowMarks[x].load(std::memory_order_relaxed) == 0;
+        if (rowMarks[x].load(std::memory_order_relaxed) == 0)
+        {
+          ++result.OfBody;
+          if (kind == PieceKind::Meshed)
+          {
+            result.OfMeshed.push_back(
+              body.Spacing * glm::dvec3(x, row % body.Size[1], row / body.Size[1]));
+          }
+        }
       }
-      const PieceKind kind = body.Pieces[run.Piece];
-      (kind == PieceKind::Speck ? result.OfSpecks : result.OfBody) += count;
-      result.OfMeshed += kind == PieceKind::Meshed ? count : 0;
     }
   }
   return result;

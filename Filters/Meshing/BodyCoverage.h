@@ -4,7 +4,8 @@
 
 #include "BodyVoxels.h"
 
-class vtkImageData;
+#include <vector>
+
 class vtkUnstructuredGrid;
 
 namespace deformvolume
@@ -13,15 +14,13 @@ namespace deformvolume
 /// Voxels whose centres lie in no tetrahedron.
 struct UncoveredVoxels
 {
-  vtkIdType OfMeshed = 0; // of pieces that are to be meshed
-  vtkIdType OfBody = 0;   // of pieces that are no specks, those left out included
-  vtkIdType OfSpecks = 0;
+  std::vector<glm::dvec3> OfMeshed; // positions of those of pieces that are to be meshed
+  vtkIdType OfBody = 0;             // of pieces that are no specks, those left out included
 };
 
-/// Looks each voxel of the body up in a mesh of tetrahedra. Positions are rounded to 1/256 of a
-/// voxel.
-UncoveredVoxels FindUncovered(
-  vtkUnstructuredGrid* mesh, vtkImageData* volume, const BodyVoxels& body);
+/// Looks each voxel of the body up in a mesh of tetrahedra. Positions are offsets from the first
+/// voxel in world units, and rounded to 1/256 of a voxel.
+UncoveredVoxels FindUncovered(vtkUnstructuredGrid* mesh, const BodyVoxels& body);
 
 } // namespace deformvolume
 

@@ -10,6 +10,8 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 
 namespace deformvolume
@@ -125,43 +127,6 @@ void JoinRows(const BodyVoxels& body, vtkIdType row, vtkIdType other, DisjointSe
   }
 }
 
-// Copies the meshed runs of up to nine rows around one, each longer by a voxel at both ends, and
-// joins those that overlap.
-void AppendEnlargedRow(
-  const BodyVoxels& body, int y, int z, std::vector<VoxelRun>& row, std::vector<VoxelRun>& runs)
-{
-  row.clear();
-  for (int k = std::max(z - 1, 0); k <= std::min(z + 1, body.Size[2] - 1); ++k)
-  {
-    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, body.Size[1] - 1); ++j)
-    {
-      const vtkIdType index = vtkIdType(k) * body.Size[1] + j;
-      for (vtkIdType i = body.RowStarts[index]; i < body.RowStarts[index + 1]; ++i)
-      {
-        const VoxelRun& run = body.Runs[i];
-        if (body.Pieces[run.Piece] == PieceKind::Meshed)
-        {
-          row.push_back(
-            { std::max(run.Begin - 1, 0), std::min(run.End + 1, body.Size[0]), vtkIdType(0) });
-        }
-      }
-    }
-  }
-  std::sort(
-    row.begin(), row.end(), [](const VoxelRun& a, const VoxelRun& b) { return a.Begin < b.Begin; });
-  for (std::size_t i = 0; i < row.size(); ++i)
-  {
-    if (i > 0 && row[i].Begin <= runs.back().End)
-    {
-      runs.back().End = std::max(runs.back().End, row[i].End);
-    }
-    else
-    {
-      runs.push_back(row[i]);
-    }
-  }
-}
-
 } // namespace
 
 vtkIdType BodyVoxels::CountVoxels(PieceKind kind) const
@@ -183,6 +148,8 @@ BodyVoxels FindBodyVoxels(vtkImageData* volume, vtkDataArray* array, const BodyC
 {
   BodyVoxels body;
   volume->GetDimensions(body.Size.data());
+  volume->GetSpacing(&body.Spacing.x);
+  body.Spacing = glm::abs(body.Spacing);
   body.RowStarts.assign(body.NumberOfRows() + 1, 0);
   const unsigned char* ghosts = FindPointGhosts(volume);
   if (!vtkArrayDispatch::Dispatch::Execute(array, FindRuns{}, ghosts, criterion, body))
@@ -239,37 +206,6 @@ void FindPieces(BodyVoxels& body, vtkIdType speckSize, bool largestOnly)
       body.Pieces[piece] = PieceKind::LeftOut;
     }
   }
-}
-
-BodyVoxels GetMeshedVoxels(const BodyVoxels& body, bool enlarged)
-{
-  BodyVoxels meshed;
-  meshed.Size = body.Size;
-  meshed.Pieces.assign(1, PieceKind::Meshed);
-  meshed.RowStarts.reserve(body.RowStarts.size());
-  meshed.RowStarts.push_back(0);
-  std::vector<VoxelRun> row;
-  for (vtkIdType index = 0; index < body.NumberOfRows(); ++index)
-  {
-    if (enlarged)
-    {
-      AppendEnlargedRow(body, static_cast<int>(index % body.Size[1]),
-        static_cast<int>(index / body.Size[1]), row, meshed.Runs);
-    }
-    else
-    {
-      for (vtkIdType i = body.RowStarts[index]; i < body.RowStarts[index + 1]; ++i)
-      {
-        const VoxelRun& run = body.Runs[i];
-        if (body.Pieces[run.Piece] == PieceKind::Meshed)
-        {
-          meshed.Runs.push_back({ run.Begin, run.End, 0 });
-        }
-      }
-    }
-    meshed.RowStarts.push_back(static_cast<vtkIdType>(meshed.Runs.size()));
-  }
-  return meshed;
 }
 
 } // namespace deformvolume

@@ -5,6 +5,8 @@
 
 #include "vtkType.h"
 
+#include <glm/vec3.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -44,6 +46,7 @@ enum class PieceKind : unsigned char
 struct BodyVoxels
 {
   std::array<int, 3> Size{ { 0, 0, 0 } };
+  glm::dvec3 Spacing{ 1.0 }; // positive
   std::vector<VoxelRun> Runs;
   std::vector<vtkIdType> RowStarts; // of each row its first run, and the number of runs at the end
   std::vector<PieceKind> Pieces;    // the kind of each piece
@@ -81,10 +84,6 @@ BodyVoxels FindBodyVoxels(
 /// specks; of the others, all are meshed, or only the one with most voxels. Voxels are neighbours
 /// where they share a face, an edge or a corner. Where all pieces are specks, none is one.
 void FindPieces(BodyVoxels& body, vtkIdType speckSize, bool largestOnly);
-
-/// The runs of the meshed pieces only, one voxel larger on all sides as far as the volume reaches
-/// if `enlarged`.
-BodyVoxels GetMeshedVoxels(const BodyVoxels& body, bool enlarged);
 
 } // namespace deformvolume
 

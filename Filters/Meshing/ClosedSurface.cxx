@@ -5,11 +5,12 @@
 #include "vtkCellArray.h"
 #include "vtkCleanPolyData.h"
 #include "vtkFeatureEdges.h"
+#include "vtkMassProperties.h"
 #include "vtkMath.h"
+#include "vtkOBBTree.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkQuadricDecimation.h"
-#include "vtkTriangle.h"
 #include "vtkTriangleFilter.h"
 
 #include <algorithm>
@@ -34,63 +35,15 @@ vtkIdType CountEdges(vtkPolyData* surface, bool boundary, bool nonManifold)
   return edges->GetOutput()->GetNumberOfLines();
 }
 
-template <typename Function>
-void ForEachTriangle(vtkPolyData* surface, Function&& function)
-{
-  vtkCellArray* triangles = surface->GetPolys();
-  vtkIdType size;
-  const vtkIdType* ids;
-  for (triangles->InitTraversal(); triangles->GetNextCell(size, ids);)
-  {
-    double corners[3][3];
-    for (int k = 0; k < 3; ++k)
-    {
-      surface->GetPoint(ids[k], corners[k]);
-    }
-    function(corners);
-  }
-}
-
-// Whether all points lie in one plane, to double precision: the smallest extent of their ellipsoid
-// of inertia against the largest.
+// Whether all points lie in one plane, to double precision.
 bool IsFlat(vtkPolyData* surface)
 {
-  const vtkIdType count = surface->GetNumberOfPoints();
-  double center[3];
-  surface->GetCenter(center);
-  const double length = surface->GetLength();
-  double mean[3] = { 0.0, 0.0, 0.0 };
-  double moments[3][3] = { { 0.0 } };
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    double point[3];
-    surface->GetPoint(i, point);
-    for (int row = 0; row < 3; ++row)
-    {
-      point[row] = (point[row] - center[row]) / length;
-      mean[row] += point[row] / count;
-    }
-    for (int row = 0; row < 3; ++row)
-    {
-      for (int column = 0; column < 3; ++column)
-      {
-        moments[row][column] += point[row] * point[column] / count;
-      }
-    }
-  }
-  for (int row = 0; row < 3; ++row)
-  {
-    for (int column = 0; column < 3; ++column)
-    {
-      moments[row][column] -= mean[row] * mean[column];
-    }
-  }
-  double values[3];
-  double vectors[3][3];
-  double* rows[3] = { moments[0], moments[1], moments[2] };
-  double* columns[3] = { vectors[0], vectors[1], vectors[2] };
-  vtkMath::Jacobi(rows, values, columns); // sorted, the largest first
-  return !(values[2] > 1e-12 * values[0]);
+  double corner[3];
+  double axes[3][3]; // the longest first
+  double sizes[3];
+  vtkNew<vtkOBBTree> tree;
+  tree->ComputeOBB(surface->GetPoints(), corner, axes[0], axes[1], axes[2], sizes);
+  return !(vtkMath::Norm(axes[2]) > 1e-6 * vtkMath::Norm(axes[0]));
 }
 
 } // namespace
@@ -173,48 +126,24 @@ void CheckClosedSurface(vtkPolyData* surface)
   }
 }
 
-double SurfaceArea(vtkPolyData* surface)
-{
-  double area = 0.0;
-  ForEachTriangle(surface,
-    [&area](const double corners[3][3])
-    { area += vtkTriangle::TriangleArea(corners[0], corners[1], corners[2]); });
-  return area;
-}
-
-double EnclosedVolume(vtkPolyData* surface)
-{
-  double center[3];
-  surface->GetCenter(center);
-  double volume = 0.0;
-  ForEachTriangle(surface,
-    [&](const double corners[3][3])
-    {
-      double edges[3][3];
-      for (int k = 0; k < 3; ++k)
-      {
-        vtkMath::Subtract(corners[k], center, edges[k]);
-      }
-      volume += vtkMath::Determinant3x3(edges[0], edges[1], edges[2]) / 6.0;
-    });
-  return std::abs(volume);
-}
-
 vtkSmartPointer<vtkPolyData> Decimate(vtkPolyData* surface, double edgeLength)
 {
+  vtkNew<vtkMassProperties> properties;
+  properties->SetInputData(surface);
   const double wanted =
-    std::max(20.0, SurfaceArea(surface) / (std::sqrt(3.0) / 4.0 * edgeLength * edgeLength));
+    std::max(20.0, properties->GetSurfaceArea() / (std::sqrt(3.0) / 4.0 * edgeLength * edgeLength));
   const double present = static_cast<double>(surface->GetNumberOfPolys());
   if (present <= wanted)
   {
-    return nullptr;
+    return surface;
   }
   vtkNew<vtkQuadricDecimation> decimation;
   decimation->SetInputData(surface);
   decimation->SetTargetReduction(1.0 - wanted / present);
   decimation->VolumePreservationOn();
   decimation->Update();
-  return CleanTriangles(decimation->GetOutput());
+  auto decimated = CleanTriangles(decimation->GetOutput());
+  return IsClosedManifold(decimated) ? decimated : nullptr;
 }
 
 vtkSmartPointer<vtkPolyData> SplitLongEdges(vtkPolyData* surface, double edgeLength)

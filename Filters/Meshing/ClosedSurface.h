@@ -23,12 +23,8 @@ void CheckClosedSurface(vtkPolyData* surface);
 /// Whether every edge belongs to exactly two triangles.
 bool IsClosedManifold(vtkPolyData* surface);
 
-/// Area in squared world units, and enclosed volume, the absolute value, in cubic ones.
-double SurfaceArea(vtkPolyData* surface);
-double EnclosedVolume(vtkPolyData* surface);
-
-/// The surface with fewer triangles, so that their edges have about the length; null if they are
-/// that long already.
+/// The surface with fewer triangles, so that their edges have about the length, or as it is where
+/// they are that long already. Null where decimation does not keep it a closed manifold.
 vtkSmartPointer<vtkPolyData> Decimate(vtkPolyData* surface, double edgeLength);
 
 /// The same surface with edges no longer than the length.

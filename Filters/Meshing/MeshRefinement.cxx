@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshRefinement.h"
 
-#include "ClosedSurface.h"
-
 #include "vtkCellArray.h"
+#include "vtkCellType.h"
 #include "vtkGenericCell.h"
+#include "vtkMassProperties.h"
 #include "vtkMath.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 #include "vtkStaticCellLocator.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <limits>
-#include <unordered_map>
+#include <map>
 
 namespace deformvolume
 {
@@ -31,165 +31,176 @@ constexpr double LatticeShare = 0.75;
 // How close to the surface points of the lattice come, in lattice constants.
 constexpr double Clearance = 0.45;
 // How much longer edges may be for each unit of length beyond a sphere.
-constexpr double Growth = 0.5;
+constexpr double SurfaceGrowth = 0.5;
 
-// The longest that an edge between two points may be.
-double AllowedLength(
-  const glm::dvec3& a, const glm::dvec3& b, const std::vector<RefinementSphere>& spheres)
+using Edge = std::array<vtkIdType, 2>;
+
+struct LongEdge
 {
-  double allowed = std::numeric_limits<double>::infinity();
-  for (const RefinementSphere& sphere : spheres)
-  {
-    const double beyond = std::max(0.0, GetDistance(sphere.Center, a, b) - sphere.Radius);
-    allowed = std::min(allowed, SurfaceShare * sphere.EdgeLength + Growth * beyond);
-  }
-  return allowed;
-}
+  double Length;
+  std::vector<std::size_t> Around;
+};
 
-// A surface of which edges are halved, all of their triangles alike.
-class SplitSurface
+/// Triangles or tetrahedra. Edges may be so long as a part of those of a sphere, and longer outside
+/// it by `growth` for each unit of length.
+template <int N>
+class SplitMesh
 {
 public:
-  using Triangle = std::array<vtkIdType, 3>;
+  using Simplex = std::array<vtkIdType, N>;
 
-  SplitSurface(vtkPolyData* surface, const std::vector<RefinementSphere>& spheres)
+  SplitMesh(vtkPointSet* mesh, vtkCellArray* cells, const std::vector<RefinementSphere>& spheres,
+    double share, double growth)
     : Spheres(spheres)
+    , Share(share)
+    , Growth(growth)
   {
-    this->Points.resize(surface->GetNumberOfPoints());
+    this->Points.resize(mesh->GetNumberOfPoints());
     for (std::size_t i = 0; i < this->Points.size(); ++i)
     {
-      double point[3];
-      surface->GetPoint(static_cast<vtkIdType>(i), point);
-      this->Points[i] = glm::dvec3(point[0], point[1], point[2]);
+      mesh->GetPoint(static_cast<vtkIdType>(i), &this->Points[i].x);
     }
-    vtkCellArray* cells = surface->GetPolys();
     vtkIdType size;
     const vtkIdType* ids;
     for (cells->InitTraversal(); cells->GetNextCell(size, ids);)
     {
-      this->Triangles.push_back({ { ids[0], ids[1], ids[2] } });
+      Simplex simplex;
+      std::copy_n(ids, N, simplex.begin());
+      this->Simplices.push_back(simplex);
     }
   }
 
-  // Returns whether an edge was too long.
+  // Of each tetrahedron that has an edge that is too long, the longest one is halved, unless a
+  // neighbor has one that is longer still: that keeps the quality of the tetrahedra. Returns
+  // whether there was any.
   bool SplitOnce()
   {
-    this->Middles.clear();
-    const std::size_t before = this->Triangles.size();
-    std::vector<Triangle> result;
-    result.reserve(before);
-    for (const Triangle& triangle : this->Triangles)
+    std::map<Edge, LongEdge> edges;
+    for (const Simplex& simplex : this->Simplices)
     {
-      this->Split(triangle, result);
+      Edge longest{ { 0, 0 } };
+      double length = 0.0;
+      bool isTooLong = false;
+      this->ForEachEdge(simplex,
+        [&](const Edge& edge, double edgeLength)
+        {
+          isTooLong = isTooLong || this->IsTooLong(edge, edgeLength);
+          // The lower one of equals, in all tetrahedra around it.
+          if (edgeLength > length || (edgeLength == length && edge < longest))
+          {
+            length = edgeLength;
+            longest = edge;
+          }
+        });
+      if (isTooLong)
+      {
+        edges[longest].Length = length;
+      }
     }
-    this->Triangles.swap(result);
-    return this->Triangles.size() > before;
+    if (edges.empty())
+    {
+      return false;
+    }
+    for (std::size_t i = 0; i < this->Simplices.size(); ++i)
+    {
+      this->ForEachEdge(this->Simplices[i],
+        [&](const Edge& edge, double)
+        {
+          const auto found = edges.find(edge);
+          if (found != edges.end())
+          {
+            found->second.Around.push_back(i);
+          }
+        });
+    }
+    std::vector<std::map<Edge, LongEdge>::const_iterator> order;
+    for (auto edge = edges.begin(); edge != edges.end(); ++edge)
+    {
+      order.push_back(edge);
+    }
+    std::stable_sort(order.begin(), order.end(),
+      [](const auto& a, const auto& b) { return a->second.Length > b->second.Length; });
+    std::vector<bool> split(this->Simplices.size(), false);
+    for (const auto& edge : order)
+    {
+      const std::vector<std::size_t>& around = edge->second.Around;
+      if (std::none_of(around.begin(), around.end(), [&](std::size_t i) { return split[i]; }))
+      {
+        this->Split(edge->first, around, split);
+      }
+    }
+    return true;
   }
 
-  vtkSmartPointer<vtkPolyData> Get() const
+  vtkSmartPointer<vtkPoints> MakePoints() const
   {
-    vtkNew<vtkPoints> points;
+    auto points = vtkSmartPointer<vtkPoints>::New();
     points->SetDataTypeToDouble();
     for (const glm::dvec3& point : this->Points)
     {
-      points->InsertNextPoint(point.x, point.y, point.z);
+      points->InsertNextPoint(&point.x);
     }
-    vtkNew<vtkCellArray> cells;
-    for (const Triangle& triangle : this->Triangles)
+    return points;
+  }
+
+  vtkSmartPointer<vtkCellArray> MakeCells() const
+  {
+    auto cells = vtkSmartPointer<vtkCellArray>::New();
+    for (const Simplex& simplex : this->Simplices)
     {
-      cells->InsertNextCell(3, triangle.data());
+      cells->InsertNextCell(N, simplex.data());
     }
-    auto surface = vtkSmartPointer<vtkPolyData>::New();
-    surface->SetPoints(points);
-    surface->SetPolys(cells);
-    return surface;
+    return cells;
   }
 
 private:
-  // The point in the middle of an edge that is too long, or else -1.
-  vtkIdType Middle(vtkIdType from, vtkIdType to)
+  template <typename Function>
+  void ForEachEdge(const Simplex& simplex, Function&& function) const
   {
-    const vtkIdType low = std::min(from, to);
-    const vtkIdType high = std::max(from, to);
-    const std::uint64_t key =
-      (static_cast<std::uint64_t>(low) << 32) | static_cast<std::uint64_t>(high);
-    const auto known = this->Middles.find(key);
-    if (known != this->Middles.end())
+    for (int k = 0; k < N; ++k)
     {
-      return known->second;
+      for (int j = 0; j < k; ++j)
+      {
+        const Edge edge{ { std::min(simplex[j], simplex[k]), std::max(simplex[j], simplex[k]) } };
+        function(edge, glm::distance(this->Points[edge[0]], this->Points[edge[1]]));
+      }
     }
-    const glm::dvec3 a = this->Points[low];
-    const glm::dvec3 b = this->Points[high];
-    vtkIdType middle = -1;
-    if (glm::distance(a, b) > AllowedLength(a, b, this->Spheres))
-    {
-      middle = static_cast<vtkIdType>(this->Points.size());
-      this->Points.push_back(0.5 * (a + b));
-    }
-    this->Middles.emplace(key, middle);
-    return middle;
   }
 
-  void Split(const Triangle& triangle, std::vector<Triangle>& result)
+  bool IsTooLong(const Edge& edge, double length) const
   {
-    vtkIdType middles[3]; // of the edges that begin at the corners
-    int count = 0;
-    for (int k = 0; k < 3; ++k)
-    {
-      middles[k] = this->Middle(triangle[k], triangle[(k + 1) % 3]);
-      count += middles[k] >= 0;
-    }
-    if (count == 0)
-    {
-      result.push_back(triangle);
-      return;
-    }
-    if (count == 3)
-    {
-      for (int k = 0; k < 3; ++k)
+    const glm::dvec3& a = this->Points[edge[0]];
+    const glm::dvec3 along = this->Points[edge[1]] - a;
+    return std::any_of(this->Spheres.begin(), this->Spheres.end(),
+      [&](const RefinementSphere& sphere)
       {
-        result.push_back({ { triangle[k], middles[k], middles[(k + 2) % 3] } });
-      }
-      result.push_back({ { middles[0], middles[1], middles[2] } });
-      return;
-    }
-    // The corner opposite to the edge that is split, or at the end of the edge that is not, first.
-    int first = 0;
-    while (count == 1 ? middles[(first + 1) % 3] < 0 : middles[(first + 2) % 3] >= 0)
+        const double t = glm::dot(sphere.Center - a, along) / (length * length);
+        const double beyond =
+          glm::distance(a + std::clamp(t, 0.0, 1.0) * along, sphere.Center) - sphere.Radius;
+        return length >
+          this->Share * sphere.EdgeLength + (beyond > 0.0 ? this->Growth * beyond : 0.0);
+      });
+  }
+
+  void Split(const Edge& edge, const std::vector<std::size_t>& around, std::vector<bool>& split)
+  {
+    const auto middle = static_cast<vtkIdType>(this->Points.size());
+    this->Points.push_back(0.5 * (this->Points[edge[0]] + this->Points[edge[1]]));
+    for (const std::size_t i : around)
     {
-      ++first;
-    }
-    const vtkIdType a = triangle[first];
-    const vtkIdType b = triangle[(first + 1) % 3];
-    const vtkIdType c = triangle[(first + 2) % 3];
-    if (count == 1)
-    {
-      const vtkIdType middle = middles[(first + 1) % 3];
-      result.push_back({ { a, b, middle } });
-      result.push_back({ { a, middle, c } });
-      return;
-    }
-    // a-b and b-c are split: the corner at b, and a quadrangle with the shorter of its diagonals.
-    const vtkIdType ab = middles[first];
-    const vtkIdType bc = middles[(first + 1) % 3];
-    result.push_back({ { ab, b, bc } });
-    if (glm::distance(this->Points[a], this->Points[bc]) <
-      glm::distance(this->Points[ab], this->Points[c]))
-    {
-      result.push_back({ { a, ab, bc } });
-      result.push_back({ { a, bc, c } });
-    }
-    else
-    {
-      result.push_back({ { a, ab, c } });
-      result.push_back({ { ab, bc, c } });
+      split[i] = true;
+      Simplex other = this->Simplices[i];
+      std::replace(this->Simplices[i].begin(), this->Simplices[i].end(), edge[0], middle);
+      std::replace(other.begin(), other.end(), edge[1], middle);
+      this->Simplices.push_back(other);
     }
   }
 
   const std::vector<RefinementSphere>& Spheres;
   std::vector<glm::dvec3> Points;
-  std::vector<Triangle> Triangles;
-  std::unordered_map<std::uint64_t, vtkIdType> Middles;
+  double Share;
+  double Growth;
+  std::vector<Simplex> Simplices;
 };
 
 // Whether a sphere before this one has points here, at least as close together.
@@ -212,19 +223,13 @@ bool IsTaken(
 
 } // namespace
 
-double GetDistance(const glm::dvec3& point, const glm::dvec3& a, const glm::dvec3& b)
-{
-  const glm::dvec3 along = b - a;
-  const double square = glm::dot(along, along);
-  const double t = square > 0.0 ? std::clamp(glm::dot(point - a, along) / square, 0.0, 1.0) : 0.0;
-  return glm::distance(a + t * along, point);
-}
-
 double EstimateTetrahedra(vtkPolyData* surface, const std::vector<RefinementSphere>& spheres)
 {
   double bounds[6];
   surface->GetBounds(bounds);
-  const double area = spheres.empty() ? 0.0 : SurfaceArea(surface);
+  vtkNew<vtkMassProperties> properties;
+  properties->SetInputData(surface);
+  const double area = properties->GetSurfaceArea();
   double count = 0.0;
   for (const RefinementSphere& sphere : spheres)
   {
@@ -244,28 +249,30 @@ double EstimateTetrahedra(vtkPolyData* surface, const std::vector<RefinementSphe
   return count;
 }
 
-vtkSmartPointer<vtkPolyData> RefineSurface(
-  vtkPolyData* surface, const std::vector<RefinementSphere>& spheres)
+void SplitLongEdges(vtkPolyData* surface, const std::vector<RefinementSphere>& spheres)
 {
-  if (spheres.empty())
-  {
-    return surface;
-  }
-  SplitSurface split(surface, spheres);
+  SplitMesh<3> split(surface, surface->GetPolys(), spheres, SurfaceShare, SurfaceGrowth);
   while (split.SplitOnce())
   {
   }
-  return split.Get();
+  surface->SetPoints(split.MakePoints());
+  surface->SetPolys(split.MakeCells());
+}
+
+void SplitLongEdges(vtkUnstructuredGrid* mesh, const std::vector<RefinementSphere>& spheres)
+{
+  SplitMesh<4> split(mesh, mesh->GetCells(), spheres, 1.0, VTK_DOUBLE_MAX);
+  while (split.SplitOnce())
+  {
+  }
+  mesh->SetPoints(split.MakePoints());
+  mesh->SetCells(VTK_TETRA, split.MakeCells());
 }
 
 std::vector<glm::dvec3> MakePoints(
   vtkPolyData* surface, const std::vector<RefinementSphere>& spheres)
 {
   std::vector<glm::dvec3> points;
-  if (spheres.empty())
-  {
-    return points;
-  }
   double bounds[6];
   surface->GetBounds(bounds);
   vtkNew<vtkStaticCellLocator> locator;

@@ -3,8 +3,6 @@
 #ifndef DeformVolumeMeshRefinement_h
 #define DeformVolumeMeshRefinement_h
 
-#include "vtkSmartPointer.h"
-
 #include <glm/vec3.hpp>
 
 #include <vector>
@@ -24,25 +22,19 @@ struct RefinementSphere
   double EdgeLength = 0.0;
 };
 
-/// The distance of a point from the edge between two others.
-double GetDistance(const glm::dvec3& point, const glm::dvec3& a, const glm::dvec3& b);
-
-/// About how many tetrahedra the spheres ask for in a surface.
+/// About how many tetrahedra the spheres ask for within the bounds of a surface.
 double EstimateTetrahedra(vtkPolyData* surface, const std::vector<RefinementSphere>& spheres);
 
-/// The same surface with more triangles where the spheres are. No edge that is within the length
-/// anyway is split.
-vtkSmartPointer<vtkPolyData> RefineSurface(
-  vtkPolyData* surface, const std::vector<RefinementSphere>& spheres);
+/// Halves edges of a surface of triangles that are too long where the spheres are.
+void SplitLongEdges(vtkPolyData* surface, const std::vector<RefinementSphere>& spheres);
+
+/// Halves the few edges of a mesh of tetrahedra that are too long within the spheres all the same.
+void SplitLongEdges(vtkUnstructuredGrid* mesh, const std::vector<RefinementSphere>& spheres);
 
 /// Points in the spheres for TetGen to use, evenly spaced, at some distance from the surface and
 /// from each other. Those outside the surface do no harm.
 std::vector<glm::dvec3> MakePoints(
   vtkPolyData* surface, const std::vector<RefinementSphere>& spheres);
-
-/// Halves the few edges of the mesh that are too long within the spheres all the same, and with
-/// them all tetrahedra that have them.
-void SplitLongEdges(vtkUnstructuredGrid* mesh, const std::vector<RefinementSphere>& spheres);
 
 } // namespace deformvolume
 

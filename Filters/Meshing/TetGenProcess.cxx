@@ -1,35 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TetGenProcess.h"
 
-#include "ChildOutput.h"
-
 #include "vtkCellArray.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkTetra.h"
 #include "vtkUnstructuredGrid.h"
+#include "vtksys/Process.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <locale>
+#include <memory>
 #include <sstream>
-#include <thread>
 #include <vector>
-
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-extern char** environ;
 
 namespace deformvolume
 {
@@ -64,106 +52,78 @@ public:
   std::filesystem::path Path;
 };
 
-// A child process in a process group of its own, so that its children end with it. posix_spawn
-// rather than fork: a process in which an OpenCL runtime has started threads must not be forked.
-class Child
-{
-public:
-  Child(const std::vector<std::string>& arguments, const ChildOutput& output)
-  {
-    std::vector<char*> argv;
-    for (const std::string& argument : arguments)
-    {
-      argv.push_back(const_cast<char*>(argument.c_str()));
-    }
-    argv.push_back(nullptr);
-
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    output.AddTo(actions);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    sigset_t signals;
-    sigemptyset(&signals);
-    posix_spawnattr_setsigmask(&attributes, &signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
-    sigaddset(&signals, SIGPIPE);
-    sigaddset(&signals, SIGABRT);
-    posix_spawnattr_setsigdefault(&attributes, &signals);
-    posix_spawnattr_setflags(
-      &attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-    const int status =
-      posix_spawnp(&this->Process, argv[0], &actions, &attributes, argv.data(), environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&actions);
-    if (status != 0)
-    {
-      throw Error("Cannot run TetGen as \"" + arguments[0] + "\": " + std::strerror(status) +
-        ". Install TetGen (on Debian and Ubuntu the package tetgen), or give the path of its "
-        "program by SetTetGenExecutable() or the environment variable DEFORMVOLUME_TETGEN.");
-    }
-  }
-  ~Child()
-  {
-    if (!this->Ended)
-    {
-      kill(-this->Process, SIGKILL);
-      while (waitpid(this->Process, nullptr, 0) < 0 && errno == EINTR)
-      {
-      }
-    }
-  }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-
-  bool HasEnded()
-  {
-    const pid_t result = waitpid(this->Process, &this->Status, WNOHANG);
-    // ECHILD: the application ignores SIGCHLD, and the status is lost; the files will tell.
-    this->Ended = result == this->Process || (result < 0 && errno == ECHILD);
-    return this->Ended;
-  }
-  bool HasSucceeded() const { return WIFEXITED(this->Status) && WEXITSTATUS(this->Status) == 0; }
-
-private:
-  pid_t Process = 0;
-  int Status = 0;
-  bool Ended = false;
-};
-
 struct Outcome
 {
-  bool Succeeded;
-  std::string Text;
-  bool Complete; // whether Text is all that was printed
+  std::string Failure; // "" where the program succeeded
+  std::string Text;    // what it printed
 };
 
-Outcome Run(const std::vector<std::string>& arguments, Clock::time_point start, double limit,
-  const std::function<bool(double)>& wait)
+Outcome Run(
+  const std::vector<std::string>& arguments, double limit, const std::function<bool(double)>& wait)
 {
-  ChildOutput output;
-  Child child(arguments, output);
-  while (!child.HasEnded())
+  // Ends the program where it still runs.
+  const std::unique_ptr<vtksysProcess, void (*)(vtksysProcess*)> owner(vtksysProcess_New(),
+    [](vtksysProcess* ended)
+    {
+      vtksysProcess_Kill(ended);
+      vtksysProcess_WaitForExit(ended, nullptr);
+      vtksysProcess_Delete(ended);
+    });
+  vtksysProcess* process = owner.get();
+  std::vector<const char*> command;
+  for (const std::string& argument : arguments)
   {
-    output.Read();
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    if (wait(seconds / limit))
+    command.push_back(argument.c_str());
+  }
+  command.push_back(nullptr);
+  vtksysProcess_SetCommand(process, command.data());
+  vtksysProcess_SetOption(process, vtksysProcess_Option_MergeOutput, 1);
+  vtksysProcess_SetTimeout(process, limit);
+  const Clock::time_point start = Clock::now();
+  vtksysProcess_Execute(process);
+  Outcome outcome;
+  char* data;
+  int length;
+  int pipe;
+  do
+  {
+    if (wait(std::chrono::duration<double>(Clock::now() - start).count() / limit))
     {
       throw Aborted();
     }
-    if (seconds > limit)
+    double patience = 0.02;
+    pipe = vtksysProcess_WaitForData(process, &data, &length, &patience);
+    // A megabyte is more than enough for a message, whatever the program prints.
+    if (pipe == vtksysProcess_Pipe_STDOUT && outcome.Text.size() < (1u << 20))
+    {
+      outcome.Text.append(data, static_cast<std::size_t>(length));
+    }
+  } while (pipe != vtksysProcess_Pipe_None);
+  vtksysProcess_WaitForExit(process, nullptr);
+  switch (vtksysProcess_GetState(process))
+  {
+    case vtksysProcess_State_Exited:
+      if (const int value = vtksysProcess_GetExitValue(process))
+      {
+        outcome.Failure = "exit status " + std::to_string(value);
+      }
+      return outcome;
+    case vtksysProcess_State_Exception:
+      outcome.Failure = vtksysProcess_GetExceptionString(process);
+      return outcome;
+    case vtksysProcess_State_Expired:
     {
       std::ostringstream message;
       message << "TetGen did not finish within the TimeLimit of " << limit
               << " s and was ended. Raise TimeLimit, TargetEdgeLength or RadiusEdgeRatio.";
       throw Error(message.str());
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    default:
+      throw Error("Cannot run TetGen as \"" + arguments[0] +
+        "\": " + vtksysProcess_GetErrorString(process) +
+        ". Install TetGen (on Debian and Ubuntu the package tetgen), or give the path of its "
+        "program by SetTetGenExecutable() or the environment variable DEFORMVOLUME_TETGEN.");
   }
-  output.Read();
-  return { child.HasSucceeded(), output.GetText(), output.IsTerminal() };
 }
 
 // TetGen's output without the report of its progress.
@@ -285,19 +245,13 @@ vtkSmartPointer<vtkUnstructuredGrid> ReadMesh(const std::filesystem::path& folde
     {
       throw incomplete;
     }
-    double corners[4][3];
-    for (int k = 0; k < 4; ++k)
+    for (vtkIdType& id : ids)
     {
-      ids[k] -= firstIndex;
-      if (ids[k] < 0 || ids[k] >= numberOfPoints)
+      id -= firstIndex;
+      if (id < 0 || id >= numberOfPoints)
       {
         throw incomplete;
       }
-      points->GetPoint(ids[k], corners[k]);
-    }
-    if (vtkTetra::ComputeVolume(corners[0], corners[1], corners[2], corners[3]) < 0.0)
-    {
-      std::swap(ids[2], ids[3]);
     }
     cells->InsertNextCell(4, ids);
   }
@@ -320,41 +274,37 @@ vtkSmartPointer<vtkUnstructuredGrid> RunTetGen(
   // faces; q: quality; a: the largest volume, in digits without an exponent.
   std::ostringstream switches;
   switches.imbue(std::locale::classic());
-  switches << std::fixed << "-pYFq" << parameters.RadiusEdgeRatio << 'a';
-  const int magnitude = static_cast<int>(std::floor(std::log10(parameters.MaximumVolume)));
-  switches.precision(std::max(0, 9 - magnitude));
-  switches << parameters.MaximumVolume;
-
-  const Clock::time_point start = Clock::now();
-  const Outcome outcome = Run(
-    { parameters.Executable, switches.str(), input.string() }, start, parameters.TimeLimit, wait);
-  if (!outcome.Succeeded)
+  switches << "-pYF";
+  if (parameters.MaximumVolume > 0.0)
   {
-    std::string message = Complaint(outcome.Text);
-    if (message.empty())
-    {
-      message = outcome.Complete ? "(no message)"
-                                 : "(no message: without pseudo terminals, its messages are lost)";
-    }
-    if (!parameters.Diagnose)
-    {
-      throw SurfaceRejected("TetGen failed. It says: " + message);
-    }
-    // The other mode of TetGen looks for self-intersections, and names them.
-    const Outcome diagnosis = Run(
-      { parameters.Executable, "-d", input.string() }, start, parameters.TimeLimit + 10.0, wait);
-    // TetGen 1.5 counts them there; 1.6 warns of each where it fails, and of others there.
-    const std::size_t found = diagnosis.Text.find("!! Found");
-    const bool counted = found != std::string::npos;
-    if (counted || message.find("intersect") != std::string::npos)
+    const int magnitude = static_cast<int>(std::floor(std::log10(parameters.MaximumVolume)));
+    switches << std::fixed << 'q' << parameters.RadiusEdgeRatio << 'a';
+    switches.precision(std::max(0, 9 - magnitude));
+    switches << parameters.MaximumVolume;
+  }
+  const Outcome outcome =
+    Run({ parameters.Executable, switches.str(), input.string() }, parameters.TimeLimit, wait);
+  if (!outcome.Failure.empty())
+  {
+    // A program that ends by abort(), as TetGen does on every error, loses what it has printed into
+    // a pipe. But its other mode looks for self-intersections, names them and ends normally.
+    const std::string report = parameters.Diagnose
+      ? Run({ parameters.Executable, "-d", input.string() }, parameters.TimeLimit, wait).Text
+      : "";
+    // TetGen 1.5 counts them; 1.6 warns of each.
+    const std::size_t found =
+      std::min(report.find("!! Found"), report.find("segments exactly intersect"));
+    if (found != std::string::npos)
     {
       throw SurfaceRejected("TetGen cannot fill the surface, because it intersects itself. TetGen "
                             "says: " +
-        message + (counted ? " " + Complaint(diagnosis.Text.substr(found)) : "") +
+        Complaint(report.substr(report.rfind('\n', found) + 1)) +
         " Fix the surface, or for a volume change the isovalue, TargetEdgeLength or "
         "SmoothingIterations.");
     }
-    throw SurfaceRejected("TetGen failed. It says: " + message +
+    const std::string said = Complaint(outcome.Text);
+    throw SurfaceRejected("TetGen failed (" + outcome.Failure + ")." +
+      (said.empty() ? "" : " It says: " + said) +
       " For a volume, another TargetEdgeLength or SmoothingIterations may help.");
   }
   auto mesh = ReadMesh(folder.Path);

@@ -30,15 +30,15 @@ struct TetGenParameters
 {
   std::string Executable;
   double RadiusEdgeRatio = 1.414;
-  double MaximumVolume = 0.0;
+  double MaximumVolume = 0.0;     // 0: neither this nor the ratio is looked at, which is fast
   double TimeLimit = 60.0;        // seconds
   bool Diagnose = true;           // after a failure, look for self-intersections to name them
   std::vector<glm::dvec3> Points; // more nodes for the mesh, as far as they lie in the surface
 };
 
-/// Fills a closed triangle surface with tetrahedra of positive volume. `wait` is called many times
-/// a second with the part of the time limit that has passed; when it returns true, TetGen is ended
-/// and Aborted thrown. All failures throw Error.
+/// Fills a closed triangle surface with tetrahedra. `wait` is called many times a second with the
+/// part of the time limit that has passed; when it returns true, TetGen is ended and Aborted
+/// thrown. All failures throw Error.
 vtkSmartPointer<vtkUnstructuredGrid> RunTetGen(vtkPolyData* surface,
   const TetGenParameters& parameters, const std::function<bool(double)>& wait);
 
