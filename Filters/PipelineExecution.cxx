@@ -2,7 +2,6 @@
 #include "PipelineExecution.h"
 
 #include "Error.h"
-#include "FailureReport.h"
 
 #include "vtkAlgorithm.h"
 
@@ -22,7 +21,7 @@ int PipelineExecution::Run(
   }
   catch (const Aborted&)
   {
-    this->IsAborted = true;
+    this->Incomplete = true;
     return 1;
   }
   catch (const Error& error)
@@ -37,14 +36,15 @@ int PipelineExecution::Run(
   {
     vtkErrorWithObjectMacro(algorithm, << "The update has failed: " << error.what());
   }
-  return Fail(algorithm);
+  this->Incomplete = true;
+  return 0;
 }
 
-void PipelineExecution::RenewAborted(vtkAlgorithm* algorithm)
+void PipelineExecution::Renew(vtkAlgorithm* algorithm)
 {
-  if (this->IsAborted)
+  if (this->Incomplete)
   {
-    this->IsAborted = false;
+    this->Incomplete = false;
     algorithm->Modified();
   }
 }

@@ -9,20 +9,25 @@ class vtkAlgorithm;
 namespace deformvolume
 {
 
-/// What comes of the executions of an algorithm that throw Error and Aborted.
+/// The outcome of the requests of an algorithm that throw Error and Aborted.
 class PipelineExecution
 {
 public:
-  /// Calls body, and returns what RequestData returns. Errors are displayed; noMemory: the one
-  /// where there is not enough memory. What body has put into an output by then stays there.
+  /// Calls body, and returns the result of the request: 0 after an error, which is reported; 1
+  /// after an abort. noMemory: the message where there is not enough memory. What body has put into
+  /// an output by then stays there.
   int Run(vtkAlgorithm* algorithm, const char* noMemory, const std::function<void()>& body);
 
-  /// For ComputePipelineMTime: an aborted output is not up to date, but the executive takes it for
-  /// that. The algorithm is modified then.
-  void RenewAborted(vtkAlgorithm* algorithm);
+  /// Whether a request of the current update has failed or was aborted.
+  bool IsIncomplete() const { return this->Incomplete; }
+
+  /// For ComputePipelineMTime: the executive regards the output of an execution that failed or was
+  /// aborted as up to date. This function marks the algorithm as modified, so that the next update
+  /// executes it again.
+  void Renew(vtkAlgorithm* algorithm);
 
 private:
-  bool IsAborted = false;
+  bool Incomplete = false;
 };
 
 } // namespace deformvolume

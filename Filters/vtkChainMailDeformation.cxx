@@ -212,7 +212,7 @@ int vtkChainMailDeformation::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  this->Internals->Execution.RenewAborted(this);
+  this->Internals->Execution.Renew(this);
   return this->Superclass::ComputePipelineMTime(
     request, input, output, requestFromOutputPort, mtime);
 }

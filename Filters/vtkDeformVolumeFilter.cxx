@@ -184,9 +184,10 @@ void vtkDeformVolumeFilter::ReleaseDeviceMemory()
 //------------------------------------------------------------------------------
 int vtkDeformVolumeFilter::FillInputPortInformation(int port, vtkInformation* info)
 {
-  // All ports are optional for the executive: its message about a missing input would not say what
-  // to connect.
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  if (port == 2)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
   if (port == 0)
   {
     info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
@@ -206,16 +207,18 @@ int vtkDeformVolumeFilter::FillInputPortInformation(int port, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
-int vtkDeformVolumeFilter::ComputePipelineMTime(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
+int vtkDeformVolumeFilter::ComputePipelineMTime(vtkInformation* request,
+  vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
+  vtkMTimeType* mtime)
 {
-  if (this->Internals->Aborted || this->Internals->BoundsHaveGrown)
+  if (this->Internals->BoundsHaveGrown)
   {
-    this->Internals->Aborted = this->Internals->BoundsHaveGrown = false;
-    this->Internals->AbortTime.Modified();
+    this->Internals->BoundsHaveGrown = false;
+    this->Modified();
   }
-  *mtime = std::max(this->GetMTime(), this->Internals->AbortTime.GetMTime());
-  return 1;
+  this->Internals->Execution.Renew(this);
+  return this->Superclass::ComputePipelineMTime(
+    request, input, output, requestFromOutputPort, mtime);
 }
 
 //------------------------------------------------------------------------------

@@ -252,7 +252,7 @@ void vtkDeformVolumeFilter::vtkInternals::HoldTime(
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   this->ExtentBefore.reset();
   const deformvolume::Ranks ranks;
-  const bool isNew = !this->InformationFailed && this->Self->OutputBoundsMode == DEFORMED_BOUNDS &&
+  const bool isNew = !this->InformationFailure && this->Self->OutputBoundsMode == DEFORMED_BOUNDS &&
     output->Has(Pipeline::UPDATE_TIME_STEP()) &&
     this->State->TimesInBounds.count(output->Get(Pipeline::UPDATE_TIME_STEP())) == 0 &&
     !this->State->TimesInBounds.empty();

@@ -287,20 +287,6 @@ bool vtkDeformVolumeFilter::vtkInternals::IsReleased(vtkInformation* output)
 }
 
 //------------------------------------------------------------------------------
-bool vtkDeformVolumeFilter::vtkInternals::IsNews(const std::string& message)
-{
-  auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(this->Self->GetExecutive());
-  const vtkMTimeType time = pipeline ? pipeline->GetPipelineMTime() : this->Self->GetMTime();
-  if (message == this->ToldMessage && time == this->ToldTime)
-  {
-    return false;
-  }
-  this->ToldMessage = message;
-  this->ToldTime = time;
-  return true;
-}
-
-//------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
   vtkImageData* volume, const std::vector<std::string>& leftOut)
 {

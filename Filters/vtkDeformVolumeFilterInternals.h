@@ -6,13 +6,14 @@
 #include "ImageGeometry.h"
 #include "MeshGathering.h"
 #include "MeshGrids.h"
+#include "PipelineExecution.h"
 #include "Ranks.h"
 
 #include "vtkDeformVolumeFilter.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
-#include "vtkTimeStamp.h"
 
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -129,10 +130,6 @@ public:
   /// Whether the output is given up as soon as those after it have used it.
   static bool IsReleased(vtkInformation* output);
 
-  /// Whether an error has to be told: not where one update failed in the same way as the last, and
-  /// nothing has changed in between. Interfaces update several times what they show.
-  bool IsNews(const std::string& message);
-
   /// Warns where what is ignored changed since the last call.
   void WarnOfIgnored(vtkImageData* volume, const std::vector<std::string>& leftOut);
 
@@ -159,20 +156,13 @@ public:
   /// Whether the volume that was worked on last has a smooth cut.
   bool HadCut = false;
 
-  // What is wrong with a failed information pass is told when data are asked for.
-  bool InformationFailed = false;
-  std::string PostponedError;
-  // Whether the last request for extents failed.
-  bool RequestFailed = false;
-  // The last error, until an execution succeeds.
-  std::string ToldMessage;
-  // An aborted execution leaves the filter out of date, and the next pass has to see that.
-  bool Aborted = false;
-  // So does one whose output was too small.
+  deformvolume::PipelineExecution Execution;
+  /// What the last request for information has thrown.
+  std::exception_ptr InformationFailure;
+  /// Whether the output was too small, so that the next update has to execute the filter.
   bool BoundsHaveGrown = false;
   /// The whole extent that consumers know, after it has grown in this update.
   std::optional<deformvolume::Extent> ExtentBefore;
-  vtkTimeStamp AbortTime;
 
 private:
   /// False where there was nothing to free.
@@ -216,8 +206,6 @@ private:
   std::pair<const void*, vtkMTimeType> CutStamp;
 
   std::set<std::string> WarnedOf;
-  // When what the last error was about had been changed.
-  vtkMTimeType ToldTime = 0;
 };
 
 #endif

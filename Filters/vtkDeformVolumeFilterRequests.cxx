@@ -4,7 +4,6 @@
 
 #include "vtkDeformVolumeFilterInternals.h"
 
-#include "FailureReport.h"
 #include "InputUpdate.h"
 #include "MaskArray.h"
 #include "OutputExtent.h"
@@ -63,76 +62,64 @@ void SetTimeStep(
 vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  std::string message;
-  try
-  {
-    if (!this->Superclass::ProcessRequest(request, input, output))
-    {
-      return deformvolume::Fail(this);
-    }
-    if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_TIME_DEPENDENT_INFORMATION()))
-    {
-      this->Internals->HoldTime(input[0]->GetInformationObject(0), output->GetInformationObject(0));
-    }
-    if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
-    {
-      this->Internals->ToldMessage.clear();
-    }
-    return 1;
-  }
-  catch (const deformvolume::Aborted&)
-  {
-    this->Internals->Aborted = true;
-  }
-  catch (const std::bad_alloc&)
-  {
-    message = "The memory of this machine does not suffice for the deformed volume. Use a smaller "
-              "volume, a coarser output spacing or narrower output bounds.";
-  }
-  catch (const std::exception& error)
-  {
-    message = error.what();
-  }
-
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
   vtkInformation* outInfo = output->GetInformationObject(0);
+  vtkTypeBool result = 0;
+  bool done = false;
+  const auto process = [&]
+  {
+    result = this->Superclass::ProcessRequest(request, input, output);
+    if (request->Has(Pipeline::REQUEST_TIME_DEPENDENT_INFORMATION()))
+    {
+      this->Internals->HoldTime(input[0]->GetInformationObject(0), outInfo);
+    }
+    done = true;
+  };
+  if (request->Has(Pipeline::REQUEST_INFORMATION()) ||
+    request->Has(Pipeline::REQUEST_TIME_DEPENDENT_INFORMATION()))
+  {
+    try
+    {
+      process();
+    }
+    catch (const std::exception&)
+    {
+      // Reported when data are requested: a program that requests information may be about to
+      // choose inputs and arrays. Nothing is offered until then.
+      this->Internals->InformationFailure = std::current_exception();
+      const int empty[6] = { 0, -1, 0, -1, 0, -1 };
+      outInfo->Set(Pipeline::WHOLE_EXTENT(), empty, 6);
+      outInfo->Set(Pipeline::UPDATE_EXTENT(), empty, 6);
+      result = 1;
+    }
+  }
+  else
+  {
+    const int outcome = this->Internals->Execution.Run(this,
+      "The memory of this machine does not suffice for the deformed volume. Use a smaller volume, "
+      "a "
+      "coarser output spacing or narrower output bounds.",
+      process);
+    result = done ? result : outcome;
+  }
+  if (done)
+  {
+    return result;
+  }
+  // The executive goes on to the data pass all the same, and on the ranks whose inputs have failed
+  // it gets no further than these.
+  for (int port = 0; port < 2 && request->Has(Pipeline::REQUEST_UPDATE_EXTENT()); ++port)
+  {
+    deformvolume::RequestNothing(input[port]->GetInformationObject(0));
+  }
   if (vtkDataObject* data = vtkDataObject::GetData(outInfo))
   {
     data->Initialize();
   }
+  vtkInternals::ForgetRequestedExtent(outInfo);
   this->Internals->State->Outputs.Forget();
   this->Internals->FactorOfOutput = 0;
-  if (message.empty())
-  {
-    return 1;
-  }
-  vtkInternals::ForgetRequestedExtent(outInfo);
-  if (request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
-  {
-    // Nothing is offered, so that a pass that goes on in spite of the failure finds nothing.
-    const int empty[6] = { 0, -1, 0, -1, 0, -1 };
-    outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
-    outInfo->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), empty, 6);
-    // Told with the data: who asks for information may be about to choose inputs and arrays.
-    this->Internals->InformationFailed = true;
-    this->Internals->PostponedError = message;
-    return 1;
-  }
-  // The executive goes on to the data pass all the same, and on the ranks whose inputs have failed
-  // it gets no further than these.
-  this->Internals->RequestFailed =
-    request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) != 0;
-  for (int port = 0; port < 2 && this->Internals->RequestFailed; ++port)
-  {
-    if (input[port]->GetNumberOfInformationObjects() > 0)
-    {
-      deformvolume::RequestNothing(input[port]->GetInformationObject(0));
-    }
-  }
-  if (this->Internals->IsNews(message))
-  {
-    vtkErrorMacro(<< message);
-  }
-  return deformvolume::Fail(this);
+  return result;
 }
 
 //------------------------------------------------------------------------------
@@ -140,12 +127,11 @@ int vtkDeformVolumeFilter::RequestInformation(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   vtkInformation* outInfo = output->GetInformationObject(0);
-  if (this->Internals->InformationFailed)
+  if (this->Internals->InformationFailure)
   {
     // The executive then asks for the whole extent anew.
     outInfo->Remove(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT_INITIALIZED());
-    this->Internals->InformationFailed = false;
-    this->Internals->PostponedError.clear();
+    this->Internals->InformationFailure = nullptr;
   }
   const deformvolume::Ranks ranks;
   if (ranks.AreMany())
@@ -159,15 +145,6 @@ int vtkDeformVolumeFilter::RequestInformation(
     [&]
     {
       this->Internals->SelectState();
-      if (this->GetNumberOfInputConnections(0) == 0)
-      {
-        throw Error("There is no volume. Connect a vtkImageData to input port 0.");
-      }
-      if (this->GetNumberOfInputConnections(1) == 0)
-      {
-        throw Error("There is no deformation. Connect a mesh, such as a vtkUnstructuredGrid with "
-                    "tetrahedra, or a vtkImageData with displacements to input port 1.");
-      }
       if (!volumeInfo->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
       {
         throw Error("The volume on input port 0 announces no whole extent. Connect a "
@@ -225,10 +202,9 @@ int vtkDeformVolumeFilter::RequestInformation(
 int vtkDeformVolumeFilter::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
-  this->Internals->RequestFailed = false;
-  if (this->Internals->InformationFailed)
+  if (this->Internals->InformationFailure)
   {
-    throw Error(this->Internals->PostponedError);
+    std::rethrow_exception(this->Internals->InformationFailure);
   }
   this->Internals->SelectState();
   const deformvolume::Ranks ranks;
@@ -255,14 +231,9 @@ int vtkDeformVolumeFilter::RequestData(
 {
   vtkInformation* outInfo = output->GetInformationObject(0);
   vtkImageData* image = vtkImageData::GetData(outInfo);
-  if (this->Internals->InformationFailed || this->Internals->RequestFailed || !image)
+  if (this->Internals->Execution.IsIncomplete())
   {
-    if (vtkDataObject* data = vtkDataObject::GetData(outInfo))
-    {
-      data->Initialize();
-    }
-    vtkInternals::ForgetRequestedExtent(outInfo);
-    return 0;
+    return 0; // the request for extents has failed, which the executive ignores
   }
   this->Internals->SelectState();
   deformvolume::ExecutionState& state = *this->Internals->State;
@@ -281,10 +252,6 @@ int vtkDeformVolumeFilter::RequestData(
   ranks.Attempt(
     [&]
     {
-      if (!volume)
-      {
-        throw Error("There is no volume. Connect a vtkImageData to input port 0.");
-      }
       vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
       volume = this->Internals->CutToWhole(volume, volumeInfo);
       mapped = this->Internals->GetMappedVolume(volume, volumeInfo);

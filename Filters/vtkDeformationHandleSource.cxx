@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDeformationHandleSource.h"
 
-#include "FailureReport.h"
-
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkInformation.h"
@@ -54,7 +52,9 @@ int vtkDeformationHandleSource::RequestData(
   if (!IsFinite(this->RestPosition) || !IsFinite(this->Position))
   {
     vtkErrorMacro("A position of the handle is not finite. Set finite ones.");
-    return deformvolume::Fail(this);
+    info->Set(
+      vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1); // so that the next update fails, too
+    return 0;
   }
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();

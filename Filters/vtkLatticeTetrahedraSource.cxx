@@ -2,7 +2,6 @@
 #include "vtkLatticeTetrahedraSource.h"
 
 #include "AbortCheck.h"
-#include "FailureReport.h"
 #include "FiveTetrahedra.h"
 #include "PieceRequest.h"
 
@@ -161,11 +160,11 @@ int vtkLatticeTetrahedraSource::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** inputVector, vtkInformationVector* outputVector, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  // An aborted output is not up to date, but the executive takes it for that. This is the only
-  // moment at which a change of the modification time is seen.
-  if (this->Aborted)
+  // The executive regards an output that was not completed as up to date. It sees a change of the
+  // modification time at this moment only.
+  if (this->Incomplete)
   {
-    this->Aborted = false;
+    this->Incomplete = false;
     this->Modified();
   }
   return this->Superclass::ComputePipelineMTime(
@@ -193,6 +192,7 @@ int vtkLatticeTetrahedraSource::RequestData(
   {
     return 1;
   }
+  this->Incomplete = true;
 
   int nodes[3];
   std::copy_n(this->NumberOfNodes, 3, nodes);
@@ -200,7 +200,7 @@ int vtkLatticeTetrahedraSource::RequestData(
   {
     vtkErrorMacro("NumberOfNodes is " << nodes[0] << ", " << nodes[1] << ", " << nodes[2]
                                       << ". A lattice needs at least 2 nodes on every axis.");
-    return deformvolume::Fail(this);
+    return 0;
   }
 
   Lattice lattice;
@@ -230,7 +230,7 @@ int vtkLatticeTetrahedraSource::RequestData(
   if (!problem.empty())
   {
     vtkErrorMacro(<< problem);
-    return deformvolume::Fail(this);
+    return 0;
   }
   if (this->EqualSpacing)
   {
@@ -248,7 +248,7 @@ int vtkLatticeTetrahedraSource::RequestData(
                                   << " nodes takes " << bytes / (1024.0 * 1024.0 * 1024.0)
                                   << " GiB, which is more than can be stored. Reduce "
                                      "NumberOfNodes.");
-    return deformvolume::Fail(this);
+    return 0;
   }
 
   const vtkIdType rowLength = nodes[0];
@@ -276,7 +276,6 @@ int vtkLatticeTetrahedraSource::RequestData(
     this->UpdateProgress(static_cast<double>(z) / nodes[2]);
     if (deformvolume::IsAborted(this))
     {
-      this->Aborted = true;
       return 1;
     }
     for (int y = 0; y < nodes[1]; ++y)
@@ -325,6 +324,7 @@ int vtkLatticeTetrahedraSource::RequestData(
   output->SetPoints(points);
   output->SetCells(VTK_TETRA, cells);
   std::copy_n(nodes, 3, this->Dimensions);
+  this->Incomplete = false;
   return 1;
 }
 

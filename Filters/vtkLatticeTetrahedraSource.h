@@ -104,7 +104,7 @@ protected:
   int Dimensions[3] = { 0, 0, 0 };
 
 private:
-  bool Aborted = false;
+  bool Incomplete = false; // whether the last execution failed or was aborted
 
   vtkLatticeTetrahedraSource(const vtkLatticeTetrahedraSource&) = delete;
   void operator=(const vtkLatticeTetrahedraSource&) = delete;

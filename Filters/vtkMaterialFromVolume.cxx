@@ -156,7 +156,7 @@ int vtkMaterialFromVolume::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  this->Internals->Execution.RenewAborted(this);
+  this->Internals->Execution.Renew(this);
   return this->Superclass::ComputePipelineMTime(
     request, input, output, requestFromOutputPort, mtime);
 }

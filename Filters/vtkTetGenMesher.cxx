@@ -3,7 +3,6 @@
 
 #include "AbortCheck.h"
 #include "ClosedSurface.h"
-#include "FailureReport.h"
 #include "MeshRefinement.h"
 #include "PieceRequest.h"
 #include "TetGenProcess.h"
@@ -292,12 +291,14 @@ int vtkTetGenMesher::RequestData(
   catch (const std::bad_alloc&)
   {
     vtkErrorMacro("Not enough memory. Set a greater TargetEdgeLength.");
-    return deformvolume::Fail(this);
+    this->Aborted = true;
+    return 0;
   }
   catch (const std::exception& error)
   {
     vtkErrorMacro(<< error.what());
-    return deformvolume::Fail(this);
+    this->Aborted = true;
+    return 0;
   }
   return 1;
 }

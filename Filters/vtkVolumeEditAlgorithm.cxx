@@ -30,8 +30,7 @@ namespace
 // edited.
 bool IsPartWithoutCells(vtkImageData* volume, vtkInformation* info)
 {
-  return volume &&
-    deformvolume::GetNumberOfCells(deformvolume::GetGeometry(volume).PointExtent) == 0 &&
+  return deformvolume::GetNumberOfCells(deformvolume::GetGeometry(volume).PointExtent) == 0 &&
     deformvolume::GetNumberOfCells(deformvolume::GetGeometry(info).PointExtent) > 0;
 }
 
@@ -162,25 +161,22 @@ vtkTypeBool vtkVolumeEditAlgorithm::ProcessRequest(
     return this->Superclass::ProcessRequest(request, input, output);
   }
   vtkInformation* outInfo = output->GetInformationObject(0);
-  if (vtkInformation* volume = input[0]->GetInformationObject(0))
-  {
-    outInfo->CopyEntry(volume, vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
-    outInfo->CopyEntry(volume, vtkDataObject::ORIGIN());
-    outInfo->CopyEntry(volume, vtkDataObject::SPACING());
-    outInfo->CopyEntry(volume, vtkDataObject::DIRECTION());
-    outInfo->CopyEntry(volume, vtkDataObject::POINT_DATA_VECTOR(), 1);
-    return 1;
-  }
-  const int empty[6] = { 0, -1, 0, -1, 0, -1 };
-  outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
+  vtkInformation* volume = input[0]->GetInformationObject(0);
+  outInfo->CopyEntry(volume, vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
+  outInfo->CopyEntry(volume, vtkDataObject::ORIGIN());
+  outInfo->CopyEntry(volume, vtkDataObject::SPACING());
+  outInfo->CopyEntry(volume, vtkDataObject::DIRECTION());
+  outInfo->CopyEntry(volume, vtkDataObject::POINT_DATA_VECTOR(), 1);
   return 1;
 }
 
 //------------------------------------------------------------------------------
 int vtkVolumeEditAlgorithm::FillInputPortInformation(int port, vtkInformation* info)
 {
-  // The executive's message about a missing input would not say what to connect.
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  if (port > 0)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
   if (port < 2)
   {
     info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkImageData" : "vtkPolyData");
@@ -205,10 +201,8 @@ int vtkVolumeEditAlgorithm::RequestUpdateExtent(
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   vtkInformation* outInfo = output->GetInformationObject(0);
-  if (vtkInformation* volume = input[0]->GetInformationObject(0))
-  {
-    volume->Set(Pipeline::UPDATE_EXTENT(), outInfo->Get(Pipeline::UPDATE_EXTENT()), 6);
-  }
+  input[0]->GetInformationObject(0)->Set(
+    Pipeline::UPDATE_EXTENT(), outInfo->Get(Pipeline::UPDATE_EXTENT()), 6);
   for (int port = 1; port < 4; ++port)
   {
     if (vtkInformation* info = input[port]->GetInformationObject(0))
@@ -254,7 +248,7 @@ int vtkVolumeEditAlgorithm::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  this->Edits->Execution.RenewAborted(this);
+  this->Edits->Execution.Renew(this);
   return this->Superclass::ComputePipelineMTime(
     request, input, output, requestFromOutputPort, mtime);
 }

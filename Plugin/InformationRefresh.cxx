@@ -6,6 +6,7 @@
 #include "vtkProcessModule.h"
 #include "vtkSMProxyIterator.h"
 #include "vtkSMProxyManager.h"
+#include "vtkSMRepresentationProxy.h"
 #include "vtkSMSession.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
@@ -25,8 +26,29 @@ void Fetch(vtkObject* proxy, unsigned long, void*, void*)
   static_cast<vtkSMProxy*>(proxy)->UpdatePropertyInformation();
 }
 
+// ParaView 5.11 does not mark a representation as modified again after an update that has failed,
+// so that its view would never show the output of the corrected pipeline.
+void EndUpdate(vtkObject* view, unsigned long, void*, void*)
+{
+  auto* proxy = static_cast<vtkSMProxy*>(view);
+  for (unsigned int i = 0; i < proxy->GetNumberOfProducers(); ++i)
+  {
+    if (auto* shown = vtkSMRepresentationProxy::SafeDownCast(proxy->GetProducerProxy(i)))
+    {
+      shown->PostUpdateData(false);
+    }
+  }
+}
+
 void ObserveProxy(vtkSMProxy* proxy)
 {
+  static vtkNew<vtkCallbackCommand> end;
+  end->SetCallback(EndUpdate);
+  if (proxy && proxy->IsA("vtkSMViewProxy") &&
+    !proxy->HasObserver(vtkCommand::UpdateDataEvent, end))
+  {
+    proxy->AddObserver(vtkCommand::UpdateDataEvent, end);
+  }
   static vtkNew<vtkCallbackCommand> fetch;
   fetch->SetCallback(Fetch);
   const char* name = proxy && proxy->IsA("vtkSMSourceProxy") ? proxy->GetVTKClassName() : nullptr;
@@ -63,7 +85,7 @@ void ObserveSession(vtkSession* session)
   proxies->AddObserver(vtkCommand::RegisterEvent, registered);
   vtkNew<vtkSMProxyIterator> present;
   present->SetSessionProxyManager(proxies);
-  for (present->Begin("sources"); !present->IsAtEnd(); present->Next())
+  for (present->Begin(); !present->IsAtEnd(); present->Next())
   {
     ObserveProxy(present->GetProxy());
   }

@@ -106,10 +106,6 @@ Stamp GetCutStamp(vtkImageData* volume)
 
 bool VolumeEditor::SetVolume(vtkImageData* volume, vtkInformation* info)
 {
-  if (!volume)
-  {
-    throw Error("There is no volume. Connect a vtkImageData to input port 0.");
-  }
   const ImageGeometry geometry = deformvolume::GetGeometry(volume);
   CheckVolume(geometry);
   ByteArray* base = FindMask(

@@ -71,6 +71,13 @@ struct Dragged
     this->Filter->Update();
     std::string errors = this->Observer->GetErrorMessage();
     VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
+    if (!errors.empty())
+    {
+      // Although nothing has changed.
+      this->Observer->Clear();
+      VERIFY(!this->Filter->GetExecutive()->Update());
+      VERIFY(this->Observer->GetError());
+    }
     this->Observer->Clear();
     this->ExecutiveObserver->Clear();
     VERIFY(errors.empty() || this->Filter->GetOutput()->GetPointData()->GetNumberOfArrays() == 0);

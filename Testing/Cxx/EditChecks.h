@@ -106,22 +106,25 @@ struct Edited
     this->ExecutiveObserver->Clear();
   }
 
-  /// Updates with one error that has these words, and an empty output.
+  /// Updates with one error that has these words, and an empty output; then once more.
   void Fails(const std::string& words)
   {
     this->Filter->Modified();
-    this->Filter->Update();
-    const std::string message = this->Observer->GetErrorMessage();
-    const std::size_t first = message.find("ERROR: ");
-    if (message.find(words) == std::string::npos)
+    for (int repeat = 0; repeat < 2; ++repeat)
     {
-      std::cerr << "\"" << words << "\" is not in: " << message << "\n";
+      VERIFY(!this->Filter->GetExecutive()->Update());
+      const std::string message = this->Observer->GetErrorMessage();
+      const std::size_t first = message.find("ERROR: ");
+      if (message.find(words) == std::string::npos)
+      {
+        std::cerr << "\"" << words << "\" is not in: " << message << "\n";
+      }
+      VERIFY(message.find(words) != std::string::npos);
+      VERIFY(first != std::string::npos && message.find("ERROR: ", first + 1) == std::string::npos);
+      VERIFY_EQUAL(this->Filter->GetOutput()->GetNumberOfPoints(), 0);
+      this->Observer->Clear();
+      this->ExecutiveObserver->Clear();
     }
-    VERIFY(message.find(words) != std::string::npos);
-    VERIFY(first != std::string::npos && message.find("ERROR: ", first + 1) == std::string::npos);
-    VERIFY_EQUAL(this->Filter->GetOutput()->GetNumberOfPoints(), 0);
-    this->Observer->Clear();
-    this->ExecutiveObserver->Clear();
   }
 
   std::vector<unsigned char> CopyMask()

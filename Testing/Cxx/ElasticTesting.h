@@ -66,6 +66,13 @@ struct Simulated
     this->Object->Update();
     const std::string errors = this->Observer->GetErrorMessage();
     VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
+    if (!errors.empty())
+    {
+      // Although nothing has changed.
+      this->Observer->Clear();
+      VERIFY(!this->Object->GetExecutive()->Update());
+      VERIFY(this->Observer->GetError());
+    }
     VERIFY(errors.empty() || this->Object->GetOutput()->GetNumberOfPoints() == 0);
     this->Observer->Clear();
     this->ExecutiveObserver->Clear();

@@ -34,10 +34,10 @@ public:
 
   void Expect(const char* what, const std::string& word)
   {
-    for (int repeat = 0; repeat < 2; ++repeat)
+    this->Subject.Filter->Modified();
+    for (int repeat = 0; repeat < 2; ++repeat) // nothing changes before the second update
     {
-      this->Subject.Filter->Modified();
-      this->Subject.Filter->Update();
+      VERIFY(!this->Subject.Filter->GetExecutive()->Update());
       const int errors = this->Subject.TakeErrors();
       const std::string message = this->Subject.LastError;
       if (errors != 1 || message.find(word) == std::string::npos)
@@ -95,9 +95,6 @@ private:
 
 void TestVolumes(Misuse& misuse)
 {
-  misuse.GetFilter()->SetInputConnection(0, nullptr);
-  misuse.Expect("no volume", "no volume");
-
   for (const Extent& extent : { Extent{ { 0, 9, 0, 8, 3, 3 } }, Extent{ { 0, 0, 0, 8, 0, 3 } },
          Extent{ { 1, 1, 2, 2, 3, 3 } } })
   {
@@ -137,9 +134,6 @@ void TestVolumes(Misuse& misuse)
 
 void TestMeshes(Misuse& misuse)
 {
-  misuse.GetFilter()->SetInputConnection(1, nullptr);
-  misuse.Expect("no deformation", "no deformation");
-
   vtkNew<vtkUnstructuredGrid> empty;
   misuse.GetFilter()->SetDeformationData(empty);
   misuse.Expect("an empty mesh", "no points");
@@ -415,10 +409,5 @@ int TestDeformMisuse(int, char*[])
   auto mesh = misuse.CopyMesh();
   TestExtentAfterFailure(misuse.GetVolume(), mesh);
   TestOutputBeyondAllMemory(misuse.GetVolume(), mesh);
-
-  // Nothing is connected at all.
-  Deformed nothing;
-  nothing.Filter->Update();
-  VERIFY_EQUAL(nothing.TakeErrors(), 1);
   return GetExitCode();
 }

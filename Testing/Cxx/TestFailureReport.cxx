@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a user sees of a failure, where nobody observes errors: one message, at each attempt after a
-// change. What a
-// list of devices to choose from offers.
+// Failures: inputs that are required, one error of the filter at each update that fails, and none
+// of its sources. The list of devices to choose from.
 #include "FilterTesting.h"
 
+#include "vtkCarveVolume.h"
+#include "vtkChainMailDeformation.h"
+#include "vtkCorotationalDeformation.h"
+#include "vtkCutVolume.h"
+#include "vtkMassSpringDeformation.h"
+#include "vtkMaterialFromVolume.h"
+#include "vtkTetGenMesher.h"
+
+#include <vtkInformation.h>
+#include <vtkInformationIntegerKey.h>
 #include <vtkLogger.h>
 #include <vtkOutputWindow.h>
-#include <vtkSphereSource.h>
 #include <vtkStringArray.h>
 #include <vtkStringOutputWindow.h>
 
@@ -15,7 +23,7 @@ using namespace filterTesting;
 namespace
 {
 
-/// What is displayed while it lives.
+/// Collects the text that is displayed while it lives.
 class Display
 {
 public:
@@ -26,23 +34,51 @@ public:
   }
   ~Display() { vtkOutputWindow::SetInstance(nullptr); }
 
+  /// Without the errors in which the executive repeats that a request has failed.
   int CountErrors() const
+  {
+    return this->Count("ERROR: ") - this->Count("returned failure for request");
+  }
+
+private:
+  int Count(const std::string& word) const
   {
     const std::string text = this->Window->GetOutput();
     int count = 0;
-    for (std::size_t at = text.find("ERROR: "); at != std::string::npos;
-         at = text.find("ERROR: ", at + 1))
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
     {
       ++count;
     }
     return count;
   }
 
-private:
   vtkNew<vtkStringOutputWindow> Window;
 };
 
-// Sources complain where they are asked for what they have not: a failure asks them for nothing.
+// The executive reports required inputs that are not connected.
+template <typename AlgorithmT>
+void TestRequiredInputs(int required)
+{
+  vtkNew<AlgorithmT> algorithm;
+  vtkNew<vtkTest::ErrorObserver> observer;
+  algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+  for (int repeat = 0; repeat < 2; ++repeat)
+  {
+    VERIFY(!algorithm->GetExecutive()->Update());
+    VERIFY(observer->GetErrorMessage().find("Input port 0") != std::string::npos);
+    VERIFY(observer->GetErrorMessage().find("is not optional") != std::string::npos);
+    observer->Clear();
+  }
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
+  {
+    VERIFY_EQUAL(
+      algorithm->GetInputPortInformation(port)->Get(vtkAlgorithm::INPUT_IS_OPTIONAL()) == 0,
+      port < required);
+  }
+}
+
+// Sources report errors where they are asked for what they do not have: a filter whose information
+// pass has failed requests nothing.
 void TestSources()
 {
   const auto volume = MakeVolume({ { 5, 12, -9, -2, 3, 9 } });
@@ -66,43 +102,37 @@ void TestMessages(vtkImageData* volume, vtkUnstructuredGrid* mesh)
   const Display display;
   vtkNew<vtkDeformVolumeFilter> filter;
   filter->SetInputData(volume);
-  filter->UpdateInformation();
-  VERIFY_EQUAL(display.CountErrors(), 0); // the deformation may be about to come
-  filter->Update();
-  VERIFY_EQUAL(display.CountErrors(), 1);
-  filter->Modified();
-  filter->Update();
-  VERIFY_EQUAL(display.CountErrors(), 2);
   filter->SetDeformationData(mesh);
-  filter->Update();
-  VERIFY_EQUAL(display.CountErrors(), 2);
-  VERIFY(filter->GetOutput()->GetNumberOfPoints() > 0);
   filter->SetDevice("a device that nobody has");
-  filter->Update();
-  VERIFY_EQUAL(display.CountErrors(), 3);
-  filter->Update(); // as views do that draw again
+  filter->UpdateInformation();
+  VERIFY_EQUAL(display.CountErrors(), 0); // another device may be about to be chosen
+  for (int errors = 1; errors < 4; ++errors)
+  {
+    VERIFY(!filter->GetExecutive()->Update());
+    VERIFY_EQUAL(display.CountErrors(), errors);
+  }
   filter->UpdateWholeExtent();
-  VERIFY_EQUAL(display.CountErrors(), 3);
-
-  // Who observes the executive gets its error all the same.
-  vtkNew<vtkTest::ErrorObserver> observer;
-  filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
-  filter->Modified();
-  filter->Update();
   VERIFY_EQUAL(display.CountErrors(), 4);
-  VERIFY(observer->GetErrorMessage().find("returned failure") != std::string::npos);
+  filter->SetDevice("");
+  VERIFY(filter->GetExecutive()->Update());
+  VERIFY_EQUAL(display.CountErrors(), 4);
+  VERIFY(filter->GetOutput()->GetNumberOfPoints() > 0);
 
-  // Other errors of an executive are displayed.
-  vtkNew<vtkDeformVolumeFilter> other;
-  other->SetInputData(volume);
-  other->SetDevice("a device that nobody has");
-  other->SetDeformationData(mesh);
-  other->Update();
-  VERIFY_EQUAL(display.CountErrors(), 5);
-  vtkNew<vtkSphereSource> surface;
-  other->SetDeformationConnection(surface->GetOutputPort());
-  other->Update();
-  VERIFY(display.CountErrors() > 5);
+  // A failure in the request for extents, where a part of the output is wanted.
+  filter->SetOutputBoundsModeToVolumeBounds();
+  filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "absent");
+  const int part[6] = { 2, 4, 2, 4, 2, 4 };
+  for (int errors = 5; errors < 7; ++errors)
+  {
+    filter->UpdateExtent(part);
+    VERIFY_EQUAL(display.CountErrors(), errors);
+    VERIFY_EQUAL(filter->GetOutput()->GetNumberOfPoints(), 0);
+  }
+  filter->SetInputArrayToProcess(
+    0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::VECTORS);
+  filter->UpdateExtent(part);
+  VERIFY_EQUAL(display.CountErrors(), 6);
+  VERIFY(filter->GetOutput()->GetNumberOfPoints() > 0);
 }
 
 void TestDevices(vtkImageData* volume, vtkUnstructuredGrid* mesh)
@@ -133,6 +163,14 @@ int TestFailureReport(int, char*[])
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
   TestDevices(volume, mesh);
+  TestRequiredInputs<vtkDeformVolumeFilter>(2);
+  TestRequiredInputs<vtkCutVolume>(1);
+  TestRequiredInputs<vtkCarveVolume>(1);
+  TestRequiredInputs<vtkChainMailDeformation>(1);
+  TestRequiredInputs<vtkMassSpringDeformation>(1);
+  TestRequiredInputs<vtkCorotationalDeformation>(1);
+  TestRequiredInputs<vtkMaterialFromVolume>(2);
+  TestRequiredInputs<vtkTetGenMesher>(1);
   TestMessages(volume, mesh);
   TestSources();
   return GetExitCode();

@@ -93,6 +93,13 @@ struct Tested
     this->Filter->Update();
     const std::string errors = this->Observer->GetErrorMessage();
     VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
+    if (!errors.empty())
+    {
+      // Although nothing has changed.
+      this->Observer->Clear();
+      VERIFY(!this->Filter->GetExecutive()->Update());
+      VERIFY(this->Observer->GetError());
+    }
     VERIFY(errors.empty() || this->Filter->GetOutput()->GetNumberOfPoints() == 0);
     this->Observer->Clear();
     this->ExecutiveObserver->Clear();

@@ -396,10 +396,6 @@ void Pipeline::Abort()
   {
     this->CheckChangedExtent(outcome.Output); // there was no such event
   }
-  if (!outcome.Errors.empty())
-  {
-    this->LastMessage = outcome.Errors.back();
-  }
 }
 
 std::string Pipeline::Run()

@@ -97,7 +97,6 @@ private:
 
   Subject Tested;
   vtkSmartPointer<vtkImageData> Shown; // the output, by what has changed
-  std::string LastMessage;
   int Outputs = 0;
   int Errors = 0;
   int References = 0;

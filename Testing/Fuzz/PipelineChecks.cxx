@@ -88,18 +88,13 @@ std::string Pipeline::CheckError(const Outcome& tested, const Outcome& fresh)
       (fresh.Errors.empty() ? "" : fresh.Errors.back()) + "\", the edited one " +
       (tested.Errors.empty() ? "none" : tested.Errors.back());
   }
-  // What has been said is not said again while it stays so.
-  const bool alike = tested.Errors.empty()
-    ? AreAlike(this->LastMessage, fresh.Errors[0])
-    : tested.Errors.size() == 1 && AreAlike(tested.Errors[0], fresh.Errors[0]);
-  if (!alike)
+  if (tested.Errors.size() != 1 || !AreAlike(tested.Errors[0], fresh.Errors[0]))
   {
     return std::to_string(tested.Errors.size()) + " errors, the last \"" +
       (tested.Errors.empty() ? "" : tested.Errors.back()) + "\", but of a fresh filter \"" +
       fresh.Errors[0] + "\"";
   }
-  this->LastMessage = fresh.Errors[0];
-  this->Log << "  error: " << this->LastMessage << '\n';
+  this->Log << "  error: " << fresh.Errors[0] << '\n';
   for (const Outcome* outcome : { &tested, &fresh })
   {
     if (outcome->Output->GetNumberOfPoints() != 0 ||
@@ -114,7 +109,6 @@ std::string Pipeline::CheckError(const Outcome& tested, const Outcome& fresh)
 std::string Pipeline::CheckOutput(const Outcome& tested, const Outcome& fresh, bool divided)
 {
   ++this->Outputs;
-  this->LastMessage.clear();
   const std::string outside = this->CheckChangedExtent(tested.Output);
   if (this->IsLive)
   {

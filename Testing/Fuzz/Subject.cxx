@@ -3,6 +3,7 @@
 
 #include "../Reported.h"
 
+#include <vtkExecutive.h>
 #include <vtkObjectFactory.h>
 
 namespace fuzz
@@ -13,6 +14,10 @@ void Messages::Execute(vtkObject*, unsigned long event, void* data)
   if (event == vtkCommand::ErrorEvent)
   {
     const std::string text = static_cast<const char*>(data);
+    if (text.find("returned failure for request") != std::string::npos)
+    {
+      return; // the executive, after an error of the filter
+    }
     // Without the file, the line and the address of the object.
     const std::size_t start = text.find("): ");
     this->Errors.push_back(start == std::string::npos ? text : text.substr(start + 3));
@@ -38,6 +43,7 @@ Subject::Subject()
   for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
   {
     this->Filter->AddObserver(event, this->Said);
+    this->Filter->GetExecutive()->AddObserver(event, this->Said);
   }
 }
 

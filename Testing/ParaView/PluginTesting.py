@@ -53,7 +53,8 @@ def check(condition, text):
 
 @contextlib.contextmanager
 def messages():
-    """Collects what would be displayed to the user: a list of texts, one for each message."""
+    """Collects what is displayed to the user: a list of texts, one for each message, without those
+    in which the executive repeats that a request has failed."""
     window = vtkOutputWindow.GetInstance()
     collecting = vtkStringOutputWindow()
     verbosity = vtkLogger.GetCurrentVerbosityCutoff()
@@ -67,13 +68,24 @@ def messages():
         vtkLogger.SetStderrVerbosity(verbosity)
         text = collecting.GetOutput()
         starts = r"(?=ERROR: In |Generic Warning: In |(?<!Generic )Warning: In )"
-        texts.extend(part.strip() for part in re.split(starts, text) if part.strip())
+        texts.extend(
+            part.strip()
+            for part in re.split(starts, text)
+            if part.strip() and "returned failure for request" not in part
+        )
 
 
 def check_one_message(texts, words):
     check(len(texts) == 1, f"Not one message but {len(texts)}:\n" + "\n".join(texts))
     for word in words:
         check(word in texts[0], f'"{word}" is missing in: {texts[0]}')
+
+
+def check_messages(texts, words):
+    """One kind of message, which views display at each of their updates."""
+    check(texts, "No message")
+    for text in texts:
+        check_one_message([text], words)
 
 
 def check_silent(texts):

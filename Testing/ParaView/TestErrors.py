@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Misuse through the proxies: one readable message each, a living process, and a filter that works
-once its input is mended."""
+"""Misuse through the proxies: one readable message for each update, a living process, and a filter
+that works once its input is right."""
 
 from paraview import simple
 
 from PluginTesting import (
     bent_lattice,
     check,
+    check_messages,
     check_one_message,
     check_silent,
     deformed,
@@ -33,28 +34,25 @@ def main():
     mesh = bent_lattice(volume)
     bare = simple.TetrahedralLatticeOfVolume(Volume=volume)
 
-    # Nothing is wrong while inputs are still being chosen.
-    with messages() as texts:
-        filter_ = simple.DeformVolume(Volume=volume)
-    check_silent(texts)
-    check_one_message(update(filter_), ["There is no deformation", "input port 1"])
-    check(filter_.GetDataInformation().GetNumberOfPoints() == 0, "An error and an output")
-    filter_.Deformation = mesh
-    check_works(filter_)
+    # An input is missing.
+    for name, given, missing, port in (
+        ("Volume", volume, "Deformation", 1),
+        ("Deformation", mesh, "Volume", 0),
+    ):
+        simple.SetActiveSource(None)
+        with messages():
+            filter_ = simple.DeformVolume(**{name: given})
+        check_messages(update(filter_), [f"Input port {port}", "is not optional"])
+        check(filter_.GetDataInformation().GetNumberOfPoints() == 0, "An error and an output")
+        setattr(filter_, missing, volume if missing == "Volume" else mesh)
+        check_works(filter_)
 
-    # The volume is missing.
-    simple.SetActiveSource(None)
-    with messages() as texts:
-        filter_ = simple.DeformVolume(Deformation=mesh)
-    check_silent(texts)
-    check_one_message(update(filter_), ["There is no volume", "input port 0"])
-    filter_.Volume = volume
-    check_works(filter_)
-
-    # Arrays: none in the mesh, one that is not there, one with a single component.
+    # Arrays: none in the mesh, one that is not there, one with a single component. Nothing is wrong
+    # before an update, as another array may be about to be chosen.
     bare.UpdatePipeline()
-    with messages():
+    with messages() as texts:
         filter_ = simple.DeformVolume(Volume=volume, Deformation=bare)
+    check_silent(texts)
     check_one_message(update(filter_), ["has no active Vectors of its points"])
     filter_.Deformation = mesh
     check_works(filter_)

@@ -29,6 +29,7 @@ ranks = []
 for path in glob.glob(f"{glob.escape(log)}.*"):
     with open(path, encoding="utf-8", errors="replace") as of_rank:
         ranks.append(of_rank.read())
-told = [len(re.findall(r"ERR\|", text)) for text in ranks]
-if told != [2] * RANKS:
-    sys.exit(f"Not two errors on each rank, but {told}: {ranks}")
+# Without those of the executives.
+counts = [len(re.findall(r"ERR\|(?!.*returned failure for request)", text)) for text in ranks]
+if counts != [2] * RANKS:
+    sys.exit(f"Not two errors on each rank, but {counts}: {ranks}")

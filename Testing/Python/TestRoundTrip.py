@@ -100,16 +100,14 @@ def test_errors():
     deform = deformvolume_vtk.vtkDeformVolumeFilter()
     messages = record_errors(deform)
     deform.SetInputData(image)
-    deform.Update()
-    assert len(messages) == 1 and "no deformation" in messages[0], messages
     deform.SetDeformationData(make_mesh(image, (0, 0, 0)))
     deform.SetDevice("there is no such device")
     deform.Update()
-    assert len(messages) == 2 and "there is no such device" in messages[1], messages
+    assert len(messages) == 1 and "there is no such device" in messages[0], messages
     assert deform.GetOutput().GetNumberOfPoints() == 0
     deform.SetDevice("")
     deform.Update()
-    assert len(messages) == 2, messages
+    assert len(messages) == 1, messages
     assert np.array_equal(to_numpy(deform.GetOutput(), "value"), values)
 
 
