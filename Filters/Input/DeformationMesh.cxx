@@ -143,9 +143,7 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
     std::string what = name;
     what.front() = static_cast<char>(std::toupper(what.front()));
     throw Error(what + " has no " + wanted +
-      ". Choose the displacements with SetInputArrayToProcess(0, 1, 0, "
-      "vtkDataObject::FIELD_ASSOCIATION_POINTS, name)" +
-      alternative);
+      ". Choose the displacements with SetInputArrayToProcess()" + alternative);
   }
   if (array->GetNumberOfComponents() != 3)
   {

@@ -177,17 +177,17 @@ void CheckVolume(const ImageGeometry& volume)
 {
   if (GetNumberOfPoints(volume.PointExtent) == 0)
   {
-    throw Error("The volume on input port 0 is empty. Connect a vtkImageData with voxels.");
+    throw Error("The volume is empty. Connect a vtkImageData with voxels.");
   }
   for (int axis = 0; axis < 3; ++axis)
   {
     if (GetSize(volume.PointExtent, axis) < 2)
     {
-      throw Error(std::string("The volume on input port 0 has one voxel only on axis ") +
-        "xyz"[axis] + ". Give a volume of at least two voxels on each axis.");
+      throw Error(std::string("The volume has one voxel only on axis ") + "xyz"[axis] +
+        ". Give a volume of at least two voxels on each axis.");
     }
   }
-  CheckTransform(volume, "the volume on input port 0");
+  CheckTransform(volume, "the volume");
 }
 
 } // namespace deformvolume

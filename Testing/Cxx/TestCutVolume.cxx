@@ -74,7 +74,10 @@ void TestMisuse()
   auto mesh = MakeMesh(volume);
   cut.Filter->SetSheetData(MakePlaneX(volume, 2.5));
   cut.Filter->SetDeformationData(mesh);
-  cut.Fails("The deformation mesh has no active Vectors");
+  // Without the ports of another class.
+  cut.Fails(
+    "The deformation mesh has no active Vectors of its points. Choose the displacements with "
+    "SetInputArrayToProcess(),");
   SetDisplacements(mesh, Shift(0, 0, 0));
   mesh->Modified();
   cut.Filter->SetRestData(MakeMesh(volume, 4));

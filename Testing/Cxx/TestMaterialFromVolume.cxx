@@ -181,7 +181,7 @@ void TestMisuse()
   vtkNew<vtkImageData> flat;
   flat->SetDimensions(5, 5, 1);
   Tested onFlat(mesh, flat);
-  VERIFY(Holds(onFlat.TryUpdate(), "two voxels"));
+  VERIFY(Holds(onFlat.TryUpdate(), "The volume has one voxel only on axis z"));
   vtkNew<vtkUnstructuredGrid> hexahedron;
   vtkNew<vtkPoints> points;
   points->SetNumberOfPoints(8);
