@@ -8,8 +8,11 @@
 #include "VTKThreads.h"
 
 #include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationInformationVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointSet.h"
@@ -187,11 +190,15 @@ int vtkChainMailDeformation::FillInputPortInformation(int port, vtkInformation* 
 }
 
 int vtkChainMailDeformation::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
+  // The executive has copied what the volume announces, without the direction but with the scalars.
   constexpr int components = 3;
-  vtkDataObject::SetPointDataActiveScalarInfo(
-    output->GetInformationObject(0), VTK_FLOAT, components);
+  vtkInformation* info = output->GetInformationObject(0);
+  info->CopyEntry(input[0]->GetInformationObject(0), vtkDataObject::DIRECTION());
+  info->Remove(vtkDataObject::POINT_DATA_VECTOR());
+  vtkDataObject::SetActiveAttributeInfo(info, vtkDataObject::FIELD_ASSOCIATION_POINTS,
+    vtkDataSetAttributes::VECTORS, "Displacement", VTK_FLOAT, components, -1);
   return 1;
 }
 

@@ -185,16 +185,6 @@ int vtkDeformVolumeFilter::RequestInformation(
   outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   // The time is known after this pass only.
   outInfo->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
-  vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
-    volumeInfo, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
-  if (scalars && scalars->Has(vtkDataObject::FIELD_ARRAY_TYPE()))
-  {
-    const int components = scalars->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
-      ? scalars->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
-      : 1;
-    vtkDataObject::SetPointDataActiveScalarInfo(
-      outInfo, scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()), components);
-  }
   return 1;
 }
 

@@ -16,7 +16,6 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleVectorKey.h"
-#include "vtkInformationInformationVectorKey.h"
 #include "vtkInformationIntegerVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -151,22 +150,13 @@ vtkIdType vtkVolumeEditAlgorithm::GetNumberOfSwitchedOffTetrahedra()
 }
 
 //------------------------------------------------------------------------------
-vtkTypeBool vtkVolumeEditAlgorithm::ProcessRequest(
-  vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+int vtkVolumeEditAlgorithm::RequestInformation(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
-  // vtkImageAlgorithm is not asked for information: it would crash where the array of displacements
-  // is chosen and there is no deformation.
-  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
-  {
-    return this->Superclass::ProcessRequest(request, input, output);
-  }
-  vtkInformation* outInfo = output->GetInformationObject(0);
-  vtkInformation* volume = input[0]->GetInformationObject(0);
-  outInfo->CopyEntry(volume, vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
-  outInfo->CopyEntry(volume, vtkDataObject::ORIGIN());
-  outInfo->CopyEntry(volume, vtkDataObject::SPACING());
-  outInfo->CopyEntry(volume, vtkDataObject::DIRECTION());
-  outInfo->CopyEntry(volume, vtkDataObject::POINT_DATA_VECTOR(), 1);
+  // The executive copies all else that the volume announces. vtkImageAlgorithm would crash where
+  // the array of displacements is chosen and there is no deformation.
+  output->GetInformationObject(0)->CopyEntry(
+    input[0]->GetInformationObject(0), vtkDataObject::DIRECTION());
   return 1;
 }
 

@@ -159,7 +159,7 @@ protected:
 
   int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** input,
     vtkInformationVector* output, int requestFromOutputPort, vtkMTimeType* mtime) override;
-  vtkTypeBool ProcessRequest(
+  int RequestInformation(
     vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(

@@ -4,6 +4,12 @@
 #include "ChainMailTesting.h"
 
 #include <vtkCallbackCommand.h>
+#include <vtkDataObject.h>
+#include <vtkDataSetAttributes.h>
+#include <vtkInformation.h>
+#include <vtkInformationDoubleVectorKey.h>
+#include <vtkInformationIntegerKey.h>
+#include <vtkInformationStringKey.h>
 #include <vtkLongLongArray.h>
 #include <vtkShortArray.h>
 #include <vtkUnsignedCharArray.h>
@@ -78,6 +84,30 @@ void TestWorldForm()
   VERIFY_EQUAL(dragged.Filter->GetLargestViolation(), 0.0);
   VERIFY(dragged.Filter->GetNumberOfSweeps() > 0);
   VERIFY(!dragged.Filter->GetSummary().empty());
+}
+
+// What is announced are the arrays of the output, not those of the volume.
+void TestAnnouncement()
+{
+  const auto volume = MakeVolume({ { 0, 4, 0, 4, 0, 4 } });
+  SetObliqueDirection(volume);
+  Dragged dragged(volume);
+  dragged.Filter->UpdateInformation();
+  vtkInformation* announced = dragged.Filter->GetOutputInformation(0);
+  const auto find = [&](int attribute)
+  {
+    return vtkDataObject::GetActiveFieldInformation(
+      announced, vtkDataObject::FIELD_ASSOCIATION_POINTS, attribute);
+  };
+  VERIFY(!find(vtkDataSetAttributes::SCALARS));
+  vtkInformation* vectors = find(vtkDataSetAttributes::VECTORS);
+  VERIFY(vectors && std::string(vectors->Get(vtkDataObject::FIELD_NAME())) == "Displacement");
+  VERIFY(vectors && vectors->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()) == 3);
+  VERIFY(announced->Has(vtkDataObject::DIRECTION()) &&
+    announced->Get(vtkDataObject::DIRECTION())[1] ==
+      volume->GetDirectionMatrix()->GetElement(0, 1));
+  dragged.Filter->Update();
+  VERIFY(!dragged.Filter->GetOutput()->GetPointData()->GetScalars());
 }
 
 void TestKept()
@@ -339,6 +369,7 @@ void TestStates()
 int TestChainMailDeformation(int, char*[])
 {
   TestWorldForm();
+  TestAnnouncement();
   TestKept();
   TestLabels<vtkUnsignedCharArray>(false);
   TestLabels<vtkLongLongArray>(false);

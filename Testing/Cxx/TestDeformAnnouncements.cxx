@@ -3,12 +3,17 @@
 // volume, or an error or a warning says what is wrong.
 #include "FilterTesting.h"
 
+#include "vtkCutVolume.h"
+
 #include <vtkImageAlgorithm.h>
 #include <vtkImageClip.h>
 #include <vtkInformation.h>
+#include <vtkInformationDoubleVectorKey.h>
 #include <vtkInformationVector.h>
 #include <vtkObjectFactory.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
+
+#include <algorithm>
 
 using namespace filterTesting;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -196,11 +201,51 @@ void TestExtents()
   VERIFY_EQUAL(careless.Subject.Filter->GetNumberOfCoveredVoxels(), 20 * 30 * 40);
 }
 
+// A filter announces the geometry and the scalars of its output.
+void TestAnnounced(vtkImageAlgorithm* filter)
+{
+  const auto volume =
+    MakeImage({ { 2, 9, 0, 8, -3, 7 } }, glm::dvec3(2.0, 1.5, 0.5), glm::dvec3(10.0, -5.0, 3.0));
+  SetObliqueDirection(volume);
+  AddScalars<short>(volume, "value", [](const glm::dvec3& p) { return p.x; });
+  const auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  filter->SetInputData(volume);
+  if (auto* deform = vtkDeformVolumeFilter::SafeDownCast(filter))
+  {
+    deform->SetDeformationData(mesh);
+  }
+  for (const int type : { VTK_SHORT, VTK_DOUBLE })
+  {
+    if (type == VTK_DOUBLE)
+    {
+      AddScalars<double>(volume, "value", [](const glm::dvec3& p) { return p.y; });
+    }
+    filter->UpdateInformation();
+    vtkInformation* announced = filter->GetOutputInformation(0);
+    Extent extent;
+    announced->Get(Pipeline::WHOLE_EXTENT(), extent.data());
+    VERIFY_EQUAL(vtkImageData::GetScalarType(announced), type);
+    VERIFY_EQUAL(vtkImageData::GetNumberOfScalarComponents(announced), 1);
+    filter->Update();
+    vtkImageData* output = filter->GetOutput();
+    VERIFY_EQUAL(extent, GetExtent(output));
+    VERIFY_EQUAL(output->GetScalarType(), type);
+    const auto isAnnounced = [&](vtkInformationDoubleVectorKey* key, const double* values, int size)
+    { return announced->Has(key) && std::equal(values, values + size, announced->Get(key)); };
+    VERIFY(isAnnounced(vtkDataObject::ORIGIN(), output->GetOrigin(), 3));
+    VERIFY(isAnnounced(vtkDataObject::SPACING(), output->GetSpacing(), 3));
+    VERIFY(isAnnounced(vtkDataObject::DIRECTION(), output->GetDirectionMatrix()->GetData(), 9));
+  }
+}
+
 } // namespace
 
 int TestDeformAnnouncements(int, char*[])
 {
   TestGeometry();
+  TestAnnounced(vtkNew<vtkDeformVolumeFilter>());
+  TestAnnounced(vtkNew<vtkCutVolume>());
   TestExtents();
   return GetExitCode();
 }
