@@ -69,11 +69,6 @@ void DisplacementSource::SetMesh(const Tetrahedron* tetrahedra, std::size_t numb
 void DisplacementSource::SendTetrahedra(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes)
 {
-  static_assert(DEFORMVOLUME_NODE_PLACES == 2, "as the message says");
-  if (numberOfNodes > std::size_t{ 1 } << 30)
-  {
-    throw Error("The deformation mesh has more than 2^30 nodes. Use a coarser mesh.");
-  }
   this->NumberOfTetrahedra = numberOfTetrahedra;
   const std::vector<Tetrahedron> places = NameNodePlaces(tetrahedra, numberOfTetrahedra);
   this->Tetrahedra =

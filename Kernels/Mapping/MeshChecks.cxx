@@ -2,9 +2,8 @@
 #include "MeshChecks.h"
 
 #include "Error.h"
-#include "VertexRuns.h"
+#include "KernelParameters.h"
 
-#include <algorithm>
 #include <string>
 
 namespace deformvolume
@@ -16,6 +15,11 @@ void CheckMesh(
   if (!numberOfTetrahedra || !numberOfNodes || !tetrahedra)
   {
     throw Error("The deformation mesh is empty.");
+  }
+  static_assert(DEFORMVOLUME_NODE_PLACES == 2, "as the message says");
+  if (numberOfNodes > std::size_t{ 1 } << 30)
+  {
+    throw Error("The deformation mesh has more than 2^30 nodes. Use a coarser mesh.");
   }
   CheckTetrahedra(tetrahedra, 0, numberOfTetrahedra, numberOfNodes);
 }

@@ -14,8 +14,8 @@ namespace deformvolume
 // The kernels trust these indices: a wrong one would read beyond a buffer. (CheckRuns is in
 // VertexRuns.h.)
 
-/// Throws an Error where a mesh has no tetrahedra or no nodes, or a tetrahedron has a node that is
-/// none.
+/// Throws an Error where a mesh has no tetrahedra, no nodes or more than 2^30, or a tetrahedron has
+/// a node that is none.
 void CheckMesh(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
 

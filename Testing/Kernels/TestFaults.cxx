@@ -4,10 +4,12 @@
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 #include "FakeDriver.h"
+#include "GuardedCall.h"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <new>
 
 using namespace deformvolume;
 
@@ -105,6 +107,24 @@ TEST_F(Faults, ArraysThatDoNotFit)
   }
   this->Deformer.SetArrays(this->Arrays);
   this->ExpectRight();
+}
+
+TEST_F(Faults, RefusedMeshChangesNothing)
+{
+  Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
+  const std::vector<VertexLink> links(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()));
+  const Tetrahedron tetrahedron{ { 0, 1, 2, 3 } };
+  const std::size_t tooMany = (std::size_t{ 1 } << 30) + 1;
+  EXPECT_THROW(this->Deformer.SetMesh(&tetrahedron, 1, tooMany, links.data()), Error);
+  this->ExpectRight();
+}
+
+TEST_F(Faults, HostMemoryThatIsShort)
+{
+  bool isClean = false;
+  EXPECT_THROW(
+    CallGuarded([] { throw std::bad_alloc(); }, [&] { isClean = true; }), std::bad_alloc);
+  EXPECT_TRUE(isClean);
 }
 
 // Links for which the voxel grid has made no room: there is no mesh then, and another deformation
