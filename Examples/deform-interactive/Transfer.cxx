@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Transfer.h"
 
+#include "OtsuThreshold.h"
+
 #include <vtkArrayDispatch.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkDataArray.h>
@@ -84,36 +86,7 @@ double Histogram::GetValue(double bin) const
 
 double Histogram::FindThreshold() const
 {
-  double all = 0.0;
-  double sum = 0.0;
-  for (int bin = 0; bin < NumberOfBins; ++bin)
-  {
-    all += this->Counts[static_cast<std::size_t>(bin)];
-    sum += bin * this->Counts[static_cast<std::size_t>(bin)];
-  }
-  double below = 0.0;
-  double sumBelow = 0.0;
-  double most = -1.0;
-  int first = 0;
-  int last = 0; // of all that are best
-  for (int bin = 0; bin + 1 < NumberOfBins; ++bin)
-  {
-    below += this->Counts[static_cast<std::size_t>(bin)];
-    sumBelow += bin * this->Counts[static_cast<std::size_t>(bin)];
-    const double above = all - below;
-    if (below > 0.0 && above > 0.0)
-    {
-      const double apart = sumBelow / below - (sum - sumBelow) / above;
-      const double variance = below * above * apart * apart;
-      if (variance > most)
-      {
-        most = variance;
-        first = bin + 1;
-      }
-      last = variance == most ? bin + 1 : last;
-    }
-  }
-  return this->GetValue(0.5 * (first + last));
+  return this->GetValue(deformvolume::FindOtsuThreshold(this->Counts));
 }
 
 double Histogram::FindPercentile(double least, double part) const

@@ -4,7 +4,6 @@
 #define DeformVolumeBodyIsovalue_h
 
 #include <array>
-#include <vector>
 
 class vtkDataArray;
 class vtkImageData;
@@ -12,13 +11,8 @@ class vtkImageData;
 namespace deformvolume
 {
 
-/// Otsu, "A threshold selection method from gray-level histograms", 1979: the threshold between low
-/// and high at which the variance between the two classes is greatest; the middle where several
-/// thresholds are. Values that are not finite do not count.
-double OtsuThreshold(const std::vector<float>& values, double low, double high);
-
 /// Otsu's threshold for the means of blocks of voxels, of about the size `resolution` in world
-/// units. Hidden voxels do not count. Throws Error where there is none.
+/// units. Voxels that are hidden or not finite do not count. Throws Error where there is none.
 double FindIsovalue(vtkImageData* volume, vtkDataArray* array, double resolution);
 
 /// The least and the greatest of the finite values that are not hidden; the first is greater than

@@ -3,7 +3,6 @@
 
 #include "DisjointSets.h"
 #include "MaskArray.h"
-#include "ParallelFor.h"
 
 #include "vtkArrayDispatch.h"
 #include "vtkDataArrayRange.h"
@@ -13,36 +12,34 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <type_traits>
 
 namespace deformvolume
 {
 namespace
 {
 
-// Calls run(begin, end) for the runs of one row.
-template <typename IsBody, typename Run>
-void ForEachRun(int length, IsBody&& isBody, Run&& run)
+// Whether a value is one of the labels, or any other than 0 where no labels are given.
+template <typename T>
+bool IsLabel(T value, const std::vector<vtkTypeInt64>& labels)
 {
-  int begin = -1;
-  for (int x = 0; x < length; ++x)
+  if (!std::isfinite(static_cast<double>(value)))
   {
-    if (isBody(x))
-    {
-      begin = begin < 0 ? x : begin;
-    }
-    else if (begin >= 0)
-    {
-      run(begin, x);
-      begin = -1;
-    }
+    return false;
   }
-  if (begin >= 0)
+  if (labels.empty())
   {
-    run(begin, length);
+    return value != T(0);
   }
+  return std::any_of(labels.begin(), labels.end(),
+    [value](vtkTypeInt64 label)
+    {
+      return std::is_integral<T>::value ? static_cast<vtkTypeInt64>(value) == label
+                                        : static_cast<double>(value) == static_cast<double>(label);
+    });
 }
 
-// Counts the runs first and then writes them, so that no thread allocates memory.
 struct FindRuns
 {
   template <typename Array>
@@ -50,62 +47,36 @@ struct FindRuns
     BodyVoxels& body) const
   {
     const auto values = vtk::DataArrayTupleRange(array);
-    using Value = vtk::GetAPIType<Array>;
-    const vtkIdType length = body.Size[0];
-    auto forEachRun = [&](vtkIdType row, auto&& run)
+    const auto isBody = [&](vtkIdType voxel)
     {
-      const vtkIdType start = row * length;
-      auto isHidden = [&](int x)
-      { return ghosts && (ghosts[start + x] & vtkDataSetAttributes::HIDDENPOINT); };
-      if (criterion.ByLabels)
-      {
-        ForEachRun(
-          body.Size[0],
-          [&](int x)
-          {
-            const Value value = values[start + x][0];
-            return IsLabel(value, criterion.Labels) && !isHidden(x);
-          },
-          run);
-      }
-      else
-      {
-        ForEachRun(
-          body.Size[0],
-          [&](int x)
-          {
-            const double value = static_cast<double>(values[start + x][0]);
-            return value >= criterion.Isovalue && std::isfinite(value) && !isHidden(x);
-          },
-          run);
-      }
+      const vtk::GetAPIType<Array> value = values[voxel][0];
+      const double number = static_cast<double>(value);
+      return (criterion.ByLabels ? IsLabel(value, criterion.Labels)
+                                 : number >= criterion.Isovalue && std::isfinite(number)) &&
+        !(ghosts && (ghosts[voxel] & vtkDataSetAttributes::HIDDENPOINT));
     };
-    const vtkIdType rows = body.NumberOfRows();
-    ParallelFor(0, rows, 0,
-      [&](vtkIdType begin, vtkIdType end)
+    vtkIdType voxel = 0;
+    for (vtkIdType row = 0; row < body.NumberOfRows(); ++row)
+    {
+      bool isRun = false;
+      for (int x = 0; x < body.Size[0]; ++x, ++voxel)
       {
-        for (vtkIdType row = begin; row < end; ++row)
+        if (!isBody(voxel))
         {
-          forEachRun(row, [&](int, int) { ++body.RowStarts[row + 1]; });
+          isRun = false;
         }
-      });
-    std::partial_sum(body.RowStarts.begin(), body.RowStarts.end(), body.RowStarts.begin());
-    body.Runs.resize(body.RowStarts.back());
-    ParallelFor(0, rows, 0,
-      [&](vtkIdType begin, vtkIdType end)
-      {
-        for (vtkIdType row = begin; row < end; ++row)
+        else if (isRun)
         {
-          VoxelRun* next = body.Runs.data() + body.RowStarts[row];
-          forEachRun(row,
-            [&](int first, int last)
-            {
-              next->Begin = first;
-              next->End = last;
-              ++next;
-            });
+          ++body.Runs.back().End;
         }
-      });
+        else
+        {
+          isRun = true;
+          body.Runs.push_back({ x, x + 1, 0 });
+        }
+      }
+      body.RowStarts[row + 1] = static_cast<vtkIdType>(body.Runs.size());
+    }
   }
 };
 

@@ -7,10 +7,7 @@
 
 #include <glm/vec3.hpp>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <type_traits>
 #include <vector>
 
 class vtkDataArray;
@@ -55,26 +52,6 @@ struct BodyVoxels
   vtkIdType CountVoxels(PieceKind kind) const;
   vtkIdType CountPieces(PieceKind kind) const;
 };
-
-/// Whether a value is one of the labels, or any other than 0 where no labels are given.
-template <typename T>
-bool IsLabel(T value, const std::vector<vtkTypeInt64>& labels)
-{
-  if (!std::isfinite(static_cast<double>(value)))
-  {
-    return false;
-  }
-  if (labels.empty())
-  {
-    return value != T(0);
-  }
-  return std::any_of(labels.begin(), labels.end(),
-    [value](vtkTypeInt64 label)
-    {
-      return std::is_integral<T>::value ? static_cast<vtkTypeInt64>(value) == label
-                                        : static_cast<double>(value) == static_cast<double>(label);
-    });
-}
 
 /// The voxels that fulfil the criterion, are finite and not hidden by vtkGhostType, without pieces.
 BodyVoxels FindBodyVoxels(
