@@ -126,30 +126,19 @@ Outcome Run(
   }
 }
 
-// TetGen's output without the report of its progress.
-std::string Complaint(const std::string& text)
+// The line of a text at a position.
+std::string LineAt(const std::string& text, std::size_t position)
 {
-  std::istringstream lines(text);
-  std::string line;
-  std::string complaint;
-  while (std::getline(lines, line))
-  {
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    if (first == std::string::npos)
-    {
-      continue;
-    }
-    line = line.substr(first, line.find_last_not_of(" \t\r") + 1 - first);
-    const bool progress = line.find("seconds:") != std::string::npos ||
-      line.compare(0, 7, "Opening") == 0 || line.compare(0, 7, "Writing") == 0 ||
-      line.compare(0, 16, "terminate called") == 0 ||
-      (line.size() > 3 && line.compare(line.size() - 3, 3, "...") == 0);
-    if (!progress && complaint.size() < 600)
-    {
-      complaint += (complaint.empty() ? "" : " ") + line;
-    }
-  }
-  return complaint;
+  const std::size_t begin = text.rfind('\n', position) + 1;
+  return text.substr(begin, std::min<std::size_t>(600, text.find('\n', position) - begin));
+}
+
+// What the program said last, apart from the C++ library's words on an abort.
+std::string LastLine(const std::string& text)
+{
+  const std::size_t last = text.find_last_not_of(" \t\r\n");
+  const std::string line = last == std::string::npos ? "" : LineAt(text, last);
+  return line.find("terminate called") == std::string::npos ? line : "";
 }
 
 void WriteSurface(const std::filesystem::path& path, vtkPolyData* surface,
@@ -193,67 +182,60 @@ void WriteSurface(const std::filesystem::path& path, vtkPolyData* surface,
   }
 }
 
-std::ifstream OpenResult(const std::filesystem::path& path)
+// Calls read(stream) for the lines after the first one, which begins with their number.
+template <typename Read>
+void ReadLines(const std::filesystem::path& path, Read&& read)
 {
-  std::ifstream file(path);
+  std::ifstream file;
+  file.exceptions(std::ios::failbit | std::ios::badbit);
   file.imbue(std::locale::classic());
-  return file;
+  file.open(path);
+  vtkIdType count;
+  std::string rest;
+  file >> count;
+  std::getline(file, rest);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    vtkIdType index;
+    file >> index;
+    read(file);
+    std::getline(file, rest);
+  }
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> ReadMesh(const std::filesystem::path& folder)
 {
-  const Error incomplete("TetGen's result cannot be read: its files are missing or cut off. Is the "
-                         "disk full, or is the program given as TetGen another one?");
-  std::ifstream nodes = OpenResult(folder / "surface.1.node");
-  std::string rest;
-  vtkIdType count = 0;
-  vtkIdType firstIndex = 0;
-  if (!(nodes >> count) || !std::getline(nodes, rest) || count < 0)
-  {
-    throw incomplete;
-  }
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    vtkIdType index;
-    double point[3];
-    if (!(nodes >> index >> point[0] >> point[1] >> point[2]) || !std::getline(nodes, rest))
-    {
-      throw incomplete;
-    }
-    if (i == 0)
-    {
-      firstIndex = index;
-    }
-    points->InsertNextPoint(point);
-  }
-
-  std::ifstream elements = OpenResult(folder / "surface.1.ele");
-  const vtkIdType numberOfPoints = count;
-  if (!(elements >> count) || !std::getline(elements, rest))
-  {
-    throw incomplete;
-  }
   vtkNew<vtkCellArray> cells;
-  for (vtkIdType i = 0; i < count; ++i)
+  try
   {
-    vtkIdType index;
-    vtkIdType ids[4];
-    if (!(elements >> index >> ids[0] >> ids[1] >> ids[2] >> ids[3]) ||
-      !std::getline(elements, rest))
-    {
-      throw incomplete;
-    }
-    for (vtkIdType& id : ids)
-    {
-      id -= firstIndex;
-      if (id < 0 || id >= numberOfPoints)
+    ReadLines(folder / "surface.1.node",
+      [&](std::istream& line)
       {
-        throw incomplete;
-      }
-    }
-    cells->InsertNextCell(4, ids);
+        double point[3];
+        line >> point[0] >> point[1] >> point[2];
+        points->InsertNextPoint(point);
+      });
+    ReadLines(folder / "surface.1.ele",
+      [&](std::istream& line)
+      {
+        vtkIdType ids[4];
+        for (vtkIdType& id : ids)
+        {
+          line >> id;
+          if (id < 0 || id >= points->GetNumberOfPoints())
+          {
+            line.setstate(std::ios::failbit);
+          }
+        }
+        cells->InsertNextCell(4, ids);
+      });
+  }
+  catch (const std::ios::failure&)
+  {
+    throw Error("TetGen's result cannot be read: its files are missing or cut off. Is the disk "
+                "full, or is the program given as TetGen another one?");
   }
   auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
   mesh->SetPoints(points);
@@ -298,11 +280,11 @@ vtkSmartPointer<vtkUnstructuredGrid> RunTetGen(
     {
       throw SurfaceRejected("TetGen cannot fill the surface, because it intersects itself. TetGen "
                             "says: " +
-        Complaint(report.substr(report.rfind('\n', found) + 1)) +
+        LineAt(report, found) +
         " Fix the surface, or for a volume change the isovalue, TargetEdgeLength or "
         "SmoothingIterations.");
     }
-    const std::string said = Complaint(outcome.Text);
+    const std::string said = LastLine(outcome.Text);
     throw SurfaceRejected("TetGen failed (" + outcome.Failure + ")." +
       (said.empty() ? "" : " It says: " + said) +
       " For a volume, another TargetEdgeLength or SmoothingIterations may help.");
