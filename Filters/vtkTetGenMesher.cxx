@@ -182,16 +182,6 @@ vtkTypeInt64 vtkTetGenMesher::GetLabel(int index)
   return index >= 0 && index < this->GetNumberOfLabels() ? this->Labels[index] : 0;
 }
 
-void vtkTetGenMesher::SetPieceMode(int mode)
-{
-  mode = mode == LARGEST_PIECE ? LARGEST_PIECE : ALL_PIECES;
-  if (mode != this->PieceMode)
-  {
-    this->PieceMode = mode;
-    this->Modified();
-  }
-}
-
 void vtkTetGenMesher::AddRefinementSphere(
   double x, double y, double z, double radius, double edgeLength)
 {

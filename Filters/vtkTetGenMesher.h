@@ -41,9 +41,8 @@
  * No body at the isovalue or with the labels; a volume of one slice; a surface that is empty, open,
  * flat, not manifold, not finite or that intersects itself; an edge length or refinement spheres
  * that ask for more than 20 million tetrahedra; a refinement sphere that is not valid; TetGen
- * missing, failing (its own message is then quoted) or exceeding TimeLimit; a result without
- * tetrahedra. Each is one vtkErrorMacro, the output is then empty, and the filter works again once
- * the cause is mended.
+ * missing, failing (the error gives its exit status) or exceeding TimeLimit; a result without
+ * tetrahedra. Each is one vtkErrorMacro, and the output is then empty.
  *
  * @sa vtkLatticeTetrahedraSource vtkDeformVolumeFilter
  */
@@ -85,7 +84,7 @@ public:
   enum PieceModes
   {
     ALL_PIECES = 0,
-    LARGEST_PIECE = 2
+    LARGEST_PIECE = 1
   };
 
   ///@{
@@ -132,10 +131,9 @@ public:
   /**
    * What happens to a body of several pieces: each is meshed (ALL_PIECES), or the piece with most
    * voxels is and the others are left out (LARGEST_PIECE). Pieces that are closer together than the
-   * mesh reaches beyond them are meshed as one. Volumes only. Default: ALL_PIECES, which every
-   * other number stands for as well.
+   * mesh reaches beyond them are meshed as one. Volumes only. Default: ALL_PIECES.
    */
-  virtual void SetPieceMode(int mode);
+  vtkSetClampMacro(PieceMode, int, ALL_PIECES, LARGEST_PIECE);
   vtkGetMacro(PieceMode, int);
   void SetPieceModeToAllPieces() { this->SetPieceMode(ALL_PIECES); }
   void SetPieceModeToLargestPiece() { this->SetPieceMode(LARGEST_PIECE); }

@@ -64,8 +64,8 @@ void MakeGrid(Grid& grid, const BodyVoxels& body, const SurfaceParameters& param
     {
       std::ostringstream text;
       text << "The body's surface cannot be moved out by a margin of " << parameters.Margin
-           << " world units: that is too far for a volume of this size. Set a smaller Margin or "
-              "TargetEdgeLength.";
+           << " world units: that takes a grid of more than 500 million nodes, " << grid.Distance
+           << " apart. Set another Margin or TargetEdgeLength.";
       throw Error(text.str());
     }
     grid.Border[axis] = static_cast<int>(border);

@@ -97,7 +97,6 @@ void VerifyHeld(vtkTetGenMesher* mesher, vtkImageData* volume, vtkIdType specks)
   const bodyChecks::Count count = bodyChecks::CountVoxels(volume, 50.0, mesher->GetOutput());
   VERIFY(mesher->GetNumberOfSpeckVoxels() == specks);
   VERIFY(mesher->GetNumberOfBodyVoxels() == count.Body - specks);
-  // One of 100,000 is allowed, of bodies of this size not even one.
   VERIFY(mesher->GetNumberOfBodyVoxelsOutside() == 0);
   VERIFY(count.Outside <= specks);
   const Summary summary = Summarize(mesher->GetOutput());

@@ -38,8 +38,8 @@ int TestTetGenMesherScans(int, char*[])
                 << mesher->GetNumberOfSpeckVoxels() << '\n';
       VERIFY(mesher->GetNumberOfBodyVoxels() + mesher->GetNumberOfSpeckVoxels() == count.Body);
       VERIFY(mesher->GetNumberOfSpeckVoxels() < 1e-3 * count.Body);
-      VERIFY(mesher->GetNumberOfBodyVoxelsOutside() <= 1e-5 * count.Body);
-      VERIFY(count.Outside <= 1e-5 * count.Body + mesher->GetNumberOfSpeckVoxels());
+      VERIFY(mesher->GetNumberOfBodyVoxelsOutside() == 0);
+      VERIFY(count.Outside <= mesher->GetNumberOfSpeckVoxels());
     }
   }
   return Failures() ? EXIT_FAILURE : EXIT_SUCCESS;
