@@ -20,6 +20,7 @@ int main(int argc, char* argv[])
   RegisterComparison(size);
   RegisterNodes(size);
   RegisterReadback(size);
+  RegisterPublished(size);
   RegisterProbe(size);
   RegisterPoses(size);
   RegisterTightMeshes(size);

@@ -68,11 +68,10 @@ const std::map<std::string, PeerMaker> PeerMakers = {
     { return MakeGridReslice(volume, CoarseNodes, GridDirection::Solved); } },
 };
 
-Contestant<ComparisonStage> MakeCaseContestant(
-  const std::string& name, Pose pose, bool warmUp = true)
+Contestant<ComparisonStage> MakeCaseContestant(const std::string& name, Pose pose)
 {
   return { name,
-    [name, pose](ComparisonStage& stage) { return Measure(stage.GetCase(name), pose); }, warmUp };
+    [name, pose](ComparisonStage& stage) { return Measure(stage.GetCase(name), pose); } };
 }
 
 Contestant<ComparisonStage> MakePeerContestant(
@@ -89,6 +88,16 @@ Contestant<ComparisonStage> MakePeerContestant(
     },
     warmUp };
 }
+
+// The filter beside one peer.
+std::shared_ptr<ComparisonStage> MakeStageOfTwo(
+  const char* peer, std::unique_ptr<Peer> (*make)(vtkImageData*, int))
+{
+  auto stage = std::make_shared<ComparisonStage>();
+  stage->Cases["exact"] = std::make_unique<BenchmarkCase>(stage->Volume, CoarseNodes);
+  stage->Peers[peer] = make(stage->Volume, CoarseNodes);
+  return stage;
+}
 }
 
 void RegisterComparison(const EvaluationSize& size)
@@ -98,7 +107,7 @@ void RegisterComparison(const EvaluationSize& size)
     std::vector<Contestant<ComparisonStage>> contestants;
     for (const NamedCase& named : MakeNamedCases(size.Quick))
     {
-      contestants.push_back(MakeCaseContestant(named.Name, pose, size.GetWarmUp(named.Resampler)));
+      contestants.push_back(MakeCaseContestant(named.Name, pose));
     }
     for (const auto& named : PeerMakers)
     {
@@ -131,6 +140,24 @@ void RegisterComparison(const EvaluationSize& size)
   }
 }
 
+void RegisterPublished(const EvaluationSize& size)
+{
+  for (const Pose pose : { Pose::NearIdentity, Pose::General })
+  {
+    Contestant<ComparisonStage> published =
+      MakePeerContestant("published", "exact", pose, size.GetWarmUp());
+    published.Measure = [measure = published.Measure](ComparisonStage& stage)
+    {
+      Measurement measurement = measure(stage);
+      measurement.Counters["kernels"] = measurement.Seconds;
+      return measurement;
+    };
+    RegisterRounds<ComparisonStage>(std::string("Published/") + GetName(pose), size.GetRounds(),
+      []() { return MakeStageOfTwo("published", MakePublished); },
+      { MakeCaseContestant("exact", pose), published });
+  }
+}
+
 void RegisterProbe(const EvaluationSize& size)
 {
   for (const Pose pose : { Pose::NearIdentity, Pose::General })
@@ -140,13 +167,7 @@ void RegisterProbe(const EvaluationSize& size)
       continue;
     }
     RegisterRounds<ComparisonStage>(std::string("Probe/") + GetName(pose), size.Quick ? 1 : 2,
-      []()
-      {
-        auto stage = std::make_shared<ComparisonStage>();
-        stage->Cases["exact"] = std::make_unique<BenchmarkCase>(stage->Volume, CoarseNodes);
-        stage->Peers["probe"] = MakeProbeChain(stage->Volume, CoarseNodes);
-        return stage;
-      },
+      []() { return MakeStageOfTwo("probe", MakeProbeChain); },
       { MakeCaseContestant("exact", pose), MakePeerContestant("probe", "exact", pose, false) });
   }
 }

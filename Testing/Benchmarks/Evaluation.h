@@ -20,12 +20,8 @@ struct EvaluationSize
   int GetSlowRounds() const { return this->Quick ? 1 : 5; }
   /// For what takes short and whose difference is small beside what the machine varies by.
   int GetManyRounds() const { return this->Quick ? 1 : 21; }
-  /// Whether the peers and the published kernel have a turn that does not count, as others do.
+  /// Whether the peers have a turn that does not count, as others do.
   bool GetWarmUp() const { return !this->Quick; }
-  bool GetWarmUp(int resampler) const
-  {
-    return resampler != vtkDeformVolumeFilter::PUBLISHED || this->GetWarmUp();
-  }
 };
 
 /// Deform/<pose>/<deformation>/<resampler>, Deform/<pose>/<peer>: table 1 and the peers.
@@ -37,6 +33,9 @@ void RegisterNodes(const EvaluationSize& size);
 /// Readback/<pose>/<at-once, unread or later>: outputs that stay on the device (OutputOnDevice),
 /// and one that does not. On a processor there is no difference.
 void RegisterReadback(const EvaluationSize& size);
+
+/// Published/<pose>/<exact or published>: the method as published, by the time of the kernels.
+void RegisterPublished(const EvaluationSize& size);
 
 /// Probe/<pose>/<resampler or probe>: the slowest peer.
 void RegisterProbe(const EvaluationSize& size);
@@ -88,9 +87,7 @@ struct NamedResampler
 inline constexpr NamedResampler ExactResampler{ "exact", vtkDeformVolumeFilter::EXACT };
 inline constexpr NamedResampler MeshRasterizationResampler{ "mesh-rasterization",
   vtkDeformVolumeFilter::MESH_RASTERIZATION };
-inline constexpr NamedResampler PublishedResampler{ "published", vtkDeformVolumeFilter::PUBLISHED };
-inline constexpr NamedResampler AllResamplers[] = { ExactResampler, MeshRasterizationResampler,
-  PublishedResampler };
+inline constexpr NamedResampler AllResamplers[] = { ExactResampler, MeshRasterizationResampler };
 
 /// Moves a case and brings it up to date.
 Measurement Measure(BenchmarkCase& subject, Pose pose, Grid grid = Grid::Same);

@@ -41,7 +41,7 @@ int main(int argc, char* argv[])
   if (argc < 7)
   {
     std::cerr << "usage: DeformVolumeMemory NX NY NZ uchar|ushort NODES_PER_AXIS "
-                 "exact|mesh-rasterization|published\n";
+                 "exact|mesh-rasterization\n";
     return 2;
   }
   const std::array<int, 3> dimensions{ { std::atoi(argv[1]), std::atoi(argv[2]),

@@ -8,7 +8,7 @@
 
 class vtkImageData;
 
-/// What VTK itself has to deform a volume with. A peer fills the output extent that the filter has
+/// What the filter is compared with. A peer fills the output extent that the filter has
 /// filled, in the volume's own coordinates.
 class Peer
 {
@@ -16,7 +16,7 @@ public:
   virtual ~Peer() = default;
 
   /// Moves to a step of a pose, which is not measured, and fills an extent. Returns the wall-clock
-  /// seconds that the update took.
+  /// seconds that the update took; the published method returns those of its kernels on the device.
   virtual double Update(Pose pose, int step, const int extent[6]) = 0;
 
   virtual vtkImageData* GetOutput() = 0;
@@ -41,5 +41,8 @@ std::unique_ptr<Peer> MakeGridReslice(
 /// Two vtkProbeFilter: the deformed tetrahedra, which carry their rest coordinates, are probed at
 /// the voxels of the output; then the volume is probed at those coordinates.
 std::unique_ptr<Peer> MakeProbeChain(vtkImageData* volume, int nodesPerAxis);
+
+/// The method as published (PublishedKernels.cl), for volumes that MakeVolume makes of 16 bits.
+std::unique_ptr<Peer> MakePublished(vtkImageData* volume, int nodesPerAxis);
 
 #endif

@@ -30,8 +30,7 @@ void RegisterTable2(Pose pose, const EvaluationSize& size)
         measurement.Counters["fewest_samples"] = static_cast<double>(stage.Samples.Fewest);
         measurement.Counters["most_samples"] = static_cast<double>(stage.Samples.Most);
         return measurement;
-      },
-      size.GetWarmUp(resampler.Resampler) });
+      } });
   }
   RegisterRounds<Table2Stage>(
     std::string("Table2/") + GetName(pose), size.GetRounds(),

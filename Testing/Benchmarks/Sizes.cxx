@@ -11,9 +11,9 @@ const char* const Automatic = "automatic";
 
 using CaseMap = std::map<std::string, std::unique_ptr<BenchmarkCase>>;
 
-Contestant<CaseMap> MakeContestant(const std::string& name, Pose pose, bool warmUp = true)
+Contestant<CaseMap> MakeContestant(const std::string& name, Pose pose)
 {
-  return { name, [=](CaseMap& cases) { return Measure(*cases.at(name), pose); }, warmUp };
+  return { name, [=](CaseMap& cases) { return Measure(*cases.at(name), pose); } };
 }
 
 // Meshes of few and of many nodes, by the number of these.
@@ -66,8 +66,7 @@ void RegisterTetrahedra(const EvaluationSize& size)
     std::vector<Contestant<CaseMap>> contestants;
     for (const NamedResampler& resampler : AllResamplers)
     {
-      contestants.push_back(
-        MakeContestant(resampler.Name, Pose::NearIdentity, size.GetWarmUp(resampler.Resampler)));
+      contestants.push_back(MakeContestant(resampler.Name, Pose::NearIdentity));
     }
     contestants.push_back(MakeContestant(Automatic, Pose::NearIdentity));
     RegisterRounds<CaseMap>(
@@ -94,8 +93,7 @@ void RegisterVoxels(const EvaluationSize& size)
   // 1, 4, 13.2, 30, 60 and 100 million.
   constexpr std::array<int, 3> all[] = { { { 100, 100, 100 } }, { { 160, 160, 160 } },
     BenchmarkVolume, { { 311, 311, 311 } }, { { 391, 391, 391 } }, { { 464, 464, 464 } } };
-  // What others are compared with is enough to show a trend; and the published kernel needs too
-  // much memory for the largest.
+  // What the exact resampler is compared with is enough to show a trend.
   constexpr int largestCompared = 311;
   struct Wanted
   {
@@ -120,8 +118,7 @@ void RegisterVoxels(const EvaluationSize& size)
       }
       const std::string name = GetName(dimensions) + "/" + resampler.Name;
       wanted[name] = { dimensions, resampler.Resampler };
-      contestants.push_back(
-        MakeContestant(name, Pose::NearIdentity, size.GetWarmUp(resampler.Resampler)));
+      contestants.push_back(MakeContestant(name, Pose::NearIdentity));
     }
   }
   RegisterRounds<CaseMap>(

@@ -107,6 +107,11 @@ int main()
     {
       passed &= Check("probe chain", volume, MakeProbeChain(volume, Nodes), pose, tolerance);
     }
+    // Positions that are not rounded move values by 0.3 at most, and both round to integers.
+    for (const Pose pose : { Pose::NearIdentity, Pose::General, Pose::VaryingScale })
+    {
+      passed &= Check("published", volume, MakePublished(volume, Nodes), pose, 1.0);
+    }
     // A grid that is taken as the inverse is right for what moves all by the same only.
     passed &= Check("grid reslice, backward", volume,
       MakeGridReslice(volume, Nodes, GridDirection::Backward), Pose::Undeformed, tolerance);

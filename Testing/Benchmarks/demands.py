@@ -23,9 +23,8 @@ def _update_by_affine(pose, nodes="2197"):
     return lambda r: r.ratio(f"Deform/{pose}/{nodes}/exact", f"Deform/{pose}/reslice-affine")
 
 
-def _kernels_by_published(pose, nodes="2197"):
-    return lambda r: r.ratio(
-        f"Deform/{pose}/{nodes}/exact", f"Deform/{pose}/{nodes}/published", "kernels")
+def _kernels_by_published(pose):
+    return lambda r: r.ratio(f"Published/{pose}/exact", f"Published/{pose}/published", "kernels")
 
 
 def _fine_by_coarse(pose):

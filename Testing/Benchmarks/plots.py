@@ -9,7 +9,6 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: 
 STYLES = {
     "exact": ("Exact", "tab:blue", "o"),
     "mesh-rasterization": ("MeshRasterization", "tab:green", "s"),
-    "published": ("published", "tab:orange", "^"),
 }
 
 

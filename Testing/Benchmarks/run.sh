@@ -103,7 +103,7 @@ measure() # PROGRAM NAME-OF-RESULT [ARGUMENT]...
 
 # Volume, type, nodes on each axis, resampler; a process of its own for each.
 memory=("189 305 229 ushort 13 exact" "189 305 229 ushort 80 exact"
-  "189 305 229 ushort 13 mesh-rasterization" "189 305 229 ushort 13 published")
+  "189 305 229 ushort 13 mesh-rasterization")
 [ ${#quick[@]} -gt 0 ] || memory+=("464 464 464 ushort 13 exact" \
   "1000 1000 1000 uchar 13 exact" "1000 1000 1000 uchar 13 mesh-rasterization")
 
