@@ -101,6 +101,23 @@ const char* vtkDeformVolumeFilter::GetCategoricalArray(int index)
 }
 
 //------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::SetResampler(int resampler)
+{
+  if (resampler == 1)
+  {
+    vtkErrorMacro("Resampler is 1, the published kernel, which was removed. Set Resampler to EXACT "
+                  "(0), MESH_RASTERIZATION (2) or AUTOMATIC (3).");
+    return;
+  }
+  resampler = std::clamp<int>(resampler, EXACT, AUTOMATIC);
+  if (this->Resampler != resampler)
+  {
+    this->Resampler = resampler;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
 vtkStringArray* vtkDeformVolumeFilter::GetDeviceNames()
 {
   deformvolume::Ranks().ShareProcessors();
@@ -142,10 +159,7 @@ std::string vtkDeformVolumeFilter::GetSummary()
   using State = deformvolume::ExecutionState;
   text << "Device: " << this->DeviceInUse << "\n"
        << "Resampler: "
-       << (this->ResamplerInUse == MESH_RASTERIZATION ? "mesh rasterization"
-              : this->ResamplerInUse == PUBLISHED     ? "published"
-                                                      : "exact")
-       << "\n"
+       << (this->ResamplerInUse == MESH_RASTERIZATION ? "mesh rasterization" : "exact") << "\n"
        << "Covered voxels: " << count(this->NumberOfCoveredVoxels) << "\n"
        << "Inverted tetrahedra: " << count(this->NumberOfInvertedTetrahedra) << "\n"
        << "Flat tetrahedra: " << count(this->NumberOfFlatTetrahedra) << "\n"

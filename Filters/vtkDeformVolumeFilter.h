@@ -297,7 +297,6 @@ public:
   enum Resamplers
   {
     EXACT = 0,
-    PUBLISHED = 1,
     MESH_RASTERIZATION = 2,
     AUTOMATIC = 3
   };
@@ -313,26 +312,24 @@ public:
    *   upright, or else by the first inverted one. There is no sampling mesh and no static mapping,
    *   which saves their memory and suits coarse meshes. Not for forward displacement fields, and
    *   not for meshes with EXTRAPOLATE. With FieldIsInverse the field says the rest position.
-   * - PUBLISHED: the kernel as published, the yardstick of the benchmarks; it has a float
-   *   tolerance, and which tetrahedron writes a voxel is left to chance.
    * - AUTOMATIC: EXACT, unless the interpolation is cubic, or the memory suffices for
    *   MESH_RASTERIZATION only and that can do the deformation. The whole extent of the output
    *   counts, so that its parts are done alike.
    *
    * Both give the same image of an undeformed volume, bit for bit, and of one that moves by whole
-   * voxels. Default: AUTOMATIC.
+   * voxels. The value 1 is an error. Default: AUTOMATIC.
    */
-  vtkSetClampMacro(Resampler, int, EXACT, AUTOMATIC);
+  void SetResampler(int resampler);
+  int GetResamplerMinValue() { return EXACT; }
+  int GetResamplerMaxValue() { return AUTOMATIC; }
   vtkGetMacro(Resampler, int);
   void SetResamplerToExact() { this->SetResampler(EXACT); }
-  void SetResamplerToPublished() { this->SetResampler(PUBLISHED); }
   void SetResamplerToMeshRasterization() { this->SetResampler(MESH_RASTERIZATION); }
   void SetResamplerToAutomatic() { this->SetResampler(AUTOMATIC); }
   ///@}
 
   /**
-   * The resampler of the last execution: EXACT, PUBLISHED or MESH_RASTERIZATION; AUTOMATIC before
-   * the first.
+   * The resampler of the last execution: EXACT or MESH_RASTERIZATION; AUTOMATIC before the first.
    */
   vtkGetMacro(ResamplerInUse, int);
 

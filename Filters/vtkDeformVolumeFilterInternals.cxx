@@ -192,9 +192,6 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
     case EXACT:
       wish.Method = deformvolume::Resampling::Exact;
       break;
-    case PUBLISHED:
-      wish.Method = deformvolume::Resampling::Published;
-      break;
     case MESH_RASTERIZATION:
       wish.Method = deformvolume::Resampling::MeshRasterization;
       break;
@@ -228,10 +225,8 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::SetResamplerInUse(deformvolume::Resampling method) const
 {
-  this->Self->ResamplerInUse = method == deformvolume::Resampling::MeshRasterization
-    ? MESH_RASTERIZATION
-    : method == deformvolume::Resampling::Published ? PUBLISHED
-                                                    : EXACT;
+  this->Self->ResamplerInUse =
+    method == deformvolume::Resampling::MeshRasterization ? MESH_RASTERIZATION : EXACT;
 }
 
 //------------------------------------------------------------------------------

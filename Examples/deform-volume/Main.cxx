@@ -107,8 +107,7 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
   filter->SetBackgroundValue(options.Background);
   const std::map<std::string, int> resamplers{ { "automatic", vtkDeformVolumeFilter::AUTOMATIC },
     { "exact", vtkDeformVolumeFilter::EXACT },
-    { "mesh-rasterization", vtkDeformVolumeFilter::MESH_RASTERIZATION },
-    { "published", vtkDeformVolumeFilter::PUBLISHED } };
+    { "mesh-rasterization", vtkDeformVolumeFilter::MESH_RASTERIZATION } };
   filter->SetResampler(resamplers.at(options.Resampler));
   filter->SetInterpolation(options.Cubic ? vtkDeformVolumeFilter::CUBIC_INTERPOLATION
                                          : vtkDeformVolumeFilter::LINEAR_INTERPOLATION);

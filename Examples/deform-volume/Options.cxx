@@ -333,9 +333,9 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
   program
     .add_option("--resampler", options.Resampler,
       "exact: deforms a mesh of the voxels; mesh-rasterization: looks the volume up from the "
-      "deformation mesh, with less memory; published: the kernel as published, for comparison")
+      "deformation mesh, with less memory")
     ->capture_default_str()
-    ->check(CLI::IsMember({ "automatic", "exact", "mesh-rasterization", "published" }))
+    ->check(CLI::IsMember({ "automatic", "exact", "mesh-rasterization" }))
     ->type_name("NAME")
     ->group(group);
   program

@@ -46,11 +46,6 @@ Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deforma
       std::string(cubic ? ", which cubic interpolation needs," : "") + " cannot do " + obstacle +
       (cubic ? ", or Interpolation to LINEAR_INTERPOLATION." : ", or Resampler to EXACT."));
   }
-  if (wish.Method == Resampling::Published && wish.HasSmoothCut)
-  {
-    throw Error("The resampler PUBLISHED cannot do smooth cuts. Set SmoothCut of vtkCutVolume to "
-                "off, or Resampler to EXACT.");
-  }
   if (wish.Method)
   {
     return *wish.Method;

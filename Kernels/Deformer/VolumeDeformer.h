@@ -100,8 +100,8 @@ public:
   /// One float a voxel: its signed distance to the boundary of what has been carved out, in any
   /// unit; negative there. It is interpolated in each tetrahedron as values are, and samples where
   /// it is negative are left out: boundaries that lie between voxels. A distance that is no number
-  /// counts as not negative. Null: nothing is left out. The published method is an Error then.
-  /// Takes 4 bytes a voxel on the device where a distance is not 0.
+  /// counts as not negative. Null: nothing is left out. Takes 4
+  /// bytes a voxel on the device where a distance is not 0.
   void SetBoundaryDistances(const float* distances, const PointRanges* written = nullptr);
   ///@}
 
@@ -112,8 +112,8 @@ public:
   /// moves with the vertices of that side (CutPositions.cl has the rule). So the sides come apart
   /// and no tissue is lost between them. They stay together where they are apart by less than 1/4
   /// output voxel on each axis, and at the end of a cut, where tetrahedra that are not divided join
-  /// them. Null for both: there is no cut. The published method and MeshRasterization are an Error
-  /// then. Takes 44 bytes on the device for each vertex of a cell with crossed tetrahedra.
+  /// them. Null for both: there is no cut. MeshRasterization is an Error then. Takes 44 bytes on
+  /// the device for each vertex of a cell with crossed tetrahedra.
   void SetCut(const unsigned char* crossed, const float* distances);
 
   /// A tetrahedral deformation mesh, with a link for each voxel. boundary: where that of the mesh

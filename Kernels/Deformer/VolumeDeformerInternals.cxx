@@ -93,16 +93,6 @@ void VolumeDeformer::Internals::Parts::CheckRequest(const DeformRequest& request
   {
     throw Error("No arrays are set: call SetArrays first.");
   }
-  if (request.Method == Resampling::Published && this->Volume.HasDistances())
-  {
-    throw Error("The published resampler knows no boundary distances. Use the resampler Exact or "
-                "MeshRasterization, or call SetBoundaryDistances with null.");
-  }
-  if (request.Method == Resampling::Published && this->Volume.HasCut())
-  {
-    throw Error("The published resampler knows no smooth cuts. Use the resampler Exact, or call "
-                "SetCut with null.");
-  }
   if (rasterized && this->Volume.HasCut())
   {
     throw Error("The resampler MeshRasterization knows no smooth cuts, since it looks at the "

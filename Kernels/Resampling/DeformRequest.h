@@ -29,8 +29,6 @@ enum class Resampling
   /// The same with the kernel for graphics cards, whose work-items are lanes, each a column of
   /// cells: arrays as above, outputs as above, any device with local memory for it, else an Error.
   ExactByColumns,
-  /// The published kernel, kept as the yardstick of benchmarks: float tolerance, racing writes.
-  Published,
   /// The tetrahedra of the deformation mesh themselves are rasterised, and the volume is looked up
   /// at the interpolated rest coordinate (MeshRasterizer.h). Goes with SetRestMesh, and with
   /// SetInverseField, where the field says the rest coordinate.

@@ -18,7 +18,6 @@ ExactResampler::ExactResampler(
   , Launched(device)
   , Exact(device, volume, source, this->Launched)
   , Boundary(device, volume, source, this->Launched)
-  , Published(device, volume, source, this->Launched)
 {
 }
 
@@ -43,27 +42,10 @@ void ExactResampler::Make(
   target.Place(this->Device.GetContext(), this->Device.GetQueue(), plan.Slabs[slab], request,
     this->Volume.GetVolumeArrays(), this->Volume.GetVoxelGrid(),
     this->Volume.GetBricks().GetNumberOfBricks(), this->Launched.GetResamplingEvents());
-  const bool isPublished = request.Method == Resampling::Published;
   target.Clear(this->Device.GetContext(), this->Volume.GetVolumeArrays(),
-    !isPublished && this->Exact.ChooseForm(request.Method, target) == ResamplingForm::Columns,
+    this->Exact.ChooseForm(request.Method, target) == ResamplingForm::Columns,
     this->Launched.GetResamplingEvents());
-  if (isPublished)
-  {
-    this->MakePublished(request, target, report);
-    this->Last = LastOutput::Unknown;
-    return;
-  }
   this->MakeExact(request, target, slab == 0, report);
-}
-
-void ExactResampler::MakePublished(
-  const DeformRequest& request, OutputSlab& output, DeformReport& report)
-{
-  this->Source.PrepareMapping(this->Launched.GetMappingEvents());
-  this->Published.Run(request, output);
-  this->Boundary.Run(request, output);
-  report.NumberOfCoveredVoxels += static_cast<std::int64_t>(
-    output.CountCovered(this->Device, this->Launched.GetResamplingEvents()));
 }
 
 void ExactResampler::RunPass(const DeformRequest& request, const OutputSlab& output, int pass,
@@ -302,8 +284,8 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
 
 std::uint64_t ExactResampler::GetMemory() const
 {
-  return this->Exact.GetMemory() + this->Boundary.GetMemory() + this->Published.GetMemory() +
-    this->Targets[0].GetMemory() + this->Targets[1].GetMemory();
+  return this->Exact.GetMemory() + this->Boundary.GetMemory() + this->Targets[0].GetMemory() +
+    this->Targets[1].GetMemory();
 }
 
 } // namespace deformvolume

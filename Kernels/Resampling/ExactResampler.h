@@ -6,7 +6,6 @@
 #include "ExactPasses.h"
 #include "Launches.h"
 #include "OutputSlab.h"
-#include "PublishedPass.h"
 #include "SlabResampler.h"
 
 #include <array>
@@ -25,8 +24,7 @@ class MemoryBudget;
 class WorkDevice;
 
 /// Resamples by the cells of the sampling mesh, each voxel written by one tetrahedron: in one pass,
-/// and where tetrahedra overlap in more, which find the winners. The published method, too, where
-/// the request asks for it.
+/// and where tetrahedra overlap in more, which find the winners.
 class ExactResampler : public SlabResampler
 {
 public:
@@ -105,7 +103,6 @@ private:
   bool IsFolded(const OutputSlab::Counts& counts) const;
   void MakeExact(
     const DeformRequest& request, OutputSlab& output, bool isFirst, DeformReport& report);
-  void MakePublished(const DeformRequest& request, OutputSlab& output, DeformReport& report);
 
   WorkDevice& Device;
   MemoryBudget& Budget;
@@ -114,7 +111,6 @@ private:
   Launches Launched;
   ExactPasses Exact;
   BoundaryCells Boundary;
-  PublishedPass Published;
   std::array<OutputSlab, 2> Targets;
   bool WasContested = false; // whether cells of the last output overlapped, or were folded
   bool IsContested = false;  // and of this one, as far as is known

@@ -205,10 +205,4 @@ std::size_t GetColumnMemory(
     CountSlots(context, arrays, form), form == ResamplingForm::Columns ? 3 : 2);
 }
 
-cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays)
-{
-  return context.GetProgram(
-    GetSamplingMeshText() + MakeArrayText(context, arrays) + PublishedResampling_cl, KernelOptions);
-}
-
 } // namespace deformvolume

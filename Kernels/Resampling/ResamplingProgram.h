@@ -63,9 +63,6 @@ std::size_t GetColumnMemory(
 /// What is done with the output besides resampling (CoverageCount.cl, OutputClearing.cl).
 cl::Program GetOutputProgram(OpenCLContext& context);
 
-/// The published resampling (PublishedResampling.cl) for arrays of these types.
-cl::Program GetPublishedProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays);
-
 } // namespace deformvolume
 
 #endif

@@ -141,39 +141,6 @@ void TestMemoryLimit()
   VERIFY(filter->GetDeviceMemory() < 100000000);
 }
 
-// The published kernel is there for comparison and agrees on a smooth deformation.
-void TestPublishedResampler()
-{
-  auto volume = MakeImage({ { 0, 20, 0, 19, 0, 18 } });
-  AddScalars<float>(volume, "value",
-    [](const glm::dvec3& p) { return 10.0 * p.x + 5.0 * p.y - 3.0 * std::sin(p.z); });
-  auto mesh = MakeMesh(volume);
-  SetDisplacements(mesh,
-    [](const glm::dvec3& p)
-    { return p + glm::dvec3(0.7 * std::sin(0.3 * p.y) + 0.1, 0.37, 0.21 * std::cos(0.3 * p.x)); });
-  Deformed deformed(volume, mesh);
-  vtkNew<vtkImageData> exact;
-  exact->DeepCopy(deformed.Update());
-  deformed.Filter->SetResamplerToPublished();
-  VERIFY_EQUAL(deformed.Filter->GetResampler(), 1);
-  vtkImageData* published = deformed.Update();
-  VERIFY_EQUAL(GetExtent(published), GetExtent(exact));
-  int border = 0;
-  for (vtkIdType id = 0; id < exact->GetNumberOfPoints(); ++id)
-  {
-    const bool covered =
-      exact->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(id, 0) != 0.0;
-    border += covered != deformed.IsCovered(id) ? 1 : 0;
-    if (covered && deformed.IsCovered(id))
-    {
-      // Positions are not rounded there: a slope of 11.6 over 3 x 2^-9 voxel.
-      VERIFY(std::abs(exact->GetPointData()->GetScalars()->GetComponent(id, 0) -
-               deformed.GetValues()->GetComponent(id, 0)) < 11.6 * 3.0 / 512.0 * 2.0);
-    }
-  }
-  VERIFY(border < 60);
-}
-
 /// Counts how often the progress begins to speak of compilation, and stops.
 class CompilationListener
 {
@@ -247,6 +214,5 @@ int TestDeformCaching(int, char*[])
   TestReports();
   TestMemoryLimit();
   TestOutputOnDevice();
-  TestPublishedResampler();
   return GetExitCode();
 }

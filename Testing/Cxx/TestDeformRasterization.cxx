@@ -64,11 +64,12 @@ void TestMisuse()
   VERIFY(Contains(GetError(deformed), "OutsideMode"));
   deformed.Filter->SetOutsideModeToDiscard();
   deformed.Filter->SetInterpolationToCubicInterpolation();
-  for (const int resampler : { vtkDeformVolumeFilter::EXACT, vtkDeformVolumeFilter::PUBLISHED })
-  {
-    deformed.Filter->SetResampler(resampler);
-    VERIFY(Contains(GetError(deformed), "AUTOMATIC or MESH_RASTERIZATION"));
-  }
+  deformed.Filter->SetResamplerToExact();
+  VERIFY(Contains(GetError(deformed), "AUTOMATIC or MESH_RASTERIZATION"));
+  deformed.Filter->SetResampler(1);
+  VERIFY_EQUAL(deformed.TakeErrors(), 1);
+  VERIFY(Contains(deformed.LastError, "AUTOMATIC (3)"));
+  VERIFY_EQUAL(deformed.Filter->GetResampler(), int(vtkDeformVolumeFilter::EXACT));
   deformed.Filter->SetResamplerToMeshRasterization();
   deformed.Filter->SetMemoryLimit(1000);
   VERIFY(Contains(GetError(deformed), "1000"));

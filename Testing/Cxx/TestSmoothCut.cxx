@@ -119,31 +119,26 @@ void TestMisuse()
     next.Fails(words);
   }
 
-  filterTesting::Deformed published;
-  published.Filter->SetInputConnection(cut.Filter->GetOutputPort());
-  published.Filter->SetDeformationData(field);
-  published.Filter->SetResamplerToPublished();
-  published.Filter->Update();
-  VERIFY_EQUAL(published.TakeErrors(), 1);
-  VERIFY(published.LastError.find("smooth cuts") != std::string::npos);
+  filterTesting::Deformed deformed;
+  deformed.Filter->SetInputConnection(cut.Filter->GetOutputPort());
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(0.25, 0, 0));
-  published.Filter->SetDeformationData(mesh);
-  published.Filter->SetResamplerToMeshRasterization();
-  published.Filter->Update();
-  VERIFY_EQUAL(published.TakeErrors(), 1);
-  VERIFY(published.LastError.find("smooth cuts") != std::string::npos);
-  published.Filter->SetResamplerToAutomatic();
-  published.Filter->SetInterpolationToCubicInterpolation();
-  published.Filter->Update();
-  VERIFY_EQUAL(published.TakeErrors(), 1);
-  VERIFY(published.LastError.find("smooth cuts") != std::string::npos);
-  published.Filter->SetInterpolationToLinearInterpolation();
-  published.Update();
-  VERIFY_EQUAL(published.Filter->GetResamplerInUse(), vtkDeformVolumeFilter::EXACT);
-  published.Filter->SetResamplerToExact();
-  published.Update();
-  VERIFY(!GetCells(published.Filter->GetOutput()) && !GetDistances(published.Filter->GetOutput()));
+  deformed.Filter->SetDeformationData(mesh);
+  deformed.Filter->SetResamplerToMeshRasterization();
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeErrors(), 1);
+  VERIFY(deformed.LastError.find("smooth cuts") != std::string::npos);
+  deformed.Filter->SetResamplerToAutomatic();
+  deformed.Filter->SetInterpolationToCubicInterpolation();
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeErrors(), 1);
+  VERIFY(deformed.LastError.find("smooth cuts") != std::string::npos);
+  deformed.Filter->SetInterpolationToLinearInterpolation();
+  deformed.Update();
+  VERIFY_EQUAL(deformed.Filter->GetResamplerInUse(), vtkDeformVolumeFilter::EXACT);
+  deformed.Filter->SetResamplerToExact();
+  deformed.Update();
+  VERIFY(!GetCells(deformed.Filter->GetOutput()) && !GetDistances(deformed.Filter->GetOutput()));
 }
 
 // What is not opened stays as it is.

@@ -69,8 +69,7 @@ void EditMethod(Settings& settings, Random& random)
       settings.OutsideMode = random.Int(0, 1);
       break;
     case 1:
-      settings.Resampler =
-        random.Chance(0.1) ? vtkDeformVolumeFilter::PUBLISHED : random.Pick({ 0, 0, 2, 3, 3 });
+      settings.Resampler = random.Pick({ 0, 0, 2, 3, 3 });
       break;
     case 2:
       settings.Interpolation = random.Chance(0.3) ? 1 : 0;

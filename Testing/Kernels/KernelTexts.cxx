@@ -345,13 +345,6 @@ int main(int argc, char* argv[])
     DeformArrays(recorder, single);
     DeformByDeviceVectors(recorder, single);
     DeformCut(recorder);
-    recorder.SetPurpose("int16");
-    {
-      const DeformerCase folded = MakeFolded();
-      VolumeDeformer deformer;
-      Load(deformer, folded, OneArray, Route::Mesh);
-      Deform(deformer, folded, OneArray, Resampling::Published);
-    }
     Rasterize(recorder, single);
     MoveBodies(recorder);
     BuildOthers(recorder);

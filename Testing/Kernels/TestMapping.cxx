@@ -17,42 +17,6 @@ namespace
 
 const std::array<double, 3> NoScale{ { 1, 1, 1 } };
 
-} // namespace
-
-TEST(Mapping, PublishedKernelEqualsExactOneOnASmoothBend)
-{
-  const DeformerCase bent = MakeCase({ { 0, 15, 0, 11, 0, 9 } }, NoScale,
-    [](const glm::dvec3& index)
-    {
-      const double angle = 0.06 * index.x;
-      const double radius = 18.0 - index.y;
-      return glm::dvec3(
-        radius * std::sin(angle), 18.0 - radius * std::cos(angle), 1.25 * index.z + 0.3);
-    });
-  const auto values = MakeRandomValues<float>(bent.GetNumberOfVoxels(), 5);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
-  VolumeDeformer deformer;
-  Load(deformer, bent, arrays, Route::Mesh);
-  const Deformed exact = RunDeformer(deformer, bent, arrays);
-  const Deformed published = RunDeformer(deformer, bent, arrays, Resampling::Published);
-  int differences = 0;
-  for (std::size_t voxel = 0; voxel < exact.Coverage.size(); ++voxel)
-  {
-    differences += exact.Coverage[voxel] != published.Coverage[voxel] ? 1 : 0;
-    if (exact.Coverage[voxel] != 0 && published.Coverage[voxel] != 0)
-    {
-      // Values up to 1000 in both directions, weights in float.
-      EXPECT_NEAR(
-        exact.GetOutput<float>(0)[voxel], published.GetOutput<float>(0)[voxel], 2000.0 * 1e-4);
-    }
-  }
-  // Only voxels on the border may be taken by one kernel alone.
-  EXPECT_LE(differences, 20);
-}
-
-namespace
-{
-
 /// first: where the structured indices begin, an even number. Large ones do not fit into a float.
 void TestFieldOfHalfTheResolution(int first)
 {

@@ -169,23 +169,3 @@ TEST(VolumeDeformer, TinyByColumns)
     CheckTiny(Resampling::ExactByColumns, tiny);
   }
 }
-
-TEST(VolumeDeformer, TinyPublished)
-{
-  const DeformerCase tiny = MakeCase({ { 0, 3, 0, 3, 0, 3 } }, NoScale, MakeJitter(5, 0.15));
-  const auto values = MakeRandomValues<float>(tiny.GetNumberOfVoxels(), 2);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
-  VolumeDeformer deformer;
-  Load(deformer, tiny, arrays, Route::Field);
-  const Deformed published = RunDeformer(deformer, tiny, arrays, Resampling::Published);
-  const reference::Result reference = ResampleByReference(tiny);
-  for (std::size_t voxel = 0; voxel < reference.Voxels.size(); ++voxel)
-  {
-    ASSERT_EQ(published.Coverage[voxel] != 0, !reference.Voxels[voxel].empty()) << voxel;
-    if (!reference.Voxels[voxel].empty())
-    {
-      EXPECT_NEAR(published.GetOutput<float>(0)[voxel],
-        static_cast<double>(reference.Voxels[voxel].front().Interpolate(values.data(), 1, 0)), 0.2);
-    }
-  }
-}
