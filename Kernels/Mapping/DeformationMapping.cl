@@ -260,25 +260,3 @@ static int4 PositionOf(const Mapping* m, int x, int y, int z, const KernelParame
     (float4)(rx.Fraction, ry.Fraction, rz.Fraction, 0.0f), 1.0f);
   return (int4)(rx.Whole, ry.Whole, rz.Whole, 0) + convert_int4(steps);
 }
-
-#if HAS_MAPPING_KERNEL
-// Maps the vertices of some planes into rows: the x of a row of vertices, then their y, then their
-// z. A vertex without position has INT_MIN in x. A work-item takes every global-size(0)-th vertex of
-// one row; global size (any, rows, planes).
-__kernel void MapPositions(MAPPING_PARAMETERS, __global const uchar* restrict state,
-  __global int* restrict positions, const KernelParameters p)
-{
-  const Mapping m = MAPPING_ARGUMENTS;
-  const int y = get_global_id(1);
-  const int z = p.PlanesBegin + (int)get_global_id(2);
-  for (int x = get_global_id(0); x < p.Size[0]; x += get_global_size(0))
-  {
-    const int isSource = StateOf(state, x, y, z, &p) & DEFORMVOLUME_VERTEX_SOURCE;
-    const int4 q = isSource ? PositionOf(&m, x, y, z, &p) : (int4)(INT_MIN, 0, 0, 0);
-    __global int* place = positions + PositionIndex(x, y, z, &p);
-    place[0] = q.x;
-    place[p.Size[0]] = q.y;
-    place[2 * p.Size[0]] = q.z;
-  }
-}
-#endif

@@ -527,7 +527,6 @@ KernelParameters DeviceVolume::GetParameters(const VolumeChunk& chunk) const
     p.BrickCount[axis] = this->Bricks.Count[axis];
   }
   p.ChunkFirst = chunk.PlanesBegin;
-  p.SlabFirst = chunk.PlanesBegin;
   p.PlanesBegin = chunk.PlanesBegin;
   p.PlanesEnd = chunk.PlanesEnd;
   p.LayersBegin = chunk.LayersBegin;
@@ -536,21 +535,6 @@ KernelParameters DeviceVolume::GetParameters(const VolumeChunk& chunk) const
   p.HasDistances = this->HasDistances();
   p.HasState = this->WithState;
   return p;
-}
-
-cl::NDRange DeviceVolume::GetVertexRange(int planes) const
-{
-  const std::size_t group = this->GetVertexGroup()[0];
-  const std::size_t row = static_cast<std::size_t>(this->GetSize(0));
-  const std::size_t items = group == 1 ? 1 : (row + group - 1) / group * group;
-  return cl::NDRange(
-    items, static_cast<std::size_t>(this->GetSize(1)), static_cast<std::size_t>(planes));
-}
-
-cl::NDRange DeviceVolume::GetVertexGroup() const
-{
-  // On a processor one work-item takes a whole row.
-  return cl::NDRange(this->Context.GetDevice().HasVectors ? 1 : 64, 1, 1);
 }
 
 void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,

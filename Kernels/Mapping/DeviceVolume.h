@@ -142,10 +142,6 @@ public:
   /// Those that the runs refer to.
   TetrahedronRecords& GetRecords() { return this->Mapping.GetRecords(); }
 
-  /// Global and work-group size of a launch over the vertices of so many planes.
-  cl::NDRange GetVertexRange(int planes) const;
-  cl::NDRange GetVertexGroup() const;
-
   const BrickGrid& GetBricks() const { return this->Bricks; }
   /// Those of the sub-bricks, of a mesh, where the voxel grid is one chunk. Devices with memory of
   /// their own copy the static mapping to the host for that. See DeviceMapping.

@@ -30,15 +30,14 @@ cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping, bool 
   const char* const evaluation = mapping == MappingForm::Runs ? RunEvaluation_cl : "";
   const char* const positions = withCut ? CutPositions_cl : "";
   return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText(withCut) +
-      "#define HAS_MAPPING_KERNEL 1\n" + GetMappingText(mapping) + VertexState_cl + positions +
-      evaluation,
+      GetMappingText(mapping) + VertexState_cl + positions + evaluation,
     KernelOptions);
 }
 
 cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping, bool withCut)
 {
   return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText(withCut) +
-      "#define HAS_MAPPING_KERNEL 0\n" + GetMappingText(mapping) + VertexState_cl + BridgeMask_cl,
+      GetMappingText(mapping) + VertexState_cl + BridgeMask_cl,
     KernelOptions);
 }
 
@@ -46,9 +45,8 @@ cl::Program GetConversionProgram(OpenCLContext& context)
 {
   const ProgramText products =
     HasDouble(context) ? GetMappingText(MappingForm::FieldInPlace) : ProgramText("");
-  return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText() +
-      "#define HAS_MAPPING_KERNEL 0\n" + products + VectorConversion_cl + GroupReduction_cl +
-      VectorBounds_cl,
+  return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText() + products +
+      VectorConversion_cl + GroupReduction_cl + VectorBounds_cl,
     KernelOptions);
 }
 

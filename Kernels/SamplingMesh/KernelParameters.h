@@ -3,7 +3,7 @@
 // numbers only, so that both sides lay it out alike.
 //
 // "Local" indices count from 0 at the voxel grid's first voxel. Vertex data of the volume lie in
-// chunks of whole planes of constant z, positions in slabs of such planes.
+// chunks of whole planes of constant z.
 #ifndef DeformVolumeKernelParameters_h
 #define DeformVolumeKernelParameters_h
 
@@ -17,7 +17,6 @@ typedef struct
   int Size[3];     // voxels on each axis
   int First[3];    // structured index of the first voxel; its parity decides the 5T split
   int ChunkFirst;  // local z of the first vertex plane, and of the first cell layer, in the chunk
-  int SlabFirst;   // local z of the first vertex plane in the positions
   int PlanesBegin; // local z of the first vertex plane to work on
   int PlanesEnd;   // and one past the last
   int LayersBegin; // local z of the first layer of cells to work on
@@ -220,12 +219,6 @@ static size_t VertexInChunk(int x, int y, int z, const KernelParameters* p)
 static size_t CellInChunk(int x, int y, int z, const KernelParameters* p)
 {
   return ((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x;
-}
-
-// Place of the x of a vertex's position; its y and z follow one and two rows later.
-static size_t PositionIndex(int x, int y, int z, const KernelParameters* p)
-{
-  return ((size_t)(z - p->SlabFirst) * p->Size[1] + y) * 3 * p->Size[0] + x;
 }
 
 #if HAS_CUT // whether a program knows smooth cuts (CutVertex)

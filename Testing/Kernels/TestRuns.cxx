@@ -6,6 +6,7 @@
 #include "DeviceVolume.h"
 #include "KernelText.h"
 #include "MappingProgram.h"
+#include "SamplingMeshText.h"
 #include "VertexRuns.h"
 
 #include <gtest/gtest.h>
@@ -146,6 +147,25 @@ RunCase MakeRunCase(const Extent& extent, unsigned int seed)
   return made;
 }
 
+// Maps the vertices of some planes into rows: the x of a row of vertices, then their y, then their
+// z. A vertex without position has INT_MIN in x.
+const char* const MapPositions =
+  "__kernel void MapPositions(MAPPING_PARAMETERS, __global const uchar* state,\n"
+  "  __global int* positions, const KernelParameters p)\n"
+  "{\n"
+  "  const Mapping m = MAPPING_ARGUMENTS;\n"
+  "  const int x = get_global_id(0);\n"
+  "  const int y = get_global_id(1);\n"
+  "  const int z = p.PlanesBegin + (int)get_global_id(2);\n"
+  "  const int isSource = StateOf(state, x, y, z, &p) & DEFORMVOLUME_VERTEX_SOURCE;\n"
+  "  const int4 q = isSource ? PositionOf(&m, x, y, z, &p) : (int4)(INT_MIN, 0, 0, 0);\n"
+  "  __global int* place =\n"
+  "    positions + ((size_t)get_global_id(2) * p.Size[1] + y) * 3 * p.Size[0] + x;\n"
+  "  place[0] = q.x;\n"
+  "  place[p.Size[0]] = q.y;\n"
+  "  place[2 * p.Size[0]] = q.z;\n"
+  "}\n";
+
 // What the device makes of a mapping: three ints a voxel, and the state, one byte a voxel.
 struct Mapped
 {
@@ -189,8 +209,7 @@ public:
     {
       this->Mesh.SetLinks(this->Case.Links.data());
     }
-    const cl::Program program =
-      GetMappingProgram(this->Context, byRuns ? MappingForm::Runs : MappingForm::Links);
+    const MappingForm form = byRuns ? MappingForm::Runs : MappingForm::Links;
     const auto setMapping = [&](cl::Kernel& kernel, const VolumeChunk& chunk)
     {
       kernel.setArg(0, byRuns ? chunk.Runs : chunk.Links);
@@ -199,7 +218,10 @@ public:
       kernel.setArg(3, this->Mesh.GetRestPositions());
       return cl_uint{ 4 };
     };
-    this->Mesh.UpdateState(program, false, setMapping);
+    this->Mesh.UpdateState(GetMappingProgram(this->Context, form), false, setMapping);
+    const cl::Program program = this->Context.GetProgram(ProgramText(GetReal(this->Context)) +
+        GetSamplingMeshText() + GetMappingText(form) + MapPositions,
+      KernelOptions);
     Mapped mapped;
     mapped.Positions.resize(this->Case.GetNumberOfVoxels(), { { 1, 2, 3 } });
     mapped.States.resize(this->Case.GetNumberOfVoxels(), 99);
@@ -231,8 +253,8 @@ private:
     kernel.setArg(i++, this->Mesh.GetState(chunk));
     kernel.setArg(i++, positions);
     kernel.setArg(i++, p);
-    this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange,
-      this->Mesh.GetVertexRange(p.PlanesEnd - p.PlanesBegin), this->Mesh.GetVertexGroup());
+    this->Queue.enqueueNDRangeKernel(
+      kernel, cl::NullRange, cl::NDRange(p.Size[0], p.Size[1], p.PlanesEnd - p.PlanesBegin));
     std::vector<int> values(3 * voxels);
     this->Queue.enqueueReadBuffer(
       positions, CL_TRUE, 0, values.size() * sizeof(int), values.data());
