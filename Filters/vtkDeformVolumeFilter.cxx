@@ -118,6 +118,47 @@ void vtkDeformVolumeFilter::SetResampler(int resampler)
 }
 
 //------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::SetFromState(const char* property, int value)
+{
+  struct RemovedProperty
+  {
+    const char* Name;
+    int Default;
+    const char* Replacement;
+  };
+  constexpr RemovedProperty removed[] = {
+    { "StreamInput", 0,
+      "with the output bounds mode CUSTOM_BOUNDS the input is streamed where its sources can make "
+      "parts" },
+    { "WorkGroupSize", 0, "the size is chosen for the device" },
+    { "NumberOfTimeSamples", 11,
+      "the output extent holds the times that were requested. For an extent that stays, set the "
+      "output bounds mode to CUSTOM_BOUNDS or VOLUME_BOUNDS" },
+  };
+  const std::string name = property ? property : "";
+  if (name == "Resampler")
+  {
+    if (value == 1)
+    {
+      vtkWarningMacro("Resampler is 1, the published kernel, which was removed: AUTOMATIC is set.");
+    }
+    this->SetResampler(value == 1 ? AUTOMATIC : value);
+    return;
+  }
+  const auto* found = std::find_if(std::begin(removed), std::end(removed),
+    [&](const RemovedProperty& one) { return name == one.Name; });
+  if (found == std::end(removed))
+  {
+    vtkErrorMacro("\"" << name << "\" is no property that SetFromState() knows.");
+  }
+  else if (value != found->Default)
+  {
+    vtkWarningMacro(<< name << " was removed, and its value " << value
+                    << " is ignored: " << found->Replacement << ".");
+  }
+}
+
+//------------------------------------------------------------------------------
 vtkStringArray* vtkDeformVolumeFilter::GetDeviceNames()
 {
   deformvolume::Ranks().ShareProcessors();

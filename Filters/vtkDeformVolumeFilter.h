@@ -329,6 +329,14 @@ public:
   ///@}
 
   /**
+   * Set a property as a state file or a script of ParaView has it, which a former version may have
+   * written. What was removed sets nothing: StreamInput, WorkGroupSize and NumberOfTimeSamples are
+   * warned of where they are not what they were by default, and Resampler 1 is AUTOMATIC, with a
+   * warning.
+   */
+  void SetFromState(const char* property, int value);
+
+  /**
    * The resampler of the last execution: EXACT or MESH_RASTERIZATION; AUTOMATIC before the first.
    */
   vtkGetMacro(ResamplerInUse, int);

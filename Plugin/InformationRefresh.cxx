@@ -4,6 +4,8 @@
 #include "vtkCallbackCommand.h"
 #include "vtkNew.h"
 #include "vtkProcessModule.h"
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
 #include "vtkSMProxyIterator.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMRepresentationProxy.h"
@@ -40,6 +42,23 @@ void EndUpdate(vtkObject* view, unsigned long, void*, void*)
   }
 }
 
+// What the filter has warned of, and set nothing by (vtkDeformVolumeFilter::SetFromState()), would
+// be saved again.
+void ForgetRemoved(vtkSMProxy* proxy)
+{
+  for (const char* name : { "StreamInput", "WorkGroupSize", "NumberOfTimeSamples", "Resampler" })
+  {
+    vtkSMProperty* property = proxy->GetProperty(name);
+    const bool isRemoved =
+      std::string(name) != "Resampler" || vtkSMPropertyHelper(proxy, name, true).GetAsInt() == 1;
+    if (property && isRemoved)
+    {
+      property->ResetToXMLDefaults();
+    }
+  }
+  proxy->UpdateVTKObjects();
+}
+
 void ObserveProxy(vtkSMProxy* proxy)
 {
   static vtkNew<vtkCallbackCommand> end;
@@ -53,6 +72,10 @@ void ObserveProxy(vtkSMProxy* proxy)
   fetch->SetCallback(Fetch);
   const char* name = proxy && proxy->IsA("vtkSMSourceProxy") ? proxy->GetVTKClassName() : nullptr;
   const std::string made = name ? name : "";
+  if (made == "vtkDeformVolumeFilter")
+  {
+    ForgetRemoved(proxy);
+  }
   if ((made == "vtkDeformVolumeFilter" || made == "vtkTetGenMesher" || made == "vtkCutVolume" ||
         made == "vtkCarveVolume" || made == "vtkChainMailDeformation" ||
         made == "vtkLatticeTetrahedraSource" || made == "vtkMassSpringDeformation" ||

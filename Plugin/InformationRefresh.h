@@ -3,7 +3,8 @@
  * Keeps what the panels tell of the last update up to date. ParaView fetches properties of
  * information when a panel is opened and before Apply updates the pipeline, but not after an
  * update: device, counts and times would be those of the update before. Views show what changes
- * after an update that has failed.
+ * after an update that has failed. Proxies forget properties of former versions that state files
+ * and scripts have set.
  */
 #ifndef InformationRefresh_h
 #define InformationRefresh_h

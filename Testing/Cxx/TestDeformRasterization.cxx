@@ -70,7 +70,14 @@ void TestMisuse()
   VERIFY_EQUAL(deformed.TakeErrors(), 1);
   VERIFY(Contains(deformed.LastError, "AUTOMATIC (3)"));
   VERIFY_EQUAL(deformed.Filter->GetResampler(), int(vtkDeformVolumeFilter::EXACT));
-  deformed.Filter->SetResamplerToMeshRasterization();
+  deformed.Filter->SetFromState("Resampler", vtkDeformVolumeFilter::MESH_RASTERIZATION);
+  VERIFY_EQUAL(deformed.Filter->GetResampler(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
+  for (const char* name : { "Padding", "", static_cast<const char*>(nullptr) })
+  {
+    deformed.Filter->SetFromState(name, 1);
+    VERIFY_EQUAL(deformed.TakeErrors(), 1);
+    VERIFY(Contains(deformed.LastError, "is no property"));
+  }
   deformed.Filter->SetMemoryLimit(1000);
   VERIFY(Contains(GetError(deformed), "1000"));
   deformed.Filter->SetMemoryLimit(0);

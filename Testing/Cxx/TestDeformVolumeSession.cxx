@@ -12,6 +12,7 @@
 #include <vtkPlaneSource.h>
 #include <vtkSmartPointer.h>
 #include <vtkTriangleFilter.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtksys/SystemTools.hxx>
 
 #include <glm/geometric.hpp>
@@ -712,6 +713,35 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   VERIFY(AreEqual(before, one.Step()));
 }
 
+// A file that version 0.1 has written, with events of all kinds.
+void TestOldFile(const std::string& data, const std::string& fileName)
+{
+  auto volume = MakeImage({ { 0, 13, 0, 12, 0, 11 } });
+  vtkNew<vtkUnsignedCharArray> values;
+  values->SetName("values");
+  for (vtkIdType i = 0; i < volume->GetNumberOfPoints(); ++i)
+  {
+    values->InsertNextValue(static_cast<unsigned char>(7 * i % 251));
+  }
+  volume->GetPointData()->SetScalars(values);
+  Tested one(volume);
+  vtkNew<vtkTest::ErrorObserver> warnings;
+  one.Object->AddObserver(vtkCommand::WarningEvent, warnings);
+  VERIFY(one.Object->LoadSession(data + "/Session-0.1.xml"));
+  const auto output = one.Step();
+  VERIFY_EQUAL(one.TakeError(), std::string());
+  VERIFY(!warnings->GetWarning());
+  VERIFY_EQUAL(one.Object->GetModel(), int(Session::CHAIN_MAIL));
+  VERIFY_EQUAL(one.Object->GetNumberOfActions(), 6);
+  vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
+  VERIFY_EQUAL(mask->GetComponent(output->FindPoint(3, 3, 3), 0), 0.0); // carved
+  VERIFY_EQUAL(mask->GetComponent(output->FindPoint(10, 10, 3), 0), 1.0);
+  VERIFY(one.Object->SaveSession(fileName));
+  const std::string text = ReadText(data + "/Session-0.1.xml");
+  const std::size_t events = text.find("  <Event");
+  VERIFY(Holds(ReadText(fileName), text.substr(events, text.rfind("</") - events).c_str()));
+}
+
 void TestThread(vtkImageData* volume, const std::string& fileName)
 {
   Tested one(volume);
@@ -774,9 +804,11 @@ int TestDeformVolumeSession(int argc, char* argv[])
   const int events = argc > 1 && std::atoi(argv[1]) > 0 ? std::atoi(argv[1]) : 300;
   const int seed = argc > 2 ? std::max(std::atoi(argv[2]), 1) : 1;
   std::string folder = ".";
+  std::string data = ".";
   for (int i = 1; i + 1 < argc; ++i)
   {
     folder = std::string(argv[i]) == "-T" ? argv[i + 1] : folder;
+    data = std::string(argv[i]) == "-D" ? argv[i + 1] : data;
   }
   const std::string fileName = folder + "/TestDeformVolumeSession.xml";
   const auto volume = MakeVolume(Box);
@@ -789,6 +821,7 @@ int TestDeformVolumeSession(int argc, char* argv[])
   TestTwice(volume);
   TestPadding(volume);
   TestFiles(volume, fileName);
+  TestOldFile(data, fileName);
   TestThread(volume, fileName);
   TestRandom(volume, events, static_cast<unsigned>(seed), fileName);
   return GetExitCode();

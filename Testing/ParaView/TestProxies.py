@@ -42,6 +42,8 @@ WITHOUT_PROPERTY = {
     "GetStateMemory",
     # ParaView reads each output at once, for the ranges of its arrays.
     "SetOutputOnDevice",
+    # Behind SetFromState().
+    "SetResampler",
 }
 # Numbers of enumerators that there are no more.
 REMOVED_VALUES = {"Resampler": {1}}
@@ -136,7 +138,7 @@ def check_values(cls, proxy):
     instance = cls()
     for prop in properties_of(proxy):
         command, label = prop.get("command", ""), f"{proxy.get('name')}.{prop.get('name')}"
-        attribute = command[3:]
+        attribute = prop.get("initial_string") or command[3:]
         if not command.startswith("Set") or "Get" + attribute not in own_names(cls):
             continue
         if prop.tag == "ProxyProperty":

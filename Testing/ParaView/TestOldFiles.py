@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A state file and a Python script of version 0.1: what was removed is one warning each, the voxels come, and a
+state that is saved then loads silently: TestOldFiles.py FOLDER-OF-DATA."""
+
+import os
+import sys
+
+from paraview import simple
+
+from PluginTesting import (
+    OUTPUT,
+    arrays_of,
+    check,
+    check_equal_images,
+    check_silent,
+    deformed,
+    fetch,
+    load_plugin,
+    messages,
+)
+
+SAVED = os.path.join(OUTPUT, "TestOldFiles.pvsm")
+REMOVED = {"NumberOfTimeSamples": 11, "StreamInput": 0, "WorkGroupSize": 0}
+WARNINGS = [f"{name} was removed" for name in REMOVED]
+
+
+def run_script(path):
+    with open(path, encoding="utf-8") as file:
+        exec(compile(file.read(), path, "exec"), {"__name__": "__main__"})
+
+
+def check_file(load, path, expected):
+    for source in reversed(list(simple.GetSources().values())):
+        simple.Delete(source)
+    with messages() as texts:
+        load(path)
+    for words in expected:
+        found = [text for text in texts if words in text]
+        check(len(found) == 1, f"{path}: {len(found)} messages say '{words}'")
+        check(found[0].startswith("Warning: "), found[0])
+    check(len(texts) == len(expected), f"{path}: " + "\n".join(texts))
+    loaded = simple.FindSource("DeformVolume1")
+    with messages() as texts:
+        loaded.UpdatePipeline()
+    check_silent(texts)
+    check(loaded.Resampler == "Automatic", f"{path}: the resampler {loaded.Resampler}")
+    fresh = deformed(
+        simple.FindSource("Wavelet1"),
+        simple.FindSource("Calculator1"),
+        OutputBoundsMode="Custom Bounds",
+        CustomBounds=[-6.0, 11.0, -8.0, 8.0, -8.0, 8.0],
+    )
+    expected_image = fetch(fresh)
+    check(arrays_of(expected_image)["vtkValidPointMask"].sum() > 1000, "No voxels")
+    check_equal_images(fetch(loaded), expected_image, path)
+    simple.Delete(fresh)
+    return loaded
+
+
+def main():
+    load_plugin()
+    state, script = (os.path.join(sys.argv[1], name) for name in ("State-0.1.pvsm", "Script-0.1.py"))
+    check_file(run_script, script, WARNINGS)
+    loaded = check_file(simple.LoadState, state, WARNINGS + ["Resampler is 1"])
+    for name, default in REMOVED.items():
+        check(getattr(loaded, name) == default, f"{name} is {getattr(loaded, name)}")
+    simple.SaveState(SAVED)
+    check_file(simple.LoadState, SAVED, [])
+
+
+main()
