@@ -41,26 +41,26 @@ double DiagonalOf(vtkImageData* volume)
   return std::sqrt(square);
 }
 
-deformvolume::Error NoBody(
-  vtkImageData* volume, vtkDataArray* array, const deformvolume::BodyCriterion& criterion)
+deformvolume::Error NoBody(vtkDataArray* array, const deformvolume::BodyCriterion& criterion)
 {
   std::ostringstream text;
-  const std::array<double, 2> range = deformvolume::FindRange(volume, array);
+  double range[2];
+  array->GetFiniteRange(range, 0);
   if (range[0] > range[1])
   {
-    text << "No body: the volume has no finite value that is not hidden.";
+    text << "No body: the volume has no finite value.";
   }
   else if (criterion.ByLabels)
   {
     text << "No body: the volume has no voxel with "
-         << (criterion.Labels.empty() ? "a label other than 0."
-                                      : "one of the labels. Check AddLabel().");
+         << (criterion.Labels.empty() ? "a label other than 0" : "one of the labels of AddLabel()")
+         << " that vtkGhostType does not hide.";
   }
   else
   {
     text << "No body: the volume has no value of at least " << criterion.Isovalue
-         << ", the isovalue; its values go from " << range[0] << " to " << range[1]
-         << ". Set another Isovalue.";
+         << ", the isovalue, that vtkGhostType does not hide; its values go from " << range[0]
+         << " to " << range[1] << ". Set another Isovalue.";
   }
   return deformvolume::Error(text.str());
 }
@@ -128,7 +128,7 @@ void vtkTetGenMesher::MeshVolume(
   deformvolume::BodyVoxels body = deformvolume::FindBodyVoxels(volume, array, criterion);
   if (body.Runs.empty())
   {
-    throw NoBody(volume, array, criterion);
+    throw NoBody(array, criterion);
   }
   deformvolume::FindPieces(body, this->SpeckSize, this->PieceMode == LARGEST_PIECE);
   this->CheckStep(0.2);
@@ -209,7 +209,6 @@ deformvolume::UncoveredVoxels vtkTetGenMesher::MeshBody(const deformvolume::Body
     }
     deformvolume::GrowAround(surface, outside, 0.05 * voxel, 0.75 * length);
   }
-  deformvolume::RoundPositions(surface, length);
   output->ShallowCopy(this->Fill(surface, length, spheres, isLast));
   return deformvolume::FindUncovered(output, body);
 }

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace deformvolume
@@ -104,22 +103,6 @@ double FindIsovalue(vtkImageData* volume, vtkDataArray* array, double resolution
     counts[std::min(static_cast<std::size_t>(bin), NumberOfBins - 1)] += 1.0;
   }
   return least + FindOtsuThreshold(counts) / NumberOfBins * range;
-}
-
-std::array<double, 2> FindRange(vtkImageData* volume, vtkDataArray* array)
-{
-  const unsigned char* ghosts = FindPointGhosts(volume);
-  const double infinity = std::numeric_limits<double>::infinity();
-  std::array<double, 2> range{ { infinity, -infinity } };
-  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
-  {
-    const double value = array->GetComponent(i, 0);
-    if (std::isfinite(value) && !(ghosts && (ghosts[i] & vtkDataSetAttributes::HIDDENPOINT)))
-    {
-      range = { { std::min(range[0], value), std::max(range[1], value) } };
-    }
-  }
-  return range;
 }
 
 } // namespace deformvolume

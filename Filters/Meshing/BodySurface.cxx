@@ -374,20 +374,4 @@ vtkSmartPointer<vtkPolyData> Shrink(vtkPolyData* surface, double distance)
   return result;
 }
 
-void RoundPositions(vtkPolyData* surface, double length)
-{
-  const double unit = std::exp2(std::round(std::log2(length)) - 24.0);
-  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
-  {
-    double point[3];
-    surface->GetPoint(i, point);
-    for (double& coordinate : point)
-    {
-      coordinate = std::round(coordinate / unit) * unit;
-    }
-    surface->GetPoints()->SetPoint(i, point);
-  }
-  surface->GetPoints()->Modified();
-}
-
 } // namespace deformvolume

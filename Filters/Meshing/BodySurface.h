@@ -40,10 +40,6 @@ void GrowAround(
 /// The same surface with each vertex so far inwards.
 vtkSmartPointer<vtkPolyData> Shrink(vtkPolyData* surface, double distance);
 
-/// Rounds positions, so that what is meant to be plane, as where the volume's border cuts the body,
-/// is so exactly: otherwise TetGen puts tetrahedra of almost no volume there.
-void RoundPositions(vtkPolyData* surface, double length);
-
 } // namespace deformvolume
 
 #endif
