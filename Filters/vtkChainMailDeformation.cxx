@@ -37,7 +37,12 @@ vtkChainMailDeformation::vtkChainMailDeformation()
 {
   deformvolume::UseVTKThreads();
   this->SetNumberOfInputPorts(2);
-  this->Internals->Settings.SetDefaultMaterials();
+  constexpr double defaults[5][3] = { { 0.1, 2.0, 1.0 }, { 0.5, 1.5, 0.5 }, { 0.8, 1.2, 0.2 },
+    { 0.95, 1.05, 0.05 }, { 0.99, 1.01, 0.01 } };
+  for (int i = 0; i < 5; ++i)
+  {
+    this->SetMaterial(i, defaults[i][0], defaults[i][1], defaults[i][2]);
+  }
 }
 
 vtkChainMailDeformation::~vtkChainMailDeformation() = default;
@@ -53,51 +58,19 @@ void vtkChainMailDeformation::SetHandlesData(vtkDataObject* data)
 }
 
 void vtkChainMailDeformation::SetMaterial(
-  int index, double minimumStretch, double maximumStretch, double shear)
-{
-  if (index < 0 || index > 255)
-  {
-    vtkErrorMacro("There is no material " << index << ". Give it an index from 0 to 255.");
-    return;
-  }
-  const deformvolume::ChainMailMaterial material{ minimumStretch, maximumStretch, shear };
-  if (this->Internals->Settings.Table.Set(static_cast<std::size_t>(index), material))
-  {
-    this->Modified();
-  }
-}
-
-void vtkChainMailDeformation::SetMaterial(
   double index, double minimumStretch, double maximumStretch, double shear)
 {
-  if (deformvolume::IsMaterialIndex(index))
-  {
-    this->SetMaterial(static_cast<int>(index), minimumStretch, maximumStretch, shear);
-    return;
-  }
-  vtkErrorMacro("There is no material " << index << ". Give it a whole number from 0 to 255.");
+  this->Internals->Settings.Table.Set(this, index, { minimumStretch, maximumStretch, shear });
 }
 
 bool vtkChainMailDeformation::GetMaterialLimits(int index, double limits[3])
 {
-  const deformvolume::ChainMailMaterial* material = this->Internals->Settings.Table.Find(index);
-  if (!material)
-  {
-    return false;
-  }
-  limits[0] = material->MinimumStretch;
-  limits[1] = material->MaximumStretch;
-  limits[2] = material->Shear;
-  return true;
+  return this->Internals->Settings.Table.GetNumbers(index, limits);
 }
 
 void vtkChainMailDeformation::ClearMaterials()
 {
-  if (this->GetNumberOfMaterials() > 0)
-  {
-    this->Internals->Settings.Table.Exists.fill(false);
-    this->Modified();
-  }
+  this->Internals->Settings.Table.Clear(this);
 }
 
 int vtkChainMailDeformation::GetNumberOfMaterials()
@@ -107,22 +80,12 @@ int vtkChainMailDeformation::GetNumberOfMaterials()
 
 void vtkChainMailDeformation::AddMaterialRange(double minimum, double maximum, double index)
 {
-  if (!deformvolume::IsMaterialIndex(index))
-  {
-    vtkErrorMacro("There is no material " << index << ". Give the range an index from 0 to 255.");
-    return;
-  }
-  this->Internals->Settings.Table.Ranges.push_back({ minimum, maximum, static_cast<int>(index) });
-  this->Modified();
+  this->Internals->Settings.Table.AddRange(this, minimum, maximum, index);
 }
 
 void vtkChainMailDeformation::ClearMaterialRanges()
 {
-  if (!this->Internals->Settings.Table.Ranges.empty())
-  {
-    this->Internals->Settings.Table.Ranges.clear();
-    this->Modified();
-  }
+  this->Internals->Settings.Table.ClearRanges(this);
 }
 
 int vtkChainMailDeformation::GetNumberOfMaterialRanges()
@@ -296,22 +259,7 @@ void vtkChainMailDeformation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "HandleRadius: " << this->HandleRadius << "\n";
-  os << indent << "Materials:\n";
-  for (int i = 0; i < 256; ++i)
-  {
-    double limits[3];
-    if (this->GetMaterialLimits(i, limits))
-    {
-      os << indent.GetNextIndent() << i << ": " << limits[0] << " " << limits[1] << " " << limits[2]
-         << "\n";
-    }
-  }
-  os << indent << "MaterialRanges:\n";
-  for (const deformvolume::MaterialRange& range : this->Internals->Settings.Table.Ranges)
-  {
-    os << indent.GetNextIndent() << range.Minimum << " to " << range.Maximum << ": " << range.Index
-       << "\n";
-  }
+  this->Internals->Settings.Table.Print(os, indent);
   os << indent << "MaterialArrayName: " << this->MaterialArrayName << "\n";
   os << indent << "DefaultMaterial: " << this->DefaultMaterial << "\n";
   os << indent << "RelaxationSweeps: " << this->RelaxationSweeps << "\n";

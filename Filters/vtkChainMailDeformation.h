@@ -100,18 +100,14 @@ public:
   /**
    * The limits of a material, as fractions of the spacing: the shortest and the longest that a link
    * may be along its axis (at rest it is 1), and how far its ends may move past each other across
-   * it. index: 0 to 255; minimumStretch: 0 to 1; maximumStretch: 1 to 1000; shear: 0 to 1000;
-   * others are an error of the next execution. A link between two materials has the mean of their
-   * limits. To keep tetrahedra upright the shear should be less than half of the minimum stretch.
+   * it. index: a whole number from 0 to 255 (a double, since panels of ParaView pass nothing else);
+   * minimumStretch: 0 to 1; maximumStretch: 1 to 1000; shear: 0 to 1000; others are an error of the
+   * next execution. A link between two materials has the mean of their limits. To keep tetrahedra
+   * upright the shear should be less than half of the minimum stretch.
    *
    * There are five materials by default, all of them engineering values: 0, air: 0.1, 2, 1;
    * 1, soft tissue: 0.5, 1.5, 0.5; 2, muscle: 0.8, 1.2, 0.2; 3, cartilage: 0.95, 1.05, 0.05;
    * 4, bone: 0.99, 1.01, 0.01.
-   */
-  void SetMaterial(int index, double minimumStretch, double maximumStretch, double shear);
-  /**
-   * The same for those who have no integers, as the panels of ParaView: others than whole numbers
-   * are an error.
    */
   void SetMaterial(double index, double minimumStretch, double maximumStretch, double shear);
   /**

@@ -22,7 +22,6 @@
 #include "vtkPointData.h"
 #include "vtkUnstructuredGrid.h"
 
-#include <iterator>
 #include <vector>
 
 vtkStandardNewMacro(vtkMaterialFromVolume);
@@ -32,16 +31,6 @@ using deformvolume::ElasticMaterial;
 class vtkMaterialFromVolume::vtkInternals
 {
 public:
-  vtkInternals()
-  {
-    constexpr ElasticMaterial materials[] = { { 100.0, 0.0, 100.0 }, { 1e4, 0.3, 1000.0 },
-      { 5e4, 0.4, 1060.0 }, { 1e6, 0.4, 1100.0 }, { 1e7, 0.3, 1900.0 } };
-    for (std::size_t i = 0; i < std::size(materials); ++i)
-    {
-      this->Table.Set(i, materials[i]);
-    }
-  }
-
   deformvolume::MaterialTable<ElasticMaterial> Table;
   deformvolume::PipelineExecution Execution;
 };
@@ -51,6 +40,12 @@ vtkMaterialFromVolume::vtkMaterialFromVolume()
 {
   deformvolume::UseVTKThreads();
   this->SetNumberOfInputPorts(2);
+  constexpr double defaults[5][3] = { { 100.0, 0.0, 100.0 }, { 1e4, 0.3, 1000.0 },
+    { 5e4, 0.4, 1060.0 }, { 1e6, 0.4, 1100.0 }, { 1e7, 0.3, 1900.0 } };
+  for (int i = 0; i < 5; ++i)
+  {
+    this->SetMaterial(i, defaults[i][0], defaults[i][1], defaults[i][2]);
+  }
 }
 
 vtkMaterialFromVolume::~vtkMaterialFromVolume() = default;
@@ -66,46 +61,19 @@ void vtkMaterialFromVolume::SetVolumeData(vtkDataObject* data)
 }
 
 void vtkMaterialFromVolume::SetMaterial(
-  int index, double youngModulus, double poissonRatio, double density)
-{
-  this->SetMaterial(static_cast<double>(index), youngModulus, poissonRatio, density);
-}
-
-void vtkMaterialFromVolume::SetMaterial(
   double index, double youngModulus, double poissonRatio, double density)
 {
-  if (!deformvolume::IsMaterialIndex(index))
-  {
-    vtkErrorMacro("There is no material " << index << ". Give it a whole number from 0 to 255.");
-    return;
-  }
-  const ElasticMaterial material{ youngModulus, poissonRatio, density };
-  if (this->Internals->Table.Set(static_cast<std::size_t>(index), material))
-  {
-    this->Modified();
-  }
+  this->Internals->Table.Set(this, index, { youngModulus, poissonRatio, density });
 }
 
 bool vtkMaterialFromVolume::GetMaterialValues(int index, double values[3])
 {
-  const ElasticMaterial* material = this->Internals->Table.Find(index);
-  if (!material)
-  {
-    return false;
-  }
-  values[0] = material->YoungModulus;
-  values[1] = material->PoissonRatio;
-  values[2] = material->Density;
-  return true;
+  return this->Internals->Table.GetNumbers(index, values);
 }
 
 void vtkMaterialFromVolume::ClearMaterials()
 {
-  if (this->GetNumberOfMaterials() > 0)
-  {
-    this->Internals->Table.Exists.fill(false);
-    this->Modified();
-  }
+  this->Internals->Table.Clear(this);
 }
 
 int vtkMaterialFromVolume::GetNumberOfMaterials()
@@ -115,22 +83,12 @@ int vtkMaterialFromVolume::GetNumberOfMaterials()
 
 void vtkMaterialFromVolume::AddMaterialRange(double minimum, double maximum, double index)
 {
-  if (!deformvolume::IsMaterialIndex(index))
-  {
-    vtkErrorMacro("There is no material " << index << ". Give the range an index from 0 to 255.");
-    return;
-  }
-  this->Internals->Table.Ranges.push_back({ minimum, maximum, static_cast<int>(index) });
-  this->Modified();
+  this->Internals->Table.AddRange(this, minimum, maximum, index);
 }
 
 void vtkMaterialFromVolume::ClearMaterialRanges()
 {
-  if (!this->Internals->Table.Ranges.empty())
-  {
-    this->Internals->Table.Ranges.clear();
-    this->Modified();
-  }
+  this->Internals->Table.ClearRanges(this);
 }
 
 int vtkMaterialFromVolume::GetNumberOfMaterialRanges()
@@ -177,12 +135,6 @@ void vtkMaterialFromVolume::Execute(
   vtkUnstructuredGrid* mesh = vtkUnstructuredGrid::GetData(input[0]);
   vtkImageData* image = vtkImageData::GetData(input[1]);
   const deformvolume::MaterialTable<ElasticMaterial>& table = this->Internals->Table;
-  const ElasticMaterial* defaultMaterial = table.Find(this->DefaultMaterial);
-  if (!defaultMaterial)
-  {
-    throw deformvolume::Error("DefaultMaterial is the material " +
-      std::to_string(this->DefaultMaterial) + ", which there is not. Set it with SetMaterial().");
-  }
   for (int i = 0; i < static_cast<int>(table.Materials.size()); ++i)
   {
     if (const ElasticMaterial* material = table.Find(i))
@@ -194,7 +146,7 @@ void vtkMaterialFromVolume::Execute(
   volume.Volume = deformvolume::GetGeometry(image);
   deformvolume::CheckVolume(volume.Volume);
   volume.Table.assign(table.Materials.begin(), table.Materials.end());
-  volume.Default = *defaultMaterial;
+  volume.Default = table.Get(this->DefaultMaterial, "DefaultMaterial");
   vtkDataArray* array =
     deformvolume::FindMaterialArray(image, this->MaterialArrayName, !table.Ranges.empty());
   volume.Indices = deformvolume::ReadMaterials(
@@ -235,22 +187,7 @@ void vtkMaterialFromVolume::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "MaterialArrayName: " << this->MaterialArrayName << "\n";
   os << indent << "DefaultMaterial: " << this->DefaultMaterial << "\n";
-  os << indent << "Materials:\n";
-  for (int i = 0; i < static_cast<int>(this->Internals->Table.Materials.size()); ++i)
-  {
-    double values[3];
-    if (this->GetMaterialValues(i, values))
-    {
-      os << indent.GetNextIndent() << i << ": " << values[0] << " " << values[1] << " " << values[2]
-         << "\n";
-    }
-  }
-  os << indent << "MaterialRanges:\n";
-  for (const deformvolume::MaterialRange& range : this->Internals->Table.Ranges)
-  {
-    os << indent.GetNextIndent() << range.Minimum << " to " << range.Maximum << ": " << range.Index
-       << "\n";
-  }
+  this->Internals->Table.Print(os, indent);
   os << indent << "NumberOfTetrahedraWithoutVoxels: " << this->NumberOfTetrahedraWithoutVoxels
      << "\n";
   os << indent << "NumberOfTetrahedraOutside: " << this->NumberOfTetrahedraOutside << "\n";

@@ -62,19 +62,15 @@ public:
 
   ///@{
   /**
-   * A material. index: 0 to 255; youngModulus: in Pa, greater than 0; poissonRatio: 0 or more, less
-   * than 0.495; density: in kg/m^3, greater than 0. Others are an error of the next execution.
+   * A material. index: a whole number from 0 to 255 (a double, since panels of ParaView pass
+   * nothing else); youngModulus: in Pa, greater than 0; poissonRatio: 0 or more, less than 0.495;
+   * density: in kg/m^3, greater than 0. Others are an error of the next execution.
    *
    * There are five materials by default, all of them engineering values: 0, air: 100, 0, 100;
    * 1, soft tissue: 1e4, 0.3, 1000; 2, muscle: 5e4, 0.4, 1060; 3, cartilage: 1e6, 0.4, 1100;
    * 4, bone: 1e7, 0.3, 1900. Air is a very soft tissue, so that a mesh may hold some. Bone is less
    * stiff than in nature (1e10), where soft tissue does not bend it either, as time steps of
    * springs become shorter with stiffness.
-   */
-  void SetMaterial(int index, double youngModulus, double poissonRatio, double density);
-  /**
-   * The same for those who have no integers, as the panels of ParaView: others than whole numbers
-   * are an error.
    */
   void SetMaterial(double index, double youngModulus, double poissonRatio, double density);
   /**

@@ -37,15 +37,6 @@ vtkDataArray* FindVolumeArray(vtkImageData* volume, const char* name)
     volume->GetPointData(), name, 1, volume->GetNumberOfPoints(), "point array", "the volume");
 }
 
-void CheckMaterial(const ChainMailSettings& settings, int index, const char* who)
-{
-  if (!settings.Table.Find(index))
-  {
-    throw Error(std::string(who) + " is the material " + std::to_string(index) +
-      ", which there is not. Set it with SetMaterial().");
-  }
-}
-
 std::vector<ChainMailHandle> ReadHandles(
   vtkPointSet* handles, const ImageGeometry& geometry, double radius)
 {
@@ -82,16 +73,6 @@ std::uint64_t GetIndexMemory(const ChainMailSnapshot& snapshot)
 }
 
 } // namespace
-
-void ChainMailSettings::SetDefaultMaterials()
-{
-  const ChainMailMaterial defaults[] = { { 0.1, 2.0, 1.0 }, { 0.5, 1.5, 0.5 }, { 0.8, 1.2, 0.2 },
-    { 0.95, 1.05, 0.05 }, { 0.99, 1.01, 0.01 } };
-  for (std::size_t i = 0; i < std::size(defaults); ++i)
-  {
-    this->Table.Set(i, defaults[i]);
-  }
-}
 
 void ChainMailSession::Forget()
 {
@@ -225,12 +206,12 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
   }
   for (const MaterialRange& range : settings.Table.Ranges)
   {
-    CheckMaterial(settings, range.Index, "Of a range");
+    settings.Table.Get(range.Index, "The range's material");
     key.Numbers.insert(key.Numbers.end(), { range.Minimum, range.Maximum, 1.0 * range.Index });
   }
   if (!materialArray || !settings.Table.Ranges.empty())
   {
-    CheckMaterial(settings, settings.DefaultMaterial, "The default");
+    settings.Table.Get(settings.DefaultMaterial, "DefaultMaterial");
   }
   const auto readMaterials = [&]
   {

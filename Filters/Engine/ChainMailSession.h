@@ -31,8 +31,6 @@ struct ChainMailSettings
   double HandleRadius = 0.0;
   std::string Device;
   std::int64_t MemoryLimit = 0;
-
-  void SetDefaultMaterials();
 };
 
 /// A ChainMailModel with its output, and what it was given of VTK's data.

@@ -2,13 +2,18 @@
 #ifndef DeformVolumeMaterialTable_h
 #define DeformVolumeMaterialTable_h
 
+#include "Error.h"
 #include "MaterialArray.h"
+
+#include "vtkIndent.h"
+#include "vtkObject.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -21,40 +26,126 @@ inline bool IsMaterialIndex(double index)
   return index >= 0.0 && index <= 255.0 && index == std::floor(index);
 }
 
-/// Materials by their indices, and the ranges of values that have them. Material: numbers only.
+/// Materials by their indices, and the ranges of values that have them: what
+/// vtkChainMailDeformation and vtkMaterialFromVolume are set to. Material: three numbers.
 template <typename Material>
 struct MaterialTable
 {
-  static_assert(std::is_trivially_copyable_v<Material>, "materials are compared by their bytes");
+  static_assert(std::is_trivially_copyable_v<Material> && sizeof(Material) == 3 * sizeof(double),
+    "materials are compared and read by their bytes");
 
   std::array<Material, 256> Materials;
   std::array<bool, 256> Exists{};
   std::vector<MaterialRange> Ranges;
 
-  /// Returns whether it was not so before.
-  bool Set(std::size_t index, const Material& material)
+  ///@{
+  /// Marks the owner as modified where something changes, and reports an error of it where an index
+  /// is not a whole number from 0 to 255.
+  void Set(vtkObject* owner, double index, const Material& material)
   {
-    Material& last = this->Materials[index];
-    if (this->Exists[index] && std::memcmp(&last, &material, sizeof(Material)) == 0)
+    if (!CheckIndex(owner, index))
     {
-      return false;
+      return;
     }
-    last = material;
-    this->Exists[index] = true;
-    return true;
+    const auto i = static_cast<std::size_t>(index);
+    Material& last = this->Materials[i];
+    if (!this->Exists[i] || std::memcmp(&last, &material, sizeof(Material)) != 0)
+    {
+      last = material;
+      this->Exists[i] = true;
+      owner->Modified();
+    }
   }
+  void Clear(vtkObject* owner)
+  {
+    if (this->GetNumber() > 0)
+    {
+      this->Exists.fill(false);
+      owner->Modified();
+    }
+  }
+  void AddRange(vtkObject* owner, double minimum, double maximum, double index)
+  {
+    if (CheckIndex(owner, index))
+    {
+      this->Ranges.push_back({ minimum, maximum, static_cast<int>(index) });
+      owner->Modified();
+    }
+  }
+  void ClearRanges(vtkObject* owner)
+  {
+    if (!this->Ranges.empty())
+    {
+      this->Ranges.clear();
+      owner->Modified();
+    }
+  }
+  ///@}
 
-  /// Null where there is none.
+  /// Null where it is not defined.
   const Material* Find(int index) const
   {
     return IsMaterialIndex(index) && this->Exists[static_cast<std::size_t>(index)]
       ? &this->Materials[static_cast<std::size_t>(index)]
       : nullptr;
   }
+  /// Throws an Error where it is not defined. who: what has the index, for the message.
+  const Material& Get(int index, const std::string& who) const
+  {
+    const Material* material = this->Find(index);
+    if (!material)
+    {
+      throw Error(
+        who + " " + std::to_string(index) + " is not defined. Define it with SetMaterial().");
+    }
+    return *material;
+  }
+  /// False, and no change, where it is not defined.
+  bool GetNumbers(int index, double numbers[3]) const
+  {
+    const Material* material = this->Find(index);
+    if (material)
+    {
+      std::memcpy(numbers, material, sizeof(Material));
+    }
+    return material != nullptr;
+  }
 
   int GetNumber() const
   {
     return static_cast<int>(std::count(this->Exists.begin(), this->Exists.end(), true));
+  }
+
+  void Print(ostream& os, vtkIndent indent) const
+  {
+    os << indent << "Materials:\n";
+    double numbers[3];
+    for (int i = 0; i < static_cast<int>(this->Materials.size()); ++i)
+    {
+      if (this->GetNumbers(i, numbers))
+      {
+        os << indent.GetNextIndent() << i << ": " << numbers[0] << " " << numbers[1] << " "
+           << numbers[2] << "\n";
+      }
+    }
+    os << indent << "MaterialRanges:\n";
+    for (const MaterialRange& range : this->Ranges)
+    {
+      os << indent.GetNextIndent() << range.Minimum << " to " << range.Maximum << ": "
+         << range.Index << "\n";
+    }
+  }
+
+private:
+  static bool CheckIndex(vtkObject* owner, double index)
+  {
+    if (!IsMaterialIndex(index))
+    {
+      vtkErrorWithObjectMacro(
+        owner, << "There is no material " << index << ". Give it a whole number from 0 to 255.");
+      return false;
+    }
+    return true;
   }
 };
 

@@ -96,7 +96,7 @@ void TestVolumeArrays(Dragged& dragged, vtkImageData* volume)
 void TestMaterials(Dragged& dragged)
 {
   dragged.Filter->SetDefaultMaterial(9);
-  VERIFY(Holds(dragged.TryUpdate(), "material 9"));
+  VERIFY(Holds(dragged.TryUpdate(), "DefaultMaterial 9 is not defined"));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double bad[][3] = { { 1.5, 2, 0.5 }, { 0.5, 0.9, 0.5 }, { -1, 2, 0.5 }, { 0.5, 2, -1 },
     { nan, 2, 1 }, { 0.5, nan, 1 }, { 0.5, 2, nan } };
@@ -107,7 +107,7 @@ void TestMaterials(Dragged& dragged)
   }
   dragged.Filter->ClearMaterials();
   dragged.Filter->SetDefaultMaterial(1);
-  VERIFY(Holds(dragged.TryUpdate(), "material"));
+  VERIFY(Holds(dragged.TryUpdate(), "DefaultMaterial 1 is not defined"));
   VERIFY_EQUAL(dragged.Filter->GetNumberOfMaterials(), 0);
   dragged.Filter->SetMaterial(1, 0.5, 1.5, 0.5);
   double limits[3];
@@ -115,7 +115,7 @@ void TestMaterials(Dragged& dragged)
   VERIFY(!dragged.Filter->GetMaterialLimits(2, limits) &&
     !dragged.Filter->GetMaterialLimits(-1, limits));
   dragged.Filter->AddMaterialRange(0, 10, 7);
-  VERIFY(Holds(dragged.TryUpdate(), "material 7"));
+  VERIFY(Holds(dragged.TryUpdate(), "material 7 is not defined"));
   dragged.Filter->ClearMaterialRanges();
   dragged.Filter->SetMaterial(1.5, 0.5, 1.5, 0.5);
   VERIFY(Holds(dragged.Observer->GetErrorMessage(), "whole number"));

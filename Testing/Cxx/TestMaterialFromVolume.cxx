@@ -159,7 +159,7 @@ void TestMisuse()
   vtkShortArray::SafeDownCast(volume->GetPointData()->GetScalars())->SetValue(11, 1);
   tested.Filter->ClearMaterials();
   VERIFY_EQUAL(tested.Filter->GetNumberOfMaterials(), 0);
-  VERIFY(Holds(tested.TryUpdate(), "DefaultMaterial is the material 1"));
+  VERIFY(Holds(tested.TryUpdate(), "DefaultMaterial 1 is not defined"));
   tested.Filter->SetMaterial(1, 1e4, 0.3, 1000.0);
   VERIFY(Holds(tested.TryUpdate(), "for which there is no material"));
 
