@@ -18,7 +18,6 @@
 #include "vtkPointSet.h"
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <sstream>
 

@@ -13,7 +13,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkStringArray.h"
 
-#include <algorithm>
 #include <iterator>
 #include <sstream>
 

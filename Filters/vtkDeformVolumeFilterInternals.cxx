@@ -13,11 +13,7 @@
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
-#include "vtkInformation.h"
-#include "vtkInformationDoubleKey.h"
-#include "vtkInformationIntegerVectorKey.h"
 #include "vtkPointData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -266,19 +262,6 @@ vtkIdType vtkDeformVolumeFilter::vtkInternals::GetNumberOfFolds()
     this->State->FoldsVersion = version;
   }
   return static_cast<vtkIdType>(this->State->NumberOfFolds);
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::ForgetRequestedExtent(vtkInformation* output)
-{
-  output->Remove(vtkStreamingDemandDrivenPipeline::COMBINED_UPDATE_EXTENT());
-}
-
-//------------------------------------------------------------------------------
-bool vtkDeformVolumeFilter::vtkInternals::IsReleased(vtkInformation* output)
-{
-  return vtkDataObject::GetGlobalReleaseDataFlag() != 0 ||
-    output->Get(vtkDemandDrivenPipeline::RELEASE_DATA()) != 0;
 }
 
 //------------------------------------------------------------------------------

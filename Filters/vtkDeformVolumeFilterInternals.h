@@ -10,13 +10,11 @@
 #include "Ranks.h"
 
 #include "vtkDeformVolumeFilter.h"
-#include "vtkNew.h"
 #include "vtkSmartPointer.h"
 
 #include <exception>
 #include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -122,13 +120,6 @@ public:
 
   /// Makes what has been counted on this rank that of all ranks. Collective.
   void AddUpCounts(const deformvolume::Ranks& ranks);
-
-  /// The executive unites the extents asked for until an execution succeeds: after a failure the
-  /// next one must start anew.
-  static void ForgetRequestedExtent(vtkInformation* output);
-
-  /// Whether the output is given up as soon as those after it have used it.
-  static bool IsReleased(vtkInformation* output);
 
   /// Warns where what is ignored changed since the last call.
   void WarnOfIgnored(vtkImageData* volume, const std::vector<std::string>& leftOut);

@@ -6,14 +6,14 @@
 #include "InputUpdate.h"
 #include "MaskArray.h"
 
-#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
-#include <algorithm>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <set>
+#include <type_traits>
 
 using deformvolume::DeformationSource;
 using deformvolume::Error;

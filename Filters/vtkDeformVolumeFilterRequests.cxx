@@ -11,7 +11,6 @@
 #include "WorldBoxes.h"
 
 #include "vtkDataObject.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -116,7 +115,8 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   {
     data->Initialize();
   }
-  vtkInternals::ForgetRequestedExtent(outInfo);
+  // The executive unites the extents that are requested until an execution succeeds.
+  outInfo->Remove(Pipeline::COMBINED_UPDATE_EXTENT());
   this->Internals->State->Outputs.Forget();
   this->Internals->FactorOfOutput = 0;
   return result;
@@ -384,7 +384,8 @@ int vtkDeformVolumeFilter::RequestData(
   {
     return 1;
   }
-  if (vtkInternals::IsReleased(outInfo))
+  if (vtkDataObject::GetGlobalReleaseDataFlag() != 0 ||
+    outInfo->Get(vtkDemandDrivenPipeline::RELEASE_DATA()) != 0)
   {
     for (auto& other : this->Internals->States)
     {

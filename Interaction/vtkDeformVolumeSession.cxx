@@ -70,7 +70,6 @@ public:
   deformvolume::SessionPipeline Pipeline;
   SessionEvents Record;
   bool IsMoving = false;
-  bool HasInputs = false;
   std::string InputHash; // "" until it is wanted
   vtkIdType Steps = 0;
 
@@ -324,7 +323,6 @@ bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid
   const bool wasRunning = this->GetIsRunning();
   this->Stop();
   vtkInternals& internals = *this->Internals;
-  const auto former = internals.Inputs;
   const SessionEvents record = internals.Record;
   auto inputs = std::make_pair(vtkSmartPointer<vtkImageData>::New(),
     mesh ? vtkSmartPointer<vtkUnstructuredGrid>::New() : nullptr);
@@ -339,7 +337,6 @@ bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid
     internals.Begin(inputs.first, inputs.second);
     internals.Inputs = inputs;
     internals.InputHash.clear();
-    internals.HasInputs = true;
     isDone = true;
     const std::lock_guard<std::mutex> lock(internals.QueueMutex);
     internals.Queue.clear();
@@ -352,7 +349,7 @@ bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid
   catch (const std::exception& error)
   {
     this->Report(error.what());
-    if (internals.HasInputs)
+    if (internals.Inputs.first)
     {
       internals.Replay(record, [](double) {});
     }
@@ -366,7 +363,7 @@ bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid
 
 bool vtkDeformVolumeSession::CheckInputs()
 {
-  if (!this->Internals->HasInputs)
+  if (!this->Internals->Inputs.first)
   {
     this->Report("There is no volume. Call SetInputs() first.");
     return false;

@@ -14,7 +14,7 @@
 
 #include <glm/glm.hpp>
 
-#include <algorithm>
+#include <array>
 #include <optional>
 
 namespace deformvolume

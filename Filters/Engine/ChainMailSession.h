@@ -8,7 +8,6 @@
 #include "MaterialTable.h"
 #include "VectorOutput.h"
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>

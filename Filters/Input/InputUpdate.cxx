@@ -18,7 +18,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTrivialProducer.h"
 
-#include <algorithm>
 #include <initializer_list>
 #include <set>
 #include <string>
