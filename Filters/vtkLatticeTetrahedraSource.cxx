@@ -3,7 +3,6 @@
 
 #include "AbortCheck.h"
 #include "FiveTetrahedra.h"
-#include "InputUpdate.h"
 #include "PieceRequest.h"
 
 #include "vtkCellArray.h"
@@ -175,23 +174,12 @@ int vtkLatticeTetrahedraSource::ComputePipelineMTime(vtkInformation* request,
 int vtkLatticeTetrahedraSource::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  // The lattice depends on no voxel, but a volume of one voxel has the origin, the spacing and the
-  // direction of the whole, which its source need not announce.
+  // All of the volume, although the lattice depends on no voxel. Consumers of one source share its
+  // information, so that a smaller request replaces that of another consumer, unless it has been
+  // forwarded before; and nothing is read twice.
   if (vtkInformation* info = inputVector[0]->GetInformationObject(0))
   {
     deformvolume::AskForAll(info);
-    // A source that has failed announces no extent.
-    if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()) &&
-      deformvolume::CanProduceParts(this, 0))
-    {
-      int extent[6];
-      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        extent[2 * axis + 1] = std::min(extent[2 * axis], extent[2 * axis + 1]);
-      }
-      info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent, 6);
-    }
   }
   return 1;
 }
@@ -221,7 +209,7 @@ int vtkLatticeTetrahedraSource::RequestData(
   std::string problem;
   if (vtkImageData* volume = vtkImageData::GetData(inputVector[0]))
   {
-    // The whole extent, so that a part of the volume gets the same lattice as all of it.
+    // The whole extent, so that a piece of the volume gets the same lattice as all of it.
     vtkInformation* info = inputVector[0]->GetInformationObject(0);
     int extent[6];
     volume->GetExtent(extent);

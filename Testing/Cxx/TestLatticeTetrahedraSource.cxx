@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lattices over boxes and volumes: misuse, then volumes, faces and places against sums by hand.
 #include "vtkLatticeTetrahedraSource.h"
+#include "vtkMaterialFromVolume.h"
 
 #include "MeshChecks.h"
 
 #include <vtkCallbackCommand.h>
 #include <vtkImageData.h>
-#include <vtkInformation.h>
-#include <vtkInformationIntegerKey.h>
-#include <vtkInformationVector.h>
 #include <vtkMatrix3x3.h>
-#include <vtkObjectFactory.h>
 #include <vtkPoints.h>
 #include <vtkRTAnalyticSource.h>
 #include <vtkSphereSource.h>
@@ -187,44 +184,25 @@ void TestVolume()
   }
 }
 
-/// A source that makes whole volumes only.
-class WholeSource : public vtkRTAnalyticSource
+// The request for the volume does not replace that of a consumer of both.
+void TestSharedVolume()
 {
-public:
-  static WholeSource* New();
-  vtkTypeMacro(WholeSource, vtkRTAnalyticSource);
-
-protected:
-  int RequestInformation(
-    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override
-  {
-    const int result = this->Superclass::RequestInformation(request, input, output);
-    output->GetInformationObject(0)->Remove(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT());
-    return result;
-  }
-};
-vtkStandardNewMacro(WholeSource);
-
-// The lattice depends on where the volume is, not on its voxels.
-template <typename Source>
-void TestVolumeThatIsNotRead(vtkIdType voxels)
-{
-  vtkNew<Source> volume;
+  vtkNew<vtkRTAnalyticSource> volume;
   volume->SetWholeExtent(-3, 6, 2, 7, -4, 1);
   vtkNew<vtkLatticeTetrahedraSource> source;
   source->SetInputConnection(volume->GetOutputPort());
-  FailureCheck check(source);
-  check.Succeeds();
-  VERIFY(volume->GetOutput()->GetNumberOfPoints() == voxels);
-  double bounds[6];
-  source->GetOutput()->GetBounds(bounds);
-  VERIFY_NEAR(bounds[0], -3.0, 1e-12);
-  VERIFY_NEAR(bounds[1], 6.0, 1e-12);
-  // All voxels stay where another consumer has read them.
-  volume->UpdateWholeExtent();
-  source->Modified();
-  source->Update();
-  VERIFY(volume->GetOutput()->GetNumberOfPoints() == 360);
+  vtkNew<vtkMaterialFromVolume> material;
+  material->SetInputConnection(source->GetOutputPort());
+  material->SetVolumeConnection(volume->GetOutputPort());
+  FailureCheck check(material);
+  for (int repeat = 0; repeat < 2; ++repeat)
+  {
+    check.Succeeds();
+    VERIFY(volume->GetOutput()->GetNumberOfPoints() == 360);
+    VERIFY(material->GetOutput()->GetNumberOfCells() > 0);
+    source->Modified();
+    source->Update();
+  }
 }
 
 // Cubes cover the volume, and reach as far beyond it on one side as on the other.
@@ -350,8 +328,7 @@ int TestLatticeTetrahedraSource(int, char*[])
   TestMisuse();
   TestBox();
   TestVolume();
-  TestVolumeThatIsNotRead<vtkRTAnalyticSource>(1);
-  TestVolumeThatIsNotRead<WholeSource>(360);
+  TestSharedVolume();
   TestEqualSpacing();
   TestAbort();
   TestPieces();
