@@ -96,8 +96,8 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   const deformvolume::Deformation& mesh = this->State->Deformation;
   this->UpdateBoundsOfMesh(voxelGrid);
   const deformvolume::PointRanges changes = mesh.GetChanges(this->State->BoundsVectorsVersion);
-  const IndexBounds bounds = this->State->BoundsOfMesh.Compute(mesh.GetRestPoints(),
-    mesh.GetTetrahedra(), mesh.GetNodeDisplacements(), &changes, mesh.GetBlockComponents());
+  const IndexBounds bounds = this->State->BoundsOfMesh.Compute(
+    mesh.GetRestPoints(), mesh.GetTetrahedra(), mesh.GetNodeDisplacements(), &changes);
   this->State->BoundsVectorsVersion = mesh.GetVectorsVersion();
   if (bounds.IsEmpty())
   {

@@ -5,7 +5,6 @@
 #include "ParallelFor.h"
 #include "PointDifferences.h"
 #include "VectorArray.h"
-#include "VectorComponents.h"
 #include "VectorConversion.h"
 
 #include "vtkDataArray.h"
@@ -116,7 +115,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
   this->MemoriesAreOfPoints = ofPoints;
   this->SetVectors(
     GetNumberOfNodes(shape),
-    [&](const VectorTaker& take, const FloatTaker& takeFloats)
+    [&](const VectorTaker& take)
     {
       if (ofPoints)
       {
@@ -124,7 +123,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
       }
       else
       {
-        ReadPointVectors(shape, source.Selector, this->Faults, take, &this->Memories, takeFloats);
+        ReadPointVectors(shape, source.Selector, this->Faults, take, &this->Memories);
       }
       this->CheckFaults(shape, source);
     },
@@ -220,11 +219,9 @@ void Deformation::ResizeVectors(std::size_t count, std::size_t blocks)
     // Of a block that ends elsewhere now not all can be as it was.
     const std::size_t same = std::min(this->Vectors.size() / 3, count) / PointsPerBlock;
     this->BlockVersions.resize(std::min(this->BlockVersions.size(), same));
-    this->BlockComponents.resize(std::min(this->BlockComponents.size(), same));
     this->Vectors.resize(3 * count);
   }
   this->BlockVersions.resize(blocks, this->VectorsVersion);
-  this->BlockComponents.resize(blocks);
 }
 
 void Deformation::UpdateDerived(
@@ -261,13 +258,6 @@ void Deformation::UpdateDerived(
   {
     ThrowTooFar();
   }
-  const std::size_t all = count + derived.GetCount();
-  for (std::size_t block = count / PointsPerBlock; block * PointsPerBlock < all; ++block)
-  {
-    const std::size_t first = block * PointsPerBlock;
-    this->BlockComponents[block] = FindComponents(
-      this->Vectors.data() + 3 * first, 3 * (std::min(first + PointsPerBlock, all) - first));
-  }
 }
 
 void Deformation::ReplaceVectors(std::size_t count, const VectorSource& read, double factor,
@@ -283,31 +273,24 @@ void Deformation::ReplaceVectors(std::size_t count, const VectorSource& read, do
   {
     this->Memories.clear();
   }
-  const bool isFollowing = !this->Memories.empty();
   this->ResizeVectors(all, blocks);
   this->VectorsAreWhole = false;
   const VectorConversion conversion(GetToDisplacement(source, factor));
   std::vector<std::atomic<bool>> changed(blocks);
-  std::vector<std::atomic<bool>> inPieces(blocks);
   this->Faults.Resize(count);
-  // Returns false where a vector is not finite, or a displacement too large.
-  const auto takeVectors = [&](vtkIdType first, const auto* vectors, vtkIdType number, int width)
-  {
-    this->Faults.Clear(first, number);
-    std::array<float, 3 * PointsPerBlock> displacements;
-    auto point = static_cast<std::size_t>(first);
-    const std::size_t end = point + static_cast<std::size_t>(number);
-    while (point < end)
+  read(
+    [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType number)
     {
-      const std::size_t block = point / PointsPerBlock;
-      const std::size_t some = std::min(end, (block + 1) * PointsPerBlock) - point;
-      if (!conversion.Convert(vectors, some, displacements.data()))
+      this->Faults.Clear(first, number);
+      std::array<float, 3 * PointsPerBlock> displacements;
+      auto point = static_cast<std::size_t>(first);
+      const std::size_t end = point + static_cast<std::size_t>(number);
+      while (point < end)
       {
-        if (width != 1)
-        {
-          return false;
-        }
-        for (std::size_t i = 0; i < some; ++i)
+        const std::size_t block = point / PointsPerBlock;
+        const std::size_t some = std::min(end, (block + 1) * PointsPerBlock) - point;
+        const bool areNear = conversion.Convert(vectors, some, displacements.data());
+        for (std::size_t i = 0; i < some && !areNear; ++i)
         {
           if (!conversion.Convert(vectors + i, 1, &displacements[3 * i]))
           {
@@ -315,54 +298,26 @@ void Deformation::ReplaceVectors(std::size_t count, const VectorSource& read, do
             this->Faults.Mark(static_cast<vtkIdType>(point + i), NodeFaults::TooFar);
           }
         }
+        float* last = this->Vectors.data() + 3 * point;
+        if (std::memcmp(last, displacements.data(), 3 * some * sizeof(float)) != 0)
+        {
+          std::copy_n(displacements.begin(), 3 * some, last);
+          changed[block].store(true, std::memory_order_relaxed);
+        }
+        vectors += some;
+        point += some;
       }
-      float* last = this->Vectors.data() + 3 * point;
-      if (std::memcmp(last, displacements.data(), 3 * some * sizeof(float)) != 0)
-      {
-        std::copy_n(displacements.begin(), 3 * some, last);
-        changed[block].store(true, std::memory_order_relaxed);
-      }
-      if (some == std::min(PointsPerBlock, all - block * PointsPerBlock))
-      {
-        // While the caches hold them.
-        this->BlockComponents[block] = FindComponents(displacements.data(), 3 * some);
-      }
-      else
-      {
-        inPieces[block].store(true, std::memory_order_relaxed);
-      }
-      vectors += width * some;
-      point += some;
-    }
-    return true;
-  };
-  read([&](vtkIdType first, const glm::dvec3* vectors, vtkIdType number)
-    { takeVectors(first, vectors, number, 1); },
-    [&](vtkIdType first, const float* vectors, vtkIdType number)
-    { return takeVectors(first, vectors, number, 3); });
-  for (std::size_t block = 0; block < blocks; ++block)
-  {
-    if (inPieces[block])
-    {
-      this->BlockComponents[block] = VectorComponents();
-    }
-  }
+    });
   if (all > count)
   {
     this->UpdateDerived(*derived, count, changed);
   }
-  std::size_t number = 0;
   for (std::size_t block = 0; block < blocks; ++block)
   {
     if (changed[block])
     {
       this->BlockVersions[block] = version;
-      ++number;
     }
-  }
-  for (VectorMemory& memory : this->Memories)
-  {
-    memory.KeepsBytes = !isFollowing || 2 * number < blocks;
   }
   this->VectorsAreWhole = true;
 }

@@ -11,7 +11,6 @@
 #include "RestMesh.h"
 #include "Tetrahedron.h"
 #include "VectorArray.h"
-#include "VectorComponents.h"
 
 #include "vtkSmartPointer.h"
 
@@ -83,9 +82,6 @@ public:
   const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Mesh.GetTetrahedra(); }
   const std::vector<glm::dvec3>& GetRestPoints() const { return this->Mesh.GetPoints(); }
   const float* GetNodeDisplacements() const { return this->Vectors.data(); }
-  /// What each block of so many displacements lies between; not finite where that is not known.
-  const VectorComponents* GetBlockComponents() const { return this->BlockComponents.data(); }
-  static constexpr std::size_t PointsPerBlock = VectorComponents::BlockSize;
   ///@}
 
   ///@{
@@ -147,8 +143,8 @@ private:
   bool VectorsAreCurrent(const Stamp& stamp, const DeformationSource& source, bool field) const;
   /// Whether equal vectors are equal displacements, now and when they were read last.
   bool HasSameUnits(const DeformationSource& source) const;
-  /// Calls one of its arguments for all displacements in world units.
-  using VectorSource = std::function<void(const VectorTaker&, const FloatTaker&)>;
+  /// Calls its argument for all displacements in world units.
+  using VectorSource = std::function<void(const VectorTaker&)>;
   /// read: of so many displacements; it throws an Error where some cannot be used. derived: of
   /// which those of others follow; null: of none.
   void SetVectors(std::size_t count, const VectorSource& read, double factor,
@@ -170,10 +166,10 @@ private:
   bool Field = false;
   RestMesh Mesh;
   std::vector<float> Vectors;
+  static constexpr std::size_t PointsPerBlock = 512;
   std::vector<std::uint64_t> BlockVersions; // that with which each block of the vectors came
-  std::vector<VectorComponents> BlockComponents;
-  bool VectorsAreWhole = false; // else the last reading of them failed
-  NodeFaults Faults;            // of the vectors, where they are read from a mesh
+  bool VectorsAreWhole = false;             // else the last reading of them failed
+  NodeFaults Faults;                        // of the vectors, where they are read from a mesh
   std::array<int, 3> FieldDimensions{ { 0, 0, 0 } };
   std::array<double, 12> IndexToField{};
   std::vector<unsigned char> UndefinedPoints; // of the field; empty: all are defined
@@ -181,7 +177,6 @@ private:
   DisplacementField FieldInPlace; // with an owner, or there is none
   IndexBounds FieldBounds;
   FieldScan ScanInPlace;
-  std::array<std::uint64_t, 4> FingerprintInPlace{};
   const void* ArrayInPlace = nullptr;
   vtkMTimeType TimeInPlace = 0; // of the array
   PointRanges ChangesInPlace;   // those that led from one version of the vectors to this one

@@ -188,11 +188,11 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
     this->Faults.Reset();
     this->SetVectors(
       static_cast<std::size_t>(array->GetNumberOfTuples()),
-      [&](const VectorTaker& take, const FloatTaker& takeFloats)
+      [&](const VectorTaker& take)
       {
         if (areDefined)
         {
-          ReadVectors(array, take, "Vector", FIELD, nullptr, takeFloats);
+          ReadVectors(array, take, "Vector", FIELD);
         }
         else
         {
@@ -229,7 +229,7 @@ void Deformation::ReadDefined(vtkDataArray* array, const VectorTaker& take)
       }
       take(first, defined.data(), count);
     },
-    "Vector", FIELD, nullptr, {},
+    "Vector", FIELD, nullptr,
     [&](vtkIdType point)
     {
       if (!this->UndefinedPoints[point])
@@ -338,11 +338,6 @@ bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& 
   }
   this->ArrayInPlace = array;
   this->TimeInPlace = array->GetMTime();
-  if (isSame && this->FingerprintInPlace == state.Fingerprint)
-  {
-    return true; // it was marked as modified, and is not
-  }
-  this->FingerprintInPlace = state.Fingerprint;
   array->Register(nullptr);
   field.Owner =
     std::shared_ptr<const void>(array, [](vtkDataArray* owned) { owned->UnRegister(nullptr); });

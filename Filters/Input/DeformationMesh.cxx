@@ -112,7 +112,7 @@ std::vector<glm::dvec3> ReadPoints(
         grid->GetPoints()->GetData(),
         [next](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
         { std::copy_n(vectors, count, next + first); },
-        "Point", name, nullptr, {},
+        "Point", name, nullptr,
         [&](vtkIdType point) { faults.Mark(next - points.data() + point, NodeFaults::NotFinite); });
       next += grid->GetNumberOfPoints();
     }
@@ -168,7 +168,7 @@ bool HaveVectors(vtkDataSet* dataSet, vtkDataArray* vectors)
 }
 
 void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector, NodeFaults& faults,
-  const VectorTaker& take, std::vector<VectorMemory>* memories, const FloatTaker& takeFloats)
+  const VectorTaker& take, std::vector<VectorMemory>* memories)
 {
   std::vector<VectorMemory> none;
   std::vector<VectorMemory>& last = memories ? *memories : none;
@@ -196,9 +196,6 @@ void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector, Nod
         [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
         { take(next + first, vectors, count); },
         "Displacement", "", memories ? &last[part] : nullptr,
-        takeFloats ? [&](vtkIdType first, const float* vectors, vtkIdType count)
-          { return takeFloats(next + first, vectors, count); }
-                   : FloatTaker(),
         [&](vtkIdType point) { faults.Mark(next + point, NodeFaults::NotFinite); });
     }
     next += points;

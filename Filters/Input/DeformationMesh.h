@@ -68,11 +68,10 @@ bool HaveVectors(vtkDataSet* dataSet, vtkDataArray* vectors);
 
 /// Vectors of all points, one part's after the other's. Those that are not finite, and those of
 /// parts without a usable array, are marked in faults, after they have been taken as zeros.
-/// memories: of the last reading, where they were taken to the same places; null: all are taken.
-/// memories, takeFloats: see ReadVectors.
+/// memories: of the last reading (see ReadVectors), where they were taken to the same places; null:
+/// all are taken.
 void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector, NodeFaults& faults,
-  const VectorTaker& take, std::vector<VectorMemory>* memories = nullptr,
-  const FloatTaker& takeFloats = {});
+  const VectorTaker& take, std::vector<VectorMemory>* memories = nullptr);
 
 /// Throws an Error where tetrahedra use a node without a vector, or with one that is not finite.
 /// Those that are too far are left to the caller.

@@ -57,16 +57,16 @@ void Deformation::BringToHost()
   this->Memories.clear();
   this->ReplaceVectors(
     static_cast<std::size_t>(this->ArrayOnDevice->GetNumberOfTuples()),
-    [&](const VectorTaker& take, const FloatTaker& takeFloats)
+    [&](const VectorTaker& take)
     {
       if (!this->Field)
       {
-        ReadVectors(this->ArrayOnDevice, take, "Displacement", "", nullptr, takeFloats,
+        ReadVectors(this->ArrayOnDevice, take, "Displacement", "", nullptr,
           [&](vtkIdType node) { this->Faults.Mark(node, NodeFaults::NotFinite); });
         this->CheckFaults({}, this->VectorsSource);
         return;
       }
-      ReadVectors(this->ArrayOnDevice, take, "Vector", "displacement field", nullptr, takeFloats);
+      ReadVectors(this->ArrayOnDevice, take, "Vector", "displacement field");
       if (this->Faults.MayHaveAny())
       {
         ThrowTooFar();

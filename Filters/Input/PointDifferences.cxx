@@ -91,7 +91,7 @@ void ReadPointDifferences(const MeshParts& shape, const MeshParts& rest, const V
             take(next + first + begin, moves.data(), some);
           }
         },
-        "Point", MESH_NAME, &memories[part], {},
+        "Point", MESH_NAME, &memories[part],
         [&](vtkIdType point) { faults.Mark(next + point, NodeFaults::NotFinite); });
     }
     next += count;

@@ -287,7 +287,7 @@ void RestMesh::ReadMovedPoints(const MeshParts& rest, const DeformationSource& s
             this->Points[node] = point;
           }
         },
-        "Point", "", &memory, {},
+        "Point", "", &memory,
         [&](vtkIdType point) { this->PointFaults.Mark(first + point, NodeFaults::NotFinite); });
     }
     first += count;

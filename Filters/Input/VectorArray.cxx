@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cstring>
 #include <limits>
 
 namespace deformvolume
@@ -29,88 +28,29 @@ namespace
 constexpr vtkIdType BLOCK = 512; // tuples at a time
 constexpr vtkIdType NONE = std::numeric_limits<vtkIdType>::max();
 
-// The values of an array that lies in memory tuple by tuple; null for others.
-template <typename T>
-const void* GetBytes(vtkAOSDataArrayTemplate<T>* array)
-{
-  return array->GetPointer(0);
-}
-const void* GetBytes(vtkDeviceVectorArray* array)
-{
-  return array->GetValues();
-}
-const void* GetBytes(vtkDataArray*)
-{
-  return nullptr;
-}
-
-// Finds out which blocks of an array are not as they were.
-class BlockComparison
+// Which blocks of an array a log has as not written since it was read last.
+class UnwrittenBlocks
 {
 public:
-  BlockComparison(vtkDataArray* array, const void* bytes, VectorMemory* memory)
-    : Values(static_cast<const unsigned char*>(bytes))
-    , TupleSize(3 * static_cast<std::size_t>(array->GetDataTypeSize()))
+  UnwrittenBlocks(vtkDataArray* array, const VectorMemory* memory)
   {
-    if (!memory || !bytes)
+    if (const auto ranges = memory ? FindWritten(array, memory->Array, memory->Time) : std::nullopt)
     {
-      return;
-    }
-    this->Known = memory->Type == array->GetDataType() ? memory->Count : 0;
-    this->ReadLog(array, *memory);
-    const bool areKept = !memory->Bytes.empty();
-    if (!memory->KeepsBytes)
-    {
-      memory->Bytes.clear();
-    }
-    else if (areKept || this->Known == 0 || this->Written.empty())
-    {
-      // Where they are kept from now on, all are read.
-      this->Known = areKept ? this->Known : 0;
-      memory->Bytes.resize(static_cast<std::size_t>(array->GetNumberOfTuples()) * this->TupleSize);
-      this->Last = memory->Bytes.data();
-    }
-  }
-
-  bool IsSame(vtkIdType first, vtkIdType count) const
-  {
-    const std::size_t begin = static_cast<std::size_t>(first) * this->TupleSize;
-    const std::size_t size = static_cast<std::size_t>(count) * this->TupleSize;
-    return first + count <= this->Known &&
-      (this->IsLeft(first) ||
-        (this->Last && std::memcmp(this->Values + begin, this->Last + begin, size) == 0));
-  }
-  void Remember(vtkIdType first, vtkIdType count) const
-  {
-    if (this->Last)
-    {
-      const std::size_t begin = static_cast<std::size_t>(first) * this->TupleSize;
-      std::memcpy(this->Last + begin, this->Values + begin,
-        static_cast<std::size_t>(count) * this->TupleSize);
-    }
-  }
-
-private:
-  void ReadLog(vtkDataArray* array, const VectorMemory& memory)
-  {
-    if (const auto ranges = FindWritten(array, memory.Array, memory.Time))
-    {
+      this->Known = memory->Count;
       this->Written.resize(
         (static_cast<std::size_t>(array->GetNumberOfTuples()) + BLOCK - 1) / BLOCK);
       MarkBlocks(*ranges, BLOCK, this->Written);
     }
   }
-  /// Whether a log says that none of a block was written.
-  bool IsLeft(vtkIdType first) const
+
+  bool Hold(vtkIdType first, vtkIdType count) const
   {
-    return !this->Written.empty() && !this->Written[static_cast<std::size_t>(first / BLOCK)];
+    return first + count <= this->Known && !this->Written[static_cast<std::size_t>(first / BLOCK)];
   }
 
-  const unsigned char* Values;
-  std::size_t TupleSize;
-  unsigned char* Last = nullptr;
-  vtkIdType Known = 0;                // tuples of the last reading
-  std::vector<unsigned char> Written; // blocks, where a log tells which; else empty
+private:
+  vtkIdType Known = 0; // tuples of the last reading
+  std::vector<unsigned char> Written;
 };
 
 // Without branches, and in sums that do not wait for each other: there are millions.
@@ -133,15 +73,12 @@ bool AreFinite(const double* values, vtkIdType count)
   return std::all_of(sums.begin(), sums.end(), [](double sum) { return sum == 0.0; });
 }
 
-// The values of an array of floats that lies in memory tuple by tuple; null for others.
-const float* GetFloats(vtkAOSDataArrayTemplate<float>* array)
+// Has the values of an array be in memory of the host.
+void BringToHost(vtkDeviceVectorArray* array)
 {
-  return array->GetPointer(0);
+  array->GetValues();
 }
-const float* GetFloats(vtkDataArray*)
-{
-  return nullptr;
-}
+void BringToHost(vtkDataArray*) {}
 
 // Reads tuples of an array. Memory is read by its address, which compilers make vectors of.
 template <typename T>
@@ -180,20 +117,15 @@ void VisitVectors(vtkDataArray* array, Body&& body)
 struct VectorReader
 {
   template <typename ArrayT>
-  void operator()(ArrayT* array, const VectorTaker& take, VectorMemory* memory,
-    const FloatTaker& takeFloats, const FaultTaker& takeFault)
+  void operator()(
+    ArrayT* array, const VectorTaker& take, const VectorMemory* memory, const FaultTaker& takeFault)
   {
     const vtkIdType tuples = array->GetNumberOfTuples();
-    const BlockComparison comparison(array, GetBytes(array), memory);
-    const float* const floats = takeFloats ? GetFloats(array) : nullptr;
+    const UnwrittenBlocks unwritten(array, memory);
+    BringToHost(array);
     std::atomic<vtkIdType> bad{ NONE };
     const auto read = [&](vtkIdType first, vtkIdType count)
     {
-      if (floats && takeFloats(first, floats + 3 * first, count))
-      {
-        comparison.Remember(first, count);
-        return;
-      }
       std::array<glm::dvec3, BLOCK> vectors;
       CopyTuples(array, first, count, vectors.data());
       const bool areFinite = AreFinite(&vectors[0].x, 3 * count);
@@ -214,7 +146,6 @@ struct VectorReader
       }
       take(first, vectors.data(), count);
       std::for_each(faults.begin(), faults.end(), takeFault);
-      comparison.Remember(first, count);
     };
     // A thread that is started for a few blocks costs more than it saves: the device's own threads
     // lose a turn to it when they begin their work right after.
@@ -225,25 +156,22 @@ struct VectorReader
         for (vtkIdType first = begin * BLOCK; first < std::min(end * BLOCK, tuples); first += BLOCK)
         {
           const vtkIdType count = std::min(BLOCK, tuples - first);
-          if (!comparison.IsSame(first, count))
+          if (!unwritten.Hold(first, count))
           {
             read(first, count);
           }
         }
       });
     this->FirstBad = bad;
-    this->HasBytes = GetBytes(array) != nullptr;
   }
 
   vtkIdType FirstBad = NONE;
-  bool HasBytes = false;
 };
 
 } // namespace
 
 void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string& kind,
-  const std::string& owner, VectorMemory* memory, const FloatTaker& takeFloats,
-  const FaultTaker& takeFault)
+  const std::string& owner, VectorMemory* memory, const FaultTaker& takeFault)
 {
   if (array->GetNumberOfComponents() != 3)
   {
@@ -251,13 +179,12 @@ void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string
       std::to_string(array->GetNumberOfComponents()) + " components. Give each of them three.");
   }
   VectorReader reader;
-  VisitVectors(array, [&](auto* typed) { reader(typed, take, memory, takeFloats, takeFault); });
+  VisitVectors(array, [&](auto* typed) { reader(typed, take, memory, takeFault); });
   if (memory)
   {
-    memory->Type = reader.HasBytes && reader.FirstBad == NONE ? array->GetDataType() : VTK_VOID;
-    memory->Count = array->GetNumberOfTuples();
-    memory->Array = array;
+    memory->Array = reader.FirstBad == NONE ? array : nullptr;
     memory->Time = array->GetMTime();
+    memory->Count = array->GetNumberOfTuples();
   }
   if (reader.FirstBad != NONE)
   {
@@ -272,7 +199,7 @@ VectorCopier MakeVectorCopier(vtkDataArray* array)
   VisitVectors(array,
     [&](auto* typed)
     {
-      GetBytes(typed); // brings them to the host, now and not in many threads
+      BringToHost(typed); // now and not in many threads
       copier = [typed](vtkIdType first, vtkIdType count, glm::dvec3* vectors)
       { CopyTuples(typed, first, count, vectors); };
     });

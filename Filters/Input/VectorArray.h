@@ -20,39 +20,27 @@ namespace deformvolume
 using VectorTaker =
   std::function<void(vtkIdType first, const glm::dvec3* vectors, vtkIdType count)>;
 
-/// The same of vectors as they lie in memory, three floats each, before anybody has looked at them.
-/// Returns false where it has not taken them, as one is not finite: they go to the VectorTaker.
-using FloatTaker = std::function<bool(vtkIdType first, const float* vectors, vtkIdType count)>;
-
 /// Is told of a vector that is not finite; called in parallel.
 using FaultTaker = std::function<void(vtkIdType tuple)>;
 
-/// What an array held when it was read last.
+/// When an array was read last.
 struct VectorMemory
 {
-  int Type = 0;        // of its elements, as VTK numbers them; VTK_VOID where nothing is known
-  vtkIdType Count = 0; // of its tuples
-  /// Whether their bytes are kept, and compared: else all are taken that no log leaves out, which
-  /// is faster where most have changed.
-  bool KeepsBytes = true;
-  std::vector<unsigned char> Bytes; // empty: none are kept yet
-  vtkIdType Place = 0;              // what its first tuple counted as
-  const void* Array = nullptr;
-  vtkMTimeType Time = 0; // of the array
+  const void* Array = nullptr; // null where nothing is known
+  vtkMTimeType Time = 0;       // of the array
+  vtkIdType Count = 0;         // of its tuples
+  vtkIdType Place = 0;         // what its first tuple counted as
 };
 
 /// Reads the tuples of an array of three components, in parallel, some at a time. Throws an Error
 /// that names the first tuple that is not finite: "<kind> 5 of the <owner>".
 /// memory: of the last reading of this array or of one in its place, which may have had fewer or
-/// more tuples. Blocks of tuples that are as they were then need not be taken again, and are left
-/// out: a log of the array (vtkArrayChanges) tells them, or else a comparison where bytes are kept.
-/// Null: all are taken.
-/// takeFloats: offered vectors that lie in memory as floats, where it is not empty.
+/// more tuples. Blocks of tuples that a log of the array (vtkArrayChanges) has as not written since
+/// then are left out. Null: all are taken.
 /// takeFault: called for tuples that are not finite, after they have been taken as zeros. Empty:
 /// they are an error.
 void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string& kind,
-  const std::string& owner, VectorMemory* memory = nullptr, const FloatTaker& takeFloats = {},
-  const FaultTaker& takeFault = {});
+  const std::string& owner, VectorMemory* memory = nullptr, const FaultTaker& takeFault = {});
 
 /// Copies tuples of an array of three components, from the one with number first on; may be called
 /// by several threads.

@@ -10,24 +10,17 @@
 namespace deformvolume
 {
 
-/// Makes displacements of vectors, by a matrix that takes these to them. The same vectors become
-/// the same displacements in each form.
+/// Makes displacements of vectors, by a matrix that takes these to them.
 class VectorConversion
 {
 public:
   explicit VectorConversion(const glm::dmat3& toDisplacement);
 
-  ///@{
   /// displacements: three floats each. Returns false where one is not finite, or over
-  /// LargestDisplacement. The second form: of three floats each, which need not be finite.
+  /// LargestDisplacement.
   bool Convert(const glm::dvec3* vectors, std::size_t count, float* displacements) const;
-  bool Convert(const float* vectors, std::size_t count, float* displacements) const;
-  ///@}
 
 private:
-  template <typename T>
-  bool ConvertComponents(const T* components, std::size_t count, float* displacements) const;
-
   glm::dmat3 Matrix;
   glm::dvec3 Scaling;
   bool IsScaling; // axes stay axes

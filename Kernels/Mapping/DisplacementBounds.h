@@ -7,10 +7,6 @@
 #include <cstddef>
 #include <vector>
 
-#ifdef __SSE__
-#include <xmmintrin.h>
-#endif
-
 namespace deformvolume
 {
 
@@ -36,8 +32,8 @@ struct DisplacementBounds
   /// Of a field maybe a little wider, where its axes are turned.
   void Add(const Displacements& displacements, std::size_t begin, std::size_t end);
   void Add(const DisplacementBounds& other);
-  alignas(16) std::array<float, 4> Least;
-  alignas(16) std::array<float, 4> Greatest;
+  std::array<float, 4> Least;
+  std::array<float, 4> Greatest;
 };
 
 /// What holds all of some bounds.
@@ -45,38 +41,19 @@ DisplacementBounds Join(const std::vector<DisplacementBounds>& bounds);
 
 inline void DisplacementBounds::Add(const float* displacements, std::size_t begin, std::size_t end)
 {
-#ifdef __SSE__
-  // Compilers do not find these by themselves, and there are millions of points.
-  __m128 least = _mm_load_ps(this->Least.data());
-  __m128 greatest = _mm_load_ps(this->Greatest.data());
-  // Two points at a time, which do not wait for each other.
-  __m128 otherLeast = least;
-  __m128 otherGreatest = greatest;
-  std::size_t point = begin;
-  for (; point + 2 <= end; point += 2)
+  // Not in members, which floats may lie over as far as compilers know.
+  std::array<float, 4> least = this->Least;
+  std::array<float, 4> greatest = this->Greatest;
+  for (std::size_t point = begin; point < end; ++point)
   {
-    const __m128 next = _mm_loadu_ps(displacements + 4 * point);
-    const __m128 other = _mm_loadu_ps(displacements + 4 * point + 4);
-    least = _mm_min_ps(least, next);
-    greatest = _mm_max_ps(greatest, next);
-    otherLeast = _mm_min_ps(otherLeast, other);
-    otherGreatest = _mm_max_ps(otherGreatest, other);
+    for (std::size_t c = 0; c < 4; ++c)
+    {
+      least[c] = std::min(least[c], displacements[4 * point + c]);
+      greatest[c] = std::max(greatest[c], displacements[4 * point + c]);
+    }
   }
-  if (point < end)
-  {
-    const __m128 next = _mm_loadu_ps(displacements + 4 * point);
-    least = _mm_min_ps(least, next);
-    greatest = _mm_max_ps(greatest, next);
-  }
-  _mm_store_ps(this->Least.data(), _mm_min_ps(least, otherLeast));
-  _mm_store_ps(this->Greatest.data(), _mm_max_ps(greatest, otherGreatest));
-#else
-  for (std::size_t i = 4 * begin; i < 4 * end; ++i)
-  {
-    this->Least[i % 4] = std::min(this->Least[i % 4], displacements[i]);
-    this->Greatest[i % 4] = std::max(this->Greatest[i % 4], displacements[i]);
-  }
-#endif
+  this->Least = least;
+  this->Greatest = greatest;
 }
 
 } // namespace deformvolume

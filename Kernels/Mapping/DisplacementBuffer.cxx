@@ -18,10 +18,6 @@
 #include <optional>
 #include <string>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
-
 namespace deformvolume
 {
 namespace
@@ -119,64 +115,28 @@ std::size_t MarkChanges(const float* vectors, const float* last,
   return number;
 }
 
-// Whether so many vectors differ that it is not worthwhile to find out which, by a sample of them.
-bool AreMostlyOther(const float* vectors, const float* last, const std::vector<std::size_t>& words,
-  std::size_t count, std::size_t most)
-{
-  constexpr std::size_t sampleSize = 512;
-  const std::size_t all = std::min(words.size() * WordSize, count);
-  if (all < 32 * sampleSize)
-  {
-    return false;
-  }
-  std::size_t found = 0;
-  for (std::size_t k = 0; k < sampleSize; ++k)
-  {
-    // One in each of evenly spread words, and not always the same one.
-    const std::size_t word = words[k * words.size() / sampleSize];
-    const std::size_t i = std::min(word * WordSize + 37 * k % WordSize, count - 1);
-    found += std::memcmp(vectors + 3 * i, last + 4 * i, 3 * sizeof(float)) != 0 ? 1 : 0;
-  }
-  return found * all > sampleSize * (most + (count - most) / 2);
-}
-
-// The three floats of a vector and a zero.
-std::array<float, 4> PadOne(const float* vector)
-{
-  return { { vector[0], vector[1], vector[2], 0.0F } };
-}
-
-// Pads some vectors that follow each other, all of which have a vector or another float behind
-// them.
+// The three floats of vectors from begin to before end become the four that the device reads at
+// once; adds them to bounds.
 void PadSome(const float* vectors, std::size_t begin, std::size_t end, float* padded,
   DisplacementBounds& bounds)
 {
-#ifdef __SSE2__
-  // Compilers do not find these by themselves, and there are millions of vectors.
-  const __m128 mask = _mm_castsi128_ps(_mm_set_epi32(0, -1, -1, -1));
-  __m128 least = _mm_load_ps(bounds.Least.data());
-  __m128 greatest = _mm_load_ps(bounds.Greatest.data());
+  // Copies, as padded may lie over the bounds as far as compilers know.
+  DisplacementBounds all = bounds;
   for (std::size_t i = begin; i < end; ++i)
   {
-    const __m128 next = _mm_and_ps(_mm_loadu_ps(vectors + 3 * i), mask);
-    least = _mm_min_ps(least, next);
-    greatest = _mm_max_ps(greatest, next);
-    _mm_storeu_ps(padded + 4 * i, next);
-  }
-  _mm_store_ps(bounds.Least.data(), least);
-  _mm_store_ps(bounds.Greatest.data(), greatest);
-#else
-  for (std::size_t i = begin; i < end; ++i)
-  {
-    const std::array<float, 4> next = PadOne(vectors + 3 * i);
-    bounds.Add(next.data(), 0, 1);
+    const std::array<float, 4> next{ { vectors[3 * i], vectors[3 * i + 1], vectors[3 * i + 2],
+      0.0F } };
     std::copy(next.begin(), next.end(), padded + 4 * i);
+    for (std::size_t c = 0; c < next.size(); ++c)
+    {
+      all.Least[c] = std::min(all.Least[c], next[c]);
+      all.Greatest[c] = std::max(all.Greatest[c], next[c]);
+    }
   }
-#endif
+  bounds = all;
 }
 
-// The three floats of each vector become the four that the device reads at once; returns what they
-// lie between.
+// The same for some words of vectors; returns what they lie between.
 DisplacementBounds PadVectors(
   const float* vectors, const std::vector<std::size_t>& words, std::size_t count, float* padded)
 {
@@ -190,14 +150,7 @@ DisplacementBounds PadVectors(
       {
         const std::size_t begin = words[word] * WordSize;
         const std::size_t end = begin + std::min(WordSize, count - begin);
-        const std::size_t followed = end == count ? end - 1 : end;
-        PadSome(vectors, begin, followed, padded, bounds);
-        for (std::size_t i = followed; i < end; ++i)
-        {
-          alignas(16) const std::array<float, 4> last = PadOne(vectors + 3 * i);
-          bounds.Add(last.data(), 0, 1);
-          std::copy(last.begin(), last.end(), padded + 4 * i);
-        }
+        PadSome(vectors, begin, end, padded, bounds);
       }
       const std::lock_guard<std::mutex> lock(mutex);
       all.Add(bounds);
@@ -327,18 +280,13 @@ std::array<std::size_t, 2> DisplacementBuffer::Write(const News& news, float* se
   if (partly)
   {
     const std::size_t most = this->Observer.GetMostMoved(count);
-    partly = !AreMostlyOther(displacements, sent, words, count, most);
-    if (partly)
+    this->Changed.Clear(count);
+    const std::size_t number = MarkChanges(displacements, sent, words, count, most, this->Changed);
+    if (number == 0)
     {
-      this->Changed.Clear(count);
-      const std::size_t number =
-        MarkChanges(displacements, sent, words, count, most, this->Changed);
-      if (number == 0)
-      {
-        return { { 0, 0 } };
-      }
-      partly = number <= most;
+      return { { 0, 0 } };
     }
+    partly = number <= most;
   }
   if (!partly)
   {

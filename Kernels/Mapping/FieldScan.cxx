@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 namespace deformvolume
@@ -24,76 +23,6 @@ int CountBlocksOfPlane(const DisplacementField& field)
 {
   return (field.Dimensions[1] + RowsOfBlock - 1) / RowsOfBlock;
 }
-
-// What tells rows of numbers apart. In eight sums side by side, which keep up with the memory. Each
-// is stirred so that what changes in the highest bits, such as the sign of a number, reaches others
-// before the next word: else that could undo it.
-class RowFingerprint
-{
-public:
-  explicit RowFingerprint(std::uint64_t seed)
-    : Seed(seed)
-  {
-    for (std::uint64_t& sum : this->Sums)
-    {
-      sum = seed;
-      seed += Factor;
-    }
-  }
-
-  // The next numbers of the row.
-  void Add(const float* values, std::size_t count)
-  {
-    constexpr std::size_t width = 2 * Lanes; // numbers in as many words
-    std::array<std::uint64_t, Lanes> sums = this->Sums;
-    std::size_t i = 0;
-    for (; i + width <= count; i += width)
-    {
-      std::array<std::uint64_t, Lanes> words;
-      std::memcpy(words.data(), values + i, sizeof(words));
-      for (std::size_t k = 0; k < Lanes; ++k)
-      {
-        Stir(sums[k], words[k]);
-      }
-    }
-    for (; i < count; ++i)
-    {
-      std::uint32_t word = 0;
-      std::memcpy(&word, values + i, sizeof(word));
-      Stir(sums[i % Lanes], word);
-    }
-    this->Sums = sums;
-    this->Count += count;
-  }
-
-  // Adds what was found to that of other rows, which come in any order.
-  void AddTo(std::array<std::uint64_t, 4>& all) const
-  {
-    for (std::size_t k = 0; k < all.size(); ++k)
-    {
-      std::uint64_t sum = this->Sums[k];
-      for (const std::uint64_t word : { this->Sums[k + all.size()], this->Count, this->Seed })
-      {
-        Stir(sum, word);
-      }
-      all[k] += sum;
-    }
-  }
-
-private:
-  static constexpr std::size_t Lanes = 8;
-  static constexpr std::uint64_t Factor = 0x9E3779B97F4A7C15U;
-
-  static void Stir(std::uint64_t& sum, std::uint64_t word)
-  {
-    sum ^= word;
-    sum = (sum ^ (sum >> 32)) * Factor;
-  }
-
-  std::uint64_t Seed;
-  std::array<std::uint64_t, Lanes> Sums;
-  std::uint64_t Count = 0;
-};
 
 // Looks at blocks of a field.
 class BlockScanner
@@ -128,9 +57,8 @@ public:
     }
   }
 
-  // A box that holds the deformed voxels of a block. usable: whether its vectors are. fingerprint:
-  // of its rows. Both are found at once, piece by piece, so that the memory never rests.
-  IndexBounds Scan(std::size_t block, bool& usable, std::array<std::uint64_t, 4>& fingerprint) const
+  // A box that holds the deformed voxels of a block. usable: whether its vectors are.
+  IndexBounds Scan(std::size_t block, bool& usable) const
   {
     IndexBounds box;
     this->ForRows(block,
@@ -139,18 +67,14 @@ public:
         const bool hasVoxels = this->HasVoxels(y, z);
         const std::array<int, 4> ends{ { 0, hasVoxels ? this->Begin[0] : 0,
           hasVoxels ? this->End[0] : 0, this->Field.Dimensions[0] } };
-        RowFingerprint row(static_cast<std::uint64_t>(this->GetPoint(0, y, z)));
         for (int range = 0; range < 3; ++range)
         {
           for (int x = ends[range]; x < ends[range + 1]; x += Step)
           {
             const int end = std::min(x + Step, ends[range + 1]);
             usable = this->AddSome(x, end, y, z, range == 1, box) && usable;
-            row.Add(this->Field.Vectors + 3 * this->GetPoint(x, y, z),
-              3 * static_cast<std::size_t>(end - x));
           }
         }
-        row.AddTo(fingerprint);
       });
     return box;
   }
@@ -283,7 +207,6 @@ FieldState FieldScan::Look(
   const std::vector<unsigned char> changed = this->FindChanged(field, changes);
   this->Bounds.Resize(changed.size());
   this->AreUsable.resize(changed.size());
-  this->Fingerprints.resize(changed.size());
   const BlockScanner scanner(voxelGrid, field);
   FieldState state;
   state.Bounds = this->Bounds.Compute(
@@ -291,21 +214,13 @@ FieldState FieldScan::Look(
     [&](std::size_t block)
     {
       bool usable = true;
-      this->Fingerprints[block].fill(0);
-      const IndexBounds box = scanner.Scan(block, usable, this->Fingerprints[block]);
+      const IndexBounds box = scanner.Scan(block, usable);
       this->AreUsable[block] = usable ? 1 : 0;
       return usable ? box : IndexBounds();
     },
     [&](std::size_t block) { return scanner.FindBounds(block); });
   state.IsUsable =
     std::find(this->AreUsable.begin(), this->AreUsable.end(), 0) == this->AreUsable.end();
-  for (const Fingerprint& fingerprint : this->Fingerprints)
-  {
-    for (std::size_t k = 0; k < fingerprint.size(); ++k)
-    {
-      state.Fingerprint[k] += fingerprint[k];
-    }
-  }
   return state;
 }
 

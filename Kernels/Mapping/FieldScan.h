@@ -9,8 +9,6 @@
 #include "PointRanges.h"
 #include "VoxelGrid.h"
 
-#include <array>
-#include <cstdint>
 #include <vector>
 
 namespace deformvolume
@@ -23,9 +21,6 @@ struct FieldState
   bool IsUsable = false;
   /// Of the voxels after the deformation, as ComputeDeformedBounds has them.
   IndexBounds Bounds;
-  /// Tells fields of the same dimensions apart: where these numbers are the same, so are the bits
-  /// of all vectors, but for a chance of some 2^-64.
-  std::array<std::uint64_t, 4> Fingerprint{};
 };
 
 /// Whether each voxel is a point of a field.
@@ -43,14 +38,11 @@ public:
     const PointRanges* changes = nullptr);
 
 private:
-  using Fingerprint = std::array<std::uint64_t, 4>;
-
   std::vector<unsigned char> FindChanged(
     const DisplacementField& field, const PointRanges* changes) const;
 
   BlockBounds Bounds; // of some rows of points each, and of as many in all that follows
   std::vector<unsigned char> AreUsable;
-  std::vector<Fingerprint> Fingerprints;
 };
 
 } // namespace deformvolume

@@ -13,17 +13,13 @@
 #include <atomic>
 #include <limits>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
-
 namespace deformvolume
 {
 
 namespace
 {
 
-constexpr std::size_t NodeBlock = VectorComponents::BlockSize;
+constexpr std::size_t NodeBlock = 512;
 constexpr std::size_t ClippedBlock = 64; // to clip a tetrahedron takes some hundred times as long
 
 std::size_t CountBlocks(std::size_t size, std::size_t block)
@@ -54,68 +50,6 @@ IndexBounds AddDisplacements(const IndexBounds& box, const VectorComponents& com
     moved.Max[axis] += components.AreFinite ? double{ components.Greatest[axis] } : anywhere;
   }
   return moved;
-}
-
-// The bounds of points from begin to before end, scaled and moved by their displacements, all of
-// which are finite.
-IndexBounds FindMovedBounds(const std::vector<glm::dvec3>& points, const glm::dvec3& scale,
-  const float* displacements, std::size_t begin, std::size_t end)
-{
-  IndexBounds bounds;
-  std::size_t i = begin;
-#ifdef __SSE2__
-  // Compilers do not find these by themselves, and there are millions of points. Four points, which
-  // are twelve numbers, at a time: every third pair is of the same axes.
-  static_assert(sizeof(glm::dvec3) == 3 * sizeof(double), "points lie side by side");
-  constexpr std::size_t width = 4;
-  if (end - begin >= width)
-  {
-    const __m128d scales[3] = { _mm_set_pd(scale.y, scale.x), _mm_set_pd(scale.x, scale.z),
-      _mm_set_pd(scale.z, scale.y) };
-    __m128d lows[3];
-    __m128d highs[3];
-    for (int k = 0; k < 3; ++k)
-    {
-      lows[k] = _mm_set1_pd(std::numeric_limits<double>::infinity());
-      highs[k] = _mm_set1_pd(-std::numeric_limits<double>::infinity());
-    }
-    for (; i + width <= end; i += width)
-    {
-      const double* rest = &points[i].x;
-      const float* displacement = displacements + 3 * i;
-      for (int pair = 0; pair < 6; pair += 2)
-      {
-        const __m128 both = _mm_loadu_ps(displacement + 2 * pair);
-        const __m128d halves[2] = { _mm_cvtps_pd(both), _mm_cvtps_pd(_mm_movehl_ps(both, both)) };
-        for (int half = 0; half < 2; ++half)
-        {
-          const int k = (pair + half) % 3;
-          const __m128d moved =
-            _mm_add_pd(_mm_mul_pd(scales[k], _mm_loadu_pd(rest + 2 * (pair + half))), halves[half]);
-          lows[k] = _mm_min_pd(lows[k], moved);
-          highs[k] = _mm_max_pd(highs[k], moved);
-        }
-      }
-    }
-    std::array<double, 6> low; // x, y, z, x, y, z
-    std::array<double, 6> high;
-    for (std::size_t k = 0; k < 3; ++k)
-    {
-      _mm_storeu_pd(&low[2 * k], lows[k]);
-      _mm_storeu_pd(&high[2 * k], highs[k]);
-    }
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      bounds.Min[axis] = std::min(low[axis], low[axis + 3]);
-      bounds.Max[axis] = std::max(high[axis], high[axis + 3]);
-    }
-  }
-#endif
-  for (; i < end; ++i)
-  {
-    bounds.Add(scale * points[i] + GetVector(displacements, static_cast<std::int64_t>(i)));
-  }
-  return bounds;
 }
 
 bool IsFlat(const Tetrahedron& nodes, const std::vector<glm::dvec3>& restPoints)
@@ -167,8 +101,6 @@ void MeshBounds::SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec
   this->StaleNodes.resize(this->NodeBounds.GetNumberOfBlocks(), 1);
   this->StaleClipped.resize(this->ClippedBounds.size());
   this->RestBounds.resize(this->NodeBounds.GetNumberOfBlocks());
-  this->AreAllWanted.resize(this->NodeBounds.GetNumberOfBlocks());
-  this->AreAllFinite.resize(this->NodeBounds.GetNumberOfBlocks());
 }
 
 void MeshBounds::CountUses(
@@ -202,8 +134,6 @@ void MeshBounds::Resize(std::size_t numberOfNodes)
   this->NodeBounds.Resize(CountBlocks(numberOfNodes, NodeBlock));
   this->StaleNodes.resize(this->NodeBounds.GetNumberOfBlocks());
   this->RestBounds.resize(this->NodeBounds.GetNumberOfBlocks());
-  this->AreAllWanted.resize(this->NodeBounds.GetNumberOfBlocks());
-  this->AreAllFinite.resize(this->NodeBounds.GetNumberOfBlocks());
   for (std::size_t block = least / NodeBlock; block < this->StaleNodes.size(); ++block)
   {
     this->StaleNodes[block] = 1;
@@ -262,7 +192,6 @@ void MeshBounds::FindRestBounds(const std::vector<glm::dvec3>& restPoints, std::
 {
   const glm::dvec3 scale = GetScale(this->Shape);
   IndexBounds bounds;
-  bool isWhole = true;
   const std::size_t end = std::min((block + 1) * NodeBlock, this->Wanted.size());
   for (std::size_t node = block * NodeBlock; node < end; ++node)
   {
@@ -270,18 +199,12 @@ void MeshBounds::FindRestBounds(const std::vector<glm::dvec3>& restPoints, std::
     {
       bounds.Add(scale * restPoints[node]);
     }
-    else
-    {
-      isWhole = false;
-    }
   }
   this->RestBounds[block] = bounds;
-  this->AreAllWanted[block] = isWhole ? 1 : 0;
 }
 
 IndexBounds MeshBounds::ComputeNodes(const std::vector<glm::dvec3>& restPoints,
-  const float* displacements, const VectorComponents* known,
-  const std::vector<unsigned char>& changed)
+  const float* displacements, const std::vector<unsigned char>& changed)
 {
   const auto getEnd = [&](std::size_t block)
   { return std::min((block + 1) * NodeBlock, this->Wanted.size()); };
@@ -299,18 +222,11 @@ IndexBounds MeshBounds::ComputeNodes(const std::vector<glm::dvec3>& restPoints,
         return this->RestBounds[block];
       }
       const std::size_t begin = block * NodeBlock;
-      const VectorComponents components = known && known[block].AreFinite
-        ? known[block]
-        : FindComponents(displacements + 3 * begin, 3 * (getEnd(block) - begin));
-      this->AreAllFinite[block] = components.AreFinite ? 1 : 0;
-      return AddDisplacements(this->RestBounds[block], components);
+      return AddDisplacements(this->RestBounds[block],
+        FindComponents(displacements + 3 * begin, 3 * (getEnd(block) - begin)));
     },
     [&](std::size_t block)
     {
-      if (this->AreAllWanted[block] && this->AreAllFinite[block])
-      {
-        return FindMovedBounds(restPoints, scale, displacements, block * NodeBlock, getEnd(block));
-      }
       IndexBounds bounds;
       for (std::size_t node = block * NodeBlock; node < getEnd(block); ++node)
       {
@@ -327,7 +243,7 @@ IndexBounds MeshBounds::ComputeNodes(const std::vector<glm::dvec3>& restPoints,
 
 IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
   const std::vector<Tetrahedron>& tetrahedra, const float* displacements,
-  const PointRanges* changes, const VectorComponents* known)
+  const PointRanges* changes)
 {
   std::vector<unsigned char> changed = this->StaleNodes;
   if (this->IsComputed && changes)
@@ -383,7 +299,7 @@ IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
     }
     this->ClippedBounds[block] = bounds;
   };
-  IndexBounds all = this->ComputeNodes(restPoints, displacements, known, changed);
+  IndexBounds all = this->ComputeNodes(restPoints, displacements, changed);
   ParallelForParts(
     this->ClippedBounds.size(), 1, [&](std::size_t begin, std::size_t) { clip(begin); });
   this->IsComputed = true;

@@ -6,7 +6,6 @@
 #include "DeformVolumeExport.h"
 #include "IndexBounds.h"
 #include "Tetrahedron.h"
-#include "VectorComponents.h"
 #include "VoxelGrid.h"
 
 #include <glm/vec3.hpp>
@@ -39,16 +38,15 @@ public:
     const std::vector<Tetrahedron>& tetrahedra, const std::vector<TetrahedronChange>& changes);
 
   /// restPoints and tetrahedra: those that were set. changes: all other displacements are those of
-  /// the last call for this mesh, if there was one; null: any may have changed. known: of each
-  /// block of displacements what they lie between, where it is finite; null: of none.
+  /// the last call for this mesh, if there was one; null: any may have changed.
   IndexBounds Compute(const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, const float* displacements,
-    const PointRanges* changes = nullptr, const VectorComponents* known = nullptr);
+    const PointRanges* changes = nullptr);
 
 private:
   void FindRestBounds(const std::vector<glm::dvec3>& restPoints, std::size_t block);
   IndexBounds ComputeNodes(const std::vector<glm::dvec3>& restPoints, const float* displacements,
-    const VectorComponents* known, const std::vector<unsigned char>& changed);
+    const std::vector<unsigned char>& changed);
   /// There are so many nodes now, or have been.
   void Resize(std::size_t numberOfNodes);
   /// A tetrahedron inside the volume has come, or has gone: so many more uses of its nodes.
@@ -61,8 +59,6 @@ private:
   std::vector<std::uint32_t> Uses;             // by how many of these, from the first change on
   std::vector<std::int32_t> ClippedTetrahedra; // in ascending order
   std::vector<IndexBounds> RestBounds;         // of each block of wanted nodes, scaled
-  std::vector<unsigned char> AreAllWanted;     // whether all nodes of a block are
-  std::vector<unsigned char> AreAllFinite;     // whether their displacements were
   BlockBounds NodeBounds;                      // of each block of nodes
   std::vector<IndexBounds> ClippedBounds;      // of each block of clipped tetrahedra
   ///@{

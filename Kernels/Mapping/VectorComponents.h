@@ -15,9 +15,6 @@ struct DisplacementField;
 /// What the three components of some vectors lie between, and whether all are finite.
 struct VectorComponents
 {
-  /// Vectors that are looked at together where there are many.
-  static constexpr std::size_t BlockSize = 512;
-
   std::array<float, 3> Least{};
   std::array<float, 3> Greatest{};
   bool AreFinite = false;

@@ -54,13 +54,6 @@ def _resident_gigabytes(results):
     return None if resident is None else resident / 1e9
 
 
-def _host_part(results, name):
-    if results.median(name) is None:
-        return None
-    return results.median(name) - sum(
-        results.milliseconds(name, part) for part in ("kernels", "transfer"))
-
-
 def _preprocessing(results):
     return results.median("Preprocess/301x370x316/512000", "preprocessing")
 
@@ -109,8 +102,6 @@ DEMANDS = [
     Demand("Update() after 2,000 tetrahedra got 1,000 new nodes and masks changed in 2 x 30 x 30 "
            "cells, both logged, by a full one, 512,000 nodes", 0.15,
            lambda r: r.ratio("Live/split-and-masks-logged", "Live/all-move")),
-    Demand("Update() after 1 % of the nodes moved, logged, without kernels and transfers, 512,000 "
-           "nodes", 1.0, lambda r: _host_part(r, "Live/some-move-logged"), "ms"),
     Demand("Update() after nodes moved in 14 of 285 bricks, not logged", 4.0,
            lambda r: r.median("Live/few-move"), "ms"),
     Demand("Update() by its mapping and resampling, 512,000 nodes that all move", 1.04,
