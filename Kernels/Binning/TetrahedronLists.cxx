@@ -57,7 +57,7 @@ TetrahedronLists::Counts TetrahedronLists::Make(WorkDevice& device, const cl::Bu
   ReserveLists(device, buffers.Counters, DEFORMVOLUME_BINNED_COUNTERS * sizeof(cl_uint));
   const QueueGuard guard(device.GetQueue());
   static const cl_uint zeros[DEFORMVOLUME_BINNED_COUNTERS] = {};
-  device.GetQueue().enqueueWriteBuffer(buffers.Counters, CL_FALSE, 0, sizeof(zeros), zeros);
+  PendingCopy cleared = BeginToWrite(device.GetQueue(), buffers.Counters, 0, sizeof(zeros), zeros);
   // Whatever the way, the lists are the same.
   const bool serial = device.HasSerialGroups();
   const std::uint64_t counted = serial
@@ -65,6 +65,7 @@ TetrahedronLists::Counts TetrahedronLists::Make(WorkDevice& device, const cl::Bu
     : this->Entries.Count(device, tetrahedra, positions, p, buffers);
   cl_uint counts[DEFORMVOLUME_BINNED_COUNTERS];
   device.GetQueue().enqueueReadBuffer(buffers.Counters, CL_TRUE, 0, sizeof(counts), counts);
+  cleared.Check();
   const cl_uint length = CheckLength(counted);
   ReserveLists(device, buffers.Lists, std::max<std::uint64_t>(length, 1) * sizeof(cl_int));
   if (serial)

@@ -168,7 +168,7 @@ void ChainMailState::ReadOutput(const std::vector<Extent>& changes)
     return;
   }
   const Extent& whole = this->Blocks.GetExtent();
-  PendingReads reads;
+  PendingCopies reads;
   for (const Extent& box : changes)
   {
     reads.Add(BeginToReadBox(queue, output, whole, box, 3 * sizeof(float), memory, whole));
@@ -197,10 +197,11 @@ void ChainMailState::ForParts(
   for (std::size_t begin = 0; begin < list.size(); begin += AtOnce)
   {
     const std::size_t count = std::min(AtOnce, list.size() - begin);
-    queue.enqueueWriteBuffer(
-      this->List, CL_FALSE, 0, count * sizeof(BlockTask), list.data() + begin);
+    PendingCopy sent =
+      BeginToWrite(queue, this->List, 0, count * sizeof(BlockTask), list.data() + begin);
     launch(begin, count);
     queue.finish();
+    sent.Check();
     if (canStop)
     {
       this->Continue();
@@ -278,7 +279,7 @@ void ChainMailState::ReadBlocks(
   const std::vector<std::uint32_t>& list, std::vector<ChainMailSnapshot::Block>& values)
 {
   constexpr std::size_t bytes = sizeof(ChainMailSnapshot::Block);
-  PendingReads reads;
+  PendingCopies reads;
   for (std::size_t begin = 0; begin < list.size();)
   {
     // Those that lie side by side at once.
@@ -299,13 +300,12 @@ void ChainMailState::WriteBlocks(const std::vector<std::uint32_t>& list,
 {
   constexpr std::size_t bytes = sizeof(ChainMailSnapshot::Block);
   const cl::CommandQueue& queue = this->Device.GetQueue();
-  const QueueGuard guard(queue);
+  PendingCopies writes;
   for (std::size_t i = 0; i < list.size(); ++i)
   {
-    queue.enqueueWriteBuffer(
-      this->Displacements, CL_FALSE, list[i] * bytes, bytes, values[i]->data());
+    writes.Add(BeginToWrite(queue, this->Displacements, list[i] * bytes, bytes, values[i]->data()));
   }
-  queue.finish();
+  writes.Check();
 }
 
 void ChainMailState::Check(const std::vector<std::uint32_t>& list)
@@ -338,9 +338,10 @@ void ChainMailState::Relax(const std::vector<std::uint32_t>& list, float elastic
       [&](std::size_t begin, std::size_t count)
       {
         const std::size_t bytes = count * sizeof(cl_uint);
-        queue.enqueueWriteBuffer(this->Results, CL_FALSE, 0, bytes, results.data() + begin);
+        PendingCopy sent = BeginToWrite(queue, this->Results, 0, bytes, results.data() + begin);
         this->Launch(kernel, count);
         queue.enqueueReadBuffer(this->Results, CL_TRUE, 0, bytes, results.data() + begin);
+        sent.Check();
       });
   }
 }
@@ -366,10 +367,10 @@ void ChainMailState::Hold(const std::vector<HeldVoxel>& voxels,
     context.GetContext(), CL_MEM_READ_ONLY, handles.size() * sizeof(HandleTask));
   const cl::Buffer found(context.GetContext(), CL_MEM_READ_WRITE, bytes);
   const QueueGuard guard(queue);
-  queue.enqueueWriteBuffer(list, CL_FALSE, 0, voxels.size() * sizeof(HeldVoxel), voxels.data());
-  queue.enqueueWriteBuffer(
-    targets, CL_FALSE, 0, handles.size() * sizeof(HandleTask), handles.data());
-  queue.enqueueWriteBuffer(found, CL_FALSE, 0, bytes, counts.data());
+  PendingCopies writes;
+  writes.Add(BeginToWrite(queue, list, 0, voxels.size() * sizeof(HeldVoxel), voxels.data()));
+  writes.Add(BeginToWrite(queue, targets, 0, handles.size() * sizeof(HandleTask), handles.data()));
+  writes.Add(BeginToWrite(queue, found, 0, bytes, counts.data()));
   const cl::Kernel kernel = MakeKernel(this->Program, "Hold", this->Displacements, this->Flags,
     this->Links, list, targets, this->Shared, found, static_cast<cl_uint>(voxels.size()));
   const std::size_t items = 64;
@@ -379,6 +380,7 @@ void ChainMailState::Hold(const std::vector<HeldVoxel>& voxels,
   context.Launch(
     queue, kernel, cl::NDRange((voxels.size() + group - 1) / group * group), cl::NDRange(group));
   queue.enqueueReadBuffer(found, CL_TRUE, 0, bytes, counts.data());
+  writes.Check();
 }
 
 SharedNumbers ChainMailState::TakeShared()

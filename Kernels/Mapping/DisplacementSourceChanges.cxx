@@ -77,14 +77,15 @@ void DisplacementSource::SendChanges(const std::vector<TetrahedronChange>& chang
   }
   std::vector<Tetrahedron> places;
   places.reserve(changes.size()); // they stay until they are sent
-  const QueueGuard guard(queue);
+  PendingCopies writes;
   for (const TetrahedronChange& change : changes)
   {
     places.push_back(NameNodePlaces(change.After));
-    queue.enqueueWriteBuffer(this->Tetrahedra, CL_FALSE,
+    writes.Add(BeginToWrite(queue, this->Tetrahedra,
       static_cast<std::size_t>(change.Number) * sizeof(Tetrahedron), sizeof(Tetrahedron),
-      &places.back());
+      &places.back()));
   }
+  writes.Check();
 }
 
 void DisplacementSource::ChangeConnectivity(const Tetrahedron* tetrahedra,

@@ -55,7 +55,8 @@ std::optional<IndexBounds> Find(
   const cl::Buffer bounds(context.GetContext(), CL_MEM_READ_WRITE, Groups * sizeof(Bounds));
   const cl::Buffer number(context.GetContext(), CL_MEM_READ_WRITE, sizeof(bad));
   const QueueGuard guard(queue);
-  queue.enqueueWriteBuffer(sent, CL_FALSE, 0, rest.size() * sizeof(double), rest.data());
+  PendingCopies copies;
+  copies.Add(BeginToWrite(queue, sent, 0, rest.size() * sizeof(double), rest.data()));
   queue.enqueueFillBuffer(number, bad, 0, sizeof(bad));
   cl::Kernel kernel(GetConversionProgram(context), "FindBounds");
   const std::size_t group = device.GetGroupSize(kernel);
@@ -69,8 +70,9 @@ std::optional<IndexBounds> Find(
   kernel.setArg(i++, bounds);
   kernel.setArg(i++, number);
   context.Launch(queue, kernel, cl::NDRange(Groups * group), cl::NDRange(group));
-  queue.enqueueReadBuffer(bounds, CL_FALSE, 0, Groups * sizeof(Bounds), found.data());
+  copies.Add(BeginToReadRange(queue, bounds, 0, Groups * sizeof(Bounds), found.data()));
   queue.enqueueReadBuffer(number, CL_TRUE, 0, sizeof(bad), &bad);
+  copies.Check();
   if (bad > 0)
   {
     return {};

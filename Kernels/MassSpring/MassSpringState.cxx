@@ -259,7 +259,7 @@ void MassSpringState::WriteOutput()
   this->Launch(this->WriteOutputKernel, this->NumberOfNodes * 3);
   if (float* const memory = this->Output.GetHostMemory())
   {
-    PendingReads reads;
+    PendingCopies reads;
     reads.Add(BeginToRead(
       queue, this->Output.GetBuffer(), this->NumberOfNodes * 3 * sizeof(float), memory));
     reads.Check();

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeCopiedBox_h
 #define DeformVolumeCopiedBox_h
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -39,6 +40,19 @@ struct CopiedBox
 
   std::size_t GetBytes() const { return this->Size[0] * this->Size[1] * this->Size[2]; }
   bool IsRange() const { return this->Size[1] == 1 && this->Size[2] == 1; }
+
+  /// The part from some place on that has a size, or less at an end.
+  CopiedBox GetPart(const Bytes& begin, const Bytes& size) const
+  {
+    CopiedBox part = *this;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      part.Size[axis] = std::min(size[axis], this->Size[axis] - begin[axis]);
+      part.OnDevice.Origin[axis] += begin[axis];
+      part.OnHost.Origin[axis] += begin[axis];
+    }
+    return part;
+  }
 
   /// Rows that follow one another on both sides become one, and so do planes: fewer are copied
   /// faster.

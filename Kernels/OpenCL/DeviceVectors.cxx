@@ -103,21 +103,13 @@ void DeviceVectors::Internals::Write(const float* vectors, const PointRanges& wr
     }
     return;
   }
-  const QueueGuard guard(this->Device.GetQueue());
+  PendingCopies writes;
   for (const auto& range : ranges)
   {
-    const std::uint64_t bytes = (range[1] - range[0]) * VectorSize;
-    if (bytes >= StagedCopies::LeastBytes)
-    {
-      deformvolume::Write(this->Device.GetQueue(), this->Buffer, range[0] * VectorSize, bytes,
-        vectors + 3 * range[0]);
-    }
-    else
-    {
-      this->Device.GetQueue().enqueueWriteBuffer(
-        this->Buffer, CL_FALSE, range[0] * VectorSize, bytes, vectors + 3 * range[0]);
-    }
+    writes.Add(BeginToWrite(this->Device.GetQueue(), this->Buffer, range[0] * VectorSize,
+      (range[1] - range[0]) * VectorSize, vectors + 3 * range[0]));
   }
+  writes.Check();
 }
 
 const float* DeviceVectors::Internals::Read()
@@ -129,7 +121,7 @@ const float* DeviceVectors::Internals::Read()
   }
   const auto changes = isNew ? std::nullopt : this->Log.GetSince(this->HostRevision);
   this->Host.resize(3 * this->NumberOfPoints);
-  PendingReads reads;
+  PendingCopies reads;
   for (const auto& range :
     changes ? Join(*changes) : PointRanges{ { { 0, this->NumberOfPoints } } })
   {

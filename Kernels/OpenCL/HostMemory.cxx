@@ -2,6 +2,9 @@
 #include "HostMemory.h"
 
 #include "Error.h"
+#include "StagedCopies.h"
+
+#include <utility>
 
 namespace deformvolume
 {
@@ -104,7 +107,7 @@ void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::
   }
 }
 
-PendingRead BeginToRead(
+PendingCopy BeginToRead(
   const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t bytes, void* memory)
 {
   if (!IsInPlace(buffer))
@@ -115,34 +118,34 @@ PendingRead BeginToRead(
   cl::Event done;
   void* mapped = queue.enqueueMapBuffer(buffer, CL_FALSE, CL_MAP_READ, 0, bytes);
   queue.enqueueUnmapMemObject(buffer, mapped, nullptr, &done);
-  return PendingRead(done);
+  return PendingCopy(done);
 }
 
-PendingRead BeginToReadRange(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+PendingCopy BeginToReadRange(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   std::uint64_t offset, std::uint64_t bytes, void* memory)
 {
   if (StagedCopies* const staged = FindStagedCopies(queue, bytes))
   {
-    return PendingRead(
-      *staged, staged->BeginToRead(queue, buffer, CopiedBox::MakeRange(offset, bytes), memory));
+    return PendingCopy(
+      [=] { return staged->Read(queue, buffer, CopiedBox::MakeRange(offset, bytes), memory); });
   }
   cl::Event done;
   queue.enqueueReadBuffer(buffer, CL_FALSE, offset, bytes, memory, nullptr, &done);
-  return PendingRead(done);
+  return PendingCopy(done);
 }
 
-PendingRead BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+PendingCopy BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   const Extent& whole, const Extent& part, std::size_t bytes, void* memory, const Extent& held)
 {
   const CopiedBox box = MakeBox(whole, part, bytes, held);
   if (StagedCopies* const staged = FindStagedCopies(queue, box.GetBytes()))
   {
-    return PendingRead(*staged, staged->BeginToRead(queue, buffer, box, memory));
+    return PendingCopy([=] { return staged->Read(queue, buffer, box, memory); });
   }
   cl::Event done;
   queue.enqueueReadBufferRect(buffer, CL_FALSE, box.OnDevice.Origin, box.OnHost.Origin, box.Size,
     box.OnDevice.Row, box.OnDevice.Plane, box.OnHost.Row, box.OnHost.Plane, memory, nullptr, &done);
-  return PendingRead(done);
+  return PendingCopy(done);
 }
 
 void Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t offset,
@@ -155,6 +158,19 @@ void Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_
     return;
   }
   CheckWritten(staged->Write(queue, buffer, CopiedBox::MakeRange(offset, bytes), data));
+}
+
+PendingCopy BeginToWrite(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  std::uint64_t offset, std::uint64_t bytes, const void* data)
+{
+  if (StagedCopies* const staged = FindStagedCopies(queue, bytes))
+  {
+    CheckWritten(staged->Write(queue, buffer, CopiedBox::MakeRange(offset, bytes), data));
+    return PendingCopy(cl::Event());
+  }
+  cl::Event done;
+  queue.enqueueWriteBuffer(buffer, CL_FALSE, offset, bytes, data, nullptr, &done);
+  return PendingCopy(done);
 }
 
 void WriteBox(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Extent& whole,
@@ -179,36 +195,40 @@ cl_int WaitFor(cl_event event) noexcept
   return status < 0 ? status : error;
 }
 
-void PendingRead::Check()
+PendingCopy::~PendingCopy()
 {
-  const cl_int error = this->Wait();
-  if (error != CL_SUCCESS)
+  if (this->Event())
   {
-    throw cl::Error(error, "copying from the device");
+    WaitFor(this->Event());
   }
 }
 
-cl_int PendingRead::Wait() noexcept
+cl_int PendingCopy::Finish()
 {
-  if (this->Copy)
+  if (this->MakeCopy)
   {
-    return this->Copies->Wait(*std::exchange(this->Copy, nullptr));
+    return std::exchange(this->MakeCopy, nullptr)();
   }
   return this->Event() ? WaitFor(std::exchange(this->Event, cl::Event())()) : CL_SUCCESS;
 }
 
-void PendingReads::Check()
+void PendingCopy::Check()
 {
-  cl_int error = CL_SUCCESS;
-  for (PendingRead& read : this->Reads)
-  {
-    const cl_int its = read.Wait();
-    error = error == CL_SUCCESS ? its : error;
-  }
-  this->Reads.clear();
+  const cl_int error = this->Finish();
   if (error != CL_SUCCESS)
   {
-    throw cl::Error(error, "copying the output from the device");
+    throw cl::Error(error, "copying to or from the device");
+  }
+}
+
+void PendingCopies::Check()
+{
+  // However this ends, they are forgotten.
+  std::vector<PendingCopy> copies = std::move(this->Copies);
+  this->Copies.clear();
+  for (PendingCopy& copy : copies)
+  {
+    copy.Check();
   }
 }
 

@@ -4,11 +4,10 @@
 
 #include "Extent.h"
 #include "OpenCLContext.h"
-#include "StagedCopies.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -60,51 +59,51 @@ void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t byt
 /// Waits for a command. Returns OpenCL's error, or CL_SUCCESS.
 cl_int WaitFor(cl_event event) noexcept;
 
-/// A copy to memory of the caller that is under way. It ends before the object does.
-class PendingRead
+/// A copy between a buffer and memory of the caller that is under way, or that Finish() makes. The
+/// memory is left alone once the object is gone.
+class PendingCopy
 {
 public:
-  explicit PendingRead(const cl::Event& event)
+  explicit PendingCopy(const cl::Event& event)
     : Event(event)
   {
   }
-  PendingRead(StagedCopies& copies, std::shared_ptr<StagedCopies::Copy> copy)
-    : Copies(&copies)
-    , Copy(std::move(copy))
+  /// finish: makes the copy, and returns OpenCL's error, or CL_SUCCESS.
+  explicit PendingCopy(std::function<cl_int()> finish)
+    : MakeCopy(std::move(finish))
   {
   }
-  ~PendingRead() { this->Wait(); }
-  PendingRead(const PendingRead&) = delete;
-  PendingRead& operator=(const PendingRead&) = delete;
-  PendingRead(PendingRead&&) noexcept = default;
-  PendingRead& operator=(PendingRead&&) = delete;
+  ~PendingCopy();
+  PendingCopy(const PendingCopy&) = delete;
+  PendingCopy& operator=(const PendingCopy&) = delete;
+  PendingCopy(PendingCopy&&) noexcept = default;
+  PendingCopy& operator=(PendingCopy&&) = delete;
 
-  /// Waits. Throws cl::Error where it has failed: what it was to copy is not there.
+  /// Returns when the copy is there, with OpenCL's error, or CL_SUCCESS.
+  cl_int Finish();
+  /// The same. Throws cl::Error where it has failed: what it was to copy is not there.
   void Check();
-  /// The same where that does not matter any more. Returns OpenCL's error, or CL_SUCCESS.
-  cl_int Wait() noexcept;
 
 private:
   cl::Event Event;
-  StagedCopies* Copies = nullptr;
-  std::shared_ptr<StagedCopies::Copy> Copy;
+  std::function<cl_int()> MakeCopy;
 };
 
 /// A buffer for an output: over the memory of the host where it goes, if the device can work there,
 /// else one of the device. Then BeginToRead brings it there, or what the device has not yet written
-/// of it. Nothing may write to the buffer until that has ended.
+/// of it, at the latest when the copy is checked. Nothing may write to the buffer until then.
 void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::size_t elementSize,
   std::uint64_t bytes);
-PendingRead BeginToRead(
+PendingCopy BeginToRead(
   const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t bytes, void* memory);
 
 ///@{
 /// The same for a part of a buffer that is not over the memory of the host: of some bytes from an
 /// offset on, or of a box. bytes: of a voxel; whole: the voxels that are in the buffer; held: those
 /// that there is room for in the memory.
-PendingRead BeginToReadRange(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+PendingCopy BeginToReadRange(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   std::uint64_t offset, std::uint64_t bytes, void* memory);
-PendingRead BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+PendingCopy BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   const Extent& whole, const Extent& part, std::size_t bytes, void* memory, const Extent& held);
 ///@}
 
@@ -113,34 +112,27 @@ PendingRead BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buff
 void Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t offset,
   std::uint64_t bytes, const void* data);
 
-/// The same for a box, with parameters as those of BeginToReadBox.
+/// The same without waiting: data has to stay until the copy has ended.
+PendingCopy BeginToWrite(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  std::uint64_t offset, std::uint64_t bytes, const void* data);
+
+/// The same as Write for a box, with parameters as those of BeginToReadBox.
 void WriteBox(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Extent& whole,
   const Extent& part, std::size_t bytes, const void* memory, const Extent& held);
 
-/// Copies to memory of the caller that are under way.
-class PendingReads
+/// Several of them.
+class PendingCopies
 {
 public:
-  PendingReads() = default;
-  PendingReads(const PendingReads&) = delete;
-  PendingReads& operator=(const PendingReads&) = delete;
-  PendingReads(PendingReads&&) = default;
-  PendingReads& operator=(PendingReads&& other) noexcept
-  {
-    this->Wait();
-    this->Reads = std::move(other.Reads);
-    return *this;
-  }
-
-  void Add(PendingRead read) { this->Reads.push_back(std::move(read)); }
-  /// Waits for all of them, and forgets them. Throws cl::Error where one has failed: what it was to
-  /// copy is not there.
+  void Add(PendingCopy copy) { this->Copies.push_back(std::move(copy)); }
+  /// Returns when all of them are there, and forgets them. Throws cl::Error where one has failed:
+  /// what it was to copy is not there.
   void Check();
-  /// The same where that does not matter any more. Throws nothing.
-  void Wait() { this->Reads.clear(); }
+  /// Forgets them where that does not matter any more.
+  void Drop() { this->Copies.clear(); }
 
 private:
-  std::vector<PendingRead> Reads;
+  std::vector<PendingCopy> Copies;
 };
 
 /// Waits for a queue, however a scope is left: before memory of the caller, or buffers that are

@@ -58,7 +58,7 @@ private:
   std::uint64_t NumberOfVoxels;
   std::vector<Memory> Memories;
   cl::Buffer Backgrounds;
-  PendingReads Reads; // last: they end before the buffers do
+  PendingCopies Reads; // last: they end before the buffers do
 };
 
 } // namespace deformvolume

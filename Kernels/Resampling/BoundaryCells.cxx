@@ -257,9 +257,11 @@ void BoundaryCells::Run(
     this->Tiles = this->Device.Send(tiles.data(), tiles.size() * sizeof(cl_uint), this->Tiles);
     const std::uint64_t bytes = numberOfPatches * sizeof(cl_uint);
     Reserve(this->Device.GetContext(), this->PatchCounts, bytes);
-    queue.enqueueWriteBuffer(this->PatchCounts, CL_FALSE, 0, bytes, this->CoveredInPatches.data());
+    PendingCopy sent =
+      BeginToWrite(queue, this->PatchCounts, 0, bytes, this->CoveredInPatches.data());
     this->RunTiles(request, output, r, tiles.size());
     queue.enqueueReadBuffer(this->PatchCounts, CL_TRUE, 0, bytes, this->CoveredInPatches.data());
+    sent.Check();
   }
   this->Covered = std::accumulate(
     this->CoveredInPatches.begin(), this->CoveredInPatches.end(), std::uint64_t{ 0 });

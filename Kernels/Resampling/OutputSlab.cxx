@@ -519,7 +519,7 @@ void OutputSlab::Finish()
   {
     clFinish(this->Queue()); // throws nothing: this is also called after a failure
   }
-  this->Reads.Wait();
+  this->Reads.Drop();
   for (cl::Buffer& array : this->Arrays)
   {
     Release(array);

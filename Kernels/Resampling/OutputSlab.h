@@ -178,7 +178,7 @@ private:
   std::size_t MostLargeCells = 0;
   std::size_t NumberOfSections = 0; // of bricks
   std::uint64_t NumberOfVoxels = 0;
-  PendingReads Reads; // last: they end before the buffers do
+  PendingCopies Reads; // last: they end before the buffers do
 };
 
 } // namespace deformvolume

@@ -5,13 +5,11 @@
 #include <CL/cl.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <dlfcn.h>
 #include <map>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 FakeDriver& FakeDriver::Get()
@@ -66,7 +64,6 @@ struct Range
 
 std::mutex Mutex;
 std::map<cl_mem, Range> Ranges;
-const std::thread::id FirstThread = std::this_thread::get_id();
 
 bool IsPinned(cl_mem buffer)
 {
@@ -376,17 +373,6 @@ extern "C" cl_int CL_API_CALL clEnqueueWriteBufferRect(cl_command_queue queue, c
     ? error
     : real(queue, buffer, blocking, origin, hostOrigin, region, row, slice, hostRow, hostSlice,
         memory, number, events, done);
-}
-
-extern "C" cl_int CL_API_CALL clWaitForEvents(cl_uint number, const cl_event* events)
-{
-  static auto* const real = Find<decltype(clWaitForEvents)>("clWaitForEvents");
-  const int delay = FakeDriver::Get().Delay;
-  if (delay && std::this_thread::get_id() != FirstThread)
-  {
-    std::this_thread::sleep_for(std::chrono::milliseconds(delay));
-  }
-  return real(number, events);
 }
 
 extern "C" void* CL_API_CALL clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer,

@@ -59,8 +59,6 @@ struct FakeDriver
   bool FailsAtOnce = false;
   /// There is no page-locked memory.
   bool RefusesPinned = false;
-  /// Milliseconds that a wait for a command takes longer, in threads that are not the first one.
-  int Delay = 0;
   /// The device is a graphics card with memory of its own, and has no double precision. Contexts
   /// live as long as the process: these are set before the first one.
   bool IsGraphics = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copies to and from a device with memory of its own that go through page-locked memory in
-// portions: copies that fail, threads that are late, boxes, and whole outputs.
+// portions: copies that fail, boxes, many threads, and whole outputs. Small copies that fail.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 #include "DeviceVectors.h"
@@ -23,8 +23,7 @@ using namespace deformvolume;
 namespace
 {
 
-constexpr std::size_t Slot = StagedCopies::SlotBytes;
-constexpr std::size_t Slots = StagedCopies::NumberOfSlots;
+constexpr std::size_t Half = StagedCopies::HalfBytes;
 constexpr std::size_t Least = StagedCopies::LeastBytes;
 constexpr cl_int Failure = -5;
 
@@ -63,7 +62,7 @@ protected:
   /// Whether large copies work, in both directions.
   void ExpectRight()
   {
-    const Bytes bytes = MakeBytes(3 * Slot + 17, 5);
+    const Bytes bytes = MakeBytes(3 * Half + 17, 5);
     const cl::Buffer buffer = this->MakeBuffer(bytes.size());
     Write(this->GetQueue(), buffer, 0, bytes.size(), bytes.data());
     EXPECT_TRUE(this->Read(buffer, bytes.size()) == bytes);
@@ -109,7 +108,7 @@ protected:
     Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
   }
 
-  DeformerCase Case = MakeCase({ { 0, 41, -2, 38, 3, 40 } }, { { 1, 1, 1 } }, MakeJitter(5, 0.15));
+  DeformerCase Case = MakeCase({ { 0, 51, -2, 48, 3, 52 } }, { { 1, 1, 1 } }, MakeJitter(5, 0.15));
   std::vector<std::uint16_t> Values =
     MakeRandomValues<std::uint16_t>(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()), 3);
   std::vector<float> Others = MakeRandomValues<float>(
@@ -153,7 +152,7 @@ TEST_F(Staged, ReadsThatFail)
 {
   FakeDriver& driver = FakeDriver::Get();
   constexpr int portions = 7;
-  const Bytes bytes = MakeBytes((portions - 1) * Slot + 3, 2);
+  const Bytes bytes = MakeBytes((portions - 1) * Half + 3, 2);
   const cl::Buffer buffer = this->MakeBuffer(bytes);
   for (const bool atOnce : { false, true })
   {
@@ -164,7 +163,7 @@ TEST_F(Staged, ReadsThatFail)
       driver.ReadError = Failure;
       driver.ReadsBeforeError = good;
       Bytes read(bytes.size() + 2, 77);
-      PendingReads reads;
+      PendingCopies reads;
       reads.Add(BeginToRead(this->GetQueue(), buffer, bytes.size(), read.data() + 1));
       if (good < portions)
       {
@@ -196,23 +195,22 @@ TEST_F(Staged, ReadsThatFail)
 TEST_F(Staged, ReadsBesideOneThatFails)
 {
   FakeDriver& driver = FakeDriver::Get();
-  const Bytes bytes = MakeBytes(3 * Slot, 2);
+  const Bytes bytes = MakeBytes(3 * Half, 2);
   const cl::Buffer buffer = this->MakeBuffer(bytes);
-  for (int good = 0; good <= 12; ++good)
+  for (int good = 0; good <= 9; ++good)
   {
     for (const bool checks : { true, false })
     {
       std::vector<Bytes> read(3, Bytes(bytes.size()));
-      driver.Delay = 1;
       driver.ReadError = Failure;
       driver.ReadsBeforeError = good;
       {
-        PendingReads reads;
+        PendingCopies reads;
         for (Bytes& one : read)
         {
           reads.Add(BeginToRead(this->GetQueue(), buffer, bytes.size(), one.data()));
         }
-        if (checks && good < 12)
+        if (checks && good < 9)
         {
           EXPECT_THROW(reads.Check(), cl::Error) << good;
         }
@@ -223,9 +221,9 @@ TEST_F(Staged, ReadsBesideOneThatFails)
         // else they are given up
       }
       const std::vector<Bytes> ended = read;
-      std::this_thread::sleep_for(std::chrono::milliseconds(3));
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
       EXPECT_TRUE(read == ended);
-      driver.Delay = driver.ReadError = 0;
+      driver.ReadError = 0;
     }
   }
   this->ExpectRight();
@@ -234,7 +232,7 @@ TEST_F(Staged, ReadsBesideOneThatFails)
 TEST_F(Staged, WritesThatFail)
 {
   FakeDriver& driver = FakeDriver::Get();
-  const Bytes bytes = MakeBytes(5 * Slot, 2);
+  const Bytes bytes = MakeBytes(5 * Half, 2);
   for (const bool atOnce : { false, true })
   {
     for (int good = 0; good <= 5; ++good)
@@ -264,7 +262,7 @@ TEST_F(StagedOutputs, ArraysThatFail)
   FakeDriver& driver = FakeDriver::Get();
   const reference::Result& reference = this->GetReference();
   Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
-  for (const int good : { 0, 1, 4 })
+  for (const int good : { 0, 1, 3 })
   {
     driver.WriteError = Failure;
     driver.WritesBeforeError = good;
@@ -285,20 +283,19 @@ TEST_F(StagedOutputs, PortionsOfSlabsThatFail)
   const reference::Result& reference = this->GetReference();
   for (const std::uint64_t planes : { 12, 1000 })
   {
-    for (const int good : { 0, 1, 3, 5 })
+    for (const int good : { 0, 1, 2, 4 })
     {
       SCOPED_TRACE(testing::Message() << "planes " << planes << " after " << good);
       this->LoadInPlanes(planes);
       std::vector<Bytes> memory;
       const DeformRequest request = this->MakeRequest(memory);
-      driver.Delay = 2;
       driver.ReadError = Failure;
       driver.ReadsBeforeError = good;
       EXPECT_THROW(this->Deformer.Deform(request), Error);
       const std::vector<Bytes> ended = memory;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
       EXPECT_TRUE(memory == ended);
-      driver.Delay = driver.ReadError = 0;
+      driver.ReadError = 0;
       this->LoadInPlanes(planes);
       ExpectEqualsReference(
         this->Case, reference, this->Arrays, RunDeformer(this->Deformer, this->Case, this->Arrays));
@@ -308,7 +305,6 @@ TEST_F(StagedOutputs, PortionsOfSlabsThatFail)
 
 TEST_F(StagedOutputs, AbortBetweenSlabs)
 {
-  FakeDriver& driver = FakeDriver::Get();
   const reference::Result& reference = this->GetReference();
   int aborted = 0;
   for (const int calls : { 1, 4, 8, 12, 16, 20 })
@@ -320,14 +316,12 @@ TEST_F(StagedOutputs, AbortBetweenSlabs)
     int left = calls;
     request.Progress = [&left](double) { return --left > 0; };
     const std::vector<Bytes> before = memory;
-    driver.Delay = 2;
     EXPECT_THROW(this->Deformer.Deform(request), Aborted);
     const std::vector<Bytes> ended = memory;
     aborted += ended != before ? 1 : 0;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     EXPECT_TRUE(memory == ended);
     memory.clear();
-    driver.Delay = 0;
     ExpectEqualsReference(
       this->Case, reference, this->Arrays, RunDeformer(this->Deformer, this->Case, this->Arrays));
   }
@@ -337,17 +331,14 @@ TEST_F(StagedOutputs, AbortBetweenSlabs)
 TEST_F(Staged, RangesOfAllSizes)
 {
   FakeDriver& driver = FakeDriver::Get();
-  this->ExpectRight(); // from now on there are slots
-  constexpr std::size_t quarter = std::size_t{ 1 } << 18;
+  this->ExpectRight(); // from now on there is page-locked memory
   constexpr std::size_t offset = 13;
-  for (const std::size_t middle :
-    { Least, quarter, 2 * quarter, Slots * quarter, Slot, Slots * Slot, (Slots + 1) * Slot })
+  for (const std::size_t middle : { Least, Half, 2 * Half, 3 * Half })
   {
     for (std::size_t size = middle - 1; size <= middle + 1; ++size)
     {
       SCOPED_TRACE(size);
-      const std::size_t portion = std::min(Slot, std::max(quarter, (size + Slots - 1) / Slots));
-      const auto portions = size < Least ? 1 : static_cast<int>((size + portion - 1) / portion);
+      const auto portions = size < Least ? 1 : static_cast<int>((size + Half - 1) / Half);
       const Bytes bytes = MakeBytes(size, 3);
       Bytes whole = MakeBytes(size + 2 * offset, 4);
       const cl::Buffer buffer = this->MakeBuffer(whole);
@@ -401,7 +392,7 @@ TEST_F(Staged, Boxes)
     Extent Whole;
     std::size_t Bytes;
   };
-  // Planes of a few kilobytes, planes that are larger than a slot, and rows that are.
+  // Planes of a few kilobytes, planes that are larger than a half, and rows that are.
   const std::vector<Shape> shapes{ { { { -5, 94, 3, 62, 7, 70 } }, 8 },
     { { { 0, 1099, -4, 900, 0, 3 } }, 4 }, { { { 2, 140001, 0, 1, -1, 1 } }, 16 } };
   std::mt19937 random(4);
@@ -457,20 +448,19 @@ TEST_F(Staged, WholePlanes)
   BeginToReadBox(
     this->GetQueue(), buffer, whole, { { 0, 1023, 0, 63, 8, 39 } }, 1, read.data(), whole)
     .Check();
-  EXPECT_EQ(FakeDriver::Get().Reads, 4);
+  EXPECT_EQ(FakeDriver::Get().Reads, 2);
   Bytes expected(size, 77);
   CopyBox(bytes, whole, { { 0, 1023, 0, 63, 8, 39 } }, 1, expected, whole);
   EXPECT_TRUE(read == expected);
 }
 
-// The slots are there once, and all threads want them.
+// The page-locked memory is there once, and all threads want it.
 TEST_F(Staged, ManyThreads)
 {
   constexpr int number = 10;
   this->ExpectRight();
   std::vector<std::thread> threads;
   std::vector<int> good(number);
-  FakeDriver::Get().Delay = 1;
   for (int thread = 0; thread < number; ++thread)
   {
     threads.emplace_back(
@@ -482,12 +472,12 @@ TEST_F(Staged, ManyThreads)
         for (int times = 0; times < 4; ++times)
         {
           const Bytes bytes = MakeBytes(
-            (static_cast<std::size_t>(thread) + 1) * Slot / 2 + 11, static_cast<unsigned>(thread));
+            (static_cast<std::size_t>(thread) + 1) * Half / 2 + 11, static_cast<unsigned>(thread));
           const cl::Buffer buffer = this->MakeBuffer(bytes.size());
           Write(queue, buffer, 0, bytes.size(), bytes.data());
           Bytes first(bytes.size());
           Bytes second(bytes.size());
-          PendingReads reads;
+          PendingCopies reads;
           reads.Add(BeginToRead(queue, buffer, bytes.size(), first.data()));
           reads.Add(BeginToRead(device.GetReadQueue(), buffer, bytes.size(), second.data()));
           Write(queue, this->MakeBuffer(bytes.size()), 0, bytes.size(), bytes.data());
@@ -515,12 +505,10 @@ TEST_F(StagedOutputs, Slabs)
     ExpectEqualsReference(
       this->Case, reference, this->Arrays, RunDeformer(this->Deformer, this->Case, this->Arrays));
     std::vector<Bytes> memory;
-    FakeDriver::Get().Delay = 1;
     const DeformRequest request = this->MakeRequest(memory);
     FakeDriver::Get().Reads = 0;
     this->Deformer.Deform(request);
-    FakeDriver::Get().Delay = 0;
-    EXPECT_GT(FakeDriver::Get().Reads, 6) << "portions";
+    EXPECT_GT(FakeDriver::Get().Reads, 4) << "portions";
     for (const Bytes& one : memory)
     {
       EXPECT_EQ(one.front(), 77);
@@ -532,6 +520,35 @@ TEST_F(StagedOutputs, Slabs)
   {
     EXPECT_TRUE(one == all.front());
   }
+}
+
+// A copy that nobody waits for reports its failure all the same.
+TEST_F(Staged, SmallWritesThatFail)
+{
+  FakeDriver& driver = FakeDriver::Get();
+  std::vector<float> values = MakeRandomValues<float>(3 * 1000, 5);
+  DeviceVectors vectors("", 1000);
+  const PointRanges ranges{ { { 7, 30 } }, { { 500, 503 } } };
+  for (const bool atOnce : { false, true })
+  {
+    for (const int good : { 0, 1, 2 })
+    {
+      driver.FailsAtOnce = atOnce;
+      driver.WriteError = Failure;
+      driver.WritesBeforeError = good;
+      if (good < 2)
+      {
+        EXPECT_THROW(vectors.Write(values.data(), ranges), Error) << atOnce << " after " << good;
+      }
+      else
+      {
+        EXPECT_NO_THROW(vectors.Write(values.data(), ranges));
+      }
+      driver.WriteError = 0;
+    }
+  }
+  vectors.Write(values.data());
+  EXPECT_TRUE(std::equal(values.begin(), values.end(), vectors.Read()));
 }
 
 // Vectors that are sent and read again, some of them or all.
