@@ -390,6 +390,10 @@ MUTATIONS = {
                        ["ParaView.TestClientServer"]),
     "plugin-major": ("Plugin/VersionCheck.cxx", "built[0] != running[0]", "false", ["ParaView.TestVersions"]),
     "plugin-minor": ("Plugin/VersionCheck.cxx", "built[1] != running[1]", "false", ["ParaView.TestVersions"]),
+    "state-removed": ("Filters/vtkDeformVolumeFilter.cxx", "else if (value != found->Default)", "else if (false)",
+                      ["ParaView.TestOldFiles"]),
+    "state-forgets": ("Plugin/InformationRefresh.cxx", "property->ResetToXMLDefaults();", ";",
+                      ["ParaView.TestOldFiles"]),
 }
 
 
