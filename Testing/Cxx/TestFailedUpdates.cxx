@@ -157,7 +157,7 @@ void TestDevices(vtkImageData* volume, vtkUnstructuredGrid* mesh)
 
 } // namespace
 
-int TestFailureReport(int, char*[])
+int TestFailedUpdates(int, char*[])
 {
   auto volume = MakeVolume();
   auto mesh = MakeMesh(volume);
