@@ -157,6 +157,22 @@ vtkTetGenMesher::vtkTetGenMesher()
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
 }
 
+void vtkTetGenMesher::SetPieceMode(int mode)
+{
+  if (mode == 1)
+  {
+    vtkErrorMacro("PieceMode is 1, the convex hull of all pieces, which was removed. Set PieceMode "
+                  "to ALL_PIECES (0) or LARGEST_PIECE (2).");
+    return;
+  }
+  mode = std::clamp<int>(mode, ALL_PIECES, LARGEST_PIECE);
+  if (this->PieceMode != mode)
+  {
+    this->PieceMode = mode;
+    this->Modified();
+  }
+}
+
 void vtkTetGenMesher::AddLabel(vtkTypeInt64 label)
 {
   this->Labels.push_back(label);

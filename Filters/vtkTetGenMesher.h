@@ -84,7 +84,7 @@ public:
   enum PieceModes
   {
     ALL_PIECES = 0,
-    LARGEST_PIECE = 1
+    LARGEST_PIECE = 2
   };
 
   ///@{
@@ -131,9 +131,12 @@ public:
   /**
    * What happens to a body of several pieces: each is meshed (ALL_PIECES), or the piece with most
    * voxels is and the others are left out (LARGEST_PIECE). Pieces that are closer together than the
-   * mesh reaches beyond them are meshed as one. Volumes only. Default: ALL_PIECES.
+   * mesh reaches beyond them are meshed as one. Volumes only. The value 1 is an error. Default:
+   * ALL_PIECES.
    */
-  vtkSetClampMacro(PieceMode, int, ALL_PIECES, LARGEST_PIECE);
+  void SetPieceMode(int mode);
+  int GetPieceModeMinValue() { return ALL_PIECES; }
+  int GetPieceModeMaxValue() { return LARGEST_PIECE; }
   vtkGetMacro(PieceMode, int);
   void SetPieceModeToAllPieces() { this->SetPieceMode(ALL_PIECES); }
   void SetPieceModeToLargestPiece() { this->SetPieceMode(LARGEST_PIECE); }

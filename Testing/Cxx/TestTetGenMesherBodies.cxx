@@ -193,6 +193,14 @@ void TestPieceModes()
   VerifyHeld(mesher, volume, 0);
 
   mesher->SetPieceModeToLargestPiece();
+  {
+    vtkNew<vtkTetGenMesher> other;
+    vtkNew<vtkTest::ErrorObserver> errors;
+    other->AddObserver(vtkCommand::ErrorEvent, errors);
+    other->SetPieceMode(1); // was the convex hull
+    VERIFY(errors->CheckErrorMessage("convex hull") == 0);
+    VERIFY(other->GetPieceMode() == vtkTetGenMesher::ALL_PIECES);
+  }
   check.Warns("1,125 of the 2,853 voxels of the body (39 %) lie outside the mesh. The body has 2 "
               "pieces");
   VERIFY(mesher->GetNumberOfBodyVoxels() == first + second);

@@ -46,7 +46,7 @@ WITHOUT_PROPERTY = {
     "SetResampler",
 }
 # Numbers of enumerators that there are no more.
-REMOVED_VALUES = {"Resampler": {1}}
+REMOVED_VALUES = {"PieceMode": {1}, "Resampler": {1}}
 
 failures = []
 
