@@ -2,7 +2,7 @@
 #include "DeformedVertices.h"
 
 #include "FieldScan.h"   // for AreVoxelsPoints
-#include "IndexBounds.h" // for GetVector
+#include "IndexBounds.h" // for GetVector and Interpolate
 #include "VectorComponents.h"
 
 #include <algorithm>

@@ -24,7 +24,9 @@ void MakeSlabs(SlabResampler& resampler, WorkDevice& device, const DeviceVolume&
     static_cast<std::uint64_t>(GetNumberOfPoints(plan.Slabs.front()));
   const bool stays =
     request.MayStayOnDevice && !device.GetDevice().IsProcessor && plan.Slabs.size() == 1;
-  plan.Overlapped = bytes > 0 && plan.Slabs.size() > 1 && spare >= bytes;
+  // Staged copies are made when they are waited for.
+  plan.Overlapped =
+    bytes > 0 && plan.Slabs.size() > 1 && spare >= bytes && !device.GetContext().GetStagedCopies();
   // However this ends, the memory of the request is left alone afterwards.
   const SlabResampler::FinishGuard finish(resampler);
   const QueueGuard reads(device.GetReadQueue());

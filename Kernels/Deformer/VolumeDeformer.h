@@ -100,8 +100,8 @@ public:
   /// One float a voxel: its signed distance to the boundary of what has been carved out, in any
   /// unit; negative there. It is interpolated in each tetrahedron as values are, and samples where
   /// it is negative are left out: boundaries that lie between voxels. A distance that is no number
-  /// counts as not negative. Null: nothing is left out. Takes 4
-  /// bytes a voxel on the device where a distance is not 0.
+  /// counts as not negative. Null: nothing is left out. Takes 4 bytes a voxel on the device where a
+  /// distance is not 0.
   void SetBoundaryDistances(const float* distances, const PointRanges* written = nullptr);
   ///@}
 

@@ -41,7 +41,7 @@ DisplacementBounds Join(const std::vector<DisplacementBounds>& bounds);
 
 inline void DisplacementBounds::Add(const float* displacements, std::size_t begin, std::size_t end)
 {
-  // Not in members, which floats may lie over as far as compilers know.
+  // Local: the compiler cannot rule out that the floats are the memory of the members.
   std::array<float, 4> least = this->Least;
   std::array<float, 4> greatest = this->Greatest;
   for (std::size_t point = begin; point < end; ++point)

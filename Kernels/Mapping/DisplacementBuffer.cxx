@@ -120,7 +120,7 @@ std::size_t MarkChanges(const float* vectors, const float* last,
 void PadSome(const float* vectors, std::size_t begin, std::size_t end, float* padded,
   DisplacementBounds& bounds)
 {
-  // Copies, as padded may lie over the bounds as far as compilers know.
+  // Local copies: the compiler cannot rule out that padded is the memory of the bounds.
   DisplacementBounds all = bounds;
   for (std::size_t i = begin; i < end; ++i)
   {

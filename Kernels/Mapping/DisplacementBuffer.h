@@ -36,8 +36,8 @@ public:
   {
   }
 
-  /// displacements: three floats a point, checked. room: for so many points at least, where more of
-  /// them have been there than there are. changes: those that may have changed since the last call;
+  /// displacements: three floats a point, checked. room: the buffer has room for at least so many
+  /// points (meshes that had more nodes). changes: those that may have changed since the last call;
   /// null: all. makePoints: makes what the observer wants to know
   /// (DisplacementObserver::SetPoints).
   void Send(const float* displacements, std::size_t count, std::size_t room,

@@ -40,7 +40,7 @@ public:
   /// Points will change. last: four floats a point, the displacements before the change; null: they
   /// have changed, and all boxes were known.
   virtual void MovePoints(const PointSet& changed, const float* last) = 0;
-  /// Tetrahedra get other nodes, all of them as the device numbers them. last: as above. Returns
+  /// Tetrahedra get other nodes. last: as above. Returns
   /// boxes that hold all vertices which lie in one of these; nothing where that is not known.
   virtual std::optional<std::vector<Extent>> ChangeTetrahedra(
     const std::vector<TetrahedronChange>& changes, const float* last) = 0;

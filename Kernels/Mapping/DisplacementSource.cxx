@@ -11,7 +11,6 @@
 #include "WorkDevice.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace deformvolume
 {
@@ -285,10 +284,6 @@ void DisplacementSource::SendField(
   const DisplacementField& field, const FieldParameters& parameters, const PointRanges* changes)
 {
   const std::size_t points = this->NumberOfNodes;
-  if (this->FieldVectors.GetNumberOfPoints() != points)
-  {
-    this->FieldVectors.Clear();
-  }
   const PointRanges* news = this->LastSent && this->FieldVectors.GetNumberOfPoints() == points &&
       HasSameDimensions(parameters, this->Field)
     ? changes
@@ -299,6 +294,10 @@ void DisplacementSource::SendField(
   const float* vectors = parameters.IsMapped ? displacements.data() : field.Vectors;
   CheckDisplacements(vectors, points, "point", news);
   this->CheckFieldSize();
+  if (this->FieldVectors.GetNumberOfPoints() != points)
+  {
+    this->FieldVectors.Clear();
+  }
   this->Field = parameters;
   this->FieldVectors.Send(
     vectors, points, points, news, [this] { return this->MakeBrickPoints(); });

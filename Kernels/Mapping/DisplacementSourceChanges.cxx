@@ -5,13 +5,13 @@
 #include "DeviceVolume.h"
 #include "DisplacementObserver.h"
 #include "Error.h"
+#include "HostMemory.h"
 #include "MeshChecks.h"
 #include "WorkDevice.h"
 
 #include <algorithm>
 #include <optional>
 #include <string>
-#include <utility>
 
 namespace deformvolume
 {

@@ -4,7 +4,7 @@
 
 #define BOUNDS 6 // the least x, y and z, and the greatest ones
 
-// What the items of a work-group have found, joined into six bounds. shared: room for as many an item. All items call it.
+// What the items of a work-group have found, joined into six bounds. shared: room for BOUNDS values a work-item. All items call it.
 #define JOIN_BOUND(row, a, b) ((row) < 3 ? fmin(a, b) : fmax(a, b))
 #define JOIN_BOUNDS(shared, least, greatest, bounds)                                               \
   {                                                                                                \

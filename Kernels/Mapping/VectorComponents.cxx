@@ -4,6 +4,7 @@
 #include "DisplacementField.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace deformvolume
@@ -16,14 +17,15 @@ VectorComponents FindComponents(const float* values, std::size_t count)
   constexpr float largest = std::numeric_limits<float>::max();
   std::array<float, width> least;
   std::array<float, width> greatest;
-  std::array<float, width> zeros{}; // not-a-number where a number is not finite
+  std::array<int, width> areFinite;
   least.fill(largest);
   greatest.fill(-largest);
+  areFinite.fill(1);
   const auto add = [&](std::size_t k, float value)
   {
     least[k] = std::min(least[k], value);
     greatest[k] = std::max(greatest[k], value);
-    zeros[k] += 0.0F * value;
+    areFinite[k] &= std::abs(value) <= largest ? 1 : 0;
   };
   std::size_t i = 0;
   for (; i + width <= count; i += width)
@@ -45,7 +47,7 @@ VectorComponents FindComponents(const float* values, std::size_t count)
   {
     found.Least[k % 3] = std::min(found.Least[k % 3], least[k]);
     found.Greatest[k % 3] = std::max(found.Greatest[k % 3], greatest[k]);
-    found.AreFinite = found.AreFinite && zeros[k] == 0.0F;
+    found.AreFinite = found.AreFinite && areFinite[k] != 0;
   }
   return found;
 }

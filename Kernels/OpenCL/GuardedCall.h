@@ -13,8 +13,7 @@ namespace deformvolume
 
 /// Runs a function, with floating-point traps off and OpenCL's errors put into words: an Error with
 /// their meaning and the advice. clean: called before that, and where memory of the host is short,
-/// as what is on the device may be half done. Functions throw other errors before they change
-/// anything.
+/// as what is on the device may be half done. Other errors leave what is there usable.
 template <typename Function, typename Cleaner>
 auto CallGuarded(Function&& function, Cleaner&& clean, const char* advice = "")
 {

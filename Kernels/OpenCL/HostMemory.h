@@ -90,8 +90,8 @@ private:
 };
 
 /// A buffer for an output: over the memory of the host where it goes, if the device can work there,
-/// else one of the device. Then BeginToRead brings it there, or what the device has not yet written
-/// of it, at the latest when the copy is checked. Nothing may write to the buffer until then.
+/// else one of the device. BeginToRead then copies it there. The copy is complete once it has been
+/// checked; nothing may write to the buffer until then.
 void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::size_t elementSize,
   std::uint64_t bytes);
 PendingCopy BeginToRead(
@@ -112,7 +112,7 @@ PendingCopy BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buff
 void Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t offset,
   std::uint64_t bytes, const void* data);
 
-/// The same without waiting: data has to stay until the copy has ended.
+/// The same, but it may return before the copy has ended: data has to stay until then.
 PendingCopy BeginToWrite(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   std::uint64_t offset, std::uint64_t bytes, const void* data);
 
@@ -120,7 +120,7 @@ PendingCopy BeginToWrite(const cl::CommandQueue& queue, const cl::Buffer& buffer
 void WriteBox(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Extent& whole,
   const Extent& part, std::size_t bytes, const void* memory, const Extent& held);
 
-/// Several of them.
+/// Several pending copies.
 class PendingCopies
 {
 public:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "KernelLinker.h"
 
+#include "DeviceRank.h" // for ToLower
 #include "Error.h"
 
 #include <algorithm>
@@ -29,9 +30,10 @@ bool RunsLinker(const std::string& version)
 {
   int major = 0;
   int minor = 0;
-  const std::size_t begin = version.find("PoCL ");
+  const std::string words = ToLower(version); // "pocl" before version 3
+  const std::size_t begin = words.find("pocl ");
   return begin != std::string::npos &&
-    std::sscanf(version.c_str() + begin, "PoCL %d.%d", &major, &minor) == 2 &&
+    std::sscanf(words.c_str() + begin, "pocl %d.%d", &major, &minor) == 2 &&
     (major < 7 || (major == 7 && minor < 2));
 }
 
@@ -57,20 +59,23 @@ std::vector<std::string> FindLibraries()
   for (std::size_t begin = 0; begin < paths.size();)
   {
     const std::size_t end = std::min(paths.find(':', begin), paths.size());
-    found.push_back("-L" + paths.substr(begin, end - begin));
+    if (end > begin)
+    {
+      found.push_back("-L" + paths.substr(begin, end - begin));
+    }
     begin = end + 1;
   }
   return found;
 }
 
-// Runs a program that is found on the PATH. Returns what is wrong: its words, or those of the
+// Runs a program that is found on the PATH. Returns what is wrong: its last line, or those of the
 // system; empty where it succeeds.
 std::string Run(const std::vector<std::string>& command)
 {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0)
   {
-    return ""; // nobody knows
+    return ""; // it is not known: PoCL is not refused
   }
   std::vector<char*> arguments;
   for (const std::string& word : command)
@@ -102,17 +107,28 @@ std::string Run(const std::vector<std::string>& command)
     }
   }
   close(ends[0]);
+  if (error == EAGAIN || error == ENOMEM)
+  {
+    return ""; // that is no fault of the linker
+  }
   if (error != 0)
   {
     return "it cannot be run (" + std::generic_category().message(error) + ")";
   }
   int status = 0;
-  // A program that ignores its children does not get to know how they end.
-  if (waitpid(process, &status, 0) != process || status == 0)
+  pid_t ended = 0;
+  do
+  {
+    ended = waitpid(process, &status, 0);
+  } while (ended < 0 && errno == EINTR);
+  // Where SIGCHLD is ignored, the exit status is not known.
+  if (ended != process || status == 0)
   {
     return "";
   }
-  return words.empty() ? "it fails without a word" : words.substr(0, words.find('\n'));
+  // The first lines may be about libraries of other processors that were passed over.
+  words.erase(words.find_last_not_of('\n') + 1);
+  return words.empty() ? "it fails without a word" : words.substr(words.rfind('\n') + 1);
 }
 
 } // namespace

@@ -7,10 +7,10 @@
 namespace deformvolume
 {
 
-/// Throws Error where PoCL could not link kernels. Before version 7.2 it runs the program "ld" for
-/// each kernel, with the libraries of a C compiler, and ends the process where that fails. So this
-/// links once, with the same libraries and nothing else. version: what a platform says of itself
-/// (CL_PLATFORM_VERSION).
+/// Throws Error where PoCL could not link kernels. Versions before 7.2 run the program "ld" for
+/// each kernel, with the libraries of a C compiler, and end the process where that fails; later
+/// ones mostly link by themselves, and are not asked. So this links once, with the same libraries
+/// and nothing else. version: what a platform says of itself (CL_PLATFORM_VERSION).
 void CheckKernelLinker(const std::string& version);
 
 } // namespace deformvolume

@@ -229,8 +229,11 @@ OpenCLContext::OpenCLContext(const OpenCLDevice& device)
   if (IsPoCL(device))
   {
     CheckKernelCache();
-    const cl::Platform platform(device.Device.getInfo<CL_DEVICE_PLATFORM>());
-    CheckKernelLinker(platform.getInfo<CL_PLATFORM_VERSION>());
+    if (device.IsProcessor) // others of PoCL's devices do not link
+    {
+      const cl::Platform platform(device.Device.getInfo<CL_DEVICE_PLATFORM>());
+      CheckKernelLinker(platform.getInfo<CL_PLATFORM_VERSION>());
+    }
   }
   const FloatingPointTrapGuard guard;
   this->Context = cl::Context(device.Device);

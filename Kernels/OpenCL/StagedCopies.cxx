@@ -3,7 +3,6 @@
 
 #include "HostMemory.h"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -107,6 +106,8 @@ cl_int StagedCopies::Copy(const cl::CommandQueue& queue, const cl::Buffer& buffe
   void* memory, bool reads) noexcept
 {
   const Transfer transfer{ queue(), buffer(), static_cast<char*>(memory), reads };
+  // Others may copy until the kernels of this queue are done. A failure comes with the copy.
+  clFinish(queue());
   const std::lock_guard<std::mutex> lock(this->Mutex);
   std::array<Portion, 2> portions;
   cl_int error = CL_SUCCESS;

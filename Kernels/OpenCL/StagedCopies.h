@@ -17,9 +17,9 @@ namespace deformvolume
 /// the bus can do. While one half is on the bus, the other is copied to or from the memory of the
 /// caller.
 ///
-/// May be used by many threads; they take turns. The buffer is memory of the host, and of the
-/// process: it is no part of what an object holds on the device, and what the system has left is
-/// measured without it (MemoryBudget).
+/// May be used by many threads; a copy waits until those of others have ended. The buffer is memory
+/// of the host, and of the process: it is no part of what an object holds on the device, and what
+/// the system has left is measured without it (MemoryBudget).
 class StagedCopies
 {
 public:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LookupBounds.h"
 
-#include "IndexBounds.h" // for GetVoxelsToField
+#include "IndexBounds.h" // for GetVoxelsToField and Interpolate
 #include "ParallelFor.h"
 #include "RasterParameters.h"
 

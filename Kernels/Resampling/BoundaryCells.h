@@ -28,8 +28,8 @@ public:
   BoundaryCells(
     WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches);
 
-  /// Takes the boundary of the mesh that the source has, or of its field. tetrahedra: those
-  /// of the mesh; null for a field.
+  /// Takes the boundary of the mesh that the source has, or of its field. tetrahedra: those of the
+  /// mesh; null for a field.
   void Set(const MeshBoundary& boundary, const Tetrahedron* tetrahedra);
   /// Tetrahedra have got other nodes, in the same places at rest.
   void SetCorners(const Tetrahedron* tetrahedra);

@@ -16,7 +16,8 @@ namespace deformvolume
 struct SlabPlan
 {
   std::vector<Extent> Slabs;
-  /// Whether there is memory for two: work on one goes on while the other is copied to the caller.
+  /// Whether there is memory for two, and the driver copies one to the caller while the device
+  /// works on the other.
   bool Overlapped = false;
 
   /// Which memory a slab is made in, 0 or 1.
@@ -34,7 +35,8 @@ public:
   /// Makes a slab in its target, after what was there is in the memory of the request.
   virtual void Make(
     const DeformRequest& request, const SlabPlan& plan, std::size_t slab, DeformReport& report) = 0;
-  /// Begins to copy a target to the memory of the request, in a queue of its own.
+  /// Begins to copy a target to the memory of the request, in a queue of its own; FinishReading()
+  /// may have to make the copy.
   virtual void Read(const DeformRequest& request, std::size_t target) = 0;
   /// Leaves a target on the device that is the whole output.
   virtual std::vector<std::shared_ptr<DeviceOutput>> Leave(

@@ -8,15 +8,16 @@
 
 class vtkImageData;
 
-/// What the filter is compared with. A peer fills the output extent that the filter has
-/// filled, in the volume's own coordinates.
+/// What the filter is compared with. A peer fills the output extent that the filter has filled, in
+/// the volume's own coordinates.
 class Peer
 {
 public:
   virtual ~Peer() = default;
 
   /// Moves to a step of a pose, which is not measured, and fills an extent. Returns the wall-clock
-  /// seconds that the update took; the published method returns those of its kernels on the device.
+  /// seconds that the update took; the published method returns those of its commands on the
+  /// device.
   virtual double Update(Pose pose, int step, const int extent[6]) = 0;
 
   virtual vtkImageData* GetOutput() = 0;

@@ -38,8 +38,10 @@ cl::Device FindDevice(const std::string& name)
     platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
     for (const cl::Device& device : devices)
     {
-      if (name ==
-        device.getInfo<CL_DEVICE_NAME>() + " (" + platform.getInfo<CL_PLATFORM_NAME>() + ")")
+      // Drivers may pad names with blanks, or end them with zeros.
+      std::string first = device.getInfo<CL_DEVICE_NAME>().c_str();
+      first.erase(first.find_last_not_of(' ') + 1);
+      if (!first.empty() && name.rfind(first + " (", 0) == 0)
       {
         return device;
       }
