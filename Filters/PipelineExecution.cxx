@@ -37,6 +37,7 @@ int PipelineExecution::Run(
     vtkErrorWithObjectMacro(algorithm, << "The update has failed: " << error.what());
   }
   this->Incomplete = true;
+  this->Failed = true;
   return 0;
 }
 
@@ -45,6 +46,7 @@ void PipelineExecution::Renew(vtkAlgorithm* algorithm)
   if (this->Incomplete)
   {
     this->Incomplete = false;
+    this->Failed = false;
     algorithm->Modified();
   }
 }

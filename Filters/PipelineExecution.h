@@ -18,8 +18,8 @@ public:
   /// an output by then stays there.
   int Run(vtkAlgorithm* algorithm, const char* noMemory, const std::function<void()>& body);
 
-  /// Whether a request of the current update has failed or was aborted.
-  bool IsIncomplete() const { return this->Incomplete; }
+  /// Whether a request has failed since Renew(), which the executive calls before each update.
+  bool HasFailed() const { return this->Failed; }
 
   /// For ComputePipelineMTime: the executive regards the output of an execution that failed or was
   /// aborted as up to date. This function marks the algorithm as modified, so that the next update
@@ -27,7 +27,8 @@ public:
   void Renew(vtkAlgorithm* algorithm);
 
 private:
-  bool Incomplete = false;
+  bool Incomplete = false; // failed, or aborted
+  bool Failed = false;
 };
 
 } // namespace deformvolume

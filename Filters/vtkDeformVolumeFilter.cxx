@@ -13,6 +13,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkStringArray.h"
 
+#include <algorithm>
 #include <iterator>
 #include <sstream>
 
@@ -148,7 +149,7 @@ void vtkDeformVolumeFilter::SetFromState(const char* property, int value)
     [&](const RemovedProperty& one) { return name == one.Name; });
   if (found == std::end(removed))
   {
-    vtkErrorMacro("\"" << name << "\" is no property that SetFromState() knows.");
+    vtkErrorMacro("SetFromState() does not know the property \"" << name << "\".");
   }
   else if (value != found->Default)
   {

@@ -71,9 +71,10 @@
  * tetrahedra and bricks are summed over the ranks: what two of them have counts twice.
  *
  * @par Errors:
- * All failures are one vtkErrorMacro that says what is wrong and what to do; the output is then
- * empty, and the filter works again once its input is mended. Errors are told when data are
- * asked for, and not again by an update that is repeated although nothing has changed.
+ * Each failure is one vtkErrorMacro, which says what is wrong and what to do, at each update that
+ * fails. The output is then empty, and the filter works again once the cause is removed. Errors of
+ * the information pass are reported when data are requested. VTK's executive reports an input that
+ * is not connected; the output then stays as it was.
  *
  * The method is that of Rodriguez, Leon, Martin and Otaduy, "A parallel resampling method for
  * interactive deformation of volumetric models".
@@ -329,10 +330,10 @@ public:
   ///@}
 
   /**
-   * Set a property as a state file or a script of ParaView has it, which a former version may have
-   * written. What was removed sets nothing: StreamInput, WorkGroupSize and NumberOfTimeSamples are
-   * warned of where they are not what they were by default, and Resampler 1 is AUTOMATIC, with a
-   * warning.
+   * Set a property by its name in state files and scripts of ParaView, also in those of former
+   * versions. StreamInput, WorkGroupSize and NumberOfTimeSamples have been removed: they are
+   * ignored, with a warning where the value is not the former default. Resampler 1 is AUTOMATIC,
+   * with a warning.
    */
   void SetFromState(const char* property, int value);
 

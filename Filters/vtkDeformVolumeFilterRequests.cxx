@@ -74,8 +74,7 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
     }
     done = true;
   };
-  if (request->Has(Pipeline::REQUEST_INFORMATION()) ||
-    request->Has(Pipeline::REQUEST_TIME_DEPENDENT_INFORMATION()))
+  if (request->Has(Pipeline::REQUEST_INFORMATION()))
   {
     try
     {
@@ -96,8 +95,7 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   {
     const int outcome = this->Internals->Execution.Run(this,
       "The memory of this machine does not suffice for the deformed volume. Use a smaller volume, "
-      "a "
-      "coarser output spacing or narrower output bounds.",
+      "a coarser output spacing or narrower output bounds.",
       process);
     result = done ? result : outcome;
   }
@@ -221,7 +219,7 @@ int vtkDeformVolumeFilter::RequestData(
 {
   vtkInformation* outInfo = output->GetInformationObject(0);
   vtkImageData* image = vtkImageData::GetData(outInfo);
-  if (this->Internals->Execution.IsIncomplete())
+  if (this->Internals->Execution.HasFailed())
   {
     return 0; // the request for extents has failed, which the executive ignores
   }

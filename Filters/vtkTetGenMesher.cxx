@@ -77,33 +77,6 @@ double RegularVolume(double length)
   return std::sqrt(2.0) / 12.0 * length * length * length;
 }
 
-void CheckSize(vtkPolyData* surface, double length,
-  const std::vector<deformvolume::RefinementSphere>& spheres = {})
-{
-  vtkNew<vtkMassProperties> properties;
-  properties->SetInputData(surface);
-  // TetGen ends up with about half of the largest volume on average.
-  const double expected = 2.0 * properties->GetVolume() / RegularVolume(length) +
-    properties->GetSurfaceArea() / (std::sqrt(3.0) / 4.0 * length * length);
-  const double refined = spheres.empty() ? 0.0 : deformvolume::EstimateTetrahedra(surface, spheres);
-  if (expected + refined < MaximumNumberOfTetrahedra)
-  {
-    return;
-  }
-  std::ostringstream message;
-  if (expected < MaximumNumberOfTetrahedra)
-  {
-    message << "The refinement spheres ask for about " << refined
-            << " tetrahedra; at most 20 million are made. Give them smaller radii or longer edges.";
-  }
-  else
-  {
-    message << "A TargetEdgeLength of " << length << " asks for about " << expected
-            << " tetrahedra; at most 20 million are made. Set a greater TargetEdgeLength.";
-  }
-  throw deformvolume::Error(message.str());
-}
-
 std::vector<deformvolume::RefinementSphere> GetSpheres(
   const std::vector<std::array<double, 5>>& numbers)
 {
@@ -161,9 +134,10 @@ void vtkTetGenMesher::SetPieceMode(int mode)
 {
   if (mode == 1)
   {
-    vtkErrorMacro("PieceMode is 1, the convex hull of all pieces, which was removed. Set PieceMode "
-                  "to ALL_PIECES (0) or LARGEST_PIECE (2).");
-    return;
+    // State files have it.
+    vtkWarningMacro("PieceMode is 1, the convex hull of all pieces, which was removed: ALL_PIECES "
+                    "(0) is set. LARGEST_PIECE is 2.");
+    mode = ALL_PIECES;
   }
   mode = std::clamp<int>(mode, ALL_PIECES, LARGEST_PIECE);
   if (this->PieceMode != mode)
@@ -248,11 +222,11 @@ int vtkTetGenMesher::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** inputVector, vtkInformationVector* outputVector, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  // An aborted output is not up to date, but the executive takes it for that. This is the only
-  // moment at which a change of the modification time is seen.
-  if (this->Aborted)
+  // The executive regards the output of an execution that failed or was aborted as up to date. This
+  // is the only moment at which a change of the modification time is seen.
+  if (this->Incomplete)
   {
-    this->Aborted = false;
+    this->Incomplete = false;
     this->Modified();
   }
   return this->Superclass::ComputePipelineMTime(
@@ -275,6 +249,7 @@ int vtkTetGenMesher::RequestData(
     return 1;
   }
   vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
+  int result = 1;
   try
   {
     const std::vector<deformvolume::RefinementSphere> spheres = GetSpheres(this->RefinementSpheres);
@@ -291,22 +266,25 @@ int vtkTetGenMesher::RequestData(
   }
   catch (const deformvolume::Aborted&)
   {
-    output->Initialize();
-    this->Aborted = true;
+    this->Incomplete = true;
   }
   catch (const std::bad_alloc&)
   {
     vtkErrorMacro("Not enough memory. Set a greater TargetEdgeLength.");
-    this->Aborted = true;
-    return 0;
+    this->Incomplete = true;
+    result = 0;
   }
   catch (const std::exception& error)
   {
     vtkErrorMacro(<< error.what());
-    this->Aborted = true;
-    return 0;
+    this->Incomplete = true;
+    result = 0;
   }
-  return 1;
+  if (this->Incomplete)
+  {
+    output->Initialize();
+  }
+  return result;
 }
 
 void vtkTetGenMesher::CheckStep(double share)
@@ -340,10 +318,36 @@ void vtkTetGenMesher::MeshSurface(
       // Decimation can make a surface intersect itself: below, it is taken as it is.
     }
   }
-  CheckSize(surface, length);
+  CheckSize(surface, length, {});
   const auto split = deformvolume::SplitLongEdges(surface, 1.5 * length);
   output->ShallowCopy(
     this->Fill(deformvolume::IsClosedManifold(split) ? split : surface, length, spheres, true));
+}
+
+void vtkTetGenMesher::CheckSize(vtkPolyData* surface, double length, const Spheres& spheres)
+{
+  vtkNew<vtkMassProperties> properties;
+  properties->SetInputData(surface);
+  // TetGen ends up with about half of the largest volume on average.
+  const double expected = 2.0 * properties->GetVolume() / RegularVolume(length) +
+    properties->GetSurfaceArea() / (std::sqrt(3.0) / 4.0 * length * length);
+  const double refined = spheres.empty() ? 0.0 : deformvolume::EstimateTetrahedra(surface, spheres);
+  if (expected + refined < MaximumNumberOfTetrahedra)
+  {
+    return;
+  }
+  std::ostringstream message;
+  if (expected < MaximumNumberOfTetrahedra)
+  {
+    message << "The refinement spheres ask for about " << refined
+            << " tetrahedra; at most 20 million are made. Give them smaller radii or longer edges.";
+  }
+  else
+  {
+    message << "A TargetEdgeLength of " << length << " asks for about " << expected
+            << " tetrahedra; at most 20 million are made. Set a greater TargetEdgeLength.";
+  }
+  throw deformvolume::Error(message.str());
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> vtkTetGenMesher::Fill(

@@ -41,7 +41,7 @@
  * No body at the isovalue or with the labels; a volume of one slice; a surface that is empty, open,
  * flat, not manifold, not finite or that intersects itself; an edge length or refinement spheres
  * that ask for more than 20 million tetrahedra; a refinement sphere that is not valid; TetGen
- * missing, failing (the error gives its exit status) or exceeding TimeLimit; a result without
+ * missing, failing (the error says how it ended) or exceeding TimeLimit; a result without
  * tetrahedra. Each is one vtkErrorMacro, and the output is then empty.
  *
  * @sa vtkLatticeTetrahedraSource vtkDeformVolumeFilter
@@ -131,8 +131,8 @@ public:
   /**
    * What happens to a body of several pieces: each is meshed (ALL_PIECES), or the piece with most
    * voxels is and the others are left out (LARGEST_PIECE). Pieces that are closer together than the
-   * mesh reaches beyond them are meshed as one. Volumes only. The value 1 is an error. Default:
-   * ALL_PIECES.
+   * mesh reaches beyond them are meshed as one. Volumes only. The value 1, formerly the convex
+   * hull, is ALL_PIECES, with a warning. Default: ALL_PIECES.
    */
   void SetPieceMode(int mode);
   int GetPieceModeMinValue() { return ALL_PIECES; }
@@ -218,7 +218,7 @@ public:
 
   ///@{
   /**
-   * Seconds that TetGen may take. Default 60, at least 0.001.
+   * Seconds that a run of TetGen may take; an update may take several. Default 60, at least 0.001.
    */
   vtkSetClampMacro(TimeLimit, double, 0.001, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);
@@ -294,6 +294,7 @@ private:
   deformvolume::UncoveredVoxels MeshBody(const deformvolume::BodyVoxels& body,
     const deformvolume::SurfaceParameters& parameters, const Spheres& spheres, bool isLast,
     vtkUnstructuredGrid* output);
+  static void CheckSize(vtkPolyData* surface, double length, const Spheres& spheres);
   vtkSmartPointer<vtkUnstructuredGrid> Fill(
     vtkPolyData* surface, double length, const Spheres& spheres, bool diagnose);
   void WarnOfVoxelsOutside();
@@ -306,7 +307,7 @@ private:
   vtkIdType NumberOfBodyVoxelsOutside = 0;
   vtkIdType NumberOfSpeckVoxels = 0;
   vtkIdType NumberOfPieces = 0;
-  bool Aborted = false;
+  bool Incomplete = false; // whether the last execution failed or was aborted
 
   vtkTetGenMesher(const vtkTetGenMesher&) = delete;
   void operator=(const vtkTetGenMesher&) = delete;

@@ -192,7 +192,15 @@ deformvolume::UncoveredVoxels vtkTetGenMesher::MeshBody(const deformvolume::Body
   const double voxel = std::min({ body.Spacing.x, body.Spacing.y, body.Spacing.z });
   const auto surface = deformvolume::MakeBodySurface(body, parameters);
   this->CheckStep(0.5);
-  deformvolume::CheckClosedSurface(surface);
+  try
+  {
+    deformvolume::CheckClosedSurface(surface);
+  }
+  catch (const deformvolume::Error& error)
+  {
+    throw deformvolume::SurfaceRejected(error.what()); // there may be another one
+  }
+  CheckSize(surface, length, spheres);
   for (int round = 0; !isLast; ++round)
   {
     // What is just inside can be outside the mesh once positions are rounded.

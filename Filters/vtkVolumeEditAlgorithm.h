@@ -41,7 +41,7 @@
  * update makes those that are missing.
  *
  * @par Errors:
- * No volume, or one that is flat; an "ActiveTetrahedra" array of another type or size; a tool
+ * A volume that is flat; an "ActiveTetrahedra" array of another type or size; a tool
  * position or a DisplacementScale that is not finite; a deformation that vtkDeformVolumeFilter
  * would not take, or that draws 8 cells out to more than 2,048 voxels where it is edited. Each is
  * one vtkErrorMacro; the output is then empty, the edits are as they were, and the filter works

@@ -23,11 +23,6 @@ namespace deformvolume
 namespace
 {
 
-void Fetch(vtkObject* proxy, unsigned long, void*, void*)
-{
-  static_cast<vtkSMProxy*>(proxy)->UpdatePropertyInformation();
-}
-
 // ParaView 5.11 does not mark a representation as modified again after an update that has failed,
 // so that its view would never show the output of the corrected pipeline.
 void EndUpdate(vtkObject* view, unsigned long, void*, void*)
@@ -42,21 +37,30 @@ void EndUpdate(vtkObject* view, unsigned long, void*, void*)
   }
 }
 
-// What the filter has warned of, and set nothing by (vtkDeformVolumeFilter::SetFromState()), would
-// be saved again.
+// What a filter has warned of, and set nothing by (vtkDeformVolumeFilter::SetFromState()), would be
+// saved again.
 void ForgetRemoved(vtkSMProxy* proxy)
 {
-  for (const char* name : { "StreamInput", "WorkGroupSize", "NumberOfTimeSamples", "Resampler" })
+  for (const char* name :
+    { "StreamInput", "WorkGroupSize", "NumberOfTimeSamples", "Resampler", "PieceMode" })
   {
     vtkSMProperty* property = proxy->GetProperty(name);
-    const bool isRemoved =
-      std::string(name) != "Resampler" || vtkSMPropertyHelper(proxy, name, true).GetAsInt() == 1;
-    if (property && isRemoved)
+    // Of the last two only the value 1 was removed.
+    const bool isRemoved = std::string(name) != "Resampler" && std::string(name) != "PieceMode";
+    if (property && !property->IsValueDefault() &&
+      (isRemoved || vtkSMPropertyHelper(proxy, name, true).GetAsInt() == 1))
     {
       property->ResetToXMLDefaults();
     }
   }
   proxy->UpdateVTKObjects();
+}
+
+void Fetch(vtkObject* object, unsigned long, void*, void*)
+{
+  auto* proxy = static_cast<vtkSMProxy*>(object);
+  ForgetRemoved(proxy);
+  proxy->UpdatePropertyInformation();
 }
 
 void ObserveProxy(vtkSMProxy* proxy)
@@ -72,7 +76,7 @@ void ObserveProxy(vtkSMProxy* proxy)
   fetch->SetCallback(Fetch);
   const char* name = proxy && proxy->IsA("vtkSMSourceProxy") ? proxy->GetVTKClassName() : nullptr;
   const std::string made = name ? name : "";
-  if (made == "vtkDeformVolumeFilter")
+  if (made == "vtkDeformVolumeFilter" || made == "vtkTetGenMesher")
   {
     ForgetRemoved(proxy);
   }

@@ -38,7 +38,7 @@ constexpr float LeastValue = 0.1f;
 // So many voxels decide how a surface grows.
 constexpr std::size_t SomeVoxels = 30000;
 
-/// Nodes at equal distances on all axes: vtkImageEuclideanDistance is wrong with others.
+/// Nodes at equal distances on all axes.
 struct Grid
 {
   double Distance; // from node to node
@@ -54,7 +54,9 @@ void MakeGrid(Grid& grid, const BodyVoxels& body, const SurfaceParameters& param
   const glm::dvec3 lengths = body.Spacing * glm::dvec3(body.Size[0], body.Size[1], body.Size[2]);
   const double voxel = std::cbrt(body.Spacing.x * body.Spacing.y * body.Spacing.z);
   grid.Distance = std::max(voxel, std::min(parameters.Resolution, 0.25 * glm::length(lengths)));
-  const double border = std::ceil(parameters.Margin / grid.Distance) + 3.0;
+  // A voxel extends half a spacing beyond its centre.
+  const double widest = std::max({ body.Spacing.x, body.Spacing.y, body.Spacing.z });
+  const double border = std::ceil((parameters.Margin + 0.5 * widest) / grid.Distance) + 3.0;
   double count = 1.0;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -132,7 +134,7 @@ vtkSmartPointer<vtkUnsignedCharArray> MarkNodes(
 
 /// Squares of the distances from the nodes to the nearest one whose mark is 0, in distances of
 /// nodes.
-// vtkImageEuclideanDistance is wrong with others spacings than 1.
+// vtkImageEuclideanDistance is wrong with spacings other than 1.
 vtkSmartPointer<vtkDataArray> SquaredDistances(const Grid& grid, vtkUnsignedCharArray* marks)
 {
   vtkNew<vtkImageData> image;

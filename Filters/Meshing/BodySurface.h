@@ -26,14 +26,14 @@ struct SurfaceParameters
 
 /// The isosurface of the distance from the meshed pieces of a body on a grid that is coarser than
 /// the volume: closed and without cavities. It does not intersect itself, unless it is smoothed or
-/// decimated. With WholeCells it encloses the body unless it is. Throws SurfaceRejected where
-/// decimation fails, and Error where the grid is too large.
+/// decimated. With WholeCells it encloses the body, with the same exceptions. Throws
+/// SurfaceRejected where decimation fails, and Error where the grid is too large.
 vtkSmartPointer<vtkPolyData> MakeBodySurface(
   const BodyVoxels& body, const SurfaceParameters& parameters);
 
-/// Moves vertices of a surface outwards, so that it comes closer to enclosing these positions. They
-/// lie outside, and end at the distance `beyond` inside. Throws SurfaceRejected where one is
-/// farther away than `reach`.
+/// Moves vertices of a surface outwards, so that it comes closer to enclosing these positions,
+/// which lie outside. After enough calls they lie inside, at the distance `beyond`. Throws
+/// SurfaceRejected where one is farther away than `reach`.
 void GrowAround(
   vtkPolyData* surface, const std::vector<glm::dvec3>& outside, double beyond, double reach);
 
