@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <limits>
 #include <new>
 
 using namespace deformvolume;
@@ -116,6 +117,19 @@ TEST_F(Faults, RefusedMeshChangesNothing)
   const Tetrahedron tetrahedron{ { 0, 1, 2, 3 } };
   const std::size_t tooMany = (std::size_t{ 1 } << 30) + 1;
   EXPECT_THROW(this->Deformer.SetMesh(&tetrahedron, 1, tooMany, links.data()), Error);
+  this->ExpectRight();
+}
+
+TEST_F(Faults, RefusedFieldChangesNothing)
+{
+  Load(this->Deformer, this->Case, this->Arrays, Route::Field);
+  std::vector<float> vectors(24, 0.0F);
+  vectors[5] = std::numeric_limits<float>::quiet_NaN();
+  DisplacementField field;
+  field.Dimensions = { { 2, 2, 2 } };
+  field.Extrapolate = true;
+  field.Vectors = vectors.data();
+  EXPECT_THROW(this->Deformer.SetDisplacementField(field), Error);
   this->ExpectRight();
 }
 
