@@ -3,6 +3,7 @@
 #define DeformVolumeDisplacementBuffer_h
 
 #include "DisplacementBounds.h"
+#include "PointRanges.h"
 #include "PointSet.h"
 #include "WorkDevice.h"
 
