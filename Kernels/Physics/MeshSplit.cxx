@@ -301,48 +301,4 @@ MeshSplit SplitMesh(const std::vector<glm::dvec3>& positions,
   return split;
 }
 
-std::vector<std::int32_t> FindFaceComponents(const std::vector<Tetrahedron>& tetrahedra)
-{
-  CheckCount(tetrahedra.size());
-  constexpr auto numberOfNodes =
-    static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) + 1;
-  CheckTetrahedra(tetrahedra.data(), 0, tetrahedra.size(), numberOfNodes);
-  std::int32_t last = -1;
-  for (const Tetrahedron& tetrahedron : tetrahedra)
-  {
-    last = std::max(last, *std::max_element(tetrahedron.begin(), tetrahedron.end()));
-  }
-  const FaceNeighbours neighbours(
-    tetrahedra, static_cast<std::size_t>(static_cast<std::int64_t>(last) + 1));
-  constexpr std::int32_t unknown = -1;
-  std::vector<std::int32_t> components(tetrahedra.size(), unknown);
-  std::vector<std::size_t> rest;
-  std::int32_t count = 0;
-  for (std::size_t first = 0; first < tetrahedra.size(); ++first)
-  {
-    if (components[first] != unknown)
-    {
-      continue;
-    }
-    components[first] = count;
-    rest.push_back(first);
-    while (!rest.empty())
-    {
-      const std::size_t t = rest.back();
-      rest.pop_back();
-      for (std::size_t face = 4 * t; face < 4 * t + 4; ++face)
-      {
-        const std::size_t next = neighbours.GetNext(face) / 4;
-        if (components[next] == unknown)
-        {
-          components[next] = count;
-          rest.push_back(next);
-        }
-      }
-    }
-    ++count;
-  }
-  return components;
-}
-
 } // namespace deformvolume

@@ -72,12 +72,6 @@ DEFORMVOLUME_EXPORT MeshSplit SplitMesh(const std::vector<glm::dvec3>& positions
   const std::vector<std::array<std::int64_t, 3>>& sheetTriangles,
   const std::vector<TetrahedronPair>& unparted = {});
 
-/// Of each tetrahedron the number of the piece that it belongs to: pieces hold together by faces,
-/// and may touch at edges and nodes. Numbered from 0 in the order of their lowest tetrahedra.
-/// Throws an Error where a node is less than 0.
-DEFORMVOLUME_EXPORT std::vector<std::int32_t> FindFaceComponents(
-  const std::vector<Tetrahedron>& tetrahedra);
-
 } // namespace deformvolume
 
 #endif

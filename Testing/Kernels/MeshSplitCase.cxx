@@ -2,11 +2,14 @@
 #include "MeshSplitCase.h"
 
 #include "BodyPieces.h"
+#include "DisjointSets.h"
 #include "LatticeBody.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <set>
 
 namespace physicsTesting
@@ -99,6 +102,30 @@ void ExpectSound(const ElasticBody& body, const MeshSplit& split)
     EXPECT_EQ(used.count(before + static_cast<std::int32_t>(copy)), 1U);
     EXPECT_EQ(used.count(split.Origins[copy]), 1U);
   }
+}
+
+std::vector<std::int32_t> FindFaceComponents(const std::vector<Tetrahedron>& tetrahedra)
+{
+  DisjointSets<std::size_t> sets(tetrahedra.size());
+  std::map<std::array<std::int32_t, 3>, std::size_t> owners;
+  for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+  {
+    for (std::size_t k = 0; k < 4; ++k)
+    {
+      std::array<std::int32_t, 3> face{ { tetrahedra[t][(k + 1) % 4], tetrahedra[t][(k + 2) % 4],
+        tetrahedra[t][(k + 3) % 4] } };
+      std::sort(face.begin(), face.end());
+      sets.Unite(t, owners.try_emplace(face, t).first->second);
+    }
+  }
+  std::vector<std::int32_t> components(tetrahedra.size());
+  std::int32_t count = 0;
+  for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+  {
+    const std::size_t lowest = sets.Find(t);
+    components[t] = lowest == t ? count++ : components[lowest];
+  }
+  return components;
 }
 
 std::size_t CountComponents(const std::vector<std::int32_t>& components)

@@ -46,6 +46,10 @@ void ExpectNothing(const deformvolume::ElasticBody& body, const deformvolume::Me
 /// What holds for every cut, whatever the sheet.
 void ExpectSound(const deformvolume::ElasticBody& body, const deformvolume::MeshSplit& split);
 
+/// Of each tetrahedron the number of the piece that it belongs to: pieces hold together by faces,
+/// and may touch at edges and nodes. Numbered from 0 in the order of their lowest tetrahedra.
+std::vector<std::int32_t> FindFaceComponents(
+  const std::vector<deformvolume::Tetrahedron>& tetrahedra);
 std::size_t CountComponents(const std::vector<std::int32_t>& components);
 
 /// Expects pieces that have no node in common. Returns their volumes.

@@ -71,14 +71,12 @@ TEST(MeshSplit, Misuse)
       },
       "tetrahedron " + std::to_string(bad));
   }
-  ExpectError([] { FindFaceComponents({ { { 0, 1, -2, 3 } } }); }, "the node -2");
 }
 
 TEST(MeshSplit, NothingToDo)
 {
   const SheetSurface sheet = MakePlaneX(4.5);
   ExpectNothing({}, Split({}, sheet));
-  EXPECT_TRUE(FindFaceComponents({}).empty());
   const ElasticBody body = MakeLattice();
   ExpectNothing(body, Split(body, {}));
   ExpectNothing(body, Split(body, MakePlaneX(8.5)));
