@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What lies between the points of a field. It comes after MultiplyAdd.cl.
 
+// Products and sums are fused where MULTIPLY_ADD does so, and nowhere else.
+#pragma OPENCL FP_CONTRACT OFF
+
 // a + t (b - a) is exact for t = 0: no rounding where a voxel is a point of the field.
 #define MIX(a, b, t) MULTIPLY_ADD((float4)(t), (b) - (a), a)
 
