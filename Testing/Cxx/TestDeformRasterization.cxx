@@ -76,7 +76,7 @@ void TestMisuse()
   {
     deformed.Filter->SetFromState(name, 1);
     VERIFY_EQUAL(deformed.TakeErrors(), 1);
-    VERIFY(Contains(deformed.LastError, "is no property"));
+    VERIFY(Contains(deformed.LastError, "does not know the property"));
   }
   deformed.Filter->SetMemoryLimit(1000);
   VERIFY(Contains(GetError(deformed), "1000"));
