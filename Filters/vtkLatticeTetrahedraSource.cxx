@@ -175,8 +175,8 @@ int vtkLatticeTetrahedraSource::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
   // All of the volume, although the lattice depends on no voxel. Consumers of one source share its
-  // information, so that a smaller request replaces that of another consumer, unless it has been
-  // forwarded before; and nothing is read twice.
+  // information: a smaller request would replace that of another consumer. Nor is anything read
+  // twice.
   if (vtkInformation* info = inputVector[0]->GetInformationObject(0))
   {
     deformvolume::AskForAll(info);

@@ -68,8 +68,8 @@ std::vector<std::string> FindLibraries()
   return found;
 }
 
-// Runs a program that is found on the PATH. Returns what is wrong: its last line, or those of the
-// system; empty where it succeeds.
+// Runs a program that is found on the PATH. Returns what is wrong: the last line that it prints, or
+// the message of the system; empty where it succeeds or where that is not known.
 std::string Run(const std::vector<std::string>& command)
 {
   std::array<int, 2> ends{};
