@@ -31,6 +31,7 @@ int main(int argc, char* argv[])
   RegisterIncremental(size);
   RegisterLive(size);
   RegisterEdits(size);
+  RegisterMasks(size);
   RegisterChainMail(size);
   RegisterPhysics(size);
 #ifdef DEFORMVOLUME_HAS_INTERACTION

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace
 {
@@ -20,18 +21,29 @@ constexpr double HandleRadius = 3.0; // voxels
 constexpr double DragLength = 14.5;  // voxels, so that some 100,000 move
 constexpr double StepAngle = 0.3;
 
+// Drags of which the steps alone are measured.
+struct StepDrag
+{
+  int Voxels; // that move, or about so many
+  double HandleRadius;
+  double Length;
+};
+constexpr StepDrag StepDrags[] = { { 1000, 1.0, 0.5 }, { 100000, HandleRadius, DragLength },
+  { 1000000, HandleRadius, 41.0 } };
+
 // A volume of soft tissue, in whose middle a handle goes round in a circle.
 struct DraggedVolume
 {
-  explicit DraggedVolume(vtkImageData* volume)
+  DraggedVolume(vtkImageData* volume, double handleRadius, double dragLength)
     : Spacing(volume->GetSpacing()[0])
+    , DragLength(dragLength)
   {
     volume->GetCenter(this->Center);
     this->Handle->SetRestPosition(this->Center);
     this->Handle->SetPosition(this->Center);
     this->ChainMail->SetInputData(volume);
     this->ChainMail->SetHandlesConnection(this->Handle->GetOutputPort());
-    this->ChainMail->SetHandleRadius(HandleRadius * this->Spacing);
+    this->ChainMail->SetHandleRadius(handleRadius * this->Spacing);
     this->Filter->SetInputData(volume);
     this->Filter->SetDeformationConnection(this->ChainMail->GetOutputPort());
   }
@@ -39,12 +51,13 @@ struct DraggedVolume
   void MoveHandle()
   {
     const double angle = StepAngle * ++this->Step;
-    const double length = DragLength * this->Spacing;
+    const double length = this->DragLength * this->Spacing;
     this->Handle->SetPosition(this->Center[0] + length * std::cos(angle),
       this->Center[1] + length / 3.0, this->Center[2] + length * std::sin(angle));
   }
 
   double Spacing;
+  double DragLength;
   double Center[3];
   int Step = 0;
   vtkNew<vtkDeformationHandleSource> Handle;
@@ -71,6 +84,16 @@ Measurement MeasureFrame(DraggedVolume& dragged, bool whole)
   return measurement;
 }
 
+// The step alone.
+Measurement MeasureStep(DraggedVolume& dragged)
+{
+  dragged.MoveHandle();
+  Measurement measurement;
+  measurement.Seconds = Time([&] { dragged.ChainMail->Update(); });
+  measurement.Counters["moved"] = static_cast<double>(dragged.ChainMail->GetNumberOfMovedVoxels());
+  return measurement;
+}
+
 } // namespace
 
 void RegisterChainMail(const EvaluationSize& size)
@@ -78,8 +101,19 @@ void RegisterChainMail(const EvaluationSize& size)
   for (const auto& dimensions : { HalfVolume, BenchmarkVolume })
   {
     RegisterRounds<DraggedVolume>("ChainMail/" + GetName(dimensions), size.GetRounds(),
-      [dimensions]() { return std::make_shared<DraggedVolume>(MakeVolume(dimensions)); },
+      [dimensions]()
+      { return std::make_shared<DraggedVolume>(MakeVolume(dimensions), HandleRadius, DragLength); },
       { { "part", [](DraggedVolume& dragged) { return MeasureFrame(dragged, false); } },
         { "whole", [](DraggedVolume& dragged) { return MeasureFrame(dragged, true); } } });
+  }
+  for (const StepDrag& drag : StepDrags)
+  {
+    RegisterRounds<DraggedVolume>("ChainMailStep/" + std::to_string(drag.Voxels), size.GetRounds(),
+      [drag]()
+      {
+        return std::make_shared<DraggedVolume>(
+          MakeVolume(BenchmarkVolume), drag.HandleRadius, drag.Length);
+      },
+      { { "step", MeasureStep } });
   }
 }

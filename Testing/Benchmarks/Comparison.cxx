@@ -33,6 +33,7 @@ struct NamedCase
   std::string Name;
   int NodesPerAxis;
   int Resampler;
+  bool IsInverse;
 };
 
 std::vector<NamedCase> MakeNamedCases(bool quick)
@@ -50,10 +51,12 @@ std::vector<NamedCase> MakeNamedCases(bool quick)
       if (possible && wanted)
       {
         cases.push_back({ std::string(deformation.Name) + "/" + resampler.Name,
-          deformation.NodesPerAxis, resampler.Resampler });
+          deformation.NodesPerAxis, resampler.Resampler, false });
       }
     }
   }
+  // It leads from the output to the volume: the resampler is another one.
+  cases.push_back({ "inverse/automatic", DenseField, vtkDeformVolumeFilter::AUTOMATIC, true });
   return cases;
 }
 
@@ -129,6 +132,7 @@ void RegisterComparison(const EvaluationSize& size)
         {
           stage->Cases[named.Name] =
             std::make_unique<BenchmarkCase>(stage->Volume, named.NodesPerAxis, named.Resampler);
+          stage->Cases[named.Name]->GetFilter()->SetFieldIsInverse(named.IsInverse);
         }
         for (const auto& [name, make] : PeerMakers)
         {

@@ -4,12 +4,11 @@
 
 #include <vtkImageData.h>
 
-Measurement Measure(BenchmarkCase& subject, Pose pose, Grid grid)
+Measurement MeasureUpdate(BenchmarkCase& subject)
 {
   vtkDeformVolumeFilter* filter = subject.GetFilter();
   const vtkIdType builds = GetReported(filter, "Static mappings made");
   const vtkIdType uploads = GetReported(filter, "Volumes sent");
-  subject.Move(pose, grid);
   const UpdateTimes times = subject.Update();
   const auto voxels = static_cast<double>(subject.GetNumberOfVoxels());
   Measurement measurement;
@@ -29,6 +28,12 @@ Measurement Measure(BenchmarkCase& subject, Pose pose, Grid grid)
     { "volume_uploads", static_cast<double>(GetReported(filter, "Volumes sent") - uploads) },
   };
   return measurement;
+}
+
+Measurement Measure(BenchmarkCase& subject, Pose pose, Grid grid)
+{
+  subject.Move(pose, grid);
+  return MeasureUpdate(subject);
 }
 
 std::string GetName(const std::array<int, 3>& dimensions)

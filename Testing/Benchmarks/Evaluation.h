@@ -24,7 +24,8 @@ struct EvaluationSize
   bool GetWarmUp() const { return !this->Quick; }
 };
 
-/// Deform/<pose>/<deformation>/<resampler>, Deform/<pose>/<peer>: table 1 and the peers.
+/// Deform/<pose>/<deformation>/<resampler>, Deform/<pose>/<peer>: table 1 and the peers. With the
+/// deformation inverse, the vectors of the dense field are taken for those of an inverse field.
 void RegisterComparison(const EvaluationSize& size);
 
 /// Nodes/<pose>/<nodes>: meshes of few and of many nodes, alone.
@@ -67,7 +68,11 @@ void RegisterLive(const EvaluationSize& size);
 /// Edit/<dimensions>/<edit>: cutting and carving.
 void RegisterEdits(const EvaluationSize& size);
 
+/// Masks/<active or blanked>/<change>: a mask of the volume that appears or changes.
+void RegisterMasks(const EvaluationSize& size);
+
 /// ChainMail/<dimensions>/<part or whole>: frames of a drag, the volume updated in part or whole.
+/// ChainMailStep/<voxels>/step: steps alone, that move about so many voxels.
 void RegisterChainMail(const EvaluationSize& size);
 
 /// Physics/<body>/frame: frames of springs and of finite elements.
@@ -88,6 +93,9 @@ inline constexpr NamedResampler ExactResampler{ "exact", vtkDeformVolumeFilter::
 inline constexpr NamedResampler MeshRasterizationResampler{ "mesh-rasterization",
   vtkDeformVolumeFilter::MESH_RASTERIZATION };
 inline constexpr NamedResampler AllResamplers[] = { ExactResampler, MeshRasterizationResampler };
+
+/// Brings a case up to date, whatever has changed.
+Measurement MeasureUpdate(BenchmarkCase& subject);
 
 /// Moves a case and brings it up to date.
 Measurement Measure(BenchmarkCase& subject, Pose pose, Grid grid = Grid::Same);

@@ -192,8 +192,11 @@ void RegisterPhysics(const EvaluationSize& size)
       SpringFrames{ "springs-507584", BenchmarkVolume, { { 64, 103, 77 } }, false, 1 },
       SpringFrames{ "springs-2197-60Hz", head, { { 13, 13, 13 } }, true, 1 },
       SpringFrames{ "springs-2197-60Hz-half", head, { { 13, 13, 13 } }, true, 2 },
-      // The size of a scene that SOFA is measured with, and its volume made small.
-      SpringFrames{ "springs-4096", { { 16, 16, 16 } }, { { 16, 16, 16 } }, false, 1 } })
+      // Cubes, whose volumes are made small, one of them as large as a scene that SOFA is measured
+      // with.
+      SpringFrames{ "springs-2197", { { 13, 13, 13 } }, { { 13, 13, 13 } }, false, 1 },
+      SpringFrames{ "springs-4096", { { 16, 16, 16 } }, { { 16, 16, 16 } }, false, 1 },
+      SpringFrames{ "springs-512000", { { 80, 80, 80 } }, { { 80, 80, 80 } }, false, 1 } })
   {
     RegisterSprings(frames, rounds);
   }

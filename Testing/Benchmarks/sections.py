@@ -44,7 +44,8 @@ GPU_PEERS = {
     "cupy/linear/float32": "cupy, map_coordinates, order 1",
 }
 # What is deformed, in the names of results.
-DEFORMATIONS = {"2197": "2,197 nodes", "512000": "512,000 nodes", "field": "dense field"}
+DEFORMATIONS = {"2197/exact": "2,197 nodes", "512000/exact": "512,000 nodes", "field/exact": "dense field",
+                "inverse/automatic": "inverse field"}
 
 
 def cell(value, digits=1):
@@ -94,7 +95,7 @@ def gpu(results, _pictures, _kind):
     rows = []
     for pose, words in POSES.items():
         for deformation, what in DEFORMATIONS.items():
-            name = f"Deform/{pose}/{deformation}/exact"
+            name = f"Deform/{pose}/{deformation}"
             time = results.milliseconds(name, "kernels")
             if not time:
                 continue
@@ -119,16 +120,21 @@ def gpu_peers(results, pictures, kind):
     yield (f"Measured with {results.context['gpu_peers']}. They get the inverse deformation, as a position for "
            "each voxel of the output that lies on the GPU already. They read and write values of 32 bits, and no "
            "mask; with half, values and positions have 16 bits, so that a position is off by a tenth of a voxel "
-           "or more. DeformVolume gets the forward deformation, and reads and writes 16 bits and "
-           "a mask. It ran in another process: the last columns are quotients of medians, its mapping and "
-           "resampling by the time of the peer."
+           "or more. DeformVolume gets the forward deformation, but for the inverse field, and reads and writes "
+           "16 bits and a mask. It ran in another process: the last columns are quotients of medians, its mapping "
+           "and resampling by the time of the peer, both for a voxel of the output, of which an inverse field "
+           "gives as many as it has vectors."
            + (f" A copy on the device reads and writes, together: {', '.join(copies)}." if copies else "")
            + "\n")
     for pose, words in POSES.items():
-        ours = {what: results.milliseconds(f"Deform/{pose}/{deformation}/exact", "kernels")
+        ours = {what: results.milliseconds(f"Deform/{pose}/{deformation}", "kernels")
                 for deformation, what in DEFORMATIONS.items()}
+        # An inverse field gives an output of the field's size.
+        outputs = {what: results.median(f"Deform/{pose}/{deformation}", "output_voxels")
+                   for deformation, what in DEFORMATIONS.items()}
         published = results.milliseconds(f"Published/{pose}/published", "kernels")
-        bars = [(f"DeformVolume, {what}", time, True) for what, time in ours.items() if time]
+        bars = [(f"DeformVolume, {what}", time, True) for what, time in ours.items()
+                if time and what != DEFORMATIONS["inverse/automatic"]]
         bars += [("published kernel, 2,197 nodes", published, False)] if published else []
         rows = []
         for name in results.names(f"GpuPeer/{pose}/"):
@@ -136,9 +142,11 @@ def gpu_peers(results, pictures, kind):
             time = results.median(name)
             if not time:
                 continue
-            rows.append([what, results.median(name, "output_voxels") / 1e6, time,
+            voxels = results.median(name, "output_voxels")
+            rows.append([what, voxels / 1e6, time,
                          1e-9 * results.median(name, "bytes_per_second")]
-                        + [value and value / time for value in ours.values()])
+                        + [value and outputs[mine] and value / outputs[mine] * voxels / time
+                           for mine, value in ours.items()])
             bars.append((what, time, False))
         if not rows:
             continue
@@ -158,7 +166,8 @@ def comparison(results, pictures, kind):
             parts = name.split("/")
             if len(parts) != 4:
                 continue
-            rows.append([parts[2], STYLES[parts[3]][0], results.median(name)]
+            resampler = STYLES.get(parts[3], ["Automatic"])[0]
+            rows.append([parts[2], resampler, results.median(name)]
                         + [results.milliseconds(name, key)
                            for key in ("mapping", "resampling", "transfer")]
                         + [results.ratio(name, f"Deform/{pose}/reslice-affine"),
@@ -166,7 +175,7 @@ def comparison(results, pictures, kind):
                            results.median(name, "mapping_builds"),
                            results.median(name, "volume_uploads")])
             if results.median(name):
-                bars.append((f"{STYLES[parts[3]][0]}, {parts[2]}", results.median(name), True))
+                bars.append((f"{resampler}, {parts[2]}", results.median(name), True))
         if not rows:
             continue
         yield f"## Table 1: 189 x 305 x 229 voxels of 16 bits, {words}\n"
@@ -409,6 +418,11 @@ def chain_mail(results, _pictures, _kind):
         yield "## ChainMail: frames of a drag\n"
         yield table(["voxels", "voxels moved", "step, ms", "deformed anew", "mapping, ms",
                      "resampling, ms", "frame: step and Update(), ms"], rows)
+    rows = [[_count(results.median(name, "moved")), results.median(name)]
+            for name in results.names("ChainMailStep/")]
+    if rows:
+        yield "## ChainMail: steps of a drag through 189 x 305 x 229 voxels\n"
+        yield table(["voxels moved", "step, ms"], rows)
 
 
 PHYSICS = (
@@ -440,15 +454,18 @@ def physics(results, _pictures, _kind):
         yield table(["simulation", "nodes", "tetrahedra", "simulation, ms", "mapping, ms",
                      "resampling, ms", "frame: step and Update(), ms", "frames a second",
                      "device memory of the filter, MiB"], rows)
-    rows = [[words, _count(results.median(name, "nodes")),
-             1.0 / results.median(name, "simulation"), SOFA_RATES[body],
-             1.0 / results.median(name, "simulation") / SOFA_RATES[body]]
-            for body, words in (("springs-4096", "springs"), ("elements-19456", "finite elements"))
-            for name in (f"Physics/{body}/frame",)
-            if results.median(name, "simulation")]
+    rows = []
+    for body, words in (("springs-2197", "springs in a cube"), ("springs-4096", "springs in a cube"),
+                        ("springs-512000", "springs in a cube"), ("elements-19456", "finite elements")):
+        name = f"Physics/{body}/frame"
+        seconds = results.median(name, "simulation")
+        if seconds:
+            published = SOFA_RATES.get(body)
+            rows.append([words, _count(results.median(name, "nodes")), 1e3 * seconds, 1.0 / seconds, published,
+                         published and 1.0 / seconds / published])
     if rows:
         yield "Simulations by themselves:\n"
-        yield table(["simulation", "nodes", "steps a second", "SOFA's, published", "by that"], rows)
+        yield table(["simulation", "nodes", "step, ms", "steps a second", "SOFA's, published", "by that"], rows)
 
 
 SESSIONS = (
@@ -480,6 +497,24 @@ def edits(results, _pictures, _kind):
     if rows:
         yield "## Cutting and carving\n"
         yield table(["voxels", "edit", "Update(), ms", "published, at most, ms"], rows)
+
+
+def masks(results, _pictures, _kind):
+    rows = [[mask, words, results.median(name), results.milliseconds(name, "kernels"),
+             results.milliseconds(name, "transfer")]
+            for group, mask in (("active", "active tetrahedra, 13.1 MB"), ("blanked", "blanked points, 13.2 MB"))
+            for change, words in (
+                ("first", "the first mask: a ball of a radius of 20 is off"),
+                ("ball", "a ball of a radius of 20, from one place to another"),
+                ("box", "a ball is on again, and a box of 20 x 20 x 20 is off"),
+                ("noise", "everything: half is off, as noise"),
+                ("nothing", "nothing, but it is modified"))
+            for name in [f"Masks/{group}/{change}"] if name in results.runs]
+    if rows:
+        yield "## Masks of 189 x 305 x 229 voxels, while 2,197 nodes rest\n"
+        yield ("The output stays on the device, so that what is transferred is the mask. On a processor that is no "
+               "transfer, but a comparison.\n")
+        yield table(["mask", "what changes", "Update(), ms", "mapping + resampling, ms", "transfer, ms"], rows)
 
 
 def given(results, _pictures, _kind):
@@ -535,6 +570,7 @@ ALL = {
     "physics": physics,
     "sessions": session,
     "cutting and carving": edits,
+    "masks": masks,
     "what is given": given,
     "viewports": rendering,
 }
