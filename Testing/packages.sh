@@ -19,7 +19,7 @@ set -euo pipefail
 declare -A packages=(
   [library]="g++ cmake ninja-build ccache libvtk9-dev python3-vtk9 libglm-dev libeigen3-dev
     opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev pocl-opencl-icd tetgen"
-  [example]="libcli11-dev mricron-data xvfb xauth"
+  [example]="libcli11-dev libinsighttoolkit5-dev mricron-data xvfb xauth"
   [test]="libgtest-dev libbenchmark-dev libopenmpi-dev openmpi-bin oclgrind python3-numpy python3-xlib
     mricron-data xvfb xauth"
   [benchmark]="python3-matplotlib"

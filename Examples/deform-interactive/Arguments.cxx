@@ -11,6 +11,7 @@ const char* const UsageText =
   "Drags, cuts and carves a volume live: any that deform-volume reads, or the MRI of a head (ch2 "
   "of\n"
   "the package mricron-data). Press h in the window for its keys.\n\n"
+  "  --frame NUMBER         which volume of a file with several in time, counted from 0\n"
   "  --session FILE.xml     load a session, after the volume\n"
   "  --record FILE.log      record the events of the window\n"
   "  --replay FILE.log      replay recorded events, do what the options below say, and end\n"
@@ -46,7 +47,7 @@ Arguments ParseArguments(int argc, char* argv[])
       continue;
     }
     const auto text = texts.find(name);
-    if (text == texts.end() && name != "--output" && name != "--size")
+    if (text == texts.end() && name != "--output" && name != "--size" && name != "--frame")
     {
       throw UsageError("there is no option " + name + ", see --help");
     }
@@ -62,6 +63,16 @@ Arguments ParseArguments(int argc, char* argv[])
     else if (name == "--output")
     {
       arguments.Outputs.push_back(value);
+    }
+    else if (name == "--frame")
+    {
+      char rest = 0;
+      int frame = 0;
+      if (std::sscanf(value.c_str(), "%d%c", &frame, &rest) != 1 || frame < 0)
+      {
+        throw UsageError("--frame " + value + ": a whole number from 0 on");
+      }
+      arguments.Reading.Frame = frame;
     }
     else
     {

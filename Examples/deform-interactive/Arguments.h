@@ -2,13 +2,16 @@
 #ifndef DeformInteractiveArguments_h
 #define DeformInteractiveArguments_h
 
+#include "VolumeReading.h"
+
 #include <string>
 #include <vector>
 
 /// What deform-interactive was called with.
 struct Arguments
 {
-  std::string Volume;  // "": the MRI of a head
+  std::string Volume; // "": the MRI of a head
+  ReadingOptions Reading;
   std::string Session; // the rest: "" where it was not given
   std::string Record;
   std::string Replay;

@@ -179,7 +179,7 @@ void Viewer::Announce(const std::string& message)
 void Viewer::OpenVolume(const std::string& path)
 {
   this->Announce("Reading " + path);
-  const Volume volume = ReadVolume(path, false, this->Reports, true);
+  const Volume volume = ReadVolume(path, this->Asked.Reading, this->Reports, true);
   vtkPointData* arrays = volume.Image->GetPointData();
   if (!arrays->GetScalars() && arrays->GetNumberOfArrays() > 0)
   {

@@ -4,17 +4,20 @@
 #include "Failure.h"
 #include "ImageAxes.h"
 #include "Messages.h"
-#include "NrrdFile.h"
 #include "VolumeReading.h"
+#include "WorldSpace.h"
 
-#include <vtkDoubleArray.h>
-#include <vtkFloatArray.h>
+#include <vtkDataArray.h>
+#include <vtkMath.h>
 #include <vtkMatrix3x3.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
+#include <cmath>
 #include <initializer_list>
+#include <vector>
 
 namespace
 {
@@ -74,6 +77,13 @@ std::string FindWrongShape(vtkNIFTIImageHeader* header)
 /// the file is no displacement field in millimetres.
 bool IsRightAnterior(vtkNIFTIImageHeader* header, const std::string& what)
 {
+  const int unit = header->GetXYZTUnits() & 7;
+  if (unit == vtkNIFTIImageHeader::UnitsMeter || unit == vtkNIFTIImageHeader::UnitsMicron)
+  {
+    throw Failure(what + ": its unit of length is " +
+      (unit == vtkNIFTIImageHeader::UnitsMeter ? "the metre" : "the micrometre") +
+      ", which leaves open what its vectors are in. Write it in mm");
+  }
   const auto intent = static_cast<int>(header->GetIntentCode());
   const char* const name = header->GetIntentName();
   const std::string intentName = name ? name : "";
@@ -105,29 +115,11 @@ bool IsRightAnterior(vtkNIFTIImageHeader* header, const std::string& what)
   return intent == IntentDisplacement;
 }
 
-/// From the components of an NRRD file to its space.
-void GetMeasurementFrame(const NrrdFile& file, const std::string& what, vtkMatrix3x3* matrix)
-{
-  const std::string text = file.Get("measurement frame");
-  const std::vector<double> numbers = FindNumbers(text);
-  if (numbers.size() == 9)
-  {
-    for (int i = 0; i < 9; ++i)
-    {
-      matrix->SetElement(i % 3, i / 3, numbers[i]);
-    }
-  }
-  else if (!text.empty())
-  {
-    throw Failure(
-      what + ": its measurement frame is " + text + ", where nine numbers are expected");
-  }
-}
-
 /// Slicer says in NRRD files in which direction a field maps.
-void CheckKind(const NrrdFile& file, const std::string& path, bool isInverse, Messages& messages)
+void CheckKind(const Volume& field, const std::string& path, bool isInverse, Messages& messages)
 {
-  const std::string kind = file.Get("displacement field type");
+  const auto found = field.Fields.find("displacement field type");
+  const std::string kind = found == field.Fields.end() ? "" : found->second;
   if ((kind == "resampling" && !isInverse) || (kind == "modeling" && isInverse))
   {
     messages.DisplayWarningText(("The displacement field type of " + path + " is \"" + kind +
@@ -138,35 +130,26 @@ void CheckKind(const NrrdFile& file, const std::string& path, bool isInverse, Me
   }
 }
 
-/// The vectors as they are in the world: slope and intercept first, then the matrix.
-vtkSmartPointer<vtkDataArray> MakeVectors(
-  vtkDataArray* stored, const Volume& field, vtkMatrix3x3* matrix)
+/// Applies a matrix to vectors, which become float or double.
+vtkSmartPointer<vtkDataArray> Turn(vtkDataArray* stored, vtkMatrix3x3* matrix)
 {
-  const bool isFloat = stored->GetDataType() == VTK_FLOAT;
-  // A slope of 0 says that nothing is rescaled.
-  const double slope = field.RescaleSlope != 0.0 ? field.RescaleSlope : 1.0;
-  const double intercept = field.RescaleSlope != 0.0 ? field.RescaleIntercept : 0.0;
   vtkSmartPointer<vtkDataArray> vectors = stored;
-  if (!matrix->IsIdentity() || slope != 1.0 || intercept != 0.0)
+  if (!matrix->IsIdentity())
   {
-    vectors = isFloat ? vtkSmartPointer<vtkDataArray>(vtkSmartPointer<vtkFloatArray>::New())
-                      : vtkSmartPointer<vtkDataArray>(vtkSmartPointer<vtkDoubleArray>::New());
+    vectors = vtkSmartPointer<vtkDataArray>::Take(
+      vtkDataArray::CreateDataArray(stored->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE));
     vectors->SetNumberOfComponents(3);
     vectors->SetNumberOfTuples(stored->GetNumberOfTuples());
     for (vtkIdType i = 0; i < stored->GetNumberOfTuples(); ++i)
     {
       double components[3];
       stored->GetTuple(i, components);
-      for (double& component : components)
-      {
-        component = slope * component + intercept;
-      }
       double vector[3];
       matrix->MultiplyPoint(components, vector);
       vectors->SetTuple(i, vector);
     }
   }
-  vectors->SetName(FieldArrayName);
+  vectors->SetName(stored->GetName());
   return vectors;
 }
 
@@ -178,6 +161,65 @@ void FlipWorldAxes(vtkMatrix3x3* matrix)
     {
       matrix->SetElement(row, column, -matrix->GetElement(row, column));
     }
+  }
+}
+
+/// Takes a field of a .vti file, which says nothing of its world, from one world to the other.
+void FlipWorld(vtkImageData* image)
+{
+  FlipWorldAxes(image);
+  vtkNew<vtkMatrix3x3> matrix;
+  FlipWorldAxes(matrix);
+  std::vector<vtkSmartPointer<vtkDataArray>> vectors;
+  for (int i = 0; i < image->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* const array = image->GetPointData()->GetArray(i);
+    if (array && array->GetNumberOfComponents() == 3)
+    {
+      vectors.push_back(Turn(array, matrix));
+    }
+  }
+  for (const vtkSmartPointer<vtkDataArray>& array : vectors)
+  {
+    image->GetPointData()->AddArray(array); // in the place of that of its name
+  }
+}
+
+/// Says so where vectors are rather the positions that points move to, which NiftyReg and
+/// voxelmorph call a deformation field: where they grow with the position by about as much.
+void CheckPositions(vtkImageData* image, const std::string& path, Messages& messages)
+{
+  vtkDataArray* const vectors = image->GetPointData()->GetVectors();
+  const vtkIdType points = image->GetNumberOfPoints();
+  constexpr vtkIdType most = 10000;
+  const vtkIdType step = std::max<vtkIdType>(1, points / most);
+  double middle[3];
+  image->GetCenter(middle);
+  double both = 0.0;
+  double squares = 0.0;
+  double mean[3] = { 0.0, 0.0, 0.0 };
+  vtkIdType count = 0;
+  for (vtkIdType i = 0; i < points; i += step, ++count)
+  {
+    double point[3];
+    double vector[3];
+    image->GetPoint(i, point);
+    vectors->GetTuple(i, vector);
+    vtkMath::Subtract(point, middle, point);
+    vtkMath::Subtract(vector, middle, vector);
+    both += vtkMath::Dot(vector, point);
+    squares += vtkMath::Dot(point, point);
+    vtkMath::Add(mean, vector, mean);
+  }
+  const double size = std::sqrt(squares / static_cast<double>(count));
+  constexpr double tolerance = 0.2;
+  if (size > 0.0 && std::abs(both / squares - 1.0) < tolerance &&
+    vtkMath::Norm(mean) / static_cast<double>(count) < tolerance * size)
+  {
+    messages.DisplayWarningText(("The vectors of " + path +
+      " look like the positions of its voxels, which some programs call a deformation field. A "
+      "displacement field holds how far each point moves: subtract the position of each voxel.")
+                                  .c_str());
   }
 }
 }
@@ -193,7 +235,7 @@ bool IsVTKFile(const std::string& path)
 }
 
 vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& volume,
-  bool isInverse, Messages& messages, bool showProgress)
+  const FieldOptions& options, Messages& messages, bool showProgress)
 {
   const std::string what = "cannot use the displacement field " + path;
   if (!vtksys::SystemTools::FileExists(path, true))
@@ -206,10 +248,20 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
       ": a field is a .nii, .nii.gz, .mha, .mhd, .nrrd, .nhdr or .vti file; convert other "
       "transformations into a displacement field first");
   }
-  Volume field = ReadVolume(path, false, messages, showProgress);
+  ReadingOptions reading;
+  reading.Frame = 0; // what its shape says is looked at below
+  Volume field = ReadVolume(path, reading, messages, showProgress);
   vtkImageData* image = field.Image;
+  const WorldAxes space =
+    ChooseSpace("--field-space", options.Space, path, field.Axes, volume.Axes, messages);
+  const bool isFlipped =
+    space != WorldAxes::Unknown && volume.Axes != WorldAxes::Unknown && space != volume.Axes;
   if (IsVTKFile(path))
   {
+    if (isFlipped)
+    {
+      FlipWorld(image);
+    }
     return image;
   }
   vtkNew<vtkMatrix3x3> matrix;
@@ -221,12 +273,11 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
       FlipWorldAxes(matrix);
     }
   }
-  else if (HasSuffix(path, { ".nrrd", ".nhdr" }))
+  else if (field.MeasurementFrame)
   {
-    const NrrdFile file(path);
-    GetMeasurementFrame(file, what, matrix);
-    CheckKind(file, path, isInverse, messages);
+    matrix->DeepCopy(field.MeasurementFrame);
   }
+  CheckKind(field, path, options.IsInverse, messages);
   vtkDataArray* stored = image->GetPointData()->GetScalars();
   const int components = stored ? stored->GetNumberOfComponents() : 0;
   if (components != 3)
@@ -234,22 +285,22 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
     throw Failure(what + ": it has " + std::to_string(components) +
       " components for each voxel, where a displacement has three");
   }
-  if (!field.IsPlaced || field.Axes == WorldAxes::Unknown)
+  if (field.Axes == WorldAxes::Unknown && options.Space.empty())
   {
     throw Failure(what +
-      ": its header does not say where it lies in the world, in a way that vtkImageData can hold. "
-      "It needs perpendicular axes and, as NIfTI, a q-form or s-form, as NRRD the space "
-      "left-posterior-superior or right-anterior-superior");
+      ": its header does not say where it lies in the world. As NIfTI it needs a q-form or s-form, "
+      "as NRRD a space such as left-posterior-superior or right-anterior-superior; or say it with "
+      "--field-space");
   }
-  if (volume.Axes != WorldAxes::Unknown && volume.Axes != field.Axes)
+  if (isFlipped)
   {
-    const vtkSmartPointer<vtkMatrix4x4> axes = GetAxes(image);
-    FlipWorldAxes(axes);
-    SetAxes(image, axes);
+    FlipWorldAxes(image);
     FlipWorldAxes(matrix);
   }
-  const vtkSmartPointer<vtkDataArray> vectors = MakeVectors(stored, field, matrix);
+  const vtkSmartPointer<vtkDataArray> vectors = Turn(stored, matrix);
+  vectors->SetName(FieldArrayName);
   image->GetPointData()->Initialize();
   image->GetPointData()->SetVectors(vectors);
+  CheckPositions(image, path, messages);
   return image;
 }

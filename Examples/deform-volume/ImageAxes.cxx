@@ -1,13 +1,79 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ImageAxes.h"
 
+#include "Failure.h"
+#include "Messages.h"
+
 #include <vtkImageData.h>
 #include <vtkMath.h>
 #include <vtkMatrix3x3.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
+#include <sstream>
+
+namespace
+{
+constexpr double RoundedShear = 1e-5;
+constexpr double MaximumShear = 1e-3;
+
+// Of the angles between the axes, whose columns have length 1, the largest cosine.
+double FindShear(const double columns[3][3])
+{
+  double shear = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    shear = std::max(shear, std::abs(vtkMath::Dot(columns[axis], columns[(axis + 1) % 3])));
+  }
+  return shear;
+}
+
+// The position of an index, from the first voxel.
+void FindOffset(
+  const double columns[3][3], const double spacing[3], const double index[3], double offset[3])
+{
+  for (int row = 0; row < 3; ++row)
+  {
+    offset[row] = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      offset[row] += columns[axis][row] * spacing[axis] * index[axis];
+    }
+  }
+}
+
+// Makes the columns perpendicular about the middle of the image, whose first voxel moves by shift.
+// Returns how far a corner moves at most.
+double RemoveShear(
+  double columns[3][3], const double spacing[3], const int dimensions[3], double shift[3])
+{
+  double old[3][3];
+  std::copy(&columns[0][0], &columns[0][0] + 9, &old[0][0]);
+  // Rows and columns change places, which the nearest orthogonal matrix does not mind.
+  vtkMath::Orthogonalize3x3(old, columns);
+  double middle[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    middle[axis] = 0.5 * (dimensions[axis] - 1);
+  }
+  double before[3];
+  double after[3];
+  FindOffset(old, spacing, middle, before);
+  FindOffset(columns, spacing, middle, after);
+  vtkMath::Subtract(before, after, shift);
+  double farthest = 0.0;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const double index[3] = { (corner & 1) * 2 * middle[0], (corner >> 1 & 1) * 2 * middle[1],
+      (corner >> 2) * 2 * middle[2] };
+    FindOffset(old, spacing, index, before);
+    FindOffset(columns, spacing, index, after);
+    vtkMath::Add(after, shift, after);
+    farthest = std::max(farthest, std::sqrt(vtkMath::Distance2BetweenPoints(before, after)));
+  }
+  return farthest;
+}
+}
 
 vtkSmartPointer<vtkMatrix4x4> GetAxes(vtkImageData* image)
 {
@@ -27,7 +93,8 @@ vtkSmartPointer<vtkMatrix4x4> GetAxes(vtkImageData* image)
   return axes;
 }
 
-bool SetAxes(vtkImageData* image, vtkMatrix4x4* axes)
+void SetAxes(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, Messages& messages,
+  const std::string& advice)
 {
   double columns[3][3];
   double spacing[3];
@@ -38,26 +105,50 @@ bool SetAxes(vtkImageData* image, vtkMatrix4x4* axes)
       columns[column][row] = axes->GetElement(row, column);
     }
     const double length = vtkMath::Normalize(columns[column]);
-    if (!(length > 0.0) || !std::isfinite(length))
-    {
-      return false;
-    }
     // Files hold single precision: what is one up to its rounding leaves the spacing as it is.
-    const double factor = std::abs(length - 1.0) < 1e-5 ? 1.0 : length;
+    const double factor = std::abs(length - 1.0) < RoundedShear ? 1.0 : length;
     spacing[column] = image->GetSpacing()[column] * factor;
-  }
-  for (int column = 0; column < 3; ++column)
-  {
-    if (std::abs(vtkMath::Dot(columns[column], columns[(column + 1) % 3])) > 1e-4)
+    if (!(spacing[column] > 0.0) || !std::isfinite(spacing[column]) ||
+      !std::isfinite(axes->GetElement(column, 3)))
     {
-      return false;
+      throw Failure("cannot read " + path +
+        ": by its header voxels have no size or no place: the length of an axis is " +
+        std::to_string(spacing[column]) + advice);
+    }
+  }
+  double origin[3] = { axes->GetElement(0, 3), axes->GetElement(1, 3), axes->GetElement(2, 3) };
+  const double shear = FindShear(columns);
+  if (shear > MaximumShear)
+  {
+    std::ostringstream text;
+    text << "cannot read " << path << ": its axes are sheared by "
+         << vtkMath::DegreesFromRadians(std::asin(std::min(shear, 1.0)))
+         << " degrees, and a volume of VTK has perpendicular axes. Resample it on perpendicular "
+            "axes first, for example with 3D Slicer; a series with gantry tilt is converted and "
+            "straightened by dcm2niix"
+         << advice;
+    throw Failure(text.str());
+  }
+  constexpr double roundingOfSinglePrecision = 1e-7;
+  if (shear > roundingOfSinglePrecision)
+  {
+    double shift[3];
+    const double farthest = RemoveShear(columns, spacing, image->GetDimensions(), shift);
+    vtkMath::Add(origin, shift, origin);
+    if (shear > RoundedShear)
+    {
+      std::ostringstream text;
+      text << "The axes of " << path << " are sheared by " << shear
+           << ". A volume of VTK has perpendicular axes: the nearest ones are used, and voxels lie "
+              "up to "
+           << farthest << " from where the file puts them.";
+      messages.DisplayWarningText(text.str().c_str());
     }
   }
   image->SetSpacing(spacing);
-  image->SetOrigin(axes->GetElement(0, 3), axes->GetElement(1, 3), axes->GetElement(2, 3));
+  image->SetOrigin(origin);
   image->SetDirectionMatrix(columns[0][0], columns[1][0], columns[2][0], columns[0][1],
     columns[1][1], columns[2][1], columns[0][2], columns[1][2], columns[2][2]);
-  return true;
 }
 
 void FlipWorldAxes(vtkMatrix4x4* axes)
@@ -72,48 +163,23 @@ void FlipWorldAxes(vtkMatrix4x4* axes)
   }
 }
 
-std::string ReadHeaderField(const std::string& path, const std::string& name, char separator)
+void FlipWorldAxes(vtkImageData* image)
 {
-  // The header ends before the data: in a MetaImage with the field that says where the data are,
-  // in an NRRD file with an empty line.
-  constexpr int maximumLines = 200;
-  std::ifstream file(path, std::ios::binary);
-  std::string line;
-  for (int i = 0; i < maximumLines && std::getline(file, line); ++i)
+  vtkNew<vtkMatrix4x4> axes;
+  for (int row = 0; row < 3; ++row)
   {
-    if (!line.empty() && line.back() == '\r')
+    for (int column = 0; column < 3; ++column)
     {
-      line.pop_back();
+      axes->SetElement(row, column, image->GetDirectionMatrix()->GetElement(row, column));
     }
-    if (line.empty() || line.rfind("ElementDataFile", 0) == 0)
-    {
-      break;
-    }
-    const std::size_t place = line.find(separator);
-    if (place != std::string::npos &&
-      line.substr(0, line.find_last_not_of(" \t", place - 1) + 1) == name)
-    {
-      return line.substr(place + 1);
-    }
+    axes->SetElement(row, 3, image->GetOrigin()[row]);
   }
-  return "";
-}
-
-std::vector<double> FindNumbers(const std::string& text)
-{
-  std::vector<double> numbers;
-  const char* place = text.c_str();
-  while (*place)
+  FlipWorldAxes(axes);
+  double direction[9];
+  for (int i = 0; i < 9; ++i)
   {
-    char* end = nullptr;
-    const double number = std::strtod(place, &end);
-    if (end == place)
-    {
-      ++place;
-      continue;
-    }
-    numbers.push_back(number);
-    place = end;
+    direction[i] = axes->GetElement(i / 3, i % 3);
   }
-  return numbers;
+  image->SetDirectionMatrix(direction);
+  image->SetOrigin(axes->GetElement(0, 3), axes->GetElement(1, 3), axes->GetElement(2, 3));
 }

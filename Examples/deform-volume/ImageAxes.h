@@ -6,26 +6,27 @@
 #include <vtkSmartPointer.h>
 
 #include <string>
-#include <vector>
 
+class Messages;
 class vtkImageData;
 
 /// The matrix whose columns are the directions of the index axes and the world position of the
 /// first voxel of the image's extent. It takes (index - first index) * spacing to the world.
 vtkSmartPointer<vtkMatrix4x4> GetAxes(vtkImageData* image);
 
-/// Gives the image these directions and this position of its index 0. Lengths of the columns go
-/// into the spacing. Returns false, and does nothing, where they are not perpendicular.
-bool SetAxes(vtkImageData* image, vtkMatrix4x4* axes);
+/// Gives an image whose extent begins at 0 these directions and this position of its first voxel.
+/// Lengths of the columns are factors on its spacing.
+///
+/// vtkImageData has perpendicular axes. A shear (the cosine of the angle between two axes) of up to
+/// 1e-3 is taken out: the nearest perpendicular axes are used, and the middle of the image stays
+/// where it is; from 1e-5 on, which rounding in the file does not explain, a warning says how far
+/// voxels lie from their places. Throws a Failure where the shear is larger or a column is 0; path
+/// is the file, advice one more sentence.
+void SetAxes(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, Messages& messages,
+  const std::string& advice = "");
 
 /// Exchanges the conventions right-anterior-superior and left-posterior-superior.
 void FlipWorldAxes(vtkMatrix4x4* axes);
-
-/// The value of a field in the text header of a MetaImage or NRRD file ("" where it is missing):
-/// what follows the name and the separator, '=' or ':'.
-std::string ReadHeaderField(const std::string& path, const std::string& name, char separator);
-
-/// All numbers in a text, in their order, whatever stands between them.
-std::vector<double> FindNumbers(const std::string& text);
+void FlipWorldAxes(vtkImageData* image);
 
 #endif

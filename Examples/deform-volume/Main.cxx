@@ -183,7 +183,8 @@ void DeformVolume(const Options& options, Messages& messages)
   TimingTable timings;
 
   const Stopwatch reading;
-  Volume volume = ReadVolume(options.Volume, options.FileCoordinates, messages, !options.Quiet);
+  const ReadingOptions place{ options.FileCoordinates, options.Frame };
+  Volume volume = ReadVolume(options.Volume, place, messages, !options.Quiet);
   timings.Add("read volume", reading.GetSeconds());
 
   const Stopwatch cutting;

@@ -202,8 +202,8 @@ Deformation MakeDeformation(
   }
   else if (!options.Field.empty())
   {
-    deformation.Data =
-      ReadField(options.Field, volume, options.FieldIsInverse, messages, !options.Quiet);
+    deformation.Data = ReadField(options.Field, volume,
+      { options.FieldIsInverse, options.FieldSpace }, messages, !options.Quiet);
     deformation.Displacement = IsVTKFile(options.Field) ? options.Displacement : FieldArrayName;
   }
   else if (options.Model == "chainmail")

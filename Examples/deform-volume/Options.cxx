@@ -25,6 +25,7 @@ struct RawOptions
   std::string View;
   double Isovalue = 0.0;
   double Threshold = 0.0;
+  int Frame = 0;
   std::string Outside = "discard";
   std::string Bounds = "deformed";
   std::string Interpolation = "linear";
@@ -81,6 +82,10 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
   if (program.count("--threshold"))
   {
     options.Threshold = raw.Threshold;
+  }
+  if (program.count("--frame"))
+  {
+    options.Frame = raw.Frame;
   }
   options.Extrapolate = raw.Outside == "extrapolate";
   options.VolumeBounds = raw.Bounds == "volume";
@@ -146,6 +151,13 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     .add_flag("--field-is-inverse", options.FieldIsInverse,
       "The --field leads from a point of the result to the point of the volume that is seen there, "
       "as registration programs write it (from the fixed to the moving image)")
+    ->group(group);
+  program
+    .add_option("--field-space", options.FieldSpace,
+      "The world of a --field that does not say it itself: lps (x to the left, y to the back, z to "
+      "the head) or ras (x to the right, y to the front) [that of the volume]")
+    ->check(CLI::IsMember({ "lps", "ras" }))
+    ->type_name("SPACE")
     ->group(group);
   program
     .add_option("--displacement", options.Displacement,
@@ -429,10 +441,14 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
       "The volume: a .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr or .vti file, or a folder with the "
       "slices of one DICOM series")
     ->type_name("FILE");
+  program
+    .add_option("--frame", raw.Frame,
+      "Which volume of a file with several in time, counted from 0 (NIfTI, MetaImage, NRRD)")
+    ->check(CLI::NonNegativeNumber)
+    ->type_name("NUMBER");
   program.add_flag("--file-coordinates", options.FileCoordinates,
-    "Do as VTK's readers do: NIfTI files and DICOM series have origin 0, and only .vti files have "
-    "a "
-    "direction");
+    "Do as VTK's and ParaView's readers do: no direction, and origin 0 for NIfTI files and DICOM "
+    "series");
   program.add_flag(
     "--list-devices", options.ListDevices, "List the OpenCL devices, the best first, and end");
   AddDeformation(program, options, raw);

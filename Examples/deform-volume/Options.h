@@ -19,6 +19,7 @@ struct Options
 
   std::string Volume;
   bool FileCoordinates = false;
+  std::optional<int> Frame;
 
   std::string Mesh;
   std::string Displacement;
@@ -27,6 +28,7 @@ struct Options
   std::string Field;
   bool PointsAreDeformed = false;
   bool FieldIsInverse = false;
+  std::string FieldSpace;
 
   bool TetGen = false;
   std::optional<double> Isovalue;

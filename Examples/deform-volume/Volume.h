@@ -3,8 +3,13 @@
 #define DeformVolumeVolume_h
 
 #include <vtkImageData.h>
+#include <vtkMatrix3x3.h>
+#include <vtkMatrix4x4.h>
 #include <vtkNIFTIImageHeader.h>
 #include <vtkSmartPointer.h>
+
+#include <map>
+#include <string>
 
 /// What the axes of the world point to, as far as the file says it.
 enum class WorldAxes
@@ -16,18 +21,29 @@ enum class WorldAxes
   LeftPosteriorSuperior
 };
 
+/// A NIfTI file's two transformations to the world, with the codes that name that world (1 the
+/// scanner, 2 another image, 3 Talairach, 4 MNI; 0: there is none).
+struct NIfTIForms
+{
+  int SFormCode = 0;
+  int QFormCode = 0;
+  /// From (index * spacing), in mm, to the world. Null where QFormCode is 0.
+  vtkSmartPointer<vtkMatrix4x4> QForm;
+};
+
 /// An image and what vtkImageData has no room for.
 struct Volume
 {
   vtkSmartPointer<vtkImageData> Image;
   WorldAxes Axes = WorldAxes::Unknown;
-  /// Stored value times slope plus intercept is the measured value; carried through, not applied.
-  double RescaleSlope = 1.0;
-  double RescaleIntercept = 0.0;
-  /// False where the axes that the file gives could not be used.
-  bool IsPlaced = true;
+  /// Of a NIfTI file that says where it lies. The s-form is the place of the image.
+  NIfTIForms Forms;
   /// Null for other formats.
   vtkSmartPointer<vtkNIFTIImageHeader> NIfTIHeader;
+  /// Further fields of a MetaImage or NRRD file's header, by their names.
+  std::map<std::string, std::string> Fields;
+  /// Of an NRRD file: from the components of vectors to the world. Null where there is none.
+  vtkSmartPointer<vtkMatrix3x3> MeasurementFrame;
 };
 
 #endif

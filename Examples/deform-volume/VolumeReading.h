@@ -4,16 +4,30 @@
 
 #include "Volume.h"
 
+#include <optional>
 #include <string>
 
 class Messages;
 
-/// Reads a volume: .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr, .vti, or a folder with the slices of
-/// one DICOM series. VTK's readers give all but .vti files no direction, and NIfTI files and DICOM
-/// series no origin; both are taken from the file here, unless fileCoordinates is set. Of a NIfTI
-/// file's two transformations the s-form is preferred if its axes are perpendicular, then the
-/// q-form. Throws a Failure where the volume cannot be read.
+struct ReadingOptions
+{
+  /// NIfTI: origin 0; MetaImage and NRRD: the file's origin; all: spacing of the file and no
+  /// direction, as VTK's and ParaView's readers have it.
+  bool FileCoordinates = false;
+  /// Which volume of a file with several in time, counted from 0.
+  std::optional<int> Frame;
+};
+
+/// Reads a volume: .nii, .nii.gz, .vti and, where the program has ITK, .mhd, .mha, .nrrd, .nhdr, or
+/// a folder with the slices of one DICOM series. NIfTI volumes lie in a world right, anterior,
+/// superior; MetaImage and DICOM left, posterior, superior; NRRD where the header says, if that is
+/// one of the two; see WorldAxes. Throws a Failure where the volume cannot be read or has no place
+/// in vtkImageData.
 Volume ReadVolume(
-  const std::string& path, bool fileCoordinates, Messages& messages, bool showProgress);
+  const std::string& path, const ReadingOptions& options, Messages& messages, bool showProgress);
+
+/// The frame to read of so many. Throws a Failure where there are several and none is asked for, or
+/// one that is not there.
+int ChooseFrame(const std::string& path, int frames, const ReadingOptions& options);
 
 #endif

@@ -4,18 +4,20 @@
 #include "ImageAxes.h"
 #include "Messages.h"
 #include "ProgressBar.h"
+#ifdef DEFORMVOLUME_HAVE_ITK
+#include "ItkWriting.h"
+#endif
 
-#include <vtkMatrix3x3.h>
-#include <vtkMetaImageWriter.h>
 #include <vtkNIFTIImageWriter.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkXMLImageDataWriter.h>
+#include <vtk_zlib.h>
 #include <vtksys/SystemTools.hxx>
 
+#include <cstdint>
 #include <fstream>
-#include <limits>
-#include <sstream>
+#include <vector>
 
 namespace
 {
@@ -27,6 +29,16 @@ bool HasSuffix(const std::string& path, const char* suffix)
 bool IsNIfTI(const std::string& path)
 {
   return HasSuffix(path, ".nii") || HasSuffix(path, ".nii.gz");
+}
+
+bool IsOfITK([[maybe_unused]] const std::string& path)
+{
+#ifdef DEFORMVOLUME_HAVE_ITK
+  return HasSuffix(path, ".mhd") || HasSuffix(path, ".mha") || HasSuffix(path, ".nrrd") ||
+    HasSuffix(path, ".nhdr");
+#else
+  return false;
+#endif
 }
 
 vtkSmartPointer<vtkMatrix4x4> GetAxesIn(const Volume& volume, WorldAxes axes)
@@ -55,70 +67,100 @@ vtkSmartPointer<vtkImageData> MoveExtentToZero(vtkImageData* image)
   return moved;
 }
 
-void WriteNIfTI(const Volume& volume, const std::string& path, bool showProgress)
+// VTK's writer has codes of its own for the two forms.
+void SetCodes(const std::string& path, int qform, int sform)
 {
-  const auto axes = GetAxesIn(volume, WorldAxes::RightAnteriorSuperior);
-  vtkNew<vtkNIFTIImageWriter> writer;
-  writer->SetInputData(MoveExtentToZero(volume.Image));
-  writer->SetFileName(path.c_str());
-  writer->SetSFormMatrix(axes);
-  if (axes->Determinant() > 0.0)
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  std::int32_t headerSize = 0;
+  file.read(reinterpret_cast<char*>(&headerSize), sizeof(headerSize));
+  constexpr std::int32_t headerSizeOfVersion1 = 348;
+  if (headerSize == headerSizeOfVersion1)
   {
-    // A q-form holds no reflection.
-    writer->SetQFormMatrix(axes);
+    const std::int16_t codes[] = { static_cast<std::int16_t>(qform),
+      static_cast<std::int16_t>(sform) };
+    file.seekp(252);
+    file.write(reinterpret_cast<const char*>(codes), sizeof(codes));
   }
-  writer->SetRescaleSlope(volume.RescaleSlope);
-  writer->SetRescaleIntercept(volume.RescaleIntercept);
-  const ProgressBar bar(writer, "writing", showProgress);
-  writer->Write();
+  else
+  {
+    const std::int32_t codes[] = { qform, sform };
+    file.seekp(344);
+    file.write(reinterpret_cast<const char*>(codes), sizeof(codes));
+  }
 }
 
-// VTK's writer knows no direction: it puts the identity there.
-void SetMetaImageDirection(const std::string& path, vtkMatrix4x4* axes)
+bool Compress(const std::string& from, const std::string& to)
 {
-  std::ifstream in(path);
-  std::ostringstream header;
-  header.precision(std::numeric_limits<double>::max_digits10);
-  std::string line;
-  while (std::getline(in, line))
+  std::ifstream in(from, std::ios::binary);
+  gzFile out = gzopen(to.c_str(), "wb");
+  bool written = in && out;
+  std::vector<char> part(std::size_t{ 1 } << 20);
+  while (written && in)
   {
-    if (line.rfind("TransformMatrix", 0) == 0)
-    {
-      header << "TransformMatrix =";
-      for (int column = 0; column < 3; ++column)
-      {
-        for (int row = 0; row < 3; ++row)
-        {
-          header << ' ' << axes->GetElement(row, column);
-        }
-      }
-      header << '\n';
-    }
-    else
-    {
-      header << line << '\n';
-    }
+    in.read(part.data(), static_cast<std::streamsize>(part.size()));
+    const auto count = static_cast<unsigned int>(in.gcount());
+    written = count == 0 || gzwrite(out, part.data(), count) == static_cast<int>(count);
   }
-  in.close();
-  std::ofstream out(path, std::ios::trunc);
-  out << header.str();
+  return (!out || gzclose(out) == Z_OK) && written;
 }
 
-void WriteMetaImage(
+// The q-form of the volume, for the first voxel of the result.
+void MoveQForm(const Volume& volume, vtkMatrix4x4* qform)
+{
+  vtkNew<vtkMatrix4x4> shift;
+  int extent[6];
+  volume.Image->GetExtent(extent);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    shift->SetElement(axis, 3, extent[2 * axis] * volume.Image->GetSpacing()[axis]);
+  }
+  vtkMatrix4x4::Multiply4x4(volume.Forms.QForm, shift, qform);
+}
+
+void WriteNIfTI(
   const Volume& volume, const std::string& path, Messages& messages, bool showProgress)
 {
-  const auto axes = GetAxesIn(volume, WorldAxes::LeftPosteriorSuperior);
-  auto image = MoveExtentToZero(volume.Image);
-  image->SetOrigin(axes->GetElement(0, 3), axes->GetElement(1, 3), axes->GetElement(2, 3));
-  vtkNew<vtkMetaImageWriter> writer;
-  writer->SetInputData(image);
-  writer->SetFileName(path.c_str());
+  const bool isCompressed = HasSuffix(path, ".gz");
+  const std::string plain = isCompressed ? path + ".part.nii" : path;
+  const auto axes = GetAxesIn(volume, WorldAxes::RightAnteriorSuperior);
+  const NIfTIForms& forms = volume.Forms;
+  const bool keepsForms = forms.SFormCode != 0 || forms.QFormCode != 0;
+  vtkNew<vtkNIFTIImageHeader> header;
+  header->SetXYZTUnits(vtkNIFTIImageHeader::UnitsMM);
+  vtkNew<vtkNIFTIImageWriter> writer;
+  writer->SetInputData(MoveExtentToZero(volume.Image));
+  writer->SetFileName(plain.c_str());
+  writer->SetNIFTIHeader(header);
+  if (!keepsForms || forms.SFormCode != 0)
+  {
+    writer->SetSFormMatrix(axes);
+  }
+  vtkNew<vtkMatrix4x4> qform;
+  qform->DeepCopy(axes);
+  if (forms.QForm)
+  {
+    MoveQForm(volume, qform);
+  }
+  // A q-form holds no reflection.
+  if ((!keepsForms && axes->Determinant() > 0.0) || forms.QForm)
+  {
+    writer->SetQFormMatrix(qform);
+  }
   {
     const ProgressBar bar(writer, "writing", showProgress);
     writer->Write();
   }
   messages.Check("cannot write " + path);
-  SetMetaImageDirection(path, axes);
+  if (keepsForms)
+  {
+    SetCodes(plain, forms.QFormCode, forms.SFormCode);
+  }
+  if (isCompressed)
+  {
+    const bool written = Compress(plain, path);
+    vtksys::SystemTools::RemoveFile(plain);
+    messages.Check("cannot write " + path, written);
+  }
 }
 
 void WriteVTI(const Volume& volume, const std::string& path, Messages& messages, bool showProgress)
@@ -140,7 +182,7 @@ void WriteVTI(const Volume& volume, const std::string& path, Messages& messages,
 
 bool CanWriteVolume(const std::string& path)
 {
-  return IsNIfTI(path) || HasSuffix(path, ".vti") || HasSuffix(path, ".mhd");
+  return IsNIfTI(path) || HasSuffix(path, ".vti") || IsOfITK(path);
 }
 
 void WriteVolume(
@@ -148,15 +190,17 @@ void WriteVolume(
 {
   if (IsNIfTI(path))
   {
-    WriteNIfTI(volume, path, showProgress);
+    WriteNIfTI(volume, path, messages, showProgress);
   }
-  else if (HasSuffix(path, ".mhd"))
-  {
-    WriteMetaImage(volume, path, messages, showProgress);
-  }
-  else
+  else if (HasSuffix(path, ".vti"))
   {
     WriteVTI(volume, path, messages, showProgress);
   }
-  messages.Check("cannot write " + path);
+#ifdef DEFORMVOLUME_HAVE_ITK
+  else
+  {
+    const auto axes = GetAxesIn(volume, WorldAxes::LeftPosteriorSuperior);
+    WriteByITK(MoveExtentToZero(volume.Image), axes, path);
+  }
+#endif
 }

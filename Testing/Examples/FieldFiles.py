@@ -14,8 +14,9 @@ types = {"float32": (16, "float", "MET_FLOAT"), "float64": (64, "double", "MET_D
          "int16": (4, "short", "MET_SHORT")}
 
 
-def write_nifti(path, vectors, matrix, intent=1007, name="", shape=None, order="<", slope=(0.0, 0.0)):
-    """matrix: to RAS, as the s-form holds it; shape: None for (x, y, z, 1, 3)."""
+def write_nifti(path, vectors, matrix, intent=1007, name="", shape=None, order="<", slope=(0.0, 0.0),
+                unit=2):
+    """matrix: to RAS, as the s-form holds it; shape: None for (x, y, z, 1, 3); unit: 2 for mm."""
     kind = vectors.dtype.name
     size = vectors.shape[2::-1]
     shape = shape or (*size, 1, vectors.shape[3])
@@ -31,7 +32,7 @@ def write_nifti(path, vectors, matrix, intent=1007, name="", shape=None, order="
     put(70, "hh", types[kind][0], vectors.dtype.itemsize * 8)
     put(76, "8f", 1.0, *spacing, 0.0, 0.0, 0.0, 0.0)
     put(108, "fff", 352.0, *slope)
-    put(123, "b", 2)
+    put(123, "b", unit)
     put(252, "hh", 0, 1)
     put(280, "12f", *matrix.ravel())
     put(328, "16s", name.encode())
@@ -70,9 +71,9 @@ def write_meta(path, vectors, matrix, order="<", compressed=False):
 
 
 def write_nrrd(path, vectors, matrix, order="<", encoding="raw", axis=0, space=LPS, frame=None,
-               extra=""):
+               extra="", skip=0):
     """axis: which one holds the components. frame: the matrix of the components, to the space. .nhdr
-    names a file that holds the data. extra: more lines of the header."""
+    names a file that holds the data. extra: more lines of the header. skip: bytes before the data."""
     directions = ["(" + ",".join(repr(float(n)) for n in matrix[:, i]) + ")" for i in range(3)]
     sizes, kinds = [str(n) for n in vectors.shape[2::-1]], ["domain"] * 3
     for words, word in ((directions, "none"), (sizes, str(vectors.shape[3])), (kinds, "vector")):
@@ -80,6 +81,8 @@ def write_nrrd(path, vectors, matrix, order="<", encoding="raw", axis=0, space=L
     # The first axis of the file is the last one of numpy.
     data = numpy.moveaxis(vectors, 3, 3 - axis).astype(vectors.dtype.newbyteorder(order)).tobytes()
     data = gzip.compress(data) if encoding == "gzip" else data
+    data = bytes(skip) + data
+    extra += f"byte skip: {skip}\n" if skip else ""
     name = os.path.basename(path) + ".data"
     header = (f"NRRD0005\n# a comment\ntype: {types[vectors.dtype.name][1]}\ndimension: 4\n"
               f"space: {space}\nsizes: {' '.join(sizes)}\nspace directions: {' '.join(directions)}\n"

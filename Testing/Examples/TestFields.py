@@ -150,9 +150,20 @@ add("second.nrrd", write_nrrd, single @ flip.astype(numpy.float32), in_lps, axis
     encoding="gzip")
 add("ras.nrrd", write_nrrd, double, field, space=RAS)
 frame = turn(0, 30) @ turn(1, 20)
+add("skip.nrrd", write_nrrd, double @ flip, in_lps, skip=12)
+turn_y = numpy.diag([1.0, -1.0, 1.0])
+las = turn_y @ in_lps
+add("las.nrrd", write_nrrd, double @ flip @ turn_y, las, space="left-anterior-superior")
 add("frame.nrrd", write_nrrd, double @ flip @ frame, in_lps, frame=frame)
 for volume_name, field_name in itertools.product(("volume.nii.gz", "volume.mhd"), fields):
     check(volume_name, field_name)
+# The world of the volume, which is right-anterior-superior, turned by an option.
+check("volume.nii.gz", "f.vti", "--field-space", "ras")
+write_vti(make_image(field_size, in_lps, "U", vectors @ flip), path("lps.vti"))
+check("volume.nii.gz", "lps.vti", "--field-space", "lps")
+write_nrrd(path("any.nrrd"), double, field, space="3D-right-handed")
+for volume_name in ("volume.nii.gz", "volume.mhd"):
+    check(volume_name, "any.nrrd", "--field-space", "ras")
 # The order of slices that a reflection in the file needs: VTK's reader of NIfTI files turns it.
 mirrored = field.copy()
 mirrored[:, 3] += 4 * mirrored[:, 2]
@@ -175,11 +186,16 @@ for volume_name in ("volume.nii.gz", "volume.mhd"):
     inside = covered & (index >= 0).all(axis=-1) & (index <= numpy.array(size) - 1).all(axis=-1)
     wrong = numpy.abs(values - rest @ slope)[inside].max()
     assert wrong < 600 * 2.0 ** -18, wrong
+# Positions in the place of displacements: the identity, and all moved a little.
+for name, values in (("identity.nii", field_points), ("positions.nii", field_points + vectors)):
+    write_nifti(path(name), values.astype(numpy.float32), field, 1006)
 write_nifti(path("folded.nii"), (-2 * (field_points - middle)).astype(numpy.float32), field, 1006)
 write_nrrd(path("kind.nrrd"), single @ flip.astype(numpy.float32), in_lps,
            extra="displacement field type:=resampling\n")
 inverse_flag = ("--field-is-inverse",)
 for field_name, options, words in (
+        ("identity.nii", (), "look like the positions"),
+        ("positions.nii", inverse_flag, "look like the positions"),
         ("folded.nii", inverse_flag, "The field folds"), ("inverse.nii", inverse_flag, ""),
         ("kind.nrrd", (), "goes with --field-is-inverse"), ("kind.nrrd", inverse_flag, "")):
     _, errors = call(program, path("volume.nii.gz"), "--field", path(field_name), "-o", path("out.vti"),
@@ -206,6 +222,8 @@ fails_nifti("data[:, :, :, None, :]", single, field, 0, shape=(*field_size, 3))
 fails_nifti("no vectors", single[..., :1], field, 1007, shape=field_size)
 fails_nifti("two components", single[..., :2], field, 1007)
 fails_nifti("has 4 components", numpy.concatenate([single, single[..., :1]], -1), field, 1007)
+write_nifti(path("wrong.nii"), single, field, 1006, unit=3)
+fails("its unit of length is the micrometre", "wrong.nii")
 fails_nifti("varies in time", numpy.concatenate([single, single], -1), field, 1007,
             shape=(*field_size, 2, 3))
 fails_nifti("its intent is 0", single, field, 0)
@@ -219,14 +237,27 @@ write_meta(path("wrong.mha"), single[..., :2], in_lps)
 fails("2 components", "wrong.mha")
 write_nrrd(path("wrong.nrrd"), single, in_lps, space="scanner-xyz")
 fails("right-anterior-superior", "wrong.nrrd")
+_, errors = call(program, path("volume.vti"), "--field", path("f.vti"), "--field-space", "lps", "-o",
+                 path("no.vti"), code=1)
+assert "does not say whether its own world is lps or ras" in errors, errors
+_, errors = call(program, path("volume.nii.gz"), "--field", path("ras.nii"), "--field-space", "lps",
+                 "-o", path("out.vti"), "--quiet")
+assert "ras.nii says itself that it is ras" in errors, errors
 write_nrrd(path("wrong.nrrd"), single, in_lps, encoding="bzip2")
-fails("its encoding is bzip2", "wrong.nrrd")
+fails("bzip2", "wrong.nrrd")
 write_nrrd(path("wrong.nrrd"), single, in_lps, encoding="gzip")
 with open(path("wrong.nrrd"), "r+b") as file:
     file.truncate(os.path.getsize(path("wrong.nrrd")) - 100)
-fails("where the header says", "wrong.nrrd")
-write_nrrd(path("wrong.nrrd"), single, in_lps, extra="byte skip: 12\n")
-fails("byte skip", "wrong.nrrd")
+fails("wrong.nrrd", "wrong.nrrd")
+write_nrrd(path("wrong.nrrd"), single, in_lps)
+with open(path("wrong.nrrd"), "r+b") as file:
+    file.truncate(os.path.getsize(path("wrong.nrrd")) - 100)
+fails("wrong.nrrd", "wrong.nrrd")
+for compressed in (False, True):
+    write_meta(path("wrong.mha"), single, in_lps, compressed=compressed)
+    with open(path("wrong.mha"), "r+b") as file:
+        file.truncate(os.path.getsize(path("wrong.mha")) - 1)
+    fails("it ends before its data do", "wrong.mha")
 fails("no such file", "missing.nii")
 with open(path("transform.h5"), "wb") as file:
     file.write(b"x")

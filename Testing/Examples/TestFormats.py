@@ -155,12 +155,10 @@ call(program, path("series"), *still, "-o", path("s.vti"), "--quiet", "--bounds"
 result = read_vti(path("s.vti"))
 assert result.GetDimensions() == (4, 5, 6)
 assert numpy.allclose(result.GetSpacing(), (2, 2, 3))
-# VTK's reader gives the last row and the last slice first. The first voxel of the first slice is at
-# (-10, -20, 30), rows and slices are 2 and 3 apart.
-expected = numpy.array([[2, 0, 0, -10], [0, -2, 0, -20 + 4 * 2], [0, 0, -3, 30 + 5 * 3]])
-same(result, series[::-1, ::-1, :], expected)
+expected = numpy.array([[2, 0, 0, -10], [0, 2, 0, -20], [0, 0, 3, 30]])
+same(result, series, expected)
 
-# Rescaling is carried through.
+# Values are rescaled, once.
 with gzip.open(path("a.nii.gz"), "rb") as file:
     raw = bytearray(file.read())
 raw[112:120] = struct.pack("<ff", 2.5, -100.0)
@@ -168,4 +166,4 @@ with gzip.open(path("r.nii.gz"), "wb") as file:
     file.write(raw)
 call(program, path("r.nii.gz"), *still, "-o", path("q.nii.gz"), "--quiet")
 with gzip.open(path("q.nii.gz"), "rb") as file:
-    assert struct.unpack("<ff", file.read()[112:120]) == (2.5, -100.0)
+    assert struct.unpack("<ff", file.read()[112:120]) in ((0.0, 0.0), (1.0, 0.0))

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeItkWriting_h
+#define DeformVolumeItkWriting_h
+
+#include <vtkMatrix4x4.h>
+
+#include <string>
+
+class vtkImageData;
+
+/// Writes the scalars of an image as MetaImage (.mha, .mhd) or NRRD (.nrrd, .nhdr), which lie in a
+/// world left, posterior, superior. axes: directions and the position of the first voxel in it, see
+/// GetAxes. Throws a Failure.
+void WriteByITK(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path);
+
+#endif

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// VTK's reader decodes NIfTI files: it hands out both forms as the file has them, also sheared
+// ones, and reads version 2. ITK 5.2 refuses version 2, and takes the q-form in place of a sheared
+// s-form without a word.
+#include "NIfTIReading.h"
+
+#include "Failure.h"
+#include "ImageAxes.h"
+#include "Messages.h"
+#include "ProgressBar.h"
+
+#include <vtkDataArray.h>
+#include <vtkDataArrayRange.h>
+#include <vtkNIFTIImageReader.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+
+#include <cmath>
+
+namespace
+{
+// Millimetres of the unit of length that a header names; 0 for one that is not known.
+double GetMillimetres(vtkNIFTIImageHeader* header)
+{
+  constexpr int lengths = 0x07;
+  switch (header->GetXYZTUnits() & lengths)
+  {
+    case vtkNIFTIImageHeader::UnitsUnknown: // nearly all of these are in mm
+    case vtkNIFTIImageHeader::UnitsMM:
+      return 1.0;
+    case vtkNIFTIImageHeader::UnitsMeter:
+      return 1000.0;
+    case vtkNIFTIImageHeader::UnitsMicron:
+      return 0.001;
+    default:
+      return 0.0;
+  }
+}
+
+bool IsInteger(vtkDataArray* array)
+{
+  return array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE;
+}
+
+// The type that holds stored * slope + intercept: a type of integers where all are whole numbers.
+int ChooseType(vtkDataArray* stored, double slope, double intercept)
+{
+  const int type = stored->GetDataType();
+  const bool isWide = stored->GetDataTypeSize() > 4 || type == VTK_INT || type == VTK_UNSIGNED_INT;
+  if (!IsInteger(stored) || slope != std::floor(slope) || intercept != std::floor(intercept))
+  {
+    return isWide ? VTK_DOUBLE : VTK_FLOAT;
+  }
+  double minimum = 0.0;
+  double maximum = 0.0;
+  for (int component = 0; component < stored->GetNumberOfComponents(); ++component)
+  {
+    for (const double end : { stored->GetRange(component)[0], stored->GetRange(component)[1] })
+    {
+      minimum = std::min(minimum, end * slope + intercept);
+      maximum = std::max(maximum, end * slope + intercept);
+    }
+  }
+  for (const int candidate : { type, VTK_SHORT, VTK_INT })
+  {
+    if (minimum >= vtkDataArray::GetDataTypeMin(candidate) &&
+      maximum <= vtkDataArray::GetDataTypeMax(candidate))
+    {
+      return candidate;
+    }
+  }
+  return VTK_DOUBLE;
+}
+
+void Rescale(vtkImageData* image, double slope, double intercept)
+{
+  // A slope of 0 says that nothing is rescaled.
+  if (slope == 0.0 || !std::isfinite(slope) || !std::isfinite(intercept) ||
+    (slope == 1.0 && intercept == 0.0))
+  {
+    return;
+  }
+  vtkDataArray* stored = image->GetPointData()->GetScalars();
+  const auto values = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(ChooseType(stored, slope, intercept)));
+  values->SetName(stored->GetName());
+  values->SetNumberOfComponents(stored->GetNumberOfComponents());
+  values->SetNumberOfTuples(stored->GetNumberOfTuples());
+  const auto from = vtk::DataArrayValueRange(stored);
+  auto to = vtk::DataArrayValueRange(values.Get());
+  for (vtkIdType i = 0; i < from.size(); ++i)
+  {
+    to[i] = static_cast<double>(from[i]) * slope + intercept;
+  }
+  image->GetPointData()->SetScalars(values);
+}
+
+// Leaves one frame of several, which the reader has put into components.
+void KeepFrame(vtkImageData* image, int frame, int frames)
+{
+  vtkDataArray* all = image->GetPointData()->GetScalars();
+  const auto one = vtkSmartPointer<vtkDataArray>::Take(all->NewInstance());
+  one->SetName(all->GetName());
+  const int components = all->GetNumberOfComponents() / frames;
+  one->SetNumberOfComponents(components);
+  one->SetNumberOfTuples(all->GetNumberOfTuples());
+  for (int component = 0; component < components; ++component)
+  {
+    one->CopyComponent(component, all, frame * components + component);
+  }
+  image->GetPointData()->SetScalars(one);
+}
+
+void ScalePlace(vtkMatrix4x4* form, double factor)
+{
+  for (int row = 0; row < 3; ++row)
+  {
+    form->SetElement(row, 3, form->GetElement(row, 3) * factor);
+  }
+}
+
+void Place(Volume& volume, vtkNIFTIImageReader* reader, const std::string& path, double millimetres,
+  Messages& messages)
+{
+  double spacing[3];
+  volume.Image->GetSpacing(spacing);
+  for (double& length : spacing)
+  {
+    length *= millimetres;
+  }
+  volume.Image->SetSpacing(spacing);
+  vtkMatrix4x4* const sform = reader->GetSFormMatrix();
+  vtkMatrix4x4* const qform = reader->GetQFormMatrix();
+  if (qform)
+  {
+    volume.Forms.QFormCode = static_cast<int>(reader->GetNIFTIHeader()->GetQFormCode());
+    volume.Forms.QForm = vtkSmartPointer<vtkMatrix4x4>::New();
+    volume.Forms.QForm->DeepCopy(qform);
+    ScalePlace(volume.Forms.QForm, millimetres);
+  }
+  if (sform)
+  {
+    volume.Forms.SFormCode = static_cast<int>(reader->GetNIFTIHeader()->GetSFormCode());
+    vtkNew<vtkMatrix4x4> axes;
+    axes->DeepCopy(sform);
+    ScalePlace(axes, millimetres);
+    SetAxes(volume.Image, axes, path, messages,
+      qform ? ". That is its s-form; it has a q-form, too: if that is right, set sform_code to 0"
+            : "");
+  }
+  else if (qform)
+  {
+    SetAxes(volume.Image, volume.Forms.QForm, path, messages);
+  }
+  volume.Axes = sform || qform ? WorldAxes::RightAnteriorSuperior : WorldAxes::Unknown;
+}
+}
+
+Volume ReadNIfTI(
+  const std::string& path, const ReadingOptions& options, Messages& messages, bool showProgress)
+{
+  vtkNew<vtkNIFTIImageReader> reader;
+  if (!reader->CanReadFile(path.c_str()))
+  {
+    throw Failure("cannot read " + path + ": it is no NIfTI file");
+  }
+  reader->SetFileName(path.c_str());
+  reader->UpdateInformation();
+  messages.Check("cannot read " + path);
+  Volume volume;
+  volume.NIfTIHeader = reader->GetNIFTIHeader();
+  const auto axes = static_cast<int>(volume.NIfTIHeader->GetDim(0));
+  const int frames = axes >= 4 ? static_cast<int>(volume.NIfTIHeader->GetDim(4)) : 1;
+  const int frame = ChooseFrame(path, frames, options);
+  // The reader gives the first frame alone, or all of them.
+  reader->SetTimeAsVector(frame > 0);
+  {
+    const ProgressBar bar(reader, "reading", showProgress);
+    reader->Update();
+  }
+  messages.Check("cannot read " + path);
+  volume.Image = vtkSmartPointer<vtkImageData>::New();
+  volume.Image->ShallowCopy(reader->GetOutput());
+  if (volume.Image->GetNumberOfPoints() == 0 || !volume.Image->GetPointData()->GetScalars())
+  {
+    throw Failure("cannot read " + path + ": it holds no voxels");
+  }
+  if (frame > 0)
+  {
+    KeepFrame(volume.Image, frame, frames);
+  }
+  Rescale(volume.Image, reader->GetRescaleSlope(), reader->GetRescaleIntercept());
+  const double millimetres = GetMillimetres(volume.NIfTIHeader);
+  if (millimetres == 0.0)
+  {
+    throw Failure("cannot read " + path + ": its unit of length, " +
+      std::to_string(volume.NIfTIHeader->GetXYZTUnits()) + " of xyzt_units, is not known");
+  }
+  if (!options.FileCoordinates)
+  {
+    Place(volume, reader, path, millimetres, messages);
+  }
+  return volume;
+}

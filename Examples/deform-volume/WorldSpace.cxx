@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "WorldSpace.h"
+
+#include "Failure.h"
+#include "Messages.h"
+
+WorldAxes ChooseSpace(const std::string& option, const std::string& said, const std::string& path,
+  WorldAxes ofFile, WorldAxes ofVolume, Messages& messages)
+{
+  if (said.empty())
+  {
+    return ofFile != WorldAxes::Unknown ? ofFile : ofVolume;
+  }
+  if (ofVolume == WorldAxes::Unknown)
+  {
+    throw Failure(option + " " + said +
+      ": the file of the volume does not say whether its own world is lps or ras, so " + path +
+      " cannot be turned into it");
+  }
+  const WorldAxes axes =
+    said == "ras" ? WorldAxes::RightAnteriorSuperior : WorldAxes::LeftPosteriorSuperior;
+  if (ofFile != WorldAxes::Unknown && ofFile != axes)
+  {
+    messages.DisplayWarningText((option + " " + said + " is not used: " + path +
+      " says itself that it is " + (said == "ras" ? "lps." : "ras."))
+                                  .c_str());
+    return ofFile;
+  }
+  return axes;
+}
