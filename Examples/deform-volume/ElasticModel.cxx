@@ -4,10 +4,10 @@
 #include "ChainMail.h"
 #include "Failure.h"
 #include "MeshMaking.h"
+#include "MeshReading.h"
 #include "Messages.h"
 #include "Options.h"
 #include "ProgressBar.h"
-#include "Tools.h"
 #include "Volume.h"
 
 #include <vtkAppendPolyData.h>

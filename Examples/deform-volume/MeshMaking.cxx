@@ -5,12 +5,11 @@
 #include "ElasticModel.h"
 #include "Failure.h"
 #include "FieldReading.h"
+#include "MeshReading.h"
 #include "Messages.h"
 #include "ProgressBar.h"
 
 #include <vtkBoundingBox.h>
-#include <vtkCompositeDataSet.h>
-#include <vtkDataSet.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkLatticeTetrahedraSource.h>
@@ -18,39 +17,13 @@
 #include <vtkPointData.h>
 #include <vtkTetGenMesher.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkXMLGenericDataObjectReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
-#include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
 #include <sstream>
 
 namespace
 {
-vtkSmartPointer<vtkDataObject> ReadMesh(
-  const std::string& path, const Options& options, Messages& messages)
-{
-  if (!vtksys::SystemTools::FileExists(path, true))
-  {
-    throw Failure("cannot read " + path + ": there is no such file");
-  }
-  if (IsFieldFile(path) && !IsVTKFile(path))
-  {
-    throw Failure("cannot read " + path + " as a mesh: give displacement fields with --field");
-  }
-  vtkNew<vtkXMLGenericDataObjectReader> reader;
-  reader->SetFileName(path.c_str());
-  const ProgressBar bar(reader, "reading mesh", !options.Quiet);
-  reader->Update();
-  messages.Check("cannot read " + path);
-  vtkSmartPointer<vtkDataObject> mesh = reader->GetOutputDataObject(0);
-  if (!mesh || mesh->GetNumberOfElements(vtkDataObject::POINT) == 0)
-  {
-    throw Failure("cannot read " + path + ": it holds no points");
-  }
-  return mesh;
-}
-
 vtkSmartPointer<vtkUnstructuredGrid> Mesh(
   const Options& options, vtkImageData* volume, Messages& messages, Deformation& deformation)
 {
@@ -193,11 +166,11 @@ Deformation MakeDeformation(
   Deformation deformation;
   if (!options.Mesh.empty())
   {
-    deformation.Data = ReadMesh(options.Mesh, options, messages);
+    deformation.Data = ReadMesh(options.Mesh, options.Displacement, options, messages);
     deformation.Displacement = options.Displacement;
     if (!options.Rest.empty())
     {
-      deformation.Rest = ReadMesh(options.Rest, options, messages);
+      deformation.Rest = ReadMesh(options.Rest, "", options, messages);
     }
   }
   else if (!options.Field.empty())

@@ -42,12 +42,19 @@ void Messages::DisplayErrorText(const char* text)
 void Messages::DisplayWarningText(const char* text)
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
-  std::cerr << this->Program << ": warning: " << StripPlace(text) << "\n";
+  if (this->Reads)
+  {
+    this->WaitingWarnings.push_back(StripPlace(text));
+  }
+  else
+  {
+    this->PrintWarning(StripPlace(text));
+  }
 }
 
 void Messages::DisplayGenericWarningText(const char* text)
 {
-  this->DisplayWarningText(text);
+  this->Reads ? this->DisplayErrorText(text) : this->DisplayWarningText(text);
 }
 
 void Messages::DisplayDebugText(const char* text)
@@ -55,13 +62,50 @@ void Messages::DisplayDebugText(const char* text)
   this->DisplayText(text);
 }
 
+void Messages::PrintWarning(const std::string& text)
+{
+  std::cerr << this->Program << ": warning: " << text << "\n";
+}
+
+void Messages::BeginReading()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  this->Reads = true;
+}
+
+void Messages::EndReading()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  this->Reads = false;
+  for (const std::string& warning : this->WaitingWarnings)
+  {
+    this->PrintWarning(warning);
+  }
+  this->WaitingWarnings.clear();
+}
+
+std::string Messages::TakeError()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  std::string error;
+  error.swap(this->FirstError);
+  if (!error.empty() && !this->WaitingWarnings.empty())
+  {
+    error = NamesCode(error) ? this->WaitingWarnings.front() : error;
+    this->WaitingWarnings.clear();
+  }
+  return error;
+}
+
+bool NamesCode(const std::string& text)
+{
+  static const std::regex code("vtk[A-Z]|0x[0-9a-f]|::");
+  return std::regex_search(text, code);
+}
+
 void Messages::Check(const std::string& doing, bool succeeded)
 {
-  std::string error;
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    error.swap(this->FirstError);
-  }
+  const std::string error = this->TakeError();
   if (!error.empty())
   {
     throw Failure(doing + ": " + error);

@@ -6,6 +6,7 @@
 
 #include <mutex>
 #include <string>
+#include <vector>
 
 /// Takes the place of VTK's output window: prints warnings in one line each, and keeps the first
 /// error, without the places in the source code, until it is asked for.
@@ -28,6 +29,15 @@ public:
   /// being done, for an algorithm that gave nothing without saying why.
   void Check(const std::string& doing, bool succeeded = true);
 
+  /// While a file is read, warnings that no object of VTK gives are errors, as readers give them of
+  /// damaged data; the others wait, and are words of an error that follows.
+  void BeginReading();
+  void EndReading();
+
+  /// The first error since the last call, "" where there was none, for a caller that has words of
+  /// its own.
+  std::string TakeError();
+
 protected:
   Messages() = default;
   ~Messages() override = default;
@@ -36,9 +46,16 @@ private:
   Messages(const Messages&) = delete;
   void operator=(const Messages&) = delete;
 
+  void PrintWarning(const std::string& text);
+
   std::mutex Mutex;
   std::string FirstError;
+  bool Reads = false;
+  std::vector<std::string> WaitingWarnings;
   std::string Program = "deform-volume";
 };
+
+/// Whether a text names classes or addresses, which users of a program do not know.
+bool NamesCode(const std::string& text);
 
 #endif

@@ -2,6 +2,7 @@
 #include "Options.h"
 
 #include "Failure.h"
+#include "MeshFormats.h"
 #include "OptionChecks.h"
 #include "OptionTexts.h"
 
@@ -135,8 +136,10 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     "What deforms the volume (one of --mesh, --field, --tetgen, --lattice, --model)";
   program
     .add_option("--mesh", options.Mesh,
-      "Mesh (.vtu, .vts, .vtr, .vtm; cells are split into tetrahedra), or a displacement field "
-      "(.vti)")
+      "Mesh (" + GetMeshSuffixes() +
+        "; cells are split into tetrahedra), or a displacement field (.vti). Of a series in time "
+        "the "
+        "last step is read")
     ->type_name("FILE")
     ->group(group);
   program
@@ -220,9 +223,10 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
   const char* tools = "What is cut before (alone, or with what deforms the volume)";
   program
     .add_option("--cut", options.Cuts,
-      "Cut the volume along a sheet of triangles (.vtp, world coordinates); with --model fem or "
-      "mass-spring the mesh, before it moves, and the volume opens there. May be given several "
-      "times")
+      "Cut the volume along a sheet of triangles (" + GetSheetSuffixes() +
+        ", world coordinates); with --model fem or "
+        "mass-spring the mesh, before it moves, and the volume opens there. May be given several "
+        "times")
     ->type_name("FILE")
     ->take_all()
     ->expected(1)

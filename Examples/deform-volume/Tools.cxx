@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Tools.h"
 
-#include "Failure.h"
+#include "MeshReading.h"
 #include "Messages.h"
 #include "Options.h"
 #include "ProgressBar.h"
@@ -10,10 +10,7 @@
 #include <vtkCarveVolume.h>
 #include <vtkCutVolume.h>
 #include <vtkNew.h>
-#include <vtkPolyData.h>
 #include <vtkSphere.h>
-#include <vtkXMLPolyDataReader.h>
-#include <vtksys/SystemTools.hxx>
 
 #include <sstream>
 
@@ -29,21 +26,6 @@ std::string Describe(const std::string& tool, vtkIdType switchedOff, vtkIdType d
   }
   return text.str();
 }
-}
-
-vtkSmartPointer<vtkPolyData> ReadSheet(
-  const std::string& path, const Options& options, Messages& messages)
-{
-  if (!vtksys::SystemTools::FileExists(path, true))
-  {
-    throw Failure("cannot read " + path + ": there is no such file");
-  }
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(path.c_str());
-  const ProgressBar bar(reader, "reading sheet", !options.Quiet);
-  reader->Update();
-  messages.Check("cannot read " + path);
-  return reader->GetOutput();
 }
 
 std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Messages& messages)

@@ -2,9 +2,6 @@
 #ifndef DeformVolumeTools_h
 #define DeformVolumeTools_h
 
-#include <vtkPolyData.h>
-#include <vtkSmartPointer.h>
-
 #include <array>
 #include <string>
 #include <vector>
@@ -19,10 +16,6 @@ struct Carving
   std::array<double, 3> Center{ { 0.0, 0.0, 0.0 } };
   double Radius = 1.0;
 };
-
-/// The sheet of a file. Throws a Failure where it cannot be read.
-vtkSmartPointer<vtkPolyData> ReadSheet(
-  const std::string& path, const Options& options, Messages& messages);
 
 /// Switches off the tetrahedra of the volume that the sheets of the options cross, unless these cut
 /// a mesh, and that the spheres hold: the volume gets the cell array "ActiveTetrahedra". Returns

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshContents.h"
+
+#include "Failure.h"
+
+#include <vtkCell.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkCellTypes.h>
+#include <vtkCompositeDataIterator.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkGenericCell.h>
+#include <vtkIdList.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkStructuredGrid.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkVersionMacros.h>
+#include <vtkXMLFileReadTester.h>
+
+#include <array>
+
+namespace
+{
+int GetDimension(int cellType)
+{
+  const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(cellType));
+  return cell ? cell->GetCellDimension() : 0;
+}
+
+bool IsGrid(vtkDataSet* data)
+{
+  return vtkUnstructuredGrid::SafeDownCast(data) || vtkStructuredGrid::SafeDownCast(data) ||
+    vtkRectilinearGrid::SafeDownCast(data);
+}
+
+std::string Count(vtkIdType number, const char* one, const char* many)
+{
+  return std::to_string(number) + " " + (number == 1 ? one : many);
+}
+
+// "27 points, 12 triangles or other faces and 3 lines"
+std::string DescribeCells(const std::vector<MeshPart>& parts)
+{
+  vtkIdType points = 0;
+  std::array<vtkIdType, 4> cells{};
+  std::array<int, 256> dimensions;
+  dimensions.fill(-1);
+  for (const MeshPart& part : parts)
+  {
+    points += part.Data->GetNumberOfPoints();
+    for (vtkIdType cell = 0; cell < part.Data->GetNumberOfCells(); ++cell)
+    {
+      const int type = part.Data->GetCellType(cell);
+      int& dimension = dimensions.at(static_cast<std::size_t>(type) % 256);
+      dimension = dimension >= 0 ? dimension : GetDimension(type);
+      ++cells.at(static_cast<std::size_t>(dimension));
+    }
+  }
+  std::vector<std::string> words{ Count(points, "point", "points") };
+  const std::array<std::array<const char*, 2>, 4> names{ { { { "vertex cell", "vertex cells" } },
+    { { "line", "lines" } }, { { "triangle or other face", "triangles or other faces" } },
+    { { "three-dimensional cell", "three-dimensional cells" } } } };
+  for (std::size_t dimension = 4; dimension-- > 0;)
+  {
+    if (cells[dimension] > 0)
+    {
+      words.push_back(Count(cells[dimension], names[dimension][0], names[dimension][1]));
+    }
+  }
+  if (words.size() == 1)
+  {
+    words.emplace_back("no cells");
+  }
+  std::string text = words.front();
+  for (std::size_t i = 1; i < words.size(); ++i)
+  {
+    text += (i + 1 < words.size() ? ", " : " and ") + words[i];
+  }
+  return text;
+}
+
+std::string Describe(vtkDataObject* object)
+{
+  const std::vector<MeshPart> parts = FindParts(object);
+  if (auto* image = vtkImageData::SafeDownCast(object))
+  {
+    int dimensions[3];
+    image->GetDimensions(dimensions);
+    return "an image of " + std::to_string(dimensions[0]) + " x " + std::to_string(dimensions[1]) +
+      " x " + std::to_string(dimensions[2]) + " points";
+  }
+  return parts.empty() ? "no points" : DescribeCells(parts);
+}
+
+std::string DescribeArrays(vtkPointData* arrays)
+{
+  std::string text;
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    const char* const name = arrays->GetArrayName(i);
+    // Arrays of strings are not counted among the others.
+    vtkAbstractArray* array = arrays->GetAbstractArray(i);
+    text += std::string(text.empty() ? "" : ", ") + "\"" + (name ? name : "") + "\" (" +
+      Count(array->GetNumberOfComponents(), "component", "components") + ")";
+  }
+  return text.empty() ? "there are no point arrays" : "there are " + text;
+}
+
+void CheckArray(const MeshPart& part, const std::string& name, const std::string& path)
+{
+  const std::string what =
+    "cannot use " + path + ": " + (part.Block.empty() ? "" : "in its block " + part.Block + " ");
+  vtkDataArray* array = part.Data->GetPointData()->GetArray(name.c_str());
+  if (!array)
+  {
+    throw Failure(what + "there is no point array \"" + name + "\" of displacements; " +
+      DescribeArrays(part.Data->GetPointData()) +
+      (part.Data->GetCellData()->HasArray(name.c_str()) ? ", and a cell array \"" + name +
+            "\", which ParaView's filter Cell Data to Point Data converts"
+                                                        : ""));
+  }
+  if (array->GetNumberOfComponents() != 3)
+  {
+    throw Failure(what + "the point array \"" + name + "\" has " +
+      Count(array->GetNumberOfComponents(), "component", "components") +
+      ", where displacements have 3; " + DescribeArrays(part.Data->GetPointData()));
+  }
+}
+
+// VTK 9.4 and later write polyhedra in a way that earlier readers pass over.
+void CheckPolyhedra(vtkUnstructuredGrid* grid, const std::string& path)
+{
+  vtkNew<vtkIdList> faces;
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+  {
+    if (grid->GetCellType(cell) != VTK_POLYHEDRON)
+    {
+      continue;
+    }
+    grid->GetFaceStream(cell, faces);
+    if (faces->GetNumberOfIds() > 0)
+    {
+      continue;
+    }
+    vtkNew<vtkXMLFileReadTester> tester;
+    tester->SetFileName(path.c_str());
+    const char* const version = tester->TestReadFile() ? tester->GetFileVersion() : nullptr;
+    throw Failure("cannot read " + path + ": cell " + std::to_string(cell) +
+      " is a polyhedron whose faces cannot be read. VTK 9.4 and later write polyhedra in version "
+      "2.3 of the file format" +
+      (version ? std::string(" (this file is of version ") + version + ")" : "") +
+      ", and this program has VTK " VTK_VERSION
+      ". Write the file with ParaView 5.13 or older, or turn the polyhedra into tetrahedra first "
+      "(ParaView: Filters > Tetrahedralize)");
+  }
+}
+}
+
+std::vector<MeshPart> FindParts(vtkDataObject* object)
+{
+  std::vector<MeshPart> parts;
+  if (auto* composite = vtkCompositeDataSet::SafeDownCast(object))
+  {
+    const auto leaf = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+    for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
+    {
+      if (auto* data = vtkDataSet::SafeDownCast(leaf->GetCurrentDataObject()))
+      {
+        const char* name = leaf->HasCurrentMetaData()
+          ? leaf->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME())
+          : nullptr;
+        parts.push_back({ data,
+          "\"" + (name ? std::string(name) : std::to_string(leaf->GetCurrentFlatIndex())) + "\"" });
+      }
+    }
+  }
+  else if (auto* data = vtkDataSet::SafeDownCast(object))
+  {
+    parts.push_back({ data, "" });
+  }
+  return parts;
+}
+
+bool HasVolumeCells(vtkDataSet* data)
+{
+  if (!IsGrid(data))
+  {
+    return false;
+  }
+  vtkNew<vtkCellTypes> types;
+  data->GetCellTypes(types);
+  for (int i = 0; i < types->GetNumberOfTypes(); ++i)
+  {
+    if (GetDimension(types->GetCellType(i)) == 3)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::string& path)
+{
+  bool deforms = false;
+  for (const MeshPart& part : FindParts(mesh))
+  {
+    if (HasVolumeCells(part.Data) || part.Data == vtkImageData::SafeDownCast(mesh))
+    {
+      deforms = true;
+      if (auto* grid = vtkUnstructuredGrid::SafeDownCast(part.Data))
+      {
+        CheckPolyhedra(grid, path);
+      }
+      if (!displacement.empty())
+      {
+        CheckArray(part, displacement, path);
+      }
+    }
+  }
+  if (!deforms)
+  {
+    throw Failure("cannot use " + path + " as a mesh: it holds " + Describe(mesh) +
+      ". A mesh needs three-dimensional cells, such as tetrahedra and hexahedra");
+  }
+}
+
+void CheckSheet(vtkDataObject* sheet, const std::string& path)
+{
+  auto* surface = vtkPolyData::SafeDownCast(sheet);
+  if (!surface || surface->GetNumberOfPolys() + surface->GetNumberOfStrips() == 0)
+  {
+    throw Failure("cannot use " + path + " as a sheet: it holds " + Describe(sheet) +
+      ". A sheet is a surface of triangles or other polygons");
+  }
+}

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshFormats.h"
+
+#include <vtksys/SystemTools.hxx>
+
+namespace
+{
+// The file's name without its folder, and the same with another suffix.
+std::string GetName(const std::string& path)
+{
+  return vtksys::SystemTools::GetFilenameName(path);
+}
+
+std::string GetName(const std::string& path, const std::string& suffix)
+{
+  return vtksys::SystemTools::GetFilenameWithoutLastExtension(path) + suffix;
+}
+
+std::string GetMeshioConversion(const std::string& path, const std::string& suffix)
+{
+  return "Convert it with meshio (pip install meshio): meshio convert " + GetName(path) + " " +
+    GetName(path, suffix);
+}
+}
+
+bool HasSuffix(const std::string& path, std::initializer_list<const char*> suffixes)
+{
+  const std::string name = vtksys::SystemTools::LowerCase(path);
+  for (const char* suffix : suffixes)
+  {
+    if (vtksys::SystemTools::StringEndsWith(name, suffix))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::string GetMeshSuffixes()
+{
+  return ".vtu, .pvtu, .vtm, .vts, .vtr, .vtk, .pvd"
+#ifdef DEFORMVOLUME_HAVE_EXODUS
+         ", .e, .exo, .ex2"
+#endif
+#ifdef DEFORMVOLUME_HAVE_VTKHDF
+         ", .vtkhdf"
+#endif
+    ;
+}
+
+std::string GetSheetSuffixes()
+{
+  return ".vtp, .stl, .ply, .obj, .vtk";
+}
+
+std::string GetMeshConversion(const std::string& path)
+{
+  if (HasSuffix(path, { ".stl", ".ply", ".obj", ".off" }))
+  {
+    return "It holds a surface; fill it with tetrahedra, for example with Gmsh";
+  }
+  if (HasSuffix(path, { ".nii", ".nii.gz", ".mha", ".mhd", ".nrrd", ".nhdr" }))
+  {
+    return "Give displacement fields with --field";
+  }
+  if (HasSuffix(path, { ".frd" }))
+  {
+    return "Convert it with ccx2paraview (pip install ccx2paraview): ccx2paraview " +
+      GetName(path) + " vtu";
+  }
+  if (HasSuffix(path, { ".xplt", ".feb" }))
+  {
+    return "Open the results of FEBio (.xplt) in FEBio Studio and export them as .vtk";
+  }
+  if (HasSuffix(path, { ".odb", ".op2", ".rst", ".d3plot", ".case", ".foam", ".pvsm" }))
+  {
+    return "Open it in ParaView, if that reads it, and save the data as .vtu (File > Save Data)";
+  }
+  if (HasSuffix(path, { ".inp", ".bdf", ".nas", ".fem" }))
+  {
+    return "It holds a mesh without results: convert the results of the simulation; or, for "
+           "--rest, the mesh with meshio (pip install meshio): meshio convert " +
+      GetName(path) + " " + GetName(path, ".vtu");
+  }
+  if (HasSuffix(path, { ".series" }))
+  {
+    return "It lists the files of a series: give one of them";
+  }
+  if (HasSuffix(path, { ".e", ".exo", ".ex2", ".vtkhdf" }))
+  {
+    return "This program was built without VTK's reader of such files. Save the data as .vtu in "
+           "ParaView (File > Save Data)";
+  }
+  return GetMeshioConversion(path, ".vtu") +
+    "; or open it in ParaView and save the data as .vtu (File > Save Data)";
+}
+
+std::string GetSheetConversion(const std::string& path)
+{
+  if (HasSuffix(path, { ".vtu", ".pvtu", ".vtm", ".pvd", ".e", ".exo", ".ex2", ".vtkhdf" }))
+  {
+    return "Extract its surface in ParaView (Filters > Extract Surface) and save it as .vtp";
+  }
+  return GetMeshioConversion(path, ".ply") +
+    "; or open it in ParaView and save the surface as .vtp (File > Save Data)";
+}

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshReading.h"
+
+#include "Failure.h"
+#include "MeshContents.h"
+#include "MeshFormats.h"
+#include "Messages.h"
+#include "NetcdfFile.h"
+#include "Options.h"
+#include "ProgressBar.h"
+#include "SheetFile.h"
+
+#include <vtkAlgorithm.h>
+#include <vtkGenericDataObjectReader.h>
+#include <vtkInformation.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkNew.h>
+#include <vtkOBJReader.h>
+#include <vtkPLYReader.h>
+#include <vtkSTLReader.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkVersionMacros.h>
+#include <vtkXMLDataElement.h>
+#include <vtkXMLGenericDataObjectReader.h>
+#include <vtkXMLUtilities.h>
+#include <vtksys/SystemTools.hxx>
+
+#ifdef DEFORMVOLUME_HAVE_EXODUS
+#include <vtkExodusIIReader.h>
+#endif
+#ifdef DEFORMVOLUME_HAVE_VTKHDF
+#include <vtkHDFReader.h>
+#include <vtk_hdf5.h>
+#endif
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <sstream>
+
+namespace
+{
+/// What is read, and how.
+struct Source
+{
+  std::string Path;
+  const char* Label;
+  Messages& Log;
+  bool ShowProgress;
+};
+
+void CheckReading(const Source& source, const std::string& format)
+{
+  const std::string words = source.Log.TakeError();
+  if (!words.empty())
+  {
+    throw Failure("cannot read " + source.Path + ": it is no " + format +
+      ", or it is damaged or cut off" + (NamesCode(words) ? "" : " (" + words + ")"));
+  }
+}
+
+class Reading
+{
+public:
+  explicit Reading(Messages& log)
+    : Log(log)
+  {
+    log.BeginReading();
+  }
+  ~Reading() { this->Log.EndReading(); }
+  Reading(const Reading&) = delete;
+  Reading& operator=(const Reading&) = delete;
+
+private:
+  Messages& Log;
+};
+
+std::string GetTimeText(std::size_t steps, double last)
+{
+  std::ostringstream text;
+  text << " holds " << steps << " time steps; the last one, of the time " << last << ", is read.";
+  return text.str();
+}
+
+void Update(vtkAlgorithm* reader, const Source& source, const std::string& format)
+{
+  const ProgressBar bar(reader, source.Label, source.ShowProgress);
+  const Reading reading(source.Log);
+  reader->UpdateInformation();
+  CheckReading(source, format);
+  vtkInformation* information = reader->GetOutputInformation(0);
+  const int steps = information->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
+  if (steps > 1)
+  {
+    const double last = information->Get(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), steps - 1);
+    source.Log.DisplayWarningText((source.Path + GetTimeText(steps, last)).c_str());
+    reader->UpdateTimeStep(last);
+  }
+  else
+  {
+    reader->Update();
+  }
+  CheckReading(source, format);
+}
+
+template <typename Reader>
+vtkSmartPointer<vtkDataObject> ReadBy(
+  Reader* reader, const Source& source, const std::string& format)
+{
+  reader->SetFileName(source.Path.c_str());
+  Update(reader, source, format);
+  return reader->GetOutputDataObject(0);
+}
+
+vtkSmartPointer<vtkDataObject> ReadXML(const Source& source)
+{
+  vtkNew<vtkXMLGenericDataObjectReader> reader;
+  return ReadBy(reader.Get(), source, "XML file of VTK");
+}
+
+vtkSmartPointer<vtkDataObject> ReadLegacy(const Source& source)
+{
+  vtkNew<vtkGenericDataObjectReader> reader;
+  reader->ReadAllScalarsOn();
+  reader->ReadAllVectorsOn();
+  reader->ReadAllNormalsOn();
+  reader->ReadAllTensorsOn();
+  reader->ReadAllColorScalarsOn();
+  reader->ReadAllTCoordsOn();
+  reader->ReadAllFieldsOn();
+  return ReadBy(reader.Get(), source, "legacy file of VTK");
+}
+
+bool BeginsWith(const std::string& path, std::initializer_list<std::string> beginnings)
+{
+  std::string first(8, '\0');
+  std::ifstream(path, std::ios::binary).read(&first[0], 8);
+  for (const std::string& beginning : beginnings)
+  {
+    if (first.compare(0, beginning.size(), beginning) == 0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+#ifdef DEFORMVOLUME_HAVE_EXODUS
+vtkSmartPointer<vtkDataObject> ReadExodus(const Source& source)
+{
+  const char* const format = "Exodus file";
+  vtkNew<vtkExodusIIReader> reader;
+  // The library writes to standard error where a file is of another kind.
+  if (!BeginsWith(source.Path, { "CDF", "\x89HDF" }) || !reader->CanReadFile(source.Path.c_str()))
+  {
+    source.Log.DisplayErrorText("It does not begin as netCDF files do");
+  }
+  else if (BeginsWith(source.Path, { "CDF" }) && IsNetcdfCutOff(source.Path))
+  {
+    source.Log.DisplayErrorText("It ends before its data do");
+  }
+  CheckReading(source, format);
+  reader->SetFileName(source.Path.c_str());
+  reader->ApplyDisplacementsOff();
+  reader->UpdateInformation();
+  CheckReading(source, format);
+  reader->SetAllArrayStatus(vtkExodusIIReader::NODAL, 1);
+  for (int i = 0; i < reader->GetNumberOfObjects(vtkExodusIIReader::ELEM_BLOCK); ++i)
+  {
+    reader->SetObjectStatus(vtkExodusIIReader::ELEM_BLOCK, i, 1);
+  }
+  return ReadBy(reader.Get(), source, format);
+}
+#endif
+
+#ifdef DEFORMVOLUME_HAVE_VTKHDF
+bool HasTimeSteps(const std::string& path)
+{
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const bool hasSteps = file >= 0 && H5Lexists(file, "/VTKHDF/Steps", H5P_DEFAULT) > 0;
+  H5Fclose(file);
+  return hasSteps;
+}
+
+vtkSmartPointer<vtkDataObject> ReadHDF(const Source& source)
+{
+  const char* const format = "VTKHDF file that VTK " VTK_VERSION " reads";
+  // The library writes its stack to standard error.
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  vtkNew<vtkHDFReader> reader;
+  if (!BeginsWith(source.Path, { "\x89HDF" }) || !reader->CanReadFile(source.Path.c_str()))
+  {
+    source.Log.DisplayErrorText("It does not begin as HDF5 files of VTK do");
+  }
+  CheckReading(source, format);
+  reader->SetFileName(source.Path.c_str());
+  reader->UpdateInformation();
+  CheckReading(source, format);
+  // Earlier readers take the steps for parts of one mesh.
+  if (HasTimeSteps(source.Path) &&
+    !reader->GetOutputInformation(0)->Has(vtkStreamingDemandDrivenPipeline::TIME_STEPS()))
+  {
+    throw Failure("cannot read " + source.Path +
+      ": it holds time steps, which VTK " VTK_VERSION
+      " does not read. Save the last one as .vtu in ParaView (File > Save Data)");
+  }
+  return ReadBy(reader.Get(), source, format);
+}
+#endif
+
+vtkSmartPointer<vtkDataObject> ReadMeshFile(const Source& source);
+
+/// Files of a .pvd file by their time.
+std::map<double, std::vector<std::string>> FindFiles(const Source& source)
+{
+  const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(
+    vtkXMLUtilities::ReadElementFromFile(source.Path.c_str()));
+  CheckReading(source, "collection of files (.pvd)");
+  vtkXMLDataElement* collection = root ? root->FindNestedElementWithName("Collection") : nullptr;
+  if (!collection)
+  {
+    throw Failure("cannot read " + source.Path + ": it is no collection of files (.pvd)");
+  }
+  std::string folder = vtksys::SystemTools::GetFilenamePath(source.Path);
+  folder = folder.empty() ? "." : folder;
+  std::map<double, std::vector<std::string>> files;
+  for (int i = 0; i < collection->GetNumberOfNestedElements(); ++i)
+  {
+    vtkXMLDataElement* entry = collection->GetNestedElement(i);
+    const char* file = entry->GetAttribute("file");
+    if (!file)
+    {
+      continue;
+    }
+    double time = 0.0;
+    const char* text = entry->GetAttribute("timestep");
+    if (text && (!entry->GetScalarAttribute("timestep", time) || !std::isfinite(time)))
+    {
+      throw Failure(
+        "cannot read " + source.Path + ": the time step \"" + text + "\" of a file is no number");
+    }
+    files[time].push_back(vtksys::SystemTools::CollapseFullPath(file, folder));
+  }
+  if (files.empty())
+  {
+    throw Failure("cannot read " + source.Path + ": it names no files");
+  }
+  return files;
+}
+
+vtkSmartPointer<vtkDataObject> ReadCollection(const Source& source)
+{
+  const std::map<double, std::vector<std::string>> files = FindFiles(source);
+  const auto& [time, parts] = *files.rbegin();
+  if (files.size() > 1)
+  {
+    source.Log.DisplayWarningText((source.Path + GetTimeText(files.size(), time)).c_str());
+  }
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  for (const std::string& part : parts)
+  {
+    if (HasSuffix(part, { ".pvd" }))
+    {
+      throw Failure("cannot read " + source.Path + ": it names another .pvd file, " + part);
+    }
+    const unsigned int block = blocks->GetNumberOfBlocks();
+    blocks->SetBlock(block, ReadMeshFile({ part, source.Label, source.Log, source.ShowProgress }));
+    blocks->GetMetaData(block)->Set(
+      vtkCompositeDataSet::NAME(), vtksys::SystemTools::GetFilenameName(part).c_str());
+  }
+  return parts.size() == 1 ? vtkSmartPointer<vtkDataObject>(blocks->GetBlock(0)) : blocks;
+}
+
+void CheckFile(const std::string& path)
+{
+  if (!vtksys::SystemTools::FileExists(path, true))
+  {
+    throw Failure("cannot read " + path + ": there is no such file");
+  }
+}
+
+vtkSmartPointer<vtkDataObject> ReadMeshFile(const Source& source)
+{
+  CheckFile(source.Path);
+  if (HasSuffix(source.Path,
+        { ".vtu", ".pvtu", ".vtm", ".vtmb", ".vts", ".pvts", ".vtr", ".pvtr", ".vti", ".pvti",
+          ".vtpd", ".vtpc", ".vtp", ".pvtp" }))
+  {
+    return ReadXML(source);
+  }
+  if (HasSuffix(source.Path, { ".vtk" }))
+  {
+    return ReadLegacy(source);
+  }
+  if (HasSuffix(source.Path, { ".pvd" }))
+  {
+    return ReadCollection(source);
+  }
+#ifdef DEFORMVOLUME_HAVE_EXODUS
+  if (HasSuffix(source.Path, { ".e", ".exo", ".ex2" }))
+  {
+    return ReadExodus(source);
+  }
+#endif
+#ifdef DEFORMVOLUME_HAVE_VTKHDF
+  if (HasSuffix(source.Path, { ".vtkhdf" }))
+  {
+    return ReadHDF(source);
+  }
+#endif
+  throw Failure("cannot read " + source.Path + " as a mesh: a mesh is a file of the types " +
+    GetMeshSuffixes() + ", or a displacement field (.vti). " + GetMeshConversion(source.Path));
+}
+}
+
+vtkSmartPointer<vtkDataObject> ReadMesh(const std::string& path, const std::string& displacement,
+  const Options& options, Messages& messages)
+{
+  const vtkSmartPointer<vtkDataObject> mesh =
+    ReadMeshFile({ path, "reading mesh", messages, !options.Quiet });
+  CheckMesh(mesh, displacement, path);
+  return mesh;
+}
+
+vtkSmartPointer<vtkPolyData> ReadSheet(
+  const std::string& path, const Options& options, Messages& messages)
+{
+  CheckFile(path);
+  const Source source{ path, "reading sheet", messages, !options.Quiet };
+  vtkSmartPointer<vtkDataObject> sheet;
+  if (HasSuffix(path, { ".vtp", ".pvtp" }))
+  {
+    sheet = ReadXML(source);
+  }
+  else if (HasSuffix(path, { ".vtk" }))
+  {
+    sheet = ReadLegacy(source);
+  }
+  else if (HasSuffix(path, { ".stl" }))
+  {
+    if (IsStlCutOff(path))
+    {
+      messages.DisplayErrorText("It ends before its triangles do");
+    }
+    CheckReading(source, "STL file");
+    sheet = ReadBy(vtkNew<vtkSTLReader>().Get(), source, "STL file");
+  }
+  else if (HasSuffix(path, { ".ply" }))
+  {
+    if (IsPlyCutOff(path))
+    {
+      messages.DisplayErrorText("It ends before its header or its elements do");
+    }
+    CheckReading(source, "PLY file");
+    sheet = ReadBy(vtkNew<vtkPLYReader>().Get(), source, "PLY file");
+  }
+  else if (HasSuffix(path, { ".obj" }))
+  {
+    sheet = ReadBy(vtkNew<vtkOBJReader>().Get(), source, "OBJ file");
+  }
+  else
+  {
+    throw Failure("cannot read " + path + " as a sheet: a sheet is a file of the types " +
+      GetSheetSuffixes() + ". " + GetSheetConversion(path));
+  }
+  CheckSheet(sheet, path);
+  return vtkPolyData::SafeDownCast(sheet);
+}

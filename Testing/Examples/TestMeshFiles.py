@@ -1,0 +1,408 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""deform-volume reads meshes and sheets of many formats, each with the same result, and says what a
+file holds that it cannot use. Usage: TestMeshFiles.py PROGRAM FOLDER"""
+import os
+import re
+import shutil
+import sys
+
+import numpy
+from MeshFiles import (
+    add_arrays,
+    make_blocks,
+    make_hexahedra,
+    make_moves,
+    make_places,
+    make_rectilinear,
+    make_structured,
+    make_tetrahedra,
+    make_unstructured,
+    to_points,
+    to_vtk,
+    write,
+    write_collection,
+    write_exodus,
+    write_hdf,
+)
+from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from vtkmodules.vtkCommonCore import vtkVersion
+from vtkmodules.vtkCommonDataModel import (
+    VTK_LINE,
+    VTK_POLYHEDRON,
+    VTK_QUAD,
+    VTK_TETRA,
+    VTK_VERTEX,
+    vtkPolyData,
+    vtkRectilinearGrid,
+    vtkTable,
+    vtkUnstructuredGrid,
+)
+from vtkmodules.vtkFiltersCore import vtkTriangleFilter
+from vtkmodules.vtkFiltersSources import vtkPlaneSource
+from vtkmodules.vtkIOGeometry import vtkSTLWriter
+from vtkmodules.vtkIOGeometry import vtkOBJWriter
+from vtkmodules.vtkIOLegacy import (
+    vtkDataSetWriter,
+    vtkPolyDataWriter,
+    vtkStructuredPointsWriter,
+    vtkTableWriter,
+    vtkUnstructuredGridWriter,
+)
+from vtkmodules.vtkIOParallelXML import vtkXMLPUnstructuredGridWriter
+from vtkmodules.vtkIOPLY import vtkPLYWriter
+from vtkmodules.vtkIOXML import (
+    vtkXMLImageDataWriter,
+    vtkXMLMultiBlockDataWriter,
+    vtkXMLPolyDataWriter,
+    vtkXMLRectilinearGridWriter,
+    vtkXMLStructuredGridWriter,
+    vtkXMLUnstructuredGridWriter,
+)
+
+program = sys.argv[1]
+folder = make_folder(sys.argv[2], "MeshFiles")
+for entry in os.listdir(folder):
+    shutil.rmtree(os.path.join(folder, entry))
+
+
+def path(name):
+    return os.path.join(folder, name)
+
+
+volume = make_ball()
+write_vti(volume, path("in.vti"))
+axes, places = make_places(volume.GetBounds())
+moves = make_moves(places)
+mesh = make_unstructured(places, moves)
+XML = {"SetDataMode": 1, "SetHeaderType": 64}  # binary, not appended
+# What only programmers know: classes, methods, addresses, enumerators, the pipeline.
+CODE = re.compile(r"\bvtk[A-Z]\w*|\bvtkm?::|\b[A-Z]\w*\(\)|0x[0-9a-f]{4}|\b[A-Z]{4,}_[A-Z]+\b|"
+                  r"input port|[Aa]lgorithm vtk|\bConnect a\b|REQUEST_")
+
+
+def fails(code, expected, *arguments, source="in.vti", warnings=0):
+    """One line in the program's own words, and no output."""
+    output, errors = call(program, path(source), *arguments, "-o", path("o.vti"), code=code,
+                          quiet=True)
+    print("  ", errors.strip())
+    assert output == "", output
+    assert errors.startswith("deform-volume: "), errors
+    assert errors.count("\n") == 1 + warnings and "failed without" not in errors, errors
+    for text in [expected] if isinstance(expected, str) else expected:
+        assert text in errors, f"{text} is not in {errors}"
+    # TetGen's and VTK's names are known; those of their classes are not.
+    assert not CODE.search(errors), CODE.search(errors)
+    assert not os.path.exists(path("o.vti"))
+
+
+def as_mesh(name, displacement="Displacement"):
+    return "--mesh", path(name), "--displacement", displacement
+
+
+def cut_off(name, source, part=0.6):
+    with open(path(source), "rb") as whole, open(path(name), "wb") as file:
+        content = whole.read()
+        file.write(content[:int(len(content) * part)])
+
+
+def write_text(name, text="no mesh\n"):
+    with open(path(name), "w", encoding="ascii") as file:
+        file.write(text)
+
+
+# Files of all formats.
+write(vtkXMLUnstructuredGridWriter(), mesh, path("mesh.vtu"), **XML)
+write(vtkUnstructuredGridWriter(), mesh, path("binary.vtk"), SetFileType=2)
+write(vtkUnstructuredGridWriter(), mesh, path("old.vtk"), SetFileType=2, SetFileVersion=42)
+write(vtkXMLPUnstructuredGridWriter(), mesh, path("mesh.pvtu"), SetNumberOfPieces=2,
+      SetEndPiece=1, **XML)
+write(vtkXMLUnstructuredGridWriter(), make_unstructured(places, moves, make_hexahedra()),
+      path("hexahedra.vtu"), **XML)
+structured = make_structured(places, moves)
+write(vtkXMLStructuredGridWriter(), structured, path("mesh.vts"), **XML)
+write(vtkDataSetWriter(), structured, path("structured.vtk"), SetFileType=2)
+rectilinear = make_rectilinear(axes, moves)
+write(vtkXMLRectilinearGridWriter(), rectilinear, path("mesh.vtr"), **XML)
+write(vtkDataSetWriter(), rectilinear, path("rectilinear.vtk"), SetFileType=2)
+cells = make_tetrahedra()
+half = len(cells) // 2
+parts = [make_unstructured(places, moves, some) for some in (cells[:half], cells[half:])]
+write(vtkXMLMultiBlockDataWriter(), make_blocks(("left", parts[0]), ("right", parts[1])),
+      path("mesh.vtm"), **XML)
+for number, part in enumerate(parts):
+    write(vtkXMLUnstructuredGridWriter(), part, path(f"part{number}.vtu"), **XML)
+write(vtkXMLUnstructuredGridWriter(), make_unstructured(places, 0.5 * moves), path("before.vtu"),
+      **XML)
+os.makedirs(path("series"))
+shutil.copy(path("mesh.vtu"), path("series/last.vtu"))
+write_collection(path("one.pvd"), [(0, "mesh.vtu")])
+write_collection(path("parts.pvd"), [(0.5, "part0.vtu"), (0.5, "part1.vtu")])
+write_collection(path("series.pvd"), [(2.5, "series/last.vtu"), (0, "before.vtu"),
+                                      (1, path("before.vtu"))])
+write_exodus(mesh, path("mesh.e"))
+write_exodus(mesh, path("series.exo"), (0.0, 0.5, 1.0))
+shutil.copy(path("mesh.e"), path("mesh.ex2"))
+write_hdf(path("mesh.vtkhdf"), places, moves)
+
+
+def make_point():
+    grid = vtkRectilinearGrid()
+    grid.SetDimensions(1, 1, 1)
+    return grid
+
+
+def make_sheet():
+    plane = vtkPlaneSource()
+    bounds = volume.GetBounds()
+    x = 0.5 * (bounds[0] + bounds[1]) + 0.25
+    plane.SetOrigin(x, bounds[2] - 1, bounds[4] - 1)
+    plane.SetPoint1(x, bounds[3] + 1, bounds[4] - 1)
+    plane.SetPoint2(x, bounds[2] - 1, bounds[5] + 1)
+    plane.Update()
+    return plane.GetOutput()
+
+
+def make_flat():
+    """Cells of all dimensions but three."""
+    grid = make_unstructured(places, moves, [])
+    for kind, points in ((VTK_QUAD, [0, 1, 4, 3]), (VTK_QUAD, [3, 4, 7, 6]), (VTK_LINE, [0, 1]),
+                         (VTK_VERTEX, [0])):
+        grid.InsertNextCell(kind, len(points), points)
+    return grid
+
+
+def add_cell_array(grid):
+    grid.GetCellData().AddArray(to_vtk("Displacement", numpy.zeros((grid.GetNumberOfCells(), 3))))
+
+
+def write_polyhedra(name):
+    """As VTK 9.4 and later write them: the faces lie in arrays that earlier versions do not know."""
+    write(vtkXMLUnstructuredGridWriter(), mesh, name, SetDataMode=0)
+    with open(name, encoding="ascii") as file:
+        text = file.read()
+    text = re.sub('version="[0-9.]+" byte', 'version="2.3" byte', text)
+    start = text.index('Name="types"')
+    text = text[:start] + text[start:].replace(f" {VTK_TETRA}", f" {VTK_POLYHEDRON}")
+    with open(name, "w", encoding="ascii") as file:
+        file.write(text)
+
+
+def write_sheets():
+    """The names of files of one sheet. Its points are numbers that all formats hold."""
+    sheet = make_sheet()
+    sheet.GetPointData().Initialize()
+    triangulation = vtkTriangleFilter()
+    triangulation.SetInputData(sheet)
+    triangulation.Update()
+    triangles = triangulation.GetOutput()
+    write(vtkXMLPolyDataWriter(), sheet, path("cut.vtp"), **XML)
+    write(vtkPolyDataWriter(), sheet, path("cut.vtk"), SetFileType=2)
+    write(vtkSTLWriter(), triangles, path("cut.stl"), SetFileType=2)
+    write(vtkSTLWriter(), triangles, path("ascii.stl"), SetFileType=1)
+    write(vtkPLYWriter(), triangles, path("cut.ply"), SetFileType=2)
+    write(vtkPLYWriter(), triangles, path("ascii.ply"), SetFileType=1)
+    write(vtkOBJWriter(), triangles, path("cut.obj"))
+    return ["cut.vtp", "cut.vtk", "cut.stl", "ascii.stl", "cut.ply", "ascii.ply", "cut.obj"]
+
+
+def check_misuse_of_meshes():
+    fails(1, ["no such file"], *as_mesh("none.vtu"))
+    fails(1, ["no such file"], *as_mesh("series"))
+    # Formats that VTK does not read, and no format at all.
+    for name, converter in (
+            ("fe.msh", "meshio convert fe.msh fe.vtu"), ("fe.med", "meshio convert fe.med"),
+            ("fe.CGNS", "meshio convert fe.CGNS fe.vtu"), ("fe.xdmf", "ParaView"),
+            ("fe.frd", "ccx2paraview fe.frd vtu"), ("fe.inp", "without results"),
+            ("fe.bdf", "without results"), ("fe.feb", "FEBio Studio"),
+            ("fe.xplt", "FEBio Studio"), ("fe.odb", "Save Data"), ("fe.stl", "Gmsh"),
+            ("fe.vtu.series", "one of them"), ("field.nii.gz", "--field"), ("fe", "meshio")):
+        write_text(name)
+        fails(1, [".vtu, .pvtu, .vtm, .vts, .vtr, .vtk, .pvd, .e, .exo, .ex2, .vtkhdf", ".vti",
+                  converter], *as_mesh(name))
+    # Files of another content than their names say.
+    for name in ("text.vtu", "text.vtk", "text.pvd", "text.e", "text.vtkhdf"):
+        write_text(name)
+        fails(1, [path(name), "cannot read", "damaged or cut off"], *as_mesh(name))
+        write_text(name, "")
+        fails(1, [path(name), "cannot read", "damaged or cut off"], *as_mesh(name))
+    for source in ("mesh.vtu", "binary.vtk", "old.vtk", "one.pvd", "mesh.vtr", "mesh.e",
+                   "mesh.vtkhdf"):
+        for part in (0.3, 0.6, 0.95):
+            cut_off("cut-off-" + source, source, part)
+            fails(1, [path("cut-off-" + source), "cannot read", "damaged or cut off"],
+                  *as_mesh("cut-off-" + source))
+    # Collections.
+    write_text("other.pvd", '<VTKFile type="UnstructuredGrid"></VTKFile>\n')
+    fails(1, "no collection", *as_mesh("other.pvd"))
+    write_collection(path("empty.pvd"), [])
+    fails(1, "names no files", *as_mesh("empty.pvd"))
+    write_collection(path("broken.pvd"), [(0, "gone.vtu")])
+    fails(1, [path("gone.vtu"), "no such file"], *as_mesh("broken.pvd"))
+    write_collection(path("times.pvd"), [("later", "mesh.vtu")])
+    fails(1, '"later" of a file is no number', *as_mesh("times.pvd"))
+    write_collection(path("nested.pvd"), [(0, "one.pvd")])
+    fails(1, "another .pvd file", *as_mesh("nested.pvd"))
+    write_collection(path("msh.pvd"), [(0, "fe.msh")])
+    fails(1, "meshio convert fe.msh", *as_mesh("msh.pvd"))
+    shutil.copy(path("mesh.pvtu"), path("gone.pvtu"))
+    os.rename(path("mesh_1.vtu"), path("moved.vtu"))
+    fails(1, ["cannot read", path("gone.pvtu")], *as_mesh("gone.pvtu"))
+    os.rename(path("moved.vtu"), path("mesh_1.vtu"))
+    shutil.copytree(path("mesh"), path("gone"))
+    os.remove(path("mesh/mesh_1.vtu"))
+    fails(1, ["cannot read", path("mesh.vtm")], *as_mesh("mesh.vtm"))
+    shutil.rmtree(path("mesh"))
+    os.rename(path("gone"), path("mesh"))
+    # Files of other things than meshes.
+    write(vtkXMLRectilinearGridWriter(), make_point(), path("point.vtr"), **XML)
+    fails(1, ["1 point and 1 vertex cell", "three-dimensional cells"], *as_mesh("point.vtr", "u"))
+    sheet = make_sheet()
+    write(vtkXMLPolyDataWriter(), sheet, path("sheet.vtp"), **XML)
+    write(vtkPolyDataWriter(), sheet, path("sheet.vtk"))
+    for name in ("sheet.vtp", "sheet.vtk"):
+        fails(1, ["4 points and 1 triangle or other face", "three-dimensional cells"],
+              *as_mesh(name))
+    write(vtkXMLUnstructuredGridWriter(), make_flat(), path("flat.vtu"), **XML)
+    fails(1, ["60 points, 2 triangles or other faces, 1 line and 1 vertex cell"],
+          *as_mesh("flat.vtu"))
+    bare = vtkUnstructuredGrid()
+    bare.SetPoints(to_points(places))
+    write(vtkXMLUnstructuredGridWriter(), bare, path("bare.vtu"), **XML)
+    fails(1, "60 points and no cells", *as_mesh("bare.vtu"))
+    write(vtkXMLUnstructuredGridWriter(), vtkUnstructuredGrid(), path("empty.vtu"), **XML)
+    fails(1, ["cannot read", "Points"], *as_mesh("empty.vtu"))
+    write(vtkTableWriter(), vtkTable(), path("table.vtk"))
+    fails(1, "no points", *as_mesh("table.vtk"))
+    write(vtkXMLMultiBlockDataWriter(), make_blocks(("a", make_flat()), ("b", sheet)),
+          path("flat.vtm"), **XML)
+    fails(1, ["64 points, 3 triangles"], *as_mesh("flat.vtm"))
+    # Arrays.
+    known = '"Temperature" (1 component), "Reaction" (3 components), "Displacement" (3 components)'
+    fails(1, ['no point array "u"', known], *as_mesh("mesh.vtu", "u"))
+    fails(1, ['the point array "Temperature" has', "1 component, where displacements have 3", known],
+          *as_mesh("mesh.vtu", "Temperature"))
+    fails(1, ['block "left"', 'no point array "u"', known], *as_mesh("mesh.vtm", "u"))
+    fails(1, ['no point array "u"', '"Temperature" (1 component)'], *as_mesh("mesh.e", "u"))
+    none = make_unstructured(places, moves)
+    none.GetPointData().Initialize()
+    write(vtkXMLUnstructuredGridWriter(), none, path("none.vtu"), **XML)
+    fails(1, "no point arrays", *as_mesh("none.vtu"))
+    add_cell_array(none)
+    write(vtkXMLUnstructuredGridWriter(), none, path("cells.vtu"), **XML)
+    fails(1, ["no point arrays", "Cell Data to Point Data"], *as_mesh("cells.vtu"))
+    write(vtkXMLMultiBlockDataWriter(), make_blocks(("bone", mesh), ("skin", none)),
+          path("half.vtm"), **XML)
+    fails(1, ['block "skin"', "no point arrays"], *as_mesh("half.vtm"))
+    fails(1, ['no point array "Displacement"', '"Values" (1 component)'], *as_mesh("in.vti"))
+    # What VTK 9.1 does not read of later versions.
+    write_polyhedra(path("polyhedra.vtu"))
+    fails(1, ["is a polyhedron", "version 2.3", "VTK 9.4", "ParaView 5.13"],
+          *as_mesh("polyhedra.vtu"))
+    write_hdf(path("steps.vtkhdf"), places, moves, version=(2, 0), steps=[0, 1])
+    if vtkVersion().GetVTKMajorVersion() == 9 and vtkVersion().GetVTKMinorVersion() < 3:
+        fails(1, ["time steps", ".vtu"], *as_mesh("steps.vtkhdf"), warnings=1)
+    write_hdf(path("sheet.vtkhdf"), places, moves, kind=b"PolyData",
+              without=("NumberOfCells", "NumberOfConnectivityIds", "Offsets", "Connectivity", "Types"))
+    fails(1, "cannot read", *as_mesh("sheet.vtkhdf"))
+
+
+def check_misuse_of_sheets():
+    def sheet(name):
+        return "--cut", path(name)
+
+    fails(1, "no such file", *sheet("none.stl"))
+    for name, converter in (("cut.msh", "meshio convert cut.msh cut.ply"), ("cut.off", "meshio"),
+                            ("cut.vtu", "Extract Surface"), ("cut.e", "Extract Surface"),
+                            ("cut", "meshio")):
+        write_text(name)
+        fails(1, [".vtp, .stl, .ply, .obj, .vtk", converter], *sheet(name))
+    for name in ("text.vtp", "text.ply", "text.vtk"):
+        write_text(name)
+        fails(1, [path(name), "cannot read", "damaged or cut off"], *sheet(name))
+        write_text(name, "")
+        fails(1, [path(name), "cannot read", "damaged or cut off"], *sheet(name))
+    write_text("text.stl")
+    fails(1, "cannot read", *sheet("text.stl"))
+    write_text("text.stl", "")
+    fails(1, "cannot read", *sheet("text.stl"))
+    for name in ("text.stl", "text.obj"):
+        write_text(name, "")
+        fails(1, path(name), *sheet(name))
+    write_text("text.obj")
+    fails(1, path("text.obj"), *sheet("text.obj"))
+    write_text("empty.stl", "solid a\nendsolid a\n")
+    fails(1, ["0 points and no cells", "triangles"], *sheet("empty.stl"))
+    for name in SHEETS:
+        for part in (0.4, 0.7, 0.95):
+            cut_off("cut-off-" + name, name, part)
+            fails(1, path("cut-off-" + name), *sheet("cut-off-" + name))
+    # Other things than surfaces.
+    write(vtkStructuredPointsWriter(), volume, path("image.vtk"))
+    fails(1, ["an image of 25 x 22 x 19 points", "triangles"], *sheet("image.vtk"))
+    fails(1, ["60 points and 144 three-dimensional cells", "triangles"], *sheet("binary.vtk"))
+    lines = vtkPolyData()
+    lines.SetPoints(to_points(places))
+    lines.Allocate(1)
+    lines.InsertNextCell(VTK_LINE, 2, [0, 1])
+    write(vtkXMLPolyDataWriter(), lines, path("lines.vtp"), **XML)
+    fails(1, ["60 points and 1 line", "triangles"], *sheet("lines.vtp"))
+    fails(1, ["60 points and 1 line", "triangles"], *sheet("lines.vtp"), "--model", "fem",
+          "--lattice", "5,5,5", "--fix", "below:8")
+
+
+def deform(*arguments, expected_warnings=(), source="in.vti"):
+    """The values of the result and which of them are covered."""
+    _, errors = call(program, path(source), *arguments, "-o", path("result.vti"), "--bounds",
+                     "volume", "--padding", "6", "--quiet")
+    warnings = errors.splitlines()
+    assert len(warnings) == len(expected_warnings), errors
+    for line, text in zip(warnings, expected_warnings):
+        assert line.startswith("deform-volume: warning: ") and text in line, line
+    result = read_vti(path("result.vti"))
+    os.remove(path("result.vti"))
+    return get_values(result, "Values"), get_values(result, "vtkValidPointMask")
+
+
+def check_same(expected, *arguments, **settings):
+    for values, array in zip(expected, deform(*arguments, **settings)):
+        numpy.testing.assert_array_equal(values, array)
+
+
+def check_formats_of_meshes():
+    """All formats hold the displacements in double precision, and the nodes as they are."""
+    expected = deform(*as_mesh("mesh.vtu"))
+    assert 1000 < expected[1].sum() < expected[1].size - 1000
+    for name in ("binary.vtk", "old.vtk", "mesh.pvtu", "mesh.vtm", "one.pvd", "parts.pvd", "mesh.e",
+                 "mesh.ex2", "mesh.vtkhdf"):
+        check_same(expected, *as_mesh(name))
+    hexahedra = deform(*as_mesh("hexahedra.vtu"))
+    for name in ("mesh.vts", "structured.vtk", "mesh.vtr", "rectilinear.vtk"):
+        check_same(hexahedra, *as_mesh(name))
+    shutil.copy(path("mesh.vtu"), path("UPPER.VTU"))
+    check_same(expected, *as_mesh("UPPER.VTU"))
+    # Of a series the last step, which is said.
+    check_same(expected, *as_mesh("series.pvd"),
+               expected_warnings=["series.pvd holds 3 time steps; the last one, of the time 2.5"])
+    check_same(expected, *as_mesh("series.exo"),
+               expected_warnings=["series.exo holds 3 time steps; the last one, of the time 1,"])
+    # A pair of meshes of several formats.
+    write(vtkUnstructuredGridWriter(), make_unstructured(places + moves, moves),
+          path("moved.vtk"), SetFileType=2)
+    pair = deform("--mesh", path("moved.vtk"), "--rest", path("mesh.vtu"))
+    check_same(pair, "--mesh", path("moved.vtk"), "--rest", path("mesh.vtkhdf"))
+    assert (pair[0] != expected[0]).mean() < 1e-3  # as the sums are rounded
+
+
+def check_formats_of_sheets():
+    pull = ("--model", "chainmail", "--pull", "8,20,25,-3,1,1,3")
+    expected = deform("--cut", path("cut.vtp"), *pull)
+    assert not numpy.array_equal(expected[0], deform(*pull)[0])
+    for name in SHEETS:
+        check_same(expected, "--cut", path(name), *pull)
+
+
+SHEETS = write_sheets()
+check_misuse_of_meshes()
+check_misuse_of_sheets()
+check_formats_of_meshes()
+check_formats_of_sheets()
