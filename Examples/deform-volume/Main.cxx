@@ -177,6 +177,21 @@ void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume,
   timings.Print(std::cout);
 }
 
+// What a file says of its own world counts.
+void SetSpace(Volume& volume, const Options& options, Messages& messages)
+{
+  const WorldAxes said = options.VolumeSpace == "ras" ? WorldAxes::RightAnteriorSuperior
+                                                      : WorldAxes::LeftPosteriorSuperior;
+  if (volume.Axes != WorldAxes::Unknown && volume.Axes != said)
+  {
+    messages.DisplayWarningText(("--volume-space " + options.VolumeSpace +
+      " is not used: " + options.Volume + " says itself that it is in the other one.")
+                                  .c_str());
+    return;
+  }
+  volume.Axes = said;
+}
+
 void DeformVolume(const Options& options, Messages& messages)
 {
   CheckOutputs(options);
@@ -185,6 +200,10 @@ void DeformVolume(const Options& options, Messages& messages)
   const Stopwatch reading;
   const ReadingOptions place{ options.FileCoordinates, options.Frame };
   Volume volume = ReadVolume(options.Volume, place, messages, !options.Quiet);
+  if (!options.VolumeSpace.empty())
+  {
+    SetSpace(volume, options, messages);
+  }
   timings.Add("read volume", reading.GetSeconds());
 
   const Stopwatch cutting;
@@ -231,6 +250,7 @@ void DeformVolume(const Options& options, Messages& messages)
     timings.Add("deform and draw frames", movieTime);
   }
   timings.Add(!options.Field.empty() ? "read field"
+      : !options.Transforms.empty()  ? "read transform"
       : options.HasElasticModel()    ? "simulate"
       : !options.Model.empty()       ? "pull by ChainMail"
       : options.Mesh.empty()         ? "make mesh"

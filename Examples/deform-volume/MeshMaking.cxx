@@ -179,6 +179,13 @@ Deformation MakeDeformation(
       { options.FieldIsInverse, options.FieldSpace }, messages, !options.Quiet);
     deformation.Displacement = IsVTKFile(options.Field) ? options.Displacement : FieldArrayName;
   }
+#ifdef DEFORMVOLUME_HAVE_ITK
+  else if (!options.Transforms.empty())
+  {
+    deformation.Data = ReadTransforms(options.Transforms, volume, messages, !options.Quiet);
+    deformation.Displacement = FieldArrayName;
+  }
+#endif
   else if (options.Model == "chainmail")
   {
     PullByChainMail(options, volume, messages, deformation, takeFrame);

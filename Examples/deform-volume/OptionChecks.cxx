@@ -44,6 +44,10 @@ void CheckOverwriting(const Options& options)
   {
     std::vector<std::string> inputs{ options.Volume, options.Mesh, options.Rest, options.Field };
     inputs.insert(inputs.end(), options.Cuts.begin(), options.Cuts.end());
+    for (const TransformFile& transform : options.Transforms)
+    {
+      inputs.push_back(transform.Path);
+    }
     for (const std::string& input : inputs)
     {
       if (!output.empty() && !input.empty() && vtksys::SystemTools::SameFile(output, input))
@@ -107,8 +111,9 @@ void CheckModel(const Options& options)
 void CheckDeformation(const Options& options)
 {
   CheckModel(options);
-  const int deformations = !options.Mesh.empty() + !options.Field.empty() + options.TetGen +
-    options.HasLattice() + (options.Model == "chainmail");
+  const int deformations = !options.Mesh.empty() + !options.Field.empty() +
+    !options.Transforms.empty() + options.TetGen + options.HasLattice() +
+    (options.Model == "chainmail");
   if (deformations == 0 && options.HasTools())
   {
     if (!options.Displacement.empty() || options.Scale != 1.0 || !options.Pushes.empty())
@@ -121,7 +126,7 @@ void CheckDeformation(const Options& options)
   if (deformations != 1)
   {
     throw UsageError(
-      "exactly one of --mesh, --field, --tetgen, --lattice and --model chainmail says "
+      "exactly one of --mesh, --field, --transform, --tetgen, --lattice and --model chainmail says "
       "what deforms the volume");
   }
   if (!options.Mesh.empty())
@@ -148,6 +153,11 @@ void CheckDeformation(const Options& options)
       throw UsageError("--push goes with --tetgen or --lattice; a --field brings its displacement");
     }
   }
+  else if (!options.Transforms.empty() && !options.Pushes.empty())
+  {
+    throw UsageError(
+      "--push goes with --tetgen or --lattice; a --transform brings its displacement");
+  }
   else if (options.Model == "chainmail" && !options.Pushes.empty())
   {
     throw UsageError("--push goes with --tetgen or --lattice; give --pull to --model chainmail");
@@ -157,7 +167,7 @@ void CheckDeformation(const Options& options)
     throw UsageError(std::string(options.Scale != 1.0 ? "--scale" : "--displacement") +
       " requires --mesh or --field");
   }
-  else if (options.Model.empty() && options.Pushes.empty())
+  else if (options.Transforms.empty() && options.Model.empty() && options.Pushes.empty())
   {
     throw UsageError("--tetgen and --lattice need at least one --push X,Y,Z,DX,DY,DZ,RADIUS, or "
                      "--model");
@@ -189,7 +199,7 @@ void CheckOptions(const Options& options)
   {
     if (!CanWriteVolume(output))
     {
-      throw UsageError("--output " + output + ": the name must end in .vti, .mhd, .nii or .nii.gz");
+      throw UsageError("--output " + output + ": the name must end in " + WrittenFormats);
     }
   }
   const auto endsIn = [](const std::string& path, const char* suffix)

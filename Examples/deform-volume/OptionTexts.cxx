@@ -114,3 +114,17 @@ MaterialOfValues ParseMaterial(const std::string& text)
   }
   return material;
 }
+
+TransformFile ParseTransform(const std::string& text)
+{
+  const std::string inverted = ",invert";
+  TransformFile file;
+  file.IsInverted = text.size() > inverted.size() &&
+    text.compare(text.size() - inverted.size(), inverted.size(), inverted) == 0;
+  file.Path = text.substr(0, text.size() - (file.IsInverted ? inverted.size() : 0));
+  if (file.Path.find(',') != std::string::npos)
+  {
+    throw UsageError("--transform " + text + ": expected FILE or FILE,invert");
+  }
+  return file;
+}

@@ -7,6 +7,7 @@
 #include "Failure.h"
 #include "Push.h"
 #include "Tools.h"
+#include "TransformReading.h"
 
 #include <array>
 #include <cstddef>
@@ -41,6 +42,7 @@ Pull ParsePull(const std::string& text);
 Fixation ParseFixation(const std::string& text);
 Carving ParseCarving(const std::string& text);
 MaterialOfValues ParseMaterial(const std::string& text);
+TransformFile ParseTransform(const std::string& text);
 ///@}
 
 #endif

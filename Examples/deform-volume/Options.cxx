@@ -23,6 +23,7 @@ struct RawOptions
   std::vector<std::string> Materials;
   std::string Gravity = "0,0,0";
   std::vector<std::string> Carvings;
+  std::vector<std::string> Transforms;
   std::string View;
   double Isovalue = 0.0;
   double Threshold = 0.0;
@@ -68,6 +69,16 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
   {
     options.Carvings.push_back(ParseCarving(text));
   }
+#ifndef DEFORMVOLUME_HAVE_ITK
+  if (!raw.Transforms.empty())
+  {
+    throw UsageError("--transform: this program was built without ITK, which reads transforms");
+  }
+#endif
+  for (const std::string& text : raw.Transforms)
+  {
+    options.Transforms.push_back(ParseTransform(text));
+  }
   if (!raw.View.empty())
   {
     options.View = ParseNumbers<double, 3>("--view", raw.View, "three numbers X,Y,Z");
@@ -89,7 +100,16 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
     options.Frame = raw.Frame;
   }
   options.Extrapolate = raw.Outside == "extrapolate";
-  options.VolumeBounds = raw.Bounds == "volume";
+  options.VolumeBounds = raw.Bounds == "volume" || !options.Transforms.empty();
+  if (!options.Transforms.empty())
+  {
+    if (program.count("--bounds") && raw.Bounds != "volume")
+    {
+      throw UsageError("--bounds deformed: a --transform is known on the grid of the volume, where "
+                       "the result lies");
+    }
+    options.FieldIsInverse = true;
+  }
   options.Cubic = raw.Interpolation == "cubic";
   CheckOptions(options);
 }
@@ -133,7 +153,7 @@ void AddElasticModel(CLI::App& program, Options& options, RawOptions& raw)
 void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
 {
   const char* group =
-    "What deforms the volume (one of --mesh, --field, --tetgen, --lattice, --model)";
+    "What deforms the volume (one of --mesh, --field, --transform, --tetgen, --lattice, --model)";
   program
     .add_option("--mesh", options.Mesh,
       "Mesh (" + GetMeshSuffixes() +
@@ -161,6 +181,18 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
       "the head) or ras (x to the right, y to the front) [that of the volume]")
     ->check(CLI::IsMember({ "lps", "ras" }))
     ->type_name("SPACE")
+    ->group(group);
+  program
+    .add_option("--transform", raw.Transforms,
+      "A registration's transform, from the result (the fixed image) to the volume (the moving "
+      "one), "
+      "as ITK, SimpleITK, ANTs and 3D Slicer write it: .h5, .tfm, .txt or .mat with a matrix, a "
+      "B-spline, a displacement field or a composition, or a displacement field as for --field. "
+      "With ,invert behind its name a matrix is inverted. May be given several times: points go "
+      "through the last one first, as with antsApplyTransforms")
+    ->type_name("FILE[,invert]")
+    ->take_all()
+    ->expected(1)
     ->group(group);
   program
     .add_option("--displacement", options.Displacement,
@@ -302,9 +334,12 @@ void AddDependencies(CLI::App& program)
   needs("--cut", { "--smooth-cut" });
   program.get_option("--scale")->excludes(program.get_option("--rest"));
   program.get_option("--points-are-deformed")->excludes(program.get_option("--rest"));
-  program.get_option("--field")->excludes(program.get_option("--file-coordinates"));
+  for (const char* option : { "--field", "--transform" })
+  {
+    program.get_option(option)->excludes(program.get_option("--file-coordinates"));
+  }
   program.get_option("--isovalue")->excludes(program.get_option("--labels"));
-  for (const char* option : { "--mesh", "--field" })
+  for (const char* option : { "--mesh", "--field", "--transform" })
   {
     program.get_option("--write-mesh")->excludes(program.get_option(option));
   }
@@ -374,8 +409,8 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
   const char* group = "What is written";
   program
     .add_option("-o,--output", options.Outputs,
-      "The deformed volume: .vti (all arrays), .mhd, .nii or .nii.gz (the scalars). May be given "
-      "several times")
+      "The deformed volume: .vti (all arrays), .nii, .nii.gz, .mhd, .mha, .nrrd or .nhdr (the "
+      "scalars). May be given several times")
     ->type_name("FILE")
     ->take_all()
     ->expected(1)
@@ -450,6 +485,12 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
       "Which volume of a file with several in time, counted from 0 (NIfTI, MetaImage, NRRD)")
     ->check(CLI::NonNegativeNumber)
     ->type_name("NUMBER");
+  program
+    .add_option("--volume-space", options.VolumeSpace,
+      "The world of a volume whose file does not say it (.vti, some .nrrd): lps or ras, see "
+      "--field-space")
+    ->check(CLI::IsMember({ "lps", "ras" }))
+    ->type_name("SPACE");
   program.add_flag("--file-coordinates", options.FileCoordinates,
     "Do as VTK's and ParaView's readers do: no direction, and origin 0 for NIfTI files and DICOM "
     "series");

@@ -6,6 +6,7 @@
 #include "ElasticModel.h"
 #include "Push.h"
 #include "Tools.h"
+#include "TransformReading.h"
 
 #include <array>
 #include <optional>
@@ -20,12 +21,14 @@ struct Options
   std::string Volume;
   bool FileCoordinates = false;
   std::optional<int> Frame;
+  std::string VolumeSpace;
 
   std::string Mesh;
   std::string Displacement;
   std::string Rest;
   double Scale = 1.0;
   std::string Field;
+  std::vector<TransformFile> Transforms;
   bool PointsAreDeformed = false;
   bool FieldIsInverse = false;
   std::string FieldSpace;

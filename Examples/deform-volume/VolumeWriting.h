@@ -8,7 +8,15 @@
 
 class Messages;
 
-/// True for the names that WriteVolume accepts: .vti, .mhd, .nii, .nii.gz.
+/// How names end that WriteVolume accepts.
+#ifdef DEFORMVOLUME_HAVE_ITK
+inline constexpr const char* WrittenFormats = ".vti, .nii, .nii.gz, .mhd, .mha, .nrrd or .nhdr";
+#else
+inline constexpr const char* WrittenFormats =
+  ".vti, .nii or .nii.gz: this program was built without ITK";
+#endif
+
+/// Whether a name ends so.
 bool CanWriteVolume(const std::string& path);
 
 /// Writes a volume. A .vti file keeps all arrays, the others the scalars alone. Origin, direction

@@ -15,7 +15,7 @@ WorldAxes ChooseSpace(const std::string& option, const std::string& said, const 
   {
     throw Failure(option + " " + said +
       ": the file of the volume does not say whether its own world is lps or ras, so " + path +
-      " cannot be turned into it");
+      " cannot be turned into it. Say it with --volume-space");
   }
   const WorldAxes axes =
     said == "ras" ? WorldAxes::RightAnteriorSuperior : WorldAxes::LeftPosteriorSuperior;
