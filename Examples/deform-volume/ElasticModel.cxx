@@ -105,7 +105,8 @@ void AddMaterials(
 }
 
 // All sheets as one, which cuts the mesh before it moves.
-void AddSheets(const Options& options, vtkElasticDeformation* model, Messages& messages)
+void AddSheets(
+  const Options& options, const Volume& volume, vtkElasticDeformation* model, Messages& messages)
 {
   if (options.Cuts.empty())
   {
@@ -114,7 +115,7 @@ void AddSheets(const Options& options, vtkElasticDeformation* model, Messages& m
   vtkNew<vtkAppendPolyData> sheets;
   for (const std::string& path : options.Cuts)
   {
-    sheets->AddInputData(ReadSheet(path, options, messages));
+    sheets->AddInputData(ReadSheet(path, options, volume, messages));
   }
   sheets->Update();
   model->SetSheetData(sheets->GetOutput());
@@ -141,7 +142,7 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
   const auto run = [&](vtkElasticDeformation* model, const auto& update)
   {
     SetUp(model, options, mesh);
-    AddSheets(options, model, messages);
+    AddSheets(options, volume, model, messages);
     const int frames = std::max(options.Frames, 1);
     for (int frame = 1; frame <= frames; ++frame)
     {

@@ -166,11 +166,11 @@ Deformation MakeDeformation(
   Deformation deformation;
   if (!options.Mesh.empty())
   {
-    deformation.Data = ReadMesh(options.Mesh, options.Displacement, options, messages);
+    deformation.Data = ReadMesh(options.Mesh, options.Displacement, options, volume, messages);
     deformation.Displacement = options.Displacement;
     if (!options.Rest.empty())
     {
-      deformation.Rest = ReadMesh(options.Rest, "", options, messages);
+      deformation.Rest = ReadMesh(options.Rest, "", options, volume, messages);
     }
   }
   else if (!options.Field.empty())

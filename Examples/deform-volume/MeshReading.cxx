@@ -4,11 +4,13 @@
 #include "Failure.h"
 #include "MeshContents.h"
 #include "MeshFormats.h"
+#include "MeshSpace.h"
 #include "Messages.h"
 #include "NetcdfFile.h"
 #include "Options.h"
 #include "ProgressBar.h"
 #include "SheetFile.h"
+#include "Volume.h"
 
 #include <vtkAlgorithm.h>
 #include <vtkGenericDataObjectReader.h>
@@ -19,6 +21,7 @@
 #include <vtkPLYReader.h>
 #include <vtkSTLReader.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkStringArray.h>
 #include <vtkVersionMacros.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLGenericDataObjectReader.h>
@@ -130,7 +133,9 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const Source& source)
   reader->ReadAllColorScalarsOn();
   reader->ReadAllTCoordsOn();
   reader->ReadAllFieldsOn();
-  return ReadBy(reader.Get(), source, "legacy file of VTK");
+  const vtkSmartPointer<vtkDataObject> data = ReadBy(reader.Get(), source, "legacy file of VTK");
+  KeepSpace(data, reader->GetHeader());
+  return data;
 }
 
 bool BeginsWith(const std::string& path, std::initializer_list<std::string> beginnings)
@@ -313,58 +318,90 @@ vtkSmartPointer<vtkDataObject> ReadMeshFile(const Source& source)
   throw Failure("cannot read " + source.Path + " as a mesh: a mesh is a file of the types " +
     GetMeshSuffixes() + ", or a displacement field (.vti). " + GetMeshConversion(source.Path));
 }
+
+vtkSmartPointer<vtkDataObject> ReadSTL(const Source& source)
+{
+  const char* const format = "STL file";
+  if (IsStlCutOff(source.Path))
+  {
+    source.Log.DisplayErrorText("It ends before its triangles do");
+  }
+  CheckReading(source, format);
+  vtkNew<vtkSTLReader> reader;
+  const vtkSmartPointer<vtkDataObject> sheet = ReadBy(reader.Get(), source, format);
+  KeepSpace(sheet, reader->GetHeader());
+  return sheet;
+}
+
+vtkSmartPointer<vtkDataObject> ReadPLY(const Source& source)
+{
+  const char* const format = "PLY file";
+  if (IsPlyCutOff(source.Path))
+  {
+    source.Log.DisplayErrorText("It ends before its header or its elements do");
+  }
+  CheckReading(source, format);
+  vtkNew<vtkPLYReader> reader;
+  const vtkSmartPointer<vtkDataObject> sheet = ReadBy(reader.Get(), source, format);
+  for (vtkIdType i = 0; i < reader->GetComments()->GetNumberOfValues(); ++i)
+  {
+    KeepSpace(sheet, reader->GetComments()->GetValue(i).c_str());
+  }
+  return sheet;
+}
+
+vtkSmartPointer<vtkDataObject> ReadOBJ(const Source& source)
+{
+  vtkNew<vtkOBJReader> reader;
+  const vtkSmartPointer<vtkDataObject> sheet = ReadBy(reader.Get(), source, "OBJ file");
+  KeepSpace(sheet, reader->GetComment());
+  return sheet;
+}
+
+vtkSmartPointer<vtkDataObject> ReadSheetFile(const Source& source)
+{
+  CheckFile(source.Path);
+  if (HasSuffix(source.Path, { ".vtp", ".pvtp" }))
+  {
+    return ReadXML(source);
+  }
+  if (HasSuffix(source.Path, { ".vtk" }))
+  {
+    return ReadLegacy(source);
+  }
+  if (HasSuffix(source.Path, { ".stl" }))
+  {
+    return ReadSTL(source);
+  }
+  if (HasSuffix(source.Path, { ".ply" }))
+  {
+    return ReadPLY(source);
+  }
+  if (HasSuffix(source.Path, { ".obj" }))
+  {
+    return ReadOBJ(source);
+  }
+  throw Failure("cannot read " + source.Path + " as a sheet: a sheet is a file of the types " +
+    GetSheetSuffixes() + ". " + GetSheetConversion(source.Path));
+}
 }
 
 vtkSmartPointer<vtkDataObject> ReadMesh(const std::string& path, const std::string& displacement,
-  const Options& options, Messages& messages)
+  const Options& options, const Volume& volume, Messages& messages)
 {
   const vtkSmartPointer<vtkDataObject> mesh =
     ReadMeshFile({ path, "reading mesh", messages, !options.Quiet });
   CheckMesh(mesh, displacement, path);
+  TurnIntoWorld(mesh, displacement, options.MeshSpace, path, volume.Axes, messages);
   return mesh;
 }
 
 vtkSmartPointer<vtkPolyData> ReadSheet(
-  const std::string& path, const Options& options, Messages& messages)
+  const std::string& path, const Options& options, const Volume& volume, Messages& messages)
 {
-  CheckFile(path);
-  const Source source{ path, "reading sheet", messages, !options.Quiet };
-  vtkSmartPointer<vtkDataObject> sheet;
-  if (HasSuffix(path, { ".vtp", ".pvtp" }))
-  {
-    sheet = ReadXML(source);
-  }
-  else if (HasSuffix(path, { ".vtk" }))
-  {
-    sheet = ReadLegacy(source);
-  }
-  else if (HasSuffix(path, { ".stl" }))
-  {
-    if (IsStlCutOff(path))
-    {
-      messages.DisplayErrorText("It ends before its triangles do");
-    }
-    CheckReading(source, "STL file");
-    sheet = ReadBy(vtkNew<vtkSTLReader>().Get(), source, "STL file");
-  }
-  else if (HasSuffix(path, { ".ply" }))
-  {
-    if (IsPlyCutOff(path))
-    {
-      messages.DisplayErrorText("It ends before its header or its elements do");
-    }
-    CheckReading(source, "PLY file");
-    sheet = ReadBy(vtkNew<vtkPLYReader>().Get(), source, "PLY file");
-  }
-  else if (HasSuffix(path, { ".obj" }))
-  {
-    sheet = ReadBy(vtkNew<vtkOBJReader>().Get(), source, "OBJ file");
-  }
-  else
-  {
-    throw Failure("cannot read " + path + " as a sheet: a sheet is a file of the types " +
-      GetSheetSuffixes() + ". " + GetSheetConversion(path));
-  }
+  const vtkSmartPointer<vtkDataObject> sheet =
+    ReadSheetFile({ path, "reading sheet", messages, !options.Quiet });
   CheckSheet(sheet, path);
+  TurnIntoWorld(sheet, "", options.MeshSpace, path, volume.Axes, messages);
   return vtkPolyData::SafeDownCast(sheet);
 }

@@ -186,6 +186,10 @@ void CheckOptions(const Options& options)
     throw UsageError("no VOLUME is given; deform-volume --help tells how to call the program");
   }
   CheckDeformation(options);
+  if (!options.MeshSpace.empty() && options.Mesh.empty() && options.Cuts.empty())
+  {
+    throw UsageError("--mesh-space requires --mesh or --cut");
+  }
   if (options.Outputs.empty() && options.Image.empty() && options.Movie.empty())
   {
     throw UsageError("nothing to write: give --output, --image or --movie");

@@ -206,6 +206,15 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     ->type_name("FILE")
     ->group(group);
   program
+    .add_option("--mesh-space", options.MeshSpace,
+      "The world of files of --mesh, --rest and --cut that do not say it themselves, as those of "
+      "3D "
+      "Slicer do: lps (x to the left, y to the back, z to the head) or ras (x to the right, y to "
+      "the front) [that of the volume]")
+    ->check(CLI::IsMember({ "lps", "ras" }))
+    ->type_name("SPACE")
+    ->group(group);
+  program
     .add_flag("--points-are-deformed", options.PointsAreDeformed,
       "The points of --mesh are deformed already: their displacements lead from the rest "
       "positions to them")
@@ -417,7 +426,8 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program
     .add_option("--write-mesh", options.MeshOutput,
-      "The mesh of --tetgen or --lattice at rest, with the point array \"Displacement\" (.vtu)")
+      "The mesh of --tetgen or --lattice at rest, in the world of the volume, with the point array "
+      "\"Displacement\" (.vtu)")
     ->type_name("FILE")
     ->group(group);
   program

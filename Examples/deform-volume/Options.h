@@ -26,6 +26,7 @@ struct Options
   std::string Mesh;
   std::string Displacement;
   std::string Rest;
+  std::string MeshSpace;
   double Scale = 1.0;
   std::string Field;
   std::vector<TransformFile> Transforms;

@@ -35,7 +35,7 @@ std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Mes
   {
     vtkNew<vtkCutVolume> cut;
     cut->SetInputData(volume.Image);
-    cut->SetSheetData(ReadSheet(path, options, messages));
+    cut->SetSheetData(ReadSheet(path, options, volume, messages));
     cut->SetSmoothCut(options.SmoothCut);
     const ProgressBar bar(cut, "cutting", !options.Quiet);
     cut->Update();

@@ -8,6 +8,7 @@ import sys
 
 import numpy
 from MeshFiles import (
+    SIZE,
     add_arrays,
     make_blocks,
     make_hexahedra,
@@ -17,6 +18,7 @@ from MeshFiles import (
     make_structured,
     make_tetrahedra,
     make_unstructured,
+    state_space,
     to_points,
     to_vtk,
     write,
@@ -25,6 +27,7 @@ from MeshFiles import (
     write_hdf,
 )
 from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkVersion
 from vtkmodules.vtkCommonDataModel import (
     VTK_LINE,
@@ -32,6 +35,7 @@ from vtkmodules.vtkCommonDataModel import (
     VTK_QUAD,
     VTK_TETRA,
     VTK_VERTEX,
+    vtkImageData,
     vtkPolyData,
     vtkRectilinearGrid,
     vtkTable,
@@ -360,7 +364,7 @@ def deform(*arguments, expected_warnings=(), source="in.vti"):
         assert line.startswith("deform-volume: warning: ") and text in line, line
     result = read_vti(path("result.vti"))
     os.remove(path("result.vti"))
-    return get_values(result, "Values"), get_values(result, "vtkValidPointMask")
+    return get_values(result), get_values(result, "vtkValidPointMask")
 
 
 def check_same(expected, *arguments, **settings):
@@ -401,8 +405,153 @@ def check_formats_of_sheets():
         check_same(expected, "--cut", path(name), *pull)
 
 
+FLIP = numpy.array([-1.0, -1.0, 1.0])
+LPS_HEADER = "3D Slicer output. SPACE=LPS"  # as 3D Slicer writes it
+
+
+def convert_volume(name):
+    """The volume in a format that says what its world is: .nii is ras, .mhd is lps."""
+    call(program, path("in.vti"), "--lattice", "3,3,3", "--push", "0,0,0,0.0001,0,0,1000", "-o",
+         path(name), "--quiet", "--bounds", "volume")
+
+
+def write_flipped_meshes():
+    """The mesh in the other space."""
+    flipped = FLIP * places
+    flipped_moves = FLIP * moves
+    for integer, name in ((False, "other.vtu"), (True, "bytes.vtu")):
+        grid = make_unstructured(flipped, flipped_moves)
+        if integer:
+            grid.GetPointData().AddArray(to_vtk("Displacement",
+                                                numpy.full(moves.shape, 2, numpy.uint8)))
+        write(vtkXMLUnstructuredGridWriter(), grid, path(name), **XML)
+    grid = make_unstructured(flipped, flipped_moves)
+    write(vtkUnstructuredGridWriter(), grid, path("other.vtk"), SetFileType=2)
+    write(vtkUnstructuredGridWriter(), grid, path("slicer.vtk"), SetFileType=2,
+          SetHeader=LPS_HEADER)
+    write(vtkXMLStructuredGridWriter(), make_structured(flipped, flipped_moves), path("other.vts"),
+          **XML)
+    write(vtkXMLRectilinearGridWriter(),
+          make_rectilinear([sign * axis for sign, axis in zip(FLIP, axes)], flipped_moves),
+          path("other.vtr"), **XML)
+    write_exodus(grid, path("other.e"))
+    write_hdf(path("other.vtkhdf"), flipped, flipped_moves)
+    left, right = (make_unstructured(flipped, flipped_moves, some)
+                   for some in (cells[:half], cells[half:]))
+    write(vtkXMLMultiBlockDataWriter(), make_blocks(("left", left), ("right", right)),
+          path("other.vtm"), **XML)
+    # What files say themselves.
+    write(vtkXMLUnstructuredGridWriter(), state_space(grid, "LPS"), path("slicer.vtu"), **XML)
+    write(vtkXMLUnstructuredGridWriter(), state_space(left, "LPS"), path("left.vtu"), **XML)
+    write_collection(path("mixed.pvd"), [(0, "left.vtu"), (0, "part1.vtu")])
+    strange = state_space(make_unstructured(places, moves), "scanner")
+    write(vtkXMLUnstructuredGridWriter(), strange, path("strange.vtu"), **XML)
+
+
+def check_spaces_of_meshes():
+    """A mesh in one space deforms a volume in the other as a mesh does that is in its own: negated
+    numbers are exact."""
+    write_flipped_meshes()
+    expected = deform(*as_mesh("mesh.vtu"))
+    hexahedra = deform(*as_mesh("hexahedra.vtu"))
+    for volume_name, own, other in (("in.nii.gz", "ras", "lps"), ("in.mhd", "lps", "ras")):
+        check_same(expected, *as_mesh("mesh.vtu"), source=volume_name)
+        check_same(expected, *as_mesh("mesh.vtu"), "--mesh-space", own, source=volume_name)
+        for name in ("other.vtu", "other.vtk", "other.vtm", "other.e", "other.vtkhdf"):
+            check_same(expected, *as_mesh(name), "--mesh-space", other, source=volume_name)
+        for name in ("other.vts", "other.vtr"):
+            check_same(hexahedra, *as_mesh(name), "--mesh-space", other, source=volume_name)
+    same = deform("--mesh", path("moved.vtk"), "--rest", path("mesh.vtu"))
+    write(vtkUnstructuredGridWriter(), make_unstructured(FLIP * (places + moves), moves),
+          path("other-moved.vtk"), SetFileType=2)
+    check_same(same, "--mesh", path("other-moved.vtk"), "--rest", path("other.vtu"), "--mesh-space",
+               "lps", source="in.nii.gz")
+    # Without the option a mesh of the other space lies elsewhere.
+    fails(1, "holds no voxel of the volume", *as_mesh("other.vtu"), source="in.nii.gz")
+    # Unsigned displacements, which have no negative.
+    grid = make_unstructured(places, moves)
+    grid.GetPointData().AddArray(to_vtk("Displacement", numpy.full(moves.shape, 2.0) * FLIP))
+    write(vtkXMLUnstructuredGridWriter(), grid, path("signed.vtu"), **XML)
+    check_same(deform(*as_mesh("signed.vtu")), *as_mesh("bytes.vtu"), "--mesh-space", "lps",
+               source="in.nii.gz")
+    # A field: its box and its vectors.
+    for name, origin, sign in (("field.vti", volume.GetOrigin(), 1),
+                               ("other.vti", FLIP * volume.GetOrigin(), -1)):
+        field = vtkImageData()
+        field.SetDimensions(*SIZE)
+        field.SetSpacing(*(n * step / (m - 1) for n, step, m in
+                           zip((24, 21, 18), volume.GetSpacing(), SIZE)))
+        field.SetOrigin(*origin)
+        field.SetDirectionMatrix(sign, 0, 0, 0, sign, 0, 0, 0, 1)
+        add_arrays(field, moves if sign > 0 else FLIP * moves)
+        write(vtkXMLImageDataWriter(), field, path(name), **XML)
+    check_same(deform(*as_mesh("field.vti")), *as_mesh("other.vti"), "--mesh-space", "lps",
+               source="in.nii.gz")
+
+
+def check_files_that_say_their_space():
+    """They are right, and a warning says so where the option says otherwise."""
+    expected = deform(*as_mesh("mesh.vtu"))
+    for name in ("slicer.vtu", "slicer.vtk", "mixed.pvd"):
+        check_same(expected, *as_mesh(name), source="in.nii.gz")
+    for name in ("slicer.vtu", "slicer.vtk"):
+        check_same(expected, *as_mesh(name), "--mesh-space", "lps", source="in.nii.gz")
+        check_same(expected, *as_mesh(name), "--mesh-space", "ras", source="in.nii.gz",
+                   expected_warnings=[f"--mesh-space ras is not used: {path(name)} says itself that "
+                                      "it is lps"])
+    check_same(expected, *as_mesh("strange.vtu"), source="in.nii.gz",
+               expected_warnings=['says "scanner", which is neither LPS nor RAS'])
+    # A volume that does not say its own.
+    fails(1, ["--mesh-space lps", "does not say"], *as_mesh("mesh.vtu"), "--mesh-space", "lps")
+    write(vtkXMLUnstructuredGridWriter(), state_space(make_unstructured(places, moves), "LPS"),
+          path("stated.vtu"), **XML)
+    check_same(expected, *as_mesh("stated.vtu"),
+               expected_warnings=["stated.vtu says that it is lps, which is not used"])
+    # Wrong usage.
+    fails(2, "--mesh-space", *as_mesh("mesh.vtu"), "--mesh-space", "LAS")
+    fails(2, "--mesh-space requires --mesh or --cut", "--carve", "sphere:9,20,25,5", "--mesh-space",
+          "lps")
+
+
+def check_spaces_of_sheets():
+    """As a mesh, in all formats. Headers and comments as 3D Slicer writes them."""
+    pull = ("--model", "chainmail", "--pull", "8,20,25,-3,1,1,3")
+    expected = deform("--cut", path("cut.vtp"), *pull)
+    sheet = make_sheet()
+    sheet.GetPointData().Initialize()
+    sheet.SetPoints(to_points(FLIP * vtk_to_numpy(sheet.GetPoints().GetData())))
+    triangulation = vtkTriangleFilter()
+    triangulation.SetInputData(sheet)
+    triangulation.Update()
+    triangles = triangulation.GetOutput()
+    write(vtkXMLPolyDataWriter(), sheet, path("plain.vtp"), **XML)
+    write(vtkXMLPolyDataWriter(), state_space(sheet, "LPS"), path("slicer.vtp"), **XML)
+    write(vtkPolyDataWriter(), sheet, path("slicer-sheet.vtk"), SetHeader=LPS_HEADER, SetFileType=2)
+    write(vtkSTLWriter(), triangles, path("slicer.stl"), SetHeader=LPS_HEADER, SetFileType=2)
+    write(vtkSTLWriter(), triangles, path("slicer-ascii.stl"), SetHeader=LPS_HEADER, SetFileType=1)
+    write(vtkPLYWriter(), triangles, path("slicer.ply"), AddComment="SPACE=LPS", SetFileType=2)
+    write(vtkOBJWriter(), triangles, path("plain.obj"))
+    with open(path("plain.obj"), encoding="ascii") as plain:
+        write_text("slicer.obj", "# " + LPS_HEADER + "\n" + plain.read())
+    check_same(expected, "--cut", path("plain.vtp"), *pull, "--mesh-space", "lps",
+               source="in.nii.gz")
+    for name in ("slicer.vtp", "slicer-sheet.vtk", "slicer.stl", "slicer-ascii.stl", "slicer.ply",
+                 "slicer.obj"):
+        check_same(expected, "--cut", path(name), *pull, source="in.nii.gz")
+    # A model is cut in the world of the volume, too.
+    model = ("--model", "fem", "--lattice", "7,7,7", "--fix", "below:8", "--pull",
+             "9,20,40,4,0,0,6")
+    expected = deform("--cut", path("cut.vtp"), *model, source="in.nii.gz")
+    check_same(expected, "--cut", path("slicer.vtp"), *model, source="in.nii.gz")
+
+
 SHEETS = write_sheets()
 check_misuse_of_meshes()
 check_misuse_of_sheets()
 check_formats_of_meshes()
 check_formats_of_sheets()
+convert_volume("in.nii.gz")
+convert_volume("in.mhd")
+check_spaces_of_meshes()
+check_files_that_say_their_space()
+check_spaces_of_sheets()

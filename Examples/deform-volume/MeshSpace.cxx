@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshSpace.h"
+
+#include "ImageAxes.h"
+#include "MeshContents.h"
+#include "Messages.h"
+#include "WorldSpace.h"
+
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPointSet.h>
+#include <vtkPoints.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkStringArray.h>
+
+#include <algorithm>
+
+namespace
+{
+constexpr const char* SpaceName = "SPACE";
+
+WorldAxes FindSpace(const std::string& text, const std::string& before)
+{
+  return text.find(before + "RAS") != std::string::npos ? WorldAxes::RightAnteriorSuperior
+    : text.find(before + "LPS") != std::string::npos    ? WorldAxes::LeftPosteriorSuperior
+                                                        : WorldAxes::Unknown;
+}
+
+WorldAxes GetSpace(vtkDataObject* object, const std::string& path, Messages& messages)
+{
+  auto* array = vtkStringArray::SafeDownCast(object->GetFieldData()->GetAbstractArray(SpaceName));
+  if (!array || array->GetNumberOfValues() == 0)
+  {
+    return WorldAxes::Unknown;
+  }
+  const WorldAxes space = FindSpace(array->GetValue(0), "");
+  if (space == WorldAxes::Unknown)
+  {
+    messages.DisplayWarningText(("The space of " + path + " is not used: it says \"" +
+      array->GetValue(0) + "\", which is neither LPS nor RAS.")
+                                  .c_str());
+  }
+  return space;
+}
+
+/// The space that a part is in, from what its file says.
+WorldAxes Choose(const std::string& said, const std::string& path, WorldAxes ofFile,
+  WorldAxes ofVolume, Messages& messages)
+{
+  if (said.empty() && ofVolume == WorldAxes::Unknown && ofFile != ofVolume)
+  {
+    messages.DisplayWarningText(
+      (path + " says that it is " + (ofFile == WorldAxes::RightAnteriorSuperior ? "ras" : "lps") +
+        ", which is not used, as the file of the volume does not say whether its own world is lps "
+        "or ras.")
+        .c_str());
+    return ofVolume;
+  }
+  return ChooseSpace("--mesh-space", said, path, ofFile, ofVolume, messages);
+}
+
+vtkSmartPointer<vtkDataArray> Negate(vtkDataArray* array, int components)
+{
+  auto negated = vtkSmartPointer<vtkDataArray>::Take(
+    array->GetDataTypeMin() < 0.0 ? array->NewInstance() : vtkDoubleArray::New());
+  negated->DeepCopy(array);
+  negated->SetName(array->GetName());
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    for (int component = 0; component < components; ++component)
+    {
+      negated->SetComponent(i, component, -array->GetComponent(i, component));
+    }
+  }
+  return negated;
+}
+
+/// Exchanges right-anterior-superior and left-posterior-superior. What points and vectors lie in
+/// may be shared with other data, and stays as it is.
+void Flip(vtkDataSet* data, const std::string& displacement)
+{
+  if (auto* image = vtkImageData::SafeDownCast(data))
+  {
+    FlipWorldAxes(image);
+  }
+  else if (auto* grid = vtkRectilinearGrid::SafeDownCast(data))
+  {
+    grid->SetXCoordinates(Negate(grid->GetXCoordinates(), 1));
+    grid->SetYCoordinates(Negate(grid->GetYCoordinates(), 1));
+  }
+  else if (auto* set = vtkPointSet::SafeDownCast(data))
+  {
+    if (set->GetPoints())
+    {
+      vtkNew<vtkPoints> points;
+      points->SetData(Negate(set->GetPoints()->GetData(), 2));
+      set->SetPoints(points);
+    }
+  }
+  vtkDataArray* vectors = data->GetPointData()->GetArray(displacement.c_str());
+  if (!displacement.empty() && vectors)
+  {
+    data->GetPointData()->AddArray(Negate(vectors, std::min(2, vectors->GetNumberOfComponents())));
+  }
+}
+}
+
+void KeepSpace(vtkDataObject* object, const char* header)
+{
+  const WorldAxes space = FindSpace(header ? header : "", std::string(SpaceName) + "=");
+  if (object && space != WorldAxes::Unknown)
+  {
+    vtkNew<vtkStringArray> array;
+    array->SetName(SpaceName);
+    array->InsertNextValue(space == WorldAxes::RightAnteriorSuperior ? "RAS" : "LPS");
+    object->GetFieldData()->AddArray(array);
+  }
+}
+
+void TurnIntoWorld(vtkDataObject* object, const std::string& displacement, const std::string& said,
+  const std::string& path, WorldAxes ofVolume, Messages& messages)
+{
+  const WorldAxes ofAll = GetSpace(object, path, messages);
+  // What was chosen for parts whose files say one thing is chosen, and warned of, once.
+  std::map<WorldAxes, WorldAxes> chosen;
+  for (const MeshPart& part : FindParts(object))
+  {
+    WorldAxes ofFile = part.Data == object ? ofAll : GetSpace(part.Data, path, messages);
+    ofFile = ofFile != WorldAxes::Unknown ? ofFile : ofAll;
+    if (chosen.count(ofFile) == 0)
+    {
+      chosen[ofFile] = Choose(said, path, ofFile, ofVolume, messages);
+    }
+    if (chosen[ofFile] != ofVolume)
+    {
+      Flip(part.Data, displacement);
+    }
+  }
+}
