@@ -239,7 +239,7 @@ void vtkDeformVolumeFilter::ReleaseDeviceMemory()
 //------------------------------------------------------------------------------
 int vtkDeformVolumeFilter::FillInputPortInformation(int port, vtkInformation* info)
 {
-  if (port == 2)
+  if (port > 0)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }

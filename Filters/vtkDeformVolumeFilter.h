@@ -26,7 +26,9 @@
  * sides (vtkCutVolume); resamplers other than EXACT do not know it: an error. Other cell arrays are
  * not resampled, and a warning names them.
  *
- * @par Port 1, the deformation, one of:
+ * @par Port 1, the deformation, optional:
+ * Without it the output is the volume itself, at rest: masks, cuts and carvings show. Otherwise one
+ * of:
  * - vtkUnstructuredGrid, vtkStructuredGrid, vtkRectilinearGrid, or a composite dataset of such
  *   (they are joined): tetrahedra; other three-dimensional cells, quadratic and Lagrange cells
  *   included, are split into tetrahedra (Bezier cells are an error, and so are concave polyhedra
@@ -102,7 +104,7 @@ public:
 
   ///@{
   /**
-   * Connect the deformation (port 1): a tetrahedral mesh or a displacement field.
+   * Connect the deformation (port 1, optional): a tetrahedral mesh or a displacement field.
    */
   void SetDeformationConnection(vtkAlgorithmOutput* output);
   void SetDeformationData(vtkDataObject* data);

@@ -2,6 +2,7 @@
 #include "vtkDeformVolumeFilterInternals.h"
 
 #include "AbortCheck.h"
+#include "FieldAtRest.h"
 #include "FieldFolds.h"
 #include "InputUpdate.h"
 #include "MaskArray.h"
@@ -175,6 +176,31 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
   }
   source.Volume = volume;
   source.Scale = volume.Spacing / this->GetOutputGeometry(volume).Spacing;
+  return source;
+}
+
+//------------------------------------------------------------------------------
+DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSourceAtRest(const ImageGeometry& volume)
+{
+  if (this->Self->GetNumberOfInputConnections(2) > 0)
+  {
+    throw Error("There is a rest configuration on input port 2, but no deformation on input port "
+                "1. Connect the deformation, or disconnect the rest configuration.");
+  }
+  if (!this->FieldAtRest || !(this->VolumeAtRest == volume))
+  {
+    this->FieldAtRest = deformvolume::MakeFieldAtRest(volume);
+    this->VolumeAtRest = volume;
+  }
+  DeformationSource source = this->MakeSource(volume, this->FieldAtRest, nullptr);
+  source.Selector = [](vtkDataSet* dataSet) { return dataSet->GetPointData()->GetVectors(); };
+  source.PointsAreDeformed = false;
+  source.DisplacementScale = 1.0;
+  // Both kinds of fields leave the volume where it is. The resampler that looks up needs an inverse
+  // one.
+  source.FieldIsInverse = this->Self->Resampler == MESH_RASTERIZATION ||
+    (this->Self->Resampler == AUTOMATIC && this->Self->Interpolation == CUBIC_INTERPOLATION);
+  source.Choice = source.FieldIsInverse ? "at rest inverse" : "at rest";
   return source;
 }
 

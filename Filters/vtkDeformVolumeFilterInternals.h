@@ -58,6 +58,10 @@ public:
   deformvolume::DeformationSource MakeSource(
     const deformvolume::ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest) const;
 
+  /// The same where port 1 is not connected: all of the volume stays where it is. Throws an Error
+  /// where port 2 is connected.
+  deformvolume::DeformationSource MakeSourceAtRest(const deformvolume::ImageGeometry& volume);
+
   /// Brings the deformation up to date with what ports 1 and 2 have, on all ranks together.
   /// Collective.
   deformvolume::DeformationSource ReadDeformation(const deformvolume::Ranks& ranks,
@@ -188,6 +192,10 @@ private:
     const deformvolume::ImageGeometry& volume, const deformvolume::DeformationSource& source);
 
   vtkDeformVolumeFilter* Self;
+
+  // What stands in for a deformation where none is connected, and the volume that it is made for.
+  vtkSmartPointer<vtkImageData> FieldAtRest;
+  deformvolume::ImageGeometry VolumeAtRest;
 
   // What the source of the volume announced, and of which state of it that is.
   deformvolume::ImageGeometry VolumeGeometry;

@@ -30,6 +30,11 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::ReadDeformation(
   ranks.Attempt(
     [&]
     {
+      if (this->Self->GetNumberOfInputConnections(1) == 0)
+      {
+        source = this->MakeSourceAtRest(volume);
+        return;
+      }
       source = this->MakeSource(volume, shape, rest);
       source.ShapeIsMade = !deformvolume::IsInMemory(this->Self, 1);
       source.RestIsMade = !deformvolume::IsInMemory(this->Self, 2);

@@ -107,7 +107,10 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   // it gets no further than these.
   for (int port = 0; port < 2 && request->Has(Pipeline::REQUEST_UPDATE_EXTENT()); ++port)
   {
-    deformvolume::RequestNothing(input[port]->GetInformationObject(0));
+    if (vtkInformation* info = input[port]->GetInformationObject(0))
+    {
+      deformvolume::RequestNothing(info);
+    }
   }
   if (vtkDataObject* data = vtkDataObject::GetData(outInfo))
   {

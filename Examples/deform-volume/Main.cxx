@@ -149,9 +149,12 @@ void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume,
   vtkImageData* result = filter->GetOutput();
   vtkDataArray* scalars = volume.Image->GetPointData()->GetArray(0);
   std::cout << "volume     " << GetDimensionsText(volume.Image) << " voxels, "
-            << scalars->GetDataTypeAsString() << "\n"
-            << (vtkImageData::SafeDownCast(deformation.Data) ? "field      " : "mesh       ")
-            << deformation.NumberOfNodes << " nodes, " << deformation.NumberOfCells << " cells\n";
+            << scalars->GetDataTypeAsString() << "\n";
+  if (deformation.Data)
+  {
+    std::cout << (vtkImageData::SafeDownCast(deformation.Data) ? "field      " : "mesh       ")
+              << deformation.NumberOfNodes << " nodes, " << deformation.NumberOfCells << " cells\n";
+  }
   for (const std::string& edges : deformation.Edges)
   {
     std::cout << "edges      " << edges << "\n";

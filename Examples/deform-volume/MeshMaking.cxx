@@ -9,12 +9,9 @@
 #include "Messages.h"
 #include "ProgressBar.h"
 
-#include <vtkBoundingBox.h>
-#include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkLatticeTetrahedraSource.h>
 #include <vtkNew.h>
-#include <vtkPointData.h>
 #include <vtkTetGenMesher.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
@@ -126,28 +123,6 @@ void PushNodes(const Options& options, const vtkSmartPointer<vtkUnstructuredGrid
   deformation.Displacement = PushArrayName;
 }
 
-// A displacement field of zeros that holds the volume.
-vtkSmartPointer<vtkImageData> MakeFieldAtRest(vtkImageData* volume)
-{
-  auto field = vtkSmartPointer<vtkImageData>::New();
-  field->SetDimensions(2, 2, 2);
-  vtkBoundingBox box(volume->GetBounds());
-  box.Inflate(0.01 * box.GetMaxLength()); // the outermost voxels lie within it, whatever is rounded
-  double corner[3];
-  double lengths[3];
-  box.GetMinPoint(corner[0], corner[1], corner[2]);
-  box.GetLengths(lengths);
-  field->SetOrigin(corner);
-  field->SetSpacing(lengths);
-  vtkNew<vtkFloatArray> vectors;
-  vectors->SetName(FieldArrayName);
-  vectors->SetNumberOfComponents(3);
-  vectors->SetNumberOfTuples(field->GetNumberOfPoints());
-  vectors->Fill(0.0);
-  field->GetPointData()->AddArray(vectors);
-  return field;
-}
-
 void WriteMesh(vtkUnstructuredGrid* mesh, const std::string& path, Messages& messages)
 {
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
@@ -192,9 +167,7 @@ Deformation MakeDeformation(
   }
   else if (!options.TetGen && !options.HasLattice())
   {
-    // It is cut, and stays where it is.
-    deformation.Data = MakeFieldAtRest(volume.Image);
-    deformation.Displacement = FieldArrayName;
+    return deformation; // it is cut, and stays where it is
   }
   else
   {

@@ -17,7 +17,7 @@ class Messages;
 /// What deforms the volume.
 struct Deformation
 {
-  /// A mesh or a displacement field.
+  /// A mesh or a displacement field; null: the volume stays where it is.
   vtkSmartPointer<vtkDataObject> Data;
   /// The mesh at rest, if Data is the deformed mesh.
   vtkSmartPointer<vtkDataObject> Rest;
