@@ -347,20 +347,23 @@ public:
   enum Interpolations
   {
     LINEAR_INTERPOLATION = 0,
-    CUBIC_INTERPOLATION = 1
+    CUBIC_INTERPOLATION = 1,
+    NEAREST_INTERPOLATION = 2
   };
 
   ///@{
   /**
    * The interpolation of arrays that are not categorical: linear, or cubic (Catmull-Rom, as
    * vtkImageInterpolator does it) over four voxels on each axis, rounded and clamped to the range
-   * of integer types. Cubic interpolation goes with the resampler MESH_RASTERIZATION only, and a
-   * voxel is then covered only where none of the 64 is blanked. Default: LINEAR_INTERPOLATION.
+   * of integer types, or nearest: every array is treated as categorical. Cubic interpolation goes
+   * with the resampler MESH_RASTERIZATION only, and a voxel is then covered only where none of the
+   * 64 is blanked. Default: LINEAR_INTERPOLATION.
    */
-  vtkSetClampMacro(Interpolation, int, LINEAR_INTERPOLATION, CUBIC_INTERPOLATION);
+  vtkSetClampMacro(Interpolation, int, LINEAR_INTERPOLATION, NEAREST_INTERPOLATION);
   vtkGetMacro(Interpolation, int);
   void SetInterpolationToLinearInterpolation() { this->SetInterpolation(LINEAR_INTERPOLATION); }
   void SetInterpolationToCubicInterpolation() { this->SetInterpolation(CUBIC_INTERPOLATION); }
+  void SetInterpolationToNearestInterpolation() { this->SetInterpolation(NEAREST_INTERPOLATION); }
   ///@}
 
   ///@{

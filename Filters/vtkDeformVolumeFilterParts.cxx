@@ -72,7 +72,7 @@ bool vtkDeformVolumeFilter::vtkInternals::CanTakePart(vtkInformation* volumeInfo
   // The other resamplers want the volume whole, and so do voxels that follow the nearest
   // tetrahedron of a mesh, wherever it may be.
   const bool exact = this->Self->Resampler == EXACT ||
-    (this->Self->Resampler == AUTOMATIC && this->Self->Interpolation == LINEAR_INTERPOLATION);
+    (this->Self->Resampler == AUTOMATIC && this->Self->Interpolation != CUBIC_INTERPOLATION);
   const bool local = this->State->Deformation.IsField() ? !this->State->Deformation.IsInverseField()
                                                         : this->Self->OutsideMode == DISCARD;
   // Data that are there already cost nothing.

@@ -262,6 +262,10 @@ int vtkDeformVolumeFilter::RequestData(
     {
       std::vector<std::string> leftOut;
       arrays = deformvolume::SelectArrays(volume, this->Internals->CategoricalArrays, leftOut);
+      for (deformvolume::SourceArray& array : arrays)
+      {
+        array.Categorical |= this->Interpolation == NEAREST_INTERPOLATION;
+      }
       this->Internals->WarnOfIgnored(volume, leftOut);
       this->Internals->ReleaseOldVolumes(arrays);
       worked = state.Volume.Update(volume, this->SamplingFactor, arrays);

@@ -19,6 +19,7 @@
 #include <vtkStringArray.h>
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
 #include <iostream>
 #include <map>
 #include <optional>
@@ -81,6 +82,27 @@ void CheckOutputs(const Options& options)
   }
 }
 
+// Where values can be negative, the least one is air, and 0 may be tissue. Labels have 0.
+double FindBackground(const Options& options, vtkImageData* volume)
+{
+  vtkDataArray* scalars = volume->GetPointData()->GetScalars();
+  scalars = scalars ? scalars : volume->GetPointData()->GetArray(0);
+  const auto isCategorical = [&options](const char* name)
+  {
+    return name &&
+      std::find(options.CategoricalArrays.begin(), options.CategoricalArrays.end(), name) !=
+      options.CategoricalArrays.end();
+  };
+  if (options.Labels || !scalars || isCategorical(scalars->GetName()) ||
+    scalars->GetNumberOfComponents() != 1 || scalars->GetDataTypeMin() >= 0.0)
+  {
+    return 0.0;
+  }
+  double range[2];
+  scalars->GetFiniteRange(range);
+  return range[0] <= range[1] ? range[0] : 0.0;
+}
+
 void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* volume,
   const Deformation& deformation)
 {
@@ -104,13 +126,16 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
   filter->SetOutputBoundsMode(options.VolumeBounds ? vtkDeformVolumeFilter::VOLUME_BOUNDS
                                                    : vtkDeformVolumeFilter::DEFORMED_BOUNDS);
   filter->SetPadding(options.Padding);
-  filter->SetBackgroundValue(options.Background);
+  filter->SetBackgroundValue(options.Background.value_or(FindBackground(options, volume)));
   const std::map<std::string, int> resamplers{ { "automatic", vtkDeformVolumeFilter::AUTOMATIC },
     { "exact", vtkDeformVolumeFilter::EXACT },
     { "mesh-rasterization", vtkDeformVolumeFilter::MESH_RASTERIZATION } };
   filter->SetResampler(resamplers.at(options.Resampler));
-  filter->SetInterpolation(options.Cubic ? vtkDeformVolumeFilter::CUBIC_INTERPOLATION
-                                         : vtkDeformVolumeFilter::LINEAR_INTERPOLATION);
+  const std::map<std::string, int> interpolations{ { "nearest",
+                                                     vtkDeformVolumeFilter::NEAREST_INTERPOLATION },
+    { "linear", vtkDeformVolumeFilter::LINEAR_INTERPOLATION },
+    { "cubic", vtkDeformVolumeFilter::CUBIC_INTERPOLATION } };
+  filter->SetInterpolation(interpolations.at(options.Interpolation));
   filter->SetDevice(options.Device);
   vtkPointData* arrays = volume->GetPointData();
   for (const std::string& name : options.CategoricalArrays)
@@ -175,7 +200,8 @@ void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume,
   {
     std::cout << "cut        " << tool << "\n";
   }
-  std::cout << "result     " << GetDimensionsText(result) << " voxels\n\n"
+  std::cout << "result     " << GetDimensionsText(result) << " voxels, background "
+            << filter->GetBackgroundValue() << "\n\n"
             << filter->GetSummary() << "\n\n";
   timings.Print(std::cout);
 }

@@ -30,7 +30,7 @@ struct RawOptions
   int Frame = 0;
   std::string Outside = "discard";
   std::string Bounds = "deformed";
-  std::string Interpolation = "linear";
+  double Background = 0.0;
 };
 
 void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
@@ -110,7 +110,10 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
     }
     options.FieldIsInverse = true;
   }
-  options.Cubic = raw.Interpolation == "cubic";
+  if (program.count("--background"))
+  {
+    options.Background = raw.Background;
+  }
   CheckOptions(options);
 }
 
@@ -377,9 +380,10 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     ->type_name("VOXELS")
     ->group(group);
   program
-    .add_option("--background", options.Background,
-      "Value of the voxels that the deformed volume does not cover")
-    ->capture_default_str()
+    .add_option("--background", raw.Background,
+      "Value of the voxels that the deformed volume does not cover [the least value where values "
+      "can "
+      "be negative, which is air in CT, else 0]")
     ->type_name("NUMBER")
     ->group(group);
   program
@@ -399,10 +403,11 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     ->type_name("NAME")
     ->group(group);
   program
-    .add_option("--interpolation", raw.Interpolation,
-      "linear, or cubic, which goes with mesh-rasterization only")
+    .add_option("--interpolation", options.Interpolation,
+      "linear; nearest, which mixes no values, as --labels; or cubic, which goes with "
+      "mesh-rasterization only")
     ->capture_default_str()
-    ->check(CLI::IsMember({ "linear", "cubic" }))
+    ->check(CLI::IsMember({ "nearest", "linear", "cubic" }))
     ->type_name("NAME")
     ->group(group);
   program

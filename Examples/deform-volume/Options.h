@@ -59,11 +59,11 @@ struct Options
   bool Extrapolate = false;
   bool VolumeBounds = false;
   int Padding = 0;
-  double Background = 0.0;
+  std::optional<double> Background;
   std::vector<std::string> CategoricalArrays;
   bool Labels = false;
   std::string Resampler = "automatic";
-  bool Cubic = false;
+  std::string Interpolation = "linear";
   std::string Device;
 
   std::vector<std::string> Outputs;

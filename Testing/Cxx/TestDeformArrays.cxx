@@ -253,6 +253,39 @@ void TestLabels()
   VERIFY(mixed > 0);
 }
 
+// Nearest interpolation: as if all arrays were categorical, with both resamplers.
+void TestNearestInterpolation()
+{
+  auto volume = MakeImage({ { 0, 8, 0, 8, 0, 8 } });
+  AddScalars<float>(
+    volume, "value", [](const glm::dvec3& p) { return 3.0 * p.x - 5.0 * p.y + 7.0 * p.z; });
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh,
+    [](const glm::dvec3& p)
+    { return glm::dvec3(1.3 * p.x + 0.2 * p.y, 1.1 * p.y - 0.1 * p.z, p.z + 0.4); });
+  for (const int resampler :
+    { vtkDeformVolumeFilter::EXACT, vtkDeformVolumeFilter::MESH_RASTERIZATION })
+  {
+    Deformed nearest(volume, mesh);
+    nearest.Filter->SetResampler(resampler);
+    nearest.Update();
+    const vtkSmartPointer<vtkDataArray> linear = nearest.GetValues();
+    nearest.Filter->SetInterpolationToNearestInterpolation();
+    VERIFY_EQUAL(nearest.Filter->GetInterpolation(), 2);
+    nearest.Update();
+    Deformed categorical(volume, mesh);
+    categorical.Filter->SetResampler(resampler);
+    categorical.Filter->AddCategoricalArray("value");
+    categorical.Update();
+    VERIFY(HaveEqualBits(nearest.GetValues(), categorical.GetValues()));
+    VERIFY(!HaveEqualBits(nearest.GetValues(), linear));
+    // And back.
+    nearest.Filter->SetInterpolationToLinearInterpolation();
+    nearest.Update();
+    VERIFY(HaveEqualBits(nearest.GetValues(), linear));
+  }
+}
+
 void TestBackgroundAndRounding()
 {
   auto volume = MakeImage({ { 0, 4, 0, 4, 0, 4 } });
@@ -345,6 +378,7 @@ int TestDeformArrays(int, char*[])
   TestRolesAndFieldData();
   TestIds();
   TestLabels();
+  TestNearestInterpolation();
   TestBackgroundAndRounding();
   TestNotANumberStaysWithinItsTetrahedra();
   TestCellArraysAreNamedInAWarning();

@@ -38,7 +38,7 @@ def fails(code, expected, *arguments, environment=None):
 
 # Wrong usage.
 fails(2, "no VOLUME")
-fails(2, "exactly one of --mesh, --field, --tetgen, --lattice and --model", path("in.vti"), "-o", path("o.vti"))
+fails(2, "exactly one of --mesh, --field, --transform, --tetgen, --lattice and --model", path("in.vti"), "-o", path("o.vti"))
 fails(2, "exactly one of", path("in.vti"), "--tetgen", *lattice, *push, "-o", path("o.vti"))
 fails(2, "at least one --push", path("in.vti"), *lattice, "-o", path("o.vti"))
 fails(2, "seven numbers", path("in.vti"), *lattice, "--push", "1,2,3", "-o", path("o.vti"))
@@ -227,3 +227,21 @@ call(program, path("in.vti"), *lattice, *push, "-o", path("labels.vti"), "--labe
      "2")
 labels = get_values(read_vti(path("labels.vti")), "Values")
 assert set(numpy.unique(labels)) <= set(numpy.unique(before)) | {0}
+
+# The background is the least value, where values can be negative; labels have 0.
+hounsfield = make_ball()
+vtk_to_numpy(hounsfield.GetPointData().GetScalars())[:] -= 1000
+write_vti(hounsfield, path("ct.vti"))
+least = get_values(hounsfield).min()
+assert least < -900, least
+for options, background in (((), least), (("--background", "24"), 24), (("--labels",), 0),
+                            (("--categorical", "Values"), 0), (("--interpolation", "nearest"), least)):
+    output, _ = call(program, path("ct.vti"), *lattice, *push, "-o", path("air.vti"), "--padding", "2",
+                     *options)
+    air = read_vti(path("air.vti"))
+    outside = get_values(air, "vtkValidPointMask") == 0
+    assert outside.any() and (get_values(air, "Values")[outside] == background).all(), options
+    assert f"background {background}\n" in output, output
+    if "nearest" in options:
+        values = get_values(air, "Values")
+        assert set(numpy.unique(values)) <= set(numpy.unique(get_values(hounsfield))), options
