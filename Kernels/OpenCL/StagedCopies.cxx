@@ -2,8 +2,12 @@
 #include "StagedCopies.h"
 
 #include "HostMemory.h"
+#include "ParallelFor.h"
+#include "Processors.h"
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
 
 namespace deformvolume
@@ -73,12 +77,87 @@ struct Transfer
   }
 };
 
-// What is on the bus to or from a half.
-struct Portion
+/// The parts of a box that are copied one by one.
+class Portions
 {
+public:
+  explicit Portions(CopiedBox box)
+    : Box(box)
+  {
+    this->Box.Join();
+    this->Step = FindStep(this->Box);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      this->Count[axis] = (this->Box.Size[axis] + this->Step[axis] - 1) / this->Step[axis];
+    }
+  }
+
+  std::size_t GetNumber() const { return this->Count[0] * this->Count[1] * this->Count[2]; }
+
+  CopiedBox Get(std::size_t number) const
+  {
+    CopiedBox::Bytes begin;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      begin[axis] = number % this->Count[axis] * this->Step[axis];
+      number /= this->Count[axis];
+    }
+    return this->Box.GetPart(begin, this->Step);
+  }
+
+private:
   CopiedBox Box;
-  cl_event Done = nullptr; // null: nothing
+  CopiedBox::Bytes Step;
+  CopiedBox::Bytes Count;
 };
+
+/// Copies every so many-th portion through the two halves of one thread. Returns OpenCL's error.
+cl_int CopyPortions(const Transfer& transfer, const Portions& portions, std::size_t first,
+  std::size_t step, char* memory)
+{
+  struct
+  {
+    CopiedBox Box;
+    cl_event Done = nullptr; // null: nothing is on the bus
+  } halves[2];
+  cl_int error = CL_SUCCESS;
+  const auto end = [&](std::size_t half)
+  {
+    auto& [box, done] = halves[half];
+    if (!done)
+    {
+      return;
+    }
+    const cl_int its = WaitFor(done);
+    clReleaseEvent(done);
+    done = nullptr;
+    error = error == CL_SUCCESS ? its : error;
+    if (transfer.Reads && error == CL_SUCCESS)
+    {
+      transfer.CopyOnHost(box, memory + half * StagedCopies::HalfBytes);
+    }
+  };
+  std::size_t half = 0;
+  for (std::size_t number = first; number < portions.GetNumber(); number += step, half = 1 - half)
+  {
+    end(half);
+    if (error != CL_SUCCESS)
+    {
+      break;
+    }
+    char* const memoryOfHalf = memory + half * StagedCopies::HalfBytes;
+    halves[half].Box = portions.Get(number);
+    if (!transfer.Reads)
+    {
+      transfer.CopyOnHost(halves[half].Box, memoryOfHalf);
+    }
+    error = transfer.Enqueue(halves[half].Box, memoryOfHalf, &halves[half].Done);
+    clFlush(transfer.Queue);
+  }
+  end(half); // what was started first
+  end(1 - half);
+  return error;
+}
 
 } // namespace
 
@@ -87,7 +166,7 @@ std::unique_ptr<StagedCopies> StagedCopies::Make(
 {
   try
   {
-    constexpr std::size_t bytes = 2 * HalfBytes;
+    constexpr std::size_t bytes = MostThreads * 2 * HalfBytes;
     const cl::CommandQueue queue(context, device);
     const cl::Buffer pinned(context, CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
     // It stays mapped: what is copied to it and from it is the host's memory.
@@ -102,64 +181,36 @@ std::unique_ptr<StagedCopies> StagedCopies::Make(
   }
 }
 
-cl_int StagedCopies::Copy(const cl::CommandQueue& queue, const cl::Buffer& buffer, CopiedBox box,
-  void* memory, bool reads) noexcept
+cl_int StagedCopies::Copy(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  const CopiedBox& box, void* memory, bool reads) noexcept
 {
   const Transfer transfer{ queue(), buffer(), static_cast<char*>(memory), reads };
   // Others may copy until the kernels of this queue are done. A failure comes with the copy.
   clFinish(queue());
   const std::lock_guard<std::mutex> lock(this->Mutex);
-  std::array<Portion, 2> portions;
-  cl_int error = CL_SUCCESS;
-  const auto end = [&](std::size_t half)
-  {
-    Portion& portion = portions[half];
-    if (!portion.Done)
+  const Portions portions(box);
+  const std::size_t threads = std::max<std::size_t>(1,
+    std::min({ std::size_t{ MostThreads }, static_cast<std::size_t>(GetProcessorShare()),
+      portions.GetNumber() / PortionsWorthAThread }));
+  std::array<cl_int, MostThreads> errors{};
+  RunOnOwnThreads(
+    0, static_cast<std::int64_t>(threads), 1,
+    [&](std::int64_t begin, std::int64_t end)
     {
-      return;
-    }
-    const cl_int its = WaitFor(portion.Done);
-    clReleaseEvent(portion.Done);
-    portion.Done = nullptr;
-    error = error == CL_SUCCESS ? its : error;
-    if (reads && error == CL_SUCCESS)
-    {
-      transfer.CopyOnHost(portion.Box, this->Memory + half * HalfBytes);
-    }
-  };
-  const auto start = [&](std::size_t half, const CopiedBox& part)
-  {
-    char* const memoryOfHalf = this->Memory + half * HalfBytes;
-    portions[half].Box = part;
-    if (!reads)
-    {
-      transfer.CopyOnHost(part, memoryOfHalf);
-    }
-    error = transfer.Enqueue(part, memoryOfHalf, &portions[half].Done);
-    clFlush(transfer.Queue);
-  };
-  box.Join();
-  const CopiedBox::Bytes step = FindStep(box);
-  std::size_t half = 0;
-  CopiedBox::Bytes begin{};
-  for (begin[2] = 0; begin[2] < box.Size[2]; begin[2] += step[2])
-  {
-    for (begin[1] = 0; begin[1] < box.Size[1]; begin[1] += step[1])
-    {
-      for (begin[0] = 0; begin[0] < box.Size[0]; begin[0] += step[0])
+      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
       {
-        end(half);
-        if (error == CL_SUCCESS)
-        {
-          start(half, box.GetPart(begin, step));
-        }
-        half = 1 - half;
+        errors[i] = CopyPortions(transfer, portions, i, threads, this->Memory + i * 2 * HalfBytes);
       }
+    },
+    static_cast<int>(threads));
+  for (const cl_int error : errors)
+  {
+    if (error != CL_SUCCESS)
+    {
+      return error;
     }
   }
-  end(half); // what was started first
-  end(1 - half);
-  return error;
+  return CL_SUCCESS;
 }
 
 cl_int StagedCopies::Read(const cl::CommandQueue& queue, const cl::Buffer& buffer,

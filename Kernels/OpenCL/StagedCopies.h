@@ -13,17 +13,20 @@ namespace deformvolume
 {
 
 /// Copies between a device with memory of its own and any memory of the host, in portions that go
-/// through a double buffer of page-locked memory: drivers move other memory at a fraction of what
+/// through double buffers of page-locked memory: drivers move other memory at a fraction of what
 /// the bus can do. While one half is on the bus, the other is copied to or from the memory of the
-/// caller.
+/// caller. One thread copies on the host at a fraction of the speed of the bus, too, so that
+/// several work on a large copy, each with a double buffer of its own.
 ///
-/// May be used by many threads; a copy waits until those of others have ended. The buffer is memory
-/// of the host, and of the process: it is no part of what an object holds on the device, and what
-/// the system has left is measured without it (MemoryBudget).
+/// May be used by many threads; a copy waits until those of others have ended. The buffers are
+/// memory of the host, and of the process: it is no part of what an object holds on the device, and
+/// what the system has left is measured without it (MemoryBudget).
 class StagedCopies
 {
 public:
   static constexpr std::size_t HalfBytes = std::size_t{ 1 } << 20;
+  static constexpr std::size_t MostThreads = 4;
+  static constexpr std::size_t PortionsWorthAThread = 2;
   /// Smaller copies gain nothing.
   static constexpr std::size_t LeastBytes = std::size_t{ 1 } << 16;
 
@@ -47,12 +50,12 @@ private:
   {
   }
 
-  cl_int Copy(const cl::CommandQueue& queue, const cl::Buffer& buffer, CopiedBox box, void* memory,
-    bool reads) noexcept;
+  cl_int Copy(const cl::CommandQueue& queue, const cl::Buffer& buffer, const CopiedBox& box,
+    void* memory, bool reads) noexcept;
 
   cl::CommandQueue Queue;
   cl::Buffer Pinned;
-  char* Memory; // of the two halves
+  char* Memory; // two halves for each thread
   std::mutex Mutex;
 };
 
