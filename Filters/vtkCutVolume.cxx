@@ -78,7 +78,7 @@ void vtkCutVolume::UpdateEdits(vtkInformationVector** input)
     last = vtkInternals();
   }
   deformvolume::WorldSheet sheet = deformvolume::ReadSheet(
-    vtkPolyData::GetData(input[1]), glm::make_vec3(this->SweepVector), "sheet on input port 1");
+    vtkPolyData::GetData(input[1]), glm::make_vec3(this->SweepVector), "sheet");
   const bool isNew =
     !(sheet == last.Sheet) || (this->SmoothCut != last.IsSmooth && !sheet.IsEmpty());
   const std::vector<deformvolume::ToolPath::Position> positions = this->Edits->Tool.GetStroke();

@@ -337,9 +337,10 @@ void vtkElasticDeformation::CheckSize(double size)
   constexpr double most = 10.0;
   if (size != this->Internals->CheckedSize && !(size >= least && size <= most))
   {
-    vtkWarningMacro(<< "The body measures " << size << " m from corner to corner, as LengthUnit is "
-                    << (this->LengthUnit == METRE ? "METRE" : "MILLIMETRE")
-                    << ". Set the unit of the mesh with SetLengthUnit, if that is wrong.");
+    vtkWarningMacro(<< "The body measures " << size
+                    << " m from corner to corner, as its lengths are taken for "
+                    << (this->LengthUnit == METRE ? "metres" : "millimetres")
+                    << ". Convert the mesh, or set another unit of length, if that is wrong.");
   }
   this->Internals->CheckedSize = size;
 }
@@ -365,8 +366,8 @@ void vtkElasticDeformation::TakeBackCuts(ElasticSimulation& simulation, std::siz
 std::size_t vtkElasticDeformation::UpdateCuts(vtkPolyData* sheet)
 {
   deformvolume::ElasticSession& session = this->Internals->Session;
-  const deformvolume::WorldSheet read = deformvolume::ReadSheet(sheet,
-    { this->SweepVector[0], this->SweepVector[1], this->SweepVector[2] }, "sheet on input port 2");
+  const deformvolume::WorldSheet read = deformvolume::ReadSheet(
+    sheet, { this->SweepVector[0], this->SweepVector[1], this->SweepVector[2] }, "sheet");
   const std::size_t undone = std::min(this->Internals->CutsToUndo, session.GetNumberOfCuts());
   session.RemoveCuts(session.GetNumberOfCuts() - undone);
   this->Internals->CutsToUndo = 0;

@@ -248,8 +248,8 @@ int vtkLatticeTetrahedraSource::RequestData(
   {
     vtkErrorMacro("A lattice of " << nodes[0] << " x " << nodes[1] << " x " << nodes[2]
                                   << " nodes takes " << bytes / (1024.0 * 1024.0 * 1024.0)
-                                  << " GiB, which is more than can be stored. Reduce "
-                                     "NumberOfNodes.");
+                                  << " GiB, which is more than can be stored. Use fewer "
+                                     "nodes.");
     return 0;
   }
 

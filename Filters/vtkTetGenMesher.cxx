@@ -270,7 +270,7 @@ int vtkTetGenMesher::RequestData(
   }
   catch (const std::bad_alloc&)
   {
-    vtkErrorMacro("Not enough memory. Set a greater TargetEdgeLength.");
+    vtkErrorMacro("Not enough memory. Use a greater edge length.");
     this->Incomplete = true;
     result = 0;
   }
@@ -344,8 +344,8 @@ void vtkTetGenMesher::CheckSize(vtkPolyData* surface, double length, const Spher
   }
   else
   {
-    message << "A TargetEdgeLength of " << length << " asks for about " << expected
-            << " tetrahedra; at most 20 million are made. Set a greater TargetEdgeLength.";
+    message << "An edge length of " << length << " asks for about " << expected
+            << " tetrahedra; at most 20 million are made. Use a greater edge length.";
   }
   throw deformvolume::Error(message.str());
 }

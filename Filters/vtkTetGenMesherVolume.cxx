@@ -53,14 +53,14 @@ deformvolume::Error NoBody(vtkDataArray* array, const deformvolume::BodyCriterio
   else if (criterion.ByLabels)
   {
     text << "No body: the volume has no voxel with "
-         << (criterion.Labels.empty() ? "a label other than 0" : "one of the labels of AddLabel()")
-         << " that vtkGhostType does not hide.";
+         << (criterion.Labels.empty() ? "a label other than 0" : "one of the labels to mesh")
+         << " that is not hidden.";
   }
   else
   {
     text << "No body: the volume has no value of at least " << criterion.Isovalue
-         << ", the isovalue, that vtkGhostType does not hide; its values go from " << range[0]
-         << " to " << range[1] << ". Set another Isovalue.";
+         << ", the isovalue, that is not hidden; its values go from " << range[0] << " to "
+         << range[1] << ". Use another isovalue.";
   }
   return deformvolume::Error(text.str());
 }
@@ -237,12 +237,12 @@ void vtkTetGenMesher::WarnOfVoxelsOutside()
   if (this->PieceMode == LARGEST_PIECE && this->NumberOfPieces > 1)
   {
     text << " The body has " << WithCommas(this->NumberOfPieces)
-         << " pieces, of which PieceMode chooses the largest. All pieces can be meshed "
+         << " pieces, of which only the largest is meshed. All pieces can be meshed "
             "instead.";
   }
   else
   {
-    text << " Set a smaller TargetEdgeLength or a greater Margin.";
+    text << " Use a smaller edge length or a greater margin.";
   }
   vtkWarningMacro(<< text.str());
 }

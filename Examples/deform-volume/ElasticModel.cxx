@@ -42,7 +42,7 @@ bool Fixes(const Fixation& fixation, const double point[3], vtkImageData* volume
   }
   const vtkIdType voxel = volume->FindPoint(const_cast<double*>(point));
   return voxel >= 0 &&
-    volume->GetPointData()->GetArray(0)->GetComponent(voxel, 0) == fixation.Value;
+    volume->GetPointData()->GetScalars()->GetComponent(voxel, 0) == fixation.Value;
 }
 
 void AddFixedNodes(const Options& options, vtkImageData* volume, vtkUnstructuredGrid* mesh)
@@ -87,7 +87,7 @@ void AddMaterials(
   filter->ClearMaterials();
   filter->SetMaterial(defaultMaterial, options.YoungModulus, options.PoissonRatio, options.Density);
   filter->SetDefaultMaterial(defaultMaterial);
-  const char* name = volume->GetPointData()->GetArray(0)->GetName();
+  const char* name = volume->GetPointData()->GetScalars()->GetName();
   filter->SetMaterialArrayName(name ? name : "");
   int index = 0;
   for (const MaterialOfValues& material : options.Materials)

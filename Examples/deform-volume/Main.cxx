@@ -11,6 +11,7 @@
 #include "VolumeReading.h"
 #include "VolumeWriting.h"
 
+#include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDeformVolumeFilter.h>
 #include <vtkLogger.h>
@@ -172,7 +173,7 @@ void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume,
   const Deformation& deformation, const std::vector<std::string>& tools, const TimingTable& timings)
 {
   vtkImageData* result = filter->GetOutput();
-  vtkDataArray* scalars = volume.Image->GetPointData()->GetArray(0);
+  vtkDataArray* scalars = volume.Image->GetPointData()->GetScalars();
   std::cout << "volume     " << GetDimensionsText(volume.Image) << " voxels, "
             << scalars->GetDataTypeAsString() << "\n";
   if (deformation.Data)
@@ -221,6 +222,34 @@ void SetSpace(Volume& volume, const Options& options, Messages& messages)
   volume.Axes = said;
 }
 
+// What each step needs of a volume.
+void CheckVolume(vtkImageData* image, const std::string& path)
+{
+  const int* dimensions = image->GetDimensions();
+  if (*std::min_element(dimensions, dimensions + 3) < 2)
+  {
+    throw Failure("cannot use " + path + ": it has " + GetDimensionsText(image) +
+      " voxels, and a volume has two or more on each axis");
+  }
+  vtkPointData* arrays = image->GetPointData();
+  int first = 0;
+  while (first < arrays->GetNumberOfArrays() && !arrays->GetArray(first))
+  {
+    ++first;
+  }
+  if (first == arrays->GetNumberOfArrays())
+  {
+    throw Failure("cannot use " + path + ": its voxels have no numbers" +
+      (image->GetCellData()->GetNumberOfArrays() > 0
+          ? "; its cells do, which ParaView's filter Cell Data to Point Data converts"
+          : ""));
+  }
+  if (!arrays->GetScalars())
+  {
+    arrays->SetScalars(arrays->GetArray(first));
+  }
+}
+
 void DeformVolume(const Options& options, Messages& messages)
 {
   CheckOutputs(options);
@@ -229,6 +258,7 @@ void DeformVolume(const Options& options, Messages& messages)
   const Stopwatch reading;
   const ReadingOptions place{ options.FileCoordinates, options.Frame };
   Volume volume = ReadVolume(options.Volume, place, messages, !options.Quiet);
+  CheckVolume(volume.Image, options.Volume);
   if (!options.VolumeSpace.empty())
   {
     SetSpace(volume, options, messages);

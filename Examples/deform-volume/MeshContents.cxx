@@ -6,12 +6,10 @@
 #include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
-#include <vtkCellTypes.h>
 #include <vtkCompositeDataIterator.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkGenericCell.h>
 #include <vtkIdList.h>
-#include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -23,14 +21,28 @@
 #include <vtkXMLFileReadTester.h>
 
 #include <array>
+#include <map>
 
 namespace
 {
-int GetDimension(int cellType)
+/// The dimensions of cells by their types, each of which is found once.
+class CellDimensions
 {
-  const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(cellType));
-  return cell ? cell->GetCellDimension() : 0;
-}
+public:
+  int Get(int type)
+  {
+    const auto found = this->Known.find(type);
+    if (found != this->Known.end())
+    {
+      return found->second;
+    }
+    const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+    return this->Known[type] = cell ? cell->GetCellDimension() : 0;
+  }
+
+private:
+  std::map<int, int> Known;
+};
 
 bool IsGrid(vtkDataSet* data)
 {
@@ -48,17 +60,13 @@ std::string DescribeCells(const std::vector<MeshPart>& parts)
 {
   vtkIdType points = 0;
   std::array<vtkIdType, 4> cells{};
-  std::array<int, 256> dimensions;
-  dimensions.fill(-1);
+  CellDimensions dimensions;
   for (const MeshPart& part : parts)
   {
     points += part.Data->GetNumberOfPoints();
     for (vtkIdType cell = 0; cell < part.Data->GetNumberOfCells(); ++cell)
     {
-      const int type = part.Data->GetCellType(cell);
-      int& dimension = dimensions.at(static_cast<std::size_t>(type) % 256);
-      dimension = dimension >= 0 ? dimension : GetDimension(type);
-      ++cells.at(static_cast<std::size_t>(dimension));
+      ++cells.at(static_cast<std::size_t>(dimensions.Get(part.Data->GetCellType(cell))));
     }
   }
   std::vector<std::string> words{ Count(points, "point", "points") };
@@ -192,11 +200,10 @@ bool HasVolumeCells(vtkDataSet* data)
   {
     return false;
   }
-  vtkNew<vtkCellTypes> types;
-  data->GetCellTypes(types);
-  for (int i = 0; i < types->GetNumberOfTypes(); ++i)
+  CellDimensions dimensions;
+  for (vtkIdType cell = 0; cell < data->GetNumberOfCells(); ++cell)
   {
-    if (GetDimension(types->GetCellType(i)) == 3)
+    if (dimensions.Get(data->GetCellType(cell)) == 3)
     {
       return true;
     }
@@ -209,7 +216,8 @@ void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::
   bool deforms = false;
   for (const MeshPart& part : FindParts(mesh))
   {
-    if (HasVolumeCells(part.Data) || part.Data == vtkImageData::SafeDownCast(mesh))
+    const bool isField = part.Data == vtkImageData::SafeDownCast(mesh);
+    if (HasVolumeCells(part.Data) || (isField && part.Data->GetNumberOfPoints() > 0))
     {
       deforms = true;
       if (auto* grid = vtkUnstructuredGrid::SafeDownCast(part.Data))
@@ -226,6 +234,29 @@ void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::
   {
     throw Failure("cannot use " + path + " as a mesh: it holds " + Describe(mesh) +
       ". A mesh needs three-dimensional cells, such as tetrahedra and hexahedra");
+  }
+}
+
+void CheckField(vtkImageData* field, const std::string& displacement, const std::string& path)
+{
+  if (!displacement.empty())
+  {
+    CheckArray({ field, "" }, displacement, path);
+    return;
+  }
+  vtkPointData* arrays = field->GetPointData();
+  int vectors = 0;
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = arrays->GetArray(i);
+    vectors += array && array->GetNumberOfComponents() == 3 ? 1 : 0;
+  }
+  if (!arrays->GetVectors() && vectors != 1)
+  {
+    throw Failure("cannot use " + path + ": " +
+      (vectors == 0 ? "displacements are a point array with 3 components, which it lacks"
+                    : "name the array of displacements with --displacement") +
+      "; " + DescribeArrays(arrays));
   }
 }
 

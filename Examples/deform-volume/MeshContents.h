@@ -3,6 +3,7 @@
 #define DeformVolumeMeshContents_h
 
 #include <vtkDataSet.h>
+#include <vtkImageData.h>
 #include <vtkSmartPointer.h>
 
 #include <string>
@@ -26,6 +27,10 @@ bool HasVolumeCells(vtkDataSet* data);
 /// three-dimensional cells and is no image, a polyhedron lacks its faces, or a part lacks the point
 /// array of displacements. displacement: its name, or "" where none is needed.
 void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::string& path);
+
+/// Throws a Failure where an image lacks the point array of displacements. Without a name that is
+/// the active vectors, or else the only array of three components.
+void CheckField(vtkImageData* field, const std::string& displacement, const std::string& path);
 
 /// Throws a Failure where a file holds no triangles or other polygons.
 void CheckSheet(vtkDataObject* sheet, const std::string& path);

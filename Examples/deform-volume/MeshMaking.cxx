@@ -5,8 +5,10 @@
 #include "ElasticModel.h"
 #include "Failure.h"
 #include "FieldReading.h"
+#include "MeshContents.h"
 #include "MeshReading.h"
 #include "Messages.h"
+#include "OptionChecks.h"
 #include "ProgressBar.h"
 
 #include <vtkImageData.h>
@@ -123,6 +125,33 @@ void PushNodes(const Options& options, const vtkSmartPointer<vtkUnstructuredGrid
   deformation.Displacement = PushArrayName;
 }
 
+// Throws where options of --mesh do not go with what its files hold.
+void CheckMeshOptions(const Options& options, const Deformation& deformation)
+{
+  const bool isField = vtkImageData::SafeDownCast(deformation.Data);
+  if (isField || vtkImageData::SafeDownCast(deformation.Rest))
+  {
+    if (deformation.Rest || options.PointsAreDeformed)
+    {
+      throw Failure(std::string(deformation.Rest ? "--rest" : "--points-are-deformed") +
+        " goes with a mesh, and " + (isField ? options.Mesh : options.Rest) +
+        " is a displacement field, whose points are always at rest");
+    }
+    CheckResampler(options, true);
+  }
+  else if (deformation.Rest)
+  {
+    const vtkIdType deformed = deformation.Data->GetNumberOfElements(vtkDataObject::POINT);
+    const vtkIdType rest = deformation.Rest->GetNumberOfElements(vtkDataObject::POINT);
+    if (deformed != rest)
+    {
+      throw Failure("cannot use " + options.Rest + " as the rest of " + options.Mesh + ": it has " +
+        std::to_string(rest) + " points, and the deformed mesh has " + std::to_string(deformed) +
+        ". Both have to be the same mesh");
+    }
+  }
+}
+
 void WriteMesh(vtkUnstructuredGrid* mesh, const std::string& path, Messages& messages)
 {
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
@@ -147,11 +176,15 @@ Deformation MakeDeformation(
     {
       deformation.Rest = ReadMesh(options.Rest, "", options, volume, messages);
     }
+    CheckMeshOptions(options, deformation);
   }
   else if (!options.Field.empty())
   {
-    deformation.Data = ReadField(options.Field, volume,
+    const vtkSmartPointer<vtkImageData> field = ReadField(options.Field, volume,
       { options.FieldIsInverse, options.FieldSpace }, messages, !options.Quiet);
+    CheckField(
+      field, IsVTKFile(options.Field) ? options.Displacement : FieldArrayName, options.Field);
+    deformation.Data = field;
     deformation.Displacement = IsVTKFile(options.Field) ? options.Displacement : FieldArrayName;
   }
 #ifdef DEFORMVOLUME_HAVE_ITK

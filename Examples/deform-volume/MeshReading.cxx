@@ -59,8 +59,10 @@ void CheckReading(const Source& source, const std::string& format)
   const std::string words = source.Log.TakeError();
   if (!words.empty())
   {
+    // VTK's words on infinite numbers in XML files name classes.
     throw Failure("cannot read " + source.Path + ": it is no " + format +
-      ", or it is damaged or cut off" + (NamesCode(words) ? "" : " (" + words + ")"));
+      ", or it is damaged or cut off" +
+      (NamesCode(words) ? ", or has numbers that are not finite" : " (" + words + ")"));
   }
 }
 

@@ -108,7 +108,11 @@ bool IsNetcdfCutOff(const std::string& path)
   {
     return false;
   }
-  const std::uint64_t records = header.ReadCount();
+  std::uint64_t records = header.ReadCount();
+  if (records == 0xffffffff || records == ~std::uint64_t(0))
+  {
+    records = 0; // the writer did not know
+  }
   std::vector<std::uint64_t> lengths;
   for (std::uint64_t left = header.ReadListSize(); left > 0 && !header.Failed(); --left)
   {

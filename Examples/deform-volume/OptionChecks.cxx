@@ -175,6 +175,46 @@ void CheckDeformation(const Options& options)
 }
 }
 
+void CheckResampler(const Options& options, bool isForwardField)
+{
+  const bool isExact = options.Resampler == "exact";
+  const bool isCubic = options.Interpolation == "cubic";
+  if (options.FieldIsInverse)
+  {
+    if (isExact)
+    {
+      throw UsageError("--resampler exact deforms a mesh of the voxels, which an inverse field "
+                       "(--field-is-inverse or --transform) does not move: leave --resampler out");
+    }
+    if (options.SmoothCut)
+    {
+      throw UsageError("--smooth-cut goes with a mesh or a forward field: an inverse one "
+                       "(--field-is-inverse or --transform) does not say where the two sides go");
+    }
+    return;
+  }
+  if (isCubic && isExact)
+  {
+    throw UsageError("--interpolation cubic goes with --resampler mesh-rasterization only");
+  }
+  if (isCubic || options.Resampler == "mesh-rasterization")
+  {
+    const std::string what = isCubic ? "--interpolation cubic" : "--resampler mesh-rasterization";
+    if (isForwardField)
+    {
+      throw UsageError(what +
+        " needs a --mesh, --tetgen, --lattice or inverse field; a forward field and --model "
+        "chainmail "
+        "do not go with it");
+    }
+    if (options.Extrapolate || options.SmoothCut)
+    {
+      throw UsageError(what + " does not go with " +
+        (options.Extrapolate ? "--outside extrapolate" : "--smooth-cut"));
+    }
+  }
+}
+
 void CheckOptions(const Options& options)
 {
   if (options.ListDevices)
@@ -186,6 +226,7 @@ void CheckOptions(const Options& options)
     throw UsageError("no VOLUME is given; deform-volume --help tells how to call the program");
   }
   CheckDeformation(options);
+  CheckResampler(options, !options.Field.empty() || options.Model == "chainmail");
   if (!options.MeshSpace.empty() && options.Mesh.empty() && options.Cuts.empty())
   {
     throw UsageError("--mesh-space requires --mesh or --cut");

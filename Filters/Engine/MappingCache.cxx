@@ -123,7 +123,7 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
   if (mapping.NumberOfFlatTetrahedra == static_cast<std::int64_t>(tetrahedra.size()))
   {
     throw Error("All " + std::to_string(tetrahedra.size()) +
-      " tetrahedra of the deformation mesh are flat at rest. Connect a mesh with volume.");
+      " tetrahedra of the deformation mesh are flat at rest. Use a mesh with volume.");
   }
   if (!holdsVoxels)
   {

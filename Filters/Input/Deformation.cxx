@@ -71,7 +71,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
   {
     throw Error("The deformation mesh has " + std::to_string(GetNumberOfNodes(shape)) +
       " points and the rest configuration has " + std::to_string(GetNumberOfNodes(rest)) +
-      ". Connect two configurations of one mesh.");
+      ". Use two configurations of one mesh.");
   }
   this->Mesh.Read(shape, rest, source);
   if (this->ConnectivityOfVectors != this->Mesh.GetConnectivityVersion())
@@ -133,9 +133,10 @@ void Deformation::ReadMesh(const DeformationSource& source)
 
 void Deformation::ThrowTooFar()
 {
-  throw Error("The deformation moves the volume by more than 16,383 output voxels. Check "
-              "DisplacementScale, the output spacing, and that displacements and volume are in "
-              "the same world units.");
+  throw Error(
+    "The deformation moves the volume by more than 16,383 output voxels. Check "
+    "the scale of the displacements, the output spacing, and that displacements and volume are in "
+    "the same world units.");
 }
 
 void Deformation::CheckFaults(const MeshParts& shape, const DeformationSource& source) const

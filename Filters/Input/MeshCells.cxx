@@ -37,7 +37,7 @@ void CheckPoint(vtkIdType point, vtkIdType numberOfPoints, vtkIdType cell)
   {
     throw Error("Cell " + std::to_string(cell) + " of the deformation mesh uses point " +
       std::to_string(point) + ", and there are only " + std::to_string(numberOfPoints) +
-      " points. Mend the cells of the mesh.");
+      " points. Correct the cells of the mesh.");
   }
 }
 
@@ -45,8 +45,8 @@ void CheckPoint(vtkIdType point, vtkIdType numberOfPoints, vtkIdType cell)
   vtkIdType cell, int type, vtkIdType count, const std::string& complaint)
 {
   throw Error("Cell " + std::to_string(cell) + " of the deformation mesh is a " +
-    GetCellClassName(type) + " with " + std::to_string(count) + " points" + complaint +
-    ". Mend the cells of the mesh.");
+    GetCellName(type) + " with " + std::to_string(count) + " points" + complaint +
+    ". Correct the cells of the mesh.");
 }
 
 // What would have to be read beyond the end of an array, once it is followed.
@@ -58,12 +58,13 @@ void CheckStructure(vtkUnstructuredGrid* grid)
   if (numberOfTypes < numberOfCells)
   {
     throw Error("The deformation mesh has " + std::to_string(numberOfCells) + " cells, but " +
-      std::to_string(numberOfTypes) + " cell types. Mend the cells of the mesh.");
+      std::to_string(numberOfTypes) + " cell types. Correct the cells of the mesh.");
   }
   if (!grid->GetCells()->IsValid())
   {
-    throw Error("The offsets of the deformation mesh's cells do not fit their connectivity. Mend "
-                "the cells of the mesh.");
+    throw Error(
+      "The offsets of the deformation mesh's cells do not fit their connectivity. Correct "
+      "the cells of the mesh.");
   }
 }
 
@@ -135,7 +136,7 @@ struct Reading
     if (number >= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
     {
       throw Error("The deformation mesh has more than 2,147,483,647 nodes, with those in the "
-                  "middle of its cells. Connect a coarser one.");
+                  "middle of its cells. Use a coarser one.");
     }
     this->Cells.Derived.Add(nodes, weights);
     return static_cast<std::int32_t>(number);
@@ -181,7 +182,7 @@ void ReadPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell, vtkIdType count,
   if (!SplitPolyhedron(nodes, positionsOfFaces, points, reading.Positions.GetRounding(), split))
   {
     throw Error("Cell " + std::to_string(cell) + " of the deformation mesh is a concave " +
-      GetCellClassName(VTK_POLYHEDRON) + " with " + std::to_string(nodes.size()) +
+      GetCellName(VTK_POLYHEDRON) + " with " + std::to_string(nodes.size()) +
       " points, and no point inside sees all of its faces. Divide it into convex or star-shaped "
       "cells.");
   }
@@ -385,7 +386,7 @@ MeshCells ReadCells(const MeshParts& parts, const MeshParts& rest, const Derived
   for (const auto& entry : reading.Ignored)
   {
     cells.Ignored += (cells.Ignored.empty() ? "" : ", ") + std::to_string(entry.second) + " " +
-      GetCellClassName(entry.first);
+      GetCellName(entry.first);
   }
   if (reading.NumberOfFarMidSides > 0)
   {

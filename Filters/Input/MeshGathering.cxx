@@ -112,7 +112,7 @@ MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
   {
     throw Error("A rank has " + std::to_string(nodes) + " points of the deformation mesh and " +
       std::to_string(GetNumberOfNodes(rest)) +
-      " of the rest configuration. Connect two configurations of one mesh, split alike.");
+      " of the rest configuration. Use two configurations of one mesh, split alike.");
   }
   if (nodes == 0)
   {
@@ -122,7 +122,7 @@ MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
   if (source.Rest && ReadCells(shape, rest).Tetrahedra != cells.Tetrahedra)
   {
     throw Error("The cells of the deformation mesh are not those of the rest configuration. "
-                "Connect two configurations of one mesh, split alike.");
+                "Use two configurations of one mesh, split alike.");
   }
   piece.Tetrahedra = std::move(cells.Tetrahedra);
   piece.Derived = std::move(cells.Derived);
@@ -226,7 +226,7 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
       if (sum + sumOfDerived > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max()))
       {
         throw Error("The " + std::string(MESH_NAME) +
-          " has more than 2,147,483,647 points on all ranks. Connect a coarser one.");
+          " has more than 2,147,483,647 points on all ranks. Use a coarser one.");
       }
       for (Tetrahedron& tetrahedron : piece.Tetrahedra)
       {

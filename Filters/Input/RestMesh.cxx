@@ -131,8 +131,9 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   {
     this->ShapeIsOld = true;
     deformvolume::ReadCells(rest, rest, source.Derived); // which says what is wrong
-    throw Error("The deformation mesh has cells that use points that are not there. Mend the cells "
-                "of the mesh.");
+    throw Error(
+      "The deformation mesh has cells that use points that are not there. Correct the cells "
+      "of the mesh.");
   }
   this->ShapeIsOld = true; // where the check fails
   CheckPoints(rest, source.Rest ? REST_NAME : MESH_NAME, this->PointFaults, this->Tetrahedra);
@@ -189,13 +190,12 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
     {
       throw Error("The deformation mesh has no tetrahedra" +
         (cells.Ignored.empty() ? std::string() : ", but " + cells.Ignored) +
-        ". Connect a mesh of three-dimensional cells, for example from "
-        "vtkLatticeTetrahedraSource, vtkTetGenMesher or vtkDelaunay3D.");
+        ". Use a mesh of three-dimensional cells that can be split into tetrahedra.");
     }
     if (!shared && deformvolume::ReadCells(shape, rest, derived).Tetrahedra != cells.Tetrahedra)
     {
       throw Error("The cells of the deformation mesh are not those of the rest configuration. "
-                  "Connect two configurations of one mesh.");
+                  "Use two configurations of one mesh.");
     }
     reading.Ignored = cells.Ignored;
     reading.FarMidSides = cells.FarMidSides;

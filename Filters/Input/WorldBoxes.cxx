@@ -114,7 +114,7 @@ std::string DescribeMiss(const Deformation& mesh, const ImageGeometry& volume)
     mesh, [&](const glm::dvec3& point) { return glm::dvec3(toWorld * glm::dvec4(point, 1.0)); });
   return "The deformation mesh at rest holds no voxel of the volume. " +
     Describe("mesh", box, volume) +
-    " Check also that the deformation mesh or, where one is connected, the rest configuration is "
+    " Check also that the deformation mesh or, where one is given, the rest configuration is "
     "at rest.";
 }
 

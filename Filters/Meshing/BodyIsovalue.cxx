@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace deformvolume
@@ -93,8 +94,12 @@ double FindIsovalue(vtkImageData* volume, vtkDataArray* array, double resolution
   const double range = high->Mean() - least;
   if (range == 0.0)
   {
-    throw Error("The isovalue cannot be found: all values of the volume are equal. Switch "
-                "AutomaticIsovalue off and set Isovalue.");
+    const std::string name = array->GetName() ? array->GetName() : "";
+    throw Error("The isovalue cannot be found: all values of the volume are equal" +
+      (array->GetNumberOfComponents() > 1
+          ? " in the first component of the point array \"" + name + "\""
+          : "") +
+      ". Set an isovalue, or give a volume that shows a body.");
   }
   std::vector<double> counts(NumberOfBins, 0.0);
   for (const Block& block : blocks)

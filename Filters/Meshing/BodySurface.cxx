@@ -67,7 +67,7 @@ void MakeGrid(Grid& grid, const BodyVoxels& body, const SurfaceParameters& param
       std::ostringstream text;
       text << "The body's surface cannot be moved out by a margin of " << parameters.Margin
            << " world units: that takes a grid of more than 500 million nodes, " << grid.Distance
-           << " apart. Set another Margin or TargetEdgeLength.";
+           << " apart. Use another margin or edge length.";
       throw Error(text.str());
     }
     grid.Border[axis] = static_cast<int>(border);

@@ -114,15 +114,16 @@ Outcome Run(
     case vtksysProcess_State_Expired:
     {
       std::ostringstream message;
-      message << "TetGen did not finish within the TimeLimit of " << limit
-              << " s and was ended. Raise TimeLimit, TargetEdgeLength or RadiusEdgeRatio.";
+      message
+        << "TetGen did not finish within the time limit of " << limit
+        << " s and was ended. Raise the time limit, the edge length or the radius-edge ratio.";
       throw Error(message.str());
     }
     default:
       throw Error("Cannot run TetGen as \"" + arguments[0] +
         "\": " + vtksysProcess_GetErrorString(process) +
         ". Install TetGen (on Debian and Ubuntu the package tetgen), or give the path of its "
-        "program by SetTetGenExecutable() or the environment variable DEFORMVOLUME_TETGEN.");
+        "program, which the environment variable DEFORMVOLUME_TETGEN can hold.");
   }
 }
 
@@ -281,13 +282,13 @@ vtkSmartPointer<vtkUnstructuredGrid> RunTetGen(
       throw SurfaceRejected("TetGen cannot fill the surface, because it intersects itself. TetGen "
                             "says: " +
         LineAt(report, found) +
-        " Fix the surface, or for a volume change the isovalue, TargetEdgeLength or "
-        "SmoothingIterations.");
+        " Fix the surface, or for a volume change the isovalue, the edge length or "
+        "the smoothing.");
     }
     const std::string said = LastLine(outcome.Text);
     throw SurfaceRejected("TetGen failed (" + outcome.Failure + ")." +
       (said.empty() ? "" : " It says: " + said) +
-      " For a volume, another TargetEdgeLength or SmoothingIterations may help.");
+      " For a volume, another edge length or smoothing may help.");
   }
   auto mesh = ReadMesh(folder.Path);
   if (mesh->GetNumberOfCells() == 0)

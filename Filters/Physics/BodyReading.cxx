@@ -143,12 +143,12 @@ void Hold(const glm::dvec3& place, double radius, const glm::dvec3& displacement
   if (held.size() == before)
   {
     throw Error(radius > 0.0
-        ? "A handle holds no node that could move: within HandleRadius of its RestPosition there "
+        ? "A handle holds no node that could move: within its radius of its rest position there "
           "is "
           "none, or all of them are fixed or held by another handle. Use a larger radius, or "
           "another rest position."
-        : "A handle holds no node that could move: the one that is nearest to its RestPosition is "
-          "fixed, or held by another handle. Use another rest position, or a HandleRadius.");
+        : "A handle holds no node that could move: the one that is nearest to its rest position "
+          "is fixed, or held by another handle. Use another rest position, or a radius.");
   }
 }
 
@@ -212,7 +212,7 @@ GridTetrahedra ReadTetrahedra(vtkUnstructuredGrid* grid)
     if (GetCellDimension(type) == 3)
     {
       throw Error("The " + std::string(MESH) + " has " + std::to_string(number) +
-        " cells that are " + GetCellClassName(type) +
+        " cells of the type " + GetCellName(type) +
         ". Split them into tetrahedra first, for example with vtkDataSetTriangleFilter.");
     }
   }

@@ -66,7 +66,7 @@ void MassSpringSimulation::SetBody(
     this->Warnings.push_back("The Poisson ratio of " +
       (body.Materials.size() == 1 ? "the body" : std::to_string(ratios) + " tetrahedra") +
       " is less than 0.25, which springs cannot have: it counts as 0.25. Use "
-      "vtkCorotationalDeformation, if the ratio matters.");
+      "finite elements, if the ratio matters.");
   }
   this->NumberOfNodes = body.Points.size();
   if (keepsState)
@@ -105,7 +105,7 @@ void MassSpringSimulation::Advance(const Frame& frame)
   {
     this->Warnings.push_back(std::to_string(this->Report.NumberOfInvertedTetrahedra) +
       " tetrahedra are inside out, and springs may keep them so. Reset the body, and move handles "
-      "and loads more slowly, or use vtkCorotationalDeformation.");
+      "and loads more slowly, or use finite elements.");
   }
 }
 

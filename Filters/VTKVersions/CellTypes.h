@@ -13,6 +13,7 @@
 #include "vtkConstantArray.h"
 #endif
 
+#include <cctype>
 #include <string>
 
 namespace deformvolume
@@ -53,11 +54,20 @@ inline int GetCommonCellType(vtkUnstructuredGrid* grid)
 #endif
 }
 
-/// The name of the class for a type of cells. The class that holds the names changed in VTK 9.6.
-inline std::string GetCellClassName(int type)
+/// The name of a type of cells, such as "quadratic hexahedron" for vtkQuadraticHexahedron. VTK's
+/// class of such names changed in VTK 9.6.
+inline std::string GetCellName(int type)
 {
   const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
-  return cell ? cell->GetClassName() : "cell of unknown type";
+  std::string name;
+  for (const char letter :
+    std::string(cell ? cell->GetClassName() : "vtkCellOfUnknownType").substr(3))
+  {
+    const bool beginsWord = std::isupper(static_cast<unsigned char>(letter)) != 0;
+    name += std::string(beginsWord && !name.empty() ? " " : "") +
+      static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  }
+  return name;
 }
 
 } // namespace deformvolume

@@ -45,8 +45,8 @@ cl_uint CheckLength(std::uint64_t length)
 {
   if (length > LargestLength)
   {
-    throw Error("The deformation mesh and the output are too large for the resampler "
-                "MeshRasterization: use the resampler Exact, or a coarser mesh.");
+    throw Error("The deformation mesh and the output are too large for mesh rasterization: "
+                "use the exact resampler, or a coarser mesh.");
   }
   return static_cast<cl_uint>(length);
 }

@@ -167,8 +167,8 @@ void MeshRasterizer::CheckPositions() const
   {
     throw Error("Node " + std::to_string(this->FarthestNode) +
       " of the deformation mesh is more than 2,097,152 output voxels away from the output's index "
-      "0, which the resampler MeshRasterization cannot rasterise. Use the resampler Exact, or a "
-      "mesh that ends nearer to the volume.");
+      "0, which mesh rasterization cannot take. Use the exact resampler, or a mesh that ends "
+      "nearer to the volume.");
   }
 }
 
@@ -241,8 +241,8 @@ void MeshRasterizer::Begin(const DeformRequest& request, const SlabPlan&, Deform
   this->CheckPositions();
   if (this->Volume->GetChunks().size() > 1)
   {
-    throw Error("The volume has more bytes than the device gives in one piece, which the resampler "
-                "MeshRasterization needs. Use the resampler Exact, or another device.");
+    throw Error("The volume has more bytes than the device gives in one piece, which mesh "
+                "rasterization needs. Use the exact resampler, or another device.");
   }
   this->Kernel = this->MakeKernel(request.Interpolation);
   report.NumberOfFlatTetrahedra = this->NumberOfFlatTetrahedra;
@@ -261,8 +261,8 @@ void MeshRasterizer::Make(
     if (counts.Overstretched > 0)
     {
       throw Error(std::to_string(counts.Overstretched) +
-        " tetrahedra of the deformation mesh span more than 5,000 output voxels, which the "
-        "resampler MeshRasterization cannot rasterise. Use the resampler Exact, a finer mesh or a "
+        " tetrahedra of the deformation mesh span more than 5,000 output voxels, which mesh "
+        "rasterization cannot take. Use the exact resampler, a finer mesh or a "
         "greater output spacing.");
     }
     report.NumberOfInvertedTetrahedra = counts.Inverted;

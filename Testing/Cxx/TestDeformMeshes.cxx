@@ -251,7 +251,7 @@ void TestBlocks()
       Deformed found(volume, blocks);
       found.Filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name);
       found.Filter->Update();
-      VERIFY(found.TakeWarning().find("1 vtkQuad") != std::string::npos);
+      VERIFY(found.TakeWarning().find("1 quad") != std::string::npos);
       VERIFY(AreEqual(output, found.Update()));
       // With solids in it, that block needs them.
       blocks->SetBlock(1 - first, solids);
@@ -469,7 +469,7 @@ void TestGrids()
   points->SetNumberOfPoints(nodes[0] * nodes[1]);
   flat->SetPoints(points);
   found.Filter->SetDeformationData(flat);
-  Expect(found, "no tetrahedra, but 12 vtkQuad");
+  Expect(found, "no tetrahedra, but 12 quad");
   // Image data inside a composite dataset are no mesh.
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, volume);

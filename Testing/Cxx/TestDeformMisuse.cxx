@@ -218,10 +218,10 @@ void TestCells(Misuse& misuse)
     int Type;
     const char* Name;
     vtkIdType Points;
-  } shapes[] = { { VTK_TETRA, "vtkTetra", 4 }, { VTK_VOXEL, "vtkVoxel", 8 },
-    { VTK_HEXAHEDRON, "vtkHexahedron", 8 }, { VTK_WEDGE, "vtkWedge", 6 },
-    { VTK_PYRAMID, "vtkPyramid", 5 }, { VTK_PENTAGONAL_PRISM, "vtkPentagonalPrism", 10 },
-    { VTK_HEXAGONAL_PRISM, "vtkHexagonalPrism", 12 } };
+  } shapes[] = { { VTK_TETRA, "tetra", 4 }, { VTK_VOXEL, "voxel", 8 },
+    { VTK_HEXAHEDRON, "hexahedron", 8 }, { VTK_WEDGE, "wedge", 6 }, { VTK_PYRAMID, "pyramid", 5 },
+    { VTK_PENTAGONAL_PRISM, "pentagonal prism", 10 },
+    { VTK_HEXAGONAL_PRISM, "hexagonal prism", 12 } };
   for (const auto& shape : shapes)
   {
     for (const vtkIdType count : { vtkIdType(0), vtkIdType(3), shape.Points - 1, shape.Points + 1 })
@@ -302,7 +302,7 @@ void TestDisplacements(Misuse& misuse)
   misuse.Expect("too few displacements", "tuples");
 
   misuse.GetFilter()->SetDisplacementScale(1e12);
-  misuse.Expect("displacements beyond all bounds", "DisplacementScale");
+  misuse.Expect("displacements beyond all bounds", "scale of the displacements");
 
   auto field = MakeImage({ { 0, 4, 0, 4, 0, 4 } });
   AddScalars<float>(field, "scalar", [](const glm::dvec3&) { return 1.0; });

@@ -55,7 +55,7 @@ void TestMisuse()
                    const vtkIdType points[8] = { 0, 1, 6, 5, 25, 26, 31, 30 };
                    mesh->InsertNextCell(VTK_HEXAHEDRON, 8, points);
                  }),
-    "vtkHexahedron"));
+    "hexahedron"));
   VERIFY(Holds(tryMesh(
                  [](vtkUnstructuredGrid* mesh)
                  {
@@ -166,8 +166,8 @@ void TestWarnings(double push)
   for (const double unit : { 1e-3, 1e3 })
   {
     Simulated<Filter> simulated(MakeBar(unit));
-    VERIFY(Holds(UpdateAndWarn(simulated), "LengthUnit"));
-    VERIFY(!Holds(UpdateAndWarn(simulated), "LengthUnit"));
+    VERIFY(Holds(UpdateAndWarn(simulated), "unit of length"));
+    VERIFY(!Holds(UpdateAndWarn(simulated), "unit of length"));
   }
   vtkNew<Filter> fresh;
   VERIFY_EQUAL(fresh->GetLengthUnit(), static_cast<int>(Filter::MILLIMETRE));

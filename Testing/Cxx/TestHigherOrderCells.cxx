@@ -548,15 +548,15 @@ void ExpectError(int type, vtkIdType count, const std::string& words)
 
 void TestErrors()
 {
-  ExpectError(VTK_QUADRATIC_TETRA, 9, "vtkQuadraticTetra with 9 points instead of 10");
-  ExpectError(VTK_QUADRATIC_HEXAHEDRON, 8, "vtkQuadraticHexahedron with 8 points instead of 20");
+  ExpectError(VTK_QUADRATIC_TETRA, 9, "quadratic tetra with 9 points instead of 10");
+  ExpectError(VTK_QUADRATIC_HEXAHEDRON, 8, "quadratic hexahedron with 8 points instead of 20");
   ExpectError(VTK_TRIQUADRATIC_PYRAMID, 20, "with 20 points instead of 19");
   for (const vtkIdType count : { 0, 1, 11, 14, 16 })
   {
     ExpectError(VTK_LAGRANGE_TETRAHEDRON, count, "points, which does not fit its degree");
   }
-  ExpectError(VTK_LAGRANGE_HEXAHEDRON, 26, "vtkLagrangeHexahedron with 26 points, which does not");
-  ExpectError(VTK_LAGRANGE_WEDGE, 20, "vtkLagrangeWedge with 20 points, which does not");
+  ExpectError(VTK_LAGRANGE_HEXAHEDRON, 26, "lagrange hexahedron with 26 points, which does not");
+  ExpectError(VTK_LAGRANGE_WEDGE, 20, "lagrange wedge with 20 points, which does not");
   for (const int type : { VTK_BEZIER_TETRAHEDRON, VTK_BEZIER_HEXAHEDRON, VTK_BEZIER_WEDGE })
   {
     ExpectError(type, 10, "convert the mesh");
@@ -776,7 +776,7 @@ void TestConcavePolyhedra()
     catch (const deformvolume::Error& error)
     {
       VERIFY(std::string(error.what())
-               .find("Cell 0 of the deformation mesh is a concave vtkPolyhedron with 16 points") !=
+               .find("Cell 0 of the deformation mesh is a concave polyhedron with 16 points") !=
         std::string::npos);
     }
   }

@@ -188,7 +188,7 @@ void TestMisuse()
   const vtkIdType ids[8] = { 0, 1, 2, 3, 4, 5, 6, 7 };
   hexahedron->SetPoints(points);
   hexahedron->InsertNextCell(VTK_HEXAHEDRON, 8, ids);
-  VERIFY(Holds(Tested(hexahedron, volume).TryUpdate(), "vtkHexahedron"));
+  VERIFY(Holds(Tested(hexahedron, volume).TryUpdate(), "hexahedron"));
   mesh->GetPoints()->SetPoint(3, nan, 0.0, 0.0);
   VERIFY(Holds(Tested(mesh, volume).TryUpdate(), "Point 3"));
   vtkNew<vtkUnstructuredGrid> empty;

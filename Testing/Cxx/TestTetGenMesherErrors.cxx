@@ -193,7 +193,7 @@ void TestMisuseOfTheProgram(const std::filesystem::path& folder)
   mesher->SetTetGenExecutable(slow);
   mesher->SetTimeLimit(0.3);
   auto start = std::chrono::steady_clock::now();
-  check.Fails("did not finish within the TimeLimit of 0.3 s");
+  check.Fails("did not finish within the time limit of 0.3 s");
   VERIFY(SecondsSince(start) < 10.0);
 
   mesher->SetTimeLimit(60.0);

@@ -308,7 +308,7 @@ TEST_F(TetrahedronListing, ListsThatAreTooLong)
     large.AddLarge();
   }
   this->Device.SetWorkGroupSize(64);
-  EXPECT_NE(this->GetError(large).find("too large for the resampler"), std::string::npos);
+  EXPECT_NE(this->GetError(large).find("too large for mesh rasterization"), std::string::npos);
   ListCase small({ { 0, 0, 0 } }, { { 100, 50, 50 } });
   small.AddRandom(20, 20, 1);
   this->ExpectEqualsReference(small);

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the messages of a program may say."""
+import re
+
+from Volumes import call
+
+# What only programmers know: classes, methods, addresses, enumerators and VTK's pipeline. Names of
+# arrays that VTK gives are known to users.
+CODE = re.compile(r"\bvtk(?!GhostType|ValidPointMask)[A-Z]\w*|::|\b[A-Za-z]\w*\(\)|\b0x[0-9a-f]{4}|"
+                  r"\b[A-Z]{4,}_[A-Z]+\b|\b[A-Z][a-z]+[A-Z][a-z]\w*|input port|\b[Cc]onnect\b|"
+                  r"\bREQUEST\b")
+NAMES = ("TetGen", "ParaView", "ChainMail", "Mach", "MetaImage", "OpenCL", "DEFORMVOLUME_TETGEN",
+         "TMPDIR", "STLReader", "NumberOfCells")
+
+
+def check_words(text):
+    """Names of programs and paths of files are left out."""
+    words = re.sub("|".join(NAMES) + r"|\S*/\S*", "", text)
+    assert not CODE.search(words), f"{CODE.search(words).group()} in {text}"
+
+
+def fails(program, code, expected, *arguments, warnings=0):
+    """Calls a program, which has to fail with one line. expected: texts in it."""
+    output, errors = call(program, *arguments, code=code, quiet=True)
+    print("  ", errors.strip())
+    assert output == "", output
+    assert errors.splitlines()[-1].startswith("deform-volume: "), errors
+    assert errors.count("\n") == 1 + warnings, errors
+    assert "without saying why" not in errors, errors
+    for text in [expected] if isinstance(expected, str) else expected:
+        assert text in errors, f"{text} is not in {errors}"
+    check_words(errors)
+
+
+def warns(program, expected, *arguments):
+    """Calls a program, which has to succeed with a warning."""
+    _, errors = call(program, *arguments, "--quiet")
+    assert errors.startswith("deform-volume: warning: "), errors
+    for text in [expected] if isinstance(expected, str) else expected:
+        assert text in errors, f"{text} is not in {errors}"
+    check_words(errors)

@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whatever a file or a number is wrong, deform-volume says it in words of its users.
+Usage: TestMessages.py PROGRAM FOLDER"""
+import os
+import sys
+
+import Messages
+import numpy
+from MeshFiles import (
+    make_blocks,
+    make_hexahedra,
+    make_moves,
+    make_places,
+    make_tetrahedra,
+    make_unstructured,
+    to_points,
+    to_vtk,
+    write,
+)
+from Volumes import call, make_ball, make_folder, write_vti
+from vtkmodules.vtkCommonDataModel import (
+    VTK_BEZIER_TETRAHEDRON,
+    VTK_CONVEX_POINT_SET,
+    VTK_QUAD,
+    VTK_QUADRATIC_TETRA,
+    VTK_TETRA,
+    VTK_TRIANGLE,
+    vtkImageData,
+    vtkPolyData,
+)
+from vtkmodules.vtkIOXML import (
+    vtkXMLMultiBlockDataWriter,
+    vtkXMLPolyDataWriter,
+    vtkXMLUnstructuredGridWriter,
+)
+
+program = sys.argv[1]
+folder = make_folder(sys.argv[2], "Messages")
+XML = {"SetDataMode": 1}
+
+
+def path(name):
+    return os.path.join(folder, name)
+
+
+def fails(code, expected, *arguments, volume="in.vti"):
+    Messages.fails(program, code, expected, path(volume), *arguments, "-o", path("o.vti"))
+    assert not os.path.exists(path("o.vti"))
+
+
+def warns(expected, *arguments, volume="in.vti"):
+    Messages.warns(program, expected, path(volume), *arguments, "-o", path("o.vti"))
+    os.remove(path("o.vti"))
+
+
+volume = make_ball()
+write_vti(volume, path("in.vti"))
+_, places = make_places(volume.GetBounds())
+moves = make_moves(places)
+lattice = ("--lattice", "7,7,7")
+push = ("--push", "9,20,25,3,0,0,15")
+
+
+def write_mesh(name, grid):
+    write(vtkXMLUnstructuredGridWriter(), grid, path(name), **XML)
+    return "--mesh", path(name), "--displacement", "Displacement"
+
+
+def make_field(*names):
+    field = vtkImageData()
+    field.SetDimensions(3, 3, 3)
+    field.SetOrigin(-4, 4, 6)
+    field.SetSpacing(13, 17, 19)
+    for name in names:
+        field.GetPointData().AddArray(to_vtk(name, numpy.ones((27, 3))))
+    return field
+
+
+def make_cells(kind, size, count=1):
+    """A mesh with other cells beside."""
+    grid = make_unstructured(places, moves)
+    for cell in range(count):
+        grid.InsertNextCell(kind, size, list(range(cell, cell + size)))
+    return grid
+
+
+mesh = write_mesh("mesh.vtu", make_unstructured(places, moves))
+write_vti(make_field("U"), path("field.vti"))
+field = ("--field", path("field.vti"), "--displacement", "U")
+sheet = vtkPolyData()
+sheet.SetPoints(to_points(numpy.array([(9.25, 0, 0), (9.25, 90, 0), (9.25, 0, 90)], float)))
+sheet.Allocate(1)
+sheet.InsertNextCell(VTK_TRIANGLE, 3, [0, 1, 2])
+write(vtkXMLPolyDataWriter(), sheet, path("sheet.vtp"), **XML)
+cut = ("--cut", path("sheet.vtp"))
+chain_mail = ("--model", "chainmail", "--pull", "8,20,25,-3,1,1,3")
+
+
+def check_resamplers():
+    """What goes with a resampler is known from the options, or from the kind of --mesh."""
+    rasterization, cubic = ("--resampler", "mesh-rasterization"), ("--interpolation", "cubic")
+    exact = ("--resampler", "exact")
+    for arguments in (field, chain_mail):
+        fails(2, ["--resampler mesh-rasterization", "forward field"], *arguments, *rasterization)
+        fails(2, ["--interpolation cubic", "forward field"], *arguments, *cubic)
+    fails(1, ["--resampler mesh-rasterization", "forward field"], "--mesh", path("field.vti"),
+          "--displacement", "U", *rasterization)
+    for arguments in (mesh, (*lattice, *push)):
+        fails(2, "--outside extrapolate", *arguments, *rasterization, "--outside", "extrapolate")
+        fails(2, "--outside extrapolate", *arguments, *cubic, "--outside", "extrapolate")
+        fails(2, "--smooth-cut", *arguments, *rasterization, *cut, "--smooth-cut")
+        fails(2, "--smooth-cut", *arguments, *cubic, *cut, "--smooth-cut")
+        fails(2, "mesh-rasterization only", *arguments, *cubic, *exact)
+    inverse = (*field, "--field-is-inverse")
+    fails(2, "inverse", *inverse, *exact)
+    fails(2, "inverse", *inverse, *cut, "--smooth-cut")
+
+
+def check_volumes():
+    for name, change, expected in (
+            ("slice.vti", lambda image: image.SetDimensions(22, 19, 1), "22 x 19 x 1 voxels"),
+            ("none.vti", lambda image: None, "no numbers"),
+            ("cells.vti", lambda image: image.GetCellData().AddArray(
+                to_vtk("Values", numpy.zeros(image.GetNumberOfCells()))), "Cell Data to Point")):
+        image = vtkImageData()
+        image.SetDimensions(25, 22, 19)
+        change(image)
+        if name == "slice.vti":
+            image.GetPointData().SetScalars(to_vtk("Values", numpy.zeros(22 * 19)))
+        write_vti(image, path(name))
+        for arguments in ((*lattice, *push), ("--tetgen", *push), cut, field,
+                          ("--model", "fem", *lattice, "--pull", "9,20,25,1,0,0")):
+            fails(1, [path(name), expected], *arguments, volume=name)
+    # No active scalars: the first array counts.
+    image = make_ball()
+    image.GetPointData().SetActiveScalars(None)
+    write_vti(image, path("inactive.vti"))
+    call(program, path("inactive.vti"), "--tetgen", "--edge-length", "9", *push, "-o",
+         path("inactive-out.vti"))
+    fails(1, ["no such array", "Values"], *mesh, "--categorical", "Labels")
+
+
+def check_fields():
+    write_vti(make_field(), path("empty-field.vti"))
+    write_vti(make_field("U", "V"), path("two.vti"))
+    fails(1, ["3 components", "no point arrays"], "--field", path("empty-field.vti"))
+    fails(1, ["--displacement", '"U" (3 components), "V" (3 components)'], "--field",
+          path("two.vti"))
+    for option in ("--field", "--mesh"):
+        fails(1, ['no point array "W"', '"U" (3 components)'], option, path("two.vti"),
+              "--displacement", "W")
+        fails(1, ['no point array "U"', "no point arrays"], option, path("empty-field.vti"),
+              "--displacement", "U")
+    fails(1, "--points-are-deformed", "--mesh", path("field.vti"), "--displacement", "U",
+          "--points-are-deformed")
+    fails(1, "--rest", "--mesh", path("field.vti"), "--rest", path("mesh.vtu"))
+    fails(1, "--rest", "--mesh", path("mesh.vtu"), "--rest", path("field.vti"))
+    far = make_field("U")
+    far.SetOrigin(1000, 0, 0)
+    write_vti(far, path("far.vti"))
+    fails(1, "holds no voxel of the volume", "--field", path("far.vti"))
+    wrong = make_field("U")
+    wrong.GetPointData().GetArray("U").SetComponent(13, 1, float("nan"))
+    write_vti(wrong, path("nan.vti"))
+    fails(1, "not finite", "--field", path("nan.vti"))
+
+
+def check_meshes():
+    fewer = make_unstructured(places[:-5], moves[:-5], make_tetrahedra()[:20])
+    write_mesh("fewer.vtu", fewer)
+    fails(1, ["it has 55 points", "has 60"], "--mesh", path("mesh.vtu"), "--rest",
+          path("fewer.vtu"))
+    write_mesh("other.vtu", make_unstructured(places, moves, make_tetrahedra()[:20]))
+    fails(1, "not those of the rest", "--mesh", path("mesh.vtu"), "--rest", path("other.vtu"))
+    for name, value, expected in (("nan", float("nan"), "not finite"), ("far", 1e9, "16,383")):
+        wrong = moves.copy()
+        wrong[30] = value
+        fails(1, expected, *write_mesh(name + ".vtu", make_unstructured(places, wrong)))
+    fails(1, "holds no voxel", *write_mesh("far.vtu", make_unstructured(places + 1000, moves)))
+    flat = places.copy()
+    flat[:, 2] = 20
+    fails(1, "flat", *write_mesh("flat.vtu", make_unstructured(flat, moves)))
+    wrong = places.copy()
+    wrong[7, 1] = float("inf")
+    fails(1, "not finite", *write_mesh("inf.vtu", make_unstructured(wrong, moves)))
+    wrong[7, 1] = float("nan")
+    fails(1, "Point 7 of the deformation mesh is not finite",
+          *write_mesh("nan.vtu", make_unstructured(wrong, moves)))
+    for kind, size, expected in ((VTK_QUADRATIC_TETRA, 9, "quadratic tetra with 9 points"),
+                                 (VTK_BEZIER_TETRAHEDRON, 4, "bezier tetra")):
+        fails(1, expected, *write_mesh("cell.vtu", make_cells(kind, size)))
+    bad = make_unstructured(places, moves)
+    bad.InsertNextCell(VTK_TETRA, 4, [0, 1, 2, 99])
+    fails(1, "uses point 99", *write_mesh("bad.vtu", bad))
+    convex = make_unstructured(places, moves, [])
+    convex.InsertNextCell(VTK_CONVEX_POINT_SET, 8, make_hexahedra()[0])
+    fails(1, ["no tetrahedra", "1 convex point set"], *write_mesh("convex.vtu", convex))
+    warns(["3 quad", "ignored"], *write_mesh("shells.vtu", make_cells(VTK_QUAD, 4, 3)))
+    wrong = moves.copy()
+    wrong[30] = float("nan")
+    block = make_unstructured(places, wrong)
+    write(vtkXMLMultiBlockDataWriter(), make_blocks(("bone", block)), path("blocks.vtm"), **XML)
+    fails(1, ['block "bone"', "not finite"], "--mesh", path("blocks.vtm"), "--displacement",
+          "Displacement")
+
+
+def check_sheets():
+    bad = vtkPolyData()
+    bad.DeepCopy(sheet)
+    bad.InsertNextCell(VTK_TRIANGLE, 3, [0, 1, 99])
+    write(vtkXMLPolyDataWriter(), bad, path("bad.vtp"), **XML)
+    infinite = vtkPolyData()
+    infinite.DeepCopy(sheet)
+    infinite.GetPoints().SetPoint(1, float("nan"), 0, 0)
+    write(vtkXMLPolyDataWriter(), infinite, path("infinite.vtp"), **XML)
+    model = ("--model", "fem", *lattice, "--fix", "below:8")
+    for name, expected in (("bad.vtp", "99"), ("infinite.vtp", "not finite")):
+        fails(1, expected, "--cut", path(name))
+        fails(1, expected, "--cut", path(name), *model)
+
+
+def check_meshers():
+    tetgen = ("--tetgen", *push)
+    fails(1, "isovalue", *tetgen, "--isovalue", "5000")
+    image = make_ball()
+    image.GetPointData().GetScalars().Fill(3)
+    write_vti(image, path("constant.vti"))
+    fails(1, "isovalue", *tetgen, volume="constant.vti")
+    image.GetPointData().SetScalars(to_vtk("Colours", numpy.zeros((25 * 22 * 19, 3), numpy.uint8)))
+    write_vti(image, path("colours.vti"))
+    fails(1, 'first component of the point array "Colours"', *tetgen, volume="colours.vti")
+    image.GetPointData().SetScalars(to_vtk("Labels", numpy.zeros(25 * 22 * 19, numpy.uint8)))
+    write_vti(image, path("labels.vti"))
+    fails(1, "label other than 0", *tetgen, "--labels", volume="labels.vti")
+    fails(1, "edge length", *tetgen, "--edge-length", "0.001")
+    fails(1, "Cannot run TetGen", *tetgen, "--tetgen-executable", path("none"))
+    fails(1, "TetGen failed", *tetgen, "--tetgen-executable", "/bin/false")
+    fails(1, "fewer nodes", "--lattice", "100000,100000,100000", *push)
+
+
+def check_models():
+    fem, springs = ("--model", "fem", *lattice), ("--model", "mass-spring", *lattice)
+    for model in (fem, springs):
+        fails(1, "radius", *model, "--fix", "below:90", "--pull", "9,20,25,1,0,0,0.001")
+        fails(1, "radius", *model, "--fix", "below:90", "--pull", "9,20,25,1,0,0")
+        fails(1, "fixes no node", *model, "--fix", "below:-90")
+        fails(1, "Poisson ratio", *model, "--fix", "below:8", "--poisson", "0.7")
+        fails(1, "Young modulus", *model, "--fix", "below:8", "--young", "-1")
+    warns("finite elements", *springs, "--fix", "below:8", "--poisson", "0.1", "--duration", "0.01")
+    fails(1, "nothing holds the body", *fem, "--pull", "9,20,25,1,0,0")
+    image = make_ball(spacing=(1e-3, 1.5e-3, 2e-3), origin=(0, 0, 0))
+    write_vti(image, path("metres.vti"))
+    warns("millimetres", "--model", "fem", "--lattice", "5,5,5", "--fix", "below:0.001",
+          volume="metres.vti")
+    fails(1, "OpenCL", *mesh, "--device", "no-such-device")
+
+
+check_resamplers()
+check_volumes()
+check_fields()
+check_meshes()
+check_sheets()
+check_meshers()
+check_models()
