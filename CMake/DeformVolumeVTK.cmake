@@ -37,9 +37,13 @@ if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
     ImagingMath
     ImagingSources
     InteractionStyle
+    IOGeometry
     IOImage
+    IOLegacy
     IOMovie
+    IOPLY
     IOXML
+    IOXMLParser
     RenderingContextOpenGL2
     RenderingCore
     RenderingFreeType
@@ -53,7 +57,7 @@ if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
 endif ()
 if (BUILD_TESTING)
   list(APPEND deformvolume_vtk_components
-    FiltersHybrid IOExodus IOGeometry TestingCore)
+    FiltersHybrid IOExodus TestingCore)
 endif ()
 
 # VTK 9.6's own functions pass empty arguments on, of which CMake 3.31 and later warn.
@@ -65,7 +69,8 @@ endif ()
 set(deformvolume_optional_vtk_components "")
 if (DEFORMVOLUME_BUILD_EXAMPLES)
   # ParaView's VTK has no ImagingMorphological.
-  list(APPEND deformvolume_optional_vtk_components ImagingMorphological IOOggTheora)
+  list(APPEND deformvolume_optional_vtk_components
+    ImagingMorphological hdf5 IOExodus IOHDF IOOggTheora)
 endif ()
 if (BUILD_TESTING AND NOT DEFORMVOLUME_SANITIZE)
   list(APPEND deformvolume_optional_vtk_components ParallelMPI)
