@@ -75,6 +75,8 @@ endif ()
 if (BUILD_TESTING AND NOT DEFORMVOLUME_SANITIZE)
   list(APPEND deformvolume_optional_vtk_components ParallelMPI)
 endif ()
+# CMake refuses components that are required as well.
+list(REMOVE_ITEM deformvolume_optional_vtk_components ${deformvolume_vtk_components})
 if (deformvolume_optional_vtk_components)
   list(PREPEND deformvolume_optional_vtk_components OPTIONAL_COMPONENTS)
 endif ()
