@@ -69,10 +69,8 @@ endif ()
 set(deformvolume_optional_vtk_components "")
 if (DEFORMVOLUME_BUILD_EXAMPLES)
   # ParaView's VTK has no ImagingMorphological.
-  list(APPEND deformvolume_optional_vtk_components ImagingMorphological hdf5 IOHDF IOOggTheora)
-  if (NOT BUILD_TESTING)
-    list(APPEND deformvolume_optional_vtk_components IOExodus)
-  endif ()
+  list(APPEND deformvolume_optional_vtk_components
+    ImagingMorphological hdf5 IOExodus IOHDF IOOggTheora)
 endif ()
 if (BUILD_TESTING AND NOT DEFORMVOLUME_SANITIZE)
   list(APPEND deformvolume_optional_vtk_components ParallelMPI)
