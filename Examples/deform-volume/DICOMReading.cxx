@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ITK reads each slice. Its own way to put slices together checks no positions.
+// ITK decodes the pixels of each slice. Its own way to put slices together checks no positions.
 #include "DICOMReading.h"
 
+#include "DICOMFile.h"
 #include "Failure.h"
 #include "ImageAxes.h"
 #include "ItkImage.h"
@@ -18,7 +19,6 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <sstream>
 #include <vector>
@@ -31,63 +31,47 @@ const char* const Advice =
 struct Slice
 {
   std::string Name;
-  std::string Path;
   std::string Series;
   std::string Description;
-  itk::GDCMImageIO::Pointer Reader;
-  double Row[3];    // of unit length, towards the next column
-  double Column[3]; // towards the next row
+  std::string Photometric;
+  int Size[2];       // columns, rows
+  double Spacing[2]; // of columns, of rows
+  double Row[3];     // of unit length, towards the next column
+  double Column[3];  // towards the next row
   double Position[3];
   double Along = 0.0; // the position on the normal
 };
-
-// The numbers of an element with a backslash between them; fewer than count where it is empty.
-bool GetNumbers(
-  const std::map<std::string, std::string>& texts, const char* tag, int count, double* numbers)
-{
-  const auto found = texts.find(tag);
-  std::istringstream text(found == texts.end() ? "" : found->second);
-  std::string part;
-  int read = 0;
-  for (; read < count && std::getline(text, part, '\\'); ++read)
-  {
-    std::istringstream number(part);
-    if (!(number >> numbers[read]) || !std::isfinite(numbers[read]))
-    {
-      return false;
-    }
-  }
-  return read == count;
-}
 
 class Series
 {
 public:
   Series(const std::string& folder, Messages& messages);
 
-  // All checks of positions; afterwards slices are in the order of the volume.
-  void Sort();
-  vtkSmartPointer<vtkImageData> Read(bool showProgress);
+  // Puts slices into the order of the volume, and checks their places.
+  void Sort(Messages& messages);
+  vtkSmartPointer<vtkImageData> Read(bool showProgress) const;
   // Directions and the position of the first voxel.
   void GetPlace(vtkMatrix4x4* place) const;
 
 private:
   [[noreturn]] void Fail(const std::string& reason) const;
   void AddFile(const std::string& name);
+  void WarnOfLeftOut(Messages& messages) const;
   void CheckSeries() const;
   void CheckShapes() const;
   void CheckSteps() const;
-  void CheckTilt() const;
+  void CheckPlaces(Messages& messages) const;
+  vtkSmartPointer<vtkDataArray> ReadSlice(const Slice& slice) const;
 
   const Slice& First() const { return this->Slices.front(); }
   const Slice& Last() const { return this->Slices.back(); }
   // From one slice to the next.
-  double GetStep() const;
+  void GetStep(double step[3]) const;
 
   std::string Folder;
   std::vector<Slice> Slices;
-  std::vector<std::string> Unread;
-  double Normal[3];
+  std::vector<std::string> WithoutImage;
+  std::vector<std::string> Others; // no DICOM files
 };
 
 Series::Series(const std::string& folder, Messages& messages)
@@ -103,22 +87,19 @@ Series::Series(const std::string& folder, Messages& messages)
   std::sort(names.begin(), names.end());
   for (const std::string& name : names)
   {
-    if (!vtksys::SystemTools::FileIsDirectory(folder + "/" + name))
+    // Hidden files are notes of the system, some with the names of slices; DICOMDIR is a list.
+    if (name[0] != '.' && name != "DICOMDIR" &&
+      !vtksys::SystemTools::FileIsDirectory(folder + "/" + name))
     {
       this->AddFile(name);
     }
   }
   if (this->Slices.empty())
   {
-    throw Failure("cannot read " + folder + ": the folder holds no DICOM slices" +
-      (this->Unread.empty() ? "" : " that can be read. The first file: " + this->Unread.front()));
+    throw Failure("cannot read " + folder +
+      ": the folder holds no DICOM slices. Folders in it are not searched");
   }
-  if (!this->Unread.empty())
-  {
-    messages.DisplayWarningText((std::to_string(this->Unread.size()) + " DICOM files of " + folder +
-      " hold no image that can be read, and are left out. The first: " + this->Unread.front())
-                                  .c_str());
-  }
+  this->WarnOfLeftOut(messages);
   this->CheckSeries();
 }
 
@@ -129,51 +110,85 @@ void Series::Fail(const std::string& reason) const
 
 void Series::AddFile(const std::string& name)
 {
+  const DICOMFile file(this->Folder + "/" + name);
+  if (!file.IsDICOM())
+  {
+    this->Others.push_back(name);
+    return;
+  }
+  if (!file.IsComplete())
+  {
+    throw Failure("cannot read " + this->Folder + "/" + name +
+      ": it is not complete, and ends within an element");
+  }
+  if (file.IsDeflated())
+  {
+    this->Fail(name + " is compressed as a whole (deflated), which is not read");
+  }
+  if (!file.HasPixels())
+  {
+    this->WithoutImage.push_back(name);
+    return;
+  }
   Slice slice;
   slice.Name = name;
-  slice.Path = this->Folder + "/" + name;
-  slice.Reader = itk::GDCMImageIO::New();
-  if (!slice.Reader->CanReadFile(slice.Path.c_str()))
+  slice.Series = file.GetText(0x0020000E);
+  slice.Description = file.GetText(0x0008103E);
+  slice.Photometric = file.GetText(0x00280004);
+  slice.Size[0] = file.GetShort(0x00280011);
+  slice.Size[1] = file.GetShort(0x00280010);
+  double frames = 1.0;
+  const bool isDose = file.GetText(0x00080016) == "1.2.840.10008.5.1.4.1.1.481.2";
+  if ((file.GetNumbers(0x00280008, 1, &frames) && frames != 1.0) || isDose)
   {
-    return;
-  }
-  try
-  {
-    ReadHeader(slice.Reader, slice.Path);
-  }
-  catch (const Failure& failure)
-  {
-    this->Unread.emplace_back(failure.what());
-    return;
-  }
-  const std::map<std::string, std::string> texts = GetTexts(slice.Reader);
-  const auto get = [&](const char* tag)
-  {
-    const auto found = texts.find(tag);
-    return found == texts.end() ? std::string() : found->second;
-  };
-  slice.Series = get("0020|000e");
-  slice.Description = get("0008|103e");
-  if (slice.Reader->GetNumberOfDimensions() > 2 && slice.Reader->GetDimensions(2) > 1)
-  {
-    this->Fail(name + " holds " + std::to_string(slice.Reader->GetDimensions(2)) +
-      " frames, where each slice is expected in a file of its own");
+    this->Fail(name + " holds several frames, where each slice is expected in a file of its own");
   }
   double orientation[6];
-  if (!GetNumbers(texts, "0020|0032", 3, slice.Position) ||
-    !GetNumbers(texts, "0020|0037", 6, orientation))
+  if (!file.GetNumbers(0x00200032, 3, slice.Position) ||
+    !file.GetNumbers(0x00200037, 6, orientation))
   {
     this->Fail(name +
-      " does not say where it lies: it has no position (0020,0032) or no "
-      "orientation (0020,0037)");
+      " does not say where it lies: it has no position (0020,0032) or no orientation (0020,0037)");
   }
   std::copy(orientation, orientation + 3, slice.Row);
   std::copy(orientation + 3, orientation + 6, slice.Column);
-  if (!(vtkMath::Normalize(slice.Row) > 0.0) || !(vtkMath::Normalize(slice.Column) > 0.0))
+  double normal[3];
+  vtkMath::Cross(slice.Row, slice.Column, normal);
+  if (!(vtkMath::Normalize(slice.Row) > 0.0) || !(vtkMath::Normalize(slice.Column) > 0.0) ||
+    !(vtkMath::Norm(normal) > 0.0))
   {
-    this->Fail(name + " has the orientation (0020,0037) 0");
+    this->Fail("the orientation (0020,0037) of " + name + " has no two directions");
   }
+  double spacing[2];
+  if (!file.GetNumbers(0x00280030, 2, spacing) || !(spacing[0] > 0.0) || !(spacing[1] > 0.0))
+  {
+    this->Fail(name + " does not say how far its pixels are apart (0028,0030)");
+  }
+  // The file has that of rows first.
+  slice.Spacing[0] = spacing[1];
+  slice.Spacing[1] = spacing[0];
   this->Slices.push_back(slice);
+}
+
+void Series::WarnOfLeftOut(Messages& messages) const
+{
+  const auto getSuffix = [](const std::string& name)
+  { return vtksys::SystemTools::GetFilenameLastExtension(name); };
+  std::vector<std::string> names = this->WithoutImage;
+  for (const std::string& name : this->Others)
+  {
+    if (getSuffix(name) == getSuffix(this->First().Name))
+    {
+      names.push_back(name);
+    }
+  }
+  if (!names.empty())
+  {
+    messages.DisplayWarningText(("Files of " + this->Folder +
+      " that hold no DICOM image are left out: " + std::to_string(names.size()) + ", such as " +
+      names.front() + ".")
+                                  .c_str());
+  }
 }
 
 void Series::CheckSeries() const
@@ -207,13 +222,13 @@ void Series::CheckShapes() const
     const std::string both = this->First().Name + " and " + slice.Name;
     for (int axis = 0; axis < 2; ++axis)
     {
-      if (slice.Reader->GetDimensions(axis) != this->First().Reader->GetDimensions(axis) ||
-        slice.Reader->GetNumberOfComponents() != this->First().Reader->GetNumberOfComponents())
+      if (slice.Size[axis] != this->First().Size[axis])
       {
         this->Fail("the slices " + both + " differ in size");
       }
-      if (std::abs(slice.Reader->GetSpacing(axis) - this->First().Reader->GetSpacing(axis)) >
-        tolerance)
+      constexpr double rounding = 1e-6;
+      if (std::abs(slice.Spacing[axis] - this->First().Spacing[axis]) >
+        rounding * slice.Spacing[axis])
       {
         this->Fail("the slices " + both + " differ in the spacing of pixels");
       }
@@ -225,135 +240,149 @@ void Series::CheckShapes() const
   }
 }
 
-double Series::GetStep() const
+void Series::GetStep(double step[3]) const
 {
-  const auto steps = static_cast<double>(this->Slices.size() - 1);
-  return steps > 0.0 ? (this->Last().Along - this->First().Along) / steps : 1.0;
+  vtkMath::Subtract(this->Last().Position, this->First().Position, step);
+  vtkMath::MultiplyScalar(step, 1.0 / static_cast<double>(this->Slices.size() - 1));
 }
 
 void Series::CheckSteps() const
 {
-  // The usual step: what most slices have, whatever is missing or doubled.
   std::vector<double> steps;
   for (std::size_t i = 1; i < this->Slices.size(); ++i)
   {
     steps.push_back(this->Slices[i].Along - this->Slices[i - 1].Along);
   }
+  // What most slices have, whatever is missing or doubled.
   std::vector<double> sorted = steps;
   std::sort(sorted.begin(), sorted.end());
-  const double usual = sorted.empty() ? 1.0 : sorted[sorted.size() / 2];
-  constexpr double least = 1e-3;
+  const double usual = sorted[sorted.size() / 2];
+  const double least = 1e-3 * this->First().Spacing[0];
   for (std::size_t i = 0; i < steps.size(); ++i)
   {
     const std::string both = this->Slices[i].Name + " and " + this->Slices[i + 1].Name;
-    std::ostringstream text;
     if (steps[i] < least)
     {
-      text << "the slices " << both
-           << " lie at the same place: the series holds slices twice, or several images in time or "
-              "of several echoes";
-      this->Fail(text.str());
+      this->Fail("the slices " + both +
+        " lie at the same place: the series holds slices twice, or several images in time or of "
+        "several echoes");
     }
     constexpr double missing = 1.5;
     if (steps[i] > missing * usual)
     {
+      std::ostringstream text;
       text << "between the slices " << both << " about " << std::lround(steps[i] / usual) - 1
            << " are missing: they are " << steps[i] << " mm apart, and others " << usual;
       this->Fail(text.str());
     }
   }
-  // Positions are often rounded, to a hundredth of a millimetre or a tenth.
-  constexpr double tolerance = 0.1;
-  const double step = this->GetStep();
+}
+
+void Series::CheckPlaces(Messages& messages) const
+{
+  double step[3];
+  this->GetStep(step);
+  double farthest = 0.0;
+  std::string name;
   for (std::size_t i = 0; i < this->Slices.size(); ++i)
   {
-    const double place = this->First().Along + static_cast<double>(i) * step;
-    if (std::abs(this->Slices[i].Along - place) > tolerance * step)
+    double place[3];
+    for (int axis = 0; axis < 3; ++axis)
     {
-      std::ostringstream text;
-      text << "its slices are unevenly spaced, by " << sorted.front() << " to " << sorted.back()
-           << " mm; " << this->Slices[i].Name << " lies " << std::abs(this->Slices[i].Along - place)
-           << " mm from where even slices would lie";
-      this->Fail(text.str());
+      place[axis] = this->First().Position[axis] + static_cast<double>(i) * step[axis];
+    }
+    const double distance =
+      std::sqrt(vtkMath::Distance2BetweenPoints(place, this->Slices[i].Position));
+    if (distance > farthest)
+    {
+      farthest = distance;
+      name = this->Slices[i].Name;
     }
   }
-}
-
-void Series::CheckTilt() const
-{
-  // As SetAxes takes it.
-  constexpr double tolerance = 1e-3;
-  for (const Slice& slice : this->Slices)
+  // Positions are often rounded, to a hundredth of a millimetre or a tenth.
+  constexpr double rounding = 0.01;
+  constexpr double most = 0.1;
+  std::ostringstream text;
+  text << name << " lies " << farthest
+       << " mm from where it would lie among even slices, which are " << vtkMath::Norm(step)
+       << " mm apart";
+  if (farthest > most * vtkMath::Norm(step))
   {
-    double shift[3];
-    vtkMath::Subtract(slice.Position, this->First().Position, shift);
-    const double along = vtkMath::Dot(shift, this->Normal);
-    const double aside =
-      std::hypot(vtkMath::Dot(shift, slice.Row), vtkMath::Dot(shift, slice.Column));
-    if (aside > tolerance * std::max(along, this->GetStep()))
-    {
-      std::ostringstream text;
-      text << "the slice " << slice.Name << " is shifted by " << aside
-           << " mm along its plane against " << this->First().Name << ", by "
-           << vtkMath::DegreesFromRadians(std::atan2(aside, along))
-           << " degrees (gantry tilt): its axes are not perpendicular";
-      this->Fail(text.str());
-    }
+    this->Fail("its slices are unevenly spaced: " + text.str());
+  }
+  if (farthest > rounding * vtkMath::Norm(step))
+  {
+    messages.DisplayWarningText(("The slices in " + this->Folder +
+      " are taken as evenly spaced, although they are not quite: " + text.str() + ".")
+                                  .c_str());
   }
 }
 
-void Series::Sort()
+void Series::Sort(Messages& messages)
 {
   this->CheckShapes();
-  vtkMath::Cross(this->First().Row, this->First().Column, this->Normal);
-  constexpr double tolerance = 1e-3;
-  if (std::abs(vtkMath::Normalize(this->Normal) - 1.0) > tolerance)
+  if (this->Slices.size() < 2)
   {
-    this->Fail("rows and columns of " + this->First().Name + " are not perpendicular");
+    this->Fail("it has one slice, " + this->First().Name + ", and a volume needs two");
   }
+  double normal[3];
+  vtkMath::Cross(this->First().Row, this->First().Column, normal);
   for (Slice& slice : this->Slices)
   {
-    slice.Along = vtkMath::Dot(slice.Position, this->Normal);
+    slice.Along = vtkMath::Dot(slice.Position, normal);
   }
   std::sort(this->Slices.begin(), this->Slices.end(),
     [](const Slice& a, const Slice& b) { return a.Along < b.Along; });
   this->CheckSteps();
-  this->CheckTilt();
+  this->CheckPlaces(messages);
+  if (this->First().Photometric == "MONOCHROME1")
+  {
+    messages.DisplayWarningText(("The slices in " + this->Folder +
+      " show large values dark (MONOCHROME1): their values are inverted.")
+                                  .c_str());
+  }
 }
 
-vtkSmartPointer<vtkImageData> Series::Read(bool showProgress)
+vtkSmartPointer<vtkDataArray> Series::ReadSlice(const Slice& slice) const
 {
-  const auto width = static_cast<int>(this->First().Reader->GetDimensions(0));
-  const auto height = static_cast<int>(this->First().Reader->GetDimensions(1));
+  const auto reader = itk::GDCMImageIO::New();
+  ReadHeader(reader, this->Folder + "/" + slice.Name, "its image cannot be decoded");
+  std::string complaints; // also of files that are read rightly
+  return ReadValues(reader, complaints);
+}
+
+vtkSmartPointer<vtkImageData> Series::Read(bool showProgress) const
+{
   const auto depth = static_cast<int>(this->Slices.size());
+  double step[3];
+  this->GetStep(step);
   auto image = vtkSmartPointer<vtkImageData>::New();
-  image->SetDimensions(width, height, depth);
-  image->SetSpacing(
-    this->First().Reader->GetSpacing(0), this->First().Reader->GetSpacing(1), this->GetStep());
-  vtkSmartPointer<vtkDataArray> all;
-  const vtkIdType count = static_cast<vtkIdType>(width) * height;
+  image->SetDimensions(this->First().Size[0], this->First().Size[1], depth);
+  image->SetSpacing(this->First().Spacing[0], this->First().Spacing[1], vtkMath::Norm(step));
+  const vtkIdType count = image->GetNumberOfPoints() / depth;
   const vtkNew<vtkTrivialProducer> progress;
   const ProgressBar bar(progress, "reading", showProgress);
+  vtkSmartPointer<vtkDataArray> all;
   for (int i = 0; i < depth; ++i)
   {
-    Slice& slice = this->Slices[i];
-    const vtkSmartPointer<vtkDataArray> values = ReadValues(slice.Reader);
-    slice.Reader = nullptr; // and what it keeps of the file
-    if (!all || all->GetDataType() != values->GetDataType())
+    const vtkSmartPointer<vtkDataArray> values = this->ReadSlice(this->Slices[i]);
+    const int components = values->GetNumberOfComponents();
+    if (values->GetNumberOfTuples() != count || (all && all->GetNumberOfComponents() != components))
+    {
+      this->Fail("the image of " + this->Slices[i].Name + " has not the size that is expected");
+    }
+    if (!all || (all->GetDataType() != values->GetDataType() && all->GetDataType() != VTK_DOUBLE))
     {
       // Each slice may be rescaled on its own, as in PET, and then have a type of its own.
       const auto wider = vtkSmartPointer<vtkDataArray>::Take(
         all ? vtkDataArray::CreateDataArray(VTK_DOUBLE) : values->NewInstance());
-      if (!all || all->GetDataType() != VTK_DOUBLE)
+      wider->SetNumberOfComponents(components);
+      wider->SetNumberOfTuples(count * depth);
+      if (all)
       {
-        wider->SetNumberOfComponents(values->GetNumberOfComponents());
-        wider->SetNumberOfTuples(count * depth);
-        if (all)
-        {
-          wider->InsertTuples(0, count * i, 0, all);
-        }
-        all = wider;
+        wider->InsertTuples(0, count * i, 0, all);
       }
+      all = wider;
     }
     all->InsertTuples(i * count, count, 0, values);
     progress->UpdateProgress((i + 1.0) / depth);
@@ -365,11 +394,14 @@ vtkSmartPointer<vtkImageData> Series::Read(bool showProgress)
 
 void Series::GetPlace(vtkMatrix4x4* place) const
 {
+  double step[3];
+  this->GetStep(step);
+  vtkMath::Normalize(step);
   for (int i = 0; i < 3; ++i)
   {
     place->SetElement(i, 0, this->First().Row[i]);
     place->SetElement(i, 1, this->First().Column[i]);
-    place->SetElement(i, 2, this->Normal[i]);
+    place->SetElement(i, 2, step[i]);
     place->SetElement(i, 3, this->First().Position[i]);
   }
 }
@@ -379,15 +411,15 @@ Volume ReadDICOM(
   const std::string& folder, const ReadingOptions& options, Messages& messages, bool showProgress)
 {
   Series series(folder, messages);
-  series.Sort();
-  Volume volume;
-  volume.Image = series.Read(showProgress);
+  series.Sort(messages);
+  vtkNew<vtkMatrix4x4> place;
   if (!options.FileCoordinates)
   {
-    vtkNew<vtkMatrix4x4> place;
     series.GetPlace(place);
-    SetAxes(volume.Image, place, folder, messages);
-    volume.Axes = WorldAxes::LeftPosteriorSuperior;
   }
+  Volume volume;
+  volume.Image = series.Read(showProgress);
+  SetAxes(volume.Image, place, folder, messages);
+  volume.Axes = options.FileCoordinates ? WorldAxes::Unknown : WorldAxes::LeftPosteriorSuperior;
   return volume;
 }

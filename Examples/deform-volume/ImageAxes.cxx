@@ -14,6 +14,7 @@
 
 namespace
 {
+constexpr double RoundedLength = 2e-7;
 constexpr double RoundedShear = 1e-5;
 constexpr double MaximumShear = 1e-3;
 
@@ -106,14 +107,17 @@ void SetAxes(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, M
     }
     const double length = vtkMath::Normalize(columns[column]);
     // Files hold single precision: what is one up to its rounding leaves the spacing as it is.
-    const double factor = std::abs(length - 1.0) < RoundedShear ? 1.0 : length;
+    const double factor = std::abs(length - 1.0) < RoundedLength ? 1.0 : length;
     spacing[column] = image->GetSpacing()[column] * factor;
-    if (!(spacing[column] > 0.0) || !std::isfinite(spacing[column]) ||
-      !std::isfinite(axes->GetElement(column, 3)))
+    const bool hasSize = spacing[column] > 0.0 && std::isfinite(spacing[column]);
+    if (!hasSize || !std::isfinite(axes->GetElement(column, 3)))
     {
-      throw Failure("cannot read " + path +
-        ": by its header voxels have no size or no place: the length of an axis is " +
-        std::to_string(spacing[column]) + advice);
+      std::ostringstream text;
+      text << "cannot read " << path << ": by its header "
+           << (hasSize ? "the position of its first voxel on axis "
+                       : "the distance between its voxels on axis ")
+           << column << " is " << (hasSize ? axes->GetElement(column, 3) : spacing[column]);
+      throw Failure(text.str() + advice);
     }
   }
   double origin[3] = { axes->GetElement(0, 3), axes->GetElement(1, 3), axes->GetElement(2, 3) };
@@ -121,6 +125,7 @@ void SetAxes(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, M
   if (shear > MaximumShear)
   {
     std::ostringstream text;
+    text.precision(4);
     text << "cannot read " << path << ": its axes are sheared by "
          << vtkMath::DegreesFromRadians(std::asin(std::min(shear, 1.0)))
          << " degrees, and a volume of VTK has perpendicular axes. Resample it on perpendicular "
@@ -138,6 +143,7 @@ void SetAxes(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, M
     if (shear > RoundedShear)
     {
       std::ostringstream text;
+      text.precision(4);
       text << "The axes of " << path << " are sheared by " << shear
            << ". A volume of VTK has perpendicular axes: the nearest ones are used, and voxels lie "
               "up to "

@@ -3,11 +3,12 @@
 
 #include "Failure.h"
 
-#include <itkMetaDataObject.h>
-
+#include <algorithm>
 #include <iostream>
+#include <limits>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 namespace
 {
@@ -28,7 +29,7 @@ std::string GetReason(const std::exception& error)
   return text;
 }
 
-// Takes what a library writes to std::cerr: MetaIO does not say otherwise that data are missing.
+// Takes what a library writes to std::cerr.
 class ErrorStream
 {
 public:
@@ -75,17 +76,24 @@ int GetType(itk::ImageIOBase* io)
   return VTK_VOID;
 }
 
-// Whether the file ends before its last byte: that keeps what it had before, whatever that was.
-bool LacksLastByte(itk::ImageIOBase* io, vtkDataArray* values)
+// Whether the last value keeps the bytes that it had before, whatever they were: then the file ends
+// too early, or its data are damaged.
+bool LacksLastValue(itk::ImageIOBase* io, vtkDataArray* values)
 {
-  const auto size = static_cast<std::size_t>(values->GetDataSize()) *
-    static_cast<std::size_t>(values->GetDataTypeSize());
+  const auto size = static_cast<std::size_t>(values->GetDataTypeSize());
   auto* const bytes = static_cast<unsigned char*>(values->GetVoidPointer(0));
+  unsigned char* const last =
+    bytes + size * static_cast<std::size_t>(values->GetNumberOfValues() - 1);
+  std::vector<bool> isKept(size, true);
   for (const unsigned char mark : { 0xA5, 0x5A })
   {
-    bytes[size - 1] = mark;
+    std::fill(last, last + size, mark);
     io->Read(bytes);
-    if (bytes[size - 1] != mark)
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      isKept[i] = isKept[i] && last[i] == mark;
+    }
+    if (std::find(isKept.begin(), isKept.end(), true) == isKept.end())
     {
       return false;
     }
@@ -94,32 +102,39 @@ bool LacksLastByte(itk::ImageIOBase* io, vtkDataArray* values)
 }
 }
 
-void ReadHeader(itk::ImageIOBase* io, const std::string& path)
+void ReadHeader(itk::ImageIOBase* io, const std::string& path, const std::string& reason)
 {
+  const std::string what = "cannot read " + path + ": ";
   const ErrorStream errors;
   try
   {
     io->SetFileName(path);
     io->ReadImageInformation();
   }
-  catch (const std::exception& error)
+  catch (const std::exception&)
   {
-    throw Failure("cannot read " + path + ": " + GetReason(error));
+    throw Failure(what + reason);
   }
   if (GetType(io) == VTK_VOID || io->GetPixelType() == itk::IOPixelEnum::COMPLEX)
   {
-    throw Failure("cannot read " + path + ": its values are of the type " +
+    throw Failure(what + "its values are of the type " +
       (GetType(io) == VTK_VOID ? itk::ImageIOBase::GetComponentTypeAsString(io->GetComponentType())
                                : itk::ImageIOBase::GetPixelTypeAsString(io->GetPixelType())) +
       ", which a volume of VTK cannot hold");
   }
-  if (io->GetImageSizeInComponents() < 1)
+  bool hasVoxels = io->GetNumberOfComponents() > 0;
+  for (unsigned int axis = 0; axis < io->GetNumberOfDimensions(); ++axis)
   {
-    throw Failure("cannot read " + path + ": it holds no voxels");
+    const auto size = io->GetDimensions(axis);
+    hasVoxels = hasVoxels && size > 0 && size <= std::numeric_limits<int>::max();
+  }
+  if (!hasVoxels)
+  {
+    throw Failure(what + "by its header it holds no voxels, or has an impossible size");
   }
 }
 
-vtkSmartPointer<vtkDataArray> ReadValues(itk::ImageIOBase* io)
+vtkSmartPointer<vtkDataArray> ReadValues(itk::ImageIOBase* io, std::string& complaints)
 {
   const auto values =
     vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(GetType(io)));
@@ -132,36 +147,22 @@ vtkSmartPointer<vtkDataArray> ReadValues(itk::ImageIOBase* io)
     region.SetSize(axis, io->GetDimensions(axis));
   }
   io->SetIORegion(region);
-  const std::string what = std::string("cannot read ") + io->GetFileName() + ": ";
   const ErrorStream errors;
+  bool isRead = false;
   try
   {
-    if (LacksLastByte(io, values) ||
-      errors.GetText().find("not read completely") != std::string::npos)
-    {
-      throw Failure(what + "it ends before its data do");
-    }
+    isRead = !LacksLastValue(io, values);
   }
-  catch (const itk::ExceptionObject& error)
+  catch (const std::exception&)
   {
-    throw Failure(what + GetReason(error));
+    // What ITK says names a place in its sources, and seldom the reason.
   }
+  if (!isRead)
+  {
+    throw Failure(std::string("cannot read ") + io->GetFileName() + ": " + DataMissing);
+  }
+  complaints = errors.GetText();
   return values;
-}
-
-std::map<std::string, std::string> GetTexts(itk::ImageIOBase* io)
-{
-  std::map<std::string, std::string> texts;
-  const itk::MetaDataDictionary& dictionary = io->GetMetaDataDictionary();
-  for (const std::string& name : dictionary.GetKeys())
-  {
-    std::string text;
-    if (itk::ExposeMetaData(dictionary, name, text))
-    {
-      texts[name] = text;
-    }
-  }
-  return texts;
 }
 
 itk::IOComponentEnum GetComponentType(vtkDataArray* values)

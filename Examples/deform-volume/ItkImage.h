@@ -7,20 +7,21 @@
 #include <vtkDataArray.h>
 #include <vtkSmartPointer.h>
 
-#include <map>
 #include <string>
 
 /// What ITK's readers and writers of images have for all formats. Functions throw a Failure that
 /// names the file.
 
-/// Reads the header of a file. Refuses values that are no real numbers.
-void ReadHeader(itk::ImageIOBase* io, const std::string& path);
+/// Reads the header of a file. Refuses values that are no real numbers, and files without voxels.
+/// reason: what is wrong with a file whose header ITK cannot read.
+void ReadHeader(itk::ImageIOBase* io, const std::string& path, const std::string& reason);
 
-/// Reads all values of a file whose header has been read, in the type of the file.
-vtkSmartPointer<vtkDataArray> ReadValues(itk::ImageIOBase* io);
+/// What is said where data cannot be read.
+inline constexpr const char* DataMissing = "its data are missing, damaged, or not complete";
 
-/// The fields of the header that ITK keeps as texts.
-std::map<std::string, std::string> GetTexts(itk::ImageIOBase* io);
+/// Reads all values of a file whose header has been read, in the type of the file. complaints: what
+/// the libraries have written to std::cerr, which is not shown.
+vtkSmartPointer<vtkDataArray> ReadValues(itk::ImageIOBase* io, std::string& complaints);
 
 /// The type of an array's values. Throws a Failure for a type that no image of ITK has.
 itk::IOComponentEnum GetComponentType(vtkDataArray* values);

@@ -9,16 +9,28 @@
 #include "Messages.h"
 #include "ProgressBar.h"
 
+#include <vtkCallbackCommand.h>
 #include <vtkDataArray.h>
 #include <vtkDataArrayRange.h>
+#include <vtkMath.h>
 #include <vtkNIFTIImageReader.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace
 {
+// Whether values are rescaled: a slope of 0 says that they are not, and colours never are.
+bool IsScaled(vtkNIFTIImageHeader* header)
+{
+  const double slope = header->GetSclSlope();
+  const int type = header->GetDataType();
+  return slope != 0.0 && !std::isnan(slope) && type != vtkNIFTIImageHeader::TypeRGB24 &&
+    type != vtkNIFTIImageHeader::TypeRGBA32;
+}
+
 // Millimetres of the unit of length that a header names; 0 for one that is not known.
 double GetMillimetres(vtkNIFTIImageHeader* header)
 {
@@ -34,6 +46,74 @@ double GetMillimetres(vtkNIFTIImageHeader* header)
       return 0.001;
     default:
       return 0.0;
+  }
+}
+
+[[noreturn]] void Fail(const std::string& path, const std::string& reason)
+{
+  throw Failure("cannot read " + path + ": " + reason);
+}
+
+// Refuses what VTK's reader takes without a word for something else.
+void CheckHeader(vtkNIFTIImageHeader* header, const std::string& path)
+{
+  const std::string magic = header->GetMagic();
+  if (magic != "n+1" && magic != "n+2")
+  {
+    Fail(path, "it is no NIfTI file that holds its voxels (its magic is not n+1 or n+2)");
+  }
+  const auto axes = static_cast<int>(header->GetDim(0));
+  for (int axis = 1; axis <= axes; ++axis)
+  {
+    const auto size = header->GetDim(axis);
+    if (size < 1)
+    {
+      Fail(path, "its axis " + std::to_string(axis) + " has the length " + std::to_string(size));
+    }
+    if (axis > 5 && size > 1)
+    {
+      Fail(path,
+        "it has " + std::to_string(axes) +
+          " axes, where a volume has three, and one each of time and of components");
+    }
+  }
+  const int type = header->GetDataType();
+  constexpr int bits = 1;
+  if (type == vtkNIFTIImageHeader::TypeComplex64 || type == vtkNIFTIImageHeader::TypeComplex128 ||
+    type == vtkNIFTIImageHeader::TypeComplex256 || type == bits)
+  {
+    Fail(path,
+      std::string("its values are ") + (type == bits ? "single bits" : "complex") +
+        ", which a volume of VTK cannot hold");
+  }
+  const vtkTypeInt64 headerSize = magic == "n+1" ? 352 : 544;
+  if (header->GetVoxOffset() < headerSize)
+  {
+    Fail(path,
+      "by its header its voxels begin at byte " + std::to_string(header->GetVoxOffset()) +
+        ", within the header");
+  }
+  // nibabel and SPM take a slope that is NaN as one that is not given.
+  if (std::isinf(header->GetSclSlope()) ||
+    (IsScaled(header) && !std::isfinite(header->GetSclInter())))
+  {
+    Fail(path, "its slope or intercept is not finite");
+  }
+  const double quaternion[] = { header->GetQuaternB(), header->GetQuaternC(),
+    header->GetQuaternD() };
+  constexpr double rounding = 1e-5;
+  if (header->GetQFormCode() > 0 && vtkMath::Dot(quaternion, quaternion) > 1.0 + rounding)
+  {
+    Fail(path, "the quaternion of its q-form is longer than 1");
+  }
+  for (int axis = 1; axis <= 3 && header->GetSFormCode() <= 0; ++axis)
+  {
+    if (!(header->GetPixDim(axis) > 0.0))
+    {
+      Fail(path,
+        "by its header the distance between its voxels on axis " + std::to_string(axis - 1) +
+          " is " + std::to_string(header->GetPixDim(axis)));
+    }
   }
 }
 
@@ -74,12 +154,6 @@ int ChooseType(vtkDataArray* stored, double slope, double intercept)
 
 void Rescale(vtkImageData* image, double slope, double intercept)
 {
-  // A slope of 0 says that nothing is rescaled.
-  if (slope == 0.0 || !std::isfinite(slope) || !std::isfinite(intercept) ||
-    (slope == 1.0 && intercept == 0.0))
-  {
-    return;
-  }
   vtkDataArray* stored = image->GetPointData()->GetScalars();
   const auto values = vtkSmartPointer<vtkDataArray>::Take(
     vtkDataArray::CreateDataArray(ChooseType(stored, slope, intercept)));
@@ -128,7 +202,7 @@ void Place(Volume& volume, vtkNIFTIImageReader* reader, const std::string& path,
   {
     length *= millimetres;
   }
-  volume.Image->SetSpacing(spacing);
+  volume.Image->SetSpacing(std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]));
   vtkMatrix4x4* const sform = reader->GetSFormMatrix();
   vtkMatrix4x4* const qform = reader->GetQFormMatrix();
   if (qform)
@@ -137,6 +211,7 @@ void Place(Volume& volume, vtkNIFTIImageReader* reader, const std::string& path,
     volume.Forms.QForm = vtkSmartPointer<vtkMatrix4x4>::New();
     volume.Forms.QForm->DeepCopy(qform);
     ScalePlace(volume.Forms.QForm, millimetres);
+    std::copy_n(spacing, 3, volume.Forms.QSpacing);
   }
   if (sform)
   {
@@ -144,6 +219,12 @@ void Place(Volume& volume, vtkNIFTIImageReader* reader, const std::string& path,
     vtkNew<vtkMatrix4x4> axes;
     axes->DeepCopy(sform);
     ScalePlace(axes, millimetres);
+    for (int i = 0; i < 9; ++i)
+    {
+      // The reader divides by the spacing, with its sign.
+      axes->SetElement(
+        i / 3, i % 3, axes->GetElement(i / 3, i % 3) * (spacing[i % 3] < 0.0 ? -1.0 : 1.0));
+    }
     SetAxes(volume.Image, axes, path, messages,
       qform ? ". That is its s-form; it has a q-form, too: if that is right, set sform_code to 0"
             : "");
@@ -160,15 +241,26 @@ Volume ReadNIfTI(
   const std::string& path, const ReadingOptions& options, Messages& messages, bool showProgress)
 {
   vtkNew<vtkNIFTIImageReader> reader;
+  // It warns where only one of the two forms is a reflection, which is read rightly.
+  const vtkNew<vtkCallbackCommand> ignore;
+  reader->AddObserver(vtkCommand::WarningEvent, ignore);
   if (!reader->CanReadFile(path.c_str()))
   {
-    throw Failure("cannot read " + path + ": it is no NIfTI file");
+    Fail(path, "it is no NIfTI file");
   }
   reader->SetFileName(path.c_str());
   reader->UpdateInformation();
   messages.Check("cannot read " + path);
   Volume volume;
   volume.NIfTIHeader = reader->GetNIFTIHeader();
+  CheckHeader(volume.NIfTIHeader, path);
+  const double millimetres = GetMillimetres(volume.NIfTIHeader);
+  if (millimetres == 0.0)
+  {
+    Fail(path,
+      "its unit of length, " + std::to_string(volume.NIfTIHeader->GetXYZTUnits()) +
+        " of xyzt_units, is not known");
+  }
   const auto axes = static_cast<int>(volume.NIfTIHeader->GetDim(0));
   const int frames = axes >= 4 ? static_cast<int>(volume.NIfTIHeader->GetDim(4)) : 1;
   const int frame = ChooseFrame(path, frames, options);
@@ -181,20 +273,15 @@ Volume ReadNIfTI(
   messages.Check("cannot read " + path);
   volume.Image = vtkSmartPointer<vtkImageData>::New();
   volume.Image->ShallowCopy(reader->GetOutput());
-  if (volume.Image->GetNumberOfPoints() == 0 || !volume.Image->GetPointData()->GetScalars())
-  {
-    throw Failure("cannot read " + path + ": it holds no voxels");
-  }
   if (frame > 0)
   {
     KeepFrame(volume.Image, frame, frames);
   }
-  Rescale(volume.Image, reader->GetRescaleSlope(), reader->GetRescaleIntercept());
-  const double millimetres = GetMillimetres(volume.NIfTIHeader);
-  if (millimetres == 0.0)
+  const double slope = volume.NIfTIHeader->GetSclSlope();
+  const double intercept = volume.NIfTIHeader->GetSclInter();
+  if (IsScaled(volume.NIfTIHeader) && (slope != 1.0 || intercept != 0.0))
   {
-    throw Failure("cannot read " + path + ": its unit of length, " +
-      std::to_string(volume.NIfTIHeader->GetXYZTUnits()) + " of xyzt_units, is not known");
+    Rescale(volume.Image, slope, intercept);
   }
   if (!options.FileCoordinates)
   {

@@ -29,6 +29,8 @@ struct NIfTIForms
   int QFormCode = 0;
   /// From (index * spacing), in mm, to the world. Null where QFormCode is 0.
   vtkSmartPointer<vtkMatrix4x4> QForm;
+  /// In mm. That of the s-form is the image's.
+  double QSpacing[3] = { 1.0, 1.0, 1.0 };
 };
 
 /// An image and what vtkImageData has no room for.

@@ -7,12 +7,16 @@
 #include "ProgressBar.h"
 #ifdef DEFORMVOLUME_HAVE_ITK
 #include "DICOMReading.h"
-#include "ItkReading.h"
+#include "MetaImageReading.h"
+#include "NRRDReading.h"
 #endif
 
 #include <vtkNew.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtksys/SystemTools.hxx>
+
+#include <algorithm>
+#include <new>
 
 namespace
 {
@@ -40,10 +44,6 @@ Volume ReadVTI(const std::string& path, Messages& messages, bool showProgress)
   Volume volume;
   volume.Image = vtkSmartPointer<vtkImageData>::New();
   volume.Image->ShallowCopy(reader->GetOutput());
-  if (volume.Image->GetNumberOfPoints() == 0)
-  {
-    throw Failure("cannot read " + path + ": it holds no voxels");
-  }
   return volume;
 }
 }
@@ -61,7 +61,9 @@ int ChooseFrame(const std::string& path, int frames, const ReadingOptions& optio
           " frames in time. Choose one of them with --frame 0 to " + last));
 }
 
-Volume ReadVolume(
+namespace
+{
+Volume ReadFile(
   const std::string& path, const ReadingOptions& options, Messages& messages, bool showProgress)
 {
   if (!vtksys::SystemTools::FileExists(path))
@@ -97,4 +99,28 @@ Volume ReadVolume(
   }
 #endif
   throw Failure("cannot read " + path + KnownFiles);
+}
+}
+
+Volume ReadVolume(
+  const std::string& path, const ReadingOptions& options, Messages& messages, bool showProgress)
+{
+  Volume volume;
+  try
+  {
+    volume = ReadFile(path, options, messages, showProgress);
+  }
+  catch (const std::bad_alloc&)
+  {
+    throw Failure("cannot read " + path + ": by its header it needs more memory than there is");
+  }
+  int dimensions[3];
+  volume.Image->GetDimensions(dimensions);
+  if (std::min({ dimensions[0], dimensions[1], dimensions[2] }) < 2)
+  {
+    throw Failure("cannot read " + path + ": it has " + std::to_string(dimensions[0]) + " x " +
+      std::to_string(dimensions[1]) + " x " + std::to_string(dimensions[2]) +
+      " voxels, and a volume needs at least two on each axis");
+  }
+  return volume;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VolumeWriting.h"
 
+#include "Failure.h"
 #include "ImageAxes.h"
 #include "Messages.h"
 #include "ProgressBar.h"
@@ -8,6 +9,7 @@
 #include "ItkWriting.h"
 #endif
 
+#include <vtkDataArray.h>
 #include <vtkNIFTIImageWriter.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -67,8 +69,24 @@ vtkSmartPointer<vtkImageData> MoveExtentToZero(vtkImageData* image)
   return moved;
 }
 
-// VTK's writer has codes of its own for the two forms.
-void SetCodes(const std::string& path, int qform, int sform)
+template <typename Integer, typename Real>
+void PutForms(std::fstream& file, const NIfTIForms& forms, int codes, int spacing)
+{
+  const Integer both[] = { static_cast<Integer>(forms.QFormCode),
+    static_cast<Integer>(forms.SFormCode) };
+  file.seekp(codes);
+  file.write(reinterpret_cast<const char*>(both), sizeof(both));
+  if (forms.QForm)
+  {
+    const Real lengths[] = { static_cast<Real>(forms.QSpacing[0]),
+      static_cast<Real>(forms.QSpacing[1]), static_cast<Real>(forms.QSpacing[2]) };
+    file.seekp(spacing);
+    file.write(reinterpret_cast<const char*>(lengths), sizeof(lengths));
+  }
+}
+
+// VTK's writer has codes of its own for the two forms, and the spacing of the s-form for both.
+bool SetForms(const std::string& path, const NIfTIForms& forms)
 {
   std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
   std::int32_t headerSize = 0;
@@ -76,17 +94,14 @@ void SetCodes(const std::string& path, int qform, int sform)
   constexpr std::int32_t headerSizeOfVersion1 = 348;
   if (headerSize == headerSizeOfVersion1)
   {
-    const std::int16_t codes[] = { static_cast<std::int16_t>(qform),
-      static_cast<std::int16_t>(sform) };
-    file.seekp(252);
-    file.write(reinterpret_cast<const char*>(codes), sizeof(codes));
+    PutForms<std::int16_t, float>(file, forms, 252, 80);
   }
   else
   {
-    const std::int32_t codes[] = { qform, sform };
-    file.seekp(344);
-    file.write(reinterpret_cast<const char*>(codes), sizeof(codes));
+    PutForms<std::int32_t, double>(file, forms, 344, 112);
   }
+  file.close();
+  return !file.fail();
 }
 
 bool Compress(const std::string& from, const std::string& to)
@@ -112,7 +127,7 @@ void MoveQForm(const Volume& volume, vtkMatrix4x4* qform)
   volume.Image->GetExtent(extent);
   for (int axis = 0; axis < 3; ++axis)
   {
-    shift->SetElement(axis, 3, extent[2 * axis] * volume.Image->GetSpacing()[axis]);
+    shift->SetElement(axis, 3, extent[2 * axis] * volume.Forms.QSpacing[axis]);
   }
   vtkMatrix4x4::Multiply4x4(volume.Forms.QForm, shift, qform);
 }
@@ -120,6 +135,15 @@ void MoveQForm(const Volume& volume, vtkMatrix4x4* qform)
 void WriteNIfTI(
   const Volume& volume, const std::string& path, Messages& messages, bool showProgress)
 {
+  const vtkSmartPointer<vtkImageData> image = MoveExtentToZero(volume.Image);
+  vtkDataArray* const values = image->GetPointData()->GetScalars();
+  const bool isReal = values->GetDataType() == VTK_FLOAT || values->GetDataType() == VTK_DOUBLE;
+  if (values->GetNumberOfComponents() == 2 && isReal)
+  {
+    throw Failure("cannot write " + path +
+      ": its vectors of two components would be complex numbers in a NIfTI file. Write .nrrd or "
+      ".mha");
+  }
   const bool isCompressed = HasSuffix(path, ".gz");
   const std::string plain = isCompressed ? path + ".part.nii" : path;
   const auto axes = GetAxesIn(volume, WorldAxes::RightAnteriorSuperior);
@@ -128,7 +152,7 @@ void WriteNIfTI(
   vtkNew<vtkNIFTIImageHeader> header;
   header->SetXYZTUnits(vtkNIFTIImageHeader::UnitsMM);
   vtkNew<vtkNIFTIImageWriter> writer;
-  writer->SetInputData(MoveExtentToZero(volume.Image));
+  writer->SetInputData(image);
   writer->SetFileName(plain.c_str());
   writer->SetNIFTIHeader(header);
   if (!keepsForms || forms.SFormCode != 0)
@@ -153,7 +177,7 @@ void WriteNIfTI(
   messages.Check("cannot write " + path);
   if (keepsForms)
   {
-    SetCodes(plain, forms.QFormCode, forms.SFormCode);
+    messages.Check("cannot write " + path, SetForms(plain, forms));
   }
   if (isCompressed)
   {

@@ -257,7 +257,7 @@ for compressed in (False, True):
     write_meta(path("wrong.mha"), single, in_lps, compressed=compressed)
     with open(path("wrong.mha"), "r+b") as file:
         file.truncate(os.path.getsize(path("wrong.mha")) - 1)
-    fails("it ends before its data do", "wrong.mha")
+    fails("its data are missing, damaged, or not complete", "wrong.mha")
 fails("no such file", "missing.nii")
 with open(path("transform.h5"), "wb") as file:
     file.write(b"x")

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MetaImageReading.h"
+
+#include "Failure.h"
+#include "ImageAxes.h"
+#include "ItkImage.h"
+
+#include <itkMetaImageIO.h>
+
+#include <vtkNew.h>
+#include <vtkPointData.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace
+{
+vtkSmartPointer<vtkDataArray> GetFrame(vtkDataArray* all, int frame, vtkIdType voxels)
+{
+  const auto one = vtkSmartPointer<vtkDataArray>::Take(all->NewInstance());
+  one->SetNumberOfComponents(all->GetNumberOfComponents());
+  one->SetNumberOfTuples(voxels);
+  one->InsertTuples(0, voxels, frame * voxels, all);
+  return one;
+}
+}
+
+Volume ReadMetaImage(const std::string& path, const ReadingOptions& options, Messages& messages)
+{
+  const auto io = itk::MetaImageIO::New();
+  ReadHeader(io, path, "it is no MetaImage file, its header is wrong, or it names a missing file");
+  const unsigned int axes = io->GetNumberOfDimensions();
+  const auto getSize = [&](unsigned int axis)
+  { return axis < axes ? static_cast<int>(io->GetDimensions(axis)) : 1; };
+  for (unsigned int axis = 4; axis < axes; ++axis)
+  {
+    if (getSize(axis) > 1)
+    {
+      throw Failure("cannot read " + path + ": it has " + std::to_string(axes) +
+        " axes, where a volume has three, and one of time");
+    }
+  }
+  const int frames = getSize(3);
+  const int frame = ChooseFrame(path, frames, options);
+  std::string complaints;
+  vtkSmartPointer<vtkDataArray> values = ReadValues(io, complaints);
+  // MetaIO returns without an error where a file is missing, damaged or too short.
+  if (!complaints.empty())
+  {
+    throw Failure("cannot read " + path + ": " + DataMissing);
+  }
+  Volume volume;
+  volume.Image = vtkSmartPointer<vtkImageData>::New();
+  volume.Image->SetDimensions(getSize(0), getSize(1), getSize(2));
+  if (frames > 1)
+  {
+    values = GetFrame(values, frame, volume.Image->GetNumberOfPoints());
+  }
+  values->SetName("MetaImage");
+  volume.Image->GetPointData()->SetScalars(values);
+  double spacing[3] = { 1.0, 1.0, 1.0 };
+  vtkNew<vtkMatrix4x4> place;
+  for (unsigned int column = 0; column < std::min(axes, 3U); ++column)
+  {
+    spacing[column] = io->GetSpacing(column);
+    const std::vector<double> direction = io->GetDirection(column);
+    for (unsigned int row = 0; row < std::min(axes, 3U) && !options.FileCoordinates; ++row)
+    {
+      place->SetElement(row, column, direction[row]);
+    }
+    place->SetElement(column, 3, io->GetOrigin(column));
+  }
+  volume.Image->SetSpacing(spacing);
+  SetAxes(volume.Image, place, path, messages);
+  volume.Axes = options.FileCoordinates ? WorldAxes::Unknown : WorldAxes::LeftPosteriorSuperior;
+  return volume;
+}

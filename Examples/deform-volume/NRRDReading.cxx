@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// NrrdIO decodes NRRD files. ITK's own class round it turns spaces into left-posterior-superior,
+// not all of them rightly, and refuses axes of time.
+#include "NRRDReading.h"
+
+#include "Failure.h"
+#include "ImageAxes.h"
+
+#include <NrrdIO.h>
+
+#include <vtkDataArray.h>
+#include <vtkMath.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+namespace
+{
+// The last of NrrdIO's messages, which says most, without the function that it comes from.
+std::string GetReason()
+{
+  char* const text = biffGetDone("nrrd");
+  std::string reason = text ? text : "";
+  std::free(text);
+  reason.erase(reason.find_last_not_of('\n') + 1);
+  reason.erase(0, reason.find_last_of('\n') + 1);
+  const std::size_t begin = reason.find(": ");
+  return begin == std::string::npos ? reason : reason.substr(begin + 2);
+}
+
+class NRRDFile
+{
+public:
+  explicit NRRDFile(const std::string& path)
+    : Path(path)
+  {
+    if (nrrdLoad(this->Data, path.c_str(), nullptr) != 0)
+    {
+      const std::string reason = GetReason();
+      this->Fail((this->LoadHeader() ? "its data are missing, damaged, or not complete: "
+                                     : "its header is wrong: ") +
+        reason);
+    }
+    this->SortAxes();
+  }
+  ~NRRDFile() { nrrdNuke(this->Data); }
+  NRRDFile(const NRRDFile&) = delete;
+  NRRDFile& operator=(const NRRDFile&) = delete;
+
+  int GetFrames() const
+  {
+    return this->FrameAxes.empty() ? 1 : static_cast<int>(this->GetSize(this->FrameAxes[0]));
+  }
+  vtkSmartPointer<vtkImageData> GetImage(int frame) const;
+  WorldAxes GetAxes() const;
+  // Whether y has to be turned for left-posterior-superior.
+  bool IsLeftAnterior() const
+  {
+    return this->Data->space == nrrdSpaceLeftAnteriorSuperior ||
+      this->Data->space == nrrdSpaceLeftAnteriorSuperiorTime;
+  }
+  // Whether the header has directions for all axes of space.
+  bool HasDirections() const
+  {
+    return this->SpaceAxes.size() == 3 &&
+      std::all_of(this->SpaceAxes.begin(), this->SpaceAxes.end(),
+        [this](unsigned int axis) { return this->HasDirection(axis); });
+  }
+  // Gives the image its spacing, and directions of unit length and the position of its first voxel,
+  // in the space of the file.
+  void GetPlace(vtkImageData* image, vtkMatrix4x4* place) const;
+  // From components of vectors to the space of the file: the identity where it is not given.
+  void GetMeasurementFrame(vtkMatrix3x3* matrix) const;
+  std::map<std::string, std::string> GetFields() const;
+
+private:
+  [[noreturn]] void Fail(const std::string& reason) const
+  {
+    throw Failure("cannot read " + this->Path + ": " + reason);
+  }
+  bool LoadHeader()
+  {
+    NrrdIoState* const state = nrrdIoStateNew();
+    state->skipData = 1;
+    const bool isLoaded = nrrdLoad(this->Data, this->Path.c_str(), state) == 0;
+    nrrdIoStateNix(state);
+    if (!isLoaded)
+    {
+      GetReason(); // which NrrdIO keeps otherwise
+    }
+    return isLoaded;
+  }
+  void SortAxes();
+  int GetType() const;
+  std::size_t GetSize(unsigned int axis) const { return this->Data->axis[axis].size; }
+  bool HasDirection(unsigned int axis) const
+  {
+    return this->Data->spaceDim >= 3 && std::isfinite(this->Data->axis[axis].spaceDirection[0]);
+  }
+  bool IsOfTime(unsigned int axis) const;
+
+  const std::string Path;
+  Nrrd* const Data = nrrdNew();
+  std::vector<unsigned int> ComponentAxes;
+  std::vector<unsigned int> SpaceAxes;
+  std::vector<unsigned int> FrameAxes;
+};
+
+bool NRRDFile::IsOfTime(unsigned int axis) const
+{
+  const int kind = this->Data->axis[axis].kind;
+  if (kind == nrrdKindTime || kind == nrrdKindList)
+  {
+    return true;
+  }
+  const double* const direction = this->Data->axis[axis].spaceDirection;
+  return this->HasDirection(axis) && vtkMath::Norm(direction) == 0.0 && this->Data->spaceDim > 3;
+}
+
+void NRRDFile::SortAxes()
+{
+  bool hasDirections = false;
+  for (unsigned int axis = 0; axis < this->Data->dim; ++axis)
+  {
+    hasDirections = hasDirections || this->HasDirection(axis);
+    if (this->GetSize(axis) > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    {
+      this->Fail("its axis " + std::to_string(axis) + " is too long");
+    }
+  }
+  for (unsigned int axis = 0; axis < this->Data->dim; ++axis)
+  {
+    const int kind = this->Data->axis[axis].kind;
+    const bool isOfSpace =
+      this->HasDirection(axis) || kind == nrrdKindDomain || kind == nrrdKindSpace;
+    if (kind == nrrdKindComplex)
+    {
+      this->Fail("its values are complex, which a volume of VTK cannot hold");
+    }
+    if (this->IsOfTime(axis))
+    {
+      this->FrameAxes.push_back(axis);
+    }
+    else if (isOfSpace || (kind == nrrdKindUnknown && !hasDirections))
+    {
+      // Without kinds, what follows three axes of space is time.
+      (this->SpaceAxes.size() < 3 ? this->SpaceAxes : this->FrameAxes).push_back(axis);
+    }
+    else if (kind != nrrdKindUnknown)
+    {
+      this->ComponentAxes.push_back(axis);
+    }
+    else
+    {
+      this->Fail("its axis " + std::to_string(axis) +
+        " has neither a direction nor a kind. Add the line kinds to its header: vector for "
+        "components, list for frames");
+    }
+  }
+  if (this->ComponentAxes.size() > 1 || this->FrameAxes.size() > 1)
+  {
+    this->Fail("it has " + std::to_string(this->Data->dim) +
+      " axes, where a volume has three, and one each of components and of time");
+  }
+}
+
+int NRRDFile::GetType() const
+{
+  switch (this->Data->type)
+  {
+    case nrrdTypeChar:
+      return VTK_SIGNED_CHAR;
+    case nrrdTypeUChar:
+      return VTK_UNSIGNED_CHAR;
+    case nrrdTypeShort:
+      return VTK_SHORT;
+    case nrrdTypeUShort:
+      return VTK_UNSIGNED_SHORT;
+    case nrrdTypeInt:
+      return VTK_INT;
+    case nrrdTypeUInt:
+      return VTK_UNSIGNED_INT;
+    case nrrdTypeLLong:
+      return VTK_LONG_LONG;
+    case nrrdTypeULLong:
+      return VTK_UNSIGNED_LONG_LONG;
+    case nrrdTypeFloat:
+      return VTK_FLOAT;
+    case nrrdTypeDouble:
+      return VTK_DOUBLE;
+    default:
+      this->Fail("its values are of a type that a volume of VTK cannot hold");
+  }
+}
+
+vtkSmartPointer<vtkImageData> NRRDFile::GetImage(int frame) const
+{
+  std::vector<unsigned int> order = this->ComponentAxes;
+  order.insert(order.end(), this->SpaceAxes.begin(), this->SpaceAxes.end());
+  order.insert(order.end(), this->FrameAxes.begin(), this->FrameAxes.end());
+  Nrrd* sorted = this->Data;
+  if (!std::is_sorted(order.begin(), order.end()))
+  {
+    sorted = nrrdNew();
+    if (nrrdAxesPermute(sorted, this->Data, order.data()) != 0)
+    {
+      nrrdNuke(sorted);
+      this->Fail(GetReason());
+    }
+  }
+  int dimensions[3] = { 1, 1, 1 };
+  for (std::size_t i = 0; i < this->SpaceAxes.size(); ++i)
+  {
+    dimensions[i] = static_cast<int>(this->GetSize(this->SpaceAxes[i]));
+  }
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(dimensions);
+  const auto values =
+    vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(this->GetType()));
+  values->SetName("ImageFile");
+  values->SetNumberOfComponents(
+    this->ComponentAxes.empty() ? 1 : static_cast<int>(this->GetSize(this->ComponentAxes[0])));
+  values->SetNumberOfTuples(image->GetNumberOfPoints());
+  const auto bytes = static_cast<std::size_t>(values->GetNumberOfValues()) *
+    static_cast<std::size_t>(values->GetDataTypeSize());
+  std::memcpy(
+    values->GetVoidPointer(0), static_cast<const char*>(sorted->data) + frame * bytes, bytes);
+  if (sorted != this->Data)
+  {
+    nrrdNuke(sorted);
+  }
+  image->GetPointData()->SetScalars(values);
+  return image;
+}
+
+WorldAxes NRRDFile::GetAxes() const
+{
+  switch (this->Data->space)
+  {
+    case nrrdSpaceRightAnteriorSuperior:
+    case nrrdSpaceRightAnteriorSuperiorTime:
+      return WorldAxes::RightAnteriorSuperior;
+    case nrrdSpaceLeftPosteriorSuperior:
+    case nrrdSpaceLeftPosteriorSuperiorTime:
+    case nrrdSpaceLeftAnteriorSuperior:
+    case nrrdSpaceLeftAnteriorSuperiorTime:
+      return WorldAxes::LeftPosteriorSuperior;
+    default:
+      return WorldAxes::Unknown;
+  }
+}
+
+void NRRDFile::GetPlace(vtkImageData* image, vtkMatrix4x4* place) const
+{
+  double spacing[3] = { 1.0, 1.0, 1.0 };
+  double origin[NRRD_DIM_MAX] = {};
+  const auto axes = static_cast<unsigned int>(this->SpaceAxes.size());
+  if (this->HasDirections())
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      double direction[3];
+      std::copy_n(this->Data->axis[this->SpaceAxes[column]].spaceDirection, 3, direction);
+      spacing[column] = vtkMath::Normalize(direction);
+      for (int row = 0; row < 3; ++row)
+      {
+        place->SetElement(row, column, direction[row]);
+      }
+    }
+    std::copy_n(this->Data->spaceOrigin, 3, origin);
+  }
+  else
+  {
+    for (unsigned int axis = 0; axis < axes; ++axis)
+    {
+      const double length = this->Data->axis[this->SpaceAxes[axis]].spacing;
+      spacing[axis] = std::isnan(length) ? 1.0 : length;
+    }
+    std::vector<unsigned int> spaceAxes = this->SpaceAxes;
+    nrrdOriginCalculate(this->Data, spaceAxes.data(), axes, nrrdCenterCell, origin);
+  }
+  for (int row = 0; row < 3; ++row)
+  {
+    place->SetElement(row, 3, std::isnan(origin[row]) ? 0.0 : origin[row]);
+  }
+  image->SetSpacing(spacing);
+}
+
+void NRRDFile::GetMeasurementFrame(vtkMatrix3x3* matrix) const
+{
+  for (int column = 0; column < 3 && std::isfinite(this->Data->measurementFrame[0][0]); ++column)
+  {
+    for (int row = 0; row < 3; ++row)
+    {
+      matrix->SetElement(row, column, this->Data->measurementFrame[column][row]);
+    }
+  }
+}
+
+std::map<std::string, std::string> NRRDFile::GetFields() const
+{
+  std::map<std::string, std::string> fields;
+  for (unsigned int i = 0; i < nrrdKeyValueSize(this->Data); ++i)
+  {
+    char* key = nullptr;
+    char* value = nullptr;
+    nrrdKeyValueIndex(this->Data, &key, &value, i);
+    fields[key] = value;
+    std::free(key);
+    std::free(value);
+  }
+  return fields;
+}
+}
+
+Volume ReadNRRD(const std::string& path, const ReadingOptions& options, Messages& messages)
+{
+  const NRRDFile file(path);
+  Volume volume;
+  volume.Image = file.GetImage(ChooseFrame(path, file.GetFrames(), options));
+  volume.Fields = file.GetFields();
+  volume.MeasurementFrame = vtkSmartPointer<vtkMatrix3x3>::New();
+  file.GetMeasurementFrame(volume.MeasurementFrame);
+  vtkNew<vtkMatrix4x4> place;
+  file.GetPlace(volume.Image, place);
+  if (options.FileCoordinates)
+  {
+    for (int i = 0; i < 9; ++i)
+    {
+      place->SetElement(i / 3, i % 3, i / 3 == i % 3 ? 1.0 : 0.0);
+    }
+  }
+  else if (file.HasDirections())
+  {
+    volume.Axes = file.GetAxes();
+    for (int column = 0; column < 4 && file.IsLeftAnterior(); ++column)
+    {
+      place->SetElement(1, column, 0.0 - place->GetElement(1, column));
+      if (column < 3)
+      {
+        volume.MeasurementFrame->SetElement(
+          1, column, -volume.MeasurementFrame->GetElement(1, column));
+      }
+    }
+  }
+  SetAxes(volume.Image, place, path, messages);
+  return volume;
+}
