@@ -8,6 +8,7 @@
 #   library   to build the library and its Python package against VTK
 #   example   to build and run the programs in Examples
 #   test      to build and run the tests
+#   readers   to compare volumes and transforms with other programs: from PyPI into build/readers
 #   benchmark to measure and draw the results, besides test
 #   paraview  to build and test against ParaView's VTK on the same machine
 #   check     to check the style of the sources
@@ -22,6 +23,7 @@ declare -A packages=(
   [example]="libcli11-dev libinsighttoolkit5-dev mricron-data xvfb xauth"
   [test]="libgtest-dev libbenchmark-dev libopenmpi-dev openmpi-bin oclgrind python3-numpy python3-xlib
     mricron-data xvfb xauth"
+  [readers]="python3-venv"
   [benchmark]="python3-matplotlib"
   [paraview]="paraview paraview-dev libopenmpi-dev libdouble-conversion-dev libutfcpp-dev
     liblz4-dev liblzma-dev libgl-dev libopengl-dev libx11-dev libglew-dev libfreetype-dev"
@@ -141,6 +143,24 @@ paraview_prefix()
   echo "$wanted" >$prefix/version
 }
 
+# SimpleITK, nibabel, pydicom and pynrrd, which Debian has not or in other versions, with a Python of
+# their own.
+readers()
+{
+  local folder=build/readers wanted
+  local programs=("SimpleITK>=2.5.2,<2.6" "nibabel>=5.3,<6" "pydicom>=3.0,<4" "pynrrd>=1.1,<2")
+  wanted="$(/usr/bin/python3 --version) ${programs[*]}"
+  [ "$(cat $folder/version 2>/dev/null)" = "$wanted" ] && return
+  echo "Installing ${programs[*]} from PyPI in $folder"
+  rm -rf $folder
+  if /usr/bin/python3 -m venv $folder && $folder/bin/pip install --quiet "${programs[@]}"; then
+    echo "$wanted" >$folder/version
+  else
+    rm -rf $folder
+    echo "They cannot be installed: the tests that need them are skipped"
+  fi
+}
+
 cd "$(dirname "$0")/.."
 upgrade=no
 if [ "${1-}" = --upgrade ]; then
@@ -166,5 +186,7 @@ for set in "$@"; do
   install ${packages[$set]}
   if [ "$set" = paraview ]; then
     paraview_prefix
+  elif [ "$set" = readers ]; then
+    readers
   fi
 done

@@ -27,6 +27,7 @@ fi
 packages=(library example test)
 case " ${presets[*]} " in *" paraview"*) packages+=(paraview) ;; esac
 case " ${presets[*]} " in *" clang "*) packages+=(clang) ;; esac
+[ $all = no ] || packages+=(readers)
 bash Testing/packages.sh "${packages[@]}"
 
 # Kernels run on all processors already; more than a few tests at once only wait for each other.
