@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run by a Python that has itk: writes a volume and inverse displacement fields with ITK's own writers,
-and what its WarpImageFilter makes of them. Usage: ItkFields.py FOLDER"""
+"""Run with the Python of "Testing/packages.sh readers": writes a volume and inverse displacement fields
+by SimpleITK, and what its resampling makes of them. Usage: ItkFields.py FOLDER"""
 import os
 import sys
 
-import itk
+import nibabel
 import numpy
+import SimpleITK
 
 folder = sys.argv[1]
-Vectors = itk.Image[itk.Vector[itk.F, 3], 3]
-Values = itk.Image[itk.F, 3]
+
+
+def path(name):
+    return os.path.join(folder, name)
 
 
 def turn(axis, degrees):
@@ -20,11 +23,11 @@ def turn(axis, degrees):
     return matrix
 
 
-def make(array, kind, origin, spacing, direction):
-    image = itk.image_from_array(array, ttype=(kind,))
+def make(array, origin, spacing, direction):
+    image = SimpleITK.GetImageFromArray(array, isVector=array.ndim == 4)
     image.SetOrigin([float(number) for number in origin])
     image.SetSpacing([float(number) for number in spacing])
-    image.SetDirection(itk.matrix_from_array(direction))
+    image.SetDirection(direction.ravel())
     return image
 
 
@@ -38,10 +41,9 @@ random = numpy.random.default_rng(3)
 size, spacing, direction = (20, 18, 16), (1.0, 1.3, 1.7), turn(2, 25) @ turn(0, -15)
 origin = numpy.array([-12.0, 8.0, 3.0])
 middle = get_points(size, origin, spacing, direction).reshape(-1, 3).mean(axis=0)
-moving = make(random.normal(size=size[::-1]).astype(numpy.float32), Values, origin, spacing,
-              direction)
-itk.imwrite(moving, os.path.join(folder, "moving.nii.gz"))
-itk.imwrite(moving, os.path.join(folder, "moving.mha"))
+moving = make(random.normal(size=size[::-1]).astype(numpy.float32), origin, spacing, direction)
+SimpleITK.WriteImage(moving, path("moving.nii.gz"))
+SimpleITK.WriteImage(moving, path("moving.mha"))
 
 # On the voxels of the volume, as registration writes it, and on a lattice of its own.
 coarse_direction = turn(1, 40)
@@ -52,19 +54,28 @@ for name, (field_size, field_origin, field_spacing, field_direction) in (
     p = (get_points(field_size, field_origin, field_spacing, field_direction) - middle) / 8
     vectors = 1.5 * numpy.stack([numpy.sin(p[..., 1]) + 0.5, numpy.cos(p[..., 2] + p[..., 0]),
                                  numpy.sin(p[..., 0] - p[..., 1]) - 0.3], axis=-1)
-    field = make(vectors.astype(numpy.float32), Vectors, field_origin, field_spacing, field_direction)
+    field = make(vectors.astype(numpy.float32), field_origin, field_spacing, field_direction)
     for suffix in ("nii.gz", "nii", "mha", "mhd", "nrrd", "nhdr"):
-        itk.imwrite(field, os.path.join(folder, f"{name}.{suffix}"))
-    itk.imwrite(field, os.path.join(folder, f"{name}-zip.nrrd"), compression=True)
-    itk.imwrite(field, os.path.join(folder, f"{name}-zip.mha"), compression=True)
-    field["intent_code"] = "1006"
-    itk.imwrite(field, os.path.join(folder, f"{name}-1006.nii.gz"))
+        SimpleITK.WriteImage(field, path(f"{name}.{suffix}"))
+    SimpleITK.WriteImage(field, path(f"{name}-zip.nrrd"), useCompression=True)
+    SimpleITK.WriteImage(field, path(f"{name}-zip.mha"), useCompression=True)
+    # As ITK writes them for fMRIPrep and others: right, anterior, superior.
+    lps = nibabel.load(path(f"{name}.nii"))
+    ras = nibabel.Nifti1Image(lps.get_fdata(dtype=numpy.float32) * numpy.float32([-1, -1, 1]), lps.affine)
+    ras.header.set_intent(1006)
+    nibabel.save(ras, path(f"{name}-1006.nii.gz"))
 
     # The field is evaluated at the voxels of the output, here those of the volume.
-    resampler = itk.WarpImageFilter[Values, Values, Vectors].New()
-    resampler.SetInput(moving)
-    resampler.SetDisplacementField(field)
-    resampler.SetOutputParametersFromImage(moving)
-    resampler.SetEdgePaddingValue(-100.0)
-    resampler.Update()
-    numpy.save(os.path.join(folder, f"{name}.npy"), itk.array_from_image(resampler.GetOutput()))
+    transform = SimpleITK.DisplacementFieldTransform(SimpleITK.Cast(field, SimpleITK.sitkVectorFloat64))
+    resampled = SimpleITK.Resample(moving, moving, transform, SimpleITK.sitkLinear, -100.0)
+    warp = SimpleITK.WarpImageFilter()
+    warp.SetOutputParameteresFromImage(moving)
+    warp.SetEdgePaddingValue(-100.0)
+    warped = SimpleITK.GetArrayFromImage(warp.Execute(moving, field))
+    resampled = SimpleITK.GetArrayFromImage(resampled)
+    # Outside the field one takes no displacement, and the other the nearest.
+    index = (get_points(size, origin, spacing, direction) - field_origin) @ numpy.linalg.inv(
+        field_direction * numpy.array(field_spacing)).T
+    inside = ((index > -1e-3) & (index < numpy.array(field_size) - 0.999)).all(axis=-1)
+    assert numpy.abs(warped - resampled)[inside & (resampled != -100) & (warped != -100)].max() < 1e-4
+    numpy.save(path(f"{name}.npy"), numpy.where(inside, resampled, -100))

@@ -1,28 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume reads fields that ITK's own writers wrote, and gives what ITK's WarpImageFilter gives.
-Skipped where no Python has itk: DEFORMVOLUME_ITK_PYTHON names one that has, for example that of a
-virtual environment after pip install itk. Usage: TestItkFields.py PROGRAM FOLDER"""
+"""deform-volume reads fields that SimpleITK wrote, and gives what SimpleITK's resampling gives.
+Usage: TestItkFields.py PROGRAM FOLDER"""
+import gzip
 import itertools
 import os
 import struct
-import subprocess
 import sys
-import gzip
 
 import numpy
+import Readers
 from Volumes import call, get_values, make_folder, read_vti
 
 program = sys.argv[1]
 folder = make_folder(sys.argv[2], "ItkFields")
-python = os.environ.get("DEFORMVOLUME_ITK_PYTHON", sys.executable)
-# A path for the modules of this Python is none for another one.
-environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-if subprocess.run([python, "-c", "import itk"], env=environment, capture_output=True,
-                  check=False).returncode:
-    print(f"Skipped: {python} has no module itk. Set DEFORMVOLUME_ITK_PYTHON to a Python that has.")
-    sys.exit(125)
-script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "ItkFields.py")
-call(python, script, folder, environment=environment)
+Readers.run("ItkFields.py", folder)
 
 with gzip.open(os.path.join(folder, "fine-1006.nii.gz"), "rb") as file:
     assert struct.unpack("<h", file.read()[68:70]) == (1006,)

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""deform-volume reads MetaImage, NRRD and NIfTI files as SimpleITK, pynrrd and nibabel do, says what is
+wrong with others, and these programs read what it writes. Usage: TestVolumeFiles.py PROGRAM FOLDER"""
+import json
+import os
+import sys
+
+import numpy
+import Readers
+from Volumes import call, get_values, make_ball, make_folder, write_vti
+
+program = sys.argv[1]
+folder = make_folder(sys.argv[2], "VolumeFiles")
+
+
+def path(name):
+    return os.path.join(folder, name)
+
+
+# What cannot be read, and is not read wrongly instead.
+Readers.run("WrongVolumeFiles.py", folder)
+for name, words, *arguments in Readers.load(folder, "wrong.json"):
+    Readers.fails(program, folder, name, words, *arguments)
+_, errors = call(program, path("time.nii"), *Readers.still, "--frame", "-1", "-o", path("no.vti"), code=2)
+assert "--frame" in errors, errors
+
+# What others wrote, and what is written of that.
+Readers.run("VolumeFiles.py", folder)
+written_again = {f"{kind}.{suffix}" for kind, suffix in (
+    ("uint8", "mha"), ("int8", "mhd"), ("uint16", "nii"), ("int16", "nii.gz"), ("uint32", "mha"),
+    ("int32", "mhd"), ("uint64", "nii"), ("int64", "nii.gz"), ("float32", "mha"), ("float64", "mhd"),
+    ("colour", "mha"), ("colour", "nrrd"), ("vector", "mhd"), ("vector", "nrrd"),
+    ("q", "nii.gz"), ("q-mirrored", "nii.gz"),
+    ("both", "nii"), ("s-mirrored", "nii"), ("one-mirrored", "nii"), ("scaled-form", "nii"),
+    ("unit1", "nii"), ("two", "nii.gz"), ("RAS", "nhdr"), ("las", "nrrd"))}
+suffixes = ("nii", "nii.gz", "mha", "mhd", "nrrd", "nhdr")
+written = []
+for case in Readers.load(folder, "cases.json"):
+    outputs = []
+    if case["file"] in written_again:
+        outputs = [path(f"{case['file']}.again.{suffix}") for suffix in suffixes]
+        written.append({**case, "outputs": outputs})
+        written_again.remove(case["file"])
+    Readers.check(program, folder, case, *outputs)
+assert not written_again, written_again
+
+# An extent that does not start at 0. The world of .vti files is not known, and not turned.
+ball = make_ball()
+shifted = make_ball(direction=(0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1))
+shifted.SetExtent(-4, 20, 3, 24, -1, 17)
+shifted.GetPointData().ShallowCopy(ball.GetPointData())
+write_vti(shifted, path("shifted.vti"))
+outputs = [path(f"shifted.{suffix}") for suffix in suffixes]
+call(program, path("shifted.vti"), *Readers.still, *(word for name in outputs for word in ("-o", name)))
+numpy.save(path("shifted.npy"), get_values(shifted))
+written.append({"file": "shifted.vti", "values": "shifted.npy", "outputs": outputs, "ras": None,
+                "place": Readers.get_matrix(shifted).tolist()})
+with open(path("written.json"), "w", encoding="utf-8") as file:
+    json.dump(written, file)
+Readers.run("WrittenVolumeFiles.py", folder)
+
+# NIfTI has no vectors of two real components.
+_, errors = call(program, path("time-vectors.nii"), "--frame", "1", *Readers.still, "-o",
+                 path("no.nii"), code=1)
+assert "complex" in errors and not os.path.exists(path("no.nii")), errors
