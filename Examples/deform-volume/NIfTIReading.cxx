@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace
 {
@@ -62,28 +63,31 @@ void CheckHeader(vtkNIFTIImageHeader* header, const std::string& path)
   {
     Fail(path, "it is no NIfTI file that holds its voxels (its magic is not n+1 or n+2)");
   }
-  const auto axes = static_cast<int>(header->GetDim(0));
-  for (int axis = 1; axis <= axes; ++axis)
+  const auto axes = header->GetDim(0);
+  for (int axis = 1; axis <= std::min<vtkTypeInt64>(axes, 7); ++axis)
   {
     const auto size = header->GetDim(axis);
     if (size < 1)
     {
       Fail(path, "its axis " + std::to_string(axis) + " has the length " + std::to_string(size));
     }
-    if (axis > 5 && size > 1)
+    if ((axis > 5 && size > 1) || axes > 7)
     {
       Fail(path,
         "it has " + std::to_string(axes) +
           " axes, where a volume has three, and one each of time and of components");
     }
   }
+  using Header = vtkNIFTIImageHeader;
+  const int types[] = { Header::TypeUInt8, Header::TypeInt8, Header::TypeUInt16, Header::TypeInt16,
+    Header::TypeUInt32, Header::TypeInt32, Header::TypeUInt64, Header::TypeInt64,
+    Header::TypeFloat32, Header::TypeFloat64, Header::TypeRGB24, Header::TypeRGBA32 };
   const int type = header->GetDataType();
-  constexpr int bits = 1;
-  if (type == vtkNIFTIImageHeader::TypeComplex64 || type == vtkNIFTIImageHeader::TypeComplex128 ||
-    type == vtkNIFTIImageHeader::TypeComplex256 || type == bits)
+  if (std::find(std::begin(types), std::end(types), type) == std::end(types))
   {
+    const bool isComplex = type == Header::TypeComplex64 || type == Header::TypeComplex128;
     Fail(path,
-      std::string("its values are ") + (type == bits ? "single bits" : "complex") +
+      "its values are " + (isComplex ? "complex" : "of NIfTI's type " + std::to_string(type)) +
         ", which a volume of VTK cannot hold");
   }
   const vtkTypeInt64 headerSize = magic == "n+1" ? 352 : 544;
@@ -250,10 +254,10 @@ Volume ReadNIfTI(
   }
   reader->SetFileName(path.c_str());
   reader->UpdateInformation();
-  messages.Check("cannot read " + path);
   Volume volume;
   volume.NIfTIHeader = reader->GetNIFTIHeader();
   CheckHeader(volume.NIfTIHeader, path);
+  messages.Check("cannot read " + path);
   const double millimetres = GetMillimetres(volume.NIfTIHeader);
   if (millimetres == 0.0)
   {

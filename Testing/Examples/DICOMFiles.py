@@ -263,8 +263,9 @@ for name, words in (("liver_1frame", "no position"), ("rtdose_1frame", "several 
     shutil.copy(os.path.join(package, f"{name}.dcm"), path(name))
     wrong.append([name, words])
 # GDCM ends the program where a file ends within an element.
-for name, source, sizes in (("cut", "plain", (140, 200, 500, -50, -1)), ("big-cut", "big", (600, -1)),
-                            ("implicit-cut", "implicit", (600, -1)), ("packed-cut", "MR_small_RLE", (-9, -1))):
+for name, source, sizes in (
+        ("cut", "plain", (140, 200, 500, -50, -1)), ("big-cut", "big", (600, -1)),
+        ("implicit-cut", "implicit", (600, -1)), ("packed-cut", "MR_small_RLE", (-9, -1))):
     last = sorted(os.listdir(path(source)))[-1]
     with open(path(source, last), "rb") as file:
         whole = file.read()

@@ -39,7 +39,7 @@ for case in Readers.load(folder, "cases.json"):
     outputs = []
     if case["file"] in written_again:
         outputs = [path(f"{case['file']}.again.{suffix}") for suffix in suffixes]
-        written.append({**case, "outputs": outputs})
+        written.append({**case, "outputs": outputs, "padding": 0})
         written_again.remove(case["file"])
     Readers.check(program, folder, case, *outputs)
 assert not written_again, written_again
@@ -54,7 +54,15 @@ outputs = [path(f"shifted.{suffix}") for suffix in suffixes]
 call(program, path("shifted.vti"), *Readers.still, *(word for name in outputs for word in ("-o", name)))
 numpy.save(path("shifted.npy"), get_values(shifted))
 written.append({"file": "shifted.vti", "values": "shifted.npy", "outputs": outputs, "ras": None,
-                "place": Readers.get_matrix(shifted).tolist()})
+                "place": Readers.get_matrix(shifted).tolist(), "padding": 0})
+both = [case for case in written if case["file"] == "both.nii"][0]
+call(program, path("both.nii"), *Readers.still, "--padding", "2", "--background", "0", "-o",
+     path("padded.again.nii.gz"))
+numpy.save(path("padded.npy"), numpy.pad(numpy.load(path(both["values"])), 2))
+place = numpy.array(both["place"])
+place[:3, 3] -= place[:3, :3] @ [2, 2, 2]
+written.append({**both, "values": "padded.npy", "outputs": [path("padded.again.nii.gz")], "padding": 2,
+                "place": place.tolist()})
 with open(path("written.json"), "w", encoding="utf-8") as file:
     json.dump(written, file)
 Readers.run("WrittenVolumeFiles.py", folder)

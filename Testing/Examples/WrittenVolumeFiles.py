@@ -33,7 +33,7 @@ def read_nrrd(name):
     return values.transpose(2, 1, 0, *range(3, values.ndim)), place
 
 
-def read_nifti(name, source):
+def read_nifti(name, source, padding):
     image = nibabel.load(name)
     header = image.header
     assert header.get_xyzt_units()[0] == "mm"
@@ -48,6 +48,7 @@ def read_nifti(name, source):
             scale = {1: 1000, 2: 1, 3: 0.001, 0: 1}[int(old["xyzt_units"]) & 7]
             expected = old.get_qform()
             expected[:3] *= scale
+            expected[:3, 3] -= expected[:3, :3] @ ([padding] * 3)
             if numpy.dot(expected[:3, 2], header.get_qform()[:3, 2]) < 0:
                 expected[:3, 3] += expected[:3, 2] * (image.shape[2] - 1)
                 expected[:3, 2] *= -1
@@ -78,7 +79,7 @@ with open(os.path.join(folder, "written.json"), encoding="utf-8") as file:
         in_lps = flip @ place if case["ras"] else place
         for name in case["outputs"]:
             if ".again.nii" in name or "shifted.nii" in name:
-                compare(name, *read_nifti(name, case["file"]), expected, in_ras)
+                compare(name, *read_nifti(name, case["file"], case["padding"]), expected, in_ras)
             else:
                 compare(name, *read_itk(name), expected, in_lps)
             if name.endswith("nrrd") or name.endswith("nhdr"):
