@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""deform-volume deforms a volume by transforms that SimpleITK wrote as SimpleITK's resampling does.
+Usage: TestTransforms.py PROGRAM FOLDER"""
+import itertools
+import os
+import sys
+
+import numpy
+import Readers
+from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+
+program = sys.argv[1]
+folder = make_folder(sys.argv[2], "Transforms")
+
+
+def path(name):
+    return os.path.join(folder, name)
+
+
+def write(name, text):
+    with open(path(name), "w", encoding="ascii") as file:
+        file.write(text)
+
+
+Readers.run("Transforms.py", folder)
+
+
+# What cannot be used is an error that says why, and what converts it.
+def fails(expected, *options, volume="moving.nii.gz", code=1):
+    _, errors = call(program, path(volume), *options, "-o", path("no.vti"), code=code)
+    assert errors.startswith("deform-volume: "), errors
+    assert expected in errors, f"{expected} is not in {errors}"
+    assert not os.path.exists(path("no.vti"))
+
+
+matrix = "1 0 0 5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
+write("flirt.mat", matrix)
+write("aladin.txt", matrix)
+write("some.lta", "type = 0\n")
+write("register.dat", "subject\n1.0\n1.0\n0.15\n" + matrix + "round\n")
+write("mni.xfm", "MNI Transform File\n")
+write("warp.m3z", "x")
+write("TransformParameters.0.txt", "// by elastix\n\n(Transform \"AffineTransform\")\n")
+write("empty.txt", "")
+write("words.tfm", "some words\n")
+write("broken.h5", "x")
+with open(path("affine.tfm"), encoding="ascii") as file:
+    one = file.read()
+write("two.tfm", one + one.split("\n", 1)[1].replace("#Transform 0", "#Transform 1"))
+write("words.xyz", "some words\n")
+write_vti(make_ball(), path("unknown.vti"))
+for name, words in {
+        "missing.h5": "there is no such file",
+        "flirt.mat": "-fsl2ras -oitk",
+        "aladin.txt": "c3d_affine_tool",
+        "some.lta": "lta_convert --inlta",
+        "register.dat": "lta_convert --inreg",
+        "mni.xfm": "lta_convert --inmni",
+        "warp.m3z": "mri_warp_convert --inm3z",
+        "TransformParameters.0.txt": "transformix -def all",
+        "empty.txt": "it holds no transform as ITK",
+        "words.tfm": "it holds no transform as ITK",
+        "broken.h5": "it holds no transform as ITK",
+        "two.tfm": "it holds 2 transforms",
+        "planar.tfm": "AffineTransform_double_2_2",
+        "words.xyz": "a transform is a .h5",
+        "spline.h5,invert": "a BSplineTransform cannot be inverted",
+        "warp.nii.gz,invert": "the file InverseWarp"}.items():
+    fails(words, "--transform", path(name))
+affine = ("--transform", path("affine.h5"))
+fails("--volume-space", *affine, volume="unknown.vti")
+fails("expected FILE or FILE,invert", "--transform", path("affine.h5,inverse"), code=2)
+fails("exactly one of", *affine, "--field", path("warp.nii.gz"), code=2)
+fails("exactly one of", *affine, "--lattice", "3,3,3", code=2)
+fails("--push goes with", *affine, "--push", "1,2,3,4,5,6,7", code=2)
+fails("excludes", *affine, "--file-coordinates", code=2)
+fails("excludes", *affine, "--write-mesh", path("no.vtu"), code=2)
+fails("on the grid of the volume", *affine, "--bounds", "deformed", code=2)
+_, errors = call(program, path("moving.nii.gz"), *affine, "-o", path("affine.h5"), code=2)
+assert "nothing to write" in errors or "must end in" in errors, errors
+_, errors = call(program, path("moving.mha"), "--volume-space", "ras", *affine, "-o", path("a.vti"), "-q")
+assert "says itself" in errors, errors
+
+# Numbers: single precision of the field, of coordinates up to 50, and of the values of noise.
+expected = numpy.load(path("expected.npz"))
+
+
+def check(volume, name, *files):
+    options = list(itertools.chain.from_iterable(("--transform", path(file)) for file in files))
+    call(program, path(volume), *options, "-q", "-o", path("out.vti"))
+    image = read_vti(path("out.vti"))
+    values, covered = get_values(image), get_values(image, "vtkValidPointMask") != 0
+    depth = expected["depth of " + name]
+    assert covered[depth > 0.001].all(), (name, "holes")
+    assert not covered[depth < -0.01].any(), (name, "outside")
+    assert (depth > 0.001).sum() > 5000, (name, (depth > 0.001).sum())
+    inside = depth > 0.001
+    wrong = numpy.abs(values - expected[name])[inside].max()
+    # VTK's interpolator of fields moves a point by up to 2^-16 voxel, where vectors differ by up to
+    # 7 mm from voxel to voxel, and values by up to 7 in 1 mm.
+    allowed = 2e-5 + (49 * 2.0 ** -16 if any(file.startswith("warp") for file in files) else 0)
+    assert wrong < allowed, (volume, name, files, wrong)
+
+
+formats = ("h5", "tfm", "txt", "mat")
+for name, suffix in itertools.product(("affine", "euler", "spline", "displacement", "composite", "nested"),
+                                      formats):
+    if os.path.exists(path(f"{name}.{suffix}")):
+        # The world of the volume is right-anterior-superior or left-posterior-superior in turn.
+        volume = ("moving.nii.gz", "moving.mha")[formats.index(suffix) % 2]
+        check(volume, name, f"{name}.{suffix}")
+    else:
+        assert suffix not in ("h5", "tfm"), (name, suffix)
+check("moving.nrrd", "affine,invert", "affine.mat,invert")
+for volume in ("moving.nii.gz", "moving.mha"):
+    check(volume, "displacement", "warp.nii.gz")
+    check(volume, "displacement", "warp.mha")
+    check(volume, "euler+affine", "euler.h5", "affine.tfm")
+    check(volume, "affine,invert+warp", "affine.mat,invert", "warp.nii.gz")
+    check(volume, "warp+affine", "warp.nii.gz", "affine.mat")

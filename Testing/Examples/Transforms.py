@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Run by a Python that has SimpleITK: writes volumes and transforms, and what SimpleITK's resampling makes
+of them on the grid of the volume. Usage: Transforms.py FOLDER"""
+import os
+import sys
+
+import numpy
+import SimpleITK as sitk
+
+folder = sys.argv[1]
+
+
+def path(name):
+    return os.path.join(folder, name)
+
+
+def turn(axis, degrees):
+    c, s = numpy.cos(numpy.radians(degrees)), numpy.sin(numpy.radians(degrees))
+    i, j = [other for other in range(3) if other != axis]
+    matrix = numpy.eye(3)
+    matrix[[i, j, i, j], [i, j, j, i]] = c, c, -s, s
+    return matrix
+
+
+# A volume in general position, whose values show any exchange of axes.
+random = numpy.random.default_rng(5)
+size, spacing = (26, 22, 18), (1.0, 1.3, 1.7)
+direction = turn(2, 25) @ turn(0, -15)
+moving = sitk.GetImageFromArray(random.normal(size=size[::-1]).astype(numpy.float32))
+moving.SetSpacing(spacing)
+moving.SetOrigin((-12.0, 8.0, 3.0))
+moving.SetDirection(direction.ravel().tolist())
+values = sitk.GetArrayViewFromImage(moving)
+assert max(numpy.abs(numpy.diff(values, axis=axis)).max() for axis in range(3)) < 7
+for name in ("moving.nii.gz", "moving.mha", "moving.nrrd"):
+    sitk.WriteImage(moving, path(name))
+middle = moving.TransformContinuousIndexToPhysicalPoint([(n - 1) / 2 for n in size])
+
+affine = sitk.AffineTransform(3)
+affine.SetMatrix((turn(1, 8) @ numpy.diag([1.05, 0.96, 1.02])).ravel().tolist())
+affine.SetCenter(middle)
+affine.SetTranslation((1.5, -2.0, 0.7))
+
+euler = sitk.Euler3DTransform(middle, 0.1, -0.05, 0.2, (0.5, 1.0, -1.5))
+
+spline = sitk.BSplineTransformInitializer(moving, (5, 4, 4), 3)
+parameters = random.normal(scale=1.5, size=len(spline.GetParameters()))
+spline.SetParameters(parameters.tolist())
+
+
+def make_field():
+    """On a coarse lattice of its own that does not reach all of the volume."""
+    image = sitk.Image([9, 8, 7], sitk.sitkVectorFloat64, 3)
+    image.SetSpacing((3.0, 3.2, 3.5))
+    image.SetDirection(turn(1, 30).ravel().tolist())
+    image.SetOrigin((0.0, 0.0, 0.0))
+    half = image.TransformContinuousIndexToPhysicalPoint([(n - 1) / 2 for n in image.GetSize()])
+    image.SetOrigin([m - h for m, h in zip(middle, half)])
+    vectors = random.normal(size=(7, 8, 9, 3))
+    assert max(numpy.abs(numpy.diff(vectors, axis=axis)).max() for axis in range(3)) < 7
+    values = sitk.GetImageFromArray(vectors, isVector=True)
+    values.CopyInformation(image)
+    return values
+
+
+field = make_field()
+sitk.WriteImage(sitk.Cast(field, sitk.sitkVectorFloat32), path("warp.nii.gz"))
+sitk.WriteImage(field, path("warp.mha"))
+displacement = sitk.DisplacementFieldTransform(sitk.Image(field))
+
+composite = sitk.CompositeTransform([affine, displacement])
+nested = sitk.CompositeTransform([euler, spline])
+
+transforms = {"affine": affine, "euler": euler, "spline": spline, "displacement": displacement,
+              "composite": composite, "nested": nested}
+for name, transform in transforms.items():
+    for suffix in ("h5", "tfm", "txt", "mat"):
+        try:
+            sitk.WriteTransform(transform, path(f"{name}.{suffix}"))
+            sitk.ReadTransform(path(f"{name}.{suffix}"))
+        except RuntimeError:
+            # What this format has no room for, or ITK does not read again.
+            if os.path.exists(path(f"{name}.{suffix}")):
+                os.remove(path(f"{name}.{suffix}"))
+planar = sitk.AffineTransform(2)
+sitk.WriteTransform(planar, path("planar.tfm"))
+
+expected = dict(transforms)
+expected["affine,invert"] = affine.GetInverse()
+# A point goes through the last one first.
+expected["euler+affine"] = sitk.CompositeTransform([euler, affine])
+expected["affine,invert+warp"] = sitk.CompositeTransform([affine.GetInverse(), displacement])
+expected["warp+affine"] = sitk.CompositeTransform([displacement, affine])
+nothing = -1000.0
+
+
+def add(key, transform, grid):
+    resampled = sitk.Resample(moving, grid, transform, sitk.sitkLinear, nothing)
+    results[key] = sitk.GetArrayFromImage(resampled)
+    # How far inside the volume each voxel's point lies, in voxels: beyond 0, ITK repeats the border.
+    index = numpy.stack(numpy.meshgrid(*(numpy.arange(n) for n in grid.GetSize()), indexing="ij"),
+                        axis=-1)
+    reached = numpy.array([moving.TransformPhysicalPointToContinuousIndex(transform.TransformPoint(
+        grid.TransformIndexToPhysicalPoint(voxel))) for voxel in index.reshape(-1, 3).tolist()])
+    depth = numpy.minimum(reached, numpy.array(size) - 1 - reached).min(axis=-1)
+    results["depth of " + key] = depth.reshape(grid.GetSize()).T
+
+
+results = {}
+for name, transform in expected.items():
+    add(name, transform, moving)
+numpy.savez(path("expected.npz"), **results)
