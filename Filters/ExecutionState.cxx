@@ -17,7 +17,8 @@ bool ExecutionState::BoundsKey::operator==(const BoundsKey& other) const
 {
   return this->Inputs == other.Inputs && this->Volume == other.Volume &&
     this->Scale == other.Scale && this->DisplacementScale == other.DisplacementScale &&
-    this->Choice == other.Choice && this->OutsideMode == other.OutsideMode;
+    this->Choice == other.Choice && this->OutsideMode == other.OutsideMode &&
+    this->FadeDistance == other.FadeDistance;
 }
 
 bool ExecutionState::ExtentKey::operator==(const ExtentKey& other) const

@@ -45,6 +45,7 @@ struct ExecutionState
     double DisplacementScale = 0.0;
     std::string Choice;
     int OutsideMode = -1;
+    double FadeDistance = 0.0;
     bool operator==(const BoundsKey& other) const;
   };
   BoundsKey KeyOfBounds;
@@ -96,6 +97,9 @@ struct ExecutionState
   };
   Share LastShare;
   Extent LastNeeded{ { 0, -1, 0, -1, 0, -1 } };
+
+  // Mapping and displacements that were looked at for warnings of kept voxels.
+  std::pair<std::uint64_t, std::uint64_t> VersionsOfFading;
 
   // For which displacements inverted tetrahedra of an inverse field were counted, and their number.
   std::uint64_t FoldsVersion = 0;

@@ -298,6 +298,7 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SamplingFactor: " << this->SamplingFactor << "\n";
   os << indent << "BackgroundValue: " << this->BackgroundValue << "\n";
   os << indent << "OutsideMode: " << this->OutsideMode << "\n";
+  os << indent << "FadeDistance: " << this->FadeDistance << "\n";
   os << indent << "CategoricalArrays:";
   for (const std::string& name : this->Internals->CategoricalArrays)
   {

@@ -64,13 +64,14 @@
  * the same to the last bit however the output is divided. Where a part is asked for, and with
  * CUSTOM_BOUNDS, the input is asked only for the voxels that can land there, provided that all
  * sources of the volume can make parts (they say so with CAN_PRODUCE_SUB_EXTENT), that the
- * resampler is EXACT, or AUTOMATIC with linear interpolation, that the mesh is not extrapolated,
- * and that the volume has no smooth cut or SamplingFactor is above 1. AUTOMATIC is then EXACT, even
- * if the whole would not have fit into memory. Else, and with FieldIsInverse, the input is asked
- * for whole. Of the deformation mesh each rank may have a piece, none, or the whole: it is gathered
- * through vtkMultiProcessController::GetGlobalController(). A displacement field every rank must be
- * given whole. All ranks have to update together; an error of one is told on all. Counts of voxels,
- * tetrahedra and bricks are summed over the ranks: what two of them have counts twice.
+ * resampler is EXACT, or AUTOMATIC with linear interpolation, that OutsideMode is DISCARD for a
+ * mesh, and that the volume has no smooth cut or SamplingFactor is above 1. AUTOMATIC is then
+ * EXACT, even if the whole would not have fit into memory. Else, and with FieldIsInverse, the input
+ * is asked for whole. Of the deformation mesh each rank may have a piece, none, or the whole: it is
+ * gathered through vtkMultiProcessController::GetGlobalController(). A displacement field every
+ * rank must be given whole. All ranks have to update together; an error of one is told on all.
+ * Counts of voxels, tetrahedra and bricks are summed over the ranks: what two of them have counts
+ * twice.
  *
  * @par Errors:
  * Each failure is one vtkErrorMacro, which says what is wrong and what to do, at each update that
@@ -268,22 +269,48 @@ public:
   enum OutsideModes
   {
     DISCARD = 0,
-    EXTRAPOLATE = 1
+    EXTRAPOLATE = 1,
+    KEEP = 2
   };
 
   ///@{
   /**
-   * What happens to the volume outside the deformation mesh or field: it is discarded, so that the
-   * deformed volume ends where the deformed mesh ends (up to 1/128 output voxel, as node positions
-   * are rounded), or its voxels follow the nearest tetrahedron, whose affine map is extended (it is
-   * the tetrahedron of the nearest voxel inside the mesh; with a field, the displacement of the
-   * nearest point of the field). The latter needs 16 bytes a voxel for the mapping whatever the
-   * mesh, while the former makes do with less where tetrahedra are large. Default: DISCARD.
+   * What happens to the volume outside the deformation mesh or field.
+   * - DISCARD: it is discarded, so that the deformed volume ends where the deformed mesh ends (up
+   * to 1/128 output voxel, as node positions are rounded).
+   * - EXTRAPOLATE: its voxels follow the nearest tetrahedron, whose affine map is extended (it is
+   *   the tetrahedron of the nearest voxel inside the mesh; with a field, the displacement of the
+   *   nearest point of the field).
+   * - KEEP: it stays where it is, and the displacement fades to zero within FadeDistance. Cavities
+   *   of the mesh count as outside. Not for displacement fields, not with OpenSplits and not with
+   *   MESH_RASTERIZATION: errors.
+   *
+   * EXTRAPOLATE and KEEP need 16 bytes a voxel for the mapping whatever the mesh, while DISCARD
+   * makes do with less where tetrahedra are large. Default: DISCARD.
    */
-  vtkSetClampMacro(OutsideMode, int, DISCARD, EXTRAPOLATE);
+  vtkSetClampMacro(OutsideMode, int, DISCARD, KEEP);
   vtkGetMacro(OutsideMode, int);
   void SetOutsideModeToDiscard() { this->SetOutsideMode(DISCARD); }
   void SetOutsideModeToExtrapolate() { this->SetOutsideMode(EXTRAPOLATE); }
+  void SetOutsideModeToKeep() { this->SetOutsideMode(KEEP); }
+  ///@}
+
+  ///@{
+  /**
+   * With OutsideMode KEEP, the distance from the mesh at rest within which the displacement fades
+   * to zero, in world units. A voxel at the distance d is displaced as the closest point of the
+   * mesh's boundary, times 1 - 3 s^2 + 2 s^3 with s = d / FadeDistance. Voxels farther away stay
+   * where they are to the last bit. A distance of at least twice the largest displacement keeps the
+   * volume from folding; less than 1.5 times that, and tetrahedra of the volume that are stretched
+   * over more than 2 output voxels where the closest point jumps (between two bodies, within a
+   * ring), are reported in one warning for each change of the deformation.
+   *
+   * 0 is a hard edge: no voxel outside the mesh moves. Where the boundary of the mesh moves, the
+   * cells that it crosses are stretched or folded. Negative, infinite and NaN are errors at the
+   * next update. Default: 0.
+   */
+  vtkSetMacro(FadeDistance, double);
+  vtkGetMacro(FadeDistance, double);
   ///@}
 
   ///@{
@@ -314,7 +341,8 @@ public:
    *   of each output voxel. Every covered voxel is written once: by the first tetrahedron that is
    *   upright, or else by the first inverted one. There is no sampling mesh and no static mapping,
    *   which saves their memory and suits coarse meshes. Not for forward displacement fields, and
-   *   not for meshes with EXTRAPOLATE. With FieldIsInverse the field says the rest position.
+   *   not for meshes with EXTRAPOLATE or KEEP. With FieldIsInverse the field says the rest
+   * position.
    * - AUTOMATIC: EXACT, unless the interpolation is cubic, or the memory suffices for
    *   MESH_RASTERIZATION only and that can do the deformation. The whole extent of the output
    *   counts, so that its parts are done alike.
@@ -499,8 +527,8 @@ public:
    * MESH_RASTERIZATION, which knows none. "Static mappings made" and "Volumes sent" to the device
    * since the filter is there: a moved mesh costs neither; another mesh at rest (not where nodes
    * are added, or tetrahedra get other nodes in the same places), another geometry of the volume,
-   * ratio of spacings, OutsideMode or device, and ReleaseDeviceMemory() cost a mapping. "Arrays on
-   * the device" that nobody has read (OutputOnDevice).
+   * ratio of spacings, OutsideMode, FadeDistance or device, and ReleaseDeviceMemory() cost a
+   * mapping. "Arrays on the device" that nobody has read (OutputOnDevice).
    *
    * "Seconds for the static mapping", 0 when that of an earlier execution served; "for transfer" to
    * and from the device, without arrays that are read later; "for mapping", which exact kernels do
@@ -553,6 +581,7 @@ private:
   int SamplingFactor = 1;
   double BackgroundValue = 0.0;
   int OutsideMode = DISCARD;
+  double FadeDistance = 0.0;
   int Resampler = AUTOMATIC;
   int Interpolation = LINEAR_INTERPOLATION;
   bool OpenSplits = false;

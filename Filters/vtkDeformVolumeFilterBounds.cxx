@@ -79,34 +79,49 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   }
   if (extrapolate)
   {
-    // The links are made before any output is asked for: what they need is checked here.
-    this->SelectDevice();
-    this->CheckWithRoom(
-      [&]
-      {
-        this->State->Device.CheckMemory(voxelGrid, {}, { { 0, -1, 0, -1, 0, -1 } }, 0,
-          this->State->Deformation,
-          this->State->Mapping.GetRunBytes(
-            this->State->Deformation, { volume, volume.PointExtent, true }));
-      });
-    this->State->Mapping.Update(this->State->Deformation, { volume, volume.PointExtent, true }, {});
+    this->MakeLinks(voxelGrid, { volume, volume.PointExtent, extrapolate });
     return deformvolume::ComputeDeformedBounds(voxelGrid, this->State->Mapping.GetLinks(),
       this->State->Deformation.GetTetrahedra(), this->State->Deformation.GetNodeDisplacements());
   }
   const deformvolume::Deformation& mesh = this->State->Deformation;
+  const deformvolume::MappedVolume mapped{ volume, volume.PointExtent, this->GetOutside() };
+  if (mapped.Outside.AreKept() && !this->State->Mapping.IsCurrent(mesh, mapped))
+  {
+    this->MakeLinks(voxelGrid, mapped);
+  }
   this->UpdateBoundsOfMesh(voxelGrid);
   const deformvolume::PointRanges changes = mesh.GetChanges(this->State->BoundsVectorsVersion);
-  const IndexBounds bounds = this->State->BoundsOfMesh.Compute(
+  IndexBounds bounds = this->State->BoundsOfMesh.Compute(
     mesh.GetRestPoints(), mesh.GetTetrahedra(), mesh.GetNodeDisplacements(), &changes);
   this->State->BoundsVectorsVersion = mesh.GetVectorsVersion();
+  if (mapped.Outside.AreKept())
+  {
+    bounds.Add(this->State->Mapping.GetMapping().Faded.ComputeBounds(
+      voxelGrid, mesh.GetTetrahedra(), mesh.GetNodeDisplacements()));
+  }
   if (bounds.IsEmpty())
   {
     // Tells what is wrong.
-    this->State->Mapping.Update(
-      this->State->Deformation, { volume, volume.PointExtent, false }, {});
+    this->State->Mapping.Update(this->State->Deformation, mapped, {});
     throw Error("The deformed volume has no bounds. Check the deformation mesh.");
   }
   return bounds;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::MakeLinks(
+  const deformvolume::VoxelGrid& voxelGrid, const deformvolume::MappedVolume& mapped)
+{
+  // They are made before any output is asked for: what they need is checked here.
+  const deformvolume::Deformation& mesh = this->State->Deformation;
+  this->SelectDevice();
+  this->CheckWithRoom(
+    [&]
+    {
+      this->State->Device.CheckMemory(voxelGrid, {}, { { 0, -1, 0, -1, 0, -1 } }, 0, mesh,
+        this->State->Mapping.GetRunBytes(mesh, mapped));
+    });
+  this->State->Mapping.Update(mesh, mapped, {});
 }
 
 //------------------------------------------------------------------------------
@@ -177,6 +192,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
   key.DisplacementScale = source.DisplacementScale;
   key.Choice = source.Choice;
   key.OutsideMode = this->Self->OutsideMode;
+  key.FadeDistance = this->GetOutside().FadeDistance;
   if (!ranks.IsAny(!(key == this->State->KeyOfBounds)))
   {
     return this->State->Bounds;

@@ -6,6 +6,7 @@
 #include "FieldFolds.h"
 #include "InputUpdate.h"
 #include "MaskArray.h"
+#include "OutsideMode.h"
 #include "ResamplerChoice.h"
 #include "VectorChoice.h"
 #include "VolumeArrays.h"
@@ -132,6 +133,31 @@ ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetCoarseGeometry(
 }
 
 //------------------------------------------------------------------------------
+deformvolume::OutsideVoxels vtkDeformVolumeFilter::vtkInternals::GetOutside() const
+{
+  return deformvolume::MakeOutsideVoxels(this->Self->OutsideMode, this->Self->FadeDistance);
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::CheckOutside() const
+{
+  if (!this->GetOutside().AreKept() || this->Self->GetNumberOfInputConnections(1) == 0)
+  {
+    return;
+  }
+  if (this->State->Deformation.IsField())
+  {
+    throw Error("OutsideMode is KEEP, which needs a mesh, but the deformation is a displacement "
+                "field. Set OutsideMode to DISCARD or EXTRAPOLATE, or connect a mesh.");
+  }
+  if (this->Self->OpenSplits)
+  {
+    throw Error("OutsideMode is KEEP and OpenSplits is on, but what is outside the mesh is on "
+                "neither side of a split. Set OpenSplits off, or OutsideMode to DISCARD.");
+  }
+}
+
+//------------------------------------------------------------------------------
 ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetOutputGeometry(
   const ImageGeometry& volume) const
 {
@@ -224,8 +250,15 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
   {
     wish.Interpolation = deformvolume::Interpolation::Cubic;
   }
-  wish.Extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
+  wish.Outside = this->GetOutside();
   wish.HasSmoothCut = deformvolume::HasCut(volume);
+  if (wish.HasSmoothCut && this->Self->GetNumberOfInputConnections(1) == 0 &&
+    this->State->Deformation.IsInverseField())
+  {
+    throw Error("The resampler MESH_RASTERIZATION, which cubic interpolation needs, cannot do "
+                "smooth cuts. Set Resampler to AUTOMATIC and Interpolation to "
+                "LINEAR_INTERPOLATION, or SmoothCut of vtkCutVolume to off.");
+  }
   const deformvolume::Resampling method =
     deformvolume::ChooseResampler(wish, this->State->Deformation,
       [&](deformvolume::Resampling tried)
@@ -356,6 +389,51 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
     vtkWarningWithObjectMacro(this->Self, << news);
   }
   this->WarnedOf = warnings;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(const deformvolume::MappedVolume& mapped)
+{
+  const deformvolume::Deformation& mesh = this->State->Deformation;
+  const deformvolume::FadedLinks& links = this->State->Mapping.GetMapping().Faded;
+  if (mesh.IsField() || !links.AreThere() || !this->State->Mapping.IsCurrent(mesh, mapped))
+  {
+    return;
+  }
+  const std::pair<std::uint64_t, std::uint64_t> versions(
+    this->State->Mapping.GetVersion(), mesh.GetVectorsVersion());
+  if (this->State->VersionsOfFading == versions)
+  {
+    return;
+  }
+  this->State->VersionsOfFading = versions;
+  std::string text;
+  const std::int64_t stretched =
+    links.CountStretched(mesh.GetTetrahedra(), mesh.GetNodeDisplacements());
+  if (stretched > 0)
+  {
+    text = (links.IsCountEstimated() ? "About " : "") + std::to_string(stretched) +
+      " tetrahedra of the volume outside the deformation mesh are stretched over more than 2 "
+      "output voxels, ";
+    text += mapped.Outside.FadeDistance > 0.0
+      ? "where the closest point of the mesh jumps, as between two bodies that move apart. Mesh "
+        "what lies between, or set a smaller FadeDistance."
+      : "as FadeDistance is 0 and the boundary of the mesh moves. Set a FadeDistance of at least "
+        "twice its displacement.";
+  }
+  const double longest = links.GetLongestDisplacement(mesh.GetTetrahedra(),
+    mesh.GetNodeDisplacements(), this->GetOutputGeometry(mapped.Whole).Spacing);
+  if (mapped.Outside.FadeDistance > 0.0 && 1.5 * longest > mapped.Outside.FadeDistance)
+  {
+    text += std::string(text.empty() ? "" : " ") +
+      "The boundary of the deformation mesh moves by " + std::to_string(longest) +
+      ", more than two thirds of FadeDistance, " + std::to_string(mapped.Outside.FadeDistance) +
+      ": the volume outside may fold over. Set FadeDistance to at least twice that displacement.";
+  }
+  if (!text.empty())
+  {
+    vtkWarningWithObjectMacro(this->Self, << text);
+  }
 }
 
 //------------------------------------------------------------------------------

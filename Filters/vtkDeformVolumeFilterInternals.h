@@ -67,6 +67,11 @@ public:
   deformvolume::DeformationSource ReadDeformation(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest);
 
+  /// What becomes of voxels outside the deformation. Throws an Error where FadeDistance is none.
+  deformvolume::OutsideVoxels GetOutside() const;
+  /// Throws an Error where the deformation cannot do that.
+  void CheckOutside() const;
+
   /// The whole volume as SamplingFactor leaves it. Throws an Error where too little is left.
   deformvolume::ImageGeometry GetCoarseGeometry(const deformvolume::ImageGeometry& volume) const;
 
@@ -128,6 +133,10 @@ public:
   /// Warns where what is ignored changed since the last call.
   void WarnOfIgnored(vtkImageData* volume, const std::vector<std::string>& leftOut);
 
+  /// Warns where voxels that are kept are torn or folded for certain, when the deformation has
+  /// changed.
+  void WarnOfFading(const deformvolume::MappedVolume& mapped);
+
   /// A progress callback for the part of the execution between two fractions.
   std::function<bool(double)> GetProgress(double from, double to) const;
 
@@ -175,6 +184,9 @@ private:
   deformvolume::Extent FindExtent(const deformvolume::IndexBounds& bounds) const;
   deformvolume::IndexBounds ComputeBounds(
     const deformvolume::ImageGeometry& volume, const deformvolume::DeformationSource& source);
+  /// Makes the links of a whole volume, of a mesh whose voxels outside are not discarded.
+  void MakeLinks(
+    const deformvolume::VoxelGrid& voxelGrid, const deformvolume::MappedVolume& mapped);
   /// Makes the bounds those of the mesh, whatever its displacements are.
   void UpdateBoundsOfMesh(const deformvolume::VoxelGrid& voxelGrid);
   /// Of the deformation at rest and of its displacements.

@@ -46,10 +46,17 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::ReadDeformation(
   ranks.Attempt(
     [&]
     {
-      source.Device =
-        ranks.AreMany() ? "" : deformvolume::DeviceSession::FindOwnMemory(this->Self->Device);
+      // Those of kept voxels are sent from the host.
+      source.Device = ranks.AreMany() || this->Self->OutsideMode == KEEP
+        ? ""
+        : deformvolume::DeviceSession::FindOwnMemory(this->Self->Device);
     });
-  ranks.Attempt([&] { this->State->Deformation.Read(source); });
+  ranks.Attempt(
+    [&]
+    {
+      this->State->Deformation.Read(source);
+      this->CheckOutside();
+    });
   return source;
 }
 

@@ -344,14 +344,14 @@ int vtkDeformVolumeFilter::RequestData(
   {
     checkMemory(request.OutputExtent, request.Method);
     device.SetVolume(voxelGrid, worked, arrays, this->BackgroundValue, deformation,
-      mapped.Extrapolate, request.Method);
+      mapped.Outside.AreExtrapolated(), request.Method);
     if (request.Method == deformvolume::Resampling::MeshRasterization)
     {
       if (!deformation.IsField())
       {
         deformvolume::CheckBoxes(deformation, geometry);
       }
-      device.SetRestMesh(deformation, mapped.Extrapolate);
+      device.SetRestMesh(deformation, mapped.Outside.AreExtrapolated());
     }
     else
     {
@@ -383,6 +383,7 @@ int vtkDeformVolumeFilter::RequestData(
   if (numberOfPoints > 0)
   {
     this->Internals->TakeReport(report, request.Method);
+    this->Internals->WarnOfFading(mapped);
   }
   this->Internals->AddUpCounts(ranks);
   if (numberOfPoints == 0)

@@ -91,7 +91,7 @@ deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
   deformvolume::MappedVolume mapped;
   mapped.Whole = this->VolumeGeometry;
   mapped.Part = given.PointExtent;
-  mapped.Extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
+  mapped.Outside = this->GetOutside();
   Extent asked = mapped.Whole.PointExtent;
   info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked.data());
   if (!deformvolume::Contains(mapped.Part, asked) ||

@@ -5,6 +5,7 @@
 
 #include "Error.h"
 #include "ImageGeometry.h"
+#include "OutsideMode.h"
 #include "PieceRequest.h"
 #include "ProgressReport.h"
 #include "VTKThreads.h"
@@ -60,7 +61,8 @@ const deformvolume::VertexPositions& vtkVolumeEditAlgorithm::vtkEdits::GetVertic
   source.PointsAreDeformed = this->Self->PointsAreDeformed;
   source.Choice += source.PointsAreDeformed ? " deformed" : "";
   source.DisplacementScale = this->Self->DisplacementScale;
-  return this->Editor.GetPositions(source, this->Self->OutsideMode == EXTRAPOLATE);
+  return this->Editor.GetPositions(
+    source, deformvolume::MakeOutsideVoxels(this->Self->OutsideMode, this->Self->FadeDistance));
 }
 
 //------------------------------------------------------------------------------
@@ -252,6 +254,7 @@ void vtkVolumeEditAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "DisplacementScale: " << this->DisplacementScale << "\n";
   os << indent << "PointsAreDeformed: " << (this->PointsAreDeformed ? "on" : "off") << "\n";
   os << indent << "OutsideMode: " << this->OutsideMode << "\n";
+  os << indent << "FadeDistance: " << this->FadeDistance << "\n";
   os << indent << "NumberOfSwitchedOffTetrahedra: " << this->GetNumberOfSwitchedOffTetrahedra()
      << "\n";
 }

@@ -128,18 +128,30 @@ public:
   enum OutsideModes
   {
     DISCARD = 0,
-    EXTRAPOLATE = 1
+    EXTRAPOLATE = 1,
+    KEEP = 2
   };
 
   ///@{
   /**
    * Where the voxels outside the deformation are, as in vtkDeformVolumeFilter: nowhere, so that no
-   * edit takes them, or where the nearest tetrahedron takes them. Default: DISCARD.
+   * edit takes them, where the nearest tetrahedron takes them, or where they are at rest, but for
+   * what fades within FadeDistance. Default: DISCARD.
    */
-  vtkSetClampMacro(OutsideMode, int, DISCARD, EXTRAPOLATE);
+  vtkSetClampMacro(OutsideMode, int, DISCARD, KEEP);
   vtkGetMacro(OutsideMode, int);
   void SetOutsideModeToDiscard() { this->SetOutsideMode(DISCARD); }
   void SetOutsideModeToExtrapolate() { this->SetOutsideMode(EXTRAPOLATE); }
+  void SetOutsideModeToKeep() { this->SetOutsideMode(KEEP); }
+  ///@}
+
+  ///@{
+  /**
+   * With OutsideMode KEEP, the distance within which the displacement fades to zero, as in
+   * vtkDeformVolumeFilter. Default: 0.
+   */
+  vtkSetMacro(FadeDistance, double);
+  vtkGetMacro(FadeDistance, double);
   ///@}
 
   /**
@@ -171,6 +183,7 @@ protected:
   double DisplacementScale = 1.0;
   bool PointsAreDeformed = false;
   int OutsideMode = DISCARD;
+  double FadeDistance = 0.0;
 
   class vtkEdits;
   std::unique_ptr<vtkEdits> Edits;

@@ -154,7 +154,8 @@ bool VolumeEditor::SetVolume(vtkImageData* volume, vtkInformation* info)
   return isNew;
 }
 
-const VertexPositions& VolumeEditor::GetPositions(DeformationSource source, bool extrapolate)
+const VertexPositions& VolumeEditor::GetPositions(
+  DeformationSource source, const OutsideVoxels& outside)
 {
   if (!source.Shape)
   {
@@ -167,11 +168,17 @@ const VertexPositions& VolumeEditor::GetPositions(DeformationSource source, bool
   this->Deformation.Read(source);
   const bool isField = this->Deformation.IsField();
   // The mapping of a part has whole rows, and is that of the whole volume to the last bit.
-  MappedVolume mapped{ this->Geometry, this->Geometry.PointExtent, extrapolate };
+  if (isField && outside.AreKept())
+  {
+    throw Error("OutsideMode is KEEP, which needs a mesh, but the deformation is a displacement "
+                "field. Set OutsideMode to DISCARD or EXTRAPOLATE, or connect a mesh.");
+  }
+  const bool extrapolate = outside.AreExtrapolated();
+  MappedVolume mapped{ this->Geometry, this->Geometry.PointExtent, outside };
   mapped.Whole.PointExtent = this->Whole;
   mapped.Part[0] = this->Whole[0];
   mapped.Part[1] = this->Whole[1];
-  mapped.Part = extrapolate ? this->Whole : mapped.Part;
+  mapped.Part = outside.AreDiscarded() ? mapped.Part : this->Whole;
   if (!isField)
   {
     this->Mapping.Update(this->Deformation, mapped, {});
@@ -183,9 +190,19 @@ const VertexPositions& VolumeEditor::GetPositions(DeformationSource source, bool
   {
     return *this->Deformed;
   }
+  const std::vector<Tetrahedron>* tetrahedra = &this->Deformation.GetTetrahedra();
+  const float* displacements = this->Deformation.GetNodeDisplacements();
+  if (!isField && outside.AreKept())
+  {
+    const std::size_t nodes = this->Deformation.GetRestPoints().size();
+    this->Faded.Set(this->Mapping.GetMapping().Faded, *tetrahedra, nodes);
+    this->Faded.Move(displacements, nodes, nullptr);
+    tetrahedra = &this->Faded.GetTetrahedra();
+    displacements = this->Faded.GetDisplacements().data();
+  }
   if (this->Deformed && mapping == this->DeformedMapping && !isField)
   {
-    this->Deformed->SetDisplacements(this->Deformation.GetNodeDisplacements());
+    this->Deformed->SetDisplacements(displacements);
   }
   else if (this->Deformed && mapping == this->DeformedMapping)
   {
@@ -201,8 +218,7 @@ const VertexPositions& VolumeEditor::GetPositions(DeformationSource source, bool
   {
     this->Deformed.reset();
     this->Deformed = std::make_unique<DeformedPositions>(this->Geometry.PointExtent, mapped.Part,
-      this->Mapping.GetMapping(), this->Deformation.GetTetrahedra(),
-      this->Deformation.GetNodeDisplacements());
+      this->Mapping.GetMapping(), *tetrahedra, displacements);
   }
   this->DeformedMapping = mapping;
   this->DeformedVectors = vectors;

@@ -6,6 +6,7 @@
 #include "CellBricks.h"
 #include "Deformation.h"
 #include "DeformedPositions.h"
+#include "FadedMesh.h"
 #include "ImageGeometry.h"
 #include "MappingCache.h"
 #include "MaskEditor.h"
@@ -44,7 +45,7 @@ public:
   /// Where the vertices of the volume are: at rest, or with a Shape where the deformation has moved
   /// them. The source's volume is set here. Throws Error; ports have the numbers that they have in
   /// the filters here, the deformation 2 and the rest configuration 3.
-  const VertexPositions& GetPositions(DeformationSource source, bool extrapolate);
+  const VertexPositions& GetPositions(DeformationSource source, const OutsideVoxels& outside);
 
   /// Makes an edit in the place of another one, of which the number is known; 0: of none. keep: the
   /// other one stays, too.
@@ -106,6 +107,7 @@ private:
   MeshGrids RestGrids;
   deformvolume::Deformation Deformation;
   MappingCache Mapping;
+  FadedMesh Faded; // what the mapping is of, where voxels outside the mesh are kept
   std::unique_ptr<DeformedPositions> Deformed;
   // What those are of: the version of the mapping, whether it is a field, whether it extrapolates.
   std::array<std::uint64_t, 3> DeformedMapping{};

@@ -176,7 +176,7 @@ void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
 void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache& mapping,
   const MappedVolume& volume, bool openSplits, const std::function<bool(double)>& progress)
 {
-  const bool extrapolate = volume.Extrapolate;
+  const bool extrapolate = volume.Outside.AreExtrapolated();
   const std::uint64_t vectors = deformation.GetVectorsVersion();
   if (deformation.IsField())
   {
@@ -216,50 +216,91 @@ void DeviceSession::SetNodes(const Deformation& deformation, const PointRanges* 
     this->Deformer.SetNodeDisplacements(
       deformation.GetDeviceVectors(), deformation.GetDeviceMatrix());
   }
+  else if (this->HasFadedMesh)
+  {
+    this->Faded.Move(
+      deformation.GetNodeDisplacements(), deformation.GetRestPoints().size(), changes);
+    this->Deformer.SetNodeDisplacements(this->Faded.GetDisplacements().data(), changes, true);
+  }
   else
   {
     this->Deformer.SetNodeDisplacements(deformation.GetNodeDisplacements(), changes, true);
   }
 }
 
+void DeviceSession::SendMesh(const RestMesh& mesh, const StaticMapping& mapping, bool byRuns)
+{
+  const std::vector<Tetrahedron>* tetrahedra = &mesh.GetTetrahedra();
+  std::size_t nodes = mesh.GetPoints().size();
+  this->HasFadedMesh = mapping.Faded.AreThere();
+  if (this->HasFadedMesh)
+  {
+    this->Faded.Set(mapping.Faded, *tetrahedra, nodes);
+    tetrahedra = &this->Faded.GetTetrahedra();
+    nodes = this->Faded.GetNumberOfNodes();
+  }
+  if (byRuns)
+  {
+    this->Deformer.SetMesh(
+      tetrahedra->data(), tetrahedra->size(), nodes, mapping.Runs, &mapping.Boundary);
+  }
+  else
+  {
+    this->Deformer.SetMesh(
+      tetrahedra->data(), tetrahedra->size(), nodes, mapping.Links.data(), &mapping.Boundary);
+  }
+}
+
+void DeviceSession::SendConnectivity(const RestMesh& mesh, const StaticMapping& mapping)
+{
+  const std::vector<Tetrahedron>& tetrahedra = mesh.GetTetrahedra();
+  const std::size_t nodes = mesh.GetPoints().size();
+  const auto changes = mesh.GetChanges(this->SentConnectivity);
+  if (!this->HasFadedMesh)
+  {
+    this->Deformer.ChangeConnectivity(
+      tetrahedra.data(), tetrahedra.size(), nodes, changes ? &*changes : nullptr);
+    return;
+  }
+  const std::vector<TetrahedronChange> withRecords = this->Faded.Change(mapping.Faded, *changes);
+  const std::vector<Tetrahedron>& all = this->Faded.GetTetrahedra();
+  this->Deformer.ChangeConnectivity(
+    all.data(), all.size(), this->Faded.GetNumberOfNodes(), &withRecords);
+}
+
+bool DeviceSession::CanFollow(const RestMesh& mesh) const
+{
+  return !this->HasFadedMesh ||
+    (this->Faded.HasRoom(mesh.GetPoints().size()) &&
+      (this->SentConnectivity == mesh.GetConnectivityVersion() ||
+        mesh.GetChanges(this->SentConnectivity)));
+}
+
 void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mapping,
   const MappedVolume& volume, bool openSplits, const std::function<bool(double)>& progress)
 {
   const RestMesh& mesh = deformation.GetRestMesh();
-  const std::vector<Tetrahedron>& tetrahedra = mesh.GetTetrahedra();
-  const std::size_t nodes = mesh.GetPoints().size();
   const std::uint64_t connectivity = mesh.GetConnectivityVersion();
   const bool isCurrent = this->HasMesh && this->SentMapping == mapping.GetVersion() &&
-    mapping.IsCurrent(deformation, volume);
+    mapping.IsCurrent(deformation, volume) && this->CanFollow(mesh);
   const bool hasSplit = isCurrent && this->SentConnectivity != connectivity;
   if (!isCurrent)
   {
     mapping.Update(deformation, volume, progress);
     Transfer transfer(this);
-    if (mapping.IsByRuns())
-    {
-      this->Deformer.SetMesh(tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetRuns(),
-        &mapping.GetMapping().Boundary);
-    }
-    else
-    {
-      this->Deformer.SetMesh(tetrahedra.data(), tetrahedra.size(), nodes, mapping.GetLinks().data(),
-        &mapping.GetMapping().Boundary);
-    }
+    this->SendMesh(mesh, mapping.GetMapping(), mapping.IsByRuns());
     transfer.End();
     this->SentMapping = mapping.GetVersion();
     this->PlacesAreSent = false;
   }
   else if (hasSplit)
   {
-    const auto changes = mesh.GetChanges(this->SentConnectivity);
     Transfer transfer(this);
-    this->Deformer.ChangeConnectivity(
-      tetrahedra.data(), tetrahedra.size(), nodes, changes ? &*changes : nullptr);
+    this->SendConnectivity(mesh, mapping.GetMapping());
     transfer.End();
   }
   this->SentConnectivity = connectivity;
-  if (!volume.Extrapolate)
+  if (!volume.Outside.AreExtrapolated())
   {
     // Only the bounds of an extrapolated deformation need them again.
     mapping.ReleaseVoxels();

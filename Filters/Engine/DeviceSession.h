@@ -3,6 +3,7 @@
 #define DeformVolumeDeviceSession_h
 
 #include "Deformation.h"
+#include "FadedMesh.h"
 #include "MappingCache.h"
 #include "NodePlaces.h"
 #include "VolumeArrays.h"
@@ -73,9 +74,15 @@ private:
   void SetNodes(const Deformation& deformation, const PointRanges* changes);
   void SetMesh(const Deformation& deformation, MappingCache& mapping, const MappedVolume& volume,
     bool openSplits, const std::function<bool(double)>& progress);
+  /// Sends a mesh and its mapping, or what has changed of its tetrahedra.
+  void SendMesh(const RestMesh& mesh, const StaticMapping& mapping, bool byRuns);
+  void SendConnectivity(const RestMesh& mesh, const StaticMapping& mapping);
+  /// Whether what has changed of the tetrahedra can be sent as changes.
+  bool CanFollow(const RestMesh& mesh) const;
 
   VolumeDeformer Deformer;
   std::string Device;
+  FadedMesh Faded; // what the device has, where voxels outside the mesh are kept
 
   // What the device has. A call that throws leaves it unknown, and then everything is sent again.
   bool Known = false;
@@ -88,6 +95,7 @@ private:
   std::pair<std::uint64_t, bool> SentUndefined{ 0, false };
   bool MasksAreSet = false;
   bool HasMesh = false;
+  bool HasFadedMesh = false;
   bool HasField = false;
   bool HasInverseField = false;
   bool HasRestMesh = false;

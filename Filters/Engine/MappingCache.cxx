@@ -72,7 +72,7 @@ StaticMappingBuilder& MappingCache::GetBuilder(const Deformation& deformation, c
     this->Builder.reset();
     const ImageGeometry& whole = key.Volume.Whole;
     this->Builder = std::make_unique<StaticMappingBuilder>(whole.PointExtent, whole.Spacing,
-      deformation.GetRestPoints(), deformation.GetTetrahedra(), key.Volume.Extrapolate);
+      deformation.GetRestPoints(), deformation.GetTetrahedra(), key.Volume.Outside);
     this->BuilderKey = wholeKey;
   }
   return *this->Builder;
@@ -115,7 +115,8 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
   const std::uint64_t runBytes = EstimateRunBytes(builder, volume);
   // The same for any part that the volume is read in.
   const bool holdsVoxels = mapping.NumberOfInnerVoxels > 0 || !mapping.Boundary.IsEmpty() ||
-    (!volume.IsWhole() && (builder.HoldsVoxels() || EndsWithin(deformation, volume)));
+    (!volume.IsWhole() && (builder.HoldsVoxels() || EndsWithin(deformation, volume))) ||
+    (volume.Outside.AreKept() && EndsWithin(deformation, volume));
   if (volume.IsWhole())
   {
     this->Builder.reset();

@@ -18,15 +18,15 @@ namespace deformvolume
 struct MappedVolume
 {
   ImageGeometry Whole;
-  /// The voxels to map: all of them, or a part with whole rows where nothing is extrapolated.
+  /// The voxels to map: all of them, or a part with whole rows where voxels outside the mesh are
+  /// discarded.
   Extent Part{ { 0, -1, 0, -1, 0, -1 } };
-  bool Extrapolate = false;
+  OutsideVoxels Outside;
 
   bool IsWhole() const { return this->Part == this->Whole.PointExtent; }
   bool operator==(const MappedVolume& other) const
   {
-    return this->Whole == other.Whole && this->Part == other.Part &&
-      this->Extrapolate == other.Extrapolate;
+    return this->Whole == other.Whole && this->Part == other.Part && this->Outside == other.Outside;
   }
 };
 
@@ -57,7 +57,7 @@ public:
   {
     return !this->Mapping.Links.empty() || !this->Mapping.Runs.Runs.empty();
   }
-  /// Frees the links or runs, and the boundary.
+  /// Frees the links or runs, and the boundary; those of kept voxels leave FadedLinks.
   void ReleaseVoxels();
 
   /// Changes with the mapping.

@@ -37,9 +37,10 @@ Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deforma
   }
   const std::string obstacle = deformation.IsField()
     ? "forward displacement fields. Connect a tetrahedral mesh to input port 1"
-    : wish.Extrapolate  ? "the outside mode EXTRAPOLATE. Set OutsideMode to DISCARD"
-    : wish.HasSmoothCut ? "smooth cuts. Set SmoothCut of vtkCutVolume to off"
-                        : "";
+    : wish.Outside.AreExtrapolated() ? "the outside mode EXTRAPOLATE. Set OutsideMode to DISCARD"
+    : wish.Outside.AreKept()         ? "the outside mode KEEP. Set OutsideMode to DISCARD"
+    : wish.HasSmoothCut              ? "smooth cuts. Set SmoothCut of vtkCutVolume to off"
+                                     : "";
   if (!obstacle.empty() && (cubic || (wish.Method == Resampling::MeshRasterization)))
   {
     throw Error("The resampler MESH_RASTERIZATION" +

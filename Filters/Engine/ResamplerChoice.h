@@ -4,6 +4,7 @@
 
 #include "DeformRequest.h"
 #include "Deformation.h"
+#include "OutsideVoxels.h"
 
 #include <functional>
 #include <optional>
@@ -16,7 +17,7 @@ struct ResamplerWish
 {
   std::optional<Resampling> Method; // none: the choice is free
   deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
-  bool Extrapolate = false;
+  OutsideVoxels Outside;
   bool HasSmoothCut = false; // of the volume, which Exact alone knows
 };
 
@@ -28,8 +29,8 @@ struct ResamplerWish
 /// - where the interpolation is cubic, which MeshRasterization alone has;
 /// - where the memory does not suffice for Exact, whose sampling mesh takes some 20 bytes a voxel,
 /// but
-///   does for MeshRasterization, and that can do the deformation: a mesh, without extrapolation and
-///   without a smooth cut.
+///   does for MeshRasterization, and that can do the deformation: a mesh, with what is outside
+///   discarded, and without a smooth cut.
 Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deformation,
   const std::function<bool(Resampling)>& fits);
 

@@ -15,10 +15,11 @@ namespace deformvolume
 enum class StaticMappingForm
 {
   /// Runs where they are long enough (LeastMeanRunLength, by a sample of the volume that is always
-  /// the same) and need less memory than links, and voxels are not extrapolated; else links.
+  /// the same) and need less memory than links, and voxels outside the mesh are discarded; else
+  /// links.
   Automatic,
   Links,
-  /// Not where voxels are extrapolated, which needs to see all of them at once.
+  /// Not where voxels outside the mesh are linked, which needs to see all of them at once.
   Runs
 };
 
@@ -39,7 +40,7 @@ struct TileSample
 struct MappingSurvey
 {
   StaticMappingForm Form = StaticMappingForm::Automatic;
-  bool IsExtrapolated = false;
+  bool IsOutsideLinked = false; // voxels outside the mesh have links
   std::int64_t NumberOfTetrahedra = 0;
   std::int64_t NumberOfFlatTetrahedra = 0;
   /// Of all tiles; tetrahedra in several are counted several times.

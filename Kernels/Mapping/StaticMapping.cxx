@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <string>
 
 namespace deformvolume
 {
@@ -30,15 +31,17 @@ bool FitsRuns(const Extent& voxels)
 
 StaticMappingBuilder::StaticMappingBuilder(const Extent& voxels, const glm::dvec3& spacing,
   const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
-  bool extrapolate, StaticMappingForm form)
+  const OutsideVoxels& outside, StaticMappingForm form)
   : Voxels(voxels)
   , Spacing(spacing)
+  , Outside(outside)
   , RestPoints(restPoints)
   , Tetrahedra(tetrahedra)
 {
-  if (form == StaticMappingForm::Runs && extrapolate)
+  if (form == StaticMappingForm::Runs && !outside.AreDiscarded())
   {
-    throw Error("Voxels outside the mesh cannot be extrapolated by runs: make links.");
+    throw Error(std::string("Voxels outside the mesh cannot be ") +
+      (outside.AreKept() ? "kept" : "extrapolated") + " by runs: make links.");
   }
   const std::int64_t size = GetNumberOfPoints(voxels);
   if (size == 0)
@@ -48,11 +51,11 @@ StaticMappingBuilder::StaticMappingBuilder(const Extent& voxels, const glm::dvec
   this->Linker = std::make_unique<VoxelLinker>(this->Voxels, restPoints, tetrahedra);
   const TetrahedronTiles& tiles = this->Linker->GetTiles();
   this->Survey.Form = form;
-  this->Survey.IsExtrapolated = extrapolate;
+  this->Survey.IsOutsideLinked = !outside.AreDiscarded();
   this->Survey.NumberOfTetrahedra = static_cast<std::int64_t>(tetrahedra.size());
   this->Survey.NumberOfFlatTetrahedra = tiles.GetNumberOfFlatTetrahedra();
   this->Survey.NumberOfEntries = tiles.GetNumberOfEntries();
-  if (form != StaticMappingForm::Links && !extrapolate && FitsRuns(voxels))
+  if (form != StaticMappingForm::Links && outside.AreDiscarded() && FitsRuns(voxels))
   {
     this->Survey.Samples = RunBuilder(*this->Linker, this->Voxels, restPoints, tetrahedra)
                              .SampleTiles(RunBuilder::ChooseTiles(tiles));
@@ -107,7 +110,7 @@ StaticMapping StaticMappingBuilder::Build(
   {
     this->BuildLinks(part, report, mapping);
   }
-  if (!this->Survey.IsExtrapolated)
+  if (this->Outside.AreDiscarded())
   {
     mapping.Boundary = FindMeshBoundary(part, this->Voxels, this->RestPoints, this->Tetrahedra);
   }
@@ -118,7 +121,10 @@ StaticMapping StaticMappingBuilder::Build(
 void StaticMappingBuilder::BuildLinks(
   const Extent& part, const std::function<void(double)>& report, StaticMapping& mapping) const
 {
-  const double linkingDone = this->Survey.IsExtrapolated ? 0.6 : 1.0;
+  const double linkingDone = this->Outside.AreDiscarded() ? 1.0
+    : this->Outside.AreKept()                             ? 0.4
+                                                          : 0.6;
+  const auto reportOutside = [&](double done) { report(linkingDone + (1.0 - linkingDone) * done); };
   mapping.Links.resize(GetNumberOfPoints(part));
   VoxelTarget<VertexLink> target;
   target.Data = mapping.Links.data();
@@ -150,18 +156,23 @@ void StaticMappingBuilder::BuildLinks(
     report(SortedFraction + (linkingDone - SortedFraction) * (step + 1) / steps);
   }
   mapping.NumberOfInnerVoxels = inner;
-  if (this->Survey.IsExtrapolated && inner > 0 && inner < GetNumberOfPoints(this->Voxels))
+  if (this->Outside.AreExtrapolated() && inner > 0 && inner < GetNumberOfPoints(this->Voxels))
   {
     ExtrapolateLinks(this->Voxels, this->Spacing, this->RestPoints, this->Tetrahedra, mapping.Links,
-      [&](double done) { report(linkingDone + (1.0 - linkingDone) * done); });
+      reportOutside);
+  }
+  if (this->Outside.AreKept())
+  {
+    mapping.Faded.Link(this->Voxels, this->Spacing, this->RestPoints, this->Tetrahedra,
+      this->Outside.FadeDistance, mapping.Links, reportOutside);
   }
 }
 
 StaticMapping BuildStaticMapping(const Extent& voxels, const glm::dvec3& spacing,
   const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
-  bool extrapolate, StaticMappingForm form, const std::function<bool(double)>& progress)
+  const OutsideVoxels& outside, StaticMappingForm form, const std::function<bool(double)>& progress)
 {
-  return StaticMappingBuilder(voxels, spacing, restPoints, tetrahedra, extrapolate, form)
+  return StaticMappingBuilder(voxels, spacing, restPoints, tetrahedra, outside, form)
     .Build(progress);
 }
 

@@ -4,8 +4,10 @@
 
 #include "DeformVolumeExport.h"
 #include "Extent.h"
+#include "FadedLinks.h"
 #include "MappingSurvey.h"
 #include "MeshBoundary.h"
+#include "OutsideVoxels.h"
 #include "Tetrahedron.h"
 #include "VertexLink.h"
 #include "VertexRuns.h"
@@ -30,10 +32,12 @@ struct StaticMapping
   std::vector<VertexLink> Links;
   /// Runs of voxels; or none.
   VertexRuns Runs;
-  /// Where the boundary of the mesh passes through the volume; empty where voxels outside the mesh
-  /// are extrapolated.
+  /// Where the boundary of the mesh passes through the volume; empty unless voxels outside the mesh
+  /// are discarded.
   MeshBoundary Boundary;
-  /// Voxels inside the mesh (extrapolated ones do not count).
+  /// What links name besides the tetrahedra, where voxels outside the mesh are kept (FadedMesh).
+  FadedLinks Faded;
+  /// Voxels inside the mesh (those that are extrapolated or kept do not count).
   std::int64_t NumberOfInnerVoxels = 0;
   /// Tetrahedra without volume; they are skipped.
   std::int64_t NumberOfFlatTetrahedra = 0;
@@ -49,18 +53,18 @@ struct StaticMapping
 /// place the lowest index gets the voxel. Both forms give a voxel to the same tetrahedron.
 ///
 /// voxels: structured indices of the volume. restPoints: the nodes at rest in continuous indices
-/// of the volume. extrapolate: voxels outside the mesh are linked to the tetrahedron of the
-/// nearest voxel (in continuous indices times spacing, hence world distance) inside it, with
-/// weights outside 0 to 1; otherwise they have none.
+/// of the volume. outside: voxels outside the mesh have no link; or are linked to the tetrahedron
+/// of the nearest voxel (in continuous indices times spacing, hence world distance) inside it, with
+/// weights outside 0 to 1; or are kept (FadedLinks).
 class DEFORMVOLUME_EXPORT StaticMappingBuilder
 {
 public:
   /// Decides on the form. restPoints and tetrahedra must live and stay the same until Build
   /// returns. Throws Error where a tetrahedron has a node more than 2^31 voxels away from index 0,
-  /// and where runs are demanded of voxels that are extrapolated.
+  /// and where runs are demanded of voxels outside the mesh that are not discarded.
   StaticMappingBuilder(const Extent& voxels, const glm::dvec3& spacing,
     const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
-    bool extrapolate, StaticMappingForm form = StaticMappingForm::Automatic);
+    const OutsideVoxels& outside, StaticMappingForm form = StaticMappingForm::Automatic);
   ~StaticMappingBuilder();
   StaticMappingBuilder(const StaticMappingBuilder&) = delete;
   StaticMappingBuilder& operator=(const StaticMappingBuilder&) = delete;
@@ -76,8 +80,8 @@ public:
   {
     return this->Build(this->Voxels, progress);
   }
-  /// The mapping of a part of the volume alone, whole rows of voxels, of a mapping that does not
-  /// extrapolate. Voxels are displaced as by the mapping of the whole, to the last bit.
+  /// The mapping of a part of the volume alone, whole rows of voxels, where voxels outside the mesh
+  /// are discarded. Voxels are displaced as by the mapping of the whole, to the last bit.
   StaticMapping Build(const Extent& part, const std::function<bool(double)>& progress = {}) const;
 
 private:
@@ -86,6 +90,7 @@ private:
 
   const Extent Voxels;
   const glm::dvec3 Spacing;
+  const OutsideVoxels Outside;
   const std::vector<glm::dvec3>& RestPoints;
   const std::vector<Tetrahedron>& Tetrahedra;
   MappingSurvey Survey;
@@ -96,7 +101,7 @@ private:
 /// Build by a StaticMappingBuilder.
 DEFORMVOLUME_EXPORT StaticMapping BuildStaticMapping(const Extent& voxels,
   const glm::dvec3& spacing, const std::vector<glm::dvec3>& restPoints,
-  const std::vector<Tetrahedron>& tetrahedra, bool extrapolate, StaticMappingForm form,
+  const std::vector<Tetrahedron>& tetrahedra, const OutsideVoxels& outside, StaticMappingForm form,
   const std::function<bool(double)>& progress = {});
 
 } // namespace deformvolume

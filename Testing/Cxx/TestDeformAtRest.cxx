@@ -21,6 +21,7 @@ vtkSmartPointer<vtkImageData> MakeCutVolume()
   volume->SetSpacing(0.7, 1.1, 2.3);
   volume->SetOrigin(100.0, -50.0, 7.0);
   SetObliqueDirection(volume);
+  volume->GetPointData()->SetActiveScalars(nullptr); // else they would be replaced
   AddScalars<float>(volume, "more", [](const glm::dvec3& p) { return 0.1 * p.x - p.y * p.z; });
   vtkNew<vtkUnsignedCharArray> active;
   active->SetName("ActiveTetrahedra");
@@ -73,6 +74,24 @@ void TestMisuse()
   }
   subject.Filter->SetDeformationConnection(nullptr);
   VERIFY_EQUAL(GetExtent(subject.Update()), GetExtent(volume));
+
+  // What cubic interpolation does not do is said without a word of a field.
+  const auto cut = MakeVolume();
+  vtkNew<vtkUnsignedCharArray> crossed;
+  crossed->SetName("CutTetrahedra");
+  crossed->SetNumberOfTuples(cut->GetNumberOfCells());
+  crossed->Fill(31);
+  cut->GetCellData()->AddArray(crossed);
+  cut->GetPointData()->SetActiveScalars(nullptr);
+  AddScalars<float>(cut, "CutDistance", [](const glm::dvec3& p) { return p.x - 4.5; });
+  subject.Filter->SetInputData(cut);
+  subject.Filter->SetInterpolationToCubicInterpolation();
+  VERIFY(!subject.Filter->GetExecutive()->Update());
+  VERIFY_EQUAL(subject.TakeErrors(), 1);
+  VERIFY(subject.LastError.find("cannot do smooth cuts") != std::string::npos);
+  subject.Filter->SetInterpolationToLinearInterpolation();
+  subject.Update();
+  VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), cut->GetNumberOfPoints());
 
   // The volume is still required.
   Deformed nothing;

@@ -66,7 +66,8 @@ void EditMethod(Settings& settings, Random& random)
   switch (random.Int(0, 11))
   {
     case 0:
-      settings.OutsideMode = random.Int(0, 1);
+      settings.OutsideMode = random.Int(0, 2);
+      settings.FadeDistance = random.Pick({ 0.0, 1.0, 3.0, 10.0 });
       break;
     case 1:
       settings.Resampler = random.Pick({ 0, 0, 2, 3, 3 });
@@ -141,12 +142,13 @@ void EditSettings(
   }
   log << ") padding " << s.Padding << " spacing mode " << s.OutputSpacingMode << " ("
       << s.CustomSpacing[0] << ' ' << s.CustomSpacing[1] << ' ' << s.CustomSpacing[2]
-      << ") background " << s.BackgroundValue << " outside " << s.OutsideMode << " resampler "
-      << s.Resampler << " interpolation " << s.Interpolation << " incremental " << s.Incremental
-      << " factor " << s.SamplingFactor << " open splits " << s.OpenSplits << " inverse "
-      << s.FieldIsInverse << " deformed points " << s.PointsAreDeformed << " device \"" << s.Device
-      << "\" memory " << s.MemoryLimit << " displacements \"" << s.Displacements
-      << "\" categorical " << *s.CategoricalArrays.rbegin() << '\n';
+      << ") background " << s.BackgroundValue << " outside " << s.OutsideMode << " fading "
+      << s.FadeDistance << " resampler " << s.Resampler << " interpolation " << s.Interpolation
+      << " incremental " << s.Incremental << " factor " << s.SamplingFactor << " open splits "
+      << s.OpenSplits << " inverse " << s.FieldIsInverse << " deformed points "
+      << s.PointsAreDeformed << " device \"" << s.Device << "\" memory " << s.MemoryLimit
+      << " displacements \"" << s.Displacements << "\" categorical "
+      << *s.CategoricalArrays.rbegin() << '\n';
 }
 
 void Apply(const Settings& settings, vtkDeformVolumeFilter* filter)
@@ -159,6 +161,7 @@ void Apply(const Settings& settings, vtkDeformVolumeFilter* filter)
   filter->SetCustomSpacing(settings.CustomSpacing.data());
   filter->SetBackgroundValue(settings.BackgroundValue);
   filter->SetOutsideMode(settings.OutsideMode);
+  filter->SetFadeDistance(settings.FadeDistance);
   for (int i = filter->GetNumberOfCategoricalArrays() - 1; i >= 0; --i)
   {
     const std::string name = filter->GetCategoricalArray(i);

@@ -26,6 +26,7 @@ struct Settings
   std::array<double, 3> CustomSpacing{ { 1.0, 1.0, 1.0 } };
   double BackgroundValue = 0.0;
   int OutsideMode = vtkDeformVolumeFilter::DISCARD;
+  double FadeDistance = 0.0;
   std::set<std::string> CategoricalArrays{ "label" };
   int Resampler = vtkDeformVolumeFilter::AUTOMATIC;
   int Interpolation = vtkDeformVolumeFilter::LINEAR_INTERPOLATION;

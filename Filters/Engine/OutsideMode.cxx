@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "OutsideMode.h"
+
+#include "Error.h"
+
+#include "vtkDeformVolumeFilter.h"
+
+#include <cmath>
+#include <string>
+
+namespace deformvolume
+{
+
+OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance)
+{
+  if (outsideMode != vtkDeformVolumeFilter::KEEP)
+  {
+    return outsideMode == vtkDeformVolumeFilter::EXTRAPOLATE;
+  }
+  if (!std::isfinite(fadeDistance) || fadeDistance < 0.0)
+  {
+    throw Error("FadeDistance is " + std::to_string(fadeDistance) +
+      ". Set a distance in world units, or 0, with which no voxel outside the mesh moves.");
+  }
+  return { OutsideVoxels::Modes::Keep, fadeDistance };
+}
+
+} // namespace deformvolume

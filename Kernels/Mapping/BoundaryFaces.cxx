@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BoundaryFaces.h"
+
+#include "BarycentricMap.h"
+#include "FaceNeighbours.h"
+#include "ParallelFor.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+bool IsLess(const glm::dvec3& a, const glm::dvec3& b)
+{
+  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
+// A face of a tetrahedron, by the places of its nodes at rest in ascending order.
+struct Face
+{
+  std::array<glm::dvec3, 3> Places;
+  bool IsAbove;         // on which side of it the tetrahedron lies
+  std::uint32_t Number; // as FaceNeighbours has it
+
+  bool operator<(const Face& other) const
+  {
+    return std::lexicographical_compare(
+      this->Places.begin(), this->Places.end(), other.Places.begin(), other.Places.end(), IsLess);
+  }
+};
+
+Face GetFace(std::size_t face, const std::vector<glm::dvec3>& points,
+  const std::vector<Tetrahedron>& tetrahedra)
+{
+  const Tetrahedron& nodes = tetrahedra[face / 4];
+  Face found;
+  found.Number = static_cast<std::uint32_t>(face);
+  found.Places = GetPlaces(
+    { static_cast<std::int32_t>(face / 4), static_cast<std::int32_t>(face % 4) }, points, nodes);
+  const std::array<glm::dvec3, 3>& q = found.Places;
+  found.IsAbove = glm::dot(glm::cross(q[1] - q[0], q[2] - q[0]),
+                    points[static_cast<std::size_t>(nodes[face % 4])] - q[0]) > 0.0;
+  return found;
+}
+
+// The faces that have tetrahedra on one side only. Those that have nodes in common are found first,
+// as they are nearly all. tetrahedra: none is flat.
+std::vector<std::uint32_t> FindSingleFaces(
+  const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra)
+{
+  const FaceNeighbours neighbours(tetrahedra, points.size());
+  constexpr std::size_t step = 65536;
+  std::vector<std::vector<Face>> parts((neighbours.GetNumberOfFaces() + step - 1) / step);
+  ParallelForParts(neighbours.GetNumberOfFaces(), step,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t face = begin; face < end; ++face)
+      {
+        const std::size_t next = neighbours.GetNext(face);
+        const Face here = GetFace(face, points, tetrahedra);
+        // More than two in one place may be anything.
+        if (next == face || !neighbours.IsShared(face) ||
+          GetFace(next, points, tetrahedra).IsAbove == here.IsAbove)
+        {
+          parts[begin / step].push_back(here);
+        }
+      }
+    });
+  std::vector<Face> faces;
+  for (const std::vector<Face>& part : parts)
+  {
+    faces.insert(faces.end(), part.begin(), part.end());
+  }
+  // Where the mesh is split, or its parts were never joined, faces of different nodes are in one
+  // place.
+  std::sort(faces.begin(), faces.end());
+  std::vector<std::uint32_t> single;
+  for (std::size_t i = 0; i < faces.size();)
+  {
+    std::size_t end = i;
+    bool isOnBoth = false;
+    std::uint32_t first = faces[i].Number;
+    for (; end < faces.size() && faces[end].Places == faces[i].Places; ++end)
+    {
+      isOnBoth = isOnBoth || faces[end].IsAbove != faces[i].IsAbove;
+      first = std::min(first, faces[end].Number);
+    }
+    if (!isOnBoth)
+    {
+      single.push_back(first);
+    }
+    i = end;
+  }
+  std::sort(single.begin(), single.end());
+  return single;
+}
+
+} // namespace
+
+std::array<glm::dvec3, 3> GetPlaces(
+  const TetrahedronFace& face, const std::vector<glm::dvec3>& points, const Tetrahedron& nodes)
+{
+  std::array<glm::dvec3, 3> places;
+  const std::array<std::int32_t, 3> corners = face.GetNodes(nodes);
+  for (std::size_t k = 0; k < 3; ++k)
+  {
+    places[k] = points[static_cast<std::size_t>(corners[k])];
+  }
+  std::sort(places.begin(), places.end(), IsLess);
+  return places;
+}
+
+std::vector<std::int32_t> FindSolidTetrahedra(
+  const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra)
+{
+  std::vector<std::int32_t> numbers;
+  for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+  {
+    BarycentricMap map;
+    if (map.SetTetrahedron(tetrahedra[t], points))
+    {
+      numbers.push_back(static_cast<std::int32_t>(t));
+    }
+  }
+  return numbers;
+}
+
+std::vector<TetrahedronFace> FindBoundaryFaces(
+  const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra)
+{
+  const std::vector<std::int32_t> numbers = FindSolidTetrahedra(points, tetrahedra);
+  std::vector<Tetrahedron> solid;
+  solid.reserve(numbers.size());
+  for (const std::int32_t number : numbers)
+  {
+    solid.push_back(tetrahedra[static_cast<std::size_t>(number)]);
+  }
+  std::vector<TetrahedronFace> faces;
+  for (const std::uint32_t face : FindSingleFaces(points, solid))
+  {
+    faces.push_back({ numbers[face / 4], static_cast<std::int32_t>(face % 4) });
+  }
+  return faces;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,566 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FadedLinks.h"
+
+#include "BarycentricMap.h"
+#include "ClosestFace.h"
+#include "Error.h"
+#include "FiveTetrahedra.h"
+#include "ParallelFor.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+constexpr int BlockSize = 8; // voxels on an axis
+// Tetrahedra that are looked at when the deformation changes: about a millisecond.
+constexpr std::int64_t MostStretchable = 1 << 13;
+constexpr double StretchLimit = 2.0; // output voxels
+// Neighbours whose weights differ by more follow the boundary, and stay.
+constexpr double LargestStep = 0.5;
+
+double Fade(double distance, double fadeDistance)
+{
+  const double s = distance / fadeDistance;
+  return s < 1.0 ? (1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s) : 0.0; // 1 - 3 s^2 + 2 s^3
+}
+
+glm::dvec3 GetPoint(const std::vector<glm::dvec3>& points, std::int32_t node)
+{
+  return points[static_cast<std::size_t>(node)];
+}
+
+std::int64_t GetPlane(const Extent& voxels)
+{
+  return GetSize(voxels, 0) * GetSize(voxels, 1);
+}
+
+} // namespace
+
+void FadedLinks::Link(const Extent& voxels, const glm::dvec3& spacing,
+  const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
+  double fadeDistance, std::vector<VertexLink>& links, const std::function<void(double)>& progress)
+{
+  *this = FadedLinks();
+  this->FadeDistance = fadeDistance;
+  if (fadeDistance > 0.0)
+  {
+    this->Faces = FindBoundaryFaces(restPoints, tetrahedra);
+  }
+  if (tetrahedra.size() + this->Faces.size() >=
+    static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+  {
+    throw Error("The deformation mesh has too many tetrahedra to keep the voxels outside it where "
+                "they are. Use a coarser mesh.");
+  }
+  this->LinkRows(
+    voxels, spacing, restPoints, tetrahedra, links, [&](double done) { progress(0.9 * done); });
+  this->DropUnused(tetrahedra.size(), links);
+  this->FindBlocks(voxels, tetrahedra.size(), links);
+  progress(0.95);
+  this->FindStretchable(voxels, spacing, restPoints, tetrahedra, links);
+  progress(1.0);
+}
+
+void FadedLinks::LinkRows(const Extent& voxels, const glm::dvec3& spacing,
+  const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
+  std::vector<VertexLink>& links, const std::function<void(double)>& progress)
+{
+  std::vector<ClosestFace::Triangle> triangles;
+  for (const TetrahedronFace& face : this->Faces)
+  {
+    const auto nodes = face.GetNodes(tetrahedra[static_cast<std::size_t>(face.Tetrahedron)]);
+    triangles.push_back({ { spacing * GetPoint(restPoints, nodes[0]),
+      spacing * GetPoint(restPoints, nodes[1]), spacing * GetPoint(restPoints, nodes[2]) } });
+  }
+  const ClosestFace search(std::move(triangles));
+  const auto still = static_cast<std::int32_t>(tetrahedra.size());
+  const std::int64_t size = GetSize(voxels, 0);
+  const double stepLength = std::abs(spacing.x);
+  const auto linkRow = [&](std::int64_t row)
+  {
+    VertexLink* link = links.data() + row * size;
+    glm::dvec3 index(
+      0.0, voxels[2] + row % GetSize(voxels, 1), voxels[4] + row / GetSize(voxels, 1));
+    std::int32_t nearby = -1;
+    std::int64_t farUntil = 0; // voxels before are too far from the mesh
+    for (std::int64_t x = 0; x < size; ++x, ++link)
+    {
+      if (link->Tetrahedron >= 0)
+      {
+        continue;
+      }
+      *link = MakeLink(still, glm::dvec3(0.0));
+      if (this->Faces.empty() || x < farUntil)
+      {
+        continue;
+      }
+      index.x = static_cast<double>(voxels[0] + x);
+      const ClosestFace::Result closest = search.Find(spacing * index, nearby);
+      nearby = closest.Face;
+      const double distance = std::sqrt(closest.SquaredDistance);
+      const double weight = Fade(distance, this->FadeDistance);
+      if (weight > 0.0)
+      {
+        *link = MakeLink(still + 1 + closest.Face, weight * closest.Weights);
+      }
+      else
+      {
+        // The distance shrinks by no more than the step from voxel to voxel.
+        const double steps = (distance - this->FadeDistance) * (1.0 - 1e-9) / stepLength;
+        farUntil = x + static_cast<std::int64_t>(std::min(steps, 1e9));
+      }
+    }
+  };
+  const std::int64_t rows = GetSize(voxels, 1) * GetSize(voxels, 2);
+  constexpr int parts = 16;
+  for (int part = 0; part < parts; ++part)
+  {
+    ParallelFor(rows * part / parts, rows * (part + 1) / parts, 16,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t row = begin; row < end; ++row)
+        {
+          linkRow(row);
+        }
+      });
+    progress((part + 1.0) / parts);
+  }
+}
+
+void FadedLinks::DropUnused(std::size_t numberOfTetrahedra, std::vector<VertexLink>& links)
+{
+  if (this->Faces.empty())
+  {
+    return;
+  }
+  const auto first = static_cast<std::int32_t>(numberOfTetrahedra) + 1;
+  std::vector<std::atomic<unsigned char>> used(this->Faces.size());
+  ParallelForParts(links.size(), 1 << 16,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        if (links[i].Tetrahedron >= first)
+        {
+          used[static_cast<std::size_t>(links[i].Tetrahedron - first)].store(
+            1, std::memory_order_relaxed);
+        }
+      }
+    });
+  std::vector<TetrahedronFace> left;
+  std::vector<std::int32_t> numbers(this->Faces.size(), -1);
+  for (std::size_t face = 0; face < this->Faces.size(); ++face)
+  {
+    if (used[face] != 0)
+    {
+      numbers[face] = static_cast<std::int32_t>(left.size());
+      left.push_back(this->Faces[face]);
+    }
+  }
+  ParallelForParts(links.size(), 1 << 16,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        std::int32_t& number = links[i].Tetrahedron;
+        if (number >= first)
+        {
+          number = first + numbers[static_cast<std::size_t>(number - first)];
+        }
+      }
+    });
+  this->Faces = std::move(left);
+}
+
+Tetrahedron FadedLinks::GetRecord(
+  std::size_t record, const std::vector<Tetrahedron>& tetrahedra, std::int32_t still) const
+{
+  if (record == 0)
+  {
+    return { { still, still, still, still } };
+  }
+  const TetrahedronFace& face = this->Faces[record - 1];
+  const auto nodes = face.GetNodes(tetrahedra[static_cast<std::size_t>(face.Tetrahedron)]);
+  return { { nodes[0], nodes[1], nodes[2], still } };
+}
+
+void FadedLinks::FindBlocks(
+  const Extent& voxels, std::size_t numberOfTetrahedra, const std::vector<VertexLink>& links)
+{
+  const auto still = static_cast<std::int32_t>(numberOfTetrahedra);
+  const std::int64_t size = GetSize(voxels, 0);
+  const std::int64_t plane = GetPlane(voxels);
+  struct Layer
+  {
+    std::vector<Block> Blocks;
+    std::vector<std::int32_t> Faces;
+    Extent Still{ { 0, -1, 0, -1, 0, -1 } };
+  };
+  const auto count = [&](int axis) { return (GetSize(voxels, axis) + BlockSize - 1) / BlockSize; };
+  std::vector<Layer> layers(static_cast<std::size_t>(count(2)));
+  const auto findBlock = [&](std::int64_t i, std::int64_t j, std::int64_t k, Layer& layer)
+  {
+    Block block;
+    block.Voxels = Extent{ { 0, -1, 0, -1, 0, -1 } };
+    block.GreatestWeight = 0.0;
+    const std::size_t first = layer.Faces.size();
+    std::int32_t last = -1;
+    const auto end = [&](std::int64_t place, int axis)
+    { return std::min((place + 1) * BlockSize, GetSize(voxels, axis)); };
+    for (std::int64_t z = k * BlockSize; z < end(k, 2); ++z)
+    {
+      for (std::int64_t y = j * BlockSize; y < end(j, 1); ++y)
+      {
+        for (std::int64_t x = i * BlockSize; x < end(i, 0); ++x)
+        {
+          const VertexLink& link = links[static_cast<std::size_t>(z * plane + y * size + x)];
+          if (link.Tetrahedron < still)
+          {
+            continue;
+          }
+          const int at[3] = { static_cast<int>(voxels[0] + x), static_cast<int>(voxels[2] + y),
+            static_cast<int>(voxels[4] + z) };
+          const Extent voxel{ { at[0], at[0], at[1], at[1], at[2], at[2] } };
+          if (link.Tetrahedron == still)
+          {
+            Include(layer.Still, voxel);
+            continue;
+          }
+          Include(block.Voxels, voxel);
+          const double weight =
+            double{ link.Weights[0] } + double{ link.Weights[1] } + double{ link.Weights[2] };
+          block.GreatestWeight = std::max(block.GreatestWeight, weight);
+          if (link.Tetrahedron != last)
+          {
+            last = link.Tetrahedron;
+            layer.Faces.push_back(last - still - 1);
+          }
+        }
+      }
+    }
+    if (layer.Faces.size() > first)
+    {
+      const auto begin = layer.Faces.begin() + static_cast<std::ptrdiff_t>(first);
+      std::sort(begin, layer.Faces.end());
+      layer.Faces.erase(std::unique(begin, layer.Faces.end()), layer.Faces.end());
+      block.FacesEnd = layer.Faces.size();
+      layer.Blocks.push_back(block);
+    }
+  };
+  ParallelFor(0, count(2), 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        for (std::int64_t j = 0; j < count(1); ++j)
+        {
+          for (std::int64_t i = 0; i < count(0); ++i)
+          {
+            findBlock(i, j, k, layers[static_cast<std::size_t>(k)]);
+          }
+        }
+      }
+    });
+  for (const Layer& layer : layers)
+  {
+    for (Block block : layer.Blocks)
+    {
+      block.FacesEnd += this->FacesOfBlocks.size();
+      this->Blocks.push_back(block);
+    }
+    this->FacesOfBlocks.insert(this->FacesOfBlocks.end(), layer.Faces.begin(), layer.Faces.end());
+    if (GetNumberOfPoints(layer.Still) > 0)
+    {
+      Include(this->StillVoxels, layer.Still);
+    }
+  }
+}
+
+IndexBounds FadedLinks::ComputeBounds(const VoxelGrid& voxelGrid,
+  const std::vector<Tetrahedron>& tetrahedra, const float* displacements) const
+{
+  const glm::dvec3 scale = GetScale(voxelGrid);
+  const auto move = [&](const Extent& voxels, double weight, const IndexBounds& displacement)
+  {
+    IndexBounds moved;
+    moved.Add(scale * glm::dvec3(voxels[0], voxels[2], voxels[4]) + weight * displacement.Min);
+    moved.Add(scale * glm::dvec3(voxels[1], voxels[3], voxels[5]) + weight * displacement.Max);
+    return moved;
+  };
+  const auto add = [&](const TetrahedronFace& face, IndexBounds& displacement)
+  {
+    for (const std::int32_t node :
+      face.GetNodes(tetrahedra[static_cast<std::size_t>(face.Tetrahedron)]))
+    {
+      const glm::dvec3 moved = GetVector(displacements, node);
+      if (IsFinite(moved))
+      {
+        displacement.Add(moved);
+      }
+    }
+  };
+  IndexBounds none;
+  none.Add(glm::dvec3(0.0));
+  IndexBounds most = none;
+  for (const TetrahedronFace& face : this->Faces)
+  {
+    add(face, most);
+  }
+  IndexBounds bounds;
+  if (GetNumberOfPoints(this->StillVoxels) > 0)
+  {
+    bounds = move(this->StillVoxels, 0.0, none);
+  }
+  std::size_t begin = 0;
+  for (const Block& block : this->Blocks)
+  {
+    // Most blocks are inside, wherever their voxels go.
+    const IndexBounds widest = move(block.Voxels, block.GreatestWeight, most);
+    const bool isInside = !bounds.IsEmpty() &&
+      glm::all(glm::greaterThanEqual(widest.Min, bounds.Min)) &&
+      glm::all(glm::lessThanEqual(widest.Max, bounds.Max));
+    IndexBounds displacement = none;
+    for (std::size_t face = begin; face < block.FacesEnd && !isInside; ++face)
+    {
+      add(this->Faces[static_cast<std::size_t>(this->FacesOfBlocks[face])], displacement);
+    }
+    begin = block.FacesEnd;
+    if (!isInside)
+    {
+      bounds.Add(move(block.Voxels, block.GreatestWeight, displacement));
+    }
+  }
+  return bounds;
+}
+
+// What a voxel follows: a place in the mesh, and how much.
+struct FadedLinks::Anchor
+{
+  glm::dvec3 Place{ 0.0 };
+  double Weight = 0.0;
+};
+
+FadedLinks::Anchor FadedLinks::GetAnchor(const VertexLink& link, const glm::dvec3& voxel,
+  const glm::dvec3& spacing, const std::vector<glm::dvec3>& restPoints,
+  const std::vector<Tetrahedron>& tetrahedra) const
+{
+  const auto number = static_cast<std::size_t>(link.Tetrahedron);
+  if (number < tetrahedra.size())
+  {
+    return { spacing * voxel, 1.0 };
+  }
+  if (number == tetrahedra.size())
+  {
+    return {};
+  }
+  const TetrahedronFace& face = this->Faces[number - tetrahedra.size() - 1];
+  const auto nodes = face.GetNodes(tetrahedra[static_cast<std::size_t>(face.Tetrahedron)]);
+  Anchor anchor;
+  for (std::size_t k = 0; k < 3; ++k)
+  {
+    anchor.Place += double{ link.Weights[k] } * (spacing * GetPoint(restPoints, nodes[k]));
+    anchor.Weight += double{ link.Weights[k] };
+  }
+  anchor.Place /= anchor.Weight;
+  return anchor;
+}
+
+void FadedLinks::FindStretchable(const Extent& voxels, const glm::dvec3& spacing,
+  const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
+  const std::vector<VertexLink>& links)
+{
+  static constexpr int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+  const auto still = static_cast<std::int32_t>(tetrahedra.size());
+  const std::int64_t size = GetSize(voxels, 0);
+  const std::int64_t plane = GetPlane(voxels);
+  const std::int64_t layers = std::max<std::int64_t>(GetSize(voxels, 2) - 1, 0);
+  std::vector<std::vector<std::array<std::int64_t, 4>>> found(static_cast<std::size_t>(layers));
+  // Its vertices follow places that are farther apart than the mesh itself explains: what lies
+  // between the closest points of two voxels is at most as far as these, on a convex boundary.
+  const auto isStretchable = [&](const std::array<Anchor, 8>& anchors,
+                               const std::array<glm::dvec3, 8>& places, const int* vertices)
+  {
+    for (int i = 1; i < 4; ++i)
+    {
+      for (int j = 0; j < i; ++j)
+      {
+        const auto a = static_cast<std::size_t>(vertices[i]);
+        const auto b = static_cast<std::size_t>(vertices[j]);
+        const bool isStep = std::abs(anchors[a].Weight - anchors[b].Weight) > LargestStep;
+        const bool isJump = anchors[a].Weight > 0.0 && anchors[b].Weight > 0.0 &&
+          glm::distance(anchors[a].Place, anchors[b].Place) >
+            2.0 * (1.0 + 1e-6) * glm::distance(places[a], places[b]);
+        if (isStep || isJump)
+        {
+          return true;
+        }
+      }
+    }
+    return false;
+  };
+  ParallelFor(0, layers, 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      std::array<Anchor, 8> anchors;
+      std::array<glm::dvec3, 8> places;
+      std::array<std::int64_t, 8> numbers;
+      for (std::int64_t z = begin; z < end; ++z)
+      {
+        for (std::int64_t y = 0; y + 1 < GetSize(voxels, 1); ++y)
+        {
+          for (std::int64_t x = 0; x + 1 < size; ++x)
+          {
+            const std::int64_t first = z * plane + y * size + x;
+            bool anyOutside = false;
+            bool allStill = true;
+            for (int corner = 0; corner < 8; ++corner)
+            {
+              const std::int64_t number =
+                first + (corner & 1) + (corner >> 2 & 1) * size + (corner >> 1 & 1) * plane;
+              const std::int32_t tetrahedron = links[static_cast<std::size_t>(number)].Tetrahedron;
+              anyOutside = anyOutside || tetrahedron >= still;
+              allStill = allStill && tetrahedron == still;
+              numbers[static_cast<std::size_t>(corner)] = number;
+            }
+            if (!anyOutside || allStill)
+            {
+              continue;
+            }
+            for (int corner = 0; corner < 8; ++corner)
+            {
+              const auto at = static_cast<std::size_t>(corner);
+              const glm::dvec3 voxel(static_cast<double>(voxels[0] + x + (corner & 1)),
+                static_cast<double>(voxels[2] + y + (corner >> 2 & 1)),
+                static_cast<double>(voxels[4] + z + (corner >> 1 & 1)));
+              places[at] = spacing * voxel;
+              anchors[at] = this->GetAnchor(links[static_cast<std::size_t>(numbers[at])], voxel,
+                spacing, restPoints, tetrahedra);
+            }
+            const int mirror = DEFORMVOLUME_MIRROR(voxels[0] + x, voxels[2] + y, voxels[4] + z);
+            for (const auto& tetrahedron : split)
+            {
+              int vertices[4];
+              for (int k = 0; k < 4; ++k)
+              {
+                vertices[k] = tetrahedron[k] ^ mirror;
+              }
+              if (isStretchable(anchors, places, vertices))
+              {
+                std::array<std::int64_t, 4>& one =
+                  found[static_cast<std::size_t>(z)].emplace_back();
+                for (std::size_t k = 0; k < 4; ++k)
+                {
+                  one[k] = numbers[static_cast<std::size_t>(vertices[k])];
+                }
+              }
+            }
+          }
+        }
+      }
+    });
+  std::int64_t count = 0;
+  for (const auto& layer : found)
+  {
+    count += static_cast<std::int64_t>(layer.size());
+  }
+  this->Step = std::max<std::int64_t>(1, (count + MostStretchable - 1) / MostStretchable);
+  std::int64_t next = 0;
+  for (const auto& layer : found)
+  {
+    for (const auto& vertices : layer)
+    {
+      if (next++ % this->Step == 0)
+      {
+        std::array<VertexLink, 4>& one = this->Stretchable.emplace_back();
+        for (std::size_t k = 0; k < 4; ++k)
+        {
+          one[k] = links[static_cast<std::size_t>(vertices[k])];
+        }
+      }
+    }
+  }
+}
+
+glm::dvec3 FadedLinks::Displace(const VertexLink& link, const std::vector<Tetrahedron>& tetrahedra,
+  const float* displacements) const
+{
+  const auto number = static_cast<std::size_t>(link.Tetrahedron);
+  glm::dvec3 sum(0.0);
+  if (number == tetrahedra.size())
+  {
+    return sum;
+  }
+  const auto add = [&](double weight, std::int32_t node)
+  { sum += weight * GetVector(displacements, node); };
+  const bool isInside = number < tetrahedra.size();
+  const TetrahedronFace face =
+    isInside ? TetrahedronFace{ link.Tetrahedron, 3 } : this->Faces[number - tetrahedra.size() - 1];
+  const Tetrahedron& all = tetrahedra[static_cast<std::size_t>(face.Tetrahedron)];
+  const auto nodes = face.GetNodes(all);
+  double rest = 1.0;
+  for (std::size_t k = 0; k < 3; ++k)
+  {
+    add(double{ link.Weights[k] }, nodes[k]);
+    rest -= double{ link.Weights[k] };
+  }
+  if (isInside)
+  {
+    add(rest, all[3]);
+  }
+  return sum;
+}
+
+std::int64_t FadedLinks::CountStretched(
+  const std::vector<Tetrahedron>& tetrahedra, const float* displacements) const
+{
+  std::atomic<std::int64_t> count{ 0 };
+  ParallelForParts(this->Stretchable.size(), 1024,
+    [&](std::size_t begin, std::size_t end)
+    {
+      std::int64_t some = 0;
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        glm::dvec3 low(std::numeric_limits<double>::infinity());
+        glm::dvec3 high(-std::numeric_limits<double>::infinity());
+        for (const VertexLink& link : this->Stretchable[i])
+        {
+          const glm::dvec3 moved = this->Displace(link, tetrahedra, displacements);
+          low = glm::min(low, moved);
+          high = glm::max(high, moved);
+        }
+        const glm::dvec3 size = high - low;
+        some += std::max({ size.x, size.y, size.z }) > StretchLimit ? 1 : 0;
+      }
+      count += some;
+    });
+  return this->Step * count;
+}
+
+double FadedLinks::GetLongestDisplacement(const std::vector<Tetrahedron>& tetrahedra,
+  const float* displacements, const glm::dvec3& spacing) const
+{
+  double longest = 0.0;
+  for (const TetrahedronFace& face : this->Faces)
+  {
+    for (const std::int32_t node :
+      face.GetNodes(tetrahedra[static_cast<std::size_t>(face.Tetrahedron)]))
+    {
+      longest = std::max(longest, glm::length(spacing * GetVector(displacements, node)));
+    }
+  }
+  return longest;
+}
+
+} // namespace deformvolume

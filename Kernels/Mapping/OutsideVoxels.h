@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeOutsideVoxels_h
+#define DeformVolumeOutsideVoxels_h
+
+namespace deformvolume
+{
+
+/// What becomes of the voxels outside a deformation mesh.
+struct OutsideVoxels
+{
+  enum class Modes
+  {
+    Discard,     // they have no place after the deformation
+    Extrapolate, // they follow the tetrahedron of the nearest voxel inside
+    Keep         // they stay where they are, but for those near the mesh
+  };
+
+  OutsideVoxels(Modes mode, double fadeDistance = 0.0)
+    : Mode(mode)
+    , FadeDistance(mode == Modes::Keep ? fadeDistance : 0.0)
+  {
+  }
+  OutsideVoxels(bool extrapolate = false)
+    : OutsideVoxels(extrapolate ? Modes::Extrapolate : Modes::Discard)
+  {
+  }
+
+  bool AreDiscarded() const { return this->Mode == Modes::Discard; }
+  bool AreExtrapolated() const { return this->Mode == Modes::Extrapolate; }
+  bool AreKept() const { return this->Mode == Modes::Keep; }
+  bool operator==(const OutsideVoxels& other) const
+  {
+    return this->Mode == other.Mode && this->FadeDistance == other.FadeDistance;
+  }
+
+  Modes Mode;
+  /// Of Keep: how far from the mesh the displacement of its boundary fades to zero, in world units;
+  /// 0: no voxel outside moves.
+  double FadeDistance;
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,665 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// OutsideMode KEEP: tissue outside the deformation mesh stays where it is, and the displacement
+// fades to zero within FadeDistance.
+#include "FilterTesting.h"
+
+#include "vtkCutVolume.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
+#include <vtkAppendFilter.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkIdList.h>
+#include <vtkPlaneSource.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace filterTesting;
+
+namespace
+{
+
+double Fade(double s)
+{
+  return s < 1.0 ? 1.0 - 3.0 * s * s + 2.0 * s * s * s : 0.0;
+}
+
+// A lattice of tetrahedra that fills a box.
+vtkSmartPointer<vtkUnstructuredGrid> MakeBox(
+  const glm::dvec3& min, const glm::dvec3& max, const glm::ivec3& nodes = glm::ivec3(4, 3, 3))
+{
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  source->SetNumberOfNodes(nodes.x, nodes.y, nodes.z);
+  source->EqualSpacingOff();
+  source->SetBounds(min.x, max.x, min.y, max.y, min.z, max.z);
+  source->Update();
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  mesh->DeepCopy(source->GetOutput());
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  return mesh;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> Join(vtkUnstructuredGrid* first, vtkUnstructuredGrid* second)
+{
+  vtkNew<vtkAppendFilter> append;
+  append->AddInputData(first);
+  append->AddInputData(second);
+  append->Update();
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  mesh->DeepCopy(append->GetOutput());
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  return mesh;
+}
+
+// Without the cells that have their center in a box.
+vtkSmartPointer<vtkUnstructuredGrid> Hollow(
+  vtkUnstructuredGrid* whole, const glm::dvec3& min, const glm::dvec3& max)
+{
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  mesh->SetPoints(whole->GetPoints());
+  mesh->Allocate(whole->GetNumberOfCells());
+  for (vtkIdType cell = 0; cell < whole->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> ids;
+    whole->GetCellPoints(cell, ids);
+    glm::dvec3 center(0.0);
+    for (vtkIdType k = 0; k < 4; ++k)
+    {
+      center += 0.25 * GetPoint(whole, ids->GetId(k));
+    }
+    bool isWithin = true;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      isWithin = isWithin && center[axis] > min[axis] && center[axis] < max[axis];
+    }
+    if (!isWithin)
+    {
+      mesh->InsertNextCell(VTK_TETRA, ids);
+    }
+  }
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  return mesh;
+}
+
+// A volume of floats and one of shorts, rough in all directions.
+vtkSmartPointer<vtkImageData> MakeTissue(
+  const Extent& extent, const glm::dvec3& spacing = glm::dvec3(1.0))
+{
+  auto volume = MakeImage(extent, spacing);
+  AddScalars<float>(volume, "more",
+    [](const glm::dvec3& p)
+    { return std::sin(1.3 * p.x + p.y) * p.z + 5.0 * std::cos(p.x * p.y); });
+  volume->GetPointData()->SetActiveScalars(nullptr); // else they would be replaced
+  AddScalars<short>(volume, "value",
+    [](const glm::dvec3& p)
+    { return 400.0 * std::sin(0.7 * p.x) + 300.0 * std::cos(0.9 * p.y + 0.2 * p.z); });
+  return volume;
+}
+
+struct Kept : Deformed
+{
+  Kept(vtkDataObject* volume, vtkDataObject* mesh, double fadeDistance)
+    : Deformed(volume, mesh)
+  {
+    this->Filter->SetOutsideModeToKeep();
+    this->Filter->SetFadeDistance(fadeDistance);
+  }
+  /// Updates with a warning that holds some words, or with none.
+  vtkImageData* Expect(const std::string& words)
+  {
+    this->Observer->Clear();
+    this->Filter->Update();
+    const std::string warning = this->Observer->GetWarningMessage();
+    if (words.empty() ? !warning.empty() : warning.find(words) == std::string::npos)
+    {
+      ++GetNumberOfFailures();
+      std::cerr << "expected \"" << words << "\" in the warning \"" << warning << "\"\n";
+    }
+    VERIFY_EQUAL(this->TakeErrors(), 0);
+    return this->Filter->GetOutput();
+  }
+};
+
+void TestMisuse()
+{
+  const auto volume = MakeTissue({ { 0, 20, 0, 18, 0, 16 } });
+  const auto mesh = MakeBox(glm::dvec3(5.2), glm::dvec3(11.7));
+  Kept subject(volume, mesh, 4.0);
+  VERIFY_EQUAL(subject.Filter->GetOutsideMode(), 2);
+  VERIFY_EQUAL(static_cast<int>(vtkDeformVolumeFilter::DISCARD), 0);
+  VERIFY_EQUAL(static_cast<int>(vtkDeformVolumeFilter::EXTRAPOLATE), 1);
+  subject.Filter->SetOutsideMode(7);
+  VERIFY_EQUAL(subject.Filter->GetOutsideMode(), 2);
+  subject.Filter->SetOutsideMode(-3);
+  VERIFY_EQUAL(subject.Filter->GetOutsideMode(), 0);
+  vtkNew<vtkDeformVolumeFilter> unset;
+  VERIFY_EQUAL(unset->GetFadeDistance(), 0.0);
+  subject.Filter->SetOutsideModeToKeep();
+  vtkNew<vtkImageData> expected;
+  expected->DeepCopy(subject.Update());
+
+  const auto refuse = [&](const std::string& words)
+  {
+    for (int repeat = 0; repeat < 2; ++repeat)
+    {
+      subject.Filter->Update();
+      VERIFY_EQUAL(subject.TakeErrors(), 1);
+      if (subject.LastError.find(words) == std::string::npos)
+      {
+        ++GetNumberOfFailures();
+        std::cerr << words << " is not in " << subject.LastError << '\n';
+      }
+      VERIFY_EQUAL(subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    }
+  };
+  const auto mend = [&]
+  {
+    subject.Filter->SetFadeDistance(4.0);
+    subject.Filter->SetResamplerToAutomatic();
+    subject.Filter->SetInterpolationToLinearInterpolation();
+    subject.Filter->OpenSplitsOff();
+    subject.Filter->SetDeformationData(mesh);
+    VERIFY(AreEqual(subject.Update(), expected));
+  };
+  for (const double distance :
+    { -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity() })
+  {
+    subject.Filter->SetFadeDistance(distance);
+    refuse("FadeDistance is ");
+    mend();
+  }
+  subject.Filter->SetResamplerToMeshRasterization();
+  refuse("the outside mode KEEP");
+  mend();
+  subject.Filter->SetInterpolationToCubicInterpolation();
+  refuse("the outside mode KEEP");
+  mend();
+  subject.Filter->OpenSplitsOn();
+  refuse("OpenSplits");
+  mend();
+  const auto field = MakeImage({ { 2, 9, 2, 9, 2, 9 } });
+  SetDisplacements(field, Shift(0.0, 0.0, 0.0));
+  subject.Filter->SetDeformationData(field);
+  refuse("displacement field");
+  mend();
+  subject.Filter->SetDeformationData(MakeBox(glm::dvec3(105.2), glm::dvec3(111.7)));
+  refuse("no voxel");
+  mend();
+  // A distance that is not used is not looked at, and without a deformation there is no outside.
+  subject.Filter->SetFadeDistance(-1.0);
+  subject.Filter->SetOutsideModeToDiscard();
+  subject.Update();
+  subject.Filter->SetOutsideModeToKeep();
+  subject.Filter->SetFadeDistance(2.0);
+  subject.Filter->SetDeformationData(nullptr);
+  VERIFY(HaveEqualBits(
+    subject.Update()->GetPointData()->GetScalars(), volume->GetPointData()->GetScalars()));
+}
+
+// A mesh at rest changes nothing, whatever is outside.
+void TestAtRest()
+{
+  const auto volume = MakeTissue({ { -3, 20, 2, 18, 0, 16 } }, glm::dvec3(0.7, 1.1, 2.0));
+  SetObliqueDirection(volume);
+  Deformed itself;
+  itself.Filter->SetInputData(volume);
+  vtkImageData* expected = itself.Update();
+  double bounds[6];
+  volume->GetBounds(bounds);
+  const glm::dvec3 center(
+    0.5 * (bounds[0] + bounds[1]), 0.5 * (bounds[2] + bounds[3]), 0.5 * (bounds[4] + bounds[5]));
+  const auto mesh = MakeBox(center - 3.1, center + 4.2);
+  for (const double distance : { 0.0, 2.5, 1e3 })
+  {
+    Kept subject(volume, mesh, distance);
+    VERIFY(AreEqual(subject.Expect(""), expected));
+    subject.Filter->SetInputArrayToProcess(
+      0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "displacement");
+  }
+}
+
+// Along a row through a box that is moved: a voxel of the output shows the voxel at rest that w
+// leads there. No hole, nothing inside out, and what is far is as it was.
+void TestMovedBox()
+{
+  const glm::dvec3 spacing(0.8, 1.25, 2.0);
+  const auto volume = MakeImage({ { 0, 80, 0, 40, 0, 30 } }, spacing);
+  AddScalars<double>(volume, "x", [](const glm::dvec3& p) { return p.x; });
+  volume->GetPointData()->SetActiveScalars(nullptr);
+  AddScalars<float>(volume, "value",
+    [](const glm::dvec3& p) { return std::sin(1.3 * p.x + p.y) * p.z + 7.0 * p.x; });
+  const glm::dvec3 min(24.1, 16.3, 22.6);
+  const glm::dvec3 max(38.9, 30.2, 39.3);
+  const auto mesh = MakeBox(min, max);
+  for (const double distance : { 8.0, 12.5 })
+  {
+    const double shift = 2.9;
+    SetDisplacements(mesh, Shift(shift, 0.0, 0.0));
+    Kept subject(volume, mesh, distance);
+    vtkImageData* output = subject.Expect("");
+    VERIFY_EQUAL(GetExtent(output), GetExtent(volume));
+    VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+    VERIFY_EQUAL(subject.Filter->GetNumberOfInvertedTetrahedra(), 0);
+    vtkDataArray* found = output->GetPointData()->GetArray("x");
+    const auto map = [&](double x) {
+      return x + Fade(std::max({ min.x - x, x - max.x, 0.0 }) / distance) * shift;
+    };
+    // Between voxels w is taken to be linear, which misses by an eighth of the square of the
+    // spacing times the second derivative; positions are rounded to 1/512 voxel.
+    const double error = 0.125 * spacing.x * spacing.x * 6.0 / (distance * distance) * shift;
+    for (int i = 0; i <= 80; ++i)
+    {
+      const double x = i * spacing.x;
+      double low = x - shift - 1.0;
+      double high = x + 1.0;
+      for (int step = 0; step < 60; ++step)
+      {
+        const double middle = 0.5 * (low + high);
+        (map(middle) < x ? low : high) = middle;
+      }
+      int voxel[3] = { i, 18, 15 };
+      const double value = found->GetComponent(output->ComputePointId(voxel), 0);
+      // The map is flat by 1 - 1.5 shift / distance at the steepest.
+      const double steepest = 1.0 / (1.0 - 1.5 * shift / distance);
+      const double rounding = spacing.x / 256.0;
+      if (std::abs(value - low) > steepest * (error + rounding))
+      {
+        ++GetNumberOfFailures();
+        std::cerr << "voxel " << i << ": " << value << " instead of " << low << '\n';
+      }
+    }
+    vtkDataArray* before = volume->GetPointData()->GetArray("value");
+    vtkDataArray* after = output->GetPointData()->GetArray("value");
+    vtkIdType far = 0;
+    for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+    {
+      const glm::dvec3 p = GetPoint(volume, id);
+      const double gap = glm::length(p - glm::clamp(p, min, max));
+      if (gap > distance + shift + 2.0 * spacing.z)
+      {
+        VERIFY_EQUAL(after->GetComponent(id, 0), before->GetComponent(id, 0));
+        ++far;
+      }
+    }
+    VERIFY(far > 1000);
+  }
+}
+
+// All of the volume is there, from one side of the boundary to the other, for many shapes.
+void TestNoHoles()
+{
+  const auto volume = MakeTissue({ { 0, 47, 0, 39, 0, 35 } });
+  const auto block =
+    MakeBox(glm::dvec3(8.3, 7.2, 9.1), glm::dvec3(36.2, 30.8, 25.9), glm::ivec3(9, 8, 7));
+  const auto bend = [](const glm::dvec3& p) {
+    return p + glm::dvec3(2.0 * std::sin(0.2 * p.y), 1.5 * std::sin(0.25 * p.x), 0.1 * p.z - 2.0);
+  };
+  const std::vector<vtkSmartPointer<vtkUnstructuredGrid>> meshes{ block,
+    Hollow(block, glm::dvec3(15.0, 14.0, 14.0), glm::dvec3(29.0, 23.0, 21.0)),  // a cavity
+    Hollow(block, glm::dvec3(15.0, 14.0, -99.0), glm::dvec3(29.0, 23.0, 99.0)), // a ring
+    Join(MakeBox(glm::dvec3(7.5, 9.0, 9.0), glm::dvec3(19.0, 30.0, 25.0)),
+      MakeBox(glm::dvec3(27.0, 9.0, 9.0), glm::dvec3(39.5, 30.0, 25.0))) };
+  for (const auto& mesh : meshes)
+  {
+    SetDisplacements(mesh, bend);
+    for (const double distance : { 7.0, 25.0 })
+    {
+      Kept subject(volume, mesh, distance);
+      subject.Filter->SetOutputBoundsModeToVolumeBounds();
+      subject.Filter->Update();
+      VERIFY_EQUAL(subject.TakeErrors(), 0);
+      // With the longer distance the border of the volume itself moves.
+      if (distance == 7.0)
+      {
+        VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+      }
+      subject.Filter->SetOutputBoundsModeToDeformedBounds();
+      subject.Filter->SetPadding(3);
+      subject.Filter->Update();
+      VERIFY_EQUAL(subject.TakeErrors(), 0);
+      // The bounds hold all of it.
+      vtkImageData* output = subject.Filter->GetOutput();
+      const Extent extent = GetExtent(output);
+      for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+      {
+        const glm::dvec3 p = GetPoint(output, id);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          VERIFY(!subject.IsCovered(id) ||
+            (p[axis] >= extent[2 * axis] + 3 && p[axis] <= extent[2 * axis + 1] - 3));
+        }
+      }
+    }
+  }
+}
+
+// What is stretched or folded for certain is said once for each change.
+void TestWarnings()
+{
+  const auto volume = MakeTissue({ { 0, 47, 0, 29, 0, 25 } });
+  const auto two = Join(MakeBox(glm::dvec3(8.0, 8.0, 8.0), glm::dvec3(18.4, 20.0, 17.0)),
+    MakeBox(glm::dvec3(25.6, 8.0, 8.0), glm::dvec3(36.0, 20.0, 17.0)));
+  const auto apart = [&](double distance)
+  {
+    SetDisplacements(two,
+      [=](const glm::dvec3& p)
+      { return p + glm::dvec3(p.x < 22.0 ? -distance : distance, 0.0, 0.0); });
+  };
+  Kept subject(volume, two, 12.0);
+  apart(0.9);
+  subject.Expect("");
+  apart(3.0);
+  subject.Expect("are stretched over more than 2 output voxels, where the closest point");
+  // There is still no hole.
+  VERIFY(subject.Filter->GetNumberOfCoveredVoxels() >= volume->GetNumberOfPoints());
+  subject.Filter->SetPadding(1);
+  subject.Expect("");
+  apart(3.5);
+  subject.Expect("are stretched");
+  subject.Filter->SetFadeDistance(2.5);
+  subject.Expect("moves by 3.5");
+  apart(1.6);
+  subject.Expect("");
+  apart(1.7);
+  subject.Expect("more than two thirds of FadeDistance");
+  subject.Filter->SetFadeDistance(0.0);
+  apart(1.9);
+  subject.Expect("");
+  apart(2.1);
+  subject.Expect("as FadeDistance is 0");
+}
+
+// Voxels outside do not move at all.
+void TestHardEdge()
+{
+  const auto volume = MakeTissue({ { 0, 29, 0, 25, 0, 21 } });
+  const glm::dvec3 min(8.3, 7.4, 6.6);
+  const glm::dvec3 max(17.7, 15.2, 13.9);
+  const auto mesh = MakeBox(min, max);
+  const glm::dvec3 shift(1.0, 0.0, -1.0);
+  SetDisplacements(mesh, Shift(shift.x, shift.y, shift.z));
+  Kept subject(volume, mesh, 0.0);
+  vtkImageData* output = subject.Expect("");
+  VERIFY_EQUAL(GetExtent(output), GetExtent(volume));
+  VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+  vtkIdType outside = 0;
+  vtkIdType inside = 0;
+  for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 p = GetPoint(volume, id);
+    const auto holds = [&](const glm::dvec3& point, double margin)
+    {
+      return glm::all(glm::greaterThan(point, min - margin)) &&
+        glm::all(glm::lessThan(point, max + margin));
+    };
+    int index[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      index[axis] = static_cast<int>(std::lround(p[axis] - shift[axis]));
+    }
+    for (const char* name : { "value", "more" })
+    {
+      vtkDataArray* before = volume->GetPointData()->GetArray(name);
+      const double value = output->GetPointData()->GetArray(name)->GetComponent(id, 0);
+      if (!holds(p, 1.0) && !holds(p - shift, 1.0))
+      {
+        VERIFY_EQUAL(value, before->GetComponent(id, 0));
+        ++outside;
+      }
+      else if (holds(p, -1.0) && holds(p - shift, -1.0))
+      {
+        VERIFY_EQUAL(value, before->GetComponent(volume->ComputePointId(index), 0));
+        ++inside;
+      }
+    }
+  }
+  VERIFY(outside > 10000 && inside > 200);
+}
+
+// Some nodes move, masks change, the mesh is split: as a new filter makes it.
+void TestIncremental()
+{
+  const auto volume = MakeTissue({ { 0, 69, 0, 49, 0, 45 } }, glm::dvec3(1.0, 0.8, 1.2));
+  const auto mesh =
+    MakeBox(glm::dvec3(14.2, 9.1, 13.7), glm::dvec3(50.6, 30.3, 40.2), glm::ivec3(10, 8, 8));
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(-1.5, 1.5);
+  vtkNew<vtkUnsignedCharArray> active;
+  active->SetName("ActiveTetrahedra");
+  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  active->Fill(31);
+  volume->GetCellData()->AddArray(active);
+  Kept subject(volume, mesh, 9.0);
+  subject.Filter->SetOutputBoundsModeToVolumeBounds();
+  subject.Filter->Update();
+  const vtkIdType nodes = mesh->GetNumberOfPoints();
+  vtkIdType parts = 0;
+  for (int step = 0; step < 14; ++step)
+  {
+    vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+    for (int i = 0; i < 1 + step % 3; ++i)
+    {
+      const auto node = static_cast<vtkIdType>(random() % static_cast<unsigned int>(nodes));
+      vectors->SetTuple3(node, uniform(random), uniform(random), uniform(random));
+    }
+    vectors->Modified();
+    if (step % 4 == 1)
+    {
+      const auto cell =
+        static_cast<vtkIdType>(random() % static_cast<unsigned int>(volume->GetNumberOfCells()));
+      active->SetValue(cell, static_cast<unsigned char>(random() % 31));
+      active->Modified();
+    }
+    if (step == 6 || step == 9)
+    {
+      // Some tetrahedra get a node of their own in the place of another one.
+      vtkPoints* points = mesh->GetPoints();
+      for (vtkIdType cell = step; cell < mesh->GetNumberOfCells(); cell += 400)
+      {
+        vtkNew<vtkIdList> ids;
+        mesh->GetCellPoints(cell, ids);
+        double point[3];
+        points->GetPoint(ids->GetId(1), point);
+        const vtkIdType twin = points->InsertNextPoint(point);
+        vectors->InsertNextTuple3(0.5, -0.5, 0.25);
+        ids->SetId(1, twin);
+        mesh->GetCells()->ReplaceCellAtId(cell, ids);
+      }
+      mesh->GetCells()->Modified();
+      points->Modified();
+      vectors->Modified();
+      mesh->Modified();
+    }
+    subject.Filter->Update();
+    VERIFY_EQUAL(subject.TakeErrors(), 0);
+    parts += GetReported(subject.Filter, "Bricks resampled") <
+      GetReported(subject.Filter, "Bricks of the volume");
+    Kept fresh(volume, mesh, 9.0);
+    fresh.Filter->SetOutputBoundsModeToVolumeBounds();
+    fresh.Filter->Update();
+    VERIFY_EQUAL(fresh.TakeErrors(), 0);
+    VERIFY(AreEqual(subject.Filter->GetOutput(), fresh.Filter->GetOutput()));
+    VERIFY_EQUAL(
+      subject.Filter->GetNumberOfCoveredVoxels(), fresh.Filter->GetNumberOfCoveredVoxels());
+  }
+  VERIFY(parts > 5);
+  // Splits keep the mapping, another distance does not.
+  VERIFY_EQUAL(GetReported(subject.Filter, "Static mappings made"), 1);
+  subject.Filter->SetFadeDistance(8.0);
+  subject.Filter->Update();
+  VERIFY_EQUAL(GetReported(subject.Filter, "Static mappings made"), 2);
+  // Many nodes more than the mapping was made for.
+  vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+  for (int i = 0; i < 3000; ++i)
+  {
+    mesh->GetPoints()->InsertNextPoint(0.0, 0.0, 0.0);
+    vectors->InsertNextTuple3(0.0, 0.0, 0.0);
+  }
+  mesh->GetPoints()->Modified();
+  vectors->Modified();
+  mesh->Modified();
+  subject.Filter->Update();
+  VERIFY_EQUAL(subject.TakeErrors(), 0);
+  Kept fresh(volume, mesh, 8.0);
+  fresh.Filter->SetOutputBoundsModeToVolumeBounds();
+  fresh.Filter->Update();
+  VERIFY(AreEqual(subject.Filter->GetOutput(), fresh.Filter->GetOutput()));
+}
+
+// The volume is cut where kept tissue is, and a smooth cut opens there, as by a field that moves
+// each voxel so.
+void TestCut()
+{
+  const auto volume = MakeTissue({ { 0, 39, 0, 33, 0, 29 } });
+  const glm::dvec3 min(12.2, 10.1, 9.3);
+  const glm::dvec3 max(24.6, 20.3, 18.9);
+  const auto mesh = MakeBox(min, max);
+  const glm::dvec3 shift(2.0, -1.5, 0.75);
+  SetDisplacements(mesh, Shift(shift.x, shift.y, shift.z));
+  const auto field = MakeImage(GetExtent(volume));
+  SetDisplacements(field,
+    [&](const glm::dvec3& p)
+    { return p + Fade(glm::length(p - glm::clamp(p, min, max)) / 7.0) * shift; });
+  vtkNew<vtkPlaneSource> sheet;
+  sheet->SetOrigin(2.3, -9.0, -5.1);
+  sheet->SetPoint1(32.8, 49.0, -7.2);
+  sheet->SetPoint2(6.7, -4.0, 45.3);
+  const auto cut = [&](vtkDataObject* deformation)
+  {
+    auto filter = vtkSmartPointer<vtkCutVolume>::New();
+    filter->SetInputData(volume);
+    filter->SetSheetConnection(sheet->GetOutputPort());
+    filter->SetDeformationData(deformation);
+    filter->SetOutsideModeToKeep();
+    filter->SetFadeDistance(7.0);
+    if (deformation == field)
+    {
+      filter->SetOutsideModeToExtrapolate();
+    }
+    filter->Update();
+    return filter;
+  };
+  const auto byMesh = cut(mesh);
+  VERIFY(HaveEqualBits(byMesh->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra"),
+    cut(field)->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra")));
+  VERIFY(byMesh->GetNumberOfSwitchedOffTetrahedra() > 3000);
+  // A node moves. The next cut is made where that has led.
+  double x = 2.3;
+  const auto renew = [&]
+  {
+    x += 0.4;
+    sheet->SetOrigin(x, -9.0, -5.1);
+  };
+  vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+  vectors->SetTuple3(17, 0.0, 0.5, 0.0);
+  vectors->Modified();
+  renew();
+  byMesh->Update();
+  VERIFY(HaveEqualBits(byMesh->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra"),
+    cut(mesh)->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra")));
+
+  vtkNew<vtkTest::ErrorObserver> errors;
+  byMesh->AddObserver(vtkCommand::ErrorEvent, errors);
+  vtkNew<vtkTest::ErrorObserver> failures; // which the executive adds
+  byMesh->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, failures);
+  byMesh->SetFadeDistance(-2.0);
+  renew();
+  byMesh->Update();
+  VERIFY(errors->GetErrorMessage().find("FadeDistance is -2") != std::string::npos);
+  errors->Clear();
+  byMesh->SetFadeDistance(2.0);
+  byMesh->SetDeformationData(field);
+  renew();
+  byMesh->Update();
+  VERIFY(errors->GetErrorMessage().find("which needs a mesh") != std::string::npos);
+
+  byMesh->SetDeformationData(nullptr);
+  byMesh->SmoothCutOn();
+  Kept subject(volume, mesh, 7.0);
+  subject.Filter->SetInputConnection(byMesh->GetOutputPort());
+  Deformed expected(volume, field);
+  expected.Filter->SetInputConnection(byMesh->GetOutputPort());
+  vectors->SetTuple3(17, shift.x, shift.y, shift.z);
+  vectors->Modified();
+  subject.Expect("");
+  expected.Update();
+  VERIFY_EQUAL(
+    subject.Filter->GetNumberOfCoveredVoxels(), expected.Filter->GetNumberOfCoveredVoxels());
+}
+
+// In parts, coarser, with other modes in between.
+void TestOtherSettings()
+{
+  const auto volume = MakeTissue({ { 0, 41, 0, 33, 0, 29 } });
+  const auto mesh = MakeBox(glm::dvec3(10.2, 9.1, 8.3), glm::dvec3(27.6, 21.3, 19.9));
+  SetDisplacements(mesh, Shift(2.0, -1.5, 0.75));
+  Kept subject(volume, mesh, 6.0);
+  vtkNew<vtkImageData> whole;
+  whole->DeepCopy(subject.Expect(""));
+  Kept pieces(volume, mesh, 6.0);
+  for (int piece = 0; piece < 4; ++piece)
+  {
+    pieces.Filter->UpdatePiece(piece, 4, 0);
+    vtkImageData* part = pieces.Filter->GetOutput();
+    VERIFY_EQUAL(pieces.TakeErrors(), 0);
+    VERIFY(part->GetNumberOfPoints() > 0 && part->GetNumberOfPoints() < whole->GetNumberOfPoints());
+    for (vtkIdType id = 0; id < part->GetNumberOfPoints(); ++id)
+    {
+      const glm::dvec3 p = GetPoint(part, id);
+      const vtkIdType other = whole->FindPoint(p.x, p.y, p.z);
+      for (const char* name : { "value", "more", "vtkValidPointMask" })
+      {
+        VERIFY_EQUAL(part->GetPointData()->GetArray(name)->GetComponent(id, 0),
+          whole->GetPointData()->GetArray(name)->GetComponent(other, 0));
+      }
+    }
+  }
+  subject.Filter->SetOutsideModeToDiscard();
+  const vtkIdType all = subject.Filter->GetNumberOfCoveredVoxels();
+  subject.Expect("");
+  VERIFY(subject.Filter->GetNumberOfCoveredVoxels() < all);
+  subject.Filter->SetOutsideModeToExtrapolate();
+  subject.Expect("");
+  subject.Filter->SetOutsideModeToKeep();
+  VERIFY(AreEqual(subject.Expect(""), whole));
+  subject.Filter->ReleaseDeviceMemory();
+  subject.Filter->Modified();
+  VERIFY(AreEqual(subject.Expect(""), whole));
+
+  // Every second voxel, as if it were the volume.
+  subject.Filter->SetSamplingFactor(2);
+  subject.Expect("");
+  VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), 21 * 17 * 15);
+  subject.Filter->SetSamplingFactor(1);
+  VERIFY(AreEqual(subject.Expect(""), whole));
+
+  // A finer output.
+  subject.Filter->SetOutputSpacingModeToCustomSpacing();
+  subject.Filter->SetCustomSpacing(0.5, 0.5, 0.5);
+  subject.Expect("");
+  VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), 83 * 67 * 59);
+}
+
+} // namespace
+
+int TestDeformKeep(int, char*[])
+{
+  TestMisuse();
+  TestAtRest();
+  TestMovedBox();
+  TestNoHoles();
+  TestWarnings();
+  TestHardEdge();
+  TestIncremental();
+  TestCut();
+  TestOtherSettings();
+  return GetExitCode();
+}

@@ -1,0 +1,532 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Links of voxels that are kept outside a deformation mesh: against a search of all faces of its
+// boundary, and for boxes against closed forms.
+#include "ClosestFace.h"
+#include "DeformedBounds.h"
+#include "Error.h"
+#include "FadedMesh.h"
+#include "StaticMapping.h"
+
+#include "TetrahedralMeshes.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+
+using namespace deformvolume;
+using namespace tetrahedralMeshes;
+
+namespace
+{
+
+OutsideVoxels KeepWithin(double fadeDistance)
+{
+  return { OutsideVoxels::Modes::Keep, fadeDistance };
+}
+
+double Fade(double s)
+{
+  return s < 1.0 ? (1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s) : 0.0;
+}
+
+Mesh Join(const Mesh& first, const Mesh& second)
+{
+  Mesh mesh = first;
+  const auto offset = static_cast<std::int32_t>(first.Points.size());
+  mesh.Points.insert(mesh.Points.end(), second.Points.begin(), second.Points.end());
+  for (Tetrahedron tetrahedron : second.Tetrahedra)
+  {
+    for (std::int32_t& node : tetrahedron)
+    {
+      node += offset;
+    }
+    mesh.Tetrahedra.push_back(tetrahedron);
+  }
+  return mesh;
+}
+
+// Without the tetrahedra that have their center in a box.
+Mesh Hollow(Mesh mesh, const glm::dvec3& min, const glm::dvec3& max)
+{
+  const auto isWithin = [&](const Tetrahedron& tetrahedron)
+  {
+    glm::dvec3 center(0.0);
+    for (const std::int32_t node : tetrahedron)
+    {
+      center += 0.25 * mesh.Points[node];
+    }
+    return center.x > min.x && center.y > min.y && center.z > min.z && center.x < max.x &&
+      center.y < max.y && center.z < max.z;
+  };
+  mesh.Tetrahedra.erase(std::remove_if(mesh.Tetrahedra.begin(), mesh.Tetrahedra.end(), isWithin),
+    mesh.Tetrahedra.end());
+  return mesh;
+}
+
+// The least distance from a point to one of a triangle: to its plane if the foot lies within, by
+// areas, else to one of its edges.
+double GetDistance(const glm::dvec3& p, const std::array<glm::dvec3, 3>& t)
+{
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k)
+  {
+    const glm::dvec3 edge = t[(k + 1) % 3] - t[k];
+    const double along = std::clamp(glm::dot(p - t[k], edge) / glm::dot(edge, edge), 0.0, 1.0);
+    least = std::min(least, glm::distance(p, t[k] + along * edge));
+  }
+  const glm::dvec3 normal = glm::normalize(glm::cross(t[1] - t[0], t[2] - t[0]));
+  const glm::dvec3 foot = p - glm::dot(p - t[0], normal) * normal;
+  bool isWithin = true;
+  for (int k = 0; k < 3; ++k)
+  {
+    isWithin = isWithin && glm::dot(glm::cross(t[(k + 1) % 3] - t[k], foot - t[k]), normal) >= 0.0;
+  }
+  return isWithin ? std::min(least, std::abs(glm::dot(p - t[0], normal))) : least;
+}
+
+// Faces that one tetrahedron has, by their nodes.
+std::vector<std::array<std::int32_t, 3>> FindSingle(const Mesh& mesh)
+{
+  std::map<std::array<std::int32_t, 3>, int> counts;
+  for (const Tetrahedron& tetrahedron : mesh.Tetrahedra)
+  {
+    for (int left = 0; left < 4; ++left)
+    {
+      std::array<std::int32_t, 3> face;
+      for (int k = 0; k < 3; ++k)
+      {
+        face[k] = tetrahedron[(left + 1 + k) % 4];
+      }
+      std::sort(face.begin(), face.end());
+      ++counts[face];
+    }
+  }
+  std::vector<std::array<std::int32_t, 3>> faces;
+  for (const auto& [face, count] : counts)
+  {
+    if (count == 1)
+    {
+      faces.push_back(face);
+    }
+  }
+  return faces;
+}
+
+// A mesh as the deformer is given it, with displacements.
+struct Moved
+{
+  Moved(const Mesh& mesh, const StaticMapping& mapping, const std::vector<float>& displacements)
+  {
+    this->Faded.Set(mapping.Faded, mesh.Tetrahedra, mesh.Points.size());
+    this->Faded.Move(displacements.data(), mesh.Points.size(), nullptr);
+  }
+  glm::dvec3 Displace(const VertexLink& link) const
+  {
+    const Tetrahedron& nodes = this->Faded.GetTetrahedra()[link.Tetrahedron];
+    glm::dvec3 sum(0.0);
+    double rest = 1.0;
+    for (int k = 0; k < 4; ++k)
+    {
+      const double weight = k < 3 ? double{ link.Weights[k] } : rest;
+      rest -= weight;
+      sum += weight * GetVector(this->Faded.GetDisplacements().data(), nodes[k]);
+    }
+    return sum;
+  }
+  FadedMesh Faded;
+};
+
+std::vector<float> MakeDisplacements(
+  const Mesh& mesh, const std::function<glm::dvec3(const glm::dvec3&)>& map)
+{
+  std::vector<float> displacements;
+  for (const glm::dvec3& point : mesh.Points)
+  {
+    const glm::dvec3 moved = map(point);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      displacements.push_back(static_cast<float>(moved[axis]));
+    }
+  }
+  return displacements;
+}
+
+void TestSearch()
+{
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> place(-10.0, 10.0);
+  std::uniform_real_distribution<double> size(-3.0, 3.0);
+  CHECK(ClosestFace({}).Find(glm::dvec3(1.0)).Face == -1);
+  for (const int count : { 1, 4, 5, 333 })
+  {
+    std::vector<ClosestFace::Triangle> triangles;
+    for (int i = 0; i < count; ++i)
+    {
+      const glm::dvec3 corner(place(random), place(random), place(random));
+      const double scale = i % 5 == 0 ? 1e-4 : 1.0;
+      const auto next = [&]
+      { return corner + scale * glm::dvec3(size(random), size(random), size(random)); };
+      triangles.push_back({ { corner, next(), next() } });
+      if (i % 7 == 3)
+      {
+        triangles.push_back(triangles[triangles.size() - 2]); // in one place
+      }
+    }
+    const ClosestFace search(triangles);
+    for (int i = 0; i < 500; ++i)
+    {
+      const glm::dvec3 point(
+        1.5 * place(random), 1.5 * place(random), i % 3 == 0 ? 20.0 : place(random));
+      const ClosestFace::Result found = search.Find(point);
+      double least = std::numeric_limits<double>::infinity();
+      for (const ClosestFace::Triangle& triangle : triangles)
+      {
+        least = std::min(least, GetDistance(point, triangle));
+      }
+      CHECK(std::abs(std::sqrt(found.SquaredDistance) - least) <= 1e-12 * (1.0 + least));
+      glm::dvec3 closest(0.0);
+      for (int k = 0; k < 3; ++k)
+      {
+        closest += found.Weights[k] * triangles[found.Face][k];
+        CHECK(found.Weights[k] >= 0.0);
+      }
+      CHECK(std::abs(glm::distance(point, closest) - least) <= 1e-11 * (1.0 + least));
+      // What is looked at first does not matter.
+      const auto nearby = static_cast<std::int32_t>(random() % triangles.size());
+      const ClosestFace::Result again = search.Find(point, nearby);
+      CHECK(again.Face == found.Face && again.SquaredDistance == found.SquaredDistance);
+    }
+  }
+}
+
+void TestAgainstAllFaces()
+{
+  std::mt19937 random(5);
+  const Extent voxels{ { -6, 13, 4, 22, -3, 13 } };
+  const Mesh body = MakeLattice(
+    { 4, 4, 4 }, glm::dvec3(-2.2, 7.1, 0.0), glm::dvec3(7.9, 17.0, 9.2), 0.3, 0.0, random);
+  const Mesh meshes[] = { body,
+    // With a cavity, and a ring.
+    Hollow(body, glm::dvec3(0.0, 9.0, 2.0), glm::dvec3(6.0, 15.0, 7.0)),
+    Hollow(body, glm::dvec3(0.0, 9.0, -9.0), glm::dvec3(6.0, 15.0, 19.0)),
+    // Two bodies, one of which reaches out of the volume.
+    Join(MakeLattice({ 2, 3, 2 }, glm::dvec3(-12.0, 6.3, -1.0), glm::dvec3(-1.5, 13.0, 4.0), 0.0,
+           0.0, random),
+      MakeLattice(
+        { 3, 3, 3 }, glm::dvec3(4.0, 12.3, 3.0), glm::dvec3(9.5, 18.0, 9.0), 0.2, 0.0, random)) };
+  for (const glm::dvec3& spacing :
+    { glm::dvec3(1.0), glm::dvec3(0.7, 2.3, 1.1), glm::dvec3(-5.0, 0.4, 0.9) })
+  {
+    for (const Mesh& mesh : meshes)
+    {
+      const auto single = FindSingle(mesh);
+      const StaticMapping inside = BuildStaticMapping(
+        voxels, spacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links);
+      for (const double fadeDistance : { 0.0, 3.3, 1000.0 })
+      {
+        const StaticMapping all = BuildStaticMapping(voxels, spacing, mesh.Points, mesh.Tetrahedra,
+          KeepWithin(fadeDistance), StaticMappingForm::Automatic);
+        CHECK(all.NumberOfInnerVoxels == inside.NumberOfInnerVoxels);
+        CHECK(all.Boundary.IsEmpty() && all.Runs.Runs.empty());
+        CHECK(all.Faded.GetNumberOfRecords() == 1 + all.Faded.GetFaces().size());
+        CHECK(fadeDistance > 0.0 || all.Faded.GetFaces().empty());
+        std::vector<bool> isUsed(all.Faded.GetFaces().size());
+        for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
+        {
+          const VertexLink& link = all.Links[i];
+          if (inside.Links[i].Tetrahedron >= 0)
+          {
+            CHECK(std::memcmp(&link, &inside.Links[i], sizeof(link)) == 0);
+            continue;
+          }
+          const glm::dvec3 point = spacing * glm::dvec3(GetVoxel(voxels, i));
+          double least = std::numeric_limits<double>::infinity();
+          for (const auto& face : single)
+          {
+            least = std::min(least,
+              GetDistance(point,
+                { { spacing * mesh.Points[face[0]], spacing * mesh.Points[face[1]],
+                  spacing * mesh.Points[face[2]] } }));
+          }
+          const std::int64_t record =
+            link.Tetrahedron - static_cast<std::int64_t>(mesh.Tetrahedra.size());
+          CHECK(record >= 0);
+          const double weight = fadeDistance > 0.0 ? Fade(least / fadeDistance) : 0.0;
+          CHECK(weight > 0.0 || record == 0);
+          if (record <= 0)
+          {
+            CHECK(weight <= 1e-12); // a distance may be FadeDistance up to rounding
+            continue;
+          }
+          isUsed[record - 1] = true;
+          const Tetrahedron nodes = all.Faded.GetRecord(record, mesh.Tetrahedra, 12345);
+          std::array<std::int32_t, 3> sorted{ { nodes[0], nodes[1], nodes[2] } };
+          std::sort(sorted.begin(), sorted.end());
+          CHECK(std::binary_search(single.begin(), single.end(), sorted));
+          CHECK(nodes[3] == 12345);
+          double sum = 0.0;
+          glm::dvec3 closest(0.0);
+          for (int k = 0; k < 3; ++k)
+          {
+            CHECK(link.Weights[k] >= 0.0F);
+            sum += link.Weights[k];
+            closest += double{ link.Weights[k] } * spacing * mesh.Points[nodes[k]];
+          }
+          CHECK(std::abs(sum - weight) <= 1e-6);
+          // Weights of float: relative errors of 2^-24 of places of up to 60 units.
+          CHECK(std::abs(glm::distance(closest / sum, point) - least) <= 2e-5);
+        }
+        CHECK(std::all_of(isUsed.begin(), isUsed.end(), [](bool used) { return used; }));
+      }
+    }
+  }
+}
+
+// A box that is moved as a whole: the closest point is the point clamped to it.
+void TestMovedBox()
+{
+  std::mt19937 random(6);
+  const Extent voxels{ { 0, 30, 0, 24, 0, 20 } };
+  const glm::dvec3 spacing(0.8, 1.3, 2.1);
+  const glm::dvec3 min(10.3, 8.6, 7.2);
+  const glm::dvec3 max(18.4, 15.5, 12.9);
+  const Mesh mesh = MakeLattice({ 4, 3, 3 }, min, max, 0.2, 0.0, random);
+  const glm::dvec3 shift(1.5, -2.25, 0.75);
+  for (const double fadeDistance : { 1.0, 4.0, 9.5 })
+  {
+    const StaticMapping mapping = BuildStaticMapping(voxels, spacing, mesh.Points, mesh.Tetrahedra,
+      KeepWithin(fadeDistance), StaticMappingForm::Links);
+    const Moved moved(
+      mesh, mapping, MakeDisplacements(mesh, [&](const glm::dvec3&) { return shift; }));
+    std::int64_t near = 0;
+    for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
+    {
+      const glm::dvec3 point(GetVoxel(voxels, i));
+      const double distance = glm::length(spacing * (point - glm::clamp(point, min, max)));
+      const double weight = Fade(distance / fadeDistance);
+      const glm::dvec3 displacement = moved.Displace(mapping.Links[i]);
+      CHECK(glm::distance(displacement, weight * shift) <= 1e-6);
+      CHECK(weight > 0.0 || displacement == glm::dvec3(0.0));
+      near += weight > 0.0 && weight < 1.0;
+    }
+    CHECK(near > 100);
+  }
+}
+
+// Bounds hold what is linked, and no more than a block of voxels allows.
+void TestBounds()
+{
+  std::mt19937 random(7);
+  const Extent voxels{ { -4, 30, 3, 28, 0, 33 } };
+  const glm::dvec3 spacing(1.0, 0.9, 1.2);
+  VoxelGrid grid;
+  grid.VertexExtent = voxels;
+  grid.Scale = { { 1.5, 1.0, 0.75 } };
+  const Mesh mesh = MakeLattice(
+    { 4, 4, 4 }, glm::dvec3(3.0, 10.0, 9.0), glm::dvec3(20.0, 22.0, 25.0), 0.2, 0.0, random);
+  std::uniform_real_distribution<double> uniform(-6.0, 6.0);
+  for (const double fadeDistance : { 0.0, 5.0, 40.0 })
+  {
+    const StaticMapping mapping = BuildStaticMapping(voxels, spacing, mesh.Points, mesh.Tetrahedra,
+      KeepWithin(fadeDistance), StaticMappingForm::Links);
+    for (const double factor : { 0.0, 1.0 })
+    {
+      const auto displacements = MakeDisplacements(mesh,
+        [&](const glm::dvec3&)
+        { return factor * glm::dvec3(uniform(random), uniform(random), 4.0 + uniform(random)); });
+      const Moved moved(mesh, mapping, displacements);
+      std::vector<VertexLink> outside = mapping.Links;
+      for (VertexLink& link : outside)
+      {
+        link.Tetrahedron =
+          link.Tetrahedron < static_cast<int>(mesh.Tetrahedra.size()) ? -1 : link.Tetrahedron;
+      }
+      const IndexBounds exact = ComputeDeformedBounds(
+        grid, outside, moved.Faded.GetTetrahedra(), moved.Faded.GetDisplacements().data());
+      const IndexBounds found =
+        mapping.Faded.ComputeBounds(grid, mesh.Tetrahedra, displacements.data());
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        CHECK(found.Min[axis] <= exact.Min[axis] + 1e-9);
+        CHECK(found.Max[axis] >= exact.Max[axis] - 1e-9);
+        CHECK(factor > 0.0 || found.Min[axis] == exact.Min[axis]);
+        CHECK(factor > 0.0 || found.Max[axis] == exact.Max[axis]);
+        CHECK(found.Min[axis] >= exact.Min[axis] - 10.0);
+        CHECK(found.Max[axis] <= exact.Max[axis] + 10.0);
+      }
+    }
+  }
+}
+
+// How many tetrahedra of the sampling mesh with a vertex outside are stretched over 2 voxels.
+std::int64_t CountStretched(const Extent& voxels, const StaticMapping& mapping, const Moved& moved,
+  std::size_t numberOfTetrahedra)
+{
+  static const int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+  std::int64_t count = 0;
+  const std::int64_t width = GetSize(voxels, 0);
+  const std::int64_t plane = width * GetSize(voxels, 1);
+  for (std::int64_t z = 0; z + 1 < GetSize(voxels, 2); ++z)
+  {
+    for (std::int64_t y = 0; y + 1 < GetSize(voxels, 1); ++y)
+    {
+      for (std::int64_t x = 0; x + 1 < width; ++x)
+      {
+        for (const auto& tetrahedron : split)
+        {
+          bool isOutside = false;
+          glm::dvec3 low(1e9);
+          glm::dvec3 high(-1e9);
+          for (const int vertex : tetrahedron)
+          {
+            const std::int64_t i = x + ((vertex ^ (voxels[0] + x)) & 1);
+            const std::int64_t j = y + ((vertex >> 2 ^ (voxels[2] + y)) & 1);
+            const std::int64_t k = z + ((vertex >> 1 ^ (voxels[4] + z)) & 1);
+            const VertexLink& link = mapping.Links[k * plane + j * width + i];
+            isOutside = isOutside || link.Tetrahedron >= static_cast<int>(numberOfTetrahedra);
+            low = glm::min(low, moved.Displace(link));
+            high = glm::max(high, moved.Displace(link));
+          }
+          const glm::dvec3 size = high - low;
+          count += isOutside && std::max({ size.x, size.y, size.z }) > 2.0 ? 1 : 0;
+        }
+      }
+    }
+  }
+  return count;
+}
+
+void TestStretched()
+{
+  std::mt19937 random(8);
+  const Extent voxels{ { 1, 40, -2, 20, 3, 22 } };
+  const Mesh left = MakeLattice(
+    { 3, 3, 3 }, glm::dvec3(8.0, 3.0, 8.0), glm::dvec3(16.5, 15.0, 17.0), 0.0, 0.0, random);
+  const Mesh right = MakeLattice(
+    { 3, 3, 3 }, glm::dvec3(22.5, 3.0, 8.0), glm::dvec3(31.0, 15.0, 17.0), 0.0, 0.0, random);
+  const Mesh two = Join(left, right);
+  const auto apart = [](double distance)
+  {
+    return [=](const glm::dvec3& point)
+    { return glm::dvec3(point.x < 20.0 ? -distance : distance, 0.0, 0.0); };
+  };
+  const auto expect =
+    [&](const Mesh& mesh, double fadeDistance, const auto& map, bool isAny, const Extent& extent)
+  {
+    const StaticMapping mapping = BuildStaticMapping(extent, glm::dvec3(1.0), mesh.Points,
+      mesh.Tetrahedra, KeepWithin(fadeDistance), StaticMappingForm::Links);
+    const auto displacements = MakeDisplacements(mesh, map);
+    const std::int64_t expected =
+      CountStretched(extent, mapping, Moved(mesh, mapping, displacements), mesh.Tetrahedra.size());
+    const std::int64_t found = mapping.Faded.CountStretched(mesh.Tetrahedra, displacements.data());
+    CHECK((expected > 0) == isAny);
+    if (mapping.Faded.IsCountEstimated())
+    {
+      CHECK(std::abs(static_cast<double>(found - expected)) < 0.05 * static_cast<double>(expected));
+    }
+    else
+    {
+      CHECK(found == expected);
+    }
+    return mapping.Faded.IsCountEstimated();
+  };
+  // Between two bodies, where each has half of the distance.
+  expect(two, 20.0, apart(4.0), true, voxels);
+  expect(two, 20.0, apart(0.9), false, voxels);
+  // Too far from each other to meet.
+  expect(two, 3.0, apart(1.5), false, voxels);
+  // One that moves as a whole stretches nothing.
+  expect(left, 20.0, apart(4.0), false, voxels);
+  // Across a ring that opens.
+  const Mesh ring = Hollow(MakeLattice({ 5, 7, 3 }, glm::dvec3(8.0, -1.0, 8.0),
+                             glm::dvec3(24.0, 19.0, 17.0), 0.0, 0.0, random),
+    glm::dvec3(11.9, 2.3, -99.0), glm::dvec3(20.1, 15.7, 99.0));
+  expect(
+    ring, 20.0, [](const glm::dvec3& p) { return glm::dvec3(0.4 * (p.x - 16.0), 0.0, 0.0); }, true,
+    voxels);
+  // A hard edge; and one of so many cells that only some are looked at.
+  CHECK(!expect(left, 0.0, apart(3.0), true, voxels));
+  CHECK(expect(MakeLattice({ 2, 2, 2 }, glm::dvec3(3.0), glm::dvec3(60.5), 0.0, 0.0, random), 0.0,
+    apart(3.0), true, { { 0, 64, 0, 64, 0, 64 } }));
+}
+
+// Tetrahedra that get other nodes in the same places take the records with them.
+void TestSplit()
+{
+  std::mt19937 random(10);
+  const Extent voxels{ { 0, 20, 0, 20, 0, 20 } };
+  Mesh mesh = MakeLattice(
+    { 3, 3, 3 }, glm::dvec3(6.0, 6.2, 5.8), glm::dvec3(14.1, 13.0, 14.0), 0.1, 0.0, random);
+  const StaticMapping mapping = BuildStaticMapping(voxels, glm::dvec3(1.0), mesh.Points,
+    mesh.Tetrahedra, KeepWithin(5.0), StaticMappingForm::Links);
+  FadedMesh faded;
+  faded.Set(mapping.Faded, mesh.Tetrahedra, mesh.Points.size());
+  const auto still = static_cast<std::int32_t>(faded.GetNumberOfNodes()) - 1;
+  std::vector<TetrahedronChange> changes;
+  for (std::size_t t = 0; t < mesh.Tetrahedra.size(); t += 3)
+  {
+    TetrahedronChange change;
+    change.Number = static_cast<std::int32_t>(t);
+    change.Before = mesh.Tetrahedra[t];
+    mesh.Points.push_back(mesh.Points[mesh.Tetrahedra[t][1]]);
+    mesh.Tetrahedra[t][1] = static_cast<std::int32_t>(mesh.Points.size()) - 1;
+    change.After = mesh.Tetrahedra[t];
+    changes.push_back(change);
+  }
+  const std::vector<Tetrahedron> before = faded.GetTetrahedra();
+  const std::vector<TetrahedronChange> all = faded.Change(mapping.Faded, changes);
+  CHECK(all.size() > changes.size());
+  std::vector<Tetrahedron> followed = before;
+  for (const TetrahedronChange& change : all)
+  {
+    CHECK(followed[change.Number] == change.Before && change.After != change.Before);
+    followed[change.Number] = change.After;
+  }
+  CHECK(followed == faded.GetTetrahedra());
+  for (std::size_t record = 0; record < mapping.Faded.GetNumberOfRecords(); ++record)
+  {
+    CHECK(followed[mesh.Tetrahedra.size() + record] ==
+      mapping.Faded.GetRecord(record, mesh.Tetrahedra, still));
+  }
+  CHECK(faded.HasRoom(mesh.Points.size()));
+  CHECK(!faded.HasRoom(faded.GetNumberOfNodes()));
+}
+
+void TestMisuse()
+{
+  std::mt19937 random(11);
+  const Mesh mesh = MakeLattice({ 2, 2, 2 }, glm::dvec3(1.0), glm::dvec3(3.0), 0.0, 0.0, random);
+  bool isRefused = false;
+  try
+  {
+    BuildStaticMapping({ { 0, 5, 0, 5, 0, 5 } }, glm::dvec3(1.0), mesh.Points, mesh.Tetrahedra,
+      KeepWithin(1.0), StaticMappingForm::Runs);
+  }
+  catch (const Error& error)
+  {
+    isRefused = std::string(error.what()).find("kept by runs") != std::string::npos;
+  }
+  CHECK(isRefused);
+  // Without a tetrahedron all voxels stay.
+  const StaticMapping nothing = BuildStaticMapping(
+    { { 0, 2, 0, 2, 0, 2 } }, glm::dvec3(1.0), {}, {}, KeepWithin(1.0), StaticMappingForm::Links);
+  CHECK(nothing.Links.size() == 27 && nothing.Links[13].Tetrahedron == 0);
+}
+
+} // namespace
+
+int TestFadedLinks(int, char*[])
+{
+  TestMisuse();
+  TestSearch();
+  TestAgainstAllFaces();
+  TestMovedBox();
+  TestBounds();
+  TestStretched();
+  TestSplit();
+  return GetResult();
+}
