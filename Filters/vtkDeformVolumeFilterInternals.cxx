@@ -224,8 +224,7 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSourceAtRest(const Im
   source.DisplacementScale = 1.0;
   // Both kinds of fields leave the volume where it is. The resampler that looks up needs an inverse
   // one.
-  source.FieldIsInverse = this->Self->Resampler == MESH_RASTERIZATION ||
-    (this->Self->Resampler == AUTOMATIC && this->Self->Interpolation == CUBIC_INTERPOLATION);
+  source.FieldIsInverse = this->Self->Resampler == MESH_RASTERIZATION;
   source.Choice = source.FieldIsInverse ? "at rest inverse" : "at rest";
   return source;
 }
@@ -246,18 +245,13 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
     default:
       break;
   }
-  if (this->Self->Interpolation == CUBIC_INTERPOLATION)
-  {
-    wish.Interpolation = deformvolume::Interpolation::Cubic;
-  }
   wish.Outside = this->GetOutside();
   wish.HasSmoothCut = deformvolume::HasCut(volume);
   if (wish.HasSmoothCut && this->Self->GetNumberOfInputConnections(1) == 0 &&
     this->State->Deformation.IsInverseField())
   {
-    throw Error("The resampler MESH_RASTERIZATION, which cubic interpolation needs, cannot do "
-                "smooth cuts. Set Resampler to AUTOMATIC and Interpolation to "
-                "LINEAR_INTERPOLATION, or SmoothCut of vtkCutVolume to off.");
+    throw Error("The resampler MESH_RASTERIZATION cannot do smooth cuts. Set SmoothCut of "
+                "vtkCutVolume to off, or Resampler to EXACT.");
   }
   const deformvolume::Resampling method =
     deformvolume::ChooseResampler(wish, this->State->Deformation,

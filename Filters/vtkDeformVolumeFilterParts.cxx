@@ -76,10 +76,9 @@ bool vtkDeformVolumeFilter::vtkInternals::CanTakePart(vtkInformation* volumeInfo
   // have none.
   const bool isCut =
     this->Self->SamplingFactor == 1 && (this->HadCut || deformvolume::IsCutAnnounced(volumeInfo));
-  // The other resamplers want the volume whole, and so do voxels that follow the nearest
+  // The other resampler wants the volume whole, and so do voxels that follow the nearest
   // tetrahedron of a mesh, wherever it may be.
-  const bool exact = this->Self->Resampler == EXACT ||
-    (this->Self->Resampler == AUTOMATIC && this->Self->Interpolation != CUBIC_INTERPOLATION);
+  const bool exact = this->Self->Resampler != MESH_RASTERIZATION;
   const bool local = this->State->Deformation.IsField() ? !this->State->Deformation.IsInverseField()
                                                         : this->Self->OutsideMode == DISCARD;
   // Data that are there already cost nothing.

@@ -42,6 +42,7 @@ RASTER_GRAPHICS = ("TestMeshRasterization@gpu-like", "-*IdentityAndWholeShifts*:
 DEVICE_OUTPUT = ("TestDeviceOutput@gpu-like", "*")
 GRAPHICS = ("TestGraphicsDevice@gpu-like-no-double", "*")
 STAGED = ("TestStagedCopies@gpu-like", "Staged.*")
+CUBIC = ("TestCubic", "*")
 CUTTING = ("TestCutting", "*")
 SMOOTH = ("TestSmoothCuts,TestResampling", "SmoothCuts*:*_CutAtRandom:*_Opened:*_Overlapping")
 EDITS = ("TestMaskEditor", "*")
@@ -106,6 +107,15 @@ MUTATIONS = {
     "winners-not-awaited": ("Kernels/Resampling/ExactResampler.cxx",
                             "this->Device.GetQueue().finish(); // it is read in another queue", "", [FOLDS]),
     "clip": ("Kernels/Resampling/Resampling.cl", "CLIP_TOLERANCE (1.0f / 64.0f)", "CLIP_TOLERANCE 0.0f", [LARGE]),
+    "cubic-interior": ("Kernels/Resampling/Resampling.cl", "if (cell->State.Interior != 255)", "if (!cell->State.Interior)",
+        [CUBIC]),
+    "cubic-boundary": ("Kernels/Resampling/Resampling.cl", "& DEFORMVOLUME_CELL_AT_BOUNDARY)", "& DEFORMVOLUME_CELL_CROSSED)",
+        [CUBIC]),
+    "cubic-cut": ("Kernels/Resampling/Resampling.cl", "for (int i = 0; i < 27; ++i)", "for (int i = 13; i < 14; ++i)",
+        [CUBIC]),
+    "cubic-last": ("Kernels/Resampling/IncrementalOutput.cxx", "this->LastInterpolation == request.Interpolation",
+        "true", [MASKS]),
+    "cubic-axes": ("Kernels/Resampling/SampleStoring.cl", "axis == 0 ? 0 : 3 - axis", "axis", [CUBIC]),
     "launch-end": ("Kernels/Resampling/Resampling.cl", "z <= p.LayersEnd + 1", "z <= p.LayersEnd", [MEMORY]),
     "launch-begin": ("Kernels/Resampling/Resampling.cl", "z >= max(p.LayersBegin - 1, 0)", "z >= p.LayersBegin",
                      [MEMORY]),

@@ -178,7 +178,6 @@ void CheckDeformation(const Options& options)
 void CheckResampler(const Options& options, bool isForwardField)
 {
   const bool isExact = options.Resampler == "exact";
-  const bool isCubic = options.Interpolation == "cubic";
   if (options.FieldIsInverse)
   {
     if (isExact)
@@ -193,13 +192,9 @@ void CheckResampler(const Options& options, bool isForwardField)
     }
     return;
   }
-  if (isCubic && isExact)
+  if (options.Resampler == "mesh-rasterization")
   {
-    throw UsageError("--interpolation cubic goes with --resampler mesh-rasterization only");
-  }
-  if (isCubic || options.Resampler == "mesh-rasterization")
-  {
-    const std::string what = isCubic ? "--interpolation cubic" : "--resampler mesh-rasterization";
+    const std::string what = "--resampler mesh-rasterization";
     if (isForwardField)
     {
       throw UsageError(what +

@@ -404,8 +404,8 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program
     .add_option("--interpolation", options.Interpolation,
-      "linear; nearest, which mixes no values, as --labels; or cubic, which goes with "
-      "mesh-rasterization only")
+      "linear; nearest, which mixes no values, as --labels; or cubic, over 64 voxels, and linear "
+      "where some of these are missing or cut off")
     ->capture_default_str()
     ->check(CLI::IsMember({ "nearest", "linear", "cubic" }))
     ->type_name("NAME")

@@ -16,7 +16,6 @@ namespace deformvolume
 struct ResamplerWish
 {
   std::optional<Resampling> Method; // none: the choice is free
-  deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
   OutsideVoxels Outside;
   bool HasSmoothCut = false; // of the volume, which Exact alone knows
 };
@@ -25,12 +24,9 @@ struct ResamplerWish
 /// where what is asked for does not go together.
 ///
 /// Where the choice is free: Exact, because its values are those of the deformed sampling mesh,
-/// except
-/// - where the interpolation is cubic, which MeshRasterization alone has;
-/// - where the memory does not suffice for Exact, whose sampling mesh takes some 20 bytes a voxel,
-/// but
-///   does for MeshRasterization, and that can do the deformation: a mesh, with what is outside
-///   discarded, and without a smooth cut.
+/// except where the memory does not suffice for Exact, whose sampling mesh takes some 20 bytes a
+/// voxel, but does for MeshRasterization, and that can do the deformation: a mesh, with
+/// what is outside discarded, and without a smooth cut.
 Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deformation,
   const std::function<bool(Resampling)>& fits);
 

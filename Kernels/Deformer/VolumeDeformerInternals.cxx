@@ -98,10 +98,6 @@ void VolumeDeformer::Internals::Parts::CheckRequest(const DeformRequest& request
     throw Error("The resampler MeshRasterization knows no smooth cuts, since it looks at the "
                 "deformation mesh only. Use the resampler Exact, or call SetCut with null.");
   }
-  if (!rasterized && request.Interpolation != Interpolation::Linear)
-  {
-    throw Error("Cubic interpolation is there only with the resampler MeshRasterization.");
-  }
   if (rasterized && !this->Rasterizer.IsReady())
   {
     throw Error("The resampler MeshRasterization needs a deformation mesh with its rest positions: "

@@ -43,7 +43,7 @@ cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<Vo
       (tapArrays.empty() ? "" : "\n#define HAS_TAP_ARRAYS") + "\n#define LANE_ARRAYS(DO)" +
       laneArrays + "\n#define TAP_ARRAYS(DO)" + tapArrays + "\n" + MultiplyAdd_cl +
       GetTileText(!processor) + PointInTetrahedron_cl + LaneVectors_cl + LaneSampling_cl +
-      RestSampling_cl +
+      VoxelTaps_cl + RestSampling_cl +
       (field ? ProgramText(FieldLookup_cl)
              : ProgramText(RestCoordinates_cl) + MeshRasterization_cl),
     KernelOptions);

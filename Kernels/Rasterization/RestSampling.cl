@@ -4,16 +4,13 @@
 // where it is not.
 //
 // Rest coordinates are integers: the index from the volume's first voxel times 2^FractionBits.
-// Linear interpolation is over the eight voxels of the cell, cubic interpolation (Catmull-Rom) over
-// 64, which repeat those of the volume's border beyond it. Voxels without weight are not read into
-// the sum: a NaN stays within its cells, and a voxel's own place gives its bits.
+// Interpolation is that of VoxelTaps.cl, linear or cubic; the 64 voxels of the latter repeat those
+// of the volume's border beyond it.
 //
 // Arrays of one component, linear, and of float or integers of 8 or 16 bits go by lanes
 // (LaneSampling.cl). All else goes voxel by voxel in REAL.
 //
-// What the host puts in front of this text, besides that of LaneSampling.cl:
-//   REAL                  type of the interpolation: double where the device has it, else float
-//   CUBIC                 whether the interpolation is cubic
+// What the host puts in front of this text, besides that of LaneSampling.cl and VoxelTaps.cl:
 //   HAS_MASKS             1 where the volume has masks or boundary distances, else 0
 //   STRETCH                 neighbouring voxels that a work-item takes: 32 on processors, else 1
 //   ARRAY_PARAMETERS      kernel parameters: source and target of each array
@@ -21,29 +18,7 @@
 //   HAS_LANE_ARRAYS, HAS_TAP_ARRAYS  defined where there are such
 //   STORE_ARRAY_i         statement that stores array i at a sample
 
-#define TAPS_PER_AXIS (CUBIC ? 4 : 2)
-#define TAPS (CUBIC ? 64 : 8)
-
-// The voxels on an axis that a coordinate lies between, and their weights; those without weight are
-// left out.
-typedef struct
-{
-  int Voxels[TAPS_PER_AXIS];
-  REAL Weights[TAPS_PER_AXIS];
-  int Count;
-  int Nearest;
-} AxisTaps;
-
-static void AddTap(AxisTaps* taps, int voxel, REAL weight)
-{
-  if (weight != 0)
-  {
-    taps->Voxels[taps->Count] = voxel;
-    taps->Weights[taps->Count++] = weight;
-  }
-}
-
-static AxisTaps MakeAxisTaps(int rest, int bits, int size)
+static AxisTaps MakeAxisTaps(int rest, int bits, int size, int* nearest)
 {
   const int voxel = min(rest >> bits, size - 2);
   const int fraction = rest - (voxel << bits);
@@ -51,19 +26,14 @@ static AxisTaps MakeAxisTaps(int rest, int bits, int size)
   const REAL f = (REAL)fraction / (REAL)whole;
   AxisTaps taps;
   taps.Count = 0;
-  taps.Nearest = voxel + (2 * (long)fraction > whole);
+  *nearest = voxel + (2 * (long)fraction > whole);
 #if CUBIC
   if (fraction == 0 || fraction == whole)
   {
     AddTap(&taps, voxel + (fraction != 0), 1);
     return taps;
   }
-  AddTap(&taps, max(voxel - 1, 0), MULTIPLY_ADD_REAL(2 - f, f, (REAL)-1) * f / 2);
-  AddTap(
-    &taps, voxel, MULTIPLY_ADD_REAL(MULTIPLY_ADD_REAL((REAL)3, f, (REAL)-5) * f, f, (REAL)2) / 2);
-  AddTap(&taps, voxel + 1,
-    MULTIPLY_ADD_REAL(MULTIPLY_ADD_REAL((REAL)-3, f, (REAL)4), f, (REAL)1) * f / 2);
-  AddTap(&taps, min(voxel + 2, size - 1), (f - 1) * f * f / 2);
+  AddCubicTaps(&taps, max(voxel - 1, 0), voxel, min(voxel + 2, size - 1), f);
 #else
   AddTap(&taps, voxel, 1 - f);
   AddTap(&taps, voxel + 1, f);
@@ -75,76 +45,24 @@ static AxisTaps MakeAxisTaps(int rest, int bits, int size)
 typedef struct
 {
   size_t Target;
-  size_t Sources[TAPS]; // voxels of the volume
-  REAL Weights[TAPS];
-  int Count;
+  VoxelTaps Taps;
   size_t Nearest;
 } Sample;
 
 static void MakeSample(const int* rest, Sample* s, const RasterParameters* p)
 {
-  const AxisTaps x = MakeAxisTaps(rest[0], p->FractionBits[0], p->Size[0]);
-  const AxisTaps y = MakeAxisTaps(rest[1], p->FractionBits[1], p->Size[1]);
-  const AxisTaps z = MakeAxisTaps(rest[2], p->FractionBits[2], p->Size[2]);
-  s->Count = 0;
-  for (int k = 0; k < z.Count; ++k)
-  {
-    for (int j = 0; j < y.Count; ++j)
-    {
-      const size_t row = ((size_t)z.Voxels[k] * p->Size[1] + y.Voxels[j]) * p->Size[0];
-      const REAL weight = z.Weights[k] * y.Weights[j];
-      for (int i = 0; i < x.Count; ++i)
-      {
-        s->Sources[s->Count] = row + x.Voxels[i];
-        s->Weights[s->Count++] = weight * x.Weights[i];
-      }
-    }
-  }
-  s->Nearest = ((size_t)z.Nearest * p->Size[1] + y.Nearest) * p->Size[0] + x.Nearest;
+  int nearest[3];
+  const AxisTaps x = MakeAxisTaps(rest[0], p->FractionBits[0], p->Size[0], nearest);
+  const AxisTaps y = MakeAxisTaps(rest[1], p->FractionBits[1], p->Size[1], nearest + 1);
+  const AxisTaps z = MakeAxisTaps(rest[2], p->FractionBits[2], p->Size[2], nearest + 2);
+  JoinTaps(&x, &y, &z, p->Size, &s->Taps);
+  s->Nearest = ((size_t)nearest[2] * p->Size[1] + nearest[1]) * p->Size[0] + nearest[0];
 }
 
 #define STORE_LINEAR(SOURCE, TARGET, COMPONENTS, CONVERT)                                          \
-  for (int c = 0; c < COMPONENTS; ++c)                                                             \
-  {                                                                                                \
-    if (s.Count == 1)                                                                              \
-    {                                                                                              \
-      TARGET[s.Target * COMPONENTS + c] = SOURCE[s.Sources[0] * COMPONENTS + c];                   \
-    }                                                                                              \
-    else                                                                                           \
-    {                                                                                              \
-      REAL sum = 0;                                                                                \
-      for (int k = 0; k < s.Count; ++k)                                                            \
-      {                                                                                            \
-        sum = MULTIPLY_ADD_REAL(                                                                   \
-          s.Weights[k], (REAL)SOURCE[s.Sources[k] * COMPONENTS + c], sum);                         \
-      }                                                                                            \
-      TARGET[s.Target * COMPONENTS + c] = CONVERT(sum);                                            \
-    }                                                                                              \
-  }
-
-// Integers of 64 bits do not fit into REAL: what is interpolated is the difference to the first
-// voxel, which is exact wherever the values are near to each other. A cubic sum may leave the range
-// of the type: it is added where no overflow is possible.
+  STORE_TAPS(s.Taps, SOURCE, TARGET, s.Target, COMPONENTS, CONVERT)
 #define STORE_LINEAR_64(SOURCE, TARGET, COMPONENTS, TYPE, CONVERT)                                 \
-  for (int c = 0; c < COMPONENTS; ++c)                                                             \
-  {                                                                                                \
-    const TYPE first = SOURCE[s.Sources[0] * COMPONENTS + c];                                      \
-    REAL sum = 0;                                                                                  \
-    REAL difference = 0;                                                                           \
-    int near = 1;                                                                                  \
-    for (int k = 0; k < s.Count; ++k)                                                              \
-    {                                                                                              \
-      const TYPE other = SOURCE[s.Sources[k] * COMPONENTS + c];                                    \
-      near &= abs_diff(other, first) < (1UL << 58);                                                \
-      difference = MULTIPLY_ADD_REAL(                                                              \
-        s.Weights[k], (REAL)(long)((ulong)other - (ulong)first), difference);                      \
-      sum = MULTIPLY_ADD_REAL(s.Weights[k], (REAL)other, sum);                                     \
-    }                                                                                              \
-    const TYPE step = (TYPE)abs(convert_long_rte(near ? difference : 0));                          \
-    TARGET[s.Target * COMPONENTS + c] = !near ? CONVERT(sum)                                       \
-      : difference < 0 ? sub_sat(first, step)                                                      \
-                       : add_sat(first, step);                                                     \
-  }
+  STORE_TAPS_64(s.Taps, SOURCE, TARGET, s.Target, COMPONENTS, TYPE, CONVERT)
 
 #define STORE_NEAREST(SOURCE, TARGET, COMPONENTS)                                                  \
   for (int c = 0; c < COMPONENTS; ++c)                                                             \
@@ -154,8 +72,8 @@ static void MakeSample(const int* rest, Sample* s, const RasterParameters* p)
 
 typedef struct
 {
-  __global const uchar* Active;  // a byte a cell of the volume, bit i = its tetrahedron i
-  __global const uchar* Blanked; // a byte a voxel
+  __global const uchar* Active;    // a byte a cell of the volume, bit i = its tetrahedron i
+  __global const uchar* Blanked;   // a byte a voxel
   __global const float* Distances; // to the boundary, a float a voxel
 } VolumeMasks;
 
@@ -168,7 +86,8 @@ static void LoadRest(__local const int* rests, int x, int* rest)
 }
 
 #if HAS_MASKS
-// Whether a point in a tetrahedron of a cell lies on the far side of the boundary. mirror: DEFORMVOLUME_MIRROR of the cell.
+// Whether a point in a tetrahedron of a cell lies on the far side of the boundary. mirror:
+// DEFORMVOLUME_MIRROR of the cell.
 static int IsBeyondBoundary(__global const float* distances, const int* cell, int mirror, int t,
   const long* weights, const RasterParameters* p)
 {
@@ -177,14 +96,15 @@ static int IsBeyondBoundary(__global const float* distances, const int* cell, in
   {
     const int v = Tetrahedra[t][k] ^ mirror;
     const size_t voxel =
-      ((size_t)(cell[2] + (v >> 1 & 1)) * p->Size[1] + cell[1] + (v >> 2)) * p->Size[0] + cell[0] + (v & 1);
+      ((size_t)(cell[2] + (v >> 1 & 1)) * p->Size[1] + cell[1] + (v >> 2)) * p->Size[0] + cell[0] +
+      (v & 1);
     sum = weights[k] ? MULTIPLY_ADD_REAL((REAL)weights[k], (REAL)distances[voxel], sum) : sum;
   }
   return sum < 0;
 }
 
-// Whether an active tetrahedron of the sampling mesh holds a rest coordinate, and on the near side of the boundary: on
-// faces, edges and vertices that several share, one of them suffices.
+// Whether an active tetrahedron of the sampling mesh holds a rest coordinate, and on the near side
+// of the boundary: on faces, edges and vertices that several share, one of them suffices.
 static int IsThere(VolumeMasks masks, const int* rest, const RasterParameters* p)
 {
   int cell[3];
@@ -207,7 +127,8 @@ static int IsThere(VolumeMasks masks, const int* rest, const RasterParameters* p
     const int tetrahedra = p->HasActive
       ? masks.Active[((size_t)c[2] * (p->Size[1] - 1) + c[1]) * (p->Size[0] - 1) + c[0]]
       : DEFORMVOLUME_ALL_TETRAHEDRA;
-    const int mirror = DEFORMVOLUME_MIRROR(p->First[0] + c[0], p->First[1] + c[1], p->First[2] + c[2]);
+    const int mirror =
+      DEFORMVOLUME_MIRROR(p->First[0] + c[0], p->First[1] + c[1], p->First[2] + c[2]);
     long point[3];
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -233,9 +154,9 @@ static int IsBlanked(__global const uchar* blanked, const int* rest, const Raste
 {
   Sample s;
   MakeSample(rest, &s, p);
-  for (int k = 0; k < s.Count; ++k)
+  for (int k = 0; k < s.Taps.Count; ++k)
   {
-    if (blanked[s.Sources[k]])
+    if (blanked[s.Taps.Sources[k]])
     {
       return 1;
     }
@@ -299,8 +220,9 @@ static uint SelectSources(
   }
 #define STORE_VALUES(NUMBER, TYPE, COMPONENTS) STORE_ARRAY_##NUMBER
 
-// Always inlined: PoCL 3.1 to 6.0 lose what static functions write that are called with a local array of a kernel. (LLVM
-// puts the array's address into the function, and PoCL then replaces the array in the kernel alone.)
+// Always inlined: PoCL 3.1 to 6.0 lose what static functions write that are called with a local
+// array of a kernel. (LLVM puts the array's address into the function, and PoCL then replaces the
+// array in the kernel alone.)
 static __attribute__((always_inline)) void SampleTile(VoxelBox tile, const int* origin,
   __local const int* rests, __local const uint* covered, __global const ulong* backgrounds,
   __global char* coverage, const RasterParameters* p ARRAY_PARAMETERS)
@@ -363,8 +285,8 @@ static __attribute__((always_inline)) void SampleTile(VoxelBox tile, const int* 
   }
 }
 
-// Counts what a tile covers, and tells whether tetrahedra overlap there, in the counters of the tile.
-// By one work-item, when all rows are there.
+// Counts what a tile covers, and tells whether tetrahedra overlap there, in the counters of the
+// tile. By one work-item, when all rows are there.
 static inline void CountTile(
   __local const uint* covered, uint overlaps, __global uint* tileCounters)
 {

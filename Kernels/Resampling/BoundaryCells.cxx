@@ -45,9 +45,10 @@ cl::Program GetBoundaryProgram(
   OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool coverageBits, bool serial)
 {
   return context.GetProgram(GetSamplingMeshText() + RasterParameters_h +
-      MakeArrayText(context, arrays) + "#define COVERAGE_IS_BITS " + (coverageBits ? "1" : "0") +
-      "\n#define ROWS_AT_ONCE " + (serial ? "DEFORMVOLUME_TILE_ROWS\n" : "1\n") + MultiplyAdd_cl +
-      GetTileText(false) + PointInTetrahedron_cl + SampleStoring_cl + BoundaryCells_cl,
+      MakeArrayText(context, arrays) + "#define CUBIC 0\n#define COVERAGE_IS_BITS " +
+      (coverageBits ? "1" : "0") + "\n#define ROWS_AT_ONCE " +
+      (serial ? "DEFORMVOLUME_TILE_ROWS\n" : "1\n") + MultiplyAdd_cl + GetTileText(false) +
+      PointInTetrahedron_cl + SampleStoring_cl + BoundaryCells_cl,
     KernelOptions);
 }
 

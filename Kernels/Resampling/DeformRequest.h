@@ -39,8 +39,10 @@ enum class Resampling
 enum class Interpolation
 {
   Linear,
-  /// Catmull-Rom, over four voxels on each axis, clamped to the range of integer types. Only with
-  /// MeshRasterization.
+  /// Catmull-Rom, over four voxels on each axis, clamped to the range of integer types. With the
+  /// exact methods at the rest coordinate that a sample has in its tetrahedron, where all 64 voxels
+  /// are there and no cut or boundary passes between them, and linear elsewhere; not with
+  /// ExactByLanes and ExactByColumns.
   Cubic
 };
 

@@ -68,8 +68,15 @@ ExactPasses::ExactPasses(
 {
 }
 
-ResamplingForm ExactPasses::ChooseForm(Resampling method, const OutputSlab& output)
+ResamplingForm ExactPasses::ChooseForm(const DeformRequest& request, const OutputSlab& output)
 {
+  const Resampling method = request.Method;
+  const bool isCubic = request.Interpolation == Interpolation::Cubic;
+  if (isCubic && (method == Resampling::ExactByLanes || method == Resampling::ExactByColumns))
+  {
+    throw Error("The resampling by lanes or columns interpolates linearly only. Use the method "
+                "Exact, or the interpolation Linear.");
+  }
   const bool fits = output.FitsLanes();
   const bool hasVectors = this->Device.GetDevice().HasVectors;
   if ((method == Resampling::ExactByLanes || method == Resampling::ExactByColumns) && !fits)
@@ -90,7 +97,7 @@ ResamplingForm ExactPasses::ChooseForm(Resampling method, const OutputSlab& outp
     throw Error("The resampling by columns needs more local memory than the device \"" +
       this->Device.GetDevice().Name + "\" has.");
   }
-  if (!fits || method == Resampling::ExactByCell)
+  if (!fits || isCubic || method == Resampling::ExactByCell)
   {
     return ResamplingForm::Cells;
   }
@@ -118,7 +125,8 @@ std::size_t ExactPasses::GetNumberOfLaunches() const
   return static_cast<std::size_t>((this->Volume.GetSize(2) + layers - 1) / layers);
 }
 
-cl::Kernel ExactPasses::MakeKernel(ResamplingForm form, const OutputSlab& output, int pass)
+cl::Kernel ExactPasses::MakeKernel(
+  const DeformRequest& request, ResamplingForm form, const OutputSlab& output, int pass)
 {
   OpenCLContext& context = this->Device.GetContext();
   const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
@@ -135,7 +143,8 @@ cl::Kernel ExactPasses::MakeKernel(ResamplingForm form, const OutputSlab& output
   return cl::Kernel(GetResamplingProgram(context, this->Source.GetMappingForm(), arrays,
                       { form, wideKeys, output.HasCoverageBits(), this->Volume.HasCut(),
                         (form == ResamplingForm::Columns || form == ResamplingForm::Left) &&
-                          pass == DEFORMVOLUME_PASS_DIRECT }),
+                          pass == DEFORMVOLUME_PASS_DIRECT,
+                        request.Interpolation == Interpolation::Cubic }),
     GetKernelName(form));
 }
 
@@ -346,8 +355,8 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
     return;
   }
   const std::vector<cl_uint>& list = bricks ? *bricks : all;
-  const ResamplingForm form = this->ChooseForm(request.Method, output);
-  cl::Kernel kernel = this->MakeKernel(form, output, pass);
+  const ResamplingForm form = this->ChooseForm(request, output);
+  cl::Kernel kernel = this->MakeKernel(request, form, output, pass);
   this->SendBricks(list);
   if (form == ResamplingForm::Columns)
   {
@@ -376,8 +385,8 @@ void ExactPasses::RunColumns(const DeformRequest& request, const OutputSlab& out
   const int pass = first.Parameters.Pass;
   std::array<std::pair<ResamplingForm, cl::Kernel>, 3> kernels{ {
     { ResamplingForm::Columns, columns },
-    { ResamplingForm::Left, this->MakeKernel(ResamplingForm::Left, output, pass) },
-    { ResamplingForm::Queue, this->MakeKernel(ResamplingForm::Queue, output, pass) },
+    { ResamplingForm::Left, this->MakeKernel(request, ResamplingForm::Left, output, pass) },
+    { ResamplingForm::Queue, this->MakeKernel(request, ResamplingForm::Queue, output, pass) },
   } };
   for (auto& [form, kernel] : kernels)
   {
@@ -414,7 +423,7 @@ void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& 
     left += static_cast<std::uint64_t>(cell.Pieces);
   }
   this->Launched.Expect(left / DEFORMVOLUME_PIECES + 1);
-  cl::Kernel kernel = this->MakeKernel(ResamplingForm::LargeCells, output, pass);
+  cl::Kernel kernel = this->MakeKernel(request, ResamplingForm::LargeCells, output, pass);
   const std::size_t group = this->Device.GetBusyGroupSize(kernel);
   Reserve(this->Device.GetContext(), this->Pieces, DEFORMVOLUME_PIECES * sizeof(Piece));
   for (const VolumeChunk& chunk : this->Volume.GetChunks())

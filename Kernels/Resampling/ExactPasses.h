@@ -32,7 +32,7 @@ public:
 
   /// The kernel for cells: Cells, Lanes or Columns. Throws an Error where the method demands one
   /// that it cannot be.
-  ResamplingForm ChooseForm(Resampling method, const OutputSlab& output);
+  ResamplingForm ChooseForm(const DeformRequest& request, const OutputSlab& output);
 
   /// Runs a pass (DEFORMVOLUME_PASS_DIRECT and so on). bricks: those to run
   /// (DEFORMVOLUME_BRICK_BITS), where the volume is one chunk; null: all. The mapping is up to date
@@ -76,7 +76,8 @@ private:
   /// Work-items of a group of the kernel for columns.
   std::size_t GetColumnGroup(const cl::Kernel& kernel);
 
-  cl::Kernel MakeKernel(ResamplingForm form, const OutputSlab& output, int pass);
+  cl::Kernel MakeKernel(
+    const DeformRequest& request, ResamplingForm form, const OutputSlab& output, int pass);
   /// Has a kernel compiled before it runs (OpenCLContext::Prepare).
   void PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk, const OutputSlab& output,
     ResamplingForm form, const KernelParameters& parameters);

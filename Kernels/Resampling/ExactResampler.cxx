@@ -43,7 +43,7 @@ void ExactResampler::Make(
     this->Volume.GetVolumeArrays(), this->Volume.GetVoxelGrid(),
     this->Volume.GetBricks().GetNumberOfBricks(), this->Launched.GetResamplingEvents());
   target.Clear(this->Device.GetContext(), this->Volume.GetVolumeArrays(),
-    this->Exact.ChooseForm(request.Method, target) == ResamplingForm::Columns,
+    this->Exact.ChooseForm(request, target) == ResamplingForm::Columns,
     this->Launched.GetResamplingEvents());
   this->MakeExact(request, target, slab == 0, report);
 }

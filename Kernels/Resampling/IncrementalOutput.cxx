@@ -61,6 +61,7 @@ void IncrementalOutput::Start(
   this->Changes.Start(this->Volume.GetBricks(), this->Volume.GetVoxelGrid(), request.OutputExtent);
   this->FindCut();
   this->LastMethod = request.Method;
+  this->LastInterpolation = request.Interpolation;
   this->LastWholeExtent = request.WholeOutputExtent;
   this->LastCovered = static_cast<std::uint64_t>(report.NumberOfCoveredVoxels);
   this->RevisionBefore = 0;
@@ -140,7 +141,8 @@ bool IncrementalOutput::CanUpdate(const DeformRequest& request, ExactResampler& 
   return request.Incremental && this->Changes.IsTracking() &&
     this->Changes.GetOutputExtent() == request.OutputExtent &&
     this->LastWholeExtent == request.WholeOutputExtent && this->LastMethod == request.Method &&
-    (hasLast || this->StaysOnDevice(request)) && resampler.HoldsLastOutput(request);
+    this->LastInterpolation == request.Interpolation && (hasLast || this->StaysOnDevice(request)) &&
+    resampler.HoldsLastOutput(request);
 }
 
 void IncrementalOutput::CopyLastOutput(const DeformRequest& request) const

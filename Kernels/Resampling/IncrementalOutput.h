@@ -72,6 +72,7 @@ private:
   IncrementalUpdate Changes;
   bool CutIsKnown = true; // where it passes, and nowhere else
   Resampling LastMethod = Resampling::Exact;
+  Interpolation LastInterpolation = Interpolation::Linear;
   Extent LastWholeExtent{ { 0, -1, 0, -1, 0, -1 } };
   std::uint64_t LastCovered = 0;
   std::uint64_t Revision = 0; // of the last output

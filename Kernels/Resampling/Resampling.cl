@@ -2,18 +2,19 @@
 // Resampling: rasterises the five tetrahedra of each cell of the sampling mesh into the output, by
 // the fill rule of CellCoverage.cl, for all arrays of the volume in one pass over the geometry.
 //
-// Data: what the mapping needs (DeformationMapping.cl), state 1 byte a vertex, active tetrahedra 1 byte a cell
-// (optional), boundary distances 4 bytes a voxel (optional), a smooth cut (CutCells.cl; optional), the output
-// (VoxelWinners.cl), and the arrays themselves in their own types (SampleStoring.cl).
+// Data: what the mapping needs (DeformationMapping.cl), state 1 byte a vertex, active tetrahedra 1
+// byte a cell (optional), boundary distances 4 bytes a voxel (optional), a smooth cut (CutCells.cl;
+// optional), the output (VoxelWinners.cl), and the arrays themselves in their own types
+// (SampleStoring.cl).
 //
-// A work-group takes a cuboid of cells: it maps the cuboid's vertices into local memory, once each, and
-// then a work-item takes a cell, neighbours side by side. Almost all cells are convex enough that a sample
-// needs the central tetrahedron's edge functions and at most those of the corner behind a face; the others, and
-// those with many samples, take one tetrahedron after the other, row by row. Cells with very many samples are put off
-// (LargeCells.cl).
+// A work-group takes a cuboid of cells: it maps the cuboid's vertices into local memory, once each,
+// and then a work-item takes a cell, neighbours side by side. Almost all cells are convex enough
+// that a sample needs the central tetrahedron's edge functions and at most those of the corner
+// behind a face; the others, and those with many samples, take one tetrahedron after the other, row
+// by row. Cells with very many samples are put off (LargeCells.cl).
 
-// A cell of the sampling mesh, with the tetrahedra of it that a smooth cut leaves whole; or, with a Side, the copies of
-// the others as they are seen from there.
+// A cell of the sampling mesh, with the tetrahedra of it that a smooth cut leaves whole; or, with a
+// Side, the copies of the others as they are seen from there.
 typedef struct ViewedCell
 {
   int X, Y, Z;
@@ -33,8 +34,8 @@ typedef struct ViewedCell
   float Distances[8]; // of the vertices to the boundary, where something is clipped
 } Cell;
 
-// A cell has one part, or three of which the last two are its views. They are drawn in the order of these numbers.
-// Without a cut there is only the cell itself.
+// A cell has one part, or three of which the last two are its views. They are drawn in the order of
+// these numbers. Without a cut there is only the cell itself.
 #if HAS_CUT
 static const Cell* WholeOf(const Cell* part)
 {
@@ -68,8 +69,9 @@ static Vector SamplePosition(Vector voxel)
   return r;
 }
 
-// Whether a sample lies on the far side of the boundary, or on the other side of the cut, by its distance: that is
-// interpolated in the tetrahedron, as values are. weights: those of the sample, as edge functions give them.
+// Whether a sample lies on the far side of the boundary, or on the other side of the cut, by its
+// distance: that is interpolated in the tetrahedron, as values are. weights: those of the sample,
+// as edge functions give them.
 static int IsLeftOut(const Cell* cell, int t, const long* weights)
 {
 #if HAS_CUT
@@ -81,9 +83,10 @@ static int IsLeftOut(const Cell* cell, int t, const long* weights)
   return (cell->Clipped >> t & 1) && WeighDistances(cell->Distances, t, weights) < 0;
 }
 
-// Whether a tetrahedron of the cell that comes before this one, and has the same key, writes a voxel, too.
-static __attribute__((noinline)) int IsWrittenBefore(
-  const SamplingMesh* mesh, const Cell* cell, int tetrahedron, Vector voxel, const KernelParameters* p)
+// Whether a tetrahedron of the cell that comes before this one, and has the same key, writes a
+// voxel, too.
+static __attribute__((noinline)) int IsWrittenBefore(const SamplingMesh* mesh, const Cell* cell,
+  int tetrahedron, Vector voxel, const KernelParameters* p)
 {
   const int inverted = cell->Inverted >> tetrahedron & 1;
   const int parts = CountParts(WholeOf(cell));
@@ -113,9 +116,41 @@ static __attribute__((noinline)) int IsWrittenBefore(
   return 0;
 }
 
+#if CUBIC
+// Whether the 64 voxels round a cell are there, and on the near side of the boundary, and so are
+// all tetrahedra of the cell and of the 26 round it, with no smooth cut across them. The vertices
+// are interior then; that they may be, too, beside cells that the boundary of the deformation mesh
+// crosses, which are resampled without their vertices.
+static int HasAllAround(const SamplingMesh* mesh, const Cell* cell, const KernelParameters* p)
+{
+  if (cell->State.Interior != 255)
+  {
+    return 0;
+  }
+  const size_t number = CellInChunk(cell->X, cell->Y, cell->Z, p);
+  if (p->HasActive && (mesh->Active[number] & DEFORMVOLUME_CELL_AT_BOUNDARY))
+  {
+    return 0;
+  }
+#if HAS_CUT
+  for (int i = 0; i < 27; ++i)
+  {
+    const int place = FindCutVertex(mesh->Cut.Rows, mesh->Cut.Vertices, cell->X + i % 3 - 1,
+      cell->Y + i / 3 % 3 - 1, cell->Z + i / 9 - 1, p);
+    if (place >= 0 && (mesh->Cut.Vertices[place].Tetrahedra & DEFORMVOLUME_ALL_TETRAHEDRA))
+    {
+      return 0;
+    }
+  }
+#endif
+  return 1;
+}
+#endif
+
 // s: of the tetrahedron, as far as it is known.
-static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long* weights, long volume,
-  Sample* s, Vector voxel, int role, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long* weights,
+  long volume, Sample* s, Vector voxel, int role, Output* output,
+  const KernelParameters* p ARRAY_PARAMETERS)
 {
   if (IsLeftOut(cell, t, weights))
   {
@@ -132,8 +167,7 @@ static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, co
     }
     return;
   }
-  const size_t target =
-    ((size_t)placeZ * p->OutputSize[1] + placeY) * p->OutputSize[0] + placeX;
+  const size_t target = ((size_t)placeZ * p->OutputSize[1] + placeY) * p->OutputSize[0] + placeX;
   output->Writes++;
   if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
   {
@@ -152,9 +186,19 @@ static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, co
   if (s->Volume == 0)
   {
     BeginSamples(s, cell->X, cell->Y, cell->Z, t, volume, p);
+#if CUBIC
+    s->IsCubic = HasAllAround(mesh, cell, p);
+#endif
   }
   PlaceSample(s, weights, target);
   Cover(output, target);
+#if CUBIC
+  if (s->IsCubic && s->Only < 0)
+  {
+    StoreCubic(s, p ARRAY_ARGUMENTS);
+    return;
+  }
+#endif
   StoreArrays(s ARRAY_ARGUMENTS);
 }
 
@@ -173,7 +217,8 @@ static Candidates AllCandidates(const KernelParameters* p)
   return all;
 }
 
-// Those of all that may lie within some bounds in 1/256 voxel. open: 1 where the high ones do not count, else 0.
+// Those of all that may lie within some bounds in 1/256 voxel. open: 1 where the high ones do not
+// count, else 0.
 static Candidates FindCandidates(Vector low, Vector high, int open, const Candidates* all)
 {
   Candidates c;
@@ -202,8 +247,9 @@ static long CountCandidates(Candidates c)
       for (voxel.x = c.Low.x; voxel.x <= c.High.x; ++voxel.x)
 
 // A cell whose tetrahedra are all there and upright: a sample behind no face of the central
-// tetrahedron is in it, and a corner tetrahedron holds only samples behind its face. Corner tetrahedra of a cell that
-// is much bent overlap. As in any cell, the lowest tetrahedron comes last, because the last one to write wins.
+// tetrahedron is in it, and a corner tetrahedron holds only samples behind its face. Corner
+// tetrahedra of a cell that is much bent overlap. As in any cell, the lowest tetrahedron comes
+// last, because the last one to write wins.
 static OUTLINED void ResampleUprightCell(const SamplingMesh* mesh, const Cell* cell, Candidates c,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -221,8 +267,8 @@ static OUTLINED void ResampleUprightCell(const SamplingMesh* mesh, const Cell* c
     const int role = RoleOf(mesh, cell->X, cell->Y, cell->Z, 4, behind, &central, cell->State, p);
     if (role != STRANGER)
     {
-      Write(mesh, cell, 4, behind, central.Volume, &ofCentral, voxel, role, output,
-        p ARRAY_ARGUMENTS);
+      Write(
+        mesh, cell, 4, behind, central.Volume, &ofCentral, voxel, role, output, p ARRAY_ARGUMENTS);
     }
     if (role == OWNER && !closed)
     {
@@ -257,12 +303,14 @@ static OUTLINED void ResampleUprightCell(const SamplingMesh* mesh, const Cell* c
 
 // Rows of fewer samples are not worth clipping.
 #define LEAST_CLIPPED_ROW 6
-// By how many samples the ends of a clipped row may be off. They are found in single precision, with an error of less
-// than 2^-20 of their distance from the first sample; that is at most MAXIMUM_STRETCH.
+// By how many samples the ends of a clipped row may be off. They are found in single precision,
+// with an error of less than 2^-20 of their distance from the first sample; that is at most
+// MAXIMUM_STRETCH.
 #define CLIP_TOLERANCE (1.0f / 64.0f)
 
-// The first and the last one of a row of samples that a tetrahedron may hold; none where the first comes later.
-// weights: at the first sample. steps: from a sample to the next one. zeros: 1 / -steps where these are not 0.
+// The first and the last one of a row of samples that a tetrahedron may hold; none where the first
+// comes later. weights: at the first sample. steps: from a sample to the next one. zeros: 1 /
+// -steps where these are not 0.
 static int2 ClipRow(const long* weights, const long* steps, const float* zeros, long samples)
 {
   float first = 0.0f;
@@ -312,8 +360,7 @@ static OUTLINED void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* c
       }
       for (int i = row.x; i <= row.y; ++i)
       {
-        const int role =
-          RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p);
+        const int role = RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p);
         if (role != STRANGER)
         {
           voxel.x = candidates->Low.x + i;
@@ -329,8 +376,8 @@ static OUTLINED void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* c
 }
 
 // Any cell: each tetrahedron on its own. The lowest one last, because the last one to write wins.
-static OUTLINED void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* cell, const Candidates* all,
-  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+static OUTLINED void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* cell,
+  const Candidates* all, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int parts = CountParts(cell);
   for (int t = 4; t >= 0; --t)
@@ -346,8 +393,8 @@ static OUTLINED void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* ce
       const Vector b = part->Vertices[Tetrahedra[t][1]];
       const Vector c = part->Vertices[Tetrahedra[t][2]];
       const Vector d = part->Vertices[Tetrahedra[t][3]];
-      const Candidates candidates = FindCandidates(Minimum(Minimum(a, b), Minimum(c, d)),
-        Maximum(Maximum(a, b), Maximum(c, d)), 0, all);
+      const Candidates candidates = FindCandidates(
+        Minimum(Minimum(a, b), Minimum(c, d)), Maximum(Maximum(a, b), Maximum(c, d)), 0, all);
       if (!IsEmpty(candidates))
       {
         ResampleTetrahedron(mesh, part, t, &candidates, output, p ARRAY_ARGUMENTS);
@@ -370,12 +417,13 @@ static int AreUnsettled(Candidates c, const Output* output, const KernelParamete
   return AnyUnsettled(output->Patches, first, last, p);
 }
 
-// Of cells with more candidates it is faster to take the tetrahedra one after the other, whatever these are.
+// Of cells with more candidates it is faster to take the tetrahedra one after the other, whatever
+// these are.
 #define MOST_ONE_BY_ONE 128
 
 // The samples of a cell, by whichever of the two ways is right for it. all: those that are wanted.
-static OUTLINED void ResampleSamples(const SamplingMesh* mesh, const Cell* cell, const Candidates* all,
-  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+static OUTLINED void ResampleSamples(const SamplingMesh* mesh, const Cell* cell,
+  const Candidates* all, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   if (cell->Tetrahedra == DEFORMVOLUME_ALL_TETRAHEDRA && cell->Inverted == 0)
   {
@@ -395,8 +443,8 @@ static OUTLINED void ResampleSamples(const SamplingMesh* mesh, const Cell* cell,
   ResampleTetrahedra(mesh, cell, all, output, p ARRAY_ARGUMENTS);
 }
 
-// The vertices of a cell that lie on the far side of the boundary, as bits; their distances are loaded where there are
-// some.
+// The vertices of a cell that lie on the far side of the boundary, as bits; their distances are
+// loaded where there are some.
 static int ClippedVertices(const SamplingMesh* mesh, Cell* cell, const KernelParameters* p)
 {
   if (!p->HasDistances)
@@ -408,16 +456,19 @@ static int ClippedVertices(const SamplingMesh* mesh, Cell* cell, const KernelPar
   for (int v = 0; v < 8; ++v)
   {
     const int o = v ^ mirror;
-    const size_t i = VertexInChunk(cell->X + (o & 1), cell->Y + (o >> 2), cell->Z + (o >> 1 & 1), p);
+    const size_t i =
+      VertexInChunk(cell->X + (o & 1), cell->Y + (o >> 2), cell->Z + (o >> 1 & 1), p);
     cell->Distances[v] = mesh->Distances[i];
     clipped |= (cell->Distances[v] < 0.0f) << v;
   }
   return clipped;
 }
 
-// Makes some tetrahedra of a cell, given as bits, those of a cell or a view that has its vertices. present: vertices of
-// these that have a place. clipped: ones on the far side of the boundary. Returns whether one is flat, or left out.
-static OUTLINED int MakeTetrahedra(Cell* cell, int tetrahedra, int present, int clipped, int odd, Output* output)
+// Makes some tetrahedra of a cell, given as bits, those of a cell or a view that has its vertices.
+// present: vertices of these that have a place. clipped: ones on the far side of the boundary.
+// Returns whether one is flat, or left out.
+static OUTLINED int MakeTetrahedra(
+  Cell* cell, int tetrahedra, int present, int clipped, int odd, Output* output)
 {
   const Vector* const q = cell->Vertices;
   cell->Tetrahedra = 0;
@@ -464,9 +515,10 @@ static void AddToBounds(Cell* cell, int present, const Vector* q)
 }
 
 #if HAS_CUT
-// What is known of the vertices of a cell as they are seen from both sides. views: room for two. present: those of the
-// cell that have a place; after that those of each view.
-static __attribute__((noinline)) void BeginViews(const SamplingMesh* mesh, Cell* cell, Cell* views, int* present)
+// What is known of the vertices of a cell as they are seen from both sides. views: room for two.
+// present: those of the cell that have a place; after that those of each view.
+static __attribute__((noinline)) void BeginViews(
+  const SamplingMesh* mesh, Cell* cell, Cell* views, int* present)
 {
   int divided = 0;
   for (int t = 0; t < 5; ++t)
@@ -489,7 +541,8 @@ static __attribute__((noinline)) void BeginViews(const SamplingMesh* mesh, Cell*
   cell->Views = views;
 }
 
-// What the cell has in common with its views; their tetrahedra. Returns whether one is flat, or left out.
+// What the cell has in common with its views; their tetrahedra. Returns whether one is flat, or
+// left out.
 static __attribute__((noinline)) int FinishViews(
   const Cell* cell, Cell* views, const int* present, int clipped, int odd, Output* output)
 {
@@ -514,10 +567,10 @@ static __attribute__((noinline)) int FinishViews(
 }
 #endif
 
-// What is known of a cell before its samples are, and is counted. views: room for two, where the cell may be divided.
-// Returns whether it may have some samples.
-static OUTLINED int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all, Cell* cell,
-  Cell* views, Output* output, const KernelParameters* p)
+// What is known of a cell before its samples are, and is counted. views: room for two, where the
+// cell may be divided. Returns whether it may have some samples.
+static OUTLINED int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all,
+  Cell* cell, Cell* views, Output* output, const KernelParameters* p)
 {
   const int active = ActiveTetrahedra(mesh, x, y, z, p);
   const int found = active ? LoadCell(mesh, x, y, z, p, cell->Vertices) : 0;
@@ -569,7 +622,8 @@ static OUTLINED int MakeCell(const SamplingMesh* mesh, int x, int y, int z, cons
   return 1;
 }
 
-// A box in pieces of at most DEFORMVOLUME_PIECE samples, or of one row: so many rows of so many planes.
+// A box in pieces of at most DEFORMVOLUME_PIECE samples, or of one row: so many rows of so many
+// planes.
 typedef struct
 {
   int Rows;
@@ -585,7 +639,8 @@ static Pieces DivideBox(Candidates c)
   const long depth = c.High.z - c.Low.z + 1;
   Pieces pieces;
   pieces.Rows = clamp(DEFORMVOLUME_PIECE / width, 1L, height);
-  pieces.Planes = pieces.Rows < height ? 1 : clamp(DEFORMVOLUME_PIECE / (width * height), 1L, depth);
+  pieces.Planes =
+    pieces.Rows < height ? 1 : clamp(DEFORMVOLUME_PIECE / (width * height), 1L, depth);
   pieces.InPlane = (height + pieces.Rows - 1) / pieces.Rows;
   pieces.Count = pieces.InPlane * ((depth + pieces.Planes - 1) / pieces.Planes);
   return pieces;
@@ -630,8 +685,8 @@ static int IsPutOff(
 }
 
 // One cell. all: the samples that are wanted.
-static OUTLINED void ResampleCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all,
-  Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+static OUTLINED void ResampleCell(const SamplingMesh* mesh, int x, int y, int z,
+  const Candidates* all, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   Cell cell, views[2];
   if (MakeCell(mesh, x, y, z, all, &cell, views, output, p) && !IsPutOff(&cell, all, output, p))
@@ -663,9 +718,9 @@ static int HasCells(int3 first, const KernelParameters* p)
     first.z + DEFORMVOLUME_CUBOID_Z > p->LayersBegin && first.z < p->LayersEnd;
 }
 
-// Bricks of a list from p.ListBegin to p.ListEnd (DEFORMVOLUME_BRICK_BITS). A work-group takes a cuboid of cells of a
-// brick, column by column, since counts are those of sections. On x there are the groups of one brick after the other.
-// positions: room for three ints a vertex of the cuboid.
+// Bricks of a list from p.ListBegin to p.ListEnd (DEFORMVOLUME_BRICK_BITS). A work-group takes a
+// cuboid of cells of a brick, column by column, since counts are those of sections. On x there are
+// the groups of one brick after the other. positions: room for three ints a vertex of the cuboid.
 __kernel void Resample(GIVEN_PARAMETERS, __global const uint* bricks, __local int* positions,
   const KernelParameters p ARRAY_PARAMETERS)
 {
@@ -690,7 +745,8 @@ __kernel void Resample(GIVEN_PARAMETERS, __global const uint* bricks, __local in
     const int x = first.x + i % width;
     const int y = first.y + i / width % height;
     const int z = first.z + i / (width * height);
-    // Cells beyond the launch's first and last layer are looked at where samples lie on the border of the mesh.
+    // Cells beyond the launch's first and last layer are looked at where samples lie on the border
+    // of the mesh.
     const int4 q = x >= 0 && y >= 0 && z >= max(p.LayersBegin - 1, 0) && x < p.Size[0] &&
         y < p.Size[1] && z < p.Size[2] && z <= p.LayersEnd + 1
       ? VertexPosition(&unmapped, x, y, z, &p)

@@ -183,13 +183,15 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
         "a smaller volume or another device.");
     }
   }
+  key += variant.IsCubic ? "#define CUBIC 1\n" : "#define CUBIC 0\n";
   key += variant.CoverageBits ? "#define COVERAGE_IS_BITS 1\n" : "#define COVERAGE_IS_BITS 0\n";
   return context.GetProgram(GetSamplingMeshText(variant.WithCut) + MakeArrayText(context, arrays) +
       key + GetMappingText(mapping) + "#define HAS_CELL_KERNEL " +
       (form == ResamplingForm::Cells ? "1\n" : "0\n") + "#define OUTLINED" +
       (form == ResamplingForm::Queue ? " __attribute__((noinline))\n" : "\n") + IntegerVectors_cl +
-      CellVertices_cl + CutCells_cl + CellCoverage_cl + SampleStoring_cl + VoxelWinners_cl +
-      Resampling_cl + GetFormText(context, arrays, variant),
+      CellVertices_cl + CutCells_cl + CellCoverage_cl +
+      (variant.IsCubic ? ProgramText(VoxelTaps_cl) : ProgramText()) + SampleStoring_cl +
+      VoxelWinners_cl + Resampling_cl + GetFormText(context, arrays, variant),
     std::string(KernelOptions) + GetFormOptions(context, form));
 }
 

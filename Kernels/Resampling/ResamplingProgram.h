@@ -41,6 +41,8 @@ struct ResamplingVariant
   bool WithCut;
   /// Whether columns are resampled in the direct pass only.
   bool IsDirect = false;
+  /// Whether the interpolation is cubic where it can be; of the forms Cells and LargeCells.
+  bool IsCubic = false;
 };
 
 /// The exact resampling for arrays of these types. Throws Error where the device lacks what the

@@ -3,21 +3,29 @@
 //
 // What the host puts in front of this text:
 //   REAL                 type of the interpolation: double where the device has it, else float
-//   EXACT                type that holds whole numbers to 2^53: double where the device has it, else long
-//   ARRAY_PARAMETERS     kernel parameters: source and target of each array
+//   EXACT                type that holds whole numbers to 2^53: double where the device has it,
+//   else long ARRAY_PARAMETERS     kernel parameters: source and target of each array
 //   ARRAY_ARGUMENTS      the same as arguments
 //   STORE_ARRAYS         statements that store all arrays at a sample
+//   CUBIC                whether the interpolation is cubic where it can be; VoxelTaps.cl comes
+//   before this text then
 
 // One sample of one tetrahedron.
 typedef struct
 {
-  size_t Target;    // output voxel in the buffers
+  size_t Target;     // output voxel in the buffers
   size_t Sources[4]; // voxels of the chunk at the tetrahedron's vertices
-  REAL Weights[4];  // barycentric weights
-  REAL Scale;       // of the weights as edge functions give them
-  long Volume;      // their sum as these give them, or 0 where all this is not known yet
-  int Only;         // the vertex at which the sample lies exactly, or -1
-  int Nearest;      // the vertex with the largest weight; of equal ones the lowest voxel
+  REAL Weights[4];   // barycentric weights
+  REAL Scale;        // of the weights as edge functions give them
+  long Volume;       // their sum as these give them, or 0 where all this is not known yet
+  int Only;          // the vertex at which the sample lies exactly, or -1
+  int Nearest;       // the vertex with the largest weight; of equal ones the lowest voxel
+#if CUBIC
+  int IsCubic;    // whether all voxels and cells are there that a cubic interpolation wants
+  int Cell[3];    // local index of the cell, on z counted from the first plane of the chunk
+  int Corners[4]; // of the cell that the vertices are: bits of x, z and y
+  long Along[3];  // where the sample lies in the cell at rest, on x, y and z, from 0 to Volume
+#endif
 } Sample;
 
 // Vertices without weight are not read into the sum: a NaN stays within its tetrahedra. A sample at
@@ -57,8 +65,8 @@ typedef struct
       {                                                                                            \
         const TYPE other = SOURCE[s->Sources[k] * COMPONENTS + c];                                 \
         near &= abs_diff(other, first) < (1UL << 62);                                              \
-        difference = MULTIPLY_ADD_REAL(                                                            \
-          s->Weights[k], (REAL)(long)((ulong)other - (ulong)first), difference);                   \
+        difference =                                                                               \
+          MULTIPLY_ADD_REAL(s->Weights[k], (REAL)(long)((ulong)other - (ulong)first), difference); \
         sum = MULTIPLY_ADD_REAL(s->Weights[k], (REAL)other - (REAL)first, sum);                    \
       }                                                                                            \
       value = near ? (TYPE)((ulong)first + (ulong)convert_long_rte(difference)) : CONVERT(sum);    \
@@ -77,7 +85,47 @@ static void StoreArrays(const Sample* s ARRAY_PARAMETERS)
   STORE_ARRAYS
 }
 
-// What all samples of a tetrahedron share. volume: the sum of the weights as the edge functions give them.
+#if CUBIC
+// The voxels on an axis of the cell that a sample lies in.
+static AxisTaps MakeAxisTaps(const Sample* s, int axis)
+{
+  const int voxel = s->Cell[axis];
+  AxisTaps taps;
+  taps.Count = 0;
+  if (s->Along[axis] == 0 || s->Along[axis] == s->Volume)
+  {
+    AddTap(&taps, voxel + (s->Along[axis] != 0), 1);
+  }
+  else
+  {
+    AddCubicTaps(&taps, voxel - 1, voxel, voxel + 2, (REAL)s->Along[axis] * s->Scale);
+  }
+  return taps;
+}
+
+#undef STORE_LINEAR
+#undef STORE_LINEAR_64
+#define STORE_LINEAR(SOURCE, TARGET, COMPONENTS, CONVERT)                                          \
+  STORE_TAPS(taps, SOURCE, TARGET, s->Target, COMPONENTS, CONVERT)
+#define STORE_LINEAR_64(SOURCE, TARGET, COMPONENTS, TYPE, CONVERT)                                 \
+  STORE_TAPS_64(taps, SOURCE, TARGET, s->Target, COMPONENTS, TYPE, CONVERT)
+
+// As StoreArrays, cubic at the rest coordinate of the sample: in its tetrahedron that goes linearly
+// from vertex to vertex.
+static __attribute__((noinline)) void StoreCubic(
+  const Sample* s, const KernelParameters* p ARRAY_PARAMETERS)
+{
+  const AxisTaps x = MakeAxisTaps(s, 0);
+  const AxisTaps y = MakeAxisTaps(s, 1);
+  const AxisTaps z = MakeAxisTaps(s, 2);
+  VoxelTaps taps;
+  JoinTaps(&x, &y, &z, p->Size, &taps);
+  STORE_ARRAYS
+}
+#endif
+
+// What all samples of a tetrahedron share. volume: the sum of the weights as the edge functions
+// give them.
 static void BeginSamples(
   Sample* s, int x, int y, int z, int t, long volume, const KernelParameters* p)
 {
@@ -86,7 +134,15 @@ static void BeginSamples(
   {
     const int o = Tetrahedra[t][k] ^ mirror;
     s->Sources[k] = VertexInChunk(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+#if CUBIC
+    s->Corners[k] = o;
+#endif
   }
+#if CUBIC
+  s->Cell[0] = x;
+  s->Cell[1] = y;
+  s->Cell[2] = z - p->ChunkFirst;
+#endif
   s->Scale = (REAL)1 / (REAL)volume;
   s->Volume = volume;
 }
@@ -101,7 +157,17 @@ static void PlaceSample(Sample* s, const long* weights, size_t target)
     s->Weights[k] = (REAL)weights[k] * s->Scale;
     s->Only = weights[k] == s->Volume ? k : s->Only;
     const long lead = weights[k] - weights[s->Nearest];
-    s->Nearest =
-      lead > 0 || (lead == 0 && s->Sources[k] < s->Sources[s->Nearest]) ? k : s->Nearest;
+    s->Nearest = lead > 0 || (lead == 0 && s->Sources[k] < s->Sources[s->Nearest]) ? k : s->Nearest;
   }
+#if CUBIC
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int bit = axis == 0 ? 0 : 3 - axis;
+    s->Along[axis] = 0;
+    for (int k = 0; k < 4; ++k)
+    {
+      s->Along[axis] += s->Corners[k] >> bit & 1 ? weights[k] : 0;
+    }
+  }
+#endif
 }

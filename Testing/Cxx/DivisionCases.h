@@ -287,6 +287,11 @@ inline std::vector<Case> MakeCases()
     whole->GetPointData()->SetVectors(vectors);
     return whole;
   }();
+  const auto setCubic = [](vtkDeformVolumeFilter* filter)
+  {
+    filter->SetInterpolationToCubicInterpolation();
+    filter->AddCategoricalArray("label");
+  };
   const auto masked = MakeVolume(extent);
   {
     const auto active = vtkSmartPointer<vtkUnsignedCharArray>::New();
@@ -342,6 +347,7 @@ inline std::vector<Case> MakeCases()
       deform(MakeImage(extent, glm::dvec3(1.0), glm::dvec3(3.0, -2.0, 1.0)),
         [=](const glm::dvec3& p) { return 2.0 * p - open(p); }));
     add("Smooth cut, mesh", divided, deform(MakeMesh(divided, 30), open));
+    add("Smooth cut, cubic", divided, cases.back().Deformation).Set = setCubic;
   }
   add("Coarser output", volume, deform(MakeMesh(volume, 6), Bend(volume))).Set =
     [](vtkDeformVolumeFilter* filter)
@@ -374,6 +380,23 @@ inline std::vector<Case> MakeCases()
   add("Folded on voxels", volume, deform(MakeMesh(volume, 35), Fold(volume, 1.0)));
   add("Folded, masks", masked, deform(MakeMesh(masked, 35), Fold(masked, 1.0)));
   add("Wound", volume, deform(MakeMesh(volume, 25), Wind(volume)));
+  {
+    // Most cells have all that a cubic interpolation wants.
+    const auto few = MakeVolume(extent);
+    const auto active = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    active->SetName("ActiveTetrahedra");
+    for (vtkIdType id = 0; id < few->GetNumberOfCells(); ++id)
+    {
+      active->InsertNextValue(Scatter(id) % 400 == 0 ? 27 : 31);
+    }
+    few->GetCellData()->AddArray(active);
+    add("Cubic", few, deform(MakeMesh(few, 4), Bend(few))).Set = setCubic;
+    add("Cubic, smaller mesh", few, deform(MakeMesh(few, 5, -6.3), Bend(few, 1.5))).Set = setCubic;
+    add("Cubic, folded", few, deform(MakeMesh(few, 12), Fold(few, 0.75))).Set = setCubic;
+    add("Cubic, field", few,
+      deform(MakeImage(extent, glm::dvec3(1.0), glm::dvec3(3.0, -2.0, 1.0)), Bend(few)))
+      .Set = setCubic;
+  }
   return cases;
 }
 

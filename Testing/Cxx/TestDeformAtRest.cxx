@@ -75,7 +75,7 @@ void TestMisuse()
   subject.Filter->SetDeformationConnection(nullptr);
   VERIFY_EQUAL(GetExtent(subject.Update()), GetExtent(volume));
 
-  // What cubic interpolation does not do is said without a word of a field.
+  // What the other resampler does not do is said without a word of a field.
   const auto cut = MakeVolume();
   vtkNew<vtkUnsignedCharArray> crossed;
   crossed->SetName("CutTetrahedra");
@@ -85,11 +85,11 @@ void TestMisuse()
   cut->GetPointData()->SetActiveScalars(nullptr);
   AddScalars<float>(cut, "CutDistance", [](const glm::dvec3& p) { return p.x - 4.5; });
   subject.Filter->SetInputData(cut);
-  subject.Filter->SetInterpolationToCubicInterpolation();
+  subject.Filter->SetResamplerToMeshRasterization();
   VERIFY(!subject.Filter->GetExecutive()->Update());
   VERIFY_EQUAL(subject.TakeErrors(), 1);
   VERIFY(subject.LastError.find("cannot do smooth cuts") != std::string::npos);
-  subject.Filter->SetInterpolationToLinearInterpolation();
+  subject.Filter->SetResamplerToAutomatic();
   subject.Update();
   VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), cut->GetNumberOfPoints());
 
@@ -151,7 +151,7 @@ void TestSettings()
   {
     Deformed expected(volume, zeros);
     setting.second(expected.Filter);
-    if (setting.first == std::string("rasterization") || setting.first == std::string("cubic"))
+    if (setting.first == std::string("rasterization"))
     {
       expected.Filter->FieldIsInverseOn();
     }

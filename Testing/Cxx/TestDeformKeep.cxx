@@ -164,7 +164,6 @@ void TestMisuse()
   {
     subject.Filter->SetFadeDistance(4.0);
     subject.Filter->SetResamplerToAutomatic();
-    subject.Filter->SetInterpolationToLinearInterpolation();
     subject.Filter->OpenSplitsOff();
     subject.Filter->SetDeformationData(mesh);
     VERIFY(AreEqual(subject.Update(), expected));
@@ -177,9 +176,6 @@ void TestMisuse()
     mend();
   }
   subject.Filter->SetResamplerToMeshRasterization();
-  refuse("the outside mode KEEP");
-  mend();
-  subject.Filter->SetInterpolationToCubicInterpolation();
   refuse("the outside mode KEEP");
   mend();
   subject.Filter->OpenSplitsOn();

@@ -184,12 +184,6 @@ void TestAgainstHand()
     MaskSome(few.Volume);
     cases.push_back(few);
 
-    Case cubic = cases[2];
-    cubic.Name = "Cubic";
-    cubic.Set = [](vtkDeformVolumeFilter* filter)
-    { filter->SetInterpolationToCubicInterpolation(); };
-    cases.push_back(cubic);
-
     // Arrays in other layouts and of other sizes; a spacing below 0 and another direction.
     Case odd = cases[2];
     odd.Name = "Odd";

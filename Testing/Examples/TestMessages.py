@@ -98,19 +98,15 @@ chain_mail = ("--model", "chainmail", "--pull", "8,20,25,-3,1,1,3")
 
 def check_resamplers():
     """What goes with a resampler is known from the options, or from the kind of --mesh."""
-    rasterization, cubic = ("--resampler", "mesh-rasterization"), ("--interpolation", "cubic")
+    rasterization = ("--resampler", "mesh-rasterization")
     exact = ("--resampler", "exact")
     for arguments in (field, chain_mail):
         fails(2, ["--resampler mesh-rasterization", "forward field"], *arguments, *rasterization)
-        fails(2, ["--interpolation cubic", "forward field"], *arguments, *cubic)
     fails(1, ["--resampler mesh-rasterization", "forward field"], "--mesh", path("field.vti"),
           "--displacement", "U", *rasterization)
     for arguments in (mesh, (*lattice, *push)):
         fails(2, "--outside extrapolate", *arguments, *rasterization, "--outside", "extrapolate")
-        fails(2, "--outside extrapolate", *arguments, *cubic, "--outside", "extrapolate")
         fails(2, "--smooth-cut", *arguments, *rasterization, *cut, "--smooth-cut")
-        fails(2, "--smooth-cut", *arguments, *cubic, *cut, "--smooth-cut")
-        fails(2, "mesh-rasterization only", *arguments, *cubic, *exact)
     inverse = (*field, "--field-is-inverse")
     fails(2, "inverse", *inverse, *exact)
     fails(2, "inverse", *inverse, *cut, "--smooth-cut")

@@ -383,6 +383,7 @@ DeformRequest EditedOutputs::MakeRequest(const EditedVolume& volume)
 {
   DeformRequest request;
   request.Method = volume.Method;
+  request.Interpolation = volume.Interpolation;
   request.OutputExtent = volume.Output;
   request.Outputs = { this->First.data(), this->Second.data() };
   request.Coverage = this->Coverage.data();

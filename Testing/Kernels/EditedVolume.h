@@ -41,6 +41,7 @@ struct EditedVolume
   deformvolume::Extent Output;
   double Background = 3.0;
   deformvolume::Resampling Method = deformvolume::Resampling::Exact;
+  deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
 
   /// hasCorner: whether a corner of the volume is outside the mesh.
   explicit EditedVolume(

@@ -319,6 +319,12 @@ void BuildOthers(Recorder& recorder)
     // For outputs that columns do not take.
     GetResamplingProgram(
       context, MappingForm::Links, OneArray, { ResamplingForm::Cells, false, false, withCut });
+    recorder.SetPurpose(withCut ? "links-int16-cubic-cut" : "links-int16-cubic");
+    for (const ResamplingForm form : { ResamplingForm::Cells, ResamplingForm::LargeCells })
+    {
+      GetResamplingProgram(
+        context, MappingForm::Links, OneArray, { form, false, false, withCut, false, true });
+    }
   }
 }
 

@@ -234,6 +234,12 @@ TEST_F(Compilation, NoWarnings)
   EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, linear,
               { ResamplingForm::LargeCells, false, true, false })),
     "");
+  for (const bool withCut : { false, true })
+  {
+    EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, linear,
+                { ResamplingForm::Cells, false, false, withCut, false, true })),
+      "");
+  }
   EXPECT_EQ(GetLog(GetOutputProgram(context)), "");
   EXPECT_EQ(GetLog(GetRangeListsProgram(context)), "");
   EXPECT_EQ(GetLog(GetEntryListsProgram(context)), "");

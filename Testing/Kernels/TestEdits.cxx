@@ -98,6 +98,11 @@ protected:
   {
     SKIP_WITHOUT_DOUBLE_PRECISION()
     this->Volume.Method = GetMethod();
+    // Cubic ones go by cell whatever the method.
+    if (GetMethod() == Resampling::ExactByCell && GetRoute() != Route::Runs)
+    {
+      this->Volume.Interpolation = Interpolation::Cubic;
+    }
     this->Whole = std::make_unique<VolumeDeformer>();
     this->Volume.SendAll(*this->Whole, GetRoute());
     this->Volume.SendAll(this->Updated, GetRoute());
@@ -309,6 +314,7 @@ protected:
   {
     DeformRequest request;
     request.Method = this->Volume.Method;
+    request.Interpolation = this->Volume.Interpolation;
     request.OutputExtent = this->Volume.Output;
     request.Outputs = { memory.GetFirst(), memory.Second.data() };
     request.Coverage = memory.Coverage.data();

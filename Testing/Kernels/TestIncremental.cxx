@@ -191,6 +191,7 @@ protected:
     VolumeDeformer& deformer, std::vector<float>& output, std::vector<signed char>& coverage) const
   {
     DeformRequest request;
+    request.Interpolation = this->Interpolation;
     request.OutputExtent = this->Case.Output;
     request.Outputs = { output.data() };
     request.Coverage = coverage.data();
@@ -236,6 +237,7 @@ protected:
   VolumeDeformer Updated;
   std::vector<float> Values1;
   std::vector<signed char> Coverage1;
+  deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
   int Parts = 0;
 };
 
@@ -246,23 +248,30 @@ TEST_F(IncrementalMasks, AMaskChangesBesideAPart)
   std::vector<unsigned char> blanked(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()));
   std::vector<unsigned char> active(
     static_cast<std::size_t>(GetNumberOfCells(this->Case.VoxelGrid.VertexExtent)), 31);
-  this->Update(blanked, active);
   int changes = 0;
-  for (const int y : { 0, 20 })
+  for (const auto interpolation :
+    { deformvolume::Interpolation::Linear, deformvolume::Interpolation::Cubic })
   {
-    // Parts meet at 32.
-    for (int x = 28; x <= 36; ++x)
+    SCOPED_TRACE(interpolation == deformvolume::Interpolation::Cubic ? "cubic" : "linear");
+    this->Interpolation = interpolation;
+    ASSERT_NO_FATAL_FAILURE(this->Update(blanked, active));
+    EXPECT_EQ(this->Parts, changes) << "what is interpolated otherwise is all made";
+    for (const int y : { 0, 20 })
     {
-      for (const bool ofCells : { false, true })
+      // Parts meet at 32.
+      for (int x = 28; x <= 36; ++x)
       {
-        SCOPED_TRACE(testing::Message() << "x " << x << " y " << y << " of cells " << ofCells);
-        unsigned char& value =
-          ofCells ? active[(20 * 48 + y) * 48 + x] : blanked[(20 * 49 + y) * 49 + x];
-        value = ofCells ? 0 : 1;
-        ASSERT_NO_FATAL_FAILURE(this->Update(blanked, active));
-        value = ofCells ? 31 : 0;
-        ASSERT_NO_FATAL_FAILURE(this->Update(blanked, active));
-        changes += 2;
+        for (const bool ofCells : { false, true })
+        {
+          SCOPED_TRACE(testing::Message() << "x " << x << " y " << y << " of cells " << ofCells);
+          unsigned char& value =
+            ofCells ? active[(20 * 48 + y) * 48 + x] : blanked[(20 * 49 + y) * 49 + x];
+          value = ofCells ? 0 : 1;
+          ASSERT_NO_FATAL_FAILURE(this->Update(blanked, active));
+          value = ofCells ? 31 : 0;
+          ASSERT_NO_FATAL_FAILURE(this->Update(blanked, active));
+          changes += 2;
+        }
       }
     }
   }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The table of the exact resampling: each deformation with each kind of mask and each kind of
-// smooth cut equals the reference, by all kernels, and by links, runs and fields in turn. One row
-// is run with --gtest_filter='*/Bent_Blanked_Opened'. All types of elements are those of
-// TestElementTypes, what is special about single rows those of TestPiecewise, TestFolded,
+// smooth cut equals the reference, by all kernels, linear and cubic, and by links, runs and fields
+// in turn. One row is run with --gtest_filter='*/Bent_Blanked_Opened'. All types of elements are
+// those of TestElementTypes, what is special about single rows those of TestPiecewise, TestFolded,
 // TestLargeCells, TestBoundaryDistances and TestSmoothCuts.
+#include "CubicReference.h"
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 
@@ -261,6 +262,15 @@ TEST_P(ExactResampling, EqualsTheReference)
     ? (random() % 2 ? Route::Mesh : Route::Runs)
     : std::array<Route, 3>{ { Route::Field, Route::Mesh, Route::Runs } }[random() % 3];
   ExpectEqualsReference(made, reference, arrays, LoadAndRun(made, arrays, route));
+  SCOPED_TRACE("cubic");
+  VolumeDeformer deformer;
+  Load(deformer, made, arrays, route);
+  const std::int64_t cubic = ExpectEqualsCubicReference(made, reference, arrays,
+    RunDeformer(deformer, made, arrays, Resampling::Exact, Interpolation::Cubic));
+  if (pose.Volume == Usual && name == std::string(pose.Name) + "_Whole_Uncut")
+  {
+    EXPECT_GT(cubic, 0);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, ExactResampling,

@@ -403,8 +403,8 @@ void Load(VolumeDeformer& deformer, const TightMesh& mesh, StaticMappingForm for
   deformer.SetNodeDisplacements(mesh.Displacements.data());
 }
 
-TightOutput DeformTight(
-  VolumeDeformer& deformer, const TightMesh& mesh, Resampling method, const TightOutput* last)
+TightOutput DeformTight(VolumeDeformer& deformer, const TightMesh& mesh, Resampling method,
+  const TightOutput* last, Interpolation interpolation)
 {
   TightOutput output;
   const auto count = static_cast<std::size_t>(GetNumberOfPoints(mesh.Output));
@@ -413,6 +413,7 @@ TightOutput DeformTight(
   output.Coverage.assign(count, 7);
   DeformRequest request;
   request.Method = method;
+  request.Interpolation = interpolation;
   request.OutputExtent = mesh.Output;
   request.Outputs = { output.Values.data(), output.Labels.data() };
   request.Coverage = output.Coverage.data();

@@ -77,7 +77,8 @@ void Load(deformvolume::VolumeDeformer& deformer, const TightMesh& mesh,
 void SetMasks(deformvolume::VolumeDeformer& deformer, const TightMesh& mesh);
 TightOutput DeformTight(deformvolume::VolumeDeformer& deformer, const TightMesh& mesh,
   deformvolume::Resampling method = deformvolume::Resampling::Exact,
-  const TightOutput* last = nullptr);
+  const TightOutput* last = nullptr,
+  deformvolume::Interpolation interpolation = deformvolume::Interpolation::Linear);
 
 /// Coverage as the search found it; where the map is affine, values and labels too. bound: of the
 /// difference of values.

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The voxels that a place at rest lies between, with their weights, and what arrays are there:
+// linear over eight voxels, or cubic (Catmull-Rom) over 64. Voxels without weight are left out: a
+// NaN stays within its cells, and a voxel's own place gives its bits.
+//
+// What the host puts in front of this text:
+//   REAL   type of the interpolation: double where the device has it, else float
+//   CUBIC  whether the interpolation is cubic
+
+#define TAPS_PER_AXIS (CUBIC ? 4 : 2)
+#define TAPS (CUBIC ? 64 : 8)
+
+// The voxels on an axis.
+typedef struct
+{
+  int Voxels[TAPS_PER_AXIS];
+  REAL Weights[TAPS_PER_AXIS];
+  int Count;
+} AxisTaps;
+
+static void AddTap(AxisTaps* taps, int voxel, REAL weight)
+{
+  if (weight != 0)
+  {
+    taps->Voxels[taps->Count] = voxel;
+    taps->Weights[taps->Count++] = weight;
+  }
+}
+
+#if CUBIC
+// Those for a place between a voxel and the next one, at a fraction f of the way. before, after:
+// the voxels beyond these.
+static void AddCubicTaps(AxisTaps* taps, int before, int voxel, int after, REAL f)
+{
+  AddTap(taps, before, MULTIPLY_ADD_REAL(2 - f, f, (REAL)-1) * f / 2);
+  AddTap(
+    taps, voxel, MULTIPLY_ADD_REAL(MULTIPLY_ADD_REAL((REAL)3, f, (REAL)-5) * f, f, (REAL)2) / 2);
+  AddTap(taps, voxel + 1,
+    MULTIPLY_ADD_REAL(MULTIPLY_ADD_REAL((REAL)-3, f, (REAL)4), f, (REAL)1) * f / 2);
+  AddTap(taps, after, (f - 1) * f * f / 2);
+}
+#endif
+
+typedef struct
+{
+  size_t Sources[TAPS]; // places of voxels in the arrays
+  REAL Weights[TAPS];
+  int Count;
+} VoxelTaps;
+
+// size: of the volume.
+static void JoinTaps(
+  const AxisTaps* x, const AxisTaps* y, const AxisTaps* z, const int* size, VoxelTaps* taps)
+{
+  taps->Count = 0;
+  for (int k = 0; k < z->Count; ++k)
+  {
+    for (int j = 0; j < y->Count; ++j)
+    {
+      const size_t row = ((size_t)z->Voxels[k] * size[1] + y->Voxels[j]) * size[0];
+      const REAL weight = z->Weights[k] * y->Weights[j];
+      for (int i = 0; i < x->Count; ++i)
+      {
+        taps->Sources[taps->Count] = row + x->Voxels[i];
+        taps->Weights[taps->Count++] = weight * x->Weights[i];
+      }
+    }
+  }
+}
+
+#define STORE_TAPS(T, SOURCE, TARGET, PLACE, COMPONENTS, CONVERT)                                  \
+  for (int c = 0; c < COMPONENTS; ++c)                                                             \
+  {                                                                                                \
+    if (T.Count == 1)                                                                              \
+    {                                                                                              \
+      TARGET[PLACE * COMPONENTS + c] = SOURCE[T.Sources[0] * COMPONENTS + c];                      \
+    }                                                                                              \
+    else                                                                                           \
+    {                                                                                              \
+      REAL sum = 0;                                                                                \
+      for (int k = 0; k < T.Count; ++k)                                                            \
+      {                                                                                            \
+        sum = MULTIPLY_ADD_REAL(T.Weights[k], (REAL)SOURCE[T.Sources[k] * COMPONENTS + c], sum);   \
+      }                                                                                            \
+      TARGET[PLACE * COMPONENTS + c] = CONVERT(sum);                                               \
+    }                                                                                              \
+  }
+
+// Integers of 64 bits do not fit into REAL: what is interpolated is the difference to the first
+// voxel, which is exact wherever the values are near to each other. A cubic sum may leave the range
+// of the type: it is added where no overflow is possible.
+#define STORE_TAPS_64(T, SOURCE, TARGET, PLACE, COMPONENTS, TYPE, CONVERT)                         \
+  for (int c = 0; c < COMPONENTS; ++c)                                                             \
+  {                                                                                                \
+    const TYPE first = SOURCE[T.Sources[0] * COMPONENTS + c];                                      \
+    REAL sum = 0;                                                                                  \
+    REAL difference = 0;                                                                           \
+    int near = 1;                                                                                  \
+    for (int k = 0; k < T.Count; ++k)                                                              \
+    {                                                                                              \
+      const TYPE other = SOURCE[T.Sources[k] * COMPONENTS + c];                                    \
+      near &= abs_diff(other, first) < (1UL << 58);                                                \
+      difference =                                                                                 \
+        MULTIPLY_ADD_REAL(T.Weights[k], (REAL)(long)((ulong)other - (ulong)first), difference);    \
+      sum = MULTIPLY_ADD_REAL(T.Weights[k], (REAL)other, sum);                                     \
+    }                                                                                              \
+    const TYPE step = (TYPE)abs(convert_long_rte(near ? difference : 0));                          \
+    TARGET[PLACE * COMPONENTS + c] = !near ? CONVERT(sum)                                          \
+      : difference < 0                     ? sub_sat(first, step)                                  \
+                                           : add_sat(first, step);                                                     \
+  }
